@@ -33,23 +33,30 @@ static const subcommand subcommands[] = {
 static const char help[] =
     "Usage: dvi COMMAND [ARGUMENTS]\n"
     "\n"
-    "Discrete variational mechanics: integrate mechanical systems by making a discrete action stationary.\n"
+    "Discrete variational mechanics: integrate mechanical systems by making a discrete action "
+    "stationary.\n"
     "\n"
     "Commands:\n"
     "  list methods|problems   what there is to choose from\n"
-    "  explain PROBLEM ...     which kernel, solver and sparsity a method chooses for a problem, and why\n"
+    "  explain PROBLEM ...     which kernel, solver and sparsity a method chooses for a problem, "
+    "and why\n"
     "  run PROBLEM ...         compute a trajectory and its invariants as CSV\n"
     "  init FILE.yaml          write an example of a scene, to be changed into one's own\n"
     "  check PROBLEM           compare all derivatives with differences, and take one step\n"
-    "  sweep PROBLEM ...       one run at each point of a grid of parameters, on all cores, as CSV\n"
-    "  resonance PROBLEM ...   find the values of a parameter at which a method lets an invariant grow\n"
-    "  plot FILE.csv ...       draw columns of a CSV file against each other: orbits, phase portraits\n"
+    "  sweep PROBLEM ...       one run at each point of a grid of parameters, on all cores, as "
+    "CSV\n"
+    "  resonance PROBLEM ...   find the values of a parameter at which a method lets an invariant "
+    "grow\n"
+    "  plot FILE.csv ...       draw columns of a CSV file against each other: orbits, phase "
+    "portraits\n"
     "  emit-c SCENE.yaml ...   write a C file that declares a scene's system by callbacks\n"
-    "  path PROBLEM ...        find a path between given ends, or a periodic one, all its steps at once\n"
+    "  path PROBLEM ...        find a path between given ends, or a periodic one, all its steps at "
+    "once\n"
     "  order PROBLEM ...       measure the order of methods against an independent judge\n"
     "  bench PROBLEM ...       measure speed against error, also beside SUNDIALS' integrators\n"
     "\n"
-    "  A PROBLEM is a name of the catalogue or the path of a scene, a file that ends in .yaml or .yml: a Lagrangian as\n"
+    "  A PROBLEM is a name of the catalogue or the path of a scene, a file that ends in .yaml or "
+    ".yml: a Lagrangian as\n"
     "  it stands on paper, a start, a method (docs/scenes.md).\n"
     "\n"
     "  dvi COMMAND --help      options, columns and examples of a command\n"
@@ -67,7 +74,8 @@ static const char help[] =
     "  dvi run cart.yaml --final --plot cart.svg\n"
     "  dvi order cart.yaml --plot order.svg\n"
     "\n"
-    "Exit codes: 0 done; 1 a numerical failure, or a file that cannot be read or written; 2 a wrong command line;\n"
+    "Exit codes: 0 done; 1 a numerical failure, or a file that cannot be read or written; 2 a "
+    "wrong command line;\n"
     "3 a check failed; 129, 130 or 143: SIGHUP, Ctrl-C or SIGTERM ended it.\n";
 
 static const char *subcommand_at(int k, const void *list)
@@ -79,7 +87,8 @@ static const char *subcommand_at(int k, const void *list)
 static void print_version(void)
 {
   (void)printf("dvi %s (SUNDIALS %s", dvi_version(), dvi_reference_version());
-  if (peer_gsl_version() != NULL) (void)printf(", GSL %s: this binary is under the GPL, version 3 or later", peer_gsl_version());
+  if (peer_gsl_version() != NULL)
+    (void)printf(", GSL %s: this binary is under the GPL, version 3 or later", peer_gsl_version());
   (void)printf(")\n");
 }
 
@@ -90,9 +99,11 @@ static int dispatch(int argc, char **argv)
     return USAGE;
   }
   const bool asks_version = strcmp(argv[1], "--version") == 0;
-  const bool asks_help = strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0;
+  const bool asks_help = strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 ||
+                         strcmp(argv[1], "help") == 0;
   if (argc > 2 && (asks_version || asks_help))
-    return usage_error("'%s' stands alone, '%s' is too many; dvi COMMAND --help explains a command", argv[1], argv[2]);
+    return usage_error("'%s' stands alone, '%s' is too many; dvi COMMAND --help explains a command",
+                       argv[1], argv[2]);
   if (asks_help) {
     (void)fputs(help, stdout);
     return DONE;
@@ -110,7 +121,8 @@ static int dispatch(int argc, char **argv)
 
 int main(int argc, char **argv)
 {
-  /* A reader that goes away and a file that outgrows its limit shall be write errors, with their messages and clean-up. */
+  /* A reader that goes away and a file that outgrows its limit shall be write errors, with their
+   * messages and clean-up. */
   (void)signal(SIGPIPE, SIG_IGN);
   (void)signal(SIGXFSZ, SIG_IGN);
   signals_end(false, NULL);

@@ -3,34 +3,27 @@
 #define BENCH_REPORT_H
 #include <stdbool.h>
 
-#include "plot/axes.h"
-#include "bench/bench_job.h"
+#include "bench/whole_job.h"
 #include "cli/numbers.h"
-
-/** All that was measured. */
-typedef struct bench_results {
-  const problem *scene;
-  const judgement *judge;
-  double t_end;
-  bool one_point; /**< callbacks of the one-point shape */
-  long rounds;
-  int jobs;
-  bench_job *job;     /**< [jobs] in the order of the table: all settings of one integrator, then of the next */
-  spread calibration; /**< machine_multiplications, once a round */
-} bench_results;
+#include "plot/axes.h"
+#include "study/asked.h"
+#include "study/work.h"
+#include "study/work_table.h"
 
 /** Where the results go; NULL: nowhere, "-": standard output, and all words to standard error. */
 typedef struct bench_outputs {
   const char *csv, *plot, *at_csv;
-  plot_axes axes; /**< of the plot */
-  numbers asked;  /**< errors at which the integrators are compared */
+  table_column columns[WORK_COLUMNS_MAX]; /**< of the table */
+  plot_axes axes;                         /**< of the plot */
+  numbers asked;                          /**< errors at which the integrators are compared */
 } bench_outputs;
 
-/** The columns of the table, ended by one without a title. */
-extern const table_column bench_columns[];
-
-/** One past the last job of the integrator that job `first` belongs to. */
-int bench_group_end(const bench_results *results, int first);
+/** All that was measured, of whole jobs. */
+typedef struct bench_results {
+  const judged_motion *motion;
+  bool one_point; /**< callbacks of the one-point shape */
+  const work *work;
+} bench_results;
 
 /** Print and write everything. Returns DONE, or complains and returns FAILED. */
 int bench_report(const bench_results *results, const bench_outputs *outputs);

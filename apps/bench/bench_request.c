@@ -14,13 +14,15 @@ enum { ROUNDS_DEFAULT = 5 };
 static int check_outputs(const bench_outputs *outputs, const char *name)
 {
   const char *const paths[] = {outputs->csv, outputs->plot, outputs->at_csv};
-  const named_file files[] = {{"csv", outputs->csv}, {"plot", outputs->plot}, {"at-csv", outputs->at_csv}};
+  const named_file files[] = {
+      {"csv", outputs->csv}, {"plot", outputs->plot}, {"at-csv", outputs->at_csv}};
   enum { FILES = sizeof files / sizeof *files };
   int code = outputs_plot("bench", "plot", outputs->plot);
   if (code == DONE) code = scene_spared("bench", name, FILES, files);
   if (code == DONE) code = outputs_distinct("bench", FILES, files);
   if (code != DONE) return code;
-  if (outputs->csv != NULL && outputs->at_csv != NULL && strcmp(outputs->csv, "-") == 0 && strcmp(outputs->at_csv, "-") == 0)
+  if (outputs->csv != NULL && outputs->at_csv != NULL && strcmp(outputs->csv, "-") == 0 &&
+      strcmp(outputs->at_csv, "-") == 0)
     return usage_error("bench: --csv - and --at-csv - would mix two tables on standard output");
   for (int i = 0; i < FILES; i++)
     if (paths[i] != NULL && !file_writable(paths[i])) return FAILED;
@@ -31,15 +33,20 @@ static int check_outputs(const bench_outputs *outputs, const char *name)
 static int check_modes(const bench_request *r)
 {
   static const char reason[] = "--scale measures single steps";
-  if (r->scale == NULL && !isnan(r->h)) return usage_error("bench: --h goes with --scale; else the steps are chosen by the error");
+  if (r->scale == NULL && !isnan(r->h))
+    return usage_error("bench: --h goes with --scale; else the steps are chosen by the error");
   if (r->scale == NULL && r->steps > 0)
-    return usage_error("bench: --steps goes with --scale; else their number follows from the error");
-  if (r->outputs.at_csv != NULL && r->at == NULL) return usage_error("bench: --at-csv needs the errors: --at 1e-6,1e-9");
+    return usage_error(
+        "bench: --steps goes with --scale; else their number follows from the error");
+  if (r->outputs.at_csv != NULL && r->at == NULL)
+    return usage_error("bench: --at-csv needs the errors: --at 1e-6,1e-9");
   if (r->scale == NULL) return DONE;
   if (r->at != NULL) return usage_error("bench: %s: --at has no meaning there", reason);
-  if (r->against.count > 0) return usage_error("bench: %s: the codes of --against choose their own", reason);
+  if (r->against.count > 0)
+    return usage_error("bench: %s: the codes of --against choose their own", reason);
   if (r->judged_by != NULL) return usage_error("bench: %s: --judge has no meaning there", reason);
-  if (r->transforms.count > 0) return usage_error("bench: %s: --time-transform has no meaning there", reason);
+  if (r->transforms.count > 0)
+    return usage_error("bench: %s: --time-transform has no meaning there", reason);
   if (r->axes.count > 0) return usage_error("bench: %s: --axes has no meaning there", reason);
   if (r->levels > 0) return usage_error("bench: %s: --levels has no meaning there", reason);
   if (!isnan(r->t_end)) return usage_error("bench: %s: --t-end has no meaning there", reason);
@@ -48,118 +55,197 @@ static int check_modes(const bench_request *r)
 
 static int check_request(bench_request *request)
 {
-  if (request->levels > LEVELS_MAX)
-    return usage_error("bench: --levels %ld is too many, %d are possible", request->levels, (int)LEVELS_MAX);
+  if (request->levels > WORK_LEVELS_MAX)
+    return usage_error("bench: --levels %ld is too many, %d are possible", request->levels,
+                       (int)WORK_LEVELS_MAX);
   if (request->rounds > ROUNDS_MAX)
-    return usage_error("bench: --rounds %ld is too many, %d are possible", request->rounds, (int)ROUNDS_MAX);
+    return usage_error("bench: --rounds %ld is too many, %d are possible", request->rounds,
+                       (int)ROUNDS_MAX);
   if (request->steps > STEPS_MAX)
-    return usage_error("bench: --steps %ld is too many, %d are possible", request->steps, (int)STEPS_MAX);
+    return usage_error("bench: --steps %ld is too many, %d are possible", request->steps,
+                       (int)STEPS_MAX);
   if (request->t_end == 0.0) return usage_error("bench: --t-end 0 leaves nothing to do");
   int code = check_modes(request);
   if (code == DONE) code = words_distinct("bench", "method", &request->methods);
   if (code == DONE) code = words_distinct("bench", "time-transform", &request->transforms);
-  if (code == DONE && request->at != NULL) code = numbers_read("bench: --at", request->at, &request->outputs.asked);
-  if (code == DONE && request->judged_by != NULL) code = judge_read("bench: --judge", request->judged_by, &request->judge);
+  if (code == DONE && request->at != NULL)
+    code = numbers_read("bench: --at", request->at, &request->outputs.asked);
+  if (code == DONE && request->judged_by != NULL)
+    code = judge_read("bench: --judge", request->judged_by, &request->judge);
+  work_columns(&whole_job_words, request->outputs.columns);
   if (code == DONE)
-    code = axes_read("bench", &request->axes, request->outputs.plot, "error:cpu_seconds", bench_columns, &request->outputs.axes);
+    code = axes_read("bench", &request->axes, request->outputs.plot, "error:cpu_seconds",
+                     request->outputs.columns, &request->outputs.axes);
   if (code == DONE) code = peers_read(&request->against, &request->peers);
   return code == DONE ? check_outputs(&request->outputs, request->name) : code;
 }
 
 static const char *const details[] = {
-    "Columns: integrator,problem,setting,error,energy_error,cpu_seconds,evaluations,cpu_lower,cpu_upper,steps,create_seconds,\n"
+    "Columns: "
+    "integrator,problem,setting,error,energy_error,cpu_seconds,evaluations,cpu_lower,cpu_upper,"
+    "steps,create_seconds,\n"
     "calibration_seconds,calibration_least (the last two in CSV alone).\n"
     "  setting       h=STEP of a method, tol=TOLERANCE of a peer\n"
     "  error         largest error of a coordinate at the end, against the judge\n"
-    "  energy_error  largest |energy - energy at the start|: of methods over all steps, of peers at 8 evenly spaced times,\n"
+    "  energy_error  largest |energy - energy at the start|: of methods over all steps, of peers "
+    "at 8 evenly spaced times,\n"
     "                the end included\n"
-    "  cpu_seconds   process time of one whole job, creation included and diagnostics excluded: the median over the\n"
+    "  cpu_seconds   process time of one whole job, creation included and diagnostics excluded: "
+    "the median over the\n"
     "                rounds; every round runs every setting, repeated until 0.02 s have passed\n"
     "  evaluations   points at which the gradient was evaluated\n"
     "  cpu_lower, cpu_upper   quartiles over the rounds\n"
     "  steps         as they were taken: also those that a peer, sem or another time chose\n"
     "  create_seconds   the part of cpu_seconds that creates the integrator; empty for peers\n"
-    "  calibration_seconds, calibration_least   of 1e8 dependent multiplications: median and least over the rounds\n",
-    "--time-transform: methods appear once for each, as METHOD @ MONITOR, in a fictitious time in which their h is measured; of "
+    "  calibration_seconds, calibration_least   of 1e8 dependent multiplications: median and least "
+    "over the rounds\n",
+    "--time-transform: methods appear once for each, as METHOD @ MONITOR, in a fictitious time in "
+    "which their h is measured; of "
     "the\n"
-    "selection, explicit methods are left out then. --time-transform none puts the same methods beside them with steps of time.\n",
-    "--against: cvode (cvode-adams), cvode-bdf, arkode and ida of SUNDIALS; gsl is GSL's rk8pd, in builds with DVI_GSL.\n"
-    "They run at tolerances from 1e-4 to 1e-12, and down to 1e-14 if --at asks for more. Every integrator gets the same\n"
+    "selection, explicit methods are left out then. --time-transform none puts the same methods "
+    "beside them with steps of time.\n",
+    "--against: cvode (cvode-adams), cvode-bdf, arkode and ida of SUNDIALS; gsl is GSL's rk8pd, in "
+    "builds with DVI_GSL.\n"
+    "They run at tolerances from 1e-4 to 1e-12, and down to 1e-14 if --at asks for more. Every "
+    "integrator gets the same\n"
     "callbacks: batches, or one point a call with --one-point (peers always ask for one point).\n",
-    "--judge: exact (the exact solution); stored (a quadruple-precision result, for the problem's own parameters and some\n"
-    "ends); ida (IDA at two tolerances); runs (two runs, galerkin of degree 16 and of degree 12 with other steps, refined\n"
-    "until two levels of both come no closer: the largest distance is the judge's error, and a method's error is its\n"
-    "distance from the farther run, so that degree 16 is not judged by itself alone). auto takes exact, else stored, else\n"
-    "IDA; where IDA's error is above a tenth of the smallest error of --at (1e-10 without --at) it takes the runs, with\n"
+    "--judge: exact (the exact solution); stored (a quadruple-precision result, for the problem's "
+    "own parameters and some\n"
+    "ends); ida (IDA at two tolerances); runs (two runs, galerkin of degree 16 and of degree 12 "
+    "with other steps, refined\n"
+    "until two levels of both come no closer: the largest distance is the judge's error, and a "
+    "method's error is its\n"
+    "distance from the farther run, so that degree 16 is not judged by itself alone). auto takes "
+    "exact, else stored, else\n"
+    "IDA; where IDA's error is above a tenth of the smallest error of --at (1e-10 without --at) it "
+    "takes the runs, with\n"
     "IDA as their witness. The report names the judge and its error.\n",
-    "--at: for each integrator, seconds and evaluations at these errors. Of its settings those count that no other one\n"
-    "beats in both error and cost; between two neighbours the logarithms are interpolated, beyond the ends nothing is.\n"
-    "Unless --levels is given, longer steps come first, as far as they are about as good, and smaller ones follow until the\n"
-    "smallest of these errors is met, and while they get cheaper, 20 levels at most. Columns of --at-csv:\n"
-    "asked_error,problem,judged,integrator,cpu_seconds,ratio,evaluations,answer,create_seconds,calibration_seconds,\n"
+    "--at: for each integrator, seconds and evaluations at these errors. Of its settings those "
+    "count that no other one\n"
+    "beats in both error and cost; between two neighbours the logarithms are interpolated, beyond "
+    "the ends nothing is.\n"
+    "Unless --levels is given, longer steps come first, as far as they are about as good, and "
+    "smaller ones follow until the\n"
+    "smallest of these errors is met, and while they get cheaper, 20 levels at most. Columns of "
+    "--at-csv:\n"
+    "asked_error,problem,judged,integrator,cpu_seconds,ratio,evaluations,answer,create_seconds,"
+    "calibration_seconds,\n"
     "calibration_least.\n"
     "  judged        yes; no if the judge's own error is above a tenth of the asked one\n"
     "  ratio         seconds over those of the fastest integrator at this error\n"
     "  answer        interpolated; at most (the cheapest setting is already better); not reached\n",
-    "--scale: what is varied, and the values at which a step is measured: a parameter that changes the number of\n"
-    "coordinates n, or degree or threads, keys that every --method gets. The exponents of cost against n or the degree are\n"
-    "printed; with threads elapsed time is measured, and the speed-up is printed. The first 32 (--steps) steps from the\n"
-    "start are run again and again. Columns: method,problem,parameter,value,n,h,step_seconds,step_lower,step_upper,bytes,\n"
-    "step_evaluations,step_residuals,step_factorizations,calibration_seconds,calibration_least; bytes is what the\n"
-    "integrator holds of the heap (mallinfo2; empty where there is no such function). Of methods that know how many bytes a\n"
-    "step moves, those of a second are printed beside what an in-place axpy, y <- y + a x, of as many numbers moves on one\n"
+    "--scale: what is varied, and the values at which a step is measured: a parameter that changes "
+    "the number of\n"
+    "coordinates n, or degree or threads, keys that every --method gets. The exponents of cost "
+    "against n or the degree are\n"
+    "printed; with threads elapsed time is measured, and the speed-up is printed. The first 32 "
+    "(--steps) steps from the\n"
+    "start are run again and again. Columns: "
+    "method,problem,parameter,value,n,h,step_seconds,step_lower,step_upper,bytes,\n"
+    "step_evaluations,step_residuals,step_factorizations,calibration_seconds,calibration_least; "
+    "bytes is what the\n"
+    "integrator holds of the heap (mallinfo2; empty where there is no such function). Of methods "
+    "that know how many bytes a\n"
+    "step moves, those of a second are printed beside what an in-place axpy, y <- y + a x, of as "
+    "many numbers moves on one\n"
     "thread in the same round.\n",
-    "--scale members=1,64,4096: members of an ensemble instead, near the problem's start, beside runs one after the other.\n"
-    "The first 64 (--steps) steps, the start included. Columns: method,problem,members,n,h,step_seconds,step_lower,\n"
-    "step_upper,alone_seconds,alone_lower,alone_upper,gain,step_evaluations; seconds are those of one step of one member,\n"
+    "--scale members=1,64,4096: members of an ensemble instead, near the problem's start, beside "
+    "runs one after the other.\n"
+    "The first 64 (--steps) steps, the start included. Columns: "
+    "method,problem,members,n,h,step_seconds,step_lower,\n"
+    "step_upper,alone_seconds,alone_lower,alone_upper,gain,step_evaluations; seconds are those of "
+    "one step of one member,\n"
     "on one thread, and gain is their ratio.\n",
-    "Processor, compiler and flags are printed, and the time of 1e8 dependent multiplications, measured once a round:\n"
-    "it tells times of two machines or two hours apart. Debian's packages of SUNDIALS are built without optimisation: its\n"
+    "Processor, compiler and flags are printed, and the time of 1e8 dependent multiplications, "
+    "measured once a round:\n"
+    "it tells times of two machines or two hours apart. Debian's packages of SUNDIALS are built "
+    "without optimisation: its\n"
     "codes are several times slower in them than they can be.\n",
     "Examples:\n"
     "  dvi bench kepler --against cvode,arkode,ida --at 1e-6,1e-9 --plot bench.svg\n"
-    "  dvi bench outer-solar --t-end 500000 --method galerkin:degree=8 --method galerkin:degree=8,solver=certified --at 1e-9\n"
-    "  dvi bench kepler --set e=0.99 --time-transform none --time-transform distance --against cvode,ida --at 1e-6\n"
-    "  dvi bench fpu --method galerkin:degree=2 --method galerkin:degree=4 --scale ell=100,1000,10000\n"
+    "  dvi bench outer-solar --t-end 500000 --method galerkin:degree=8 --method "
+    "galerkin:degree=8,solver=certified --at 1e-9\n"
+    "  dvi bench kepler --set e=0.99 --time-transform none --time-transform distance --against "
+    "cvode,ida --at 1e-6\n"
+    "  dvi bench fpu --method galerkin:degree=2 --method galerkin:degree=4 --scale "
+    "ell=100,1000,10000\n"
     "  dvi bench fpu --method galerkin --scale degree=1,2,4,8,16\n"
-    "  dvi bench chain --set n=1e6 --method verlet --method composition:order=8 --scale threads=1,2\n"
+    "  dvi bench chain --set n=1e6 --method verlet --method composition:order=8 --scale "
+    "threads=1,2\n"
     "  dvi bench kepler --method verlet --method galerkin:degree=2 --scale members=1,64,4096\n",
     NULL,
 };
 
-bool bench_request_read(int argc, char **argv, bench_request *r, int *exit_code)
+/* What is measured, and how. */
+static int add_measured(bench_request *r, option *options)
 {
-  *r = (bench_request){.t_end = (double)NAN, .h = (double)NAN, .rounds = ROUNDS_DEFAULT};
-  const option options[] = {
+  const option list[] = {
       {.name = "method",
        .words = &r->methods,
        .value = "SPEC",
-       .help = "a method; may be repeated; left out: the scene's, else a selection"},
+       .help = "a method; may be repeated; default: the scene's, else a selection"},
       {.name = "time-transform",
        .words = &r->transforms,
        .value = "MONITOR",
-       .help = "every method in this time (see dvi run --help), or in none; may be repeated; left out: none"},
-      {.name = "against", .words = &r->against, .value = "CODES", .help = "codes beside them: of cvode,cvode-bdf,arkode,ida,gsl"},
-      {.name = "judge", .word = &r->judged_by, .value = "WHO", .help = "auto, exact, stored, ida or runs; left out: auto"},
-      {.name = "one-point", .flag = &r->one_point, .help = "give the problem's callbacks one point a call, not a batch"},
-      {.name = "at", .word = &r->at, .value = "ERRORS", .help = "compare at these errors, for example 1e-6,1e-9"},
-      {.name = "at-csv", .word = &r->outputs.at_csv, .value = "-|FILE", .help = "write that comparison as CSV"},
+       .help = "every method in this time (see dvi run --help), or in none; may be repeated; left "
+               "out: none"},
+      {.name = "against",
+       .words = &r->against,
+       .value = "CODES",
+       .help = "codes beside them: of cvode,cvode-bdf,arkode,ida,gsl"},
+      {.name = "judge",
+       .word = &r->judged_by,
+       .value = "WHO",
+       .help = "auto, exact, stored, ida or runs; default: auto"},
+      {.name = "one-point",
+       .flag = &r->one_point,
+       .help = "give the problem's callbacks one point a call, not a batch"},
+      {.name = "at",
+       .word = &r->at,
+       .value = "ERRORS",
+       .help = "compare at these errors, for example 1e-6,1e-9"},
+      {.name = "at-csv",
+       .word = &r->outputs.at_csv,
+       .value = "-|FILE",
+       .help = "write that comparison as CSV"},
       {.name = "scale",
        .word = &r->scale,
        .value = "NAME=V,V...",
-       .help = "measure steps instead, as a parameter, the degree, the threads or an ensemble grow"},
-      {.name = "h", .number = &r->h, .value = "H", .help = "the step of --scale; left out: the problem's"},
+       .help =
+           "measure steps instead, as a parameter, the degree, the threads or an ensemble grow"},
+      {.name = "h",
+       .number = &r->h,
+       .value = "H",
+       .help = "the step of --scale; default: the problem's"},
       {.name = "steps",
        .count = &r->steps,
        .value = "N",
-       .help = "how many steps --scale times at once; left out: 32, 64 of members"},
+       .help = "how many steps --scale times at once; default: 32, 64 of members"},
       {.name = "levels",
        .count = &r->levels,
        .value = "N",
-       .help = "how many step sizes of each method; left out: 6, or more for --at"},
-      {.name = "rounds", .count = &r->rounds, .value = "N", .help = "how often everything is measured; left out: 5"},
-      {.name = "t-end", .number = &r->t_end, .value = "T", .help = "the end; left out: the problem's for order studies"},
-      {.name = "set", .words = &r->settings, .value = "NAME=VALUE", .help = "set a parameter of the problem; may be repeated"},
+       .help = "how many step sizes of each method; default: 6, or more for --at"},
+      {.name = "rounds",
+       .count = &r->rounds,
+       .value = "N",
+       .help = "how often everything is measured; default: 5"},
+  };
+  memcpy(options, list, sizeof list);
+  return (int)(sizeof list / sizeof *list);
+}
+
+/* How far, of what, and where the results go. */
+static int add_outputs(bench_request *r, option *options)
+{
+  const option list[] = {
+      {.name = "t-end",
+       .number = &r->t_end,
+       .value = "T",
+       .help = "the end; default: the problem's for order studies"},
+      {.name = "set",
+       .words = &r->settings,
+       .value = "NAME=VALUE",
+       .help = "set a parameter of the problem; may be repeated"},
       {.name = "csv",
        .word = &r->outputs.csv,
        .value = "-|FILE",
@@ -168,15 +254,29 @@ bool bench_request_read(int argc, char **argv, bench_request *r, int *exit_code)
        .word = &r->outputs.plot,
        .value = "FILE.svg",
        .help = "draw CPU time against error, or against what is varied"},
-      {.name = "axes", .words = &r->axes, .value = "X:Y", .help = "draw these columns of the table instead; may be repeated"},
-      {.name = NULL},
+      {.name = "axes",
+       .words = &r->axes,
+       .value = "X:Y",
+       .help = "draw these columns of the table instead; may be repeated"},
   };
+  memcpy(options, list, sizeof list);
+  return (int)(sizeof list / sizeof *list);
+}
+
+bool bench_request_read(int argc, char **argv, bench_request *r, int *exit_code)
+{
+  enum { OPTIONS_MAX = 24 };
+  option options[OPTIONS_MAX] = {{.name = NULL}};
+  *r = (bench_request){.t_end = (double)NAN, .h = (double)NAN, .rounds = ROUNDS_DEFAULT};
+  const int count = add_measured(r, options);
+  (void)add_outputs(r, options + count);
   const command_line command = {
       .name = "bench",
-      .synopsis = "PROBLEM|SCENE.yaml [--method SPEC ...] [--against cvode,arkode,ida,gsl] [OPTIONS]",
+      .synopsis =
+          "PROBLEM|SCENE.yaml [--method SPEC ...] [--against cvode,arkode,ida,gsl] [OPTIONS]",
       .operand = "PROBLEM",
-      .summary =
-          "Measure speed against error, of methods and of other codes, all in one run; or the cost of a step against size.\n",
+      .summary = "Measure speed against error, of methods and of other codes, all in one run; or "
+                 "the cost of a step against size.\n",
       .options = options,
       .details = details,
   };

@@ -4,11 +4,11 @@
 #include <stdbool.h>
 
 #include "bench/bench_report.h"
-#include "study/judge.h"
+#include "mechanics/judge.h"
 #include "cli/options.h"
 #include "bench/peer.h"
 
-enum { LEVELS_MAX = 20, STEPS_MAX = 1000000 };
+enum { STEPS_MAX = 1000000 };
 
 /** The options, read and checked as far as they can be without the problem. */
 typedef struct bench_request {

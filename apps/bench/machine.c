@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "bench/peer.h"
-#include "study/study.h"
+#include "study/clock.h"
 
 /* A sanitizer brings a malloc of its own, of which the C library knows nothing. */
 #if defined(__SANITIZE_ADDRESS__)
@@ -80,8 +80,10 @@ double machine_multiplications(void)
 
 void machine_print_calibration(FILE *stream, const spread *seconds)
 {
-  (void)fprintf(stream, "calibration: 1e8 dependent multiplications in %.3f s (least %.3f, quartiles %.3f, %.3f)\n",
-                seconds->median, seconds->least, seconds->lower, seconds->upper);
+  (void)fprintf(
+      stream,
+      "calibration: 1e8 dependent multiplications in %.3f s (least %.3f, quartiles %.3f, %.3f)\n",
+      seconds->median, seconds->least, seconds->lower, seconds->upper);
 }
 
 /* The best that the processor has: a yardstick shall not be short. */
@@ -102,7 +104,8 @@ double machine_axpy(int n)
   double *x = aligned_alloc(LINE, size), *y = aligned_alloc(LINE, size), spent = 0.0;
   long passes = 0;
   for (size_t i = 0; x != NULL && y != NULL && i < count; i++) x[i] = y[i] = 1.0;
-  for (const double began = cpu_now(); x != NULL && y != NULL && (passes < LEAST || spent < seconds); passes++) {
+  for (const double began = cpu_now();
+       x != NULL && y != NULL && (passes < LEAST || spent < seconds); passes++) {
     add_multiple(count, 1e-9, x, y);
     spent = cpu_now() - began;
   }

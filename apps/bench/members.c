@@ -12,8 +12,8 @@
 #include "load/open.h"
 #include "plot/plot.h"
 #include "cli/progress.h"
-#include "bench/samples.h"
-#include "study/study.h"
+#include "study/samples.h"
+#include "study/clock.h"
 #include "csv/table.h"
 
 enum { STEPS_DEFAULT = 64, MEMBERS_MOST = 1000000, LABEL_SIZE = 300 };
@@ -77,11 +77,14 @@ static dvi_status place_member(const comparison *c, int k)
   const int n = c->scene->nq;
   double *q = c->point, *p = c->point + n;
   for (int i = 0; i < n; i++) {
-    const double factor = 1.0 + around * (fmod(0.618033988749895 * ((double)k * n + i + 1), 1.0) - 0.5);
+    const double factor = 1.0 +
+                          around * (fmod(0.618033988749895 * ((double)k * n + i + 1), 1.0) - 0.5);
     q[i] = factor * c->scene->q[i];
     p[i] = factor * c->scene->p[i];
   }
-  return c->scene->terms->one_form != NULL ? dvi_system_momentum(c->scene->system, 0.0, q, c->scene->q, p) : DVI_OK;
+  return c->scene->terms->one_form != NULL
+             ? dvi_system_momentum(c->scene->system, 0.0, q, c->scene->q, p)
+             : DVI_OK;
 }
 
 /* No two members alike, and the same ones in every run of this command. */
@@ -118,20 +121,24 @@ static dvi_status run_one(const comparison *c, dvi_integrator *integrator, size_
     c->point[n + i] = c->p[i * members + k];
   }
   dvi_status status = dvi_integrator_start(integrator, 0.0, c->point, c->point + n);
-  for (long i = 0; i < c->steps && status == DVI_OK; i++) status = dvi_integrator_step(integrator, c->h);
+  for (long i = 0; i < c->steps && status == DVI_OK; i++)
+    status = dvi_integrator_step(integrator, c->h);
   return status;
 }
 
-static dvi_status run_alone(const comparison *c, dvi_integrator *integrator, int members, double *spent)
+static dvi_status run_alone(const comparison *c, dvi_integrator *integrator, int members,
+                            double *spent)
 {
   dvi_status status = DVI_OK;
   const double began = cpu_now();
-  for (int k = 0; k < members && status == DVI_OK; k++) status = run_one(c, integrator, (size_t)members, (size_t)k);
+  for (int k = 0; k < members && status == DVI_OK; k++)
+    status = run_one(c, integrator, (size_t)members, (size_t)k);
   *spent = cpu_now() - began;
   return status;
 }
 
-static dvi_status measure_together(const comparison *c, const char *method, int members, double *seconds, double *evaluations)
+static dvi_status measure_together(const comparison *c, const char *method, int members,
+                                   double *seconds, double *evaluations)
 {
   const dvi_ensemble_options options = {.members = members};
   dvi_ensemble *ensemble = NULL;
@@ -143,7 +150,7 @@ static dvi_status measure_together(const comparison *c, const char *method, int 
   /* The first run finds memory and the machine's caches as they will be: it is not timed. */
   if (status == DVI_OK) status = run_together(c, ensemble, &spent);
   dvi_ensemble_counters(ensemble, &before);
-  const long repeats = study_repeats(spent);
+  const long repeats = clock_repeats(spent);
   for (long i = 0; i < repeats && status == DVI_OK; i++) {
     status = run_together(c, ensemble, &spent);
     total += spent;
@@ -151,18 +158,20 @@ static dvi_status measure_together(const comparison *c, const char *method, int 
   dvi_ensemble_counters(ensemble, &after);
   dvi_ensemble_destroy(&ensemble);
   *seconds = total / ((double)c->steps * (double)members * (double)repeats);
-  *evaluations = (double)(after.gradients - before.gradients) / ((double)c->steps * (double)members * (double)repeats);
+  *evaluations = (double)(after.gradients - before.gradients) /
+                 ((double)c->steps * (double)members * (double)repeats);
   return status;
 }
 
-static dvi_status measure_alone(const comparison *c, const char *method, int members, double *seconds)
+static dvi_status measure_alone(const comparison *c, const char *method, int members,
+                                double *seconds)
 {
   dvi_integrator *integrator = NULL;
   double spent = 0.0;
   double total = 0.0;
   dvi_status status = dvi_integrator_create(c->scene->system, method, &integrator);
   if (status == DVI_OK) status = run_alone(c, integrator, members, &spent);
-  const long repeats = study_repeats(spent);
+  const long repeats = clock_repeats(spent);
   for (long i = 0; i < repeats && status == DVI_OK; i++) {
     status = run_alone(c, integrator, members, &spent);
     total += spent;
@@ -247,10 +256,11 @@ static void print_all(FILE *stream, const comparison *c, const result_table *row
     (void)fprintf(stream, "\n%s\n", c->request->methods->word[i]);
     table_print(rows, stream, 2, i * c->counts.count, (i + 1) * c->counts.count);
   }
+  (void)fprintf(stream, "\nstep_seconds: process time of a member's step in an ensemble on one "
+                        "thread, alone_seconds: in runs one after\n");
   (void)fprintf(stream,
-                "\nstep_seconds: process time of a member's step in an ensemble on one thread, alone_seconds: in runs one after\n");
-  (void)fprintf(stream,
-                "the other; means of the first %ld steps, the start included, repeated; medians of %ld interleaved rounds\n",
+                "the other; means of the first %ld steps, the start included, repeated; medians of "
+                "%ld interleaved rounds\n",
                 c->steps, c->request->rounds);
   (void)fprintf(stream, "gain: alone_seconds over step_seconds\n");
 }
@@ -272,8 +282,10 @@ static bool plot_cells(const comparison *c)
       const cell *at = cell_at(c, i / 2, k);
       y[i * counts + k] = i % 2 == 0 ? at->of_together.median : at->of_alone.median;
     }
-    (void)snprintf(label[i], sizeof label[i], "%s%s", c->request->methods->word[i / 2], i % 2 == 0 ? "" : ", alone");
-    curve[i] = (plot_curve){.label = label[i], .count = counts, .x = c->counts.number, .y = y + i * counts};
+    (void)snprintf(label[i], sizeof label[i], "%s%s", c->request->methods->word[i / 2],
+                   i % 2 == 0 ? "" : ", alone");
+    curve[i] = (plot_curve){
+        .label = label[i], .count = counts, .x = c->counts.number, .y = y + i * counts};
   }
   const plot_panel panel = {.title = "CPU time of a member's step against the number of members",
                             .x_label = "members",
@@ -303,10 +315,12 @@ static int report(const comparison *c)
 
 static int read_counts(comparison *c)
 {
-  const int code = numbers_read("bench: --scale", c->request->scaled + sizeof axis_word - 1, &c->counts);
+  const int code = numbers_read("bench: --scale", c->request->scaled + sizeof axis_word - 1,
+                                &c->counts);
   for (int k = 0; k < c->counts.count && code == DONE; k++)
     if (c->counts.number[k] != floor(c->counts.number[k]) || c->counts.number[k] > MEMBERS_MOST)
-      return usage_error("bench: --scale members=%s: a whole number from 1 to %d is wanted", c->counts.text[k], (int)MEMBERS_MOST);
+      return usage_error("bench: --scale members=%s: a whole number from 1 to %d is wanted",
+                         c->counts.text[k], (int)MEMBERS_MOST);
   return code;
 }
 
@@ -336,14 +350,16 @@ static bool make_room(comparison *c)
 int members_run(const scale_request *request)
 {
   comparison c = {.request = request, .steps = request->steps > 0 ? request->steps : STEPS_DEFAULT};
-  if (request->methods->count == 0) return usage_error("bench: --scale needs a method: --method SPEC");
+  if (request->methods->count == 0)
+    return usage_error("bench: --scale needs a method: --method SPEC");
   int code = read_counts(&c);
-  if (code == DONE) code = open_shaped(request->problem, request->settings, request->one_point, &c.scene);
+  if (code == DONE)
+    code = open_shaped(request->problem, request->settings, request->one_point, &c.scene);
   if (code != DONE) return code;
   if (c.scene->velocity != NULL) {
-    code = usage_error(
-        "bench: --scale members: the members are numbers near %s's start, and so off its manifold; try another problem",
-        c.scene->name);
+    code = usage_error("bench: --scale members: the members are numbers near %s's start, and so "
+                       "off its manifold; try another problem",
+                       c.scene->name);
     problem_destroy(&c.scene);
     return code;
   }

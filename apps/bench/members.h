@@ -1,4 +1,5 @@
-/** dvi bench --scale members=...: what a member's step costs in an ensemble, and in runs one after the other. */
+/** dvi bench --scale members=...: what a member's step costs in an ensemble, and in runs one after
+ * the other. */
 #ifndef MEMBERS_H
 #define MEMBERS_H
 #include <stdbool.h>

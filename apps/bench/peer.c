@@ -42,7 +42,8 @@ const char *peer_gsl_version(void)
 /* "cvode" alone is its Adams formula, the better one where nothing is stiff: it comes first. */
 static bool is_named(const char *name, const char *text, size_t length)
 {
-  return (length == strlen(name) || length == strcspn(name, "-")) && strncmp(name, text, length) == 0;
+  return (length == strlen(name) || length == strcspn(name, "-")) &&
+         strncmp(name, text, length) == 0;
 }
 
 static int read_peer(const char *text, size_t length, peer_list *list)
@@ -51,11 +52,13 @@ static int read_peer(const char *text, size_t length, peer_list *list)
   while (peer_name(peer) != NULL && !is_named(peer_name(peer), text, length)) peer++;
   const char *name = peer_name(peer);
   if (name == NULL && is_named(gsl_name, text, length))
-    return usage_error(
-        "bench: --against gsl: this dvi was built without GSL; configure with -DDVI_GSL=ON (Debian's package: libgsl-dev); "
-        "a binary built so is under the GPL");
+    return usage_error("bench: --against gsl: this dvi was built without GSL; configure with "
+                       "-DDVI_GSL=ON (Debian's package: libgsl-dev); "
+                       "a binary built so is under the GPL");
   if (name == NULL)
-    return usage_error("bench: --against knows cvode (cvode-adams), cvode-bdf, arkode, ida and gsl, not '%.*s'", (int)length, text);
+    return usage_error(
+        "bench: --against knows cvode (cvode-adams), cvode-bdf, arkode, ida and gsl, not '%.*s'",
+        (int)length, text);
   for (int i = 0; i < list->count; i++)
     if (list->peer[i] == peer) return usage_error("bench: --against names %s twice", name);
   list->peer[list->count++] = peer; /* each once: there are fewer than PEERS_MAX */
@@ -75,16 +78,18 @@ int peers_read(const words *against, peer_list *list)
   return code;
 }
 
-dvi_status peer_solve(int peer, const problem *scene, double t_end, double tolerance, double *q, double *p,
-                      dvi_reference_report *report)
+dvi_status peer_solve(int peer, const problem *scene, double t_end, double tolerance, double *q,
+                      double *p, dvi_reference_report *report)
 {
   dvi_reference_report unread;
-  const dvi_reference_options options = {.code = (dvi_reference_code)peer, .relative_tolerance = tolerance};
+  const dvi_reference_options options = {.code = (dvi_reference_code)peer,
+                                         .relative_tolerance = tolerance};
   memcpy(q, scene->q, (size_t)scene->nq * sizeof *q);
   memcpy(p, scene->p, (size_t)scene->nv * sizeof *p);
   if (report == NULL) report = &unread;
 #ifdef DVI_GSL
-  if (peer == gsl_number()) return rk8pd_solve(scene, t_end, tolerance, q, p, report, reason, sizeof reason);
+  if (peer == gsl_number())
+    return rk8pd_solve(scene, t_end, tolerance, q, p, report, reason, sizeof reason);
 #endif
   const dvi_status status = dvi_reference_solve(scene->system, 0.0, t_end, q, p, &options, report);
   if (status != DVI_OK) (void)snprintf(reason, sizeof reason, "%s", dvi_last_error());

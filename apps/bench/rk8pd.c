@@ -1,5 +1,6 @@
-/* GSL's rk8pd on y = (q, p), qdot = v(t,q,p), pdot = L_q(t,q,v), with the callbacks that the methods get, at one point a call.
- * Source: Prince and Dormand 1981, J. Comput. Appl. Math. 7:67. */
+/* GSL's rk8pd on y = (q, p), qdot = v(t,q,p), pdot = L_q(t,q,v), with the callbacks that the
+ * methods get, at one point a call. Source: Prince and Dormand 1981, J. Comput. Appl. Math.
+ * 7:67. */
 #include "bench/rk8pd.h"
 
 #include <float.h>
@@ -31,10 +32,12 @@ typedef struct flow {
 
 static int potential_gradient(const dvi_potential *of, double t, const double *q, double *V_q)
 {
-  return of->gradient_batch != NULL ? of->gradient_batch(1, &t, q, V_q, of->user) : of->gradient(t, q, V_q, of->user);
+  return of->gradient_batch != NULL ? of->gradient_batch(1, &t, q, V_q, of->user)
+                                    : of->gradient(t, q, V_q, of->user);
 }
 
-static int lagrangian_gradient(const dvi_lagrangian *of, double t, const double *q, const double *v, double *L_q, double *L_v)
+static int lagrangian_gradient(const dvi_lagrangian *of, double t, const double *q, const double *v,
+                               double *L_q, double *L_v)
 {
   return of->gradient_batch != NULL ? of->gradient_batch(1, &t, q, v, L_q, L_v, of->user)
                                     : of->gradient(t, q, v, L_q, L_v, of->user);
@@ -43,8 +46,9 @@ static int lagrangian_gradient(const dvi_lagrangian *of, double t, const double 
 static int lagrangian_hessian(flow *f, double t, const double *q)
 {
   const dvi_lagrangian *of = f->terms->lagrangian;
-  return of->hessian_batch != NULL ? of->hessian_batch(1, &t, q, f->v, f->L_qq, f->L_qv, f->L_vv, of->user)
-                                   : of->hessian(t, q, f->v, f->L_qq, f->L_qv, f->L_vv, of->user);
+  return of->hessian_batch != NULL
+             ? of->hessian_batch(1, &t, q, f->v, f->L_qq, f->L_qv, f->L_vv, of->user)
+             : of->hessian(t, q, f->v, f->L_qq, f->L_qv, f->L_vv, of->user);
 }
 
 static double largest(int n, const double *x)
@@ -57,7 +61,8 @@ static double largest(int n, const double *x)
 static void set_mass_velocity(flow *f, const double *p)
 {
   const dvi_mass *mass = &f->terms->mass;
-  for (int i = 0; i < f->n; i++) f->v[i] = p[i] / (mass->diagonal != NULL ? mass->diagonal[i] : mass->scalar);
+  for (int i = 0; i < f->n; i++)
+    f->v[i] = p[i] / (mass->diagonal != NULL ? mass->diagonal[i] : mass->scalar);
 }
 
 static int factor(flow *f, double t, const double *q)
@@ -69,13 +74,15 @@ static int factor(flow *f, double t, const double *q)
   gsl_matrix_set_zero(f->factors);
   for (int column = 0, e = 0; column < f->n; column++) {
     const int end = vv->start != NULL ? vv->start[column + 1] : (column + 1) * f->n;
-    for (; e < end; e++) gsl_matrix_set(f->factors, (size_t)(vv->row != NULL ? vv->row[e] : e % f->n), (size_t)column, f->L_vv[e]);
+    for (; e < end; e++)
+      gsl_matrix_set(f->factors, (size_t)(vv->row != NULL ? vv->row[e] : e % f->n), (size_t)column,
+                     f->L_vv[e]);
   }
   return gsl_linalg_LU_decomp(f->factors, f->permutation, &sign);
 }
 
-/* Newton's method on p - L_v = 0 with the L_vv of its first guess: for the usual kinetic energies, quadratic in v, the second residual is
- * roundoff, and L_q was evaluated along with it. */
+/* Newton's method on p - L_v = 0 with the L_vv of its first guess: for the usual kinetic energies,
+ * quadratic in v, the second residual is roundoff, and L_q was evaluated along with it. */
 static int find_velocity(flow *f, double t, const double *q, const double *p, double *L_q)
 {
   double before = HUGE_VAL;
@@ -86,18 +93,21 @@ static int find_velocity(flow *f, double t, const double *q, const double *p, do
     f->evaluations++;
     if (code == 0 && i == 0) code = factor(f, t, q);
     for (int j = 0; j < f->n; j++) f->residual[j] = p[j] - f->L_v[j];
-    if (code == 0) code = gsl_linalg_LU_solve(f->factors, f->permutation, &residual.vector, &step.vector);
+    if (code == 0)
+      code = gsl_linalg_LU_solve(f->factors, f->permutation, &residual.vector, &step.vector);
     if (code != 0) return code;
     for (int j = 0; j < f->n; j++) f->v[j] += f->step[j];
     const double size = largest(f->n, f->step), scale = largest(f->n, f->v);
-    if (size <= 4.0 * DBL_EPSILON * scale || (size <= 1e-10 * scale && size >= 0.5 * before)) return 0;
+    if (size <= 4.0 * DBL_EPSILON * scale || (size <= 1e-10 * scale && size >= 0.5 * before))
+      return 0;
     if (!isfinite(size)) break;
     before = size;
   }
   return GSL_EFAILED;
 }
 
-/* GSL tries a smaller step after any failure but GSL_EBADFUNC, and takes a NaN for a small error. */
+/* GSL tries a smaller step after any failure but GSL_EBADFUNC, and takes a NaN for a small
+ * error. */
 static int right_side(double t, const double y[], double ydot[], void *user)
 {
   flow *f = user;
@@ -125,9 +135,12 @@ static bool provided_for(const dvi_system_terms *terms)
 {
   if (terms->factors != NULL) return false;
   for (int k = 0; k < terms->potential_count; k++)
-    if (terms->potentials[k].gradient == NULL && terms->potentials[k].gradient_batch == NULL) return false;
+    if (terms->potentials[k].gradient == NULL && terms->potentials[k].gradient_batch == NULL)
+      return false;
   const dvi_lagrangian *l = terms->lagrangian;
-  if (l != NULL) return (l->gradient != NULL || l->gradient_batch != NULL) && (l->hessian != NULL || l->hessian_batch != NULL);
+  if (l != NULL)
+    return (l->gradient != NULL || l->gradient_batch != NULL) &&
+           (l->hessian != NULL || l->hessian_batch != NULL);
   return terms->mass.values == NULL;
 }
 
@@ -159,12 +172,13 @@ static void release(flow *f)
 }
 
 /* y [2n] from the start to the end. */
-static dvi_status integrate(flow *f, const problem *scene, double t_end, double tolerance, double *y, long *steps, char *reason,
-                            size_t size)
+static dvi_status integrate(flow *f, const problem *scene, double t_end, double tolerance,
+                            double *y, long *steps, char *reason, size_t size)
 {
   const gsl_odeiv2_system equations = {right_side, NULL, 2 * (size_t)f->n, f};
   const double h = copysign(fmin(scene->h, fabs(t_end)), t_end);
-  gsl_odeiv2_driver *driver = gsl_odeiv2_driver_alloc_y_new(&equations, gsl_odeiv2_step_rk8pd, h, tolerance, tolerance);
+  gsl_odeiv2_driver *driver = gsl_odeiv2_driver_alloc_y_new(&equations, gsl_odeiv2_step_rk8pd, h,
+                                                            tolerance, tolerance);
   if (driver == NULL) return DVI_NO_MEMORY;
   (void)gsl_odeiv2_driver_set_nmax(driver, steps_max);
   (void)gsl_odeiv2_driver_set_hmin(driver, 4.0 * DBL_EPSILON * fabs(t_end));
@@ -173,13 +187,13 @@ static dvi_status integrate(flow *f, const problem *scene, double t_end, double 
   *steps = (long)driver->n;
   gsl_odeiv2_driver_free(driver);
   if (code == GSL_SUCCESS) return DVI_OK;
-  (void)snprintf(reason, size, "gsl-rk8pd: stopped at t = %.9g, before %.9g, after %ld steps (%s)", t, t_end, *steps,
-                 gsl_strerror(code));
+  (void)snprintf(reason, size, "gsl-rk8pd: stopped at t = %.9g, before %.9g, after %ld steps (%s)",
+                 t, t_end, *steps, gsl_strerror(code));
   return DVI_REFERENCE_FAILED;
 }
 
-static dvi_status run(flow *f, const problem *scene, double t_end, double tolerance, double *q, double *p,
-                      dvi_reference_report *report, char *reason, size_t size)
+static dvi_status run(flow *f, const problem *scene, double t_end, double tolerance, double *q,
+                      double *p, dvi_reference_report *report, char *reason, size_t size)
 {
   const size_t n = (size_t)f->n;
   double *y = calloc(2 * n, sizeof *y);
@@ -197,19 +211,21 @@ static dvi_status run(flow *f, const problem *scene, double t_end, double tolera
   return status;
 }
 
-dvi_status rk8pd_solve(const problem *scene, double t_end, double tolerance, double *q, double *p, dvi_reference_report *report,
-                       char *reason, size_t size)
+dvi_status rk8pd_solve(const problem *scene, double t_end, double tolerance, double *q, double *p,
+                       dvi_reference_report *report, char *reason, size_t size)
 {
   flow f = {.terms = scene->terms, .n = scene->nq};
   if (!provided_for(f.terms)) {
     (void)snprintf(reason, size,
-                   "gsl-rk8pd: it is provided for scalar and diagonal masses on R^n and for general Lagrangians with Hessians");
+                   "gsl-rk8pd: it is provided for scalar and diagonal masses on R^n and for "
+                   "general Lagrangians with Hessians");
     return DVI_UNSUPPORTED;
   }
   gsl_error_handler_t *handler = gsl_set_error_handler_off(); /* GSL's own ends the program */
   dvi_status status = reserve(&f) ? DVI_OK : DVI_NO_MEMORY;
   if (status == DVI_OK) status = run(&f, scene, t_end, tolerance, q, p, report, reason, size);
-  if (status == DVI_NO_MEMORY) (void)snprintf(reason, size, "gsl-rk8pd: no memory for %d coordinates", f.n);
+  if (status == DVI_NO_MEMORY)
+    (void)snprintf(reason, size, "gsl-rk8pd: no memory for %d coordinates", f.n);
   release(&f);
   (void)gsl_set_error_handler(handler);
   return status;

@@ -12,8 +12,8 @@
 #include "load/open.h"
 #include "plot/plot.h"
 #include "cli/progress.h"
-#include "bench/samples.h"
-#include "study/study.h"
+#include "study/samples.h"
+#include "study/clock.h"
 #include "csv/table.h"
 
 enum { STEPS_DEFAULT = 32, TITLE_SIZE = 160 };
@@ -27,7 +27,8 @@ typedef struct cell {
   double bytes;            /* NaN: not known */
   dvi_counters counted;    /* in the steps of one run */
   double traffic;          /* bytes that a step moves; 0: not known */
-  double axpy[ROUNDS_MAX]; /* bytes a second that one moves beside it, in each round, where the traffic is known */
+  double axpy[ROUNDS_MAX]; /* bytes a second that one moves beside it, in each round, where the
+                              traffic is known */
   spread bandwidth;        /* of these */
 } cell;
 
@@ -71,13 +72,15 @@ static double now(const scaling *s)
 }
 
 /* The first steps from the start: their time, and what they counted. */
-static dvi_status run_steps(const scaling *s, dvi_integrator *integrator, const problem *scene, cell *c, double *spent)
+static dvi_status run_steps(const scaling *s, dvi_integrator *integrator, const problem *scene,
+                            cell *c, double *spent)
 {
   dvi_counters before;
   dvi_status status = dvi_integrator_start(integrator, 0.0, scene->q, scene->p);
   dvi_integrator_counters(integrator, &before);
   const double began = now(s);
-  for (long i = 0; i < s->steps && status == DVI_OK; i++) status = dvi_integrator_step(integrator, c->h);
+  for (long i = 0; i < s->steps && status == DVI_OK; i++)
+    status = dvi_integrator_step(integrator, c->h);
   *spent = now(s) - began;
   dvi_integrator_counters(integrator, &c->counted);
   c->counted.gradients -= before.gradients;
@@ -86,7 +89,8 @@ static dvi_status run_steps(const scaling *s, dvi_integrator *integrator, const 
   return status;
 }
 
-static dvi_status measure_cell(const scaling *s, const char *method, const problem *scene, cell *c, int round)
+static dvi_status measure_cell(const scaling *s, const char *method, const problem *scene, cell *c,
+                               int round)
 {
   dvi_integrator *integrator = NULL;
   double spent = 0.0;
@@ -94,10 +98,12 @@ static dvi_status measure_cell(const scaling *s, const char *method, const probl
   const double heap = machine_heap();
   dvi_status status = dvi_integrator_create(scene->system, method, &integrator);
   /* The first run finds memory and the machine's caches as they will be: it is not timed. */
-  for (int i = 0; i < 2 && status == DVI_OK; i++) status = run_steps(s, integrator, scene, c, &spent);
+  for (int i = 0; i < 2 && status == DVI_OK; i++)
+    status = run_steps(s, integrator, scene, c, &spent);
   const double grown = machine_heap() - heap;
-  if (round == 0) c->bytes = grown > 0.0 ? grown : (double)NAN; /* another malloc does not show there */
-  const long repeats = study_repeats(spent);
+  if (round == 0)
+    c->bytes = grown > 0.0 ? grown : (double)NAN; /* another malloc does not show there */
+  const long repeats = clock_repeats(spent);
   for (long i = 0; i < repeats && status == DVI_OK; i++) {
     status = run_steps(s, integrator, scene, c, &spent);
     total += spent;
@@ -129,14 +135,16 @@ static int measure_methods(scaling *s, const problem *scene, int k, int round)
 static int measure_value(scaling *s, int k, int round)
 {
   problem *scene;
-  int code = axis_problem(&s->axis, k, s->request->problem, s->request->settings, s->request->one_point, &scene);
+  int code = axis_problem(&s->axis, k, s->request->problem, s->request->settings,
+                          s->request->one_point, &scene);
   if (code != DONE) return code;
   code = measure_methods(s, scene, k, round);
   problem_destroy(&scene);
   return code;
 }
 
-/* Every round measures everything once, so that whatever slows the machine for a while slows all of it. */
+/* Every round measures everything once, so that whatever slows the machine for a while slows all of
+ * it. */
 static int measure(scaling *s)
 {
   double calibration[ROUNDS_MAX];
@@ -145,7 +153,8 @@ static int measure(scaling *s)
   progress_start(&s->progress, true);
   for (int round = 0; round < rounds && code == DONE; round++) {
     calibration[round] = machine_multiplications();
-    for (int k = 0; k < s->axis.values.count && code == DONE; k++) code = measure_value(s, k, round);
+    for (int k = 0; k < s->axis.values.count && code == DONE; k++)
+      code = measure_value(s, k, round);
   }
   progress_end(&s->progress);
   if (code != DONE) return code;
@@ -182,7 +191,8 @@ static result_table *make_table(const scaling *s)
   return rows;
 }
 
-static void print_power(FILE *stream, const scaling *s, const char *name, const double *x, const double *y)
+static void print_power(FILE *stream, const scaling *s, const char *name, const double *x,
+                        const double *y)
 {
   const double exponent = samples_power(s->axis.values.count, x, y);
   if (isnan(exponent))
@@ -214,7 +224,8 @@ static void print_speed_up(FILE *stream, const scaling *s, int method)
 {
   (void)fprintf(stream, "  speed-up against %s=%s:", s->axis.name, s->axis.values.text[0]);
   for (int k = 1; k < s->axis.values.count; k++)
-    (void)fprintf(stream, "  %.2f", cell_at(s, method, 0)->seconds.median / cell_at(s, method, k)->seconds.median);
+    (void)fprintf(stream, "  %.2f",
+                  cell_at(s, method, 0)->seconds.median / cell_at(s, method, k)->seconds.median);
   (void)fputc('\n', stream);
 }
 
@@ -226,21 +237,24 @@ static void print_traffic(FILE *stream, const scaling *s, int method)
     const double moved = c->traffic / c->seconds.median;
     const double axpy = c->bandwidth.median;
     if (c->traffic > 0.0)
-      (void)fprintf(stream, "  %s=%s: a step moves %.4g bytes, %.1f GB/s: %.2f of the %.1f GB/s of an in-place axpy\n",
-                    s->axis.name, s->axis.values.text[k], c->traffic, 1e-9 * moved, moved / axpy, 1e-9 * axpy);
+      (void)fprintf(stream,
+                    "  %s=%s: a step moves %.4g bytes, %.1f GB/s: %.2f of the %.1f GB/s of an "
+                    "in-place axpy\n",
+                    s->axis.name, s->axis.values.text[k], c->traffic, 1e-9 * moved, moved / axpy,
+                    1e-9 * axpy);
   }
 }
 
 static void print_meaning(FILE *stream, const scaling *s)
 {
   (void)fprintf(stream,
-                "\nstep_seconds: %s time of a step, mean of the first %ld from the start, repeated; median of %ld interleaved\n",
+                "\nstep_seconds: %s time of a step, mean of the first %ld from the start, "
+                "repeated; median of %ld interleaved\n",
                 s->axis.parallel ? "elapsed" : "process", s->steps, s->request->rounds);
   (void)fprintf(stream, "rounds; step_lower, step_upper: quartiles%s\n",
                 s->axis.parallel ? "" : "; the fitted exponents are least squares over all rows");
-  (void)fprintf(
-      stream,
-      "bytes: what the integrator holds of the heap after its first steps, by mallinfo2; the problem's own is not counted\n");
+  (void)fprintf(stream, "bytes: what the integrator holds of the heap after its first steps, by "
+                        "mallinfo2; the problem's own is not counted\n");
 }
 
 static void print_all(FILE *stream, const scaling *s, const result_table *rows)
@@ -279,11 +293,18 @@ static bool plot_cells(const scaling *s)
     y[i] = s->cell[i].seconds.median;
   }
   for (int i = 0; i < methods; i++)
-    curve[i] = (plot_curve){.label = s->request->methods->word[i], .count = values, .x = x + i * values, .y = y + i * values};
-  (void)snprintf(title, sizeof title, "%s time of a step against %s: %s", s->axis.parallel ? "elapsed" : "CPU",
-                 axis_title(&s->axis), s->request->problem);
-  const plot_panel panel = {
-      .title = title, .x_label = axis_title(&s->axis), .y_label = y_label, .logarithmic = true, .curves = methods, .curve = curve};
+    curve[i] = (plot_curve){.label = s->request->methods->word[i],
+                            .count = values,
+                            .x = x + i * values,
+                            .y = y + i * values};
+  (void)snprintf(title, sizeof title, "%s time of a step against %s: %s",
+                 s->axis.parallel ? "elapsed" : "CPU", axis_title(&s->axis), s->request->problem);
+  const plot_panel panel = {.title = title,
+                            .x_label = axis_title(&s->axis),
+                            .y_label = y_label,
+                            .logarithmic = true,
+                            .curves = methods,
+                            .curve = curve};
   const bool good = plot_write(s->request->plot, 1, &panel);
   free(x);
   return good;
@@ -321,20 +342,22 @@ static int check_growth(const scaling *s, const int *n, int k)
   const char(*value)[NUMBER_SIZE] = s->axis.values.text;
   for (int j = 0; j < k && s->axis.kind == AXIS_PARAMETER; j++)
     if (n[j] == n[k])
-      return usage_error("bench: --scale: %s has %d coordinates at %s=%s and at %s=%s alike; scale a parameter that makes it grow",
+      return usage_error("bench: --scale: %s has %d coordinates at %s=%s and at %s=%s alike; scale "
+                         "a parameter that makes it grow",
                          s->request->problem, n[k], s->axis.name, value[j], s->axis.name, value[k]);
   return DONE;
 }
 
-/* Before anything is measured: each problem and each specification can be made. What a method says to a problem does not depend on the
- * problem's size, so it is asked once. */
+/* Before anything is measured: each problem and each specification can be made. What a method says
+ * to a problem does not depend on the problem's size, so it is asked once. */
 static int check_values(const scaling *s)
 {
   int n[NUMBERS_MAX];
   int code = DONE;
   for (int k = 0; k < s->axis.values.count && code == DONE; k++) {
     problem *scene;
-    code = axis_problem(&s->axis, k, s->request->problem, s->request->settings, s->request->one_point, &scene);
+    code = axis_problem(&s->axis, k, s->request->problem, s->request->settings,
+                        s->request->one_point, &scene);
     if (code != DONE) return code;
     n[k] = scene->nq;
     if (k == 0 || s->axis.kind != AXIS_PARAMETER) code = check_methods(s, scene, k);
@@ -348,8 +371,10 @@ static int check_values(const scaling *s)
 int scale_run(const scale_request *request)
 {
   scaling s = {.request = request, .steps = request->steps > 0 ? request->steps : STEPS_DEFAULT};
-  if (request->methods->count == 0) return usage_error("bench: --scale needs a method: --method SPEC");
-  if (request->settings->count == WORDS_MAX) return usage_error("bench: --set is given too often for --scale");
+  if (request->methods->count == 0)
+    return usage_error("bench: --scale needs a method: --method SPEC");
+  if (request->settings->count == WORDS_MAX)
+    return usage_error("bench: --set is given too often for --scale");
   int code = axis_read(request->scaled, &s.axis);
   if (code == DONE) code = check_values(&s);
   if (code != DONE) return code;

@@ -49,17 +49,21 @@ static void without_callback(char *sentence)
   static const char without[] = " has no value there";
   const char *last = strstr(sentence, " callback ");
   char *cut = NULL;
-  for (char *colon = strstr(sentence, ": "); colon != NULL && colon < last; colon = strstr(colon + 1, ": ")) cut = colon;
+  for (char *colon = strstr(sentence, ": "); colon != NULL && colon < last;
+       colon = strstr(colon + 1, ": "))
+    cut = colon;
   if (cut != NULL) (void)snprintf(cut, SENTENCE_SIZE - (size_t)(cut - sentence), "%s", without);
 }
 
 void complain_of(dvi_status status, const char *before, const char *after)
 {
   char sentence[SENTENCE_SIZE];
-  const char *said = status == DVI_NO_MEMORY ? "" : dvi_last_error(); /* the command's own shortage left none */
-  (void)snprintf(sentence, sizeof sentence, "%s", said[0] != '\0' ? said : dvi_status_meaning(status));
-  if (dvi_scene_blame()[0] != '\0' && is_of_callback(status, sentence)) {
-    complain("%s", dvi_scene_blame());
+  /* the command's own shortage left none */
+  const char *said = status == DVI_NO_MEMORY ? "" : dvi_last_error();
+  (void)snprintf(sentence, sizeof sentence, "%s",
+                 said[0] != '\0' ? said : dvi_status_meaning(status));
+  if (dvi_scene_fault()[0] != '\0' && is_of_callback(status, sentence)) {
+    complain("%s", dvi_scene_fault());
     without_callback(sentence);
   }
   complain("%s%s%s", before, sentence, after);
@@ -75,6 +79,8 @@ bool output_flushed(void)
 {
   errno = 0;
   if (fflush(stdout) == 0 && !ferror(stdout)) return true;
-  if (errno != EPIPE) complain("cannot write to standard output: %s", errno != 0 ? strerror(errno) : "an earlier write failed");
+  if (errno != EPIPE)
+    complain("cannot write to standard output: %s",
+             errno != 0 ? strerror(errno) : "an earlier write failed");
   return false;
 }

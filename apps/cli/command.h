@@ -4,7 +4,8 @@
 #include <dvi/dvi.h>
 #include <stdbool.h>
 
-/** What the shell sees. A run that a signal ended returns 128 and the signal's number, as shells do. */
+/** What the shell sees. A run that a signal ended returns 128 and the signal's number, as shells
+ * do. */
 enum {
   DONE = 0,
   FAILED = 1,      /**< a numerical failure, or a file that cannot be read or written */
@@ -38,6 +39,7 @@ int library_error(dvi_status status);
  * the cause, its place comes first. */
 void complain_of(dvi_status status, const char *before, const char *after);
 
-/** Flush standard output. False, with a complaint unless the reader has merely gone away, if any of it was lost. */
+/** Flush standard output. False, with a complaint unless the reader has merely gone away, if any of
+ * it was lost. */
 bool output_flushed(void);
 #endif

@@ -13,8 +13,8 @@
 
 enum { LINK_SIZE = 4096, LINKS_MAX = 40, UNFINISHED_MAX = 4 };
 
-/* The temporary files that there are, for a signal handler to remove: a command writes no more than some at a time. Their names stand here
- * from before they are made until after they are gone. */
+/* The temporary files that there are, for a signal handler to remove: a command writes no more than
+ * some at a time. Their names stand here from before they are made until after they are gone. */
 static _Atomic(const char *) unfinished[UNFINISHED_MAX];
 
 /* Put the name `by` in the place of another one, or of none: NULL. */
@@ -49,7 +49,8 @@ static char *folder_of(const char *path)
   return join(path, slash == path ? 1 : (size_t)(slash - path), "");
 }
 
-/* What the link at a path says, as a path from here. NULL, and errno EINVAL or ENOENT, if there is no link. */
+/* What the link at a path says, as a path from here. NULL, and errno EINVAL or ENOENT, if there is
+ * no link. */
 static char *follow(const char *path)
 {
   char target[LINK_SIZE];
@@ -57,10 +58,12 @@ static char *follow(const char *path)
   if (length < 0) return NULL;
   target[length] = '\0';
   const char *slash = strrchr(path, '/');
-  return target[0] == '/' || slash == NULL ? join("", 0, target) : join(path, (size_t)(slash - path) + 1, target);
+  return target[0] == '/' || slash == NULL ? join("", 0, target)
+                                           : join(path, (size_t)(slash - path) + 1, target);
 }
 
-/* The file that a path leads to, whether it is there or not: a rename must replace the file, not a link to it. */
+/* The file that a path leads to, whether it is there or not: a rename must replace the file, not a
+ * link to it. */
 static char *resolve(const char *path)
 {
   char *at = realpath(path, NULL);
@@ -139,8 +142,9 @@ static bool same_place(const char *path, const char *other)
   struct stat a;
   struct stat b;
   char *folders[] = {folder_of(path), folder_of(other)};
-  const bool same = folders[0] != NULL && folders[1] != NULL && stat(folders[0], &a) == 0 && stat(folders[1], &b) == 0 &&
-                    same_inode(&a, &b) && strcmp(name_in_folder(path), name_in_folder(other)) == 0;
+  const bool same = folders[0] != NULL && folders[1] != NULL && stat(folders[0], &a) == 0 &&
+                    stat(folders[1], &b) == 0 && same_inode(&a, &b) &&
+                    strcmp(name_in_folder(path), name_in_folder(other)) == 0;
   free(folders[0]);
   free(folders[1]);
   return same;
@@ -160,7 +164,8 @@ bool file_same(const char *path, const char *other)
   return same;
 }
 
-/* A rename is on disk only when its folder is. Some file systems cannot sync folders; the content is safe all the same. */
+/* A rename is on disk only when its folder is. Some file systems cannot sync folders; the content
+ * is safe all the same. */
 static void sync_folder(const char *path)
 {
   char *folder = folder_of(path);

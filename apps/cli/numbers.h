@@ -11,7 +11,8 @@ typedef struct numbers {
   char text[NUMBERS_MAX][NUMBER_SIZE];
 } numbers;
 
-/** Read a list, separated by commas. Returns DONE; or complains, about `where` ("bench: --at"), and returns USAGE: an empty place, a word
- *  that is no number, one that is not positive, one given twice, too many. */
+/** Read a list, separated by commas. Returns DONE; or complains, about `where` ("bench: --at"), and
+ *  returns USAGE: an empty place, a word that is no number, one that is not positive, one given
+ *  twice, too many. */
 int numbers_read(const char *where, const char *text, numbers *list);
 #endif

@@ -23,7 +23,8 @@ bool parse_number(const char *text, double *number)
 
 static bool parse_count(const char *text, long *count)
 {
-  if (strspn(text, "0123456789") != strlen(text) || text[0] == '0') return false; /* strtol would take blanks and signs */
+  /* strtol would take blanks and signs */
+  if (strspn(text, "0123456789") != strlen(text) || text[0] == '0') return false;
   errno = 0;
   const long value = strtol(text, NULL, 10);
   if (errno != 0 || value < 1) return false;
@@ -38,29 +39,36 @@ static const char *option_name(int k, const void *list)
 
 static void print_help(const command_line *command)
 {
-  (void)printf("Usage: dvi %s %s\n\n%s\nOptions:\n", command->name, command->synopsis, command->summary);
+  (void)printf("Usage: dvi %s %s\n\n%s\nOptions:\n", command->name, command->synopsis,
+               command->summary);
   for (const option *o = command->options; o->name != NULL; o++) {
-    const int width = printf("  --%s%s%s", o->name, o->value != NULL ? " " : "", o->value != NULL ? o->value : "");
+    const int width = printf("  --%s%s%s", o->name, o->value != NULL ? " " : "",
+                             o->value != NULL ? o->value : "");
     (void)printf("%*s%s\n", width < HELP_COLUMN ? HELP_COLUMN - width : 1, "", o->help);
   }
   (void)printf("%-*s%s\n", HELP_COLUMN, "  --help", "print this text");
-  for (const char *const *paragraph = command->details; *paragraph != NULL; paragraph++) (void)printf("\n%s", *paragraph);
+  for (const char *const *paragraph = command->details; *paragraph != NULL; paragraph++)
+    (void)printf("\n%s", *paragraph);
 }
 
 /* The option that argument --name or --name=value names; -1 if there is none. */
 static int find_option(const command_line *command, const char *name, size_t length)
 {
   for (int k = 0; command->options[k].name != NULL; k++)
-    if (strlen(command->options[k].name) == length && strncmp(command->options[k].name, name, length) == 0) return k;
+    if (strlen(command->options[k].name) == length &&
+        strncmp(command->options[k].name, name, length) == 0)
+      return k;
   return -1;
 }
 
 /* What other programs, and scenes, call some options. */
 static const struct {
   const char *other, *name;
-} other_names[] = {{"step", "h"},      {"steps", "h"},   {"dt", "h"},          {"step-size", "h"}, {"timestep", "h"},
-                   {"until", "t-end"}, {"end", "t-end"}, {"tmax", "t-end"},    {"time", "t-end"},  {"duration", "t-end"},
-                   {"output", "out"},  {"param", "set"}, {"parameter", "set"}, {"grid", "set"}};
+} other_names[] = {{"step", "h"},         {"steps", "h"},    {"dt", "h"},
+                   {"step-size", "h"},    {"timestep", "h"}, {"until", "t-end"},
+                   {"end", "t-end"},      {"tmax", "t-end"}, {"time", "t-end"},
+                   {"duration", "t-end"}, {"output", "out"}, {"param", "set"},
+                   {"parameter", "set"},  {"grid", "set"}};
 
 static int unknown_option(const command_line *command, const char *text, size_t length)
 {
@@ -68,13 +76,15 @@ static int unknown_option(const command_line *command, const char *text, size_t 
   (void)snprintf(name, sizeof name, "%.*s", (int)length, text);
   const char *near = NULL;
   for (size_t k = 0; k < sizeof other_names / sizeof *other_names && near == NULL; k++)
-    if (strcmp(name, other_names[k].other) == 0 && find_option(command, other_names[k].name, strlen(other_names[k].name)) >= 0)
+    if (strcmp(name, other_names[k].other) == 0 &&
+        find_option(command, other_names[k].name, strlen(other_names[k].name)) >= 0)
       near = other_names[k].name;
   if (near == NULL) near = nearest_word(name, option_name, command->options);
   if (near != NULL)
-    return usage_error("%s: unknown option '--%s' (did you mean '--%s'?); see dvi %s --help", command->name, name, near,
-                       command->name);
-  return usage_error("%s: unknown option '--%s'; see dvi %s --help", command->name, name, command->name);
+    return usage_error("%s: unknown option '--%s' (did you mean '--%s'?); see dvi %s --help",
+                       command->name, name, near, command->name);
+  return usage_error("%s: unknown option '--%s'; see dvi %s --help", command->name, name,
+                     command->name);
 }
 
 static int missing_value(const command_line *command, const option *o)
@@ -87,12 +97,14 @@ static int store(const command_line *command, const option *o, const char *text)
   if (o->number != NULL && !parse_number(text, o->number))
     return usage_error("%s: --%s wants a finite number, not '%s'", command->name, o->name, text);
   if (o->count != NULL && !parse_count(text, o->count))
-    return usage_error("%s: --%s wants a whole number from 1, in plain digits, not '%s'", command->name, o->name, text);
+    return usage_error("%s: --%s wants a whole number from 1, in plain digits, not '%s'",
+                       command->name, o->name, text);
   if ((o->word != NULL || o->words != NULL) && text[0] == '\0') return missing_value(command, o);
   if (o->word != NULL) *o->word = text;
   if (o->words != NULL) {
     if (o->words->count == WORDS_MAX)
-      return usage_error("%s: --%s is given more than %d times", command->name, o->name, (int)WORDS_MAX);
+      return usage_error("%s: --%s is given more than %d times", command->name, o->name,
+                         (int)WORDS_MAX);
     o->words->word[o->words->count++] = text;
   }
   return DONE;
@@ -106,11 +118,13 @@ static int take_option(const command_line *command, int argc, char **argv, int *
   const int k = find_option(command, name, length);
   if (k < 0) return unknown_option(command, name, length);
   const option *o = &command->options[k];
-  if (given[k] && o->words == NULL) return usage_error("%s: --%s is given twice", command->name, o->name);
+  if (given[k] && o->words == NULL)
+    return usage_error("%s: --%s is given twice", command->name, o->name);
   given[k] = true;
   if (o->flag != NULL) {
     *o->flag = true;
-    return name[length] == '=' ? usage_error("%s: --%s takes no value", command->name, o->name) : DONE;
+    return name[length] == '=' ? usage_error("%s: --%s takes no value", command->name, o->name)
+                               : DONE;
   }
   if (name[length] == '=') return store(command, o, name + length + 1);
   if (*i + 1 == argc || strncmp(argv[*i + 1], "--", 2) == 0) return missing_value(command, o);
@@ -121,17 +135,21 @@ static int take_operand(const command_line *command, const char *text, const cha
 {
   /* Not help: whoever writes -h 0.1 means the step. */
   if (strcmp(text, "-h") == 0)
-    return usage_error("%s: unknown option '-h'; %sdvi %s --help explains all options", command->name,
-                       find_option(command, "h", 1) >= 0 ? "--h sets the step, " : "", command->name);
+    return usage_error(
+        "%s: unknown option '-h'; %sdvi %s --help explains all options", command->name,
+        find_option(command, "h", 1) >= 0 ? "--h sets the step, " : "", command->name);
   if (text[0] == '-' && text[1] != '\0')
-    return usage_error("%s: unknown option '%s'; options begin with two dashes, see dvi %s --help", command->name, text,
-                       command->name);
-  if (*operand != NULL) return usage_error("%s: one %s is enough, '%s' is too many", command->name, command->operand, text);
+    return usage_error("%s: unknown option '%s'; options begin with two dashes, see dvi %s --help",
+                       command->name, text, command->name);
+  if (*operand != NULL)
+    return usage_error("%s: one %s is enough, '%s' is too many", command->name, command->operand,
+                       text);
   *operand = text;
   return DONE;
 }
 
-bool options_parse(const command_line *command, int argc, char **argv, const char **operand, int *exit_code)
+bool options_parse(const command_line *command, int argc, char **argv, const char **operand,
+                   int *exit_code)
 {
   bool given[OPTIONS_MAX] = {false};
   *operand = NULL;
@@ -146,8 +164,8 @@ bool options_parse(const command_line *command, int argc, char **argv, const cha
     if (*exit_code != DONE) return false;
   }
   if (*operand == NULL) {
-    *exit_code = usage_error("%s: %s is missing; usage: dvi %s %s", command->name, command->operand, command->name,
-                             command->synopsis);
+    *exit_code = usage_error("%s: %s is missing; usage: dvi %s %s", command->name, command->operand,
+                             command->name, command->synopsis);
     return false;
   }
   return true;
@@ -157,6 +175,7 @@ int words_distinct(const char *command, const char *name, const words *given)
 {
   for (int i = 0; i < given->count; i++)
     for (int j = 0; j < i; j++)
-      if (strcmp(given->word[i], given->word[j]) == 0) return usage_error("%s: --%s names %s twice", command, name, given->word[i]);
+      if (strcmp(given->word[i], given->word[j]) == 0)
+        return usage_error("%s: --%s names %s twice", command, name, given->word[i]);
   return DONE;
 }

@@ -11,7 +11,8 @@ typedef struct words {
   const char *word[WORDS_MAX];
 } words;
 
-/** One option. Exactly one of the pointers is set; it says what kind of value the option takes and where it goes. */
+/** One option. Exactly one of the pointers is set; it says what kind of value the option takes and
+ * where it goes. */
 typedef struct option {
   const char *name;  /**< without the dashes */
   bool *flag;        /**< takes no value */
@@ -26,21 +27,26 @@ typedef struct option {
 /** One subcommand, as its --help tells it. */
 typedef struct command_line {
   const char *name;
-  const char *synopsis;       /**< after "dvi <name> " */
-  const char *operand;        /**< what the one operand is, for messages: "PROBLEM"; NULL if there is none */
-  const char *summary;        /**< what it does: some lines, each ended by a newline */
-  const option *options;      /**< ended by one without a name */
-  const char *const *details; /**< after the options: paragraphs, for example of columns; ended by NULL */
+  const char *synopsis; /**< after "dvi <name> " */
+  const char
+      *operand; /**< what the one operand is, for messages: "PROBLEM"; NULL if there is none */
+  const char *summary;   /**< what it does: some lines, each ended by a newline */
+  const option *options; /**< ended by one without a name */
+  /** after the options: paragraphs, for example of columns; ended by NULL */
+  const char *const *details;
 } command_line;
 
 /** Parse the arguments after the subcommand's name.
  *
  *  @param[out] operand    the operand
- *  @param[out] exit_code  set if the command is to end now: --help was asked for, or the line makes no sense
+ *  @param[out] exit_code  set if the command is to end now: --help was asked for, or the line makes
+ *                         no sense
  *  @return true to go on */
-bool options_parse(const command_line *command, int argc, char **argv, const char **operand, int *exit_code);
+bool options_parse(const command_line *command, int argc, char **argv, const char **operand,
+                   int *exit_code);
 
-/** Refuse values of --name of which two are the same: rows of a table could not be told apart. Returns DONE, or complains and returns USAGE. */
+/** Refuse values of --name of which two are the same: rows of a table could not be told apart.
+ * Returns DONE, or complains and returns USAGE. */
 int words_distinct(const char *command, const char *name, const words *given);
 
 /** A whole text as a finite number. */

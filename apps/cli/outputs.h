@@ -8,7 +8,8 @@ typedef struct named_file {
   const char *path;
 } named_file;
 
-/** Refuse two options that name the same file, however they spell it. Returns DONE, or complains and returns USAGE. */
+/** Refuse two options that name the same file, however they spell it. Returns DONE, or complains
+ * and returns USAGE. */
 int outputs_distinct(const char *command, int count, const named_file *files);
 
 /** Refuse a plot whose name, given by that option, does not say what it is: SVG. NULL: no plot.

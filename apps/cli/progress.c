@@ -30,7 +30,8 @@ void progress_show(progress_line *progress, double fraction, const char *what)
   progress->dirty = true;
   const double elapsed = t - progress->began;
   if (fraction > 0.0)
-    (void)fprintf(stderr, "\r\033[K%s: %.0f %%, %.0f s left", what, 100.0 * fraction, elapsed * (1.0 - fraction) / fraction);
+    (void)fprintf(stderr, "\r\033[K%s: %.0f %%, %.0f s left", what, 100.0 * fraction,
+                  elapsed * (1.0 - fraction) / fraction);
   else
     (void)fprintf(stderr, "\r\033[K%s: %.0f s", what, elapsed);
   (void)fflush(stderr);

@@ -9,10 +9,12 @@ typedef struct progress_line {
   double began, spoken; /**< seconds of the monotonic clock */
 } progress_line;
 
-/** Start the clock. `shown` false keeps silent even on a terminal, for output that goes to the same one. */
+/** Start the clock. `shown` false keeps silent even on a terminal, for output that goes to the same
+ * one. */
 void progress_start(progress_line *progress, bool shown);
 
-/** Say `what`, the fraction done (negative: unknown) and the time left, a few times a second at most. */
+/** Say `what`, the fraction done (negative: unknown) and the time left, a few times a second at
+ * most. */
 void progress_show(progress_line *progress, double fraction, const char *what);
 
 /** Wipe the line. */

@@ -8,7 +8,8 @@
 
 #include "cli/file.h"
 
-_Static_assert(ATOMIC_POINTER_LOCK_FREE == 2, "a signal handler reads a pointer that the program writes");
+_Static_assert(ATOMIC_POINTER_LOCK_FREE == 2,
+               "a signal handler reads a pointer that the program writes");
 
 static volatile sig_atomic_t noting, noted;
 static _Atomic(const char *) farewell;
@@ -26,12 +27,13 @@ static void on_signal(int number)
   _exit(128 + number);
 }
 
-/* UCX, which SUNDIALS brings along on Debian 13, takes SIGHUP when it is loaded, and hides whether nohup had it ignored. What nohup starts has
- * no terminal. */
+/* UCX, which SUNDIALS brings along on Debian 13, takes SIGHUP when it is loaded, and hides whether
+ * nohup had it ignored. What nohup starts has no terminal. */
 static bool may_be_ignored(const struct sigaction *found)
 {
   if (found->sa_handler == SIG_DFL) return false;
-  return found->sa_handler == SIG_IGN || !(isatty(STDIN_FILENO) || isatty(STDOUT_FILENO) || isatty(STDERR_FILENO));
+  return found->sa_handler == SIG_IGN ||
+         !(isatty(STDIN_FILENO) || isatty(STDOUT_FILENO) || isatty(STDERR_FILENO));
 }
 
 static void take(int number, bool even_ignored)

@@ -11,7 +11,8 @@ static int least(int a, int b, int c)
   return ab < c ? ab : c;
 }
 
-/* Insertions, deletions and replacements between two words (Levenshtein), one row of the table at a time. */
+/* Insertions, deletions and replacements between two words (Levenshtein), one row of the table at a
+ * time. */
 static int edits(const char *from, const char *to)
 {
   const int columns = (int)strlen(to);
@@ -33,12 +34,15 @@ const char *nearest_word(const char *word, word_at known, const void *list)
 {
   const size_t length = strlen(word);
   if (length > WORD_MAX) return NULL;
-  int best = length < 3 ? (int)length : length < 6 ? 3 : 4; /* so many edits make another word, not a slip */
+  /* so many edits make another word, not a slip */
+  int best = length < 3 ? (int)length : length < 6 ? 3 : 4;
   const char *nearest = NULL;
   const char *candidate;
   for (int k = 0; (candidate = known(k, list)) != NULL; k++) {
     if (strlen(candidate) > WORD_MAX) continue;
-    const int distance = strncmp(candidate, word, length) == 0 && length > 1 ? 1 : edits(word, candidate);
+    const int distance = strncmp(candidate, word, length) == 0 && length > 1
+                             ? 1
+                             : edits(word, candidate);
     if (distance < best) {
       best = distance;
       nearest = candidate;

@@ -6,7 +6,8 @@
 /** Word k of a list; NULL ends the list. */
 typedef const char *(*word_at)(int k, const void *list);
 
-/** The known word that takes the fewest edits from `word`, if they are few enough for a slip of the fingers; else NULL. */
+/** The known word that takes the fewest edits from `word`, if they are few enough for a slip of the
+ * fingers; else NULL. */
 const char *nearest_word(const char *word, word_at known, const void *list);
 
 /** " (did you mean 'galerkin'?)" in text, or "" if no known word is near. Returns text. */

@@ -11,9 +11,13 @@ int way_check(const char *command, double h, double way, double t_end, bool coun
 {
   if (h == 0.0) return usage_error("%s: steps of 0 lead nowhere", command);
   const double steps = way / h;
-  if (steps < 0.0) return usage_error("%s: steps of %g lead away from --t-end %g; change the sign of one", command, h, t_end);
+  if (steps < 0.0)
+    return usage_error("%s: steps of %g lead away from --t-end %g; change the sign of one", command,
+                       h, t_end);
   if (!counted || steps <= steps_max) return DONE;
-  return usage_error("%s: --t-end %g is %.3g steps of %g away, and at most 2^53 (9e15) can be counted; give an --h of %.2g or "
+  return usage_error("%s: --t-end %g is %.3g steps of %g away, and at most 2^53 (9e15) can be "
+                     "counted; give an --h of %.2g or "
                      "a nearer end",
-                     command, t_end, steps, h, 1.1 * way / steps_max); /* two digits may be a twentieth less */
+                     /* two digits may be a twentieth less */
+                     command, t_end, steps, h, 1.1 * way / steps_max);
 }

@@ -24,12 +24,15 @@ static double draw(uint64_t *state)
   return (double)(*state >> 11) / 4503599627370496.0 - 1.0;
 }
 
-/* A point near the start: velocities, or momenta of a Hamiltonian, are moved, and coordinates where there is no manifold to leave. */
+/* A point near the start: velocities, or momenta of a Hamiltonian, are moved, and coordinates where
+ * there is no manifold to leave. */
 static void move(const problem *scene, uint64_t *state, double *q, double *v)
 {
   const double *rates = scene->terms->hamiltonian != NULL ? scene->p : scene->v;
-  for (int i = 0; i < scene->nq; i++) q[i] = scene->q[i] + (scene->velocity == NULL ? APART * draw(state) : 0.0);
-  for (int i = 0; i < scene->nv; i++) v[i] = rates[i] + (scene->velocity == NULL ? APART * draw(state) : 0.0);
+  for (int i = 0; i < scene->nq; i++)
+    q[i] = scene->q[i] + (scene->velocity == NULL ? APART * draw(state) : 0.0);
+  for (int i = 0; i < scene->nv; i++)
+    v[i] = rates[i] + (scene->velocity == NULL ? APART * draw(state) : 0.0);
 }
 
 static bool has_kink(const problem *scene)
@@ -41,9 +44,11 @@ static bool has_kink(const problem *scene)
 static void tell_derivatives(double worst, int at_kink)
 {
   if (worst > 0.0)
-    (void)printf("derivatives: within %.1e of differences at %d points near the start", worst, (int)POINTS);
+    (void)printf("derivatives: within %.1e of differences at %d points near the start", worst,
+                 (int)POINTS);
   else
-    (void)printf("derivatives: differences at %d points near the start tell nothing against them", (int)POINTS);
+    (void)printf("derivatives: differences at %d points near the start tell nothing against them",
+                 (int)POINTS);
   if (at_kink > 0) (void)printf("; left out: %d at a kink, which differences go across", at_kink);
   (void)putchar('\n');
 }
@@ -66,7 +71,8 @@ static int check_derivatives(const problem *scene, double *q, double *v)
     }
     if (status == DVI_BAD_ARGUMENT) {
       complain("check: %s", dvi_last_error());
-      if (at_kink > 0) complain("check: differences across a kink look like this, too; try a start away from it");
+      if (at_kink > 0)
+        complain("check: differences across a kink look like this, too; try a start away from it");
       scene_warn("check", scene);
       return CHECK_FAILED;
     }
@@ -81,8 +87,8 @@ static int check_derivatives(const problem *scene, double *q, double *v)
 static int check_all_derivatives(const problem *scene)
 {
   if (scene->nq > COORDINATES_MAX) {
-    (void)printf("derivatives: not compared; that is for %d coordinates at most, and here are %d\n", (int)COORDINATES_MAX,
-                 scene->nq);
+    (void)printf("derivatives: not compared; that is for %d coordinates at most, and here are %d\n",
+                 (int)COORDINATES_MAX, scene->nq);
     return DONE;
   }
   double *q = calloc((size_t)scene->nq + (size_t)scene->nv, sizeof *q);
@@ -131,7 +137,8 @@ static void tell_unused(const problem *scene)
 }
 
 static const char *const details[] = {
-    "Exit codes: 0 all is well; 1 a file cannot be read, or the step fails; 2 the scene makes no sense, and where; 3 a derivative "
+    "Exit codes: 0 all is well; 1 a file cannot be read, or the step fails; 2 the scene makes no "
+    "sense, and where; 3 a derivative "
     "is wrong, and which.\n",
     "Examples:\n"
     "  dvi check cart.yaml\n"
@@ -146,15 +153,22 @@ int check_command(int argc, char **argv)
   int code;
   problem *scene;
   const option options[] = {
-      {.name = "method", .word = &method, .value = "SPEC", .help = "take a step with this method; left out: the scene's, or none"},
-      {.name = "set", .words = &settings, .value = "NAME=VALUE", .help = "set a parameter of the problem; may be repeated"},
+      {.name = "method",
+       .word = &method,
+       .value = "SPEC",
+       .help = "take a step with this method; default: the scene's, or none"},
+      {.name = "set",
+       .words = &settings,
+       .value = "NAME=VALUE",
+       .help = "set a parameter of the problem; may be repeated"},
       {.name = NULL},
   };
   const command_line command = {
       .name = "check",
       .synopsis = "PROBLEM|SCENE.yaml [OPTIONS]",
       .operand = "PROBLEM",
-      .summary = "Read a problem, compare all its derivatives with differences of its values, evaluate what is watched, and take "
+      .summary = "Read a problem, compare all its derivatives with differences of its values, "
+                 "evaluate what is watched, and take "
                  "one step.\n",
       .options = options,
       .details = details,

@@ -14,7 +14,8 @@ typedef struct plot_request {
   bool dots, equal, logarithmic;
 } plot_request;
 
-/* The name that all curves of a panel have on one axis; "" if they differ, for the legend has them. */
+/* The name that all curves of a panel have on one axis; "" if they differ, for the legend has
+ * them. */
 static const char *name_axis(const curve_list *list, int first, int count, bool of_x)
 {
   const char *name = of_x ? list->curve[first].x_name : list->curve[first].y_name;
@@ -74,13 +75,15 @@ static int plot_file(const plot_request *request, const char *path)
 }
 
 static const char *const details[] = {
-    "Several pairs with commas between them share a pair of axes; with --axes again there is one more, below. Y alone is t:Y.\n"
+    "Several pairs with commas between them share a pair of axes; with --axes again there is one "
+    "more, below. Y alone is t:Y.\n"
     "Rows whose cells are no numbers are left out. Lines have as many points as can be seen.\n",
     "Examples:\n"
     "  dvi run kepler --method galerkin:degree=4 --h 0.1 --t-end 10 --out orbit.csv\n"
     "  dvi plot orbit.csv --axes x:y --equal --out orbit.svg\n"
     "  dvi plot orbit.csv --axes x,y --axes energy --out time.svg\n"
-    "  dvi run figure-eight --method verlet --h 0.01 --t-end 6 | dvi plot - --axes x1:y1 --out eight.svg\n",
+    "  dvi run figure-eight --method verlet --h 0.01 --t-end 6 | dvi plot - --axes x1:y1 --out "
+    "eight.svg\n",
     NULL,
 };
 
@@ -88,19 +91,30 @@ int plot_command(int argc, char **argv)
 {
   plot_request r = {0};
   const option options[] = {
-      {.name = "axes", .words = &r.axes, .value = "X:Y[,X:Y..]", .help = "the columns to draw; may be repeated"},
+      {.name = "axes",
+       .words = &r.axes,
+       .value = "X:Y[,X:Y..]",
+       .help = "the columns to draw; may be repeated"},
       {.name = "out", .word = &r.out, .value = "FILE.svg", .help = "the picture"},
-      {.name = "title", .word = &r.title, .value = "TEXT", .help = "what stands above it; left out: the file's name"},
+      {.name = "title",
+       .word = &r.title,
+       .value = "TEXT",
+       .help = "what stands above it; default: the file's name"},
       {.name = "dots", .flag = &r.dots, .help = "a dot for each row instead of lines"},
-      {.name = "equal", .flag = &r.equal, .help = "the same scale on both axes, but for those over time"},
-      {.name = "log", .flag = &r.logarithmic, .help = "logarithmic axes; rows with numbers that are not positive are left out"},
+      {.name = "equal",
+       .flag = &r.equal,
+       .help = "the same scale on both axes, but for those over time"},
+      {.name = "log",
+       .flag = &r.logarithmic,
+       .help = "logarithmic axes; rows with numbers that are not positive are left out"},
       {.name = NULL},
   };
   const command_line command = {
       .name = "plot",
       .synopsis = "FILE.csv --axes X:Y[,X:Y..] --out FILE.svg [OPTIONS]",
       .operand = "FILE",
-      .summary = "Draw columns of a CSV file that dvi has written against each other; - is standard input.\n",
+      .summary = "Draw columns of a CSV file that dvi has written against each other; - is "
+                 "standard input.\n",
       .options = options,
       .details = details,
   };

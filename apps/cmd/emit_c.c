@@ -19,7 +19,8 @@ typedef struct emit_request {
 /* The scene's name, with '-' as '_'. */
 static int identifier_of(const problem *scene, char *name)
 {
-  if (strlen(scene->name) >= NAME_SIZE) return usage_error("emit-c: '%s' is too long for a C name; give --name", scene->name);
+  if (strlen(scene->name) >= NAME_SIZE)
+    return usage_error("emit-c: '%s' is too long for a C name; give --name", scene->name);
   (void)snprintf(name, NAME_SIZE, "%s", scene->name);
   for (char *c = name; *c != '\0'; c++)
     if (*c == '-') *c = '_';
@@ -40,8 +41,8 @@ static int write_code(const problem *scene, const char *name, const char *path)
   if (status == DVI_BAD_ARGUMENT)
     code = usage_error("emit-c: '%s' is no name in C; give one by --name", name);
   else if (status == DVI_UNSUPPORTED)
-    code = usage_error(
-        "emit-c: the scene's method needs Taylor coefficients, and C files have none; take another method, or `dvi run` the scene");
+    code = usage_error("emit-c: the scene's method needs Taylor coefficients, and C files have "
+                       "none; take another method, or `dvi run` the scene");
   else if (status != DVI_OK && status != DVI_IO_ERROR) /* that one is said by file_keep, which knows
                                       the reason */
     code = library_error(status);
@@ -57,7 +58,8 @@ static int emit(const emit_request *request, const char *path)
   int code = open_problem(path, &request->settings, &scene);
   if (code != DONE) return code;
   if (request->name == NULL) code = identifier_of(scene, name);
-  if (code == DONE) code = write_code(scene, request->name != NULL ? request->name : name, request->out);
+  if (code == DONE)
+    code = write_code(scene, request->name != NULL ? request->name : name, request->out);
   problem_destroy(&scene);
   return code;
 }
@@ -66,17 +68,24 @@ int emit_c_command(int argc, char **argv)
 {
   emit_request r = {.out = NULL};
   const option options[] = {
-      {.name = "out", .word = &r.out, .value = "FILE.c", .help = "where the C file goes; -: standard output"},
+      {.name = "out",
+       .word = &r.out,
+       .value = "FILE.c",
+       .help = "where the C file goes; -: standard output"},
       {.name = "name",
        .word = &r.name,
        .value = "NAME",
-       .help = "of the functions, NAME_create and so on; left out: the "
+       .help = "of the functions, NAME_create and so on; default: the "
                "scene's, with _ for -"},
-      {.name = "set", .words = &r.settings, .value = "NAME=VALUE", .help = "set a parameter of the scene; may be repeated"},
+      {.name = "set",
+       .words = &r.settings,
+       .value = "NAME=VALUE",
+       .help = "set a parameter of the scene; may be repeated"},
       {.name = NULL},
   };
   static const char *const details[] = {
-      "The file needs <dvi/dvi.h> and libdvi alone. Parameters are numbers in it, as they are set here. Compiled with\n"
+      "The file needs <dvi/dvi.h> and libdvi alone. Parameters are numbers in it, as they are set "
+      "here. Compiled with\n"
       "-DDVI_MAIN it is a program that runs the scene.\n",
       "Examples:\n"
       "  dvi init cart.yaml\n"
@@ -94,8 +103,11 @@ int emit_c_command(int argc, char **argv)
   const char *path;
   int code;
   if (!options_parse(&command, argc, argv, &path, &code)) return code;
-  if (r.out == NULL) return usage_error("emit-c: --out is missing: where the C file goes, or - for standard output");
-  if (!scene_is_path(path)) return usage_error("emit-c: '%s' is no scene; the problems of the catalogue are C already", path);
+  if (r.out == NULL)
+    return usage_error("emit-c: --out is missing: where the C file goes, or - for standard output");
+  if (!scene_is_path(path))
+    return usage_error("emit-c: '%s' is no scene; the problems of the catalogue are C already",
+                       path);
   code = scene_spared("emit-c", path, 1, &(named_file){"out", r.out});
   return code == DONE ? emit(&r, path) : code;
 }

@@ -19,7 +19,8 @@ static void print_parameter(const problem_parameter *parameter, const words *set
 {
   const size_t length = strlen(parameter->name);
   for (int i = 0; i < settings->count; i++)
-    if (strncmp(settings->word[i], parameter->name, length) == 0 && settings->word[i][length] == '=') {
+    if (strncmp(settings->word[i], parameter->name, length) == 0 &&
+        settings->word[i][length] == '=') {
       (void)printf("  parameter    %s   %s\n", settings->word[i], parameter->help);
       return;
     }
@@ -31,7 +32,8 @@ static void print_parameter(const problem_parameter *parameter, const words *set
 static void print_problem(const problem *scene, const words *settings)
 {
   (void)printf("problem %s: %s\n", scene->name, scene->summary);
-  for (const problem_parameter *k = scene->parameter; k->name != NULL; k++) print_parameter(k, settings);
+  for (const problem_parameter *k = scene->parameter; k->name != NULL; k++)
+    print_parameter(k, settings);
   if (scene->velocity != NULL)
     (void)printf("  coordinates  %d, velocities %d:", scene->nq, scene->nv);
   else
@@ -43,9 +45,11 @@ static void print_problem(const problem *scene, const words *settings)
   if (events_count(scene) > 0) (void)printf("\n  events       ");
   events_print(scene);
   (void)printf("\n  first run    --h %g --t-end %g\n", scene->h, scene->t_end);
-  (void)printf("  judged by    %s\n", scene->exact != NULL      ? "its exact solution"
-                                      : scene->digits_q != NULL ? "its stored quadruple-precision result, or IDA or two runs"
-                                                                : "IDA or two runs");
+  (void)printf("  judged by    %s\n",
+               scene->exact != NULL ? "its exact solution"
+               : scene->digits_q != NULL
+                   ? "its stored quadruple-precision result, or IDA or two runs"
+                   : "IDA or two runs");
 }
 
 static int print_method(const dvi_integrator *integrator)
@@ -68,9 +72,9 @@ static void print_turn(const char *method, double h, double omega)
   double turn, rate;
   (void)printf("fast motion: omega = %g, h omega = %g; ", omega, h * omega);
   if (dvi_exchange(method, h * omega, &turn, &rate) == DVI_OK)
-    (void)printf(
-        "a step turns it by %.4f (exactly by %.4f), modulo 2 pi; energy goes from mode to mode at %.4f of the exact rate\n", turn,
-        fmod(h * omega, 2 * pi), rate);
+    (void)printf("a step turns it by %.4f (exactly by %.4f), modulo 2 pi; energy goes from mode to "
+                 "mode at %.4f of the exact rate\n",
+                 turn, fmod(h * omega, 2 * pi), rate);
   else
     (void)printf("%s\n", dvi_last_error());
 }
@@ -94,7 +98,8 @@ static int explain(const problem *scene, const char *method, const pacing *how, 
   const dvi_status status = dvi_integrator_start(integrator, 0.0, scene->q, scene->p);
   code = status == DVI_OK ? print_method(integrator) : library_error(status);
   if (code == DONE && !isnan(h)) print_fast_motion(scene, method, fabs(h));
-  /* A scene derives what is asked for: one step asks for all that the method wants. Whether it succeeds does not matter. */
+  /* A scene derives what is asked for: one step asks for all that the method wants. Whether it
+   * succeeds does not matter. */
   if (code == DONE && scene->scene != NULL) (void)dvi_integrator_step(integrator, scene->h);
   if (code == DONE) scene_tell(scene);
   dvi_integrator_destroy(&integrator);
@@ -108,8 +113,10 @@ static const char *const details[] = {
     "  dvi explain fpu --method imex --h 0.1\n"
     "  dvi explain kepler --method galerkin:degree=4 --time-transform distance:power=1.5\n"
     "  dvi explain cart.yaml\n",
-    "With --h: by which angle a step turns the largest frequency of the potentials that are declared fast and quadratic\n"
-    "(and the least one, if there are several), and how fast slow forces carry energy from one mode to another of the same\n"
+    "With --h: by which angle a step turns the largest frequency of the potentials that are "
+    "declared fast and quadratic\n"
+    "(and the least one, if there are several), and how fast slow forces carry energy from one "
+    "mode to another of the same\n"
     "frequency. An angle over the step is the frequency that the method gives to the mode.\n",
     NULL,
 };
@@ -124,24 +131,32 @@ int explain_command(int argc, char **argv)
       {.name = "method",
        .word = &method,
        .value = "SPEC",
-       .help = "the method: name[:key=value,...], see dvi list methods; left out: the scene's"},
+       .help = "the method: name[:key=value,...], see dvi list methods; default: the scene's"},
       {.name = "time-transform",
        .word = &how.transform,
        .value = "MONITOR",
-       .help = "steps of equal length in another time: distance[:power=P], arclength or acceleration[:power=P]"},
+       .help = "steps of equal length in another time: distance[:power=P], arclength or "
+               "acceleration[:power=P]"},
       {.name = "step-control",
        .word = &how.control,
        .value = "MONITOR",
        .help = "steps that follow a monitor reversibly: cheaper, symmetric, not symplectic"},
-      {.name = "h", .number = &h, .value = "H", .help = "say what steps of this length do to fast frequencies, too"},
-      {.name = "set", .words = &settings, .value = "NAME=VALUE", .help = "set a parameter of the problem; may be repeated"},
+      {.name = "h",
+       .number = &h,
+       .value = "H",
+       .help = "say what steps of this length do to fast frequencies, too"},
+      {.name = "set",
+       .words = &settings,
+       .value = "NAME=VALUE",
+       .help = "set a parameter of the problem; may be repeated"},
       {.name = NULL},
   };
   const command_line command = {
       .name = "explain",
       .synopsis = "PROBLEM|SCENE.yaml --method SPEC [OPTIONS]",
       .operand = "PROBLEM",
-      .summary = "Say which terms a problem has, and which kernel, solver and sparsity a method chooses for it, and why.\n",
+      .summary = "Say which terms a problem has, and which kernel, solver and sparsity a method "
+                 "chooses for it, and why.\n",
       .options = options,
       .details = details,
   };

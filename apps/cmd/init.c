@@ -15,14 +15,16 @@ static const char example[] =
     "# Go through the values under sweep:                    dvi sweep cart.yaml --out cart.csv\n"
     "title: a pendulum on a cart\n"
     "\n"
-    "# Numbers with names, to be changed by --set l=0.7; also lists, and expressions of those above.\n"
+    "# Numbers with names, to be changed by --set l=0.7; also lists, and expressions of those "
+    "above.\n"
     "parameters:\n"
     "  m: 0.2        # the bob\n"
     "  M: 1          # the cart\n"
     "  l: 0.5\n"
     "  g: 9.81\n"
     "\n"
-    "# The configuration, in the order of the columns: scalar, vector(2), vector(3); x[5]: scalar is a family.\n"
+    "# The configuration, in the order of the columns: scalar, vector(2), vector(3); x[5]: scalar "
+    "is a family.\n"
     "coordinates:\n"
     "  x: scalar\n"
     "  theta: scalar\n"
@@ -31,12 +33,14 @@ static const char example[] =
     "definitions:\n"
     "  bob: [x + l*sin(theta), -l*cos(theta)]\n"
     "\n"
-    "# The Lagrangian as it stands on paper: x' is the velocity of x, bob[2] the second element of bob, t the time.\n"
+    "# The Lagrangian as it stands on paper: x' is the velocity of x, bob[2] the second element of "
+    "bob, t the time.\n"
     "lagrangian: |\n"
     "  M/2*x'^2 + m/2*dot(bob', bob')\n"
     "  - m*g*bob[2]\n"
     "\n"
-    "# Fields along which nothing changes: their momentum is a column. Moving cart and bob along the rail is one.\n"
+    "# Fields along which nothing changes: their momentum is a column. Moving cart and bob along "
+    "the rail is one.\n"
     "symmetries:\n"
     "  along_the_rail: {x: 1}\n"
     "\n"
@@ -49,7 +53,8 @@ static const char example[] =
     "  x: 0\n"
     "  theta: 1\n"
     "\n"
-    "# How to run it, if --method, --h and --t-end do not say otherwise; dvi list methods has all methods.\n"
+    "# How to run it, if --method, --h and --t-end do not say otherwise; dvi list methods has all "
+    "methods.\n"
     "method: galerkin:degree=2\n"
     "step: 0.02\n"
     "until: 20\n"
@@ -81,7 +86,8 @@ int init_command(int argc, char **argv)
       .name = "init",
       .synopsis = "FILE.yaml",
       .operand = "FILE",
-      .summary = "Write an example of a scene, with comments, to be changed into one's own; - is standard output. A file that is\n"
+      .summary = "Write an example of a scene, with comments, to be changed into one's own; - is "
+                 "standard output. A file that is\n"
                  "there is not overwritten.\n",
       .options = options,
       .details = details,
@@ -90,7 +96,8 @@ int init_command(int argc, char **argv)
   int code;
   if (!options_parse(&command, argc, argv, &path, &code)) return code;
   if (strcmp(path, "-") == 0) return write_example(path);
-  if (!scene_is_path(path)) return usage_error("init: '%s' is no name of a scene: those end in .yaml or .yml", path);
+  if (!scene_is_path(path))
+    return usage_error("init: '%s' is no name of a scene: those end in .yaml or .yml", path);
   if (access(path, F_OK) == 0) {
     complain("init: '%s' is there already; give another name, or remove it", path);
     return FAILED;

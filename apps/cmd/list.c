@@ -12,8 +12,10 @@
 
 enum { NAMES_SIZE = 1024, NAME_COLUMN = 17, KEY_COLUMN = 12, HINT_SIZE = 64 };
 
-static const table_column method_columns[] = {{"method", NULL}, {"summary", NULL}, {"source", NULL}, {"keys", NULL}, {NULL, NULL}};
-static const table_column problem_columns[] = {{"problem", NULL}, {"summary", NULL}, {"parameters", NULL}, {NULL, NULL}};
+static const table_column method_columns[] = {
+    {"method", NULL}, {"summary", NULL}, {"source", NULL}, {"keys", NULL}, {NULL, NULL}};
+static const table_column problem_columns[] = {
+    {"problem", NULL}, {"summary", NULL}, {"parameters", NULL}, {NULL, NULL}};
 
 static const char *list_at(int k, const void *list)
 {
@@ -31,15 +33,18 @@ static void append(char *text, const char *word)
 
 static void print_method(int i)
 {
-  (void)printf("%-*s %s [%s]\n", NAME_COLUMN, dvi_method_name(i), dvi_method_summary(i), dvi_method_citation(i));
+  (void)printf("%-*s %s [%s]\n", NAME_COLUMN, dvi_method_name(i), dvi_method_summary(i),
+               dvi_method_citation(i));
   for (int k = 0; k < dvi_method_key_count(i); k++)
-    (void)printf("    %-*s  %s\n", KEY_COLUMN, dvi_method_key_name(i, k), dvi_method_key_help(i, k));
+    (void)printf("    %-*s  %s\n", KEY_COLUMN, dvi_method_key_name(i, k),
+                 dvi_method_key_help(i, k));
 }
 
 static void print_methods(void)
 {
   for (int i = 0; i < dvi_method_count(); i++) print_method(i);
-  (void)printf("\nA method is named as name[:key=value,...], for example galerkin:degree=4,quadrature=lobatto,nodes=5\n");
+  (void)printf("\nA method is named as name[:key=value,...], for example "
+               "galerkin:degree=4,quadrature=lobatto,nodes=5\n");
 }
 
 static result_table *methods_table(void)
@@ -70,8 +75,10 @@ static void print_problem(int i)
 static void print_problems(void)
 {
   for (int i = 0; i < problem_count(); i++) print_problem(i);
-  (void)printf("\nParameters are set with --set name=value, for example dvi run kepler --method verlet --set e=0.9\n"
-               "A problem of one's own is a scene, FILE.yaml in place of a name: dvi init FILE.yaml writes one to begin with\n");
+  (void)printf("\nParameters are set with --set name=value, for example dvi run kepler --method "
+               "verlet --set e=0.9\n"
+               "A problem of one's own is a scene, FILE.yaml in place of a name: dvi init "
+               "FILE.yaml writes one to begin with\n");
 }
 
 static result_table *problems_table(void)
@@ -112,7 +119,8 @@ static int write_csv(const result_table *table, const char *path)
 }
 
 static const char *const details[] = {
-    "CSV columns: method,summary,source,keys or problem,summary,parameters; keys and parameters are\n"
+    "CSV columns: method,summary,source,keys or problem,summary,parameters; keys and parameters "
+    "are\n"
     "separated by blanks, parameters stand with their defaults.\n",
     "Examples:\n"
     "  dvi list methods\n"
@@ -124,13 +132,16 @@ static const char *const details[] = {
 int list_command(int argc, char **argv)
 {
   const char *csv = NULL;
-  const option options[] = {{.name = "csv", .word = &csv, .value = "-|FILE", .help = "write the list as CSV"}, {.name = NULL}};
+  const option options[] = {
+      {.name = "csv", .word = &csv, .value = "-|FILE", .help = "write the list as CSV"},
+      {.name = NULL}};
   const command_line command = {
       .name = "list",
       .synopsis = "methods|problems|NAME [--csv -|FILE]",
       .operand = "word (methods, problems, or the name of one)",
-      .summary = "List the methods with the keys of their specifications, or the problems with their\n"
-                 "parameters; or the one of that name.\n",
+      .summary =
+          "List the methods with the keys of their specifications, or the problems with their\n"
+          "parameters; or the one of that name.\n",
       .options = options,
       .details = details,
   };
@@ -142,8 +153,8 @@ int list_command(int argc, char **argv)
   if (!all && csv == NULL && print_named(what)) return DONE;
   if (!all) {
     char hint[HINT_SIZE];
-    return usage_error("list: there are methods, problems and the name of one to list, not '%s'%s", what,
-                       suggestion(what, list_at, NULL, hint, sizeof hint));
+    return usage_error("list: there are methods, problems and the name of one to list, not '%s'%s",
+                       what, suggestion(what, list_at, NULL, hint, sizeof hint));
   }
   if (csv == NULL) {
     (methods ? print_methods : print_problems)();

@@ -15,11 +15,14 @@
 #include "cli/outputs.h"
 #include "cli/progress.h"
 #include "load/scene.h"
-#include "study/study.h"
+#include "mechanics/judge.h"
+#include "mechanics/motion_study.h"
+#include "mechanics/single_steps.h"
 #include "csv/table.h"
 #include "study/window.h"
 
-/* A high order is asymptotic only near the floor, if at all: more levels there let the window begin where it is. */
+/* A high order is asymptotic only near the floor, if at all: more levels there let the window begin
+ * where it is. */
 enum { LEVELS_DEFAULT = 6, LEVELS_HIGH_ORDER = 12, HIGH_ORDER = 8, LENGTHENINGS = 3 };
 static const double lengthening = 4.0;
 
@@ -30,33 +33,10 @@ typedef struct order_request {
   double h, t_end, ratio;
   long levels;                    /* 0: chosen */
   words methods, settings, asked; /* asked: the axes of the plot */
+  table_column columns[ORDER_COLUMNS_MAX];
   plot_axes axes;
   pacing how;
 } order_request;
-
-static void add_row(result_table *rows, const order_study *study, const order_result *result, int k, const level_trial *trial)
-{
-  table_text(rows, study->method);
-  table_text(rows, study->scene->name);
-  table_number(rows, trial->h);
-  table_number(rows, (double)trial->taken);
-  table_number(rows, trial->error);
-  table_number(rows, order_local_slope(result, k));
-  table_number(rows, trial->energy_error);
-  table_number(rows, trial->cpu_seconds);
-  table_number(rows, (double)trial->spent.residuals);
-  table_number(rows, (double)trial->spent.jacobians);
-  table_number(rows, (double)trial->spent.factorizations);
-  if (study->scene->velocity != NULL) table_number(rows, trial->distance);
-}
-
-static dvi_status run_level(order_study *study, long steps, level_trial *trial)
-{
-  dvi_status status = study_run(study, steps, trial);
-  if (status == DVI_OK) status = study_watch(study, trial);
-  if (status == DVI_OK) status = study_time(study, trial);
-  return status;
-}
 
 /* A study of one method, and who judges it. */
 typedef struct hearing {
@@ -64,6 +44,7 @@ typedef struct hearing {
   const problem *scene;
   judgement judge;
   double judged_at; /* the time that the judge was asked for; NaN: not yet */
+  levels_choice choice;
   progress_line progress;
   result_table *rows;
 } hearing;
@@ -81,59 +62,44 @@ static int ask_judge(hearing *ask, double t_end)
   return code;
 }
 
-static int level_count(const order_request *request, const order_study *study)
+static int level_count(const order_request *request, int order)
 {
   if (request->levels > 0) return (int)request->levels;
-  return study->order < HIGH_ORDER ? LEVELS_DEFAULT : LEVELS_HIGH_ORDER;
+  return order < HIGH_ORDER ? LEVELS_DEFAULT : LEVELS_HIGH_ORDER;
 }
 
-/* Run all levels of one method and fit its order. */
-static dvi_status measure(hearing *ask, order_study *study, int levels, const long *steps, order_result *result)
-{
-  dvi_status status = DVI_OK;
-  result->claimed = study->order;
-  result->chooses_steps = dvi_integrator_chooses_steps(study->integrator);
-  result->t_end = study->t_end;
-  memcpy(result->judge, ask->judge.words, sizeof result->judge);
-  result->judge_error = ask->judge.error;
-  result->floor = study->floor;
-  result->ceiling = study->ceiling;
-  for (int k = 0; k < levels && status == DVI_OK; k++) {
-    level_trial trial;
-    status = run_level(study, steps[k], &trial);
-    if (status != DVI_OK) break;
-    result->h[k] = fabs(trial.h);
-    result->error[k] = trial.error;
-    result->levels = k + 1;
-    add_row(ask->rows, study, result, k, &trial);
-  }
-  if (status == DVI_OK)
-    result->settled = window_fit(result->levels, result->h, result->error, result->floor, result->ceiling, &result->fit);
-  return status;
-}
-
-/* Study up to t_end. If the levels do not fit above the floor there, and that matters, *room becomes false instead. */
-static int study_until(hearing *ask, const char *method, double t_end, bool *room, order_result *result)
+/* Choose the levels of a method, and run them: not if they must fit above the floor and do not. */
+static dvi_status run_levels(hearing *ask, const study_subject *of, bool must_fit, order_result *to)
 {
   const order_request *request = ask->request;
-  order_study study;
-  long steps[LEVELS_MAX];
-  const bool must_fit = *room;
+  const levels_request wanted = {.length = isnan(request->h) ? 0.0 : request->h,
+                                 .ratio = isnan(request->ratio) ? 0.0 : request->ratio,
+                                 .count = level_count(request, of->order)};
+  const dvi_status status = levels_choose(of, &wanted, &ask->choice);
+  const bool there = status == DVI_OK && ask->choice.parts[0] > 0;
+  if (!there || (must_fit && !ask->choice.room)) return status;
+  return order_measure(of, &ask->choice, wanted.count, ask->rows, to);
+}
+
+/* Study up to t_end. If the levels do not fit above the floor there, and that matters, *room
+ * becomes false instead. */
+static int study_until(hearing *ask, const char *method, double t_end, bool *room, order_result *to)
+{
+  motion_study study;
+  char name[PACED_NAME];
   int code = ask_judge(ask, t_end);
   if (code != DONE) return code;
-  code = study_init(&study, ask->scene, &ask->judge, method, &request->how, t_end);
+  paced_name(method, &ask->request->how, name, sizeof name);
+  const judged_motion motion = {ask->scene, &ask->judge, t_end};
+  code = motion_study_init(&study, &motion, method, &ask->request->how, name);
   if (code != DONE) return code;
-  paced_name(method, &request->how, result->method, sizeof result->method);
-  study.method = result->method;
   study.progress = &ask->progress;
-  const int levels = level_count(request, &study);
-  dvi_status status = choose_levels(&study, isnan(request->h) ? 0.0 : request->h, isnan(request->ratio) ? 0.0 : request->ratio,
-                                    levels, steps, room);
-  const bool lost = status == DVI_OK && steps[0] == 0;
-  if (lost) code = study_refuse(&study);
-  if (status == DVI_OK && !lost && (*room || !must_fit)) status = measure(ask, &study, levels, steps, result);
-  study_clear(&study);
-  if (status == DVI_OK) return code;
+  const dvi_status status = run_levels(ask, &study.subject, *room, to);
+  motion_study_clear(&study);
+  if (status == DVI_OK) {
+    *room = ask->choice.room;
+    return ask->choice.parts[0] > 0 ? DONE : motion_study_refuse(name, t_end);
+  }
   (void)library_error(status);
   complain("order: %s failed on %s; try a smaller --h", method, ask->scene->name);
   return FAILED;
@@ -146,9 +112,14 @@ static int study_single_steps(hearing *ask, const char *method, order_result *re
 {
   const order_request *request = ask->request;
   const bool few = request->levels > 0 && request->levels < WINDOW_LEVELS;
-  if (order_holds(result) || few || request->how.transform != NULL || request->how.control != NULL) return DONE;
-  const dvi_status status = single_steps_measure(ask->scene, &request->settings, method, result->t_end, &ask->progress,
-                                                 &result->single);
+  if (order_holds(result) || few || request->how.transform != NULL || request->how.control != NULL)
+    return DONE;
+  const words *settings = &request->settings;
+  const double t_end = result->extent;
+  progress_line *progress = &ask->progress;
+  closer_look *look = &result->closer;
+  const dvi_status status = single_steps_measure(ask->scene, settings, method, t_end, progress,
+                                                 look);
   return status == DVI_OK ? DONE : library_error(status);
 }
 
@@ -158,12 +129,14 @@ static double study_end(const order_request *request, const problem *scene)
   return isnan(request->t_end) ? scene->order_t_end : request->t_end;
 }
 
-/* One method. If the problem's own span is so short that a few steps meet the floor, it is lengthened; unless that would exchange
- * the stored result, which is for this span, for IDA, whose error would leave less room than the longer span gains. */
+/* One method. If the problem's own span is so short that a few steps meet the floor, it is
+ * lengthened; unless that would exchange the stored result, which is for this span, for IDA, whose
+ * error would leave less room than the longer span gains. */
 static int study_method(hearing *ask, const char *method, order_result *result)
 {
   const order_request *request = ask->request;
-  const bool fixed = !isnan(request->t_end) || !isnan(request->h) || request->judge == JUDGE_STORED ||
+  const bool fixed = !isnan(request->t_end) || !isnan(request->h) ||
+                     request->judge == JUDGE_STORED ||
                      (ask->scene->exact == NULL && ask->scene->digits_q != NULL);
   double t_end = study_end(request, ask->scene);
   for (int i = 0;; i++) {
@@ -180,9 +153,10 @@ static int study_method(hearing *ask, const char *method, order_result *result)
 static int check_step(const order_request *request, const problem *scene)
 {
   const double t_end = study_end(request, scene);
-  if (!(fabs(t_end) / request->h > FIRST_STEPS_MAX)) return DONE;
-  return usage_error("order: --h %g is too small: %g steps to t = %g, %d are possible at the first level", request->h,
-                     fabs(t_end) / request->h, t_end, (int)FIRST_STEPS_MAX);
+  if (!(fabs(t_end) / request->h > FIRST_PARTS_MAX)) return DONE;
+  return usage_error(
+      "order: --h %g is too small: %g steps to t = %g, %d are possible at the first level",
+      request->h, fabs(t_end) / request->h, t_end, (int)FIRST_PARTS_MAX);
 }
 
 static bool write_csv(const result_table *rows, const char *path)
@@ -206,18 +180,21 @@ static int report(const hearing *ask, order_result *result)
     all_hold = all_hold && order_holds(&result[i]);
   }
   if (request->csv != NULL && !write_csv(ask->rows, request->csv)) return FAILED;
-  if (request->plot != NULL && !order_plot(ask->scene->name, ask->rows, &request->axes, results, result, request->plot))
+  if (request->plot != NULL &&
+      !order_plot(ask->scene->name, ask->rows, &request->axes, results, result, request->plot))
     return FAILED;
   return all_hold ? DONE : CHECK_FAILED;
 }
 
 static int study_all(const order_request *request, const problem *scene)
 {
-  hearing ask = {.request = request, .scene = scene, .judged_at = (double)NAN, .rows = table_create(order_columns(scene))};
+  result_table *rows = table_create(request->columns);
+  hearing ask = {.request = request, .scene = scene, .judged_at = (double)NAN, .rows = rows};
   order_result *result = calloc((size_t)request->methods.count, sizeof *result);
   int code = result != NULL && table_good(ask.rows) ? DONE : FAILED;
   progress_start(&ask.progress, true);
-  for (int i = 0; i < request->methods.count && code == DONE; i++) code = study_method(&ask, request->methods.word[i], &result[i]);
+  for (int i = 0; i < request->methods.count && code == DONE; i++)
+    code = study_method(&ask, request->methods.word[i], &result[i]);
   progress_end(&ask.progress);
   if (code == DONE) code = table_good(ask.rows) ? report(&ask, result) : FAILED;
   free(result);
@@ -250,16 +227,23 @@ static int check_methods(const order_request *request, const problem *scene)
 
 static int check_request(order_request *request, const char *name)
 {
-  if (request->levels > LEVELS_MAX)
-    return usage_error("order: --levels %ld is too many, %d are possible", request->levels, (int)LEVELS_MAX);
+  const int most = STUDY_LEVELS_MAX;
+  if (request->levels > most)
+    return usage_error("order: --levels %ld is too many, %d are possible", request->levels, most);
   if (request->t_end == 0.0) return usage_error("order: --t-end 0 leaves nothing to do");
   if (!isnan(request->h) && !(request->h > 0.0))
-    return usage_error("order: --h %g is not positive; for a study backward in time set --t-end below 0", request->h);
+    return usage_error(
+        "order: --h %g is not positive; for a study backward in time set --t-end below 0",
+        request->h);
   if (!isnan(request->ratio) && !(request->ratio >= 1.01 && request->ratio <= 10.0))
     return usage_error("order: --ratio %g is not between 1.01 and 10", request->ratio);
-  if (pacing_check("order", &request->how) != DONE || words_distinct("order", "method", &request->methods) != DONE) return USAGE;
+  if (pacing_check("order", &request->how) != DONE ||
+      words_distinct("order", "method", &request->methods) != DONE)
+    return USAGE;
   const named_file files[] = {{"csv", request->csv}, {"plot", request->plot}};
-  int code = request->judged_by != NULL ? judge_read("order: --judge", request->judged_by, &request->judge) : DONE;
+  int code = request->judged_by != NULL
+                 ? judge_read("order: --judge", request->judged_by, &request->judge)
+                 : DONE;
   if (code == DONE) code = outputs_plot("order", "plot", request->plot);
   if (code == DONE) code = scene_spared("order", name, 2, files);
   if (code == DONE) code = outputs_distinct("order", 2, files);
@@ -269,37 +253,60 @@ static int check_request(order_request *request, const char *name)
 }
 
 static const char *const details[] = {
-    "Columns: method,problem,h,steps,error,slope,energy_error,cpu_seconds,residuals,jacobians,factorizations.\n"
+    "Columns: "
+    "method,problem,h,steps,error,slope,energy_error,cpu_seconds,residuals,jacobians,"
+    "factorizations.\n"
     "  error         largest error of a coordinate at the end, against the judge\n"
-    "  slope         log(error ratio) / log(step ratio) from the level before; empty at the first level\n"
-    "  energy_error  largest |energy - energy at the start| over the run (an untimed run of its own)\n"
+    "  slope         log(error ratio) / log(step ratio) from the level before; empty at the first "
+    "level\n"
+    "  energy_error  largest |energy - energy at the start| over the run (an untimed run of its "
+    "own)\n"
     "  cpu_seconds   process time of one run (short ones are repeated until 0.02 s have passed)\n"
-    "  the rest      counted by the library in one run; of problems with rotations and directions there is one more,\n"
+    "  the rest      counted by the library in one run; of problems with rotations and directions "
+    "there is one more,\n"
     "  distance      largest distance over the run of R from the nearest rotation, or ||q| - 1|\n",
-    "The judge is the problem's exact solution; or its stored quadruple-precision result, if parameters and end are\n"
-    "the problem's own; or whoever states the smaller error: IDA of SUNDIALS, which shares no code with the methods, run\n"
-    "at two tolerances, or two runs of high degree, of which IDA remains the witness. --judge chooses: exact, stored,\n"
-    "ida or runs (see dvi bench --help). An error counts if it is above the floor: ten times the judge's own error, and\n"
-    "ten times what a change of the start in its last digit does to the end. It must also be below 1 % of the solution.\n"
-    "The order is fitted to the longest run of 4 or more such levels over which the slope is settled: the same within\n"
-    "0.1 in the coarser and the finer half, with a standard error of 0.05 at most. The claimed order has no part in that\n"
-    "choice. Exit code 0: the fitted order is the claimed one within 0.2. Exit code 3: it is not (MISSED), or there is\n"
+    "The judge is the problem's exact solution; or its stored quadruple-precision result, if "
+    "parameters and end are\n"
+    "the problem's own; or whoever states the smaller error: IDA of SUNDIALS, which shares no code "
+    "with the methods, run\n"
+    "at two tolerances, or two runs of high degree, of which IDA remains the witness. --judge "
+    "chooses: exact, stored,\n"
+    "ida or runs (see dvi bench --help). An error counts if it is above the floor: ten times the "
+    "judge's own error, and\n"
+    "ten times what a change of the start in its last digit does to the end. It must also be below "
+    "1 % of the solution.\n"
+    "The order is fitted to the longest run of 4 or more such levels over which the slope is "
+    "settled: the same within\n"
+    "0.1 in the coarser and the finer half, with a standard error of 0.05 at most. The claimed "
+    "order has no part in that\n"
+    "choice. Exit code 0: the fitted order is the claimed one within 0.2. Exit code 3: it is not "
+    "(MISSED), or there is\n"
     "no such run (not decided); the cause is said, and what to try.\n",
-    "Where the span does not show the claimed order, as it mostly is from order 10 or 12 on, galerkin on Lagrangians of\n"
-    "R^n is judged by single steps in quadruple precision, from 5 points of the motion, by the same rule: expressions (a\n"
-    "scene's, or those of the catalogue's scenes) are evaluated with 113 bits, and the library's own steps must be these\n"
-    "to 1 % of an error that doubles show. A table of its own has them; the CSV has the span alone.\n",
-    "The first step is searched up to 2^17 steps to the end, the last level has up to 2^22; --h goes beyond. A span\n"
-    "too short for the levels of a high order is lengthened, unless a stored result would be lost by that.\n",
-    "With --time-transform or --step-control h is a step of the other time, whose span is measured by a run of its own; the\n"
+    "Where the span does not show the claimed order, as it mostly is from order 10 or 12 on, "
+    "galerkin on Lagrangians of\n"
+    "R^n is judged by single steps in quadruple precision, from 5 points of the motion, by the "
+    "same rule: expressions (a\n"
+    "scene's, or those of the catalogue's scenes) are evaluated with 113 bits, and the library's "
+    "own steps must be these\n"
+    "to 1 % of an error that doubles show. A table of its own has them; the CSV has the span "
+    "alone.\n",
+    "The first step is searched up to 2^17 steps to the end, the last level has up to 2^22; --h "
+    "goes beyond. A span\n"
+    "too short for the levels of a high order is lengthened, unless a stored result would be lost "
+    "by that.\n",
+    "With --time-transform or --step-control h is a step of the other time, whose span is measured "
+    "by a run of its own; the\n"
     "number of steps is what that span gives, and the last one is shortened to end at t_end.\n",
     "Examples:\n"
     "  dvi order kepler --method galerkin:degree=2\n"
     "  dvi order cart.yaml --plot order.svg\n"
-    "  dvi order pendulum --method verlet --method composition:order=6,base=verlet --plot order.svg\n"
+    "  dvi order pendulum --method verlet --method composition:order=6,base=verlet --plot "
+    "order.svg\n"
     "  dvi order kepler --set e=0.9 --method galerkin:degree=2 --time-transform distance\n"
-    "  dvi order pendulum-3d --method lie-verlet --method lie-rk --plot lie.svg --axes h:energy_error --axes h:distance\n"
-    "  dvi order toda --method galerkin:degree=3,quadrature=lobatto,nodes=3 --h 0.5 --levels 8 --csv order.csv\n",
+    "  dvi order pendulum-3d --method lie-verlet --method lie-rk --plot lie.svg --axes "
+    "h:energy_error --axes h:distance\n"
+    "  dvi order toda --method galerkin:degree=3,quadrature=lobatto,nodes=3 --h 0.5 --levels 8 "
+    "--csv order.csv\n",
     NULL,
 };
 
@@ -310,31 +317,60 @@ int order_command(int argc, char **argv)
       {.name = "method",
        .words = &r.methods,
        .value = "SPEC",
-       .help = "a method: name[:key=value,...]; may be repeated; left out: the scene's"},
-      {.name = "h", .number = &r.h, .value = "H", .help = "first step (T/H is rounded to whole steps); left out: searched"},
-      {.name = "levels", .count = &r.levels, .value = "N", .help = "how many step sizes; left out: 6, or 12 from order 8"},
-      {.name = "ratio", .number = &r.ratio, .value = "R", .help = "of neighbouring steps; left out: 2, or less for high orders"},
-      {.name = "t-end", .number = &r.t_end, .value = "T", .help = "the end; left out: the problem's for order studies"},
+       .help = "a method: name[:key=value,...]; may be repeated; default: the scene's"},
+      {.name = "h",
+       .number = &r.h,
+       .value = "H",
+       .help = "first step (T/H is rounded to whole steps); default: searched"},
+      {.name = "levels",
+       .count = &r.levels,
+       .value = "N",
+       .help = "how many step sizes; default: 6, or 12 from order 8"},
+      {.name = "ratio",
+       .number = &r.ratio,
+       .value = "R",
+       .help = "of neighbouring steps; default: 2, or less for high orders"},
+      {.name = "t-end",
+       .number = &r.t_end,
+       .value = "T",
+       .help = "the end; default: the problem's for order studies"},
       {.name = "time-transform",
        .word = &r.how.transform,
        .value = "MONITOR",
-       .help = "steps of equal length in another time: distance[:power=P], arclength or acceleration[:power=P]"},
+       .help = "steps of equal length in another time: distance[:power=P], arclength or "
+               "acceleration[:power=P]"},
       {.name = "step-control",
        .word = &r.how.control,
        .value = "MONITOR",
        .help = "steps that follow a monitor reversibly: cheaper, symmetric, not symplectic"},
-      {.name = "judge", .word = &r.judged_by, .value = "WHO", .help = "auto, exact, stored, ida or runs; left out: auto"},
-      {.name = "set", .words = &r.settings, .value = "NAME=VALUE", .help = "set a parameter of the problem; may be repeated"},
-      {.name = "csv", .word = &r.csv, .value = "-|FILE", .help = "write the table as CSV; -: to standard output, words to stderr"},
-      {.name = "plot", .word = &r.plot, .value = "FILE.svg", .help = "draw error against step, with the claimed slopes"},
-      {.name = "axes", .words = &r.asked, .value = "X:Y", .help = "draw these columns of the table instead; may be repeated"},
+      {.name = "judge",
+       .word = &r.judged_by,
+       .value = "WHO",
+       .help = "auto, exact, stored, ida or runs; default: auto"},
+      {.name = "set",
+       .words = &r.settings,
+       .value = "NAME=VALUE",
+       .help = "set a parameter of the problem; may be repeated"},
+      {.name = "csv",
+       .word = &r.csv,
+       .value = "-|FILE",
+       .help = "write the table as CSV; -: to standard output, words to stderr"},
+      {.name = "plot",
+       .word = &r.plot,
+       .value = "FILE.svg",
+       .help = "draw error against step, with the claimed slopes"},
+      {.name = "axes",
+       .words = &r.asked,
+       .value = "X:Y",
+       .help = "draw these columns of the table instead; may be repeated"},
       {.name = NULL},
   };
   const command_line command = {
       .name = "order",
       .synopsis = "PROBLEM|SCENE.yaml [--method SPEC ...] [OPTIONS]",
       .operand = "PROBLEM",
-      .summary = "Measure the order of methods: the error at the end for a sequence of steps, and the slope fitted to it.\n",
+      .summary = "Measure the order of methods: the error at the end for a sequence of steps, and "
+                 "the slope fitted to it.\n",
       .options = options,
       .details = details,
   };
@@ -346,7 +382,8 @@ int order_command(int argc, char **argv)
   problem *scene;
   code = open_problem(name, &r.settings, &scene);
   if (code != DONE) return code;
-  code = axes_read("order", &r.asked, r.plot, "h:error", order_columns(scene), &r.axes);
+  order_columns(motion_words(scene), r.columns);
+  code = axes_read("order", &r.asked, r.plot, "h:error", r.columns, &r.axes);
   if (code == DONE) code = wish_method(&r, scene);
   if (code == DONE) code = check_step(&r, scene);
   if (code == DONE) code = check_methods(&r, scene);

@@ -62,8 +62,9 @@ typedef struct arrays {
 
 static bool allocate(arrays *a, size_t n)
 {
-  *a = (arrays){calloc(n, sizeof(double)), calloc(n, sizeof(double)),  calloc(n, sizeof(double)), calloc(n, sizeof(double)),
-                calloc(n, sizeof(double)), calloc(n + 1, sizeof(int)), calloc(n, sizeof(int))};
+  *a = (arrays){calloc(n, sizeof(double)), calloc(n, sizeof(double)), calloc(n, sizeof(double)),
+                calloc(n, sizeof(double)), calloc(n, sizeof(double)), calloc(n + 1, sizeof(int)),
+                calloc(n, sizeof(int))};
   if (a->q0 && a->q1 && a->p0 && a->signs && a->symmetry && a->start && a->row) return true;
   complain("out of memory");
   return false;
@@ -80,7 +81,8 @@ static void release(arrays *a)
   free(a->row);
 }
 
-/* "3,4,-1,-2": coordinate i of the last node is coordinate 3, 4, .. of the first one, or its negative. One entry in each column of the matrix. */
+/* "3,4,-1,-2": coordinate i of the last node is coordinate 3, 4, .. of the first one, or its
+ * negative. One entry in each column of the matrix. */
 static int read_symmetry(const char *text, const problem *scene, arrays *a)
 {
   const int code = list_read("path: --symmetry", text, scene, a->signs);
@@ -88,9 +90,11 @@ static int read_symmetry(const char *text, const problem *scene, arrays *a)
   for (int i = 0; i < scene->nq; i++) {
     const double place = fabs(a->signs[i]);
     if (!(place >= 1.0 && place <= scene->nq && place == floor(place)))
-      return usage_error("path: --symmetry: %g is no coordinate; there are 1 to %d", a->signs[i], scene->nq);
+      return usage_error("path: --symmetry: %g is no coordinate; there are 1 to %d", a->signs[i],
+                         scene->nq);
     const int column = (int)place - 1;
-    if (a->symmetry[column] != 0.0) return usage_error("path: --symmetry names coordinate %d twice", column + 1);
+    if (a->symmetry[column] != 0.0)
+      return usage_error("path: --symmetry names coordinate %d twice", column + 1);
     a->symmetry[column] = copysign(1.0, a->signs[i]);
     a->row[column] = i;
   }
@@ -99,14 +103,16 @@ static int read_symmetry(const char *text, const problem *scene, arrays *a)
 }
 
 /* Given on the command line, else by the guess, else by the problem. */
-static int read_end(const char *where, const char *text, const problem *scene, const double *otherwise, double *end)
+static int read_end(const char *where, const char *text, const problem *scene,
+                    const double *otherwise, double *end)
 {
   if (text != NULL) return list_read(where, text, scene, end);
   memcpy(end, otherwise, (size_t)scene->nq * sizeof *end);
   return DONE;
 }
 
-static int read_ends(const path_request *request, const problem *scene, const points *guess, dvi_path_options *options, arrays *a)
+static int read_ends(const path_request *request, const problem *scene, const points *guess,
+                     dvi_path_options *options, arrays *a)
 {
   const bool guessed = request->guess != NULL, fixed = options->ends == DVI_ENDS_FIXED;
   int code = DONE;
@@ -117,16 +123,20 @@ static int read_ends(const path_request *request, const problem *scene, const po
     return read_symmetry(request->symmetry, scene, a);
   }
   options->q0 = a->q0;
-  code = read_end("path: --from", request->from, scene, guessed && fixed ? guess->q : scene->q, a->q0);
+  code = read_end("path: --from", request->from, scene, guessed && fixed ? guess->q : scene->q,
+                  a->q0);
   if (fixed) {
-    if (request->to == NULL && !guessed) return usage_error("path: --ends fixed needs --to, or --guess FILE that leads there");
+    if (request->to == NULL && !guessed)
+      return usage_error("path: --ends fixed needs --to, or --guess FILE that leads there");
     options->q1 = a->q1;
     if (code == DONE)
-      code = read_end("path: --to", request->to, scene, guessed ? guess->q + (size_t)(guess->count - 1) * (size_t)scene->nq : NULL,
+      code = read_end("path: --to", request->to, scene,
+                      guessed ? guess->q + (size_t)(guess->count - 1) * (size_t)scene->nq : NULL,
                       a->q1);
   } else {
     options->p0 = a->p0;
-    if (code == DONE) code = read_end("path: --momentum", request->momentum, scene, scene->p, a->p0);
+    if (code == DONE)
+      code = read_end("path: --momentum", request->momentum, scene, scene->p, a->p0);
   }
   return code;
 }
@@ -139,7 +149,8 @@ static int read_energy(const path_request *request, const problem *scene, dvi_pa
   if (!isnan(request->energy)) return DONE;
   double *invariant = calloc((size_t)dvi_system_invariant_count(scene->system), sizeof *invariant);
   if (invariant == NULL) return complain("out of memory"), FAILED;
-  const dvi_status status = dvi_system_invariants(scene->system, 0.0, scene->q, scene->p, invariant);
+  const dvi_status status = dvi_system_invariants(scene->system, 0.0, scene->q, scene->p,
+                                                  invariant);
   options->energy = invariant[0];
   free(invariant);
   return status == DVI_OK ? DONE : library_error(status);
@@ -148,7 +159,8 @@ static int read_energy(const path_request *request, const problem *scene, dvi_pa
 /* ---- guesses ---- */
 
 /* As many steps forward by the method itself, from the start of the options or the problem. */
-static int guess_by_steps(const dvi_path_options *o, const char *method, const problem *scene, points *guess)
+static int guess_by_steps(const dvi_path_options *o, const char *method, const problem *scene,
+                          points *guess)
 {
   dvi_integrator *integrator = NULL;
   int code = open_integrator(scene, method, &integrator);
@@ -161,13 +173,15 @@ static int guess_by_steps(const dvi_path_options *o, const char *method, const p
     added = points_add(guess, scene->nq, k, dvi_integrator_q(integrator));
   }
   dvi_integrator_destroy(&integrator);
-  if (status != DVI_OK) complain("path: the guess by steps forward fails; give another one with --guess, or take more steps");
+  if (status != DVI_OK)
+    complain("path: the guess by steps forward fails; give another one with --guess, or take more "
+             "steps");
   if (status != DVI_OK) return library_error(status);
   return added ? DONE : FAILED;
 }
 
-static int make_guess(const path_request *request, const dvi_path_options *o, const problem *scene, const points *given,
-                      dvi_path *path)
+static int make_guess(const path_request *request, const dvi_path_options *o, const problem *scene,
+                      const points *given, dvi_path *path)
 {
   points steps = {0};
   int code = DONE;
@@ -187,14 +201,21 @@ static int make_guess(const path_request *request, const dvi_path_options *o, co
 static int create_with(const path_request *request, const points *guess, member *m, arrays *a)
 {
   const problem *scene = m->scene;
-  const double span = !isnan(request->period) ? request->period : !isnan(request->t_end) ? request->t_end : scene->t_end;
-  dvi_path_options options = {.ends = ends_of(request->ends), .steps = (int)request->steps, .span = span, .dimension = scene->nq};
+  const double span = !isnan(request->period)  ? request->period
+                      : !isnan(request->t_end) ? request->t_end
+                                               : scene->t_end;
+  dvi_path_options options = {.ends = ends_of(request->ends),
+                              .steps = (int)request->steps,
+                              .span = span,
+                              .dimension = scene->nq};
   int code = read_ends(request, scene, guess, &options, a);
   if (code == DONE) code = read_energy(request, scene, &options);
   if (code != DONE) return code;
   const dvi_status status = dvi_path_create(scene->system, request->method, &options, &m->path);
   if (status != DVI_OK)
-    return library_error(status) == USAGE || status == DVI_BAD_ARGUMENT || status == DVI_BAD_SIZE ? USAGE : FAILED;
+    return library_error(status) == USAGE || status == DVI_BAD_ARGUMENT || status == DVI_BAD_SIZE
+               ? USAGE
+               : FAILED;
   return make_guess(request, &options, scene, guess, m->path);
 }
 
@@ -207,9 +228,12 @@ static int create(const char *name, const path_request *request, const words *se
   int code = open_problem(name, settings, &m->scene);
   if (code == DONE) code = open_wish("path", m->scene, &own.method);
   if (code == DONE && m->scene->terms->factors != NULL)
-    code = usage_error("path: %s has factors, and paths are found between ends in R^n; dvi run goes forward from its start", name);
+    code = usage_error("path: %s has factors, and paths are found between ends in R^n; dvi run "
+                       "goes forward from its start",
+                       name);
   if (code == DONE && request->guess != NULL) code = points_read(request->guess, m->scene, &guess);
-  if (code == DONE) code = allocate(&a, (size_t)m->scene->nq) ? create_with(&own, &guess, m, &a) : FAILED;
+  if (code == DONE)
+    code = allocate(&a, (size_t)m->scene->nq) ? create_with(&own, &guess, m, &a) : FAILED;
   release(&a);
   points_clear(&guess);
   return code;
@@ -230,11 +254,15 @@ static int read_family(const path_request *request, family *f)
   char first[NAME_SIZE], last[NAME_SIZE], count[NAME_SIZE], rest[2];
   char *end = NULL;
   if (text == NULL) return DONE;
-  if (request->settings.count == WORDS_MAX) return usage_error("path: --set is given too often for --continue");
-  const int fields = sscanf(text, "%63[^=]=%63[^:]:%63[^:]:%63[0-9]%1s", f->name, first, last, count, rest);
+  if (request->settings.count == WORDS_MAX)
+    return usage_error("path: --set is given too often for --continue");
+  const int fields = sscanf(text, "%63[^=]=%63[^:]:%63[^:]:%63[0-9]%1s", f->name, first, last,
+                            count, rest);
   if (fields == 4) f->parts = strtol(count, &end, 10);
-  if (fields != 4 || !parse_number(first, &f->first) || !parse_number(last, &f->last) || f->parts < 1 || f->parts > VALUES_MOST)
-    return usage_error("path: --continue wants NAME=FROM:TO:PARTS with 1 to %d parts, not '%s'", (int)VALUES_MOST, text);
+  if (fields != 4 || !parse_number(first, &f->first) || !parse_number(last, &f->last) ||
+      f->parts < 1 || f->parts > VALUES_MOST)
+    return usage_error("path: --continue wants NAME=FROM:TO:PARTS with 1 to %d parts, not '%s'",
+                       (int)VALUES_MOST, text);
   return DONE;
 }
 
@@ -246,13 +274,14 @@ static int solve(member *m)
 }
 
 /* Member k of the family, guessed along the two before it. */
-static int follow(const char *name, const path_request *request, const family *f, long k, const member *last, const member *before,
-                  member *next)
+static int follow(const char *name, const path_request *request, const family *f, long k,
+                  const member *last, const member *before, member *next)
 {
   char setting[SETTING_SIZE];
   words settings = request->settings;
   if (f->parts > 0) {
-    (void)snprintf(setting, sizeof setting, "%s=%.17g", f->name, f->first + (f->last - f->first) * ((double)k / (double)f->parts));
+    (void)snprintf(setting, sizeof setting, "%s=%.17g", f->name,
+                   f->first + (f->last - f->first) * ((double)k / (double)f->parts));
     settings.word[settings.count++] = setting;
   }
   int code = create(name, request, &settings, next);
@@ -266,7 +295,8 @@ static int follow(const char *name, const path_request *request, const family *f
 }
 
 /* The last member of the family. */
-static int solve_family(const char *name, const path_request *request, const family *f, member *last)
+static int solve_family(const char *name, const path_request *request, const family *f,
+                        member *last)
 {
   member before = {0};
   int code = DONE;
@@ -289,11 +319,13 @@ static void print_variation(const dvi_path_report *r, FILE *stream)
   if (r->zero < 0)
     (void)fprintf(stream, "second variation  not defined for these ends, or not found\n");
   else if (r->negative < 0)
-    (void)fprintf(stream, "second variation  not resolved by these steps: %ld zero, but %d of symmetry; take more steps\n", r->zero,
-                  r->symmetries);
+    (void)fprintf(stream,
+                  "second variation  not resolved by these steps: %ld zero, but %d of symmetry; "
+                  "take more steps\n",
+                  r->zero, r->symmetries);
   else
-    (void)fprintf(stream, "second variation  %s: %ld negative, %ld zero (%d of symmetry)\n", r->negative > 0 ? "saddle" : "minimum",
-                  r->negative, r->zero, r->symmetries);
+    (void)fprintf(stream, "second variation  %s: %ld negative, %ld zero (%d of symmetry)\n",
+                  r->negative > 0 ? "saddle" : "minimum", r->negative, r->zero, r->symmetries);
 }
 
 static void print_spread(const dvi_path_report *r, FILE *stream)
@@ -302,8 +334,10 @@ static void print_spread(const dvi_path_report *r, FILE *stream)
   if (isnan(r->energy_spread))
     (void)fprintf(stream, "energy spread     not defined: the system depends on time\n");
   else
-    (void)fprintf(stream, "energy spread     %.1e, %.1e of the kinetic energy; at most %.1e of it in a step\n", r->energy_spread,
-                  relative, r->energy_jump);
+    (void)fprintf(
+        stream,
+        "energy spread     %.1e, %.1e of the kinetic energy; at most %.1e of it in a step\n",
+        r->energy_spread, relative, r->energy_jump);
 }
 
 static void print_report(const member *m, const path_request *request, FILE *stream)
@@ -311,16 +345,16 @@ static void print_report(const member *m, const path_request *request, FILE *str
   const dvi_path_report *r = &m->report;
   dvi_counters counters;
   dvi_path_counters(m->path, &counters);
-  (void)fprintf(stream, "%s, ends %s, %d steps of %s\n", m->scene->name, request->ends, dvi_path_steps(m->path),
-                dvi_path_method(m->path));
+  (void)fprintf(stream, "%s, ends %s, %d steps of %s\n", m->scene->name, request->ends,
+                dvi_path_steps(m->path), dvi_path_method(m->path));
   (void)fprintf(stream, "action            %.15g\n", r->action);
   if (!isnan(r->energy)) (void)fprintf(stream, "energy            %.15g\n", r->energy);
   print_spread(r, stream);
   (void)fprintf(stream, "span              %.15g\n", r->span);
   (void)fprintf(stream, "gradient          %.1e of the largest momentum\n", r->gradient);
   print_variation(r, stream);
-  (void)fprintf(stream, "solver            %d iterations, %ld factorizations, %ld symbolic\n", r->iterations,
-                counters.factorizations, counters.symbolic);
+  (void)fprintf(stream, "solver            %d iterations, %ld factorizations, %ld symbolic\n",
+                r->iterations, counters.factorizations, counters.symbolic);
 }
 
 static void write_header(const problem *scene, FILE *stream)
@@ -340,13 +374,15 @@ static void write_header(const problem *scene, FILE *stream)
 static dvi_status write_rows(const member *m, double *invariant, FILE *stream)
 {
   for (int k = 0; k <= dvi_path_steps(m->path); k++) {
-    const double t = dvi_path_time(m->path, k), *q = dvi_path_q(m->path, k), *p = dvi_path_p(m->path, k);
+    const double t = dvi_path_time(m->path, k), *q = dvi_path_q(m->path, k),
+                 *p = dvi_path_p(m->path, k);
     const dvi_status status = dvi_system_invariants(m->scene->system, t, q, p, invariant);
     if (status != DVI_OK) return status;
     (void)fprintf(stream, "%.17g", t);
     for (int i = 0; i < m->scene->nq; i++) (void)fprintf(stream, ",%.17g", q[i]);
     for (int i = 0; i < m->scene->nq; i++) (void)fprintf(stream, ",%.17g", p[i]);
-    for (int i = 0; i < dvi_system_invariant_count(m->scene->system); i++) (void)fprintf(stream, ",%.17g", invariant[i]);
+    for (int i = 0; i < dvi_system_invariant_count(m->scene->system); i++)
+      (void)fprintf(stream, ",%.17g", invariant[i]);
     (void)fputc('\n', stream);
   }
   return DVI_OK;
@@ -355,7 +391,8 @@ static dvi_status write_rows(const member *m, double *invariant, FILE *stream)
 static int write_path(const member *m, const char *out)
 {
   whole_file file = {0};
-  double *invariant = calloc((size_t)dvi_system_invariant_count(m->scene->system), sizeof *invariant);
+  double *invariant = calloc((size_t)dvi_system_invariant_count(m->scene->system),
+                             sizeof *invariant);
   int code = invariant != NULL && file_open(&file, out) ? DONE : FAILED;
   if (invariant == NULL) complain("out of memory");
   if (code == DONE) {
@@ -397,37 +434,53 @@ static int check_uses(const path_request *r)
 static int check_request(const path_request *r, const char *name)
 {
   if (r->ends == NULL) return usage_error("path: --ends is missing: fixed, periodic or initial");
-  if (ends_of(r->ends) == 0) return usage_error("path: --ends %s: there are fixed, periodic and initial", r->ends);
+  if (ends_of(r->ends) == 0)
+    return usage_error("path: --ends %s: there are fixed, periodic and initial", r->ends);
   if (r->steps == 0) return usage_error("path: --steps is missing");
   if (r->steps > 0x7fffffff) return usage_error("path: --steps %ld are too many", r->steps);
   const double span = !isnan(r->period) ? r->period : r->t_end;
-  if (span <= 0.0) return usage_error("path: --%s %g is not a positive time", !isnan(r->period) ? "period" : "t-end", span);
+  if (span <= 0.0)
+    return usage_error("path: --%s %g is not a positive time",
+                       !isnan(r->period) ? "period" : "t-end", span);
   const int code = scene_spared("path", name, 1, &(named_file){"out", r->out});
   return code == DONE ? check_uses(r) : code;
 }
 
 static const char *const details[] = {
-    "Ends: fixed asks Hamilton's principle itself: --from and --to are given, everything between is unknown. periodic closes\n"
-    "the path, so that it comes back to its start in position and momentum. initial joins steps forward, from --from with\n"
+    "Ends: fixed asks Hamilton's principle itself: --from and --to are given, everything between "
+    "is unknown. periodic closes\n"
+    "the path, so that it comes back to its start in position and momentum. initial joins steps "
+    "forward, from --from with\n"
     "--momentum, into one system; it gives what dvi run gives.\n",
-    "The guess may be rough: some points, joined by straight lines. Left out: the straight line between fixed ends; else as\n"
-    "many steps forward by the method from the problem's start. Newton's method with line search (KINSOL) leads from there\n"
-    "to a stationary path, which need not be the nearest; dvi says whether the action has a minimum there or a saddle.\n",
+    "The guess may be rough: some points, joined by straight lines. Left out: the straight line "
+    "between fixed ends; else as\n"
+    "many steps forward by the method from the problem's start. Newton's method with line search "
+    "(KINSOL) leads from there\n"
+    "to a stationary path, which need not be the nearest; dvi says whether the action has a "
+    "minimum there or a saddle.\n",
     "Steps that follow a motion keep its energy. A path over which, or in a step of which, it\n"
-    "changes by more than a tenth of the kinetic energy is printed, but not called solved: dvi says\n"
+    "changes by more than a tenth of the kinetic energy is printed, but not called solved: dvi "
+    "says\n"
     "where it changes most and how many steps to try, writes no FILE, and the exit code is 1. A\n"
     "system that depends on time keeps no energy, and is not tested.\n",
-    "--symmetry 3,4,5,6,1,2 says that coordinate 1 of the last node is coordinate 3 of the first one, and so on (-3: its\n"
-    "negative): three bodies in a plane that take each other's places, after one third of the period of the whole.\n"
-    "--free-period finds the period that belongs to an energy. --continue e=0.1:0.9:8 solves at e = 0.1, 0.2, .. 0.9, each\n"
+    "--symmetry 3,4,5,6,1,2 says that coordinate 1 of the last node is coordinate 3 of the first "
+    "one, and so on (-3: its\n"
+    "negative): three bodies in a plane that take each other's places, after one third of the "
+    "period of the whole.\n"
+    "--free-period finds the period that belongs to an energy. --continue e=0.1:0.9:8 solves at e "
+    "= 0.1, 0.2, .. 0.9, each\n"
     "guessed from the two before; the last one is reported.\n",
-    "Columns of FILE: t, the coordinates, their momenta, energy, the other invariants, at the N+1 nodes; a FILE of dvi run or\n"
+    "Columns of FILE: t, the coordinates, their momenta, energy, the other invariants, at the N+1 "
+    "nodes; a FILE of dvi run or\n"
     "dvi path may be the guess of another one.\n",
     "Examples:\n"
-    "  dvi path pendulum --method midpoint --ends fixed --to 2 --t-end 2 --steps 100 --out path.csv\n"
-    "  dvi path kepler --method galerkin:degree=4 --ends fixed --from 1,0 --to=-0.5,1 --t-end 3 --steps 30\n"
+    "  dvi path pendulum --method midpoint --ends fixed --to 2 --t-end 2 --steps 100 --out "
+    "path.csv\n"
+    "  dvi path kepler --method galerkin:degree=4 --ends fixed --from 1,0 --to=-0.5,1 --t-end 3 "
+    "--steps 30\n"
     "  dvi path figure-eight --method galerkin:degree=8 --ends periodic --steps 24\n"
-    "  dvi path figure-eight --method galerkin:degree=8 --ends periodic --symmetry 3,4,5,6,1,2 --period 2.2 --steps 8 \\\n"
+    "  dvi path figure-eight --method galerkin:degree=8 --ends periodic --symmetry 3,4,5,6,1,2 "
+    "--period 2.2 --steps 8 \\\n"
     "    --guess sketch.csv\n",
     NULL,
 };
@@ -438,7 +491,9 @@ static int run(const char *name, const path_request *request)
   member found = {0};
   int code = check_request(request, name);
   if (code == DONE) code = read_family(request, &values);
-  if (code == DONE && request->out != NULL && strcmp(request->out, "-") != 0 && !file_writable(request->out)) return FAILED;
+  if (code == DONE && request->out != NULL && strcmp(request->out, "-") != 0 &&
+      !file_writable(request->out))
+    return FAILED;
   if (code == DONE) code = solve_family(name, request, &values, &found);
   const bool rows_on_output = request->out != NULL && strcmp(request->out, "-") == 0;
   if (code == DONE) events_passed("path", found.scene);
@@ -455,31 +510,65 @@ int path_command(int argc, char **argv)
       {.name = "method",
        .word = &r.method,
        .value = "SPEC",
-       .help = "galerkin, midpoint, trapezoidal, or hp or hamiltonian of types 1 to 3; left out: the scene's"},
+       .help = "galerkin, midpoint, trapezoidal, or hp or hamiltonian of types 1 to 3; default: "
+               "the scene's"},
       {.name = "ends", .word = &r.ends, .value = "KIND", .help = "fixed, periodic or initial"},
       {.name = "steps", .count = &r.steps, .value = "N", .help = "how many steps the path has"},
-      {.name = "t-end", .number = &r.t_end, .value = "T", .help = "the end, from t = 0; left out: the problem's"},
-      {.name = "period", .number = &r.period, .value = "T", .help = "of periodic ends, or its guess; left out: the problem's end"},
+      {.name = "t-end",
+       .number = &r.t_end,
+       .value = "T",
+       .help = "the end, from t = 0; default: the problem's"},
+      {.name = "period",
+       .number = &r.period,
+       .value = "T",
+       .help = "of periodic ends, or its guess; default: the problem's end"},
       {.name = "from",
        .word = &r.from,
        .value = "Q",
-       .help = "the first node, \"1,0.5\"; left out: the problem's or the guess's start"},
-      {.name = "to", .word = &r.to, .value = "Q", .help = "the last node; left out: the guess's end"},
-      {.name = "momentum", .word = &r.momentum, .value = "P", .help = "the first momentum; left out: the problem's"},
-      {.name = "symmetry", .word = &r.symmetry, .value = "LIST", .help = "which coordinate each one ends as; see below"},
-      {.name = "free-period", .flag = &r.free_period, .help = "the period is unknown, the energy is given"},
-      {.name = "energy", .number = &r.energy, .value = "E", .help = "that energy; left out: that of the problem's start"},
-      {.name = "guess", .word = &r.guess, .value = "FILE", .help = "points of a guess: CSV with t and the coordinates"},
-      {.name = "continue", .word = &r.follow, .value = "NAME=FROM:TO:PARTS", .help = "follow the path as a parameter changes"},
-      {.name = "set", .words = &r.settings, .value = "NAME=VALUE", .help = "set a parameter of the problem; may be repeated"},
-      {.name = "out", .word = &r.out, .value = "FILE", .help = "write the nodes there; -: standard output; left out: nowhere"},
+       .help = "the first node, \"1,0.5\"; default: the problem's or the guess's start"},
+      {.name = "to",
+       .word = &r.to,
+       .value = "Q",
+       .help = "the last node; default: the guess's end"},
+      {.name = "momentum",
+       .word = &r.momentum,
+       .value = "P",
+       .help = "the first momentum; default: the problem's"},
+      {.name = "symmetry",
+       .word = &r.symmetry,
+       .value = "LIST",
+       .help = "which coordinate each one ends as; see below"},
+      {.name = "free-period",
+       .flag = &r.free_period,
+       .help = "the period is unknown, the energy is given"},
+      {.name = "energy",
+       .number = &r.energy,
+       .value = "E",
+       .help = "that energy; default: that of the problem's start"},
+      {.name = "guess",
+       .word = &r.guess,
+       .value = "FILE",
+       .help = "points of a guess: CSV with t and the coordinates"},
+      {.name = "continue",
+       .word = &r.follow,
+       .value = "NAME=FROM:TO:PARTS",
+       .help = "follow the path as a parameter changes"},
+      {.name = "set",
+       .words = &r.settings,
+       .value = "NAME=VALUE",
+       .help = "set a parameter of the problem; may be repeated"},
+      {.name = "out",
+       .word = &r.out,
+       .value = "FILE",
+       .help = "write the nodes there; -: standard output; default: nowhere"},
       {.name = NULL},
   };
   const command_line command = {
       .name = "path",
       .synopsis = "PROBLEM|SCENE.yaml [--method SPEC] --ends KIND --steps N [OPTIONS]",
       .operand = "PROBLEM",
-      .summary = "Make the action of a whole path stationary: boundary value problems and periodic orbits.\n",
+      .summary = "Make the action of a whole path stationary: boundary value problems and periodic "
+                 "orbits.\n",
       .options = options,
       .details = details,
   };

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "cli/command.h"
-#include "cli/crew.h"
+#include "cli/parallel.h"
 #include "csv/events.h"
 #include "cli/file.h"
 #include "load/open.h"
@@ -19,7 +19,13 @@
 #include "csv/table.h"
 #include "cli/way.h"
 
-enum { GRID_DEFAULT = 65, POINTS_DEFAULT = 2000, POINTS_MAX = 1000000, NAME_SIZE = 128, TEXT_SIZE = 256 };
+enum {
+  GRID_DEFAULT = 65,
+  POINTS_DEFAULT = 2000,
+  POINTS_MAX = 1000000,
+  NAME_SIZE = 128,
+  TEXT_SIZE = 256
+};
 
 /* Gaps beside a peak are halved to this part of the range. */
 static const double width_default = 1e-5;
@@ -112,8 +118,12 @@ static bool draw(const report *r)
   (void)snprintf(title, sizeof title, "%s by %s", r->model->name, r->task->method);
   (void)snprintf(label, sizeof label, "log10 of the largest error of %s", watched_name(r));
   const plot_curve curve = {.count = count, .x = x, .y = y};
-  const plot_panel panel = {
-      .title = title, .x_label = r->task->name, .y_label = label, .smooth = true, .curves = 1, .curve = &curve};
+  const plot_panel panel = {.title = title,
+                            .x_label = r->task->name,
+                            .y_label = label,
+                            .smooth = true,
+                            .curves = 1,
+                            .curve = &curve};
   const bool good = plot_write(r->request->plot, 1, &panel);
   free(x);
   return good;
@@ -124,7 +134,8 @@ static int largest(const peaks_found *found)
 {
   int at = -1;
   for (int i = 0; i < found->count; i++)
-    if (!isnan(found->point[i].error) && (at < 0 || found->point[i].error > found->point[at].error)) at = i;
+    if (!isnan(found->point[i].error) && (at < 0 || found->point[i].error > found->point[at].error))
+      at = i;
   return at;
 }
 
@@ -132,7 +143,8 @@ static void print_end(const report *r, int end, FILE *stream)
 {
   const resonance_point *point = &r->found->point[end];
   if (r->found->top[end])
-    (void)fprintf(stream, "at the end %.9g of the range the error still rises: %.3e\n", point->value, point->error);
+    (void)fprintf(stream, "at the end %.9g of the range the error still rises: %.3e\n",
+                  point->value, point->error);
 }
 
 static void print_unbounded(const report *r, FILE *stream)
@@ -145,22 +157,24 @@ static void print_unbounded(const report *r, FILE *stream)
     if (count++ == 0) first = point->value;
     last = point->value;
   }
-  if (count > 0) (void)fprintf(stream, "unbounded at %d points, from %.9g to %.9g\n", count, first, last);
+  if (count > 0)
+    (void)fprintf(stream, "unbounded at %d points, from %.9g to %.9g\n", count, first, last);
 }
 
 static void print_all(const report *r, int worst, FILE *stream)
 {
   const peaks_search *search = &r->request->search;
-  (void)fprintf(stream, "Largest errors of %s on %s by %s, to t = %g\n", watched_name(r), r->model->name, r->task->method,
-                r->task->t_end);
+  (void)fprintf(stream, "Largest errors of %s on %s by %s, to t = %g\n", watched_name(r),
+                r->model->name, r->task->method, r->task->t_end);
   print_peaks(r, stream);
   print_end(r, 0, stream);
   print_end(r, r->found->count - 1, stream);
   print_unbounded(r, stream);
-  (void)fprintf(stream, "%d points of %s from %g to %g, begun with %ld", r->found->count, r->task->name, search->from, search->to,
-                search->grid);
+  (void)fprintf(stream, "%d points of %s from %g to %g, begun with %ld", r->found->count,
+                r->task->name, search->from, search->to, search->grid);
   if (worst >= 0)
-    (void)fprintf(stream, "; the largest error is %.3e, at %.9g", r->found->point[worst].error, r->found->point[worst].value);
+    (void)fprintf(stream, "; the largest error is %.3e, at %.9g", r->found->point[worst].error,
+                  r->found->point[worst].value);
   (void)fputc('\n', stream);
 }
 
@@ -169,9 +183,11 @@ static int judge(const report *r, int worst, FILE *stream)
 {
   int failed = 0;
   for (int i = 0; i < r->found->count; i++) failed += r->found->point[i].failed;
-  if (failed > 0) complain("resonance: %d of %d points failed; --csv FILE says which", failed, r->found->count);
+  if (failed > 0)
+    complain("resonance: %d of %d points failed; --csv FILE says which", failed, r->found->count);
   if (!r->found->complete)
-    complain("resonance: %d points do not find all peaks to %g; give more --points, a larger --width, or a smaller range",
+    complain("resonance: %d points do not find all peaks to %g; give more --points, a larger "
+             "--width, or a smaller range",
              r->found->count, r->request->search.width);
   if (failed > 0 || !r->found->complete) return FAILED;
   if (isnan(r->request->bound)) return DONE;
@@ -198,14 +214,18 @@ static int read_range(resonance_request *request)
   const char *text = request->varied;
   peaks_search *search = &request->search;
   if (text == NULL)
-    return usage_error("resonance: --sweep NAME=FROM:TO is missing: which parameter varies, and between which values");
+    return usage_error("resonance: --sweep NAME=FROM:TO is missing: which parameter varies, and "
+                       "between which values");
   (void)snprintf(request->name, sizeof request->name, "%s", text);
   char *from = strchr(request->name, '='), *to = strchr(request->name, ':');
   if (strlen(text) >= NAME_SIZE || from == NULL || to == NULL || from == request->name || to < from)
     return usage_error("resonance: --sweep wants NAME=FROM:TO, not '%s'", text);
   *from++ = *to++ = '\0';
-  if (!parse_number(from, &search->from) || !parse_number(to, &search->to) || !(search->from < search->to))
-    return usage_error("resonance: --sweep %s: two finite numbers are wanted, the first one less than the other", text);
+  if (!parse_number(from, &search->from) || !parse_number(to, &search->to) ||
+      !(search->from < search->to))
+    return usage_error(
+        "resonance: --sweep %s: two finite numbers are wanted, the first one less than the other",
+        text);
   return DONE;
 }
 
@@ -214,8 +234,10 @@ static int check_settings(const words *settings, const char *name)
 {
   if (settings->count == WORDS_MAX) return usage_error("resonance: --set is given too often");
   for (int i = 0; i < settings->count; i++)
-    if (strncmp(settings->word[i], name, strlen(name)) == 0 && settings->word[i][strlen(name)] == '=')
-      return usage_error("resonance: --set %s: --sweep varies it; leave out one of them", settings->word[i]);
+    if (strncmp(settings->word[i], name, strlen(name)) == 0 &&
+        settings->word[i][strlen(name)] == '=')
+      return usage_error("resonance: --set %s: --sweep varies it; leave out one of them",
+                         settings->word[i]);
   return DONE;
 }
 
@@ -225,16 +247,22 @@ static int complete_search(resonance_request *request)
   const double range = search->to - search->from;
   search->grid = request->grid > 0 ? request->grid : GRID_DEFAULT;
   search->most = request->points > 0 ? request->points : POINTS_DEFAULT;
-  search->threads = request->threads > 0 ? request->threads : crew_cores();
-  if (!isfinite(range * (double)search->grid)) return usage_error("resonance: --sweep %s: the range is too wide", request->varied);
+  search->threads = request->threads > 0 ? request->threads : parallel_cores();
+  if (!isfinite(range * (double)search->grid))
+    return usage_error("resonance: --sweep %s: the range is too wide", request->varied);
   search->width = isnan(request->width) ? width_default * range : request->width;
-  if (search->grid < 3) return usage_error("resonance: --grid %ld is too few, a peak needs 3", search->grid);
-  if (search->most > POINTS_MAX) return usage_error("resonance: --points: %d at most", (int)POINTS_MAX);
+  if (search->grid < 3)
+    return usage_error("resonance: --grid %ld is too few, a peak needs 3", search->grid);
+  if (search->most > POINTS_MAX)
+    return usage_error("resonance: --points: %d at most", (int)POINTS_MAX);
   if (search->grid > search->most)
-    return usage_error("resonance: --grid %ld is more than the %ld of --points", search->grid, search->most);
-  if (search->threads > CREW_MAX) return usage_error("resonance: at most %d threads", (int)CREW_MAX);
+    return usage_error("resonance: --grid %ld is more than the %ld of --points", search->grid,
+                       search->most);
+  if (search->threads > THREADS_MAX)
+    return usage_error("resonance: at most %d threads", (int)THREADS_MAX);
   if (!(search->width >= 1e-13 * fmax(fabs(search->from), fabs(search->to))))
-    return usage_error("resonance: --width %g is below what numbers near %g can tell apart", search->width, search->to);
+    return usage_error("resonance: --width %g is below what numbers near %g can tell apart",
+                       search->width, search->to);
   return DONE;
 }
 
@@ -267,7 +295,8 @@ static int find_varied(const problem *model, resonance_task *task)
     if (strcmp(p->name, task->name) == 0) return DONE;
   task->steps_vary = strcmp(task->name, "h") == 0;
   if (task->steps_vary) return DONE;
-  return usage_error("resonance: %s has no parameter '%s' that could be swept%s", model->name, task->name,
+  return usage_error("resonance: %s has no parameter '%s' that could be swept%s", model->name,
+                     task->name,
                      suggestion(task->name, parameter_at, model->parameter, hint, sizeof hint));
 }
 
@@ -276,11 +305,13 @@ static int find_watched(const problem *model, const char *name, resonance_task *
   const int count = dvi_system_invariant_count(model->system);
   for (task->watched = 0; name != NULL && task->watched < count; task->watched++)
     if (strcmp(dvi_system_invariant_name(model->system, task->watched), name) == 0) return DONE;
-  return name == NULL ? DONE : usage_error("resonance: %s has no invariant '%s'", model->name, name);
+  return name == NULL ? DONE
+                      : usage_error("resonance: %s has no invariant '%s'", model->name, name);
 }
 
 /* What is wrong at all points is told before the first one. */
-static int complete_task(const resonance_request *request, const problem *model, resonance_task *task)
+static int complete_task(const resonance_request *request, const problem *model,
+                         resonance_task *task)
 {
   dvi_integrator *integrator = NULL;
   int code = find_varied(model, task);
@@ -290,18 +321,22 @@ static int complete_task(const resonance_request *request, const problem *model,
   dvi_integrator_destroy(&integrator);
   if (code != DONE) return code;
   if (isnan(task->t_end)) task->t_end = model->t_end;
-  if (task->steps_vary && !isnan(task->h)) return usage_error("resonance: --h is what --sweep h varies; leave out one of them");
+  if (task->steps_vary && !isnan(task->h))
+    return usage_error("resonance: --h is what --sweep h varies; leave out one of them");
   if (isnan(task->h)) task->h = copysign(model->h, task->t_end);
   const double t_end = task->t_end;
   if (t_end == 0.0) return usage_error("resonance: --t-end 0 leaves nothing to run");
-  code = way_check("resonance", task->steps_vary ? request->search.from : task->h, t_end, t_end, true);
-  if (code == DONE && task->steps_vary) code = way_check("resonance", request->search.to, t_end, t_end, true);
+  code = way_check("resonance", task->steps_vary ? request->search.from : task->h, t_end, t_end,
+                   true);
+  if (code == DONE && task->steps_vary)
+    code = way_check("resonance", request->search.to, t_end, t_end, true);
   if (code != DONE) return code;
   events_passed("resonance", model);
   return DONE;
 }
 
-static int search_peaks(const resonance_request *request, const problem *model, const resonance_task *task)
+static int search_peaks(const resonance_request *request, const problem *model,
+                        const resonance_task *task)
 {
   peaks_found found;
   const report r = {.task = task, .request = request, .model = model, .found = &found};
@@ -324,24 +359,37 @@ static int run_request(resonance_request *request, resonance_task *task)
 }
 
 static const char *const details[] = {
-    "The error of a run is the largest change of the energy, or of the invariant that --watch names, over all its steps, divided\n"
-    "by its size at the start unless that is 0. The search begins with --grid even points. A point is the top of a peak if its\n"
-    "error is more than twice the least ones on both sides, before larger errors or the range's end; those up to 1e-12 count as\n"
-    "1e-12. Gaps beside a top are halved, and so are gaps over which the error changes more than tenfold, until they are no\n"
-    "wider than --width. A peak is missed if no point of the first grid is raised by it: errors near a resonance fall off as\n"
-    "the inverse of the distance from it, so a few points between neighbouring ones are enough, however narrow they are.\n",
-    "Printed for each peak: the value; within what distance its top lies; status; error; growth, the rate of the error's "
+    "The error of a run is the largest change of the energy, or of the invariant that --watch "
+    "names, over all its steps, divided\n"
+    "by its size at the start unless that is 0. The search begins with --grid even points. A point "
+    "is the top of a peak if its\n"
+    "error is more than twice the least ones on both sides, before larger errors or the range's "
+    "end; those up to 1e-12 count as\n"
+    "1e-12. Gaps beside a top are halved, and so are gaps over which the error changes more than "
+    "tenfold, until they are no\n"
+    "wider than --width. A peak is missed if no point of the first grid is raised by it: errors "
+    "near a resonance fall off as\n"
+    "the inverse of the distance from it, so a few points between neighbouring ones are enough, "
+    "however narrow they are.\n",
+    "Printed for each peak: the value; within what distance its top lies; status; error; growth, "
+    "the rate of the error's "
     "logarithm\n"
-    "over the last half to three quarters of the run. --csv has all points; its columns: the parameter, status (DVI_OK; "
+    "over the last half to three quarters of the run. --csv has all points; its columns: the "
+    "parameter, status (DVI_OK; "
     "unbounded,\n"
-    "where the invariant moved by 1e30 times its start and the run was ended; why it failed; or refused, where the problem cannot\n"
+    "where the invariant moved by 1e30 times its start and the run was ended; why it failed; or "
+    "refused, where the problem cannot\n"
     "be made), steps, t, error, growth. The results do not depend on the number of threads.\n",
-    "Exit code 0: done, and all errors are within --bound; 1: points failed, or --points did not suffice; 3: the bound is "
+    "Exit code 0: done, and all errors are within --bound; 1: points failed, or --points did not "
+    "suffice; 3: the bound is "
     "missed.\n",
     "Examples:\n"
-    "  dvi resonance oscillators --method respa:substeps=100 --h 0.1 --t-end 1000 --sweep omega=1:140 --plot respa.svg\n"
-    "  dvi resonance oscillators --method imex --h 0.1 --t-end 1000 --sweep omega=1:140 --bound 0.003\n"
-    "  dvi resonance fpu --method respa:substeps=exact --t-end 200 --sweep h=0.01:0.2 --watch I --csv steps.csv\n",
+    "  dvi resonance oscillators --method respa:substeps=100 --h 0.1 --t-end 1000 --sweep "
+    "omega=1:140 --plot respa.svg\n"
+    "  dvi resonance oscillators --method imex --h 0.1 --t-end 1000 --sweep omega=1:140 --bound "
+    "0.003\n"
+    "  dvi resonance fpu --method respa:substeps=exact --t-end 200 --sweep h=0.01:0.2 --watch I "
+    "--csv steps.csv\n",
     NULL,
 };
 
@@ -350,26 +398,60 @@ int resonance_command(int argc, char **argv)
   resonance_task task = {.h = (double)NAN, .t_end = (double)NAN};
   resonance_request r = {.width = (double)NAN, .bound = (double)NAN};
   const option options[] = {
-      {.name = "sweep", .word = &r.varied, .value = "NAME=FROM:TO", .help = "the parameter that varies, or h: the step"},
-      {.name = "method", .word = &task.method, .value = "SPEC", .help = "the method; left out: the scene's"},
-      {.name = "h", .number = &task.h, .value = "H", .help = "the step; left out: the problem's"},
-      {.name = "t-end", .number = &task.t_end, .value = "T", .help = "the end, from t = 0; left out: the problem's"},
-      {.name = "set", .words = &task.settings, .value = "NAME=VALUE", .help = "set another parameter; may be repeated"},
-      {.name = "watch", .word = &r.watched, .value = "NAME", .help = "the invariant whose change counts; left out: energy"},
-      {.name = "grid", .count = &r.grid, .value = "N", .help = "how many points to begin with; left out: 65"},
-      {.name = "width", .number = &r.width, .value = "W", .help = "to find peaks to; left out: 1e-5 of the range"},
-      {.name = "points", .count = &r.points, .value = "N", .help = "how many points at most; left out: 2000"},
+      {.name = "sweep",
+       .word = &r.varied,
+       .value = "NAME=FROM:TO",
+       .help = "the parameter that varies, or h: the step"},
+      {.name = "method",
+       .word = &task.method,
+       .value = "SPEC",
+       .help = "the method; default: the scene's"},
+      {.name = "h", .number = &task.h, .value = "H", .help = "the step; default: the problem's"},
+      {.name = "t-end",
+       .number = &task.t_end,
+       .value = "T",
+       .help = "the end, from t = 0; default: the problem's"},
+      {.name = "set",
+       .words = &task.settings,
+       .value = "NAME=VALUE",
+       .help = "set another parameter; may be repeated"},
+      {.name = "watch",
+       .word = &r.watched,
+       .value = "NAME",
+       .help = "the invariant whose change counts; default: energy"},
+      {.name = "grid",
+       .count = &r.grid,
+       .value = "N",
+       .help = "how many points to begin with; default: 65"},
+      {.name = "width",
+       .number = &r.width,
+       .value = "W",
+       .help = "to find peaks to; default: 1e-5 of the range"},
+      {.name = "points",
+       .count = &r.points,
+       .value = "N",
+       .help = "how many points at most; default: 2000"},
       {.name = "bound", .number = &r.bound, .value = "B", .help = "check that no error is larger"},
-      {.name = "threads", .count = &r.threads, .value = "N", .help = "runs at a time; left out: as many as there are cores"},
-      {.name = "csv", .word = &r.csv, .value = "-|FILE", .help = "write all points as CSV; -: to standard output, words to stderr"},
-      {.name = "plot", .word = &r.plot, .value = "FILE.svg", .help = "draw the errors against the parameter"},
+      {.name = "threads",
+       .count = &r.threads,
+       .value = "N",
+       .help = "runs at a time; default: as many as there are cores"},
+      {.name = "csv",
+       .word = &r.csv,
+       .value = "-|FILE",
+       .help = "write all points as CSV; -: to standard output, words to stderr"},
+      {.name = "plot",
+       .word = &r.plot,
+       .value = "FILE.svg",
+       .help = "draw the errors against the parameter"},
       {.name = NULL},
   };
   const command_line command = {
       .name = "resonance",
       .synopsis = "PROBLEM --sweep NAME=FROM:TO [OPTIONS]",
       .operand = "PROBLEM",
-      .summary = "Find the values of a parameter at which a method lets an invariant grow: many runs on all cores, ever closer to "
+      .summary = "Find the values of a parameter at which a method lets an invariant grow: many "
+                 "runs on all cores, ever closer to "
                  "each peak\n"
                  "of the error.\n",
       .options = options,

@@ -15,12 +15,13 @@
 #include "watch/run_request.h"
 #include "load/scene.h"
 #include "cli/signals.h"
-#include "watch/trust.h"
+#include "study/trust.h"
 #include "watch/verify.h"
 #include "cli/way.h"
 
 /* Before the first step no file is open: a signal ends the process at once. */
-static const char ended_before[] = "dvi: run: a signal ended the run before its first step; nothing was written\n";
+static const char ended_before[] =
+    "dvi: run: a signal ended the run before its first step; nothing was written\n";
 
 static bool has_constraint(const problem *scene)
 {
@@ -41,22 +42,28 @@ static bool parse_momenta(const char *text, int n, double *p)
 static int place_momenta(const run_request *request, problem *scene)
 {
   if (request->project && !has_constraint(scene))
-    return usage_error("run: --project is for problems with a constraint, p = alpha(q) or phi(q,p) = 0; %s has none", scene->name);
+    return usage_error("run: --project is for problems with a constraint, p = alpha(q) or phi(q,p) "
+                       "= 0; %s has none",
+                       scene->name);
   if (request->momenta == NULL || parse_momenta(request->momenta, scene->nv, scene->p)) return DONE;
-  return usage_error("run: --momenta wants %d finite numbers with commas between them, not '%s'", scene->nv, request->momenta);
+  return usage_error("run: --momenta wants %d finite numbers with commas between them, not '%s'",
+                     scene->nv, request->momenta);
 }
 
 static int check_events(const run_request *request, const problem *scene)
 {
   if (request->events == NULL || events_count(scene) > 0) return DONE;
-  return usage_error("run: --events: %s has none; a scene declares them in its section events", scene->name);
+  return usage_error("run: --events: %s has none; a scene declares them in its section events",
+                     scene->name);
 }
 
 static bool place(const run_request *request, const problem *scene, dvi_integrator *integrator)
 {
   const dvi_start_options options = {.project = request->project};
-  const dvi_status status = request->resume != NULL ? dvi_integrator_restore(integrator, request->resume)
-                                                    : dvi_integrator_start_with(integrator, 0.0, scene->q, scene->p, &options);
+  const dvi_status status = request->resume != NULL
+                                ? dvi_integrator_restore(integrator, request->resume)
+                                : dvi_integrator_start_with(integrator, 0.0, scene->q, scene->p,
+                                                            &options);
   if (status == DVI_OK) return true;
   (void)library_error(status);
   return false;
@@ -81,10 +88,11 @@ static int complete(run_request *request, const problem *scene, double t)
   if (isnan(request->t_end)) request->t_end = scene->t_end;
   const double way = way_to_end(t, request->t_end);
   if (is_past(request, t, way))
-    return usage_error("run: '%s' stands at t = %.17g, past --t-end %g; --h %g would lead back", request->resume, t, request->t_end,
-                       copysign(scene->h, way));
+    return usage_error("run: '%s' stands at t = %.17g, past --t-end %g; --h %g would lead back",
+                       request->resume, t, request->t_end, copysign(scene->h, way));
   if (isnan(request->h)) request->h = way < 0.0 ? -scene->h : scene->h;
-  return way_check("run", request->h, way, request->t_end, request->how.transform == NULL && request->how.control == NULL);
+  return way_check("run", request->h, way, request->t_end,
+                   request->how.transform == NULL && request->how.control == NULL);
 }
 
 static int run(run_request *request, const problem *scene)
@@ -130,18 +138,24 @@ static int check_verify(const run_request *request)
                                {"resume", request->resume},
                                {"plot", request->plot}};
   if (!request->verify) {
-    if (request->digits > 0) return usage_error("run: --digits %ld is for --verify, which finds digits", request->digits);
-    return request->csv != NULL ? usage_error("run: --csv is for the table of --verify; rows go to --out FILE") : DONE;
+    if (request->digits > 0)
+      return usage_error("run: --digits %ld is for --verify, which finds digits", request->digits);
+    return request->csv != NULL
+               ? usage_error("run: --csv is for the table of --verify; rows go to --out FILE")
+               : DONE;
   }
   for (size_t k = 0; k < sizeof others / sizeof *others; k++)
     if (others[k].path != NULL && !is_stream(others[k].path))
-      return usage_error("run: --verify runs the job several times and writes its own table; leave out --%s", others[k].option);
+      return usage_error(
+          "run: --verify runs the job several times and writes its own table; leave out --%s",
+          others[k].option);
   if (request->every > 0 || request->alarms.count > 0)
     return usage_error("run: --verify has one row, the last one, and no alarms; leave out --%s",
                        request->every > 0 ? "every" : "alarm");
-  return request->digits <= TRUST_DIGITS_MOST ? DONE
-                                              : usage_error("run: --digits %ld: at most %d can be found in double precision",
-                                                            request->digits, (int)TRUST_DIGITS_MOST);
+  return request->digits <= TRUST_DIGITS_MOST
+             ? DONE
+             : usage_error("run: --digits %ld: at most %d can be found in double precision",
+                           request->digits, (int)TRUST_DIGITS_MOST);
 }
 
 static int check_request(const run_request *request, const char *name)
@@ -152,11 +166,13 @@ static int check_request(const run_request *request, const char *name)
   if (request->resume != NULL && (request->momenta != NULL || request->project))
     return usage_error("run: --momenta and --project are for the start, which --resume replaces");
   if (request->every > 0 && request->final)
-    return usage_error("run: --every %ld places rows that --final leaves out; give one of them", request->every);
+    return usage_error("run: --every %ld places rows that --final leaves out; give one of them",
+                       request->every);
   if (!isnan(request->tolerance))
-    return usage_error(
-        "run: --tolerance: steps chosen by estimates of their errors make any of these methods neither symplectic nor "
-        "symmetric, and its energy drifts; --time-transform or --step-control adapt steps without that");
+    return usage_error("run: --tolerance: steps chosen by estimates of their errors make any of "
+                       "these methods neither symplectic nor "
+                       "symmetric, and its energy drifts; --time-transform or --step-control adapt "
+                       "steps without that");
   if (pacing_check("run", &request->how) != DONE) return USAGE;
   const int code = check_files(request, name);
   if (code != DONE) return code;
@@ -170,7 +186,8 @@ static int check_settings(const run_request *request, const problem *scene)
 {
   const char *setting = start_setting(scene, &request->settings);
   if (setting == NULL || request->resume == NULL) return DONE;
-  return usage_error("run: --set %s places the start, which --resume replaces; leave out one of them", setting);
+  return usage_error(
+      "run: --set %s places the start, which --resume replaces; leave out one of them", setting);
 }
 
 /* The line makes sense: everything else. */
@@ -190,56 +207,91 @@ static int run_problem(run_request *request, const char *name)
   return code;
 }
 
-static const char summary[] =
-    "Compute a trajectory with fixed steps, with those that sem chooses, or with steps that follow the motion; write it and its\n"
-    "invariants as CSV. A scene may say which method it wants, after how many steps a row, which columns, and which\n"
-    "events end the run.\n";
+static const char summary[] = "Compute a trajectory with fixed steps, with those that sem chooses, "
+                              "or with steps that follow the motion; write it and its\n"
+                              "invariants as CSV. A scene may say which method it wants, after how "
+                              "many steps a row, which columns, and which\n"
+                              "events end the run.\n";
 
 static const char *const details[] = {
-    "Columns: t, the coordinates, their momenta (p_ and the coordinate's name), energy, the other invariants. Problems with\n"
-    "rotations and directions have velocities, too, before the momenta, and after all the distance of the coordinates from\n"
-    "their manifold. A rotation is R11,R12,R13,R21..R33, its velocity Omega1..Omega3 and its momentum Pi1..Pi3, both in the\n"
-    "body's frame; a direction is a unit vector, its velocity (v_) and its momentum (p_) vectors orthogonal to it;\n"
-    "methods that choose their steps add h, the length of the step that led to the row, with a one-form there is the\n"
-    "constraint |p - alpha(q)|, and dg and dg-phase add jump, the largest one; 17 digits, so that every number is read\n"
-    "back as it was. The first row is the start (with --resume: the checkpoint), the last one is the end, wherever\n"
+    "Columns: t, the coordinates, their momenta (p_ and the coordinate's name), energy, the other "
+    "invariants. Problems with\n"
+    "rotations and directions have velocities, too, before the momenta, and after all the distance "
+    "of the coordinates from\n"
+    "their manifold. A rotation is R11,R12,R13,R21..R33, its velocity Omega1..Omega3 and its "
+    "momentum Pi1..Pi3, both in the\n"
+    "body's frame; a direction is a unit vector, its velocity (v_) and its momentum (p_) vectors "
+    "orthogonal to it;\n"
+    "methods that choose their steps add h, the length of the step that led to the row, with a "
+    "one-form there is the\n"
+    "constraint |p - alpha(q)|, and dg and dg-phase add jump, the largest one; 17 digits, so that "
+    "every number is read\n"
+    "back as it was. The first row is the start (with --resume: the checkpoint), the last one is "
+    "the end, wherever\n"
     "--every puts the rows between.\n",
-    "What no column shows is not evaluated for the rows. The energy of a system that does not depend on time is looked at all the\n"
-    "same, in the first 32 steps, in every 61st later on, and at the end; an error above 1 % of the mean kinetic energy (or of "
+    "What no column shows is not evaluated for the rows. The energy of a system that does not "
+    "depend on time is looked at all the\n"
+    "same, in the first 32 steps, in every 61st later on, and at the end; an error above 1 % of "
+    "the mean kinetic energy (or of "
     "that\n"
-    "at its time, if it is larger) is told at the end, with what helps. With a one-form or a Hamiltonian the scale is by how much\n"
-    "the energy would change if coordinates and momenta went back to the start, one at a time. Of methods that step over fast\n"
+    "at its time, if it is larger) is told at the end, with what helps. With a one-form or a "
+    "Hamiltonian the scale is by how much\n"
+    "the energy would change if coordinates and momenta went back to the start, one at a time. Of "
+    "methods that step over fast\n"
     "potentials 10 % are told. The exit code is 0 all the same.\n",
-    "--verify runs the whole job with h, h/2 and h/4, and, for up to 500 coordinates, by IDA, where that takes no longer than\n"
-    "these runs, or 2 s, and prints for each column its value at the end with h, an estimate of its error, and how many digits\n"
-    "of its largest magnitude on the way, or of the terms that cancel in an invariant, are right. --digits N judges all\n"
-    "coordinates and all momenta, each in the maximum norm, and the columns that --columns names: fewer end with exit code 3,\n"
-    "and with a step or a method that would do. It costs seven times the run; with IDA fourteen, or seven and about 2 s.\n"
-    "It takes every method, --time-transform, --step-control and events; not --out, --events, --plot, --alarm, --every or\n"
+    "--verify runs the whole job with h, h/2 and h/4, and, for up to 500 coordinates, by IDA, "
+    "where that takes no longer than\n"
+    "these runs, or 2 s, and prints for each column its value at the end with h, an estimate of "
+    "its error, and how many digits\n"
+    "of its largest magnitude on the way, or of the terms that cancel in an invariant, are right. "
+    "--digits N judges all\n"
+    "coordinates and all momenta, each in the maximum norm, and the columns that --columns names: "
+    "fewer end with exit code 3,\n"
+    "and with a step or a method that would do. It costs seven times the run; with IDA fourteen, "
+    "or seven and about 2 s.\n"
+    "It takes every method, --time-transform, --step-control and events; not --out, --events, "
+    "--plot, --alarm, --every or\n"
     "checkpoints.\n",
-    "--plot draws the columns of --columns, or of the scene; left out: six coordinates, places and angles before directions, of a\n"
-    "body that only turns its angular velocity; and how energy and other invariants change. Standard error says what is drawn.\n",
-    "Events of a scene are looked for in every step. One with 'stop: yes' ends the run at its time: the last row is the state\n"
-    "there, and the exit code 0. The columns of --events are event, its name, t, the coordinates and their velocities (v_), on\n"
+    "--plot draws the columns of --columns, or of the scene; default: six coordinates, places and "
+    "angles before directions, of a\n"
+    "body that only turns its angular velocity; and how energy and other invariants change. "
+    "Standard error says what is drawn.\n",
+    "Events of a scene are looked for in every step. One with 'stop: yes' ends the run at its "
+    "time: the last row is the state\n"
+    "there, and the exit code 0. The columns of --events are event, its name, t, the coordinates "
+    "and their velocities (v_), on\n"
     "the step's path; how often each was found is told at the end.\n",
-    "An alarm changes nothing in the run: standard error says at the end when the invariant's size first passed the bound,\n"
+    "An alarm changes nothing in the run: standard error says at the end when the invariant's size "
+    "first passed the bound,\n"
     "and how large it was at most; the exit code is 0.\n",
-    "FILEs are written whole or not at all: a run that fails leaves what was there. Rows on standard output come\n"
-    "as they are computed. Ctrl-C, SIGTERM and SIGHUP end a run after the current step, with the output complete, the\n"
-    "checkpoint written, and exit code 130, 143 or 129; before the first step they end it at once, and nothing is\n"
+    "FILEs are written whole or not at all: a run that fails leaves what was there. Rows on "
+    "standard output come\n"
+    "as they are computed. Ctrl-C, SIGTERM and SIGHUP end a run after the current step, with the "
+    "output complete, the\n"
+    "checkpoint written, and exit code 130, 143 or 129; before the first step they end it at once, "
+    "and nothing is\n"
     "written. A second Ctrl-C ends it at once.\n",
-    "A checkpoint holds the state of the method, not the command line: resume with the same problem, method and\n"
-    "step, and the run continues bit for bit. Parameters that only place the start cannot be set then.\n",
-    "--time-transform: steps H of a fictitious time tau, dt/dtau = g(q), with g the monitor; the run stays symplectic, takes\n"
-    "implicit methods and autonomous problems, and ends at T all the same. Monitors: distance:power=P, 1/g = sum of r^-P over\n"
-    "all pairs of bodies (P left out: 1.5); arclength, equal lengths in phase space; acceleration:power=P, g = |a|^-P (0.75).\n"
-    "--step-control: a symmetric method takes steps of about H g. Rows are in t. Too large an H shows in the energy.\n",
+    "A checkpoint holds the state of the method, not the command line: resume with the same "
+    "problem, method and\n"
+    "step, and the run continues bit for bit. Parameters that only place the start cannot be set "
+    "then.\n",
+    "--time-transform: steps H of a fictitious time tau, dt/dtau = g(q), with g the monitor; the "
+    "run stays symplectic, takes\n"
+    "implicit methods and autonomous problems, and ends at T all the same. Monitors: "
+    "distance:power=P, 1/g = sum of r^-P over\n"
+    "all pairs of bodies (P default: 1.5); arclength, equal lengths in phase space; "
+    "acceleration:power=P, g = |a|^-P (0.75).\n"
+    "--step-control: a symmetric method takes steps of about H g. Rows are in t. Too large an H "
+    "shows in the energy.\n",
     "Examples:\n"
-    "  dvi run kepler --method galerkin:degree=4 --h 0.1 --t-end 100 --out orbit.csv --plot orbit.svg\n"
+    "  dvi run kepler --method galerkin:degree=4 --h 0.1 --t-end 100 --out orbit.csv --plot "
+    "orbit.svg\n"
     "  dvi run kepler --method verlet --h 0.001 --t-end 10 --set e=0.9 --every 100\n"
-    "  dvi run free-body --method lie-verlet --h 0.1 --t-end 100 --momenta 1.5,-1,0.6 --out body.csv\n"
+    "  dvi run free-body --method lie-verlet --h 0.1 --t-end 100 --momenta 1.5,-1,0.6 --out "
+    "body.csv\n"
     "  dvi run outer-solar --method galerkin:degree=8 --h 200 --t-end 500000 --final\n"
-    "  dvi run kepler --set e=0.99 --method galerkin:degree=4 --time-transform distance --h 0.3 --t-end 63\n"
+    "  dvi run kepler --set e=0.99 --method galerkin:degree=4 --time-transform distance --h 0.3 "
+    "--t-end 63\n"
     "  dvi run kepler --method sem:degree=2 --h 0.05 --t-end 100 --set e=0.5 --out orbit.csv\n"
     "  dvi run fpu --method midpoint --h 0.01 --t-end 100 --checkpoint fpu.state --out part1.csv\n"
     "  dvi run fpu --method midpoint --h 0.01 --t-end 200 --resume fpu.state --out part2.csv\n"
@@ -253,41 +305,83 @@ int run_command(int argc, char **argv)
 {
   run_request r = {.out = "-", .h = (double)NAN, .t_end = (double)NAN, .tolerance = (double)NAN};
   const option options[] = {
-      {.name = "method", .word = &r.method, .value = "SPEC", .help = "the method: name[:key=value,...], see dvi list methods"},
-      {.name = "h", .number = &r.h, .value = "H", .help = "the step, for sem the first one; left out: the problem's"},
-      {.name = "t-end", .number = &r.t_end, .value = "T", .help = "the end, from t = 0 (T < 0: backward); left out: the problem's"},
+      {.name = "method",
+       .word = &r.method,
+       .value = "SPEC",
+       .help = "the method: name[:key=value,...], see dvi list methods"},
+      {.name = "h",
+       .number = &r.h,
+       .value = "H",
+       .help = "the step, for sem the first one; default: the problem's"},
+      {.name = "t-end",
+       .number = &r.t_end,
+       .value = "T",
+       .help = "the end, from t = 0 (T < 0: backward); default: the problem's"},
       {.name = "time-transform",
        .word = &r.how.transform,
        .value = "MONITOR",
-       .help = "steps of equal length in another time: distance[:power=P], arclength or acceleration[:power=P]"},
+       .help = "steps of equal length in another time: distance[:power=P], arclength or "
+               "acceleration[:power=P]"},
       {.name = "step-control",
        .word = &r.how.control,
        .value = "MONITOR",
        .help = "steps that follow a monitor reversibly: cheaper, symmetric, not symplectic"},
-      {.name = "tolerance", .number = &r.tolerance, .value = "TOL", .help = "refused: see --time-transform and --step-control"},
-      {.name = "every", .count = &r.every, .value = "K", .help = "a row after every K steps; left out: 1; not with --final"},
+      {.name = "tolerance",
+       .number = &r.tolerance,
+       .value = "TOL",
+       .help = "refused: see --time-transform and --step-control"},
+      {.name = "every",
+       .count = &r.every,
+       .value = "K",
+       .help = "a row after every K steps; default: 1; not with --final"},
       {.name = "final", .flag = &r.final, .help = "the header and the last row only"},
-      {.name = "set", .words = &r.settings, .value = "NAME=VALUE", .help = "set a parameter of the problem; may be repeated"},
+      {.name = "set",
+       .words = &r.settings,
+       .value = "NAME=VALUE",
+       .help = "set a parameter of the problem; may be repeated"},
       {.name = "momenta",
        .word = &r.momenta,
        .value = "P1,P2,...",
-       .help = "the momenta of the start, in the order of their columns; left out: the problem's"},
-      {.name = "project", .flag = &r.project, .help = "if the start is off a problem's constraint: project it; left out: refuse"},
-      {.name = "columns", .word = &r.columns, .value = "A,B,...", .help = "columns behind t; left out: the scene's, or all"},
-      {.name = "alarm", .words = &r.alarms, .value = "NAME=BOUND", .help = "say when an invariant passes this; once for each"},
-      {.name = "out", .word = &r.out, .value = "FILE", .help = "where the rows go; left out, or -: standard output"},
-      {.name = "events", .word = &r.events, .value = "FILE.csv", .help = "list the scene's events there; left out: count them"},
+       .help = "the momenta of the start, in the order of their columns; default: the problem's"},
+      {.name = "project",
+       .flag = &r.project,
+       .help = "if the start is off a problem's constraint: project it; default: refuse"},
+      {.name = "columns",
+       .word = &r.columns,
+       .value = "A,B,...",
+       .help = "columns behind t; default: the scene's, or all"},
+      {.name = "alarm",
+       .words = &r.alarms,
+       .value = "NAME=BOUND",
+       .help = "say when an invariant passes this; once for each"},
+      {.name = "out",
+       .word = &r.out,
+       .value = "FILE",
+       .help = "where the rows go; left out, or -: standard output"},
+      {.name = "events",
+       .word = &r.events,
+       .value = "FILE.csv",
+       .help = "list the scene's events there; default: count them"},
       {.name = "checkpoint",
        .word = &r.checkpoint,
        .value = "FILE",
        .help = "save the state there when the run ends, however it ends"},
-      {.name = "checkpoint-every", .count = &r.checkpoint_every, .value = "K", .help = "and after every K steps"},
+      {.name = "checkpoint-every",
+       .count = &r.checkpoint_every,
+       .value = "K",
+       .help = "and after every K steps"},
       {.name = "resume",
        .word = &r.resume,
        .value = "FILE",
-       .help = "start from a checkpoint of the same problem and method; may be the file of --checkpoint"},
-      {.name = "verify", .flag = &r.verify, .help = "run with half the step, and a quarter, too: how many digits are right?"},
-      {.name = "digits", .count = &r.digits, .value = "N", .help = "with --verify: exit code 3 if fewer than N are"},
+       .help = "start from a checkpoint of the same problem and method; may be the file of "
+               "--checkpoint"},
+      {.name = "verify",
+       .flag = &r.verify,
+       .help = "run with half the step, and a quarter, too: how many digits are right?"},
+      {.name = "digits",
+       .count = &r.digits,
+       .value = "N",
+       .help = "with --verify: exit code 3 if fewer than N are"},
       {.name = "csv", .word = &r.csv, .value = "-|FILE", .help = "with --verify: its table as CSV"},
       {.name = "plot",
        .word = &r.plot,

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "cli/command.h"
-#include "cli/crew.h"
+#include "cli/parallel.h"
 #include "cli/file.h"
 #include "load/open.h"
 #include "cli/options.h"
@@ -31,7 +31,8 @@ typedef struct sweep {
   bool written; /* all rows are where they were asked for */
 } sweep;
 
-static const char ended[] = "dvi: sweep: a signal ended the sweep; the same command goes on where it stopped\n";
+static const char ended[] =
+    "dvi: sweep: a signal ended the sweep; the same command goes on where it stopped\n";
 
 /* ---- points ---- */
 
@@ -70,7 +71,7 @@ static void run_points(sweep *s, long threads)
 {
   const long left = s->points - s->there;
   progress_start(&s->progress, true);
-  crew_work(threads < left ? threads : left, work, s);
+  parallel_work(threads < left ? threads : left, work, s);
   progress_end(&s->progress);
 }
 
@@ -79,7 +80,8 @@ static void run_points(sweep *s, long threads)
 static long count_rows(const sweep *s, bool failed_only)
 {
   long count = 0;
-  for (long k = 0; k < s->points; k++) count += s->row[k].text != NULL && (s->row[k].failed || !failed_only);
+  for (long k = 0; k < s->points; k++)
+    count += s->row[k].text != NULL && (s->row[k].failed || !failed_only);
   return count;
 }
 
@@ -99,7 +101,8 @@ static int finish(sweep *s, const char *path)
   if (!s->written) return FAILED;
   const long failed = count_rows(s, true);
   if (failed == 0) return DONE;
-  complain("sweep: %ld of %ld points failed; column status of '%s' says which", failed, s->points, path);
+  complain("sweep: %ld of %ld points failed; column status of '%s' says which", failed, s->points,
+           path);
   return FAILED;
 }
 
@@ -113,7 +116,8 @@ static int sweep_all(const sweep_task *task, long threads, const char *path)
     complain("out of memory");
   else if (sweep_part_open(&s.part, path, sweep_key(task), s.points, s.row)) {
     s.there = count_rows(&s, false);
-    if (s.there > 0) complain("sweep: %ld of %ld points are in '%s' already", s.there, s.points, s.part.path);
+    if (s.there > 0)
+      complain("sweep: %ld of %ld points are in '%s' already", s.there, s.points, s.part.path);
     run_points(&s, threads);
     code = finish(&s, path);
   }
@@ -143,16 +147,20 @@ static int check_task(const sweep_task *task)
   dvi_integrator_destroy(&integrator);
   if (code != DONE) return code;
   const double t_end = isnan(task->t_end) ? model->t_end : task->t_end;
-  return way_check("sweep", isnan(task->h) ? copysign(model->h, t_end) : task->h, t_end, t_end, true);
+  return way_check("sweep", isnan(task->h) ? copysign(model->h, t_end) : task->h, t_end, t_end,
+                   true);
 }
 
 static int check_request(const sweep_request *request)
 {
   if (request->out == NULL)
-    return usage_error("sweep: --out FILE.csv is missing: where the rows go, and from where an interrupted sweep goes on");
+    return usage_error("sweep: --out FILE.csv is missing: where the rows go, and from where an "
+                       "interrupted sweep goes on");
   if (strcmp(request->out, "-") == 0)
-    return usage_error("sweep: --out -: rows go to a file, not to standard output, for an interrupted sweep goes on from there");
-  if (request->threads > CREW_MAX) return usage_error("sweep: at most %d threads", (int)CREW_MAX);
+    return usage_error("sweep: --out -: rows go to a file, not to standard output, for an "
+                       "interrupted sweep goes on from there");
+  if (request->threads > THREADS_MAX)
+    return usage_error("sweep: at most %d threads", (int)THREADS_MAX);
   return file_writable(request->out) ? DONE : FAILED;
 }
 
@@ -167,7 +175,9 @@ static int run_request(const sweep_request *request, sweep_task *task)
   task->model = model;
   if (code == DONE) code = grid_complete(model, &task->grid);
   if (code == DONE) code = check_task(task);
-  if (code == DONE) code = sweep_all(task, request->threads > 0 ? request->threads : crew_cores(), request->out);
+  if (code == DONE)
+    code = sweep_all(task, request->threads > 0 ? request->threads : parallel_cores(),
+                     request->out);
   problem_destroy(&model);
   grid_clear(&task->grid);
   free(task->text.text);
@@ -175,15 +185,22 @@ static int run_request(const sweep_request *request, sweep_task *task)
 }
 
 static const char *const details[] = {
-    "Points: all combinations of the values of the scene's section sweep and of --set, the last one's changes first;\n"
+    "Points: all combinations of the values of the scene's section sweep and of --set, the last "
+    "one's changes first;\n"
     "--set of a parameter replaces its values in the section. Each point reads the scene anew.\n",
-    "Columns: the parameters; status, DVI_OK, 'event NAME' where an event of the scene ended the run, why it failed, or refused\n"
-    "where the problem cannot be made; steps; t, the coordinates, the momenta and the invariants at the end, or where the run "
+    "Columns: the parameters; status, DVI_OK, 'event NAME' where an event of the scene ended the "
+    "run, why it failed, or refused\n"
+    "where the problem cannot be made; steps; t, the coordinates, the momenta and the invariants "
+    "at the end, or where the run "
     "ended; energy_error, the largest change\n"
-    "of the energy since the start. 17 digits; cells without a number are empty. Rows stand in the order of the points and\n"
-    "do not depend on the number of threads. If points failed, all others are there, and the exit code is 1.\n",
-    "Rows are kept in FILE.csv.part as they are found. A sweep that was interrupted, however it was, goes on from there when\n"
-    "the same command is given again; with another scene, method, step, end or values it is refused. When all points are\n"
+    "of the energy since the start. 17 digits; cells without a number are empty. Rows stand in the "
+    "order of the points and\n"
+    "do not depend on the number of threads. If points failed, all others are there, and the exit "
+    "code is 1.\n",
+    "Rows are kept in FILE.csv.part as they are found. A sweep that was interrupted, however it "
+    "was, goes on from there when\n"
+    "the same command is given again; with another scene, method, step, end or values it is "
+    "refused. When all points are\n"
     "there, FILE.csv is written whole.\n",
     "Examples:\n"
     "  dvi init cart.yaml\n"
@@ -202,10 +219,19 @@ int sweep_command(int argc, char **argv)
        .words = &r.settings,
        .value = "NAME=VALUES",
        .help = "a parameter's values: V1,V2,.. or FROM:TO:COUNT, or a single one; may be repeated"},
-      {.name = "method", .word = &task.method, .value = "SPEC", .help = "the method; left out: the scene's"},
-      {.name = "h", .number = &task.h, .value = "H", .help = "the step; left out: the problem's"},
-      {.name = "t-end", .number = &task.t_end, .value = "T", .help = "the end, from t = 0; left out: the problem's"},
-      {.name = "threads", .count = &r.threads, .value = "N", .help = "runs at a time; left out: as many as there are cores"},
+      {.name = "method",
+       .word = &task.method,
+       .value = "SPEC",
+       .help = "the method; default: the scene's"},
+      {.name = "h", .number = &task.h, .value = "H", .help = "the step; default: the problem's"},
+      {.name = "t-end",
+       .number = &task.t_end,
+       .value = "T",
+       .help = "the end, from t = 0; default: the problem's"},
+      {.name = "threads",
+       .count = &r.threads,
+       .value = "N",
+       .help = "runs at a time; default: as many as there are cores"},
       {.name = "out", .word = &r.out, .value = "FILE.csv", .help = "where the rows go"},
       {.name = NULL},
   };
@@ -213,7 +239,8 @@ int sweep_command(int argc, char **argv)
       .name = "sweep",
       .synopsis = "PROBLEM --out FILE.csv [--set NAME=VALUES ...] [OPTIONS]",
       .operand = "PROBLEM",
-      .summary = "Run a problem at each point of a grid of parameters, on all cores, and write the ends as CSV.\n",
+      .summary = "Run a problem at each point of a grid of parameters, on all cores, and write the "
+                 "ends as CSV.\n",
       .options = options,
       .details = details,
   };

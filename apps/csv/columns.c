@@ -34,7 +34,8 @@ static void list_all(run_columns *c, const dvi_integrator *integrator)
     add(c, dvi_system_invariant_name(scene->system, i), COLUMN_INVARIANT, i);
   if (dvi_integrator_chooses_steps(integrator)) add(c, "h", COLUMN_STEP, 0);
   if (scene->velocity != NULL) add(c, "distance", COLUMN_DISTANCE, 0);
-  if (scene->terms->one_form != NULL || scene->terms->constraint != NULL) add(c, "constraint", COLUMN_CONSTRAINT, 0);
+  if (scene->terms->one_form != NULL || scene->terms->constraint != NULL)
+    add(c, "constraint", COLUMN_CONSTRAINT, 0);
   if (!isnan(dvi_integrator_jump(integrator, NULL))) add(c, "jump", COLUMN_JUMP, 0);
 }
 
@@ -45,8 +46,9 @@ static int distinct(const run_columns *c, const char *method)
     const bool own = c->all[k].kind == COLUMN_STEP || c->all[k].kind == COLUMN_JUMP;
     for (int i = 0; i < k && own; i++)
       if (strcmp(c->all[i].name, c->all[k].name) == 0)
-        return usage_error("run: %s by %s has two columns '%s', one of them the method's; rename the other", c->scene->name, method,
-                           c->all[k].name);
+        return usage_error(
+            "run: %s by %s has two columns '%s', one of them the method's; rename the other",
+            c->scene->name, method, c->all[k].name);
   }
   return DONE;
 }
@@ -73,7 +75,8 @@ static const char *hint_at_name(const run_columns *c, const char *name, char hin
   if (suggestion(name, name_at, c, hint, HINT_SIZE)[0] != '\0') return hint;
   size_t length = 0;
   for (int k = 0; k < c->there && k < NAMED_MOST && length < HINT_SIZE; k++)
-    length += (size_t)snprintf(hint + length, HINT_SIZE - length, "%s%s", k > 0 ? ", " : "; it has ", c->all[k].name);
+    length += (size_t)snprintf(hint + length, HINT_SIZE - length, "%s%s",
+                               k > 0 ? ", " : "; it has ", c->all[k].name);
   if (c->there > NAMED_MOST && length < HINT_SIZE)
     (void)snprintf(hint + length, HINT_SIZE - length, " and %d others", c->there - NAMED_MOST);
   return hint;
@@ -88,7 +91,8 @@ static int show_name(run_columns *c, const char *method, const char *name)
   while ((there = name_at(k, c)) != NULL && strcmp(there, name) != 0) k++;
   if (there == NULL) {
     char hint[HINT_SIZE];
-    return usage_error("run: %s by %s has no column '%s'%s", c->scene->name, method, name, hint_at_name(c, name, hint));
+    return usage_error("run: %s by %s has no column '%s'%s", c->scene->name, method, name,
+                       hint_at_name(c, name, hint));
   }
   if (c->shown[k]) return usage_error("run: column '%s' is asked for twice", name);
   show(c, k);
@@ -112,24 +116,28 @@ static int show_asked(run_columns *c, const char *method, const char *asked)
 static int show_wanted(run_columns *c, const char *method)
 {
   int code = DONE;
-  for (int i = 0; i < c->scene->column_count && code == DONE; i++) code = show_name(c, method, c->scene->column[i]);
+  for (int i = 0; i < c->scene->column_count && code == DONE; i++)
+    code = show_name(c, method, c->scene->column[i]);
   return code;
 }
 
 static bool make_room(run_columns *c)
 {
   const size_t nq = (size_t)c->scene->nq, nv = (size_t)c->scene->nv;
-  const size_t invariants = (size_t)dvi_system_invariant_count(c->scene->system), most = nq + 2 * nv + invariants + COLUMN_KINDS;
+  const size_t invariants = (size_t)dvi_system_invariant_count(c->scene->system),
+               most = nq + 2 * nv + invariants + COLUMN_KINDS;
   c->all = calloc(most, sizeof *c->all);
   c->column = calloc(most, sizeof *c->column);
   c->shown = calloc(most, sizeof *c->shown);
   c->invariant = calloc(invariants, sizeof *c->invariant);
   c->velocity = calloc(nv, sizeof *c->velocity);
   c->room = calloc(nq + nv, sizeof *c->room);
-  return c->all != NULL && c->column != NULL && c->shown != NULL && c->invariant != NULL && c->velocity != NULL && c->room != NULL;
+  return c->all != NULL && c->column != NULL && c->shown != NULL && c->invariant != NULL &&
+         c->velocity != NULL && c->room != NULL;
 }
 
-int columns_choose(run_columns *c, const problem *scene, const dvi_integrator *integrator, const char *asked)
+int columns_choose(run_columns *c, const problem *scene, const dvi_integrator *integrator,
+                   const char *asked)
 {
   *c = (run_columns){.scene = scene};
   if (!make_room(c)) return library_error(DVI_NO_MEMORY);
@@ -167,15 +175,18 @@ void columns_header(const run_columns *c, FILE *stream)
 
 static dvi_status measure(run_columns *c, dvi_integrator *integrator)
 {
-  const double t = dvi_integrator_time(integrator), *q = dvi_integrator_q(integrator), *p = dvi_integrator_p(integrator);
+  const double t = dvi_integrator_time(integrator), *q = dvi_integrator_q(integrator),
+               *p = dvi_integrator_p(integrator);
   dvi_status status = DVI_OK;
   for (int k = 0; k < c->count && status == DVI_OK && c->shows[COLUMN_INVARIANT]; k++) {
     const shown_column *column = &c->column[k];
     if (column->kind == COLUMN_INVARIANT)
       status = dvi_integrator_invariant(integrator, column->index, &c->invariant[column->index]);
   }
-  if (status == DVI_OK && c->shows[COLUMN_VELOCITY]) status = velocity_near(c->scene, t, q, p, c->room, c->velocity);
-  if (status == DVI_OK && c->shows[COLUMN_CONSTRAINT]) status = dvi_integrator_constraint(integrator, &c->constraint);
+  if (status == DVI_OK && c->shows[COLUMN_VELOCITY])
+    status = velocity_near(c->scene, t, q, p, c->room, c->velocity);
+  if (status == DVI_OK && c->shows[COLUMN_CONSTRAINT])
+    status = dvi_integrator_constraint(integrator, &c->constraint);
   return status;
 }
 
@@ -186,7 +197,8 @@ bool columns_measure(run_columns *c, dvi_integrator *integrator)
   dvi_counters counters;
   dvi_integrator_counters(integrator, &counters);
   char before[64];
-  (void)snprintf(before, sizeof before, "run: no row at t = %.17g: ", dvi_integrator_time(integrator));
+  (void)snprintf(before, sizeof before,
+                 "run: no row at t = %.17g: ", dvi_integrator_time(integrator));
   complain_of(status, before, counters.steps > 0 ? "; try a smaller --h" : "");
   return false;
 }
@@ -209,6 +221,7 @@ double columns_number(const run_columns *c, const dvi_integrator *integrator, in
 void columns_row(const run_columns *c, const dvi_integrator *integrator, FILE *stream)
 {
   (void)fprintf(stream, "%.17g", dvi_integrator_time(integrator));
-  for (int k = 0; k < c->count; k++) (void)fprintf(stream, ",%.17g", columns_number(c, integrator, k));
+  for (int k = 0; k < c->count; k++)
+    (void)fprintf(stream, ",%.17g", columns_number(c, integrator, k));
   (void)fputc('\n', stream);
 }

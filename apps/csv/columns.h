@@ -1,4 +1,5 @@
-/** The columns of dvi run's table: all that there are, or those that were asked for. What none of them shows is not evaluated. */
+/** The columns of dvi run's table: all that there are, or those that were asked for. What none of
+ * them shows is not evaluated. */
 #ifndef COLUMNS_H
 #define COLUMNS_H
 #include <stdbool.h>
@@ -37,9 +38,11 @@ typedef struct run_columns {
   bool shows[COLUMN_KINDS];
 } run_columns;
 
-/** Choose the columns: "A,B,.." if that is not NULL, else those that the problem wants, else all. Returns DONE, or complains, with the nearest name, and
- *  returns the exit code; columns_clear afterwards in any case. */
-int columns_choose(run_columns *columns, const problem *scene, const dvi_integrator *integrator, const char *asked);
+/** Choose the columns: "A,B,.." if that is not NULL, else those that the problem wants, else all.
+ *  Returns DONE, or complains, with the nearest name, and returns the exit code; columns_clear
+ *  afterwards in any case. */
+int columns_choose(run_columns *columns, const problem *scene, const dvi_integrator *integrator,
+                   const char *asked);
 
 void columns_clear(run_columns *columns);
 

@@ -62,10 +62,11 @@ bool events_list(event_list *list, const problem *scene, event_seen seen, void *
 void events_tell(const event_list *list, const char *command, const dvi_run_report *report)
 {
   for (int i = 0; i < list->count; i++)
-    complain("%s: event '%s': found %ld time%s", command, list->event[i].name, list->watched[i].found,
-             list->watched[i].found == 1 ? "" : "s");
+    complain("%s: event '%s': found %ld time%s", command, list->event[i].name,
+             list->watched[i].found, list->watched[i].found == 1 ? "" : "s");
   if (report->end == DVI_RUN_EVENT)
-    complain("%s: event '%s' ended the run at t = %.17g", command, list->event[report->event].name, report->event_time);
+    complain("%s: event '%s' ended the run at t = %.17g", command, list->event[report->event].name,
+             report->event_time);
 }
 
 void events_header(const problem *scene, FILE *stream)
@@ -82,7 +83,8 @@ void events_header(const problem *scene, FILE *stream)
   (void)fputc('\n', stream);
 }
 
-void events_row(const problem *scene, int index, double t, const double *q, const double *v, FILE *stream)
+void events_row(const problem *scene, int index, double t, const double *q, const double *v,
+                FILE *stream)
 {
   csv_text(stream, dvi_scene_event_at(scene->scene, index)->name);
   (void)fprintf(stream, ",%.17g", t);
@@ -102,7 +104,8 @@ void events_print(const problem *scene)
 {
   static const char *const direction[] = {"falling", "both directions", "rising"};
   const dvi_scene_event *event;
-  for (int i = 0; scene->scene != NULL && (event = dvi_scene_event_at(scene->scene, i)) != NULL; i++)
+  for (int i = 0; scene->scene != NULL && (event = dvi_scene_event_at(scene->scene, i)) != NULL;
+       i++)
     (void)printf("%s%s (%s%s)", i > 0 ? ", " : "", event->name, direction[event->direction + 1],
                  event->terminal ? ", ends the run" : "");
 }
@@ -110,6 +113,7 @@ void events_print(const problem *scene)
 void events_passed(const char *command, const problem *scene)
 {
   if (events_count(scene) > 0)
-    complain("%s: the events of %s are not looked for: dvi run and dvi sweep find them; here the motion goes on past them", command,
-             scene->name);
+    complain("%s: the events of %s are not looked for: dvi run and dvi sweep find them; here the "
+             "motion goes on past them",
+             command, scene->name);
 }

@@ -18,7 +18,8 @@ typedef struct event_list {
 /** Called when an event is found, at its time; not 0: the run fails. */
 typedef int (*event_seen)(int index, double t, const double *q, const double *v, void *user);
 
-/** List the events; `seen`, NULL for nobody, is told of each. False without memory, with a complaint. */
+/** List the events; `seen`, NULL for nobody, is told of each. False without memory, with a
+ * complaint. */
 bool events_list(event_list *list, const problem *scene, event_seen seen, void *user);
 
 /** Tell how often each was found, and which one ended the run. */
@@ -28,7 +29,8 @@ void events_tell(const event_list *list, const char *command, const dvi_run_repo
 void events_header(const problem *scene, FILE *stream);
 
 /** One of its rows. */
-void events_row(const problem *scene, int index, double t, const double *q, const double *v, FILE *stream);
+void events_row(const problem *scene, int index, double t, const double *q, const double *v,
+                FILE *stream);
 
 void events_clear(event_list *list);
 

@@ -52,8 +52,8 @@ int list_read(const char *where, const char *text, const problem *scene, double 
     count++;
   }
   if (count == scene->nq) return DONE;
-  return usage_error("%s has %d number%s; %s has %d coordinate%s", where, count, count == 1 ? "" : "s", scene->name, scene->nq,
-                     scene->nq == 1 ? "" : "s");
+  return usage_error("%s has %d number%s; %s has %d coordinate%s", where, count,
+                     count == 1 ? "" : "s", scene->name, scene->nq, scene->nq == 1 ? "" : "s");
 }
 
 /* ---- files ---- */
@@ -80,7 +80,8 @@ static int read_header(reader *r)
 {
   char title[FIELD_SIZE];
   int known = 0;
-  if (!rows_next(&r->file)) return rows_complete(&r->file) ? usage_error("path: '%s' is empty", r->file.path) : FAILED;
+  if (!rows_next(&r->file))
+    return rows_complete(&r->file) ? usage_error("path: '%s' is empty", r->file.path) : FAILED;
   for (const char *text = r->file.line; text != NULL; r->columns++) {
     int *grown = realloc(r->coordinate, ((size_t)r->columns + 1) * sizeof *grown);
     if (grown == NULL) return complain("out of memory"), FAILED;
@@ -89,13 +90,15 @@ static int read_header(reader *r)
     const int coordinate = r->coordinate[r->columns] = column_of(r->scene, title);
     if (coordinate < -1) continue;
     if (r->seen[1 + coordinate])
-      return usage_error("path: '%s' has two columns '%s'; one for each coordinate is needed", r->file.path, title);
+      return usage_error("path: '%s' has two columns '%s'; one for each coordinate is needed",
+                         r->file.path, title);
     r->seen[1 + coordinate] = true;
     known++;
   }
   if (known == r->scene->nq + 1) return DONE;
-  return usage_error("path: '%s' has %d of the %d columns t and coordinates of %s, as dvi run writes them", r->file.path, known,
-                     r->scene->nq + 1, r->scene->name);
+  return usage_error(
+      "path: '%s' has %d of the %d columns t and coordinates of %s, as dvi run writes them",
+      r->file.path, known, r->scene->nq + 1, r->scene->name);
 }
 
 static int read_row(reader *r, points *read)
@@ -108,13 +111,15 @@ static int read_row(reader *r, points *read)
     rows_field(&text, field);
     const int coordinate = r->coordinate[column];
     if (coordinate >= -1 && !parse_number(field, coordinate == -1 ? &t : &r->q[coordinate]))
-      return usage_error("path: '%s': line %d: '%s' is no number", r->file.path, r->file.row, field);
+      return usage_error("path: '%s': line %d: '%s' is no number", r->file.path, r->file.row,
+                         field);
   }
   if (text != NULL || column < r->columns)
-    return usage_error("path: '%s': line %d does not have the header's %d fields", r->file.path, r->file.row, r->columns);
+    return usage_error("path: '%s': line %d does not have the header's %d fields", r->file.path,
+                       r->file.row, r->columns);
   if (read->count > 0 && !(t > read->t[read->count - 1]))
-    return usage_error("path: '%s': line %d: the time %g does not come after %g", r->file.path, r->file.row, t,
-                       read->t[read->count - 1]);
+    return usage_error("path: '%s': line %d: the time %g does not come after %g", r->file.path,
+                       r->file.row, t, read->t[read->count - 1]);
   return points_add(read, r->scene->nq, t, r->q) ? DONE : FAILED;
 }
 
@@ -124,7 +129,8 @@ static int read_all(reader *r, points *read)
   while (code == DONE && rows_next(&r->file)) code = read_row(r, read);
   if (code == DONE && !rows_complete(&r->file)) code = FAILED;
   if (code == DONE && read->count < 2)
-    code = usage_error("path: '%s' has %d points; at least 2 are needed", r->file.path, read->count);
+    code = usage_error("path: '%s' has %d points; at least 2 are needed", r->file.path,
+                       read->count);
   return code;
 }
 

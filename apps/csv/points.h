@@ -12,8 +12,9 @@ typedef struct points {
   double *q; /**< [count*n], point after point */
 } points;
 
-/** Read the columns t and those of the problem's coordinates from a CSV file with a header, as `dvi run` writes it; other columns are passed over.
- *  Returns DONE, or complains and returns the exit code. */
+/** Read the columns t and those of the problem's coordinates from a CSV file with a header, as `dvi
+ *  run` writes it; other columns are passed over. Returns DONE, or complains and returns the exit
+ *  code. */
 int points_read(const char *path, const problem *scene, points *read);
 
 /** Add a point. False, with a complaint, without memory. */
@@ -21,6 +22,7 @@ bool points_add(points *to, int n, double t, const double *q);
 
 void points_clear(points *list);
 
-/** A list of exactly n finite numbers, separated by commas. Returns DONE, or complains about `where` ("path: --to") and returns USAGE. */
+/** A list of exactly n finite numbers, separated by commas. Returns DONE, or complains about
+ * `where` ("path: --to") and returns USAGE. */
 int list_read(const char *where, const char *text, const problem *scene, double *number);
 #endif

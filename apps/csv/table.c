@@ -120,7 +120,8 @@ void csv_text(FILE *stream, const char *text)
 
 void table_csv(const result_table *table, FILE *stream)
 {
-  for (int j = 0; j < table->columns; j++) (void)fprintf(stream, "%s%s", j > 0 ? "," : "", table->column[j].title);
+  for (int j = 0; j < table->columns; j++)
+    (void)fprintf(stream, "%s%s", j > 0 ? "," : "", table->column[j].title);
   for (int i = 0; i < table->cells; i++) {
     const cell *c = &table->cell[i];
     (void)fputc(i % table->columns == 0 ? '\n' : ',', stream);
@@ -141,7 +142,8 @@ bool table_write(const result_table *table, const char *path)
 }
 
 #pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wformat-nonliteral" /* the formats come from the tables of this program's own columns */
+#pragma GCC diagnostic ignored \
+    "-Wformat-nonliteral" /* the formats come from the tables of this program's own columns */
 static const char *for_people(const result_table *table, int row, int column, char *text)
 {
   const cell *c = &table->cell[row * table->columns + column];
@@ -187,7 +189,8 @@ static int row_end(const result_table *table, int first, int row)
 }
 
 /* Text to the left, numbers to the right; no blanks at the end of a line. */
-static void print_cell(const result_table *table, FILE *stream, int column, int width, bool last, const char *text)
+static void print_cell(const result_table *table, FILE *stream, int column, int width, bool last,
+                       const char *text)
 {
   if (table->column[column].format != NULL)
     (void)fprintf(stream, "  %*s", width, text);

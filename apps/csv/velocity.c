@@ -21,7 +21,8 @@ static void make_all_tangent(const dvi_system_terms *terms, const double *q, dou
   }
 }
 
-dvi_status velocity_near(const problem *scene, double t, const double *q, const double *p, double *room, double *v)
+dvi_status velocity_near(const problem *scene, double t, const double *q, const double *p,
+                         double *room, double *v)
 {
   double *near_q = room, *near_p = room + scene->nq;
   memcpy(near_q, q, (size_t)scene->nq * sizeof *q);

@@ -7,5 +7,6 @@
  *
  *  @param      room  [nq + nv]
  *  @param[out] v     [nv] */
-dvi_status velocity_near(const problem *scene, double t, const double *q, const double *p, double *room, double *v);
+dvi_status velocity_near(const problem *scene, double t, const double *q, const double *p,
+                         double *room, double *v);
 #endif

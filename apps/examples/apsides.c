@@ -1,4 +1,5 @@
-/* Kepler's orbit by its apsides: the times when the distance is least or largest are located as events, and give the period. */
+/* Kepler's orbit by its apsides: the times when the distance is least or largest are located as
+ * events, and give the period. */
 #include <dvi/dvi.h>
 #include <math.h>
 #include <stdio.h>
@@ -40,16 +41,21 @@ static int pericentre(double t, const double *q, const double *v, void *user)
   (void)v;
   const double expected = seen->count == 0 ? period / 2 : seen->last + period;
   seen->worst = fmax(seen->worst, fabs(t - expected));
-  printf("pericentre %d at t = %.12f, r = %.12f, error of the period %.1e\n", ++seen->count, t, hypot(q[0], q[1]), t - expected);
+  printf("pericentre %d at t = %.12f, r = %.12f, error of the period %.1e\n", ++seen->count, t,
+         hypot(q[0], q[1]), t - expected);
   seen->last = t;
   return 0;
 }
 
 static dvi_status orbit(dvi_integrator *integrator, passages *seen)
 {
-  const double q[] = {1 + eccentricity, 0}, p[] = {0, sqrt((1 - eccentricity) / (1 + eccentricity))}; /* the apocentre */
-  const dvi_event event = {.name = "pericentre", .value = radial, .direction = +1, .occurred = pericentre, .user = seen};
-  const dvi_run_options options = {.h = 0.05, .t_end = 5 * period, .events = &event, .event_count = 1};
+  /* the apocentre */
+  const double q[] = {1 + eccentricity, 0},
+               p[] = {0, sqrt((1 - eccentricity) / (1 + eccentricity))};
+  const dvi_event event = {
+      .name = "pericentre", .value = radial, .direction = +1, .occurred = pericentre, .user = seen};
+  const dvi_run_options options = {
+      .h = 0.05, .t_end = 5 * period, .events = &event, .event_count = 1};
   const dvi_status status = dvi_integrator_start(integrator, 0, q, p);
   return status == DVI_OK ? dvi_run(integrator, &options, NULL) : status;
 }
@@ -57,7 +63,8 @@ static dvi_status orbit(dvi_integrator *integrator, passages *seen)
 int main(void)
 {
   const dvi_potential gravity = {.name = "gravity", .value = value, .gradient = gradient};
-  const dvi_system_terms terms = {.dimension = 2, .mass = {.scalar = 1}, .potentials = &gravity, .potential_count = 1};
+  const dvi_system_terms terms = {
+      .dimension = 2, .mass = {.scalar = 1}, .potentials = &gravity, .potential_count = 1};
   dvi_system *system = NULL;
   dvi_integrator *integrator = NULL;
   passages seen = {0};

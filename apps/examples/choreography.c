@@ -1,5 +1,6 @@
-/* Three equal masses that chase each other along one curve: from three rough points to the figure eight of Chenciner and Montgomery (2000), all steps at
- * once; then steps forward, to see that it closes. */
+/* Three equal masses that chase each other along one curve: from three rough points to the figure
+ * eight of Chenciner and Montgomery (2000), all steps at once; then steps forward, to see that it
+ * closes. */
 #include <dvi/dvi.h>
 #include <math.h>
 #include <stdio.h>
@@ -21,7 +22,8 @@ static int gradient(double t, const double *q, double *V_q, void *user)
   for (int i = 0; i < N; i++) V_q[i] = 0;
   for (int a = 0; a < BODIES; a++)
     for (int b = 0; b < a; b++) {
-      const double x = q[2 * a] - q[2 * b], y = q[2 * a + 1] - q[2 * b + 1], r = hypot(x, y), pull = 1 / (r * r * r);
+      const double x = q[2 * a] - q[2 * b], y = q[2 * a + 1] - q[2 * b + 1], r = hypot(x, y),
+                   pull = 1 / (r * r * r);
       V_q[2 * a] += pull * x;
       V_q[2 * a + 1] += pull * y;
       V_q[2 * b] -= pull * x;
@@ -30,7 +32,8 @@ static int gradient(double t, const double *q, double *V_q, void *user)
   return 0;
 }
 
-/* Declared symmetries are directions in which a closed path may be moved; the solver holds it in place along them. */
+/* Declared symmetries are directions in which a closed path may be moved; the solver holds it in
+ * place along them. */
 static int shift_x(const double *q, double *xi, void *user)
 {
   (void)q, (void)user;
@@ -55,8 +58,9 @@ static int rotate(const double *q, double *xi, void *user)
 static dvi_status make_system(dvi_system **system)
 {
   const dvi_potential gravity = {.name = "gravity", .value = value, .gradient = gradient};
-  const dvi_symmetry symmetries[] = {
-      {"momentum_x", shift_x, NULL}, {"momentum_y", shift_y, NULL}, {"angular_momentum", rotate, NULL}};
+  const dvi_symmetry symmetries[] = {{"momentum_x", shift_x, NULL},
+                                     {"momentum_y", shift_y, NULL},
+                                     {"angular_momentum", rotate, NULL}};
   const dvi_system_terms terms = {.dimension = N,
                                   .mass = {.scalar = 1},
                                   .potentials = &gravity,
@@ -67,13 +71,15 @@ static dvi_status make_system(dvi_system **system)
   return dvi_system_create(&terms, system);
 }
 
-/* After a third of the period each body stands where the next one stood: q_N = A q_0, with one entry in each column of A. */
+/* After a third of the period each body stands where the next one stood: q_N = A q_0, with one
+ * entry in each column of A. */
 static dvi_status make_path(const dvi_system *system, dvi_path **path)
 {
   static const double ones[N] = {1, 1, 1, 1, 1, 1};
   static const int start[N + 1] = {0, 1, 2, 3, 4, 5, 6}, row[N] = {4, 5, 0, 1, 2, 3};
   static const double t[POINTS] = {0, 1, 2};
-  static const double q[POINTS * N] = {0, 0, 0.9, -0.3, -0.9, 0.3, 0.9, 0.3, 0, 0, -0.9, -0.3, 0.9, -0.3, -0.9, 0.3, 0, 0};
+  static const double q[POINTS * N] = {0, 0,    0.9,  -0.3, -0.9, 0.3,  0.9, 0.3, 0,
+                                       0, -0.9, -0.3, 0.9,  -0.3, -0.9, 0.3, 0,   0};
   const dvi_path_options options = {.ends = DVI_ENDS_PERIODIC,
                                     .steps = STEPS,
                                     .span = 6.32591398 / 3,
@@ -90,9 +96,12 @@ static dvi_status turn_once(const dvi_system *system, const dvi_path *path, doub
   dvi_integrator *integrator = NULL;
   const double h = (dvi_path_time(path, STEPS) - dvi_path_time(path, 0)) / (double)STEPS;
   dvi_status status = dvi_integrator_create(system, dvi_path_method(path), &integrator);
-  if (status == DVI_OK) status = dvi_integrator_start(integrator, 0, dvi_path_q(path, 0), dvi_path_p(path, 0));
-  for (int k = 0; k < BODIES * STEPS && status == DVI_OK; k++) status = dvi_integrator_step(integrator, h);
-  for (int i = 0; i < N && status == DVI_OK; i++) *gap = fmax(*gap, fabs(dvi_integrator_q(integrator)[i] - dvi_path_q(path, 0)[i]));
+  if (status == DVI_OK)
+    status = dvi_integrator_start(integrator, 0, dvi_path_q(path, 0), dvi_path_p(path, 0));
+  for (int k = 0; k < BODIES * STEPS && status == DVI_OK; k++)
+    status = dvi_integrator_step(integrator, h);
+  for (int i = 0; i < N && status == DVI_OK; i++)
+    *gap = fmax(*gap, fabs(dvi_integrator_q(integrator)[i] - dvi_path_q(path, 0)[i]));
   dvi_integrator_destroy(&integrator);
   return status;
 }
@@ -109,7 +118,8 @@ int main(void)
   if (status == DVI_OK) status = turn_once(system, path, &gap);
   if (status == DVI_OK) {
     printf("action %.11f over the whole curve, energy %.11f\n", 3 * found.action, found.energy);
-    printf("%ld negative and %ld zero eigenvalues, %d of symmetry\n", found.negative, found.zero, found.symmetries);
+    printf("%ld negative and %ld zero eigenvalues, %d of symmetry\n", found.negative, found.zero,
+           found.symmetries);
     printf("after one turn it is %.0e from its start\n", gap);
   } else {
     fprintf(stderr, "%s: %s\n", dvi_status_name(status), dvi_last_error());

@@ -1,4 +1,5 @@
-/* A thousand pendulums, from small swings to almost the top, in one ensemble: how the period grows with the amplitude. */
+/* A thousand pendulums, from small swings to almost the top, in one ensemble: how the period grows
+ * with the amplitude. */
 #include <dvi/dvi.h>
 #include <math.h>
 #include <stdio.h>
@@ -39,7 +40,8 @@ static double amplitude_of(int k)
   return 3.0 * (k + 1) / (double)MEMBERS;
 }
 
-/* A quarter of the period is over when q changes sign; from the step before, the velocity tells when. */
+/* A quarter of the period is over when q changes sign; from the step before, the velocity tells
+ * when. */
 static void look(const double *t, const double *q, const double *p, double *period)
 {
   for (int k = 0; k < MEMBERS; k++)
@@ -64,23 +66,28 @@ static dvi_status swing(dvi_ensemble *ensemble, double *period)
 int main(void)
 {
   static double period[MEMBERS];
-  const dvi_potential gravity = {.name = "gravity", .value_batch = value, .gradient_batch = gradient};
-  const dvi_system_terms terms = {.dimension = 1, .mass = {.scalar = 1}, .potentials = &gravity, .potential_count = 1};
+  const dvi_potential gravity = {
+      .name = "gravity", .value_batch = value, .gradient_batch = gradient};
+  const dvi_system_terms terms = {
+      .dimension = 1, .mass = {.scalar = 1}, .potentials = &gravity, .potential_count = 1};
   const dvi_ensemble_options options = {.members = MEMBERS, .threads = 2};
   dvi_system *system = NULL;
   dvi_ensemble *ensemble = NULL;
   double worst = 0;
   dvi_status status = dvi_system_create(&terms, &system);
-  if (status == DVI_OK) status = dvi_ensemble_create(system, "galerkin:degree=3", &options, &ensemble);
+  if (status == DVI_OK)
+    status = dvi_ensemble_create(system, "galerkin:degree=3", &options, &ensemble);
   if (status == DVI_OK) status = swing(ensemble, period);
   if (status != DVI_OK) fprintf(stderr, "%s: %s\n", dvi_status_name(status), dvi_last_error());
   for (int k = 0; k < MEMBERS; k++) {
     const double error = fabs(period[k] - exact_period(amplitude_of(k)));
     worst = fmax(worst, error);
-    if ((k + 1) % 250 == 0) printf("amplitude %.2f: period %.8f, error %.1e\n", amplitude_of(k), period[k], error);
+    if ((k + 1) % 250 == 0)
+      printf("amplitude %.2f: period %.8f, error %.1e\n", amplitude_of(k), period[k], error);
   }
   dvi_ensemble_destroy(&ensemble);
   dvi_system_destroy(&system);
-  /* Going back from a time s after the bottom by q/p, which is tan(s) there, errs by s^3/3: four times that for a period. */
+  /* Going back from a time s after the bottom by q/p, which is tan(s) there, errs by s^3/3: four
+   * times that for a period. */
   return status == DVI_OK && worst < 4 * 1.01 * h * h * h / 3 ? 0 : 1;
 }

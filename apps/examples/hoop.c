@@ -1,6 +1,7 @@
 /* A bead on a hoop that turns freely: a Lagrangian whose mass depends on the coordinates.
  *
- *     L = v1^2/2 + (J + sin^2 q1) v2^2/2 + cos q1,        q1 the bead's angle from below, q2 the hoop's turn.
+ *     L = v1^2/2 + (J + sin^2 q1) v2^2/2 + cos q1,
+ *     q1 the bead's angle from below, q2 the hoop's turn.
  *
  * The check of the derivatives, the Legendre map, a momentum map and the way back in time. */
 #include <dvi/dvi.h>
@@ -17,7 +18,8 @@ static int value(double t, const double *q, const double *v, double *L, void *us
   return 0;
 }
 
-static int gradient(double t, const double *q, const double *v, double *L_q, double *L_v, void *user)
+static int gradient(double t, const double *q, const double *v, double *L_q, double *L_v,
+                    void *user)
 {
   (void)t, (void)user;
   const double s = sin(q[0]);
@@ -39,18 +41,22 @@ static int turn(const double *q, double *xi, void *user)
 
 static dvi_status create(dvi_system **system)
 {
-  const dvi_lagrangian lagrangian = {.value = value, .gradient = gradient}; /* the Hessian is differenced */
+  /* the Hessian is differenced */
+  const dvi_lagrangian lagrangian = {.value = value, .gradient = gradient};
   const dvi_symmetry symmetry = {.name = "angular_momentum", .generator = turn};
-  const dvi_system_terms terms = {.dimension = 2, .lagrangian = &lagrangian, .symmetries = &symmetry, .symmetry_count = 1};
+  const dvi_system_terms terms = {
+      .dimension = 2, .lagrangian = &lagrangian, .symmetries = &symmetry, .symmetry_count = 1};
   return dvi_system_create(&terms, system);
 }
 
-/* Largest errors of the energy and of the angular momentum on the way, and of the state after the way back. */
+/* Largest errors of the energy and of the angular momentum on the way, and of the state after the
+ * way back. */
 typedef struct findings {
   double energy, momentum, way_back;
 } findings;
 
-static dvi_status travel(const dvi_system *system, const double *q, const double *p, findings *found)
+static dvi_status travel(const dvi_system *system, const double *q, const double *p,
+                         findings *found)
 {
   const double h = 0.1;
   double first[2] = {0}, now[2] = {0};
@@ -86,8 +92,10 @@ int main(void)
     return 1;
   }
   const double map = fmax(fabs(again[0] - v[0]), fabs(again[1] - v[1]));
-  printf("Legendre map there and back %.1e\nenergy error %.1e, angular momentum error %.1e\nway back %.1e\n", map, found.energy,
-         found.momentum, found.way_back);
+  printf("Legendre map there and back %.1e\nenergy error %.1e, angular momentum error %.1e\nway "
+         "back %.1e\n",
+         map, found.energy, found.momentum, found.way_back);
   /* Roundoff, but for the energy: order 6 in h = 0.1. */
-  return map < 1e-14 && found.energy < 1e-6 && found.momentum < 1e-12 && found.way_back < 1e-11 ? 0 : 1;
+  return map < 1e-14 && found.energy < 1e-6 && found.momentum < 1e-12 && found.way_back < 1e-11 ? 0
+                                                                                                : 1;
 }

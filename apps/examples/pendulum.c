@@ -28,7 +28,8 @@ static int observe(dvi_integrator *integrator, void *user)
 int main(void)
 {
   const dvi_potential gravity = {.name = "gravity", .value = value, .gradient = gradient};
-  const dvi_system_terms terms = {.dimension = 1, .mass = {.scalar = 1}, .potentials = &gravity, .potential_count = 1};
+  const dvi_system_terms terms = {
+      .dimension = 1, .mass = {.scalar = 1}, .potentials = &gravity, .potential_count = 1};
   const double q = 1.2, p = 0;
   dvi_system *system = NULL;
   dvi_integrator *integrator = NULL;
@@ -42,7 +43,8 @@ int main(void)
   if (status == DVI_OK) status = dvi_run(integrator, &options, NULL);
   if (status == DVI_OK) {
     dvi_drift_result(&energy, &fit);
-    printf("t = %g: q = %.10f, energy error %.1e\n", dvi_integrator_time(integrator), dvi_integrator_q(integrator)[0], fit.largest);
+    printf("t = %g: q = %.10f, energy error %.1e\n", dvi_integrator_time(integrator),
+           dvi_integrator_q(integrator)[0], fit.largest);
   } else {
     fprintf(stderr, "%s: %s\n", dvi_status_name(status), dvi_last_error());
   }

@@ -1,8 +1,10 @@
-/* Two modes of frequency 1 that exchange their energy (Henon and Heiles): paths of polynomials, and paths of waves, in steps of up to a whole period.
+/* Two modes of frequency 1 that exchange their energy (Henon and Heiles): paths of polynomials, and
+ * paths of waves, in steps of up to a whole period.
  *
  *     L = v.v/2 - q.q/2 - (q1^2 q2 - q2^3/3)
  *
- * A function space of one's own, its error beside that of as many polynomials, and what every such space keeps. */
+ * A function space of one's own, its error beside that of as many polynomials, and what every such
+ * space keeps. */
 #include <dvi/dvi.h>
 #include <math.h>
 #include <stdio.h>
@@ -22,7 +24,8 @@ static int gradient(double t, const double *q, double *V_q, void *user)
   return 0;
 }
 
-/* Waves of the frequency of the modes, and of twice that, which their squares have: sin and cos of k h tau, tau from 0 to 1 over a step of length h. */
+/* Waves of the frequency of the modes, and of twice that, which their squares have: sin and cos of
+ * k h tau, tau from 0 to 1 over a step of length h. */
 static int waves(double h, double tau, double *value, double *derivative, void *user)
 {
   (void)user;
@@ -42,7 +45,8 @@ static const double q_start[] = {0.1, 0}, p_start[] = {0, 0.05};
 static dvi_status arrive(dvi_integrator *integrator, int steps, double *q)
 {
   dvi_status status = dvi_integrator_start(integrator, 0, q_start, p_start);
-  for (int i = 0; status == DVI_OK && i < steps; i++) status = dvi_integrator_step(integrator, (double)LENGTH / steps);
+  for (int i = 0; status == DVI_OK && i < steps; i++)
+    status = dvi_integrator_step(integrator, (double)LENGTH / steps);
   for (int i = 0; status == DVI_OK && i < 2; i++) q[i] = dvi_integrator_q(integrator)[i];
   return status;
 }
@@ -70,14 +74,17 @@ static dvi_status study(const dvi_system *system, findings *found)
   const dvi_shapes shapes = {.name = "waves", .functions = 4, .evaluate = waves, .h = 1};
   dvi_integrator *judge = NULL, *polynomials = NULL, *own = NULL;
   dvi_status status = dvi_integrator_create(system, "galerkin:degree=10", &judge);
-  if (status == DVI_OK) status = dvi_integrator_create(system, "galerkin:degree=5,nodes=16", &polynomials);
-  const dvi_integrator_options options = {.size = sizeof options, .method = "shaped-galerkin:nodes=16", .shapes = &shapes};
+  if (status == DVI_OK)
+    status = dvi_integrator_create(system, "galerkin:degree=5,nodes=16", &polynomials);
+  const dvi_integrator_options options = {
+      .size = sizeof options, .method = "shaped-galerkin:nodes=16", .shapes = &shapes};
   if (status == DVI_OK) status = dvi_integrator_create_with(system, &options, &own);
   if (status == DVI_OK) status = arrive(judge, 240, found->exact);
   if (status == DVI_OK) status = compare(polynomials, found->exact, &found->polynomials);
   if (status == DVI_OK) status = compare(own, found->exact, &found->waves);
   if (status == DVI_OK) status = dvi_symplecticity(own, 0, q_start, p_start, 2, &found->symplectic);
-  if (status == DVI_OK) status = dvi_reversibility(own, 0, q_start, p_start, 2, 100, &found->way_back);
+  if (status == DVI_OK)
+    status = dvi_reversibility(own, 0, q_start, p_start, 2, 100, &found->way_back);
   dvi_integrator_destroy(&judge);
   dvi_integrator_destroy(&polynomials);
   dvi_integrator_destroy(&own);
@@ -87,7 +94,8 @@ static dvi_status study(const dvi_system *system, findings *found)
 int main(void)
 {
   const dvi_potential modes = {.name = "modes", .value = value, .gradient = gradient};
-  const dvi_system_terms terms = {.dimension = 2, .mass = {.scalar = 1}, .potentials = &modes, .potential_count = 1};
+  const dvi_system_terms terms = {
+      .dimension = 2, .mass = {.scalar = 1}, .potentials = &modes, .potential_count = 1};
   dvi_system *system = NULL;
   findings found = {.exact = {0}};
   dvi_status status = dvi_system_create(&terms, &system);
@@ -98,5 +106,6 @@ int main(void)
     return 1;
   }
   printf("not symplectic by %.1e, way back %.1e\n", found.symplectic, found.way_back);
-  return found.waves < found.polynomials && found.symplectic < 1e-11 && found.way_back < 1e-11 ? 0 : 1;
+  return found.waves < found.polynomials && found.symplectic < 1e-11 && found.way_back < 1e-11 ? 0
+                                                                                               : 1;
 }

@@ -32,18 +32,20 @@ int axis_read(const char *text, scale_axis *axis)
 {
   const size_t length = strcspn(text, "=");
   if (text[length] == '\0' || length == 0 || length >= AXIS_NAME_SIZE)
-    return usage_error(
-        "bench: --scale wants a parameter of the problem, degree, threads or members, and its values, NAME=V1,V2,..., not '%s'",
-        text);
+    return usage_error("bench: --scale wants a parameter of the problem, degree, threads or "
+                       "members, and its values, NAME=V1,V2,..., not '%s'",
+                       text);
   (void)snprintf(axis->name, sizeof axis->name, "%.*s", (int)length, text);
   classify(axis);
   const int code = numbers_read("bench: --scale", text + length + 1, &axis->values);
   if (code == DONE && axis->values.count < 2)
-    return usage_error("bench: --scale needs two values at least: with %s there is nothing to compare", text);
+    return usage_error(
+        "bench: --scale needs two values at least: with %s there is nothing to compare", text);
   return code;
 }
 
-int axis_problem(const scale_axis *axis, int k, const char *name, const words *settings, bool one_point, problem **scene)
+int axis_problem(const scale_axis *axis, int k, const char *name, const words *settings,
+                 bool one_point, problem **scene)
 {
   char setting[AXIS_NAME_SIZE + NUMBER_SIZE];
   words all = *settings;
@@ -54,15 +56,17 @@ int axis_problem(const scale_axis *axis, int k, const char *name, const words *s
   return open_shaped(name, &all, one_point, scene);
 }
 
-int axis_method(const scale_axis *axis, int k, const char *method, char specification[SPECIFICATION_SIZE])
+int axis_method(const scale_axis *axis, int k, const char *method,
+                char specification[SPECIFICATION_SIZE])
 {
   int length;
   if (axis->kind == AXIS_KEY)
-    length = snprintf(specification, SPECIFICATION_SIZE, "%s%c%s=%s", method, strchr(method, ':') != NULL ? ',' : ':', axis->name,
-                      axis->values.text[k]);
+    length = snprintf(specification, SPECIFICATION_SIZE, "%s%c%s=%s", method,
+                      strchr(method, ':') != NULL ? ',' : ':', axis->name, axis->values.text[k]);
   else
     length = snprintf(specification, SPECIFICATION_SIZE, "%s", method);
-  if (length >= SPECIFICATION_SIZE) return usage_error("bench: --method %.40s... is too long for --scale", method);
+  if (length >= SPECIFICATION_SIZE)
+    return usage_error("bench: --method %.40s... is too long for --scale", method);
   return DONE;
 }
 

@@ -1,4 +1,5 @@
-/** The catalogue's problems as scenes: the texts of apps/scenes, which the build puts into the command. */
+/** The catalogue's problems as scenes: the texts of apps/scenes, which the build puts into the
+ * command. */
 #ifndef CATALOGUE_H
 #define CATALOGUE_H
 #include <stddef.h>

@@ -46,12 +46,13 @@ void natural_scale_look(natural_scale *s, dvi_integrator *integrator)
   read_state(s->scene, integrator, s->mixed);
   for (int i = 0; i < numbers; i++)
     if (by_chance(s)) s->mixed[i] = s->start[i];
-  if (dvi_system_invariants(s->scene->system, dvi_integrator_time(integrator), s->mixed, s->mixed + s->scene->nq, s->value) !=
-      DVI_OK)
+  if (dvi_system_invariants(s->scene->system, dvi_integrator_time(integrator), s->mixed,
+                            s->mixed + s->scene->nq, s->value) != DVI_OK)
     return;
   for (int i = 0; i < s->invariants; i++) {
     double there;
-    if (dvi_integrator_invariant(integrator, i, &there) == DVI_OK) s->changed[i] += fabs(s->value[i] - there);
+    if (dvi_integrator_invariant(integrator, i, &there) == DVI_OK)
+      s->changed[i] += fabs(s->value[i] - there);
   }
   s->looks++;
 }

@@ -19,7 +19,8 @@ typedef struct natural_scale {
 } natural_scale;
 
 /** Begin at a state. False without memory, with a complaint; clear it in any case. */
-bool natural_scale_start(natural_scale *scale, const problem *scene, const dvi_integrator *integrator);
+bool natural_scale_start(natural_scale *scale, const problem *scene,
+                         const dvi_integrator *integrator);
 void natural_scale_clear(natural_scale *scale);
 
 /** Look at the integrator's state. Where the mixed one is not possible (of a manifold), nothing

@@ -28,7 +28,8 @@ static const char *method_at(int k, const void *list)
   return dvi_method_name(k);
 }
 
-/* Keys of the method whose index *list is; a composition hands keys on to its base, so those of all methods follow. */
+/* Keys of the method whose index *list is; a composition hands keys on to its base, so those of all
+ * methods follow. */
 static const char *key_at(int k, const void *list)
 {
   const int method = *(const int *)list;
@@ -49,7 +50,8 @@ static bool is_known(const char *word, word_at known, const void *list)
   return false;
 }
 
-/* Copy what stands before any of the stop characters. Returns what follows that character, or NULL at the end of the text. */
+/* Copy what stands before any of the stop characters. Returns what follows that character, or NULL
+ * at the end of the text. */
 static const char *take_word(const char *text, const char *stops, char *word)
 {
   const size_t length = strcspn(text, stops);
@@ -70,7 +72,8 @@ static void hint_at_setting(const words *settings, const problem_parameter *para
   hint[0] = '\0';
   for (int i = 0; i < settings->count && hint[0] == '\0'; i++) {
     (void)take_word(settings->word[i], "=", word);
-    if (!is_known(word, parameter_at, parameters)) (void)suggestion(word, parameter_at, parameters, hint, HINT_SIZE);
+    if (!is_known(word, parameter_at, parameters))
+      (void)suggestion(word, parameter_at, parameters, hint, HINT_SIZE);
   }
 }
 
@@ -78,7 +81,8 @@ static void hint_at_setting(const words *settings, const problem_parameter *para
 static bool scene_beside(const char *name, char *hint)
 {
   char path[HINT_SIZE / 2];
-  if (snprintf(path, sizeof path, "%s.yaml", name) >= (int)sizeof path || access(path, R_OK) != 0) return false;
+  if (snprintf(path, sizeof path, "%s.yaml", name) >= (int)sizeof path || access(path, R_OK) != 0)
+    return false;
   (void)snprintf(hint, HINT_SIZE, " (did you mean '%s'?)", path);
   return true;
 }
@@ -89,11 +93,12 @@ static int refuse_name(const char *name)
   char hint[HINT_SIZE];
   struct stat there;
   if (stat(name, &there) == 0)
-    return usage_error(
-        "'%s' is a %s, and no scene: that is a YAML file whose name ends in .yaml or .yml; dvi init NAME.yaml writes one", name,
-        S_ISDIR(there.st_mode) ? "folder" : "file of another kind");
-  return usage_error("unknown problem '%s'%s; see dvi list problems", name,
-                     scene_beside(name, hint) ? hint : suggestion(name, problem_at, NULL, hint, sizeof hint));
+    return usage_error("'%s' is a %s, and no scene: that is a YAML file whose name ends in .yaml "
+                       "or .yml; dvi init NAME.yaml writes one",
+                       name, S_ISDIR(there.st_mode) ? "folder" : "file of another kind");
+  return usage_error(
+      "unknown problem '%s'%s; see dvi list problems", name,
+      scene_beside(name, hint) ? hint : suggestion(name, problem_at, NULL, hint, sizeof hint));
 }
 
 int open_problem(const char *name, const words *settings, problem **scene)
@@ -104,7 +109,8 @@ int open_problem(const char *name, const words *settings, problem **scene)
   if (scene_is_path(name)) return scene_open(name, settings, scene);
   const int index = problem_find(name);
   if (index < 0) return refuse_name(name);
-  const dvi_status status = problem_create(name, settings->count, settings->word, scene, message, sizeof message);
+  const dvi_status status = problem_create(name, settings->count, settings->word, scene, message,
+                                           sizeof message);
   if (status == DVI_OK) return DONE;
   if (status != DVI_BAD_OPTION && message[0] == '\0') return library_error(status);
   hint_at_setting(settings, problem_parameters(index), hint);
@@ -114,7 +120,8 @@ int open_problem(const char *name, const words *settings, problem **scene)
 
 int open_text(const char *name, const scene_text *text, const words *settings, problem **scene)
 {
-  return text->text == NULL ? open_problem(name, settings, scene) : scene_parse(name, text, settings, scene);
+  return text->text == NULL ? open_problem(name, settings, scene)
+                            : scene_parse(name, text, settings, scene);
 }
 
 int open_shaped(const char *name, const words *settings, bool one_point, problem **scene)
@@ -135,7 +142,9 @@ int open_wish(const char *command, const problem *scene, const char **method)
 {
   if (*method == NULL) *method = scene->method;
   if (*method != NULL) return DONE;
-  return usage_error("%s: --method is missing, for example --method galerkin:degree=4; see dvi list methods", command);
+  return usage_error(
+      "%s: --method is missing, for example --method galerkin:degree=4; see dvi list methods",
+      command);
 }
 
 const char *start_setting(const problem *scene, const words *settings)
@@ -159,7 +168,8 @@ static bool hint_at_colon(const char *method, char *hint)
   char name[WORD_SIZE];
   const char *keys = take_word(method, " ", name);
   if (keys == NULL || method_index(name) < 0) return false;
-  (void)snprintf(hint, HINT_SIZE, " (did you mean '%s:%.*s'?)", name, (int)strcspn(keys, " "), keys);
+  (void)snprintf(hint, HINT_SIZE, " (did you mean '%s:%.*s'?)", name, (int)strcspn(keys, " "),
+                 keys);
   return true;
 }
 
@@ -179,17 +189,22 @@ static void hint_at_method(const char *method, char *hint)
   }
 }
 
-static int read_monitor(const problem *scene, const char *asked, const char *specification, dvi_monitor *monitor)
+static int read_monitor(const problem *scene, const char *asked, const char *specification,
+                        dvi_monitor *monitor)
 {
-  if (dvi_monitor_read(specification, monitor) != DVI_OK) return usage_error("--%s %s: %s", asked, specification, dvi_last_error());
-  if (monitor->kind != DVI_MONITOR_DISTANCE || scene->velocity != NULL) return DONE; /* with factors there is no monitor at all */
+  if (dvi_monitor_read(specification, monitor) != DVI_OK)
+    return usage_error("--%s %s: %s", asked, specification, dvi_last_error());
+  /* with factors there is no monitor at all */
+  if (monitor->kind != DVI_MONITOR_DISTANCE || scene->velocity != NULL) return DONE;
   if (scene->bodies == 0)
-    return usage_error("--%s %s: %s has no bodies whose distances could be measured; see arclength and acceleration", asked,
-                       specification, scene->name);
+    return usage_error("--%s %s: %s has no bodies whose distances could be measured; see arclength "
+                       "and acceleration",
+                       asked, specification, scene->name);
   const int dimension = scene->nq / scene->bodies;
-  if ((monitor->bodies != 0 && monitor->bodies != scene->bodies) || (monitor->dimension != 0 && monitor->dimension != dimension))
-    return usage_error("--%s %s: %s is bodies=%d,dimension=%d; leave the keys out", asked, specification, scene->name,
-                       scene->bodies, dimension);
+  if ((monitor->bodies != 0 && monitor->bodies != scene->bodies) ||
+      (monitor->dimension != 0 && monitor->dimension != dimension))
+    return usage_error("--%s %s: %s is bodies=%d,dimension=%d; leave the keys out", asked,
+                       specification, scene->name, scene->bodies, dimension);
   monitor->bodies = scene->bodies;
   return DONE;
 }
@@ -224,8 +239,8 @@ int open_monitor(const problem *scene, const pacing *how, dvi_monitor *monitor)
   return how->control != NULL ? read_monitor(scene, "step-control", how->control, monitor) : DONE;
 }
 
-dvi_status create_paced(const problem *scene, const char *method, const pacing *how, const dvi_monitor *monitor,
-                        dvi_integrator **integrator)
+dvi_status create_paced(const problem *scene, const char *method, const pacing *how,
+                        const dvi_monitor *monitor, dvi_integrator **integrator)
 {
   dvi_integrator_options options = {.size = sizeof options, .method = method};
   if (how->transform != NULL) options.pacing = DVI_TIME_TRANSFORM;
@@ -234,10 +249,13 @@ dvi_status create_paced(const problem *scene, const char *method, const pacing *
   return dvi_integrator_create_with(scene->system, &options, integrator);
 }
 
-int open_paced(const problem *scene, const char *method, const pacing *how, dvi_integrator **integrator)
+int open_paced(const problem *scene, const char *method, const pacing *how,
+               dvi_integrator **integrator)
 {
   dvi_monitor monitor = {0};
   *integrator = NULL;
   const int code = open_monitor(scene, how, &monitor);
-  return code == DONE ? opened(create_paced(scene, method, how, &monitor, integrator), scene, method) : code;
+  return code == DONE
+             ? opened(create_paced(scene, method, how, &monitor, integrator), scene, method)
+             : code;
 }

@@ -3,7 +3,8 @@
 #define PACING_H
 #include <stddef.h>
 
-/** What the steps of a method follow: one monitor's specification at most; none: steps are steps of time. */
+/** What the steps of a method follow: one monitor's specification at most; none: steps are steps of
+ * time. */
 typedef struct pacing {
   const char *transform, *control; /**< --time-transform, --step-control */
 } pacing;

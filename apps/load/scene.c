@@ -38,8 +38,10 @@ static void close_scene(problem *made)
 
 static void label(const dvi_scene *scene, problem *made)
 {
-  for (int i = 0; i < made->nq; i++) (void)snprintf(made->coordinate[i], PROBLEM_LABEL_SIZE, "%s", dvi_scene_coordinate(scene, i));
-  for (int i = 0; i < made->nv; i++) (void)snprintf(made->momentum[i], PROBLEM_LABEL_SIZE, "%s", dvi_scene_momentum(scene, i));
+  for (int i = 0; i < made->nq; i++)
+    (void)snprintf(made->coordinate[i], PROBLEM_LABEL_SIZE, "%s", dvi_scene_coordinate(scene, i));
+  for (int i = 0; i < made->nv; i++)
+    (void)snprintf(made->momentum[i], PROBLEM_LABEL_SIZE, "%s", dvi_scene_momentum(scene, i));
   for (int i = 0; i < made->nv && made->velocity != NULL; i++)
     (void)snprintf(made->velocity[i], PROBLEM_LABEL_SIZE, "%s", dvi_scene_velocity(scene, i));
 }
@@ -79,9 +81,12 @@ static bool describe(dvi_scene *scene, problem *made)
   made->scene = scene;
   made->close = close_scene;
   made->terms = dvi_scene_terms(scene);
-  made->system = (dvi_system *)dvi_scene_system(scene); /* which is not to be changed, nor does anyone here */
-  if (problem_room_of(made, dvi_system_nq(made->system), dvi_system_nv(made->system), 1) != DVI_OK) return false;
-  if (made->terms->factors != NULL && (made->velocity = problem_names(made, made->nv)) == NULL) return false;
+  /* which is not to be changed, nor does anyone here */
+  made->system = (dvi_system *)dvi_scene_system(scene);
+  if (problem_room_of(made, dvi_system_nq(made->system), dvi_system_nv(made->system), 1) != DVI_OK)
+    return false;
+  if (made->terms->factors != NULL && (made->velocity = problem_names(made, made->nv)) == NULL)
+    return false;
   label(scene, made);
   place(scene, made);
   made->bodies = dvi_scene_bodies(scene);
@@ -118,7 +123,8 @@ static problem *problem_of(dvi_scene *scene, const char *path)
 }
 
 /* What came of reading a scene. */
-static int read_as(const char *path, dvi_status status, const char *message, dvi_scene *read, problem **scene)
+static int read_as(const char *path, dvi_status status, const char *message, dvi_scene *read,
+                   problem **scene)
 {
   *scene = NULL;
   if (status != DVI_OK) {
@@ -139,7 +145,8 @@ static bool is_folder(const char *path)
 
 static int refuse_folder(const char *path)
 {
-  return usage_error("'%s' is a folder, and no scene: that is a file; dvi init NAME.yaml writes one", path);
+  return usage_error(
+      "'%s' is a folder, and no scene: that is a file; dvi init NAME.yaml writes one", path);
 }
 
 int scene_open(const char *path, const words *settings, problem **scene)
@@ -148,7 +155,8 @@ int scene_open(const char *path, const words *settings, problem **scene)
   dvi_scene *read = NULL;
   *scene = NULL;
   if (is_folder(path)) return refuse_folder(path);
-  const dvi_status status = dvi_scene_read(path, settings->count, settings->word, &read, message, sizeof message);
+  const dvi_status status = dvi_scene_read(path, settings->count, settings->word, &read, message,
+                                           sizeof message);
   return read_as(path, status, message, read, scene);
 }
 
@@ -156,8 +164,8 @@ int scene_parse(const char *path, const scene_text *text, const words *settings,
 {
   char message[MESSAGE_SIZE] = "";
   dvi_scene *read = NULL;
-  const dvi_status status = dvi_scene_parse(path, text->text, text->length, settings->count, settings->word, &read, message,
-                                            sizeof message);
+  const dvi_status status = dvi_scene_parse(path, text->text, text->length, settings->count,
+                                            settings->word, &read, message, sizeof message);
   return read_as(path, status, message, read, scene);
 }
 
@@ -184,7 +192,8 @@ int scene_spared(const char *command, const char *path, int count, const named_f
 {
   for (int i = 0; i < count && scene_is_path(path); i++)
     if (files[i].path != NULL && strcmp(files[i].path, "-") != 0 && file_same(path, files[i].path))
-      return usage_error("%s: --%s %s would write over the scene", command, files[i].option, files[i].path);
+      return usage_error("%s: --%s %s would write over the scene", command, files[i].option,
+                         files[i].path);
   return DONE;
 }
 
@@ -216,16 +225,21 @@ void scene_tell(const problem *scene)
   dvi_scene_facts_of(scene->scene, &facts);
   (void)printf("scene: %s", facts.form);
   if (facts.mass != NULL) (void)printf(", mass %s", facts.mass);
-  if (facts.quadratic_potentials > 0) (void)printf(", quadratic potentials %d", facts.quadratic_potentials);
-  if (fast_potentials(scene->terms) > 0) (void)printf(", fast potentials %d", fast_potentials(scene->terms));
-  (void)printf("; %d kernel%s, %ld element%s, %d nodes\n", facts.kernels, facts.kernels == 1 ? "" : "s", facts.elements,
-               facts.elements == 1 ? "" : "s", facts.nodes);
+  if (facts.quadratic_potentials > 0)
+    (void)printf(", quadratic potentials %d", facts.quadratic_potentials);
+  if (fast_potentials(scene->terms) > 0)
+    (void)printf(", fast potentials %d", fast_potentials(scene->terms));
+  (void)printf("; %d kernel%s, %ld element%s, %d nodes\n", facts.kernels,
+               facts.kernels == 1 ? "" : "s", facts.elements, facts.elements == 1 ? "" : "s",
+               facts.nodes);
   tell_operations("operations a point: value", facts.value_operations, facts.value_points);
   tell_operations(", gradient", facts.gradient_operations, facts.gradient_points);
   tell_operations(", Hessian", facts.hessian_operations, facts.hessian_points);
-  if (facts.hessian_operations >= 0) (void)printf(", %ld entr%s", facts.hessian_entries, facts.hessian_entries == 1 ? "y" : "ies");
+  if (facts.hessian_operations >= 0)
+    (void)printf(", %ld entr%s", facts.hessian_entries, facts.hessian_entries == 1 ? "y" : "ies");
   (void)printf("\n");
   char kept[KINK_SIZE];
   if (dvi_scene_kink(scene->scene, kept, sizeof kept) >= 0) (void)printf("kink: %s\n", kept);
-  if (dvi_scene_invariance(scene->scene, kept, sizeof kept) > 0) (void)printf("invariant under %s\n", kept);
+  if (dvi_scene_invariance(scene->scene, kept, sizeof kept) > 0)
+    (void)printf("invariant under %s\n", kept);
 }

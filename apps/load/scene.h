@@ -8,7 +8,8 @@
 /** Whether a problem's name is the path of a scene: it ends in .yaml or .yml. */
 bool scene_is_path(const char *name);
 
-/** Read a scene as a problem, with its "name=value" settings. Returns DONE, or complains and returns the exit code. */
+/** Read a scene as a problem, with its "name=value" settings. Returns DONE, or complains and
+ * returns the exit code. */
 int scene_open(const char *path, const words *settings, problem **scene);
 
 /** The text of a scene's file, to be read many times with different settings. */
@@ -23,12 +24,14 @@ int scene_load(const char *path, scene_text *text);
 /** scene_open for such a text. */
 int scene_parse(const char *path, const scene_text *text, const words *settings, problem **scene);
 
-/** Refuse to write any of the files over the scene itself. Returns DONE, or complains and returns USAGE. */
+/** Refuse to write any of the files over the scene itself. Returns DONE, or complains and returns
+ * USAGE. */
 int scene_spared(const char *command, const char *path, int count, const named_file *files);
 
 /** Say on standard error where a scene has a kink, and what order that leaves to any method. */
 void scene_warn(const char *command, const problem *scene);
 
-/** Print what was found in a problem's scene and what has been derived from it by now; nothing for a problem of the catalogue. */
+/** Print what was found in a problem's scene and what has been derived from it by now; nothing for
+ * a problem of the catalogue. */
 void scene_tell(const problem *scene);
 #endif

@@ -15,37 +15,45 @@ static const char *title_at(int k, const void *list)
   return ((const table_column *)list)[k].title;
 }
 
-static int find_column(const char *command, const char *title, const table_column *columns, int *column)
+static int find_column(const char *command, const char *title, const table_column *columns,
+                       int *column)
 {
   for (*column = 0; columns[*column].title != NULL; ++*column)
     if (strcmp(columns[*column].title, title) == 0) break;
   if (columns[*column].title == NULL) {
     char hint[HINT_SIZE];
-    return usage_error("%s: --axes: the table has no column '%s'%s; dvi %s --help has their names", command, title,
-                       suggestion(title, title_at, columns, hint, sizeof hint), command);
+    return usage_error("%s: --axes: the table has no column '%s'%s; dvi %s --help has their names",
+                       command, title, suggestion(title, title_at, columns, hint, sizeof hint),
+                       command);
   }
-  return columns[*column].format != NULL ? DONE : usage_error("%s: --axes: column '%s' has no numbers", command, title);
+  return columns[*column].format != NULL
+             ? DONE
+             : usage_error("%s: --axes: column '%s' has no numbers", command, title);
 }
 
-static int read_pair(const char *command, const char *text, const table_column *columns, axes_pair *pair)
+static int read_pair(const char *command, const char *text, const table_column *columns,
+                     axes_pair *pair)
 {
   char name[NAME_SIZE];
   const size_t length = strcspn(text, ":");
   if (length == 0 || length >= sizeof name || text[length] == '\0' || text[length + 1] == '\0')
-    return usage_error("%s: --axes wants two columns, X:Y, for example h:energy_error, not '%s'", command, text);
+    return usage_error("%s: --axes wants two columns, X:Y, for example h:energy_error, not '%s'",
+                       command, text);
   (void)snprintf(name, sizeof name, "%.*s", (int)length, text);
   const int code = find_column(command, name, columns, &pair->x);
   return code == DONE ? find_column(command, text + length + 1, columns, &pair->y) : code;
 }
 
-int axes_read(const char *command, const words *asked, const char *plot, const char *usual, const table_column *columns,
-              plot_axes *axes)
+int axes_read(const char *command, const words *asked, const char *plot, const char *usual,
+              const table_column *columns, plot_axes *axes)
 {
-  if (asked->count > 0 && plot == NULL) return usage_error("%s: --axes draws nothing without --plot FILE.svg", command);
+  if (asked->count > 0 && plot == NULL)
+    return usage_error("%s: --axes draws nothing without --plot FILE.svg", command);
   int code = read_pair(command, usual, columns, &axes->usual);
   axes->count = asked->count > 0 ? asked->count : 1;
   axes->pair[0] = axes->usual;
-  for (int k = 0; k < asked->count && code == DONE; k++) code = read_pair(command, asked->word[k], columns, &axes->pair[k]);
+  for (int k = 0; k < asked->count && code == DONE; k++)
+    code = read_pair(command, asked->word[k], columns, &axes->pair[k]);
   return code;
 }
 
@@ -53,7 +61,9 @@ int axes_read(const char *command, const words *asked, const char *plot, const c
 static int run_end(const result_table *rows, int first)
 {
   int end = first;
-  while (end < table_rows(rows) && strcmp(table_text_at(rows, end, 0), table_text_at(rows, first, 0)) == 0) end++;
+  while (end < table_rows(rows) &&
+         strcmp(table_text_at(rows, end, 0), table_text_at(rows, first, 0)) == 0)
+    end++;
   return end;
 }
 
@@ -75,24 +85,31 @@ static int add_curves(const result_table *rows, axes_pair pair, double *number, 
 }
 
 /* Room for the numbers, [2 rows], and the curves, [rows + guides], of every pair. */
-static bool draw(const result_table *rows, const plot_axes *axes, const char *subject, int guides, const plot_curve *guide,
-                 double *number, plot_curve *curve, const char *path)
+static bool draw(const result_table *rows, const plot_axes *axes, const char *subject, int guides,
+                 const plot_curve *guide, double *number, plot_curve *curve, const char *path)
 {
   plot_panel panel[WORDS_MAX];
   char title[WORDS_MAX][TITLE_SIZE];
-  for (int k = 0; k < axes->count; k++, number += 2 * table_rows(rows), curve += table_rows(rows) + guides) {
+  for (int k = 0; k < axes->count;
+       k++, number += 2 * table_rows(rows), curve += table_rows(rows) + guides) {
     const axes_pair pair = axes->pair[k];
     const char *x = table_title(rows, pair.x), *y = table_title(rows, pair.y);
     int curves = add_curves(rows, pair, number, curve);
-    for (int i = 0; i < guides && pair.x == axes->usual.x && pair.y == axes->usual.y; i++) curve[curves++] = guide[i];
+    for (int i = 0; i < guides && pair.x == axes->usual.x && pair.y == axes->usual.y; i++)
+      curve[curves++] = guide[i];
     (void)snprintf(title[k], sizeof title[k], "%s against %s: %s", y, x, subject);
-    panel[k] = (plot_panel){.title = title[k], .x_label = x, .y_label = y, .logarithmic = true, .curves = curves, .curve = curve};
+    panel[k] = (plot_panel){.title = title[k],
+                            .x_label = x,
+                            .y_label = y,
+                            .logarithmic = true,
+                            .curves = curves,
+                            .curve = curve};
   }
   return plot_write(path, axes->count, panel);
 }
 
-bool axes_plot(const result_table *rows, const plot_axes *axes, const char *subject, int guides, const plot_curve *guide,
-               const char *path)
+bool axes_plot(const result_table *rows, const plot_axes *axes, const char *subject, int guides,
+               const plot_curve *guide, const char *path)
 {
   const size_t pairs = (size_t)axes->count, n = (size_t)table_rows(rows);
   double *number = calloc(pairs * 2 * n, sizeof *number);

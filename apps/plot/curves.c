@@ -23,17 +23,20 @@ static int ask(const char *pair, int panel, curve_list *list)
   curve_points *curve = &list->curve[list->curves++];
   *curve = (curve_points){.panel = panel, .x_column = -1, .y_column = -1};
   const char *colon = strchr(pair, ':'), *y = colon != NULL ? colon + 1 : pair;
-  (void)snprintf(curve->x_name, FIELD_SIZE, "%.*s", colon != NULL ? (int)(colon - pair) : 1, colon != NULL ? pair : "t");
+  (void)snprintf(curve->x_name, FIELD_SIZE, "%.*s", colon != NULL ? (int)(colon - pair) : 1,
+                 colon != NULL ? pair : "t");
   (void)snprintf(curve->y_name, FIELD_SIZE, "%s", y);
   if (curve->x_name[0] != '\0' && curve->y_name[0] != '\0') return DONE;
-  return usage_error("plot: --axes wants columns, X:Y, for example x:y, or t:energy, not '%s'", pair);
+  return usage_error("plot: --axes wants columns, X:Y, for example x:y, or t:energy, not '%s'",
+                     pair);
 }
 
 int curves_ask(const words *asked, curve_list *list)
 {
   char pair[FIELD_SIZE];
   *list = (curve_list){.panels = asked->count};
-  if (asked->count == 0) return usage_error("plot: --axes X:Y is missing: which columns are drawn against each other");
+  if (asked->count == 0)
+    return usage_error("plot: --axes X:Y is missing: which columns are drawn against each other");
   for (int k = 0; k < asked->count; k++)
     for (const char *text = asked->word[k]; text != NULL;) {
       rows_field(&text, pair);
@@ -48,27 +51,32 @@ static const char *title_at(int k, const void *list)
   return k < titles->count ? titles->title[k] : NULL;
 }
 
-/* Refuse a column that the header lacks: with the nearest that it has, or with all of them, as far as a line holds them. */
+/* Refuse a column that the header lacks: with the nearest that it has, or with all of them, as far
+ * as a line holds them. */
 static int refuse_column(const row_file *file, int columns, const char *name)
 {
   char hint[HINT_SIZE] = "";
   title_list titles = {.title = calloc((size_t)columns, sizeof *titles.title)};
   const char *text = file->line;
-  while (titles.title != NULL && text != NULL && titles.count < columns) rows_field(&text, titles.title[titles.count++]);
+  while (titles.title != NULL && text != NULL && titles.count < columns)
+    rows_field(&text, titles.title[titles.count++]);
   (void)suggestion(name, title_at, &titles, hint, sizeof hint);
   free(titles.title);
-  if (hint[0] != '\0') return usage_error("plot: '%s' has no column '%s'%s", file->path, name, hint);
+  if (hint[0] != '\0')
+    return usage_error("plot: '%s' has no column '%s'%s", file->path, name, hint);
   int length = 0;
-  while (file->line != NULL && length < SHOWN && isprint((unsigned char)file->line[length])) length++;
-  return usage_error("plot: '%s' has no column '%s'; it has %.*s%s", file->path, name, length, file->line != NULL ? file->line : "",
-                     length < SHOWN ? "" : "..");
+  while (file->line != NULL && length < SHOWN && isprint((unsigned char)file->line[length]))
+    length++;
+  return usage_error("plot: '%s' has no column '%s'; it has %.*s%s", file->path, name, length,
+                     file->line != NULL ? file->line : "", length < SHOWN ? "" : "..");
 }
 
 /* The columns by name; the first one that is not there is told. */
 static int find_columns(row_file *file, curve_list *list)
 {
   char title[FIELD_SIZE];
-  if (!rows_next(file)) return rows_complete(file) ? usage_error("plot: '%s' is empty", file->path) : FAILED;
+  if (!rows_next(file))
+    return rows_complete(file) ? usage_error("plot: '%s' is empty", file->path) : FAILED;
   const char *text = file->line;
   int column = 0;
   do {
@@ -109,7 +117,8 @@ static bool make_room(curve_list *list)
 static void read_row(const char *text, curve_list *list)
 {
   char field[FIELD_SIZE];
-  for (int k = 0; k < list->curves; k++) list->curve[k].x[list->count] = list->curve[k].y[list->count] = (double)NAN;
+  for (int k = 0; k < list->curves; k++)
+    list->curve[k].x[list->count] = list->curve[k].y[list->count] = (double)NAN;
   for (int column = 0; text != NULL; column++) {
     double number;
     rows_field(&text, field);

@@ -18,10 +18,12 @@ typedef struct curve_list {
   curve_points curve[WORDS_MAX];
 } curve_list;
 
-/** Read the words of --axes, each "X:Y[,X:Y...]" for one panel; Y alone is t:Y. Returns DONE, or complains and returns USAGE. */
+/** Read the words of --axes, each "X:Y[,X:Y...]" for one panel; Y alone is t:Y. Returns DONE, or
+ * complains and returns USAGE. */
 int curves_ask(const words *asked, curve_list *list);
 
-/** Read the columns that are asked for from a CSV file with a header. Returns DONE, or complains and returns the exit code. */
+/** Read the columns that are asked for from a CSV file with a header. Returns DONE, or complains
+ * and returns the exit code. */
 int curves_read(const char *path, curve_list *list);
 
 void curves_clear(curve_list *list);

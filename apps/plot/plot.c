@@ -23,13 +23,15 @@ enum { WIDTH = 860, PANEL_HEIGHT = 560, COLOURS = 8 };
 /* Pixels: less is not seen. */
 static const double SEEN = 0.2;
 
-/* Okabe and Ito's colours, which the colour-blind can tell apart; their yellow is too pale for lines. */
-static const char *const colour[COLOURS] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000", "#7F3C8D"};
+/* Okabe and Ito's colours, which the colour-blind can tell apart; their yellow is too pale for
+ * lines. */
+static const char *const colour[COLOURS] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
+                                            "#56B4E9", "#E69F00", "#000000", "#7F3C8D"};
 
-/* A gnuplot string in double quotes. What stands between backquotes there would be run as a command,
- * and more characters mean something: of ASCII all but letters, digits and blanks are written by their
- * numbers, of which gnuplot reads four digits if the first is 0. No control character can be in an SVG
- * file. */
+/* A gnuplot string in double quotes. What stands between backquotes there would be run as a
+ * command, and more characters mean something: of ASCII all but letters, digits and blanks are
+ * written by their numbers, of which gnuplot reads four digits if the first is 0. No control
+ * character can be in an SVG file. */
 static void quoted(FILE *script, const char *text)
 {
   (void)fputc('"', script);
@@ -66,8 +68,8 @@ static int points(const plot_panel *panel, const plot_curve *curve)
   return count;
 }
 
-/* The range of the drawable points of all curves: [least, most] of x, then of y. Whether y stays where it is, up to what its labels could show; the
- * range is then wider. */
+/* The range of the drawable points of all curves: [least, most] of x, then of y. Whether y stays
+ * where it is, up to what its labels could show; the range is then wider. */
 static bool find_range(const plot_panel *panel, double range[4])
 {
   range[0] = range[2] = HUGE_VAL;
@@ -115,7 +117,8 @@ static void write_blocks(FILE *script, int index, const plot_panel *panel)
     (void)fprintf(script, "$panel%d_curve%d << END\n", index, k);
     bool *needed = panel->smooth && !panel->dots ? needed_points(panel, curve) : NULL;
     for (int i = 0; i < curve->count; i++)
-      if (needed != NULL ? needed[i] : drawable(panel, curve, i)) (void)fprintf(script, "%.9g %.9g\n", curve->x[i], curve->y[i]);
+      if (needed != NULL ? needed[i] : drawable(panel, curve, i))
+        (void)fprintf(script, "%.9g %.9g\n", curve->x[i], curve->y[i]);
     (void)fputs("END\n", script);
     free(needed);
   }
@@ -139,7 +142,8 @@ static void write_curve(FILE *script, int index, const plot_panel *panel, int k,
   else if (panel->smooth)
     (void)fprintf(script, "lines lw 1.2 lc rgb '%s'", colour[style % COLOURS]);
   else
-    (void)fprintf(script, "linespoints lw 1.6 ps 0.7 pt %d lc rgb '%s'", 4 + style, colour[style % COLOURS]);
+    (void)fprintf(script, "linespoints lw 1.6 ps 0.7 pt %d lc rgb '%s'", 4 + style,
+                  colour[style % COLOURS]);
 }
 
 /* gnuplot would warn of a curve that stays at one number, and guess. */
@@ -158,10 +162,13 @@ static void write_panel(FILE *script, int index, const plot_panel *panel)
   setting(script, "xlabel", panel->x_label);
   (void)fputs("set xlabel offset 0,0.6\n", script);
   setting(script, "ylabel", panel->y_label);
-  (void)fputs(panel->logarithmic ? "set logscale xy 10\nset format x '10^{%L}'\nset format y '10^{%L}'\n"
-                                 : "unset logscale\nset format '%g'\n",
+  (void)fputs(panel->logarithmic
+                  ? "set logscale xy 10\nset format x '10^{%L}'\nset format y '10^{%L}'\n"
+                  : "unset logscale\nset format '%g'\n",
               script);
-  (void)fputs(panel->logarithmic ? "unset offsets\n" : "set offsets graph 0, 0, graph 0.03, graph 0.03\n", script);
+  (void)fputs(panel->logarithmic ? "unset offsets\n"
+                                 : "set offsets graph 0, 0, graph 0.03, graph 0.03\n",
+              script);
   fix_range(script, panel);
   (void)fputs(panel->equal ? "set size ratio -1\n" : "set size noratio\n", script);
   const char *joint = "plot ";
@@ -177,9 +184,11 @@ static void write_panel(FILE *script, int index, const plot_panel *panel)
 
 static void write_script(FILE *script, int panels, const plot_panel *panel)
 {
-  (void)fprintf(script, "set terminal svg size %d,%d enhanced background rgb 'white' font 'Helvetica,13'\n", WIDTH,
-                panels * PANEL_HEIGHT);
-  (void)fputs("set grid lt 1 lw 0.5 lc rgb '#d8d8d8'\nset border lc rgb '#404040'\nset key outside below center horizontal maxcols "
+  (void)fprintf(script,
+                "set terminal svg size %d,%d enhanced background rgb 'white' font 'Helvetica,13'\n",
+                WIDTH, panels * PANEL_HEIGHT);
+  (void)fputs("set grid lt 1 lw 0.5 lc rgb '#d8d8d8'\nset border lc rgb '#404040'\nset key outside "
+              "below center horizontal maxcols "
               "2 Left reverse samplen 3\n",
               script);
   for (int i = 0; i < panels; i++) write_blocks(script, i, &panel[i]);
@@ -188,8 +197,8 @@ static void write_script(FILE *script, int panels, const plot_panel *panel)
   if (panels > 1) (void)fputs("unset multiplot\n", script);
 }
 
-/* In the child the script is the input, the pipe's end to write to is the output, and the pipe has no
- * other descriptors. */
+/* In the child the script is the input, the pipe's end to write to is the output, and the pipe has
+ * no other descriptors. */
 static int redirect(posix_spawn_file_actions_t *actions, int script, const int ends[2])
 {
   int failure = posix_spawn_file_actions_adddup2(actions, script, STDIN_FILENO);
@@ -215,8 +224,8 @@ static int spawn(int script, const int ends[2], pid_t *process)
   return failure;
 }
 
-/* Start gnuplot with the script as its input. Returns the descriptor to read the picture from, or -1
- * with errno set. */
+/* Start gnuplot with the script as its input. Returns the descriptor to read the picture from, or
+ * -1 with errno set. */
 static int start_gnuplot(FILE *script, pid_t *process)
 {
   int ends[2];
@@ -258,7 +267,8 @@ static bool draw(FILE *script, FILE *picture, const char *path)
   pid_t process;
   const int from = start_gnuplot(script, &process);
   if (from < 0) {
-    complain("no plot in '%s': gnuplot cannot be started (%s); install the package gnuplot-nox", path, strerror(errno));
+    complain("no plot in '%s': gnuplot cannot be started (%s); install the package gnuplot-nox",
+             path, strerror(errno));
     return false;
   }
   const bool copied = copy_picture(from, picture);
@@ -278,7 +288,8 @@ static bool anything_to_draw(int panels, const plot_panel *panel)
   return true;
 }
 
-/* A temporary file with the script, to be read from its start; NULL, with a complaint, without room. */
+/* A temporary file with the script, to be read from its start; NULL, with a complaint, without
+ * room. */
 static FILE *make_script(const char *path, int panels, const plot_panel *panel)
 {
   FILE *script = tmpfile();

@@ -3,7 +3,8 @@
 #define PLOT_H
 #include <stdbool.h>
 
-/** One curve. Points with a NaN, or on a logarithmic axis with a number that is not positive, are left out. */
+/** One curve. Points with a NaN, or on a logarithmic axis with a number that is not positive, are
+ * left out. */
 typedef struct plot_curve {
   const char *label; /**< NULL: not in the legend */
   int count;
@@ -25,6 +26,7 @@ typedef struct plot_panel {
 /** Draw panels, one above the other, into an SVG file that is whole or not there.
  *
  *  @return false, with a complaint, if there is no picture: gnuplot is missing or failed, there is
- *          nothing to draw, or the file cannot be written. What was at the path is then still there. */
+ *          nothing to draw, or the file cannot be written. What was at the path is then still
+ *          there. */
 bool plot_write(const char *path, int panels, const plot_panel *panel);
 #endif

@@ -1,5 +1,6 @@
-/* Lines from a kept point within the tolerance of all points behind it lie in a cone, which each point narrows (J. Sklansky and V. Gonzalez,
- * Fast polygonal approximation of digitized curves, 1980). A point outside, or one that turns back, makes the point before it a kept one. */
+/* Lines from a kept point within the tolerance of all points behind it lie in a cone, which each
+ * point narrows (J. Sklansky and V. Gonzalez, Fast polygonal approximation of digitized curves,
+ * 1980). A point outside, or one that turns back, makes the point before it a kept one. */
 #include "plot/thin.h"
 
 #include <math.h>
@@ -40,7 +41,8 @@ static bool reaches(cone *c, bool *aimed, double x, double y, double tolerance)
 }
 
 /* A run of points, all of them drawable, from first to last. */
-static void thin_run(int first, int last, const double *x, const double *y, double tolerance, bool *keep)
+static void thin_run(int first, int last, const double *x, const double *y, double tolerance,
+                     bool *keep)
 {
   cone c = {.x = x[first], .y = y[first]};
   bool aimed = false;

@@ -3,8 +3,8 @@
 #define THIN_H
 #include <stdbool.h>
 
-/** Mark the points [count] that a line must pass through to stay within `tolerance` of all of them: the first and the last one of each run of drawable
- *  points, and those between where it bends.
+/** Mark the points [count] that a line must pass through to stay within `tolerance` of all of them:
+ *  the first and the last one of each run of drawable points, and those between where it bends.
  *
  *  @param x,y   [count] in units of the picture
  *  @param keep  [count] in: whether a point is drawable; out: whether it is needed */

@@ -42,7 +42,8 @@ static void choose_rank(run_trace *trace, coordinate_rank rank)
 {
   const run_columns *c = trace->columns;
   for (int k = 0; k < c->count; k++)
-    if (c->column[k].kind == COLUMN_COORDINATE && rank_of(c->scene->terms, c->column[k].index) == rank)
+    if (c->column[k].kind == COLUMN_COORDINATE &&
+        rank_of(c->scene->terms, c->column[k].index) == rank)
       choose(&trace->panel[MOTION], k, USUAL_CURVES);
 }
 
@@ -125,7 +126,8 @@ void trace_add(run_trace *trace, const dvi_integrator *integrator)
   trace->t[trace->count] = dvi_integrator_time(integrator);
   for (int i = 0; i < TRACE_PANELS; i++)
     for (int k = 0; k < trace->panel[i].curves; k++)
-      trace->panel[i].y[k][trace->count] = columns_number(trace->columns, integrator, trace->panel[i].column[k]);
+      trace->panel[i].y[k][trace->count] = columns_number(trace->columns, integrator,
+                                                          trace->panel[i].column[k]);
   trace->count++;
 }
 
@@ -142,12 +144,14 @@ static void list_names(const run_trace *trace, int panel, char names[NAMES_SIZE]
   size_t length = 0;
   names[0] = '\0';
   for (int k = 0; k < trace->panel[panel].curves && length < NAMES_SIZE; k++)
-    length += (size_t)snprintf(names + length, NAMES_SIZE - length, "%s%s", k > 0 ? ", " : "", name_of(trace, panel, k));
+    length += (size_t)snprintf(names + length, NAMES_SIZE - length, "%s%s", k > 0 ? ", " : "",
+                               name_of(trace, panel, k));
 }
 
 static void tell(const run_trace *trace, const char *path)
 {
-  static const char *const what[] = {[MOTION] = "over t: ", [ENERGY] = "change since the start: ", [INVARIANTS] = ", "};
+  static const char *const what[] = {
+      [MOTION] = "over t: ", [ENERGY] = "change since the start: ", [INVARIANTS] = ", "};
   char text[TRACE_PANELS * (NAMES_SIZE + 64)] = "", names[NAMES_SIZE];
   size_t length = 0;
   int left_out = 0;
@@ -156,10 +160,12 @@ static void tell(const run_trace *trace, const char *path)
     if (trace->panel[i].curves == 0) continue;
     const bool begins = i != INVARIANTS || trace->panel[ENERGY].curves == 0;
     list_names(trace, i, names);
-    length += (size_t)snprintf(text + length, sizeof text - length, "%s%s%s", begins && length > 0 ? "; " : "",
+    length += (size_t)snprintf(text + length, sizeof text - length, "%s%s%s",
+                               begins && length > 0 ? "; " : "",
                                what[begins && i == INVARIANTS ? ENERGY : i], names);
   }
-  complain("run: --plot %s draws %s%s", path, text, left_out > 0 ? "; --columns chooses others" : "");
+  complain("run: --plot %s draws %s%s", path, text,
+           left_out > 0 ? "; --columns chooses others" : "");
 }
 
 /* What is drawn of an invariant is its change. */
@@ -173,13 +179,15 @@ static void subtract_start(const run_trace *trace, const trace_panel *panel)
 
 static void fill_panel(const run_trace *trace, int i, plot_curve *curve, plot_panel *made)
 {
-  static const char *const titles[] = {
-      [ENERGY] = "energy - energy at the start", [INVARIANTS] = "invariants: change since the start"};
+  static const char *const titles[] = {[ENERGY] = "energy - energy at the start",
+                                       [INVARIANTS] = "invariants: change since the start"};
   const trace_panel *panel = &trace->panel[i];
   if (i != MOTION) subtract_start(trace, panel);
   for (int k = 0; k < panel->curves; k++)
-    curve[k] = (plot_curve){
-        .label = i == ENERGY ? NULL : name_of(trace, i, k), .count = trace->count, .x = trace->t, .y = panel->y[k]};
+    curve[k] = (plot_curve){.label = i == ENERGY ? NULL : name_of(trace, i, k),
+                            .count = trace->count,
+                            .x = trace->t,
+                            .y = panel->y[k]};
   const bool coordinates = trace->columns->column[panel->column[0]].kind == COLUMN_COORDINATE;
   *made = (plot_panel){.title = i == MOTION ? trace->columns->scene->name : titles[i],
                        .x_label = "t",

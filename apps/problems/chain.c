@@ -1,5 +1,6 @@
-/* The chain of Fermi, Pasta, Ulam and Tsingou with quartic springs between two walls, V = sum_{i=1}^{n+1} d_i^2/2 + beta d_i^4/4, d_i = q_i - q_{i-1},
- * q_0 = q_{n+1} = 0: a site knows its two neighbours, and gradients come by ranges. */
+/* The chain of Fermi, Pasta, Ulam and Tsingou with quartic springs between two walls, V =
+ * sum_{i=1}^{n+1} d_i^2/2 + beta d_i^4/4, d_i = q_i - q_{i-1}, q_0 = q_{n+1} = 0: a site knows its
+ * two neighbours, and gradients come by ranges. */
 #include <math.h>
 
 #include "entry.h"
@@ -15,7 +16,8 @@ PROBLEM_INLINE double tension(double beta, double d)
   return d * (1.0 + beta * (d * d));
 }
 
-/* One site between its neighbours: the one expression behind the gradient's shapes, so that they have the same bits. */
+/* One site between its neighbours: the one expression behind the gradient's shapes, so that they
+ * have the same bits. */
 PROBLEM_INLINE double pull(double beta, double left, double here, double right)
 {
   return tension(beta, here - left) - tension(beta, right - here);
@@ -28,17 +30,20 @@ static int value(int count, const double *t, const double *q, double *V, void *u
   for (int k = 0; k < count; k++) V[k] = 0.0;
   for (size_t i = 0, n = (size_t)own->n, points = (size_t)count; i <= n; i++)
     for (size_t k = 0; k < points; k++) {
-      const double d = (i < n ? q[i * points + k] : 0.0) - (i > 0 ? q[(i - 1) * points + k] : 0.0), d2 = d * d;
+      const double d = (i < n ? q[i * points + k] : 0.0) - (i > 0 ? q[(i - 1) * points + k] : 0.0),
+                   d2 = d * d;
       V[k] += 0.5 * d2 + 0.25 * own->beta * (d2 * d2);
     }
   return 0;
 }
 
-PROBLEM_LANES static int gradient_range(double t, const double *q, int first, int last, double *restrict V_q, void *user)
+PROBLEM_LANES static int gradient_range(double t, const double *q, int first, int last,
+                                        double *restrict V_q, void *user)
 {
   const springs *own = user;
   const double beta = own->beta;
-  const int n = own->n, from = first > 0 ? first : 1, to = last < n ? last : n - 1; /* between them both neighbours are sites */
+  /* between them both neighbours are sites */
+  const int n = own->n, from = first > 0 ? first : 1, to = last < n ? last : n - 1;
   (void)t;
   if (n == 1) {
     V_q[0] = pull(beta, 0.0, q[0], 0.0);
@@ -50,10 +55,12 @@ PROBLEM_LANES static int gradient_range(double t, const double *q, int first, in
   return 0;
 }
 
-PROBLEM_LANES static void gradient_row(int count, double beta, const double *left, const double *here, const double *right,
+PROBLEM_LANES static void gradient_row(int count, double beta, const double *left,
+                                       const double *here, const double *right,
                                        double *restrict V_q)
 {
-  for (int k = 0; k < count; k++) V_q[k] = pull(beta, left != NULL ? left[k] : 0.0, here[k], right != NULL ? right[k] : 0.0);
+  for (int k = 0; k < count; k++)
+    V_q[k] = pull(beta, left != NULL ? left[k] : 0.0, here[k], right != NULL ? right[k] : 0.0);
 }
 
 static int gradient(int count, const double *t, const double *q, double *V_q, void *user)
@@ -61,8 +68,8 @@ static int gradient(int count, const double *t, const double *q, double *V_q, vo
   const springs *own = user;
   if (count == 1) return gradient_range(t[0], q, 0, own->n, V_q, user);
   for (size_t i = 0, n = (size_t)own->n, points = (size_t)count; i < n; i++)
-    gradient_row(count, own->beta, i > 0 ? q + (i - 1) * points : NULL, q + i * points, i + 1 < n ? q + (i + 1) * points : NULL,
-                 V_q + i * points);
+    gradient_row(count, own->beta, i > 0 ? q + (i - 1) * points : NULL, q + i * points,
+                 i + 1 < n ? q + (i + 1) * points : NULL, V_q + i * points);
   return 0;
 }
 
@@ -81,7 +88,8 @@ static int hessian(int count, const double *t, const double *q, double *V_qq, vo
   for (int k = 0; k < count; k++) {
     double *entry = V_qq + k;
     for (int j = 0; j < own->n; j++) {
-      const double before = curvature(own, count, k, q, j), after = curvature(own, count, k, q, j + 1);
+      const double before = curvature(own, count, k, q, j),
+                   after = curvature(own, count, k, q, j + 1);
       if (j > 0) *entry = -before, entry += count;
       *entry = before + after, entry += count;
       if (j + 1 < own->n) *entry = -after, entry += count;
@@ -104,7 +112,8 @@ static dvi_status make_pattern(problem *made, springs *own)
   return DVI_OK;
 }
 
-/* The normal mode of the harmonic chain whose waves are about 16 sites long: sin(pi k i/(n+1)), its argument reduced exactly. */
+/* The normal mode of the harmonic chain whose waves are about 16 sites long: sin(pi k i/(n+1)), its
+ * argument reduced exactly. */
 static double standing_wave(int i, int n)
 {
   const int64_t k = (n + 7) / 8, walls = (int64_t)n + 1, half_turns = i * k % (2 * walls);
@@ -134,8 +143,11 @@ static dvi_status make(const double *setting, problem *made)
                                    .user = own,
                                    .gradient_range = gradient_range,
                                    .reach = 1};
-  const dvi_system_terms terms = {
-      .dimension = n, .mass = {.scalar = 1.0}, .potentials = &potential, .potential_count = 1, .autonomous = 1};
+  const dvi_system_terms terms = {.dimension = n,
+                                  .mass = {.scalar = 1.0},
+                                  .potentials = &potential,
+                                  .potential_count = 1,
+                                  .autonomous = 1};
   return problem_system(made, &terms);
 }
 
@@ -146,28 +158,34 @@ static const problem_parameter parameters[] = {
      .most = 1e8,
      .whole = 1,
      .help = "the number of sites, a whole number from 1 to 1e8"},
-    {.name = "beta", .value = 1.0, .least = 0.0, .most = 1e3, .help = "the strength of the quartic springs, from 0 to 1e3"},
+    {.name = "beta",
+     .value = 1.0,
+     .least = 0.0,
+     .most = 1e3,
+     .help = "the strength of the quartic springs, from 0 to 1e3"},
     {.name = NULL},
 };
 
 /* Quadruple-precision results, recomputed by tests/reference/test_digits. */
 static const double digits_q[] = {
-    -0.24166567724306329, -0.4656772197090846,  -0.64092403619055005,  -0.7199966565330248,  -0.67161648022795883,
-    -0.51572170232637438, -0.30021623529014446, -0.060999643000302486, 0.18208262627781416,  0.41269419138623903,
-    0.60415002877501112,  0.71172643575467187,  0.69543907806442318,   0.56213784773015163,  0.35737017460656917,
-    0.1217729588021593,   -0.1217729588021593,  -0.35737017460656917,  -0.56213784773015163, -0.69543907806442318,
-    -0.71172643575467187, -0.60415002877501112, -0.41269419138623903,  -0.18208262627781416, 0.060999643000302486,
-    0.30021623529014446,  0.51572170232637438,  0.67161648022795883,   0.7199966565330248,   0.64092403619055005,
-    0.4656772197090846,   0.24166567724306329,
+    -0.24166567724306329, -0.4656772197090846,  -0.64092403619055005, -0.7199966565330248,
+    -0.67161648022795883, -0.51572170232637438, -0.30021623529014446, -0.060999643000302486,
+    0.18208262627781416,  0.41269419138623903,  0.60415002877501112,  0.71172643575467187,
+    0.69543907806442318,  0.56213784773015163,  0.35737017460656917,  0.1217729588021593,
+    -0.1217729588021593,  -0.35737017460656917, -0.56213784773015163, -0.69543907806442318,
+    -0.71172643575467187, -0.60415002877501112, -0.41269419138623903, -0.18208262627781416,
+    0.060999643000302486, 0.30021623529014446,  0.51572170232637438,  0.67161648022795883,
+    0.7199966565330248,   0.64092403619055005,  0.4656772197090846,   0.24166567724306329,
 };
 static const double digits_p[] = {
-    0.1022860176622927,    0.19356074728794831,  0.25659069666071765,  0.27987043922811933,   0.26612325547338339,
-    0.21271322355513525,   0.12670951969471195,  0.025909466752578155, -0.077212244605028652, -0.17263042144220384,
-    -0.24445248568558556,  -0.27764051399582446, -0.2731004672410019,  -0.2297675585094083,   -0.15024665893649028,
-    -0.051694968335699261, 0.051694968335699261, 0.15024665893649028,  0.2297675585094083,    0.2731004672410019,
-    0.27764051399582446,   0.24445248568558556,  0.17263042144220384,  0.077212244605028652,  -0.025909466752578155,
-    -0.12670951969471195,  -0.21271322355513525, -0.26612325547338339, -0.27987043922811933,  -0.25659069666071765,
-    -0.19356074728794831,  -0.1022860176622927,
+    0.1022860176622927,    0.19356074728794831,  0.25659069666071765,  0.27987043922811933,
+    0.26612325547338339,   0.21271322355513525,  0.12670951969471195,  0.025909466752578155,
+    -0.077212244605028652, -0.17263042144220384, -0.24445248568558556, -0.27764051399582446,
+    -0.2731004672410019,   -0.2297675585094083,  -0.15024665893649028, -0.051694968335699261,
+    0.051694968335699261,  0.15024665893649028,  0.2297675585094083,   0.2731004672410019,
+    0.27764051399582446,   0.24445248568558556,  0.17263042144220384,  0.077212244605028652,
+    -0.025909466752578155, -0.12670951969471195, -0.21271322355513525, -0.26612325547338339,
+    -0.27987043922811933,  -0.25659069666071765, -0.19356074728794831, -0.1022860176622927,
 };
 
 const problem_entry problem_entry_chain = {

@@ -1,4 +1,5 @@
-/* Two point masses on two rods in a plane, angles from straight down: a general Lagrangian whose mass depends on q.
+/* Two point masses on two rods in a plane, angles from straight down: a general Lagrangian whose
+ * mass depends on q.
  *
  *     L = A v1^2/2 + B v2^2/2 + C cos(q1 - q2) v1 v2 + G1 cos q1 + G2 cos q2,
  *     A = (m1+m2) l1^2,  B = m2 l2^2,  C = m2 l1 l2,  G1 = (m1+m2) g l1,  G2 = m2 g l2. */
@@ -11,22 +12,28 @@ typedef struct coefficients {
   double A, B, C, G1, G2;
 } coefficients;
 
-static int value(int count, const double *t, const double *q, const double *v, double *L, void *user)
+static int value(int count, const double *t, const double *q, const double *v, double *L,
+                 void *user)
 {
   const coefficients *own = user;
-  const double *restrict q1 = q, *restrict q2 = q + count, *restrict v1 = v, *restrict v2 = v + count;
+  const double *restrict q1 = q, *restrict q2 = q + count, *restrict v1 = v,
+                         *restrict v2 = v + count;
   (void)t;
   for (int k = 0; k < count; k++)
-    L[k] = 0.5 * own->A * v1[k] * v1[k] + 0.5 * own->B * v2[k] * v2[k] + own->C * cos(q1[k] - q2[k]) * v1[k] * v2[k] +
-           own->G1 * cos(q1[k]) + own->G2 * cos(q2[k]);
+    L[k] = 0.5 * own->A * v1[k] * v1[k] + 0.5 * own->B * v2[k] * v2[k] +
+           own->C * cos(q1[k] - q2[k]) * v1[k] * v2[k] + own->G1 * cos(q1[k]) +
+           own->G2 * cos(q2[k]);
   return 0;
 }
 
-static int gradient(int count, const double *t, const double *q, const double *v, double *L_q, double *L_v, void *user)
+static int gradient(int count, const double *t, const double *q, const double *v, double *L_q,
+                    double *L_v, void *user)
 {
   const coefficients own = *(const coefficients *)user;
-  const double *restrict q1 = q, *restrict q2 = q + count, *restrict v1 = v, *restrict v2 = v + count;
-  double *restrict L_q1 = L_q, *restrict L_q2 = L_q + count, *restrict L_v1 = L_v, *restrict L_v2 = L_v + count;
+  const double *restrict q1 = q, *restrict q2 = q + count, *restrict v1 = v,
+                         *restrict v2 = v + count;
+  double *restrict L_q1 = L_q, *restrict L_q2 = L_q + count, *restrict L_v1 = L_v,
+                   *restrict L_v2 = L_v + count;
   (void)t;
   for (int k = 0; k < count; k++) {
     const double c = own.C * cos(q1[k] - q2[k]), s = own.C * sin(q1[k] - q2[k]) * v1[k] * v2[k];
@@ -38,11 +45,12 @@ static int gradient(int count, const double *t, const double *q, const double *v
   return 0;
 }
 
-static int hessian(int count, const double *t, const double *q, const double *v, double *L_qq, double *L_qv, double *L_vv,
-                   void *user)
+static int hessian(int count, const double *t, const double *q, const double *v, double *L_qq,
+                   double *L_qv, double *L_vv, void *user)
 {
   const coefficients own = *(const coefficients *)user;
-  const double *restrict q1 = q, *restrict q2 = q + count, *restrict v1 = v, *restrict v2 = v + count;
+  const double *restrict q1 = q, *restrict q2 = q + count, *restrict v1 = v,
+                         *restrict v2 = v + count;
   (void)t;
   for (int k = 0; k < count; k++) {
     const double c = own.C * cos(q1[k] - q2[k]), s = own.C * sin(q1[k] - q2[k]);
@@ -72,7 +80,8 @@ typedef struct series {
   double v1_v2[DVI_TAYLOR_MAX + 1];
 } series;
 
-static void expand(const coefficients *own, int degree, const double *q, const double *v, series *of)
+static void expand(const coefficients *own, int degree, const double *q, const double *v,
+                   series *of)
 {
   double q1[DVI_TAYLOR_MAX + 1], q2[DVI_TAYLOR_MAX + 1], between[DVI_TAYLOR_MAX + 1];
   dvi_taylor_get(degree, 2, q, 0, q1);
@@ -91,10 +100,12 @@ static void expand(const coefficients *own, int degree, const double *q, const d
 }
 
 /* Coefficient k of the Hessian. */
-static void series_hessian(const coefficients *own, const series *of, int k, double *L_qq, double *L_qv, double *L_vv)
+static void series_hessian(const coefficients *own, const series *of, int k, double *L_qq,
+                           double *L_qv, double *L_vv)
 {
   const double c_v1_v2 = dvi_taylor_product(k, of->c, of->v1_v2);
-  const double s_v1 = dvi_taylor_product(k, of->s, of->v1), s_v2 = dvi_taylor_product(k, of->s, of->v2);
+  const double s_v1 = dvi_taylor_product(k, of->s, of->v1),
+               s_v2 = dvi_taylor_product(k, of->s, of->v2);
   if (L_qq) {
     L_qq[4 * k] = -c_v1_v2 - own->G1 * of->cosine_1[k];
     L_qq[4 * k + 1] = L_qq[4 * k + 2] = c_v1_v2;
@@ -113,8 +124,8 @@ static void series_hessian(const coefficients *own, const series *of, int k, dou
   }
 }
 
-static int taylor(int degree, const double *t, const double *q, const double *v, double *L, double *L_q, double *L_v, double *L_qq,
-                  double *L_qv, double *L_vv, void *user)
+static int taylor(int degree, const double *t, const double *q, const double *v, double *L,
+                  double *L_q, double *L_v, double *L_qq, double *L_qv, double *L_vv, void *user)
 {
   const coefficients own = *(const coefficients *)user;
   series of;
@@ -123,8 +134,10 @@ static int taylor(int degree, const double *t, const double *q, const double *v,
   for (int k = 0; k <= degree; k++) {
     const double s_v1_v2 = dvi_taylor_product(k, of.s, of.v1_v2);
     if (L)
-      L[k] = 0.5 * own.A * dvi_taylor_product(k, of.v1, of.v1) + 0.5 * own.B * dvi_taylor_product(k, of.v2, of.v2) +
-             dvi_taylor_product(k, of.c, of.v1_v2) + own.G1 * of.cosine_1[k] + own.G2 * of.cosine_2[k];
+      L[k] = 0.5 * own.A * dvi_taylor_product(k, of.v1, of.v1) +
+             0.5 * own.B * dvi_taylor_product(k, of.v2, of.v2) +
+             dvi_taylor_product(k, of.c, of.v1_v2) + own.G1 * of.cosine_1[k] +
+             own.G2 * of.cosine_2[k];
     if (L_q) {
       L_q[2 * k] = -s_v1_v2 - own.G1 * of.sine_1[k];
       L_q[2 * k + 1] = s_v1_v2 - own.G2 * of.sine_2[k];
@@ -145,25 +158,41 @@ static dvi_status make(const double *setting, problem *made)
   const double pi = 3.14159265358979323846;
   const double l1 = setting[0], l2 = setting[1], m1 = setting[2], m2 = setting[3], g = setting[4];
   coefficients *own = made->parameters;
-  *own = (coefficients){(m1 + m2) * l1 * l1, m2 * l2 * l2, m2 * l1 * l2, (m1 + m2) * g * l1, m2 * g * l2};
+  *own = (coefficients){(m1 + m2) * l1 * l1, m2 * l2 * l2, m2 * l1 * l2, (m1 + m2) * g * l1,
+                        m2 * g * l2};
   problem_label(made, 0, "theta_1");
   problem_label(made, 1, "theta_2");
   made->q[0] = pi / 4.0;
   made->q[1] = pi / 2.0;
   made->v[1] = pi / 8.0;
 
-  const dvi_lagrangian lagrangian = {
-      .value_batch = value, .gradient_batch = gradient, .hessian_batch = hessian, .user = own, .taylor = taylor};
+  const dvi_lagrangian lagrangian = {.value_batch = value,
+                                     .gradient_batch = gradient,
+                                     .hessian_batch = hessian,
+                                     .user = own,
+                                     .taylor = taylor};
   const dvi_system_terms terms = {.dimension = 2, .lagrangian = &lagrangian, .autonomous = 1};
   return problem_system(made, &terms);
 }
 
 static const problem_parameter parameters[] = {
-    {.name = "l1", .value = 2.0, .least = 1e-50, .most = 1e50, .help = "the length of the upper rod, positive"},
-    {.name = "l2", .value = 3.0, .least = 1e-50, .most = 1e50, .help = "the length of the lower rod, positive"},
+    {.name = "l1",
+     .value = 2.0,
+     .least = 1e-50,
+     .most = 1e50,
+     .help = "the length of the upper rod, positive"},
+    {.name = "l2",
+     .value = 3.0,
+     .least = 1e-50,
+     .most = 1e50,
+     .help = "the length of the lower rod, positive"},
     {.name = "m1", .value = 1.0, .least = 1e-50, .most = 1e50, .help = "the upper mass, positive"},
     {.name = "m2", .value = 2.0, .least = 1e-50, .most = 1e50, .help = "the lower mass, positive"},
-    {.name = "g", .value = 9.80665, .least = -1e50, .most = 1e50, .help = "the acceleration of gravity, any number"},
+    {.name = "g",
+     .value = 9.80665,
+     .least = -1e50,
+     .most = 1e50,
+     .help = "the acceleration of gravity, any number"},
     {.name = NULL},
 };
 

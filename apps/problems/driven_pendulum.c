@@ -1,8 +1,11 @@
-/* A pendulum in a plane whose pivot swings to and fro: x = a sin(omega t), the angle measured from the top.
+/* A pendulum in a plane whose pivot swings to and fro: x = a sin(omega t), the angle measured from
+ * the top.
  *
- *     L = v^2/2 + a omega cos(omega t) v cos q - cos q        (without the pivot's own energy, which moves nothing)
+ *     L = v^2/2 + a omega cos(omega t) v cos q - cos q
+ *     (without the pivot's own energy, which moves nothing)
  *
- * A general Lagrangian that depends on time, and its momentum p = v + a omega cos(omega t) cos q, too. */
+ * A general Lagrangian that depends on time, and its momentum p = v + a omega cos(omega t) cos q,
+ * too. */
 #include <dvi/taylor.h>
 #include <math.h>
 
@@ -12,21 +15,26 @@ typedef struct drive {
   double speed, omega; /* a omega */
 } drive;
 
-static int value(int count, const double *t, const double *q, const double *v, double *L, void *user)
+static int value(int count, const double *t, const double *q, const double *v, double *L,
+                 void *user)
 {
   const drive own = *(const drive *)user;
-  for (int k = 0; k < count; k++) L[k] = 0.5 * v[k] * v[k] + (own.speed * cos(own.omega * t[k]) * v[k] - 1.0) * cos(q[k]);
+  for (int k = 0; k < count; k++)
+    L[k] = 0.5 * v[k] * v[k] + (own.speed * cos(own.omega * t[k]) * v[k] - 1.0) * cos(q[k]);
   return 0;
 }
 
-static int rate(int count, const double *t, const double *q, const double *v, double *L_t, void *user)
+static int rate(int count, const double *t, const double *q, const double *v, double *L_t,
+                void *user)
 {
   const drive own = *(const drive *)user;
-  for (int k = 0; k < count; k++) L_t[k] = -own.omega * own.speed * sin(own.omega * t[k]) * v[k] * cos(q[k]);
+  for (int k = 0; k < count; k++)
+    L_t[k] = -own.omega * own.speed * sin(own.omega * t[k]) * v[k] * cos(q[k]);
   return 0;
 }
 
-static int gradient(int count, const double *t, const double *q, const double *v, double *L_q, double *L_v, void *user)
+static int gradient(int count, const double *t, const double *q, const double *v, double *L_q,
+                    double *L_v, void *user)
 {
   const drive own = *(const drive *)user;
   for (int k = 0; k < count; k++) {
@@ -37,8 +45,8 @@ static int gradient(int count, const double *t, const double *q, const double *v
   return 0;
 }
 
-static int hessian(int count, const double *t, const double *q, const double *v, double *L_qq, double *L_qv, double *L_vv,
-                   void *user)
+static int hessian(int count, const double *t, const double *q, const double *v, double *L_qq,
+                   double *L_qv, double *L_vv, void *user)
 {
   const drive own = *(const drive *)user;
   for (int k = 0; k < count; k++) {
@@ -51,11 +59,12 @@ static int hessian(int count, const double *t, const double *q, const double *v,
 }
 
 /* The same along a curve, on which t is a series, too. */
-static int taylor(int degree, const double *t, const double *q, const double *v, double *L, double *L_q, double *L_v, double *L_qq,
-                  double *L_qv, double *L_vv, void *user)
+static int taylor(int degree, const double *t, const double *q, const double *v, double *L,
+                  double *L_q, double *L_v, double *L_qq, double *L_qv, double *L_vv, void *user)
 {
   const drive own = *(const drive *)user;
-  double phase[DVI_TAYLOR_MAX + 1], unwanted[DVI_TAYLOR_MAX + 1], pivot[DVI_TAYLOR_MAX + 1], factor[DVI_TAYLOR_MAX + 1];
+  double phase[DVI_TAYLOR_MAX + 1], unwanted[DVI_TAYLOR_MAX + 1], pivot[DVI_TAYLOR_MAX + 1],
+      factor[DVI_TAYLOR_MAX + 1];
   double sine[DVI_TAYLOR_MAX + 1], cosine[DVI_TAYLOR_MAX + 1];
   dvi_taylor_combine(degree, own.omega, t, 0.0, t, phase);
   dvi_taylor_sin_cos(degree, phase, unwanted, pivot);
@@ -93,8 +102,16 @@ static dvi_status make(const double *setting, problem *made)
 }
 
 static const problem_parameter parameters[] = {
-    {.name = "a", .value = 0.25, .least = 0.0, .most = 1e3, .help = "how far the pivot swings, not negative"},
-    {.name = "omega", .value = 2.0, .least = 1e-3, .most = 1e3, .help = "the angular frequency of the pivot, 1e-3 to 1e3"},
+    {.name = "a",
+     .value = 0.25,
+     .least = 0.0,
+     .most = 1e3,
+     .help = "how far the pivot swings, not negative"},
+    {.name = "omega",
+     .value = 2.0,
+     .least = 1e-3,
+     .most = 1e3,
+     .help = "the angular frequency of the pivot, 1e-3 to 1e3"},
     {.name = NULL},
 };
 

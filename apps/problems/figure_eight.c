@@ -1,5 +1,5 @@
-/* Three equal masses that chase each other along one figure eight (Chenciner and Montgomery 2000); period 6.32591398. Simo's start
- * has eight digits: the orbit closes to 3e-8. */
+/* Three equal masses that chase each other along one figure eight (Chenciner and Montgomery 2000);
+ * period 6.32591398. Simo's start has eight digits: the orbit closes to 3e-8. */
 #include "entry.h"
 #include "nbody.h"
 
@@ -10,7 +10,9 @@ static const nbody bodies = {
     .mass = {1.0, 1.0, 1.0},
     .name = {"1", "2", "3"},
     .position = {{0.97000436, -0.24308753}, {-0.97000436, 0.24308753}, {0.0, 0.0}},
-    .velocity = {{0.466203685, 0.432365730}, {0.466203685, 0.432365730}, {-0.93240737, -0.86473146}},
+    .velocity = {{0.466203685, 0.432365730},
+                 {0.466203685, 0.432365730},
+                 {-0.93240737, -0.86473146}},
 };
 
 static dvi_status make(const double *setting, problem *made)
@@ -25,7 +27,8 @@ static const double digits_q[] = {
     0.34872902585899099, 0.52287957283919077,    -0.34123940686381769,
 };
 static const double digits_p[] = {
-    -0.011411541552956665, 0.46721292709810324, -1.0906310090220546, -0.19879848451765548, 1.1020425505750112, -0.26841444258044777,
+    -0.011411541552956665, 0.46721292709810324, -1.0906310090220546,
+    -0.19879848451765548,  1.1020425505750112,  -0.26841444258044777,
 };
 
 const problem_entry problem_entry_figure_eight = {

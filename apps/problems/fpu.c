@@ -1,11 +1,14 @@
-/* The chain of Fermi, Pasta and Ulam with alternating soft (quartic) and stiff (harmonic) springs (Hairer, Lubich and Wanner 2006,
- * sec. I.5.1), in the centres x0_i and the lengths x1_i of the stiff springs:
+/* The chain of Fermi, Pasta and Ulam with alternating soft (quartic) and stiff (harmonic) springs
+ * (Hairer, Lubich and Wanner 2006, sec. I.5.1), in the centres x0_i and the lengths x1_i of the
+ * stiff springs:
  *
- *     slow: 1/4 sum_{i=0}^{ell} d_i^4,  d_i = (x0_{i+1} - x1_{i+1}) - (x0_i + x1_i)  with zeros beyond both ends,
+ *     slow: 1/4 sum_{i=0}^{ell} d_i^4,  d_i = (x0_{i+1} - x1_{i+1}) - (x0_i + x1_i)
+ *       with zeros beyond both ends,
  *     fast: omega^2/2 sum_i x1_i^2.
  *
- * q holds x0_1 .. x0_ell, x1_1 .. x1_ell. In a batch both halves are flat arrays in which the neighbours of a number stand `count`
- * places away, so that one loop over all sites and points serves any ell and any count. */
+ * q holds x0_1 .. x0_ell, x1_1 .. x1_ell. In a batch both halves are flat arrays in which the
+ * neighbours of a number stand `count` places away, so that one loop over all sites and points
+ * serves any ell and any count. */
 #include <math.h>
 
 #include "entry.h"
@@ -32,7 +35,8 @@ static double cube(double x)
   return x * x * x;
 }
 
-/* The soft spring between the right end `left` of one stiff spring and the left end `right` of the next. */
+/* The soft spring between the right end `left` of one stiff spring and the left end `right` of the
+ * next. */
 static double quartic(double left, double right)
 {
   const double d = right - left;
@@ -46,7 +50,8 @@ static int slow_value(int count, const double *t, const double *q, double *V, vo
   (void)t;
   for (int k = 0; k < count; k++) V[k] = quartic(0.0, x0[k] - x1[k]);
   for (int i = 1; i < ell; i++)
-    for (int k = 0, j = i * count; k < count; k++, j++) V[k] += quartic(x0[j - count] + x1[j - count], x0[j] - x1[j]);
+    for (int k = 0, j = i * count; k < count; k++, j++)
+      V[k] += quartic(x0[j - count] + x1[j - count], x0[j] - x1[j]);
   for (int k = 0, j = (ell - 1) * count; k < count; k++, j++) V[k] += quartic(x0[j] + x1[j], 0.0);
   return 0;
 }
@@ -59,21 +64,26 @@ static void slow_forces(double left, double x0, double x1, double right, double 
   *V_x1 = -before - after;
 }
 
-PROBLEM_LANES static int slow_gradient(int count, const double *t, const double *q, double *V_q, void *user)
+PROBLEM_LANES static int slow_gradient(int count, const double *t, const double *q, double *V_q,
+                                       void *user)
 {
   const int ell = ((const chain *)user)->ell, last = (ell - 1) * count;
   const double *restrict x0 = q, *restrict x1 = q + last + count;
   double *restrict V_x0 = V_q, *restrict V_x1 = V_q + last + count;
   (void)t;
-  for (int j = 0; j < count; j++) slow_forces(0.0, x0[j], x1[j], ell > 1 ? x0[j + count] - x1[j + count] : 0.0, &V_x0[j], &V_x1[j]);
+  for (int j = 0; j < count; j++)
+    slow_forces(0.0, x0[j], x1[j], ell > 1 ? x0[j + count] - x1[j + count] : 0.0, &V_x0[j],
+                &V_x1[j]);
   for (int j = count; j < last; j++)
-    slow_forces(x0[j - count] + x1[j - count], x0[j], x1[j], x0[j + count] - x1[j + count], &V_x0[j], &V_x1[j]);
+    slow_forces(x0[j - count] + x1[j - count], x0[j], x1[j], x0[j + count] - x1[j + count],
+                &V_x0[j], &V_x1[j]);
   for (int j = last; ell > 1 && j < last + count; j++)
     slow_forces(x0[j - count] + x1[j - count], x0[j], x1[j], 0.0, &V_x0[j], &V_x1[j]);
   return 0;
 }
 
-/* Columns x0_i and x1_i hold the rows x0_{i-1}, x0_i, x0_{i+1}, x1_{i-1}, x1_i, x1_{i+1}, as far as they exist. */
+/* Columns x0_i and x1_i hold the rows x0_{i-1}, x0_i, x0_{i+1}, x1_{i-1}, x1_i, x1_{i+1}, as far as
+ * they exist. */
 static int slow_hessian(int count, const double *t, const double *q, double *V_qq, void *user)
 {
   const chain *own = user;
@@ -81,7 +91,8 @@ static int slow_hessian(int count, const double *t, const double *q, double *V_q
   const double *restrict x0 = q, *restrict x1 = q + (size_t)ell * (size_t)count;
   (void)t;
   for (int i = 0; i < ell; i++) {
-    const int has_left = i > 0, has_right = i < ell - 1, to_x1 = (1 + has_left + has_right) * count, j = i * count;
+    const int has_left = i > 0, has_right = i < ell - 1, to_x1 = (1 + has_left + has_right) * count,
+              j = i * count;
     double *restrict x0_column = V_qq + (size_t)own->slow_start[i] * (size_t)count;
     double *restrict x1_column = V_qq + (size_t)own->slow_start[ell + i] * (size_t)count;
     for (int k = 0; k < count; k++) {
@@ -116,7 +127,8 @@ static int fast_value(int count, const double *t, const double *q, double *V, vo
   return 0;
 }
 
-PROBLEM_LANES static int fast_gradient(int count, const double *t, const double *q, double *V_q, void *user)
+PROBLEM_LANES static int fast_gradient(int count, const double *t, const double *q, double *V_q,
+                                       void *user)
 {
   const chain *own = user;
   const int half = own->ell * count;
@@ -138,7 +150,8 @@ static int fast_hessian(int count, const double *t, const double *q, double *V_q
   return 0;
 }
 
-/* I_i = (y1_i^2 + omega^2 x1_i^2)/2: their sum is nearly conserved over times exponentially long in omega. */
+/* I_i = (y1_i^2 + omega^2 x1_i^2)/2: their sum is nearly conserved over times exponentially long in
+ * omega. */
 static int stiff_energy(double t, const double *q, const double *p, double *I, void *user)
 {
   const stiff_spring *own = user;
@@ -180,7 +193,8 @@ static dvi_status make_patterns(problem *made, chain *own)
     for (int row = first; row <= last; row++) own->slow_row[entries++] = ell + row;
   }
   own->slow_start[n] = entries;
-  for (int column = 0; column <= n; column++) own->fast_start[column] = column > ell ? column - ell : 0;
+  for (int column = 0; column <= n; column++)
+    own->fast_start[column] = column > ell ? column - ell : 0;
   for (int i = 0; i < ell; i++) own->fast_row[i] = ell + i;
   return DVI_OK;
 }
@@ -200,7 +214,8 @@ static void make_start(problem *made, const chain *own)
 
 static dvi_status make_system(problem *made, chain *own)
 {
-  static const char *const energy_names[WATCHED_MAX] = {"I_1", "I_2", "I_3", "I_4", "I_5", "I_6", "I_7", "I_8"};
+  static const char *const energy_names[WATCHED_MAX] = {"I_1", "I_2", "I_3", "I_4",
+                                                        "I_5", "I_6", "I_7", "I_8"};
   const dvi_potential springs[2] = {
       {.name = "slow",
        .value_batch = slow_value,
@@ -222,7 +237,8 @@ static dvi_status make_system(problem *made, chain *own)
   const int watched = own->ell <= WATCHED_MAX ? own->ell : 0;
   for (int i = 0; i < watched; i++) {
     own->watched[i] = (stiff_spring){own, i};
-    energies[i + 1] = (dvi_invariant){.name = energy_names[i], .value = stiff_energy, .user = &own->watched[i]};
+    energies[i + 1] = (dvi_invariant){
+        .name = energy_names[i], .value = stiff_energy, .user = &own->watched[i]};
   }
   const dvi_system_terms terms = {.dimension = 2 * own->ell,
                                   .mass = {.scalar = 1.0},
@@ -255,7 +271,11 @@ static const problem_parameter parameters[] = {
      .most = 1e7,
      .whole = 1,
      .help = "the number of stiff springs, a whole number from 1 to 1e7"},
-    {.name = "omega", .value = 50.0, .least = 1e-50, .most = 1e50, .help = "the stiff springs' frequency, positive"},
+    {.name = "omega",
+     .value = 50.0,
+     .least = 1e-50,
+     .most = 1e50,
+     .help = "the stiff springs' frequency, positive"},
     {.name = NULL},
 };
 
@@ -275,7 +295,8 @@ static const double far_q[] = {
 
 const problem_entry problem_entry_fpu = {
     .name = "fpu",
-    .summary = "a chain of soft and stiff springs in turn, any length; slow exchange of stiff energies",
+    .summary =
+        "a chain of soft and stiff springs in turn, any length; slow exchange of stiff energies",
     .parameters = parameters,
     .make = make,
     .h = 0.005,

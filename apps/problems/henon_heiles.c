@@ -1,4 +1,5 @@
-/* The Henon-Heiles system, V = (x^2+y^2)/2 + lambda (x^2 y - y^3/3): a star in the meridian plane of a galaxy. */
+/* The Henon-Heiles system, V = (x^2+y^2)/2 + lambda (x^2 y - y^3/3): a star in the meridian plane
+ * of a galaxy. */
 #include <dvi/taylor.h>
 #include <float.h>
 
@@ -9,7 +10,8 @@ static int value(int count, const double *t, const double *q, double *V, void *u
   const double lambda = *(const double *)user;
   const double *restrict x = q, *restrict y = q + count;
   (void)t;
-  for (int k = 0; k < count; k++) V[k] = 0.5 * (x[k] * x[k] + y[k] * y[k]) + lambda * y[k] * (x[k] * x[k] - y[k] * y[k] / 3.0);
+  for (int k = 0; k < count; k++)
+    V[k] = 0.5 * (x[k] * x[k] + y[k] * y[k]) + lambda * y[k] * (x[k] * x[k] - y[k] * y[k] / 3.0);
   return 0;
 }
 
@@ -30,7 +32,8 @@ static int hessian(int count, const double *t, const double *q, double *V_qq, vo
 {
   const double lambda = *(const double *)user;
   const double *restrict x = q, *restrict y = q + count;
-  double *restrict V_xx = V_qq, *restrict V_yx = V_qq + count, *restrict V_xy = V_qq + 2 * count, *restrict V_yy = V_qq + 3 * count;
+  double *restrict V_xx = V_qq, *restrict V_yx = V_qq + count, *restrict V_xy = V_qq + 2 * count,
+                   *restrict V_yy = V_qq + 3 * count;
   (void)t;
   for (int k = 0; k < count; k++) {
     V_xx[k] = 1.0 + 2.0 * lambda * y[k];
@@ -42,10 +45,12 @@ static int hessian(int count, const double *t, const double *q, double *V_qq, vo
 }
 
 /* The same along a curve. */
-static int taylor(int degree, const double *t, const double *q, double *V, double *V_q, double *V_qq, void *user)
+static int taylor(int degree, const double *t, const double *q, double *V, double *V_q,
+                  double *V_qq, void *user)
 {
   const double lambda = *(const double *)user;
-  double x[DVI_TAYLOR_MAX + 1], y[DVI_TAYLOR_MAX + 1], xx[DVI_TAYLOR_MAX + 1], xy[DVI_TAYLOR_MAX + 1], yy[DVI_TAYLOR_MAX + 1];
+  double x[DVI_TAYLOR_MAX + 1], y[DVI_TAYLOR_MAX + 1], xx[DVI_TAYLOR_MAX + 1],
+      xy[DVI_TAYLOR_MAX + 1], yy[DVI_TAYLOR_MAX + 1];
   (void)t;
   dvi_taylor_get(degree, 2, q, 0, x);
   dvi_taylor_get(degree, 2, q, 1, y);
@@ -53,7 +58,9 @@ static int taylor(int degree, const double *t, const double *q, double *V, doubl
   dvi_taylor_multiply(degree, x, y, xy);
   dvi_taylor_multiply(degree, y, y, yy);
   for (int k = 0; k <= degree; k++) {
-    if (V) V[k] = 0.5 * (xx[k] + yy[k]) + lambda * (dvi_taylor_product(k, xx, y) - dvi_taylor_product(k, yy, y) / 3.0);
+    if (V)
+      V[k] = 0.5 * (xx[k] + yy[k]) +
+             lambda * (dvi_taylor_product(k, xx, y) - dvi_taylor_product(k, yy, y) / 3.0);
     if (V_q) {
       V_q[2 * k] = x[k] + 2.0 * lambda * xy[k];
       V_q[2 * k + 1] = y[k] + lambda * (xx[k] - yy[k]);
@@ -78,15 +85,26 @@ static dvi_status make(const double *setting, problem *made)
   made->q[0] = made->q[1] = 0.2;
   made->v[0] = made->v[1] = 0.3;
 
-  const dvi_potential well = {
-      .name = "well", .value_batch = value, .gradient_batch = gradient, .hessian_batch = hessian, .user = lambda, .taylor = taylor};
-  const dvi_system_terms terms = {
-      .dimension = 2, .mass = {.scalar = 1.0}, .potentials = &well, .potential_count = 1, .autonomous = 1};
+  const dvi_potential well = {.name = "well",
+                              .value_batch = value,
+                              .gradient_batch = gradient,
+                              .hessian_batch = hessian,
+                              .user = lambda,
+                              .taylor = taylor};
+  const dvi_system_terms terms = {.dimension = 2,
+                                  .mass = {.scalar = 1.0},
+                                  .potentials = &well,
+                                  .potential_count = 1,
+                                  .autonomous = 1};
   return problem_system(made, &terms);
 }
 
 static const problem_parameter parameters[] = {
-    {.name = "lambda", .value = 1.0, .least = -1e100, .most = 1e100, .help = "the strength of the cubic terms, any number"},
+    {.name = "lambda",
+     .value = 1.0,
+     .least = -1e100,
+     .most = 1e100,
+     .help = "the strength of the cubic terms, any number"},
     {.name = NULL},
 };
 

@@ -1,4 +1,5 @@
-/* The planar Kepler problem, L = |v|^2/2 + 1/|q|, from the pericentre of an orbit with semi-major axis 1. */
+/* The planar Kepler problem, L = |v|^2/2 + 1/|q|, from the pericentre of an orbit with semi-major
+ * axis 1. */
 #include <dvi/taylor.h>
 #include <float.h>
 #include <math.h>
@@ -14,7 +15,8 @@ static int value(int count, const double *t, const double *q, double *V, void *u
 }
 
 /* At most as many points as a tile has. */
-PROBLEM_INLINE void gradient_at(const int points, const double *restrict x, const double *restrict y, double *restrict V_x,
+PROBLEM_INLINE void gradient_at(const int points, const double *restrict x,
+                                const double *restrict y, double *restrict V_x,
                                 double *restrict V_y)
 {
   double r[PROBLEM_TILE];
@@ -26,7 +28,8 @@ PROBLEM_INLINE void gradient_at(const int points, const double *restrict x, cons
   }
 }
 
-PROBLEM_LANES static int gradient(int count, const double *t, const double *q, double *V_q, void *user)
+PROBLEM_LANES static int gradient(int count, const double *t, const double *q, double *V_q,
+                                  void *user)
 {
   int k = 0;
   (void)t, (void)user;
@@ -38,7 +41,8 @@ PROBLEM_LANES static int gradient(int count, const double *t, const double *q, d
 static int hessian(int count, const double *t, const double *q, double *V_qq, void *user)
 {
   const double *restrict x = q, *restrict y = q + count;
-  double *restrict V_xx = V_qq, *restrict V_yx = V_qq + count, *restrict V_xy = V_qq + 2 * count, *restrict V_yy = V_qq + 3 * count;
+  double *restrict V_xx = V_qq, *restrict V_yx = V_qq + count, *restrict V_xy = V_qq + 2 * count,
+                   *restrict V_yy = V_qq + 3 * count;
   (void)t, (void)user;
   for (int k = 0; k < count; k++) {
     const double r2 = x[k] * x[k] + y[k] * y[k];
@@ -52,7 +56,8 @@ static int hessian(int count, const double *t, const double *q, double *V_qq, vo
 }
 
 /* The Hessian's part of what follows; cube is r^-3. */
-static void curvature(int degree, double q_i[2][DVI_TAYLOR_MAX + 1], const double *square, const double *cube, double *V_qq)
+static void curvature(int degree, double q_i[2][DVI_TAYLOR_MAX + 1], const double *square,
+                      const double *cube, double *V_qq)
 {
   double fifth[DVI_TAYLOR_MAX + 1], slope[DVI_TAYLOR_MAX + 1], entry[DVI_TAYLOR_MAX + 1];
   dvi_taylor_divide(degree, cube, square, fifth);
@@ -60,15 +65,18 @@ static void curvature(int degree, double q_i[2][DVI_TAYLOR_MAX + 1], const doubl
     dvi_taylor_multiply(degree, q_i[i], fifth, slope);
     for (int j = 0; j < 2; j++) {
       dvi_taylor_multiply(degree, slope, q_i[j], entry);
-      for (int k = 0; k <= degree; k++) V_qq[4 * k + 2 * i + j] = (i == j ? cube[k] : 0.0) - 3.0 * entry[k];
+      for (int k = 0; k <= degree; k++)
+        V_qq[4 * k + 2 * i + j] = (i == j ? cube[k] : 0.0) - 3.0 * entry[k];
     }
   }
 }
 
 /* V = -1/r along a curve: V_x = x/r^3, V_xy = -3 x y/r^5 + (1/r^3 on the diagonal). */
-static int taylor(int degree, const double *t, const double *q, double *V, double *V_q, double *V_qq, void *user)
+static int taylor(int degree, const double *t, const double *q, double *V, double *V_q,
+                  double *V_qq, void *user)
 {
-  double q_i[2][DVI_TAYLOR_MAX + 1], square[DVI_TAYLOR_MAX + 1], power[DVI_TAYLOR_MAX + 1], product[DVI_TAYLOR_MAX + 1];
+  double q_i[2][DVI_TAYLOR_MAX + 1], square[DVI_TAYLOR_MAX + 1], power[DVI_TAYLOR_MAX + 1],
+      product[DVI_TAYLOR_MAX + 1];
   (void)t, (void)user;
   for (int i = 0; i < 2; i++) dvi_taylor_get(degree, 2, q, i, q_i[i]);
   dvi_taylor_multiply(degree, q_i[0], q_i[0], square);
@@ -119,7 +127,8 @@ static double minus_sine(double E)
   return sum;
 }
 
-/* The mean anomaly t mod 2 pi, in [-pi, pi]. 2 pi is subtracted in two parts, the first one exactly: t may be millions of periods. */
+/* The mean anomaly t mod 2 pi, in [-pi, pi]. 2 pi is subtracted in two parts, the first one
+ * exactly: t may be millions of periods. */
 static double mean_anomaly(double t)
 {
   const double period = 6.2831853071795865, period_rest = 2.4492935982947064e-16;
@@ -127,8 +136,9 @@ static double mean_anomaly(double t)
   return fma(-turns, period, t) - turns * period_rest;
 }
 
-/* Kepler's equation E - e sin E = M. On [0, pi] the left side rises and is convex, so Newton's method comes down to the root from
- * any point to the right of it, such as M + e or pi; it has arrived when it no longer comes down. */
+/* Kepler's equation E - e sin E = M. On [0, pi] the left side rises and is convex, so Newton's
+ * method comes down to the root from any point to the right of it, such as M + e or pi; it has
+ * arrived when it no longer comes down. */
 static double eccentric_anomaly(double e, double M)
 {
   const double target = fabs(M);
@@ -167,10 +177,14 @@ static dvi_status make(const double *setting, problem *made)
   made->q[0] = 1.0 - *e;
   made->v[1] = sqrt((1.0 + *e) / (1.0 - *e));
 
-  const dvi_potential gravity = {
-      .name = "gravity", .value_batch = value, .gradient_batch = gradient, .hessian_batch = hessian, .taylor = taylor};
+  const dvi_potential gravity = {.name = "gravity",
+                                 .value_batch = value,
+                                 .gradient_batch = gradient,
+                                 .hessian_batch = hessian,
+                                 .taylor = taylor};
   const dvi_symmetry symmetry = {.name = "angular_momentum", .generator = rotation};
-  const dvi_invariant laplace[2] = {{.name = "laplace_x", .value = laplace_x}, {.name = "laplace_y", .value = laplace_y}};
+  const dvi_invariant laplace[2] = {{.name = "laplace_x", .value = laplace_x},
+                                    {.name = "laplace_y", .value = laplace_y}};
   const dvi_system_terms terms = {.dimension = 2,
                                   .mass = {.scalar = 1.0},
                                   .potentials = &gravity,

@@ -19,15 +19,17 @@ typedef struct gravity {
   motion motions[SYMMETRIES_MAX];
 } gravity;
 
-/* The kernels below take the dimension as a constant at each of their callers, so that the loops over the axes are unrolled and
- * the loop over the points is the one that is vectorised. */
+/* The kernels below take the dimension as a constant at each of their callers, so that the loops
+ * over the axes are unrolled and the loop over the points is the one that is vectorised. */
 
-static inline int value(const int dimension, int count, const double *q, double *V, const nbody *own)
+static inline int value(const int dimension, int count, const double *q, double *V,
+                        const nbody *own)
 {
   for (int k = 0; k < count; k++) V[k] = 0.0;
   for (int a = 0; a < own->bodies; a++)
     for (int b = a + 1; b < own->bodies; b++) {
-      const double *restrict x_a = q + a * dimension * count, *restrict x_b = q + b * dimension * count;
+      const double *restrict x_a = q + a * dimension * count, *restrict x_b = q +
+                                                                              b * dimension * count;
       const double weight = own->G * own->mass[a] * own->mass[b];
       for (int k = 0; k < count; k++) {
         double r2 = 0.0;
@@ -41,8 +43,10 @@ static inline int value(const int dimension, int count, const double *q, double 
   return 0;
 }
 
-/* Squared distances of all pairs at `lanes` points, [pairs*lanes]; rows of q are `stride` apart. Returns their number. */
-PROBLEM_INLINE int squared_distances(const int dimension, const int lanes, int stride, const double *restrict q, const nbody *own,
+/* Squared distances of all pairs at `lanes` points, [pairs*lanes]; rows of q are `stride` apart.
+ * Returns their number. */
+PROBLEM_INLINE int squared_distances(const int dimension, const int lanes, int stride,
+                                     const double *restrict q, const nbody *own,
                                      double *restrict r2)
 {
   const int row = dimension * stride;
@@ -61,8 +65,9 @@ PROBLEM_INLINE int squared_distances(const int dimension, const int lanes, int s
 }
 
 /* The pulls of all pairs, added to one gradient row and subtracted from the other. */
-PROBLEM_INLINE void pull(const int dimension, const int lanes, int stride, const double *restrict q, const nbody *own,
-                         const double *restrict inverse_cube, double *restrict V_q)
+PROBLEM_INLINE void pull(const int dimension, const int lanes, int stride, const double *restrict q,
+                         const nbody *own, const double *restrict inverse_cube,
+                         double *restrict V_q)
 {
   const int row = dimension * stride;
   for (int a = 0; a < own->bodies; a++)
@@ -78,7 +83,8 @@ PROBLEM_INLINE void pull(const int dimension, const int lanes, int stride, const
     }
 }
 
-PROBLEM_INLINE void gradient_at(const int dimension, const int lanes, int stride, const double *q, double *V_q, const nbody *own)
+PROBLEM_INLINE void gradient_at(const int dimension, const int lanes, int stride, const double *q,
+                                double *V_q, const nbody *own)
 {
   double r[NBODY_PAIRS_MAX * 8 + PROBLEM_TILE];
   const int tile = lanes == 1 ? PROBLEM_TILE / 2 : PROBLEM_TILE; /* six bodies have 15 pairs */
@@ -89,7 +95,8 @@ PROBLEM_INLINE void gradient_at(const int dimension, const int lanes, int stride
 }
 
 /* Fewer than eight points: the last one fills up. */
-PROBLEM_INLINE void gradient_of_few(const int dimension, int points, int stride, const double *q, double *V_q, const nbody *own)
+PROBLEM_INLINE void gradient_of_few(const int dimension, int points, int stride, const double *q,
+                                    double *V_q, const nbody *own)
 {
   double filled[24 * NBODY_MAX] = {0}, result[24 * NBODY_MAX] = {0};
   const int n = own->bodies * dimension;
@@ -100,8 +107,10 @@ PROBLEM_INLINE void gradient_of_few(const int dimension, int points, int stride,
     for (int k = 0; k < points; k++) V_q[i * stride + k] = result[8 * i + k];
 }
 
-/* Eight points at once: loops of known length need no preparation, which would cost more than their work. One point alone has its pairs for that. */
-PROBLEM_INLINE int gradient(const int dimension, int count, const double *q, double *V_q, const nbody *own)
+/* Eight points at once: loops of known length need no preparation, which would cost more than their
+ * work. One point alone has its pairs for that. */
+PROBLEM_INLINE int gradient(const int dimension, int count, const double *q, double *V_q,
+                            const nbody *own)
 {
   int k = 0;
   for (int j = 0; j < own->bodies * dimension * count; j++) V_q[j] = 0.0;
@@ -111,8 +120,10 @@ PROBLEM_INLINE int gradient(const int dimension, int count, const double *q, dou
   return 0;
 }
 
-/* The block weight (1/r^3 - 3 d d^T/r^5) of a pair: added to both diagonal blocks, subtracted off the diagonal. */
-static inline int hessian(const int dimension, int count, const double *q, double *V_qq, const nbody *own)
+/* The block weight (1/r^3 - 3 d d^T/r^5) of a pair: added to both diagonal blocks, subtracted off
+ * the diagonal. */
+static inline int hessian(const int dimension, int count, const double *q, double *V_qq,
+                          const nbody *own)
 {
   const int n = own->bodies * dimension;
   for (int j = 0; j < n * n * count; j++) V_qq[j] = 0.0;
@@ -130,7 +141,8 @@ static inline int hessian(const int dimension, int count, const double *q, doubl
           for (int i = 0; i < dimension; i++) {
             const double entry = (i == j ? inverse : 0.0) - curvature * d[i] * d[j];
             const int a_i = a * dimension + i, b_i = b * dimension + i;
-            double *a_column = V_qq + (a * dimension + j) * n * count + k, *b_column = V_qq + (b * dimension + j) * n * count + k;
+            double *a_column = V_qq + (a * dimension + j) * n * count + k,
+                   *b_column = V_qq + (b * dimension + j) * n * count + k;
             a_column[a_i * count] += entry;
             b_column[b_i * count] += entry;
             a_column[b_i * count] = -entry;
@@ -142,21 +154,23 @@ static inline int hessian(const int dimension, int count, const double *q, doubl
 }
 
 /* The callbacks of one dimension. */
-#define CALLBACKS(dimension)                                                                                          \
-  static int value_##dimension(int count, const double *t, const double *q, double *V, void *user)                    \
-  {                                                                                                                   \
-    (void)t;                                                                                                          \
-    return value(dimension, count, q, V, user);                                                                       \
-  }                                                                                                                   \
-  PROBLEM_LANES static int gradient_##dimension(int count, const double *t, const double *q, double *V_q, void *user) \
-  {                                                                                                                   \
-    (void)t;                                                                                                          \
-    return gradient(dimension, count, q, V_q, user);                                                                  \
-  }                                                                                                                   \
-  static int hessian_##dimension(int count, const double *t, const double *q, double *V_qq, void *user)               \
-  {                                                                                                                   \
-    (void)t;                                                                                                          \
-    return hessian(dimension, count, q, V_qq, user);                                                                  \
+#define CALLBACKS(dimension)                                                                       \
+  static int value_##dimension(int count, const double *t, const double *q, double *V, void *user) \
+  {                                                                                                \
+    (void)t;                                                                                       \
+    return value(dimension, count, q, V, user);                                                    \
+  }                                                                                                \
+  PROBLEM_LANES static int gradient_##dimension(int count, const double *t, const double *q,       \
+                                                double *V_q, void *user)                           \
+  {                                                                                                \
+    (void)t;                                                                                       \
+    return gradient(dimension, count, q, V_q, user);                                               \
+  }                                                                                                \
+  static int hessian_##dimension(int count, const double *t, const double *q, double *V_qq,        \
+                                 void *user)                                                       \
+  {                                                                                                \
+    (void)t;                                                                                       \
+    return hessian(dimension, count, q, V_qq, user);                                               \
   }
 CALLBACKS(2)
 CALLBACKS(3)
@@ -165,7 +179,8 @@ static int translation(const double *q, double *xi, void *user)
 {
   const motion *own = user;
   (void)q;
-  for (int i = 0; i < own->bodies->bodies * own->bodies->dimension; i++) xi[i] = i % own->bodies->dimension == own->axis;
+  for (int i = 0; i < own->bodies->bodies * own->bodies->dimension; i++)
+    xi[i] = i % own->bodies->dimension == own->axis;
   return 0;
 }
 
@@ -173,7 +188,8 @@ static int translation(const double *q, double *xi, void *user)
 static int rotation(const double *q, double *xi, void *user)
 {
   const motion *own = user;
-  const int dimension = own->bodies->dimension, first = (own->axis + 1) % 3, second = (own->axis + 2) % 3;
+  const int dimension = own->bodies->dimension, first = (own->axis + 1) % 3,
+            second = (own->axis + 2) % 3;
   for (int i = 0; i < own->bodies->bodies * dimension; i++) xi[i] = 0.0;
   for (int a = 0; a < own->bodies->bodies; a++) {
     xi[a * dimension + first] = -q[a * dimension + second];
@@ -185,13 +201,15 @@ static int rotation(const double *q, double *xi, void *user)
 static int make_symmetries(gravity *own, dvi_symmetry *symmetries)
 {
   static const char *const momentum[3] = {"momentum_x", "momentum_y", "momentum_z"};
-  static const char *const angular[3] = {"angular_momentum_x", "angular_momentum_y", "angular_momentum_z"};
+  static const char *const angular[3] = {"angular_momentum_x", "angular_momentum_y",
+                                         "angular_momentum_z"};
   const int planar = own->bodies.dimension == 2;
   int count = 0;
   for (int axis = 0; axis < own->bodies.dimension; axis++, count++)
     symmetries[count] = (dvi_symmetry){.name = momentum[axis], .generator = translation};
   for (int axis = planar ? 2 : 0; axis < 3; axis++, count++)
-    symmetries[count] = (dvi_symmetry){.name = planar ? "angular_momentum" : angular[axis], .generator = rotation};
+    symmetries[count] = (dvi_symmetry){.name = planar ? "angular_momentum" : angular[axis],
+                                       .generator = rotation};
   for (int i = 0; i < count; i++) {
     own->motions[i] = (motion){&own->bodies, i < own->bodies.dimension ? i : planar ? 2 : i - 3};
     symmetries[i].user = &own->motions[i];

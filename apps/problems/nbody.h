@@ -1,4 +1,5 @@
-/* Point masses under Newton's gravity, L = sum m_a |v_a|^2/2 + sum_{a<b} G m_a m_b/|x_a - x_b|, shared by several problems. */
+/* Point masses under Newton's gravity, L = sum m_a |v_a|^2/2 + sum_{a<b} G m_a m_b/|x_a - x_b|,
+ * shared by several problems. */
 #ifndef PROBLEMS_NBODY_H
 #define PROBLEMS_NBODY_H
 #include "problem.h"
@@ -16,7 +17,8 @@ typedef struct nbody {
   double position[NBODY_MAX][3], velocity[NBODY_MAX][3];
 } nbody;
 
-/* Allocate, label and fill the problem and create its system, with momenta and angular momenta as symmetries. */
+/* Allocate, label and fill the problem and create its system, with momenta and angular momenta as
+ * symmetries. */
 dvi_status nbody_make(const nbody *bodies, problem *made);
 
 #endif

@@ -28,7 +28,8 @@ static int hessian(double t, const double *q, double *V_qq, void *user)
 }
 
 /* V = k q^2/2 along a curve. */
-static int taylor(int degree, const double *t, const double *q, double *V, double *V_q, double *V_qq, void *user)
+static int taylor(int degree, const double *t, const double *q, double *V, double *V_q,
+                  double *V_qq, void *user)
 {
   (void)t;
   problem_spring_taylor(*(const double *)user, degree, q, V, V_q, V_qq);
@@ -55,15 +56,26 @@ static dvi_status make(const double *setting, problem *made)
   problem_label(made, 0, "q");
   made->q[0] = 0.5;
 
-  const dvi_potential spring = {
-      .name = "spring", .value = value, .gradient = gradient, .hessian = hessian, .user = k, .taylor = taylor};
-  const dvi_system_terms terms = {
-      .dimension = 1, .mass = {.scalar = 1.0}, .potentials = &spring, .potential_count = 1, .autonomous = 1};
+  const dvi_potential spring = {.name = "spring",
+                                .value = value,
+                                .gradient = gradient,
+                                .hessian = hessian,
+                                .user = k,
+                                .taylor = taylor};
+  const dvi_system_terms terms = {.dimension = 1,
+                                  .mass = {.scalar = 1.0},
+                                  .potentials = &spring,
+                                  .potential_count = 1,
+                                  .autonomous = 1};
   return problem_system(made, &terms);
 }
 
 static const problem_parameter parameters[] = {
-    {.name = "k", .value = 0.5, .least = DBL_MIN, .most = DBL_MAX, .help = "the stiffness of the spring, positive"},
+    {.name = "k",
+     .value = 0.5,
+     .least = DBL_MIN,
+     .most = DBL_MAX,
+     .help = "the stiffness of the spring, positive"},
     {.name = NULL},
 };
 

@@ -1,5 +1,5 @@
-/* A stiff and a soft spring on one unit mass: slow potential q^2/2, fast potential omega^2 q^2/2. Splitting methods meet their
- * resonances here. */
+/* A stiff and a soft spring on one unit mass: slow potential q^2/2, fast potential omega^2 q^2/2.
+ * Splitting methods meet their resonances here. */
 #include <float.h>
 #include <math.h>
 
@@ -31,7 +31,8 @@ static int hessian(int count, const double *t, const double *q, double *V_qq, vo
 }
 
 /* The same along a curve. */
-static int taylor(int degree, const double *t, const double *q, double *V, double *V_q, double *V_qq, void *user)
+static int taylor(int degree, const double *t, const double *q, double *V, double *V_q,
+                  double *V_qq, void *user)
 {
   (void)t;
   problem_spring_taylor(*(const double *)user, degree, q, V, V_q, V_qq);
@@ -80,13 +81,20 @@ static dvi_status make(const double *setting, problem *made)
        .quadratic = 1,
        .taylor = taylor},
   };
-  const dvi_system_terms terms = {
-      .dimension = 1, .mass = {.scalar = 1.0}, .potentials = springs, .potential_count = 2, .autonomous = 1};
+  const dvi_system_terms terms = {.dimension = 1,
+                                  .mass = {.scalar = 1.0},
+                                  .potentials = springs,
+                                  .potential_count = 2,
+                                  .autonomous = 1};
   return problem_system(made, &terms);
 }
 
 static const problem_parameter parameters[] = {
-    {.name = "omega", .value = 50.0, .least = 0.0, .most = 1e100, .help = "the stiff spring's frequency, not negative"},
+    {.name = "omega",
+     .value = 50.0,
+     .least = 0.0,
+     .most = 1e100,
+     .help = "the stiff spring's frequency, not negative"},
     {.name = NULL},
 };
 
@@ -96,7 +104,8 @@ static const double digits_p[] = {12.638187027387501};
 
 const problem_entry problem_entry_oscillators = {
     .name = "oscillators",
-    .summary = "a stiff and a soft spring on one mass, declared as two potentials; exact solution known",
+    .summary =
+        "a stiff and a soft spring on one mass, declared as two potentials; exact solution known",
     .parameters = parameters,
     .make = make,
     .exact = exact,

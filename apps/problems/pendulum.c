@@ -1,5 +1,5 @@
-/* A pendulum in a plane, L = v^2/2 - cos q: the angle is measured from the top, so that a start near q = 0 stays near the
- * separatrix. */
+/* A pendulum in a plane, L = v^2/2 - cos q: the angle is measured from the top, so that a start
+ * near q = 0 stays near the separatrix. */
 #include <dvi/taylor.h>
 #include <float.h>
 #include <math.h>
@@ -28,7 +28,8 @@ static int hessian(int count, const double *t, const double *q, double *V_qq, vo
 }
 
 /* V = cos q along a curve. */
-static int taylor(int degree, const double *t, const double *q, double *V, double *V_q, double *V_qq, void *user)
+static int taylor(int degree, const double *t, const double *q, double *V, double *V_q,
+                  double *V_qq, void *user)
 {
   double sine[DVI_TAYLOR_MAX + 1], cosine[DVI_TAYLOR_MAX + 1];
   (void)t, (void)user;
@@ -46,10 +47,16 @@ static dvi_status make(const double *setting, problem *made)
   problem_label(made, 0, "q");
   made->q[0] = setting[0];
 
-  const dvi_potential gravity = {
-      .name = "gravity", .value_batch = value, .gradient_batch = gradient, .hessian_batch = hessian, .taylor = taylor};
-  const dvi_system_terms terms = {
-      .dimension = 1, .mass = {.scalar = 1.0}, .potentials = &gravity, .potential_count = 1, .autonomous = 1};
+  const dvi_potential gravity = {.name = "gravity",
+                                 .value_batch = value,
+                                 .gradient_batch = gradient,
+                                 .hessian_batch = hessian,
+                                 .taylor = taylor};
+  const dvi_system_terms terms = {.dimension = 1,
+                                  .mass = {.scalar = 1.0},
+                                  .potentials = &gravity,
+                                  .potential_count = 1,
+                                  .autonomous = 1};
   return problem_system(made, &terms);
 }
 

@@ -82,13 +82,15 @@ refuse(const report *r, dvi_status status, const char *format, ...)
 }
 
 /* Refuse a parameter's name, and list those that there are. */
-static dvi_status refuse_name(const report *r, const problem_entry *entry, const char *setting, size_t length)
+static dvi_status refuse_name(const report *r, const problem_entry *entry, const char *setting,
+                              size_t length)
 {
   char names[NAMES_SIZE] = "none";
   size_t used = 0;
   for (const problem_parameter *p = parameters_of(entry); p->name && used < sizeof names; p++)
     used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", p->name);
-  return refuse(r, DVI_BAD_OPTION, "%s has no parameter '%.*s'; it has: %s", entry->name, (int)length, setting, names);
+  return refuse(r, DVI_BAD_OPTION, "%s has no parameter '%.*s'; it has: %s", entry->name,
+                (int)length, setting, names);
 }
 
 void problem_spell(const problem_parameter *parameter, double x, char *text, size_t size)
@@ -99,49 +101,59 @@ void problem_spell(const problem_parameter *parameter, double x, char *text, siz
 }
 
 /* Refuse a number outside of a parameter's range, and say where that ends. */
-static dvi_status refuse_value(const report *r, const problem_entry *entry, const char *setting, const problem_parameter *parameter,
-                               double x)
+static dvi_status refuse_value(const report *r, const problem_entry *entry, const char *setting,
+                               const problem_parameter *parameter, double x)
 {
   char limit[32];
-  problem_spell(parameter, x < parameter->least ? parameter->least : parameter->most, limit, sizeof limit);
-  return refuse(r, DVI_BAD_OPTION, "%s: %s is %s %s, the %s that is taken; %s is %s", entry->name, setting,
-                x < parameter->least ? "below" : "above", limit, x < parameter->least ? "least" : "most", parameter->name,
-                parameter->help);
+  problem_spell(parameter, x < parameter->least ? parameter->least : parameter->most, limit,
+                sizeof limit);
+  return refuse(r, DVI_BAD_OPTION, "%s: %s is %s %s, the %s that is taken; %s is %s", entry->name,
+                setting, x < parameter->least ? "below" : "above", limit,
+                x < parameter->least ? "least" : "most", parameter->name, parameter->help);
 }
 
-static dvi_status read_choice(const report *r, const problem_entry *entry, const char *setting, const problem_parameter *parameter,
-                              const char *name, double *value)
+static dvi_status read_choice(const report *r, const problem_entry *entry, const char *setting,
+                              const problem_parameter *parameter, const char *name, double *value)
 {
   for (int k = 0; parameter->choice[k]; k++)
     if (strcmp(parameter->choice[k], name) == 0) {
       *value = k;
       return DVI_OK;
     }
-  return refuse(r, DVI_BAD_OPTION, "%s: %s is no choice; %s is %s", entry->name, setting, parameter->name, parameter->help);
+  return refuse(r, DVI_BAD_OPTION, "%s: %s is no choice; %s is %s", entry->name, setting,
+                parameter->name, parameter->help);
 }
 
 /* Read one "name=value"; given: which parameters were read before. */
-static dvi_status read_setting(const report *r, const problem_entry *entry, const char *setting, double *value, int *given)
+static dvi_status read_setting(const report *r, const problem_entry *entry, const char *setting,
+                               double *value, int *given)
 {
   const char *equals = setting ? strchr(setting, '=') : NULL;
   if (!equals)
-    return refuse(r, DVI_BAD_OPTION, "%s: the setting '%s' is not of the form name=value", entry->name, setting ? setting : "");
+    return refuse(r, DVI_BAD_OPTION, "%s: the setting '%s' is not of the form name=value",
+                  entry->name, setting ? setting : "");
   const size_t length = (size_t)(equals - setting);
   const problem_parameter *parameters = parameters_of(entry);
   int i = 0;
-  while (parameters[i].name && (strncmp(parameters[i].name, setting, length) != 0 || parameters[i].name[length])) i++;
+  while (parameters[i].name &&
+         (strncmp(parameters[i].name, setting, length) != 0 || parameters[i].name[length]))
+    i++;
   if (!parameters[i].name) return refuse_name(r, entry, setting, length);
-  if (given[i]) return refuse(r, DVI_BAD_OPTION, "%s: %s is set twice", entry->name, parameters[i].name);
+  if (given[i])
+    return refuse(r, DVI_BAD_OPTION, "%s: %s is set twice", entry->name, parameters[i].name);
   given[i] = 1;
 
-  if (parameters[i].choice) return read_choice(r, entry, setting, &parameters[i], equals + 1, value + i);
+  if (parameters[i].choice)
+    return read_choice(r, entry, setting, &parameters[i], equals + 1, value + i);
   double x = 0;
   const char *end = dvi_number_read(equals + 1, &x);
   const int number = end != equals + 1 && *end == '\0' && isfinite(x);
   if (!number || (parameters[i].whole && floor(x) != x))
     return refuse(r, DVI_BAD_OPTION, "%s: %s is no %s; %s is %s", entry->name, setting,
-                  parameters[i].whole ? "whole number" : "finite number", parameters[i].name, parameters[i].help);
-  if (x < parameters[i].least || x > parameters[i].most) return refuse_value(r, entry, setting, &parameters[i], x);
+                  parameters[i].whole ? "whole number" : "finite number", parameters[i].name,
+                  parameters[i].help);
+  if (x < parameters[i].least || x > parameters[i].most)
+    return refuse_value(r, entry, setting, &parameters[i], x);
   value[i] = x;
   return DVI_OK;
 }
@@ -149,11 +161,13 @@ static dvi_status read_setting(const report *r, const problem_entry *entry, cons
 static int all_default(const problem_entry *entry, const double *value)
 {
   for (int i = 0; parameters_of(entry)[i].name; i++)
-    if (value[i] < parameters_of(entry)[i].value || value[i] > parameters_of(entry)[i].value) return 0;
+    if (value[i] < parameters_of(entry)[i].value || value[i] > parameters_of(entry)[i].value)
+      return 0;
   return 1;
 }
 
-static dvi_status make(const report *r, const problem_entry *entry, const double *value, problem *made)
+static dvi_status make(const report *r, const problem_entry *entry, const double *value,
+                       problem *made)
 {
   made->name = entry->name;
   made->summary = entry->summary;
@@ -173,22 +187,26 @@ static dvi_status make(const report *r, const problem_entry *entry, const double
   dvi_status status = entry->make(value, made);
   if (status == DVI_OK && (made->terms->one_form || made->terms->hamiltonian))
     status = dvi_system_velocity(made->system, 0.0, made->q, made->p, made->v);
-  if (status == DVI_OK && !made->terms->hamiltonian) status = dvi_system_momentum(made->system, 0.0, made->q, made->v, made->p);
+  if (status == DVI_OK && !made->terms->hamiltonian)
+    status = dvi_system_momentum(made->system, 0.0, made->q, made->v, made->p);
   if (status == DVI_OK) return DVI_OK;
   const char *reason = status == DVI_NO_MEMORY ? dvi_status_meaning(status) : dvi_last_error();
-  if (status == DVI_BAD_ARGUMENT) /* each parameter is in its range, but not together: the triangle inequality of inertias */
+  /* each parameter is in its range, but not together: the triangle inequality of inertias */
+  if (status == DVI_BAD_ARGUMENT)
     return refuse(r, DVI_BAD_OPTION, "%s with these parameters: %s", entry->name, reason);
   return refuse(r, status, "%s: %s", entry->name, reason);
 }
 
-dvi_status problem_create(const char *name, int setting_count, const char *const *settings, problem **out, char *message,
-                          size_t size)
+dvi_status problem_create(const char *name, int setting_count, const char *const *settings,
+                          problem **out, char *message, size_t size)
 {
   const report r = {message, size};
   if (!out) return refuse(&r, DVI_BAD_ARGUMENT, "there is no place for the problem");
   *out = NULL;
   const problem_entry *entry = entry_of(problem_find(name));
-  if (!entry) return refuse(&r, DVI_BAD_OPTION, "there is no problem '%s'; see dvi list problems", name ? name : "");
+  if (!entry)
+    return refuse(&r, DVI_BAD_OPTION, "there is no problem '%s'; see dvi list problems",
+                  name ? name : "");
 
   double value[PROBLEM_PARAMETERS_MAX] = {0.0};
   int given[PROBLEM_PARAMETERS_MAX] = {0};
@@ -199,7 +217,8 @@ dvi_status problem_create(const char *name, int setting_count, const char *const
   }
 
   problem *made = calloc(1, sizeof *made);
-  if (!made) return refuse(&r, DVI_NO_MEMORY, "%s: %s", entry->name, dvi_status_meaning(DVI_NO_MEMORY));
+  if (!made)
+    return refuse(&r, DVI_NO_MEMORY, "%s: %s", entry->name, dvi_status_meaning(DVI_NO_MEMORY));
   const dvi_status status = make(&r, entry, value, made);
   if (status == DVI_OK)
     *out = made;
@@ -208,7 +227,8 @@ dvi_status problem_create(const char *name, int setting_count, const char *const
   return status;
 }
 
-/* A block starts with the address of the next one; the union keeps what follows aligned for every type. */
+/* A block starts with the address of the next one; the union keeps what follows aligned for every
+ * type. */
 typedef union block {
   union block *next;
   max_align_t alignment;
@@ -274,7 +294,8 @@ void problem_label(problem *made, int i, const char *format, ...)
   va_start(arguments, format);
   vsnprintf(made->coordinate[i], PROBLEM_LABEL_SIZE, format, arguments);
   va_end(arguments);
-  (void)snprintf(made->momentum[i], PROBLEM_LABEL_SIZE, "p_%.*s", PROBLEM_LABEL_SIZE - 3, made->coordinate[i]);
+  (void)snprintf(made->momentum[i], PROBLEM_LABEL_SIZE, "p_%.*s", PROBLEM_LABEL_SIZE - 3,
+                 made->coordinate[i]);
 }
 
 void problem_oscillation(double square, double t, double *cosine, double *sine)
@@ -288,7 +309,8 @@ void problem_oscillation(double square, double t, double *cosine, double *sine)
   *sine = s * c_rest + c * s_rest;
 }
 
-void problem_spring_taylor(double k, int degree, const double *q, double *V, double *V_q, double *V_qq)
+void problem_spring_taylor(double k, int degree, const double *q, double *V, double *V_q,
+                           double *V_qq)
 {
   const double one[DVI_TAYLOR_MAX + 1] = {1.0};
   double square[DVI_TAYLOR_MAX + 1];

@@ -1,5 +1,6 @@
-/* Burrau's problem: masses 3, 4 and 5 at rest in the corners of a right triangle, each opposite to the side of its length. Close
- * encounters, the closest of 4.14e-4 at t = 15.8299, until one body leaves for good. */
+/* Burrau's problem: masses 3, 4 and 5 at rest in the corners of a right triangle, each opposite to
+ * the side of its length. Close encounters, the closest of 4.14e-4 at t = 15.8299, until one body
+ * leaves for good. */
 #include "entry.h"
 #include "nbody.h"
 
@@ -20,10 +21,12 @@ static dvi_status make(const double *setting, problem *made)
 
 /* Quadruple-precision results, recomputed by tests/reference/test_digits. */
 static const double digits_q[] = {
-    0.87791185712612620, 2.4685638476332698, -1.1646387214058229, -0.87557691545439917, 0.40496386284898262, -0.78067677621644255,
+    0.87791185712612620,  2.4685638476332698,  -1.1646387214058229,
+    -0.87557691545439917, 0.40496386284898262, -0.78067677621644255,
 };
 static const double digits_p[] = {
-    -0.55871383343489313, -2.2920788979275850, 5.5336382842463239, 0.80052404568870468, -4.9749244508114308, 1.4915548522388803,
+    -0.55871383343489313, -2.2920788979275850, 5.5336382842463239,
+    0.80052404568870468,  -4.9749244508114308, 1.4915548522388803,
 };
 
 const problem_entry problem_entry_pythagorean = {

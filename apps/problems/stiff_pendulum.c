@@ -1,4 +1,5 @@
-/* A mass on a stiff spring that swings in a plane: a is the spring's extension, th the angle from straight down.
+/* A mass on a stiff spring that swings in a plane: a is the spring's extension, th the angle from
+ * straight down.
  *
  *     L = m/2 (a'^2 + (l+a)^2 th'^2) + m g (l+a) cos th - k a^2/2
  *
@@ -16,11 +17,13 @@ static int value(double t, const double *q, const double *v, double *L, void *us
   const coefficients *own = user;
   const double length = own->l + q[0], swing = length * v[1];
   (void)t;
-  *L = 0.5 * own->m * (v[0] * v[0] + swing * swing) + own->m * own->g * length * cos(q[1]) - 0.5 * own->k * q[0] * q[0];
+  *L = 0.5 * own->m * (v[0] * v[0] + swing * swing) + own->m * own->g * length * cos(q[1]) -
+       0.5 * own->k * q[0] * q[0];
   return 0;
 }
 
-static int gradient(double t, const double *q, const double *v, double *L_q, double *L_v, void *user)
+static int gradient(double t, const double *q, const double *v, double *L_q, double *L_v,
+                    void *user)
 {
   const coefficients *own = user;
   const double length = own->l + q[0];
@@ -36,7 +39,8 @@ static int gradient(double t, const double *q, const double *v, double *L_q, dou
 static const int qv_start[] = {0, 0, 1}, qv_row[] = {0};
 static const int vv_start[] = {0, 1, 2}, vv_row[] = {0, 1};
 
-static int hessian(double t, const double *q, const double *v, double *L_qq, double *L_qv, double *L_vv, void *user)
+static int hessian(double t, const double *q, const double *v, double *L_qq, double *L_qv,
+                   double *L_vv, void *user)
 {
   const coefficients *own = user;
   const double length = own->l + q[0];
@@ -61,17 +65,33 @@ static dvi_status make(const double *setting, problem *made)
   made->q[0] = 0.05;
   made->q[1] = 1.0;
 
-  const dvi_lagrangian lagrangian = {
-      .value = value, .gradient = gradient, .hessian = hessian, .qv = {qv_start, qv_row}, .vv = {vv_start, vv_row}, .user = own};
+  const dvi_lagrangian lagrangian = {.value = value,
+                                     .gradient = gradient,
+                                     .hessian = hessian,
+                                     .qv = {qv_start, qv_row},
+                                     .vv = {vv_start, vv_row},
+                                     .user = own};
   const dvi_system_terms terms = {.dimension = 2, .lagrangian = &lagrangian, .autonomous = 1};
   return problem_system(made, &terms);
 }
 
 static const problem_parameter parameters[] = {
-    {.name = "k", .value = 1e4, .least = 0.0, .most = 1e100, .help = "the stiffness of the spring, not negative"},
-    {.name = "l", .value = 1.0, .least = 1e-50, .most = 1e50, .help = "the length of the spring at rest, positive"},
+    {.name = "k",
+     .value = 1e4,
+     .least = 0.0,
+     .most = 1e100,
+     .help = "the stiffness of the spring, not negative"},
+    {.name = "l",
+     .value = 1.0,
+     .least = 1e-50,
+     .most = 1e50,
+     .help = "the length of the spring at rest, positive"},
     {.name = "m", .value = 1.0, .least = 1e-50, .most = 1e50, .help = "the mass, positive"},
-    {.name = "g", .value = 9.81, .least = -1e50, .most = 1e50, .help = "the acceleration of gravity, any number"},
+    {.name = "g",
+     .value = 9.81,
+     .least = -1e50,
+     .most = 1e50,
+     .help = "the acceleration of gravity, any number"},
     {.name = NULL},
 };
 

@@ -1,100 +1,61 @@
 #include "study/order_report.h"
 
 #include <math.h>
-#include <stdlib.h>
 
-#include "study/study.h"
 #include "study/window.h"
 
-static const double order_tolerance = 0.2;
+enum { PHRASE_SIZE = 192 };
 
-#define COLUMNS                                                                                                \
-  {"method", NULL}, {"problem", NULL}, {"h", "%.6g"}, {"steps", "%.0f"}, {"error", "%.3e"}, {"slope", "%.2f"}, \
-      {"energy_error", "%.3e"}, {"cpu_seconds", "%.3e"}, {"residuals", "%.0f"}, {"jacobians", "%.0f"},         \
-  {                                                                                                            \
-    "factorizations", "%.0f"                                                                                   \
-  }
-
-const table_column *order_columns(const problem *scene)
+/* A phrase of the subject; "" if it has none. */
+static const char *say(const order_result *result, study_phrase phrase, char *text)
 {
-  static const table_column plain[] = {COLUMNS, {NULL, NULL}}, with_distance[] = {COLUMNS, {"distance", "%.1e"}, {NULL, NULL}};
-  return scene->velocity != NULL ? with_distance : plain;
+  const char *said = study_say(result->words, phrase, result->extent, text, PHRASE_SIZE);
+  return said != NULL ? said : "";
 }
 
-static int fitted_levels(const order_result *result)
+/* ---- tables ---- */
+
+static bool has_closer(const order_result *result)
 {
-  return result->fit.first < 0 ? 0 : result->fit.last - result->fit.first + 1;
+  return result->closer.asked && result->closer.missing == NULL;
 }
 
-double order_local_slope(const order_result *result, int k)
+static void print_closer(const order_result *result)
 {
-  if (k == 0 || !(result->error[k - 1] > 0.0) || !(result->error[k] > 0.0)) return (double)NAN;
-  return log(result->error[k - 1] / result->error[k]) / log(result->h[k - 1] / result->h[k]);
-}
-
-static bool is_claimed(const order_result *result, double slope)
-{
-  return fabs(slope - result->claimed) <= order_tolerance;
-}
-
-static bool steps_settled(const order_result *result)
-{
-  return result->single.asked && result->single.missing == NULL && result->single.settled;
-}
-
-/* Whether the span's errors fall about as single steps foretell. Those that fall far slower, as behind a
- * kink of the forces which no single step met, are not on their way to that order. */
-static bool span_agrees(const order_result *result)
-{
-  static const double unsettled = 0.7, settled = 0.9; /* of the order */
-  if (fitted_levels(result) < 2) return true;
-  return result->fit.slope >= (result->settled ? settled : unsettled) * result->single.fit.slope;
-}
-
-/* Whether single steps have the last word. */
-static bool decided_by_steps(const order_result *result)
-{
-  return steps_settled(result) && span_agrees(result);
-}
-
-bool order_holds(const order_result *result)
-{
-  if (decided_by_steps(result)) return is_claimed(result, result->single.fit.slope);
-  return result->settled && is_claimed(result, result->fit.slope);
-}
-
-static void print_single_steps(const order_result *result)
-{
-  const single_steps *s = &result->single;
-  (void)printf("\n%s, single steps from %d points to t = %g, in quadruple precision\n", result->method, (int)SINGLE_POINTS,
-               result->t_end);
-  (void)printf("  %10s  %9s  order\n", "h", "error");
-  for (int k = 0; k < SINGLE_LEVELS; k++) {
-    (void)printf("  %10.6g  %9.3e", s->h[k], s->error[k]);
-    if (k > 0) (void)printf("  %5.2f", log(s->error[k - 1] / s->error[k]) / log(s->h[k - 1] / s->h[k]) - 1.0);
+  const closer_look *c = &result->closer;
+  (void)printf("\n%s, %s\n", result->name, c->title);
+  (void)printf("  %10s  %9s  order\n", result->words->length, "error");
+  for (int k = 0; k < c->levels; k++) {
+    (void)printf("  %10.6g  %9.3e", c->length[k], c->error[k]);
+    if (k > 0)
+      (void)printf("  %5.2f",
+                   log(c->error[k - 1] / c->error[k]) / log(c->length[k - 1] / c->length[k]) -
+                       c->excess);
     (void)putchar('\n');
   }
 }
 
-void order_print_tables(const char *name, const result_table *rows, int results, const order_result *result)
+void order_print_tables(const char *problem, const result_table *rows, int results,
+                        const order_result *result)
 {
-  (void)printf("Order on %s\n", name);
+  char reach[PHRASE_SIZE];
+  (void)printf("Order on %s\n", problem);
   int first = 0;
   for (int i = 0; i < results; i++) {
-    (void)printf("\n%s, to t = %g\n", result[i].method, result[i].t_end);
+    const char *to = say(&result[i], STUDY_REACH, reach);
+    (void)printf("\n%s%s%s\n", result[i].name, to[0] != '\0' ? ", " : "", to);
     table_print(rows, stdout, 2, first, first + result[i].levels);
     first += result[i].levels;
-    if (result[i].single.asked && result[i].single.missing == NULL) print_single_steps(&result[i]);
+    if (has_closer(&result[i])) print_closer(&result[i]);
   }
   (void)putchar('\n');
 }
 
 /* ---- verdicts ---- */
 
-/* From the first on a slope may look settled before it is, from the other on hardly a span shows it. */
+/* From the first on a slope may look settled before it is, from the other on hardly any levels show
+ * it. */
 enum { SLOW_ORDER = 8, HIDDEN_ORDER = 12 };
-
-static const double shorter = 0.25; /* of the span, for which the errors of high orders fall into line */
 
 static int count_above(const order_result *result, double bound)
 {
@@ -104,29 +65,50 @@ static int count_above(const order_result *result, double bound)
 }
 
 /* What hides small errors. */
-static const char *floor_cause(const order_result *result)
+static const char *floor_cause(const order_result *result, char *text)
 {
   const bool of_judge = result->floor <= 1.01 * STUDY_FLOOR_MARGIN * result->judge_error;
-  return of_judge ? "the judge's own error" : "roundoff (what a change of the start in its last digit does to the end)";
+  const char *said = say(result, STUDY_ROUNDOFF, text);
+  return of_judge ? "the judge's own error" : said[0] != '\0' ? said : "roundoff";
+}
+
+/* End the line with what to do, if anything is known. */
+static void print_advice(FILE *stream, const order_result *result, study_phrase phrase)
+{
+  char text[PHRASE_SIZE];
+  const char *advice = say(result, phrase, text);
+  (void)fprintf(stream, "%s%s\n", advice[0] != '\0' ? "; " : "", advice);
+}
+
+/* A line of advice. */
+static void print_line(FILE *stream, const order_result *result, study_phrase phrase)
+{
+  char text[PHRASE_SIZE];
+  const char *advice = say(result, phrase, text);
+  if (advice[0] != '\0') (void)fprintf(stream, "  %s\n", advice);
 }
 
 /* Too few levels between the floor and the ceiling. */
 static void print_missing(FILE *stream, const order_result *result)
 {
-  const int above = count_above(result, result->ceiling), below = result->levels - count_above(result, result->floor);
-  if (result->levels < WINDOW_LEVELS)
-    (void)fprintf(stream, "not decided: %d levels are too few, %d are needed; ask for --levels 6\n", result->levels,
+  char text[PHRASE_SIZE];
+  const int above = count_above(result, result->ceiling),
+            below = result->levels - count_above(result, result->floor);
+  (void)fprintf(stream, "not decided: ");
+  if (result->levels < WINDOW_LEVELS) {
+    (void)fprintf(stream, "%d levels are too few, %d are needed", result->levels,
                   (int)WINDOW_LEVELS);
-  else if (above > below)
+    print_advice(stream, result, STUDY_MORE);
+  } else if (above > below) {
     (void)fprintf(stream,
-                  "not decided: steps are too large: %d of %d levels have errors above 1 %% of the solution (%.1e); leave --h to "
-                  "the search, or shorten the span, --t-end %g\n",
-                  above, result->levels, result->ceiling, shorter * result->t_end);
-  else
-    (void)fprintf(stream,
-                  "not decided: %d of %d levels have errors below %.1e, ten times %s; leave --h and --judge to the search, or "
-                  "lengthen the span, --t-end %g\n",
-                  below, result->levels, result->floor, floor_cause(result), result->t_end / shorter);
+                  "%s are too large: %d of %d levels have errors above 1 %% of the solution (%.1e)",
+                  result->words->parts, above, result->levels, result->ceiling);
+    print_advice(stream, result, STUDY_FINER);
+  } else {
+    (void)fprintf(stream, "%d of %d levels have errors below %.1e, ten times %s", below,
+                  result->levels, result->floor, floor_cause(result, text));
+    print_advice(stream, result, STUDY_COARSER);
+  }
 }
 
 static void slopes_between(const order_result *result, double *least, double *most)
@@ -139,105 +121,118 @@ static void slopes_between(const order_result *result, double *least, double *mo
   }
 }
 
-/* What else can be done where errors of a high order are not in line with a power of the step. */
+/* What else can be done where errors of a high order are not in line with a power of the length. */
 static void print_remedy(FILE *stream, const order_result *result)
 {
-  if (result->single.asked && result->single.missing != NULL)
-    (void)fprintf(stream, "  no single steps in quadruple precision: %s\n", result->single.missing);
-  if (steps_settled(result))
-    (void)fprintf(stream,
-                  "  single steps have the order %.2f, but over the span errors fall far slower: is the Lagrangian smooth "
-                  "all along the motion? (abs and roots of 0 are not)\n",
-                  result->single.fit.slope);
-  else if (result->chooses_steps)
-    (void)fprintf(stream, "  the method chooses its steps, and an error is no power of the first one; galerkin of this degree has "
-                          "steps of one length\n");
-  else if (result->claimed < HIDDEN_ORDER)
-    (void)fprintf(stream, "  try a shorter span, --t-end %g\n", shorter * result->t_end);
-  else
-    (void)fprintf(stream, "  spans show orders up to about 10 in doubles: try a method of a lower one\n");
+  const closer_look *c = &result->closer;
+  if (c->asked && c->missing != NULL)
+    (void)fprintf(stream, "  no %s %s: %s\n", c->of, c->digits, c->missing);
+  if (order_closer_settled(result)) {
+    char whole[PHRASE_SIZE];
+    (void)fprintf(stream, "  %s have the order %.2f, but over %s errors fall far slower: %s\n",
+                  c->of, c->fit.slope, say(result, STUDY_WHOLE, whole), c->unlike);
+  } else if (result->chooses) {
+    print_line(stream, result, STUDY_EQUAL);
+  } else {
+    print_line(stream, result, result->claimed < HIDDEN_ORDER ? STUDY_NEARER : STUDY_LOWER);
+  }
 }
 
 static void print_unsettled(FILE *stream, const order_result *result)
 {
   double least, most;
+  char text[PHRASE_SIZE];
   slopes_between(result, &least, &most);
-  (void)fprintf(stream, "not decided: the slope does not settle (%.2f over levels %d to %d, %.2f to %.2f between neighbours): ",
+  (void)fprintf(stream,
+                "not decided: the slope does not settle (%.2f over levels %d to %d, %.2f to %.2f "
+                "between neighbours): ",
                 result->fit.slope, result->fit.first + 1, result->fit.last + 1, least, most);
-  (void)fprintf(stream, "between steps that are too large and %s there is no range that shows an order\n", floor_cause(result));
+  (void)fprintf(stream,
+                "between %s that are too large and %s there is no range that shows an order\n",
+                result->words->parts, floor_cause(result, text));
   print_remedy(stream, result);
 }
 
-static void print_span(FILE *stream, const order_result *result)
+static void print_levels(FILE *stream, const order_result *result)
 {
-  if (fitted_levels(result) < WINDOW_LEVELS) {
+  if (order_fitted(result) < WINDOW_LEVELS) {
     print_missing(stream, result);
   } else if (!result->settled) {
     print_unsettled(stream, result);
   } else {
-    (void)fprintf(stream, "fitted %.2f to levels %d to %d: %s\n", result->fit.slope, result->fit.first + 1, result->fit.last + 1,
+    (void)fprintf(stream, "fitted %.2f to levels %d to %d: %s\n", result->fit.slope,
+                  result->fit.first + 1, result->fit.last + 1,
                   order_holds(result) ? "ok" : "MISSED");
-    if (!order_holds(result) && (result->claimed >= SLOW_ORDER || steps_settled(result))) print_remedy(stream, result);
+    if (!order_holds(result) && (result->claimed >= SLOW_ORDER || order_closer_settled(result)))
+      print_remedy(stream, result);
   }
 }
 
-/* Why the span was not enough. */
+/* Why the levels were not enough. */
 static void print_hidden(FILE *stream, const order_result *result)
 {
   double least, most;
+  char whole[PHRASE_SIZE], reach[PHRASE_SIZE];
   slopes_between(result, &least, &most);
-  (void)fprintf(stream, "  the span to t = %g does not show it: %d of %d levels lie between floor and ceiling", result->t_end,
-                fitted_levels(result), result->levels);
-  if (fitted_levels(result) > 1)
-    (void)fprintf(stream, ", slope %.2f, %.2f to %.2f between neighbours", result->fit.slope, least, most);
+  (void)fprintf(stream, "  %s %s does not show it: %d of %d levels lie between floor and ceiling",
+                say(result, STUDY_WHOLE, whole), say(result, STUDY_REACH, reach),
+                order_fitted(result), result->levels);
+  if (order_fitted(result) > 1)
+    (void)fprintf(stream, ", slope %.2f, %.2f to %.2f between neighbours", result->fit.slope, least,
+                  most);
   (void)fputc('\n', stream);
 }
 
-static void print_of_steps(FILE *stream, const order_result *result)
+static void print_of_closer(FILE *stream, const order_result *result)
 {
-  const single_steps *s = &result->single;
-  (void)fprintf(stream, "fitted %.2f to single steps %d to %d: %s\n", s->fit.slope, s->fit.first + 1, s->fit.last + 1,
-                order_holds(result) ? "ok" : "MISSED");
+  const closer_look *c = &result->closer;
+  (void)fprintf(stream, "fitted %.2f to %s %d to %d: %s\n", c->fit.slope, c->of, c->fit.first + 1,
+                c->fit.last + 1, order_holds(result) ? "ok" : "MISSED");
   print_hidden(stream, result);
-  (void)fprintf(stream,
-                "  judge of the steps: extrapolation, error %.1e; with h = %.3g and an error of %.1e the library's own "
-                "steps are %.1e from these\n",
-                s->judge_error, s->common_h, s->common_error, s->apart);
+  (void)fprintf(stream, "  %s\n", c->judge);
 }
 
 void order_print_verdict(FILE *stream, const order_result *result)
 {
-  (void)fprintf(stream, "%s: claimed order %d, ", result->method, result->claimed);
-  if (decided_by_steps(result))
-    print_of_steps(stream, result);
+  char place[PHRASE_SIZE];
+  (void)fprintf(stream, "%s: claimed order %d, ", result->name, result->claimed);
+  if (order_closer_decides(result))
+    print_of_closer(stream, result);
   else
-    print_span(stream, result);
-  (void)fprintf(stream, "  judge at t = %g: %s, error %.1e; errors up to %.1e are not fitted\n", result->t_end, result->judge,
+    print_levels(stream, result);
+  const char *at = say(result, STUDY_PLACE, place);
+  (void)fprintf(stream, "  judge%s%s: %s%serror %.1e; errors up to %.1e are not fitted\n",
+                at[0] != '\0' ? " " : "", at, result->judge, result->judge[0] != '\0' ? ", " : "",
                 result->judge_error, result->floor);
 }
 
-/* A line of the fitted order's slope, a little below the method's errors, over its window. */
+/* ---- plot ---- */
+
+/* A line of the claimed order's slope, a little below the subject's errors, over its window. */
 static int guide(const order_result *result, double *x, double *y)
 {
-  if (fitted_levels(result) < 2) return 0;
+  if (order_fitted(result) < 2) return 0;
   const int ends[2] = {result->fit.first, result->fit.last};
   for (int i = 0; i < 2; i++) {
-    x[i] = result->h[ends[i]];
-    y[i] = 0.4 * result->error[ends[0]] * pow(x[i] / result->h[ends[0]], result->claimed);
+    x[i] = result->length[ends[i]];
+    y[i] = 0.4 * result->error[ends[0]] * pow(x[i] / result->length[ends[0]], result->claimed);
   }
   return 2;
 }
 
-bool order_plot(const char *name, const result_table *rows, const plot_axes *axes, int results, const order_result *result,
-                const char *path)
+bool order_plot(const char *problem, const result_table *rows, const plot_axes *axes, int results,
+                const order_result *result, const char *path)
 {
   plot_curve curve[WORDS_MAX];
   double x[WORDS_MAX][2];
   double y[WORDS_MAX][2];
   for (int i = 0; i < results; i++) {
     const int count = guide(&result[i], x[i], y[i]);
-    curve[i] = (plot_curve){
-        .label = i == 0 ? "slopes of the claimed orders" : NULL, .count = count, .x = x[i], .y = y[i], .guide = true};
+    curve[i] = (plot_curve){.label = i == 0 ? "slopes of the claimed orders" : NULL,
+                            .count = count,
+                            .x = x[i],
+                            .y = y[i],
+                            .guide = true};
   }
-  return axes_plot(rows, axes, name, results, curve, path);
+  return axes_plot(rows, axes, problem, results, curve, path);
 }

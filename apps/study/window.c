@@ -2,7 +2,8 @@
 
 #include <math.h>
 
-static const double half_tolerance = 0.1;   /* half of what an order may miss: the slope still moves beyond the window */
+static const double half_tolerance =
+    0.1; /* half of what an order may miss: the slope still moves beyond the window */
 static const double error_tolerance = 0.05; /* a quarter of it: four standard errors */
 
 /* The slope fitted to levels first to last, whatever their errors. */
@@ -37,10 +38,12 @@ static bool settled(const double *h, const double *error, int first, int last)
   const int half = (last - first + 2) / 2;
   const double coarse = slope(h, error, first, first + half - 1);
   const double fine = slope(h, error, last - half + 1, last);
-  return fabs(coarse - fine) <= half_tolerance && slope_error(h, error, first, last) <= error_tolerance;
+  return fabs(coarse - fine) <= half_tolerance &&
+         slope_error(h, error, first, last) <= error_tolerance;
 }
 
-bool window_fit(int levels, const double *h, const double *error, double floor, double ceiling, dvi_order_fit *fit)
+bool window_fit(int levels, const double *h, const double *error, double floor, double ceiling,
+                dvi_order_fit *fit)
 {
   bool found = false;
   (void)dvi_order(levels, h, error, floor, ceiling, fit);
@@ -50,7 +53,8 @@ bool window_fit(int levels, const double *h, const double *error, double floor, 
       bool usable = true;
       for (int i = first; i <= last; i++) usable = usable && error[i] > floor && error[i] < ceiling;
       found = usable && settled(h, error, first, last);
-      if (found) *fit = (dvi_order_fit){.slope = slope(h, error, first, last), .first = first, .last = last};
+      if (found)
+        *fit = (dvi_order_fit){.slope = slope(h, error, first, last), .first = first, .last = last};
     }
   return found;
 }

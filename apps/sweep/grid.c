@@ -23,7 +23,8 @@ static bool make_values(grid_axis *axis, long count)
   return axis->value != NULL;
 }
 
-/* The number that ends with the character `stop`. Returns what follows it; NULL if there is none. */
+/* The number that ends with the character `stop`. Returns what follows it; NULL if there is
+ * none. */
 static const char *take_number(const char *text, char stop, double *number)
 {
   if (text == NULL) return NULL;
@@ -37,10 +38,14 @@ static int read_range(const char *setting, const char *text, grid_axis *axis)
   double from = 0.0, to = 0.0, count = 0.0;
   text = take_number(take_number(take_number(text, ':', &from), ':', &to), '\0', &count);
   if (text == NULL || !(count >= 2.0 && count <= POINTS_MAX) || floor(count) < count)
-    return usage_error("sweep: --set %s: two numbers and a count from 2 to %d are wanted, FROM:TO:COUNT", setting, (int)POINTS_MAX);
-  if (!isfinite((to - from) * count)) return usage_error("sweep: --set %s: the range is too wide", setting);
+    return usage_error(
+        "sweep: --set %s: two numbers and a count from 2 to %d are wanted, FROM:TO:COUNT", setting,
+        (int)POINTS_MAX);
+  if (!isfinite((to - from) * count))
+    return usage_error("sweep: --set %s: the range is too wide", setting);
   if (!make_values(axis, (long)count)) return FAILED;
-  for (long k = 0; k < axis->count; k++) axis->value[k] = from + (to - from) * (double)k / (double)(axis->count - 1);
+  for (long k = 0; k < axis->count; k++)
+    axis->value[k] = from + (to - from) * (double)k / (double)(axis->count - 1);
   axis->value[axis->count - 1] = to;
   return DONE;
 }
@@ -49,7 +54,8 @@ static int read_list(const char *setting, const char *text, grid_axis *axis)
 {
   const size_t room = GRID_SETTING_SIZE - 1 - strlen(axis->name) - 1;
   axis->list = text;
-  if (strpbrk(text, "\r\n\"") != NULL) return usage_error("sweep: --set %s: values stand on one line, without quotes", setting);
+  if (strpbrk(text, "\r\n\"") != NULL)
+    return usage_error("sweep: --set %s: values stand on one line, without quotes", setting);
   for (const char *at = text; at != NULL; axis->count++) {
     const size_t length = strcspn(at, ",");
     if (length == 0) return usage_error("sweep: --set %s: a value is missing", setting);
@@ -70,12 +76,15 @@ static int read_axis(const char *setting, grid *read)
 {
   const size_t length = strcspn(setting, "=");
   grid_axis axis = {.count = 0};
-  if (setting[length] != '=' || length == 0) return usage_error("sweep: --set wants NAME=VALUES, not '%s'", setting);
-  if (length >= GRID_SETTING_SIZE / 2) return usage_error("sweep: --set %s: the name is too long", setting);
+  if (setting[length] != '=' || length == 0)
+    return usage_error("sweep: --set wants NAME=VALUES, not '%s'", setting);
+  if (length >= GRID_SETTING_SIZE / 2)
+    return usage_error("sweep: --set %s: the name is too long", setting);
   (void)snprintf(axis.name, sizeof axis.name, "%.*s", (int)length, setting);
   if (find_axis(read, axis.name) >= 0) return usage_error("sweep: --set names %s twice", axis.name);
   const char *values = setting + length + 1;
-  const int code = strchr(values, ':') != NULL ? read_range(setting, values, &axis) : read_list(setting, values, &axis);
+  const int code = strchr(values, ':') != NULL ? read_range(setting, values, &axis)
+                                               : read_list(setting, values, &axis);
   if (code == DONE) read->axis[read->axes++] = axis;
   return code;
 }
@@ -83,7 +92,8 @@ static int read_axis(const char *setting, grid *read)
 int grid_read(const words *settings, grid *read)
 {
   int code = DONE;
-  for (int i = 0; i < settings->count && code == DONE; i++) code = read_axis(settings->word[i], read);
+  for (int i = 0; i < settings->count && code == DONE; i++)
+    code = read_axis(settings->word[i], read);
   return code;
 }
 
@@ -145,7 +155,8 @@ static int check_name(const problem *scene, const char *name)
 
 static int take_range(const dvi_scene_range *range, grid_axis *axis)
 {
-  if (strlen(range->name) >= GRID_SETTING_SIZE / 2) return usage_error("sweep: the name '%s' is too long", range->name);
+  if (strlen(range->name) >= GRID_SETTING_SIZE / 2)
+    return usage_error("sweep: the name '%s' is too long", range->name);
   (void)snprintf(axis->name, sizeof axis->name, "%s", range->name);
   if (!make_values(axis, range->count)) return FAILED;
   memcpy(axis->value, range->value, (size_t)range->count * sizeof *range->value);
@@ -157,7 +168,8 @@ static int place_range(const dvi_scene_range *range, int i, grid *all)
 {
   int at = find_axis(all, range->name);
   if (at < 0) {
-    if (all->axes == WORDS_MAX) return usage_error("sweep: more than %d parameters", (int)WORDS_MAX);
+    if (all->axes == WORDS_MAX)
+      return usage_error("sweep: more than %d parameters", (int)WORDS_MAX);
     const int code = take_range(range, &all->axis[all->axes]);
     if (code != DONE) return code;
     at = all->axes++;
@@ -172,14 +184,19 @@ int grid_complete(const problem *scene, grid *all)
 {
   const dvi_scene_range *range;
   int code = DONE;
-  for (int i = 0; scene->scene != NULL && code == DONE && (range = dvi_scene_range_at(scene->scene, i)) != NULL; i++)
+  for (int i = 0; scene->scene != NULL && code == DONE &&
+                  (range = dvi_scene_range_at(scene->scene, i)) != NULL;
+       i++)
     code = place_range(range, i, all);
   for (int i = 0; i < all->axes && code == DONE; i++) code = check_name(scene, all->axis[i].name);
   if (code != DONE) return code;
-  if (all->axes == 0) return usage_error("sweep: nothing to sweep over; give --set NAME=V1,V2,.. or NAME=FROM:TO:COUNT");
+  if (all->axes == 0)
+    return usage_error(
+        "sweep: nothing to sweep over; give --set NAME=V1,V2,.. or NAME=FROM:TO:COUNT");
   all->points = 1;
   for (int i = 0; i < all->axes; i++) {
-    if (all->axis[i].count > POINTS_MAX / all->points) return usage_error("sweep: more than %d points", (int)POINTS_MAX);
+    if (all->axis[i].count > POINTS_MAX / all->points)
+      return usage_error("sweep: more than %d points", (int)POINTS_MAX);
     all->points *= all->axis[i].count;
   }
   return DONE;

@@ -7,8 +7,8 @@
 #include <stdlib.h>
 
 #include "cli/command.h"
-#include "cli/crew.h"
-#include "sweep/hills.h"
+#include "cli/parallel.h"
+#include "sweep/peak_refinement.h"
 #include "cli/progress.h"
 
 enum { LINE_SIZE = 64 };
@@ -26,7 +26,8 @@ typedef struct round_of_runs {
 
 double peaks_height(const resonance_point *point)
 {
-  return log10(fmin(fmax(point->error, floor_of_errors), RESONANCE_LIMIT)); /* fmax takes a NaN for the floor */
+  /* fmax takes a NaN for the floor */
+  return log10(fmin(fmax(point->error, floor_of_errors), RESONANCE_LIMIT));
 }
 
 /* ---- runs ---- */
@@ -36,7 +37,8 @@ static int take_point(round_of_runs *r)
   char line[LINE_SIZE];
   (void)pthread_mutex_lock(&r->lock);
   const int k = r->next < r->found->count ? r->next++ : -1;
-  (void)snprintf(line, sizeof line, "dvi resonance: %d of %d points so far", r->next, r->found->count);
+  (void)snprintf(line, sizeof line, "dvi resonance: %d of %d points so far", r->next,
+                 r->found->count);
   progress_show(&r->progress, -1.0, line);
   (void)pthread_mutex_unlock(&r->lock);
   return k;
@@ -45,20 +47,22 @@ static int take_point(round_of_runs *r)
 static void *work(void *user)
 {
   round_of_runs *r = user;
-  for (int k = take_point(r); k >= 0; k = take_point(r)) resonance_run(r->task, &r->found->point[k]);
+  for (int k = take_point(r); k >= 0; k = take_point(r))
+    resonance_run(r->task, &r->found->point[k]);
   return NULL;
 }
 
 static int by_value(const void *left, const void *right)
 {
-  const double a = ((const resonance_point *)left)->value, b = ((const resonance_point *)right)->value;
+  const double a = ((const resonance_point *)left)->value,
+               b = ((const resonance_point *)right)->value;
   return (a > b) - (a < b);
 }
 
 static void run_new(round_of_runs *r, long threads)
 {
   const long left = r->found->count - r->next;
-  crew_work(threads < left ? threads : left, work, r);
+  parallel_work(threads < left ? threads : left, work, r);
   qsort(r->found->point, (size_t)r->found->count, sizeof *r->found->point, by_value);
 }
 
@@ -72,7 +76,8 @@ static void add_point(peaks_found *found, double value)
 static void add_grid(const peaks_search *search, peaks_found *found)
 {
   for (long k = 0; k < search->grid; k++)
-    add_point(found, search->from + (search->to - search->from) * (double)k / (double)(search->grid - 1));
+    add_point(found,
+              search->from + (search->to - search->from) * (double)k / (double)(search->grid - 1));
   found->point[found->count - 1].value = search->to;
 }
 
@@ -85,7 +90,7 @@ static bool add_middles(const peaks_search *search, peaks_found *found, double *
     x[i] = found->point[i].value;
     y[i] = peaks_height(&found->point[i]);
   }
-  const int wanted = hills_gaps(count, x, y, search->width, found->top, halve);
+  const int wanted = peak_gaps(count, x, y, search->width, found->top, halve);
   for (int i = 0; i + 1 < count && found->count < search->most; i++)
     if (halve[i]) add_point(found, 0.5 * x[i] + 0.5 * x[i + 1]);
   return found->count == count + wanted;
@@ -105,7 +110,8 @@ static void run_rounds(round_of_runs *r, const peaks_search *search, double *x, 
 bool peaks_find(const resonance_task *task, const peaks_search *search, peaks_found *found)
 {
   const size_t most = (size_t)search->most;
-  *found = (peaks_found){.point = calloc(most, sizeof *found->point), .top = calloc(most, sizeof *found->top)};
+  *found = (peaks_found){.point = calloc(most, sizeof *found->point),
+                         .top = calloc(most, sizeof *found->top)};
   round_of_runs r = {.task = task, .found = found};
   double *x = calloc(2 * most, sizeof *x);
   bool *halve = calloc(most, sizeof *halve);

@@ -1,4 +1,5 @@
-/** A search for resonances: runs at values of a parameter, and more of them where the invariant's error has its peaks. */
+/** A search for resonances: runs at values of a parameter, and more of them where the invariant's
+ * error has its peaks. */
 #ifndef PEAKS_H
 #define PEAKS_H
 #include "sweep/resonance_point.h"
@@ -17,7 +18,9 @@ typedef struct peaks_found {
   int count;
   resonance_point *point; /**< [count] in the order of their values; owned */
   bool *
-      top; /**< [count] tops of peaks: more than twice the larger one of the least errors on both sides, before larger ones; owned */
+      /** [count] tops of peaks: more than twice the larger one of the least errors on both sides,
+       * before larger ones; owned */
+      top;
   bool complete; /**< not so if `most` has ended the search */
 } peaks_found;
 

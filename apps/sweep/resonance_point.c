@@ -13,7 +13,8 @@ typedef struct mark {
   double t, error;
 } mark;
 
-/* A run under way. Marks are set at steps 1, 2, 4, 8, ..: the last but one lies between a quarter and a half of the way. */
+/* A run under way. Marks are set at steps 1, 2, 4, 8, ..: the last but one lies between a quarter
+ * and a half of the way. */
 typedef struct watch {
   int watched;
   double first, largest;
@@ -48,7 +49,9 @@ static int observe(dvi_integrator *integrator, void *user)
 static double rate(const watch *w, double t)
 {
   const double span = fabs(t - w->before.t);
-  return span > 0.0 && w->before.error > 0.0 && isfinite(w->largest) ? log(w->largest / w->before.error) / span : (double)NAN;
+  return span > 0.0 && w->before.error > 0.0 && isfinite(w->largest)
+             ? log(w->largest / w->before.error) / span
+             : (double)NAN;
 }
 
 static void say(const resonance_task *task, double value, const char *sentence)
@@ -56,11 +59,14 @@ static void say(const resonance_task *task, double value, const char *sentence)
   complain("resonance: %s=%.17g: %s", task->name, value, sentence);
 }
 
-static dvi_status advance(const resonance_task *task, const problem *scene, dvi_integrator *integrator, resonance_point *point)
+static dvi_status advance(const resonance_task *task, const problem *scene,
+                          dvi_integrator *integrator, resonance_point *point)
 {
   watch w = {.watched = task->watched, .steps = -1};
-  const dvi_run_options options = {
-      .h = task->steps_vary ? point->value : task->h, .t_end = task->t_end, .observe = observe, .user = &w};
+  const dvi_run_options options = {.h = task->steps_vary ? point->value : task->h,
+                                   .t_end = task->t_end,
+                                   .observe = observe,
+                                   .user = &w};
   dvi_run_report report = {.steps = 0};
   dvi_status status = dvi_integrator_start(integrator, 0.0, scene->q, scene->p);
   if (status == DVI_OK) status = dvi_run(integrator, &options, &report);
@@ -82,7 +88,8 @@ static void run(const resonance_task *task, const problem *scene, resonance_poin
   point->failed = status != DVI_OK;
   if (point->failed) {
     point->status = dvi_status_name(status);
-    say(task, point->value, dvi_last_error()[0] != '\0' ? dvi_last_error() : dvi_status_meaning(status));
+    say(task, point->value,
+        dvi_last_error()[0] != '\0' ? dvi_last_error() : dvi_status_meaning(status));
   }
   dvi_integrator_destroy(&integrator);
 }
@@ -94,8 +101,12 @@ void resonance_run(const resonance_task *task, resonance_point *point)
   problem *scene = NULL;
   (void)snprintf(setting, sizeof setting, "%s=%.17g", task->name, point->value);
   if (!task->steps_vary) settings.word[settings.count++] = setting;
-  *point = (resonance_point){
-      .value = point->value, .status = "refused", .failed = true, .t = (double)NAN, .error = (double)NAN, .growth = (double)NAN};
+  *point = (resonance_point){.value = point->value,
+                             .status = "refused",
+                             .failed = true,
+                             .t = (double)NAN,
+                             .error = (double)NAN,
+                             .growth = (double)NAN};
   if (open_text(task->operand, &task->text, &settings, &scene) == DONE)
     run(task, scene, point);
   else

@@ -22,15 +22,22 @@ typedef struct resonance_task {
 /** What became of the run with one value. */
 typedef struct resonance_point {
   double value;
-  const char *status; /**< DVI_OK, unbounded, why it failed, or refused where the problem cannot be made; static storage */
-  bool unbounded;     /**< the invariant moved by RESONANCE_LIMIT times its start, and the run was ended */
-  bool failed;        /**< it is neither DVI_OK nor unbounded */
+  /** DVI_OK, unbounded, why it failed, or refused where the problem cannot be made; static
+   * storage */
+  const char *status;
+  /** the invariant moved by RESONANCE_LIMIT times its start, and the run was ended */
+  bool unbounded;
+  bool failed; /**< it is neither DVI_OK nor unbounded */
   long steps;
   double t;
-  double error;  /**< largest change of the invariant over the run, relative to its start if that is not 0; NaN: there was none */
-  double growth; /**< (d/dt) ln error, over the last half to three quarters of the run; NaN: not known */
+  /** largest change of the invariant over the run, relative to its start if that is not 0; NaN:
+   * there was none */
+  double error;
+  /** (d/dt) ln error, over the last half to three quarters of the run; NaN: not known */
+  double growth;
 } resonance_point;
 
-/** Run with point->value and fill in the rest. What fails is told by a complaint, too. May be called from several threads at once. */
+/** Run with point->value and fill in the rest. What fails is told by a complaint, too. May be
+ * called from several threads at once. */
 void resonance_run(const resonance_task *task, resonance_point *point);
 #endif

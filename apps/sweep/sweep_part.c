@@ -33,13 +33,16 @@ static uint64_t add_text(uint64_t sum, const char *text)
 static uint64_t add_values(uint64_t sum, const grid_axis *axis)
 {
   sum = add_text(sum, axis->name);
-  return axis->list != NULL ? add_text(sum, axis->list) : add_bytes(sum, axis->value, (size_t)axis->count * sizeof *axis->value);
+  return axis->list != NULL
+             ? add_text(sum, axis->list)
+             : add_bytes(sum, axis->value, (size_t)axis->count * sizeof *axis->value);
 }
 
 uint64_t sweep_key(const sweep_task *task)
 {
   uint64_t sum = add_text(UINT64_C(0xcbf29ce484222325), dvi_version());
-  sum = task->text.text != NULL ? add_bytes(sum, task->text.text, task->text.length) : add_text(sum, task->operand);
+  sum = task->text.text != NULL ? add_bytes(sum, task->text.text, task->text.length)
+                                : add_text(sum, task->operand);
   sum = add_text(sum, task->method != NULL ? task->method : "");
   sum = add_bytes(sum, &task->h, sizeof task->h);
   sum = add_bytes(sum, &task->t_end, sizeof task->t_end);
@@ -92,7 +95,8 @@ static bool read_line(uint64_t key, char *line, ssize_t length, long points, swe
 static bool lock(const sweep_part *part)
 {
   struct flock all = {.l_type = (short)F_WRLCK, .l_whence = (short)SEEK_SET};
-  if (fcntl(fileno(part->stream), F_SETLK, &all) == 0 || (errno != EACCES && errno != EAGAIN)) return true;
+  if (fcntl(fileno(part->stream), F_SETLK, &all) == 0 || (errno != EACCES && errno != EAGAIN))
+    return true;
   complain("sweep: another process writes '%s'; wait for it, or give another --out", part->path);
   return false;
 }
@@ -109,7 +113,8 @@ static bool read_rows(sweep_part *part, long points, sweep_row *row)
     length = getline(&line, &size, part->stream);
   }
   free(line);
-  if (fseek(part->stream, good, SEEK_SET) == 0 && ftruncate(fileno(part->stream), (off_t)good) == 0) return true;
+  if (fseek(part->stream, good, SEEK_SET) == 0 && ftruncate(fileno(part->stream), (off_t)good) == 0)
+    return true;
   return refuse(part);
 }
 
@@ -120,11 +125,15 @@ static bool read_part(sweep_part *part, long points, sweep_row *row)
   write_head(part->key, head);
   const size_t length = fread(found, 1, strlen(head), part->stream);
   if (length == 0) {
-    if (fseek(part->stream, 0, SEEK_SET) == 0 && fputs(head, part->stream) >= 0 && fflush(part->stream) == 0) return true;
+    if (fseek(part->stream, 0, SEEK_SET) == 0 && fputs(head, part->stream) >= 0 &&
+        fflush(part->stream) == 0)
+      return true;
     return refuse(part);
   }
   if (strcmp(found, head) == 0) return read_rows(part, points, row);
-  complain("sweep: '%s' was begun with another scene or other settings; remove it, or give another --out", part->path);
+  complain("sweep: '%s' was begun with another scene or other settings; remove it, or give another "
+           "--out",
+           part->path);
   return false;
 }
 
@@ -149,7 +158,8 @@ bool sweep_part_open(sweep_part *part, const char *out, uint64_t key, long point
 bool sweep_part_add(sweep_part *part, long k, const sweep_row *row)
 {
   errno = 0;
-  (void)fprintf(part->stream, "%ld %d %016" PRIx64 " %s\n", k, row->failed, sum_of(part->key, k, row), row->text);
+  (void)fprintf(part->stream, "%ld %d %016" PRIx64 " %s\n", k, row->failed,
+                sum_of(part->key, k, row), row->text);
   return (fflush(part->stream) == 0 && !ferror(part->stream)) || refuse(part);
 }
 

@@ -66,7 +66,8 @@ static void write_numbers(FILE *stream, int count, const double *number)
   }
 }
 
-static void write_row(const sweep_task *task, const grid_point *point, const outcome *end, FILE *stream)
+static void write_row(const sweep_task *task, const grid_point *point, const outcome *end,
+                      FILE *stream)
 {
   const problem *model = task->model;
   for (int i = 0; i < point->settings.count; i++) {
@@ -103,7 +104,8 @@ static void say(const grid_point *point, const char *sentence)
   char label[LABEL_SIZE] = "";
   int length = 0;
   for (int i = 0; i < point->settings.count && length < LABEL_SIZE; i++)
-    length += snprintf(label + length, (size_t)(LABEL_SIZE - length), "%s%s", i > 0 ? "," : "", point->settings.word[i]);
+    length += snprintf(label + length, (size_t)(LABEL_SIZE - length), "%s%s", i > 0 ? "," : "",
+                       point->settings.word[i]);
   complain("sweep: %s: %s", label, sentence);
 }
 
@@ -120,16 +122,21 @@ static int observe(dvi_integrator *integrator, void *user)
   return 0;
 }
 
-static dvi_status advance(const sweep_task *task, const problem *scene, const event_list *events, dvi_integrator *integrator,
-                          watch *w, outcome *end)
+static dvi_status advance(const sweep_task *task, const problem *scene, const event_list *events,
+                          dvi_integrator *integrator, watch *w, outcome *end)
 {
   const double t_end = isnan(task->t_end) ? scene->t_end : task->t_end;
   const double h = isnan(task->h) ? copysign(scene->h, t_end) : task->h;
-  const dvi_run_options options = {
-      .h = h, .t_end = t_end, .observe = observe, .user = w, .events = events->event, .event_count = events->count};
+  const dvi_run_options options = {.h = h,
+                                   .t_end = t_end,
+                                   .observe = observe,
+                                   .user = w,
+                                   .events = events->event,
+                                   .event_count = events->count};
   dvi_run_report report = {.steps = 0};
   const dvi_status status = dvi_run(integrator, &options, &report);
-  if (report.end == DVI_RUN_EVENT) (void)snprintf(end->word, sizeof end->word, "event %s", events->event[report.event].name);
+  if (report.end == DVI_RUN_EVENT)
+    (void)snprintf(end->word, sizeof end->word, "event %s", events->event[report.event].name);
   end->steps = report.steps;
   end->t = dvi_integrator_time(integrator);
   end->q = dvi_integrator_q(integrator);
@@ -140,13 +147,14 @@ static dvi_status advance(const sweep_task *task, const problem *scene, const ev
 }
 
 /* The integrator owns the state that `end` shows. */
-static void run(const sweep_task *task, const problem *scene, const grid_point *point, dvi_integrator **integrator, watch *w,
-                outcome *end)
+static void run(const sweep_task *task, const problem *scene, const grid_point *point,
+                dvi_integrator **integrator, watch *w, outcome *end)
 {
   event_list events;
   dvi_status status = events_list(&events, scene, NULL, NULL) ? DVI_OK : DVI_NO_MEMORY;
   if (status == DVI_OK)
-    status = dvi_integrator_create(scene->system, task->method != NULL ? task->method : scene->method, integrator);
+    status = dvi_integrator_create(scene->system,
+                                   task->method != NULL ? task->method : scene->method, integrator);
   if (status == DVI_OK) status = dvi_integrator_start(*integrator, 0.0, scene->q, scene->p);
   (void)snprintf(end->word, sizeof end->word, "%s", dvi_status_name(DVI_OK));
   if (status == DVI_OK) status = advance(task, scene, &events, *integrator, w, end);
@@ -154,7 +162,8 @@ static void run(const sweep_task *task, const problem *scene, const grid_point *
   end->failed = status != DVI_OK;
   if (status == DVI_OK) return;
   (void)snprintf(end->word, sizeof end->word, "%s", dvi_status_name(status));
-  const char *sentence = status == DVI_NO_MEMORY || w->status == DVI_NOT_FINITE ? "" : dvi_last_error();
+  const char *sentence = status == DVI_NO_MEMORY || w->status == DVI_NOT_FINITE ? ""
+                                                                                : dvi_last_error();
   say(point, sentence[0] != '\0' ? sentence : dvi_status_meaning(status));
 }
 
@@ -173,12 +182,14 @@ sweep_row sweep_run(const sweep_task *task, long k)
   dvi_integrator *integrator = NULL;
   sweep_row row = {.text = NULL};
   grid_at(&task->grid, k, &point);
-  w.invariant = calloc((size_t)dvi_system_invariant_count(task->model->system), sizeof *w.invariant);
+  w.invariant = calloc((size_t)dvi_system_invariant_count(task->model->system),
+                       sizeof *w.invariant);
   if (w.invariant == NULL) return row;
   if (open_text(task->operand, &task->text, &point.settings, &scene) != DONE)
     say(&point, "the problem cannot be made with these values");
   else if (!has_columns(scene, task->model))
-    say(&point, "with these values the problem has other coordinates than without; sweep over sizes by runs of their own");
+    say(&point, "with these values the problem has other coordinates than without; sweep over "
+                "sizes by runs of their own");
   else
     run(task, scene, &point, &integrator, &w, &end);
   row = make_row(task, &point, &end);

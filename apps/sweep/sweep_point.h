@@ -14,7 +14,8 @@ typedef struct sweep_task {
   const char *method;  /**< NULL: the scene's own */
   double h, t_end;     /**< NaN: the problem's */
   grid grid;
-  const problem *model; /**< the problem with the settings that are the same at all points: its columns are those of all */
+  /** the problem with the settings that are the same at all points: its columns are those of all */
+  const problem *model;
 } sweep_task;
 
 /** A row, to be freed. NULL: no memory was left for it. */
@@ -26,6 +27,7 @@ typedef struct sweep_row {
 /** The names of the columns, with commas between them. */
 void sweep_header(const sweep_task *task, FILE *stream);
 
-/** Run point k. What fails is told in the row, and by a complaint. May be called from several threads at once. */
+/** Run point k. What fails is told in the row, and by a complaint. May be called from several
+ * threads at once. */
 sweep_row sweep_run(const sweep_task *task, long k);
 #endif

@@ -18,7 +18,8 @@ static int read_alarm(const problem *scene, const char *text, alarm_bound *alarm
 {
   const size_t length = strcspn(text, "=");
   *alarm = (alarm_bound){.passed = (double)NAN};
-  if (text[length] != '=' || !parse_number(text + length + 1, &alarm->bound) || !(alarm->bound > 0.0))
+  if (text[length] != '=' || !parse_number(text + length + 1, &alarm->bound) ||
+      !(alarm->bound > 0.0))
     return usage_error("run: --alarm wants NAME=BOUND with a positive number, not '%s'", text);
   for (; alarm->invariant < dvi_system_invariant_count(scene->system); alarm->invariant++) {
     alarm->name = dvi_system_invariant_name(scene->system, alarm->invariant);
@@ -73,7 +74,7 @@ void alarms_tell(const alarm_list *list)
   for (int i = 0; i < list->count; i++) {
     const alarm_bound *alarm = &list->alarm[i];
     if (isnan(alarm->passed)) continue;
-    complain("run: alarm: %s passed %g at t = %.6g; at most it was %.6g, at t = %.6g", alarm->name, alarm->bound, alarm->passed,
-             alarm->largest, alarm->largest_t);
+    complain("run: alarm: %s passed %g at t = %.6g; at most it was %.6g, at t = %.6g", alarm->name,
+             alarm->bound, alarm->passed, alarm->largest, alarm->largest_t);
   }
 }

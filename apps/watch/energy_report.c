@@ -11,7 +11,8 @@ enum { ADVICE_SIZE = 128, GOOD_ORDER = 4 };
 /* Of the scale: what is told; the same of methods whose steps go beyond the periods of fast
  * potentials on purpose, and let their energy oscillate; what a better step aims at; and errors
  * of steps that do not resolve the motion at all. */
-static const double bound_of_most = 0.01, bound_of_splitting = 0.1, target = 0.001, unresolved = 0.3;
+static const double bound_of_most = 0.01, bound_of_splitting = 0.1, target = 0.001,
+                    unresolved = 0.3;
 
 /* Down to a number of two digits. */
 static double rounded_down(double x)
@@ -28,7 +29,8 @@ double energy_shorter_step(double h, int order, double part, double most)
 
 const char *energy_better_method(const dvi_system_terms *terms)
 {
-  if (terms->hamiltonian != NULL) return terms->constraint != NULL ? "dg-phase:degree=4" : "hamiltonian:type=2,degree=4";
+  if (terms->hamiltonian != NULL)
+    return terms->constraint != NULL ? "dg-phase:degree=4" : "hamiltonian:type=2,degree=4";
   if (terms->factors != NULL) return "lie-galerkin:degree=4";
   return terms->one_form != NULL ? "vprk:nodes=4" : "galerkin:degree=4";
 }
@@ -36,7 +38,9 @@ const char *energy_better_method(const dvi_system_terms *terms)
 /* The problem's own step is good for a first run, if it is one in time. */
 static double longest_step(const energy_watch *watch, const run_request *request)
 {
-  return dvi_integrator_monitor(watch->integrator) == NULL ? fmin(fabs(watch->scene->h), fabs(request->h)) : fabs(request->h);
+  return dvi_integrator_monitor(watch->integrator) == NULL
+             ? fmin(fabs(watch->scene->h), fabs(request->h))
+             : fabs(request->h);
 }
 
 /* An error that has forgotten how it grew tells no step, but the problem's own one does: it
@@ -44,21 +48,26 @@ static double longest_step(const energy_watch *watch, const run_request *request
 static double better_step(const run_request *request, int order, double ratio, double most)
 {
   const bool known = ratio < unresolved;
-  return energy_shorter_step(request->h, order, target / fmin(ratio, 1.0), known || order > 2 ? most : 0.2 * most);
+  return energy_shorter_step(request->h, order, target / fmin(ratio, 1.0),
+                             known || order > 2 ? most : 0.2 * most);
 }
 
 /* What is better than a shorter step: more order, once the steps resolve the motion; near
  * collisions steps that follow it. */
-static void advise(const energy_watch *watch, const run_request *request, double ratio, double most, char advice[ADVICE_SIZE])
+static void advise(const energy_watch *watch, const run_request *request, double ratio, double most,
+                   char advice[ADVICE_SIZE])
 {
   const problem *scene = watch->scene;
   const bool resolved = ratio < unresolved || most < fabs(request->h);
-  const bool bodies = scene->bodies > 0 && scene->terms->factors == NULL && scene->terms->one_form == NULL;
+  const bool bodies = scene->bodies > 0 && scene->terms->factors == NULL &&
+                      scene->terms->one_form == NULL;
   advice[0] = '\0';
   if (resolved && dvi_integrator_order(watch->integrator) <= GOOD_ORDER)
-    (void)snprintf(advice, ADVICE_SIZE, ", or --method %s --h %g", energy_better_method(scene->terms), copysign(most, request->h));
+    (void)snprintf(advice, ADVICE_SIZE, ", or --method %s --h %g",
+                   energy_better_method(scene->terms), copysign(most, request->h));
   else if (!resolved && bodies && dvi_integrator_monitor(watch->integrator) == NULL)
-    (void)snprintf(advice, ADVICE_SIZE, ", or --time-transform distance, whose steps follow close encounters");
+    (void)snprintf(advice, ADVICE_SIZE,
+                   ", or --time-transform distance, whose steps follow close encounters");
 }
 
 /* A method that takes the fast potentials apart from the others, and a system that has some. */
@@ -85,8 +94,10 @@ void energy_tell(energy_watch *watch, const run_request *request)
   const int order = dvi_integrator_order(watch->integrator);
   char advice[ADVICE_SIZE];
   advise(watch, request, verdict.ratio, most, advice);
-  complain("run: the energy error of %s with --h %g passed %g %% of the %s at t = %.6g, and was %.3g %% of it at t = %.6g",
-           request->method, request->h, 100.0 * watch->bound, energy_scale_name(watch->scene), verdict.passed,
-           100.0 * verdict.ratio, verdict.t);
-  complain("run: try --h %g%s; --verify tells how many digits are right", better_step(request, order, verdict.ratio, most), advice);
+  complain("run: the energy error of %s with --h %g passed %g %% of the %s at t = %.6g, and was "
+           "%.3g %% of it at t = %.6g",
+           request->method, request->h, 100.0 * watch->bound, energy_scale_name(watch->scene),
+           verdict.passed, 100.0 * verdict.ratio, verdict.t);
+  complain("run: try --h %g%s; --verify tells how many digits are right",
+           better_step(request, order, verdict.ratio, most), advice);
 }

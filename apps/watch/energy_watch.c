@@ -26,7 +26,8 @@ const char *energy_scale_name(const problem *scene)
 static bool add_potential(const dvi_potential *of, double t, const double *q, double *sum)
 {
   double V = 0.0;
-  const int code = of->value != NULL ? of->value(t, q, &V, of->user) : of->value_batch(1, &t, q, &V, of->user);
+  const int code = of->value != NULL ? of->value(t, q, &V, of->user)
+                                     : of->value_batch(1, &t, q, &V, of->user);
   *sum += V;
   return code == 0;
 }
@@ -35,7 +36,8 @@ static bool potential_energy(const dvi_system_terms *terms, double t, const doub
 {
   bool good = true;
   *V = 0.0;
-  for (int k = 0; k < terms->potential_count && good; k++) good = add_potential(&terms->potentials[k], t, q, V);
+  for (int k = 0; k < terms->potential_count && good; k++)
+    good = add_potential(&terms->potentials[k], t, q, V);
   return good;
 }
 
@@ -59,9 +61,11 @@ static bool kinetic_energy(energy_watch *w, double t, double energy, double *T)
 }
 
 /* The energy of a system that has no velocities in it. */
-static bool plain_energy(const dvi_system_terms *terms, double t, const double *q, const double *p, double *H)
+static bool plain_energy(const dvi_system_terms *terms, double t, const double *q, const double *p,
+                         double *H)
 {
-  if (terms->hamiltonian != NULL) return terms->hamiltonian->value(t, q, p, H, terms->hamiltonian->user) == 0;
+  if (terms->hamiltonian != NULL)
+    return terms->hamiltonian->value(t, q, p, H, terms->hamiltonian->user) == 0;
   return potential_energy(terms, t, q, H);
 }
 
@@ -75,7 +79,8 @@ static bool exchange(energy_watch *w, double t, double energy, double *change)
   memcpy(w->room, dvi_integrator_q(w->integrator), (size_t)scene->nq * sizeof *w->room);
   memcpy(w->room + scene->nq, dvi_integrator_p(w->integrator), (size_t)scene->nv * sizeof *w->room);
   w->room[w->next] = w->start[w->next];
-  const bool good = plain_energy(scene->terms, t, w->room, w->room + scene->nq, &back) && isfinite(back);
+  const bool good = plain_energy(scene->terms, t, w->room, w->room + scene->nq, &back) &&
+                    isfinite(back);
   *change = good ? numbers * fabs(energy - back) : 0.0;
   w->next = (w->next + 1) % numbers;
   return true;
@@ -110,7 +115,8 @@ static void look(energy_watch *w)
   double energy, T;
   const bool kinetic = has_kinetic_energy(w->scene);
   w->blind = dvi_integrator_invariant(w->integrator, 0, &energy) != DVI_OK ||
-             !(kinetic ? kinetic_energy : exchange)(w, t, energy, &T) || !isfinite(energy) || !isfinite(T);
+             !(kinetic ? kinetic_energy : exchange)(w, t, energy, &T) || !isfinite(energy) ||
+             !isfinite(T);
   if (w->blind) return;
   w->exchanged += T * fabs(t - w->t);
   w->t = t;
@@ -124,10 +130,15 @@ bool energy_look_due(long steps)
   return steps <= EVERY_STEP || steps % STRIDE == 0;
 }
 
-bool energy_watch_start(energy_watch *w, const problem *scene, dvi_integrator *integrator, double bound)
+bool energy_watch_start(energy_watch *w, const problem *scene, dvi_integrator *integrator,
+                        double bound)
 {
   const size_t nq = (size_t)scene->nq, nv = (size_t)scene->nv;
-  *w = (energy_watch){.scene = scene, .integrator = integrator, .bound = bound, .passed = (double)NAN, .blind = true};
+  *w = (energy_watch){.scene = scene,
+                      .integrator = integrator,
+                      .bound = bound,
+                      .passed = (double)NAN,
+                      .blind = true};
   if (!dvi_system_autonomous(scene->system)) return true;
   w->room = calloc(2 * (nq + nv), sizeof *w->room);
   if (w->room == NULL) return library_error(DVI_NO_MEMORY) == DONE;

@@ -34,7 +34,7 @@ typedef struct energy_watch {
   double t_start, first; /**< when it began, and the energy then */
   double t, exchanged;   /**< the last look, and the integral of the kinetic energy up to there */
   int looks, next;       /**< kept; the number that is set back at the next look */
-  double passed;         /**< when the bound was first passed, in the scale up to there; NaN: not yet */
+  double passed; /**< when the bound was first passed, in the scale up to there; NaN: not yet */
   energy_look look[ENERGY_LOOKS_MAX];
 } energy_watch;
 
@@ -50,7 +50,8 @@ bool energy_look_due(long steps);
 
 /** Begin at the integrator's state; an error is to be told if it is above `bound` times its
  *  scale. False without memory, with a complaint. */
-bool energy_watch_start(energy_watch *watch, const problem *scene, dvi_integrator *integrator, double bound);
+bool energy_watch_start(energy_watch *watch, const problem *scene, dvi_integrator *integrator,
+                        double bound);
 void energy_watch_clear(energy_watch *watch);
 
 /** What the scale is, in words: "kinetic energy". */

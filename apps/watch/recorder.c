@@ -30,13 +30,15 @@ typedef struct recorder {
   double shortest, longest; /* steps, of methods that choose them; 0: none yet */
   energy_watch watch;
   long steps_taken, given_steps;
-  long step;    /* counted from t = 0, so that a resumed run writes the rows of an uninterrupted one */
+  long step; /* counted from t = 0, so that a resumed run writes the rows of an uninterrupted one */
   bool chooses; /* the method chooses its steps */
   bool begun, row_written, stop_silently;
-  const volatile sig_atomic_t *caught; /* the signal that ends the run after its step; 0: none yet */
+  const volatile sig_atomic_t
+      *caught; /* the signal that ends the run after its step; 0: none yet */
 } recorder;
 
-static const char ended_again[] = "dvi: run: a second Ctrl-C ended the run at once; FILEs not yet complete stay as they were\n";
+static const char ended_again[] =
+    "dvi: run: a second Ctrl-C ended the run at once; FILEs not yet complete stay as they were\n";
 
 /* main complains about standard output. */
 static bool written(const whole_file *file)
@@ -101,7 +103,8 @@ static int observe(dvi_integrator *integrator, void *user)
   if (good && row) good = write_row(r, integrator);
   if (good) good = alarms_look(&r->alarms, integrator);
   if (good && r->trace.t != NULL) trace_add(&r->trace, integrator);
-  if (r->progress.shown) progress_show(&r->progress, (t - r->t_start) / (r->request->t_end - r->t_start), "dvi run");
+  if (r->progress.shown)
+    progress_show(&r->progress, (t - r->t_start) / (r->request->t_end - r->t_start), "dvi run");
   r->stop_silently = !good;
   return good ? 0 : -1;
 }
@@ -112,7 +115,8 @@ static bool write_last_row(recorder *r, dvi_integrator *integrator)
   return r->row_written || (columns_measure(&r->columns, integrator) && write_row(r, integrator));
 }
 
-/* The number of the step that ends at t on the grid 0, h, 2h, ...; 0 if t is not on it. In another time there is no such grid, but a count. */
+/* The number of the step that ends at t on the grid 0, h, 2h, ...; 0 if t is not on it. In another
+ * time there is no such grid, but a count. */
 static long step_number(const dvi_integrator *integrator, double t, double h)
 {
   dvi_counters counters;
@@ -124,9 +128,10 @@ static long step_number(const dvi_integrator *integrator, double t, double h)
 
 static void say_interrupted(const recorder *r)
 {
-  complain("run: signal %d ended the run at t = %.17g of %g; the output is complete up to there", (int)*r->caught, r->t,
-           r->request->t_end);
-  if (r->request->checkpoint != NULL) complain("run: continue with --resume %s", r->request->checkpoint);
+  complain("run: signal %d ended the run at t = %.17g of %g; the output is complete up to there",
+           (int)*r->caught, r->t, r->request->t_end);
+  if (r->request->checkpoint != NULL)
+    complain("run: continue with --resume %s", r->request->checkpoint);
 }
 
 /* Of methods that choose their steps: what they chose, and where the energy jumped. */
@@ -134,18 +139,20 @@ static void say_steps(const recorder *r, const dvi_integrator *integrator)
 {
   dvi_energy_balance energy;
   if (!r->chooses || r->steps_taken == 0) return;
-  complain("run: %ld step%s of %.3g to %.3g", r->steps_taken, r->steps_taken == 1 ? "" : "s", r->shortest, r->longest);
+  complain("run: %ld step%s of %.3g to %.3g", r->steps_taken, r->steps_taken == 1 ? "" : "s",
+           r->shortest, r->longest);
   if (dvi_integrator_energy_balance(integrator, &energy) != DVI_OK) return;
   if (energy.fallbacks == 0)
     complain("run: no step was a fallback: the discrete energy is that of the start%s",
              energy.work != 0 ? " and the drive's work" : "");
   else
-    complain("run: %ld fallback%s to the least-squares step; the largest energy jump is %.3g, the last %.3g, all together %.3g",
-             energy.fallbacks, energy.fallbacks == 1 ? "" : "s", energy.largest_jump, energy.last_jump,
-             energy.jumps - energy.given_jumps);
+    complain("run: %ld fallback%s to the least-squares step; the largest energy jump is %.3g, the "
+             "last %.3g, all together %.3g",
+             energy.fallbacks, energy.fallbacks == 1 ? "" : "s", energy.largest_jump,
+             energy.last_jump, energy.jumps - energy.given_jumps);
   if (energy.given_steps > 0)
-    complain("run: %ld ordinary step%s of given length, to end on time: energy jump %.3g", energy.given_steps,
-             energy.given_steps == 1 ? "" : "s", energy.given_jumps);
+    complain("run: %ld ordinary step%s of given length, to end on time: energy jump %.3g",
+             energy.given_steps, energy.given_steps == 1 ? "" : "s", energy.given_jumps);
 }
 
 /* Drive the integrator to the end and write all rows. */
@@ -197,11 +204,13 @@ static int write_files(recorder *r, dvi_integrator *integrator)
     trace_clear(&r->trace);
     return FAILED;
   }
-  if (file_open(&r->out, request->out) && (request->events == NULL || file_open(&r->events_out, request->events)))
+  if (file_open(&r->out, request->out) &&
+      (request->events == NULL || file_open(&r->events_out, request->events)))
     code = advance(r, integrator);
   if (to_be_kept(code) && !file_keep(&r->out)) code = FAILED;
   if (to_be_kept(code) && request->events != NULL && !file_keep(&r->events_out)) code = FAILED;
-  if (to_be_kept(code) && request->plot != NULL && !trace_plot(&r->trace, request->plot)) code = FAILED;
+  if (to_be_kept(code) && request->plot != NULL && !trace_plot(&r->trace, request->plot))
+    code = FAILED;
   file_discard(&r->out);
   file_discard(&r->events_out);
   trace_clear(&r->trace);
@@ -210,12 +219,16 @@ static int write_files(recorder *r, dvi_integrator *integrator)
 
 int record(const run_request *request, const problem *scene, dvi_integrator *integrator)
 {
-  recorder r = {.request = request, .scene = scene, .chooses = dvi_integrator_chooses_steps(integrator)};
+  recorder r = {
+      .request = request, .scene = scene, .chooses = dvi_integrator_chooses_steps(integrator)};
   int code = columns_choose(&r.columns, scene, integrator, request->columns);
   if (code == DONE) code = alarms_read(&r.alarms, scene, &request->alarms);
-  if (code == DONE && !energy_watch_start(&r.watch, scene, integrator, energy_bound(scene, request->method))) code = FAILED;
+  if (code == DONE &&
+      !energy_watch_start(&r.watch, scene, integrator, energy_bound(scene, request->method)))
+    code = FAILED;
   r.caught = signals_note(ended_again);
-  if (code == DONE) code = events_list(&r.events, scene, write_event, &r) ? write_files(&r, integrator) : FAILED;
+  if (code == DONE)
+    code = events_list(&r.events, scene, write_event, &r) ? write_files(&r, integrator) : FAILED;
   events_clear(&r.events);
   energy_watch_clear(&r.watch);
   columns_clear(&r.columns);

@@ -11,11 +11,11 @@
 #include "cli/command.h"
 #include "watch/energy_watch.h"
 #include "csv/events.h"
-#include "study/judge.h"
 #include "load/natural_scale.h"
 #include "cli/progress.h"
 #include "cli/signals.h"
-#include "watch/trust.h"
+#include "study/norms.h"
+#include "study/trust_levels.h"
 #include "watch/verify_report.h"
 
 /* IDA's three runs may take as long as those of the method, or so many seconds. Nothing ends a
@@ -24,13 +24,9 @@
 enum { WITNESS_STEPS = 200000 };
 static const double witness_seconds = 2.0;
 
-/* The distances of IDA's runs, whose tolerances are apart by such a factor, tell its own error
- * up to the other one. */
-static const double tolerance_factor = 10.0, doubt = 10.0;
-
 static const char ended_again[] = "dvi: run: a second Ctrl-C ended the verification at once\n";
 
-/* The numbers of an end: t, q, p, and the columns. */
+/* The numbers of a result: t, q, p, and the columns. */
 typedef struct verifier {
   const run_request *request;
   const problem *scene;
@@ -39,23 +35,22 @@ typedef struct verifier {
   event_list events;
   progress_line progress;
   const volatile sig_atomic_t *caught;
-  int count;
-  double *number[TRUST_LEVELS];  /* [count] the ends */
-  double *witness[TRUST_LEVELS]; /* [count] those of the other method, the tightest one first */
-  double *witness_error;         /* [count] what it leaves uncertain */
-  natural_scale scale;           /* of the invariants */
-  double seconds;                /* of process time that the levels took */
-  double *size;                  /* [count] largest magnitudes on the way */
-  double *error;                 /* [count] */
-  int level;
+  trust_group group[TRUST_GROUPS]; /* coordinates and momenta */
+  trust_study trust;
+  natural_scale scale;      /* of the invariants */
+  double seconds;           /* of process time that the levels took */
+  double witness_tolerance; /* the witness's own */
+  double refinement;        /* of the level that runs */
   long steps;
-  trust_verdict verdict;
+  bool by_event; /* an event ended a run */
+  int code;      /* of the level that failed */
 } verifier;
 
 static bool start(verifier *v)
 {
   const dvi_start_options options = {.project = v->request->project};
-  const dvi_status status = dvi_integrator_start_with(v->integrator, 0.0, v->scene->q, v->scene->p, &options);
+  const dvi_status status = dvi_integrator_start_with(v->integrator, 0.0, v->scene->q, v->scene->p,
+                                                      &options);
   return status == DVI_OK || library_error(status) == DONE;
 }
 
@@ -66,7 +61,8 @@ static bool read_numbers(verifier *v, double *number)
   number[0] = dvi_integrator_time(v->integrator);
   memcpy(number + 1, dvi_integrator_q(v->integrator), nq * sizeof *number);
   memcpy(number + 1 + nq, dvi_integrator_p(v->integrator), nv * sizeof *number);
-  for (int k = 0; k < v->columns.count; k++) number[1 + nq + nv + (size_t)k] = columns_number(&v->columns, v->integrator, k);
+  for (int k = 0; k < v->columns.count; k++)
+    number[1 + nq + nv + (size_t)k] = columns_number(&v->columns, v->integrator, k);
   return true;
 }
 
@@ -75,13 +71,16 @@ static bool read_numbers(verifier *v, double *number)
 static int observe(dvi_integrator *integrator, void *user)
 {
   verifier *v = user;
-  const double part = dvi_integrator_time(integrator) / v->request->t_end, done = ldexp(1.0, v->level);
-  progress_show(&v->progress, (done - 1.0 + done * part) / (ldexp(1.0, TRUST_LEVELS) - 1.0), "dvi run --verify");
+  const double part = dvi_integrator_time(integrator) / v->request->t_end, done = v->refinement;
+  progress_show(&v->progress, (done - 1.0 + done * part) / (ldexp(1.0, TRUST_LEVELS) - 1.0),
+                "dvi run --verify");
   const long steps = v->steps++;
-  if (v->level > 0 || !energy_look_due(steps)) return 0;
-  if ((steps & (steps - 1)) == 0 && v->columns.shows[COLUMN_INVARIANT]) natural_scale_look(&v->scale, integrator);
-  if (!read_numbers(v, v->number[0])) return -1;
-  for (int i = 0; i < v->count; i++) v->size[i] = fmax(v->size[i], fabs(v->number[0][i]));
+  if (v->refinement > 1.0 || !energy_look_due(steps)) return 0;
+  if ((steps & (steps - 1)) == 0 && v->columns.shows[COLUMN_INVARIANT])
+    natural_scale_look(&v->scale, integrator);
+  if (!read_numbers(v, v->trust.number[0])) return -1;
+  for (int i = 0; i < v->trust.count; i++)
+    v->trust.size[i] = fmax(v->trust.size[i], fabs(v->trust.number[0][i]));
   return 0;
 }
 
@@ -89,20 +88,28 @@ static int observe(dvi_integrator *integrator, void *user)
 static void measure_sizes(verifier *v)
 {
   const int nq = v->scene->nq, nv = v->scene->nv, first = 1 + nq + nv;
-  for (int i = 0; i < v->count; i++) v->size[i] = fmax(v->size[i], fabs(v->number[0][i]));
-  const double q = judge_largest(nq, v->size + 1), p = judge_largest(nv, v->size + 1 + nq);
+  for (int i = 0; i < v->trust.count; i++)
+    v->trust.size[i] = fmax(v->trust.size[i], fabs(v->trust.number[0][i]));
+  const double q = norm_largest(nq, v->trust.size + 1),
+               p = norm_largest(nv, v->trust.size + 1 + nq);
   for (int k = 0; k < v->columns.count; k++) {
     const shown_column *column = &v->columns.column[k];
-    double *size = &v->size[first + k];
+    double *size = &v->trust.size[first + k];
     if (column->kind == COLUMN_COORDINATE) *size = trust_size(*size, q);
     if (column->kind == COLUMN_MOMENTUM) *size = trust_size(*size, p);
-    if (column->kind == COLUMN_INVARIANT) *size = fmax(*size, natural_scale_of(&v->scale, column->index));
+    if (column->kind == COLUMN_INVARIANT)
+      *size = fmax(*size, natural_scale_of(&v->scale, column->index));
   }
+}
+
+static double step_of(const verifier *v)
+{
+  return v->request->h / v->refinement;
 }
 
 static dvi_status drive(verifier *v, dvi_run_report *report)
 {
-  const dvi_run_options options = {.h = ldexp(v->request->h, -v->level),
+  const dvi_run_options options = {.h = step_of(v),
                                    .t_end = v->request->t_end,
                                    .observe = observe,
                                    .user = v,
@@ -112,149 +119,97 @@ static dvi_status drive(verifier *v, dvi_run_report *report)
   return dvi_run(v->integrator, &options, report);
 }
 
-static int run_level(verifier *v)
+static int run_level(verifier *v, double *number)
 {
   dvi_run_report report = {0};
   if (!start(v)) return FAILED;
   const dvi_status status = drive(v, &report);
   if (status != DVI_OK) {
     const int code = library_error(status);
-    complain("run: --verify: that was the run with --h %g", ldexp(v->request->h, -v->level));
+    complain("run: --verify: that was the run with --h %g", step_of(v));
     return code;
   }
   if (*v->caught != 0) {
     complain("run: signal %d ended the verification", (int)*v->caught);
     return 128 + (int)*v->caught;
   }
-  v->verdict.by_event = v->verdict.by_event || report.end == DVI_RUN_EVENT;
-  return read_numbers(v, v->number[v->level]) ? DONE : FAILED;
+  v->by_event = v->by_event || report.end == DVI_RUN_EVENT;
+  return read_numbers(v, number) ? DONE : FAILED;
 }
 
-/* How the numbers from first on fall, all together. */
-static double fall(const verifier *v, int first, int count)
+/* The method, refined by its step. What fails is told at once. */
+static dvi_status verify_run(void *user, double refinement, study_level *level)
 {
-  const double *const *level = (const double *const *)v->number;
-  return trust_ratio(judge_distance(count, level[0] + first, level[1] + first),
-                     judge_distance(count, level[1] + first, level[2] + first));
-}
-
-/* A number falls as all coordinates do, or as all momenta, or more slowly. */
-static void estimate(verifier *v)
-{
-  const int nq = v->scene->nq, nv = v->scene->nv;
-  v->verdict.ratio = fmax(fall(v, 1, nq), nv > 0 ? fall(v, 1 + nq, nv) : 0.0);
-  for (int i = 0; i < v->count; i++) {
-    const double first = v->number[0][i], second = v->number[1][i], third = v->number[2][i];
-    const double own = trust_ratio(fabs(first - second), fabs(second - third));
-    v->error[i] = trust_error(first, second, third, fmax(v->verdict.ratio, own));
-  }
+  verifier *v = user;
+  v->refinement = refinement;
+  v->code = run_level(v, level->number);
+  return v->code == DONE ? DVI_OK : DVI_CALLBACK_FAILED;
 }
 
 /* IDA shares no code with the methods. It is asked from the start as the integrator has it,
- * projected if it was off. */
-static bool run_witness(verifier *v, double tolerance, double *number, dvi_reference_report *report)
+ * projected if it was off. Its default tolerance is refined. */
+static dvi_status witness_run(void *user, double refinement, study_level *level)
 {
+  verifier *v = user;
   const int nq = v->scene->nq, nv = v->scene->nv;
-  double *q = number + 1, *p = q + nq;
+  const double tolerance = v->witness_tolerance;
+  double *q = level->number + 1, *p = q + nq;
   const dvi_reference_options options = {
-      .relative_tolerance = tolerance, .max_steps = WITNESS_STEPS, .max_seconds = fmax(witness_seconds, v->seconds) / TRUST_LEVELS};
-  if (!start(v)) return false;
+      .relative_tolerance = refinement > 1.0 ? tolerance / refinement
+                                             : tolerance * (1.0 / refinement),
+      .max_steps = WITNESS_STEPS,
+      .max_seconds = fmax(witness_seconds, v->seconds) / TRUST_LEVELS};
+  dvi_reference_report report;
+  if (!start(v)) return DVI_CALLBACK_FAILED;
   memcpy(q, dvi_integrator_q(v->integrator), (size_t)nq * sizeof *q);
   memcpy(p, dvi_integrator_p(v->integrator), (size_t)nv * sizeof *p);
-  if (dvi_reference_solve(v->scene->system, 0.0, v->request->t_end, q, p, &options, report) != DVI_OK) return false;
-  const dvi_start_options project = {.project = 1};
-  return dvi_integrator_start_with(v->integrator, v->request->t_end, q, p, &project) == DVI_OK && read_numbers(v, number);
-}
-
-/* At the default tolerance, and a tenth of it, and ten times that. */
-static bool ask_witness(verifier *v)
-{
-  dvi_reference_report report;
-  if (!run_witness(v, 0.0, v->witness[1], &report)) return false;
-  const double tolerance = report.relative_tolerance;
-  return run_witness(v, tolerance / tolerance_factor, v->witness[0], &report) &&
-         run_witness(v, tolerance * tolerance_factor, v->witness[2], &report);
-}
-
-/* Two tolerances may agree by chance, three hardly do. The error of the loosest one is a hundred
- * times that of the tightest. */
-static double witness_distance(const verifier *v, int first, int count)
-{
-  const double *const *witness = (const double *const *)v->witness;
-  return fmax(judge_distance(count, witness[0] + first, witness[1] + first),
-              judge_distance(count, witness[0] + first, witness[2] + first) / (tolerance_factor * tolerance_factor));
-}
-
-static double relative(double error, double size)
-{
-  return size > 0.0 ? error / size : 0.0;
-}
-
-/* An error of the whole state turns from coordinates into momenta and back, and no column's own
- * error is less in its size. */
-static void measure_witness(verifier *v)
-{
-  const int nq = v->scene->nq, nv = v->scene->nv;
-  const double of_q = relative(witness_distance(v, 1, nq), judge_largest(nq, v->size + 1));
-  const double of_p = relative(witness_distance(v, 1 + nq, nv), judge_largest(nv, v->size + 1 + nq));
-  for (int i = 0; i < v->count; i++) v->witness_error[i] = fmax(fmax(of_q, of_p) * v->size[i], witness_distance(v, i, 1));
-}
-
-/* Whether the witness is farther away than both errors explain; of coordinates and momenta the
- * last part that was judged is told. */
-static bool judge_part(verifier *v, const char *name, int first, int count)
-{
-  trust_verdict *verdict = &v->verdict;
-  const double apart = judge_distance(count, v->number[0] + first, v->witness[0] + first);
-  const double error = judge_largest(count, v->witness_error + first);
-  verdict->contradicted = apart > 2.0 * judge_largest(count, v->error + first) + doubt * error;
-  verdict->part = name;
-  verdict->apart = apart;
-  verdict->witness_error = error;
-  return verdict->contradicted;
-}
-
-/* A second opinion: the larger error is told, as far as the witness's own leaves it certain. */
-static void hear_witness(verifier *v)
-{
-  const int nq = v->scene->nq, nv = v->scene->nv;
-  v->verdict.too_large = nq > WITNESS_COORDINATES;
-  v->verdict.witness = !v->verdict.by_event && !v->verdict.too_large && ask_witness(v);
-  if (!v->verdict.witness) return;
-  measure_witness(v);
-  const bool in_momenta = judge_part(v, "momenta", 1 + nq, nv);
-  if (!judge_part(v, "coordinates", 1, nq) && in_momenta) (void)judge_part(v, "momenta", 1 + nq, nv);
-  for (int i = 0; i < v->count; i++)
-    v->error[i] = fmax(v->error[i], fabs(v->number[0][i] - v->witness[0][i]) - doubt * v->witness_error[i]);
+  dvi_status status = dvi_reference_solve(v->scene->system, 0.0, v->request->t_end, q, p, &options,
+                                          &report);
+  if (status != DVI_OK) return status;
+  if (!(v->witness_tolerance > 0.0)) v->witness_tolerance = report.relative_tolerance;
+  status = dvi_integrator_start_with(v->integrator, v->request->t_end, q, p,
+                                     &(dvi_start_options){.project = 1});
+  if (status != DVI_OK) return status;
+  return read_numbers(v, level->number) ? DVI_OK : DVI_CALLBACK_FAILED;
 }
 
 static int examine(verifier *v)
 {
-  int code = DONE;
+  const study_subject method = {.run = verify_run, .user = v},
+                      witness = {.run = witness_run, .user = v};
   v->caught = signals_note(ended_again);
   const clock_t began = clock();
   progress_start(&v->progress, true);
-  for (v->level = 0; v->level < TRUST_LEVELS && code == DONE; v->level++) code = run_level(v);
+  const dvi_status status = trust_run(&v->trust, &method);
   progress_end(&v->progress);
-  if (code != DONE) return code;
+  if (status != DVI_OK) return v->code;
   v->seconds = (double)(clock() - began) / CLOCKS_PER_SEC;
   measure_sizes(v);
-  estimate(v);
-  hear_witness(v);
-  const trust_numbers numbers = {v->count, v->number[0], v->size, v->error};
-  return verify_tell(v->request, v->scene, v->integrator, &v->columns, &numbers, &v->verdict);
+  trust_estimate(&v->trust);
+  const bool too_large = v->scene->nq > WITNESS_COORDINATES;
+  if (!v->by_event && !too_large) trust_hear(&v->trust, &witness);
+  const verify_verdict verdict = {v->trust.verdict, v->by_event, too_large};
+  const trust_numbers numbers = {v->trust.count, v->trust.number[0], v->trust.size, v->trust.error};
+  return verify_tell(v->request, v->scene, v->integrator, &v->columns, &numbers, &verdict);
 }
 
 int verify(const run_request *request, const problem *scene, dvi_integrator *integrator)
 {
   enum { VECTORS = 2 * TRUST_LEVELS + 3 };
-  verifier v = {.request = request, .scene = scene, .integrator = integrator};
+  verifier v = {.request = request,
+                .scene = scene,
+                .integrator = integrator,
+                .group = {{"coordinates", 1, scene->nq}, {"momenta", 1 + scene->nq, scene->nv}}};
+  trust_study *t = &v.trust;
   int code = columns_choose(&v.columns, scene, integrator, request->columns);
-  v.count = 1 + scene->nq + scene->nv + v.columns.count;
-  double *room = calloc((size_t)VECTORS * (size_t)v.count, sizeof *room);
-  double **vector[VECTORS] = {&v.number[0],  &v.number[1],     &v.number[2], &v.witness[0], &v.witness[1],
-                              &v.witness[2], &v.witness_error, &v.size,      &v.error};
-  for (int k = 0; k < VECTORS && room != NULL; k++) *vector[k] = room + (size_t)k * (size_t)v.count;
+  t->group = v.group;
+  t->count = 1 + scene->nq + scene->nv + v.columns.count;
+  double *room = calloc((size_t)VECTORS * (size_t)t->count, sizeof *room);
+  double **vector[VECTORS] = {&t->number[0],     &t->number[1],  &t->number[2],
+                              &t->witness[0],    &t->witness[1], &t->witness[2],
+                              &t->witness_error, &t->size,       &t->error};
+  for (int k = 0; k < VECTORS && room != NULL; k++)
+    *vector[k] = room + (size_t)k * (size_t)t->count;
   if (code == DONE && room == NULL) code = library_error(DVI_NO_MEMORY);
   if (code == DONE && !start(&v)) code = FAILED;
   if (code == DONE && !natural_scale_start(&v.scale, scene, integrator)) code = FAILED;

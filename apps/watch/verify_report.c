@@ -5,9 +5,9 @@
 
 #include "cli/command.h"
 #include "watch/energy_report.h"
-#include "study/judge.h"
 #include "csv/table.h"
-#include "watch/trust.h"
+#include "study/trust.h"
+#include "study/norms.h"
 
 enum { ROWS_MOST = 64 };
 
@@ -24,19 +24,22 @@ static void add_row(result_table *table, const char *name, double value, double 
 }
 
 /* Of some numbers together: the largest error in the largest magnitude. */
-static void add_norm(result_table *table, const char *name, const trust_numbers *all, int first, int count)
+static void add_norm(result_table *table, const char *name, const trust_numbers *all, int first,
+                     int count)
 {
-  add_row(table, name, (double)NAN, judge_largest(count, all->error + first), judge_largest(count, all->size + first));
+  add_row(table, name, (double)NAN, norm_largest(count, all->error + first),
+          norm_largest(count, all->size + first));
 }
 
 /* Columns that measure the method, not the motion, have no true value. */
 static bool is_of_motion(const shown_column *column)
 {
-  return column->kind == COLUMN_COORDINATE || column->kind == COLUMN_VELOCITY || column->kind == COLUMN_MOMENTUM ||
-         column->kind == COLUMN_INVARIANT;
+  return column->kind == COLUMN_COORDINATE || column->kind == COLUMN_VELOCITY ||
+         column->kind == COLUMN_MOMENTUM || column->kind == COLUMN_INVARIANT;
 }
 
-static result_table *make_table(const problem *scene, const run_columns *columns, const trust_numbers *all, bool by_event)
+static result_table *make_table(const problem *scene, const run_columns *columns,
+                                const trust_numbers *all, bool by_event)
 {
   const int first = 1 + scene->nq + scene->nv;
   result_table *table = table_create(titles);
@@ -45,7 +48,8 @@ static result_table *make_table(const problem *scene, const run_columns *columns
   if (by_event) add_row(table, "t", all->value[0], all->error[0], all->size[0]);
   for (int k = 0; k < columns->count; k++)
     if (is_of_motion(&columns->column[k]))
-      add_row(table, columns->column[k].name, all->value[first + k], all->error[first + k], all->size[first + k]);
+      add_row(table, columns->column[k].name, all->value[first + k], all->error[first + k],
+              all->size[first + k]);
   return table;
 }
 
@@ -59,65 +63,79 @@ static int fewest_digits(const result_table *table, bool columns_too)
   return (int)fewest;
 }
 
-static void print_witness(const run_request *request, const trust_verdict *verdict)
+static void print_witness(const run_request *request, const verify_verdict *verdict)
 {
   if (verdict->by_event)
     (void)printf("no second method: an event ended the run\n");
   else if (verdict->too_large)
-    (void)printf("no second method: IDA is asked for %d coordinates at most, and may take long for more\n", WITNESS_COORDINATES);
-  else if (!verdict->witness)
-    (void)printf("no second method: IDA did not come to t = %g in the time that it is given\n", request->t_end);
+    (void)printf(
+        "no second method: IDA is asked for %d coordinates at most, and may take long for more\n",
+        WITNESS_COORDINATES);
+  else if (!verdict->trust.witness)
+    (void)printf("no second method: IDA did not come to t = %g in the time that it is given\n",
+                 request->t_end);
   else
-    (void)printf("second method: IDA, which shares no code, ends %.1e away in the %s, its own error about %.1e%s\n", verdict->apart,
-                 verdict->part, verdict->witness_error,
-                 verdict->contradicted ? ": it contradicts, and errors are at least that" : "");
+    (void)printf("second method: IDA, which shares no code, ends %.1e away in the %s, its own "
+                 "error about %.1e%s\n",
+                 verdict->trust.apart, verdict->trust.part, verdict->trust.witness_error,
+                 verdict->trust.contradicted ? ": it contradicts, and errors are at least that"
+                                             : "");
 }
 
-static void print_all(const run_request *request, const problem *scene, const dvi_integrator *integrator, const result_table *table,
-                      const trust_verdict *verdict)
+static void print_all(const run_request *request, const problem *scene,
+                      const dvi_integrator *integrator, const result_table *table,
+                      const verify_verdict *verdict)
 {
   const int rows = table_rows(table), hidden = rows > ROWS_MOST ? rows - ROWS_MOST : 0;
-  (void)printf("%s by %s with --h %g to t = %g, against --h %g and %g\n", scene->name, request->method, request->h, request->t_end,
-               request->h / 2, request->h / 4);
+  (void)printf("%s by %s with --h %g to t = %g, against --h %g and %g\n", scene->name,
+               request->method, request->h, request->t_end, request->h / 2, request->h / 4);
   table_print(table, stdout, 0, 0, rows - hidden);
   if (hidden > 0) (void)printf("and %d columns more; see --columns and --csv\n", hidden);
-  if (trust_falls(verdict->ratio))
-    (void)printf("halving the step divides the error by %.3g; order %d makes that %.3g\n", 1.0 / verdict->ratio,
-                 dvi_integrator_order(integrator), ldexp(1.0, dvi_integrator_order(integrator)));
+  if (trust_falls(verdict->trust.ratio))
+    (void)printf("halving the step divides the error by %.3g; order %d makes that %.3g\n",
+                 1.0 / verdict->trust.ratio, dvi_integrator_order(integrator),
+                 ldexp(1.0, dvi_integrator_order(integrator)));
   else
-    (void)printf("halving the step does not halve the error: it is roundoff, the motion is chaotic, or --h is too large\n");
+    (void)printf("halving the step does not halve the error: it is roundoff, the motion is "
+                 "chaotic, or --h is too large\n");
   print_witness(request, verdict);
 }
 
 /* Where errors fall, a step with so many digits more is known. One that is far too short also
  * gathers roundoff: there a higher order has them at this step. */
-static void advise(const run_request *request, const problem *scene, const dvi_integrator *integrator, int digits)
+static void advise(const run_request *request, const problem *scene,
+                   const dvi_integrator *integrator, int digits)
 {
   static const double shortest = 1e-3;
   const double part = pow(10.0, (double)(digits - request->digits - 1));
-  const double step = energy_shorter_step(request->h, dvi_integrator_order(integrator), part, fabs(request->h));
+  const double step = energy_shorter_step(request->h, dvi_integrator_order(integrator), part,
+                                          fabs(request->h));
   if (fabs(step) < shortest * fabs(request->h))
-    complain("run: --h %g would do, at %.0f times the cost; try --method %s --h %g", step, request->h / step,
-             energy_better_method(scene->terms), request->h);
+    complain("run: --h %g would do, at %.0f times the cost; try --method %s --h %g", step,
+             request->h / step, energy_better_method(scene->terms), request->h);
   else
     complain("run: try --h %g", step);
 }
 
-static int say_fewer(const run_request *request, const problem *scene, const dvi_integrator *integrator, int digits,
-                     const trust_verdict *verdict)
+static int say_fewer(const run_request *request, const problem *scene,
+                     const dvi_integrator *integrator, int digits, const verify_verdict *verdict)
 {
   complain("run: --digits %ld: %d can be trusted%s", request->digits, digits,
-           trust_falls(verdict->ratio) ? "" : "; see whether a step much smaller, or a method of another order, has more");
-  if (trust_falls(verdict->ratio)) advise(request, scene, integrator, digits);
+           trust_falls(verdict->trust.ratio)
+               ? ""
+               : "; see whether a step much smaller, or a method of another order, has more");
+  if (trust_falls(verdict->trust.ratio)) advise(request, scene, integrator, digits);
   return CHECK_FAILED;
 }
 
-int verify_tell(const run_request *request, const problem *scene, const dvi_integrator *integrator, const run_columns *columns,
-                const trust_numbers *numbers, const trust_verdict *verdict)
+int verify_tell(const run_request *request, const problem *scene, const dvi_integrator *integrator,
+                const run_columns *columns, const trust_numbers *numbers,
+                const verify_verdict *verdict)
 {
   result_table *table = make_table(scene, columns, numbers, verdict->by_event);
   bool good = table_good(table);
-  if (good && (request->csv == NULL || strcmp(request->csv, "-") != 0)) print_all(request, scene, integrator, table, verdict);
+  if (good && (request->csv == NULL || strcmp(request->csv, "-") != 0))
+    print_all(request, scene, integrator, table, verdict);
   if (good && request->csv != NULL) good = table_write(table, request->csv);
   const int digits = good ? fewest_digits(table, request->columns != NULL) : 0;
   table_destroy(&table);

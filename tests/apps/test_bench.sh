@@ -243,7 +243,7 @@ says err '^  threads=2: a step moves 2.4e+06 bytes, [0-9.]* GB/s: [0-9.]* of the
 says err '^step_seconds: elapsed time of a step, mean of the first 3' 'which time'
 grep -q 'step_seconds ~\|exponents' err && fail 'of threads there are no exponents'
 if command -v gnuplot >/dev/null; then says threads.svg 'elapsed time of a step against threads: chain' 'the plot of threads'; fi
-expect 0 'the traffic of waves alone' bench chain --method verlet --method verlet:sweep=plain --scale n=5,50 --steps 2 --rounds 1
+expect 0 'the traffic of waves alone' bench chain --method verlet --method verlet:blocking=none --scale n=5,50 --steps 2 --rounds 1
 [ "$(grep -c 'a step moves' out)" -eq 2 ] || fail 'a plain sweep does not know its traffic'
 says out '^step_seconds: process time of a step, mean of the first 2' 'sizes: which time'
 expect 2 'threads where there is no wave' bench fpu --method verlet --scale threads=1,2

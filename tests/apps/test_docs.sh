@@ -53,7 +53,7 @@ replay() {
 }
 
 commands=0
-for page in README.md docs/guide.md docs/theory.md docs/problems.md docs/trust.md docs/adaptive.md docs/oscillations.md docs/shooting-studies.md docs/paths.md docs/scenes.md docs/cookbook.md docs/scene-errors.md $(cd "$top" && ls docs/methods/*.md); do
+for page in README.md docs/command.md docs/limits.md docs/guide.md docs/theory.md docs/problems.md docs/trust.md docs/adaptive.md docs/oscillations.md docs/shooting-studies.md docs/paths.md docs/scenes.md docs/cookbook.md docs/scene-errors.md $(cd "$top" && ls docs/methods/*.md); do
   split "$top/$page"
   n=1
   while [ -e command.$n ]; do

@@ -1,5 +1,6 @@
 /* labels: unit */
-/* What a path costs: in proportion to its steps, one symbolic analysis, and every failure of memory survived. */
+/* What a path costs: in proportion to its steps, one symbolic analysis, and every failure of memory
+ * survived. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,9 +15,14 @@ enum { BODIES = 18 };
 static dvi_path *planets(const problem *of, int steps, const double *q1)
 {
   dvi_path *path = NULL;
-  const dvi_path_options options = {
-      .ends = DVI_ENDS_FIXED, .steps = steps, .span = 1000, .dimension = BODIES, .q0 = of->q, .q1 = q1};
-  ck_assert_msg(dvi_path_create(of->system, "midpoint", &options, &path) == DVI_OK, "%s", dvi_last_error());
+  const dvi_path_options options = {.ends = DVI_ENDS_FIXED,
+                                    .steps = steps,
+                                    .span = 1000,
+                                    .dimension = BODIES,
+                                    .q0 = of->q,
+                                    .q1 = q1};
+  ck_assert_msg(dvi_path_create(of->system, "midpoint", &options, &path) == DVI_OK, "%s",
+                dvi_last_error());
   return path;
 }
 
@@ -43,7 +49,8 @@ START_TEST(memory_and_work_are_in_proportion_to_the_steps)
   for (int k = 1; k < 3; k++) {
     /* The sanitizers do not let the heap be counted, and valgrind does not tell sizes. */
     if (heap_is_counted() && bytes[0] > 0)
-      ck_assert_msg(10 * bytes[k] > 19 * bytes[k - 1] && 10 * bytes[k] < 21 * bytes[k - 1], "%ld %ld", bytes[k - 1], bytes[k]);
+      ck_assert_msg(10 * bytes[k] > 19 * bytes[k - 1] && 10 * bytes[k] < 21 * bytes[k - 1],
+                    "%ld %ld", bytes[k - 1], bytes[k]);
     ck_assert_int_eq(counters[k].symbolic, 1);
     ck_assert(labs(counters[k].factorizations - counters[k - 1].factorizations) <= 1);
     ck_assert_double_lt((double)counters[k].hessians, 2.5 * (double)counters[k - 1].hessians);
@@ -52,17 +59,22 @@ START_TEST(memory_and_work_are_in_proportion_to_the_steps)
 }
 END_TEST
 
-/* A closed path of three bodies with four symmetries and a free period, each of which has a full row and column in the Jacobian: four times the steps, and perhaps
- * a second order of pivots beside the first one. Fill-in would be sixteen times as much. */
+/* A closed path of three bodies with four symmetries and a free period, each of which has a full
+ * row and column in the Jacobian: four times the steps, and perhaps a second order of pivots beside
+ * the first one. Fill-in would be sixteen times as much. */
 START_TEST(full_rows_and_columns_leave_it_in_proportion)
 {
   problem *of = made_problem("figure-eight", NULL);
   long bytes[2];
   for (int k = 0; k < 2; k++) {
     const int steps = 400 << 2 * k;
-    const dvi_path_options options = {
-        .ends = DVI_ENDS_PERIODIC, .steps = steps, .span = 6.32591398, .free_span = 1, .energy = -1.287142};
-    double *t = calloc((size_t)steps + 1, sizeof *t), *q = calloc(6 * ((size_t)steps + 1), sizeof *q);
+    const dvi_path_options options = {.ends = DVI_ENDS_PERIODIC,
+                                      .steps = steps,
+                                      .span = 6.32591398,
+                                      .free_span = 1,
+                                      .energy = -1.287142};
+    double *t = calloc((size_t)steps + 1, sizeof *t),
+           *q = calloc(6 * ((size_t)steps + 1), sizeof *q);
     dvi_integrator *stepped = started(of, "midpoint");
     for (int m = 0; m <= steps; m++) {
       t[m] = m;
@@ -72,7 +84,8 @@ START_TEST(full_rows_and_columns_leave_it_in_proportion)
     dvi_integrator_destroy(&stepped);
     const long before = heap_bytes();
     dvi_path *path = NULL;
-    ck_assert_msg(dvi_path_create(of->system, "midpoint", &options, &path) == DVI_OK, "%s", dvi_last_error());
+    ck_assert_msg(dvi_path_create(of->system, "midpoint", &options, &path) == DVI_OK, "%s",
+                  dvi_last_error());
     ck_assert_int_eq(dvi_path_guess(path, steps + 1, 6, t, q), DVI_OK);
     ck_assert_msg(dvi_path_solve(path, NULL) == DVI_OK, "%s", dvi_last_error());
     bytes[k] = heap_bytes() - before;
@@ -80,7 +93,8 @@ START_TEST(full_rows_and_columns_leave_it_in_proportion)
     free(t);
     free(q);
   }
-  if (heap_is_counted() && bytes[0] > 0) ck_assert_msg(bytes[1] < 8 * bytes[0], "%ld %ld", bytes[0], bytes[1]);
+  if (heap_is_counted() && bytes[0] > 0)
+    ck_assert_msg(bytes[1] < 8 * bytes[0], "%ld %ld", bytes[0], bytes[1]);
   problem_destroy(&of);
 }
 END_TEST
@@ -88,8 +102,13 @@ END_TEST
 static dvi_status closed(const problem *of, dvi_path **path)
 {
   const double turn[] = {-1, 0, 0, -1};
-  const dvi_path_options options = {
-      .ends = DVI_ENDS_PERIODIC, .steps = 6, .span = 3, .dimension = 2, .symmetry = turn, .free_span = 1, .energy = -0.5};
+  const dvi_path_options options = {.ends = DVI_ENDS_PERIODIC,
+                                    .steps = 6,
+                                    .span = 3,
+                                    .dimension = 2,
+                                    .symmetry = turn,
+                                    .free_span = 1,
+                                    .energy = -0.5};
   return dvi_path_create(of->system, "galerkin:degree=3", &options, path);
 }
 
@@ -108,7 +127,8 @@ START_TEST(a_path_survives_every_failure_of_memory)
     dvi__fail_allocations_after(successes);
     const dvi_status status = closed(of, &path);
     dvi__fail_allocations_after(-1);
-    ck_assert_msg(status == DVI_NO_MEMORY, "%ld: %s: %s", successes, dvi_status_name(status), dvi_last_error());
+    ck_assert_msg(status == DVI_NO_MEMORY, "%ld: %s: %s", successes, dvi_status_name(status),
+                  dvi_last_error());
     ck_assert_ptr_null(path);
   }
   ck_assert_int_eq(heap_bytes(), bytes);
@@ -121,7 +141,8 @@ START_TEST(a_solve_without_memory_fails)
 {
   problem *of = made_problem("pendulum", NULL);
   const double q0[] = {1}, q1[] = {2};
-  const dvi_path_options options = {.ends = DVI_ENDS_FIXED, .steps = 20, .span = 1, .dimension = 1, .q0 = q0, .q1 = q1};
+  const dvi_path_options options = {
+      .ends = DVI_ENDS_FIXED, .steps = 20, .span = 1, .dimension = 1, .q0 = q0, .q1 = q1};
   dvi_path *path = NULL;
   ck_assert_int_eq(dvi_path_create(of->system, "galerkin:degree=2", &options, &path), DVI_OK);
   for (long successes = 0; successes < 4; successes++) {

@@ -14,10 +14,15 @@ typedef struct between {
 
 static const between arc = {{1, 0}, {-0.5, 1}}, swing = {{2.8, 1.5}, {-1, -1.5}};
 
-static dvi_path *made(const problem *of, const char *method, int steps, double span, const between *ends)
+static dvi_path *made(const problem *of, const char *method, int steps, double span,
+                      const between *ends)
 {
-  const dvi_path_options options = {
-      .ends = DVI_ENDS_FIXED, .steps = steps, .span = span, .dimension = of->nq, .q0 = ends->from, .q1 = ends->to};
+  const dvi_path_options options = {.ends = DVI_ENDS_FIXED,
+                                    .steps = steps,
+                                    .span = span,
+                                    .dimension = of->nq,
+                                    .q0 = ends->from,
+                                    .q1 = ends->to};
   dvi_path *path = NULL;
   const dvi_status status = dvi_path_create(of->system, method, &options, &path);
   ck_assert_msg(status == DVI_OK, "%s", dvi_last_error());
@@ -103,7 +108,8 @@ START_TEST(a_path_that_follows_no_motion_is_not_solved)
   dvi_path_report report = {0};
   ck_assert_int_eq(dvi_path_solve(path, &report), DVI_STEP_TOO_LARGE);
   const char *said = dvi_last_error(), *advice = strstr(said, "; try about ");
-  ck_assert_msg(strstr(said, "from node 3 to 4, t = 1.5 to 2, the energy changes") != NULL, "%s", said);
+  ck_assert_msg(strstr(said, "from node 3 to 4, t = 1.5 to 2, the energy changes") != NULL, "%s",
+                said);
   ck_assert_ptr_nonnull(advice);
   const int steps = (int)strtol(advice + strlen("; try about "), NULL, 10);
   ck_assert_int_eq(report.jump_step, STEPS - 1);

@@ -1,5 +1,6 @@
 /* labels: jacobian */
-/* The Jacobian of a whole path, with symmetry, free span and multipliers, against differences of its residual; and its pattern. */
+/* The Jacobian of a whole path, with symmetry, free span and multipliers, against differences of
+ * its residual; and its pattern. */
 #include <math.h>
 #include <string.h>
 
@@ -16,25 +17,40 @@ static const struct {
   dvi_path_options options;
   const char *method;
 } kinds[] = {
-    {{.ends = DVI_ENDS_FIXED, .steps = 3, .span = 1, .dimension = 2, .q0 = ends, .q1 = ends + 2}, "galerkin:degree=3"},
-    {{.ends = DVI_ENDS_FIXED, .steps = 1, .span = 1, .dimension = 2, .q0 = ends, .q1 = ends + 2}, "galerkin:degree=2"},
-    {{.ends = DVI_ENDS_FIXED, .steps = 6, .span = 1, .dimension = 2, .q0 = ends, .q1 = ends + 2}, "trapezoidal"},
-    {{.ends = DVI_ENDS_INITIAL, .steps = 4, .span = 1, .dimension = 2, .q0 = ends, .p0 = ends + 2}, "galerkin:degree=2"},
-    {{.ends = DVI_ENDS_INITIAL, .steps = 4, .span = 1, .dimension = 2, .q0 = ends, .p0 = ends + 2}, "midpoint"},
+    {{.ends = DVI_ENDS_FIXED, .steps = 3, .span = 1, .dimension = 2, .q0 = ends, .q1 = ends + 2},
+     "galerkin:degree=3"},
+    {{.ends = DVI_ENDS_FIXED, .steps = 1, .span = 1, .dimension = 2, .q0 = ends, .q1 = ends + 2},
+     "galerkin:degree=2"},
+    {{.ends = DVI_ENDS_FIXED, .steps = 6, .span = 1, .dimension = 2, .q0 = ends, .q1 = ends + 2},
+     "trapezoidal"},
+    {{.ends = DVI_ENDS_INITIAL, .steps = 4, .span = 1, .dimension = 2, .q0 = ends, .p0 = ends + 2},
+     "galerkin:degree=2"},
+    {{.ends = DVI_ENDS_INITIAL, .steps = 4, .span = 1, .dimension = 2, .q0 = ends, .p0 = ends + 2},
+     "midpoint"},
     {{.ends = DVI_ENDS_PERIODIC, .steps = 4, .span = 2}, "galerkin:degree=3"},
     {{.ends = DVI_ENDS_PERIODIC, .steps = 1, .span = 2}, "galerkin:degree=4"},
     {{.ends = DVI_ENDS_PERIODIC, .steps = 2, .span = 2}, "midpoint"},
-    {{.ends = DVI_ENDS_PERIODIC, .steps = 5, .span = 2, .dimension = 2, .symmetry = turn, .free_span = 1, .energy = -0.3},
+    {{.ends = DVI_ENDS_PERIODIC,
+      .steps = 5,
+      .span = 2,
+      .dimension = 2,
+      .symmetry = turn,
+      .free_span = 1,
+      .energy = -0.3},
      "galerkin:degree=2,quadrature=lobatto,nodes=3"},
-    {{.ends = DVI_ENDS_PERIODIC, .steps = 5, .span = 2, .free_span = 1, .energy = -0.3}, "midpoint"},
+    {{.ends = DVI_ENDS_PERIODIC, .steps = 5, .span = 2, .free_span = 1, .energy = -0.3},
+     "midpoint"},
 };
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
-/* A path of kepler or of the double pendulum in no special place, with multipliers that do not vanish. */
+/* A path of kepler or of the double pendulum in no special place, with multipliers that do not
+ * vanish. */
 static dvi_path *make(const problem *of, int kind)
 {
   dvi_path *path = NULL;
-  ck_assert_msg(dvi_path_create(of->system, kinds[kind].method, &kinds[kind].options, &path) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_path_create(of->system, kinds[kind].method, &kinds[kind].options, &path) ==
+                    DVI_OK,
+                "%s", dvi_last_error());
   for (int c = 0; c < path->core; c++) path->x[c] = 1 + 0.3 * cos(2 * c + 1);
   ck_assert_int_eq(dvi__path_scale(path, path->x), DVI_OK);
   ck_assert_int_eq(dvi__path_fix_gauge(path, path->x, 1e-6), DVI_OK);
@@ -45,7 +61,8 @@ static dvi_path *make(const problem *of, int kind)
 
 static const double moved[3] = {0.003, 0.006, 0.009}, share[3] = {1.5, -0.6, 0.1};
 
-/* Differences of order 6: with d = 0.003 they err by d^6/140 of the seventh derivative, and by roundings of 1e-15 over d. */
+/* Differences of order 6: with d = 0.003 they err by d^6/140 of the seventh derivative, and by
+ * roundings of 1e-15 over d. */
 static void check_jacobian(dvi_path *path)
 {
   const dvi__equations *equations = &path->solver->equations;
@@ -60,12 +77,14 @@ static void check_jacobian(dvi_path *path)
       ck_assert_int_eq(equations->residual(path, path->x, plus), DVI_OK);
       path->x[column] = at - moved[m];
       ck_assert_int_eq(equations->residual(path, path->x, minus), DVI_OK);
-      for (int row = 0; row < path->unknowns; row++) differences[row] += share[m] * (plus[row] - minus[row]) / (2 * moved[m]);
+      for (int row = 0; row < path->unknowns; row++)
+        differences[row] += share[m] * (plus[row] - minus[row]) / (2 * moved[m]);
     }
     path->x[column] = at;
     for (int row = 0; row < path->unknowns; row++) {
       const int entry = dvi__pattern_find(&path->pattern, row, column);
-      ck_assert_double_eq_tol(entry >= 0 ? values[entry] : 0, differences[row], 1e-7 * fmax(1, fabs(differences[row])));
+      ck_assert_double_eq_tol(entry >= 0 ? values[entry] : 0, differences[row],
+                              1e-7 * fmax(1, fabs(differences[row])));
     }
   }
 }
@@ -88,7 +107,8 @@ START_TEST(the_jacobian_is_a_hessian)
   dvi_path *path = make(of, _i);
   double values[MOST * MOST];
   ck_assert_int_eq(dvi__path_jacobian(path, path->x, values), DVI_OK);
-  for (int column = 0; column < path->unknowns && kinds[_i].options.ends != DVI_ENDS_INITIAL; column++)
+  for (int column = 0; column < path->unknowns && kinds[_i].options.ends != DVI_ENDS_INITIAL;
+       column++)
     for (int e = path->pattern.start[column]; e < path->pattern.start[column + 1]; e++) {
       const int other = dvi__pattern_find(&path->pattern, column, path->pattern.row[e]);
       ck_assert_int_ge(other, 0);

@@ -1,5 +1,6 @@
 /* labels: reference */
-/* Whole paths against steps, against known orbits and against Morse's theory of the second variation. */
+/* Whole paths against steps, against known orbits and against Morse's theory of the second
+ * variation. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,7 +26,8 @@ static void keep(run *r, int k, const dvi_integrator *of)
   memcpy(r->p + (size_t)k * (size_t)r->n, dvi_integrator_p(of), (size_t)r->n * sizeof(double));
 }
 
-static void record(const dvi_system *system, const double *q, const double *p, const char *method, double span, int steps, run *r)
+static void record(const dvi_system *system, const double *q, const double *p, const char *method,
+                   double span, int steps, run *r)
 {
   *r = (run){.n = dvi_system_nq(system), .steps = steps, .span = span};
   ck_assert((steps + 1) * r->n <= ROOM);
@@ -39,7 +41,8 @@ static void record(const dvi_system *system, const double *q, const double *p, c
   dvi_integrator_destroy(&stepped);
 }
 
-static dvi_path *made_path(const dvi_system *system, const char *method, const dvi_path_options *options)
+static dvi_path *made_path(const dvi_system *system, const char *method,
+                           const dvi_path_options *options)
 {
   dvi_path *path = NULL;
   ck_assert_msg(dvi_path_create(system, method, options, &path) == DVI_OK, "%s", dvi_last_error());
@@ -60,8 +63,10 @@ static double difference(const dvi_path *path, const run *r)
   double worst = 0;
   const int all = (r->steps + 1) * r->n;
   for (int k = 0; k <= r->steps; k++) {
-    worst = fmax(worst, distance(r->n, dvi_path_q(path, k), r->q + k * r->n) / magnitude(all, r->q));
-    worst = fmax(worst, distance(r->n, dvi_path_p(path, k), r->p + k * r->n) / magnitude(all, r->p));
+    worst = fmax(worst,
+                 distance(r->n, dvi_path_q(path, k), r->q + k * r->n) / magnitude(all, r->q));
+    worst = fmax(worst,
+                 distance(r->n, dvi_path_p(path, k), r->p + k * r->n) / magnitude(all, r->p));
   }
   return worst;
 }
@@ -71,7 +76,8 @@ static double difference(const dvi_path *path, const run *r)
 static const struct {
   const char *problem, *setting, *method;
   double span;
-  int steps, rough; /* 1: from the straight line; 0: from the run, each number moved by a per cent */
+  /* 1: from the straight line; 0: from the run, each number moved by a per cent */
+  int steps, rough;
 } places[] = {
     {"pendulum", NULL, "midpoint", 2, 50, 1},
     {"pendulum", NULL, "trapezoidal", 2, 50, 1},
@@ -107,11 +113,13 @@ static void check_place(int index, dvi_ends ends)
     ck_assert_int_eq(dvi_path_guess(path, steps + 1, n, r.t, moved), DVI_OK);
   }
   const dvi_path_report report = solved(path);
-  /* Two-point problems and steps agree as far as both are at roundoff, which these spans multiply by less than 1e3. */
+  /* Two-point problems and steps agree as far as both are at roundoff, which these spans multiply
+   * by less than 1e3. */
   const double worst = difference(path, &r);
   ck_assert_msg(worst < 1e-12, "%s %s: %g", places[index].problem, places[index].method, worst);
   ck_assert_int_eq(report.negative < 0, ends == DVI_ENDS_INITIAL);
-  ck_assert(dvi_path_time(path, steps) == places[index].span || fabs(dvi_path_time(path, steps) / places[index].span - 1) < 1e-15);
+  ck_assert(dvi_path_time(path, steps) == places[index].span ||
+            fabs(dvi_path_time(path, steps) / places[index].span - 1) < 1e-15);
   dvi_path_destroy(&path);
   problem_destroy(&of);
 }
@@ -135,8 +143,10 @@ START_TEST(time_dependent_systems_have_paths)
   static behaviour quiet;
   const dvi_lagrangian lagrangian = rotors(&quiet, BATCH);
   const dvi_potential potential = wells(&quiet, BATCH);
-  dvi_system *system = make_system(
-      &(dvi_system_terms){.dimension = SITES, .lagrangian = &lagrangian, .potentials = &potential, .potential_count = 1});
+  dvi_system *system = make_system(&(dvi_system_terms){.dimension = SITES,
+                                                       .lagrangian = &lagrangian,
+                                                       .potentials = &potential,
+                                                       .potential_count = 1});
   const double start = 0.5;
   r = (run){.n = SITES, .steps = 10, .span = 1};
   dvi_integrator *stepped = made_integrator(system, "galerkin:degree=3");
@@ -173,20 +183,26 @@ START_TEST(the_index_counts_conjugate_points)
   problem *of = made_problem("oscillator", NULL);
   for (int k = 0; k < 8; k++)
     for (int degree = 1; degree <= 4; degree++) {
-      const dvi_path_options options = {
-          .ends = DVI_ENDS_FIXED, .steps = degree > 1 ? 40 : 400, .span = spans[k], .dimension = 1, .q0 = q0, .q1 = q1};
+      const dvi_path_options options = {.ends = DVI_ENDS_FIXED,
+                                        .steps = degree > 1 ? 40 : 400,
+                                        .span = spans[k],
+                                        .dimension = 1,
+                                        .q0 = q0,
+                                        .q1 = q1};
       dvi_path *path = made_path(of->system, spec("galerkin:degree=%d", degree), &options);
       const dvi_path_report report = solved(path);
-      ck_assert_msg(report.negative == conjugate[k] && report.zero == 0, "degree %d, span %g: %ld negative, %ld zero", degree,
-                    spans[k], report.negative, report.zero);
+      ck_assert_msg(report.negative == conjugate[k] && report.zero == 0,
+                    "degree %d, span %g: %ld negative, %ld zero", degree, spans[k], report.negative,
+                    report.zero);
       dvi_path_destroy(&path);
     }
   problem_destroy(&of);
 }
 END_TEST
 
-/* From (1,0) to (0,1) in the time of three quarters of the unit circle: that circle, clockwise, has L = 1/2 + 1; counterclockwise there is an ellipse, of
- * which the far end lies between. Both are minima: a path in the plane cannot cross the centre to become the other. */
+/* From (1,0) to (0,1) in the time of three quarters of the unit circle: that circle, clockwise, has
+ * L = 1/2 + 1; counterclockwise there is an ellipse, of which the far end lies between. Both are
+ * minima: a path in the plane cannot cross the centre to become the other. */
 START_TEST(paths_of_one_problem_are_told_apart_by_their_guess)
 {
   enum { POINTS = 13 };
@@ -198,7 +214,8 @@ START_TEST(paths_of_one_problem_are_told_apart_by_their_guess)
     round[2 * k + 1] = -0.9 * sin(pi * k / 8);
   }
   problem *of = made_problem("kepler", NULL);
-  const dvi_path_options options = {.ends = DVI_ENDS_FIXED, .steps = 40, .span = 1.5 * pi, .dimension = 2, .q0 = q0, .q1 = q1};
+  const dvi_path_options options = {
+      .ends = DVI_ENDS_FIXED, .steps = 40, .span = 1.5 * pi, .dimension = 2, .q0 = q0, .q1 = q1};
   dvi_path *path = made_path(of->system, "galerkin:degree=4", &options);
   ck_assert_int_eq(dvi_path_guess(path, POINTS, 2, t, round), DVI_OK);
   dvi_path_report report = solved(path);
@@ -219,21 +236,27 @@ END_TEST
 static const double exchange[] = {0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0,
                                   0, 1, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1, 0, 0};
 
-/* Three points of each body on x = sin, y = 0.4 sin 2, rounded to one digit: a third of the figure, body after body. */
+/* Three points of each body on x = sin, y = 0.4 sin 2, rounded to one digit: a third of the figure,
+ * body after body. */
 static const double sketch_t[] = {0, 1, 2};
-static const double sketch[] = {0, 0, 0.9, -0.3, -0.9, 0.3, 0.9, 0.3, 0, 0, -0.9, -0.3, 0.9, -0.3, -0.9, 0.3, 0, 0};
+static const double sketch[] = {0, 0,    0.9,  -0.3, -0.9, 0.3,  0.9, 0.3, 0,
+                                0, -0.9, -0.3, 0.9,  -0.3, -0.9, 0.3, 0,   0};
 
-/* Action and energy as printed by an earlier, separate implementation for T = 6.32591398; the orbit of Chenciner and Montgomery (2000). */
-static const double eight_period = 6.32591398, eight_action = 24.4270486407709, eight_energy = -1.28714199602879;
+/* Action and energy as printed by an earlier, separate implementation for T = 6.32591398; the orbit
+ * of Chenciner and Montgomery (2000). */
+static const double eight_period = 6.32591398, eight_action = 24.4270486407709,
+                    eight_energy = -1.28714199602879;
 
-/* From the path's first state on, steps of the method must come back to it; the orbit is stable, and roundoff grows slowly. */
-static void check_closes(const problem *of, const char *method, const dvi_path *path, const double *turn)
+/* From the path's first state on, steps of the method must come back to it; the orbit is stable,
+ * and roundoff grows slowly. */
+static void check_closes(const problem *of, const char *method, const dvi_path *path,
+                         const double *turn)
 {
   static run r;
   const int n = of->nq, steps = dvi_path_steps(path);
   double q[8] = {0}, p[8] = {0};
-  record(of->system, dvi_path_q(path, 0), dvi_path_p(path, 0), method, dvi_path_time(path, steps) - dvi_path_time(path, 0), steps,
-         &r);
+  record(of->system, dvi_path_q(path, 0), dvi_path_p(path, 0), method,
+         dvi_path_time(path, steps) - dvi_path_time(path, 0), steps, &r);
   for (int i = 0; i < n; i++)
     for (int j = 0; j < n; j++) {
       const double entry = turn != NULL ? turn[j * n + i] : i == j;
@@ -248,8 +271,11 @@ START_TEST(the_figure_eight_comes_from_three_points)
 {
   const char *method = "galerkin:degree=8";
   problem *of = made_problem("figure-eight", NULL);
-  const dvi_path_options options = {
-      .ends = DVI_ENDS_PERIODIC, .steps = 10, .span = eight_period / 3, .dimension = 6, .symmetry = exchange};
+  const dvi_path_options options = {.ends = DVI_ENDS_PERIODIC,
+                                    .steps = 10,
+                                    .span = eight_period / 3,
+                                    .dimension = 6,
+                                    .symmetry = exchange};
   dvi_path *path = made_path(of->system, method, &options);
   ck_assert_int_eq(dvi_path_guess(path, 3, 6, sketch_t, sketch), DVI_OK);
   const dvi_path_report report = solved(path);
@@ -313,14 +339,17 @@ START_TEST(a_nearly_periodic_run_closes_to_roundoff)
 }
 END_TEST
 
-/* 12 steps of order 8 make the discrete motion prefer some times: where it is held at another one 7e-9 of the gradient are left. */
+/* 12 steps of order 8 make the discrete motion prefer some times: where it is held at another one
+ * 7e-9 of the gradient are left. */
 START_TEST(long_steps_choose_their_time)
 {
   static run r;
   const char *method = "galerkin:degree=4";
   problem *of = made_problem("figure-eight", NULL);
   record(of->system, of->q, of->p, method, eight_period, 12, &r);
-  dvi_path *path = made_path(of->system, method, &(dvi_path_options){.ends = DVI_ENDS_PERIODIC, .steps = 12, .span = eight_period});
+  dvi_path *path = made_path(
+      of->system, method,
+      &(dvi_path_options){.ends = DVI_ENDS_PERIODIC, .steps = 12, .span = eight_period});
   ck_assert_int_eq(dvi_path_guess(path, 13, 6, r.t, r.q), DVI_OK);
   ck_assert_double_lt(solved(path).gradient, 1e-13);
   dvi_path_destroy(&path);
@@ -336,8 +365,9 @@ START_TEST(steps_that_do_not_resolve_a_symmetry_have_no_index)
   problem *of = made_problem("pendulum", NULL);
   for (int k = 0; k < 2; k++) {
     record(of->system, of->q, of->p, "midpoint", 7, steps[k], &r);
-    dvi_path *path = made_path(of->system, "midpoint",
-                               &(dvi_path_options){.ends = DVI_ENDS_PERIODIC, .steps = steps[k], .span = 7});
+    dvi_path *path = made_path(
+        of->system, "midpoint",
+        &(dvi_path_options){.ends = DVI_ENDS_PERIODIC, .steps = steps[k], .span = 7});
     ck_assert_int_eq(dvi_path_guess(path, steps[k] + 1, 1, r.t, r.q), DVI_OK);
     const dvi_path_report report = solved(path);
     ck_assert_int_eq(report.symmetries, 1);
@@ -349,7 +379,8 @@ START_TEST(steps_that_do_not_resolve_a_symmetry_have_no_index)
 }
 END_TEST
 
-/* q_N = q_0 + 2 pi: the pendulum turns over. Its period with energy E = 2, by the arithmetic-geometric mean: T = 2 pi / agm(sqrt(2 (E+1)), sqrt(2 (E-1))). */
+/* q_N = q_0 + 2 pi: the pendulum turns over. Its period with energy E = 2, by the
+ * arithmetic-geometric mean: T = 2 pi / agm(sqrt(2 (E+1)), sqrt(2 (E-1))). */
 START_TEST(a_pendulum_that_turns_over_is_periodic_up_to_a_shift)
 {
   const double shift[] = {2 * pi}, t[] = {0, 1}, line[] = {0.3, 0.3 + 2 * pi};
@@ -360,8 +391,13 @@ START_TEST(a_pendulum_that_turns_over_is_periodic_up_to_a_shift)
     a = mean;
   }
   problem *of = made_problem("pendulum", NULL);
-  const dvi_path_options options = {
-      .ends = DVI_ENDS_PERIODIC, .steps = 20, .span = 3, .dimension = 1, .shift = shift, .free_span = 1, .energy = 2};
+  const dvi_path_options options = {.ends = DVI_ENDS_PERIODIC,
+                                    .steps = 20,
+                                    .span = 3,
+                                    .dimension = 1,
+                                    .shift = shift,
+                                    .free_span = 1,
+                                    .energy = 2};
   dvi_path *path = made_path(of->system, "galerkin:degree=8", &options);
   ck_assert_int_eq(dvi_path_guess(path, 2, 1, t, line), DVI_OK);
   const dvi_path_report report = solved(path);
@@ -375,22 +411,26 @@ END_TEST
 /* A circle is its own image turned by any angle; time and rotation move it in one direction. */
 START_TEST(a_circle_is_relatively_periodic)
 {
-  const double turn[] = {cos(1), sin(1), -sin(1), cos(1)}, t[] = {0, 0.5, 1}, q[] = {1.1, 0, 0.8, 0.5, 0.5, 0.9};
+  const double turn[] = {cos(1), sin(1), -sin(1), cos(1)}, t[] = {0, 0.5, 1},
+               q[] = {1.1, 0, 0.8, 0.5, 0.5, 0.9};
   problem *of = made_problem("kepler", "e=0");
-  const dvi_path_options options = {.ends = DVI_ENDS_PERIODIC, .steps = 5, .span = 1, .dimension = 2, .symmetry = turn};
+  const dvi_path_options options = {
+      .ends = DVI_ENDS_PERIODIC, .steps = 5, .span = 1, .dimension = 2, .symmetry = turn};
   dvi_path *path = made_path(of->system, "galerkin:degree=6", &options);
   ck_assert_int_eq(dvi_path_guess(path, 3, 2, t, q), DVI_OK);
   const dvi_path_report report = solved(path);
   ck_assert_double_eq_tol(report.action, 1.5, 1e-12);
   ck_assert_double_eq_tol(report.energy, -0.5, 1e-11);
-  for (int k = 0; k <= 5; k++) ck_assert_double_eq_tol(hypot(dvi_path_q(path, k)[0], dvi_path_q(path, k)[1]), 1, 1e-12);
+  for (int k = 0; k <= 5; k++)
+    ck_assert_double_eq_tol(hypot(dvi_path_q(path, k)[0], dvi_path_q(path, k)[1]), 1, 1e-12);
   check_closes(of, "galerkin:degree=6", path, turn);
   dvi_path_destroy(&path);
   problem_destroy(&of);
 }
 END_TEST
 
-/* V = q^2/2 - q cos 2t: q'' + q = cos 2t has the solution -cos(2t)/3 of the drive's period, and no other. */
+/* V = q^2/2 - q cos 2t: q'' + q = cos 2t has the solution -cos(2t)/3 of the drive's period, and no
+ * other. */
 static int swing(double t, const double *q, double *V, void *user)
 {
   (void)user;
@@ -408,18 +448,23 @@ static int push(double t, const double *q, double *V_q, void *user)
 START_TEST(a_driven_oscillator_follows_its_drive)
 {
   const dvi_potential potential = {.value = swing, .gradient = push};
-  dvi_system *system = make_system(
-      &(dvi_system_terms){.dimension = 1, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
-  const dvi_path_options options = {.ends = DVI_ENDS_PERIODIC, .steps = 12, .start = 0.4, .span = pi};
+  dvi_system *system = make_system(&(dvi_system_terms){
+      .dimension = 1, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
+  const dvi_path_options options = {
+      .ends = DVI_ENDS_PERIODIC, .steps = 12, .start = 0.4, .span = pi};
   dvi_path *path = made_path(system, "galerkin:degree=6", &options);
   const dvi_path_report report = solved(path);
-  for (int k = 0; k <= 12; k++) ck_assert_double_eq_tol(dvi_path_q(path, k)[0], -cos(2 * dvi_path_time(path, k)) / 3, 1e-11);
+  for (int k = 0; k <= 12; k++)
+    ck_assert_double_eq_tol(dvi_path_q(path, k)[0], -cos(2 * dvi_path_time(path, k)) / 3, 1e-11);
   dvi_path_destroy(&path);
-  path = made_path(system, "galerkin:degree=6", &(dvi_path_options){.ends = DVI_ENDS_PERIODIC, .steps = 12, .span = 3});
-  ck_assert_int_eq(dvi_path_guess(path, 2, 1, (const double[]){0, 1}, (const double[]){0.3, 0.3}), DVI_OK);
+  path = made_path(system, "galerkin:degree=6",
+                   &(dvi_path_options){.ends = DVI_ENDS_PERIODIC, .steps = 12, .span = 3});
+  ck_assert_int_eq(dvi_path_guess(path, 2, 1, (const double[]){0, 1}, (const double[]){0.3, 0.3}),
+                   DVI_OK);
   ck_assert_int_eq(dvi_path_solve(path, NULL), DVI_BAD_ARGUMENT);
   check_words("the period is none of the Lagrangian's");
-  /* Of modes cos(2 m t) and sin(2 m t), with (2m)^2 - 1, the constant alone is negative; the phase is the drive's. */
+  /* Of modes cos(2 m t) and sin(2 m t), with (2m)^2 - 1, the constant alone is negative; the phase
+   * is the drive's. */
   ck_assert_int_eq(report.negative, 1);
   ck_assert_int_eq(report.zero, 0);
   ck_assert_int_eq(report.symmetries, 0);
@@ -433,7 +478,8 @@ END_TEST
 static double apart(const dvi_path *a, const dvi_path *b)
 {
   double worst = 0;
-  for (int k = 0; k <= dvi_path_steps(a); k++) worst = fmax(worst, distance(2, dvi_path_q(a, k), dvi_path_q(b, k)));
+  for (int k = 0; k <= dvi_path_steps(a); k++)
+    worst = fmax(worst, distance(2, dvi_path_q(a, k), dvi_path_q(b, k)));
   return worst;
 }
 
@@ -444,15 +490,25 @@ START_TEST(a_guess_along_two_paths_is_better_than_the_last_one)
   dvi_path *path[3];
   for (int k = 0; k < 3; k++) {
     of[k] = made_problem("kepler", spec("e=%g", 0.3 + 0.02 * k));
-    const dvi_path_options options = {
-        .ends = DVI_ENDS_INITIAL, .steps = 20, .span = 2, .dimension = 2, .q0 = of[k]->q, .p0 = of[k]->p};
+    const dvi_path_options options = {.ends = DVI_ENDS_INITIAL,
+                                      .steps = 20,
+                                      .span = 2,
+                                      .dimension = 2,
+                                      .q0 = of[k]->q,
+                                      .p0 = of[k]->p};
     path[k] = made_path(of[k]->system, "galerkin:degree=3", &options);
-    if (k > 0) ck_assert_int_eq(dvi_path_guess_along(path[k], path[k - 1], k > 1 ? path[k - 2] : NULL, 1), DVI_OK);
+    if (k > 0)
+      ck_assert_int_eq(dvi_path_guess_along(path[k], path[k - 1], k > 1 ? path[k - 2] : NULL, 1),
+                       DVI_OK);
     if (k < 2) (void)solved(path[k]);
   }
-  dvi_path *last = made_path(
-      of[2]->system, "galerkin:degree=3",
-      &(dvi_path_options){.ends = DVI_ENDS_INITIAL, .steps = 20, .span = 2, .dimension = 2, .q0 = of[2]->q, .p0 = of[2]->p});
+  dvi_path *last = made_path(of[2]->system, "galerkin:degree=3",
+                             &(dvi_path_options){.ends = DVI_ENDS_INITIAL,
+                                                 .steps = 20,
+                                                 .span = 2,
+                                                 .dimension = 2,
+                                                 .q0 = of[2]->q,
+                                                 .p0 = of[2]->p});
   ck_assert_int_eq(dvi_path_guess_along(last, path[1], NULL, 1), DVI_OK);
   (void)solved(last);
   ck_assert_double_gt(apart(path[1], last), 0.01);

@@ -10,7 +10,8 @@
 
 static problem *kepler;
 static const double first[] = {1, 0}, last[] = {0, 1};
-static const dvi_path_options good = {.ends = DVI_ENDS_FIXED, .steps = 10, .span = 1, .dimension = 2, .q0 = first, .q1 = last};
+static const dvi_path_options good = {
+    .ends = DVI_ENDS_FIXED, .steps = 10, .span = 1, .dimension = 2, .q0 = first, .q1 = last};
 
 static void set_up(void)
 {
@@ -22,7 +23,8 @@ static void tear_down(void)
   problem_destroy(&kepler);
 }
 
-static void refused(dvi_path_options options, const char *method, dvi_status expected, const char *words)
+static void refused(dvi_path_options options, const char *method, dvi_status expected,
+                    const char *words)
 {
   dvi_path *path = (dvi_path *)&options; /* must become NULL */
   const dvi_status status = dvi_path_create(kepler->system, method, &options, &path);
@@ -34,7 +36,8 @@ static void refused(dvi_path_options options, const char *method, dvi_status exp
 static dvi_path *made(dvi_path_options options)
 {
   dvi_path *path = NULL;
-  ck_assert_msg(dvi_path_create(kepler->system, "galerkin:degree=8", &options, &path) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_path_create(kepler->system, "galerkin:degree=8", &options, &path) == DVI_OK,
+                "%s", dvi_last_error());
   return path;
 }
 
@@ -45,7 +48,8 @@ START_TEST(spans_are_positive_times)
     dvi_path_options options = good;
     options.span = bad[k];
     refused(options, "midpoint", DVI_BAD_ARGUMENT, "is not a positive time");
-    refused((dvi_path_options){.ends = DVI_ENDS_PERIODIC, .steps = 3, .span = bad[k]}, "midpoint", DVI_BAD_ARGUMENT, "period");
+    refused((dvi_path_options){.ends = DVI_ENDS_PERIODIC, .steps = 3, .span = bad[k]}, "midpoint",
+            DVI_BAD_ARGUMENT, "period");
   }
   dvi_path_options options = good;
   options.start = NAN;
@@ -108,10 +112,12 @@ START_TEST(ends_have_what_they_need_and_no_more)
   refused(options, "midpoint", DVI_BAD_ARGUMENT, "the first momentum p0 is given");
   options = good;
   options.symmetry_pattern = (dvi_pattern){pair, pair};
-  refused(options, "midpoint", DVI_BAD_ARGUMENT, "a pattern of the symmetry is given, but no symmetry");
+  refused(options, "midpoint", DVI_BAD_ARGUMENT,
+          "a pattern of the symmetry is given, but no symmetry");
   options = good;
   options.energy = -0.5;
-  refused(options, "midpoint", DVI_BAD_ARGUMENT, "the energy -0.5 is given, but the period is not free");
+  refused(options, "midpoint", DVI_BAD_ARGUMENT,
+          "the energy -0.5 is given, but the period is not free");
   options = good;
   options.symmetry = last;
   refused(options, "midpoint", DVI_BAD_ARGUMENT, "only periodic ends");
@@ -132,12 +138,13 @@ START_TEST(a_free_period_is_for_closed_paths_of_autonomous_systems)
   dvi_path_options options = good;
   options.free_span = 1;
   refused(options, "midpoint", DVI_BAD_ARGUMENT, "only periodic ends can have a free period");
-  options = (dvi_path_options){.ends = DVI_ENDS_PERIODIC, .steps = 9, .span = 1, .free_span = 1, .energy = NAN};
+  options = (dvi_path_options){
+      .ends = DVI_ENDS_PERIODIC, .steps = 9, .span = 1, .free_span = 1, .energy = NAN};
   refused(options, "midpoint", DVI_BAD_ARGUMENT, "energy nan");
   options.energy = 1;
   const dvi_potential potential = wells(&quiet, BATCH);
-  dvi_system *driven = make_system(
-      &(dvi_system_terms){.dimension = SITES, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
+  dvi_system *driven = make_system(&(dvi_system_terms){
+      .dimension = SITES, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
   ck_assert_int_eq(dvi_path_create(driven, "midpoint", &options, &path), DVI_BAD_ARGUMENT);
   check_words("declared autonomous");
   dvi_system_destroy(&driven);
@@ -147,7 +154,8 @@ END_TEST
 START_TEST(methods_are_elements_of_an_action)
 {
   refused(good, "verlet", DVI_BAD_OPTION, "verlet is no discrete action with a polynomial path");
-  refused(good, "composition", DVI_BAD_OPTION, "galerkin, midpoint, trapezoidal, and hp and hamiltonian of types 1 to 3 are");
+  refused(good, "composition", DVI_BAD_OPTION,
+          "galerkin, midpoint, trapezoidal, and hp and hamiltonian of types 1 to 3 are");
   refused(good, "sem", DVI_BAD_OPTION, "sem is no discrete action");
   refused(good, "galerkin:solver=newton", DVI_BAD_OPTION, "solver=newton is for steps");
   refused(good, "galerkin:degree=0", DVI_BAD_OPTION, "degree=0");
@@ -196,7 +204,8 @@ END_TEST
 
 START_TEST(guesses_are_points_in_the_order_of_time)
 {
-  const double t[] = {0, 1, 1}, late[] = {0, 1, NAN}, q[] = {1, 0, 0.7, 0.7, 0, 1}, hole[] = {1, 0, 0.7, INFINITY, 0, 1};
+  const double t[] = {0, 1, 1}, late[] = {0, 1, NAN}, q[] = {1, 0, 0.7, 0.7, 0, 1},
+               hole[] = {1, 0, 0.7, INFINITY, 0, 1};
   dvi_path *path = made(good), *longer;
   dvi_path_options options = good;
   ck_assert_int_eq(dvi_path_guess(path, 3, 2, t, q), DVI_BAD_ARGUMENT);
@@ -225,11 +234,13 @@ END_TEST
 /* ---- problems without a solution ---- */
 
 /* A solve that fails, and leaves nodes, momenta and report. */
-static void unsolvable(const dvi_system *system, dvi_path_options options, dvi_status expected, const char *words)
+static void unsolvable(const dvi_system *system, dvi_path_options options, dvi_status expected,
+                       const char *words)
 {
   dvi_path *path = NULL;
   dvi_path_report report = {.iterations = -7};
-  ck_assert_msg(dvi_path_create(system, "galerkin:degree=4", &options, &path) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_path_create(system, "galerkin:degree=4", &options, &path) == DVI_OK, "%s",
+                dvi_last_error());
   const double before = dvi_path_q(path, options.steps / 2)[0];
   const dvi_status status = dvi_path_solve(path, &report);
   ck_assert_msg(status == expected, "%s: %s", dvi_status_name(status), dvi_last_error());
@@ -247,8 +258,12 @@ START_TEST(conjugate_ends_are_named)
   const double from[] = {0, 0, 0.5}, to[] = {0, 1, -0.5};
   problem *of = made_problem("oscillator", NULL);
   for (int k = 0; k < 3; k++) {
-    const dvi_path_options options = {
-        .ends = DVI_ENDS_FIXED, .steps = 20, .span = 4.44288293815836625, .dimension = 1, .q0 = from + k, .q1 = to + k};
+    const dvi_path_options options = {.ends = DVI_ENDS_FIXED,
+                                      .steps = 20,
+                                      .span = 4.44288293815836625,
+                                      .dimension = 1,
+                                      .q0 = from + k,
+                                      .q1 = to + k};
     unsolvable(of->system, options, DVI_SINGULAR, "its ends are conjugate");
   }
   problem_destroy(&of);
@@ -260,7 +275,8 @@ START_TEST(a_path_through_the_centre_is_none)
 {
   const double q0[] = {1, 0}, q1[] = {-1, 0};
   for (int steps = 20; steps <= 21; steps++) {
-    const dvi_path_options options = {.ends = DVI_ENDS_FIXED, .steps = steps, .span = 0.1, .dimension = 2, .q0 = q0, .q1 = q1};
+    const dvi_path_options options = {
+        .ends = DVI_ENDS_FIXED, .steps = steps, .span = 0.1, .dimension = 2, .q0 = q0, .q1 = q1};
     unsolvable(kepler->system, options, DVI_NOT_CONVERGED, "goes through a singularity");
   }
 }
@@ -282,8 +298,8 @@ START_TEST(a_period_that_no_path_has_is_named)
 }
 END_TEST
 
-/* All of Kepler's ellipses have one period: each is one of a family that no declared symmetry explains. Steps of a low order give each a period of its own, by a
- * little. */
+/* All of Kepler's ellipses have one period: each is one of a family that no declared symmetry
+ * explains. Steps of a low order give each a period of its own, by a little. */
 START_TEST(a_family_of_closed_paths_is_named)
 {
   static const struct {
@@ -291,7 +307,8 @@ START_TEST(a_family_of_closed_paths_is_named)
     dvi_status expected;
     const char *words;
   } cases[] = {{"galerkin:degree=8", DVI_SINGULAR, "not isolated"},
-               {"galerkin:degree=4", DVI_NOT_CONVERGED, "many have it, which 40 steps tell apart by too little"}};
+               {"galerkin:degree=4", DVI_NOT_CONVERGED,
+                "many have it, which 40 steps tell apart by too little"}};
   double t[41], q[82], p[2];
   for (int k = 0; k <= 40; k++) {
     t[k] = 2 * 3.14159265358979324 * k / 40;
@@ -312,8 +329,10 @@ END_TEST
 
 START_TEST(what_the_lagrangian_does_not_have_is_no_symmetry)
 {
-  const double stretch[] = {2, 0, 0, 2}, nothing[] = {NAN, 0, 0, 1}, t[] = {0, 1, 2}, q[] = {1, 0, 0, 1, -1, 0};
-  dvi_path_options options = {.ends = DVI_ENDS_PERIODIC, .steps = 20, .span = 6, .dimension = 2, .symmetry = stretch};
+  const double stretch[] = {2, 0, 0, 2}, nothing[] = {NAN, 0, 0, 1}, t[] = {0, 1, 2},
+               q[] = {1, 0, 0, 1, -1, 0};
+  dvi_path_options options = {
+      .ends = DVI_ENDS_PERIODIC, .steps = 20, .span = 6, .dimension = 2, .symmetry = stretch};
   dvi_path *path = made(options);
   ck_assert_int_eq(dvi_path_guess(path, 3, 2, t, q), DVI_OK);
   ck_assert_int_eq(dvi_path_solve(path, NULL), DVI_BAD_ARGUMENT);
@@ -324,7 +343,8 @@ START_TEST(what_the_lagrangian_does_not_have_is_no_symmetry)
 }
 END_TEST
 
-/* V = q^2/2 - q f: at the guess, at rest in 0, V vanishes whatever f is. `user`: the frequency of f = cos, or 0. */
+/* V = q^2/2 - q f: at the guess, at rest in 0, V vanishes whatever f is. `user`: the frequency of f
+ * = cos, or 0. */
 static int pushed_value(double t, const double *q, double *value, void *user)
 {
   *value = q[0] * q[0] / 2 - q[0] * cos(*(const double *)user * t);
@@ -345,11 +365,18 @@ START_TEST(a_path_at_rest_hides_no_force)
   const char *const words[] = {"the period is none of the Lagrangian's: it changes L_q",
                                "the symmetry is none of the Lagrangian's: it changes L_q"};
   for (int k = 0; k < 2; k++) {
-    const dvi_potential push = {.name = "push", .value = pushed_value, .gradient = pushed_gradient, .user = frequency + k};
-    dvi_system *system = make_system(&(dvi_system_terms){
-        .dimension = 1, .mass.scalar = 1, .potentials = &push, .potential_count = 1, .autonomous = frequency[k] == 0});
-    const dvi_path_options options = {
-        .ends = DVI_ENDS_PERIODIC, .steps = 40, .span = 6, .dimension = 1, .symmetry = k == 1 ? mirror : NULL};
+    const dvi_potential push = {
+        .name = "push", .value = pushed_value, .gradient = pushed_gradient, .user = frequency + k};
+    dvi_system *system = make_system(&(dvi_system_terms){.dimension = 1,
+                                                         .mass.scalar = 1,
+                                                         .potentials = &push,
+                                                         .potential_count = 1,
+                                                         .autonomous = frequency[k] == 0});
+    const dvi_path_options options = {.ends = DVI_ENDS_PERIODIC,
+                                      .steps = 40,
+                                      .span = 6,
+                                      .dimension = 1,
+                                      .symmetry = k == 1 ? mirror : NULL};
     dvi_path *path = NULL;
     ck_assert_int_eq(dvi_path_create(system, "galerkin:degree=5", &options, &path), DVI_OK);
     const dvi_status status = dvi_path_solve(path, NULL);
@@ -362,7 +389,8 @@ START_TEST(a_path_at_rest_hides_no_force)
 }
 END_TEST
 
-/* V = q^2/2 + q^3 sin t - q cos(2 pi t): at the guess, at rest in 0, it looks as if 1 were its period; the path that is found sees more. */
+/* V = q^2/2 + q^3 sin t - q cos(2 pi t): at the guess, at rest in 0, it looks as if 1 were its
+ * period; the path that is found sees more. */
 static int hidden_value(double t, const double *q, double *value, void *user)
 {
   (void)user;
@@ -379,9 +407,10 @@ static int hidden_gradient(double t, const double *q, double *gradient, void *us
 
 START_TEST(a_period_is_tested_on_the_path_that_is_found)
 {
-  const dvi_potential hidden = {.name = "hidden", .value = hidden_value, .gradient = hidden_gradient};
-  dvi_system *system = make_system(
-      &(dvi_system_terms){.dimension = 1, .mass.scalar = 1, .potentials = &hidden, .potential_count = 1});
+  const dvi_potential hidden = {
+      .name = "hidden", .value = hidden_value, .gradient = hidden_gradient};
+  dvi_system *system = make_system(&(dvi_system_terms){
+      .dimension = 1, .mass.scalar = 1, .potentials = &hidden, .potential_count = 1});
   const dvi_path_options options = {.ends = DVI_ENDS_PERIODIC, .steps = 20, .span = 1};
   dvi_path *path = NULL;
   ck_assert_int_eq(dvi_path_create(system, "galerkin:degree=4", &options, &path), DVI_OK);
@@ -413,10 +442,14 @@ START_TEST(callbacks_have_the_last_word)
   for (int k = 0; k < 2; k++) {
     behaviour well = {0};
     const dvi_potential potential = springs(&well, ONE_POINT);
-    dvi_system *system = make_system(
-        &(dvi_system_terms){.dimension = SITES, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
-    const dvi_path_options options = {
-        .ends = DVI_ENDS_FIXED, .steps = 5, .span = 0.2, .dimension = SITES, .q0 = generic_q, .q1 = generic_v};
+    dvi_system *system = make_system(&(dvi_system_terms){
+        .dimension = SITES, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
+    const dvi_path_options options = {.ends = DVI_ENDS_FIXED,
+                                      .steps = 5,
+                                      .span = 0.2,
+                                      .dimension = SITES,
+                                      .q0 = generic_q,
+                                      .q1 = generic_v};
     dvi_path *path = NULL;
     ck_assert_int_eq(dvi_path_create(system, "midpoint", &options, &path), DVI_OK);
     well.answer = answers[k];

@@ -47,7 +47,8 @@ END_TEST
 START_TEST(failures_can_be_injected_and_lifted)
 {
   dvi__fail_allocations_after(1);
-  void *first = dvi__allocate(1, 1), *second = dvi__allocate(1, 1), *third = dvi__duplicate("x", 1, 1);
+  void *first = dvi__allocate(1, 1), *second = dvi__allocate(1, 1),
+       *third = dvi__duplicate("x", 1, 1);
   dvi__fail_allocations_after(-1);
   void *fourth = dvi__allocate(1, 1);
   ck_assert_ptr_nonnull(first);

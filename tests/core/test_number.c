@@ -99,7 +99,8 @@ START_TEST(written_numbers_are_read_back)
 }
 END_TEST
 
-static int print(char *text, size_t size, const char *format, ...) __attribute__((format(printf, 3, 4)));
+static int print(char *text, size_t size, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 
 static int print(char *text, size_t size, const char *format, ...)
 {

@@ -14,7 +14,8 @@ static double noise(unsigned *state)
 }
 
 /* The record of value(t) at count times 10, 10 + dt, 10 + 2 dt, ... */
-static dvi_drift_fit record(long count, double dt, double (*value)(double t, double T, unsigned *state), unsigned seed)
+static dvi_drift_fit record(long count, double dt,
+                            double (*value)(double t, double T, unsigned *state), unsigned seed)
 {
   dvi_drift drift;
   dvi_drift_fit fit;
@@ -66,7 +67,8 @@ static double white_noise(double t, double T, unsigned *state)
 START_TEST(a_constant_has_no_drift_and_no_nan)
 {
   const dvi_drift_fit fit = record(1000, 0.1, constant, 1);
-  ck_assert(fit.largest == 0 && fit.slope == 0 && fit.change == 0 && fit.deviation == 0 && fit.significance == 0);
+  ck_assert(fit.largest == 0 && fit.slope == 0 && fit.change == 0 && fit.deviation == 0 &&
+            fit.significance == 0);
 }
 END_TEST
 
@@ -75,7 +77,8 @@ START_TEST(a_line_gives_its_slope_whatever_the_number_of_samples)
   static const long counts[] = {2, 3, 8, 63, 64, 65, 127, 128, 129, 1000, 12345, 100000};
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
     const dvi_drift_fit fit = record(counts[i], 0.1, line, 1);
-    /* values near 2 are rounded to 2e-16, times go up to 1e4; errors are sums of up to 2e3 samples */
+    /* values near 2 are rounded to 2e-16, times go up to 1e4; errors are sums of up to 2e3
+     * samples */
     ck_assert_double_eq_tol(fit.slope, -3e-7, 1e-14 / (0.1 * (double)counts[i]));
     ck_assert_double_eq_tol(fit.largest, 3e-7 * 0.1 * (double)(counts[i] - 1), 1e-15);
     if (counts[i] >= 8) ck_assert_double_gt(fit.significance, 1e3);
@@ -85,12 +88,14 @@ END_TEST
 
 START_TEST(change_is_the_slope_times_the_time_between_the_first_and_the_last_sample)
 {
-  static const long counts[] = {2, 64, 65, 100, 1000, 12345}; /* some end in a block that is not full, which the slope leaves out */
+  /* some end in a block that is not full, which the slope leaves out */
+  static const long counts[] = {2, 64, 65, 100, 1000, 12345};
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
     for (int backward = 0; backward < 2; backward++) {
       const double dt = backward ? -0.1 : 0.1;
       const dvi_drift_fit fit = record(counts[i], dt, line, 1);
-      ck_assert_double_eq_tol(fit.change, -3e-7 * dt * (double)(counts[i] - 1), 1e-13); /* as the slope's tolerance above */
+      /* as the slope's tolerance above */
+      ck_assert_double_eq_tol(fit.change, -3e-7 * dt * (double)(counts[i] - 1), 1e-13);
     }
 }
 END_TEST
@@ -110,7 +115,8 @@ END_TEST
 
 START_TEST(a_drift_below_the_oscillation_is_found)
 {
-  const dvi_drift_fit fit = record(100000, 0.1, drifting_oscillation, 1); /* change 1e-3 under an amplitude of 3e-3 */
+  /* change 1e-3 under an amplitude of 3e-3 */
+  const dvi_drift_fit fit = record(100000, 0.1, drifting_oscillation, 1);
   ck_assert_double_gt(fit.significance, 10);
   ck_assert_double_eq_tol(fit.slope, 1e-7, 4 * fit.deviation);
   ck_assert_double_eq_tol(fit.slope, 1e-7, 1e-9);
@@ -120,8 +126,10 @@ END_TEST
 START_TEST(white_noise_is_rarely_called_a_drift)
 {
   int called = 0;
-  for (unsigned seed = 1; seed <= 200; seed++) called += record(1000, 0.1, white_noise, 7919 * seed).significance > 3;
-  ck_assert_int_le(called, 4); /* a normal variable exceeds 3 in one of 370; measured: at most one of 100 */
+  for (unsigned seed = 1; seed <= 200; seed++)
+    called += record(1000, 0.1, white_noise, 7919 * seed).significance > 3;
+  /* a normal variable exceeds 3 in one of 370; measured: at most one of 100 */
+  ck_assert_int_le(called, 4);
 }
 END_TEST
 
@@ -150,7 +158,8 @@ START_TEST(the_slope_of_white_noise_scatters_as_its_deviation_says)
     squares += fit.slope * fit.slope;
     variance += fit.deviation * fit.deviation;
   }
-  /* the correction for correlation errs on the safe side, by up to a factor 1.3; 300 samples give 4 percent */
+  /* the correction for correlation errs on the safe side, by up to a factor 1.3; 300 samples give 4
+   * percent */
   ck_assert_double_ge(sqrt(variance / squares), 0.9);
   ck_assert_double_le(sqrt(variance / squares), 1.5);
 }
@@ -161,8 +170,10 @@ START_TEST(fewer_than_8_blocks_have_no_significance)
   ck_assert(isnan(record(7, 0.1, line, 1).significance));
   ck_assert(!isnan(record(8, 0.1, line, 1).significance));
   const dvi_drift_fit none = record(0, 0.1, line, 1), one = record(1, 0.1, line, 1);
-  ck_assert(none.largest == 0 && none.slope == 0 && none.change == 0 && none.deviation == 0 && isnan(none.significance));
-  ck_assert(one.largest == 0 && one.slope == 0 && one.change == 0 && one.deviation == 0 && isnan(one.significance));
+  ck_assert(none.largest == 0 && none.slope == 0 && none.change == 0 && none.deviation == 0 &&
+            isnan(none.significance));
+  ck_assert(one.largest == 0 && one.slope == 0 && one.change == 0 && one.deviation == 0 &&
+            isnan(one.significance));
 }
 END_TEST
 

@@ -18,9 +18,10 @@ static void check_exchange(const char *method, double x, double turn, double rat
 {
   double angle, found;
   ck_assert_msg(dvi_exchange(method, x, &angle, &found) == DVI_OK, "%s", dvi_last_error());
-  ck_assert_msg(fabs(angle - turn) <= 1e-9, "%s, h omega = %g: turns by %.12g, not %.12g", method, x, angle, turn);
-  ck_assert_msg(fabs(found - rate) <= 1e-6 * (1 + fabs(rate)), "%s, h omega = %g: %.9g of the rate, not %.9g", method, x, found,
-                rate);
+  ck_assert_msg(fabs(angle - turn) <= 1e-9, "%s, h omega = %g: turns by %.12g, not %.12g", method,
+                x, angle, turn);
+  ck_assert_msg(fabs(found - rate) <= 1e-6 * (1 + fabs(rate)),
+                "%s, h omega = %g: %.9g of the rate, not %.9g", method, x, found, rate);
 }
 
 /* Stern 2009, sec. 2.2.5. */
@@ -53,7 +54,8 @@ START_TEST(filters_exchange_at_the_rate_of_their_product)
   check_exchange("mollified", x, turn, s * s);
   check_exchange("trig:filter=deuflhard", x, turn, 1);
   check_exchange("trig:filter=gautschi", x, turn, half * half / s);
-  check_exchange("trig:filter=hochbruck-lubich", x, turn, half * half * (1 + pow(sin(x / 2), 2) / 3));
+  check_exchange("trig:filter=hochbruck-lubich", x, turn,
+                 half * half * (1 + pow(sin(x / 2), 2) / 3));
   check_exchange("trig:filter=grimm-hochbruck", x, turn, s * s * s);
   check_exchange("trig:filter=hairer-lubich", x, turn, s);
   if (s > 0) check_exchange("trig:filter=exact", x, turn, half * half / s);
@@ -115,15 +117,16 @@ static double amplitude(double before, double now, double turn)
   return (before * before + now * now - 2 * before * now * cos(turn)) / (sin(turn) * sin(turn));
 }
 
-/* When the second spring swings as far as the first, which swings alone at the start. The modes are at kappa = 0 and 2: exactly at pi omega/2. */
+/* When the second spring swings as far as the first, which swings alone at the start. The modes are
+ * at kappa = 0 and 2: exactly at pi omega/2. */
 static double time_to_share(const char *method, double h, double turn)
 {
   const dvi_potential springs[] = {
       {.name = "stiff", .value = stiff, .gradient = stiff_gradient, .fast = 1, .quadratic = 1},
       {.name = "soft", .value = soft, .gradient = soft_gradient},
   };
-  dvi_system *system = make_system(
-      &(dvi_system_terms){.dimension = 2, .mass.scalar = 1, .potentials = springs, .potential_count = 2});
+  dvi_system *system = make_system(&(dvi_system_terms){
+      .dimension = 2, .mass.scalar = 1, .potentials = springs, .potential_count = 2});
   dvi_integrator *integrator = made_integrator(system, method);
   const double q[] = {1, 0}, p[] = {0, 0};
   double before[2], ahead = 1;
@@ -140,7 +143,8 @@ static double time_to_share(const char *method, double h, double turn)
   return t;
 }
 
-/* 1 per cent: the exchange's own error is of the relative size kappa/omega^2 and h^2 kappa, the time is known to h. */
+/* 1 per cent: the exchange's own error is of the relative size kappa/omega^2 and h^2 kappa, the
+ * time is known to h. */
 START_TEST(a_run_exchanges_energy_at_the_predicted_rate)
 {
   static const struct {
@@ -160,8 +164,10 @@ START_TEST(a_run_exchanges_energy_at_the_predicted_rate)
   double turn, rate;
   for (size_t k = 0; k < sizeof run / sizeof *run; k++) {
     ck_assert_int_eq(dvi_exchange(run[k].method, run[k].h * omega, &turn, &rate), DVI_OK);
-    const double t = time_to_share(run[k].method, run[k].h, turn), predicted = pi * omega / 2 / rate;
-    ck_assert_msg(fabs(t / predicted - 1) <= 0.01, "%s, h = %g: t = %g, predicted %g", run[k].method, run[k].h, t, predicted);
+    const double t = time_to_share(run[k].method, run[k].h, turn),
+                 predicted = pi * omega / 2 / rate;
+    ck_assert_msg(fabs(t / predicted - 1) <= 0.01, "%s, h = %g: t = %g, predicted %g",
+                  run[k].method, run[k].h, t, predicted);
   }
 }
 END_TEST
@@ -197,8 +203,11 @@ END_TEST
 
 SUITE(exchange)
 {
-  tcase_add_loop_test(tests, imex_turns_springs_by_twice_the_arc_tangent_and_exchanges_at_the_exact_rate, 0, PRODUCTS);
-  tcase_add_loop_test(tests, the_midpoint_rule_turns_them_alike_and_exchanges_too_slowly, 0, PRODUCTS);
+  tcase_add_loop_test(tests,
+                      imex_turns_springs_by_twice_the_arc_tangent_and_exchanges_at_the_exact_rate,
+                      0, PRODUCTS);
+  tcase_add_loop_test(tests, the_midpoint_rule_turns_them_alike_and_exchanges_too_slowly, 0,
+                      PRODUCTS);
   tcase_add_loop_test(tests, verlet_exchanges_too_fast, 0, PRODUCTS);
   tcase_add_loop_test(tests, filters_exchange_at_the_rate_of_their_product, 0, PRODUCTS);
   tcase_add_test(tests, what_does_not_turn_is_refused);

@@ -9,7 +9,8 @@
 static const double pi = 3.14159265358979323846;
 enum { MOST = 200 };
 
-/* An ellipse with half axes 3 and 2 about (10, 20), run through at a speed that varies by `uneven`; p = (-y, x)/2 + (5, 7): the integral is its area. */
+/* An ellipse with half axes 3 and 2 about (10, 20), run through at a speed that varies by `uneven`;
+ * p = (-y, x)/2 + (5, 7): the integral is its area. */
 static double area(int count, double uneven)
 {
   double q[2 * MOST], p[2 * MOST], integral = 0;
@@ -30,7 +31,8 @@ static const double roundoff = 1e-12;
 /* The only harmonic is below half the number of points. */
 START_TEST(an_ellipse_has_its_area_from_the_fewest_points_on)
 {
-  for (int count = DVI_LOOP_LEAST; count <= MOST; count++) ck_assert_double_eq_tol(area(count, 0), 6 * pi, roundoff);
+  for (int count = DVI_LOOP_LEAST; count <= MOST; count++)
+    ck_assert_double_eq_tol(area(count, 0), 6 * pi, roundoff);
 }
 END_TEST
 
@@ -43,7 +45,8 @@ START_TEST(an_uneven_loop_converges_exponentially)
     ck_assert_double_le(error, fmax(last / 10, roundoff));
     last = error;
   }
-  for (int count = 41; count <= 64; count++) ck_assert_double_eq_tol(area(count, 0.7), 6 * pi, roundoff);
+  for (int count = 41; count <= 64; count++)
+    ck_assert_double_eq_tol(area(count, 0.7), 6 * pi, roundoff);
 }
 END_TEST
 

@@ -18,7 +18,8 @@ START_TEST(a_power_law_gives_its_exponent)
   for (int order = 1; order <= 16; order++) {
     for (int i = 0; i < 6; i++) error[i] = 3 * pow(h[i], order);
     ck_assert_int_eq(dvi_order(6, h, error, 0, 0, &fit), DVI_OK);
-    ck_assert_double_eq_tol(fit.slope, order, 1e-13); /* logarithms of numbers up to 1e-29: 70 ulp over a span of 3.5 */
+    /* logarithms of numbers up to 1e-29: 70 ulp over a span of 3.5 */
+    ck_assert_double_eq_tol(fit.slope, order, 1e-13);
     ck_assert_int_eq(fit.first, 0);
     ck_assert_int_eq(fit.last, 5);
   }
@@ -73,7 +74,8 @@ END_TEST
 
 START_TEST(steps_that_do_not_descend_and_missing_arrays_are_refused)
 {
-  const double rising[] = {0.1, 0.2}, equal[] = {0.1, 0.1}, negative[] = {0.1, -0.1}, error[] = {1e-2, 1e-3};
+  const double rising[] = {0.1, 0.2}, equal[] = {0.1, 0.1}, negative[] = {0.1, -0.1},
+               error[] = {1e-2, 1e-3};
   dvi_order_fit fit;
   ck_assert_int_eq(dvi_order(2, rising, error, 0, 0, &fit), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_order(2, equal, error, 0, 0, &fit), DVI_BAD_ARGUMENT);

@@ -28,16 +28,19 @@ START_TEST(the_start_may_be_the_integrators_own_state)
   double defect = -1;
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, p->q, p->p), DVI_OK);
   ck_assert_int_eq(dvi_integrator_step(integrator, p->h), DVI_OK);
-  ck_assert_int_eq(
-      dvi_reversibility(integrator, p->h, dvi_integrator_q(integrator), dvi_integrator_p(integrator), p->h, 10, &defect), DVI_OK);
+  ck_assert_int_eq(dvi_reversibility(integrator, p->h, dvi_integrator_q(integrator),
+                                     dvi_integrator_p(integrator), p->h, 10, &defect),
+                   DVI_OK);
   ck_assert_double_le(defect, 1e-13);
-  ck_assert_double_eq_tol(dvi_integrator_time(integrator), p->h, 1e-13); /* left at the end of the way back */
+  /* left at the end of the way back */
+  ck_assert_double_eq_tol(dvi_integrator_time(integrator), p->h, 1e-13);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&p);
 }
 END_TEST
 
-/* A force that is stronger on the way back: time runs on between the first and the last call of a gradient. */
+/* A force that is stronger on the way back: time runs on between the first and the last call of a
+ * gradient. */
 static int value(double t, const double *q, double *V, void *user)
 {
   (void)t, (void)user;
@@ -57,7 +60,8 @@ START_TEST(a_force_that_changes_between_the_ways_is_found)
 {
   int calls = 0;
   const dvi_potential potential = {.value = value, .gradient = growing_force, .user = &calls};
-  const dvi_system_terms terms = {.dimension = 1, .mass = {.scalar = 1}, .potentials = &potential, .potential_count = 1};
+  const dvi_system_terms terms = {
+      .dimension = 1, .mass = {.scalar = 1}, .potentials = &potential, .potential_count = 1};
   const double q = 1, p = 0;
   dvi_system *system = NULL;
   double defect = 0;
@@ -76,8 +80,10 @@ START_TEST(bad_arguments_are_refused_and_nothing_is_written)
   dvi_integrator *integrator = made_integrator(p->system, "verlet");
   double defect = 7;
   ck_assert_int_eq(dvi_reversibility(NULL, 0, p->q, p->p, p->h, 1, &defect), DVI_BAD_ARGUMENT);
-  ck_assert_int_eq(dvi_reversibility(integrator, 0, NULL, p->p, p->h, 1, &defect), DVI_BAD_ARGUMENT);
-  ck_assert_int_eq(dvi_reversibility(integrator, 0, p->q, NULL, p->h, 1, &defect), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_reversibility(integrator, 0, NULL, p->p, p->h, 1, &defect),
+                   DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_reversibility(integrator, 0, p->q, NULL, p->h, 1, &defect),
+                   DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_reversibility(integrator, 0, p->q, p->p, p->h, 1, NULL), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_reversibility(integrator, 0, p->q, p->p, p->h, 0, &defect), DVI_BAD_SIZE);
   ck_assert_int_eq(dvi_reversibility(integrator, 0, p->q, p->p, 0, 1, &defect), DVI_BAD_ARGUMENT);

@@ -16,17 +16,20 @@ static double defect_of(const char *name, const char *method, double step_factor
   problem *p = made_problem(name, NULL);
   dvi_integrator *integrator = made_integrator(p->system, method);
   double defect = -1;
-  const dvi_status status = dvi_symplecticity(integrator, 0, p->q, p->p, step_factor * p->h, &defect);
+  const dvi_status status = dvi_symplecticity(integrator, 0, p->q, p->p, step_factor * p->h,
+                                              &defect);
   ck_assert_msg(status == DVI_OK, "%s %s: %s", name, method, dvi_last_error());
   dvi_integrator_destroy(&integrator);
   problem_destroy(&p);
   return defect;
 }
 
-/* outer-solar holds masses of 1 and of 1e-8, pythagorean and figure-eight start with zeros among coordinates and momenta, and the
- * chains have momenta that are nearly all zero. The last two have no constant mass, which verlet needs. */
-static const char *const problems[] = {"oscillator", "pendulum",     "kepler",      "henon-heiles",   "outer-solar",
-                                       "fpu",        "figure-eight", "pythagorean", "stiff-pendulum", "double-pendulum"};
+/* outer-solar holds masses of 1 and of 1e-8, pythagorean and figure-eight start with zeros among
+ * coordinates and momenta, and the chains have momenta that are nearly all zero. The last two have
+ * no constant mass, which verlet needs. */
+static const char *const problems[] = {
+    "oscillator", "pendulum",     "kepler",      "henon-heiles",   "outer-solar",
+    "fpu",        "figure-eight", "pythagorean", "stiff-pendulum", "double-pendulum"};
 enum { PROBLEMS = sizeof problems / sizeof *problems, WITH_MASS = PROBLEMS - 2 };
 
 START_TEST(verlet_is_symplectic_to_the_floor_of_the_differences)
@@ -62,10 +65,12 @@ static dvi_integrator *made(const dvi_lagrangian *lagrangian, int n, const char 
   return made_integrator(system, method);
 }
 
-static dvi_integrator *made_with_potential(const dvi_potential *potential, int n, const char *method)
+static dvi_integrator *made_with_potential(const dvi_potential *potential, int n,
+                                           const char *method)
 {
   dvi_system *system = NULL;
-  const dvi_system_terms terms = {.dimension = n, .mass = {.scalar = 1}, .potentials = potential, .potential_count = 1};
+  const dvi_system_terms terms = {
+      .dimension = n, .mass = {.scalar = 1}, .potentials = potential, .potential_count = 1};
   ck_assert_msg(dvi_system_create(&terms, &system) == DVI_OK, "%s", dvi_last_error());
   return made_integrator(system, method);
 }
@@ -77,7 +82,8 @@ static void released(dvi_integrator *integrator)
   dvi_system_destroy(&system);
 }
 
-/* L = v^2/2 + v^4/4 + cos q: velocity is no analytic function of momenta beyond 0.4 i, however small h is. */
+/* L = v^2/2 + v^4/4 + cos q: velocity is no analytic function of momenta beyond 0.4 i, however
+ * small h is. */
 static int quartic(double t, const double *q, const double *v, double *L, void *user)
 {
   (void)t, (void)user;
@@ -85,7 +91,8 @@ static int quartic(double t, const double *q, const double *v, double *L, void *
   return 0;
 }
 
-static int quartic_gradient(double t, const double *q, const double *v, double *L_q, double *L_v, void *user)
+static int quartic_gradient(double t, const double *q, const double *v, double *L_q, double *L_v,
+                            void *user)
 {
   (void)t, (void)user;
   *L_q = -sin(q[0]);
@@ -105,7 +112,8 @@ START_TEST(a_kinetic_energy_that_is_not_quadratic_shows_no_defect)
     dvi_integrator *integrator = made(&lagrangian, 1, methods[k / 4]);
     const double q = 1;
     double defect = -1;
-    const dvi_status status = dvi_symplecticity(integrator, 0, &q, &momenta[k % 4], lengths[_i], &defect);
+    const dvi_status status = dvi_symplecticity(integrator, 0, &q, &momenta[k % 4], lengths[_i],
+                                                &defect);
     ck_assert_msg(status == DVI_OK, "%s", dvi_last_error());
     ck_assert_double_ge(defect, 0);
     ck_assert_double_le(defect, 1e-11); /* measured: up to 2e-13 */
@@ -124,7 +132,8 @@ static int relativistic(double t, const double *q, const double *v, double *L, v
   return 0;
 }
 
-static int relativistic_gradient(double t, const double *q, const double *v, double *L_q, double *L_v, void *user)
+static int relativistic_gradient(double t, const double *q, const double *v, double *L_q,
+                                 double *L_v, void *user)
 {
   (void)t;
   const double rest = 1 - v[0] * v[0] - v[1] * v[1];
@@ -136,9 +145,11 @@ static int relativistic_gradient(double t, const double *q, const double *v, dou
   return 0;
 }
 
-static dvi_status relativistic_defect(int beyond, const char *method, double speed, double h, double *defect)
+static dvi_status relativistic_defect(int beyond, const char *method, double speed, double h,
+                                      double *defect)
 {
-  const dvi_lagrangian lagrangian = {.value = relativistic, .gradient = relativistic_gradient, .user = &beyond};
+  const dvi_lagrangian lagrangian = {
+      .value = relativistic, .gradient = relativistic_gradient, .user = &beyond};
   dvi_integrator *integrator = made(&lagrangian, 2, method);
   const double q[] = {1, 0.3}, v[] = {speed, 0.2};
   double p[2];
@@ -154,7 +165,9 @@ START_TEST(an_edge_of_the_domain_of_velocities_shows_no_defect)
   static const char *const methods[] = {"midpoint", "galerkin:degree=4"};
   for (int k = 0; k < 6; k++) {
     double defect = -1;
-    ck_assert_msg(relativistic_defect(1, methods[k / 3], speeds[k % 3], lengths[_i], &defect) == DVI_OK, "%s", dvi_last_error());
+    ck_assert_msg(relativistic_defect(1, methods[k / 3], speeds[k % 3], lengths[_i], &defect) ==
+                      DVI_OK,
+                  "%s", dvi_last_error());
     ck_assert_double_ge(defect, 0);
     ck_assert_double_le(defect, 1e-11); /* measured: up to 2e-13 */
   }
@@ -203,13 +216,15 @@ START_TEST(a_callback_that_fails_for_good_ends_the_search)
   int beyond = -1;
   double defect = 7;
   ck_assert_int_eq(defect_at_wall(&beyond, &defect), DVI_CALLBACK_FAILED);
-  ck_assert_int_eq(relativistic_defect(beyond, "midpoint", 0.6, 0.05, &defect), DVI_CALLBACK_FAILED);
+  ck_assert_int_eq(relativistic_defect(beyond, "midpoint", 0.6, 0.05, &defect),
+                   DVI_CALLBACK_FAILED);
   ck_assert(defect == 7);
 }
 END_TEST
 
-/* Angles that turned often: waves of a force are much shorter than the coordinate. In an eighth of 1600 pi there are 100 periods,
- * in 59 hundredths of it 59: differences over these two lengths agree that there is no force. */
+/* Angles that turned often: waves of a force are much shorter than the coordinate. In an eighth of
+ * 1600 pi there are 100 periods, in 59 hundredths of it 59: differences over these two lengths
+ * agree that there is no force. */
 static int cosine(double t, const double *q, double *V, void *user)
 {
   (void)t, (void)user;
@@ -233,9 +248,11 @@ START_TEST(an_angle_of_many_turns_shows_no_defect)
     dvi_integrator *integrator = made_with_potential(&potential, 1, methods[k]);
     const double p = 0.5;
     double defect = -1;
-    ck_assert_msg(dvi_symplecticity(integrator, 0, &angles[_i], &p, 0.1, &defect) == DVI_OK, "%s", dvi_last_error());
+    ck_assert_msg(dvi_symplecticity(integrator, 0, &angles[_i], &p, 0.1, &defect) == DVI_OK, "%s",
+                  dvi_last_error());
     ck_assert_double_ge(defect, 0);
-    ck_assert_double_le(defect, 1e-10); /* 1e4 is rounded to 1e-12, and differences go over lengths of about 1 */
+    /* 1e4 is rounded to 1e-12, and differences go over lengths of about 1 */
+    ck_assert_double_le(defect, 1e-10);
     released(integrator);
   }
 }
@@ -281,7 +298,8 @@ START_TEST(a_step_that_fails_has_no_defect_even_if_all_around_it_succeed)
 }
 END_TEST
 
-/* A force c (y, -x) with curl, declared as a gradient: no potential has it, and verlet with it is not symplectic. */
+/* A force c (y, -x) with curl, declared as a gradient: no potential has it, and verlet with it is
+ * not symplectic. */
 static int no_value(double t, const double *q, double *V, void *user)
 {
   (void)t, (void)q, (void)user;
@@ -300,16 +318,18 @@ static int turning_force(double t, const double *q, double *V_q, void *user)
 
 START_TEST(a_force_with_curl_is_found_in_its_size)
 {
-  /* The kicks add h c dq1^dq2 at both ends; at h = 1 the end is q1 = q + p - F q / 2 with the turning F = c ((0,-1),(1,0)), so
-   * that dq1^dq2 there = (1 + c^2/4) dq1^dq2 + dp1^dp2 + the mixed terms dq1^dp2 - dq2^dp1 + c/2 (dq1^dp1 + dq2^dp2). Their
-   * largest factor is that of dq1^dq2 at both ends. With h = m = 1 and |q1| = |q2| the scaled coordinates are the given ones. */
+  /* The kicks add h c dq1^dq2 at both ends; at h = 1 the end is q1 = q + p - F q / 2 with the
+   * turning F = c ((0,-1),(1,0)), so that dq1^dq2 there = (1 + c^2/4) dq1^dq2 + dp1^dp2 + the mixed
+   * terms dq1^dp2 - dq2^dp1 + c/2 (dq1^dp1 + dq2^dp2). Their largest factor is that of dq1^dq2 at
+   * both ends. With h = m = 1 and |q1| = |q2| the scaled coordinates are the given ones. */
   static const double curls[] = {0.1, 1e-4, 1e-8, 1e-10};
   double curl = curls[_i], defect = 0;
   const dvi_potential potential = {.value = no_value, .gradient = turning_force, .user = &curl};
   dvi_integrator *integrator = made_with_potential(&potential, 2, "verlet");
   const double q[] = {1, -1}, p[] = {0.3, 0.2};
   ck_assert_int_eq(dvi_symplecticity(integrator, 0, q, p, 1, &defect), DVI_OK);
-  ck_assert_double_eq_tol(defect, curl * (2 + curl * curl / 4), 1e-12); /* roundoff of a linear map's differences */
+  /* roundoff of a linear map's differences */
+  ck_assert_double_eq_tol(defect, curl * (2 + curl * curl / 4), 1e-12);
   released(integrator);
 }
 END_TEST
@@ -323,7 +343,8 @@ static int turning_quartic(double t, const double *q, const double *v, double *L
   return 0;
 }
 
-static int turning_quartic_gradient(double t, const double *q, const double *v, double *L_q, double *L_v, void *user)
+static int turning_quartic_gradient(double t, const double *q, const double *v, double *L_q,
+                                    double *L_v, void *user)
 {
   (void)t;
   const double curl = *(const double *)user;
@@ -336,12 +357,15 @@ static int turning_quartic_gradient(double t, const double *q, const double *v, 
 START_TEST(a_curl_is_found_under_a_kinetic_energy_that_is_not_quadratic)
 {
   double curl = 1e-3;
-  const dvi_lagrangian lagrangian = {.value = turning_quartic, .gradient = turning_quartic_gradient, .user = &curl};
+  const dvi_lagrangian lagrangian = {
+      .value = turning_quartic, .gradient = turning_quartic_gradient, .user = &curl};
   dvi_integrator *integrator = made(&lagrangian, 2, "midpoint");
   const double q[] = {1, -1}, p[] = {0.3, 0.2}, h = 0.05;
   double defect = 0;
-  ck_assert_msg(dvi_symplecticity(integrator, 0, q, p, h, &defect) == DVI_OK, "%s", dvi_last_error());
-  /* the curl adds 2 h c dq1^dq2, in scaled units times a/b with a = 1 and b = m w; the quartic term allows w of 1/8 to 1/2 here */
+  ck_assert_msg(dvi_symplecticity(integrator, 0, q, p, h, &defect) == DVI_OK, "%s",
+                dvi_last_error());
+  /* the curl adds 2 h c dq1^dq2, in scaled units times a/b with a = 1 and b = m w; the quartic term
+   * allows w of 1/8 to 1/2 here */
   ck_assert_double_ge(defect, 2 * h * curl);
   ck_assert_double_le(defect, 16 * h * curl);
   released(integrator);
@@ -360,16 +384,19 @@ START_TEST(the_integrator_goes_on_as_if_nothing_had_happened)
   for (int i = 0; i < 20; i++) {
     dvi_integrator_counters(probed, &before);
     if (i % 5 == 3) /* from its own state */
-      ck_assert_int_eq(
-          dvi_symplecticity(probed, dvi_integrator_time(probed), dvi_integrator_q(probed), dvi_integrator_p(probed), p->h, &defect),
-          DVI_OK);
+      ck_assert_int_eq(dvi_symplecticity(probed, dvi_integrator_time(probed),
+                                         dvi_integrator_q(probed), dvi_integrator_p(probed), p->h,
+                                         &defect),
+                       DVI_OK);
     dvi_integrator_counters(probed, &after);
     ck_assert_mem_eq(&before, &after, sizeof before);
     ck_assert_int_eq(dvi_integrator_step(probed, p->h), DVI_OK);
     ck_assert_int_eq(dvi_integrator_step(alone, p->h), DVI_OK);
     ck_assert(dvi_integrator_time(probed) == dvi_integrator_time(alone));
-    ck_assert_mem_eq(dvi_integrator_q(probed), dvi_integrator_q(alone), (size_t)p->nq * sizeof(double));
-    ck_assert_mem_eq(dvi_integrator_p(probed), dvi_integrator_p(alone), (size_t)p->nq * sizeof(double));
+    ck_assert_mem_eq(dvi_integrator_q(probed), dvi_integrator_q(alone),
+                     (size_t)p->nq * sizeof(double));
+    ck_assert_mem_eq(dvi_integrator_p(probed), dvi_integrator_p(alone),
+                     (size_t)p->nq * sizeof(double));
   }
   dvi_integrator_destroy(&probed);
   dvi_integrator_destroy(&alone);
@@ -400,7 +427,8 @@ START_TEST(missing_arguments_and_a_step_of_0_are_refused)
   ck_assert_int_eq(dvi_symplecticity(integrator, 0, p->q, NULL, p->h, &defect), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_symplecticity(integrator, 0, p->q, p->p, p->h, NULL), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_symplecticity(integrator, 0, p->q, p->p, 0, &defect), DVI_BAD_ARGUMENT);
-  ck_assert_int_eq(dvi_symplecticity(integrator, 0, p->q, p->p, (double)NAN, &defect), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_symplecticity(integrator, 0, p->q, p->p, (double)NAN, &defect),
+                   DVI_BAD_ARGUMENT);
   ck_assert(defect == 7);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&p);
@@ -426,8 +454,10 @@ END_TEST
 /* Their starts lie on a constraint, and the map of a step is not defined off it. */
 START_TEST(degenerate_systems_are_refused_and_the_sentence_names_the_loop_integral)
 {
-  static const char *const place[][2] = {
-      {"lotka-volterra", "vprk"}, {"massless-particle", "dg"}, {"vortices-linear", "hp:type=2"}, {"circle-dirac", "dg-phase"}};
+  static const char *const place[][2] = {{"lotka-volterra", "vprk"},
+                                         {"massless-particle", "dg"},
+                                         {"vortices-linear", "hp:type=2"},
+                                         {"circle-dirac", "dg-phase"}};
   for (size_t k = 0; k < sizeof place / sizeof *place; k++) {
     problem *p = made_problem(place[k][0], NULL);
     dvi_integrator *integrator = made_integrator(p->system, place[k][1]);

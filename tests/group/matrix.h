@@ -12,7 +12,8 @@ static inline double length(const double w[3])
 static inline void multiply(const double A[9], const double B[9], double C[9])
 {
   for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) C[3 * i + j] = A[3 * i] * B[j] + A[3 * i + 1] * B[3 + j] + A[3 * i + 2] * B[6 + j];
+    for (int j = 0; j < 3; j++)
+      C[3 * i + j] = A[3 * i] * B[j] + A[3 * i + 1] * B[3 + j] + A[3 * i + 2] * B[6 + j];
 }
 
 /* defect = R^T R - I, each product and sum exact to some 1e-19; returns its largest entry. */

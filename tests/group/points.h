@@ -1,4 +1,5 @@
-/* Where the group's functions are tested: random vectors, and the lengths at which formulas are apt to break. */
+/* Where the group's functions are tested: random vectors, and the lengths at which formulas are apt
+ * to break. */
 #ifndef TEST_GROUP_POINTS_H
 #define TEST_GROUP_POINTS_H
 #include <float.h>
@@ -11,8 +12,9 @@ enum { SPECIAL_ANGLES = 12, POINTS = 3000 };
 
 static inline double special_angle(int i)
 {
-  const double angle[SPECIAL_ANGLES] = {0,         1e-300,    1e-160,     1e-8, 1e-4,      sqrt(2.5),
-                                        PI - 1e-4, PI - 1e-8, PI - 1e-16, PI,   PI + 1e-8, 2 * PI - 1e-3};
+  const double angle[SPECIAL_ANGLES] = {0,          1e-300,    1e-160,    1e-8,
+                                        1e-4,       sqrt(2.5), PI - 1e-4, PI - 1e-8,
+                                        PI - 1e-16, PI,        PI + 1e-8, 2 * PI - 1e-3};
   return angle[i];
 }
 
@@ -37,13 +39,18 @@ static inline void random_vector(uint64_t *seed, double length, double w[3])
   for (int i = 0; i < 3; i++) w[i] *= length / size;
 }
 
-/* Of point `i`: the special lengths in turn, axes of coordinates among the directions, then random lengths below `longest`. */
+/* Of point `i`: the special lengths in turn, axes of coordinates among the directions, then random
+ * lengths below `longest`. */
 static inline void point(int i, double longest, uint64_t *seed, double w[3])
 {
-  random_vector(seed, i < 20 * SPECIAL_ANGLES ? special_angle(i % SPECIAL_ANGLES) : longest * fabs(uniform(seed)), w);
+  random_vector(seed,
+                i < 20 * SPECIAL_ANGLES ? special_angle(i % SPECIAL_ANGLES)
+                                        : longest * fabs(uniform(seed)),
+                w);
   if (i >= 6 * SPECIAL_ANGLES) return;
   const double length = special_angle(i % SPECIAL_ANGLES);
-  for (int j = 0; j < 3; j++) w[j] = j == (i / SPECIAL_ANGLES) % 3 ? (i / SPECIAL_ANGLES < 3 ? length : -length) : 0;
+  for (int j = 0; j < 3; j++)
+    w[j] = j == (i / SPECIAL_ANGLES) % 3 ? (i / SPECIAL_ANGLES < 3 ? length : -length) : 0;
 }
 
 #endif

@@ -1,5 +1,6 @@
-/* An independent judge in quadruple precision: every map here by the power series that defines it, for matrices of up to 6 rows, stored row by row. Roundoff is
- * 1e-34 times what the series cancels, a factor 1e6 for three turns, so nothing is done against it. */
+/* An independent judge in quadruple precision: every map here by the power series that defines it,
+ * for matrices of up to 6 rows, stored row by row. Roundoff is 1e-34 times what the series cancels,
+ * a factor 1e6 for three turns, so nothing is done against it. */
 #ifndef TEST_GROUP_QUAD_H
 #define TEST_GROUP_QUAD_H
 #ifdef DVI_HAVE_QUADMATH

@@ -64,7 +64,8 @@ START_TEST(its_inverse_is_right_to_4_ulp)
 }
 END_TEST
 
-/* hat(dcayley_w v) = (d/dt cayley(w + t v)) cayley(w)^T, by central differences in quadruple precision. */
+/* hat(dcayley_w v) = (d/dt cayley(w + t v)) cayley(w)^T, by central differences in quadruple
+ * precision. */
 START_TEST(dcayley_is_its_derivative_moved_back)
 {
   double worst = 0;
@@ -81,7 +82,8 @@ START_TEST(dcayley_is_its_derivative_moved_back)
     quad_hat(exact_w, W);
     quad_hat(exact_v, U);
     for (int j = 0; j < 9; j++) W[j] = (j % 4 == 0) - W[j] / 2;
-    for (int pass = 0; pass < 2; pass++) { /* U becomes (A U)^T, and then (A (A U)^T)^T = A U A^T for its skew part */
+    /* U becomes (A U)^T, and then (A (A U)^T)^T = A U A^T for its skew part */
+    for (int pass = 0; pass < 2; pass++) {
       quad next[9];
       for (int j = 0; j < 3; j++) {
         quad column[3] = {U[j], U[3 + j], U[6 + j]};

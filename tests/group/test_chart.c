@@ -1,4 +1,5 @@
-/* Charts of rotations, directions, angles and lines: every derivative against differences of what it is the derivative of, and the way back. */
+/* Charts of rotations, directions, angles and lines: every derivative against differences of what
+ * it is the derivative of, and the way back. */
 #include <dvi/group.h>
 #include <float.h>
 #include <math.h>
@@ -22,10 +23,11 @@ typedef struct scene {
 static scene set(int index)
 {
   const dvi__chart_kind kind = (dvi__chart_kind)(index / LENGTHS);
-  const double turn[] = {0.4, -1.2, 0.8}, toward[] = {0.48, -0.6, 0.64}, direction[] = {0.6, -0.48, 0.64}, angle[] = {0.6, 0.8},
-               line = 1.7;
+  const double turn[] = {0.4, -1.2, 0.8}, toward[] = {0.48, -0.6, 0.64},
+               direction[] = {0.6, -0.48, 0.64}, angle[] = {0.6, 0.8}, line = 1.7;
   double R[9];
-  scene s = {.size = dvi__chart_size(kind), .stored = dvi__chart_stored(kind), .rate = {0.7, -1.1, 0.4}};
+  scene s = {
+      .size = dvi__chart_size(kind), .stored = dvi__chart_stored(kind), .rate = {0.7, -1.1, 0.4}};
   dvi_so3_exp(turn, R);
   const double *const centre[] = {&line, angle, direction, R};
   dvi__chart_centre(kind, centre[kind], &s.chart);
@@ -43,8 +45,8 @@ enum { IN_XI, IN_RATE, VALUES_MOST = 9 };
 
 static void difference(vector_of *f, const scene *s, int in, int j, int count, double *derivative)
 {
-  static const double weight[] = {-1.0 / 60, 9.0 / 60, -45.0 / 60, 45.0 / 60, -9.0 / 60, 1.0 / 60}, place[] = {-3, -2, -1, 1, 2, 3},
-                      length = 1.0 / 128;
+  static const double weight[] = {-1.0 / 60, 9.0 / 60, -45.0 / 60, 45.0 / 60, -9.0 / 60, 1.0 / 60},
+                      place[] = {-3, -2, -1, 1, 2, 3}, length = 1.0 / 128;
   memset(derivative, 0, (size_t)count * sizeof *derivative);
   for (int k = 0; k < 6; k++) {
     double moved[2][3], value[VALUES_MOST];
@@ -65,15 +67,17 @@ static const dvi__functions *functions_at(const scene *s, const double *xi)
 }
 
 /* Row i of `derivative` holds the derivatives of number i. */
-static void check_derivative(vector_of *f, const scene *s, int in, int count, const double *derivative, const char *what)
+static void check_derivative(vector_of *f, const scene *s, int in, int count,
+                             const double *derivative, const char *what)
 {
   for (int j = 0; j < s->size; j++) {
     double expected[VALUES_MOST];
     difference(f, s, in, j, count, expected);
     for (int i = 0; i < count; i++)
       ck_assert_msg(fabs(derivative[i * s->size + j] - expected[i]) < 1e-11,
-                    "%s of kind %d at |xi| = %g: (%d,%d) is %.15g, not %.15g", what, (int)s->chart.kind,
-                    dvi__chart_angle(s->chart.kind, s->xi), i, j, derivative[i * s->size + j], expected[i]);
+                    "%s of kind %d at |xi| = %g: (%d,%d) is %.15g, not %.15g", what,
+                    (int)s->chart.kind, dvi__chart_angle(s->chart.kind, s->xi), i, j,
+                    derivative[i * s->size + j], expected[i]);
   }
 }
 
@@ -142,7 +146,8 @@ START_TEST(derivatives_are_those_of_points)
   dvi__chart_curvature(&s.chart, functions_at(&s, s.xi), s.xi, s.rate, s.a, s.b, in_xi, mixed);
   check_derivative(in_xi_of, &s, IN_XI, s.size, in_xi, "the curvature");
   check_derivative(in_xi_of, &s, IN_RATE, s.size, mixed, "the mixed curvature");
-  check_derivative(in_rate_of, &s, IN_XI, s.size, mixed, "the mixed curvature"); /* it is symmetric */
+  /* it is symmetric */
+  check_derivative(in_rate_of, &s, IN_XI, s.size, mixed, "the mixed curvature");
 }
 END_TEST
 
@@ -161,7 +166,8 @@ START_TEST(velocities_are_those_of_points)
   for (int j = 0; j < 3 && s.chart.kind == DVI__ROTATION; j++) { /* R' e_j = R (Omega x e_j) */
     double e[3] = {0}, turned[3], column[3], found[3];
     e[j] = 1;
-    for (int i = 0; i < 3; i++) turned[i] = stored[(i + 1) % 3] * e[(i + 2) % 3] - stored[(i + 2) % 3] * e[(i + 1) % 3];
+    for (int i = 0; i < 3; i++)
+      turned[i] = stored[(i + 1) % 3] * e[(i + 2) % 3] - stored[(i + 2) % 3] * e[(i + 1) % 3];
     for (int i = 0; i < 3; i++) {
       column[i] = y[3 * i] * turned[0] + y[3 * i + 1] * turned[1] + y[3 * i + 2] * turned[2];
       found[i] = v[3 * i + j];
@@ -201,7 +207,8 @@ START_TEST(spins_have_their_derivatives)
 }
 END_TEST
 
-/* Rotations have their digits up to half a turn; a direction close to the opposite one has only those of where it lies around it. */
+/* Rotations have their digits up to half a turn; a direction close to the opposite one has only
+ * those of where it lies around it. */
 START_TEST(points_are_found_again)
 {
   scene s = set(_i * LENGTHS);
@@ -213,7 +220,8 @@ START_TEST(points_are_found_again)
     dvi__chart_place(&s.chart, s.xi, y);
     dvi__chart_inverse(&s.chart, y, found);
     const double lost = s.chart.kind == DVI__SPHERE && far[k] > 1 ? 1 / sin(far[k]) : 1;
-    ck_assert_msg(distance(s.size, s.xi, found) < 2e-15 * lost, "kind %d at %g: %.1e", _i, far[k], distance(s.size, s.xi, found));
+    ck_assert_msg(distance(s.size, s.xi, found) < 2e-15 * lost, "kind %d at %g: %.1e", _i, far[k],
+                  distance(s.size, s.xi, found));
   }
 }
 END_TEST
@@ -230,7 +238,8 @@ START_TEST(turns_are_those_of_space)
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < columns; j++) {
       moved[i * columns + j] = 0;
-      for (int l = 0; l < 3; l++) moved[i * columns + j] += E[3 * i + l] * s.chart.y0[l * columns + j];
+      for (int l = 0; l < 3; l++)
+        moved[i * columns + j] += E[3 * i + l] * s.chart.y0[l * columns + j];
     }
   dvi__chart_turns(kind, s.chart.y0, rows);
   dvi__chart_add_moment(kind, s.chart.y0, s.a, moment);

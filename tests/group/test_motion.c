@@ -21,7 +21,8 @@ static void quad_twist(const double xi[6], quad A[16])
   quad exact[6], W[9];
   quad_from(6, xi, exact);
   quad_hat(exact, W);
-  for (int i = 0; i < 16; i++) A[i] = i / 4 == 3 ? 0 : i % 4 == 3 ? exact[3 + i / 4] : W[3 * (i / 4) + i % 4];
+  for (int i = 0; i < 16; i++)
+    A[i] = i / 4 == 3 ? 0 : i % 4 == 3 ? exact[3 + i / 4] : W[3 * (i / 4) + i % 4];
 }
 
 /* From a matrix of 4 rows to R and x. */
@@ -64,7 +65,8 @@ START_TEST(exp_is_right_to_3_ulp)
 }
 END_TEST
 
-/* Entries of R that are rounded move w by up to pi/2 times as much, and u by that times the derivative of dexp^-1, which is below 2. */
+/* Entries of R that are rounded move w by up to pi/2 times as much, and u by that times the
+ * derivative of dexp^-1, which is below 2. */
 START_TEST(log_is_right_to_6_ulp_up_to_half_turns)
 {
   double worst = 0;
@@ -158,7 +160,8 @@ START_TEST(the_inverse_of_dexp_is_right_to_8_ulp)
 END_TEST
 #endif
 
-/* The body velocity (Omega, V) of exp(xi + t v): R' = R hat(Omega), x' = R V, by central differences; their error is 1e-10. */
+/* The body velocity (Omega, V) of exp(xi + t v): R' = R hat(Omega), x' = R V, by central
+ * differences; their error is 1e-10. */
 START_TEST(dexp_of_the_opposite_twist_is_the_body_velocity)
 {
   const double step = 1e-5;
@@ -180,7 +183,8 @@ START_TEST(dexp_of_the_opposite_twist_is_the_body_velocity)
     const double hat[9] = {0, -u[2], u[1], u[2], 0, -u[0], -u[1], u[0], 0};
     double turning[9];
     multiply(g, hat, turning);
-    for (int j = 0; j < 9; j++) ck_assert_double_eq_tol((side[1][j] - side[0][j]) / (2 * step), turning[j], 1e-9);
+    for (int j = 0; j < 9; j++)
+      ck_assert_double_eq_tol((side[1][j] - side[0][j]) / (2 * step), turning[j], 1e-9);
     for (int j = 0; j < 3; j++)
       ck_assert_double_eq_tol((side[1][9 + j] - side[0][9 + j]) / (2 * step),
                               g[3 * j] * u[3] + g[3 * j + 1] * u[4] + g[3 * j + 2] * u[5], 1e-9);
@@ -202,14 +206,16 @@ END_TEST
 START_TEST(no_angle_makes_nan)
 {
   for (int exponent = -1074; exponent <= 1000; exponent++) {
-    const double xi[6] = {0, ldexp(1, exponent), -ldexp(0.75, exponent), 1, -0.5, 0.25}, v[6] = {1, 0.5, -0.5, 0.25, 1, -1};
+    const double xi[6] = {0, ldexp(1, exponent), -ldexp(0.75, exponent), 1, -0.5, 0.25},
+                 v[6] = {1, 0.5, -0.5, 0.25, 1, -1};
     double g[2][12], u[2][6];
     dvi_se3_exp(xi, g[0]);
     dvi_se3_cayley(xi, g[1]);
     dvi_se3_dexp(xi, v, u[0]);
     dvi_se3_dexp_inverse(xi, v, u[1]);
     for (int i = 0; i < 12; i++) ck_assert(isfinite(g[0][i]) && isfinite(g[1][i]));
-    for (int i = 0; i < 6; i++) ck_assert(isfinite(u[0][i]) && (exponent > 340 || isfinite(u[1][i])));
+    for (int i = 0; i < 6; i++)
+      ck_assert(isfinite(u[0][i]) && (exponent > 340 || isfinite(u[1][i])));
   }
 }
 END_TEST

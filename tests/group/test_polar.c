@@ -7,7 +7,8 @@
 #include "quad.h"
 #include "support/suite.h"
 
-/* R diag(s) Q with random rotations R, Q; `factor` becomes R Q, which is closest to it if s_1 >= s_2 >= |s_3|, s_2 + s_3 > 0. */
+/* R diag(s) Q with random rotations R, Q; `factor` becomes R Q, which is closest to it if s_1 >=
+ * s_2 >= |s_3|, s_2 + s_3 > 0. */
 static void stretched(uint64_t *seed, const double s[3], double M[9], double factor[9])
 {
   double w[3], R[9], Q[9], SQ[9];
@@ -36,7 +37,8 @@ static void quad_polar(const double M[9], quad X[9])
   }
 }
 
-/* Matrices as far as 1e-15 to 0.5 from rotations, whose roundoff is moved by at most 1/(s_2 + s_3). */
+/* Matrices as far as 1e-15 to 0.5 from rotations, whose roundoff is moved by at most 1/(s_2 +
+ * s_3). */
 START_TEST(the_projection_is_right_to_6_ulp)
 {
   double worst = 0;
@@ -64,7 +66,8 @@ END_TEST
 /* R diag(s) Q is closest to R Q also where s_3 is 0 or negative, and of any size. */
 START_TEST(singular_matrices_and_reflections_are_projected)
 {
-  const double stretch[5][3] = {{1, 1, 0}, {2, 1, -0.5}, {1e-3, 1e-3, 1e-9}, {1e200, 1e200, 5e199}, {1e-200, 5e-201, 0}};
+  const double stretch[5][3] = {
+      {1, 1, 0}, {2, 1, -0.5}, {1e-3, 1e-3, 1e-9}, {1e200, 1e200, 5e199}, {1e-200, 5e-201, 0}};
   uint64_t seed = 2;
   for (int i = 0; i < 500; i++) {
     const double *s = stretch[i % 5];
@@ -102,7 +105,8 @@ START_TEST(what_was_refused_is_taken_after_its_projection)
   ck_assert_int_eq(dvi_so3_log(R, w), DVI_BAD_ARGUMENT);
   dvi_so3_project(R, R);
   ck_assert_int_eq(dvi_so3_log(R, w), DVI_OK);
-  ck_assert_double_eq_tol(w[2], -atan(0.01), 2 * DBL_EPSILON); /* in the plane: tan w = (M_21 - M_12) / (M_11 + M_22) */
+  /* in the plane: tan w = (M_21 - M_12) / (M_11 + M_22) */
+  ck_assert_double_eq_tol(w[2], -atan(0.01), 2 * DBL_EPSILON);
 }
 END_TEST
 

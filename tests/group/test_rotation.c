@@ -17,8 +17,8 @@ static void quad_dexp(double sign, const double w[3], quad D[9])
   quad_series(3, 1, W, D);
 }
 
-/* Errors of entries off the diagonal are measured against the angle if that is small, so that small rotations keep their digits. Large angles are known to
- * 1 ulp of themselves. */
+/* Errors of entries off the diagonal are measured against the angle if that is small, so that small
+ * rotations keep their digits. Large angles are known to 1 ulp of themselves. */
 START_TEST(exp_is_right_to_2_ulp)
 {
   double worst = 0;
@@ -109,7 +109,8 @@ START_TEST(the_inverse_of_dexp_is_right_to_4_ulp)
 }
 END_TEST
 
-/* d/dw of dexp_{-w} v by central differences with the step 1e-11, in quadruple precision: right to 1e-21. */
+/* d/dw of dexp_{-w} v by central differences with the step 1e-11, in quadruple precision: right to
+ * 1e-21. */
 static void quad_velocity_derivative(const double w[3], const double v[3], quad D[9])
 {
   const quad step = (quad)1e-11;
@@ -158,7 +159,8 @@ START_TEST(dexp_of_the_opposite_turn_is_the_transpose)
     for (int j = 0; j < 3; j++) opposite[j] = -w[j];
     dvi_so3_dexp(w, v, u);
     dvi_so3_dexp(opposite, m, n);
-    ck_assert_double_eq_tol(m[0] * u[0] + m[1] * u[1] + m[2] * u[2], n[0] * v[0] + n[1] * v[1] + n[2] * v[2], 8 * DBL_EPSILON);
+    ck_assert_double_eq_tol(m[0] * u[0] + m[1] * u[1] + m[2] * u[2],
+                            n[0] * v[0] + n[1] * v[1] + n[2] * v[2], 8 * DBL_EPSILON);
   }
 }
 END_TEST
@@ -178,7 +180,8 @@ START_TEST(exp_is_orthogonal_to_1_ulp)
 }
 END_TEST
 
-/* A step of the walk, the roundoff of an exponential and of a product, is about 1 ulp; a bias of 1 % of that would show: 1e4 > 3e3. */
+/* A step of the walk, the roundoff of an exponential and of a product, is about 1 ulp; a bias of 1
+ * % of that would show: 1e4 > 3e3. */
 START_TEST(a_million_factors_leave_the_group_as_a_random_walk_does)
 {
   enum { FACTORS = 1000000 };
@@ -196,8 +199,8 @@ START_TEST(a_million_factors_leave_the_group_as_a_random_walk_does)
   const double left = orthogonality(R, defect);
   double bias = 0;
   for (int j = 0; j < 9; j++) bias = fmax(bias, fabs(mean[j]));
-  printf("product of 1e6: %.2f sqrt(N) ulp; mean of E^T E - I: %.2f ulp / sqrt(N)\n", left / (1e3 * DBL_EPSILON),
-         bias * 1e3 / DBL_EPSILON);
+  printf("product of 1e6: %.2f sqrt(N) ulp; mean of E^T E - I: %.2f ulp / sqrt(N)\n",
+         left / (1e3 * DBL_EPSILON), bias * 1e3 / DBL_EPSILON);
   ck_assert_double_le(left, 3e3 * DBL_EPSILON);
   ck_assert_double_le(bias, 3e-3 * DBL_EPSILON);
 }
@@ -248,7 +251,8 @@ START_TEST(no_angle_makes_nan)
     dvi_so3_dexp_inverse(w, v, u[1]);
     dvi_so3_dcayley(w, v, u[2]);
     dvi_so3_velocity_derivative(w, v, D);
-    for (int i = 0; i < 3; i++) ck_assert(isfinite(u[0][i]) && isfinite(u[1][i]) && isfinite(u[2][i]));
+    for (int i = 0; i < 3; i++)
+      ck_assert(isfinite(u[0][i]) && isfinite(u[1][i]) && isfinite(u[2][i]));
     for (int i = 0; i < 9; i++) ck_assert(isfinite(D[i]));
   }
 }

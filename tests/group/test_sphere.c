@@ -22,7 +22,8 @@ static void tangent(uint64_t *seed, double size, const double y[3], double t[3])
 #ifdef DVI_HAVE_QUADMATH
 static double chosen_length(int i, double longest, uint64_t *seed)
 {
-  return i < 50 * SPECIAL_ANGLES ? special_angle(i % SPECIAL_ANGLES) : longest * fabs(uniform(seed));
+  return i < 50 * SPECIAL_ANGLES ? special_angle(i % SPECIAL_ANGLES)
+                                 : longest * fabs(uniform(seed));
 }
 
 static void quad_great_circle(const double y[3], const double t[3], quad z[3])
@@ -55,7 +56,8 @@ START_TEST(exp_on_the_sphere_is_right_to_3_ulp)
 }
 END_TEST
 
-/* The judge, from the numbers given: |t| is the angle between them, and t lies in their plane. Close to half turns the direction is known as well as z + y. */
+/* The judge, from the numbers given: |t| is the angle between them, and t lies in their plane.
+ * Close to half turns the direction is known as well as z + y. */
 START_TEST(log_on_the_sphere_is_right_to_3_ulp)
 {
   double worst = 0;
@@ -69,10 +71,12 @@ START_TEST(log_on_the_sphere_is_right_to_3_ulp)
     dvi_s2_log(y, z, t);
     quad_from(3, y, p);
     quad_from(3, z, r);
-    const quad cosine = p[0] * r[0] + p[1] * r[1] + p[2] * r[2], square = p[0] * p[0] + p[1] * p[1] + p[2] * p[2];
+    const quad cosine = p[0] * r[0] + p[1] * r[1] + p[2] * r[2],
+               square = p[0] * p[0] + p[1] * p[1] + p[2] * p[2];
     for (int j = 0; j < 3; j++) ahead[j] = r[j] - cosine / square * p[j];
     const quad sine = quad_norm(3, ahead);
-    for (int j = 0; j < 3; j++) ahead[j] *= sine > 0 ? atan2q(sine * sqrtq(square), cosine) / sine : 1;
+    for (int j = 0; j < 3; j++)
+      ahead[j] *= sine > 0 ? atan2q(sine * sqrtq(square), cosine) / sine : 1;
     const double error = quad_error(3, t, ahead), size = (double)quad_norm(3, ahead);
     if (error > 0) worst = fmax(worst, error / size);
   }
@@ -101,7 +105,8 @@ START_TEST(a_million_steps_stay_on_the_sphere)
   double y[3] = {0.6, 0, 0.8}, t[3];
   uint64_t seed = 4;
   for (int i = 0; i < 1000000; i++) {
-    tangent(&seed, 1e-4 * fabs(uniform(&seed)), y, t); /* long ones would make it forget the errors before */
+    /* long ones would make it forget the errors before */
+    tangent(&seed, 1e-4 * fabs(uniform(&seed)), y, t);
     dvi_s2_exp(y, t, y);
   }
   ck_assert_double_eq_tol(length(y), 1, 2 * DBL_EPSILON);
@@ -110,9 +115,13 @@ END_TEST
 
 START_TEST(to_the_opposite_point_log_takes_the_axis_of_the_smallest_component)
 {
-  const double y[3][3] = {{1, 0, 0}, {0, -1, 0}, {0.48, 0.6, 0.64}}, z[3][3] = {{-1, 0, 0}, {0, 1, 0}, {-0.48, -0.6, -0.64}};
+  const double y[3][3] = {{1, 0, 0}, {0, -1, 0}, {0.48, 0.6, 0.64}},
+               z[3][3] = {{-1, 0, 0}, {0, 1, 0}, {-0.48, -0.6, -0.64}};
   const double along = PI / sqrt(1 - 0.48 * 0.48);
-  const double expected[3][3] = {{0, PI, 0}, {PI, 0, 0}, {along * (1 - 0.48 * 0.48), -along * 0.48 * 0.6, -along * 0.48 * 0.64}};
+  const double expected[3][3] = {
+      {0, PI, 0},
+      {PI, 0, 0},
+      {along * (1 - 0.48 * 0.48), -along * 0.48 * 0.6, -along * 0.48 * 0.64}};
   for (int i = 0; i < 3; i++) {
     double t[3];
     dvi_s2_log(y[i], z[i], t);
@@ -123,7 +132,8 @@ END_TEST
 
 START_TEST(the_angle_of_the_half_turn_is_pi_whatever_the_sign_of_zero)
 {
-  ck_assert(dvi_u1_log((const double[2]){-1, 0.0}) == PI && dvi_u1_log((const double[2]){-1, -0.0}) == PI);
+  ck_assert(dvi_u1_log((const double[2]){-1, 0.0}) == PI &&
+            dvi_u1_log((const double[2]){-1, -0.0}) == PI);
   ck_assert(dvi_u1_log((const double[2]){0, 0}) == 0);
 }
 END_TEST

@@ -18,7 +18,8 @@ static quad exact(int k, double s)
   return sum;
 }
 
-/* In units of 2.2e-16 of the function's size: its absolute value, or for those that have zeros the bound of their oscillation. */
+/* In units of 2.2e-16 of the function's size: its absolute value, or for those that have zeros the
+ * bound of their oscillation. */
 static double ulps(int k, double s, double computed)
 {
   const double bound[3] = {1, 1 / fmax(1, sqrt(s)), 1 / fmax(2, s / 4)};
@@ -31,7 +32,8 @@ START_TEST(all_nine_are_right_to_4_ulp_up_to_two_turns)
   double worst[9] = {0};
   uint64_t seed = 1;
   for (int i = 0; i < repeats(20000); i++) {
-    const double angle = i < SPECIAL_ANGLES ? special_angle(i) : 4 * PI * fabs(uniform(&seed)), s = angle * angle;
+    const double angle = i < SPECIAL_ANGLES ? special_angle(i) : 4 * PI * fabs(uniform(&seed)),
+                 s = angle * angle;
     double c[9];
     dvi__stumpff(s, c);
     for (int k = 0; k < 9; k++) worst[k] = fmax(worst[k], ulps(k, s, c[k]));
@@ -41,14 +43,16 @@ START_TEST(all_nine_are_right_to_4_ulp_up_to_two_turns)
 }
 END_TEST
 
-/* Its zeros at full turns are double: 2 (sin(theta/2)/theta)^2 has them where they are. The angle's rounding counts twice. */
+/* Its zeros at full turns are double: 2 (sin(theta/2)/theta)^2 has them where they are. The angle's
+ * rounding counts twice. */
 START_TEST(c_2_keeps_its_digits_close_to_a_full_turn)
 {
   for (double gap = 0.1; gap > 1e-6; gap /= 10) {
     const double angle = 2 * PI - gap, s = angle * angle;
     double c[4];
     dvi__stumpff_four(s, c);
-    ck_assert_double_le(fabs((double)(c[2] / exact(2, s) - 1)), (2 * 2 * PI / gap + 4) * DBL_EPSILON);
+    ck_assert_double_le(fabs((double)(c[2] / exact(2, s) - 1)),
+                        (2 * 2 * PI / gap + 4) * DBL_EPSILON);
   }
 }
 END_TEST

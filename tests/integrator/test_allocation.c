@@ -1,6 +1,7 @@
 /* labels: unit */
-/* Creating, running, saving and restoring survive the failure of each of their allocations: status, no object, nothing leaked (the heap is
- * counted here; the sanitizer and valgrind runs of this test look closer). */
+/* Creating, running, saving and restoring survive the failure of each of their allocations: status,
+ * no object, nothing leaked (the heap is counted here; the sanitizer and valgrind runs of this test
+ * look closer). */
 #include <stdio.h>
 #include <string.h>
 
@@ -13,7 +14,8 @@
 
 enum { MOST = 1000 };
 
-/* fpu with ell = 40 is solved by KLU, the double pendulum has a general Lagrangian, the others go to LAPACK or need no solver. */
+/* fpu with ell = 40 is solved by KLU, the double pendulum has a general Lagrangian, the others go
+ * to LAPACK or need no solver. */
 static const struct {
   const char *problem, *setting, *method;
 } places[] = {
@@ -36,8 +38,8 @@ static const struct {
     {"kepler", NULL, "shooting:onestep=gauss"},
     {"pendulum", NULL, "shooting:onestep=taylor,quadrature=euler-maclaurin,tolerance=1e-9"},
     {"toda", "N=5", "shooting:solve=stages"},
-    {"chain", NULL, "verlet:sweep=wave"},
-    {"chain", NULL, "composition:order=8,sweep=wave,threads=2"},
+    {"chain", NULL, "verlet:blocking=temporal"},
+    {"chain", NULL, "composition:order=8,blocking=temporal,threads=2"},
     {"fpu", "ell=40", "midpoint:solver=kinsol"},
     {"fpu", "ell=40", "galerkin:degree=3"},
     {"fpu", "ell=40", "composition:order=6,base=trapezoidal"},
@@ -87,7 +89,8 @@ START_TEST(every_method_has_its_place)
     const size_t length = strlen(dvi_method_name(i));
     int found = 0;
     for (int k = 0; k < PLACES; k++)
-      found += strcspn(places[k].method, ":") == length && strncmp(places[k].method, dvi_method_name(i), length) == 0;
+      found += strcspn(places[k].method, ":") == length &&
+               strncmp(places[k].method, dvi_method_name(i), length) == 0;
     ck_assert_msg(found > 0, "%s", dvi_method_name(i));
   }
 }
@@ -96,7 +99,8 @@ END_TEST
 START_TEST(an_integrator_survives_every_failure)
 {
   problem *of = made_problem(places[_i].problem, places[_i].setting);
-  dvi_integrator *integrator = made_integrator(of->system, places[_i].method); /* the first one completes the system */
+  /* the first one completes the system */
+  dvi_integrator *integrator = made_integrator(of->system, places[_i].method);
   dvi_integrator_destroy(&integrator);
   const long before = dvi__allocation_count();
   integrator = made_integrator(of->system, places[_i].method);
@@ -140,13 +144,18 @@ static int first_coordinate(double t, const double *q, const double *v, double *
   return 0;
 }
 
-static dvi_status run(const problem *of, dvi_integrator *integrator, double t_end, dvi_run_report *report)
+static dvi_status run(const problem *of, dvi_integrator *integrator, double t_end,
+                      dvi_run_report *report)
 {
   double level = of->q[0];
   const dvi_event events[] = {{.name = "there", .value = first_coordinate, .user = &level},
                               {.name = "here", .value = first_coordinate, .user = &level}};
-  const dvi_run_options options = {
-      .h = of->h, .t_end = t_end, .events = events, .event_count = 2, .checkpoint = in_folder("checkpoint"), .checkpoint_every = 2};
+  const dvi_run_options options = {.h = of->h,
+                                   .t_end = t_end,
+                                   .events = events,
+                                   .event_count = 2,
+                                   .checkpoint = in_folder("checkpoint"),
+                                   .checkpoint_every = 2};
   return dvi_run(integrator, &options, report);
 }
 

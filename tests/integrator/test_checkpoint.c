@@ -15,7 +15,8 @@
 
 /* ---- going on bit for bit ---- */
 
-/* In the first run fixed point iteration gives up near the pericentre, and better ones take over; stiff steps keep the factors of earlier ones. */
+/* In the first run fixed point iteration gives up near the pericentre, and better ones take over;
+ * stiff steps keep the factors of earlier ones. */
 static const struct {
   const char *problem, *setting, *method;
   double h;
@@ -73,14 +74,19 @@ static void check_same_answers(dvi_integrator *a, dvi_integrator *b, double t)
   ck_assert_mem_eq(invariants[0], invariants[1], sizeof invariants[0]);
 }
 
-/* Restore the first one's checkpoint into an integrator with another past, and take the same step with both. */
-static void check_step_after_restoring(const problem *of, const char *method, dvi_integrator *first, double h, int asked)
+/* Restore the first one's checkpoint into an integrator with another past, and take the same step
+ * with both. */
+static void check_step_after_restoring(const problem *of, const char *method, dvi_integrator *first,
+                                       double h, int asked)
 {
   dvi_integrator *second = started(of, method);
   advance(second, 0.6 * h, 2);
   ck_assert_int_eq(dvi_integrator_save(first, in_folder("checkpoint")), DVI_OK);
-  ck_assert_msg(dvi_integrator_restore(second, in_folder("checkpoint")) == DVI_OK, "%s", dvi_last_error());
-  if (asked) check_same_answers(first, second, dvi_integrator_time(first) - 0.3 * dvi_integrator_last_step(first));
+  ck_assert_msg(dvi_integrator_restore(second, in_folder("checkpoint")) == DVI_OK, "%s",
+                dvi_last_error());
+  if (asked)
+    check_same_answers(first, second,
+                       dvi_integrator_time(first) - 0.3 * dvi_integrator_last_step(first));
   advance(first, h, 1);
   advance(second, h, 1);
   check_same_state(first, second);
@@ -92,7 +98,8 @@ START_TEST(a_restored_run_continues_bit_for_bit_from_any_step)
   problem *of = made_problem(runs[_i].problem, runs[_i].setting);
   dvi_integrator *integrator = started(of, runs[_i].method);
   for (int step = 0; step < runs[_i].steps; step++)
-    check_step_after_restoring(of, runs[_i].method, integrator, runs[_i].h * (step % 10 == 9 ? 0.7 : 1), step > 0);
+    check_step_after_restoring(of, runs[_i].method, integrator,
+                               runs[_i].h * (step % 10 == 9 ? 0.7 : 1), step > 0);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&of);
 }
@@ -116,7 +123,8 @@ END_TEST
 START_TEST(time_and_number_of_steps_are_restored)
 {
   problem *of = made_problem("pendulum", NULL);
-  dvi_integrator *first = started(of, "midpoint"), *second = made_integrator(of->system, "midpoint");
+  dvi_integrator *first = started(of, "midpoint"),
+                 *second = made_integrator(of->system, "midpoint");
   dvi_counters counters;
   advance(first, 0.1, 7);
   ck_assert_int_eq(dvi_integrator_save(first, in_folder("checkpoint")), DVI_OK);
@@ -133,20 +141,26 @@ START_TEST(time_and_number_of_steps_are_restored)
 }
 END_TEST
 
-/* What an alarm does is no part of the steps: a run that was stopped goes on with warnings, and one that was warned with stops. */
+/* What an alarm does is no part of the steps: a run that was stopped goes on with warnings, and one
+ * that was warned with stops. */
 START_TEST(a_run_goes_on_under_another_alarm_and_under_no_other_key)
 {
   problem *of = made_problem("vortices", NULL);
-  const char *const method[] = {"dg", "dg-phase"}, *const other[] = {"dg:nodes=4,alarm=warn", "dg-phase:degree=2"};
-  dvi_integrator *stops = started(of, method[_i]), *warns = made_integrator(of->system, spec("%s:alarm=warn", method[_i]));
+  const char *const method[] = {"dg", "dg-phase"}, *const other[] = {"dg:nodes=4,alarm=warn",
+                                                                     "dg-phase:degree=2"};
+  dvi_integrator *stops = started(of, method[_i]),
+                 *warns = made_integrator(of->system, spec("%s:alarm=warn", method[_i]));
   dvi_integrator *differs = made_integrator(of->system, other[_i]);
   advance(stops, 0.02, 3);
   ck_assert_int_eq(dvi_integrator_save(stops, in_folder("checkpoint")), DVI_OK);
-  ck_assert_msg(dvi_integrator_restore(warns, in_folder("checkpoint")) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_integrator_restore(warns, in_folder("checkpoint")) == DVI_OK, "%s",
+                dvi_last_error());
   advance(stops, 0.02, 3);
   advance(warns, 0.02, 3);
-  ck_assert_mem_eq(dvi_integrator_q(stops), dvi_integrator_q(warns), (size_t)of->nq * sizeof(double));
-  ck_assert_mem_eq(dvi_integrator_p(stops), dvi_integrator_p(warns), (size_t)of->nq * sizeof(double));
+  ck_assert_mem_eq(dvi_integrator_q(stops), dvi_integrator_q(warns),
+                   (size_t)of->nq * sizeof(double));
+  ck_assert_mem_eq(dvi_integrator_p(stops), dvi_integrator_p(warns),
+                   (size_t)of->nq * sizeof(double));
   ck_assert_int_eq(dvi_integrator_save(warns, in_folder("checkpoint")), DVI_OK);
   ck_assert_int_eq(dvi_integrator_restore(stops, in_folder("checkpoint")), DVI_OK);
   ck_assert_int_eq(dvi_integrator_restore(differs, in_folder("checkpoint")), DVI_BAD_FILE);
@@ -266,13 +280,15 @@ START_TEST(a_state_in_memory_is_that_of_a_file)
   ck_assert_uint_eq(size, now.count);
   unsigned char *room = malloc(size + 1);
   ck_assert_ptr_nonnull(room);
-  ck_assert_int_eq(dvi_integrator_save_memory(s.integrator, room + 1, size - 1, &size), DVI_BAD_SIZE);
+  ck_assert_int_eq(dvi_integrator_save_memory(s.integrator, room + 1, size - 1, &size),
+                   DVI_BAD_SIZE);
   check_words("are needed");
   ck_assert_int_eq(dvi_integrator_save_memory(s.integrator, room + 1, size, &size), DVI_OK);
   ck_assert_mem_eq(room + 1, now.at, size);
   ck_assert_int_eq(dvi_integrator_restore_memory(s.integrator, s.past.at, s.past.count), DVI_OK);
   check_still(s.integrator, s.past);
-  ck_assert_int_eq(dvi_integrator_restore_memory(s.integrator, room + 1, size), DVI_OK); /* aligned to nothing */
+  /* aligned to nothing */
+  ck_assert_int_eq(dvi_integrator_restore_memory(s.integrator, room + 1, size), DVI_OK);
   check_still(s.integrator, now);
   room[size / 2] ^= 1;
   ck_assert_int_eq(dvi_integrator_restore_memory(s.integrator, room + 1, size), DVI_BAD_FILE);
@@ -314,15 +330,18 @@ START_TEST(a_checkpoint_of_another_method_or_dimension_is_refused)
 }
 END_TEST
 
-/* A system of the same size is another one if it declares other terms, or if its Lagrangian has another value or other forces. */
+/* A system of the same size is another one if it declares other terms, or if its Lagrangian has
+ * another value or other forces. */
 START_TEST(a_checkpoint_of_another_system_or_other_parameters_is_refused)
 {
   scene s = made_scene();
   ck_assert_int_eq(dvi_integrator_save(s.integrator, in_folder("other")), DVI_OK);
-  refused_by("henon-heiles", NULL, "galerkin:degree=2", "of a system that declares other names or speeds of potentials");
+  refused_by("henon-heiles", NULL, "galerkin:degree=2",
+             "of a system that declares other names or speeds of potentials");
   problem *stiff = made_problem("fpu", "omega=50"), *softer = made_problem("fpu", "omega=49.9999");
   dvi_integrator *first = started(stiff, "verlet"), *second = started(softer, "verlet");
-  for (int steps = 0; steps < 2; steps++) { /* at the start the velocity is the start's, later the step's */
+  /* at the start the velocity is the start's, later the step's */
+  for (int steps = 0; steps < 2; steps++) {
     ck_assert_int_eq(dvi_integrator_save(first, in_folder("other")), DVI_OK);
     ck_assert_int_eq(dvi_integrator_restore(second, in_folder("other")), DVI_BAD_FILE);
     check_words("other parameters");
@@ -343,7 +362,8 @@ START_TEST(a_checkpoint_of_another_start_is_taken)
   problem *one = made_problem("kepler", "e=0.6"), *two = made_problem("kepler", "e=0.2");
   dvi_integrator *first = started(one, "midpoint"), *second = started(two, "midpoint");
   ck_assert_int_eq(dvi_integrator_save(first, in_folder("other")), DVI_OK);
-  ck_assert_msg(dvi_integrator_restore(second, in_folder("other")) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_integrator_restore(second, in_folder("other")) == DVI_OK, "%s",
+                dvi_last_error());
   check_same_state(first, second);
   dvi_integrator_destroy(&first);
   dvi_integrator_destroy(&second);

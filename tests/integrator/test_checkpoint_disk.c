@@ -43,7 +43,8 @@ int rename(const char *from, const char *to)
   return fails("name") ? -1 : renameat(AT_FDCWD, from, AT_FDCWD, to);
 }
 
-static dvi_status save_failing(const dvi_integrator *integrator, const char *path, const char *call, int with)
+static dvi_status save_failing(const dvi_integrator *integrator, const char *path, const char *call,
+                               int with)
 {
   calls[0] = 0;
   failing = call, reason = with;
@@ -112,7 +113,8 @@ START_TEST(a_save_without_memory_leaves_no_part)
     heap_fail_after(successes);
     const dvi_status status = dvi_integrator_save(integrator, in_folder("state"));
     heap_fail_after(-1);
-    ck_assert_msg(status == DVI_OK || status == DVI_NO_MEMORY || status == DVI_IO_ERROR, "%s", dvi_last_error());
+    ck_assert_msg(status == DVI_OK || status == DVI_NO_MEMORY || status == DVI_IO_ERROR, "%s",
+                  dvi_last_error());
     ck_assert_int_eq(files_in_folder(), 1);
   }
   ck_assert_int_eq(dvi_integrator_restore(integrator, in_folder("state")), DVI_OK);

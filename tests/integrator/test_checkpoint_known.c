@@ -20,8 +20,10 @@ static void check_taken(const dvi_integrator *from, dvi_integrator *by)
   ck_assert_msg(dvi_integrator_restore(by, in_folder("state")) == DVI_OK, "%s", dvi_last_error());
   const dvi_system *system = dvi_integrator_system(from);
   ck_assert_double_eq(dvi_integrator_time(from), dvi_integrator_time(by));
-  ck_assert_mem_eq(dvi_integrator_q(from), dvi_integrator_q(by), (size_t)dvi_system_nq(system) * sizeof(double));
-  ck_assert_mem_eq(dvi_integrator_p(from), dvi_integrator_p(by), (size_t)dvi_system_nv(system) * sizeof(double));
+  ck_assert_mem_eq(dvi_integrator_q(from), dvi_integrator_q(by),
+                   (size_t)dvi_system_nq(system) * sizeof(double));
+  ck_assert_mem_eq(dvi_integrator_p(from), dvi_integrator_p(by),
+                   (size_t)dvi_system_nv(system) * sizeof(double));
 }
 
 static void check_refused(const dvi_integrator *from, dvi_integrator *by, const char *words)
@@ -51,7 +53,8 @@ static const char *by_a_long_way(const char *name, const char *rest)
   static int next;
   char way[LONG] = "", *text = texts[next++ % 2];
   while (strlen(way) < LONG - 200) strcat(way, "/.");
-  (void)snprintf(text, sizeof texts[0], "shooting:tableau=%s%s/%s,%s", in_folder("."), way, name, rest);
+  (void)snprintf(text, sizeof texts[0], "shooting:tableau=%s%s/%s,%s", in_folder("."), way, name,
+                 rest);
   return text;
 }
 
@@ -59,7 +62,8 @@ START_TEST(a_long_specification_is_kept_whole)
 {
   problem *of = made_problem("kepler", NULL);
   write_text("kutta", kutta);
-  dvi_integrator *one = started(of, by_a_long_way("kutta", "type=1")), *same = started(of, by_a_long_way("kutta", "type=1"));
+  dvi_integrator *one = started(of, by_a_long_way("kutta", "type=1")),
+                 *same = started(of, by_a_long_way("kutta", "type=1"));
   dvi_integrator *other = started(of, by_a_long_way("kutta", "type=2")), *like = NULL;
   advance(one, 0.01, 3);
   advance(other, 0.01, 1);
@@ -69,7 +73,8 @@ START_TEST(a_long_specification_is_kept_whole)
   check_refused(one, other, "type=1 there, type=2 here");
   write_text("same", kutta);
   dvi_integrator *elsewhere = started(of, spec("shooting:tableau=%s,type=2", in_folder("same")));
-  check_refused(one, elsewhere, "type=1 there, type=2 here"); /* and not the path, which may be any */
+  /* and not the path, which may be any */
+  check_refused(one, elsewhere, "type=1 there, type=2 here");
   dvi_integrator_destroy(&elsewhere);
   ck_assert_msg(dvi_integrator_create_like(other, &like) == DVI_OK, "%s", dvi_last_error());
   ck_assert_str_eq(dvi_integrator_method(like), dvi_integrator_method(other));
@@ -130,8 +135,10 @@ START_TEST(a_space_is_known_before_the_first_step)
   static const double five = 5, six = 6;
   const dvi_shapes shapes = oscillation(&five), others = oscillation(&six);
   problem *of = made_problem("henon-heiles", NULL);
-  const char *method = _i == 0 ? "shaped-galerkin:nodes=6" : "composition:order=4,base=shaped-galerkin,nodes=6";
-  dvi_integrator *one = shaped_started(of, &shapes, method), *same = shaped_started(of, &shapes, method),
+  const char *method = _i == 0 ? "shaped-galerkin:nodes=6"
+                               : "composition:order=4,base=shaped-galerkin,nodes=6";
+  dvi_integrator *one = shaped_started(of, &shapes, method),
+                 *same = shaped_started(of, &shapes, method),
                  *other = shaped_started(of, &others, method);
   check_taken(one, same);
   check_refused(one, other, "another function space of the same name");
@@ -157,8 +164,8 @@ START_TEST(a_monitor_is_known_by_its_values)
   const dvi_monitor one = {.function = {.name = "mine", .value = g_value, .user = &one_c}},
                     other = {.function = {.name = "mine", .value = g_value, .user = &other_c}};
   dvi_integrator *first = NULL, *same = NULL, *second = NULL;
-  dvi_status (*create)(const dvi_system *, const dvi_monitor *, const char *, dvi_integrator **) = _i == 0 ? create_transformed
-                                                                                                           : create_controlled;
+  dvi_status (*create)(const dvi_system *, const dvi_monitor *, const char *,
+                       dvi_integrator **) = _i == 0 ? create_transformed : create_controlled;
   ck_assert_int_eq(create(of->system, &one, "midpoint", &first), DVI_OK);
   ck_assert_int_eq(create(of->system, &one, "midpoint", &same), DVI_OK);
   ck_assert_int_eq(create(of->system, &other, "midpoint", &second), DVI_OK);
@@ -167,7 +174,9 @@ START_TEST(a_monitor_is_known_by_its_values)
   check_taken(first, same);
   check_refused(first, second, "of another monitor");
   dvi_integrator *plain = started(of, "midpoint");
-  check_refused(first, plain, _i == 0 ? "of steps in another time, by mine, not of steps of time" : "of steps controlled by mine");
+  check_refused(first, plain,
+                _i == 0 ? "of steps in another time, by mine, not of steps of time"
+                        : "of steps controlled by mine");
   check_refused(plain, first, "of steps of time, not of steps");
   dvi_integrator_destroy(&first);
   dvi_integrator_destroy(&same);
@@ -206,8 +215,10 @@ static int springs_gradient(double t, const double *q, double *V_q, void *user)
 
 static dvi_system *made_springs(springs *s)
 {
-  const dvi_potential potential = {.name = "springs", .value = springs_value, .gradient = springs_gradient, .user = s};
-  const dvi_system_terms terms = {.dimension = SPRINGS, .mass.scalar = 1, .potentials = &potential, .potential_count = 1};
+  const dvi_potential potential = {
+      .name = "springs", .value = springs_value, .gradient = springs_gradient, .user = s};
+  const dvi_system_terms terms = {
+      .dimension = SPRINGS, .mass.scalar = 1, .potentials = &potential, .potential_count = 1};
   dvi_system *system = NULL;
   ck_assert_msg(dvi_system_create(&terms, &system) == DVI_OK, "%s", dvi_last_error());
   return system;
@@ -222,7 +233,8 @@ static void check_springs(const springs *changed, const char *words)
   const double q[SPRINGS] = {1, 1, 1, 1, 1, 1, 1, 1, 1}, p[SPRINGS] = {0};
   springs one = nine, other = *changed;
   dvi_system *first = made_springs(&one), *second = made_springs(&other);
-  dvi_integrator *saved = made_integrator(first, "verlet"), *taker = made_integrator(second, "verlet");
+  dvi_integrator *saved = made_integrator(first, "verlet"),
+                 *taker = made_integrator(second, "verlet");
   ck_assert_int_eq(dvi_integrator_start(saved, 0, q, p), DVI_OK);
   check_refused(saved, taker, words);
   dvi_integrator_destroy(&saved);
@@ -274,7 +286,8 @@ START_TEST(what_a_system_declares_is_named)
 {
   problem *kepler = made_problem("kepler", NULL), *henon = made_problem("henon-heiles", NULL);
   problem *light = made_problem("double-pendulum", NULL);
-  dvi_integrator *saved = started(kepler, "midpoint"), *other = started(henon, "midpoint"), *general = started(light, "midpoint");
+  dvi_integrator *saved = started(kepler, "midpoint"), *other = started(henon, "midpoint"),
+                 *general = started(light, "midpoint");
   check_refused(saved, other, "declares other names or speeds of potentials");
   check_refused(saved, general, "declares other terms");
   dvi_integrator_destroy(&saved);
@@ -317,14 +330,17 @@ static const struct {
       "hp:type=4,degree=2"}},
     {"fpu",
      0.01,
-     {"verlet", "imex", "imex:solver=newton", "respa", "respa:substeps=7", "respa:substeps=exact", "mollified",
-      "mollified:filter=projection", "trig", "trig:filter=gautschi", "multiscale", "midpoint", "composition:base=imex"}},
+     {"verlet", "imex", "imex:solver=newton", "respa", "respa:substeps=7", "respa:substeps=exact",
+      "mollified", "mollified:filter=projection", "trig", "trig:filter=gautschi", "multiscale",
+      "midpoint", "composition:base=imex"}},
     {"vortices",
      0.01,
-     {"vprk", "vprk:nodes=3", "dg", "dg:degree=1", "dg:stiffness=1", "dg:stiffness=2", "dg-phase", "dg-phase:degree=2"}},
+     {"vprk", "vprk:nodes=3", "dg", "dg:degree=1", "dg:stiffness=1", "dg:stiffness=2", "dg-phase",
+      "dg-phase:degree=2"}},
     {"heavy-top",
      0.001,
-     {"lie-verlet:solve=exp", "lie-verlet:solve=cayley", "lie-rk", "lie-galerkin", "lie-galerkin:degree=1", "composition"}},
+     {"lie-verlet:solve=exp", "lie-verlet:solve=cayley", "lie-rk", "lie-galerkin",
+      "lie-galerkin:degree=1", "composition"}},
 };
 enum { FAMILIES = sizeof families / sizeof *families };
 
@@ -339,7 +355,8 @@ START_TEST(no_method_takes_the_checkpoint_of_another)
     for (int k = 0; k < 20 && methods[k] != NULL; k++) {
       dvi_integrator *by = started(of, methods[k]);
       const dvi_status status = dvi_integrator_restore(by, in_folder("state"));
-      ck_assert_msg(status == (i == k ? DVI_OK : DVI_BAD_FILE), "%s by %s: %s", methods[i], methods[k], dvi_status_name(status));
+      ck_assert_msg(status == (i == k ? DVI_OK : DVI_BAD_FILE), "%s by %s: %s", methods[i],
+                    methods[k], dvi_status_name(status));
       if (status != DVI_OK) check_words(" there, ");
       advance(by, families[_i].h, 1);
       dvi_integrator_destroy(&by);
@@ -372,7 +389,8 @@ START_TEST(no_method_takes_what_is_cut_or_damaged_at_any_byte)
     dvi_integrator *integrator = started(of, families[_i].methods[k]);
     advance(integrator, families[_i].h, 3);
     const bytes good = state_of(integrator);
-    for (size_t at = 0; at < good.count; at += stride) check_byte(integrator, good, at, damages[(at + (size_t)k) % 4]);
+    for (size_t at = 0; at < good.count; at += stride)
+      check_byte(integrator, good, at, damages[(at + (size_t)k) % 4]);
     check_state(integrator, good);
     dvi_integrator_destroy(&integrator);
   }
@@ -393,8 +411,8 @@ static dvi_status status_of_forged(dvi_integrator *integrator, double h)
   return status;
 }
 
-/* Where a section of a file begins; its header has 40 bytes, of which the last 8 are its hash and the 8
- * before them its size (lib/src/march/sections.h). */
+/* Where a section of a file begins; its header has 40 bytes, of which the last 8 are its hash and
+ * the 8 before them its size (lib/src/march/sections.h). */
 static unsigned char *find_section(const bytes *of, const char *name, uint64_t *size)
 {
   unsigned char *at = of->at + 16;
@@ -407,7 +425,8 @@ static unsigned char *find_section(const bytes *of, const char *name, uint64_t *
 
 static void forge(bytes *of, unsigned long long draw)
 {
-  static const double evil[] = {(double)NAN, (double)INFINITY, -1e308, 1e-310, 0, -1, 1e9, 4294967297.0};
+  static const double evil[] = {(double)NAN, (double)INFINITY, -1e308, 1e-310, 0, -1,
+                                1e9,         4294967297.0};
   uint64_t size;
   unsigned char *section = find_section(of, draw % 2 == 0 ? "state" : "memory", &size);
   if (size == 0) section = find_section(of, "state", &size);
@@ -422,7 +441,8 @@ START_TEST(forged_numbers_do_no_harm)
   unsigned long long draw = 88172645463325252ULL;
   int gone_on = 0, refused = 0;
   for (int k = 0; k < 20 && families[_i].methods[k] != NULL; k++) {
-    dvi_integrator *saved = started(of, families[_i].methods[k]), *taker = started(of, families[_i].methods[k]);
+    dvi_integrator *saved = started(of, families[_i].methods[k]),
+                   *taker = started(of, families[_i].methods[k]);
     advance(saved, families[_i].h, 3);
     const bytes good = state_of(saved);
     for (int i = 0; i < repeats(60); i++) {

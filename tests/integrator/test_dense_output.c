@@ -1,5 +1,6 @@
 /* labels: unit order */
-/* The trajectory inside the last step: right at the ends, of the promised order between them, and only there. */
+/* The trajectory inside the last step: right at the ends, of the promised order between them, and
+ * only there. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -26,8 +27,8 @@ static const char *const methods[] = {
 };
 enum { METHODS = sizeof methods / sizeof *methods };
 
-/* The path's ends are sums of the same few numbers as the states, in another order: a few roundings of numbers of size 1. Times are
- * odd, so that t0 + h is rounded. */
+/* The path's ends are sums of the same few numbers as the states, in another order: a few roundings
+ * of numbers of size 1. Times are odd, so that t0 + h is rounded. */
 START_TEST(the_path_passes_through_both_ends)
 {
   const double rounding = 8 * DBL_EPSILON;
@@ -40,7 +41,8 @@ START_TEST(the_path_passes_through_both_ends)
     advance(integrator, step % 2 == 0 ? 0.0317 : 0.0123, 1);
     ck_assert_int_eq(dvi_integrator_interpolate(integrator, from, q, NULL), DVI_OK);
     ck_assert_double_le(distance(2, q, before), rounding);
-    ck_assert_int_eq(dvi_integrator_interpolate(integrator, dvi_integrator_time(integrator), q, NULL), DVI_OK);
+    ck_assert_int_eq(
+        dvi_integrator_interpolate(integrator, dvi_integrator_time(integrator), q, NULL), DVI_OK);
     ck_assert_double_le(distance(2, q, dvi_integrator_q(integrator)), rounding);
   }
   dvi_integrator_destroy(&integrator);
@@ -85,9 +87,10 @@ END_TEST
 
 enum { LEVELS = 5, INSIDE = 8 };
 
-/* Largest error of q and v inside one step of h around t = 1, from the exact solution: where the middle stays, so does the derivative
- * that makes the error. */
-static void errors_inside(const problem *of, dvi_integrator *integrator, double h, double *q_error, double *v_error)
+/* Largest error of q and v inside one step of h around t = 1, from the exact solution: where the
+ * middle stays, so does the derivative that makes the error. */
+static void errors_inside(const problem *of, dvi_integrator *integrator, double h, double *q_error,
+                          double *v_error)
 {
   double q[2], p[2], found_q[2], found_v[2];
   const double from = 1 - h / 2;
@@ -104,9 +107,10 @@ static void errors_inside(const problem *of, dvi_integrator *integrator, double 
   }
 }
 
-/* First steps for errors between 1e-3 and the floor of 1e-14, at which roundoff takes over. A path of degree s is right to h^(s+1), its
- * velocity to h^s, if the quadrature is of order 2s-1 or more; one of a lower order u leaves h^(u-s+2). The composition's own error,
- * h^5, lies below that of the cubic, h^4, whose velocity is right to h^3; verlet's own, h^3 and h^2, lies above. */
+/* First steps for errors between 1e-3 and the floor of 1e-14, at which roundoff takes over. A path
+ * of degree s is right to h^(s+1), its velocity to h^s, if the quadrature is of order 2s-1 or more;
+ * one of a lower order u leaves h^(u-s+2). The composition's own error, h^5, lies below that of the
+ * cubic, h^4, whose velocity is right to h^3; verlet's own, h^3 and h^2, lies above. */
 static const struct {
   const char *method;
   int order;
@@ -138,8 +142,9 @@ static void check_order(const char *what, const double *h, const double *error, 
 {
   dvi_order_fit fit;
   ck_assert_int_eq(dvi_order(LEVELS, h, error, 1e-14, 0, &fit), DVI_OK);
-  ck_assert_msg(fit.last - fit.first + 1 >= 4 && fabs(fit.slope - order) <= 0.2, "%s: %d levels, slope %.3f instead of %d", what,
-                fit.last - fit.first + 1, fit.slope, order);
+  ck_assert_msg(fit.last - fit.first + 1 >= 4 && fabs(fit.slope - order) <= 0.2,
+                "%s: %d levels, slope %.3f instead of %d", what, fit.last - fit.first + 1,
+                fit.slope, order);
 }
 
 START_TEST(the_error_inside_a_step_has_the_order_of_the_path)
@@ -209,7 +214,8 @@ static void check_same_path(dvi_integrator *a, dvi_integrator *b, double t)
 START_TEST(the_path_is_in_the_checkpoint)
 {
   problem *of = made_problem("pendulum", NULL);
-  dvi_integrator *first = started(of, methods[_i]), *second = made_integrator(of->system, methods[_i]);
+  dvi_integrator *first = started(of, methods[_i]),
+                 *second = made_integrator(of->system, methods[_i]);
   advance(first, 0.1, 4);
   ck_assert_int_eq(dvi_integrator_save(first, in_folder("checkpoint")), DVI_OK);
   ck_assert_int_eq(dvi_integrator_restore(second, in_folder("checkpoint")), DVI_OK);

@@ -1,6 +1,7 @@
 /* labels: invariant */
-/* Every member of an ensemble has the bits of an integrator of its own, at every level of instructions, for every number of threads and every
- * grouping; and what it counts is what they count together. */
+/* Every member of an ensemble has the bits of an integrator of its own, at every level of
+ * instructions, for every number of threads and every grouping; and what it counts is what they
+ * count together. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -43,7 +44,8 @@ static void spread_momenta(const problem *of, int members, double spread)
 {
   for (int k = 0; k < members; k++) {
     for (int i = 0; i < of->nq; i++) first_q[i * members + k] = of->q[i];
-    for (int i = 0; i < of->nv; i++) first_p[i * members + k] = of->p[i] * (1 + spread * k / members);
+    for (int i = 0; i < of->nv; i++)
+      first_p[i * members + k] = of->p[i] * (1 + spread * k / members);
   }
 }
 
@@ -64,10 +66,12 @@ static void spread_start(const problem *of, int members, double spread)
   for (int k = 0; k < members && of->terms->one_form != NULL; k++) constrain(of, members, k);
 }
 
-static dvi_ensemble *made_ensemble(const dvi_system *system, const char *method, dvi_ensemble_options options)
+static dvi_ensemble *made_ensemble(const dvi_system *system, const char *method,
+                                   dvi_ensemble_options options)
 {
   dvi_ensemble *made = NULL;
-  ck_assert_msg(dvi_ensemble_create(system, method, &options, &made) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_ensemble_create(system, method, &options, &made) == DVI_OK, "%s",
+                dvi_last_error());
   return made;
 }
 
@@ -91,10 +95,11 @@ static dvi_integrator *twin(const dvi_system *system, const char *method, int me
 static void same_member(dvi_ensemble *e, int k, dvi_integrator *single)
 {
   static double t[MEMBERS_MOST], q[N_MOST * MEMBERS_MOST], p[N_MOST * MEMBERS_MOST];
-  double q_k[N_MOST], p_k[N_MOST], here[INVARIANTS_MOST], there[INVARIANTS_MOST], t_single = dvi_integrator_time(single);
+  double q_k[N_MOST], p_k[N_MOST], here[INVARIANTS_MOST], there[INVARIANTS_MOST],
+      t_single = dvi_integrator_time(single);
   const dvi_system *system = dvi_integrator_system(single);
-  const int n = dvi_system_nq(system), nv = dvi_system_nv(system), members = dvi_ensemble_members(e),
-            invariants = dvi_system_invariant_count(system);
+  const int n = dvi_system_nq(system), nv = dvi_system_nv(system),
+            members = dvi_ensemble_members(e), invariants = dvi_system_invariant_count(system);
   ck_assert_int_le(invariants, INVARIANTS_MOST);
   ck_assert_int_eq(dvi_ensemble_state(e, t, q, p), DVI_OK);
   take(n, members, k, q, q_k), take(nv, members, k, p, p_k);
@@ -114,9 +119,10 @@ static void add(const dvi_counters *some, dvi_counters *sum)
   for (size_t i = 0; i < sizeof *sum / sizeof(long); i++) to[i] += from[i];
 }
 
-/* But for memory, what making an integrator counts, factors that all members share since the length of the step alone matters, and the frozen Jacobians
- * that another member has displaced. */
-static void check_counters(dvi_counters got, dvi_counters wanted, const dvi_counters *creation, int members)
+/* But for memory, what making an integrator counts, factors that all members share since the length
+ * of the step alone matters, and the frozen Jacobians that another member has displaced. */
+static void check_counters(dvi_counters got, dvi_counters wanted, const dvi_counters *creation,
+                           int members)
 {
   wanted.symbolic -= (members - 1) * creation->symbolic;
   wanted.factorizations -= (members - 1) * creation->factorizations;
@@ -130,14 +136,16 @@ static void check_counters(dvi_counters got, dvi_counters wanted, const dvi_coun
     ck_assert_int_ge(got.jacobians, wanted.jacobians);
     ck_assert_int_eq(got.hessians - wanted.hessians, got.jacobians - wanted.jacobians);
     ck_assert_int_ge(got.factorizations, wanted.factorizations);
-    got.jacobians = wanted.jacobians, got.hessians = wanted.hessians, got.factorizations = wanted.factorizations;
+    got.jacobians = wanted.jacobians, got.hessians = wanted.hessians,
+    got.factorizations = wanted.factorizations;
   }
   ck_assert_mem_eq(&got, &wanted, sizeof got);
 }
 
 /* ---- places ---- */
 
-/* The chain of 40 goes in waves, that of 8 in lanes. fpu at h = 0.1 is stiff: fixed point iteration fails. At h = 0.02 it fails for some members and steps, and at pericentre kepler's goes through
+/* The chain of 40 goes in waves, that of 8 in lanes. fpu at h = 0.1 is stiff: fixed point iteration
+ * fails. At h = 0.02 it fails for some members and steps, and at pericentre kepler's goes through
  * all solvers. */
 typedef struct place {
   const char *problem, *setting;
@@ -160,7 +168,7 @@ static const place places[] = {{"kepler", NULL, 0.05, 0.1},
 
 static const char *const methods[] = {
     "verlet",
-    "verlet:sweep=plain",
+    "verlet:blocking=none",
     "midpoint",
     "midpoint:solver=fixed-point",
     "trapezoidal",
@@ -203,7 +211,11 @@ static const char *const methods[] = {
     "trig:filter=gautschi",
     "prolongation-collocation:derivatives=3",
 };
-enum { PLACES = sizeof places / sizeof *places, METHODS = sizeof methods / sizeof *methods, STEPS = 12 };
+enum {
+  PLACES = sizeof places / sizeof *places,
+  METHODS = sizeof methods / sizeof *methods,
+  STEPS = 12
+};
 
 /* But sem, which is refused (tests/method/element/test_sem.c). */
 START_TEST(every_method_has_its_place)
@@ -213,13 +225,15 @@ START_TEST(every_method_has_its_place)
     const size_t length = strlen(dvi_method_name(i));
     int found = 0;
     for (int k = 0; k < METHODS; k++)
-      found += strcspn(methods[k], ":") == length && strncmp(methods[k], dvi_method_name(i), length) == 0;
+      found += strcspn(methods[k], ":") == length &&
+               strncmp(methods[k], dvi_method_name(i), length) == 0;
     ck_assert_msg(found > 0, "%s", dvi_method_name(i));
   }
 }
 END_TEST
 
-/* One way to run an ensemble beside the twins, which take the same steps. Some members may fail, on both sides. */
+/* One way to run an ensemble beside the twins, which take the same steps. Some members may fail, on
+ * both sides. */
 static void compare(const problem *of, const char *method, double h, dvi_ensemble_options options)
 {
   dvi_counters wanted = {0}, got, creation, single;
@@ -257,7 +271,8 @@ static int pair_is_accepted(int which)
   return method_accepts_problem(at->problem, at->setting, methods[which % METHODS]);
 }
 
-/* Of 602 pairs. Half of the methods are for one-forms, for factors or for split potentials, which few places have. */
+/* Of 602 pairs. Half of the methods are for one-forms, for factors or for split potentials, which
+ * few places have. */
 START_TEST(every_place_is_taken_by_the_methods_for_it)
 {
   check_accepted_cases(&pairs, 226, METHODS, methods);
@@ -269,19 +284,22 @@ START_TEST(every_member_has_the_bits_of_a_run_alone)
   const place *at = &places[pairs.which[sampled_case(_i)] / METHODS];
   problem *of = made_problem(at->problem, at->setting);
   spread_start(of, 21, at->spread);
-  compare(of, methods[pairs.which[sampled_case(_i)] % METHODS], at->h, (dvi_ensemble_options){.members = 21});
+  compare(of, methods[pairs.which[sampled_case(_i)] % METHODS], at->h,
+          (dvi_ensemble_options){.members = 21});
   problem_destroy(&of);
 }
 END_TEST
 
-/* Levels, threads and groupings, one after the other: each is compared with runs alone at the best level. */
+/* Levels, threads and groupings, one after the other: each is compared with runs alone at the best
+ * level. */
 START_TEST(levels_threads_and_groupings_change_no_bit)
 {
   static const struct {
     int members, threads, block;
   } ways[] = {{1, 1, 0},  {2, 1, 0},   {7, 3, 2},    {21, 1, 1},   {21, 2, 5},
               {37, 4, 8}, {37, 1, 37}, {100, 1, 64}, {100, 3, 13}, {9, 100, 0}};
-  static const char *const some[] = {"verlet", "galerkin", "galerkin:degree=5", "composition:order=6,base=galerkin,degree=2",
+  static const char *const some[] = {"verlet", "galerkin", "galerkin:degree=5",
+                                     "composition:order=6,base=galerkin,degree=2",
                                      "galerkin:degree=8"};
   const int way = _i % 10, level = _i / 10;
   problem *of = made_problem("kepler", "e=0.5");
@@ -289,13 +307,16 @@ START_TEST(levels_threads_and_groupings_change_no_bit)
     dvi__lanes_choose(level);
     spread_start(of, ways[way].members, 0.1);
     compare(of, some[m], 0.05,
-            (dvi_ensemble_options){.members = ways[way].members, .threads = ways[way].threads, .block = ways[way].block});
+            (dvi_ensemble_options){.members = ways[way].members,
+                                   .threads = ways[way].threads,
+                                   .block = ways[way].block});
   }
   problem_destroy(&of);
 }
 END_TEST
 
-/* The ensemble's state at each level against that of the baseline: `compare` has both sides at one level. */
+/* The ensemble's state at each level against that of the baseline: `compare` has both sides at one
+ * level. */
 START_TEST(levels_agree_with_each_other)
 {
   static double base_q[N_MOST * MEMBERS_MOST], q[N_MOST * MEMBERS_MOST];
@@ -319,8 +340,10 @@ START_TEST(a_start_in_velocities_is_one_in_their_momenta)
   problem *of = made_problem("double-pendulum", NULL);
   double v[N_MOST], momentum[N_MOST], p[N_MOST * 5];
   spread_start(of, 5, 0.2);
-  dvi_ensemble *e = made_ensemble(of->system, "galerkin", (dvi_ensemble_options){.members = 5, .threads = 2});
-  ck_assert_int_eq(dvi_ensemble_start_velocity(e, 0, first_q, first_p), DVI_OK); /* any numbers will do */
+  dvi_ensemble *e = made_ensemble(of->system, "galerkin",
+                                  (dvi_ensemble_options){.members = 5, .threads = 2});
+  /* any numbers will do */
+  ck_assert_int_eq(dvi_ensemble_start_velocity(e, 0, first_q, first_p), DVI_OK);
   ck_assert_int_eq(dvi_ensemble_state(e, NULL, NULL, p), DVI_OK);
   for (int k = 0; k < 5; k++) {
     double q[N_MOST];
@@ -354,7 +377,8 @@ START_TEST(verlet_evaluates_once_a_step)
 }
 END_TEST
 
-/* A stiff step: simplified Newton's method keeps its Jacobian as long as it serves. Members that go on alone take 1, 2, 4, ... 32 steps at a time. */
+/* A stiff step: simplified Newton's method keeps its Jacobian as long as it serves. Members that go
+ * on alone take 1, 2, 4, ... 32 steps at a time. */
 START_TEST(a_frozen_jacobian_serves_several_steps)
 {
   enum { ALL = 21, SPAN = 63 };
@@ -387,7 +411,8 @@ START_TEST(no_step_allocates)
   problem *of = made_problem(at->problem, at->setting);
   dvi_counters before, after;
   spread_start(of, 21, 0.05);
-  dvi_ensemble *e = made_ensemble(of->system, method, (dvi_ensemble_options){.members = 21, .threads = 2, .block = 4});
+  dvi_ensemble *e = made_ensemble(of->system, method,
+                                  (dvi_ensemble_options){.members = 21, .threads = 2, .block = 4});
   start_all(e);
   dvi_ensemble_counters(e, &before);
   const long calls = heap_calls();
@@ -397,7 +422,8 @@ START_TEST(no_step_allocates)
   dvi_ensemble_counters(e, &after);
   ck_assert_int_gt(before.allocations, 0);
   ck_assert_int_eq(after.allocations, before.allocations);
-  const long messages = atoi(dvi_reference_version()) >= 7 ? 2 * after.kinsols : 0; /* SUNDIALS 7 keeps those of failed solves */
+  /* SUNDIALS 7 keeps those of failed solves */
+  const long messages = atoi(dvi_reference_version()) >= 7 ? 2 * after.kinsols : 0;
   ck_assert_msg(made <= messages, "%s: %ld heap calls", method, made);
   dvi_ensemble_destroy(&e);
   problem_destroy(&of);
@@ -408,16 +434,19 @@ START_TEST(explain_says_how_members_are_grouped)
 {
   char text[2048], little[20];
   problem *of = made_problem("kepler", NULL);
-  dvi_ensemble *e = made_ensemble(of->system, "verlet", (dvi_ensemble_options){.members = 64, .block = 16});
+  dvi_ensemble *e = made_ensemble(of->system, "verlet",
+                                  (dvi_ensemble_options){.members = 64, .block = 16});
   const size_t length = dvi_ensemble_explain(e, text, sizeof text);
   ck_assert_uint_eq(length, strlen(text));
-  ck_assert_ptr_nonnull(strstr(text, "64 members in 4 blocks, side by side as lanes, 1 thread\nmethod: verlet"));
+  ck_assert_ptr_nonnull(
+      strstr(text, "64 members in 4 blocks, side by side as lanes, 1 thread\nmethod: verlet"));
   ck_assert_uint_eq(dvi_ensemble_explain(e, little, sizeof little), length);
   ck_assert_int_eq(strncmp(text, little, sizeof little - 1), 0);
   ck_assert_uint_eq(dvi_ensemble_explain(e, NULL, 0), length);
-  ck_assert_str_eq(dvi_ensemble_method(e), "verlet:sweep=auto,threads=1");
+  ck_assert_str_eq(dvi_ensemble_method(e), "verlet:blocking=auto,threads=1");
   dvi_ensemble_destroy(&e);
-  e = made_ensemble(of->system, "galerkin:degree=16", (dvi_ensemble_options){.members = 64, .threads = 2});
+  e = made_ensemble(of->system, "galerkin:degree=16",
+                    (dvi_ensemble_options){.members = 64, .threads = 2});
   (void)dvi_ensemble_explain(e, text, sizeof text);
   ck_assert_ptr_nonnull(strstr(text, "64 members in 64 blocks, one after the other, 2 threads\n"));
   dvi_ensemble_destroy(&e);
@@ -439,10 +468,10 @@ static void explained(const char *method, const char *setting, const char *words
 START_TEST(waves_are_not_given_up_for_members_as_lanes)
 {
   explained("verlet", "n=8", "side by side");
-  explained("verlet:sweep=wave", "n=8", "one after the other");
+  explained("verlet:blocking=temporal", "n=8", "one after the other");
   explained("verlet:threads=2", "n=8", "one after the other");
   explained("verlet", "n=40", "one after the other");
-  explained("verlet:sweep=plain", "n=40", "side by side");
+  explained("verlet:blocking=none", "n=40", "side by side");
   explained("composition", "n=40", "one after the other");
   explained("galerkin", "n=40", "side by side");
 }
@@ -455,8 +484,10 @@ SUITE(ensemble)
   tcase_add_test(tests, every_method_has_its_place);
   find_accepted_cases(PLACES * METHODS, pair_is_accepted, &pairs);
   tcase_add_test(tests, every_place_is_taken_by_the_methods_for_it);
-  tcase_add_loop_test(tests, every_member_has_the_bits_of_a_run_alone, 0, sampled_count(pairs.count));
-  tcase_add_loop_test(tests, levels_threads_and_groupings_change_no_bit, 0, 10 * dvi__lanes_levels());
+  tcase_add_loop_test(tests, every_member_has_the_bits_of_a_run_alone, 0,
+                      sampled_count(pairs.count));
+  tcase_add_loop_test(tests, levels_threads_and_groupings_change_no_bit, 0,
+                      10 * dvi__lanes_levels());
   tcase_add_loop_test(tests, levels_agree_with_each_other, 0, 9);
   tcase_add_test(tests, a_start_in_velocities_is_one_in_their_momenta);
   tcase_add_test(tests, verlet_evaluates_once_a_step);

@@ -1,5 +1,6 @@
 /* labels: unit */
-/* What an ensemble does with wrong arguments and with members that fail: it says which, and loses nothing. */
+/* What an ensemble does with wrong arguments and with members that fail: it says which, and loses
+ * nothing. */
 #include <float.h>
 #include <math.h>
 #include <stdint.h>
@@ -21,7 +22,8 @@ static double q[N * MEMBERS], p[N * MEMBERS];
 static void fill_start(void)
 {
   for (int k = 0; k < MEMBERS; k++)
-    for (int i = 0; i < N; i++) q[i * MEMBERS + k] = kepler->q[i] * (1 + 0.01 * k), p[i * MEMBERS + k] = kepler->p[i];
+    for (int i = 0; i < N; i++)
+      q[i * MEMBERS + k] = kepler->q[i] * (1 + 0.01 * k), p[i * MEMBERS + k] = kepler->p[i];
 }
 
 static void set_up(void)
@@ -38,7 +40,8 @@ static void tear_down(void)
   problem_destroy(&kepler);
 }
 
-static void refused(dvi_status expected, const dvi_system *system, const char *method, const dvi_ensemble_options *options)
+static void refused(dvi_status expected, const dvi_system *system, const char *method,
+                    const dvi_ensemble_options *options)
 {
   dvi_ensemble *made = (dvi_ensemble *)(uintptr_t)1;
   ck_assert_int_eq(dvi_ensemble_create(system, method, options, &made), expected);
@@ -50,7 +53,9 @@ START_TEST(wrong_options_are_refused_by_name)
 {
   const dvi_system *system = kepler->system;
   const dvi_system *systems[2] = {system, NULL};
-  ck_assert_int_eq(dvi_ensemble_create(system, "verlet", &(dvi_ensemble_options){.members = 1}, NULL), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(
+      dvi_ensemble_create(system, "verlet", &(dvi_ensemble_options){.members = 1}, NULL),
+      DVI_BAD_ARGUMENT);
   refused(DVI_BAD_ARGUMENT, system, NULL, &(dvi_ensemble_options){.members = 1});
   refused(DVI_BAD_ARGUMENT, system, "verlet", NULL);
   refused(DVI_BAD_ARGUMENT, NULL, "verlet", &(dvi_ensemble_options){.members = 1});
@@ -65,9 +70,11 @@ START_TEST(wrong_options_are_refused_by_name)
   refused(DVI_BAD_SIZE, system, "verlet", &(dvi_ensemble_options){.members = 1, .block = -1});
   check_words("blocks of -1");
   refused(DVI_BAD_SIZE, system, "verlet", &(dvi_ensemble_options){.members = 1, .block = 100000});
-  refused(DVI_BAD_ARGUMENT, system, "verlet", &(dvi_ensemble_options){.members = 2, .systems = systems});
+  refused(DVI_BAD_ARGUMENT, system, "verlet",
+          &(dvi_ensemble_options){.members = 2, .systems = systems});
   check_words("two ways");
-  refused(DVI_BAD_ARGUMENT, NULL, "verlet", &(dvi_ensemble_options){.members = 2, .systems = systems});
+  refused(DVI_BAD_ARGUMENT, NULL, "verlet",
+          &(dvi_ensemble_options){.members = 2, .systems = systems});
   check_words("member 1 is NULL");
   refused(DVI_BAD_OPTION, system, "verlett", &(dvi_ensemble_options){.members = 1});
 }
@@ -116,7 +123,8 @@ START_TEST(null_and_members_that_are_not_are_refused)
 }
 END_TEST
 
-static void same_state(const dvi_ensemble *e, const double *t_then, const double *q_then, const double *p_then)
+static void same_state(const dvi_ensemble *e, const double *t_then, const double *q_then,
+                       const double *p_then)
 {
   double t[MEMBERS], q_now[N * MEMBERS], p_now[N * MEMBERS];
   ck_assert_int_eq(dvi_ensemble_state(e, t, q_now, p_now), DVI_OK);
@@ -132,7 +140,8 @@ START_TEST(a_step_that_is_none_moves_nobody)
   ck_assert_int_eq(dvi_ensemble_start(ensemble, 1, q, p), DVI_OK);
   ck_assert_int_eq(dvi_ensemble_step(ensemble, 0.1), DVI_OK);
   ck_assert_int_eq(dvi_ensemble_state(ensemble, t, q_then, p_then), DVI_OK);
-  for (int i = 0; i < 6; i++) ck_assert_int_eq(dvi_ensemble_step(ensemble, bad[i]), DVI_BAD_ARGUMENT);
+  for (int i = 0; i < 6; i++)
+    ck_assert_int_eq(dvi_ensemble_step(ensemble, bad[i]), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_ensemble_advance(ensemble, 0.1, -1), DVI_BAD_ARGUMENT);
   check_words("-1 steps");
   ck_assert_int_eq(dvi_ensemble_step(ensemble, 1e-17), DVI_BAD_ARGUMENT); /* t + h = t */
@@ -167,7 +176,8 @@ END_TEST
 
 /* ---- members that fail ---- */
 
-/* A free fall in which callbacks refuse, or fail for good, below a floor; q[0] rises or falls with p[0]. */
+/* A free fall in which callbacks refuse, or fail for good, below a floor; q[0] rises or falls with
+ * p[0]. */
 typedef struct ground {
   double retry_below, fail_below, nan_below;
 } ground;
@@ -196,16 +206,19 @@ static int fall_gradient(int count, const double *t, const double *x, double *V_
 static dvi_system *made_fall(ground *g)
 {
   dvi_system *made = NULL;
-  const dvi_potential potential = {.name = "ground", .value_batch = fall, .gradient_batch = fall_gradient, .user = g};
-  const dvi_system_terms terms = {.dimension = 2, .mass.scalar = 1, .potentials = &potential, .potential_count = 1};
+  const dvi_potential potential = {
+      .name = "ground", .value_batch = fall, .gradient_batch = fall_gradient, .user = g};
+  const dvi_system_terms terms = {
+      .dimension = 2, .mass.scalar = 1, .potentials = &potential, .potential_count = 1};
   ck_assert_int_eq(dvi_system_create(&terms, &made), DVI_OK);
   return made;
 }
 
-static const char *const falling_methods[] = {"verlet", "galerkin:degree=2", "composition:order=4,base=midpoint",
-                                              "galerkin:degree=9"};
+static const char *const falling_methods[] = {
+    "verlet", "galerkin:degree=2", "composition:order=4,base=midpoint", "galerkin:degree=9"};
 
-/* Member 4 falls from x = 1 with velocity -1 through the floor at x = 0.05, member 8 from 2; all others rise. */
+/* Member 4 falls from x = 1 with velocity -1 through the floor at x = 0.05, member 8 from 2; all
+ * others rise. */
 static void drop(double *x, double *momentum)
 {
   for (int k = 0; k < MEMBERS; k++) {
@@ -226,10 +239,14 @@ START_TEST(a_member_that_fails_stays_and_the_others_go_on)
   double x[2 * MEMBERS], momentum[2 * MEMBERS], t[MEMBERS];
   dvi_counters counters;
   drop(x, momentum);
-  ck_assert_int_eq(
-      dvi_ensemble_create(system, method, &(dvi_ensemble_options){.members = MEMBERS, .threads = threads, .block = 6}, &e), DVI_OK);
+  ck_assert_int_eq(dvi_ensemble_create(
+                       system, method,
+                       &(dvi_ensemble_options){.members = MEMBERS, .threads = threads, .block = 6},
+                       &e),
+                   DVI_OK);
   ck_assert_int_eq(dvi_ensemble_start(e, 0, x, momentum), DVI_OK);
-  ck_assert_int_eq(dvi_ensemble_advance(e, 0.125, 12), statuses[kind]); /* member 8 is at 0.5 then */
+  /* member 8 is at 0.5 then */
+  ck_assert_int_eq(dvi_ensemble_advance(e, 0.125, 12), statuses[kind]);
   check_words("ensemble: member 4: ");
   check_words("step 8 from t = 0.875");
   for (int k = 0; k < MEMBERS; k++) {
@@ -258,7 +275,8 @@ START_TEST(a_member_that_fails_stays_and_the_others_go_on)
 }
 END_TEST
 
-/* Member 4 meets a smaller-step request first; member 8, later, a failure for good: that one is the worse. */
+/* Member 4 meets a smaller-step request first; member 8, later, a failure for good: that one is the
+ * worse. */
 START_TEST(a_fatal_failure_is_worse_than_an_earlier_member)
 {
   for (int threads = 1; threads <= 3; threads++) {
@@ -270,7 +288,9 @@ START_TEST(a_fatal_failure_is_worse_than_an_earlier_member)
     momentum[8] = -16; /* lands at x = -14 from x = 2, in one step of 1 */
     momentum[4] = -1;
     ck_assert_int_eq(
-        dvi_ensemble_create(system, "verlet", &(dvi_ensemble_options){.members = MEMBERS, .threads = threads, .block = 3}, &e),
+        dvi_ensemble_create(
+            system, "verlet",
+            &(dvi_ensemble_options){.members = MEMBERS, .threads = threads, .block = 3}, &e),
         DVI_OK);
     ck_assert_int_eq(dvi_ensemble_start(e, 0, x, momentum), DVI_OK);
     ck_assert_int_eq(dvi_ensemble_step(e, 1.0), DVI_CALLBACK_FAILED);
@@ -283,7 +303,8 @@ START_TEST(a_fatal_failure_is_worse_than_an_earlier_member)
 }
 END_TEST
 
-/* A force on x < 0 whose second kick overflows the momentum; the mass is so large that nobody moves much. */
+/* A force on x < 0 whose second kick overflows the momentum; the mass is so large that nobody moves
+ * much. */
 static int huge_gradient(int count, const double *t, const double *x, double *V_q, void *user)
 {
   (void)t, (void)user;
@@ -294,13 +315,16 @@ static int huge_gradient(int count, const double *t, const double *x, double *V_
 START_TEST(a_state_that_is_not_finite_is_not_taken)
 {
   const dvi_potential potential = {.value_batch = fall, .gradient_batch = huge_gradient};
-  const dvi_system_terms terms = {.dimension = 1, .mass.scalar = 1e306, .potentials = &potential, .potential_count = 1};
+  const dvi_system_terms terms = {
+      .dimension = 1, .mass.scalar = 1e306, .potentials = &potential, .potential_count = 1};
   double x[MEMBERS], momentum[MEMBERS] = {0}, x_now[MEMBERS], p_now[MEMBERS];
   dvi_system *system = NULL;
   dvi_ensemble *e = NULL;
   for (int k = 0; k < MEMBERS; k++) x[k] = k == 5 ? -1e6 : 1;
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
-  ck_assert_int_eq(dvi_ensemble_create(system, "verlet", &(dvi_ensemble_options){.members = MEMBERS}, &e), DVI_OK);
+  ck_assert_int_eq(
+      dvi_ensemble_create(system, "verlet", &(dvi_ensemble_options){.members = MEMBERS}, &e),
+      DVI_OK);
   ck_assert_int_eq(dvi_ensemble_start(e, 0, x, momentum), DVI_OK);
   ck_assert_int_eq(dvi_ensemble_step(e, 2), DVI_NOT_FINITE);
   check_words("member 5: verlet: step 1 from t = 0");
@@ -329,12 +353,14 @@ START_TEST(creation_survives_every_failure_of_memory)
   problem *of = made_problem(places[_i].problem, NULL);
   const dvi_system *systems[MEMBERS];
   for (int k = 0; k < MEMBERS; k++) systems[k] = of->system;
-  const dvi_ensemble_options options[] = {{.members = MEMBERS, .threads = 2}, {.members = MEMBERS, .systems = systems}};
+  const dvi_ensemble_options options[] = {{.members = MEMBERS, .threads = 2},
+                                          {.members = MEMBERS, .systems = systems}};
   for (int way = 0; way < 2; way++) {
     const dvi_system *system = way == 0 ? of->system : NULL;
     dvi_ensemble *made = NULL;
     ck_assert_int_eq(dvi_ensemble_create(system, places[_i].method, &options[way], &made), DVI_OK);
-    dvi_ensemble_destroy(&made); /* the first one completes the system, and libraries take what they keep */
+    /* the first one completes the system, and libraries take what they keep */
+    dvi_ensemble_destroy(&made);
     const long before = dvi__allocation_count();
     ck_assert_int_eq(dvi_ensemble_create(system, places[_i].method, &options[way], &made), DVI_OK);
     const long needed = dvi__allocation_count() - before;
@@ -344,9 +370,11 @@ START_TEST(creation_survives_every_failure_of_memory)
     for (long successes = 0; successes < needed; successes++) {
       made = (dvi_ensemble *)(uintptr_t)1;
       dvi__fail_allocations_after(successes);
-      const dvi_status status = dvi_ensemble_create(system, places[_i].method, &options[way], &made);
+      const dvi_status status = dvi_ensemble_create(system, places[_i].method, &options[way],
+                                                    &made);
       dvi__fail_allocations_after(-1);
-      ck_assert_msg(status == DVI_NO_MEMORY, "%s after %ld of %ld", dvi_status_name(status), successes, needed);
+      ck_assert_msg(status == DVI_NO_MEMORY, "%s after %ld of %ld", dvi_status_name(status),
+                    successes, needed);
       check_words("no memory");
       ck_assert_ptr_null(made);
     }

@@ -1,5 +1,6 @@
 /* labels: unit */
-/* Sweeps of parameters: members with systems of their own have the bits of integrators of these systems. */
+/* Sweeps of parameters: members with systems of their own have the bits of integrators of these
+ * systems. */
 #include <string.h>
 
 #include "support/accepted.h"
@@ -22,14 +23,16 @@ static const struct {
               {"oscillators", {"omega=10", "omega=20", "omega=40", "omega=5"}}};
 enum { OSCILLATOR, FPU, HENON_HEILES, DOUBLE_PENDULUM, CHAIN, OSCILLATORS, SWEEPS };
 
-static const char *const methods[] = {"verlet", "galerkin", "galerkin:degree=8", "galerkin:degree=3,solver=newton",
+static const char *const methods[] = {"verlet", "galerkin", "galerkin:degree=8",
+                                      "galerkin:degree=3,solver=newton",
                                       "composition:order=6,base=midpoint"};
 enum { METHODS = 5 };
 
 /* `interleaved`: neighbours have different systems. */
 static void make_sweep(int which, int interleaved)
 {
-  for (int s = 0; s < SYSTEMS; s++) of[s] = made_problem(sweeps[which].problem, sweeps[which].setting[s]);
+  for (int s = 0; s < SYSTEMS; s++)
+    of[s] = made_problem(sweeps[which].problem, sweeps[which].setting[s]);
   const int n = of[0]->nq;
   ck_assert_int_le(n, N_MOST);
   for (int k = 0; k < MEMBERS; k++) {
@@ -87,7 +90,8 @@ static accepted_cases cases;
 static int case_is_accepted(int which)
 {
   const int sweep = which / METHODS % SWEEPS;
-  return method_accepts_problem(sweeps[sweep].problem, sweeps[sweep].setting[0], methods[which % METHODS]);
+  return method_accepts_problem(sweeps[sweep].problem, sweeps[sweep].setting[0],
+                                methods[which % METHODS]);
 }
 
 /* verlet wants a constant mass, which the double pendulum has not. */
@@ -100,7 +104,8 @@ END_TEST
 START_TEST(members_with_systems_of_their_own_have_the_bits_of_runs_alone)
 {
   const int which = cases.which[_i];
-  check_bits_of_runs_alone(which / METHODS % SWEEPS, which / METHODS / SWEEPS, methods[which % METHODS]);
+  check_bits_of_runs_alone(which / METHODS % SWEEPS, which / METHODS / SWEEPS,
+                           methods[which % METHODS]);
 }
 END_TEST
 
@@ -148,7 +153,8 @@ START_TEST(systems_that_are_not_alike_are_refused)
   problem *one = made_problem("kepler", NULL), *other = made_problem("henon-heiles", NULL);
   const dvi_system *pair[] = {one->system, other->system};
   dvi_ensemble *e = NULL;
-  ck_assert_int_eq(dvi_ensemble_create(NULL, "verlet", &(dvi_ensemble_options){.members = 2, .systems = pair}, &e),
+  ck_assert_int_eq(dvi_ensemble_create(NULL, "verlet",
+                                       &(dvi_ensemble_options){.members = 2, .systems = pair}, &e),
                    DVI_BAD_ARGUMENT);
   check_words("member 1 is not like that of member 0");
   ck_assert_ptr_null(e);
@@ -175,14 +181,16 @@ START_TEST(a_derivative_that_only_one_system_gives_is_refused)
 {
   double strength = 1;
   dvi_potential potential = {.value = quartic, .gradient = quartic_gradient, .user = &strength};
-  const dvi_system_terms terms = {.dimension = 1, .mass.scalar = 1, .potentials = &potential, .potential_count = 1};
+  const dvi_system_terms terms = {
+      .dimension = 1, .mass.scalar = 1, .potentials = &potential, .potential_count = 1};
   dvi_system *with = NULL, *without = NULL;
   dvi_ensemble *e = NULL;
   ck_assert_int_eq(dvi_system_create(&terms, &with), DVI_OK);
   potential.gradient = NULL;
   ck_assert_int_eq(dvi_system_create(&terms, &without), DVI_OK);
   const dvi_system *pair[] = {with, without};
-  ck_assert_int_eq(dvi_ensemble_create(NULL, "verlet", &(dvi_ensemble_options){.members = 2, .systems = pair}, &e),
+  ck_assert_int_eq(dvi_ensemble_create(NULL, "verlet",
+                                       &(dvi_ensemble_options){.members = 2, .systems = pair}, &e),
                    DVI_BAD_ARGUMENT);
   check_words("a derivative is given in one");
   dvi_system_destroy(&with);
@@ -213,14 +221,18 @@ START_TEST(slow_potentials_are_those_of_each_member)
   const double x[] = {1, 1}, rest[] = {0, 0};
   double end[2];
   for (int s = 0; s < 2; s++) {
-    const dvi_potential pair[] = {{.value = spring, .gradient = spring_gradient, .fast = 1, .quadratic = 1},
-                                  {.value = quartic, .gradient = quartic_gradient, .user = &strength[s]}};
-    const dvi_system_terms terms = {.dimension = 1, .mass.scalar = 1, .potentials = pair, .potential_count = 2};
+    const dvi_potential pair[] = {
+        {.value = spring, .gradient = spring_gradient, .fast = 1, .quadratic = 1},
+        {.value = quartic, .gradient = quartic_gradient, .user = &strength[s]}};
+    const dvi_system_terms terms = {
+        .dimension = 1, .mass.scalar = 1, .potentials = pair, .potential_count = 2};
     ck_assert_int_eq(dvi_system_create(&terms, &made[s]), DVI_OK);
   }
   const dvi_system *const both[] = {made[0], made[1]};
   dvi_ensemble *e = NULL;
-  ck_assert_int_eq(dvi_ensemble_create(NULL, split[_i], &(dvi_ensemble_options){.members = 2, .systems = both}, &e), DVI_OK);
+  ck_assert_int_eq(dvi_ensemble_create(NULL, split[_i],
+                                       &(dvi_ensemble_options){.members = 2, .systems = both}, &e),
+                   DVI_OK);
   ck_assert_int_eq(dvi_ensemble_start(e, 0, x, rest), DVI_OK);
   ck_assert_int_eq(dvi_ensemble_advance(e, 0.05, 10), DVI_OK);
   ck_assert_int_eq(dvi_ensemble_state(e, NULL, end, NULL), DVI_OK);
@@ -239,7 +251,8 @@ END_TEST
 static int quartic_range(double t, const double *x, int first, int last, double *V_q, void *user)
 {
   (void)t;
-  for (int i = first; i < last; i++) V_q[i - first] = i == 0 ? 4 * *(const double *)user * x[0] * x[0] * x[0] : 0;
+  for (int i = first; i < last; i++)
+    V_q[i - first] = i == 0 ? 4 * *(const double *)user * x[0] * x[0] * x[0] : 0;
   return 0;
 }
 
@@ -248,7 +261,8 @@ START_TEST(a_reach_of_its_own_is_refused)
 {
   double strength = 1;
   dvi_potential potential = {.value = quartic, .gradient = quartic_gradient, .user = &strength};
-  const dvi_system_terms terms = {.dimension = 1, .mass.scalar = 1, .potentials = &potential, .potential_count = 1};
+  const dvi_system_terms terms = {
+      .dimension = 1, .mass.scalar = 1, .potentials = &potential, .potential_count = 1};
   dvi_system *whole = NULL, *near = NULL, *far = NULL;
   dvi_ensemble *e = NULL;
   ck_assert_int_eq(dvi_system_create(&terms, &whole), DVI_OK);
@@ -258,7 +272,9 @@ START_TEST(a_reach_of_its_own_is_refused)
   ck_assert_int_eq(dvi_system_create(&terms, &far), DVI_OK);
   const dvi_system *pairs[][2] = {{whole, near}, {near, whole}, {near, far}};
   for (int i = 0; i < 3; i++) {
-    ck_assert_int_eq(dvi_ensemble_create(NULL, "verlet", &(dvi_ensemble_options){.members = 2, .systems = pairs[i]}, &e),
+    ck_assert_int_eq(dvi_ensemble_create(NULL, "verlet",
+                                         &(dvi_ensemble_options){.members = 2, .systems = pairs[i]},
+                                         &e),
                      DVI_BAD_ARGUMENT);
     check_words("gradient_range");
   }
@@ -284,8 +300,10 @@ START_TEST(neighbours_with_one_system_share_a_call)
   double strength[2] = {1, 2}, x[MEMBERS] = {0}, momentum[MEMBERS];
   dvi_system *made[2];
   for (int s = 0; s < 2; s++) {
-    const dvi_potential potential = {.value = quartic, .gradient_batch = counted_gradient, .user = &strength[s]};
-    const dvi_system_terms terms = {.dimension = 1, .mass.scalar = 1, .potentials = &potential, .potential_count = 1};
+    const dvi_potential potential = {
+        .value = quartic, .gradient_batch = counted_gradient, .user = &strength[s]};
+    const dvi_system_terms terms = {
+        .dimension = 1, .mass.scalar = 1, .potentials = &potential, .potential_count = 1};
     ck_assert_int_eq(dvi_system_create(&terms, &made[s]), DVI_OK);
   }
   for (int k = 0; k < MEMBERS; k++) systems[k] = made[2 * k / MEMBERS], momentum[k] = 1;
@@ -314,7 +332,8 @@ static int H(double t, const double *x, const double *momentum, double *value, v
   return 0;
 }
 
-static int H_gradient(double t, const double *x, const double *momentum, double *H_q, double *H_p, void *user)
+static int H_gradient(double t, const double *x, const double *momentum, double *H_q, double *H_p,
+                      void *user)
 {
   (void)t, (void)x, (void)user;
   H_q[0] = 0;
@@ -351,23 +370,31 @@ START_TEST(circles_of_different_radii_hold_their_own_particles)
   double end[4];
   const dvi_hamiltonian hamiltonian = {.value = H, .gradient = H_gradient};
   for (int s = 0; s < 2; s++) {
-    const dvi_constraint constraint = {
-        .count = 2, .value = circle, .gradient = circle_gradient, .gradients = {start, row}, .user = &radius[s]};
-    const dvi_system_terms terms = {.dimension = 2, .autonomous = 1, .hamiltonian = &hamiltonian, .constraint = &constraint};
+    const dvi_constraint constraint = {.count = 2,
+                                       .value = circle,
+                                       .gradient = circle_gradient,
+                                       .gradients = {start, row},
+                                       .user = &radius[s]};
+    const dvi_system_terms terms = {
+        .dimension = 2, .autonomous = 1, .hamiltonian = &hamiltonian, .constraint = &constraint};
     ck_assert_msg(dvi_system_create(&terms, &made[s]) == DVI_OK, "%s", dvi_last_error());
   }
   const dvi_system *const pair[] = {made[0], made[1]};
   dvi_ensemble *e = NULL;
-  ck_assert_msg(dvi_ensemble_create(NULL, "dg-phase", &(dvi_ensemble_options){.members = 2, .systems = pair}, &e) == DVI_OK, "%s",
-                dvi_last_error());
+  ck_assert_msg(dvi_ensemble_create(NULL, "dg-phase",
+                                    &(dvi_ensemble_options){.members = 2, .systems = pair},
+                                    &e) == DVI_OK,
+                "%s", dvi_last_error());
   ck_assert_msg(dvi_ensemble_start(e, 0, x, momentum) == DVI_OK, "%s", dvi_last_error());
   ck_assert_msg(dvi_ensemble_advance(e, 0.1, 5) == DVI_OK, "%s", dvi_last_error());
   ck_assert_int_eq(dvi_ensemble_state(e, NULL, end, NULL), DVI_OK);
   for (int s = 0; s < 2; s++) {
     dvi_integrator *alone = made_integrator(made[s], "dg-phase");
-    ck_assert_int_eq(dvi_integrator_start(alone, 0, (double[]){x[s], 0}, (double[]){0, 0.3}), DVI_OK);
+    ck_assert_int_eq(dvi_integrator_start(alone, 0, (double[]){x[s], 0}, (double[]){0, 0.3}),
+                     DVI_OK);
     advance(alone, 0.1, 5);
-    for (int i = 0; i < 2; i++) ck_assert_mem_eq(&end[2 * i + s], dvi_integrator_q(alone) + i, sizeof(double));
+    for (int i = 0; i < 2; i++)
+      ck_assert_mem_eq(&end[2 * i + s], dvi_integrator_q(alone) + i, sizeof(double));
     dvi_integrator_destroy(&alone);
   }
   dvi_ensemble_destroy(&e);
@@ -397,13 +424,17 @@ START_TEST(a_parameter_that_rests_is_one_to_the_last_bit)
 {
   enum { BLOCK = 8, STEPS = 50 };
   const dvi_potential potential = {.value_batch = sprung, .gradient_batch = sprung_gradient};
-  const dvi_system_terms terms = {.dimension = 2, .mass.scalar = 1, .potentials = &potential, .potential_count = 1};
+  const dvi_system_terms terms = {
+      .dimension = 2, .mass.scalar = 1, .potentials = &potential, .potential_count = 1};
   double x[2 * MEMBERS], momentum[2 * MEMBERS] = {0}, end[2 * MEMBERS];
   dvi_system *system = NULL;
   dvi_ensemble *e = NULL;
   for (int k = 0; k < MEMBERS; k++) x[k] = 1, x[MEMBERS + k] = 1 + 0.1 * k;
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
-  ck_assert_int_eq(dvi_ensemble_create(system, "verlet", &(dvi_ensemble_options){.members = MEMBERS, .block = BLOCK}, &e), DVI_OK);
+  ck_assert_int_eq(dvi_ensemble_create(system, "verlet",
+                                       &(dvi_ensemble_options){.members = MEMBERS, .block = BLOCK},
+                                       &e),
+                   DVI_OK);
   ck_assert_int_eq(dvi_ensemble_start(e, 0, x, momentum), DVI_OK);
   calls = 0;
   ck_assert_int_eq(dvi_ensemble_advance(e, 0.1, STEPS), DVI_OK);
@@ -411,8 +442,10 @@ START_TEST(a_parameter_that_rests_is_one_to_the_last_bit)
   ck_assert_int_eq(dvi_ensemble_state(e, NULL, end, NULL), DVI_OK);
   ck_assert_mem_eq(end + MEMBERS, x + MEMBERS, MEMBERS * sizeof(double));
   for (int k = 0; k < MEMBERS; k++) {
-    dvi_potential fixed = {.value = quartic, .gradient_batch = counted_gradient, .user = &x[MEMBERS + k]};
-    const dvi_system_terms alone = {.dimension = 1, .mass.scalar = 1, .potentials = &fixed, .potential_count = 1};
+    dvi_potential fixed = {
+        .value = quartic, .gradient_batch = counted_gradient, .user = &x[MEMBERS + k]};
+    const dvi_system_terms alone = {
+        .dimension = 1, .mass.scalar = 1, .potentials = &fixed, .potential_count = 1};
     dvi_system *of_member = NULL;
     ck_assert_int_eq(dvi_system_create(&alone, &of_member), DVI_OK);
     dvi_integrator *integrator = made_integrator(of_member, "verlet");
@@ -431,8 +464,10 @@ SUITE(ensemble_systems)
 {
   find_accepted_cases(2 * SWEEPS * METHODS, case_is_accepted, &cases);
   tcase_add_test(tests, one_method_refuses_one_system);
-  tcase_add_loop_test(tests, members_with_systems_of_their_own_have_the_bits_of_runs_alone, 0, cases.count);
-  tcase_add_loop_test(tests, methods_that_split_have_the_parts_of_each_members_system, 0, 2 * SPLITS);
+  tcase_add_loop_test(tests, members_with_systems_of_their_own_have_the_bits_of_runs_alone, 0,
+                      cases.count);
+  tcase_add_loop_test(tests, methods_that_split_have_the_parts_of_each_members_system, 0,
+                      2 * SPLITS);
   tcase_add_test(tests, neighbours_with_one_system_share_its_modes);
   tcase_add_loop_test(tests, slow_potentials_are_those_of_each_member, 0, 7);
   tcase_add_test(tests, circles_of_different_radii_hold_their_own_particles);

@@ -102,14 +102,15 @@ static int note_time(double t, const double *q, const double *v, void *user)
   return 0;
 }
 
-/* q = cos(w t)/2 vanishes at (k + 1/2) pi/w. With degree 8 and h = 0.1 the path's own error is (w h/2)^9/9!, nothing; the promise is
- * 1e-12 max(1,|t|). */
+/* q = cos(w t)/2 vanishes at (k + 1/2) pi/w. With degree 8 and h = 0.1 the path's own error is (w
+ * h/2)^9/9!, nothing; the promise is 1e-12 max(1,|t|). */
 START_TEST(zeros_of_an_oscillator_are_where_theory_says)
 {
   double zero = 0;
   const double w = sqrt(0.5);
   const int direction = _i - 1, first = direction > 0 ? 1 : 0, stride = direction == 0 ? 1 : 2;
-  const dvi_event event = {.value = position, .direction = direction, .occurred = note_time, .user = &zero};
+  const dvi_event event = {
+      .value = position, .direction = direction, .occurred = note_time, .user = &zero};
   const dvi_run_report report = watch(0.1, 100, &event, 1);
   ck_assert_int_eq(times.count, direction == 0 ? 23 : direction > 0 ? 11 : 12);
   for (int k = 0; k < times.count; k++) {
@@ -142,15 +143,17 @@ static int radial_speed(double t, const double *q, const double *v, double *g, v
   return 0;
 }
 
-/* The apsides of a Kepler orbit from its pericentre are at k pi. With degree 12 and h = 0.05 the velocity inside a step, at an eccentricity
- * of 0.6, is right to 24^-12 (the nearest singularity is 0.3 away in complex time): roundoff. What the run's roundoff does to the phase
- * stays below 1e-13 over five turns. The start, itself a pericentre, is none of the run's events. */
+/* The apsides of a Kepler orbit from its pericentre are at k pi. With degree 12 and h = 0.05 the
+ * velocity inside a step, at an eccentricity of 0.6, is right to 24^-12 (the nearest singularity is
+ * 0.3 away in complex time): roundoff. What the run's roundoff does to the phase stays below 1e-13
+ * over five turns. The start, itself a pericentre, is none of the run's events. */
 START_TEST(apsides_of_a_kepler_orbit_are_where_theory_says)
 {
   const int direction = _i - 1;
   problem *kepler = made_problem("kepler", "e=0.6");
   dvi_integrator *orbit = started(kepler, "galerkin:degree=12");
-  const dvi_event event = {.name = "apsis", .value = radial_speed, .direction = direction, .occurred = note_time};
+  const dvi_event event = {
+      .name = "apsis", .value = radial_speed, .direction = direction, .occurred = note_time};
   const dvi_run_options options = {.h = 0.05, .t_end = 32, .events = &event, .event_count = 1};
   ck_assert_msg(dvi_run(orbit, &options, NULL) == DVI_OK, "%s", dvi_last_error());
   ck_assert_int_eq(times.count, direction == 0 ? 10 : 5);
@@ -163,9 +166,9 @@ START_TEST(apsides_of_a_kepler_orbit_are_where_theory_says)
 }
 END_TEST
 
-/* A function of time alone is known to the last digit: what is left is the search. The cube is flat at its zero, the sign has no slope to
- * go by, the steep one's values left and right of it differ by 10^17, the product of two values of the tiny one is zero in floating
- * point. */
+/* A function of time alone is known to the last digit: what is left is the search. The cube is flat
+ * at its zero, the sign has no slope to go by, the steep one's values left and right of it differ
+ * by 10^17, the product of two values of the tiny one is zero in floating point. */
 static int cube(double t, const double *q, const double *v, double *g, void *user)
 {
   (void)q, (void)v, (void)user;
@@ -203,7 +206,8 @@ static int huge(double t, const double *q, const double *v, double *g, void *use
 
 START_TEST(awkward_functions_are_located_as_well)
 {
-  int (*const values[])(double, const double *, const double *, double *, void *) = {cube, sign, steep, tiny, huge};
+  int (*const values[])(double, const double *, const double *, double *,
+                        void *) = {cube, sign, steep, tiny, huge};
   const dvi_event event = {.value = values[_i], .occurred = note_time};
   (void)watch(0.5, 2, &event, 1);
   ck_assert_int_eq(times.count, 1);
@@ -243,7 +247,8 @@ START_TEST(a_double_zero_inside_a_quarter_is_no_event)
 }
 END_TEST
 
-/* With h = 0.125 these times are points of the search, exactly: the end of a step, a quarter, the end of the run. */
+/* With h = 0.125 these times are points of the search, exactly: the end of a step, a quarter, the
+ * end of the run. */
 START_TEST(a_zero_on_a_point_of_the_search_is_reported_once)
 {
   const double exact[] = {0.5, 0.53125, 1};
@@ -280,7 +285,8 @@ END_TEST
 
 /* ---- in order ---- */
 
-/* Six zeros in one step, from three events, in two quarters of it, listed late to early; backward the order is reversed. */
+/* Six zeros in one step, from three events, in two quarters of it, listed late to early; backward
+ * the order is reversed. */
 START_TEST(events_of_one_step_come_in_the_order_of_the_run)
 {
   mark late = {.count = 2, .time = {0.31, 0.71}}, middle = {.count = 2, .time = {0.30, 0.55}},
@@ -317,7 +323,8 @@ END_TEST
 
 START_TEST(the_earliest_terminal_event_ends_the_run)
 {
-  mark last = {.count = 1, .time = {0.96}}, first = {.count = 1, .time = {0.92}}, middle = {.count = 1, .time = {0.94}};
+  mark last = {.count = 1, .time = {0.96}}, first = {.count = 1, .time = {0.92}},
+       middle = {.count = 1, .time = {0.94}};
   dvi_event events[] = {at_times(&last), at_times(&first), at_times(&middle)};
   events[0].terminal = events[2].terminal = 1;
   const dvi_run_report report = watch(0.1, 5, events, 3);
@@ -358,7 +365,8 @@ START_TEST(a_run_may_be_cancelled_in_an_event)
 {
   mark m = {.count = 1, .time = {0.45}};
   const dvi_event event = {.value = clock_value, .occurred = raise_flag, .user = &m};
-  const dvi_run_options options = {.h = 0.1, .t_end = 5, .events = &event, .event_count = 1, .cancel = &flag};
+  const dvi_run_options options = {
+      .h = 0.1, .t_end = 5, .events = &event, .event_count = 1, .cancel = &flag};
   dvi_run_report report;
   ck_assert_int_eq(dvi_run(integrator, &options, &report), DVI_OK);
   ck_assert_int_eq(report.end, DVI_RUN_CANCELLED);
@@ -390,7 +398,8 @@ static const struct {
 };
 enum { AILMENTS = sizeof ailments / sizeof *ailments };
 
-/* Its step is taken back, so that a smaller one may be tried: what follows goes as if it had not been. */
+/* Its step is taken back, so that a smaller one may be tried: what follows goes as if it had not
+ * been. */
 START_TEST(a_function_that_fails_in_mid_run_fails_the_run)
 {
   mark m = {.value_after = 0.45, .value_answer = ailments[_i].answer, .value = ailments[_i].value};

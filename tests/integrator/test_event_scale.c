@@ -46,14 +46,17 @@ static int no_potential(double t, const double *q, double *V, void *user)
 }
 
 /* Locate the zero 7.3 units after `begin` in steps of one unit. */
-static double error_in_units(double unit, double begin, int (*value)(double, const double *, const double *, double *, void *))
+static double error_in_units(double unit, double begin,
+                             int (*value)(double, const double *, const double *, double *, void *))
 {
   clock c = {unit, begin + 7.3 * unit, (double)NAN};
   const double q = 1, p = 0;
   const dvi_potential free_motion = {.name = "none", .value = no_potential};
-  const dvi_system_terms terms = {.dimension = 1, .mass.scalar = 1, .potentials = &free_motion, .potential_count = 1};
+  const dvi_system_terms terms = {
+      .dimension = 1, .mass.scalar = 1, .potentials = &free_motion, .potential_count = 1};
   const dvi_event event = {.name = "alarm", .value = value, .occurred = note, .user = &c};
-  const dvi_run_options options = {.h = unit, .t_end = begin + 10 * unit, .events = &event, .event_count = 1};
+  const dvi_run_options options = {
+      .h = unit, .t_end = begin + 10 * unit, .events = &event, .event_count = 1};
   dvi_system *system = NULL;
   ck_assert_msg(dvi_system_create(&terms, &system) == DVI_OK, "%s", dvi_last_error());
   dvi_integrator *integrator = made_integrator(system, "verlet");
@@ -77,8 +80,10 @@ END_TEST
 START_TEST(late_events_are_located_to_the_rounding_of_the_clock)
 {
   static const double begins[] = {1e3, 1e5, 1e8, -1e5};
-  ck_assert_double_le(error_in_units(1, begins[_i], cube), 1e-12 + 4 * DBL_EPSILON * fabs(begins[_i]));
-  ck_assert_double_le(error_in_units(1, begins[_i], sign), 1e-12 + 4 * DBL_EPSILON * fabs(begins[_i]));
+  ck_assert_double_le(error_in_units(1, begins[_i], cube),
+                      1e-12 + 4 * DBL_EPSILON * fabs(begins[_i]));
+  ck_assert_double_le(error_in_units(1, begins[_i], sign),
+                      1e-12 + 4 * DBL_EPSILON * fabs(begins[_i]));
 }
 END_TEST
 

@@ -1,5 +1,6 @@
 /* labels: unit */
-/* A step or a start that cannot be is refused with a sentence that says why, and leaves everything as it was. */
+/* A step or a start that cannot be is refused with a sentence that says why, and leaves everything
+ * as it was. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,7 +14,8 @@
 
 typedef enum ailment { RETRY, FAIL, NOT_A_NUMBER, INFINITE, AILMENTS } ailment;
 
-static const dvi_status status_of[] = {DVI_CALLBACK_RETRY, DVI_CALLBACK_FAILED, DVI_NOT_FINITE, DVI_NOT_FINITE};
+static const dvi_status status_of[] = {DVI_CALLBACK_RETRY, DVI_CALLBACK_FAILED, DVI_NOT_FINITE,
+                                       DVI_NOT_FINITE};
 
 /* From this time on the callbacks are ill. */
 typedef struct trap {
@@ -54,9 +56,13 @@ static int well_hessian(double t, const double *q, double *V_qq, void *user)
 
 static dvi_system *well(trap *set)
 {
-  const dvi_potential potential = {
-      .name = "pit", .value = well_value, .gradient = well_gradient, .hessian = well_hessian, .user = set};
-  return make_system(&(dvi_system_terms){.dimension = 2, .mass.scalar = 2, .potentials = &potential, .potential_count = 1});
+  const dvi_potential potential = {.name = "pit",
+                                   .value = well_value,
+                                   .gradient = well_gradient,
+                                   .hessian = well_hessian,
+                                   .user = set};
+  return make_system(&(dvi_system_terms){
+      .dimension = 2, .mass.scalar = 2, .potentials = &potential, .potential_count = 1});
 }
 
 /* L = (2 + cos q_0) v_0^2/2 + v_1^2/2 - q_0^2/2 - q_1^2/2. */
@@ -67,7 +73,8 @@ static int bend_value(double t, const double *q, const double *v, double *L, voi
   return 0;
 }
 
-static int bend_gradient(double t, const double *q, const double *v, double *L_q, double *L_v, void *user)
+static int bend_gradient(double t, const double *q, const double *v, double *L_q, double *L_v,
+                         void *user)
 {
   const trap *set = user;
   L_q[0] = -sin(q[0]) * v[0] * v[0] / 2 - q[0];
@@ -99,9 +106,11 @@ static void check_same_path(dvi_integrator *a, dvi_integrator *b, double t)
   ck_assert_mem_eq(found[0], found[1], sizeof found[0]);
 }
 
-/* Three good steps, one of another length (so that nothing can be kept) that the trap spoils, and three good ones again: the state after the failure, and after each later step, is that
- * of an integrator that never failed, bit for bit. */
-static void survives(dvi_system *(*make)(trap *), const char *method, int hessian_only, ailment with, const char *culprit)
+/* Three good steps, one of another length (so that nothing can be kept) that the trap spoils, and
+ * three good ones again: the state after the failure, and after each later step, is that of an
+ * integrator that never failed, bit for bit. */
+static void survives(dvi_system *(*make)(trap *), const char *method, int hessian_only,
+                     ailment with, const char *culprit)
 {
   trap set = {HUGE_VAL, with, hessian_only};
   dvi_system *system = make(&set);
@@ -109,7 +118,8 @@ static void survives(dvi_system *(*make)(trap *), const char *method, int hessia
   advance(tried, 0.1, 3);
   advance(spared, 0.1, 3);
   set.after = 0.32;
-  ck_assert_msg(dvi_integrator_step(tried, 0.08) == status_of[with], "%s: %s", method, dvi_last_error());
+  ck_assert_msg(dvi_integrator_step(tried, 0.08) == status_of[with], "%s: %s", method,
+                dvi_last_error());
   check_words("step 4 from t = 0.3 with h = 0.08 failed; the state is unchanged");
   check_words(culprit);
   set.after = HUGE_VAL;
@@ -150,7 +160,8 @@ END_TEST
 
 START_TEST(lagrangians_that_fail_in_mid_run_leave_the_state_alone)
 {
-  survives(bend, methods[_i / AILMENTS], 0, (ailment)(_i % AILMENTS), ": Lagrangian: the gradient callback ");
+  survives(bend, methods[_i / AILMENTS], 0, (ailment)(_i % AILMENTS),
+           ": Lagrangian: the gradient callback ");
 }
 END_TEST
 
@@ -176,7 +187,8 @@ START_TEST(steps_that_do_not_move_the_time_are_refused)
     check_words("does not move the time");
   }
   check_state(integrator, before);
-  ck_assert_int_eq(dvi_integrator_start(integrator, 0, of->q, of->p), DVI_OK); /* here even the smallest number moves the time */
+  /* here even the smallest number moves the time */
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, of->q, of->p), DVI_OK);
   ck_assert_int_eq(dvi_integrator_step(integrator, 1e-320), DVI_BAD_ARGUMENT);
   check_words("so small that 1/h cannot be computed");
   dvi_integrator_destroy(&integrator);
@@ -184,7 +196,8 @@ START_TEST(steps_that_do_not_move_the_time_are_refused)
 }
 END_TEST
 
-/* At rest and free the coordinates stay 0; it is the time that overflows. A step later the coordinate does. */
+/* At rest and free the coordinates stay 0; it is the time that overflows. A step later the
+ * coordinate does. */
 START_TEST(a_step_beyond_the_largest_number_fails)
 {
   static const char *const some[] = {"verlet", "midpoint"};
@@ -209,7 +222,8 @@ START_TEST(nothing_works_before_the_start)
   dvi_integrator *integrator = made_integrator(of->system, methods[_i]);
   ck_assert_int_eq(dvi_integrator_step(integrator, 0.1), DVI_BAD_STATE);
   check_words("dvi_integrator_start");
-  ck_assert_int_eq(dvi_run(integrator, &(dvi_run_options){.h = 0.1, .t_end = 1}, NULL), DVI_BAD_STATE);
+  ck_assert_int_eq(dvi_run(integrator, &(dvi_run_options){.h = 0.1, .t_end = 1}, NULL),
+                   DVI_BAD_STATE);
   ck_assert_int_eq(dvi_integrator_invariants(integrator, out), DVI_BAD_STATE);
   ck_assert_int_eq(dvi_integrator_interpolate(integrator, 0, out, out), DVI_BAD_STATE);
   ck_assert_int_eq(dvi_integrator_save(integrator, in_folder("none")), DVI_BAD_STATE);
@@ -224,12 +238,14 @@ START_TEST(equations_without_a_solution_are_reported_and_a_smaller_step_goes_on)
   static const char *const choices[] = {"auto", "newton", "kinsol", "fixed-point"};
   dvi_system *system = runaway(0);
   const char *method = spec("midpoint:solver=%s", choices[_i]);
-  dvi_integrator *tried = made_integrator(system, method), *spared = made_integrator(system, method);
+  dvi_integrator *tried = made_integrator(system, method),
+                 *spared = made_integrator(system, method);
   ck_assert_int_eq(dvi_integrator_start(tried, 0, &(double){0}, &(double){0}), DVI_OK);
   ck_assert_int_eq(dvi_integrator_start(spared, 0, &(double){0}, &(double){0}), DVI_OK);
   ck_assert_int_eq(dvi_integrator_step(tried, 1.5), DVI_STEP_TOO_LARGE);
-  const char *const words[] = {"midpoint: step 1 ",  "from t = 0 ", "h = 1.5",         "the state is unchanged",
-                               "try a smaller step", "iterations",  "ends at h = 1.41"};
+  const char *const words[] = {"midpoint: step 1 ",      "from t = 0 ",        "h = 1.5",
+                               "the state is unchanged", "try a smaller step", "iterations",
+                               "ends at h = 1.41"};
   for (int k = 0; k < 7; k++) check_words(words[k]);
   check_same_state(tried, spared);
   advance(tried, 0.7, 1);
@@ -245,12 +261,14 @@ END_TEST
 START_TEST(a_step_through_a_close_encounter_is_reported_and_smaller_ones_go_on)
 {
   problem *of = made_problem("pythagorean", NULL);
-  dvi_integrator *tried = started(of, "galerkin:degree=8"), *spared = started(of, "galerkin:degree=8");
+  dvi_integrator *tried = started(of, "galerkin:degree=8"),
+                 *spared = started(of, "galerkin:degree=8");
   advance(tried, 0.01, 187);
   advance(spared, 0.01, 187);
   ck_assert_int_eq(dvi_integrator_step(tried, 0.01), DVI_STEP_TOO_LARGE);
   check_words("galerkin: step 188 from t = 1.87 with h = 0.01 failed");
-  check_words("try a smaller step: a step too large: the solution that continues those of shorter steps ends at h = 0.00");
+  check_words("try a smaller step: a step too large: the solution that continues those of shorter "
+              "steps ends at h = 0.00");
   check_same_state(tried, spared);
   for (int step = 0; step < 20; step++) {
     advance(tried, 0.0005, 1);
@@ -267,8 +285,8 @@ END_TEST
 
 START_TEST(a_bad_start_leaves_the_old_state)
 {
-  const double nan = (double)NAN, fine[] = {1, 1}, bad_q[] = {1, nan}, bad_p[] = {HUGE_VAL, 0}, centre[] = {0, 0},
-               near[] = {1e-180, 0};
+  const double nan = (double)NAN, fine[] = {1, 1}, bad_q[] = {1, nan}, bad_p[] = {HUGE_VAL, 0},
+               centre[] = {0, 0}, near[] = {1e-180, 0};
   problem *of = made_problem("kepler", NULL);
   dvi_integrator *integrator = started(of, methods[_i]);
   advance(integrator, 0.05, 3);
@@ -296,7 +314,8 @@ static int linear_in_v(double t, const double *q, const double *v, double *L, vo
   return 0;
 }
 
-static int linear_in_v_gradient(double t, const double *q, const double *v, double *L_q, double *L_v, void *user)
+static int linear_in_v_gradient(double t, const double *q, const double *v, double *L_q,
+                                double *L_v, void *user)
 {
   (void)t, (void)user;
   L_q[0] = -q[0];
@@ -306,7 +325,8 @@ static int linear_in_v_gradient(double t, const double *q, const double *v, doub
   return 0;
 }
 
-static int linear_in_v_hessian(double t, const double *q, const double *v, double *L_qq, double *L_qv, double *L_vv, void *user)
+static int linear_in_v_hessian(double t, const double *q, const double *v, double *L_qq,
+                               double *L_qv, double *L_vv, void *user)
 {
   (void)t, (void)q, (void)v, (void)user;
   memset(L_vv, 0, 4 * sizeof(double));
@@ -319,12 +339,14 @@ static int linear_in_v_hessian(double t, const double *q, const double *v, doubl
 
 START_TEST(a_degenerate_lagrangian_is_refused_at_the_start_by_name)
 {
-  const dvi_lagrangian lagrangian = {.value = linear_in_v, .gradient = linear_in_v_gradient, .hessian = linear_in_v_hessian};
+  const dvi_lagrangian lagrangian = {
+      .value = linear_in_v, .gradient = linear_in_v_gradient, .hessian = linear_in_v_hessian};
   const double q[] = {1, 0}, p[] = {0, 0};
   dvi_system *system = make_system(&(dvi_system_terms){.dimension = 2, .lagrangian = &lagrangian});
   dvi_integrator *integrator = made_integrator(system, methods[_i]);
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, q, p), DVI_SINGULAR);
-  check_words(spec("%.*s: cannot start at t = 0: the Lagrangian is degenerate", (int)strcspn(methods[_i], ":"), methods[_i]));
+  check_words(spec("%.*s: cannot start at t = 0: the Lagrangian is degenerate",
+                   (int)strcspn(methods[_i], ":"), methods[_i]));
   ck_assert_int_eq(dvi_integrator_step(integrator, 0.1), DVI_BAD_STATE);
   dvi_integrator_destroy(&integrator);
   dvi_system_destroy(&system);
@@ -373,15 +395,19 @@ SUITE(failure)
 {
   tcase_set_timeout(tests, 120); /* states are compared by files, which are flushed to the disk */
   tcase_add_checked_fixture(tests, make_folder, remove_folder);
-  tcase_add_loop_test(tests, gradients_that_fail_in_mid_run_leave_the_state_alone, 0, METHODS * AILMENTS);
-  tcase_add_loop_test(tests, lagrangians_that_fail_in_mid_run_leave_the_state_alone, 0, GENERAL_METHODS * AILMENTS);
+  tcase_add_loop_test(tests, gradients_that_fail_in_mid_run_leave_the_state_alone, 0,
+                      METHODS * AILMENTS);
+  tcase_add_loop_test(tests, lagrangians_that_fail_in_mid_run_leave_the_state_alone, 0,
+                      GENERAL_METHODS * AILMENTS);
   tcase_add_loop_test(tests, hessians_that_fail_in_mid_run_leave_the_state_alone, 0, AILMENTS);
   tcase_add_loop_test(tests, steps_that_do_not_move_the_time_are_refused, 0, METHODS);
   tcase_add_loop_test(tests, a_step_beyond_the_largest_number_fails, 0, 2);
   tcase_add_loop_test(tests, nothing_works_before_the_start, 0, METHODS);
-  tcase_add_loop_test(tests, equations_without_a_solution_are_reported_and_a_smaller_step_goes_on, 0, 4);
+  tcase_add_loop_test(tests, equations_without_a_solution_are_reported_and_a_smaller_step_goes_on,
+                      0, 4);
   tcase_add_test(tests, a_step_through_a_close_encounter_is_reported_and_smaller_ones_go_on);
   tcase_add_loop_test(tests, a_bad_start_leaves_the_old_state, 0, METHODS);
-  tcase_add_loop_test(tests, a_degenerate_lagrangian_is_refused_at_the_start_by_name, 0, GENERAL_METHODS);
+  tcase_add_loop_test(tests, a_degenerate_lagrangian_is_refused_at_the_start_by_name, 0,
+                      GENERAL_METHODS);
   tcase_add_loop_test(tests, arguments_that_are_missing_are_refused, 0, METHODS);
 }

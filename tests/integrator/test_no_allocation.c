@@ -1,8 +1,9 @@
-/* A step takes no memory from the heap and gives none back: not the library's own, nor that of SUNDIALS, KLU and LAPACK. */
+/* A step takes no memory from the heap and gives none back: not the library's own, nor that of
+ * SUNDIALS, KLU and LAPACK. */
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "step/split/wave.h"
+#include "step/split/temporal_blocking.h"
 #include "support/heap.h"
 #include "support/accepted.h"
 #include "support/runs.h"
@@ -10,8 +11,8 @@
 
 enum { STEPS = 60, COORDINATES_MOST = 600, INVARIANTS_MOST = 16 };
 
-/* On fpu's stiff springs (omega h = 5) fixed point iteration gives up, on the double pendulum it does in mid-run, outer-solar's 72 unknowns
- * of degree 4 go to LAPACK. */
+/* On fpu's stiff springs (omega h = 5) fixed point iteration gives up, on the double pendulum it
+ * does in mid-run, outer-solar's 72 unknowns of degree 4 go to LAPACK. */
 typedef struct place {
   const char *name, *setting;
   double h;
@@ -79,7 +80,8 @@ static int pair_is_accepted(int which)
   return method_accepts_problem(at->name, at->setting, methods[which % METHODS]);
 }
 
-/* Of 429 pairs. Many of the methods are for one-forms or for split potentials, which few places have. */
+/* Of 429 pairs. Many of the methods are for one-forms or for split potentials, which few places
+ * have. */
 START_TEST(every_place_is_taken_by_the_methods_for_it)
 {
   check_accepted_cases(&pairs, 199, METHODS, methods);
@@ -93,7 +95,8 @@ static long allocations_of(const dvi_integrator *integrator)
   return counters.allocations;
 }
 
-/* SUNDIALS 7 puts the message of a failed solve, which the library discards, into memory of its own: one block, taken and given back. */
+/* SUNDIALS 7 puts the message of a failed solve, which the library discards, into memory of its
+ * own: one block, taken and given back. */
 static long calls_of_messages(const dvi_integrator *integrator)
 {
   dvi_counters counters;
@@ -101,13 +104,15 @@ static long calls_of_messages(const dvi_integrator *integrator)
   return atoi(dvi_reference_version()) >= 7 ? 2 * counters.kinsols : 0;
 }
 
-/* Heap calls of some steps. Their length changes, and with it the tables of the continued path. The first one must succeed; verlet and the
- * trapezoidal rule soon blow up on the stiff springs, but a step that fails shall take no memory either. */
+/* Heap calls of some steps. Their length changes, and with it the tables of the continued path. The
+ * first one must succeed; verlet and the trapezoidal rule soon blow up on the stiff springs, but a
+ * step that fails shall take no memory either. */
 static long calls_of_steps(dvi_integrator *integrator, double h, int steps)
 {
   const long before = heap_calls();
   for (int i = 0; i < steps; i++)
-    if (dvi_integrator_step(integrator, i % 3 == 2 ? 0.9 * h : h) != DVI_OK && steps == 1) ck_abort_msg("%s", dvi_last_error());
+    if (dvi_integrator_step(integrator, i % 3 == 2 ? 0.9 * h : h) != DVI_OK && steps == 1)
+      ck_abort_msg("%s", dvi_last_error());
   return heap_calls() - before;
 }
 
@@ -122,15 +127,16 @@ START_TEST(no_step_allocates_not_even_the_first)
   const long first = calls_of_steps(integrator, at->h, 1);
   const long later = calls_of_steps(integrator, at->h, repeats(STEPS));
   const long back = calls_of_steps(integrator, -at->h, 2);
-  ck_assert_msg(first == 0 && later + back <= calls_of_messages(integrator), "%s, %s: %ld, %ld and %ld heap calls", at->name,
-                method, first, later, back);
+  ck_assert_msg(first == 0 && later + back <= calls_of_messages(integrator),
+                "%s, %s: %ld, %ld and %ld heap calls", at->name, method, first, later, back);
   ck_assert_int_eq(allocations_of(integrator), created);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&of);
 }
 END_TEST
 
-/* Fallbacks and searches included (the pendulum near its separatrix has both). Not at steps so long that KLU must choose other pivots. */
+/* Fallbacks and searches included (the pendulum near its separatrix has both). Not at steps so long
+ * that KLU must choose other pivots. */
 static const struct {
   const char *name, *setting, *method;
   double h;
@@ -155,7 +161,8 @@ START_TEST(steps_of_chosen_lengths_do_not_allocate)
   const int steps = repeats(4 * STEPS);
   const long created = allocations_of(integrator), before = heap_calls();
   for (int i = 0; i < steps; i++)
-    if (dvi_integrator_step(integrator, chosen[_i].h) != DVI_OK) ck_abort_msg("%s", dvi_last_error());
+    if (dvi_integrator_step(integrator, chosen[_i].h) != DVI_OK)
+      ck_abort_msg("%s", dvi_last_error());
   ck_assert_int_le(heap_calls() - before, calls_of_messages(integrator));
   ck_assert_int_eq(allocations_of(integrator), created);
   dvi_integrator_destroy(&integrator);
@@ -175,7 +182,8 @@ START_TEST(invariants_and_dense_output_do_not_allocate)
   (void)calls_of_steps(integrator, at->h, 2);
   const double t = dvi_integrator_time(integrator) - 0.3 * at->h;
   const long before = heap_calls();
-  const int failed = dvi_integrator_invariants(integrator, value) || dvi_integrator_interpolate(integrator, t, q, v);
+  const int failed = dvi_integrator_invariants(integrator, value) ||
+                     dvi_integrator_interpolate(integrator, t, q, v);
   const long calls = heap_calls() - before; /* Check's own assertions allocate */
   ck_assert_msg(!failed, "%s", dvi_last_error());
   ck_assert_msg(calls == 0, "%s, %s: %ld heap calls", at->name, method, calls);
@@ -184,7 +192,8 @@ START_TEST(invariants_and_dense_output_do_not_allocate)
 }
 END_TEST
 
-/* The midpoint rule has no solution here, at pericentre: the way leads through the ladder and along the branch from h = 0 to a sentence. */
+/* The midpoint rule has no solution here, at pericentre: the way leads through the ladder and along
+ * the branch from h = 0 to a sentence. */
 START_TEST(a_step_that_fails_does_not_allocate)
 {
   problem *of = made_problem("kepler", "e=0.6");
@@ -236,11 +245,12 @@ SUITE(no_allocation)
     (void)puts("heap calls cannot be counted here: skipped");
     return;
   }
-  dvi__wave_choose_block(16); /* the chain of 500 is long enough for three threads then */
+  dvi__blocking_choose_block(16); /* the chain of 500 is long enough for three threads then */
   find_accepted_cases(PLACES * METHODS, pair_is_accepted, &pairs);
   tcase_add_test(tests, every_place_is_taken_by_the_methods_for_it);
   tcase_add_loop_test(tests, no_step_allocates_not_even_the_first, 0, pairs.count);
-  tcase_add_loop_test(tests, steps_of_chosen_lengths_do_not_allocate, 0, (int)(sizeof chosen / sizeof *chosen));
+  tcase_add_loop_test(tests, steps_of_chosen_lengths_do_not_allocate, 0,
+                      (int)(sizeof chosen / sizeof *chosen));
   tcase_add_loop_test(tests, invariants_and_dense_output_do_not_allocate, 0, pairs.count);
   tcase_add_test(tests, a_step_that_fails_does_not_allocate);
   tcase_add_test(tests, the_places_reach_every_solver);

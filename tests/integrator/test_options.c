@@ -1,5 +1,6 @@
 /* labels: unit */
-/* Options of an integrator: what is left out is default, and what does not go together is refused. */
+/* Options of an integrator: what is left out is default, and what does not go together is
+ * refused. */
 #include <stddef.h>
 
 #include "support/paced.h"
@@ -29,15 +30,18 @@ static void check_refused(dvi_integrator_options options, const char *words)
 START_TEST(a_size_that_is_none_of_the_struct_is_refused)
 {
   const size_t whole = sizeof(dvi_integrator_options);
-  check_refused((dvi_integrator_options){.method = "midpoint"}, "the options' size is 0; set it to sizeof");
-  check_refused((dvi_integrator_options){.size = whole + 8, .method = "midpoint"}, "the options' size is");
+  check_refused((dvi_integrator_options){.method = "midpoint"},
+                "the options' size is 0; set it to sizeof");
+  check_refused((dvi_integrator_options){.size = whole + 8, .method = "midpoint"},
+                "the options' size is");
 }
 END_TEST
 
 START_TEST(a_struct_of_an_older_header_has_default_values_behind_its_end)
 {
   const dvi_monitor monitor = monitor_of("distance");
-  dvi_integrator_options options = {.method = "midpoint", .pacing = DVI_TIME_TRANSFORM, .monitor = &monitor};
+  dvi_integrator_options options = {
+      .method = "midpoint", .pacing = DVI_TIME_TRANSFORM, .monitor = &monitor};
   dvi_integrator *integrator = NULL;
   options.size = offsetof(dvi_integrator_options, pacing);
   ck_assert_int_eq(dvi_integrator_create_with(of->system, &options, &integrator), DVI_OK);
@@ -52,14 +56,21 @@ START_TEST(options_that_do_not_go_together_are_refused)
   const size_t size = sizeof(dvi_integrator_options);
   dvi_integrator *integrator = NULL;
   check_refused((dvi_integrator_options){.size = size}, "the method is NULL");
-  check_refused((dvi_integrator_options){.size = size, .method = "midpoint", .pacing = DVI_STEP_CONTROL}, "the monitor is NULL");
-  check_refused((dvi_integrator_options){.size = size, .method = "midpoint", .monitor = &monitor}, "the pacing is steps of time");
-  check_refused((dvi_integrator_options){.size = size, .method = "midpoint", .pacing = (dvi_pacing)3}, "no pacing number 3");
+  check_refused(
+      (dvi_integrator_options){.size = size, .method = "midpoint", .pacing = DVI_STEP_CONTROL},
+      "the monitor is NULL");
+  check_refused((dvi_integrator_options){.size = size, .method = "midpoint", .monitor = &monitor},
+                "the pacing is steps of time");
+  check_refused(
+      (dvi_integrator_options){.size = size, .method = "midpoint", .pacing = (dvi_pacing)3},
+      "no pacing number 3");
   ck_assert_int_eq(dvi_integrator_create_with(of->system, NULL, &integrator), DVI_BAD_ARGUMENT);
   check_words("the options are NULL");
-  ck_assert_int_eq(dvi_integrator_create_with(NULL, &(dvi_integrator_options){0}, &integrator), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_integrator_create_with(NULL, &(dvi_integrator_options){0}, &integrator),
+                   DVI_BAD_ARGUMENT);
   check_words("the system is NULL");
-  ck_assert_int_eq(dvi_integrator_create_with(of->system, &(dvi_integrator_options){0}, NULL), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_integrator_create_with(of->system, &(dvi_integrator_options){0}, NULL),
+                   DVI_BAD_ARGUMENT);
 }
 END_TEST
 

@@ -48,7 +48,8 @@ static void tear_down(void)
 
 /* ---- the way ---- */
 
-static const char *const methods[] = {"galerkin:degree=4", "verlet", "midpoint", "composition:order=4,base=trapezoidal"};
+static const char *const methods[] = {"galerkin:degree=4", "verlet", "midpoint",
+                                      "composition:order=4,base=trapezoidal"};
 enum { METHODS = sizeof methods / sizeof *methods };
 
 /* 0.125 and its multiples are exact, so the last step needs no shortening. */
@@ -87,7 +88,8 @@ START_TEST(rounding_makes_no_extra_step)
   dvi_run_report report;
   ck_assert_int_eq(dvi_run(integrator, &(dvi_run_options){.h = 0.1, .t_end = 1}, &report), DVI_OK);
   ck_assert_int_eq(report.steps, 10);
-  ck_assert_int_eq(dvi_run(integrator, &(dvi_run_options){.h = 0.1, .t_end = 100}, &report), DVI_OK);
+  ck_assert_int_eq(dvi_run(integrator, &(dvi_run_options){.h = 0.1, .t_end = 100}, &report),
+                   DVI_OK);
   ck_assert_int_eq(report.steps, 990);
 }
 END_TEST
@@ -103,7 +105,8 @@ START_TEST(a_run_leads_backward_to_where_it_began)
   ck_assert_int_eq(d.visits, 9);
   for (int k = 1; k < 9; k++) ck_assert_double_lt(d.t[k], d.t[k - 1]);
   ck_assert_double_eq_tol(dvi_integrator_time(integrator), 0, DBL_EPSILON);
-  /* Forth and back the steps differ, 0.1 and 0.05 at either end: what is left is the error of order 8. */
+  /* Forth and back the steps differ, 0.1 and 0.05 at either end: what is left is the error of order
+   * 8. */
   ck_assert_double_eq_tol(dvi_integrator_q(integrator)[0], of->q[0], 1e-13);
 }
 END_TEST
@@ -128,7 +131,8 @@ START_TEST(the_observer_sees_the_start_every_third_step_and_the_end)
 {
   const double seen[] = {0, 0.375, 0.75, 1.125, 1.25};
   diary d = {0};
-  const dvi_run_options options = {.h = 0.125, .t_end = 1.25, .every = 3, .observe = write_down, .user = &d};
+  const dvi_run_options options = {
+      .h = 0.125, .t_end = 1.25, .every = 3, .observe = write_down, .user = &d};
   ck_assert_int_eq(dvi_run(integrator, &options, NULL), DVI_OK);
   ck_assert_int_eq(d.visits, 5);
   for (int k = 0; k < 5; k++) ck_assert_double_eq(d.t[k], seen[k]);
@@ -138,7 +142,8 @@ END_TEST
 START_TEST(the_observer_sees_the_end_once)
 {
   diary d = {0};
-  const dvi_run_options options = {.h = 0.125, .t_end = 0.5, .every = 2, .observe = write_down, .user = &d};
+  const dvi_run_options options = {
+      .h = 0.125, .t_end = 0.5, .every = 2, .observe = write_down, .user = &d};
   ck_assert_int_eq(dvi_run(integrator, &options, NULL), DVI_OK);
   ck_assert_int_eq(d.visits, 3);
 }
@@ -191,7 +196,12 @@ START_TEST(a_flag_set_before_the_run_ends_it_after_one_step)
 {
   diary d = {.cancel = 1};
   dvi_run_report report;
-  const dvi_run_options options = {.h = 0.125, .t_end = 0.5, .every = 100, .observe = write_down, .user = &d, .cancel = &d.cancel};
+  const dvi_run_options options = {.h = 0.125,
+                                   .t_end = 0.5,
+                                   .every = 100,
+                                   .observe = write_down,
+                                   .user = &d,
+                                   .cancel = &d.cancel};
   ck_assert_int_eq(dvi_run(integrator, &options, &report), DVI_OK);
   ck_assert_int_eq(report.end, DVI_RUN_CANCELLED);
   ck_assert_int_eq(report.steps, 1);
@@ -199,13 +209,18 @@ START_TEST(a_flag_set_before_the_run_ends_it_after_one_step)
 }
 END_TEST
 
-/* The observer comes after the look at the flag: the step after it is the one in which the flag is seen. */
+/* The observer comes after the look at the flag: the step after it is the one in which the flag is
+ * seen. */
 START_TEST(a_flag_set_in_mid_run_ends_it_with_the_next_step)
 {
   diary d = {.cancel_at = 3};
   dvi_run_report report;
-  const dvi_run_options options = {
-      .h = 0.125, .t_end = 2, .observe = write_down, .user = &d, .cancel = &d.cancel, .checkpoint = in_folder("checkpoint")};
+  const dvi_run_options options = {.h = 0.125,
+                                   .t_end = 2,
+                                   .observe = write_down,
+                                   .user = &d,
+                                   .cancel = &d.cancel,
+                                   .checkpoint = in_folder("checkpoint")};
   ck_assert_int_eq(dvi_run(integrator, &options, &report), DVI_OK);
   ck_assert_int_eq(report.end, DVI_RUN_CANCELLED);
   ck_assert_int_eq(report.steps, 3);
@@ -231,8 +246,12 @@ START_TEST(checkpoints_are_written_every_third_step_and_at_the_end)
 {
   const double seen[] = {-1, -1, -1, -1, 0.375, 0.375, 0.375, 0.75, 0.75};
   diary d = {0};
-  const dvi_run_options options = {
-      .h = 0.125, .t_end = 1, .observe = read_checkpoint, .user = &d, .checkpoint = in_folder("checkpoint"), .checkpoint_every = 3};
+  const dvi_run_options options = {.h = 0.125,
+                                   .t_end = 1,
+                                   .observe = read_checkpoint,
+                                   .user = &d,
+                                   .checkpoint = in_folder("checkpoint"),
+                                   .checkpoint_every = 3};
   ck_assert_int_eq(dvi_run(integrator, &options, NULL), DVI_OK);
   ck_assert_int_eq(d.visits, 9);
   for (int k = 0; k < 9; k++) ck_assert_double_eq(d.t[k], seen[k]);
@@ -250,7 +269,8 @@ START_TEST(a_run_in_two_parts_is_the_whole_run_bit_for_bit)
   const char *file = in_folder("checkpoint");
   ck_assert_int_eq(dvi_run(whole, &(dvi_run_options){.h = 0.1, .t_end = 3}, NULL), DVI_OK);
   diary d = {.answer_at = 12, .answer = 1};
-  const dvi_run_options first = {.h = 0.1, .t_end = 3, .observe = write_down, .user = &d, .checkpoint = file};
+  const dvi_run_options first = {
+      .h = 0.1, .t_end = 3, .observe = write_down, .user = &d, .checkpoint = file};
   ck_assert_int_eq(dvi_run(part, &first, NULL), DVI_OK);
   ck_assert_int_eq(dvi_integrator_restore(rest, file), DVI_OK);
   ck_assert_int_eq(dvi_run(rest, &(dvi_run_options){.h = 0.1, .t_end = 3}, NULL), DVI_OK);
@@ -264,7 +284,10 @@ END_TEST
 START_TEST(a_checkpoint_that_cannot_be_written_fails_the_run)
 {
   dvi_run_report report;
-  const dvi_run_options options = {.h = 0.125, .t_end = 1, .checkpoint = in_folder("missing/checkpoint"), .checkpoint_every = _i};
+  const dvi_run_options options = {.h = 0.125,
+                                   .t_end = 1,
+                                   .checkpoint = in_folder("missing/checkpoint"),
+                                   .checkpoint_every = _i};
   ck_assert_int_eq(dvi_run(integrator, &options, &report), DVI_IO_ERROR);
   ck_assert_int_eq(report.end, DVI_RUN_FAILED);
   ck_assert_int_eq(report.steps, _i > 0 ? _i : 8);
@@ -288,12 +311,13 @@ static int wall_gradient(double t, const double *q, double *V_q, void *user)
   return 0;
 }
 
-/* The step from 0.5 fails; the report, the state and the checkpoint are those of 0.5, and so is the sentence; if there is no place for the
- * checkpoint, it says that too. */
+/* The step from 0.5 fails; the report, the state and the checkpoint are those of 0.5, and so is the
+ * sentence; if there is no place for the checkpoint, it says that too. */
 START_TEST(a_step_that_fails_ends_the_run_at_the_last_good_state)
 {
   const dvi_potential potential = {.name = "wall", .value = wall_value, .gradient = wall_gradient};
-  const dvi_system_terms terms = {.dimension = 1, .mass.scalar = 1, .potentials = &potential, .potential_count = 1};
+  const dvi_system_terms terms = {
+      .dimension = 1, .mass.scalar = 1, .potentials = &potential, .potential_count = 1};
   const char *const file = in_folder(_i % 2 == 0 ? "checkpoint" : "missing/checkpoint");
   diary d = {0};
   dvi_system *system = NULL;
@@ -301,7 +325,8 @@ START_TEST(a_step_that_fails_ends_the_run_at_the_last_good_state)
   dvi_integrator *runner = made_integrator(system, methods[_i / 2]);
   ck_assert_int_eq(dvi_integrator_start(runner, 0, &(double){1}, &(double){0}), DVI_OK);
   dvi_run_report report;
-  const dvi_run_options options = {.h = 0.125, .t_end = 1, .observe = write_down, .user = &d, .checkpoint = file};
+  const dvi_run_options options = {
+      .h = 0.125, .t_end = 1, .observe = write_down, .user = &d, .checkpoint = file};
   ck_assert_int_eq(dvi_run(runner, &options, &report), DVI_NOT_FINITE);
   check_words("step 5 from t = 0.5");
   check_words("wall: the gradient callback gave nan");
@@ -309,7 +334,8 @@ START_TEST(a_step_that_fails_ends_the_run_at_the_last_good_state)
   ck_assert_int_eq(report.end, DVI_RUN_FAILED);
   ck_assert_int_eq(report.steps, 4);
   ck_assert_int_eq(d.visits, 5);
-  ck_assert_double_eq_tol(dvi_integrator_time(runner), 0.5, DBL_EPSILON); /* the substeps of a composition round */
+  /* the substeps of a composition round */
+  ck_assert_double_eq_tol(dvi_integrator_time(runner), 0.5, DBL_EPSILON);
   if (_i % 2 == 0) {
     dvi_integrator *reader = made_integrator(system, methods[_i / 2]);
     ck_assert_int_eq(dvi_integrator_restore(reader, in_folder("checkpoint")), DVI_OK);
@@ -334,15 +360,18 @@ static const struct {
     {{.h = 0.1, .t_end = HUGE_VAL}, "t_end = inf is not finite"},
     {{.h = -0.1, .t_end = 1}, "h = -0.1 leads away from t_end = 1; the time is 0"},
     {{.h = 0.1, .t_end = -1}, "leads away"},
-    {{.h = 1e-16, .t_end = 1}, "1e+16 steps to t_end = 1; at most 2^53 can be counted; take a longer step or a nearer end"},
+    {{.h = 1e-16, .t_end = 1},
+     "1e+16 steps to t_end = 1; at most 2^53 can be counted; take a longer step or a nearer end"},
     {{.h = 1e-300, .t_end = 1e300}, "inf steps"},
     {{.h = 1e-300, .t_end = -1e-300}, "leads away"}, /* the product of the two is rounded to zero */
     {{.h = 0.1, .t_end = 1, .every = -1}, "every = -1"},
     {{.h = 0.1, .t_end = 1, .checkpoint_every = -5}, "checkpoint_every = -5"},
     {{.h = 0.1, .t_end = 1, .event_count = -2}, "-2 events"},
-    {{.h = 0.1, .t_end = 1, .events = &(const dvi_event){.name = "none"}}, "a list of events is given, but their count is 0"},
+    {{.h = 0.1, .t_end = 1, .events = &(const dvi_event){.name = "none"}},
+     "a list of events is given, but their count is 0"},
     {{.h = 0.1, .t_end = 1, .event_count = 2}, "2 events declared, but their list is NULL"},
-    {{.h = 0.1, .t_end = 1, .event_count = 1, .events = &(const dvi_event){.name = "none"}}, "event 0 has no value callback"},
+    {{.h = 0.1, .t_end = 1, .event_count = 1, .events = &(const dvi_event){.name = "none"}},
+     "event 0 has no value callback"},
 };
 enum { REFUSED = sizeof refused / sizeof *refused };
 
@@ -373,13 +402,15 @@ START_TEST(checkpoints_on_the_way_need_a_file)
 }
 END_TEST
 
-/* Julian days: the rounded time misses t by up to 2e-10, a shorter last step must not. q = cos(t - t0)/2 at the end. */
+/* Julian days: the rounded time misses t by up to 2e-10, a shorter last step must not. q = cos(t -
+ * t0)/2 at the end. */
 START_TEST(a_last_shorter_step_is_right_at_large_times)
 {
   const double t0 = 2451545, way = 1.0625;
   ck_assert_int_eq(dvi_integrator_start(integrator, t0, of->q, of->p), DVI_OK);
   dvi_integrator *beside = started(of, "galerkin:degree=4");
-  ck_assert_int_eq(dvi_run(integrator, &(dvi_run_options){.h = 0.01, .t_end = t0 + way}, NULL), DVI_OK);
+  ck_assert_int_eq(dvi_run(integrator, &(dvi_run_options){.h = 0.01, .t_end = t0 + way}, NULL),
+                   DVI_OK);
   ck_assert_int_eq(dvi_run(beside, &(dvi_run_options){.h = 0.01, .t_end = way}, NULL), DVI_OK);
   ck_assert_double_eq_tol(dvi_integrator_q(integrator)[0], dvi_integrator_q(beside)[0], 1e-14);
   dvi_integrator_destroy(&beside);
@@ -390,7 +421,8 @@ START_TEST(a_step_that_time_does_not_feel_fails_the_run)
 {
   dvi_run_report report;
   ck_assert_int_eq(dvi_integrator_start(integrator, 1e9, of->q, of->p), DVI_OK);
-  ck_assert_int_eq(dvi_run(integrator, &(dvi_run_options){.h = 1e-9, .t_end = 1e9 + 1}, &report), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_run(integrator, &(dvi_run_options){.h = 1e-9, .t_end = 1e9 + 1}, &report),
+                   DVI_BAD_ARGUMENT);
   check_words("does not move the time");
   ck_assert_int_eq(report.end, DVI_RUN_FAILED);
 }

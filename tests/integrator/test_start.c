@@ -21,7 +21,8 @@ static int value(double t, const double *q, const double *v, double *L, void *us
   return fabs(v[0]) >= k->limit;
 }
 
-static int gradient(double t, const double *q, const double *v, double *L_q, double *L_v, void *user)
+static int gradient(double t, const double *q, const double *v, double *L_q, double *L_v,
+                    void *user)
 {
   const kinetic *k = user;
   (void)t;
@@ -30,7 +31,8 @@ static int gradient(double t, const double *q, const double *v, double *L_q, dou
   return fabs(v[0]) >= k->limit;
 }
 
-static int hessian(double t, const double *q, const double *v, double *L_qq, double *L_qv, double *L_vv, void *user)
+static int hessian(double t, const double *q, const double *v, double *L_qq, double *L_qv,
+                   double *L_vv, void *user)
 {
   const kinetic *k = user;
   (void)t, (void)q;
@@ -108,7 +110,8 @@ static double energy_after_start(kinetic *term, double p)
   double energy;
   dvi_system *system = system_of(term);
   dvi_integrator *integrator = made_integrator(system, "galerkin");
-  ck_assert_msg(dvi_integrator_start(integrator, 0, &(double){0}, &p) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_integrator_start(integrator, 0, &(double){0}, &p) == DVI_OK, "%s",
+                dvi_last_error());
   ck_assert_int_eq(dvi_integrator_invariants(integrator, &energy), DVI_OK);
   advance(integrator, 1e-3, 10);
   dvi_integrator_destroy(&integrator);
@@ -119,8 +122,10 @@ static double energy_after_start(kinetic *term, double p)
 START_TEST(a_velocity_is_found_where_the_hessian_at_rest_is_singular_or_indefinite)
 {
   const double root = cbrt(0.5), outer = 1.1914878839531187; /* of v^3 - v = 1/2 */
-  ck_assert_double_eq_tol(energy_after_start(&quartic_term, 0.5), 0.5 * root - quartic(root), 1e-14);
-  ck_assert_double_eq_tol(energy_after_start(&wells_term, 0.5), 0.5 * outer - wells_of_v(outer), 1e-14);
+  ck_assert_double_eq_tol(energy_after_start(&quartic_term, 0.5), 0.5 * root - quartic(root),
+                          1e-14);
+  ck_assert_double_eq_tol(energy_after_start(&wells_term, 0.5), 0.5 * outer - wells_of_v(outer),
+                          1e-14);
 }
 END_TEST
 
@@ -129,14 +134,16 @@ START_TEST(a_velocity_near_the_edge_of_the_domain_is_found)
 {
   const double momenta[] = {0.5, 3, -50, 1e4};
   const double p = momenta[_i], energy = sqrt(1 + p * p);
-  ck_assert_double_eq_tol(energy_after_start(&relativistic_term, p), energy, 4 * DBL_EPSILON * energy * energy);
+  ck_assert_double_eq_tol(energy_after_start(&relativistic_term, p), energy,
+                          4 * DBL_EPSILON * energy * energy);
 }
 END_TEST
 
 START_TEST(a_momentum_that_none_has_or_that_is_degenerate_is_refused)
 {
   dvi_system *falling = system_of(&exponential_term), *flat = system_of(&quartic_term);
-  dvi_integrator *one = made_integrator(falling, "midpoint"), *two = made_integrator(flat, "midpoint");
+  dvi_integrator *one = made_integrator(falling, "midpoint"),
+                 *two = made_integrator(flat, "midpoint");
   ck_assert_int_eq(dvi_integrator_start(one, 0, &(double){0}, &(double){-1}), DVI_NOT_CONVERGED);
   check_words("no velocity found for the momentum");
   ck_assert_int_eq(dvi_integrator_start(two, 0, &(double){0}, &(double){0}), DVI_SINGULAR);
@@ -150,10 +157,12 @@ START_TEST(a_momentum_that_none_has_or_that_is_degenerate_is_refused)
 }
 END_TEST
 
-/* q' is the velocity meant, to the error h of a quotient, and stays on its branch: for v near -1, 0 and 1 the motions differ. */
+/* q' is the velocity meant, to the error h of a quotient, and stays on its branch: for v near -1, 0
+ * and 1 the motions differ. */
 START_TEST(a_start_velocity_chooses_among_those_of_one_momentum)
 {
-  static const char *const methods[] = {"midpoint", "galerkin:degree=3", "composition:order=4,base=trapezoidal",
+  static const char *const methods[] = {"midpoint", "galerkin:degree=3",
+                                        "composition:order=4,base=trapezoidal",
                                         "galerkin:degree=2,solver=kinsol"};
   const double velocities[] = {-0.9, 0.2, 1.1}, v = velocities[_i % 3], h = 1e-3;
   dvi_system *system = system_of(&wells_term);
@@ -177,8 +186,10 @@ START_TEST(both_starts_are_one_where_the_velocity_is_unique)
 {
   static const char *const methods[] = {"verlet", "galerkin:degree=4"};
   problem *of = made_problem("kepler", NULL);
-  dvi_integrator *first = started(of, methods[_i]), *second = made_integrator(of->system, methods[_i]);
-  ck_assert_int_eq(dvi_integrator_start_velocity(second, 0, of->q, of->p), DVI_OK); /* the mass is 1 */
+  dvi_integrator *first = started(of, methods[_i]),
+                 *second = made_integrator(of->system, methods[_i]);
+  /* the mass is 1 */
+  ck_assert_int_eq(dvi_integrator_start_velocity(second, 0, of->q, of->p), DVI_OK);
   advance(first, 0.05, 5);
   advance(second, 0.05, 5);
   ck_assert_mem_eq(dvi_integrator_q(first), dvi_integrator_q(second), 2 * sizeof(double));
@@ -193,9 +204,11 @@ START_TEST(bad_velocities_are_refused_and_the_state_stays)
 {
   problem *of = made_problem("pendulum", NULL);
   dvi_integrator *integrator = started(of, "midpoint");
-  ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, of->q, &(double){(double)NAN}), DVI_NOT_FINITE);
+  ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, of->q, &(double){(double)NAN}),
+                   DVI_NOT_FINITE);
   check_words("v[0] = nan");
-  ck_assert_int_eq(dvi_integrator_start_velocity(integrator, (double)NAN, of->q, of->p), DVI_NOT_FINITE);
+  ck_assert_int_eq(dvi_integrator_start_velocity(integrator, (double)NAN, of->q, of->p),
+                   DVI_NOT_FINITE);
   ck_assert_int_eq(dvi_integrator_start_velocity(NULL, 0, of->q, of->p), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, NULL, of->p), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, of->q, NULL), DVI_BAD_ARGUMENT);

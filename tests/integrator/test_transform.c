@@ -28,7 +28,7 @@ static const struct {
     {"kepler", "e=0.9", "distance", "verlet", create_controlled, 0.05},
     {"kepler", "e=0.9", "distance", "galerkin", create_controlled, 0.1},
     {"kepler", NULL, "arclength", "composition:order=6", create_controlled, 0.2},
-    {"chain", "n=50", "acceleration:power=0.2", "verlet:sweep=wave", create_controlled, 0.1},
+    {"chain", "n=50", "acceleration:power=0.2", "verlet:blocking=temporal", create_controlled, 0.1},
 };
 enum { WAYS = sizeof ways / sizeof *ways, MOST = 64 };
 
@@ -56,13 +56,15 @@ START_TEST(a_step_in_tau_is_symplectic)
                                         "shooting:type=2",
                                         "shooting:type=3",
                                         "multiscale:fast=0:1,omega=1"};
-  static const char *const monitors[] = {"distance", "distance:power=1", "arclength", "acceleration"};
+  static const char *const monitors[] = {"distance", "distance:power=1", "arclength",
+                                         "acceleration"};
   problem *kepler = made_problem("kepler", "e=0.6");
   for (int m = 0; m < 4; m++) {
     dvi_integrator *integrator = paced(kepler, create_transformed, monitors[m], methods[_i]);
     double defect;
     advance(integrator, 0.3, 3);
-    ck_assert_int_eq(dvi_symplecticity(integrator, 0, dvi_integrator_q(integrator), dvi_integrator_p(integrator), 0.3, &defect),
+    ck_assert_int_eq(dvi_symplecticity(integrator, 0, dvi_integrator_q(integrator),
+                                       dvi_integrator_p(integrator), 0.3, &defect),
                      DVI_OK);
     ck_assert_msg(defect < 1e-10, "%s, %s: %g", methods[_i], monitors[m], defect);
     dvi_integrator_destroy(&integrator);
@@ -78,7 +80,8 @@ START_TEST(a_controlled_step_is_not_symplectic)
   dvi_integrator *integrator = paced(kepler, create_controlled, "distance", "midpoint");
   double defect;
   advance(integrator, 0.3, 3);
-  ck_assert_int_eq(dvi_symplecticity(integrator, 0, dvi_integrator_q(integrator), dvi_integrator_p(integrator), 0.3, &defect),
+  ck_assert_int_eq(dvi_symplecticity(integrator, 0, dvi_integrator_q(integrator),
+                                     dvi_integrator_p(integrator), 0.3, &defect),
                    DVI_OK);
   ck_assert_double_gt(defect, 1e-3);
   dvi_integrator_destroy(&integrator);
@@ -92,8 +95,9 @@ START_TEST(steps_back_undo_steps)
   problem *of = scene(_i);
   dvi_integrator *integrator = way(of, _i);
   double defect;
-  ck_assert_msg(dvi_reversibility(integrator, 0, of->q, of->p, ways[_i].h, repeats(100), &defect) == DVI_OK, "%s",
-                dvi_last_error());
+  ck_assert_msg(dvi_reversibility(integrator, 0, of->q, of->p, ways[_i].h, repeats(100), &defect) ==
+                    DVI_OK,
+                "%s", dvi_last_error());
   ck_assert_msg(defect < 1e-9, "%s: %g", ways[_i].method, defect);
   ck_assert_double_eq_tol(dvi_integrator_time(integrator), 0, 1e-9);
   dvi_integrator_destroy(&integrator);
@@ -110,7 +114,8 @@ START_TEST(angular_momentum_is_conserved)
   ck_assert_int_eq(dvi_integrator_invariants(integrator, before), DVI_OK);
   advance(integrator, 0.1, 2000);
   ck_assert_int_eq(dvi_integrator_invariants(integrator, after), DVI_OK);
-  ck_assert_double_eq_tol(after[1], before[1], 1e-13 * before[1]); /* 2000 roundings that walk at random, twice over */
+  /* 2000 roundings that walk at random, twice over */
+  ck_assert_double_eq_tol(after[1], before[1], 1e-13 * before[1]);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&kepler);
 }
@@ -136,7 +141,8 @@ END_TEST
 static int clock_goes_on(dvi_integrator *integrator, void *user)
 {
   double *last = user;
-  if (!(dvi_integrator_time(integrator) > *last) || !(dvi_integrator_time(integrator) <= 3)) return -1;
+  if (!(dvi_integrator_time(integrator) > *last) || !(dvi_integrator_time(integrator) <= 3))
+    return -1;
   *last = dvi_integrator_time(integrator);
   return 0;
 }
@@ -147,7 +153,8 @@ START_TEST(a_run_ends_at_its_physical_time)
   dvi_integrator *integrator = way(of, _i);
   double last = -1;
   dvi_run_report report;
-  const dvi_run_options options = {.h = ways[_i].h, .t_end = 3, .observe = clock_goes_on, .user = &last};
+  const dvi_run_options options = {
+      .h = ways[_i].h, .t_end = 3, .observe = clock_goes_on, .user = &last};
   ck_assert_msg(dvi_run(integrator, &options, &report) == DVI_OK, "%s", dvi_last_error());
   ck_assert_int_eq(report.end, DVI_RUN_COMPLETE);
   ck_assert_double_eq(dvi_integrator_time(integrator), 3);
@@ -171,7 +178,8 @@ START_TEST(an_event_at_the_end_is_seen)
   dvi_integrator *integrator = way(of, _i);
   dvi_run_report report;
   const dvi_event at_end = {.value = clock_value};
-  const dvi_run_options options = {.h = ways[_i].h, .t_end = 3, .events = &at_end, .event_count = 1};
+  const dvi_run_options options = {
+      .h = ways[_i].h, .t_end = 3, .events = &at_end, .event_count = 1};
   ck_assert_msg(dvi_run(integrator, &options, &report) == DVI_OK, "%s", dvi_last_error());
   ck_assert_int_eq(report.events, 1);
   ck_assert_double_eq(report.event_time, 3);
@@ -195,7 +203,8 @@ START_TEST(a_terminal_event_ends_the_run_at_its_time)
 }
 END_TEST
 
-/* From the exact solution: degree 8 with short steps has no error to speak of, at the ends or inside. */
+/* From the exact solution: degree 8 with short steps has no error to speak of, at the ends or
+ * inside. */
 START_TEST(dense_output_is_in_physical_time)
 {
   problem *kepler = made_problem("kepler", "e=0.9");
@@ -205,11 +214,13 @@ START_TEST(dense_output_is_in_physical_time)
     const double from = dvi_integrator_time(integrator);
     advance(integrator, 0.1, 1);
     for (int part = 0; part <= 5; part++) {
-      const double t = part == 5 ? dvi_integrator_time(integrator) : from + 0.2 * part * (dvi_integrator_time(integrator) - from);
+      const double t = part == 5 ? dvi_integrator_time(integrator)
+                                 : from + 0.2 * part * (dvi_integrator_time(integrator) - from);
       ck_assert_int_eq(dvi_integrator_interpolate(integrator, t, q, v), DVI_OK);
       ck_assert_int_eq(kepler->exact(kepler, t, exact_q, exact_p), 0);
       ck_assert_double_le(distance(2, q, exact_q), 1e-11);
-      ck_assert_double_le(distance(2, v, exact_p), 1e-9); /* velocities up to 4.4, their times right to some 1e-13 */
+      /* velocities up to 4.4, their times right to some 1e-13 */
+      ck_assert_double_le(distance(2, v, exact_p), 1e-9);
     }
   }
   dvi_integrator_destroy(&integrator);
@@ -224,8 +235,10 @@ START_TEST(dense_output_meets_the_ends_of_a_step)
   double q[MOST];
   ck_assert_int_le(of->nq, MOST);
   advance(integrator, ways[_i].h, 5);
-  ck_assert_int_eq(dvi_integrator_interpolate(integrator, dvi_integrator_time(integrator), q, NULL), DVI_OK);
-  ck_assert_double_le(distance(of->nq, q, dvi_integrator_q(integrator)), 4e-16 * magnitude(of->nq, q) * of->nq);
+  ck_assert_int_eq(dvi_integrator_interpolate(integrator, dvi_integrator_time(integrator), q, NULL),
+                   DVI_OK);
+  ck_assert_double_le(distance(of->nq, q, dvi_integrator_q(integrator)),
+                      4e-16 * magnitude(of->nq, q) * of->nq);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&of);
 }
@@ -240,7 +253,8 @@ START_TEST(a_restored_run_continues_bit_for_bit)
   advance(second, 0.5 * ways[_i].h, 2);
   for (int step = 0; step < 30; step++) {
     ck_assert_int_eq(dvi_integrator_save(first, in_folder("checkpoint")), DVI_OK);
-    ck_assert_msg(dvi_integrator_restore(second, in_folder("checkpoint")) == DVI_OK, "%s", dvi_last_error());
+    ck_assert_msg(dvi_integrator_restore(second, in_folder("checkpoint")) == DVI_OK, "%s",
+                  dvi_last_error());
     advance(first, ways[_i].h, 1);
     advance(second, ways[_i].h, 1);
     check_same_state(first, second);
@@ -259,7 +273,8 @@ START_TEST(a_checkpoint_of_another_monitor_is_refused)
   problem *kepler = made_problem("kepler", NULL);
   dvi_integrator *others[] = {paced(kepler, create_transformed, "distance", "midpoint"),
                               paced(kepler, create_transformed, "distance:power=1", "midpoint"),
-                              paced(kepler, create_controlled, "distance", "midpoint"), started(kepler, "midpoint")};
+                              paced(kepler, create_controlled, "distance", "midpoint"),
+                              started(kepler, "midpoint")};
   for (int i = 0; i < 4; i++) {
     ck_assert_int_eq(dvi_integrator_save(others[i], in_folder("checkpoint")), DVI_OK);
     for (int k = 0; k < 4; k++) {
@@ -306,7 +321,8 @@ static double energy_change(dvi_integrator *integrator, const double *q, const d
 START_TEST(one_like_another_keeps_its_E0)
 {
   problem *kepler = made_problem("kepler", "e=0.5");
-  dvi_integrator *integrator = paced(kepler, create_transformed, "distance", "galerkin:degree=8"), *like;
+  dvi_integrator *integrator = paced(kepler, create_transformed, "distance", "galerkin:degree=8"),
+                 *like;
   const double q[] = {1.2, 0}, p[] = {0, 1};
   ck_assert_int_eq(dvi_integrator_create_like(integrator, &like), DVI_OK);
   ck_assert_double_gt(energy_change(like, q, p), 1e-3);

@@ -1,5 +1,6 @@
 /* labels: unit */
-/* What cannot be transformed or controlled is refused with a sentence, and a step that fails leaves the state as it was. */
+/* What cannot be transformed or controlled is refused with a sentence, and a step that fails leaves
+ * the state as it was. */
 #include <math.h>
 #include <stdint.h>
 
@@ -30,14 +31,17 @@ static int drive(double t, const double *q, double *V, void *user)
 START_TEST(a_system_that_may_depend_on_time_is_not_transformed)
 {
   const dvi_potential driven = {.name = "drive", .value = drive};
-  const dvi_system_terms terms = {.dimension = 1, .mass.scalar = 1, .potentials = &driven, .potential_count = 1};
+  const dvi_system_terms terms = {
+      .dimension = 1, .mass.scalar = 1, .potentials = &driven, .potential_count = 1};
   const dvi_monitor distance = monitor_of("distance"), arclength = monitor_of("arclength");
   dvi_system *system;
   dvi_integrator *integrator;
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
-  refused(create_transformed(system, &distance, "midpoint", &integrator), DVI_UNSUPPORTED, "not declared autonomous");
+  refused(create_transformed(system, &distance, "midpoint", &integrator), DVI_UNSUPPORTED,
+          "not declared autonomous");
   ck_assert_ptr_null(integrator);
-  refused(create_controlled(system, &arclength, "midpoint", &integrator), DVI_UNSUPPORTED, "not declared autonomous");
+  refused(create_controlled(system, &arclength, "midpoint", &integrator), DVI_UNSUPPORTED,
+          "not declared autonomous");
   ck_assert_int_eq(create_controlled(system, &distance, "midpoint", &integrator), DVI_OK);
   dvi_integrator_destroy(&integrator);
   dvi_system_destroy(&system);
@@ -49,9 +53,11 @@ START_TEST(explicit_methods_are_not_transformed)
   problem *kepler = made_problem("kepler", NULL);
   const dvi_monitor distance = monitor_of("distance");
   dvi_integrator *integrator;
-  refused(create_transformed(kepler->system, &distance, "verlet", &integrator), DVI_UNSUPPORTED, "time transform");
+  refused(create_transformed(kepler->system, &distance, "verlet", &integrator), DVI_UNSUPPORTED,
+          "time transform");
   check_words("verlet: the system declares a general Lagrangian");
-  refused(create_transformed(kepler->system, &distance, "composition", &integrator), DVI_UNSUPPORTED, "verlet");
+  refused(create_transformed(kepler->system, &distance, "composition", &integrator),
+          DVI_UNSUPPORTED, "verlet");
   ck_assert_ptr_null(integrator);
   problem_destroy(&kepler);
 }
@@ -62,15 +68,17 @@ START_TEST(control_wants_a_symmetric_method)
   problem *kepler = made_problem("kepler", NULL);
   const dvi_monitor distance = monitor_of("distance");
   dvi_integrator *integrator;
-  refused(create_controlled(kepler->system, &distance, "galerkin:degree=2,quadrature=radau-left", &integrator), DVI_UNSUPPORTED,
-          "step control");
+  refused(create_controlled(kepler->system, &distance, "galerkin:degree=2,quadrature=radau-left",
+                            &integrator),
+          DVI_UNSUPPORTED, "step control");
   check_words("is not symmetric");
   ck_assert_ptr_null(integrator);
   problem_destroy(&kepler);
 }
 END_TEST
 
-/* A one-form has no mass to divide by the monitor; control goes with symmetric methods for it, to their order: halved steps divide the error by 64. */
+/* A one-form has no mass to divide by the monitor; control goes with symmetric methods for it, to
+ * their order: halved steps divide the error by 64. */
 START_TEST(a_one_form_takes_control_alone)
 {
   static const double h = 0.2;
@@ -78,9 +86,10 @@ START_TEST(a_one_form_takes_control_alone)
   const dvi_monitor distance_to_origin = monitor_of("distance");
   double error[2];
   dvi_integrator *integrator;
-  refused(create_transformed(prey->system, &distance_to_origin, "dg", &integrator), DVI_UNSUPPORTED, "has no mass");
-  refused(create_controlled(prey->system, &distance_to_origin, "vprk:projection=post", &integrator), DVI_UNSUPPORTED,
-          "choose dg, dg-phase, dvrk, or vprk with its symmetric projection");
+  refused(create_transformed(prey->system, &distance_to_origin, "dg", &integrator), DVI_UNSUPPORTED,
+          "has no mass");
+  refused(create_controlled(prey->system, &distance_to_origin, "vprk:projection=post", &integrator),
+          DVI_UNSUPPORTED, "choose dg, dg-phase, dvrk, or vprk with its symmetric projection");
   for (int k = 0; k < 2; k++) {
     integrator = paced(prey, create_controlled, "distance", "vprk:nodes=3");
     run_to(integrator, ldexp(h, -k), prey->order_t_end);
@@ -92,16 +101,20 @@ START_TEST(a_one_form_takes_control_alone)
 }
 END_TEST
 
-/* Neither by galerkin, which would take the stored coordinates for those of R^n, nor by a method in charts. */
+/* Neither by galerkin, which would take the stored coordinates for those of R^n, nor by a method in
+ * charts. */
 START_TEST(factors_have_no_monitor)
 {
   static const char *const method[] = {"galerkin", "lie-galerkin:degree=1", "lie-verlet"};
   problem *body = made_problem("free-body", NULL);
-  const dvi_monitor given[] = {monitor_of("arclength"), monitor_of("acceleration"), monitor_of("distance")};
+  const dvi_monitor given[] = {monitor_of("arclength"), monitor_of("acceleration"),
+                               monitor_of("distance")};
   dvi_integrator *integrator;
   for (int k = 0; k < 9; k++) {
-    refused(create_transformed(body->system, &given[k / 3], method[k % 3], &integrator), DVI_UNSUPPORTED, "has factors");
-    refused(create_controlled(body->system, &given[k / 3], method[k % 3], &integrator), DVI_UNSUPPORTED, "has factors");
+    refused(create_transformed(body->system, &given[k / 3], method[k % 3], &integrator),
+            DVI_UNSUPPORTED, "has factors");
+    refused(create_controlled(body->system, &given[k / 3], method[k % 3], &integrator),
+            DVI_UNSUPPORTED, "has factors");
   }
   problem_destroy(&body);
 }
@@ -112,7 +125,8 @@ START_TEST(methods_that_choose_their_steps_have_no_monitor_beside_them)
   problem *kepler = made_problem("kepler", NULL);
   const dvi_monitor distance = monitor_of("distance");
   dvi_integrator *integrator;
-  refused(both[_i](kepler->system, &distance, "sem", &integrator), DVI_UNSUPPORTED, "chooses the lengths of its steps itself");
+  refused(both[_i](kepler->system, &distance, "sem", &integrator), DVI_UNSUPPORTED,
+          "chooses the lengths of its steps itself");
   problem_destroy(&kepler);
 }
 END_TEST
@@ -122,8 +136,10 @@ START_TEST(monitors_of_the_motion_want_a_constant_mass)
   problem *pendulum = made_problem("double-pendulum", NULL);
   const dvi_monitor monitors[] = {monitor_of("arclength"), monitor_of("acceleration")};
   dvi_integrator *integrator;
-  refused(both[_i](pendulum->system, &monitors[0], "midpoint", &integrator), DVI_UNSUPPORTED, "a constant mass is needed");
-  refused(both[_i](pendulum->system, &monitors[1], "midpoint", &integrator), DVI_UNSUPPORTED, "a constant mass is needed");
+  refused(both[_i](pendulum->system, &monitors[0], "midpoint", &integrator), DVI_UNSUPPORTED,
+          "a constant mass is needed");
+  refused(both[_i](pendulum->system, &monitors[1], "midpoint", &integrator), DVI_UNSUPPORTED,
+          "a constant mass is needed");
   problem_destroy(&pendulum);
 }
 END_TEST
@@ -163,7 +179,8 @@ START_TEST(a_monitor_that_is_not_well_declared_is_refused)
   problem *kepler = made_problem("kepler", NULL);
   for (int k = 0; k < 2; k++) {
     dvi_integrator *integrator = (dvi_integrator *)kepler;
-    refused(both[k](kepler->system, &wrong[_i].monitor, "midpoint", &integrator), DVI_BAD_ARGUMENT, wrong[_i].words);
+    refused(both[k](kepler->system, &wrong[_i].monitor, "midpoint", &integrator), DVI_BAD_ARGUMENT,
+            wrong[_i].words);
     ck_assert_ptr_null(integrator);
   }
   problem_destroy(&kepler);
@@ -213,8 +230,10 @@ enum { NOT_POSITIVE = sizeof not_positive / sizeof *not_positive };
 static dvi_integrator *at_cliff(const problem *kepler, paced_create create, cliff *c)
 {
   dvi_integrator *integrator;
-  const dvi_monitor monitor = {.function = {.name = "cliff", .value = cliff_value, .gradient = cliff_gradient, .user = c}};
-  ck_assert_msg(create(kepler->system, &monitor, "galerkin", &integrator) == DVI_OK, "%s", dvi_last_error());
+  const dvi_monitor monitor = {
+      .function = {.name = "cliff", .value = cliff_value, .gradient = cliff_gradient, .user = c}};
+  ck_assert_msg(create(kepler->system, &monitor, "galerkin", &integrator) == DVI_OK, "%s",
+                dvi_last_error());
   return integrator;
 }
 
@@ -240,7 +259,8 @@ START_TEST(a_step_where_the_monitor_is_not_positive_leaves_the_state_untouched)
     dvi_integrator *integrator = at_cliff(kepler, both[k], &c);
     dvi_run_report report;
     ck_assert_int_eq(dvi_integrator_start(integrator, 0, kepler->q, kepler->p), DVI_OK);
-    const dvi_status status = dvi_run(integrator, &(dvi_run_options){.h = 0.1, .t_end = 6}, &report);
+    const dvi_status status = dvi_run(integrator, &(dvi_run_options){.h = 0.1, .t_end = 6},
+                                      &report);
     refused(status, DVI_NOT_FINITE, "cliff");
     check_words("the state is unchanged");
     ck_assert_int_eq(report.end, DVI_RUN_FAILED);
@@ -255,7 +275,8 @@ START_TEST(a_step_where_the_monitor_is_not_positive_leaves_the_state_untouched)
 }
 END_TEST
 
-/* The step past the end looks at where the run never comes to; one that ends beyond the cliff cannot be taken. */
+/* The step past the end looks at where the run never comes to; one that ends beyond the cliff
+ * cannot be taken. */
 START_TEST(a_failure_past_the_end_does_not_matter)
 {
   problem *kepler = made_problem("kepler", NULL);
@@ -268,7 +289,8 @@ START_TEST(a_failure_past_the_end_does_not_matter)
     run_to(integrator, 0.15, 2);
     ck_assert_double_eq(dvi_integrator_time(integrator), 2);
     ck_assert_double_le(distance(2, dvi_integrator_q(integrator), q), 1e-2);
-    refused(dvi_run(integrator, &(dvi_run_options){.h = 0.15, .t_end = 2.1}, NULL), DVI_NOT_FINITE, "cliff");
+    refused(dvi_run(integrator, &(dvi_run_options){.h = 0.15, .t_end = 2.1}, NULL), DVI_NOT_FINITE,
+            "cliff");
     check_words("the state is unchanged");
     dvi_integrator_destroy(&integrator);
   }
@@ -333,12 +355,17 @@ START_TEST(steps_of_no_length_are_refused)
   static const double lengths[] = {0, (double)NAN, (double)INFINITY, 1e-310};
   problem *kepler = made_problem("kepler", NULL);
   dvi_integrator *integrator = paced(kepler, both[_i], "distance", "midpoint");
-  for (int k = 0; k < 4; k++) ck_assert_int_eq(dvi_integrator_step(integrator, lengths[k]), DVI_BAD_ARGUMENT);
-  refused(dvi_run(integrator, &(dvi_run_options){.h = -0.1, .t_end = 1}, NULL), DVI_BAD_ARGUMENT, "leads away");
+  for (int k = 0; k < 4; k++)
+    ck_assert_int_eq(dvi_integrator_step(integrator, lengths[k]), DVI_BAD_ARGUMENT);
+  refused(dvi_run(integrator, &(dvi_run_options){.h = -0.1, .t_end = 1}, NULL), DVI_BAD_ARGUMENT,
+          "leads away");
   dvi_integrator_destroy(&integrator);
-  ck_assert_int_eq(both[_i](kepler->system, &(dvi_monitor){.kind = DVI_MONITOR_DISTANCE}, "midpoint", &integrator), DVI_OK);
+  ck_assert_int_eq(both[_i](kepler->system, &(dvi_monitor){.kind = DVI_MONITOR_DISTANCE},
+                            "midpoint", &integrator),
+                   DVI_OK);
   ck_assert_int_eq(dvi_integrator_start(integrator, 1e9, kepler->q, kepler->p), DVI_OK);
-  refused(dvi_integrator_step(integrator, 1e-9), DVI_BAD_ARGUMENT, "does not move the time"); /* by less than a rounding */
+  /* by less than a rounding */
+  refused(dvi_integrator_step(integrator, 1e-9), DVI_BAD_ARGUMENT, "does not move the time");
   dvi_integrator_destroy(&integrator);
   problem_destroy(&kepler);
 }
@@ -346,10 +373,12 @@ END_TEST
 
 /* ---- memory ---- */
 
-static void survives(const problem *of, paced_create create, const char *monitor, const char *method)
+static void survives(const problem *of, paced_create create, const char *monitor,
+                     const char *method)
 {
   const dvi_monitor chosen = monitor_of(monitor);
-  dvi_integrator *integrator = paced(of, create, monitor, method); /* the first one completes the system */
+  /* the first one completes the system */
+  dvi_integrator *integrator = paced(of, create, monitor, method);
   dvi_integrator_destroy(&integrator);
   const long before = dvi__allocation_count();
   integrator = paced(of, create, monitor, method);
@@ -390,7 +419,8 @@ SUITE(transform_failure)
   tcase_add_loop_test(tests, a_monitor_that_is_not_well_declared_is_refused, 0, WRONG);
   tcase_add_loop_test(tests, null_arguments_are_refused, 0, 2);
   tcase_add_loop_test(tests, a_start_where_the_monitor_is_not_positive_is_refused, 0, NOT_POSITIVE);
-  tcase_add_loop_test(tests, a_step_where_the_monitor_is_not_positive_leaves_the_state_untouched, 0, NOT_POSITIVE);
+  tcase_add_loop_test(tests, a_step_where_the_monitor_is_not_positive_leaves_the_state_untouched, 0,
+                      NOT_POSITIVE);
   tcase_add_test(tests, a_failure_past_the_end_does_not_matter);
   tcase_add_loop_test(tests, what_the_monitor_returns_is_passed_on, 0, 2);
   tcase_add_test(tests, a_control_step_too_large_for_the_monitor_is_refused);

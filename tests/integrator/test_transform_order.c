@@ -13,15 +13,18 @@
 
 enum { LEVELS = 5, MOST = 8 };
 
-static dvi_integrator *transformed(const problem *of, const dvi_monitor *monitor, const char *method)
+static dvi_integrator *transformed(const problem *of, const dvi_monitor *monitor,
+                                   const char *method)
 {
   dvi_integrator *made = NULL;
-  ck_assert_msg(create_transformed(of->system, monitor, method, &made) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(create_transformed(of->system, monitor, method, &made) == DVI_OK, "%s",
+                dvi_last_error());
   ck_assert_msg(dvi_integrator_start(made, 0, of->q, of->p) == DVI_OK, "%s", dvi_last_error());
   return made;
 }
 
-/* Levels, each with half as many steps again as the one before: high orders would meet the floor otherwise. */
+/* Levels, each with half as many steps again as the one before: high orders would meet the floor
+ * otherwise. */
 static int steps_at(int first, int level)
 {
   return (int)lround(first * pow(1.5, level));
@@ -43,20 +46,25 @@ static double slope(int first, const double *error)
   return product / square;
 }
 
-static void check_slope(const char *what, const char *method, int first, const double *error, int order)
+static void check_slope(const char *what, const char *method, int first, const double *error,
+                        int order)
 {
   const double found = slope(first, error);
   if (getenv("DVI_SHOW_ORDERS") != NULL)
-    (void)printf("%s %s: %.3f of %d (%.1e to %.1e)\n", what, method, found, order, error[0], error[LEVELS - 1]);
+    (void)printf("%s %s: %.3f of %d (%.1e to %.1e)\n", what, method, found, order, error[0],
+                 error[LEVELS - 1]);
   ck_assert_msg(error[LEVELS - 1] > 3e-13, "%s of %s is at the floor", what, method);
-  ck_assert_msg(fabs(found - order) <= 0.2, "%s of %s: order %.3f, not %d", what, method, found, order);
+  ck_assert_msg(fabs(found - order) <= 0.2, "%s of %s: order %.3f, not %d", what, method, found,
+                order);
 }
 
-/* With g = r, tau is the eccentric anomaly: q = (cos tau - e, sqrt(1-e^2) sin tau), t = tau - e sin tau. */
+/* With g = r, tau is the eccentric anomaly: q = (cos tau - e, sqrt(1-e^2) sin tau), t = tau - e sin
+ * tau. */
 static void check_on_kepler(const char *method, int order, int first, double tau)
 {
   const double e = 0.3, b = sqrt(0.91), r = 1 - e * cos(tau);
-  const double q[2] = {cos(tau) - e, b * sin(tau)}, p[2] = {-sin(tau) / r, b * cos(tau) / r}, t = tau - e * sin(tau);
+  const double q[2] = {cos(tau) - e, b * sin(tau)}, p[2] = {-sin(tau) / r, b * cos(tau) / r},
+               t = tau - e * sin(tau);
   double error[3][LEVELS];
   problem *kepler = made_problem("kepler", "e=0.3");
   const dvi_monitor monitor = {.kind = DVI_MONITOR_DISTANCE, .power = 1};
@@ -118,7 +126,9 @@ END_TEST
 static int is_measured(const char *name)
 {
   for (int i = 0; i < METHODS; i++)
-    if (strncmp(methods[i].method, name, strlen(name)) == 0 && strchr(":", methods[i].method[strlen(name)]) != NULL) return 1;
+    if (strncmp(methods[i].method, name, strlen(name)) == 0 &&
+        strchr(":", methods[i].method[strlen(name)]) != NULL)
+      return 1;
   return 0;
 }
 
@@ -130,7 +140,8 @@ START_TEST(every_method_is_measured_or_refuses)
   for (int i = 0; i < dvi_method_count(); i++) {
     dvi_integrator *none = NULL;
     if (is_measured(dvi_method_name(i))) continue;
-    const dvi_status status = create_transformed(kepler->system, &monitor, dvi_method_name(i), &none);
+    const dvi_status status = create_transformed(kepler->system, &monitor, dvi_method_name(i),
+                                                 &none);
     ck_assert_msg(status == DVI_UNSUPPORTED, "%s is not in the list above", dvi_method_name(i));
     ck_assert_ptr_null(none);
   }
@@ -145,7 +156,8 @@ START_TEST(a_method_of_higher_derivatives_says_why_not)
   problem *kepler = made_problem("kepler", NULL);
   for (int i = 0; i < 2; i++) {
     dvi_integrator *none = NULL;
-    ck_assert_int_eq(create_transformed(kepler->system, &monitor, of_derivatives[i], &none), DVI_UNSUPPORTED);
+    ck_assert_int_eq(create_transformed(kepler->system, &monitor, of_derivatives[i], &none),
+                     DVI_UNSUPPORTED);
     check_words("a time-transformed system has no Taylor coefficients");
   }
   problem_destroy(&kepler);
@@ -168,8 +180,10 @@ static int wave_gradient(double t, const double *q, double *g_q, void *user)
   return 0;
 }
 
-/* A run to a physical time, whose last step is shorter: the end is at that time to roundoff, and of the method's order. */
-static void check_runs(const char *name, const dvi_monitor *monitor, const char *method, int order, int first)
+/* A run to a physical time, whose last step is shorter: the end is at that time to roundoff, and of
+ * the method's order. */
+static void check_runs(const char *name, const dvi_monitor *monitor, const char *method, int order,
+                       int first)
 {
   double error[LEVELS], q[MOST], p[MOST];
   problem *of = made_problem(name, NULL);
@@ -178,9 +192,12 @@ static void check_runs(const char *name, const dvi_monitor *monitor, const char 
   ck_assert_double_lt(quad_solve(name, 0, NULL, t_end, q, p), 1e-15);
   for (int k = 0; k < LEVELS; k++) {
     dvi_integrator *integrator = transformed(of, monitor, method);
-    ck_assert_msg(dvi_run(integrator, &(dvi_run_options){.h = t_end / steps_at(first, k), .t_end = t_end}, NULL) == DVI_OK, "%s",
-                  dvi_last_error());
-    ck_assert_double_eq_tol(dvi_integrator_time(integrator), t_end, 4e-15 * t_end); /* 16 roundings */
+    ck_assert_msg(dvi_run(integrator,
+                          &(dvi_run_options){.h = t_end / steps_at(first, k), .t_end = t_end},
+                          NULL) == DVI_OK,
+                  "%s", dvi_last_error());
+    /* 16 roundings */
+    ck_assert_double_eq_tol(dvi_integrator_time(integrator), t_end, 4e-15 * t_end);
     error[k] = distance(of->nq, dvi_integrator_q(integrator), q);
     dvi_integrator_destroy(&integrator);
   }
@@ -200,9 +217,11 @@ END_TEST
 /* g depends on E0 here, and its gradient on the potential's Hessian. */
 START_TEST(arc_lengths_and_accelerations_keep_the_order)
 {
-  check_runs("henon-heiles", &(dvi_monitor){.kind = DVI_MONITOR_ARCLENGTH}, "galerkin:degree=2", 4, 100);
+  check_runs("henon-heiles", &(dvi_monitor){.kind = DVI_MONITOR_ARCLENGTH}, "galerkin:degree=2", 4,
+             100);
   check_runs("kepler", &(dvi_monitor){.kind = DVI_MONITOR_ARCLENGTH}, "galerkin:degree=3", 6, 40);
-  check_runs("kepler", &(dvi_monitor){.kind = DVI_MONITOR_ACCELERATION}, "galerkin:degree=3", 6, 40);
+  check_runs("kepler", &(dvi_monitor){.kind = DVI_MONITOR_ACCELERATION}, "galerkin:degree=3", 6,
+             40);
 }
 END_TEST
 

@@ -1,9 +1,10 @@
 /* The same for the library of scenes: dvi__complain and its like return false. */
 /* As syntax.c says, before any header. */
 #define _POSIX_C_SOURCE 200809L
-#include "scene/callbacks.h"
-#include "scene/text/complaint.h"
-#include "scene/sections.h"
+#include "scene/terms/callbacks.h"
+#include "scene/terms/fault.h"
+#include "text/complaint.h"
+#include "scene/sections/sections.h"
 
 #define dvi__complain(...) ((void)(dvi__complain)(__VA_ARGS__), false)
 #define dvi__refuse(...) ((void)(dvi__refuse)(__VA_ARGS__), false)

@@ -10,7 +10,7 @@ rc=0
 clean() {
   rm -rf "${work:?}"/*
   cd "$work" || exit 1
-  for room in core num group space system solve step/element method/element diagnostics reference scene; do mkdir -p lib/src/$room; done
+  for room in core num group space system solve step/element method/element diagnostics reference text expr scene scene/sections; do mkdir -p lib/src/$room; done
   mkdir -p lib/include/dvi apps/cli apps/problems apps/examples tests/method/element docs/methods
   printf '/** One. */\nint dvi_one(int a);\n' >lib/include/dvi/one.h
   printf '#include <dvi/one.h>\n\nint dvi_one(int a)\n{\n  return a;\n}\n' >lib/src/core/one.c
@@ -24,7 +24,9 @@ clean() {
   { echo '# One'; echo '```c'; cat apps/examples/pendulum.c; echo '```'; echo 'See [the guide](docs/guide.md#two-words), Euler1744.'; } >README.md
   { echo '# Shapes'; echo '```c'; cat apps/examples/shapes.c; echo '```'; } >docs/shapes.md
   printf 'int told = refuse("there is no \047%%s\047\\n", "a name"); /* "not this" */\n' >lib/src/scene/one.c
-  printf '# Errors\n\n- `there is no \047<name>\047`\n  A slip.\n  - `a name`\n' >docs/scene-errors.md
+  printf '# Errors\n\n- `there is no \047<name>\047`\n  A slip.\n  - `a name`\n  - `a step`\n' >docs/scene-errors.md
+  printf 'SECTION(step, REQUIRED, "a step", "how far")\n' >lib/src/scene/sections/sections.def
+  printf '| section | what it holds | needed |\n|---|---|---|\n| `step` | how far | yes |\n' >docs/scenes.md
   { echo '# Two words'; echo '```c'; echo '#include <dvi/one.h>'; echo 'int two(void);'; echo '```'; } >docs/guide.md
 }
 
@@ -36,6 +38,7 @@ documented() { awk -f "$lint/documented.awk" lib/include/dvi/*.h; }
 docs() { sh "$lint/docs.sh" "$work" "$compiler"; }
 methods() { sh "$lint/methods.sh" "$work" leap; }
 messages() { sh "$lint/messages.sh" "$work"; }
+sections() { sh "$lint/sections.sh" "$work"; }
 headers() { sh "$lint/headers.sh" "$work/lib/include" c "$compiler" -std=c11; }
 symbols() {
   "$compiler" -shared -fPIC -I lib/include lib/src/core/*.c -o libone.so && "$compiler" -c -I lib/include lib/src/core/one.c -o one.o &&
@@ -52,7 +55,7 @@ sees() {
 }
 
 clean
-for gate in layers text documented methods messages docs headers symbols; do passes $gate; done
+for gate in layers text documented methods messages sections docs headers symbols; do passes $gate; done
 
 sees layers lib/src/core/one.c '#include "num/linear.h"'
 sees layers lib/src/num/one.c '#include "system/system.h"'
@@ -71,6 +74,8 @@ sees layers lib/src/reference/one.c '#include <gsl/gsl_odeiv2.h>'
 sees layers lib/src/num/one.c 'printf("x");'
 sees layers lib/src/num/one.c 'x = malloc(3);'
 sees layers lib/src/scene/one.c 'x = malloc(3);'
+sees layers lib/src/expr/one.c '#include "scene/text/tree.h"'
+sees layers lib/src/text/one.c '#include "expr/graph.h"'
 sees layers lib/src/num/one.c 'free(x);'
 sees layers lib/src/num/one.c 'x = strtod(text, NULL);'
 sees layers apps/main.c 'x = atof(text);'
@@ -88,13 +93,16 @@ sees text lib/src/core/one.c 'int a; '
 sees text lib/src/core/one.c '/* TO''DO: finish */'
 sees text lib/src/core/one.c '/* caf\0303\0251 */'
 sees text lib/src/core/long.c "int f(void)\n{\n$(awk 'BEGIN { for (i = 0; i < 60; i++) printf "  g();\\n" }')}"
-sees text lib/src/core/long.c "$(awk 'BEGIN { for (i = 0; i < 501; i++) printf "int a%d;\\n", i }')"
+sees text lib/src/core/long.c "$(awk 'BEGIN { for (i = 0; i < 601; i++) printf "int a%d;\\n", i }')"
 sees documented lib/include/dvi/one.h '\nint dvi_two(int a);'
 sees documented lib/include/dvi/one.h '\ntypedef struct dvi_two { int a; } dvi_two;'
 sees methods docs/methods/other.md 'a page without a method'
 sees messages lib/src/scene/one.c 'int two = refuse("there are %d of them");'
 sees messages docs/scene-errors.md '- `there is no <name>`'
 sees messages docs/scene-errors.md '- `a name`'
+sees messages lib/src/scene/sections/sections.def 'REFUSED_SECTION(dash, "no dashes")'
+sees sections lib/src/scene/sections/sections.def 'SECTION(dash, OPTIONAL, NULL, "a "\n        "dash")'
+sees sections docs/scenes.md '| `dash` | a dash | |'
 sees docs README.md '[nowhere](docs/nowhere.md)'
 sees docs README.md '[no heading](docs/guide.md#three-words)'
 sees docs README.md 'Nobody1900 says so.'

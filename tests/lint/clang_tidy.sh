@@ -13,7 +13,7 @@ tidy() {
   cd "$top" || exit 1
   header=
   case $file in
-    lib/src/scene/*) header=analyzer_scene.h ;;
+    lib/src/text/* | lib/src/expr/* | lib/src/scene/*) header=analyzer_scene.h ;;
     lib/src/core/* | apps/*) ;;
     lib/*) header=analyzer.h ;;
   esac

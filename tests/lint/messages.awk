@@ -18,7 +18,7 @@ function sentence(s) {
 }
 
 END {
-  gsub(/"[ \n]*FOUND_FORMAT[ \n]*"/, "%s", text)
+  gsub(/"[ \n]*DVI__FOUND_FORMAT[ \n]*"/, "%s", text)
   inside = ""
   for (i = 1; i <= length(text); i++) {
     c = substr(text, i, 1)

@@ -1,6 +1,6 @@
 /* labels: unit */
-/* The loop of a run serves what has neither coordinates nor a step of one length: here a set of clocks, each of
- * which advances when it is due. */
+/* The loop of a run serves what has neither coordinates nor a step of one length: here a set of
+ * clocks, each of which advances when it is due. */
 #include "march/march.h"
 
 #include <math.h>
@@ -114,14 +114,16 @@ static dvi_status save(const void *of, const char *path)
   return DVI_OK;
 }
 
-static const dvi__marcher marcher = {time_of, time_left, ticks_of,       advance,  take_back, reject,
-                                     event,   value,     value_at_start, occurred, observe,   save};
+static const dvi__marcher marcher = {time_of,        time_left, ticks_of, advance,
+                                     take_back,      reject,    event,    value,
+                                     value_at_start, occurred,  observe,  save};
 
 START_TEST(clocks_that_tick_when_they_are_due_run_to_the_end)
 {
   clocks c = made_clocks();
   dvi_run_report report = {0};
-  const dvi__march_options options = {.h = 1, .t_end = 10, .chooses_steps = 1, .checkpoint = "there", .checkpoint_every = 5};
+  const dvi__march_options options = {
+      .h = 1, .t_end = 10, .chooses_steps = 1, .checkpoint = "there", .checkpoint_every = 5};
   saves = 0;
   ck_assert_int_eq(dvi__march(&c, &marcher, &options, &report), DVI_OK);
   ck_assert_int_eq(report.end, DVI_RUN_COMPLETE);

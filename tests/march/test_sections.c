@@ -35,7 +35,8 @@ START_TEST(sections_are_found_by_name_version_and_size)
   ck_assert_str_eq((const char *)found.content, "odd");
   ck_assert_int_eq(dvi__section_find(&s, "empty", 1, 0, &found), DVI_OK);
   ck_assert_int_eq(dvi__section_find(&s, "text", 1, DVI__ANY_SIZE, &found), DVI_BAD_FILE);
-  ck_assert_str_eq(dvi_last_error(), "state: section 'text' is of version 2; this libdvi reads version 1");
+  ck_assert_str_eq(dvi_last_error(),
+                   "state: section 'text' is of version 2; this libdvi reads version 1");
   ck_assert_int_eq(dvi__section_find(&s, "first", 1, 8, &found), DVI_BAD_FILE);
   ck_assert_str_eq(dvi_last_error(), "state: section 'first' has 24 bytes instead of 8");
   ck_assert_int_eq(dvi__section_find(&s, "last", 1, 8, &found), DVI_BAD_FILE);
@@ -48,7 +49,8 @@ START_TEST(every_cut_and_every_flipped_bit_is_refused)
 {
   dvi__sections_writer w = written();
   dvi__sections s = {0};
-  for (size_t size = 0; size < w.size; size++) ck_assert_int_eq(dvi__sections_check(&s, "state", w.bytes, size), DVI_BAD_FILE);
+  for (size_t size = 0; size < w.size; size++)
+    ck_assert_int_eq(dvi__sections_check(&s, "state", w.bytes, size), DVI_BAD_FILE);
   for (size_t at = 0; at < w.size; at++)
     for (int bit = 0; bit < 8; bit++) {
       w.bytes[at] ^= (unsigned char)(1 << bit);

@@ -1,6 +1,6 @@
 /* labels: invariant slow long */
-/* A million steps, and a tenth of them in a short run: the energy error stays bounded, without a trend that the scatter of its block
- * means could not explain. */
+/* A million steps, and a tenth of them in a short run: the energy error stays bounded, without a
+ * trend that the scatter of its block means could not explain. */
 #include <check.h>
 #include <math.h>
 
@@ -38,17 +38,20 @@ START_TEST(energy_does_not_drift_over_a_million_steps)
     advance(integrator, run[_i].h, 20);
   }
   dvi_drift_result(&energy, &fit);
-  ck_assert_msg(fit.largest <= run[_i].bound, "%s, %s: energy error %g", run[_i].problem, run[_i].method, fit.largest);
-  /* Significance 3 is the usual threshold; a trend of less than 1e-3 of the oscillation could hide, which 1e6 steps make 1e-9 of it a step. */
-  ck_assert_msg(fit.significance < 3 || fabs(fit.change) < 1e-3 * fit.largest, "%s, %s: change %g, significance %g",
-                run[_i].problem, run[_i].method, fit.change, fit.significance);
+  ck_assert_msg(fit.largest <= run[_i].bound, "%s, %s: energy error %g", run[_i].problem,
+                run[_i].method, fit.largest);
+  /* Significance 3 is the usual threshold; a trend of less than 1e-3 of the oscillation could hide,
+   * which 1e6 steps make 1e-9 of it a step. */
+  ck_assert_msg(fit.significance < 3 || fabs(fit.change) < 1e-3 * fit.largest,
+                "%s, %s: change %g, significance %g", run[_i].problem, run[_i].method, fit.change,
+                fit.significance);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&of);
 }
 END_TEST
 
-/* L = |v|^2/2 + B (x v_y - y v_x)/2: a charge goes round in circles, and Gauss quadrature keeps energy and angular momentum exactly. What
- * remains is the solvers' doing. */
+/* L = |v|^2/2 + B (x v_y - y v_x)/2: a charge goes round in circles, and Gauss quadrature keeps
+ * energy and angular momentum exactly. What remains is the solvers' doing. */
 static int charge_value(double t, const double *q, const double *v, double *L, void *user)
 {
   const double B = *(const double *)user;
@@ -57,7 +60,8 @@ static int charge_value(double t, const double *q, const double *v, double *L, v
   return 0;
 }
 
-static int charge_gradient(double t, const double *q, const double *v, double *L_q, double *L_v, void *user)
+static int charge_gradient(double t, const double *q, const double *v, double *L_q, double *L_v,
+                           void *user)
 {
   const double B = *(const double *)user;
   (void)t;
@@ -69,7 +73,8 @@ static int charge_gradient(double t, const double *q, const double *v, double *L
 }
 
 /* Energy after so many steps of 0.1 must be what it was. Frees the system. */
-static void check_energy(dvi_system *system, const char *method, const double *q, const double *v, int steps, double tolerance)
+static void check_energy(dvi_system *system, const char *method, const double *q, const double *v,
+                         int steps, double tolerance)
 {
   double first, last;
   dvi_integrator *integrator = made_integrator(system, method);
@@ -82,18 +87,20 @@ static void check_energy(dvi_system *system, const char *method, const double *q
   dvi_system_destroy(&system);
 }
 
-/* Iterations that stop with forces of the point before the last err in one direction: 1.7e-12 in these 1e5 steps. Random roundings of an
- * energy of 0.2 make 1e-14. */
+/* Iterations that stop with forces of the point before the last err in one direction: 1.7e-12 in
+ * these 1e5 steps. Random roundings of an energy of 0.2 make 1e-14. */
 START_TEST(a_charge_in_a_magnetic_field_keeps_its_energy_at_roundoff)
 {
   static const char *const methods[] = {"galerkin:degree=2", "galerkin:degree=2,solver=newton",
-                                        "galerkin:degree=2,solver=fixed-point", "galerkin:degree=3", "midpoint"};
+                                        "galerkin:degree=2,solver=fixed-point", "galerkin:degree=3",
+                                        "midpoint"};
   double B = 1.3;
   const dvi_lagrangian l = {.value = charge_value, .gradient = charge_gradient, .user = &B};
   const dvi_system_terms terms = {.dimension = 2, .lagrangian = &l};
   dvi_system *system = NULL;
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
-  check_energy(system, methods[_i], (double[]){0.3, 0.1}, (double[]){0.6, 0.2}, repeats(100000), 5e-14);
+  check_energy(system, methods[_i], (double[]){0.3, 0.1}, (double[]){0.6, 0.2}, repeats(100000),
+               5e-14);
 }
 END_TEST
 
@@ -116,27 +123,33 @@ static int pair_gradient(double t, const double *q, double *V_q, void *user)
   return 0;
 }
 
-/* Fixed point iterations contract by modes that turn at h omega = 1 to 2.7, and a correction may be small by chance: iterations that stopped there erred in one
- * direction, 1e-12 in 65536 steps, where roundings of an energy of 1 make 3e-14. */
+/* Fixed point iterations contract by modes that turn at h omega = 1 to 2.7, and a correction may be
+ * small by chance: iterations that stopped there erred in one direction, 1e-12 in 65536 steps,
+ * where roundings of an energy of 1 make 3e-14. */
 START_TEST(a_stiff_oscillator_keeps_its_energy_at_roundoff)
 {
   static const struct {
     const char *method;
     double stiffness;
-  } pairs[] = {{"galerkin:degree=8", 324}, {"galerkin:degree=8", 400}, {"galerkin:degree=8", 600}, {"galerkin:degree=8", 700},
-               {"galerkin:degree=4", 150}, {"galerkin:degree=3", 200}, {"midpoint", 100}};
+  } pairs[] = {{"galerkin:degree=8", 324}, {"galerkin:degree=8", 400}, {"galerkin:degree=8", 600},
+               {"galerkin:degree=8", 700}, {"galerkin:degree=4", 150}, {"galerkin:degree=3", 200},
+               {"midpoint", 100}};
   double stiffness = pairs[_i].stiffness;
-  const dvi_potential springs = {.value = pair_value, .gradient = pair_gradient, .user = &stiffness};
-  const dvi_system_terms terms = {.dimension = 2, .mass.scalar = 1, .potentials = &springs, .potential_count = 1};
+  const dvi_potential springs = {
+      .value = pair_value, .gradient = pair_gradient, .user = &stiffness};
+  const dvi_system_terms terms = {
+      .dimension = 2, .mass.scalar = 1, .potentials = &springs, .potential_count = 1};
   dvi_system *system = NULL;
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
   const int steps = repeats(65536);
-  check_energy(system, pairs[_i].method, (double[]){1, 1 / sqrt(stiffness)}, (double[]){0.5, 0.3}, steps, 5e-13 * steps / 65536);
+  check_energy(system, pairs[_i].method, (double[]){1, 1 / sqrt(stiffness)}, (double[]){0.5, 0.3},
+               steps, 5e-13 * steps / 65536);
 }
 END_TEST
 
-/* Brouwer's law: roundings without a common direction make an energy error that grows like the square root of the steps. Averaged over orbits of
- * different shape, the exponent is known to about 0.1. With h/m p0 rounded, in stages and ends alike, it was 0.83 from 6.6e4 to 4.2e6 steps. */
+/* Brouwer's law: roundings without a common direction make an energy error that grows like the
+ * square root of the steps. Averaged over orbits of different shape, the exponent is known to about
+ * 0.1. With h/m p0 rounded, in stages and ends alike, it was 0.83 from 6.6e4 to 4.2e6 steps. */
 START_TEST(the_energy_error_grows_like_the_square_root_of_the_steps)
 {
   enum { ORBITS = 12, OCTAVES = 17, FIRST = 128 };
@@ -155,7 +168,8 @@ START_TEST(the_energy_error_grows_like_the_square_root_of_the_steps)
     dvi_integrator_destroy(&integrator);
     problem_destroy(&of);
   }
-  for (int k = 0; k < octaves; k++) x += k, y += log2(error[k]), xx += k * k, xy += k * log2(error[k]);
+  for (int k = 0; k < octaves; k++)
+    x += k, y += log2(error[k]), xx += k * k, xy += k * log2(error[k]);
   const double exponent = (octaves * xy - x * y) / (octaves * xx - x * x);
   ck_assert_double_le(exponent, 0.65);
   /* Roundings of an energy of 1/2 would make 1.6e-13 in 8.4e6 steps. */

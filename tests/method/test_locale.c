@@ -24,12 +24,14 @@ static void take_steps(const problem *of, dvi_integrator *integrator, outcome *s
   advance(integrator, 0.05, 5);
   (void)snprintf(seen->method, TEXT_SIZE, "%s", dvi_integrator_method(integrator));
   (void)snprintf(seen->monitor, TEXT_SIZE, "%s",
-                 dvi_integrator_monitor(integrator) != NULL ? dvi_integrator_monitor(integrator) : "");
+                 dvi_integrator_monitor(integrator) != NULL ? dvi_integrator_monitor(integrator)
+                                                            : "");
   (void)dvi_integrator_explain(integrator, seen->explained, TEXT_SIZE);
   memcpy(seen->q, dvi_integrator_q(integrator), (size_t)of->nq * sizeof(double));
   memcpy(seen->p, dvi_integrator_p(integrator), (size_t)of->nv * sizeof(double));
   /* A sentence with numbers, of the state. */
-  ck_assert_int_eq(dvi_run(integrator, &(dvi_run_options){.h = -0.25, .t_end = 1.5}, NULL), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_run(integrator, &(dvi_run_options){.h = -0.25, .t_end = 1.5}, NULL),
+                   DVI_BAD_ARGUMENT);
   (void)snprintf(seen->error, TEXT_SIZE, "%s", dvi_last_error());
   dvi_integrator_destroy(&integrator);
 }
@@ -61,7 +63,9 @@ static void run(int i, outcome *seen)
   problem *of = made_problem(runs[i].problem, runs[i].setting);
   memset(seen, 0, sizeof *seen);
   take_steps(of,
-             runs[i].monitor != NULL ? paced(of, create_transformed, runs[i].monitor, runs[i].method) : started(of, runs[i].method),
+             runs[i].monitor != NULL
+                 ? paced(of, create_transformed, runs[i].monitor, runs[i].method)
+                 : started(of, runs[i].method),
              seen);
   problem_destroy(&of);
 }
@@ -90,7 +94,8 @@ START_TEST(commas_are_refused)
   dvi_integrator *none;
   set_comma();
   ck_assert_int_eq(dvi_monitor_read("distance:power=1,5", &monitor), DVI_BAD_OPTION);
-  ck_assert_int_eq(dvi_integrator_create(of->system, "shooting:tolerance=1,5", &none), DVI_BAD_OPTION);
+  ck_assert_int_eq(dvi_integrator_create(of->system, "shooting:tolerance=1,5", &none),
+                   DVI_BAD_OPTION);
   set_point();
   problem_destroy(&of);
 }
@@ -101,8 +106,10 @@ START_TEST(the_command_writes_the_same_rows)
   char command[1024];
   set_comma();
   for (int k = 0; k < 2; k++) {
-    (void)snprintf(command, sizeof command, "LC_ALL=%s '%s' run kepler --set e=0.25 --method verlet --h 0.125 --t-end 1.5 --out %s",
-                   k == 0 ? "comma" : "C", DVI_COMMAND, in_folder(k == 0 ? "comma.csv" : "point.csv"));
+    (void)snprintf(
+        command, sizeof command,
+        "LC_ALL=%s '%s' run kepler --set e=0.25 --method verlet --h 0.125 --t-end 1.5 --out %s",
+        k == 0 ? "comma" : "C", DVI_COMMAND, in_folder(k == 0 ? "comma.csv" : "point.csv"));
     ck_assert_int_eq(system(command), 0); /* NOLINT(cert-env33-c): the command of the build */
   }
   set_point();

@@ -1,5 +1,6 @@
 /* labels: order reference */
-/* IDA, which shares no solver with the methods, finds the same orders as the judge of test_order.c. */
+/* IDA, which shares no solver with the methods, finds the same orders as the judge of
+ * test_order.c. */
 #include <check.h>
 
 #include "support/order.h"
@@ -28,5 +29,6 @@ SUITE(order_ida)
   tcase_set_timeout(tests, 0);
   tcase_add_loop_test(tests, ida_finds_the_order_2_of_the_midpoint_rule, 0, ORDER_PLACES);
   tcase_add_loop_test(tests, ida_finds_the_order_4_of_gauss_with_two_nodes, 0, ORDER_PLACES);
-  tcase_add_loop_test(tests, ida_finds_the_order_4_of_lobatto_with_three_nodes_for_degree_3, 0, ORDER_PLACES);
+  tcase_add_loop_test(tests, ida_finds_the_order_4_of_lobatto_with_three_nodes_for_degree_3, 0,
+                      ORDER_PLACES);
 }

@@ -34,8 +34,13 @@ static dvi_status make_points(int n, dvi_system **system)
   ck_assert_ptr_nonnull(row);
   for (int i = 0; i < n; i++) start[i] = row[i] = i;
   start[n] = n;
-  const dvi_potential none = {.name = "none", .value = no_potential, .gradient = no_force, .qq = {start, row}, .user = &count};
-  const dvi_system_terms terms = {.dimension = n, .mass.scalar = 1, .potentials = &none, .potential_count = 1};
+  const dvi_potential none = {.name = "none",
+                              .value = no_potential,
+                              .gradient = no_force,
+                              .qq = {start, row},
+                              .user = &count};
+  const dvi_system_terms terms = {
+      .dimension = n, .mass.scalar = 1, .potentials = &none, .potential_count = 1};
   const dvi_status status = dvi_system_create(&terms, system);
   free(start);
   free(row);
@@ -57,7 +62,8 @@ END_TEST
 START_TEST(more_coordinates_than_ints_count)
 {
   const dvi_factor lines = {.kind = DVI_RN, .size = INT_MAX, .mass = 1};
-  const dvi_system_terms plain = {.dimension = INT_MAX, .mass.scalar = 1}, product = {.factors = &lines, .factor_count = 1};
+  const dvi_system_terms plain = {.dimension = INT_MAX, .mass.scalar = 1},
+                         product = {.factors = &lines, .factor_count = 1};
   dvi_system *system = NULL;
   ck_assert_int_eq(dvi_system_create(&plain, &system), DVI_BAD_SIZE);
   check_words("system: dimension 2147483647; at most 536870911 is possible");
@@ -74,11 +80,14 @@ START_TEST(more_unknowns_than_an_int_counts)
   dvi_system *system = NULL;
   dvi_integrator *integrator = NULL;
   ck_assert_int_eq(make_points(N, &system), DVI_OK);
-  ck_assert_int_eq(
-      dvi_integrator_create(system, "shooting:onestep=gauss,stages=8,quadrature=lobatto,nodes=16,solve=stages", &integrator),
-      DVI_BAD_SIZE);
+  ck_assert_int_eq(dvi_integrator_create(
+                       system,
+                       "shooting:onestep=gauss,stages=8,quadrature=lobatto,nodes=16,solve=stages",
+                       &integrator),
+                   DVI_BAD_SIZE);
   ck_assert_ptr_null(integrator);
-  check_words("4000000 coordinates with 542 numbers each make 2168000000, more than an int can count");
+  check_words(
+      "4000000 coordinates with 542 numbers each make 2168000000, more than an int can count");
   dvi_system_destroy(&system);
 }
 END_TEST
@@ -91,7 +100,8 @@ START_TEST(the_largest_counts_are_those_of_an_int)
   ck_assert_int_eq(make_points(N, &system), DVI_OK);
   ck_assert_int_eq(dvi__joint_check(system, 1, INT_MAX / N), DVI_OK);
   ck_assert_int_eq(dvi__joint_check(system, 1, INT_MAX / N + 1), DVI_BAD_SIZE);
-  check_words("1000 coordinates with 2147484 numbers each make 2147484000, more than an int can count");
+  check_words(
+      "1000 coordinates with 2147484 numbers each make 2147484000, more than an int can count");
   ck_assert_int_eq(dvi__joint_check(system, 1465, 1), DVI_OK); /* 1465^2 N = 2146225000 */
   ck_assert_int_eq(dvi__joint_check(system, 1466, 1), DVI_BAD_SIZE);
   check_words("the Jacobian would have 2149156000 entries or more");

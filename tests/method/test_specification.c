@@ -11,7 +11,9 @@ START_TEST(verlet_is_refused_on_a_general_lagrangian_by_name)
 {
   problem *of = made_problem("double-pendulum", NULL);
   dvi_integrator *integrator = NULL;
-  ck_assert_int_eq(dvi_integrator_create(of->system, _i == 0 ? "verlet" : "composition", &integrator), DVI_UNSUPPORTED);
+  ck_assert_int_eq(
+      dvi_integrator_create(of->system, _i == 0 ? "verlet" : "composition", &integrator),
+      DVI_UNSUPPORTED);
   ck_assert_ptr_null(integrator);
   check_words("verlet: ");
   check_words("a general Lagrangian");
@@ -19,7 +21,8 @@ START_TEST(verlet_is_refused_on_a_general_lagrangian_by_name)
 }
 END_TEST
 
-/* A specification, and words that the refusal must hold; more of galerkin's own are in test_galerkin.c. */
+/* A specification, and words that the refusal must hold; more of galerkin's own are in
+ * test_galerkin.c. */
 static const struct {
   const char *method, *because;
 } refused[] = {
@@ -30,9 +33,10 @@ static const struct {
     {"Verlet", "unknown method 'Verlet'"},
     {"galerkin,degree=2", "unknown method 'galerkin,degree=2'"},
     {"verlet:", "'' is not key=value"},
-    {"verlet:solver=auto", "verlet: unknown key 'solver'; it takes sweep, threads"},
+    {"verlet:solver=auto", "verlet: unknown key 'solver'; it takes blocking, threads"},
     {"midpoint:degree=2", "midpoint: unknown key 'degree'; it takes solver"},
-    {"trapezoidal:solver=", "trapezoidal: solver=; possible are auto, certified, fixed-point, simplified, newton, kinsol"},
+    {"trapezoidal:solver=",
+     "trapezoidal: solver=; possible are auto, certified, fixed-point, simplified, newton, kinsol"},
     {"midpoint:solver=newton,solver=newton", "midpoint: solver is given twice"},
     {"galerkin:=3", "'=3' is not key=value"},
     {"galerkin:degree=3:nodes=4", "galerkin: degree=3:nodes=4 is not a whole number"},
@@ -46,12 +50,15 @@ static const struct {
     {"galerkin:degree=,nodes=4", "galerkin: degree= is not a whole number in plain digits"},
     {"galerkin:degree=0", "galerkin: degree=0; 1 to 40 are possible"},
     {"galerkin:degree=41", "galerkin: degree=41; 1 to 40 are possible"},
-    {"galerkin:nodes=123456789012345678901234567890", "nodes=123456789012345678901234567890; 1 to 80 are possible"},
+    {"galerkin:nodes=123456789012345678901234567890",
+     "nodes=123456789012345678901234567890; 1 to 80 are possible"},
     {"galerkin:degree=5,nodes=4", "see at most 4 of the 5 velocity modes of degree 5"},
     {"composition:base=galerkin,degree=5,nodes=4", "composition: galerkin: 4 quadrature points"},
     {"composition:order=4,order=6", "composition: order is given twice"},
-    {"composition:base=midpoint,solver=auto,solver=newton", "composition: midpoint: solver is given twice"},
-    {"composition:base=galerkin,quadrature=radau-left", "is not symmetric; choose a symmetric quadrature"},
+    {"composition:base=midpoint,solver=auto,solver=newton",
+     "composition: midpoint: solver is given twice"},
+    {"composition:base=galerkin,quadrature=radau-left",
+     "is not symmetric; choose a symmetric quadrature"},
     {"composition:order=", "order=; possible are 4, 6, 8"},
     {"composition:base", "'base' is not key=value"},
 };
@@ -61,7 +68,8 @@ START_TEST(a_wrong_specification_is_refused_with_its_reason)
 {
   problem *of = made_problem("oscillator", NULL);
   dvi_integrator *integrator = (dvi_integrator *)of;
-  ck_assert_int_eq(dvi_integrator_create(of->system, refused[_i].method, &integrator), DVI_BAD_OPTION);
+  ck_assert_int_eq(dvi_integrator_create(of->system, refused[_i].method, &integrator),
+                   DVI_BAD_OPTION);
   ck_assert_ptr_null(integrator);
   check_words(refused[_i].because);
   problem_destroy(&of);
@@ -70,7 +78,8 @@ END_TEST
 
 START_TEST(a_specification_without_end_is_refused)
 {
-  static const char *const fronts[] = {"", "verlet:", "galerkin:degree=", "galerkin:basis=", "galerkin:", "composition:order=4,"};
+  static const char *const fronts[] = {
+      "", "verlet:", "galerkin:degree=", "galerkin:basis=", "galerkin:", "composition:order=4,"};
   enum { LENGTH = 100000 };
   const char *const tails[] = {"", "=1"};
   problem *of = made_problem("oscillator", NULL);
@@ -92,7 +101,8 @@ START_TEST(a_specification_without_end_is_refused)
 END_TEST
 
 /* Whether the list that ends a sentence ends with that word, behind a comma. */
-static void check_list_end(const char *method, const problem *of, dvi_status status, const char *last)
+static void check_list_end(const char *method, const problem *of, dvi_status status,
+                           const char *last)
 {
   char end[64];
   dvi_integrator *integrator = NULL;

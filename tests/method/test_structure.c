@@ -1,5 +1,6 @@
 /* labels: invariant */
-/* What the discrete action promises beside its order: a symplectic and reversible step, and momenta conserved to roundoff. */
+/* What the discrete action promises beside its order: a symplectic and reversible step, and momenta
+ * conserved to roundoff. */
 #include <check.h>
 #include <float.h>
 #include <math.h>
@@ -8,8 +9,9 @@
 #include "support/runs.h"
 #include "support/suite.h"
 
-/* How many problems of the catalogue each method takes. 14 of 32 have a mass or a Lagrangian, and no factors. Of these 11 have a
- * constant mass, as verlet wants, and 8 have the callbacks for Taylor coefficients that prolongation wants. */
+/* How many problems of the catalogue each method takes. 14 of 32 have a mass or a Lagrangian, and
+ * no factors. Of these 11 have a constant mass, as verlet wants, and 8 have the callbacks for
+ * Taylor coefficients that prolongation wants. */
 static const struct {
   const char *name;
   int problems;
@@ -50,8 +52,8 @@ START_TEST(no_method_refuses_more_problems_than_it_must)
   int accepted[METHODS] = {0};
   for (int i = 0; i < pairs.count; i++) accepted[pairs.which[i] % METHODS]++;
   for (int m = 0; m < METHODS; m++)
-    ck_assert_msg(accepted[m] == methods[m].problems, "%s takes %d problems, not %d", methods[m].name, accepted[m],
-                  methods[m].problems);
+    ck_assert_msg(accepted[m] == methods[m].problems, "%s takes %d problems, not %d",
+                  methods[m].name, accepted[m], methods[m].problems);
   ck_assert_int_eq(symmetric_pairs.count, pairs.count - methods[RADAU].problems);
 }
 END_TEST
@@ -71,7 +73,8 @@ START_TEST(every_method_is_symplectic_on_every_problem)
 }
 END_TEST
 
-/* Roundings of 200 steps, amplified by the flow: the bound is what a user may rely on, not what is measured (1e-15 to 1e-12). */
+/* Roundings of 200 steps, amplified by the flow: the bound is what a user may rely on, not what is
+ * measured (1e-15 to 1e-12). */
 START_TEST(symmetric_methods_return_to_the_start)
 {
   problem *of = made_problem(problem_name(symmetric_pairs.which[sampled_case(_i)] / METHODS), NULL);
@@ -86,7 +89,8 @@ START_TEST(symmetric_methods_return_to_the_start)
 }
 END_TEST
 
-/* Largest possible size of each momentum: the sum of the absolute terms of p.xi, which bounds what one rounding can do to it. */
+/* Largest possible size of each momentum: the sum of the absolute terms of p.xi, which bounds what
+ * one rounding can do to it. */
 static void momentum_sizes(const problem *solar, double size[6])
 {
   double linear = 0, angular = 0;
@@ -97,8 +101,9 @@ static void momentum_sizes(const problem *solar, double size[6])
   for (int i = 0; i < 3; i++) size[i] = linear, size[3 + i] = angular;
 }
 
-/* A sum that N roundings of half an epsilon disturb at random strays by about sqrt(N)/2 epsilons, a trend of one epsilon a step by N: 300
- * times more. A walk has a fitted slope, too, so the distance is what tells the two apart. Three deviations are allowed. */
+/* A sum that N roundings of half an epsilon disturb at random strays by about sqrt(N)/2 epsilons, a
+ * trend of one epsilon a step by N: 300 times more. A walk has a fitted slope, too, so the distance
+ * is what tells the two apart. Three deviations are allowed. */
 static void check_momenta(const char *method, double h)
 {
   const int steps = repeats(100000);
@@ -113,7 +118,8 @@ static void check_momenta(const char *method, double h)
     for (int i = 0; i < 6; i++) largest[i] = fmax(largest[i], fabs(now[1 + i] - start[1 + i]));
   }
   for (int i = 0; i < 6; i++)
-    ck_assert_msg(largest[i] <= 3 * sqrt((double)steps) / 2 * DBL_EPSILON * size[i], "%s: %s strayed by %g of %g", method,
+    ck_assert_msg(largest[i] <= 3 * sqrt((double)steps) / 2 * DBL_EPSILON * size[i],
+                  "%s: %s strayed by %g of %g", method,
                   dvi_system_invariant_name(solar->system, 1 + i), largest[i], size[i]);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&solar);
@@ -134,7 +140,9 @@ SUITE(structure)
   find_accepted_cases(METHODS * problem_count(), pair_is_accepted, &pairs);
   find_accepted_cases(METHODS * problem_count(), symmetric_pair_is_accepted, &symmetric_pairs);
   tcase_add_test(tests, no_method_refuses_more_problems_than_it_must);
-  tcase_add_loop_test(tests, every_method_is_symplectic_on_every_problem, 0, sampled_count(pairs.count));
-  tcase_add_loop_test(tests, symmetric_methods_return_to_the_start, 0, sampled_count(symmetric_pairs.count));
+  tcase_add_loop_test(tests, every_method_is_symplectic_on_every_problem, 0,
+                      sampled_count(pairs.count));
+  tcase_add_loop_test(tests, symmetric_methods_return_to_the_start, 0,
+                      sampled_count(symmetric_pairs.count));
   tcase_add_test(tests, linear_and_angular_momentum_of_the_planets_stay_at_roundoff);
 }

@@ -14,7 +14,8 @@ static double at(int n, const double *A, int i, int j)
 }
 
 /* X D X^{-1}, entry by entry. */
-static double rebuilt(int n, const double *a, const double *b, const double *X, const double *inverse, int i, int j)
+static double rebuilt(int n, const double *a, const double *b, const double *X,
+                      const double *inverse, int i, int j)
 {
   double sum = 0;
   for (int k = 0; k < n; k++) {
@@ -26,7 +27,8 @@ static double rebuilt(int n, const double *a, const double *b, const double *X, 
   return sum;
 }
 
-/* Rotations have pairs, symmetric matrices real eigenvalues, and a general one of odd size has both. */
+/* Rotations have pairs, symmetric matrices real eigenvalues, and a general one of odd size has
+ * both. */
 START_TEST(a_matrix_is_made_again_from_its_eigen_structure)
 {
   const int n = 1 + _i;
@@ -34,7 +36,8 @@ START_TEST(a_matrix_is_made_again_from_its_eigen_structure)
   for (int k = 0; k < n * n; k++) T[k] = sin(1 + 3.7 * k) + (k % (n + 1) == 0 ? 0.3 * k : 0);
   ck_assert_int_eq(dvi__eigen(n, T, a, b, X, inverse), DVI_OK);
   for (int i = 0; i < n; i++)
-    for (int j = 0; j < n; j++) ck_assert_double_eq_tol(rebuilt(n, a, b, X, inverse, i, j), at(n, T, i, j), 1e-13);
+    for (int j = 0; j < n; j++)
+      ck_assert_double_eq_tol(rebuilt(n, a, b, X, inverse, i, j), at(n, T, i, j), 1e-13);
 }
 END_TEST
 
@@ -79,7 +82,8 @@ START_TEST(two_symmetric_matrices_are_made_diagonal_together)
     ck_assert_double_eq_tol(2 * x[1] - x[0], lambda[k] * 4 * x[1], 4e-15);
   }
   ck_assert_double_eq_tol(X[0] * X[2] + 4 * X[1] * X[3], 0, 4e-15);
-  ck_assert_int_eq(dvi__eigen_symmetric(2, K, (const double[]){1, 0, 0, -4}, lambda, X), DVI_SINGULAR);
+  ck_assert_int_eq(dvi__eigen_symmetric(2, K, (const double[]){1, 0, 0, -4}, lambda, X),
+                   DVI_SINGULAR);
   for (long successes = 0; successes < 2; successes++) {
     dvi__fail_allocations_after(successes);
     const dvi_status status = dvi__eigen_symmetric(2, K, M, lambda, X);

@@ -30,11 +30,13 @@ static void set(matrix *m, int i, int j, double value)
 static long negatives(const matrix *m, int size, int block)
 {
   long negative = -1;
-  ck_assert_msg(dvi__inertia(&m->pattern, m->value, size, block, &negative) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi__inertia(&m->pattern, m->value, size, block, &negative) == DVI_OK, "%s",
+                dvi_last_error());
   return negative;
 }
 
-/* 2 - shift on the diagonal, -1 beside it: eigenvalues 2 - 2 cos(k pi/(n+1)) - shift. Shifts of 1 and 2 make leading minors zero. */
+/* 2 - shift on the diagonal, -1 beside it: eigenvalues 2 - 2 cos(k pi/(n+1)) - shift. Shifts of 1
+ * and 2 make leading minors zero. */
 START_TEST(a_chain_has_its_cosines)
 {
   const double shift[] = {-0.1, 0.1, 1.000001, 2 + 1e-9, 2 - 1e-9, 3.1, 4.1};
@@ -45,7 +47,8 @@ START_TEST(a_chain_has_its_cosines)
       make(n, &m);
       for (int i = 0; i < n; i++) set(&m, i, i, 2 - shift[s]);
       for (int i = 1; i < n; i++) set(&m, i - 1, i, -1);
-      for (int k = 1; k <= n; k++) expected += 2 - 2 * cos(k * 3.14159265358979324 / (n + 1)) < shift[s];
+      for (int k = 1; k <= n; k++)
+        expected += 2 - 2 * cos(k * 3.14159265358979324 / (n + 1)) < shift[s];
       for (int block = 1; block <= n; block++) ck_assert_int_eq(negatives(&m, n, block), expected);
       dvi__pattern_clear(&m.pattern);
     }
@@ -63,14 +66,16 @@ START_TEST(a_ring_has_its_cosines)
       make(n, &m);
       for (int i = 0; i < n; i++) set(&m, i, i, 2 - shift[s]);
       for (int i = 0; i < n; i++) set(&m, i, (i + 1) % n, -1);
-      for (int k = 0; k < n; k++) expected += 2 - 2 * cos(2 * k * 3.14159265358979324 / n) < shift[s];
+      for (int k = 0; k < n; k++)
+        expected += 2 - 2 * cos(2 * k * 3.14159265358979324 / n) < shift[s];
       for (int block = 1; block <= n; block++) ck_assert_int_eq(negatives(&m, n, block), expected);
       dvi__pattern_clear(&m.pattern);
     }
 }
 END_TEST
 
-/* Blocks on the diagonal that are zero but for their coupling: [0 1; 1 0] in each, which no diagonal pivot can eliminate. */
+/* Blocks on the diagonal that are zero but for their coupling: [0 1; 1 0] in each, which no
+ * diagonal pivot can eliminate. */
 START_TEST(zero_diagonals_are_no_trouble)
 {
   matrix m;

@@ -1,5 +1,6 @@
 /* labels: unit */
-/* Every instruction set gives the bits of the plain loops. On an older processor fewer sets are tested; the baseline always is. */
+/* Every instruction set gives the bits of the plain loops. On an older processor fewer sets are
+ * tested; the baseline always is. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,8 +28,8 @@ static void fill(int count, double *x, int seed)
   for (int i = 0; i < count; i++) x[i] = number(seed + 3 * i);
 }
 
-static double sweep_matrix[STAGES_MOST * LANES_MOST], node[LANES_MOST], weight[STAGES_MOST], p0[N], start[N], low[N], factor[N],
-    origin[N];
+static double sweep_matrix[STAGES_MOST * LANES_MOST], node[LANES_MOST], weight[STAGES_MOST], p0[N],
+    start[N], low[N], factor[N], origin[N];
 static double force[2][N * STAGES_MOST], Z[2][N * LANES_MOST], Q[2][N * STAGES_MOST + LANES_MOST];
 
 /* One lane of a product: long ones as four sums. */
@@ -36,7 +37,8 @@ static double lane(int terms, int lanes, const double *matrix, const double *x)
 {
   double sum[4] = {0};
   for (int k = 0; k < 4 && terms >= 8; k++) sum[k] = matrix[k * lanes] * x[k];
-  for (int k = terms >= 8 ? 4 : 0; k < terms; k++) sum[terms >= 8 && k < terms / 4 * 4 ? k % 4 : 0] += matrix[k * lanes] * x[k];
+  for (int k = terms >= 8 ? 4 : 0; k < terms; k++)
+    sum[terms >= 8 && k < terms / 4 * 4 ? k % 4 : 0] += matrix[k * lanes] * x[k];
   return terms >= 8 ? (sum[0] + sum[1]) + (sum[2] + sum[3]) : sum[0];
 }
 
@@ -97,7 +99,8 @@ START_TEST(a_sweep_has_the_bits_of_plain_loops)
     for (int k = 0; k < lanes; k++) Q[0][N * stages + k] = 42;
     dvi__lanes_sweep(&fast);
     plain_sweep(&plain);
-    for (int k = 0; k < lanes; k++) ck_assert_double_eq(Q[0][N * stages + k], 42); /* nothing is written behind */
+    /* nothing is written behind */
+    for (int k = 0; k < lanes; k++) ck_assert_double_eq(Q[0][N * stages + k], 42);
     ck_assert_mem_eq(force[0], force[1], (size_t)(N * stages) * sizeof(double));
     ck_assert_mem_eq(Z[0], Z[1], (size_t)(N * lanes) * sizeof(double));
     ck_assert_mem_eq(Q[0], Q[1], (size_t)(N * stages) * sizeof(double));
@@ -110,13 +113,15 @@ END_TEST
 START_TEST(a_product_has_the_bits_of_plain_loops)
 {
   static double x[N * STAGES_MOST], out[N * LANES_MOST + 1];
-  const int width = 1 + _i % STAGES_MOST, lanes = dvi__lanes_for(width), terms = 1 + (7 * width) % 23;
+  const int width = 1 + _i % STAGES_MOST, lanes = dvi__lanes_for(width),
+            terms = 1 + (7 * width) % 23;
   dvi__lanes_choose(_i / STAGES_MOST);
   fill(terms * lanes, sweep_matrix, 1), fill(N * terms, x, 2);
   out[N * width] = 42;
   dvi__lanes_product(N, terms, lanes, width, sweep_matrix, x, out);
   for (int i = 0; i < N; i++)
-    for (int l = 0; l < width; l++) ck_assert_double_eq(out[i * width + l], lane(terms, lanes, sweep_matrix + l, x + i * terms));
+    for (int l = 0; l < width; l++)
+      ck_assert_double_eq(out[i * width + l], lane(terms, lanes, sweep_matrix + l, x + i * terms));
   ck_assert_double_eq(out[N * width], 42); /* nothing is written behind */
 }
 END_TEST
@@ -126,31 +131,37 @@ END_TEST
 enum { LONGEST = 37 };
 
 typedef struct coordinates {
-  double q[LONGEST + 1], p[LONGEST + 1], q_carry[LONGEST + 1], p_carry[LONGEST + 1];
+  double q[LONGEST + 1], p[LONGEST + 1], q_compensation[LONGEST + 1], p_compensation[LONGEST + 1];
 } coordinates;
 
 static dvi__phase phase_of(coordinates *c)
 {
-  return (dvi__phase){c->q, c->p, c->q_carry, c->p_carry};
+  return (dvi__phase){c->q, c->p, c->q_compensation, c->p_compensation};
 }
 
 static coordinates made_coordinates(void)
 {
   coordinates c;
-  fill(LONGEST + 1, c.q, 1), fill(LONGEST + 1, c.p, 2), fill(LONGEST + 1, c.q_carry, 3), fill(LONGEST + 1, c.p_carry, 4);
-  for (int i = 0; i <= LONGEST; i++) c.q_carry[i] *= 1e-17, c.p_carry[i] *= 1e-17;
+  fill(LONGEST + 1, c.q, 1), fill(LONGEST + 1, c.p, 2), fill(LONGEST + 1, c.q_compensation, 3),
+      fill(LONGEST + 1, c.p_compensation, 4);
+  for (int i = 0; i <= LONGEST; i++) c.q_compensation[i] *= 1e-17, c.p_compensation[i] *= 1e-17;
   return c;
 }
 
 /* What lanes.h says, one number after the other. */
-static void plain_leap(const dvi__leap *l)
+static void plain_leap(const dvi__moser_veselov *l)
 {
   for (size_t i = 0; i < l->count; i++) {
-    double p = l->from.p[i], q = l->from.q[i], p_carry = l->from.p_carry[i], q_carry = l->from.q_carry[i];
-    for (int k = 0; k < l->kicks; k++) dvi__add_compensated(&p, &p_carry, l->kick[k] * l->force[i]);
-    const double v = l->by == DVI__BY_ARRAY ? p / l->mass[i] : l->by == DVI__BY_SCALAR ? p / l->scalar : p * l->scalar;
-    dvi__add_compensated(&q, &q_carry, v * l->drift);
-    l->to.p[i] = p, l->to.q[i] = q, l->to.p_carry[i] = p_carry, l->to.q_carry[i] = q_carry;
+    double p = l->from.p[i], q = l->from.q[i], p_compensation = l->from.p_compensation[i],
+           q_compensation = l->from.q_compensation[i];
+    for (int k = 0; k < l->kicks; k++)
+      dvi__add_compensated(&p, &p_compensation, l->kick[k] * l->force[i]);
+    const double v = l->by == DVI__BY_ARRAY    ? p / l->mass[i]
+                     : l->by == DVI__BY_SCALAR ? p / l->scalar
+                                               : p * l->scalar;
+    dvi__add_compensated(&q, &q_compensation, v * l->drift);
+    l->to.p[i] = p, l->to.q[i] = q, l->to.p_compensation[i] = p_compensation,
+    l->to.q_compensation[i] = q_compensation;
   }
 }
 
@@ -163,18 +174,18 @@ START_TEST(a_leap_has_the_bits_of_plain_loops)
   for (int variant = 0; variant < 12; variant++) {
     coordinates from = made_coordinates(), fast = from, plain = from;
     const int in_place = variant >= 6;
-    dvi__leap leap = {.count = (size_t)count,
-                      .kicks = 1 + variant % 2,
-                      .kick = {-0.3, 0.7},
-                      .drift = 0.1,
-                      .by = (dvi__division)(variant % 3),
-                      .scalar = 3,
-                      .mass = masses,
-                      .force = forces,
-                      .from = phase_of(in_place ? &fast : &from),
-                      .to = phase_of(&fast),
-                      .far = variant % 2};
-    dvi__lanes_leap(&leap);
+    dvi__moser_veselov leap = {.count = (size_t)count,
+                               .kicks = 1 + variant % 2,
+                               .kick = {-0.3, 0.7},
+                               .drift = 0.1,
+                               .by = (dvi__division)(variant % 3),
+                               .scalar = 3,
+                               .mass = masses,
+                               .force = forces,
+                               .from = phase_of(in_place ? &fast : &from),
+                               .to = phase_of(&fast),
+                               .far = variant % 2};
+    dvi__lanes_kick_drift(&leap);
     leap.from = phase_of(in_place ? &plain : &from);
     leap.to = phase_of(&plain);
     plain_leap(&leap);
@@ -190,8 +201,9 @@ START_TEST(a_kick_has_the_bits_of_plain_loops)
   dvi__lanes_choose(_i / (LONGEST + 1));
   fill(LONGEST, forces, 5);
   coordinates fast = made_coordinates(), plain = fast;
-  dvi__lanes_add_scaled((size_t)count, -0.3, forces, fast.p, fast.p_carry);
-  for (int i = 0; i < count; i++) dvi__add_compensated(&plain.p[i], &plain.p_carry[i], -0.3 * forces[i]);
+  dvi__lanes_add_scaled((size_t)count, -0.3, forces, fast.p, fast.p_compensation);
+  for (int i = 0; i < count; i++)
+    dvi__add_compensated(&plain.p[i], &plain.p_compensation[i], -0.3 * forces[i]);
   ck_assert_mem_eq(&fast, &plain, sizeof fast);
 }
 END_TEST
@@ -215,7 +227,8 @@ START_TEST(one_number_that_is_not_finite_is_seen_anywhere)
 }
 END_TEST
 
-/* Problems with loops of their own for each instruction set, and degrees on both sides of a row's length. */
+/* Problems with loops of their own for each instruction set, and degrees on both sides of a row's
+ * length. */
 START_TEST(steps_have_the_same_bits_at_every_level)
 {
   static const struct {
@@ -234,7 +247,8 @@ START_TEST(steps_have_the_same_bits_at_every_level)
     dvi__lanes_choose(level);
     dvi_integrator *integrator = started(of, runs[_i].method);
     advance(integrator, runs[_i].h, 50);
-    if (level > 0) ck_assert_mem_eq(q, dvi_integrator_q(integrator), (size_t)of->nq * sizeof(double));
+    if (level > 0)
+      ck_assert_mem_eq(q, dvi_integrator_q(integrator), (size_t)of->nq * sizeof(double));
     memcpy(q, dvi_integrator_q(integrator), (size_t)of->nq * sizeof(double));
     dvi_integrator_destroy(&integrator);
   }
@@ -248,7 +262,8 @@ START_TEST(levels_have_names)
   ck_assert_str_eq(dvi__lanes_level_name(0), "baseline");
   ck_assert_ptr_null(dvi__lanes_level_name(-1));
   ck_assert_ptr_null(dvi__lanes_level_name(100));
-  ck_assert_int_eq(dvi__lanes_for(1) + dvi__lanes_for(2) + dvi__lanes_for(3) + dvi__lanes_for(5) + dvi__lanes_for(9),
+  ck_assert_int_eq(dvi__lanes_for(1) + dvi__lanes_for(2) + dvi__lanes_for(3) + dvi__lanes_for(5) +
+                       dvi__lanes_for(9),
                    1 + 2 + 4 + 8 + 16);
 }
 END_TEST
@@ -256,11 +271,16 @@ END_TEST
 SUITE(lanes)
 {
   tcase_add_checked_fixture(tests, NULL, best_again);
-  tcase_add_loop_test(tests, a_sweep_has_the_bits_of_plain_loops, 0, dvi__lanes_levels() * STAGES_MOST);
-  tcase_add_loop_test(tests, a_product_has_the_bits_of_plain_loops, 0, dvi__lanes_levels() * STAGES_MOST);
-  tcase_add_loop_test(tests, a_leap_has_the_bits_of_plain_loops, 0, dvi__lanes_levels() * (LONGEST + 1));
-  tcase_add_loop_test(tests, a_kick_has_the_bits_of_plain_loops, 0, dvi__lanes_levels() * (LONGEST + 1));
-  tcase_add_loop_test(tests, one_number_that_is_not_finite_is_seen_anywhere, 0, dvi__lanes_levels());
+  tcase_add_loop_test(tests, a_sweep_has_the_bits_of_plain_loops, 0,
+                      dvi__lanes_levels() * STAGES_MOST);
+  tcase_add_loop_test(tests, a_product_has_the_bits_of_plain_loops, 0,
+                      dvi__lanes_levels() * STAGES_MOST);
+  tcase_add_loop_test(tests, a_leap_has_the_bits_of_plain_loops, 0,
+                      dvi__lanes_levels() * (LONGEST + 1));
+  tcase_add_loop_test(tests, a_kick_has_the_bits_of_plain_loops, 0,
+                      dvi__lanes_levels() * (LONGEST + 1));
+  tcase_add_loop_test(tests, one_number_that_is_not_finite_is_seen_anywhere, 0,
+                      dvi__lanes_levels());
   tcase_add_loop_test(tests, steps_have_the_same_bits_at_every_level, 0, 7);
   tcase_add_test(tests, levels_have_names);
 }

@@ -35,7 +35,8 @@ static void compress(int n, const double *a, matrix *m)
 static dvi__linear *make(const matrix *m, dvi__linear_kind kind, dvi_counters *counters)
 {
   dvi__linear *linear;
-  ck_assert_msg(dvi__linear_create(&m->pattern, kind, counters, &linear) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi__linear_create(&m->pattern, kind, counters, &linear) == DVI_OK, "%s",
+                dvi_last_error());
   return linear;
 }
 
@@ -92,7 +93,8 @@ START_TEST(determinants_have_their_sign)
 }
 END_TEST
 
-/* A = S L D L^T S with entries of L in (-1,1), some of them 0, and powers of two S, which differ by 2^40; D is 1 but for two rows of -1 or none. */
+/* A = S L D L^T S with entries of L in (-1,1), some of them 0, and powers of two S, which differ by
+ * 2^40; D is 1 but for two rows of -1 or none. */
 static void product(unsigned *state, int negative, double *a)
 {
   enum { N = 8 };
@@ -108,7 +110,8 @@ static void product(unsigned *state, int negative, double *a)
   for (int i = 0; i < N; i++)
     for (int j = 0; j < N; j++) {
       double sum = 0;
-      for (int k = 0; k < N; k++) sum += (negative && (k == 2 || k == 5) ? -1 : 1) * l[i][k] * l[j][k];
+      for (int k = 0; k < N; k++)
+        sum += (negative && (k == 2 || k == 5) ? -1 : 1) * l[i][k] * l[j][k];
       a[i * N + j] = s[i] * s[j] * sum;
     }
 }
@@ -151,7 +154,8 @@ static void random_band(int n, int width, unsigned seed, double *a)
   memset(a, 0, (size_t)n * (size_t)n * sizeof *a);
   for (int i = 0; i < n; i++)
     for (int j = 0; j < n; j++)
-      if (abs(i - j) <= width) a[i * n + j] = rand() / (double)RAND_MAX - 0.5 + (i == j ? 1 + width : 0);
+      if (abs(i - j) <= width)
+        a[i * n + j] = rand() / (double)RAND_MAX - 0.5 + (i == j ? 1 + width : 0);
 }
 
 START_TEST(dense_and_sparse_agree_with_the_solution_that_made_the_right_side)
@@ -223,7 +227,8 @@ END_TEST
 
 START_TEST(singular_matrices_are_named_singular)
 {
-  const double equal[9] = {1, 2, 3, 2, 4, 6, 1, 0, 1}, rounded[9] = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9};
+  const double equal[9] = {1, 2, 3, 2, 4, 6, 1, 0, 1},
+               rounded[9] = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9};
   ck_assert_int_eq(factor_of(3, equal, kinds[_i]), DVI_SINGULAR);
   check_words("3 x 3 matrix is singular to working precision");
   ck_assert_int_eq(factor_of(3, rounded, kinds[_i]), DVI_SINGULAR);
@@ -239,7 +244,8 @@ START_TEST(a_zero_value_on_the_pattern_can_make_it_singular)
   ck_assert_int_eq(dvi__linear_factor(linear, (double[]){0, 0, 0, 0}), DVI_SINGULAR);
   ck_assert_int_eq(dvi__linear_factor(linear, (double[]){1, 0, 1, 0}), DVI_SINGULAR);
   double b[2] = {3, 7};
-  ck_assert_int_eq(dvi__linear_factor(linear, m.values), DVI_OK); /* and the solver is usable again */
+  /* and the solver is usable again */
+  ck_assert_int_eq(dvi__linear_factor(linear, m.values), DVI_OK);
   dvi__linear_solve(linear, b);
   ck_assert_double_eq_tol(b[0], 1, 4e-15);
   ck_assert_double_eq_tol(b[1], 1, 4e-15);
@@ -255,10 +261,12 @@ START_TEST(a_column_without_entries_is_singular_at_the_factorisation)
 }
 END_TEST
 
-/* Units must not matter: rows and columns that differ by 1e200 leave the answer as exact as it was. */
+/* Units must not matter: rows and columns that differ by 1e200 leave the answer as exact as it
+ * was. */
 START_TEST(badly_scaled_rows_and_columns_are_solved_as_well_as_good_ones)
 {
-  const double a[9] = {4, 1, 2, 1, 5, 2, 1, 2, 6}, row[3] = {0x1p-400, 1, 0x1p330}, column[3] = {0x1p40, 0x1p-200, 0x1p10};
+  const double a[9] = {4, 1, 2, 1, 5, 2, 1, 2, 6}, row[3] = {0x1p-400, 1, 0x1p330},
+               column[3] = {0x1p40, 0x1p-200, 0x1p10};
   double scaled[9], good[3] = {7, 8, 9}, bad[3];
   for (int i = 0; i < 9; i++) scaled[i] = row[i / 3] * a[i] * column[i % 3];
   for (int i = 0; i < 3; i++) bad[i] = row[i] * good[i];
@@ -344,12 +352,19 @@ END_TEST
 
 /* ---- borders ---- */
 
-enum { RING = 300, BORDER = 2, RINGED = RING + BORDER, RING_MOST = 3 * RING + (2 * RING + BORDER) * BORDER };
+enum {
+  RING = 300,
+  BORDER = 2,
+  RINGED = RING + BORDER,
+  RING_MOST = 3 * RING + (2 * RING + BORDER) * BORDER
+};
 
-/* Entry (i,j) of a ring of springs, which nothing holds in place; bordered by what does, and by waves. */
+/* Entry (i,j) of a ring of springs, which nothing holds in place; bordered by what does, and by
+ * waves. */
 static double ring_entry(int i, int j, double hold)
 {
-  if (i < RING && j < RING) return i == j ? 2 : (i - j + RING) % RING == 1 || (j - i + RING) % RING == 1 ? -1 : 0;
+  if (i < RING && j < RING)
+    return i == j ? 2 : (i - j + RING) % RING == 1 || (j - i + RING) % RING == 1 ? -1 : 0;
   if (i >= RING && j >= RING) return i == j && i > RING ? 0.5 : 0;
   const int at = i < j ? i : j, border = i < j ? j : i;
   return border == RING ? hold : 2 + sin(0.1 * at);
@@ -374,7 +389,8 @@ static dvi_status solve_ring(double hold, double *worst)
   }
   const dvi__pattern pattern = {RINGED, RINGED, start, row};
   dvi__linear *linear;
-  ck_assert_msg(dvi__linear_create_bordered(&pattern, BORDER, NULL, &linear) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi__linear_create_bordered(&pattern, BORDER, NULL, &linear) == DVI_OK, "%s",
+                dvi_last_error());
   ck_assert_int_eq(dvi__linear_kind_of(linear), DVI__LINEAR_SPARSE);
   const dvi_status status = dvi__linear_factor(linear, values);
   if (status == DVI_OK) dvi__linear_solve(linear, b);
@@ -384,7 +400,8 @@ static dvi_status solve_ring(double hold, double *worst)
   return status;
 }
 
-/* The ring alone is singular, and its other eigenvalues reach down to (2 pi/300)^2 = 4e-4; pivots that are kept may cost six digits. */
+/* The ring alone is singular, and its other eigenvalues reach down to (2 pi/300)^2 = 4e-4; pivots
+ * that are kept may cost six digits. */
 START_TEST(a_border_makes_a_singular_matrix_regular)
 {
   double worst;
@@ -400,7 +417,8 @@ SUITE(linear)
   tcase_add_test(tests, pivots_tell_whether_a_symmetric_matrix_is_definite);
   tcase_add_loop_test(tests, a_known_system_has_its_known_solution, 0, 2);
   tcase_add_loop_test(tests, one_unknown_is_a_division, 0, 2);
-  tcase_add_loop_test(tests, dense_and_sparse_agree_with_the_solution_that_made_the_right_side, 0, 3);
+  tcase_add_loop_test(tests, dense_and_sparse_agree_with_the_solution_that_made_the_right_side, 0,
+                      3);
   tcase_add_loop_test(tests, a_factor_follows_new_values_and_the_analysis_is_done_once, 0, 2);
   tcase_add_loop_test(tests, pivots_that_grow_bad_are_chosen_anew, 0, 4);
   tcase_add_loop_test(tests, singular_matrices_are_named_singular, 0, 2);

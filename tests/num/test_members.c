@@ -32,16 +32,19 @@ static void same_column(int rows, int width, int k, const double *all, const dou
 }
 
 static double matrix[STAGES_MOST * LANES_MOST], node[LANES_MOST], weight[STAGES_MOST], factor[N];
-static double p0[N * WIDTH_MOST], start[N * WIDTH_MOST], low[N * WIDTH_MOST], origin[N * WIDTH_MOST];
+static double p0[N * WIDTH_MOST], start[N * WIDTH_MOST], low[N * WIDTH_MOST],
+    origin[N * WIDTH_MOST];
 static double change[WIDTH_MOST], largest[WIDTH_MOST];
-static double force[N * STAGES_MOST * WIDTH_MOST], Z[N * STAGES_MOST * WIDTH_MOST], Q[N * STAGES_MOST * WIDTH_MOST + 1];
+static double force[N * STAGES_MOST * WIDTH_MOST], Z[N * STAGES_MOST * WIDTH_MOST],
+    Q[N * STAGES_MOST * WIDTH_MOST + 1];
 static double old_force[N * STAGES_MOST * WIDTH_MOST], old_Z[N * STAGES_MOST * WIDTH_MOST];
 
 /* ---- sweeps ---- */
 
 /* What dvi__lanes_split, dvi__lanes_begin and dvi__lanes_sweep work on for one member. */
 typedef struct single {
-  double p0[N], start[N], low[N], origin[N], force[N * STAGES_MOST], Z[N * LANES_MOST], Q[N * STAGES_MOST];
+  double p0[N], start[N], low[N], origin[N], force[N * STAGES_MOST], Z[N * LANES_MOST],
+      Q[N * STAGES_MOST];
   dvi__sweep sweep;
 } single;
 
@@ -52,7 +55,8 @@ static void take_member(int k, int stages, int lanes, int width, single *one)
   take(N, width, k, p0, one->p0), take(N, width, k, origin, one->origin);
   take(N * stages, width, k, old_force, one->force);
   take(N * stages, width, k, old_Z, z);
-  for (int i = 0; i < N; i++) memcpy(one->Z + i * lanes, z + i * stages, (size_t)stages * sizeof(double));
+  for (int i = 0; i < N; i++)
+    memcpy(one->Z + i * lanes, z + i * stages, (size_t)stages * sizeof(double));
   one->sweep = (dvi__sweep){.n = N,
                             .stages = stages,
                             .lanes = lanes,
@@ -73,7 +77,8 @@ static void take_member(int k, int stages, int lanes, int width, single *one)
 static void same_member(int k, int stages, int lanes, int width, const single *one)
 {
   double z[N * STAGES_MOST];
-  for (int i = 0; i < N; i++) memcpy(z + i * stages, one->Z + i * lanes, (size_t)stages * sizeof(double));
+  for (int i = 0; i < N; i++)
+    memcpy(z + i * stages, one->Z + i * lanes, (size_t)stages * sizeof(double));
   same_column(N, width, k, start, one->start);
   same_column(N, width, k, low, one->low);
   same_column(N * stages, width, k, force, one->force);
@@ -81,10 +86,12 @@ static void same_member(int k, int stages, int lanes, int width, const single *o
   same_column(N * stages, width, k, Q, one->Q);
 }
 
-/* The matrix's columns and the nodes are padded with zeros, as those of an element are. The first node is where the step starts, as Lobatto's is. */
+/* The matrix's columns and the nodes are padded with zeros, as those of an element are. The first
+ * node is where the step starts, as Lobatto's is. */
 static void fill_tables(int stages, int lanes)
 {
-  fill(stages * lanes, matrix, 4), fill(lanes, node, 5), fill(stages, weight, 6), fill(N, factor, 8);
+  fill(stages * lanes, matrix, 4), fill(lanes, node, 5), fill(stages, weight, 6),
+      fill(N, factor, 8);
   factor[0] = fabs(factor[0]);
   node[0] = 0;
   for (int l = 0; l < stages; l++) matrix[l * lanes] = 0;
@@ -94,8 +101,8 @@ static void fill_tables(int stages, int lanes)
   }
 }
 
-/* Two coordinates that show the signs of zeros: where all forces and the momentum point back the sum at the first node is -0 or 0 by how it is
- * added; the other one rests. */
+/* Two coordinates that show the signs of zeros: where all forces and the momentum point back the
+ * sum at the first node is -0 or 0 by how it is added; the other one rests. */
 static void fill_members(int stages, int width)
 {
   fill(N * width, p0, 7), fill(N * width, origin, 9);
@@ -223,8 +230,8 @@ END_TEST
 
 START_TEST(a_product_has_the_bits_of_one_member_alone)
 {
-  const int level = _i / STAGES_MOST, terms = 1 + _i % STAGES_MOST, rows = 1 + (5 * terms) % STAGES_MOST,
-            lanes = dvi__lanes_for(rows);
+  const int level = _i / STAGES_MOST, terms = 1 + _i % STAGES_MOST,
+            rows = 1 + (5 * terms) % STAGES_MOST, lanes = dvi__lanes_for(rows);
   fill(terms * lanes, matrix, 1);
   for (int width = 1; width <= WIDTH_MOST; width += width < 9 ? 1 : 13) {
     fill(N * terms * width, Z, 2);
@@ -245,8 +252,12 @@ END_TEST
 SUITE(members)
 {
   tcase_add_checked_fixture(tests, NULL, best_again);
-  tcase_add_loop_test(tests, a_sweep_has_the_bits_of_one_member_alone, 0, dvi__lanes_levels() * STAGES_MOST);
-  tcase_add_loop_test(tests, a_beginning_has_the_bits_of_one_member_alone, 0, dvi__lanes_levels() * STAGES_MOST);
-  tcase_add_loop_test(tests, ends_have_the_bits_of_one_member_alone, 0, dvi__lanes_levels() * STAGES_MOST);
-  tcase_add_loop_test(tests, a_product_has_the_bits_of_one_member_alone, 0, dvi__lanes_levels() * STAGES_MOST);
+  tcase_add_loop_test(tests, a_sweep_has_the_bits_of_one_member_alone, 0,
+                      dvi__lanes_levels() * STAGES_MOST);
+  tcase_add_loop_test(tests, a_beginning_has_the_bits_of_one_member_alone, 0,
+                      dvi__lanes_levels() * STAGES_MOST);
+  tcase_add_loop_test(tests, ends_have_the_bits_of_one_member_alone, 0,
+                      dvi__lanes_levels() * STAGES_MOST);
+  tcase_add_loop_test(tests, a_product_has_the_bits_of_one_member_alone, 0,
+                      dvi__lanes_levels() * STAGES_MOST);
 }

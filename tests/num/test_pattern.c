@@ -65,21 +65,28 @@ static void refused(const int *start, const int *row, int n, dvi_status status, 
 
 START_TEST(what_is_no_pattern_is_refused)
 {
-  refused(NULL, (int[]){0}, 1, DVI_BAD_ARGUMENT, "gravity: the pattern has rows but no column starts");
-  refused((int[]){0, 1}, NULL, 1, DVI_BAD_ARGUMENT, "gravity: the pattern has column starts but no rows");
+  refused(NULL, (int[]){0}, 1, DVI_BAD_ARGUMENT,
+          "gravity: the pattern has rows but no column starts");
+  refused((int[]){0, 1}, NULL, 1, DVI_BAD_ARGUMENT,
+          "gravity: the pattern has column starts but no rows");
   refused((int[]){1, 2}, (int[]){0, 0}, 1, DVI_BAD_ARGUMENT, "first column starts at 1, not 0");
   refused((int[]){0, 2, 1}, (int[]){0, 1}, 2, DVI_BAD_ARGUMENT, "column 1 ends before it starts");
-  refused((int[]){0, 1, 2}, (int[]){0, 2}, 2, DVI_BAD_ARGUMENT, "row 2 in column 1 of the pattern is outside 0..1");
+  refused((int[]){0, 1, 2}, (int[]){0, 2}, 2, DVI_BAD_ARGUMENT,
+          "row 2 in column 1 of the pattern is outside 0..1");
   refused((int[]){0, 1, 2}, (int[]){-1, 0}, 2, DVI_BAD_ARGUMENT, "row -1 in column 0");
-  refused((int[]){0, 0, 2}, (int[]){1, 0}, 2, DVI_BAD_ARGUMENT, "rows in column 1 of the pattern are not ascending");
-  refused((int[]){0, 0, 2}, (int[]){1, 1}, 2, DVI_BAD_ARGUMENT, "rows in column 1 of the pattern are not ascending");
+  refused((int[]){0, 0, 2}, (int[]){1, 0}, 2, DVI_BAD_ARGUMENT,
+          "rows in column 1 of the pattern are not ascending");
+  refused((int[]){0, 0, 2}, (int[]){1, 1}, 2, DVI_BAD_ARGUMENT,
+          "rows in column 1 of the pattern are not ascending");
 }
 END_TEST
 
-/* Under the address sanitizer this reads nothing behind the two rows, though column 0 claims a thousand. */
+/* Under the address sanitizer this reads nothing behind the two rows, though column 0 claims a
+ * thousand. */
 START_TEST(starts_are_checked_before_rows_are_read)
 {
-  refused((int[]){0, 1000, 2}, (int[]){0, 1}, 2, DVI_BAD_ARGUMENT, "column 1 ends before it starts");
+  refused((int[]){0, 1000, 2}, (int[]){0, 1}, 2, DVI_BAD_ARGUMENT,
+          "column 1 ends before it starts");
 }
 END_TEST
 

@@ -24,7 +24,8 @@ static const struct {
     {2, {-1e-200}, -1},
     {2, {0}, 0},
     {4, {1, 0, 0, 0, 0, 1}, 1},
-    {4, {0, 1, 0, 0, 1, 0}, -1},                            /* q and p one after the other: a13 a24 */
+    /* q and p one after the other: a13 a24 */
+    {4, {0, 1, 0, 0, 1, 0}, -1},
     {4, {1, 2, 3, 4, 5, 6}, 1},                             /* 6 - 10 + 12 */
     {4, {1, 9, 3, 4, 5, 6}, -1},                            /* 6 - 45 + 12 */
     {4, {1, 2, 1, 1, 1, 1}, 0},                             /* 1 - 2 + 1 */
@@ -61,6 +62,7 @@ END_TEST
 
 SUITE(pfaffian)
 {
-  tcase_add_loop_test(tests, the_sign_is_that_of_the_pfaffian, 0, sizeof matrices / sizeof *matrices);
+  tcase_add_loop_test(tests, the_sign_is_that_of_the_pfaffian, 0,
+                      sizeof matrices / sizeof *matrices);
   tcase_add_test(tests, an_exchange_turns_it);
 }

@@ -72,7 +72,8 @@ static void reference(int n, int lanes, double shift, const double *const x[2], 
 
 static const struct {
   int n, offsets, ring;
-} matrices[] = {{1, 0, 0}, {3, 1, 0}, {4, 1, 0}, {5, 1, 1}, {101, 2, 0}, {603, 1, 0}, {603, 3, 1}, {700, 4, 0}, {602, 4, 1}};
+} matrices[] = {{1, 0, 0},   {3, 1, 0},   {4, 1, 0},   {5, 1, 1},  {101, 2, 0},
+                {603, 1, 0}, {603, 3, 1}, {700, 4, 0}, {602, 4, 1}};
 enum { MATRICES = sizeof matrices / sizeof *matrices };
 
 START_TEST(sums_are_those_of_the_full_matrix)
@@ -89,12 +90,15 @@ START_TEST(sums_are_those_of_the_full_matrix)
   memset(room, 0, sizeof room);
   const double *const lane[] = {x + DVI__STRIPES_MARGIN, x + G.room + DVI__STRIPES_MARGIN};
   for (int l = 0; l < lanes; l++)
-    for (int i = 0; i < n; i++) x[(size_t)l * G.room + DVI__STRIPES_MARGIN + (size_t)i] = sin(3.0 * i + l);
-  dvi__stripes_sum(&(dvi__clenshaw){.G = &G, .lanes = lanes, .degree = DEGREE, .c = c, .x = x, .d = d, .b = b, .other = other});
+    for (int i = 0; i < n; i++)
+      x[(size_t)l * G.room + DVI__STRIPES_MARGIN + (size_t)i] = sin(3.0 * i + l);
+  dvi__stripes_sum(&(dvi__clenshaw){
+      .G = &G, .lanes = lanes, .degree = DEGREE, .c = c, .x = x, .d = d, .b = b, .other = other});
   reference(n, lanes, 0.1, lane, y);
   for (int l = 0; l < lanes; l++)
-    for (int i = 0; i < n; i++)
-      ck_assert_double_eq_tol(d[(size_t)l * G.room + DVI__STRIPES_MARGIN + (size_t)i], y[l][i], 1e-11); /* sums of size 10 to 100 */
+    for (int i = 0; i < n; i++) /* sums of size 10 to 100 */
+      ck_assert_double_eq_tol(d[(size_t)l * G.room + DVI__STRIPES_MARGIN + (size_t)i], y[l][i],
+                              1e-11);
   dvi__stripes_clear(&G);
 }
 END_TEST
@@ -110,9 +114,16 @@ START_TEST(where_the_matrix_vanishes_rows_stay_alike)
   memset(room, 0, sizeof room);
   for (int i = 0; i < 3; i++) room[0][DVI__STRIPES_MARGIN + i] = zeros[i];
   ck_assert_int_eq(dvi__stripes_fill(&pattern, even, even, 1, &G), DVI_OK);
-  dvi__stripes_sum(
-      &(dvi__clenshaw){.G = &G, .lanes = 1, .degree = DEGREE, .c = c, .x = room[0], .d = room[2], .b = room[4], .other = room[6]});
-  for (int i = 0; i < 3; i++) ck_assert_double_eq(room[2][DVI__STRIPES_MARGIN + i], 11 * zeros[i]); /* 21 - 20/2 */
+  dvi__stripes_sum(&(dvi__clenshaw){.G = &G,
+                                    .lanes = 1,
+                                    .degree = DEGREE,
+                                    .c = c,
+                                    .x = room[0],
+                                    .d = room[2],
+                                    .b = room[4],
+                                    .other = room[6]});
+  /* 21 - 20/2 */
+  for (int i = 0; i < 3; i++) ck_assert_double_eq(room[2][DVI__STRIPES_MARGIN + i], 11 * zeros[i]);
   dvi__stripes_clear(&G);
 }
 END_TEST

@@ -1,5 +1,6 @@
 /* labels: unit */
-/* Threads that wait for work: everyone gets his share, once a turn, and the caller goes on when all have ended. */
+/* Threads that wait for work: everyone gets his share, once a turn, and the caller goes on when all
+ * have ended. */
 #include <stdatomic.h>
 
 #include "core/memory.h"
@@ -29,9 +30,11 @@ START_TEST(each_turn_calls_each_member_once)
     tally t = {.all = 0};
     for (long turn = 1; turn <= TURNS; turn++) {
       dvi__team_run(team, count, count_turn, &t);
-      if (t.all != turn * count) ck_abort_msg("turn %ld of %d members: %ld", turn, count, (long)t.all);
+      if (t.all != turn * count)
+        ck_abort_msg("turn %ld of %d members: %ld", turn, count, (long)t.all);
     }
-    for (int member = 0; member < MOST; member++) ck_assert_int_eq(t.turns[member], member < count ? TURNS : 0);
+    for (int member = 0; member < MOST; member++)
+      ck_assert_int_eq(t.turns[member], member < count ? TURNS : 0);
   }
   dvi__team_destroy(&team);
   ck_assert_ptr_null(team);
@@ -47,7 +50,8 @@ typedef struct chain {
 static void wait_for_next(void *user, int member)
 {
   chain *c = user;
-  for (int waited = 0; member + 1 < c->size && atomic_load(&c->arrived[member + 1]) == 0; waited++) dvi__team_pause(waited);
+  for (int waited = 0; member + 1 < c->size && atomic_load(&c->arrived[member + 1]) == 0; waited++)
+    dvi__team_pause(waited);
   atomic_store(&c->arrived[member], 1);
 }
 

@@ -11,7 +11,8 @@ enum { STEPS = 10 };
 static const char *method_for(const problem *of)
 {
   const dvi_system_terms *terms = of->terms;
-  if (terms->hamiltonian != NULL) return terms->constraint != NULL ? "dg-phase:degree=3" : "hamiltonian:degree=3";
+  if (terms->hamiltonian != NULL)
+    return terms->constraint != NULL ? "dg-phase:degree=3" : "hamiltonian:degree=3";
   if (terms->factors != NULL) return "lie-galerkin:degree=5";
   return terms->one_form != NULL ? "vprk:nodes=3" : "galerkin:degree=5";
 }
@@ -61,8 +62,10 @@ START_TEST(no_batch_is_left_and_no_term_is_lost)
   }
   ck_assert_int_eq(terms->lagrangian != NULL, declared.lagrangian != NULL);
   if (terms->lagrangian) {
-    ck_assert(terms->lagrangian->value && terms->lagrangian->gradient && terms->lagrangian->hessian);
-    ck_assert(!terms->lagrangian->value_batch && !terms->lagrangian->gradient_batch && !terms->lagrangian->hessian_batch);
+    ck_assert(terms->lagrangian->value && terms->lagrangian->gradient &&
+              terms->lagrangian->hessian);
+    ck_assert(!terms->lagrangian->value_batch && !terms->lagrangian->gradient_batch &&
+              !terms->lagrangian->hessian_batch);
   }
   problem_destroy(&of);
 }
@@ -88,7 +91,8 @@ END_TEST
 
 SUITE(one_point)
 {
-  tcase_add_loop_test(tests, one_point_callbacks_give_the_same_digits_and_counts, 0, problem_count());
+  tcase_add_loop_test(tests, one_point_callbacks_give_the_same_digits_and_counts, 0,
+                      problem_count());
   tcase_add_loop_test(tests, no_batch_is_left_and_no_term_is_lost, 0, problem_count());
   tcase_add_test(tests, without_memory_the_problem_stays_as_it_was);
 }

@@ -16,7 +16,9 @@ static problem *create(const char *name, int setting_count, const char *const *s
 {
   problem *made = NULL;
   char message[256] = "";
-  ck_assert_msg(problem_create(name, setting_count, settings, &made, message, sizeof message) == DVI_OK, "%s: %s", name, message);
+  ck_assert_msg(problem_create(name, setting_count, settings, &made, message, sizeof message) ==
+                    DVI_OK,
+                "%s: %s", name, message);
   return made;
 }
 
@@ -34,18 +36,21 @@ static double size_of(int n, const double *x)
   return most > 0.0 ? most : 1.0;
 }
 
-/* Check the derivatives, at a time when no drive stands still, at the start moved by `distance`, relative to the size of q and v. */
+/* Check the derivatives, at a time when no drive stands still, at the start moved by `distance`,
+ * relative to the size of q and v. */
 static void check_near_start(const problem *made, double distance, unsigned seed)
 {
   double *q = calloc((size_t)made->nq, sizeof *q), *v = calloc((size_t)made->nv, sizeof *v);
   ck_assert(q && v);
   unsigned state = seed;
-  for (int i = 0; i < made->nq; i++) q[i] = made->q[i] + distance * size_of(made->nq, made->q) * noise(&state);
-  for (int i = 0; i < made->nv; i++) v[i] = made->v[i] + distance * size_of(made->nv, made->v) * noise(&state);
+  for (int i = 0; i < made->nq; i++)
+    q[i] = made->q[i] + distance * size_of(made->nq, made->q) * noise(&state);
+  for (int i = 0; i < made->nv; i++)
+    v[i] = made->v[i] + distance * size_of(made->nv, made->v) * noise(&state);
   dvi_derivative_check found;
   const dvi_status status = dvi_system_check(made->system, 0.7, q, v, TOLERANCE, &found);
-  ck_assert_msg(status == DVI_OK, "%s: %s (gradient %g, hessian %g, outside %g)", made->name, dvi_last_error(),
-                found.gradient_error, found.hessian_error, found.outside);
+  ck_assert_msg(status == DVI_OK, "%s: %s (gradient %g, hessian %g, outside %g)", made->name,
+                dvi_last_error(), found.gradient_error, found.hessian_error, found.outside);
   free(q);
   free(v);
 }
@@ -101,26 +106,30 @@ END_TEST
 /* Points of a batch: more than one vector register holds, and not a multiple of it. */
 #define POINTS 5
 
-/* Entry e of point k of a batch is entry e of that point alone, bit for bit: no callback mixes points. */
-static void check_same(const char *name, const char *what, int entries, const double *batch, int k, const double *alone)
+/* Entry e of point k of a batch is entry e of that point alone, bit for bit: no callback mixes
+ * points. */
+static void check_same(const char *name, const char *what, int entries, const double *batch, int k,
+                       const double *alone)
 {
   for (int e = 0; e < entries; e++)
-    ck_assert_msg(!(batch[e * POINTS + k] < alone[e] || batch[e * POINTS + k] > alone[e]), "%s: %s %d of point %d", name, what, e,
-                  k);
+    ck_assert_msg(!(batch[e * POINTS + k] < alone[e] || batch[e * POINTS + k] > alone[e]),
+                  "%s: %s %d of point %d", name, what, e, k);
 }
 
 static void check_batches(const char *name, int setting_count, const char *const *settings)
 {
   problem *made = create(name, setting_count, settings);
   const int n = made->nq, most = n * n > n ? n * n : n;
-  double *numbers = calloc((size_t)(4 * n + 3 * most) * (POINTS + 1), sizeof *numbers), t[POINTS] = {0.0}, L[POINTS], one;
+  double *numbers = calloc((size_t)(4 * n + 3 * most) * (POINTS + 1), sizeof *numbers),
+         t[POINTS] = {0.0}, L[POINTS], one;
   ck_assert_ptr_nonnull(numbers);
   double *q = numbers, *v = q + n * POINTS, *rows = v + n * POINTS, *blocks = rows + 2 * n * POINTS;
   double *q1 = blocks + 3 * most * POINTS, *v1 = q1 + n, *rows1 = v1 + n, *blocks1 = rows1 + 2 * n;
   unsigned state = 7;
   for (int j = 0; j < n * POINTS; j++) {
     q[j] = made->q[j / POINTS] + 0.2 * size_of(n, made->q) * noise(&state);
-    v[j] = (n == made->nv ? made->v[j / POINTS] : 0) + 0.2 * size_of(made->nv, made->v) * noise(&state);
+    v[j] = (n == made->nv ? made->v[j / POINTS] : 0) +
+           0.2 * size_of(made->nv, made->v) * noise(&state);
   }
   dvi__evaluator *e = NULL;
   ck_assert_int_eq(dvi__evaluator_create(made->system, POINTS, DVI__HESSIANS, NULL, &e), DVI_OK);
@@ -128,7 +137,8 @@ static void check_batches(const char *name, int setting_count, const char *const
   double *hessians = blocks, *hessians1 = blocks1;
   ck_assert_int_eq(dvi__lagrangian_value(e, POINTS, t, q, v, L), DVI_OK);
   ck_assert_int_eq(dvi__lagrangian_gradient(e, POINTS, t, q, v, rows, rows + n * POINTS), DVI_OK);
-  ck_assert_int_eq(dvi__lagrangian_hessian(e, POINTS, t, q, v, hessians, hessians + most * POINTS, hessians + 2 * most * POINTS),
+  ck_assert_int_eq(dvi__lagrangian_hessian(e, POINTS, t, q, v, hessians, hessians + most * POINTS,
+                                           hessians + 2 * most * POINTS),
                    DVI_OK);
   for (int k = 0; k < POINTS; k++) {
     for (int i = 0; i < n; i++) {
@@ -137,11 +147,14 @@ static void check_batches(const char *name, int setting_count, const char *const
     }
     ck_assert_int_eq(dvi__lagrangian_value(e, 1, t, q1, v1, &one), DVI_OK);
     ck_assert_int_eq(dvi__lagrangian_gradient(e, 1, t, q1, v1, rows1, rows1 + n), DVI_OK);
-    ck_assert_int_eq(dvi__lagrangian_hessian(e, 1, t, q1, v1, hessians1, hessians1 + most, hessians1 + 2 * most), DVI_OK);
+    ck_assert_int_eq(
+        dvi__lagrangian_hessian(e, 1, t, q1, v1, hessians1, hessians1 + most, hessians1 + 2 * most),
+        DVI_OK);
     check_same(name, "value", 1, L, k, &one);
     check_same(name, "gradient", 2 * n, rows, k, rows1);
     for (int b = 0; b < 3; b++)
-      check_same(name, "hessian", dvi__pattern_entries(patterns[b]), hessians + b * most * POINTS, k, hessians1 + b * most);
+      check_same(name, "hessian", dvi__pattern_entries(patterns[b]), hessians + b * most * POINTS,
+                 k, hessians1 + b * most);
   }
   dvi__evaluator_destroy(&e);
   free(numbers);
@@ -166,7 +179,8 @@ START_TEST(momenta_are_the_legendre_transform_of_the_velocities)
   for (size_t i = 0; i < n; i++) v[i] += 1e-3 * size_of(made->nv, made->v);
   ck_assert_int_eq(dvi_system_velocity(made->system, 0.0, made->q, made->p, v), DVI_OK);
   /* M is well conditioned in all of them: roundoff of one solve */
-  for (size_t i = 0; i < n; i++) ck_assert_double_eq_tol(v[i], made->v[i], 1e-13 * size_of(made->nv, made->v));
+  for (size_t i = 0; i < n; i++)
+    ck_assert_double_eq_tol(v[i], made->v[i], 1e-13 * size_of(made->nv, made->v));
   free(v);
   problem_destroy(&made);
 }
@@ -185,7 +199,8 @@ START_TEST(every_problem_is_found_by_its_name_and_complete)
   ck_assert_str_eq(made->name, name);
   ck_assert_int_eq(made->nq, dvi_system_nq(made->system));
   ck_assert_int_eq(made->nv, dvi_system_nv(made->system));
-  ck_assert(made->h > 0.0 && made->h < made->t_end && made->order_h > 0.0 && made->order_h < made->order_t_end);
+  ck_assert(made->h > 0.0 && made->h < made->t_end && made->order_h > 0.0 &&
+            made->order_h < made->order_t_end);
   ck_assert(made->digits_q && made->digits_p);
   for (int i = 0; i < made->nq; i++) {
     ck_assert_int_gt((int)strlen(made->coordinate[i]), 0);
@@ -194,7 +209,8 @@ START_TEST(every_problem_is_found_by_its_name_and_complete)
   for (int i = 0; i < made->nv; i++) {
     ck_assert_int_gt((int)strlen(made->momentum[i]), 0);
     for (int j = 0; j < i; j++) ck_assert_str_ne(made->momentum[i], made->momentum[j]);
-    for (int j = 0; j < i && made->velocity; j++) ck_assert_str_ne(made->velocity[i], made->velocity[j]);
+    for (int j = 0; j < i && made->velocity; j++)
+      ck_assert_str_ne(made->velocity[i], made->velocity[j]);
   }
   problem_destroy(&made);
   ck_assert_ptr_null(made);
@@ -259,7 +275,9 @@ START_TEST(bad_settings_are_refused_with_a_sentence)
   problem *made = NULL;
   char message[256] = "";
   const char *setting = cases[_i][1];
-  ck_assert_int_eq(problem_create(cases[_i][0], setting ? 1 : 0, &setting, &made, message, sizeof message), DVI_BAD_OPTION);
+  ck_assert_int_eq(
+      problem_create(cases[_i][0], setting ? 1 : 0, &setting, &made, message, sizeof message),
+      DVI_BAD_OPTION);
   ck_assert_ptr_null(made);
   ck_assert_msg(strstr(message, cases[_i][2]) != NULL, "%s", message);
 }
@@ -272,7 +290,8 @@ START_TEST(a_chain_of_any_length_starts_as_it_should)
   ck_assert_int_eq(made->nq, 2000);
   ck_assert_str_eq(made->coordinate[999], "x0_1000");
   ck_assert_str_eq(made->coordinate[1000], "x1_1");
-  ck_assert(made->q[0] == 1.0 && made->p[0] == 1.0 && made->q[1000] == 1.0 / 50.0 && made->p[1000] == 1.0);
+  ck_assert(made->q[0] == 1.0 && made->p[0] == 1.0 && made->q[1000] == 1.0 / 50.0 &&
+            made->p[1000] == 1.0);
   problem_destroy(&made);
 }
 END_TEST
@@ -291,31 +310,48 @@ START_TEST(exact_solutions_meet_start_and_digits)
   ck_assert_int_eq(made->exact(made, made->order_t_end, q, p), 0);
   /* a few ulp; the parameter itself is rounded (e = 0.6) */
   for (int i = 0; i < made->nq; i++) {
-    ck_assert_double_eq_tol(q[i], made->digits_q[i], 1e-15 * size_of(made->nq, made->digits_q) * made->order_t_end);
+    ck_assert_double_eq_tol(q[i], made->digits_q[i],
+                            1e-15 * size_of(made->nq, made->digits_q) * made->order_t_end);
     if (i < made->nv)
-      ck_assert_double_eq_tol(p[i], made->digits_p[i], 1e-15 * size_of(made->nv, made->digits_p) * made->order_t_end);
+      ck_assert_double_eq_tol(p[i], made->digits_p[i],
+                              1e-15 * size_of(made->nv, made->digits_p) * made->order_t_end);
   }
   problem_destroy(&made);
 }
 END_TEST
 
-/* The state is on the orbit, it is there at the right time, and the state at -t mirrors that at t. */
+/* The state is on the orbit, it is there at the right time, and the state at -t mirrors that at
+ * t. */
 START_TEST(keplers_equation_is_solved_for_any_eccentricity_and_time)
 {
-  static const char *const settings[] = {"e=0", "e=0.3", "e=0.6", "e=0.9", "e=0.99", "e=0.999", "e=0.999999"};
-  static const double times[] = {
-      1e-12, 1e-4, 0.1, 1.0, 3.14159265358979, 3.2, 6.28, 100.0, 1256.637061435917, 1e6, 6.28318530717958648e6};
+  static const char *const settings[] = {"e=0",    "e=0.3",   "e=0.6",     "e=0.9",
+                                         "e=0.99", "e=0.999", "e=0.999999"};
+  static const double times[] = {1e-12,
+                                 1e-4,
+                                 0.1,
+                                 1.0,
+                                 3.14159265358979,
+                                 3.2,
+                                 6.28,
+                                 100.0,
+                                 1256.637061435917,
+                                 1e6,
+                                 6.28318530717958648e6};
   problem *made = create("kepler", 1, &settings[_i]);
   const double e = strtod(settings[_i] + 2, NULL), b2 = (1.0 - e) * (1.0 + e);
   for (size_t j = 0; j < sizeof times / sizeof *times; j++) {
     double q[2], p[2], mirror_q[2], mirror_p[2];
     ck_assert_int_eq(made->exact(made, times[j], q, p), 0);
     ck_assert_int_eq(made->exact(made, -times[j], mirror_q, mirror_p), 0);
-    ck_assert(mirror_q[0] == q[0] && mirror_q[1] == -q[1] && mirror_p[0] == -p[0] && mirror_p[1] == p[1]);
+    ck_assert(mirror_q[0] == q[0] && mirror_q[1] == -q[1] && mirror_p[0] == -p[0] &&
+              mirror_p[1] == p[1]);
     const double r = hypot(q[0], q[1]), kinetic = 0.5 * (p[0] * p[0] + p[1] * p[1]);
     const double E = atan2(q[1] / sqrt(b2), q[0] + e), period = 0x1.921fb54442d18p2;
-    /* a few ulp of the reduced time, and of E where dt/dE is 1 + e; beyond 1e4 the period's own rounding counts */
-    if (times[j] < 1e4) ck_assert_double_eq_tol(E - e * sin(E), remainder(times[j], period), 2e-15 + 2e-16 * times[j]);
+    /* a few ulp of the reduced time, and of E where dt/dE is 1 + e; beyond 1e4 the period's own
+     * rounding counts */
+    if (times[j] < 1e4)
+      ck_assert_double_eq_tol(E - e * sin(E), remainder(times[j], period),
+                              2e-15 + 2e-16 * times[j]);
     /* terms as large as 1/r cancel to -1/2 */
     ck_assert_double_eq_tol(kinetic - 1.0 / r, -0.5, 1e-15 * (1.0 + kinetic) / (1.0 - e));
     ck_assert_double_eq_tol((q[0] * p[1] - q[1] * p[0]) / sqrt(b2), 1.0, 1e-14 + 1e-15 / (1.0 - e));
@@ -324,7 +360,8 @@ START_TEST(keplers_equation_is_solved_for_any_eccentricity_and_time)
 }
 END_TEST
 
-/* One period is 2 pi: 6.283185307179586 is 2 pi minus 4.77e-16, so k of them end 4.77e-16 k before the pericentre. */
+/* One period is 2 pi: 6.283185307179586 is 2 pi minus 4.77e-16, so k of them end 4.77e-16 k before
+ * the pericentre. */
 START_TEST(many_periods_are_reduced_without_loss)
 {
   const char *setting = "e=0.9";
@@ -365,18 +402,20 @@ START_TEST(symmetries_and_invariants_have_their_names)
       {"kovalevskaya", {"energy", "angular_momentum_z", "kovalevskaya"}},
       {"figure-eight", {"energy", "momentum_x", "momentum_y", "angular_momentum"}},
       {"outer-solar",
-       {"energy", "momentum_x", "momentum_y", "momentum_z", "angular_momentum_x", "angular_momentum_y", "angular_momentum_z"}},
+       {"energy", "momentum_x", "momentum_y", "momentum_z", "angular_momentum_x",
+        "angular_momentum_y", "angular_momentum_z"}},
   };
   problem *made = create(cases[_i].problem, 0, NULL);
   int count = 0;
-  for (; cases[_i].names[count]; count++) ck_assert_str_eq(dvi_system_invariant_name(made->system, count), cases[_i].names[count]);
+  for (; cases[_i].names[count]; count++)
+    ck_assert_str_eq(dvi_system_invariant_name(made->system, count), cases[_i].names[count]);
   ck_assert_int_eq(dvi_system_invariant_count(made->system), count);
   problem_destroy(&made);
 }
 END_TEST
 
-/* Every invariant but the stiff energies of fpu, and the energy of systems that depend on time, has the same value at the start and at the stored
- * digits. */
+/* Every invariant but the stiff energies of fpu, and the energy of systems that depend on time, has
+ * the same value at the start and at the stored digits. */
 START_TEST(invariants_hold_between_start_and_digits)
 {
   problem *made = create(problem_name(_i), 0, NULL);
@@ -384,13 +423,16 @@ START_TEST(invariants_hold_between_start_and_digits)
   double start[16], end[16];
   ck_assert_int_le(count, 16);
   ck_assert_int_eq(dvi_system_invariants(made->system, 0.0, made->q, made->p, start), DVI_OK);
-  ck_assert_int_eq(dvi_system_invariants(made->system, made->order_t_end, made->digits_q, made->digits_p, end), DVI_OK);
+  ck_assert_int_eq(
+      dvi_system_invariants(made->system, made->order_t_end, made->digits_q, made->digits_p, end),
+      DVI_OK);
   for (int i = 0; i < count; i++) {
     const char *name = dvi_system_invariant_name(made->system, i);
-    /* roundoff of the digits, times the largest force or speed: 1e3 in stiff-pendulum, q p ~ 1e-4 in outer-solar */
+    /* roundoff of the digits, times the largest force or speed: 1e3 in stiff-pendulum, q p ~ 1e-4
+     * in outer-solar */
     if (name[0] != 'I' && (i > 0 || dvi_system_autonomous(made->system)))
-      ck_assert_msg(fabs(end[i] - start[i]) <= 4e-15 * fmax(size_of(count, start), 1e-7), "%s: %s changes by %g of %g", made->name,
-                    name, end[i] - start[i], start[i]);
+      ck_assert_msg(fabs(end[i] - start[i]) <= 4e-15 * fmax(size_of(count, start), 1e-7),
+                    "%s: %s changes by %g of %g", made->name, name, end[i] - start[i], start[i]);
   }
   problem_destroy(&made);
 }
@@ -405,7 +447,8 @@ SUITE(problems)
   tcase_add_loop_test(tests, momenta_are_the_legendre_transform_of_the_velocities, 0, count);
   tcase_add_loop_test(tests, every_problem_is_found_by_its_name_and_complete, 0, count);
   find_accepted_cases(count, has_parameter, &with_parameters);
-  tcase_add_loop_test(tests, digits_belong_to_the_default_parameters_only, 0, with_parameters.count);
+  tcase_add_loop_test(tests, digits_belong_to_the_default_parameters_only, 0,
+                      with_parameters.count);
   tcase_add_loop_test(tests, bad_settings_are_refused_with_a_sentence, 0, 22);
   tcase_add_test(tests, a_chain_of_any_length_starts_as_it_should);
   tcase_add_loop_test(tests, exact_solutions_meet_start_and_digits, 0, 4);

@@ -1,5 +1,6 @@
 /* labels: reference */
-/* Judges of degenerate Lagrangians: the reduced equations and the system of index 2 agree with the digits, and so with each other. */
+/* Judges of degenerate Lagrangians: the reduced equations and the system of index 2 agree with the
+ * digits, and so with each other. */
 #include <math.h>
 #include <string.h>
 
@@ -8,11 +9,12 @@
 
 enum { CODES = 5, PROBLEMS = 10, COORDINATES_MOST = 4 };
 
-static const char *const names[PROBLEMS] = {"lotka-volterra", "lotka-volterra-4d", "massless-particle", "vortices-linear",
-                                            "vortices",       "guiding-centre",    "tokamak",           "circle-dirac",
-                                            "magnetic-pair",  "elastica"};
+static const char *const names[PROBLEMS] = {
+    "lotka-volterra", "lotka-volterra-4d", "massless-particle", "vortices-linear", "vortices",
+    "guiding-centre", "tokamak",           "circle-dirac",      "magnetic-pair",   "elastica"};
 
-/* A code's own error is the distance of two runs; ten times that, or what its tolerance leaves at a thousand steps. */
+/* A code's own error is the distance of two runs; ten times that, or what its tolerance leaves at a
+ * thousand steps. */
 START_TEST(each_code_meets_the_digits_to_its_own_error)
 {
   problem *of = made_problem(names[_i % PROBLEMS], NULL);
@@ -28,13 +30,16 @@ START_TEST(each_code_meets_the_digits_to_its_own_error)
     problem_destroy(&of);
     return;
   }
-  const dvi_status status = dvi_reference_judge(of->system, 0, of->order_t_end, q, p, &options, &report);
+  const dvi_status status = dvi_reference_judge(of->system, 0, of->order_t_end, q, p, &options,
+                                                &report);
   ck_assert_msg(status == DVI_OK, "%s: %s", of->name, dvi_last_error());
-  const double apart = distance(of->nq, q, of->digits_q), size = fmax(1, magnitude(of->nq, of->digits_q));
-  ck_assert_msg(apart <= 10 * report.error + 1e-13 * size, "%s by %s: %g from the digits, states %g", of->name,
-                dvi_reference_name(code), apart, report.error);
-  ck_assert_msg(report.error <= (code == DVI_IDA_INDEX_2 ? 1e-5 : 1e-8) * size, "%s by %s: states %g", of->name,
-                dvi_reference_name(code), report.error);
+  const double apart = distance(of->nq, q, of->digits_q),
+               size = fmax(1, magnitude(of->nq, of->digits_q));
+  ck_assert_msg(apart <= 10 * report.error + 1e-13 * size,
+                "%s by %s: %g from the digits, states %g", of->name, dvi_reference_name(code),
+                apart, report.error);
+  ck_assert_msg(report.error <= (code == DVI_IDA_INDEX_2 ? 1e-5 : 1e-8) * size,
+                "%s by %s: states %g", of->name, dvi_reference_name(code), report.error);
   ck_assert_double_le(distance(of->nq, p, of->digits_p), 100 * (report.error + 1e-13 * size));
   problem_destroy(&of);
 }

@@ -1,5 +1,6 @@
 /* labels: judge long */
-/* The quadruple-precision judge, the digits that the problems store, and the catalogue's printed digits: all three agree. */
+/* The quadruple-precision judge, the digits that the problems store, and the catalogue's printed
+ * digits: all three agree. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -34,8 +35,8 @@ static void check_stored(const char *name, const double *stored, int n, const te
 {
   for (int i = 0; i < n; i++) {
     const double exact = strtod(digits[i], NULL);
-    ck_assert_msg(fabs(stored[i] - exact) <= 2.3e-16 * fabs(exact), "%s: number %d is %.17g, the judge says %s", name, i, stored[i],
-                  digits[i]);
+    ck_assert_msg(fabs(stored[i] - exact) <= 2.3e-16 * fabs(exact),
+                  "%s: number %d is %.17g, the judge says %s", name, i, stored[i], digits[i]);
   }
 }
 
@@ -43,7 +44,8 @@ START_TEST(stored_digits_are_those_of_the_judge)
 {
   problem *made = NULL;
   char message[256];
-  ck_assert_int_eq(problem_create(problem_name(_i), 0, NULL, &made, message, sizeof message), DVI_OK);
+  ck_assert_int_eq(problem_create(problem_name(_i), 0, NULL, &made, message, sizeof message),
+                   DVI_OK);
   const result r = judge(made->name, made->order_t_end);
   ck_assert_int_eq(r.n, made->nq);
   check_stored(made->name, made->digits_q, r.n, (const text *)r.q);
@@ -52,17 +54,20 @@ START_TEST(stored_digits_are_those_of_the_judge)
 }
 END_TEST
 
-/* The judge from the rounded start, as a method sees it: roundoff of the start, grown at most thirtyfold (kepler, T = 10). */
+/* The judge from the rounded start, as a method sees it: roundoff of the start, grown at most
+ * thirtyfold (kepler, T = 10). */
 START_TEST(the_judge_agrees_with_itself_from_the_rounded_start)
 {
   problem *made = NULL;
   char message[256];
   const char *name = problem_name(sampled_case(_i));
   ck_assert_int_eq(problem_create(name, 0, NULL, &made, message, sizeof message), DVI_OK);
-  ck_assert_double_lt(quad_solve(made->name, 0, NULL, made->order_t_end, made->q, made->p), JUDGE_ERROR);
+  ck_assert_double_lt(quad_solve(made->name, 0, NULL, made->order_t_end, made->q, made->p),
+                      JUDGE_ERROR);
   double largest = 0.0;
   for (int i = 0; i < made->nq; i++) largest = fmax(largest, fabs(made->digits_q[i]));
-  for (int i = 0; i < made->nq; i++) ck_assert_double_eq_tol(made->q[i], made->digits_q[i], 30 * 2.2e-16 * largest);
+  for (int i = 0; i < made->nq; i++)
+    ck_assert_double_eq_tol(made->q[i], made->digits_q[i], 30 * 2.2e-16 * largest);
   problem_destroy(&made);
 }
 END_TEST
@@ -76,7 +81,8 @@ static double units_apart(quad number, const char *printed)
   return (double)(quad_abs(number - quad_parse(printed, NULL)) / unit);
 }
 
-/* Rounded right to its last digit: half a unit, and the printed number's own rounding in quadruple precision. */
+/* Rounded right to its last digit: half a unit, and the printed number's own rounding in quadruple
+ * precision. */
 static void check_printed(const char *name, quad number, const char *printed)
 {
   const double apart = units_apart(number, printed);
@@ -167,8 +173,8 @@ START_TEST(the_judge_refuses_what_it_does_not_know)
 }
 END_TEST
 
-/* fpu at T = 200 is sensitive: from 1/50 rounded to a double, as here, x0_1 differs by 5e-14 from what exact 1/50 gives. The printed
- * digits are those of the rounded start. */
+/* fpu at T = 200 is sensitive: from 1/50 rounded to a double, as here, x0_1 differs by 5e-14 from
+ * what exact 1/50 gives. The printed digits are those of the rounded start. */
 START_TEST(fpu_has_the_printed_state_at_200)
 {
   static const double printed[6] = {0.0568458230701694,  0.797913189042865,  0.229526402291378,
@@ -177,7 +183,8 @@ START_TEST(fpu_has_the_printed_state_at_200)
   double q[6] = {1.0, 0.0, 0.0, 1.0 / 50.0, 0.0, 0.0}, p[6] = {1.0, 0.0, 0.0, 1.0, 0.0, 0.0};
   ck_assert_double_lt(quad_solve("fpu", 0, NULL, 200.0, q, p), 1e-20);
   /* half a unit of the last printed digit, and one rounding */
-  for (int i = 0; i < 6; i++) ck_assert_double_eq_tol(q[i], printed[i], 0.5 * unit[i] + 2.2e-16 * fabs(q[i]));
+  for (int i = 0; i < 6; i++)
+    ck_assert_double_eq_tol(q[i], printed[i], 0.5 * unit[i] + 2.2e-16 * fabs(q[i]));
 }
 END_TEST
 
@@ -185,7 +192,8 @@ SUITE(digits)
 {
   tcase_set_timeout(tests, 600);
   tcase_add_loop_test(tests, stored_digits_are_those_of_the_judge, 0, problem_count());
-  tcase_add_loop_test(tests, the_judge_agrees_with_itself_from_the_rounded_start, 0, sampled_count(problem_count()));
+  tcase_add_loop_test(tests, the_judge_agrees_with_itself_from_the_rounded_start, 0,
+                      sampled_count(problem_count()));
   tcase_add_loop_test(tests, printed_digits_are_right_to_the_last_one, 0, 6);
   tcase_add_test(tests, fpu_has_the_printed_stiff_energies_at_50);
   if (!is_short_run()) tcase_add_test(tests, fpu_has_the_printed_state_at_200);

@@ -1,5 +1,6 @@
 /* labels: reference */
-/* The reference codes on rotations, directions and angles: against exact solutions and digits, and their own word about their errors. */
+/* The reference codes on rotations, directions and angles: against exact solutions and digits, and
+ * their own word about their errors. */
 #include <check.h>
 #include <math.h>
 #include <stdio.h>
@@ -9,10 +10,12 @@
 #include "support/runs.h"
 #include "support/suite.h"
 
-static const char *const problems[] = {"free-body",       "pendulum-3d", "heavy-top", "kovalevskaya", "spherical-double-pendulum",
-                                       "spherical-chain", "two-body",    "satellite"};
+static const char *const problems[] = {
+    "free-body",       "pendulum-3d", "heavy-top", "kovalevskaya", "spherical-double-pendulum",
+    "spherical-chain", "two-body",    "satellite"};
 
-/* At 1e-9 every code is within 1e-5 of the digits (BDF of the fast top loses most), on the manifold to rounding, with a momentum on it. */
+/* At 1e-9 every code is within 1e-5 of the digits (BDF of the fast top loses most), on the manifold
+ * to rounding, with a momentum on it. */
 START_TEST(every_code_meets_the_digits)
 {
   problem *of = make(problems[_i / CODES], NULL);
@@ -20,10 +23,11 @@ START_TEST(every_code_meets_the_digits)
   const double size = fmax(1, magnitude(of->nv, of->digits_p));
   double q[MOST], p[MOST];
   start(of, q, p);
-  const dvi_status status = dvi_reference_solve(of->system, 0, of->order_t_end, q, p, &options, NULL);
+  const dvi_status status = dvi_reference_solve(of->system, 0, of->order_t_end, q, p, &options,
+                                                NULL);
   ck_assert_msg(status == DVI_OK, "%s: %s", of->name, dvi_last_error());
-  ck_assert_msg(distance(of->nq, q, of->digits_q) <= 1e-5, "%s, %s: q is %g away", of->name, dvi_reference_name(options.code),
-                distance(of->nq, q, of->digits_q));
+  ck_assert_msg(distance(of->nq, q, of->digits_q) <= 1e-5, "%s, %s: q is %g away", of->name,
+                dvi_reference_name(options.code), distance(of->nq, q, of->digits_q));
   ck_assert_msg(distance(of->nv, p, of->digits_p) <= 1e-5 * size, "%s, %s: p is %g away", of->name,
                 dvi_reference_name(options.code), distance(of->nv, p, of->digits_p));
   ck_assert_double_le(dvi_system_distance(of->system, q), 1e-15);
@@ -45,25 +49,29 @@ START_TEST(the_judge_knows_its_error_on_the_free_body)
     start(of, q, p);
     ck_assert_int_eq(dvi_reference_judge(of->system, 0, t, q, p, NULL, &report), DVI_OK);
     ck_assert_int_eq(of->exact(of, t, exact_q, exact_p), 0);
-    ck_assert_msg(distance(9, q, exact_q) <= 10 * report.error && report.error < 1e-8, "t = %g: %g away, states %g", t,
-                  distance(9, q, exact_q), report.error);
+    ck_assert_msg(distance(9, q, exact_q) <= 10 * report.error && report.error < 1e-8,
+                  "t = %g: %g away, states %g", t, distance(9, q, exact_q), report.error);
   }
   problem_destroy(&of);
 }
 END_TEST
 
-/* Turned in space as a whole, the free body moves as before: from attitudes at which each of a quaternion's four numbers is the largest. */
+/* Turned in space as a whole, the free body moves as before: from attitudes at which each of a
+ * quaternion's four numbers is the largest. */
 START_TEST(every_attitude_is_a_start)
 {
-  static const double turned[4][9] = {
-      {1, 0, 0, 0, 1, 0, 0, 0, 1}, {1, 0, 0, 0, -1, 0, 0, 0, -1}, {-1, 0, 0, 0, 1, 0, 0, 0, -1}, {-1, 0, 0, 0, -1, 0, 0, 0, 1}};
+  static const double turned[4][9] = {{1, 0, 0, 0, 1, 0, 0, 0, 1},
+                                      {1, 0, 0, 0, -1, 0, 0, 0, -1},
+                                      {-1, 0, 0, 0, 1, 0, 0, 0, -1},
+                                      {-1, 0, 0, 0, -1, 0, 0, 0, 1}};
   problem *of = make("free-body", NULL);
   const dvi_reference_options options = option(DVI_ARKODE, 1e-12);
   double q[9], p[3];
   memcpy(q, turned[_i], sizeof q);
   memcpy(p, of->p, sizeof p);
   ck_assert_int_eq(dvi_reference_solve(of->system, 0, 10, q, p, &options, NULL), DVI_OK);
-  for (int k = 0; k < 9; k++) ck_assert_double_eq_tol(q[k], turned[_i][4 * (k / 3)] * of->digits_q[k], 1e-11);
+  for (int k = 0; k < 9; k++)
+    ck_assert_double_eq_tol(q[k], turned[_i][4 * (k / 3)] * of->digits_q[k], 1e-11);
   problem_destroy(&of);
 }
 END_TEST
@@ -89,7 +97,8 @@ START_TEST(an_angle_on_the_circle_moves_as_a_number)
   problem *of = make("pendulum", NULL);
   const dvi_factor circle = {.kind = DVI_U1, .mass = 1};
   const dvi_potential weight = {.value = circle_value, .gradient = circle_gradient};
-  const dvi_system_terms terms = {.factors = &circle, .factor_count = 1, .potentials = &weight, .potential_count = 1};
+  const dvi_system_terms terms = {
+      .factors = &circle, .factor_count = 1, .potentials = &weight, .potential_count = 1};
   const dvi_reference_options options = option(_i, 1e-10);
   dvi_system *system = NULL;
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
@@ -114,8 +123,10 @@ START_TEST(what_is_off_the_manifold_or_too_large_is_refused)
   problem *chain = NULL;
   char message[256] = "";
   const char *setting = "n=300";
-  ck_assert_int_eq(problem_create("spherical-chain", 1, &setting, &chain, message, sizeof message), DVI_OK);
-  ck_assert_int_eq(dvi_reference_solve(chain->system, 0, 1, chain->q, chain->p, NULL, NULL), DVI_UNSUPPORTED);
+  ck_assert_int_eq(problem_create("spherical-chain", 1, &setting, &chain, message, sizeof message),
+                   DVI_OK);
+  ck_assert_int_eq(dvi_reference_solve(chain->system, 0, 1, chain->q, chain->p, NULL, NULL),
+                   DVI_UNSUPPORTED);
   ck_assert_ptr_nonnull(strstr(dvi_last_error(), "2000 are possible"));
   problem_destroy(&chain);
 }

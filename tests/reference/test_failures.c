@@ -13,8 +13,8 @@
 #include "reference/catalogue.h"
 #include "support/suite.h"
 
-static void refuse(const dvi_system *system, double t_end, const double *q, const double *p, dvi_reference_options options,
-                   dvi_status expected, const char *word)
+static void refuse(const dvi_system *system, double t_end, const double *q, const double *p,
+                   dvi_reference_options options, dvi_status expected, const char *word)
 {
   double kept_q[2], kept_p[2];
   memcpy(kept_q, q, sizeof kept_q);
@@ -31,21 +31,29 @@ START_TEST(bad_input_is_refused_by_name)
 {
   problem *kepler = make("kepler", NULL);
   const dvi_system *system = kepler->system;
-  const double *q = kepler->q, *p = kepler->p, nan_q[] = {0.4, (double)NAN}, inf_p[] = {(double)INFINITY, 1};
+  const double *q = kepler->q, *p = kepler->p, nan_q[] = {0.4, (double)NAN},
+               inf_p[] = {(double)INFINITY, 1};
   const dvi_reference_options good = {.code = DVI_IDA};
   refuse(NULL, 1, q, p, good, DVI_BAD_ARGUMENT, "system");
   refuse(system, (double)INFINITY, q, p, good, DVI_NOT_FINITE, "inf");
   refuse(system, (double)NAN, q, p, good, DVI_NOT_FINITE, "nan");
   refuse(system, 1, nan_q, p, good, DVI_NOT_FINITE, "q[1]");
   refuse(system, 1, q, inf_p, good, DVI_NOT_FINITE, "p[0]");
-  refuse(system, 1, q, p, (dvi_reference_options){.code = (dvi_reference_code)(CODES + 1)}, DVI_BAD_ARGUMENT, "code");
-  refuse(system, 1, q, p, (dvi_reference_options){.relative_tolerance = -1e-3}, DVI_BAD_ARGUMENT, "relative_tolerance");
-  refuse(system, 1, q, p, (dvi_reference_options){.relative_tolerance = (double)NAN}, DVI_BAD_ARGUMENT, "relative_tolerance");
-  refuse(system, 1, q, p, (dvi_reference_options){.relative_tolerance = 1}, DVI_BAD_ARGUMENT, "relative_tolerance");
-  refuse(system, 1, q, p, (dvi_reference_options){.absolute_tolerance = -1}, DVI_BAD_ARGUMENT, "absolute_tolerance");
-  refuse(system, 1, q, p, (dvi_reference_options){.absolute_tolerance = (double)NAN}, DVI_BAD_ARGUMENT, "absolute_tolerance");
+  refuse(system, 1, q, p, (dvi_reference_options){.code = (dvi_reference_code)(CODES + 1)},
+         DVI_BAD_ARGUMENT, "code");
+  refuse(system, 1, q, p, (dvi_reference_options){.relative_tolerance = -1e-3}, DVI_BAD_ARGUMENT,
+         "relative_tolerance");
+  refuse(system, 1, q, p, (dvi_reference_options){.relative_tolerance = (double)NAN},
+         DVI_BAD_ARGUMENT, "relative_tolerance");
+  refuse(system, 1, q, p, (dvi_reference_options){.relative_tolerance = 1}, DVI_BAD_ARGUMENT,
+         "relative_tolerance");
+  refuse(system, 1, q, p, (dvi_reference_options){.absolute_tolerance = -1}, DVI_BAD_ARGUMENT,
+         "absolute_tolerance");
+  refuse(system, 1, q, p, (dvi_reference_options){.absolute_tolerance = (double)NAN},
+         DVI_BAD_ARGUMENT, "absolute_tolerance");
   refuse(system, 1, q, p, (dvi_reference_options){.max_steps = -1}, DVI_BAD_ARGUMENT, "max_steps");
-  refuse(system, 1, q, p, (dvi_reference_options){.max_seconds = -1}, DVI_BAD_ARGUMENT, "max_seconds");
+  refuse(system, 1, q, p, (dvi_reference_options){.max_seconds = -1}, DVI_BAD_ARGUMENT,
+         "max_seconds");
   double state[2] = {0.4, 0};
   ck_assert_int_eq(dvi_reference_solve(system, 0, 1, NULL, state, NULL, NULL), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_reference_judge(system, 0, 1, state, NULL, NULL, NULL), DVI_BAD_ARGUMENT);
@@ -59,8 +67,9 @@ START_TEST(too_few_steps_stop_with_the_time_reached)
 {
   problem *kepler = make("kepler", NULL);
   refuse(kepler->system, 10, kepler->q, kepler->p,
-         (dvi_reference_options){.code = (dvi_reference_code)_i, .relative_tolerance = 1e-8, .max_steps = 7}, DVI_REFERENCE_FAILED,
-         "after 7 steps");
+         (dvi_reference_options){
+             .code = (dvi_reference_code)_i, .relative_tolerance = 1e-8, .max_steps = 7},
+         DVI_REFERENCE_FAILED, "after 7 steps");
   check_words("TOO_MUCH_WORK");
   check_words("allow more steps");
   problem_destroy(&kepler);
@@ -70,8 +79,10 @@ END_TEST
 START_TEST(too_little_time_stops)
 {
   problem *kepler = make("kepler", NULL);
-  const dvi_reference_options options = {.code = (dvi_reference_code)_i, .relative_tolerance = 1e-8, .max_seconds = 0.02};
-  refuse(kepler->system, 1e7, kepler->q, kepler->p, options, DVI_REFERENCE_FAILED, "max_seconds, 0.02");
+  const dvi_reference_options options = {
+      .code = (dvi_reference_code)_i, .relative_tolerance = 1e-8, .max_seconds = 0.02};
+  refuse(kepler->system, 1e7, kepler->q, kepler->p, options, DVI_REFERENCE_FAILED,
+         "max_seconds, 0.02");
   problem_destroy(&kepler);
 }
 END_TEST
@@ -121,15 +132,19 @@ static int spring_gradient(double t, const double *q, double *V_q, void *user)
 
 static void spring_fails(bad_spring bad, int code, dvi_status expected, const char *word)
 {
-  const dvi_potential potential = {.name = "spring", .value = spring_value, .gradient = spring_gradient, .user = &bad};
-  const dvi_system_terms terms = {.dimension = 2, .mass.scalar = 1, .potentials = &potential, .potential_count = 1};
+  const dvi_potential potential = {
+      .name = "spring", .value = spring_value, .gradient = spring_gradient, .user = &bad};
+  const dvi_system_terms terms = {
+      .dimension = 2, .mass.scalar = 1, .potentials = &potential, .potential_count = 1};
   const double q[2] = {1, 0}, p[2] = {0, 0};
   dvi_system *system = NULL;
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
   refuse(system, 3, q, p, option(code, 1e-6), expected, word);
   double reached = -1;
-  ck_assert_int_eq(sscanf(strstr(dvi_last_error(), "stopped at"), "stopped at t = %lf", &reached), 1);
-  ck_assert_msg(reached > 0 && reached < 1.3, "%s", dvi_last_error()); /* a step of this tolerance is at most 0.3 */
+  ck_assert_int_eq(sscanf(strstr(dvi_last_error(), "stopped at"), "stopped at t = %lf", &reached),
+                   1);
+  /* a step of this tolerance is at most 0.3 */
+  ck_assert_msg(reached > 0 && reached < 1.3, "%s", dvi_last_error());
   dvi_system_destroy(&system);
 }
 
@@ -210,7 +225,8 @@ SUITE(failures)
   tcase_add_loop_test(tests, a_start_in_the_singularity_is_refused, 0, CODES);
   tcase_add_loop_test(tests, a_collision_ends_the_run_in_words, 0, CODES);
   tcase_add_loop_test(tests, nan_from_a_callback_stops_the_code, 0, CODES);
-  tcase_add_loop_test(tests, a_callback_that_keeps_asking_for_smaller_steps_stops_the_code, 0, CODES);
+  tcase_add_loop_test(tests, a_callback_that_keeps_asking_for_smaller_steps_stops_the_code, 0,
+                      CODES);
   tcase_add_loop_test(tests, a_callback_that_fails_for_good_gives_its_own_status, 0, CODES);
   tcase_add_loop_test(tests, failures_print_nothing, 0, CODES);
   tcase_add_loop_test(tests, no_memory_is_a_status, 0, CODES);

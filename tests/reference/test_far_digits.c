@@ -1,6 +1,6 @@
 /* labels: judge slow long */
-/* The digits of long spans are those of the quadruple-precision judge, and the roundings of the start move them no farther than is
- * said. A short run takes one of the three problems. */
+/* The digits of long spans are those of the quadruple-precision judge, and the roundings of the
+ * start move them no farther than is said. A short run takes one of the three problems. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,8 +26,8 @@ START_TEST(far_digits_are_those_of_the_judge)
   for (int i = 0; i < n; i++) {
     const double judged = strtod(q[i], NULL);
     /* half an ulp of each of the two roundings */
-    ck_assert_msg(fabs(of->far_q[i] - judged) <= 2.3e-16 * fabs(judged), "%s: number %d is %.17g, the judge says %s", of->name, i,
-                  of->far_q[i], q[i]);
+    ck_assert_msg(fabs(of->far_q[i] - judged) <= 2.3e-16 * fabs(judged),
+                  "%s: number %d is %.17g, the judge says %s", of->name, i, of->far_q[i], q[i]);
   }
   problem_destroy(&of);
 }
@@ -41,7 +41,8 @@ START_TEST(the_rounded_start_ends_where_is_said)
   memcpy(p, of->p, (size_t)of->nq * sizeof *p);
   ck_assert_double_lt(quad_solve(of->name, 0, NULL, of->far_t_end, q, p), judge_error);
   const double moved = distance(of->nq, q, of->far_q);
-  ck_assert_msg(moved <= of->far_error && moved > 0.1 * of->far_error, "%s: moved by %g", of->name, moved);
+  ck_assert_msg(moved <= of->far_error && moved > 0.1 * of->far_error, "%s: moved by %g", of->name,
+                moved);
   problem_destroy(&of);
 }
 END_TEST

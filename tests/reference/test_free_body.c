@@ -1,5 +1,6 @@
 /* labels: reference */
-/* The free body's exact solution, Jacobi's elliptic functions and the attitude, against the quadruple-precision judge. */
+/* The free body's exact solution, Jacobi's elliptic functions and the attitude, against the
+ * quadruple-precision judge. */
 #include <check.h>
 #include <math.h>
 #include <stdio.h>
@@ -16,11 +17,14 @@ static problem *made_with(const char *const *settings)
 {
   problem *made = NULL;
   char message[256] = "";
-  ck_assert_msg(problem_create("free-body", SETTINGS, settings, &made, message, sizeof message) == DVI_OK, "%s", message);
+  ck_assert_msg(problem_create("free-body", SETTINGS, settings, &made, message, sizeof message) ==
+                    DVI_OK,
+                "%s", message);
   return made;
 }
 
-/* Roundings of the start in double and a few ulp of R and Pi; where the modulus is near 1 both grow. */
+/* Roundings of the start in double and a few ulp of R and Pi; where the modulus is near 1 both
+ * grow. */
 static void check_at(const char *const *settings, double t, double tolerance)
 {
   problem *of = made_with(settings);
@@ -28,10 +32,11 @@ static void check_at(const char *const *settings, double t, double tolerance)
   start(of, q, p);
   ck_assert_double_lt(quad_solve("free-body", SETTINGS, settings, t, q, p), 1e-20);
   ck_assert_int_eq(of->exact(of, t, exact_q, exact_p), 0);
-  ck_assert_msg(distance(9, q, exact_q) <= tolerance, "%s, %s at %g: R is %g away", settings[3], settings[4], t,
-                distance(9, q, exact_q));
-  ck_assert_msg(distance(3, p, exact_p) <= tolerance * fmax(1, magnitude(3, p)), "%s, %s at %g: Pi is %g away", settings[3],
-                settings[4], t, distance(3, p, exact_p));
+  ck_assert_msg(distance(9, q, exact_q) <= tolerance, "%s, %s at %g: R is %g away", settings[3],
+                settings[4], t, distance(9, q, exact_q));
+  ck_assert_msg(distance(3, p, exact_p) <= tolerance * fmax(1, magnitude(3, p)),
+                "%s, %s at %g: Pi is %g away", settings[3], settings[4], t,
+                distance(3, p, exact_p));
   problem_destroy(&of);
 }
 
@@ -55,10 +60,12 @@ START_TEST(the_attitude_is_exact_whatever_the_axes_and_signs)
 }
 END_TEST
 
-/* A turn about the middle axis, disturbed by 1e-4, tumbles: disturbances of the start grow by 1e4. */
+/* A turn about the middle axis, disturbed by 1e-4, tumbles: disturbances of the start grow by
+ * 1e4. */
 START_TEST(it_is_exact_near_the_separatrix)
 {
-  static const char *const settings[SETTINGS] = {"J1=1", "J2=2", "J3=3", "Omega1=1e-4", "Omega2=1", "Omega3=1e-4"};
+  static const char *const settings[SETTINGS] = {"J1=1",        "J2=2",     "J3=3",
+                                                 "Omega1=1e-4", "Omega2=1", "Omega3=1e-4"};
   check_at(settings, 5, 1e-14);
   check_at(settings, 30, 1e-10);
 }
@@ -79,7 +86,8 @@ END_TEST
 /* There the period is infinite, and the exact solution is none. */
 START_TEST(on_the_separatrix_there_is_none)
 {
-  static const char *const settings[SETTINGS] = {"J1=9", "J2=8", "J3=4", "Omega1=4", "Omega2=0.5", "Omega3=3"};
+  static const char *const settings[SETTINGS] = {"J1=9",     "J2=8",       "J3=4",
+                                                 "Omega1=4", "Omega2=0.5", "Omega3=3"};
   problem *of = made_with(settings);
   double q[9], p[3];
   ck_assert_int_ne(of->exact(of, 1, q, p), 0);
@@ -87,7 +95,8 @@ START_TEST(on_the_separatrix_there_is_none)
 }
 END_TEST
 
-/* 16000 turns of axis 3: what a rounding of J or Omega makes of the phase, 1e4 radians, is what can be asked for. */
+/* 16000 turns of axis 3: what a rounding of J or Omega makes of the phase, 1e4 radians, is what can
+ * be asked for. */
 START_TEST(long_times_cost_only_the_roundings_of_the_phase)
 {
   problem *of = make("free-body", NULL);

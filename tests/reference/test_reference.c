@@ -17,17 +17,20 @@ static double distance(int n, const double *a, const double *b)
 }
 
 /* Distance from the exact state at t_end after a run of one code. */
-static double exact_error(const problem *of, dvi_reference_options options, double t_end, dvi_reference_report *report)
+static double exact_error(const problem *of, dvi_reference_options options, double t_end,
+                          dvi_reference_report *report)
 {
   double q[MOST], p[MOST], exact_q[MOST], exact_p[MOST];
   start(of, q, p);
-  ck_assert_msg(dvi_reference_solve(of->system, 0, t_end, q, p, &options, report) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_reference_solve(of->system, 0, t_end, q, p, &options, report) == DVI_OK, "%s",
+                dvi_last_error());
   ck_assert_int_eq(of->exact(of, t_end, exact_q, exact_p), 0);
   return fmax(distance(of->nq, q, exact_q), distance(of->nq, p, exact_p));
 }
 
-/* The codes bound the error of each step, so the errors after all steps lie above the tolerance: over one period of the oscillator
- * by some 10 times, over kepler's ten time units with close passages by some 1000 (BDF, the worst: 5e-9). */
+/* The codes bound the error of each step, so the errors after all steps lie above the tolerance:
+ * over one period of the oscillator by some 10 times, over kepler's ten time units with close
+ * passages by some 1000 (BDF, the worst: 5e-9). */
 START_TEST(each_code_meets_the_exact_oscillator)
 {
   problem *oscillator = make("oscillator", NULL);
@@ -52,11 +55,13 @@ START_TEST(each_code_goes_backward)
 }
 END_TEST
 
-/* Four orders in the tolerance give at least three in the error: variable-order codes are not exactly proportional. */
+/* Four orders in the tolerance give at least three in the error: variable-order codes are not
+ * exactly proportional. */
 START_TEST(the_error_follows_the_tolerance)
 {
   problem *kepler = make("kepler", NULL);
-  const double loose = exact_error(kepler, option(_i, 1e-6), 10, NULL), tight = exact_error(kepler, option(_i, 1e-10), 10, NULL);
+  const double loose = exact_error(kepler, option(_i, 1e-6), 10, NULL),
+               tight = exact_error(kepler, option(_i, 1e-10), 10, NULL);
   ck_assert_double_lt(tight, 1e-3 * loose);
   problem_destroy(&kepler);
 }
@@ -94,7 +99,8 @@ static int trap_value(double t, const double *q, const double *v, double *L, voi
   return 0;
 }
 
-static int trap_gradient(double t, const double *q, const double *v, double *L_q, double *L_v, void *user)
+static int trap_gradient(double t, const double *q, const double *v, double *L_q, double *L_v,
+                         void *user)
 {
   const trap *own = user;
   (void)t;
@@ -107,7 +113,8 @@ static int trap_gradient(double t, const double *q, const double *v, double *L_q
   return 0;
 }
 
-static int trap_hessian(double t, const double *q, const double *v, double *L_qq, double *L_qv, double *L_vv, void *user)
+static int trap_hessian(double t, const double *q, const double *v, double *L_qq, double *L_qv,
+                        double *L_vv, void *user)
 {
   const trap *own = user;
   (void)t, (void)q, (void)v;
@@ -135,11 +142,15 @@ static dvi_system *trapped(trap *own)
                                      .vv = {begin, diagonal},
                                      .user = own};
   dvi_system *system = NULL;
-  ck_assert_int_eq(dvi_system_create(&(dvi_system_terms){.dimension = own->n, .lagrangian = &lagrangian}, &system), DVI_OK);
+  ck_assert_int_eq(
+      dvi_system_create(&(dvi_system_terms){.dimension = own->n, .lagrangian = &lagrangian},
+                        &system),
+      DVI_OK);
   return system;
 }
 
-/* z = x + iy solves z" + i B z' + K z = 0; the start is on the slow circle z = exp(i a t), a^2 + B a = K, where all particles stay. */
+/* z = x + iy solves z" + i B z' + K z = 0; the start is on the slow circle z = exp(i a t), a^2 + B
+ * a = K, where all particles stay. */
 static double circle(const trap *own, double *q, double *p)
 {
   const double a = 0.5 * (sqrt(own->B * own->B + 4 * own->K) - own->B);
@@ -159,15 +170,18 @@ START_TEST(each_code_meets_the_exact_motion_in_a_magnetic_field)
     double q[MOST], p[MOST];
     const double a = circle(&own, q, p), exact[2] = {cos(3 * a), sin(3 * a)};
     const dvi_reference_options options = option(_i, 1e-11);
-    ck_assert_msg(dvi_reference_solve(system, 0, 3, q, p, &options, NULL) == DVI_OK, "%s", dvi_last_error());
-    for (int i = 0; i < n; i += 2) ck_assert_double_lt(distance(2, q + i, exact), 2e-8); /* some 1000 steps of 1e-11 each */
+    ck_assert_msg(dvi_reference_solve(system, 0, 3, q, p, &options, NULL) == DVI_OK, "%s",
+                  dvi_last_error());
+    /* some 1000 steps of 1e-11 each */
+    for (int i = 0; i < n; i += 2) ck_assert_double_lt(distance(2, q + i, exact), 2e-8);
     dvi_system_destroy(&system);
   }
 }
 END_TEST
 
-/* A strong field is stiff: the other root, about -B, is far beyond the steps that the slow circle needs, so Newton's method converges
- * with the right Jacobian only: about 100 residuals; a wrong block makes it 10^5. */
+/* A strong field is stiff: the other root, about -B, is far beyond the steps that the slow circle
+ * needs, so Newton's method converges with the right Jacobian only: about 100 residuals; a wrong
+ * block makes it 10^5. */
 START_TEST(ida_has_the_right_jacobian)
 {
   for (int n = 4; n <= MOST; n *= 10) {
@@ -177,14 +191,16 @@ START_TEST(ida_has_the_right_jacobian)
     (void)circle(&own, q, p);
     const dvi_reference_options options = option(DVI_IDA, 1e-5);
     dvi_reference_report report;
-    ck_assert_msg(dvi_reference_solve(system, 0, 3, q, p, &options, &report) == DVI_OK, "%s", dvi_last_error());
+    ck_assert_msg(dvi_reference_solve(system, 0, 3, q, p, &options, &report) == DVI_OK, "%s",
+                  dvi_last_error());
     ck_assert_int_lt(report.evaluations, 1000);
     dvi_system_destroy(&system);
   }
 }
 END_TEST
 
-/* The same for BDF: stiff springs at rest, pushed by the slow ones only. The right Jacobian takes about 120 evaluations. */
+/* The same for BDF: stiff springs at rest, pushed by the slow ones only. The right Jacobian takes
+ * about 120 evaluations. */
 START_TEST(bdf_has_the_right_jacobian)
 {
   problem *fpu = make("fpu", "omega=1e4");
@@ -193,7 +209,8 @@ START_TEST(bdf_has_the_right_jacobian)
   for (int i = fpu->nq / 2; i < fpu->nq; i++) q[i] = p[i] = 0;
   const dvi_reference_options options = option(DVI_CVODE_BDF, 1e-5);
   dvi_reference_report report;
-  ck_assert_msg(dvi_reference_solve(fpu->system, 0, 3, q, p, &options, &report) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_reference_solve(fpu->system, 0, 3, q, p, &options, &report) == DVI_OK, "%s",
+                dvi_last_error());
   ck_assert_int_lt(report.evaluations, 1000);
   problem_destroy(&fpu);
 }
@@ -207,7 +224,8 @@ START_TEST(sparse_systems_agree_with_the_explicit_code)
   const dvi_reference_options options = option(_i, 1e-9), tight = option(DVI_ARKODE, 1e-12);
   start(fpu, q, p);
   start(fpu, explicit_q, explicit_p);
-  ck_assert_int_eq(dvi_reference_solve(fpu->system, 0, 1, explicit_q, explicit_p, &tight, NULL), DVI_OK);
+  ck_assert_int_eq(dvi_reference_solve(fpu->system, 0, 1, explicit_q, explicit_p, &tight, NULL),
+                   DVI_OK);
   ck_assert_int_eq(dvi_reference_solve(fpu->system, 0, 1, q, p, &options, NULL), DVI_OK);
   ck_assert_double_lt(distance(fpu->nq, q, explicit_q), 1e-6); /* some 1000 steps of 1e-9 each */
   problem_destroy(&fpu);
@@ -228,11 +246,16 @@ START_TEST(each_code_takes_a_lagrangian_with_time_and_without_derivatives)
 {
   const dvi_lagrangian lagrangian = {.value = damped_value};
   dvi_system *system = NULL;
-  ck_assert_int_eq(dvi_system_create(&(dvi_system_terms){.dimension = 1, .lagrangian = &lagrangian}, &system), DVI_OK);
+  ck_assert_int_eq(
+      dvi_system_create(&(dvi_system_terms){.dimension = 1, .lagrangian = &lagrangian}, &system),
+      DVI_OK);
   double q = 1, p = 1;
-  const dvi_reference_options options = option(_i, 1e-7); /* differences of differences: about 1e-8 is their floor */
-  ck_assert_msg(dvi_reference_solve(system, 0, 0.5, &q, &p, &options, NULL) == DVI_OK, "%s", dvi_last_error());
-  const double rate = sqrt(1.75), exact = exp(-0.25) * (cos(0.5 * rate) + 1.5 / rate * sin(0.5 * rate));
+  /* differences of differences: about 1e-8 is their floor */
+  const dvi_reference_options options = option(_i, 1e-7);
+  ck_assert_msg(dvi_reference_solve(system, 0, 0.5, &q, &p, &options, NULL) == DVI_OK, "%s",
+                dvi_last_error());
+  const double rate = sqrt(1.75),
+               exact = exp(-0.25) * (cos(0.5 * rate) + 1.5 / rate * sin(0.5 * rate));
   ck_assert_double_lt(fabs(q - exact), 1e-5);
   dvi_system_destroy(&system);
 }
@@ -243,11 +266,16 @@ START_TEST(the_judge_at_its_defaults_takes_a_lagrangian_without_derivatives)
   const dvi_lagrangian lagrangian = {.value = damped_value};
   dvi_system *system = NULL;
   dvi_reference_report report;
-  ck_assert_int_eq(dvi_system_create(&(dvi_system_terms){.dimension = 1, .lagrangian = &lagrangian}, &system), DVI_OK);
+  ck_assert_int_eq(
+      dvi_system_create(&(dvi_system_terms){.dimension = 1, .lagrangian = &lagrangian}, &system),
+      DVI_OK);
   double q = 1, p = 1;
-  ck_assert_msg(dvi_reference_judge(system, 0, 0.5, &q, &p, NULL, &report) == DVI_OK, "%s", dvi_last_error());
-  const double rate = sqrt(1.75), exact = exp(-0.25) * (cos(0.5 * rate) + 1.5 / rate * sin(0.5 * rate));
-  ck_assert_double_lt(fabs(q - exact), 5 * report.error + 1e-10); /* the factor of the test below, and the differences' own noise */
+  ck_assert_msg(dvi_reference_judge(system, 0, 0.5, &q, &p, NULL, &report) == DVI_OK, "%s",
+                dvi_last_error());
+  const double rate = sqrt(1.75),
+               exact = exp(-0.25) * (cos(0.5 * rate) + 1.5 / rate * sin(0.5 * rate));
+  /* the factor of the test below, and the differences' own noise */
+  ck_assert_double_lt(fabs(q - exact), 5 * report.error + 1e-10);
   ck_assert_double_lt(report.error, 1e-6);
   dvi_system_destroy(&system);
 }
@@ -255,10 +283,11 @@ END_TEST
 
 /* ---- the judge ---- */
 
-/* The claim is the distance of the two runs: an upper estimate of the second run's error where the error falls with the tolerance.
- * The codes choose steps and orders anew in each run, so a tenth of the tolerance need not halve the error (on the oscillator at
- * 1e-12: claimed 4.4e-12, true 7.2e-12): hence the factor 5. 1e-14 is for roundoff. The codes that are not the judge are worse: two
- * inaccurate runs of Adams may err alike (1e-6: claimed 1.1e-7, true 9.4e-7). */
+/* The claim is the distance of the two runs: an upper estimate of the second run's error where the
+ * error falls with the tolerance. The codes choose steps and orders anew in each run, so a tenth of
+ * the tolerance need not halve the error (on the oscillator at 1e-12: claimed 4.4e-12, true
+ * 7.2e-12): hence the factor 5. 1e-14 is for roundoff. The codes that are not the judge are worse:
+ * two inaccurate runs of Adams may err alike (1e-6: claimed 1.1e-7, true 9.4e-7). */
 START_TEST(ida_bounds_its_own_error)
 {
   const char *const names[] = {"oscillator", "kepler"};
@@ -272,7 +301,8 @@ START_TEST(ida_bounds_its_own_error)
       start(of, q, p);
       ck_assert_int_eq(dvi_reference_judge(of->system, 0, 5, q, p, &options, &report), DVI_OK);
       ck_assert_int_eq(of->exact(of, 5, exact_q, exact_p), 0);
-      ck_assert_msg(distance(of->nq, q, exact_q) <= 5 * report.error + 1e-14, "%s at %g: error %g, claimed %g", names[k], tolerance,
+      ck_assert_msg(distance(of->nq, q, exact_q) <= 5 * report.error + 1e-14,
+                    "%s at %g: error %g, claimed %g", names[k], tolerance,
                     distance(of->nq, q, exact_q), report.error);
     }
     problem_destroy(&of);
@@ -291,8 +321,10 @@ START_TEST(the_judge_is_two_runs)
   start(kepler, loose_q, loose_p);
   start(kepler, tight_q, tight_p);
   start(kepler, q, p);
-  ck_assert_int_eq(dvi_reference_solve(kepler->system, 0, 3, loose_q, loose_p, &loose, NULL), DVI_OK);
-  ck_assert_int_eq(dvi_reference_solve(kepler->system, 0, 3, tight_q, tight_p, &tight, &tight_report), DVI_OK);
+  ck_assert_int_eq(dvi_reference_solve(kepler->system, 0, 3, loose_q, loose_p, &loose, NULL),
+                   DVI_OK);
+  ck_assert_int_eq(
+      dvi_reference_solve(kepler->system, 0, 3, tight_q, tight_p, &tight, &tight_report), DVI_OK);
   ck_assert_int_eq(dvi_reference_judge(kepler->system, 0, 3, q, p, &loose, &report), DVI_OK);
   ck_assert_mem_eq(q, tight_q, sizeof q);
   ck_assert_mem_eq(p, tight_p, sizeof p);
@@ -340,7 +372,8 @@ START_TEST(left_out_options_are_ida_at_1e_12)
   start(kepler, q, p);
   start(kepler, default_q, default_p);
   ck_assert_int_eq(dvi_reference_solve(kepler->system, 0, 1, q, p, &all, NULL), DVI_OK);
-  ck_assert_int_eq(dvi_reference_solve(kepler->system, 0, 1, default_q, default_p, NULL, NULL), DVI_OK);
+  ck_assert_int_eq(dvi_reference_solve(kepler->system, 0, 1, default_q, default_p, NULL, NULL),
+                   DVI_OK);
   ck_assert_mem_eq(q, default_q, sizeof q);
   problem_destroy(&kepler);
 }
@@ -349,7 +382,8 @@ END_TEST
 START_TEST(codes_have_names_and_sundials_a_version)
 {
   const char *const names[] = {"ida", "cvode-adams", "cvode-bdf", "arkode", "ida-index-2"};
-  for (int code = 0; code <= CODES; code++) ck_assert_str_eq(dvi_reference_name((dvi_reference_code)code), names[code]);
+  for (int code = 0; code <= CODES; code++)
+    ck_assert_str_eq(dvi_reference_name((dvi_reference_code)code), names[code]);
   ck_assert_ptr_null(dvi_reference_name((dvi_reference_code)(CODES + 1)));
   const double version = strtod(dvi_reference_version(), NULL); /* major.minor */
   ck_assert_msg(version >= 6.4 && version < 8, "%s", dvi_reference_version());
@@ -366,7 +400,8 @@ START_TEST(tolerances_down_to_1e_14_work_or_are_refused_in_words)
     start(of, q, p);
     const dvi_reference_options options = option(_i, 1e-14);
     const dvi_status status = dvi_reference_judge(of->system, 0, 1, q, p, &options, NULL);
-    ck_assert(status == DVI_OK || (status == DVI_REFERENCE_FAILED && strstr(dvi_last_error(), "stopped at t = ") != NULL));
+    ck_assert(status == DVI_OK || (status == DVI_REFERENCE_FAILED &&
+                                   strstr(dvi_last_error(), "stopped at t = ") != NULL));
     worked += status == DVI_OK;
     problem_destroy(&of);
   }
@@ -385,7 +420,8 @@ SUITE(reference)
   tcase_add_test(tests, ida_has_the_right_jacobian);
   tcase_add_test(tests, bdf_has_the_right_jacobian);
   tcase_add_loop_test(tests, sparse_systems_agree_with_the_explicit_code, 0, CODES);
-  tcase_add_loop_test(tests, each_code_takes_a_lagrangian_with_time_and_without_derivatives, 0, CODES);
+  tcase_add_loop_test(tests, each_code_takes_a_lagrangian_with_time_and_without_derivatives, 0,
+                      CODES);
   tcase_add_test(tests, the_judge_at_its_defaults_takes_a_lagrangian_without_derivatives);
   tcase_add_test(tests, ida_bounds_its_own_error);
   tcase_add_loop_test(tests, the_judge_is_two_runs, 0, CODES);

@@ -1,6 +1,6 @@
 /* labels: unit slow */
-/* Functions as C against their byte code: the text is compiled by the compiler of the build, with a main function that prints all results, which must be the same
- * numbers to the last bit. */
+/* Functions as C against their byte code: the text is compiled by the compiler of the build, with a
+ * main function that prints all results, which must be the same numbers to the last bit. */
 #include <check.h>
 #include <math.h>
 #include <stdio.h>
@@ -50,9 +50,10 @@ static void make_kernel(int k, dvi__node root, int elements, int input_count)
 
 static dvi__function *make_function(int kernel_count)
 {
-  const int block_size[DVI__BLOCKS] = {1, n, n, 0};
+  const int width[DVI__BLOCKS] = {1, n, n, 0};
+  const dvi__blocks blocks = {DVI__BLOCKS, width, DVI__PAIRS, dvi__scene_pairs};
   dvi__function *function = NULL;
-  ck_assert_int_eq(dvi__function_create(kernel_count, kernel, block_size, &function), DVI_OK);
+  ck_assert_int_eq(dvi__function_create(kernel_count, kernel, &blocks, &function), DVI_OK);
   return function;
 }
 
@@ -61,7 +62,7 @@ static dvi__kernel_input from(const int *numbers, int offset)
   return (dvi__kernel_input){.block = DVI__COORDINATES, .number = numbers, .offset = offset};
 }
 
-static dvi__kernel_input along(dvi__block block, int base, int stride)
+static dvi__kernel_input along(int block, int base, int stride)
 {
   return (dvi__kernel_input){.block = block, .base = base, .stride = stride};
 }
@@ -84,8 +85,8 @@ static void teardown(void)
 
 /* --- The results of the byte code. --- */
 
-static const unsigned BLOCKS = 1U << DVI__COORDINATES | 1U << DVI__VELOCITIES;
-static const unsigned PAIRS = 1U << DVI__PAIR_QQ | 1U << DVI__PAIR_QV | 1U << DVI__PAIR_VV;
+static const char BLOCKS[DVI__BLOCKS] = {[DVI__COORDINATES] = 1, [DVI__VELOCITIES] = 1};
+static const char PAIRS[DVI__PAIRS] = {[DVI__PAIR_QQ] = 1, [DVI__PAIR_QV] = 1, [DVI__PAIR_VV] = 1};
 
 enum { KINDS = 3 }; /* value, gradient, second derivatives */
 
@@ -102,12 +103,12 @@ static void find_sizes(dvi__function *function, results *all)
 {
   memset(all, 0, sizeof *all);
   all->size[0][0] = 1;
-  for (int b = 0; b < DVI__BLOCKS; b++) all->size[1][b] = BLOCKS >> b & 1U ? n : 0;
+  for (int b = 0; b < DVI__BLOCKS; b++) all->size[1][b] = BLOCKS[b] ? n : 0;
   for (int pair = 0; pair < DVI__PAIRS; pair++) {
-    if ((PAIRS >> pair & 1U) == 0) continue;
+    if (!PAIRS[pair]) continue;
     dvi_pattern pattern;
     int full;
-    ck_assert_int_eq(dvi__function_pattern(function, (dvi__pair)pair, &pattern, &full), DVI_OK);
+    ck_assert_int_eq(dvi__function_pattern(function, pair, &pattern, &full), DVI_OK);
     all->size[2][pair] = full ? n * n : pattern.start[n];
   }
 }
@@ -150,7 +151,7 @@ static void emit_call(dvi__emitter *out, const results *all, int kind, int count
   int at = 0;
   dvi__emit(out, "  %s(%d, 0, x[0], x[1], 0", names[kind], count);
   for (int a = 0; a < DVI__PAIRS; a++) {
-    if (kind == 0 ? a == 0 : (kind == 1 ? BLOCKS : PAIRS) >> a & 1U)
+    if (kind == 0 ? a == 0 : kind == 1 ? a < DVI__BLOCKS && BLOCKS[a] : PAIRS[a])
       dvi__emit(out, all->size[kind][a] > 0 ? ", at + %d" : ", 0", at);
     at += all->size[kind][a] * count;
   }
@@ -159,12 +160,19 @@ static void emit_call(dvi__emitter *out, const results *all, int kind, int count
 
 static void emit_main(dvi__emitter *out, const results *all, const double *const *x)
 {
-  const int coordinates = dvi__emit_doubles(out, N * POINTS_MAX, x[1]), velocities = dvi__emit_doubles(out, N * POINTS_MAX, x[2]);
-  dvi__emit(out, "#include <stdio.h>\nint main(void)\n{\n  static double number[%d];\n  double *at = number;\n", all->count + 1);
-  dvi__emit(out, "  const double *const x[] = {dvi_row_%d, dvi_row_%d};\n", coordinates, velocities);
+  const int coordinates = dvi__emit_doubles(out, N * POINTS_MAX, x[1]),
+            velocities = dvi__emit_doubles(out, N * POINTS_MAX, x[2]);
+  dvi__emit(out,
+            "#include <stdio.h>\nint main(void)\n{\n  static double number[%d];\n  double *at = "
+            "number;\n",
+            all->count + 1);
+  dvi__emit(out, "  const double *const x[] = {dvi_row_%d, dvi_row_%d};\n", coordinates,
+            velocities);
   for (int i = 0; i < COUNTS; i++)
     for (int kind = 0; kind < KINDS; kind++) emit_call(out, all, kind, counts[i]);
-  dvi__emit(out, "  for (const double *y = number; y < at; y++) printf(\"%%a\\n\", *y);\n  return 0;\n}\n");
+  dvi__emit(
+      out,
+      "  for (const double *y = number; y < at; y++) printf(\"%%a\\n\", *y);\n  return 0;\n}\n");
 }
 
 static void write_program(dvi__function *function, const results *all, const double *const *x)
@@ -186,15 +194,18 @@ static void check_output(const results *all)
 {
   char command[1000];
   (void)snprintf(command, sizeof command,
-                 "%s -std=c11 -O2 -Wall -Wextra -Wconversion -Wpedantic -Wno-unknown-pragmas -Werror %s -o %s -lm && %s >%s",
-                 DVI_C_COMPILER, in_folder("emitted.c"), in_folder("emitted"), in_folder("emitted"), in_folder("numbers"));
+                 "%s -std=c11 -O2 -Wall -Wextra -Wconversion -Wpedantic -Wno-unknown-pragmas "
+                 "-Werror %s -o %s -lm && %s >%s",
+                 DVI_C_COMPILER, in_folder("emitted.c"), in_folder("emitted"), in_folder("emitted"),
+                 in_folder("numbers"));
   ck_assert_int_eq(system(command), 0); /* NOLINT(cert-env33-c): the compiler of the build */
   FILE *file = fopen(in_folder("numbers"), "r");
   ck_assert_ptr_nonnull(file);
   char line[80];
   for (int i = 0; i < all->count; i++) {
     ck_assert_ptr_nonnull(fgets(line, sizeof line, file));
-    ck_assert_msg(strtod(line, NULL) == all->number[i], "number %d of %d: %s for %a", i, all->count, line, all->number[i]);
+    ck_assert_msg(strtod(line, NULL) == all->number[i], "number %d of %d: %s for %a", i, all->count,
+                  line, all->number[i]);
   }
   (void)fclose(file);
 }
@@ -220,20 +231,28 @@ static void check_emitted(dvi__function *function, double scale)
 /* Every operation once, at points inside of all domains. */
 START_TEST(straight_lines_have_the_digits_of_the_byte_code)
 {
-  for (int i = 0; i < 4; i++) input[0][i] = along(i < 2 ? DVI__COORDINATES : DVI__VELOCITIES, 3 * i, 0);
+  for (int i = 0; i < 4; i++)
+    input[0][i] = along(i < 2 ? DVI__COORDINATES : DVI__VELOCITIES, 3 * i, 0);
   dvi__node x = apply(0, DVI__OP_SIN, variable(0, 0), 0), root = variable(0, 2);
   x = apply(0, DVI__OP_MULTIPLY, dvi__constant(&graph[0], 0.4), x); /* |x| < 1/2 */
-  const dvi__node above = sum(0, dvi__constant(&graph[0], 1.5), x), y = apply(0, DVI__OP_COS, variable(0, 3), 0);
+  const dvi__node above = sum(0, dvi__constant(&graph[0], 1.5), x),
+                  y = apply(0, DVI__OP_COS, variable(0, 3), 0);
   for (int op = DVI__OP_NEGATE; op < DVI__OP_COUNT; op++) {
-    const int from_1 = op == DVI__OP_ACOSH || op == DVI__OP_LOG || op == DVI__OP_SQRT || op == DVI__OP_RAISE || op == DVI__OP_ATAN2;
-    if (op != DVI__OP_POWER) root = sum(0, root, apply(0, (dvi__op)op, from_1 ? above : x, op == DVI__OP_DIVIDE ? above : y));
+    const int from_1 = op == DVI__OP_ACOSH || op == DVI__OP_LOG || op == DVI__OP_SQRT ||
+                       op == DVI__OP_RAISE || op == DVI__OP_ATAN2;
+    if (op != DVI__OP_POWER)
+      root = sum(0, root,
+                 apply(0, (dvi__op)op, from_1 ? above : x, op == DVI__OP_DIVIDE ? above : y));
   }
-  for (double exponent = -3.5; exponent < 8; exponent += 0.5) root = sum(0, root, dvi__power(&graph[0], above, exponent));
+  for (double exponent = -3.5; exponent < 8; exponent += 0.5)
+    root = sum(0, root, dvi__power(&graph[0], above, exponent));
   make_kernel(0, root, 1, 4);
   input[1][0] = along(DVI__COORDINATES, 0, 0);
   input[1][1] = along(DVI__VELOCITIES, 9, 0);
-  make_kernel(1, apply(1, DVI__OP_MULTIPLY, dvi__power(&graph[1], variable(1, 0), 2), apply(1, DVI__OP_EXP, variable(1, 1), 0)), 1,
-              2);
+  make_kernel(1,
+              apply(1, DVI__OP_MULTIPLY, dvi__power(&graph[1], variable(1, 0), 2),
+                    apply(1, DVI__OP_EXP, variable(1, 1), 0)),
+              1, 2);
   check_emitted(make_function(2), 1);
 }
 END_TEST
@@ -249,12 +268,14 @@ static dvi__function *attraction(int count)
     input[0][2 + i] = from(list[1], i);
   }
   input[0][4] = (dvi__kernel_input){.is_data = 1, .data = row[0]};
-  const dvi__node r2 = sum(0, dvi__power(&graph[0], difference(0, 0, 2), 2), dvi__power(&graph[0], difference(0, 1, 3), 2));
+  const dvi__node r2 = sum(0, dvi__power(&graph[0], difference(0, 0, 2), 2),
+                           dvi__power(&graph[0], difference(0, 1, 3), 2));
   make_kernel(0, apply(0, DVI__OP_DIVIDE, variable(0, 4), apply(0, DVI__OP_SQRT, r2, 0)), pairs, 5);
   return make_function(1);
 }
 
-/* 6 pairs are written out, 45 go by lists: of entries of a pattern, or of rows and columns of a full matrix. */
+/* 6 pairs are written out, 45 go by lists: of entries of a pattern, or of rows and columns of a
+ * full matrix. */
 START_TEST(pairs_have_the_digits_of_the_byte_code)
 {
   check_emitted(attraction(4), 1);
@@ -284,25 +305,31 @@ START_TEST(chains_have_the_digits_of_the_byte_code)
 {
   for (int i = 0; i < 2; i++) input[0][i] = along(DVI__COORDINATES, i, 1);
   make_kernel(0, dvi__power(&graph[0], difference(0, 1, 0), 4), 100, 2);
-  for (int i = 0; i < 4; i++) input[1][i] = along(i < 2 ? DVI__COORDINATES : DVI__VELOCITIES, i % 2, 2);
-  const dvi__node work = apply(1, DVI__OP_MULTIPLY, difference(1, 2, 3), dvi__power(&graph[1], difference(1, 0, 1), 2));
+  for (int i = 0; i < 4; i++)
+    input[1][i] = along(i < 2 ? DVI__COORDINATES : DVI__VELOCITIES, i % 2, 2);
+  const dvi__node work = apply(1, DVI__OP_MULTIPLY, difference(1, 2, 3),
+                               dvi__power(&graph[1], difference(1, 0, 1), 2));
   make_kernel(1, work, 50, 4);
   check_emitted(make_function(2), 1);
 }
 END_TEST
 
-/* One entry takes what all elements give: of the first kernel always, of the second in some units. */
+/* One entry takes what all elements give: of the first kernel always, of the second in some
+ * units. */
 START_TEST(sums_into_one_entry_have_the_digits_of_the_byte_code)
 {
   input[0][0] = along(DVI__COORDINATES, 7, 0);
   input[0][1] = along(DVI__COORDINATES, 10, 1);
   input[0][2] = (dvi__kernel_input){.is_data = 1, .data = row[1]};
-  const dvi__node sine = apply(0, DVI__OP_SIN, apply(0, DVI__OP_MULTIPLY, variable(0, 0), variable(0, 1)), 0);
+  const dvi__node sine = apply(0, DVI__OP_SIN,
+                               apply(0, DVI__OP_MULTIPLY, variable(0, 0), variable(0, 1)), 0);
   make_kernel(0, apply(0, DVI__OP_MULTIPLY, variable(0, 2), sine), 70, 3);
   for (int e = 0; e < ELEMENTS_MAX; e++) list[2][e] = e < 64 ? 5 : e * 7 % N;
   input[1][0] = from(list[2], 0);
   input[1][1] = along(DVI__VELOCITIES, 0, 1);
-  make_kernel(1, apply(1, DVI__OP_MULTIPLY, dvi__power(&graph[1], variable(1, 0), 3), variable(1, 1)), 100, 2);
+  make_kernel(1,
+              apply(1, DVI__OP_MULTIPLY, dvi__power(&graph[1], variable(1, 0), 3), variable(1, 1)),
+              100, 2);
   check_emitted(make_function(2), 1);
 }
 END_TEST

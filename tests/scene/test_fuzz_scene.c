@@ -1,6 +1,7 @@
 /* labels: invariant */
-/* Any text is a scene whose callbacks give finite numbers or say what is not finite, and which can be written as C; or a sentence that can be printed.  Texts are
- * made of the scenes of the catalogue. */
+/* Any text is a scene whose callbacks give finite numbers or say what is not finite, and which can
+ * be written as C; or a sentence that can be printed. Texts are made of the scenes of the
+ * catalogue. */
 #define _POSIX_C_SOURCE 200809L /* glob */
 #include <dvi/scene.h>
 #include <glob.h>
@@ -8,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "scene/text/utf8.h"
+#include "text/utf8.h"
 #include "support/scene/fuzz.h"
 #include "support/scene/scene_calls.h"
 #include "support/suite.h"
@@ -144,15 +145,16 @@ static unsigned kind_of(const dvi_scene *scene)
   dvi_scene_facts facts;
   dvi_scene_facts_of(scene, &facts);
   fuzz_requires(facts.form != NULL);
-  return fuzz_hash(facts.form) + 5U * (facts.mass != NULL ? fuzz_hash(facts.mass) : 0) + 17U * (unsigned)facts.kernels +
-         257U * (unsigned)(facts.hessian_operations % 64);
+  return fuzz_hash(facts.form) + 5U * (facts.mass != NULL ? fuzz_hash(facts.mass) : 0) +
+         17U * (unsigned)facts.kernels + 257U * (unsigned)(facts.hessian_operations % 64);
 }
 
 static unsigned try_scene(const dvi_scene *scene)
 {
   size_t written = 0;
   const int n = dvi_system_nq(dvi_scene_system(scene)), nv = dvi_system_nv(dvi_scene_system(scene));
-  fuzz_requires(dvi_scene_coordinate(scene, n - 1) != NULL && dvi_scene_momentum(scene, nv - 1) != NULL);
+  fuzz_requires(dvi_scene_coordinate(scene, n - 1) != NULL &&
+                dvi_scene_momentum(scene, nv - 1) != NULL);
   if (n > COORDINATES_MAX) return (unsigned)n % 16;
   char kept[32];
   (void)dvi_scene_invariance(scene, kept, sizeof kept);
@@ -166,7 +168,8 @@ static unsigned try_scene(const dvi_scene *scene)
 static unsigned one(const char *text, size_t size)
 {
   dvi_scene *scene = NULL;
-  const dvi_status status = dvi_scene_parse("s.yaml", text, size, 0, NULL, &scene, message, sizeof message);
+  const dvi_status status = dvi_scene_parse("s.yaml", text, size, 0, NULL, &scene, message,
+                                            sizeof message);
   fuzz_requires((status == DVI_OK) == (scene != NULL));
   if (status == DVI_OK) {
     const unsigned kind = try_scene(scene);

@@ -1,4 +1,5 @@
-/* Any text makes an expression whose parts are what their own source says, or a sentence that can be printed. */
+/* Any text makes an expression whose parts are what their own source says, or a sentence that can
+ * be printed. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -8,19 +9,32 @@
 #include "support/scene/scene_text.h"
 #include "support/suite.h"
 
-static const char *const corpus[] = {"M/2*x'^2 + m/2*dot(bob', bob') - m*g*bob[2]",
-                                     "sum(i<j = 1..N-1, m[i]*m[j]/norm(q[i] - q[j])) + sum(i, 0.5e-3*x[i]^2)",
-                                     "[x + l*sin(theta), [-l*cos(theta), A[1,2]]] # comment\n+ B.R'[3]",
-                                     "-2^-x^(1/2) - atan2(y, .5 + 2.)*(a - (b - c))",
-                                     "if(0 < x <= 1 or not (y != 2 and z >= -1), max(x, y), if(x == 0, 1, sin(x)/x))",
-                                     NULL};
+static const char *const corpus[] = {
+    "M/2*x'^2 + m/2*dot(bob', bob') - m*g*bob[2]",
+    "sum(i<j = 1..N-1, m[i]*m[j]/norm(q[i] - q[j])) + sum(i, 0.5e-3*x[i]^2)",
+    "[x + l*sin(theta), [-l*cos(theta), A[1,2]]] # comment\n+ B.R'[3]",
+    "-2^-x^(1/2) - atan2(y, .5 + 2.)*(a - (b - c))",
+    "if(0 < x <= 1 or not (y != 2 and z >= -1), max(x, y), if(x == 0, 1, sin(x)/x))",
+    NULL};
 
-static const char *const tokens[] = {
-    "+",    "-",     "*",  "/",  "^",    "(",        ")",           "[",  "]",   ",",        ".",
-    "..",   "'",     "<",  "=",  "sum(", "sum(i<j,", "sum(i=1..2,", "x",  "y_1", "1",        "0.5",
-    "1e3",  "1e400", "1e", "**", "|",    "# c\n",    "\n",          " ",  "\t",  "\xCE\xB8", "\xE2\x88\x92",
-    "\xC3", ":",     "f(", "x[", "x'",   "(x",       "-(",          "2^", "if(", " and ",    " or ",
-    "not ", ">",     "<=", ">=", "==",   "!=",       "if(x<0,",     NULL};
+static const char *const tokens[] = {"+",     "-",        "*",
+                                     "/",     "^",        "(",
+                                     ")",     "[",        "]",
+                                     ",",     ".",        "..",
+                                     "'",     "<",        "=",
+                                     "sum(",  "sum(i<j,", "sum(i=1..2,",
+                                     "x",     "y_1",      "1",
+                                     "0.5",   "1e3",      "1e400",
+                                     "1e",    "**",       "|",
+                                     "# c\n", "\n",       " ",
+                                     "\t",    "\xCE\xB8", "\xE2\x88\x92",
+                                     "\xC3",  ":",        "f(",
+                                     "x[",    "x'",       "(x",
+                                     "-(",    "2^",       "if(",
+                                     " and ", " or ",     "not ",
+                                     ">",     "<=",       ">=",
+                                     "==",    "!=",       "if(x<0,",
+                                     NULL};
 
 static scene_text scene;
 
@@ -28,7 +42,8 @@ static void check_name(const char *name)
 {
   fuzz_requires(name != NULL);
   fuzz_requires(strlen(name) > 0);
-  fuzz_requires(strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") == strlen(name));
+  fuzz_requires(strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") ==
+                strlen(name));
 }
 
 /* What every node of a form has. */
@@ -37,14 +52,16 @@ static void check_form(const dvi__expression *e)
   static const struct {
     int least, most;
     bool named;
-  } form[] = {
-      [DVI__FORM_NUMBER] = {0, 0, false},     [DVI__FORM_NAME] = {0, 0, true},       [DVI__FORM_INDEX] = {2, 1 << 20, false},
-      [DVI__FORM_MEMBER] = {1, 1, true},      [DVI__FORM_RATE] = {1, 1, false},      [DVI__FORM_NEGATIVE] = {1, 1, false},
-      [DVI__FORM_ADD] = {2, 2, false},        [DVI__FORM_SUBTRACT] = {2, 2, false},  [DVI__FORM_MULTIPLY] = {2, 2, false},
-      [DVI__FORM_DIVIDE] = {2, 2, false},     [DVI__FORM_POWER] = {2, 2, false},     [DVI__FORM_CALL] = {1, 1 << 20, true},
-      [DVI__FORM_LIST] = {1, 1 << 20, false}, [DVI__FORM_SUM] = {1, 3, true},        [DVI__FORM_IF] = {3, 3, false},
-      [DVI__FORM_NOT] = {1, 1, false},        [DVI__FORM_AND] = {2, 1 << 20, false}, [DVI__FORM_OR] = {2, 1 << 20, false},
-      [DVI__FORM_COMPARE] = {2, 2, false}};
+  } form[] = {[DVI__FORM_NUMBER] = {0, 0, false},      [DVI__FORM_NAME] = {0, 0, true},
+              [DVI__FORM_INDEX] = {2, 1 << 20, false}, [DVI__FORM_MEMBER] = {1, 1, true},
+              [DVI__FORM_RATE] = {1, 1, false},        [DVI__FORM_NEGATIVE] = {1, 1, false},
+              [DVI__FORM_ADD] = {2, 2, false},         [DVI__FORM_SUBTRACT] = {2, 2, false},
+              [DVI__FORM_MULTIPLY] = {2, 2, false},    [DVI__FORM_DIVIDE] = {2, 2, false},
+              [DVI__FORM_POWER] = {2, 2, false},       [DVI__FORM_CALL] = {1, 1 << 20, true},
+              [DVI__FORM_LIST] = {1, 1 << 20, false},  [DVI__FORM_SUM] = {1, 3, true},
+              [DVI__FORM_IF] = {3, 3, false},          [DVI__FORM_NOT] = {1, 1, false},
+              [DVI__FORM_AND] = {2, 1 << 20, false},   [DVI__FORM_OR] = {2, 1 << 20, false},
+              [DVI__FORM_COMPARE] = {2, 2, false}};
   fuzz_requires(e->count >= form[e->form].least);
   fuzz_requires(e->count <= form[e->form].most);
   fuzz_requires(e->form != DVI__FORM_SUM || e->count != 2);
@@ -55,7 +72,8 @@ static void check_form(const dvi__expression *e)
   if (e->name2 != NULL) check_name(e->name2);
 }
 
-/* Parts stand inside of what they are part of. Returns which forms there are, a bit for each. Chains lean to the left: only they are long. */
+/* Parts stand inside of what they are part of. Returns which forms there are, a bit for each.
+ * Chains lean to the left: only they are long. */
 static unsigned check_parts(const dvi__expression *e, int level)
 {
   fuzz_requires(level <= 5 * 64);
@@ -88,7 +106,8 @@ static void check_same(const dvi__expression *a, const dvi__expression *b)
 static void check_again(const dvi__expression *e, int levels)
 {
   const dvi__expression *again = NULL;
-  fuzz_requires(dvi__expression_parse(&scene.source, e->span, &scene.arena, &scene.complaint, &again));
+  fuzz_requires(
+      dvi__expression_parse(&scene.source, e->span, &scene.arena, &scene.complaint, &again));
   check_same(e, again);
   for (int k = 0; levels > 0 && k < e->count; k++) check_again(e->part[k], levels - 1);
 }
@@ -97,7 +116,8 @@ static unsigned one(const char *text, size_t size)
 {
   open_text(&scene, text, size);
   const dvi__expression *e = NULL;
-  const bool fine = dvi__expression_parse(&scene.source, (dvi__span){0, size}, &scene.arena, &scene.complaint, &e);
+  const bool fine = dvi__expression_parse(&scene.source, (dvi__span){0, size}, &scene.arena,
+                                          &scene.complaint, &e);
   fuzz_requires(fine == (e != NULL) && fine == (scene.complaint.status == DVI_OK));
   unsigned outcome = fuzz_hash(scene.message);
   if (fine) {

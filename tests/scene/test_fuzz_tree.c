@@ -3,15 +3,18 @@
 #include <string.h>
 
 #include "scene/text/tree.h"
-#include "scene/text/utf8.h"
+#include "text/utf8.h"
 #include "support/scene/fuzz.h"
 #include "support/scene/scene_text.h"
 #include "support/suite.h"
 
 static const char *const corpus[] = {
-    "parameters:\n  m: 0.2 # bob\ncoordinates:\n  x: scalar\n  [y, z]: vector(3)\ninitial: {x: 0, y: 1}\n",
-    "lagrangian: >- # header\n  M/2*x'^2\n    + m/2*dot(bob', bob')\n\n  - V # no comment\nnext: |2\n    a\n\n  b\n",
-    "--- # start\na: \"a +\n  b\"\nb: 'c \xCE\xB8'\n? d\n: - 1\n  - - 2\n    - {e: f, g}\n  - [h: i, \"j\" : k]\n...\n",
+    "parameters:\n  m: 0.2 # bob\ncoordinates:\n  x: scalar\n  [y, z]: vector(3)\ninitial: {x: 0, "
+    "y: 1}\n",
+    "lagrangian: >- # header\n  M/2*x'^2\n    + m/2*dot(bob', bob')\n\n  - V # no comment\nnext: "
+    "|2\n    a\n\n  b\n",
+    "--- # start\na: \"a +\n  b\"\nb: 'c \xCE\xB8'\n? d\n: - 1\n  - - 2\n    - {e: f, g}\n  - [h: "
+    "i, \"j\" : k]\n...\n",
     "a: plain text\n  over lines\n\n  and a blank one\nb:\n- c\n- d: e\n  f:\n  - g\n", NULL};
 
 static const char *const tokens[] = {"\n",
@@ -98,7 +101,8 @@ static size_t end_of(dvi__span span)
   return span.first + span.size;
 }
 
-/* The node stands inside of its parent, behind `before`. Returns how many nodes it has, itself included. */
+/* The node stands inside of its parent, behind `before`. Returns how many nodes it has, itself
+ * included. */
 static int check_node(const dvi__tree *node, size_t before, size_t end, int level)
 {
   fuzz_requires(node->span.first >= before);

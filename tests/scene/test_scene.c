@@ -1,4 +1,5 @@
-/* Scenes give the systems of the catalogue, which were written by hand: the same Lagrangians and momenta, and the same trajectories to rounding. */
+/* Scenes give the systems of the catalogue, which were written by hand: the same Lagrangians and
+ * momenta, and the same trajectories to rounding. */
 #include <dvi/dvi.h>
 #include <dvi/scene.h>
 #include <math.h>
@@ -23,14 +24,16 @@ static void release(void)
 static void open_scene(const char *text)
 {
   dvi_scene_destroy(&scene);
-  const dvi_status status = dvi_scene_parse("test.yaml", text, strlen(text), 0, NULL, &scene, message, sizeof message);
+  const dvi_status status = dvi_scene_parse("test.yaml", text, strlen(text), 0, NULL, &scene,
+                                            message, sizeof message);
   ck_assert_msg(status == DVI_OK, "%s", message);
 }
 
 static void open_both(const char *text, const char *name)
 {
   open_scene(text);
-  ck_assert_msg(problem_create(name, 0, NULL, &hand, message, sizeof message) == DVI_OK, "%s", message);
+  ck_assert_msg(problem_create(name, 0, NULL, &hand, message, sizeof message) == DVI_OK, "%s",
+                message);
   ck_assert_int_eq(dvi_system_nq(dvi_scene_system(scene)), hand->nq);
 }
 
@@ -47,8 +50,8 @@ static void general_point(double *q, double *v)
 static void same(int count, const double *a, const double *b, double roundings, const char *what)
 {
   for (int i = 0; i < count; i++)
-    ck_assert_msg(fabs(a[i] - b[i]) <= roundings * 2.3e-16 * fmax(1, fabs(b[i])), "%s %d: %.17g instead of %.17g", what, i, a[i],
-                  b[i]);
+    ck_assert_msg(fabs(a[i] - b[i]) <= roundings * 2.3e-16 * fmax(1, fabs(b[i])),
+                  "%s %d: %.17g instead of %.17g", what, i, a[i], b[i]);
 }
 
 static void starts_agree(void)
@@ -64,7 +67,8 @@ static void systems_agree(void)
 {
   double q[SIZE_MAX_OF_STATE], v[SIZE_MAX_OF_STATE], p[2][SIZE_MAX_OF_STATE], L[2];
   general_point(q, v);
-  ck_assert_int_eq(dvi_system_autonomous(dvi_scene_system(scene)), dvi_system_autonomous(hand->system));
+  ck_assert_int_eq(dvi_system_autonomous(dvi_scene_system(scene)),
+                   dvi_system_autonomous(hand->system));
   ck_assert_int_eq(dvi_system_check(dvi_scene_system(scene), 0.3, q, v, 0, NULL), DVI_OK);
   ck_assert_int_eq(dvi_system_lagrangian(dvi_scene_system(scene), 0.3, q, v, &L[0]), DVI_OK);
   ck_assert_int_eq(dvi_system_lagrangian(hand->system, 0.3, q, v, &L[1]), DVI_OK);
@@ -77,13 +81,16 @@ static void systems_agree(void)
 static dvi_integrator *started(const dvi_system *system, const char *method)
 {
   dvi_integrator *integrator;
-  ck_assert_msg(dvi_integrator_create(system, method, &integrator) == DVI_OK, "%s", dvi_last_error());
-  ck_assert_msg(dvi_integrator_start(integrator, 0, hand->q, hand->p) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_integrator_create(system, method, &integrator) == DVI_OK, "%s",
+                dvi_last_error());
+  ck_assert_msg(dvi_integrator_start(integrator, 0, hand->q, hand->p) == DVI_OK, "%s",
+                dvi_last_error());
   return integrator;
 }
 
 /* Both take each step from the same point: what differs is the step alone. */
-static void step_agrees(dvi_integrator *mine, dvi_integrator *theirs, double t, double h, double *q, double *p)
+static void step_agrees(dvi_integrator *mine, dvi_integrator *theirs, double t, double h, double *q,
+                        double *p)
 {
   ck_assert_int_eq(dvi_integrator_start(mine, t, q, p), DVI_OK);
   ck_assert_int_eq(dvi_integrator_start(theirs, t, q, p), DVI_OK);
@@ -98,7 +105,8 @@ static void step_agrees(dvi_integrator *mine, dvi_integrator *theirs, double t, 
 static void steps_agree(const char *method, double h)
 {
   double q[SIZE_MAX_OF_STATE], p[SIZE_MAX_OF_STATE];
-  dvi_integrator *mine = started(dvi_scene_system(scene), method), *theirs = started(hand->system, method);
+  dvi_integrator *mine = started(dvi_scene_system(scene), method),
+                 *theirs = started(hand->system, method);
   memcpy(q, hand->q, (size_t)hand->nq * sizeof *q);
   memcpy(p, hand->p, (size_t)hand->nv * sizeof *p);
   for (int k = 0; k < STEPS; k++) step_agrees(mine, theirs, k * h, h, q, p);
@@ -143,7 +151,8 @@ START_TEST(invariants_are_those_of_the_catalogue)
   general_point(q, p);
   ck_assert_int_eq(dvi_system_invariant_count(dvi_scene_system(scene)), 4);
   for (int i = 0; i < 4; i++)
-    ck_assert_str_eq(dvi_system_invariant_name(dvi_scene_system(scene), i), dvi_system_invariant_name(hand->system, i));
+    ck_assert_str_eq(dvi_system_invariant_name(dvi_scene_system(scene), i),
+                     dvi_system_invariant_name(hand->system, i));
   ck_assert_int_eq(dvi_system_invariants(dvi_scene_system(scene), 0, q, p, mine), DVI_OK);
   ck_assert_int_eq(dvi_system_invariants(hand->system, 0, q, p, theirs), DVI_OK);
   same(4, mine, theirs, 10, "invariant");
@@ -165,7 +174,8 @@ START_TEST(verlet_asks_for_one_gradient_a_step_and_nothing_else)
 }
 END_TEST
 
-/* Neither are there multipliers where nothing is constrained, nor second derivatives where nothing is solved. */
+/* Neither are there multipliers where nothing is constrained, nor second derivatives where nothing
+ * is solved. */
 START_TEST(explicit_methods_derive_nothing_twice_and_have_no_multiplier)
 {
   static const char *const method[] = {"verlet", "composition:order=4,base=verlet"};
@@ -176,7 +186,8 @@ START_TEST(explicit_methods_derive_nothing_twice_and_have_no_multiplier)
     dvi_integrator *integrator = started(dvi_scene_system(scene), method[k]);
     for (int i = 0; i < STEPS; i++) ck_assert_int_eq(dvi_integrator_step(integrator, 0.05), DVI_OK);
     dvi_integrator_counters(integrator, &counters);
-    ck_assert_int_eq(counters.residuals + counters.jacobians + counters.factorizations + counters.symbolic, 0);
+    ck_assert_int_eq(
+        counters.residuals + counters.jacobians + counters.factorizations + counters.symbolic, 0);
     ck_assert_ptr_null(dvi_integrator_multiplier(integrator));
     dvi_integrator_destroy(&integrator);
   }
@@ -194,7 +205,8 @@ START_TEST(the_energy_is_evaluated_where_it_is_asked_for)
     dvi_integrator *integrator = started(dvi_scene_system(scene), method[k]);
     const long before = facts()->value_points;
     for (int i = 0; i < STEPS; i++) ck_assert_int_eq(dvi_integrator_step(integrator, 0.05), DVI_OK);
-    for (int i = 1; i < 4; i++) ck_assert_int_eq(dvi_integrator_invariant(integrator, i, &one), DVI_OK);
+    for (int i = 1; i < 4; i++)
+      ck_assert_int_eq(dvi_integrator_invariant(integrator, i, &one), DVI_OK);
     ck_assert_int_eq(facts()->value_points, before);
     ck_assert_int_eq(dvi_integrator_invariant(integrator, 0, &one), DVI_OK);
     ck_assert_int_eq(facts()->value_points, before + 1);
@@ -207,7 +219,8 @@ END_TEST
 
 START_TEST(pendulum_is_that_of_the_catalogue)
 {
-  open_both("coordinates: {q: scalar}\nlagrangian: q'^2/2 - cos(q)\ninitial: {q: 2.5}\n" RUN, "pendulum");
+  open_both("coordinates: {q: scalar}\nlagrangian: q'^2/2 - cos(q)\ninitial: {q: 2.5}\n" RUN,
+            "pendulum");
   systems_agree();
   steps_agree("midpoint", 0.1);
 }
@@ -215,14 +228,16 @@ END_TEST
 
 START_TEST(fpu_is_that_of_the_catalogue)
 {
-  open_both("parameters: {ell: 3, omega: 50}\n"
-            "coordinates:\n  x0[ell]: scalar\n  x1[ell]: scalar\n"
-            "kinetic: (sum(i, x0[i]'^2) + sum(i, x1[i]'^2))/2\n"
-            "potentials:\n"
-            "  slow: ((x0[1] - x1[1])^4 + sum(i=1..ell-1, (x0[i+1] - x1[i+1] - x0[i] - x1[i])^4) + (x0[ell] + x1[ell])^4)/4\n"
-            "  fast: omega^2/2*sum(i, x1[i]^2)\n"
-            "initial:\n  x0: [1, 0, 0]\n  x1[i]: 0\n  x1[1]: 1/omega\n  x0[1]': 1\n  x1[1]': 1\n" RUN,
-            "fpu");
+  open_both(
+      "parameters: {ell: 3, omega: 50}\n"
+      "coordinates:\n  x0[ell]: scalar\n  x1[ell]: scalar\n"
+      "kinetic: (sum(i, x0[i]'^2) + sum(i, x1[i]'^2))/2\n"
+      "potentials:\n"
+      "  slow: ((x0[1] - x1[1])^4 + sum(i=1..ell-1, (x0[i+1] - x1[i+1] - x0[i] - x1[i])^4) + "
+      "(x0[ell] + x1[ell])^4)/4\n"
+      "  fast: omega^2/2*sum(i, x1[i]^2)\n"
+      "initial:\n  x0: [1, 0, 0]\n  x1[i]: 0\n  x1[1]: 1/omega\n  x0[1]': 1\n  x1[1]': 1\n" RUN,
+      "fpu");
   starts_agree();
   systems_agree();
   steps_agree("verlet", 0.005);
@@ -242,14 +257,17 @@ START_TEST(one_member_may_stand_beside_a_formula_that_is_no_number_there)
 {
   const double *q, *v, *p, expected[] = {5, 1, 1, 2, 3, 4.5};
   open_scene("coordinates: {\"x[3]\": scalar}\nlagrangian: sum(i, x[i]'^2/2)\n"
-             "initial: {\"x[1]\": 5, \"x[i]\": \"(i - 1)/(i - 1)\", \"x[1]'\": 2, \"x[i]'\": \"3/2*i*(i - 1)/(i - 1)\"}\n" RUN);
+             "initial: {\"x[1]\": 5, \"x[i]\": \"(i - 1)/(i - 1)\", \"x[1]'\": 2, \"x[i]'\": "
+             "\"3/2*i*(i - 1)/(i - 1)\"}\n" RUN);
   dvi_scene_start(scene, &q, &v, &p);
   same(3, q, expected, 1, "q");
   same(3, v, expected + 3, 1, "v");
 }
 END_TEST
 
-#define CHAIN "coordinates: {x: scalar, y: scalar}\nkinetic: (x'^2 + y'^2)/2\ninitial: {x: 1, y: 0.5}\n" RUN "potentials:\n"
+#define CHAIN                                                                                    \
+  "coordinates: {x: scalar, y: scalar}\nkinetic: (x'^2 + y'^2)/2\ninitial: {x: 1, y: 0.5}\n" RUN \
+  "potentials:\n"
 
 /* Which are fast, and which have constant second derivatives, in the order of the file. */
 static void check_speeds(const char *text, int count, const int *fast, const int *quadratic)
@@ -265,12 +283,16 @@ static void check_speeds(const char *text, int count, const int *fast, const int
 
 START_TEST(potentials_are_fast_as_they_are_tagged)
 {
-  static const int of_groups[] = {1, 1, 0, 0}, quadratic[] = {1, 0, 1, 1}, moved[] = {1, 1, 0}, one[] = {0, 1}, neither[] = {0, 0};
-  check_speeds(CHAIN "  fast: {bond: 50*(x - y)^2, bend: (x - y)^2*x}\n  slow: {weight: x + y}\n  well: 3*x*y - y^2/2 + t^3\n", 4,
-               of_groups, quadratic);
+  static const int of_groups[] = {1, 1, 0, 0}, quadratic[] = {1, 0, 1, 1}, moved[] = {1, 1, 0},
+                   one[] = {0, 1}, neither[] = {0, 0};
+  check_speeds(CHAIN "  fast: {bond: 50*(x - y)^2, bend: (x - y)^2*x}\n  slow: {weight: x + y}\n  "
+                     "well: 3*x*y - y^2/2 + t^3\n",
+               4, of_groups, quadratic);
   check_speeds(CHAIN "  slow: x^4\n  fast: t*x^2\n", 2, one, neither);
-  check_speeds(CHAIN "  fast: {drive: 50*(x - y)^2 - x*sin(t) + t^2, weight: 3*y*t}\n  slow: {tide: x^2*cos(t)}\n", 3, of_groups,
-               moved);
+  check_speeds(
+      CHAIN
+      "  fast: {drive: 50*(x - y)^2 - x*sin(t) + t^2, weight: 3*y*t}\n  slow: {tide: x^2*cos(t)}\n",
+      3, of_groups, moved);
   check_speeds(CHAIN "  bond: sqrt(x)^2\n  bend: cos(y)\n", 2, neither, neither);
 }
 END_TEST
@@ -288,9 +310,11 @@ START_TEST(tags_do_not_change_what_other_methods_do)
       dvi_integrator *integrator;
       open_scene(text[k]);
       dvi_scene_start(scene, &q, &v, &p);
-      ck_assert_int_eq(dvi_integrator_create(dvi_scene_system(scene), method[m], &integrator), DVI_OK);
+      ck_assert_int_eq(dvi_integrator_create(dvi_scene_system(scene), method[m], &integrator),
+                       DVI_OK);
       ck_assert_int_eq(dvi_integrator_start(integrator, 0, q, p), DVI_OK);
-      for (int i = 0; i < 10; i++) ck_assert_msg(dvi_integrator_step(integrator, 0.02) == DVI_OK, "%s", dvi_last_error());
+      for (int i = 0; i < 10; i++)
+        ck_assert_msg(dvi_integrator_step(integrator, 0.02) == DVI_OK, "%s", dvi_last_error());
       memcpy(end[k], dvi_integrator_q(integrator), sizeof end[k]);
       dvi_integrator_destroy(&integrator);
     }
@@ -306,47 +330,56 @@ START_TEST(imex_factorises_a_quadratic_fast_potential_once_a_run)
   dvi_counters counters;
   dvi_integrator *integrator;
   open_scene(CHAIN "  fast: {bond: 50*(x - y)^2}\n  slow: {well: x^4/4}\n");
-  ck_assert_msg(dvi_integrator_create(dvi_scene_system(scene), "imex", &integrator) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_integrator_create(dvi_scene_system(scene), "imex", &integrator) == DVI_OK, "%s",
+                dvi_last_error());
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, state, momenta), DVI_OK);
   for (int k = 0; k < STEPS; k++) ck_assert_int_eq(dvi_integrator_step(integrator, 0.1), DVI_OK);
   dvi_integrator_counters(integrator, &counters);
   ck_assert_int_eq(counters.factorizations, 1);
   ck_assert_int_eq(counters.hessians, 1);
   ck_assert_int_eq(counters.solves, STEPS);
-  ck_assert_int_eq(counters.jacobians + counters.residuals + counters.newtons + counters.fixed_points, 0);
+  ck_assert_int_eq(
+      counters.jacobians + counters.residuals + counters.newtons + counters.fixed_points, 0);
   dvi_integrator_destroy(&integrator);
 }
 END_TEST
 
-/* Derivatives that are right are not called wrong: of terms that cancel, and of a power that bends within the differences' steps. */
+/* Derivatives that are right are not called wrong: of terms that cancel, and of a power that bends
+ * within the differences' steps. */
 START_TEST(right_derivatives_are_found_right)
 {
-  static const char *const right[] = {"(x*x')^2/x^2", "x'^2/2 + x^100*x' - x^100", "x'^2/2 + (x^100)'^2/2"};
+  static const char *const right[] = {"(x*x')^2/x^2", "x'^2/2 + x^100*x' - x^100",
+                                      "x'^2/2 + (x^100)'^2/2"};
   const double q = 1.3, v = 0.5;
   char text[256];
   for (int k = 0; k < 3; k++) {
-    (void)snprintf(text, sizeof text, "coordinates: {x: scalar}\nlagrangian: %s\ninitial: {x: 1}\n" RUN, right[k]);
+    (void)snprintf(text, sizeof text,
+                   "coordinates: {x: scalar}\nlagrangian: %s\ninitial: {x: 1}\n" RUN, right[k]);
     open_scene(text);
-    ck_assert_msg(dvi_system_check(dvi_scene_system(scene), 0, &q, &v, 0, NULL) == DVI_OK, "%s: %s", right[k], dvi_last_error());
+    ck_assert_msg(dvi_system_check(dvi_scene_system(scene), 0, &q, &v, 0, NULL) == DVI_OK, "%s: %s",
+                  right[k], dvi_last_error());
   }
 }
 END_TEST
 
 START_TEST(outer_solar_is_that_of_the_catalogue)
 {
-  open_both("parameters:\n"
-            "  G: 2.95912208286e-4\n"
-            "  m: [0.000954786104043, 0.000285583733151, 0.0000437273164546, 0.0000517759138449, 1/1.3e8, 1.00000597682]\n"
-            "coordinates: {\"q[6]\": vector(3)}\n"
-            "lagrangian: sum(i, m[i]/2*dot(q[i]', q[i]')) + G*sum(i<j, m[i]*m[j]/norm(q[i] - q[j]))\n"
-            "initial:\n  q:\n"
-            "    - [-3.5023653, -3.8169847, -1.5507963]\n    - [9.0755314, -3.0458353, -1.6483708] # saturn\n"
-            "    - [8.3101420, -16.2901086, -7.2521278]\n    - [11.4707666, -25.7294829, -10.8169456]\n"
-            "    - [-15.5387357, -25.2225594, -3.1902382]\n    - [0, 0, 0]\n"
-            "  q': [[0.00565429, -0.00412490, -0.00190589], [0.00168318, 0.00483525, 0.00192462],\n"
-            "       [0.00354178, 0.00137102, 0.00055029], [0.00288930, 0.00114527, 0.00039677],\n"
-            "       [0.00276725, -0.00170702, -0.00136504], [0, 0, 0]]\n" RUN,
-            "outer-solar");
+  open_both(
+      "parameters:\n"
+      "  G: 2.95912208286e-4\n"
+      "  m: [0.000954786104043, 0.000285583733151, 0.0000437273164546, 0.0000517759138449, "
+      "1/1.3e8, 1.00000597682]\n"
+      "coordinates: {\"q[6]\": vector(3)}\n"
+      "lagrangian: sum(i, m[i]/2*dot(q[i]', q[i]')) + G*sum(i<j, m[i]*m[j]/norm(q[i] - q[j]))\n"
+      "initial:\n  q:\n"
+      "    - [-3.5023653, -3.8169847, -1.5507963]\n    - [9.0755314, -3.0458353, -1.6483708] # "
+      "saturn\n"
+      "    - [8.3101420, -16.2901086, -7.2521278]\n    - [11.4707666, -25.7294829, -10.8169456]\n"
+      "    - [-15.5387357, -25.2225594, -3.1902382]\n    - [0, 0, 0]\n"
+      "  q': [[0.00565429, -0.00412490, -0.00190589], [0.00168318, 0.00483525, 0.00192462],\n"
+      "       [0.00354178, 0.00137102, 0.00055029], [0.00288930, 0.00114527, 0.00039677],\n"
+      "       [0.00276725, -0.00170702, -0.00136504], [0, 0, 0]]\n" RUN,
+      "outer-solar");
   starts_agree();
   systems_agree();
   steps_agree("verlet", 100);
@@ -364,7 +397,8 @@ START_TEST(double_pendulum_is_that_of_the_catalogue)
             "definitions:\n"
             "  upper: [l1*sin(theta_1), -l1*cos(theta_1)]\n"
             "  lower: upper + [l2*sin(theta_2), -l2*cos(theta_2)]\n"
-            "lagrangian: m1/2*dot(upper', upper') + m2/2*dot(lower', lower') - m1*g*upper[2] - m2*g*lower[2]\n"
+            "lagrangian: m1/2*dot(upper', upper') + m2/2*dot(lower', lower') - m1*g*upper[2] - "
+            "m2*g*lower[2]\n"
             "initial: {theta_1: pi/4, theta_2: pi/2, theta_2': pi/8}\n" RUN,
             "double-pendulum");
   starts_agree();
@@ -401,14 +435,17 @@ END_TEST
 
 START_TEST(lotka_volterra_is_that_of_the_catalogue_in_both_spellings)
 {
-  static const char *const spelling[] = {"one_form:\n  prey: predators + log(predators)/prey\n  predators: prey\n"
-                                         "hamiltonian: prey + predators - log(prey) - 2*log(predators)\n",
-                                         "lagrangian: (predators + log(predators)/prey)*prey' + prey*predators'\n"
-                                         "  - (prey + predators - log(prey) - 2*log(predators))\n"};
+  static const char *const spelling[] = {
+      "one_form:\n  prey: predators + log(predators)/prey\n  predators: prey\n"
+      "hamiltonian: prey + predators - log(prey) - 2*log(predators)\n",
+      "lagrangian: (predators + log(predators)/prey)*prey' + prey*predators'\n"
+      "  - (prey + predators - log(prey) - 2*log(predators))\n"};
   for (int k = 0; k < 2; k++) {
     char text[512];
-    (void)snprintf(text, sizeof text, "coordinates:\n  [prey, predators]: scalar\n%sinitial: {prey: 1, predators: 1}\n" RUN,
-                   spelling[k]);
+    (void)snprintf(
+        text, sizeof text,
+        "coordinates:\n  [prey, predators]: scalar\n%sinitial: {prey: 1, predators: 1}\n" RUN,
+        spelling[k]);
     release();
     open_both(text, "lotka-volterra");
     starts_agree();

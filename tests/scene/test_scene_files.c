@@ -46,11 +46,13 @@ static void remove_files(void)
   remove_folder();
 }
 
-static dvi_status read_scene(const char *scene_path, const char *method, dvi_scene **scene, char *message)
+static dvi_status read_scene(const char *scene_path, const char *method, dvi_scene **scene,
+                             char *message)
 {
   char text[1024];
   (void)snprintf(text, sizeof text,
-                 "coordinates: {x: scalar}\nlagrangian: x'^2/2 - x^2/2\ninitial: {x: 1}\nmethod: %s\nstep: 0.1\nuntil: 2\n",
+                 "coordinates: {x: scalar}\nlagrangian: x'^2/2 - x^2/2\ninitial: {x: 1}\nmethod: "
+                 "%s\nstep: 0.1\nuntil: 2\n",
                  method);
   write_file(scene_path, text);
   return dvi_scene_read(in_folder(scene_path), 0, NULL, scene, message, MESSAGE_SIZE);
@@ -73,8 +75,9 @@ START_TEST(a_file_in_the_folder_or_below_is_found_from_anywhere)
   dvi_integrator *integrator;
   (void)snprintf(method, sizeof method, "shooting:tableau=%s,quadrature=trapezoid", good[_i].file);
   ck_assert_msg(read_scene(good[_i].scene, method, &scene, message) == DVI_OK, "%s", message);
-  ck_assert_msg(dvi_integrator_create(dvi_scene_system(scene), dvi_scene_plan_of(scene)->method, &integrator) == DVI_OK, "%s",
-                dvi_last_error());
+  ck_assert_msg(dvi_integrator_create(dvi_scene_system(scene), dvi_scene_plan_of(scene)->method,
+                                      &integrator) == DVI_OK,
+                "%s", dvi_last_error());
   ck_assert_int_eq(dvi_integrator_order(integrator), 2);
   dvi_integrator_destroy(&integrator);
   dvi_scene_destroy(&scene);
@@ -87,15 +90,22 @@ static const struct {
     {"scenes/s.yaml", "shooting:tableau=/etc/passwd",
      ":4:9: the file '/etc/passwd' is named from the root; name it from the scene's folder\n"},
     {"scenes/s.yaml", "shooting:tableau=passwd",
-     ":4:9: the file 'passwd' is not in the scene's folder or below; put it there, or give --method\n"},
-    {"scenes/s.yaml", "shooting:tableau=../outside.tableau", "is not in the scene's folder or below"},
+     ":4:9: the file 'passwd' is not in the scene's folder or below; put it there, or give "
+     "--method\n"},
+    {"scenes/s.yaml", "shooting:tableau=../outside.tableau",
+     "is not in the scene's folder or below"},
     {"scenes/s.yaml", "shooting:tableau=link.tableau", "is not in the scene's folder or below"},
-    {"scenes/s.yaml", "shooting:tableau=up/outside.tableau", "is not in the scene's folder or below"},
-    {"scenes/s.yaml", "shooting:tableau=../scenes-beside/ralston.tableau", "is not in the scene's folder or below"},
-    {"by-link/s.yaml", "shooting:tableau=../outside.tableau", "is not in the scene's folder or below"},
+    {"scenes/s.yaml", "shooting:tableau=up/outside.tableau",
+     "is not in the scene's folder or below"},
+    {"scenes/s.yaml", "shooting:tableau=../scenes-beside/ralston.tableau",
+     "is not in the scene's folder or below"},
+    {"by-link/s.yaml", "shooting:tableau=../outside.tableau",
+     "is not in the scene's folder or below"},
     {"scenes/s.yaml", "shooting:tableau=.", "is not in the scene's folder or below"},
-    {"scenes/s.yaml", "shooting:onestep=file,type=1,tableau=link.tableau", "is not in the scene's folder or below"},
-    {"scenes/s.yaml", "composition:order=4,tableau=passwd", "is not in the scene's folder or below"},
+    {"scenes/s.yaml", "shooting:onestep=file,type=1,tableau=link.tableau",
+     "is not in the scene's folder or below"},
+    {"scenes/s.yaml", "composition:order=4,tableau=passwd",
+     "is not in the scene's folder or below"},
     {"scenes/s.yaml", "shooting:tableau=none.tableau", "cannot be read: No such file or directory"},
 };
 enum { BAD = sizeof bad / sizeof *bad };
@@ -115,24 +125,31 @@ START_TEST(a_folder_with_a_comma_is_refused)
   dvi_scene *scene;
   ck_assert_int_eq(mkdir(in_folder("with,comma"), 0700), 0);
   write_file("with,comma/ralston.tableau", "order 1\na\nb 1\n");
-  ck_assert_int_eq(read_scene("with,comma/s.yaml", "shooting:tableau=ralston.tableau", &scene, message), DVI_BAD_FILE);
-  ck_assert_msg(strstr(message, "from a folder with a comma; rename the folder") != NULL, "%s", message);
+  ck_assert_int_eq(
+      read_scene("with,comma/s.yaml", "shooting:tableau=ralston.tableau", &scene, message),
+      DVI_BAD_FILE);
+  ck_assert_msg(strstr(message, "from a folder with a comma; rename the folder") != NULL, "%s",
+                message);
 }
 END_TEST
 
 /* Of a text the name says in which folder it is. */
 START_TEST(a_text_has_the_folder_of_its_name)
 {
-  static const char text[] = "coordinates: {x: scalar}\nlagrangian: x'^2/2\ninitial: {x: 1}\nmethod: "
-                             "shooting:tableau=ralston.tableau\nstep: 1\nuntil: 2\n";
+  static const char text[] =
+      "coordinates: {x: scalar}\nlagrangian: x'^2/2\ninitial: {x: 1}\nmethod: "
+      "shooting:tableau=ralston.tableau\nstep: 1\nuntil: 2\n";
   char message[MESSAGE_SIZE], method[512];
   dvi_scene *scene;
-  ck_assert_int_eq(dvi_scene_parse(in_folder("scenes/none.yaml"), text, strlen(text), 0, NULL, &scene, message, MESSAGE_SIZE),
+  ck_assert_int_eq(dvi_scene_parse(in_folder("scenes/none.yaml"), text, strlen(text), 0, NULL,
+                                   &scene, message, MESSAGE_SIZE),
                    DVI_OK);
   (void)snprintf(method, sizeof method, "shooting:tableau=%s", in_folder("scenes/ralston.tableau"));
   ck_assert_str_eq(dvi_scene_plan_of(scene)->method, method);
   dvi_scene_destroy(&scene);
-  ck_assert_int_eq(dvi_scene_parse("none.yaml", text, strlen(text), 0, NULL, &scene, message, MESSAGE_SIZE), DVI_BAD_FILE);
+  ck_assert_int_eq(
+      dvi_scene_parse("none.yaml", text, strlen(text), 0, NULL, &scene, message, MESSAGE_SIZE),
+      DVI_BAD_FILE);
 }
 END_TEST
 
@@ -142,10 +159,17 @@ START_TEST(other_keys_name_no_file)
   size_t length = 7;
   ck_assert_ptr_null(dvi_method_file(NULL, &length));
   ck_assert_uint_eq(length, 0);
-  static const char *const none[] = {
-      "",          "shooting",          "vprk:tableau=gauss",           "galerkin:tableau=x", "nothing:tableau=x",
-      "shooting:", "shooting:tableau=", "shooting:tableau,onestep=rk4", ":tableau=x"};
-  for (size_t k = 0; k < sizeof none / sizeof *none; k++) ck_assert_msg(dvi_method_file(none[k], &length) == NULL, "%s", none[k]);
+  static const char *const none[] = {"",
+                                     "shooting",
+                                     "vprk:tableau=gauss",
+                                     "galerkin:tableau=x",
+                                     "nothing:tableau=x",
+                                     "shooting:",
+                                     "shooting:tableau=",
+                                     "shooting:tableau,onestep=rk4",
+                                     ":tableau=x"};
+  for (size_t k = 0; k < sizeof none / sizeof *none; k++)
+    ck_assert_msg(dvi_method_file(none[k], &length) == NULL, "%s", none[k]);
   const char *specification = "shooting:quadrature=simpson,tableau=a/b=c:d,type=1";
   ck_assert_ptr_eq(dvi_method_file(specification, &length), strstr(specification, "a/b"));
   ck_assert_uint_eq(length, strlen("a/b=c:d"));

@@ -1,4 +1,5 @@
-/* Translations and rotations that are found on a scene's expressions, and those that are nearly there and are not. */
+/* Translations and rotations that are found on a scene's expressions, and those that are nearly
+ * there and are not. */
 #include <dvi/scene.h>
 #include <string.h>
 
@@ -6,7 +7,9 @@
 
 #define RUN "method: verlet\nstep: 0.1\nuntil: 1\n"
 #define PLANE "coordinates: {x: scalar, y: scalar}\ninitial: {x: 1, y: 0.5}\n" RUN
-#define BODIES "parameters: {m: [1, 2, 3]}\ncoordinates: {'q[3]': vector(3)}\ninitial: {'q[i]': '[i, i^2, 1/i]'}\n" RUN
+#define BODIES                                                                                 \
+  "parameters: {m: [1, 2, 3]}\ncoordinates: {'q[3]': vector(3)}\ninitial: {'q[i]': '[i, i^2, " \
+  "1/i]'}\n" RUN
 #define TWO "coordinates: {a: vector(2), b: vector(2)}\ninitial: {a: '[1, 0]', b: '[0, 2]'}\n" RUN
 
 #define MOVES "translation of q along x, translation of q along y, translation of q along z, "
@@ -19,23 +22,31 @@ static const struct {
     {PLANE "lagrangian: (x'^2 + y'^2)/2 + 1/sqrt(x^2 + 1.0000000000000002*y^2)", ""},
     {PLANE "lagrangian: (x'^2 + y'^2)/2 + exp(x - y)", "translation of x and y"},
     {PLANE "lagrangian: (x'^2 + y'^2)/2 + exp(x - 2*y)", ""},
-    {PLANE "lagrangian: (x'^2 + 2*y'^2)/2 + 1/sqrt(x^2 + y^2)", ""}, /* the kinetic energy does not turn */
+    /* the kinetic energy does not turn */
+    {PLANE "lagrangian: (x'^2 + 2*y'^2)/2 + 1/sqrt(x^2 + y^2)", ""},
     {PLANE "lagrangian: (1 + y^2)*x'^2/2 + y'^2/2 - t*y", "translation of x"},
     {PLANE "one_form: {x: y + y^3, y: 0}\nhamiltonian: y^4", "translation of x"},
     {PLANE "one_form: {x: y, y: -x}\nhamiltonian: hypot(x, y)", "rotation of x and y"},
-    {BODIES "lagrangian: sum(i, m[i]/2*dot(q[i]', q[i]')) + sum(i<j, m[i]*m[j]/norm(q[i] - q[j])^3)", MOVES TURNS},
-    {BODIES "lagrangian: sum(i, m[i]/2*dot(q[i]', q[i]')) + sum(i, q[i][3]) + cos(dot(q[1], q[2]))", "rotation of q about z"},
+    {BODIES
+     "lagrangian: sum(i, m[i]/2*dot(q[i]', q[i]')) + sum(i<j, m[i]*m[j]/norm(q[i] - q[j])^3)",
+     MOVES TURNS},
+    {BODIES "lagrangian: sum(i, m[i]/2*dot(q[i]', q[i]')) + sum(i, q[i][3]) + cos(dot(q[1], q[2]))",
+     "rotation of q about z"},
     {BODIES "lagrangian: sum(i, m[i]/2*dot(q[i]', q[i]')) + dot(cross(q[1], q[2]), q[3])", TURNS},
     {TWO "lagrangian: (dot(a', a') + dot(b', b'))/2 - norm(a - b)",
      "translation of a and b along x, translation of a and b along y, rotation of a and b"},
-    {TWO "lagrangian: (dot(a', a') + dot(b', b'))/2 - norm(a) - b[1]", "rotation of a, translation of b along y"},
-    {"coordinates: {x: scalar, y: scalar}\nhamiltonian: (p(x)^2 + p(y)^2)/2\nconstraints: {on: (x^2 + y^2 - 1)/2, along: x*p(x) + "
+    {TWO "lagrangian: (dot(a', a') + dot(b', b'))/2 - norm(a) - b[1]",
+     "rotation of a, translation of b along y"},
+    {"coordinates: {x: scalar, y: scalar}\nhamiltonian: (p(x)^2 + p(y)^2)/2\nconstraints: {on: "
+     "(x^2 + y^2 - 1)/2, along: x*p(x) + "
      "y*p(y)}\ninitial: {x: 0.8, y: 0.6, p(x): 0.6, p(y): -0.8}\n" RUN,
      "rotation of x and y"},
-    {"coordinates: {'x[5]': scalar}\nlagrangian: sum(i, x[i]'^2/2) - sum(i=1..4, cosh(x[i+1] - x[i]))\ninitial: {'x[i]': i}\n" RUN,
+    {"coordinates: {'x[5]': scalar}\nlagrangian: sum(i, x[i]'^2/2) - sum(i=1..4, cosh(x[i+1] - "
+     "x[i]))\ninitial: {'x[i]': i}\n" RUN,
      "translation of x"},
     /* No element is kept, but all are together. */
-    {"coordinates: {'x[3]': scalar}\nlagrangian: sum(i, x[i]'^2/2) + sum(i, (i - 2)*x[i])\ninitial: {'x[i]': i}\n" RUN,
+    {"coordinates: {'x[3]': scalar}\nlagrangian: sum(i, x[i]'^2/2) + sum(i, (i - "
+     "2)*x[i])\ninitial: {'x[i]': i}\n" RUN,
      "translation of x"},
 };
 enum { KNOWN = sizeof known / sizeof *known, SIZE = 512 };
@@ -44,7 +55,9 @@ static dvi_scene *made(const char *text)
 {
   char message[SIZE];
   dvi_scene *scene;
-  ck_assert_msg(dvi_scene_parse("s.yaml", text, strlen(text), 0, NULL, &scene, message, SIZE) == DVI_OK, "%s", message);
+  ck_assert_msg(dvi_scene_parse("s.yaml", text, strlen(text), 0, NULL, &scene, message, SIZE) ==
+                    DVI_OK,
+                "%s", message);
   return scene;
 }
 
@@ -63,7 +76,8 @@ END_TEST
 START_TEST(what_turns_is_not_looked_at)
 {
   char found[SIZE];
-  dvi_scene *turns = made("coordinates: {R: rotation}\nlagrangian: dot(omega(R), omega(R))/2\ninitial: {R: 'turn([0, 0, 1], 0)'}\n"
+  dvi_scene *turns = made("coordinates: {R: rotation}\nlagrangian: dot(omega(R), "
+                          "omega(R))/2\ninitial: {R: 'turn([0, 0, 1], 0)'}\n"
                           "method: lie-verlet\nstep: 0.1\nuntil: 1\n");
   ck_assert_int_eq(dvi_scene_invariance(turns, found, SIZE), -1);
   ck_assert_int_eq(dvi_scene_invariance(turns, NULL, 0), -1);

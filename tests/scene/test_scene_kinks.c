@@ -19,12 +19,18 @@ static void follow(const char *potential, int steps, double *end)
   char text[512], message[512];
   dvi_scene *scene = NULL;
   dvi_integrator *integrator = NULL;
-  (void)snprintf(text, sizeof text, "coordinates: {x: scalar}\nlagrangian: x'^2/2 - (%s)\ninitial: {x: 0.7}\nstep: 0.1\nuntil: 1\n",
+  (void)snprintf(text, sizeof text,
+                 "coordinates: {x: scalar}\nlagrangian: x'^2/2 - (%s)\ninitial: {x: 0.7}\nstep: "
+                 "0.1\nuntil: 1\n",
                  potential);
-  ck_assert_msg(dvi_scene_parse("k.yaml", text, strlen(text), 0, NULL, &scene, message, sizeof message) == DVI_OK, "%s", message);
-  ck_assert_int_eq(dvi_integrator_create(dvi_scene_system(scene), "galerkin:degree=2", &integrator), DVI_OK);
+  ck_assert_msg(dvi_scene_parse("k.yaml", text, strlen(text), 0, NULL, &scene, message,
+                                sizeof message) == DVI_OK,
+                "%s", message);
+  ck_assert_int_eq(dvi_integrator_create(dvi_scene_system(scene), "galerkin:degree=2", &integrator),
+                   DVI_OK);
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, &x_start, &(double){0}), DVI_OK);
-  ck_assert_int_eq(dvi_run(integrator, &(dvi_run_options){.h = t_end / steps, .t_end = t_end}, NULL), DVI_OK);
+  ck_assert_int_eq(
+      dvi_run(integrator, &(dvi_run_options){.h = t_end / steps, .t_end = t_end}, NULL), DVI_OK);
   end[0] = dvi_integrator_q(integrator)[0];
   end[1] = dvi_integrator_p(integrator)[0];
   dvi_integrator_destroy(&integrator);
@@ -48,9 +54,11 @@ static double largest_error(const char *potential, int steps, const double *exac
  * mean of three. */
 static void check_order(const char *potential, const double *exact, double order)
 {
-  const double first = largest_error(potential, 100, exact), last = largest_error(potential, 100 << (LEVELS - 1), exact);
+  const double first = largest_error(potential, 100, exact),
+               last = largest_error(potential, 100 << (LEVELS - 1), exact);
   const double slope = log2(first / last) / (LEVELS - 1);
-  ck_assert_msg(fabs(slope - order) < 0.4, "%s: slope %.2f instead of %g, from %.1e to %.1e", potential, slope, order, first, last);
+  ck_assert_msg(fabs(slope - order) < 0.4, "%s: slope %.2f instead of %g, from %.1e to %.1e",
+                potential, slope, order, first, last);
 }
 
 /* Parabolas, to and fro. */
@@ -67,7 +75,8 @@ START_TEST(a_kink_of_the_force_leaves_order_2)
 {
   const double pi = 3.14159265358979323846, s = fmod(t_end, 1.5 * pi);
   ck_assert(s < pi / 4); /* on the side of the start at the end, after two periods */
-  check_order("x^2/2 + 3/2*max(x, 0)^2", (double[]){x_start * cos(2 * s), -2 * x_start * sin(2 * s)}, 2);
+  check_order("x^2/2 + 3/2*max(x, 0)^2",
+              (double[]){x_start * cos(2 * s), -2 * x_start * sin(2 * s)}, 2);
 }
 END_TEST
 

@@ -11,11 +11,12 @@
 
 enum { TEXT_SIZE = 65536, MESSAGE_SIZE = 1024 };
 
-static const char cart[] = "parameters: {m: 0.2, M: 1, l: 0.5, g: 9.81}\n"
-                           "coordinates: {x: scalar, theta: scalar}\n"
-                           "definitions:\n  bob: [x + l*sin(theta), -l*cos(theta)]\n"
-                           "lagrangian: M/2*x'^2 + m/2*dot(bob', bob') - m*g*bob[2]\n"
-                           "initial: {x: 0.125, theta: 1.5e-1}\nmethod: galerkin:degree=2\nstep: 0.02\nuntil: 20.5\n";
+static const char cart[] =
+    "parameters: {m: 0.2, M: 1, l: 0.5, g: 9.81}\n"
+    "coordinates: {x: scalar, theta: scalar}\n"
+    "definitions:\n  bob: [x + l*sin(theta), -l*cos(theta)]\n"
+    "lagrangian: M/2*x'^2 + m/2*dot(bob', bob') - m*g*bob[2]\n"
+    "initial: {x: 0.125, theta: 1.5e-1}\nmethod: galerkin:degree=2\nstep: 0.02\nuntil: 20.5\n";
 
 /* A text that grows. */
 typedef struct collected {
@@ -34,7 +35,8 @@ static int collect(const char *text, size_t size, void *user)
 
 static dvi_status parse(const char *text, const char *setting, dvi_scene **scene, char *message)
 {
-  return dvi_scene_parse("s.yaml", text, strlen(text), setting != NULL, &setting, scene, message, MESSAGE_SIZE);
+  return dvi_scene_parse("s.yaml", text, strlen(text), setting != NULL, &setting, scene, message,
+                         MESSAGE_SIZE);
 }
 
 static void emit(const char *setting, collected *all)
@@ -83,8 +85,8 @@ END_TEST
 
 START_TEST(what_is_not_finite_is_told_the_same)
 {
-  static const char text[] =
-      "coordinates: {x: scalar}\nlagrangian: x'^2/2 - 1/(x - 0.5)\ninitial: {x: 0.5}\nstep: 0.25\nuntil: 1\n";
+  static const char text[] = "coordinates: {x: scalar}\nlagrangian: x'^2/2 - 1/(x - 0.5)\ninitial: "
+                             "{x: 0.5}\nstep: 0.25\nuntil: 1\n";
   const double q = 0.5;
   double p = 0;
   dvi_scene *scene;

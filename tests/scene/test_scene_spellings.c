@@ -1,4 +1,5 @@
-/* What can be said in two ways is the same: sums and the terms that they stand for, vectors and their numbers, definitions and what they say. */
+/* What can be said in two ways is the same: sums and the terms that they stand for, vectors and
+ * their numbers, definitions and what they say. */
 #include <dvi/dvi.h>
 #include <dvi/scene.h>
 #include <math.h>
@@ -17,40 +18,48 @@ static void release(void)
   for (int k = 0; k < 2; k++) dvi_scene_destroy(&scene[k]);
 }
 
-/* Coordinates x, y, the vector u of 3 and the family z_1 .. z_3; a mass for all, so that every spelling moves. */
+/* Coordinates x, y, the vector u of 3 and the family z_1 .. z_3; a mass for all, so that every
+ * spelling moves. */
 static void open_spelling(int k, const char *definitions, const char *L)
 {
   char text[TEXT_SIZE];
-  (void)snprintf(text, sizeof text,
-                 "parameters: {n: 3, m: [2, 3, 5], A: [[1, 2, 3], [4, 5, 6], [7, 8, 9]], pair: [3, 1, 2]}\n"
-                 "coordinates:\n  [x, y]: scalar\n  u: vector(3)\n  z[n]: scalar\n%s"
-                 "lagrangian: (x'^2 + y'^2 + dot(u', u') + sum(i, z[i]'^2))/2 + (%s)\n"
-                 "initial: {x: 1, y: 1, u: [1, 0, 0], z: [1, 2, 3]}\nstep: 0.1\nuntil: 1\n",
-                 definitions, L);
-  const dvi_status status = dvi_scene_parse("test.yaml", text, strlen(text), 0, NULL, &scene[k], message, sizeof message);
+  (void)snprintf(
+      text, sizeof text,
+      "parameters: {n: 3, m: [2, 3, 5], A: [[1, 2, 3], [4, 5, 6], [7, 8, 9]], pair: [3, 1, 2]}\n"
+      "coordinates:\n  [x, y]: scalar\n  u: vector(3)\n  z[n]: scalar\n%s"
+      "lagrangian: (x'^2 + y'^2 + dot(u', u') + sum(i, z[i]'^2))/2 + (%s)\n"
+      "initial: {x: 1, y: 1, u: [1, 0, 0], z: [1, 2, 3]}\nstep: 0.1\nuntil: 1\n",
+      definitions, L);
+  const dvi_status status = dvi_scene_parse("test.yaml", text, strlen(text), 0, NULL, &scene[k],
+                                            message, sizeof message);
   ck_assert_msg(status == DVI_OK, "%s", message);
 }
 
 static double value(int k, double t, const double *q, const double *v, double *p)
 {
   double L;
-  ck_assert_msg(dvi_system_lagrangian(dvi_scene_system(scene[k]), t, q, v, &L) == DVI_OK, "%s", dvi_scene_blame());
+  ck_assert_msg(dvi_system_lagrangian(dvi_scene_system(scene[k]), t, q, v, &L) == DVI_OK, "%s",
+                dvi_scene_fault());
   ck_assert_int_eq(dvi_system_momentum(dvi_scene_system(scene[k]), t, q, v, p), DVI_OK);
   return L;
 }
 
 static void same_with(const char *definitions, const char *a, const char *b)
 {
-  static const double q[N] = {0.7, 0.4, 1.1, -0.6, 0.9, 0.3, 0.8, 1.3}, v[N] = {0.2, -0.5, 0.4, 0.6, -0.3, 0.1, 0.9, -0.7};
+  static const double q[N] = {0.7, 0.4, 1.1, -0.6, 0.9, 0.3, 0.8, 1.3},
+                      v[N] = {0.2, -0.5, 0.4, 0.6, -0.3, 0.1, 0.9, -0.7};
   double p[2][N];
   release();
   open_spelling(0, definitions, a);
   open_spelling(1, "", b);
   const double L[2] = {value(0, 0.4, q, v, p[0]), value(1, 0.4, q, v, p[1])};
-  ck_assert_msg(fabs(L[0] - L[1]) <= 1e-13 * fmax(1, fabs(L[1])), "%s: %.17g, %s: %.17g", a, L[0], b, L[1]);
-  for (int i = 0; i < N; i++) ck_assert_msg(fabs(p[0][i] - p[1][i]) <= 1e-13 * fmax(1, fabs(p[1][i])), "%s: p %d", a, i);
+  ck_assert_msg(fabs(L[0] - L[1]) <= 1e-13 * fmax(1, fabs(L[1])), "%s: %.17g, %s: %.17g", a, L[0],
+                b, L[1]);
+  for (int i = 0; i < N; i++)
+    ck_assert_msg(fabs(p[0][i] - p[1][i]) <= 1e-13 * fmax(1, fabs(p[1][i])), "%s: p %d", a, i);
   for (int k = 0; k < 2; k++)
-    ck_assert_msg(dvi_system_check(dvi_scene_system(scene[k]), 0.4, q, v, 0, NULL) == DVI_OK, "%s", dvi_last_error());
+    ck_assert_msg(dvi_system_check(dvi_scene_system(scene[k]), 0.4, q, v, 0, NULL) == DVI_OK, "%s",
+                  dvi_last_error());
 }
 
 static void same(const char *a, const char *b)
@@ -63,11 +72,13 @@ START_TEST(sums_are_their_terms)
   same("sum(i, m[i]*z[i]^2)", "2*z[1]^2 + 3*z[2]^2 + 5*z[3]^2");
   same("sum(i=2..n, i*z[i]*z[i-1])", "2*z[2]*z[1] + 3*z[3]*z[2]");
   same("sum(i=3..2, z[i])", "0");
-  same("sum(i<j, m[i]*m[j]*(z[i] - z[j])^4)", "6*(z[1] - z[2])^4 + 10*(z[1] - z[3])^4 + 15*(z[2] - z[3])^4");
+  same("sum(i<j, m[i]*m[j]*(z[i] - z[j])^4)",
+       "6*(z[1] - z[2])^4 + 10*(z[1] - z[3])^4 + 15*(z[2] - z[3])^4");
   same("sum(i<j=2..n, z[i]*z[j])", "z[2]*z[3]");
   same("sum(i, z[pair[i]]*z[i])", "z[3]*z[1] + z[1]*z[2] + z[2]*z[3]");
   same("sum(i, sum(j, A[i,j]*z[i]*sin(z[j])))",
-       "z[1]*(sin(z[1]) + 2*sin(z[2]) + 3*sin(z[3])) + z[2]*(4*sin(z[1]) + 5*sin(z[2]) + 6*sin(z[3]))"
+       "z[1]*(sin(z[1]) + 2*sin(z[2]) + 3*sin(z[3])) + z[2]*(4*sin(z[1]) + 5*sin(z[2]) + "
+       "6*sin(z[3]))"
        " + z[3]*(7*sin(z[1]) + 8*sin(z[2]) + 9*sin(z[3]))");
   same("sum(i=1..n, sum(j=1..i, z[i]*cos(z[j])))",
        "z[1]*cos(z[1]) + z[2]*(cos(z[1]) + cos(z[2])) + z[3]*(cos(z[1]) + cos(z[2]) + cos(z[3]))");
@@ -77,10 +88,12 @@ END_TEST
 START_TEST(sums_inside_of_something_are_their_terms)
 {
   same("sqrt(sum(i, z[i]^2))", "sqrt(z[1]^2 + z[2]^2 + z[3]^2)");
-  same("sum(i=1..n, sin(sum(j=1..i, z[j])))", "sin(z[1]) + sin(z[1] + z[2]) + sin(z[1] + z[2] + z[3])");
+  same("sum(i=1..n, sin(sum(j=1..i, z[j])))",
+       "sin(z[1]) + sin(z[1] + z[2]) + sin(z[1] + z[2] + z[3])");
   same("x*sum(i, z[i])", "x*z[1] + x*z[2] + x*z[3]");
   same("sum(i, z[i])*sum(j, z[j])", "(z[1] + z[2] + z[3])^2");
-  same("norm(sum(i, [z[i], m[i]*z[i]]))", "sqrt((z[1] + z[2] + z[3])^2 + (2*z[1] + 3*z[2] + 5*z[3])^2)");
+  same("norm(sum(i, [z[i], m[i]*z[i]]))",
+       "sqrt((z[1] + z[2] + z[3])^2 + (2*z[1] + 3*z[2] + 5*z[3])^2)");
   same("sum(i=1..n, u[i]*z[i])", "dot(u, [z[1], z[2], z[3]])");
 }
 END_TEST
@@ -90,14 +103,16 @@ START_TEST(factors_of_sums_are_kept)
   same("-2*sum(i, z[i]^2)/4", "-(z[1]^2 + z[2]^2 + z[3]^2)/2");
   same("x - (y - sum(i, z[i]^2))*3", "x - 3*y + 3*(z[1]^2 + z[2]^2 + z[3]^2)");
   same("cos(t)*sum(i, z[i])", "cos(t)*z[1] + cos(t)*z[2] + cos(t)*z[3]");
-  same_with("definitions: {V: 'sum(i, z[i]^3)', W: 2*V + x}\n", "V - W", "-(z[1]^3 + z[2]^3 + z[3]^3) - x");
+  same_with("definitions: {V: 'sum(i, z[i]^3)', W: 2*V + x}\n", "V - W",
+            "-(z[1]^3 + z[2]^3 + z[3]^3) - x");
 }
 END_TEST
 
 START_TEST(vectors_and_matrices_are_their_numbers)
 {
   same("dot(u, [1, x, y])", "u[1] + u[2]*x + u[3]*y");
-  same("dot(cross(u, [1, 2, 3]), [x, y, 1])", "(u[2]*3 - u[3]*2)*x + (u[3] - 3*u[1])*y + (2*u[1] - u[2])");
+  same("dot(cross(u, [1, 2, 3]), [x, y, 1])",
+       "(u[2]*3 - u[3]*2)*x + (u[3] - 3*u[1])*y + (2*u[1] - u[2])");
   same("cross([x, y], [u[1], u[2]])", "x*u[2] - y*u[1]");
   same("norm(u - [x, y, 0])", "sqrt((u[1] - x)^2 + (u[2] - y)^2 + u[3]^2)");
   same("dot(u, A*u)", "dot(transpose(A)*u, u)");

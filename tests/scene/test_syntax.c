@@ -13,7 +13,8 @@ static const dvi__expression *expression_of_bytes(const char *text, size_t size)
   close_text(&scene);
   open_text(&scene, text, size);
   const dvi__expression *expression = NULL;
-  const bool fine = dvi__expression_parse(&scene.source, (dvi__span){0, size}, &scene.arena, &scene.complaint, &expression);
+  const bool fine = dvi__expression_parse(&scene.source, (dvi__span){0, size}, &scene.arena,
+                                          &scene.complaint, &expression);
   ck_assert(fine == (expression != NULL));
   ck_assert(fine == (scene.complaint.status == DVI_OK));
   return expression;
@@ -29,8 +30,9 @@ static const dvi__expression *expression_of(const char *text)
 /* An expression in Lisp's manner, which says what is part of what. */
 static void put_expression(const dvi__expression *e, FILE *to)
 {
-  static const char *const head[] = {"",  "",     "index", "member", "'",  "-",       "+",   "-",   "*", "/",
-                                     "^", "call", "list",  "sum",    "if", "compare", "not", "and", "or"};
+  static const char *const head[] = {"",   "",        "index", "member", "'",    "-",    "+",
+                                     "-",  "*",       "/",     "^",      "call", "list", "sum",
+                                     "if", "compare", "not",   "and",    "or"};
   if (e->form == DVI__FORM_NUMBER)
     fprintf(to, "%.17g", e->number);
   else if (e->form == DVI__FORM_NAME)
@@ -130,7 +132,8 @@ START_TEST(numbers_are_right_to_the_last_bit)
 {
   ck_assert(expression_of("0.1")->number == 0x1.999999999999ap-4);
   ck_assert(expression_of("9007199254740993")->number == 0x1p53); /* a tie: to even */
-  ck_assert(expression_of("9007199254740993.00000000000000000000001")->number == 0x1.0000000000001p53);
+  ck_assert(expression_of("9007199254740993.00000000000000000000001")->number ==
+            0x1.0000000000001p53);
   ck_assert(expression_of("2.2250738585072011e-308")->number == 0x0.fffffffffffffp-1022);
   ck_assert(expression_of("1.7976931348623157e308")->number == 0x1.fffffffffffffp1023);
   ck_assert(expression_of("1e-400")->number == 0.0);
@@ -153,39 +156,54 @@ START_TEST(a_part_of_the_source_is_all_that_is_read)
 {
   open_text(&scene, "x: a + bc", 9);
   const dvi__expression *expression = NULL;
-  ck_assert(dvi__expression_parse(&scene.source, (dvi__span){3, 5}, &scene.arena, &scene.complaint, &expression));
+  ck_assert(dvi__expression_parse(&scene.source, (dvi__span){3, 5}, &scene.arena, &scene.complaint,
+                                  &expression));
   check_span(&scene, expression->part[1]->span, "b");
-  ck_assert(!dvi__expression_parse(&scene.source, (dvi__span){3, 3}, &scene.arena, &scene.complaint, &expression));
+  ck_assert(!dvi__expression_parse(&scene.source, (dvi__span){3, 3}, &scene.arena, &scene.complaint,
+                                   &expression));
   check_complaint(&scene, DVI_BAD_FILE,
-                  "s.yaml:1:7: found the end where a number, a name or a bracket is expected\n  x: a + bc\n        ^");
+                  "s.yaml:1:7: found the end where a number, a name or a bracket is expected\n  x: "
+                  "a + bc\n        ^");
 }
 END_TEST
 
 START_TEST(usual_slips_get_a_remedy)
 {
-  check_refused("2x", "s.yaml:1:2: an operator is missing here; write 2*x for a product\n  2x\n   ^");
-  check_refused("2e", "s.yaml:1:2: an operator is missing here; write 2*e for a product\n  2e\n   ^");
-  check_refused("2(x)", "s.yaml:1:2: an operator is missing here; write 2*(..) for a product\n  2(x)\n   ^");
-  check_refused("sin x",
-                "s.yaml:1:5: an operator is missing here; write sin*x for a product, sin(x) for a function\n  sin x\n      ^");
+  check_refused("2x",
+                "s.yaml:1:2: an operator is missing here; write 2*x for a product\n  2x\n   ^");
+  check_refused("2e",
+                "s.yaml:1:2: an operator is missing here; write 2*e for a product\n  2e\n   ^");
+  check_refused(
+      "2(x)", "s.yaml:1:2: an operator is missing here; write 2*(..) for a product\n  2(x)\n   ^");
+  check_refused("sin x", "s.yaml:1:5: an operator is missing here; write sin*x for a product, "
+                         "sin(x) for a function\n  sin x\n      ^");
   check_refused("x**2", "s.yaml:1:2: powers are written x^2, not x**2\n  x**2\n   ^~");
-  check_refused("x''", "s.yaml:1:3: there are no second rates x'': expressions have positions and velocities\n  x''\n    ^");
-  check_refused("|x|", "s.yaml:1:1: '|' has no meaning in expressions; write abs(x) of a number, norm(a) of a vector\n  |x|\n  ^");
-  check_refused("sum(i=1:N, x)", "s.yaml:1:8: ':' has no meaning in expressions; a range is a..b\n  sum(i=1:N, x)\n         ^");
-  check_refused("\xCE\xB8", "s.yaml:1:1: '\xCE\xB8' has no meaning in expressions; write theta\n  \xCE\xB8\n  ^");
-  check_refused("a \xE2\x88\x92 b", "s.yaml:1:3: '\xE2\x88\x92' has no meaning in expressions; write -\n  a \xE2\x88\x92 b\n    ^");
-  check_refused("\xC3\xA9",
-                "s.yaml:1:1: '\xC3\xA9' has no meaning in expressions; names are made of the letters a-z and A-Z, digits and _\n"
-                "  \xC3\xA9\n  ^");
-  check_refused("1e400", "s.yaml:1:1: this number is too large; numbers end at 1.8e308\n  1e400\n  ^~~~~");
-  check_refused("sum(i<i, x)", "s.yaml:1:7: the two indices of a pair need two names\n  sum(i<i, x)\n        ^");
+  check_refused("x''", "s.yaml:1:3: there are no second rates x'': expressions have positions and "
+                       "velocities\n  x''\n    ^");
+  check_refused("|x|", "s.yaml:1:1: '|' has no meaning in expressions; write abs(x) of a number, "
+                       "norm(a) of a vector\n  |x|\n  ^");
+  check_refused("sum(i=1:N, x)", "s.yaml:1:8: ':' has no meaning in expressions; a range is a..b\n "
+                                 " sum(i=1:N, x)\n         ^");
+  check_refused(
+      "\xCE\xB8",
+      "s.yaml:1:1: '\xCE\xB8' has no meaning in expressions; write theta\n  \xCE\xB8\n  ^");
+  check_refused("a \xE2\x88\x92 b", "s.yaml:1:3: '\xE2\x88\x92' has no meaning in expressions; "
+                                    "write -\n  a \xE2\x88\x92 b\n    ^");
+  check_refused("\xC3\xA9", "s.yaml:1:1: '\xC3\xA9' has no meaning in expressions; names are made "
+                            "of the letters a-z and A-Z, digits and _\n"
+                            "  \xC3\xA9\n  ^");
+  check_refused("1e400",
+                "s.yaml:1:1: this number is too large; numbers end at 1.8e308\n  1e400\n  ^~~~~");
+  check_refused("sum(i<i, x)",
+                "s.yaml:1:7: the two indices of a pair need two names\n  sum(i<i, x)\n        ^");
 }
 END_TEST
 
 START_TEST(brackets_are_told_where_they_open)
 {
   check_refused("a*(b + c", "s.yaml:1:3: this '(' is never closed\n  a*(b + c\n    ^");
-  check_refused("sin(f[1)", "s.yaml:1:8: found ')' where ',' or ']' is expected\n  sin(f[1)\n         ^");
+  check_refused("sin(f[1)",
+                "s.yaml:1:8: found ')' where ',' or ']' is expected\n  sin(f[1)\n         ^");
   check_refused("(a))", "s.yaml:1:4: this ')' closes nothing\n  (a))\n     ^");
   check_refused("[1, 2", "s.yaml:1:1: this '[' is never closed\n  [1, 2\n  ^");
   check_refused("sum(i, x", "s.yaml:1:4: this '(' is never closed\n  sum(i, x\n     ^");
@@ -197,10 +215,12 @@ START_TEST(conditions_bind_not_before_and_before_or)
   check_means("if(x < 0, a, b)", "(if (compare < x 0) a b)");
   check_means("if(x<=y+1 or not p==q and r!=2, a, b)",
               "(if (or (compare <= x (+ y 1)) (and (not (compare == p q)) (compare != r 2))) a b)");
-  check_means("if(0 < x <= 1 > y, a, b)", "(if (and (compare < 0 x) (compare <= x 1) (compare > 1 y)) a b)");
+  check_means("if(0 < x <= 1 > y, a, b)",
+              "(if (and (compare < 0 x) (compare <= x 1) (compare > 1 y)) a b)");
   check_means("if((x < 0 or y >= 0) and (z + 1)*2 > 3, a, b)",
               "(if (and (or (compare < x 0) (compare >= y 0)) (compare > (* (+ z 1) 2) 3)) a b)");
-  check_means("if(not not x < 1, max(a, b), order)", "(if (not (not (compare < x 1))) (call max a b) order)");
+  check_means("if(not not x < 1, max(a, b), order)",
+              "(if (not (not (compare < x 1))) (call max a b) order)");
   check_means("(not x > 1)", "(not (compare > x 1))");
   check_means("notx + android", "(+ notx android)");
 }
@@ -208,13 +228,19 @@ END_TEST
 
 START_TEST(conditions_end_where_they_must)
 {
-  check_refused("if(x < 0, a)", "s.yaml:1:12: found ')' where ',' is expected\n  if(x < 0, a)\n             ^");
-  check_refused("if(x = 0, a, b)", "s.yaml:1:6: equality is written ==\n  if(x = 0, a, b)\n       ^");
-  check_refused("if(x <, a, b)",
-                "s.yaml:1:7: found ',' where a number, a name or a bracket is expected\n  if(x <, a, b)\n        ^");
-  check_refused("2 - not x", "s.yaml:1:5: found 'not' where a number, a name or a bracket is expected\n  2 - not x\n      ^~~");
-  check_refused("x and", "s.yaml:1:6: found the end where a number, a name or a bracket is expected\n  x and\n       ^");
-  check_refused("if(x & y, a, b)", "s.yaml:1:6: '&' has no meaning in expressions; write and\n  if(x & y, a, b)\n       ^");
+  check_refused("if(x < 0, a)",
+                "s.yaml:1:12: found ')' where ',' is expected\n  if(x < 0, a)\n             ^");
+  check_refused("if(x = 0, a, b)",
+                "s.yaml:1:6: equality is written ==\n  if(x = 0, a, b)\n       ^");
+  check_refused("if(x <, a, b)", "s.yaml:1:7: found ',' where a number, a name or a bracket is "
+                                 "expected\n  if(x <, a, b)\n        ^");
+  check_refused("2 - not x", "s.yaml:1:5: found 'not' where a number, a name or a bracket is "
+                             "expected\n  2 - not x\n      ^~~");
+  check_refused("x and", "s.yaml:1:6: found the end where a number, a name or a bracket is "
+                         "expected\n  x and\n       ^");
+  check_refused(
+      "if(x & y, a, b)",
+      "s.yaml:1:6: '&' has no meaning in expressions; write and\n  if(x & y, a, b)\n       ^");
 }
 END_TEST
 
@@ -222,13 +248,21 @@ START_TEST(what_was_found_and_what_was_expected_is_told)
 {
   check_refused("", "s.yaml:1:1: an expression is missing here");
   check_refused("# a", "s.yaml:1:1: an expression is missing here\n  # a\n  ^");
-  check_refused("a + # b", "s.yaml:1:4: found the end where a number, a name or a bracket is expected\n  a + # b\n     ^");
-  check_refused("a + * b", "s.yaml:1:5: found '*' where a number, a name or a bracket is expected\n  a + * b\n      ^");
-  check_refused("f()", "s.yaml:1:3: found ')' where a number, a name or a bracket is expected\n  f()\n    ^");
-  check_refused("a = b", "s.yaml:1:3: found '=' where an operator or the end is expected\n  a = b\n    ^");
-  check_refused("sum(2, x)", "s.yaml:1:5: found '2' where a name is expected\n  sum(2, x)\n      ^");
-  check_refused("sum(i=1, x)", "s.yaml:1:8: found ',' where '..' is expected\n  sum(i=1, x)\n         ^");
-  check_refused("sum(i)", "s.yaml:1:6: found ')' where ',', '=' or '<' is expected\n  sum(i)\n       ^");
+  check_refused("a + # b", "s.yaml:1:4: found the end where a number, a name or a bracket is "
+                           "expected\n  a + # b\n     ^");
+  check_refused(
+      "a + * b",
+      "s.yaml:1:5: found '*' where a number, a name or a bracket is expected\n  a + * b\n      ^");
+  check_refused(
+      "f()", "s.yaml:1:3: found ')' where a number, a name or a bracket is expected\n  f()\n    ^");
+  check_refused("a = b",
+                "s.yaml:1:3: found '=' where an operator or the end is expected\n  a = b\n    ^");
+  check_refused("sum(2, x)",
+                "s.yaml:1:5: found '2' where a name is expected\n  sum(2, x)\n      ^");
+  check_refused("sum(i=1, x)",
+                "s.yaml:1:8: found ',' where '..' is expected\n  sum(i=1, x)\n         ^");
+  check_refused("sum(i)",
+                "s.yaml:1:6: found ')' where ',', '=' or '<' is expected\n  sum(i)\n       ^");
   check_refused("B.", "s.yaml:1:3: found the end where a name is expected\n  B.\n    ^");
 }
 END_TEST
@@ -246,13 +280,15 @@ static const dvi__expression *repeated(size_t count, const char *begin, const ch
 
 START_TEST(nesting_ends_at_64_levels)
 {
-  static const char *const pair[][2] = {{"(", ")"}, {"f(", ")"}, {"[", "]"},  {"x[", "]"},    {"-", ""},
-                                        {"2^", ""}, {"", ".a"},  {"", "[1]"}, {"sum(i,", ")"}};
+  static const char *const pair[][2] = {{"(", ")"},  {"f(", ")"}, {"[", "]"},
+                                        {"x[", "]"}, {"-", ""},   {"2^", ""},
+                                        {"", ".a"},  {"", "[1]"}, {"sum(i,", ")"}};
   for (size_t k = 0; k < sizeof pair / sizeof *pair; k++) {
     ck_assert_msg(repeated(64, pair[k][0], pair[k][1]) != NULL, "%s", scene.message);
     ck_assert_ptr_null(repeated(65, pair[k][0], pair[k][1]));
     ck_assert_int_eq(scene.complaint.status, DVI_BAD_SIZE);
-    ck_assert_ptr_nonnull(strstr(scene.message, "more than 64 levels of nesting; name a part of it in definitions"));
+    ck_assert_ptr_nonnull(
+        strstr(scene.message, "more than 64 levels of nesting; name a part of it in definitions"));
     ck_assert_ptr_null(repeated(100000, pair[k][0], pair[k][1]));
   }
 }
@@ -278,7 +314,8 @@ START_TEST(missing_memory_is_told)
     open_text(&scene, text, sizeof text - 1);
     limit_memory(&scene, room);
     const dvi__expression *expression = NULL;
-    fine = dvi__expression_parse(&scene.source, (dvi__span){0, sizeof text - 1}, &scene.arena, &scene.complaint, &expression);
+    fine = dvi__expression_parse(&scene.source, (dvi__span){0, sizeof text - 1}, &scene.arena,
+                                 &scene.complaint, &expression);
     if (!fine) check_complaint(&scene, DVI_NO_MEMORY, "s.yaml: memory ran out");
     ck_assert_uint_lt(room, 8192);
   }

@@ -33,7 +33,8 @@ static void check_refused(const char *text, const char *message)
 }
 
 /* The scalar of a key has this value, and stands at these characters of the source. */
-static void check_scalar(const dvi__tree *mapping, const char *key, const char *value, const char *characters)
+static void check_scalar(const dvi__tree *mapping, const char *key, const char *value,
+                         const char *characters)
 {
   const dvi__tree *found = dvi__tree_find(mapping, key);
   ck_assert_ptr_nonnull(found);
@@ -79,11 +80,12 @@ END_TEST
 
 START_TEST(blocks_begin_after_the_line_of_their_header)
 {
-  const dvi__tree *root = tree_of("literal: |\n  a +\n    b\n\n"
-                                  "folded: >- # a comment of the header\n\n  a +\n  b # no comment\n\n\n"
-                                  "indented: |2\n     a\n# outside\n"
-                                  "none: |\n"
-                                  "last: |+\n  z\n\n");
+  const dvi__tree *root = tree_of(
+      "literal: |\n  a +\n    b\n\n"
+      "folded: >- # a comment of the header\n\n  a +\n  b # no comment\n\n\n"
+      "indented: |2\n     a\n# outside\n"
+      "none: |\n"
+      "last: |+\n  z\n\n");
   check_scalar(root, "literal", "a +\n  b\n", "a +\n    b");
   check_scalar(root, "folded", "\na + b # no comment", "a +\n  b # no comment");
   check_scalar(root, "indented", "   a\n", "a");
@@ -96,8 +98,10 @@ END_TEST
 /* libyaml counts characters. */
 START_TEST(spans_count_bytes_behind_letters_of_several)
 {
-  const dvi__tree *root = tree_of("title: \xCE\xB8 \xE2\x88\x91 \xF0\x9D\x84\x9E\r\na: [\"\xC3\xA9\", x]\r\nb: y\n");
-  check_scalar(root, "title", "\xCE\xB8 \xE2\x88\x91 \xF0\x9D\x84\x9E", "\xCE\xB8 \xE2\x88\x91 \xF0\x9D\x84\x9E");
+  const dvi__tree *root = tree_of(
+      "title: \xCE\xB8 \xE2\x88\x91 \xF0\x9D\x84\x9E\r\na: [\"\xC3\xA9\", x]\r\nb: y\n");
+  check_scalar(root, "title", "\xCE\xB8 \xE2\x88\x91 \xF0\x9D\x84\x9E",
+               "\xCE\xB8 \xE2\x88\x91 \xF0\x9D\x84\x9E");
   check_scalar(root, "b", "y", "y");
   check_span(&scene, dvi__tree_find(root, "a")->child[0]->span, "\xC3\xA9");
 }
@@ -105,7 +109,8 @@ END_TEST
 
 START_TEST(spans_of_collections_end_with_what_they_hold)
 {
-  const dvi__tree *root = tree_of("a: [x, {b: c}] # flow\nb:\n  c: 1\n  d: 'e'\n  # comment\nf:\n- g\n- |\n  h\n\ni: 1\n");
+  const dvi__tree *root = tree_of(
+      "a: [x, {b: c}] # flow\nb:\n  c: 1\n  d: 'e'\n  # comment\nf:\n- g\n- |\n  h\n\ni: 1\n");
   check_span(&scene, dvi__tree_find(root, "a")->span, "[x, {b: c}]");
   check_span(&scene, dvi__tree_find(root, "a")->child[1]->span, "{b: c}");
   check_span(&scene, dvi__tree_find(root, "b")->span, "c: 1\n  d: 'e'");
@@ -134,26 +139,33 @@ END_TEST
 
 START_TEST(anchors_aliases_tags_and_directives_are_refused)
 {
-  check_refused("a: &b 1\n", "s.yaml:1:4: anchors (&) are not for scenes; write the value where it is needed\n  a: &b 1\n     ^");
-  check_refused("a: &b [1]\n",
-                "s.yaml:1:4: anchors (&) are not for scenes; write the value where it is needed\n  a: &b [1]\n     ^");
-  check_refused("a: *b\n",
-                "s.yaml:1:4: aliases (*) are not for scenes; write the value, or put quotes around the text\n  a: *b\n     ^~");
-  check_refused("a: !!int 1\n",
-                "s.yaml:1:4: tags (!) are not for scenes; leave it out, or put quotes around the text\n  a: !!int 1\n     ^");
-  check_refused("a: ! 1\n",
-                "s.yaml:1:4: tags (!) are not for scenes; leave it out, or put quotes around the text\n  a: ! 1\n     ^");
-  check_refused("--- !t\na: 1\n",
-                "s.yaml:1:5: tags (!) are not for scenes; leave it out, or put quotes around the text\n  --- !t\n      ^");
-  check_refused("%YAML 1.1\n---\na: 1\n", "s.yaml:1:1: directives (%) are not for scenes; leave the line out\n  %YAML 1.1\n  ^");
-  check_refused("%TAG ! x\n---\na: 1\n", "s.yaml:1:1: directives (%) are not for scenes; leave the line out\n  %TAG ! x\n  ^");
+  check_refused("a: &b 1\n", "s.yaml:1:4: anchors (&) are not for scenes; write the value where it "
+                             "is needed\n  a: &b 1\n     ^");
+  check_refused("a: &b [1]\n", "s.yaml:1:4: anchors (&) are not for scenes; write the value where "
+                               "it is needed\n  a: &b [1]\n     ^");
+  check_refused("a: *b\n", "s.yaml:1:4: aliases (*) are not for scenes; write the value, or put "
+                           "quotes around the text\n  a: *b\n     ^~");
+  check_refused("a: !!int 1\n", "s.yaml:1:4: tags (!) are not for scenes; leave it out, or put "
+                                "quotes around the text\n  a: !!int 1\n     ^");
+  check_refused("a: ! 1\n", "s.yaml:1:4: tags (!) are not for scenes; leave it out, or put quotes "
+                            "around the text\n  a: ! 1\n     ^");
+  check_refused("--- !t\na: 1\n", "s.yaml:1:5: tags (!) are not for scenes; leave it out, or put "
+                                  "quotes around the text\n  --- !t\n      ^");
+  check_refused(
+      "%YAML 1.1\n---\na: 1\n",
+      "s.yaml:1:1: directives (%) are not for scenes; leave the line out\n  %YAML 1.1\n  ^");
+  check_refused(
+      "%TAG ! x\n---\na: 1\n",
+      "s.yaml:1:1: directives (%) are not for scenes; leave the line out\n  %TAG ! x\n  ^");
 }
 END_TEST
 
 START_TEST(one_document_is_expected)
 {
-  check_refused("a: 1\n---\nb: 2\n", "s.yaml:2:1: a second document begins here; a scene is one\n  ---\n  ^");
-  static const char empty[] = "s.yaml: the file is empty, and no scene: that is a YAML mapping with coordinates, lagrangian, "
+  check_refused("a: 1\n---\nb: 2\n",
+                "s.yaml:2:1: a second document begins here; a scene is one\n  ---\n  ^");
+  static const char empty[] = "s.yaml: the file is empty, and no scene: that is a YAML mapping "
+                              "with coordinates, lagrangian, "
                               "initial, step and until; dvi init NAME.yaml writes one";
   check_refused("", empty);
   check_refused("# nothing\n", empty);
@@ -162,31 +174,40 @@ END_TEST
 
 START_TEST(keys_are_names_that_differ)
 {
-  check_refused("a: 1\nb: {c: 1, 'c': 2}\n",
-                "s.yaml:2:12: the key 'c' stands in line 2 already\n  b: {c: 1, 'c': 2}\n             ^");
-  check_refused("? {a: b}\n: 1\n",
-                "s.yaml:1:3: a key is a name, or a list of names, and no mapping or sequence\n  ? {a: b}\n    ^");
-  check_refused("? - a\n: 1\n", "s.yaml:1:3: a key is a name, or a list of names, and no mapping or sequence\n  ? - a\n    ^");
+  check_refused(
+      "a: 1\nb: {c: 1, 'c': 2}\n",
+      "s.yaml:2:12: the key 'c' stands in line 2 already\n  b: {c: 1, 'c': 2}\n             ^");
+  check_refused("? {a: b}\n: 1\n", "s.yaml:1:3: a key is a name, or a list of names, and no "
+                                   "mapping or sequence\n  ? {a: b}\n    ^");
+  check_refused("? - a\n: 1\n", "s.yaml:1:3: a key is a name, or a list of names, and no mapping "
+                                "or sequence\n  ? - a\n    ^");
 }
 END_TEST
 
 START_TEST(escapes_are_refused)
 {
-  check_refused(
-      "a: \"x\\n\"\n",
-      "s.yaml:1:6: a backslash in double quotes makes text that does not stand here; write it without\n  a: \"x\\n\"\n       ^");
-  check_refused("a: 'x''y'\n",
-                "s.yaml:1:6: '' in single quotes stands for one '; write double quotes around the text\n  a: 'x''y'\n       ^~");
+  check_refused("a: \"x\\n\"\n", "s.yaml:1:6: a backslash in double quotes makes text that does "
+                                 "not stand here; write it without\n  a: \"x\\n\"\n       ^");
+  check_refused("a: 'x''y'\n", "s.yaml:1:6: '' in single quotes stands for one '; write double "
+                               "quotes around the text\n  a: 'x''y'\n       ^~");
 }
 END_TEST
 
 START_TEST(other_encodings_and_control_characters_are_refused)
 {
-  check_refused("a: \xC3(\n", "s.yaml:1:4: this byte is no UTF-8; save the file as UTF-8\n  a: ?(\n     ^");
-  check_refused("a: \xC0\xAF\n", "s.yaml:1:4: this byte is no UTF-8; save the file as UTF-8\n  a: ??\n     ^");      /* overlong */
-  check_refused("a: \xED\xA0\x80\n", "s.yaml:1:4: this byte is no UTF-8; save the file as UTF-8\n  a: ???\n     ^"); /* surrogate */
-  check_refused("a: \xE2\x88", "s.yaml:1:4: this byte is no UTF-8; save the file as UTF-8\n  a: ??\n     ^");        /* cut short */
-  check_refused("a: \x07\n", "s.yaml:1:4: the character U+0007 cannot stand in a scene\n  a: ?\n     ^");
+  check_refused("a: \xC3(\n",
+                "s.yaml:1:4: this byte is no UTF-8; save the file as UTF-8\n  a: ?(\n     ^");
+  /* overlong */
+  check_refused("a: \xC0\xAF\n",
+                "s.yaml:1:4: this byte is no UTF-8; save the file as UTF-8\n  a: ??\n     ^");
+  /* surrogate */
+  check_refused("a: \xED\xA0\x80\n",
+                "s.yaml:1:4: this byte is no UTF-8; save the file as UTF-8\n  a: ???\n     ^");
+  /* cut short */
+  check_refused("a: \xE2\x88",
+                "s.yaml:1:4: this byte is no UTF-8; save the file as UTF-8\n  a: ??\n     ^");
+  check_refused("a: \x07\n",
+                "s.yaml:1:4: the character U+0007 cannot stand in a scene\n  a: ?\n     ^");
   check_refused("\xEF\xBB\xBF"
                 "a: 1\n",
                 "s.yaml: the file begins with a byte order mark; save it as UTF-8 without one");
@@ -194,34 +215,38 @@ START_TEST(other_encodings_and_control_characters_are_refused)
                 "a",
                 "s.yaml: the file is UTF-16; save it as UTF-8");
   check_refused("a: \xE2\x80\xA8\n",
-                "s.yaml:1:4: the character U+2028 cannot stand in a scene\n  a: ?\n     ^"); /* a break of lines in YAML 1.1 */
+                /* a break of lines in YAML 1.1 */
+                "s.yaml:1:4: the character U+2028 cannot stand in a scene\n  a: ?\n     ^");
   ck_assert_ptr_null(tree_of_bytes("a: \0\n", 5));
-  check_complaint(&scene, DVI_BAD_FILE, "s.yaml:1:4: the character U+0000 cannot stand in a scene\n  a: ?\n     ^");
+  check_complaint(&scene, DVI_BAD_FILE,
+                  "s.yaml:1:4: the character U+0000 cannot stand in a scene\n  a: ?\n     ^");
 }
 END_TEST
 
 START_TEST(what_is_no_yaml_gets_a_remedy)
 {
-  check_refused("a: [x[1], y]\n",
-                "s.yaml:1:6: this is no YAML: did not find expected ',' or ']' while parsing a flow sequence; an element with "
-                "brackets or commas needs quotes, as \"[x[1], y[1]]\" does as a whole\n  a: [x[1], y]\n       ^");
-  check_refused("a:\n\tb: 1\n",
-                "s.yaml:2:1: this is no YAML: found character that cannot start any token while scanning for the next token; "
-                "indent by blanks, not by tabs, and put quotes around texts that begin with @, ` or %\n  \tb: 1\n  ^");
-  check_refused(
-      "a: b: c\n",
-      "s.yaml:1:5: this is no YAML: mapping values are not allowed in this context; a text with a colon and a blank needs "
-      "quotes, and keys of one mapping the same indentation\n  a: b: c\n      ^");
+  check_refused("a: [x[1], y]\n", "s.yaml:1:6: this is no YAML: did not find expected ',' or ']' "
+                                  "while parsing a flow sequence; an element with "
+                                  "brackets or commas needs quotes, as \"[x[1], y[1]]\" does as a "
+                                  "whole\n  a: [x[1], y]\n       ^");
+  check_refused("a:\n\tb: 1\n", "s.yaml:2:1: this is no YAML: found character that cannot start "
+                                "any token while scanning for the next token; "
+                                "indent by blanks, not by tabs, and put quotes around texts that "
+                                "begin with @, ` or %\n  \tb: 1\n  ^");
+  check_refused("a: b: c\n",
+                "s.yaml:1:5: this is no YAML: mapping values are not allowed in this context; a "
+                "text with a colon and a blank needs "
+                "quotes, and keys of one mapping the same indentation\n  a: b: c\n      ^");
 }
 END_TEST
 
 START_TEST(what_never_ends_is_shown_where_it_begins)
 {
-  check_refused("a: 1\nb: {c: 1\n",
-                "s.yaml:2:4: this is no YAML: did not find expected ',' or '}' while parsing a flow mapping; an element with "
-                "brackets or commas needs quotes\n  b: {c: 1\n     ^");
-  check_refused("a: \"b\nc: 1\n",
-                "s.yaml:1:4: this is no YAML: found unexpected end of stream while scanning a quoted scalar\n  a: \"b\n     ^");
+  check_refused("a: 1\nb: {c: 1\n", "s.yaml:2:4: this is no YAML: did not find expected ',' or '}' "
+                                    "while parsing a flow mapping; an element with "
+                                    "brackets or commas needs quotes\n  b: {c: 1\n     ^");
+  check_refused("a: \"b\nc: 1\n", "s.yaml:1:4: this is no YAML: found unexpected end of stream "
+                                  "while scanning a quoted scalar\n  a: \"b\n     ^");
 }
 END_TEST
 
@@ -257,7 +282,8 @@ START_TEST(files_end_at_one_mebibyte)
 }
 END_TEST
 
-/* A mapping of 1 MiB: neither duplicates nor places are looked for in quadratic time, which would take minutes. */
+/* A mapping of 1 MiB: neither duplicates nor places are looked for in quadratic time, which would
+ * take minutes. */
 START_TEST(many_keys_take_no_longer_each)
 {
   enum { KEYS = 90000, ROOM = 16 };

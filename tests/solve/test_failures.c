@@ -1,4 +1,5 @@
-/* Equations whose callbacks fail or give NaN: every rung ends, says so, prints nothing, and works again. */
+/* Equations whose callbacks fail or give NaN: every rung ends, says so, prints nothing, and works
+ * again. */
 #define _POSIX_C_SOURCE 200809L /* dup, fileno */
 #include <float.h>
 #include <math.h>
@@ -12,7 +13,8 @@
 static const dvi_status answers[] = {DVI_CALLBACK_RETRY, DVI_CALLBACK_FAILED, DVI_NOT_FINITE};
 enum { ANSWERS = sizeof answers / sizeof *answers };
 
-/* A fatal answer comes through every rung as it is; one that a smaller step might mend may become "not solved". */
+/* A fatal answer comes through every rung as it is; one that a smaller step might mend may become
+ * "not solved". */
 static void comes_through(dvi_status status, dvi_status answer)
 {
   if (answer < 0)
@@ -32,7 +34,8 @@ START_TEST(a_residual_that_fails_ends_the_solve)
     c.residual_fault = (fault){at, answer, 0};
     for_chain(&c, &b);
     comes_through(run_rung(&b, rungs[_i / ANSWERS], x), answer);
-    ck_assert_int_le(c.residuals, answer < 0 ? at : 100); /* after a fatal answer nobody calls again */
+    /* after a fatal answer nobody calls again */
+    ck_assert_int_le(c.residuals, answer < 0 ? at : 100);
     free_bench(&b, &c);
   }
 }
@@ -78,7 +81,8 @@ START_TEST(line_search_steps_back_from_where_the_residual_does_not_exist)
 }
 END_TEST
 
-/* The action's residual never gives NaN with DVI_OK, but the solvers must not take one for a solution. */
+/* The action's residual never gives NaN with DVI_OK, but the solvers must not take one for a
+ * solution. */
 START_TEST(nan_is_never_a_solution)
 {
   for (long at = 1; at <= 3; at++) {
@@ -155,7 +159,8 @@ static void fail_in_every_way(void)
 {
   for (int rung = 0; rung < 3; rung++)
     for (int way = 0; way < 6; way++) {
-      single s = {way == 0 ? never_zero : arctangent, way == 1 ? flat_slope : arctangent_slope, 1e-3, -HUGE_VAL, 0};
+      single s = {way == 0 ? never_zero : arctangent, way == 1 ? flat_slope : arctangent_slope,
+                  1e-3, -HUGE_VAL, 0};
       chain c;
       bench b;
       double x[SIZE] = {3, 3, 3, 3, 3};

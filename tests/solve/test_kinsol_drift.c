@@ -1,6 +1,6 @@
 /* labels: slow */
-/* Why kinsol.c sets every tolerance: KINSOL as it comes makes the midpoint rule on the pendulum drift in energy, which the library's
- * midpoint rule does not. */
+/* Why kinsol.c sets every tolerance: KINSOL as it comes makes the midpoint rule on the pendulum
+ * drift in energy, which the library's midpoint rule does not. */
 #include <kinsol/kinsol.h>
 #include <math.h>
 #include <nvector/nvector_serial.h>
@@ -27,7 +27,8 @@ typedef struct plain {
   double q, p, last_q; /* the step's start, and that of the step before */
 } plain;
 
-/* The library's own equation for this rule: x is the new angle, (x - q)/h - p - h/2 sin((q + x)/2) = 0, from V = cos q. */
+/* The library's own equation for this rule: x is the new angle, (x - q)/h - p - h/2 sin((q + x)/2)
+ * = 0, from V = cos q. */
 static int residual(N_Vector x, N_Vector r, void *user)
 {
   const plain *k = user;
@@ -36,7 +37,8 @@ static int residual(N_Vector x, N_Vector r, void *user)
   return 0;
 }
 
-static int jacobian(N_Vector x, N_Vector r, SUNMatrix matrix, void *user, N_Vector work1, N_Vector work2)
+static int jacobian(N_Vector x, N_Vector r, SUNMatrix matrix, void *user, N_Vector work1,
+                    N_Vector work2)
 {
   const plain *k = user;
   (void)r, (void)work1, (void)work2;
@@ -71,7 +73,8 @@ static void free_plain(plain *k)
   (void)SUNContext_Free(&k->context);
 }
 
-/* The guess continues the last step, as the library's does. A flag that is not negative is KINSOL's word for solved. */
+/* The guess continues the last step, as the library's does. A flag that is not negative is KINSOL's
+ * word for solved. */
 static int step_plainly(plain *k)
 {
   double *x = N_VGetArrayPointer(k->x);
@@ -92,8 +95,8 @@ static double energy(double q, double p)
 
 static void tell(const char *who, const dvi_drift_fit *fit)
 {
-  (void)printf("%-24s energy: largest error %.2e, drift %+.2e over the run, significance %.1f\n", who, fit->largest, fit->change,
-               fit->significance);
+  (void)printf("%-24s energy: largest error %.2e, drift %+.2e over the run, significance %.1f\n",
+               who, fit->largest, fit->change, fit->significance);
 }
 
 START_TEST(kinsol_as_it_comes_drifts)
@@ -110,18 +113,20 @@ START_TEST(kinsol_as_it_comes_drifts)
   }
   dvi_drift_result(&drift, &fit);
   tell("KINSOL's defaults", &fit);
-  ck_assert_double_gt(fabs(fit.change), 1e-4); /* -3.9e-2 with SUNDIALS 6.4.1; other guesses gave -1e-2 to 3e-2 */
+  /* -3.9e-2 with SUNDIALS 6.4.1; other guesses gave -1e-2 to 3e-2 */
+  ck_assert_double_gt(fabs(fit.change), 1e-4);
   ck_assert_double_gt(fit.significance, 10);
   free_plain(&k);
   problem_destroy(&of);
 }
 END_TEST
 
-/* The energy swings by 8.2e-4, for it is a modified energy, h^2 away, that the rule keeps. The run is no whole number of swings; that leaves
- * the fitted line a change far below 1e-6. */
+/* The energy swings by 8.2e-4, for it is a modified energy, h^2 away, that the rule keeps. The run
+ * is no whole number of swings; that leaves the fitted line a change far below 1e-6. */
 START_TEST(the_library_s_midpoint_rule_does_not)
 {
-  static const char *const methods[] = {"midpoint", "midpoint:solver=newton", "midpoint:solver=kinsol"};
+  static const char *const methods[] = {"midpoint", "midpoint:solver=newton",
+                                        "midpoint:solver=kinsol"};
   problem *of = made_problem("pendulum", NULL);
   dvi_integrator *integrator = started(of, methods[_i]);
   dvi_drift drift;

@@ -13,7 +13,8 @@ START_TEST(every_rung_finds_the_solution_to_roundoff)
   make_chain(0.2, &c);
   for_chain(&c, &b);
   ck_assert_msg(run_rung(&b, rungs[_i], x) == DVI_OK, "%s", dvi_last_error());
-  for (int i = 0; i < SIZE; i++) ck_assert_double_eq_tol(x[i], c.solution[i], 8 * DBL_EPSILON); /* numbers up to 2 */
+  /* numbers up to 2 */
+  for (int i = 0; i < SIZE; i++) ck_assert_double_eq_tol(x[i], c.solution[i], 8 * DBL_EPSILON);
   ck_assert_int_ge(b.report.iterations, 2);
   free_bench(&b, &c);
 }
@@ -46,7 +47,8 @@ START_TEST(counters_count_what_was_called)
 }
 END_TEST
 
-/* Equations of which the Jacobian hardly changes: the factor of the first iteration serves the others. */
+/* Equations of which the Jacobian hardly changes: the factor of the first iteration serves the
+ * others. */
 START_TEST(newton_keeps_a_factor_that_works)
 {
   chain c;
@@ -62,7 +64,8 @@ START_TEST(newton_keeps_a_factor_that_works)
 }
 END_TEST
 
-/* From |x| > 1.39 on Newton's iteration for atan x = 0 jumps from side to side, farther each time. */
+/* From |x| > 1.39 on Newton's iteration for atan x = 0 jumps from side to side, farther each
+ * time. */
 START_TEST(line_search_finds_what_newton_overshoots)
 {
   single s = {arctangent, arctangent_slope, 1, -HUGE_VAL, 0};
@@ -79,7 +82,8 @@ START_TEST(line_search_finds_what_newton_overshoots)
 }
 END_TEST
 
-/* A start from which Newton's method might end at another solution: for R = x^2 - 1 from 0.3 it jumps to 1.8, and then farther. */
+/* A start from which Newton's method might end at another solution: for R = x^2 - 1 from 0.3 it
+ * jumps to 1.8, and then farther. */
 START_TEST(a_wary_newton_refuses_a_misleading_guess)
 {
   single s = {parabola, parabola_slope, 1, -HUGE_VAL, 0};
@@ -117,7 +121,8 @@ START_TEST(slow_contraction_is_given_up_unless_patient)
   failed_with(dvi__solve(b.solver, DVI__FIXED_POINT, 1.0, 0, 0, &x, &b.report), DVI_NOT_CONVERGED);
   ck_assert_int_le(s.residuals, 5); /* the first ratio of two corrections tells */
   x = 0;
-  ck_assert_msg(dvi__solve(b.solver, DVI__FIXED_POINT, 1.0, 0, 1, &x, &b.report) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi__solve(b.solver, DVI__FIXED_POINT, 1.0, 0, 1, &x, &b.report) == DVI_OK, "%s",
+                dvi_last_error());
   ck_assert_int_gt(b.report.iterations, 60);
   ck_assert_int_eq(run_rung(&b, DVI__NEWTON, &judge), DVI_OK);
   /* The last correction, 4 epsilons of x or less, is 0.177 of the distance that is left. */
@@ -147,7 +152,8 @@ START_TEST(no_solution_is_a_failure_after_a_bounded_number_of_iterations)
   double x = 0.7;
   for_single(&s, &b);
   failed_with(run_rung(&b, rungs[_i], &x), DVI_NOT_CONVERGED);
-  ck_assert_int_le(s.residuals, 2000); /* KINSOL: 100 iterations with up to a dozen points on each line, then 40 by Newton */
+  /* KINSOL: 100 iterations with up to a dozen points on each line, then 40 by Newton */
+  ck_assert_int_le(s.residuals, 2000);
   free_bench(&b, NULL);
 }
 END_TEST
@@ -164,7 +170,8 @@ START_TEST(a_singular_jacobian_is_a_step_s_failure)
 }
 END_TEST
 
-/* The slope vanishes at the start alone: KINSOL cannot begin there either, and no rung may claim a solution. */
+/* The slope vanishes at the start alone: KINSOL cannot begin there either, and no rung may claim a
+ * solution. */
 START_TEST(a_start_on_a_critical_point_is_a_failure)
 {
   single s = {parabola, parabola_slope, 1, -HUGE_VAL, 0};
@@ -176,10 +183,12 @@ START_TEST(a_start_on_a_critical_point_is_a_failure)
 }
 END_TEST
 
-/* No correction becomes small: where the row is known to be rounding, the solution is, too. Without that, or with a row above it, there is none. */
+/* No correction becomes small: where the row is known to be rounding, the solution is, too. Without
+ * that, or with a row above it, there is none. */
 START_TEST(a_row_that_is_rounding_is_solved)
 {
-  single s = {faint, faint_slope, 1, -HUGE_VAL, 0}, none = {never_zero, parabola_slope, 1, -HUGE_VAL, 0};
+  single s = {faint, faint_slope, 1, -HUGE_VAL, 0},
+         none = {never_zero, parabola_slope, 1, -HUGE_VAL, 0};
   bench b;
   double x = 1.3;
   for_sum(&s, &b);

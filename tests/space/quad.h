@@ -1,6 +1,6 @@
-/* An independent judge in quadruple precision: nodes by bracketing and the secant rule, weights by the textbook formulas on
- * [-1,1] or by integrating the cardinal polynomials, trial functions by their products. Roundoff here is 1e-34, so nothing is
- * done to avoid cancellation. */
+/* An independent judge in quadruple precision: nodes by bracketing and the secant rule, weights by
+ * the textbook formulas on [-1,1] or by integrating the cardinal polynomials, trial functions by
+ * their products. Roundoff here is 1e-34, so nothing is done to avoid cancellation. */
 #ifndef TEST_SPACE_QUAD_H
 #define TEST_SPACE_QUAD_H
 #ifdef DVI_HAVE_QUADMATH
@@ -71,7 +71,8 @@ static inline quad quad_zero(dvi_rule rule, int n, quad low, quad high)
 /* Nodes of a Gaussian rule on [-1,1]: the ends that it takes and the sign changes between. */
 static inline void quad_gaussian_nodes(dvi_rule rule, int n, quad *x)
 {
-  const int left = rule == DVI_LOBATTO || rule == DVI_RADAU_LEFT, right = rule == DVI_LOBATTO || rule == DVI_RADAU_RIGHT;
+  const int left = rule == DVI_LOBATTO || rule == DVI_RADAU_LEFT,
+            right = rule == DVI_LOBATTO || rule == DVI_RADAU_RIGHT;
   const int cells = 4 * n + 1;
   int found = 0;
   if (left) x[found++] = -1;
@@ -125,7 +126,8 @@ static inline void quad_rule(dvi_rule rule, int n, quad *node, quad *weight)
     for (int j = 0; j < n; j++) {
       weight[j] = 0;
       for (int i = 0; i < half; i++)
-        weight[j] += quad_gaussian_weight(DVI_GAUSS, half, gauss[i]) / 2 * quad_cardinal(n, node, j, gauss[i], NULL);
+        weight[j] += quad_gaussian_weight(DVI_GAUSS, half, gauss[i]) / 2 *
+                     quad_cardinal(n, node, j, gauss[i], NULL);
     }
   }
   for (int i = 0; i < n; i++) node[i] = (1 + node[i]) / 2;

@@ -1,5 +1,5 @@
-/* The roundoff that long double has where the test runs, which LDBL_EPSILON does not always tell: emulators such as valgrind
- * compute it as double. */
+/* The roundoff that long double has where the test runs, which LDBL_EPSILON does not always tell:
+ * emulators such as valgrind compute it as double. */
 #ifndef TEST_SPACE_ROUNDOFF_H
 #define TEST_SPACE_ROUNDOFF_H
 

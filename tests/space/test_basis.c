@@ -12,10 +12,12 @@
 #define MODAL DVI_LEGENDRE
 #define BASES (DVI_CHEBYSHEV + 1)
 
-/* Points of all kinds: inside, outside, at the ends, very near to the ends and to the middle, and all around each node. */
+/* Points of all kinds: inside, outside, at the ends, very near to the ends and to the middle, and
+ * all around each node. */
 static int points(dvi_basis basis, int degree, double *tau)
 {
-  static const double fixed[] = {-1, -0.3, -1e-17, 0, 1e-300, 1e-17, 1e-9, 0.1234, 0.49999999999999994, 0.5, 0.7, 1, 1.01, 2};
+  static const double fixed[] = {
+      -1, -0.3, -1e-17, 0, 1e-300, 1e-17, 1e-9, 0.1234, 0.49999999999999994, 0.5, 0.7, 1, 1.01, 2};
   double node[DVI_DEGREE_MAX + 1];
   int count = 0;
   for (size_t i = 0; i < sizeof fixed / sizeof *fixed; i++) tau[count++] = fixed[i];
@@ -49,7 +51,8 @@ static void quad_nodes(dvi_basis basis, int degree, quad *node)
 }
 
 /* By the definition: products for nodal bases, the recurrences in x = 2 tau - 1 for modal ones. */
-static void quad_basis(dvi_basis basis, int degree, const quad *node, quad tau, quad *value, quad *slope)
+static void quad_basis(dvi_basis basis, int degree, const quad *node, quad tau, quad *value,
+                       quad *slope)
 {
   const quad x = 2 * tau - 1;
   for (int k = 0; k <= degree; k++) {
@@ -75,11 +78,13 @@ static double worst_relative(int count, const double *computed, const quad *exac
 START_TEST(values_and_derivatives_are_right_to_2_units_of_the_largest_against_quadruple_precision)
 {
   const dvi_basis basis = (dvi_basis)_i;
-  double tau[4 * DVI_DEGREE_MAX], value[DVI_DEGREE_MAX + 1], slope[DVI_DEGREE_MAX + 1], worst = 0, worst_slope = 0;
+  double tau[4 * DVI_DEGREE_MAX], value[DVI_DEGREE_MAX + 1], slope[DVI_DEGREE_MAX + 1],
+      worst = 0, worst_slope = 0;
   quad node[DVI_DEGREE_MAX + 1], exact[DVI_DEGREE_MAX + 1], exact_slope[DVI_DEGREE_MAX + 1];
   static const int degrees[] = {1, 2, 3, 4, 7, 12, 25, DVI_DEGREE_MAX};
   for (size_t d = 0; d < sizeof degrees / sizeof *degrees; d++) {
-    const int degree = degrees[d], count = points(basis, degree, tau), stride = degree > 12 ? 5 : 1; /* products cost degree^3 */
+    /* products cost degree^3 */
+    const int degree = degrees[d], count = points(basis, degree, tau), stride = degree > 12 ? 5 : 1;
     quad_nodes(basis, degree, node);
     for (int i = 0; i < count; i += i < 14 ? 1 : stride) {
       ck_assert_int_eq(dvi_basis_evaluate(basis, degree, tau[i], value, slope), DVI_OK);
@@ -88,7 +93,8 @@ START_TEST(values_and_derivatives_are_right_to_2_units_of_the_largest_against_qu
       worst_slope = fmax(worst_slope, worst_relative(degree + 1, slope, exact_slope));
     }
   }
-  printf("%-18s worst value %.2f, derivative %.2f units\n", dvi_basis_name(basis), worst / DBL_EPSILON, worst_slope / DBL_EPSILON);
+  printf("%-18s worst value %.2f, derivative %.2f units\n", dvi_basis_name(basis),
+         worst / DBL_EPSILON, worst_slope / DBL_EPSILON);
   ck_assert_double_le(worst, 2 * DBL_EPSILON);
   ck_assert_double_le(worst_slope, 2 * DBL_EPSILON);
 }
@@ -107,7 +113,8 @@ START_TEST(nodal_functions_sum_to_1_and_their_derivatives_to_0)
         sum += value[k];
         slope_sum += slope[k];
       }
-      /* each function is rounded to half an ulp, each addition too; a tenfold margin for the narrow long double */
+      /* each function is rounded to half an ulp, each addition too; a tenfold margin for the narrow
+       * long double */
       const double roundoff = 10 * (degree + 1) * DBL_EPSILON;
       ck_assert_double_eq_tol(sum, 1, roundoff * fmax(1, largest(degree + 1, value)));
       ck_assert_double_eq_tol(slope_sum, 0, roundoff * largest(degree + 1, slope));
@@ -121,12 +128,15 @@ START_TEST(a_nodal_function_is_1_at_its_node_and_0_at_the_others)
   dvi__space space;
   long double value[DVI__TRIAL_MAX];
   for (int degree = 1; degree <= DVI_DEGREE_MAX; degree++) {
-    if (_i == DVI_LAGRANGE_EQUISPACED && degree & (degree - 1)) continue; /* other nodes are no binary fractions */
+    /* other nodes are no binary fractions */
+    if (_i == DVI_LAGRANGE_EQUISPACED && degree & (degree - 1)) continue;
     dvi__space_init(&space, (dvi_basis)_i, degree);
     for (int k = 0; k <= degree; k++) {
       dvi__space_evaluate(&space, space.mark[k] / space.scale, value, NULL);
-      for (int j = 0; j <= degree; j++) /* the 0 has a factor 0; the 1 is a product and its inverse */
-        ck_assert(j == k ? fabsl(value[j] - 1) <= 2 * DVI_DEGREE_MAX * long_roundoff() : value[j] == 0);
+      /* the 0 has a factor 0; the 1 is a product and its inverse */
+      for (int j = 0; j <= degree; j++)
+        ck_assert(j == k ? fabsl(value[j] - 1) <= 2 * DVI_DEGREE_MAX * long_roundoff()
+                         : value[j] == 0);
     }
   }
 }
@@ -172,7 +182,8 @@ START_TEST(modal_functions_are_1_at_the_right_end_and_alternate_at_the_left_one)
       const double sign = !end && k % 2 ? -1 : 1;
       ck_assert(value[k] == sign);
       /* P_k'(1) = k(k+1)/2, T_k'(1) = k^2; twice that with respect to tau */
-      ck_assert(slope[k] == (end ? sign : -sign) * (basis == DVI_LEGENDRE ? k * (k + 1) : 2 * k * k));
+      ck_assert(slope[k] ==
+                (end ? sign : -sign) * (basis == DVI_LEGENDRE ? k * (k + 1) : 2 * k * k));
     }
   }
 }
@@ -185,7 +196,9 @@ START_TEST(nodes_ascend_and_are_symmetric)
     ck_assert_int_eq(dvi_basis_nodes((dvi_basis)_i, degree, node), DVI_OK);
     ck_assert((node[0] == 0 && node[degree] == 1) || _i == DVI_LAGRANGE_GAUSS);
     for (int k = 1; k <= degree; k++) ck_assert_double_gt(node[k], node[k - 1]);
-    for (int k = 0; k <= degree; k++) ck_assert_double_eq_tol(node[k] + node[degree - k], 1, DBL_EPSILON); /* two roundings */
+    /* two roundings */
+    for (int k = 0; k <= degree; k++)
+      ck_assert_double_eq_tol(node[k] + node[degree - k], 1, DBL_EPSILON);
   }
 }
 END_TEST
@@ -211,8 +224,10 @@ START_TEST(bad_arguments_are_refused_and_nothing_is_written)
   }
   ck_assert_int_eq(dvi_basis_evaluate((dvi_basis)BASES, 1, 0.5, value, slope), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_basis_evaluate((dvi_basis)-1, 1, 0.5, value, slope), DVI_BAD_ARGUMENT);
-  ck_assert_int_eq(dvi_basis_evaluate(DVI_LEGENDRE, 1, (double)NAN, value, slope), DVI_BAD_ARGUMENT);
-  ck_assert_int_eq(dvi_basis_evaluate(DVI_LEGENDRE, 1, -(double)INFINITY, value, slope), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_basis_evaluate(DVI_LEGENDRE, 1, (double)NAN, value, slope),
+                   DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_basis_evaluate(DVI_LEGENDRE, 1, -(double)INFINITY, value, slope),
+                   DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_basis_nodes((dvi_basis)BASES, 1, value), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_basis_nodes(DVI_LEGENDRE, 1, value), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_basis_nodes(DVI_CHEBYSHEV, 1, value), DVI_BAD_ARGUMENT);
@@ -224,7 +239,8 @@ END_TEST
 START_TEST(every_basis_has_a_name_of_its_own)
 {
   for (int i = 0; i < BASES; i++)
-    for (int j = 0; j < i; j++) ck_assert_str_ne(dvi_basis_name((dvi_basis)i), dvi_basis_name((dvi_basis)j));
+    for (int j = 0; j < i; j++)
+      ck_assert_str_ne(dvi_basis_name((dvi_basis)i), dvi_basis_name((dvi_basis)j));
   ck_assert_ptr_null(dvi_basis_name((dvi_basis)BASES));
   ck_assert_ptr_null(dvi_basis_name((dvi_basis)-1));
 }
@@ -234,14 +250,19 @@ SUITE(basis)
 {
 #ifdef DVI_HAVE_QUADMATH
   if (long_double_is_long()) /* promised only there */
-    tcase_add_loop_test(tests, values_and_derivatives_are_right_to_2_units_of_the_largest_against_quadruple_precision, 0, BASES);
+    tcase_add_loop_test(
+        tests,
+        values_and_derivatives_are_right_to_2_units_of_the_largest_against_quadruple_precision, 0,
+        BASES);
 #else
   puts("no libquadmath: the comparison with quadruple precision is left out");
 #endif
   tcase_add_loop_test(tests, nodal_functions_sum_to_1_and_their_derivatives_to_0, 0, MODAL);
   tcase_add_loop_test(tests, a_nodal_function_is_1_at_its_node_and_0_at_the_others, 0, MODAL);
-  tcase_add_loop_test(tests, the_modal_functions_are_interpolated_exactly_by_every_nodal_basis, 0, MODAL);
-  tcase_add_loop_test(tests, modal_functions_are_1_at_the_right_end_and_alternate_at_the_left_one, MODAL, BASES);
+  tcase_add_loop_test(tests, the_modal_functions_are_interpolated_exactly_by_every_nodal_basis, 0,
+                      MODAL);
+  tcase_add_loop_test(tests, modal_functions_are_1_at_the_right_end_and_alternate_at_the_left_one,
+                      MODAL, BASES);
   tcase_add_loop_test(tests, nodes_ascend_and_are_symmetric, 0, MODAL);
   tcase_add_loop_test(tests, either_output_may_be_left_out, 0, BASES);
   tcase_add_test(tests, bad_arguments_are_refused_and_nothing_is_written);

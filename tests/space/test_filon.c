@@ -7,7 +7,8 @@
 
 enum { NODES = 5, SAMPLES = 5 };
 
-static const long double phases[] = {-7, 0, 1e-12L, 1e-3L, 0.5L, 3, 4.9L, 5.1L, 9.9L, 10.1L, 25, 60};
+static const long double phases[] = {-7,   0,    1e-12L, 1e-3L, 0.5L, 3,
+                                     4.9L, 5.1L, 9.9L,   10.1L, 25,   60};
 
 static long double largest(long double a, long double b)
 {
@@ -15,7 +16,8 @@ static long double largest(long double a, long double b)
 }
 
 /* Gauss with 80 points is exact to roundoff for nu up to 60. */
-static void integrate(int j, const long double *node, long double nu, long double *real, long double *imaginary)
+static void integrate(int j, const long double *node, long double nu, long double *real,
+                      long double *imaginary)
 {
   long double at[DVI_QUADRATURE_MAX], weight[DVI_QUADRATURE_MAX];
   ck_assert_int_eq(dvi__quadrature_long(DVI_GAUSS, DVI_QUADRATURE_MAX, at, weight), DVI_OK);
@@ -69,14 +71,17 @@ static long double wave(long double phi)
 START_TEST(the_rule_is_exact_for_two_harmonics_whose_amplitude_the_nodes_interpolate)
 {
   const long double nu = phases[_i], turn = 8 * atanl(1);
-  long double node[NODES], weight[NODES * SAMPLES], at[DVI_QUADRATURE_MAX], by[DVI_QUADRATURE_MAX], sum = 0;
+  long double node[NODES], weight[NODES * SAMPLES], at[DVI_QUADRATURE_MAX], by[DVI_QUADRATURE_MAX],
+      sum = 0;
   dvi__filon_rule(NODES, 2, nu, node, weight);
   for (int j = 0; j < NODES * SAMPLES; j++) {
     const long double x = node[j / SAMPLES];
-    sum += weight[j] * amplitude(x) * wave(nu * (x - 0.5L) + turn * (long double)(j % SAMPLES) / SAMPLES);
+    sum += weight[j] * amplitude(x) *
+           wave(nu * (x - 0.5L) + turn * (long double)(j % SAMPLES) / SAMPLES);
   }
   ck_assert_int_eq(dvi__quadrature_long(DVI_GAUSS, DVI_QUADRATURE_MAX, at, by), DVI_OK);
-  for (int g = 0; g < DVI_QUADRATURE_MAX; g++) sum -= by[g] * amplitude(at[g]) * wave(nu * (at[g] - 0.5L));
+  for (int g = 0; g < DVI_QUADRATURE_MAX; g++)
+    sum -= by[g] * amplitude(at[g]) * wave(nu * (at[g] - 0.5L));
   ck_assert_double_le((double)fabsl(sum), 1000 * (double)long_roundoff());
 }
 END_TEST
@@ -88,16 +93,20 @@ START_TEST(without_a_frequency_it_is_lobattos_rule_on_the_path)
   ck_assert_int_eq(dvi__quadrature_long(DVI_LOBATTO, NODES, at, by), DVI_OK);
   for (int j = 0; j < NODES; j++)
     for (int m = 0; m < SAMPLES; m++)
-      ck_assert_double_le((double)fabsl(weight[j * SAMPLES + m] - (m == 0 ? by[j] : 0)), 10 * (double)long_roundoff());
+      ck_assert_double_le((double)fabsl(weight[j * SAMPLES + m] - (m == 0 ? by[j] : 0)),
+                          10 * (double)long_roundoff());
 }
 END_TEST
 
 SUITE(filon)
 {
-  tcase_add_loop_test(tests, moments_of_the_lagrange_polynomials_are_right_to_roundoff_at_every_frequency, 0,
-                      sizeof phases / sizeof *phases);
-  tcase_add_test(tests, moments_add_up_to_the_integral_of_the_wave_at_frequencies_that_no_grid_resolves);
-  tcase_add_loop_test(tests, the_rule_is_exact_for_two_harmonics_whose_amplitude_the_nodes_interpolate, 0,
+  tcase_add_loop_test(tests,
+                      moments_of_the_lagrange_polynomials_are_right_to_roundoff_at_every_frequency,
+                      0, sizeof phases / sizeof *phases);
+  tcase_add_test(tests,
+                 moments_add_up_to_the_integral_of_the_wave_at_frequencies_that_no_grid_resolves);
+  tcase_add_loop_test(tests,
+                      the_rule_is_exact_for_two_harmonics_whose_amplitude_the_nodes_interpolate, 0,
                       sizeof phases / sizeof *phases);
   tcase_add_test(tests, without_a_frequency_it_is_lobattos_rule_on_the_path);
 }

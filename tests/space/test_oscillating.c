@@ -59,7 +59,8 @@ START_TEST(of_every_degree_and_amplitude)
 END_TEST
 
 /* psi_k psi_l + psi_k' psi_l' by a point of a weight, added. */
-static void add_products(int count, double weight, const double *psi, const double *dpsi, double sum[FUNCTIONS][FUNCTIONS])
+static void add_products(int count, double weight, const double *psi, const double *dpsi,
+                         double sum[FUNCTIONS][FUNCTIONS])
 {
   for (int k = 0; k < count; k++)
     for (int l = 0; l <= k; l++) sum[k][l] += weight * (dpsi[k] * dpsi[l] + psi[k] * psi[l]);
@@ -68,7 +69,8 @@ static void add_products(int count, double weight, const double *psi, const doub
 /* The quadrature less the integral along the path, by Gauss with 80 points on each of 16 pieces. */
 static void product_errors(const dvi__shapes *shapes, double error[FUNCTIONS][FUNCTIONS])
 {
-  double node[DVI_QUADRATURE_MAX], weight[DVI_QUADRATURE_MAX], psi[FUNCTIONS], dpsi[FUNCTIONS], tau, by;
+  double node[DVI_QUADRATURE_MAX], weight[DVI_QUADRATURE_MAX], psi[FUNCTIONS], dpsi[FUNCTIONS], tau,
+      by;
   ck_assert_int_eq(dvi_quadrature(DVI_GAUSS, DVI_QUADRATURE_MAX, node, weight), DVI_OK);
   for (int j = 0; j < shapes->points; j++) {
     shapes->point(shapes->of, j, &tau, &by, psi, dpsi);
@@ -89,7 +91,8 @@ START_TEST(the_quadrature_is_exact_for_products_of_two_functions)
   const dvi__shapes shapes = dvi__oscillating_shapes(space);
   product_errors(&shapes, error);
   for (int k = 0; k < shapes.functions; k++)
-    for (int l = 0; l <= k; l++) ck_assert_double_le(fabs(error[k][l]), 1e8 * (double)long_roundoff());
+    for (int l = 0; l <= k; l++)
+      ck_assert_double_le(fabs(error[k][l]), 1e8 * (double)long_roundoff());
   dvi__oscillating_destroy(&space);
 }
 END_TEST
@@ -118,7 +121,8 @@ START_TEST(a_path_is_continued_into_the_next_step)
     double sum = 0;
     shapes.path(shapes.of, 0.25 * part, here, NULL);
     shapes.path(shapes.of, 1 + 0.25 * part, beyond, NULL);
-    for (int k = 0; k < shapes.functions; k++) sum += here[k] * Y[k] - (beyond[k] - end[k]) * last[k];
+    for (int k = 0; k < shapes.functions; k++)
+      sum += here[k] * Y[k] - (beyond[k] - end[k]) * last[k];
     ck_assert_double_eq_tol(sum, 0, 1e-11);
   }
   dvi__oscillating_destroy(&space);
@@ -127,10 +131,12 @@ END_TEST
 
 SUITE(oscillating)
 {
-  tcase_add_loop_test(tests, all_functions_vanish_at_the_start_and_the_first_one_is_the_straight_line, 0,
+  tcase_add_loop_test(tests,
+                      all_functions_vanish_at_the_start_and_the_first_one_is_the_straight_line, 0,
                       2 * sizeof lengths / sizeof *lengths);
   tcase_add_loop_test(tests, of_every_degree_and_amplitude, 1, DVI__OSCILLATING_DEGREE_MOST + 1);
-  tcase_add_loop_test(tests, the_quadrature_is_exact_for_products_of_two_functions, 0, 2 * sizeof lengths / sizeof *lengths);
+  tcase_add_loop_test(tests, the_quadrature_is_exact_for_products_of_two_functions, 0,
+                      2 * sizeof lengths / sizeof *lengths);
   tcase_add_test(tests, where_steps_are_far_below_the_period_polynomials_are_left);
   tcase_add_loop_test(tests, a_path_is_continued_into_the_next_step, 0, 2);
 }

@@ -10,7 +10,8 @@ static double binomial(int n, int k)
   return round(tgamma(n + 1.0) / tgamma(k + 1.0) / tgamma(n - k + 1.0));
 }
 
-/* The rule's error for tau^d: a_j = 1 if j = d, b_j = binomial(d, j). The magnitude of what is summed comes along. */
+/* The rule's error for tau^d: a_j = 1 if j = d, b_j = binomial(d, j). The magnitude of what is
+ * summed comes along. */
 static double error_of(dvi__osculation rule, int terms, int d, double *magnitude)
 {
   double weight[DVI_TAYLOR_MAX + 1], sum = 0;
@@ -43,11 +44,13 @@ END_TEST
 
 START_TEST(bernoullis_numbers_are_those_of_the_books)
 {
-  static const double B[] = {1.0 / 6,       -1.0 / 30, 1.0 / 42,      -1.0 / 30,     5.0 / 66,
-                             -691.0 / 2730, 7.0 / 6,   -3617.0 / 510, 43867.0 / 798, -174611.0 / 330};
+  static const double B[] = {1.0 / 6,       -1.0 / 30,      1.0 / 42, -1.0 / 30,
+                             5.0 / 66,      -691.0 / 2730,  7.0 / 6,  -3617.0 / 510,
+                             43867.0 / 798, -174611.0 / 330};
   double weight[DVI_TAYLOR_MAX + 1];
   dvi__osculation_weights(DVI__EULER_MACLAURIN, 20, weight);
-  for (int l = 1; l <= 10; l++) ck_assert_double_eq_tol(weight[2 * l - 1] * 2 * l / B[l - 1], 1, 4 * DBL_EPSILON);
+  for (int l = 1; l <= 10; l++)
+    ck_assert_double_eq_tol(weight[2 * l - 1] * 2 * l / B[l - 1], 1, 4 * DBL_EPSILON);
   /* B_40 = -261082718496449122051/13530 */
   ck_assert_double_eq_tol(weight[39] * 40 / (-261082718496449122051.0 / 13530), 1, 8 * DBL_EPSILON);
 }

@@ -59,7 +59,9 @@ START_TEST(nodes_and_weights_are_right_to_2_ulp_against_quadruple_precision)
   quad exact_node[DVI_QUADRATURE_MAX], exact_weight[DVI_QUADRATURE_MAX];
   const dvi_rule rule = (dvi_rule)_i;
   /* the one-size rules are members of these families */
-  const dvi_rule family = rule == DVI_MIDPOINT ? DVI_GAUSS : rule > DVI_MIDPOINT ? DVI_CLENSHAW_CURTIS : rule;
+  const dvi_rule family = rule == DVI_MIDPOINT  ? DVI_GAUSS
+                          : rule > DVI_MIDPOINT ? DVI_CLENSHAW_CURTIS
+                                                : rule;
   for (int n = fewest(rule); n <= most(rule); n++) {
     quad_rule(family, n, exact_node, exact_weight);
     ck_assert_int_eq(dvi_quadrature(rule, n, node, weight), DVI_OK);
@@ -68,7 +70,8 @@ START_TEST(nodes_and_weights_are_right_to_2_ulp_against_quadruple_precision)
       worst_weight = fmax(worst_weight, ulps(weight[i], exact_weight[i]));
     }
   }
-  printf("%-16s worst node %.3f ulp, weight %.3f ulp\n", dvi_rule_name(rule), worst_node, worst_weight);
+  printf("%-16s worst node %.3f ulp, weight %.3f ulp\n", dvi_rule_name(rule), worst_node,
+         worst_weight);
   ck_assert_double_le(worst_node, 2);
   ck_assert_double_le(worst_weight, 2);
 }
@@ -82,8 +85,10 @@ START_TEST(a_rule_of_order_p_is_exact_below_degree_p_and_not_at_p)
   for (int n = fewest(rule); n <= most(rule); n++) {
     const int order = dvi_quadrature_order(rule, n);
     ck_assert_int_eq(dvi_quadrature(rule, n, node, weight), DVI_OK);
-    for (int degree = 0; degree < order; degree++) /* |P_k| <= 1 and its recurrence: roundoff grows with the degree */
-      ck_assert_double_eq_tol(integral_of_legendre(n, node, weight, degree), degree == 0, 2e-16 * (4 + order));
+    /* |P_k| <= 1 and its recurrence: roundoff grows with the degree */
+    for (int degree = 0; degree < order; degree++)
+      ck_assert_double_eq_tol(integral_of_legendre(n, node, weight, degree), degree == 0,
+                              2e-16 * (4 + order));
     /* Gauss and its kin miss the first degree by about 1/n, Clenshaw-Curtis by about 1/n^3 */
     ck_assert_double_ge(fabs(integral_of_legendre(n, node, weight, order)), 0.2 / pow(n, 3));
   }
@@ -104,7 +109,8 @@ START_TEST(nodes_ascend_in_the_unit_interval_and_weights_are_positive)
 END_TEST
 
 /* All but the Radau rules. */
-static const dvi_rule symmetric_rules[] = {DVI_GAUSS, DVI_LOBATTO, DVI_CLENSHAW_CURTIS, DVI_MIDPOINT, DVI_TRAPEZOID, DVI_SIMPSON};
+static const dvi_rule symmetric_rules[] = {DVI_GAUSS,    DVI_LOBATTO,   DVI_CLENSHAW_CURTIS,
+                                           DVI_MIDPOINT, DVI_TRAPEZOID, DVI_SIMPSON};
 enum { SYMMETRIC_RULES = RULES - 2 };
 
 START_TEST(symmetric_rules_are_symmetric_to_the_last_bit)
@@ -115,7 +121,8 @@ START_TEST(symmetric_rules_are_symmetric_to_the_last_bit)
     ck_assert_int_eq(dvi__quadrature_long(rule, n, node, weight), DVI_OK);
     for (int i = 0; i <= (n - 1) / 2; i++) {
       ck_assert(weight[i] == weight[n - 1 - i]);
-      ck_assert(node[n - 1 - i] == 1 - node[i]); /* the right one is rounded from the left one, which has more digits */
+      /* the right one is rounded from the left one, which has more digits */
+      ck_assert(node[n - 1 - i] == 1 - node[i]);
     }
   }
 }
@@ -130,7 +137,8 @@ START_TEST(the_radau_rules_mirror_each_other)
     ck_assert_int_eq(dvi__quadrature_long(DVI_RADAU_RIGHT, n, right, right_weight), DVI_OK);
     for (int i = 0; i < n; i++) {
       ck_assert(left_weight[i] == right_weight[n - 1 - i]);
-      ck_assert(fabsl(left[i] + right[n - 1 - i] - 1) <= long_roundoff()); /* one of the two is 1 minus the other, rounded */
+      /* one of the two is 1 minus the other, rounded */
+      ck_assert(fabsl(left[i] + right[n - 1 - i] - 1) <= long_roundoff());
     }
     ck_assert(left[0] == 0 && right[n - 1] == 1);
   }
@@ -196,7 +204,8 @@ END_TEST
 START_TEST(every_rule_has_a_name_of_its_own)
 {
   for (int i = 0; i < RULES; i++)
-    for (int j = 0; j < i; j++) ck_assert_str_ne(dvi_rule_name((dvi_rule)i), dvi_rule_name((dvi_rule)j));
+    for (int j = 0; j < i; j++)
+      ck_assert_str_ne(dvi_rule_name((dvi_rule)i), dvi_rule_name((dvi_rule)j));
 }
 END_TEST
 
@@ -204,7 +213,8 @@ SUITE(quadrature)
 {
 #ifdef DVI_HAVE_QUADMATH
   if (long_double_is_long()) /* promised only there */
-    tcase_add_loop_test(tests, nodes_and_weights_are_right_to_2_ulp_against_quadruple_precision, 0, RULES);
+    tcase_add_loop_test(tests, nodes_and_weights_are_right_to_2_ulp_against_quadruple_precision, 0,
+                        RULES);
 #else
   puts("no libquadmath: the comparison with quadruple precision is left out");
 #endif

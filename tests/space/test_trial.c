@@ -8,7 +8,8 @@
 
 enum { BASES = DVI_CHEBYSHEV + 1, MOST = DVI_DEGREE_MAX };
 
-/* A polynomial with coefficients of all sizes, of this degree in x = 2 tau - 1, and its primitive's difference. */
+/* A polynomial with coefficients of all sizes, of this degree in x = 2 tau - 1, and its primitive's
+ * difference. */
 static double polynomial(int degree, double tau)
 {
   double sum = 0;
@@ -35,20 +36,24 @@ static void multiply(int rows, int columns, const double *matrix, const double *
 /* Coefficients of polynomial() - polynomial(0) from its values at Gauss points. */
 static void fit(dvi_basis basis, int degree, int points, int polynomial_degree, double *Y)
 {
-  double tau[DVI_QUADRATURE_MAX], weight[DVI_QUADRATURE_MAX], value[DVI_QUADRATURE_MAX], matrix[MOST * DVI_QUADRATURE_MAX];
+  double tau[DVI_QUADRATURE_MAX], weight[DVI_QUADRATURE_MAX], value[DVI_QUADRATURE_MAX],
+      matrix[MOST * DVI_QUADRATURE_MAX];
   ck_assert_int_eq(dvi_quadrature(DVI_GAUSS, points, tau, weight), DVI_OK);
-  for (int i = 0; i < points; i++) value[i] = polynomial(polynomial_degree, tau[i]) - polynomial(polynomial_degree, 0);
+  for (int i = 0; i < points; i++)
+    value[i] = polynomial(polynomial_degree, tau[i]) - polynomial(polynomial_degree, 0);
   dvi__trial_fit(basis, degree, points, tau, matrix);
   multiply(degree, points, matrix, value, Y);
 }
 
-/* What a sum of numbers near 1 may miss; where long double is as short as double, nothing hides the roundoff inside. */
+/* What a sum of numbers near 1 may miss; where long double is as short as double, nothing hides the
+ * roundoff inside. */
 static double roundoff(void)
 {
   return long_double_is_long() ? DBL_EPSILON : 50 * DBL_EPSILON;
 }
 
-/* Values of equispaced coefficients are rounded like all others, but their functions are as large as 2^degree / degree. */
+/* Values of equispaced coefficients are rounded like all others, but their functions are as large
+ * as 2^degree / degree. */
 static int highest(dvi_basis basis)
 {
   return basis == DVI_LAGRANGE_EQUISPACED ? 12 : MOST;
@@ -67,16 +72,20 @@ END_TEST
 
 START_TEST(psi_and_bar_are_the_basis_less_its_ends)
 {
-  double psi[MOST], bar[MOST], dpsi[MOST], value[MOST + 1], slope[MOST + 1], left[MOST + 1], right[MOST + 1];
+  double psi[MOST], bar[MOST], dpsi[MOST], value[MOST + 1], slope[MOST + 1], left[MOST + 1],
+      right[MOST + 1];
   for (int degree = 1; degree <= MOST; degree++) {
     const double tau = 0.37;
     ck_assert_int_eq(dvi_basis_evaluate((dvi_basis)_i, degree, tau, value, slope), DVI_OK);
     ck_assert_int_eq(dvi_basis_evaluate((dvi_basis)_i, degree, 0, left, NULL), DVI_OK);
     ck_assert_int_eq(dvi_basis_evaluate((dvi_basis)_i, degree, 1, right, NULL), DVI_OK);
     dvi__trial_at((dvi_basis)_i, degree, tau, psi, bar, dpsi);
-    for (int k = 1; k <= degree; k++) { /* two roundings of numbers of at most the larger size, then one */
-      ck_assert_double_eq_tol(psi[k - 1], value[k] - left[k], 2 * DBL_EPSILON * fmax(fabs(value[k]), fabs(left[k])));
-      ck_assert_double_eq_tol(bar[k - 1], value[k] - right[k], 2 * DBL_EPSILON * fmax(fabs(value[k]), fabs(right[k])));
+    /* two roundings of numbers of at most the larger size, then one */
+    for (int k = 1; k <= degree; k++) {
+      ck_assert_double_eq_tol(psi[k - 1], value[k] - left[k],
+                              2 * DBL_EPSILON * fmax(fabs(value[k]), fabs(left[k])));
+      ck_assert_double_eq_tol(bar[k - 1], value[k] - right[k],
+                              2 * DBL_EPSILON * fmax(fabs(value[k]), fabs(right[k])));
       ck_assert(dpsi[k - 1] == slope[k]);
     }
   }
@@ -86,10 +95,12 @@ END_TEST
 START_TEST(psi_keeps_its_digits_near_0)
 {
   double psi[MOST], dpsi[MOST];
-  const double tau = 1e-3 * DBL_EPSILON; /* so small that 1 + tau rounds to 1 in double; the next term is degree^4 tau^2 */
+  /* so small that 1 + tau rounds to 1 in double; the next term is degree^4 tau^2 */
+  const double tau = 1e-3 * DBL_EPSILON;
   dvi__trial_at((dvi_basis)_i, 5, tau, psi, NULL, NULL);
   dvi__trial_at((dvi_basis)_i, 5, 0, NULL, NULL, dpsi);
-  for (int k = 0; k < 5; k++) ck_assert_double_eq_tol(psi[k] / tau, dpsi[k], 1.5); /* roundoff of long double is near tau / 2 */
+  /* roundoff of long double is near tau / 2 */
+  for (int k = 0; k < 5; k++) ck_assert_double_eq_tol(psi[k] / tau, dpsi[k], 1.5);
 }
 END_TEST
 
@@ -100,7 +111,8 @@ START_TEST(the_tables_are_the_same_from_a_space_made_once)
   dvi__space_init(&space, (dvi_basis)_i, 7);
   dvi__trial_at((dvi_basis)_i, 7, 0.625, psi, bar, dpsi);
   dvi__trial_in(&space, 0.625L, psi_once, bar_once, dpsi_once);
-  for (int k = 0; k < 7; k++) ck_assert(psi[k] == psi_once[k] && bar[k] == bar_once[k] && dpsi[k] == dpsi_once[k]);
+  for (int k = 0; k < 7; k++)
+    ck_assert(psi[k] == psi_once[k] && bar[k] == bar_once[k] && dpsi[k] == dpsi_once[k]);
 }
 END_TEST
 
@@ -111,8 +123,10 @@ START_TEST(fit_gives_back_a_polynomial_from_its_values)
   for (int degree = 1; degree <= highest(basis); degree++)
     for (int more = 0; more <= 3; more++) {
       fit(basis, degree, degree + more, degree, Y);
-      for (double tau = 0; tau <= 1; tau += 0.125) /* values up to degree, each rounded; Lebesgue constants below 50 */
-        ck_assert_double_eq_tol(evaluate(basis, degree, Y, tau), polynomial(degree, tau) - polynomial(degree, 0),
+      /* values up to degree, each rounded; Lebesgue constants below 50 */
+      for (double tau = 0; tau <= 1; tau += 0.125)
+        ck_assert_double_eq_tol(evaluate(basis, degree, Y, tau),
+                                polynomial(degree, tau) - polynomial(degree, 0),
                                 100 * degree * roundoff());
     }
 }
@@ -126,7 +140,8 @@ START_TEST(fit_at_its_own_nodes_reads_nodal_values)
     ck_assert_int_eq(dvi_basis_nodes(basis, degree, node), DVI_OK);
     dvi__trial_fit(basis, degree, degree, node + 1, matrix);
     for (int k = 0; k < degree; k++)
-      for (int i = 0; i < degree; i++) /* a node's rounding moves values by its slope, at most degree^2 */
+      /* a node's rounding moves values by its slope, at most degree^2 */
+      for (int i = 0; i < degree; i++)
         ck_assert_double_eq_tol(matrix[k * degree + i], k == i, 4 * degree * degree * roundoff());
   }
 }
@@ -158,7 +173,8 @@ START_TEST(shift_continues_a_polynomial_of_the_kept_degree)
         double size = 1; /* extrapolation multiplies the roundoff of Y by up to |shift| */
         for (int i = 0; i < degree * degree; i++) size = fmax(size, fabs(shift[i]));
         for (double tau = 0; tau <= 1; tau += 0.125)
-          ck_assert_double_eq_tol(evaluate(basis, degree, next, tau), polynomial(keep, 1 + ratios[r] * tau) - polynomial(keep, 1),
+          ck_assert_double_eq_tol(evaluate(basis, degree, next, tau),
+                                  polynomial(keep, 1 + ratios[r] * tau) - polynomial(keep, 1),
                                   100 * degree * size * roundoff());
       }
 }
@@ -174,7 +190,8 @@ START_TEST(shift_backward_by_the_whole_step_returns_the_step)
     dvi__trial_shift(basis, degree, degree, -1, shift);
     multiply(degree, degree, shift, Y, next);
     for (double tau = 0; tau <= 1; tau += 0.125)
-      ck_assert_double_eq_tol(evaluate(basis, degree, next, tau), polynomial(degree, 1 - tau) - polynomial(degree, 1),
+      ck_assert_double_eq_tol(evaluate(basis, degree, next, tau),
+                              polynomial(degree, 1 - tau) - polynomial(degree, 1),
                               200 * degree * roundoff()); /* as in the fit, twice */
   }
 }
@@ -185,7 +202,8 @@ START_TEST(shift_drops_derivatives_orthogonal_to_the_kept_degree)
   /* q' = P_m with m >= keep: its best approximation of degree keep-1 is 0 */
   const dvi_basis basis = (dvi_basis)_i;
   enum { DEGREE = 6 };
-  double matrix[DEGREE * DEGREE], Y[DEGREE], next[DEGREE], shift[DEGREE * DEGREE], tau[DEGREE], weight[DEGREE], value[DEGREE];
+  double matrix[DEGREE * DEGREE], Y[DEGREE], next[DEGREE], shift[DEGREE * DEGREE], tau[DEGREE],
+      weight[DEGREE], value[DEGREE];
   double P[DEGREE + 1];
   ck_assert_int_eq(dvi_quadrature(DVI_GAUSS, DEGREE, tau, weight), DVI_OK);
   dvi__trial_fit(basis, DEGREE, DEGREE, tau, matrix);
@@ -215,8 +233,10 @@ SUITE(trial)
     tcase_add_loop_test(tests, psi_keeps_its_digits_near_0, 0, BASES);
   tcase_add_loop_test(tests, the_tables_are_the_same_from_a_space_made_once, 0, BASES);
   tcase_add_loop_test(tests, fit_gives_back_a_polynomial_from_its_values, 0, BASES);
-  tcase_add_loop_test(tests, fit_at_its_own_nodes_reads_nodal_values, DVI_LAGRANGE_LOBATTO, DVI_LAGRANGE_LOBATTO + 1);
-  tcase_add_loop_test(tests, fit_at_its_own_nodes_reads_nodal_values, DVI_LAGRANGE_CHEBYSHEV, DVI_LAGRANGE_EQUISPACED + 1);
+  tcase_add_loop_test(tests, fit_at_its_own_nodes_reads_nodal_values, DVI_LAGRANGE_LOBATTO,
+                      DVI_LAGRANGE_LOBATTO + 1);
+  tcase_add_loop_test(tests, fit_at_its_own_nodes_reads_nodal_values, DVI_LAGRANGE_CHEBYSHEV,
+                      DVI_LAGRANGE_EQUISPACED + 1);
   tcase_add_loop_test(tests, fit_with_more_points_is_the_least_squares_solution, 0, BASES);
   tcase_add_loop_test(tests, shift_continues_a_polynomial_of_the_kept_degree, 0, BASES);
   tcase_add_loop_test(tests, shift_backward_by_the_whole_step_returns_the_step, 0, BASES);

@@ -11,9 +11,14 @@
 #include "support/runs.h"
 #include "support/suite.h"
 
-enum { N = 3, MOST = N * (DVI__CANONICAL_DEGREE + DVI__CANONICAL_POINTS), ENTRIES_MOST = MOST * MOST };
+enum {
+  N = 3,
+  MOST = N * (DVI__CANONICAL_DEGREE + DVI__CANONICAL_POINTS),
+  ENTRIES_MOST = MOST * MOST
+};
 
-static const double q0[N] = {0.2, -0.4, 0.7}, p0[N] = {-0.8, 0.3, 1.1}, unit[N] = {0.5, 2, 1.5}, h = 0.3;
+static const double q0[N] = {0.2, -0.4, 0.7}, p0[N] = {-0.8, 0.3, 1.1}, unit[N] = {0.5, 2, 1.5},
+                    h = 0.3;
 
 static const dvi__action_space spaces[] = {{DVI_LAGRANGE_LOBATTO, 1, DVI_GAUSS, 1},
                                            {DVI_LAGRANGE_LOBATTO, 2, DVI_GAUSS, 2},
@@ -21,7 +26,8 @@ static const dvi__action_space spaces[] = {{DVI_LAGRANGE_LOBATTO, 1, DVI_GAUSS, 
                                            {DVI_LAGRANGE_LOBATTO, 4, DVI_RADAU_RIGHT, 4},
                                            {DVI_LEGENDRE, 3, DVI_LOBATTO, 4},
                                            {DVI_CHEBYSHEV, 8, DVI_LOBATTO, 9}};
-enum { SPACES = sizeof spaces / sizeof *spaces, SERVE = 4 }; /* the first ones serve a degenerate H */
+/* the first ones serve a degenerate H */
+enum { SPACES = sizeof spaces / sizeof *spaces, SERVE = 4 };
 
 static dvi__canonical *made_step(const problem *of, const dvi__action_space *space)
 {
@@ -50,7 +56,8 @@ START_TEST(the_jacobian_is_the_derivative_of_the_rows)
     x[j] = at;
     for (int i = 0; i < pattern->rows; i++) {
       const int entry = dvi__pattern_find(pattern, i, j);
-      ck_assert_double_eq_tol(entry >= 0 ? values[entry] : 0, (plus[i] - minus[i]) / (2 * moved), 2e-8);
+      ck_assert_double_eq_tol(entry >= 0 ? values[entry] : 0, (plus[i] - minus[i]) / (2 * moved),
+                              2e-8);
     }
   }
   dvi__canonical_destroy(&step);
@@ -70,7 +77,8 @@ static void solve(dvi__canonical *step, double *x)
   const dvi__pattern *pattern = dvi__canonical_pattern(step);
   double R[MOST], values[ENTRIES_MOST];
   dvi__linear *linear;
-  ck_assert_int_eq(dvi__linear_create(pattern, dvi__linear_for_exchanges(pattern), NULL, &linear), DVI_OK);
+  ck_assert_int_eq(dvi__linear_create(pattern, dvi__linear_for_exchanges(pattern), NULL, &linear),
+                   DVI_OK);
   for (int k = 0; k < 12; k++) {
     ck_assert_int_eq(dvi__canonical_residual(step, x, R), DVI_OK);
     ck_assert_int_eq(dvi__canonical_jacobian(step, x, values), DVI_OK);
@@ -82,7 +90,8 @@ static void solve(dvi__canonical *step, double *x)
   dvi__linear_destroy(&linear);
 }
 
-static double action_of(const problem *of, const dvi__action_space *space, const taken *step, const double *x)
+static double action_of(const problem *of, const dvi__action_space *space, const taken *step,
+                        const double *x)
 {
   double c[DVI__CANONICAL_POINTS], b[DVI__CANONICAL_POINTS], S = 0;
   ck_assert_int_eq(dvi_quadrature(space->rule, space->nodes, c, b), DVI_OK);
@@ -131,11 +140,13 @@ static double product(const double *a, const double *b)
 /* a.db over 2 e. */
 static double rise(const double *a, const double *plus, const double *minus, double e)
 {
-  const double difference[N] = {(plus[0] - minus[0]) / (2 * e), (plus[1] - minus[1]) / (2 * e), (plus[2] - minus[2]) / (2 * e)};
+  const double difference[N] = {(plus[0] - minus[0]) / (2 * e), (plus[1] - minus[1]) / (2 * e),
+                                (plus[2] - minus[2]) / (2 * e)};
   return product(a, difference);
 }
 
-/* dH+ = q1.dp1 + p0.dq0 and dH- = -q0.dp0 - p1.dq1 along every direction of the start: the discrete Hamilton's equations. Central differences. */
+/* dH+ = q1.dp1 + p0.dq0 and dH- = -q0.dp0 - p1.dq1 along every direction of the start: the discrete
+ * Hamilton's equations. Central differences. */
 START_TEST(the_right_and_the_left_discrete_hamiltonian_generate_the_step)
 {
   problem *of = made_problem("elastica", NULL);
@@ -143,10 +154,14 @@ START_TEST(the_right_and_the_left_discrete_hamiltonian_generate_the_step)
   for (int along = 0; along < 2 * N; along++) {
     const taken at = take(of, &spaces[_i], along, 0), plus = take(of, &spaces[_i], along, e),
                 minus = take(of, &spaces[_i], along, -e);
-    const double right = (product(plus.p1, plus.q1) - plus.S - product(minus.p1, minus.q1) + minus.S) / (2 * e);
-    const double left = (-product(plus.p0, plus.q0) - plus.S + product(minus.p0, minus.q0) + minus.S) / (2 * e);
-    ck_assert_double_eq_tol(right, rise(at.q1, plus.p1, minus.p1, e) + rise(at.p0, plus.q0, minus.q0, e), 2e-8);
-    ck_assert_double_eq_tol(left, -rise(at.q0, plus.p0, minus.p0, e) - rise(at.p1, plus.q1, minus.q1, e), 2e-8);
+    const double right =
+        (product(plus.p1, plus.q1) - plus.S - product(minus.p1, minus.q1) + minus.S) / (2 * e);
+    const double left =
+        (-product(plus.p0, plus.q0) - plus.S + product(minus.p0, minus.q0) + minus.S) / (2 * e);
+    ck_assert_double_eq_tol(
+        right, rise(at.q1, plus.p1, minus.p1, e) + rise(at.p0, plus.q0, minus.q0, e), 2e-8);
+    ck_assert_double_eq_tol(
+        left, -rise(at.q0, plus.p0, minus.p0, e) - rise(at.p1, plus.q1, minus.q1, e), 2e-8);
   }
   problem_destroy(&of);
 }
@@ -154,6 +169,7 @@ END_TEST
 
 SUITE(canonical)
 {
-  tcase_add_loop_test(tests, the_right_and_the_left_discrete_hamiltonian_generate_the_step, 0, SERVE);
+  tcase_add_loop_test(tests, the_right_and_the_left_discrete_hamiltonian_generate_the_step, 0,
+                      SERVE);
   tcase_add_loop_test(tests, the_jacobian_is_the_derivative_of_the_rows, 0, SPACES);
 }

@@ -1,5 +1,6 @@
 /* labels: unit jacobian */
-/* For a quadratic Lagrangian the frozen Jacobian is the Jacobian: the decoupled systems invert it. */
+/* For a quadratic Lagrangian the frozen Jacobian is the Jacobian: the decoupled systems invert
+ * it. */
 #include <math.h>
 #include <string.h>
 
@@ -9,10 +10,16 @@
 #include "support/suite.h"
 #include "support/systems/systems.h"
 
-enum { N = 3, DEGREE_MOST = 9, UNKNOWNS_MOST = N * DEGREE_MOST, ENTRIES_MOST = UNKNOWNS_MOST * UNKNOWNS_MOST };
+enum {
+  N = 3,
+  DEGREE_MOST = 9,
+  UNKNOWNS_MOST = N * DEGREE_MOST,
+  ENTRIES_MOST = UNKNOWNS_MOST * UNKNOWNS_MOST
+};
 
 /* L = v.Mv/2 + q.Gv - q.Kq/2 with symmetric M, K. */
-static const double M[N][N] = {{2, 0.3, 0}, {0.3, 1, 0.1}, {0, 0.1, 3}}, K[N][N] = {{5, -1, 0}, {-1, 90, 2}, {0, 2, -4}};
+static const double M[N][N] = {{2, 0.3, 0}, {0.3, 1, 0.1}, {0, 0.1, 3}},
+                    K[N][N] = {{5, -1, 0}, {-1, 90, 2}, {0, 2, -4}};
 static const double G[N][N] = {{0, 4, 0}, {-1, 0, 2}, {0, 0.5, 0}};
 
 static int value(double t, const double *q, const double *v, double *L, void *user)
@@ -21,11 +28,13 @@ static int value(double t, const double *q, const double *v, double *L, void *us
   (void)t;
   *L = 0;
   for (int i = 0; i < N; i++)
-    for (int j = 0; j < N; j++) *L += v[i] * M[i][j] * v[j] / 2 + mixed * q[i] * G[i][j] * v[j] - q[i] * K[i][j] * q[j] / 2;
+    for (int j = 0; j < N; j++)
+      *L += v[i] * M[i][j] * v[j] / 2 + mixed * q[i] * G[i][j] * v[j] - q[i] * K[i][j] * q[j] / 2;
   return 0;
 }
 
-static int gradient(double t, const double *q, const double *v, double *L_q, double *L_v, void *user)
+static int gradient(double t, const double *q, const double *v, double *L_q, double *L_v,
+                    void *user)
 {
   const double mixed = *(const double *)user;
   (void)t;
@@ -39,7 +48,8 @@ static int gradient(double t, const double *q, const double *v, double *L_q, dou
   return 0;
 }
 
-static int hessian(double t, const double *q, const double *v, double *L_qq, double *L_qv, double *L_vv, void *user)
+static int hessian(double t, const double *q, const double *v, double *L_qq, double *L_qv,
+                   double *L_vv, void *user)
 {
   const double mixed = *(const double *)user;
   (void)t, (void)q, (void)v;
@@ -74,7 +84,8 @@ static void make_element(double *mixed, dvi__action_space space, double h, eleme
   *e = (element){.system = system_with(mixed)};
   ck_assert_int_eq(dvi__action_create(e->system, &space, &e->counters, &e->action), DVI_OK);
   ck_assert_int_eq(dvi__action_prepare_jacobian(e->action), DVI_OK);
-  ck_assert_msg(dvi__decoupled_create(e->action, &e->counters, &e->decoupled) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi__decoupled_create(e->action, &e->counters, &e->decoupled) == DVI_OK, "%s",
+                dvi_last_error());
   dvi__action_place(e->action, 0, h, q0, p0);
 }
 
@@ -85,9 +96,10 @@ static void free_element(element *e)
   dvi_system_destroy(&e->system);
 }
 
-/* R = J x, then J^{-1} R = x. Without a mixed part in any space; with one where quadratures are exact enough. Steps from short to stiff: K_11
- * makes a frequency of 9.5. The systems have conditions of up to 1e3, equispaced functions of degree 9 one of 1e4: an iteration's matrix needs a few digits
- * alone. */
+/* R = J x, then J^{-1} R = x. Without a mixed part in any space; with one where quadratures are
+ * exact enough. Steps from short to stiff: K_11 makes a frequency of 9.5. The systems have
+ * conditions of up to 1e3, equispaced functions of degree 9 one of 1e4: an iteration's matrix needs
+ * a few digits alone. */
 static void check_inverse(double mixed, dvi__action_space space, double h)
 {
   static double values[ENTRIES_MOST];
@@ -99,7 +111,8 @@ static void check_inverse(double mixed, dvi__action_space space, double h)
   ck_assert_int_eq(dvi__action_jacobian(e.action, Y, values), DVI_OK);
   for (int j = 0; j < pattern->columns; j++) {
     x[j] = sin(1 + 2.3 * j);
-    for (int k = pattern->start[j]; k < pattern->start[j + 1]; k++) R[pattern->row[k]] += values[k] * x[j];
+    for (int k = pattern->start[j]; k < pattern->start[j + 1]; k++)
+      R[pattern->row[k]] += values[k] * x[j];
   }
   ck_assert_msg(dvi__decoupled_freeze(e.decoupled, Y) == DVI_OK, "%s", dvi_last_error());
   dvi__decoupled_solve(e.decoupled, R);
@@ -124,7 +137,9 @@ END_TEST
 
 START_TEST(a_mixed_jacobian_is_inverted_with_gauss_quadrature)
 {
-  check_inverse(1, (dvi__action_space){(dvi_basis)(_i % 6), 1 + _i / 6 % DEGREE_MOST, DVI_GAUSS, 1 + _i / 6 % DEGREE_MOST},
+  check_inverse(1,
+                (dvi__action_space){(dvi_basis)(_i % 6), 1 + _i / 6 % DEGREE_MOST, DVI_GAUSS,
+                                    1 + _i / 6 % DEGREE_MOST},
                 steps[_i / 6 / DEGREE_MOST]);
 }
 END_TEST
@@ -139,7 +154,8 @@ START_TEST(one_factorisation_is_made_for_each_pair)
   make_element(&none, (dvi__action_space){DVI_LEGENDRE, degree, DVI_GAUSS, degree}, 0.1, &e);
   ck_assert_int_eq(dvi__decoupled_freeze(e.decoupled, Y), DVI_OK);
   ck_assert_int_eq(e.counters.factorizations, (degree + 1) / 2);
-  ck_assert_int_eq(e.counters.symbolic, 1 + 2); /* the velocity's own, twice; one for all eigenvalues */
+  /* the velocity's own, twice; one for all eigenvalues */
+  ck_assert_int_eq(e.counters.symbolic, 1 + 2);
   ck_assert_int_eq(e.counters.hessians, 1);
   free_element(&e);
 }
@@ -169,7 +185,8 @@ END_TEST
 SUITE(decoupled)
 {
   tcase_add_loop_test(tests, a_separable_jacobian_is_inverted_in_any_space, 0, 7 * 3);
-  tcase_add_loop_test(tests, a_mixed_jacobian_is_inverted_with_gauss_quadrature, 0, 6 * DEGREE_MOST * 3);
+  tcase_add_loop_test(tests, a_mixed_jacobian_is_inverted_with_gauss_quadrature, 0,
+                      6 * DEGREE_MOST * 3);
   tcase_add_loop_test(tests, one_factorisation_is_made_for_each_pair, 0, DEGREE_MOST);
   tcase_add_test(tests, creating_survives_every_failure);
 }

@@ -1,6 +1,6 @@
 /* labels: jacobian */
-/* One element against its definition: the discrete action is summed here from the public quadrature, basis and Lagrangian, and the
- * stationarity rows must be its derivatives. */
+/* One element against its definition: the discrete action is summed here from the public
+ * quadrature, basis and Lagrangian, and the stationarity rows must be its derivatives. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -17,9 +17,19 @@ static behaviour quiet;
 
 /* ---- systems ---- */
 
-enum { SCALAR_MASS, DIAGONAL_MASS, SPARSE_MASS, GENERAL, MIXED, DENSE_POTENTIAL, DENSE_GENERAL, SYSTEMS };
+enum {
+  SCALAR_MASS,
+  DIAGONAL_MASS,
+  SPARSE_MASS,
+  GENERAL,
+  MIXED,
+  DENSE_POTENTIAL,
+  DENSE_GENERAL,
+  SYSTEMS
+};
 
-/* The dense kinds leave Hessian and pattern out: then every entry may be nonzero, and the library differences. */
+/* The dense kinds leave Hessian and pattern out: then every entry may be nonzero, and the library
+ * differences. */
 static dvi_system *system_of(int kind)
 {
   static const double diagonal[SITES] = {1, 2, 0.5, 3, 1.5, 0.7};
@@ -27,7 +37,9 @@ static dvi_system *system_of(int kind)
   dvi_potential potentials[2] = {springs(&quiet, ONE_POINT), wells(&quiet, BATCH)};
   dvi_system_terms terms = {.dimension = SITES, .potentials = potentials, .potential_count = 2};
   if (kind == DENSE_POTENTIAL) potentials[0].hessian = NULL, potentials[0].qq = (dvi_pattern){0};
-  if (kind == DENSE_GENERAL) lagrangian.hessian_batch = NULL, lagrangian.qq = lagrangian.qv = lagrangian.vv = (dvi_pattern){0};
+  if (kind == DENSE_GENERAL)
+    lagrangian.hessian_batch = NULL,
+    lagrangian.qq = lagrangian.qv = lagrangian.vv = (dvi_pattern){0};
   if (kind == GENERAL || kind == DENSE_GENERAL) terms.potentials = NULL, terms.potential_count = 0;
   if (kind == GENERAL || kind == MIXED || kind == DENSE_GENERAL)
     terms.lagrangian = &lagrangian;
@@ -75,12 +87,14 @@ typedef struct element {
 static void make_element(int kind, dvi__action_space space, element *e)
 {
   *e = (element){.system = system_of(kind), .space = space};
-  ck_assert_msg(dvi__action_create(e->system, &space, &e->counters, &e->action) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi__action_create(e->system, &space, &e->counters, &e->action) == DVI_OK, "%s",
+                dvi_last_error());
   ck_assert_int_eq(dvi__action_unknowns(e->action), SITES * space.degree);
   memcpy(e->q0, generic_q, sizeof e->q0);
   memcpy(e->p0, generic_v, sizeof e->p0);
   for (int i = 0; i < SITES; i++)
-    for (int k = 0; k < space.degree; k++) e->Y[i * space.degree + k] = h * (generic_v[i] + 0.3 * cos(2 * i + 5 * k)) / (1 + k);
+    for (int k = 0; k < space.degree; k++)
+      e->Y[i * space.degree + k] = h * (generic_v[i] + 0.3 * cos(2 * i + 5 * k)) / (1 + k);
   dvi__action_place(e->action, t0, h, e->q0, e->p0);
 }
 
@@ -108,7 +122,8 @@ static void trial(const dvi__action_space *space, double tau, double *psi, doubl
   }
 }
 
-static void path(const element *e, const double *q0, const double *Y, double tau, double *q, double *v)
+static void path(const element *e, const double *q0, const double *Y, double tau, double *q,
+                 double *v)
 {
   double psi[DEGREE_MOST], dpsi[DEGREE_MOST];
   trial(&e->space, tau, psi, dpsi);
@@ -137,8 +152,8 @@ static double discrete_action(const element *e, const double *q0, const double *
 
 static const double moved[3] = {0.01, 0.02, 0.03}, share[3] = {1.5, -0.6, 0.1};
 
-/* dS/dx of one number of q0 or Y: the central difference of order 6 with d = 0.01. Its error is d^6/140 of the 7th derivative, about
- * 1e-11, and an epsilon of S over d, about 1e-13. */
+/* dS/dx of one number of q0 or Y: the central difference of order 6 with d = 0.01. Its error is
+ * d^6/140 of the 7th derivative, about 1e-11, and an epsilon of S over d, about 1e-13. */
 static double slope(const element *e, double *x, const double *q0, const double *Y)
 {
   const double at = *x;
@@ -185,7 +200,8 @@ static void check_ends(int kind, dvi__action_space space)
   dvi__action_ends(e.action, e.Y, dq, low, dp);
   path(&e, e.q0, e.Y, 1, q1, v);
   for (int i = 0; i < SITES; i++) {
-    ck_assert_double_eq_tol(dq[i] + low[i], q1[i] - e.q0[i], 8 * DBL_EPSILON * 2); /* a few roundings of numbers up to 2 */
+    /* a few roundings of numbers up to 2 */
+    ck_assert_double_eq_tol(dq[i] + low[i], q1[i] - e.q0[i], 8 * DBL_EPSILON * 2);
     ck_assert_double_eq_tol(dp[i], slope(&e, &e.q0[i], e.q0, e.Y), 1e-9);
   }
   free_element(&e);
@@ -215,7 +231,8 @@ static double check_column(element *e, int x, const double *values)
   for (int i = 0; i < count; i++) {
     const int entry = dvi__pattern_find(pattern, i, x);
     if (entry < 0) outside = fmax(outside, fabs(column[i]));
-    /* Entries are up to 1e3 (K M/h); the dense kinds' Hessians are differences with an error of 1e-9 of that. */
+    /* Entries are up to 1e3 (K M/h); the dense kinds' Hessians are differences with an error of
+     * 1e-9 of that. */
     else
       ck_assert_double_eq_tol(values[entry], column[i], 1e-7 * fmax(1, fabs(column[i])));
   }
@@ -229,7 +246,8 @@ static void check_jacobian(int kind, dvi__action_space space)
   make_element(kind, space, &e);
   ck_assert_msg(dvi__action_prepare_jacobian(e.action) == DVI_OK, "%s", dvi_last_error());
   ck_assert_msg(dvi__action_jacobian(e.action, e.Y, values) == DVI_OK, "%s", dvi_last_error());
-  for (int x = 0; x < SITES * e.space.degree; x++) ck_assert_double_le(check_column(&e, x, values), 1e-10);
+  for (int x = 0; x < SITES * e.space.degree; x++)
+    ck_assert_double_le(check_column(&e, x, values), 1e-10);
   free_element(&e);
 }
 
@@ -259,8 +277,11 @@ START_TEST(tables_are_consistent_to_the_last_bit)
   const int *size = sizes[_i / BASES];
   dvi_system *system = system_of(SCALAR_MASS);
   dvi__action *a;
-  ck_assert_int_eq(dvi__action_create(system, &(dvi__action_space){(dvi_basis)(_i % BASES), size[0], DVI_GAUSS, size[1]}, NULL, &a),
-                   DVI_OK);
+  ck_assert_int_eq(
+      dvi__action_create(system,
+                         &(dvi__action_space){(dvi_basis)(_i % BASES), size[0], DVI_GAUSS, size[1]},
+                         NULL, &a),
+      DVI_OK);
   for (int k = 0; k < size[0]; k++)
     for (int j = 0; j < size[1]; j++) {
       const double psi = a->psi[k * a->lanes + j], bar = a->bar[k * a->lanes + j];
@@ -284,7 +305,8 @@ static void check_tables(int kind, dvi__action_space space)
     trial(&e.space, node[j], psi, dpsi);
     ck_assert_double_eq(a->weight[j], weight[j]);
     for (int k = 0; k < e.space.degree; k++) {
-      ck_assert_double_eq_tol(a->psi[k * a->lanes + j], psi[k], 1e-14); /* functions up to 2, and their slopes, at rounded nodes */
+      /* functions up to 2, and their slopes, at rounded nodes */
+      ck_assert_double_eq_tol(a->psi[k * a->lanes + j], psi[k], 1e-14);
       ck_assert_double_eq_tol(a->dpsi[k * a->lanes + j], dpsi[k], 1e-14 * 200);
     }
   }
@@ -364,7 +386,9 @@ static void check_continued(int kind, dvi__action_space space)
     for (double tau = 0; tau < 1.1; tau += 0.25) {
       dvi__action_path(e.action, Y, h, tau, offset, NULL);
       for (int i = 0; i < SITES; i++)
-        ck_assert_double_eq_tol(offset[i], polynomial(s, i, 1 + ratios[m] * tau, NULL) - polynomial(s, i, 1, NULL), 100 * exact);
+        ck_assert_double_eq_tol(
+            offset[i], polynomial(s, i, 1 + ratios[m] * tau, NULL) - polynomial(s, i, 1, NULL),
+            100 * exact);
     }
   }
   free_element(&e);
@@ -400,7 +424,8 @@ END_TEST
 
 /* ---- the chord ---- */
 
-/* Column j of L_vv in the middle of the path. L_v is linear in v for all these systems: a difference of two momenta is exact. */
+/* Column j of L_vv in the middle of the path. L_v is linear in v for all these systems: a
+ * difference of two momenta is exact. */
 static void velocity_hessian_column(const element *e, int j, double *column)
 {
   double q[SITES], v[SITES], p[SITES];
@@ -432,12 +457,15 @@ static void check_chord(int kind, dvi__action_space space)
     velocity_hessian_column(&e, j, column);
     for (int k = 0; k < s; k++)
       for (int l = 0; l < s; l++)
-        for (int i = 0; i < SITES; i++) R[i * s + k] += stiffness(&e.space, k, l) * column[i] / h * e.Y[j * s + l];
+        for (int i = 0; i < SITES; i++)
+          R[i * s + k] += stiffness(&e.space, k, l) * column[i] / h * e.Y[j * s + l];
   }
   ck_assert_msg(dvi__action_prepare_chord(e.action, e.Y) == DVI_OK, "%s", dvi_last_error());
   dvi__action_chord(e.action, R);
-  /* Conditions of K and L_vv multiply to at most 1e4; differenced L_vv (the dense general kind) are right to 1e-8. */
-  for (int x = 0; x < SITES * s; x++) ck_assert_double_eq_tol(R[x], e.Y[x], kind == DENSE_GENERAL ? 1e-6 : 1e-12);
+  /* Conditions of K and L_vv multiply to at most 1e4; differenced L_vv (the dense general kind) are
+   * right to 1e-8. */
+  for (int x = 0; x < SITES * s; x++)
+    ck_assert_double_eq_tol(R[x], e.Y[x], kind == DENSE_GENERAL ? 1e-6 : 1e-12);
   free_element(&e);
 }
 
@@ -452,14 +480,16 @@ START_TEST(rows_are_scaled_by_the_velocity_hessian_over_the_step)
   element e;
   double scale[UNKNOWNS_MOST], column[SITES];
   make_element(_i, (dvi__action_space){DVI_LEGENDRE, 2, DVI_GAUSS, 2}, &e);
-  dvi__action_place(e.action, t0 + h, -h, e.q0, e.p0); /* backward: scales stay positive, L_vv depends on q alone */
+  /* backward: scales stay positive, L_vv depends on q alone */
+  dvi__action_place(e.action, t0 + h, -h, e.q0, e.p0);
   must(dvi__action_prepare_chord(e.action, e.Y));
   ck_assert_int_eq(dvi__action_row_scale(e.action, scale), 1);
   for (int i = 0; i < SITES; i++) {
     double largest = 0;
     velocity_hessian_column(&e, i, column);
     for (int j = 0; j < SITES; j++) largest = fmax(largest, fabs(column[j]));
-    for (int k = 0; k < 2; k++) ck_assert_double_eq_tol(scale[2 * i + k] * h, largest, 1e-8); /* differenced L_vv */
+    /* differenced L_vv */
+    for (int k = 0; k < 2; k++) ck_assert_double_eq_tol(scale[2 * i + k] * h, largest, 1e-8);
   }
   free_element(&e);
 }
@@ -468,10 +498,12 @@ END_TEST
 SUITE(element)
 {
   tcase_set_timeout(tests, 60);
-  tcase_add_loop_test(tests, the_residual_is_the_gradient_of_the_discrete_action, 0, SYSTEMS * RULES);
+  tcase_add_loop_test(tests, the_residual_is_the_gradient_of_the_discrete_action, 0,
+                      SYSTEMS * RULES);
   tcase_add_loop_test(tests, ends_are_the_path_s_end_and_the_discrete_momentum, 0, SYSTEMS * RULES);
   tcase_add_loop_test(tests, the_jacobian_is_the_derivative_of_the_residual, 0, SYSTEMS * RULES);
-  tcase_add_loop_test(tests, the_jacobian_s_pattern_is_a_block_for_each_pair_that_interacts, 0, SYSTEMS);
+  tcase_add_loop_test(tests, the_jacobian_s_pattern_is_a_block_for_each_pair_that_interacts, 0,
+                      SYSTEMS);
   tcase_add_loop_test(tests, tables_are_consistent_to_the_last_bit, 0, 6 * BASES);
   tcase_add_loop_test(tests, tables_hold_the_trial_functions, 0, RULES);
   tcase_add_loop_test(tests, a_fitted_path_is_the_polynomial, 0, RULES);

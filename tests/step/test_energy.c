@@ -1,5 +1,6 @@
 /* labels: jacobian */
-/* The energies of an element are derivatives of its action in its times, and their gradients the derivatives of both: all against differences. */
+/* The energies of an element are derivatives of its action in its times, and their gradients the
+ * derivatives of both: all against differences. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -15,7 +16,8 @@ static const double t0 = 0.4, h0 = 0.3;
 
 enum { AUTONOMOUS, DRIVEN_MASS, DRIVEN_LAGRANGIAN, SYSTEMS };
 
-/* V = sin(3 t + q_0) q_1: it has all of V_tq and V_tt, which differences of the element must get right. */
+/* V = sin(3 t + q_0) q_1: it has all of V_tq and V_tt, which differences of the element must get
+ * right. */
 static int wave_value(double t, const double *q, double *V, void *user)
 {
   (void)user;
@@ -42,9 +44,10 @@ static int wave_gradient(double t, const double *q, double *V_q, void *user)
 static dvi_system *system_of(int kind)
 {
   const dvi_lagrangian lagrangian = rotors(&quiet, BATCH);
-  dvi_potential potentials[3] = {springs(&quiet, BATCH),
-                                 wells(&quiet, BATCH),
-                                 {.name = "wave", .value = wave_value, .rate = wave_rate, .gradient = wave_gradient}};
+  dvi_potential potentials[3] = {
+      springs(&quiet, BATCH),
+      wells(&quiet, BATCH),
+      {.name = "wave", .value = wave_value, .rate = wave_rate, .gradient = wave_gradient}};
   dvi_system_terms terms = {.dimension = SITES, .potentials = potentials, .potential_count = 3};
   if (kind == DRIVEN_LAGRANGIAN)
     terms.lagrangian = &lagrangian;
@@ -110,7 +113,8 @@ static double action_at(const element *e, const dvi__action_space *space, double
   return sum;
 }
 
-/* Central differences of order 6 over parts of 1/100 of h err by about 1e-11 of the numbers, by roundoff as by truncation. */
+/* Central differences of order 6 over parts of 1/100 of h err by about 1e-11 of the numbers, by
+ * roundoff as by truncation. */
 static const double weight_of[3] = {1.5, -0.6, 0.1}, apart = 0.003;
 
 START_TEST(the_energies_are_the_derivatives_of_the_action_in_the_times_of_the_ends)
@@ -136,8 +140,8 @@ START_TEST(the_energies_are_the_derivatives_of_the_action_in_the_times_of_the_en
 END_TEST
 
 /* The rows and both energies at a moved point: Y by `direction`, q0 by `start`, h by `length`. */
-static void rows_at(const element *e, double d, const double *direction, const double *start, double length, double *R,
-                    dvi__energies *E)
+static void rows_at(const element *e, double d, const double *direction, const double *start,
+                    double length, double *R, dvi__energies *E)
 {
   double Y[UNKNOWNS_MOST], q0[SITES];
   for (int i = 0; i < e->unknowns; i++) Y[i] = e->Y[i] + d * direction[i];
@@ -148,7 +152,8 @@ static void rows_at(const element *e, double d, const double *direction, const d
 }
 
 /* Derivatives along a direction. */
-static void derivatives(const element *e, const double *direction, const double *start, double length, double *R, dvi__energies *E)
+static void derivatives(const element *e, const double *direction, const double *start,
+                        double length, double *R, dvi__energies *E)
 {
   double plus[UNKNOWNS_MOST], minus[UNKNOWNS_MOST];
   *E = (dvi__energies){0};
@@ -178,8 +183,8 @@ static const double still[UNKNOWNS_MOST];
 START_TEST(the_h_column_is_the_derivative_of_the_rows)
 {
   element e;
-  double start_Y[UNKNOWNS_MOST], end_Y[UNKNOWNS_MOST], start_q0[SITES], end_q0[SITES], column[UNKNOWNS_MOST],
-      expected[UNKNOWNS_MOST];
+  double start_Y[UNKNOWNS_MOST], end_Y[UNKNOWNS_MOST], start_q0[SITES], end_q0[SITES],
+      column[UNKNOWNS_MOST], expected[UNKNOWNS_MOST];
   dvi__energy_gradient start = {start_Y, start_q0, 0}, end = {end_Y, end_q0, 0};
   dvi__energies E;
   make_element(_i, &e);
@@ -187,7 +192,8 @@ START_TEST(the_h_column_is_the_derivative_of_the_rows)
   gradients_of(&e, &start, &end);
   dvi__action_h_column(e.action, &end, column);
   derivatives(&e, still, still, 1, expected, &E);
-  for (int i = 0; i < e.unknowns; i++) ck_assert_double_eq_tol(column[i], expected[i], tolerance * (1 + fabs(expected[i])));
+  for (int i = 0; i < e.unknowns; i++)
+    ck_assert_double_eq_tol(column[i], expected[i], tolerance * (1 + fabs(expected[i])));
   ck_assert_double_eq_tol(start.h, E.start, tolerance * (1 + fabs(E.start)));
   ck_assert_double_eq_tol(end.h, E.end, tolerance * (1 + fabs(E.end)));
   free_element(&e);
@@ -197,7 +203,8 @@ END_TEST
 START_TEST(the_gradients_are_the_derivatives_of_the_energies)
 {
   element e;
-  double start_Y[UNKNOWNS_MOST], end_Y[UNKNOWNS_MOST], start_q0[SITES], end_q0[SITES], direction[UNKNOWNS_MOST], R[UNKNOWNS_MOST];
+  double start_Y[UNKNOWNS_MOST], end_Y[UNKNOWNS_MOST], start_q0[SITES], end_q0[SITES],
+      direction[UNKNOWNS_MOST], R[UNKNOWNS_MOST];
   dvi__energy_gradient start = {start_Y, start_q0, 0}, end = {end_Y, end_q0, 0};
   dvi__energies E;
   make_element(_i, &e);
@@ -226,8 +233,8 @@ START_TEST(a_system_without_rates_has_no_energies)
   p.rate_batch = NULL;
   dvi_counters counters = {0};
   dvi__action *action = NULL;
-  dvi_system *system = make_system(
-      &(dvi_system_terms){.dimension = SITES, .mass.scalar = 1, .potentials = &p, .potential_count = 1});
+  dvi_system *system = make_system(&(dvi_system_terms){
+      .dimension = SITES, .mass.scalar = 1, .potentials = &p, .potential_count = 1});
   must(dvi__action_create(system, &spaces[0], &counters, &action));
   must(dvi__action_prepare_jacobian(action));
   ck_assert_int_eq(dvi__action_prepare_energy(action), DVI_UNSUPPORTED);
@@ -239,8 +246,11 @@ END_TEST
 
 SUITE(energy)
 {
-  tcase_add_loop_test(tests, the_energies_are_the_derivatives_of_the_action_in_the_times_of_the_ends, 0, SYSTEMS * SPACES);
+  tcase_add_loop_test(tests,
+                      the_energies_are_the_derivatives_of_the_action_in_the_times_of_the_ends, 0,
+                      SYSTEMS * SPACES);
   tcase_add_loop_test(tests, the_h_column_is_the_derivative_of_the_rows, 0, SYSTEMS * SPACES);
-  tcase_add_loop_test(tests, the_gradients_are_the_derivatives_of_the_energies, 0, SYSTEMS * SPACES);
+  tcase_add_loop_test(tests, the_gradients_are_the_derivatives_of_the_energies, 0,
+                      SYSTEMS * SPACES);
   tcase_add_test(tests, a_system_without_rates_has_no_energies);
 }

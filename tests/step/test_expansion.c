@@ -43,11 +43,13 @@ static long double stern(long double s)
   return sinc(s / 4) / sqrtl(sinc(s));
 }
 
-/* sum_j a_j (-s)^j/(2j + 3)!, with a_j = 1, or those of (1 - sinc x)/s and of (sinc^2(x/2) - sinc x)/s where they do not cancel. */
+/* sum_j a_j (-s)^j/(2j + 3)!, with a_j = 1, or those of (1 - sinc x)/s and of (sinc^2(x/2) - sinc
+ * x)/s where they do not cancel. */
 static long double series(int squared, long double s)
 {
   long double sum = 0, term = 1 / 6.0L;
-  for (int j = 0; j < 20; j++, term *= -s / ((2 * j + 2) * (2 * j + 3))) sum += squared ? term * (2 * j + 2) / (2 * j + 4) : term;
+  for (int j = 0; j < 20; j++, term *= -s / ((2 * j + 2) * (2 * j + 3)))
+    sum += squared ? term * (2 * j + 2) / (2 * j + 4) : term;
   return sum;
 }
 
@@ -81,7 +83,8 @@ static const function functions[] = {{{1, 1, 0}, 0, cosine},
 enum { FUNCTIONS = sizeof functions / sizeof *functions };
 
 /* The intervals of s; poles begin at 9.87. */
-static const double intervals[][2] = {{0, 0.01}, {0, 1}, {-1, 4}, {-0.1, 9}, {0, 100}, {-9, 400}, {0, 40000}};
+static const double intervals[][2] = {{0, 0.01}, {0, 1},    {-1, 4},   {-0.1, 9},
+                                      {0, 100},  {-9, 400}, {0, 40000}};
 enum { INTERVALS = sizeof intervals / sizeof *intervals, WITHOUT_POLES = 4 };
 
 static double value(const void *user, double s)
@@ -105,7 +108,8 @@ static double left_out(const function *f, int degree, double low, double high)
   return (double)most;
 }
 
-/* Coefficients are rounded, to a rounding of their size each, and so is s; and three quarters of the degree would not do. */
+/* Coefficients are rounded, to a rounding of their size each, and so is s; and three quarters of
+ * the degree would not do. */
 START_TEST(what_is_left_out_is_within_its_bound)
 {
   const double tolerance[] = {1e-2, 1e-5, 1e-9, DBL_EPSILON / 2};
@@ -117,11 +121,12 @@ START_TEST(what_is_left_out_is_within_its_bound)
     return;
   }
   for (int k = 0; k < 4; k++) {
-    const int degree = dvi__expansion_degree(&f->growth, f->divided, low, high, tolerance[k], &bound);
+    const int degree = dvi__expansion_degree(&f->growth, f->divided, low, high, tolerance[k],
+                                             &bound);
     ck_assert(degree >= 0 && degree <= DVI__DEGREE_MOST);
     const double size = bound / tolerance[k], found = left_out(f, degree, low, high);
-    ck_assert_msg(found <= bound + (8 * fmax(size, 1) + f->growth.type * sqrt(high)) * DBL_EPSILON, "%g of at most %g at degree %d",
-                  found, bound, degree);
+    ck_assert_msg(found <= bound + (8 * fmax(size, 1) + f->growth.type * sqrt(high)) * DBL_EPSILON,
+                  "%g of at most %g at degree %d", found, bound, degree);
     if (k == 3 && degree > 10) ck_assert_double_gt(left_out(f, 3 * degree / 4, low, high), bound);
   }
 }

@@ -12,7 +12,8 @@ enum { DEGREE = 16, MOST = 20 };
 static dvi__flow_series *made_series(const problem *of, int degree)
 {
   dvi__flow_series *series = NULL;
-  ck_assert_msg(dvi__flow_series_create(of->system, degree, DVI__HESSIANS, NULL, &series) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi__flow_series_create(of->system, degree, DVI__HESSIANS, NULL, &series) == DVI_OK,
+                "%s", dvi_last_error());
   return series;
 }
 
@@ -34,7 +35,8 @@ START_TEST(an_oscillator_has_the_series_of_the_cosine)
   double factor = 1;
   for (int k = 0; k <= DEGREE; k++) {
     if (k > 0) factor *= 2.0 / k; /* 2^k/k! */
-    const double cosine = k % 2 ? 0 : (k % 4 ? -factor : factor), sine = k % 2 ? (k % 4 == 3 ? -factor : factor) : 0;
+    const double cosine = k % 2 ? 0 : (k % 4 ? -factor : factor),
+                 sine = k % 2 ? (k % 4 == 3 ? -factor : factor) : 0;
     ck_assert_double_eq_tol(q[k], q0 * cosine + 0.5 * v0 * sine, 1e-15);
     ck_assert_double_eq_tol(dq[2 * k], cosine, 1e-15);
     ck_assert_double_eq_tol(dq[2 * k + 1], 0.5 * sine, 1e-15);
@@ -57,7 +59,8 @@ static void start_near(const problem *of, double *q, double *v)
   }
 }
 
-/* Short enough for 16 terms: the radius of convergence of kepler's start, the smallest here, is some tenths. */
+/* Short enough for 16 terms: the radius of convergence of kepler's start, the smallest here, is
+ * some tenths. */
 START_TEST(the_sum_is_where_an_integrator_arrives)
 {
   problem *of = made_problem(places[_i], NULL);
@@ -72,7 +75,8 @@ START_TEST(the_sum_is_where_an_integrator_arrives)
   advance(judge, h, 1);
   ck_assert_int_eq(dvi__flow_series_expand(series, 0.3, q, v), DVI_OK);
   for (int i = 0; i < of->nq; i++)
-    ck_assert_double_eq_tol(sum_of(DEGREE, (size_t)of->nq, dvi__flow_series_q(series) + i, h), dvi_integrator_q(judge)[i], 4e-15);
+    ck_assert_double_eq_tol(sum_of(DEGREE, (size_t)of->nq, dvi__flow_series_q(series) + i, h),
+                            dvi_integrator_q(judge)[i], 4e-15);
   dvi_integrator_destroy(&judge);
   dvi__flow_series_destroy(&series);
   problem_destroy(&of);
@@ -82,15 +86,18 @@ END_TEST
 /* What a differenced column holds: q_k, v_k and L_k one after the other. */
 enum { LOW = 5, COLUMN = (LOW + 1) * MOST + LOW };
 
-static void column_at(dvi__flow_series *series, int n, const double *q, const double *v, double *column)
+static void column_at(dvi__flow_series *series, int n, const double *q, const double *v,
+                      double *column)
 {
   ck_assert_int_eq(dvi__flow_series_expand(series, 0.3, q, v), DVI_OK);
   memcpy(column, dvi__flow_series_q(series), (size_t)((LOW + 1) * n) * sizeof *column);
   ck_assert_int_eq(dvi__flow_series_lagrangian(series, column + (LOW + 1) * n, NULL, NULL), DVI_OK);
 }
 
-/* Central differences of 6th order over 1e-2 of numbers of size 1; near kepler's centre coefficients grow by 3 with each order, and their derivatives with them. */
-static void difference(dvi__flow_series *series, int n, double *q, double *v, double *moved, double *column)
+/* Central differences of 6th order over 1e-2 of numbers of size 1; near kepler's centre
+ * coefficients grow by 3 with each order, and their derivatives with them. */
+static void difference(dvi__flow_series *series, int n, double *q, double *v, double *moved,
+                       double *column)
 {
   static const double weight[] = {45.0 / 60, -9.0 / 60, 1.0 / 60};
   const double step = 2e-3, middle = *moved;
@@ -126,14 +133,16 @@ START_TEST(derivatives_agree_with_differences)
     difference(series, n, q, v, j < n ? q + j : v + j - n, column);
     for (int k = 0; k <= LOW; k++)
       for (int i = 0; i < n; i++) check_near(column[k * n + i], dq[(k * 2 * n + j) * n + i]);
-    for (int k = 0; k < LOW; k++) check_near(column[(LOW + 1) * n + k], L_start[j >= n][k * n + j % n]);
+    for (int k = 0; k < LOW; k++)
+      check_near(column[(LOW + 1) * n + k], L_start[j >= n][k * n + j % n]);
   }
   dvi__flow_series_destroy(&series);
   problem_destroy(&of);
 }
 END_TEST
 
-/* A motion's derivative is symplectic: dq_i.dv_j - dq_j.dv_i stays what it is at the start, for a unit mass, at all s, so each coefficient but the first is 0. */
+/* A motion's derivative is symplectic: dq_i.dv_j - dq_j.dv_i stays what it is at the start, for a
+ * unit mass, at all s, so each coefficient but the first is 0. */
 START_TEST(the_derivative_is_symplectic_order_by_order)
 {
   problem *of = made_problem("kepler", NULL);

@@ -1,6 +1,6 @@
 /* labels: order */
-/* Row terms: a force of Rayleigh's kind and a multiplier, each added to the step of galerkin from outside of the
- * library's files, as CONTRIBUTING's recipe "a new term" says. */
+/* Row terms: a force of Rayleigh's kind and a multiplier, each added to the step of galerkin from
+ * outside of the library's files, as CONTRIBUTING's recipe "a new term" says. */
 #include "step/element/row_term.h"
 
 #include <math.h>
@@ -21,8 +21,8 @@ typedef struct run {
   double numbers[8];
 } run;
 
-static void start(run *r, const dvi_system_terms *terms, const char *method, const dvi__row_term *term, const double *q,
-                  const double *p)
+static void start(run *r, const dvi_system_terms *terms, const char *method,
+                  const dvi__row_term *term, const double *q, const double *p)
 {
   *r = (run){.system = NULL};
   ck_assert_int_eq(dvi_system_create(terms, &r->system), DVI_OK);
@@ -30,7 +30,10 @@ static void start(run *r, const dvi_system_terms *terms, const char *method, con
   ck_assert_msg(dvi__element_add_term(&r->stepper, term) == DVI_OK, "%s", dvi_last_error());
   r->stepper.memory = calloc(r->stepper.memory_count, sizeof(double));
   ck_assert_ptr_nonnull(r->stepper.memory);
-  r->state = (dvi__state){.q = r->numbers, .p = r->numbers + 2, .q_carry = r->numbers + 4, .p_carry = r->numbers + 6};
+  r->state = (dvi__state){.q = r->numbers,
+                          .p = r->numbers + 2,
+                          .q_compensation = r->numbers + 4,
+                          .p_compensation = r->numbers + 6};
   memcpy(r->state.q, q, (size_t)terms->dimension * sizeof *q);
   memcpy(r->state.p, p, (size_t)terms->dimension * sizeof *p);
 }
@@ -40,7 +43,8 @@ static void take_steps(run *r, double h, int steps)
 {
   dvi__stepper_start(&r->stepper, r->state.p);
   for (int i = 0; i < steps; i++)
-    ck_assert_msg(r->stepper.method->step(&r->stepper, &r->state, h) == DVI_OK, "step %d: %s", i, dvi_last_error());
+    ck_assert_msg(r->stepper.method->step(&r->stepper, &r->state, h) == DVI_OK, "step %d: %s", i,
+                  dvi_last_error());
 }
 
 static void finish(run *r)
@@ -60,7 +64,8 @@ typedef struct rayleigh {
   double F[NODES_MOST], F_q[NODES_MOST], F_v[NODES_MOST];
 } rayleigh;
 
-static dvi_status add_damping(void *of, const dvi__row_path *path, const double *own, double *R, double *dp, double *own_R)
+static dvi_status add_damping(void *of, const dvi__row_path *path, const double *own, double *R,
+                              double *dp, double *own_R)
 {
   rayleigh *r = of;
   (void)own, (void)own_R;
@@ -69,13 +74,15 @@ static dvi_status add_damping(void *of, const dvi__row_path *path, const double 
   return DVI_OK;
 }
 
-static void add_damping_magnitudes(const void *of, const dvi__row_path *path, double *magnitude, double *own_magnitude)
+static void add_damping_magnitudes(const void *of, const dvi__row_path *path, double *magnitude,
+                                   double *own_magnitude)
 {
   (void)own_magnitude;
   dvi__row_add_force_magnitudes(path, ((const rayleigh *)of)->F, magnitude);
 }
 
-static dvi_status add_damping_derivatives(void *of, const dvi__row_path *path, const double *own, const dvi__row_jacobian *J)
+static dvi_status add_damping_derivatives(void *of, const dvi__row_path *path, const double *own,
+                                          const dvi__row_jacobian *J)
 {
   rayleigh *r = of;
   (void)own;
@@ -108,8 +115,10 @@ static int spring_hessian(double t, const double *q, double *V_qq, void *user)
 /* |q - exact| after the time 4 of q'' + c q' + q = 0, q(0) = 1, q'(0) = 0. */
 static double damping_error(const char *method, int steps)
 {
-  const dvi_potential spring = {.value = spring_value, .gradient = spring_gradient, .hessian = spring_hessian};
-  const dvi_system_terms terms = {.dimension = 1, .mass = {.scalar = 1}, .potentials = &spring, .potential_count = 1};
+  const dvi_potential spring = {
+      .value = spring_value, .gradient = spring_gradient, .hessian = spring_hessian};
+  const dvi_system_terms terms = {
+      .dimension = 1, .mass = {.scalar = 1}, .potentials = &spring, .potential_count = 1};
   const double one = 1, zero = 0, a = damping / 2, w = sqrt(1 - a * a), t = 4;
   rayleigh r = {.F = {0}};
   ck_assert_int_eq(dvi__pattern_diagonal(1, &r.pattern), DVI_OK);
@@ -122,7 +131,8 @@ static double damping_error(const char *method, int steps)
   run made;
   start(&made, &terms, method, &term, &one, &zero);
   take_steps(&made, t / steps, steps);
-  const double q = exp(-a * t) * (cos(w * t) + a / w * sin(w * t)), p = -exp(-a * t) / w * sin(w * t);
+  const double q = exp(-a * t) * (cos(w * t) + a / w * sin(w * t)),
+               p = -exp(-a * t) / w * sin(w * t);
   const double error = hypot(made.state.q[0] - q, made.state.p[0] - p);
   finish(&made);
   dvi__pattern_clear(&r.pattern);
@@ -138,14 +148,16 @@ START_TEST(a_damped_oscillator_has_the_order_of_the_method)
       double before = damping_error(method, 4);
       for (int steps = 8; steps <= 32; steps *= 2) {
         const double error = damping_error(method, steps), order = log2(before / error);
-        ck_assert_msg(fabs(order - 2 * degree) < 0.25, "%s: order %g at %d steps", method, order, steps);
+        ck_assert_msg(fabs(order - 2 * degree) < 0.25, "%s: order %g at %d steps", method, order,
+                      steps);
         before = error;
       }
     }
 }
 END_TEST
 
-/* ---- a rod of length 1: phi = |q|^2 - 1 = 0 at the end of each step, by a multiplier at its start ---- */
+/* ---- a rod of length 1: phi = |q|^2 - 1 = 0 at the end of each step, by a multiplier at its start
+ * ---- */
 
 static int weight_value(double t, const double *q, double *V, void *user)
 {
@@ -168,8 +180,10 @@ static int weight_hessian(double t, const double *q, double *V_qq, void *user)
   return 0;
 }
 
-/* The start's momentum is p0 + lambda G(q0), G = 2 q: R_k -= psi_k(1) lambda G (Leimkuhler and Skeel 1994). */
-static dvi_status add_rod(void *of, const dvi__row_path *p, const double *own, double *R, double *dp, double *own_R)
+/* The start's momentum is p0 + lambda G(q0), G = 2 q: R_k -= psi_k(1) lambda G (Leimkuhler and
+ * Skeel 1994). */
+static dvi_status add_rod(void *of, const dvi__row_path *p, const double *own, double *R,
+                          double *dp, double *own_R)
 {
   (void)of;
   for (int i = 0; i < 2; i++) {
@@ -181,7 +195,8 @@ static dvi_status add_rod(void *of, const dvi__row_path *p, const double *own, d
   return DVI_OK;
 }
 
-static dvi_status add_rod_derivatives(void *of, const dvi__row_path *p, const double *own, const dvi__row_jacobian *J)
+static dvi_status add_rod_derivatives(void *of, const dvi__row_path *p, const double *own,
+                                      const dvi__row_jacobian *J)
 {
   (void)of, (void)own;
   for (int i = 0; i < 2; i++) {
@@ -198,18 +213,26 @@ static void scale_rod(const void *of, double h, double *scale)
   scale[0] = 1;
 }
 
-/* The angle after the time 2 of a pendulum that starts at rest, at 1 radian from below; and the largest |phi|. */
+/* The angle after the time 2 of a pendulum that starts at rest, at 1 radian from below; and the
+ * largest |phi|. */
 static double rod_angle(int degree, int steps, double *off)
 {
-  const dvi_potential weight = {.value = weight_value, .gradient = weight_gradient, .hessian = weight_hessian};
-  const dvi_system_terms terms = {.dimension = 2, .mass = {.scalar = 1}, .potentials = &weight, .potential_count = 1};
+  const dvi_potential weight = {
+      .value = weight_value, .gradient = weight_gradient, .hessian = weight_hessian};
+  const dvi_system_terms terms = {
+      .dimension = 2, .mass = {.scalar = 1}, .potentials = &weight, .potential_count = 1};
   const double q[] = {sin(1.0), -cos(1.0)}, rest[] = {0, 0};
   dvi__pattern both;
   ck_assert_int_eq(dvi__pattern_copy_rectangular(&(dvi_pattern){0}, 2, 1, "both", &both), DVI_OK);
-  const dvi__row_term term = {
-      .name = "rod", .unknowns = 1, .acting = &both, .rows = add_rod, .derivatives = add_rod_derivatives, .scale = scale_rod};
+  const dvi__row_term term = {.name = "rod",
+                              .unknowns = 1,
+                              .acting = &both,
+                              .rows = add_rod,
+                              .derivatives = add_rod_derivatives,
+                              .scale = scale_rod};
   run made;
-  start(&made, &terms, spec("galerkin:degree=%d,quadrature=lobatto,nodes=%d", degree, degree + 1), &term, q, rest);
+  start(&made, &terms, spec("galerkin:degree=%d,quadrature=lobatto,nodes=%d", degree, degree + 1),
+        &term, q, rest);
   take_steps(&made, 2.0 / steps, steps);
   *off = fabs(hypot(made.state.q[0], made.state.q[1]) - 1);
   const double angle = atan2(made.state.q[0], -made.state.q[1]);
@@ -218,7 +241,8 @@ static double rod_angle(int degree, int steps, double *off)
   return angle;
 }
 
-/* A multiplier at the ends has order 2 whatever the degree is: the path between them knows nothing of the rod. */
+/* A multiplier at the ends has order 2 whatever the degree is: the path between them knows nothing
+ * of the rod. */
 START_TEST(a_multiplier_holds_its_constraint_and_has_order_2)
 {
   for (int degree = 1; degree <= 2; degree++) {
@@ -226,7 +250,9 @@ START_TEST(a_multiplier_holds_its_constraint_and_has_order_2)
     for (int steps = 16; steps <= 256; steps *= 2) {
       const double error = fabs(rod_angle(degree, steps, &off) - finest);
       ck_assert_msg(off < 1e-14, "|q| is off by %g", off);
-      if (before > 0) ck_assert_msg(fabs(log2(before / error) - 2) < 0.1, "order %g at %d steps", log2(before / error), steps);
+      if (before > 0)
+        ck_assert_msg(fabs(log2(before / error) - 2) < 0.1, "order %g at %d steps",
+                      log2(before / error), steps);
       before = error;
     }
   }
@@ -238,9 +264,11 @@ START_TEST(too_many_terms_are_refused)
   const double one = 1, zero = 0;
   rayleigh r = {.F = {0}};
   ck_assert_int_eq(dvi__pattern_diagonal(1, &r.pattern), DVI_OK);
-  const dvi__row_term term = {.name = "damping", .of = &r, .pattern = &r.pattern, .rows = add_damping};
+  const dvi__row_term term = {
+      .name = "damping", .of = &r, .pattern = &r.pattern, .rows = add_damping};
   run made;
-  start(&made, &(dvi_system_terms){.dimension = 1, .mass = {.scalar = 1}}, "galerkin", &term, &one, &zero);
+  start(&made, &(dvi_system_terms){.dimension = 1, .mass = {.scalar = 1}}, "galerkin", &term, &one,
+        &zero);
   for (int k = 1; k < 8; k++) ck_assert_int_eq(dvi__element_add_term(&made.stepper, &term), DVI_OK);
   ck_assert_int_eq(dvi__element_add_term(&made.stepper, &term), DVI_BAD_SIZE);
   check_words("damping is one term of the rows too many; 8 are possible");

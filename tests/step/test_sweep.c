@@ -1,5 +1,6 @@
 /* labels: unit */
-/* Iterations on the positions at the nodes solve the rows of the discrete action, and their coefficients make symplectic steps to the last bit. */
+/* Iterations on the positions at the nodes solve the rows of the discrete action, and their
+ * coefficients make symplectic steps to the last bit. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -15,23 +16,28 @@ static dvi_system *made_system(void)
 {
   static const double masses[SITES] = {1, 2, 0.5, 3, 1.5, 0.7};
   const dvi_potential p = springs(&quiet, BATCH);
-  return make_system(&(dvi_system_terms){.dimension = SITES, .mass.diagonal = masses, .potentials = &p, .potential_count = 1});
+  return make_system(&(dvi_system_terms){
+      .dimension = SITES, .mass.diagonal = masses, .potentials = &p, .potential_count = 1});
 }
 
-static dvi__action *made_action(const dvi_system *system, dvi_basis basis, int degree, dvi_rule rule, int nodes)
+static dvi__action *made_action(const dvi_system *system, dvi_basis basis, int degree,
+                                dvi_rule rule, int nodes)
 {
   static dvi_counters counters;
   dvi__action *action = NULL;
   const dvi__action_space space = {basis, degree, rule, nodes};
-  ck_assert_msg(dvi__action_create(system, &space, &counters, &action) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi__action_create(system, &space, &counters, &action) == DVI_OK, "%s",
+                dvi_last_error());
   return action;
 }
 
-/* For b_i (1 - c_i - (c_j - P_ji)) b_j to be symmetric, whatever is rounded later, P must be: matrix_ij = c_i - P_ij, all on one grid. */
+/* For b_i (1 - c_i - (c_j - P_ji)) b_j to be symmetric, whatever is rounded later, P must be:
+ * matrix_ij = c_i - P_ij, all on one grid. */
 START_TEST(the_coefficients_are_symplectic_to_the_last_bit)
 {
   static const dvi_rule rules[] = {DVI_GAUSS, DVI_LOBATTO, DVI_RADAU_RIGHT, DVI_CLENSHAW_CURTIS};
-  const int degree = 1 + _i % DVI_DEGREE_MAX, rule = _i / DVI_DEGREE_MAX, nodes = degree + 1 + rule % 2;
+  const int degree = 1 + _i % DVI_DEGREE_MAX, rule = _i / DVI_DEGREE_MAX,
+            nodes = degree + 1 + rule % 2;
   dvi_system *system = made_system();
   dvi__action *a = made_action(system, DVI_LAGRANGE_LOBATTO, degree, rules[rule], nodes);
   for (int i = 0; i < nodes; i++) {
@@ -45,8 +51,10 @@ START_TEST(the_coefficients_are_symplectic_to_the_last_bit)
 }
 END_TEST
 
-/* The fixed point solves R(Y) = 0 in every basis: to the roundoff of the rows: p0 and psi of size 1 to 3, summed over up to 25 nodes, more where the basis
- * itself is ill-conditioned. Where long double is no longer than double, as under valgrind, the tables of the two differ by some roundings too: 8e-14. */
+/* The fixed point solves R(Y) = 0 in every basis: to the roundoff of the rows: p0 and psi of size 1
+ * to 3, summed over up to 25 nodes, more where the basis itself is ill-conditioned. Where long
+ * double is no longer than double, as under valgrind, the tables of the two differ by some
+ * roundings too: 8e-14. */
 START_TEST(the_fixed_point_solves_the_rows)
 {
   static const struct {
@@ -54,16 +62,18 @@ START_TEST(the_fixed_point_solves_the_rows)
     int degree;
     dvi_rule rule;
     int nodes;
-  } spaces[] = {{DVI_LAGRANGE_LOBATTO, 1, DVI_MIDPOINT, 1}, {DVI_LAGRANGE_LOBATTO, 1, DVI_TRAPEZOID, 2},
-                {DVI_LAGRANGE_GAUSS, 2, DVI_GAUSS, 2},      {DVI_LEGENDRE, 3, DVI_GAUSS, 3},
-                {DVI_LAGRANGE_LOBATTO, 4, DVI_LOBATTO, 4},  {DVI_CHEBYSHEV, 5, DVI_GAUSS, 8},
-                {DVI_LAGRANGE_CHEBYSHEV, 8, DVI_GAUSS, 8},  {DVI_LEGENDRE, 12, DVI_CLENSHAW_CURTIS, 25}};
+  } spaces[] = {
+      {DVI_LAGRANGE_LOBATTO, 1, DVI_MIDPOINT, 1}, {DVI_LAGRANGE_LOBATTO, 1, DVI_TRAPEZOID, 2},
+      {DVI_LAGRANGE_GAUSS, 2, DVI_GAUSS, 2},      {DVI_LEGENDRE, 3, DVI_GAUSS, 3},
+      {DVI_LAGRANGE_LOBATTO, 4, DVI_LOBATTO, 4},  {DVI_CHEBYSHEV, 5, DVI_GAUSS, 8},
+      {DVI_LAGRANGE_CHEBYSHEV, 8, DVI_GAUSS, 8},  {DVI_LEGENDRE, 12, DVI_CLENSHAW_CURTIS, 25}};
   enum { UNKNOWNS_MOST = SITES * 12 };
   const double h = 0.05;
-  double Y[UNKNOWNS_MOST] = {0}, R[UNKNOWNS_MOST], change = 0, largest, dq[SITES], low[SITES], dp[SITES], by_rows_q[SITES],
-         by_rows_p[SITES];
+  double Y[UNKNOWNS_MOST] = {0}, R[UNKNOWNS_MOST], change = 0, largest, dq[SITES], low[SITES],
+         dp[SITES], by_rows_q[SITES], by_rows_p[SITES];
   dvi_system *system = made_system();
-  dvi__action *a = made_action(system, spaces[_i].basis, spaces[_i].degree, spaces[_i].rule, spaces[_i].nodes);
+  dvi__action *a = made_action(system, spaces[_i].basis, spaces[_i].degree, spaces[_i].rule,
+                               spaces[_i].nodes);
   dvi__action_place(a, 0.3, h, generic_q, generic_v);
   dvi__action_sweep_from(a, Y);
   for (int k = 0; k < 30; k++) ck_assert_int_eq(dvi__action_sweep(a, &change, &largest), DVI_OK);
@@ -98,7 +108,8 @@ END_TEST
 
 SUITE(sweep)
 {
-  tcase_add_loop_test(tests, the_coefficients_are_symplectic_to_the_last_bit, 0, 4 * DVI_DEGREE_MAX);
+  tcase_add_loop_test(tests, the_coefficients_are_symplectic_to_the_last_bit, 0,
+                      4 * DVI_DEGREE_MAX);
   tcase_add_loop_test(tests, the_fixed_point_solves_the_rows, 0, 8);
   tcase_add_test(tests, a_mass_that_couples_is_left_to_the_rows);
 }

@@ -13,7 +13,8 @@ void find_accepted_cases(int total, int (*is_accepted)(int which), accepted_case
     }
 }
 
-void check_accepted_cases(const accepted_cases *found, int count, int methods, const char *const *method)
+void check_accepted_cases(const accepted_cases *found, int count, int methods,
+                          const char *const *method)
 {
   for (int m = 0; m < methods; m++) {
     int accepted = 0;

@@ -12,13 +12,16 @@
  * the files that the package locales brings along for it. */
 static void write_sources(void)
 {
-  FILE *characters = fopen(in_folder("characters"), "w"), *numbers = fopen(in_folder("numbers"), "w");
+  FILE *characters = fopen(in_folder("characters"), "w"),
+       *numbers = fopen(in_folder("numbers"), "w");
   ck_assert_ptr_nonnull(characters);
   ck_assert_ptr_nonnull(numbers);
-  (void)fputs("<code_set_name> ANSI_X3.4-1968\n<comment_char> %\n<escape_char> /\nCHARMAP\n", characters);
+  (void)fputs("<code_set_name> ANSI_X3.4-1968\n<comment_char> %\n<escape_char> /\nCHARMAP\n",
+              characters);
   for (int c = 0; c < 128; c++) (void)fprintf(characters, "<U%04X> /x%02x\n", c, c);
   (void)fputs("END CHARMAP\n", characters);
-  (void)fputs("LC_NUMERIC\ndecimal_point \",\"\nthousands_sep \".\"\ngrouping -1\nEND LC_NUMERIC\n", numbers);
+  (void)fputs("LC_NUMERIC\ndecimal_point \",\"\nthousands_sep \".\"\ngrouping -1\nEND LC_NUMERIC\n",
+              numbers);
   ck_assert_int_eq(fclose(characters), 0);
   ck_assert_int_eq(fclose(numbers), 0);
 }
@@ -27,8 +30,9 @@ void set_comma(void)
 {
   char command[1024];
   write_sources();
-  (void)snprintf(command, sizeof command, "localedef -c -f %s -i %s %s >%s 2>&1", in_folder("characters"), in_folder("numbers"),
-                 in_folder("comma"), in_folder("said"));
+  (void)snprintf(command, sizeof command, "localedef -c -f %s -i %s %s >%s 2>&1",
+                 in_folder("characters"), in_folder("numbers"), in_folder("comma"),
+                 in_folder("said"));
   (void)!system(command); /* it complains of what the locale lacks, and makes it */
   ck_assert_int_eq(setenv("LOCPATH", in_folder(""), 1), 0);
   ck_assert_int_eq(setenv("LC_ALL", "comma", 1), 0);

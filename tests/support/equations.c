@@ -25,7 +25,8 @@ static dvi_status chain_residual(void *of, const double *x, double *r)
   chain *c = of;
   c->residuals++;
   for (int i = 0; i < SIZE; i++)
-    r[i] = (2 + i) * (x[i] - c->solution[i]) + c->strength * (neighbours(x, i) - neighbours(c->solution, i));
+    r[i] = (2 + i) * (x[i] - c->solution[i]) +
+           c->strength * (neighbours(x, i) - neighbours(c->solution, i));
   return answer_of(&c->residual_fault, c->residuals, &r[2]);
 }
 
@@ -61,9 +62,11 @@ static dvi_status chain_scale(void *of, double *scale, int *unchanged)
 
 void make_chain(double strength, chain *c)
 {
-  static const int start[SIZE + 1] = {0, 2, 5, 8, 11, 13}, row[3 * SIZE - 2] = {0, 1, 0, 1, 2, 1, 2, 3, 2, 3, 4, 3, 4};
+  static const int start[SIZE + 1] = {0, 2, 5, 8, 11, 13},
+                                row[3 * SIZE - 2] = {0, 1, 0, 1, 2, 1, 2, 3, 2, 3, 4, 3, 4};
   *c = (chain){.strength = strength, .solution = {0.3, -1.2, 0.8, 2.1, -0.4}};
-  ck_assert_int_eq(dvi__pattern_copy(&(dvi_pattern){start, row}, SIZE, "chain", &c->pattern), DVI_OK);
+  ck_assert_int_eq(dvi__pattern_copy(&(dvi_pattern){start, row}, SIZE, "chain", &c->pattern),
+                   DVI_OK);
 }
 
 static dvi_status single_residual(void *of, const double *x, double *r)
@@ -96,7 +99,8 @@ static dvi_status single_scale(void *of, double *scale, int *unchanged)
 static void make_solver(const dvi__equations *equations, bench *b)
 {
   *b = (bench){0};
-  ck_assert_msg(dvi__solver_create(equations, &b->counters, &b->solver) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi__solver_create(equations, &b->counters, &b->solver) == DVI_OK, "%s",
+                dvi_last_error());
 }
 
 void for_chain(chain *c, bench *b)
@@ -158,7 +162,8 @@ void free_bench(bench *b, chain *c)
 
 void failed_with(dvi_status status, dvi_status expected)
 {
-  ck_assert_msg(status == expected, "%s, not %s: %s", dvi_status_name(status), dvi_status_name(expected), dvi_last_error());
+  ck_assert_msg(status == expected, "%s, not %s: %s", dvi_status_name(status),
+                dvi_status_name(expected), dvi_last_error());
   ck_assert_msg(strlen(dvi_last_error()) > 20, "%s", dvi_last_error());
 }
 

@@ -5,15 +5,16 @@
 
 enum { SIZE = 5 };
 
-/* What a callback does from its `at`-th call on (0: never): it answers, and leaves a NaN if `nan`. */
+/* What a callback does from its `at`-th call on (0: never): it answers, and leaves a NaN if
+ * `nan`. */
 typedef struct fault {
   long at;
   dvi_status answer;
   int nan;
 } fault;
 
-/* R_i = (2 + i) (x_i - s_i) + strength (sin of both neighbours, at x less at s): the solution is s. The chord inverts the diagonal, so
- * the fixed point iteration contracts by about `strength`. */
+/* R_i = (2 + i) (x_i - s_i) + strength (sin of both neighbours, at x less at s): the solution is s.
+ * The chord inverts the diagonal, so the fixed point iteration contracts by about `strength`. */
 typedef struct chain {
   dvi__pattern pattern;
   double strength, solution[SIZE];
@@ -52,7 +53,8 @@ void free_bench(bench *b, chain *c);
 /* The status is as expected, and the error sentence says more than it does. */
 void failed_with(dvi_status status, dvi_status expected);
 
-/* Some functions: atan, whose zero Newton's method overshoots from |x| > 1.39; x^2 - 1; x^2 + 1, which has no zero. */
+/* Some functions: atan, whose zero Newton's method overshoots from |x| > 1.39; x^2 - 1; x^2 + 1,
+ * which has no zero. */
 double arctangent(double x);
 double arctangent_slope(double x);
 double parabola(double x);

@@ -14,8 +14,10 @@ static char folder[256];
 void make_folder(void)
 {
   const char *temporary = getenv("TMPDIR");
-  const int length = snprintf(folder, sizeof folder, "%s/dvi-test-XXXXXX", temporary != NULL ? temporary : P_tmpdir);
-  ck_assert_msg(length > 0 && (size_t)length < sizeof folder, "TMPDIR is too long a path for the tests");
+  const int length = snprintf(folder, sizeof folder, "%s/dvi-test-XXXXXX",
+                              temporary != NULL ? temporary : P_tmpdir);
+  ck_assert_msg(length > 0 && (size_t)length < sizeof folder,
+                "TMPDIR is too long a path for the tests");
   ck_assert_ptr_nonnull(mkdtemp(folder));
 }
 
@@ -34,7 +36,8 @@ static int sweep(int removing)
   int count = 0;
   DIR *open_folder = opendir(folder);
   ck_assert_ptr_nonnull(open_folder);
-  for (const struct dirent *entry = readdir(open_folder); entry != NULL; entry = readdir(open_folder)) {
+  for (const struct dirent *entry = readdir(open_folder); entry != NULL;
+       entry = readdir(open_folder)) {
     if (strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0) continue;
     if (removing) (void)remove(in_folder(entry->d_name));
     count++;
@@ -88,7 +91,8 @@ void check_state(const dvi_integrator *integrator, bytes expected)
 {
   const bytes found = state_of(integrator);
   ck_assert_uint_eq(found.count, expected.count);
-  ck_assert_msg(memcmp(found.at, expected.at, found.count) == 0, "the states differ at t = %.17g", dvi_integrator_time(integrator));
+  ck_assert_msg(memcmp(found.at, expected.at, found.count) == 0, "the states differ at t = %.17g",
+                dvi_integrator_time(integrator));
   free(found.at);
   free(expected.at);
 }

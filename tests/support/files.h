@@ -1,4 +1,5 @@
-/* Files of a test, in a folder of its own, and the state of an integrator as the bytes of its checkpoint. */
+/* Files of a test, in a folder of its own, and the state of an integrator as the bytes of its
+ * checkpoint. */
 #ifndef SUPPORT_FILES_H
 #define SUPPORT_FILES_H
 #include <dvi/dvi.h>
@@ -24,7 +25,8 @@ void write_bytes(const char *path, const unsigned char *at, size_t count);
 /* All that the next step depends on, and the number of steps so far. */
 bytes state_of(const dvi_integrator *integrator);
 
-/* The test fails unless both integrators are in the same state bit for bit, or the integrator is in that state; frees `expected`. */
+/* The test fails unless both integrators are in the same state bit for bit, or the integrator is in
+ * that state; frees `expected`. */
 void check_same_state(const dvi_integrator *a, const dvi_integrator *b);
 void check_state(const dvi_integrator *integrator, bytes expected);
 

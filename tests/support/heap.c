@@ -42,7 +42,8 @@ int heap_is_counted(void)
 }
 
 #if defined(__GLIBC__) && !defined(REPLACED_ALREADY)
-/* NOLINTBEGIN(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp): the doors that glibc leaves open for replacements */
+/* NOLINTBEGIN(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp): the doors that glibc
+ * leaves open for replacements */
 extern void *__libc_malloc(size_t size);
 extern void *__libc_calloc(size_t count, size_t size);
 extern void *__libc_realloc(void *memory, size_t size);

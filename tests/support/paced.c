@@ -2,19 +2,22 @@
 
 #include "support/suite.h"
 
-static dvi_status create_paced(const dvi_system *system, const dvi_monitor *monitor, const char *method, dvi_pacing pacing,
-                               dvi_integrator **integrator)
+static dvi_status create_paced(const dvi_system *system, const dvi_monitor *monitor,
+                               const char *method, dvi_pacing pacing, dvi_integrator **integrator)
 {
-  const dvi_integrator_options options = {.size = sizeof options, .method = method, .pacing = pacing, .monitor = monitor};
+  const dvi_integrator_options options = {
+      .size = sizeof options, .method = method, .pacing = pacing, .monitor = monitor};
   return dvi_integrator_create_with(system, &options, integrator);
 }
 
-dvi_status create_transformed(const dvi_system *system, const dvi_monitor *monitor, const char *method, dvi_integrator **integrator)
+dvi_status create_transformed(const dvi_system *system, const dvi_monitor *monitor,
+                              const char *method, dvi_integrator **integrator)
 {
   return create_paced(system, monitor, method, DVI_TIME_TRANSFORM, integrator);
 }
 
-dvi_status create_controlled(const dvi_system *system, const dvi_monitor *monitor, const char *method, dvi_integrator **integrator)
+dvi_status create_controlled(const dvi_system *system, const dvi_monitor *monitor,
+                             const char *method, dvi_integrator **integrator)
 {
   return create_paced(system, monitor, method, DVI_STEP_CONTROL, integrator);
 }
@@ -26,7 +29,8 @@ dvi_monitor monitor_of(const char *specification)
   return monitor;
 }
 
-dvi_integrator *paced(const problem *of, paced_create create, const char *monitor, const char *method)
+dvi_integrator *paced(const problem *of, paced_create create, const char *monitor,
+                      const char *method)
 {
   dvi_integrator *made = NULL;
   const dvi_monitor chosen = monitor_of(monitor);
@@ -38,6 +42,7 @@ dvi_integrator *paced(const problem *of, paced_create create, const char *monito
 void run_to(dvi_integrator *integrator, double h, double t_end)
 {
   dvi_run_report report;
-  const dvi_status status = dvi_run(integrator, &(dvi_run_options){.h = h, .t_end = t_end}, &report);
+  const dvi_status status = dvi_run(integrator, &(dvi_run_options){.h = h, .t_end = t_end},
+                                    &report);
   ck_assert_msg(status == DVI_OK && report.end == DVI_RUN_COMPLETE, "%s", dvi_last_error());
 }

@@ -22,7 +22,9 @@ problem *made_problem(const char *name, const char *setting)
 {
   problem *made = NULL;
   char message[256] = "";
-  ck_assert_msg(problem_create(name, setting != NULL, &setting, &made, message, sizeof message) == DVI_OK, "%s", message);
+  ck_assert_msg(problem_create(name, setting != NULL, &setting, &made, message, sizeof message) ==
+                    DVI_OK,
+                "%s", message);
   return made;
 }
 

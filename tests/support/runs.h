@@ -6,7 +6,8 @@
 /* A method's specification by printf's rules; valid until the eighth next call. */
 const char *spec(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/* A problem of the catalogue with at most one setting "name=value" (NULL: none). Fails the test if there is none. */
+/* A problem of the catalogue with at most one setting "name=value" (NULL: none). Fails the test if
+ * there is none. */
 problem *made_problem(const char *name, const char *setting);
 
 /* An integrator; started() puts it at the problem's start. */

@@ -5,13 +5,16 @@
 
 #include "support/suite.h"
 
-dvi_status create_shaped(const dvi_system *system, const dvi_shapes *shapes, const char *method, dvi_integrator **integrator)
+dvi_status create_shaped(const dvi_system *system, const dvi_shapes *shapes, const char *method,
+                         dvi_integrator **integrator)
 {
-  const dvi_integrator_options options = {.size = sizeof options, .method = method, .shapes = shapes};
+  const dvi_integrator_options options = {
+      .size = sizeof options, .method = method, .shapes = shapes};
   return dvi_integrator_create_with(system, &options, integrator);
 }
 
-dvi_integrator *shaped_integrator(const dvi_system *system, const dvi_shapes *shapes, const char *method)
+dvi_integrator *shaped_integrator(const dvi_system *system, const dvi_shapes *shapes,
+                                  const char *method)
 {
   dvi_integrator *made = NULL;
   ck_assert_msg(create_shaped(system, shapes, method, &made) == DVI_OK, "%s", dvi_last_error());
@@ -39,8 +42,10 @@ static int evaluate_powers(double h, double tau, double *value, double *derivati
 
 dvi_shapes powers(int functions)
 {
-  return (dvi_shapes){
-      .name = "powers", .functions = functions, .evaluate = evaluate_powers, .user = (void *)(size_t)&counts[functions]};
+  return (dvi_shapes){.name = "powers",
+                      .functions = functions,
+                      .evaluate = evaluate_powers,
+                      .user = (void *)(size_t)&counts[functions]};
 }
 
 static int evaluate_oscillation(double h, double tau, double *value, double *derivative, void *user)
@@ -53,8 +58,11 @@ static int evaluate_oscillation(double h, double tau, double *value, double *der
 
 dvi_shapes oscillation(const double *omega)
 {
-  return (dvi_shapes){
-      .name = "oscillation", .functions = 2, .evaluate = evaluate_oscillation, .h = 0.1, .user = (void *)(size_t)omega};
+  return (dvi_shapes){.name = "oscillation",
+                      .functions = 2,
+                      .evaluate = evaluate_oscillation,
+                      .h = 0.1,
+                      .user = (void *)(size_t)omega};
 }
 
 static int evaluate_decay(double h, double tau, double *value, double *derivative, void *user)
@@ -78,14 +86,19 @@ static int evaluate_steep(double h, double tau, double *value, double *derivativ
 
 const dvi_shapes steep = {.name = "steep", .functions = 1, .evaluate = evaluate_steep};
 
-static int point_of_milne(double h, int j, double *tau, double *weight, double *value, double *derivative, void *user)
+static int point_of_milne(double h, int j, double *tau, double *weight, double *value,
+                          double *derivative, void *user)
 {
   *tau = 0.25 * (j + 1);
   *weight = j == 1 ? -1.0 / 3 : 2.0 / 3;
   return evaluate_decay(h, *tau, value, derivative, user);
 }
 
-const dvi_shapes milne = {.name = "milne", .functions = 1, .evaluate = evaluate_decay, .point = point_of_milne, .points = 3};
+const dvi_shapes milne = {.name = "milne",
+                          .functions = 1,
+                          .evaluate = evaluate_decay,
+                          .point = point_of_milne,
+                          .points = 3};
 
 static int evaluate_spline(double h, double tau, double *value, double *derivative, void *user)
 {
@@ -102,7 +115,8 @@ enum { EACH = 4 };
 static double b_spline(int degree, int i, double tau)
 {
   static const double knot[] = {0, 0, 0, 0, 0.5, 1, 1, 1, 1};
-  if (degree == 0) return knot[i] < knot[i + 1] && tau >= knot[i] && (tau < knot[i + 1] || knot[i + 1] == 1);
+  if (degree == 0)
+    return knot[i] < knot[i + 1] && tau >= knot[i] && (tau < knot[i + 1] || knot[i + 1] == 1);
   const double rises = knot[i + degree] - knot[i], falls = knot[i + degree + 1] - knot[i + 1];
   return (rises > 0 ? (tau - knot[i]) / rises * b_spline(degree - 1, i, tau) : 0) +
          (falls > 0 ? (knot[i + degree + 1] - tau) / falls * b_spline(degree - 1, i + 1, tau) : 0);
@@ -128,18 +142,25 @@ static int place_of_point(int j, double *tau, double *weight)
   return 0;
 }
 
-static int point_of_spline(double h, int j, double *tau, double *weight, double *value, double *derivative, void *user)
+static int point_of_spline(double h, int j, double *tau, double *weight, double *value,
+                           double *derivative, void *user)
 {
-  return place_of_point(j, tau, weight) != 0 ? -1 : evaluate_spline(h, *tau, value, derivative, user);
+  return place_of_point(j, tau, weight) != 0 ? -1
+                                             : evaluate_spline(h, *tau, value, derivative, user);
 }
 
-static int point_of_b_splines(double h, int j, double *tau, double *weight, double *value, double *derivative, void *user)
+static int point_of_b_splines(double h, int j, double *tau, double *weight, double *value,
+                              double *derivative, void *user)
 {
-  return place_of_point(j, tau, weight) != 0 ? -1 : evaluate_b_splines(h, *tau, value, derivative, user);
+  return place_of_point(j, tau, weight) != 0 ? -1
+                                             : evaluate_b_splines(h, *tau, value, derivative, user);
 }
 
-const dvi_shapes spline = {
-    .name = "spline", .functions = 1, .evaluate = evaluate_spline, .point = point_of_spline, .points = 2 * EACH};
+const dvi_shapes spline = {.name = "spline",
+                           .functions = 1,
+                           .evaluate = evaluate_spline,
+                           .point = point_of_spline,
+                           .points = 2 * EACH};
 
 const dvi_shapes b_splines = {.name = "b-splines",
                               .functions = 3,

@@ -6,10 +6,12 @@
 #include "problem.h"
 
 /* An integrator of functions of a program's own. */
-dvi_status create_shaped(const dvi_system *system, const dvi_shapes *shapes, const char *method, dvi_integrator **integrator);
+dvi_status create_shaped(const dvi_system *system, const dvi_shapes *shapes, const char *method,
+                         dvi_integrator **integrator);
 
 /* An integrator that must be made; shaped_started() puts it at the problem's start. */
-dvi_integrator *shaped_integrator(const dvi_system *system, const dvi_shapes *shapes, const char *method);
+dvi_integrator *shaped_integrator(const dvi_system *system, const dvi_shapes *shapes,
+                                  const char *method);
 dvi_integrator *shaped_started(const problem *of, const dvi_shapes *shapes, const char *method);
 
 /* tau^2, .., tau^(functions+1): with the polynomials of degree 1 those of degree functions+1. */
@@ -27,7 +29,8 @@ extern const dvi_shapes steep;
 /* exp(-tau) by Milne's rule, whose middle weight is negative. */
 extern const dvi_shapes milne;
 
-/* max(0, tau - 1/2)^3 by a Gauss rule of four points on either half: with degree=3, cubic splines with a knot in the middle. */
+/* max(0, tau - 1/2)^3 by a Gauss rule of four points on either half: with degree=3, cubic splines
+ * with a knot in the middle. */
 extern const dvi_shapes spline;
 
 /* The cubic B-splines of that knot that vanish at both ends: with degree=1 the same space. */

@@ -28,5 +28,6 @@ int sampled_case(int i)
 
 void check_words(const char *words)
 {
-  ck_assert_msg(strstr(dvi_last_error(), words) != NULL, "\"%s\" is not in \"%s\"", words, dvi_last_error());
+  ck_assert_msg(strstr(dvi_last_error(), words) != NULL, "\"%s\" is not in \"%s\"", words,
+                dvi_last_error());
 }

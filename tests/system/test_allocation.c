@@ -1,5 +1,5 @@
-/* Every create must survive the failure of each of its allocations: status, no object, nothing leaked (the sanitizer and valgrind
- * runs of this test see the leaks). */
+/* Every create must survive the failure of each of its allocations: status, no object, nothing
+ * leaked (the sanitizer and valgrind runs of this test see the leaks). */
 #include <string.h>
 
 #include "core/memory.h"
@@ -37,8 +37,11 @@ static void build(scene *c, int kind)
   c->potentials[0].hessian_batch = NULL;
   c->potentials[1] = wells(&quiet, ONE_POINT);
   c->symmetry = (dvi_symmetry){"dilation", generator, NULL};
-  c->terms = (dvi_system_terms){
-      .dimension = SITES, .potentials = c->potentials, .potential_count = 2, .symmetries = &c->symmetry, .symmetry_count = 1};
+  c->terms = (dvi_system_terms){.dimension = SITES,
+                                .potentials = c->potentials,
+                                .potential_count = 2,
+                                .symmetries = &c->symmetry,
+                                .symmetry_count = 1};
   if (kind == GENERAL)
     c->terms.lagrangian = &c->lagrangian;
   else if (kind == SCALAR_MASS)
@@ -168,7 +171,8 @@ static dvi_status call_check(const dvi_system *s)
 
 START_TEST(every_call_at_one_point_survives_every_failure)
 {
-  const one_point_call calls[] = {call_lagrangian, call_momentum, call_velocity, call_invariants, call_check};
+  const one_point_call calls[] = {call_lagrangian, call_momentum, call_velocity, call_invariants,
+                                  call_check};
   scene c;
   build(&c, _i % KINDS);
   dvi_system *s = make_system(&c.terms);

@@ -1,5 +1,6 @@
 /* labels: jacobian */
-/* The Lagrangian in charts against its definition, its derivatives and those of what moving the centre adds against differences. */
+/* The Lagrangian in charts against its definition, its derivatives and those of what moving the
+ * centre adds against differences. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -14,7 +15,12 @@
 
 static const dvi__action_space space = {DVI_CHEBYSHEV, 3, DVI_GAUSS, 4};
 
-enum { REDUCED = BODIES, KINDS = BODIES + 2, UNKNOWNS_MOST = 3 * BODY_V, ENTRIES_MOST = UNKNOWNS_MOST * UNKNOWNS_MOST };
+enum {
+  REDUCED = BODIES,
+  KINDS = BODIES + 2,
+  UNKNOWNS_MOST = 3 * BODY_V,
+  ENTRIES_MOST = UNKNOWNS_MOST * UNKNOWNS_MOST
+};
 
 static body of;
 static dvi_counters counters;
@@ -29,7 +35,8 @@ static int is_reduced(int kind)
 static void take(int kind)
 {
   make_body(kind == REDUCED ? FREE_BODY : kind == REDUCED + 1 ? FREE_MOTION : (body_kind)kind, &of);
-  ck_assert_msg(dvi__charted_create(of.system, is_reduced(kind), &counters, &charts) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi__charted_create(of.system, is_reduced(kind), &counters, &charts) == DVI_OK,
+                "%s", dvi_last_error());
   dvi__charted_centre(charts, of.q);
 }
 
@@ -56,7 +63,8 @@ START_TEST(derivatives_are_those_of_the_value)
   take(_i);
   scatter(dvi_system_nq(local()), 0.6, xi);
   scatter(dvi_system_nq(local()), -1.3, rate);
-  ck_assert_msg(dvi_system_check(local(), 0, xi, rate, 1e-8, NULL) == DVI_OK, "%s: %s", of.name, dvi_last_error());
+  ck_assert_msg(dvi_system_check(local(), 0, xi, rate, 1e-8, NULL) == DVI_OK, "%s: %s", of.name,
+                dvi_last_error());
 }
 END_TEST
 
@@ -77,7 +85,8 @@ END_TEST
 /* L_vv rate is the momentum, reduced or not. */
 START_TEST(the_mass_at_the_centre_is_that_of_velocities)
 {
-  double zero[BODY_V] = {0}, rate[BODY_V], momentum[BODY_V], by_mass[BODY_V] = {0}, mass[ENTRIES_MOST];
+  double zero[BODY_V] = {0}, rate[BODY_V], momentum[BODY_V], by_mass[BODY_V] = {0},
+         mass[ENTRIES_MOST];
   take(_i);
   const dvi__pattern *vv = &local()->vv;
   scatter(dvi_system_nq(local()), 0.7, rate);
@@ -85,7 +94,8 @@ START_TEST(the_mass_at_the_centre_is_that_of_velocities)
   dvi__charted_mass(charts, mass);
   for (int j = 0; j < vv->columns; j++)
     for (int e = vv->start[j]; e < vv->start[j + 1]; e++) by_mass[vv->row[e]] += mass[e] * rate[j];
-  for (int i = 0; i < vv->columns; i++) ck_assert_double_eq_tol(by_mass[i], momentum[i], 1e-14 * fmax(1, fabs(momentum[i])));
+  for (int i = 0; i < vv->columns; i++)
+    ck_assert_double_eq_tol(by_mass[i], momentum[i], 1e-14 * fmax(1, fabs(momentum[i])));
 }
 END_TEST
 
@@ -117,7 +127,8 @@ static dvi__action *centred_action(void)
 /* Central differences of order 4: 1e-12 beside roundoff over the length. */
 static void difference(dvi__action *action, const double *Y, int column, double *in_column)
 {
-  static const double weight[] = {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12}, place[] = {-2, -1, 1, 2}, length = 1e-3;
+  static const double weight[] = {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12},
+                      place[] = {-2, -1, 1, 2}, length = 1e-3;
   double moved[UNKNOWNS_MOST], R[UNKNOWNS_MOST];
   const int unknowns = dvi__action_unknowns(action);
   memset(in_column, 0, sizeof R);
@@ -131,7 +142,8 @@ static void difference(dvi__action *action, const double *Y, int column, double 
 
 START_TEST(the_centred_jacobian_is_that_of_the_rows)
 {
-  double zero[BODY_V] = {0}, p[BODY_V], Y[UNKNOWNS_MOST], column[UNKNOWNS_MOST], size = 0, error = 0;
+  double zero[BODY_V] = {0}, p[BODY_V], Y[UNKNOWNS_MOST], column[UNKNOWNS_MOST], size = 0,
+         error = 0;
   take(_i);
   dvi__action *action = centred_action();
   const dvi__pattern *pattern = dvi__action_pattern(action);

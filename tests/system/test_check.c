@@ -22,8 +22,10 @@ static void build(scene *c)
 
 static dvi_status check_at(scene *c, const double *q, const double *v)
 {
-  dvi_system *s = make_system(
-      &(dvi_system_terms){.dimension = SITES, .lagrangian = &c->lagrangian, .potentials = c->potentials, .potential_count = 2});
+  dvi_system *s = make_system(&(dvi_system_terms){.dimension = SITES,
+                                                  .lagrangian = &c->lagrangian,
+                                                  .potentials = c->potentials,
+                                                  .potential_count = 2});
   const dvi_status status = dvi_system_check(s, 0.3, q, v, 0, &c->found);
   dvi_system_destroy(&s);
   return status;
@@ -68,7 +70,8 @@ START_TEST(a_wrong_gradient_entry_of_a_potential_is_named_with_both_numbers)
   c.potentials[0].gradient_batch(1, &t, generic_q, V_q, &c.springs);
   double largest = 0;
   for (int i = 0; i < SITES; i++) largest = fmax(largest, fabs(V_q[i]));
-  ck_assert_double_eq_tol(c.found.gradient_error, 1e-4 / largest, 1e-3 * 1e-4); /* the lie, relative to the largest entry */
+  /* the lie, relative to the largest entry */
+  ck_assert_double_eq_tol(c.found.gradient_error, 1e-4 / largest, 1e-3 * 1e-4);
 }
 END_TEST
 
@@ -100,7 +103,8 @@ END_TEST
 
 START_TEST(a_wrong_hessian_entry_of_each_block_of_the_lagrangian_is_named)
 {
-  const char *const words[] = {"Lagrangian: d2L/dq2 (5,5) is ", "Lagrangian: d2L/dqdv (2,3) is ", "Lagrangian: d2L/dv2 (1,2) is "};
+  const char *const words[] = {"Lagrangian: d2L/dq2 (5,5) is ", "Lagrangian: d2L/dqdv (2,3) is ",
+                               "Lagrangian: d2L/dv2 (1,2) is "};
   scene c;
   build(&c);
   c.rotors = (behaviour){.hessian_lie = 1e-3, .at = 5, .block = _i};
@@ -118,7 +122,8 @@ START_TEST(an_entry_that_a_pattern_misses_is_named)
   c.potentials[0].qq = (dvi_pattern){start, row};
   c.potentials[0].hessian_batch = NULL; /* a missing callback is not checked; its pattern is */
   ck_assert_int_eq(check_scene(&c), DVI_BAD_ARGUMENT);
-  says(dvi_last_error(), "potential 'springs': d2V/dq2 (3,2) is not in the pattern, but differences give -");
+  says(dvi_last_error(),
+       "potential 'springs': d2V/dq2 (3,2) is not in the pattern, but differences give -");
   ck_assert_str_eq(c.found.where, "potential 'springs': d2V/dq2 (3,2) is not in the pattern");
   ck_assert(c.found.row == 3 && c.found.column == 2);
   ck_assert_double_gt(c.found.outside, 0.01);
@@ -128,7 +133,8 @@ END_TEST
 START_TEST(an_entry_that_a_pattern_of_the_lagrangian_misses_is_named)
 {
   static const int none[SITES + 1] = {0};
-  const char *const words[] = {"Lagrangian: d2L/dq2 (", "Lagrangian: d2L/dqdv (", "Lagrangian: d2L/dv2 ("};
+  const char *const words[] = {"Lagrangian: d2L/dq2 (", "Lagrangian: d2L/dqdv (",
+                               "Lagrangian: d2L/dv2 ("};
   scene c;
   build(&c);
   dvi_pattern *const patterns[] = {&c.lagrangian.qq, &c.lagrangian.qv, &c.lagrangian.vv};
@@ -174,7 +180,8 @@ START_TEST(a_wrong_gradient_is_blamed_before_the_hessian_that_disagrees_with_it)
 }
 END_TEST
 
-/* At the origin nearly all derivatives vanish, and differences give roundoff: nothing to complain about. */
+/* At the origin nearly all derivatives vanish, and differences give roundoff: nothing to complain
+ * about. */
 START_TEST(roundoff_in_vanishing_derivatives_is_no_error)
 {
   const double zero[SITES] = {0}, tiny[SITES] = {1e-9, -2e-9, 3e-9, 1e-20, 0, 1e-9};
@@ -185,7 +192,8 @@ START_TEST(roundoff_in_vanishing_derivatives_is_no_error)
 }
 END_TEST
 
-/* A constant that dwarfs what varies: its roundoff, over the step, is larger than 1e-6 of the gradient. */
+/* A constant that dwarfs what varies: its roundoff, over the step, is larger than 1e-6 of the
+ * gradient. */
 START_TEST(roundoff_of_a_large_constant_is_no_error)
 {
   scene c;
@@ -195,7 +203,8 @@ START_TEST(roundoff_of_a_large_constant_is_no_error)
 }
 END_TEST
 
-/* Gravity: a linear potential with an empty pattern, and a constant whose roundoff shows in second differences of the value. */
+/* Gravity: a linear potential with an empty pattern, and a constant whose roundoff shows in second
+ * differences of the value. */
 static int weight_value(double t, const double *q, double *V, void *user)
 {
   (void)t, (void)user;
@@ -215,9 +224,12 @@ START_TEST(an_empty_pattern_is_right_for_a_linear_potential)
 {
   static const int none[SITES + 1] = {0};
   for (int given = 0; given < 2; given++) {
-    const dvi_potential p = {.value = weight_value, .gradient = given ? weight_gradient : NULL, .qq = {none, NULL}};
-    dvi_system *s = make_system(&(dvi_system_terms){.dimension = SITES, .mass.scalar = 1, .potentials = &p, .potential_count = 1});
-    ck_assert_msg(dvi_system_check(s, 0, generic_q, generic_v, 0, NULL) == DVI_OK, "%s", dvi_last_error());
+    const dvi_potential p = {
+        .value = weight_value, .gradient = given ? weight_gradient : NULL, .qq = {none, NULL}};
+    dvi_system *s = make_system(&(dvi_system_terms){
+        .dimension = SITES, .mass.scalar = 1, .potentials = &p, .potential_count = 1});
+    ck_assert_msg(dvi_system_check(s, 0, generic_q, generic_v, 0, NULL) == DVI_OK, "%s",
+                  dvi_last_error());
     dvi_system_destroy(&s);
   }
 }
@@ -242,8 +254,10 @@ START_TEST(the_tolerance_decides)
   scene c;
   build(&c);
   c.springs.gradient_lie = 1e-4;
-  dvi_system *s = make_system(
-      &(dvi_system_terms){.dimension = SITES, .lagrangian = &c.lagrangian, .potentials = c.potentials, .potential_count = 2});
+  dvi_system *s = make_system(&(dvi_system_terms){.dimension = SITES,
+                                                  .lagrangian = &c.lagrangian,
+                                                  .potentials = c.potentials,
+                                                  .potential_count = 2});
   ck_assert_int_eq(dvi_system_check(s, 0, generic_q, generic_v, 1e-3, NULL), DVI_OK);
   ck_assert_int_eq(dvi_system_check(s, 0, generic_q, generic_v, 1e-9, NULL), DVI_BAD_ARGUMENT);
   dvi_system_destroy(&s);
@@ -258,7 +272,8 @@ START_TEST(bad_arguments_are_refused)
   ck_assert_int_eq(dvi_system_check(s, 0, NULL, generic_v, 0, NULL), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_system_check(s, 0, generic_q, NULL, 0, NULL), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_system_check(s, 0, generic_q, generic_v, -1, NULL), DVI_BAD_ARGUMENT);
-  ck_assert_int_eq(dvi_system_check(s, 0, generic_q, generic_v, (double)NAN, NULL), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_system_check(s, 0, generic_q, generic_v, (double)NAN, NULL),
+                   DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_system_check(s, (double)NAN, generic_q, generic_v, 0, NULL), DVI_NOT_FINITE);
   ck_assert_int_eq(dvi_system_check(s, 0, bad, generic_v, 0, NULL), DVI_NOT_FINITE);
   ck_assert_int_eq(dvi_system_check(s, 0, generic_q, generic_v, 0, NULL), DVI_OK);

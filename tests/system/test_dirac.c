@@ -1,4 +1,5 @@
-/* Hamiltonians with constraints of second class: their motion, their bracket matrix, the derivative check, refusals. */
+/* Hamiltonians with constraints of second class: their motion, their bracket matrix, the derivative
+ * check, refusals. */
 #include <math.h>
 #include <string.h>
 
@@ -50,7 +51,8 @@ START_TEST(the_bracket_matrix_is_that_of_the_gradients)
   ck_assert_int_eq(dvi_system_velocity(of->system, 0, nowhere, of->p, v), DVI_SINGULAR);
   check_words("bracket matrix {phi_a, phi_b} is singular");
   ck_assert_double_eq(v[0], 7);
-  ck_assert_int_eq(dvi_system_bracket(vortices->system, vortices->q, vortices->p, bracket, NULL), DVI_UNSUPPORTED);
+  ck_assert_int_eq(dvi_system_bracket(vortices->system, vortices->q, vortices->p, bracket, NULL),
+                   DVI_UNSUPPORTED);
   ck_assert_int_eq(dvi_system_constraint_count(vortices->system), 0);
   problem_destroy(&vortices);
   problem_destroy(&of);
@@ -75,14 +77,16 @@ static const double somewhere_q[3] = {0.3, -0.7, 0.4}, somewhere_p[3] = {0.9, 0.
 static const dvi_hamiltonian *wronged;
 static const dvi_constraint *wronged_constraint;
 
-static int wrong_H_p(double t, const double *q, const double *p, double *H_q, double *H_p, void *user)
+static int wrong_H_p(double t, const double *q, const double *p, double *H_q, double *H_p,
+                     void *user)
 {
   const int returned = wronged->gradient(t, q, p, H_q, H_p, user);
   H_p[0] += 0.1;
   return returned;
 }
 
-static int wrong_H_qp(double t, const double *q, const double *p, double *H_qq, double *H_qp, double *H_pp, void *user)
+static int wrong_H_qp(double t, const double *q, const double *p, double *H_qq, double *H_qp,
+                      double *H_pp, void *user)
 {
   const int returned = wronged->hessian(t, q, p, H_qq, H_qp, H_pp, user);
   H_qp[0] += 0.1;
@@ -96,7 +100,8 @@ static int wrong_phi_z(const double *q, const double *p, double *phi_z, void *us
   return returned;
 }
 
-static int wrong_phi_qq(const double *q, const double *p, const double *w, double *qq, double *qp, double *pp, void *user)
+static int wrong_phi_qq(const double *q, const double *p, const double *w, double *qq, double *qp,
+                        double *pp, void *user)
 {
   const int returned = wronged_constraint->hessian(q, p, w, qq, qp, pp, user);
   qq[3] += 0.1 * w[0];
@@ -107,7 +112,8 @@ static void check_offender(const dvi_system_terms *terms, const char *words)
 {
   dvi_system *system = made_system(terms);
   dvi_derivative_check found;
-  ck_assert_int_eq(dvi_system_check(system, 0, somewhere_q, somewhere_p, 0, &found), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_system_check(system, 0, somewhere_q, somewhere_p, 0, &found),
+                   DVI_BAD_ARGUMENT);
   check_words(words);
   dvi_system_destroy(&system);
 }
@@ -155,7 +161,8 @@ START_TEST(differenced_hessians_give_the_same_steps)
   terms.hamiltonian = &H;
   terms.constraint = &phi;
   dvi_system *system = made_system(&terms);
-  dvi_integrator *given = started(of, "dg-phase:degree=3"), *differenced = made_integrator(system, "dg-phase:degree=3");
+  dvi_integrator *given = started(of, "dg-phase:degree=3"),
+                 *differenced = made_integrator(system, "dg-phase:degree=3");
   ck_assert_int_eq(dvi_integrator_start(differenced, 0, of->q, of->p), DVI_OK);
   advance(given, 0.1, 20);
   advance(differenced, 0.1, 20);

@@ -29,7 +29,8 @@ static void place(evaluation *x)
 static dvi__evaluator *make(const dvi_system *s, dvi_counters *counters)
 {
   dvi__evaluator *e;
-  ck_assert_msg(dvi__evaluator_create(s, POINTS, DVI__HESSIANS, counters, &e) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi__evaluator_create(s, POINTS, DVI__HESSIANS, counters, &e) == DVI_OK, "%s",
+                dvi_last_error());
   return e;
 }
 
@@ -37,16 +38,22 @@ static void evaluate(const dvi_system *s, evaluation *x)
 {
   dvi__evaluator *e = make(s, NULL);
   place(x);
-  ck_assert_msg(dvi__lagrangian_value(e, POINTS, x->t, x->q, x->v, x->L) == DVI_OK, "%s", dvi_last_error());
-  ck_assert_msg(dvi__lagrangian_gradient(e, POINTS, x->t, x->q, x->v, x->L_q, x->L_v) == DVI_OK, "%s", dvi_last_error());
-  ck_assert_msg(dvi__lagrangian_hessian(e, POINTS, x->t, x->q, x->v, x->L_qq, x->L_qv, x->L_vv) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi__lagrangian_value(e, POINTS, x->t, x->q, x->v, x->L) == DVI_OK, "%s",
+                dvi_last_error());
+  ck_assert_msg(dvi__lagrangian_gradient(e, POINTS, x->t, x->q, x->v, x->L_q, x->L_v) == DVI_OK,
+                "%s", dvi_last_error());
+  ck_assert_msg(dvi__lagrangian_hessian(e, POINTS, x->t, x->q, x->v, x->L_qq, x->L_qv, x->L_vv) ==
+                    DVI_OK,
+                "%s", dvi_last_error());
   dvi__evaluator_destroy(&e);
   ck_assert_ptr_null(e);
 }
 
-static void evaluate_terms(const dvi_lagrangian *l, const dvi_potential *potentials, int count, evaluation *x)
+static void evaluate_terms(const dvi_lagrangian *l, const dvi_potential *potentials, int count,
+                           evaluation *x)
 {
-  dvi_system_terms terms = {.dimension = SITES, .lagrangian = l, .potentials = potentials, .potential_count = count};
+  dvi_system_terms terms = {
+      .dimension = SITES, .lagrangian = l, .potentials = potentials, .potential_count = count};
   if (l == NULL) terms.mass = (dvi_mass){.values = tridiagonal_mass, .pattern = tridiagonal};
   dvi_system *s = make_system(&terms);
   memset(x, 0, sizeof *x);
@@ -70,7 +77,8 @@ START_TEST(one_point_and_batch_callbacks_agree_bit_for_bit)
   static evaluation one, batch;
   behaviour b = {0};
   const dvi_lagrangian l[] = {rotors(&b, ONE_POINT), rotors(&b, BATCH)};
-  const dvi_potential p[2][2] = {{springs(&b, ONE_POINT), wells(&b, ONE_POINT)}, {springs(&b, BATCH), wells(&b, BATCH)}};
+  const dvi_potential p[2][2] = {{springs(&b, ONE_POINT), wells(&b, ONE_POINT)},
+                                 {springs(&b, BATCH), wells(&b, BATCH)}};
   for (int general = 0; general < 2; general++) {
     evaluate_terms(general ? &l[0] : NULL, p[0], 2, &one);
     evaluate_terms(general ? &l[1] : NULL, p[1], 2, &batch);
@@ -86,7 +94,8 @@ START_TEST(a_batch_is_its_points_one_by_one)
   const dvi_lagrangian l = rotors(&b, BATCH);
   const dvi_potential p = springs(&b, BATCH);
   evaluate_terms(&l, &p, 1, &x);
-  dvi_system *s = make_system(&(dvi_system_terms){.dimension = SITES, .lagrangian = &l, .potentials = &p, .potential_count = 1});
+  dvi_system *s = make_system(&(dvi_system_terms){
+      .dimension = SITES, .lagrangian = &l, .potentials = &p, .potential_count = 1});
   dvi__evaluator *e = make(s, NULL);
   for (int k = 0; k < POINTS; k++) {
     double q[SITES], v[SITES], L, L_q[SITES], L_v[SITES], L_qq[QQ], L_qv[QV], L_vv[VV];
@@ -98,7 +107,8 @@ START_TEST(a_batch_is_its_points_one_by_one)
     ck_assert_int_eq(dvi__lagrangian_gradient(e, 1, x.t + k, q, v, L_q, L_v), DVI_OK);
     ck_assert_int_eq(dvi__lagrangian_hessian(e, 1, x.t + k, q, v, L_qq, L_qv, L_vv), DVI_OK);
     ck_assert(L == x.L[k]);
-    for (int i = 0; i < SITES; i++) ck_assert(L_q[i] == x.L_q[i * POINTS + k] && L_v[i] == x.L_v[i * POINTS + k]);
+    for (int i = 0; i < SITES; i++)
+      ck_assert(L_q[i] == x.L_q[i * POINTS + k] && L_v[i] == x.L_v[i * POINTS + k]);
     for (int i = 0; i < QQ; i++) ck_assert(L_qq[i] == x.L_qq[i * POINTS + k]);
     for (int i = 0; i < QV; i++) ck_assert(L_qv[i] == x.L_qv[i * POINTS + k]);
     for (int i = 0; i < VV; i++) ck_assert(L_vv[i] == x.L_vv[i * POINTS + k]);
@@ -115,16 +125,19 @@ START_TEST(several_potentials_sum_with_a_minus_sign)
   const dvi_potential p[] = {springs(&b, BATCH), wells(&b, BATCH)};
   evaluate_terms(NULL, p, 2, &both);
   evaluate_terms(NULL, p, 1, &first);
-  evaluate_terms(NULL, p + 1, 1, &second); /* its diagonal Hessian stands in the first SITES entries */
+  /* its diagonal Hessian stands in the first SITES entries */
+  evaluate_terms(NULL, p + 1, 1, &second);
   evaluate_terms(NULL, NULL, 0, &none);
   for (int k = 0; k < POINTS; k++) {
     double V;
     p[0].value_batch(1, none.t,
-                     (double[]){both.q[k], both.q[POINTS + k], both.q[2 * POINTS + k], both.q[3 * POINTS + k],
-                                both.q[4 * POINTS + k], both.q[5 * POINTS + k]},
+                     (double[]){both.q[k], both.q[POINTS + k], both.q[2 * POINTS + k],
+                                both.q[3 * POINTS + k], both.q[4 * POINTS + k],
+                                both.q[5 * POINTS + k]},
                      &V, &b);
     ck_assert_double_eq_tol(first.L[k], none.L[k] - V, 1e-14 * fabs(V));
-    ck_assert_double_eq_tol(both.L[k] - none.L[k], first.L[k] + second.L[k] - 2 * none.L[k], 1e-13); /* sums of O(10) reordered */
+    /* sums of O(10) reordered */
+    ck_assert_double_eq_tol(both.L[k] - none.L[k], first.L[k] + second.L[k] - 2 * none.L[k], 1e-13);
   }
   for (int i = 0; i < SITES * POINTS; i++) {
     ck_assert_double_eq_tol(both.L_q[i], first.L_q[i] + second.L_q[i], 1e-13);
@@ -135,7 +148,8 @@ START_TEST(several_potentials_sum_with_a_minus_sign)
     for (int e = tridiagonal.start[j]; e < tridiagonal.start[j + 1]; e++, entry++)
       for (int k = 0; k < POINTS; k++) {
         const double well = tridiagonal.row[e] == j ? second.L_qq[j * POINTS + k] : 0;
-        ck_assert_double_eq_tol(both.L_qq[entry * POINTS + k], first.L_qq[entry * POINTS + k] + well, 1e-13);
+        ck_assert_double_eq_tol(both.L_qq[entry * POINTS + k],
+                                first.L_qq[entry * POINTS + k] + well, 1e-13);
       }
 }
 END_TEST
@@ -150,8 +164,10 @@ START_TEST(a_potential_adds_to_a_general_lagrangian)
   evaluate_terms(&l, NULL, 0, &general);
   evaluate_terms(NULL, &p, 1, &potential);
   evaluate_terms(NULL, NULL, 0, &mass);
-  for (int k = 0; k < POINTS; k++) ck_assert_double_eq_tol(both.L[k], general.L[k] + potential.L[k] - mass.L[k], 1e-13);
-  for (int i = 0; i < SITES * POINTS; i++) ck_assert_double_eq_tol(both.L_q[i], general.L_q[i] + potential.L_q[i], 1e-13);
+  for (int k = 0; k < POINTS; k++)
+    ck_assert_double_eq_tol(both.L[k], general.L[k] + potential.L[k] - mass.L[k], 1e-13);
+  for (int i = 0; i < SITES * POINTS; i++)
+    ck_assert_double_eq_tol(both.L_q[i], general.L_q[i] + potential.L_q[i], 1e-13);
   ck_assert_mem_eq(both.L_v, general.L_v, sizeof both.L_v);
   ck_assert_mem_eq(both.L_qv, general.L_qv, sizeof both.L_qv);
   ck_assert_mem_eq(both.L_vv, general.L_vv, sizeof both.L_vv);
@@ -159,7 +175,8 @@ START_TEST(a_potential_adds_to_a_general_lagrangian)
     for (int e = tridiagonal.start[j]; e < tridiagonal.start[j + 1]; e++, entry++)
       for (int k = 0; k < POINTS; k++) {
         const double own = tridiagonal.row[e] == j ? general.L_qq[j * POINTS + k] : 0;
-        ck_assert_double_eq_tol(both.L_qq[entry * POINTS + k], potential.L_qq[entry * POINTS + k] + own, 1e-13);
+        ck_assert_double_eq_tol(both.L_qq[entry * POINTS + k],
+                                potential.L_qq[entry * POINTS + k] + own, 1e-13);
       }
 }
 END_TEST
@@ -183,7 +200,8 @@ START_TEST(a_constant_mass_has_its_own_derivatives)
 }
 END_TEST
 
-/* The tolerances are those that system/term/difference.h states; these functions vary over lengths of about 1, their steps as well. */
+/* The tolerances are those that system/term/difference.h states; these functions vary over lengths
+ * of about 1, their steps as well. */
 START_TEST(what_is_missing_is_differenced_to_the_stated_accuracy)
 {
   static evaluation exact, differenced;
@@ -210,8 +228,9 @@ START_TEST(what_is_missing_is_differenced_to_the_stated_accuracy)
 }
 END_TEST
 
-/* L = -sqrt(1 - v^2), as near to the speed of light as the first column says: steps made for v itself would lead close to it. The values'
- * roundoff, over steps that shrink with the distance, is what remains. */
+/* L = -sqrt(1 - v^2), as near to the speed of light as the first column says: steps made for v
+ * itself would lead close to it. The values' roundoff, over steps that shrink with the distance, is
+ * what remains. */
 static int moving_value(double t, const double *q, const double *v, double *L, void *user)
 {
   (void)t, (void)q, (void)user;
@@ -239,7 +258,8 @@ START_TEST(differences_work_at_the_origin_and_next_to_it)
   dvi_potential p = springs(&b, ONE_POINT);
   p.gradient = NULL;
   p.hessian = NULL;
-  dvi_system *s = make_system(&(dvi_system_terms){.dimension = SITES, .mass.scalar = 1, .potentials = &p, .potential_count = 1});
+  dvi_system *s = make_system(&(dvi_system_terms){
+      .dimension = SITES, .mass.scalar = 1, .potentials = &p, .potential_count = 1});
   dvi__evaluator *e = make(s, NULL);
   double t = 0, q[SITES], L_q[SITES], L_qq[QQ];
   for (int i = 0; i < SITES; i++) q[i] = sizes[_i] * (1 + i);
@@ -264,7 +284,8 @@ START_TEST(a_tridiagonal_hessian_costs_two_gradients_for_each_of_three_groups)
 }
 END_TEST
 
-/* qq is diagonal: one group. The bidiagonal qv and the tridiagonal vv share their columns: three groups. */
+/* qq is diagonal: one group. The bidiagonal qv and the tridiagonal vv share their columns: three
+ * groups. */
 START_TEST(a_general_hessian_is_grouped_by_its_patterns)
 {
   behaviour b = {0};
@@ -301,15 +322,18 @@ START_TEST(points_are_counted_and_nothing_is_allocated_after_create)
   dvi_potential p = springs(&of_p, ONE_POINT);
   p.hessian = NULL;
   l.gradient = NULL;
-  dvi_system *s = make_system(&(dvi_system_terms){.dimension = SITES, .lagrangian = &l, .potentials = &p, .potential_count = 1});
+  dvi_system *s = make_system(&(dvi_system_terms){
+      .dimension = SITES, .lagrangian = &l, .potentials = &p, .potential_count = 1});
   dvi__evaluator *e = make(s, &counters);
   const long before = dvi__allocation_count();
   double momentum[SITES] = {1}, v[SITES] = {0};
   place(&x);
   ck_assert_int_eq(dvi__lagrangian_value(e, POINTS, x.t, x.q, x.v, x.L), DVI_OK);
   ck_assert_int_eq(dvi__lagrangian_gradient(e, POINTS, x.t, x.q, x.v, x.L_q, NULL), DVI_OK);
-  ck_assert_int_eq(dvi__lagrangian_hessian(e, POINTS, x.t, x.q, x.v, x.L_qq, x.L_qv, x.L_vv), DVI_OK);
-  ck_assert_int_eq(counters.values, of_l.values); /* of them one a point were asked for, the others by the missing gradient */
+  ck_assert_int_eq(dvi__lagrangian_hessian(e, POINTS, x.t, x.q, x.v, x.L_qq, x.L_qv, x.L_vv),
+                   DVI_OK);
+  /* of them one a point were asked for, the others by the missing gradient */
+  ck_assert_int_eq(counters.values, of_l.values);
   ck_assert_int_eq(counters.gradients, of_p.gradients);
   ck_assert_int_gt(counters.gradients, POINTS);
   ck_assert_int_eq(counters.hessians, POINTS);
@@ -327,7 +351,8 @@ START_TEST(only_what_is_asked_is_evaluated)
   static evaluation x;
   behaviour b = {0};
   const dvi_potential p = springs(&b, BATCH);
-  dvi_system *s = make_system(&(dvi_system_terms){.dimension = SITES, .mass.scalar = 1, .potentials = &p, .potential_count = 1});
+  dvi_system *s = make_system(&(dvi_system_terms){
+      .dimension = SITES, .mass.scalar = 1, .potentials = &p, .potential_count = 1});
   dvi__evaluator *e = make(s, NULL);
   place(&x);
   ck_assert_int_eq(dvi__lagrangian_gradient(e, POINTS, x.t, x.q, x.v, NULL, x.L_v), DVI_OK);
@@ -346,7 +371,8 @@ START_TEST(the_mass_is_solved_in_place_for_a_batch)
 {
   static evaluation x;
   const double diagonal[SITES] = {1, 2, 3, 4, 5, 6};
-  const dvi_mass masses[] = {{.scalar = 3}, {.diagonal = diagonal}, {.values = tridiagonal_mass, .pattern = tridiagonal}};
+  const dvi_mass masses[] = {
+      {.scalar = 3}, {.diagonal = diagonal}, {.values = tridiagonal_mass, .pattern = tridiagonal}};
   dvi_system *s = make_system(&(dvi_system_terms){.dimension = SITES, .mass = masses[_i]});
   dvi__evaluator *e = make(s, NULL);
   place(&x);
@@ -366,8 +392,10 @@ typedef struct fault {
   dvi_status status;
 } fault;
 
-static const fault faults[] = {
-    {0, (double)NAN, DVI_NOT_FINITE}, {0, HUGE_VAL, DVI_NOT_FINITE}, {3, 0, DVI_CALLBACK_RETRY}, {-3, 0, DVI_CALLBACK_FAILED}};
+static const fault faults[] = {{0, (double)NAN, DVI_NOT_FINITE},
+                               {0, HUGE_VAL, DVI_NOT_FINITE},
+                               {3, 0, DVI_CALLBACK_RETRY},
+                               {-3, 0, DVI_CALLBACK_FAILED}};
 
 static void says(dvi_status found, dvi_status expected, const char *words)
 {
@@ -379,15 +407,20 @@ START_TEST(a_potential_that_misbehaves_is_named)
 {
   const fault f = faults[_i % 4];
   static evaluation x;
-  behaviour b = {.answer = f.answer, .value_lie = f.lie, .gradient_lie = f.lie, .hessian_lie = f.lie, .at = 2};
+  behaviour b = {
+      .answer = f.answer, .value_lie = f.lie, .gradient_lie = f.lie, .hessian_lie = f.lie, .at = 2};
   const dvi_potential p = springs(&b, _i < 4 ? ONE_POINT : BATCH);
-  dvi_system *s = make_system(&(dvi_system_terms){.dimension = SITES, .mass.scalar = 1, .potentials = &p, .potential_count = 1});
+  dvi_system *s = make_system(&(dvi_system_terms){
+      .dimension = SITES, .mass.scalar = 1, .potentials = &p, .potential_count = 1});
   dvi__evaluator *e = make(s, NULL);
   place(&x);
-  says(dvi__lagrangian_value(e, POINTS, x.t, x.q, x.v, x.L), f.status, "springs: the value callback");
-  says(dvi__lagrangian_gradient(e, POINTS, x.t, x.q, x.v, x.L_q, NULL), f.status, "springs: the gradient callback");
+  says(dvi__lagrangian_value(e, POINTS, x.t, x.q, x.v, x.L), f.status,
+       "springs: the value callback");
+  says(dvi__lagrangian_gradient(e, POINTS, x.t, x.q, x.v, x.L_q, NULL), f.status,
+       "springs: the gradient callback");
   if (f.answer == 0) says(DVI_OK, DVI_OK, "(entry 2, point 0 of 5)");
-  says(dvi__lagrangian_hessian(e, POINTS, x.t, x.q, x.v, x.L_qq, NULL, NULL), f.status, "springs: the Hessian callback");
+  says(dvi__lagrangian_hessian(e, POINTS, x.t, x.q, x.v, x.L_qq, NULL, NULL), f.status,
+       "springs: the Hessian callback");
   dvi__evaluator_destroy(&e);
   dvi_system_destroy(&s);
 }
@@ -396,23 +429,26 @@ END_TEST
 START_TEST(a_lagrangian_that_misbehaves_is_named)
 {
   const fault f = faults[_i % 4];
-  const char *const gradients[] = {" in L_q (entry 1, point 0 of 5)", " in L_v (entry 1, point 0 of 5)"}, *const hessians[] = {
-                                                                                                              " in L_qq",
-                                                                                                              " in L_qv",
-                                                                                                              " in L_vv"};
+  const char *const gradients[] = {" in L_q (entry 1, point 0 of 5)",
+                                   " in L_v (entry 1, point 0 of 5)"},
+                    *const hessians[] = {" in L_qq", " in L_qv", " in L_vv"};
   static evaluation x;
-  behaviour b = {.answer = f.answer, .value_lie = f.lie, .gradient_lie = f.lie, .hessian_lie = f.lie, .at = 1};
+  behaviour b = {
+      .answer = f.answer, .value_lie = f.lie, .gradient_lie = f.lie, .hessian_lie = f.lie, .at = 1};
   const dvi_lagrangian l = rotors(&b, _i < 4 ? ONE_POINT : BATCH);
   dvi_system *s = make_system(&(dvi_system_terms){.dimension = SITES, .lagrangian = &l});
   dvi__evaluator *e = make(s, NULL);
   place(&x);
-  says(dvi__lagrangian_value(e, POINTS, x.t, x.q, x.v, x.L), f.status, "Lagrangian: the value callback");
+  says(dvi__lagrangian_value(e, POINTS, x.t, x.q, x.v, x.L), f.status,
+       "Lagrangian: the value callback");
   for (b.block = 0; b.block < 3; b.block++) {
     if (b.block < 2) {
-      says(dvi__lagrangian_gradient(e, POINTS, x.t, x.q, x.v, x.L_q, x.L_v), f.status, "Lagrangian: the gradient callback");
+      says(dvi__lagrangian_gradient(e, POINTS, x.t, x.q, x.v, x.L_q, x.L_v), f.status,
+           "Lagrangian: the gradient callback");
       if (f.answer == 0) says(DVI_OK, DVI_OK, gradients[b.block]);
     }
-    says(dvi__lagrangian_hessian(e, POINTS, x.t, x.q, x.v, x.L_qq, x.L_qv, x.L_vv), f.status, "Lagrangian: the Hessian callback");
+    says(dvi__lagrangian_hessian(e, POINTS, x.t, x.q, x.v, x.L_qq, x.L_qv, x.L_vv), f.status,
+         "Lagrangian: the Hessian callback");
     if (f.answer == 0) says(DVI_OK, DVI_OK, hessians[b.block]);
   }
   dvi__evaluator_destroy(&e);
@@ -428,11 +464,14 @@ START_TEST(faults_show_through_differences)
   dvi_potential p = springs(&b, BATCH);
   p.gradient_batch = NULL;
   p.hessian_batch = NULL;
-  dvi_system *s = make_system(&(dvi_system_terms){.dimension = SITES, .mass.scalar = 1, .potentials = &p, .potential_count = 1});
+  dvi_system *s = make_system(&(dvi_system_terms){
+      .dimension = SITES, .mass.scalar = 1, .potentials = &p, .potential_count = 1});
   dvi__evaluator *e = make(s, NULL);
   place(&x);
-  says(dvi__lagrangian_gradient(e, POINTS, x.t, x.q, x.v, x.L_q, NULL), f.status, "springs: the value callback");
-  says(dvi__lagrangian_hessian(e, POINTS, x.t, x.q, x.v, x.L_qq, NULL, NULL), f.status, "springs: the value callback");
+  says(dvi__lagrangian_gradient(e, POINTS, x.t, x.q, x.v, x.L_q, NULL), f.status,
+       "springs: the value callback");
+  says(dvi__lagrangian_hessian(e, POINTS, x.t, x.q, x.v, x.L_qq, NULL, NULL), f.status,
+       "springs: the value callback");
   dvi__evaluator_destroy(&e);
   dvi_system_destroy(&s);
 }

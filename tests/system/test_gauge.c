@@ -7,7 +7,8 @@
 #include "support/runs.h"
 #include "support/suite.h"
 
-/* f = sum over pairs (x,y) of c (x y + kappa (x^3 y/3 + x y^3)): takes the first component from alpha = c (1 + kappa r^2) (-y, x). */
+/* f = sum over pairs (x,y) of c (x y + kappa (x^3 y/3 + x y^3)): takes the first component from
+ * alpha = c (1 + kappa r^2) (-y, x). */
 typedef struct product {
   int pairs;
   double c, kappa;
@@ -25,7 +26,8 @@ static int gradient(const double *q, double *f_q, void *user)
   return 0;
 }
 
-static const int start_of_pairs[] = {0, 2, 4, 6, 8}, start_of_one[] = {0, 2, 4, 4, 4}, row[] = {0, 1, 0, 1, 2, 3, 2, 3};
+static const int start_of_pairs[] = {0, 2, 4, 6, 8}, start_of_one[] = {0, 2, 4, 4, 4},
+                 row[] = {0, 1, 0, 1, 2, 3, 2, 3};
 
 static int hessian(const double *q, double *f_qq, void *user)
 {
@@ -43,7 +45,8 @@ static int third(const double *q, const double *w, double *f_w_qq, void *user)
 {
   const product *f = user;
   for (int k = 0; k < f->pairs; k++, f_w_qq += 4) {
-    const double x = 2 * f->c * f->kappa * q[2 * k], y = 2 * f->c * f->kappa * q[2 * k + 1], *u = w + 2 * k;
+    const double x = 2 * f->c * f->kappa * q[2 * k], y = 2 * f->c * f->kappa * q[2 * k + 1],
+                 *u = w + 2 * k;
     f_w_qq[0] = y * u[0] + x * u[1];
     f_w_qq[1] = f_w_qq[2] = x * u[0] + 3 * y * u[1];
     f_w_qq[3] = 3 * y * u[0] + 3 * x * u[1];
@@ -109,7 +112,8 @@ START_TEST(the_two_form_stays_and_the_momenta_move_by_the_gradient)
   double before[16], after[16], p[4], moved[4], f_q[4];
   ck_assert_int_eq(dvi_system_two_form(of->system, q, before, NULL), DVI_OK);
   ck_assert_int_eq(dvi_system_two_form(system, q, after, NULL), DVI_OK);
-  ck_assert_double_le(distance(of->nq * of->nq, before, after), 1e-15 * fmax(1, magnitude(of->nq * of->nq, before)));
+  ck_assert_double_le(distance(of->nq * of->nq, before, after),
+                      1e-15 * fmax(1, magnitude(of->nq * of->nq, before)));
   ck_assert_int_eq(dvi_system_momentum(of->system, 0, q, v, p), DVI_OK);
   ck_assert_int_eq(dvi_system_momentum(system, 0, q, v, moved), DVI_OK);
   (void)gradient(q, f_q, &own);
@@ -120,17 +124,20 @@ START_TEST(the_two_form_stays_and_the_momenta_move_by_the_gradient)
 }
 END_TEST
 
-/* The error of one method at the problem's digits, over four steps: that of the order, in every gauge. */
-static void check_order(const problem *of, const dvi_system *system, const char *method, double h, int order)
+/* The error of one method at the problem's digits, over four steps: that of the order, in every
+ * gauge. */
+static void check_order(const problem *of, const dvi_system *system, const char *method, double h,
+                        int order)
 {
   double last = 0;
   for (int level = 0; level < 4; level++, h /= 2) {
     dvi_integrator *integrator = made_integrator(system, method);
     ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, of->q, of->v), DVI_OK);
     advance(integrator, h, lround(of->order_t_end / h));
-    const double error = distance(of->nq, dvi_integrator_q(integrator), of->digits_q), slope = log2(last / error);
-    ck_assert_msg(level == 0 || fabs(slope - order) <= (level == 1 ? 0.6 : 0.2), "%s %s: slope %.2f at h = %g (error %g)", of->name,
-                  method, slope, h, error);
+    const double error = distance(of->nq, dvi_integrator_q(integrator), of->digits_q),
+                 slope = log2(last / error);
+    ck_assert_msg(level == 0 || fabs(slope - order) <= (level == 1 ? 0.6 : 0.2),
+                  "%s %s: slope %.2f at h = %g (error %g)", of->name, method, slope, h, error);
     last = error;
     dvi_integrator_destroy(&integrator);
   }
@@ -138,7 +145,9 @@ static void check_order(const problem *of, const dvi_system *system, const char 
 
 static double step_of(const problem *of)
 {
-  return strcmp(of->name, "vortices") == 0 ? 0.0625 : strcmp(of->name, "guiding-centre") == 0 ? 32 : 0.25;
+  return strcmp(of->name, "vortices") == 0         ? 0.0625
+         : strcmp(of->name, "guiding-centre") == 0 ? 32
+                                                   : 0.25;
 }
 
 START_TEST(in_another_gauge_the_trajectory_is_the_same_to_the_methods_order)
@@ -169,23 +178,28 @@ START_TEST(a_gauge_brings_systems_into_the_class_of_one_step_methods)
   dvi_system *system = gauged(of, &f);
   dvi_integrator *none = NULL;
   ck_assert_int_eq(dvi_integrator_create(of->system, "dvrk", &none), DVI_UNSUPPORTED);
-  for (int k = 0; k < 3; k++) check_order(of, system, claims[k].method, step_of(of) / 2, claims[k].order);
+  for (int k = 0; k < 3; k++)
+    check_order(of, system, claims[k].method, step_of(of) / 2, claims[k].order);
   dvi_system_destroy(&system);
   problem_destroy(&of);
 }
 END_TEST
 
-/* singular + grad (x y) is the catalogue's standard gauge, number for number up to roundoff; also with differences for what is left out. */
+/* singular + grad (x y) is the catalogue's standard gauge, number for number up to roundoff; also
+ * with differences for what is left out. */
 START_TEST(a_gauge_is_the_one_form_that_it_gives)
 {
   product own;
   const place *at = &places[4];
-  problem *singular = made_problem(at->problem, at->setting), *standard = made_problem(at->problem, NULL);
+  problem *singular = made_problem(at->problem, at->setting),
+          *standard = made_problem(at->problem, NULL);
   dvi_gauge f = declared(at, 2, &own);
   if (_i == 1) f.third = NULL;
   dvi_system *system = gauged(singular, &f);
-  dvi_integrator *a = made_integrator(system, "vprk:nodes=3"), *b = started(standard, "vprk:nodes=3");
-  ck_assert_msg(dvi_integrator_start(a, 0, standard->q, standard->p) == DVI_OK, "%s", dvi_last_error());
+  dvi_integrator *a = made_integrator(system, "vprk:nodes=3"),
+                 *b = started(standard, "vprk:nodes=3");
+  ck_assert_msg(dvi_integrator_start(a, 0, standard->q, standard->p) == DVI_OK, "%s",
+                dvi_last_error());
   advance(a, 0.1, 50);
   advance(b, 0.1, 50);
   ck_assert_double_le(distance(2, dvi_integrator_q(a), dvi_integrator_q(b)), 1e-13);
@@ -276,8 +290,10 @@ END_TEST
 SUITE(gauge)
 {
   tcase_add_loop_test(tests, the_two_form_stays_and_the_momenta_move_by_the_gradient, 0, PLACES);
-  tcase_add_loop_test(tests, in_another_gauge_the_trajectory_is_the_same_to_the_methods_order, 0, PLACES);
-  tcase_add_loop_test(tests, a_gauge_brings_systems_into_the_class_of_one_step_methods, 0, IN_CLASS);
+  tcase_add_loop_test(tests, in_another_gauge_the_trajectory_is_the_same_to_the_methods_order, 0,
+                      PLACES);
+  tcase_add_loop_test(tests, a_gauge_brings_systems_into_the_class_of_one_step_methods, 0,
+                      IN_CLASS);
   tcase_add_loop_test(tests, a_gauge_is_the_one_form_that_it_gives, 0, 2);
   tcase_add_test(tests, bad_gauges_are_refused_and_wrong_ones_found);
   tcase_add_test(tests, a_system_in_another_gauge_survives_every_failure_of_memory);

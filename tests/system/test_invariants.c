@@ -80,7 +80,8 @@ START_TEST(the_values_are_those_of_their_definitions)
     momentum += p[i];
   }
   ck_assert_int_eq(dvi_system_invariants(s, t, q, p, value), DVI_OK);
-  ck_assert_double_eq_tol(value[0], energy, 1e-14 * energy); /* sums of six terms in another order */
+  /* sums of six terms in another order */
+  ck_assert_double_eq_tol(value[0], energy, 1e-14 * energy);
   ck_assert_double_eq_tol(value[1], momentum, 1e-15);
   ck_assert_double_eq_tol(value[2], q[0] * p[1] - q[1] * p[0], 1e-15);
   ck_assert_double_eq(value[3], t + q[0] * p[0]);
@@ -99,7 +100,8 @@ START_TEST(the_energy_of_a_general_lagrangian_uses_the_inverse_legendre_map)
   const double *q = generic_q, *v = generic_v, t = 0.5;
   double p[SITES], value[5], energy;
   springs_alone.value(t, q, &energy, &quiet);
-  for (int i = 0; i < SITES; i++) energy += (2 + cos(q[i])) * v[i] * v[i] / 2 + (1 + t) * q[i] * q[i] / 2;
+  for (int i = 0; i < SITES; i++)
+    energy += (2 + cos(q[i])) * v[i] * v[i] / 2 + (1 + t) * q[i] * q[i] / 2;
   for (int i = 0; i + 1 < SITES; i++) energy += v[i] * v[i + 1] / 4;
   ck_assert_int_eq(dvi_system_momentum(s, t, q, v, p), DVI_OK);
   ck_assert_int_eq(dvi_system_invariants(s, t, q, p, value), DVI_OK);
@@ -114,7 +116,8 @@ START_TEST(a_generator_that_fails_is_named)
   int answer = answers[_i];
   dvi_system *s = watched(NULL, &answer, &again);
   double value[5];
-  ck_assert_int_eq(dvi_system_invariants(s, 0, generic_q, generic_v, value), _i == 0 ? DVI_CALLBACK_RETRY : DVI_CALLBACK_FAILED);
+  ck_assert_int_eq(dvi_system_invariants(s, 0, generic_q, generic_v, value),
+                   _i == 0 ? DVI_CALLBACK_RETRY : DVI_CALLBACK_FAILED);
   check_words("invariant 'momentum': the callback returned");
   dvi_system_destroy(&s);
 }
@@ -140,7 +143,8 @@ START_TEST(missing_arguments_are_refused)
   ck_assert_int_eq(dvi_system_invariants(s, 0, NULL, generic_v, value), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_system_invariants(s, 0, generic_q, NULL, value), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_system_invariants(s, 0, generic_q, generic_v, NULL), DVI_BAD_ARGUMENT);
-  ck_assert_int_eq(dvi_system_invariants(s, (double)NAN, generic_q, generic_v, value), DVI_NOT_FINITE);
+  ck_assert_int_eq(dvi_system_invariants(s, (double)NAN, generic_q, generic_v, value),
+                   DVI_NOT_FINITE);
   dvi_system_destroy(&s);
 }
 END_TEST

@@ -6,14 +6,16 @@
 
 static behaviour quiet;
 
-/* The rotors' mass is at least 1/2 and at most 7/2: a relative residual of a few roundings is an error of a few tens of them. */
+/* The rotors' mass is at least 1/2 and at most 7/2: a relative residual of a few roundings is an
+ * error of a few tens of them. */
 #define ROUNDING 1e-14
 
 static dvi_system *rotor_system(void)
 {
   const dvi_lagrangian l = rotors(&quiet, ONE_POINT);
   const dvi_potential p = springs(&quiet, ONE_POINT);
-  return make_system(&(dvi_system_terms){.dimension = SITES, .lagrangian = &l, .potentials = &p, .potential_count = 1});
+  return make_system(&(dvi_system_terms){
+      .dimension = SITES, .lagrangian = &l, .potentials = &p, .potential_count = 1});
 }
 
 START_TEST(a_mass_that_depends_on_q_is_inverted_from_any_guess)
@@ -29,7 +31,8 @@ START_TEST(a_mass_that_depends_on_q_is_inverted_from_any_guess)
 }
 END_TEST
 
-/* The momentum of a magnetic term does not vanish at v = 0; then v has no size by which to measure convergence. */
+/* The momentum of a magnetic term does not vanish at v = 0; then v has no size by which to measure
+ * convergence. */
 START_TEST(a_body_at_rest_is_found_in_spite_of_a_magnetic_momentum)
 {
   dvi_system *s = rotor_system();
@@ -63,13 +66,15 @@ END_TEST
 START_TEST(constant_masses_are_inverted_in_every_form)
 {
   const double diagonal[SITES] = {1, 2, 3, 4, 5, -6};
-  const dvi_mass masses[] = {{.scalar = 3}, {.diagonal = diagonal}, {.values = tridiagonal_mass, .pattern = tridiagonal}};
+  const dvi_mass masses[] = {
+      {.scalar = 3}, {.diagonal = diagonal}, {.values = tridiagonal_mass, .pattern = tridiagonal}};
   dvi_system *s = make_system(&(dvi_system_terms){.dimension = SITES, .mass = masses[_i]});
   double p[SITES], v[SITES] = {(double)NAN}; /* the guess is not read */
   ck_assert_int_eq(dvi_system_momentum(s, 0, generic_q, generic_v, p), DVI_OK);
   for (int i = 0; i < SITES; i++) {
     const double beside = (i > 0 ? generic_v[i - 1] : 0) + (i + 1 < SITES ? generic_v[i + 1] : 0);
-    const double expected[] = {3 * generic_v[i], diagonal[i] * generic_v[i], (2 + i) * generic_v[i] - 0.5 * beside};
+    const double expected[] = {3 * generic_v[i], diagonal[i] * generic_v[i],
+                               (2 + i) * generic_v[i] - 0.5 * beside};
     ck_assert_double_eq_tol(p[i], expected[_i], ROUNDING);
   }
   ck_assert_int_eq(dvi_system_velocity(s, 0, generic_q, p, v), DVI_OK);
@@ -86,7 +91,8 @@ static int difference_value(double t, const double *q, const double *v, double *
   return 0;
 }
 
-static int difference_gradient(double t, const double *q, const double *v, double *L_q, double *L_v, void *user)
+static int difference_gradient(double t, const double *q, const double *v, double *L_q, double *L_v,
+                               void *user)
 {
   (void)t, (void)q, (void)user;
   L_q[0] = L_q[1] = 0;
@@ -95,7 +101,8 @@ static int difference_gradient(double t, const double *q, const double *v, doubl
   return 0;
 }
 
-static int difference_hessian(double t, const double *q, const double *v, double *L_qq, double *L_qv, double *L_vv, void *user)
+static int difference_hessian(double t, const double *q, const double *v, double *L_qq,
+                              double *L_qv, double *L_vv, void *user)
 {
   (void)t, (void)q, (void)v, (void)user;
   memset(L_qq, 0, 4 * sizeof *L_qq);
@@ -107,7 +114,8 @@ static int difference_hessian(double t, const double *q, const double *v, double
 
 START_TEST(a_degenerate_lagrangian_has_a_momentum_but_no_velocity)
 {
-  const dvi_lagrangian l = {.value = difference_value, .gradient = difference_gradient, .hessian = difference_hessian};
+  const dvi_lagrangian l = {
+      .value = difference_value, .gradient = difference_gradient, .hessian = difference_hessian};
   dvi_system *s = make_system(&(dvi_system_terms){.dimension = 2, .lagrangian = &l});
   double p[2], v[2] = {3, 4};
   ck_assert_int_eq(dvi_system_momentum(s, 0, generic_q, v, p), DVI_OK);
@@ -127,7 +135,8 @@ static int bounded_value(double t, const double *q, const double *v, double *L, 
   return 0;
 }
 
-static int bounded_gradient(double t, const double *q, const double *v, double *L_q, double *L_v, void *user)
+static int bounded_gradient(double t, const double *q, const double *v, double *L_q, double *L_v,
+                            void *user)
 {
   (void)t, (void)q, (void)user;
   L_q[0] = 0;
@@ -140,7 +149,8 @@ START_TEST(a_momentum_that_no_velocity_has_is_reported_and_the_guess_stays)
   const dvi_lagrangian l = {.value = bounded_value, .gradient = bounded_gradient};
   dvi_system *s = make_system(&(dvi_system_terms){.dimension = 1, .lagrangian = &l});
   double p = 2, v = 0.1;
-  ck_assert_int_eq(dvi_system_velocity(s, 0, generic_q, &p, &v), DVI_NOT_CONVERGED); /* v runs off to where L_vv vanishes */
+  /* v runs off to where L_vv vanishes */
+  ck_assert_int_eq(dvi_system_velocity(s, 0, generic_q, &p, &v), DVI_NOT_CONVERGED);
   ck_assert_double_eq(v, 0.1);
   p = 0.6;
   ck_assert_msg(dvi_system_velocity(s, 0, generic_q, &p, &v) == DVI_OK, "%s", dvi_last_error());
@@ -149,7 +159,8 @@ START_TEST(a_momentum_that_no_velocity_has_is_reported_and_the_guess_stays)
 }
 END_TEST
 
-/* L = v^4/4 - v^2 + 2 v with p = 0: from v = 0 Newton's method goes to 1 and back again, for ever. */
+/* L = v^4/4 - v^2 + 2 v with p = 0: from v = 0 Newton's method goes to 1 and back again, for
+ * ever. */
 static int cycling_value(double t, const double *q, const double *v, double *L, void *user)
 {
   (void)t, (void)q, (void)user;
@@ -157,7 +168,8 @@ static int cycling_value(double t, const double *q, const double *v, double *L, 
   return 0;
 }
 
-static int cycling_gradient(double t, const double *q, const double *v, double *L_q, double *L_v, void *user)
+static int cycling_gradient(double t, const double *q, const double *v, double *L_q, double *L_v,
+                            void *user)
 {
   (void)t, (void)q, (void)user;
   L_q[0] = 0;
@@ -165,7 +177,8 @@ static int cycling_gradient(double t, const double *q, const double *v, double *
   return 0;
 }
 
-static int cycling_hessian(double t, const double *q, const double *v, double *L_qq, double *L_qv, double *L_vv, void *user)
+static int cycling_hessian(double t, const double *q, const double *v, double *L_qq, double *L_qv,
+                           double *L_vv, void *user)
 {
   (void)t, (void)q, (void)user;
   L_qq[0] = L_qv[0] = 0;
@@ -175,7 +188,8 @@ static int cycling_hessian(double t, const double *q, const double *v, double *L
 
 START_TEST(a_guess_from_which_newton_does_not_settle_is_reported)
 {
-  const dvi_lagrangian l = {.value = cycling_value, .gradient = cycling_gradient, .hessian = cycling_hessian};
+  const dvi_lagrangian l = {
+      .value = cycling_value, .gradient = cycling_gradient, .hessian = cycling_hessian};
   dvi_system *s = make_system(&(dvi_system_terms){.dimension = 1, .lagrangian = &l});
   double p = 0, v = 0;
   ck_assert_int_eq(dvi_system_velocity(s, 0, generic_q, &p, &v), DVI_NOT_CONVERGED);

@@ -7,7 +7,8 @@
 #include "support/suite.h"
 #include "system/evaluate/evaluator.h"
 
-/* alpha = (-x^2 y, lie + x y^2 + z, w, 0) of n coordinates, or 0 if `flat`; a wrong gradient where `lie` is not 0. */
+/* alpha = (-x^2 y, lie + x y^2 + z, w, 0) of n coordinates, or 0 if `flat`; a wrong gradient where
+ * `lie` is not 0. */
 typedef struct form {
   double lie;
   int flat;
@@ -46,15 +47,19 @@ static const dvi_potential hamiltonian = {.name = "H", .value = H};
 
 static dvi_one_form declared(form *user)
 {
-  return (dvi_one_form){.value = value, .gradient = gradient, .gradients = {start, row}, .user = user};
+  return (dvi_one_form){
+      .value = value, .gradient = gradient, .gradients = {start, row}, .user = user};
 }
 
 static dvi_system *made(form *user)
 {
   dvi_system *system = NULL;
   const dvi_one_form one_form = declared(user);
-  const dvi_system_terms terms = {
-      .dimension = 4, .one_form = &one_form, .potentials = &hamiltonian, .potential_count = 1, .autonomous = 1};
+  const dvi_system_terms terms = {.dimension = 4,
+                                  .one_form = &one_form,
+                                  .potentials = &hamiltonian,
+                                  .potential_count = 1,
+                                  .autonomous = 1};
   ck_assert_msg(dvi_system_create(&terms, &system) == DVI_OK, "%s", dvi_last_error());
   return system;
 }
@@ -68,13 +73,17 @@ START_TEST(values_momenta_and_two_form_are_those_of_the_definition)
   double L, p[4], alpha[4], Omega[16], condition;
   (void)value(q, alpha, &right);
   ck_assert_int_eq(dvi_system_lagrangian(system, 0, q, v, &L), DVI_OK);
-  ck_assert_double_eq_tol(L, alpha[0] * v[0] + alpha[1] * v[1] + alpha[2] * v[2] - 0.5 * (0.09 + 0.64 + 0.25 + 1.21), 1e-15);
+  ck_assert_double_eq_tol(
+      L, alpha[0] * v[0] + alpha[1] * v[1] + alpha[2] * v[2] - 0.5 * (0.09 + 0.64 + 0.25 + 1.21),
+      1e-15);
   ck_assert_int_eq(dvi_system_momentum(system, 0, q, v, p), DVI_OK);
   ck_assert_mem_eq(p, alpha, sizeof p);
-  ck_assert_msg(dvi_system_two_form(system, q, Omega, &condition) == DVI_OK, "%s", dvi_last_error());
-  ck_assert_double_eq_tol(Omega[4], q[1] * q[1] + q[0] * q[0], 1e-15); /* d alpha_y/dx - d alpha_x/dy */
-  ck_assert_double_eq(Omega[4 * 1 + 2], 1);                            /* d alpha_y/dz */
-  ck_assert_double_eq(Omega[4 * 2 + 3], 1);                            /* d alpha_z/dw */
+  ck_assert_msg(dvi_system_two_form(system, q, Omega, &condition) == DVI_OK, "%s",
+                dvi_last_error());
+  /* d alpha_y/dx - d alpha_x/dy */
+  ck_assert_double_eq_tol(Omega[4], q[1] * q[1] + q[0] * q[0], 1e-15);
+  ck_assert_double_eq(Omega[4 * 1 + 2], 1); /* d alpha_y/dz */
+  ck_assert_double_eq(Omega[4 * 2 + 3], 1); /* d alpha_z/dw */
   for (int j = 0; j < 4; j++)
     for (int i = 0; i < 4; i++) ck_assert_double_eq(Omega[4 * j + i], -Omega[4 * i + j]);
   ck_assert(condition >= 1 && condition < 100);
@@ -93,7 +102,8 @@ START_TEST(the_velocity_solves_the_equations_of_motion)
   for (int i = 0; i < 4; i++) {
     double sum = -q[i];
     for (int j = 0; j < 4; j++) sum += Omega[4 * j + i] * found[j];
-    ck_assert_double_eq_tol(sum, 0, 1e-10); /* H is differenced to 1e-13 of its values, 1e-11 here */
+    /* H is differenced to 1e-13 of its values, 1e-11 here */
+    ck_assert_double_eq_tol(sum, 0, 1e-10);
   }
   ck_assert_int_eq(dvi_system_invariants(system, 0, q, q, &energy), DVI_OK);
   ck_assert_double_eq_tol(energy, 0.5 * (0.09 + 0.64 + 0.25 + 1.21), 1e-15); /* H, whatever p */
@@ -122,16 +132,19 @@ START_TEST(gradients_are_taken_as_they_are_given_where_the_hessian_is_difference
   double qq[16], qv[6], given[6], all_qq[32], all_qv[12], none[1], twice_q[8], twice_v[8];
   const double t[2] = {0, 0};
   (void)gradient(q, given, &right);
-  ck_assert_msg(dvi__evaluator_create(system, 2, DVI__HESSIANS, NULL, &evaluator) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi__evaluator_create(system, 2, DVI__HESSIANS, NULL, &evaluator) == DVI_OK, "%s",
+                dvi_last_error());
   ck_assert_int_eq(dvi__form_hessian(evaluator, q, v, qq, qv), DVI_OK);
   ck_assert_mem_eq(qv, given, sizeof given);
   for (int i = 0; i < 8; i++) {
     twice_q[i] = q[i / 2];
     twice_v[i] = v[i / 2];
   }
-  ck_assert_int_eq(dvi__lagrangian_hessian(evaluator, 2, t, twice_q, twice_v, all_qq, all_qv, none), DVI_OK);
+  ck_assert_int_eq(dvi__lagrangian_hessian(evaluator, 2, t, twice_q, twice_v, all_qq, all_qv, none),
+                   DVI_OK);
   for (int e = 0; e < 6; e++) ck_assert(all_qv[2 * e] == given[e] && all_qv[2 * e + 1] == given[e]);
-  ck_assert_double_eq_tol(qq[1], -2 * q[0] * v[0] + 2 * q[1] * v[1], 1e-8); /* d2(alpha.v)/dxdy; differences err by some 1e-10 */
+  /* d2(alpha.v)/dxdy; differences err by some 1e-10 */
+  ck_assert_double_eq_tol(qq[1], -2 * q[0] * v[0] + 2 * q[1] * v[1], 1e-8);
   dvi__evaluator_destroy(&evaluator);
   dvi_system_destroy(&system);
 }
@@ -144,7 +157,8 @@ START_TEST(a_gradient_outside_of_its_pattern_is_found)
   dvi_one_form one_form = declared(&right);
   dvi_system *system = NULL;
   one_form.gradients = (dvi_pattern){fewer_start, fewer_row};
-  const dvi_system_terms terms = {.dimension = 4, .one_form = &one_form, .potentials = &hamiltonian, .potential_count = 1};
+  const dvi_system_terms terms = {
+      .dimension = 4, .one_form = &one_form, .potentials = &hamiltonian, .potential_count = 1};
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
   ck_assert_int_eq(dvi_system_check(system, 0, q, v, 0, NULL), DVI_BAD_ARGUMENT);
   check_words("one-form: d alpha_j/dq_i at (i,j) = (");
@@ -180,18 +194,22 @@ START_TEST(bad_declarations_are_refused)
   const dvi_one_form good = declared(&right);
   dvi_one_form bad = good;
   refused(&(dvi_system_terms){.dimension = 3, .one_form = &good}, DVI_BAD_SIZE, "even");
-  refused(&(dvi_system_terms){.dimension = 4, .one_form = &good, .mass.scalar = 1}, DVI_BAD_ARGUMENT, "more than one of");
+  refused(&(dvi_system_terms){.dimension = 4, .one_form = &good, .mass.scalar = 1},
+          DVI_BAD_ARGUMENT, "more than one of");
   bad.value = NULL;
-  refused(&(dvi_system_terms){.dimension = 4, .one_form = &bad}, DVI_BAD_ARGUMENT, "no value callback");
+  refused(&(dvi_system_terms){.dimension = 4, .one_form = &bad}, DVI_BAD_ARGUMENT,
+          "no value callback");
   bad = good;
   bad.gradient = NULL;
-  refused(&(dvi_system_terms){.dimension = 4, .one_form = &bad}, DVI_BAD_ARGUMENT, "no gradient callback");
+  refused(&(dvi_system_terms){.dimension = 4, .one_form = &bad}, DVI_BAD_ARGUMENT,
+          "no gradient callback");
 }
 END_TEST
 
 START_TEST(methods_for_one_kind_of_system_refuse_the_other)
 {
-  problem *degenerate = made_problem("lotka-volterra", NULL), *regular = made_problem("kepler", NULL);
+  problem *degenerate = made_problem("lotka-volterra", NULL),
+          *regular = made_problem("kepler", NULL);
   dvi_integrator *none = NULL;
   ck_assert_int_eq(dvi_integrator_create(degenerate->system, "galerkin", &none), DVI_UNSUPPORTED);
   check_words("declares a one-form, which this method cannot use; methods for this system: vprk");
@@ -227,7 +245,8 @@ START_TEST(a_start_off_the_constraint_is_projected_on_request)
   const dvi_start_options refused = {0}, projected = {.project = 1};
   ck_assert_int_eq(dvi_integrator_start_with(integrator, 0, of->q, p, &refused), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_integrator_start_with(integrator, 0, of->q, p, NULL), DVI_BAD_ARGUMENT);
-  ck_assert_int_eq(dvi_integrator_start_with(integrator, 0, of->q, not_finite, &projected), DVI_NOT_FINITE);
+  ck_assert_int_eq(dvi_integrator_start_with(integrator, 0, of->q, not_finite, &projected),
+                   DVI_NOT_FINITE);
   ck_assert_int_eq(dvi_integrator_start_with(integrator, 0, of->q, p, &projected), DVI_OK);
   ck_assert_mem_eq(dvi_integrator_q(integrator), of->q, sizeof p);
   ck_assert_mem_eq(dvi_integrator_p(integrator), of->p, sizeof p);
@@ -242,7 +261,9 @@ START_TEST(without_a_one_form_a_projection_changes_nothing)
   problem *of = made_problem("kepler", NULL);
   dvi_integrator *integrator = made_integrator(of->system, "verlet");
   const double p[2] = {0.25, -1};
-  ck_assert_int_eq(dvi_integrator_start_with(integrator, 0, of->q, p, &(dvi_start_options){.project = 1}), DVI_OK);
+  ck_assert_int_eq(
+      dvi_integrator_start_with(integrator, 0, of->q, p, &(dvi_start_options){.project = 1}),
+      DVI_OK);
   ck_assert_mem_eq(dvi_integrator_p(integrator), p, sizeof p);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&of);
@@ -255,7 +276,8 @@ START_TEST(a_start_that_is_rounded_where_the_one_form_vanishes_is_not_off_the_co
   problem *of = made_problem("lotka-volterra", "gauge=singular");
   dvi_integrator *integrator = made_integrator(of->system, "vprk");
   const double beside[] = {1, 1 - 0x1p-53}, far[] = {1, 1 - 0x1p-33}, none[] = {0, 0};
-  ck_assert_msg(dvi_integrator_start(integrator, 0, beside, none) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_integrator_start(integrator, 0, beside, none) == DVI_OK, "%s",
+                dvi_last_error());
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, far, none), DVI_BAD_ARGUMENT);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&of);
@@ -275,5 +297,6 @@ SUITE(one_form)
   tcase_add_test(tests, a_start_off_the_constraint_is_refused);
   tcase_add_test(tests, a_start_off_the_constraint_is_projected_on_request);
   tcase_add_test(tests, without_a_one_form_a_projection_changes_nothing);
-  tcase_add_test(tests, a_start_that_is_rounded_where_the_one_form_vanishes_is_not_off_the_constraint);
+  tcase_add_test(tests,
+                 a_start_that_is_rounded_where_the_one_form_vanishes_is_not_off_the_constraint);
 }

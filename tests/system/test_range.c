@@ -1,5 +1,6 @@
 /* labels: unit */
-/* Gradients by ranges: what is refused, that one alone serves every method, and that the check finds broken promises. */
+/* Gradients by ranges: what is refused, that one alone serves every method, and that the check
+ * finds broken promises. */
 #include <math.h>
 #include <string.h>
 
@@ -9,8 +10,8 @@
 
 enum { LENGTH = 11 };
 
-/* Springs d^2/2 + d^4/4 between sites that are two apart, and how the range lies: it looks farther, adds something to the entries of long
- * or short ranges, writes one entry more, fails. */
+/* Springs d^2/2 + d^4/4 between sites that are two apart, and how the range lies: it looks farther,
+ * adds something to the entries of long or short ranges, writes one entry more, fails. */
 typedef struct line {
   int looks_at;        /* 0: nobody; else how far the first site of a range looks, too */
   double lie;          /* added to the site `at` */
@@ -64,7 +65,8 @@ static int line_range(double t, const double *q, int first, int last, double *V_
   (void)t;
   for (int i = first; i < last; i++) V_q[i - first] = entry(q, i);
   if (own->looks_at != 0 && farther >= 0) V_q[0] += 0 * q[farther];
-  if (own->lie != 0 && own->at >= first && own->at < last && last - first <= own->longest_lie) V_q[own->at - first] += own->lie;
+  if (own->lie != 0 && own->at >= first && own->at < last && last - first <= own->longest_lie)
+    V_q[own->at - first] += own->lie;
   if (own->writes_behind && last < LENGTH) V_q[last - first] = 1;
   if (own->writes_before && first > 0) V_q[-1] = 1;
   return own->answer;
@@ -72,13 +74,16 @@ static int line_range(double t, const double *q, int first, int last, double *V_
 
 static dvi_potential line_potential(line *own)
 {
-  return (dvi_potential){.name = "line", .value = line_value, .gradient_range = line_range, .reach = 2, .user = own};
+  return (dvi_potential){
+      .name = "line", .value = line_value, .gradient_range = line_range, .reach = 2, .user = own};
 }
 
 static dvi_status create(const dvi_potential *potential, dvi_system **system)
 {
   return dvi_system_create(
-      &(dvi_system_terms){.dimension = LENGTH, .mass.scalar = 1, .potentials = potential, .potential_count = 1}, system);
+      &(dvi_system_terms){
+          .dimension = LENGTH, .mass.scalar = 1, .potentials = potential, .potential_count = 1},
+      system);
 }
 
 static double place(int i)
@@ -112,7 +117,8 @@ END_TEST
 /* Implicit methods ask for batches of points, explicit ones for one. */
 START_TEST(a_range_alone_serves_every_method)
 {
-  static const char *const methods[] = {"galerkin:degree=3", "midpoint", "verlet:sweep=plain", "verlet", "composition:order=4"};
+  static const char *const methods[] = {"galerkin:degree=3", "midpoint", "verlet:blocking=none",
+                                        "verlet", "composition:order=4"};
   line own = {0};
   double q[LENGTH], p[LENGTH], end[3][LENGTH];
   for (int i = 0; i < LENGTH; i++) q[i] = place(i), p[i] = place(i + 100);
@@ -137,24 +143,28 @@ END_TEST
 
 START_TEST(where_waves_are_not_possible_auto_sweeps_plainly_and_says_why)
 {
-  static const char *const words[] = {"there is no potential", "a potential has no gradient_range", "the mass is not diagonal"};
+  static const char *const words[] = {"there is no potential", "a potential has no gradient_range",
+                                      "the mass is not diagonal"};
   line own = {0};
   int start[LENGTH + 1], row[LENGTH];
   double values[LENGTH];
   char text[1024];
   dvi_potential potential = line_potential(&own);
-  dvi_system_terms terms = {.dimension = LENGTH, .mass.scalar = 1, .potentials = &potential, .potential_count = 1};
+  dvi_system_terms terms = {
+      .dimension = LENGTH, .mass.scalar = 1, .potentials = &potential, .potential_count = 1};
   dvi_system *system = NULL;
   for (int i = 0; i < LENGTH; i++) row[i] = start[i] = i, values[i] = 1 + i;
   start[LENGTH] = LENGTH;
   if (_i == 0) terms.potentials = NULL, terms.potential_count = 0;
-  if (_i == 1) potential.gradient = line_gradient, potential.gradient_range = NULL, potential.reach = 0;
+  if (_i == 1)
+    potential.gradient = line_gradient, potential.gradient_range = NULL, potential.reach = 0;
   if (_i == 2) terms.mass = (dvi_mass){.values = values, .pattern = {start, row}};
   ck_assert_msg(dvi_system_create(&terms, &system) == DVI_OK, "%s", dvi_last_error());
   dvi_integrator *integrator = made_integrator(system, "verlet"), *wave = integrator;
   (void)dvi_integrator_explain(integrator, text, sizeof text);
-  ck_assert_msg(strstr(text, spec("sweep: plain; %s", words[_i])) != NULL, "%s", text);
-  ck_assert_int_eq(dvi_integrator_create(system, "verlet:sweep=wave", &wave), DVI_UNSUPPORTED);
+  ck_assert_msg(strstr(text, spec("blocking: none; %s", words[_i])) != NULL, "%s", text);
+  ck_assert_int_eq(dvi_integrator_create(system, "verlet:blocking=temporal", &wave),
+                   DVI_UNSUPPORTED);
   ck_assert_ptr_null(wave);
   check_words(words[_i]);
   dvi_integrator_destroy(&integrator);
@@ -198,7 +208,8 @@ static void found_lie(const dvi_potential *p, int row, const char *words)
   check_words("potential 'line'");
   check_words(words);
   ck_assert_int_eq(found.range_row, row);
-  ck_assert_msg(strstr(found.where, "potential 'line': gradient_range (") != NULL, "%s", found.where);
+  ck_assert_msg(strstr(found.where, "potential 'line': gradient_range (") != NULL, "%s",
+                found.where);
 }
 
 START_TEST(a_range_that_looks_beyond_its_reach_is_found)

@@ -1,5 +1,6 @@
 /* labels: unit */
-/* Potentials that are declared fast or quadratic: the parts of a system, and what the check finds. */
+/* Potentials that are declared fast or quadratic: the parts of a system, and what the check
+ * finds. */
 #include "support/suite.h"
 #include "support/systems/systems.h"
 #include "system/evaluate/evaluator.h"
@@ -14,29 +15,35 @@ static int value(double t, const double *q, double *V, void *user)
 {
   const bowl *own = user;
   *V = 0;
-  for (int i = 0; i < SITES; i++) *V += ((own->stiffness + own->swing * t) / 2 + own->bend * q[i]) * q[i] * q[i] + t * q[i];
+  for (int i = 0; i < SITES; i++)
+    *V += ((own->stiffness + own->swing * t) / 2 + own->bend * q[i]) * q[i] * q[i] + t * q[i];
   return 0;
 }
 
 static int gradient(double t, const double *q, double *V_q, void *user)
 {
   const bowl *own = user;
-  for (int i = 0; i < SITES; i++) V_q[i] = (own->stiffness + own->swing * t + 3 * own->bend * q[i]) * q[i] + t;
+  for (int i = 0; i < SITES; i++)
+    V_q[i] = (own->stiffness + own->swing * t + 3 * own->bend * q[i]) * q[i] + t;
   return 0;
 }
 
 static dvi_potential declared(bowl *own, int with_gradient)
 {
-  return (dvi_potential){
-      .name = "bowl", .value = value, .gradient = with_gradient ? gradient : NULL, .user = own, .fast = 1, .quadratic = 1};
+  return (dvi_potential){.name = "bowl",
+                         .value = value,
+                         .gradient = with_gradient ? gradient : NULL,
+                         .user = own,
+                         .fast = 1,
+                         .quadratic = 1};
 }
 
 static dvi_status check(bowl own, int with_gradient, dvi_derivative_check *found)
 {
   behaviour calm = {0};
   const dvi_potential potentials[] = {springs(&calm, BATCH), declared(&own, with_gradient)};
-  dvi_system *system = make_system(
-      &(dvi_system_terms){.dimension = SITES, .mass.scalar = 1, .potentials = potentials, .potential_count = 2});
+  dvi_system *system = make_system(&(dvi_system_terms){
+      .dimension = SITES, .mass.scalar = 1, .potentials = potentials, .potential_count = 2});
   const dvi_status status = dvi_system_check(system, 0.3, generic_q, generic_v, 0, found);
   dvi_system_destroy(&system);
   return status;
@@ -77,10 +84,11 @@ START_TEST(the_parts_of_a_system_add_up_to_it)
   double of_slow[SITES], of_fast[SITES], of_whole[SITES];
   const dvi_potential potentials[] = {declared(&own, 1), springs(&calm, BATCH)};
   dvi_system *slow, *fast,
-      *whole = make_system(&(dvi_system_terms){.dimension = SITES,
-                                               .mass = {.values = tridiagonal_mass, .pattern = tridiagonal},
-                                               .potentials = potentials,
-                                               .potential_count = 2});
+      *whole = make_system(
+          &(dvi_system_terms){.dimension = SITES,
+                              .mass = {.values = tridiagonal_mass, .pattern = tridiagonal},
+                              .potentials = potentials,
+                              .potential_count = 2});
   ck_assert_int_eq(dvi__system_slow_part(whole, &slow), DVI_OK);
   ck_assert_int_eq(dvi__system_fast_part(whole, &fast), DVI_OK);
   ck_assert(dvi__system_fast_is_quadratic(whole));
@@ -102,8 +110,10 @@ START_TEST(a_part_without_potentials_is_free)
   const dvi_potential potential = declared(&own, 1);
   const double mass[SITES] = {1, 2, 3, 4, 5, 6};
   dvi_system *slow, *fast,
-      *whole = make_system(
-          &(dvi_system_terms){.dimension = SITES, .mass.diagonal = mass, .potentials = &potential, .potential_count = 1});
+      *whole = make_system(&(dvi_system_terms){.dimension = SITES,
+                                               .mass.diagonal = mass,
+                                               .potentials = &potential,
+                                               .potential_count = 1});
   ck_assert_int_eq(dvi__system_slow_part(whole, &slow), DVI_OK);
   ck_assert_int_eq(dvi__system_fast_part(whole, &fast), DVI_OK);
   ask(slow, of_slow);
@@ -118,7 +128,8 @@ END_TEST
 SUITE(speed)
 {
   tcase_add_loop_test(tests, a_quadratic_potential_passes_and_its_linear_part_may_move, 0, 2);
-  tcase_add_loop_test(tests, a_potential_that_is_not_quadratic_although_it_is_declared_so_is_named, 0, 4);
+  tcase_add_loop_test(tests, a_potential_that_is_not_quadratic_although_it_is_declared_so_is_named,
+                      0, 4);
   tcase_add_test(tests, the_parts_of_a_system_add_up_to_it);
   tcase_add_test(tests, a_part_without_potentials_is_free);
 }

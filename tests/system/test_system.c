@@ -26,27 +26,31 @@ static int unused_generator(const double *q, double *xi, void *user)
 
 START_TEST(a_dimension_below_one_is_refused)
 {
-  refused(&(dvi_system_terms){.dimension = 0, .mass.scalar = 1}, DVI_BAD_SIZE, "dimension 0; at least 1 is needed");
+  refused(&(dvi_system_terms){.dimension = 0, .mass.scalar = 1}, DVI_BAD_SIZE,
+          "dimension 0; at least 1 is needed");
   refused(&(dvi_system_terms){.dimension = -3, .mass.scalar = 1}, DVI_BAD_SIZE, "dimension -3");
 }
 END_TEST
 
 START_TEST(negative_counts_are_refused)
 {
-  refused(&(dvi_system_terms){.dimension = 1, .mass.scalar = 1, .potential_count = -1}, DVI_BAD_SIZE, "-1 potentials");
-  refused(&(dvi_system_terms){.dimension = 1, .mass.scalar = 1, .symmetry_count = -1}, DVI_BAD_SIZE, "-1 symmetries");
-  refused(&(dvi_system_terms){.dimension = 1, .mass.scalar = 1, .invariant_count = -1}, DVI_BAD_SIZE, "-1 invariants");
+  refused(&(dvi_system_terms){.dimension = 1, .mass.scalar = 1, .potential_count = -1},
+          DVI_BAD_SIZE, "-1 potentials");
+  refused(&(dvi_system_terms){.dimension = 1, .mass.scalar = 1, .symmetry_count = -1}, DVI_BAD_SIZE,
+          "-1 symmetries");
+  refused(&(dvi_system_terms){.dimension = 1, .mass.scalar = 1, .invariant_count = -1},
+          DVI_BAD_SIZE, "-1 invariants");
 }
 END_TEST
 
 START_TEST(lists_that_are_missing_are_refused)
 {
-  refused(&(dvi_system_terms){.dimension = 1, .mass.scalar = 1, .potential_count = 2}, DVI_BAD_ARGUMENT,
-          "2 potentials declared, but");
-  refused(&(dvi_system_terms){.dimension = 1, .mass.scalar = 1, .symmetry_count = 2}, DVI_BAD_ARGUMENT,
-          "2 symmetries declared, but");
-  refused(&(dvi_system_terms){.dimension = 1, .mass.scalar = 1, .invariant_count = 2}, DVI_BAD_ARGUMENT,
-          "2 invariants declared, but");
+  refused(&(dvi_system_terms){.dimension = 1, .mass.scalar = 1, .potential_count = 2},
+          DVI_BAD_ARGUMENT, "2 potentials declared, but");
+  refused(&(dvi_system_terms){.dimension = 1, .mass.scalar = 1, .symmetry_count = 2},
+          DVI_BAD_ARGUMENT, "2 symmetries declared, but");
+  refused(&(dvi_system_terms){.dimension = 1, .mass.scalar = 1, .invariant_count = 2},
+          DVI_BAD_ARGUMENT, "2 invariants declared, but");
 }
 END_TEST
 
@@ -56,12 +60,12 @@ START_TEST(lists_without_a_count_are_refused)
   const dvi_potential p = springs(&quiet, ONE_POINT);
   const dvi_symmetry symmetry = {"a", unused_generator, NULL};
   const dvi_invariant invariant = {0};
-  refused(&(dvi_system_terms){.dimension = SITES, .mass.scalar = 1, .potentials = &p}, DVI_BAD_ARGUMENT,
-          "a list of potentials is given, but their count is 0");
-  refused(&(dvi_system_terms){.dimension = SITES, .mass.scalar = 1, .symmetries = &symmetry}, DVI_BAD_ARGUMENT,
-          "a list of symmetries is given");
-  refused(&(dvi_system_terms){.dimension = SITES, .mass.scalar = 1, .invariants = &invariant}, DVI_BAD_ARGUMENT,
-          "a list of invariants is given");
+  refused(&(dvi_system_terms){.dimension = SITES, .mass.scalar = 1, .potentials = &p},
+          DVI_BAD_ARGUMENT, "a list of potentials is given, but their count is 0");
+  refused(&(dvi_system_terms){.dimension = SITES, .mass.scalar = 1, .symmetries = &symmetry},
+          DVI_BAD_ARGUMENT, "a list of symmetries is given");
+  refused(&(dvi_system_terms){.dimension = SITES, .mass.scalar = 1, .invariants = &invariant},
+          DVI_BAD_ARGUMENT, "a list of invariants is given");
 }
 END_TEST
 
@@ -70,16 +74,19 @@ START_TEST(a_callback_in_two_shapes_is_refused)
   const dvi_potential p1 = springs(&quiet, ONE_POINT), pb = springs(&quiet, BATCH);
   const dvi_lagrangian l1 = rotors(&quiet, ONE_POINT), lb = rotors(&quiet, BATCH);
   for (int kind = 0; kind < 3; kind++) {
-    static const char *const words[] = {"its value callback in two shapes", "its gradient callback in two",
-                                        "its Hessian callback in"};
+    static const char *const words[] = {"its value callback in two shapes",
+                                        "its gradient callback in two", "its Hessian callback in"};
     dvi_potential p = p1;
     dvi_lagrangian l = l1;
     if (kind == 0) p.value_batch = pb.value_batch, l.value_batch = lb.value_batch;
     if (kind == 1) p.gradient_batch = pb.gradient_batch, l.gradient_batch = lb.gradient_batch;
     if (kind == 2) p.hessian_batch = pb.hessian_batch, l.hessian_batch = lb.hessian_batch;
-    refused(&(dvi_system_terms){.dimension = SITES, .mass.scalar = 1, .potentials = &p, .potential_count = 1}, DVI_BAD_ARGUMENT,
+    refused(
+        &(dvi_system_terms){
+            .dimension = SITES, .mass.scalar = 1, .potentials = &p, .potential_count = 1},
+        DVI_BAD_ARGUMENT, words[kind]);
+    refused(&(dvi_system_terms){.dimension = SITES, .lagrangian = &l}, DVI_BAD_ARGUMENT,
             words[kind]);
-    refused(&(dvi_system_terms){.dimension = SITES, .lagrangian = &l}, DVI_BAD_ARGUMENT, words[kind]);
   }
 }
 END_TEST
@@ -87,37 +94,43 @@ END_TEST
 START_TEST(missing_terms_or_a_missing_result_are_refused)
 {
   refused(NULL, DVI_BAD_ARGUMENT, "no terms");
-  ck_assert_int_eq(dvi_system_create(&(dvi_system_terms){.dimension = 1, .mass.scalar = 1}, NULL), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_system_create(&(dvi_system_terms){.dimension = 1, .mass.scalar = 1}, NULL),
+                   DVI_BAD_ARGUMENT);
 }
 END_TEST
 
 START_TEST(a_system_without_kinetic_part_is_refused)
 {
-  refused(&(dvi_system_terms){.dimension = 1}, DVI_BAD_ARGUMENT, "neither a mass (other than 0) nor a general Lagrangian");
+  refused(&(dvi_system_terms){.dimension = 1}, DVI_BAD_ARGUMENT,
+          "neither a mass (other than 0) nor a general Lagrangian");
 }
 END_TEST
 
 START_TEST(a_mass_beside_a_lagrangian_is_refused)
 {
   const dvi_lagrangian l = rotors(&quiet, ONE_POINT);
-  refused(&(dvi_system_terms){.dimension = SITES, .mass.scalar = 1, .lagrangian = &l}, DVI_BAD_ARGUMENT, "more than one of a mass");
+  refused(&(dvi_system_terms){.dimension = SITES, .mass.scalar = 1, .lagrangian = &l},
+          DVI_BAD_ARGUMENT, "more than one of a mass");
 }
 END_TEST
 
 START_TEST(two_forms_of_the_mass_are_refused)
 {
   const double ones[SITES] = {1, 1, 1, 1, 1, 1};
-  refused(&(dvi_system_terms){.dimension = SITES, .mass = {.scalar = 1, .diagonal = ones}}, DVI_BAD_ARGUMENT,
-          "2 forms; one is possible");
-  refused(&(dvi_system_terms){.dimension = SITES, .mass = {.diagonal = ones, .values = tridiagonal_mass, .pattern = tridiagonal}},
+  refused(&(dvi_system_terms){.dimension = SITES, .mass = {.scalar = 1, .diagonal = ones}},
           DVI_BAD_ARGUMENT, "2 forms; one is possible");
+  refused(
+      &(dvi_system_terms){
+          .dimension = SITES,
+          .mass = {.diagonal = ones, .values = tridiagonal_mass, .pattern = tridiagonal}},
+      DVI_BAD_ARGUMENT, "2 forms; one is possible");
 }
 END_TEST
 
 START_TEST(a_mass_pattern_without_values_is_refused)
 {
-  refused(&(dvi_system_terms){.dimension = SITES, .mass = {.scalar = 1, .pattern = tridiagonal}}, DVI_BAD_ARGUMENT,
-          "a pattern but no values");
+  refused(&(dvi_system_terms){.dimension = SITES, .mass = {.scalar = 1, .pattern = tridiagonal}},
+          DVI_BAD_ARGUMENT, "a pattern but no values");
 }
 END_TEST
 
@@ -128,7 +141,9 @@ START_TEST(masses_that_vanish_or_are_not_finite_are_singular)
     const double masses[2] = {1, bad[k]};
     refused(&(dvi_system_terms){.dimension = 2, .mass.diagonal = masses}, DVI_SINGULAR,
             "of coordinate 1; a finite number other than 0");
-    if (k > 0) refused(&(dvi_system_terms){.dimension = 2, .mass.scalar = bad[k]}, DVI_SINGULAR, "of coordinate 0");
+    if (k > 0)
+      refused(&(dvi_system_terms){.dimension = 2, .mass.scalar = bad[k]}, DVI_SINGULAR,
+              "of coordinate 0");
   }
 }
 END_TEST
@@ -136,30 +151,40 @@ END_TEST
 START_TEST(a_singular_sparse_mass_is_refused)
 {
   const double zero[4] = {1, 1, 1, 1}, bad[4] = {1, (double)NAN, (double)NAN, 1};
-  refused(&(dvi_system_terms){.dimension = 2, .mass.values = zero}, DVI_SINGULAR, "system: mass matrix: ");
-  refused(&(dvi_system_terms){.dimension = 2, .mass.values = bad}, DVI_SINGULAR, "the mass matrix is not finite");
+  refused(&(dvi_system_terms){.dimension = 2, .mass.values = zero}, DVI_SINGULAR,
+          "system: mass matrix: ");
+  refused(&(dvi_system_terms){.dimension = 2, .mass.values = bad}, DVI_SINGULAR,
+          "the mass matrix is not finite");
 }
 END_TEST
 
 START_TEST(an_unsymmetric_mass_is_refused)
 {
   const double values[4] = {2, 1, 0.5, 2}, upper[3] = {2, 1, 2};
-  refused(&(dvi_system_terms){.dimension = 2, .mass.values = values}, DVI_BAD_ARGUMENT, "not symmetric at (1,0)");
-  refused(&(dvi_system_terms){.dimension = 2, .mass = {.values = upper, .pattern = {(int[]){0, 1, 3}, (int[]){0, 0, 1}}}},
+  refused(&(dvi_system_terms){.dimension = 2, .mass.values = values}, DVI_BAD_ARGUMENT,
+          "not symmetric at (1,0)");
+  refused(&(dvi_system_terms){.dimension = 2,
+                              .mass = {.values = upper,
+                                       .pattern = {(int[]){0, 1, 3}, (int[]){0, 0, 1}}}},
           DVI_BAD_ARGUMENT, "not symmetric at (0,1)");
 }
 END_TEST
 
 START_TEST(a_mass_pattern_that_is_none_is_refused)
 {
-  refused(&(dvi_system_terms){.dimension = 1, .mass = {.values = tridiagonal_mass, .pattern = {(int[]){0, 1}, (int[]){1}}}},
+  refused(&(dvi_system_terms){.dimension = 1,
+                              .mass = {.values = tridiagonal_mass,
+                                       .pattern = {(int[]){0, 1}, (int[]){1}}}},
           DVI_BAD_ARGUMENT, "system: mass matrix: row 1 in column 0");
 }
 END_TEST
 
 static void potential_refused(dvi_potential p, dvi_status status, const char *words)
 {
-  refused(&(dvi_system_terms){.dimension = SITES, .mass.scalar = 1, .potentials = &p, .potential_count = 1}, status, words);
+  refused(
+      &(dvi_system_terms){
+          .dimension = SITES, .mass.scalar = 1, .potentials = &p, .potential_count = 1},
+      status, words);
 }
 
 START_TEST(a_potential_without_a_value_is_refused_by_name)
@@ -174,9 +199,11 @@ START_TEST(a_potential_with_a_bad_pattern_is_refused_by_name)
 {
   dvi_potential p = springs(&quiet, ONE_POINT);
   p.qq = (dvi_pattern){(int[]){0, 2, 2, 2, 2, 2, 2}, (int[]){1, 0}};
-  potential_refused(p, DVI_BAD_ARGUMENT, "springs: the rows in column 0 of the pattern are not ascending");
+  potential_refused(p, DVI_BAD_ARGUMENT,
+                    "springs: the rows in column 0 of the pattern are not ascending");
   p.qq = (dvi_pattern){(int[]){0, 1, 1, 1, 1, 1, 1}, (int[]){6}};
-  potential_refused(p, DVI_BAD_ARGUMENT, "springs: row 6 in column 0 of the pattern is outside 0..5");
+  potential_refused(p, DVI_BAD_ARGUMENT,
+                    "springs: row 6 in column 0 of the pattern is outside 0..5");
 }
 END_TEST
 
@@ -184,7 +211,8 @@ START_TEST(one_triangle_of_a_hessian_pattern_is_not_enough)
 {
   dvi_potential p = springs(&quiet, ONE_POINT);
   p.qq = (dvi_pattern){(int[]){0, 1, 1, 1, 1, 1, 1}, (int[]){2}};
-  potential_refused(p, DVI_BAD_ARGUMENT, "springs: the pattern holds (2,0) but not (0,2); both triangles are needed");
+  potential_refused(p, DVI_BAD_ARGUMENT,
+                    "springs: the pattern holds (2,0) but not (0,2); both triangles are needed");
 }
 END_TEST
 
@@ -195,7 +223,8 @@ static void lagrangian_refused(dvi_lagrangian l, dvi_status status, const char *
 
 START_TEST(a_lagrangian_without_a_value_or_with_bad_patterns_is_refused)
 {
-  const dvi_pattern bad = {(int[]){0, 1, 1, 1, 1, 1, 1}, (int[]){-1}}, half = {(int[]){0, 1, 1, 1, 1, 1, 1}, (int[]){3}};
+  const dvi_pattern bad = {(int[]){0, 1, 1, 1, 1, 1, 1}, (int[]){-1}},
+                    half = {(int[]){0, 1, 1, 1, 1, 1, 1}, (int[]){3}};
   dvi_lagrangian l = rotors(&quiet, BATCH);
   l.value_batch = NULL;
   lagrangian_refused(l, DVI_BAD_ARGUMENT, "the Lagrangian has no value callback");
@@ -209,7 +238,8 @@ START_TEST(a_lagrangian_without_a_value_or_with_bad_patterns_is_refused)
   l.vv = bad;
   lagrangian_refused(l, DVI_BAD_ARGUMENT, "Lagrangian: d2L/dv2: row -1");
   l.vv = half;
-  lagrangian_refused(l, DVI_BAD_ARGUMENT, "Lagrangian: d2L/dv2: the pattern holds (3,0) but not (0,3)");
+  lagrangian_refused(l, DVI_BAD_ARGUMENT,
+                     "Lagrangian: d2L/dv2: the pattern holds (3,0) but not (0,3)");
 }
 END_TEST
 
@@ -217,10 +247,14 @@ START_TEST(symmetries_and_invariants_need_their_callbacks)
 {
   const dvi_symmetry symmetries[] = {{"a", unused_generator, NULL}, {"b", NULL, NULL}};
   const dvi_invariant invariant = {"c", NULL, NULL};
-  refused(&(dvi_system_terms){.dimension = 1, .mass.scalar = 1, .symmetries = symmetries, .symmetry_count = 2}, DVI_BAD_ARGUMENT,
-          "symmetry 1 has no generator");
-  refused(&(dvi_system_terms){.dimension = 1, .mass.scalar = 1, .invariants = &invariant, .invariant_count = 1}, DVI_BAD_ARGUMENT,
-          "invariant 0 has no value callback");
+  refused(
+      &(dvi_system_terms){
+          .dimension = 1, .mass.scalar = 1, .symmetries = symmetries, .symmetry_count = 2},
+      DVI_BAD_ARGUMENT, "symmetry 1 has no generator");
+  refused(
+      &(dvi_system_terms){
+          .dimension = 1, .mass.scalar = 1, .invariants = &invariant, .invariant_count = 1},
+      DVI_BAD_ARGUMENT, "invariant 0 has no value callback");
 }
 END_TEST
 
@@ -230,7 +264,8 @@ START_TEST(a_full_pattern_that_no_int_can_count_is_refused_where_it_is_needed)
   dvi_potential p = springs(&quiet, ONE_POINT);
   p.qq = (dvi_pattern){0};
   const long before = dvi__allocation_count();
-  dvi_system *s = make_system(&(dvi_system_terms){.dimension = 50000, .mass.scalar = 1, .potentials = &p, .potential_count = 1});
+  dvi_system *s = make_system(&(dvi_system_terms){
+      .dimension = 50000, .mass.scalar = 1, .potentials = &p, .potential_count = 1});
   ck_assert_int_lt(dvi__allocation_count() - before, 20);
   for (int k = 0; k < 2; k++) {
     ck_assert_int_eq(dvi__system_prepare_hessian(s), DVI_BAD_SIZE);
@@ -250,9 +285,11 @@ START_TEST(threads_may_prepare_one_system_together)
   enum { THREADS = 8 };
   dvi_potential p = springs(&quiet, ONE_POINT);
   p.qq = (dvi_pattern){0};
-  dvi_system *s = make_system(&(dvi_system_terms){.dimension = 500, .mass.scalar = 1, .potentials = &p, .potential_count = 1});
+  dvi_system *s = make_system(&(dvi_system_terms){
+      .dimension = 500, .mass.scalar = 1, .potentials = &p, .potential_count = 1});
   pthread_t thread[THREADS];
-  for (int k = 0; k < THREADS; k++) ck_assert_int_eq(pthread_create(&thread[k], NULL, prepare, s), 0);
+  for (int k = 0; k < THREADS; k++)
+    ck_assert_int_eq(pthread_create(&thread[k], NULL, prepare, s), 0);
   for (int k = 0; k < THREADS; k++) {
     void *result = NULL;
     ck_assert_int_eq(pthread_join(thread[k], &result), 0);
@@ -267,8 +304,8 @@ START_TEST(the_patterns_are_the_unions_over_the_terms)
 {
   const dvi_lagrangian l = rotors(&quiet, ONE_POINT);
   const dvi_potential potentials[] = {wells(&quiet, BATCH), springs(&quiet, BATCH)};
-  dvi_system *s = make_system(
-      &(dvi_system_terms){.dimension = SITES, .lagrangian = &l, .potentials = potentials, .potential_count = 2});
+  dvi_system *s = make_system(&(dvi_system_terms){
+      .dimension = SITES, .lagrangian = &l, .potentials = potentials, .potential_count = 2});
   ck_assert_int_eq(dvi_system_nq(s), SITES);
   ck_assert_int_eq(dvi_system_nv(s), SITES);
   ck_assert_int_eq(s->terms, DVI__LAGRANGIAN | DVI__POTENTIAL);
@@ -277,7 +314,8 @@ START_TEST(the_patterns_are_the_unions_over_the_terms)
   ck_assert_mem_eq(s->qq.row, tridiagonal.row, (3 * SITES - 2) * sizeof(int));
   ck_assert_int_eq(dvi__pattern_entries(&s->qv), 2 * SITES - 1);
   ck_assert_int_eq(dvi__pattern_entries(&s->vv), 3 * SITES - 2);
-  for (int j = 0; j < SITES; j++) ck_assert_int_eq(s->lagrangian->in_qq[j], dvi__pattern_find(&s->qq, j, j));
+  for (int j = 0; j < SITES; j++)
+    ck_assert_int_eq(s->lagrangian->in_qq[j], dvi__pattern_find(&s->qq, j, j));
   dvi_system_destroy(&s);
   ck_assert_ptr_null(s);
   dvi_system_destroy(&s);

@@ -13,13 +13,15 @@
 enum { DEGREE = 20, LENGTH = DEGREE + 1 };
 
 /* A series in general position that does not begin at 0. */
-static const double general[LENGTH] = {0.7,  -0.4, 0.3,  0.25,  -0.2,  0.1,   0.15,  -0.05, 0.08, 0.02,  -0.03,
-                                       0.01, 0.02, 0.01, -0.01, 0.005, 0.003, 0.002, 0.001, 0.0,  0.0005};
+static const double general[LENGTH] = {0.7,   -0.4,  0.3,   0.25,  -0.2,  0.1,  0.15,
+                                       -0.05, 0.08,  0.02,  -0.03, 0.01,  0.02, 0.01,
+                                       -0.01, 0.005, 0.003, 0.002, 0.001, 0.0,  0.0005};
 
 /* Rounding in sums of 20 products of numbers that are not larger than `size`. */
 static void near(const double *found, const double *expected, double size)
 {
-  for (int k = 0; k < LENGTH; k++) ck_assert_double_eq_tol(found[k], expected[k], 100 * DBL_EPSILON * size);
+  for (int k = 0; k < LENGTH; k++)
+    ck_assert_double_eq_tol(found[k], expected[k], 100 * DBL_EPSILON * size);
 }
 
 static long double factorial(int k)
@@ -31,8 +33,8 @@ static long double factorial(int k)
 START_TEST(series_of_the_variable_itself_are_those_of_the_books)
 {
   const double line[LENGTH] = {0.6, 1}, c = 0.6;
-  double exponential[LENGTH], logarithm[LENGTH], sine[LENGTH], cosine[LENGTH], up[LENGTH], down[LENGTH], root[LENGTH],
-      power[LENGTH];
+  double exponential[LENGTH], logarithm[LENGTH], sine[LENGTH], cosine[LENGTH], up[LENGTH],
+      down[LENGTH], root[LENGTH], power[LENGTH];
   dvi_taylor_exp(DEGREE, line, exponential);
   dvi_taylor_log(DEGREE, line, logarithm);
   dvi_taylor_sin_cos(DEGREE, line, sine, cosine);
@@ -41,12 +43,14 @@ START_TEST(series_of_the_variable_itself_are_those_of_the_books)
   dvi_taylor_power(DEGREE, line, -1.5, power);
   long double binomial_root = sqrtl(c), binomial_power = powl(c, -1.5L);
   for (int k = 0; k < LENGTH; k++) {
-    const long double turn = (long double)c + k * 1.57079632679489661923132169163975L, over = 1 / factorial(k);
+    const long double turn = (long double)c + k * 1.57079632679489661923132169163975L,
+                      over = 1 / factorial(k);
     ck_assert_double_eq_tol(exponential[k], (double)(expl(c) * over), 4 * DBL_EPSILON);
     ck_assert_double_eq_tol(sine[k], (double)(sinl(turn) * over), 4 * DBL_EPSILON);
     ck_assert_double_eq_tol(cosine[k], (double)(cosl(turn) * over), 4 * DBL_EPSILON);
     ck_assert_double_eq_tol(up[k], (double)((k % 2 ? coshl(c) : sinhl(c)) * over), 4 * DBL_EPSILON);
-    ck_assert_double_eq_tol(down[k], (double)((k % 2 ? sinhl(c) : coshl(c)) * over), 4 * DBL_EPSILON);
+    ck_assert_double_eq_tol(down[k], (double)((k % 2 ? sinhl(c) : coshl(c)) * over),
+                            4 * DBL_EPSILON);
     const long double of_log = k == 0 ? logl(c) : (k % 2 ? 1 : -1) / (k * powl(c, k));
     ck_assert_double_eq_tol(logarithm[k], (double)of_log, 1e-14 * fabs((double)of_log));
     ck_assert_double_eq_tol(root[k], (double)binomial_root, 1e-14 * fabs((double)binomial_root));
@@ -83,7 +87,8 @@ END_TEST
 /* tan(atan(x)) = x. */
 START_TEST(the_integral_of_a_quotient_is_the_arc_tangent)
 {
-  double slope[LENGTH], square[LENGTH], angle[LENGTH], sine[LENGTH], cosine[LENGTH], tangent[LENGTH];
+  double slope[LENGTH], square[LENGTH], angle[LENGTH], sine[LENGTH], cosine[LENGTH],
+      tangent[LENGTH];
   dvi_taylor_differentiate(DEGREE, general, slope);
   dvi_taylor_multiply(DEGREE, general, general, square);
   square[0] += 1;
@@ -137,28 +142,37 @@ static void compare_with_points(const dvi_system *system)
   dvi__evaluator *e = NULL;
   ck_assert_int_eq(dvi__evaluator_create(system, 1, DVI__HESSIANS, NULL, &e), DVI_OK);
   ck_assert_int_eq(dvi__jet_create(system, D, DVI__HESSIANS, NULL, &jet), DVI_OK);
-  double t[D + 1] = {0.3, 1}, q[(D + 1) * MOST] = {0}, v[(D + 1) * MOST] = {0}, at_q[MOST], at_v[MOST], at[6][MOST];
+  double t[D + 1] = {0.3, 1}, q[(D + 1) * MOST] = {0}, v[(D + 1) * MOST] = {0}, at_q[MOST],
+               at_v[MOST], at[6][MOST];
   static double series[6][(D + 1) * MOST];
   for (int i = 0; i < 3 * n; i++) q[i] = (i < n ? 1 : 0.3) * cos(3 * i), v[i] = 0.5 * sin(2 * i);
   for (int i = 0; i < n; i++) at_q[i] = sum_of(D, n, i, q, s), at_v[i] = sum_of(D, n, i, v, s);
   const dvi__jets wanted = {series[0], series[1], series[2], series[3], series[4], series[5]};
   ck_assert_int_eq(dvi__jet_along(jet, D, t, q, v, &wanted), DVI_OK);
   ck_assert_int_eq(dvi__lagrangian_value(e, 1, &(double){t[0] + s}, at_q, at_v, at[0]), DVI_OK);
-  ck_assert_int_eq(dvi__lagrangian_gradient(e, 1, &(double){t[0] + s}, at_q, at_v, at[1], at[2]), DVI_OK);
-  ck_assert_int_eq(dvi__lagrangian_hessian(e, 1, &(double){t[0] + s}, at_q, at_v, at[3], at[4], at[5]), DVI_OK);
-  const int count[6] = {
-      1, n, n, dvi__pattern_entries(&system->qq), dvi__pattern_entries(&system->qv), dvi__pattern_entries(&system->vv)};
+  ck_assert_int_eq(dvi__lagrangian_gradient(e, 1, &(double){t[0] + s}, at_q, at_v, at[1], at[2]),
+                   DVI_OK);
+  ck_assert_int_eq(
+      dvi__lagrangian_hessian(e, 1, &(double){t[0] + s}, at_q, at_v, at[3], at[4], at[5]), DVI_OK);
+  const int count[6] = {1,
+                        n,
+                        n,
+                        dvi__pattern_entries(&system->qq),
+                        dvi__pattern_entries(&system->qv),
+                        dvi__pattern_entries(&system->vv)};
   for (int b = 0; b < 6; b++)
     for (int i = 0; i < count[b]; i++)
-      ck_assert_double_eq_tol(sum_of(D, count[b], i, series[b], s), at[b][i], 1e-14 * (1 + fabs(at[b][i])) * 10);
+      ck_assert_double_eq_tol(sum_of(D, count[b], i, series[b], s), at[b][i],
+                              1e-14 * (1 + fabs(at[b][i])) * 10);
   dvi__jet_destroy(&jet);
   dvi__evaluator_destroy(&e);
 }
 
 START_TEST(series_of_all_terms_sum_to_what_the_points_have)
 {
-  static const char *const names[] = {"oscillators",     "pendulum",        "kepler", "henon-heiles",
-                                      "driven-pendulum", "double-pendulum", "toda"};
+  static const char *const names[] = {"oscillators",  "pendulum",        "kepler",
+                                      "henon-heiles", "driven-pendulum", "double-pendulum",
+                                      "toda"};
   problem *of = made_problem(names[_i], NULL);
   compare_with_points(of->system);
   problem_destroy(&of);
@@ -167,7 +181,8 @@ END_TEST
 
 START_TEST(a_general_lagrangian_and_a_potential_are_added)
 {
-  problem *pendulum = made_problem("double-pendulum", NULL), *star = made_problem("henon-heiles", NULL);
+  problem *pendulum = made_problem("double-pendulum", NULL),
+          *star = made_problem("henon-heiles", NULL);
   dvi_system *system = general_with_potential(pendulum, star);
   compare_with_points(system);
   dvi_system_destroy(&system);
@@ -182,10 +197,13 @@ START_TEST(wanting_less_gives_the_same_numbers)
   dvi__jet *jet = NULL;
   dvi_counters counters = {0};
   enum { D = 3, N = 20 };
-  double t[D + 1] = {0, 1}, all[(D + 1) * N], alone[(D + 1) * N], value[D + 1], curve[(D + 1) * N], hessian[(D + 1) * 3 * N];
+  double t[D + 1] = {0, 1}, all[(D + 1) * N], alone[(D + 1) * N], value[D + 1], curve[(D + 1) * N],
+               hessian[(D + 1) * 3 * N];
   for (int i = 0; i < (D + 1) * N; i++) curve[i] = sin(i);
   ck_assert_int_eq(dvi__jet_create(of->system, D, DVI__HESSIANS, &counters, &jet), DVI_OK);
-  ck_assert_int_eq(dvi__jet_along(jet, D, t, curve, curve, &(dvi__jets){.L = value, .L_q = all, .L_qq = hessian}), DVI_OK);
+  ck_assert_int_eq(dvi__jet_along(jet, D, t, curve, curve,
+                                  &(dvi__jets){.L = value, .L_q = all, .L_qq = hessian}),
+                   DVI_OK);
   ck_assert_int_eq(counters.values, D + 1);
   ck_assert_int_eq(counters.gradients, D + 1);
   ck_assert_int_eq(counters.hessians, D + 1);
@@ -205,7 +223,9 @@ static struct {
   dvi_lagrangian lagrangian;
   int block, coefficient, entries; /* which coefficient of its first entry is wrong, by: */
   double by;
-  int degree, alone, returned; /* if that degree is asked for, 0: if any is; if the value is not wanted; and always returns this */
+  /* if that degree is asked for, 0: if any is; if the value is not wanted; and always returns
+   * this */
+  int degree, alone, returned;
 } lie;
 
 static void lie_in(double *block, const double *value, int degree)
@@ -214,7 +234,8 @@ static void lie_in(double *block, const double *value, int degree)
   if (block != NULL && lie.coefficient <= degree) block[lie.coefficient * lie.entries] += lie.by;
 }
 
-static int lying_potential(int degree, const double *t, const double *q, double *V, double *V_q, double *V_qq, void *user)
+static int lying_potential(int degree, const double *t, const double *q, double *V, double *V_q,
+                           double *V_qq, void *user)
 {
   double *const block[] = {V, V_q, V_qq};
   const int returned = lie.potential.taylor(degree, t, q, V, V_q, V_qq, user);
@@ -222,8 +243,9 @@ static int lying_potential(int degree, const double *t, const double *q, double 
   return lie.returned != 0 ? lie.returned : returned;
 }
 
-static int lying_lagrangian(int degree, const double *t, const double *q, const double *v, double *L, double *L_q, double *L_v,
-                            double *L_qq, double *L_qv, double *L_vv, void *user)
+static int lying_lagrangian(int degree, const double *t, const double *q, const double *v,
+                            double *L, double *L_q, double *L_v, double *L_qq, double *L_qv,
+                            double *L_vv, void *user)
 {
   double *const block[] = {L, L_q, L_v, L_qq, L_qv, L_vv};
   const int returned = lie.lagrangian.taylor(degree, t, q, v, L, L_q, L_v, L_qq, L_qv, L_vv, user);
@@ -232,7 +254,8 @@ static int lying_lagrangian(int degree, const double *t, const double *q, const 
 }
 
 /* The system of a problem with one potential or a Lagrangian alone, which lies. */
-static dvi_system *lying_system(const problem *of, int block, int coefficient, int entries, double by)
+static dvi_system *lying_system(const problem *of, int block, int coefficient, int entries,
+                                double by)
 {
   dvi_system_terms terms = *of->terms;
   dvi_potential potential = {0};
@@ -252,18 +275,22 @@ static dvi_system *lying_system(const problem *of, int block, int coefficient, i
   return system;
 }
 
-static void check_named(const char *name, const char *owner, int block, int coefficient, int entries, const char *what)
+static void check_named(const char *name, const char *owner, int block, int coefficient,
+                        int entries, const char *what)
 {
   problem *of = made_problem(name, NULL);
   dvi_system *system = lying_system(of, block, coefficient, entries, 0.1);
   dvi_derivative_check found;
   ck_assert_int_eq(dvi_system_check(system, 0.4, of->q, of->v, 0, &found), DVI_BAD_ARGUMENT);
   check_words(spec("%s: Taylor coefficient %d of %s", owner, coefficient, what));
-  ck_assert_ptr_nonnull(strstr(found.where, spec("%s: Taylor coefficient %d of %s is wrong", owner, coefficient, what)));
+  ck_assert_ptr_nonnull(strstr(
+      found.where, spec("%s: Taylor coefficient %d of %s is wrong", owner, coefficient, what)));
   ck_assert_double_gt(found.taylor_error, 1e-6);
   lie.by = 0;
-  ck_assert_msg(dvi_system_check(system, 0.4, of->q, of->v, 0, &found) == DVI_OK, "%s", dvi_last_error());
-  ck_assert_double_lt(found.taylor_error, 1e-8); /* differences of 6th order over a 128th of the curve's length */
+  ck_assert_msg(dvi_system_check(system, 0.4, of->q, of->v, 0, &found) == DVI_OK, "%s",
+                dvi_last_error());
+  /* differences of 6th order over a 128th of the curve's length */
+  ck_assert_double_lt(found.taylor_error, 1e-8);
   dvi_system_destroy(&system);
   problem_destroy(&of);
 }
@@ -294,11 +321,13 @@ static dvi_status check_lying(const char *name, int block, int coefficient, int 
   return status;
 }
 
-/* The planet passes in a fifth of a unit of time: coefficients grow by 5 or so each, and rounding hides none. */
+/* The planet passes in a fifth of a unit of time: coefficients grow by 5 or so each, and rounding
+ * hides none. */
 START_TEST(a_wrong_coefficient_of_any_degree_is_found)
 {
   for (int coefficient = 5; coefficient <= DVI_TAYLOR_MAX; coefficient += 5) {
-    ck_assert_int_eq(check_lying("kepler", 1, coefficient, 2, 0.1 * pow(5, coefficient)), DVI_BAD_ARGUMENT);
+    ck_assert_int_eq(check_lying("kepler", 1, coefficient, 2, 0.1 * pow(5, coefficient)),
+                     DVI_BAD_ARGUMENT);
     check_words(spec("Taylor coefficient %d of V_q", coefficient));
   }
 }
@@ -357,7 +386,8 @@ static int cube_hessian(double t, const double *q, double *V_qq, void *user)
   return 0;
 }
 
-static int cube_taylor(int degree, const double *t, const double *q, double *V, double *V_q, double *V_qq, void *user)
+static int cube_taylor(int degree, const double *t, const double *q, double *V, double *V_q,
+                       double *V_qq, void *user)
 {
   double square[DVI_TAYLOR_MAX + 1], cube[DVI_TAYLOR_MAX + 1];
   (void)t, (void)user;
@@ -371,9 +401,13 @@ static int cube_taylor(int degree, const double *t, const double *q, double *V, 
 
 START_TEST(where_a_callback_has_no_series_one_beside_is_checked)
 {
-  const dvi_potential potential = {
-      .name = "cube", .value = cube_value, .gradient = cube_gradient, .hessian = cube_hessian, .taylor = cube_taylor};
-  const dvi_system_terms terms = {.dimension = 1, .mass.scalar = 1, .potentials = &potential, .potential_count = 1};
+  const dvi_potential potential = {.name = "cube",
+                                   .value = cube_value,
+                                   .gradient = cube_gradient,
+                                   .hessian = cube_hessian,
+                                   .taylor = cube_taylor};
+  const dvi_system_terms terms = {
+      .dimension = 1, .mass.scalar = 1, .potentials = &potential, .potential_count = 1};
   const double zero = 0, v = 0.7;
   dvi_system *system = NULL;
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);

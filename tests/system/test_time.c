@@ -19,7 +19,10 @@ static dvi_system_terms build(scene *c, callback_shape shape)
   c->lagrangian = rotors(&c->rotors, shape);
   c->potentials[0] = springs(&c->springs, shape);
   c->potentials[1] = wells(&c->wells, shape);
-  return (dvi_system_terms){.dimension = SITES, .lagrangian = &c->lagrangian, .potentials = c->potentials, .potential_count = 2};
+  return (dvi_system_terms){.dimension = SITES,
+                            .lagrangian = &c->lagrangian,
+                            .potentials = c->potentials,
+                            .potential_count = 2};
 }
 
 static dvi_status check_terms(const dvi_system_terms *terms, dvi_derivative_check *found)
@@ -48,7 +51,8 @@ END_TEST
 
 START_TEST(a_wrong_rate_is_named_with_both_numbers)
 {
-  const char *const sentences[] = {"system check: Lagrangian: dL/dt is ", "system check: potential 'springs': dV/dt is 0.001 ",
+  const char *const sentences[] = {"system check: Lagrangian: dL/dt is ",
+                                   "system check: potential 'springs': dV/dt is 0.001 ",
                                    "system check: potential 'wells': dV/dt is "};
   scene c;
   dvi_derivative_check found;
@@ -104,7 +108,11 @@ static int beat(double t, const double *q, double *V, void *user)
 START_TEST(a_periodic_dependence_on_time_is_seen)
 {
   const dvi_potential drive = {.name = "drive", .value = beat};
-  const dvi_system_terms terms = {.dimension = 1, .mass.scalar = 1, .potentials = &drive, .potential_count = 1, .autonomous = 1};
+  const dvi_system_terms terms = {.dimension = 1,
+                                  .mass.scalar = 1,
+                                  .potentials = &drive,
+                                  .potential_count = 1,
+                                  .autonomous = 1};
   ck_assert_int_eq(check_terms(&terms, NULL), DVI_BAD_ARGUMENT);
   says(dvi_last_error(), "potential 'drive': its value has ");
 }
@@ -182,7 +190,8 @@ END_TEST
 
 START_TEST(a_term_without_its_rate_is_named)
 {
-  const char *const names[] = {"the Lagrangian has no rate", "springs has no rate", "wells has no rate"};
+  const char *const names[] = {"the Lagrangian has no rate", "springs has no rate",
+                               "wells has no rate"};
   scene c;
   const dvi_system_terms terms = build(&c, ONE_POINT);
   if (_i == 0)
@@ -206,7 +215,8 @@ SUITE(time)
 {
   tcase_add_loop_test(tests, right_rates_pass, ONE_POINT, BATCH + 1);
   tcase_add_loop_test(tests, a_wrong_rate_is_named_with_both_numbers, 0, 3);
-  tcase_add_test(tests, a_term_that_changes_with_time_although_the_system_is_declared_autonomous_is_named);
+  tcase_add_test(tests,
+                 a_term_that_changes_with_time_although_the_system_is_declared_autonomous_is_named);
   tcase_add_test(tests, a_periodic_dependence_on_time_is_seen);
   tcase_add_test(tests, a_rate_of_an_autonomous_system_is_refused);
   tcase_add_test(tests, a_rate_in_two_shapes_is_refused);

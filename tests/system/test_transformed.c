@@ -26,7 +26,8 @@ static int bowl_gradient(double t, const double *q, double *g_q, void *user)
 
 static const struct {
   const char *problem, *monitor; /* NULL: bowl */
-  double tolerance;              /* for Hessians that are differenced: noise of 1e-10 relative, grown by the entries' spread */
+  /* for Hessians that are differenced: noise of 1e-10 relative, grown by the entries' spread */
+  double tolerance;
 } places[] = {
     {"kepler", "distance", 1e-9},          {"kepler", "distance:power=2.5", 1e-9},
     {"kepler", "arclength", 1e-6},         {"kepler", "acceleration", 1e-6},
@@ -50,9 +51,13 @@ static void generic_point(const problem *of, double *q, double *v)
 static dvi__transformed *transformed(const problem *of, const char *monitor, dvi_counters *counters)
 {
   dvi__transformed *made = NULL;
-  dvi_monitor chosen = {.function = {.name = "bowl", .value = bowl, .gradient = bowl_gradient, .user = (void *)&of->nq}};
-  if (monitor != NULL) ck_assert_msg(dvi_monitor_read(monitor, &chosen) == DVI_OK, "%s", dvi_last_error());
-  ck_assert_msg(dvi__transformed_create(of->system, &chosen, counters, &made) == DVI_OK, "%s", dvi_last_error());
+  dvi_monitor chosen = {
+      .function = {
+          .name = "bowl", .value = bowl, .gradient = bowl_gradient, .user = (void *)&of->nq}};
+  if (monitor != NULL)
+    ck_assert_msg(dvi_monitor_read(monitor, &chosen) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi__transformed_create(of->system, &chosen, counters, &made) == DVI_OK, "%s",
+                dvi_last_error());
   return made;
 }
 
@@ -74,9 +79,11 @@ START_TEST(its_derivatives_are_those_of_its_value)
   dvi__transformed *x = transformed(of, places[_i].monitor, &counters);
   generic_point(of, q, v);
   dvi__transformed_set_energy(x, energy_at(of, q, v) + 0.3);
-  const dvi_status status = dvi_system_check(dvi__transformed_system(x), 0, q, v, places[_i].tolerance, &found);
+  const dvi_status status = dvi_system_check(dvi__transformed_system(x), 0, q, v,
+                                             places[_i].tolerance, &found);
   ck_assert_msg(status == DVI_OK, "%s, %s: %s", of->name, places[_i].monitor, dvi_last_error());
-  ck_assert_double_le(found.gradient_error, 1e-10); /* differences of 6th order, of values with a cancelling E0 */
+  /* differences of 6th order, of values with a cancelling E0 */
+  ck_assert_double_le(found.gradient_error, 1e-10);
   dvi__transformed_destroy(&x);
   problem_destroy(&of);
 }
@@ -94,7 +101,8 @@ START_TEST(its_value_is_the_definition)
   ck_assert_int_eq(dvi_system_lagrangian(dvi__transformed_system(x), 0, q, w, &L), DVI_OK);
   ck_assert_double_eq_tol(L, (0.3 * 0.3 + 0.5 * 0.5) / 2 + 1 - 0.4, 1e-15); /* r = 1: g = 1 */
   ck_assert_int_eq(dvi_system_lagrangian(dvi__transformed_system(x), 0, far, w, &L), DVI_OK);
-  ck_assert_double_eq_tol(L, (0.3 * 0.3 + 0.5 * 0.5) / 2 / 8 + 8 * (0.25 - 0.4), 1e-15); /* r = 4: g = 8 */
+  /* r = 4: g = 8 */
+  ck_assert_double_eq_tol(L, (0.3 * 0.3 + 0.5 * 0.5) / 2 / 8 + 8 * (0.25 - 0.4), 1e-15);
   dvi__transformed_destroy(&x);
   problem_destroy(&kepler);
 }
@@ -108,9 +116,11 @@ START_TEST(pairs_of_bodies_are_summed)
   dvi__monitor *monitor;
   double g;
   ck_assert_int_eq(dvi_monitor_read("distance:bodies=3,dimension=2,power=2", &chosen), DVI_OK);
-  ck_assert_int_eq(dvi__monitor_create(of->system, &chosen, 1, DVI__GRADIENTS, &counters, &monitor), DVI_OK);
+  ck_assert_int_eq(dvi__monitor_create(of->system, &chosen, 1, DVI__GRADIENTS, &counters, &monitor),
+                   DVI_OK);
   ck_assert_int_eq(dvi__monitor_value(monitor, 1, of->q, &g), DVI_OK);
-  ck_assert_double_eq_tol(1 / g, 1.0 / 9 + 1.0 / 16 + 1.0 / 25, 1e-16); /* the triangle of sides 3, 4, 5 */
+  /* the triangle of sides 3, 4, 5 */
+  ck_assert_double_eq_tol(1 / g, 1.0 / 9 + 1.0 / 16 + 1.0 / 25, 1e-16);
   dvi__monitor_destroy(&monitor);
   problem_destroy(&of);
 }
@@ -131,14 +141,19 @@ START_TEST(a_wrong_gradient_of_a_monitor_is_named)
   problem *kepler = made_problem("kepler", NULL);
   dvi_derivative_check found;
   const double q[2] = {0.6, -0.8};
-  dvi_monitor monitor = {.function = {.name = "bowl", .value = bowl, .gradient = bowl_gradient, .user = (void *)&kepler->nq}};
-  ck_assert_msg(dvi_monitor_check(kepler->system, &monitor, q, 0, &found) == DVI_OK, "%s", dvi_last_error());
+  dvi_monitor monitor = {
+      .function = {
+          .name = "bowl", .value = bowl, .gradient = bowl_gradient, .user = (void *)&kepler->nq}};
+  ck_assert_msg(dvi_monitor_check(kepler->system, &monitor, q, 0, &found) == DVI_OK, "%s",
+                dvi_last_error());
   ck_assert_double_le(found.gradient_error, 1e-11);
   monitor.function.gradient = wrong_gradient;
   ck_assert_int_eq(dvi_monitor_check(kepler->system, &monitor, q, 0, NULL), DVI_BAD_ARGUMENT);
   check_words("'bowl': dV/dq (1) is");
   ck_assert_int_eq(dvi_monitor_check(kepler->system, NULL, q, 0, NULL), DVI_BAD_ARGUMENT);
-  ck_assert_int_eq(dvi_monitor_check(kepler->system, &(dvi_monitor){.kind = DVI_MONITOR_DISTANCE}, q, 0, NULL), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(
+      dvi_monitor_check(kepler->system, &(dvi_monitor){.kind = DVI_MONITOR_DISTANCE}, q, 0, NULL),
+      DVI_BAD_ARGUMENT);
   check_words("built-in");
   problem_destroy(&kepler);
 }

@@ -29,7 +29,8 @@ static void name_rotation(const problem *made, int i, int j, const char *suffix)
 {
   for (int k = 0; k < 9; k++) {
     made->q[i + k] = k % 4 == 0;
-    (void)snprintf(made->coordinate[i + k], PROBLEM_LABEL_SIZE, "R%d%d%s", k / 3 + 1, k % 3 + 1, suffix);
+    (void)snprintf(made->coordinate[i + k], PROBLEM_LABEL_SIZE, "R%d%d%s", k / 3 + 1, k % 3 + 1,
+                   suffix);
   }
   for (int k = 0; k < 3; k++) {
     (void)snprintf(made->velocity[j + k], PROBLEM_LABEL_SIZE, "Omega%d%s", k + 1, suffix);
@@ -67,7 +68,8 @@ static void name_all(const problem *made, int count, const dvi_factor *factors)
   }
 }
 
-dvi_status problem_factors(problem *made, int count, const dvi_factor *factors, size_t parameters_size)
+dvi_status problem_factors(problem *made, int count, const dvi_factor *factors,
+                           size_t parameters_size)
 {
   int nq = 0, nv = 0;
   for (int f = 0; f < count; f++) {
@@ -75,7 +77,8 @@ dvi_status problem_factors(problem *made, int count, const dvi_factor *factors, 
     nv += velocities_of(&factors[f]);
   }
   made->velocity = problem_names(made, nv);
-  if (!made->velocity || problem_room_of(made, nq, nv, parameters_size) != DVI_OK) return DVI_NO_MEMORY;
+  if (!made->velocity || problem_room_of(made, nq, nv, parameters_size) != DVI_OK)
+    return DVI_NO_MEMORY;
   name_all(made, count, factors);
   return DVI_OK;
 }

@@ -1,13 +1,17 @@
-/* A rigid body without forces: Pi' = Pi x Omega, R' = R Omega^. Exact solution by Jacobi's elliptic functions.
+/* A rigid body without forces: Pi' = Pi x Omega, R' = R Omega^. Exact solution by Jacobi's elliptic
+ * functions.
  *
- * Axes 1, 2, 3 by their inertia, 2 the middle one, and 3 that about which the motion goes round. With u = lambda t + epsilon
+ * Axes 1, 2, 3 by their inertia, 2 the middle one, and 3 that about which the motion goes round.
+ * With u = lambda t + epsilon
  *     Omega = (A cn u, B sn u, C dn u),
- * A, B, C and the modulus k from energy and momentum, written as sums of positive terms of the start. The attitude: with l the constant direction of
- * the angular momentum L in space, axis 3 turns about l at the rate
+ * A, B, C and the modulus k from energy and momentum, written as sums of positive terms of the
+ * start. The attitude: with l the constant direction of the angular momentum L in space, axis 3
+ * turns about l at the rate
  *     phi' = |L| (2 E - I3 Omega3^2)/(|L|^2 - I3^2 Omega3^2),
- * whose integral is one of the third kind, in u. Everything else follows from l in the body's frame.
- * am by the descending Landen transformation (Abramowitz and Stegun 1964, sec. 16.4); F and Pi as Carlson's R_F and R_J (Carlson 1995, Numer. Algorithms
- * 10:13). In long double: where that has more digits than double, the result is that much closer. */
+ * whose integral is one of the third kind, in u. Everything else follows from l in the body's
+ * frame. am by the descending Landen transformation (Abramowitz and Stegun 1964, sec. 16.4); F and
+ * Pi as Carlson's R_F and R_J (Carlson 1995, Numer. Algorithms 10:13). In long double: where that
+ * has more digits than double, the result is that much closer. */
 #include <float.h>
 #include <math.h>
 
@@ -32,7 +36,8 @@ static real R_F(real x, real y, real z)
 {
   const real close = powl(3.0L * LDBL_EPSILON, 1.0L / 6.0L);
   for (;;) {
-    const real mean = (x + y + z) / 3.0L, dx = 1.0L - x / mean, dy = 1.0L - y / mean, dz = 1.0L - z / mean;
+    const real mean = (x + y + z) / 3.0L, dx = 1.0L - x / mean, dy = 1.0L - y / mean,
+               dz = 1.0L - z / mean;
     if (fmaxl(fabsl(dx), fmaxl(fabsl(dy), fabsl(dz))) < close) {
       const real e2 = dx * dy - dz * dz, e3 = dx * dy * dz;
       return (1.0L + e2 * (e2 / 24.0L - 0.1L - 3.0L * e3 / 44.0L) + e3 / 14.0L) / sqrtl(mean);
@@ -56,15 +61,17 @@ static real R_C1(real e)
 static real near_R_J(real X, real Y, real Z)
 {
   const real P = -0.5L * (X + Y + Z), XYZ = X * Y * Z, E2 = X * Y + X * Z + Y * Z - 3.0L * P * P;
-  const real E3 = XYZ + 2.0L * E2 * P + 4.0L * P * P * P, E4 = (2.0L * XYZ + E2 * P + 3.0L * P * P * P) * P, E5 = XYZ * P * P;
-  return 1.0L - 3.0L * E2 / 14.0L + E3 / 6.0L + 9.0L * E2 * E2 / 88.0L - 3.0L * E4 / 22.0L - 9.0L * E2 * E3 / 52.0L +
-         3.0L * E5 / 26.0L;
+  const real E3 = XYZ + 2.0L * E2 * P + 4.0L * P * P * P,
+             E4 = (2.0L * XYZ + E2 * P + 3.0L * P * P * P) * P, E5 = XYZ * P * P;
+  return 1.0L - 3.0L * E2 / 14.0L + E3 / 6.0L + 9.0L * E2 * E2 / 88.0L - 3.0L * E4 / 22.0L -
+         9.0L * E2 * E3 / 52.0L + 3.0L * E5 / 26.0L;
 }
 
 static real R_J(real x, real y, real z, real p)
 {
   const real first = (x + y + z + 2.0L * p) / 5.0L, X = first - x, Y = first - y, Z = first - z;
-  const real apart = fmaxl(fmaxl(fabsl(X), fabsl(Y)), fmaxl(fabsl(Z), fabsl(first - p))) * powl(0.25L * LDBL_EPSILON, -1.0L / 6.0L);
+  const real apart = fmaxl(fmaxl(fabsl(X), fabsl(Y)), fmaxl(fabsl(Z), fabsl(first - p))) *
+                     powl(0.25L * LDBL_EPSILON, -1.0L / 6.0L);
   real delta = (p - x) * (p - y) * (p - z), scale = 1.0L, mean = first, sum = 0.0L;
   while (scale * apart >= mean) {
     const real root_x = sqrtl(x), root_y = sqrtl(y), root_z = sqrtl(z), root_p = sqrtl(p);
@@ -83,7 +90,8 @@ static real R_J(real x, real y, real z, real p)
   return part / sqrtl(mean) * near_R_J(part * X, part * Y, part * Z) + 6.0L * sum;
 }
 
-/* The integrals of du and of du/(1 - n sn^2 u) from 0 to the amplitude whose sine and cosine are given, |amplitude| <= pi/2. */
+/* The integrals of du and of du/(1 - n sn^2 u) from 0 to the amplitude whose sine and cosine are
+ * given, |amplitude| <= pi/2. */
 static real first_kind(const motion *m, real sine, real cosine)
 {
   return sine * R_F(cosine * cosine, cosine * cosine + m->rest * sine * sine, 1.0L);
@@ -92,7 +100,8 @@ static real first_kind(const motion *m, real sine, real cosine)
 static real third_kind(const motion *m, real sine, real cosine)
 {
   const real s2 = sine * sine, c2 = cosine * cosine, d2 = c2 + m->rest * s2;
-  return sine * R_F(c2, d2, 1.0L) + m->bend / 3.0L * sine * s2 * R_J(c2, d2, 1.0L, 1.0L - m->bend * s2);
+  return sine * R_F(c2, d2, 1.0L) +
+         m->bend / 3.0L * sine * s2 * R_J(c2, d2, 1.0L, 1.0L - m->bend * s2);
 }
 
 /* am(u) for |u| <= K. */
@@ -115,7 +124,8 @@ static real amplitude(const motion *m, real u)
 
 /* ---- the motion ---- */
 
-/* Axes by descending inertia, or by ascending ones if the motion goes round the largest. Returns the sign of this permutation. */
+/* Axes by descending inertia, or by ascending ones if the motion goes round the largest. Returns
+ * the sign of this permutation. */
 static int sort_axes(const double *J, const double *Omega, int *axis)
 {
   int sign = 1;
@@ -128,7 +138,8 @@ static int sort_axes(const double *J, const double *Omega, int *axis)
         axis[i + 1] = kept;
         sign = -sign;
       }
-  const real I1 = J[axis[0]], I2 = J[axis[1]], I3 = J[axis[2]], w1 = Omega[axis[0]], w3 = Omega[axis[2]];
+  const real I1 = J[axis[0]], I2 = J[axis[1]], I3 = J[axis[2]], w1 = Omega[axis[0]],
+             w3 = Omega[axis[2]];
   if (I1 * (I1 - I2) * w1 * w1 <= I3 * (I2 - I3) * w3 * w3) return sign;
   const int kept = axis[0];
   axis[0] = axis[2];
@@ -136,7 +147,8 @@ static int sort_axes(const double *J, const double *Omega, int *axis)
   return -sign;
 }
 
-/* What follows from the start. 0, or 1 on the separatrix, where the motion tends to a turn about the middle axis. */
+/* What follows from the start. 0, or 1 on the separatrix, where the motion tends to a turn about
+ * the middle axis. */
 static int find_motion(const double *J, const double *Omega, motion *m)
 {
   const int sign = sort_axes(J, Omega, m->axis);
@@ -154,15 +166,18 @@ static int find_motion(const double *J, const double *Omega, motion *m)
   m->momentum = sqrtl(L2);
   m->bend = -I3 * I3 * m->C * m->C * m->k2 / least;
   m->mean = m->momentum / I3;
-  m->excess = m->momentum * (I1 * (I3 - I1) * w1 * w1 + I2 * (I3 - I2) * w2 * w2) / (I3 * least * m->lambda);
+  m->excess = m->momentum * (I1 * (I3 - I1) * w1 * w1 + I2 * (I3 - I2) * w2 * w2) /
+              (I3 * least * m->lambda);
   return 0;
 }
 
-/* Omega at time t in the body's axes, and by how much axis 3 has turned about the angular momentum since t = 0. */
+/* Omega at time t in the body's axes, and by how much axis 3 has turned about the angular momentum
+ * since t = 0. */
 static void follow(const motion *m, const double *Omega, real t, real *w, real *phi)
 {
   const real K = first_kind(m, 1.0L, 0.0L), whole = third_kind(m, 1.0L, 0.0L);
-  const real cosine = Omega[m->axis[0]] / m->A, sine = Omega[m->axis[1]] / m->B, side = cosine < 0.0L ? -1.0L : 1.0L;
+  const real cosine = Omega[m->axis[0]] / m->A, sine = Omega[m->axis[1]] / m->B,
+             side = cosine < 0.0L ? -1.0L : 1.0L;
   const real before = cosine < 0.0L; /* half periods */
   const real u = 2.0L * K * before + first_kind(m, side * sine, side * cosine) + m->lambda * t;
   const real halves = roundl(u / (2.0L * K)), am = amplitude(m, u - 2.0L * K * halves);
@@ -170,11 +185,13 @@ static void follow(const motion *m, const double *Omega, real t, real *w, real *
   w[m->axis[0]] = turn * m->A * cn;
   w[m->axis[1]] = turn * m->B * sn;
   w[m->axis[2]] = m->C * sqrtl(cn * cn + m->rest * sn * sn);
-  const real integral = 2.0L * whole * (halves - before) + third_kind(m, sn, cn) - third_kind(m, side * sine, side * cosine);
+  const real integral = 2.0L * whole * (halves - before) + third_kind(m, sn, cn) -
+                        third_kind(m, side * sine, side * cosine);
   *phi = m->mean * t + m->excess * integral;
 }
 
-/* T [9], a rotation: rows the part of axis `third` across the angular momentum Pi, that crossed, and Pi's direction. */
+/* T [9], a rotation: rows the part of axis `third` across the angular momentum Pi, that crossed,
+ * and Pi's direction. */
 static void momentum_frame(const real *Pi, int third, real *T)
 {
   const real size = sqrtl(Pi[0] * Pi[0] + Pi[1] * Pi[1] + Pi[2] * Pi[2]);
@@ -184,7 +201,8 @@ static void momentum_frame(const real *Pi, int third, real *T)
   T[i] = -Pi[third] * Pi[i] / (size * across);
   T[j] = -Pi[third] * Pi[j] / (size * across);
   for (int k = 0; k < 3; k++) T[6 + k] = Pi[k] / size;
-  for (int k = 0; k < 3; k++) T[3 + k] = T[6 + (k + 1) % 3] * T[(k + 2) % 3] - T[6 + (k + 2) % 3] * T[(k + 1) % 3];
+  for (int k = 0; k < 3; k++)
+    T[3 + k] = T[6 + (k + 1) % 3] * T[(k + 2) % 3] - T[6 + (k + 2) % 3] * T[(k + 1) % 3];
 }
 
 /* R = T0^T (turn by phi about the third axis) T, from R = I at the start. */
@@ -193,20 +211,24 @@ static void attitude(const real *T0, const real *T, real phi, double *R)
   const real c = cosl(phi), s = sinl(phi);
   for (int j = 0; j < 3; j++) {
     const real column[3] = {c * T[j] - s * T[3 + j], s * T[j] + c * T[3 + j], T[6 + j]};
-    for (int i = 0; i < 3; i++) R[3 * i + j] = (double)(T0[i] * column[0] + T0[3 + i] * column[1] + T0[6 + i] * column[2]);
+    for (int i = 0; i < 3; i++)
+      R[3 * i + j] = (double)(T0[i] * column[0] + T0[3 + i] * column[1] + T0[6 + i] * column[2]);
   }
 }
 
-/* A turn about a principal axis, or any turn of a ball, goes on: R = exp(t Omega^), by Rodrigues. */
+/* A turn about a principal axis, or any turn of a ball, goes on: R = exp(t Omega^), by
+ * Rodrigues. */
 static void turn_steadily(const double *Omega, real t, double *R)
 {
-  const real x = Omega[0], y = Omega[1], z = Omega[2], rate = sqrtl(x * x + y * y + z * z), scale = rate > 0.0L ? rate : 1.0L;
-  const real axis[3] = {x / scale, y / scale, z / scale}, s = sinl(rate * t), half = sinl(0.5L * rate * t),
-             versine = 2.0L * half * half;
+  const real x = Omega[0], y = Omega[1], z = Omega[2], rate = sqrtl(x * x + y * y + z * z),
+             scale = rate > 0.0L ? rate : 1.0L;
+  const real axis[3] = {x / scale, y / scale, z / scale}, s = sinl(rate * t),
+             half = sinl(0.5L * rate * t), versine = 2.0L * half * half;
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) {
       const real hat = i == j ? 0.0L : ((j + 1) % 3 == i ? axis[3 - i - j] : -axis[3 - i - j]);
-      R[3 * i + j] = (double)((i == j ? 1.0L - versine : 0.0L) + s * hat + versine * axis[i] * axis[j]);
+      R[3 * i + j] = (double)((i == j ? 1.0L - versine : 0.0L) + s * hat +
+                              versine * axis[i] * axis[j]);
     }
 }
 
@@ -252,8 +274,9 @@ static dvi_status make(const double *setting, problem *made)
 }
 
 static const problem_parameter parameters[] = {
-    TOP_INERTIA("J1", 3.0),    TOP_INERTIA("J2", 2.0),   TOP_INERTIA("J3", 1.5), TOP_START("Omega1", 0.5),
-    TOP_START("Omega2", -0.5), TOP_START("Omega3", 0.4), {.name = NULL},
+    TOP_INERTIA("J1", 3.0),   TOP_INERTIA("J2", 2.0),    TOP_INERTIA("J3", 1.5),
+    TOP_START("Omega1", 0.5), TOP_START("Omega2", -0.5), TOP_START("Omega3", 0.4),
+    {.name = NULL},
 };
 
 /* Quadruple-precision results, recomputed by tests/reference/test_digits. */

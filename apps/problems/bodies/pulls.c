@@ -7,7 +7,8 @@ static void vector_of(const pull *of, int count, int k, const double *q, double 
 {
   r[0] = r[1] = r[2] = 0.0;
   for (int a = 0; a < of->arms; a++)
-    for (int i = 0; i < 3; i++) r[i] += of->arm[a].factor * q[(of->arm[a].first + i * of->arm[a].stride) * count + k];
+    for (int i = 0; i < 3; i++)
+      r[i] += of->arm[a].factor * q[(of->arm[a].first + i * of->arm[a].stride) * count + k];
 }
 
 static int value(int count, const double *t, const double *q, double *V, void *user)
@@ -31,7 +32,9 @@ static void add_gradient(const pull *of, int count, int k, const double *q, doub
   vector_of(of, count, k, q, r);
   const double r2 = r[0] * r[0] + r[1] * r[1] + r[2] * r[2], force = of->strength / (r2 * sqrt(r2));
   for (int a = 0; a < of->arms; a++)
-    for (int i = 0; i < 3; i++) V_q[(of->arm[a].first + i * of->arm[a].stride) * count + k] += of->arm[a].factor * force * r[i];
+    for (int i = 0; i < 3; i++)
+      V_q[(of->arm[a].first + i * of->arm[a].stride) * count + k] += of->arm[a].factor * force *
+                                                                     r[i];
 }
 
 static int gradient(int count, const double *t, const double *q, double *V_q, void *user)
@@ -53,9 +56,10 @@ static void add_hessian(const pull *of, int nq, int count, int k, const double *
   for (int a = 0; a < 3 * of->arms; a++)
     for (int b = 0; b < 3 * of->arms; b++) {
       const arm *row = &of->arm[a / 3], *column = &of->arm[b / 3];
-      const int i = a % 3, j = b % 3, in_row = row->first + i * row->stride, in_column = column->first + j * column->stride;
-      V_qq[((ptrdiff_t)in_column * nq + in_row) * count + k] += row->factor * column->factor * force *
-                                                                ((i == j ? 1.0 : 0.0) - 3.0 * r[i] * r[j] / r2);
+      const int i = a % 3, j = b % 3, in_row = row->first + i * row->stride,
+                in_column = column->first + j * column->stride;
+      V_qq[((ptrdiff_t)in_column * nq + in_row) * count + k] +=
+          row->factor * column->factor * force * ((i == j ? 1.0 : 0.0) - 3.0 * r[i] * r[j] / r2);
     }
 }
 
@@ -71,6 +75,9 @@ static int hessian(int count, const double *t, const double *q, double *V_qq, vo
 
 dvi_potential pulls_potential(const char *name, const pulls *all)
 {
-  return (dvi_potential){
-      .name = name, .value_batch = value, .gradient_batch = gradient, .hessian_batch = hessian, .user = (void *)all};
+  return (dvi_potential){.name = name,
+                         .value_batch = value,
+                         .gradient_batch = gradient,
+                         .hessian_batch = hessian,
+                         .user = (void *)all};
 }

@@ -1,9 +1,11 @@
 /* A rigid satellite with a chain of n links in orbit: SE(3) x (S^2)^n, coupled through the mass.
  *
- *     L = satellite + sum_k ( m |r_k'|^2/2 + m mu/|r_k| ) + M mu/|x|,      r_k = x + R rho + l (q_1 + .. + q_k)
- * with point masses m at the links' ends, the chain fixed to the satellite at rho, and Newton's field of a centre of strength mu at the origin. It starts on a
- * circular orbit's speed, turning with it as if it were rigid, with the chain a little off the direction to the centre.
- * Source: Lee, Leok and McClamroch 2009, Int. J. Numer. Meth. Engng 79:1147 (chains of directions). */
+ *     L = satellite + sum_k ( m |r_k'|^2/2 + m mu/|r_k| ) + M mu/|x|,
+ *     r_k = x + R rho + l (q_1 + .. + q_k)
+ * with point masses m at the links' ends, the chain fixed to the satellite at rho, and Newton's
+ * field of a centre of strength mu at the origin. It starts on a circular orbit's speed, turning
+ * with it as if it were rigid, with the chain a little off the direction to the centre. Source:
+ * Lee, Leok and McClamroch 2009, Int. J. Numer. Meth. Engng 79:1147 (chains of directions). */
 #include <math.h>
 
 #include "bodies/pulls.h"
@@ -29,11 +31,13 @@ static void set_arms(satellite *own, double body_pull, double link_pull)
   for (int k = 0; k < 3; k++) own->arm[1 + k] = (arm){k, 3, rho[k]};
   for (int j = 0; j < own->links; j++) own->arm[4 + j] = (arm){BODY + 3 * j, 1, own->l};
   own->pull[0] = (pull){.strength = body_pull, .arms = 1, .arm = own->arm};
-  for (int k = 1; k <= own->links; k++) own->pull[k] = (pull){.strength = link_pull, .arms = 4 + k, .arm = own->arm};
+  for (int k = 1; k <= own->links; k++)
+    own->pull[k] = (pull){.strength = link_pull, .arms = 4 + k, .arm = own->arm};
   own->all = (pulls){.nq = own->nq, .count = own->links + 1, .pull = own->pull};
 }
 
-/* What links k.. have in common of the coordinates a and b: m |r_k'|^2/2 for every k that reaches both. */
+/* What links k.. have in common of the coordinates a and b: m |r_k'|^2/2 for every k that reaches
+ * both. */
 static double coupling(const satellite *own, double m, const arm *a, const arm *b)
 {
   const ptrdiff_t later = a > b ? a - own->arm : b - own->arm;
@@ -145,9 +149,10 @@ static dvi_status make(const double *setting, problem *made)
 
   factors[0].mass = M;
   factors[0].inertia = own->inertia;
-  const dvi_symmetry symmetries[] = {{.name = "angular_momentum_x", .generator = turn_x, .user = own},
-                                     {.name = "angular_momentum_y", .generator = turn_y, .user = own},
-                                     {.name = "angular_momentum_z", .generator = turn_z, .user = own}};
+  const dvi_symmetry symmetries[] = {
+      {.name = "angular_momentum_x", .generator = turn_x, .user = own},
+      {.name = "angular_momentum_y", .generator = turn_y, .user = own},
+      {.name = "angular_momentum_z", .generator = turn_z, .user = own}};
   const dvi_potential gravity = pulls_potential("gravity", &own->all);
   const dvi_system_terms terms = {.factors = factors,
                                   .factor_count = n + 1,
@@ -167,14 +172,26 @@ static const problem_parameter parameters[] = {
      .most = LINKS_MAX,
      .whole = 1,
      .help = "how many links the chain has, a whole number from 1 to 40"},
-    {.name = "m", .value = 0.5, .least = 1e-50, .most = 1e50, .help = "the mass at each link's end, positive"},
-    {.name = "l", .value = 0.25, .least = 1e-50, .most = 1e50, .help = "the length of each link, positive"},
+    {.name = "m",
+     .value = 0.5,
+     .least = 1e-50,
+     .most = 1e50,
+     .help = "the mass at each link's end, positive"},
+    {.name = "l",
+     .value = 0.25,
+     .least = 1e-50,
+     .most = 1e50,
+     .help = "the length of each link, positive"},
     {.name = "M",
      .value = 10.0,
      .least = 1e-50,
      .most = 1e50,
      .help = "the satellite's mass, positive; its inertia is M/10 diag(.8,1.2,1.5)"},
-    {.name = "mu", .value = 10.0, .least = 0.0, .most = 1e50, .help = "the strength of the centre's field, from 0"},
+    {.name = "mu",
+     .value = 10.0,
+     .least = 0.0,
+     .most = 1e50,
+     .help = "the strength of the centre's field, from 0"},
     {.name = "r",
      .value = 5.0,
      .least = 1e-6,
@@ -185,21 +202,24 @@ static const problem_parameter parameters[] = {
 };
 
 /* Quadruple-precision results, recomputed by tests/reference/test_digits. */
-static const double digits_q[] = {0.88124919583518624,   -0.47080097053433012,  -0.041788766238911798, 0.47160186812378802,
-                                  0.88173814326020994,   0.011380891976941974,  0.031488614164342385,  -0.029737062127426328,
-                                  0.99906164690375276,   4.0939191642543467,    2.6755706912179145,    0.015571633919547433,
-                                  -0.82660476437944019,  -0.56154561397038705,  -0.037297277860872523, -0.81845276358708852,
-                                  -0.5719523275618017,   -0.054823432702585419, -0.81538598424680775,  -0.57492331544101305,
-                                  -0.067888718180401472, -0.83914356994147321,  -0.54158742826765449,  -0.050210821227183296};
-static const double digits_p[] = {-0.21455993279368749,  -0.20157213237838903, -0.66153258685706795,  -10.313555289894445,
-                                  13.218307020968069,    -0.12943815452343035, -0.28679939825809214,  0.42596860022477523,
-                                  -0.057136880926848252, -0.20404771059088148, 0.29681978006716003,   -0.050404567952903441,
-                                  -0.12558006403298999,  0.18277940379326094,  -0.039592980717266302, -0.053936935170994064,
-                                  0.085699511381815224,  -0.022962094899135945};
+static const double digits_q[] = {
+    0.88124919583518624,   -0.47080097053433012,  -0.041788766238911798, 0.47160186812378802,
+    0.88173814326020994,   0.011380891976941974,  0.031488614164342385,  -0.029737062127426328,
+    0.99906164690375276,   4.0939191642543467,    2.6755706912179145,    0.015571633919547433,
+    -0.82660476437944019,  -0.56154561397038705,  -0.037297277860872523, -0.81845276358708852,
+    -0.5719523275618017,   -0.054823432702585419, -0.81538598424680775,  -0.57492331544101305,
+    -0.067888718180401472, -0.83914356994147321,  -0.54158742826765449,  -0.050210821227183296};
+static const double digits_p[] = {
+    -0.21455993279368749,  -0.20157213237838903, -0.66153258685706795,  -10.313555289894445,
+    13.218307020968069,    -0.12943815452343035, -0.28679939825809214,  0.42596860022477523,
+    -0.057136880926848252, -0.20404771059088148, 0.29681978006716003,   -0.050404567952903441,
+    -0.12558006403298999,  0.18277940379326094,  -0.039592980717266302, -0.053936935170994064,
+    0.085699511381815224,  -0.022962094899135945};
 
 const problem_entry problem_entry_satellite = {
     .name = "satellite",
-    .summary = "a rigid satellite with a flexible chain in orbit; rigid motions and directions, coupled by their mass",
+    .summary = "a rigid satellite with a flexible chain in orbit; rigid motions and directions, "
+               "coupled by their mass",
     .parameters = parameters,
     .make = make,
     .h = 0.05,

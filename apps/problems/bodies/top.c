@@ -8,7 +8,8 @@ static int value(int count, const double *t, const double *q, double *V, void *u
   const double *w = ((const top *)user)->weight;
   const double *restrict up = q + (ptrdiff_t)UP * count;
   (void)t;
-  for (int k = 0; k < count; k++) V[k] = w[0] * up[k] + w[1] * up[count + k] + w[2] * up[2 * count + k];
+  for (int k = 0; k < count; k++)
+    V[k] = w[0] * up[k] + w[1] * up[count + k] + w[2] * up[2 * count + k];
   return 0;
 }
 
@@ -41,9 +42,10 @@ static int turn(const double *q, double *xi, void *user)
 }
 
 /* The vertical one, which weight leaves, is the last. */
-static const dvi_symmetry symmetries[] = {{.name = "angular_momentum_x", .generator = turn, .user = &axes[0]},
-                                          {.name = "angular_momentum_y", .generator = turn, .user = &axes[1]},
-                                          {.name = "angular_momentum_z", .generator = turn, .user = &axes[2]}};
+static const dvi_symmetry symmetries[] = {
+    {.name = "angular_momentum_x", .generator = turn, .user = &axes[0]},
+    {.name = "angular_momentum_y", .generator = turn, .user = &axes[1]},
+    {.name = "angular_momentum_z", .generator = turn, .user = &axes[2]}};
 
 void top_inertia(top *body, const double *J)
 {

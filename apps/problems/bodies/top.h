@@ -1,5 +1,6 @@
-/* Rigid bodies that turn about a fixed point, under their weight or none: on SO(3), V = w.R^T e3 with the vector w = m g X in the body's frame, X from the
- * fixed point to the centre of mass and e3 up. */
+/* Rigid bodies that turn about a fixed point, under their weight or none: on SO(3), V = w.R^T e3
+ * with the vector w = m g X in the body's frame, X from the fixed point to the centre of mass and
+ * e3 up. */
 #ifndef PROBLEMS_TOP_H
 #define PROBLEMS_TOP_H
 #include "entry.h"
@@ -10,14 +11,15 @@ typedef struct top {
   double weight[3]; /* w */
 } top;
 
-/* Room for a body, which `made->parameters` points to then, at R = I and with this angular velocity. J and w are still to be set. */
+/* Room for a body, which `made->parameters` points to then, at R = I and with this angular
+ * velocity. J and w are still to be set. */
 dvi_status top_room(problem *made, const double *Omega);
 
 /* The principal inertias. */
 void top_inertia(top *body, const double *J);
 
-/* Make the system. Without weight (the vector is 0) there is no potential, and the angular momentum has three components in space; with weight that
- * about the vertical is left. */
+/* Make the system. Without weight (the vector is 0) there is no potential, and the angular momentum
+ * has three components in space; with weight that about the vertical is left. */
 dvi_status top_system(problem *made, const dvi_invariant *invariant);
 
 #define TOP_START(title, number)                                                     \

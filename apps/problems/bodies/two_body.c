@@ -1,8 +1,11 @@
-/* The full two-body problem: two extended rigid bodies, each six point masses on its principal axes, attract each other by Newton's law, G = 1.
+/* The full two-body problem: two extended rigid bodies, each six point masses on its principal
+ * axes, attract each other by Newton's law, G = 1.
  *
  *     V = - sum_ab  m_a m_b / |x1 + R1 rho_a - x2 - R2 rho_b|        on SE(3) x SE(3)
- * A body of mass m and semi-axes s_1, s_2, s_3 has masses m/6 at +- s_k e_k, and so J_kk = m (|s|^2 - s_k^2)/3. Orbit and rotations exchange momentum.
- * Source: Lee, Leok and McClamroch 2007 (Lie group variational integrators for the full body problem), Comput. Methods Appl. Mech. Engrg. 196:2907. */
+ * A body of mass m and semi-axes s_1, s_2, s_3 has masses m/6 at +- s_k e_k, and so J_kk = m (|s|^2
+ * - s_k^2)/3. Orbit and rotations exchange momentum. Source: Lee, Leok and McClamroch 2007 (Lie
+ * group variational integrators for the full body problem), Comput. Methods Appl. Mech. Engrg.
+ * 196:2907. */
 #include "bodies/pulls.h"
 
 enum { POINTS = 6, STORED = 12, VELOCITIES = 6 };
@@ -20,7 +23,8 @@ static const double shape[2][3] = {{0.6, 0.4, 0.3}, {0.35, 0.3, 0.15}};
 static void connect(bodies *own, int a, int b, double size, double strength)
 {
   const int index = POINTS * a + b;
-  const double rho[2] = {(a % 2 == 0 ? size : -size) * shape[0][a / 2], (b % 2 == 0 ? size : -size) * shape[1][b / 2]};
+  const double rho[2] = {(a % 2 == 0 ? size : -size) * shape[0][a / 2],
+                         (b % 2 == 0 ? size : -size) * shape[1][b / 2]};
   arm *arms = own->arm[index];
   arms[0] = (arm){9, 1, 1.0};
   arms[1] = (arm){a / 2, 3, rho[0]};
@@ -31,8 +35,10 @@ static void connect(bodies *own, int a, int b, double size, double strength)
 
 static void set_inertia(const double *semiaxis, double size, double mass, double *J)
 {
-  const double square = semiaxis[0] * semiaxis[0] + semiaxis[1] * semiaxis[1] + semiaxis[2] * semiaxis[2];
-  for (int k = 0; k < 3; k++) J[4 * k] = mass * size * size * (square - semiaxis[k] * semiaxis[k]) / 3.0;
+  const double square = semiaxis[0] * semiaxis[0] + semiaxis[1] * semiaxis[1] +
+                        semiaxis[2] * semiaxis[2];
+  for (int k = 0; k < 3; k++)
+    J[4 * k] = mass * size * size * (square - semiaxis[k] * semiaxis[k]) / 3.0;
 }
 
 /* What the generators point to. */
@@ -90,8 +96,10 @@ static dvi_status make(const double *setting, problem *made)
   const double *mass = setting, size = setting[4];
   own->all = (pulls){.nq = 2 * STORED, .count = POINTS * POINTS, .pull = own->pull};
   for (int a = 0; a < POINTS; a++)
-    for (int b = 0; b < POINTS; b++) connect(own, a, b, size, mass[0] * mass[1] / (POINTS * POINTS));
-  for (int body = 0; body < 2; body++) set_inertia(shape[body], size, mass[body], own->inertia[body]);
+    for (int b = 0; b < POINTS; b++)
+      connect(own, a, b, size, mass[0] * mass[1] / (POINTS * POINTS));
+  for (int body = 0; body < 2; body++)
+    set_inertia(shape[body], size, mass[body], own->inertia[body]);
   place(made, mass[0], mass[1], setting[2], setting[3]);
 
   const dvi_factor factors[2] = {{.kind = DVI_SE3, .mass = mass[0], .inertia = own->inertia[0]},
@@ -108,8 +116,16 @@ static dvi_status make(const double *setting, problem *made)
 }
 
 static const problem_parameter parameters[] = {
-    {.name = "m1", .value = 1.0, .least = 1e-50, .most = 1e50, .help = "the mass of the first body, positive"},
-    {.name = "m2", .value = 0.5, .least = 1e-50, .most = 1e50, .help = "the mass of the second body, positive"},
+    {.name = "m1",
+     .value = 1.0,
+     .least = 1e-50,
+     .most = 1e50,
+     .help = "the mass of the first body, positive"},
+    {.name = "m2",
+     .value = 0.5,
+     .least = 1e-50,
+     .most = 1e50,
+     .help = "the mass of the second body, positive"},
     {.name = "distance",
      .value = 3.0,
      .least = 1e-6,
@@ -131,15 +147,17 @@ static const problem_parameter parameters[] = {
 };
 
 /* Quadruple-precision results, recomputed by tests/reference/test_digits. */
-static const double digits_q[] = {-0.95614185418400621, -0.09038087349213135, 0.27861093371289292,  0.29067510844018946,
-                                  -0.40991288502147583, 0.86456891456184937,  0.036065717944535287, 0.9076357884086379,
-                                  0.41820633614159358,  0.36427609326704291,  0.91312230075724699,  -0.0036771709857861177,
-                                  -0.49422251648001392, 0.86904386106007703,  0.022513812603729814, -0.85638598018208267,
-                                  -0.49115071164534158, 0.15929228291994585,  0.14948965566799566,  0.059445319446261087,
-                                  0.98697471945546611,  -0.72855218653408582, -1.826244601514494,   0.0073543419715722353};
-static const double digits_p[] = {-0.0036518234789504056, 0.055437291534725062,   0.074412195215666388,  -0.2230728179174773,
-                                  0.086620045030385617,   -0.0010201123270712328, 0.0054158920489912115, -0.0070880821804861268,
-                                  0.027931605767460128,   0.2230728179174773,     -0.086620045030385617, 0.0010201123270712328};
+static const double digits_q[] = {
+    -0.95614185418400621, -0.09038087349213135, 0.27861093371289292,  0.29067510844018946,
+    -0.40991288502147583, 0.86456891456184937,  0.036065717944535287, 0.9076357884086379,
+    0.41820633614159358,  0.36427609326704291,  0.91312230075724699,  -0.0036771709857861177,
+    -0.49422251648001392, 0.86904386106007703,  0.022513812603729814, -0.85638598018208267,
+    -0.49115071164534158, 0.15929228291994585,  0.14948965566799566,  0.059445319446261087,
+    0.98697471945546611,  -0.72855218653408582, -1.826244601514494,   0.0073543419715722353};
+static const double digits_p[] = {
+    -0.0036518234789504056, 0.055437291534725062,   0.074412195215666388,  -0.2230728179174773,
+    0.086620045030385617,   -0.0010201123270712328, 0.0054158920489912115, -0.0070880821804861268,
+    0.027931605767460128,   0.2230728179174773,     -0.086620045030385617, 0.0010201123270712328};
 
 const problem_entry problem_entry_two_body = {
     .name = "two-body",

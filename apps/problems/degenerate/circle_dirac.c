@@ -1,5 +1,5 @@
-/* A pendulum as a particle on a circle: H = |p|^2/2 + y in the plane, phi = (|q|^2 - 1)/2 and q.p, of second class: {phi_1, phi_2} = |q|^2.
- * Source: Dirac 1964. */
+/* A pendulum as a particle on a circle: H = |p|^2/2 + y in the plane, phi = (|q|^2 - 1)/2 and q.p,
+ * of second class: {phi_1, phi_2} = |q|^2. Source: Dirac 1964. */
 #include "entry.h"
 
 static int H(double t, const double *q, const double *p, double *value, void *user)
@@ -9,7 +9,8 @@ static int H(double t, const double *q, const double *p, double *value, void *us
   return 0;
 }
 
-static int H_gradient(double t, const double *q, const double *p, double *H_q, double *H_p, void *user)
+static int H_gradient(double t, const double *q, const double *p, double *H_q, double *H_p,
+                      void *user)
 {
   (void)t, (void)q, (void)user;
   H_q[0] = 0;
@@ -19,7 +20,8 @@ static int H_gradient(double t, const double *q, const double *p, double *H_q, d
   return 0;
 }
 
-static int H_hessian(double t, const double *q, const double *p, double *H_qq, double *H_qp, double *H_pp, void *user)
+static int H_hessian(double t, const double *q, const double *p, double *H_qq, double *H_qp,
+                     double *H_pp, void *user)
 {
   (void)t, (void)q, (void)p, (void)H_qq, (void)H_qp, (void)user;
   H_pp[0] = H_pp[1] = 1;
@@ -45,7 +47,8 @@ static int phi_gradient(const double *q, const double *p, double *phi_z, void *u
   return 0;
 }
 
-static int phi_hessian(const double *q, const double *p, const double *w, double *qq, double *qp, double *pp, void *user)
+static int phi_hessian(const double *q, const double *p, const double *w, double *qq, double *qp,
+                       double *pp, void *user)
 {
   (void)q, (void)p, (void)pp, (void)user;
   qq[0] = qq[1] = w[0];
@@ -68,8 +71,12 @@ static dvi_status make(const double *setting, problem *made)
   made->p[1] = -0.8 * setting[0];
 
   const dvi_pattern none = {none_start, NULL}, diagonal = {diagonal_start, diagonal_row};
-  const dvi_hamiltonian hamiltonian = {
-      .value = H, .gradient = H_gradient, .hessian = H_hessian, .qq = none, .qp = none, .pp = diagonal};
+  const dvi_hamiltonian hamiltonian = {.value = H,
+                                       .gradient = H_gradient,
+                                       .hessian = H_hessian,
+                                       .qq = none,
+                                       .qp = none,
+                                       .pp = diagonal};
   const dvi_constraint constraint = {.count = 2,
                                      .value = phi,
                                      .gradient = phi_gradient,
@@ -78,7 +85,8 @@ static dvi_status make(const double *setting, problem *made)
                                      .qq = diagonal,
                                      .qp = diagonal,
                                      .pp = none};
-  const dvi_system_terms terms = {.dimension = 2, .autonomous = 1, .hamiltonian = &hamiltonian, .constraint = &constraint};
+  const dvi_system_terms terms = {
+      .dimension = 2, .autonomous = 1, .hamiltonian = &hamiltonian, .constraint = &constraint};
   return problem_system(made, &terms);
 }
 

@@ -1,7 +1,10 @@
-/* Euler's elastica: a bent rod, or a car that is steered at unit speed with the least effort. q = (x, y, theta), and by Pontryagin's principle
- *     x' = cos theta, y' = sin theta, theta' = u with the least integral of u^2/2:     H = p_x cos theta + p_y sin theta + p_theta^2/2,
- * linear in two momenta: d2H/dp2 is singular, and there is no Lagrangian. p_x = -1 and p_y = 0 are the force at the rod's end, p_theta is its curvature.
- * Source: Jurdjevic 1997, Geometric Control Theory, ch. 7. */
+/* Euler's elastica: a bent rod, or a car that is steered at unit speed with the least effort. q =
+ * (x, y, theta), and by Pontryagin's principle
+ *     x' = cos theta, y' = sin theta, theta' = u with the least integral of u^2/2:
+ *     H = p_x cos theta + p_y sin theta + p_theta^2/2,
+ * linear in two momenta: d2H/dp2 is singular, and there is no Lagrangian. p_x = -1 and p_y = 0 are
+ * the force at the rod's end, p_theta is its curvature. Source: Jurdjevic 1997, Geometric Control
+ * Theory, ch. 7. */
 #include <math.h>
 
 #include "entry.h"
@@ -15,7 +18,8 @@ static int H(double t, const double *q, const double *p, double *value, void *us
   return 0;
 }
 
-static int H_gradient(double t, const double *q, const double *p, double *H_q, double *H_p, void *user)
+static int H_gradient(double t, const double *q, const double *p, double *H_q, double *H_p,
+                      void *user)
 {
   const double c = cos(q[THETA]), s = sin(q[THETA]);
   (void)t, (void)user;
@@ -27,7 +31,8 @@ static int H_gradient(double t, const double *q, const double *p, double *H_q, d
   return 0;
 }
 
-static int H_hessian(double t, const double *q, const double *p, double *H_qq, double *H_qp, double *H_pp, void *user)
+static int H_hessian(double t, const double *q, const double *p, double *H_qq, double *H_qp,
+                     double *H_pp, void *user)
 {
   const double c = cos(q[THETA]), s = sin(q[THETA]);
   (void)t, (void)user;
@@ -67,8 +72,8 @@ static int turn(const double *q, double *xi, void *user)
 
 enum { MEANS = 8 };
 
-/* sin and cos of the amplitude am(u, k) of Jacobi's functions, and E(am(u, k), k), by arithmetic and geometric means (Abramowitz and Stegun 1964, 16.4
- * and 17.6). */
+/* sin and cos of the amplitude am(u, k) of Jacobi's functions, and E(am(u, k), k), by arithmetic
+ * and geometric means (Abramowitz and Stegun 1964, 16.4 and 17.6). */
 static void jacobi(double u, double k, double *sn, double *cn, double *E)
 {
   double a[MEANS + 1] = {1}, c[MEANS + 1] = {k}, b = sqrt((1 - k) * (1 + k)), lost = k * k / 2;
@@ -88,7 +93,8 @@ static void jacobi(double u, double k, double *sn, double *cn, double *E)
   *cn = cos(phi);
 }
 
-/* theta'' = -sin theta is a pendulum's equation; x' = 1 - 2 sin^2(theta/2), and p_theta + y is kept. */
+/* theta'' = -sin theta is a pendulum's equation; x' = 1 - 2 sin^2(theta/2), and p_theta + y is
+ * kept. */
 static int exact(const problem *made, double t, double *q, double *p)
 {
   const double k = made->p[THETA] / 2;
@@ -124,10 +130,14 @@ static dvi_status make(const double *setting, problem *made)
                                        .qq = {theta_start, theta_row},
                                        .qp = {mixed_start, mixed_row},
                                        .pp = {theta_start, theta_row}};
-  const dvi_symmetry symmetries[] = {
-      {.name = "force_x", .generator = along_x}, {.name = "force_y", .generator = along_y}, {.name = "moment", .generator = turn}};
-  const dvi_system_terms terms = {
-      .dimension = 3, .autonomous = 1, .hamiltonian = &hamiltonian, .symmetries = symmetries, .symmetry_count = 3};
+  const dvi_symmetry symmetries[] = {{.name = "force_x", .generator = along_x},
+                                     {.name = "force_y", .generator = along_y},
+                                     {.name = "moment", .generator = turn}};
+  const dvi_system_terms terms = {.dimension = 3,
+                                  .autonomous = 1,
+                                  .hamiltonian = &hamiltonian,
+                                  .symmetries = symmetries,
+                                  .symmetry_count = 3};
   return problem_system(made, &terms);
 }
 
@@ -147,7 +157,8 @@ static const double digits_p[] = {-1, 0, -0.26986496545108658};
 
 const problem_entry problem_entry_elastica = {
     .name = "elastica",
-    .summary = "a bent rod, or a car steered with least effort: a degenerate Hamiltonian, exact solution known",
+    .summary = "a bent rod, or a car steered with least effort: a degenerate Hamiltonian, exact "
+               "solution known",
     .parameters = parameters,
     .make = make,
     .exact = exact,

@@ -1,5 +1,6 @@
-/* The guiding centre of a charged particle in the field 1 + r^2 along z: alpha = (-y s, x s, u, 0), s = (2 + r^2)/4, H = u^2/2 + mu (1 + r^2).
- * Exact: it turns about the axis at the rate 2 mu/(1 + r^2), and moves along it with the speed u.  Source: Kraus 2017, arXiv:1708.07356. */
+/* The guiding centre of a charged particle in the field 1 + r^2 along z: alpha = (-y s, x s, u, 0),
+ * s = (2 + r^2)/4, H = u^2/2 + mu (1 + r^2). Exact: it turns about the axis at the rate 2 mu/(1 +
+ * r^2), and moves along it with the speed u. Source: Kraus 2017, arXiv:1708.07356. */
 #include <math.h>
 
 #include "entry.h"
@@ -90,7 +91,8 @@ static int shift(const double *q, double *xi, void *user)
 
 static int exact(const problem *made, double t, double *q, double *p)
 {
-  const double x = made->q[0], y = made->q[1], u = made->q[3], angle = 2 * mu / (1 + x * x + y * y) * t;
+  const double x = made->q[0], y = made->q[1], u = made->q[3],
+               angle = 2 * mu / (1 + x * x + y * y) * t;
   q[0] = x * cos(angle) - y * sin(angle);
   q[1] = x * sin(angle) + y * cos(angle);
   q[2] = made->q[2] + u * t;
@@ -114,7 +116,11 @@ static dvi_status make(const double *setting, problem *made)
                              .hessian = hessian,
                              .gradients = {gradient_start, gradient_row},
                              .qq = {hessian_start, hessian_row}};
-  const dvi_potential hamiltonian = {.name = "H", .value = H, .gradient = H_gradient, .hessian = H_hessian, .qq = {H_start, H_row}};
+  const dvi_potential hamiltonian = {.name = "H",
+                                     .value = H,
+                                     .gradient = H_gradient,
+                                     .hessian = H_hessian,
+                                     .qq = {H_start, H_row}};
   const dvi_symmetry symmetries[] = {{.name = "angular_momentum", .generator = rotation},
                                      {.name = "axial_momentum", .generator = shift}};
   const dvi_system_terms terms = {.dimension = 4,
@@ -133,7 +139,8 @@ static const double digits_p[] = {-0.24024224905782676, 0.14623687724933521, 0.5
 
 const problem_entry problem_entry_guiding_centre = {
     .name = "guiding-centre",
-    .summary = "the guiding centre of a particle in an axial magnetic field; degenerate, exact solution known",
+    .summary = "the guiding centre of a particle in an axial magnetic field; degenerate, exact "
+               "solution known",
     .make = make,
     .exact = exact,
     .h = 0.5,

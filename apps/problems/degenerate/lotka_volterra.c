@@ -1,5 +1,6 @@
-/* Predators and their prey: H = a.q + b.ln q with the two-form of 1/(q1 q2). Three one-forms, which differ by the gradient of a function, give it:
- * alpha = ( c q2 + left ln q2 / q1,  c q1 + right ln q1 / q2 ).  Source: Kraus 2017, arXiv:1708.07356. */
+/* Predators and their prey: H = a.q + b.ln q with the two-form of 1/(q1 q2). Three one-forms, which
+ * differ by the gradient of a function, give it: alpha = ( c q2 + left ln q2 / q1, c q1 + right ln
+ * q1 / q2 ). Source: Kraus 2017, arXiv:1708.07356. */
 #include <math.h>
 
 #include "entry.h"
@@ -79,16 +80,31 @@ static dvi_status make(const double *setting, problem *made)
   made->q[1] = setting[2];
 
   const dvi_one_form form = {.value = value, .gradient = gradient, .hessian = hessian, .user = own};
-  const dvi_potential hamiltonian = {
-      .name = "H", .value = H, .gradient = H_gradient, .hessian = H_hessian, .qq = {diagonal_start, diagonal_row}};
-  const dvi_system_terms terms = {
-      .dimension = 2, .one_form = &form, .potentials = &hamiltonian, .potential_count = 1, .autonomous = 1};
+  const dvi_potential hamiltonian = {.name = "H",
+                                     .value = H,
+                                     .gradient = H_gradient,
+                                     .hessian = H_hessian,
+                                     .qq = {diagonal_start, diagonal_row}};
+  const dvi_system_terms terms = {.dimension = 2,
+                                  .one_form = &form,
+                                  .potentials = &hamiltonian,
+                                  .potential_count = 1,
+                                  .autonomous = 1};
   return problem_system(made, &terms);
 }
 
 static const problem_parameter parameters[] = {
-    {.name = "gauge", .choice = gauges, .most = 2, .whole = 1, .help = "the one-form: standard, singular or symmetric"},
-    {.name = "prey", .value = 1, .least = 1e-6, .most = 1e6, .start_only = 1, .help = "how many there are at the start, positive"},
+    {.name = "gauge",
+     .choice = gauges,
+     .most = 2,
+     .whole = 1,
+     .help = "the one-form: standard, singular or symmetric"},
+    {.name = "prey",
+     .value = 1,
+     .least = 1e-6,
+     .most = 1e6,
+     .start_only = 1,
+     .help = "how many there are at the start, positive"},
     {.name = "predators",
      .value = 1,
      .least = 1e-6,

@@ -1,5 +1,5 @@
-/* Four species: H = sum_i q_i + b_i ln q_i and alpha_i = sum_j C_ij ln q_j / (2 q_i) with an antisymmetric C.
- * Source: Kraus 2017, arXiv:1708.07356. */
+/* Four species: H = sum_i q_i + b_i ln q_i and alpha_i = sum_j C_ij ln q_j / (2 q_i) with an
+ * antisymmetric C. Source: Kraus 2017, arXiv:1708.07356. */
 #include <math.h>
 
 #include "entry.h"
@@ -35,7 +35,8 @@ static int gradient(const double *q, double *alpha_q, void *user)
   (void)user;
   if (outside(q)) return 1;
   for (int i = 0; i < N; i++)
-    for (int k = 0; k < N; k++) alpha_q[N * i + k] = k == i ? -sum(q, i) / (q[i] * q[i]) : 0.5 * C[i][k] / (q[i] * q[k]);
+    for (int k = 0; k < N; k++)
+      alpha_q[N * i + k] = k == i ? -sum(q, i) / (q[i] * q[i]) : 0.5 * C[i][k] / (q[i] * q[k]);
   return 0;
 }
 
@@ -46,7 +47,8 @@ static int hessian(const double *q, const double *w, double *alpha_w_qq, void *u
   for (int k = 0; k < N; k++)
     for (int l = 0; l < N; l++) {
       double s = k == l ? 2 * w[k] * sum(q, k) / (q[k] * q[k] * q[k]) : 0;
-      if (k != l) s -= 0.5 * (w[k] * C[k][l] / (q[l] * q[k] * q[k]) + w[l] * C[l][k] / (q[k] * q[l] * q[l]));
+      if (k != l)
+        s -= 0.5 * (w[k] * C[k][l] / (q[l] * q[k] * q[k]) + w[l] * C[l][k] / (q[k] * q[l] * q[l]));
       for (int i = 0; i < N && k == l; i++) s -= 0.5 * w[i] * C[i][k] / (q[k] * q[k] * q[i]);
       alpha_w_qq[N * l + k] = s;
     }
@@ -88,16 +90,24 @@ static dvi_status make(const double *setting, problem *made)
   for (int i = 0; i < N; i++) problem_label(made, i, "q_%d", i + 1);
 
   const dvi_one_form form = {.value = value, .gradient = gradient, .hessian = hessian};
-  const dvi_potential hamiltonian = {
-      .name = "H", .value = H, .gradient = H_gradient, .hessian = H_hessian, .qq = {diagonal_start, diagonal_row}};
-  const dvi_system_terms terms = {
-      .dimension = N, .one_form = &form, .potentials = &hamiltonian, .potential_count = 1, .autonomous = 1};
+  const dvi_potential hamiltonian = {.name = "H",
+                                     .value = H,
+                                     .gradient = H_gradient,
+                                     .hessian = H_hessian,
+                                     .qq = {diagonal_start, diagonal_row}};
+  const dvi_system_terms terms = {.dimension = N,
+                                  .one_form = &form,
+                                  .potentials = &hamiltonian,
+                                  .potential_count = 1,
+                                  .autonomous = 1};
   return problem_system(made, &terms);
 }
 
 /* Quadruple-precision results, recomputed by tests/reference/test_digits. */
-static const double digits_q[] = {1.3748735653782593, 1.3106942389097525, 2.302370934659371, 1.1653546483773685};
-static const double digits_p[] = {-0.14923445812393354, 0.13830540641690078, 0.04361379852203847, -0.37831584513867866};
+static const double digits_q[] = {1.3748735653782593, 1.3106942389097525, 2.302370934659371,
+                                  1.1653546483773685};
+static const double digits_p[] = {-0.14923445812393354, 0.13830540641690078, 0.04361379852203847,
+                                  -0.37831584513867866};
 
 const problem_entry problem_entry_lotka_volterra_4d = {
     .name = "lotka-volterra-4d",

@@ -1,7 +1,8 @@
-/* A mass on a spring and a charge without mass in the field S = 1 + y^2 + z^2, which meet in the vector potential y/2 of the first:
+/* A mass on a spring and a charge without mass in the field S = 1 + y^2 + z^2, which meet in the
+ * vector potential y/2 of the first:
  *     L = x'^2/2 + x' y/2 - z (1 + y^2 + z^2/3) y' - x^2/2 - cos y - sin z,
- * half degenerate. H = (p_x - y/2)^2/2 + x^2/2 + cos y + sin z, phi = p_y + z (1 + y^2 + z^2/3) and p_z, {phi_1, phi_2} = S. The charge is that of
- * Kraus 2017, arXiv:1708.07356. */
+ * half degenerate. H = (p_x - y/2)^2/2 + x^2/2 + cos y + sin z, phi = p_y + z (1 + y^2 + z^2/3) and
+ * p_z, {phi_1, phi_2} = S. The charge is that of Kraus 2017, arXiv:1708.07356. */
 #include <math.h>
 
 #include "entry.h"
@@ -16,7 +17,8 @@ static int H(double t, const double *q, const double *p, double *value, void *us
   return 0;
 }
 
-static int H_gradient(double t, const double *q, const double *p, double *H_q, double *H_p, void *user)
+static int H_gradient(double t, const double *q, const double *p, double *H_q, double *H_p,
+                      void *user)
 {
   const double u = p[X] - q[Y] / 2;
   (void)t, (void)user;
@@ -28,7 +30,8 @@ static int H_gradient(double t, const double *q, const double *p, double *H_q, d
   return 0;
 }
 
-static int H_hessian(double t, const double *q, const double *p, double *H_qq, double *H_qp, double *H_pp, void *user)
+static int H_hessian(double t, const double *q, const double *p, double *H_qq, double *H_qp,
+                     double *H_pp, void *user)
 {
   (void)t, (void)p, (void)user;
   H_qq[X] = 1;
@@ -57,7 +60,8 @@ static int phi_gradient(const double *q, const double *p, double *phi_z, void *u
   return 0;
 }
 
-static int phi_hessian(const double *q, const double *p, const double *w, double *qq, double *qp, double *pp, void *user)
+static int phi_hessian(const double *q, const double *p, const double *w, double *qq, double *qp,
+                       double *pp, void *user)
 {
   (void)p, (void)qp, (void)pp, (void)user;
   qq[0] = qq[3] = 2 * q[Z] * w[0];
@@ -99,7 +103,8 @@ static dvi_status make(const double *setting, problem *made)
                                      .qq = {curved_start, curved_row},
                                      .qp = {none, NULL},
                                      .pp = {none, NULL}};
-  const dvi_system_terms terms = {.dimension = 3, .autonomous = 1, .hamiltonian = &hamiltonian, .constraint = &constraint};
+  const dvi_system_terms terms = {
+      .dimension = 3, .autonomous = 1, .hamiltonian = &hamiltonian, .constraint = &constraint};
   return problem_system(made, &terms);
 }
 

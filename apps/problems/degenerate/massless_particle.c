@@ -1,5 +1,6 @@
-/* A charged particle without mass in a plane, in the magnetic field 1 + 2 r^2: alpha = (1 + r^2)/2 (-y, x), or with the gauge that leaves one component,
- * (-y (1 + 2 x^2 + 2 y^2/3), 0); H = cos x + sin y.  Source: Kraus 2017, arXiv:1708.07356. */
+/* A charged particle without mass in a plane, in the magnetic field 1 + 2 r^2: alpha = (1 + r^2)/2
+ * (-y, x), or with the gauge that leaves one component, (-y (1 + 2 x^2 + 2 y^2/3), 0); H = cos x +
+ * sin y. Source: Kraus 2017, arXiv:1708.07356. */
 #include <math.h>
 
 #include "entry.h"
@@ -77,15 +78,25 @@ static dvi_status make(const double *setting, problem *made)
   made->q[0] = made->q[1] = 1;
 
   const dvi_one_form form = {.value = value, .gradient = gradient, .hessian = hessian, .user = own};
-  const dvi_potential hamiltonian = {
-      .name = "H", .value = H, .gradient = H_gradient, .hessian = H_hessian, .qq = {diagonal_start, diagonal_row}};
-  const dvi_system_terms terms = {
-      .dimension = 2, .one_form = &form, .potentials = &hamiltonian, .potential_count = 1, .autonomous = 1};
+  const dvi_potential hamiltonian = {.name = "H",
+                                     .value = H,
+                                     .gradient = H_gradient,
+                                     .hessian = H_hessian,
+                                     .qq = {diagonal_start, diagonal_row}};
+  const dvi_system_terms terms = {.dimension = 2,
+                                  .one_form = &form,
+                                  .potentials = &hamiltonian,
+                                  .potential_count = 1,
+                                  .autonomous = 1};
   return problem_system(made, &terms);
 }
 
 static const problem_parameter parameters[] = {
-    {.name = "gauge", .choice = gauges, .most = 1, .whole = 1, .help = "the one-form: standard or singular"},
+    {.name = "gauge",
+     .choice = gauges,
+     .most = 1,
+     .whole = 1,
+     .help = "the one-form: standard or singular"},
     {.name = NULL},
 };
 

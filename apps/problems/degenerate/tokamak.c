@@ -1,9 +1,12 @@
-/* The guiding centre of a particle in a tokamak, in cylindrical coordinates (R, Z, phi) with the velocity u along the field:
+/* The guiding centre of a particle in a tokamak, in cylindrical coordinates (R, Z, phi) with the
+ * velocity u along the field:
  *
- *     alpha = A + u b,  A = ( Z/(2R), -ln(R)/2, r^2/4 ),  r^2 = (R-1)^2 + Z^2,     H = u^2/2 + mu |B|.
+ *     alpha = A + u b,  A = ( Z/(2R), -ln(R)/2, r^2/4 ),  r^2 = (R-1)^2 + Z^2,
+ *     H = u^2/2 + mu |B|.
  *
- * With N = r^2 + 4 the field's strength is |B| = sqrt(N)/(2R), its direction b = ( -Z, R-1, 2R )/sqrt(N) in covariant components.
- * Source: Qin, Guan and Tang 2009, Phys. Plasmas 16:042510; Kraus 2017, arXiv:1708.07356. */
+ * With N = r^2 + 4 the field's strength is |B| = sqrt(N)/(2R), its direction b = ( -Z, R-1, 2R
+ * )/sqrt(N) in covariant components. Source: Qin, Guan and Tang 2009, Phys. Plasmas 16:042510;
+ * Kraus 2017, arXiv:1708.07356. */
 #include <math.h>
 
 #include "entry.h"
@@ -17,7 +20,8 @@ typedef struct root {
 
 static root root_at(const double *q)
 {
-  const double x = q[R] - 1, z = q[Z], f = 1 / sqrt(x * x + z * z + 4), f3 = f * f * f, f5 = f3 * f * f;
+  const double x = q[R] - 1, z = q[Z], f = 1 / sqrt(x * x + z * z + 4), f3 = f * f * f,
+               f5 = f3 * f * f;
   return (root){f, -x * f3, -z * f3, 3 * x * x * f5 - f3, 3 * x * z * f5, 3 * z * z * f5 - f3};
 }
 
@@ -64,8 +68,10 @@ static int hessian(const double *q, const double *w, double *alpha_w_qq, void *u
   (void)user;
   if (!(q[R] > 0)) return 1;
   const root g = root_at(q);
-  const double b = -w[R] * z + w[Z] * x + 2 * w[PHI] * q[R], b_R = w[Z] + 2 * w[PHI], b_Z = -w[R]; /* b(q).w = b f */
-  alpha_w_qq[0] = w[R] * z / (rr * q[R]) + w[Z] * 0.5 / rr + 0.5 * w[PHI] + u * (2 * b_R * g.f_R + b * g.f_RR);
+  /* b(q).w = b f */
+  const double b = -w[R] * z + w[Z] * x + 2 * w[PHI] * q[R], b_R = w[Z] + 2 * w[PHI], b_Z = -w[R];
+  alpha_w_qq[0] = w[R] * z / (rr * q[R]) + w[Z] * 0.5 / rr + 0.5 * w[PHI] +
+                  u * (2 * b_R * g.f_R + b * g.f_RR);
   alpha_w_qq[1] = alpha_w_qq[3] = -0.5 * w[R] / rr + u * (b_R * g.f_Z + b_Z * g.f_R + b * g.f_RZ);
   alpha_w_qq[2] = alpha_w_qq[6] = b_R * g.f + b * g.f_R;
   alpha_w_qq[4] = 0.5 * w[PHI] + u * (2 * b_Z * g.f_Z + b * g.f_ZZ);
@@ -137,7 +143,11 @@ static dvi_status make(const double *setting, problem *made)
                              .hessian = hessian,
                              .gradients = {gradient_start, gradient_row},
                              .qq = {hessian_start, hessian_row}};
-  const dvi_potential hamiltonian = {.name = "H", .value = H, .gradient = H_gradient, .hessian = H_hessian, .qq = {H_start, H_row}};
+  const dvi_potential hamiltonian = {.name = "H",
+                                     .value = H,
+                                     .gradient = H_gradient,
+                                     .hessian = H_hessian,
+                                     .qq = {H_start, H_row}};
   const dvi_symmetry symmetry = {.name = "toroidal_momentum", .generator = around};
   const dvi_system_terms terms = {.dimension = 4,
                                   .one_form = &form,
@@ -150,8 +160,10 @@ static dvi_status make(const double *setting, problem *made)
 }
 
 /* Quadruple-precision results, recomputed by tests/reference/test_digits. */
-static const double digits_q[] = {1.0601217266130805, 0.051963151457281823, 0.85390508788519182, -0.00047362945138384435};
-static const double digits_p[] = {0.024520402012874389, -0.029206095464070679, 0.0010769887755705046, 0};
+static const double digits_q[] = {1.0601217266130805, 0.051963151457281823, 0.85390508788519182,
+                                  -0.00047362945138384435};
+static const double digits_p[] = {0.024520402012874389, -0.029206095464070679,
+                                  0.0010769887755705046, 0};
 
 const problem_entry problem_entry_tokamak = {
     .name = "tokamak",

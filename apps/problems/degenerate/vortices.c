@@ -1,5 +1,6 @@
-/* Two point vortices in a plane: alpha = gamma S/2 (-y, x) for each. vortices-linear has S = 1 and H = gamma_1 gamma_2 ln d^2/(4 pi), in which they
- * turn about their centre; vortices has S = 1 + r^2 and H = gamma_1 gamma_2 S_1 S_2 ln d^2/(2 pi).  Source: Kraus 2017, arXiv:1708.07356. */
+/* Two point vortices in a plane: alpha = gamma S/2 (-y, x) for each. vortices-linear has S = 1 and
+ * H = gamma_1 gamma_2 ln d^2/(4 pi), in which they turn about their centre; vortices has S = 1 +
+ * r^2 and H = gamma_1 gamma_2 S_1 S_2 ln d^2/(2 pi). Source: Kraus 2017, arXiv:1708.07356. */
 #include <math.h>
 
 #include "entry.h"
@@ -34,7 +35,8 @@ static int gradient(const double *q, double *alpha_q, void *user)
 {
   const pair *own = user;
   for (int k = 0; k < 2; k++) {
-    const double *x = q + 2 * k, half = 0.5 * own->gamma[k], S = weight(own, x), twice = 2 * own->kappa;
+    const double *x = q + 2 * k, half = 0.5 * own->gamma[k], S = weight(own, x),
+                 twice = 2 * own->kappa;
     double *out = alpha_q + 4 * k;
     out[0] = -half * twice * x[0] * x[1];
     out[1] = -half * (S + twice * x[1] * x[1]);
@@ -57,7 +59,8 @@ static int hessian(const double *q, const double *w, double *alpha_w_qq, void *u
   return 0;
 }
 
-/* What H and its derivatives are made of: d = x_1 - x_2, weights, and their gradients in the four coordinates. */
+/* What H and its derivatives are made of: d = x_1 - x_2, weights, and their gradients in the four
+ * coordinates. */
 typedef struct parts {
   double S[2], l, d2, l_q[4], S_q[2][4];
 } parts;
@@ -92,7 +95,8 @@ static int H_gradient(double t, const double *q, double *H_q, void *user)
   const parts p = part(own, q);
   (void)t;
   for (int i = 0; i < 4; i++)
-    H_q[i] = own->factor * ((p.S_q[0][i] * p.S[1] + p.S[0] * p.S_q[1][i]) * p.l + p.S[0] * p.S[1] * p.l_q[i]);
+    H_q[i] = own->factor *
+             ((p.S_q[0][i] * p.S[1] + p.S[0] * p.S_q[1][i]) * p.l + p.S[0] * p.S[1] * p.l_q[i]);
   return 0;
 }
 
@@ -110,11 +114,12 @@ static int H_hessian(double t, const double *q, double *H_qq, void *user)
   (void)t;
   for (int j = 0; j < 4; j++)
     for (int i = 0; i < 4; i++) {
-      const double both_i = p.S_q[0][i] * p.S[1] + p.S[0] * p.S_q[1][i], both_j = p.S_q[0][j] * p.S[1] + p.S[0] * p.S_q[1][j];
+      const double both_i = p.S_q[0][i] * p.S[1] + p.S[0] * p.S_q[1][i],
+                   both_j = p.S_q[0][j] * p.S[1] + p.S[0] * p.S_q[1][j];
       double mixed = p.S_q[0][i] * p.S_q[1][j] + p.S_q[1][i] * p.S_q[0][j];
       if (i == j) mixed += 2 * own->kappa * p.S[1 - i / 2];
-      H_qq[4 * j + i] = own->factor *
-                        (mixed * p.l + both_i * p.l_q[j] + both_j * p.l_q[i] + p.S[0] * p.S[1] * log_hessian(&p, i, j));
+      H_qq[4 * j + i] = own->factor * (mixed * p.l + both_i * p.l_q[j] + both_j * p.l_q[i] +
+                                       p.S[0] * p.S[1] * log_hessian(&p, i, j));
     }
   return 0;
 }
@@ -154,8 +159,11 @@ static dvi_status make(pair own, const double *start, problem *made)
                              .gradients = {block_start, block_row},
                              .qq = {block_start, block_row},
                              .user = made->parameters};
-  const dvi_potential hamiltonian = {
-      .name = "H", .value = H, .gradient = H_gradient, .hessian = H_hessian, .user = made->parameters};
+  const dvi_potential hamiltonian = {.name = "H",
+                                     .value = H,
+                                     .gradient = H_gradient,
+                                     .hessian = H_hessian,
+                                     .user = made->parameters};
   const dvi_symmetry symmetry = {.name = "angular_momentum", .generator = rotation};
   const dvi_system_terms terms = {.dimension = 4,
                                   .one_form = &form,
@@ -182,8 +190,10 @@ static dvi_status make_weighted(const double *setting, problem *made)
 }
 
 /* Quadruple-precision results, recomputed by tests/reference/test_digits. */
-static const double digits_q_linear[] = {0.1925553923748704, 0.27209103619647379, -0.38511078474974081, -0.54418207239294758};
-static const double digits_p_linear[] = {-0.54418207239294758, 0.38511078474974081, 0.54418207239294758, -0.38511078474974081};
+static const double digits_q_linear[] = {0.1925553923748704, 0.27209103619647379,
+                                         -0.38511078474974081, -0.54418207239294758};
+static const double digits_p_linear[] = {-0.54418207239294758, 0.38511078474974081,
+                                         0.54418207239294758, -0.38511078474974081};
 
 const problem_entry problem_entry_vortices_linear = {
     .name = "vortices-linear",
@@ -198,8 +208,10 @@ const problem_entry problem_entry_vortices_linear = {
     .digits_p = digits_p_linear,
 };
 
-static const double digits_q[] = {0.34162219556328388, -0.3045647215322177, 0.51449169766719338, -0.20658184215249473};
-static const double digits_p[] = {0.092090122739494767, 0.10329505584786046, 0.067520126743644382, 0.16815875138434647};
+static const double digits_q[] = {0.34162219556328388, -0.3045647215322177, 0.51449169766719338,
+                                  -0.20658184215249473};
+static const double digits_p[] = {0.092090122739494767, 0.10329505584786046, 0.067520126743644382,
+                                  0.16815875138434647};
 
 const problem_entry problem_entry_vortices = {
     .name = "vortices",

@@ -6,12 +6,13 @@
 /** Highest degree of a trial space. */
 #define DVI_DEGREE_MAX 40
 
-/** The bases. A nodal basis is Lagrange's on the named nodes; a modal one holds orthogonal polynomials. */
+/** The bases. A nodal basis is Lagrange's on the named nodes. A modal basis holds orthogonal
+ *  polynomials. */
 typedef enum dvi_basis {
   DVI_LAGRANGE_LOBATTO,    /**< nodal, both ends are nodes */
   DVI_LAGRANGE_GAUSS,      /**< nodal, no end is a node */
   DVI_LAGRANGE_CHEBYSHEV,  /**< nodal, Chebyshev points of the second kind, both ends are nodes */
-  DVI_LAGRANGE_EQUISPACED, /**< nodal; its Lebesgue constant grows like 2^degree */
+  DVI_LAGRANGE_EQUISPACED, /**< nodal, with a Lebesgue constant that grows like 2^degree */
   DVI_LEGENDRE,            /**< modal, P_k(2 tau - 1) */
   DVI_CHEBYSHEV            /**< modal, T_k(2 tau - 1) */
 } dvi_basis;
@@ -20,21 +21,23 @@ typedef enum dvi_basis {
 extern "C" {
 #endif
 
-/** Values and derivatives of all trial functions of a degree at one point.
+/** Evaluate all trial functions of a degree, and their derivatives, at one point.
  *
  *  @param      basis       the basis
- *  @param      degree      1 to DVI_DEGREE_MAX; there are degree+1 functions
- *  @param      tau         reference time; [0,1] is the step, values outside extrapolate
- *  @param[out] value       [degree+1], phi_k(tau); NULL if not wanted
- *  @param[out] derivative  [degree+1], phi_k'(tau); NULL if not wanted
+ *  @param      degree      1 to DVI_DEGREE_MAX. There are degree+1 functions
+ *  @param      tau         reference time. The step is [0,1], values outside extrapolate
+ *  @param[out] value       [degree+1], phi_k(tau). NULL if not wanted
+ *  @param[out] derivative  [degree+1], phi_k'(tau). NULL if not wanted
  *  @retval DVI_OK            values right to a few ulp of the largest of them
- *  @retval DVI_BAD_SIZE      the degree is out of range; nothing is written
- *  @retval DVI_BAD_ARGUMENT  unknown basis, or tau not finite; nothing is written
+ *  @retval DVI_BAD_SIZE      the degree is out of range. Nothing is written
+ *  @retval DVI_BAD_ARGUMENT  unknown basis, or tau not finite. Nothing is written
  *
- *  Nodal bases by the barycentric form (Berrut and Trefethen 2004), modal ones by their three-term recurrence. */
-dvi_status dvi_basis_evaluate(dvi_basis basis, int degree, double tau, double *value, double *derivative);
+ *  Nodal bases are evaluated by the barycentric form (Berrut and Trefethen 2004), modal bases by
+ *  their three-term recurrence. */
+dvi_status dvi_basis_evaluate(dvi_basis basis, int degree, double tau, double *value,
+                              double *derivative);
 
-/** The nodes of a nodal basis.
+/** Write the nodes of a nodal basis.
  *
  *  @param[out] node  [degree+1], ascending, in [0,1]
  *  @retval DVI_OK            node is filled
@@ -42,7 +45,8 @@ dvi_status dvi_basis_evaluate(dvi_basis basis, int degree, double tau, double *v
  *  @retval DVI_BAD_ARGUMENT  the basis is modal, or unknown, or node is NULL */
 dvi_status dvi_basis_nodes(dvi_basis basis, int degree, double *node);
 
-/** The basis' name as method specifications spell it ("lobatto", "legendre", ...); NULL if out of range. */
+/** Return the basis' name as method specifications spell it ("lobatto", "legendre", ...). NULL if
+ *  the basis is out of range. */
 const char *dvi_basis_name(dvi_basis basis);
 
 #ifdef __cplusplus

@@ -1,37 +1,52 @@
-/** Independent integrators by SUNDIALS: IDA judges the methods, CVODE and ARKODE are run beside them. */
+/** Independent integrators by SUNDIALS. IDA gives reference solutions for the methods, CVODE and
+ *  ARKODE are run beside the methods. */
 #ifndef DVI_REFERENCE_H
 #define DVI_REFERENCE_H
 #include <dvi/system.h>
 
 /** The codes.
  *
- *  With factors they integrate quaternions for rotations, and directions and angles as vectors of any length, whose length has no part in the equations, with
- *  the momenta: rotations and unit vectors are found on the manifold to rounding. IDA's Jacobian is differenced then, and dense: up to 2000 unknowns. */
+ *  With factors the codes integrate quaternions for rotations, and vectors of any length for
+ *  directions and angles, together with the momenta. The length has no part in the equations, so
+ *  rotations and unit vectors lie on the manifold to rounding. IDA's Jacobian is then differenced
+ *  and dense, which limits it to 2000 unknowns. */
 typedef enum dvi_reference_code {
-  DVI_IDA, /**< variable-order BDF on the implicit Euler-Lagrange equations: qdot = v, pdot = L_q, 0 = p - L_v (index 1); with a one-form on
-                        Omega(q) qdot = H_q; with a Hamiltonian on its equations, the multiplier of constraints eliminated; with factors as above */
-  DVI_CVODE_ADAMS, /**< on qdot = v(q,p), pdot = L_q; with a one-form on qdot = v(q) alone */
+  /** IDA, variable-order BDF on implicit equations of index 1:
+   *   - a Lagrangian: qdot = v, pdot = L_q, 0 = p - L_v,
+   *   - a one-form: Omega(q) qdot = H_q,
+   *   - a Hamiltonian: its equations of motion, the multiplier of constraints eliminated,
+   *   - factors: as above */
+  DVI_IDA,
+  /** CVODE's Adams methods on qdot = v(q,p), pdot = L_q. With a one-form on qdot = v(q) alone */
+  DVI_CVODE_ADAMS,
   DVI_CVODE_BDF,
   DVI_ARKODE, /**< explicit Runge-Kutta, order 8 (Fehlberg 13-7-8) */
-  DVI_IDA_INDEX_2 /**< for one-forms: IDA on qdot = v, pdot = L_q, 0 = p - alpha(q), of index 2, without v in the error test; for constraints
-                        on qdot = H_p + phi_p^T lambda, pdot = -H_q - phi_q^T lambda, 0 = phi, without lambda in it */
+  /** IDA on equations of index 2:
+   *   - a one-form: qdot = v, pdot = L_q, 0 = p - alpha(q), without v in the error test,
+   *   - constraints: qdot = H_p + phi_p^T lambda, pdot = -H_q - phi_q^T lambda, 0 = phi, without
+   *     lambda in the error test */
+  DVI_IDA_INDEX_2
 } dvi_reference_code;
 
-/** Options; zero means default. */
+/** Options. Zero means default. */
 typedef struct dvi_reference_options {
   dvi_reference_code code;
-  double
-      relative_tolerance; /**< 0: 1e-12, or 1e-9 for a general Lagrangian without a gradient, whose differences are noise below 1e-11; 1e-9 at index 2 */
-  double absolute_tolerance; /**< in units of q and p alike; 0: the relative one */
-  long max_steps;            /**< 0: 50 million */
-  double max_seconds;        /**< of process time, looked at in every evaluation; 0: any number */
+  /** Relative tolerance. Default 1e-12, at index 2 1e-9, and 1e-9 for a general Lagrangian without
+   *  a gradient, whose differences are noise below 1e-11 */
+  double relative_tolerance;
+  double absolute_tolerance; /**< in units of q and p alike (default: the relative one) */
+  long max_steps;            /**< largest number of steps (default 50 million) */
+  /** largest process time in seconds, tested in every evaluation (default: no limit) */
+  double max_seconds;
 } dvi_reference_options;
 
-/** What a reference run did. */
+/** Results of a reference run. With dvi_reference_judge these are those of the tighter run. */
 typedef struct dvi_reference_report {
-  double error; /**< dvi_reference_judge: max-norm of the difference of q between the two runs; dvi_reference_solve: NaN */
-  double relative_tolerance; /**< of the (tighter) run */
-  long steps;                /**< of the (tighter) run */
+  /** max-norm of the difference of q between the two runs of dvi_reference_judge. NaN from
+   *  dvi_reference_solve */
+  double error;
+  double relative_tolerance; /**< relative tolerance of the run */
+  long steps;                /**< steps of the run */
   long evaluations;          /**< points at which gradients were evaluated */
   double cpu_seconds;        /**< process time */
 } dvi_reference_report;
@@ -42,24 +57,31 @@ extern "C" {
 
 /** Integrate from (t, q, p) to t_end with one code at one tolerance.
  *
- *  @param[in,out] q, p    [nq], [nv]: initial state, then the state at t_end; unchanged on failure. With a one-form p must be alpha(q), with constraints phi(q,p) 0
- *  @param         options NULL: IDA at its defaults
- *  @param[out]    report  may be NULL
- *  @retval DVI_REFERENCE_FAILED  the code stopped early; the error sentence has its reason and time
- *  @retval DVI_UNSUPPORTED       DVI_IDA_INDEX_2 for a system without a one-form or constraints; DVI_IDA for factors with too many unknowns
- *  @retval DVI_BAD_ARGUMENT      with factors: q is not on their manifold, or p not tangent to it, up to rounding */
-dvi_status dvi_reference_solve(const dvi_system *system, double t, double t_end, double *q, double *p,
-                               const dvi_reference_options *options, dvi_reference_report *report);
+ *  @param[in,out] q, p     [nq], [nv] the initial state, then the state at t_end. Unchanged on
+ *                          failure. A one-form requires p = alpha(q), constraints phi(q,p) = 0
+ *  @param         options  NULL for IDA at its defaults
+ *  @param[out]    report   may be NULL
+ *  @retval DVI_REFERENCE_FAILED  the code stopped early. The error sentence has its reason and time
+ *  @retval DVI_UNSUPPORTED       DVI_IDA_INDEX_2 for a system without a one-form or constraints, or
+ *                                DVI_IDA for factors with too many unknowns
+ *  @retval DVI_BAD_ARGUMENT      q is not on the manifold of its factors, or p is not tangent to
+ *                                it, up to rounding */
+dvi_status dvi_reference_solve(const dvi_system *system, double t, double t_end, double *q,
+                               double *p, const dvi_reference_options *options,
+                               dvi_reference_report *report);
 
-/** The same, run twice, at the tolerance and at a tenth of it: gives the second result and its distance from the first, which is
- *  taken as the judge's own error. */
-dvi_status dvi_reference_judge(const dvi_system *system, double t, double t_end, double *q, double *p,
-                               const dvi_reference_options *options, dvi_reference_report *report);
+/** Integrate twice, at the tolerance and at a tenth of it. The result is that of the second run.
+ *  Its distance from the first result estimates the error of the reference solution. Arguments and
+ *  statuses are those of dvi_reference_solve. */
+dvi_status dvi_reference_judge(const dvi_system *system, double t, double t_end, double *q,
+                               double *p, const dvi_reference_options *options,
+                               dvi_reference_report *report);
 
-/** Name of a code ("ida", "cvode-adams", "cvode-bdf", "arkode"); NULL if out of range. */
+/** Return the name of a code ("ida", "cvode-adams", "cvode-bdf", "arkode"). NULL if the code is out
+ *  of range. */
 const char *dvi_reference_name(dvi_reference_code code);
 
-/** The SUNDIALS version that is linked, for example "6.4.1". */
+/** Return the version of the linked SUNDIALS, for example "6.4.1". */
 const char *dvi_reference_version(void);
 
 #ifdef __cplusplus

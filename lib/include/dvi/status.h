@@ -2,10 +2,10 @@
 #ifndef DVI_STATUS_H
 #define DVI_STATUS_H
 
-/** Every status: name, number, meaning.
+/** Every status with its name, number and meaning.
  *
- *  0 is success; a positive status says that this step failed and another one may succeed, for most a smaller one; a negative one
- *  says that the call cannot succeed as it stands. */
+ *  0 is success. A positive status says that this step failed and another one may succeed, in most
+ *  cases a smaller one. A negative status says that the call cannot succeed as it stands. */
 #define DVI_STATUS_LIST(X)                                                               \
   X(DVI_OK, 0, "success")                                                                \
   X(DVI_NOT_CONVERGED, 1, "the step's equations could not be solved")                    \
@@ -26,7 +26,7 @@
   X(DVI_REFERENCE_FAILED, -11, "a reference integrator stopped before the end")          \
   X(DVI_SOLVER_FAILED, -12, "a solver library failed in a way that no smaller step mends")
 
-/** What a fallible function returns. */
+/** The result of a function that can fail. */
 typedef enum dvi_status {
 #define DVI_STATUS_ENUM(name, number, meaning) name = number,
   DVI_STATUS_LIST(DVI_STATUS_ENUM)
@@ -37,15 +37,16 @@ typedef enum dvi_status {
 extern "C" {
 #endif
 
-/** The status as its own identifier, for example "DVI_NOT_CONVERGED"; never NULL. */
+/** Return the status as its own identifier, for example "DVI_NOT_CONVERGED". Never NULL. */
 const char *dvi_status_name(dvi_status status);
 
-/** One sentence on what the status means; never NULL. */
+/** Return the meaning of a status in one sentence. Never NULL. */
 const char *dvi_status_meaning(dvi_status status);
 
-/** The last failure on this thread, in one sentence: what failed, where, what to try.
+/** Describe the last failure on this thread in one sentence, with its place and a remedy.
  *
- *  @return a string owned by the library, valid until the next failure on this thread; "" if nothing failed yet. */
+ *  @return a string owned by the library, valid until the next failure on this thread. "" if
+ *          nothing failed yet. */
 const char *dvi_last_error(void);
 
 #ifdef __cplusplus

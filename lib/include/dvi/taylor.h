@@ -1,9 +1,12 @@
-/** The arithmetic of truncated power series, with which the `taylor` callbacks of a system (dvi/system.h) are written.
+/** The arithmetic of truncated power series, for writing the `taylor` callbacks of a system
+ *  (dvi/system.h).
  *
- *  A series of degree d is an array of d+1 coefficients: a(s) = a[0] + a[1] s + ... + a[d] s^d. Coefficients, not derivatives: a[k] is the
- *  k-th derivative over k!. Every function here computes the first d+1 coefficients of its result exactly, up to rounding, in at most
- *  d^2 multiplications or twice as many; the result may not be one of the arguments. Where a function has no series (a division by a series that
- *  begins with 0, the root of one that begins below 0) the result is not finite, which the library finds and names.
+ *  A series of degree d is an array of d+1 coefficients, a(s) = a[0] + a[1] s + ... + a[d] s^d.
+ *  These are coefficients, not derivatives. a[k] is the k-th derivative over k!. Every function
+ *  here computes the first d+1 coefficients of its result exactly, up to rounding, in at most 2 d^2
+ *  multiplications. The result may not be one of the arguments. Where a function has no series (a
+ *  division by a series that begins with 0, the root of one that begins below 0) the result is not
+ *  finite, which the library finds and names.
  *
  *  A potential V = -1/|q| in the plane, for example (without its Hessian):
  *
@@ -23,34 +26,38 @@
 #define DVI_TAYLOR_H
 #include <math.h>
 
-/** The highest degree that the library asks a `taylor` callback for: arrays of one more number hold every series. */
+/** The highest degree that the library asks a `taylor` callback for. Arrays of one more number hold
+ *  every series. */
 #define DVI_TAYLOR_MAX 40
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/** The series of component i of n: x[k] = q[k*n + i]. */
+/** Extract the series of component i of n, x[k] = q[k*n + i]. */
 static inline void dvi_taylor_get(int degree, int n, const double *q, int i, double *x)
 {
   x[0] = q[i];
   for (int k = 1; k <= degree; k++) x[k] = q[k * n + i];
 }
 
-/** The other way, times a factor: q[k*n + i] = factor x[k]. Nothing happens if q is NULL: a callback need not ask what is wanted. */
-static inline void dvi_taylor_put(int degree, int n, const double *x, double factor, int i, double *q)
+/** Store a series, times a factor, as component i of n, q[k*n + i] = factor x[k]. Nothing happens
+ *  if q is NULL, so a callback need not test which results are wanted. */
+static inline void dvi_taylor_put(int degree, int n, const double *x, double factor, int i,
+                                  double *q)
 {
   for (int k = 0; q && k <= degree; k++) q[k * n + i] = factor * x[k];
 }
 
-/** c = alpha a + beta b. */
-static inline void dvi_taylor_combine(int degree, double alpha, const double *a, double beta, const double *b, double *c)
+/** Compute c = alpha a + beta b. */
+static inline void dvi_taylor_combine(int degree, double alpha, const double *a, double beta,
+                                      const double *b, double *c)
 {
   c[0] = alpha * a[0] + beta * b[0];
   for (int k = 1; k <= degree; k++) c[k] = alpha * a[k] + beta * b[k];
 }
 
-/** Coefficient k of a b. */
+/** Return coefficient k of a b. */
 static inline double dvi_taylor_product(int k, const double *a, const double *b)
 {
   double sum = 0;
@@ -58,20 +65,20 @@ static inline double dvi_taylor_product(int k, const double *a, const double *b)
   return sum;
 }
 
-/** c = a b. */
+/** Compute c = a b. */
 static inline void dvi_taylor_multiply(int degree, const double *a, const double *b, double *c)
 {
   c[0] = a[0] * b[0];
   for (int k = 1; k <= degree; k++) c[k] = dvi_taylor_product(k, a, b);
 }
 
-/** c = c + a b. */
+/** Compute c = c + a b. */
 static inline void dvi_taylor_add_product(int degree, const double *a, const double *b, double *c)
 {
   for (int k = 0; k <= degree; k++) c[k] += dvi_taylor_product(k, a, b);
 }
 
-/** c = a / b; b[0] may not be 0. */
+/** Compute c = a / b. b[0] may not be 0. */
 static inline void dvi_taylor_divide(int degree, const double *a, const double *b, double *c)
 {
   c[0] = a[0] / b[0];
@@ -82,7 +89,7 @@ static inline void dvi_taylor_divide(int degree, const double *a, const double *
   }
 }
 
-/** c = sqrt(a); a[0] > 0. From c c = a. */
+/** Compute c = sqrt(a) from c c = a. Requires a[0] > 0. */
 static inline void dvi_taylor_square_root(int degree, const double *a, double *c)
 {
   c[0] = sqrt(a[0]);
@@ -93,7 +100,8 @@ static inline void dvi_taylor_square_root(int degree, const double *a, double *c
   }
 }
 
-/** c = a^r for any real r; a[0] is not 0, and positive unless r is whole. From a c' = r a' c. */
+/** Compute c = a^r for any real r from a c' = r a' c. a[0] is not 0, and positive unless r is
+ *  whole. */
 static inline void dvi_taylor_power(int degree, const double *a, double r, double *c)
 {
   c[0] = pow(a[0], r);
@@ -104,7 +112,7 @@ static inline void dvi_taylor_power(int degree, const double *a, double r, doubl
   }
 }
 
-/** c = exp(a). From c' = a' c. */
+/** Compute c = exp(a) from c' = a' c. */
 static inline void dvi_taylor_exp(int degree, const double *a, double *c)
 {
   c[0] = exp(a[0]);
@@ -115,7 +123,7 @@ static inline void dvi_taylor_exp(int degree, const double *a, double *c)
   }
 }
 
-/** c = log(a); a[0] > 0. From a c' = a'. */
+/** Compute c = log(a) from a c' = a'. Requires a[0] > 0. */
 static inline void dvi_taylor_log(int degree, const double *a, double *c)
 {
   c[0] = log(a[0]);
@@ -126,7 +134,7 @@ static inline void dvi_taylor_log(int degree, const double *a, double *c)
   }
 }
 
-/** Both sin(a) and cos(a). From sine' = a' cosine, cosine' = -a' sine. */
+/** Compute sin(a) and cos(a) from sine' = a' cosine, cosine' = -a' sine. */
 static inline void dvi_taylor_sin_cos(int degree, const double *a, double *sine, double *cosine)
 {
   sine[0] = sin(a[0]);
@@ -142,7 +150,7 @@ static inline void dvi_taylor_sin_cos(int degree, const double *a, double *sine,
   }
 }
 
-/** Both sinh(a) and cosh(a). */
+/** Compute sinh(a) and cosh(a) from sine' = a' cosine, cosine' = a' sine. */
 static inline void dvi_taylor_sinh_cosh(int degree, const double *a, double *sine, double *cosine)
 {
   sine[0] = sinh(a[0]);
@@ -158,9 +166,13 @@ static inline void dvi_taylor_sinh_cosh(int degree, const double *a, double *sin
   }
 }
 
-/** The integral c of a/b that begins with c0, that is b c' = a; with it come atan, asin and all that have a simple slope:
- *  atan(x) is that of x' and 1 + x^2. a is of degree - 1, b[0] is not 0. */
-static inline void dvi_taylor_integrate_quotient(int degree, const double *a, const double *b, double c0, double *c)
+/** Compute the integral c of a/b that begins with c0, from b c' = a. a is of degree - 1, b[0] is
+ *  not 0.
+ *
+ *  The function gives atan, asin and others with a simple derivative. atan(x) is the integral for
+ *  a = x' and b = 1 + x^2. */
+static inline void dvi_taylor_integrate_quotient(int degree, const double *a, const double *b,
+                                                 double c0, double *c)
 {
   c[0] = c0;
   for (int k = 1; k <= degree; k++) {
@@ -170,7 +182,7 @@ static inline void dvi_taylor_integrate_quotient(int degree, const double *a, co
   }
 }
 
-/** The slope: c[k] = (k+1) a[k+1], of degree - 1, where `degree` is that of a. */
+/** Compute the derivative c[k] = (k+1) a[k+1], of degree - 1, where `degree` is that of a. */
 static inline void dvi_taylor_differentiate(int degree, const double *a, double *c)
 {
   for (int k = 0; k < degree; k++) c[k] = (k + 1) * a[k + 1];

@@ -10,7 +10,7 @@
 extern "C" {
 #endif
 
-/** The version of the library that is linked, "major.minor.patch". */
+/** Return the version of the linked library, "major.minor.patch". */
 const char *dvi_version(void);
 
 #ifdef __cplusplus

@@ -1,5 +1,5 @@
-/* What a path does to the energy: steps that follow a motion keep it. A solution of the discrete
- * equations that follows none, because its steps are too long, changes it by a large part of the
+/* The energy along a path. Steps that follow a motion keep the energy. Solutions of the discrete
+ * equations with too long steps follow no motion. They change the energy by a large part of the
  * kinetic energy, from node to node or over the whole path. */
 #include <math.h>
 
@@ -7,31 +7,32 @@
 #include "boundary/path_struct.h"
 #include "system/evaluate/evaluator.h"
 
-/* A path that changes the energy by more than this part of the kinetic energy is not resolved. That
- * refused 266 of 295 random paths with a step that misses the motion by 0.3 of itself or more, and
- * 2 of 2651 whose steps follow the motion to 0.03 (docs/paths.md). */
+/* A path that changes the energy by more than this part of the kinetic energy is not resolved. This
+ * limit refused 266 of 295 random paths with a step that misses the motion by 0.3 of itself or
+ * more, and 2 of 2651 whose steps follow the motion to 0.03 (docs/paths.md). */
 static const double resolved_below = 0.1;
 
-/* More steps are advised, so many that a tenth of that is left, by the order; at least twice as
- * many, because steps that follow no motion have no order yet. */
+/* The advised number of steps brings the change of energy, by the order of the method, to this aim.
+ * It is at least twice the present number, because steps that follow no motion have no order
+ * yet. */
 static const double aim = 0.01, least_ratio = 2;
 
-/* Node k, with the one or the other room for its velocity. */
-static dvi__instant node(dvi_path *path, int k, int room)
+/* Return node k. The index `room` chooses one of two arrays for its velocity. */
+static dvi__instant energy_node(dvi_path *path, int k, int room)
 {
   const size_t n = (size_t)path->n;
   const double t = path->start + k * (dvi__path_span(path, path->trial) / path->steps);
   const double *q = dvi__path_at(path, path->trial, k), *p = path->trial_p + (size_t)k * n;
-  return (dvi__instant){t, q, p, path->probe + (size_t)room * n};
+  return (dvi__instant){.t = t, .q = q, .p = p, .v = path->probe + (size_t)room * n};
 }
 
 /* The nodes with the smallest and the largest energy so far. */
-typedef struct range {
+typedef struct energy_range {
   int lowest, highest;
   double least, most;
-} range;
+} energy_range;
 
-static dvi_status widen(dvi_path *path, int k, const dvi__instant *at, range *r)
+static dvi_status widen_energy_range(dvi_path *path, int k, const dvi__instant *at, energy_range *r)
 {
   double E;
   DVI_TRY(dvi__invariant(path->energies, at->t, at->q, at->v, at->p, 0, &E));
@@ -40,13 +41,13 @@ static dvi_status widen(dvi_path *path, int k, const dvi__instant *at, range *r)
   return DVI_OK;
 }
 
-static dvi_status measure_step(dvi_path *path, int k, range *r, dvi_path_report *report)
+static dvi_status measure_step(dvi_path *path, int k, energy_range *r, dvi_path_report *report)
 {
-  const dvi__instant before = node(path, k, 0), after = node(path, k + 1, 1);
+  const dvi__instant before = energy_node(path, k, 0), after = energy_node(path, k + 1, 1);
   double change, kinetic;
   DVI_TRY(dvi__energy_change(path->energies, &before, &after, &change, &kinetic));
-  if (k == 0) DVI_TRY(widen(path, 0, &before, r));
-  DVI_TRY(widen(path, k + 1, &after, r));
+  if (k == 0) DVI_TRY(widen_energy_range(path, 0, &before, r));
+  DVI_TRY(widen_energy_range(path, k + 1, &after, r));
   const double jump = change > 0 ? change / kinetic : 0;
   if (jump > report->energy_jump) report->jump_step = k, report->energy_jump = jump;
   report->kinetic = fmax(report->kinetic, kinetic);
@@ -55,20 +56,22 @@ static dvi_status measure_step(dvi_path *path, int k, range *r, dvi_path_report 
 
 dvi_status dvi__path_energies(dvi_path *path, dvi_path_report *report)
 {
-  range r = {0, 0, HUGE_VAL, -HUGE_VAL};
+  energy_range r = {.least = HUGE_VAL, .most = -HUGE_VAL};
   double kinetic;
   report->energy_spread = report->energy_jump = report->kinetic = (double)NAN;
   if (!path->system->autonomous) return DVI_OK;
   report->energy_jump = report->kinetic = 0;
   for (int k = 0; k < path->steps; k++) {
     const dvi_status status = measure_step(path, k, &r, report);
-    if (status != DVI_OK) return dvi__fail_in(status, "energy in step %d of %d", k + 1, path->steps);
+    if (status != DVI_OK)
+      return dvi__fail_in(status, "energy in step %d of %d", k + 1, path->steps);
   }
-  const dvi__instant lowest = node(path, r.lowest, 0), highest = node(path, r.highest, 1);
+  const dvi__instant lowest = energy_node(path, r.lowest, 0),
+                     highest = energy_node(path, r.highest, 1);
   return dvi__energy_change(path->energies, &lowest, &highest, &report->energy_spread, &kinetic);
 }
 
-/* Of the largest kinetic energy; a path at rest keeps what it has. */
+/* Return the spread relative to the largest kinetic energy. A path at rest has the spread 0. */
 static double relative_spread(const dvi_path_report *report)
 {
   return report->kinetic > 0 ? report->energy_spread / report->kinetic : 0;
@@ -87,5 +90,6 @@ dvi_status dvi__path_check_resolved(const dvi_path *path, const dvi_path_report 
                    "t = %.6g to %.6g, the energy changes by %.2g of the kinetic energy there, and "
                    "over the path by %.2g of the largest, where at most %g is left by steps that "
                    "follow a motion; try about %.0f steps",
-                   path->steps, k, k + 1, from, to, report->energy_jump, spread, resolved_below, advised);
+                   path->steps, k, k + 1, from, to, report->energy_jump, spread, resolved_below,
+                   advised);
 }

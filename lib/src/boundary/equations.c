@@ -1,4 +1,4 @@
-/* The stationarity of the whole action, its Hessian, and what borders them. */
+/* The stationarity conditions of the whole action, their Hessian, and the border of both. */
 #include <math.h>
 #include <string.h>
 
@@ -16,10 +16,11 @@ void dvi__path_place(dvi_path *path, const double *x, int k)
 {
   const double h = dvi__path_span(path, x) / path->steps;
   dvi__action_place(path->action, path->start + k * h, h, dvi__path_at(path, x, k), path->rest);
-  dvi__action_between(path->action, dvi__path_at(path, x, k + 1), x + dvi__path_bubbles(path, k), path->Y);
+  dvi__action_two_point(path->action, dvi__path_at(path, x, k + 1), x + dvi__path_bubbles(path, k),
+                        path->Y);
 }
 
-/* Say in which step it failed. */
+/* Name the step in a failure's sentence. */
 static dvi_status at_step(const dvi_path *path, const double *x, int k, dvi_status status)
 {
   if (status == DVI_OK) return DVI_OK;
@@ -27,30 +28,34 @@ static dvi_status at_step(const dvi_path *path, const double *x, int k, dvi_stat
   return dvi__fail_in(status, "step %d of %d, from t = %.6g", k + 1, path->steps, t);
 }
 
-/* |L| that is so much larger between the quadrature's nodes than at any of them is a singularity, not a path. */
+/* If |L| between the quadrature's nodes exceeds its largest value at the nodes by this factor, the
+ * path leads through a singularity. */
 static const double overlooked = 1e3;
 
 /* ---- the gradient ---- */
 
-/* Add what an element gives: in_ends and in_Z of step k. */
-static void add_rows(dvi_path *path, int k, double *rows)
+/* Add the rows of an element, in_ends and in_Z of step k. */
+static void add_element_rows(dvi_path *path, int k, double *rows)
 {
   dvi__places places;
   for (int a = 0; a < 2; a++)
     for (int i = 0; i < path->n; i++) {
       dvi__path_places(path, k, a, i, 1, &places);
-      for (int c = 0; c < places.count; c++) rows[places.at[c]] += places.factor[c] * path->in_ends[a][i];
+      for (int c = 0; c < places.count; c++)
+        rows[places.at[c]] += places.factor[c] * path->in_ends[a][i];
     }
-  for (int m = 0, first = dvi__path_bubbles(path, k); m < path->n * (path->s - 1); m++) rows[first + m] += path->in_Z[m];
+  for (int m = 0, first = dvi__path_bubbles(path, k); m < path->n * (path->s - 1); m++)
+    rows[first + m] += path->in_Z[m];
 }
 
 static dvi_status element_gradient(dvi_path *path, const double *x, int k)
 {
   dvi__path_place(path, x, k);
-  return dvi__action_between_gradient(path->action, path->Y, path->in_ends[0], path->in_ends[1], path->in_Z);
+  return dvi__action_two_point_gradient(path->action, path->Y, path->in_ends[0], path->in_ends[1],
+                                        path->in_Z);
 }
 
-/* -dS/dq0 of the first step is p_0. */
+/* Add the given momentum, since -dS/dq0 of the first step is p_0. */
 static void add_given_momentum(const dvi_path *path, double *rows)
 {
   dvi__places places;
@@ -60,15 +65,17 @@ static void add_given_momentum(const dvi_path *path, double *rows)
   }
 }
 
-/* rows [core]; p [(steps+1)*n]; the mean energy, for autonomous systems. The last two may be NULL. */
-static dvi_status gradient(dvi_path *path, const double *x, double *rows, double *p, double *energy)
+/* Compute the rows [core], the momenta p [(steps+1)*n], and for autonomous systems the mean energy.
+ * The last two may be NULL. */
+static dvi_status path_gradient_rows(dvi_path *path, const double *x, double *rows, double *p,
+                                     double *energy)
 {
   const size_t n = (size_t)path->n, bytes = n * sizeof(double);
   if (energy != NULL) *energy = 0;
   memset(rows, 0, (size_t)path->core * sizeof(double));
   for (int k = 0; k < path->steps; k++) {
     DVI_TRY(at_step(path, x, k, element_gradient(path, x, k)));
-    add_rows(path, k, rows);
+    add_element_rows(path, k, rows);
     if (energy != NULL) {
       dvi__energies E;
       DVI_TRY(at_step(path, x, k, dvi__action_energies(path->action, &E)));
@@ -84,7 +91,7 @@ static dvi_status gradient(dvi_path *path, const double *x, double *rows, double
 
 dvi_status dvi__path_gradient(dvi_path *path, const double *x, double *p, double *largest)
 {
-  DVI_TRY(gradient(path, x, path->rows, p, NULL));
+  DVI_TRY(path_gradient_rows(path, x, path->rows, p, NULL));
   *largest = dvi__largest((size_t)path->core, path->rows);
   return DVI_OK;
 }
@@ -94,7 +101,7 @@ dvi_status dvi__path_action(dvi_path *path, const double *x, double *action, dou
   double S, seen, unseen, most_seen = 0, most_unseen = 0;
   *action = 0;
   *energy = (double)NAN;
-  if (path->system->autonomous) DVI_TRY(gradient(path, x, path->rows, NULL, energy));
+  if (path->system->autonomous) DVI_TRY(path_gradient_rows(path, x, path->rows, NULL, energy));
   for (int k = 0; k < path->steps; k++) {
     dvi__path_place(path, x, k);
     DVI_TRY(at_step(path, x, k, dvi__action_value(path->action, path->Y, &S, &seen)));
@@ -106,41 +113,46 @@ dvi_status dvi__path_action(dvi_path *path, const double *x, double *action, dou
   }
   if (!(most_unseen > overlooked * most_seen)) return DVI_OK;
   return dvi__fail(DVI_NOT_CONVERGED,
-                   "the path that was found goes through a singularity that the quadrature does not see (|L| of %.1e between its "
-                   "nodes, %.1e at them); the path is unchanged; try a guess that passes it, more steps or a longer span",
+                   "the path that was found goes through a singularity that the quadrature does "
+                   "not see (|L| of %.1e between its "
+                   "nodes, %.1e at them); the path is unchanged; try a guess that passes it, more "
+                   "steps or a longer span",
                    most_unseen, most_seen);
 }
 
 /* ---- the border ---- */
 
-/* What the gauge is measured by: rows get the multipliers' part, multipliers' rows the distance from the origin. */
-typedef struct measure {
+/* The arrays for the gauges' part of the residual. Rows get the multipliers' part, and multipliers'
+ * rows the distance from the origin. */
+typedef struct gauge_rows {
   const dvi_path *path;
   const double *x;
   double *rows;
-} measure;
+} gauge_rows;
 
-static void add_gauge(void *of, int unknown, int multiplier, size_t from)
+static void add_gauge_rows(void *of, int unknown, int multiplier, size_t from)
 {
-  const measure *m = of;
+  const gauge_rows *m = of;
   const double factor = m->path->gauge[from];
   m->rows[unknown] += factor * m->x[multiplier];
-  m->rows[multiplier] += factor * (m->x[unknown] - m->path->origin[from % ((size_t)m->path->steps * (size_t)m->path->n)]);
+  m->rows[multiplier] += factor *
+                         (m->x[unknown] -
+                          m->path->origin[from % ((size_t)m->path->steps * (size_t)m->path->n)]);
 }
 
 static void border_rows(const dvi_path *path, const double *x, double *rows)
 {
   const int first = path->unknowns - path->gauges;
-  measure m = {path, x, rows};
+  gauge_rows m = {.path = path, .x = x, .rows = rows};
   for (int g = 0; g < path->gauges; g++) rows[first + g] = g < path->in_use ? 0 : x[first + g];
-  dvi__path_each_gauge(path, add_gauge, &m);
+  dvi__path_each_gauge(path, add_gauge_rows, &m);
 }
 
-static dvi_status residual(void *of, const double *x, double *rows)
+static dvi_status path_residual(void *of, const double *x, double *rows)
 {
   dvi_path *path = of;
   double energy = 0;
-  DVI_TRY(gradient(path, x, rows, NULL, path->free_span ? &energy : NULL));
+  DVI_TRY(path_gradient_rows(path, x, rows, NULL, path->free_span ? &energy : NULL));
   if (path->free_span) rows[path->core] = path->span * (path->energy - energy);
   border_rows(path, x, rows);
   return DVI_OK;
@@ -148,100 +160,104 @@ static dvi_status residual(void *of, const double *x, double *rows)
 
 /* ---- the Hessian ---- */
 
-/* Values being added up; the next entry is often the one after the last. */
+/* The values of the Hessian during assembly. The next entry is often the one after the last. */
 typedef struct assembly {
   const dvi_path *path;
   double *values;
   int last;
 } assembly;
 
-static int entry(assembly *to, int row, int column)
+static int assembly_entry(assembly *to, int row, int column)
 {
   const dvi__pattern *pattern = &to->path->pattern;
   const int next = to->last + 1;
-  const int follows = next >= pattern->start[column] && next < pattern->start[column + 1] && pattern->row[next] == row;
+  const int follows = next >= pattern->start[column] && next < pattern->start[column + 1] &&
+                      pattern->row[next] == row;
   return to->last = follows ? next : dvi__pattern_find(pattern, row, column);
 }
 
-static void add_at(assembly *to, int row, int column, double value)
+static void assembly_add(assembly *to, int row, int column, double value)
 {
-  to->values[entry(to, row, column)] += value;
+  to->values[assembly_entry(to, row, column)] += value;
 }
 
-static void add_entry(void *of, int row, int column, double factor, size_t from)
-{
-  assembly *to = of;
-  add_at(to, row, column, factor * to->path->block[from]);
-}
-
-static void add_gauge_entry(void *of, int unknown, int multiplier, size_t from)
+static void assembly_add_element(void *of, int row, int column, double factor, size_t from)
 {
   assembly *to = of;
-  add_at(to, multiplier, unknown, to->path->gauge[from]);
-  add_at(to, unknown, multiplier, to->path->gauge[from]);
+  assembly_add(to, row, column, factor * to->path->block[from]);
 }
 
-/* What the rows of step k change by with the span's unknown, and the row of that unknown with them. */
-static dvi_status add_span(assembly *to, dvi_path *path, int k)
+static void assembly_add_gauge(void *of, int unknown, int multiplier, size_t from)
+{
+  assembly *to = of;
+  assembly_add(to, multiplier, unknown, to->path->gauge[from]);
+  assembly_add(to, unknown, multiplier, to->path->gauge[from]);
+}
+
+/* Add the derivative of step k's rows by the span's unknown, and the row of that unknown. */
+static dvi_status assembly_add_span(assembly *to, dvi_path *path, int k)
 {
   const double part = -path->span / path->steps;
-  dvi__energy_gradient gradient = {path->energy_Y, path->energy_q0, 0};
+  dvi__energy_gradient gradient = {.Y = path->energy_Y, .q0 = path->energy_q0};
   dvi__places places;
   DVI_TRY(dvi__action_energy_gradients(path->action, &gradient, &gradient));
-  dvi__action_between_ends(path->action, gradient.Y, gradient.q0, path->in_ends[0], path->in_ends[1], path->in_Z);
+  dvi__action_two_point_ends(path->action, gradient.Y, gradient.q0, path->in_ends[0],
+                             path->in_ends[1], path->in_Z);
   for (int a = 0; a <= path->s; a++)
     for (int i = 0; i < path->n; i++) {
       dvi__path_places(path, k, a, i, 0, &places);
-      const double value = part * (a < 2 ? path->in_ends[a][i] : path->in_Z[i * (path->s - 1) + a - 2]);
+      const double value = part *
+                           (a < 2 ? path->in_ends[a][i] : path->in_Z[i * (path->s - 1) + a - 2]);
       for (int c = 0; c < places.count; c++) {
-        add_at(to, path->core, places.at[c], places.factor[c] * value);
-        add_at(to, places.at[c], path->core, places.factor[c] * value);
+        assembly_add(to, path->core, places.at[c], places.factor[c] * value);
+        assembly_add(to, places.at[c], path->core, places.factor[c] * value);
       }
     }
-  add_at(to, path->core, path->core, part * path->span / path->steps * gradient.h);
+  assembly_add(to, path->core, path->core, part * path->span / path->steps * gradient.h);
   return DVI_OK;
 }
 
 dvi_status dvi__path_jacobian(dvi_path *path, const double *x, double *values)
 {
-  assembly to = {path, values, -1};
+  assembly to = {.path = path, .values = values, .last = -1};
   memset(values, 0, (size_t)dvi__pattern_entries(&path->pattern) * sizeof(double));
   for (int k = 0; k < path->steps; k++) {
     dvi__path_place(path, x, k);
-    DVI_TRY(at_step(path, x, k, dvi__action_between_hessian(path->action, path->Y, path->block)));
-    dvi__path_each_entry(path, k, add_entry, &to);
-    if (path->free_span) DVI_TRY(at_step(path, x, k, add_span(&to, path, k)));
+    DVI_TRY(at_step(path, x, k, dvi__action_two_point_hessian(path->action, path->Y, path->block)));
+    dvi__path_each_entry(path, k, assembly_add_element, &to);
+    if (path->free_span) DVI_TRY(at_step(path, x, k, assembly_add_span(&to, path, k)));
   }
-  dvi__path_each_gauge(path, add_gauge_entry, &to);
+  dvi__path_each_gauge(path, assembly_add_gauge, &to);
   /* Multipliers that are not in use are unknowns of their own. */
-  for (int c = path->unknowns - path->gauges + path->in_use; c < path->unknowns; c++) add_at(&to, c, c, 1);
+  for (int c = path->unknowns - path->gauges + path->in_use; c < path->unknowns; c++)
+    assembly_add(&to, c, c, 1);
   return DVI_OK;
 }
 
-static dvi_status jacobian(void *of, const double *x, double *values)
+static dvi_status path_jacobian(void *of, const double *x, double *values)
 {
   return dvi__path_jacobian(of, x, values);
 }
 
 /* ---- scales ---- */
 
-/* The kinetic part at the middle of the path tells how large rows are. */
+/* Set the scales of rows by the kinetic part at the middle of the path. */
 dvi_status dvi__path_scale(dvi_path *path, const double *x)
 {
   dvi__path_place(path, x, path->steps / 2);
   DVI_TRY(at_step(path, x, path->steps / 2, dvi__action_prepare_chord(path->action, path->Y)));
-  (void)dvi__action_row_scale(path->action, path->row_scale); /* 0: as it was */
+  (void)dvi__action_row_scale(path->action, path->row_scale); /* 0 if the scales are unchanged */
   const double h = dvi__path_span(path, x) / path->steps;
   for (int i = 0; i < path->n; i++) path->kinetic[i] = path->row_scale[i * path->s] * h;
   return DVI_OK;
 }
 
-static dvi_status prepare(void *of, const double *x)
+static dvi_status path_prepare_chord(void *of, const double *x)
 {
   return dvi__path_scale(of, x);
 }
 
-static dvi_status row_scale(void *of, double *scale, int *unchanged)
+static dvi_status path_row_scale(void *of, double *scale, int *unchanged)
 {
   (void)unchanged;
   const dvi_path *path = of;
@@ -264,9 +280,9 @@ dvi_status dvi__path_make_solver(dvi_path *path)
                                     .linear = DVI__LINEAR_SPARSE,
                                     .border = path->unknowns - path->core,
                                     .of = path,
-                                    .residual = residual,
-                                    .jacobian = jacobian,
-                                    .prepare_chord = prepare,
-                                    .row_scale = row_scale};
+                                    .residual = path_residual,
+                                    .jacobian = path_jacobian,
+                                    .prepare_chord = path_prepare_chord,
+                                    .row_scale = path_row_scale};
   return dvi__solver_create(&equations, &path->counters, &path->solver);
 }

@@ -1,5 +1,7 @@
-/* The signs of the second variation, by spectrum slicing: H + lambda W, with the weight W of the kinetic energy, has as many negative eigenvalues as H v = mu W v
- * has mu < -lambda (Sylvester's law of inertia; Parlett 1998, sec. 3.3). Two slices beside 0 tell what is negative and what is zero. */
+/* The signs of the second variation, by spectrum slicing. With the weight W of the kinetic energy,
+ * H + lambda W has as many negative eigenvalues as H v = mu W v has mu < -lambda (Sylvester's law
+ * of inertia, Parlett 1998, sec. 3.3). Two slices beside 0 count the negative and the zero
+ * eigenvalues. */
 #include <float.h>
 #include <math.h>
 
@@ -8,11 +10,13 @@
 #include "num/inertia.h"
 #include "boundary/path_struct.h"
 
-/* Elimination works in blocks of one step's unknowns; larger ones would take far longer than the solve. */
+/* Largest block of elimination, which has one step's unknowns. Larger blocks would take far longer
+ * than the solve. */
 enum { LARGEST_BLOCK = 512 };
 
-/* Eigenvalues below -lambda. */
-static dvi_status slice(dvi_path *path, double *values, double lambda, long *below)
+/* Count the eigenvalues below -lambda. */
+static dvi_status count_eigenvalues_below(dvi_path *path, double *values, double lambda,
+                                          long *below)
 {
   const double unit = lambda / (dvi__path_span(path, path->trial) * path->steps);
   for (int k = 0; k <= path->steps; k++) {
@@ -23,20 +27,21 @@ static dvi_status slice(dvi_path *path, double *values, double lambda, long *bel
   return dvi__inertia(&path->pattern, values, path->core, path->n * path->s, below);
 }
 
-/* Roundoff in an entry, epsilon |L_vv| / h, is epsilon N^2 in units of the weight over span^2. */
+/* Return the limit of zero eigenvalues. Roundoff in an entry, epsilon |L_vv| / h, is epsilon N^2 in
+ * units of the weight over span^2. */
 static double zero_below(const dvi_path *path)
 {
   return fmax(1e-6, 10 * DBL_EPSILON * path->steps * path->steps);
 }
 
-static dvi_status slices(dvi_path *path, double *values, dvi_path_report *report)
+static dvi_status slice_spectrum(dvi_path *path, double *values, dvi_path_report *report)
 {
   long negative, not_positive;
   DVI_TRY(dvi__path_jacobian(path, path->trial, values));
-  DVI_TRY(slice(path, values, report->zero_below, &negative));
-  DVI_TRY(slice(path, values, -2 * report->zero_below, &not_positive));
+  DVI_TRY(count_eigenvalues_below(path, values, report->zero_below, &negative));
+  DVI_TRY(count_eigenvalues_below(path, values, -2 * report->zero_below, &not_positive));
   report->zero = not_positive - negative;
-  /* Steps that move the eigenvalue of a symmetry away from 0 may move others to the wrong side of it. */
+  /* Steps that move the eigenvalue of a symmetry away from 0 may move others across 0. */
   report->negative = report->zero < report->symmetries ? -1 : negative;
   return DVI_OK;
 }
@@ -48,8 +53,9 @@ dvi_status dvi__path_index(dvi_path *path, dvi_path_report *report)
   if (path->ends == DVI_ENDS_INITIAL || path->n * path->s > LARGEST_BLOCK) return DVI_OK;
   const int entries = dvi__pattern_entries(&path->pattern);
   double *values = DVI_NEW(double, entries);
-  if (values == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory for a Hessian of %d entries", entries);
-  const dvi_status status = slices(path, values, report);
+  if (values == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "no memory for a Hessian of %d entries", entries);
+  const dvi_status status = slice_spectrum(path, values, report);
   dvi__release(values);
   return status == DVI_SINGULAR ? DVI_OK : status;
 }

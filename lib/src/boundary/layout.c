@@ -1,4 +1,4 @@
-/* Which unknown is where, and which entries the Jacobian of all of them has. */
+/* The places of the unknowns, and the pattern of their Jacobian. */
 #include "boundary/layout.h"
 
 #include <limits.h>
@@ -9,39 +9,44 @@
 
 static const double one = 1.0;
 
-/* Where node k would stand; given nodes stand before the first unknown, or after the last one. */
-static int position(const dvi_path *path, int k)
+/* Return the place of node k. Places of given nodes are before the first unknown or after the last
+ * one. */
+static int node_position(const dvi_path *path, int k)
 {
   return k * path->n * path->s - (path->ends == DVI_ENDS_PERIODIC ? 0 : path->n);
 }
 
 int dvi__path_node(const dvi_path *path, int k)
 {
-  const int at = position(path, k);
+  const int at = node_position(path, k);
   return at >= 0 && at < path->core ? at : -1;
 }
 
 int dvi__path_bubbles(const dvi_path *path, int k)
 {
-  return position(path, k) + path->n;
+  return node_position(path, k) + path->n;
 }
 
-/* The last node of a periodic path is A times the first one: each of its numbers has as many places as A has entries in a row. */
+/* Find the places of coordinate i of a periodic path's last node. The node is A times the first
+ * one, so each of its numbers has as many places as A has entries in a row. */
 static void turned_places(const dvi_path *path, int i, dvi__places *places)
 {
   if (path->turn.start == NULL) return;
   const int first = path->turn.start[i];
-  *places = (dvi__places){path->turn.start[i + 1] - first, path->turn.row + first, path->turn_values + first, 0};
+  *places = (dvi__places){.count = path->turn.start[i + 1] - first,
+                          .at = path->turn.row + first,
+                          .factor = path->turn_values + first};
 }
 
 void dvi__path_places(const dvi_path *path, int k, int a, int i, int row, dvi__places *places)
 {
   const int turned = path->ends == DVI_ENDS_PERIODIC && a == 1 && k + 1 == path->steps;
-  int at = a < 2 ? position(path, turned ? 0 : k + a) : dvi__path_bubbles(path, k);
+  int at = a < 2 ? node_position(path, turned ? 0 : k + a) : dvi__path_bubbles(path, k);
   /* A step forward gives the next node. */
   if (a < 2 && row && path->ends == DVI_ENDS_INITIAL) at += path->n * path->s;
   at += a < 2 ? i : i * (path->s - 1) + a - 2;
-  *places = (dvi__places){at >= 0 && at < path->core, NULL, &one, at};
+  *places = (dvi__places){
+      .count = at >= 0 && at < path->core, .at = NULL, .factor = &one, .single = at};
   places->at = &places->single;
   if (turned) turned_places(path, i, places);
 }
@@ -54,7 +59,8 @@ void dvi__path_turn(const dvi_path *path, const double *x, double *y)
   }
   for (int i = 0; i < path->n; i++) {
     y[i] = 0;
-    for (int e = path->turn.start[i]; e < path->turn.start[i + 1]; e++) y[i] += path->turn_values[e] * x[path->turn.row[e]];
+    for (int e = path->turn.start[i]; e < path->turn.start[i + 1]; e++)
+      y[i] += path->turn_values[e] * x[path->turn.row[e]];
   }
 }
 
@@ -66,7 +72,8 @@ void dvi__path_turn_back(const dvi_path *path, const double *y, double *x)
   }
   memset(x, 0, (size_t)path->n * sizeof(double));
   for (int i = 0; i < path->n; i++)
-    for (int e = path->turn.start[i]; e < path->turn.start[i + 1]; e++) x[path->turn.row[e]] += path->turn_values[e] * y[i];
+    for (int e = path->turn.start[i]; e < path->turn.start[i + 1]; e++)
+      x[path->turn.row[e]] += path->turn_values[e] * y[i];
 }
 
 const double *dvi__path_image(dvi_path *path, const double *q)
@@ -86,12 +93,14 @@ const double *dvi__path_at(dvi_path *path, const double *x, int k)
 
 /* ---- entries ---- */
 
-static void emit_block(const dvi_path *path, int k, const dvi__places *column, int a, int i, size_t from, dvi__emit *emit, void *of)
+static void emit_block(const dvi_path *path, int k, const dvi__places *column, int a, int i,
+                       size_t from, dvi__emit *emit, void *of)
 {
   dvi__places row;
   dvi__path_places(path, k, a, i, 1, &row);
   for (int c = 0; c < column->count; c++)
-    for (int r = 0; r < row.count; r++) emit(of, row.at[r], column->at[c], column->factor[c] * row.factor[r], from);
+    for (int r = 0; r < row.count; r++)
+      emit(of, row.at[r], column->at[c], column->factor[c] * row.factor[r], from);
 }
 
 void dvi__path_each_entry(const dvi_path *path, int k, dvi__emit *emit, void *of)
@@ -105,7 +114,8 @@ void dvi__path_each_entry(const dvi_path *path, int k, dvi__emit *emit, void *of
       if (column.count == 0) continue;
       for (size_t a = 0; a < size; a++)
         for (int e = coupling->start[j]; e < coupling->start[j + 1]; e++)
-          emit_block(path, k, &column, (int)a, coupling->row[e], ((size_t)e * size + b) * size + a, emit, of);
+          emit_block(path, k, &column, (int)a, coupling->row[e], ((size_t)e * size + b) * size + a,
+                     emit, of);
     }
 }
 
@@ -119,14 +129,17 @@ void dvi__path_each_gauge(const dvi_path *path, dvi__emit_gauge *emit, void *of)
              ((size_t)g * (size_t)path->steps + (size_t)k) * (size_t)path->n + (size_t)i);
 }
 
-/* The pattern in the making. First its columns are counted, then filled, in any order and with entries that come twice. */
-typedef struct draft {
+/* A pattern under construction. Its columns are first counted and then filled, in any order and
+ * with repeated entries. */
+typedef struct pattern_draft {
   dvi__pattern pattern;
-  int counts; /* 1: columns are counted into start[column + 1]; 0: start[column] moves on as it is filled */
+  /* 1: columns are counted into start[column + 1]. 0: start[column] moves on as columns are
+   * filled */
+  int counts;
   size_t entries;
-} draft;
+} pattern_draft;
 
-static void add(draft *d, int row, int column)
+static void draft_add(pattern_draft *d, int row, int column)
 {
   if (d->counts) {
     d->entries++;
@@ -136,30 +149,31 @@ static void add(draft *d, int row, int column)
   }
 }
 
-static void add_entry(void *of, int row, int column, double factor, size_t from)
+static void draft_add_entry(void *of, int row, int column, double factor, size_t from)
 {
   (void)factor, (void)from;
-  add(of, row, column);
+  draft_add(of, row, column);
 }
 
-static void add_gauge(void *of, int unknown, int multiplier, size_t from)
+static void draft_add_gauge(void *of, int unknown, int multiplier, size_t from)
 {
   (void)from;
-  add(of, unknown, multiplier);
-  add(of, multiplier, unknown);
+  draft_add(of, unknown, multiplier);
+  draft_add(of, multiplier, unknown);
 }
 
-static void add_all(const dvi_path *path, draft *d)
+static void draft_add_all(const dvi_path *path, pattern_draft *d)
 {
-  for (int k = 0; k < path->steps; k++) dvi__path_each_entry(path, k, add_entry, d);
-  dvi__path_each_gauge(path, add_gauge, d);
-  for (int c = 0; path->free_span && c < path->core; c++) add_gauge(d, c, path->core, 0); /* the span's row and column are full */
+  for (int k = 0; k < path->steps; k++) dvi__path_each_entry(path, k, draft_add_entry, d);
+  dvi__path_each_gauge(path, draft_add_gauge, d);
+  /* The span's row and column are full. */
+  for (int c = 0; path->free_span && c < path->core; c++) draft_add_gauge(d, c, path->core, 0);
   /* The span's own entry, and those of multipliers that are not in use. */
-  for (int c = path->core; c < path->unknowns; c++) add(d, c, c);
+  for (int c = path->core; c < path->unknowns; c++) draft_add(d, c, c);
 }
 
-/* Rows ascending, each once. */
-static dvi_status tidy(dvi__pattern *rough, dvi__pattern *tidied)
+/* Sort the rows of each column and remove repeated ones. */
+static dvi_status sort_pattern_rows(dvi__pattern *rough, dvi__pattern *tidied)
 {
   dvi__pattern by_rows = {0};
   dvi_status status = dvi__pattern_transpose(rough, &by_rows);
@@ -171,7 +185,8 @@ static dvi_status tidy(dvi__pattern *rough, dvi__pattern *tidied)
   for (int c = 0, from = 0; c < tidied->columns; c++) {
     const int first = kept, end = tidied->start[c + 1];
     for (; from < end; from++)
-      if (kept == first || tidied->row[kept - 1] != tidied->row[from]) tidied->row[kept++] = tidied->row[from];
+      if (kept == first || tidied->row[kept - 1] != tidied->row[from])
+        tidied->row[kept++] = tidied->row[from];
     tidied->start[c + 1] = kept;
   }
   return DVI_OK;
@@ -180,40 +195,52 @@ static dvi_status tidy(dvi__pattern *rough, dvi__pattern *tidied)
 static dvi_status too_many(const dvi_path *path, double count, const char *what)
 {
   return dvi__fail(DVI_BAD_SIZE,
-                   "path: %d steps of degree %d in %d coordinates have %.3g %s, more than an int can count; take fewer",
+                   "path: %d steps of degree %d in %d coordinates have %.3g %s, more than an int "
+                   "can count; take fewer",
                    path->steps, path->s, path->n, count, what);
 }
 
-static dvi_status draw(dvi_path *path)
+static dvi_status draw_pattern(dvi_path *path)
 {
-  draft d = {.pattern = {path->unknowns, path->unknowns, DVI_NEW(int, (size_t)path->unknowns + 1), NULL}, .counts = 1};
-  if (d.pattern.start == NULL) return dvi__fail(DVI_NO_MEMORY, "path: no memory for %d unknowns", path->unknowns);
-  add_all(path, &d);
-  dvi_status status = d.entries < INT_MAX ? DVI_OK : too_many(path, (double)d.entries, "entries in the Jacobian");
-  for (int c = 0; c < path->unknowns && status == DVI_OK; c++) d.pattern.start[c + 1] += d.pattern.start[c];
+  pattern_draft d = {
+      .pattern = {path->unknowns, path->unknowns, DVI_NEW(int, (size_t)path->unknowns + 1), NULL},
+      .counts = 1};
+  if (d.pattern.start == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "path: no memory for %d unknowns", path->unknowns);
+  draft_add_all(path, &d);
+  dvi_status status = d.entries < INT_MAX
+                          ? DVI_OK
+                          : too_many(path, (double)d.entries, "entries in the Jacobian");
+  for (int c = 0; c < path->unknowns && status == DVI_OK; c++)
+    d.pattern.start[c + 1] += d.pattern.start[c];
   if (status == DVI_OK) d.pattern.row = DVI_NEW(int, d.entries);
-  if (status == DVI_OK && d.pattern.row == NULL) status = dvi__fail(DVI_NO_MEMORY, "path: no memory for %zu entries", d.entries);
+  if (status == DVI_OK && d.pattern.row == NULL)
+    status = dvi__fail(DVI_NO_MEMORY, "path: no memory for %zu entries", d.entries);
   if (status != DVI_OK) {
     dvi__pattern_clear(&d.pattern);
     return status;
   }
   d.counts = 0;
-  add_all(path, &d);
+  draft_add_all(path, &d);
   for (int c = path->unknowns; c > 0; c--) d.pattern.start[c] = d.pattern.start[c - 1];
   d.pattern.start[0] = 0;
-  return tidy(&d.pattern, &path->pattern);
+  return sort_pattern_rows(&d.pattern, &path->pattern);
 }
 
 dvi_status dvi__path_lay_out(dvi_path *path)
 {
-  const double blocks = (path->s + 1.0) * (path->s + 1.0) * dvi__pattern_entries(dvi__action_coupling(path->action));
-  const double core = (double)path->steps * path->n * path->s - (path->ends == DVI_ENDS_FIXED ? path->n : 0);
-  /* The places of the last node, beyond the last unknown, are counted, too. */
+  const double blocks = (path->s + 1.0) * (path->s + 1.0) *
+                        dvi__pattern_entries(dvi__action_coupling(path->action));
+  const double core = (double)path->steps * path->n * path->s -
+                      (path->ends == DVI_ENDS_FIXED ? path->n : 0);
+  /* The limit counts the places of the last node, beyond the last unknown, too. */
   if (core + 2.0 * path->n * path->s > INT_MAX) return too_many(path, core, "unknowns");
-  if (path->steps * blocks > INT_MAX) return too_many(path, path->steps * blocks, "entries in the Jacobian");
+  if (path->steps * blocks > INT_MAX)
+    return too_many(path, path->steps * blocks, "entries in the Jacobian");
   if (core < 1)
-    return dvi__fail(DVI_BAD_SIZE, "path: 1 straight step between fixed ends leaves nothing to vary; at least 2 steps are needed");
+    return dvi__fail(DVI_BAD_SIZE, "path: 1 straight step between fixed ends leaves nothing to "
+                                   "vary; at least 2 steps are needed");
   path->core = (int)core;
   path->unknowns = path->core + (path->free_span != 0) + path->gauges;
-  return draw(path);
+  return draw_pattern(path);
 }

@@ -1,13 +1,15 @@
-/* The inside of a path, for the files of this room.
+/* The members of a path, for the files of this room.
  *
- * Unknowns, in the order of time: (q_0, Z^0, q_1, Z^1, .. ), where Z^k are the bubbles of step k (step/element/between.h) and given nodes are left out; then the
- * span, if it is free; then a multiplier for each direction along which the path may be moved (gauge.c). Rows stand in the same order, so that the
- * Jacobian is the symmetric Hessian of the action; but for initial ends, where the row of node k stands with the unknown q_(k+1) that it gives. */
-#ifndef DVI_PATH_PATH_STRUCT_H
-#define DVI_PATH_PATH_STRUCT_H
+ * The unknowns are (q_0, Z^0, q_1, Z^1, .. ) in the order of time, where Z^k are the bubbles of
+ * step k (step/element/two_point.h) and given nodes are left out. Then comes the span, if it is
+ * free, and a multiplier for each direction along which the path may be moved (gauge.c). Rows have
+ * the same order, so that the Jacobian is the symmetric Hessian of the action. With initial ends
+ * the row of node k stands with the unknown q_(k+1) that it determines. */
+#ifndef DVI_BOUNDARY_PATH_STRUCT_H
+#define DVI_BOUNDARY_PATH_STRUCT_H
 #include <dvi/path.h>
 
-#include "step/element/between.h"
+#include "step/element/two_point.h"
 #include "solve/nonlinear.h"
 
 enum { DVI__PATH_METHOD_SIZE = 256 };
@@ -18,40 +20,45 @@ struct dvi_path {
   char method[DVI__PATH_METHOD_SIZE];
   dvi_ends ends;
   int n, s, steps, order;
-  double start, span; /* the span's unknown, if it is free, is its ratio to this */
-  double energy;      /* of a free span */
+  double start, span; /* a free span's unknown is its ratio to this span */
+  double energy;      /* energy of a path with a free span */
   int free_span;
-  double *q0, *q1, *p0, *shift; /* [n]; NULL where they are not given */
-  dvi__pattern turn;            /* the symmetry's transpose: its column i is row i of A; empty: the identity */
-  double *turn_values;
+  double *q0, *q1, *p0, *shift; /* [n], NULL where not given */
+  dvi__pattern turn;            /* transpose of the symmetry A. Empty for the identity */
+  double *turn_values;          /* entries of A, column i of the pattern is row i of A */
   dvi__action *action;
-  dvi__evaluator *energies; /* at nodes; NULL: the system is not autonomous */
+  dvi__evaluator *energies; /* evaluator of energies at nodes. NULL unless autonomous */
   dvi__solver *solver;
   dvi__pattern pattern;
-  int core;                /* unknowns of nodes and bubbles */
-  int gauges;              /* multipliers, the last unknowns */
-  int unknowns;            /* of all kinds */
-  double *x;               /* [unknowns] the path: a guess, or solved */
-  double *trial;           /* [unknowns] what a solve works on */
-  double *q, *p, *trial_p; /* [(steps+1)*n] nodes and momenta of x; momenta of trial */
-  int solved;              /* p is there */
-  /* One element's worth of work. */
-  double *Y, *in_ends[2], *in_Z, *wrapped, *rest; /* [n*s], [n], [n*(s-1)], [n]; rest: p0 = 0 */
-  double *block;                                  /* [entries of the coupling * (s+1)^2] */
-  double *kinetic;                                /* [n] size of |L_vv|_ii */
-  double *row_scale;                              /* [n*s] */
-  double *rows;                                   /* [core] a gradient */
-  double *energy_Y, *energy_q0;                   /* [n*s], [n] what an energy changes by */
-  double *probe;                                  /* [7*n] velocities and gradients at two points */
-  /* Gauge (gauge.c): the columns [gauges*steps*n] at the nodes but the last, the nodes that they are measured from, and how many are in use. */
-  double *gauge, *origin;
+  int core;        /* number of unknowns of nodes and bubbles */
+  int gauges;      /* number of multipliers, the last unknowns */
+  int unknowns;    /* number of all unknowns */
+  double *x;       /* [unknowns] the path, a guess or solved */
+  double *trial;   /* [unknowns] the path in a solve */
+  double *q, *p;   /* [(steps+1)*n] nodes and momenta of x */
+  double *trial_p; /* [(steps+1)*n] momenta of trial */
+  int solved;      /* p is valid */
+  /* Work of one element. */
+  double *Y;                    /* [n*s] */
+  double *in_ends[2], *in_Z;    /* [n], [n*(s-1)] gradient by the ends and the bubbles */
+  double *wrapped;              /* [n] image of a node */
+  double *rest;                 /* [n] zeros, for p0 */
+  double *block;                /* [entries of the coupling * (s+1)^2] */
+  double *kinetic;              /* [n] size of |L_vv|_ii */
+  double *row_scale;            /* [n*s] */
+  double *rows;                 /* [core] a gradient */
+  double *energy_Y, *energy_q0; /* [n*s], [n] gradient of an energy */
+  double *probe;                /* [7*n] velocities and gradients at two points */
+  /* Gauges (gauge.c). */
+  double *gauge;  /* [gauges*steps*n] columns at the nodes but the last */
+  double *origin; /* [steps*n] nodes from which the columns are measured */
   double *defect; /* [gauges*n] */
   int *broken;    /* [gauges] */
-  int in_use;
-  int holds_time; /* the last one in use is that of time */
+  int in_use;     /* number of columns in use */
+  int holds_time; /* the last column in use is that of time */
 };
 
-/* Where a number of an element stands among all unknowns (or rows): in `count` places, with factors. */
+/* The places of an element's number among all unknowns (or rows), `count` places with factors. */
 typedef struct dvi__places {
   int count;
   const int *at;
@@ -64,47 +71,50 @@ typedef struct dvi__places {
 /* Set core, unknowns and pattern. DVI_BAD_SIZE if they cannot be counted by an int. */
 dvi_status dvi__path_lay_out(dvi_path *path);
 
-/* Places of X_a of coordinate i of step k; `row`: of the row that belongs to it. */
+/* Find the places of X_a of coordinate i of step k, or with `row` of the row that belongs to it. */
 void dvi__path_places(const dvi_path *path, int k, int a, int i, int row, dvi__places *places);
 
-/* First unknown of node k, or -1 if it is given. */
+/* Return the first unknown of node k, or -1 if the node is given. */
 int dvi__path_node(const dvi_path *path, int k);
 
-/* First bubble of step k. */
+/* Return the first bubble of step k. */
 int dvi__path_bubbles(const dvi_path *path, int k);
 
-/* Node k as x has it; of a last node that the first one determines a copy, valid until the next call. */
+/* Return node k of x. If the first node determines the last one, the last node is a copy, valid
+ * until the next call. */
 const double *dvi__path_at(dvi_path *path, const double *x, int k);
 
-/* y [n] = A x [n], without the shift. */
+/* Compute y [n] = A x [n], without the shift. */
 void dvi__path_turn(const dvi_path *path, const double *x, double *y);
 
-/* x [n] = A^T y. */
+/* Compute x [n] = A^T y. */
 void dvi__path_turn_back(const dvi_path *path, const double *y, double *x);
 
-/* A q + a, valid until the next call or that of dvi__path_at. */
+/* Return A q + a, valid until the next call or that of dvi__path_at. */
 const double *dvi__path_image(dvi_path *path, const double *q);
 
 /* ---- equations.c ---- */
 
 dvi_status dvi__path_make_solver(dvi_path *path);
 
-/* Measure the kinetic part at x, which sets the scales of rows. */
+/* Measure the kinetic part at x and set the scales of rows by it. */
 dvi_status dvi__path_scale(dvi_path *path, const double *x);
 
-/* Put the element on step k of x and find its Y; the span is that of x. */
+/* Place the element on step k of x and compute its Y. The span is that of x. */
 void dvi__path_place(dvi_path *path, const double *x, int k);
 
-/* The span that x holds. */
+/* Return the span of x. */
 double dvi__path_span(const dvi_path *path, const double *x);
 
-/* The largest |row| of nodes and bubbles, without multipliers; p [(steps+1)*n] gets the momenta. */
+/* Compute the largest |row| of nodes and bubbles, without multipliers, and the momenta
+ * p [(steps+1)*n]. */
 dvi_status dvi__path_gradient(dvi_path *path, const double *x, double *p, double *gradient);
 
-/* The Hessian with its border, in the order of the pattern. */
+/* Compute the Hessian with its border, in the order of the pattern. */
 dvi_status dvi__path_jacobian(dvi_path *path, const double *x, double *values);
 
-/* The action; and the mean energy, NaN if the system is not autonomous. DVI_NOT_CONVERGED if the path leads through a singularity unseen. */
+/* Compute the action and the mean energy, NaN if the system is not autonomous. DVI_NOT_CONVERGED if
+ * the path leads through a singularity that the quadrature does not see. */
 dvi_status dvi__path_action(dvi_path *path, const double *x, double *action, double *energy);
 
 /* ---- energy.c ---- */
@@ -113,21 +123,23 @@ dvi_status dvi__path_action(dvi_path *path, const double *x, double *action, dou
  * which dvi__path_gradient has found. */
 dvi_status dvi__path_energies(dvi_path *path, dvi_path_report *report);
 
-/* DVI_STEP_TOO_LARGE if these numbers are those of a path that follows no motion. */
+/* Check that the path follows a motion, else DVI_STEP_TOO_LARGE. */
 dvi_status dvi__path_check_resolved(const dvi_path *path, const dvi_path_report *report);
 
 /* ---- gauge.c ---- */
 
-/* Find the directions along which the periodic path x may be moved; the solution is to have no distance from x along them. One that differs from the others
- * by less than `least_own_part` of itself is none of its own. After dvi__path_scale. */
+/* Find the directions along which the periodic path x may be moved. The solution is required to
+ * have no distance from x along them. A direction that differs from the span of the others by less
+ * than `least_own_part` of itself is left out. Call dvi__path_scale before. */
 dvi_status dvi__path_fix_gauge(dvi_path *path, const double *x, double least_own_part);
 
-/* Let the path go in time again; 0 if it was not held. */
+/* Release the path in time. Return 0 if it was not held. */
 int dvi__path_release_time(dvi_path *path);
 
 /* ---- symmetry.c ---- */
 
-/* DVI_BAD_ARGUMENT if the ends are periodic and the Lagrangian at the first `nodes` nodes of x is another one where the symmetry takes them, a span later. */
+/* Check the symmetry of periodic ends at the first `nodes` nodes of x. DVI_BAD_ARGUMENT if the
+ * Lagrangian differs at the images of the nodes, a span later. */
 dvi_status dvi__path_check_symmetry(dvi_path *path, const double *x, int nodes);
 
 /* ---- index.c ---- */

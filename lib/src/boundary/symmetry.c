@@ -1,5 +1,6 @@
-/* Whether the Lagrangian has what periodic ends take it to have: L(t + T, A q + a, A v) = L(t, q, v), with both gradients. Where a path stands still its value
- * may be the same by chance: a force that pushes sideways does no work there. */
+/* Check of the symmetry that periodic ends assume, L(t + T, A q + a, A v) = L(t, q, v), with both
+ * gradients. On a path at rest the value alone may agree by chance, because a force that pushes
+ * sideways does no work there. */
 #include <math.h>
 #include <string.h>
 
@@ -7,25 +8,32 @@
 #include "num/finite.h"
 #include "boundary/path_struct.h"
 
-/* A symmetry of the Lagrangian leaves it as it is, to this part. */
+/* A symmetry changes the Lagrangian by less than this part. */
 static const double symmetric_below = 1e-8;
 
-/* Of L, L_q and L_v: the largest difference, at which time, and the largest magnitude. */
+/* A comparison of L, L_q and L_v. */
 enum { VALUE, FORCE, MOMENTUM, KINDS };
 typedef struct comparison {
-  double difference[KINDS], t[KINDS], size[KINDS];
+  double difference[KINDS]; /* largest difference */
+  double t[KINDS];          /* time of the largest difference */
+  double size[KINDS];       /* largest magnitude */
 } comparison;
 
-/* What roundoff leaves of them in a path at rest has the size of motions that would cross the path's own size in its span. */
-static void begin(dvi_path *path, const double *x, comparison *c)
+/* Start a comparison. Roundoff in a path at rest has the size of motions that would cross the
+ * path's own size in its span. */
+static void comparison_start(dvi_path *path, const double *x, comparison *c)
 {
-  const double *last = dvi__path_at(path, x, path->steps), kinetic = dvi__largest((size_t)path->n, path->kinetic);
-  const double size = fmax(dvi__largest((size_t)path->core, x), dvi__largest((size_t)path->n, last));
+  const double *last = dvi__path_at(path, x, path->steps),
+               kinetic = dvi__largest((size_t)path->n, path->kinetic);
+  const double size = fmax(dvi__largest((size_t)path->core, x),
+                           dvi__largest((size_t)path->n, last));
   const double rate = size / dvi__path_span(path, x);
-  *c = (comparison){.size = {kinetic * rate * rate, kinetic * rate / dvi__path_span(path, x), kinetic * rate}};
+  *c = (comparison){
+      .size = {kinetic * rate * rate, kinetic * rate / dvi__path_span(path, x), kinetic * rate}};
 }
 
-static void add(comparison *c, int kind, double t, int count, const double *here, const double *there)
+static void comparison_add(comparison *c, int kind, double t, int count, const double *here,
+                           const double *there)
 {
   for (int i = 0; i < count; i++) {
     const double difference = fabs(here[i] - there[i]);
@@ -35,8 +43,9 @@ static void add(comparison *c, int kind, double t, int count, const double *here
   }
 }
 
-/* Where the symmetry takes node k with its velocity, the gradient is to be that of the node, turned: A^T L_q' = L_q. */
-static dvi_status compare(dvi_path *path, const double *x, int k, double t, comparison *c)
+/* Compare the Lagrangian at node k and at its image under the symmetry. The gradients must obey
+ * A^T L_q' = L_q and A^T L_v' = L_v. */
+static dvi_status compare_node(dvi_path *path, const double *x, int k, double t, comparison *c)
 {
   enum { V, TURNED_V, L_Q, L_V, TURNED_L_Q, TURNED_L_V, BACK, ARRAYS };
   const double span = dvi__path_span(path, x), later = t + span;
@@ -51,24 +60,26 @@ static dvi_status compare(dvi_path *path, const double *x, int k, double t, comp
   dvi__path_turn(path, at[V], at[TURNED_V]);
   const double *turned = dvi__path_image(path, q);
   DVI_TRY(dvi__lagrangian_value(e, 1, &later, turned, at[TURNED_V], &L[1]));
-  DVI_TRY(dvi__lagrangian_gradient(e, 1, &later, turned, at[TURNED_V], at[TURNED_L_Q], at[TURNED_L_V]));
-  add(c, VALUE, t, 1, &L[0], &L[1]);
+  DVI_TRY(
+      dvi__lagrangian_gradient(e, 1, &later, turned, at[TURNED_V], at[TURNED_L_Q], at[TURNED_L_V]));
+  comparison_add(c, VALUE, t, 1, &L[0], &L[1]);
   dvi__path_turn_back(path, at[TURNED_L_Q], at[BACK]);
-  add(c, FORCE, t, path->n, at[L_Q], at[BACK]);
+  comparison_add(c, FORCE, t, path->n, at[L_Q], at[BACK]);
   dvi__path_turn_back(path, at[TURNED_L_V], at[BACK]);
-  add(c, MOMENTUM, t, path->n, at[L_V], at[BACK]);
+  comparison_add(c, MOMENTUM, t, path->n, at[L_V], at[BACK]);
   return DVI_OK;
 }
 
-static dvi_status judge(const dvi_path *path, const comparison *c)
+static dvi_status comparison_verdict(const dvi_path *path, const comparison *c)
 {
   static const char *const names[KINDS] = {"L", "L_q", "L_v"};
   for (int kind = 0; kind < KINDS; kind++)
     if (!(c->difference[kind] <= symmetric_below * c->size[kind]))
       return dvi__fail(DVI_BAD_ARGUMENT,
-                       "the %s is none of the Lagrangian's: it changes %s by %.3g (of %.3g) at t = %.6g; the path is unchanged",
-                       path->turn.start != NULL || path->shift != NULL ? "symmetry" : "period", names[kind], c->difference[kind],
-                       c->size[kind], c->t[kind]);
+                       "the %s is none of the Lagrangian's: it changes %s by %.3g (of %.3g) at t = "
+                       "%.6g; the path is unchanged",
+                       path->turn.start != NULL || path->shift != NULL ? "symmetry" : "period",
+                       names[kind], c->difference[kind], c->size[kind], c->t[kind]);
   return DVI_OK;
 }
 
@@ -78,13 +89,13 @@ dvi_status dvi__path_check_symmetry(dvi_path *path, const double *x, int nodes)
   if (path->ends != DVI_ENDS_PERIODIC) return DVI_OK;
   if (path->system->autonomous && path->turn.start == NULL && path->shift == NULL) return DVI_OK;
   DVI_TRY(dvi__path_scale(path, x));
-  begin(path, x, &c);
+  comparison_start(path, x, &c);
   const double h = dvi__path_span(path, x) / path->steps;
   for (int k = 0; k < nodes; k++) {
-    const dvi_status status = compare(path, x, k, path->start + k * h, &c);
+    const dvi_status status = compare_node(path, x, k, path->start + k * h, &c);
     if (status != DVI_OK) return dvi__fail_in(status, "node %d of %d", k, path->steps);
   }
-  /* The first node again: at its own time alone a drive may hide. */
-  DVI_TRY(compare(path, x, 0, path->start + 0.37 * path->steps * h, &c));
-  return judge(path, &c);
+  /* Compare the first node at a second time, because a drive may vanish at the first one. */
+  DVI_TRY(compare_node(path, x, 0, path->start + 0.37 * path->steps * h, &c));
+  return comparison_verdict(path, &c);
 }

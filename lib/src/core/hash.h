@@ -1,5 +1,5 @@
-/* Hashes of bytes, FNV-1a, and weights of numbers, for telling files and systems apart, not for
- * security. */
+/* Hashes of bytes (FNV-1a) and weighted sums of numbers. They tell files and systems apart, and are
+ * not meant for security. */
 #ifndef DVI_CORE_HASH_H
 #define DVI_CORE_HASH_H
 #include <math.h>
@@ -15,8 +15,9 @@ static inline uint64_t dvi__hash(uint64_t hash, size_t count, const void *bytes)
   return hash;
 }
 
-/* Where numbers are computed and may be rounded otherwise, sums tell them apart: with weights in
- * [1,2), no two of which are equal, so that numbers that change places change the sum, too. */
+/* Return the weight of a number in a sum. Sums, unlike hashes, tolerate numbers that are rounded
+ * otherwise. The weights lie in [1,2), and no two are equal, so numbers that change places change
+ * the sum, too. */
 static inline double dvi__weight(size_t place)
 {
   const double golden = 0.61803398874989485;

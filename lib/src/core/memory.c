@@ -7,19 +7,20 @@
 static _Thread_local long allocated;
 static _Thread_local long successes_left = -1;
 
-static int may_succeed(void)
+static int allocation_may_succeed(void)
 {
   if (successes_left == 0) return 0;
   if (successes_left > 0) successes_left--;
   return 1;
 }
 
-/* Rows of eight numbers shall not straddle cache lines: a fixed point iteration takes a third longer if they do. */
+/* Align all memory to cache lines. Fixed-point iteration takes a third longer if rows of eight
+ * numbers straddle cache lines. */
 enum { LINE = 64 };
 
 void *dvi__allocate(size_t count, size_t size)
 {
-  if (!may_succeed() || (size > 0 && count > (SIZE_MAX - LINE) / size)) return NULL;
+  if (!allocation_may_succeed() || (size > 0 && count > (SIZE_MAX - LINE) / size)) return NULL;
   const size_t bytes = count * size, whole = bytes > 0 ? (bytes + LINE - 1) / LINE * LINE : LINE;
   void *memory = aligned_alloc(LINE, whole);
   if (memory == NULL) return NULL;

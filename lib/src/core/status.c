@@ -34,7 +34,8 @@ const char *dvi_last_error(void)
   return sentence;
 }
 
-/* Both functions write aside first: an argument may be the last sentence itself. */
+/* Both functions write to a local text first, because an argument may be the last sentence
+ * itself. */
 dvi_status dvi__fail(dvi_status status, const char *format, ...)
 {
   char text[DVI__SENTENCE_SIZE];
@@ -54,7 +55,8 @@ dvi_status dvi__fail_in(dvi_status status, const char *format, ...)
   const int length = dvi_number_vprint(text, sizeof text, format, arguments);
   va_end(arguments);
   if (length >= 0 && length < DVI__SENTENCE_SIZE - 3 && sentence[0] != '\0')
-    (void)snprintf(text + length, sizeof text - (size_t)length, ": %.*s", DVI__SENTENCE_SIZE - 3 - length, sentence);
+    (void)snprintf(text + length, sizeof text - (size_t)length, ": %.*s",
+                   DVI__SENTENCE_SIZE - 3 - length, sentence);
   memcpy(sentence, text, sizeof text);
   return status;
 }

@@ -9,10 +9,11 @@
 #define DVI_PRINTF(text, first)
 #endif
 
-/* Of a sentence with its end. */
+/* Size of a sentence with the 0 at its end. */
 enum { DVI__SENTENCE_SIZE = 1024 };
 
-/* Leave through the caller's caller on failure. Only where nothing is owned. */
+/* Return the status of a failed call from the calling function. Allowed only where that function
+ * owns nothing. */
 #define DVI_TRY(call)                              \
   do {                                             \
     const dvi_status try_status_ = (call);         \

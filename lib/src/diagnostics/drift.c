@@ -1,11 +1,13 @@
 /* Drift: the trend of an error that oscillates.
  *
- * Samples of an oscillating error depend on each other, so a straight line through them all would look far more certain than it
- * is. Means over blocks depend on each other much less; what dependence is left between neighbouring residuals of the line is
- * estimated and widens the standard error as for a first-order autoregressive series, by sqrt((1 + r) / (1 - r)). The lag-one
- * correlation r of detrended residuals comes out too small by (2 + 4 r) / m for m blocks on average (Kendall 1954) and is
- * corrected for that, which matters for a random walk, the most correlated case: about one walk in seven still exceeds a
- * significance of 3, against four in five without the correction. */
+ * Samples of an oscillating error depend on each other, so a straight line through them all would
+ * look far more certain than it is. Means over blocks depend on each other much less. The remaining
+ * dependence between neighbouring residuals of the line is estimated. It widens the standard error
+ * as for a first-order autoregressive series, by sqrt((1 + r) / (1 - r)). The lag-one correlation r
+ * of detrended residuals is too small by (2 + 4 r) / m for m blocks on average (Kendall 1954), and
+ * is corrected for that. The correction matters for a random walk, the most correlated case. About
+ * one walk in seven still exceeds a significance of 3, against four in five without the
+ * correction. */
 #include <dvi/diagnostics.h>
 #include <math.h>
 #include <string.h>
@@ -51,7 +53,8 @@ void dvi_drift_add(dvi_drift *drift, double t, double value)
   drift->filled++;
 }
 
-/* Means of the full blocks; a last block in the making would scatter more than the others. */
+/* Compute the means of the full blocks. An unfilled last block would scatter more than the
+ * others. */
 static int block_means(const dvi_drift *drift, double *time, double *error)
 {
   const int full = drift->filled == drift->per_block ? drift->blocks : drift->blocks - 1;
@@ -62,17 +65,18 @@ static int block_means(const dvi_drift *drift, double *time, double *error)
   return full > 0 ? full : 0;
 }
 
-static double mean(int count, const double *x)
+static double mean_of_blocks(int count, const double *x)
 {
   double sum = 0;
   for (int i = 0; i < count; i++) sum += x[i];
   return count ? sum / count : 0;
 }
 
-/* Least squares; the residuals take the errors' place. Returns the slope, and the times' sum of squares. */
+/* Fit a line by least squares and replace the errors by its residuals. Return the slope, and the
+ * times' sum of squares in *spread. */
 static double fit_line(int count, const double *time, double *error, double *spread)
 {
-  const double time_mean = mean(count, time), error_mean = mean(count, error);
+  const double time_mean = mean_of_blocks(count, time), error_mean = mean_of_blocks(count, error);
   double product = 0;
   *spread = 0;
   for (int b = 0; b < count; b++) {
@@ -84,8 +88,9 @@ static double fit_line(int count, const double *time, double *error, double *spr
   return slope;
 }
 
-/* By how much correlation of neighbours widens the standard error; the correlation is kept within what `count` blocks can show. */
-static double widening(int count, const double *residual, double squares)
+/* Return the factor by which correlation of neighbours widens the standard error. The correlation
+ * is limited to values that `count` blocks can show. */
+static double standard_error_factor(int count, const double *residual, double squares)
 {
   double product = 0;
   for (int b = 1; b < count; b++) product += residual[b] * residual[b - 1];
@@ -100,7 +105,7 @@ static double standard_error(int count, const double *residual, double spread)
   double squares = 0;
   for (int b = 0; b < count; b++) squares += residual[b] * residual[b];
   if (count < 3 || squares == 0 || spread == 0) return 0;
-  return sqrt(squares / (count - 2) / spread) * widening(count, residual, squares);
+  return sqrt(squares / (count - 2) / spread) * standard_error_factor(count, residual, squares);
 }
 
 void dvi_drift_result(const dvi_drift *drift, dvi_drift_fit *fit)
@@ -112,5 +117,6 @@ void dvi_drift_result(const dvi_drift *drift, dvi_drift_fit *fit)
   fit->deviation = standard_error(blocks, error, spread);
   fit->change = fit->slope * (drift->end - drift->start);
   fit->significance = (double)NAN;
-  if (blocks >= FEWEST_BLOCKS) fit->significance = fit->slope == 0 ? 0 : fabs(fit->slope) / fit->deviation;
+  if (blocks >= FEWEST_BLOCKS)
+    fit->significance = fit->slope == 0 ? 0 : fabs(fit->slope) / fit->deviation;
 }

@@ -1,26 +1,30 @@
 /* The symplecticity defect |M^T J M - J| of the map of one step, from its differenced derivative M.
  *
- * Units. A mass of 1 beside one of 1e-8 makes momenta differ as much, so each coordinate gets a length a_i of its own and each
- * momentum a size b_i = m_i w_i, where m_i is the slope of the Legendre map at the point and w_i the velocity that crosses a_i in
- * one step, halved until the Legendre map is nearly linear over it: momenta that turn it over would leave the part of the phase
- * space that a derivative at the point speaks of. The momenta of a Hamiltonian have sizes as the coordinates have. The defect is measured in the coordinates
+ * Units. A mass of 1 beside one of 1e-8 makes momenta differ as much. Each coordinate therefore has
+ * a length a_i of its own, and each momentum a size b_i = m_i w_i. Here m_i is the slope of the
+ * Legendre map at the point and w_i the velocity that crosses a_i in one step. The velocity is
+ * halved until the Legendre map is nearly linear over it, because a derivative at the point is
+ * valid only there. The momenta of a Hamiltonian have sizes as the coordinates have. The defect is
+ * measured in the coordinates
  *
  *     q_i sqrt(b_i / a_i),   p_i sqrt(a_i / b_i),
  *
  * a change of units that leaves J as it is.
  *
- * Differences. How far the map is smooth differs from column to column, and close to a collision the reach is small. Each column
- * of M is therefore extrapolated on its own (Richardson; the choice of an entry is Ridders' 1982): central differences over lengths
- * d_k = r^k d_0 have errors in even powers of d_k, and
+ * Differences. The length over which the map is smooth differs from column to column, and is small
+ * close to a collision. Each column of M is therefore extrapolated on its own, by Richardson's
+ * method with Ridders' choice of an entry (1982). Central differences over lengths d_k = r^k d_0
+ * have errors in even powers of d_k, and
  *
  *     T_k0 = (z(d_k) - z(-d_k)) / (2 d_k),    T_km = T_k,m-1 + (T_k,m-1 - T_k-1,m-1) / (r^-2m - 1)
  *
- * removes m of them. The error of T_km is judged by its distance to both of the entries it comes from, and the entry with the
- * smallest judged error is the column. This choice never looks at the defect, so it can not favour a small one. Several lengths
- * may be multiples of the period of a force, and would agree on a wrong slope. That is why an entry counts only if four lengths
- * went into it, and why the ratio r is neither a power of two nor a simple fraction.
+ * removes m of them. The error of T_km is estimated by its distance to both of the entries it comes
+ * from, and the entry with the smallest estimated error is the column. This choice never looks at
+ * the defect, so it can not favour a small one. Several lengths may be multiples of the period of a
+ * force, and would agree on a wrong slope. That is why an entry counts only if four lengths went
+ * into it, and why the ratio r is neither a power of two nor a simple fraction.
  *
- * The steps are taken by a second integrator of the same method: that is how the given one keeps its state, on every path. */
+ * A second integrator of the same method takes the steps, so that the given one keeps its state. */
 #include <dvi/diagnostics.h>
 #include <float.h>
 #include <math.h>
@@ -31,15 +35,21 @@
 #include "system/evaluate/dynamics.h"
 
 enum {
-  ORDERS = 6, /* entries of a row of the extrapolation: even powers of the length up to the 10th are removed */
-  FEWEST = 3, /* powers that an entry must have removed to count: fewer lengths could agree by chance */
+  /* entries of a row of the extrapolation, which removes even powers of the length up to the
+   * 10th */
+  ORDERS = 6,
+  /* powers that an entry must have removed to count, because fewer lengths could agree by chance */
+  FEWEST = 3,
   HALVINGS = 50
 };
 
-static const double ratio = 0.59, longest = 0x1p-3, shortest = 1e-14; /* of the lengths, in units */
-static const double rounding = 10 * DBL_EPSILON;                      /* of a step's end, relative to its size */
+/* Ratio and range of the lengths, in units. */
+static const double ratio = 0.59, longest = 0x1p-3, shortest = 1e-14;
+/* Rounding of a step's end, relative to its size. */
+static const double rounding = 10 * DBL_EPSILON;
 
-/* Coordinates and momenta stand in one array z [2n] = (q, p). M is stored by columns: column j = derivative by z_j. */
+/* The map of a step. Coordinates and momenta stand in one array z [2n] = (q, p). M is stored by
+ * columns, and column j is the derivative by z_j. */
 typedef struct step_map {
   dvi_integrator *probe;
   int n;
@@ -47,11 +57,14 @@ typedef struct step_map {
   const double *start; /* [2n] */
   double *z;           /* [2n] a point to start from */
   double *scale;       /* [2n] a and b */
-  double *row;         /* [(ORDERS + 1) * 2n] of the column at work, in the scaled coordinates: the last row T_k, the next T_k0 */
-  double *M;           /* [2n * 2n] in the scaled coordinates */
+  /* [(ORDERS + 1) * 2n] last row T_k of the current column in the scaled coordinates, then the next
+   * T_k0 */
+  double *row;
+  double *M; /* [2n * 2n] in the scaled coordinates */
 } step_map;
 
-/* a_i = |q_i|, but at least a sixteenth of the largest: a coordinate that happens to be 0 is no smaller than its neighbours. */
+/* Set a_i = |q_i|, but at least a sixteenth of the largest, because a coordinate that happens to be
+ * 0 is no smaller than its neighbours. */
 static void coordinate_scales(int n, const double *q, const double *v, double h, double *a)
 {
   double largest = 0, moved = 0;
@@ -63,32 +76,35 @@ static void coordinate_scales(int n, const double *q, const double *v, double h,
   for (int i = 0; i < n; i++) a[i] = fmax(fabs(q[i]), largest / 16);
 }
 
-/* (p(v + w e_i) - p(v))_i / w; v is as before afterwards. */
+/* Compute the slope (p(v + w e_i) - p(v))_i / w. v is unchanged afterwards. */
 static dvi_status legendre_slope(const step_map *map, double *v, int i, double w, double *slope)
 {
   const double *q = map->start, *p = map->start + map->n, velocity = v[i];
   v[i] = velocity + w;
   const double moved = v[i] - velocity;
-  const dvi_status status = dvi_system_momentum(dvi_integrator_system(map->probe), map->t, q, v, map->z);
+  const dvi_status status = dvi_system_momentum(dvi_integrator_system(map->probe), map->t, q, v,
+                                                map->z);
   v[i] = velocity;
   if (status == DVI_OK) *slope = (map->z[i] - p[i]) / moved;
   return status;
 }
 
-/* Whether the Legendre map's slopes over w, -w and w/2 are within a quarter of each other; a positive status says that it is not
- * defined so far out. */
-static dvi_status nearly_linear(const step_map *map, double *v, int i, double w, double *slope, int *linear)
+/* Test whether the Legendre map's slopes over w, -w and w/2 are within a quarter of each other. A
+ * positive status says that the map is not defined so far out. */
+static dvi_status nearly_linear(const step_map *map, double *v, int i, double w, double *slope,
+                                int *linear)
 {
   double forward, backward;
   DVI_TRY(legendre_slope(map, v, i, w, &forward));
   DVI_TRY(legendre_slope(map, v, i, -w, &backward));
   DVI_TRY(legendre_slope(map, v, i, w / 2, slope));
-  const double least = fmin(fmin(forward, backward), *slope), most = fmax(fmax(forward, backward), *slope);
+  const double least = fmin(fmin(forward, backward), *slope),
+               most = fmax(fmax(forward, backward), *slope);
   *linear = *slope != 0 && most - least <= fabs(*slope) / 4;
   return DVI_OK;
 }
 
-/* b_i = m_i w_i, and the size of the momentum itself where the Legendre map has no slope. */
+/* Set b_i = m_i w_i, or the size of the momentum itself where the Legendre map has no slope. */
 static dvi_status momentum_scale(const step_map *map, double *v, int i, double *b)
 {
   double w = map->scale[i] / fabs(map->h);
@@ -111,18 +127,21 @@ static dvi_status choose_scales(const step_map *map)
   const int n = map->n;
   const double *q = map->start, *p = map->start + n;
   double *v = DVI_NEW(double, n);
-  dvi_status status = v ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "symplecticity: no memory for %d velocities", n);
-  if (status == DVI_OK) status = dvi_system_velocity(dvi_integrator_system(map->probe), map->t, q, p, v);
+  dvi_status status = v ? DVI_OK
+                        : dvi__fail(DVI_NO_MEMORY, "symplecticity: no memory for %d velocities", n);
+  if (status == DVI_OK)
+    status = dvi_system_velocity(dvi_integrator_system(map->probe), map->t, q, p, v);
   if (status == DVI_OK) coordinate_scales(n, q, v, map->h, map->scale);
   if (dvi_integrator_system(map->probe)->dynamics->by_momentum)
     coordinate_scales(n, p, v, 0, map->scale + n);
   else
-    for (int i = 0; status == DVI_OK && i < n; i++) status = momentum_scale(map, v, i, &map->scale[n + i]);
+    for (int i = 0; status == DVI_OK && i < n; i++)
+      status = momentum_scale(map, v, i, &map->scale[n + i]);
   dvi__release(v);
   return status;
 }
 
-/* One step from start + shift e_j; `shift` becomes what is left of it after rounding. */
+/* Take one step from start + shift e_j. `shift` becomes the shift after rounding. */
 static dvi_status step_from(const step_map *map, int j, double *shift)
 {
   for (int i = 0; i < 2 * map->n; i++) map->z[i] = map->start[i];
@@ -132,45 +151,51 @@ static dvi_status step_from(const step_map *map, int j, double *shift)
   return dvi_integrator_step(map->probe, map->h);
 }
 
-/* The step's end less the start, which in a difference cancels and leaves less to round. */
-static double way(const step_map *map, int i)
+/* Return the step's end less the start. The start cancels in a difference, and rounding is less
+ * without it. */
+static double step_change(const step_map *map, int i)
 {
   const int n = map->n;
-  return (i < n ? dvi_integrator_q(map->probe)[i] : dvi_integrator_p(map->probe)[i - n]) - map->start[i];
+  return (i < n ? dvi_integrator_q(map->probe)[i] : dvi_integrator_p(map->probe)[i - n]) -
+         map->start[i];
 }
 
-/* The factor that turns z_i into scaled coordinates. */
-static double unit(const step_map *map, int i)
+/* Return the factor of z_i in scaled coordinates. */
+static double scaled_unit(const step_map *map, int i)
 {
   const int n = map->n;
   return i < n ? sqrt(map->scale[n + i] / map->scale[i]) : sqrt(map->scale[i - n] / map->scale[i]);
 }
 
-/* T_k0 of column j for the length d: the mean slope between the two points that rounding left. */
-static dvi_status difference(const step_map *map, int j, double d, double *slope)
+/* Compute T_k0 of column j for the length d, the mean slope between the two rounded points. */
+static dvi_status difference_slope(const step_map *map, int j, double d, double *slope)
 {
   double ahead = d * map->scale[j], behind = -ahead;
   DVI_TRY(step_from(map, j, &ahead));
-  for (int i = 0; i < 2 * map->n; i++) slope[i] = way(map, i);
+  for (int i = 0; i < 2 * map->n; i++) slope[i] = step_change(map, i);
   DVI_TRY(step_from(map, j, &behind));
-  for (int i = 0; i < 2 * map->n; i++) slope[i] = (slope[i] - way(map, i)) / (ahead - behind) * unit(map, i) / unit(map, j);
+  for (int i = 0; i < 2 * map->n; i++)
+    slope[i] = (slope[i] - step_change(map, i)) / (ahead - behind) * scaled_unit(map, i) /
+               scaled_unit(map, j);
   return DVI_OK;
 }
 
-static double largest_entry(size_t size, const double *x)
+static double column_size(size_t size, const double *x)
 {
   double largest = 0;
   for (size_t i = 0; i < size; i++) largest = fmax(largest, fabs(x[i]));
   return largest;
 }
 
-/* Put T_k, whose first entry is `slope`, in the place of T_k-1. `rows` rows led up to it, this one included. Gives the entry with
- * the smallest judged error of those that count; the error is infinite if none does yet. */
-static const double *extrapolate(const step_map *map, const double *slope, int rows, double *error)
+/* Replace T_k-1 by T_k, whose first entry is `slope`. `rows` is the number of rows so far, this one
+ * included. Return the entry with the smallest estimated error of those that count. The error is
+ * infinite if none counts yet. */
+static const double *extrapolate_row(const step_map *map, const double *slope, int rows,
+                                     double *error)
 {
   const size_t size = 2 * (size_t)map->n;
   const int entries = rows < ORDERS ? rows : ORDERS;
-  double judged[ORDERS] = {(double)INFINITY}; /* of entry 0, which has nothing to be judged by */
+  double estimated[ORDERS] = {(double)INFINITY}; /* estimated errors. Entry 0 has no estimate */
   int best = 0;
   for (size_t i = 0; i < size; i++) {
     double above = map->row[i], power = 1;
@@ -181,55 +206,61 @@ static const double *extrapolate(const step_map *map, const double *slope, int r
       above = *entry;
       power /= ratio * ratio;
       *entry = left + gap / (power - 1);
-      const double apart = fabs(gap) * power / (power - 1); /* from the entry above and left; the left one is nearer */
-      if (!(apart <= judged[m])) judged[m] = apart;
+      /* distance from the entry above and from the left one, which is nearer */
+      const double apart = fabs(gap) * power / (power - 1);
+      if (!(apart <= estimated[m])) estimated[m] = apart;
     }
   }
   for (int m = FEWEST; m < entries; m++)
-    if (judged[m] < judged[best]) best = m;
-  *error = judged[best] / fmax(1, largest_entry(size, map->row + (size_t)best * size));
+    if (estimated[m] < estimated[best]) best = m;
+  *error = estimated[best] / fmax(1, column_size(size, map->row + (size_t)best * size));
   return map->row + (size_t)best * size;
 }
 
-/* A shorter difference may stay where the map is defined, or regular. */
+/* Test whether a shorter difference may succeed, inside the domain where the map is defined or
+ * regular. */
 static int may_be_shortened(dvi_status status)
 {
   return status > 0 || status == DVI_SINGULAR;
 }
 
-/* What a step rounds, in units of what column j is differenced over. */
+/* Return the rounding of a step, in units of the size of column j's differences. */
 static double rounding_of(const step_map *map, int j)
 {
-  double largest = unit(map, j) * map->scale[j];
-  for (int i = 0; i < 2 * map->n; i++) largest = fmax(largest, fabs(map->start[i]) * unit(map, i));
-  return rounding * largest / (unit(map, j) * map->scale[j]);
+  double largest = scaled_unit(map, j) * map->scale[j];
+  for (int i = 0; i < 2 * map->n; i++)
+    largest = fmax(largest, fabs(map->start[i]) * scaled_unit(map, i));
+  return rounding * largest / (scaled_unit(map, j) * map->scale[j]);
 }
 
-/* Column j of M from the lengths whose steps succeed; if too few do, the last failure. Ends when shorter ones could not do
- * better. */
+/* Compute column j of M from the lengths whose steps succeed. If too few succeed, return the last
+ * failure. The loop ends when shorter lengths could not give a smaller error. */
 static dvi_status difference_column(const step_map *map, int j)
 {
   const size_t size = 2 * (size_t)map->n;
-  const double rounded = rounding_of(map, j), last = fmax(shortest, 4 * DBL_EPSILON * fabs(map->start[j]) / map->scale[j]);
-  double *column = map->M + (size_t)j * size, *slope = map->row + ORDERS * size, least = (double)INFINITY;
+  const double rounded = rounding_of(map, j),
+               last = fmax(shortest, 4 * DBL_EPSILON * fabs(map->start[j]) / map->scale[j]);
+  double *column = map->M + (size_t)j * size, *slope = map->row + ORDERS * size,
+         least = (double)INFINITY;
   dvi_status failure = DVI_OK;
   int rows = 0;
   for (double d = longest; d >= last && least > rounded / d; d *= ratio) {
-    const dvi_status status = difference(map, j, d, slope);
+    const dvi_status status = difference_slope(map, j, d, slope);
     if (status != DVI_OK && !may_be_shortened(status)) return status;
     if (status != DVI_OK) failure = status;
     rows = status == DVI_OK ? rows + 1 : 0;
     double error = (double)INFINITY;
-    const double *entry = rows > 0 ? extrapolate(map, slope, rows, &error) : slope;
+    const double *entry = rows > 0 ? extrapolate_row(map, slope, rows, &error) : slope;
     if (error < least) memcpy(column, entry, size * sizeof *column);
     least = fmin(least, error);
   }
   if (least < (double)INFINITY) return DVI_OK;
   if (failure != DVI_OK) return failure;
-  return dvi__fail(DVI_NOT_FINITE, "symplecticity: differences of variable %d are lost in rounding", j);
+  return dvi__fail(DVI_NOT_FINITE, "symplecticity: differences of variable %d are lost in rounding",
+                   j);
 }
 
-/* Largest entry of M^T J M - J, which is antisymmetric. */
+/* Return the largest entry of M^T J M - J, which is antisymmetric. */
 static double largest_defect(const step_map *map)
 {
   const int n = map->n;
@@ -238,23 +269,25 @@ static double largest_defect(const step_map *map)
     for (int j = i + 1; j < 2 * n; j++) {
       const double *x = map->M + (size_t)i * 2 * (size_t)n, *y = map->M + (size_t)j * 2 * (size_t)n;
       long double form = j == i + n ? -1 : 0;
-      for (int k = 0; k < n; k++) form += (long double)x[k] * (long double)y[n + k] - (long double)x[n + k] * (long double)y[k];
+      for (int k = 0; k < n; k++)
+        form += (long double)x[k] * (long double)y[n + k] -
+                (long double)x[n + k] * (long double)y[k];
       if (!(fabs((double)form) <= largest)) largest = fabs((double)form); /* a NaN stays */
     }
   return largest;
 }
 
-static dvi_status measure(const step_map *map, double *defect)
+static dvi_status measure_defect(const step_map *map, double *defect)
 {
   double none = 0;
-  DVI_TRY(step_from(map, 0, &none)); /* where the step itself fails it has no derivative */
+  DVI_TRY(step_from(map, 0, &none)); /* if the step itself fails, the map has no derivative */
   DVI_TRY(choose_scales(map));
   for (int j = 0; j < 2 * map->n; j++) DVI_TRY(difference_column(map, j));
   *defect = largest_defect(map);
   return DVI_OK;
 }
 
-static void release(step_map *map, double *start)
+static void step_map_release(step_map *map, double *start)
 {
   dvi_integrator_destroy(&map->probe);
   dvi__release(start);
@@ -264,39 +297,51 @@ static void release(step_map *map, double *start)
   dvi__release(map->M);
 }
 
-static dvi_status check(const dvi_integrator *integrator, const double *q, const double *p, double h, const double *defect)
+static dvi_status symplecticity_check(const dvi_integrator *integrator, const double *q,
+                                      const double *p, double h, const double *defect)
 {
-  if (!integrator || !q || !p || !defect) return dvi__fail(DVI_BAD_ARGUMENT, "symplecticity: an argument is NULL");
-  if (!isfinite(h) || h == 0) return dvi__fail(DVI_BAD_ARGUMENT, "symplecticity: h = %g, a finite step other than 0 is needed", h);
+  if (!integrator || !q || !p || !defect)
+    return dvi__fail(DVI_BAD_ARGUMENT, "symplecticity: an argument is NULL");
+  if (!isfinite(h) || h == 0)
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "symplecticity: h = %g, a finite step other than 0 is needed", h);
   const dvi_system *system = dvi_integrator_system(integrator);
   if (system->dynamics->on_manifold)
     return dvi__fail(DVI_UNSUPPORTED,
-                     "symplecticity: the %d coordinates of a system with factors, and its momenta, are no canonical coordinates",
+                     "symplecticity: the %d coordinates of a system with factors, and its momenta, "
+                     "are no canonical coordinates",
                      dvi_system_nq(system));
   if (system->dynamics->constraint != NULL)
-    return dvi__fail(DVI_UNSUPPORTED,
-                     "symplecticity: the system is degenerate, and no step starts off its constraint, where the map would be "
-                     "differenced; use dvi_loop_integral over a loop of starts");
+    return dvi__fail(DVI_UNSUPPORTED, "symplecticity: the system is degenerate, and no step starts "
+                                      "off its constraint, where the map would be "
+                                      "differenced; use dvi_loop_integral over a loop of starts");
   return DVI_OK;
 }
 
-dvi_status dvi_symplecticity(dvi_integrator *integrator, double t, const double *q, const double *p, double h, double *defect)
+dvi_status dvi_symplecticity(dvi_integrator *integrator, double t, const double *q, const double *p,
+                             double h, double *defect)
 {
-  DVI_TRY(check(integrator, q, p, h, defect));
+  DVI_TRY(symplecticity_check(integrator, q, p, h, defect));
   const int n = dvi_system_nq(dvi_integrator_system(integrator));
   const size_t size = 2 * (size_t)n;
   double *start = DVI_NEW(double, size);
-  step_map map = {.n = n, .t = t, .h = h, .start = start, .z = DVI_NEW(double, size), .scale = DVI_NEW(double, size)};
+  step_map map = {.n = n,
+                  .t = t,
+                  .h = h,
+                  .start = start,
+                  .z = DVI_NEW(double, size),
+                  .scale = DVI_NEW(double, size)};
   map.row = DVI_NEW(double, (ORDERS + 1) * size);
   map.M = (double *)dvi__allocate(size, size * sizeof *map.M);
   dvi_status status = dvi_integrator_create_like(integrator, &map.probe);
   if (status == DVI_OK && (!start || !map.z || !map.scale || !map.row || !map.M))
-    status = dvi__fail(DVI_NO_MEMORY, "symplecticity: no memory for a derivative of %zu by %zu", size, size);
+    status = dvi__fail(DVI_NO_MEMORY, "symplecticity: no memory for a derivative of %zu by %zu",
+                       size, size);
   for (int i = 0; status == DVI_OK && i < n; i++) {
     start[i] = q[i];
     start[n + i] = p[i];
   }
-  if (status == DVI_OK) status = measure(&map, defect);
-  release(&map, start);
+  if (status == DVI_OK) status = measure_defect(&map, defect);
+  step_map_release(&map, start);
   return status;
 }

@@ -1,4 +1,5 @@
-/* Cayley's map on SO(3), (I - W/2)^-1 (I + W/2), W = hat(w): the rotation of the quaternion (1, w/2). */
+/* Cayley's map on SO(3), (I - W/2)^-1 (I + W/2), W = hat(w), gives the rotation of the quaternion
+ * (1, w/2). */
 #include <dvi/group.h>
 #include <float.h>
 
@@ -15,7 +16,9 @@ dvi_status dvi_so3_cayley_inverse(const double R[9], double w[3])
 {
   double q[4];
   DVI_TRY(dvi_so3_quaternion(R, q));
-  if (q[0] < DBL_MIN) return dvi__fail(DVI_BAD_ARGUMENT, "Cayley's map: it does not reach a half turn; the exponential does");
+  if (q[0] < DBL_MIN)
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "Cayley's map: it does not reach a half turn; the exponential does");
   for (int i = 0; i < 3; i++) w[i] = 2 * q[1 + i] / q[0];
   return DVI_OK;
 }

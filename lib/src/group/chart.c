@@ -19,7 +19,7 @@ double dvi__chart_angle(dvi__chart_kind kind, const double *xi)
   return sqrt(dvi__inner(dvi__chart_size(kind), xi, xi));
 }
 
-/* By d c_k / ds = (k c_{k+2} - c_{k+1}) / 2. */
+/* The derivatives follow from d c_k / ds = (k c_{k+2} - c_{k+1}) / 2. */
 void dvi__chart_functions(dvi__chart_kind kind, const double *xi, dvi__functions *c)
 {
   const int size = dvi__chart_size(kind);
@@ -29,17 +29,19 @@ void dvi__chart_functions(dvi__chart_kind kind, const double *xi, dvi__functions
   dvi__stumpff(dvi__inner(size, xi, xi), derivative);
   for (int j = 0; j < 4; j++) {
     for (int k = 0; k < 4 && k + 2 * j < 9; k++) c->of[k][j] = derivative[k];
-    for (int k = 0; k + 2 * (j + 1) < 9; k++) derivative[k] = 0.5 * (k * derivative[k + 2] - derivative[k + 1]);
+    for (int k = 0; k + 2 * (j + 1) < 9; k++)
+      derivative[k] = 0.5 * (k * derivative[k + 2] - derivative[k + 1]);
   }
 }
 
 /* ---- matrices ---- */
 
 /* out = R0 E. */
-static void turn(const double *R0, const double *E, double *out)
+static void multiply_rotation(const double *R0, const double *E, double *out)
 {
   for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) out[3 * i + j] = R0[3 * i] * E[j] + R0[3 * i + 1] * E[3 + j] + R0[3 * i + 2] * E[6 + j];
+    for (int j = 0; j < 3; j++)
+      out[3 * i + j] = R0[3 * i] * E[j] + R0[3 * i + 1] * E[3 + j] + R0[3 * i + 2] * E[6 + j];
 }
 
 /* E += a^ */
@@ -51,12 +53,15 @@ static void add_hat(const double *a, double *E)
 
 /* ---- centre ---- */
 
-/* Orthonormal and across y0 even where rounding has made y0 longer or shorter than 1: what it lost in every step would add up.  Source: Duff et al. 2017. */
+/* Find a basis that is orthonormal and orthogonal to y0 even where rounding has made y0 longer or
+ * shorter than 1. Otherwise the losses of all steps would add up. Source: Duff et al. 2017. */
 static void find_basis(const double *y0, double basis[2][3])
 {
-  const double length = sqrt(dvi__dot(y0, y0)), x = y0[0] / length, y = y0[1] / length, z = y0[2] / length;
+  const double length = sqrt(dvi__dot(y0, y0)), x = y0[0] / length, y = y0[1] / length,
+               z = y0[2] / length;
   const double sign = copysign(1, z), a = -1 / (sign + z), b = x * y * a;
-  const double first[] = {1 + sign * x * x * a, sign * b, -sign * x}, second[] = {b, sign + y * y * a, -y};
+  const double first[] = {1 + sign * x * x * a, sign * b, -sign * x},
+               second[] = {b, sign + y * y * a, -y};
   memcpy(basis[0], first, sizeof first);
   memcpy(basis[1], second, sizeof second);
 }
@@ -84,32 +89,32 @@ void dvi__chart_lift(const dvi__chart *chart, const double *x, double *out)
 
 /* ---- points ---- */
 
-/* (a b^T + b a^T) - 2 a.b I, which is a^ b^ + b^ a^. */
+/* Add factor ((a b^T + b a^T) - 2 a.b I), which is factor (a^ b^ + b^ a^). */
 static void add_squares(double factor, const double *a, const double *b, double *E)
 {
   dvi__add_outer(3, factor, a, b, E);
   dvi__add_identity(3, -2 * factor * dvi__dot(a, b), E);
 }
 
-static void rotation_point(const dvi__chart *chart, const dvi__functions *c, const double *xi, const double *rate, double *y,
-                           double *v)
+static void rotation_point(const dvi__chart *chart, const dvi__functions *c, const double *xi,
+                           const double *rate, double *y, double *v)
 {
   double E[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, a[3];
   const double sigma = dvi__dot(xi, rate);
   for (int i = 0; i < 3; i++) a[i] = c->of[1][0] * xi[i];
   add_hat(a, E);
   add_squares(0.5 * c->of[2][0], xi, xi, E);
-  turn(chart->y0, E, y);
+  multiply_rotation(chart->y0, E, y);
   memset(E, 0, sizeof E);
   for (int i = 0; i < 3; i++) a[i] = c->of[1][0] * rate[i] + 2 * sigma * c->of[1][1] * xi[i];
   add_hat(a, E);
   add_squares(c->of[2][0], xi, rate, E);
   add_squares(sigma * c->of[2][1], xi, xi, E);
-  turn(chart->y0, E, v);
+  multiply_rotation(chart->y0, E, v);
 }
 
-static void sphere_point(const dvi__chart *chart, const dvi__functions *c, const double *xi, const double *rate, double *y,
-                         double *v)
+static void sphere_point(const dvi__chart *chart, const dvi__functions *c, const double *xi,
+                         const double *rate, double *y, double *v)
 {
   const int stored = dvi__chart_stored(chart->kind), size = dvi__chart_size(chart->kind);
   double x[3], w[3];
@@ -117,10 +122,12 @@ static void sphere_point(const dvi__chart *chart, const dvi__functions *c, const
   for (int i = 0; i < stored; i++) y[i] = c->of[0][0] * chart->y0[i] + c->of[1][0] * x[i];
   const double sigma = dvi__inner(size, xi, rate);
   dvi__chart_lift(chart, rate, w);
-  for (int i = 0; i < stored; i++) v[i] = 2 * sigma * (c->of[0][1] * chart->y0[i] + c->of[1][1] * x[i]) + c->of[1][0] * w[i];
+  for (int i = 0; i < stored; i++)
+    v[i] = 2 * sigma * (c->of[0][1] * chart->y0[i] + c->of[1][1] * x[i]) + c->of[1][0] * w[i];
 }
 
-void dvi__chart_point(const dvi__chart *chart, const dvi__functions *c, const double *xi, const double *rate, double *y, double *v)
+void dvi__chart_point(const dvi__chart *chart, const dvi__functions *c, const double *xi,
+                      const double *rate, double *y, double *v)
 {
   if (chart->kind == DVI__LINE) {
     *y = *chart->y0 + *xi;
@@ -140,7 +147,7 @@ void dvi__chart_place(const dvi__chart *chart, const double *xi, double *y)
   if (chart->kind == DVI__ROTATION) {
     double E[9];
     dvi_so3_exp(xi, E);
-    turn(chart->y0, E, y);
+    multiply_rotation(chart->y0, E, y);
     return;
   }
   dvi__chart_functions(chart->kind, xi, &c);
@@ -161,35 +168,36 @@ dvi__turn dvi__chart_turn(const dvi__chart *chart, const double *xi)
   return dvi__turn_of(w);
 }
 
-void dvi__chart_leap(const dvi__chart *chart, const double *xi, double *leap)
+void dvi__chart_displacement(const dvi__chart *chart, const double *xi, double *displacement)
 {
   const int stored = dvi__chart_stored(chart->kind);
   if (chart->kind == DVI__LINE) {
-    *leap = *xi;
+    *displacement = *xi;
     return;
   }
   const dvi__turn turn = dvi__chart_turn(chart, xi);
   for (int i = 0; i < stored; i += 3) {
     double change[3];
     dvi__turn_change(&turn, chart->y0 + i, change);
-    memcpy(leap + i, change, (size_t)(stored < 3 ? stored : 3) * sizeof *leap);
+    memcpy(displacement + i, change, (size_t)(stored < 3 ? stored : 3) * sizeof *displacement);
   }
 }
 
-void dvi__chart_move(const dvi__chart *chart, const double *xi, double *y, double *carry)
+void dvi__chart_move(const dvi__chart *chart, const double *xi, double *y, double *compensation)
 {
   if (chart->kind == DVI__LINE) {
-    dvi__add_compensated(y, carry, *xi);
+    dvi__add_compensated(y, compensation, *xi);
     return;
   }
   const dvi__turn turn = dvi__chart_turn(chart, xi);
-  dvi__turn_rows(&turn, dvi__chart_stored(chart->kind), y, carry);
+  dvi__turn_rows(&turn, dvi__chart_stored(chart->kind), y, compensation);
 }
 
 /* ---- tangents ---- */
 
-/* Columns j of T and S, as matrices E before R0. */
-static void rotation_tangent(const dvi__functions *c, const double *xi, const double *rate, int j, double *T, double *S)
+/* Columns j of T and S are R0 E with these matrices E. */
+static void rotation_tangent(const dvi__functions *c, const double *xi, const double *rate, int j,
+                             double *T, double *S)
 {
   const double sigma = dvi__dot(xi, rate);
   double e[3] = {0}, a[3];
@@ -199,7 +207,8 @@ static void rotation_tangent(const dvi__functions *c, const double *xi, const do
   add_squares(c->of[2][0], xi, e, T);
   add_squares(xi[j] * c->of[2][1], xi, xi, T);
   for (int i = 0; i < 3; i++)
-    a[i] = 2 * c->of[1][1] * (xi[j] * rate[i] + sigma * e[i] + rate[j] * xi[i]) + 4 * c->of[1][2] * xi[j] * sigma * xi[i];
+    a[i] = 2 * c->of[1][1] * (xi[j] * rate[i] + sigma * e[i] + rate[j] * xi[i]) +
+           4 * c->of[1][2] * xi[j] * sigma * xi[i];
   add_hat(a, S);
   add_squares(c->of[2][0], rate, e, S);
   add_squares(2 * c->of[2][1] * xi[j], xi, rate, S);
@@ -207,8 +216,8 @@ static void rotation_tangent(const dvi__functions *c, const double *xi, const do
   add_squares(c->of[2][1] * rate[j] + 2 * c->of[2][2] * xi[j] * sigma, xi, xi, S);
 }
 
-static void sphere_tangent(const dvi__chart *chart, const dvi__functions *c, const double *xi, const double *rate, int j, double *T,
-                           double *S)
+static void sphere_tangent(const dvi__chart *chart, const dvi__functions *c, const double *xi,
+                           const double *rate, int j, double *T, double *S)
 {
   const int stored = dvi__chart_stored(chart->kind), size = dvi__chart_size(chart->kind);
   const double sigma = dvi__inner(size, xi, rate), *e = chart->basis[j];
@@ -218,12 +227,13 @@ static void sphere_tangent(const dvi__chart *chart, const dvi__functions *c, con
   for (int i = 0; i < stored; i++) {
     T[i] = 2 * xi[j] * (c->of[0][1] * chart->y0[i] + c->of[1][1] * x[i]) + c->of[1][0] * e[i];
     S[i] = (2 * c->of[0][1] * rate[j] + 4 * c->of[0][2] * xi[j] * sigma) * chart->y0[i] +
-           2 * c->of[1][1] * (xi[j] * w[i] + sigma * e[i] + rate[j] * x[i]) + 4 * c->of[1][2] * xi[j] * sigma * x[i];
+           2 * c->of[1][1] * (xi[j] * w[i] + sigma * e[i] + rate[j] * x[i]) +
+           4 * c->of[1][2] * xi[j] * sigma * x[i];
   }
 }
 
-void dvi__chart_tangents(const dvi__chart *chart, const dvi__functions *c, const double *xi, const double *rate, double *T,
-                         double *S)
+void dvi__chart_tangents(const dvi__chart *chart, const dvi__functions *c, const double *xi,
+                         const double *rate, double *T, double *S)
 {
   if (chart->kind == DVI__LINE) {
     *T = 1;
@@ -236,8 +246,8 @@ void dvi__chart_tangents(const dvi__chart *chart, const dvi__functions *c, const
     if (chart->kind == DVI__ROTATION) {
       double turned[2][9];
       rotation_tangent(c, xi, rate, j, column[0], column[1]);
-      turn(chart->y0, column[0], turned[0]);
-      turn(chart->y0, column[1], turned[1]);
+      multiply_rotation(chart->y0, column[0], turned[0]);
+      multiply_rotation(chart->y0, column[1], turned[1]);
       memcpy(column, turned, sizeof column);
     } else {
       sphere_tangent(chart, c, xi, rate, j, column[0], column[1]);
@@ -249,15 +259,16 @@ void dvi__chart_tangents(const dvi__chart *chart, const dvi__functions *c, const
   }
 }
 
-/* ---- between charts ---- */
+/* ---- from chart to chart ---- */
 
-/* xi of R0^T R, of a rotation. */
+/* Find xi of the rotation R0^T R. */
 static void rotation_inverse(const double *R0, const double *R, double *xi)
 {
   double E[9];
   for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) E[3 * i + j] = R0[i] * R[j] + R0[3 + i] * R[3 + j] + R0[6 + i] * R[6 + j];
-  memset(xi, 0, 3 * sizeof *xi); /* of what is no rotation */
+    for (int j = 0; j < 3; j++)
+      E[3 * i + j] = R0[i] * R[j] + R0[3 + i] * R[3 + j] + R0[6 + i] * R[6 + j];
+  memset(xi, 0, 3 * sizeof *xi); /* the matrix is no rotation */
   (void)dvi_so3_log(E, xi);
 }
 
@@ -266,7 +277,9 @@ void dvi__chart_inverse(const dvi__chart *chart, const double *y, double *xi)
   double tangent[3];
   switch (chart->kind) {
   case DVI__LINE: *xi = *y - *chart->y0; return;
-  case DVI__CIRCLE: *xi = atan2(dvi__inner(2, chart->basis[0], y), dvi__inner(2, chart->y0, y)); return;
+  case DVI__CIRCLE:
+    *xi = atan2(dvi__inner(2, chart->basis[0], y), dvi__inner(2, chart->y0, y));
+    return;
   case DVI__SPHERE:
     dvi_s2_log(chart->y0, y, tangent);
     for (int j = 0; j < 2; j++) xi[j] = dvi__dot(chart->basis[j], tangent);
@@ -292,8 +305,8 @@ void dvi__chart_store(const dvi__chart *chart, const double *local, double *stor
     memcpy(stored, local, (size_t)dvi__chart_size(chart->kind) * sizeof *stored);
 }
 
-void dvi__chart_leave_velocity(const dvi__chart *chart, const dvi__functions *c, const double *xi, const double *rate,
-                               double *stored)
+void dvi__chart_leave_velocity(const dvi__chart *chart, const dvi__functions *c, const double *xi,
+                               const double *rate, double *stored)
 {
   if (chart->kind == DVI__SPHERE) {
     double y[3];

@@ -1,25 +1,32 @@
-/* Charts of a factor of the configuration space, centred at a point y0 of it: y(xi) with y(0) = y0, s = |xi|^2, c_k Stumpff's functions.
+/* Charts of a factor of the configuration space, centred at a point y0 of the factor. A chart is a
+ * map y(xi) with y(0) = y0. Here s = |xi|^2, and c_k are Stumpff's functions.
  *
  *     line       y = y0 + xi
- *     circle     y = c_0 y0 + c_1 xi y0',  y0' = y0 turned by 90 degrees                    U(1) as unit vectors
- *     sphere     y = c_0 y0 + c_1 B xi,    B an orthonormal basis of the tangent plane      S^2: great circles, the horizontal lift to SO(3)
- *     rotation   R = R0 exp(xi^),          exp = I + c_1 xi^ + c_2 xi^^2                    SO(3): nine entries, row by row
+ *     circle     y = c_0 y0 + c_1 xi y0',  y0' = y0 turned by 90 degrees
+ *                U(1) as unit vectors
+ *     sphere     y = c_0 y0 + c_1 B xi,    B an orthonormal basis of the tangent plane
+ *                S^2 by great circles, the horizontal lift to SO(3)
+ *     rotation   R = R0 exp(xi^),          exp = I + c_1 xi^ + c_2 xi^^2
+ *                SO(3) by nine entries, row by row
  *
- * They are natural: a rotation of y0 rotates y. A Lagrangian on the stored coordinates y becomes one of xi: what that takes of the derivatives of y is here, in
- * contractions f(xi) = w.y(xi) with a covector w, all of the form  f = w_0 c_0 + c_1 z.xi + c_2 xi.B xi + constant.
+ * The charts are natural, for a rotation of y0 rotates y. A Lagrangian on the stored coordinates y
+ * becomes a Lagrangian of xi. This file has the derivatives of y that are needed for it, as
+ * contractions f(xi) = w.y(xi) with a covector w. All have the form f = w_0 c_0 + c_1 z.xi + c_2
+ * xi.B xi + constant.
  *
- * What is tied to a point of the manifold itself, and stored with a state, is: v = dy/dt (circle: the angular rate; rotation: the angular velocity in the
- * body's frame), and the momentum p of this v.
- * Source: Leok 2004, sec. 5.3 and 5.4 (with the derivative of the exponential map on the side that the chart's left factor asks for); Iserles et al. 2000. */
+ * A state stores y, the velocity v = dy/dt and the momentum p conjugate to v. For a circle v is the
+ * angular rate. For a rotation v is the angular velocity in the body's frame. Source: Leok 2004,
+ * sec. 5.3 and 5.4 (with the derivative of the exponential map on the side that the chart's left
+ * factor asks for); Iserles et al. 2000. */
 #ifndef DVI_GROUP_CHART_H
 #define DVI_GROUP_CHART_H
 
 typedef enum dvi__chart_kind { DVI__LINE, DVI__CIRCLE, DVI__SPHERE, DVI__ROTATION } dvi__chart_kind;
 
-/* Most numbers: of a point; of chart coordinates; of a stored velocity. */
+/* Largest counts of numbers: of a point, of chart coordinates, of a stored velocity. */
 enum { DVI__CHART_POINT = 9, DVI__CHART_SIZE = 3, DVI__CHART_VELOCITY = 3 };
 
-/* How many numbers: of a point y; of a stored velocity; of chart coordinates. */
+/* Return the count of numbers of a point y, of a stored velocity, of chart coordinates. */
 static inline int dvi__chart_stored(dvi__chart_kind kind)
 {
   static const int count[] = {1, 2, 3, 9};
@@ -40,87 +47,100 @@ static inline int dvi__chart_size(dvi__chart_kind kind)
 typedef struct dvi__chart {
   dvi__chart_kind kind;
   double y0[DVI__CHART_POINT];
-  double basis[2][3]; /* of the tangent plane: circle, sphere */
+  double basis[2][3]; /* basis of the tangent plane (circle, sphere) */
 } dvi__chart;
 
-/* What everything at one xi is made of: of[k][j] is the derivative of order j of c_k in s; c_3 has two. Nothing of a line needs them. */
+/* Stumpff's functions and their derivatives at one xi. of[k][j] is the derivative of order j of c_k
+ * in s. c_3 has two derivatives. A line needs none of them. */
 typedef struct dvi__functions {
   double of[4][4];
 } dvi__functions;
 
 void dvi__chart_functions(dvi__chart_kind kind, const double *xi, dvi__functions *c);
 
-/* Centre it at a point. */
+/* Centre a chart at the point y0. */
 void dvi__chart_centre(dvi__chart_kind kind, const double *y0, dvi__chart *chart);
 
-/* y(xi), orthogonal without bias where it is a rotation. */
+/* Compute y(xi). A rotation stays orthogonal without bias. */
 void dvi__chart_place(const dvi__chart *chart, const double *xi, double *y);
 
-/* y(xi), and v = dy/dt for dxi/dt = rate. */
-void dvi__chart_point(const dvi__chart *chart, const dvi__functions *c, const double *xi, const double *rate, double *y, double *v);
+/* Compute y(xi), and v = dy/dt for dxi/dt = rate. */
+void dvi__chart_point(const dvi__chart *chart, const dvi__functions *c, const double *xi,
+                      const double *rate, double *y, double *v);
 
-/* y(xi) - y0, right to a rounding of its own size. */
-void dvi__chart_leap(const dvi__chart *chart, const double *xi, double *leap);
+/* Compute the displacement y(xi) - y0 to relative rounding accuracy. */
+void dvi__chart_displacement(const dvi__chart *chart, const double *xi, double *displacement);
 
-/* y, where the chart is centred, to y(xi), with its carry: it does not leave the manifold, however many steps there are. */
-void dvi__chart_move(const dvi__chart *chart, const double *xi, double *y, double *carry);
+/* Move y from the chart's centre to y(xi), with its compensation. The point stays on the manifold
+ * for any number of steps. */
+void dvi__chart_move(const dvi__chart *chart, const double *xi, double *y, double *compensation);
 
-/* The gradient of a.y(xi) + b.v(xi,rate), in xi and in rate. */
-void dvi__chart_gradient(const dvi__chart *chart, const dvi__functions *c, const double *xi, const double *rate, const double *a,
-                         const double *b, double *in_xi, double *in_rate);
+/* Compute the gradient of a.y(xi) + b.v(xi,rate) in xi and in rate. */
+void dvi__chart_gradient(const dvi__chart *chart, const dvi__functions *c, const double *xi,
+                         const double *rate, const double *a, const double *b, double *in_xi,
+                         double *in_rate);
 
-/* Its second derivatives, [size*size]: in xi; in xi and rate. */
-void dvi__chart_curvature(const dvi__chart *chart, const dvi__functions *c, const double *xi, const double *rate, const double *a,
-                          const double *b, double *in_xi, double *mixed);
+/* Compute the second derivatives [size*size] of that function in xi, and in xi and rate. */
+void dvi__chart_curvature(const dvi__chart *chart, const dvi__functions *c, const double *xi,
+                          const double *rate, const double *a, const double *b, double *in_xi,
+                          double *mixed);
 
-/* T = dy/dxi = dv/drate and S = dv/dxi: row i is T[i*size]. */
-void dvi__chart_tangents(const dvi__chart *chart, const dvi__functions *c, const double *xi, const double *rate, double *T,
-                         double *S);
+/* Compute T = dy/dxi = dv/drate and S = dv/dxi. Row i is T[i*size]. */
+void dvi__chart_tangents(const dvi__chart *chart, const dvi__functions *c, const double *xi,
+                         const double *rate, double *T, double *S);
 
-/* Of a rotation: the gradient of l.Omega in xi and in rate [3], Omega = dexp_{-xi} rate the velocity in the body's frame, l fixed; its second derivatives in
- * xi, and in xi (rows) and rate, [9]. */
-void dvi__chart_turning_gradient(const dvi__functions *c, const double *xi, const double *rate, const double *l, double *in_xi,
-                                 double *in_rate);
-void dvi__chart_turning_curvature(const dvi__functions *c, const double *xi, const double *rate, const double *l, double *in_xi,
-                                  double *mixed);
+/* Compute for a rotation the gradient [3] of l.Omega in xi and in rate. Omega = dexp_{-xi} rate is
+ * the velocity in the body's frame, and l is fixed. The second function gives the second
+ * derivatives [9] in xi, and in xi (rows) and rate. */
+void dvi__chart_turning_gradient(const dvi__functions *c, const double *xi, const double *rate,
+                                 const double *l, double *in_xi, double *in_rate);
+void dvi__chart_turning_curvature(const dvi__functions *c, const double *xi, const double *rate,
+                                  const double *l, double *in_xi, double *mixed);
 
-/* ---- rotations and spheres: what turning them in space does, by w x y; `turned` [3] are the components of w ---- */
+/* ---- rotations and spheres under rotations of space, y' = w x y ---- */
 
-/* Rows y x: row i is what a turn does to stored number i, [stored*3]; the same for v. */
+/* Compute the rows y x. Row i [stored*3] gives the change of stored number i under w. The rows of v
+ * are found likewise. */
 void dvi__chart_turns(dvi__chart_kind kind, const double *y, double *turns);
 
-/* The moment a.(w x y) = w.moment, added. */
+/* Add the moment, which is defined by a.(w x y) = w.moment. */
 void dvi__chart_add_moment(dvi__chart_kind kind, const double *y, const double *a, double *moment);
 
-/* The angular momentum: that of a direction is in space; that of a rotation in the centre's frame, where it is p. What it is of the chart's
- * momentum at the centre, and what moments in space add to it. */
+/* Compute the angular momentum of the chart's momentum p at the centre. A direction has it in
+ * space. A rotation has it in the centre's frame, where it equals p. The second function adds
+ * moments in space. */
 void dvi__chart_angular_momentum(const dvi__chart *chart, const double *p, double *angular);
 void dvi__chart_add_impulse(const dvi__chart *chart, const double *impulse, double *angular);
 
-/* From it: the chart's momentum at xi, and its derivative in xi [size*size]. */
-void dvi__chart_momentum(const dvi__chart *chart, const double *xi, const double *angular, double *p);
-void dvi__chart_momentum_derivative(const dvi__chart *chart, const double *xi, const double *angular, double *derivative);
+/* Compute the chart's momentum at xi from the angular momentum, and its derivative in xi
+ * [size*size]. */
+void dvi__chart_momentum(const dvi__chart *chart, const double *xi, const double *angular,
+                         double *p);
+void dvi__chart_momentum_derivative(const dvi__chart *chart, const double *xi,
+                                    const double *angular, double *derivative);
 
-/* y to y(xi), and the stored momentum p, to whose angular momentum this is added first: both with their carries, to twice the digits, so that what is not added
- * to is conserved. */
-void dvi__chart_carry(const dvi__chart *chart, const double *xi, const double *added, double *y, double *y_carry, double *p,
-                      double *p_carry);
+/* Move y to y(xi) and the stored momentum p with it, after `added` is added to the angular momentum
+ * of p. Both are compensated to twice the digits. Components to which nothing is added are
+ * conserved. */
+void dvi__chart_transport(const dvi__chart *chart, const double *xi, const double *added, double *y,
+                          double *y_compensation, double *p, double *p_compensation);
 
-/* W [size*3]: the chart's momentum at xi of a moment in space. */
+/* Compute W [size*3], which maps a moment in space to the chart's momentum at xi. */
 void dvi__chart_moments(const dvi__chart *chart, const double *xi, double *W);
 
-/* xi of a point y, nearer than half a turn. */
+/* Compute xi of a point y that is nearer than half a turn. */
 void dvi__chart_inverse(const dvi__chart *chart, const double *y, double *xi);
 
-/* At the centre: the rate of a stored velocity, and back; the chart's momentum of a stored one, and back. */
+/* Convert at the centre between a stored velocity and the chart's rate, and between a stored
+ * momentum and the chart's momentum. */
 void dvi__chart_enter(const dvi__chart *chart, const double *stored, double *local);
 void dvi__chart_store(const dvi__chart *chart, const double *local, double *stored);
 
-/* The stored velocity at y(xi) of a rate. */
-void dvi__chart_leave_velocity(const dvi__chart *chart, const dvi__functions *c, const double *xi, const double *rate,
-                               double *stored);
+/* Compute the stored velocity at y(xi) for a rate. */
+void dvi__chart_leave_velocity(const dvi__chart *chart, const dvi__functions *c, const double *xi,
+                               const double *rate, double *stored);
 
-/* |xi|, and how large it may be: half a turn; infinite for a line. */
+/* Compute |xi|, and its bound. The bound is half a turn, and infinite for a line. */
 double dvi__chart_angle(dvi__chart_kind kind, const double *xi);
 double dvi__chart_bound(dvi__chart_kind kind);
 

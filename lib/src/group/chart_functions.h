@@ -1,13 +1,14 @@
-/* What charts are made of: matrices of few numbers. For chart*.c. */
+/* Small matrices shared by the files chart*.c. */
 #ifndef DVI_GROUP_CHART_FUNCTIONS_H
 #define DVI_GROUP_CHART_FUNCTIONS_H
 #include "group/chart.h"
 #include "group/turn.h"
 
-/* B x: from the tangent plane's coordinates. */
+/* Compute B x, the tangent vector with the coordinates x. */
 void dvi__chart_lift(const dvi__chart *chart, const double *x, double *out);
 
-/* Rows of y(xi) are rows of y0 times this; a direction and an angle are one row. Not of a line. */
+/* Find the rotation by which the rows of y0 become those of y(xi). A direction and an angle are one
+ * row. A line has none. */
 dvi__turn dvi__chart_turn(const dvi__chart *chart, const double *xi);
 
 static inline double dvi__inner(int n, const double *a, const double *b)

@@ -1,4 +1,4 @@
-/* What turning a rotation or a direction in space does, and its angular momentum. */
+/* Rotations of space acting on a rotation or a direction, and the angular momentum. */
 #include <dvi/group.h>
 #include <string.h>
 
@@ -7,7 +7,8 @@
 #include "group/vector.h"
 #include "num/compensated.h"
 
-/* Vectors in a stored point: the columns of a rotation, or the direction itself. */
+/* Count the vectors in a stored point, which are the columns of a rotation or the direction
+ * itself. */
 static int vectors_of(dvi__chart_kind kind)
 {
   return kind == DVI__ROTATION ? 3 : 1;
@@ -57,11 +58,15 @@ void dvi__chart_add_impulse(const dvi__chart *chart, const double *impulse, doub
 {
   const double *R = chart->y0;
   for (int j = 0; j < 3; j++)
-    angular[j] += chart->kind == DVI__ROTATION ? R[j] * impulse[0] + R[3 + j] * impulse[1] + R[6 + j] * impulse[2] : impulse[j];
+    angular[j] += chart->kind == DVI__ROTATION
+                      ? R[j] * impulse[0] + R[3 + j] * impulse[1] + R[6 + j] * impulse[2]
+                      : impulse[j];
 }
 
-/* Of a direction: p_j = T_j.(angular x y), T_j = c_1 B_j + xi_j ((c_3 - c_2) B xi - c_1 y0). */
-static void direction_momentum(const dvi__chart *chart, const double c[4], const double *xi, const double *angular, double *p)
+/* Compute p_j = T_j.(angular x y) of a direction, T_j = c_1 B_j + xi_j ((c_3 - c_2) B xi - c_1
+ * y0). */
+static void direction_momentum(const dvi__chart *chart, const double c[4], const double *xi,
+                               const double *angular, double *p)
 {
   double x[3], y[3], P[3];
   dvi__chart_lift(chart, xi, x);
@@ -71,8 +76,10 @@ static void direction_momentum(const dvi__chart *chart, const double c[4], const
   for (int j = 0; j < 2; j++) p[j] = c[1] * dvi__dot(chart->basis[j], P) + along * xi[j];
 }
 
-/* Of a rotation R0 exp(xi): turning by w in the centre's frame is d xi with dexp_xi d xi = w, so p = dexp_xi^T angular = dexp_{-xi} angular. */
-void dvi__chart_momentum(const dvi__chart *chart, const double *xi, const double *angular, double *p)
+/* A turn by w of R0 exp(xi) in the centre's frame moves xi by d xi with dexp_xi d xi = w. So
+ * p = dexp_xi^T angular = dexp_{-xi} angular. */
+void dvi__chart_momentum(const dvi__chart *chart, const double *xi, const double *angular,
+                         double *p)
 {
   double c[4];
   dvi__stumpff_four(dvi__inner(dvi__chart_size(chart->kind), xi, xi), c);
@@ -82,27 +89,28 @@ void dvi__chart_momentum(const dvi__chart *chart, const double *xi, const double
     direction_momentum(chart, c, xi, angular, p);
 }
 
-static void carry_direction(const dvi__chart *chart, const double *xi, const double *added, double *y, double *y_carry, double *p,
-                            double *p_carry)
+static void carry_direction(const dvi__chart *chart, const double *xi, const double *added,
+                            double *y, double *y_compensation, double *p, double *p_compensation)
 {
   dvi__twofold mu[3];
-  dvi__turn_angular(y, y_carry, p, p_carry, mu);
+  dvi__turn_angular(y, y_compensation, p, p_compensation, mu);
   for (int i = 0; i < 3; i++) mu[i] = dvi__twofold_sum(mu[i], (dvi__twofold){added[i], 0});
-  dvi__chart_move(chart, xi, y, y_carry);
-  dvi__turn_momentum(mu, dvi__dot(added, added) == 0 ? DVI__TURN_ANY : DVI__TURN_ROUNDINGS, y, y_carry, p, p_carry);
+  dvi__chart_move(chart, xi, y, y_compensation);
+  dvi__turn_momentum(mu, dvi__dot(added, added) == 0 ? DVI__TURN_ANY : DVI__TURN_ROUNDINGS, y,
+                     y_compensation, p, p_compensation);
 }
 
-void dvi__chart_carry(const dvi__chart *chart, const double *xi, const double *added, double *y, double *y_carry, double *p,
-                      double *p_carry)
+void dvi__chart_transport(const dvi__chart *chart, const double *xi, const double *added, double *y,
+                          double *y_compensation, double *p, double *p_compensation)
 {
   if (chart->kind == DVI__SPHERE) {
-    carry_direction(chart, xi, added, y, y_carry, p, p_carry);
+    carry_direction(chart, xi, added, y, y_compensation, p, p_compensation);
     return;
   }
   const dvi__turn turn = dvi__chart_turn(chart, xi);
-  dvi__add_compensated_all(3, p, p_carry, added);
-  dvi__turn_rows(&turn, 9, y, y_carry);
-  dvi__turn_rows(&turn, 3, p, p_carry);
+  dvi__add_compensated_all(3, p, p_compensation, added);
+  dvi__turn_rows(&turn, 9, y, y_compensation);
+  dvi__turn_rows(&turn, 3, p, p_compensation);
 }
 
 void dvi__chart_moments(const dvi__chart *chart, const double *xi, double *W)
@@ -116,7 +124,8 @@ void dvi__chart_moments(const dvi__chart *chart, const double *xi, double *W)
   }
 }
 
-void dvi__chart_momentum_derivative(const dvi__chart *chart, const double *xi, const double *angular, double *derivative)
+void dvi__chart_momentum_derivative(const dvi__chart *chart, const double *xi,
+                                    const double *angular, double *derivative)
 {
   if (chart->kind == DVI__ROTATION) {
     dvi_so3_velocity_derivative(xi, angular, derivative);

@@ -1,4 +1,5 @@
-/* SE(3), the rigid motions: rotations and translations by the semi-direct product (R, x)(S, y) = (R S, x + R y). */
+/* The rigid motions SE(3) are rotations and translations with the semi-direct product (R, x)(S, y)
+ * = (R S, x + R y). */
 #include <dvi/group.h>
 
 #include "core/status.h"
@@ -25,9 +26,11 @@ void dvi_se3_cayley(const double xi[6], double g[12])
   dvi__about(xi, 0.5 * shrink, 0.25 * shrink, xi + 3, g + 9);
 }
 
-/* What a turning rate a adds to the shift: with exp(w, u) = (exp w, x), x = dexp_w u, the velocity moved back to the identity is (r, x' - r x x), r = dexp_w a,
- * and x' has the part (d dexp_w u / dw) a. */
-static void coupling(const double xi[6], const double a[3], const double r[3], double shift[3])
+/* Compute the part of the shift that a turning rate a adds. With exp(w, u) = (exp w, x), x = dexp_w
+ * u, the velocity moved back to the identity is (r, x' - r x x), r = dexp_w a. Here x' has the part
+ * (d dexp_w u / dw) a. */
+static void shift_coupling(const double xi[6], const double a[3], const double r[3],
+                           double shift[3])
 {
   const double opposite[3] = {-xi[0], -xi[1], -xi[2]};
   double x[3], D[9];
@@ -41,7 +44,7 @@ void dvi_se3_dexp(const double xi[6], const double v[6], double u[6])
 {
   double turn[3], shift[3];
   dvi_so3_dexp(xi, v, turn);
-  coupling(xi, v, turn, shift);
+  shift_coupling(xi, v, turn, shift);
   dvi_so3_dexp(xi, v + 3, u + 3);
   for (int i = 0; i < 3; i++) {
     u[i] = turn[i];
@@ -53,7 +56,7 @@ void dvi_se3_dexp_inverse(const double xi[6], const double v[6], double u[6])
 {
   double turn[3], shift[3];
   dvi_so3_dexp_inverse(xi, v, turn);
-  coupling(xi, turn, v, shift);
+  shift_coupling(xi, turn, v, shift);
   for (int i = 0; i < 3; i++) shift[i] = v[3 + i] - shift[i];
   dvi_so3_dexp_inverse(xi, shift, u + 3);
   for (int i = 0; i < 3; i++) u[i] = turn[i];

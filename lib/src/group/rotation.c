@@ -1,4 +1,4 @@
-/* SO(3): exponential, logarithm, and what they do to velocities.
+/* Exponential and logarithm of SO(3), and their action on velocities.
  *
  * The exponential of w is the rotation of the quaternion (cos |w|/2, w sin(|w|/2) / |w|). */
 #include <dvi/group.h>
@@ -21,7 +21,8 @@ dvi_status dvi_so3_log(const double R[9], double w[3])
   double q[4];
   const dvi_status status = dvi_so3_quaternion(R, q);
   if (status != DVI_OK) return status;
-  const double sine = sqrt(dvi__dot(q + 1, q + 1)), ratio = sine > 0 ? 2 * atan2(sine, q[0]) / sine : 2;
+  const double sine = sqrt(dvi__dot(q + 1, q + 1)),
+               ratio = sine > 0 ? 2 * atan2(sine, q[0]) / sine : 2;
   for (int i = 0; i < 3; i++) w[i] = ratio * q[1 + i];
   return DVI_OK;
 }
@@ -33,7 +34,8 @@ void dvi_so3_dexp(const double w[3], const double v[3], double u[3])
   dvi__about(w, c[2], c[3], v, u);
 }
 
-/* (1 - x cot x) / (4 x^2), x = |w|/2, is (c_2 - c_3) / (4 c_1) at x^2: nothing cancels below a full turn. */
+/* With x = |w|/2 the factor (1 - x cot x) / (4 x^2) is (c_2 - c_3) / (4 c_1) at x^2. Nothing
+ * cancels below a full turn. */
 void dvi_so3_dexp_inverse(const double w[3], const double v[3], double u[3])
 {
   double c[4];
@@ -41,7 +43,8 @@ void dvi_so3_dexp_inverse(const double w[3], const double v[3], double u[3])
   dvi__about(w, -0.5, c[1] != 0 ? (c[2] - c[3]) / (4 * c[1]) : 0, v, u);
 }
 
-/* The velocity is v - c_2 w x v + c_3 (w (w.v) - |w|^2 v); the derivatives of c_2 and c_3 in w are (2 c_4 - c_3) w and (3 c_5 - c_4) w. */
+/* The velocity is v - c_2 w x v + c_3 (w (w.v) - |w|^2 v). The derivatives of c_2 and c_3 in w are
+ * (2 c_4 - c_3) w and (3 c_5 - c_4) w. */
 void dvi_so3_velocity_derivative(const double w[3], const double v[3], double D[9])
 {
   double c[9], once[3], inner[3], stretch[3];
@@ -52,5 +55,6 @@ void dvi_so3_velocity_derivative(const double w[3], const double v[3], double D[
   const double along = c[3] * dvi__dot(w, v), x = c[2] * v[0], y = c[2] * v[1], z = c[2] * v[2];
   const double turn[9] = {along, -z, y, z, along, -x, -y, x, along};
   for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) D[3 * i + j] = turn[3 * i + j] + c[3] * w[i] * v[j] + (stretch[i] - 2 * c[3] * v[i]) * w[j];
+    for (int j = 0; j < 3; j++)
+      D[3 * i + j] = turn[3 * i + j] + c[3] * w[i] * v[j] + (stretch[i] - 2 * c[3] * v[i]) * w[j];
 }

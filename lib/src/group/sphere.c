@@ -1,4 +1,4 @@
-/* The unit circle and the unit sphere: exponential and logarithm along great circles. */
+/* Exponential and logarithm along great circles of the unit circle and the unit sphere. */
 #include <dvi/group.h>
 #include <math.h>
 
@@ -18,7 +18,8 @@ double dvi_u1_log(const double y[2])
   return atan2(y[1] + 0.0, y[0]); /* -0 becomes 0, and (-1, -0) the angle pi */
 }
 
-/* z = (cos|t| y + t sin|t| / |t|), to length 1: else the roundoff of a million steps would add up in it. */
+/* Scale z = (cos|t| y + t sin|t| / |t|) to length 1. Otherwise the roundoff of a million steps
+ * would add up in z. */
 void dvi_s2_exp(const double y[3], const double t[3], double z[3])
 {
   double c[4];
@@ -28,7 +29,7 @@ void dvi_s2_exp(const double y[3], const double t[3], double z[3])
   for (int i = 0; i < 3; i++) z[i] /= length;
 }
 
-/* t, of length pi, from y towards the axis of its smallest component. */
+/* Compute t of length pi from y towards the axis of y's smallest component. */
 static void half_turn(const double y[3], double t[3])
 {
   int axis = 0;
@@ -38,7 +39,8 @@ static void half_turn(const double y[3], double t[3])
   for (int i = 0; i < 3; i++) t[i] = scale * ((i == axis) - height * y[i]);
 }
 
-/* The normal y x z of the great circle is taken from z - y or z + y, which lose nothing where they are small. */
+/* Take the normal y x z of the great circle from z - y or z + y. These differences lose no digits
+ * where they are small. */
 void dvi_s2_log(const double y[3], const double z[3], double t[3])
 {
   const double cosine = dvi__dot(y, z), sign = cosine > 0 ? 1 : -1;

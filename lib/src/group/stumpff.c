@@ -1,9 +1,11 @@
-/* Three ranges of s = theta^2.
+/* Stumpff's functions in three ranges of s = theta^2.
  *
- * Up to NEAR the two highest functions by their series, which do not cancel, and the others by c_k = 1/k! - s c_{k+2}, which damps errors
- * there. Beyond NEAR the first four are sines and cosines of the half angle, so that c_2 keeps its relative accuracy at its zeros. The rest
- * still comes from the top up to FAR, and by the same recurrence upward beyond. Up to NEAR only sums, products and quotients are used: the
- * digits are the same with every mathematical library. */
+ * Up to NEAR the two highest functions are summed by their series, which do not cancel. The others
+ * follow by c_k = 1/k! - s c_{k+2}, which damps errors there. Beyond NEAR the first four are sines
+ * and cosines of the half angle, so that c_2 keeps its relative accuracy at its zeros. The rest
+ * still comes from the top up to FAR, and by the same recurrence upward beyond. Up to NEAR only
+ * sums, products and quotients are used, so the digits are the same with every mathematical
+ * library. */
 #include "group/stumpff.h"
 
 #include <math.h>
@@ -51,8 +53,8 @@ static const double inverse_factorial[] = {1 / 1.0,
                                            1 / 13763753091226345046315979581580902400000000.0,
                                            1 / 523022617466601111760007224100074291200000000.0};
 
-/* sum_{j < 2 pairs} (-s)^j / (2j+k)!, even and odd powers side by side. */
-static inline double series(int k, int pairs, double s)
+/* Sum (-s)^j / (2j+k)! over j < 2 pairs, even and odd powers side by side. */
+static inline double sum_stumpff_series(int k, int pairs, double s)
 {
   const double square = s * s;
   double even = 0, odd = 0;
@@ -63,21 +65,22 @@ static inline double series(int k, int pairs, double s)
   return even - s * odd;
 }
 
-/* c[to], .., c[from] from what stands above them. */
-static inline void down(double s, int from, int to, double *c)
+/* Compute c[to], .., c[from] from the functions above them. */
+static inline void recur_down(double s, int from, int to, double *c)
 {
   for (int k = from; k >= to; k--) c[k] = inverse_factorial[k] - s * c[k + 2];
 }
 
-static inline void up(double s, int from, int to, double *c)
+static inline void recur_up(double s, int from, int to, double *c)
 {
   for (int k = from; k <= to; k++) c[k] = (inverse_factorial[k - 2] - c[k - 2]) / s;
 }
 
-/* c_0, .., c_3 by sine and cosine of theta/2. */
-static void circle(double s, double *c)
+/* Compute c_0, .., c_3 by sine and cosine of theta/2. */
+static void functions_by_angle(double s, double *c)
 {
-  const double theta = sqrt(s), sine = sin(theta / 2), cosine = cos(theta / 2), ratio = sine / theta;
+  const double theta = sqrt(s), sine = sin(theta / 2), cosine = cos(theta / 2),
+               ratio = sine / theta;
   c[0] = (cosine - sine) * (cosine + sine);
   c[1] = 2 * ratio * cosine;
   c[2] = 2 * ratio * ratio;
@@ -87,14 +90,14 @@ static void circle(double s, double *c)
 void dvi__stumpff_four(double s, double c[4])
 {
   if (s <= NEAR) {
-    c[3] = series(3, 6, s); /* the first term left out is below 1e-18 of the sum */
-    c[2] = series(2, 6, s);
-    down(s, 1, 0, c);
+    c[3] = sum_stumpff_series(3, 6, s); /* the first term left out is below 1e-18 of the sum */
+    c[2] = sum_stumpff_series(2, 6, s);
+    recur_down(s, 1, 0, c);
   } else if (isinf(s)) {
     c[0] = 1;
     c[1] = c[2] = c[3] = 0;
   } else {
-    circle(s, c);
+    functions_by_angle(s, c);
   }
 }
 
@@ -103,10 +106,10 @@ void dvi__stumpff(double s, double c[9])
   dvi__stumpff_four(s, c);
   if (s <= FAR) {
     const int pairs = s <= NEAR ? 5 : 8; /* the first term left out is below 1e-16 of the sum */
-    c[8] = series(8, pairs, s);
-    c[7] = series(7, pairs, s);
-    down(s, 6, 4, c);
+    c[8] = sum_stumpff_series(8, pairs, s);
+    c[7] = sum_stumpff_series(7, pairs, s);
+    recur_down(s, 6, 4, c);
   } else {
-    up(s, 4, 8, c);
+    recur_up(s, 4, 8, c);
   }
 }

@@ -1,18 +1,20 @@
-/* Stumpff's functions, of which the exponential and its derivatives on every group here are made. */
+/* Stumpff's functions. The exponential and its derivatives on every group here are made of them. */
 #ifndef DVI_GROUP_STUMPFF_H
 #define DVI_GROUP_STUMPFF_H
 
-/* c[k] = c_k(s) = sum_j (-s)^j / (2j+k)!, s >= 0. With s = theta^2:
+/* Compute c[k] = c_k(s) = sum_j (-s)^j / (2j+k)!, s >= 0. With s = theta^2
  *
- *     c_0 = cos theta,   c_1 = sin theta / theta,   c_2 = (1 - cos theta) / theta^2,   c_3 = (theta - sin theta) / theta^3,   ...
+ *     c_0 = cos theta,                      c_1 = sin theta / theta,
+ *     c_2 = (1 - cos theta) / theta^2,      c_3 = (theta - sin theta) / theta^3,   ...
  *
- * Entire functions of s: nobody has to ask whether an angle is small. Their derivatives are d c_k / ds = (k c_{k+2} - c_{k+1}) / 2.
- * For s up to (4 pi)^2 they are right to 4 ulp: of themselves, or c_0, c_1 and c_2, which have zeros, of the bounds 1, 1/theta and 4/s of their
- * oscillations. Where s has overflowed
- * c_0 is 1 and the others are 0. Source: Stiefel and Scheifele 1971, sec. 11. */
+ * They are entire functions of s, so small angles are no special case. Their derivatives are d c_k
+ * / ds = (k c_{k+2} - c_{k+1}) / 2. For s up to (4 pi)^2 the results are right to 4 ulp. The
+ * functions c_0, c_1 and c_2 have zeros, and their errors are measured by the bounds 1, 1/theta and
+ * 4/s of their oscillations. If s has overflowed then c_0 is 1 and the others are 0. Source:
+ * Stiefel and Scheifele 1971, sec. 11. */
 void dvi__stumpff(double s, double c[9]);
 
-/* The first four alone, the same digits. */
+/* Compute the first four alone, with the same digits. */
 void dvi__stumpff_four(double s, double c[4]);
 
 #endif

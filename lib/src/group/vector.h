@@ -7,7 +7,7 @@ static inline double dvi__dot(const double a[3], const double b[3])
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* product = a x b; it may be none of the two. */
+/* Compute product = a x b, which may be neither a nor b. */
 static inline void dvi__cross(const double a[3], const double b[3], double product[3])
 {
   product[0] = a[1] * b[2] - a[2] * b[1];
@@ -15,8 +15,10 @@ static inline void dvi__cross(const double a[3], const double b[3], double produ
   product[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* sum = v + a w x v + b w x (w x v): every operator here that commutes with the rotations about w. It may overwrite v. */
-static inline void dvi__about(const double w[3], double a, double b, const double v[3], double sum[3])
+/* Compute sum = v + a w x v + b w x (w x v). Every operator here that commutes with the rotations
+ * about w has this form. sum may overwrite v. */
+static inline void dvi__about(const double w[3], double a, double b, const double v[3],
+                              double sum[3])
 {
   double once[3], inner[3], turned[3];
   dvi__cross(w, v, once);

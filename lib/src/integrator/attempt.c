@@ -1,12 +1,13 @@
-/* A step's equations may have several solutions, and an iteration may find one that has nothing to
- * do with the motion, at steps that would resolve it well. The one that is meant continues those of
- * shorter steps down to h = 0 (solve/branch.h).
+/* A step's equations may have several solutions. An iteration may find one that has nothing to do
+ * with the motion, even at steps that would resolve the motion well. The right one lies on the
+ * branch connected to h = 0 (solve/branch.h).
  *
- * Where the method does not know its solution to be that one, the new state is asked. Solutions of
- * other branches nearly always change the energy by more than a hundredth of the kinetic energy; in
- * small parts of a system, which the energy does not show, they lead away from where their rates do. A
- * doubted step is taken again along its branch. Most are found again: then the first solution stays,
- * to the last bit (docs/theory.md, docs/branches.md). */
+ * Where the method does not know the branch of its solution, the new state is tested. Solutions of
+ * other branches nearly always change the energy by more than a hundredth of the kinetic energy. In
+ * small parts of a system, which the energy does not show, such solutions end away from the points
+ * to which their rates lead. A doubted step is taken again along its branch. In most cases this
+ * finds the same solution, and then the first solution stays, to the last bit (docs/theory.md,
+ * docs/branches.md). */
 #include "integrator/attempt.h"
 
 #include <float.h>
@@ -18,36 +19,43 @@
 #include "num/finite.h"
 #include "solve/branch.h"
 
-/* Changes of more than this part of the kinetic energy, or of what the step exchanges, are doubted. */
+/* A step is doubted if its energy changes by more than this part of the kinetic energy, or of the
+ * energy that the step exchanges. */
 static const double doubted_change = 0.01;
 
-/* So are steps in which a coordinate, or its momentum, ends farther than this from where the mean of
- * its rates at both ends leads, as a part of the larger rate's way. */
+/* A step is doubted if a coordinate or its momentum ends too far from the point to which the mean
+ * of its rates at both ends leads. The limit is a part of the distance by the larger rate. */
 static const double doubted_defect = 0.1;
 
-/* Right steps do so, too, where they are long. After some that were followed in vain the motion of
- * steps like them, whose equations bend no more than so many times theirs, is asked more and more
- * seldom, until its answer is that a step was wrong. Of many coordinates one or the other always
- * bends. */
-enum { VAIN_ONES = 4, LONGEST_WAIT = 4096, LIKE_THEM = 2, MANY = 32 };
+/* Long steps may fail the test of the motion although they are right. After some steps that were
+ * followed in vain, similar steps are tested less and less often, until a test finds a wrong step.
+ * Steps are similar if their equations bend at most SIMILAR_BEND times as much. In a system of
+ * MANY_COORDINATES coordinates some coordinate always bends, and all steps count as similar. */
+enum { VAIN_LIMIT = 4, LONGEST_WAIT = 4096, SIMILAR_BEND = 2, MANY_COORDINATES = 32 };
 
-/* Each one that was asked for its bend, in vain, lets the next one bend by so much more. */
+/* Each step that was tested for its bend, in vain, raises the bend of similar steps by this
+ * factor. */
 static const double more_bend = 1.25;
 
-/* Two solutions are the same if they differ by less than this part of the step: the roundings of an
- * ill-conditioned step are smaller, other solutions are farther away. */
+/* Two solutions are the same if they differ by less than this part of the step. The roundings of an
+ * ill-conditioned step are smaller, and other solutions are farther away. */
 static const double same = 1e-6;
 
-/* Behind the method's memory, so that checkpoints and members have it: steps in a row that were
- * followed for their motion in vain; steps that are not asked after one; those that are left of them;
- * how much the equations of those in vain bent. */
-enum { VAIN, WAIT, SPARED, BEND, LEARNED };
+/* The learned numbers stand behind the method's memory, so that checkpoints and members of
+ * ensembles contain them. */
+enum {
+  VAIN,   /* number of steps in a row that were followed for their motion in vain */
+  WAIT,   /* number of steps without a test after such a step */
+  SPARED, /* number of steps without a test that remain */
+  BEND,   /* bend of the equations of the steps in vain */
+  LEARNED
+};
 
 struct dvi__attempt {
-  dvi__state state; /* what the first attempt found, */
-  double *memory;   /* and left in the memory */
+  dvi__state state; /* state after the first attempt */
+  double *memory;   /* the stepper's memory after the first attempt */
   double *forces;   /* [2 n] work */
-  double *numbers;  /* the arrays of all three */
+  double *numbers;  /* storage of all these arrays */
   int by_motion;    /* the step is followed because of its motion alone */
 };
 
@@ -77,27 +85,31 @@ void dvi__attempt_clear(dvi_integrator *I)
   dvi__release(I->first);
 }
 
-/* Whether this step's motion is not asked. */
+/* Test whether this step goes without the test of its motion. */
 static int is_spared(const dvi_integrator *I)
 {
   double *own = I->stepper.memory + I->learned;
-  const int is_other = I->system->n <= MANY && !(I->stepper.bend <= LIKE_THEM * own[BEND]);
+  const int is_other = I->system->n <= MANY_COORDINATES &&
+                       !(I->stepper.bend <= SIMILAR_BEND * own[BEND]);
   if (own[SPARED] == 0 || is_other) return 0;
   --own[SPARED];
   return 1;
 }
 
-/* Whether energy or motion change by too much from `now` to `next`; also where it cannot be told. */
+/* Test whether energy or motion change by too much from `now` to `next`. The result is 1 also if
+ * they cannot be evaluated. */
 static int state_jumps(dvi_integrator *I)
 {
   double change, exchanged, defect;
-  const dvi__instant before = {I->now.t, I->now.q, I->now.p, I->last_v}, after = {I->next.t, I->next.q, I->next.p, I->v};
+  const dvi__instant before = {I->now.t, I->now.q, I->now.p, I->last_v},
+                     after = {I->next.t, I->next.q, I->next.p, I->v};
   dvi__guess_velocity(I->system->n, I->now.q, I->last.q, I->last.p, I->last_h, I->last_v);
   dvi__guess_velocity(I->system->n, I->next.q, I->now.q, I->last_v, I->next.t - I->now.t, I->v);
   if (dvi__energy_change(I->evaluator, &before, &after, &change, &exchanged) != DVI_OK) return 1;
   if (!(change <= doubted_change * exchanged)) return 1;
   if (I->stepper.doubt == DVI__LINEAR || is_spared(I)) return 0;
-  if (dvi__motion_defect(I->evaluator, &before, &after, I->first->forces, &defect) != DVI_OK) return 1;
+  if (dvi__motion_defect(I->evaluator, &before, &after, I->first->forces, &defect) != DVI_OK)
+    return 1;
   I->first->by_motion = defect > doubted_defect;
   return I->first->by_motion;
 }
@@ -109,7 +121,7 @@ static int is_doubted(dvi_integrator *I)
   return I->stepper.doubt == DVI__ASTRAY || state_jumps(I);
 }
 
-static dvi_status step(dvi_integrator *I, double length, double density)
+static dvi_status attempt_step(dvi_integrator *I, double length, double density)
 {
   dvi__state_copy((size_t)I->system->n, &I->now, &I->next);
   memcpy(I->stepper.memory, I->memory_before, I->stepper.memory_count * sizeof(double));
@@ -131,8 +143,9 @@ static void restore_first(dvi_integrator *I)
   memcpy(I->stepper.memory, I->first->memory, I->stepper.memory_count * sizeof(double));
 }
 
-/* Whether each number of a vector [n] differs little beside what it moved in the step, or is a rounding
- * of what the others moved: no solver finds it better. */
+/* Test whether two vectors [n] are the same solution. Each number must differ by little beside its
+ * change in the step, or by a rounding of the other numbers' changes, beyond which no solver
+ * goes. */
 static int is_same(size_t n, const double *one, const double *other, const double *start)
 {
   double largest = 0;
@@ -144,9 +157,10 @@ static int is_same(size_t n, const double *one, const double *other, const doubl
   return 1;
 }
 
-/* A step that was followed for its motion: in vain, it was right; asked in its turn, or for its bend
- * while others are spared. The memory is that of the step as it was taken. */
-static void learn(const dvi_integrator *I, int right, double bend)
+/* Update the learned numbers after a step that was followed for its motion. A step that was right
+ * was followed in vain. It was tested in its turn, or for its bend while similar steps are spared.
+ * The memory is that of the accepted step. */
+static void learn_from_followed(const dvi_integrator *I, int right, double bend)
 {
   double *own = I->stepper.memory + I->learned;
   if (!I->first->by_motion) return;
@@ -158,43 +172,47 @@ static void learn(const dvi_integrator *I, int right, double bend)
     own[BEND] *= more_bend;
     return;
   }
-  if (own[VAIN] < VAIN_ONES)
+  if (own[VAIN] < VAIN_LIMIT)
     own[BEND] = own[VAIN]++ == 0 ? bend : fmin(own[BEND], bend);
   else
     own[WAIT] = fmin(2 * own[WAIT], LONGEST_WAIT);
-  if (own[VAIN] == VAIN_ONES) own[SPARED] = own[WAIT] = fmax(own[WAIT], 1);
+  if (own[VAIN] == VAIN_LIMIT) own[SPARED] = own[WAIT] = fmax(own[WAIT], 1);
 }
 
-/* The step along its branch, in at least so many parts; alarms are those of the step as it is taken. */
-static dvi_status follow(dvi_integrator *I, double length, double density, int parts, const dvi_counters *before)
+/* Take the step along its branch, in at least `parts` parts. Alarms count once, for the step that
+ * is accepted. */
+static dvi_status follow_branch(dvi_integrator *I, double length, double density, int parts,
+                                const dvi_counters *before)
 {
   I->counters.jump_alarms = before->jump_alarms;
   I->counters.energy_fallbacks = before->energy_fallbacks;
   I->stepper.follow = parts;
-  const dvi_status status = step(I, length, density);
+  const dvi_status status = attempt_step(I, length, density);
   I->stepper.follow = 0;
   return status;
 }
 
-/* What the first attempt has found stays, to the last bit, if it was right. */
+/* The solution of the first attempt stays, to the last bit, if it was right. */
 dvi_status dvi__attempt(dvi_integrator *I, double length, double density)
 {
   const size_t n = (size_t)I->system->n;
   const dvi_counters before = I->counters;
-  DVI_TRY(step(I, length, density));
+  DVI_TRY(attempt_step(I, length, density));
   if (!is_doubted(I)) return DVI_OK;
   keep_first(I);
   const double bend = I->stepper.bend;
   const int hasty = I->stepper.doubt != DVI__ASTRAY;
-  dvi_status status = follow(I, length, density, hasty ? 1 : DVI__BRANCH_CAREFUL, &before);
-  if (hasty && status > 0 && I->stepper.doubt == DVI__ASTRAY) status = follow(I, length, density, DVI__BRANCH_CAREFUL, &before);
+  dvi_status status = follow_branch(I, length, density, hasty ? 1 : DVI__BRANCH_CAREFUL, &before);
+  if (hasty && status > 0 && I->stepper.doubt == DVI__ASTRAY)
+    status = follow_branch(I, length, density, DVI__BRANCH_CAREFUL, &before);
   const int is_lost = status > 0 && I->stepper.doubt != DVI__ASTRAY;
   if (status != DVI_OK && !(is_lost && I->first->by_motion)) return status;
-  /* Motion alone is no reason to refuse a step if there is a solution beyond: at the front of a
-   * wave, where numbers grow by high powers of h, a branch may be lost that goes on. */
-  const int right = is_lost ||
-                    (is_same(n, I->next.q, I->first->state.q, I->now.q) && is_same(n, I->next.p, I->first->state.p, I->now.p));
+  /* Do not refuse a step because of its motion alone if its equations have a solution. At the front
+   * of a travelling wave, where numbers grow by high powers of h, following may lose a branch that
+   * goes on. */
+  const int right = is_lost || (is_same(n, I->next.q, I->first->state.q, I->now.q) &&
+                                is_same(n, I->next.p, I->first->state.p, I->now.p));
   if (right) restore_first(I);
-  learn(I, right, bend);
+  learn_from_followed(I, right, bend);
   return DVI_OK;
 }

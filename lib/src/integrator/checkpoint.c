@@ -1,16 +1,16 @@
-/* Checkpoints: everything that the next step depends on, in sections with hashes (march/sections.h).
+/* Checkpoints: all data that the next step depends on, in sections with hashes (march/sections.h).
  *
- * Callbacks cannot be saved, but the system can be known again: by what it declares (hashes), and by
- * what its callbacks compute at the saved state (fingerprint.h), which other parameters would change. So
- * can the method: by its keys, of which all but the name of a file are hashed, and by what no key
- * spells, a tableau's coefficients or a program's own functions.
+ * Callbacks cannot be saved, but the system is recognised by hashes of its declared terms, and by
+ * the values of its callbacks at the saved state (fingerprint.h), which other parameters would
+ * change. The method is recognised by its keys, of which all but the name of a file are hashed, and
+ * by data that no key contains, a tableau's coefficients or a program's own functions.
  *
- *     method       hashes of what determines the steps, then the specification with a 0
- *     system       dimension, hashes of what is declared, fingerprint at the state
- *     clock        times with their carries, last step, number of steps
- *     pacing       steps in another time: which one, density, energy of the start, monitor
- *     state        q, p and their carries, now and before the last step
- *     memory       what the method carries from step to step */
+ *     method       hashes of the keys and data that determine the steps, then the specification
+ *     system       dimension, hashes of the declared terms, fingerprint at the state
+ *     clock        times with their compensations, last step, number of steps
+ *     pacing       kind of steps in another time, density, energy of the start, monitor
+ *     state        q, p and their compensations, now and before the last step
+ *     memory       the method's numbers from step to step */
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -28,7 +28,7 @@
 enum { SECTION_VERSION = 1 };
 
 typedef struct method_section {
-  uint64_t steps, fingerprint; /* the stepper's */
+  uint64_t steps, fingerprint; /* as in dvi__stepper */
 } method_section;
 
 typedef struct system_section {
@@ -38,7 +38,7 @@ typedef struct system_section {
 } system_section;
 
 typedef struct clock_section {
-  double t, t_carry, last_t, last_t_carry, last_h;
+  double t, t_compensation, last_t, last_t_compensation, last_h;
   int64_t steps;
 } clock_section;
 
@@ -48,7 +48,7 @@ typedef struct pacing_section {
   char monitor[DVI__MONITOR_NAME];
 } pacing_section;
 
-/* A checkpoint in memory; what the pointers lead to stands in the sections' bytes. */
+/* A checkpoint in memory. The pointers point into the sections' bytes. */
 typedef struct checkpoint {
   dvi__sections sections;
   method_section method;
@@ -56,13 +56,13 @@ typedef struct checkpoint {
   system_section system;
   clock_section clock;
   pacing_section pacing;
-  const double *numbers; /* now.q, p, carries; last.q, p, carries */
+  const double *numbers; /* q, p and compensations of `now`, then of `last` */
   const double *memory;
 } checkpoint;
 
 static int64_t pacing_of(const dvi_integrator *I)
 {
-  return I->pace != NULL ? I->pace->pacing : DVI_STEPS_OF_TIME;
+  return I->monitored != NULL ? I->monitored->pacing : DVI_STEPS_OF_TIME;
 }
 
 static size_t state_size(const dvi_integrator *I)
@@ -74,13 +74,13 @@ static size_t state_size(const dvi_integrator *I)
 
 static void put_method(const dvi_integrator *I, dvi__sections_writer *w)
 {
-  const method_section method = {I->stepper.steps, I->stepper.fingerprint};
+  const method_section method = {.steps = I->stepper.steps, .fingerprint = I->stepper.fingerprint};
   dvi__section_open(w, "method", SECTION_VERSION);
   dvi__section_put(w, &method, sizeof method);
   dvi__section_put(w, I->stepper.specification, strlen(I->stepper.specification) + 1);
 }
 
-/* A fingerprint that cannot be taken is NaN, and compared with none. */
+/* Write the system's section. A fingerprint that cannot be evaluated is NaN, and not compared. */
 static void put_system(const dvi_integrator *I, dvi__sections_writer *w)
 {
   const dvi__moment now = {I->now.t, I->last_h, I->now.q, I->now.p, I->last.q, I->last.p};
@@ -93,9 +93,9 @@ static void put_system(const dvi_integrator *I, dvi__sections_writer *w)
 static void put_clock(const dvi_integrator *I, dvi__sections_writer *w)
 {
   const clock_section clock = {.t = I->now.t,
-                               .t_carry = I->now.t_carry,
+                               .t_compensation = I->now.t_compensation,
                                .last_t = I->last.t,
-                               .last_t_carry = I->last.t_carry,
+                               .last_t_compensation = I->last.t_compensation,
                                .last_h = I->last_h,
                                .steps = I->counters.steps};
   dvi__section_open(w, "clock", SECTION_VERSION);
@@ -105,15 +105,15 @@ static void put_clock(const dvi_integrator *I, dvi__sections_writer *w)
 static void put_pacing(const dvi_integrator *I, dvi__sections_writer *w)
 {
   pacing_section pacing = {.pacing = pacing_of(I), .density = I->now.density};
-  if (I->pace != NULL) {
-    pacing.energy = I->pace->energy;
-    memcpy(pacing.monitor, I->pace->name, sizeof pacing.monitor);
+  if (I->monitored != NULL) {
+    pacing.energy = I->monitored->energy;
+    memcpy(pacing.monitor, I->monitored->name, sizeof pacing.monitor);
   }
   dvi__section_open(w, "pacing", SECTION_VERSION);
   dvi__section_put(w, &pacing, sizeof pacing);
 }
 
-static dvi_status pack(const dvi_integrator *I, dvi__sections_writer *w)
+static dvi_status checkpoint_pack(const dvi_integrator *I, dvi__sections_writer *w)
 {
   const size_t memory = I->stepper.memory_count * sizeof(double);
   dvi__sections_start(w, 2 * state_size(I) + memory + strlen(I->stepper.specification) + 2048);
@@ -131,26 +131,29 @@ static dvi_status pack(const dvi_integrator *I, dvi__sections_writer *w)
 
 static dvi_status check_saved(const dvi_integrator *I, const void *place)
 {
-  if (I == NULL || place == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "checkpoint: an argument is NULL");
+  if (I == NULL || place == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "checkpoint: an argument is NULL");
   if (I->started) return DVI_OK;
-  return dvi__fail(DVI_BAD_STATE, "checkpoint: the integrator has no state yet; call dvi_integrator_start first");
+  return dvi__fail(DVI_BAD_STATE,
+                   "checkpoint: the integrator has no state yet; call dvi_integrator_start first");
 }
 
 dvi_status dvi_integrator_save(const dvi_integrator *I, const char *path)
 {
   dvi__sections_writer w;
   DVI_TRY(check_saved(I, path));
-  DVI_TRY(pack(I, &w));
+  DVI_TRY(checkpoint_pack(I, &w));
   const dvi_status status = dvi__write_whole(path, w.bytes, w.size);
   dvi__release(w.bytes);
   return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "checkpoint");
 }
 
-dvi_status dvi_integrator_save_memory(const dvi_integrator *I, void *bytes, size_t capacity, size_t *size)
+dvi_status dvi_integrator_save_memory(const dvi_integrator *I, void *bytes, size_t capacity,
+                                      size_t *size)
 {
   dvi__sections_writer w;
   DVI_TRY(check_saved(I, size));
-  DVI_TRY(pack(I, &w));
+  DVI_TRY(checkpoint_pack(I, &w));
   const size_t needed = *size = w.size;
   if (bytes != NULL && needed <= capacity) memcpy(bytes, w.bytes, needed);
   dvi__release(w.bytes);
@@ -158,76 +161,89 @@ dvi_status dvi_integrator_save_memory(const dvi_integrator *I, void *bytes, size
   return dvi__fail(DVI_BAD_SIZE, "checkpoint: %zu bytes of room; %zu are needed", capacity, needed);
 }
 
-/* ---- restore: is it of this method and this system? ---- */
+/* ---- restore: checks of method and system ---- */
 
-/* Whether "key=value" or a name is one of what determines the steps. */
-static int matters(const dvi__method *method, const char *piece)
+/* Test whether a part of a specification, "key=value" or a name, determines the steps. */
+static int key_determines_steps(const dvi__method *method, const char *part)
 {
-  const size_t length = strcspn(piece, "=:,");
+  const size_t length = strcspn(part, "=:,");
   for (int k = 0; k < dvi__key_count(method); k++) {
     const dvi__key *key = &method->keys[k];
-    if (strlen(key->name) == length && strncmp(key->name, piece, length) == 0)
+    if (strlen(key->name) == length && strncmp(key->name, part, length) == 0)
       return key->least != DVI__SAID && key->least != DVI__FILE;
   }
   return 1;
 }
 
-/* The first of those in which two specifications differ. */
+/* Find the first part that determines the steps and differs between two specifications. */
 static void find_difference(const dvi__method *method, const char *at[2], int length[2])
 {
   for (;;) {
     length[0] = (int)strcspn(at[0], ":,");
     length[1] = (int)strcspn(at[1], ":,");
     const int same = length[0] == length[1] && memcmp(at[0], at[1], (size_t)length[0]) == 0;
-    if ((!same && matters(method, at[1])) || at[0][length[0]] == 0 || at[1][length[1]] == 0) return;
+    if ((!same && key_determines_steps(method, at[1])) || at[0][length[0]] == 0 ||
+        at[1][length[1]] == 0)
+      return;
     at[0] += length[0] + 1, at[1] += length[1] + 1;
   }
 }
 
-static dvi_status check_method(const dvi_integrator *I, const checkpoint *c)
+static dvi_status check_saved_method(const dvi_integrator *I, const checkpoint *c)
 {
   if (c->method.steps != I->stepper.steps) {
     const char *here = I->stepper.specification, *at[2] = {c->specification, here};
     int length[2];
     find_difference(I->stepper.method, at, length);
-    return dvi__fail(DVI_BAD_FILE, "%s: %.*s there, %.*s here: written by %s, not by %s", c->sections.name, length[0], at[0],
-                     length[1], at[1], c->specification, here);
+    return dvi__fail(DVI_BAD_FILE, "%s: %.*s there, %.*s here: written by %s, not by %s",
+                     c->sections.name, length[0], at[0], length[1], at[1], c->specification, here);
   }
   if (c->method.fingerprint == I->stepper.fingerprint) return DVI_OK;
-  return dvi__fail(DVI_BAD_FILE, "%s: written with other %s, by %s", c->sections.name, I->stepper.fingerprinted, c->specification);
+  return dvi__fail(DVI_BAD_FILE, "%s: written with other %s, by %s", c->sections.name,
+                   I->stepper.fingerprinted, c->specification);
 }
 
-static const char *name_of(int64_t pacing)
+static const char *pacing_name(int64_t pacing)
 {
-  return pacing == DVI_STEPS_OF_TIME ? "of time" : pacing == DVI_TIME_TRANSFORM ? "in another time, by " : "controlled by ";
+  return pacing == DVI_STEPS_OF_TIME    ? "of time"
+         : pacing == DVI_TIME_TRANSFORM ? "in another time, by "
+                                        : "controlled by ";
 }
 
 static dvi_status check_time(const dvi_integrator *I, const checkpoint *c)
 {
-  const char *monitor = I->pace != NULL ? I->pace->name : "";
-  if (c->pacing.pacing == pacing_of(I) && strncmp(c->pacing.monitor, monitor, sizeof c->pacing.monitor) == 0) return DVI_OK;
-  return dvi__fail(DVI_BAD_FILE, "%s: of steps %s%.*s, not of steps %s%s", c->sections.name, name_of(c->pacing.pacing),
-                   (int)sizeof c->pacing.monitor, c->pacing.monitor, name_of(pacing_of(I)), monitor);
+  const char *monitor = I->monitored != NULL ? I->monitored->name : "";
+  if (c->pacing.pacing == pacing_of(I) &&
+      strncmp(c->pacing.monitor, monitor, sizeof c->pacing.monitor) == 0)
+    return DVI_OK;
+  return dvi__fail(DVI_BAD_FILE, "%s: of steps %s%.*s, not of steps %s%s", c->sections.name,
+                   pacing_name(c->pacing.pacing), (int)sizeof c->pacing.monitor, c->pacing.monitor,
+                   pacing_name(pacing_of(I)), monitor);
 }
 
 static dvi_status check_declared(const dvi_integrator *I, const checkpoint *c)
 {
   if (c->system.n != I->system->n)
-    return dvi__fail(DVI_BAD_FILE, "%s: %" PRId64 " coordinates, not %d", c->sections.name, c->system.n, I->system->n);
+    return dvi__fail(DVI_BAD_FILE, "%s: %" PRId64 " coordinates, not %d", c->sections.name,
+                     c->system.n, I->system->n);
   const char *difference = dvi__declared_difference(&c->system.declared, &I->system->declared);
   if (difference == NULL) return DVI_OK;
-  return dvi__fail(DVI_BAD_FILE, "%s: of a system that declares other %s", c->sections.name, difference);
+  return dvi__fail(DVI_BAD_FILE, "%s: of a system that declares other %s", c->sections.name,
+                   difference);
 }
 
-/* A monitor may depend on the energy of the start. */
-static dvi_status take_fingerprint(const dvi_integrator *I, const checkpoint *c, dvi__fingerprint *here)
+/* Evaluate the fingerprint at the saved state, with the saved energy of the start, on which a
+ * monitor may depend. */
+static dvi_status take_fingerprint(const dvi_integrator *I, const checkpoint *c,
+                                   dvi__fingerprint *here)
 {
   const size_t n = (size_t)I->system->n;
-  const double *now = c->numbers, *last = now + 4 * n, before = I->pace != NULL ? I->pace->energy : 0;
+  const double *now = c->numbers, *last = now + 4 * n,
+               before = I->monitored != NULL ? I->monitored->energy : 0;
   const dvi__moment at = {c->clock.t, c->clock.last_h, now, now + n, last, last + n};
-  if (I->pace != NULL) dvi__pace_set_energy(I->pace, c->pacing.energy);
+  if (I->monitored != NULL) dvi__monitored_time_set_energy(I->monitored, c->pacing.energy);
   const dvi_status status = dvi__fingerprint_take(I, &at, here);
-  if (I->pace != NULL) dvi__pace_set_energy(I->pace, before);
+  if (I->monitored != NULL) dvi__monitored_time_set_energy(I->monitored, before);
   return status;
 }
 
@@ -236,7 +252,9 @@ static dvi_status check_system(const dvi_integrator *I, const checkpoint *c)
   dvi__fingerprint here;
   const dvi_status taken = take_fingerprint(I, c, &here);
   if (taken != DVI_OK && !isnan(c->system.fingerprint.lagrangian.value))
-    return dvi__fail_in(DVI_BAD_FILE, "%s: of another system or other parameters; at its state this one fails", c->sections.name);
+    return dvi__fail_in(DVI_BAD_FILE,
+                        "%s: of another system or other parameters; at its state this one fails",
+                        c->sections.name);
   const dvi_status status = dvi__fingerprint_compare(&c->system.fingerprint, &here);
   return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "%s", c->sections.name);
 }
@@ -245,12 +263,14 @@ static dvi_status check_space(const dvi_integrator *I, const checkpoint *c)
 {
   const dvi__method *method = I->stepper.method;
   if (method->recognizes == NULL || method->recognizes(&I->stepper, c->memory)) return DVI_OK;
-  return dvi__fail(DVI_BAD_FILE, "%s: of another function space of the same name", c->sections.name);
+  return dvi__fail(DVI_BAD_FILE, "%s: of another function space of the same name",
+                   c->sections.name);
 }
 
-/* ---- restore: read its sections ---- */
+/* ---- restore: sections ---- */
 
-static dvi_status find_fixed(const dvi__sections *sections, const char *name, void *content, size_t size)
+static dvi_status find_fixed(const dvi__sections *sections, const char *name, void *content,
+                             size_t size)
 {
   dvi__section found;
   DVI_TRY(dvi__section_find(sections, name, SECTION_VERSION, size, &found));
@@ -269,8 +289,9 @@ static dvi_status find_method(checkpoint *c)
   return DVI_OK;
 }
 
-/* Numbers of a section; they are aligned as the bytes are. */
-static dvi_status find_numbers(const checkpoint *c, const char *name, size_t count, const double **numbers)
+/* Find the numbers of a section. They are aligned as the bytes are. */
+static dvi_status find_numbers(const checkpoint *c, const char *name, size_t count,
+                               const double **numbers)
 {
   dvi__section found;
   DVI_TRY(dvi__section_find(&c->sections, name, SECTION_VERSION, count * sizeof(double), &found));
@@ -278,12 +299,13 @@ static dvi_status find_numbers(const checkpoint *c, const char *name, size_t cou
   return DVI_OK;
 }
 
-/* The method and the system are compared first: of others the numbers are of another count, too. */
+/* Read and check all sections. Method and system are compared first, because they determine the
+ * count of the other sections' numbers. */
 static dvi_status open_checkpoint(const dvi_integrator *I, checkpoint *c)
 {
   const size_t numbers = 8 * (size_t)I->system->n;
   DVI_TRY(find_method(c));
-  DVI_TRY(check_method(I, c));
+  DVI_TRY(check_saved_method(I, c));
   DVI_TRY(find_fixed(&c->sections, "system", &c->system, sizeof c->system));
   DVI_TRY(check_declared(I, c));
   DVI_TRY(find_fixed(&c->sections, "pacing", &c->pacing, sizeof c->pacing));
@@ -297,17 +319,17 @@ static dvi_status open_checkpoint(const dvi_integrator *I, checkpoint *c)
   return check_space(I, c);
 }
 
-static void take_over(dvi_integrator *I, const checkpoint *c)
+static void checkpoint_take_over(dvi_integrator *I, const checkpoint *c)
 {
   const clock_section *clock = &c->clock;
   I->now.t = clock->t;
-  I->now.t_carry = clock->t_carry;
+  I->now.t_compensation = clock->t_compensation;
   I->last.t = clock->last_t;
-  I->last.t_carry = clock->last_t_carry;
+  I->last.t_compensation = clock->last_t_compensation;
   I->last_h = clock->last_h;
   I->now.density = c->pacing.density;
   I->now.side = 0;
-  if (I->pace != NULL) dvi__pace_set_energy(I->pace, c->pacing.energy);
+  if (I->monitored != NULL) dvi__monitored_time_set_energy(I->monitored, c->pacing.energy);
   I->counters.steps = (long)clock->steps;
   memcpy(I->now.q, c->numbers, state_size(I));
   memcpy(I->last.q, c->numbers + 4 * (size_t)I->system->n, state_size(I));
@@ -319,26 +341,31 @@ dvi_status dvi_integrator_restore(dvi_integrator *I, const char *path)
 {
   checkpoint c = {.specification = NULL};
   char name[1024];
-  if (I == NULL || path == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "checkpoint: an argument is NULL");
+  if (I == NULL || path == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "checkpoint: an argument is NULL");
   (void)snprintf(name, sizeof name, "checkpoint %s", path);
   c.sections.name = name;
   dvi_status status = dvi__sections_read(path, &c.sections);
   if (status == DVI_OK) status = open_checkpoint(I, &c);
-  if (status == DVI_OK) take_over(I, &c);
+  if (status == DVI_OK) checkpoint_take_over(I, &c);
   dvi__sections_clear(&c.sections);
   return status;
 }
 
-/* The copy is aligned as numbers must be; the caller's bytes may stand anywhere. */
+/* Restore from a copy, which is aligned as numbers must be. The caller's bytes may have any
+ * alignment. */
 dvi_status dvi_integrator_restore_memory(dvi_integrator *I, const void *bytes, size_t size)
 {
   checkpoint c = {.specification = NULL};
-  if (I == NULL || bytes == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "checkpoint: an argument is NULL");
+  if (I == NULL || bytes == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "checkpoint: an argument is NULL");
   c.sections.own = dvi__duplicate(bytes, size, 1);
-  if (c.sections.own == NULL) return dvi__fail(DVI_NO_MEMORY, "checkpoint: no memory for %zu bytes", size);
-  dvi_status status = dvi__sections_check(&c.sections, "checkpoint in memory", c.sections.own, size);
+  if (c.sections.own == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "checkpoint: no memory for %zu bytes", size);
+  dvi_status status = dvi__sections_check(&c.sections, "checkpoint in memory", c.sections.own,
+                                          size);
   if (status == DVI_OK) status = open_checkpoint(I, &c);
-  if (status == DVI_OK) take_over(I, &c);
+  if (status == DVI_OK) checkpoint_take_over(I, &c);
   dvi__sections_clear(&c.sections);
   return status;
 }

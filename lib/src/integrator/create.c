@@ -1,10 +1,10 @@
-/* Making and destroying integrators. */
+/* Creation and destruction of integrators. */
 #include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
 #include "integrator/attempt.h"
-#include "space/given.h"
+#include "space/user_basis.h"
 #include "system/evaluate/dynamics.h"
 
 /* ---- create ---- */
@@ -31,31 +31,40 @@ static dvi_status copy_shapes(dvi_integrator *I, const dvi_shapes *shapes)
 {
   if (shapes == NULL) return DVI_OK;
   I->shapes = dvi__shapes_copy(shapes);
-  return I->shapes != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "integrator: no memory for the shapes %s", shapes->name);
+  return I->shapes != NULL
+             ? DVI_OK
+             : dvi__fail(DVI_NO_MEMORY, "integrator: no memory for the shapes %s", shapes->name);
 }
 
 static dvi_status make_stepper(dvi_integrator *I, const dvi_integrator_options *o)
 {
   DVI_TRY(copy_shapes(I, o->shapes));
-  if (o->pacing != DVI_STEPS_OF_TIME) DVI_TRY(dvi__pace_create(I->system, o->monitor, o->pacing, &I->counters, &I->pace));
-  DVI_TRY(dvi__stepper_create(dvi__pace_system(I->pace, I->system), o->method, I->shapes, &I->counters, &I->stepper));
+  if (o->pacing != DVI_STEPS_OF_TIME)
+    DVI_TRY(
+        dvi__monitored_time_create(I->system, o->monitor, o->pacing, &I->counters, &I->monitored));
+  DVI_TRY(dvi__stepper_create(dvi__monitored_time_system(I->monitored, I->system), o->method,
+                              I->shapes, &I->counters, &I->stepper));
   return allocate_integrator(I);
 }
 
-static dvi_status check_paced_method(const dvi_integrator *I)
+static dvi_status check_monitored_method(const dvi_integrator *I)
 {
   const char *symmetric = I->system->dynamics->symmetric;
   if (I->stepper.method->chooses_steps)
-    return dvi__fail(DVI_UNSUPPORTED, "%s chooses the lengths of its steps itself", I->stepper.method->name);
-  if (I->pace->pacing == DVI_TIME_TRANSFORM || I->stepper.symmetric) return DVI_OK;
-  return dvi__fail(DVI_UNSUPPORTED,
-                   "%s is not symmetric, and only that keeps energies from drifting when steps change; "
-                   "choose %s",
-                   I->stepper.specification,
-                   symmetric != NULL ? symmetric : "a symmetric quadrature, one-step method or type, or the time transform");
+    return dvi__fail(DVI_UNSUPPORTED, "%s chooses the lengths of its steps itself",
+                     I->stepper.method->name);
+  if (I->monitored->pacing == DVI_TIME_TRANSFORM || I->stepper.symmetric) return DVI_OK;
+  return dvi__fail(
+      DVI_UNSUPPORTED,
+      "%s is not symmetric, and only that keeps energies from drifting when steps change; "
+      "choose %s",
+      I->stepper.specification,
+      symmetric != NULL ? symmetric
+                        : "a symmetric quadrature, one-step method or type, or the time transform");
 }
 
-static dvi_status make_integrator(const dvi_system *system, const dvi_integrator_options *o, dvi_integrator **integrator)
+static dvi_status make_integrator(const dvi_system *system, const dvi_integrator_options *o,
+                                  dvi_integrator **integrator)
 {
   const long before = dvi__allocation_count();
   dvi_integrator *I = DVI_NEW(dvi_integrator, 1);
@@ -63,71 +72,89 @@ static dvi_status make_integrator(const dvi_system *system, const dvi_integrator
   I->system = system;
   dvi_status status = make_stepper(I, o);
   I->counters.allocations = dvi__allocation_count() - before;
-  if (status == DVI_OK && I->pace != NULL) status = check_paced_method(I);
+  if (status == DVI_OK && I->monitored != NULL) status = check_monitored_method(I);
   if (status != DVI_OK) dvi_integrator_destroy(&I);
   *integrator = I;
   return status;
 }
 
-static dvi_status make_paced(const dvi_system *system, const dvi_integrator_options *o, dvi_integrator **integrator)
+static dvi_status make_monitored_integrator(const dvi_system *system,
+                                            const dvi_integrator_options *o,
+                                            dvi_integrator **integrator)
 {
-  const char *what = o->pacing == DVI_TIME_TRANSFORM ? "time transform, a general Lagrangian with the mass M/g" : "step control";
+  const char *what = o->pacing == DVI_TIME_TRANSFORM
+                         ? "time transform, a general Lagrangian with the mass M/g"
+                         : "step control";
   if (system->dynamics->on_manifold)
     return dvi__fail(DVI_UNSUPPORTED,
-                     "%s: the system has factors, and monitors are functions of coordinates of R^n; take steps of equal length",
+                     "%s: the system has factors, and monitors are functions of coordinates of "
+                     "R^n; take steps of equal length",
                      what);
   const dvi_status status = make_integrator(system, o, integrator);
   if (status == DVI_UNSUPPORTED) (void)dvi__fail_in(status, "%s", what);
   return status;
 }
 
-/* The caller's struct may be that of an older header, without the last fields. */
+/* Copy the options. The caller's struct may be that of an older header, without the last
+ * fields. */
 static dvi_status read_options(const dvi_integrator_options *given, dvi_integrator_options *o)
 {
   *o = (dvi_integrator_options){0};
   if (given->size < sizeof given->size || given->size > sizeof *o)
-    return dvi__fail(DVI_BAD_ARGUMENT, "integrator: the options' size is %zu; set it to sizeof(dvi_integrator_options), %zu",
-                     given->size, sizeof *o);
+    return dvi__fail(
+        DVI_BAD_ARGUMENT,
+        "integrator: the options' size is %zu; set it to sizeof(dvi_integrator_options), %zu",
+        given->size, sizeof *o);
   memcpy(o, given, given->size);
   if (o->pacing < DVI_STEPS_OF_TIME || o->pacing > DVI_STEP_CONTROL)
     return dvi__fail(DVI_BAD_ARGUMENT, "integrator: there is no pacing number %d", (int)o->pacing);
-  if (o->pacing != DVI_STEPS_OF_TIME && o->monitor == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "integrator: the monitor is NULL");
+  if (o->pacing != DVI_STEPS_OF_TIME && o->monitor == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "integrator: the monitor is NULL");
   if (o->pacing == DVI_STEPS_OF_TIME && o->monitor != NULL)
-    return dvi__fail(DVI_BAD_ARGUMENT, "integrator: a monitor is given, but the pacing is steps of time; choose "
-                                       "DVI_TIME_TRANSFORM or DVI_STEP_CONTROL, or leave it out");
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "integrator: a monitor is given, but the pacing is steps of time; choose "
+                     "DVI_TIME_TRANSFORM or DVI_STEP_CONTROL, or leave it out");
   if (o->method == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "integrator: the method is NULL");
   return o->shapes != NULL ? dvi__shapes_check(o->shapes) : DVI_OK;
 }
 
-dvi_status dvi_integrator_create_with(const dvi_system *system, const dvi_integrator_options *options, dvi_integrator **integrator)
+dvi_status dvi_integrator_create_with(const dvi_system *system,
+                                      const dvi_integrator_options *options,
+                                      dvi_integrator **integrator)
 {
   dvi_integrator_options o;
   if (integrator == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "integrator: no place for the result");
   *integrator = NULL;
   if (system == NULL || options == NULL)
-    return dvi__fail(DVI_BAD_ARGUMENT, "integrator: the %s NULL", system == NULL ? "system is" : "options are");
+    return dvi__fail(DVI_BAD_ARGUMENT, "integrator: the %s NULL",
+                     system == NULL ? "system is" : "options are");
   DVI_TRY(read_options(options, &o));
-  return o.pacing == DVI_STEPS_OF_TIME ? make_integrator(system, &o, integrator) : make_paced(system, &o, integrator);
+  return o.pacing == DVI_STEPS_OF_TIME ? make_integrator(system, &o, integrator)
+                                       : make_monitored_integrator(system, &o, integrator);
 }
 
-dvi_status dvi_integrator_create(const dvi_system *system, const char *method, dvi_integrator **integrator)
+dvi_status dvi_integrator_create(const dvi_system *system, const char *method,
+                                 dvi_integrator **integrator)
 {
-  return dvi_integrator_create_with(system, &(dvi_integrator_options){.size = sizeof(dvi_integrator_options), .method = method},
-                                    integrator);
+  return dvi_integrator_create_with(
+      system, &(dvi_integrator_options){.size = sizeof(dvi_integrator_options), .method = method},
+      integrator);
 }
 
 dvi_status dvi_integrator_create_like(const dvi_integrator *I, dvi_integrator **integrator)
 {
-  if (I == NULL || integrator == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "integrator: an argument is NULL");
-  const dvi_integrator_options options = {.size = sizeof options,
-                                          .method = I->stepper.specification,
-                                          .shapes = I->shapes,
-                                          .pacing = I->pace != NULL ? I->pace->pacing : DVI_STEPS_OF_TIME,
-                                          .monitor = I->pace != NULL ? &I->pace->given : NULL};
+  if (I == NULL || integrator == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "integrator: an argument is NULL");
+  const dvi_integrator_options options = {
+      .size = sizeof options,
+      .method = I->stepper.specification,
+      .shapes = I->shapes,
+      .pacing = I->monitored != NULL ? I->monitored->pacing : DVI_STEPS_OF_TIME,
+      .monitor = I->monitored != NULL ? &I->monitored->given : NULL};
   DVI_TRY(dvi_integrator_create_with(I->system, &options, integrator));
-  if (I->pace == NULL) return DVI_OK;
-  (*integrator)->pace->holds = I->pace->holds || I->started;
-  dvi__pace_set_energy((*integrator)->pace, I->pace->energy);
+  if (I->monitored == NULL) return DVI_OK;
+  (*integrator)->monitored->holds = I->monitored->holds || I->started;
+  dvi__monitored_time_set_energy((*integrator)->monitored, I->monitored->energy);
   return DVI_OK;
 }
 
@@ -139,7 +166,7 @@ void dvi_integrator_destroy(dvi_integrator **integrator)
   dvi_integrator *I = *integrator;
   dvi__release(I->stepper.memory);
   dvi__stepper_destroy(&I->stepper);
-  dvi__pace_destroy(&I->pace);
+  dvi__monitored_time_destroy(&I->monitored);
   dvi__evaluator_destroy(&I->evaluator);
   dvi__release(I->numbers);
   dvi__release(I->memory_before);

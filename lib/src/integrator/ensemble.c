@@ -1,4 +1,4 @@
-/* An ensemble's members: their start, their numbers, their failures. */
+/* The members of an ensemble: start, numbers, failures and queries. */
 #include <dvi/ensemble.h>
 #include <stdio.h>
 #include <string.h>
@@ -24,10 +24,12 @@ void dvi__member_load(const dvi_ensemble *e, dvi__worker *w, const dvi__block *b
   dvi_integrator *I = w->integrator;
   const size_t n = (size_t)e->n, members = (size_t)block->count;
   I->now.t = dvi__row(block, DVI__MEMBER_T)[k];
-  I->now.t_carry = dvi__row(block, DVI__MEMBER_T_CARRY)[k];
+  I->now.t_compensation = dvi__row(block, DVI__MEMBER_T_COMPENSATION)[k];
   I->now.side = 0;
-  load_rows(4 * n, dvi__row(block, DVI__MEMBER_Q) + k, members, I->now.q); /* q, p and both carries lie in a row */
-  load_rows(I->stepper.memory_count, dvi__row(block, DVI__MEMBER_Q + 4 * n) + k, members, I->stepper.memory);
+  /* q, p and both compensations are contiguous */
+  load_rows(4 * n, dvi__row(block, DVI__MEMBER_Q) + k, members, I->now.q);
+  load_rows(I->stepper.memory_count, dvi__row(block, DVI__MEMBER_Q + 4 * n) + k, members,
+            I->stepper.memory);
   I->last_h = dvi__driver_row(e, block, DVI__MEMBER_LAST_H)[k];
   I->counters.steps = (long)dvi__driver_row(e, block, DVI__MEMBER_STEPS)[k];
   if (e->system_is_general) {
@@ -36,19 +38,21 @@ void dvi__member_load(const dvi_ensemble *e, dvi__worker *w, const dvi__block *b
   }
 }
 
-/* Of what came before the present state a member keeps what dvi__guess_velocity looks at. */
+/* Store a member's state, and the numbers of earlier states that dvi__guess_velocity uses. */
 void dvi__member_store(const dvi_ensemble *e, const dvi__worker *w, const dvi__block *block, int k)
 {
   const dvi_integrator *I = w->integrator;
   const size_t n = (size_t)e->n, members = (size_t)block->count;
   dvi__row(block, DVI__MEMBER_T)[k] = I->now.t;
-  dvi__row(block, DVI__MEMBER_T_CARRY)[k] = I->now.t_carry;
+  dvi__row(block, DVI__MEMBER_T_COMPENSATION)[k] = I->now.t_compensation;
   store_rows(4 * n, I->now.q, members, dvi__row(block, DVI__MEMBER_Q) + k);
-  store_rows(I->stepper.memory_count, I->stepper.memory, members, dvi__row(block, DVI__MEMBER_Q + 4 * n) + k);
+  store_rows(I->stepper.memory_count, I->stepper.memory, members,
+             dvi__row(block, DVI__MEMBER_Q + 4 * n) + k);
   dvi__driver_row(e, block, DVI__MEMBER_LAST_H)[k] = I->last_h;
   dvi__driver_row(e, block, DVI__MEMBER_STEPS)[k] = (double)I->counters.steps;
   if (e->system_is_general)
-    store_rows(n, I->last_h != 0 ? I->last.q : I->last.p, members, dvi__driver_row(e, block, DVI__MEMBER_LAST) + k);
+    store_rows(n, I->last_h != 0 ? I->last.q : I->last.p, members,
+               dvi__driver_row(e, block, DVI__MEMBER_LAST) + k);
 }
 
 static const dvi__block *block_of(const dvi_ensemble *e, int member)
@@ -74,10 +78,11 @@ void dvi__ensemble_clear_failures(dvi_ensemble *e)
   }
 }
 
-/* Whatever threads met them in whatever order: a fatal one first, then the first member. */
-static int is_worse(dvi_status status, int member, const dvi__misfortune *than)
+/* Order failures independently of the threads. Fatal failures come first, then the first member. */
+static int is_worse(dvi_status status, int member, const dvi__worst_failure *than)
 {
-  if (than->status == DVI_OK || (status < 0) != (than->status < 0)) return than->status == DVI_OK || status < 0;
+  if (than->status == DVI_OK || (status < 0) != (than->status < 0))
+    return than->status == DVI_OK || status < 0;
   return member < than->member;
 }
 
@@ -92,16 +97,18 @@ void dvi__worker_note(dvi__worker *w, int member, dvi_status status)
 
 dvi_status dvi__ensemble_verdict(const dvi_ensemble *e)
 {
-  const dvi__misfortune *worst = &e->workers[0].worst;
+  const dvi__worst_failure *worst = &e->workers[0].worst;
   long failures = 0;
   for (int i = 0; i < e->threads; i++) {
-    const dvi__misfortune *here = &e->workers[i].worst;
+    const dvi__worst_failure *here = &e->workers[i].worst;
     failures += e->workers[i].failures;
     if (here->status != DVI_OK && is_worse(here->status, here->member, worst)) worst = here;
   }
   if (failures == 0) return DVI_OK;
-  if (failures == 1) return dvi__fail(worst->status, "ensemble: member %d: %s", worst->member, worst->sentence);
-  return dvi__fail(worst->status, "ensemble: member %d, one of %ld that failed: %s", worst->member, failures, worst->sentence);
+  if (failures == 1)
+    return dvi__fail(worst->status, "ensemble: member %d: %s", worst->member, worst->sentence);
+  return dvi__fail(worst->status, "ensemble: member %d, one of %ld that failed: %s", worst->member,
+                   failures, worst->sentence);
 }
 
 /* ---- start ---- */
@@ -111,7 +118,7 @@ static void start_block(void *of, int thread, int item)
   dvi_ensemble *e = of;
   dvi__worker *w = &e->workers[thread];
   dvi__block block = e->blocks[item];
-  const dvi__departure *from = &e->departure;
+  const dvi__start_task *from = &e->start_task;
   const size_t n = (size_t)e->n, nv = (size_t)block.system->nv, members = (size_t)e->members;
   block.numbers = from->numbers + (size_t)block.first * e->member_numbers;
   dvi__worker_bind(w, &block);
@@ -120,8 +127,10 @@ static void start_block(void *of, int thread, int item)
     load_rows(n, from->q + member, members, w->point[0]);
     load_rows(nv, from->second + member, members, w->point[1]);
     w->integrator->counters.steps = 0;
-    const dvi_status status = from->by_velocity ? dvi_integrator_start_velocity(w->integrator, from->t, w->point[0], w->point[1])
-                                                : dvi_integrator_start(w->integrator, from->t, w->point[0], w->point[1]);
+    const dvi_status status =
+        from->by_velocity
+            ? dvi_integrator_start_velocity(w->integrator, from->t, w->point[0], w->point[1])
+            : dvi_integrator_start(w->integrator, from->t, w->point[0], w->point[1]);
     if (status == DVI_OK)
       dvi__member_store(e, w, &block, k);
     else
@@ -129,14 +138,18 @@ static void start_block(void *of, int thread, int item)
   }
 }
 
-/* The new states take the place of the old ones once all are good. */
-static dvi_status start(dvi_ensemble *e, double t, const double *q, const double *second, int by_velocity)
+/* Start all members. The new states replace the old ones once all members have started. */
+static dvi_status ensemble_start_members(dvi_ensemble *e, double t, const double *q,
+                                         const double *second, int by_velocity)
 {
-  if (e == NULL || q == NULL || second == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "ensemble: start: an argument is NULL");
+  if (e == NULL || q == NULL || second == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "ensemble: start: an argument is NULL");
   double *numbers = DVI_NEW(double, (size_t)e->members * e->member_numbers);
-  if (numbers == NULL) return dvi__fail(DVI_NO_MEMORY, "ensemble: start: no memory for %d members", e->members);
+  if (numbers == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "ensemble: start: no memory for %d members", e->members);
   e->allocations++;
-  e->departure = (dvi__departure){t, q, second, by_velocity, numbers};
+  e->start_task = (dvi__start_task){
+      .t = t, .q = q, .second = second, .by_velocity = by_velocity, .numbers = numbers};
   dvi__ensemble_clear_failures(e);
   dvi__team_share(e->team, e->block_count, start_block, e);
   const dvi_status status = dvi__ensemble_verdict(e);
@@ -146,7 +159,8 @@ static dvi_status start(dvi_ensemble *e, double t, const double *q, const double
   }
   dvi__release(e->numbers);
   e->numbers = numbers;
-  for (int i = 0; i < e->block_count; i++) e->blocks[i].numbers = numbers + (size_t)e->blocks[i].first * e->member_numbers;
+  for (int i = 0; i < e->block_count; i++)
+    e->blocks[i].numbers = numbers + (size_t)e->blocks[i].first * e->member_numbers;
   memset(e->status, 0, (size_t)e->members * sizeof *e->status);
   e->started = 1;
   return DVI_OK;
@@ -154,12 +168,12 @@ static dvi_status start(dvi_ensemble *e, double t, const double *q, const double
 
 dvi_status dvi_ensemble_start(dvi_ensemble *e, double t, const double *q, const double *p)
 {
-  return start(e, t, q, p, 0);
+  return ensemble_start_members(e, t, q, p, 0);
 }
 
 dvi_status dvi_ensemble_start_velocity(dvi_ensemble *e, double t, const double *q, const double *v)
 {
-  return start(e, t, q, v, 1);
+  return ensemble_start_members(e, t, q, v, 1);
 }
 
 /* ---- queries ---- */
@@ -169,14 +183,17 @@ static void copy_rows(const dvi_ensemble *e, size_t first_row, size_t rows, doub
   for (int b = 0; b < e->block_count && out != NULL; b++) {
     const dvi__block *block = &e->blocks[b];
     for (size_t i = 0; i < rows; i++)
-      memcpy(out + i * (size_t)e->members + block->first, dvi__row(block, first_row + i), (size_t)block->count * sizeof(double));
+      memcpy(out + i * (size_t)e->members + block->first, dvi__row(block, first_row + i),
+             (size_t)block->count * sizeof(double));
   }
 }
 
 dvi_status dvi_ensemble_state(const dvi_ensemble *e, double *t, double *q, double *p)
 {
   if (e == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "ensemble: it is NULL");
-  if (!e->started) return dvi__fail(DVI_BAD_STATE, "ensemble: its members have no state yet; call dvi_ensemble_start first");
+  if (!e->started)
+    return dvi__fail(DVI_BAD_STATE,
+                     "ensemble: its members have no state yet; call dvi_ensemble_start first");
   const size_t n = (size_t)e->n;
   copy_rows(e, DVI__MEMBER_T, 1, t);
   copy_rows(e, DVI__MEMBER_Q, n, q);
@@ -203,10 +220,14 @@ long dvi_ensemble_steps(const dvi_ensemble *e, int member)
 
 dvi_status dvi_ensemble_invariants(dvi_ensemble *e, int member, double *value)
 {
-  if (e == NULL || value == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "ensemble: invariants: an argument is NULL");
+  if (e == NULL || value == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "ensemble: invariants: an argument is NULL");
   if (!has_member(e, member))
-    return dvi__fail(DVI_BAD_ARGUMENT, "ensemble: there is no member %d, the last one is %d", member, e->members - 1);
-  if (!e->started) return dvi__fail(DVI_BAD_STATE, "ensemble: its members have no state yet; call dvi_ensemble_start first");
+    return dvi__fail(DVI_BAD_ARGUMENT, "ensemble: there is no member %d, the last one is %d",
+                     member, e->members - 1);
+  if (!e->started)
+    return dvi__fail(DVI_BAD_STATE,
+                     "ensemble: its members have no state yet; call dvi_ensemble_start first");
   const dvi__block *block = block_of(e, member);
   dvi__worker *w = &e->workers[0];
   dvi__worker_bind(w, block);
@@ -253,7 +274,8 @@ void dvi_ensemble_counters(const dvi_ensemble *e, dvi_counters *counters)
   if (counters == NULL) return;
   *counters = (dvi_counters){0};
   if (e == NULL) return;
-  for (int i = 0; i < e->integrator_count; i++) add_counters(&e->integrators[i]->counters, counters);
+  for (int i = 0; i < e->integrator_count; i++)
+    add_counters(&e->integrators[i]->counters, counters);
   for (int i = 0; i < e->threads; i++) counters->steps += e->workers[i].steps;
   counters->allocations += e->allocations;
 }
@@ -264,9 +286,11 @@ size_t dvi_ensemble_explain(const dvi_ensemble *e, char *text, size_t size)
   if (size > 0) text[0] = 0;
   if (e == NULL) return 0;
   const int lanes = e->integrators[0]->stepper.lanes != NULL && e->block_count < e->members;
-  dvi__text_add(&out, "ensemble: %d members in %d blocks%s, %s, %d thread%s\n", e->members, e->block_count,
-                e->bound ? " with integrators of their own" : "", lanes ? "side by side as lanes" : "one after the other",
-                e->threads, e->threads == 1 ? "" : "s");
+  dvi__text_add(&out, "ensemble: %d members in %d blocks%s, %s, %d thread%s\n", e->members,
+                e->block_count, e->bound ? " with integrators of their own" : "",
+                lanes ? "side by side as lanes" : "one after the other", e->threads,
+                e->threads == 1 ? "" : "s");
   const size_t room = out.length < size ? size - out.length : 0;
-  return out.length + dvi_integrator_explain(e->integrators[0], room > 0 ? text + out.length : NULL, room);
+  return out.length +
+         dvi_integrator_explain(e->integrators[0], room > 0 ? text + out.length : NULL, room);
 }

@@ -1,18 +1,21 @@
-/* Making an ensemble: blocks of members that share a system, and an integrator for each thread, or for each block. */
+/* Creation of an ensemble: blocks of members that share a system, and an integrator for each thread
+ * or for each block. */
 #include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
 #include "integrator/ensemble_struct.h"
-#include "space/given.h"
+#include "space/user_basis.h"
 
 enum { THREADS_MOST = 1024, BLOCK_MOST = 65536 };
 
-/* Members side by side: as many as have room, with what an iteration needs beside them, in a cache of the first level, but enough to fill vectors
- * and few enough to make use of a thread. */
+/* Limits of the number of members side by side. A block and the work of an iteration should fit in
+ * the first-level cache. A block has enough members to fill vectors, and few enough to give every
+ * thread work. */
 enum { SIDE_BY_SIDE_LEAST = 8, SIDE_BY_SIDE_MOST = 64, NUMBERS_SIDE_BY_SIDE = 2304 };
 
-static const dvi_system *system_of(const dvi_system *system, const dvi_ensemble_options *o, int member)
+static const dvi_system *system_of(const dvi_system *system, const dvi_ensemble_options *o,
+                                   int member)
 {
   return o->systems != NULL ? o->systems[member] : system;
 }
@@ -20,24 +23,36 @@ static const dvi_system *system_of(const dvi_system *system, const dvi_ensemble_
 static dvi_status check_systems(const dvi_ensemble_options *o)
 {
   for (int k = 0; k < o->members; k++) {
-    if (o->systems[k] == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "ensemble: the system of member %d is NULL", k);
-    const dvi_status status = o->systems[k] != o->systems[0] ? dvi__system_alike(o->systems[0], o->systems[k]) : DVI_OK;
-    if (status != DVI_OK) return dvi__fail_in(status, "ensemble: the system of member %d is not like that of member 0", k);
+    if (o->systems[k] == NULL)
+      return dvi__fail(DVI_BAD_ARGUMENT, "ensemble: the system of member %d is NULL", k);
+    const dvi_status status = o->systems[k] != o->systems[0]
+                                  ? dvi__system_alike(o->systems[0], o->systems[k])
+                                  : DVI_OK;
+    if (status != DVI_OK)
+      return dvi__fail_in(status, "ensemble: the system of member %d is not like that of member 0",
+                          k);
   }
   return DVI_OK;
 }
 
-static dvi_status check(const dvi_system *system, const char *method, const dvi_ensemble_options *o)
+static dvi_status ensemble_check(const dvi_system *system, const char *method,
+                                 const dvi_ensemble_options *o)
 {
-  if (method == NULL || o == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "ensemble: the method or the options are NULL");
-  if (o->members < 1) return dvi__fail(DVI_BAD_SIZE, "ensemble: %d members asked, 1 or more are possible", o->members);
+  if (method == NULL || o == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "ensemble: the method or the options are NULL");
+  if (o->members < 1)
+    return dvi__fail(DVI_BAD_SIZE, "ensemble: %d members asked, 1 or more are possible",
+                     o->members);
   if (o->threads < 0 || o->threads > THREADS_MOST)
-    return dvi__fail(DVI_BAD_SIZE, "ensemble: %d threads asked, 1 to %d are possible (0: 1)", o->threads, THREADS_MOST);
+    return dvi__fail(DVI_BAD_SIZE, "ensemble: %d threads asked, 1 to %d are possible (0: 1)",
+                     o->threads, THREADS_MOST);
   if (o->block < 0 || o->block > BLOCK_MOST)
-    return dvi__fail(DVI_BAD_SIZE, "ensemble: blocks of %d asked, 1 to %d are possible (0: chosen)", o->block, BLOCK_MOST);
+    return dvi__fail(DVI_BAD_SIZE, "ensemble: blocks of %d asked, 1 to %d are possible (0: chosen)",
+                     o->block, BLOCK_MOST);
   if ((system == NULL) == (o->systems == NULL))
     return dvi__fail(DVI_BAD_ARGUMENT, "ensemble: %s; give one system, or options.systems",
-                     system == NULL ? "there is no system" : "two ways to name the systems are used");
+                     system == NULL ? "there is no system"
+                                    : "two ways to name the systems are used");
   if (o->shapes != NULL) DVI_TRY(dvi__shapes_check(o->shapes));
   return o->systems != NULL ? check_systems(o) : DVI_OK;
 }
@@ -56,30 +71,38 @@ void dvi__worker_bind(dvi__worker *w, const dvi__block *block)
   w->scene->invariants = system->invariants;
 }
 
-/* One more. */
-static dvi_status add_integrator(dvi_ensemble *e, const dvi_system *system, const char *method, const dvi_shapes *shapes)
+/* Add one integrator to the ensemble. */
+static dvi_status add_integrator(dvi_ensemble *e, const dvi_system *system, const char *method,
+                                 const dvi_shapes *shapes)
 {
   dvi_integrator **place = &e->integrators[e->integrator_count];
-  const dvi_integrator_options options = {.size = sizeof options, .method = method, .shapes = shapes};
+  const dvi_integrator_options options = {
+      .size = sizeof options, .method = method, .shapes = shapes};
   DVI_TRY(dvi_integrator_create_with(system, &options, place));
   e->integrator_count++;
   if (dvi_integrator_chooses_steps(*place))
-    return dvi__fail(DVI_UNSUPPORTED, "ensemble: %s chooses its steps, so that members would part in time; use single integrators",
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "ensemble: %s chooses its steps, so that members would part in time; use "
+                     "single integrators",
                      (*place)->stepper.method->name);
   (*place)->counters.allocations = 0; /* the ensemble counts those of its creation */
   (*place)->started = 1;              /* once the ensemble is */
   return DVI_OK;
 }
 
-/* Systems that differ share the threads' integrators, or not: a first integrator tells. Those of threads are made for a copy of a system, which takes the terms of
- * each; the patterns of their Hessians, if the method needs them, must be complete before that. */
-static dvi_status look_at_systems(dvi_ensemble *e, const char *method, const dvi_ensemble_options *o)
+/* Decide whether different systems share the threads' integrators. A first integrator says whether
+ * its stepper is bound to the system. Threads' integrators are made for a copy of a system, which
+ * takes the terms of each block's system. The patterns of Hessians, if the method needs them, must
+ * be complete before the copy. */
+static dvi_status look_at_systems(dvi_ensemble *e, const char *method,
+                                  const dvi_ensemble_options *o)
 {
   DVI_TRY(add_integrator(e, o->systems[0], method, o->shapes));
   e->bound = e->integrators[0]->stepper.bound;
   if (e->bound) return DVI_OK;
   dvi_integrator_destroy(&e->integrators[--e->integrator_count]);
-  for (int k = 0; k < o->members && o->systems[0]->qq.start != NULL; k++) DVI_TRY(dvi__system_prepare_hessian(o->systems[k]));
+  for (int k = 0; k < o->members && o->systems[0]->qq.start != NULL; k++)
+    DVI_TRY(dvi__system_prepare_hessian(o->systems[k]));
   for (int i = 0; i < e->threads; i++) {
     e->workers[i].scene = dvi__duplicate(o->systems[0], 1, sizeof *o->systems[0]);
     if (e->workers[i].scene == NULL) return dvi__fail(DVI_NO_MEMORY, "ensemble: no memory");
@@ -87,8 +110,10 @@ static dvi_status look_at_systems(dvi_ensemble *e, const char *method, const dvi
   return DVI_OK;
 }
 
-/* What creation has counted is counted once, for any number of threads. */
-static dvi_status add_those_of_threads(dvi_ensemble *e, const dvi_system *system, const char *method, const dvi_shapes *shapes)
+/* Make an integrator for each thread. The work of creation is counted once, for any number of
+ * threads. */
+static dvi_status add_those_of_threads(dvi_ensemble *e, const dvi_system *system,
+                                       const char *method, const dvi_shapes *shapes)
 {
   for (int i = 0; i < e->threads; i++) {
     dvi__worker *w = &e->workers[i];
@@ -99,11 +124,13 @@ static dvi_status add_those_of_threads(dvi_ensemble *e, const dvi_system *system
   return DVI_OK;
 }
 
-/* Alike systems give integrators with memories of one length. The first one is there. */
+/* Make an integrator for each block. The first integrator exists already. Systems with the same
+ * declarations give integrators with memories of one length. */
 static dvi_status add_those_of_blocks(dvi_ensemble *e, const char *method, const dvi_shapes *shapes)
 {
   dvi_integrator **all = DVI_NEW(dvi_integrator *, e->block_count);
-  if (all == NULL) return dvi__fail(DVI_NO_MEMORY, "ensemble: no memory for %d integrators", e->block_count);
+  if (all == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "ensemble: no memory for %d integrators", e->block_count);
   all[0] = e->integrators[0];
   dvi__release(e->integrators);
   e->integrators = all;
@@ -123,14 +150,15 @@ static int has_lanes(const dvi_ensemble *e)
   return e->integrators[0]->stepper.lanes != NULL;
 }
 
-/* What a block's step needs. */
-static dvi_status make_room(const dvi_ensemble *e, dvi__worker *w)
+/* Allocate the work arrays of a block's step. */
+static dvi_status worker_allocate(const dvi_ensemble *e, dvi__worker *w)
 {
   dvi__members *m = &w->members;
   const size_t capacity = (size_t)e->capacity;
   w->point[0] = DVI_NEW(double, e->n);
   w->point[1] = DVI_NEW(double, e->n);
-  if (w->point[0] == NULL || w->point[1] == NULL) return dvi__fail(DVI_NO_MEMORY, "ensemble: no memory");
+  if (w->point[0] == NULL || w->point[1] == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "ensemble: no memory");
   if (!has_lanes(e)) return DVI_OK;
   w->numbers = DVI_NEW(double, e->state_numbers *capacity);
   w->ahead = DVI_NEW(long, capacity);
@@ -139,7 +167,8 @@ static dvi_status make_room(const dvi_ensemble *e, dvi__worker *w)
   m->residuals = DVI_NEW(long, capacity);
   m->gradients = DVI_NEW(long, capacity);
   m->fixed = DVI_NEW(long, capacity);
-  if (w->numbers && w->ahead && w->absence && m->left && m->residuals && m->gradients && m->fixed) return DVI_OK;
+  if (w->numbers && w->ahead && w->absence && m->left && m->residuals && m->gradients && m->fixed)
+    return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "ensemble: no memory for %d members side by side", e->capacity);
 }
 
@@ -157,7 +186,8 @@ static void clear_worker(dvi__worker *w)
   dvi__release(w->point[1]);
 }
 
-static dvi_status make_workers(dvi_ensemble *e, const dvi_system *system, const char *method, const dvi_ensemble_options *o)
+static dvi_status make_workers(dvi_ensemble *e, const dvi_system *system, const char *method,
+                               const dvi_ensemble_options *o)
 {
   e->workers = DVI_NEW(dvi__worker, e->threads);
   e->integrators = DVI_NEW(dvi_integrator *, e->threads);
@@ -169,35 +199,45 @@ static dvi_status make_workers(dvi_ensemble *e, const dvi_system *system, const 
 
 /* ---- blocks ---- */
 
-static int smaller(int a, int b)
+static int smaller_count(int a, int b)
 {
   return a < b ? a : b;
 }
 
-/* A share for every thread, in whole vectors; whole, where it is to have few integrators. */
+/* Choose the members of a block, so that every thread has a share in whole vectors. If each block
+ * has its own integrator, a block is a thread's whole share. */
 static int choose_capacity(const dvi_ensemble *e, const dvi_ensemble_options *o)
 {
-  if (o->block > 0) return smaller(o->block, o->members);
+  if (o->block > 0) return smaller_count(o->block, o->members);
   const int share = (o->members - 1) / e->threads + 1;
   if (e->bound) return share;
   const int room = (int)(NUMBERS_SIDE_BY_SIDE / e->state_numbers) / 8 * 8;
-  const int chosen = room > SIDE_BY_SIDE_LEAST ? smaller(room, SIDE_BY_SIDE_MOST) : SIDE_BY_SIDE_LEAST;
-  return share < chosen ? smaller((share - 1) / 8 * 8 + 8, o->members) : chosen;
+  const int chosen = room > SIDE_BY_SIDE_LEAST ? smaller_count(room, SIDE_BY_SIDE_MOST)
+                                               : SIDE_BY_SIDE_LEAST;
+  return share < chosen ? smaller_count((share - 1) / 8 * 8 + 8, o->members) : chosen;
 }
 
-/* The number of blocks; with `blocks`, they are written. */
-static int cut_blocks(const dvi_ensemble *e, const dvi_system *system, const dvi_ensemble_options *o, dvi__block *blocks)
+/* Count the blocks, and write them if `blocks` is not NULL. */
+static int cut_blocks(const dvi_ensemble *e, const dvi_system *system,
+                      const dvi_ensemble_options *o, dvi__block *blocks)
 {
   int count = 0;
   for (int first = 0, end; first < o->members; first = end, count++) {
     const dvi_system *of = system_of(system, o, first);
-    for (end = first + 1; end < o->members && end - first < e->capacity && system_of(system, o, end) == of;) end++;
-    if (blocks != NULL) blocks[count] = (dvi__block){first, end - first, of, NULL, e->numbers + (size_t)first * e->member_numbers};
+    for (end = first + 1;
+         end < o->members && end - first < e->capacity && system_of(system, o, end) == of;)
+      end++;
+    if (blocks != NULL)
+      blocks[count] = (dvi__block){.first = first,
+                                   .count = end - first,
+                                   .system = of,
+                                   .numbers = e->numbers + (size_t)first * e->member_numbers};
   }
   return count;
 }
 
-/* The most that an ensemble takes, and first: too many members are refused at once. */
+/* Allocate the members' numbers, the largest array, first, so that too many members are refused at
+ * once. */
 static dvi_status make_members(dvi_ensemble *e)
 {
   const size_t n = (size_t)e->n;
@@ -209,27 +249,32 @@ static dvi_status make_members(dvi_ensemble *e)
                    e->member_numbers * sizeof(double));
 }
 
-/* Where members go one after the other, what is one member's should stand together: a block for each. */
+/* Prepare the lanes. If members are stepped one after the other, each member is a block of its own,
+ * so that its numbers are contiguous. */
 static dvi_status make_lanes(dvi_ensemble *e, const dvi_ensemble_options *o)
 {
   e->capacity = choose_capacity(e, o);
-  for (int i = 0; i < e->integrator_count; i++) DVI_TRY(dvi__stepper_prepare_lanes(&e->integrators[i]->stepper, e->capacity));
+  for (int i = 0; i < e->integrator_count; i++)
+    DVI_TRY(dvi__stepper_prepare_lanes(&e->integrators[i]->stepper, e->capacity));
   if (!has_lanes(e) && !e->bound && o->block == 0) e->capacity = 1;
-  for (int i = 0; i < e->threads; i++) DVI_TRY(make_room(e, &e->workers[i]));
+  for (int i = 0; i < e->threads; i++) DVI_TRY(worker_allocate(e, &e->workers[i]));
   return DVI_OK;
 }
 
-static dvi_status make_blocks(dvi_ensemble *e, const dvi_system *system, const dvi_ensemble_options *o)
+static dvi_status make_blocks(dvi_ensemble *e, const dvi_system *system,
+                              const dvi_ensemble_options *o)
 {
   e->block_count = cut_blocks(e, system, o, NULL);
   e->blocks = DVI_NEW(dvi__block, e->block_count);
   e->status = DVI_NEW(dvi_status, e->members);
-  if (e->blocks == NULL || e->status == NULL) return dvi__fail(DVI_NO_MEMORY, "ensemble: no memory for %d members", e->members);
+  if (e->blocks == NULL || e->status == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "ensemble: no memory for %d members", e->members);
   (void)cut_blocks(e, system, o, e->blocks);
   return DVI_OK;
 }
 
-static dvi_status fill(dvi_ensemble *e, const dvi_system *system, const char *method, const dvi_ensemble_options *o)
+static dvi_status ensemble_assemble(dvi_ensemble *e, const dvi_system *system, const char *method,
+                                    const dvi_ensemble_options *o)
 {
   DVI_TRY(make_workers(e, system, method, o));
   DVI_TRY(make_members(e));
@@ -239,20 +284,20 @@ static dvi_status fill(dvi_ensemble *e, const dvi_system *system, const char *me
   return dvi__team_create(e->threads, &e->team);
 }
 
-dvi_status dvi_ensemble_create(const dvi_system *system, const char *method, const dvi_ensemble_options *options,
-                               dvi_ensemble **ensemble)
+dvi_status dvi_ensemble_create(const dvi_system *system, const char *method,
+                               const dvi_ensemble_options *options, dvi_ensemble **ensemble)
 {
   if (ensemble == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "ensemble: no place for the result");
   *ensemble = NULL;
-  DVI_TRY(check(system, method, options));
+  DVI_TRY(ensemble_check(system, method, options));
   const long before = dvi__allocation_count();
   dvi_ensemble *e = DVI_NEW(dvi_ensemble, 1);
   if (e == NULL) return dvi__fail(DVI_NO_MEMORY, "ensemble: no memory");
   e->members = options->members;
-  e->threads = smaller(options->threads > 0 ? options->threads : 1, options->members);
+  e->threads = smaller_count(options->threads > 0 ? options->threads : 1, options->members);
   e->n = system_of(system, options, 0)->n;
   e->system_is_general = system_of(system, options, 0)->lagrangian != NULL;
-  const dvi_status status = fill(e, system, method, options);
+  const dvi_status status = ensemble_assemble(e, system, method, options);
   e->allocations = dvi__allocation_count() - before;
   if (status != DVI_OK) dvi_ensemble_destroy(&e);
   *ensemble = e;

@@ -1,35 +1,38 @@
-/* A system known by what its callbacks compute at one state: they cannot be saved, but other
- * parameters change their values. */
-#ifndef DVI_METHOD_FINGERPRINT_H
-#define DVI_METHOD_FINGERPRINT_H
+/* A fingerprint of a system: values of its callbacks at one state. Callbacks cannot be saved, but
+ * other parameters change their values. */
+#ifndef DVI_INTEGRATOR_FINGERPRINT_H
+#define DVI_INTEGRATOR_FINGERPRINT_H
 #include <dvi/integrator.h>
 
-/* A number, or a weighted sum of numbers, and the sum of its summands' sizes, which tells
- * rounding from difference. */
+/* A number, or a weighted sum of numbers, with the sum of its summands' magnitudes. The magnitude
+ * separates rounding from a difference. */
 typedef struct dvi__sum {
   double value, size;
 } dvi__sum;
 
-/* Of a state. The velocity is the one that p has, sought from the last step as the next step
- * seeks it. */
+/* The fingerprint of a system at a state. The velocity is that of p, found from the last step as in
+ * the next step. */
 typedef struct dvi__fingerprint {
-  dvi__sum lagrangian;             /* or Hamiltonian */
-  dvi__sum forces;                 /* L_q, or -H_q */
-  dvi__sum distance;               /* from the constraint */
-  dvi__sum monitor, monitor_slope; /* g and g_q, of steps in another time */
+  dvi__sum lagrangian;       /* Lagrangian or Hamiltonian */
+  dvi__sum forces;           /* L_q, or -H_q */
+  dvi__sum distance;         /* distance from the constraint */
+  dvi__sum monitor;          /* g, for steps in another time */
+  dvi__sum monitor_gradient; /* g_q, for steps in another time */
 } dvi__fingerprint;
 
-/* The integrator's numbers, or those of a file. */
+/* Numbers of a state and of the last step, the integrator's or those of a file. */
 typedef struct dvi__moment {
   double t, last_h;
   const double *q, *p, *last_q, *last_p; /* [n] */
 } dvi__moment;
 
-/* All NaN, and the status of a callback, if one fails there. */
-dvi_status dvi__fingerprint_take(const dvi_integrator *integrator, const dvi__moment *moment, dvi__fingerprint *fingerprint);
+/* Evaluate the fingerprint at a state. If a callback fails, return its status and set all numbers
+ * to NaN. */
+dvi_status dvi__fingerprint_take(const dvi_integrator *integrator, const dvi__moment *moment,
+                                 dvi__fingerprint *fingerprint);
 
-/* DVI_BAD_FILE with a sentence that says in which number `here` differs from `saved`, to nine
- * digits. */
+/* Compare two fingerprints to nine digits. DVI_BAD_FILE, with a sentence that names the first
+ * number that differs. */
 dvi_status dvi__fingerprint_compare(const dvi__fingerprint *saved, const dvi__fingerprint *here);
 
 #endif

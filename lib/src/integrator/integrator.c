@@ -1,4 +1,5 @@
-/* The driver of one step: it owns the states, so that a failed step leaves everything as it was, for every method, in one place. */
+/* The driver of one step. The driver owns the states, so that a failed step of any method leaves
+ * the integrator unchanged. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -7,43 +8,49 @@
 #include "core/status.h"
 #include "integrator/attempt.h"
 #include "num/finite.h"
-#include "space/given.h"
+#include "space/user_basis.h"
 #include "system/evaluate/dynamics.h"
 
 void dvi__state_lay_out(dvi__state *state, double **at, size_t n)
 {
-  double **const part[] = {&state->q, &state->p, &state->q_carry, &state->p_carry};
+  double **const part[] = {&state->q, &state->p, &state->q_compensation, &state->p_compensation};
   for (int i = 0; i < 4; i++, *at += n) *part[i] = *at;
 }
 
 /* ---- start ---- */
 
-static dvi_status check_start(const dvi_integrator *I, double t, const double *q, const double *second, char name)
+static dvi_status check_start_state(const dvi_integrator *I, double t, const double *q,
+                                    const double *second, char name)
 {
   if (!isfinite(t)) return dvi__fail(DVI_NOT_FINITE, "the time is %g", t);
   const ptrdiff_t in_q = dvi__first_not_finite((size_t)I->system->n, q);
   const ptrdiff_t in_second = dvi__first_not_finite((size_t)I->system->nv, second);
   if (in_q >= 0) return dvi__fail(DVI_NOT_FINITE, "the start's q[%td] = %g", in_q, q[in_q]);
-  if (in_second >= 0) return dvi__fail(DVI_NOT_FINITE, "the start's %c[%td] = %g", name, in_second, second[in_second]);
+  if (in_second >= 0)
+    return dvi__fail(DVI_NOT_FINITE, "the start's %c[%td] = %g", name, in_second,
+                     second[in_second]);
   return dvi__state_check(I->evaluator, q, second);
 }
 
-/* The arguments may be the integrator's own. Until all is known to be good only `next` is written. */
-static dvi_status start(dvi_integrator *I, double t, const double *q, const double *v, const double *p)
+/* Start from a complete state. The arguments may be the integrator's own. Until all checks have
+ * passed only `next` is written. */
+static dvi_status start_from_state(dvi_integrator *I, double t, const double *q, const double *v,
+                                   const double *p)
 {
-  const size_t bytes = (size_t)I->system->n * sizeof(double), v_bytes = (size_t)I->system->nv * sizeof(double);
-  const double *w = I->pace != NULL ? I->last_v : v, *second = dvi__second(I->system, v, p);
+  const size_t bytes = (size_t)I->system->n * sizeof(double),
+               v_bytes = (size_t)I->system->nv * sizeof(double);
+  const double *w = I->monitored != NULL ? I->last_v : v, *second = dvi__second(I->system, v, p);
   double L, density = 0;
   DVI_TRY(I->system->dynamics->value(I->evaluator, t, q, second, &L));
-  DVI_TRY(I->system->dynamics->forces(I->evaluator, t, q, second, I->next.p_carry));
-  if (I->pace != NULL) DVI_TRY(dvi__pace_start(I, t, q, v, p, I->last_v, &density));
+  DVI_TRY(I->system->dynamics->forces(I->evaluator, t, q, second, I->next.p_compensation));
+  if (I->monitored != NULL) DVI_TRY(dvi__monitored_time_start(I, t, q, v, p, I->last_v, &density));
   memmove(I->now.q, q, bytes);
   memmove(I->now.p, p, v_bytes);
-  memset(I->now.q_carry, 0, bytes);
-  memset(I->now.p_carry, 0, bytes);
+  memset(I->now.q_compensation, 0, bytes);
+  memset(I->now.p_compensation, 0, bytes);
   memcpy(I->last.p, v, v_bytes);
   I->now.t = t;
-  I->now.t_carry = 0;
+  I->now.t_compensation = 0;
   I->now.density = density;
   I->now.side = 0;
   I->last_h = 0;
@@ -53,13 +60,17 @@ static dvi_status start(dvi_integrator *I, double t, const double *q, const doub
   return DVI_OK;
 }
 
-static dvi_status verdict(const dvi_integrator *I, double t, dvi_status status)
+static dvi_status start_verdict(const dvi_integrator *I, double t, dvi_status status)
 {
-  return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "%s: cannot start at t = %.6g", I->stepper.method->name, t);
+  return status == DVI_OK
+             ? DVI_OK
+             : dvi__fail_in(status, "%s: cannot start at t = %.6g", I->stepper.method->name, t);
 }
 
-/* Project a start onto the constraint of all states, in the integrator's own memory; or check it. */
-static dvi_status constrain_start(dvi_integrator *I, double t, int project, const double **q, const double **p)
+/* Project a start onto the constraint of all states, in the integrator's own memory, or only check
+ * the constraint. */
+static dvi_status constrain_start(dvi_integrator *I, double t, int project, const double **q,
+                                  const double **p)
 {
   const dvi__state_constraint *constraint = I->system->dynamics->constraint;
   const size_t bytes = (size_t)I->system->n * sizeof(double);
@@ -72,17 +83,36 @@ static dvi_status constrain_start(dvi_integrator *I, double t, int project, cons
   return constraint->project(I->evaluator, t, I->next.q, I->next.p);
 }
 
+static dvi_status start_by_momentum(dvi_integrator *I, double t, const double *q, const double *p,
+                                    int project)
+{
+  double *v = I->next.q_compensation;
+  memset(v, 0, (size_t)I->system->nv * sizeof(double));
+  DVI_TRY(check_start_state(I, t, q, p, 'p'));
+  DVI_TRY(constrain_start(I, t, project, &q, &p));
+  DVI_TRY(dvi__legendre_inverse(I->evaluator, t, q, p, v));
+  return start_from_state(I, t, q, v, p);
+}
+
+static dvi_status start_by_velocity(dvi_integrator *I, double t, const double *q, const double *v)
+{
+  double *p = I->next.p;
+  DVI_TRY(check_start_state(I, t, q, v, 'v'));
+  if (I->system->dynamics->by_momentum)
+    return dvi__fail(DVI_UNSUPPORTED, "the system declares a Hamiltonian; start with q and p");
+  DVI_TRY(I->system->dynamics->momentum(I->evaluator, t, q, v, p));
+  if (dvi__first_not_finite((size_t)I->system->nv, p) >= 0)
+    return dvi__fail(DVI_NOT_FINITE, "the momentum is not finite");
+  DVI_TRY(dvi__legendre_regular(I->evaluator, t, q, v));
+  return start_from_state(I, t, q, v, p);
+}
+
 dvi_status dvi_integrator_start_with(dvi_integrator *I, double t, const double *q, const double *p,
                                      const dvi_start_options *options)
 {
-  if (I == NULL || q == NULL || p == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "start: an argument is NULL");
-  double *v = I->next.q_carry;
-  memset(v, 0, (size_t)I->system->nv * sizeof(double));
-  dvi_status status = check_start(I, t, q, p, 'p');
-  if (status == DVI_OK) status = constrain_start(I, t, options != NULL && options->project, &q, &p);
-  if (status == DVI_OK) status = dvi__legendre_inverse(I->evaluator, t, q, p, v);
-  if (status == DVI_OK) status = start(I, t, q, v, p);
-  return verdict(I, t, status);
+  if (I == NULL || q == NULL || p == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "start: an argument is NULL");
+  return start_verdict(I, t, start_by_momentum(I, t, q, p, options != NULL && options->project));
 }
 
 dvi_status dvi_integrator_start(dvi_integrator *I, double t, const double *q, const double *p)
@@ -90,19 +120,12 @@ dvi_status dvi_integrator_start(dvi_integrator *I, double t, const double *q, co
   return dvi_integrator_start_with(I, t, q, p, NULL);
 }
 
-dvi_status dvi_integrator_start_velocity(dvi_integrator *I, double t, const double *q, const double *v)
+dvi_status dvi_integrator_start_velocity(dvi_integrator *I, double t, const double *q,
+                                         const double *v)
 {
-  if (I == NULL || q == NULL || v == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "start: an argument is NULL");
-  double *p = I->next.p;
-  dvi_status status = check_start(I, t, q, v, 'v');
-  if (status == DVI_OK && I->system->dynamics->by_momentum)
-    status = dvi__fail(DVI_UNSUPPORTED, "the system declares a Hamiltonian; start with q and p");
-  if (status == DVI_OK) status = I->system->dynamics->momentum(I->evaluator, t, q, v, p);
-  if (status == DVI_OK && dvi__first_not_finite((size_t)I->system->nv, p) >= 0)
-    status = dvi__fail(DVI_NOT_FINITE, "the momentum is not finite");
-  if (status == DVI_OK) status = dvi__legendre_regular(I->evaluator, t, q, v);
-  if (status == DVI_OK) status = start(I, t, q, v, p);
-  return verdict(I, t, status);
+  if (I == NULL || q == NULL || v == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "start: an argument is NULL");
+  return start_verdict(I, t, start_by_velocity(I, t, q, v));
 }
 
 /* ---- step ---- */
@@ -110,23 +133,25 @@ dvi_status dvi_integrator_start_velocity(dvi_integrator *I, double t, const doub
 void dvi__state_copy(size_t n, const dvi__state *from, dvi__state *to)
 {
   to->t = from->t;
-  to->t_carry = from->t_carry;
+  to->t_compensation = from->t_compensation;
   to->density = from->density;
   to->side = from->side;
-  memcpy(to->q, from->q, 4 * n * sizeof(double)); /* q, p and both carries lie in a row */
+  memcpy(to->q, from->q, 4 * n * sizeof(double)); /* q, p and both compensations are contiguous */
 }
 
 static dvi_status check_state(const dvi_integrator *I)
 {
   const size_t n = (size_t)I->system->n;
-  if (I->pace != NULL && I->next.t == I->now.t)
-    return dvi__fail(DVI_BAD_ARGUMENT, "monitor %s is so small that the step does not move the time", I->pace->name);
+  if (I->monitored != NULL && I->next.t == I->now.t)
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "monitor %s is so small that the step does not move the time",
+                     I->monitored->name);
   if (isfinite(I->next.t) && dvi__first_not_finite(2 * n, I->next.q) < 0) return DVI_OK;
   return dvi__fail(DVI_NOT_FINITE, "the new state is not finite");
 }
 
-/* No trajectory goes through a point where the constraint's matrix is singular, but a step can go over
- * it, and is on none then. */
+/* Check that the step stays on one side of the points where the constraint's matrix is singular. No
+ * trajectory goes through such a point, but a step can, and then follows no trajectory. */
 static dvi_status check_side(dvi_integrator *I)
 {
   const dvi__state_constraint *constraint = I->system->dynamics->constraint;
@@ -134,32 +159,42 @@ static dvi_status check_side(dvi_integrator *I)
   if (I->now.side == 0) DVI_TRY(constraint->side(I->evaluator, I->now.q, I->now.p, &I->now.side));
   DVI_TRY(constraint->side(I->evaluator, I->next.q, I->next.p, &I->next.side));
   if (I->next.side == I->now.side) return DVI_OK;
-  return dvi__fail(DVI_NOT_CONVERGED, "the step leads over a point where the %s is singular, beyond which no trajectory goes on",
-                   constraint->matrix);
+  return dvi__fail(
+      DVI_NOT_CONVERGED,
+      "the step leads over a point where the %s is singular, beyond which no trajectory goes on",
+      constraint->matrix);
 }
 
-/* A step of the method that failed, with the reason if it is where the trajectory ends. `next` is spoilt already. */
-static dvi_status name_end(const dvi_integrator *I, double h, dvi_status status)
+/* Name the reason of a failed step if the trajectory ends within the step. `next` is undefined
+ * already. */
+static dvi_status name_trajectory_end(const dvi_integrator *I, double h, dvi_status status)
 {
   char sentence[1024];
   const dvi__state_constraint *constraint = I->system->dynamics->constraint;
-  if (constraint == NULL || constraint->ends == NULL || I->pace != NULL || (status < 0 && status != DVI_SINGULAR)) return status;
+  if (constraint == NULL || constraint->ends == NULL || I->monitored != NULL ||
+      (status < 0 && status != DVI_SINGULAR))
+    return status;
   (void)snprintf(sentence, sizeof sentence, "%s", dvi_last_error());
-  if (!constraint->ends(I->evaluator, I->now.t, I->now.q, h, I->next.p, I->next.q)) return dvi__fail(status, "%s", sentence);
-  return dvi__fail(status, "%s; the %s becomes singular within this step, and no trajectory goes on from there", sentence,
-                   constraint->matrix);
+  if (!constraint->ends(I->evaluator, I->now.t, I->now.q, h, I->next.p, I->next.q))
+    return dvi__fail(status, "%s", sentence);
+  return dvi__fail(
+      status, "%s; the %s becomes singular within this step, and no trajectory goes on from there",
+      sentence, constraint->matrix);
 }
 
-static void accept(dvi_integrator *I, double h)
+static void accept_step(dvi_integrator *I, double h)
 {
   const dvi__state oldest = I->last;
   I->last = I->now;
   I->now = I->next;
   I->next = oldest;
   I->last_h_before = I->last_h;
-  if (I->pace != NULL) I->pace->expanded = 0;
-  /* What a transform makes of h, or the control, is known by the clock alone; the carries tell it to the last digit. */
-  I->last_h = I->pace != NULL ? (I->now.t - I->last.t) - (I->now.t_carry - I->last.t_carry) : h;
+  if (I->monitored != NULL) I->monitored->expanded = 0;
+  /* Only the clock knows the length in time that a transform or the control gives to h. The
+   * compensations contain its last digits. */
+  I->last_h = I->monitored != NULL
+                  ? (I->now.t - I->last.t) - (I->now.t_compensation - I->last.t_compensation)
+                  : h;
   I->counters.steps++;
 }
 
@@ -170,7 +205,7 @@ static void exchange_memory(dvi_integrator *I)
   I->memory_before = memory;
 }
 
-/* `next` still holds what `last` was. */
+/* `next` still holds the former `last`. */
 void dvi__integrator_take_back(dvi_integrator *I)
 {
   const dvi__state oldest = I->next;
@@ -179,7 +214,7 @@ void dvi__integrator_take_back(dvi_integrator *I)
   I->last = oldest;
   I->last_h = I->last_h_before;
   I->counters.steps--;
-  if (I->pace != NULL) I->pace->expanded = 0;
+  if (I->monitored != NULL) I->monitored->expanded = 0;
   exchange_memory(I);
 }
 
@@ -190,34 +225,42 @@ dvi_status dvi__integrator_undo(dvi_integrator *I, dvi_status status)
   return dvi__fail_in(status, "the step from t = %.9g is taken back", I->now.t);
 }
 
-static dvi_status refuse(dvi_integrator *I, double h, dvi_status status)
+static dvi_status refuse_step(dvi_integrator *I, double h, dvi_status status)
 {
   exchange_memory(I);
   I->counters.failed_steps++;
-  return dvi__fail_in(
-      status, "%s: step %ld from t = %.9g with h = %.3g failed%s", I->stepper.method->name, I->counters.steps + 1, I->now.t, h,
-      status > 0 && status != DVI_JUMP ? "; the state is unchanged, try a smaller step" : "; the state is unchanged");
+  return dvi__fail_in(status, "%s: step %ld from t = %.9g with h = %.3g failed%s",
+                      I->stepper.method->name, I->counters.steps + 1, I->now.t, h,
+                      status > 0 && status != DVI_JUMP
+                          ? "; the state is unchanged, try a smaller step"
+                          : "; the state is unchanged");
 }
 
 dvi_status dvi__check_step(double t, double h)
 {
   if (!isfinite(h) || h == 0 || t + h == t)
-    return dvi__fail(DVI_BAD_ARGUMENT, "step: h = %g does not move the time from t = %.17g; a finite step other than 0 is needed",
-                     h, t);
-  return isnormal(h) ? DVI_OK : dvi__fail(DVI_BAD_ARGUMENT, "step: h = %g is so small that 1/h cannot be computed", h);
+    return dvi__fail(
+        DVI_BAD_ARGUMENT,
+        "step: h = %g does not move the time from t = %.17g; a finite step other than 0 is needed",
+        h, t);
+  return isnormal(h) ? DVI_OK
+                     : dvi__fail(DVI_BAD_ARGUMENT,
+                                 "step: h = %g is so small that 1/h cannot be computed", h);
 }
 
-/* From `now` and memory_before to `next` and the stepper's memory. */
-static dvi_status advance(dvi_integrator *I, double h)
+/* Advance from `now` and memory_before to `next` and the stepper's memory. */
+static dvi_status advance_state(dvi_integrator *I, double h)
 {
   const dvi__method *method = I->stepper.method;
   double length;
   DVI_TRY(dvi__control_begin(I, h, &length));
   const double density = I->next.density;
-  if (method->pass != NULL && method->pass(&I->stepper, &I->now, I->memory_before, &I->next, &length, 1) && isfinite(I->next.t))
+  if (method->pass != NULL &&
+      method->pass(&I->stepper, &I->now, I->memory_before, &I->next, &length, 1) &&
+      isfinite(I->next.t))
     return dvi__control_end(I, h);
   const dvi_status status = dvi__attempt(I, length, density);
-  if (status != DVI_OK) return name_end(I, length, status);
+  if (status != DVI_OK) return name_trajectory_end(I, length, status);
   DVI_TRY(check_state(I));
   DVI_TRY(check_side(I));
   return dvi__control_end(I, h);
@@ -226,14 +269,16 @@ static dvi_status advance(dvi_integrator *I, double h)
 dvi_status dvi_integrator_step(dvi_integrator *I, double h)
 {
   if (I == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "step: the integrator is NULL");
-  if (!I->started) return dvi__fail(DVI_BAD_STATE, "step: the integrator has no state yet; call dvi_integrator_start first");
-  DVI_TRY(dvi__check_step(I->pace != NULL ? 0 : I->now.t, h));
+  if (!I->started)
+    return dvi__fail(DVI_BAD_STATE,
+                     "step: the integrator has no state yet; call dvi_integrator_start first");
+  DVI_TRY(dvi__check_step(I->monitored != NULL ? 0 : I->now.t, h));
   exchange_memory(I);
   const long before = dvi__allocation_count();
-  const dvi_status status = advance(I, h);
+  const dvi_status status = advance_state(I, h);
   I->counters.allocations += dvi__allocation_count() - before;
-  if (status != DVI_OK) return refuse(I, h, status);
-  accept(I, I->stepper.method->chooses_steps ? I->stepper.taken : h);
+  if (status != DVI_OK) return refuse_step(I, h, status);
+  accept_step(I, I->stepper.method->chooses_steps ? I->stepper.taken : h);
   return DVI_OK;
 }
 
@@ -294,14 +339,17 @@ double dvi_integrator_last_step(const dvi_integrator *integrator)
 
 int dvi_integrator_chooses_steps(const dvi_integrator *integrator)
 {
-  return integrator != NULL && (integrator->pace != NULL || integrator->stepper.method->chooses_steps);
+  return integrator != NULL &&
+         (integrator->monitored != NULL || integrator->stepper.method->chooses_steps);
 }
 
 dvi_status dvi_integrator_energy_balance(const dvi_integrator *I, dvi_energy_balance *balance)
 {
-  if (I == NULL || balance == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "energy balance: an argument is NULL");
+  if (I == NULL || balance == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "energy balance: an argument is NULL");
   if (I->stepper.method->balance == NULL)
-    return dvi__fail(DVI_UNSUPPORTED, "energy balance: %s conserves no discrete energy; sem does", I->stepper.method->name);
+    return dvi__fail(DVI_UNSUPPORTED, "energy balance: %s conserves no discrete energy; sem does",
+                     I->stepper.method->name);
   if (I->last_h == 0) return dvi__fail(DVI_BAD_STATE, "energy balance: no step was taken yet");
   I->stepper.method->balance(&I->stepper, balance);
   return DVI_OK;
@@ -317,44 +365,59 @@ void dvi_integrator_counters(const dvi_integrator *integrator, dvi_counters *cou
   if (counters != NULL) *counters = integrator != NULL ? integrator->counters : (dvi_counters){0};
 }
 
-void dvi__guess_velocity(int n, const double *q, const double *last_q, const double *last_p, double last_h, double *v)
+void dvi__guess_velocity(int n, const double *q, const double *last_q, const double *last_p,
+                         double last_h, double *v)
 {
   for (int i = 0; i < n; i++) v[i] = last_h != 0 ? (q[i] - last_q[i]) / last_h : last_p[i];
 }
 
-/* The velocity of one of the two states. */
-static dvi_status velocity(dvi_integrator *I, const dvi__state *state, double *v)
+/* Evaluate the velocity of `now` or `last`. */
+static dvi_status state_velocity(dvi_integrator *I, const dvi__state *state, double *v)
 {
-  if (I->system->dynamics->searches_velocity) dvi__guess_velocity(I->system->n, I->now.q, I->last.q, I->last.p, I->last_h, v);
+  if (I->system->dynamics->searches_velocity)
+    dvi__guess_velocity(I->system->n, I->now.q, I->last.q, I->last.p, I->last_h, v);
   return dvi__legendre_inverse(I->evaluator, state->t, state->q, state->p, v);
 }
 
 dvi_status dvi_integrator_invariants(dvi_integrator *I, double *value)
 {
-  if (I == NULL || value == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "invariants: an argument is NULL");
-  if (!I->started) return dvi__fail(DVI_BAD_STATE, "invariants: the integrator has no state yet; call dvi_integrator_start first");
-  DVI_TRY(velocity(I, &I->now, I->v));
+  if (I == NULL || value == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "invariants: an argument is NULL");
+  if (!I->started)
+    return dvi__fail(
+        DVI_BAD_STATE,
+        "invariants: the integrator has no state yet; call dvi_integrator_start first");
+  DVI_TRY(state_velocity(I, &I->now, I->v));
   return dvi__invariants(I->evaluator, I->now.t, I->now.q, I->v, I->now.p, value);
 }
 
 dvi_status dvi_integrator_invariant(dvi_integrator *I, int i, double *value)
 {
-  if (I == NULL || value == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "invariant: an argument is NULL");
-  if (!I->started) return dvi__fail(DVI_BAD_STATE, "invariant: the integrator has no state yet; call dvi_integrator_start first");
+  if (I == NULL || value == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "invariant: an argument is NULL");
+  if (!I->started)
+    return dvi__fail(DVI_BAD_STATE,
+                     "invariant: the integrator has no state yet; call dvi_integrator_start first");
   if (i < 0 || i >= dvi_system_invariant_count(I->system))
     return dvi__fail(DVI_BAD_ARGUMENT, "invariant: there is none of index %d; there are %d", i,
                      dvi_system_invariant_count(I->system));
-  if (i == 0) DVI_TRY(velocity(I, &I->now, I->v));
+  if (i == 0) DVI_TRY(state_velocity(I, &I->now, I->v));
   return dvi__invariant(I->evaluator, I->now.t, I->now.q, I->v, I->now.p, i, value);
 }
 
 dvi_status dvi_integrator_constraint(dvi_integrator *I, double *distance)
 {
-  if (I == NULL || distance == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "constraint: an argument is NULL");
+  if (I == NULL || distance == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "constraint: an argument is NULL");
   const dvi__state_constraint *constraint = I->system->dynamics->constraint;
   if (constraint == NULL)
-    return dvi__fail(DVI_UNSUPPORTED, "constraint: the system declares neither a one-form nor a Hamiltonian with constraints");
-  if (!I->started) return dvi__fail(DVI_BAD_STATE, "constraint: the integrator has no state yet; call dvi_integrator_start first");
+    return dvi__fail(
+        DVI_UNSUPPORTED,
+        "constraint: the system declares neither a one-form nor a Hamiltonian with constraints");
+  if (!I->started)
+    return dvi__fail(
+        DVI_BAD_STATE,
+        "constraint: the integrator has no state yet; call dvi_integrator_start first");
   return constraint->distance(I->evaluator, I->now.q, I->now.p, distance);
 }
 
@@ -369,23 +432,24 @@ size_t dvi_integrator_explain(const dvi_integrator *integrator, char *text, size
   dvi__text out = {text, size, 0};
   if (size > 0) text[0] = 0;
   if (integrator == NULL) return 0;
-  dvi__text_add(&out, "method: %s, order %d%s\n", integrator->stepper.specification, integrator->stepper.order,
-                integrator->stepper.symmetric ? ", symmetric" : "");
-  if (integrator->pace != NULL) dvi__pace_explain(integrator->pace, &out);
+  dvi__text_add(&out, "method: %s, order %d%s\n", integrator->stepper.specification,
+                integrator->stepper.order, integrator->stepper.symmetric ? ", symmetric" : "");
+  if (integrator->monitored != NULL) dvi__monitored_time_explain(integrator->monitored, &out);
   integrator->stepper.method->explain(&integrator->stepper, &out);
   return out.length;
 }
 
 /* ---- dense output ---- */
 
-/* Hermite's cubic through both ends of the last step. */
-static dvi_status hermite(dvi_integrator *I, double tau, double *q, double *v)
+/* Evaluate Hermite's cubic through both ends of the last step. */
+static dvi_status hermite_cubic(dvi_integrator *I, double tau, double *q, double *v)
 {
-  const double h = I->last_h, a = (1 + 2 * tau) * (1 - tau) * (1 - tau), b = tau * (1 - tau) * (1 - tau);
+  const double h = I->last_h, a = (1 + 2 * tau) * (1 - tau) * (1 - tau),
+               b = tau * (1 - tau) * (1 - tau);
   const double c = tau * tau * (3 - 2 * tau), d = tau * tau * (tau - 1);
   const double a1 = 6 * tau * (tau - 1), b1 = (1 - tau) * (1 - 3 * tau), d1 = tau * (3 * tau - 2);
-  DVI_TRY(velocity(I, &I->last, I->last_v));
-  DVI_TRY(velocity(I, &I->now, I->v));
+  DVI_TRY(state_velocity(I, &I->last, I->last_v));
+  DVI_TRY(state_velocity(I, &I->now, I->v));
   for (int i = 0; i < I->system->n; i++) {
     const double q0 = I->last.q[i], q1 = I->now.q[i], v0 = I->last_v[i], v1 = I->v[i];
     if (q != NULL) q[i] = a * q0 + h * b * v0 + c * q1 + h * d * v1;
@@ -398,20 +462,25 @@ dvi_status dvi_integrator_interpolate(dvi_integrator *I, double t, double *q, do
 {
   if (I == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "interpolate: the integrator is NULL");
   if (I->last_h == 0) return dvi__fail(DVI_BAD_STATE, "interpolate: no step was taken yet");
-  /* By the rounded ends: late in a run t0 + h is rounded by much more than a part of h. */
+  /* Use the rounded ends, because late in a run t0 + h is rounded by a large part of h. */
   const double tau = (t - I->last.t) / (I->now.t - I->last.t), rounding = 1e-12;
   if (!(tau >= -rounding && tau <= 1 + rounding))
-    return dvi__fail(DVI_BAD_ARGUMENT, "interpolate: t = %.17g is outside of the last step, %.17g to %.17g", t, I->last.t,
-                     I->now.t);
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "interpolate: t = %.17g is outside of the last step, %.17g to %.17g", t,
+                     I->last.t, I->now.t);
   if (I->stepper.method->path == NULL && I->system->dynamics->on_manifold)
-    return dvi__fail(DVI_UNSUPPORTED,
-                     "interpolate: %s has no path between its steps, and a cubic would leave the rotations; "
-                     "lie-verlet and lie-galerkin have one",
-                     I->stepper.method->name);
-  if (I->stepper.method->path == NULL) return hermite(I, tau, q, v);
-  if (I->pace != NULL && I->pace->pacing == DVI_TIME_TRANSFORM) return dvi__pace_path(I, tau, q, v);
+    return dvi__fail(
+        DVI_UNSUPPORTED,
+        "interpolate: %s has no path between its steps, and a cubic would leave the rotations; "
+        "lie-verlet and lie-galerkin have one",
+        I->stepper.method->name);
+  if (I->stepper.method->path == NULL) return hermite_cubic(I, tau, q, v);
+  if (I->monitored != NULL && I->monitored->pacing == DVI_TIME_TRANSFORM)
+    return dvi__monitored_time_path(I, tau, q, v);
   I->stepper.method->path(&I->stepper, I->last.q, I->last_h, tau, q, v);
   const size_t n = (size_t)I->system->n, nv = (size_t)I->system->nv;
-  if ((q == NULL || dvi__first_not_finite(n, q) < 0) && (v == NULL || dvi__first_not_finite(nv, v) < 0)) return DVI_OK;
+  if ((q == NULL || dvi__first_not_finite(n, q) < 0) &&
+      (v == NULL || dvi__first_not_finite(nv, v) < 0))
+    return DVI_OK;
   return dvi__fail(DVI_NOT_FINITE, "interpolate: the path is not finite at t = %.17g", t);
 }

@@ -1,5 +1,5 @@
-/* A run of anything that advances in time: mechanics now, fields that are stepped asynchronously, or
- * ensembles. The loop knows times, events, observers and checkpoints, but no coordinates. */
+/* A run of any object that advances in time: an integrator now, fields with asynchronous steps or
+ * ensembles later. The loop knows times, events, observers and checkpoints, but no coordinates. */
 #ifndef DVI_MARCH_MARCH_H
 #define DVI_MARCH_MARCH_H
 #include <dvi/run.h>
@@ -9,35 +9,40 @@ typedef struct dvi__watched {
   int direction, terminal;
 } dvi__watched;
 
-/* What advances. All functions get `of`; those without a comment on NULL are needed. */
+/* The functions of an object that advances. All functions get the object `of`. Functions are
+ * required unless a comment allows NULL. */
 typedef struct dvi__marcher {
   double (*time)(const void *of);
 
-  /* The time left to t_end, to the last digit that the clock knows. */
+  /* Return the time left to t_end, to the last digit of the clock. */
   double (*left)(const void *of, double t_end);
 
-  /* Steps that were taken so far, by whom ever. */
+  /* Return the number of steps of the object so far, in this run and before. */
   long (*steps)(const void *of);
 
-  /* Take one step of h, not past t_end. What chooses the lengths of its steps ends exactly at t_end,
-   * within `tolerance`, if its step would lead there or past it. On failure nothing changes. */
+  /* Take one step of h, not past t_end. An object that chooses the lengths of its steps ends
+   * exactly at t_end, within `tolerance`, if its step would lead there or past it. On failure
+   * nothing changes. */
   dvi_status (*advance)(void *of, double h, double t_end, double tolerance);
 
-  /* Take the last step back, once; the same for a step that succeeded while what followed did not: the
-   * status is passed on, and its sentence says so. */
+  /* Take the last step back. Allowed once a step. */
   void (*take_back)(void *of);
+
+  /* Take back a step that succeeded while its events failed. The status is passed on, and its
+   * sentence says so. */
   dvi_status (*reject)(void *of, dvi_status status);
 
-  /* The event k, its function at a time within the last step, and at the start of the run before any
-   * step; NULL without events. */
+  /* Return the event k, its function at a time within the last step, and its function at the start
+   * of the run before any step. NULL without events. */
   dvi__watched (*event)(const void *of, int k);
   dvi_status (*value)(void *of, int k, double t, double *g);
   dvi_status (*value_at_start)(void *of, int k, double *g);
 
-  /* The event k has occurred at t. *returned: as dvi_event's `occurred`. */
+  /* Report that the event k has occurred at t. *returned is the result of dvi_event's
+   * `occurred`. */
   dvi_status (*occurred)(void *of, int k, double t, int *returned);
 
-  /* Show the present state to the program's observer; NULL: there is none. */
+  /* Show the present state to the program's observer. NULL if there is none. */
   int (*observe)(void *of);
 
   /* Write the state to a file. */
@@ -47,8 +52,8 @@ typedef struct dvi__marcher {
 typedef struct dvi__march_options {
   double h, t_end;
   int chooses_steps;  /* `advance` chooses the lengths of its steps */
-  int counts_by_time; /* t_end - t over h tells how many steps there will be */
-  long every;         /* steps between calls of the observer; 0: 1 */
+  int counts_by_time; /* the number of steps is (t_end - t) / h */
+  long every;         /* observer interval in steps (default 1) */
   int event_count;
   const char *checkpoint;
   long checkpoint_every;
@@ -56,6 +61,7 @@ typedef struct dvi__march_options {
 } dvi__march_options;
 
 /* Check the options against the time, and run to t_end (dvi/run.h). */
-dvi_status dvi__march(void *of, const dvi__marcher *marcher, const dvi__march_options *options, dvi_run_report *report);
+dvi_status dvi__march(void *of, const dvi__marcher *marcher, const dvi__march_options *options,
+                      dvi_run_report *report);
 
 #endif

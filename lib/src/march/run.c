@@ -6,9 +6,9 @@
 #include "core/status.h"
 #include "march/events.h"
 
-/* The last step may be longer than h by this part of it. */
+/* The last step may be longer than h by this part of h. */
 static const double stretch = 1e-9;
-/* Of more steps a number of double precision does not know how many they are. */
+/* Doubles count at most this many steps. */
 static const double steps_max = 0x1p53;
 
 typedef struct march {
@@ -20,36 +20,42 @@ typedef struct march {
   int stop;
 } march;
 
-static double time_of(const march *m)
+static double march_time(const march *m)
 {
   return m->marcher->time(m->of);
 }
 
-/* What sums of steps may miss the end by: a few roundings of the times. */
+/* Return the distance by which a sum of steps may miss the end, a few roundings of the times. */
 static double clock_error(const march *m, double t_end)
 {
-  return 16 * DBL_EPSILON * fmax(fabs(t_end), fabs(time_of(m)));
+  return 16 * DBL_EPSILON * fmax(fabs(t_end), fabs(march_time(m)));
 }
 
 static dvi_status check_options(const march *m)
 {
   const dvi__march_options *options = m->options;
-  const double way = options->t_end - time_of(m);
+  const double way = options->t_end - march_time(m);
   if (!isfinite(options->h) || options->h == 0)
-    return dvi__fail(DVI_BAD_ARGUMENT, "run: h = %g; a finite step other than 0 is needed", options->h);
-  if (!isfinite(options->t_end)) return dvi__fail(DVI_BAD_ARGUMENT, "run: t_end = %g is not finite", options->t_end);
+    return dvi__fail(DVI_BAD_ARGUMENT, "run: h = %g; a finite step other than 0 is needed",
+                     options->h);
+  if (!isfinite(options->t_end))
+    return dvi__fail(DVI_BAD_ARGUMENT, "run: t_end = %g is not finite", options->t_end);
   if (fabs(way) > clock_error(m, options->t_end) && (way > 0) != (options->h > 0))
-    return dvi__fail(DVI_BAD_ARGUMENT, "run: h = %g leads away from t_end = %g; the time is %g", options->h, options->t_end,
-                     time_of(m));
+    return dvi__fail(DVI_BAD_ARGUMENT, "run: h = %g leads away from t_end = %g; the time is %g",
+                     options->h, options->t_end, march_time(m));
   if (options->counts_by_time && !(fabs(way / options->h) <= steps_max))
     return dvi__fail(DVI_BAD_ARGUMENT,
-                     "run: h = %g makes %.3g steps to t_end = %g; at most 2^53 can be counted; take a longer step or a nearer end",
+                     "run: h = %g makes %.3g steps to t_end = %g; at most 2^53 can be counted; "
+                     "take a longer step or a nearer end",
                      options->h, way / options->h, options->t_end);
   if (options->every < 0 || options->checkpoint_every < 0)
-    return dvi__fail(DVI_BAD_ARGUMENT, "run: every = %ld, checkpoint_every = %ld; 0 or more are possible", options->every,
-                     options->checkpoint_every);
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "run: every = %ld, checkpoint_every = %ld; 0 or more are possible",
+                     options->every, options->checkpoint_every);
   if (options->checkpoint_every > 0 && options->checkpoint == NULL)
-    return dvi__fail(DVI_BAD_ARGUMENT, "run: checkpoint_every = %ld, but no checkpoint file is named", options->checkpoint_every);
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "run: checkpoint_every = %ld, but no checkpoint file is named",
+                     options->checkpoint_every);
   return DVI_OK;
 }
 
@@ -59,43 +65,49 @@ static void end_run(march *m, dvi_run_end end)
   m->stop = 1;
 }
 
-static dvi_status observe(march *m)
+static dvi_status march_observe(march *m)
 {
   if (m->marcher->observe == NULL) return DVI_OK;
   const long steps = m->marcher->steps(m->of);
-  const double t = time_of(m);
+  const double t = march_time(m);
   const int returned = m->marcher->observe(m->of);
-  if (m->marcher->steps(m->of) != steps || time_of(m) != t)
-    return dvi__fail(DVI_BAD_STATE, "run: the observer has moved the integrator from t = %.9g; it may only look at it", t);
-  if (returned < 0) return dvi__fail(DVI_CALLBACK_FAILED, "run: the observer failed with %d at t = %.9g", returned, t);
+  if (m->marcher->steps(m->of) != steps || march_time(m) != t)
+    return dvi__fail(
+        DVI_BAD_STATE,
+        "run: the observer has moved the integrator from t = %.9g; it may only look at it", t);
+  if (returned < 0)
+    return dvi__fail(DVI_CALLBACK_FAILED, "run: the observer failed with %d at t = %.9g", returned,
+                     t);
   if (returned > 0) end_run(m, DVI_RUN_STOPPED);
   return DVI_OK;
 }
 
-/* The next step's length: h, or what is left of the way, or 0 at its end. An h that divides the way but
- * for the digits that it was given with is stretched in the last step. */
+/* Return the next step's length: h, or the rest of the interval, or 0 at its end. If h divides the
+ * interval up to the digits of h, the last step is stretched. */
 static double next_step(const march *m, double t_end)
 {
-  const double left = m->marcher->left(m->of, t_end), h = m->options->h, missed = clock_error(m, t_end);
+  const double left = m->marcher->left(m->of, t_end), h = m->options->h,
+               missed = clock_error(m, t_end);
   if (fabs(left) <= missed) return 0;
   if (m->options->chooses_steps) return h;
   if (fabs(left - h) <= missed) return h;
   return left / h <= 1 + stretch ? left : h;
 }
 
-static dvi_status advance(march *m, double h, double t_end)
+static dvi_status march_advance(march *m, double h, double t_end)
 {
   return m->marcher->advance(m->of, h, t_end, clock_error(m, t_end));
 }
 
-/* A terminal event ends the run at its own time: the step that holds it is taken again, up to there. */
+/* End the run at the time of a terminal event. The step that contains the event is taken again, up
+ * to that time. */
 static dvi_status end_at_event(march *m)
 {
   const double t_end = m->report->event_time;
   if (next_step(m, t_end) == 0) return DVI_OK;
   m->marcher->take_back(m->of);
   const double h = next_step(m, t_end);
-  if (h != 0) return advance(m, h, t_end);
+  if (h != 0) return march_advance(m, h, t_end);
   m->report->steps--;
   return DVI_OK;
 }
@@ -107,48 +119,54 @@ static dvi_status find_events(march *m, double from)
   return m->marcher->reject(m->of, found);
 }
 
-static dvi_status one_step(march *m, double h)
+static dvi_status march_one_step(march *m, double h)
 {
   const dvi__march_options *options = m->options;
-  const double from = time_of(m);
+  const double from = march_time(m);
   const long every = options->every > 0 ? options->every : 1;
-  DVI_TRY(advance(m, h, options->t_end));
+  DVI_TRY(march_advance(m, h, options->t_end));
   DVI_TRY(find_events(m, from));
   m->report->steps++;
   DVI_TRY(dvi__event_search_report(&m->search, options->h > 0, m->report, &m->stop));
   if (m->report->end == DVI_RUN_EVENT) DVI_TRY(end_at_event(m));
   if (options->cancel != NULL && *options->cancel && !m->stop) end_run(m, DVI_RUN_CANCELLED);
-  if (m->stop || m->report->steps % every == 0 || next_step(m, options->t_end) == 0) DVI_TRY(observe(m));
-  if (options->checkpoint != NULL && options->checkpoint_every > 0 && m->report->steps % options->checkpoint_every == 0)
+  if (m->stop || m->report->steps % every == 0 || next_step(m, options->t_end) == 0)
+    DVI_TRY(march_observe(m));
+  if (options->checkpoint != NULL && options->checkpoint_every > 0 &&
+      m->report->steps % options->checkpoint_every == 0)
     return m->marcher->save(m->of, options->checkpoint);
   return DVI_OK;
 }
 
-static dvi_status run_steps(march *m)
+static dvi_status march_all_steps(march *m)
 {
   const double t_end = m->options->t_end;
-  DVI_TRY(observe(m));
-  for (double h = next_step(m, t_end); h != 0 && !m->stop; h = next_step(m, t_end)) DVI_TRY(one_step(m, h));
+  DVI_TRY(march_observe(m));
+  for (double h = next_step(m, t_end); h != 0 && !m->stop; h = next_step(m, t_end))
+    DVI_TRY(march_one_step(m, h));
   return DVI_OK;
 }
 
-/* The last good state is saved even if the run failed; the run's failure is the one that counts. */
+/* Save the last good state, even if the run failed. The run's failure takes precedence over one of
+ * saving. */
 static dvi_status save_at_end(const march *m, dvi_status status)
 {
   char sentence[1024];
   (void)snprintf(sentence, sizeof sentence, "%s", dvi_last_error());
   const dvi_status saved = m->marcher->save(m->of, m->options->checkpoint);
   if (status == DVI_OK) return saved;
-  return saved == DVI_OK ? dvi__fail(status, "%s", sentence) : dvi__fail_in(status, "%s; and then", sentence);
+  return saved == DVI_OK ? dvi__fail(status, "%s", sentence)
+                         : dvi__fail_in(status, "%s; and then", sentence);
 }
 
-dvi_status dvi__march(void *of, const dvi__marcher *marcher, const dvi__march_options *options, dvi_run_report *report)
+dvi_status dvi__march(void *of, const dvi__marcher *marcher, const dvi__march_options *options,
+                      dvi_run_report *report)
 {
   march m = {.of = of, .marcher = marcher, .options = options, .report = report};
   DVI_TRY(check_options(&m));
   DVI_TRY(dvi__event_search_create(of, marcher, options->event_count, &m.search));
   report->end = DVI_RUN_COMPLETE;
-  dvi_status status = run_steps(&m);
+  dvi_status status = march_all_steps(&m);
   dvi__event_search_clear(&m.search);
   if (options->checkpoint != NULL) status = save_at_end(&m, status);
   if (status != DVI_OK) report->end = DVI_RUN_FAILED;

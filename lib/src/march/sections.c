@@ -17,16 +17,16 @@ typedef struct file_header {
 } file_header;
 
 typedef struct section_header {
-  char name[DVI__SECTION_NAME]; /* with zeros to its end */
+  char name[DVI__SECTION_NAME]; /* padded with zeros */
   uint32_t version, none;
-  uint64_t size; /* of the content, without the zeros behind it */
-  uint64_t hash; /* of what precedes, and of the content with its zeros */
+  uint64_t size; /* size of the content without padding */
+  uint64_t hash; /* hash of the fields above and of the content with padding */
 } section_header;
 
 static const char magic[8] = {'d', 'v', 'i', 's', 't', 'a', 't', 'e'};
 static const char end_name[] = "end";
 
-static size_t padded(size_t size)
+static size_t padded_size(size_t size)
 {
   return (size + UNIT - 1) / UNIT * UNIT;
 }
@@ -34,7 +34,7 @@ static size_t padded(size_t size)
 static uint64_t hash_section(const section_header *header, const unsigned char *content)
 {
   const uint64_t hash = dvi__hash(DVI__HASH_START, offsetof(section_header, hash), header);
-  return dvi__hash(hash, padded(header->size), content);
+  return dvi__hash(hash, padded_size(header->size), content);
 }
 
 /* ---- write ---- */
@@ -45,7 +45,7 @@ static void release_writer(dvi__sections_writer *w)
   w->bytes = NULL;
 }
 
-static void append(dvi__sections_writer *w, const void *content, size_t size)
+static void writer_append(dvi__sections_writer *w, const void *content, size_t size)
 {
   if (w->bytes == NULL) return;
   if (w->size + size > w->capacity) {
@@ -66,7 +66,7 @@ void dvi__sections_start(dvi__sections_writer *w, size_t capacity)
   file_header header = {.order_mark = ORDER_MARK, .format = FORMAT};
   memcpy(header.magic, magic, sizeof magic);
   *w = (dvi__sections_writer){.bytes = DVI_NEW(unsigned char, capacity), .capacity = capacity};
-  append(w, &header, sizeof header);
+  writer_append(w, &header, sizeof header);
 }
 
 /* Write the size and the hash of the section that ends here. */
@@ -76,7 +76,7 @@ static void close_section(dvi__sections_writer *w)
   section_header header;
   if (w->bytes == NULL || w->section == 0) return;
   const size_t size = w->size - w->section - sizeof header;
-  append(w, zeros, padded(size) - size);
+  writer_append(w, zeros, padded_size(size) - size);
   if (w->bytes == NULL) return;
   memcpy(&header, w->bytes + w->section, sizeof header);
   header.size = size;
@@ -90,12 +90,12 @@ void dvi__section_open(dvi__sections_writer *w, const char *name, uint32_t versi
   close_section(w);
   w->section = w->size;
   memcpy(header.name, name, strlen(name));
-  append(w, &header, sizeof header);
+  writer_append(w, &header, sizeof header);
 }
 
 void dvi__section_put(dvi__sections_writer *w, const void *content, size_t size)
 {
-  append(w, content, size);
+  writer_append(w, content, size);
 }
 
 dvi_status dvi__sections_finish(dvi__sections_writer *w)
@@ -103,7 +103,8 @@ dvi_status dvi__sections_finish(dvi__sections_writer *w)
   const size_t asked = w->capacity;
   dvi__section_open(w, end_name, 0);
   close_section(w);
-  return w->bytes != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "checkpoint: no memory for %zu bytes", asked);
+  return w->bytes != NULL ? DVI_OK
+                          : dvi__fail(DVI_NO_MEMORY, "checkpoint: no memory for %zu bytes", asked);
 }
 
 /* ---- check ---- */
@@ -125,26 +126,31 @@ static dvi_status check_file_header(const dvi__sections *s)
   if (s->size >= sizeof magic && memcmp(header.magic, magic, sizeof magic) != 0)
     return dvi__fail(DVI_BAD_FILE, "%s: no saved state of libdvi", s->name);
   if (s->size < sizeof header) return refuse_cut(s);
-  if (header.order_mark != ORDER_MARK) return dvi__fail(DVI_BAD_FILE, "%s: written on another kind of machine", s->name);
+  if (header.order_mark != ORDER_MARK)
+    return dvi__fail(DVI_BAD_FILE, "%s: written on another kind of machine", s->name);
   if (header.format == FORMAT) return DVI_OK;
   return dvi__fail(DVI_BAD_FILE,
-                   "%s: written in format %" PRIu32 " by another version of libdvi; this one reads format %d. Finish the run "
+                   "%s: written in format %" PRIu32
+                   " by another version of libdvi; this one reads format %d. Finish the run "
                    "with the version that wrote it, or run it again from its start",
                    s->name, header.format, FORMAT);
 }
 
-/* The section at a place, and where the next one begins; DVI_BAD_FILE if it is not whole. */
-static dvi_status check_section(const dvi__sections *s, size_t at, section_header *header, size_t *next)
+/* Check the section at an offset, and return its header and the offset of the next section.
+ * DVI_BAD_FILE if the section is not whole. */
+static dvi_status check_section(const dvi__sections *s, size_t at, section_header *header,
+                                size_t *next)
 {
   if (s->size - at < sizeof *header) return refuse_cut(s);
   memcpy(header, s->bytes + at, sizeof *header);
   const size_t content = at + sizeof *header;
-  if (header->size > s->size - content || padded(header->size) > s->size - content) return refuse_cut(s);
-  *next = content + padded(header->size);
+  if (header->size > s->size - content || padded_size(header->size) > s->size - content)
+    return refuse_cut(s);
+  *next = content + padded_size(header->size);
   return hash_section(header, s->bytes + content) == header->hash ? DVI_OK : refuse_damage(s);
 }
 
-static int is_named(const section_header *header, const char *name)
+static int section_is_named(const section_header *header, const char *name)
 {
   return strncmp(header->name, name, sizeof header->name) == 0;
 }
@@ -155,15 +161,15 @@ dvi_status dvi__sections_check(dvi__sections *s, const char *name, const void *b
   size_t at = sizeof(file_header);
   *s = (dvi__sections){.name = name, .bytes = bytes, .size = size, .own = s->own};
   DVI_TRY(check_file_header(s));
-  while (!is_named(&header, end_name)) DVI_TRY(check_section(s, at, &header, &at));
+  while (!section_is_named(&header, end_name)) DVI_TRY(check_section(s, at, &header, &at));
   if (at == size) return DVI_OK;
   return dvi__fail(DVI_BAD_FILE, "%s: too long, %zu bytes instead of %zu", name, size, at);
 }
 
 /* ---- read ---- */
 
-/* A stream tells no size that could be believed: the bytes are read until it ends, but no further than a
- * header that is none. */
+/* Read a stream until its end, since the size of a stream is not reliable. Reading stops early at
+ * a wrong header. */
 static dvi_status read_stream(FILE *stream, dvi__sections *s)
 {
   size_t capacity = 4096;
@@ -171,7 +177,8 @@ static dvi_status read_stream(FILE *stream, dvi__sections *s)
   while (s->own != NULL) {
     s->bytes = s->own;
     s->size += fread(s->own + s->size, 1, capacity - s->size, stream);
-    if (ferror(stream)) return dvi__fail(DVI_IO_ERROR, "%s: cannot read it: %s", s->name, strerror(errno));
+    if (ferror(stream))
+      return dvi__fail(DVI_IO_ERROR, "%s: cannot read it: %s", s->name, strerror(errno));
     DVI_TRY(check_file_header(s));
     if (s->size < capacity) return DVI_OK;
     unsigned char *larger = DVI_NEW(unsigned char, 2 * capacity);
@@ -186,7 +193,8 @@ static dvi_status read_stream(FILE *stream, dvi__sections *s)
 dvi_status dvi__sections_read(const char *path, dvi__sections *s)
 {
   FILE *stream = fopen(path, "rb");
-  if (stream == NULL) return dvi__fail(DVI_IO_ERROR, "%s: cannot read it: %s", s->name, strerror(errno));
+  if (stream == NULL)
+    return dvi__fail(DVI_IO_ERROR, "%s: cannot read it: %s", s->name, strerror(errno));
   const dvi_status status = read_stream(stream, s);
   (void)fclose(stream);
   return status == DVI_OK ? dvi__sections_check(s, s->name, s->own, s->size) : status;
@@ -200,20 +208,25 @@ void dvi__sections_clear(dvi__sections *s)
 
 /* ---- find ---- */
 
-dvi_status dvi__section_find(const dvi__sections *s, const char *name, uint32_t version, size_t size, dvi__section *found)
+dvi_status dvi__section_find(const dvi__sections *s, const char *name, uint32_t version,
+                             size_t size, dvi__section *found)
 {
   section_header header;
   size_t at = sizeof(file_header), next;
   for (;; at = next) {
     DVI_TRY(check_section(s, at, &header, &next));
-    if (is_named(&header, name)) break;
-    if (is_named(&header, end_name)) return dvi__fail(DVI_BAD_FILE, "%s: it has no section '%s'", s->name, name);
+    if (section_is_named(&header, name)) break;
+    if (section_is_named(&header, end_name))
+      return dvi__fail(DVI_BAD_FILE, "%s: it has no section '%s'", s->name, name);
   }
   if (header.version != version)
-    return dvi__fail(DVI_BAD_FILE, "%s: section '%s' is of version %" PRIu32 "; this libdvi reads version %" PRIu32, s->name, name,
-                     header.version, version);
+    return dvi__fail(DVI_BAD_FILE,
+                     "%s: section '%s' is of version %" PRIu32
+                     "; this libdvi reads version %" PRIu32,
+                     s->name, name, header.version, version);
   if (size != DVI__ANY_SIZE && header.size != size)
-    return dvi__fail(DVI_BAD_FILE, "%s: section '%s' has %" PRIu64 " bytes instead of %zu", s->name, name, header.size, size);
+    return dvi__fail(DVI_BAD_FILE, "%s: section '%s' has %" PRIu64 " bytes instead of %zu", s->name,
+                     name, header.size, size);
   *found = (dvi__section){header.version, s->bytes + at + sizeof header, header.size};
   return DVI_OK;
 }

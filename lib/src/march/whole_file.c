@@ -13,15 +13,16 @@
 
 #include "core/status.h"
 
-/* A new file beside path, of a name that nobody else takes: other processes by its number, other
- * threads by the count. One that a killed process of the same number has left behind is passed
- * over. -1, and errno, if there is no such file. */
+/* Create a new file beside path, with a unique name. The process number in the name excludes other
+ * processes, the count other threads. A file that a killed process of the same number has left
+ * behind is passed over. Return its descriptor, or -1 with errno. */
 static int create_beside(const char *path, size_t size, char *beside)
 {
   enum { MOST_NAMES = 1000 };
   static atomic_ulong count;
   for (int i = 0; i < MOST_NAMES; i++) {
-    const int length = snprintf(beside, size, "%s.part-%ld-%lu", path, (long)getpid(), atomic_fetch_add(&count, 1));
+    const int length = snprintf(beside, size, "%s.part-%ld-%lu", path, (long)getpid(),
+                                atomic_fetch_add(&count, 1));
     if (length < 0 || (size_t)length >= size) {
       errno = ENAMETOOLONG;
       return -1;
@@ -32,7 +33,7 @@ static int create_beside(const char *path, size_t size, char *beside)
   return -1;
 }
 
-/* A device or a pipe would be replaced by a file of its name. */
+/* Test for a device or a pipe, which renaming would replace by a file. */
 static int is_no_file(const char *path)
 {
   struct stat old;
@@ -45,7 +46,7 @@ static void take_rights(int descriptor, const char *path)
   if (stat(path, &old) == 0) (void)fchmod(descriptor, old.st_mode & 07777);
 }
 
-/* Signals may interrupt it. */
+/* Write all bytes. Signals may interrupt a write, which is then repeated. */
 static int write_all(int descriptor, const unsigned char *bytes, size_t count)
 {
   while (count > 0) {
@@ -56,7 +57,7 @@ static int write_all(int descriptor, const unsigned char *bytes, size_t count)
   return 0;
 }
 
-/* Write, flush and close. 0, or what failed first. */
+/* Write, flush and close. Return 0 or the first error number. */
 static int write_and_close(int descriptor, const unsigned char *bytes, size_t count)
 {
   int reason = write_all(descriptor, bytes, count) != 0 || fsync(descriptor) != 0 ? errno : 0;
@@ -64,13 +65,14 @@ static int write_and_close(int descriptor, const unsigned char *bytes, size_t co
   return reason;
 }
 
-/* The new name is on the disk, too, where the file system can tell, and the folder may be
- * opened. 0, or what failed. */
+/* Flush the new name to the disk, too, where the file system supports this and the folder can be
+ * opened. Return 0 or the error number. */
 static int flush_folder(const char *path)
 {
   char folder[PATH_MAX + 2];
   const char *slash = strrchr(path, '/');
-  (void)snprintf(folder, sizeof folder, "%.*s", slash != NULL ? (int)(slash - path) + 1 : 1, slash != NULL ? path : ".");
+  (void)snprintf(folder, sizeof folder, "%.*s", slash != NULL ? (int)(slash - path) + 1 : 1,
+                 slash != NULL ? path : ".");
   const int descriptor = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return 0;
   const int reason = fsync(descriptor) != 0 && errno != EINVAL && errno != ENOTSUP ? errno : 0;
@@ -82,9 +84,11 @@ dvi_status dvi__write_whole(const char *link, const unsigned char *bytes, size_t
 {
   char beside[PATH_MAX + 64], real[PATH_MAX];
   const char *path = realpath(link, real) != NULL ? real : link;
-  if (is_no_file(path)) return dvi__fail(DVI_IO_ERROR, "cannot write %s: it is not a regular file", link);
+  if (is_no_file(path))
+    return dvi__fail(DVI_IO_ERROR, "cannot write %s: it is not a regular file", link);
   const int descriptor = create_beside(path, sizeof beside, beside);
-  if (descriptor < 0) return dvi__fail(DVI_IO_ERROR, "cannot write a file beside %.256s: %s", link, strerror(errno));
+  if (descriptor < 0)
+    return dvi__fail(DVI_IO_ERROR, "cannot write a file beside %.256s: %s", link, strerror(errno));
   take_rights(descriptor, path);
   int reason = write_and_close(descriptor, bytes, count);
   if (reason == 0 && rename(beside, path) != 0) reason = errno;
@@ -93,6 +97,8 @@ dvi_status dvi__write_whole(const char *link, const unsigned char *bytes, size_t
     return dvi__fail(DVI_IO_ERROR, "cannot write %s: %s", link, strerror(reason));
   }
   reason = flush_folder(path);
-  return reason == 0 ? DVI_OK
-                     : dvi__fail(DVI_IO_ERROR, "%s is written, but its folder cannot be flushed: %s", link, strerror(reason));
+  return reason == 0
+             ? DVI_OK
+             : dvi__fail(DVI_IO_ERROR, "%s is written, but its folder cannot be flushed: %s", link,
+                         strerror(reason));
 }

@@ -1,6 +1,8 @@
-/* What a method is: one const struct. The driver (integrator.c) owns the states, failures and counters.
+/* The interface of a method is one const struct. The driver (integrator.c) owns the states,
+ * failures and counters.
  *
- * To add a method foo: foo.c defines `const dvi__method dvi__foo`, methods.def gets the line METHOD(foo). */
+ * To add a method foo, define `const dvi__method dvi__foo` in foo.c and add the line METHOD(foo) to
+ * methods.def. */
 #ifndef DVI_METHOD_METHOD_H
 #define DVI_METHOD_METHOD_H
 #include <dvi/shapes.h>
@@ -8,182 +10,222 @@
 
 #include "system/evaluate/evaluator.h"
 
-/* The state that a step advances. Sums are compensated: what a carry holds, its number is too large by. */
+/* A step advances this state. Sums are compensated. Each number is too large by its
+ * compensation. */
 typedef struct dvi__state {
-  double t, t_carry;
-  double density;                    /* step control's z (integrator/control.c) */
-  int side;                          /* the driver's, of degenerate systems: dvi__two_form_side or dvi__dirac_side; 0: not known */
-  double *q, *p, *q_carry, *p_carry; /* [n] */
+  double t, t_compensation;
+  double density; /* z of step control (integrator/control.c) */
+  /* dvi__two_form_side or dvi__dirac_side of a degenerate system (default 0, not known) */
+  int side;
+  double *q, *p, *q_compensation, *p_compensation; /* [n] */
 } dvi__state;
 
-/* Several members of an ensemble side by side, each a state with the method's memory: number i of member k is [i*count + k]. */
+/* Several members of an ensemble side by side. Each is a state with the method's memory, and number
+ * i of member k is [i*count + k]. */
 typedef struct dvi__members {
   int count;
-  double *t, *t_carry;                 /* [count] */
-  double *q, *p, *q_carry, *p_carry;   /* [n*count] */
-  double *memory;                      /* [memory_count*count] */
-  char *left;                          /* [count] not 0: this member is left to `step`; what stands here for it does not count */
-  long *residuals, *gradients, *fixed; /* [count] what the step took, as dvi_counters has it: residuals, gradients, fixed_points */
+  double *t, *t_compensation;                      /* [count] */
+  double *q, *p, *q_compensation, *p_compensation; /* [n*count] */
+  double *memory;                                  /* [memory_count*count] */
+  /* [count] not 0 for members that are left to `step`, and whose numbers here are invalid */
+  char *left;
+  /* [count] evaluations in the step, as in dvi_counters */
+  long *residuals, *gradients, *fixed;
 } dvi__members;
 
-/* A key of a method's specification: a whole number, one of a list of names (or a number from `least` on, above the names' indices, where `most` is not 0), or
- * a positive number that "auto" leaves to the method. */
+/* A key of a method's specification. The value is a whole number, one of a list of names, or a
+ * positive number. Where `most` is not 0, numbers from `least` on, above the indices of the names,
+ * are possible beside names. A positive number may be "auto", which leaves the choice to the
+ * method. */
 typedef struct dvi__key {
   const char *name;
-  const char *(*choice)(int index); /* name of a choice, NULL past the last one; NULL: a number */
-  int least, most;                  /* of a whole number */
-  int left_out;                     /* the value of a key that is not given: a number, or the index of a choice */
+  /* name of a choice, NULL past the last one; NULL for a number */
+  const char *(*choice)(int index);
+  int least, most; /* range of a whole number */
+  /* default value: a number, or the index of a choice */
+  int default_value;
   const char *help;
 } dvi__key;
 
-/* As `least`: the key is a positive number, or auto, which it is if it is not given; the key is
- * a choice of what is said of the steps, and does not change them; it is the name of a file, of
- * which a method may have one, but not as its first key: what the file holds is in the
- * fingerprint. */
+/* Special values of `least`. DVI__POSITIVE marks a positive number or auto (default auto).
+ * DVI__SAID marks a choice of what is reported about the steps, which does not change them.
+ * DVI__FILE marks the name of a file. A method may have one such key, but not as its first key. The
+ * contents of the file are part of the fingerprint. */
 enum { DVI__POSITIVE = -2, DVI__SAID = -3, DVI__FILE = -4 };
 
 enum { DVI__KEYS_MOST = 10, DVI__LIST_MOST = 16, DVI__LEFT_OUT = -1 };
 
-/* Characters of a specification; and of a list of names in a sentence, with its end. */
+/* The most characters of a specification. A second limit holds for a list of names in a sentence,
+ * with its terminating 0. */
 enum { DVI__SPECIFICATION_MOST = INT_MAX / 4 };
 
-/* Values of the keys, in the order of the method's table. A method may replace DVI__LEFT_OUT by what it chose. */
+/* Values of the keys, in the order of the method's table. A method may replace DVI__LEFT_OUT by its
+ * choice. */
 typedef struct dvi__settings {
   int value[DVI__KEYS_MOST];
-  double number[DVI__KEYS_MOST]; /* of keys that are DVI__POSITIVE; 0: auto */
+  double number[DVI__KEYS_MOST]; /* values of keys that are DVI__POSITIVE; 0 is auto */
   double list[DVI__LIST_MOST];   /* numbers of the key that is a list */
-  int listed;                    /* how many; 0: it is not given */
-  /* Owned; NULL: not given. */
-  char *list_text; /* the list as it was written */
-  char *file;      /* of the key that is DVI__FILE */
-  char *rest;      /* "key=value,..." that are not the method's own; only for methods that take them */
+  int listed;                    /* length of the list (default 0, no list) */
+  /* The settings own the next three, which are NULL if not given. */
+  char *list_text; /* the list as text */
+  char *file;      /* value of the key that is DVI__FILE */
+  char *rest;      /* "key=value,..." for another method; only for methods with takes_rest */
 } dvi__settings;
 
 typedef struct dvi__method dvi__method;
 
-/* Whether the solution that a step takes is that of the branch from h = 0 (solve/branch.h): known to
- * be; for its energy to say, as its equations were nearly linear; for its energy and its motion to say;
- * known not to be. */
+/* This tells if the solution of a step lies on the branch connected to h = 0 (solve/branch.h).
+ * DVI__SURE is known to lie on it. DVI__LINEAR had nearly linear equations, and the energy decides.
+ * For DVI__DOUBTED the energy and the motion decide. DVI__ASTRAY is known not to lie on it. */
 typedef enum dvi__doubt { DVI__SURE, DVI__LINEAR, DVI__DOUBTED, DVI__ASTRAY } dvi__doubt;
 
-/* A method on a system. */
+/* A stepper is a method on a system. */
 typedef struct dvi__stepper {
   const dvi__method *method;
   const dvi_system *system;
-  const dvi_shapes *shapes; /* the program's function space, for methods that take one; NULL: there is none. Outlives the stepper */
+  /* the program's function space, which outlives the stepper, or NULL */
+  const dvi_shapes *shapes;
   dvi_counters *counters;
   dvi__settings settings;
-  char *specification; /* every key spelled out; owned */
+  char *specification; /* specification with every key, owned */
   uint64_t steps;      /* hash of the keys that determine the steps */
-  /* A hash of what determines the steps beside keys, system and functions of the program, and
-   * what that is, in the plural: set by create. */
+  /* create sets a hash of everything else that determines the steps, beside keys, system and
+   * functions of the program, and the name of these things, in the plural. */
   uint64_t fingerprint;
   const char *fingerprinted;
-  int order;     /* what theory claims */
+  int order;     /* order by theory */
   int symmetric; /* a step of -h undoes a step of h */
-  int bound; /* it keeps callbacks of the system, or what they gave at create, and so cannot take the terms of another system that is alike */
-  /* What the method carries from step to step beside the state: saved in checkpoints, restored when a step fails. The method sets the count at
-   * create; the memory is the driver's, who has two and exchanges them, and is there from the first start on. */
+  /* the stepper keeps callbacks of the system, or their results at create, and therefore refuses
+   * the terms of another system of the same kind */
+  int bound;
+  /* The memory holds all numbers that the method carries from step to step beside the state. It is
+   * saved in checkpoints and restored when a step fails. The method sets the count at create. The
+   * driver owns two memories, exchanges them, and allocates them before the first start. */
   double *memory;
   size_t memory_count;
-  /* Of methods that choose their steps: the length of the last one, set by `step`; and what the driver sets, not 0: the next one is as long as it says. */
+  /* For methods that choose their steps. `step` sets `taken`, the length of the last step. The
+   * driver sets `exact`, which is not 0 if the next step must have the given length. */
   double taken;
   int exact;
-  int follows;      /* it solves equations, and can follow their branch from h = 0 */
-  int follow;       /* set by the driver: the step does so, in at least so many parts; 0: it does not */
-  dvi__doubt doubt; /* set by `step`, reset by the driver, */
-  double bend;      /* and so is how much its equations bent: the worst of dvi__solve_report */
-  void *own;        /* the method's struct */
-  void *lanes;      /* its struct for members side by side; NULL: each member steps on its own */
+  int follows; /* the step solves equations and can follow their branch from h = 0 */
+  /* set by the driver: follow the branch in at least this many parts (default 0, no following) */
+  int follow;
+  dvi__doubt doubt; /* set by `step`, reset by the driver */
+  /* curvature of the equations, the worst of dvi__solve_report; set and reset as `doubt` */
+  double bend;
+  void *own; /* the method's struct */
+  /* the method's struct for members side by side; NULL if each member steps on its own */
+  void *lanes;
 } dvi__stepper;
 
-/* A growing text in memory of fixed size. */
+/* A text that grows in memory of fixed size. */
 typedef struct dvi__text {
   char *text;
-  size_t size, length; /* length may exceed size: it counts what did not fit, too */
+  size_t size, length; /* length counts the characters that did not fit, too, and may exceed size */
 } dvi__text;
 
 void dvi__text_add(dvi__text *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* A text in memory of its own, to be released; NULL: there is none left. */
+/* A formatted text in memory of its own, which the caller releases. NULL if there is no memory. */
 char *dvi__written(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 struct dvi__method {
   const char *name, *summary, *cite;
-  const dvi__key *keys; /* ended by a key without a name; NULL: none */
-  const char *list;     /* the key of a list of decimal numbers, c1:c2:..., not one of the above; NULL: none */
+  const dvi__key *keys; /* ended by a key without a name, or NULL */
+  /* the key of a list of decimal numbers, c1:c2:..., which is none of `keys`, or NULL */
+  const char *list;
   const char *list_help;
-  int takes_rest;    /* keys of others are collected in settings.rest */
-  int takes_shapes;  /* its space, or that of a method that it is made of, may be the program's */
-  unsigned needs;    /* dvi__term bits that the system must declare */
-  unsigned uses;     /* bits that it may declare; with DVI__FACTORS of every kind, but for */
-  unsigned refuses;  /* these kinds */
-  int chooses_steps; /* `step` may take another length than h, of the same sign, and says it in `taken` */
-  /* Set order, symmetric, memory_count, own. On failure destroy is called. */
+  int takes_rest; /* settings.rest collects the keys of other methods */
+  /* the function space of the method, or of an inner method, may be the program's */
+  int takes_shapes;
+  unsigned needs; /* dvi__term bits that the system must declare */
+  /* bits that the system may declare, with DVI__FACTORS of every kind except `refuses` */
+  unsigned uses;
+  unsigned refuses; /* kinds of factors that the method refuses */
+  /* `step` may take another length than h, of the same sign, and sets `taken` */
+  int chooses_steps;
+  /* Set order, symmetric, memory_count and own. On failure the caller calls destroy. */
   dvi_status (*create)(dvi__stepper *self);
   void (*destroy)(dvi__stepper *self);
-  /* Steps will have `count` lengths in turn, those of a composition: keep what is made for each. Once. NULL: nothing is made for a length alone. */
+  /* Keep the tables of `count` lengths of steps, which a composition takes in turn. Called once.
+   * NULL if no table depends on the length. */
   dvi_status (*keep_lengths)(dvi__stepper *self, int count);
-  /* Earlier steps are forgotten: the memory is zero, the state is new, and its velocity is v [n]. NULL:
-   * no more than that need be known. */
+  /* Forget earlier steps. The memory is zero, the state is new, and its velocity is v [n]. NULL if
+   * this needs no action. */
   void (*start)(dvi__stepper *self, const double *v);
-  /* Advance the state. On failure the driver throws state and memory away. */
+  /* Advance the state. On failure the driver discards state and memory. */
   dvi_status (*step)(dvi__stepper *self, dvi__state *state, double h);
-  /* The same for `count` steps at once, out of place: from `now` and the memory `before` to `next` and the stepper's memory. 1 if all of next's
-   * numbers are written and found finite; 0 if that cannot be, or a step fails: then the driver takes it by `step`, which is to give the same bits,
-   * and says what fails. NULL: no such thing. */
-  int (*pass)(dvi__stepper *self, const dvi__state *now, const double *before, dvi__state *next, const double *h, int count);
-  /* Bytes that this moves (dvi_integrator_traffic); 0: there is no pass with these settings. NULL: not known. */
+  /* Take `count` steps at once, out of place, from `now` and the memory `before` to `next` and the
+   * stepper's memory. Returns 1 if all numbers of `next` are written and finite. Returns 0 if this
+   * is not possible or a step fails. Then the driver calls `step`, which must give the same bits
+   * and names the failure. NULL if the method has no such pass. */
+  int (*pass)(dvi__stepper *self, const dvi__state *now, const double *before, dvi__state *next,
+              const double *h, int count);
+  /* Bytes that a pass moves (dvi_integrator_traffic), or 0 without a pass with these settings. NULL
+   * if not known. */
   double (*traffic)(const dvi__stepper *self, int count);
-  /* q [n] and v [n] at tau in [0,1] of the last step, which started at q0 [n] with length h; not finite where it cannot be had. NULL: Hermite's cubic. */
-  void (*path)(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v);
-  /* Whether a memory that a checkpoint holds is of the same space. NULL: the specification tells. */
+  /* Evaluate q [n] and v [n] at tau in [0,1] of the last step, which started at q0 [n] with length
+   * h. The results are not finite where the path does not exist. NULL selects Hermite's cubic. */
+  void (*path)(const dvi__stepper *self, const double *q0, double h, double tau, double *q,
+               double *v);
+  /* Return 1 if the memory in a checkpoint belongs to the same function space. NULL if the
+   * specification determines the space. */
   int (*recognizes)(const dvi__stepper *self, const double *memory);
-  /* The multiplier [n] of the last step, in the memory; NULL if there is none. NULL: never. */
+  /* The multiplier [n] of the last step in the memory, or NULL if there is none. A NULL function
+   * means that there never is one. */
   const double *(*multiplier)(const dvi__stepper *self);
-  /* The jump [n] between the last element and the next, in the stepper's memory. NULL: the method's trajectories do not jump. */
+  /* The jump [n] between the last element and the next, in the stepper's memory. NULL if the
+   * trajectories do not jump. */
   const double *(*jump)(const dvi__stepper *self);
   void (*explain)(const dvi__stepper *self, dvi__text *text);
-  /* What became of the energy that the method conserves; NULL: it conserves none. */
+  /* Report the balance of the energy that the method conserves. NULL if the method conserves no
+   * energy. */
   void (*balance)(const dvi__stepper *self, dvi_energy_balance *balance);
-  /* Members as lanes; all three are NULL where there is no such way. prepare makes `lanes` for up to `capacity` members, if the system allows it
-   * and it pays. step advances all members that are not `left`, each with the bits and the counts of `step`, or leaves them to it. */
+  /* Step members as lanes. All three functions are NULL if the method has no lanes. prepare_lanes
+   * allocates `lanes` for up to `capacity` members, if the system allows lanes and they are faster.
+   * step_lanes advances all members that are not `left`, each with the bits and the counts of
+   * `step`, or marks members as `left`. */
   dvi_status (*prepare_lanes)(dvi__stepper *self, int capacity);
   void (*clear_lanes)(dvi__stepper *self);
   void (*step_lanes)(dvi__stepper *self, dvi__members *members, double h);
 };
 
-/* Make a stepper from a specification; it owns all that destroy frees. shapes: NULL, or what the method must take. */
-dvi_status dvi__stepper_create(const dvi_system *system, const char *specification, const dvi_shapes *shapes,
-                               dvi_counters *counters, dvi__stepper *stepper);
+/* Make a stepper from a specification. The stepper owns all that destroy frees. The method must
+ * take `shapes` unless it is NULL. */
+dvi_status dvi__stepper_create(const dvi_system *system, const char *specification,
+                               const dvi_shapes *shapes, dvi_counters *counters,
+                               dvi__stepper *stepper);
 void dvi__stepper_destroy(dvi__stepper *stepper);
 
-/* The state is new, its velocity is v [n], and the memory zero. */
+/* Start from a new state with the velocity v [n] and zero memory. */
 void dvi__stepper_start(dvi__stepper *stepper, const double *v);
 
-/* A step of a stepper that the method itself is made of. */
+/* Take a step of an inner stepper on behalf of self. */
 dvi_status dvi__inner_step(dvi__stepper *self, dvi__stepper *inner, dvi__state *state, double h);
 
-/* The stepper of another method, by the keys in self's settings.rest, which becomes the other's
- * keys spelled out: one method, one spelling. */
-dvi_status dvi__stepper_create_inner(dvi__stepper *self, const char *method, const dvi_system *system, const dvi_shapes *shapes,
+/* Make the stepper of another method from the keys in self's settings.rest. The rest becomes the
+ * keys of the inner method with all defaults, so that each method has one spelling. */
+dvi_status dvi__stepper_create_inner(dvi__stepper *self, const char *method,
+                                     const dvi_system *system, const dvi_shapes *shapes,
                                      dvi__stepper *inner);
 
-/* Let a stepper serve up to `capacity` members side by side, if its method can: lanes stays NULL if not. Once. */
+/* Let a stepper serve up to `capacity` members side by side. `lanes` stays NULL if the method
+ * cannot do this. Called once. */
 dvi_status dvi__stepper_prepare_lanes(dvi__stepper *stepper, int capacity);
 
-/* Parse a specification (settings.c); settings are to be cleared, whatever the status. */
-dvi_status dvi__parse(const char *specification, const dvi__method **method, dvi__settings *settings);
+/* Parse a specification (settings.c). The caller clears the settings, whatever the status. */
+dvi_status dvi__parse(const char *specification, const dvi__method **method,
+                      dvi__settings *settings);
 void dvi__settings_clear(dvi__settings *settings);
 
-/* The specification with every key spelled out, to be released; NULL: no memory. */
+/* The specification with every key, which the caller releases. NULL if there is no memory. */
 char *dvi__spell_out(const dvi__method *method, const dvi__settings *settings);
 
-/* The same of the keys that determine the steps: without what is said of them, and the name of a
- * file. */
+/* The specification with the keys that determine the steps. Keys that are DVI__SAID and the name of
+ * a file are not included. */
 char *dvi__spell_steps(const dvi__method *method, const dvi__settings *settings);
 
-/* The method of a name, or NULL (table.c). */
+/* The method with a name, or NULL (table.c). */
 const dvi__method *dvi__find_method(const char *name, size_t length);
 
 /* Number of keys in a method's table, without that of a list. */

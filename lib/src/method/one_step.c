@@ -6,23 +6,24 @@
 #include "num/compensated.h"
 #include "num/finite.h"
 
-static size_t unknowns(const dvi__one_step *one)
+static size_t one_step_unknowns(const dvi__one_step *one)
 {
   return (size_t)one->kind->pattern(one->of)->columns;
 }
 
-/* ---- making it ---- */
+/* ---- create ---- */
 
-static int allocate(dvi__one_step *one, size_t n)
+static int one_step_allocate(dvi__one_step *one, size_t n)
 {
-  one->work = DVI_NEW(double, unknowns(one));
+  one->work = DVI_NEW(double, one_step_unknowns(one));
   one->dq = DVI_NEW(double, n);
   one->dp = DVI_NEW(double, n);
   one->carried = DVI_NEW(double, 2 * n);
   return one->work && one->dq && one->dp && one->carried;
 }
 
-dvi_status dvi__one_step_create(dvi__stepper *self, size_t size, const dvi__step_kind *kind, void *of, size_t carried)
+dvi_status dvi__one_step_create(dvi__stepper *self, size_t size, const dvi__step_kind *kind,
+                                void *of, size_t carried)
 {
   dvi__one_step *one = self->own = dvi__allocate(1, size);
   if (one == NULL) {
@@ -32,22 +33,25 @@ dvi_status dvi__one_step_create(dvi__stepper *self, size_t size, const dvi__step
   one->kind = kind;
   one->of = of;
   one->last = DVI__CARRIED + carried;
-  self->memory_count = one->last + unknowns(one);
-  if (!allocate(one, (size_t)self->system->n)) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
-  /* Coefficients of several kinds of functions have no sizes of their own. */
-  dvi__equations equations = {.unknowns = (int)unknowns(one),
-                              .group = (int)(kind->renewed ? unknowns(one) : unknowns(one) / (size_t)self->system->n),
-                              .pattern = kind->pattern(of),
-                              .of = of,
-                              .residual = kind->residual,
-                              .jacobian = kind->jacobian,
-                              .row_scale = kind->row_scale,
-                              .renewed = kind->renewed,
-                              .ahead = kind->renewed};
+  self->memory_count = one->last + one_step_unknowns(one);
+  if (!one_step_allocate(one, (size_t)self->system->n))
+    return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
+  /* Coefficients of several kinds of functions have no common unit for each coordinate. */
+  dvi__equations equations = {
+      .unknowns = (int)one_step_unknowns(one),
+      .group = (int)(kind->renewed ? one_step_unknowns(one)
+                                   : one_step_unknowns(one) / (size_t)self->system->n),
+      .pattern = kind->pattern(of),
+      .of = of,
+      .residual = kind->residual,
+      .jacobian = kind->jacobian,
+      .row_scale = kind->row_scale,
+      .renewed = kind->renewed,
+      .ahead = kind->renewed};
   DVI_TRY(dvi__stationary_create(self, &equations, &one->equations));
   one->x = one->equations.x;
-  /* Functions that change with h, and steps over many periods: what is measured of a branch, or of a
-   * motion, says nothing. */
+  /* Do not follow the branch for functions that change with h, and for steps over many periods. The
+   * measures of a branch, or of a motion, do not apply to them. */
   if (kind->renewed) self->follows = 0;
   return DVI_OK;
 }
@@ -73,7 +77,7 @@ void dvi__one_step_start(dvi__stepper *self, const double *v)
 
 /* ---- the step ---- */
 
-static dvi_status guess(dvi__stepper *self, double h, double *x)
+static dvi_status one_step_guess(dvi__stepper *self, double h, double *x)
 {
   const dvi__one_step *one = self->own;
   const double last_h = self->memory[DVI__LENGTH], *last = self->memory + one->last;
@@ -87,11 +91,13 @@ static dvi_status guess(dvi__stepper *self, double h, double *x)
 dvi_status dvi__one_step_solve(dvi__stepper *self, const dvi__state *state, double h)
 {
   const dvi__one_step *one = self->own;
-  const dvi__stationary_step step = {self, state, h, one->kind->place, guess};
+  const dvi__stationary_step step = {
+      .stepper = self, .state = state, .h = h, .place = one->kind->place, .guess = one_step_guess};
   return dvi__stationary_solve(&one->equations, &step);
 }
 
-dvi_status dvi__one_step_momentum(dvi__stepper *self, const dvi__state *state, double part, const double **p)
+dvi_status dvi__one_step_momentum(dvi__stepper *self, const dvi__state *state, double part,
+                                  const double **p)
 {
   const dvi__one_step *one = self->own;
   const size_t n = (size_t)self->system->n;
@@ -110,10 +116,10 @@ dvi_status dvi__one_step_move(dvi__stepper *self, dvi__state *state, double h, c
   const dvi__one_step *one = self->own;
   double duration = h;
   if (one->kind->duration != NULL) DVI_TRY(one->kind->duration(one->of, one->x, &duration));
-  dvi__add_compensated_all(self->system->n, state->q, state->q_carry, one->dq);
-  dvi__add_compensated(&state->t, &state->t_carry, duration);
+  dvi__add_compensated_all(self->system->n, state->q, state->q_compensation, one->dq);
+  dvi__add_compensated(&state->t, &state->t_compensation, duration);
   self->memory[DVI__LENGTH] = h;
-  memcpy(self->memory + one->last, last, unknowns(one) * sizeof(double));
+  memcpy(self->memory + one->last, last, one_step_unknowns(one) * sizeof(double));
   return DVI_OK;
 }
 
@@ -128,8 +134,11 @@ void dvi__one_step_explain(const dvi__stepper *self, dvi__text *text)
 {
   const dvi__one_step *one = self->own;
   const dvi__pattern *pattern = one->kind->pattern(one->of);
-  dvi__text_add(text, "kernel: implicit; %d unknowns a step, Jacobian with %d entries (%.3g %% of a full one)\n", pattern->columns,
-                dvi__pattern_entries(pattern), 100.0 * dvi__pattern_entries(pattern) / pattern->columns / pattern->columns);
+  dvi__text_add(
+      text,
+      "kernel: implicit; %d unknowns a step, Jacobian with %d entries (%.3g %% of a full one)\n",
+      pattern->columns, dvi__pattern_entries(pattern),
+      100.0 * dvi__pattern_entries(pattern) / pattern->columns / pattern->columns);
   one->kind->explain(self, text);
   dvi__text_add(text, "solver: Newton's method, last a path followed from shorter steps\n");
 }

@@ -1,15 +1,18 @@
-/* A step by the stationarity conditions of a kind of step that is not one element of the action (element_step.h has those): the vectors, the guess, the
- * solution, the new state and what is remembered for the next guess.
+/* A step by the stationarity conditions of a kind of step that is not one element of the action.
+ * The file element_step.h has the steps by elements. This file owns the vectors, the guess, the
+ * solution, the new state and the memory of the next guess.
  *
- * The kind (step/degenerate/partitioned.h and its neighbours) has the equations. To add one: `place`, DVI__STEP_KIND(foo, place, explain), a step of four lines
- * (darboux_step.c), and the operations below in the methods' initialiser. */
+ * The kind (step/degenerate/partitioned.h and its neighbours) has the equations. To add a kind,
+ * write `place`, DVI__STEP_KIND(foo, place, explain), a step of four lines (darboux_step.c), and
+ * the operations below in the initialisers of the methods. */
 #ifndef DVI_METHOD_ONE_STEP_H
 #define DVI_METHOD_ONE_STEP_H
 #include "core/status.h"
 #include "method/stationary.h"
 
-/* The memory: the length of the last step (0: none); what the method carries of its own; what the guess continues, as many numbers as unknowns (before
- * the first step, the start's velocity in their place). */
+/* The memory starts with the length of the last step (0 before the first step). The carried numbers
+ * of the method follow. The last part is what the guess continues, as many numbers as unknowns.
+ * Before the first step the velocity of the start stands there. */
 enum { DVI__LENGTH, DVI__CARRIED };
 
 typedef struct dvi__step_kind {
@@ -21,51 +24,60 @@ typedef struct dvi__step_kind {
   const dvi__pattern *(*pattern)(const void *of);
   dvi__evaluator *(*evaluator)(const void *of);
   void (*destroy)(void *of);
-  void (*explain)(const dvi__stepper *self, dvi__text *text); /* what is its own */
-  /* dvi__stationary_step's. */
+  void (*explain)(const dvi__stepper *self, dvi__text *text); /* explains the part of this kind */
+  /* Signature as in dvi__stationary_step. */
   dvi_status (*place)(dvi__stepper *self, const dvi__state *state, double h, double part);
-  /* How much time passes in the step with the solution x, of kinds that time-transformed systems may have; NULL: h. */
+  /* The time that passes in the step with the solution x, for kinds that accept time-transformed
+   * systems. NULL selects h. */
   dvi_status (*duration)(void *of, const double *x, double *duration);
-  int renewed; /* Newton's method factors each Jacobian: forces cost more than factors; and the step corrects what it takes from the last point */
+  /* Newton's method factors each Jacobian, because forces cost more than factors, and the step
+   * corrects increments from the last point */
+  int renewed;
 } dvi__step_kind;
 
-/* A stepper's own struct begins with it. */
+/* The own struct of a stepper begins with this struct. */
 typedef struct dvi__one_step {
   const dvi__step_kind *kind;
   void *of; /* the step, of this kind */
   dvi__stationary equations;
-  size_t last;      /* where in the memory stands what the guess continues */
-  double *x, *work; /* [unknowns] the solution; room for the kind */
+  size_t last;      /* place in the memory where the numbers for the next guess begin */
+  double *x, *work; /* [unknowns] the solution, and work for the kind */
   double *dq, *dp;  /* [n] */
-  double *carried;  /* [2 n] of the node, in a part of the step */
+  double *carried;  /* [2 n] jump of the node, scaled to a part of the step */
 } dvi__one_step;
 
-/* Make self->own, `size` bytes, and the memory with `carried` numbers of the method's own. The step is owned from here on, also on failure. */
-dvi_status dvi__one_step_create(dvi__stepper *self, size_t size, const dvi__step_kind *kind, void *of, size_t carried);
+/* Make self->own, of `size` bytes, and the memory with `carried` numbers of the method. The stepper
+ * owns the step from here on, also on failure. */
+dvi_status dvi__one_step_create(dvi__stepper *self, size_t size, const dvi__step_kind *kind,
+                                void *of, size_t carried);
 
-/* Solve a step of length h from the state: x, from the guess that is a straight line along the
- * velocity at the start, and later what was remembered, continued. */
+/* Solve a step of length h from the state for x. The first guess is a straight line along the
+ * velocity at the start. Later guesses continue the remembered numbers. */
 dvi_status dvi__one_step_solve(dvi__stepper *self, const dvi__state *state, double h);
 
-/* The momentum [n] from which a part of the step starts: where a method leaves p = alpha(q), what
- * keeps them apart belongs to the length of its steps, and without it there are no velocities. */
-dvi_status dvi__one_step_momentum(dvi__stepper *self, const dvi__state *state, double part, const double **p);
+/* The momentum [n] from which a part of the step starts. Where a method leaves p = alpha(q), the
+ * distance from alpha(q) belongs to the length of the steps, and is scaled with the part. Without
+ * this scaling there would be no velocities. */
+dvi_status dvi__one_step_momentum(dvi__stepper *self, const dvi__state *state, double part,
+                                  const double **p);
 
-/* Move q by dq and t by the duration at x, and remember `last` [unknowns]. After the ends are taken. */
+/* Move q by dq and t by the duration at x, and remember `last` [unknowns]. To be called after the
+ * ends are computed. */
 dvi_status dvi__one_step_move(dvi__stepper *self, dvi__state *state, double h, const double *last);
 
-/* p = alpha(q), to the last bit. */
+/* Set p = alpha(q), to the last bit. */
 dvi_status dvi__one_step_constrain(dvi__stepper *self, dvi__state *state);
 
-/* Operations of dvi__method, and what goes into its initialiser for them. */
+/* Operations of dvi__method, and their entries in its initialiser. */
 void dvi__one_step_destroy(dvi__stepper *self);
 void dvi__one_step_start(dvi__stepper *self, const double *v);
 void dvi__one_step_explain(const dvi__stepper *self, dvi__text *text);
 
-#define DVI__ONE_STEP_OPERATIONS .destroy = dvi__one_step_destroy, .start = dvi__one_step_start, .explain = dvi__one_step_explain
+#define DVI__ONE_STEP_OPERATIONS \
+  .destroy = dvi__one_step_destroy, .start = dvi__one_step_start, .explain = dvi__one_step_explain
 
-/* The kind whose functions are dvi__foo_..., as `kind`; then its `place` and `explain`, and what else it wants to
- * set. */
+/* Define `kind` for a step whose functions are dvi__foo_..., with the functions `place` and
+ * `explain`. Further members may follow. */
 #define DVI__STEP_KIND(foo, placed, ...)                                          \
   static dvi_status residual_of(void *of, const double *x, double *R)             \
   {                                                                               \

@@ -7,7 +7,7 @@
 #include "core/status.h"
 #include "num/finite.h"
 
-/* ---- making it ---- */
+/* ---- create ---- */
 
 static dvi_status no_chord(void *of, const double *x)
 {
@@ -15,16 +15,18 @@ static dvi_status no_chord(void *of, const double *x)
   return DVI_OK;
 }
 
-dvi_status dvi__stationary_create(dvi__stepper *self, dvi__equations *equations, dvi__stationary *stationary)
+dvi_status dvi__stationary_create(dvi__stepper *self, dvi__equations *equations,
+                                  dvi__stationary *stationary)
 {
   const size_t unknowns = (size_t)equations->unknowns;
   self->follows = 1;
   stationary->x = DVI_NEW(double, unknowns);
-  stationary->room = DVI_NEW(double, DVI__BRANCH_ROOM *unknowns);
+  stationary->room = DVI_NEW(double, (DVI__BRANCH_ROOM * unknowns));
   if (stationary->x == NULL || stationary->room == NULL)
     return dvi__fail(DVI_NO_MEMORY, "%s: no memory for %zu unknowns", self->method->name, unknowns);
   equations->linear = dvi__linear_for_exchanges(equations->pattern);
-  equations->prepare_chord = no_chord; /* KINSOL's rung asks for it; the chord itself belongs to fixed point iteration */
+  /* KINSOL needs this function; only fixed-point iteration uses the chord */
+  equations->prepare_chord = no_chord;
   return dvi__solver_create(equations, self->counters, &stationary->solver);
 }
 
@@ -35,35 +37,36 @@ void dvi__stationary_clear(dvi__stationary *stationary)
   dvi__release(stationary->room);
 }
 
-/* ---- solving ---- */
+/* ---- solve ---- */
 
-static dvi_status place_part(void *of, double part)
+static dvi_status stationary_place_part(void *of, double part)
 {
   const dvi__stationary_step *step = of;
   return step->place(step->stepper, step->state, part * step->h, part);
 }
 
-static dvi_status guess_part(void *of, double part, double *x)
+static dvi_status stationary_guess_part(void *of, double part, double *x)
 {
   const dvi__stationary_step *step = of;
   return step->guess(step->stepper, part * step->h, x);
 }
 
-static double size_of(const dvi__stationary_step *step)
+static double stationary_size_of(const dvi__stationary_step *step)
 {
   return dvi__largest((size_t)step->stepper->system->n, step->state->q);
 }
 
-static dvi_status follow(const dvi__stationary *s, const dvi__stationary_step *step, dvi_status whole)
+static dvi_status stationary_follow(const dvi__stationary *s, const dvi__stationary_step *step,
+                                    dvi_status whole)
 {
   dvi__stationary_step of = *step;
   const dvi__branch branch = {.of = &of,
-                              .place = place_part,
-                              .guess = guess_part,
+                              .place = stationary_place_part,
+                              .guess = stationary_guess_part,
                               .near = DVI__BRANCH_NEAR,
                               .parts = step->stepper->follow > 0 ? step->stepper->follow : 1,
                               .signs = 1,
-                              .size = size_of(step),
+                              .size = stationary_size_of(step),
                               .room = s->room};
   dvi__branch_failure failure;
   dvi__branch_end end;
@@ -80,7 +83,7 @@ static dvi_status solve_at_once(const dvi__stationary *s, const dvi__stationary_
   dvi__solve_report report;
   DVI_TRY(step->place(step->stepper, step->state, step->h, 1));
   DVI_TRY(step->guess(step->stepper, step->h, s->x));
-  DVI_TRY(dvi__solve(s->solver, DVI__NEWTON, size_of(step), 1, 0, s->x, &report));
+  DVI_TRY(dvi__solve(s->solver, DVI__NEWTON, stationary_size_of(step), 1, 0, s->x, &report));
   step->stepper->counters->newtons++;
   step->stepper->bend = fmax(step->stepper->bend, report.bend);
   if (report.iterations <= 4 || dvi__branch_is_near(&report)) return DVI_OK;
@@ -93,5 +96,5 @@ dvi_status dvi__stationary_solve(const dvi__stationary *s, const dvi__stationary
 {
   const int asked = step->stepper->follow;
   const dvi_status status = asked ? DVI_OK : solve_at_once(s, step);
-  return status > 0 || asked ? follow(s, step, status) : status;
+  return status > 0 || asked ? stationary_follow(s, step, status) : status;
 }

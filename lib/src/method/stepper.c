@@ -1,4 +1,5 @@
-/* Making a stepper: the specification is parsed, the method must be able to use every term that the system declares. */
+/* Make a stepper. The specification is parsed, and the method must be able to use every term that
+ * the system declares. */
 #include <dvi/method.h>
 #include <math.h>
 #include <string.h>
@@ -24,7 +25,7 @@ static const char *term_name(unsigned term)
   }
 }
 
-/* What the system declares and the method cannot use. */
+/* Return the terms that the system declares and the method cannot use. */
 static unsigned surplus(const dvi__method *method, const dvi_system *system)
 {
   return system->terms & ((~method->uses & ~(unsigned)DVI__KINDS) | method->refuses);
@@ -35,32 +36,37 @@ static int can_use(const dvi__method *method, const dvi_system *system)
   return surplus(method, system) == 0 && (method->needs & ~system->terms) == 0;
 }
 
-/* The names of the methods for such a system. */
+/* Write the names of the methods for such a system. */
 static void name_others(const dvi_system *system, dvi__text *names)
 {
   for (int i = 0; i < dvi_method_count(); i++) {
     const char *name = dvi_method_name(i);
-    if (can_use(dvi__find_method(name, strlen(name)), system)) dvi__text_add(names, "%s%s", names->length > 0 ? ", " : "", name);
+    if (can_use(dvi__find_method(name, strlen(name)), system))
+      dvi__text_add(names, "%s%s", names->length > 0 ? ", " : "", name);
   }
 }
 
-/* What the method can take for what moves. */
+/* Write the kinds of motion that the method takes. */
 static void name_motions(const dvi__method *method, dvi__text *names)
 {
-  static const unsigned motions[] = {DVI__CONSTANT_MASS, DVI__LAGRANGIAN, DVI__ONE_FORM, DVI__CONSTRAINED_HAMILTONIAN, DVI__FACTORS};
+  static const unsigned motions[] = {DVI__CONSTANT_MASS, DVI__LAGRANGIAN, DVI__ONE_FORM,
+                                     DVI__CONSTRAINED_HAMILTONIAN, DVI__FACTORS};
   for (int i = 0; i < 5; i++)
-    if (method->uses & motions[i]) dvi__text_add(names, "%s%s", names->length > 0 ? " or " : "", term_name(motions[i]));
+    if (method->uses & motions[i])
+      dvi__text_add(names, "%s%s", names->length > 0 ? " or " : "", term_name(motions[i]));
 }
 
 static dvi_status refuse_canonical(const dvi__method *method, const char *others)
 {
   char motions[DVI__SENTENCE_SIZE] = "";
   name_motions(method, &(dvi__text){motions, sizeof motions, 0});
-  return dvi__fail(DVI_UNSUPPORTED, "%s: the system declares %s, and this method needs %s; methods for this system: %s",
-                   method->name, term_name(DVI__HAMILTONIAN), motions, others);
+  return dvi__fail(
+      DVI_UNSUPPORTED,
+      "%s: the system declares %s, and this method needs %s; methods for this system: %s",
+      method->name, term_name(DVI__HAMILTONIAN), motions, others);
 }
 
-static dvi_status check_terms(const dvi__method *method, const dvi_system *system)
+static dvi_status stepper_check_terms(const dvi__method *method, const dvi_system *system)
 {
   char names[DVI__SENTENCE_SIZE] = "";
   if (can_use(method, system)) return DVI_OK;
@@ -68,12 +74,16 @@ static dvi_status check_terms(const dvi__method *method, const dvi_system *syste
   if (surplus(method, system) & DVI__HAMILTONIAN) return refuse_canonical(method, names);
   for (unsigned term = 1; term <= DVI__LAST_TERM; term <<= 1)
     if (surplus(method, system) & term)
-      return dvi__fail(DVI_UNSUPPORTED, "%s: the system declares %s, which this method cannot use; methods for this system: %s",
-                       method->name, term_name(term), names);
+      return dvi__fail(
+          DVI_UNSUPPORTED,
+          "%s: the system declares %s, which this method cannot use; methods for this system: %s",
+          method->name, term_name(term), names);
   for (unsigned term = 1; term <= DVI__LAST_TERM; term <<= 1)
     if (method->needs & term & ~system->terms)
-      return dvi__fail(DVI_UNSUPPORTED, "%s: the method needs %s, which the system does not declare; methods for this system: %s",
-                       method->name, term_name(term), names);
+      return dvi__fail(
+          DVI_UNSUPPORTED,
+          "%s: the method needs %s, which the system does not declare; methods for this system: %s",
+          method->name, term_name(term), names);
   return DVI_OK;
 }
 
@@ -81,7 +91,8 @@ static dvi_status check_shapes(const dvi__method *method, const dvi_shapes *shap
 {
   if (shapes == NULL || method->takes_shapes) return DVI_OK;
   return dvi__fail(DVI_BAD_OPTION,
-                   "%s: its space is its own, and not the shapes %s; shaped-galerkin takes them, and a composition of it",
+                   "%s: its space is its own, and not the shapes %s; shaped-galerkin takes them, "
+                   "and a composition of it",
                    method->name, shapes->name);
 }
 
@@ -92,36 +103,58 @@ static dvi_status spell_out(dvi__stepper *stepper)
   if (steps != NULL) stepper->steps = dvi__hash(DVI__HASH_START, strlen(steps), steps);
   const int spelled = steps != NULL && stepper->specification != NULL;
   dvi__release(steps);
-  return spelled ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "%s: no memory for its specification", stepper->method->name);
+  return spelled ? DVI_OK
+                 : dvi__fail(DVI_NO_MEMORY, "%s: no memory for its specification",
+                             stepper->method->name);
 }
 
-dvi_status dvi__stepper_create(const dvi_system *system, const char *specification, const dvi_shapes *shapes,
-                               dvi_counters *counters, dvi__stepper *stepper)
+static dvi_status stepper_choose_method(dvi__stepper *stepper, const char *specification)
 {
-  *stepper = (dvi__stepper){.system = system, .shapes = shapes, .counters = counters, .fingerprinted = "contents"};
-  dvi_status status = dvi__parse(specification, &stepper->method, &stepper->settings);
-  if (status == DVI_OK) status = check_terms(stepper->method, system);
-  if (status == DVI_OK) status = check_shapes(stepper->method, shapes);
-  if (status != DVI_OK) stepper->method = NULL; /* nothing of it is there to be destroyed */
-  if (status == DVI_OK) status = stepper->method->create(stepper);
-  if (status == DVI_OK) status = spell_out(stepper);
+  DVI_TRY(dvi__parse(specification, &stepper->method, &stepper->settings));
+  DVI_TRY(stepper_check_terms(stepper->method, stepper->system));
+  return check_shapes(stepper->method, stepper->shapes);
+}
+
+static dvi_status stepper_create_method(dvi__stepper *stepper)
+{
+  DVI_TRY(stepper->method->create(stepper));
+  return spell_out(stepper);
+}
+
+dvi_status dvi__stepper_create(const dvi_system *system, const char *specification,
+                               const dvi_shapes *shapes, dvi_counters *counters,
+                               dvi__stepper *stepper)
+{
+  *stepper = (dvi__stepper){
+      .system = system, .shapes = shapes, .counters = counters, .fingerprinted = "contents"};
+  dvi_status status = stepper_choose_method(stepper, specification);
+  if (status != DVI_OK)
+    stepper->method = NULL; /* the method has nothing to destroy yet */
+  else
+    status = stepper_create_method(stepper);
   if (status != DVI_OK) dvi__stepper_destroy(stepper);
   return status;
 }
 
-dvi_status dvi__stepper_create_inner(dvi__stepper *self, const char *method, const dvi_system *system, const dvi_shapes *shapes,
+dvi_status dvi__stepper_create_inner(dvi__stepper *self, const char *method,
+                                     const dvi_system *system, const dvi_shapes *shapes,
                                      dvi__stepper *inner)
 {
   char **rest = &self->settings.rest;
-  char *specification = dvi__written("%s%s%s", method, *rest != NULL ? ":" : "", *rest != NULL ? *rest : "");
-  if (specification == NULL) return dvi__fail(DVI_NO_MEMORY, "%s: no memory for its specification", method);
-  const dvi_status status = dvi__stepper_create(system, specification, shapes, self->counters, inner);
+  char *specification = dvi__written("%s%s%s", method, *rest != NULL ? ":" : "",
+                                     *rest != NULL ? *rest : "");
+  if (specification == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "%s: no memory for its specification", method);
+  const dvi_status status = dvi__stepper_create(system, specification, shapes, self->counters,
+                                                inner);
   dvi__release(specification);
   if (status != DVI_OK) return status;
   const char *keys = strchr(inner->specification, ':');
   dvi__release(*rest);
   *rest = keys != NULL ? dvi__written("%s", keys + 1) : NULL;
-  return keys == NULL || *rest != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "%s: no memory for its specification", method);
+  return keys == NULL || *rest != NULL
+             ? DVI_OK
+             : dvi__fail(DVI_NO_MEMORY, "%s: no memory for its specification", method);
 }
 
 void dvi__stepper_start(dvi__stepper *stepper, const double *v)
@@ -142,7 +175,8 @@ dvi_status dvi__inner_step(dvi__stepper *self, dvi__stepper *inner, dvi__state *
 
 dvi_status dvi__stepper_prepare_lanes(dvi__stepper *stepper, int capacity)
 {
-  return stepper->method->prepare_lanes != NULL ? stepper->method->prepare_lanes(stepper, capacity) : DVI_OK;
+  return stepper->method->prepare_lanes != NULL ? stepper->method->prepare_lanes(stepper, capacity)
+                                                : DVI_OK;
 }
 
 void dvi__stepper_destroy(dvi__stepper *stepper)

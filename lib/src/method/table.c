@@ -19,27 +19,28 @@ int dvi_method_count(void)
   return (int)(sizeof table / sizeof *table);
 }
 
-/* Not in the table: no specification makes it without the shapes of a program. */
+/* This method is not in the table, because no specification makes it without the basis of a
+ * program. */
 extern const dvi__method dvi__shaped_galerkin;
 
-static const dvi__method *entry(int i)
+static const dvi__method *method_table_entry(int i)
 {
   return i >= 0 && i < dvi_method_count() ? table[i] : NULL;
 }
 
 const char *dvi_method_name(int i)
 {
-  return entry(i) != NULL ? table[i]->name : NULL;
+  return method_table_entry(i) != NULL ? table[i]->name : NULL;
 }
 
 const char *dvi_method_summary(int i)
 {
-  return entry(i) != NULL ? table[i]->summary : NULL;
+  return method_table_entry(i) != NULL ? table[i]->summary : NULL;
 }
 
 const char *dvi_method_citation(int i)
 {
-  return entry(i) != NULL ? table[i]->cite : NULL;
+  return method_table_entry(i) != NULL ? table[i]->cite : NULL;
 }
 
 int dvi__key_count(const dvi__method *method)
@@ -51,10 +52,10 @@ int dvi__key_count(const dvi__method *method)
 
 int dvi_method_key_count(int i)
 {
-  return entry(i) != NULL ? dvi__key_count(table[i]) + (table[i]->list != NULL) : 0;
+  return method_table_entry(i) != NULL ? dvi__key_count(table[i]) + (table[i]->list != NULL) : 0;
 }
 
-/* The key that is a list comes last. */
+/* Return the name of a key. The key that is a list comes last. */
 const char *dvi_method_key_name(int i, int k)
 {
   if (k < 0 || k >= dvi_method_key_count(i)) return NULL;

@@ -1,6 +1,8 @@
-/* Sparse LU of a matrix whose last rows and columns, its border, are full. KLU may take a full row for an early pivot, and all that comes later fills in. So the
- * border is stretched (Grcar 1990): row r is cut into pieces that hand on a sum, r_p x + y_(p-1) - y_p = 0, and column c into copies of its unknown, c_p = c_(p+1),
- * each for LENGTH unknowns of the core. What is factored then is sparse all over, and work and memory are in proportion to its size. */
+/* Sparse LU of a matrix whose last rows and columns, its border, are full. KLU may take a full row
+ * for an early pivot, and all that comes later fills in. So the border is stretched (Grcar 1990):
+ * row r is cut into pieces that hand on a sum, r_p x + y_(p-1) - y_p = 0, and column c into copies
+ * of its unknown, c_p = c_(p+1), each for LENGTH unknowns of the core. What is factored then is
+ * sparse all over, and work and memory are in proportion to its size. */
 #include <limits.h>
 #include <string.h>
 
@@ -12,8 +14,10 @@ enum { LENGTH = 64 };
 
 typedef struct bordered {
   int core, border, pieces;
-  dvi__pattern pattern; /* stretched: core, last pieces, and for each earlier piece of each row and column its sum and its copy */
-  int *where;           /* of each entry of the matrix */
+  /* stretched: core, last pieces, and for each earlier piece of each row and column its sum and its
+   * copy */
+  dvi__pattern pattern;
+  int *where; /* of each entry of the matrix */
   double *values, *b;
   void *factor;
 } bordered;
@@ -89,7 +93,7 @@ static void stretch(bordered *s, const dvi__pattern *pattern)
   start[0] = 0;
 }
 
-static void destroy(void *factor)
+static void bordered_destroy(void *factor)
 {
   bordered *s = factor;
   if (s == NULL) return;
@@ -101,48 +105,50 @@ static void destroy(void *factor)
   dvi__release(s);
 }
 
-static dvi_status fill(bordered *s, const dvi__pattern *pattern)
+static dvi_status bordered_fill(bordered *s, const dvi__pattern *pattern)
 {
-  const size_t extra = 2 * ((size_t)s->pieces - 1) * (size_t)s->border, all = (size_t)pattern->columns + extra;
+  const size_t extra = 2 * ((size_t)s->pieces - 1) * (size_t)s->border;
+  const size_t all = (size_t)pattern->columns + extra;
   const size_t entries = (size_t)dvi__pattern_entries(pattern) + 2 * extra;
   if (entries > INT_MAX)
-    return dvi__fail(DVI_BAD_SIZE, "linear solver: a border of %d leads to %zu entries, more than an int can count", s->border,
-                     entries);
+    return dvi__fail(
+        DVI_BAD_SIZE,
+        "linear solver: a border of %d leads to %zu entries, more than an int can count", s->border,
+        entries);
   const int size = (int)all;
   s->pattern = (dvi__pattern){size, size, DVI_NEW(int, (size_t)size + 1), DVI_NEW(int, entries)};
   s->where = DVI_NEW(int, dvi__pattern_entries(pattern));
   s->values = DVI_NEW(double, entries);
   s->b = DVI_NEW(double, size);
-  if (s->pattern.start == NULL || s->pattern.row == NULL || s->where == NULL || s->values == NULL || s->b == NULL)
-    return dvi__fail(DVI_NO_MEMORY, "KLU: no memory for %d columns with a border of %d", pattern->columns, s->border);
+  if (!s->pattern.start || !s->pattern.row || !s->where || !s->values || !s->b)
+    return dvi__fail(DVI_NO_MEMORY, "KLU: no memory for %d columns with a border of %d",
+                     pattern->columns, s->border);
   stretch(s, pattern);
-  return dvi__sparse_factor.create(&s->pattern, NULL, &s->factor);
+  return dvi__sparse_factor.create(&(dvi__factor_form){.pattern = &s->pattern}, &s->factor);
 }
 
-dvi_status dvi__bordered_factor_create(const dvi__pattern *pattern, int border, void **factor)
+static dvi_status bordered_create(const dvi__factor_form *form, void **factor)
 {
-  bordered *s = DVI_NEW(bordered, 1);
-  *factor = NULL;
+  bordered *s = *factor = DVI_NEW(bordered, 1);
   if (s == NULL) return dvi__fail(DVI_NO_MEMORY, "KLU: no memory");
-  s->core = pattern->columns - border;
-  s->border = border;
+  s->core = form->pattern->columns - form->border;
+  s->border = form->border;
   s->pieces = (s->core + LENGTH - 1) / LENGTH;
-  const dvi_status status = fill(s, pattern);
-  if (status != DVI_OK)
-    destroy(s);
-  else
-    *factor = s;
+  const dvi_status status = bordered_fill(s, form->pattern);
+  if (status == DVI_OK) return DVI_OK;
+  bordered_destroy(s);
+  *factor = NULL;
   return status;
 }
 
-static dvi_status refactor(void *factor, const dvi__pattern *pattern, const double *values)
+static dvi_status bordered_refactor(void *factor, const dvi__pattern *pattern, const double *values)
 {
   bordered *s = factor;
   for (int e = 0; e < dvi__pattern_entries(pattern); e++) s->values[s->where[e]] = values[e];
   return dvi__sparse_factor.refactor(s->factor, &s->pattern, s->values);
 }
 
-static void solve(void *factor, const dvi__pattern *pattern, double *b)
+static void bordered_solve(void *factor, const dvi__pattern *pattern, double *b)
 {
   bordered *s = factor;
   const size_t size = (size_t)pattern->columns, all = (size_t)s->pattern.columns;
@@ -152,4 +158,16 @@ static void solve(void *factor, const dvi__pattern *pattern, double *b)
   memcpy(b, s->b, size * sizeof *b);
 }
 
-const dvi__factor_operations dvi__bordered_factor = {NULL, refactor, solve, destroy, NULL, NULL};
+static dvi__linear_cost bordered_cost(const void *factor, const dvi__pattern *pattern)
+{
+  const bordered *s = factor;
+  (void)pattern;
+  return dvi__sparse_factor.cost(s->factor, &s->pattern);
+}
+
+const dvi__factor_kind dvi__bordered_factor = {.name = "sparse LU with a border (KLU)",
+                                               .create = bordered_create,
+                                               .destroy = bordered_destroy,
+                                               .refactor = bordered_refactor,
+                                               .solve = bordered_solve,
+                                               .cost = bordered_cost};

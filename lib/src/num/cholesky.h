@@ -1,9 +1,11 @@
-/* Cholesky's factor of small symmetric positive definite matrices, in long double: for tables that are made once. */
+/* Cholesky's factor of small symmetric positive definite matrices, in long double: for tables that
+ * are made once. */
 #ifndef DVI_NUM_CHOLESKY_H
 #define DVI_NUM_CHOLESKY_H
 #include <math.h>
 
-/* K = C C^T: C takes the place of the lower triangle of K [n*n] by rows; the upper one is not read. */
+/* K = C C^T: C takes the place of the lower triangle of K [n*n] by rows; the upper one is not
+ * read. */
 static inline void dvi__cholesky(int n, long double *K)
 {
   for (int k = 0; k < n; k++)

@@ -2,7 +2,8 @@
 #ifndef DVI_NUM_COMPENSATED_H
 #define DVI_NUM_COMPENSATED_H
 
-/* *sum += term; *carry holds what the sum is too large by. Over N steps the error stays at one rounding instead of N. */
+/* *sum += term; *carry holds what the sum is too large by. Over N steps the error stays at one
+ * rounding instead of N. */
 static inline void dvi__add_compensated(double *sum, double *carry, double term)
 {
   const double wanted = term - *carry;
@@ -12,12 +13,14 @@ static inline void dvi__add_compensated(double *sum, double *carry, double term)
 }
 
 /* The same for every component. */
-static inline void dvi__add_compensated_all(int count, double *sum, double *carry, const double *term)
+static inline void dvi__add_compensated_all(int count, double *sum, double *carry,
+                                            const double *term)
 {
   for (int i = 0; i < count; i++) dvi__add_compensated(sum + i, carry + i, term[i]);
 }
 
-/* head + tail: a number of twice the digits (Dekker 1971). A sum with its carry is one, with the tail -carry. */
+/* head + tail: a number of twice the digits (Dekker 1971). A sum with its carry is one, with the
+ * tail -carry. */
 typedef struct dvi__twofold {
   double head, tail;
 } dvi__twofold;
@@ -43,7 +46,8 @@ static inline dvi__twofold dvi__twofold_sum(dvi__twofold a, dvi__twofold b)
 }
 
 /* Sums with their carries as such numbers, and back, where the tail is at most half a rounding. */
-static inline void dvi__twofold_get(int count, const double *sum, const double *carry, dvi__twofold *x)
+static inline void dvi__twofold_get(int count, const double *sum, const double *carry,
+                                    dvi__twofold *x)
 {
   for (int i = 0; i < count; i++) x[i] = (dvi__twofold){sum[i], -carry[i]};
 }

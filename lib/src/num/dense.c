@@ -6,12 +6,15 @@
 #include "core/status.h"
 #include "num/factor.h"
 
-/* LAPACK's Fortran interface; character arguments carry a hidden length that gfortran passes last. */
+/* LAPACK's Fortran interface; character arguments carry a hidden length that gfortran passes
+ * last. */
 extern void dgetrf_(const int *m, const int *n, double *a, const int *lda, int *ipiv, int *info);
-extern void dgetrs_(const char *trans, const int *n, const int *nrhs, const double *a, const int *lda, const int *ipiv, double *b,
-                    const int *ldb, int *info, size_t trans_length);
-extern void dgecon_(const char *norm, const int *n, const double *a, const int *lda, const double *anorm, double *rcond,
-                    double *work, int *iwork, int *info, size_t norm_length);
+extern void dgetrs_(const char *trans, const int *n, const int *nrhs, const double *a,
+                    const int *lda, const int *ipiv, double *b, const int *ldb, int *info,
+                    size_t trans_length);
+extern void dgecon_(const char *norm, const int *n, const double *a, const int *lda,
+                    const double *anorm, double *rcond, double *work, int *iwork, int *info,
+                    size_t norm_length);
 
 typedef struct dense {
   double *lu;   /* [n*n], columns */
@@ -19,7 +22,7 @@ typedef struct dense {
   int *pivot, *iwork;
 } dense;
 
-static void destroy(void *factor)
+static void dense_destroy(void *factor)
 {
   dense *d = factor;
   if (d == NULL) return;
@@ -30,15 +33,14 @@ static void destroy(void *factor)
   dvi__release(d);
 }
 
-static dvi_status create(const dvi__pattern *pattern, const void *like, void **factor)
+static dvi_status dense_create(const dvi__factor_form *form, void **factor)
 {
-  (void)like;
-  const size_t n = (size_t)pattern->columns;
+  const size_t n = (size_t)form->pattern->columns;
   dense *d = *factor = DVI_NEW(dense, 1);
   if (d == NULL) return dvi__fail(DVI_NO_MEMORY, "dense LU: no memory");
   *d = (dense){DVI_NEW(double, n *n), DVI_NEW(double, 4 * n), DVI_NEW(int, n), DVI_NEW(int, n)};
   if (d->lu != NULL && d->work != NULL && d->pivot != NULL && d->iwork != NULL) return DVI_OK;
-  destroy(d);
+  dense_destroy(d);
   *factor = NULL;
   return dvi__fail(DVI_NO_MEMORY, "dense LU: no memory for %zu x %zu numbers", n, n);
 }
@@ -60,7 +62,7 @@ static double scatter(dense *d, const dvi__pattern *pattern, const double *value
   return norm;
 }
 
-static dvi_status refactor(void *factor, const dvi__pattern *pattern, const double *values)
+static dvi_status dense_refactor(void *factor, const dvi__pattern *pattern, const double *values)
 {
   dense *d = factor;
   const int n = pattern->rows;
@@ -68,13 +70,16 @@ static dvi_status refactor(void *factor, const dvi__pattern *pattern, const doub
   double reciprocal_condition = 0;
   const double norm = scatter(d, pattern, values);
   dgetrf_(&n, &n, d->lu, &n, d->pivot, &status);
-  if (status == 0) dgecon_("1", &n, d->lu, &n, &norm, &reciprocal_condition, d->work, d->iwork, &status, 1);
+  if (status == 0)
+    dgecon_("1", &n, d->lu, &n, &norm, &reciprocal_condition, d->work, d->iwork, &status, 1);
   if (status == 0 && reciprocal_condition >= DVI__LEAST_RCOND) return DVI_OK;
-  return dvi__fail(DVI_SINGULAR, "dense LU: the %d x %d matrix is singular to working precision (reciprocal condition %.1e)", n, n,
-                   reciprocal_condition);
+  return dvi__fail(
+      DVI_SINGULAR,
+      "dense LU: the %d x %d matrix is singular to working precision (reciprocal condition %.1e)",
+      n, n, reciprocal_condition);
 }
 
-static void solve(void *factor, const dvi__pattern *pattern, double *b)
+static void dense_solve(void *factor, const dvi__pattern *pattern, double *b)
 {
   const dense *d = factor;
   const int n = pattern->rows, one = 1;
@@ -82,13 +87,27 @@ static void solve(void *factor, const dvi__pattern *pattern, double *b)
   dgetrs_("N", &n, &one, d->lu, &n, d->pivot, b, &n, &status, 1);
 }
 
-static int sign(const void *factor, const dvi__pattern *pattern)
+static int dense_sign(const void *factor, const dvi__pattern *pattern)
 {
   const dense *d = factor;
   const int n = pattern->rows;
   int negative = 0;
-  for (int i = 0; i < n; i++) negative ^= (d->pivot[i] != i + 1) ^ (d->lu[(size_t)i * (size_t)n + (size_t)i] < 0);
+  for (int i = 0; i < n; i++)
+    negative ^= (d->pivot[i] != i + 1) ^ (d->lu[(size_t)i * (size_t)n + (size_t)i] < 0);
   return negative ? -1 : 1;
 }
 
-const dvi__factor_operations dvi__dense_factor = {create, refactor, solve, destroy, sign, NULL};
+static dvi__linear_cost dense_cost(const void *factor, const dvi__pattern *pattern)
+{
+  const double n = pattern->columns;
+  (void)factor;
+  return (dvi__linear_cost){n * n, 2 * n * n * n / 3};
+}
+
+const dvi__factor_kind dvi__dense_factor = {.name = "dense LU (LAPACK)",
+                                            .create = dense_create,
+                                            .destroy = dense_destroy,
+                                            .refactor = dense_refactor,
+                                            .solve = dense_solve,
+                                            .sign = dense_sign,
+                                            .cost = dense_cost};

@@ -5,23 +5,31 @@
 #include "core/memory.h"
 #include "core/status.h"
 
-/* LAPACK's Fortran interface; character arguments carry a hidden length that gfortran passes last. */
-extern void dgeev_(const char *left, const char *right, const int *n, double *a, const int *lda, double *wr, double *wi, double *vl,
-                   const int *ldvl, double *vr, const int *ldvr, double *work, const int *lwork, int *info, size_t left_length,
+/* LAPACK's Fortran interface; character arguments carry a hidden length that gfortran passes
+ * last. */
+extern void dgeev_(const char *left, const char *right, const int *n, double *a, const int *lda,
+                   double *wr, double *wi, double *vl, const int *ldvl, double *vr, const int *ldvr,
+                   double *work, const int *lwork, int *info, size_t left_length,
                    size_t right_length);
-extern void dsygv_(const int *type, const char *vectors, const char *triangle, const int *n, double *a, const int *lda, double *b,
-                   const int *ldb, double *lambda, double *work, const int *lwork, int *info, size_t vectors_length,
+extern void dsygv_(const int *type, const char *vectors, const char *triangle, const int *n,
+                   double *a, const int *lda, double *b, const int *ldb, double *lambda,
+                   double *work, const int *lwork, int *info, size_t vectors_length,
                    size_t triangle_length);
-extern void dgesv_(const int *n, const int *sides, double *a, const int *lda, int *pivot, double *b, const int *ldb, int *info);
+extern void dgesv_(const int *n, const int *sides, double *a, const int *lda, int *pivot, double *b,
+                   const int *ldb, int *info);
 
-extern void dpotrf_(const char *triangle, const int *n, double *a, const int *lda, int *info, size_t triangle_length);
+extern void dpotrf_(const char *triangle, const int *n, double *a, const int *lda, int *info,
+                    size_t triangle_length);
 
-/* LAPACK keeps Re and Im of a pair's vector in two columns: T (x + iy) = (a + ib)(x + iy), so that T x = a x - b y, T y = b x + a y. */
-static int vectors(int n, double *copy, double *real_part, double *imaginary_part, double *X, double *work)
+/* LAPACK keeps Re and Im of a pair's vector in two columns: T (x + iy) = (a + ib)(x + iy), so that
+ * T x = a x - b y, T y = b x + a y. */
+static int vectors(int n, double *copy, double *real_part, double *imaginary_part, double *X,
+                   double *work)
 {
   const int length = 8 * n, one = 1;
   int info = 0;
-  dgeev_("N", "V", &n, copy, &n, real_part, imaginary_part, NULL, &one, X, &n, work, &length, &info, 1, 1);
+  dgeev_("N", "V", &n, copy, &n, real_part, imaginary_part, NULL, &one, X, &n, work, &length, &info,
+         1, 1);
   return info;
 }
 
@@ -34,15 +42,19 @@ static int invert(int n, const double *X, double *copy, int *pivot, double *inve
   return info;
 }
 
-dvi_status dvi__eigen(int n, const double *T, double *real_part, double *imaginary_part, double *X, double *inverse)
+dvi_status dvi__eigen(int n, const double *T, double *real_part, double *imaginary_part, double *X,
+                      double *inverse)
 {
-  double *copy = dvi__duplicate(T, (size_t)n * (size_t)n, sizeof(double)), *work = DVI_NEW(double, 8 * (size_t)n);
+  double *copy = dvi__duplicate(T, (size_t)n * (size_t)n, sizeof(double)),
+         *work = DVI_NEW(double, 8 * (size_t)n);
   int *pivot = DVI_NEW(int, n);
   dvi_status status = DVI_OK;
   if (copy == NULL || work == NULL || pivot == NULL)
     status = dvi__fail(DVI_NO_MEMORY, "eigenvalues: no memory for a matrix of %d columns", n);
-  else if (vectors(n, copy, real_part, imaginary_part, X, work) != 0 || invert(n, X, copy, pivot, inverse) != 0)
-    status = dvi__fail(DVI_SINGULAR, "eigenvalues: a matrix of %d columns has no full set of eigenvectors", n);
+  else if (vectors(n, copy, real_part, imaginary_part, X, work) != 0 ||
+           invert(n, X, copy, pivot, inverse) != 0)
+    status = dvi__fail(DVI_SINGULAR,
+                       "eigenvalues: a matrix of %d columns has no full set of eigenvectors", n);
   dvi__release(copy);
   dvi__release(work);
   dvi__release(pivot);
@@ -61,7 +73,9 @@ dvi_status dvi__eigen_symmetric(int n, const double *K, const double *M, double 
   } else {
     memcpy(X, K, entries * sizeof(double));
     dsygv_(&type, "V", "L", &n, X, &n, copy, &n, lambda, work, &length, &info, 1, 1);
-    if (info != 0) status = dvi__fail(DVI_SINGULAR, "eigenvalues: the mass of %d coordinates is not positive definite", n);
+    if (info != 0)
+      status = dvi__fail(DVI_SINGULAR,
+                         "eigenvalues: the mass of %d coordinates is not positive definite", n);
   }
   dvi__release(copy);
   dvi__release(work);

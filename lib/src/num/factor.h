@@ -1,31 +1,43 @@
-/* The two kinds of factorisation behind num/linear.h. They see finite, equilibrated values. */
+/* Kinds of solvers behind num/linear.h: one const struct and one file each. Those of matrices see
+ * finite, equilibrated values. */
 #ifndef DVI_NUM_FACTOR_H
 #define DVI_NUM_FACTOR_H
 #include <float.h>
 
 #include "num/linear.h"
 
-/* Smallest reciprocal condition of an equilibrated matrix that is not called singular: its solutions have no right digit left. */
+/* Smallest reciprocal condition of an equilibrated matrix that is not called singular: its
+ * solutions have no right digit left. */
 #define DVI__LEAST_RCOND (16 * DBL_EPSILON)
 
-typedef struct dvi__factor_operations {
-  /* `like`: a sparse factor of the same pattern, which outlives this one and whose analysis serves it, too; or NULL. */
-  dvi_status (*create)(const dvi__pattern *pattern, const void *like, void **factor);
+/* What a factor is made for. */
+typedef struct dvi__factor_form {
+  const dvi__pattern *pattern; /* NULL: of an operator */
+  const void *like;            /* a sparse factor of the same pattern, which outlives this one and
+                                * whose analysis serves it, too; or NULL */
+  int border;                  /* so many last rows and columns may be full */
+  const dvi__operator *A;
+} dvi__factor_form;
+
+typedef struct dvi__factor_kind {
+  const char *name;
+  /* Analyse; memory for numbers may wait for the first `refactor`. */
+  dvi_status (*create)(const dvi__factor_form *form, void **factor);
+  void (*destroy)(void *factor);
   /* Returns DVI_SINGULAR with a sentence if the reciprocal condition is below DVI__LEAST_RCOND. */
   dvi_status (*refactor)(void *factor, const dvi__pattern *pattern, const double *values);
   void (*solve)(void *factor, const dvi__pattern *pattern, double *b);
-  void (*destroy)(void *factor);
-  int (*sign)(const void *factor, const dvi__pattern *pattern); /* of the determinant; real factors without a border have it */
-  /* dvi__linear_is_definite; NULL: not known */
+  /* dvi__linear_sign and dvi__linear_is_definite; NULL: not known. */
+  int (*sign)(const void *factor, const dvi__pattern *pattern);
   int (*is_definite)(const void *factor, const dvi__pattern *pattern, int sign);
-} dvi__factor_operations;
+  /* NULL: not known. */
+  dvi__linear_cost (*cost)(const void *factor, const dvi__pattern *pattern);
+} dvi__factor_kind;
 
-extern const dvi__factor_operations dvi__dense_factor;   /* dense.c */
-extern const dvi__factor_operations dvi__sparse_factor;  /* klu.c */
-extern const dvi__factor_operations dvi__complex_factor; /* klu.c; values and b in pairs of numbers */
-
-/* Of a matrix with a border; it has no `create`. */
-extern const dvi__factor_operations dvi__bordered_factor; /* border.c */
-dvi_status dvi__bordered_factor_create(const dvi__pattern *pattern, int border, void **factor);
+extern const dvi__factor_kind dvi__dense_factor;     /* dense.c */
+extern const dvi__factor_kind dvi__sparse_factor;    /* klu.c */
+extern const dvi__factor_kind dvi__complex_factor;   /* klu.c; values and b in pairs of numbers */
+extern const dvi__factor_kind dvi__bordered_factor;  /* border.c */
+extern const dvi__factor_kind dvi__iterative_factor; /* iterative.c */
 
 #endif

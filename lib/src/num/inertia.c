@@ -6,21 +6,26 @@
 #include "core/memory.h"
 #include "core/status.h"
 
-/* LAPACK's Fortran interface; character arguments carry a hidden length that gfortran passes last. */
-extern void dsytrf_(const char *triangle, const int *n, double *a, const int *lda, int *pivot, double *work, const int *lwork,
-                    int *info, size_t triangle_length);
-extern void dsytrs_(const char *triangle, const int *n, const int *sides, const double *a, const int *lda, const int *pivot,
-                    double *b, const int *ldb, int *info, size_t triangle_length);
-extern void dgemm_(const char *trans_a, const char *trans_b, const int *m, const int *n, const int *k, const double *alpha,
-                   const double *a, const int *lda, const double *b, const int *ldb, const double *beta, double *c, const int *ldc,
+/* LAPACK's Fortran interface; character arguments carry a hidden length that gfortran passes
+ * last. */
+extern void dsytrf_(const char *triangle, const int *n, double *a, const int *lda, int *pivot,
+                    double *work, const int *lwork, int *info, size_t triangle_length);
+extern void dsytrs_(const char *triangle, const int *n, const int *sides, const double *a,
+                    const int *lda, const int *pivot, double *b, const int *ldb, int *info,
+                    size_t triangle_length);
+extern void dgemm_(const char *trans_a, const char *trans_b, const int *m, const int *n,
+                   const int *k, const double *alpha, const double *a, const int *lda,
+                   const double *b, const int *ldb, const double *beta, double *c, const int *ldc,
                    size_t trans_a_length, size_t trans_b_length);
 
-/* A complement with a pivot so much smaller than the matrix, which is scaled to ones, spoils as many digits of the next one: they are factored together. */
+/* A complement with a pivot so much smaller than the matrix, which is scaled to ones, spoils as
+ * many digits of the next one: they are factored together. */
 static const double least_pivot = 1e-4;
 enum { MOST_TOGETHER = 3 };
 
-/* The elimination: `together` blocks from block k on stand in D. What was eliminated before left `carry` to block k, `far` to its coupling with the last
- * block, and `last` to that block. B couples block k with the next one, F with the last one. All by columns with `stride` rows. */
+/* The elimination: `together` blocks from block k on stand in D. What was eliminated before left
+ * `carry` to block k, `far` to its coupling with the last block, and `last` to that block. B
+ * couples block k with the next one, F with the last one. All by columns with `stride` rows. */
 typedef struct elimination {
   const dvi__pattern *pattern;
   const double *values;
@@ -45,7 +50,8 @@ static size_t square(const elimination *e)
   return (size_t)e->stride * (size_t)e->stride;
 }
 
-/* to = the entries in the rows of blocks i to i+rows-1 and the columns of block j to j+columns-1. */
+/* to = the entries in the rows of blocks i to i+rows-1 and the columns of block j to
+ * j+columns-1. */
 static void gather(const elimination *e, int i, int rows, int j, int columns, double *to)
 {
   const int first = first_of(e, i), end = first_of(e, i + rows);
@@ -55,7 +61,8 @@ static void gather(const elimination *e, int i, int rows, int j, int columns, do
     for (int at = e->pattern->start[column]; at < e->pattern->start[column + 1]; at++) {
       const int row = e->pattern->row[at];
       if (row >= first && row < end)
-        to[(size_t)c * (size_t)e->stride + (size_t)(row - first)] = e->values[at] * e->scale[row] * e->scale[column];
+        to[(size_t)c * (size_t)e->stride + (size_t)(row - first)] = e->values[at] * e->scale[row] *
+                                                                    e->scale[column];
     }
   }
 }
@@ -65,11 +72,12 @@ static void add(const elimination *e, const double *part, int row, int column, d
 {
   for (size_t c = 0; c < (size_t)e->block; c++)
     for (size_t r = 0; r < (size_t)e->block; r++)
-      to[((size_t)column + c) * (size_t)e->stride + (size_t)row + r] += part[c * (size_t)e->stride + r];
+      to[((size_t)column + c) * (size_t)e->stride + (size_t)row + r] +=
+          part[c * (size_t)e->stride + r];
 }
 
-/* The blocks with what was left to them; the last block, if it is among them, is coupled with block k by what is eliminated, too. LAPACK reads the lower
- * triangle alone. */
+/* The blocks with what was left to them; the last block, if it is among them, is coupled with block
+ * k by what is eliminated, too. LAPACK reads the lower triangle alone. */
 static void assemble(elimination *e, int k, int together)
 {
   const int last = e->blocks - 1, to_last = first_of(e, last) - first_of(e, k);
@@ -82,7 +90,8 @@ static void assemble(elimination *e, int k, int together)
       e->D[c * (size_t)e->stride + (size_t)to_last + r] += e->far[r * (size_t)e->stride + c];
 }
 
-/* The smallest pivot of the factor, and how many are negative: a 2 x 2 pivot has one of each sign. */
+/* The smallest pivot of the factor, and how many are negative: a 2 x 2 pivot has one of each
+ * sign. */
 static double count(const elimination *e, int size, long *negative)
 {
   double least = HUGE_VAL;
@@ -104,7 +113,8 @@ static double count(const elimination *e, int size, long *negative)
 /* Factor blocks from k on, as many together as need be. */
 static dvi_status factor(elimination *e, int k, int *together, long *negative)
 {
-  const int length = 64 * e->stride, most = e->blocks - k < MOST_TOGETHER ? e->blocks - k : MOST_TOGETHER;
+  const int length = 64 * e->stride,
+            most = e->blocks - k < MOST_TOGETHER ? e->blocks - k : MOST_TOGETHER;
   for (*together = 1;; ++*together) {
     int info = 0;
     long found = 0;
@@ -120,10 +130,12 @@ static dvi_status factor(elimination *e, int k, int *together, long *negative)
 }
 
 /* to -= A^T X, rows x columns, with the factored blocks' `inner` rows. */
-static void subtract_product(const elimination *e, int rows, int columns, int inner, const double *A, double *to)
+static void subtract_product(const elimination *e, int rows, int columns, int inner,
+                             const double *A, double *to)
 {
   const double minus = -1, one = 1;
-  dgemm_("T", "N", &rows, &columns, &inner, &minus, A, &e->stride, e->X, &e->stride, &one, to, &e->stride, 1, 1);
+  dgemm_("T", "N", &rows, &columns, &inner, &minus, A, &e->stride, e->X, &e->stride, &one, to,
+         &e->stride, 1, 1);
 }
 
 /* X = D^-1 A. */
@@ -137,7 +149,8 @@ static void solve(const elimination *e, int size, int columns, const double *A)
 /* Blocks k to next-1 are factored: what they leave to the next block and to the last one. */
 static void pass_on(elimination *e, int k, int next)
 {
-  const int last = e->blocks - 1, size = width(e, k, next - k), next_size = width(e, next, 1), last_size = width(e, last, 1);
+  const int last = e->blocks - 1, size = width(e, k, next - k), next_size = width(e, next, 1),
+            last_size = width(e, last, 1);
   gather(e, k, next - k, last, 1, e->F);
   add(e, e->far, 0, 0, e->F);
   if (next == last)
@@ -154,7 +167,8 @@ static void pass_on(elimination *e, int k, int next)
   subtract_product(e, last_size, last_size, size, e->F, e->last);
 }
 
-/* Columns of size one: their roots are the scale of both sides, which leaves the signs of eigenvalues as they are. */
+/* Columns of size one: their roots are the scale of both sides, which leaves the signs of
+ * eigenvalues as they are. */
 static void equilibrate(const elimination *e)
 {
   for (int column = 0; column < e->size; column++) {
@@ -175,13 +189,15 @@ static dvi_status eliminate(elimination *e, long *negative)
   return DVI_OK;
 }
 
-dvi_status dvi__inertia(const dvi__pattern *pattern, const double *values, int size, int block, long *negative)
+dvi_status dvi__inertia(const dvi__pattern *pattern, const double *values, int size, int block,
+                        long *negative)
 {
   enum { ARRAYS = 7 };
   const int stride = MOST_TOGETHER * block;
   const size_t each = (size_t)stride * (size_t)stride;
   double *memory = DVI_NEW(double, ARRAYS *each + 64 * (size_t)stride);
-  elimination e = {.pattern = pattern, .values = values, .size = size, .block = block, .stride = stride};
+  elimination e = {
+      .pattern = pattern, .values = values, .size = size, .block = block, .stride = stride};
   e.pivot = DVI_NEW(int, stride);
   e.scale = DVI_NEW(double, size);
   double **const array[ARRAYS] = {&e.D, &e.B, &e.F, &e.X, &e.carry, &e.far, &e.last};

@@ -8,26 +8,34 @@
 #include "num/factor.h"
 #include "num/finite.h"
 
-/* Measured with Debian's reference LAPACK and KLU 5.12 on one x86-64 core, medians, one factorisation with one or five solves:
- * chains of dense blocks of 1 to 8 unknowns are faster in KLU at every size (1.5 to 6 times below 48 unknowns, 30 to 180 times
- * at 400), full matrices up to 32 unknowns too (LAPACK's condition estimate alone costs a microsecond). Full matrices meet at 48
- * and are 1.25 to 1.65 times faster in LAPACK from 64; half full ones meet between 64 and 96. Scattered entries would gain up to
- * 1.35 times at densities of 0.2 to 0.5 beyond 100 unknowns, but a band of that density, which KLU exploits, would lose more. */
+/* Where the kinds meet, measured with Debian's reference LAPACK and KLU 5.12 on one x86-64 core,
+ * medians, one factorisation with one or five solves.
+ *
+ * Chains of dense blocks of 1 to 8 unknowns are faster in KLU at every size (1.5 to 6 times below
+ * 48 unknowns, 30 to 180 times at 400), full matrices up to 32 unknowns too (LAPACK's condition
+ * estimate alone costs a microsecond). Full matrices meet at 48 and are 1.25 to 1.65 times faster
+ * in LAPACK from 64; half full ones meet between 64 and 96. Scattered entries would gain up to 1.35
+ * times at densities of 0.2 to 0.5 beyond 100 unknowns, but a band of that density, which KLU
+ * exploits, would lose more. */
 enum { LEAST_DENSE = 64 };
 #define LEAST_DENSITY 0.6
 
+/* Up to here a dense factorisation costs at most about as much as a search for pivots by KLU. */
+enum { MOST_EXCHANGED = 96 };
+
 struct dvi__linear {
-  const dvi__factor_operations *operations;
-  int parts; /* numbers in an entry: 2 for complex ones */
-  const dvi__pattern *pattern;
+  const dvi__factor_kind *kind;
+  dvi__factor_form form;
+  dvi__operator A;   /* of form */
+  dvi__linear *like; /* its analysis serves this one, too */
+  int parts;         /* numbers in an entry: 2 for complex ones */
   dvi_counters *counters;
-  void *factor;
-  double *row_scale, *column_scale; /* [n], powers of two */
+  void *factor;                     /* NULL: the pattern is not analysed yet */
+  double *row_scale, *column_scale; /* [n], powers of two; NULL before the first factor */
   double *scaled;                   /* [entries*parts], what is factored */
 };
 
-/* Up to here a dense factorisation costs at most about as much as a search for pivots by KLU. */
-enum { MOST_EXCHANGED = 96 };
+/* ---- making it ---- */
 
 dvi__linear_kind dvi__linear_for_exchanges(const dvi__pattern *pattern)
 {
@@ -40,69 +48,75 @@ static int dense_is_better(const dvi__pattern *pattern)
   return pattern->columns >= LEAST_DENSE && dvi__pattern_entries(pattern) >= LEAST_DENSITY * n * n;
 }
 
-static dvi_status create_factor(dvi__linear *linear, const dvi__linear *like, int border)
+static const dvi__factor_kind *factor_kind_for(const dvi__pattern *pattern, dvi__linear_kind kind)
 {
-  if (border > 0) return dvi__bordered_factor_create(linear->pattern, border, &linear->factor);
-  return linear->operations->create(linear->pattern, like != NULL ? like->factor : NULL, &linear->factor);
+  if (kind == DVI__LINEAR_COMPLEX) return &dvi__complex_factor;
+  const int dense = kind == DVI__LINEAR_DENSE ||
+                    (kind == DVI__LINEAR_AUTO && dense_is_better(pattern));
+  return dense ? &dvi__dense_factor : &dvi__sparse_factor;
 }
 
-static const dvi__factor_operations *operations_for(dvi__linear_kind kind, int border)
+static dvi_status linear_create(const dvi__linear *given, dvi__linear **linear)
 {
-  if (border > 0) return &dvi__bordered_factor;
-  return kind == DVI__LINEAR_COMPLEX ? &dvi__complex_factor : &dvi__sparse_factor;
-}
-
-static dvi_status fill(dvi__linear *linear, dvi__linear_kind kind, const dvi__linear *like, int border)
-{
-  const dvi__pattern *pattern = linear->pattern;
-  const int dense = kind == DVI__LINEAR_DENSE || (kind == DVI__LINEAR_AUTO && dense_is_better(pattern));
-  linear->operations = dense ? &dvi__dense_factor : operations_for(kind, border);
-  linear->parts = kind == DVI__LINEAR_COMPLEX ? 2 : 1;
-  linear->row_scale = DVI_NEW(double, pattern->rows);
-  linear->column_scale = DVI_NEW(double, pattern->columns);
-  linear->scaled = DVI_NEW(double, (size_t)linear->parts *(size_t)dvi__pattern_entries(pattern));
-  if (linear->row_scale == NULL || linear->column_scale == NULL || linear->scaled == NULL)
-    return dvi__fail(DVI_NO_MEMORY, "linear solver: no memory for %d entries", dvi__pattern_entries(pattern));
-  DVI_TRY(create_factor(linear, like, border));
-  if (linear->counters != NULL && !dense && like == NULL) linear->counters->symbolic++;
+  dvi__linear *made = *linear = DVI_NEW(dvi__linear, 1);
+  if (made == NULL) return dvi__fail(DVI_NO_MEMORY, "linear solver: no memory");
+  *made = *given;
+  if (made->form.A != NULL) made->form.A = &made->A;
   return DVI_OK;
 }
 
-static dvi_status create(const dvi__pattern *pattern, dvi__linear_kind kind, const dvi__linear *like, int border,
-                         dvi_counters *counters, dvi__linear **linear)
+static dvi_status check_square(const dvi__pattern *pattern)
+{
+  if (pattern->columns >= 1 && pattern->rows == pattern->columns) return DVI_OK;
+  return dvi__fail(DVI_BAD_SIZE, "linear solver: the matrix is %d x %d; a square one is needed",
+                   pattern->rows, pattern->columns);
+}
+
+dvi_status dvi__linear_create(const dvi__pattern *pattern, dvi__linear_kind kind,
+                              dvi_counters *counters, dvi__linear **linear)
 {
   *linear = NULL;
-  if (pattern->columns < 1 || pattern->rows != pattern->columns)
-    return dvi__fail(DVI_BAD_SIZE, "linear solver: the matrix is %d x %d; a square one is needed", pattern->rows, pattern->columns);
-  dvi__linear *made = DVI_NEW(dvi__linear, 1);
-  if (made == NULL) return dvi__fail(DVI_NO_MEMORY, "linear solver: no memory");
-  made->pattern = pattern;
-  made->counters = counters;
-  const dvi_status status = fill(made, kind, like, border);
-  if (status != DVI_OK) dvi__linear_destroy(&made);
-  *linear = made;
-  return status;
+  DVI_TRY(check_square(pattern));
+  return linear_create(&(dvi__linear){.kind = factor_kind_for(pattern, kind),
+                                      .form.pattern = pattern,
+                                      .parts = kind == DVI__LINEAR_COMPLEX ? 2 : 1,
+                                      .counters = counters},
+                       linear);
 }
 
-dvi_status dvi__linear_create(const dvi__pattern *pattern, dvi__linear_kind kind, dvi_counters *counters, dvi__linear **linear)
+dvi_status dvi__linear_create_bordered(const dvi__pattern *pattern, int border,
+                                       dvi_counters *counters, dvi__linear **linear)
 {
-  return create(pattern, kind, NULL, 0, counters, linear);
+  *linear = NULL;
+  DVI_TRY(check_square(pattern));
+  return linear_create(&(dvi__linear){.kind = &dvi__bordered_factor,
+                                      .form = {.pattern = pattern, .border = border},
+                                      .parts = 1,
+                                      .counters = counters},
+                       linear);
 }
 
-dvi_status dvi__linear_create_bordered(const dvi__pattern *pattern, int border, dvi_counters *counters, dvi__linear **linear)
+dvi_status dvi__linear_create_like(dvi__linear *like, dvi__linear_kind kind, dvi_counters *counters,
+                                   dvi__linear **linear)
 {
-  return create(pattern, DVI__LINEAR_SPARSE, NULL, border, counters, linear);
+  DVI_TRY(dvi__linear_create(like->form.pattern, kind, counters, linear));
+  (*linear)->like = like;
+  return DVI_OK;
 }
 
-dvi_status dvi__linear_create_like(const dvi__linear *like, dvi__linear_kind kind, dvi_counters *counters, dvi__linear **linear)
+dvi_status dvi__linear_create_iterative(const dvi__operator *A, dvi_counters *counters,
+                                        dvi__linear **linear)
 {
-  return create(like->pattern, kind, like, 0, counters, linear);
+  return linear_create(
+      &(dvi__linear){
+          .kind = &dvi__iterative_factor, .form.A = A, .A = *A, .parts = 1, .counters = counters},
+      linear);
 }
 
 void dvi__linear_destroy(dvi__linear **linear)
 {
   if (*linear == NULL) return;
-  (*linear)->operations->destroy((*linear)->factor);
+  (*linear)->kind->destroy((*linear)->factor);
   dvi__release((*linear)->row_scale);
   dvi__release((*linear)->column_scale);
   dvi__release((*linear)->scaled);
@@ -110,16 +124,73 @@ void dvi__linear_destroy(dvi__linear **linear)
   *linear = NULL;
 }
 
+/* ---- what it is ---- */
+
 dvi__linear_kind dvi__linear_kind_of(const dvi__linear *linear)
 {
   if (linear->parts == 2) return DVI__LINEAR_COMPLEX;
-  return linear->operations == &dvi__dense_factor ? DVI__LINEAR_DENSE : DVI__LINEAR_SPARSE;
+  if (linear->kind == &dvi__iterative_factor) return DVI__LINEAR_ITERATIVE;
+  return linear->kind == &dvi__dense_factor ? DVI__LINEAR_DENSE : DVI__LINEAR_SPARSE;
 }
+
+const char *dvi__linear_name(const dvi__linear *linear)
+{
+  return linear->kind->name;
+}
+
+dvi__linear_cost dvi__linear_cost_of(const dvi__linear *linear)
+{
+  if (linear->factor == NULL || linear->kind->cost == NULL) return (dvi__linear_cost){0};
+  return linear->kind->cost(linear->factor, linear->form.pattern);
+}
+
+/* ---- when it is first needed ---- */
+
+dvi_status dvi__linear_analyse(dvi__linear *linear)
+{
+  if (linear->factor != NULL) return DVI_OK;
+  if (linear->like != NULL) {
+    DVI_TRY(dvi__linear_analyse(linear->like));
+    linear->form.like = linear->like->factor;
+  }
+  DVI_TRY(linear->kind->create(&linear->form, &linear->factor));
+  const int is_sparse = linear->kind != &dvi__dense_factor && linear->form.pattern != NULL;
+  if (linear->counters != NULL && is_sparse && linear->like == NULL) linear->counters->symbolic++;
+  return DVI_OK;
+}
+
+static dvi_status allocate_scales(dvi__linear *linear)
+{
+  const dvi__pattern *pattern = linear->form.pattern;
+  const size_t entries = (size_t)linear->parts * (size_t)dvi__pattern_entries(pattern);
+  if (linear->scaled != NULL) return DVI_OK;
+  if (linear->row_scale == NULL) linear->row_scale = DVI_NEW(double, pattern->rows);
+  if (linear->column_scale == NULL) linear->column_scale = DVI_NEW(double, pattern->columns);
+  linear->scaled = DVI_NEW(double, entries);
+  if (linear->row_scale != NULL && linear->column_scale != NULL && linear->scaled != NULL)
+    return DVI_OK;
+  dvi__release(linear->scaled);
+  linear->scaled = NULL;
+  return dvi__fail(DVI_NO_MEMORY, "linear solver: no memory for %zu entries", entries);
+}
+/* Counted, for memory is taken. What a failure leaves is taken up by the next call. */
+static dvi_status prepare(dvi__linear *linear)
+{
+  const int is_matrix = linear->form.pattern != NULL;
+  if (linear->factor != NULL && (!is_matrix || linear->scaled != NULL)) return DVI_OK;
+  DVI_TRY(dvi__linear_analyse(linear));
+  if (is_matrix) DVI_TRY(allocate_scales(linear));
+  if (linear->counters != NULL) linear->counters->preparations++;
+  return DVI_OK;
+}
+
+/* ---- factoring ---- */
 
 /* The power of two that brings each largest magnitude into [1,2); 1 where there is none. */
 static void invert_scales(int n, double *scale)
 {
-  for (int i = 0; i < n; i++) scale[i] = scale[i] > 0 ? ldexp(1.0, ilogb(scale[i]) < -1023 ? 1023 : -ilogb(scale[i])) : 1.0;
+  for (int i = 0; i < n; i++)
+    scale[i] = scale[i] > 0 ? ldexp(1.0, ilogb(scale[i]) < -1023 ? 1023 : -ilogb(scale[i])) : 1.0;
 }
 
 static double larger(double a, double b)
@@ -138,15 +209,16 @@ static void scale_entry(int parts, double scale, double *entry)
   if (parts == 2) entry[1] *= scale;
 }
 
-/* Rows of a stage system differ by the ratio of the masses, columns by the units of coordinates and momenta; neither says anything
- * about its condition. Powers of two round nothing. */
+/* Rows of a stage system differ by the ratio of the masses, columns by the units of coordinates and
+ * momenta; neither says anything about its condition. Powers of two round nothing. */
 static void equilibrate(dvi__linear *linear, const double *values)
 {
-  const dvi__pattern *pattern = linear->pattern;
+  const dvi__pattern *pattern = linear->form.pattern;
   const int n = pattern->columns, parts = linear->parts, *row = pattern->row;
   double *rows = linear->row_scale, *columns = linear->column_scale, *scaled = linear->scaled;
   memset(rows, 0, (size_t)n * sizeof(double));
-  for (ptrdiff_t e = 0; e < pattern->start[n]; e++) rows[row[e]] = larger(rows[row[e]], magnitude(parts, values + parts * e));
+  for (ptrdiff_t e = 0; e < pattern->start[n]; e++)
+    rows[row[e]] = larger(rows[row[e]], magnitude(parts, values + parts * e));
   invert_scales(n, rows);
   memcpy(scaled, values, (size_t)parts * (size_t)pattern->start[n] * sizeof(double));
   for (int j = 0; j < n; j++) {
@@ -158,28 +230,49 @@ static void equilibrate(dvi__linear *linear, const double *values)
   }
   invert_scales(n, columns);
   for (int j = 0; j < n; j++)
-    for (ptrdiff_t e = pattern->start[j]; e < pattern->start[j + 1]; e++) scale_entry(parts, columns[j], scaled + parts * e);
+    for (ptrdiff_t e = pattern->start[j]; e < pattern->start[j + 1]; e++)
+      scale_entry(parts, columns[j], scaled + parts * e);
+}
+
+static dvi_status check_finite(const dvi__linear *linear, const double *values)
+{
+  const size_t entries = (size_t)dvi__pattern_entries(linear->form.pattern);
+  const ptrdiff_t bad = dvi__first_not_finite((size_t)linear->parts * entries, values);
+  if (bad < 0) return DVI_OK;
+  return dvi__fail(DVI_NOT_FINITE, "linear solver: the matrix holds %g (entry %td)", values[bad],
+                   bad);
 }
 
 dvi_status dvi__linear_factor(dvi__linear *linear, const double *values)
 {
-  const ptrdiff_t bad = dvi__first_not_finite((size_t)linear->parts * (size_t)dvi__pattern_entries(linear->pattern), values);
-  if (bad >= 0) return dvi__fail(DVI_NOT_FINITE, "linear solver: the matrix holds %g (entry %td)", values[bad], bad);
-  if (linear->counters != NULL) linear->counters->factorizations++;
-  equilibrate(linear, values);
-  return linear->operations->refactor(linear->factor, linear->pattern, linear->scaled);
+  const int is_matrix = linear->form.pattern != NULL;
+  if (is_matrix) DVI_TRY(check_finite(linear, values));
+  DVI_TRY(prepare(linear));
+  if (linear->counters != NULL && is_matrix) linear->counters->factorizations++;
+  if (is_matrix) equilibrate(linear, values);
+  return linear->kind->refactor(linear->factor, linear->form.pattern, linear->scaled);
 }
 
 /* The scales are positive. */
 int dvi__linear_sign(const dvi__linear *linear)
 {
-  return linear->operations->sign(linear->factor, linear->pattern);
+  if (linear->kind->sign == NULL) return 0;
+  return linear->kind->sign(linear->factor, linear->form.pattern);
 }
 
 int dvi__linear_is_definite(const dvi__linear *linear, int sign)
 {
-  return linear->operations->is_definite != NULL && linear->operations->is_definite(linear->factor, linear->pattern, sign);
+  return linear->kind->is_definite != NULL &&
+         linear->kind->is_definite(linear->factor, linear->form.pattern, sign);
 }
+
+int dvi__linear_tells_definite(const dvi__linear *linear)
+{
+  if (linear->form.A != NULL) return linear->form.A->is_definite != NULL;
+  return linear->kind->is_definite != NULL;
+}
+
+/* ---- solving ---- */
 
 static void scale(int n, int parts, const double *by, double *b)
 {
@@ -188,9 +281,9 @@ static void scale(int n, int parts, const double *by, double *b)
 
 void dvi__linear_solve(dvi__linear *linear, double *b)
 {
-  const int n = linear->pattern->columns;
+  const dvi__pattern *pattern = linear->form.pattern;
   if (linear->counters != NULL) linear->counters->solves++;
-  scale(n, linear->parts, linear->row_scale, b);
-  linear->operations->solve(linear->factor, linear->pattern, b);
-  scale(n, linear->parts, linear->column_scale, b);
+  if (pattern != NULL) scale(pattern->columns, linear->parts, linear->row_scale, b);
+  linear->kind->solve(linear->factor, pattern, b);
+  if (pattern != NULL) scale(pattern->columns, linear->parts, linear->column_scale, b);
 }

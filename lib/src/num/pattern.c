@@ -20,11 +20,15 @@ void dvi__pattern_clear(dvi__pattern *pattern)
 
 static dvi_status allocate(int rows, int columns, size_t entries, dvi__pattern *pattern)
 {
-  if (entries > 0x7fffffff) return dvi__fail(DVI_BAD_SIZE, "pattern: %zu entries are too many; declare a sparse pattern", entries);
-  *pattern = (dvi__pattern){rows, columns, DVI_NEW(int, (size_t)columns + 1), DVI_NEW(int, entries)};
+  if (entries > 0x7fffffff)
+    return dvi__fail(DVI_BAD_SIZE, "pattern: %zu entries are too many; declare a sparse pattern",
+                     entries);
+  *pattern = (dvi__pattern){rows, columns, DVI_NEW(int, (size_t)columns + 1),
+                            DVI_NEW(int, entries)};
   if (pattern->start != NULL && pattern->row != NULL) return DVI_OK;
   dvi__pattern_clear(pattern);
-  return dvi__fail(DVI_NO_MEMORY, "pattern: no memory for %d columns with %zu entries", columns, entries);
+  return dvi__fail(DVI_NO_MEMORY, "pattern: no memory for %d columns with %zu entries", columns,
+                   entries);
 }
 
 dvi_status dvi__pattern_empty(int n, dvi__pattern *pattern)
@@ -51,15 +55,19 @@ static dvi_status full(int rows, int columns, dvi__pattern *pattern)
   return DVI_OK;
 }
 
-/* All the starts are checked before any row is read: start[n] is then how many rows the caller has. */
+/* All the starts are checked before any row is read: start[n] is then how many rows the caller
+ * has. */
 static dvi_status validate_starts(const dvi_pattern *declared, int n, const char *name)
 {
-  if (declared->start == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "%s: the pattern has rows but no column starts", name);
+  if (declared->start == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "%s: the pattern has rows but no column starts", name);
   if (declared->start[0] != 0)
-    return dvi__fail(DVI_BAD_ARGUMENT, "%s: the pattern's first column starts at %d, not 0", name, declared->start[0]);
+    return dvi__fail(DVI_BAD_ARGUMENT, "%s: the pattern's first column starts at %d, not 0", name,
+                     declared->start[0]);
   for (int j = 0; j < n; j++)
     if (declared->start[j + 1] < declared->start[j])
-      return dvi__fail(DVI_BAD_ARGUMENT, "%s: the pattern's column %d ends before it starts", name, j);
+      return dvi__fail(DVI_BAD_ARGUMENT, "%s: the pattern's column %d ends before it starts", name,
+                       j);
   if (declared->start[n] > 0 && declared->row == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "%s: the pattern has column starts but no rows", name);
   return DVI_OK;
@@ -70,14 +78,17 @@ static dvi_status validate_column(const dvi_pattern *declared, int n, int j, con
   for (int e = declared->start[j]; e < declared->start[j + 1]; e++) {
     const int row = declared->row[e];
     if (row < 0 || row >= n)
-      return dvi__fail(DVI_BAD_ARGUMENT, "%s: row %d in column %d of the pattern is outside 0..%d", name, row, j, n - 1);
+      return dvi__fail(DVI_BAD_ARGUMENT, "%s: row %d in column %d of the pattern is outside 0..%d",
+                       name, row, j, n - 1);
     if (e > declared->start[j] && row <= declared->row[e - 1])
-      return dvi__fail(DVI_BAD_ARGUMENT, "%s: the rows in column %d of the pattern are not ascending", name, j);
+      return dvi__fail(DVI_BAD_ARGUMENT,
+                       "%s: the rows in column %d of the pattern are not ascending", name, j);
   }
   return DVI_OK;
 }
 
-dvi_status dvi__pattern_copy_rectangular(const dvi_pattern *declared, int rows, int columns, const char *name, dvi__pattern *copy)
+dvi_status dvi__pattern_copy_rectangular(const dvi_pattern *declared, int rows, int columns,
+                                         const char *name, dvi__pattern *copy)
 {
   *copy = (dvi__pattern){0};
   if (declared->start == NULL && declared->row == NULL) return full(rows, columns, copy);
@@ -85,11 +96,13 @@ dvi_status dvi__pattern_copy_rectangular(const dvi_pattern *declared, int rows, 
   for (int j = 0; j < columns; j++) DVI_TRY(validate_column(declared, rows, j, name));
   DVI_TRY(allocate(rows, columns, (size_t)declared->start[columns], copy));
   memcpy(copy->start, declared->start, ((size_t)columns + 1) * sizeof(int));
-  if (declared->start[columns] > 0) memcpy(copy->row, declared->row, (size_t)declared->start[columns] * sizeof(int));
+  if (declared->start[columns] > 0)
+    memcpy(copy->row, declared->row, (size_t)declared->start[columns] * sizeof(int));
   return DVI_OK;
 }
 
-dvi_status dvi__pattern_copy(const dvi_pattern *declared, int n, const char *name, dvi__pattern *copy)
+dvi_status dvi__pattern_copy(const dvi_pattern *declared, int n, const char *name,
+                             dvi__pattern *copy)
 {
   return dvi__pattern_copy_rectangular(declared, n, n, name, copy);
 }
@@ -115,17 +128,20 @@ dvi_status dvi__pattern_union(const dvi__pattern *a, const dvi__pattern *b, dvi_
   size_t entries = 0;
   for (int j = 0; j < a->columns; j++) entries += (size_t)merge_column(a, b, j, NULL);
   DVI_TRY(allocate(a->rows, a->columns, entries, sum));
-  for (int j = 0; j < a->columns; j++) sum->start[j + 1] = sum->start[j] + merge_column(a, b, j, sum->row + sum->start[j]);
+  for (int j = 0; j < a->columns; j++)
+    sum->start[j + 1] = sum->start[j] + merge_column(a, b, j, sum->row + sum->start[j]);
   return DVI_OK;
 }
 
 dvi_status dvi__pattern_transpose(const dvi__pattern *pattern, dvi__pattern *transpose)
 {
-  DVI_TRY(allocate(pattern->columns, pattern->rows, (size_t)dvi__pattern_entries(pattern), transpose));
+  DVI_TRY(
+      allocate(pattern->columns, pattern->rows, (size_t)dvi__pattern_entries(pattern), transpose));
   for (int e = 0; e < dvi__pattern_entries(pattern); e++) transpose->start[pattern->row[e] + 1]++;
   for (int i = 0; i < pattern->rows; i++) transpose->start[i + 1] += transpose->start[i];
   for (int j = 0; j < pattern->columns; j++)
-    for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++) transpose->row[transpose->start[pattern->row[e]]++] = j;
+    for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++)
+      transpose->row[transpose->start[pattern->row[e]]++] = j;
   /* The starts have moved to the ends: move them back. */
   for (int i = pattern->rows; i > 0; i--) transpose->start[i] = transpose->start[i - 1];
   transpose->start[0] = 0;
@@ -138,12 +154,14 @@ static void fill_blocks(const dvi__pattern *pattern, const int *first, dvi__patt
   for (int j = 0; j < pattern->columns; j++)
     for (int column = first[j]; column < first[j + 1]; column++) {
       for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++)
-        for (int row = first[pattern->row[e]]; row < first[pattern->row[e] + 1]; row++) blocks->row[at++] = row;
+        for (int row = first[pattern->row[e]]; row < first[pattern->row[e] + 1]; row++)
+          blocks->row[at++] = row;
       blocks->start[column + 1] = at;
     }
 }
 
-dvi_status dvi__pattern_uneven_blocks(const dvi__pattern *pattern, const int *first, dvi__pattern *blocks)
+dvi_status dvi__pattern_uneven_blocks(const dvi__pattern *pattern, const int *first,
+                                      dvi__pattern *blocks)
 {
   const int columns = first[pattern->columns];
   size_t entries = 0;
@@ -154,8 +172,11 @@ dvi_status dvi__pattern_uneven_blocks(const dvi__pattern *pattern, const int *fi
     }
   *blocks = (dvi__pattern){0};
   if (entries > INT_MAX)
-    return dvi__fail(DVI_BAD_SIZE, "action: the Jacobian would have %zu entries; declare sparse Hessians", entries);
-  *blocks = (dvi__pattern){columns, columns, DVI_NEW(int, (size_t)columns + 1), DVI_NEW(int, entries)};
+    return dvi__fail(DVI_BAD_SIZE,
+                     "action: the Jacobian would have %zu entries; declare sparse Hessians",
+                     entries);
+  *blocks = (dvi__pattern){columns, columns, DVI_NEW(int, (size_t)columns + 1),
+                           DVI_NEW(int, entries)};
   if (blocks->start == NULL || blocks->row == NULL) {
     dvi__pattern_clear(blocks);
     return dvi__fail(DVI_NO_MEMORY, "action: no memory for a Jacobian of %zu entries", entries);
@@ -167,10 +188,12 @@ dvi_status dvi__pattern_uneven_blocks(const dvi__pattern *pattern, const int *fi
 dvi_status dvi__pattern_blocks(const dvi__pattern *pattern, int size, dvi__pattern *blocks)
 {
   if ((size_t)pattern->columns * (size_t)size > INT_MAX)
-    return dvi__fail(DVI_BAD_SIZE, "action: %d blocks of %d rows are more than an int can count", pattern->columns, size);
+    return dvi__fail(DVI_BAD_SIZE, "action: %d blocks of %d rows are more than an int can count",
+                     pattern->columns, size);
   int *first = DVI_NEW(int, (size_t)pattern->columns + 1);
   *blocks = (dvi__pattern){0};
-  if (first == NULL) return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d blocks", pattern->columns);
+  if (first == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d blocks", pattern->columns);
   for (int j = 0; j <= pattern->columns; j++) first[j] = j * size;
   const dvi_status status = dvi__pattern_uneven_blocks(pattern, first, blocks);
   dvi__release(first);
@@ -191,14 +214,31 @@ int dvi__pattern_find(const dvi__pattern *pattern, int row, int column)
   return -1;
 }
 
+/* Fill-in stays between the first entry of a row or column and the diagonal. */
+double dvi__pattern_operations(const dvi__pattern *pattern)
+{
+  const double n = pattern->columns, full = 2 * n * n * n / 3;
+  double band = 0;
+  for (int j = 0; j < pattern->columns && band < full; j++) {
+    const int first = pattern->start[j] < pattern->start[j + 1] ? pattern->row[pattern->start[j]]
+                                                                : j;
+    const double width = first < j ? 1 + j - first : 1;
+    band += 2 * width * width;
+  }
+  return band < full ? band : full;
+}
+
 void dvi__pattern_embed(const dvi__pattern *part, const dvi__pattern *whole, int *where)
 {
   for (int j = 0; j < part->columns; j++)
-    for (int e = part->start[j]; e < part->start[j + 1]; e++) where[e] = dvi__pattern_find(whole, part->row[e], j);
+    for (int e = part->start[j]; e < part->start[j + 1]; e++)
+      where[e] = dvi__pattern_find(whole, part->row[e], j);
 }
 
-/* The smallest group none of whose columns meets column j; taken[g] == j marks the groups that do. There are at most j of them. */
-static int free_group(const dvi__pattern *pattern, const dvi__pattern *transpose, const int *group, int j, int *taken)
+/* The smallest group none of whose columns meets column j; taken[g] == j marks the groups that do.
+ * There are at most j of them. */
+static int free_group(const dvi__pattern *pattern, const dvi__pattern *transpose, const int *group,
+                      int j, int *taken)
 {
   for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++) {
     const int row = pattern->row[e];
@@ -243,13 +283,15 @@ dvi_status dvi__pattern_groups(const dvi__pattern *pattern, int *group, int *gro
   return DVI_OK;
 }
 
-dvi_status dvi__pattern_copy_symmetric(const dvi_pattern *declared, int n, const char *name, dvi__pattern *copy)
+dvi_status dvi__pattern_copy_symmetric(const dvi_pattern *declared, int n, const char *name,
+                                       dvi__pattern *copy)
 {
   DVI_TRY(dvi__pattern_copy(declared, n, name, copy));
   for (int j = 0; j < n; j++)
     for (int e = copy->start[j]; e < copy->start[j + 1]; e++)
       if (dvi__pattern_find(copy, j, copy->row[e]) < 0)
-        return dvi__fail(DVI_BAD_ARGUMENT, "%s: the pattern holds (%d,%d) but not (%d,%d); both triangles are needed", name,
-                         copy->row[e], j, j, copy->row[e]);
+        return dvi__fail(DVI_BAD_ARGUMENT,
+                         "%s: the pattern holds (%d,%d) but not (%d,%d); both triangles are needed",
+                         name, copy->row[e], j, j, copy->row[e]);
   return DVI_OK;
 }

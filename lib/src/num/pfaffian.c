@@ -1,5 +1,6 @@
-/* Elimination by pivots of two rows and columns, which leaves the rest skew-symmetric; rows and columns are exchanged together, for the largest pivot of
- * the row at hand. Source: Parlett and Reid 1970; Wimmer 2012, arXiv:1102.3440. */
+/* Elimination by pivots of two rows and columns, which leaves the rest skew-symmetric; rows and
+ * columns are exchanged together, for the largest pivot of the row at hand. Source: Parlett and
+ * Reid 1970; Wimmer 2012, arXiv:1102.3440. */
 #include "num/pfaffian.h"
 
 #include <math.h>
@@ -36,7 +37,8 @@ int dvi__pfaffian_sign(size_t n, double *A)
     if (other != k + 1) exchange(n, A, k + 1, other);
     sign *= (pivot > 0) == (other == k + 1) ? 1 : -1;
     for (size_t i = k + 2; i < n; i++)
-      for (size_t j = k + 2; j < n; j++) A[i * n + j] += (next[i] * row[j] - row[i] * next[j]) / pivot;
+      for (size_t j = k + 2; j < n; j++)
+        A[i * n + j] += (next[i] * row[j] - row[i] * next[j]) / pivot;
   }
   return sign;
 }

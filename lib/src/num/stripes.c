@@ -43,7 +43,8 @@ static int next(merge *m, int *column, int entry[4])
   *column = INT_MAX;
   for (int l = 0; l < 4; l++)
     if (column_of(m, l) < *column) *column = column_of(m, l);
-  for (int l = 0; l < 4; l++) entry[l] = *column != INT_MAX && column_of(m, l) == *column ? m->at[l]++ : -1;
+  for (int l = 0; l < 4; l++)
+    entry[l] = *column != INT_MAX && column_of(m, l) == *column ? m->at[l]++ : -1;
   return *column != INT_MAX;
 }
 
@@ -53,13 +54,15 @@ static dvi_status count(dvi__stripes *s, const dvi__pattern *pattern)
   for (int f = 0; f < s->fours; f++) {
     int column, entry[4];
     for (merge m = begin(pattern, 4 * f); next(&m, &column, entry);) stripes++;
-    if (stripes > INT_MAX / 4) return dvi__fail(DVI_BAD_SIZE, "a matrix of %d rows has too many entries", s->n);
+    if (stripes > INT_MAX / 4)
+      return dvi__fail(DVI_BAD_SIZE, "a matrix of %d rows has too many entries", s->n);
     s->start[f + 1] = (int)stripes;
   }
   return DVI_OK;
 }
 
-static void put(dvi__stripes *s, const dvi__pattern *pattern, const double *values, const double *scale, double shift)
+static void put(dvi__stripes *s, const dvi__pattern *pattern, const double *values,
+                const double *scale, double shift)
 {
   int at = 0;
   for (int f = 0; f < s->fours; f++) {
@@ -67,21 +70,24 @@ static void put(dvi__stripes *s, const dvi__pattern *pattern, const double *valu
     for (merge m = begin(pattern, 4 * f); next(&m, &s->column[at], entry); at++) {
       for (int l = 0; l < 4; l++)
         if (entry[l] >= 0)
-          s->value[4 * (size_t)at + (size_t)l] = scale[4 * f + l] * values[entry[l]] - (s->column[at] == 4 * f ? shift : 0);
+          s->value[4 * (size_t)at + (size_t)l] = scale[4 * f + l] * values[entry[l]] -
+                                                 (s->column[at] == 4 * f ? shift : 0);
       const int reach = (abs(s->column[at] - 4 * f) + 3) / 4;
       if (reach > s->reach) s->reach = reach;
     }
   }
 }
 
-dvi_status dvi__stripes_fill(const dvi__pattern *pattern, const double *values, const double *scale, double shift, dvi__stripes *s)
+dvi_status dvi__stripes_fill(const dvi__pattern *pattern, const double *values, const double *scale,
+                             double shift, dvi__stripes *s)
 {
   *s = (dvi__stripes){.n = pattern->columns, .fours = (pattern->columns + 3) / 4};
   s->room = 4 * (size_t)s->fours + 2 * DVI__STRIPES_MARGIN;
   s->start = DVI_NEW(int, (size_t)s->fours + 1);
   if (s->start == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory");
   DVI_TRY(count(s, pattern));
-  s->column = DVI_NEW(int, (size_t)s->start[s->fours] + 1); /* one for the last look at where nothing is left */
+  /* one for the last look at where nothing is left */
+  s->column = DVI_NEW(int, (size_t)s->start[s->fours] + 1);
   s->value = DVI_NEW(double, 4 * (size_t)s->start[s->fours]);
   if (s->column == NULL || s->value == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory");
   put(s, pattern, values, scale, shift);
@@ -102,7 +108,8 @@ void dvi__stripes_clear(dvi__stripes *s)
 enum { PIECE = 64 };
 
 /* sum_j c_j x_j over the lanes of a row of C. */
-INLINE void combine(const dvi__clenshaw *s, const int lanes, const double *c, size_t i, vector4 *sum)
+INLINE void combine(const dvi__clenshaw *s, const int lanes, const double *c, size_t i,
+                    vector4 *sum)
 {
   for (int j = 0; j < lanes; j++) {
     vector4 x;
@@ -111,12 +118,14 @@ INLINE void combine(const dvi__clenshaw *s, const int lanes, const double *c, si
   }
 }
 
-/* A piece of step k of the recurrence: fours from `first` on, up to `beyond`. Steps read b where the one before has left it, and leave it in the other place. */
+/* A piece of step k of the recurrence: fours from `first` on, up to `beyond`. Steps read b where
+ * the one before has left it, and leave it in the other place. */
 INLINE void descend(const dvi__clenshaw *s, const int lanes, int k, int first, int beyond)
 {
   const dvi__stripes G = *s->G;
   const int even = (s->degree - 1 - k) % 2 == 0;
-  const double *const b = even ? s->b : s->other, *const C = s->c + (size_t)k * (size_t)(lanes * lanes), part = k > 0 ? 1 : 0.5;
+  const double *const b = even ? s->b : s->other,
+                      *const C = s->c + (size_t)k * (size_t)(lanes * lanes), part = k > 0 ? 1 : 0.5;
   double *const to = even ? s->other : s->b;
   for (int f = first; f < beyond; f++) {
     vector4 sum[2] = {{0}, {0}};
@@ -165,15 +174,19 @@ static void start(const dvi__clenshaw *s)
     }
 }
 
-/* In pieces that reach no further than their neighbours: a step is one piece behind the step before, so that what all of them work on stays in the cache.
- * The bits are those of one step after the other. */
+/* In pieces that reach no further than their neighbours: a step is one piece behind the step
+ * before, so that what all of them work on stays in the cache. The bits are those of one step after
+ * the other. */
 void dvi__stripes_sum(const dvi__clenshaw *s)
 {
-  const int piece = s->G->reach > PIECE ? s->G->reach : PIECE, pieces = (s->G->fours + piece - 1) / piece;
+  const int piece = s->G->reach > PIECE ? s->G->reach : PIECE,
+            pieces = (s->G->fours + piece - 1) / piece;
   start(s);
   for (int front = 0; front < pieces + s->degree - 1; front++)
-    for (int behind = front < pieces ? 0 : front - pieces + 1; behind <= front && behind < s->degree; behind++) {
+    for (int behind = front < pieces ? 0 : front - pieces + 1;
+         behind <= front && behind < s->degree; behind++) {
       const int first = (front - behind) * piece, left = s->G->fours - first;
-      (s->lanes == 1 ? descend_one : descend_two)(s, s->degree - 1 - behind, first, first + (left < piece ? left : piece));
+      (s->lanes == 1 ? descend_one : descend_two)(s, s->degree - 1 - behind, first,
+                                                  first + (left < piece ? left : piece));
     }
 }

@@ -1,5 +1,6 @@
-/* Sparse symmetric patterns for products that are taken many times: four rows at a time, and of each four what stands on one diagonal side by side, so that
- * products are sums of vectors. Banded matrices and lattices fill their stripes; what is missing in one is zero. */
+/* Sparse symmetric patterns for products that are taken many times: four rows at a time, and of
+ * each four what stands on one diagonal side by side, so that products are sums of vectors. Banded
+ * matrices and lattices fill their stripes; what is missing in one is zero. */
 #ifndef DVI_NUM_STRIPES_H
 #define DVI_NUM_STRIPES_H
 #include <stddef.h>
@@ -9,28 +10,34 @@
 typedef struct dvi__stripes {
   int n, fours; /* rows; groups of four rows */
   int reach;    /* how many fours away what a row is multiplied with may be */
-  size_t room;  /* numbers of a vector: three beside both ends that products read as zeros, n, and some up to a whole four */
-  int *start;   /* [fours+1] */
+  /* numbers of a vector: three beside both ends that products read as zeros, n, and some up to a
+   * whole four */
+  size_t room;
+  int *start; /* [fours+1] */
   int *
-      column; /* [start[fours]] of a stripe's first row; before the first column, or behind the last one, if that row has nothing there */
+      /* [start[fours]] of a stripe's first row; before the first column, or behind the last one, if
+       * that row has nothing there */
+      column;
   double *value; /* [4*start[fours]] */
 } dvi__stripes;
 
 /* Where the elements of a vector begin in its room. */
 enum { DVI__STRIPES_MARGIN = 4 };
 
-/* The matrix diag(scale) A - shift for the symmetric A with these values; the pattern holds the diagonal. DVI_BAD_SIZE if an int cannot count the numbers,
- * DVI_NO_MEMORY; what there is on failure is for clear, too. */
-dvi_status dvi__stripes_fill(const dvi__pattern *pattern, const double *values, const double *scale, double shift,
-                             dvi__stripes *stripes);
+/* The matrix diag(scale) A - shift for the symmetric A with these values; the pattern holds the
+ * diagonal. DVI_BAD_SIZE if an int cannot count the numbers, DVI_NO_MEMORY; what there is on
+ * failure is for clear, too. */
+dvi_status dvi__stripes_fill(const dvi__pattern *pattern, const double *values, const double *scale,
+                             double shift, dvi__stripes *stripes);
 void dvi__stripes_clear(dvi__stripes *stripes);
 
 /* Chebyshev sums of a matrix Z with spectrum in [-1, 1], of `lanes` vectors, 1 or 2, at once:
  *
  *     y = sum_{k=0}^degree C_k T_k(Z) x,      C_k [lanes x lanes] by rows, in c.
  *
- * The stripes hold G = 2 (Z + 1). Clenshaw's recurrence in the form of Reinsch, which is exact where G x = 0, and keeps the relative accuracy of what is
- * near there:  d_k = C_k x + G b_{k+1} - d_{k+1},  b_k = d_k - b_{k+1};  y = C_0 x + G b_1/2 - d_1. Source: Oliver 1977. */
+ * The stripes hold G = 2 (Z + 1). Clenshaw's recurrence in the form of Reinsch, which is exact
+ * where G x = 0, and keeps the relative accuracy of what is near there: d_k = C_k x + G b_{k+1} -
+ * d_{k+1}, b_k = d_k - b_{k+1}; y = C_0 x + G b_1/2 - d_1. Source: Oliver 1977. */
 typedef struct dvi__clenshaw {
   const dvi__stripes *G;
   int lanes, degree;

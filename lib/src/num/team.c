@@ -9,10 +9,12 @@
 #include "core/memory.h"
 #include "core/status.h"
 
-/* Between two steps that follow each other a thread shall not fall asleep: waking it takes longer than this many looks. */
+/* Between two steps that follow each other a thread shall not fall asleep: waking it takes longer
+ * than this many looks. */
 enum { LOOKS = 1000, LOOKS_BEFORE_YIELDING = 200 };
 
-/* Of the items that are shared, for each member: many enough that all end together, few enough that taking them costs nothing. */
+/* Of the items that are shared, for each member: many enough that all end together, few enough that
+ * taking them costs nothing. */
 enum { PORTIONS = 8 };
 
 typedef struct member {
@@ -107,14 +109,17 @@ static void take_items(void *user, int number)
   for (;;) {
     const int first = atomic_fetch_add(&items->next, items->portion);
     if (first >= items->count) return;
-    for (int i = first; i < items->count && i - first < items->portion; i++) items->work(items->user, number, i);
+    for (int i = first; i < items->count && i - first < items->portion; i++)
+      items->work(items->user, number, i);
   }
 }
 
-void dvi__team_share(dvi__team *team, int count, void (*work)(void *user, int member, int item), void *user)
+void dvi__team_share(dvi__team *team, int count, void (*work)(void *user, int member, int item),
+                     void *user)
 {
   const int size = team->started + 1;
-  shared items = {.work = work, .user = user, .count = count, .portion = count / (PORTIONS * size) + 1};
+  shared items = {
+      .work = work, .user = user, .count = count, .portion = count / (PORTIONS * size) + 1};
   dvi__team_run(team, size, take_items, &items);
 }
 
@@ -144,7 +149,8 @@ dvi_status dvi__team_create(int size, dvi__team **team)
     return dvi__fail(DVI_NO_MEMORY, "threads: no memory for %d", size);
   }
   made->members = members;
-  (void)pthread_mutex_init(&made->lock, NULL); /* with default attributes none of the three can fail on Linux */
+  /* with default attributes none of the three can fail on Linux */
+  (void)pthread_mutex_init(&made->lock, NULL);
   (void)pthread_cond_init(&made->begin, NULL);
   (void)pthread_cond_init(&made->end, NULL);
   start_threads(made, size);
@@ -154,7 +160,8 @@ dvi_status dvi__team_create(int size, dvi__team **team)
   }
   const int started = made->started;
   dvi__team_destroy(&made);
-  return dvi__fail(DVI_NO_MEMORY, "threads: the system starts %d of %d; ask for fewer", started, size - 1);
+  return dvi__fail(DVI_NO_MEMORY, "threads: the system starts %d of %d; ask for fewer", started,
+                   size - 1);
 }
 
 void dvi__team_destroy(dvi__team **team)

@@ -5,18 +5,22 @@
 
 typedef struct dvi__team dvi__team;
 
-/* For `size` members, of which the caller is one: size - 1 threads are started. DVI_NO_MEMORY if the system has none left. */
+/* For `size` members, of which the caller is one: size - 1 threads are started. DVI_NO_MEMORY if
+ * the system has none left. */
 dvi_status dvi__team_create(int size, dvi__team **team);
 void dvi__team_destroy(dvi__team **team);
 
-/* Call work(user, member) for members 0 to count-1 (count <= size), member 0 on the calling thread, and return when all have ended. */
+/* Call work(user, member) for members 0 to count-1 (count <= size), member 0 on the calling thread,
+ * and return when all have ended. */
 void dvi__team_run(dvi__team *team, int count, void (*work)(void *user, int member), void *user);
 
-/* Call work(user, member, item) for items 0 to count-1, each once, in any order, by whichever member is free, the caller among them; return when
- * all have ended. */
-void dvi__team_share(dvi__team *team, int count, void (*work)(void *user, int member, int item), void *user);
+/* Call work(user, member, item) for items 0 to count-1, each once, in any order, by whichever
+ * member is free, the caller among them; return when all have ended. */
+void dvi__team_share(dvi__team *team, int count, void (*work)(void *user, int member, int item),
+                     void *user);
 
-/* Wait a moment for another member; `waited` is how often that was done in a row. A wait that lasts leaves the processor to others. */
+/* Wait a moment for another member; `waited` is how often that was done in a row. A wait that lasts
+ * leaves the processor to others. */
 void dvi__team_pause(int waited);
 
 #endif

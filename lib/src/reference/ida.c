@@ -1,17 +1,21 @@
 /* IDA on the implicit Euler-Lagrange equations.
  *
- * Unknowns y = (q, v, p), equations of index 1, or of index 2 if L_v = alpha(q) does not depend on v:
+ * The unknowns are y = (q, v, p). The equations have index 1, or index 2 if L_v = alpha(q) does not
+ * depend on v,
  *     F(t, y, ydot) = ( qdot - v,  pdot - L_q(t,q,v),  p - L_v(t,q,v) ) = 0
- * with the Jacobian dF/dy + c dF/dydot, columns q, v, p:
+ * with the Jacobian dF/dy + c dF/dydot in the columns q, v, p
  *     [  c I     -I      0  ]
  *     [ -L_qq   -L_qv   c I ]
  *     [ -L_vq   -L_vv    I  ]
- * For index 2 the multiplier v is left out of the error test. With a one-form the first choice are the reduced equations of motion, unknowns y = q,
+ * For index 2 the multiplier v is left out of the error test. With a one-form DVI_IDA takes the
+ * reduced equations of motion in y = q,
  *     F(t, y, ydot) = Omega(q) qdot - H_q(t,q) = 0,
- * whose Jacobian IDA differences: it has second derivatives of alpha that no callback gives.
+ * whose Jacobian IDA differences, because it has second derivatives of alpha that no callback
+ * gives.
  *
- * Nothing is discretised, inverted or assembled by the code that the methods use; only the callbacks are shared.
- * Source: Hindmarsh et al. 2005, ACM TOMS 31:363, sec. 2.3; Brenan, Campbell and Petzold 1996 (error tests at index 2). */
+ * Nothing is discretised, inverted or assembled by the code of the methods. Only the callbacks are
+ * shared. Sources: Hindmarsh et al. 2005, ACM TOMS 31:363, sec. 2.3, and Brenan, Campbell and
+ * Petzold 1996 (error tests at index 2). */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -23,19 +27,19 @@
 #include "reference/ida_run.h"
 #include "system/dynamics/one_form.h"
 
-typedef struct judge {
+typedef struct lagrange_ida {
   dvi__reference_run *run;
   int reduced;
   dvi__pattern vq; /* the transpose of the system's qv */
-  int *in_qv;      /* [entries of vq]: the same entry of qv */
+  int *in_qv;      /* [entries of vq] index of the same entry in qv */
   dvi__ida_run ida;
-} judge;
+} lagrange_ida;
 
 /* ---- the whole equations ---- */
 
-static int residual(double t, N_Vector y, N_Vector ydot, N_Vector F, void *user)
+static int lagrange_residual(double t, N_Vector y, N_Vector ydot, N_Vector F, void *user)
 {
-  dvi__reference_run *run = ((judge *)user)->run;
+  dvi__reference_run *run = ((lagrange_ida *)user)->run;
   const ptrdiff_t n = run->n;
   const double *q = N_VGetArrayPointer(y), *v = q + n, *p = v + n;
   const double *qdot = N_VGetArrayPointer(ydot), *pdot = qdot + 2 * n;
@@ -49,13 +53,14 @@ static int residual(double t, N_Vector y, N_Vector ydot, N_Vector F, void *user)
   return dvi__reference_callback(run, status);
 }
 
-static void write_block(dvi__columns *columns, const dvi__pattern *pattern, int column, int first_row, const double *values)
+static void write_block(dvi__columns *columns, const dvi__pattern *pattern, int column,
+                        int first_row, const double *values)
 {
   for (int e = pattern->start[column]; e < pattern->start[column + 1]; e++)
     dvi__columns_put(columns, first_row + pattern->row[e], -values[e]);
 }
 
-static void write_jacobian(const judge *self, double c, SUNMatrix matrix)
+static void lagrange_write_jacobian(const lagrange_ida *self, double c, SUNMatrix matrix)
 {
   const dvi__reference_run *run = self->run;
   const dvi_system *system = run->system;
@@ -82,28 +87,31 @@ static void write_jacobian(const judge *self, double c, SUNMatrix matrix)
   }
 }
 
-static int jacobian(double t, double c, N_Vector y, N_Vector ydot, N_Vector F, SUNMatrix matrix, void *user, N_Vector work1,
-                    N_Vector work2, N_Vector work3)
+static int lagrange_jacobian(double t, double c, N_Vector y, N_Vector ydot, N_Vector F,
+                             SUNMatrix matrix, void *user, N_Vector work1, N_Vector work2,
+                             N_Vector work3)
 {
   (void)ydot, (void)F, (void)work1, (void)work2, (void)work3;
-  const judge *self = user;
+  const lagrange_ida *self = user;
   dvi__reference_run *run = self->run;
   const double *q = N_VGetArrayPointer(y);
-  const dvi_status status = dvi__lagrangian_hessian(run->evaluator, 1, &t, q, q + run->n, run->L_qq, run->L_qv, run->L_vv);
-  if (status == DVI_OK) write_jacobian(self, c, matrix);
+  const dvi_status status = dvi__lagrangian_hessian(run->evaluator, 1, &t, q, q + run->n, run->L_qq,
+                                                    run->L_qv, run->L_vv);
+  if (status == DVI_OK) lagrange_write_jacobian(self, c, matrix);
   return dvi__reference_callback(run, status);
 }
 
-/* vdot is in no equation, but IDA's first predictor and first error test use it: exact for a constant mass, and a difference along
- * the flow otherwise. */
-static dvi_status acceleration(dvi__reference_run *run, double *vdot)
+/* Evaluate vdot at the start, exactly for a constant mass, else by a difference along the flow. No
+ * equation has vdot, but IDA's first predictor and first error test use it. */
+static dvi_status lagrange_acceleration(dvi__reference_run *run, double *vdot)
 {
   const int n = run->n;
   if (run->system->lagrangian == NULL) {
     dvi__mass_solve(run->evaluator, 1, run->force, vdot);
     return DVI_OK;
   }
-  const double span = run->t_end - run->t, e = copysign(fmax(1e-8 * fabs(span), 16 * DBL_EPSILON * fabs(run->t)), span);
+  const double span = run->t_end - run->t,
+               e = copysign(fmax(1e-8 * fabs(span), 16 * DBL_EPSILON * fabs(run->t)), span);
   double *moved = DVI_NEW(double, 3 * (size_t)n);
   if (moved == NULL) return dvi__fail(DVI_NO_MEMORY, "ida: no memory for the start");
   double *q = moved, *p = q + n, *v = p + n;
@@ -120,17 +128,17 @@ static dvi_status acceleration(dvi__reference_run *run, double *vdot)
 
 /* ---- the reduced equations of a one-form ---- */
 
-static int reduced_residual(double t, N_Vector y, N_Vector ydot, N_Vector F, void *user)
+static int one_form_residual(double t, N_Vector y, N_Vector ydot, N_Vector F, void *user)
 {
-  dvi__reference_run *run = ((judge *)user)->run;
-  const dvi_status status = dvi__two_form_residual(run->evaluator, t, N_VGetArrayPointer(y), N_VGetArrayPointer(ydot),
-                                                   N_VGetArrayPointer(F));
+  dvi__reference_run *run = ((lagrange_ida *)user)->run;
+  const dvi_status status = dvi__two_form_residual(run->evaluator, t, N_VGetArrayPointer(y),
+                                                   N_VGetArrayPointer(ydot), N_VGetArrayPointer(F));
   return dvi__reference_callback(run, status);
 }
 
 /* ---- a run ---- */
 
-static dvi_status start(const judge *self)
+static dvi_status lagrange_start(const lagrange_ida *self)
 {
   dvi__reference_run *run = self->run;
   const size_t n = (size_t)run->n, size = n * sizeof(double);
@@ -141,19 +149,21 @@ static dvi_status start(const judge *self)
   memcpy(y + n, run->v, size);
   memcpy(y + 2 * n, run->p, size);
   memcpy(ydot + 2 * n, run->force, size);
-  return acceleration(run, ydot + n);
+  return lagrange_acceleration(run, ydot + n);
 }
 
-static int configure(judge *self)
+static int lagrange_configure(lagrange_ida *self)
 {
   const dvi__ida_run *ida = &self->ida;
   const int n = self->run->n;
-  if (dvi__ida_run_configure(ida, self->reduced ? reduced_residual : residual, self) != 0) return -1;
-  if (self->run->options.code == DVI_IDA_INDEX_2 && dvi__ida_run_leave_untested(ida, n, n) != 0) return -1;
-  return self->reduced ? 0 : IDASetJacFn(ida->memory, jacobian);
+  if (dvi__ida_run_configure(ida, self->reduced ? one_form_residual : lagrange_residual, self) != 0)
+    return -1;
+  if (self->run->options.code == DVI_IDA_INDEX_2 && dvi__ida_run_leave_untested(ida, n, n) != 0)
+    return -1;
+  return self->reduced ? 0 : IDASetJacFn(ida->memory, lagrange_jacobian);
 }
 
-static dvi_status integrate(const judge *self)
+static dvi_status lagrange_integrate(const lagrange_ida *self)
 {
   dvi__reference_run *run = self->run;
   const size_t n = (size_t)run->n;
@@ -165,49 +175,59 @@ static dvi_status integrate(const judge *self)
   return DVI_OK;
 }
 
-static dvi_status transpose(judge *self)
+static dvi_status lagrange_transpose_qv(lagrange_ida *self)
 {
   const dvi__pattern *qv = &self->run->system->qv;
   DVI_TRY(dvi__pattern_transpose(qv, &self->vq));
   self->in_qv = DVI_NEW(int, dvi__pattern_entries(qv));
-  if (self->in_qv == NULL) return dvi__fail(DVI_NO_MEMORY, "ida: no memory for the Jacobian's pattern");
+  if (self->in_qv == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "ida: no memory for the Jacobian's pattern");
   for (int j = 0; j < qv->columns; j++)
-    for (int e = qv->start[j]; e < qv->start[j + 1]; e++) self->in_qv[dvi__pattern_find(&self->vq, j, qv->row[e])] = e;
+    for (int e = qv->start[j]; e < qv->start[j + 1]; e++)
+      self->in_qv[dvi__pattern_find(&self->vq, j, qv->row[e])] = e;
   return DVI_OK;
 }
 
-static dvi_status reserve(judge *self)
+static dvi_status lagrange_reserve(lagrange_ida *self)
 {
   dvi__reference_run *run = self->run;
-  const int n = run->n, size = self->reduced ? n : 3 * n, qq = dvi__pattern_entries(&run->system->qq),
-            qv = dvi__pattern_entries(&run->system->qv), vv = dvi__pattern_entries(&run->system->vv);
-  DVI_TRY(transpose(self));
+  const int n = run->n, size = self->reduced ? n : 3 * n,
+            qq = dvi__pattern_entries(&run->system->qq),
+            qv = dvi__pattern_entries(&run->system->qv),
+            vv = dvi__pattern_entries(&run->system->vv);
+  DVI_TRY(lagrange_transpose_qv(self));
   SUNMatrix matrix = self->reduced ? SUNDenseMatrix(n, n, run->context)
                                    : dvi__reference_matrix(run, size, 4 * n + qq + 2 * qv + vv);
   return dvi__ida_run_create(run, size, matrix, &self->ida);
 }
 
-static void clear(judge *self)
+static void lagrange_clear(lagrange_ida *self)
 {
   dvi__ida_run_clear(&self->ida);
   dvi__release(self->in_qv);
   dvi__pattern_clear(&self->vq);
 }
 
+static dvi_status lagrange_run(lagrange_ida *self)
+{
+  DVI_TRY(lagrange_reserve(self));
+  DVI_TRY(lagrange_start(self));
+  if (lagrange_configure(self) != 0) return dvi__reference_no_setup(self->run);
+  return lagrange_integrate(self);
+}
+
 dvi_status dvi__reference_ida(dvi__reference_run *run)
 {
   const dvi__dynamics *dynamics = run->system->dynamics;
   if (dynamics->constraint == NULL && run->options.code == DVI_IDA_INDEX_2)
-    return dvi__fail(
-        DVI_UNSUPPORTED,
-        "ida-index-2: the system declares neither a one-form nor a Hamiltonian with constraints; its equations are of index 1");
+    return dvi__fail(DVI_UNSUPPORTED, "ida-index-2: the system declares neither a one-form nor a "
+                                      "Hamiltonian with constraints; its equations are of index 1");
   if (dynamics->equations == DVI__HAMILTON) return dvi__reference_hamilton(run);
   if (dynamics->equations == DVI__LIFTED) return dvi__reference_ida_lift(run);
-  judge self = {.run = run, .reduced = dynamics->equations == DVI__FIRST_ORDER && run->options.code == DVI_IDA};
-  dvi_status status = reserve(&self);
-  if (status == DVI_OK) status = start(&self);
-  if (status == DVI_OK && configure(&self) != 0) status = dvi__reference_no_setup(run);
-  if (status == DVI_OK) status = integrate(&self);
-  clear(&self);
+  lagrange_ida self = {.run = run,
+                       .reduced = dynamics->equations == DVI__FIRST_ORDER &&
+                                  run->options.code == DVI_IDA};
+  const dvi_status status = lagrange_run(&self);
+  lagrange_clear(&self);
   return status;
 }

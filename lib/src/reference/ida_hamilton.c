@@ -1,12 +1,15 @@
 /* IDA on the equations of a Hamiltonian, with constraints of second class or without any.
  *
- * DVI_IDA: unknowns y = (q, p), the multiplier eliminated by the bracket matrix,
- *     F = ydot - X(t, y) = 0,    X = (H_p + phi_p^T lambda, -H_q - phi_q^T lambda),   {phi, phi} lambda = -{phi, H};
- * without constraints X = (H_p, -H_q). DVI_IDA_INDEX_2: unknowns y = (q, p, lambda),
+ * DVI_IDA has the unknowns y = (q, p), with the multiplier eliminated by the bracket matrix,
+ *     F = ydot - X(t, y) = 0,
+ *     X = (H_p + phi_p^T lambda, -H_q - phi_q^T lambda),   {phi, phi} lambda = -{phi, H},
+ * and without constraints X = (H_p, -H_q). DVI_IDA_INDEX_2 has the unknowns y = (q, p, lambda),
  *     F = ( (qdot, pdot) - X(t, q, p, lambda),  phi(q,p) ) = 0,
- * of index 2, with lambda in neither the error test nor that of the iteration's convergence. Its Jacobian dF/dy + c dF/dydot is written down, for IDA's
- * differences move lambda by what its tolerance says; that of the first has derivatives of lambda, and is differenced.
- * Source: Hindmarsh et al. 2005, ACM TOMS 31:363, sec. 2.3; Brenan, Campbell and Petzold 1996 (error tests at index 2). */
+ * of index 2, with lambda in neither the error test nor the test of the iteration's convergence.
+ * The Jacobian dF/dy + c dF/dydot of index 2 is written here, because IDA's differences move lambda
+ * by its tolerance. The Jacobian of DVI_IDA has derivatives of lambda, and is differenced. Sources:
+ * Hindmarsh et al. 2005, ACM TOMS 31:363, sec. 2.3, and Brenan, Campbell and Petzold 1996 (error
+ * tests at index 2). */
 #include "system/dynamics/constrained_hamiltonian.h"
 
 #include <string.h>
@@ -16,16 +19,16 @@
 #include "core/status.h"
 #include "reference/ida_run.h"
 
-typedef struct judge {
+typedef struct hamilton_ida {
   dvi__reference_run *run;
-  int whole;                                /* the multiplier is an unknown */
+  int index_2;                              /* the multiplier is an unknown */
   double *phi_z, *phi_qq, *phi_qp, *phi_pp; /* in the order of the constraint's patterns */
   dvi__ida_run ida;
-} judge;
+} hamilton_ida;
 
-static int reduced_residual(double t, N_Vector y, N_Vector ydot, N_Vector F, void *user)
+static int hamilton_residual(double t, N_Vector y, N_Vector ydot, N_Vector F, void *user)
 {
-  dvi__reference_run *run = ((judge *)user)->run;
+  dvi__reference_run *run = ((hamilton_ida *)user)->run;
   const double *q = N_VGetArrayPointer(y), *rate = N_VGetArrayPointer(ydot);
   double *X = N_VGetArrayPointer(F);
   const dvi_status status = dvi__state_rates(run->evaluator, t, q, q + run->n, X, X + run->n, NULL);
@@ -33,8 +36,9 @@ static int reduced_residual(double t, N_Vector y, N_Vector ydot, N_Vector F, voi
   return dvi__reference_callback(run, status);
 }
 
-/* F is made as X, but for the sign of p', and turned at the end. */
-static dvi_status whole(const judge *self, double t, const double *q, const double *rate, double *F)
+/* Evaluate F. The array first holds X, from which ydot - X is formed at the end. */
+static dvi_status index_2_value(const hamilton_ida *self, double t, const double *q,
+                                const double *rate, double *F)
 {
   const dvi__reference_run *run = self->run;
   const int n = run->n;
@@ -47,19 +51,23 @@ static dvi_status whole(const judge *self, double t, const double *q, const doub
   return DVI_OK;
 }
 
-static int whole_residual(double t, N_Vector y, N_Vector ydot, N_Vector F, void *user)
+static int index_2_residual(double t, N_Vector y, N_Vector ydot, N_Vector F, void *user)
 {
-  const judge *self = user;
-  return dvi__reference_callback(self->run, whole(self, t, N_VGetArrayPointer(y), N_VGetArrayPointer(ydot), N_VGetArrayPointer(F)));
+  const hamilton_ida *self = user;
+  return dvi__reference_callback(self->run,
+                                 index_2_value(self, t, N_VGetArrayPointer(y),
+                                               N_VGetArrayPointer(ydot), N_VGetArrayPointer(F)));
 }
 
-/* The derivative of the field (F_p, -F_q), subtracted. */
-static void subtract_slope(SUNMatrix matrix, const dvi__lagrangian_term *f, int n, const double *qq, const double *qp,
-                           const double *pp)
+/* Subtract the derivative of the Hamiltonian vector field (F_p, -F_q). */
+static void subtract_slope(SUNMatrix matrix, const dvi__lagrangian_term *f, int n, const double *qq,
+                           const double *qp, const double *pp)
 {
   for (int j = 0; j < n; j++) {
-    for (int e = f->qq.start[j]; e < f->qq.start[j + 1]; e++) SM_ELEMENT_D(matrix, n + f->qq.row[e], j) += qq[e];
-    for (int e = f->vv.start[j]; e < f->vv.start[j + 1]; e++) SM_ELEMENT_D(matrix, f->vv.row[e], n + j) -= pp[e];
+    for (int e = f->qq.start[j]; e < f->qq.start[j + 1]; e++)
+      SM_ELEMENT_D(matrix, n + f->qq.row[e], j) += qq[e];
+    for (int e = f->vv.start[j]; e < f->vv.start[j + 1]; e++)
+      SM_ELEMENT_D(matrix, f->vv.row[e], n + j) -= pp[e];
     for (int e = f->qv.start[j]; e < f->qv.start[j + 1]; e++) {
       SM_ELEMENT_D(matrix, n + f->qv.row[e], n + j) += qp[e];
       SM_ELEMENT_D(matrix, j, f->qv.row[e]) -= qp[e];
@@ -67,7 +75,8 @@ static void subtract_slope(SUNMatrix matrix, const dvi__lagrangian_term *f, int 
   }
 }
 
-/* Row 2n+a: the gradient of phi_a; column 2n+a: its field, subtracted. */
+/* Write the gradient of phi_a in row 2n+a, and minus its Hamiltonian vector field in column
+ * 2n+a. */
 static void write_gradients(SUNMatrix matrix, const dvi__pattern *gradients, const double *phi_z)
 {
   const int z = gradients->rows, n = z / 2;
@@ -79,14 +88,17 @@ static void write_gradients(SUNMatrix matrix, const dvi__pattern *gradients, con
     }
 }
 
-static dvi_status write_jacobian(const judge *self, double t, double c, const double *q, SUNMatrix matrix)
+static dvi_status index_2_write_jacobian(const hamilton_ida *self, double t, double c,
+                                         const double *q, SUNMatrix matrix)
 {
   const dvi__reference_run *run = self->run;
   const dvi__constraint_term *constraint = run->system->constraint;
   const int n = run->n;
-  DVI_TRY(dvi__lagrangian_hessian(run->evaluator, 1, &t, q, q + n, run->L_qq, run->L_qv, run->L_vv));
+  DVI_TRY(
+      dvi__lagrangian_hessian(run->evaluator, 1, &t, q, q + n, run->L_qq, run->L_qv, run->L_vv));
   DVI_TRY(dvi__constraint_gradients(run->evaluator, q, q + n, self->phi_z));
-  DVI_TRY(dvi__constraint_hessian(run->evaluator, q, q + n, q + 2 * n, self->phi_qq, self->phi_qp, self->phi_pp));
+  DVI_TRY(dvi__constraint_hessian(run->evaluator, q, q + n, q + 2 * n, self->phi_qq, self->phi_qp,
+                                  self->phi_pp));
   for (int i = 0; i < 2 * n; i++) SM_ELEMENT_D(matrix, i, i) = c;
   subtract_slope(matrix, run->system->lagrangian, n, run->L_qq, run->L_qv, run->L_vv);
   subtract_slope(matrix, &constraint->weighted, n, self->phi_qq, self->phi_qp, self->phi_pp);
@@ -94,16 +106,18 @@ static dvi_status write_jacobian(const judge *self, double t, double c, const do
   return DVI_OK;
 }
 
-/* IDA has set the matrix to 0. */
-static int whole_jacobian(double t, double c, N_Vector y, N_Vector ydot, N_Vector F, SUNMatrix matrix, void *user, N_Vector work1,
-                          N_Vector work2, N_Vector work3)
+/* Write the Jacobian of index 2. IDA has set the matrix to 0. */
+static int index_2_jacobian(double t, double c, N_Vector y, N_Vector ydot, N_Vector F,
+                            SUNMatrix matrix, void *user, N_Vector work1, N_Vector work2,
+                            N_Vector work3)
 {
-  const judge *self = user;
+  const hamilton_ida *self = user;
   (void)ydot, (void)F, (void)work1, (void)work2, (void)work3;
-  return dvi__reference_callback(self->run, write_jacobian(self, t, c, N_VGetArrayPointer(y), matrix));
+  return dvi__reference_callback(self->run,
+                                 index_2_write_jacobian(self, t, c, N_VGetArrayPointer(y), matrix));
 }
 
-static void start(const judge *self)
+static void hamilton_start(const hamilton_ida *self)
 {
   const dvi__reference_run *run = self->run;
   const size_t n = (size_t)run->n, bytes = n * sizeof(double);
@@ -113,18 +127,22 @@ static void start(const judge *self)
   memcpy(y + n, run->p, bytes);
   memcpy(ydot, run->v, bytes);
   memcpy(ydot + n, run->force, bytes);
-  if (self->whole) memcpy(y + 2 * n, run->multiplier, ((size_t)self->ida.size - 2 * n) * sizeof *y);
+  if (self->index_2)
+    memcpy(y + 2 * n, run->multiplier, ((size_t)self->ida.size - 2 * n) * sizeof *y);
 }
 
-static int configure(judge *self)
+static int hamilton_configure(hamilton_ida *self)
 {
   const dvi__ida_run *ida = &self->ida;
   const int states = 2 * self->run->n;
-  if (dvi__ida_run_configure(ida, self->whole ? whole_residual : reduced_residual, self) != 0) return -1;
-  return self->whole ? IDASetJacFn(ida->memory, whole_jacobian) || dvi__ida_run_leave_untested(ida, states, ida->size - states) : 0;
+  if (dvi__ida_run_configure(ida, self->index_2 ? index_2_residual : hamilton_residual, self) != 0)
+    return -1;
+  return self->index_2 ? IDASetJacFn(ida->memory, index_2_jacobian) ||
+                             dvi__ida_run_leave_untested(ida, states, ida->size - states)
+                       : 0;
 }
 
-static dvi_status integrate(const judge *self)
+static dvi_status hamilton_integrate(const hamilton_ida *self)
 {
   dvi__reference_run *run = self->run;
   const size_t bytes = (size_t)run->n * sizeof(double);
@@ -134,7 +152,7 @@ static dvi_status integrate(const judge *self)
   return DVI_OK;
 }
 
-static dvi_status reserve_whole(judge *self, const dvi__constraint_term *c)
+static dvi_status hamilton_reserve_index_2(hamilton_ida *self, const dvi__constraint_term *c)
 {
   self->phi_z = DVI_NEW(double, dvi__pattern_entries(&c->gradients));
   self->phi_qq = DVI_NEW(double, dvi__pattern_entries(&c->weighted.qq));
@@ -145,16 +163,16 @@ static dvi_status reserve_whole(judge *self, const dvi__constraint_term *c)
   return DVI_OK;
 }
 
-static dvi_status reserve(judge *self)
+static dvi_status hamilton_reserve(hamilton_ida *self)
 {
   dvi__reference_run *run = self->run;
   const dvi__constraint_term *c = run->system->constraint;
-  const int size = 2 * run->n + (self->whole ? c->callbacks.count : 0);
-  if (self->whole) DVI_TRY(reserve_whole(self, c));
+  const int size = 2 * run->n + (self->index_2 ? c->callbacks.count : 0);
+  if (self->index_2) DVI_TRY(hamilton_reserve_index_2(self, c));
   return dvi__ida_run_create(run, size, SUNDenseMatrix(size, size, run->context), &self->ida);
 }
 
-static void clear(judge *self)
+static void hamilton_clear(hamilton_ida *self)
 {
   dvi__ida_run_clear(&self->ida);
   dvi__release(self->phi_z);
@@ -163,13 +181,18 @@ static void clear(judge *self)
   dvi__release(self->phi_pp);
 }
 
+static dvi_status hamilton_run(hamilton_ida *self)
+{
+  DVI_TRY(hamilton_reserve(self));
+  hamilton_start(self);
+  if (hamilton_configure(self) != 0) return dvi__reference_no_setup(self->run);
+  return hamilton_integrate(self);
+}
+
 dvi_status dvi__reference_hamilton(dvi__reference_run *run)
 {
-  judge self = {.run = run, .whole = run->options.code == DVI_IDA_INDEX_2};
-  dvi_status status = reserve(&self);
-  if (status == DVI_OK) start(&self);
-  if (status == DVI_OK && configure(&self) != 0) status = dvi__reference_no_setup(run);
-  if (status == DVI_OK) status = integrate(&self);
-  clear(&self);
+  hamilton_ida self = {.run = run, .index_2 = run->options.code == DVI_IDA_INDEX_2};
+  const dvi_status status = hamilton_run(&self);
+  hamilton_clear(&self);
   return status;
 }

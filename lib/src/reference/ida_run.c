@@ -2,14 +2,16 @@
 
 #include <float.h>
 
-dvi_status dvi__ida_run_create(dvi__reference_run *run, int size, SUNMatrix matrix, dvi__ida_run *ida)
+dvi_status dvi__ida_run_create(dvi__reference_run *run, int size, SUNMatrix matrix,
+                               dvi__ida_run *ida)
 {
   *ida = (dvi__ida_run){.run = run, .size = size, .matrix = matrix};
   ida->y = N_VNew_Serial(size, run->context);
   ida->ydot = N_VNew_Serial(size, run->context);
   ida->tested = N_VNew_Serial(size, run->context);
   ida->memory = IDACreate(run->context);
-  if (ida->y == NULL || ida->ydot == NULL || ida->tested == NULL || ida->matrix == NULL || ida->memory == NULL)
+  if (ida->y == NULL || ida->ydot == NULL || ida->tested == NULL || ida->matrix == NULL ||
+      ida->memory == NULL)
     return dvi__reference_no_setup(run);
   ida->linear = dvi__reference_linear(run, ida->y, matrix);
   return ida->linear == NULL ? dvi__reference_no_setup(run) : DVI_OK;
@@ -29,17 +31,22 @@ int dvi__ida_run_configure(const dvi__ida_run *ida, IDAResFn residual, void *use
 {
   const dvi__reference_run *run = ida->run;
   void *memory = ida->memory;
-  return DVI__SUNDIALS_SILENCE(IDASetErrHandlerFn, memory) || IDAInit(memory, residual, run->t, ida->y, ida->ydot) ||
-         IDASStolerances(memory, run->options.relative_tolerance, run->options.absolute_tolerance) ||
-         IDASetUserData(memory, user) || IDASetMaxNumSteps(memory, run->options.max_steps) || IDASetStopTime(memory, run->t_end) ||
-         IDASetMinStep(memory, dvi__reference_least_step(run)) || IDASetLinearSolver(memory, ida->linear, ida->matrix);
+  return DVI__SUNDIALS_SILENCE(IDASetErrHandlerFn, memory) ||
+         IDAInit(memory, residual, run->t, ida->y, ida->ydot) ||
+         IDASStolerances(memory, run->options.relative_tolerance,
+                         run->options.absolute_tolerance) ||
+         IDASetUserData(memory, user) || IDASetMaxNumSteps(memory, run->options.max_steps) ||
+         IDASetStopTime(memory, run->t_end) ||
+         IDASetMinStep(memory, dvi__reference_least_step(run)) ||
+         IDASetLinearSolver(memory, ida->linear, ida->matrix);
 }
 
 int dvi__ida_run_leave_untested(const dvi__ida_run *ida, int first, int count)
 {
   const dvi_reference_options *options = &ida->run->options;
   double *number = N_VGetArrayPointer(ida->tested);
-  for (int i = 0; i < ida->size; i++) number[i] = i >= first && i < first + count ? DBL_MAX : options->absolute_tolerance;
+  for (int i = 0; i < ida->size; i++)
+    number[i] = i >= first && i < first + count ? DBL_MAX : options->absolute_tolerance;
   if (IDASVtolerances(ida->memory, options->relative_tolerance, ida->tested)) return -1;
   for (int i = 0; i < ida->size; i++) number[i] = i >= first && i < first + count ? 0.0 : 1.0;
   return IDASetId(ida->memory, ida->tested) || IDASetSuppressAlg(ida->memory, 1);

@@ -1,4 +1,5 @@
-/* What all judges by IDA have alike: vectors, a matrix with its solver, the settings of a run, and the run. */
+/* The common part of all reference solutions by IDA: vectors, a matrix with its solver, the
+ * settings of a run, and the run. */
 #ifndef DVI_REFERENCE_IDA_RUN_H
 #define DVI_REFERENCE_IDA_RUN_H
 #include <ida/ida.h>
@@ -7,25 +8,29 @@
 
 typedef struct dvi__ida_run {
   dvi__reference_run *run;
-  int size;                 /* unknowns */
-  N_Vector y, ydot, tested; /* the state and its rate, written by the judge before it configures; work */
+  int size;         /* number of unknowns */
+  N_Vector y, ydot; /* the state and its rate, set by the caller before dvi__ida_run_configure */
+  N_Vector tested;  /* work */
   SUNMatrix matrix;
   SUNLinearSolver linear;
-  void *memory; /* IDA's */
+  void *memory; /* memory of IDA */
 } dvi__ida_run;
 
-/* `matrix` becomes its own, on failure, too; NULL is one. What there is must be cleared on failure, too. */
-dvi_status dvi__ida_run_create(dvi__reference_run *run, int size, SUNMatrix matrix, dvi__ida_run *ida);
+/* Create a run, which owns `matrix` from then on, also after a failure. A NULL matrix is a failure.
+ * Clear the run also after a failure. */
+dvi_status dvi__ida_run_create(dvi__reference_run *run, int size, SUNMatrix matrix,
+                               dvi__ida_run *ida);
 void dvi__ida_run_clear(dvi__ida_run *ida);
 
-/* 0, or that IDA refuses. `user` goes to the residual and to what is set after. */
+/* Configure IDA. Return 0, or another number if IDA refuses. `user` is passed to the residual and
+ * to callbacks that are set later. */
 int dvi__ida_run_configure(const dvi__ida_run *ida, IDAResFn residual, void *user);
 
-/* At index 2 the multipliers, `count` unknowns from `first` on, have errors of 1/h times those of q and p: they belong neither in the error test nor in the
- * test of the iteration's convergence. */
+/* Exclude `count` unknowns from `first` on from the error test and from the convergence test. At
+ * index 2 the multipliers have errors of 1/h times those of q and p. */
 int dvi__ida_run_leave_untested(const dvi__ida_run *ida, int first, int count);
 
-/* To the end, which is in y then. */
+/* Integrate to the end, and leave the end in y. */
 dvi_status dvi__ida_run_solve(const dvi__ida_run *ida);
 
 #endif

@@ -6,7 +6,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 
-static double dot(const double *a, const double *b)
+static double lift_dot(const double *a, const double *b)
 {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
@@ -18,21 +18,24 @@ static int lifted_size(dvi__chart_kind kind)
 
 /* ---- rotations ---- */
 
-/* R of a quaternion of any length. */
+/* Compute R of a quaternion of any length. */
 static void rotation_of(const double *k, double *R)
 {
   const double a = k[0], b = k[1], c = k[2], d = k[3], scale = 2 / (a * a + b * b + c * c + d * d);
-  const double square[3] = {scale * (c * c + d * d), scale * (b * b + d * d), scale * (b * b + c * c)};
+  const double square[3] = {scale * (c * c + d * d), scale * (b * b + d * d),
+                            scale * (b * b + c * c)};
   R[0] = 1 - square[0], R[4] = 1 - square[1], R[8] = 1 - square[2];
   R[1] = scale * (b * c - a * d), R[3] = scale * (b * c + a * d);
   R[2] = scale * (b * d + a * c), R[6] = scale * (b * d - a * c);
   R[5] = scale * (c * d - a * b), R[7] = scale * (c * d + a * b);
 }
 
-/* The quaternion of R: from the largest of its four squares, the trace with signs (Shepperd 1978). */
+/* Compute the quaternion of R from the largest of its four squares, the trace with signs (Shepperd
+ * 1978). */
 static void quaternion_of(const double *R, double *k)
 {
-  const double square[4] = {1 + R[0] + R[4] + R[8], 1 + R[0] - R[4] - R[8], 1 - R[0] + R[4] - R[8], 1 - R[0] - R[4] + R[8]};
+  const double square[4] = {1 + R[0] + R[4] + R[8], 1 + R[0] - R[4] - R[8], 1 - R[0] + R[4] - R[8],
+                            1 - R[0] - R[4] + R[8]};
   int most = 0;
   for (int i = 1; i < 4; i++)
     if (square[i] > square[most]) most = i;
@@ -45,33 +48,37 @@ static void quaternion_of(const double *R, double *k)
 
 static void quaternion_rate(const double *k, const double *Omega, double *rate)
 {
-  rate[0] = -0.5 * dot(k + 1, Omega);
+  rate[0] = -0.5 * lift_dot(k + 1, Omega);
   for (int i = 0; i < 3; i++) {
     const int j = (i + 1) % 3, l = (i + 2) % 3;
     rate[1 + i] = 0.5 * (k[0] * Omega[i] + k[1 + j] * Omega[l] - k[1 + l] * Omega[j]);
   }
 }
 
-/* R Omega^, row by row: (row) x Omega. */
+/* Compute R Omega^, in which each row is (row of R) x Omega. */
 static void rotation_rate(const double *R, const double *Omega, double *rate)
 {
   for (int row = 0; row < 9; row += 3)
     for (int i = 0; i < 3; i++)
-      rate[row + i] = R[row + (i + 1) % 3] * Omega[(i + 2) % 3] - R[row + (i + 2) % 3] * Omega[(i + 1) % 3];
+      rate[row + i] = R[row + (i + 1) % 3] * Omega[(i + 2) % 3] -
+                      R[row + (i + 2) % 3] * Omega[(i + 1) % 3];
 }
 
-/* Adds what the covector A does to the turns R eta^, by the components of eta: the sum over rows of A x R. */
+/* Add the covector A applied to the rotations R eta^, by the components of eta. It is the sum over
+ * rows of A x R. */
 static void add_turns(const double *R, const double *A, double *sum)
 {
   for (int row = 0; row < 9; row += 3)
-    for (int i = 0; i < 3; i++) sum[i] += A[row + (i + 1) % 3] * R[row + (i + 2) % 3] - A[row + (i + 2) % 3] * R[row + (i + 1) % 3];
+    for (int i = 0; i < 3; i++)
+      sum[i] += A[row + (i + 1) % 3] * R[row + (i + 2) % 3] -
+                A[row + (i + 2) % 3] * R[row + (i + 1) % 3];
 }
 
 /* ---- all kinds ---- */
 
-static void unit_of(int count, const double *kappa, double *y)
+static void unit_vector_of(int count, const double *kappa, double *y)
 {
-  const double length = count == 3 ? sqrt(dot(kappa, kappa)) : hypot(kappa[0], kappa[1]);
+  const double length = count == 3 ? sqrt(lift_dot(kappa, kappa)) : hypot(kappa[0], kappa[1]);
   for (int i = 0; i < count; i++) y[i] = kappa[i] / length;
 }
 
@@ -82,12 +89,12 @@ static void point_of(dvi__chart_kind kind, const double *kappa, double *y)
   else if (kind == DVI__LINE)
     *y = *kappa;
   else
-    unit_of(lifted_size(kind), kappa, y);
+    unit_vector_of(lifted_size(kind), kappa, y);
 }
 
 static void lifted_rate(dvi__chart_kind kind, const double *kappa, const double *v, double *rate)
 {
-  const double length = kind == DVI__SPHERE ? sqrt(dot(kappa, kappa)) : 1;
+  const double length = kind == DVI__SPHERE ? sqrt(lift_dot(kappa, kappa)) : 1;
   if (kind == DVI__ROTATION) {
     quaternion_rate(kappa, v, rate);
   } else if (kind == DVI__CIRCLE) {
@@ -98,7 +105,7 @@ static void lifted_rate(dvi__chart_kind kind, const double *kappa, const double 
   }
 }
 
-/* y' = T(y) v. */
+/* Compute y' = T(y) v. */
 static void stored_rate(dvi__chart_kind kind, const double *y, const double *v, double *rate)
 {
   if (kind == DVI__ROTATION) {
@@ -111,15 +118,16 @@ static void stored_rate(dvi__chart_kind kind, const double *y, const double *v, 
   }
 }
 
-/* T^t C; of a direction q (q.v), which must vanish, is added. */
-static void momentum_of(dvi__chart_kind kind, const double *y, const double *v, const double *C, double *p)
+/* Compute p = T^t C. For a direction q (q.v), which must vanish, is added. */
+static void momentum_of(dvi__chart_kind kind, const double *y, const double *v, const double *C,
+                        double *p)
 {
   if (kind == DVI__LINE) {
     *p = *C;
   } else if (kind == DVI__CIRCLE) {
     *p = y[0] * C[1] - y[1] * C[0];
   } else if (kind == DVI__SPHERE) {
-    const double along = dot(y, v) - dot(y, C);
+    const double along = lift_dot(y, v) - lift_dot(y, C);
     for (int i = 0; i < 3; i++) p[i] = C[i] + along * y[i];
   } else {
     memset(p, 0, 3 * sizeof *p);
@@ -127,16 +135,16 @@ static void momentum_of(dvi__chart_kind kind, const double *y, const double *v, 
   }
 }
 
-/* T^t L_y + (dT/dt)^t C. */
-static void momentum_rate(dvi__chart_kind kind, const double *y, const double *rate, const double *L_y, const double *C,
-                          double *p_rate)
+/* Compute p' = T^t L_y + (dT/dt)^t C. */
+static void lifted_momentum_rate(dvi__chart_kind kind, const double *y, const double *rate,
+                                 const double *L_y, const double *C, double *p_rate)
 {
   if (kind == DVI__LINE) {
     *p_rate = *L_y;
   } else if (kind == DVI__CIRCLE) {
     *p_rate = y[0] * L_y[1] - y[1] * L_y[0] + rate[0] * C[1] - rate[1] * C[0];
   } else if (kind == DVI__SPHERE) {
-    const double along = dot(y, L_y) + dot(rate, C), turned = dot(y, C);
+    const double along = lift_dot(y, L_y) + lift_dot(rate, C), turned = lift_dot(y, C);
     for (int i = 0; i < 3; i++) p_rate[i] = L_y[i] - along * y[i] - turned * rate[i];
   } else {
     memset(p_rate, 0, 3 * sizeof *p_rate);
@@ -150,12 +158,14 @@ static void momentum_rate(dvi__chart_kind kind, const double *y, const double *r
 dvi_status dvi__lift_create(dvi__reference_run *run, dvi__lift *lift)
 {
   const size_t nq = (size_t)run->system->n;
-  *lift = (dvi__lift){.system = run->system, .evaluator = run->evaluator, .y = DVI_NEW(double, 4 * nq)};
+  *lift = (dvi__lift){
+      .system = run->system, .evaluator = run->evaluator, .y = DVI_NEW(double, 4 * nq)};
   if (lift->y == NULL) return dvi__reference_no_setup(run);
   lift->rate = lift->y + nq;
   lift->L_y = lift->y + 2 * nq;
   lift->C = lift->y + 3 * nq;
-  for (int c = 0; c < run->system->cell_count; c++) lift->size += lifted_size(run->system->cells[c].kind);
+  for (int c = 0; c < run->system->slot_count; c++)
+    lift->size += lifted_size(run->system->slots[c].kind);
   return DVI_OK;
 }
 
@@ -166,54 +176,56 @@ void dvi__lift_clear(dvi__lift *lift)
 
 void dvi__lift_up(const dvi__lift *lift, const double *q, double *kappa)
 {
-  for (int c = 0; c < lift->system->cell_count; c++) {
-    const dvi__cell *cell = &lift->system->cells[c];
-    const int size = lifted_size(cell->kind);
-    if (cell->kind == DVI__ROTATION)
-      quaternion_of(q + cell->q, kappa);
+  for (int c = 0; c < lift->system->slot_count; c++) {
+    const dvi__factor_slot *slot = &lift->system->slots[c];
+    const int size = lifted_size(slot->kind);
+    if (slot->kind == DVI__ROTATION)
+      quaternion_of(q + slot->q, kappa);
     else
-      memcpy(kappa, q + cell->q, (size_t)size * sizeof *kappa);
+      memcpy(kappa, q + slot->q, (size_t)size * sizeof *kappa);
     kappa += size;
   }
 }
 
 void dvi__lift_down(const dvi__lift *lift, const double *kappa, double *q)
 {
-  for (int c = 0; c < lift->system->cell_count; c++) {
-    const dvi__cell *cell = &lift->system->cells[c];
-    point_of(cell->kind, kappa, q + cell->q);
-    kappa += lifted_size(cell->kind);
+  for (int c = 0; c < lift->system->slot_count; c++) {
+    const dvi__factor_slot *slot = &lift->system->slots[c];
+    point_of(slot->kind, kappa, q + slot->q);
+    kappa += lifted_size(slot->kind);
   }
 }
 
-dvi_status dvi__lift_equations(dvi__lift *lift, double t, const double *kappa, const double *v, double *kappa_rate, double *p_rate,
-                               double *p_of_v)
+dvi_status dvi__lift_equations(dvi__lift *lift, double t, const double *kappa, const double *v,
+                               double *kappa_rate, double *p_rate, double *p_of_v)
 {
   const dvi_system *system = lift->system;
   dvi__lift_down(lift, kappa, lift->y);
-  for (int c = 0; c < system->cell_count; c++) {
-    const dvi__cell *cell = &system->cells[c];
-    lifted_rate(cell->kind, kappa, v + cell->v, kappa_rate);
-    stored_rate(cell->kind, lift->y + cell->q, v + cell->v, lift->rate + cell->q);
-    kappa += lifted_size(cell->kind);
-    kappa_rate += lifted_size(cell->kind);
+  for (int c = 0; c < system->slot_count; c++) {
+    const dvi__factor_slot *slot = &system->slots[c];
+    lifted_rate(slot->kind, kappa, v + slot->v, kappa_rate);
+    stored_rate(slot->kind, lift->y + slot->q, v + slot->v, lift->rate + slot->q);
+    kappa += lifted_size(slot->kind);
+    kappa_rate += lifted_size(slot->kind);
   }
-  DVI_TRY(dvi__lagrangian_gradient(lift->evaluator, 1, &t, lift->y, lift->rate, lift->L_y, lift->C));
-  for (int c = 0; c < system->cell_count; c++) {
-    const dvi__cell *cell = &system->cells[c];
-    const double *y = lift->y + cell->q, *C = lift->C + cell->q;
-    momentum_of(cell->kind, y, v + cell->v, C, p_of_v + cell->v);
-    momentum_rate(cell->kind, y, lift->rate + cell->q, lift->L_y + cell->q, C, p_rate + cell->v);
+  DVI_TRY(
+      dvi__lagrangian_gradient(lift->evaluator, 1, &t, lift->y, lift->rate, lift->L_y, lift->C));
+  for (int c = 0; c < system->slot_count; c++) {
+    const dvi__factor_slot *slot = &system->slots[c];
+    const double *y = lift->y + slot->q, *C = lift->C + slot->q;
+    momentum_of(slot->kind, y, v + slot->v, C, p_of_v + slot->v);
+    lifted_momentum_rate(slot->kind, y, lift->rate + slot->q, lift->L_y + slot->q, C,
+                         p_rate + slot->v);
   }
   return DVI_OK;
 }
 
 void dvi__lift_tangent(const dvi__lift *lift, const double *q, double *p)
 {
-  for (int c = 0; c < lift->system->cell_count; c++) {
-    const dvi__cell *cell = &lift->system->cells[c];
-    if (cell->kind != DVI__SPHERE) continue;
-    const double along = dot(q + cell->q, p + cell->v);
-    for (int i = 0; i < 3; i++) p[cell->v + i] -= along * q[cell->q + i];
+  for (int c = 0; c < lift->system->slot_count; c++) {
+    const dvi__factor_slot *slot = &lift->system->slots[c];
+    if (slot->kind != DVI__SPHERE) continue;
+    const double along = lift_dot(q + slot->q, p + slot->v);
+    for (int i = 0; i < 3; i++) p[slot->v + i] -= along * q[slot->q + i];
   }
 }

@@ -6,7 +6,7 @@
 
 #include "reference/run.h"
 
-/* Up to here a dense factorisation costs less than KLU's bookkeeping. */
+/* Up to this size a dense factorisation costs less than KLU's bookkeeping. */
 enum { DENSE_LIMIT = 48 };
 
 int dvi__reference_is_dense(int size)
@@ -35,7 +35,8 @@ void dvi__columns_start(dvi__columns *columns, SUNMatrix matrix)
 void dvi__columns_next(dvi__columns *columns)
 {
   columns->column++;
-  if (SUNMatGetID(columns->matrix) == SUNMATRIX_SPARSE) SM_INDEXPTRS_S(columns->matrix)[columns->column + 1] = columns->entry;
+  if (SUNMatGetID(columns->matrix) == SUNMATRIX_SPARSE)
+    SM_INDEXPTRS_S(columns->matrix)[columns->column + 1] = columns->entry;
 }
 
 void dvi__columns_put(dvi__columns *columns, int row, double value)

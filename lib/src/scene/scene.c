@@ -5,10 +5,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "scene/callbacks.h"
-#include "scene/factors.h"
-#include "scene/text/heap.h"
-#include "scene/sections.h"
+#include "scene/terms/callbacks.h"
+#include "scene/terms/factors.h"
+#include "text/heap.h"
+#include "scene/sections/sections.h"
 #include "scene/start.h"
 
 enum { SIZE_MAX_OF_FILE = 1 << 20 };
@@ -16,7 +16,7 @@ enum { SIZE_MAX_OF_FILE = 1 << 20 };
 /* ---- reading ---- */
 
 /* Whether the time occurs in a function. */
-static int has_time(const dvi__term *term)
+static int has_time(const dvi__scene_term *term)
 {
   for (int k = 0; k < dvi__function_kernel_count(term->function); k++) {
     const dvi__kernel *kernel = dvi__function_kernel(term->function, k);
@@ -30,12 +30,13 @@ static int has_time(const dvi__term *term)
 static void find_time(dvi_scene *scene)
 {
   int timed = 0;
-  for (const dvi__term *term = scene->functions; term != NULL; term = term->next)
+  for (const dvi__scene_term *term = scene->functions; term != NULL; term = term->next)
     timed = timed || (term->role != DVI__STANDS_BESIDE && has_time(term));
   scene->terms.autonomous = !timed;
   if (timed) return;
   scene->lagrangian.rate_batch = NULL;
-  for (int k = 0; k < scene->terms.potential_count; k++) ((dvi_potential *)scene->terms.potentials)[k].rate_batch = NULL;
+  for (int k = 0; k < scene->terms.potential_count; k++)
+    ((dvi_potential *)scene->terms.potentials)[k].rate_batch = NULL;
 }
 
 static bool make_system(dvi_scene *scene)
@@ -46,13 +47,16 @@ static bool make_system(dvi_scene *scene)
   if (scene->terms.symmetry_count == 0) scene->terms.symmetries = NULL;
   if (scene->terms.invariant_count == 0) scene->terms.invariants = NULL;
   const dvi_status status = dvi_system_create(&scene->terms, &scene->system);
-  if (status == DVI_BAD_ARGUMENT && dvi__has_factors(scene) && !dvi__inertias_are_of_bodies(scene)) return false;
-  return status == DVI_OK || dvi__complain(scene->complaint, status, dvi__what_moves(scene)->span, "%s", dvi_last_error());
+  if (status == DVI_BAD_ARGUMENT && dvi__has_factors(scene) && !dvi__inertias_are_of_bodies(scene))
+    return false;
+  return status == DVI_OK || dvi__complain(scene->complaint, status, dvi__what_moves(scene)->span,
+                                           "%s", dvi_last_error());
 }
 
 static bool show_parameters(dvi_scene *scene)
 {
-  scene->shown = dvi__arena_take(&scene->arena, (size_t)scene->parameter_count + 1, sizeof *scene->shown);
+  scene->shown = dvi__arena_take(&scene->arena, (size_t)scene->parameter_count + 1,
+                                 sizeof *scene->shown);
   if (scene->shown == NULL) return dvi__scene_no_memory(scene);
   for (int i = 0; i < scene->parameter_count; i++) {
     const dvi__parameter *p = &scene->parameter[i];
@@ -70,41 +74,49 @@ static bool list_unused(dvi_scene *scene)
   scene->unused = dvi__arena_take(&scene->arena, most + 1, sizeof *scene->unused);
   if (scene->unused == NULL) return dvi__scene_no_memory(scene);
   for (int i = 0; i < scene->parameter_count; i++)
-    if (scene->parameter[i].stands == 0) scene->unused[scene->unused_count++] = scene->parameter[i].name;
+    if (scene->parameter[i].stands == 0)
+      scene->unused[scene->unused_count++] = scene->parameter[i].name;
   for (int i = 0; i < scene->definition_count; i++)
-    if (!scene->definition[i].stands) scene->unused[scene->unused_count++] = scene->definition[i].name;
+    if (!scene->definition[i].stands)
+      scene->unused[scene->unused_count++] = scene->definition[i].name;
   return true;
 }
 
 static void find_bodies(dvi_scene *scene)
 {
   const dvi__coordinate *x = scene->coordinate;
-  if (scene->coordinate_count == 1 && x->kind == DVI__LINES && x->shape.rank == 1 && (x->q.components == 2 || x->q.components == 3))
+  if (scene->coordinate_count == 1 && x->kind == DVI__LINES && x->shape.rank == 1 &&
+      (x->q.components == 2 || x->q.components == 3))
     scene->bodies = x->size;
 }
 
-static bool read_scene(dvi_scene *scene, dvi__settings *settings)
+static bool read_scene(dvi_scene *scene)
 {
   if (!dvi__tree_read(&scene->source, &scene->arena, scene->complaint, &scene->tree)) return false;
-  if (!dvi__scene_read_tree(scene, settings) || !make_system(scene) || !dvi__scene_complete_start(scene)) return false;
+  if (!dvi__scene_read_tree(scene) || !make_system(scene) || !dvi__scene_complete_start(scene))
+    return false;
   find_bodies(scene);
   return show_parameters(scene) && list_unused(scene);
 }
 
 /* Fill in a scene; its texts are copied. */
-static dvi_status fill(dvi_scene *scene, const char *name, const char *text, size_t length, dvi__settings *settings,
-                       dvi__complaint *complaint)
+static dvi_status scene_fill(dvi_scene *scene, const char *name, const char *text, size_t length,
+                             dvi__scene_settings *settings, dvi__complaint *complaint)
 {
-  const char *name_copy = dvi__arena_text(&scene->arena, name, strlen(name)), *copy = dvi__arena_text(&scene->arena, text, length);
+  const char *name_copy = dvi__arena_text(&scene->arena, name, strlen(name)),
+             *copy = dvi__arena_text(&scene->arena, text, length);
   scene->complaint = complaint;
-  scene->source = (dvi__source){name_copy != NULL ? name_copy : name, copy != NULL ? copy : text, length};
+  scene->source = (dvi__source){name_copy != NULL ? name_copy : name, copy != NULL ? copy : text,
+                                length};
   complaint->source = &scene->source;
   settings->used = dvi__arena_take(&scene->arena, (size_t)settings->count + 1, 1);
   if (name_copy == NULL || copy == NULL || settings->used == NULL) {
     (void)dvi__complain_of_memory(complaint);
     return complaint->status;
   }
-  const bool read = read_scene(scene, settings);
+  scene->settings = settings;
+  const bool read = read_scene(scene);
+  scene->settings = NULL;
   const dvi_status status = complaint->status;
   complaint->source = NULL;
   scene->complaint = NULL;
@@ -113,7 +125,8 @@ static dvi_status fill(dvi_scene *scene, const char *name, const char *text, siz
 
 static dvi_status tell(char *message, size_t size, dvi_status status, const char *name)
 {
-  if (message != NULL && size > 0) (void)snprintf(message, size, "%s: %s", name, dvi_status_meaning(status));
+  if (message != NULL && size > 0)
+    (void)snprintf(message, size, "%s: %s", name, dvi_status_meaning(status));
   return status;
 }
 
@@ -125,22 +138,24 @@ static bool are_there(int count, const char *const *text)
   return true;
 }
 
-dvi_status dvi_scene_parse(const char *name, const char *text, size_t length, int setting_count, const char *const *settings,
-                           dvi_scene **scene, char *message, size_t size)
+dvi_status dvi_scene_parse(const char *name, const char *text, size_t length, int setting_count,
+                           const char *const *settings, dvi_scene **scene, char *message,
+                           size_t size)
 {
   if (scene == NULL) return DVI_BAD_ARGUMENT;
   *scene = NULL;
   if (message != NULL && size > 0) message[0] = '\0';
-  if (name == NULL || text == NULL || !are_there(setting_count, settings)) return tell(message, size, DVI_BAD_ARGUMENT, "scene");
+  if (name == NULL || text == NULL || !are_there(setting_count, settings))
+    return tell(message, size, DVI_BAD_ARGUMENT, "scene");
   dvi_scene *made = dvi__heap_take(1, sizeof *made);
   if (made == NULL || pthread_mutex_init(&made->labels_mutex, NULL) != 0) {
     dvi__heap_free(made);
     return tell(message, size, DVI_NO_MEMORY, name);
   }
-  dvi__settings given = {.count = setting_count, .text = settings};
+  dvi__scene_settings given = {.count = setting_count, .text = settings};
   dvi__complaint complaint = {.message = message, .size = message != NULL ? size : 0};
   dvi__ledger *const other = dvi__heap_charge(&made->ledger);
-  const dvi_status status = fill(made, name, text, length, &given, &complaint);
+  const dvi_status status = scene_fill(made, name, text, length, &given, &complaint);
   (void)dvi__heap_charge(other);
   if (status == DVI_OK) {
     *scene = made;
@@ -164,8 +179,8 @@ static dvi_status read_file(const char *path, char **text, size_t *length)
   return *text == NULL ? DVI_NO_MEMORY : failed ? DVI_IO_ERROR : DVI_OK;
 }
 
-dvi_status dvi_scene_read(const char *path, int setting_count, const char *const *settings, dvi_scene **scene, char *message,
-                          size_t size)
+dvi_status dvi_scene_read(const char *path, int setting_count, const char *const *settings,
+                          dvi_scene **scene, char *message, size_t size)
 {
   char *text = NULL;
   size_t length = 0;
@@ -189,7 +204,8 @@ void dvi_scene_destroy(dvi_scene **scene)
   dvi_scene *own = *scene;
   *scene = NULL;
   dvi_system_destroy(&own->system);
-  for (dvi__term *term = own->functions; term != NULL; term = term->next) dvi__function_destroy(&term->function);
+  for (dvi__scene_term *term = own->functions; term != NULL; term = term->next)
+    dvi__function_destroy(&term->function);
   pthread_mutex_destroy(&own->labels_mutex);
   dvi__arena_free(&own->label_arena);
   dvi__arena_free(&own->arena);
@@ -235,12 +251,14 @@ const char *dvi_scene_unused(const dvi_scene *scene, int i)
   return scene == NULL || i < 0 || i >= scene->unused_count ? NULL : scene->unused[i];
 }
 
-void dvi_scene_tell(const dvi_scene *scene, const char *section, const char *sentence, char *message, size_t size)
+void dvi_scene_tell(const dvi_scene *scene, const char *section, const char *sentence,
+                    char *message, size_t size)
 {
   if (scene == NULL) return;
   const dvi__tree *tree = dvi__tree_find(scene->tree, section);
   dvi__complaint complaint = {.source = &scene->source, .message = message, .size = size};
-  (void)dvi__complain(&complaint, DVI_BAD_FILE, tree != NULL ? tree->span : DVI__NOWHERE, "%s", sentence);
+  (void)dvi__complain(&complaint, DVI_BAD_FILE, tree != NULL ? tree->span : DVI__NOWHERE, "%s",
+                      sentence);
 }
 
 const dvi_scene_event *dvi_scene_event_at(const dvi_scene *scene, int i)
@@ -259,7 +277,7 @@ static void add_operations(int operations, int *all)
   if (operations >= 0) *all = operations + (*all > 0 ? *all : 0);
 }
 
-static void add_facts(const dvi__term *term, dvi_scene_facts *facts)
+static void add_facts(const dvi__scene_term *term, dvi_scene_facts *facts)
 {
   dvi__function_counters counters;
   dvi__function_count(term->function, &counters);
@@ -280,11 +298,13 @@ static void add_facts(const dvi__term *term, dvi_scene_facts *facts)
 
 void dvi_scene_facts_of(const dvi_scene *scene, dvi_scene_facts *facts)
 {
-  *facts = (dvi_scene_facts){.value_operations = -1, .gradient_operations = -1, .hessian_operations = -1};
+  *facts = (dvi_scene_facts){
+      .value_operations = -1, .gradient_operations = -1, .hessian_operations = -1};
   if (scene == NULL) return;
   facts->form = scene->form;
   facts->mass = scene->mass;
-  for (const dvi__term *term = scene->functions; term != NULL; term = term->next)
+  for (const dvi__scene_term *term = scene->functions; term != NULL; term = term->next)
     if (term->role == DVI__MOVES) add_facts(term, facts);
-  for (int k = 0; k < scene->terms.potential_count; k++) facts->quadratic_potentials += scene->terms.potentials[k].quadratic;
+  for (int k = 0; k < scene->terms.potential_count; k++)
+    facts->quadratic_potentials += scene->terms.potentials[k].quadratic;
 }

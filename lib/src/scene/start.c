@@ -1,208 +1,11 @@
-/* The start: initial values by coordinate, and what follows from them. */
-#include <dvi/group.h>
-#include <math.h>
-#include <string.h>
-
-#include "scene/callbacks.h"
-#include "scene/text/heap.h"
-#include "scene/sections.h"
-#include "scene/elaborate/shape.h"
 #include "scene/start.h"
 
-/* What was given of q, v and p: a mark for every number. */
-typedef struct given {
-  char *q, *v, *p;
-  int velocities, momenta;
-} given;
+#include "scene/sections/sections.h"
+#include "scene/terms/fault.h"
+#include "text/heap.h"
 
-/* A mark is 1 for a number that was given by a formula or a list, and 1 more for every index
- * that was a number: what says more of a member comes before what says less. */
-static bool put(dvi_scene *scene, const dvi__target *target, int number, double value, double *to, char *mark)
-{
-  const char how = (char)(1 + target->fixed);
-  if (mark[number] == how) return dvi__scene_refuse(scene, target->span, "a number of %s is given twice", target->x->name);
-  if (mark[number] > how) return true;
-  mark[number] = how;
-  to[number] = value;
-  return true;
-}
-
-static int first_of(dvi__numbering numbering, int element)
-{
-  return numbering.number != NULL ? numbering.number[element] : numbering.base + numbering.stride * element;
-}
-
-/* Number k of what is stored of the value, for every element. */
-static bool put_component(dvi__context *c, const dvi__target *target, const dvi__expression *e, dvi__node node,
-                          dvi__numbering numbering, int k, double *to, char *mark)
-{
-  double *each, all = 0;
-  if (!dvi__node_numbers(c, e, node, &each, &all)) return false;
-  bool good = true;
-  for (int i = 0; i < c->elements && good; i++) {
-    const int number = first_of(numbering, i);
-    good = put(c->scene, target, number + dvi__target_place(target, k), each != NULL ? each[i] : all, to, mark);
-  }
-  dvi__heap_free(each);
-  return good;
-}
-
-/* What is stored of a value: its numbers; of angles, which are given as numbers, cosine and sine. */
-static bool stored_value(dvi__context *c, const dvi__target *target, dvi__value *value)
-{
-  if (target->x->kind != DVI__ANGLE || target->says != DVI__SAYS_Q) return true;
-  const int count = dvi__value_size(*value);
-  dvi__value stored = dvi__value_make(c, 1, 2 * count, 1);
-  for (int i = 0; !dvi__failed(stored) && i < 2 * count; i++)
-    stored.node[i] = dvi__apply(c->graph, i % 2 == 0 ? DVI__OP_COS : DVI__OP_SIN, dvi__value_at(*value, i / 2), 0);
-  *value = stored;
-  return !dvi__failed(stored);
-}
-
-/* Rounding of numbers that somebody else has computed. */
-static const double near_enough = 1e-12;
-
-/* A member that was put: rotations and directions are what they are called. */
-static bool is_right(dvi_scene *scene, const dvi__target *target, const dvi__expression *e, const double *q)
-{
-  const dvi__coordinate *x = target->x;
-  if (target->says != DVI__SAYS_Q) return true;
-  if (x->kind == DVI__ROTATION) {
-    const double distance = dvi_so3_distance(q);
-    return distance <= near_enough ||
-           dvi__scene_refuse(scene, e->span, "this is no rotation for %s: off by %.2g; say it by turn(axis, angle)", x->name,
-                             distance);
-  }
-  if (x->kind != DVI__DIRECTION) return true;
-  const double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2]);
-  return fabs(length - 1) <= near_enough ||
-         dvi__scene_refuse(scene, e->span, "the direction %s is of length %.17g, and must be of length 1; divide it by norm(..)",
-                           x->name, length);
-}
-
-/* All members that a value gave. */
-static bool are_right(const dvi__context *c, const dvi__target *target, const dvi__expression *e, dvi__numbering numbering,
-                      int size, const double *q)
-{
-  bool good = true;
-  for (int i = 0; i < c->elements; i++)
-    for (int k = 0; k < size && good; k += target->places->components)
-      good = is_right(c->scene, target, e, q + first_of(numbering, i) + dvi__target_place(target, k));
-  return good;
-}
-
-static bool read_entry(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree, given *g)
-{
-  dvi__context c;
-  dvi__target target;
-  dvi__value value;
-  dvi__numbering numbering;
-  const dvi__expression *e;
-  if (!dvi__read_target(scene, key, &target) || !dvi__context_make(&c, scene, 0, "a start")) return false;
-  double *to = target.says == DVI__SAYS_Q ? scene->q : target.says == DVI__SAYS_V ? scene->v : scene->p;
-  char *mark = target.says == DVI__SAYS_Q ? g->q : target.says == DVI__SAYS_V ? g->v : g->p;
-  g->velocities |= target.says == DVI__SAYS_V;
-  g->momenta |= target.says == DVI__SAYS_P;
-  bool good = dvi__target_value(&c, &target, tree, &value, &numbering, &e) && stored_value(&c, &target, &value);
-  for (int k = 0; good && k < dvi__value_size(value); k++)
-    good = put_component(&c, &target, e, dvi__value_at(value, k), numbering, k, to, mark);
-  good = good && are_right(&c, &target, e, numbering, dvi__value_size(value), to);
-  dvi__context_free(&c);
-  return good;
-}
-
-/* A number of a coordinate that was not given. */
-static const dvi__coordinate *missing(const dvi__coordinate *x, const dvi__slots *places, const char *mark)
-{
-  for (int i = 0; i < x->size; i++)
-    for (int k = 0; k < places->components; k++)
-      if (!mark[places->first + i * places->stride + k]) return x;
-  return NULL;
-}
-
-/* The first coordinate of which not all was given. */
-static bool all_given(dvi_scene *scene, const dvi__tree *section, unsigned says, const char *mark)
-{
-  for (int k = 0; k < scene->coordinate_count; k++) {
-    const dvi__coordinate *x = &scene->coordinate[k], *found = NULL;
-    for (int i = 0; i < (x->kind == DVI__MOTION ? 2 : 1) && found == NULL; i++) {
-      const dvi__coordinate *part = x->kind == DVI__MOTION ? &x->part[i] : x;
-      found = missing(part, says == DVI__SAYS_Q ? &part->q : &part->v, mark);
-    }
-    if (found == NULL) continue;
-    const char dot[3] = {found->part_name != 0 ? '.' : '\0', found->part_name, '\0'};
-    return dvi__scene_refuse(scene, section->span,
-                             says == DVI__SAYS_Q ? "the start of %s%s is not given" : "the momentum p(%s%s) is not given", x->name,
-                             dot);
-  }
-  return true;
-}
-
-/* Velocities and momenta of directions are across them. */
-static bool are_across(dvi_scene *scene, const dvi__tree *section, const double *second)
-{
-  for (int k = 0; k < scene->coordinate_count; k++) {
-    const dvi__coordinate *x = &scene->coordinate[k];
-    for (int i = 0; i < x->size && x->kind == DVI__DIRECTION; i++) {
-      const double *q = scene->q + x->q.first + (ptrdiff_t)3 * i, *w = second + x->v.first + (ptrdiff_t)3 * i;
-      const double along = q[0] * w[0] + q[1] * w[1] + q[2] * w[2], size = sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
-      if (!(fabs(along) <= near_enough * size))
-        return dvi__scene_refuse(scene, section->span,
-                                 "the velocity or momentum of the direction %s is not orthogonal to it: off by %.2g; say it as "
-                                 "cross(omega, %s)",
-                                 x->name, fabs(along), x->name);
-    }
-  }
-  return true;
-}
-
-/* Formulas may have no value for a member that is given by itself, so numbers are looked at when all are there. */
-static bool all_finite(dvi_scene *scene, const dvi__tree *section)
-{
-  for (int i = 0; i < scene->n + 2 * scene->nv; i++) {
-    if (isfinite(scene->q[i])) continue;
-    const int of_v = i >= scene->n, number = of_v ? (i - scene->n) % scene->nv : i;
-    return dvi__scene_refuse(scene, section->span, "the start of %s is not finite",
-                             scene->coordinate[dvi__coordinate_at(scene, number, of_v)].name);
-  }
-  return true;
-}
-
-/* What must be given, and what may not. */
-static bool complete(dvi_scene *scene, const dvi__tree *section, const given *g)
-{
-  if (!all_given(scene, section, DVI__SAYS_Q, g->q)) return false;
-  if (scene->terms.one_form != NULL && (g->velocities || g->momenta))
-    return dvi__scene_refuse(scene, section->span,
-                             "with a one-form velocities and momenta follow from the coordinates, and are not given");
-  if (scene->terms.hamiltonian != NULL && g->velocities)
-    return dvi__scene_refuse(scene, section->span, "with a hamiltonian momenta are given, p(x), and no velocities");
-  if (g->velocities && g->momenta) return dvi__scene_refuse(scene, section->span, "give velocities or momenta, not both");
-  scene->momenta_given = g->momenta || scene->terms.hamiltonian != NULL;
-  if (scene->momenta_given && !all_given(scene, section, DVI__SAYS_P, g->p)) return false;
-  return all_finite(scene, section) && are_across(scene, section, scene->momenta_given ? scene->p : scene->v);
-}
-
-bool dvi__read_initial(dvi_scene *scene, const dvi__tree *section)
-{
-  const size_t n = (size_t)scene->n, nv = (size_t)scene->nv;
-  if (!dvi__want_mapping(scene, section, "initial")) return false;
-  double *numbers = dvi__arena_take(&scene->arena, n + 2 * nv, sizeof *numbers);
-  if (numbers == NULL) return dvi__scene_no_memory(scene);
-  scene->q = numbers;
-  scene->v = numbers + n;
-  scene->p = numbers + n + nv;
-  char *marks = dvi__heap_take(n + 2 * nv, 1);
-  if (marks == NULL) return dvi__scene_no_memory(scene);
-  given g = {.q = marks, .v = marks + n, .p = marks + n + nv};
-  bool good = true;
-  for (int i = 0; i < section->count && good; i++) good = read_entry(scene, section->key[i], section->child[i], &g);
-  good = good && complete(scene, section, &g);
-  dvi__heap_free(marks);
-  return good;
-}
-
-/* Whether each turn has a mass: (R[1,1]')^2 has velocities of all numbers, but not of all turns. */
+/* Whether each rotation has a mass: (R[1,1]')^2 has rates of all its numbers, but not of all its
+ * velocities. */
 static dvi_status try_mass(dvi_scene *scene)
 {
   double *v = dvi__heap_take((size_t)scene->nv, sizeof *v);
@@ -215,19 +18,23 @@ static dvi_status try_mass(dvi_scene *scene)
 bool dvi__scene_complete_start(dvi_scene *scene)
 {
   dvi_status status = DVI_OK;
-  dvi__blame_nobody();
+  dvi__fault_clear();
   if (scene->terms.one_form != NULL || scene->momenta_given)
     status = dvi_system_velocity(scene->system, 0.0, scene->q, scene->p, scene->v);
-  if (status == DVI_OK && !scene->momenta_given) status = dvi_system_momentum(scene->system, 0.0, scene->q, scene->v, scene->p);
-  if (status == DVI_OK && !scene->momenta_given && dvi__has_factors(scene)) status = try_mass(scene);
+  if (status == DVI_OK && !scene->momenta_given)
+    status = dvi_system_momentum(scene->system, 0.0, scene->q, scene->v, scene->p);
+  if (status == DVI_OK && !scene->momenta_given && dvi__has_factors(scene))
+    status = try_mass(scene);
   if (status == DVI_OK) return true;
   if (status == DVI_NO_MEMORY) return dvi__scene_no_memory(scene);
-  if (status == DVI_CALLBACK_FAILED) status = dvi__blame_status();
+  if (status == DVI_CALLBACK_FAILED) status = dvi__fault_status();
   const char *words;
   dvi__span span;
-  if (status == DVI_CALLBACK_RETRY && dvi__blame_place(&span, &words))
+  if (status == DVI_CALLBACK_RETRY && dvi__fault_place(&span, &words))
     return dvi__complain(scene->complaint, status, span, "at the start: %s", words);
-  const dvi__tree *cause = status == DVI_SINGULAR ? dvi__what_moves(scene) : dvi__tree_find(scene->tree, "initial");
-  return dvi__complain(scene->complaint, status, cause->span, "at the start: %s%s%s", dvi_last_error(),
-                       dvi_scene_blame()[0] != '\0' ? "; " : "", dvi_scene_blame());
+  const dvi__tree *cause = status == DVI_SINGULAR ? dvi__what_moves(scene)
+                                                  : dvi__tree_find(scene->tree, "initial");
+  return dvi__complain(scene->complaint, status, cause->span, "at the start: %s%s%s",
+                       dvi_last_error(), dvi_scene_fault()[0] != '\0' ? "; " : "",
+                       dvi_scene_fault());
 }

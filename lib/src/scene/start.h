@@ -1,4 +1,5 @@
-/* What follows from a start once there is a system: momenta of velocities, or velocities of momenta. */
+/* What follows from a start once there is a system: momenta of velocities, or velocities of
+ * momenta. */
 #ifndef DVI_SCENE_START_H
 #define DVI_SCENE_START_H
 #include "scene/elaborate/model.h"

@@ -53,11 +53,13 @@ static void extrapolate(const history *past, size_t unknowns, double part, doubl
 }
 
 /* Unknowns with other units, and of small parts of a system, count as much as large ones. */
-static double distance(const dvi__branch *branch, const dvi__solver *solver, const history *past, double part, const double *guess,
-                       const double *x)
+static double distance(const dvi__branch *branch, const dvi__solver *solver, const history *past,
+                       double part, const double *guess, const double *x)
 {
-  const size_t unknowns = (size_t)solver->equations.unknowns, group = (size_t)solver->equations.group;
-  const double least = dvi__solver_least_part(solver) * fmax(branch->size, dvi__largest(unknowns, x));
+  const size_t unknowns = (size_t)solver->equations.unknowns,
+               group = (size_t)solver->equations.group;
+  const double least = dvi__solver_least_part(solver) *
+                       fmax(branch->size, dvi__largest(unknowns, x));
   double worst = 0;
   if (branch->distance != NULL) return branch->distance(branch->of, guess, x);
   for (size_t first = 0; first < unknowns; first += group) {
@@ -72,14 +74,17 @@ static double distance(const dvi__branch *branch, const dvi__solver *solver, con
   return worst;
 }
 
-/* Of a motion that begins at rest the first guesses are no measure; short steps, whose equations are
- * nearly linear, have no other solution near. */
-static int is_near(const dvi__branch *branch, const dvi__solver *solver, const history *past, double part, const double *guess,
-                   const double *x, const dvi__solve_report *report)
+/* Of a motion that begins at rest the first guesses are no measure; short steps, whose equations
+ * are nearly linear, have no other solution near. */
+static int is_near(const dvi__branch *branch, const dvi__solver *solver, const history *past,
+                   double part, const double *guess, const double *x,
+                   const dvi__solve_report *report)
 {
   const size_t unknowns = (size_t)solver->equations.unknowns;
   const int measurable = branch->distance != NULL || past->solved >= 2;
-  if (branch->distance == NULL && past->count < DVI__BRANCH_POINTS && dvi__branch_is_straight(report)) return 1;
+  if (branch->distance == NULL && past->count < DVI__BRANCH_POINTS &&
+      dvi__branch_is_straight(report))
+    return 1;
   const double away = measurable ? distance(branch, solver, past, part, guess, x) : 0;
   const int contracts = report->contraction <= (measurable ? contraction : at_first) ||
                         report->largest_first <= negligible * dvi__largest(unknowns, x);
@@ -88,7 +93,8 @@ static int is_near(const dvi__branch *branch, const dvi__solver *solver, const h
 }
 
 /* From the caller's guess until there are two points. */
-static dvi_status guess_at(const dvi__branch *branch, const history *past, size_t unknowns, double part, double *x)
+static dvi_status guess_at(const dvi__branch *branch, const history *past, size_t unknowns,
+                           double part, double *x)
 {
   DVI_TRY(branch->place(branch->of, part));
   if (past->count < 2) return branch->guess(branch->of, part, x);
@@ -96,8 +102,8 @@ static dvi_status guess_at(const dvi__branch *branch, const history *past, size_
   return DVI_OK;
 }
 
-static dvi_status solve_at(const dvi__branch *branch, dvi__solver *solver, const history *past, double part, double *x,
-                           double *guess, dvi__solve_report *report)
+static dvi_status solve_at(const dvi__branch *branch, dvi__solver *solver, const history *past,
+                           double part, double *x, double *guess, dvi__solve_report *report)
 {
   const size_t unknowns = (size_t)solver->equations.unknowns;
   DVI_TRY(guess_at(branch, past, unknowns, part, guess));
@@ -114,14 +120,16 @@ static void begin(const dvi__branch *branch, size_t unknowns, history *past)
   if (branch->from_zero) remember(past, unknowns, 0, past->first);
 }
 
-/* Whether the last solution is beyond a fold; before it the determinant had a sign, if any were solved. */
+/* Whether the last solution is beyond a fold; before it the determinant had a sign, if any were
+ * solved. */
 static int is_folded(const dvi__branch *branch, const dvi__solver *solver, int solved, int sign)
 {
   if (branch->definite != 0 && !dvi__solver_is_definite(solver, branch->definite)) return 1;
   return branch->signs && solved > 0 && dvi__solver_sign(solver) != sign;
 }
 
-dvi_status dvi__branch_follow(const dvi__branch *branch, dvi__solver *solver, double *x, dvi__branch_end *end)
+dvi_status dvi__branch_follow(const dvi__branch *branch, dvi__solver *solver, double *x,
+                              dvi__branch_end *end)
 {
   const size_t unknowns = (size_t)solver->equations.unknowns;
   const double most_part = 1.0 / branch->parts;
@@ -134,7 +142,8 @@ dvi_status dvi__branch_follow(const dvi__branch *branch, dvi__solver *solver, do
     const double next = fmin(1, end->reached + part);
     end->status = solve_at(branch, solver, &past, next, x, guess, &end->report);
     if (end->status < 0) return end->status;
-    const int solved = end->status == DVI_OK, folded = solved && is_folded(branch, solver, past.solved, sign);
+    const int solved = end->status == DVI_OK,
+              folded = solved && is_folded(branch, solver, past.solved, sign);
     if (!solved || folded || !is_near(branch, solver, &past, next, guess, x, &end->report)) {
       end->ends = !solved || folded || end->report.contraction > contraction;
       if (solved) end->status = dvi__fail(DVI_NOT_CONVERGED, "the next solution is not near");
@@ -166,7 +175,8 @@ int dvi__branch_is_straight(const dvi__solve_report *report)
 void dvi__branch_note(dvi_status status, dvi__branch_failure *failure)
 {
   failure->status = status;
-  (void)snprintf(failure->sentence, sizeof failure->sentence, "%s", status == DVI_OK ? "" : dvi_last_error());
+  (void)snprintf(failure->sentence, sizeof failure->sentence, "%s",
+                 status == DVI_OK ? "" : dvi_last_error());
 }
 
 static int is_callback(dvi_status status)
@@ -178,14 +188,20 @@ dvi_status dvi__branch_tell(const dvi__branch_end *end, double h, const dvi__bra
 {
   const double reached = end->reached * h;
   if (is_callback(whole->status))
-    return dvi__fail(whole->status, "%s; solutions that continue those of shorter steps reach h = %.4g", whole->sentence, reached);
+    return dvi__fail(whole->status,
+                     "%s; solutions that continue those of shorter steps reach h = %.4g",
+                     whole->sentence, reached);
   if (is_callback(end->status))
-    return dvi__fail_in(end->status, "the solution continues those of shorter steps up to h = %.4g", reached);
+    return dvi__fail_in(end->status, "the solution continues those of shorter steps up to h = %.4g",
+                        reached);
   if (end->reached == 0)
-    return dvi__fail_in(DVI_NOT_CONVERGED, "not solved, not even for a step of h = %.3g (%d iterations, residual %.1e)",
-                        least_part * h, end->report.iterations, end->report.row);
-  return dvi__fail(DVI_STEP_TOO_LARGE,
-                   "a step too large: the solution that continues those of shorter steps ends at h = %.4g; "
-                   "beyond, Newton's method finds none near it (%d iterations, residual %.1e)",
-                   reached, end->report.iterations, end->report.row);
+    return dvi__fail_in(
+        DVI_NOT_CONVERGED,
+        "not solved, not even for a step of h = %.3g (%d iterations, residual %.1e)",
+        least_part * h, end->report.iterations, end->report.row);
+  return dvi__fail(
+      DVI_STEP_TOO_LARGE,
+      "a step too large: the solution that continues those of shorter steps ends at h = %.4g; "
+      "beyond, Newton's method finds none near it (%d iterations, residual %.1e)",
+      reached, end->report.iterations, end->report.row);
 }

@@ -14,8 +14,8 @@ enum { DVI__BRANCH_POINTS = 4, DVI__BRANCH_ROOM = DVI__BRANCH_POINTS + 2 };
 /* Between an extrapolated guess and the next solution, as a part of how far the branch has come. */
 #define DVI__BRANCH_NEAR 0.03
 
-/* A branch is followed in at most so many parts of a step; and in at least so many where solutions of
- * another one were met. */
+/* A branch is followed in at most so many parts of a step; and in at least so many where solutions
+ * of another one were met. */
 enum { DVI__BRANCH_PARTS = 4096, DVI__BRANCH_CAREFUL = 64, DVI__BRANCH_SENTENCE = 600 };
 
 typedef struct dvi__branch {
@@ -24,12 +24,15 @@ typedef struct dvi__branch {
   dvi_status (*place)(void *of, double part);
   /* x [unknowns], a guess for a short part of the step. */
   dvi_status (*guess)(void *of, double part, double *x);
-  /* How far a solution is from its guess; NULL: as a part of how far its group has come, the worst. */
+  /* How far a solution is from its guess; NULL: as a part of how far its group has come, the
+   * worst. */
   double (*distance)(void *of, const double *guess, const double *x);
-  double near;   /* a solution on the branch is no farther from an extrapolated guess */
-  int parts;     /* the step is followed in at least so many parts */
-  int signs;     /* along the branch the determinant of the Jacobian changes its sign at folds alone */
-  int definite;  /* 1, -1: and it is symmetric, and positive or negative definite before them; 0: it need not be */
+  double near; /* a solution on the branch is no farther from an extrapolated guess */
+  int parts;   /* the step is followed in at least so many parts */
+  /* along the branch the determinant of the Jacobian changes its sign at folds alone */
+  int signs;
+  /* 1, -1: and it is symmetric, and positive or negative definite before them; 0: it need not be */
+  int definite;
   int from_zero; /* x is 0 at a step of length 0: the extrapolation begins there */
   double size;   /* of the quantities to which x is an increment (nonlinear.h) */
   double *room;  /* [DVI__BRANCH_ROOM * unknowns] */
@@ -41,14 +44,16 @@ typedef struct dvi__branch_end {
   double reached;
   dvi__solve_report report;
   dvi_status status;
-  int ends; /* there is no solution beyond, or one across a fold; 0: there is one, but not near its guess */
+  /* there is no solution beyond, or one across a fold; 0: there is one, but not near its guess */
+  int ends;
 } dvi__branch_end;
 
 /* The solution x [unknowns] of the whole step on the branch; the equations are left there.
  *
  * DVI_STEP_TOO_LARGE: the branch ends before, or nothing can be solved beyond; x is the last
  * solution. A negative status: fatal. */
-dvi_status dvi__branch_follow(const dvi__branch *branch, dvi__solver *solver, double *x, dvi__branch_end *end);
+dvi_status dvi__branch_follow(const dvi__branch *branch, dvi__solver *solver, double *x,
+                              dvi__branch_end *end);
 
 /* Whether a Newton method began near its solution, and the equations were nearly linear in between,
  * group by group. */

@@ -1,7 +1,8 @@
 /* KINSOL with line search, on our own matrix and linear solver.
  *
- * SUNDIALS' wrapper of KLU analyses and factors anew at the first setup of each call; here the one analysis of num/linear.h serves
- * Newton's method and KINSOL alike. KINSOL's defaults are loose and reuse old Jacobians, which shows as energy drift over long runs
+ * SUNDIALS' wrapper of KLU analyses and factors anew at the first setup of each call; here the one
+ * analysis of num/linear.h serves Newton's method and KINSOL alike. KINSOL's defaults are loose and
+ * reuse old Jacobians, which shows as energy drift over long runs
  * (tests/solve/test_kinsol_drift.c): every tolerance is set here. */
 #include <float.h>
 #include <kinsol/kinsol.h>
@@ -21,8 +22,9 @@ struct dvi__kinsol {
   SUNContext context;
   void *memory;
   N_Vector x, x_scale, r_scale;
-  double *row_scale, whole; /* [unknowns] as the equations gave it, and the unknowns' size: what both scales are made of */
-  SUNMatrix matrix;         /* content: this struct */
+  /* [unknowns] as the equations gave it, and the unknowns' size: what both scales are made of */
+  double *row_scale, whole;
+  SUNMatrix matrix; /* content: this struct */
   SUNLinearSolver linear;
   dvi_status fatal; /* of a callback; 0: none */
   dvi_status last;  /* of the last callback */
@@ -37,7 +39,8 @@ static int callback_return(dvi__kinsol *k, dvi_status status)
   return status == DVI_OK ? 0 : status > 0 ? 1 : -1;
 }
 
-/* KINSOL's line search halves its step for ever once a NaN is among its numbers: none may get there. */
+/* KINSOL's line search halves its step for ever once a NaN is among its numbers: none may get
+ * there. */
 static int not_finite(const dvi__kinsol *k, N_Vector x)
 {
   return dvi__first_not_finite((size_t)k->solver->equations.unknowns, N_VGetArrayPointer(x)) >= 0;
@@ -46,11 +49,13 @@ static int not_finite(const dvi__kinsol *k, N_Vector x)
 static int residual(N_Vector x, N_Vector r, void *user)
 {
   dvi__kinsol *k = user;
-  const int failed = callback_return(k, dvi__solver_residual(k->solver, N_VGetArrayPointer(x), N_VGetArrayPointer(r)));
+  const int failed = callback_return(
+      k, dvi__solver_residual(k->solver, N_VGetArrayPointer(x), N_VGetArrayPointer(r)));
   return failed != 0 ? failed : not_finite(k, r);
 }
 
-static int jacobian(N_Vector x, N_Vector r, SUNMatrix matrix, void *user, N_Vector work1, N_Vector work2)
+static int jacobian(N_Vector x, N_Vector r, SUNMatrix matrix, void *user, N_Vector work1,
+                    N_Vector work2)
 {
   dvi__kinsol *k = user;
   (void)r, (void)matrix, (void)work1, (void)work2;
@@ -81,7 +86,8 @@ static int linear_setup(SUNLinearSolver linear, SUNMatrix matrix)
   return 0;
 }
 
-static int linear_solve(SUNLinearSolver linear, SUNMatrix matrix, N_Vector x, N_Vector b, sunrealtype tolerance)
+static int linear_solve(SUNLinearSolver linear, SUNMatrix matrix, N_Vector x, N_Vector b,
+                        sunrealtype tolerance)
 {
   const dvi__kinsol *k = linear->content;
   (void)matrix, (void)tolerance;
@@ -123,17 +129,19 @@ static int create_vectors(dvi__kinsol *k)
   return k->x != NULL && k->x_scale != NULL && k->r_scale != NULL && k->row_scale != NULL;
 }
 
-/* KINSOL accepts a guess whose scaled norm is a hundredth of its tolerance. Roundings of the rows make 1e-15 to 1e-13 of the unknowns, the more the
- * higher the degree. */
+/* KINSOL accepts a guess whose scaled norm is a hundredth of its tolerance. Roundings of the rows
+ * make 1e-15 to 1e-13 of the unknowns, the more the higher the degree. */
 static const double tolerance = 1e-13, tolerance_of_guess = 1e-10;
 
 static int configure(dvi__kinsol *k)
 {
   void *m = k->memory = KINCreate(k->context);
-  return m != NULL && DVI__SUNDIALS_SILENCE(KINSetErrHandlerFn, m) == 0 && KINInit(m, residual, k->x) == 0 &&
-         KINSetUserData(m, k) == 0 && KINSetLinearSolver(m, k->linear, k->matrix) == 0 && KINSetJacFn(m, jacobian) == 0 &&
-         KINSetFuncNormTol(m, tolerance) == 0 && KINSetScaledStepTol(m, 1e-15) == 0 && KINSetMaxSetupCalls(m, 1) == 0 &&
-         KINSetMaxNewtonStep(m, 1e3) == 0 && KINSetNumMaxIters(m, 100) == 0;
+  return m != NULL && DVI__SUNDIALS_SILENCE(KINSetErrHandlerFn, m) == 0 &&
+         KINInit(m, residual, k->x) == 0 && KINSetUserData(m, k) == 0 &&
+         KINSetLinearSolver(m, k->linear, k->matrix) == 0 && KINSetJacFn(m, jacobian) == 0 &&
+         KINSetFuncNormTol(m, tolerance) == 0 && KINSetScaledStepTol(m, 1e-15) == 0 &&
+         KINSetMaxSetupCalls(m, 1) == 0 && KINSetMaxNewtonStep(m, 1e3) == 0 &&
+         KINSetNumMaxIters(m, 100) == 0;
 }
 
 dvi_status dvi__kinsol_create(dvi__solver *solver, dvi__kinsol **kinsol)
@@ -141,7 +149,9 @@ dvi_status dvi__kinsol_create(dvi__solver *solver, dvi__kinsol **kinsol)
   dvi__kinsol *k = *kinsol = DVI_NEW(dvi__kinsol, 1);
   if (k == NULL) return dvi__fail(DVI_NO_MEMORY, "KINSOL: no memory");
   k->solver = solver;
-  if (dvi__sundials_context(&k->context) == 0 && create_vectors(k) && create_matrix(k) && configure(k)) return DVI_OK;
+  if (dvi__sundials_context(&k->context) == 0 && create_vectors(k) && create_matrix(k) &&
+      configure(k))
+    return DVI_OK;
   dvi__kinsol_destroy(kinsol);
   /* All that it was given is valid. */
   return dvi__fail(DVI_NO_MEMORY, "KINSOL: no memory for %d unknowns", solver->equations.unknowns);
@@ -165,7 +175,8 @@ void dvi__kinsol_destroy(dvi__kinsol **kinsol)
 
 /* ---- using it ---- */
 
-/* 1 / (row * whole): rows of one coordinate have the same scale, and a division costs more than all else here. */
+/* 1 / (row * whole): rows of one coordinate have the same scale, and a division costs more than all
+ * else here. */
 static int invert_rows(dvi__kinsol *k)
 {
   double *r_scale = N_VGetArrayPointer(k->r_scale), row = 0, inverse = 0;
@@ -189,7 +200,8 @@ static double power_above(double x)
   return exponent < DBL_MAX_EXP ? ldexp(1.0, exponent) : x;
 }
 
-/* Both norms in units of the unknowns' size, to a factor of 2, which seldom changes: a residual row over row_scale is a change of an unknown. */
+/* Both norms in units of the unknowns' size, to a factor of 2, which seldom changes: a residual row
+ * over row_scale is a change of an unknown. */
 static dvi_status set_scales(dvi__kinsol *k, double size, const double *x)
 {
   double whole = dvi__largest((size_t)k->solver->equations.unknowns, x);
@@ -203,17 +215,20 @@ static dvi_status set_scales(dvi__kinsol *k, double size, const double *x)
   if (invert_rows(k) && 1 / whole > 0 && 1 / whole <= DBL_MAX) return DVI_OK;
   k->whole = 0;
   /* KINSOL would take it for a fault of its caller, but a smaller step may have a finite path. */
-  return dvi__fail(DVI_NOT_FINITE, "the guess of the path is too large or too small to be scaled (size %g)", whole);
+  return dvi__fail(DVI_NOT_FINITE,
+                   "the guess of the path is too large or too small to be scaled (size %g)", whole);
 }
 
-dvi_status dvi__kinsol_certify(dvi__kinsol *k, double size, const double *x, int *certified, dvi__solve_report *report)
+dvi_status dvi__kinsol_certify(dvi__kinsol *k, double size, const double *x, int *certified,
+                               dvi__solve_report *report)
 {
   const size_t bytes = (size_t)k->solver->equations.unknowns * sizeof(double);
   DVI_TRY(set_scales(k, size, x));
   memcpy(N_VGetArrayPointer(k->x), x, bytes);
   k->fatal = DVI_OK;
   (void)KINSetFuncNormTol(k->memory, tolerance_of_guess);
-  *certified = KINSol(k->memory, k->x, KIN_LINESEARCH, k->x_scale, k->r_scale) == KIN_INITIAL_GUESS_OK;
+  *certified = KINSol(k->memory, k->x, KIN_LINESEARCH, k->x_scale, k->r_scale) ==
+               KIN_INITIAL_GUESS_OK;
   (void)KINSetFuncNormTol(k->memory, tolerance);
   (void)KINGetFuncNorm(k->memory, &report->residual);
   return k->fatal;
@@ -235,8 +250,10 @@ dvi_status dvi__kinsol_solve(dvi__kinsol *k, double size, double *x, dvi__solve_
   if (flag == KIN_SUCCESS || flag == KIN_INITIAL_GUESS_OK) return DVI_OK;
   if (flag == KIN_ILL_INPUT && k->last > 0)
     return k->last; /* a first residual that fails looks like its caller's fault to KINSOL */
-  if (flag == KIN_MEM_NULL || flag == KIN_ILL_INPUT || flag == KIN_NO_MALLOC || flag == KIN_MEM_FAIL)
+  if (flag == KIN_MEM_NULL || flag == KIN_ILL_INPUT || flag == KIN_NO_MALLOC ||
+      flag == KIN_MEM_FAIL)
     return dvi__fail(DVI_SOLVER_FAILED, "KINSOL refused the step's equations (flag %d)", flag);
-  return dvi__fail(DVI_NOT_CONVERGED, "KINSOL with line search found no solution (flag %d, scaled residual %.1e)", flag,
-                   report->residual);
+  return dvi__fail(DVI_NOT_CONVERGED,
+                   "KINSOL with line search found no solution (flag %d, scaled residual %.1e)",
+                   flag, report->residual);
 }

@@ -1,4 +1,5 @@
-/* Newton's method with a Jacobian that is kept while the corrections shrink fast (simplified Newton: Hairer and Wanner 1996, sec. IV.8). */
+/* Newton's method with a Jacobian that is kept while the corrections shrink fast (simplified
+ * Newton: Hairer and Wanner 1996, sec. IV.8). */
 #include <float.h>
 #include <math.h>
 
@@ -8,11 +9,12 @@
 
 enum { MOST_ITERATIONS = 40 };
 
-/* Beyond this ratio of two corrections a new Jacobian costs less than the iterations that it saves. */
+/* Beyond this ratio of two corrections a new Jacobian costs less than the iterations that it
+ * saves. */
 static const double keep_below = 0.05;
 
-/* Newton's corrections shrink fast until rounding noise of the residual, amplified by a stiff Jacobian, keeps them; one that doubles is a bad
- * sign, two are the end. */
+/* Newton's corrections shrink fast until rounding noise of the residual, amplified by a stiff
+ * Jacobian, keeps them; one that doubles is a bad sign, two are the end. */
 static const dvi__pace roundoff = {0.5, 1e4 * DBL_EPSILON, 2.0, 0, 0};
 
 /* Corrections of noisy residuals may be noise from larger ones on. */
@@ -23,11 +25,13 @@ static dvi__pace pace_of(const dvi__solver *s)
   return pace;
 }
 
-/* A guess is as likely to lead to another solution as to the wanted one if the second correction is larger than the first, or if the first one is a
- * large part of the unknowns and does not shrink fast. */
+/* A guess is as likely to lead to another solution as to the wanted one if the second correction is
+ * larger than the first, or if the first one is a large part of the unknowns and does not shrink
+ * fast. */
 int dvi__misleading(const dvi__trail *trail, double whole)
 {
-  return trail->last > trail->before || (trail->before > 0.5 * whole && trail->last > 0.25 * trail->before);
+  return trail->last > trail->before ||
+         (trail->before > 0.5 * whole && trail->last > 0.25 * trail->before);
 }
 
 /* Largest change of an unknown relative to that unknown itself. */
@@ -35,12 +39,13 @@ static double relative_change(int count, const double *correction, const double 
 {
   double largest = 0;
   for (int i = 0; i < count; i++)
-    if (fabs(correction[i]) > largest * fabs(x[i]) && x[i] != 0) largest = fabs(correction[i] / x[i]);
+    if (fabs(correction[i]) > largest * fabs(x[i]) && x[i] != 0)
+      largest = fabs(correction[i] / x[i]);
   return largest;
 }
 
-/* When the largest unknowns are at roundoff, much smaller ones may not be: Newton's method goes on until each has lost its own error, or
- * none gets better. */
+/* When the largest unknowns are at roundoff, much smaller ones may not be: Newton's method goes on
+ * until each has lost its own error, or none gets better. */
 static int small_ones_settled(dvi__solver *s, const double *x, double *last)
 {
   const double change = relative_change(s->equations.unknowns, s->residual, x);
@@ -49,9 +54,11 @@ static int small_ones_settled(dvi__solver *s, const double *x, double *last)
   return settled;
 }
 
-/* Where errors are squared, a correction's ratio to the last one is squared, too, and is the same for all unknowns, small ones as well. A kept Jacobian only keeps
- * the ratio. Whether a part of the correction does not count any more: */
-static int is_unseen(const dvi__solver *s, double part, double correction, double whole, const double *x)
+/* Where errors are squared, a correction's ratio to the last one is squared, too, and is the same
+ * for all unknowns, small ones as well. A kept Jacobian only keeps the ratio. Whether a part of the
+ * correction does not count any more: */
+static int is_unseen(const dvi__solver *s, double part, double correction, double whole,
+                     const double *x)
 {
   return s->equations.ahead && dvi__unseen(part * correction, whole) &&
          part * relative_change(s->equations.unknowns, s->residual, x) <= 64 * DBL_EPSILON;
@@ -71,8 +78,10 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
     dvi__correct(s->equations.unknowns, s->residual, x, &report->correction, &whole);
     dvi__solver_note(s, x, report);
     const dvi__progress progress = dvi__judge(report->correction, &trail, &pace, whole, size);
-    const double ratio = dvi__ratio(report->correction, &trail), next = fresh ? ratio : ratio * ratio;
-    if (progress != DVI__STALLED && !converged && is_unseen(s, next, report->correction, whole, x)) return DVI_OK;
+    const double ratio = dvi__ratio(report->correction, &trail),
+                 next = fresh ? ratio : ratio * ratio;
+    if (progress != DVI__STALLED && !converged && is_unseen(s, next, report->correction, whole, x))
+      return DVI_OK;
     int at_floor = 0;
     if (progress != DVI__CONVERGED && report->correction >= pace.stagnant * trail.before)
       DVI_TRY(dvi__solver_at_floor(s, x, &at_floor));
@@ -83,8 +92,10 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
     if (growing == 2 || report->correction > 1e300) break;
     if (wary && report->iterations == 2 && !converged && dvi__misleading(&trail, whole)) break;
     fresh = converged || is_unseen(s, next * next, report->correction, whole, x) ||
-            (!s->equations.renewed && (trail.before == 0 || trail.last < keep_below * trail.before));
+            (!s->equations.renewed &&
+             (trail.before == 0 || trail.last < keep_below * trail.before));
   }
   if (converged) return DVI_OK;
-  return dvi__fail(DVI_NOT_CONVERGED, "Newton's method does not settle (change %.1e after %.1e)", trail.last, trail.before);
+  return dvi__fail(DVI_NOT_CONVERGED, "Newton's method does not settle (change %.1e after %.1e)",
+                   trail.last, trail.before);
 }

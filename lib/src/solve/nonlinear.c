@@ -17,25 +17,66 @@ dvi_status dvi__solver_residual(dvi__solver *solver, const double *x, double *r)
   return solver->equations.residual(solver->equations.of, x, r);
 }
 
+/* ---- what Newton's method needs ---- */
+
+static size_t entries_of(const dvi__solver *solver)
+{
+  return (size_t)dvi__pattern_entries(solver->equations.pattern);
+}
+
+static dvi_status create_linear(dvi__solver *s)
+{
+  const dvi__equations *e = &s->equations;
+  if (e->whole != NULL) return dvi__linear_create_iterative(e->whole, s->counters, &s->linear);
+  if (s->values == NULL) s->values = DVI_NEW(double, entries_of(s));
+  if (s->values == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "solver: no memory for a Jacobian of %zu entries",
+                     entries_of(s));
+  if (e->border > 0)
+    return dvi__linear_create_bordered(e->pattern, e->border, s->counters, &s->linear);
+  return dvi__linear_create(e->pattern, e->linear, s->counters, &s->linear);
+}
+
+dvi_status dvi__solver_prepare(dvi__solver *solver)
+{
+  dvi__equations *equations = &solver->equations;
+  if (solver->linear != NULL) return DVI_OK;
+  if (equations->prepare != NULL) DVI_TRY(equations->prepare(equations->of, equations));
+  return create_linear(solver);
+}
+
 dvi_status dvi__solver_jacobian(dvi__solver *solver, const double *x, double *values)
 {
+  DVI_TRY(dvi__solver_prepare(solver));
   solver->counters->jacobians++;
   return solver->equations.jacobian(solver->equations.of, x, values);
+}
+
+/* A singular Jacobian at one point of one step: a smaller step may avoid it. Memory does not grow
+ * with smaller steps. */
+static dvi_status judge_factor(dvi_status factored)
+{
+  if (factored == DVI_OK) return DVI_OK;
+  if (factored != DVI_SINGULAR && factored < 0)
+    return dvi__fail_in(factored, "the Jacobian of the step's equations");
+  return dvi__fail_in(DVI_NOT_CONVERGED, "the Jacobian of the step's equations cannot be factored");
 }
 
 dvi_status dvi__solver_factor(dvi__solver *solver, const double *x)
 {
   solver->factored = 0;
+  DVI_TRY(dvi__solver_prepare(solver));
   DVI_TRY(dvi__solver_jacobian(solver, x, solver->values));
-  solver->factored = dvi__linear_factor(solver->linear, solver->values) == DVI_OK;
+  const dvi_status factored = dvi__linear_factor(solver->linear, solver->values);
+  solver->factored = factored == DVI_OK;
   solver->in_use = 1;
-  /* A singular Jacobian at one point of one step: a smaller step may avoid it. */
-  return solver->factored ? DVI_OK : dvi__fail_in(DVI_NOT_CONVERGED, "the Jacobian of the step's equations cannot be factored");
+  return judge_factor(factored);
 }
 
 dvi_status dvi__solver_take_jacobian(dvi__solver *solver, const double *values)
 {
-  const size_t bytes = (size_t)dvi__pattern_entries(solver->equations.pattern) * sizeof *values;
+  DVI_TRY(dvi__solver_prepare(solver));
+  const size_t bytes = entries_of(solver) * sizeof *values;
   solver->in_use = 1;
   if (solver->factored && memcmp(solver->values, values, bytes) == 0) return DVI_OK;
   memcpy(solver->values, values, bytes);
@@ -53,13 +94,15 @@ double dvi__solver_least_part(const dvi__solver *solver)
 }
 
 /* The worst ratio of two vectors, group by group; of groups of `to` no less than `least` counts. */
-static double worst_ratio(const dvi__solver *solver, double least, const double *of, const double *to)
+static double worst_ratio(const dvi__solver *solver, double least, const double *of,
+                          const double *to)
 {
   const int unknowns = solver->equations.unknowns, group = solver->equations.group;
   double worst = 0;
   for (int first = 0; first < unknowns; first += group) {
     const size_t count = (size_t)(first + group < unknowns ? group : unknowns - first);
-    const double one = dvi__largest(count, of + first), other = fmax(dvi__largest(count, to + first), least);
+    const double one = dvi__largest(count, of + first),
+                 other = fmax(dvi__largest(count, to + first), least);
     if (one > worst * other) worst = other > 0 ? one / other : HUGE_VAL;
   }
   return worst;
@@ -72,7 +115,8 @@ void dvi__solver_note(const dvi__solver *solver, const double *x, dvi__solve_rep
     memcpy(solver->before, solver->residual, (size_t)solver->equations.unknowns * sizeof(double));
   }
   if (report->iterations != 2) return;
-  const double least = dvi__solver_least_part(solver) * dvi__largest((size_t)solver->equations.unknowns, x);
+  const double least = dvi__solver_least_part(solver) *
+                       dvi__largest((size_t)solver->equations.unknowns, x);
   report->contraction = report->correction / report->largest_first;
   report->first = worst_ratio(solver, least, solver->before, x);
   report->bend = worst_ratio(solver, least, solver->residual, solver->before);
@@ -97,33 +141,29 @@ dvi_status dvi__solver_at_floor(dvi__solver *solver, const double *x, int *at_fl
   return DVI_OK;
 }
 
-static dvi_status fill(dvi__solver *solver)
+/* ---- making it ---- */
+
+static dvi_status solver_allocate(dvi__solver *solver)
 {
-  const dvi__pattern *pattern = solver->equations.pattern;
   const size_t unknowns = (size_t)solver->equations.unknowns;
+  const int has_magnitudes = solver->equations.magnitudes != NULL;
   if (solver->equations.group == 0) solver->equations.group = 1;
   solver->residual = DVI_NEW(double, unknowns);
   solver->before = DVI_NEW(double, unknowns);
-  solver->values = DVI_NEW(double, dvi__pattern_entries(pattern));
-  if (solver->equations.magnitudes != NULL) solver->magnitude = DVI_NEW(double, unknowns);
-  if (!solver->residual || !solver->before || !solver->values || (solver->equations.magnitudes != NULL && !solver->magnitude))
-    return dvi__fail(DVI_NO_MEMORY, "solver: no memory for %zu unknowns", unknowns);
-  const int border = solver->equations.border;
-  DVI_TRY(border > 0 ? dvi__linear_create_bordered(pattern, border, solver->counters, &solver->linear)
-                     : dvi__linear_create(pattern, solver->equations.linear, solver->counters, &solver->linear));
-  return dvi__kinsol_create(solver, &solver->kinsol);
+  if (has_magnitudes) solver->magnitude = DVI_NEW(double, unknowns);
+  if (solver->residual && solver->before && (!has_magnitudes || solver->magnitude)) return DVI_OK;
+  return dvi__fail(DVI_NO_MEMORY, "solver: no memory for %zu unknowns", unknowns);
 }
 
-dvi_status dvi__solver_create(const dvi__equations *equations, dvi_counters *counters, dvi__solver **solver)
+dvi_status dvi__solver_create(const dvi__equations *equations, dvi_counters *counters,
+                              dvi__solver **solver)
 {
-  *solver = NULL;
-  dvi__solver *made = DVI_NEW(dvi__solver, 1);
+  dvi__solver *made = *solver = DVI_NEW(dvi__solver, 1);
   if (made == NULL) return dvi__fail(DVI_NO_MEMORY, "solver: no memory");
   made->equations = *equations;
   made->counters = counters;
-  const dvi_status status = fill(made);
-  if (status != DVI_OK) dvi__solver_destroy(&made);
-  *solver = made;
+  const dvi_status status = solver_allocate(made);
+  if (status != DVI_OK) dvi__solver_destroy(solver);
   return status;
 }
 
@@ -148,23 +188,25 @@ void dvi__solver_apply_factor(dvi__solver *solver, double *b)
 
 int dvi__solver_sign(const dvi__solver *solver)
 {
-  return solver->factored ? dvi__linear_sign(solver->linear) : 1;
+  const int sign = solver->factored ? dvi__linear_sign(solver->linear) : 0;
+  return sign != 0 ? sign : 1;
 }
 
 int dvi__solver_is_definite(const dvi__solver *solver, int sign)
 {
-  if (!solver->factored || dvi__linear_kind_of(solver->linear) != DVI__LINEAR_SPARSE) return 1;
+  if (!solver->factored || !dvi__linear_tells_definite(solver->linear)) return 1;
   return dvi__linear_is_definite(solver->linear, sign);
 }
 
-dvi__linear_kind dvi__solver_linear_kind(const dvi__solver *solver)
+dvi__linear *dvi__solver_linear(const dvi__solver *solver)
 {
-  return dvi__linear_kind_of(solver->linear);
+  return solver->linear;
 }
 
-/* Fixed point iteration pays while each iteration gains a third of a digit: a step by simplified Newton's method costs about as much as 40 to 300 of
- * them. A patient user takes any gain. */
-static const dvi__pace paying = {0.35, 32 * DBL_EPSILON, 0.45, 1, 0}, any_gain = {1.0, 1e4 * DBL_EPSILON, 1.0, 1, 0};
+/* Fixed point iteration pays while each iteration gains a third of a digit: a step by simplified
+ * Newton's method costs about as much as 40 to 300 of them. A patient user takes any gain. */
+static const dvi__pace paying = {0.35, 32 * DBL_EPSILON, 0.45, 1, 0},
+                       any_gain = {1.0, 1e4 * DBL_EPSILON, 1.0, 1, 0};
 
 dvi__pace dvi__fixed_point_pace(int patient, int sweeps)
 {
@@ -199,7 +241,8 @@ static dvi_status prepare(dvi__solver *s, const double *x)
   return DVI_OK;
 }
 
-static dvi_status fixed_point(dvi__solver *s, double size, int patient, double *x, dvi__solve_report *report)
+static dvi_status fixed_point(dvi__solver *s, double size, int patient, double *x,
+                              dvi__solve_report *report)
 {
   const int most = dvi__fixed_point_most(patient);
   const dvi__pace pace = dvi__fixed_point_pace(patient, s->equations.sweep != NULL);
@@ -215,23 +258,28 @@ static dvi_status fixed_point(dvi__solver *s, double size, int patient, double *
     }
     if (progress == DVI__STALLED) break;
   }
-  return dvi__fail(DVI_NOT_CONVERGED, "fixed point iteration contracts too slowly (change %.1e after %.1e)", trail.last,
-                   trail.before);
+  return dvi__fail(DVI_NOT_CONVERGED,
+                   "fixed point iteration contracts too slowly (change %.1e after %.1e)",
+                   trail.last, trail.before);
 }
 
-/* Half a digit an iteration is worth it: n x n systems cost a small part of the one that Newton's method factors. */
+/* Half a digit an iteration is worth it: n x n systems cost a small part of the one that Newton's
+ * method factors. */
 static const dvi__pace frozen = {0.35, 1e4 * DBL_EPSILON, 0.3, 1, 0};
 
-static dvi_status simplified(dvi__solver *s, double size, int wary, double *x, dvi__solve_report *report)
+static dvi_status simplified(dvi__solver *s, double size, int wary, double *x,
+                             dvi__solve_report *report)
 {
   const dvi__equations *equations = &s->equations;
   dvi__trail trail = {0};
   double whole;
   s->in_use = 0;
   const dvi_status frozen_at = equations->freeze(equations->of, x);
-  if (frozen_at == DVI_SINGULAR) return dvi__fail_in(DVI_NOT_CONVERGED, "the frozen Jacobian cannot be factored");
+  if (frozen_at == DVI_SINGULAR)
+    return dvi__fail_in(DVI_NOT_CONVERGED, "the frozen Jacobian cannot be factored");
   if (frozen_at != DVI_OK) return frozen_at;
-  for (report->iterations = 1; report->iterations <= MOST_FIXED_POINT_ITERATIONS; report->iterations++) {
+  for (report->iterations = 1; report->iterations <= MOST_FIXED_POINT_ITERATIONS;
+       report->iterations++) {
     DVI_TRY(dvi__solver_residual(s, x, s->residual));
     equations->frozen(equations->of, s->residual);
     dvi__correct(equations->unknowns, s->residual, x, &report->correction, &whole);
@@ -240,14 +288,26 @@ static dvi_status simplified(dvi__solver *s, double size, int wary, double *x, d
     int converged = progress == DVI__CONVERGED;
     if (progress == DVI__STALLED) DVI_TRY(dvi__solver_at_floor(s, x, &converged));
     if (converged) return DVI_OK;
-    if (progress == DVI__STALLED || (wary && report->iterations == 2 && dvi__misleading(&trail, whole))) break;
+    if (progress == DVI__STALLED ||
+        (wary && report->iterations == 2 && dvi__misleading(&trail, whole)))
+      break;
   }
-  return dvi__fail(DVI_NOT_CONVERGED, "simplified Newton's method contracts too slowly (change %.1e after %.1e)", trail.last,
-                   trail.before);
+  return dvi__fail(DVI_NOT_CONVERGED,
+                   "simplified Newton's method contracts too slowly (change %.1e after %.1e)",
+                   trail.last, trail.before);
+}
+
+static dvi_status prepare_kinsol(dvi__solver *s)
+{
+  if (s->kinsol != NULL) return DVI_OK;
+  DVI_TRY(dvi__kinsol_create(s, &s->kinsol));
+  s->counters->preparations++;
+  return DVI_OK;
 }
 
 static dvi_status kinsol(dvi__solver *s, double size, double *x, dvi__solve_report *report)
 {
+  DVI_TRY(prepare_kinsol(s));
   s->counters->kinsols++;
   DVI_TRY(s->equations.prepare_chord(s->equations.of, x));
   /* KINSOL's verdict is not asked for: Newton's method from its last point is the stricter test. */
@@ -260,7 +320,8 @@ static dvi_status kinsol(dvi__solver *s, double size, double *x, dvi__solve_repo
   return polished;
 }
 
-dvi_status dvi__solve(dvi__solver *solver, dvi__rung rung, double size, int wary, int patient, double *x, dvi__solve_report *report)
+dvi_status dvi__solve(dvi__solver *solver, dvi__rung rung, double size, int wary, int patient,
+                      double *x, dvi__solve_report *report)
 {
   *report = (dvi__solve_report){0};
   switch (rung) {
@@ -272,13 +333,17 @@ dvi_status dvi__solve(dvi__solver *solver, dvi__rung rung, double size, int wary
   return dvi__fail(DVI_BAD_ARGUMENT, "solver: unknown rung %d", (int)rung);
 }
 
-dvi_status dvi__certify(dvi__solver *solver, double size, const double *x, dvi__solve_report *report)
+dvi_status dvi__certify(dvi__solver *solver, double size, const double *x,
+                        dvi__solve_report *report)
 {
   int certified = 0;
+  DVI_TRY(prepare_kinsol(solver));
   DVI_TRY(solver->equations.prepare_chord(solver->equations.of, x));
   DVI_TRY(dvi__kinsol_certify(solver->kinsol, size, x, &certified, report));
   if (!certified)
-    return dvi__fail(DVI_NOT_CONVERGED, "KINSOL does not certify the solution (scaled residual %.1e)", report->residual);
+    return dvi__fail(DVI_NOT_CONVERGED,
+                     "KINSOL does not certify the solution (scaled residual %.1e)",
+                     report->residual);
   solver->counters->certified++;
   return DVI_OK;
 }

@@ -1,4 +1,5 @@
-/* The verdict of progress.c for vectors of WIDTH problems, after vector_width.h; it includes this once for each width.
+/* The verdict of progress.c for vectors of WIDTH problems, after vector_width.h; it includes this
+ * once for each width.
  *
  * There is no branch: which of many iterations end with this correction nobody could predict. */
 
@@ -8,7 +9,8 @@ typedef struct NAME(trail) {
 } NAME(trail);
 
 /* where ? yes : no, lane by lane. */
-INLINE void NAME(choose)(const NAME(mask) * where, const NAME(vector) * yes, const NAME(vector) * no, NAME(vector) * chosen)
+INLINE void NAME(choose)(const NAME(mask) * where, const NAME(vector) * yes,
+                         const NAME(vector) * no, NAME(vector) * chosen)
 {
   *chosen = (NAME(vector))((*where & (NAME(mask)) * yes) | (~*where & (NAME(mask)) * no));
 }
@@ -19,11 +21,13 @@ INLINE void NAME(larger_of)(const NAME(vector) * x, const NAME(vector) * y, NAME
   NAME(choose)(&above, x, y, larger);
 }
 
-/* Go on with the trail by one correction; gives the contraction to be expected, 1 if there is no telling. */
-INLINE void NAME(follow)(const NAME(vector) * correction, const NAME(vector) * noise, const dvi__pace *pace, NAME(trail) * t,
-                         NAME(vector) * expected)
+/* Go on with the trail by one correction; gives the contraction to be expected, 1 if there is no
+ * telling. */
+INLINE void NAME(follow)(const NAME(vector) * correction, const NAME(vector) * noise,
+                         const dvi__pace *pace, NAME(trail) * t, NAME(vector) * expected)
 {
-  const NAME(vector) one = (NAME(vector)){0} + 1.0, most = (NAME(vector)){0} + (pace->slowest < hardly ? pace->slowest : hardly);
+  const NAME(vector) one = (NAME(vector)){0} + 1.0,
+                     most = (NAME(vector)){0} + (pace->slowest < hardly ? pace->slowest : hardly);
   const NAME(mask) first = (NAME(mask))(t->last == 0.0), measured = (NAME(mask))(t->last > *noise),
                    loud = (NAME(mask))(*correction > *noise);
   const NAME(vector) quotient = *correction / t->last;
@@ -45,17 +49,20 @@ INLINE void NAME(follow)(const NAME(vector) * correction, const NAME(vector) * n
 }
 
 /* Every comparison with NaN is false. */
-INLINE void NAME(judge)(const NAME(vector) * correction, const NAME(vector) * unknown, const NAME(vector) * size,
-                        const dvi__pace *pace, NAME(trail) * t, NAME(mask) * verdict)
+INLINE void NAME(judge)(const NAME(vector) * correction, const NAME(vector) * unknown,
+                        const NAME(vector) * size, const dvi__pace *pace, NAME(trail) * t,
+                        NAME(mask) * verdict)
 {
   const NAME(vector) last = t->last, feared = t->own, noise = pace->noise * (*unknown + *size);
-  const NAME(mask) finite = (NAME(mask))(*correction <= DBL_MAX), quiet = (NAME(mask))(*correction <= noise);
+  const NAME(mask) finite = (NAME(mask))(*correction <= DBL_MAX),
+                   quiet = (NAME(mask))(*correction <= noise);
   const NAME(mask) loud_before = (NAME(mask))(last > noise), second = (NAME(mask))(last != 0.0);
   NAME(vector) expected;
   NAME(follow)(correction, &noise, pace, t, &expected);
   t->last = *correction;
   const NAME(vector) shows = pace->ahead ? expected * t->own : t->own;
-  const NAME(mask) still = quiet & (NAME(mask))(shows <= (pace->ahead ? unseen : settled) * *unknown);
+  const NAME(mask)
+      still = quiet & (NAME(mask))(shows <= (pace->ahead ? unseen : settled) * *unknown);
   const NAME(mask) stagnant = second & quiet & ~loud_before & (NAME(mask))(t->contraction == 0.0) &
                               (NAME(mask))(*correction >= pace->stagnant * last);
   const NAME(mask) slow = loud_before & (NAME(mask))(*correction > pace->slowest * feared);
@@ -63,8 +70,9 @@ INLINE void NAME(judge)(const NAME(vector) * correction, const NAME(vector) * un
   *verdict = (converged & DVI__CONVERGED) | (~converged & (slow | ~finite) & DVI__STALLED);
 }
 
-INLINE int NAME(judge_from)(int count, const double *correction, const double *unknown, const dvi__pace *pace,
-                            const dvi__trails *trails, int64_t *verdicts, int k)
+INLINE int NAME(judge_from)(int count, const double *correction, const double *unknown,
+                            const dvi__pace *pace, const dvi__trails *trails, int64_t *verdicts,
+                            int k)
 {
   for (; k + WIDTH <= count; k += WIDTH) {
     NAME(vector) now, whole, size;

@@ -1,8 +1,9 @@
 /* Everything that differs between SUNDIALS 6.4 and 7.x.
  *
- * 7.0 gave SUNContext_Create a communicator of its own type and moved error handling from each integrator to the context;
- * 7.1 gave ARKODE's steppers one set of functions. The library never prints, so SUNDIALS must not either: its error handlers
- * are replaced by one that discards, and its logger, which warns past the handlers, is taken away. */
+ * 7.0 gave SUNContext_Create a communicator of its own type and moved error handling from each
+ * integrator to the context; 7.1 gave ARKODE's steppers one set of functions. The library never
+ * prints, so SUNDIALS must not either: its error handlers are replaced by one that discards, and
+ * its logger, which warns past the handlers, is taken away. */
 #ifndef DVI_SOLVE_SUNDIALS_COMPAT_H
 #define DVI_SOLVE_SUNDIALS_COMPAT_H
 #include <stddef.h>
@@ -12,14 +13,16 @@
 #include <sundials/sundials_types.h>
 
 #define DVI__SUNDIALS_AT_LEAST(major, minor) \
-  (SUNDIALS_VERSION_MAJOR > (major) || (SUNDIALS_VERSION_MAJOR == (major) && SUNDIALS_VERSION_MINOR >= (minor)))
+  (SUNDIALS_VERSION_MAJOR > (major) ||       \
+   (SUNDIALS_VERSION_MAJOR == (major) && SUNDIALS_VERSION_MINOR >= (minor)))
 
 #if DVI__SUNDIALS_AT_LEAST(7, 0)
 
 #define DVI__SUNDIALS_NO_COMMUNICATOR SUN_COMM_NULL
 
-static inline void dvi__sundials_discard(int line, const char *function, const char *file, const char *message, SUNErrCode code,
-                                         void *user, SUNContext context)
+static inline void dvi__sundials_discard(int line, const char *function, const char *file,
+                                         const char *message, SUNErrCode code, void *user,
+                                         SUNContext context)
 {
   (void)line, (void)function, (void)file, (void)message, (void)code, (void)user, (void)context;
 }
@@ -38,7 +41,8 @@ static inline int dvi__sundials_silence_context(SUNContext context)
 #define DVI__SUNDIALS_NO_COMMUNICATOR NULL
 
 /* NOLINTNEXTLINE(readability-non-const-parameter): the type is SUNDIALS' */
-static inline void dvi__sundials_discard(int code, const char *module, const char *function, char *message, void *user)
+static inline void dvi__sundials_discard(int code, const char *module, const char *function,
+                                         char *message, void *user)
 {
   (void)code, (void)module, (void)function, (void)message, (void)user;
 }
@@ -50,11 +54,13 @@ static inline int dvi__sundials_silence_context(SUNContext context)
 }
 
 /* Silence one integrator: DVI__SUNDIALS_SILENCE(KINSetErrHandlerFn, memory). 0 on success. */
-#define DVI__SUNDIALS_SILENCE(set_error_handler, memory) set_error_handler((memory), dvi__sundials_discard, NULL)
+#define DVI__SUNDIALS_SILENCE(set_error_handler, memory) \
+  set_error_handler((memory), dvi__sundials_discard, NULL)
 
 #endif
 
-/* Make a context that says nothing; 0 on success. On failure *context is NULL. Freed by SUNContext_Free. */
+/* Make a context that says nothing; 0 on success. On failure *context is NULL. Freed by
+ * SUNContext_Free. */
 static inline int dvi__sundials_context(SUNContext *context)
 {
   *context = NULL;

@@ -3,8 +3,9 @@
 #define DVI_SOLVE_VECTOR_H
 #include <nvector/nvector_serial.h>
 
-/* Replace what KINSOL asks of a vector, and of its clones, by the loops of vector.c: Debian's SUNDIALS 6.4.1 is compiled without optimisation, and its
- * loops cost more than a small step's residual. */
+/* Replace what KINSOL asks of a vector, and of its clones, by the loops of vector.c: Debian's
+ * SUNDIALS 6.4.1 is compiled without optimisation, and its loops cost more than a small step's
+ * residual. */
 void dvi__vector_use_own_operations(N_Vector vector);
 
 #endif

@@ -20,8 +20,8 @@ static const struct basis {
     [DVI_CHEBYSHEV] = {"chebyshev", 0},
 };
 
-/* A caller may hand any number as an enum. */
-static int known(dvi_basis basis)
+/* A caller may pass any number as an enum. */
+static int basis_is_known(dvi_basis basis)
 {
   return (int)basis >= 0 && (size_t)basis < sizeof bases / sizeof *bases;
 }
@@ -36,9 +36,13 @@ static void place_marks(dvi_basis basis, int degree, long double *mark)
 {
   long double weight[DVI__TRIAL_MAX];
   switch (basis) {
-  case DVI_LAGRANGE_LOBATTO: (void)dvi__quadrature_long(DVI_LOBATTO, degree + 1, mark, weight); break;
+  case DVI_LAGRANGE_LOBATTO:
+    (void)dvi__quadrature_long(DVI_LOBATTO, degree + 1, mark, weight);
+    break;
   case DVI_LAGRANGE_GAUSS: (void)dvi__quadrature_long(DVI_GAUSS, degree + 1, mark, weight); break;
-  case DVI_LAGRANGE_CHEBYSHEV: (void)dvi__quadrature_long(DVI_CLENSHAW_CURTIS, degree + 1, mark, weight); break;
+  case DVI_LAGRANGE_CHEBYSHEV:
+    (void)dvi__quadrature_long(DVI_CLENSHAW_CURTIS, degree + 1, mark, weight);
+    break;
   case DVI_LAGRANGE_EQUISPACED:
     for (int k = 0; k <= degree; k++) mark[k] = (long double)k;
     break;
@@ -61,11 +65,13 @@ void dvi__space_init(dvi__space *space, dvi_basis basis, int degree)
   }
 }
 
-/* Barycentric form of the first kind, phi_k = weight[k] prod_{j != k} (x - mark[j]), x = scale tau. The product that leaves out
- * one factor is that of the factors before it and that of the factors behind it, so nothing is divided by x - mark[k]: a tau at
- * a node, or one bit beside it, is a point like any other. The first kind also stays accurate outside of the interval, where
- * the second kind does not (Higham 2004). */
-static void lagrange(const dvi__space *space, long double tau, long double *value, long double *derivative)
+/* The barycentric form of the first kind is phi_k = weight[k] prod_{j != k} (x - mark[j]),
+ * x = scale tau. The product without one factor is the product of the factors before and behind
+ * that factor. So nothing is divided by x - mark[k], and a tau at a node, or one bit beside a node,
+ * is a point like any other. The first kind also stays accurate outside of the interval, where the
+ * second kind does not (Higham 2004). */
+static void basis_lagrange(const dvi__space *space, long double tau, long double *value,
+                           long double *derivative)
 {
   const int last = space->degree;
   const long double x = space->scale * tau;
@@ -79,23 +85,26 @@ static void lagrange(const dvi__space *space, long double tau, long double *valu
   }
   for (int k = last; k >= 0; k--) {
     if (value) value[k] = space->weight[k] * (before[k] * behind);
-    if (derivative) derivative[k] = space->scale * space->weight[k] * (before_slope[k] * behind + before[k] * behind_slope);
+    if (derivative)
+      derivative[k] = space->scale * space->weight[k] *
+                      (before_slope[k] * behind + before[k] * behind_slope);
     behind_slope = behind_slope * (x - space->mark[k]) + behind;
     behind *= x - space->mark[k];
   }
 }
 
-/* P_k(1-2y) and its derivative in x = 1-2y, from P'_{k+1} = P'_{k-1} + (2k+1) P_k. */
-static void legendre(int degree, long double y, long double *value, long double *slope)
+/* Compute P_k(1-2y) and its derivative in x = 1-2y, from P'_{k+1} = P'_{k-1} + (2k+1) P_k. */
+static void basis_legendre(int degree, long double y, long double *value, long double *slope)
 {
   long double difference[DVI__TRIAL_MAX];
   dvi__legendre(degree, y, value, difference);
-  for (int k = 0; k <= degree; k++) slope[k] = k == 0 ? 0 : (k > 1 ? slope[k - 2] : 0) + (long double)(2 * k - 1) * value[k - 1];
+  for (int k = 0; k <= degree; k++)
+    slope[k] = k == 0 ? 0 : (k > 1 ? slope[k - 2] : 0) + (long double)(2 * k - 1) * value[k - 1];
 }
 
-/* T_k(1-2y) and its derivative k U_{k-1}: by differences as for Legendre, T_{k+1} - T_k = T_k - T_{k-1} - 4 y T_k, and
- * U_k = U_{k-2} + 2 T_k. */
-static void chebyshev(int degree, long double y, long double *value, long double *slope)
+/* Compute T_k(1-2y) and its derivative k U_{k-1}, by differences as for Legendre. They satisfy
+ * T_{k+1} - T_k = T_k - T_{k-1} - 4 y T_k, and U_k = U_{k-2} + 2 T_k. */
+static void basis_chebyshev(int degree, long double y, long double *value, long double *slope)
 {
   long double difference = -2 * y, U[DVI__TRIAL_MAX];
   value[0] = 1;
@@ -109,13 +118,15 @@ static void chebyshev(int degree, long double y, long double *value, long double
   }
 }
 
-/* Both families from the nearer end. Seen from the left one, x = -(1-2y), and odd functions change their sign. */
-static void modal(const dvi__space *space, long double tau, long double *value, long double *derivative)
+/* Evaluate both families from the nearer end. Seen from the left one, x = -(1-2y), and odd
+ * functions change their sign. */
+static void basis_modal(const dvi__space *space, long double tau, long double *value,
+                        long double *derivative)
 {
   const int from_left = tau < 0.5L;
   const long double y = from_left ? tau : 1 - tau;
   long double seen[DVI__TRIAL_MAX], slope[DVI__TRIAL_MAX];
-  (space->basis == DVI_LEGENDRE ? legendre : chebyshev)(space->degree, y, seen, slope);
+  (space->basis == DVI_LEGENDRE ? basis_legendre : basis_chebyshev)(space->degree, y, seen, slope);
   for (int k = 0; k <= space->degree; k++) {
     const long double sign = from_left && k % 2 ? -1 : 1;
     if (value) value[k] = sign * seen[k];
@@ -123,22 +134,26 @@ static void modal(const dvi__space *space, long double tau, long double *value, 
   }
 }
 
-void dvi__space_evaluate(const dvi__space *space, long double tau, long double *value, long double *derivative)
+void dvi__space_evaluate(const dvi__space *space, long double tau, long double *value,
+                         long double *derivative)
 {
-  (dvi__basis_is_nodal(space->basis) ? lagrange : modal)(space, tau, value, derivative);
+  (dvi__basis_is_nodal(space->basis) ? basis_lagrange : basis_modal)(space, tau, value, derivative);
 }
 
-static dvi_status check(dvi_basis basis, int degree)
+static dvi_status check_basis(dvi_basis basis, int degree)
 {
-  if (!known(basis)) return dvi__fail(DVI_BAD_ARGUMENT, "basis: there is no basis with number %d", (int)basis);
+  if (!basis_is_known(basis))
+    return dvi__fail(DVI_BAD_ARGUMENT, "basis: there is no basis with number %d", (int)basis);
   if (degree < 1 || degree > DVI_DEGREE_MAX)
-    return dvi__fail(DVI_BAD_SIZE, "basis: degree %d asked, 1 to %d possible", degree, DVI_DEGREE_MAX);
+    return dvi__fail(DVI_BAD_SIZE, "basis: degree %d asked, 1 to %d possible", degree,
+                     DVI_DEGREE_MAX);
   return DVI_OK;
 }
 
-dvi_status dvi_basis_evaluate(dvi_basis basis, int degree, double tau, double *value, double *derivative)
+dvi_status dvi_basis_evaluate(dvi_basis basis, int degree, double tau, double *value,
+                              double *derivative)
 {
-  DVI_TRY(check(basis, degree));
+  DVI_TRY(check_basis(basis, degree));
   if (!isfinite(tau)) return dvi__fail(DVI_BAD_ARGUMENT, "basis: tau = %g is not finite", tau);
   dvi__space space;
   long double value_long[DVI__TRIAL_MAX] = {0}, derivative_long[DVI__TRIAL_MAX] = {0};
@@ -153,9 +168,10 @@ dvi_status dvi_basis_evaluate(dvi_basis basis, int degree, double tau, double *v
 
 dvi_status dvi_basis_nodes(dvi_basis basis, int degree, double *node)
 {
-  DVI_TRY(check(basis, degree));
+  DVI_TRY(check_basis(basis, degree));
   if (!dvi__basis_is_nodal(basis))
-    return dvi__fail(DVI_BAD_ARGUMENT, "basis: %s is a modal basis, it has no nodes", bases[basis].name);
+    return dvi__fail(DVI_BAD_ARGUMENT, "basis: %s is a modal basis, it has no nodes",
+                     bases[basis].name);
   if (!node) return dvi__fail(DVI_BAD_ARGUMENT, "basis: the array for the nodes is NULL");
   dvi__space space;
   dvi__space_init(&space, basis, degree);
@@ -165,5 +181,5 @@ dvi_status dvi_basis_nodes(dvi_basis basis, int degree, double *node)
 
 const char *dvi_basis_name(dvi_basis basis)
 {
-  return known(basis) ? bases[basis].name : NULL;
+  return basis_is_known(basis) ? bases[basis].name : NULL;
 }

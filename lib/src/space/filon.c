@@ -6,11 +6,14 @@
 #include "space/legendre.h"
 #include "space/quadrature.h"
 
-/* Orders beyond the last one from which the downward recurrence starts: what it starts with has then died out below long double's rounding. */
+/* The downward recurrence starts at so many orders beyond the last one. The error of its start has
+ * then died out below long double's rounding. */
 enum { ABOVE = 40 };
 
-/* Spherical Bessel functions j_0 to j_(count-1) at a >= 0: j_(k-1) + j_(k+1) = (2k+1)/a j_k, upwards where that is stable, a >= k, else downwards and scaled
- * by j_0 or j_1, whichever is the larger (Miller). The moments of Legendre polynomials need no series for small nu then. */
+/* Compute the spherical Bessel functions j_0 to j_(count-1) at a >= 0. The recurrence
+ * j_(k-1) + j_(k+1) = (2k+1)/a j_k runs upwards where that is stable, a >= k. Otherwise it runs
+ * downwards and is scaled by the larger one of j_0 and j_1 (Miller). The moments of Legendre
+ * polynomials then need no series for small nu. */
 static void bessel_up(int count, long double a, long double *j)
 {
   j[0] = sinl(a) / a;
@@ -35,7 +38,7 @@ static void bessel_down(int count, long double a, long double *j)
   for (int k = 0; k < count; k++) j[k] = scale * value[k];
 }
 
-static void bessel(int count, long double a, long double *j)
+static void bessel_functions(int count, long double a, long double *j)
 {
   const long double tiny = 1e-30L; /* j_k is below a^k/3^k */
   if (a < tiny)
@@ -46,18 +49,20 @@ static void bessel(int count, long double a, long double *j)
     bessel_down(count, a, j);
 }
 
-/* l_j = sum_k (P_k(c_j) b_j / gamma_k) P_k by the Lobatto rule itself, gamma_k = 1/(2k+1), of the last one 1/(n-1); and the integral of
- * P_k(2x-1) e^{i nu (x - 1/2)} over [0,1] is i^k j_k(nu/2). */
-static void moments_at(int n, const long double *node, const long double *weight, long double nu, long double *real,
-                       long double *imaginary)
+/* The Lobatto rule itself gives l_j = sum_k (P_k(c_j) b_j / gamma_k) P_k, with gamma_k = 1/(2k+1),
+ * and 1/(n-1) for the last one. The integral of P_k(2x-1) e^{i nu (x - 1/2)} over [0,1] is i^k
+ * j_k(nu/2). */
+static void moments_at(int n, const long double *node, const long double *weight, long double nu,
+                       long double *real, long double *imaginary)
 {
   long double j[DVI__FILON_NODES_MOST], P[DVI__FILON_NODES_MOST], difference[DVI__FILON_NODES_MOST];
-  bessel(n, fabsl(nu) / 2, j);
+  bessel_functions(n, fabsl(nu) / 2, j);
   for (int i = 0; i < n; i++) {
     long double part[2] = {0, 0};
     dvi__legendre(n - 1, 1 - node[i], P, difference);
     for (int k = 0; k < n; k++) {
-      const long double term = weight[i] * P[k] * j[k] * (long double)(k < n - 1 ? 2 * k + 1 : n - 1);
+      const long double term = weight[i] * P[k] * j[k] *
+                               (long double)(k < n - 1 ? 2 * k + 1 : n - 1);
       part[k % 2] += k / 2 % 2 == 0 ? term : -term;
     }
     real[i] = part[0];
@@ -76,15 +81,19 @@ void dvi__filon_rule(int n, int harmonics, long double nu, long double *node, lo
 {
   const int samples = 2 * harmonics + 1;
   const long double turn = 8 * atanl(1);
-  long double lobatto[DVI__FILON_NODES_MOST], real[DVI__FILON_NODES_MOST], imaginary[DVI__FILON_NODES_MOST];
+  long double lobatto[DVI__FILON_NODES_MOST], real[DVI__FILON_NODES_MOST],
+      imaginary[DVI__FILON_NODES_MOST];
   (void)dvi__quadrature_long(DVI_LOBATTO, n, node, lobatto);
   for (int i = 0; i < n * samples; i++) weight[i] = 0;
   for (int k = 0; k <= harmonics; k++) {
     moments_at(n, node, lobatto, (long double)k * nu, real, imaginary);
     for (int j = 0; j < n; j++)
       for (int m = 0; m < samples; m++) {
-        const long double phase = (long double)k * (nu * (node[j] - 0.5L) + turn * (long double)m / (long double)samples);
-        weight[j * samples + m] += (k == 0 ? 1 : 2) * (real[j] * cosl(phase) + imaginary[j] * sinl(phase)) / (long double)samples;
+        const long double phase = (long double)k * (nu * (node[j] - 0.5L) +
+                                                    turn * (long double)m / (long double)samples);
+        weight[j * samples + m] += (k == 0 ? 1 : 2) *
+                                   (real[j] * cosl(phase) + imaginary[j] * sinl(phase)) /
+                                   (long double)samples;
       }
   }
 }

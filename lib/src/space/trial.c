@@ -6,7 +6,7 @@
 
 #include "space/quadrature.h"
 
-static void difference(int degree, const long double *a, const long double *b, double *out)
+static void round_difference(int degree, const long double *a, const long double *b, double *out)
 {
   if (!out) return;
   for (int k = 1; k <= degree; k++) out[k - 1] = (double)(a[k] - b[k]);
@@ -17,14 +17,15 @@ void dvi__trial_in(const dvi__space *space, long double tau, double *psi, double
   const long double zero[DVI__TRIAL_MAX] = {0};
   long double value[DVI__TRIAL_MAX], derivative[DVI__TRIAL_MAX], at_end[DVI__TRIAL_MAX];
   dvi__space_evaluate(space, tau, value, derivative);
-  difference(space->degree, derivative, zero, dpsi);
+  round_difference(space->degree, derivative, zero, dpsi);
   dvi__space_evaluate(space, 0, at_end, NULL);
-  difference(space->degree, value, at_end, psi);
+  round_difference(space->degree, value, at_end, psi);
   dvi__space_evaluate(space, 1, at_end, NULL);
-  difference(space->degree, value, at_end, bar);
+  round_difference(space->degree, value, at_end, bar);
 }
 
-void dvi__trial_at_long(dvi_basis basis, int degree, long double tau, double *psi, double *bar, double *dpsi)
+void dvi__trial_at_long(dvi_basis basis, int degree, long double tau, double *psi, double *bar,
+                        double *dpsi)
 {
   dvi__space space;
   dvi__space_init(&space, basis, degree);
@@ -36,10 +37,12 @@ void dvi__trial_at(dvi_basis basis, int degree, double tau, double *psi, double 
   dvi__trial_at_long(basis, degree, (long double)tau, psi, bar, dpsi);
 }
 
-/* How a basis reads its coefficients from a polynomial that vanishes at 0: Y_k = sum_j matrix[k-1][j] r(point[j]).
+/* A rule by which a basis reads its coefficients from a polynomial r that vanishes at 0,
+ * Y_k = sum_j matrix[k-1][j] r(point[j]).
  *
- * Nodal: r(node_k) - r(node_0), for sum_k phi_k(0) r(node_k) = 0. Modal: the coefficients are those of the orthogonal expansion,
- * by the quadrature that is exact for it (Gauss; for Chebyshev, the zeros of T_{degree+1} with equal weights). */
+ * Nodal bases take r(node_k) - r(node_0), for sum_k phi_k(0) r(node_k) = 0. Modal bases take the
+ * orthogonal expansion, by the quadrature that is exact for it (Gauss, and for Chebyshev the zeros
+ * of T_{degree+1} with equal weights). */
 typedef struct reading {
   long double point[DVI__TRIAL_MAX];
   long double matrix[DVI_DEGREE_MAX][DVI__TRIAL_MAX];
@@ -67,8 +70,9 @@ static void read_modal(const dvi__space *space, reading *to)
     }
     dvi__space_evaluate(space, to->point[j], value, NULL);
     for (int k = 1; k < points; k++)
-      to->matrix[k - 1][j] = value[k] *
-                             (space->basis == DVI_CHEBYSHEV ? 2 / (long double)points : (long double)(2 * k + 1) * weight[j]);
+      to->matrix[k - 1][j] = value[k] * (space->basis == DVI_CHEBYSHEV
+                                             ? 2 / (long double)points
+                                             : (long double)(2 * k + 1) * weight[j]);
   }
 }
 
@@ -77,7 +81,7 @@ static void read_coefficients(const dvi__space *space, reading *to)
   (dvi__basis_is_nodal(space->basis) ? read_nodal : read_modal)(space, to);
 }
 
-/* primitive[m] = integral of P_m from `from` to `to`, m < count: the Legendre functions' own primitives are
+/* Compute primitive[m], the integral of P_m from `from` to `to`, m < count. The primitives are
  * (P_{m+1} - P_{m-1}) / (2 (2m+1)). */
 static void integrate_legendre(int count, long double from, long double to, long double *primitive)
 {
@@ -88,15 +92,18 @@ static void integrate_legendre(int count, long double from, long double to, long
   dvi__space_evaluate(&space, to, upper, NULL);
   primitive[0] = to - from;
   for (int m = 1; m < count; m++)
-    primitive[m] = ((upper[m + 1] - lower[m + 1]) - (upper[m - 1] - lower[m - 1])) / (long double)(2 * (2 * m + 1));
+    primitive[m] = ((upper[m + 1] - lower[m + 1]) - (upper[m - 1] - lower[m - 1])) /
+                   (long double)(2 * (2 * m + 1));
 }
 
-/* expansion[m][l-1] = coefficient m of psi_l' in Legendre functions, m < count. */
-static void expand_derivatives(const dvi__space *space, int count, long double expansion[][DVI_DEGREE_MAX])
+/* Compute expansion[m][l-1], coefficient m of psi_l' in Legendre functions, m < count. */
+static void expand_derivatives(const dvi__space *space, int count,
+                               long double expansion[][DVI_DEGREE_MAX])
 {
   const int degree = space->degree;
   dvi__space legendre;
-  long double node[DVI_DEGREE_MAX], weight[DVI_DEGREE_MAX], P[DVI__TRIAL_MAX], derivative[DVI__TRIAL_MAX];
+  long double node[DVI_DEGREE_MAX], weight[DVI_DEGREE_MAX], P[DVI__TRIAL_MAX],
+      derivative[DVI__TRIAL_MAX];
   dvi__space_init(&legendre, DVI_LEGENDRE, degree);
   (void)dvi__quadrature_long(DVI_GAUSS, degree, node, weight);
   for (int m = 0; m < count; m++) memset(expansion[m], 0, sizeof expansion[m]);
@@ -104,11 +111,13 @@ static void expand_derivatives(const dvi__space *space, int count, long double e
     dvi__space_evaluate(&legendre, node[i], P, NULL);
     dvi__space_evaluate(space, node[i], NULL, derivative);
     for (int m = 0; m < count; m++)
-      for (int l = 0; l < degree; l++) expansion[m][l] += (long double)(2 * m + 1) * weight[i] * P[m] * derivative[l + 1];
+      for (int l = 0; l < degree; l++)
+        expansion[m][l] += (long double)(2 * m + 1) * weight[i] * P[m] * derivative[l + 1];
   }
 }
 
-static void apply_reading(const reading *read, int degree, const long double *values, long double *coefficients)
+static void apply_reading(const reading *read, int degree, const long double *values,
+                          long double *coefficients)
 {
   for (int k = 0; k < degree; k++) {
     coefficients[k] = 0;
@@ -125,7 +134,8 @@ void dvi__trial_shift(dvi_basis basis, int degree, int keep, double ratio, doubl
   dvi__space_init(&space, basis, degree);
   read_coefficients(&space, &read);
   expand_derivatives(&space, keep, expansion);
-  for (int j = 0; j <= degree; j++) integrate_legendre(keep, 1, 1 + (long double)ratio * read.point[j], primitive[j]);
+  for (int j = 0; j <= degree; j++)
+    integrate_legendre(keep, 1, 1 + (long double)ratio * read.point[j], primitive[j]);
   for (int l = 0; l < degree; l++) {
     for (int j = 0; j <= degree; j++) {
       values[j] = 0;
@@ -136,48 +146,51 @@ void dvi__trial_shift(dvi_basis basis, int degree, int keep, double ratio, doubl
   }
 }
 
-/* A least-squares problem: columns[m][i] at point i, orthogonalised in place, so that old columns = new columns times R. */
+/* A least-squares problem. columns[m][i] belongs to point i. The columns are orthogonalised in
+ * place, so that old columns = new columns times R. */
 typedef struct columns {
   int count, points;
   long double column[DVI_DEGREE_MAX][DVI_QUADRATURE_MAX];
   long double R[DVI_DEGREE_MAX][DVI_DEGREE_MAX];
 } columns;
 
-static long double inner(int count, const long double *a, const long double *b)
+static long double column_product(int count, const long double *a, const long double *b)
 {
   long double sum = 0;
   for (int i = 0; i < count; i++) sum += a[i] * b[i];
   return sum;
 }
 
-/* Modified Gram-Schmidt, each column twice: then orthogonal to roundoff. */
-static void orthogonalize(columns *c)
+/* Orthogonalise by modified Gram-Schmidt, each column twice, to roundoff. */
+static void orthogonalize_columns(columns *c)
 {
   for (int m = 0; m < c->count; m++) {
     long double *column = c->column[m];
     for (int k = 0; k < m; k++) c->R[k][m] = 0;
     for (int pass = 0; pass < 2; pass++)
       for (int k = 0; k < m; k++) {
-        const long double along = inner(c->points, c->column[k], column);
+        const long double along = column_product(c->points, c->column[k], column);
         for (int i = 0; i < c->points; i++) column[i] -= along * c->column[k][i];
         c->R[k][m] += along;
       }
-    c->R[m][m] = sqrtl(inner(c->points, column, column));
+    c->R[m][m] = sqrtl(column_product(c->points, column, column));
     for (int i = 0; i < c->points; i++) column[i] /= c->R[m][m];
   }
 }
 
-/* column[m][i] = integral of P_m from 0 to point i. */
-static void sample_primitive(int degree, int i, long double point, long double column[][DVI_QUADRATURE_MAX])
+/* Compute column[m][i], the integral of P_m from 0 to point i. */
+static void sample_primitive(int degree, int i, long double point,
+                             long double column[][DVI_QUADRATURE_MAX])
 {
   long double primitive[DVI_DEGREE_MAX];
   integrate_legendre(degree, 0, point, primitive);
   for (int m = 0; m < degree; m++) column[m][i] = primitive[m];
 }
 
-/* C[m] = the basis' coefficients of the combination of primitives that column m of Q stands for: those of the primitives
- * themselves, times R^{-1}. */
-static void read_columns(const dvi__space *space, const columns *c, long double C[][DVI_DEGREE_MAX])
+/* Compute C[m], the coefficients in the basis of the combination of primitives that column m of Q
+ * stands for. They are the coefficients of the primitives themselves, times R^{-1}. */
+static void read_primitive_columns(const dvi__space *space, const columns *c,
+                                   long double C[][DVI_DEGREE_MAX])
 {
   const int degree = space->degree;
   reading read;
@@ -193,8 +206,9 @@ static void read_columns(const dvi__space *space, const columns *c, long double 
   }
 }
 
-/* The polynomial is found as a combination of the Legendre functions' primitives, which vanish at 0 and are well conditioned
- * where the basis itself may not be, and then read in the basis: Y = C Q^T (values - q0). */
+/* Find the polynomial as a combination of the Legendre functions' primitives, then read it in the
+ * basis by Y = C Q^T (values - q0). The primitives vanish at 0 and are well conditioned where the
+ * basis itself may not be. */
 void dvi__trial_fit(dvi_basis basis, int degree, int points, const double *tau, double *matrix)
 {
   dvi__space space;
@@ -202,8 +216,8 @@ void dvi__trial_fit(dvi_basis basis, int degree, int points, const double *tau, 
   long double C[DVI_DEGREE_MAX][DVI_DEGREE_MAX] = {{0}};
   dvi__space_init(&space, basis, degree);
   for (int i = 0; i < points; i++) sample_primitive(degree, i, (long double)tau[i], c.column);
-  orthogonalize(&c);
-  read_columns(&space, &c, C);
+  orthogonalize_columns(&c);
+  read_primitive_columns(&space, &c, C);
   for (int k = 0; k < degree; k++)
     for (int i = 0; i < points; i++) {
       long double sum = 0;

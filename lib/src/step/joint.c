@@ -5,14 +5,16 @@
 #include "core/memory.h"
 #include "core/status.h"
 
-static dvi_status join(const dvi_system *system, const dvi__pattern *more, dvi__pattern *joint)
+static dvi_status joint_join(const dvi_system *system, const dvi__pattern *more,
+                             dvi__pattern *joint)
 {
   dvi__pattern vq = {0}, mixed = {0}, own = {0}, second = {0}, diagonal = {0}, whole = {0};
   dvi_status status = dvi__pattern_transpose(&system->qv, &vq);
   if (status == DVI_OK) status = dvi__pattern_union(&system->qv, &vq, &mixed);
   if (status == DVI_OK)
-    status = (system->terms & (DVI__ONE_FORM | DVI__HAMILTONIAN)) != 0 ? dvi__pattern_diagonal(system->n, &own)
-                                                                       : dvi__pattern_empty(system->n, &own);
+    status = (system->terms & (DVI__ONE_FORM | DVI__HAMILTONIAN)) != 0
+                 ? dvi__pattern_diagonal(system->n, &own)
+                 : dvi__pattern_empty(system->n, &own);
   if (status == DVI_OK) status = dvi__pattern_union(&system->vv, &own, &second);
   if (status == DVI_OK) status = dvi__pattern_union(&system->qq, &second, &diagonal);
   if (status == DVI_OK) status = dvi__pattern_union(&mixed, &diagonal, &whole);
@@ -26,34 +28,51 @@ static dvi_status join(const dvi_system *system, const dvi__pattern *more, dvi__
   return status;
 }
 
-dvi_status dvi__joint_check(const dvi_system *system, int size, int most)
+/* Entries that the Hessian has at least; a pattern that was left out is full, and is not made
+ * here. */
+static size_t least_entries(const dvi_system *system)
 {
-  const size_t numbers = (size_t)system->n * (size_t)(most > size ? most : size), block = (size_t)size * (size_t)size;
-  if (numbers >= INT_MAX)
-    return dvi__fail(DVI_BAD_SIZE,
-                     "action: %d coordinates with %zu numbers each make %zu, more than an int can count; take a lower degree, or "
-                     "fewer nodes or stages",
-                     system->n, numbers / (size_t)system->n, numbers);
-  DVI_TRY(dvi__system_prepare_hessian(system));
-  const int qq = dvi__pattern_entries(&system->qq), vv = dvi__pattern_entries(&system->vv);
-  const size_t least = (size_t)(qq > vv ? qq : vv) * block;
-  if (least < INT_MAX) return DVI_OK;
-  return dvi__fail(DVI_BAD_SIZE,
-                   "action: the Jacobian would have %zu entries or more, which an int cannot count; declare sparse Hessians, or "
-                   "take a lower degree",
-                   least);
+  const size_t n = (size_t)system->n;
+  size_t least = (size_t)dvi__pattern_entries(&system->vv);
+  for (int k = 0; k <= system->potential_count; k++) {
+    const int is_own = k == system->potential_count;
+    if (is_own && system->lagrangian == NULL) continue;
+    const dvi__pattern *qq = is_own ? &system->lagrangian->qq : &system->potentials[k].qq;
+    const size_t entries = qq->start != NULL ? (size_t)dvi__pattern_entries(qq) : n * n;
+    if (entries > least) least = entries;
+  }
+  return least;
 }
 
-dvi_status dvi__joint_create(const dvi_system *system, const dvi__pattern *more, dvi__pattern *joint, dvi__block **block)
+dvi_status dvi__joint_check(const dvi_system *system, int size, int most)
 {
-  DVI_TRY(join(system, more, joint));
+  const size_t n = (size_t)system->n, each = (size_t)(most > size ? most : size);
+  if (n * each >= INT_MAX)
+    return dvi__fail(DVI_BAD_SIZE,
+                     "action: %d coordinates with %zu numbers each make %zu, more than an int can "
+                     "count; take a lower degree, or fewer nodes or stages",
+                     system->n, each, n * each);
+  const size_t least = least_entries(system) * (size_t)size * (size_t)size;
+  if (least < INT_MAX) return DVI_OK;
+  return dvi__fail(
+      DVI_BAD_SIZE,
+      "action: the Jacobian would have %zu entries or more, which an int cannot count; "
+      "declare a sparse pattern of each Hessian, or take a lower degree",
+      least);
+}
+
+dvi_status dvi__joint_create(const dvi_system *system, const dvi__pattern *more,
+                             dvi__pattern *joint, dvi__block **block)
+{
+  DVI_TRY(joint_join(system, more, joint));
   *block = DVI_NEW(dvi__block, dvi__pattern_entries(joint));
   if (*block == NULL) return dvi__fail(DVI_NO_MEMORY, "action: no memory for the Jacobian");
   for (int j = 0; j < joint->columns; j++)
     for (int e = joint->start[j]; e < joint->start[j + 1]; e++) {
       const int i = joint->row[e];
-      (*block)[e] = (dvi__block){dvi__pattern_find(&system->qq, i, j), dvi__pattern_find(&system->qv, i, j),
-                                 dvi__pattern_find(&system->qv, j, i), dvi__pattern_find(&system->vv, i, j)};
+      (*block)[e] = (dvi__block){
+          dvi__pattern_find(&system->qq, i, j), dvi__pattern_find(&system->qv, i, j),
+          dvi__pattern_find(&system->qv, j, i), dvi__pattern_find(&system->vv, i, j)};
     }
   return DVI_OK;
 }

@@ -1,74 +1,79 @@
-/* What a system declares, as hashes by which files and other systems know it again. */
+/* Hashes of a system's declaration, by which files and other systems recognise it. */
 #include <string.h>
 
 #include "core/hash.h"
 #include "system/system.h"
 
-static uint64_t add_pattern(uint64_t hash, const dvi__pattern *pattern)
+static uint64_t hash_pattern(uint64_t hash, const dvi__pattern *pattern)
 {
   if (pattern->start == NULL) return dvi__hash(hash, 1, "");
   hash = dvi__hash(hash, ((size_t)pattern->columns + 1) * sizeof(int), pattern->start);
   return dvi__hash(hash, (size_t)dvi__pattern_entries(pattern) * sizeof(int), pattern->row);
 }
 
-static uint64_t add_text(uint64_t hash, const char *text)
+static uint64_t hash_text(uint64_t hash, const char *text)
 {
   return dvi__hash(hash, strlen(text) + 1, text);
 }
 
-static uint64_t terms_of(const dvi_system *s)
+static uint64_t hash_terms(const dvi_system *s)
 {
   uint64_t hash = dvi__hash(DVI__HASH_START, sizeof s->n, &s->n);
   hash = dvi__hash(hash, sizeof s->terms, &s->terms);
-  for (int c = 0; c < s->cell_count; c++) hash = dvi__hash(hash, sizeof s->cells[c].kind, &s->cells[c].kind);
+  for (int c = 0; c < s->slot_count; c++)
+    hash = dvi__hash(hash, sizeof s->slots[c].kind, &s->slots[c].kind);
   return hash;
 }
 
-static uint64_t masses_of(const dvi_system *s)
+static uint64_t hash_masses(const dvi_system *s)
 {
   uint64_t hash = DVI__HASH_START;
-  if (s->mass_diagonal != NULL) hash = dvi__hash(hash, (size_t)s->n * sizeof(double), s->mass_diagonal);
-  if (s->mass_values != NULL) hash = dvi__hash(hash, (size_t)dvi__pattern_entries(&s->vv) * sizeof(double), s->mass_values);
+  if (s->mass_diagonal != NULL)
+    hash = dvi__hash(hash, (size_t)s->n * sizeof(double), s->mass_diagonal);
+  if (s->mass_values != NULL)
+    hash = dvi__hash(hash, (size_t)dvi__pattern_entries(&s->vv) * sizeof(double), s->mass_values);
   return hash;
 }
 
-static uint64_t patterns_of(const dvi_system *s)
+static uint64_t hash_patterns(const dvi_system *s)
 {
-  uint64_t hash = add_pattern(add_pattern(DVI__HASH_START, &s->qv), &s->vv);
-  if (s->lagrangian != NULL) hash = add_pattern(hash, &s->lagrangian->qq);
-  if (s->constraint != NULL) hash = add_pattern(hash, &s->constraint->gradients);
-  for (int k = 0; k < s->potential_count; k++) hash = add_pattern(hash, &s->potentials[k].qq);
+  uint64_t hash = hash_pattern(hash_pattern(DVI__HASH_START, &s->qv), &s->vv);
+  if (s->lagrangian != NULL) hash = hash_pattern(hash, &s->lagrangian->qq);
+  if (s->constraint != NULL) hash = hash_pattern(hash, &s->constraint->gradients);
+  for (int k = 0; k < s->potential_count; k++) hash = hash_pattern(hash, &s->potentials[k].qq);
   return hash;
 }
 
-static uint64_t potentials_of(const dvi_system *s)
+static uint64_t hash_potentials(const dvi_system *s)
 {
   uint64_t hash = DVI__HASH_START;
   for (int k = 0; k < s->potential_count; k++) {
     const dvi__potential_term *term = &s->potentials[k];
     const int speed[] = {term->callbacks.fast != 0, term->callbacks.quadratic != 0};
-    hash = dvi__hash(add_text(hash, term->name), sizeof speed, speed);
+    hash = dvi__hash(hash_text(hash, term->name), sizeof speed, speed);
   }
   return hash;
 }
 
-static uint64_t invariants_of(const dvi_system *s)
+static uint64_t hash_invariants(const dvi_system *s)
 {
   uint64_t hash = DVI__HASH_START;
-  for (int i = 0; i < dvi_system_invariant_count(s); i++) hash = add_text(hash, s->invariant_names[i]);
+  for (int i = 0; i < dvi_system_invariant_count(s); i++)
+    hash = hash_text(hash, s->invariant_names[i]);
   return hash;
 }
 
 void dvi__system_declared(const dvi_system *system, dvi__declared *declared)
 {
-  *declared = (dvi__declared){
-      {terms_of(system), masses_of(system), patterns_of(system), potentials_of(system), invariants_of(system)}};
+  *declared = (dvi__declared){{hash_terms(system), hash_masses(system), hash_patterns(system),
+                               hash_potentials(system), hash_invariants(system)}};
 }
 
 const char *dvi__declared_difference(const dvi__declared *one, const dvi__declared *other)
 {
-  static const char *const name[DVI__DECLARED_PARTS] = {"terms", "masses or inertias", "patterns of derivatives",
-                                                        "names or speeds of potentials", "names of invariants"};
+  static const char *const name[DVI__DECLARED_PARTS] = {
+      "terms", "masses or inertias", "patterns of derivatives", "names or speeds of potentials",
+      "names of invariants"};
   for (int part = 0; part < DVI__DECLARED_PARTS; part++)
     if (one->hash[part] != other->hash[part]) return name[part];
   return NULL;

@@ -1,4 +1,4 @@
-/* A constant mass: checked, and copied in the form that evaluators use. */
+/* A constant mass is checked, and copied in the form that evaluators use. */
 #include "system/mass.h"
 
 #include <math.h>
@@ -14,13 +14,14 @@ static dvi_status check_symmetric(const dvi__pattern *pattern, const double *val
     for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++) {
       const int mirror = dvi__pattern_find(pattern, j, pattern->row[e]);
       if (mirror < 0 || values[mirror] != values[e])
-        return dvi__fail(DVI_BAD_ARGUMENT, "system: the mass matrix is not symmetric at (%d,%d)", pattern->row[e], j);
+        return dvi__fail(DVI_BAD_ARGUMENT, "system: the mass matrix is not symmetric at (%d,%d)",
+                         pattern->row[e], j);
     }
   return DVI_OK;
 }
 
-/* The kind that an evaluator will use, so that both judge alike. */
-static dvi_status check_regular(const dvi__pattern *pattern, const double *values)
+/* Check with the kind of factors that an evaluator will use, so that both give the same answer. */
+static dvi_status check_regular_mass(const dvi__pattern *pattern, const double *values)
 {
   dvi__linear *linear;
   dvi_status status = dvi__linear_create(pattern, DVI__LINEAR_AUTO, NULL, &linear);
@@ -33,11 +34,13 @@ static dvi_status copy_sparse_mass(dvi_system *s, const dvi_mass *mass)
 {
   DVI_TRY(dvi__pattern_copy(&mass->pattern, s->n, "system: mass matrix", &s->vv));
   const size_t entries = (size_t)dvi__pattern_entries(&s->vv);
-  if (dvi__first_not_finite(entries, mass->values) >= 0) return dvi__fail(DVI_SINGULAR, "system: the mass matrix is not finite");
+  if (dvi__first_not_finite(entries, mass->values) >= 0)
+    return dvi__fail(DVI_SINGULAR, "system: the mass matrix is not finite");
   DVI_TRY(check_symmetric(&s->vv, mass->values));
-  DVI_TRY(check_regular(&s->vv, mass->values));
+  DVI_TRY(check_regular_mass(&s->vv, mass->values));
   s->mass_values = dvi__duplicate(mass->values, entries, sizeof(double));
-  return s->mass_values != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "system: no memory for its mass");
+  return s->mass_values != NULL ? DVI_OK
+                                : dvi__fail(DVI_NO_MEMORY, "system: no memory for its mass");
 }
 
 static dvi_status copy_diagonal_mass(dvi_system *s, const dvi_mass *mass)
@@ -45,13 +48,16 @@ static dvi_status copy_diagonal_mass(dvi_system *s, const dvi_mass *mass)
   for (int i = 0; i < s->n; i++) {
     const double m = mass->diagonal != NULL ? mass->diagonal[i] : mass->scalar;
     if (!isfinite(m) || m == 0 || !isfinite(1 / m))
-      return dvi__fail(DVI_SINGULAR, "system: mass %g of coordinate %d; a finite number other than 0 is needed", m, i);
+      return dvi__fail(DVI_SINGULAR,
+                       "system: mass %g of coordinate %d; a finite number other than 0 is needed",
+                       m, i);
   }
   s->mass_scalar = mass->scalar;
   DVI_TRY(dvi__pattern_diagonal(s->n, &s->vv));
   s->mass_diagonal = DVI_NEW(double, s->n);
   if (s->mass_diagonal == NULL) return dvi__fail(DVI_NO_MEMORY, "system: no memory for its mass");
-  for (int i = 0; i < s->n; i++) s->mass_diagonal[i] = mass->diagonal != NULL ? mass->diagonal[i] : mass->scalar;
+  for (int i = 0; i < s->n; i++)
+    s->mass_diagonal[i] = mass->diagonal != NULL ? mass->diagonal[i] : mass->scalar;
   return DVI_OK;
 }
 
@@ -59,9 +65,11 @@ dvi_status dvi__mass_copy(const dvi_system_terms *terms, dvi_system *s)
 {
   const dvi_mass *mass = &terms->mass;
   const int forms = (mass->scalar != 0) + (mass->diagonal != NULL) + (mass->values != NULL);
-  if (forms > 1) return dvi__fail(DVI_BAD_ARGUMENT, "system: the mass is given in %d forms; one is possible", forms);
+  if (forms > 1)
+    return dvi__fail(DVI_BAD_ARGUMENT, "system: the mass is given in %d forms; one is possible",
+                     forms);
   s->terms |= DVI__CONSTANT_MASS;
   DVI_TRY(dvi__pattern_empty(s->n, &s->qv));
-  if (s->cells != NULL) return dvi__factors_mass(terms, s);
+  if (s->slots != NULL) return dvi__factors_mass(terms, s);
   return mass->values != NULL ? copy_sparse_mass(s, mass) : copy_diagonal_mass(s, mass);
 }

@@ -3,7 +3,8 @@
 #define DVI_SYSTEM_MASS_H
 #include "system/system.h"
 
-/* Of a system whose coordinates are laid out (factor.h). DVI_BAD_ARGUMENT, DVI_SINGULAR. */
+/* Copy the mass into a system whose coordinates are laid out (factor.h). Return DVI_BAD_ARGUMENT or
+ * DVI_SINGULAR for a bad mass. */
 dvi_status dvi__mass_copy(const dvi_system_terms *terms, dvi_system *system);
 
 #endif

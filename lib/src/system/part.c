@@ -3,29 +3,32 @@
 #include "core/memory.h"
 #include "core/status.h"
 
-static dvi_mass mass_of(const dvi_system *whole)
+static dvi_mass mass_of_system(const dvi_system *whole)
 {
-  if (whole->mass_values != NULL) return (dvi_mass){.values = whole->mass_values, .pattern = {whole->vv.start, whole->vv.row}};
+  if (whole->mass_values != NULL)
+    return (dvi_mass){.values = whole->mass_values, .pattern = {whole->vv.start, whole->vv.row}};
   if (whole->mass_scalar != 0) return (dvi_mass){.scalar = whole->mass_scalar};
   return (dvi_mass){.diagonal = whole->mass_diagonal};
 }
 
-/* The user's own pattern may be gone; a left-out one may be completed by another thread at this time. */
-static dvi_potential declared(const dvi__potential_term *term)
+/* Return the user's potential with the library's own pattern. The user's pattern may be gone, and
+ * another thread may just complete a missing pattern. */
+static dvi_potential declared_potential(const dvi__potential_term *term)
 {
   dvi_potential potential = term->callbacks;
   if (potential.qq.start != NULL) potential.qq = (dvi_pattern){term->qq.start, term->qq.row};
   return potential;
 }
 
-static dvi_status make(const dvi_system *whole, int fast, dvi_mass mass, dvi_system **part)
+static dvi_status make_part(const dvi_system *whole, int fast, dvi_mass mass, dvi_system **part)
 {
   dvi_potential *potentials = DVI_NEW(dvi_potential, whole->potential_count);
   dvi_system_terms terms = {.dimension = whole->n, .mass = mass, .autonomous = whole->autonomous};
   *part = NULL;
   if (potentials == NULL) return dvi__fail(DVI_NO_MEMORY, "system: no memory for its parts");
   for (int k = 0; k < whole->potential_count; k++)
-    if ((whole->potentials[k].callbacks.fast != 0) == fast) potentials[terms.potential_count++] = declared(&whole->potentials[k]);
+    if ((whole->potentials[k].callbacks.fast != 0) == fast)
+      potentials[terms.potential_count++] = declared_potential(&whole->potentials[k]);
   if (terms.potential_count > 0) terms.potentials = potentials;
   const dvi_status status = dvi_system_create(&terms, part);
   dvi__release(potentials);
@@ -34,18 +37,19 @@ static dvi_status make(const dvi_system *whole, int fast, dvi_mass mass, dvi_sys
 
 dvi_status dvi__system_slow_part(const dvi_system *whole, dvi_system **part)
 {
-  return make(whole, 0, (dvi_mass){.scalar = 1}, part);
+  return make_part(whole, 0, (dvi_mass){.scalar = 1}, part);
 }
 
 dvi_status dvi__system_fast_part(const dvi_system *whole, dvi_system **part)
 {
-  return make(whole, 1, mass_of(whole), part);
+  return make_part(whole, 1, mass_of_system(whole), part);
 }
 
 const char *dvi__system_fast_not_quadratic(const dvi_system *whole)
 {
   for (int k = 0; k < whole->potential_count; k++)
-    if (whole->potentials[k].callbacks.fast && !whole->potentials[k].callbacks.quadratic) return whole->potentials[k].name;
+    if (whole->potentials[k].callbacks.fast && !whole->potentials[k].callbacks.quadratic)
+      return whole->potentials[k].name;
   return NULL;
 }
 

@@ -1,4 +1,4 @@
-/* The inside of a system: its terms, copied, with the unions of their patterns. */
+/* The inside of a system, with its terms, copied, and the unions of their patterns. */
 #ifndef DVI_SYSTEM_SYSTEM_H
 #define DVI_SYSTEM_SYSTEM_H
 #include <dvi/system.h>
@@ -9,7 +9,7 @@
 #include "num/linear.h"
 #include "num/pattern.h"
 
-/* What a system declares, and what a method can use: a set of bits. */
+/* A set of bits for the terms of a system, and for the terms that a method can use. */
 typedef enum dvi__term {
   DVI__CONSTANT_MASS = 1,
   DVI__LAGRANGIAN = 2,
@@ -26,128 +26,142 @@ typedef enum dvi__term {
   DVI__LAST_TERM = DVI__HAMILTONIAN
 } dvi__term;
 
-/* How to difference a missing Hessian block: columns of a group are moved together. */
+/* Groups of columns that are moved together when a missing Hessian block is differenced. */
 typedef struct dvi__groups {
   int count;
-  int *of_column; /* [n] */
+  int *of_column; /* group [n] of each column */
 } dvi__groups;
 
 typedef struct dvi__potential_term {
   dvi_potential callbacks;
   char *name;
-  dvi__pattern qq; /* empty until dvi__system_prepare_hessian if it was left out */
-  int *in_qq;      /* [entries of qq]: where they stand in the system's qq */
+  dvi__pattern qq; /* pattern, empty until dvi__system_prepare_hessian if not declared */
+  int *in_qq;      /* places [entries of qq] in the system's qq */
   dvi__groups groups;
 } dvi__potential_term;
 
-/* The gradient of a function beside a one-form alpha, and where the entries of both stand in the sum's. */
+/* The gradient of a function beside a one-form alpha, and the places of the entries of both in the
+ * sum. */
 typedef struct dvi__gauge_term {
-  dvi_gauge callbacks;               /* without a gradient: there is none */
-  dvi__pattern qq, form_qq, form_qv; /* of f; of alpha alone */
+  dvi_gauge callbacks;               /* without a gradient there is no gauge */
+  dvi__pattern qq, form_qq, form_qv; /* qq is that of f, the others those of alpha alone */
   int *in_qq, *in_qv, *form_in_qq, *form_in_qv;
 } dvi__gauge_term;
 
-/* A Lagrangian that a part of the library computes from another one. Shapes as in
- * system/evaluate/evaluator.h; `of` is the term's. */
+/* A Lagrangian that a part of the library computes from another one. Shapes are as in
+ * system/evaluate/evaluator.h. `of` is that of the term. */
 typedef struct dvi__computed {
-  dvi_status (*value)(void *of, int count, const double *t, const double *q, const double *v, double *L);
-  dvi_status (*gradient)(void *of, int count, const double *t, const double *q, const double *v, double *L_q, double *L_v);
-  dvi_status (*hessian)(void *of, int count, const double *t, const double *q, const double *v, double *L_qq, double *L_qv,
-                        double *L_vv);
+  dvi_status (*value)(void *of, int count, const double *t, const double *q, const double *v,
+                      double *L);
+  dvi_status (*gradient)(void *of, int count, const double *t, const double *q, const double *v,
+                         double *L_q, double *L_v);
+  dvi_status (*hessian)(void *of, int count, const double *t, const double *q, const double *v,
+                        double *L_qq, double *L_qv, double *L_vv);
   double (*noise)(const void *of);               /* as dvi__hessian_noise */
-  dvi_status (*reserve)(void *of, int capacity); /* room for so many points in a batch */
+  dvi_status (*reserve)(void *of, int capacity); /* make room for so many points in a batch */
 } dvi__computed;
 
-/* A general Lagrangian, or alpha(q).v; or a Hamiltonian, which is a function of p where these are functions of v. */
+/* A general Lagrangian, or alpha(q).v, or a Hamiltonian, which is a function of p in the place of
+ * v. */
 typedef struct dvi__lagrangian_term {
-  const char *name; /* for messages: "Lagrangian", "Hamiltonian", "constraint" */
+  const char *name; /* name for messages, "Lagrangian", "Hamiltonian" or "constraint" */
   dvi_lagrangian callbacks;
-  const struct dvi__computed *computed; /* not NULL: it stands in the place of the callbacks, */
-  void *of;                             /* with this first argument */
-  dvi_one_form one_form;                /* without a value: there is none, and the callbacks above count */
+  const struct dvi__computed *computed; /* replaces the callbacks if not NULL */
+  void *of;                             /* first argument of `computed` */
+  dvi_one_form one_form;                /* used if one_form.value is not NULL */
   dvi__gauge_term gauge;
   dvi__pattern qq, qv, vv;
-  dvi__pattern omega;             /* of the one-form's two-form: qv and its transpose */
-  int *in_qq;                     /* [entries of qq] */
-  dvi__groups q_groups, v_groups; /* q columns of qq; v columns of qv and vv together */
+  dvi__pattern omega; /* pattern of the two-form, qv and its transpose */
+  int *in_qq;         /* places [entries of qq] */
+  /* groups of q columns of qq, and of v columns of qv and vv together */
+  dvi__groups q_groups, v_groups;
 } dvi__lagrangian_term;
 
-/* A factor, or a coordinate of R^n: which chart it has, and where its numbers begin. A factor of rigid motions is one of rotations and three coordinates. */
-typedef struct dvi__cell {
+/* A factor, or a coordinate of R^n, with its chart and the first index of its numbers. A factor of
+ * rigid motions has one slot of rotations and three of coordinates. */
+typedef struct dvi__factor_slot {
   dvi__chart_kind kind;
-  int q, v, x; /* of the stored coordinates, of the stored velocities, of the chart's coordinates */
-} dvi__cell;
+  int q, v, x; /* first stored coordinate, first stored velocity, first chart coordinate */
+} dvi__factor_slot;
 
 /* Constraints phi(q,p) = 0. */
 typedef struct dvi__constraint_term {
   dvi_constraint callbacks;
-  dvi__pattern gradients;        /* 2n rows, m columns */
-  dvi__pattern bracket;          /* full, m x m */
-  dvi__lagrangian_term weighted; /* patterns and groups of phi.w, a function of q and p; without callbacks */
+  dvi__pattern gradients; /* 2n rows, m columns */
+  dvi__pattern bracket;   /* full, m x m */
+  /* patterns and groups of phi.w, a function of q and p, without callbacks */
+  dvi__lagrangian_term weighted;
 } dvi__constraint_term;
 
 /* Ints count coordinates, and up to four numbers of each. */
 enum { DVI__DIMENSION_MOST = INT_MAX / 4 };
 
-/* Hashes of all that is declared, but for what callbacks compute: terms, masses, patterns,
- * potentials, invariants. */
+/* Hashes of all that is declared, without the results of callbacks. The parts are terms, masses,
+ * patterns, potentials, invariants. */
 enum { DVI__DECLARED_PARTS = 5 };
 typedef struct dvi__declared {
   uint64_t hash[DVI__DECLARED_PARTS];
 } dvi__declared;
 
-/* What the equations of motion are (system/evaluate/dynamics.h). */
+/* The form of the equations of motion (system/evaluate/dynamics.h). */
 typedef struct dvi__dynamics dvi__dynamics;
 
 struct dvi_system {
   const dvi__dynamics *dynamics;
   int n;          /* stored coordinates */
-  int nv;         /* numbers of a velocity: n without factors */
+  int nv;         /* numbers of a velocity, n without factors */
   int nx;         /* degrees of freedom */
-  int cell_count; /* 0: no factors */
-  dvi__cell *cells;
-  int autonomous; /* declared so */
+  int slot_count; /* 0 without factors */
+  dvi__factor_slot *slots;
+  int autonomous; /* declared autonomous */
   dvi__declared declared;
   unsigned terms; /* dvi__term bits */
   double mass_scalar;
   double *mass_diagonal;
   double *mass_values;              /* in the order of vv */
-  dvi__lagrangian_term *lagrangian; /* general, or made of the one-form, or the Hamiltonian */
-  dvi__constraint_term *constraint; /* with a Hamiltonian; else NULL */
+  dvi__lagrangian_term *lagrangian; /* general, of the one-form, or the Hamiltonian */
+  dvi__constraint_term *constraint; /* constraints of a Hamiltonian, or NULL */
   dvi__potential_term *potentials;
   int potential_count;
   dvi_symmetry *symmetries;
   int symmetry_count;
   dvi_invariant *invariants;
   int invariant_count;
-  char **invariant_names; /* energy, symmetries, invariants */
-  dvi__pattern qv,
-      vv; /* of L's Hessian; vv is diagonal for scalar and diagonal masses, empty for a one-form. With a Hamiltonian: of its H_qp and H_pp */
-  dvi__pattern qq; /* the union over the terms; empty until dvi__system_prepare_hessian */
+  char **invariant_names; /* names of energy, symmetries, invariants */
+  /* Patterns of L's Hessian. vv is diagonal for scalar and diagonal masses, empty for a one-form.
+   * With a Hamiltonian qv and vv are those of H_qp and H_pp. qq is the union over the terms, empty
+   * until dvi__system_prepare_hessian. */
+  dvi__pattern qv, vv, qq;
 };
 
-/* Complete the patterns of L_qq, once: left-out ones are full, n^2 entries that only a method with Hessians should pay for. Integrators on
- * several threads may call it at one time. DVI_BAD_SIZE if an int cannot count the entries. */
+/* Complete the patterns of L_qq, once. Patterns that were not declared become full, with n^2
+ * entries that only a method with Hessians should pay for. Integrators on several threads may call
+ * this at one time. Return DVI_BAD_SIZE if an int cannot count the entries. */
 dvi_status dvi__system_prepare_hessian(const dvi_system *system);
 
-/* Whether all potentials give their gradient: nothing is differenced for forces. */
+/* Return 1 if all potentials give their gradient, so that no force is differenced. */
 int dvi__system_has_gradients(const dvi_system *system);
 
-/* The relative error of the second derivatives: 0 if all terms give theirs, else that of differences (system/term/difference.h). */
+/* Return the relative error of the second derivatives. It is 0 if all terms give theirs, else that
+ * of differences (system/term/difference.h). */
 double dvi__hessian_noise(const dvi_system *system);
 
-/* DVI_OK if L_t is known: the system is autonomous, or all terms give their rates. Else the sentence names the term without. */
+/* Return DVI_OK if L_t is known, because the system is autonomous, or all terms give their rates.
+ * Else the sentence names the term without a rate. */
 dvi_status dvi__system_has_rates(const dvi_system *system);
 
-/* DVI_OK if the Taylor coefficients of L are known: all terms give them. Else the sentence names the term without. */
+/* Return DVI_OK if all terms give the Taylor coefficients of L. Else the sentence names the term
+ * without them. */
 dvi_status dvi__system_has_taylor(const dvi_system *system);
 
-/* The hashes; and in which part they differ first, in words. NULL: in none. */
+/* Compute the hashes. The second function names the first part in which they differ, or returns
+ * NULL. */
 void dvi__system_declared(const dvi_system *system, dvi__declared *declared);
 const char *dvi__declared_difference(const dvi__declared *one, const dvi__declared *other);
 
-/* DVI_OK if one may stand in for the other in all that is made for it: they declare the same terms, masses, patterns, names, speeds, derivatives and reaches, and
- * differ in what their callbacks compute alone. */
+/* Return DVI_OK if one system may replace the other in all that is made for it. Both then declare
+ * the same terms, masses, patterns, names, speeds, derivatives and reaches, and differ only in the
+ * results of their callbacks. */
 dvi_status dvi__system_alike(const dvi_system *a, const dvi_system *b);
 
 #endif

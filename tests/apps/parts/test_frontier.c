@@ -1,4 +1,4 @@
-#include "bench/frontier.h"
+#include "study/frontier.h"
 
 #include <math.h>
 
@@ -34,7 +34,8 @@ END_TEST
 
 START_TEST(only_the_two_neighbours_count)
 {
-  const double bent[COUNT] = {1e1, 1e9, 1e2, 1e-3, 1e12}; /* the curve of above between 1e-4 and 1e-8 only */
+  /* the curve of above between 1e-4 and 1e-8 only */
+  const double bent[COUNT] = {1e1, 1e9, 1e2, 1e-3, 1e12};
   double least;
   ck_assert_int_eq(frontier_cost(COUNT, error, bent, 1e-6, &least), FRONTIER_BETWEEN);
   ck_assert_double_le(fabs(least / pow(10.0, 1.5) - 1.0), roundoff);
@@ -60,7 +61,8 @@ END_TEST
 
 START_TEST(a_setting_that_another_one_beats_is_left_out)
 {
-  /* The second one costs more than the third, which is better: the line leads from the first to the third. */
+  /* The second one costs more than the third, which is better: the line leads from the first to the
+   * third. */
   const double errors[] = {1e-2, 1e-3, 1e-6};
   const double costs[] = {1.0, 1e3, 1e2};
   double least;

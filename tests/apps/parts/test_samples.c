@@ -1,4 +1,4 @@
-#include "bench/samples.h"
+#include "study/samples.h"
 
 #include <math.h>
 

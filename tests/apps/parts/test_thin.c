@@ -49,7 +49,8 @@ START_TEST(a_straight_line_keeps_its_ends)
 }
 END_TEST
 
-/* The cone lets a segment pass each point at no more than the tolerance, as seen from its first end: no more than twice that for the whole. */
+/* The cone lets a segment pass each point at no more than the tolerance, as seen from its first
+ * end: no more than twice that for the whole. */
 START_TEST(no_point_is_farther_from_the_thinned_curve_than_can_be_seen)
 {
   draw_wave();

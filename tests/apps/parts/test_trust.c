@@ -1,5 +1,5 @@
 /* Digits from three step sizes: no more than there are. */
-#include "watch/trust.h"
+#include "study/trust.h"
 
 #include <math.h>
 
@@ -15,10 +15,12 @@ START_TEST(an_error_that_follows_its_power_is_found)
 {
   static const double c = 1e-3;
   for (int order = 1; order <= 12; order++) {
-    const double first = level(c, order, 0), second = level(c, order, 1), third = level(c, order, 2);
+    const double first = level(c, order, 0), second = level(c, order, 1),
+                 third = level(c, order, 2);
     const double ratio = trust_ratio(fabs(first - second), fabs(second - third));
     ck_assert_double_eq_tol(ratio, ldexp(1.0, -order), 1e-9);
-    ck_assert(trust_falls(ratio) || order == 1); /* an order of 1 lies at the border, and either estimate is safe */
+    /* an order of 1 lies at the border, and either estimate is safe */
+    ck_assert(trust_falls(ratio) || order == 1);
     ck_assert_double_ge(trust_error(first, second, third, ratio), c * (1.0 - 1e-9));
     ck_assert_double_le(trust_error(first, second, third, ratio), 4.0 * c);
   }
@@ -29,7 +31,8 @@ END_TEST
 START_TEST(errors_that_do_not_fall_are_not_made_small)
 {
   static const double off = 1e-12;
-  static const double signs[][TRUST_LEVELS] = {{1, -1, 1}, {1, -1, -1}, {1, 0.5, 0}, {-1, 0, 0.9}, {0.5, -1, 0.7}};
+  static const double signs[][TRUST_LEVELS] = {
+      {1, -1, 1}, {1, -1, -1}, {1, 0.5, 0}, {-1, 0, 0.9}, {0.5, -1, 0.7}};
   for (size_t k = 0; k < sizeof signs / sizeof *signs; k++) {
     const double first = off * signs[k][0], second = off * signs[k][1], third = off * signs[k][2];
     const double ratio = trust_ratio(fabs(first - second), fabs(second - third));

@@ -1,6 +1,7 @@
-/* How fast an emitted scene is: whole trajectories of it beside the problem of the catalogue that is written in C, one after the other in one process.
- * Usage: compare_emitted PROBLEM METHOD H STEPS ROUNDS [NAME=VALUE]
- * Prints the least seconds of both, their ratio, and by how much the last positions differ. */
+/* How fast an emitted scene is: whole trajectories of it beside the problem of the catalogue that
+ * is written in C, one after the other in one process. Usage: compare_emitted PROBLEM METHOD H
+ * STEPS ROUNDS [NAME=VALUE] Prints the least seconds of both, their ratio, and by how much the last
+ * positions differ. */
 #include <dvi/dvi.h>
 #include <math.h>
 #include <stdio.h>
@@ -42,8 +43,10 @@ int main(int argc, char **argv)
   dvi_system *system;
   dvi_integrator *by_hand, *emitted;
   const char *setting = argc > 6 ? argv[6] : NULL;
-  if (argc < 6 || problem_create(argv[1], argc > 6, &setting, &written, message, sizeof message) != DVI_OK ||
-      emitted_create(&system) != DVI_OK || dvi_integrator_create(written->system, argv[2], &by_hand) != DVI_OK ||
+  if (argc < 6 ||
+      problem_create(argv[1], argc > 6, &setting, &written, message, sizeof message) != DVI_OK ||
+      emitted_create(&system) != DVI_OK ||
+      dvi_integrator_create(written->system, argv[2], &by_hand) != DVI_OK ||
       dvi_integrator_create(system, argv[2], &emitted) != DVI_OK) {
     (void)fprintf(stderr, "compare_emitted: no such comparison\n");
     return 1;
@@ -54,8 +57,9 @@ int main(int argc, char **argv)
     least[0] = fmin(least[0], run(by_hand, written, h, strtol(argv[4], NULL, 10)));
     least[1] = fmin(least[1], run(emitted, written, h, strtol(argv[4], NULL, 10)));
   }
-  printf("%s, %s: written %.3e s, emitted %.3e s, ratio %.2f; positions differ by %.0e\n", argv[1], argv[2], least[0], least[1],
-         least[1] / least[0], difference(written->nq, dvi_integrator_q(by_hand), dvi_integrator_q(emitted)));
+  printf("%s, %s: written %.3e s, emitted %.3e s, ratio %.2f; positions differ by %.0e\n", argv[1],
+         argv[2], least[0], least[1], least[1] / least[0],
+         difference(written->nq, dvi_integrator_q(by_hand), dvi_integrator_q(emitted)));
   dvi_integrator_destroy(&emitted);
   dvi_integrator_destroy(&by_hand);
   dvi_system_destroy(&system);

@@ -130,7 +130,7 @@ show() {
   "$dvi" run tried.yaml --method "$2" 2>&1
 }
 
-# used SCENE METHOD: the method takes the scene, and all its sections. On what turns these methods have no path on which to look for events.
+# used SCENE METHOD: the method takes the scene, and all its sections. On manifold coordinates these methods have no path on which to look for events.
 used() {
   without=
   case "$1:$2" in rotation:lie-rk | body:lie-rk | direction:lie-rk | rotation:comp* | body:comp* | direction:comp*) without=events ;; esac

@@ -1,11 +1,13 @@
-/* Prints the version of the linked library; fails if it is not the one that the headers speak of, or if the library does not work. */
+/* Prints the version of the linked library; fails if it is not the one that the headers speak of,
+ * or if the library does not work. */
 #include <dvi/dvi.h>
 #include <stdio.h>
 
 int main(void)
 {
   char expected[32];
-  (void)snprintf(expected, sizeof expected, "%d.%d.%d", DVI_VERSION_MAJOR, DVI_VERSION_MINOR, DVI_VERSION_PATCH);
+  (void)snprintf(expected, sizeof expected, "%d.%d.%d", DVI_VERSION_MAJOR, DVI_VERSION_MINOR,
+                 DVI_VERSION_PATCH);
   (void)printf("%s\n", dvi_version());
   for (const char *a = expected, *b = dvi_version();; a++, b++) {
     if (*a != *b) return 1;

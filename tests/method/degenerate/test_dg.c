@@ -1,5 +1,6 @@
 /* labels: order invariant */
-/* Discontinuous Galerkin variational integrators: orders, the parasite and its stiffness, loop integrals, the alarm, refusals. */
+/* Discontinuous Galerkin variational integrators: orders, the parasite and its stiffness, loop
+ * integrals, the alarm, refusals. */
 #include <math.h>
 #include <string.h>
 
@@ -23,7 +24,8 @@ static void check_slope(const char *what, double last, double error, int level, 
 {
   const double within = level == 1 ? 0.7 : 0.2; /* the first pair may not be asymptotic yet */
   const double slope = log2(last / error);
-  ck_assert_msg(fabs(slope - expected) <= within, "%s: slope %.2f at level %d (error %g)", what, slope, level, error);
+  ck_assert_msg(fabs(slope - expected) <= within, "%s: slope %.2f at level %d (error %g)", what,
+                slope, level, error);
 }
 
 static const struct {
@@ -61,11 +63,13 @@ enum { CLAIMS = sizeof claims / sizeof *claims };
 
 START_TEST(degrees_fluxes_and_stiffnesses_have_the_order_that_they_claim)
 {
-  check_degenerate_order(claims[_i].problem, claims[_i].setting, claims[_i].method, claims[_i].h, claims[_i].order);
+  check_degenerate_order(claims[_i].problem, claims[_i].setting, claims[_i].method, claims[_i].h,
+                         claims[_i].order);
 }
 END_TEST
 
-/* S = 5 and 6 have order 10: the floor is reached after a few halvings of steps so long that slopes still scatter. Over the whole of them they do not. */
+/* S = 5 and 6 have order 10: the floor is reached after a few halvings of steps so long that slopes
+ * still scatter. Over the whole of them they do not. */
 START_TEST(five_and_six_coefficients_have_order_10)
 {
   problem *of = made_problem("lotka-volterra-4d", NULL);
@@ -76,7 +80,8 @@ START_TEST(five_and_six_coefficients_have_order_10)
 }
 END_TEST
 
-/* A stiffness in proportion to 1/h for even S, to h for odd S, keeps the parasite away from 1 and all of the order 2S. */
+/* A stiffness in proportion to 1/h for even S, to h for odd S, keeps the parasite away from 1 and
+ * all of the order 2S. */
 START_TEST(a_stiffness_that_goes_with_the_step_has_order_2S)
 {
   const int S = 1 + _i;
@@ -98,7 +103,8 @@ END_TEST
 /* ---- the parasite ---- */
 
 /* Relative energy errors of the quarters of a run; 0 steps: it breaks down. */
-static long run_energies(const char *name, const char *method, double h, long steps, double *quarter)
+static long run_energies(const char *name, const char *method, double h, long steps,
+                         double *quarter)
 {
   problem *of = made_problem(name, NULL);
   dvi_integrator *integrator = started(of, method);
@@ -132,9 +138,10 @@ START_TEST(energy_stays_bounded)
 {
   const long steps = 16000;
   double quarter[4];
-  ck_assert_int_eq(run_energies(runs[_i].problem, runs[_i].method, runs[_i].h, steps, quarter), steps);
-  ck_assert_msg(quarter[0] <= runs[_i].bound && quarter[3] <= 1.05 * quarter[0] + 1e-13, "%s: %g, then %g", runs[_i].method,
-                quarter[0], quarter[3]);
+  ck_assert_int_eq(run_energies(runs[_i].problem, runs[_i].method, runs[_i].h, steps, quarter),
+                   steps);
+  ck_assert_msg(quarter[0] <= runs[_i].bound && quarter[3] <= 1.05 * quarter[0] + 1e-13,
+                "%s: %g, then %g", runs[_i].method, quarter[0], quarter[3]);
 }
 END_TEST
 
@@ -142,7 +149,8 @@ END_TEST
 START_TEST(runs_without_a_stiffness_break_down_and_the_alarm_stops_them_first)
 {
   double quarter[4];
-  const char *name = _i == 0 ? "lotka-volterra" : "tokamak", *method = _i == 0 ? "dg:degree=1" : "dg:degree=3";
+  const char *name = _i == 0 ? "lotka-volterra" : "tokamak",
+             *method = _i == 0 ? "dg:degree=1" : "dg:degree=3";
   const double h = _i == 0 ? 0.1 : 500;
   const long steps = run_energies(name, method, h, 2000, quarter);
   check_words("the parasite has grown");
@@ -155,7 +163,8 @@ END_TEST
 START_TEST(an_alarm_leaves_the_state_or_is_counted)
 {
   problem *of = made_problem("lotka-volterra", NULL);
-  dvi_integrator *stops = started(of, "dg:degree=1"), *warns = started(of, "dg:degree=1,alarm=warn");
+  dvi_integrator *stops = started(of, "dg:degree=1"),
+                 *warns = started(of, "dg:degree=1,alarm=warn");
   dvi_counters counters;
   double q[2], jump[2], after[2];
   dvi_status status = DVI_OK;
@@ -186,10 +195,12 @@ START_TEST(a_step_out_of_the_logarithms_domain_leaves_the_state)
   for (int steps = 0; steps < 3; steps++) {
     ck_assert_int_gt(dvi_integrator_step(integrator, 40), 0);
     check_words("the state is unchanged");
-    ck_assert_double_eq(dvi_integrator_jump(integrator, NULL), dvi_integrator_jump(untroubled, NULL));
+    ck_assert_double_eq(dvi_integrator_jump(integrator, NULL),
+                        dvi_integrator_jump(untroubled, NULL));
     advance(integrator, 0.1, 1);
     advance(untroubled, 0.1, 1);
-    ck_assert_mem_eq(dvi_integrator_q(integrator), dvi_integrator_q(untroubled), 2 * sizeof(double));
+    ck_assert_mem_eq(dvi_integrator_q(integrator), dvi_integrator_q(untroubled),
+                     2 * sizeof(double));
   }
   dvi_integrator_destroy(&integrator);
   dvi_integrator_destroy(&untroubled);
@@ -197,10 +208,12 @@ START_TEST(a_step_out_of_the_logarithms_domain_leaves_the_state)
 }
 END_TEST
 
-/* A start chooses the jump that varies as little as the motion does; from a jump of 0 its change would be as large as itself. */
+/* A start chooses the jump that varies as little as the motion does; from a jump of 0 its change
+ * would be as large as itself. */
 START_TEST(a_run_starts_on_the_smooth_branch)
 {
-  static const char *const methods[] = {"dg:degree=0", "dg:degree=2", "dg:degree=2,stiffness=1", "dg:degree=3,stiffness=1"};
+  static const char *const methods[] = {"dg:degree=0", "dg:degree=2", "dg:degree=2,stiffness=1",
+                                        "dg:degree=3,stiffness=1"};
   problem *of = made_problem("massless-particle", NULL);
   dvi_integrator *integrator = started(of, methods[_i]);
   double last[2], jump[2];
@@ -228,14 +241,17 @@ static void form_times(const double *q, const double *w, double *gradient)
   gradient[1] = y * turn - s * w[0];
 }
 
-/* The one-form of the map (q-, q+): dN/dq+ = alpha({q}) + (Dalpha)^T [q]/2 + c [q] against dq+. {q} = q* + Omega({q})^-1 c [q] by iteration. */
-static void point_and_momentum(const dvi_integrator *integrator, double c, double *point, double *momentum)
+/* The one-form of the map (q-, q+): dN/dq+ = alpha({q}) + (Dalpha)^T [q]/2 + c [q] against dq+. {q}
+ * = q* + Omega({q})^-1 c [q] by iteration. */
+static void point_and_momentum(const dvi_integrator *integrator, double c, double *point,
+                               double *momentum)
 {
   double jump[2], mean[2], turned[2], alpha[2];
   (void)dvi_integrator_jump(integrator, jump);
   memcpy(mean, dvi_integrator_q(integrator), sizeof mean);
   for (int k = 0; k < 60; k++) {
-    const double field = 1 + 2 * (mean[0] * mean[0] + mean[1] * mean[1]); /* Omega = field (0 1; -1 0) */
+    /* Omega = field (0 1; -1 0) */
+    const double field = 1 + 2 * (mean[0] * mean[0] + mean[1] * mean[1]);
     mean[0] = dvi_integrator_q(integrator)[0] - c * jump[1] / field;
     mean[1] = dvi_integrator_q(integrator)[1] + c * jump[0] / field;
   }
@@ -249,7 +265,8 @@ static void point_and_momentum(const dvi_integrator *integrator, double c, doubl
   }
 }
 
-/* oint momentum . d point over a loop of starts, by the derivative of the trigonometric polynomial through them. */
+/* oint momentum . d point over a loop of starts, by the derivative of the trigonometric polynomial
+ * through them. */
 enum { POINTS = 128 };
 
 static double loop_integral(dvi_integrator *const *at, double c)
@@ -277,20 +294,23 @@ static const struct {
                   {"dg:degree=1,stiffness=1", 1, 0.1},
                   {"dg:degree=3,stiffness=1", 1, 0.5}};
 
-/* From the first step on: the start knows no jump. With another c than the method's it is not conserved, which shows that the test can tell. */
+/* From the first step on: the start knows no jump. With another c than the method's it is not
+ * conserved, which shows that the test can tell. */
 START_TEST(loop_integrals_of_the_map_of_both_sides_are_conserved)
 {
   problem *of = made_problem("massless-particle", NULL);
   dvi_integrator *at[POINTS];
   for (int k = 0; k < POINTS; k++) {
-    const double angle = 2 * 3.14159265358979323846 * k / POINTS, q[2] = {1 + 0.05 * cos(angle), 1 + 0.05 * sin(angle)};
+    const double angle = 2 * 3.14159265358979323846 * k / POINTS,
+                 q[2] = {1 + 0.05 * cos(angle), 1 + 0.05 * sin(angle)};
     double p[2];
     at[k] = made_integrator(of->system, symplectic[_i].method);
     ck_assert_int_eq(dvi_system_momentum(of->system, 0, q, of->v, p), DVI_OK);
     ck_assert_int_eq(dvi_integrator_start(at[k], 0, q, p), DVI_OK);
     advance(at[k], symplectic[_i].h, 1);
   }
-  const double c = symplectic[_i].c, before = loop_integral(at, c), other = loop_integral(at, c + 1);
+  const double c = symplectic[_i].c, before = loop_integral(at, c),
+               other = loop_integral(at, c + 1);
   for (int k = 0; k < POINTS; k++) advance(at[k], symplectic[_i].h, lround(30 / symplectic[_i].h));
   ck_assert_double_le(fabs(loop_integral(at, c) / before - 1), 1e-11);
   ck_assert_double_ge(fabs(loop_integral(at, c + 1) / other - 1), 1e-10);
@@ -301,7 +321,8 @@ END_TEST
 
 START_TEST(symmetric_fluxes_go_back_the_way_they_came)
 {
-  static const char *const methods[] = {"dg", "dg:degree=1,stiffness=1", "dg:degree=3,flux=path,stiffness=0.5"};
+  static const char *const methods[] = {"dg", "dg:degree=1,stiffness=1",
+                                        "dg:degree=3,flux=path,stiffness=0.5"};
   problem *of = made_problem("vortices", NULL);
   dvi_integrator *integrator = started(of, methods[_i]);
   advance(integrator, 0.05, 20);
@@ -312,7 +333,8 @@ START_TEST(symmetric_fluxes_go_back_the_way_they_came)
 }
 END_TEST
 
-/* alpha = (-y, x)/2 + g (x, y): a gauge in which the one-sided flux on the right has the stiffness g, and the one on the left -g. */
+/* alpha = (-y, x)/2 + g (x, y): a gauge in which the one-sided flux on the right has the stiffness
+ * g, and the one on the left -g. */
 static int turning(const double *q, double *alpha, void *user)
 {
   const double g = *(const double *)user;
@@ -340,8 +362,11 @@ static dvi_integrator *turned(double *g, const char *method, dvi_system **system
 {
   const dvi_one_form one_form = {.value = turning, .gradient = turning_gradient, .user = g};
   const dvi_potential potential = {.name = "H", .value = bowl};
-  const dvi_system_terms terms = {
-      .dimension = 2, .one_form = &one_form, .potentials = &potential, .potential_count = 1, .autonomous = 1};
+  const dvi_system_terms terms = {.dimension = 2,
+                                  .one_form = &one_form,
+                                  .potentials = &potential,
+                                  .potential_count = 1,
+                                  .autonomous = 1};
   const double q[2] = {0.5, 0.2}, v[2] = {0};
   double p[2];
   ck_assert_int_eq(dvi_system_create(&terms, system), DVI_OK);
@@ -369,10 +394,12 @@ START_TEST(a_flux_at_one_side_is_an_average_flux_with_the_gauges_stiffness)
 }
 END_TEST
 
-/* Exact Jacobians: Newton's method alone, with few iterations, also with a stiffness and points off the middle of the path. */
+/* Exact Jacobians: Newton's method alone, with few iterations, also with a stiffness and points off
+ * the middle of the path. */
 START_TEST(newtons_method_suffices)
 {
-  static const char *const methods[] = {"dg", "dg:degree=3,stiffness=1", "dg:degree=2,flux=path,points=3", "dg:degree=0"};
+  static const char *const methods[] = {"dg", "dg:degree=3,stiffness=1",
+                                        "dg:degree=2,flux=path,points=3", "dg:degree=0"};
   problem *of = made_problem("vortices", NULL);
   dvi_integrator *integrator = started(of, methods[_i]);
   dvi_counters counters;
@@ -410,7 +437,8 @@ static const struct {
     {"dg:stiffness=01", "is not a list of numbers"},
     {"dg:stiffness=1e3", "is not a list of numbers"},
     {"dg:stiffness=1234567890.1234567", "is not a list of numbers"},
-    {"dg:stiffness=1:1:1:1:1:1:1:1:1:1:1:1:1:1:1:1:1", "more than 16 numbers; 1 to 16 are possible"},
+    {"dg:stiffness=1:1:1:1:1:1:1:1:1:1:1:1:1:1:1:1:1",
+     "more than 16 numbers; 1 to 16 are possible"},
     {"dg:stifness=1", "it takes degree, nodes, flux, points, alarm, stiffness"},
 };
 enum { REFUSED = sizeof refused / sizeof *refused };
@@ -430,7 +458,8 @@ START_TEST(specifications_are_spelled_out_and_read_again)
 {
   problem *of = made_problem("lotka-volterra", NULL);
   dvi_integrator *first = made_integrator(of->system, "dg:stiffness=0.00002:3,degree=1");
-  ck_assert_str_eq(dvi_integrator_method(first), "dg:degree=1,nodes=2,flux=average,points=1,alarm=stop,stiffness=0.00002:3");
+  ck_assert_str_eq(dvi_integrator_method(first),
+                   "dg:degree=1,nodes=2,flux=average,points=1,alarm=stop,stiffness=0.00002:3");
   dvi_integrator *again = made_integrator(of->system, dvi_integrator_method(first));
   ck_assert_str_eq(dvi_integrator_method(first), dvi_integrator_method(again));
   ck_assert(isnan(dvi_integrator_jump(first, NULL))); /* it has not started */
@@ -446,11 +475,13 @@ END_TEST
 SUITE(dg)
 {
   tcase_set_timeout(tests, 120);
-  tcase_add_loop_test(tests, degrees_fluxes_and_stiffnesses_have_the_order_that_they_claim, 0, CLAIMS);
+  tcase_add_loop_test(tests, degrees_fluxes_and_stiffnesses_have_the_order_that_they_claim, 0,
+                      CLAIMS);
   tcase_add_loop_test(tests, five_and_six_coefficients_have_order_10, 4, 6);
   tcase_add_loop_test(tests, a_stiffness_that_goes_with_the_step_has_order_2S, 1, 4);
   tcase_add_loop_test(tests, energy_stays_bounded, 0, RUNS);
-  tcase_add_loop_test(tests, runs_without_a_stiffness_break_down_and_the_alarm_stops_them_first, 0, 2);
+  tcase_add_loop_test(tests, runs_without_a_stiffness_break_down_and_the_alarm_stops_them_first, 0,
+                      2);
   tcase_add_test(tests, an_alarm_leaves_the_state_or_is_counted);
   tcase_add_test(tests, a_step_out_of_the_logarithms_domain_leaves_the_state);
   tcase_add_loop_test(tests, a_run_starts_on_the_smooth_branch, 0, 4);

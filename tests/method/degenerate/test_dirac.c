@@ -1,5 +1,6 @@
 /* labels: order invariant */
-/* dg-phase with a Hamiltonian and constraints phi(q,p) = 0: orders, what is conserved, the one-form's path, refusals. */
+/* dg-phase with a Hamiltonian and constraints phi(q,p) = 0: orders, what is conserved, the
+ * one-form's path, refusals. */
 #include <math.h>
 #include <string.h>
 
@@ -10,7 +11,8 @@
 
 enum { LEVELS = 4 };
 
-/* `steps` is the number of the first level; each level has sqrt 2 times as many. Few enough that the errors stay above 1e-12. */
+/* `steps` is the number of the first level; each level has sqrt 2 times as many. Few enough that
+ * the errors stay above 1e-12. */
 static const struct {
   const char *problem, *method;
   int order, steps;
@@ -47,8 +49,8 @@ START_TEST(claimed_order_is_measured)
     const int more = (int)lround(steps * 1.4142135623730951);
     const double error = error_of(of, claims[_i].method, claims[_i].order, more);
     const double slope = log(last / error) / log((double)more / steps);
-    ck_assert_msg(fabs(slope - claims[_i].order) <= 0.2, "%s %s: slope %.2f at %d steps (error %g)", of->name, claims[_i].method,
-                  slope, more, error);
+    ck_assert_msg(fabs(slope - claims[_i].order) <= 0.2, "%s %s: slope %.2f at %d steps (error %g)",
+                  of->name, claims[_i].method, slope, more, error);
     last = error;
     steps = more;
   }
@@ -56,12 +58,15 @@ START_TEST(claimed_order_is_measured)
 }
 END_TEST
 
-/* The angle from the top is the pendulum's; galerkin of degree 8 at this step is right to roundings. */
+/* The angle from the top is the pendulum's; galerkin of degree 8 at this step is right to
+ * roundings. */
 START_TEST(the_particle_on_a_circle_is_the_pendulum)
 {
   problem *circle = made_problem("circle-dirac", NULL), *pendulum = made_problem("pendulum", NULL);
-  dvi_integrator *particle = started(circle, "dg-phase:degree=6"), *angle = made_integrator(pendulum->system, "galerkin:degree=8");
-  ck_assert_int_eq(dvi_integrator_start(angle, 0, (double[]){atan2(0.8, 0.6)}, (double[]){0.5}), DVI_OK);
+  dvi_integrator *particle = started(circle, "dg-phase:degree=6"),
+                 *angle = made_integrator(pendulum->system, "galerkin:degree=8");
+  ck_assert_int_eq(dvi_integrator_start(angle, 0, (double[]){atan2(0.8, 0.6)}, (double[]){0.5}),
+                   DVI_OK);
   advance(particle, 0.05, 60);
   advance(angle, 0.05, 60);
   const double theta = dvi_integrator_q(angle)[0], omega = dvi_integrator_p(angle)[0];
@@ -85,7 +90,8 @@ static int form_H(double t, const double *q, const double *p, double *H, void *u
   return V->value(t, q, H, V->user);
 }
 
-static int form_H_gradient(double t, const double *q, const double *p, double *H_q, double *H_p, void *user)
+static int form_H_gradient(double t, const double *q, const double *p, double *H_q, double *H_p,
+                           void *user)
 {
   const dvi_potential *V = ((const problem *)user)->terms->potentials;
   (void)p;
@@ -115,9 +121,12 @@ static int form_phi_gradient(const double *q, const double *p, double *phi_z, vo
   return returned;
 }
 
-/* The printed steps of the one-form (tests/method/hamiltonian/test_dg_phase.c), with [q] = h lambda:
- *     q' = q + ([q] + [q'])/2,   alpha' = alpha - h H_q(q + [q]/2) + ((Dalpha)^T [q] + (Dalpha')^T [q'])/2. */
-static void check_printed_step(const problem *of, double h, const double *q, const double *jump, const dvi_integrator *integrator)
+/* The printed steps of the one-form (tests/method/hamiltonian/test_dg_phase.c), with [q] = h
+ * lambda:
+ *     q' = q + ([q] + [q'])/2,   alpha' = alpha - h H_q(q + [q]/2) + ((Dalpha)^T [q] + (Dalpha')^T
+ * [q'])/2. */
+static void check_printed_step(const problem *of, double h, const double *q, const double *jump,
+                               const dvi_integrator *integrator)
 {
   const dvi_one_form *form = of->terms->one_form;
   const dvi_potential *V = of->terms->potentials;
@@ -125,12 +134,15 @@ static void check_printed_step(const problem *of, double h, const double *q, con
   double next_jump[2], alpha[2], next_alpha[2], alpha_q[4], next_alpha_q[4], H_q[2];
   (void)dvi_integrator_jump(integrator, next_jump);
   const double middle[2] = {q[0] + jump[0] / 2, q[1] + jump[1] / 2};
-  ck_assert_int_eq(form->value(q, alpha, form->user) | form->value(next_q, next_alpha, form->user), 0);
-  ck_assert_int_eq(form->gradient(q, alpha_q, form->user) | form->gradient(next_q, next_alpha_q, form->user), 0);
+  ck_assert_int_eq(form->value(q, alpha, form->user) | form->value(next_q, next_alpha, form->user),
+                   0);
+  ck_assert_int_eq(
+      form->gradient(q, alpha_q, form->user) | form->gradient(next_q, next_alpha_q, form->user), 0);
   ck_assert_int_eq(V->gradient(0, middle, H_q, V->user), 0);
   for (int i = 0; i < 2; i++) {
     double sum = alpha[i] - h * H_q[i];
-    for (int j = 0; j < 2; j++) sum += (alpha_q[2 * j + i] * jump[j] + next_alpha_q[2 * j + i] * next_jump[j]) / 2;
+    for (int j = 0; j < 2; j++)
+      sum += (alpha_q[2 * j + i] * jump[j] + next_alpha_q[2 * j + i] * next_jump[j]) / 2;
     ck_assert_double_eq_tol(next_q[i], q[i] + (jump[i] + next_jump[i]) / 2, 1e-14);
     ck_assert_double_eq_tol(next_alpha[i], sum, 1e-13);
     ck_assert_double_eq_tol(dvi_integrator_p(integrator)[i], next_alpha[i], 1e-14);
@@ -138,16 +150,20 @@ static void check_printed_step(const problem *of, double h, const double *q, con
   }
 }
 
-/* Without Hessians: they are differenced. The trajectory is that of the one-form, too, up to the parasite h^3 that the starts leave. */
+/* Without Hessians: they are differenced. The trajectory is that of the one-form, too, up to the
+ * parasite h^3 that the starts leave. */
 START_TEST(without_moments_every_degree_takes_the_steps_of_the_one_form)
 {
   problem *of = made_problem("massless-particle", NULL);
   const dvi_hamiltonian H = {.value = form_H, .gradient = form_H_gradient, .user = of};
-  const dvi_constraint phi = {.count = 2, .value = form_phi, .gradient = form_phi_gradient, .user = of};
-  const dvi_system_terms terms = {.dimension = 2, .autonomous = 1, .hamiltonian = &H, .constraint = &phi};
+  const dvi_constraint phi = {
+      .count = 2, .value = form_phi, .gradient = form_phi_gradient, .user = of};
+  const dvi_system_terms terms = {
+      .dimension = 2, .autonomous = 1, .hamiltonian = &H, .constraint = &phi};
   dvi_system *system = NULL;
   ck_assert_msg(dvi_system_create(&terms, &system) == DVI_OK, "%s", dvi_last_error());
-  dvi_integrator *form = started(of, "dg-phase"), *general = made_integrator(system, spec("dg-phase:degree=%d,moments=0", _i));
+  dvi_integrator *form = started(of, "dg-phase"),
+                 *general = made_integrator(system, spec("dg-phase:degree=%d,moments=0", _i));
   ck_assert_int_eq(dvi_integrator_start(general, 0, of->q, of->p), DVI_OK);
   const double h = 0.1;
   advance(form, h, 1);
@@ -172,7 +188,8 @@ END_TEST
 
 enum { POINTS = 128 };
 
-/* The loop integrals of p dq and of [p] d[q]/4 over states of circle-dirac, with [q] = h lambda_2 q, [p] = -h (lambda_1 q + lambda_2 p). */
+/* The loop integrals of p dq and of [p] d[q]/4 over states of circle-dirac, with [q] = h lambda_2
+ * q, [p] = -h (lambda_1 q + lambda_2 p). */
 static double conserved_loop(dvi_integrator *const *point, double h, double *alone)
 {
   double q[2 * POINTS], p[2 * POINTS], q_jump[2 * POINTS], p_jump[2 * POINTS], jumps;
@@ -189,16 +206,19 @@ static double conserved_loop(dvi_integrator *const *point, double h, double *alo
   return *alone + jumps / 4;
 }
 
-/* A loop of angles and speeds. p dq alone is not conserved where the multiplier is large, without moments. */
+/* A loop of angles and speeds. p dq alone is not conserved where the multiplier is large, without
+ * moments. */
 START_TEST(the_two_form_of_both_sides_is_conserved)
 {
-  static const char *const methods[] = {"dg-phase", "dg-phase:degree=2", "dg-phase:degree=3", "dg-phase:degree=3,moments=0"};
+  static const char *const methods[] = {"dg-phase", "dg-phase:degree=2", "dg-phase:degree=3",
+                                        "dg-phase:degree=3,moments=0"};
   const double h = 0.1;
   problem *of = made_problem("circle-dirac", NULL);
   dvi_integrator *point[POINTS];
   double alone[2];
   for (int k = 0; k < POINTS; k++) {
-    const double turn = 2 * 3.14159265358979323846 * k / POINTS, angle = 1 + 0.1 * cos(turn), speed = 0.5 + 0.1 * sin(turn);
+    const double turn = 2 * 3.14159265358979323846 * k / POINTS, angle = 1 + 0.1 * cos(turn),
+                 speed = 0.5 + 0.1 * sin(turn);
     const double q[2] = {sin(angle), cos(angle)}, p[2] = {speed * q[1], -speed * q[0]};
     point[k] = made_integrator(of->system, methods[_i]);
     ck_assert_msg(dvi_integrator_start(point[k], 0, q, p) == DVI_OK, "%s", dvi_last_error());
@@ -215,7 +235,8 @@ START_TEST(the_two_form_of_both_sides_is_conserved)
 }
 END_TEST
 
-static const char *const structured[] = {"dg-phase", "dg-phase:degree=2", "dg-phase:degree=3", "dg-phase:degree=4"};
+static const char *const structured[] = {"dg-phase", "dg-phase:degree=2", "dg-phase:degree=3",
+                                         "dg-phase:degree=4"};
 
 /* Up to roundings, which the way back doubles. */
 START_TEST(steps_back_undo_steps)
@@ -243,7 +264,8 @@ START_TEST(energy_stays_and_the_constraint_holds)
     advance(integrator, 0.1, 1);
     ck_assert_int_eq(dvi_integrator_invariants(integrator, &now), DVI_OK);
     ck_assert_int_eq(dvi_integrator_constraint(integrator, &off), DVI_OK);
-    ck_assert_msg(fabs(now - first) <= bound[_i], "%s: energy off by %g", structured[_i], now - first);
+    ck_assert_msg(fabs(now - first) <= bound[_i], "%s: energy off by %g", structured[_i],
+                  now - first);
     ck_assert_double_le(off, 1e-14);
   }
   dvi_integrator_destroy(&integrator);
@@ -251,7 +273,8 @@ START_TEST(energy_stays_and_the_constraint_holds)
 }
 END_TEST
 
-/* Without moments the node's multiplier is that of the motion up to h^2; with them it holds what they leave, and is small. */
+/* Without moments the node's multiplier is that of the motion up to h^2; with them it holds what
+ * they leave, and is small. */
 START_TEST(the_multiplier_is_that_of_the_motion_or_what_is_left_of_it)
 {
   problem *of = made_problem("circle-dirac", NULL);
@@ -260,7 +283,8 @@ START_TEST(the_multiplier_is_that_of_the_motion_or_what_is_left_of_it)
   advance(whole, 0.01, 100);
   advance(rest, 0.01, 100);
   const double *q = dvi_integrator_q(whole), *p = dvi_integrator_p(whole);
-  ck_assert_double_eq_tol(dvi_integrator_multiplier(whole)[0], p[0] * p[0] + p[1] * p[1] - q[1], 1e-3);
+  ck_assert_double_eq_tol(dvi_integrator_multiplier(whole)[0], p[0] * p[0] + p[1] * p[1] - q[1],
+                          1e-3);
   ck_assert_double_le(fabs(dvi_integrator_multiplier(rest)[0]), 1e-3);
   dvi_integrator_destroy(&whole);
   dvi_integrator_destroy(&rest);
@@ -291,7 +315,8 @@ END_TEST
 
 /* ---- refusals ---- */
 
-static void check_refused(const char *problem_name, const char *method, dvi_status status, const char *words)
+static void check_refused(const char *problem_name, const char *method, dvi_status status,
+                          const char *words)
 {
   problem *of = made_problem(problem_name, NULL);
   dvi_integrator *none = NULL;
@@ -308,9 +333,12 @@ START_TEST(what_cannot_be_is_refused_by_name)
   check_refused("circle-dirac", "vprk", DVI_UNSUPPORTED, "methods for this system: dg-phase");
   check_refused("circle-dirac", "dg-phase:degree=2,nodes=3", DVI_BAD_OPTION, "take nodes=2");
   check_refused("circle-dirac", "dg-phase:degree=2,nodes=1", DVI_BAD_OPTION, "take 2 or more");
-  check_refused("circle-dirac", "dg-phase:degree=3,moments=3", DVI_BAD_OPTION, "an even number up to the degree");
-  check_refused("circle-dirac", "dg-phase:degree=3,moments=4", DVI_BAD_OPTION, "an even number up to the degree");
-  check_refused("vortices", "dg-phase:degree=2,moments=2", DVI_BAD_OPTION, "vprk:projection=symplectic");
+  check_refused("circle-dirac", "dg-phase:degree=3,moments=3", DVI_BAD_OPTION,
+                "an even number up to the degree");
+  check_refused("circle-dirac", "dg-phase:degree=3,moments=4", DVI_BAD_OPTION,
+                "an even number up to the degree");
+  check_refused("vortices", "dg-phase:degree=2,moments=2", DVI_BAD_OPTION,
+                "vprk:projection=symplectic");
 }
 END_TEST
 
@@ -318,9 +346,11 @@ START_TEST(starts_off_the_constraint_are_refused)
 {
   problem *of = made_problem("circle-dirac", NULL);
   dvi_integrator *integrator = made_integrator(of->system, "dg-phase");
-  ck_assert_int_eq(dvi_integrator_start(integrator, 0, (double[]){0.8, 0.61}, of->p), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, (double[]){0.8, 0.61}, of->p),
+                   DVI_BAD_ARGUMENT);
   check_words("constraint 0 is");
-  ck_assert_int_eq(dvi_integrator_start(integrator, 0, of->q, (double[]){0.3, 0.4}), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, of->q, (double[]){0.3, 0.4}),
+                   DVI_BAD_ARGUMENT);
   check_words("constraint 1 is");
   ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, of->q, of->v), DVI_UNSUPPORTED);
   check_words("start with q and p");
@@ -329,19 +359,25 @@ START_TEST(starts_off_the_constraint_are_refused)
 }
 END_TEST
 
-/* The fields of (|q|^2 - 1)/2 and q.p at (q,p) are (0, -q) and (q, -p): the first has to change p along q, the second scales q. */
+/* The fields of (|q|^2 - 1)/2 and q.p at (q,p) are (0, -q) and (q, -p): the first has to change p
+ * along q, the second scales q. */
 START_TEST(a_start_off_the_constraint_is_projected_on_request)
 {
   problem *of = made_problem("circle-dirac", NULL);
   dvi_integrator *integrator = made_integrator(of->system, "dg-phase");
   const dvi_start_options projected = {.project = 1};
   double distance;
-  ck_assert_int_eq(dvi_integrator_start_with(integrator, 0, (double[]){0.9, 0.5}, (double[]){0.3, 0.4}, &projected), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_start_with(integrator, 0, (double[]){0.9, 0.5},
+                                             (double[]){0.3, 0.4}, &projected),
+                   DVI_OK);
   ck_assert_int_eq(dvi_integrator_constraint(integrator, &distance), DVI_OK);
   ck_assert_double_lt(distance, 1e-15);
-  ck_assert_double_eq_tol(dvi_integrator_q(integrator)[0] * 0.5, dvi_integrator_q(integrator)[1] * 0.9, 1e-15);
+  ck_assert_double_eq_tol(dvi_integrator_q(integrator)[0] * 0.5,
+                          dvi_integrator_q(integrator)[1] * 0.9, 1e-15);
   ck_assert_int_eq(dvi_integrator_step(integrator, 0.1), DVI_OK);
-  ck_assert_int_eq(dvi_integrator_start_with(integrator, 0, (double[]){0, 0}, (double[]){0.3, 0.4}, &projected), DVI_SINGULAR);
+  ck_assert_int_eq(
+      dvi_integrator_start_with(integrator, 0, (double[]){0, 0}, (double[]){0.3, 0.4}, &projected),
+      DVI_SINGULAR);
   check_words("singular");
   ck_assert_double_gt(dvi_integrator_time(integrator), 0.05);
   dvi_integrator_destroy(&integrator);

@@ -1,5 +1,6 @@
 /* labels: invariant */
-/* What watches over a Hamiltonian with constraints, and over a one-form like it: the alarm, the bracket matrix, statuses, checkpoints. */
+/* What watches over a Hamiltonian with constraints, and over a one-form like it: the alarm, the
+ * bracket matrix, statuses, checkpoints. */
 #include <math.h>
 #include <string.h>
 
@@ -18,13 +19,15 @@ static const world whole = {.radius = 1, .shift = 0, .calls_left = -1, .returned
 
 static dvi_system *made(int n, const dvi_hamiltonian *H, const dvi_constraint *phi)
 {
-  const dvi_system_terms terms = {.dimension = n, .autonomous = 1, .hamiltonian = H, .constraint = phi};
+  const dvi_system_terms terms = {
+      .dimension = n, .autonomous = 1, .hamiltonian = H, .constraint = phi};
   dvi_system *system = NULL;
   ck_assert_msg(dvi_system_create(&terms, &system) == DVI_OK, "%s", dvi_last_error());
   return system;
 }
 
-static dvi_integrator *started_at(const dvi_system *system, const char *method, const double *q, const double *p)
+static dvi_integrator *started_at(const dvi_system *system, const char *method, const double *q,
+                                  const double *p)
 {
   dvi_integrator *integrator = made_integrator(system, method);
   ck_assert_msg(dvi_integrator_start(integrator, 0, q, p) == DVI_OK, "%s", dvi_last_error());
@@ -40,7 +43,8 @@ static int table_H(double t, const double *q, const double *p, double *H, void *
   return 0;
 }
 
-static int table_H_gradient(double t, const double *q, const double *p, double *H_q, double *H_p, void *user)
+static int table_H_gradient(double t, const double *q, const double *p, double *H_q, double *H_p,
+                            void *user)
 {
   (void)t, (void)q, (void)user;
   H_q[0] = H_q[1] = 0;
@@ -80,7 +84,8 @@ static int circle_H(double t, const double *q, const double *p, double *H, void 
   return 0;
 }
 
-static int circle_H_gradient(double t, const double *q, const double *p, double *H_q, double *H_p, void *user)
+static int circle_H_gradient(double t, const double *q, const double *p, double *H_q, double *H_p,
+                             void *user)
 {
   (void)t, (void)q, (void)user;
   H_q[0] = 0;
@@ -111,16 +116,18 @@ static int circle_phi_gradient(const double *q, const double *p, double *phi_z, 
 static dvi_system *made_circle(world *of)
 {
   return made(2, &(dvi_hamiltonian){.value = circle_H, .gradient = circle_H_gradient},
-              &(dvi_constraint){.count = 2, .value = circle_phi, .gradient = circle_phi_gradient, .user = of});
+              &(dvi_constraint){
+                  .count = 2, .value = circle_phi, .gradient = circle_phi_gradient, .user = of});
 }
 
 /* ---- the alarm ---- */
 
-static const char *const methods[] = {"dg-phase", "dg-phase:degree=2", "dg-phase:degree=3", "dg-phase:degree=4",
-                                      "dg-phase:degree=2,moments=0"};
+static const char *const methods[] = {"dg-phase", "dg-phase:degree=2", "dg-phase:degree=3",
+                                      "dg-phase:degree=4", "dg-phase:degree=2,moments=0"};
 enum { METHODS = sizeof methods / sizeof *methods };
 
-static void check_quiet(const dvi_system *system, const char *method, const double *q, const double *p)
+static void check_quiet(const dvi_system *system, const char *method, const double *q,
+                        const double *p)
 {
   dvi_integrator *integrator = started_at(system, method, q, p);
   advance(integrator, 0.1, 1000);
@@ -130,7 +137,8 @@ static void check_quiet(const dvi_system *system, const char *method, const doub
 /* The constraint's force is large where nothing moves along it; at rest only roundings move. */
 START_TEST(a_force_without_motion_rings_no_alarm)
 {
-  static const double origin[3] = {0, 0, 0}, along[3] = {1, 0, 0}, bottom[2] = {0, -1}, slow[2] = {1e-3, 0}, swing[2] = {0.1, 0};
+  static const double origin[3] = {0, 0, 0}, along[3] = {1, 0, 0}, bottom[2] = {0, -1},
+                      slow[2] = {1e-3, 0}, swing[2] = {0.1, 0};
   world of = whole;
   dvi_system *table = made_table(), *circle = made_circle(&of);
   check_quiet(table, methods[_i], origin, along);
@@ -146,18 +154,20 @@ END_TEST
 static const struct {
   const char *problem, *method, *remedy;
   double h;
-} parasites[] = {{"magnetic-pair", "dg-phase", "an even degree with all its moments", 0.3},
-                 {"magnetic-pair", "dg-phase:degree=3", "an even degree with all its moments", 0.3},
-                 {"magnetic-pair", "dg-phase:degree=2,moments=0", "an even degree with all its moments", 0.3},
-                 {"magnetic-pair", "dg-phase:degree=2", "smaller steps keep it small for longer", 1.2},
-                 {"lotka-volterra", "dg-phase", "take another method, dg:degree=3,stiffness=c", 0.1}};
+} parasites[] = {
+    {"magnetic-pair", "dg-phase", "an even degree with all its moments", 0.3},
+    {"magnetic-pair", "dg-phase:degree=3", "an even degree with all its moments", 0.3},
+    {"magnetic-pair", "dg-phase:degree=2,moments=0", "an even degree with all its moments", 0.3},
+    {"magnetic-pair", "dg-phase:degree=2", "smaller steps keep it small for longer", 1.2},
+    {"lotka-volterra", "dg-phase", "take another method, dg:degree=3,stiffness=c", 0.1}};
 
 START_TEST(a_parasite_does_with_a_remedy_that_is_another_method)
 {
   problem *of = made_problem(parasites[_i].problem, NULL);
   dvi_integrator *integrator = started(of, parasites[_i].method);
   dvi_status status = DVI_OK;
-  for (int step = 0; step < 20000 && status == DVI_OK; step++) status = dvi_integrator_step(integrator, parasites[_i].h);
+  for (int step = 0; step < 20000 && status == DVI_OK; step++)
+    status = dvi_integrator_step(integrator, parasites[_i].h);
   ck_assert_int_eq(status, DVI_JUMP);
   check_words(parasites[_i].remedy);
   dvi_integrator_destroy(&integrator);
@@ -193,7 +203,8 @@ static int free_H(double t, const double *q, const double *p, double *H, void *u
   return 0;
 }
 
-static int free_H_gradient(double t, const double *q, const double *p, double *H_q, double *H_p, void *user)
+static int free_H_gradient(double t, const double *q, const double *p, double *H_q, double *H_p,
+                           void *user)
 {
   (void)t, (void)q, (void)user;
   memset(H_q, 0, 3 * sizeof *H_q);
@@ -204,15 +215,18 @@ static int free_H_gradient(double t, const double *q, const double *p, double *H
 START_TEST(no_step_leads_over_a_singular_bracket_matrix)
 {
   const double h = 0.0937;
-  dvi_system *system = made(3, &(dvi_hamiltonian){.value = free_H, .gradient = free_H_gradient},
-                            &(dvi_constraint){.count = 2, .value = fold_phi, .gradient = fold_phi_gradient});
-  dvi_integrator *here = started_at(system, methods[_i], (double[]){0, 0, 0}, (double[]){0, 0.1, 2});
+  dvi_system *system = made(
+      3, &(dvi_hamiltonian){.value = free_H, .gradient = free_H_gradient},
+      &(dvi_constraint){.count = 2, .value = fold_phi, .gradient = fold_phi_gradient});
+  dvi_integrator *here = started_at(system, methods[_i], (double[]){0, 0, 0},
+                                    (double[]){0, 0.1, 2});
   advance(here, h, 5);
   ck_assert_int_eq(dvi_integrator_step(here, h), DVI_NOT_CONVERGED);
   check_words("the constraints' bracket matrix is singular");
   ck_assert_double_lt(dvi_integrator_q(here)[2], 1);
   advance(here, -h, 5);
-  dvi_integrator *there = started_at(system, methods[_i], (double[]){0, 0, 1.5}, (double[]){0, 0.1, 2});
+  dvi_integrator *there = started_at(system, methods[_i], (double[]){0, 0, 1.5},
+                                     (double[]){0, 0.1, 2});
   advance(there, h, 5);
   dvi_integrator_destroy(&here);
   dvi_integrator_destroy(&there);
@@ -234,7 +248,8 @@ START_TEST(a_gradient_that_fails_from_some_call_on_says_so)
       advance(integrator, 0.1, 1);
       of.calls_left = calls;
       of.returned = returned;
-      ck_assert_int_eq(dvi_integrator_step(integrator, 0.1), returned ? DVI_CALLBACK_RETRY : DVI_NOT_FINITE);
+      ck_assert_int_eq(dvi_integrator_step(integrator, 0.1),
+                       returned ? DVI_CALLBACK_RETRY : DVI_NOT_FINITE);
       check_words("try a smaller step");
       of.calls_left = -1;
       advance(integrator, 0.1, 1);
@@ -246,7 +261,8 @@ END_TEST
 
 /* ---- checkpoints ---- */
 
-/* alpha = (shift - y/2, x/2), H = |q|^2/2: at rest at 0 neither the Lagrangian nor its forces know the shift. */
+/* alpha = (shift - y/2, x/2), H = |q|^2/2: at rest at 0 neither the Lagrangian nor its forces know
+ * the shift. */
 static int form(const double *q, double *alpha, void *user)
 {
   alpha[0] = ((const world *)user)->shift - q[1] / 2;
@@ -280,22 +296,26 @@ static dvi_system *made_form(world *of)
 {
   const dvi_one_form alpha = {.value = form, .gradient = form_gradient, .user = of};
   const dvi_potential H = {.value = bowl, .gradient = bowl_gradient};
-  const dvi_system_terms terms = {.dimension = 2, .one_form = &alpha, .potentials = &H, .potential_count = 1, .autonomous = 1};
+  const dvi_system_terms terms = {
+      .dimension = 2, .one_form = &alpha, .potentials = &H, .potential_count = 1, .autonomous = 1};
   dvi_system *system = NULL;
   ck_assert_msg(dvi_system_create(&terms, &system) == DVI_OK, "%s", dvi_last_error());
   return system;
 }
 
-static void check_known_again(const dvi_system *system, const char *method, const double *q, const double *p, double *parameter)
+static void check_known_again(const dvi_system *system, const char *method, const double *q,
+                              const double *p, double *parameter)
 {
-  dvi_integrator *first = started_at(system, method, q, p), *second = made_integrator(system, method);
+  dvi_integrator *first = started_at(system, method, q, p),
+                 *second = made_integrator(system, method);
   advance(first, 0.1, 3);
   ck_assert_int_eq(dvi_integrator_save(first, in_folder("state")), DVI_OK);
   *parameter += 1e-3;
   ck_assert_int_eq(dvi_integrator_restore(second, in_folder("state")), DVI_BAD_FILE);
   check_words("another constraint");
   *parameter -= 1e-3;
-  ck_assert_msg(dvi_integrator_restore(second, in_folder("state")) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_integrator_restore(second, in_folder("state")) == DVI_OK, "%s",
+                dvi_last_error());
   dvi_integrator_destroy(&first);
   dvi_integrator_destroy(&second);
 }
@@ -312,7 +332,8 @@ END_TEST
 
 START_TEST(a_checkpoint_of_another_one_form_is_refused)
 {
-  static const char *const of_forms[] = {"vprk", "vprk:projection=none", "dg", "dg-phase", "hp:type=2,quadrature=gauss"};
+  static const char *const of_forms[] = {"vprk", "vprk:projection=none", "dg", "dg-phase",
+                                         "hp:type=2,quadrature=gauss"};
   static const double origin[2] = {0, 0};
   world of = whole;
   dvi_system *system = made_form(&of);
@@ -326,7 +347,8 @@ SUITE(dirac_guards)
   tcase_set_timeout(tests, 60);
   tcase_add_checked_fixture(tests, make_folder, remove_folder);
   tcase_add_loop_test(tests, a_force_without_motion_rings_no_alarm, 0, METHODS);
-  tcase_add_loop_test(tests, a_parasite_does_with_a_remedy_that_is_another_method, 0, sizeof parasites / sizeof *parasites);
+  tcase_add_loop_test(tests, a_parasite_does_with_a_remedy_that_is_another_method, 0,
+                      sizeof parasites / sizeof *parasites);
   tcase_add_loop_test(tests, no_step_leads_over_a_singular_bracket_matrix, 0, METHODS);
   tcase_add_loop_test(tests, a_gradient_that_fails_from_some_call_on_says_so, 0, METHODS);
   tcase_add_loop_test(tests, a_checkpoint_of_another_constraint_is_refused, 0, METHODS);

@@ -1,5 +1,6 @@
 /* labels: order */
-/* dg-phase with a Hamiltonian: more constraints than two, many particles, forces that depend on time, ensembles. */
+/* dg-phase with a Hamiltonian: more constraints than two, many particles, forces that depend on
+ * time, ensembles. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,15 +11,16 @@
 
 /* ---- beads on hoops ---- */
 
-/* Free particles of unit mass, each on the unit circle in the plane n.q = 0: four constraints for each of them,
- * (|q|^2 - 1)/2, q.p, n.q and n.p. They turn about n at constant rates. */
+/* Free particles of unit mass, each on the unit circle in the plane n.q = 0: four constraints for
+ * each of them, (|q|^2 - 1)/2, q.p, n.q and n.p. They turn about n at constant rates. */
 enum { BEADS_MOST = 24, N = 3 * BEADS_MOST, M = 4 * BEADS_MOST };
 
 static const double axis[3] = {1.0 / 3, 2.0 / 3, 2.0 / 3};
 
 typedef struct beads {
   int count;
-  int phi_start[M + 1], phi_row[15 * BEADS_MOST], diagonal_start[N + 1], diagonal_row[N], none[N + 1];
+  int phi_start[M + 1], phi_row[15 * BEADS_MOST], diagonal_start[N + 1], diagonal_row[N],
+      none[N + 1];
   double q[N], p[N];
 } beads;
 
@@ -31,7 +33,8 @@ static int beads_H(double t, const double *q, const double *p, double *H, void *
   return 0;
 }
 
-static int beads_H_gradient(double t, const double *q, const double *p, double *H_q, double *H_p, void *user)
+static int beads_H_gradient(double t, const double *q, const double *p, double *H_q, double *H_p,
+                            void *user)
 {
   const beads *of = user;
   (void)t, (void)q;
@@ -42,7 +45,8 @@ static int beads_H_gradient(double t, const double *q, const double *p, double *
   return 0;
 }
 
-static int beads_H_hessian(double t, const double *q, const double *p, double *H_qq, double *H_qp, double *H_pp, void *user)
+static int beads_H_hessian(double t, const double *q, const double *p, double *H_qq, double *H_qp,
+                           double *H_pp, void *user)
 {
   const beads *of = user;
   (void)t, (void)q, (void)p, (void)H_qq, (void)H_qp;
@@ -75,7 +79,8 @@ static int beads_phi_gradient(const double *q, const double *p, double *phi_z, v
   return 0;
 }
 
-static int beads_phi_hessian(const double *q, const double *p, const double *w, double *qq, double *qp, double *pp, void *user)
+static int beads_phi_hessian(const double *q, const double *p, const double *w, double *qq,
+                             double *qp, double *pp, void *user)
 {
   const beads *of = user;
   (void)q, (void)p, (void)pp;
@@ -138,14 +143,17 @@ static dvi_system *made_beads(beads *of, int count)
                               .qp = diagonal,
                               .pp = none,
                               .user = of};
-  const dvi_system_terms terms = {.dimension = 3 * count, .autonomous = 1, .hamiltonian = &H, .constraint = &phi};
+  const dvi_system_terms terms = {
+      .dimension = 3 * count, .autonomous = 1, .hamiltonian = &H, .constraint = &phi};
   dvi_system *system = NULL;
   ck_assert_msg(dvi_system_create(&terms, &system) == DVI_OK, "%s", dvi_last_error());
-  ck_assert_msg(dvi_system_check(system, 0, of->q, of->p, 0, NULL) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_system_check(system, 0, of->q, of->p, 0, NULL) == DVI_OK, "%s",
+                dvi_last_error());
   return system;
 }
 
-/* One bead, whose Jacobian is dense, and so many that it is sparse. Degree 4 errs by 1e-12 at this step and the largest rate. */
+/* One bead, whose Jacobian is dense, and so many that it is sparse. Degree 4 errs by 1e-12 at this
+ * step and the largest rate. */
 START_TEST(beads_turn_at_their_rates)
 {
   beads of;
@@ -192,7 +200,8 @@ static int driven_H(double t, const double *q, const double *p, double *H, void 
   return 0;
 }
 
-static int driven_H_gradient(double t, const double *q, const double *p, double *H_q, double *H_p, void *user)
+static int driven_H_gradient(double t, const double *q, const double *p, double *H_q, double *H_p,
+                             void *user)
 {
   (void)q, (void)user;
   H_q[0] = 0;
@@ -207,14 +216,16 @@ START_TEST(a_hamiltonian_may_depend_on_time)
 {
   problem *of = made_problem("circle-dirac", NULL);
   const dvi_hamiltonian H = {.value = driven_H, .gradient = driven_H_gradient};
-  const dvi_system_terms terms = {.dimension = 2, .hamiltonian = &H, .constraint = of->terms->constraint};
+  const dvi_system_terms terms = {
+      .dimension = 2, .hamiltonian = &H, .constraint = of->terms->constraint};
   const dvi_reference_options options = {.code = DVI_ARKODE};
   dvi_system *system = NULL;
   double q[2], p[2], error[3];
   ck_assert_msg(dvi_system_create(&terms, &system) == DVI_OK, "%s", dvi_last_error());
   memcpy(q, of->q, sizeof q);
   memcpy(p, of->p, sizeof p);
-  ck_assert_msg(dvi_reference_judge(system, 0, 2, q, p, &options, NULL) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_reference_judge(system, 0, 2, q, p, &options, NULL) == DVI_OK, "%s",
+                dvi_last_error());
   for (int level = 0; level < 3; level++) {
     dvi_integrator *integrator = made_integrator(system, "dg-phase:degree=2");
     const int steps = 25 << level;
@@ -238,14 +249,18 @@ static int height(double t, const double *q, double *g, void *user)
   return 0;
 }
 
-/* Steps as long as 3/2 + y says, forth and back; the parasite that a change of length starts turns back with them. */
+/* Steps as long as 3/2 + y says, forth and back; the parasite that a change of length starts turns
+ * back with them. */
 START_TEST(controlled_steps_back_undo_steps)
 {
   problem *of = made_problem("circle-dirac", NULL);
-  const dvi_monitor monitor = {.kind = DVI_MONITOR_FUNCTION, .function = {.name = "height", .value = height}};
+  const dvi_monitor monitor = {.kind = DVI_MONITOR_FUNCTION,
+                               .function = {.name = "height", .value = height}};
   dvi_integrator *integrator = NULL;
-  ck_assert_msg(create_controlled(of->system, &monitor, "dg-phase:degree=2", &integrator) == DVI_OK, "%s", dvi_last_error());
-  ck_assert_msg(dvi_integrator_start(integrator, 0, of->q, of->p) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(create_controlled(of->system, &monitor, "dg-phase:degree=2", &integrator) == DVI_OK,
+                "%s", dvi_last_error());
+  ck_assert_msg(dvi_integrator_start(integrator, 0, of->q, of->p) == DVI_OK, "%s",
+                dvi_last_error());
   advance(integrator, 0.05, 40);
   ck_assert_double_gt(distance(2, dvi_integrator_q(integrator), of->q), 0.5);
   advance(integrator, -0.05, 40);
@@ -270,15 +285,19 @@ START_TEST(members_have_the_digits_of_single_runs)
       p[i * MEMBERS + k] = of->p[i] * (1 + k);
     }
   const dvi_ensemble_options options = {.members = MEMBERS};
-  ck_assert_msg(dvi_ensemble_create(of->system, "dg-phase:degree=3", &options, &ensemble) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_ensemble_create(of->system, "dg-phase:degree=3", &options, &ensemble) == DVI_OK,
+                "%s", dvi_last_error());
   ck_assert_msg(dvi_ensemble_start(ensemble, 0, q, p) == DVI_OK, "%s", dvi_last_error());
   for (int step = 0; step < 20; step++) ck_assert_int_eq(dvi_ensemble_step(ensemble, 0.1), DVI_OK);
   ck_assert_int_eq(dvi_ensemble_state(ensemble, NULL, end_q, NULL), DVI_OK);
   for (int k = 0; k < MEMBERS; k++) {
     dvi_integrator *single = made_integrator(of->system, "dg-phase:degree=3");
-    ck_assert_int_eq(dvi_integrator_start(single, 0, of->q, (double[]){of->p[0] * (1 + k), of->p[1] * (1 + k)}), DVI_OK);
+    ck_assert_int_eq(
+        dvi_integrator_start(single, 0, of->q, (double[]){of->p[0] * (1 + k), of->p[1] * (1 + k)}),
+        DVI_OK);
     advance(single, 0.1, 20);
-    for (int i = 0; i < 2; i++) ck_assert_double_eq(end_q[i * MEMBERS + k], dvi_integrator_q(single)[i]);
+    for (int i = 0; i < 2; i++)
+      ck_assert_double_eq(end_q[i * MEMBERS + k], dvi_integrator_q(single)[i]);
     dvi_integrator_destroy(&single);
   }
   dvi_ensemble_destroy(&ensemble);

@@ -1,5 +1,6 @@
 /* labels: order invariant */
-/* One-step methods for degenerate Lagrangians with half of the one-form's components constant: what dvrk is, and what all five conserve. */
+/* One-step methods for degenerate Lagrangians with half of the one-form's components constant: what
+ * dvrk is, and what all five conserve. */
 #include <math.h>
 #include <string.h>
 
@@ -14,18 +15,23 @@ END_TEST
 
 START_TEST(gauss_stages_have_order_2s)
 {
-  check_degenerate_order("lotka-volterra", "gauge=singular", spec("dvrk:nodes=%d", _i), 0.5, 2 * _i);
-  check_degenerate_order("massless-particle", "gauge=singular", spec("dvrk:nodes=%d", _i), 1, 2 * _i);
+  check_degenerate_order("lotka-volterra", "gauge=singular", spec("dvrk:nodes=%d", _i), 0.5,
+                         2 * _i);
+  check_degenerate_order("massless-particle", "gauge=singular", spec("dvrk:nodes=%d", _i), 1,
+                         2 * _i);
 }
 END_TEST
 
-static const char *const family[] = {"dvi-a", "dvi-b", "dvi-midpoint", "dvi-trapezoidal", "dvrk", "dvrk:nodes=3"};
+static const char *const family[] = {"dvi-a",           "dvi-b", "dvi-midpoint",
+                                     "dvi-trapezoidal", "dvrk",  "dvrk:nodes=3"};
 enum { FAMILY = sizeof family / sizeof *family };
 
-/* A circle of starts; 600 steps of roundoff. vprk:projection=post is not symplectic, and loses 1e-8 (test_vprk). */
+/* A circle of starts; 600 steps of roundoff. vprk:projection=post is not symplectic, and loses 1e-8
+ * (test_vprk). */
 START_TEST(loop_integrals_are_conserved)
 {
-  ck_assert_double_le(change_of_loop("massless-particle", "gauge=singular", family[_i], 0.1, 600), 2e-12);
+  ck_assert_double_le(change_of_loop("massless-particle", "gauge=singular", family[_i], 0.1, 600),
+                      2e-12);
 }
 END_TEST
 
@@ -46,7 +52,8 @@ enum { RUNS = sizeof runs / sizeof *runs };
 
 START_TEST(energy_stays_bounded)
 {
-  check_long_run(runs[_i].problem, "gauge=singular", runs[_i].method, runs[_i].h, 15000, runs[_i].bound, 0);
+  check_long_run(runs[_i].problem, "gauge=singular", runs[_i].method, runs[_i].h, 15000,
+                 runs[_i].bound, 0);
 }
 END_TEST
 
@@ -66,7 +73,8 @@ END_TEST
 /* A step of -h undoes a step of h, up to what Newton's method leaves. */
 START_TEST(symmetric_methods_return_and_the_two_eulers_are_adjoint)
 {
-  static const char *const back[] = {"dvi-b", "dvi-a", "dvi-midpoint", "dvi-trapezoidal", "dvrk", "dvrk:nodes=3"};
+  static const char *const back[] = {"dvi-b",           "dvi-a", "dvi-midpoint",
+                                     "dvi-trapezoidal", "dvrk",  "dvrk:nodes=3"};
   problem *of = made_problem("massless-particle", "gauge=singular");
   dvi_integrator *there = started(of, family[_i]), *home = made_integrator(of->system, back[_i]);
   for (int step = 0; step < 20; step++) {
@@ -76,7 +84,8 @@ START_TEST(symmetric_methods_return_and_the_two_eulers_are_adjoint)
     ck_assert_int_eq(dvi_integrator_start(home, 0, q, dvi_integrator_p(there)), DVI_OK);
     advance(home, -0.2, 1);
     dvi_integrator *again = made_integrator(of->system, family[_i]);
-    ck_assert_int_eq(dvi_integrator_start(again, 0, dvi_integrator_q(home), dvi_integrator_p(home)), DVI_OK);
+    ck_assert_int_eq(dvi_integrator_start(again, 0, dvi_integrator_q(home), dvi_integrator_p(home)),
+                     DVI_OK);
     advance(again, 0.2, 1);
     ck_assert_double_le(distance(2, dvi_integrator_q(again), q), 1e-14);
     dvi_integrator_destroy(&again);
@@ -124,7 +133,8 @@ START_TEST(a_component_that_changes_after_all_stops_the_step)
   const dvi_one_form form = {.value = bent_value, .gradient = bent_gradient};
   const dvi_potential H = {.value = square};
   dvi_system *system = NULL;
-  const dvi_system_terms terms = {.dimension = 2, .one_form = &form, .potentials = &H, .potential_count = 1};
+  const dvi_system_terms terms = {
+      .dimension = 2, .one_form = &form, .potentials = &H, .potential_count = 1};
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
   dvi_integrator *integrator = made_integrator(system, "dvi-midpoint");
   const double q[] = {-300, 190}, p[] = {190, 0};
@@ -158,9 +168,11 @@ static int far_gradient(const double *q, double *alpha_q, void *user)
 START_TEST(a_pattern_tells_the_class_where_no_probe_reaches)
 {
   static const int start[] = {0, 2, 2}, full_start[] = {0, 2, 4}, row[] = {0, 1, 0, 1};
-  dvi_one_form form = {.value = far_value, .gradient = far_gradient, .gradients = {full_start, row}};
+  dvi_one_form form = {
+      .value = far_value, .gradient = far_gradient, .gradients = {full_start, row}};
   const dvi_potential H = {.value = square};
-  const dvi_system_terms terms = {.dimension = 2, .one_form = &form, .potentials = &H, .potential_count = 1};
+  const dvi_system_terms terms = {
+      .dimension = 2, .one_form = &form, .potentials = &H, .potential_count = 1};
   dvi_integrator *integrator = NULL;
   dvi_system *system = NULL;
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
@@ -169,7 +181,8 @@ START_TEST(a_pattern_tells_the_class_where_no_probe_reaches)
   dvi_system_destroy(&system);
   form.gradients = (dvi_pattern){start, row};
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
-  ck_assert_msg(dvi_integrator_create(system, "dvi-a", &integrator) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_integrator_create(system, "dvi-a", &integrator) == DVI_OK, "%s",
+                dvi_last_error());
   dvi_integrator_destroy(&integrator);
   dvi_system_destroy(&system);
 }
@@ -177,7 +190,8 @@ END_TEST
 
 /* ---- time ---- */
 
-/* V = (1 + sin(3 t)/2) x^4/4, of a regular system of one coordinate; H = y^2/2 + V of (y, x) with alpha = (0, y). */
+/* V = (1 + sin(3 t)/2) x^4/4, of a regular system of one coordinate; H = y^2/2 + V of (y, x) with
+ * alpha = (0, y). */
 static int driven(double t, const double *x, double *V, void *user)
 {
   (void)user;
@@ -223,8 +237,9 @@ static int kinetic_gradient(const double *q, double *alpha_q, void *user)
 
 static const struct {
   const char *degenerate, *regular;
-} pairs[] = {{"dvi-a", "hp:type=2"},        {"dvi-b", "hp:type=3"}, {"dvi-midpoint", "midpoint"},
-             {"dvi-trapezoidal", "verlet"}, {"dvrk", "galerkin"},   {"dvrk:nodes=5", "galerkin:degree=5"}};
+} pairs[] = {{"dvi-a", "hp:type=2"},       {"dvi-b", "hp:type=3"},
+             {"dvi-midpoint", "midpoint"}, {"dvi-trapezoidal", "verlet"},
+             {"dvrk", "galerkin"},         {"dvrk:nodes=5", "galerkin:degree=5"}};
 enum { PAIRS = sizeof pairs / sizeof *pairs };
 
 START_TEST(a_hamiltonian_that_depends_on_time_is_met_at_the_same_times)
@@ -234,13 +249,20 @@ START_TEST(a_hamiltonian_that_depends_on_time_is_met_at_the_same_times)
   const dvi_one_form form = {.value = kinetic_form, .gradient = kinetic_gradient};
   const double x = 1.2, y = -0.3, q[] = {y, x}, p[] = {0, y};
   dvi_system *one = NULL, *other = NULL;
-  ck_assert_int_eq(
-      dvi_system_create(&(dvi_system_terms){.dimension = 2, .one_form = &form, .potentials = &H, .potential_count = 1}, &one),
-      DVI_OK);
-  ck_assert_int_eq(
-      dvi_system_create(&(dvi_system_terms){.dimension = 1, .mass.scalar = 1, .potentials = &V, .potential_count = 1}, &other),
-      DVI_OK);
-  dvi_integrator *a = made_integrator(one, pairs[_i].degenerate), *b = made_integrator(other, pairs[_i].regular);
+  ck_assert_int_eq(dvi_system_create(&(dvi_system_terms){.dimension = 2,
+                                                         .one_form = &form,
+                                                         .potentials = &H,
+                                                         .potential_count = 1},
+                                     &one),
+                   DVI_OK);
+  ck_assert_int_eq(dvi_system_create(&(dvi_system_terms){.dimension = 1,
+                                                         .mass.scalar = 1,
+                                                         .potentials = &V,
+                                                         .potential_count = 1},
+                                     &other),
+                   DVI_OK);
+  dvi_integrator *a = made_integrator(one, pairs[_i].degenerate),
+                 *b = made_integrator(other, pairs[_i].regular);
   ck_assert_int_eq(dvi_integrator_start(a, 0.4, q, p), DVI_OK);
   ck_assert_int_eq(dvi_integrator_start(b, 0.4, &x, &y), DVI_OK);
   advance(a, 0.1, 40);

@@ -26,15 +26,18 @@ static void check_same(const char *name, const char *one, const char *other, dou
 
 START_TEST(type_1_is_galerkin_with_lobattos_points)
 {
-  check_same("kepler", spec("hp:type=1,degree=%d", _i), spec("galerkin:degree=%d,quadrature=lobatto,nodes=%d", _i, _i + 1), 0.05);
-  check_same("double-pendulum", spec("hp:degree=%d", _i), spec("galerkin:degree=%d,quadrature=lobatto,nodes=%d", _i, _i + 1), 0.02);
+  check_same("kepler", spec("hp:type=1,degree=%d", _i),
+             spec("galerkin:degree=%d,quadrature=lobatto,nodes=%d", _i, _i + 1), 0.05);
+  check_same("double-pendulum", spec("hp:degree=%d", _i),
+             spec("galerkin:degree=%d,quadrature=lobatto,nodes=%d", _i, _i + 1), 0.02);
 }
 END_TEST
 
 START_TEST(with_the_same_quadrature_types_1_to_3_are_the_same)
 {
   for (int type = 1; type <= 3; type++) {
-    check_same("double-pendulum", spec("hp:type=%d,degree=%d,quadrature=gauss", type, _i), spec("galerkin:degree=%d", _i), 0.02);
+    check_same("double-pendulum", spec("hp:type=%d,degree=%d,quadrature=gauss", type, _i),
+               spec("galerkin:degree=%d", _i), 0.02);
     check_same("kepler", spec("hp:type=%d,degree=%d,quadrature=clenshaw-curtis", type, _i),
                spec("galerkin:degree=%d,quadrature=clenshaw-curtis", _i), 0.05);
     check_same("kepler", spec("hp:type=%d,degree=%d,quadrature=radau-right", type, _i),
@@ -55,7 +58,8 @@ START_TEST(type_4_with_gauss_points_is_gauss_collocation)
   advance(b, h / 5, STEPS);
   ck_assert_int_eq(dvi_integrator_order(a), dvi_integrator_order(b));
   ck_assert_double_le(distance(of->nq, dvi_integrator_q(a), dvi_integrator_q(b)), 1e-12);
-  ck_assert_double_le(distance(of->nq, dvi_integrator_p(a), dvi_integrator_p(b)), 1e-12 * magnitude(of->nq, of->p) + 1e-11);
+  ck_assert_double_le(distance(of->nq, dvi_integrator_p(a), dvi_integrator_p(b)),
+                      1e-12 * magnitude(of->nq, of->p) + 1e-11);
   dvi_integrator_destroy(&a);
   dvi_integrator_destroy(&b);
   problem_destroy(&of);
@@ -109,8 +113,8 @@ static void velocity(const problem *of, const double *q, const double *p, double
   ck_assert_int_eq(dvi_system_velocity(of->system, 0, q, p, v), DVI_OK);
 }
 
-/* The generalised formulae where the mass depends on q: p1 = L_v(q0,v) or p0 = L_v(q1,v) with v = (q1-q0)/h; of type 4
- * the half-way point q0 + h/2 v0, v0 = v(q,p0), and q1 = q + h/2 v(q,p1). */
+/* The generalised formulae where the mass depends on q: p1 = L_v(q0,v) or p0 = L_v(q1,v) with v =
+ * (q1-q0)/h; of type 4 the half-way point q0 + h/2 v0, v0 = v(q,p0), and q1 = q + h/2 v(q,p1). */
 START_TEST(lowest_degrees_are_the_generalised_formulae_with_any_lagrangian)
 {
   problem *of = made_problem("double-pendulum", NULL);
@@ -130,7 +134,8 @@ START_TEST(lowest_degrees_are_the_generalised_formulae_with_any_lagrangian)
       for (int i = 0; i < N_MOST; i++) half[i] = of->q[i] + short_h / 2 * v[i];
     }
     velocity(of, half, p1, v);
-    for (int i = 0; i < N_MOST; i++) ck_assert_double_eq_tol(q1[i], half[i] + short_h / 2 * v[i], 1e-13);
+    for (int i = 0; i < N_MOST; i++)
+      ck_assert_double_eq_tol(q1[i], half[i] + short_h / 2 * v[i], 1e-13);
   }
   dvi_integrator_destroy(&integrator);
   problem_destroy(&of);
@@ -182,8 +187,8 @@ START_TEST(orders_are_those_claimed)
   }
   for (int level = 1; level < 4; level++) {
     const double slope = log2(error[level - 1] / error[level]), within = level == 1 ? 0.6 : 0.2;
-    ck_assert_msg(fabs(slope - claims[_i].order) <= within, "%s %s: slope %.2f at level %d", claims[_i].problem, method, slope,
-                  level);
+    ck_assert_msg(fabs(slope - claims[_i].order) <= within, "%s %s: slope %.2f at level %d",
+                  claims[_i].problem, method, slope, level);
   }
   problem_destroy(&of);
 }
@@ -220,9 +225,12 @@ START_TEST(what_does_not_go_is_refused)
   check_words("q given at both ends");
   ck_assert_int_eq(dvi_integrator_create(degenerate->system, "hp:type=4", &none), DVI_UNSUPPORTED);
   check_words("is not consistent");
-  ck_assert_int_eq(dvi_integrator_create(of->system, "hp:type=4,quadrature=radau-left", &none), DVI_BAD_OPTION);
+  ck_assert_int_eq(dvi_integrator_create(of->system, "hp:type=4,quadrature=radau-left", &none),
+                   DVI_BAD_OPTION);
   check_words("for lobatto and gauss");
-  ck_assert_int_eq(dvi_integrator_create(of->system, "hp:type=2,degree=2,quadrature=midpoint", &none), DVI_BAD_OPTION);
+  ck_assert_int_eq(
+      dvi_integrator_create(of->system, "hp:type=2,degree=2,quadrature=midpoint", &none),
+      DVI_BAD_OPTION);
   check_words("degree=1 is possible");
   ck_assert_ptr_null(none);
   problem_destroy(&of);

@@ -1,5 +1,6 @@
 /* labels: order invariant */
-/* Hamilton-Pontryagin integrators of types 2 and 3 for degenerate Lagrangians: p is carried, off alpha(q). */
+/* Hamilton-Pontryagin integrators of types 2 and 3 for degenerate Lagrangians: p is carried, off
+ * alpha(q). */
 #include <math.h>
 #include <string.h>
 
@@ -8,49 +9,58 @@
 
 /* ---- quadratures that see all of a constant two-form: every gauge ---- */
 
-/* Degree d has order d+1 for odd d, d for even d; on problems where alpha and H are not nearly linear and quadratic, where Gauss's points do better. */
+/* Degree d has order d+1 for odd d, d for even d; on problems where alpha and H are not nearly
+ * linear and quadratic, where Gauss's points do better. */
 static const struct {
   const char *problem, *gauge, *setting;
   int order;
   double h;
-} claims[] = {{"lotka-volterra", NULL, "type=2,quadrature=gauss", 2, 0.05},
-              {"lotka-volterra", NULL, "type=2,degree=2,quadrature=gauss", 2, 0.1},
-              {"lotka-volterra", NULL, "type=3,degree=3,quadrature=gauss", 4, 0.125},
-              {"lotka-volterra", NULL, "type=2,degree=4,quadrature=gauss", 4, 0.125},
-              {"lotka-volterra", "gauge=singular", "type=2,quadrature=gauss", 2, 0.05},
-              {"lotka-volterra", "gauge=symmetric", "type=2,degree=2,quadrature=gauss", 2, 0.05},
-              {"lotka-volterra", NULL, "type=3,degree=2,quadrature=lobatto", 2, 0.05},
-              {"lotka-volterra", NULL, "type=2,degree=3,quadrature=clenshaw-curtis", 4, 0.0625},
-              {"massless-particle", NULL, "type=2,quadrature=midpoint", 2, 0.1},
-              {"massless-particle", NULL, "type=2,degree=3,quadrature=gauss", 4, 0.25},
-              {"massless-particle", "gauge=singular", "type=3,degree=2,quadrature=simpson", 2, 0.125},
-              {"vortices", NULL, "type=2,quadrature=gauss", 2, 0.0015625},
-              {"vortices", NULL, "type=2,degree=3,quadrature=lobatto", 4, 0.0125},
-              {"guiding-centre", NULL, "type=2,quadrature=trapezoid", 2, 4},
-              {"guiding-centre", NULL, "type=2,degree=3,quadrature=gauss", 4, 16},
-              {"tokamak", NULL, "type=2,quadrature=lobatto", 2, 100},
-              {"tokamak", NULL, "type=3,degree=3,quadrature=gauss", 4, 400}};
+} claims[] = {
+    {"lotka-volterra", NULL, "type=2,quadrature=gauss", 2, 0.05},
+    {"lotka-volterra", NULL, "type=2,degree=2,quadrature=gauss", 2, 0.1},
+    {"lotka-volterra", NULL, "type=3,degree=3,quadrature=gauss", 4, 0.125},
+    {"lotka-volterra", NULL, "type=2,degree=4,quadrature=gauss", 4, 0.125},
+    {"lotka-volterra", "gauge=singular", "type=2,quadrature=gauss", 2, 0.05},
+    {"lotka-volterra", "gauge=symmetric", "type=2,degree=2,quadrature=gauss", 2, 0.05},
+    {"lotka-volterra", NULL, "type=3,degree=2,quadrature=lobatto", 2, 0.05},
+    {"lotka-volterra", NULL, "type=2,degree=3,quadrature=clenshaw-curtis", 4, 0.0625},
+    {"massless-particle", NULL, "type=2,quadrature=midpoint", 2, 0.1},
+    {"massless-particle", NULL, "type=2,degree=3,quadrature=gauss", 4, 0.25},
+    {"massless-particle", "gauge=singular", "type=3,degree=2,quadrature=simpson", 2, 0.125},
+    {"vortices", NULL, "type=2,quadrature=gauss", 2, 0.0015625},
+    {"vortices", NULL, "type=2,degree=3,quadrature=lobatto", 4, 0.0125},
+    {"guiding-centre", NULL, "type=2,quadrature=trapezoid", 2, 4},
+    {"guiding-centre", NULL, "type=2,degree=3,quadrature=gauss", 4, 16},
+    {"tokamak", NULL, "type=2,quadrature=lobatto", 2, 100},
+    {"tokamak", NULL, "type=3,degree=3,quadrature=gauss", 4, 400}};
 enum { CLAIMS = sizeof claims / sizeof *claims };
 
 START_TEST(orders_are_those_claimed_in_every_gauge)
 {
-  check_degenerate_order(claims[_i].problem, claims[_i].gauge, spec("hp:%s", claims[_i].setting), claims[_i].h, claims[_i].order);
+  check_degenerate_order(claims[_i].problem, claims[_i].gauge, spec("hp:%s", claims[_i].setting),
+                         claims[_i].h, claims[_i].order);
 }
 END_TEST
 
 /* 20000 steps; docs/methods/hp.md has where other quadratures and problems break. */
 START_TEST(energy_stays_bounded_over_long_runs)
 {
-  check_long_run("lotka-volterra", NULL, "hp:type=2,degree=3,quadrature=gauss", 0.1, 20000, 1e-5, 0);
-  check_long_run("massless-particle", NULL, "hp:type=2,degree=3,quadrature=lobatto", 0.1, 20000, 5e-7, 0);
+  check_long_run("lotka-volterra", NULL, "hp:type=2,degree=3,quadrature=gauss", 0.1, 20000, 1e-5,
+                 0);
+  check_long_run("massless-particle", NULL, "hp:type=2,degree=3,quadrature=lobatto", 0.1, 20000,
+                 5e-7, 0);
 }
 END_TEST
 
 /* The loops start on the constraint, and leave it. */
 START_TEST(steps_are_symplectic)
 {
-  ck_assert_double_le(change_of_loop("lotka-volterra", NULL, "hp:type=2,degree=2,quadrature=gauss", 0.1, 20), 1e-10);
-  ck_assert_double_le(change_of_loop("massless-particle", NULL, "hp:type=3,degree=2,quadrature=lobatto", 0.1, 20), 1e-10);
+  ck_assert_double_le(
+      change_of_loop("lotka-volterra", NULL, "hp:type=2,degree=2,quadrature=gauss", 0.1, 20),
+      1e-10);
+  ck_assert_double_le(
+      change_of_loop("massless-particle", NULL, "hp:type=3,degree=2,quadrature=lobatto", 0.1, 20),
+      1e-10);
 }
 END_TEST
 
@@ -95,7 +105,8 @@ static int third(const double *q, const double *w, double *f_w_qq, void *user)
 static dvi_system *lifted(problem *of)
 {
   static const int start[] = {0, 1, 2, 3, 4}, row[] = {0, 1, 2, 3};
-  const dvi_gauge f = {.gradient = gradient, .hessian = hessian, .third = third, .qq = {start, row}, .user = of};
+  const dvi_gauge f = {
+      .gradient = gradient, .hessian = hessian, .third = third, .qq = {start, row}, .user = of};
   dvi_system_terms terms = *of->terms;
   dvi_system *system = NULL;
   terms.gauge = &f;
@@ -106,12 +117,14 @@ static dvi_system *lifted(problem *of)
 static dvi_integrator *started_in(const dvi_system *system, const problem *of, const char *method)
 {
   dvi_integrator *integrator = made_integrator(system, method);
-  ck_assert_msg(dvi_integrator_start_velocity(integrator, 0, of->q, of->v) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_integrator_start_velocity(integrator, 0, of->q, of->v) == DVI_OK, "%s",
+                dvi_last_error());
   return integrator;
 }
 
 /* The largest distance from the constraint on the way, and the error at the end. */
-static void run_off(const dvi_system *system, const problem *of, const char *method, double h, double *off, double *error)
+static void run_off(const dvi_system *system, const problem *of, const char *method, double h,
+                    double *off, double *error)
 {
   dvi_integrator *integrator = started_in(system, of, method);
   double now;
@@ -131,8 +144,8 @@ static const struct {
 } lifts[] = {{"lotka-volterra", 0.003125}, {"massless-particle", 0.0125}, {"vortices", 0.0005}};
 enum { LIFTS = sizeof lifts / sizeof *lifts, LEVELS = 4 };
 
-/* The parasite has the size h^d, and sets both the distance from the constraint and the error; the error's phase at the end is the parasite's, so that
- * the distance tells the order. */
+/* The parasite has the size h^d, and sets both the distance from the constraint and the error; the
+ * error's phase at the end is the parasite's, so that the distance tells the order. */
 START_TEST(radaus_distance_from_the_constraint_shrinks_with_the_order_and_bounds_the_error)
 {
   problem *of = made_problem(lifts[_i].problem, NULL);
@@ -145,7 +158,9 @@ START_TEST(radaus_distance_from_the_constraint_shrinks_with_the_order_and_bounds
         run_off(system, of, method, lifts[_i].h / (1 << level), &off, &error);
         ck_assert_double_le(error, 10 * off);
         const double slope = log2(last / off), within = level == 1 ? 0.7 : 0.25;
-        if (level > 0) ck_assert_msg(fabs(slope - degree) <= within, "%s %s: slope %.2f (%g)", of->name, method, slope, off);
+        if (level > 0)
+          ck_assert_msg(fabs(slope - degree) <= within, "%s %s: slope %.2f (%g)", of->name, method,
+                        slope, off);
       }
     }
   dvi_system_destroy(&system);
@@ -166,7 +181,8 @@ START_TEST(the_lowest_degrees_take_alpha_at_one_end)
     advance(integrator, 0.01, 1);
     const double *at = _i == 2 ? before[0] : dvi_integrator_q(integrator);
     ck_assert_int_eq(dvi_system_momentum(system, 0, at, of->v, alpha), DVI_OK);
-    ck_assert_double_le(distance(2, alpha, _i == 2 ? dvi_integrator_p(integrator) : before[1]), 1e-13 * magnitude(2, alpha));
+    ck_assert_double_le(distance(2, alpha, _i == 2 ? dvi_integrator_p(integrator) : before[1]),
+                        1e-13 * magnitude(2, alpha));
   }
   dvi_integrator_destroy(&integrator);
   dvi_system_destroy(&system);
@@ -237,7 +253,8 @@ static void find_changes(const char *method, double (*change)[2])
 {
   const dvi_one_form linear = {.value = form, .gradient = form_gradient};
   const dvi_potential H = {.value = energy, .gradient = energy_gradient};
-  const dvi_system_terms terms = {.dimension = 2, .one_form = &linear, .potentials = &H, .potential_count = 1, .autonomous = 1};
+  const dvi_system_terms terms = {
+      .dimension = 2, .one_form = &linear, .potentials = &H, .potential_count = 1, .autonomous = 1};
   const double q[2] = {1, 0.5}, v[2] = {0, 0};
   double alpha[2], off[2] = {0, 0};
   dvi_system *system = NULL;
@@ -257,15 +274,17 @@ static void find_changes(const char *method, double (*change)[2])
   dvi_system_destroy(&system);
 }
 
-/* (-1)^(d-1) times the eigenvalues of Dalpha^-T Dalpha: their sum and product by Cayley and Hamilton, from three changes that follow each other. The trace
- * of Dalpha^-T Dalpha is 2 (ad - b^2/2 - c^2/2)/(ad - bc). */
+/* (-1)^(d-1) times the eigenvalues of Dalpha^-T Dalpha: their sum and product by Cayley and
+ * Hamilton, from three changes that follow each other. The trace of Dalpha^-T Dalpha is 2 (ad -
+ * b^2/2 - c^2/2)/(ad - bc). */
 START_TEST(the_parasites_multipliers_are_those_of_the_one_form_with_radaus_rules)
 {
   const double expected = (_i % 2 == 1 ? 1 : -1) * 2 * (0.18 - 0.25) / (0.18 + 0.25);
   for (int type = 2; type <= 3; type++) {
     double D[CHANGES][2];
     find_changes(spec("hp:type=%d,degree=%d", type, _i), D);
-    const double det = D[1][1] * D[2][0] - D[1][0] * D[2][1], sum = (D[1][1] * D[3][0] - D[1][0] * D[3][1]) / det,
+    const double det = D[1][1] * D[2][0] - D[1][0] * D[2][1],
+                 sum = (D[1][1] * D[3][0] - D[1][0] * D[3][1]) / det,
                  product = (D[3][0] * D[2][1] - D[3][1] * D[2][0]) / det;
     ck_assert_double_eq_tol(sum, expected, 0.05);
     ck_assert_double_eq_tol(product, 1, 0.05);
@@ -292,7 +311,8 @@ END_TEST
 
 /* ---- a multiplier at 1 ---- */
 
-/* alpha = (S q0 - q1/2, q0/2 + S q1): with nu = 1/(2 S) lambda is -1 for S = 0, and goes to 1 with S. */
+/* alpha = (S q0 - q1/2, q0/2 + S q1): with nu = 1/(2 S) lambda is -1 for S = 0, and goes to 1 with
+ * S. */
 static int round_form(const double *q, double *alpha, void *user)
 {
   const double S = *(const double *)user;
@@ -315,7 +335,8 @@ static dvi_status try_round(double S, const char *method)
 {
   const dvi_one_form linear = {.value = round_form, .gradient = round_gradient, .user = &S};
   const dvi_potential H = {.value = energy, .gradient = energy_gradient};
-  const dvi_system_terms terms = {.dimension = 2, .one_form = &linear, .potentials = &H, .potential_count = 1, .autonomous = 1};
+  const dvi_system_terms terms = {
+      .dimension = 2, .one_form = &linear, .potentials = &H, .potential_count = 1, .autonomous = 1};
   const double q[2] = {1, 0.5}, v[2] = {0, 0};
   dvi_system *system = NULL;
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
@@ -333,12 +354,14 @@ START_TEST(multipliers_near_1_are_refused)
   static const struct {
     double S;
     int odd, even;
-  } tried[] = {{0, 1, 0}, {2e-9, 1, 0}, {-0.004, 1, 0}, {-0.006, 1, 1}, {0.3, 1, 1}, {45, 1, 1}, {-55, 0, 1}, {300, 0, 1}};
+  } tried[] = {{0, 1, 0},   {2e-9, 1, 0}, {-0.004, 1, 0}, {-0.006, 1, 1},
+               {0.3, 1, 1}, {45, 1, 1},   {-55, 0, 1},    {300, 0, 1}};
   for (size_t k = 0; k < sizeof tried / sizeof *tried; k++) {
     const int allowed = _i % 2 == 1 ? tried[k].odd : tried[k].even;
     for (int type = 2; type <= 3; type++) {
       const dvi_status status = try_round(tried[k].S, spec("hp:type=%d,degree=%d", type, _i));
-      ck_assert_msg(status == (allowed ? DVI_OK : DVI_SINGULAR), "S = %g: %s", tried[k].S, dvi_status_name(status));
+      ck_assert_msg(status == (allowed ? DVI_OK : DVI_SINGULAR), "S = %g: %s", tried[k].S,
+                    dvi_status_name(status));
       if (!allowed) check_words("adds up from step to step and costs an order; use ");
       if (!allowed) check_words(_i % 2 == 1 ? "a weaker gauge" : "f = c |q|^2/2 with c about 0.5");
     }
@@ -357,8 +380,11 @@ START_TEST(coarse_quadratures_are_refused)
 {
   problem *of = made_problem("lotka-volterra", NULL);
   dvi_integrator *none = NULL;
-  ck_assert_int_eq(dvi_integrator_create(of->system, "hp:type=2,degree=2,quadrature=trapezoid", &none), DVI_BAD_OPTION);
-  check_words("has order 2, and does not integrate even a constant two-form with degree 2; order 3 is needed");
+  ck_assert_int_eq(
+      dvi_integrator_create(of->system, "hp:type=2,degree=2,quadrature=trapezoid", &none),
+      DVI_BAD_OPTION);
+  check_words("has order 2, and does not integrate even a constant two-form with degree 2; order 3 "
+              "is needed");
   ck_assert_ptr_null(none);
   problem_destroy(&of);
 }
@@ -371,10 +397,13 @@ SUITE(hp_degenerate)
   tcase_add_test(tests, energy_stays_bounded_over_long_runs);
   tcase_add_test(tests, steps_are_symplectic);
   tcase_add_loop_test(tests, with_symmetric_quadratures_a_step_back_undoes_a_step, 1, 4);
-  tcase_add_loop_test(tests, radaus_distance_from_the_constraint_shrinks_with_the_order_and_bounds_the_error, 0, LIFTS);
+  tcase_add_loop_test(
+      tests, radaus_distance_from_the_constraint_shrinks_with_the_order_and_bounds_the_error, 0,
+      LIFTS);
   tcase_add_loop_test(tests, the_lowest_degrees_take_alpha_at_one_end, 2, 4);
   tcase_add_loop_test(tests, other_gauges_are_refused_and_the_sentence_names_one_that_helps, 2, 4);
-  tcase_add_loop_test(tests, the_parasites_multipliers_are_those_of_the_one_form_with_radaus_rules, 1, 4);
+  tcase_add_loop_test(tests, the_parasites_multipliers_are_those_of_the_one_form_with_radaus_rules,
+                      1, 4);
   tcase_add_loop_test(tests, with_lobattos_points_it_is_one_or_minus_one, 1, 3);
   tcase_add_loop_test(tests, with_gauss_points_there_is_none_where_alpha_is_linear, 1, 4);
   tcase_add_loop_test(tests, multipliers_near_1_are_refused, 1, 5);

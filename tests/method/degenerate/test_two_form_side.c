@@ -1,11 +1,13 @@
-/* Where the two-form becomes singular a trajectory ends: a step that went over such a point would go on with one that is none. */
+/* Where the two-form becomes singular a trajectory ends: a step that went over such a point would
+ * go on with one that is none. */
 #include <math.h>
 #include <string.h>
 
 #include "support/runs.h"
 #include "support/suite.h"
 
-/* alpha = (y, max(0,x-200)^2), H = y^2/2: the two-form 2 max(0,x-200) - 1 is 0 at x = 200.5, where x' = y/(1 - 2 max(0,x-200)) has no bound. */
+/* alpha = (y, max(0,x-200)^2), H = y^2/2: the two-form 2 max(0,x-200) - 1 is 0 at x = 200.5, where
+ * x' = y/(1 - 2 max(0,x-200)) has no bound. */
 static const double end_of_bend = 200.5;
 
 static double beyond(double x)
@@ -44,7 +46,8 @@ static int bend_force(double t, const double *q, double *H_q, void *user)
   return 0;
 }
 
-/* alpha = (y - y^3/3, 0), H = x + y^2/2: alpha falls as -t, and the two-form y^2 - 1 is 0 at y = -1. */
+/* alpha = (y - y^3/3, 0), H = x + y^2/2: alpha falls as -t, and the two-form y^2 - 1 is 0 at y =
+ * -1. */
 static const double end_of_fold = -1;
 
 static int fold(const double *q, double *alpha, void *user)
@@ -80,7 +83,8 @@ static int fold_force(double t, const double *q, double *H_q, void *user)
 
 static dvi_system *made(const dvi_one_form *form, const dvi_potential *H)
 {
-  const dvi_system_terms terms = {.dimension = 2, .one_form = form, .potentials = H, .potential_count = 1, .autonomous = 1};
+  const dvi_system_terms terms = {
+      .dimension = 2, .one_form = form, .potentials = H, .potential_count = 1, .autonomous = 1};
   dvi_system *system;
   ck_assert_msg(dvi_system_create(&terms, &system) == DVI_OK, "%s", dvi_last_error());
   return system;
@@ -113,12 +117,15 @@ static dvi_status run(dvi_integrator *integrator, const double *start, double h,
   return status;
 }
 
-static const char *const general[] = {"dg",           "dg:degree=0", "dg:degree=1,stiffness=1",  "dg:flux=path",        "dg-phase",
-                                      "vprk:nodes=1", "vprk",        "vprk:projection=midpoint", "vprk:projection=post"};
+static const char *const general[] = {
+    "dg",           "dg:degree=0", "dg:degree=1,stiffness=1",  "dg:flux=path",        "dg-phase",
+    "vprk:nodes=1", "vprk",        "vprk:projection=midpoint", "vprk:projection=post"};
 
-static const char *const one_step[] = {"dvrk:nodes=1", "dvrk", "dvrk:nodes=3", "dvi-a", "dvi-b", "dvi-midpoint", "dvi-trapezoidal"};
+static const char *const one_step[] = {"dvrk:nodes=1", "dvrk",         "dvrk:nodes=3",   "dvi-a",
+                                       "dvi-b",        "dvi-midpoint", "dvi-trapezoidal"};
 
-/* Unwatched, dg:degree=1,stiffness=1 goes over it at several of these lengths. Whatever fails, the sentence tells of the singular point. */
+/* Unwatched, dg:degree=1,stiffness=1 goes over it at several of these lengths. Whatever fails, the
+ * sentence tells of the singular point. */
 START_TEST(no_step_leads_over_a_singular_two_form)
 {
   static const double start[2] = {199.9, 1};
@@ -126,7 +133,8 @@ START_TEST(no_step_leads_over_a_singular_two_form)
   for (double h = 0.4; h > 0.005; h /= is_short_run() ? 1.728 : 1.2) {
     dvi_integrator *integrator = made_integrator(system, general[_i]);
     const dvi_status status = run(integrator, start, h, 200);
-    ck_assert_msg(status > 0, "%s h=%g: %d at x = %.17g", general[_i], h, status, dvi_integrator_q(integrator)[0]);
+    ck_assert_msg(status > 0, "%s h=%g: %d at x = %.17g", general[_i], h, status,
+                  dvi_integrator_q(integrator)[0]);
     ck_assert_double_lt(dvi_integrator_q(integrator)[0], end_of_bend);
     if (_i != 2) check_words("singular"); /* that one is far off the motion by then */
     dvi_integrator_destroy(&integrator);
@@ -142,7 +150,8 @@ START_TEST(nor_does_one_of_a_one_step_method)
   for (double h = 0.4; h > 0.005; h /= is_short_run() ? 1.728 : 1.2) {
     dvi_integrator *integrator = made_integrator(system, one_step[_i]);
     const dvi_status status = run(integrator, start, h, 200);
-    ck_assert_msg(status > 0, "%s h=%g: %d at y = %.17g", one_step[_i], h, status, dvi_integrator_q(integrator)[1]);
+    ck_assert_msg(status > 0, "%s h=%g: %d at y = %.17g", one_step[_i], h, status,
+                  dvi_integrator_q(integrator)[1]);
     ck_assert_double_gt(dvi_integrator_q(integrator)[1], end_of_fold);
     check_words("singular");
     dvi_integrator_destroy(&integrator);
@@ -168,7 +177,9 @@ END_TEST
 
 SUITE(two_form_side)
 {
-  tcase_add_loop_test(tests, no_step_leads_over_a_singular_two_form, 0, sizeof general / sizeof *general);
-  tcase_add_loop_test(tests, nor_does_one_of_a_one_step_method, 0, sizeof one_step / sizeof *one_step);
+  tcase_add_loop_test(tests, no_step_leads_over_a_singular_two_form, 0,
+                      sizeof general / sizeof *general);
+  tcase_add_loop_test(tests, nor_does_one_of_a_one_step_method, 0,
+                      sizeof one_step / sizeof *one_step);
   tcase_add_test(tests, both_sides_can_be_started_on);
 }

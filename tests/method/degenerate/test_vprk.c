@@ -1,5 +1,6 @@
 /* labels: order invariant */
-/* Variational partitioned Runge-Kutta methods with projections: orders, constraint, energy, loop integrals, refusals. */
+/* Variational partitioned Runge-Kutta methods with projections: orders, constraint, energy, loop
+ * integrals, refusals. */
 #include <math.h>
 #include <string.h>
 
@@ -21,11 +22,13 @@ static const struct {
               {"tokamak", NULL, 800}};
 enum { PLACES = sizeof places / sizeof *places };
 
-/* Orders 2, 4 and 6 show over four steps; order 8 is at the floor after two of them on most problems. */
+/* Orders 2, 4 and 6 show over four steps; order 8 is at the floor after two of them on most
+ * problems. */
 START_TEST(gauss_with_the_symmetric_projection_has_order_2s)
 {
   const int s = 1 + _i / PLACES, at = _i % PLACES;
-  check_degenerate_order(places[at].problem, places[at].setting, spec("vprk:nodes=%d", s), places[at].h, 2 * s);
+  check_degenerate_order(places[at].problem, places[at].setting, spec("vprk:nodes=%d", s),
+                         places[at].h, 2 * s);
 }
 END_TEST
 
@@ -65,7 +68,8 @@ enum { KINDS = sizeof kinds / sizeof *kinds };
 
 START_TEST(tableaux_and_projections_have_the_order_that_they_claim)
 {
-  check_degenerate_order(kinds[_i].problem, kinds[_i].setting, kinds[_i].method, kinds[_i].h, kinds[_i].order);
+  check_degenerate_order(kinds[_i].problem, kinds[_i].setting, kinds[_i].method, kinds[_i].h,
+                         kinds[_i].order);
 }
 END_TEST
 
@@ -113,8 +117,8 @@ enum { RUNS = sizeof runs / sizeof *runs };
 START_TEST(the_multiplier_is_the_kick)
 {
   problem *of = made_problem("massless-particle", NULL), *regular = made_problem("kepler", NULL);
-  dvi_integrator *post = started(of, "vprk:projection=post"), *none = started(of, "vprk:projection=none"),
-                 *other = started(regular, "midpoint");
+  dvi_integrator *post = started(of, "vprk:projection=post"),
+                 *none = started(of, "vprk:projection=none"), *other = started(regular, "midpoint");
   double unwanted;
   ck_assert_ptr_null(dvi_integrator_multiplier(post));
   advance(post, 0.2, 1);
@@ -122,7 +126,9 @@ START_TEST(the_multiplier_is_the_kick)
   advance(other, 0.01, 1);
   const double *lambda = dvi_integrator_multiplier(post);
   ck_assert_double_gt(magnitude(2, lambda), 1e-6);
-  for (int i = 0; i < 2; i++) ck_assert_double_eq_tol(dvi_integrator_q(post)[i], dvi_integrator_q(none)[i] + lambda[i], 1e-15);
+  for (int i = 0; i < 2; i++)
+    ck_assert_double_eq_tol(dvi_integrator_q(post)[i], dvi_integrator_q(none)[i] + lambda[i],
+                            1e-15);
   ck_assert_ptr_null(dvi_integrator_multiplier(none));
   ck_assert_ptr_null(dvi_integrator_multiplier(other));
   ck_assert_ptr_null(dvi_integrator_multiplier(NULL));
@@ -135,10 +141,12 @@ START_TEST(the_multiplier_is_the_kick)
 }
 END_TEST
 
-/* Projections conserve the momenta of shifts exactly, those of rotations up to the square of the multiplier, which is largest on vortices. */
+/* Projections conserve the momenta of shifts exactly, those of rotations up to the square of the
+ * multiplier, which is largest on vortices. */
 START_TEST(energy_stays_bounded_and_momenta_are_conserved)
 {
-  check_long_run(runs[_i].problem, NULL, runs[_i].method, runs[_i].h, 15000, runs[_i].bound, runs[_i].momentum);
+  check_long_run(runs[_i].problem, NULL, runs[_i].method, runs[_i].h, 15000, runs[_i].bound,
+                 runs[_i].momentum);
 }
 END_TEST
 
@@ -169,9 +177,14 @@ END_TEST
 
 START_TEST(loop_integrals_are_conserved_by_symplectic_maps_alone)
 {
-  ck_assert_double_le(change_of_loop("massless-particle", NULL, "vprk:nodes=2,projection=symplectic", 0.1, 600), 1e-11);
-  ck_assert_double_le(change_of_loop("massless-particle", NULL, "vprk:nodes=3,projection=symplectic", 0.1, 600), 1e-11);
-  ck_assert_double_ge(change_of_loop("massless-particle", NULL, "vprk:nodes=2,projection=post", 0.1, 600), 1e-9);
+  ck_assert_double_le(
+      change_of_loop("massless-particle", NULL, "vprk:nodes=2,projection=symplectic", 0.1, 600),
+      1e-11);
+  ck_assert_double_le(
+      change_of_loop("massless-particle", NULL, "vprk:nodes=3,projection=symplectic", 0.1, 600),
+      1e-11);
+  ck_assert_double_ge(
+      change_of_loop("massless-particle", NULL, "vprk:nodes=2,projection=post", 0.1, 600), 1e-9);
 }
 END_TEST
 
@@ -195,7 +208,8 @@ START_TEST(a_step_out_of_the_logarithms_domain_leaves_the_state)
 }
 END_TEST
 
-/* A potential that asks for a smaller step from some call on, as one that is short of a resource. */
+/* A potential that asks for a smaller step from some call on, as one that is short of a
+ * resource. */
 static int calls_left;
 
 static int short_of_calls(double t, const double *q, double *V, void *user)
@@ -234,13 +248,15 @@ START_TEST(a_callback_that_goes_on_asking_for_smaller_steps_is_heard)
 {
   const dvi_one_form form = {.value = plane, .gradient = plane_gradient};
   const dvi_potential H = {.value = short_of_calls, .gradient = gradient_short_of_calls};
-  const dvi_system_terms terms = {.dimension = 2, .one_form = &form, .potentials = &H, .potential_count = 1};
+  const dvi_system_terms terms = {
+      .dimension = 2, .one_form = &form, .potentials = &H, .potential_count = 1};
   const double q[2] = {1, 0}, v[2] = {0, 1};
   dvi_system *system = NULL;
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
   dvi_integrator *integrator = made_integrator(system, "vprk:nodes=3");
   calls_left = 1000;
-  ck_assert_msg(dvi_integrator_start_velocity(integrator, 0, q, v) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_integrator_start_velocity(integrator, 0, q, v) == DVI_OK, "%s",
+                dvi_last_error());
   calls_left = _i;
   ck_assert_int_eq(dvi_integrator_step(integrator, 0.1), DVI_CALLBACK_RETRY);
   ck_assert_mem_eq(dvi_integrator_q(integrator), q, sizeof q);
@@ -253,7 +269,8 @@ START_TEST(lobatto_wants_two_nodes)
 {
   problem *of = made_problem("lotka-volterra", NULL);
   dvi_integrator *none = NULL;
-  ck_assert_int_eq(dvi_integrator_create(of->system, "vprk:nodes=1,tableau=lobatto-iiie", &none), DVI_BAD_OPTION);
+  ck_assert_int_eq(dvi_integrator_create(of->system, "vprk:nodes=1,tableau=lobatto-iiie", &none),
+                   DVI_BAD_OPTION);
   check_words("nodes=2 or more");
   ck_assert_ptr_null(none);
   problem_destroy(&of);

@@ -1,8 +1,11 @@
 /* labels: invariant slow long */
-/* A census of steps: is each solution that a run takes the one that continues those of shorter steps down to h = 0?
+/* A census of steps: is each solution that a run takes the one that continues those of shorter
+ * steps down to h = 0?
  *
- * The judge follows every step from h = 0 in at least 32 parts, whatever the method thinks of its own solution; it shares the equations with the run, and not the doubt.
- * Few steps by default, more by DVI_CENSUS=small; DVI_CENSUS=full takes 50 lengths of steps up to a fast period, 100 periods each, and prints a row for each method (docs/branches.md). */
+ * The judge follows every step from h = 0 in at least 32 parts, whatever the method thinks of its
+ * own solution; it shares the equations with the run, and not the doubt. Few steps by default, more
+ * by DVI_CENSUS=small; DVI_CENSUS=full takes 50 lengths of steps up to a fast period, 100 periods
+ * each, and prints a row for each method (docs/branches.md). */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,7 +19,8 @@ enum { JUDGED_PARTS = 32, BANDS = 2 };
 
 /* ---- systems that the catalogue does not have ---- */
 
-/* Five pendula in a row, each of unit mass and length: L = sum_ij m_ij cos(q_i - q_j) v_i v_j / 2 + sum_i m_ii g cos q_i. */
+/* Five pendula in a row, each of unit mass and length: L = sum_ij m_ij cos(q_i - q_j) v_i v_j / 2 +
+ * sum_i m_ii g cos q_i. */
 enum { LINKS = 5 };
 
 static double moved_by(int i, int j)
@@ -35,7 +39,8 @@ static int links_value(double t, const double *q, const double *v, double *L, vo
   return 0;
 }
 
-static int links_gradient(double t, const double *q, const double *v, double *L_q, double *L_v, void *user)
+static int links_gradient(double t, const double *q, const double *v, double *L_q, double *L_v,
+                          void *user)
 {
   (void)t, (void)user;
   for (int i = 0; i < LINKS; i++) {
@@ -92,7 +97,8 @@ static int vortices_slope(double t, const double *q, double *H_q, void *user)
   memset(H_q, 0, 2 * VORTICES * sizeof *H_q);
   for (int i = 0; i < VORTICES; i++)
     for (int j = 0; j < i; j++) {
-      const double x = q[2 * i] - q[2 * j], y = q[2 * i + 1] - q[2 * j + 1], f = -2 / (12.566370614359172 * (x * x + y * y));
+      const double x = q[2 * i] - q[2 * j], y = q[2 * i + 1] - q[2 * j + 1],
+                   f = -2 / (12.566370614359172 * (x * x + y * y));
       H_q[2 * i] += f * x, H_q[2 * j] -= f * x;
       H_q[2 * i + 1] += f * y, H_q[2 * j + 1] -= f * y;
     }
@@ -103,8 +109,11 @@ static dvi_system *made_links(void)
 {
   const dvi_lagrangian lagrangian = {.value = links_value, .gradient = links_gradient};
   dvi_system *made;
-  ck_assert_int_eq(dvi_system_create(&(dvi_system_terms){.dimension = LINKS, .lagrangian = &lagrangian, .autonomous = 1}, &made),
-                   DVI_OK);
+  ck_assert_int_eq(
+      dvi_system_create(
+          &(dvi_system_terms){.dimension = LINKS, .lagrangian = &lagrangian, .autonomous = 1},
+          &made),
+      DVI_OK);
   return made;
 }
 
@@ -112,8 +121,11 @@ static dvi_system *made_vortices(void)
 {
   const dvi_one_form form = {.value = vortices_form, .gradient = vortices_gradients};
   const dvi_potential H = {.name = "H", .value = vortices_energy, .gradient = vortices_slope};
-  const dvi_system_terms terms = {
-      .dimension = 2 * VORTICES, .one_form = &form, .potentials = &H, .potential_count = 1, .autonomous = 1};
+  const dvi_system_terms terms = {.dimension = 2 * VORTICES,
+                                  .one_form = &form,
+                                  .potentials = &H,
+                                  .potential_count = 1,
+                                  .autonomous = 1};
   dvi_system *made;
   ck_assert_int_eq(dvi_system_create(&terms, &made), DVI_OK);
   return made;
@@ -144,8 +156,8 @@ static const struct {
              {"elastica", 6.0, NULL, NULL}};
 enum { CASES = sizeof cases / sizeof *cases };
 
-/* The first ones have Lagrangians that are regular. Of the degenerate ones the judge is not settled: their
- * rows are printed, and nothing is claimed. */
+/* The first ones have Lagrangians that are regular. Of the degenerate ones the judge is not
+ * settled: their rows are printed, and nothing is claimed. */
 enum { REGULAR = 8 };
 
 static const char *const methods[] = {"midpoint",
@@ -184,9 +196,10 @@ typedef struct tally {
 
 /* ---- the judge ---- */
 
-/* The step from `state` followed in small parts. sem chooses its steps: the one that it took is judged, as a first one of galerkin's. */
-static dvi_status judged_step(const dvi_integrator *run, const dvi__state *state, const double *memory, dvi_integrator *judge,
-                              double h)
+/* The step from `state` followed in small parts. sem chooses its steps: the one that it took is
+ * judged, as a first one of galerkin's. */
+static dvi_status judged_step(const dvi_integrator *run, const dvi__state *state,
+                              const double *memory, dvi_integrator *judge, double h)
 {
   const size_t n = (size_t)run->system->n, bytes = judge->stepper.memory_count * sizeof(double);
   dvi__state_copy(n, state, &judge->next);
@@ -213,16 +226,19 @@ static double apart(size_t n, const double *a, const double *b, const double *st
 static int is_right(const dvi_integrator *run, const dvi_integrator *judge)
 {
   const size_t n = (size_t)run->system->n;
-  return apart(n, run->now.q, judge->next.q, run->last.q) < 1e-5 && apart(n, run->now.p, judge->next.p, run->last.p) < 1e-5;
+  return apart(n, run->now.q, judge->next.q, run->last.q) < 1e-5 &&
+         apart(n, run->now.p, judge->next.p, run->last.p) < 1e-5;
 }
 
-static void trace(const char *what, const dvi_integrator *run, const dvi_integrator *judge, double h, dvi_status judged)
+static void trace(const char *what, const dvi_integrator *run, const dvi_integrator *judge,
+                  double h, dvi_status judged)
 {
   if (getenv("DVI_CENSUS_TRACE") == NULL) return;
   const dvi_counters *c = &run->counters;
-  printf("  %s: %s t = %.9g h = %g, judge %s; %ld fixed, %ld simplified, %ld newtons, %ld followed; doubt %d: %s\n", what,
-         dvi_integrator_method(run), run->last.t, h, dvi_status_name(judged), c->fixed_points, c->simplified, c->newtons,
-         c->followed, (int)run->stepper.doubt, dvi_last_error());
+  printf("  %s: %s t = %.9g h = %g, judge %s; %ld fixed, %ld simplified, %ld newtons, %ld "
+         "followed; doubt %d: %s\n",
+         what, dvi_integrator_method(run), run->last.t, h, dvi_status_name(judged), c->fixed_points,
+         c->simplified, c->newtons, c->followed, (int)run->stepper.doubt, dvi_last_error());
   const size_t n = (size_t)run->system->n;
   if (judged == DVI_OK)
     printf("    off by %.2g in q, %.2g in p\n", apart(n, run->now.q, judge->next.q, run->last.q),
@@ -234,15 +250,17 @@ static int take_step(dvi_integrator *run, dvi_integrator *judge, double h, tally
 {
   const dvi_status status = dvi_integrator_step(run, h);
   const int taken = status == DVI_OK;
-  const dvi_status judged = judged_step(run, taken ? &run->last : &run->now, taken ? run->memory_before : run->stepper.memory,
-                                        judge, taken ? run->last_h : h);
+  const dvi_status judged = judged_step(run, taken ? &run->last : &run->now,
+                                        taken ? run->memory_before : run->stepper.memory, judge,
+                                        taken ? run->last_h : h);
   if (!taken) {
     count->refused++;
     count->missed += judged == DVI_OK;
     if (judged == DVI_OK) trace("missed", run, judge, h, judged);
     return 0;
   }
-  if (magnitude(run->system->n, run->now.q) > 1e4) return 0; /* the run has blown up: in no case are there such numbers */
+  /* the run has blown up: in no case are there such numbers */
+  if (magnitude(run->system->n, run->now.q) > 1e4) return 0;
   count->steps++;
   if (judged == DVI_OK && is_right(run, judge)) return 1;
   count->strayed++;
@@ -257,26 +275,30 @@ typedef struct plan {
   double least, most, periods; /* of h, in periods; of a run */
 } plan;
 
-static void run_lengths(const problem *of, dvi_system *system, const double *q, int which, const char *method, const plan *plan_of,
-                        tally *bands)
+static void run_lengths(const problem *of, dvi_system *system, const double *q, int which,
+                        const char *method, const plan *plan_of, tally *bands)
 {
   dvi_integrator *run = NULL, *judge = NULL;
   if (dvi_integrator_create(system, method, &run) == DVI_OK)
-    judge = made_integrator(system, run->stepper.method->chooses_steps ? "galerkin:degree=4" : method);
+    judge = made_integrator(system,
+                            run->stepper.method->chooses_steps ? "galerkin:degree=4" : method);
   for (int i = 0; i < plan_of->lengths && judge != NULL; i++) {
-    const double part = plan_of->least * pow(plan_of->most / plan_of->least, (double)i / (plan_of->lengths - 1)),
+    const double part = plan_of->least *
+                        pow(plan_of->most / plan_of->least, (double)i / (plan_of->lengths - 1)),
                  h = part * cases[which].period;
     static const double rest[2 * VORTICES];
     const dvi_status status = of != NULL ? dvi_integrator_start(run, 0, of->q, of->p)
                                          : dvi_integrator_start_velocity(run, 0, q, rest);
     ck_assert_msg(status == DVI_OK &&
-                      dvi_integrator_start_velocity(judge, 0, of != NULL ? of->q : q, of != NULL ? of->v : rest) >= DVI_BAD_STATE,
+                      dvi_integrator_start_velocity(judge, 0, of != NULL ? of->q : q,
+                                                    of != NULL ? of->v : rest) >= DVI_BAD_STATE,
                   "%s", dvi_last_error());
     if (of != NULL) ck_assert_int_eq(dvi_integrator_start(judge, 0, of->q, of->p), DVI_OK);
     dvi_counters before, after;
     dvi_integrator_counters(run, &before);
     tally *count = &bands[part >= 0.35];
-    for (int step = 0; step * part < plan_of->periods && take_step(run, judge, h, count); step++) continue;
+    for (int step = 0; step * part < plan_of->periods && take_step(run, judge, h, count); step++)
+      continue;
     dvi_integrator_counters(run, &after);
     count->followed += after.followed - before.followed;
   }
@@ -288,7 +310,8 @@ static void count_method(int which, int method, const plan *plan_of, tally *band
 {
   problem *of = cases[which].make == NULL ? made_problem(cases[which].name, NULL) : NULL;
   dvi_system *made = of == NULL ? cases[which].make() : NULL;
-  run_lengths(of, of != NULL ? of->system : made, cases[which].q, which, methods[method], plan_of, bands);
+  run_lengths(of, of != NULL ? of->system : made, cases[which].q, which, methods[method], plan_of,
+              bands);
   dvi_system_destroy(&made);
   if (of != NULL) problem_destroy(&of);
 }
@@ -297,7 +320,8 @@ static void print_row(int which, int method, const tally *bands)
 {
   printf("| %s | %s |", cases[which].name, methods[method]);
   for (int b = 0; b < BANDS; b++)
-    printf(" %ld | %ld | %ld | %ld |", bands[b].steps, bands[b].followed, bands[b].strayed, bands[b].missed);
+    printf(" %ld | %ld | %ld | %ld |", bands[b].steps, bands[b].followed, bands[b].strayed,
+           bands[b].missed);
   printf("\n");
   (void)fflush(stdout);
 }
@@ -311,12 +335,13 @@ static plan chosen_plan(void)
   return (plan){atoi(full), 0.05, 1, 20};
 }
 
-/* Above 0.35 periods one step of few hundred may be where the judge and the method differ on the last
- * millionth before a fold. */
+/* Above 0.35 periods one step of few hundred may be where the judge and the method differ on the
+ * last millionth before a fold. */
 START_TEST(no_run_leaves_its_branch_without_a_word)
 {
   const plan chosen = chosen_plan();
-  const char *problem_asked = getenv("DVI_CENSUS_ONLY"), *method_asked = getenv("DVI_CENSUS_METHOD");
+  const char *problem_asked = getenv("DVI_CENSUS_ONLY"),
+             *method_asked = getenv("DVI_CENSUS_METHOD");
   tally all[BANDS] = {0};
   if (problem_asked != NULL && strcmp(problem_asked, cases[_i].name) != 0) return;
   for (int method = 0; method < METHODS; method++) {
@@ -324,16 +349,18 @@ START_TEST(no_run_leaves_its_branch_without_a_word)
     if (method_asked != NULL && strcmp(method_asked, methods[method]) != 0) continue;
     if (is_short_run() && (_i + method) % 3 != 0) continue;
     count_method(_i, method, &chosen, bands);
-    if (getenv("DVI_CENSUS") != NULL && bands[0].steps + bands[1].steps > 0) print_row(_i, method, bands);
+    if (getenv("DVI_CENSUS") != NULL && bands[0].steps + bands[1].steps > 0)
+      print_row(_i, method, bands);
     for (int b = 0; b < BANDS; b++) {
       all[b].steps += bands[b].steps;
       all[b].strayed += bands[b].strayed;
     }
   }
   if (_i >= REGULAR) return;
-  ck_assert_msg(all[0].strayed == 0, "%s: %ld of %ld steps strayed", cases[_i].name, all[0].strayed, all[0].steps);
-  ck_assert_msg(all[1].strayed <= 1 || all[1].strayed * 100 <= all[1].steps, "%s: %ld of %ld long steps strayed", cases[_i].name,
-                all[1].strayed, all[1].steps);
+  ck_assert_msg(all[0].strayed == 0, "%s: %ld of %ld steps strayed", cases[_i].name, all[0].strayed,
+                all[0].steps);
+  ck_assert_msg(all[1].strayed <= 1 || all[1].strayed * 100 <= all[1].steps,
+                "%s: %ld of %ld long steps strayed", cases[_i].name, all[1].strayed, all[1].steps);
 }
 END_TEST
 

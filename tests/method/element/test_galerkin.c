@@ -5,10 +5,12 @@
 #include "support/runs.h"
 #include "support/suite.h"
 
-static const char *const bases[] = {"gauss", "chebyshev-lobatto", "equispaced", "legendre", "chebyshev"};
+static const char *const bases[] = {"gauss", "chebyshev-lobatto", "equispaced", "legendre",
+                                    "chebyshev"};
 enum { BASES = sizeof bases / sizeof *bases, DEGREES = 8 };
 
-/* All bases of one degree span the same polynomials: the discrete action is the same, and so is the trajectory. */
+/* All bases of one degree span the same polynomials: the discrete action is the same, and so is the
+ * trajectory. */
 static void check_bases_agree(const char *problem_name, int degree, const char *basis)
 {
   problem *of = made_problem(problem_name, NULL);
@@ -17,8 +19,10 @@ static void check_bases_agree(const char *problem_name, int degree, const char *
   advance(lobatto, of->h, 100);
   advance(other, of->h, 100);
   const double apart = distance(of->nq, dvi_integrator_q(lobatto), dvi_integrator_q(other));
-  /* 100 steps' roundings, with the basis' Lebesgue constant (10 at most here), far below what users can see */
-  ck_assert_msg(apart <= 1e-12, "%s: degree %d, basis %s: %g apart", problem_name, degree, basis, apart);
+  /* 100 steps' roundings, with the basis' Lebesgue constant (10 at most here), far below what users
+   * can see */
+  ck_assert_msg(apart <= 1e-12, "%s: degree %d, basis %s: %g apart", problem_name, degree, basis,
+                apart);
   dvi_integrator_destroy(&lobatto);
   dvi_integrator_destroy(&other);
   problem_destroy(&of);
@@ -37,7 +41,8 @@ static void check_order(const char *method, int order)
 {
   problem *oscillator = made_problem("oscillator", NULL);
   dvi_integrator *integrator = made_integrator(oscillator->system, method);
-  ck_assert_msg(dvi_integrator_order(integrator) == order, "%s claims order %d", method, dvi_integrator_order(integrator));
+  ck_assert_msg(dvi_integrator_order(integrator) == order, "%s claims order %d", method,
+                dvi_integrator_order(integrator));
   dvi_integrator_destroy(&integrator);
   problem_destroy(&oscillator);
 }
@@ -59,8 +64,10 @@ END_TEST
 START_TEST(nodes_left_out_are_the_fewest_of_full_order)
 {
   problem *oscillator = made_problem("oscillator", NULL);
-  dvi_integrator *integrator = made_integrator(oscillator->system, "galerkin:degree=5,quadrature=lobatto");
-  ck_assert_str_eq(dvi_integrator_method(integrator), "galerkin:degree=5,basis=lobatto,quadrature=lobatto,nodes=6,solver=auto");
+  dvi_integrator *integrator = made_integrator(oscillator->system,
+                                               "galerkin:degree=5,quadrature=lobatto");
+  ck_assert_str_eq(dvi_integrator_method(integrator),
+                   "galerkin:degree=5,basis=lobatto,quadrature=lobatto,nodes=6,solver=auto");
   dvi_integrator_destroy(&integrator);
   problem_destroy(&oscillator);
 }
@@ -96,14 +103,17 @@ START_TEST(a_wrong_specification_is_refused_with_its_reason)
 {
   problem *oscillator = made_problem("oscillator", NULL);
   dvi_integrator *integrator = NULL;
-  ck_assert_int_eq(dvi_integrator_create(oscillator->system, refused[_i].method, &integrator), DVI_BAD_OPTION);
+  ck_assert_int_eq(dvi_integrator_create(oscillator->system, refused[_i].method, &integrator),
+                   DVI_BAD_OPTION);
   ck_assert_ptr_null(integrator);
-  ck_assert_msg(strstr(dvi_last_error(), refused[_i].because) != NULL, "%s: '%s'", refused[_i].method, dvi_last_error());
+  ck_assert_msg(strstr(dvi_last_error(), refused[_i].because) != NULL, "%s: '%s'",
+                refused[_i].method, dvi_last_error());
   problem_destroy(&oscillator);
 }
 END_TEST
 
-/* With slow forces fixed point iteration does it; a stiff spring at h omega = 5 needs Newton's method; the counters tell. */
+/* With slow forces fixed point iteration does it; a stiff spring at h omega = 5 needs Newton's
+ * method; the counters tell. */
 START_TEST(the_contraction_chooses_the_solver)
 {
   problem *chain = made_problem("fpu", NULL);
@@ -124,7 +134,8 @@ START_TEST(the_contraction_chooses_the_solver)
 }
 END_TEST
 
-/* One discrete action has one stationary path near the true one: every solver finds it to roundoff. */
+/* One discrete action has one stationary path near the true one: every solver finds it to
+ * roundoff. */
 START_TEST(all_solvers_find_the_same_step)
 {
   const char *const solvers[] = {"fixed-point", "newton", "kinsol"};
@@ -133,14 +144,16 @@ START_TEST(all_solvers_find_the_same_step)
                  *other = started(pendula, spec("galerkin:degree=3,solver=%s", solvers[_i]));
   advance(automatic, 0.02, 20);
   advance(other, 0.02, 20);
-  ck_assert_double_le(distance(2, dvi_integrator_q(automatic), dvi_integrator_q(other)), 1e-14); /* 20 steps of a rounding each */
+  /* 20 steps of a rounding each */
+  ck_assert_double_le(distance(2, dvi_integrator_q(automatic), dvi_integrator_q(other)), 1e-14);
   dvi_integrator_destroy(&automatic);
   dvi_integrator_destroy(&other);
   problem_destroy(&pendula);
 }
 END_TEST
 
-/* Two oscillators, the second in a unit a billion times longer: V = (w x)^2/2 + (w y/unit)^2/2 with masses 1 and 1/unit^2. */
+/* Two oscillators, the second in a unit a billion times longer: V = (w x)^2/2 + (w y/unit)^2/2 with
+ * masses 1 and 1/unit^2. */
 static const double unit = 1e-9, stiffness = 1e4;
 
 static int two_springs(double t, const double *q, double *V, void *user)
@@ -158,27 +171,32 @@ static int two_forces(double t, const double *q, double *V_q, void *user)
   return 0;
 }
 
-/* Newton's method must not stop when the large coordinate alone is at roundoff: both are one oscillator, and must stay so. */
+/* Newton's method must not stop when the large coordinate alone is at roundoff: both are one
+ * oscillator, and must stay so. */
 START_TEST(a_small_coordinate_is_solved_to_its_own_roundoff)
 {
   const double masses[] = {1, 1 / (unit * unit)}, q[] = {1, unit}, p[] = {0, 0};
-  const dvi_potential springs = {.value = two_springs, .gradient = two_forces}; /* the Hessian is differenced: not quite right */
-  const dvi_system_terms terms = {.dimension = 2, .mass.diagonal = masses, .potentials = &springs, .potential_count = 1};
+  /* the Hessian is differenced: not quite right */
+  const dvi_potential springs = {.value = two_springs, .gradient = two_forces};
+  const dvi_system_terms terms = {
+      .dimension = 2, .mass.diagonal = masses, .potentials = &springs, .potential_count = 1};
   dvi_system *system = NULL;
   dvi_integrator *integrator = NULL;
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
-  ck_assert_int_eq(dvi_integrator_create(system, "galerkin:degree=3,solver=newton", &integrator), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_create(system, "galerkin:degree=3,solver=newton", &integrator),
+                   DVI_OK);
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, q, p), DVI_OK);
   advance(integrator, 0.05, 200);
   const double *end = dvi_integrator_q(integrator);
-  ck_assert_double_eq_tol(end[1] / unit, end[0], 1e-12); /* 200 steps of a few roundings each, on an oscillator that keeps them */
+  /* 200 steps of a few roundings each, on an oscillator that keeps them */
+  ck_assert_double_eq_tol(end[1] / unit, end[0], 1e-12);
   dvi_integrator_destroy(&integrator);
   dvi_system_destroy(&system);
 }
 END_TEST
 
-/* KINSOL's own test accepts what the iterations found, at every step, and the trajectory is the same but for roundings: in easy steps, in stiff ones
- * and for a general Lagrangian. */
+/* KINSOL's own test accepts what the iterations found, at every step, and the trajectory is the
+ * same but for roundings: in easy steps, in stiff ones and for a general Lagrangian. */
 START_TEST(kinsol_certifies_every_step)
 {
   static const struct {
@@ -190,7 +208,8 @@ START_TEST(kinsol_certifies_every_step)
   enum { STEPS = 40 };
   problem *of = made_problem(runs[_i].problem, NULL);
   dvi_integrator *plain = started(of, spec("galerkin:degree=%d", runs[_i].degree));
-  dvi_integrator *certified = started(of, spec("galerkin:degree=%d,solver=certified", runs[_i].degree));
+  dvi_integrator *certified = started(of,
+                                      spec("galerkin:degree=%d,solver=certified", runs[_i].degree));
   dvi_counters counters;
   advance(plain, runs[_i].h, STEPS);
   advance(certified, runs[_i].h, STEPS);

@@ -11,8 +11,11 @@ START_TEST(on_an_oscillator_a_step_is_the_cayley_transform)
   dvi_integrator *integrator = started(oscillator, "midpoint");
   const double h = 0.3, k = 0.5, a = h * h * k / 4, q0 = oscillator->q[0], p0 = 0;
   advance(integrator, h, 1);
-  ck_assert_double_eq_tol(dvi_integrator_q(integrator)[0], ((1 - a) * q0 + h * p0) / (1 + a), 2e-16); /* a few roundings of 0.5 */
-  ck_assert_double_eq_tol(dvi_integrator_p(integrator)[0], ((1 - a) * p0 - h * k * q0) / (1 + a), 2e-16);
+  /* a few roundings of 0.5 */
+  ck_assert_double_eq_tol(dvi_integrator_q(integrator)[0], ((1 - a) * q0 + h * p0) / (1 + a),
+                          2e-16);
+  ck_assert_double_eq_tol(dvi_integrator_p(integrator)[0], ((1 - a) * p0 - h * k * q0) / (1 + a),
+                          2e-16);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&oscillator);
 }
@@ -26,7 +29,8 @@ START_TEST(a_quadratic_invariant_is_conserved_to_roundoff)
   ck_assert_int_eq(dvi_integrator_invariants(integrator, &before), DVI_OK);
   advance(integrator, 0.7, 10000);
   ck_assert_int_eq(dvi_integrator_invariants(integrator, &after), DVI_OK);
-  ck_assert_double_eq_tol(after, before, 1e-14 * before * 100); /* 1e4 roundings that walk at random: 100 of them */
+  /* 1e4 roundings that walk at random: 100 of them */
+  ck_assert_double_eq_tol(after, before, 1e-14 * before * 100);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&oscillator);
 }

@@ -1,9 +1,10 @@
 /* labels: order slow long */
 /* Orders up to 16, over four and more step sizes, at the catalogue's own starts.
  *
- * The leading term of a high order's error rules only where the error is far below the roundoff of a double. So the proof has two halves:
- * the step's equations, solved by another program in quadruple precision, have the claimed order against the independent judge, and the
- * library's trajectory is that program's to roundoff. */
+ * The leading term of a high order's error rules only where the error is far below the roundoff of
+ * a double. So the proof has two halves: the step's equations, solved by another program in
+ * quadruple precision, have the claimed order against the independent judge, and the library's
+ * trajectory is that program's to roundoff. */
 #include <check.h>
 #include <float.h>
 #include <math.h>
@@ -14,7 +15,8 @@
 #include "support/runs.h"
 #include "support/suite.h"
 
-/* A span, and the steps of the coarsest run: short enough for fixed point iteration, and for the leading term to rule. */
+/* A span, and the steps of the coarsest run: short enough for fixed point iteration, and for the
+ * leading term to rule. */
 typedef struct place {
   const char *problem, *setting;
   double t_end;
@@ -23,8 +25,9 @@ typedef struct place {
 } place;
 
 static const place places[] = {
-    {"kepler", NULL, 2.0, 20, 1e-27},         {"pendulum", NULL, 2.0, 5, 2e-28}, {"henon-heiles", NULL, 1.5, 2, 1e-27},
-    {"double-pendulum", NULL, 0.5, 4, 1e-28}, {"toda", "N=5", 2.0, 4, 2e-28},
+    {"kepler", NULL, 2.0, 20, 1e-27},      {"pendulum", NULL, 2.0, 5, 2e-28},
+    {"henon-heiles", NULL, 1.5, 2, 1e-27}, {"double-pendulum", NULL, 0.5, 4, 1e-28},
+    {"toda", "N=5", 2.0, 4, 2e-28},
 };
 enum { PLACES = sizeof places / sizeof *places, LEVELS = 16, FITTED = 5, DEGREES = 8 };
 
@@ -46,7 +49,8 @@ static void make_field(const place *at, quad_field *field)
   ck_assert(quad_prepare(field, at->problem, at->setting != NULL, &at->setting));
 }
 
-static void run(const place *at, const quad_field *field, const quad_galerkin *method, int steps, state *z)
+static void run(const place *at, const quad_field *field, const quad_galerkin *method, int steps,
+                state *z)
 {
   quad y[2 * QUAD_N_MAX + 1] = {0};
   const int n = field->system.n;
@@ -54,7 +58,8 @@ static void run(const place *at, const quad_field *field, const quad_galerkin *m
   memcpy(y + n, field->system.v, (size_t)n * sizeof *y);
   memcpy(z->q, y, (size_t)n * sizeof *y);
   quad_momentum(field, y, z->p);
-  for (int i = 0; i < steps; i++) ck_assert(quad_galerkin_step(method, field, (quad)at->t_end / steps, z->q, z->p));
+  for (int i = 0; i < steps; i++)
+    ck_assert(quad_galerkin_step(method, field, (quad)at->t_end / steps, z->q, z->p));
 }
 
 /* The judge's answer; its own error must be far below all errors that are measured. */
@@ -67,7 +72,8 @@ static void judge(const place *at, const quad_field *field, quad *y)
   ck_assert_msg(error < 1e-29, "%s: the judge's error is %g", at->problem, error);
 }
 
-/* Length of the difference in q and p, each relative to its size: a component whose error happens to vanish does no harm. */
+/* Length of the difference in q and p, each relative to its size: a component whose error happens
+ * to vanish does no harm. */
 static double error_of(const quad_field *field, const state *z, const quad *y)
 {
   quad p[QUAD_N_MAX];
@@ -80,8 +86,9 @@ static double error_of(const quad_field *field, const state *z, const quad *y)
   return sqrt(sum_q / size_q + sum_p / size_p);
 }
 
-/* The limit of the slopes between neighbouring levels as h goes to 0. For symmetric methods the error is C h^p (1 + c h^2 + ..), so the slopes
- * are p + 2 c h^2 / log(..): a straight line over h^2, fitted by least squares. */
+/* The limit of the slopes between neighbouring levels as h goes to 0. For symmetric methods the
+ * error is C h^p (1 + c h^2 + ..), so the slopes are p + 2 c h^2 / log(..): a straight line over
+ * h^2, fitted by least squares. */
 static double slope(int count, const double *steps, const double *error)
 {
   double x = 0, y = 0, xx = 0, xy = 0;
@@ -94,7 +101,8 @@ static double slope(int count, const double *steps, const double *error)
   return (y * xx - x * xy) / (slopes * xx - x * x);
 }
 
-/* Level by level the steps get shorter by a factor of about 1.3, until the error comes near the judge's. The five finest count. */
+/* Level by level the steps get shorter by a factor of about 1.3, until the error comes near the
+ * judge's. The five finest count. */
 static void check_order(const place *at, const variant *of, int degree)
 {
   const int order = 2 * degree - of->order_lost;
@@ -113,10 +121,13 @@ static void check_order(const place *at, const variant *of, int degree)
     error[count] = error_of(&field, &z, exact);
     if (error[count] < at->floor) break;
   }
-  ck_assert_msg(count >= FITTED, "%s, degree %d: %d errors above the judge's", at->problem, degree, count);
+  ck_assert_msg(count >= FITTED, "%s, degree %d: %d errors above the judge's", at->problem, degree,
+                count);
   const double found = slope(FITTED, steps + count - FITTED, error + count - FITTED);
-  ck_assert_msg(fabs(found - order) <= 0.2, "%s, %s, degree %d, %d nodes: order %.2f, not %d (errors %.1e to %.1e)", at->problem,
-                of->rule, degree, degree + of->more_nodes, found, order, error[count - FITTED], error[count - 1]);
+  ck_assert_msg(fabs(found - order) <= 0.2,
+                "%s, %s, degree %d, %d nodes: order %.2f, not %d (errors %.1e to %.1e)",
+                at->problem, of->rule, degree, degree + of->more_nodes, found, order,
+                error[count - FITTED], error[count - 1]);
 }
 
 /* There is no Lobatto rule of one node. */
@@ -131,11 +142,13 @@ static int case_has_rule(int which)
 START_TEST(the_equations_of_a_step_have_the_claimed_order)
 {
   const int which = cases.which[sampled_case(_i)];
-  check_order(&places[which / DEGREES / VARIANTS], &variants[which / DEGREES % VARIANTS], 1 + which % DEGREES);
+  check_order(&places[which / DEGREES / VARIANTS], &variants[which / DEGREES % VARIANTS],
+              1 + which % DEGREES);
 }
 END_TEST
 
-/* A few dozen steps of a few roundings each; relative to the largest coordinate, on solutions that amplify little. */
+/* A few dozen steps of a few roundings each; relative to the largest coordinate, on solutions that
+ * amplify little. */
 static const double roundoff = 500 * DBL_EPSILON;
 
 static void check_same(const place *at, const variant *of, int degree)
@@ -144,8 +157,8 @@ static void check_same(const place *at, const variant *of, int degree)
   quad_field field;
   state z;
   problem *made = made_problem(at->problem, at->setting);
-  dvi_integrator *integrator = started(
-      made, spec("galerkin:degree=%d,quadrature=%s,nodes=%d", degree, of->rule, degree + of->more_nodes));
+  dvi_integrator *integrator = started(made, spec("galerkin:degree=%d,quadrature=%s,nodes=%d",
+                                                  degree, of->rule, degree + of->more_nodes));
   make_field(at, &field);
   quad_galerkin_prepare(&method, degree, of->lobatto, degree + of->more_nodes);
   run(at, &field, &method, at->steps, &z);
@@ -153,12 +166,13 @@ static void check_same(const place *at, const variant *of, int degree)
   ck_assert_int_eq(dvi_integrator_order(integrator), 2 * degree - of->order_lost);
   double most = 0;
   for (int i = 0; i < made->nq; i++) {
-    most = fmax(most,
-                fabs((double)(z.q[i] - (quad)dvi_integrator_q(integrator)[i])) / magnitude(made->nq, dvi_integrator_q(integrator)));
-    most = fmax(most,
-                fabs((double)(z.p[i] - (quad)dvi_integrator_p(integrator)[i])) / magnitude(made->nq, dvi_integrator_p(integrator)));
+    most = fmax(most, fabs((double)(z.q[i] - (quad)dvi_integrator_q(integrator)[i])) /
+                          magnitude(made->nq, dvi_integrator_q(integrator)));
+    most = fmax(most, fabs((double)(z.p[i] - (quad)dvi_integrator_p(integrator)[i])) /
+                          magnitude(made->nq, dvi_integrator_p(integrator)));
   }
-  ck_assert_msg(most <= roundoff, "%s, %s, degree %d: %g apart", at->problem, of->rule, degree, most);
+  ck_assert_msg(most <= roundoff, "%s, %s, degree %d: %g apart", at->problem, of->rule, degree,
+                most);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&made);
 }
@@ -166,7 +180,8 @@ static void check_same(const place *at, const variant *of, int degree)
 START_TEST(the_librarys_trajectory_is_theirs_to_roundoff)
 {
   const int which = cases.which[sampled_case(_i)];
-  check_same(&places[which / DEGREES / VARIANTS], &variants[which / DEGREES % VARIANTS], 1 + which % DEGREES);
+  check_same(&places[which / DEGREES / VARIANTS], &variants[which / DEGREES % VARIANTS],
+             1 + which % DEGREES);
 }
 END_TEST
 
@@ -174,6 +189,8 @@ SUITE(order_quad)
 {
   tcase_set_timeout(tests, 120);
   find_accepted_cases(CASES, case_has_rule, &cases);
-  tcase_add_loop_test(tests, the_equations_of_a_step_have_the_claimed_order, 0, sampled_count(cases.count));
-  tcase_add_loop_test(tests, the_librarys_trajectory_is_theirs_to_roundoff, 0, sampled_count(cases.count));
+  tcase_add_loop_test(tests, the_equations_of_a_step_have_the_claimed_order, 0,
+                      sampled_count(cases.count));
+  tcase_add_loop_test(tests, the_librarys_trajectory_is_theirs_to_roundoff, 0,
+                      sampled_count(cases.count));
 }

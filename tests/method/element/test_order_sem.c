@@ -1,5 +1,6 @@
 /* labels: order */
-/* sem has its order in (t,q,p): the points that it reaches, at the times that it chooses, lie on the exact trajectory to O(h^2s). */
+/* sem has its order in (t,q,p): the points that it reaches, at the times that it chooses, lie on
+ * the exact trajectory to O(h^2s). */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,7 +13,8 @@
 
 enum { DEGREES = 4, LEVELS = 5 };
 
-/* The largest distance in q and p, over a revolution of kepler with e = 0.1, of the points from where the exact solution is at their times. */
+/* The largest distance in q and p, over a revolution of kepler with e = 0.1, of the points from
+ * where the exact solution is at their times. */
 static double error_of(const problem *of, const char *method, double h)
 {
   dvi_integrator *integrator = started(of, method);
@@ -34,7 +36,8 @@ START_TEST(degree_s_has_order_2s)
 {
   static const double first_step[DEGREES] = {0.05, 0.2, 0.4, 0.5};
   const int degree = 1 + _i % DEGREES;
-  const char *method = spec("sem:degree=%d,quadrature=%s", degree, _i < DEGREES ? "gauss" : "lobatto");
+  const char *method = spec("sem:degree=%d,quadrature=%s", degree,
+                            _i < DEGREES ? "gauss" : "lobatto");
   problem *of = made_problem("kepler", "e=0.1");
   double h[LEVELS], error[LEVELS];
   for (int k = 0; k < LEVELS; k++) {

@@ -1,5 +1,6 @@
 /* labels: invariant */
-/* Symplectic-energy-momentum integrators: what they conserve, how they go on where the energy equation has no solution, and what they refuse. */
+/* Symplectic-energy-momentum integrators: what they conserve, how they go on where the energy
+ * equation has no solution, and what they refuse. */
 #include <math.h>
 #include <string.h>
 
@@ -12,7 +13,8 @@
 static dvi_energy_balance balance_of(const dvi_integrator *integrator)
 {
   dvi_energy_balance energy;
-  ck_assert_msg(dvi_integrator_energy_balance(integrator, &energy) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_integrator_energy_balance(integrator, &energy) == DVI_OK, "%s",
+                dvi_last_error());
   return energy;
 }
 
@@ -29,8 +31,9 @@ typedef struct place {
   double h;
 } place;
 
-/* Without a fallback. Every step solves its energy row to 16 roundings of T + |V|, below 1e-13 of the energy; 1e-12 is what is asked. Angular momentum: p is
- * advanced by compensated sums of central forces, 1e-15 each, that are right to a rounding. */
+/* Without a fallback. Every step solves its energy row to 16 roundings of T + |V|, below 1e-13 of
+ * the energy; 1e-12 is what is asked. Angular momentum: p is advanced by compensated sums of
+ * central forces, 1e-15 each, that are right to a rounding. */
 static void check_conservation(const place *at, long steps)
 {
   problem *of = made_problem(at->problem, at->setting);
@@ -45,7 +48,8 @@ static void check_conservation(const place *at, long steps)
   }
   const dvi_energy_balance energy = balance_of(integrator);
   ck_assert_int_eq(energy.fallbacks, 0);
-  ck_assert_msg(worst <= 1e-12 * fabs(energy.first), "%s on %s: energy moves by %g", at->method, at->problem, worst);
+  ck_assert_msg(worst <= 1e-12 * fabs(energy.first), "%s on %s: energy moves by %g", at->method,
+                at->problem, worst);
   ck_assert(energy.work == 0 && energy.jumps == 0 && energy.given_steps == 0);
   ck_assert_int_eq(dvi_integrator_invariants(integrator, end), DVI_OK);
   if (strcmp(at->problem, "kepler") == 0) ck_assert_double_eq_tol(end[1], start[1], 1e-13);
@@ -74,7 +78,8 @@ START_TEST(energy_and_angular_momentum_are_conserved)
 }
 END_TEST
 
-/* A step of h solves the ordinary rows: q and p are those of the Galerkin method with the same steps. */
+/* A step of h solves the ordinary rows: q and p are those of the Galerkin method with the same
+ * steps. */
 START_TEST(the_steps_are_galerkin_steps_of_other_lengths)
 {
   problem *of = made_problem("kepler", "e=0.3");
@@ -84,7 +89,8 @@ START_TEST(the_steps_are_galerkin_steps_of_other_lengths)
     advance(sem, 0.05, 1);
     lengths += fabs(dvi_integrator_last_step(sem) - 0.05) > 1e-3;
     advance(galerkin, dvi_integrator_last_step(sem), 1);
-    ck_assert_double_eq_tol(distance(of->nq, dvi_integrator_q(sem), dvi_integrator_q(galerkin)), 0, 1e-12);
+    ck_assert_double_eq_tol(distance(of->nq, dvi_integrator_q(sem), dvi_integrator_q(galerkin)), 0,
+                            1e-12);
   }
   ck_assert_int_gt(lengths, 100);
   dvi_integrator_destroy(&sem);
@@ -154,14 +160,19 @@ enum { HARD = sizeof hard / sizeof *hard, HARD_STEPS = 10000 };
 
 static dvi_system *duffing(void)
 {
-  const dvi_potential well = {.name = "well", .value = duffing_value, .gradient = duffing_gradient, .hessian = duffing_hessian};
-  const dvi_system_terms terms = {.dimension = 1, .mass.scalar = 1, .potentials = &well, .potential_count = 1, .autonomous = 1};
+  const dvi_potential well = {.name = "well",
+                              .value = duffing_value,
+                              .gradient = duffing_gradient,
+                              .hessian = duffing_hessian};
+  const dvi_system_terms terms = {
+      .dimension = 1, .mass.scalar = 1, .potentials = &well, .potential_count = 1, .autonomous = 1};
   dvi_system *system = NULL;
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
   return system;
 }
 
-/* 1e4 steps: each forward, within its bounds and finite; each jump counted; the balance at roundoff with the jumps, so that none is silent. */
+/* 1e4 steps: each forward, within its bounds and finite; each jump counted; the balance at roundoff
+ * with the jumps, so that none is silent. */
 static void check_hard(dvi_integrator *integrator, const char *what, double h, double most)
 {
   double size = 0;
@@ -169,7 +180,8 @@ static void check_hard(dvi_integrator *integrator, const char *what, double h, d
     const double before = dvi_integrator_time(integrator);
     ck_assert_msg(dvi_integrator_step(integrator, h) == DVI_OK, "%s: %s", what, dvi_last_error());
     const double length = dvi_integrator_last_step(integrator);
-    ck_assert_msg(length >= 0.1 * h * (1 - 1e-15) && length <= most * h * (1 + 1e-15), "%s: a step of %g", what, length);
+    ck_assert_msg(length >= 0.1 * h * (1 - 1e-15) && length <= most * h * (1 + 1e-15),
+                  "%s: a step of %g", what, length);
     ck_assert(dvi_integrator_time(integrator) > before);
     const dvi_energy_balance energy = balance_of(integrator);
     size = fmax(size, fmax(fabs(energy.energy), fabs(energy.work)));
@@ -180,7 +192,8 @@ static void check_hard(dvi_integrator *integrator, const char *what, double h, d
   ck_assert_int_eq(counters.energy_fallbacks, energy.fallbacks);
   ck_assert((energy.fallbacks > 0) == (fabs(energy.largest_jump) > 0));
   ck_assert_double_ge(fabs(energy.largest_jump), fabs(energy.last_jump));
-  ck_assert_msg(defect_of(&energy) <= 1e-11 * fmax(1, size), "%s: %g of energy is not accounted for", what, defect_of(&energy));
+  ck_assert_msg(defect_of(&energy) <= 1e-11 * fmax(1, size),
+                "%s: %g of energy is not accounted for", what, defect_of(&energy));
 }
 
 START_TEST(hard_places_are_passed_with_every_jump_counted)
@@ -191,7 +204,8 @@ START_TEST(hard_places_are_passed_with_every_jump_counted)
   dvi_system *system = own ? duffing() : of->system;
   dvi_integrator *integrator = made_integrator(system, at->method);
   const int given = own || at->q[0] != 0 || at->p[0] != 0;
-  ck_assert_int_eq(dvi_integrator_start(integrator, 0, given ? at->q : of->q, given ? at->p : of->p), DVI_OK);
+  ck_assert_int_eq(
+      dvi_integrator_start(integrator, 0, given ? at->q : of->q, given ? at->p : of->p), DVI_OK);
   check_hard(integrator, at->problem, at->h, at->most > 0 ? at->most : 30);
   dvi_integrator_destroy(&integrator);
   if (own)
@@ -218,7 +232,8 @@ END_TEST
 
 /* ---- time dependence ---- */
 
-/* E+ - E- of all steps is the work; along the exact solution it is the integral of -L_t, by which the energy p v - L changes. */
+/* E+ - E- of all steps is the work; along the exact solution it is the integral of -L_t, by which
+ * the energy p v - L changes. */
 START_TEST(the_driven_pendulum_keeps_the_extended_energy_balance)
 {
   problem *of = made_problem("driven-pendulum", NULL);
@@ -274,13 +289,18 @@ START_TEST(events_are_found_in_steps_of_any_length)
 {
   problem *of = made_problem("kepler", "e=0.3");
   dvi_integrator *integrator = started(of, "sem:degree=4");
-  const dvi_event event = {.name = "pericentre", .value = at_pericentre, .direction = 1, .terminal = 1};
+  const dvi_event event = {
+      .name = "pericentre", .value = at_pericentre, .direction = 1, .terminal = 1};
   dvi_run_report report;
   advance(integrator, 0.1, 1);
-  ck_assert_int_eq(dvi_run(integrator, &(dvi_run_options){.h = 0.1, .t_end = 20, .events = &event, .event_count = 1}, &report),
-                   DVI_OK);
+  ck_assert_int_eq(
+      dvi_run(integrator,
+              &(dvi_run_options){.h = 0.1, .t_end = 20, .events = &event, .event_count = 1},
+              &report),
+      DVI_OK);
   ck_assert_int_eq(report.end, DVI_RUN_EVENT);
-  ck_assert_double_eq_tol(report.event_time, 6.283185307179586, 1e-4); /* the path's own order, s + 1 */
+  /* the path's own order, s + 1 */
+  ck_assert_double_eq_tol(report.event_time, 6.283185307179586, 1e-4);
   ck_assert_double_eq_tol(dvi_integrator_time(integrator), report.event_time, 1e-14);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&of);
@@ -307,7 +327,8 @@ END_TEST
 
 /* ---- refusals ---- */
 
-static void refused(const problem *of, const char *method, double h, dvi_status status, const char *words)
+static void refused(const problem *of, const char *method, double h, dvi_status status,
+                    const char *words)
 {
   dvi_integrator *integrator = NULL;
   dvi_status found = dvi_integrator_create(of->system, method, &integrator);
@@ -322,12 +343,16 @@ START_TEST(bounds_that_cannot_be_are_refused)
 {
   problem *of = made_problem("kepler", NULL);
   refused(of, "sem:hmin=0.2,hmax=0.1", 0.1, DVI_BAD_OPTION, "sem: hmin=0.2 is above hmax=0.1");
-  refused(of, "sem:hmin=-1", 0.1, DVI_BAD_OPTION, "sem: hmin=-1; a positive number is possible, or auto");
-  refused(of, "sem:hmax=0", 0.1, DVI_BAD_OPTION, "sem: hmax=0; a positive number is possible, or auto");
+  refused(of, "sem:hmin=-1", 0.1, DVI_BAD_OPTION,
+          "sem: hmin=-1; a positive number is possible, or auto");
+  refused(of, "sem:hmax=0", 0.1, DVI_BAD_OPTION,
+          "sem: hmax=0; a positive number is possible, or auto");
   refused(of, "sem:hmax=nan", 0.1, DVI_BAD_OPTION, "sem: hmax=nan; a positive number");
   refused(of, "sem:hmax=1e400", 0.1, DVI_BAD_OPTION, "sem: hmax=1e400; a positive number");
-  refused(of, "sem:hmin=0.2", 0.1, DVI_BAD_OPTION, "the first step h = 0.1 is below hmin=0.2; the bounds must include it");
-  refused(of, "sem:hmax=0.05", -0.1, DVI_BAD_OPTION, "the first step h = -0.1 is above hmax=0.05; the bounds must include it");
+  refused(of, "sem:hmin=0.2", 0.1, DVI_BAD_OPTION,
+          "the first step h = 0.1 is below hmin=0.2; the bounds must include it");
+  refused(of, "sem:hmax=0.05", -0.1, DVI_BAD_OPTION,
+          "the first step h = -0.1 is above hmax=0.05; the bounds must include it");
   refused(of, "sem", 0, DVI_BAD_ARGUMENT, "a finite step other than 0 is needed");
   problem_destroy(&of);
 }
@@ -337,7 +362,8 @@ START_TEST(bounds_are_spelled_out_and_kept)
 {
   problem *of = made_problem("kepler", "e=0.3");
   dvi_integrator *integrator = started(of, "sem:hmax=0.0125");
-  ck_assert_str_eq(dvi_integrator_method(integrator), "sem:degree=1,quadrature=gauss,hmin=auto,hmax=0.0125,solver=newton");
+  ck_assert_str_eq(dvi_integrator_method(integrator),
+                   "sem:degree=1,quadrature=gauss,hmin=auto,hmax=0.0125,solver=newton");
   double longest = 0;
   for (int i = 0; i < 300; i++) {
     advance(integrator, 0.01, 1);
@@ -354,7 +380,8 @@ START_TEST(a_run_away_from_its_end_is_refused)
 {
   problem *of = made_problem("kepler", NULL);
   dvi_integrator *integrator = started(of, "sem");
-  ck_assert_int_eq(dvi_run(integrator, &(dvi_run_options){.h = -0.1, .t_end = 1}, NULL), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_run(integrator, &(dvi_run_options){.h = -0.1, .t_end = 1}, NULL),
+                   DVI_BAD_ARGUMENT);
   check_words("leads away from");
   dvi_integrator_destroy(&integrator);
   problem_destroy(&of);
@@ -364,7 +391,8 @@ END_TEST
 START_TEST(a_system_that_may_depend_on_time_needs_rates)
 {
   const dvi_potential well = {.name = "well", .value = duffing_value};
-  const dvi_system_terms terms = {.dimension = 1, .mass.scalar = 1, .potentials = &well, .potential_count = 1};
+  const dvi_system_terms terms = {
+      .dimension = 1, .mass.scalar = 1, .potentials = &well, .potential_count = 1};
   dvi_system *system = NULL;
   dvi_integrator *integrator = NULL;
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
@@ -379,7 +407,9 @@ START_TEST(ensembles_refuse_it)
 {
   problem *of = made_problem("kepler", NULL);
   dvi_ensemble *ensemble = NULL;
-  ck_assert_int_eq(dvi_ensemble_create(of->system, "sem", &(dvi_ensemble_options){.members = 2}, &ensemble), DVI_UNSUPPORTED);
+  ck_assert_int_eq(
+      dvi_ensemble_create(of->system, "sem", &(dvi_ensemble_options){.members = 2}, &ensemble),
+      DVI_UNSUPPORTED);
   check_words("sem chooses its steps");
   ck_assert_ptr_null(ensemble);
   problem_destroy(&of);

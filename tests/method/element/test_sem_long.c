@@ -12,8 +12,9 @@ enum { DEGREES = 4 };
 /* Steps that still show in the energy: shorter ones would not change any more. */
 static const double first_step[DEGREES] = {0.05, 0.1, 0.4, 0.4};
 
-/* No step's energy row errs by more than 16 roundings of T + |V|, 1e-13 of the energy, and these errors do not add up: all rows have one target. Angular momentum is
- * advanced by compensated sums; what is left is a random walk of 1e-17 a step. */
+/* No step's energy row errs by more than 16 roundings of T + |V|, 1e-13 of the energy, and these
+ * errors do not add up: all rows have one target. Angular momentum is advanced by compensated sums;
+ * what is left is a random walk of 1e-17 a step. */
 START_TEST(energy_is_conserved_to_1e_12_over_1e5_steps)
 {
   const int degree = 1 + _i % DEGREES, lobatto = _i / DEGREES;

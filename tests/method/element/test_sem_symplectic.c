@@ -1,8 +1,10 @@
 /* labels: invariant */
 /* sem is symplectic in (t,E,q,p): dq ^ dp - dt ^ dE is the same before a step and after it.
  *
- * The starts (t0,h0,q0,p0) are mapped by one ordinary step to F = (t,E,q,p), where E is the energy E+ that the method carries, and by more steps, whose
- * lengths the method chooses, to G. The form, pulled back by F and by G to the starts, must be the same numbers. Derivatives are differenced by order 8. */
+ * The starts (t0,h0,q0,p0) are mapped by one ordinary step to F = (t,E,q,p), where E is the energy
+ * E+ that the method carries, and by more steps, whose lengths the method chooses, to G. The form,
+ * pulled back by F and by G to the starts, must be the same numbers. Derivatives are differenced by
+ * order 8. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -36,9 +38,11 @@ static void point_of(dvi_integrator *integrator, int n, point *at)
 }
 
 /* From a start (t0, h0, q0, p0) to F and G. */
-static void run_from(dvi_integrator *integrator, const place *at, int n, const double *start, point *F, point *G)
+static void run_from(dvi_integrator *integrator, const place *at, int n, const double *start,
+                     point *F, point *G)
 {
-  ck_assert_msg(dvi_integrator_start(integrator, start[0], start + 2, start + 2 + n) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_integrator_start(integrator, start[0], start + 2, start + 2 + n) == DVI_OK,
+                "%s", dvi_last_error());
   advance(integrator, start[1], 1);
   point_of(integrator, n, F);
   advance(integrator, start[1], at->steps - 1);
@@ -46,7 +50,8 @@ static void run_from(dvi_integrator *integrator, const place *at, int n, const d
 }
 
 /* Columns j of dF and dG. */
-static void differentiate(dvi_integrator *integrator, const place *at, int n, const double *start, int j, point *dF, point *dG)
+static void differentiate(dvi_integrator *integrator, const place *at, int n, const double *start,
+                          int j, point *dF, point *dG)
 {
   static const double weight[4] = {4.0 / 5, -1.0 / 5, 4.0 / 105, -1.0 / 280};
   double moved[COLUMNS_MOST];
@@ -73,7 +78,8 @@ static double form(int n, const point *a, const point *b)
   return sum;
 }
 
-/* The higher the degree, the less h shows in the energy, and the more roundings move it: long steps are needed then. */
+/* The higher the degree, the less h shows in the energy, and the more roundings move it: long steps
+ * are needed then. */
 static const place places[] = {
     {"kepler", "e=0.2", "sem:degree=1", 0.5, 1e-3, 4},
     {"kepler", "e=0.2", "sem:degree=1,quadrature=lobatto", 0.5, 1e-3, 4},
@@ -107,21 +113,25 @@ START_TEST(the_form_is_the_same_before_and_after)
       worst = fmax(worst, fabs(after - before));
       largest = fmax(largest, fabs(before));
     }
-  if (getenv("DVI_SHOW_ORDERS")) printf("%s %s: %.2e of %.2e\n", at->problem, at->method, worst, largest);
-  ck_assert_msg(worst <= 1e-10 * largest, "%s %s: the form changes by %g of %g", at->problem, at->method, worst, largest);
+  if (getenv("DVI_SHOW_ORDERS"))
+    printf("%s %s: %.2e of %.2e\n", at->problem, at->method, worst, largest);
+  ck_assert_msg(worst <= 1e-10 * largest, "%s %s: the form changes by %g of %g", at->problem,
+                at->method, worst, largest);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&of);
 }
 END_TEST
 
-/* dq ^ dp at a fixed h belongs to the ordinary step that begins a run: what dvi_symplecticity measures, wherever the integrator stands. */
+/* dq ^ dp at a fixed h belongs to the ordinary step that begins a run: what dvi_symplecticity
+ * measures, wherever the integrator stands. */
 START_TEST(the_first_step_is_symplectic_in_q_and_p_alone)
 {
   problem *kepler = made_problem("kepler", "e=0.2");
   dvi_integrator *integrator = started(kepler, "sem:degree=2");
   double defect;
   advance(integrator, 0.5, 3);
-  ck_assert_int_eq(dvi_symplecticity(integrator, 0, dvi_integrator_q(integrator), dvi_integrator_p(integrator), 0.5, &defect),
+  ck_assert_int_eq(dvi_symplecticity(integrator, 0, dvi_integrator_q(integrator),
+                                     dvi_integrator_p(integrator), 0.5, &defect),
                    DVI_OK);
   ck_assert_double_le(defect, 1e-11);
   dvi_integrator_destroy(&integrator);

@@ -1,5 +1,6 @@
 /* labels: unit */
-/* What a program's function space is asked to be, how its callbacks fail, and what else knows it: checkpoints, ensembles, copies. */
+/* What a program's function space is asked to be, how its callbacks fail, and what else knows it:
+ * checkpoints, ensembles, copies. */
 #include <dvi/dvi.h>
 #include <math.h>
 #include <string.h>
@@ -14,7 +15,8 @@
 
 /* ---- what is refused ---- */
 
-/* The function tau^2, and what is wrong with it; point adds it at the nodes of a rule of three points. */
+/* The function tau^2, and what is wrong with it; point adds it at the nodes of a rule of three
+ * points. */
 typedef struct fault {
   int answer;          /* of the callbacks */
   double value, slope; /* are added */
@@ -34,9 +36,11 @@ static int evaluate(double h, double tau, double *value, double *derivative, voi
   return is_wrong ? wrong->answer : 0;
 }
 
-static int point(double h, int j, double *tau, double *weight, double *value, double *derivative, void *user)
+static int point(double h, int j, double *tau, double *weight, double *value, double *derivative,
+                 void *user)
 {
-  static const double nodes[] = {0.1127016653792583, 0.5, 0.8872983346207417}, weights[] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
+  static const double nodes[] = {0.1127016653792583, 0.5, 0.8872983346207417},
+                      weights[] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
   const fault *wrong = user;
   const int is_wrong = j == 1 && fabs(h) >= wrong->from;
   *tau = nodes[j] + (is_wrong ? wrong->node : 0);
@@ -46,7 +50,8 @@ static int point(double h, int j, double *tau, double *weight, double *value, do
   return is_wrong ? wrong->answer : 0;
 }
 
-static void check_refused(const dvi_shapes *shapes, const char *method, dvi_status status, const char *words)
+static void check_refused(const dvi_shapes *shapes, const char *method, dvi_status status,
+                          const char *words)
 {
   problem *of = made_problem("kepler", NULL);
   dvi_integrator *integrator = (dvi_integrator *)of;
@@ -67,34 +72,58 @@ START_TEST(what_is_missing_or_out_of_range_is_named)
     const char *words;
   } wrong[] = {
       {{.functions = 1, .evaluate = evaluate}, DVI_BAD_ARGUMENT, "the name is NULL"},
-      {{.name = "", .functions = 1, .evaluate = evaluate}, DVI_BAD_ARGUMENT, "the name '' is not of 1 to 40 letters"},
-      {{.name = "a,b", .functions = 1, .evaluate = evaluate}, DVI_BAD_ARGUMENT, "the name 'a,b' is not of"},
+      {{.name = "", .functions = 1, .evaluate = evaluate},
+       DVI_BAD_ARGUMENT,
+       "the name '' is not of 1 to 40 letters"},
+      {{.name = "a,b", .functions = 1, .evaluate = evaluate},
+       DVI_BAD_ARGUMENT,
+       "the name 'a,b' is not of"},
       {{.name = "long-long-long-long-long-long-long-long-x", .functions = 1, .evaluate = evaluate},
        DVI_BAD_ARGUMENT,
        "is not of 1 to 40"},
       {{.name = "s", .functions = 1}, DVI_BAD_ARGUMENT, "the callback evaluate is NULL"},
-      {{.name = "s", .functions = 0, .evaluate = evaluate}, DVI_BAD_SIZE, "0 functions; 1 to 40 are possible"},
+      {{.name = "s", .functions = 0, .evaluate = evaluate},
+       DVI_BAD_SIZE,
+       "0 functions; 1 to 40 are possible"},
       {{.name = "s", .functions = 41, .evaluate = evaluate}, DVI_BAD_SIZE, "41 functions"},
-      {{.name = "s", .functions = 1, .evaluate = evaluate, .h = (double)NAN}, DVI_BAD_ARGUMENT, "h = nan is no length"},
-      {{.name = "s", .functions = 1, .evaluate = evaluate, .h = 1e-310}, DVI_BAD_ARGUMENT, "is no length of a step"},
+      {{.name = "s", .functions = 1, .evaluate = evaluate, .h = (double)NAN},
+       DVI_BAD_ARGUMENT,
+       "h = nan is no length"},
+      {{.name = "s", .functions = 1, .evaluate = evaluate, .h = 1e-310},
+       DVI_BAD_ARGUMENT,
+       "is no length of a step"},
       {{.name = "s", .functions = 1, .evaluate = evaluate, .points = 3},
        DVI_BAD_ARGUMENT,
        "there are 3 points, and the callback for them is NULL"},
       {{.name = "s", .functions = 1, .evaluate = evaluate, .point = point},
        DVI_BAD_ARGUMENT,
        "there are 0 points, and the callback for them is given"},
-      {{.name = "s", .functions = 1, .evaluate = evaluate, .point = point, .points = 1001}, DVI_BAD_SIZE, "1001 points; 1 to 1000"},
-      {{.name = "s", .functions = 1, .evaluate = evaluate, .order = -1}, DVI_BAD_ARGUMENT, "the order -1 is claimed"},
+      {{.name = "s", .functions = 1, .evaluate = evaluate, .point = point, .points = 1001},
+       DVI_BAD_SIZE,
+       "1001 points; 1 to 1000"},
+      {{.name = "s", .functions = 1, .evaluate = evaluate, .order = -1},
+       DVI_BAD_ARGUMENT,
+       "the order -1 is claimed"},
       {{.name = "s", .functions = 1, .evaluate = evaluate, .coordinate_count = 1},
        DVI_BAD_ARGUMENT,
        "coordinate_count is 1, and the list"},
       {{.name = "s", .functions = 1, .evaluate = evaluate, .coordinates = twice},
        DVI_BAD_ARGUMENT,
        "coordinate_count is 0, and the list"},
-      {{.name = "s", .functions = 1, .evaluate = evaluate, .coordinates = twice, .coordinate_count = 2, .user = &none},
+      {{.name = "s",
+        .functions = 1,
+        .evaluate = evaluate,
+        .coordinates = twice,
+        .coordinate_count = 2,
+        .user = &none},
        DVI_BAD_ARGUMENT,
        "coordinate 1 is listed twice"},
-      {{.name = "s", .functions = 1, .evaluate = evaluate, .coordinates = beyond, .coordinate_count = 2, .user = &none},
+      {{.name = "s",
+        .functions = 1,
+        .evaluate = evaluate,
+        .coordinates = beyond,
+        .coordinate_count = 2,
+        .user = &none},
        DVI_BAD_ARGUMENT,
        "there is no coordinate 2; they are counted from 0 to 1"},
   };
@@ -110,20 +139,26 @@ START_TEST(specifications_that_do_not_fit_are_refused)
 {
   static fault none;
   dvi_shapes shapes = {.name = "square", .functions = 1, .evaluate = evaluate, .user = &none};
-  check_refused(&shapes, "galerkin", DVI_BAD_OPTION, "its space is its own, and not the shapes square; shaped-galerkin takes them");
+  check_refused(&shapes, "galerkin", DVI_BAD_OPTION,
+                "its space is its own, and not the shapes square; shaped-galerkin takes them");
   check_refused(&shapes, "composition", DVI_BAD_OPTION, "its space is its own");
   check_refused(&shapes, "shaped-galerkin:degree=21", DVI_BAD_OPTION, "1 to 20 are possible");
-  check_refused(&shapes, "shaped-galerkin:nodes=1", DVI_BAD_OPTION, "1 quadrature points see at most 1 of the 2 velocity modes");
+  check_refused(&shapes, "shaped-galerkin:nodes=1", DVI_BAD_OPTION,
+                "1 quadrature points see at most 1 of the 2 velocity modes");
   check_refused(&shapes, "shaped-galerkin:nodes=81", DVI_BAD_OPTION, "no rule with 81 points");
-  check_refused(&shapes, "shaped-galerkin:quadrature=own", DVI_BAD_OPTION, "the shapes square have no points of their own");
+  check_refused(&shapes, "shaped-galerkin:quadrature=own", DVI_BAD_OPTION,
+                "the shapes square have no points of their own");
   check_refused(&shapes, "shaped-galerkin:space=cube", DVI_BAD_OPTION,
                 "'space=cube' is not possible; it takes degree, quadrature, nodes");
-  check_refused(&shapes, "shaped-galerkin:basis=lobatto", DVI_BAD_OPTION, "'basis=lobatto' is not possible");
+  check_refused(&shapes, "shaped-galerkin:basis=lobatto", DVI_BAD_OPTION,
+                "'basis=lobatto' is not possible");
   check_refused(&shapes, "shaped-galerkin:degree=2", DVI_BAD_ARGUMENT,
                 "function 0 is a combination of a constant, polynomials up to degree 2");
   shapes.point = point, shapes.points = 3;
-  check_refused(&shapes, "shaped-galerkin:nodes=4", DVI_BAD_OPTION, "have 3 points of their own; leave quadrature and nodes out");
-  check_refused(&shapes, "shaped-galerkin:degree=4", DVI_BAD_OPTION, "3 quadrature points see at most 3 of the 5 velocity modes");
+  check_refused(&shapes, "shaped-galerkin:nodes=4", DVI_BAD_OPTION,
+                "have 3 points of their own; leave quadrature and nodes out");
+  check_refused(&shapes, "shaped-galerkin:degree=4", DVI_BAD_OPTION,
+                "3 quadrature points see at most 3 of the 5 velocity modes");
 }
 END_TEST
 
@@ -133,14 +168,16 @@ START_TEST(functions_that_are_wrong_are_refused)
                           {.leave_out = 1}, {.answer = 1},          {.answer = -1}};
   static const dvi_status status[] = {DVI_BAD_ARGUMENT, DVI_NOT_FINITE,     DVI_NOT_FINITE,
                                       DVI_NOT_FINITE,   DVI_CALLBACK_RETRY, DVI_CALLBACK_FAILED};
-  static const char *const words[] = {"but differences of the values give",
-                                      "evaluate gave derivative[0] = nan at tau = 0 of a step of h = 1",
-                                      "evaluate gave value[0] = inf",
-                                      "evaluate gave derivative[0] = nan",
-                                      "shapes square: evaluate returned 1 for a step of h = 1",
-                                      "returned -1"};
+  static const char *const words[] = {
+      "but differences of the values give",
+      "evaluate gave derivative[0] = nan at tau = 0 of a step of h = 1",
+      "evaluate gave value[0] = inf",
+      "evaluate gave derivative[0] = nan",
+      "shapes square: evaluate returned 1 for a step of h = 1",
+      "returned -1"};
   for (int k = 0; k < 6; k++) {
-    const dvi_shapes shapes = {.name = "square", .functions = 1, .evaluate = evaluate, .user = &wrong[k]};
+    const dvi_shapes shapes = {
+        .name = "square", .functions = 1, .evaluate = evaluate, .user = &wrong[k]};
     check_refused(&shapes, "shaped-galerkin", status[k], words[k]);
   }
 }
@@ -148,14 +185,24 @@ END_TEST
 
 START_TEST(points_that_are_wrong_are_refused)
 {
-  static fault wrong[] = {{.weight = 1e-9}, {.weight = (double)NAN}, {.node = 0.6}, {.node = -0.6}, {.node = (double)NAN}};
-  static const dvi_status status[] = {DVI_BAD_ARGUMENT, DVI_NOT_FINITE, DVI_BAD_ARGUMENT, DVI_BAD_ARGUMENT, DVI_NOT_FINITE};
-  static const char *const words[] = {"the weights sum to 1.000000001 for a step of h = 1; they must sum to 1",
-                                      "point 1 has the weight nan", "point 1 is at tau = 1.1", "point 1 is at tau = -0.1",
-                                      "point 1 is at tau = nan"};
+  static fault wrong[] = {{.weight = 1e-9},
+                          {.weight = (double)NAN},
+                          {.node = 0.6},
+                          {.node = -0.6},
+                          {.node = (double)NAN}};
+  static const dvi_status status[] = {DVI_BAD_ARGUMENT, DVI_NOT_FINITE, DVI_BAD_ARGUMENT,
+                                      DVI_BAD_ARGUMENT, DVI_NOT_FINITE};
+  static const char *const words[] = {
+      "the weights sum to 1.000000001 for a step of h = 1; they must sum to 1",
+      "point 1 has the weight nan", "point 1 is at tau = 1.1", "point 1 is at tau = -0.1",
+      "point 1 is at tau = nan"};
   for (int k = 0; k < 5; k++) {
-    const dvi_shapes shapes = {
-        .name = "square", .functions = 1, .evaluate = evaluate, .point = point, .points = 3, .user = &wrong[k]};
+    const dvi_shapes shapes = {.name = "square",
+                               .functions = 1,
+                               .evaluate = evaluate,
+                               .point = point,
+                               .points = 3,
+                               .user = &wrong[k]};
     check_refused(&shapes, "shaped-galerkin", status[k], words[k]);
   }
 }
@@ -169,7 +216,8 @@ static int constant(double h, double tau, double *value, double *derivative, voi
   return 0;
 }
 
-static int same_place(double h, int j, double *tau, double *weight, double *value, double *derivative, void *user)
+static int same_place(double h, int j, double *tau, double *weight, double *value,
+                      double *derivative, void *user)
 {
   (void)h, (void)j, (void)user;
   *tau = 0.5, *weight = 0.25, *value = 0.25, *derivative = 1;
@@ -180,10 +228,18 @@ START_TEST(what_the_points_do_not_tell_apart_is_refused)
 {
   static fault none;
   const dvi_shapes flat = {.name = "flat", .functions = 1, .evaluate = constant};
-  const dvi_shapes heap = {.name = "heap", .functions = 1, .evaluate = evaluate, .point = same_place, .points = 4, .user = &none};
-  check_refused(&flat, "shaped-galerkin", DVI_BAD_ARGUMENT, "function 0 is a combination of a constant");
-  check_refused(&heap, "shaped-galerkin", DVI_BAD_ARGUMENT, "at the 4 points function 0 is a combination");
-  check_refused(&heap, "shaped-galerkin:degree=3", DVI_BAD_ARGUMENT, "the 4 points do not tell polynomials up to degree 3 apart");
+  const dvi_shapes heap = {.name = "heap",
+                           .functions = 1,
+                           .evaluate = evaluate,
+                           .point = same_place,
+                           .points = 4,
+                           .user = &none};
+  check_refused(&flat, "shaped-galerkin", DVI_BAD_ARGUMENT,
+                "function 0 is a combination of a constant");
+  check_refused(&heap, "shaped-galerkin", DVI_BAD_ARGUMENT,
+                "at the 4 points function 0 is a combination");
+  check_refused(&heap, "shaped-galerkin:degree=3", DVI_BAD_ARGUMENT,
+                "the 4 points do not tell polynomials up to degree 3 apart");
 }
 END_TEST
 
@@ -200,9 +256,11 @@ static int evaluate_step(double h, double tau, double *value, double *derivative
 START_TEST(points_that_do_not_see_a_function_are_refused)
 {
   static double steepness = 200;
-  const dvi_shapes step = {.name = "step", .functions = 1, .evaluate = evaluate_step, .user = &steepness};
+  const dvi_shapes step = {
+      .name = "step", .functions = 1, .evaluate = evaluate_step, .user = &steepness};
   problem *of = made_problem("kepler", NULL);
-  check_refused(&step, "shaped-galerkin:nodes=8", DVI_BAD_ARGUMENT, "the 8 points are much too coarse for function 0");
+  check_refused(&step, "shaped-galerkin:nodes=8", DVI_BAD_ARGUMENT,
+                "the 8 points are much too coarse for function 0");
   dvi_integrator *fine = shaped_integrator(of->system, &step, "shaped-galerkin:nodes=80");
   dvi_integrator_destroy(&fine);
   steepness = 20;
@@ -219,12 +277,16 @@ START_TEST(without_shapes_there_is_no_such_method)
   dvi_ensemble *ensemble;
   dvi_path *path;
   const dvi_monitor monitor = {.kind = DVI_MONITOR_DISTANCE};
-  ck_assert_int_eq(dvi_integrator_create(of->system, "shaped-galerkin", &integrator), DVI_BAD_OPTION);
-  check_words("there are no shapes: a program gives them to dvi_integrator_options");
-  ck_assert_int_eq(create_transformed(of->system, &monitor, "shaped-galerkin", &integrator), DVI_BAD_OPTION);
-  ck_assert_int_eq(dvi_ensemble_create(of->system, "shaped-galerkin", &(dvi_ensemble_options){.members = 2}, &ensemble),
+  ck_assert_int_eq(dvi_integrator_create(of->system, "shaped-galerkin", &integrator),
                    DVI_BAD_OPTION);
-  const dvi_path_options options = {.ends = DVI_ENDS_FIXED, .dimension = 2, .steps = 4, .span = 1, .q0 = of->q, .q1 = of->q};
+  check_words("there are no shapes: a program gives them to dvi_integrator_options");
+  ck_assert_int_eq(create_transformed(of->system, &monitor, "shaped-galerkin", &integrator),
+                   DVI_BAD_OPTION);
+  ck_assert_int_eq(dvi_ensemble_create(of->system, "shaped-galerkin",
+                                       &(dvi_ensemble_options){.members = 2}, &ensemble),
+                   DVI_BAD_OPTION);
+  const dvi_path_options options = {
+      .ends = DVI_ENDS_FIXED, .dimension = 2, .steps = 4, .span = 1, .q0 = of->q, .q1 = of->q};
   ck_assert_int_eq(dvi_path_create(of->system, "shaped-galerkin", &options, &path), DVI_BAD_OPTION);
   check_words("there are no shapes");
   problem_destroy(&of);
@@ -235,7 +297,8 @@ START_TEST(terms_that_it_cannot_use_are_refused)
 {
   problem *of = made_problem("vortices", NULL);
   dvi_integrator *integrator;
-  ck_assert_int_eq(create_shaped(of->system, &decay, "shaped-galerkin", &integrator), DVI_UNSUPPORTED);
+  ck_assert_int_eq(create_shaped(of->system, &decay, "shaped-galerkin", &integrator),
+                   DVI_UNSUPPORTED);
   check_words("the system declares a one-form");
   problem_destroy(&of);
 }
@@ -291,7 +354,8 @@ START_TEST(dense_output_says_where_a_function_fails)
 {
   problem *of = made_problem("kepler", NULL);
   fault wrong = {0};
-  const dvi_shapes shapes = {.name = "square", .functions = 1, .evaluate = evaluate, .user = &wrong};
+  const dvi_shapes shapes = {
+      .name = "square", .functions = 1, .evaluate = evaluate, .user = &wrong};
   dvi_integrator *integrator = shaped_started(of, &shapes, "shaped-galerkin");
   double q[2];
   advance(integrator, 0.1, 2);
@@ -311,7 +375,8 @@ START_TEST(a_step_of_the_same_length_asks_no_function)
 {
   problem *of = made_problem("kepler", NULL);
   fault none = {0};
-  const dvi_shapes shapes = {.name = "square", .functions = 1, .evaluate = evaluate, .h = 0.1, .user = &none};
+  const dvi_shapes shapes = {
+      .name = "square", .functions = 1, .evaluate = evaluate, .h = 0.1, .user = &none};
   dvi_integrator *integrator = shaped_started(of, &shapes, "shaped-galerkin:nodes=5");
   advance(integrator, 0.1, 1);
   const long before = none.calls;
@@ -329,7 +394,8 @@ END_TEST
 START_TEST(a_step_takes_no_memory)
 {
   static const double omega = 5;
-  static const char *const methods[] = {"shaped-galerkin:nodes=6", "composition:order=4,base=shaped-galerkin,nodes=6"};
+  static const char *const methods[] = {"shaped-galerkin:nodes=6",
+                                        "composition:order=4,base=shaped-galerkin,nodes=6"};
   problem *of = made_problem("henon-heiles", NULL);
   const dvi_shapes shapes = oscillation(&omega);
   dvi_integrator *integrator = shaped_started(of, &shapes, methods[_i]);
@@ -376,15 +442,17 @@ END_TEST
 
 static const double five = 5, six = 6;
 
-static void check_restores(const dvi_shapes *shapes, const char *method, const dvi_shapes *others, const char *other_method,
-                           const char *words)
+static void check_restores(const dvi_shapes *shapes, const char *method, const dvi_shapes *others,
+                           const char *other_method, const char *words)
 {
   problem *of = made_problem("henon-heiles", NULL);
-  dvi_integrator *saved = shaped_started(of, shapes, method), *restored = shaped_started(of, others, other_method);
+  dvi_integrator *saved = shaped_started(of, shapes, method),
+                 *restored = shaped_started(of, others, other_method);
   advance(saved, 0.1, 7);
   advance(restored, 0.3, 2);
   ck_assert_int_eq(dvi_integrator_save(saved, in_folder("checkpoint")), DVI_OK);
-  ck_assert_int_eq(dvi_integrator_restore(restored, in_folder("checkpoint")), words != NULL ? DVI_BAD_FILE : DVI_OK);
+  ck_assert_int_eq(dvi_integrator_restore(restored, in_folder("checkpoint")),
+                   words != NULL ? DVI_BAD_FILE : DVI_OK);
   if (words != NULL) {
     check_words(words);
     advance(restored, 0.3, 1);
@@ -406,15 +474,19 @@ START_TEST(checkpoints_know_the_space)
   const dvi_shapes shapes = oscillation(&five), other = oscillation(&six);
   dvi_shapes renamed = shapes, one = shapes, two = shapes;
   renamed.name = "wave";
-  one.coordinates = &first, two.coordinates = &second, one.coordinate_count = two.coordinate_count = 1;
-  const char *method = "shaped-galerkin:nodes=6", *composed = "composition:order=4,base=shaped-galerkin,nodes=6";
+  one.coordinates = &first, two.coordinates = &second,
+  one.coordinate_count = two.coordinate_count = 1;
+  const char *method = "shaped-galerkin:nodes=6",
+             *composed = "composition:order=4,base=shaped-galerkin,nodes=6";
   check_restores(&shapes, method, &shapes, method, NULL);
   check_restores(&shapes, composed, &shapes, composed, NULL);
-  check_restores(&shapes, method, &renamed, method,
-                 "written by shaped-galerkin:degree=1,quadrature=gauss,nodes=6,space=oscillation, not by");
+  check_restores(
+      &shapes, method, &renamed, method,
+      "written by shaped-galerkin:degree=1,quadrature=gauss,nodes=6,space=oscillation, not by");
   check_restores(&shapes, method, &other, method, "of another function space of the same name");
   check_restores(&shapes, composed, &other, composed, "of another function space of the same name");
-  check_restores(&one, method, &two, method, "written with other coordinates that have the functions of its space");
+  check_restores(&one, method, &two, method,
+                 "written with other coordinates that have the functions of its space");
 }
 END_TEST
 
@@ -428,7 +500,8 @@ START_TEST(what_the_program_gave_is_copied)
   dvi_integrator *integrator = shaped_started(of, &shapes, "shaped-galerkin:nodes=6"), *like = NULL;
   memset(name, 'x', sizeof name - 1), first = 1;
   memset(&shapes, 0, sizeof shapes);
-  ck_assert_str_eq(dvi_integrator_method(integrator), "shaped-galerkin:degree=1,quadrature=gauss,nodes=6,space=oscillation");
+  ck_assert_str_eq(dvi_integrator_method(integrator),
+                   "shaped-galerkin:degree=1,quadrature=gauss,nodes=6,space=oscillation");
   ck_assert_msg(dvi_integrator_create_like(integrator, &like) == DVI_OK, "%s", dvi_last_error());
   ck_assert_str_eq(dvi_integrator_method(like), dvi_integrator_method(integrator));
   ck_assert_int_eq(dvi_integrator_start(like, 0, of->q, of->p), DVI_OK);
@@ -454,7 +527,9 @@ START_TEST(members_of_an_ensemble_have_the_digits_of_single_runs)
       q[i * MEMBERS + k] = of->q[i] * (1 + 0.1 * k);
       p[i * MEMBERS + k] = of->p[i];
     }
-  ck_assert_msg(dvi_ensemble_create(of->system, "shaped-galerkin:nodes=6", &options, &ensemble) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_ensemble_create(of->system, "shaped-galerkin:nodes=6", &options, &ensemble) ==
+                    DVI_OK,
+                "%s", dvi_last_error());
   ck_assert_int_eq(dvi_ensemble_start(ensemble, 0, q, p), DVI_OK);
   ck_assert_int_eq(dvi_ensemble_advance(ensemble, 0.1, 10), DVI_OK);
   dvi_integrator *single = shaped_integrator(of->system, &shapes, "shaped-galerkin:nodes=6");
@@ -463,15 +538,17 @@ START_TEST(members_of_an_ensemble_have_the_digits_of_single_runs)
     ck_assert_int_eq(dvi_integrator_start(single, 0, q_k, of->p), DVI_OK);
     advance(single, 0.1, 10);
     ck_assert_int_eq(dvi_ensemble_state(ensemble, NULL, q, p), DVI_OK);
-    for (int i = 0; i < 2; i++) ck_assert_mem_eq(&q[i * MEMBERS + k], dvi_integrator_q(single) + i, sizeof(double));
+    for (int i = 0; i < 2; i++)
+      ck_assert_mem_eq(&q[i * MEMBERS + k], dvi_integrator_q(single) + i, sizeof(double));
   }
   dvi_integrator_destroy(&single);
   dvi_ensemble_destroy(&ensemble);
   dvi_shapes nameless = shapes;
   nameless.name = NULL;
-  ck_assert_int_eq(
-      dvi_ensemble_create(of->system, "shaped-galerkin", &(dvi_ensemble_options){.members = 2, .shapes = &nameless}, &ensemble),
-      DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_ensemble_create(of->system, "shaped-galerkin",
+                                       &(dvi_ensemble_options){.members = 2, .shapes = &nameless},
+                                       &ensemble),
+                   DVI_BAD_ARGUMENT);
   problem_destroy(&of);
 }
 END_TEST

@@ -10,8 +10,8 @@
 
 /* ---- a space that the library has, too ---- */
 
-static void check_same_run(const char *name, const char *method, const dvi_shapes *shapes, const char *shaped, double h,
-                           double tolerance)
+static void check_same_run(const char *name, const char *method, const dvi_shapes *shapes,
+                           const char *shaped, double h, double tolerance)
 {
   problem *of = made_problem(name, NULL);
   const int n = dvi_system_nq(of->system);
@@ -29,11 +29,13 @@ START_TEST(polynomials_given_as_functions_are_galerkin)
 {
   const dvi_shapes three = powers(3), one = powers(1);
   check_same_run("pendulum", "galerkin:degree=4", &three, "shaped-galerkin", 0.3, 1e-13);
-  check_same_run("kepler", "galerkin:degree=4,nodes=6", &three, "shaped-galerkin:nodes=6", 0.05, 1e-12);
-  check_same_run("double-pendulum", "galerkin:degree=4", &three, "shaped-galerkin", 0.05, 1e-11);
-  check_same_run("toda", "galerkin:degree=2,quadrature=lobatto", &one, "shaped-galerkin:quadrature=lobatto,nodes=3", 0.1, 1e-12);
-  check_same_run("kepler", "composition:order=6,base=galerkin,degree=2", &one, "composition:order=6,base=shaped-galerkin", 0.1,
+  check_same_run("kepler", "galerkin:degree=4,nodes=6", &three, "shaped-galerkin:nodes=6", 0.05,
                  1e-12);
+  check_same_run("double-pendulum", "galerkin:degree=4", &three, "shaped-galerkin", 0.05, 1e-11);
+  check_same_run("toda", "galerkin:degree=2,quadrature=lobatto", &one,
+                 "shaped-galerkin:quadrature=lobatto,nodes=3", 0.1, 1e-12);
+  check_same_run("kepler", "composition:order=6,base=galerkin,degree=2", &one,
+                 "composition:order=6,base=shaped-galerkin", 0.1, 1e-12);
 }
 END_TEST
 
@@ -95,7 +97,9 @@ START_TEST(functions_that_become_polynomials_are_left_out)
   ck_assert_double_eq_tol(*dvi_integrator_q(integrator), *dvi_integrator_q(galerkin), 1e-13);
   dvi_integrator_destroy(&integrator);
   dvi_integrator_destroy(&galerkin);
-  ck_assert_int_eq(create_shaped(of->system, &shapes, "shaped-galerkin:degree=3,nodes=8", &integrator), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(
+      create_shaped(of->system, &shapes, "shaped-galerkin:degree=3,nodes=8", &integrator),
+      DVI_BAD_ARGUMENT);
   check_words("function 0 is a combination of a constant, polynomials up to degree 3");
   problem_destroy(&of);
 }
@@ -124,8 +128,8 @@ START_TEST(coordinates_that_are_not_listed_have_polynomials)
   static const double omega = 20, q[] = {0.3, 1}, p[] = {1, 0.5};
   static const int first = 0;
   const dvi_potential potential = {.name = "V", .value = value, .gradient = gradient};
-  dvi_system *system = make_system(
-      &(dvi_system_terms){.dimension = 2, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
+  dvi_system *system = make_system(&(dvi_system_terms){
+      .dimension = 2, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
   dvi_shapes shapes = oscillation(&omega);
   shapes.coordinates = &first, shapes.coordinate_count = 1;
   dvi_integrator *given = shaped_integrator(system, &shapes, "shaped-galerkin:degree=3,nodes=20"),
@@ -138,8 +142,8 @@ START_TEST(coordinates_that_are_not_listed_have_polynomials)
   ck_assert_double_eq_tol(dvi_integrator_q(given)[1], dvi_integrator_q(galerkin)[1], 1e-13);
   char text[1000];
   (void)dvi_integrator_explain(given, text, sizeof text);
-  ck_assert_ptr_nonnull(
-      strstr(text, "polynomials of degree 3, and in 1 of 2 coordinates 2 functions of the program's, oscillation\n"));
+  ck_assert_ptr_nonnull(strstr(text, "polynomials of degree 3, and in 1 of 2 coordinates 2 "
+                                     "functions of the program's, oscillation\n"));
   dvi_integrator_destroy(&given);
   dvi_integrator_destroy(&galerkin);
   dvi_system_destroy(&system);
@@ -164,7 +168,8 @@ enum { STRUCTURES = sizeof structures / sizeof *structures };
 
 static dvi_shapes shapes_of(int i)
 {
-  const dvi_shapes shapes[] = {oscillation(&sixth), decay, lopsided, spline, oscillation(&sixth), milne, steep};
+  const dvi_shapes shapes[] = {oscillation(&sixth), decay, lopsided, spline,
+                               oscillation(&sixth), milne, steep};
   return shapes[i];
 }
 
@@ -172,7 +177,8 @@ START_TEST(steps_are_symplectic_and_keep_momenta_in_every_space)
 {
   problem *of = made_problem("kepler", NULL);
   const dvi_shapes shapes = shapes_of(_i);
-  dvi_integrator *integrator = shaped_started(of, &shapes, spec("shaped-galerkin:%s", structures[_i].keys));
+  dvi_integrator *integrator = shaped_started(of, &shapes,
+                                              spec("shaped-galerkin:%s", structures[_i].keys));
   double defect, before[8], after[8];
   ck_assert_int_eq(dvi_symplecticity(integrator, 0, of->q, of->p, 0.1, &defect), DVI_OK);
   ck_assert_double_le(defect, 1e-10);
@@ -191,15 +197,18 @@ START_TEST(symmetry_is_found_out)
 {
   problem *of = made_problem("kepler", NULL);
   const dvi_shapes shapes = shapes_of(_i);
-  dvi_integrator *integrator = shaped_started(of, &shapes, spec("shaped-galerkin:%s", structures[_i].keys)), *composed = NULL;
+  dvi_integrator *integrator = shaped_started(of, &shapes,
+                                              spec("shaped-galerkin:%s", structures[_i].keys)),
+                 *composed = NULL;
   char text[1000];
   double defect;
   (void)dvi_integrator_explain(integrator, text, sizeof text);
   ck_assert_int_eq(strstr(text, ", symmetric\n") != NULL, structures[_i].symmetric);
   ck_assert_int_eq(dvi_reversibility(integrator, 0, of->q, of->p, 0.1, 10, &defect), DVI_OK);
   ck_assert_int_eq(defect < 1e-11, structures[_i].symmetric);
-  const dvi_status status = create_shaped(of->system, &shapes,
-                                          spec("composition:order=4,base=shaped-galerkin,%s", structures[_i].keys), &composed);
+  const dvi_status status = create_shaped(
+      of->system, &shapes, spec("composition:order=4,base=shaped-galerkin,%s", structures[_i].keys),
+      &composed);
   ck_assert_int_eq(status, structures[_i].symmetric ? DVI_OK : DVI_BAD_OPTION);
   if (status != DVI_OK) check_words("is not symmetric");
   dvi_integrator_destroy(&composed);
@@ -214,7 +223,8 @@ static double slope_of(const dvi_shapes *shapes, const char *method, int first, 
 {
   enum { LEVELS = 5 };
   problem *of = made_problem("pendulum", NULL);
-  dvi_integrator *judge = started(of, "galerkin:degree=10"), *integrator = shaped_integrator(of->system, shapes, method);
+  dvi_integrator *judge = started(of, "galerkin:degree=10"),
+                 *integrator = shaped_integrator(of->system, shapes, method);
   double h[LEVELS], error[LEVELS];
   advance(judge, 0.05, 40);
   for (int k = 0; k < LEVELS; k++) {
@@ -243,8 +253,9 @@ START_TEST(the_order_is_that_of_the_polynomials)
   } few[] = {{&lopsided, 1, 3}, {&lopsided, 1, 6}, {&lopsided, 2, 4}, {&lopsided, 2, 8},
              {&steep, 1, 2},    {&steep, 2, 4},    {&steep, 2, 3},    {&milne, 1, 3}};
   int claimed;
-  const double slope = slope_of(few[_i].shapes, spec("shaped-galerkin:degree=%d,nodes=%d", few[_i].degree, few[_i].nodes), 20,
-                                &claimed);
+  const double slope = slope_of(
+      few[_i].shapes, spec("shaped-galerkin:degree=%d,nodes=%d", few[_i].degree, few[_i].nodes), 20,
+      &claimed);
   ck_assert_int_eq(claimed, 2 * few[_i].degree);
   ck_assert_double_ge(slope, claimed - 0.2);
 }

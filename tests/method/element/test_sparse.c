@@ -1,6 +1,6 @@
 /* labels: slow long */
-/* A long chain of springs: memory and Jacobian grow in proportion to its length, the pattern is analysed once, no step allocates. Times are
- * printed for the reader, not judged. */
+/* A long chain of springs: memory and Jacobian grow in proportion to its length, the pattern is
+ * analysed once, no step allocates. Times are printed for the reader, not judged. */
 #include <math.h>
 #include <stdio.h>
 #include <time.h>
@@ -57,10 +57,12 @@ static void take_steps(dvi_integrator *integrator, measured *m)
   const long taken = heap_calls() - calls;
   ck_assert_msg(!failed, "%s", dvi_last_error());
   dvi_integrator_counters(integrator, &after);
-  ck_assert_int_eq(after.symbolic, 2); /* one of each pattern: of the whole Jacobian, and of the decoupled systems */
+  /* one of each pattern: of the whole Jacobian, and of the decoupled systems */
+  ck_assert_int_eq(after.symbolic, 2);
   ck_assert_int_eq(before.symbolic, 2);
   ck_assert_int_eq(after.allocations, before.allocations);
-  ck_assert_int_eq(after.simplified, STEPS); /* omega h = 5: fixed point iteration does not contract */
+  /* omega h = 5: fixed point iteration does not contract */
+  ck_assert_int_eq(after.simplified, STEPS);
   ck_assert_int_ge(after.factorizations, 1);
   /* Kept while they are good; of the first steps some are followed, with some for each part. */
   ck_assert_int_lt(after.factorizations, STEPS + 24 * after.followed);
@@ -81,11 +83,13 @@ static void measure(const kind *k, int ell, measured *m)
   problem_destroy(&of);
 }
 
-/* A chain has two ends that lack a few entries, and a few blocks do not grow with it: within a tenth for the shortest. */
+/* A chain has two ends that lack a few entries, and a few blocks do not grow with it: within a
+ * tenth for the shortest. */
 static void check_proportional(long small, int n, long large, int most)
 {
   const double ratio = ((double)small / n) / ((double)large / most);
-  ck_assert_msg(fabs(ratio - 1) < 0.1, "%ld for %d, %ld for %d: not in proportion (%.3f)", small, n, large, most, ratio);
+  ck_assert_msg(fabs(ratio - 1) < 0.1, "%ld for %d, %ld for %d: not in proportion (%.3f)", small, n,
+                large, most, ratio);
 }
 
 START_TEST(memory_and_jacobian_grow_in_proportion_to_the_chain)
@@ -95,8 +99,10 @@ START_TEST(memory_and_jacobian_grow_in_proportion_to_the_chain)
   measured m[LENGTHS];
   const measured *longest = &m[count - 1];
   for (int i = 0; i < count; i++) measure(k, lengths[i], &m[i]);
-  (void)printf("%s\n%10s %12s %12s %22s\n", k->method, "n", "entries", "bytes", "microseconds per step");
-  for (int i = 0; i < count; i++) (void)printf("%10d %12ld %12ld %22.1f\n", m[i].n, m[i].entries, m[i].bytes, 1e6 * m[i].seconds);
+  (void)printf("%s\n%10s %12s %12s %22s\n", k->method, "n", "entries", "bytes",
+               "microseconds per step");
+  for (int i = 0; i < count; i++)
+    (void)printf("%10d %12ld %12ld %22.1f\n", m[i].n, m[i].entries, m[i].bytes, 1e6 * m[i].seconds);
   for (int i = 0; i < count; i++) {
     check_proportional(m[i].entries, m[i].n, longest->entries, longest->n);
     if (heap_is_counted()) check_proportional(m[i].bytes, m[i].n, longest->bytes, longest->n);
@@ -107,5 +113,6 @@ END_TEST
 SUITE(sparse)
 {
   tcase_set_timeout(tests, 0);
-  tcase_add_loop_test(tests, memory_and_jacobian_grow_in_proportion_to_the_chain, 0, sizeof kinds / sizeof *kinds);
+  tcase_add_loop_test(tests, memory_and_jacobian_grow_in_proportion_to_the_chain, 0,
+                      sizeof kinds / sizeof *kinds);
 }

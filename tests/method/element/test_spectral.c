@@ -1,19 +1,22 @@
 /* labels: order invariant */
-/* At a fixed step, growing degree: the error falls geometrically for analytic solutions (Hall and Leok 2015). */
+/* At a fixed step, growing degree: the error falls geometrically for analytic solutions (Hall and
+ * Leok 2015). */
 #include <check.h>
 #include <math.h>
 
 #include "support/runs.h"
 #include "support/suite.h"
 
-/* Two bodies with e = 0.6 and three steps a turn. The bounds are those that theory makes one expect: two digits for eight degrees. */
+/* Two bodies with e = 0.6 and three steps a turn. The bounds are those that theory makes one
+ * expect: two digits for eight degrees. */
 static const struct {
   int degree;
   double error;
 } expected[] = {{16, 1e-1}, {24, 1e-3}, {32, 1e-5}, {40, 1e-7}};
 enum { DEGREES = sizeof expected / sizeof *expected };
 
-/* A hundred steps: the rotation of each conserves it to one rounding of 1, and they add up like a random walk. */
+/* A hundred steps: the rotation of each conserves it to one rounding of 1, and they add up like a
+ * random walk. */
 static const double angular_momentum_roundoff = 1e-13;
 
 static double position_error(const problem *kepler, double t, const double *q)
@@ -26,17 +29,21 @@ static double position_error(const problem *kepler, double t, const double *q)
 static void check_spectral(const char *basis, int degree, double bound)
 {
   problem *kepler = made_problem("kepler", NULL);
-  dvi_integrator *integrator = started(kepler, spec("galerkin:degree=%d,nodes=%d,basis=%s", degree, 2 * degree, basis));
+  dvi_integrator *integrator = started(
+      kepler, spec("galerkin:degree=%d,nodes=%d,basis=%s", degree, 2 * degree, basis));
   double start[4], now[4], error = 0, momentum = 0;
   ck_assert_int_eq(dvi_integrator_invariants(integrator, start), DVI_OK);
   while (dvi_integrator_time(integrator) < 199) {
     advance(integrator, 2.0, 1);
     ck_assert_int_eq(dvi_integrator_invariants(integrator, now), DVI_OK);
-    error = fmax(error, position_error(kepler, dvi_integrator_time(integrator), dvi_integrator_q(integrator)));
+    error = fmax(error, position_error(kepler, dvi_integrator_time(integrator),
+                                       dvi_integrator_q(integrator)));
     momentum = fmax(momentum, fabs(now[1] - start[1]));
   }
-  ck_assert_msg(error <= bound, "degree %d, %s: position error %g, at most %g expected", degree, basis, error, bound);
-  ck_assert_msg(momentum <= angular_momentum_roundoff, "degree %d, %s: angular momentum error %g", degree, basis, momentum);
+  ck_assert_msg(error <= bound, "degree %d, %s: position error %g, at most %g expected", degree,
+                basis, error, bound);
+  ck_assert_msg(momentum <= angular_momentum_roundoff, "degree %d, %s: angular momentum error %g",
+                degree, basis, momentum);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&kepler);
 }

@@ -4,16 +4,20 @@
 #include "support/runs.h"
 #include "support/suite.h"
 
-/* With a constant mass the trapezoidal rule is Stoermer-Verlet: the two differ by roundings only. */
+/* With a constant mass the trapezoidal rule is Stoermer-Verlet: the two differ by roundings
+ * only. */
 START_TEST(with_a_constant_mass_it_is_verlet)
 {
   problem *stars = made_problem("henon-heiles", NULL);
-  dvi_integrator *implicit = started(stars, "trapezoidal"), *explicit_one = started(stars, "verlet");
+  dvi_integrator *implicit = started(stars, "trapezoidal"),
+                 *explicit_one = started(stars, "verlet");
   advance(implicit, 0.1, 200);
   advance(explicit_one, 0.1, 200);
   /* 200 steps of a few roundings each, on an orbit that does not amplify them */
-  ck_assert_double_le(distance(2, dvi_integrator_q(implicit), dvi_integrator_q(explicit_one)), 1e-14);
-  ck_assert_double_le(distance(2, dvi_integrator_p(implicit), dvi_integrator_p(explicit_one)), 1e-14);
+  ck_assert_double_le(distance(2, dvi_integrator_q(implicit), dvi_integrator_q(explicit_one)),
+                      1e-14);
+  ck_assert_double_le(distance(2, dvi_integrator_p(implicit), dvi_integrator_p(explicit_one)),
+                      1e-14);
   dvi_integrator_destroy(&implicit);
   dvi_integrator_destroy(&explicit_one);
   problem_destroy(&stars);

@@ -1,5 +1,6 @@
 /* labels: order invariant */
-/* Discontinuous Galerkin with the constraint at the averages: the printed scheme, its order for every degree, refusals. */
+/* Discontinuous Galerkin with the constraint at the averages: the printed scheme, its order for
+ * every degree, refusals. */
 #include <math.h>
 #include <string.h>
 
@@ -36,7 +37,8 @@ enum { PLACES = sizeof places / sizeof *places };
 START_TEST(every_degree_has_order_2)
 {
   const int at = _i % PLACES, degree = 1 + _i / PLACES;
-  problem *of = made_problem(places[at].problem, places[at].setting), *standard = made_problem(places[at].problem, NULL);
+  problem *of = made_problem(places[at].problem, places[at].setting),
+          *standard = made_problem(places[at].problem, NULL);
   const char *method = spec("dg-phase:degree=%d", degree);
   double h = places[at].h, last = error_at_end(of, standard, method, h);
   for (int level = 1; level < LEVELS; level++) {
@@ -59,7 +61,8 @@ static void form(const double *q, const double *w, double *alpha, double *gradie
   gradient[1] = y * turn - s * w[0];
 }
 
-/* alpha(q') = alpha(q) - h H_q(q + [q]/2) + ((Dalpha)^T [q] + (Dalpha')^T [q'])/2, q' = q + ([q] + [q'])/2, with H = cos x + sin y. */
+/* alpha(q') = alpha(q) - h H_q(q + [q]/2) + ((Dalpha)^T [q] + (Dalpha')^T [q'])/2, q' = q + ([q] +
+ * [q'])/2, with H = cos x + sin y. */
 START_TEST(steps_solve_the_printed_equations)
 {
   const double h = 0.1;
@@ -76,8 +79,10 @@ START_TEST(steps_solve_the_printed_equations)
     form(dvi_integrator_q(integrator), next, next_alpha, next_gradient);
     const double H_q[2] = {-sin(q[0] + jump[0] / 2), cos(q[1] + jump[1] / 2)};
     for (int i = 0; i < 2; i++) {
-      ck_assert_double_eq_tol(dvi_integrator_q(integrator)[i], q[i] + (jump[i] + next[i]) / 2, 1e-14);
-      ck_assert_double_eq_tol(next_alpha[i], alpha[i] - h * H_q[i] + (gradient[i] + next_gradient[i]) / 2, 1e-13);
+      ck_assert_double_eq_tol(dvi_integrator_q(integrator)[i], q[i] + (jump[i] + next[i]) / 2,
+                              1e-14);
+      ck_assert_double_eq_tol(next_alpha[i],
+                              alpha[i] - h * H_q[i] + (gradient[i] + next_gradient[i]) / 2, 1e-13);
       ck_assert_double_eq_tol(dvi_integrator_p(integrator)[i], next_alpha[i], 1e-15);
     }
   }
@@ -88,7 +93,8 @@ END_TEST
 
 START_TEST(degrees_and_nodes_give_the_steps_of_degree_0_on_the_configurations)
 {
-  static const char *const methods[] = {"dg-phase", "dg-phase:degree=3", "dg-phase:degree=2,nodes=4"};
+  static const char *const methods[] = {"dg-phase", "dg-phase:degree=3",
+                                        "dg-phase:degree=2,nodes=4"};
   problem *of = made_problem("vortices", NULL);
   dvi_integrator *one = started(of, methods[_i]), *other = started(of, "dg:degree=0");
   advance(one, 0.02, 20);
@@ -123,7 +129,8 @@ START_TEST(too_few_nodes_are_refused)
 {
   problem *of = made_problem("vortices", NULL);
   dvi_integrator *none = NULL;
-  ck_assert_int_eq(dvi_integrator_create(of->system, "dg-phase:degree=3,nodes=2", &none), DVI_BAD_OPTION);
+  ck_assert_int_eq(dvi_integrator_create(of->system, "dg-phase:degree=3,nodes=2", &none),
+                   DVI_BAD_OPTION);
   check_words("take 3 or more");
   problem_destroy(&of);
 }
@@ -134,7 +141,8 @@ SUITE(dg_phase)
   tcase_set_timeout(tests, 120);
   tcase_add_loop_test(tests, every_degree_has_order_2, 0, 3 * PLACES);
   tcase_add_test(tests, steps_solve_the_printed_equations);
-  tcase_add_loop_test(tests, degrees_and_nodes_give_the_steps_of_degree_0_on_the_configurations, 0, 3);
+  tcase_add_loop_test(tests, degrees_and_nodes_give_the_steps_of_degree_0_on_the_configurations, 0,
+                      3);
   tcase_add_test(tests, energy_stays_bounded);
   tcase_add_test(tests, too_few_nodes_are_refused);
 }

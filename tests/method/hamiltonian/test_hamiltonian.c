@@ -1,5 +1,6 @@
 /* labels: order invariant */
-/* Discrete Hamiltonians: what their types are, where they coincide, what they keep, what they refuse. */
+/* Discrete Hamiltonians: what their types are, where they coincide, what they keep, what they
+ * refuse. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -13,31 +14,37 @@ enum { STEPS = 20, COORDINATES = 8, DEGREES = 4 };
 /* ---- what they coincide with ---- */
 
 /* Steps of both from the same state end at the same state, to some roundings a step. */
-static void check_same(const problem *of, const dvi_system *H, const char *type_2, const char *galerkin)
+static void check_same(const problem *of, const dvi_system *H, const char *type_2,
+                       const char *galerkin)
 {
   dvi_integrator *a = made_integrator(H, type_2), *b = started(of, galerkin);
   ck_assert_int_eq(dvi_integrator_order(a), dvi_integrator_order(b));
   for (int k = 0; k < STEPS; k++) {
-    ck_assert_int_eq(dvi_integrator_start(a, dvi_integrator_time(b), dvi_integrator_q(b), dvi_integrator_p(b)), DVI_OK);
+    ck_assert_int_eq(
+        dvi_integrator_start(a, dvi_integrator_time(b), dvi_integrator_q(b), dvi_integrator_p(b)),
+        DVI_OK);
     advance(a, of->order_h / 4, 1);
     advance(b, of->order_h / 4, 1);
     const double q = distance(of->nq, dvi_integrator_q(a), dvi_integrator_q(b)),
                  p = distance(of->nq, dvi_integrator_p(a), dvi_integrator_p(b));
-    ck_assert_msg(q <= 1e-12 * fmax(1, magnitude(of->nq, of->q)) && p <= 1e-12 * fmax(1, magnitude(of->nq, of->p)),
+    ck_assert_msg(q <= 1e-12 * fmax(1, magnitude(of->nq, of->q)) &&
+                      p <= 1e-12 * fmax(1, magnitude(of->nq, of->p)),
                   "%s, %s: q off by %g, p by %g", of->name, type_2, q, p);
   }
   dvi_integrator_destroy(&a);
   dvi_integrator_destroy(&b);
 }
 
-static const char *const quadratures[] = {"gauss,nodes=%d",       "lobatto,nodes=%d", "radau-left,nodes=%d",
-                                          "radau-right,nodes=%d", "gauss,nodes=%d",   "clenshaw-curtis,nodes=%d"};
+static const char *const quadratures[] = {"gauss,nodes=%d",      "lobatto,nodes=%d",
+                                          "radau-left,nodes=%d", "radau-right,nodes=%d",
+                                          "gauss,nodes=%d",      "clenshaw-curtis,nodes=%d"};
 static const int more_nodes[] = {0, 1, 0, 0, 1, 2};
 enum { QUADRATURES = sizeof quadratures / sizeof *quadratures };
 
 START_TEST(type_2_of_a_hyperregular_hamiltonian_is_type_1_that_is_galerkin)
 {
-  static const char *const names[] = {"pendulum", "henon-heiles", "kepler", "double-pendulum", "driven-pendulum"};
+  static const char *const names[] = {"pendulum", "henon-heiles", "kepler", "double-pendulum",
+                                      "driven-pendulum"};
   problem *of = made_problem(names[_i], NULL);
   dvi_system *H = legendre_transform(of);
   for (int degree = 1; degree <= DEGREES; degree++)
@@ -85,12 +92,14 @@ START_TEST(all_types_are_the_same_steps_and_on_a_lagrangian_those_of_galerkin)
 }
 END_TEST
 
-/* H+ = p1.q0 + h H(q0,p1) and H- = -p0.q1 + h H(q1,p0): the symplectic Euler methods. The tolerance: some roundings. */
+/* H+ = p1.q0 + h H(q0,p1) and H- = -p0.q1 + h H(q1,p0): the symplectic Euler methods. The
+ * tolerance: some roundings. */
 START_TEST(lowest_degrees_are_the_symplectic_euler_methods)
 {
   problem *of = made_problem("elastica", "kappa=1.5");
-  dvi_integrator *step = started(of, _i == 2 ? "hamiltonian:type=2,degree=1,quadrature=radau-left"
-                                             : "hamiltonian:type=3,degree=1,quadrature=radau-right");
+  dvi_integrator *step = started(of, _i == 2
+                                         ? "hamiltonian:type=2,degree=1,quadrature=radau-left"
+                                         : "hamiltonian:type=3,degree=1,quadrature=radau-right");
   const dvi_hamiltonian *H = of->terms->hamiltonian;
   double q0[3], p0[3], H_q[3], H_p[3];
   for (int k = 0; k < STEPS; k++) {
@@ -111,7 +120,8 @@ END_TEST
 
 /* ---- structure ---- */
 
-static const char *const kept[] = {"hamiltonian:type=%d,degree=%d", "hamiltonian:type=%d,degree=%d,quadrature=radau-left",
+static const char *const kept[] = {"hamiltonian:type=%d,degree=%d",
+                                   "hamiltonian:type=%d,degree=%d,quadrature=radau-left",
                                    "hamiltonian:type=%d,degree=%d,quadrature=radau-right"};
 
 START_TEST(steps_on_a_degenerate_hamiltonian_are_symplectic_maps)
@@ -122,7 +132,8 @@ START_TEST(steps_on_a_degenerate_hamiltonian_are_symplectic_maps)
     for (int k = 0; k < 3; k++) {
       dvi_integrator *step = started(of, spec(kept[k], type, _i));
       double defect;
-      ck_assert_msg(dvi_symplecticity(step, 0, q, p, 0.3, &defect) == DVI_OK, "%s", dvi_last_error());
+      ck_assert_msg(dvi_symplecticity(step, 0, q, p, 0.3, &defect) == DVI_OK, "%s",
+                    dvi_last_error());
       ck_assert_double_le(defect, 1e-10);
       dvi_integrator_destroy(&step);
     }
@@ -146,12 +157,15 @@ START_TEST(symmetric_quadratures_go_back_the_way_they_came)
 }
 END_TEST
 
-/* The forces are momenta of translations, the moment is that of the turns: affine in q, so that paths of any degree keep them. */
+/* The forces are momenta of translations, the moment is that of the turns: affine in q, so that
+ * paths of any degree keep them. */
 START_TEST(energy_stays_and_momenta_are_kept_over_long_runs)
 {
-  check_long_run("elastica", "kappa=1.5", spec("hamiltonian:degree=%d", _i), 0.2, repeats(20000), 0.2 * pow(0.1, _i), 1e-11);
-  check_long_run("elastica", "kappa=0.7", spec("hamiltonian:type=3,degree=%d,quadrature=radau-right", _i), 0.2, repeats(5000), 0.2,
-                 1e-11);
+  check_long_run("elastica", "kappa=1.5", spec("hamiltonian:degree=%d", _i), 0.2, repeats(20000),
+                 0.2 * pow(0.1, _i), 1e-11);
+  check_long_run("elastica", "kappa=0.7",
+                 spec("hamiltonian:type=3,degree=%d,quadrature=radau-right", _i), 0.2,
+                 repeats(5000), 0.2, 1e-11);
 }
 END_TEST
 
@@ -169,7 +183,8 @@ static int scaled_value(double t, const double *q, const double *p, double *H, v
   return returned;
 }
 
-static int scaled_gradient(double t, const double *q, const double *p, double *H_q, double *H_p, void *user)
+static int scaled_gradient(double t, const double *q, const double *p, double *H_q, double *H_p,
+                           void *user)
 {
   const double scaled[3] = {p[0] / unit, p[1] / unit, p[2] / unit};
   const dvi_hamiltonian *of = user;
@@ -178,7 +193,8 @@ static int scaled_gradient(double t, const double *q, const double *p, double *H
   return returned;
 }
 
-static int scaled_hessian(double t, const double *q, const double *p, double *H_qq, double *H_qp, double *H_pp, void *user)
+static int scaled_hessian(double t, const double *q, const double *p, double *H_qq, double *H_qp,
+                          double *H_pp, void *user)
 {
   const double scaled[3] = {p[0] / unit, p[1] / unit, p[2] / unit};
   const dvi_hamiltonian *of = user;
@@ -200,12 +216,14 @@ START_TEST(units_of_momenta_change_no_bit)
   const double p[3] = {unit * of->p[0], unit * of->p[1], unit * of->p[2]};
   dvi_system *system;
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
-  dvi_integrator *plain = started(of, "hamiltonian"), *scaled = made_integrator(system, "hamiltonian");
+  dvi_integrator *plain = started(of, "hamiltonian"),
+                 *scaled = made_integrator(system, "hamiltonian");
   ck_assert_int_eq(dvi_integrator_start(scaled, 0, of->q, p), DVI_OK);
   advance(plain, 0.2, STEPS);
   advance(scaled, 0.2, STEPS);
   ck_assert_mem_eq(dvi_integrator_q(plain), dvi_integrator_q(scaled), 3 * sizeof(double));
-  for (int i = 0; i < 3; i++) ck_assert_double_eq(unit * dvi_integrator_p(plain)[i], dvi_integrator_p(scaled)[i]);
+  for (int i = 0; i < 3; i++)
+    ck_assert_double_eq(unit * dvi_integrator_p(plain)[i], dvi_integrator_p(scaled)[i]);
   dvi_integrator_destroy(&plain);
   dvi_integrator_destroy(&scaled);
   dvi_system_destroy(&system);
@@ -213,7 +231,8 @@ START_TEST(units_of_momenta_change_no_bit)
 }
 END_TEST
 
-/* What is almost 0 at the start is no measure of what moves, nor is a momentum that is the rounding of another one. */
+/* What is almost 0 at the start is no measure of what moves, nor is a momentum that is the rounding
+ * of another one. */
 START_TEST(a_start_that_is_almost_zero_is_a_start)
 {
   problem *of = made_problem("elastica", NULL);
@@ -255,7 +274,8 @@ END_TEST
 
 /* ---- refusals ---- */
 
-static void check_refused(const dvi_system *system, const char *method, dvi_status status, const char *words)
+static void check_refused(const dvi_system *system, const char *method, dvi_status status,
+                          const char *words)
 {
   dvi_integrator *none = NULL;
   ck_assert_int_eq(dvi_integrator_create(system, method, &none), status);
@@ -266,7 +286,8 @@ static void check_refused(const dvi_system *system, const char *method, dvi_stat
 START_TEST(type_1_refuses_a_degenerate_hamiltonian_by_name)
 {
   problem *of = made_problem("elastica", NULL);
-  check_refused(of->system, "hamiltonian:type=1", DVI_UNSUPPORTED, "hamiltonian: the Hamiltonian is degenerate");
+  check_refused(of->system, "hamiltonian:type=1", DVI_UNSUPPORTED,
+                "hamiltonian: the Hamiltonian is degenerate");
   check_refused(of->system, "hamiltonian:type=1", DVI_UNSUPPORTED, "type=2 and 3 can");
   check_refused(of->system, "hamiltonian:quadrature=lobatto", DVI_UNSUPPORTED, "take nodes=2");
   problem_destroy(&of);
@@ -281,11 +302,13 @@ START_TEST(a_degenerate_hamiltonian_with_full_patterns_is_refused_by_the_first_s
   H.hessian = NULL;
   H.qq = H.qp = H.pp = (dvi_pattern){0};
   const dvi_system_terms terms = {.dimension = 3, .hamiltonian = &H, .autonomous = 1};
-  static const char *const methods[] = {"hamiltonian:type=1", "hamiltonian:type=3,degree=2,nodes=3"};
+  static const char *const methods[] = {"hamiltonian:type=1",
+                                        "hamiltonian:type=3,degree=2,nodes=3"};
   static const char *const words[] = {"no discrete Lagrangian Ld(q0,q1)", "take nodes=2"};
   dvi_system *system;
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
-  dvi_integrator *first = made_integrator(system, methods[_i]), *second = made_integrator(system, "hamiltonian");
+  dvi_integrator *first = made_integrator(system, methods[_i]),
+                 *second = made_integrator(system, "hamiltonian");
   ck_assert_int_eq(dvi_integrator_start(first, 0, of->q, of->p), DVI_OK);
   ck_assert_int_eq(dvi_integrator_step(first, 0.1), DVI_SINGULAR);
   check_words("the state is unchanged");
@@ -306,7 +329,8 @@ START_TEST(other_methods_refuse_a_hamiltonian_and_name_this_one)
   for (int i = 0; i < dvi_method_count(); i++) {
     const char *name = dvi_method_name(i);
     if (strcmp(name, "hamiltonian") == 0 || strcmp(name, "shooting") == 0) continue;
-    check_refused(of->system, name, DVI_UNSUPPORTED, "declares a Hamiltonian without constraints, and this method needs ");
+    check_refused(of->system, name, DVI_UNSUPPORTED,
+                  "declares a Hamiltonian without constraints, and this method needs ");
     check_words("methods for this system: hamiltonian, shooting");
   }
   check_refused(of->system, "verlet", DVI_UNSUPPORTED, "needs a constant mass; methods");
@@ -320,12 +344,16 @@ START_TEST(bad_options_are_refused)
           *form = made_problem("vortices", NULL);
   check_refused(of->system, "hamiltonian:type=4", DVI_BAD_OPTION, "type");
   check_refused(of->system, "hamiltonian:degree=9", DVI_BAD_OPTION, "degree");
-  check_refused(of->system, "hamiltonian:degree=3,nodes=2", DVI_BAD_OPTION, "nodes must be at least degree");
-  check_refused(of->system, "hamiltonian:degree=8,quadrature=clenshaw-curtis", DVI_BAD_OPTION, "at most 9");
-  check_refused(of->system, "hamiltonian:degree=2,quadrature=midpoint", DVI_BAD_OPTION, "nodes must be at least degree");
+  check_refused(of->system, "hamiltonian:degree=3,nodes=2", DVI_BAD_OPTION,
+                "nodes must be at least degree");
+  check_refused(of->system, "hamiltonian:degree=8,quadrature=clenshaw-curtis", DVI_BAD_OPTION,
+                "at most 9");
+  check_refused(of->system, "hamiltonian:degree=2,quadrature=midpoint", DVI_BAD_OPTION,
+                "nodes must be at least degree");
   check_refused(constrained->system, "hamiltonian", DVI_UNSUPPORTED,
                 "a Hamiltonian with constraints, which this method cannot use");
-  check_refused(form->system, "hamiltonian", DVI_UNSUPPORTED, "a one-form, which this method cannot use");
+  check_refused(form->system, "hamiltonian", DVI_UNSUPPORTED,
+                "a one-form, which this method cannot use");
   problem_destroy(&of);
   problem_destroy(&constrained);
   problem_destroy(&form);
@@ -369,7 +397,8 @@ SUITE(hamiltonian)
 {
   tcase_set_timeout(tests, 0);
   tcase_add_loop_test(tests, type_2_of_a_hyperregular_hamiltonian_is_type_1_that_is_galerkin, 0, 5);
-  tcase_add_loop_test(tests, all_types_are_the_same_steps_and_on_a_lagrangian_those_of_galerkin, 1, 1 + DEGREES);
+  tcase_add_loop_test(tests, all_types_are_the_same_steps_and_on_a_lagrangian_those_of_galerkin, 1,
+                      1 + DEGREES);
   tcase_add_loop_test(tests, lowest_degrees_are_the_symplectic_euler_methods, 2, 4);
   tcase_add_loop_test(tests, steps_on_a_degenerate_hamiltonian_are_symplectic_maps, 1, 1 + DEGREES);
   tcase_add_loop_test(tests, symmetric_quadratures_go_back_the_way_they_came, 1, 1 + DEGREES);
@@ -378,7 +407,8 @@ SUITE(hamiltonian)
   tcase_add_loop_test(tests, a_start_that_is_almost_zero_is_a_start, 1, 1 + DEGREES);
   tcase_add_loop_test(tests, dense_output_is_the_path, 1, 1 + DEGREES);
   tcase_add_test(tests, type_1_refuses_a_degenerate_hamiltonian_by_name);
-  tcase_add_loop_test(tests, a_degenerate_hamiltonian_with_full_patterns_is_refused_by_the_first_step, 0, 2);
+  tcase_add_loop_test(
+      tests, a_degenerate_hamiltonian_with_full_patterns_is_refused_by_the_first_step, 0, 2);
   tcase_add_test(tests, other_methods_refuse_a_hamiltonian_and_name_this_one);
   tcase_add_test(tests, bad_options_are_refused);
   tcase_add_test(tests, a_step_that_fails_leaves_the_state);

@@ -1,5 +1,6 @@
 /* labels: order invariant */
-/* Discrete Hamiltonians by shooting: types 2 and 3 of a one-step method and a quadrature, on degenerate Hamiltonians and on Lagrangians. */
+/* Discrete Hamiltonians by shooting: types 2 and 3 of a one-step method and a quadrature, on
+ * degenerate Hamiltonians and on Lagrangians. */
 #include <math.h>
 #include <string.h>
 
@@ -11,7 +12,8 @@ enum { LEVELS = 5 };
 
 static const double floor_of_errors = 3e-14;
 
-/* What has this order, by the one-step method or by the quadrature, and a number of steps that shows it. */
+/* What has this order, by the one-step method or by the quadrature, and a number of steps that
+ * shows it. */
 static const struct {
   const char *method;
   int order, steps;
@@ -38,12 +40,14 @@ static void check_order_of(const hamiltonian_problem *of, const char *method, in
     ck_assert_int_eq(dvi_integrator_order(step), order);
     h[level] = 1.5 / steps;
     advance(step, h[level], steps);
-    error[level] = fmax(distance(of->n, dvi_integrator_q(step), q), distance(of->n, dvi_integrator_p(step), p));
+    error[level] = fmax(distance(of->n, dvi_integrator_q(step), q),
+                        distance(of->n, dvi_integrator_p(step), p));
     dvi_integrator_destroy(&step);
   }
   ck_assert_int_eq(dvi_order(LEVELS, h, error, floor_of_errors, 0, &fit), DVI_OK);
-  ck_assert_msg(fit.last - fit.first >= 3 && fabs(fit.slope - order) <= 0.2, "%s %s: slope %.2f over %d, not %d (errors %g to %g)",
-                of->name, method, fit.slope, fit.last - fit.first + 1, order, error[0], error[LEVELS - 1]);
+  ck_assert_msg(fit.last - fit.first >= 3 && fabs(fit.slope - order) <= 0.2,
+                "%s %s: slope %.2f over %d, not %d (errors %g to %g)", of->name, method, fit.slope,
+                fit.last - fit.first + 1, order, error[0], error[LEVELS - 1]);
   dvi_system_destroy(&system);
 }
 
@@ -60,13 +64,15 @@ END_TEST
 /* Where H is linear in all momenta p.H_p - H is 0, and nothing is left to the quadrature. */
 START_TEST(the_order_is_the_one_step_methods_where_h_is_linear)
 {
-  check_order_of(hamiltonian_problem_of("adjoint"), "shooting:type=2,onestep=heun,quadrature=trapezoid", 2, 60);
+  check_order_of(hamiltonian_problem_of("adjoint"),
+                 "shooting:type=2,onestep=heun,quadrature=trapezoid", 2, 60);
   dvi_integrator *by[2];
   const hamiltonian_problem *of = hamiltonian_problem_of("adjoint");
   dvi_system *system = hamiltonian_system(of);
   for (int k = 0; k < 2; k++) {
-    by[k] = hamiltonian_started(
-        system, of, k == 0 ? "shooting:quadrature=trapezoid,onestep=gauss" : "shooting:quadrature=lobatto,nodes=2,onestep=gauss");
+    by[k] = hamiltonian_started(system, of,
+                                k == 0 ? "shooting:quadrature=trapezoid,onestep=gauss"
+                                       : "shooting:quadrature=lobatto,nodes=2,onestep=gauss");
     advance(by[k], 0.2, 10);
   }
   double q[1], p[1];
@@ -86,7 +92,8 @@ START_TEST(elastica_shows_the_same_orders)
 {
   const int i = on_elastica[_i];
   for (int type = 2; type <= 3; type++)
-    check_degenerate_order("elastica", NULL, spec("shooting:type=%d,%s", type, pairs[i].method), 0.2, pairs[i].order);
+    check_degenerate_order("elastica", NULL, spec("shooting:type=%d,%s", type, pairs[i].method),
+                           0.2, pairs[i].order);
 }
 END_TEST
 
@@ -98,9 +105,11 @@ START_TEST(explicit_one_step_methods_make_symplectic_steps)
     dvi_integrator *degenerate = started(of, spec("shooting:type=%d,%s", type, pairs[_i].method)),
                    *other = started(regular, spec("shooting:type=%d,%s", type, pairs[_i].method));
     double defect;
-    ck_assert_msg(dvi_symplecticity(degenerate, 0, q, p, 0.3, &defect) == DVI_OK, "%s", dvi_last_error());
+    ck_assert_msg(dvi_symplecticity(degenerate, 0, q, p, 0.3, &defect) == DVI_OK, "%s",
+                  dvi_last_error());
     ck_assert_double_le(defect, 1e-10);
-    ck_assert_msg(dvi_symplecticity(other, 0, regular->q, regular->p, 0.02, &defect) == DVI_OK, "%s", dvi_last_error());
+    ck_assert_msg(dvi_symplecticity(other, 0, regular->q, regular->p, 0.02, &defect) == DVI_OK,
+                  "%s", dvi_last_error());
     ck_assert_double_le(defect, 1e-10);
     dvi_integrator_destroy(&degenerate);
     dvi_integrator_destroy(&other);
@@ -113,15 +122,19 @@ END_TEST
 /* H-(p0,q1) of -h is -H+ of h, where the one-step method and the quadrature are symmetric. */
 START_TEST(types_2_and_3_of_symmetric_pairs_undo_each_other)
 {
-  static const char *const symmetric[] = {"onestep=implicit-midpoint,quadrature=trapezoid", "onestep=gauss,quadrature=simpson"};
+  static const char *const symmetric[] = {"onestep=implicit-midpoint,quadrature=trapezoid",
+                                          "onestep=gauss,quadrature=simpson"};
   problem *of = made_problem("elastica", NULL);
   dvi_integrator *there = started(of, spec("shooting:type=2,%s", symmetric[_i])),
                  *back = made_integrator(of->system, spec("shooting:type=3,%s", symmetric[_i]));
   advance(there, 0.3, 3);
-  const double q[3] = {dvi_integrator_q(there)[0], dvi_integrator_q(there)[1], dvi_integrator_q(there)[2]},
-               p[3] = {dvi_integrator_p(there)[0], dvi_integrator_p(there)[1], dvi_integrator_p(there)[2]};
+  const double q[3] = {dvi_integrator_q(there)[0], dvi_integrator_q(there)[1],
+                       dvi_integrator_q(there)[2]},
+               p[3] = {dvi_integrator_p(there)[0], dvi_integrator_p(there)[1],
+                       dvi_integrator_p(there)[2]};
   advance(there, 0.3, 1);
-  ck_assert_int_eq(dvi_integrator_start(back, 0, dvi_integrator_q(there), dvi_integrator_p(there)), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_start(back, 0, dvi_integrator_q(there), dvi_integrator_p(there)),
+                   DVI_OK);
   advance(back, -0.3, 1);
   ck_assert_double_le(distance(3, dvi_integrator_q(back), q), 1e-13);
   ck_assert_double_le(distance(3, dvi_integrator_p(back), p), 1e-13);
@@ -133,8 +146,9 @@ END_TEST
 
 START_TEST(energy_stays_and_momenta_are_kept)
 {
-  check_long_run("elastica", "kappa=1.5", _i == 2 ? "shooting:type=2" : "shooting:type=3,onestep=gauss", 0.1, repeats(5000), 1e-2,
-                 1e-11);
+  check_long_run("elastica", "kappa=1.5",
+                 _i == 2 ? "shooting:type=2" : "shooting:type=3,onestep=gauss", 0.1, repeats(5000),
+                 1e-2, 1e-11);
 }
 END_TEST
 
@@ -143,7 +157,8 @@ START_TEST(type_1_is_for_lagrangians)
   problem *of = made_problem("elastica", NULL);
   dvi_integrator *none = NULL;
   ck_assert_int_eq(dvi_integrator_create(of->system, "shooting:type=1", &none), DVI_UNSUPPORTED);
-  check_words("shooting: type=1 shoots for a discrete Lagrangian, and the system declares a Hamiltonian");
+  check_words(
+      "shooting: type=1 shoots for a discrete Lagrangian, and the system declares a Hamiltonian");
   ck_assert_int_eq(dvi_integrator_create(of->system, "shooting:type=4", &none), DVI_BAD_OPTION);
   problem_destroy(&of);
 }

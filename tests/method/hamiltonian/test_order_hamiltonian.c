@@ -1,5 +1,6 @@
 /* labels: order */
-/* Orders of discrete Hamiltonians, by exact solutions, on degenerate Hamiltonians and on regular ones. */
+/* Orders of discrete Hamiltonians, by exact solutions, on degenerate Hamiltonians and on regular
+ * ones. */
 #include <math.h>
 #include <stdio.h>
 
@@ -11,13 +12,16 @@ enum { LEVELS = 5, DEGREES = 4, MOST = 3 };
 /* Rounding, and the exact solutions' own. */
 static const double floor_of_errors = 3e-14;
 
-static void check_slope(const char *name, const char *method, int order, const double *h, const double *error)
+static void check_slope(const char *name, const char *method, int order, const double *h,
+                        const double *error)
 {
   dvi_order_fit fit;
-  ck_assert_msg(dvi_order(LEVELS, h, error, floor_of_errors, 0, &fit) == DVI_OK, "%s %s: %s", name, method, dvi_last_error());
-  ck_assert_msg(fit.last - fit.first >= 3, "%s %s: %d errors only", name, method, fit.last - fit.first + 1);
-  ck_assert_msg(fabs(fit.slope - order) <= 0.2, "%s %s: slope %.2f, not %d (errors %g to %g)", name, method, fit.slope, order,
-                error[0], error[LEVELS - 1]);
+  ck_assert_msg(dvi_order(LEVELS, h, error, floor_of_errors, 0, &fit) == DVI_OK, "%s %s: %s", name,
+                method, dvi_last_error());
+  ck_assert_msg(fit.last - fit.first >= 3, "%s %s: %d errors only", name, method,
+                fit.last - fit.first + 1);
+  ck_assert_msg(fabs(fit.slope - order) <= 0.2, "%s %s: slope %.2f, not %d (errors %g to %g)", name,
+                method, fit.slope, order, error[0], error[LEVELS - 1]);
 }
 
 /* Five numbers of steps, the next 2^(1/3) as large: with a high order errors fall fast. */
@@ -27,7 +31,8 @@ static int steps_of(int order, int level, double as_many)
   return (int)lround(first[order] * as_many * pow(2, level / 3.0));
 }
 
-static double error_after(dvi_integrator *step, int n, double h, int steps, const double *q, const double *p)
+static double error_after(dvi_integrator *step, int n, double h, int steps, const double *q,
+                          const double *p)
 {
   advance(step, h, steps);
   return fmax(distance(n, dvi_integrator_q(step), q), distance(n, dvi_integrator_p(step), p));
@@ -79,7 +84,8 @@ static void check_orders(const char *method, int regular)
 
 START_TEST(gauss_has_order_2s)
 {
-  for (int type = 2; type <= 3; type++) check_orders(spec("hamiltonian:type=%d,degree=%d", type, _i), 1);
+  for (int type = 2; type <= 3; type++)
+    check_orders(spec("hamiltonian:type=%d,degree=%d", type, _i), 1);
 }
 END_TEST
 
@@ -99,8 +105,10 @@ END_TEST
 
 START_TEST(more_points_have_order_2s_where_h_is_regular)
 {
-  check_order_on(hamiltonian_problem_of("driven"), spec("hamiltonian:degree=%d,quadrature=lobatto", _i), 2);
-  check_order_on(hamiltonian_problem_of("curved"), spec("hamiltonian:type=1,degree=%d,quadrature=lobatto", _i), 2);
+  check_order_on(hamiltonian_problem_of("driven"),
+                 spec("hamiltonian:degree=%d,quadrature=lobatto", _i), 2);
+  check_order_on(hamiltonian_problem_of("curved"),
+                 spec("hamiltonian:type=1,degree=%d,quadrature=lobatto", _i), 2);
 }
 END_TEST
 

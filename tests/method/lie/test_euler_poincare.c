@@ -1,4 +1,5 @@
-/* The reduced form: the steps of lie-galerkin from the momentum alone, the discrete Euler-Poincare equation, and what it refuses. */
+/* The reduced form: the steps of lie-galerkin from the momentum alone, the discrete Euler-Poincare
+ * equation, and what it refuses. */
 #include <math.h>
 #include <string.h>
 
@@ -13,24 +14,29 @@ enum { PRODUCT_Q = 9 + 2 + 12 + 2, FIRST_LINE = 9 + 2 + 12 };
 
 static void make_product(double between_lines, double across, body *of)
 {
-  static const dvi_factor factors[] = {{.kind = DVI_SO3, .inertia = inertia},
-                                       {.kind = DVI_U1, .mass = .7},
-                                       {.kind = DVI_SE3, .mass = 2, .inertia = inertia, .centre = centre},
-                                       {.kind = DVI_RN, .size = 2, .mass = 1.5}};
+  static const dvi_factor factors[] = {
+      {.kind = DVI_SO3, .inertia = inertia},
+      {.kind = DVI_U1, .mass = .7},
+      {.kind = DVI_SE3, .mass = 2, .inertia = inertia, .centre = centre},
+      {.kind = DVI_RN, .size = 2, .mass = 1.5}};
   static double mass[PRODUCT_Q * PRODUCT_Q];
   memset(mass, 0, sizeof mass);
-  mass[FIRST_LINE * PRODUCT_Q + FIRST_LINE + 1] = mass[(FIRST_LINE + 1) * PRODUCT_Q + FIRST_LINE] = between_lines;
+  mass[FIRST_LINE * PRODUCT_Q + FIRST_LINE + 1] = mass[(FIRST_LINE + 1) * PRODUCT_Q + FIRST_LINE] =
+      between_lines;
   mass[FIRST_LINE * PRODUCT_Q + 4] = mass[4 * PRODUCT_Q + FIRST_LINE] = across;
-  const dvi_system_terms terms = {.factors = factors, .factor_count = 4, .mass.values = mass, .autonomous = 1};
+  const dvi_system_terms terms = {
+      .factors = factors, .factor_count = 4, .mass.values = mass, .autonomous = 1};
   *of = (body){.name = "product", .factors = factors, .factor_count = 4};
   ck_assert_msg(dvi_system_create(&terms, &of->system) == DVI_OK, "%s", dvi_last_error());
 }
 
-static const double product_q[PRODUCT_Q] = {0, -1, 0, 1, 0, 0, 0, 0, 1, .6, .8, 1, 0, 0, 0, 1, 0, 0, 0, 1, .3, -.2, .1, .5, .7},
+static const double product_q[PRODUCT_Q] = {0, -1, 0, 1, 0, 0, 0, 0,  1,   .6, .8, 1, 0,
+                                            0, 0,  1, 0, 0, 0, 1, .3, -.2, .1, .5, .7},
                     product_v[12] = {1, .3, -.4, .9, -.2, .8, 1.1, .4, -.3, .6, .5, -.7};
 
 /* 200 steps of both; roundoff of the states adds up. */
-static void compare(const dvi_system *system, const double *q, const double *v, const char *keys, double h)
+static void compare(const dvi_system *system, const double *q, const double *v, const char *keys,
+                    double h)
 {
   dvi_integrator *whole = made_integrator(system, spec("lie-galerkin:%s", keys)),
                  *reduced = made_integrator(system, spec("euler-poincare:%s", keys));
@@ -38,15 +44,21 @@ static void compare(const dvi_system *system, const double *q, const double *v, 
   ck_assert_msg(dvi_integrator_start_velocity(reduced, 0, q, v) == DVI_OK, "%s", dvi_last_error());
   advance(whole, h, 200);
   advance(reduced, h, 200);
-  const double in_q = distance(dvi_system_nq(system), dvi_integrator_q(whole), dvi_integrator_q(reduced)),
-               in_p = distance(dvi_system_nv(system), dvi_integrator_p(whole), dvi_integrator_p(reduced));
+  const double in_q = distance(dvi_system_nq(system), dvi_integrator_q(whole),
+                               dvi_integrator_q(reduced)),
+               in_p = distance(dvi_system_nv(system), dvi_integrator_p(whole),
+                               dvi_integrator_p(reduced));
   ck_assert_msg(in_q < 2e-12 && in_p < 2e-12, "%s: %.1e in q, %.1e in p", keys, in_q, in_p);
   dvi_integrator_destroy(&whole);
   dvi_integrator_destroy(&reduced);
 }
 
-static const char *const keys[] = {
-    "degree=1", "degree=2", "degree=4", "degree=2,solver=newton", "degree=3,quadrature=lobatto,nodes=4", "degree=3,basis=legendre"};
+static const char *const keys[] = {"degree=1",
+                                   "degree=2",
+                                   "degree=4",
+                                   "degree=2,solver=newton",
+                                   "degree=3,quadrature=lobatto,nodes=4",
+                                   "degree=3,basis=legendre"};
 enum { KEYS = sizeof keys / sizeof *keys };
 
 START_TEST(it_takes_the_steps_of_lie_galerkin)
@@ -77,10 +89,13 @@ START_TEST(momenta_follow_the_coadjoint_action)
     advance(made, 0.3, 1);
     const double *q1 = dvi_integrator_q(made), *p1 = dvi_integrator_p(made);
     for (int i = 0; i < 3; i++) shift[i] = q1[9 + i] - q0[9 + i];
-    for (int i = 0; i < 3; i++) moment[i] = shift[(i + 1) % 3] * p0[3 + (i + 2) % 3] - shift[(i + 2) % 3] * p0[3 + (i + 1) % 3];
+    for (int i = 0; i < 3; i++)
+      moment[i] = shift[(i + 1) % 3] * p0[3 + (i + 2) % 3] -
+                  shift[(i + 2) % 3] * p0[3 + (i + 1) % 3];
     for (int i = 0; i < 3; i++)
       for (int j = 0; j < 3; j++)
-        due[i] += q1[3 * j + i] * (q0[3 * j] * p0[0] + q0[3 * j + 1] * p0[1] + q0[3 * j + 2] * p0[2] - moment[j]);
+        due[i] += q1[3 * j + i] *
+                  (q0[3 * j] * p0[0] + q0[3 * j + 1] * p0[1] + q0[3 * j + 2] * p0[2] - moment[j]);
     ck_assert_double_le(distance(3, due, p1), 5e-15 * magnitude(3, p0));
     ck_assert_mem_eq(p0 + 3, p1 + 3, 3 * sizeof *p0);
   }
@@ -118,18 +133,25 @@ START_TEST(what_the_group_does_not_leave_alone_is_refused)
   make_body(PENDULUM_3D, &of);
   check_refusal(&of, "potentials");
   destroy_body(&of);
-  ck_assert_int_eq(dvi_system_create(&(dvi_system_terms){.factors = &direction, .factor_count = 1}, &of.system), DVI_OK);
+  ck_assert_int_eq(
+      dvi_system_create(&(dvi_system_terms){.factors = &direction, .factor_count = 1}, &of.system),
+      DVI_OK);
   check_refusal(&of, "directions (S^2)");
   destroy_body(&of);
   make_product(0, .1, &of);
   check_refusal(&of, "the mass of coordinates");
   destroy_body(&of);
-  ck_assert_int_eq(dvi_system_create(&(dvi_system_terms){.factors = &angle, .factor_count = 1, .mass.values = plane}, &of.system),
-                   DVI_OK);
+  ck_assert_int_eq(
+      dvi_system_create(
+          &(dvi_system_terms){.factors = &angle, .factor_count = 1, .mass.values = plane},
+          &of.system),
+      DVI_OK);
   check_refusal(&of, "the mass of coordinates 1 and 1");
   destroy_body(&of);
   const dvi_system_terms one_entry = {
-      .factors = &angle, .factor_count = 1, .mass = {.values = plane, .pattern = {(const int[]){0, 1, 1}, (const int[]){0}}}};
+      .factors = &angle,
+      .factor_count = 1,
+      .mass = {.values = plane, .pattern = {(const int[]){0, 1, 1}, (const int[]){0}}}};
   ck_assert_int_eq(dvi_system_create(&one_entry, &of.system), DVI_OK);
   check_refusal(&of, "the mass of coordinates 1 and 1");
   destroy_body(&of);

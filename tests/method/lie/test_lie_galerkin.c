@@ -1,5 +1,6 @@
 /* labels: order */
-/* Galerkin steps in natural charts: orders, agreement of bases, symmetry under rotations, known digits, refusals, what is kept from step to step. */
+/* Galerkin steps in natural charts: orders, agreement of bases, symmetry under rotations, known
+ * digits, refusals, what is kept from step to step. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -38,20 +39,24 @@ typedef struct state {
   double q[BODY_Q], p[BODY_V];
 } state;
 
-/* By galerkin of degree 8, of the Lagrangian in one chart as an ordinary one: nothing is centred anew. */
+/* By galerkin of degree 8, of the Lagrangian in one chart as an ordinary one: nothing is centred
+ * anew. */
 static void judge(state *end)
 {
   dvi_counters counters = {0};
   dvi__charted *charts;
   dvi_integrator *made;
   double zero[BODY_V] = {0}, rate[BODY_V], v[BODY_V];
-  ck_assert_msg(dvi__charted_create(of.system, 0, &counters, &charts) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi__charted_create(of.system, 0, &counters, &charts) == DVI_OK, "%s",
+                dvi_last_error());
   dvi__charted_centre(charts, of.q);
   dvi__charted_enter(charts, of.v, rate);
   made = made_integrator(dvi__charted_system(charts), "galerkin:degree=8");
-  ck_assert_msg(dvi_integrator_start_velocity(made, 0, zero, rate) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_integrator_start_velocity(made, 0, zero, rate) == DVI_OK, "%s",
+                dvi_last_error());
   advance(made, span / 16, 16);
-  ck_assert_int_eq(dvi_system_velocity(dvi__charted_system(charts), span, dvi_integrator_q(made), dvi_integrator_p(made), rate),
+  ck_assert_int_eq(dvi_system_velocity(dvi__charted_system(charts), span, dvi_integrator_q(made),
+                                       dvi_integrator_p(made), rate),
                    DVI_OK);
   dvi__charted_point(charts, dvi_integrator_q(made), rate, end->q, v);
   ck_assert_int_eq(dvi_system_momentum(of.system, span, end->q, v, end->p), DVI_OK);
@@ -86,11 +91,13 @@ static void check_order_of(const char *method, int order)
     h[k] = span / steps[k];
     run(method, h[k], steps[k], &end);
     error[k] = apart(&end, &exact);
-    if (getenv("DVI_SHOW_ORDERS") != NULL) printf("%s, %s: h = %.4g, error %.2e\n", of.name, method, h[k], error[k]);
+    if (getenv("DVI_SHOW_ORDERS") != NULL)
+      printf("%s, %s: h = %.4g, error %.2e\n", of.name, method, h[k], error[k]);
   }
-  ck_assert_msg(dvi_order(COUNT, h, error, 4e-13, fmax(pow(10, -order - 1), 1e-9), &fit) == DVI_OK, "%s, %s: no window", of.name,
-                method);
-  ck_assert_msg(fabs(fit.slope - order) < 0.4, "%s, %s: order %.2f, not %d", of.name, method, fit.slope, order);
+  ck_assert_msg(dvi_order(COUNT, h, error, 4e-13, fmax(pow(10, -order - 1), 1e-9), &fit) == DVI_OK,
+                "%s, %s: no window", of.name, method);
+  ck_assert_msg(fabs(fit.slope - order) < 0.4, "%s, %s: order %.2f, not %d", of.name, method,
+                fit.slope, order);
 }
 
 START_TEST(gauss_has_order_2s)
@@ -111,7 +118,8 @@ END_TEST
 START_TEST(lobatto_with_one_node_more_has_order_2s)
 {
   take_body(_i);
-  for (int s = 1; s <= 4; s++) check_order_of(spec("lie-galerkin:degree=%d,quadrature=lobatto,nodes=%d", s, s + 1), 2 * s);
+  for (int s = 1; s <= 4; s++)
+    check_order_of(spec("lie-galerkin:degree=%d,quadrature=lobatto,nodes=%d", s, s + 1), 2 * s);
 }
 END_TEST
 
@@ -119,18 +127,22 @@ END_TEST
 
 START_TEST(all_bases_and_solvers_agree)
 {
-  static const char *const basis[] = {"chebyshev", "legendre", "lobatto"}, *const solver[] = {"fixed-point", "newton", "kinsol",
-                                                                                              "certified"};
+  static const char *const basis[] = {"chebyshev", "legendre", "lobatto"}, *const solver[] = {
+                                                                               "fixed-point",
+                                                                               "newton", "kinsol",
+                                                                               "certified"};
   state first, other;
   take_body(_i);
   run("lie-galerkin:degree=4", span / 10, 10, &first);
   for (size_t k = 0; k < sizeof basis / sizeof *basis; k++) {
     run(spec("lie-galerkin:degree=4,basis=%s", basis[k]), span / 10, 10, &other);
-    ck_assert_msg(apart(&first, &other) < 1e-12, "%s, %s: %.1e", of.name, basis[k], apart(&first, &other));
+    ck_assert_msg(apart(&first, &other) < 1e-12, "%s, %s: %.1e", of.name, basis[k],
+                  apart(&first, &other));
   }
   for (size_t k = 0; k < sizeof solver / sizeof *solver; k++) {
     run(spec("lie-galerkin:degree=4,solver=%s", solver[k]), span / 10, 10, &other);
-    ck_assert_msg(apart(&first, &other) < 1e-12, "%s, %s: %.1e", of.name, solver[k], apart(&first, &other));
+    ck_assert_msg(apart(&first, &other) < 1e-12, "%s, %s: %.1e", of.name, solver[k],
+                  apart(&first, &other));
   }
 }
 END_TEST
@@ -199,12 +211,14 @@ START_TEST(free_bodies_keep_all_of_their_momenta)
   run("lie-galerkin:degree=2", 0.1, 1000, &end);
   space_momentum(&start, before);
   space_momentum(&end, after);
-  ck_assert_msg(distance(3, before, after) < 1e-13 * magnitude(3, before) * 10, "%.1e", distance(3, before, after));
+  ck_assert_msg(distance(3, before, after) < 1e-13 * magnitude(3, before) * 10, "%.1e",
+                distance(3, before, after));
   if (of.nq == 12) ck_assert_double_le(distance(3, start.p + 3, end.p + 3), 1e-14);
 }
 END_TEST
 
-/* With weight: that about the vertical. Steps so long that a centre that does not move (system/chart/centring.h) loses 1e-6. */
+/* With weight: that about the vertical. Steps so long that a centre that does not move
+ * (system/chart/centring.h) loses 1e-6. */
 START_TEST(vertical_momentum_is_kept)
 {
   static const int kinds[] = {PENDULUM_3D, HEAVY_TOP, DIRECTIONS};
@@ -214,18 +228,21 @@ START_TEST(vertical_momentum_is_kept)
   ck_assert_int_eq(dvi_integrator_invariants(made, before), DVI_OK);
   advance(made, span / 16, 1000);
   ck_assert_int_eq(dvi_integrator_invariants(made, after), DVI_OK);
-  ck_assert_msg(fabs(after[1] - before[1]) < 1e-13 * fmax(1, fabs(before[1])), "%s: %.1e", of.name, after[1] - before[1]);
+  ck_assert_msg(fabs(after[1] - before[1]) < 1e-13 * fmax(1, fabs(before[1])), "%s: %.1e", of.name,
+                after[1] - before[1]);
   ck_assert_double_le(dvi_system_distance(of.system, dvi_integrator_q(made)), 1e-13);
   dvi_integrator_destroy(&made);
 }
 END_TEST
 
-/* A path of degree 1 is the same from its other end: a one-parameter subgroup, a great circle. A longer polynomial in the chart at its start is none in that
- * at its end, unless the chart is that of a line or a circle. */
+/* A path of degree 1 is the same from its other end: a one-parameter subgroup, a great circle. A
+ * longer polynomial in the chart at its start is none in that at its end, unless the chart is that
+ * of a line or a circle. */
 START_TEST(steps_back_undo_steps_of_degree_1)
 {
   take_body(_i);
-  dvi_integrator *made = body_integrator(&of, _i == ANGLE ? "lie-galerkin:degree=3" : "lie-galerkin:degree=1");
+  dvi_integrator *made = body_integrator(&of, _i == ANGLE ? "lie-galerkin:degree=3"
+                                                          : "lie-galerkin:degree=1");
   advance(made, span / 8, 8);
   advance(made, -span / 8, 8);
   ck_assert_msg(distance(of.nq, dvi_integrator_q(made), of.q) < 1e-13, "%s: %.1e", of.name,
@@ -249,10 +266,12 @@ END_TEST
 
 static void check_digits(const double *found, const double *known, double tolerance)
 {
-  ck_assert_msg(distance(3, found, known) < tolerance, "%s: (%.15g, %.15g, %.15g)", of.name, found[0], found[1], found[2]);
+  ck_assert_msg(distance(3, found, known) < tolerance, "%s: (%.15g, %.15g, %.15g)", of.name,
+                found[0], found[1], found[2]);
 }
 
-/* The free body's by its Taylor series in 40 digits; the others' by Gauss-Legendre of order 12 at two steps, which agree. */
+/* The free body's by its Taylor series in 40 digits; the others' by Gauss-Legendre of order 12 at
+ * two steps, which agree. */
 START_TEST(known_digits_are_met)
 {
   const double pendulum[] = {-6.751473860336227, .1484346732487297, 3.362315606396518},

@@ -1,6 +1,6 @@
 /* labels: invariant */
-/* Long steps of thin bodies, whose equations have several solutions: the one that is found continues those of shorter steps, and is the motion's. Or the step is
- * refused. */
+/* Long steps of thin bodies, whose equations have several solutions: the one that is found
+ * continues those of shorter steps, and is the motion's. Or the step is refused. */
 #include <dvi/integrator.h>
 #include <math.h>
 #include <string.h>
@@ -16,8 +16,10 @@ static dvi_system *free_rod(const double *J)
   const double inertia[] = {J[0], 0, 0, 0, J[1], 0, 0, 0, J[2]};
   const dvi_factor factor = {.kind = DVI_SO3, .inertia = inertia};
   dvi_system *system;
-  ck_assert_msg(dvi_system_create(&(dvi_system_terms){.factors = &factor, .factor_count = 1, .autonomous = 1}, &system) == DVI_OK,
-                "%s", dvi_last_error());
+  ck_assert_msg(
+      dvi_system_create(&(dvi_system_terms){.factors = &factor, .factor_count = 1, .autonomous = 1},
+                        &system) == DVI_OK,
+      "%s", dvi_last_error());
   return system;
 }
 
@@ -28,20 +30,56 @@ static const struct {
   int count;
   const char *method;
 } rods[] = {
-    {{.00766734, 1.0076, 1.00007}, {.040484, .964601, .260588}, 1.4, 1.9, 1001, "lie-galerkin:degree=3"},
-    {{.00766734, 1.0076, 1.00007}, {.040484, .964601, .260588}, 1.4, 1.9, 1001, "lie-galerkin:degree=4"},
-    {{.00766734, 1.0076, 1.00007}, {.040484, .964601, .260588}, 1.4, 1.9, 1001, "lie-galerkin:degree=4,solver=newton"},
-    {{.00766734, 1.0076, 1.00007}, {.040484, .964601, .260588}, 1.4, 1.9, 1001, "lie-galerkin:degree=4,solver=certified"},
-    {{.00766734, 1.0076, 1.00007}, {.040484, .964601, .260588}, 1.4, 1.9, 1001, "lie-galerkin:degree=5"},
-    {{.00766734, 1.0076, 1.00007}, {.040484, .964601, .260588}, 1.4, 1.9, 1001, "euler-poincare:degree=4"},
-    {{.00223197, 1.00212, 1.00011}, {.100981, .715101, .691689}, .92, .926, 13, "lie-galerkin:degree=3"},
+    {{.00766734, 1.0076, 1.00007},
+     {.040484, .964601, .260588},
+     1.4,
+     1.9,
+     1001,
+     "lie-galerkin:degree=3"},
+    {{.00766734, 1.0076, 1.00007},
+     {.040484, .964601, .260588},
+     1.4,
+     1.9,
+     1001,
+     "lie-galerkin:degree=4"},
+    {{.00766734, 1.0076, 1.00007},
+     {.040484, .964601, .260588},
+     1.4,
+     1.9,
+     1001,
+     "lie-galerkin:degree=4,solver=newton"},
+    {{.00766734, 1.0076, 1.00007},
+     {.040484, .964601, .260588},
+     1.4,
+     1.9,
+     1001,
+     "lie-galerkin:degree=4,solver=certified"},
+    {{.00766734, 1.0076, 1.00007},
+     {.040484, .964601, .260588},
+     1.4,
+     1.9,
+     1001,
+     "lie-galerkin:degree=5"},
+    {{.00766734, 1.0076, 1.00007},
+     {.040484, .964601, .260588},
+     1.4,
+     1.9,
+     1001,
+     "euler-poincare:degree=4"},
+    {{.00223197, 1.00212, 1.00011},
+     {.100981, .715101, .691689},
+     .92,
+     .926,
+     13,
+     "lie-galerkin:degree=3"},
 };
 
 /* Wrong ones err by 0.3 and more. */
 START_TEST(steps_of_rods_find_the_motion)
 {
   dvi_system *system = free_rod(rods[_i].J);
-  dvi_integrator *made = made_integrator(system, rods[_i].method), *fine = made_integrator(system, "lie-verlet");
+  dvi_integrator *made = made_integrator(system, rods[_i].method),
+                 *fine = made_integrator(system, "lie-verlet");
   const double spacing = (rods[_i].to - rods[_i].from) / (rods[_i].count - 1);
   ck_assert_int_eq(dvi_integrator_start_velocity(fine, 0, unit, rods[_i].v), DVI_OK);
   advance(fine, rods[_i].from / 4000, 4000);
@@ -64,15 +102,17 @@ static const struct {
   double thin, h;
   long steps;
   const char *method;
-} runs[] = {{.01, 1.5, 3000, "lie-galerkin:degree=3"},   {.001, .8, 3000, "lie-galerkin:degree=3"},
-            {.003, 1, 3000, "lie-galerkin:degree=3"},    {.001, .5, 11000, "lie-galerkin:degree=2"},
-            {1e-5, .1, 3000, "lie-galerkin:degree=3"},   {1e-9, .1, 1000, "lie-galerkin:degree=4"},
-            {.01, 1.5, 3000, "euler-poincare:degree=3"}, {1e-4, .3, 3000, "euler-poincare:degree=2"}};
+} runs[] = {
+    {.01, 1.5, 3000, "lie-galerkin:degree=3"},   {.001, .8, 3000, "lie-galerkin:degree=3"},
+    {.003, 1, 3000, "lie-galerkin:degree=3"},    {.001, .5, 11000, "lie-galerkin:degree=2"},
+    {1e-5, .1, 3000, "lie-galerkin:degree=3"},   {1e-9, .1, 1000, "lie-galerkin:degree=4"},
+    {.01, 1.5, 3000, "euler-poincare:degree=3"}, {1e-4, .3, 3000, "euler-poincare:degree=2"}};
 
 /* A step to another solution changes the energy by a thousandth; no step is refused. */
 START_TEST(runs_of_rods_stay_with_the_motion)
 {
-  const double J[] = {runs[_i].thin, 1 + runs[_i].thin / 2, 1 + .3 * runs[_i].thin}, v[] = {.4, .8, .447};
+  const double J[] = {runs[_i].thin, 1 + runs[_i].thin / 2, 1 + .3 * runs[_i].thin},
+               v[] = {.4, .8, .447};
   double start, before, after;
   dvi_system *system = free_rod(J);
   dvi_integrator *made = made_integrator(system, runs[_i].method);
@@ -82,7 +122,8 @@ START_TEST(runs_of_rods_stay_with_the_motion)
   for (long k = 0; k < repeats((int)runs[_i].steps); k++) {
     advance(made, runs[_i].h, 1);
     ck_assert_int_eq(dvi_integrator_invariants(made, &after), DVI_OK);
-    ck_assert_msg(fabs(after - before) < 3e-4 * start, "step %ld: energy from %.6f to %.6f", k + 1, before, after);
+    ck_assert_msg(fabs(after - before) < 3e-4 * start, "step %ld: energy from %.6f to %.6f", k + 1,
+                  before, after);
     before = after;
   }
   dvi_integrator_destroy(&made);
@@ -93,11 +134,13 @@ END_TEST
 /* With forces: energy alone would not tell. */
 START_TEST(steps_with_forces_find_the_motion)
 {
-  static const char *const methods[] = {"lie-galerkin:degree=1", "lie-galerkin:degree=2", "lie-galerkin:degree=3",
+  static const char *const methods[] = {"lie-galerkin:degree=1", "lie-galerkin:degree=2",
+                                        "lie-galerkin:degree=3",
                                         "lie-galerkin:degree=3,solver=kinsol"};
   body of;
   make_body(PENDULUM_3D, &of);
-  dvi_integrator *made = body_integrator(&of, methods[_i]), *fine = body_integrator(&of, "lie-verlet");
+  dvi_integrator *made = body_integrator(&of, methods[_i]),
+                 *fine = body_integrator(&of, "lie-verlet");
   double worst = 0;
   for (int k = 1; k <= 100; k++) {
     ck_assert_int_eq(dvi_integrator_start_velocity(made, 0, of.q, of.v), DVI_OK);
@@ -114,12 +157,14 @@ END_TEST
 
 /* ---- steps that cannot be taken ---- */
 
-/* Such a body's path ends at a fold where it turns by less than 1.9; the next solution is near, and errs by a third. */
+/* Such a body's path ends at a fold where it turns by less than 1.9; the next solution is near, and
+ * errs by a third. */
 START_TEST(steps_beyond_a_fold_are_refused)
 {
   const double J[] = {1.6045548e-06, 1.0000007, 1.0000009}, v[] = {.574447, -.698831, -.4262};
   dvi_system *system = free_rod(J);
-  dvi_integrator *made = made_integrator(system, _i == 0 ? "lie-galerkin:degree=5" : "euler-poincare:degree=5,solver=newton");
+  dvi_integrator *made = made_integrator(system, _i == 0 ? "lie-galerkin:degree=5"
+                                                         : "euler-poincare:degree=5,solver=newton");
   for (int k = 0; k <= 100; k++) {
     ck_assert_int_eq(dvi_integrator_start_velocity(made, 0, unit, v), DVI_OK);
     ck_assert_int_eq(dvi_integrator_step(made, 1.9 + .002 * k), DVI_STEP_TOO_LARGE);
@@ -136,7 +181,9 @@ START_TEST(refusals_tell_how_far_a_step_may_go)
   static const struct {
     double h;
     const char *words;
-  } places[] = {{9, "up to h = 4."}, {9, "where it turns by 3."}, {1e300, "not even that of h = 2.44e+296 has a path"}};
+  } places[] = {{9, "up to h = 4."},
+                {9, "where it turns by 3."},
+                {1e300, "not even that of h = 2.44e+296 has a path"}};
   body of;
   make_body(FREE_BODY, &of);
   dvi_integrator *made = body_integrator(&of, "lie-galerkin:degree=3");
@@ -151,14 +198,16 @@ END_TEST
 /* Steps below half a radian are near their guess. */
 START_TEST(usual_steps_are_not_followed)
 {
-  const double J[][3] = {{.01, 1.005, 1.003}, {1.1, .8, .9}, {.01, 1.005, 1.003}}, v[] = {.4, .8, .447};
+  const double J[][3] = {{.01, 1.005, 1.003}, {1.1, .8, .9}, {.01, 1.005, 1.003}},
+               v[] = {.4, .8, .447};
   dvi_counters counters;
   dvi_system *system = free_rod(J[_i]);
   dvi_integrator *made = made_integrator(system, "lie-galerkin:degree=3");
   ck_assert_int_eq(dvi_integrator_start_velocity(made, 0, unit, v), DVI_OK);
   advance(made, _i == 2 ? -.4 : .4, 2000);
   dvi_integrator_counters(made, &counters);
-  ck_assert_msg(counters.followed <= 1, "%ld", (long)counters.followed); /* the first one, whose guess is a straight line */
+  /* the first one, whose guess is a straight line */
+  ck_assert_msg(counters.followed <= 1, "%ld", (long)counters.followed);
   dvi_integrator_destroy(&made);
   dvi_system_destroy(&system);
 }

@@ -1,4 +1,5 @@
-/* Galerkin steps in charts where charts are hard: fast tops, steps of nearly and of more than half a turn, thin bodies; and what every method owes. */
+/* Galerkin steps in charts where charts are hard: fast tops, steps of nearly and of more than half
+ * a turn, thin bodies; and what every method owes. */
 #include <dvi/group.h>
 #include <math.h>
 #include <stdio.h>
@@ -28,10 +29,12 @@ START_TEST(fast_tops_keep_energy_and_spin)
 }
 END_TEST
 
-/* A turn about a principal axis by 3.1 in every step is that of a one-parameter subgroup, exactly. */
+/* A turn about a principal axis by 3.1 in every step is that of a one-parameter subgroup,
+ * exactly. */
 START_TEST(steps_of_nearly_half_a_turn_are_taken)
 {
-  static const char *const methods[] = {"lie-galerkin:degree=1", "lie-galerkin:degree=3", "euler-poincare:degree=3"};
+  static const char *const methods[] = {"lie-galerkin:degree=1", "lie-galerkin:degree=3",
+                                        "euler-poincare:degree=3"};
   const double v[] = {0, 0, 3.1}, all[] = {0, 0, 31};
   double R[9];
   body of;
@@ -64,7 +67,8 @@ START_TEST(more_than_half_a_turn_is_a_step_too_large)
   dvi_integrator *made = body_integrator(&of, places[_i].method);
   memcpy(p, dvi_integrator_p(made), (size_t)of.nv * sizeof *p);
   const dvi_status status = dvi_integrator_step(made, places[_i].h);
-  ck_assert_msg(status == DVI_STEP_TOO_LARGE, "%s: %s: %s", of.name, dvi_status_name(status), dvi_last_error());
+  ck_assert_msg(status == DVI_STEP_TOO_LARGE, "%s: %s: %s", of.name, dvi_status_name(status),
+                dvi_last_error());
   check_words("half a turn");
   check_words("try a smaller step");
   ck_assert_mem_eq(dvi_integrator_q(made), of.q, (size_t)of.nq * sizeof *p);
@@ -79,14 +83,17 @@ END_TEST
 /* A rod, a needle's millionth, and a plate. */
 START_TEST(nearly_degenerate_bodies_keep_energy_and_momentum)
 {
-  static const double inertia[][9] = {
-      {1, 0, 0, 0, 1, 0, 0, 0, 1e-6}, {1, 0, 0, 0, 1 + 1e-6, 0, 0, 0, 2e-6}, {1, 0, 0, 0, 1, 0, 0, 0, 2}};
+  static const double inertia[][9] = {{1, 0, 0, 0, 1, 0, 0, 0, 1e-6},
+                                      {1, 0, 0, 0, 1 + 1e-6, 0, 0, 0, 2e-6},
+                                      {1, 0, 0, 0, 1, 0, 0, 0, 2}};
   const dvi_factor factor = {.kind = DVI_SO3, .inertia = inertia[_i]};
   const double q[] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, v[] = {.5, .3, 2};
   double before, after;
   dvi_system *system;
-  ck_assert_msg(dvi_system_create(&(dvi_system_terms){.factors = &factor, .factor_count = 1, .autonomous = 1}, &system) == DVI_OK,
-                "%s", dvi_last_error());
+  ck_assert_msg(
+      dvi_system_create(&(dvi_system_terms){.factors = &factor, .factor_count = 1, .autonomous = 1},
+                        &system) == DVI_OK,
+      "%s", dvi_last_error());
   dvi_integrator *made = made_integrator(system, "lie-galerkin:degree=3");
   ck_assert_int_eq(dvi_integrator_start_velocity(made, 0, q, v), DVI_OK);
   ck_assert_int_eq(dvi_integrator_invariants(made, &before), DVI_OK);
@@ -95,14 +102,17 @@ START_TEST(nearly_degenerate_bodies_keep_energy_and_momentum)
   ck_assert_msg(fabs(after - before) < 1e-9, "%.1e", after - before);
   const double *R = dvi_integrator_q(made), *p = dvi_integrator_p(made),
                start[] = {inertia[_i][0] * v[0], inertia[_i][4] * v[1], inertia[_i][8] * v[2]};
-  for (int i = 0; i < 3; i++) ck_assert_double_eq_tol(R[3 * i] * p[0] + R[3 * i + 1] * p[1] + R[3 * i + 2] * p[2], start[i], 1e-12);
+  for (int i = 0; i < 3; i++)
+    ck_assert_double_eq_tol(R[3 * i] * p[0] + R[3 * i + 1] * p[1] + R[3 * i + 2] * p[2], start[i],
+                            1e-12);
   dvi_integrator_destroy(&made);
   dvi_system_destroy(&system);
 }
 END_TEST
 
-/* A body that is a million times lighter about one axis, or half as heavy about two: momentum about that axis is rounded as that about the others, so that no
- * iteration knows its unknowns to more than 1e-10 of themselves. Newton's method must see that. */
+/* A body that is a million times lighter about one axis, or half as heavy about two: momentum about
+ * that axis is rounded as that about the others, so that no iteration knows its unknowns to more
+ * than 1e-10 of themselves. Newton's method must see that. */
 static const struct {
   double J[3];
   const char *method;
@@ -127,20 +137,24 @@ static void check_momentum(const dvi_integrator *made, const double *start)
   const double *R = dvi_integrator_q(made), *p = dvi_integrator_p(made);
   const double size = fmax(fabs(start[0]), fmax(fabs(start[1]), fabs(start[2])));
   for (int i = 0; i < 3; i++)
-    ck_assert_double_eq_tol(R[3 * i] * p[0] + R[3 * i + 1] * p[1] + R[3 * i + 2] * p[2], start[i], 1e-12 * size);
+    ck_assert_double_eq_tol(R[3 * i] * p[0] + R[3 * i + 1] * p[1] + R[3 * i + 2] * p[2], start[i],
+                            1e-12 * size);
 }
 
 START_TEST(steps_of_thin_bodies_are_solved)
 {
-  const double *J = thin[_i / DEGREES].J, v[] = {.3, .2, .5}, start[] = {J[0] * v[0], J[1] * v[1], J[2] * v[2]};
+  const double *J = thin[_i / DEGREES].J, v[] = {.3, .2, .5},
+               start[] = {J[0] * v[0], J[1] * v[1], J[2] * v[2]};
   const double inertia[] = {J[0], 0, 0, 0, J[1], 0, 0, 0, J[2]}, q[] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   const dvi_factor factor = {.kind = DVI_SO3, .inertia = inertia};
   char method[64];
   dvi_counters counters;
   dvi_system *system;
   (void)snprintf(method, sizeof method, thin[_i / DEGREES].method, 1 + _i % DEGREES);
-  ck_assert_msg(dvi_system_create(&(dvi_system_terms){.factors = &factor, .factor_count = 1, .autonomous = 1}, &system) == DVI_OK,
-                "%s", dvi_last_error());
+  ck_assert_msg(
+      dvi_system_create(&(dvi_system_terms){.factors = &factor, .factor_count = 1, .autonomous = 1},
+                        &system) == DVI_OK,
+      "%s", dvi_last_error());
   dvi_integrator *made = made_integrator(system, method);
   ck_assert_int_eq(dvi_integrator_start_velocity(made, 0, q, v), DVI_OK);
   advance(made, 0.05, repeats(2000));
@@ -183,10 +197,22 @@ static const struct {
   const char *words;
 } traps[] = {
     {"lie-galerkin:degree=2", {0, NAN}, DVI_NOT_FINITE, "height: the gradient callback gave nan"},
-    {"lie-galerkin:degree=2", {1, 1}, DVI_CALLBACK_RETRY, "height: the gradient callback asked for a smaller step (1)"},
-    {"sphere-galerkin:degree=2", {-1, 1}, DVI_CALLBACK_FAILED, "height: the gradient callback failed with -1"},
-    {"sphere-galerkin:degree=2,solver=newton", {0, INFINITY}, DVI_NOT_FINITE, "height: the gradient callback gave inf"},
-    {"lie-galerkin:degree=1,solver=kinsol", {-7, 1}, DVI_CALLBACK_FAILED, "height: the gradient callback failed with -7"},
+    {"lie-galerkin:degree=2",
+     {1, 1},
+     DVI_CALLBACK_RETRY,
+     "height: the gradient callback asked for a smaller step (1)"},
+    {"sphere-galerkin:degree=2",
+     {-1, 1},
+     DVI_CALLBACK_FAILED,
+     "height: the gradient callback failed with -1"},
+    {"sphere-galerkin:degree=2,solver=newton",
+     {0, INFINITY},
+     DVI_NOT_FINITE,
+     "height: the gradient callback gave inf"},
+    {"lie-galerkin:degree=1,solver=kinsol",
+     {-7, 1},
+     DVI_CALLBACK_FAILED,
+     "height: the gradient callback failed with -7"},
 };
 
 /* Its name and its status, of the start and of the step; then all goes on. */
@@ -195,12 +221,15 @@ START_TEST(failing_callbacks_are_named)
   const double q[] = {1, 0, 0}, v[] = {0, 1, .5};
   const dvi_factor factor = {.kind = DVI_S2, .mass = 1};
   trap set = {0, 1};
-  const dvi_potential potential = {.name = "height", .value = height, .gradient = height_gradient, .user = &set};
+  const dvi_potential potential = {
+      .name = "height", .value = height, .gradient = height_gradient, .user = &set};
   dvi_system *system;
-  ck_assert_int_eq(dvi_system_create(
-                       &(dvi_system_terms){
-                           .factors = &factor, .factor_count = 1, .potentials = &potential, .potential_count = 1, .autonomous = 1},
-                       &system),
+  ck_assert_int_eq(dvi_system_create(&(dvi_system_terms){.factors = &factor,
+                                                         .factor_count = 1,
+                                                         .potentials = &potential,
+                                                         .potential_count = 1,
+                                                         .autonomous = 1},
+                                     &system),
                    DVI_OK);
   dvi_integrator *made = made_integrator(system, traps[_i].method);
   ck_assert_int_eq(dvi_integrator_start_velocity(made, 0, q, v), DVI_OK);
@@ -234,8 +263,9 @@ END_TEST
 
 /* ---- what every method owes ---- */
 
-static const char *const methods[] = {"lie-galerkin:degree=2", "lie-galerkin:degree=3,solver=newton", "euler-poincare:degree=3",
-                                      "sphere-galerkin:degree=2"};
+static const char *const methods[] = {"lie-galerkin:degree=2",
+                                      "lie-galerkin:degree=3,solver=newton",
+                                      "euler-poincare:degree=3", "sphere-galerkin:degree=2"};
 enum { METHODS = sizeof methods / sizeof *methods };
 
 static void take_body_for(int method, body *of)
@@ -249,15 +279,18 @@ START_TEST(checkpoints_continue_bit_for_bit)
   char path[64];
   take_body_for(_i, &of);
   (void)snprintf(path, sizeof path, "lie_galerkin_%d.dvi", _i);
-  dvi_integrator *whole = body_integrator(&of, methods[_i]), *later = body_integrator(&of, methods[_i]);
+  dvi_integrator *whole = body_integrator(&of, methods[_i]),
+                 *later = body_integrator(&of, methods[_i]);
   advance(whole, 0.02, 7);
   ck_assert_msg(dvi_integrator_save(whole, path) == DVI_OK, "%s", dvi_last_error());
   advance(whole, 0.02, 9);
   ck_assert_msg(dvi_integrator_restore(later, path) == DVI_OK, "%s", dvi_last_error());
   (void)remove(path);
   advance(later, 0.02, 9);
-  ck_assert_mem_eq(dvi_integrator_q(whole), dvi_integrator_q(later), (size_t)of.nq * sizeof(double));
-  ck_assert_mem_eq(dvi_integrator_p(whole), dvi_integrator_p(later), (size_t)of.nv * sizeof(double));
+  ck_assert_mem_eq(dvi_integrator_q(whole), dvi_integrator_q(later),
+                   (size_t)of.nq * sizeof(double));
+  ck_assert_mem_eq(dvi_integrator_p(whole), dvi_integrator_p(later),
+                   (size_t)of.nv * sizeof(double));
   dvi_integrator_destroy(&whole);
   dvi_integrator_destroy(&later);
   destroy_body(&of);
@@ -284,16 +317,20 @@ START_TEST(paths_between_states_are_those_of_the_group)
   body of;
   double q[BODY_Q], v[BODY_V];
   take_body_for(_i, &of);
-  dvi_integrator *made = body_integrator(&of, methods[_i]), *fine = body_integrator(&of, methods[_i]);
+  dvi_integrator *made = body_integrator(&of, methods[_i]),
+                 *fine = body_integrator(&of, methods[_i]);
   advance(made, 0.02, 3);
   advance(fine, 0.01, 5);
   ck_assert_int_eq(dvi_integrator_interpolate(made, 0.06, q, v), DVI_OK);
   ck_assert_double_le(distance(of.nq, q, dvi_integrator_q(made)), 1e-14);
   ck_assert_int_eq(dvi_integrator_interpolate(made, 0.05, q, v), DVI_OK);
   ck_assert_double_le(dvi_system_distance(of.system, q), 1e-14);
-  ck_assert_msg(distance(of.nq, q, dvi_integrator_q(fine)) < 1e-4, "%.1e", distance(of.nq, q, dvi_integrator_q(fine)));
+  ck_assert_msg(distance(of.nq, q, dvi_integrator_q(fine)) < 1e-4, "%.1e",
+                distance(of.nq, q, dvi_integrator_q(fine)));
   double found[BODY_V] = {0};
-  ck_assert_int_eq(dvi_system_velocity(of.system, 0.05, dvi_integrator_q(fine), dvi_integrator_p(fine), found), DVI_OK);
+  ck_assert_int_eq(
+      dvi_system_velocity(of.system, 0.05, dvi_integrator_q(fine), dvi_integrator_p(fine), found),
+      DVI_OK);
   ck_assert_msg(distance(of.nv, v, found) < 5e-2, "%.1e", distance(of.nv, v, found));
   dvi_integrator_destroy(&made);
   dvi_integrator_destroy(&fine);
@@ -301,7 +338,8 @@ START_TEST(paths_between_states_are_those_of_the_group)
 }
 END_TEST
 
-/* A step of the pendulum by about a third of a radian: the kept Jacobian serves, one is made in two to three steps, and no more residuals than the 17 digits take. */
+/* A step of the pendulum by about a third of a radian: the kept Jacobian serves, one is made in two
+ * to three steps, and no more residuals than the 17 digits take. */
 START_TEST(steps_cost_what_they_did)
 {
   body of;
@@ -314,7 +352,8 @@ START_TEST(steps_cost_what_they_did)
   ck_assert_int_eq(counters.fixed_points, 0);
   ck_assert_msg(counters.jacobians <= 450, "%ld", (long)counters.jacobians);
   ck_assert_msg(counters.residuals <= 5600, "%ld", (long)counters.residuals);
-  ck_assert_msg(counters.gradients <= 19000, "%ld", (long)counters.gradients); /* three nodes a residual, and starts */
+  /* three nodes a residual, and starts */
+  ck_assert_msg(counters.gradients <= 19000, "%ld", (long)counters.gradients);
   dvi_integrator_destroy(&made);
   destroy_body(&of);
 }

@@ -1,5 +1,6 @@
 /* labels: invariant slow long */
-/* A million steps on groups, never put back on them: momenta, energy, and the distance from the group. */
+/* A million steps on groups, never put back on them: momenta, energy, and the distance from the
+ * group. */
 #include <dvi/diagnostics.h>
 #include <math.h>
 #include <string.h>
@@ -18,7 +19,8 @@ static const struct {
             {FREE_BODY, "euler-poincare:degree=2", 0.2},
             {DIRECTIONS, "sphere-galerkin:degree=2", 0.005}};
 
-/* Of 1e6 steps the roundings of the impulses leave 1e3 ulp in the momentum, and no trend; the distance is that of the last rounding. */
+/* Of 1e6 steps the roundings of the impulses leave 1e3 ulp in the momentum, and no trend; the
+ * distance is that of the last rounding. */
 START_TEST(a_million_steps_keep_what_they_should)
 {
   body of;
@@ -37,8 +39,8 @@ START_TEST(a_million_steps_keep_what_they_should)
     far = fmax(far, dvi_system_distance(of.system, dvi_integrator_q(made)));
   }
   dvi_drift_result(&drift, &energy);
-  ck_assert_msg(energy.significance < 3, "%s: energy %.1e, drift %.1e, significance %.1f", of.name, energy.largest, energy.change,
-                energy.significance);
+  ck_assert_msg(energy.significance < 3, "%s: energy %.1e, drift %.1e, significance %.1f", of.name,
+                energy.largest, energy.change, energy.significance);
   ck_assert_msg(momentum < 1e-12 * fmax(1, fabs(first[1])), "%s: momentum %.1e", of.name, momentum);
   ck_assert_msg(far < 1e-15, "%s: distance %.1e", of.name, far);
   dvi_integrator_destroy(&made);

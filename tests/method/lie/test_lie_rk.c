@@ -8,7 +8,8 @@
 #include "support/suite.h"
 
 static const double pendulum_moments[] = {.13, .28, .17},
-                    pendulum_end[] = {-6.751473860336227, .1484346732487297, 3.362315606396518}; /* Omega at T = 1 */
+                    /* Omega at T = 1 */
+    pendulum_end[] = {-6.751473860336227, .1484346732487297, 3.362315606396518};
 
 static const struct {
   const char *method;
@@ -26,7 +27,8 @@ static double error_of_pendulum(const char *method, double h)
   dvi_integrator *integrator = body_integrator(&pendulum, method);
   advance(integrator, h, lround(1 / h));
   const double *Pi = dvi_integrator_p(integrator);
-  const double Omega[] = {Pi[0] / pendulum_moments[0], Pi[1] / pendulum_moments[1], Pi[2] / pendulum_moments[2]};
+  const double Omega[] = {Pi[0] / pendulum_moments[0], Pi[1] / pendulum_moments[1],
+                          Pi[2] / pendulum_moments[2]};
   const double error = distance(3, Omega, pendulum_end);
   dvi_integrator_destroy(&integrator);
   destroy_body(&pendulum);
@@ -35,7 +37,8 @@ static double error_of_pendulum(const char *method, double h)
 
 START_TEST(a_pendulum_shows_the_order)
 {
-  const double coarse = error_of_pendulum(schemes[_i].method, .005), fine = error_of_pendulum(schemes[_i].method, .0025);
+  const double coarse = error_of_pendulum(schemes[_i].method, .005),
+               fine = error_of_pendulum(schemes[_i].method, .0025);
   ck_assert_double_eq_tol(log2(coarse / fine), schemes[_i].order, .1);
 }
 END_TEST
@@ -43,11 +46,13 @@ END_TEST
 /* Distance of q and p at time 1 from those of lie-galerkin:degree=6. */
 static double error_of_product(const body *of, const char *method, double h)
 {
-  dvi_integrator *judge = body_integrator(of, "lie-galerkin:degree=6"), *integrator = body_integrator(of, method);
+  dvi_integrator *judge = body_integrator(of, "lie-galerkin:degree=6"),
+                 *integrator = body_integrator(of, method);
   advance(judge, 1.0 / 16, 16);
   advance(integrator, h, lround(1 / h));
-  const double error = fmax(distance(dvi_system_nq(of->system), dvi_integrator_q(judge), dvi_integrator_q(integrator)),
-                            distance(dvi_system_nv(of->system), dvi_integrator_p(judge), dvi_integrator_p(integrator)));
+  const double error = fmax(
+      distance(dvi_system_nq(of->system), dvi_integrator_q(judge), dvi_integrator_q(integrator)),
+      distance(dvi_system_nv(of->system), dvi_integrator_p(judge), dvi_integrator_p(integrator)));
   dvi_integrator_destroy(&judge);
   dvi_integrator_destroy(&integrator);
   return error;
@@ -61,13 +66,15 @@ START_TEST(products_show_the_order)
     make_cells((cells_kind)(_i / 4), &cells);
   else
     make_body(PRODUCT, &cells);
-  const double coarse = error_of_product(&cells, method, 1.0 / 64), fine = error_of_product(&cells, method, 1.0 / 128);
+  const double coarse = error_of_product(&cells, method, 1.0 / 64),
+               fine = error_of_product(&cells, method, 1.0 / 128);
   ck_assert_double_eq_tol(log2(coarse / fine), schemes[_i % 4].order, .25);
   destroy_body(&cells);
 }
 END_TEST
 
-/* Exponentials stay on the group, and the implicit midpoint rule does; the explicit one leaves it by its error. What stays can be started from. */
+/* Exponentials stay on the group, and the implicit midpoint rule does; the explicit one leaves it
+ * by its error. What stays can be started from. */
 START_TEST(the_group_is_kept_or_left)
 {
   body cells;
@@ -79,7 +86,8 @@ START_TEST(the_group_is_kept_or_left)
     ck_assert_double_ge(off, 1e-6);
   else
     ck_assert_double_le(off, 1e-13); /* 100 steps, some roundings each */
-  ck_assert_int_eq(dvi_integrator_start(integrator, 2, dvi_integrator_q(integrator), dvi_integrator_p(integrator)),
+  ck_assert_int_eq(dvi_integrator_start(integrator, 2, dvi_integrator_q(integrator),
+                                        dvi_integrator_p(integrator)),
                    _i == 0 ? DVI_BAD_ARGUMENT : DVI_OK);
   dvi_integrator_destroy(&integrator);
   destroy_body(&cells);
@@ -154,7 +162,8 @@ START_TEST(an_implicit_step_too_large_fails_by_name)
 }
 END_TEST
 
-/* The mass between cells is singular somewhere off the group: no guess goes there, so that the matrix keeps the order of its pivots, and KLU its memory. */
+/* The mass between cells is singular somewhere off the group: no guess goes there, so that the
+ * matrix keeps the order of its pivots, and KLU its memory. */
 START_TEST(coupled_cells_refuse_steps_too_large)
 {
   static const double h[] = {2, 50, 1e4};
@@ -163,7 +172,8 @@ START_TEST(coupled_cells_refuse_steps_too_large)
   dvi_integrator *integrator = body_integrator(&cells, "lie-rk:scheme=implicit-midpoint");
   for (int i = 0; i < 3; i++) {
     ck_assert_int_eq(dvi_integrator_step(integrator, h[i]), DVI_NOT_CONVERGED);
-    ck_assert_int_eq(memcmp(dvi_integrator_q(integrator), cells.q, (size_t)cells.nq * sizeof(double)), 0);
+    ck_assert_int_eq(
+        memcmp(dvi_integrator_q(integrator), cells.q, (size_t)cells.nq * sizeof(double)), 0);
   }
   advance(integrator, .05, 1);
   dvi_integrator_destroy(&integrator);

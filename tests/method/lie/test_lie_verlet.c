@@ -10,7 +10,8 @@
 #include "support/suite.h"
 
 /* Omega at T = 10 and T = 1, in quadruple precision. */
-static const double free_moments[] = {3, 2, 1.5}, free_end[] = {.4671205340242394, .6269711557238373, -.1811252970621061};
+static const double free_moments[] = {3, 2, 1.5},
+                    free_end[] = {.4671205340242394, .6269711557238373, -.1811252970621061};
 static const double pendulum_moments[] = {.13, .28, .17},
                     pendulum_end[] = {-6.751473860336227, .1484346732487297, 3.362315606396518};
 
@@ -19,11 +20,13 @@ static const char *const solves[] = {"lie-verlet:solve=exp", "lie-verlet:solve=c
 /* ---- order ---- */
 
 /* The error of Omega at time T. */
-static double error_of(const body *of, const char *method, double h, double T, const double *moments, const double *end)
+static double error_of(const body *of, const char *method, double h, double T,
+                       const double *moments, const double *end)
 {
   dvi_integrator *integrator = body_integrator(of, method);
   advance(integrator, h, lround(T / h));
-  const double *Pi = dvi_integrator_p(integrator), Omega[] = {Pi[0] / moments[0], Pi[1] / moments[1], Pi[2] / moments[2]};
+  const double *Pi = dvi_integrator_p(integrator),
+               Omega[] = {Pi[0] / moments[0], Pi[1] / moments[1], Pi[2] / moments[2]};
   const double error = distance(3, Omega, end);
   dvi_integrator_destroy(&integrator);
   return error;
@@ -57,7 +60,8 @@ END_TEST
 static double distance_from_galerkin(const body *of, const char *method, double h)
 {
   const int n = dvi_system_nq(of->system), nv = dvi_system_nv(of->system);
-  dvi_integrator *judge = body_integrator(of, "lie-galerkin:degree=6"), *integrator = body_integrator(of, method);
+  dvi_integrator *judge = body_integrator(of, "lie-galerkin:degree=6"),
+                 *integrator = body_integrator(of, method);
   advance(judge, 1.0 / 16, 16);
   advance(integrator, h, lround(1 / h));
   const double error = fmax(distance(n, dvi_integrator_q(judge), dvi_integrator_q(integrator)),
@@ -94,7 +98,8 @@ START_TEST(compositions_have_order_4)
   const char *method = "composition:order=4,base=lie-verlet";
   body cells;
   make_product(_i, &cells);
-  const double coarse = distance_from_galerkin(&cells, method, 1.0 / 32), fine = distance_from_galerkin(&cells, method, 1.0 / 64);
+  const double coarse = distance_from_galerkin(&cells, method, 1.0 / 32),
+               fine = distance_from_galerkin(&cells, method, 1.0 / 64);
   ck_assert_double_le(fine, 1e-5);
   ck_assert_double_eq_tol(log2(coarse / fine), 4, .2);
   destroy_body(&cells);
@@ -105,7 +110,8 @@ START_TEST(both_parametrisations_are_one_method)
 {
   body top;
   make_body(PENDULUM_3D, &top);
-  dvi_integrator *by_exp = body_integrator(&top, solves[0]), *by_cayley = body_integrator(&top, solves[1]);
+  dvi_integrator *by_exp = body_integrator(&top, solves[0]),
+                 *by_cayley = body_integrator(&top, solves[1]);
   advance(by_exp, .02, 50);
   advance(by_cayley, .02, 50);
   ck_assert_double_le(distance(9, dvi_integrator_q(by_exp), dvi_integrator_q(by_cayley)),
@@ -138,7 +144,8 @@ START_TEST(a_step_of_cells_is_symplectic)
   body cells;
   make_cells(_i == 0 ? LOOSE : WEDGED, &cells);
   ck_assert_double_le(symplectic_defect(&cells, "lie-verlet", .2), 1e-9);
-  ck_assert_double_ge(symplectic_defect(&cells, "lie-rk:scheme=crouch-grossman", .2), 1e-5); /* the test can tell */
+  /* the test can tell */
+  ck_assert_double_ge(symplectic_defect(&cells, "lie-rk:scheme=crouch-grossman", .2), 1e-5);
   destroy_body(&cells);
 }
 END_TEST
@@ -161,14 +168,16 @@ START_TEST(a_step_back_undoes_a_step)
 }
 END_TEST
 
-/* The discrete free body has the energy and the momentum of the continuous one (Hairer and Vilmart 2006): no error but rounding, however thin and fast it is. */
+/* The discrete free body has the energy and the momentum of the continuous one (Hairer and Vilmart
+ * 2006): no error but rounding, however thin and fast it is. */
 START_TEST(thin_and_fast_bodies_keep_energy_and_momentum)
 {
   static const struct {
     double J[9], Omega[3], h;
   } cases[] = {
-      {{1, 0, 0, 0, 1, 0, 0, 0, 1e-6}, {300, -400, 10}, 1e-3},             /* a rod */
-      {{1, 0, 0, 0, 1.000001, 0, 0, 0, 2}, {600, -800, 30}, 1e-4},         /* nearly a symmetric plate, nearly flat */
+      {{1, 0, 0, 0, 1, 0, 0, 0, 1e-6}, {300, -400, 10}, 1e-3}, /* a rod */
+      /* nearly a symmetric plate, nearly flat */
+      {{1, 0, 0, 0, 1.000001, 0, 0, 0, 2}, {600, -800, 30}, 1e-4},
       {{2, 0, 0, 0, 1.999998, 0, 0, 0, 2.000001}, {1000, -300, 50}, 5e-4}, /* nearly a sphere */
   };
   body top;
@@ -177,7 +186,8 @@ START_TEST(thin_and_fast_bodies_keep_energy_and_momentum)
   double first, last, space[2][3];
   for (int k = 0; k < 2; k++) {
     const double *R = dvi_integrator_q(integrator), *Pi = dvi_integrator_p(integrator);
-    for (int i = 0; i < 3; i++) space[k][i] = R[3 * i] * Pi[0] + R[3 * i + 1] * Pi[1] + R[3 * i + 2] * Pi[2];
+    for (int i = 0; i < 3; i++)
+      space[k][i] = R[3 * i] * Pi[0] + R[3 * i + 1] * Pi[1] + R[3 * i + 2] * Pi[2];
     ck_assert_int_eq(dvi_integrator_invariants(integrator, k == 0 ? &first : &last), DVI_OK);
     if (k == 0) advance(integrator, cases[_i].h, 100000);
   }
@@ -200,7 +210,11 @@ START_TEST(a_step_beyond_the_bound_is_refused)
     double q[9], v[3]; /* |v| = 1 */
     const char *words;
   } cases[] = {
-      {{.kind = DVI_SO3, .inertia = inertia}, 9, {1, 0, 0, 0, 1, 0, 0, 0, 1}, {.6, 0, -.8}, "largest moment"},
+      {{.kind = DVI_SO3, .inertia = inertia},
+       9,
+       {1, 0, 0, 0, 1, 0, 0, 0, 1},
+       {.6, 0, -.8},
+       "largest moment"},
       {{.kind = DVI_S2, .mass = 2}, 3, {0, 0, 1}, {.6, -.8, 0}, "direction"},
       {{.kind = DVI_U1, .mass = 2}, 2, {0, 1}, {1}, "angle"},
   };
@@ -209,13 +223,16 @@ START_TEST(a_step_beyond_the_bound_is_refused)
   memcpy(top.q, cases[_i / 2].q, sizeof cases->q);
   memcpy(top.v, cases[_i / 2].v, sizeof cases->v);
   ck_assert_int_eq(
-      dvi_system_create(&(dvi_system_terms){.factors = &cases[_i / 2].factor, .factor_count = 1, .autonomous = 1}, &top.system),
+      dvi_system_create(
+          &(dvi_system_terms){.factors = &cases[_i / 2].factor, .factor_count = 1, .autonomous = 1},
+          &top.system),
       DVI_OK);
   dvi_integrator *integrator = body_integrator(&top, method);
   ck_assert_int_eq(dvi_integrator_step(integrator, 1.0001), DVI_STEP_TOO_LARGE);
   check_words(cases[_i / 2].words);
   check_words("up to 2,");
-  ck_assert_int_eq(memcmp(dvi_integrator_q(integrator), top.q, (size_t)cases[_i / 2].nq * sizeof(double)), 0);
+  ck_assert_int_eq(
+      memcmp(dvi_integrator_q(integrator), top.q, (size_t)cases[_i / 2].nq * sizeof(double)), 0);
   ck_assert_int_eq(dvi_integrator_step(integrator, .9999), DVI_OK);
   dvi_integrator_destroy(&integrator);
   destroy_body(&top);
@@ -229,7 +246,8 @@ START_TEST(coupled_cells_refuse_steps_too_large)
   dvi_integrator *integrator = body_integrator(&cells, "lie-verlet");
   ck_assert_int_eq(dvi_integrator_step(integrator, 3), DVI_STEP_TOO_LARGE);
   check_words("too far");
-  ck_assert_int_eq(memcmp(dvi_integrator_q(integrator), cells.q, (size_t)cells.nq * sizeof(double)), 0);
+  ck_assert_int_eq(memcmp(dvi_integrator_q(integrator), cells.q, (size_t)cells.nq * sizeof(double)),
+                   0);
   advance(integrator, .1, 1);
   dvi_integrator_destroy(&integrator);
   destroy_body(&cells);
@@ -253,7 +271,8 @@ static int weight(double t, const double *q, double *V_q, void *user)
   return 0;
 }
 
-/* A ball under a weight along an axis of its own; as a system of its own with -L: the scalar mass -1 makes I of J into -I. */
+/* A ball under a weight along an axis of its own; as a system of its own with -L: the scalar mass
+ * -1 makes I of J into -I. */
 static dvi_integrator *ball(const char *method, double sign, body *of)
 {
   static const double J[] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
@@ -261,8 +280,10 @@ static dvi_integrator *ball(const char *method, double sign, body *of)
   double *own = &signs[sign < 0];
   *own = sign;
   const dvi_factor factor = {.kind = DVI_SO3, .inertia = J};
-  const dvi_potential potential = {.name = "weight", .value = height, .gradient = weight, .user = own};
-  *of = (body){.name = "ball", .nq = 9, .nv = 3, .q = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .v = {1, .5, .2}};
+  const dvi_potential potential = {
+      .name = "weight", .value = height, .gradient = weight, .user = own};
+  *of = (body){
+      .name = "ball", .nq = 9, .nv = 3, .q = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .v = {1, .5, .2}};
   const dvi_system_terms terms = {.factors = &factor,
                                   .factor_count = 1,
                                   .potentials = &potential,
@@ -276,13 +297,15 @@ static dvi_integrator *ball(const char *method, double sign, body *of)
 /* -L has the same motions as L. */
 START_TEST(a_negative_mass_moves_against_the_force)
 {
-  static const char *const methods[] = {"lie-verlet", "lie-verlet:solve=cayley", "lie-galerkin:degree=2", "lie-rk"};
+  static const char *const methods[] = {"lie-verlet", "lie-verlet:solve=cayley",
+                                        "lie-galerkin:degree=2", "lie-rk"};
   body plus, minus;
   dvi_integrator *one = ball(methods[_i], 1, &plus), *other = ball(methods[_i], -1, &minus);
   advance(one, .05, 100);
   advance(other, .05, 100);
   ck_assert_double_le(distance(9, dvi_integrator_q(one), dvi_integrator_q(other)), 1e-13);
-  for (int i = 0; i < 3; i++) ck_assert_double_eq_tol(dvi_integrator_p(one)[i], -dvi_integrator_p(other)[i], 1e-13);
+  for (int i = 0; i < 3; i++)
+    ck_assert_double_eq_tol(dvi_integrator_p(one)[i], -dvi_integrator_p(other)[i], 1e-13);
   dvi_integrator_destroy(&one);
   dvi_integrator_destroy(&other);
   destroy_body(&plus);
@@ -290,19 +313,23 @@ START_TEST(a_negative_mass_moves_against_the_force)
 }
 END_TEST
 
-/* L = y1'.y2' = a' b' cos(a - b) of two angles. At rest b stays, and sin(a - b) grows by a'(0) cos(a(0) - b) t, without any kinetic energy. */
+/* L = y1'.y2' = a' b' cos(a - b) of two angles. At rest b stays, and sin(a - b) grows by a'(0)
+ * cos(a(0) - b) t, without any kinetic energy. */
 START_TEST(a_motion_without_kinetic_energy_is_solved)
 {
   static const int start[] = {0, 1, 2, 3, 4}, row[] = {2, 3, 0, 1};
   static const double mass[] = {1, 1, 1, 1};
   const dvi_factor factors[] = {{.kind = DVI_U1}, {.kind = DVI_U1}};
   body angles = {.name = "angles", .nq = 4, .nv = 2, .q = {1, 0, cos(.7), sin(.7)}, .v = {1, 0}};
-  const dvi_system_terms terms = {
-      .factors = factors, .factor_count = 2, .mass = {.values = mass, .pattern = {start, row}}, .autonomous = 1};
+  const dvi_system_terms terms = {.factors = factors,
+                                  .factor_count = 2,
+                                  .mass = {.values = mass, .pattern = {start, row}},
+                                  .autonomous = 1};
   ck_assert_int_eq(dvi_system_create(&terms, &angles.system), DVI_OK);
   dvi_integrator *integrator = body_integrator(&angles, "lie-verlet");
   advance(integrator, .1, 4);
-  ck_assert_double_eq_tol(dvi_u1_log(dvi_integrator_q(integrator)), .7 + asin(.4 * cos(.7) - sin(.7)), 1e-15);
+  ck_assert_double_eq_tol(dvi_u1_log(dvi_integrator_q(integrator)),
+                          .7 + asin(.4 * cos(.7) - sin(.7)), 1e-15);
   dvi_integrator_destroy(&integrator);
   destroy_body(&angles);
 }
@@ -345,8 +372,10 @@ START_TEST(hundreds_of_bodies_leap_one_by_one)
       v[3 * b + i] = sin(b + i);
     }
   }
-  ck_assert_int_eq(dvi_system_create(&(dvi_system_terms){.factors = factors, .factor_count = MANY, .autonomous = 1}, &system),
-                   DVI_OK);
+  ck_assert_int_eq(
+      dvi_system_create(
+          &(dvi_system_terms){.factors = factors, .factor_count = MANY, .autonomous = 1}, &system),
+      DVI_OK);
   dvi_integrator *integrator = made_integrator(system, "lie-verlet");
   ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, numbers, v), DVI_OK);
   double first, last;
@@ -374,11 +403,14 @@ START_TEST(a_centre_of_mass_goes_straight)
   dvi_integrator *integrator = body_integrator(&motion, "lie-verlet");
   const double *q = dvi_integrator_q(integrator);
   memcpy(push, dvi_integrator_p(integrator) + 3, sizeof push);
-  for (int i = 0; i < 3; i++) start[i] = q[9 + i] + q[3 * i] * centre[0] + q[3 * i + 1] * centre[1] + q[3 * i + 2] * centre[2];
+  for (int i = 0; i < 3; i++)
+    start[i] = q[9 + i] + q[3 * i] * centre[0] + q[3 * i + 1] * centre[1] +
+               q[3 * i + 2] * centre[2];
   advance(integrator, h, (long)steps);
   q = dvi_integrator_q(integrator);
   for (int i = 0; i < 3; i++) {
-    const double place = q[9 + i] + q[3 * i] * centre[0] + q[3 * i + 1] * centre[1] + q[3 * i + 2] * centre[2];
+    const double place = q[9 + i] + q[3 * i] * centre[0] + q[3 * i + 1] * centre[1] +
+                         q[3 * i + 2] * centre[2];
     ck_assert_double_eq_tol(place, start[i] + h * steps * push[i] / mass, 1e-11);
   }
   ck_assert_double_le(distance(3, push, dvi_integrator_p(integrator) + 3), 0);
@@ -401,7 +433,8 @@ START_TEST(between_steps_it_stays_on_the_group)
   ck_assert_double_le(distance(n, q, dvi_integrator_q(integrator)), 1e-14);
   ck_assert_int_eq(dvi_integrator_interpolate(integrator, 0, q, v), DVI_OK);
   ck_assert_double_le(distance(n, q, cells.q), 1e-15);
-  ck_assert_double_le(distance(dvi_system_nv(cells.system), v, cells.v), .2); /* the step's constant velocity: right to O(h) */
+  /* the step's constant velocity: right to O(h) */
+  ck_assert_double_le(distance(dvi_system_nv(cells.system), v, cells.v), .2);
   dvi_integrator_destroy(&integrator);
   destroy_body(&cells);
 }
@@ -411,7 +444,8 @@ START_TEST(systems_without_factors_are_refused)
 {
   problem *oscillator = made_problem("oscillator", NULL);
   dvi_integrator *integrator = NULL;
-  ck_assert_int_eq(dvi_integrator_create(oscillator->system, "lie-verlet", &integrator), DVI_UNSUPPORTED);
+  ck_assert_int_eq(dvi_integrator_create(oscillator->system, "lie-verlet", &integrator),
+                   DVI_UNSUPPORTED);
   ck_assert_ptr_null(integrator);
   problem_destroy(&oscillator);
 }

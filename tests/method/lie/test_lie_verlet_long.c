@@ -18,7 +18,8 @@ static double mean_energy(dvi_integrator *integrator, double first, double h, in
   return sum / steps;
 }
 
-/* A million steps of half a radian each. Roundings of one step are 1e-16 of the angle, and add up as a random walk: 1e3 times that. */
+/* A million steps of half a radian each. Roundings of one step are 1e-16 of the angle, and add up
+ * as a random walk: 1e3 times that. */
 START_TEST(a_million_steps_stay_on_the_group_with_their_momentum)
 {
   body pendulum;
@@ -33,7 +34,8 @@ START_TEST(a_million_steps_stay_on_the_group_with_their_momentum)
   ck_assert_int_eq(dvi_integrator_invariants(integrator, last), DVI_OK);
   ck_assert_double_le(dvi_system_distance(pendulum.system, dvi_integrator_q(integrator)), 1e-12);
   ck_assert_double_le(fabs(last[1] - first[1]), 1e-12);
-  ck_assert_double_le(fabs(late - early), .05 * fabs(early)); /* means over 10000 of a chaotic motion's oscillation */
+  /* means over 10000 of a chaotic motion's oscillation */
+  ck_assert_double_le(fabs(late - early), .05 * fabs(early));
   dvi_integrator_destroy(&integrator);
   destroy_body(&pendulum);
 }
@@ -49,9 +51,11 @@ START_TEST(coupled_directions_keep_their_length)
   advance(integrator, .002, repeats(1000000));
   ck_assert_int_eq(dvi_integrator_invariants(integrator, last), DVI_OK);
   ck_assert_double_le(dvi_system_distance(pendula.system, dvi_integrator_q(integrator)), 1e-14);
-  ck_assert_double_le(fabs(last[0] - first[0]), 1e-3 * fabs(first[0])); /* an oscillation of O(h^2) */
+  /* an oscillation of O(h^2) */
+  ck_assert_double_le(fabs(last[0] - first[0]), 1e-3 * fabs(first[0]));
   ck_assert_double_le(fabs(last[1] - first[1]),
-                      1e-12 * magnitude(6, dvi_integrator_p(integrator))); /* in units of what is added up */
+                      /* in units of what is added up */
+                      1e-12 * magnitude(6, dvi_integrator_p(integrator)));
   dvi_integrator_destroy(&integrator);
   destroy_body(&pendula);
 }

@@ -7,8 +7,9 @@
 #include "support/runs.h"
 #include "support/suite.h"
 
-/* What is the same in every step adds up: a defect of 1e-18 a step is 1e-12 after these. Roundings that differ from step to step are a random walk, of 1000 times
- * one of them: those of the leaps, which change the energy. Turns have none. */
+/* What is the same in every step adds up: a defect of 1e-18 a step is 1e-12 after these. Roundings
+ * that differ from step to step are a random walk, of 1000 times one of them: those of the leaps,
+ * which change the energy. Turns have none. */
 enum { STEPS = 1000000 };
 
 static const double rounding = 1.1e-16, walk = 1000;
@@ -16,13 +17,15 @@ static const double rounding = 1.1e-16, walk = 1000;
 static void momentum_in_space(const dvi_integrator *integrator, double *momentum)
 {
   const double *R = dvi_integrator_q(integrator), *Pi = dvi_integrator_p(integrator);
-  for (int i = 0; i < 3; i++) momentum[i] = R[3 * i] * Pi[0] + R[3 * i + 1] * Pi[1] + R[3 * i + 2] * Pi[2];
+  for (int i = 0; i < 3; i++)
+    momentum[i] = R[3 * i] * Pi[0] + R[3 * i + 1] * Pi[1] + R[3 * i + 2] * Pi[2];
 }
 
 /* The same rotation in all steps. */
 START_TEST(a_steady_rotation_stays_on_the_group)
 {
-  static const double J[] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, Omega[][3] = {{.5, -.6, .7}, {0, 0, 1}, {0, 7, 0}};
+  static const double J[] = {1, 0, 0, 0, 1, 0, 0, 0, 1},
+                      Omega[][3] = {{.5, -.6, .7}, {0, 0, 1}, {0, 7, 0}};
   double space[3];
   body top;
   make_free_body(J, Omega[_i], &top);
@@ -37,7 +40,8 @@ START_TEST(a_steady_rotation_stays_on_the_group)
 END_TEST
 
 /* J and Omega, in its frame, of a body with these in its principal axes, the columns of A. */
-static void turn_body(const double moment[3], const double Omega[3], const double A[9], double J[9], double v[3])
+static void turn_body(const double moment[3], const double Omega[3], const double A[9], double J[9],
+                      double v[3])
 {
   for (int i = 0; i < 3; i++) {
     v[i] = A[3 * i] * Omega[0] + A[3 * i + 1] * Omega[1] + A[3 * i + 2] * Omega[2];
@@ -55,9 +59,11 @@ START_TEST(tumbling_bodies_keep_energy_and_momentum)
     double moment[3], Omega[3], w[3], h;
     const char *method;
   } cases[] = {
-      {{1e-6, 1, 1}, {.3, .2, .5}, {0}, .4, "lie-verlet"}, /* a rod: small errors of the turn are large ones of its spin */
+      /* a rod: small errors of the turn are large ones of its spin */
+      {{1e-6, 1, 1}, {.3, .2, .5}, {0}, .4, "lie-verlet"},
       {{1e-6, 1, 1}, {.3, .2, .5}, {0}, .4, "lie-verlet:solve=exp"},
-      {{3, 2, 1.5}, {.4, .6, -.2}, {.6, -.4, .8}, .2, "lie-verlet"}, /* its axes are not those of the frame */
+      /* its axes are not those of the frame */
+      {{3, 2, 1.5}, {.4, .6, -.2}, {.6, -.4, .8}, .2, "lie-verlet"},
   };
   double A[9], J[9], v[3], space[2][3], first, last;
   body top;
@@ -82,7 +88,10 @@ START_TEST(directions_and_angles_keep_their_length)
   static const dvi_factor factors[] = {{.kind = DVI_S2, .mass = 1}, {.kind = DVI_U1, .mass = 1}};
   static const double q[] = {0, 0, 1, .6, .8}, v[] = {.6, 1, 0, 7};
   dvi_system *system = NULL;
-  ck_assert_int_eq(dvi_system_create(&(dvi_system_terms){.factors = factors, .factor_count = 2, .autonomous = 1}, &system), DVI_OK);
+  ck_assert_int_eq(
+      dvi_system_create(&(dvi_system_terms){.factors = factors, .factor_count = 2, .autonomous = 1},
+                        &system),
+      DVI_OK);
   dvi_integrator *integrator = made_integrator(system, "lie-verlet");
   ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, q, v), DVI_OK);
   advance(integrator, .1, STEPS);

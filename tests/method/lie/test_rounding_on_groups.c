@@ -5,15 +5,17 @@
 #include "support/runs.h"
 #include "support/suite.h"
 
-/* What is moved and its momentum keep twice the digits, so that only the last rounding of both is seen. What one rounding of a step would give, all to one side, is
- * STEPS times as much; their random walk 300 times. */
+/* What is moved and its momentum keep twice the digits, so that only the last rounding of both is
+ * seen. What one rounding of a step would give, all to one side, is STEPS times as much; their
+ * random walk 300 times. */
 enum { STEPS = 100000 };
 
 static const double rounding = 1.1e-16;
 
 static const double inertia[][9] = {{1.1, 0, 0, 0, .8, 0, 0, 0, .9}, {1, 0, 0, 0, 1, 0, 0, 0, 1}};
 
-/* One factor that turns by the same angle in all steps: about one axis of a body; about any of a spherical one. */
+/* One factor that turns by the same angle in all steps: about one axis of a body; about any of a
+ * spherical one. */
 static const struct {
   dvi_factor factor;
   double q[9], v[3];
@@ -49,7 +51,8 @@ static const struct {
 };
 enum { CASES = sizeof cases / sizeof *cases };
 
-static void momentum_in_space(dvi_factor_kind kind, const dvi_integrator *integrator, double momentum[3])
+static void momentum_in_space(dvi_factor_kind kind, const dvi_integrator *integrator,
+                              double momentum[3])
 {
   const double *y = dvi_integrator_q(integrator), *p = dvi_integrator_p(integrator);
   for (int i = 0; i < 3; i++) {
@@ -65,16 +68,21 @@ START_TEST(steady_turns_keep_to_the_group_and_keep_their_momentum)
   const dvi_factor *factor = &motions[cases[_i].motion].factor;
   double v[3], space[2][3];
   dvi_system *system = NULL;
-  ck_assert_int_eq(dvi_system_create(&(dvi_system_terms){.factors = factor, .factor_count = 1, .autonomous = 1}, &system), DVI_OK);
+  ck_assert_int_eq(
+      dvi_system_create(&(dvi_system_terms){.factors = factor, .factor_count = 1, .autonomous = 1},
+                        &system),
+      DVI_OK);
   dvi_integrator *integrator = made_integrator(system, cases[_i].method);
   for (int i = 0; i < 3; i++) v[i] = cases[_i].rate * motions[cases[_i].motion].v[i];
-  ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, motions[cases[_i].motion].q, v), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, motions[cases[_i].motion].q, v),
+                   DVI_OK);
   momentum_in_space(factor->kind, integrator, space[0]);
   advance(integrator, .1, STEPS);
   momentum_in_space(factor->kind, integrator, space[1]);
   ck_assert_double_le(dvi_system_distance(system, dvi_integrator_q(integrator)), 4 * rounding);
   /* An angle's momentum is the sum of what its rows leave: a random walk. */
-  ck_assert_double_le(distance(3, space[0], space[1]), (factor->kind == DVI_U1 ? 300 : 8) * rounding * magnitude(3, space[0]));
+  ck_assert_double_le(distance(3, space[0], space[1]),
+                      (factor->kind == DVI_U1 ? 300 : 8) * rounding * magnitude(3, space[0]));
   dvi_integrator_destroy(&integrator);
   dvi_system_destroy(&system);
 }
@@ -117,8 +125,11 @@ START_TEST(a_pendulum_keeps_its_vertical_momentum)
   const dvi_potential gravity = {.value = weight, .gradient = weigh};
   double space[2][3];
   dvi_system *system = NULL;
-  const dvi_system_terms terms = {
-      .factors = &factor, .factor_count = 1, .potentials = &gravity, .potential_count = 1, .autonomous = 1};
+  const dvi_system_terms terms = {.factors = &factor,
+                                  .factor_count = 1,
+                                  .potentials = &gravity,
+                                  .potential_count = 1,
+                                  .autonomous = 1};
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
   dvi_integrator *integrator = made_integrator(system, pendulums[_i].method);
   ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, q, v), DVI_OK);

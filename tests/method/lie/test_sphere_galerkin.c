@@ -1,5 +1,6 @@
 /* labels: invariant */
-/* Directions alone: the steps of lie-galerkin, their length, chains at linear cost, and what is refused. */
+/* Directions alone: the steps of lie-galerkin, their length, chains at linear cost, and what is
+ * refused. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -14,25 +15,33 @@ START_TEST(it_takes_the_steps_of_lie_galerkin)
 {
   body of;
   make_body(_i == 0 ? DIRECTIONS : ANGLE, &of);
-  dvi_integrator *mine = body_integrator(&of, "sphere-galerkin:degree=3"), *theirs = body_integrator(&of, "lie-galerkin:degree=3");
+  dvi_integrator *mine = body_integrator(&of, "sphere-galerkin:degree=3"),
+                 *theirs = body_integrator(&of, "lie-galerkin:degree=3");
   advance(mine, 0.02, 100);
   advance(theirs, 0.02, 100);
-  ck_assert_mem_eq(dvi_integrator_q(mine), dvi_integrator_q(theirs), (size_t)of.nq * sizeof(double));
-  ck_assert_mem_eq(dvi_integrator_p(mine), dvi_integrator_p(theirs), (size_t)of.nv * sizeof(double));
+  ck_assert_mem_eq(dvi_integrator_q(mine), dvi_integrator_q(theirs),
+                   (size_t)of.nq * sizeof(double));
+  ck_assert_mem_eq(dvi_integrator_p(mine), dvi_integrator_p(theirs),
+                   (size_t)of.nv * sizeof(double));
   dvi_integrator_destroy(&mine);
   dvi_integrator_destroy(&theirs);
   destroy_body(&of);
 }
 END_TEST
 
-/* A free direction goes round a great circle: always the same step, in which rounding errors of one sign would add up to 1e-10. */
+/* A free direction goes round a great circle: always the same step, in which rounding errors of one
+ * sign would add up to 1e-10. */
 START_TEST(a_free_direction_keeps_its_momentum)
 {
   const dvi_factor factor = {.kind = DVI_S2, .mass = 1};
   dvi_system *system;
-  ck_assert_int_eq(dvi_system_create(&(dvi_system_terms){.factors = &factor, .factor_count = 1, .autonomous = 1}, &system), DVI_OK);
+  ck_assert_int_eq(
+      dvi_system_create(&(dvi_system_terms){.factors = &factor, .factor_count = 1, .autonomous = 1},
+                        &system),
+      DVI_OK);
   dvi_integrator *made = made_integrator(system, "sphere-galerkin:degree=2");
-  ck_assert_int_eq(dvi_integrator_start_velocity(made, 0, (double[]){1, 0, 0}, (double[]){0, .7, .4}), DVI_OK);
+  ck_assert_int_eq(
+      dvi_integrator_start_velocity(made, 0, (double[]){1, 0, 0}, (double[]){0, .7, .4}), DVI_OK);
   advance(made, 1e-3, 100000);
   const double *q = dvi_integrator_q(made), *p = dvi_integrator_p(made);
   ck_assert_double_le(fabs(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] - 0.65), 1e-15);
@@ -56,7 +65,8 @@ START_TEST(directions_stay_directions)
   const double *q = dvi_integrator_q(made), *p = dvi_integrator_p(made);
   ck_assert_double_le(dvi_system_distance(of.system, q), 1e-15);
   for (int i = 0; i < 6; i += 3)
-    ck_assert_double_le(fabs(q[i] * p[i] + q[i + 1] * p[i + 1] + q[i + 2] * p[i + 2]), 1e-14 * magnitude(6, p));
+    ck_assert_double_le(fabs(q[i] * p[i] + q[i + 1] * p[i + 1] + q[i + 2] * p[i + 2]),
+                        1e-14 * magnitude(6, p));
   ck_assert_double_le(fabs(after[1] - before[1]), 1e-15);
   dvi_integrator_destroy(&made);
   destroy_body(&of);
@@ -97,15 +107,16 @@ static cost cost_of(int links)
   return found;
 }
 
-/* Ten times the links: ten times the memory, and as many residuals and Jacobians, whose entries test_charted counts; what a chain of one link needs is part of
- * both. */
+/* Ten times the links: ten times the memory, and as many residuals and Jacobians, whose entries
+ * test_charted counts; what a chain of one link needs is part of both. */
 START_TEST(chains_cost_as_much_as_they_have_links)
 {
   const cost few = cost_of(100), many = cost_of(1000);
   ck_assert_int_le(many.counters.residuals, few.counters.residuals * 12 / 10);
   ck_assert_int_le(many.counters.jacobians, few.counters.jacobians * 12 / 10);
   if (heap_is_counted())
-    ck_assert_msg(many.bytes < 12 * few.bytes && few.bytes > 100000, "%ld and %ld bytes", few.bytes, many.bytes);
+    ck_assert_msg(many.bytes < 12 * few.bytes && few.bytes > 100000, "%ld and %ld bytes", few.bytes,
+                  many.bytes);
 }
 END_TEST
 

@@ -13,10 +13,20 @@
 static const struct {
   const char *setting;
   int order;
-} one_steps[] = {{"euler", 1},          {"backward-euler", 1}, {"heun", 2},           {"rk4", 4},
-                 {"sdirk,stages=3", 4}, {"butcher6", 6},       {"gauss,stages=3", 6}, {"cooper-verner", 8}},
-  rules[] = {{"trapezoid", 2}, {"simpson", 4}, {"lobatto,nodes=4", 6}, {"clenshaw-curtis,nodes=5", 6}, {"lobatto,nodes=5", 8}};
-enum { ONE_STEPS = sizeof one_steps / sizeof *one_steps, RULES = sizeof rules / sizeof *rules, ORDER_MOST = 8 };
+} one_steps[] = {{"euler", 1},          {"backward-euler", 1},
+                 {"heun", 2},           {"rk4", 4},
+                 {"sdirk,stages=3", 4}, {"butcher6", 6},
+                 {"gauss,stages=3", 6}, {"cooper-verner", 8}},
+  rules[] = {{"trapezoid", 2},
+             {"simpson", 4},
+             {"lobatto,nodes=4", 6},
+             {"clenshaw-curtis,nodes=5", 6},
+             {"lobatto,nodes=5", 8}};
+enum {
+  ONE_STEPS = sizeof one_steps / sizeof *one_steps,
+  RULES = sizeof rules / sizeof *rules,
+  ORDER_MOST = 8
+};
 
 /* How many steps the coarsest run takes for each order. */
 static const struct {
@@ -35,12 +45,14 @@ static double ratio_of(int order)
 }
 
 /* A part of the coordinates' and momenta's largest, against quadruple precision. */
-static double error_of(const problem *of, double length, long steps, const char *method, const double *q, const double *p)
+static double error_of(const problem *of, double length, long steps, const char *method,
+                       const double *q, const double *p)
 {
   dvi_integrator *integrator = started(of, method);
   advance(integrator, length / (double)steps, steps);
-  const double error = fmax(distance(of->nq, q, dvi_integrator_q(integrator)) / magnitude(of->nq, q),
-                            distance(of->nq, p, dvi_integrator_p(integrator)) / magnitude(of->nq, p));
+  const double error = fmax(
+      distance(of->nq, q, dvi_integrator_q(integrator)) / magnitude(of->nq, q),
+      distance(of->nq, p, dvi_integrator_p(integrator)) / magnitude(of->nq, p));
   dvi_integrator_destroy(&integrator);
   return error;
 }
@@ -64,12 +76,15 @@ static double slope_of(int place, const char *method, ladder on)
   problem *of = made_problem(places[place].problem, places[place].setting);
   memcpy(q, of->q, (size_t)of->nq * sizeof *q);
   memcpy(p, of->p, (size_t)of->nq * sizeof *p);
-  ck_assert_double_le(quad_solve(of->name, places[place].setting != NULL, &places[place].setting, places[place].length, q, p),
+  ck_assert_double_le(quad_solve(of->name, places[place].setting != NULL, &places[place].setting,
+                                 places[place].length, q, p),
                       1e-17);
   for (int level = 0; level < LEVELS; level++) {
     const long steps = lround(on.first * pow(on.ratio, level));
-    const double error = error_of(of, places[place].length, steps, method, q, p), a = -log((double)steps), b = log(error);
-    if (getenv("DVI_SHOW_ORDERS") != NULL) printf("%s %s %ld %.2e\n", of->name, method, steps, error);
+    const double error = error_of(of, places[place].length, steps, method, q, p),
+                 a = -log((double)steps), b = log(error);
+    if (getenv("DVI_SHOW_ORDERS") != NULL)
+      printf("%s %s %ld %.2e\n", of->name, method, steps, error);
     ck_assert_double_ge(error, 1e-14);
     x += a;
     y += b;
@@ -93,8 +108,10 @@ static void check_slope_on(int place, const char *method, int order, double most
 {
   check_claim(place, method, order);
   const double slope = slope_of(place, method, on);
-  if (getenv("DVI_SHOW_ORDERS") != NULL) printf("%s %s: %.3f of %d\n", places[place].problem, method, slope, order);
-  ck_assert_msg(slope >= order - 0.2 && slope <= most, "%s %s: %.3f, not %d", places[place].problem, method, slope, order);
+  if (getenv("DVI_SHOW_ORDERS") != NULL)
+    printf("%s %s: %.3f of %d\n", places[place].problem, method, slope, order);
+  ck_assert_msg(slope >= order - 0.2 && slope <= most, "%s %s: %.3f, not %d", places[place].problem,
+                method, slope, order);
 }
 
 static void check_slope(int place, const char *method, int order, double most)
@@ -105,18 +122,22 @@ static void check_slope(int place, const char *method, int order, double most)
 START_TEST(the_order_is_the_lower_of_both)
 {
   const int which = sampled_case(_i), one = which / RULES, rule = which % RULES;
-  const int order = one_steps[one].order < rules[rule].order ? one_steps[one].order : rules[rule].order;
-  const char *method = spec("shooting:onestep=%s,quadrature=%s", one_steps[one].setting, rules[rule].setting);
+  const int order = one_steps[one].order < rules[rule].order ? one_steps[one].order
+                                                             : rules[rule].order;
+  const char *method = spec("shooting:onestep=%s,quadrature=%s", one_steps[one].setting,
+                            rules[rule].setting);
   for (int place = 0; place < PLACES; place++) check_slope(place, method, order, order + 0.2);
 }
 END_TEST
 
-/* A motion that can be run backwards makes the leading error of an odd order small: on pendulum and kepler the next, even order is seen first. On the double
- * pendulum, which has the errors of its mass, too, it is not. */
+/* A motion that can be run backwards makes the leading error of an odd order small: on pendulum and
+ * kepler the next, even order is seen first. On the double pendulum, which has the errors of its
+ * mass, too, it is not. */
 START_TEST(odd_orders_are_no_lower_than_claimed)
 {
-  static const char *const odd[] = {"kutta3,quadrature=lobatto,nodes=4", "radau-iia,quadrature=lobatto,nodes=4",
-                                    "dormand-prince,quadrature=lobatto,nodes=4", "radau-iia,stages=3,quadrature=lobatto,nodes=5"};
+  static const char *const odd[] = {
+      "kutta3,quadrature=lobatto,nodes=4", "radau-iia,quadrature=lobatto,nodes=4",
+      "dormand-prince,quadrature=lobatto,nodes=4", "radau-iia,stages=3,quadrature=lobatto,nodes=5"};
   const int order = _i < 2 ? 3 : 5;
   check_slope(0, spec("shooting:onestep=%s", odd[_i]), order, order + 1.5);
   check_slope(1, spec("shooting:onestep=%s", odd[_i]), order, order + 1.5);
@@ -124,10 +145,12 @@ START_TEST(odd_orders_are_no_lower_than_claimed)
 }
 END_TEST
 
-/* Its errors of order 5 and 6 have opposite signs on the double pendulum: the slope comes up to 5 from below, 4.6 with 60 steps. */
+/* Its errors of order 5 and 6 have opposite signs on the double pendulum: the slope comes up to 5
+ * from below, 4.6 with 60 steps. */
 START_TEST(dormand_prince_comes_up_to_order_5)
 {
-  check_slope_on(2, "shooting:onestep=dormand-prince,quadrature=lobatto,nodes=5", 5, 5.2, (ladder){104, 1.15});
+  check_slope_on(2, "shooting:onestep=dormand-prince,quadrature=lobatto,nodes=5", 5, 5.2,
+                 (ladder){104, 1.15});
 }
 END_TEST
 
@@ -136,7 +159,8 @@ START_TEST(compositions_have_the_order_of_the_scheme)
   static const char *const composed[] = {"implicit-midpoint,composition=4", "gauss,composition=6"};
   const int order = _i == 0 ? 4 : 6;
   for (int place = 0; place < PLACES; place++)
-    check_slope(place, spec("shooting:onestep=%s,quadrature=lobatto,nodes=5", composed[_i]), order, order + 0.2);
+    check_slope(place, spec("shooting:onestep=%s,quadrature=lobatto,nodes=5", composed[_i]), order,
+                order + 0.2);
 }
 END_TEST
 
@@ -144,20 +168,25 @@ END_TEST
 static const struct {
   const char *setting;
   int order;
-} series[] = {{"taylor,stages=2,quadrature=trapezoid", 2},        {"taylor", 4},
-              {"butcher6,quadrature=euler-maclaurin,terms=1", 4}, {"rk4,quadrature=euler-maclaurin,terms=2", 4},
-              {"butcher6,quadrature=gauss-hermite", 6},           {"cooper-verner,quadrature=gauss-hermite,terms=2", 4}};
+} series[] = {{"taylor,stages=2,quadrature=trapezoid", 2},
+              {"taylor", 4},
+              {"butcher6,quadrature=euler-maclaurin,terms=1", 4},
+              {"rk4,quadrature=euler-maclaurin,terms=2", 4},
+              {"butcher6,quadrature=gauss-hermite", 6},
+              {"cooper-verner,quadrature=gauss-hermite,terms=2", 4}};
 enum { SERIES = sizeof series / sizeof *series };
 
 START_TEST(series_have_the_order_of_their_degree)
 {
   for (int place = 0; place < PLACES; place++)
-    check_slope(place, spec("shooting:onestep=%s", series[_i].setting), series[_i].order, series[_i].order + 0.2);
+    check_slope(place, spec("shooting:onestep=%s", series[_i].setting), series[_i].order,
+                series[_i].order + 0.2);
 }
 END_TEST
 
-/* One step from end to end has no nodes between, and the double pendulum's motion has poles at 0.18 from the real line up to t = 1: what remains of the next
- * orders dies out late, and the error changes its sign on the way (taylor,stages=8 between 31 and 44 steps). */
+/* One step from end to end has no nodes between, and the double pendulum's motion has poles at 0.18
+ * from the real line up to t = 1: what remains of the next orders dies out late, and the error
+ * changes its sign on the way (taylor,stages=8 between 31 and 44 steps). */
 static const struct {
   const char *setting;
   int order, first[PLACES];
@@ -178,7 +207,8 @@ START_TEST(euler_maclaurin_has_order_twice_its_terms_and_2)
 }
 END_TEST
 
-/* The radius of convergence of the motion's Taylor series at a time, by the roots of its last coefficients. */
+/* The radius of convergence of the motion's Taylor series at a time, by the roots of its last
+ * coefficients. */
 static double radius_at(const problem *of, double t)
 {
   enum { DEGREE = 20, FIRST = 16, N = QUAD_N_MAX };
@@ -188,18 +218,21 @@ static double radius_at(const problem *of, double t)
   memcpy(q, of->q, (size_t)of->nq * sizeof *q);
   memcpy(p, of->p, (size_t)of->nq * sizeof *p);
   ck_assert_double_le(quad_solve(of->name, 0, NULL, t, q, p), 1e-17);
-  ck_assert_int_eq(dvi__flow_series_create(of->system, DEGREE, DVI__GRADIENTS, NULL, &motion), DVI_OK);
+  ck_assert_int_eq(dvi__flow_series_create(of->system, DEGREE, DVI__GRADIENTS, NULL, &motion),
+                   DVI_OK);
   ck_assert_int_eq(dvi__evaluator_create(of->system, 1, DVI__HESSIANS, NULL, &evaluator), DVI_OK);
   ck_assert_int_eq(dvi__legendre_inverse(evaluator, t, q, p, v), DVI_OK);
   ck_assert_int_eq(dvi__flow_series_expand(motion, t, q, v), DVI_OK);
   for (int k = FIRST; k <= DEGREE; k++)
-    for (int i = 0; i < of->nq; i++) most = fmax(most, pow(fabs(dvi__flow_series_q(motion)[k * of->nq + i]), 1.0 / k));
+    for (int i = 0; i < of->nq; i++)
+      most = fmax(most, pow(fabs(dvi__flow_series_q(motion)[k * of->nq + i]), 1.0 / k));
   dvi__evaluator_destroy(&evaluator);
   dvi__flow_series_destroy(&motion);
   return 1 / most;
 }
 
-/* At t = 6.2 the double pendulum's rods whip round. A residual makes the last error smaller by the step's own: from half the radius on not at all. */
+/* At t = 6.2 the double pendulum's rods whip round. A residual makes the last error smaller by the
+ * step's own: from half the radius on not at all. */
 START_TEST(newtons_method_is_as_fast_as_the_step_is_short)
 {
   static const struct {
@@ -214,7 +247,8 @@ START_TEST(newtons_method_is_as_fast_as_the_step_is_short)
   memcpy(p, of->p, sizeof p);
   ck_assert_double_le(quad_solve(of->name, 0, NULL, 6.2, q, p), 1e-17);
   for (size_t k = 0; k < sizeof steps / sizeof *steps; k++) {
-    dvi_integrator *integrator = made_integrator(of->system, "shooting:onestep=taylor,quadrature=euler-maclaurin");
+    dvi_integrator *integrator = made_integrator(
+        of->system, "shooting:onestep=taylor,quadrature=euler-maclaurin");
     double end_q[2], end_p[2];
     dvi_counters counters;
     memcpy(end_q, q, sizeof q);

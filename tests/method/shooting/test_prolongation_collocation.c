@@ -20,14 +20,18 @@ static const struct {
   const char *problem, *setting;
   double length;
   int first;
-} places[] = {{"kepler", "e=0.3", 1, 8}, {"pendulum", NULL, 2, 4}, {"double-pendulum", NULL, 0.5, 5}, {"toda", "N=5", 1, 3}};
+} places[] = {{"kepler", "e=0.3", 1, 8},
+              {"pendulum", NULL, 2, 4},
+              {"double-pendulum", NULL, 0.5, 5},
+              {"toda", "N=5", 1, 3}};
 enum { PLACES = sizeof places / sizeof *places, LARGEST = 4 };
 
 START_TEST(the_order_is_that_of_the_quadrature)
 {
   const int place = _i % PLACES, m = _i / PLACES + 1;
-  check_order_over(places[place].problem, places[place].setting, places[place].length, places[place].first,
-                   spec("prolongation-collocation:derivatives=%d", m), order_of(m));
+  check_order_over(places[place].problem, places[place].setting, places[place].length,
+                   places[place].first, spec("prolongation-collocation:derivatives=%d", m),
+                   order_of(m));
 }
 END_TEST
 
@@ -36,7 +40,8 @@ START_TEST(it_goes_on_to_order_10)
   static const struct {
     int place, m;
   } some[] = {{0, 8}, {1, 8}, {1, 6}, {DOUBLE_PENDULUM, 6}};
-  check_order(some[_i].place, spec("prolongation-collocation:derivatives=%d", some[_i].m), order_of(some[_i].m));
+  check_order(some[_i].place, spec("prolongation-collocation:derivatives=%d", some[_i].m),
+              order_of(some[_i].m));
 }
 END_TEST
 
@@ -47,11 +52,13 @@ START_TEST(time_may_stand_in_the_lagrangian)
 }
 END_TEST
 
-/* The line through the ends and the trapezoid: 20 steps of an orbit that amplifies roundings little. */
+/* The line through the ends and the trapezoid: 20 steps of an orbit that amplifies roundings
+ * little. */
 START_TEST(one_derivative_makes_it_verlet)
 {
   problem *of = made_problem("kepler", NULL);
-  dvi_integrator *integrator = started(of, "prolongation-collocation:derivatives=1"), *verlet = started(of, "verlet");
+  dvi_integrator *integrator = started(of, "prolongation-collocation:derivatives=1"),
+                 *verlet = started(of, "verlet");
   advance(integrator, 0.05, 20);
   advance(verlet, 0.05, 20);
   ck_assert_double_le(distance(2, dvi_integrator_q(integrator), dvi_integrator_q(verlet)), 1e-13);
@@ -62,7 +69,8 @@ START_TEST(one_derivative_makes_it_verlet)
 }
 END_TEST
 
-/* Rotations act on the path as they do on its ends. Roundings of a step stray like the square root of the steps, a trend of one epsilon a step by 100 times more. */
+/* Rotations act on the path as they do on its ends. Roundings of a step stray like the square root
+ * of the steps, a trend of one epsilon a step by 100 times more. */
 START_TEST(angular_momentum_of_kepler_stays_at_roundoff)
 {
   const int steps = repeats(5000);
@@ -90,7 +98,8 @@ START_TEST(energy_does_not_drift)
   } run[] = {{1, 4e-3}, {2, 8e-6}, {3, 1e-5}, {4, 4e-8}};
   const int steps = repeats(10000);
   problem *of = made_problem("pendulum", NULL);
-  dvi_integrator *integrator = started(of, spec("prolongation-collocation:derivatives=%d", run[_i].m));
+  dvi_integrator *integrator = started(of,
+                                       spec("prolongation-collocation:derivatives=%d", run[_i].m));
   dvi_drift energy;
   dvi_drift_fit fit;
   double value[2];
@@ -102,8 +111,8 @@ START_TEST(energy_does_not_drift)
   }
   dvi_drift_result(&energy, &fit);
   ck_assert_msg(fit.largest <= run[_i].bound, "energy error %g", fit.largest);
-  ck_assert_msg(fit.significance < 3 || fabs(fit.change) < 1e-3 * fit.largest, "change %g, significance %g", fit.change,
-                fit.significance);
+  ck_assert_msg(fit.significance < 3 || fabs(fit.change) < 1e-3 * fit.largest,
+                "change %g, significance %g", fit.change, fit.significance);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&of);
 }
@@ -115,7 +124,8 @@ START_TEST(no_step_takes_memory)
   problem *of = made_problem(names[_i], _i == 3 ? "N=5" : NULL);
   dvi_integrator *integrator = started(of, "prolongation-collocation:derivatives=4");
   const long before = heap_calls();
-  for (int i = 0; i < 30; i++) ck_assert_int_eq(dvi_integrator_step(integrator, i % 3 == 2 ? 0.018 : 0.02), DVI_OK);
+  for (int i = 0; i < 30; i++)
+    ck_assert_int_eq(dvi_integrator_step(integrator, i % 3 == 2 ? 0.018 : 0.02), DVI_OK);
   ck_assert_int_eq(heap_calls(), before);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&of);
@@ -127,7 +137,8 @@ START_TEST(a_step_that_is_too_long_leaves_the_state)
   problem *of = made_problem("kepler", NULL);
   dvi_integrator *integrator = started(of, "prolongation-collocation:derivatives=4");
   ck_assert_int_gt(dvi_integrator_step(integrator, 3), 0);
-  check_words("prolongation-collocation: step 1 from t = 0 with h = 3 failed; the state is unchanged, try a smaller step");
+  check_words("prolongation-collocation: step 1 from t = 0 with h = 3 failed; the state is "
+              "unchanged, try a smaller step");
   ck_assert_mem_eq(dvi_integrator_q(integrator), of->q, 2 * sizeof(double));
   ck_assert_mem_eq(dvi_integrator_p(integrator), of->p, 2 * sizeof(double));
   advance(integrator, 0.05, 10);
@@ -154,7 +165,8 @@ START_TEST(a_term_without_taylor_coefficients_is_named)
     terms.lagrangian = &lagrangian;
   }
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
-  ck_assert_int_eq(dvi_integrator_create(system, "prolongation-collocation", &integrator), DVI_UNSUPPORTED);
+  ck_assert_int_eq(dvi_integrator_create(system, "prolongation-collocation", &integrator),
+                   DVI_UNSUPPORTED);
   check_words(_i == 0 ? "prolongation-collocation: 'gravity' has no taylor callback"
                       : "prolongation-collocation: 'Lagrangian' has no taylor callback");
   dvi_system_destroy(&system);
@@ -165,13 +177,20 @@ END_TEST
 START_TEST(what_it_cannot_use_is_refused)
 {
   dvi_integrator *integrator = NULL;
-  problem *vortices = made_problem("vortices", NULL), *of = made_problem("pendulum", NULL), *large = made_problem("toda", "N=501");
-  ck_assert_int_eq(dvi_integrator_create(vortices->system, "prolongation-collocation", &integrator), DVI_UNSUPPORTED);
+  problem *vortices = made_problem("vortices", NULL), *of = made_problem("pendulum", NULL),
+          *large = made_problem("toda", "N=501");
+  ck_assert_int_eq(dvi_integrator_create(vortices->system, "prolongation-collocation", &integrator),
+                   DVI_UNSUPPORTED);
   check_words("the system declares a one-form");
-  ck_assert_int_eq(dvi_integrator_create(of->system, "prolongation-collocation:derivatives=0", &integrator), DVI_BAD_OPTION);
+  ck_assert_int_eq(
+      dvi_integrator_create(of->system, "prolongation-collocation:derivatives=0", &integrator),
+      DVI_BAD_OPTION);
   check_words("derivatives=0; 1 to 10 are possible");
-  ck_assert_int_eq(dvi_integrator_create(of->system, "prolongation-collocation:derivatives=11", &integrator), DVI_BAD_OPTION);
-  ck_assert_int_eq(dvi_integrator_create(large->system, "prolongation-collocation", &integrator), DVI_UNSUPPORTED);
+  ck_assert_int_eq(
+      dvi_integrator_create(of->system, "prolongation-collocation:derivatives=11", &integrator),
+      DVI_BAD_OPTION);
+  ck_assert_int_eq(dvi_integrator_create(large->system, "prolongation-collocation", &integrator),
+                   DVI_UNSUPPORTED);
   check_words("501 coordinates, and its matrices are full: at most 500 are possible");
   problem_destroy(&large);
   problem_destroy(&vortices);

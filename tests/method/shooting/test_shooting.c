@@ -40,7 +40,11 @@ enum { PAIRS = sizeof pairs / sizeof *pairs };
 static const struct {
   const char *problem;
   double h;
-} places[] = {{"pendulum", 0.2}, {"kepler", 0.1}, {"double-pendulum", 0.02}, {"driven-pendulum", 0.1}, {"henon-heiles", 0.2}};
+} places[] = {{"pendulum", 0.2},
+              {"kepler", 0.1},
+              {"double-pendulum", 0.02},
+              {"driven-pendulum", 0.1},
+              {"henon-heiles", 0.2}};
 enum { PLACES = sizeof places / sizeof *places };
 
 /* 1e-10 is the floor of differences, see dvi_symplecticity. */
@@ -51,11 +55,14 @@ START_TEST(steps_are_symplectic_and_symmetric_pairs_symmetric)
     problem *of = made_problem(places[place].problem, NULL);
     dvi_integrator *integrator = started(of, method);
     double defect;
-    ck_assert_int_eq(dvi_symplecticity(integrator, 0, of->q, of->p, places[place].h, &defect), DVI_OK);
+    ck_assert_int_eq(dvi_symplecticity(integrator, 0, of->q, of->p, places[place].h, &defect),
+                     DVI_OK);
     ck_assert_msg(defect <= 1e-10, "%s %s: symplectic to %g", of->name, method, defect);
-    ck_assert_int_eq(dvi_reversibility(integrator, 0, of->q, of->p, places[place].h, 20, &defect), DVI_OK);
+    ck_assert_int_eq(dvi_reversibility(integrator, 0, of->q, of->p, places[place].h, 20, &defect),
+                     DVI_OK);
     if (pairs[_i].symmetric != NEARLY)
-      ck_assert_msg((pairs[_i].symmetric == SYMMETRIC) == (defect <= 1e-12), "%s %s: reversible to %g", of->name, method, defect);
+      ck_assert_msg((pairs[_i].symmetric == SYMMETRIC) == (defect <= 1e-12),
+                    "%s %s: reversible to %g", of->name, method, defect);
     dvi_integrator_destroy(&integrator);
     problem_destroy(&of);
   }
@@ -64,7 +71,8 @@ END_TEST
 
 /* ---- momenta ---- */
 
-/* Kepler's problem where x = q0, y = q1 + q0^2: a rotation is no affine map of q, and no Runge-Kutta method is equivariant under it. */
+/* Kepler's problem where x = q0, y = q1 + q0^2: a rotation is no affine map of q, and no
+ * Runge-Kutta method is equivariant under it. */
 typedef struct bent {
   double x, y, vx, vy, r3;
 } bent;
@@ -83,7 +91,8 @@ static int bent_value(double t, const double *q, const double *v, double *L, voi
   return 0;
 }
 
-static int bent_gradient(double t, const double *q, const double *v, double *L_q, double *L_v, void *user)
+static int bent_gradient(double t, const double *q, const double *v, double *L_q, double *L_v,
+                         void *user)
 {
   (void)t, (void)user;
   const bent b = bent_at(q, v);
@@ -94,11 +103,13 @@ static int bent_gradient(double t, const double *q, const double *v, double *L_q
   return 0;
 }
 
-static int bent_hessian(double t, const double *q, const double *v, double *L_qq, double *L_qv, double *L_vv, void *user)
+static int bent_hessian(double t, const double *q, const double *v, double *L_qq, double *L_qv,
+                        double *L_vv, void *user)
 {
   (void)t, (void)user;
   const bent b = bent_at(q, v);
-  const double rr = b.x * b.x + b.y * b.y, r5 = b.r3 * rr, s = 2 * b.x, xx = (3 * b.x * b.x - rr) / r5, xy = 3 * b.x * b.y / r5,
+  const double rr = b.x * b.x + b.y * b.y, r5 = b.r3 * rr, s = 2 * b.x,
+               xx = (3 * b.x * b.x - rr) / r5, xy = 3 * b.x * b.y / r5,
                yy = (3 * b.y * b.y - rr) / r5;
   L_qq[0] = 4 * v[0] * v[0] + xx + 2 * s * xy + s * s * yy - 2 * b.y / b.r3;
   L_qq[1] = L_qq[2] = xy + s * yy;
@@ -149,9 +160,11 @@ END_TEST
 
 static dvi_system *bent_system(void)
 {
-  const dvi_lagrangian L = {.value = bent_value, .gradient = bent_gradient, .hessian = bent_hessian};
+  const dvi_lagrangian L = {
+      .value = bent_value, .gradient = bent_gradient, .hessian = bent_hessian};
   const dvi_invariant J = {.name = "angular momentum", .value = bent_angular_momentum};
-  const dvi_system_terms terms = {.dimension = 2, .lagrangian = &L, .invariants = &J, .invariant_count = 1, .autonomous = 1};
+  const dvi_system_terms terms = {
+      .dimension = 2, .lagrangian = &L, .invariants = &J, .invariant_count = 1, .autonomous = 1};
   dvi_system *system;
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
   return system;
@@ -159,14 +172,17 @@ static dvi_system *bent_system(void)
 
 START_TEST(momenta_of_other_one_step_methods_do_not)
 {
-  const double e = 0.3, q[] = {1 - e, -(1 - e) * (1 - e)}, vy = sqrt((1 + e) / (1 - e)), v[] = {0, vy};
+  const double e = 0.3, q[] = {1 - e, -(1 - e) * (1 - e)}, vy = sqrt((1 + e) / (1 - e)),
+               v[] = {0, vy};
   dvi_system *system = bent_system();
-  ck_assert_msg(dvi_system_check(system, 0, q, (double[]){0.3, vy}, 0, NULL) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_system_check(system, 0, q, (double[]){0.3, vy}, 0, NULL) == DVI_OK, "%s",
+                dvi_last_error());
   dvi_integrator *integrator = made_integrator(system, "shooting");
   double defect;
   ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, q, v), DVI_OK);
   ck_assert_double_ge(momentum_error(integrator, 0.05, 5000), 1e-6);
-  ck_assert_int_eq(dvi_symplecticity(integrator, 0, q, (double[]){2 * (1 - e) * vy, vy}, 0.05, &defect), DVI_OK);
+  ck_assert_int_eq(
+      dvi_symplecticity(integrator, 0, q, (double[]){2 * (1 - e) * vy, vy}, 0.05, &defect), DVI_OK);
   ck_assert_double_le(defect, 1e-10);
   dvi_integrator_destroy(&integrator);
   dvi_system_destroy(&system);
@@ -177,7 +193,8 @@ END_TEST
 static void end_of_turned(dvi_integrator *integrator, int is_bent, double angle, double *x)
 {
   const double e = 0.3, r = 1 - e, speed = sqrt((1 + e) / (1 - e)), c = cos(angle), s = sin(angle);
-  const double q[] = {r * c, r * s - is_bent * r * c * r * c}, v[] = {-speed * s, speed * c + is_bent * 2 * r * c * speed * s};
+  const double q[] = {r * c, r * s - is_bent * r * c * r * c},
+               v[] = {-speed * s, speed * c + is_bent * 2 * r * c * speed * s};
   ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, q, v), DVI_OK);
   advance(integrator, 0.05, 20);
   x[0] = dvi_integrator_q(integrator)[0];
@@ -199,7 +216,8 @@ START_TEST(steps_are_equivariant_where_the_one_step_method_is)
 {
   problem *of = made_problem("kepler", "e=0.3");
   dvi_system *other = bent_system();
-  dvi_integrator *straight_steps = made_integrator(of->system, "shooting"), *bent_steps = made_integrator(other, "shooting");
+  dvi_integrator *straight_steps = made_integrator(of->system, "shooting"),
+                 *bent_steps = made_integrator(other, "shooting");
   ck_assert_double_le(turning_error(straight_steps, 0), 1e-14);
   ck_assert_double_ge(turning_error(bent_steps, 1), 1e-7);
   dvi_integrator_destroy(&straight_steps);
@@ -228,7 +246,8 @@ static const struct {
     {"shooting:quadrature=euler-maclaurin,terms=0", "terms=1 to 20 are possible"},
     {"shooting:onestep=taylor,solve=stages", "solve=stages is for one-step methods with a tableau"},
     {"shooting:terms=2", "quadrature=simpson has no terms"},
-    {"shooting:composition=4", "raises the order of symmetric one-step methods alone, and onestep=rk4 is none"},
+    {"shooting:composition=4",
+     "raises the order of symmetric one-step methods alone, and onestep=rk4 is none"},
     {"shooting:tableau=", "tableau= is empty; give it a text, or leave it out"},
     {"shooting:tableau=no/such/file", "no/such/file cannot be read"},
 };
@@ -255,14 +274,17 @@ START_TEST(what_needs_taylor_coefficients_says_who_lacks_them)
                                .value_batch = of->terms->potentials[0].value_batch,
                                .gradient_batch = of->terms->potentials[0].gradient_batch,
                                .user = of->terms->potentials[0].user};
-  const dvi_system_terms terms = {.dimension = 2, .mass = {.scalar = 1}, .potentials = &plain, .potential_count = 1};
+  const dvi_system_terms terms = {
+      .dimension = 2, .mass = {.scalar = 1}, .potentials = &plain, .potential_count = 1};
   dvi_system *system;
   dvi_integrator *none = NULL;
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
-  ck_assert_int_eq(dvi_integrator_create(system, "shooting:quadrature=euler-maclaurin", &none), DVI_UNSUPPORTED);
+  ck_assert_int_eq(dvi_integrator_create(system, "shooting:quadrature=euler-maclaurin", &none),
+                   DVI_UNSUPPORTED);
   check_words("shooting: quadrature=euler-maclaurin");
   check_words("'plain'");
-  ck_assert_int_eq(dvi_integrator_create(system, "shooting:onestep=taylor", &none), DVI_UNSUPPORTED);
+  ck_assert_int_eq(dvi_integrator_create(system, "shooting:onestep=taylor", &none),
+                   DVI_UNSUPPORTED);
   check_words("shooting: onestep=taylor");
   ck_assert_ptr_null(none);
   dvi_system_destroy(&system);
@@ -284,14 +306,16 @@ static int wall_gradient(double t, const double *q, double *V_q, void *user)
   return q[0] < 1 ? 0 : 1;
 }
 
-/* Steps of a system whose callbacks `given` says: values alone, gradients too, or all; q goes to where they end. */
+/* Steps of a system whose callbacks `given` says: values alone, gradients too, or all; q goes to
+ * where they end. */
 static void step_rotors(const char *method, int given, double *q)
 {
   behaviour calls = {0};
   dvi_lagrangian lagrangian = rotors(&calls, ONE_POINT);
   if (given < 2) lagrangian.hessian = NULL;
   if (given < 1) lagrangian.gradient = NULL;
-  dvi_system *system = make_system(&(dvi_system_terms){.dimension = SITES, .lagrangian = &lagrangian});
+  dvi_system *system = make_system(
+      &(dvi_system_terms){.dimension = SITES, .lagrangian = &lagrangian});
   dvi_integrator *integrator = made_integrator(system, method);
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, generic_q, generic_v), DVI_OK);
   advance(integrator, 0.1, 40);
@@ -300,8 +324,8 @@ static void step_rotors(const char *method, int given, double *q)
   dvi_system_destroy(&system);
 }
 
-static const char *const noisy[] = {"shooting", "shooting:type=2", "shooting:type=3", "shooting:onestep=gauss",
-                                    "shooting:solve=stages"};
+static const char *const noisy[] = {"shooting", "shooting:type=2", "shooting:type=3",
+                                    "shooting:onestep=gauss", "shooting:solve=stages"};
 enum { NOISY = sizeof noisy / sizeof *noisy };
 
 /* The residual holds second derivatives: their noise is its floor, and that of the steps. */
@@ -317,14 +341,17 @@ END_TEST
 START_TEST(a_one_step_method_that_fails_inside_a_step_leaves_the_state)
 {
   const dvi_potential potential = {.name = "wall", .value = wall, .gradient = wall_gradient};
-  const dvi_system_terms terms = {.dimension = 1, .mass = {.scalar = 1}, .potentials = &potential, .potential_count = 1};
+  const dvi_system_terms terms = {
+      .dimension = 1, .mass = {.scalar = 1}, .potentials = &potential, .potential_count = 1};
   const double q = 0, p = 4;
   dvi_system *system;
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
-  dvi_integrator *integrator = made_integrator(system, _i == 0 ? "shooting" : "shooting:onestep=gauss");
+  dvi_integrator *integrator = made_integrator(system,
+                                               _i == 0 ? "shooting" : "shooting:onestep=gauss");
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, &q, &p), DVI_OK);
   ck_assert_int_gt(dvi_integrator_step(integrator, 2), 0);
-  check_words(_i == 0 ? "stage 2 of the one-step method from node 1 on" : "the stages of the one-step method from node 1 on");
+  check_words(_i == 0 ? "stage 2 of the one-step method from node 1 on"
+                      : "the stages of the one-step method from node 1 on");
   check_words("the state is unchanged, try a smaller step");
   ck_assert_double_eq(dvi_integrator_q(integrator)[0], q);
   ck_assert_double_eq(dvi_integrator_p(integrator)[0], p);

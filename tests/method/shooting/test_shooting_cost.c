@@ -1,12 +1,14 @@
 /* labels: invariant */
-/* What a step of shooting costs, in evaluations: as many shots with their second derivatives as residuals, and no more. */
+/* What a step of shooting costs, in evaluations: as many shots with their second derivatives as
+ * residuals, and no more. */
 #include "support/runs.h"
 #include "support/suite.h"
 
 enum { STEPS = 200 };
 
-/* Points of a shot at which the motion is evaluated: stages, and nodes that no stage stands for. Residuals and Jacobians a step, measured and rounded up:
- * heun changes the energy so much, near pericentres and turning points, that some of its steps are followed. */
+/* Points of a shot at which the motion is evaluated: stages, and nodes that no stage stands for.
+ * Residuals and Jacobians a step, measured and rounded up: heun changes the energy so much, near
+ * pericentres and turning points, that some of its steps are followed. */
 static const struct {
   const char *method;
   int points;
@@ -43,30 +45,34 @@ static dvi_counters counted(int place, const char *method)
   return n;
 }
 
-/* One Jacobian a step, but for a few that converge slowly. The shot from the inverse Legendre map is that of the first residual and of the Jacobian, and none closes the step. */
+/* One Jacobian a step, but for a few that converge slowly. The shot from the inverse Legendre map
+ * is that of the first residual and of the Jacobian, and none closes the step. */
 START_TEST(a_step_is_as_many_shots_as_residuals)
 {
   for (int place = 0; place < PLACES; place++) {
     const dvi_counters n = counted(place, shots[_i].method);
     ck_assert_double_le((double)n.jacobians, shots[_i].jacobians * STEPS);
-    /* A step that is followed is placed at each of its parts, which takes a shot; of one that is doubted the forces at both ends are asked for. */
+    /* A step that is followed is placed at each of its parts, which takes a shot; of one that is
+     * doubted the forces at both ends are asked for. */
     const long fired = n.residuals + 6 * n.followed;
     ck_assert_int_le(n.gradients, shots[_i].points * fired + n.gradients / 20);
     ck_assert_int_le(n.hessians, shots[_i].points * fired);
-    ck_assert_msg((double)n.residuals <= shots[_i].residuals * STEPS, "%s %s: %ld residuals", places[place].name, shots[_i].method,
-                  n.residuals);
+    ck_assert_msg((double)n.residuals <= shots[_i].residuals * STEPS, "%s %s: %ld residuals",
+                  places[place].name, shots[_i].method, n.residuals);
   }
 }
 END_TEST
 
-/* All stages at once: a sweep makes the guess, points serve the Jacobian and the residual that are asked for there, and one residual closes the step. */
+/* All stages at once: a sweep makes the guess, points serve the Jacobian and the residual that are
+ * asked for there, and one residual closes the step. */
 START_TEST(all_stages_are_evaluated_once_a_point)
 {
   enum { STAGES = 2 * 4, POINTS = STAGES + 3 };
   for (int place = 0; place < PLACES; place++) {
     const dvi_counters n = counted(place, "shooting:solve=stages");
     ck_assert_int_le(n.hessians, POINTS * (n.residuals + STEPS));
-    ck_assert_int_le(n.gradients, POINTS * (n.residuals + STEPS) + STAGES * STEPS + 4); /* of two steps' motion */
+    /* of two steps' motion */
+    ck_assert_int_le(n.gradients, POINTS * (n.residuals + STEPS) + STAGES * STEPS + 4);
   }
 }
 END_TEST

@@ -1,5 +1,6 @@
 /* labels: invariant slow long */
-/* Shooting over a million steps: explicit one-step methods keep the energy, if the search for the velocity is tight. */
+/* Shooting over a million steps: explicit one-step methods keep the energy, if the search for the
+ * velocity is tight. */
 #include <math.h>
 
 #include "support/runs.h"
@@ -36,15 +37,16 @@ START_TEST(explicit_one_step_methods_do_not_drift)
 {
   const dvi_drift_fit fit = energy_of(run[_i].method, 0.1, repeats(1000000));
   ck_assert_msg(fit.largest <= run[_i].bound, "%s: energy error %g", run[_i].method, fit.largest);
-  ck_assert_msg(fit.significance < 3 || fabs(fit.change) < 1e-3 * fit.largest, "%s: change %g, significance %g", run[_i].method,
-                fit.change, fit.significance);
+  ck_assert_msg(fit.significance < 3 || fabs(fit.change) < 1e-3 * fit.largest,
+                "%s: change %g, significance %g", run[_i].method, fit.change, fit.significance);
 }
 END_TEST
 
 /* A search that ends early leaves a part of the one-step method's own error, and that adds up. */
 START_TEST(a_loose_search_drifts)
 {
-  const dvi_drift_fit tight = energy_of("shooting", 0.1, 20000), loose = energy_of("shooting:tolerance=1e-6", 0.1, 20000);
+  const dvi_drift_fit tight = energy_of("shooting", 0.1, 20000),
+                      loose = energy_of("shooting:tolerance=1e-6", 0.1, 20000);
   ck_assert_double_le(tight.largest, run[0].bound);
   ck_assert_double_ge(loose.significance, 10);
   ck_assert_double_ge(fabs(loose.change), 10 * tight.largest);

@@ -1,5 +1,6 @@
 /* labels: invariant */
-/* Both ways to solve a step of shooting, by the shot and by all stages at once, and which of them is taken. */
+/* Both ways to solve a step of shooting, by the shot and by all stages at once, and which of them
+ * is taken. */
 #include <math.h>
 #include <string.h>
 
@@ -11,11 +12,13 @@ enum { STEPS = 20 };
 static const struct {
   const char *problem, *setting;
   double h;
-} places[] = {{"pendulum", NULL, 0.2},        {"kepler", NULL, 0.1},       {"double-pendulum", NULL, 0.02},
-              {"driven-pendulum", NULL, 0.1}, {"henon-heiles", NULL, 0.2}, {"fpu", "ell=3", 0.01}};
+} places[] = {{"pendulum", NULL, 0.2},         {"kepler", NULL, 0.1},
+              {"double-pendulum", NULL, 0.02}, {"driven-pendulum", NULL, 0.1},
+              {"henon-heiles", NULL, 0.2},     {"fpu", "ell=3", 0.01}};
 enum { PLACES = sizeof places / sizeof *places };
 
-static const char *const solved[] = {"rk4", "gauss", "sdirk,stages=3", "implicit-midpoint,composition=4",
+static const char *const solved[] = {"rk4", "gauss", "sdirk,stages=3",
+                                     "implicit-midpoint,composition=4",
                                      "cooper-verner,quadrature=clenshaw-curtis"};
 enum { SOLVED = sizeof solved / sizeof *solved };
 
@@ -33,8 +36,9 @@ START_TEST(all_stages_at_once_give_the_same_steps)
                    *stages = started(of, spec("shooting:onestep=%s,solve=stages", solved[_i]));
     advance(shot, places[place].h, STEPS);
     advance(stages, places[place].h, STEPS);
-    const double difference = fmax(apart(of->nq, dvi_integrator_q(shot), dvi_integrator_q(stages), of->q),
-                                   apart(of->nq, dvi_integrator_p(shot), dvi_integrator_p(stages), of->p));
+    const double difference = fmax(
+        apart(of->nq, dvi_integrator_q(shot), dvi_integrator_q(stages), of->q),
+        apart(of->nq, dvi_integrator_p(shot), dvi_integrator_p(stages), of->p));
     ck_assert_msg(difference <= 2e-13, "%s %s: apart by %g", of->name, solved[_i], difference);
     dvi_integrator_destroy(&shot);
     dvi_integrator_destroy(&stages);
@@ -43,11 +47,13 @@ START_TEST(all_stages_at_once_give_the_same_steps)
 }
 END_TEST
 
-/* A chain's neighbours alone meet: the factors stay sparse, where those of the shot would take 2000 x 2000 numbers. */
+/* A chain's neighbours alone meet: the factors stay sparse, where those of the shot would take 2000
+ * x 2000 numbers. */
 START_TEST(long_chains_are_solved_by_all_stages_at_once)
 {
   problem *of = made_problem("chain", "n=1000");
-  dvi_integrator *integrator = started(of, "shooting:onestep=heun,quadrature=trapezoid,solve=stages");
+  dvi_integrator *integrator = started(of,
+                                       "shooting:onestep=heun,quadrature=trapezoid,solve=stages");
   dvi_counters counters;
   advance(integrator, 0.1, 2);
   dvi_integrator_counters(integrator, &counters);
@@ -57,7 +63,8 @@ START_TEST(long_chains_are_solved_by_all_stages_at_once)
 }
 END_TEST
 
-/* rk4 and Simpson's rule have 21 blocks, with gauss 13; outer-solar's Hessian is full, the double pendulum's mass not diagonal. */
+/* rk4 and Simpson's rule have 21 blocks, with gauss 13; outer-solar's Hessian is full, the double
+ * pendulum's mass not diagonal. */
 static const struct {
   const char *problem, *setting, *method, *solve;
 } taken[] = {{"chain", "n=126", "shooting", "solve=shot"},
@@ -84,9 +91,10 @@ END_TEST
 
 static const struct {
   const char *setting, *method, *words;
-} refused[] = {{"n=2001", "shooting:solve=shot", "solve=shot has full matrices of 2n = 4002 unknowns"},
-               {"n=2001", "shooting:type=3", "solve=stages, with type=1"},
-               {"n=10", "shooting:type=2,solve=stages", "solve=stages is for type=1"}};
+} refused[] = {
+    {"n=2001", "shooting:solve=shot", "solve=shot has full matrices of 2n = 4002 unknowns"},
+    {"n=2001", "shooting:type=3", "solve=stages, with type=1"},
+    {"n=10", "shooting:type=2,solve=stages", "solve=stages is for type=1"}};
 enum { REFUSED = sizeof refused / sizeof *refused };
 
 START_TEST(what_is_too_large_or_has_no_such_way_is_refused)

@@ -19,7 +19,8 @@ START_TEST(tableaus_have_the_order_that_they_claim_and_no_more)
   for (int stages = fewest; stages <= most; stages++) {
     ck_assert_int_eq(dvi__runge_kutta_named(_i, stages, &method), DVI_OK);
     ck_assert_int_eq(dvi__runge_kutta_check(&method, method.order), DVI_OK);
-    if (method.order < DVI__TREES_MOST) ck_assert_int_eq(dvi__runge_kutta_check(&method, method.order + 1), DVI_BAD_OPTION);
+    if (method.order < DVI__TREES_MOST)
+      ck_assert_int_eq(dvi__runge_kutta_check(&method, method.order + 1), DVI_BAD_OPTION);
   }
 }
 END_TEST
@@ -55,12 +56,14 @@ static const char *written(const char *text)
 START_TEST(a_tableau_in_a_file_is_the_built_in_one)
 {
   problem *of = made_problem("kepler", NULL);
-  const char *path = written(
-      "# Kutta 1901\norder 4\nc 0 1/2 1/2 1\na\na 1/2\na 0 0.5\na 0 0 1 # the last one\nb 1/6 1/3 1/3 1/6\n");
-  dvi_integrator *file = started(of, spec("shooting:tableau=%s", path)), *built_in = started(of, "shooting:onestep=rk4");
+  const char *path = written("# Kutta 1901\norder 4\nc 0 1/2 1/2 1\na\na 1/2\na 0 0.5\na 0 0 1 # "
+                             "the last one\nb 1/6 1/3 1/3 1/6\n");
+  dvi_integrator *file = started(of, spec("shooting:tableau=%s", path)),
+                 *built_in = started(of, "shooting:onestep=rk4");
   ck_assert_int_eq(dvi_integrator_order(file), 4);
-  ck_assert_str_eq(dvi_integrator_method(file), "shooting:onestep=file,stages=4,tableau=shooting.tableau,composition=none,"
-                                                "quadrature=simpson,nodes=3,terms=0,solve=shot,tolerance=auto,type=1");
+  ck_assert_str_eq(dvi_integrator_method(file),
+                   "shooting:onestep=file,stages=4,tableau=shooting.tableau,composition=none,"
+                   "quadrature=simpson,nodes=3,terms=0,solve=shot,tolerance=auto,type=1");
   advance(file, 0.05, 20);
   advance(built_in, 0.05, 20);
   ck_assert_mem_eq(dvi_integrator_q(file), dvi_integrator_q(built_in), 2 * sizeof(double));
@@ -75,12 +78,16 @@ END_TEST
 static const struct {
   const char *text, *words;
 } broken[] = {
-    {"order 4\na\na 1/2\nb 0 1\n", "has not order 3: the sum of its condition for the tree [[[]]] is 0, not 1/6"},
+    {"order 4\na\na 1/2\nb 0 1\n",
+     "has not order 3: the sum of its condition for the tree [[[]]] is 0, not 1/6"},
     {"order 1\na\nb 2\n", "has not order 1: the sum of its condition for the tree [] is 2, not 1"},
-    {"order 2\na\na 0.666667\nb 1/4 3/4\n", "is 0.50000025, not 1/2, to 1e-12; are the decimals cut off?"},
-    {"order 2\na\na 2/3\nb 1/4 3/4\nc 0 0.666667\n", "has the sum 0.666666666666667, but c is 0.666667 there, to 1e-12"},
+    {"order 2\na\na 0.666667\nb 1/4 3/4\n",
+     "is 0.50000025, not 1/2, to 1e-12; are the decimals cut off?"},
+    {"order 2\na\na 2/3\nb 1/4 3/4\nc 0 0.666667\n",
+     "has the sum 0.666666666666667, but c is 0.666667 there, to 1e-12"},
     {"order 2\na\na 1/2\nb 0 1\nc 0 1\n", "row 2 of a has the sum 0.5, but c is 1 there"},
-    {"order 2\na\na 1/x\nb 0 1\n", "shooting.tableau:3:5: a number other than 0 is expected behind the stroke"},
+    {"order 2\na\na 1/x\nb 0 1\n",
+     "shooting.tableau:3:5: a number other than 0 is expected behind the stroke"},
     {"order 2\na\na 1/2,0\n", "shooting.tableau:3:6: a blank is expected behind the number"},
     {"order 2\na\n a half\n", "shooting.tableau:3:4: a number is expected"},
     {"order two\n", "shooting.tableau:1:7: a number is expected"},
@@ -89,7 +96,8 @@ static const struct {
     {"weights 1\n", "shooting.tableau:1:1: order, a, b or c is expected"},
     {"b 1\nb 1\n", "shooting.tableau:2:1: this row is given twice"},
     {"a\nb 1\n", "the order is missing"},
-    {"order 1\na\na\nb 1\n", "rows of a: 2, numbers of b: 1, of c: 0; as many of each are needed, or none of c"},
+    {"order 1\na\na\nb 1\n",
+     "rows of a: 2, numbers of b: 1, of c: 0; as many of each are needed, or none of c"},
     {"order 1\na 0 1\nb 1\n", "row 1 of a has more numbers than there are stages"},
     {"order 1\na\nb 1e999\n", "shooting.tableau:3:3: the number is not finite"},
     {"order 1\nb 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1\n", "methods of up to 16 stages are possible"},
@@ -101,7 +109,8 @@ START_TEST(broken_files_are_refused)
   problem *of = made_problem("pendulum", NULL);
   dvi_integrator *none = NULL;
   const char *path = written(broken[_i].text);
-  ck_assert_int_eq(dvi_integrator_create(of->system, spec("shooting:tableau=%s", path), &none), DVI_BAD_OPTION);
+  ck_assert_int_eq(dvi_integrator_create(of->system, spec("shooting:tableau=%s", path), &none),
+                   DVI_BAD_OPTION);
   check_words(broken[_i].words);
   ck_assert_ptr_null(none);
   problem_destroy(&of);

@@ -16,7 +16,8 @@ static void check_refused(const char *method, const char *because)
 
 START_TEST(a_base_that_is_not_symmetric_is_refused)
 {
-  check_refused("composition:order=4,base=galerkin,degree=2,quadrature=radau-right", "not symmetric");
+  check_refused("composition:order=4,base=galerkin,degree=2,quadrature=radau-right",
+                "not symmetric");
 }
 END_TEST
 
@@ -45,7 +46,8 @@ START_TEST(the_substeps_add_up_to_the_step)
   problem *oscillator = made_problem("oscillator", NULL);
   dvi_integrator *integrator = started(oscillator, spec("composition:order=%s", order[_i]));
   advance(integrator, 0.5, 1);
-  ck_assert_double_eq_tol(dvi_integrator_time(integrator), 0.5, 1e-15); /* up to 17 roundings, compensated */
+  /* up to 17 roundings, compensated */
+  ck_assert_double_eq_tol(dvi_integrator_time(integrator), 0.5, 1e-15);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&oscillator);
 }

@@ -14,7 +14,8 @@ static dvi_counters counters_of(const dvi_integrator *integrator)
   return counters;
 }
 
-/* Both take the same step; they differ by roundings of forces that are as large as 25 times the momenta. */
+/* Both take the same step; they differ by roundings of forces that are as large as 25 times the
+ * momenta. */
 START_TEST(one_linear_system_a_step_does_what_newtons_method_does)
 {
   problem *chain = made_problem("fpu", NULL);
@@ -54,8 +55,9 @@ START_TEST(a_composition_takes_one_factorisation_for_each_length_of_its_substeps
   static const struct {
     const char *method;
     long lengths, substeps;
-  } of[] = {
-      {"composition:order=4,base=imex", 2, 5}, {"composition:order=6,base=imex", 5, 9}, {"composition:order=8,base=imex", 9, 17}};
+  } of[] = {{"composition:order=4,base=imex", 2, 5},
+            {"composition:order=6,base=imex", 5, 9},
+            {"composition:order=8,base=imex", 9, 17}};
   problem *chain = made_problem("fpu", "ell=100");
   dvi_integrator *integrator = started(chain, of[_i].method);
   advance(integrator, 0.05, 100);
@@ -109,9 +111,10 @@ static int pull_gradient(double t, const double *q, double *V_q, void *user)
 
 START_TEST(full_matrices_are_kept_too)
 {
-  const dvi_potential potential = {.name = "pull", .value = pull, .gradient = pull_gradient, .fast = 1, .quadratic = 1};
-  dvi_system *system = make_system(
-      &(dvi_system_terms){.dimension = MASSES, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
+  const dvi_potential potential = {
+      .name = "pull", .value = pull, .gradient = pull_gradient, .fast = 1, .quadratic = 1};
+  dvi_system *system = make_system(&(dvi_system_terms){
+      .dimension = MASSES, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
   dvi_integrator *integrator = made_integrator(system, "composition:order=4,base=imex");
   const double q[MASSES] = {1}, p[MASSES] = {0};
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, q, p), DVI_OK);
@@ -143,9 +146,10 @@ static int saddle_gradient(double t, const double *q, double *V_q, void *user)
 /* The midpoint rule turns e^{2h} into (1 + h)/(1 - h). */
 START_TEST(along_a_saddle_the_motion_grows_and_steps_beyond_its_pole_are_refused)
 {
-  const dvi_potential potential = {.name = "saddle", .value = saddle, .gradient = saddle_gradient, .fast = 1, .quadratic = 1};
-  dvi_system *system = make_system(
-      &(dvi_system_terms){.dimension = 2, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
+  const dvi_potential potential = {
+      .name = "saddle", .value = saddle, .gradient = saddle_gradient, .fast = 1, .quadratic = 1};
+  dvi_system *system = make_system(&(dvi_system_terms){
+      .dimension = 2, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
   dvi_integrator *integrator = made_integrator(system, "imex");
   const double q[] = {0, 1}, p[] = {0, 2};
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, q, p), DVI_OK);
@@ -155,7 +159,8 @@ START_TEST(along_a_saddle_the_motion_grows_and_steps_beyond_its_pole_are_refused
   for (int k = 0; k < 2; k++) {
     ck_assert_int_eq(dvi_integrator_step(integrator, k == 0 ? 1.0 : 1.5), DVI_NOT_CONVERGED);
     check_words("imex: step 2 from t = 0.5 with h = 1");
-    check_words("the state is unchanged, try a smaller step: M + h^2/4 K is singular at this length or at a shorter one");
+    check_words("the state is unchanged, try a smaller step: M + h^2/4 K is singular at this "
+                "length or at a shorter one");
     check_words("K of the fast potentials has negative directions");
     ck_assert_double_eq_tol(dvi_integrator_q(integrator)[1], 3, 1e-14);
   }
@@ -181,7 +186,8 @@ static int cup_gradient(double t, const double *q, double *V_q, void *user)
   return 0;
 }
 
-/* V = -k |q|^2/2 for any number of coordinates: the determinant changes its sign as often as there are of them, at h = 1. */
+/* V = -k |q|^2/2 for any number of coordinates: the determinant changes its sign as often as there
+ * are of them, at h = 1. */
 
 enum { HILLS = 80 };
 
@@ -213,8 +219,10 @@ START_TEST(steps_beyond_two_poles_are_refused_too)
                                    .quadratic = 1,
                                    .qq = _i == 0 ? (dvi_pattern){start, row} : (dvi_pattern){0}};
   const dvi_mass scalar = {.scalar = 1}, sparse = {.values = mass, .pattern = {start, row}};
-  dvi_system *system = make_system(
-      &(dvi_system_terms){.dimension = n, .mass = _i == 0 ? sparse : scalar, .potentials = &potential, .potential_count = 1});
+  dvi_system *system = make_system(&(dvi_system_terms){.dimension = n,
+                                                       .mass = _i == 0 ? sparse : scalar,
+                                                       .potentials = &potential,
+                                                       .potential_count = 1});
   dvi_integrator *integrator = made_integrator(system, "imex");
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, q, p), DVI_OK);
   for (int k = 0; k < 2; k++) {
@@ -231,12 +239,18 @@ END_TEST
 START_TEST(a_pattern_that_is_too_large_is_that_of_a_potential)
 {
   int n = 50000;
-  const dvi_potential potential = {.name = "hill", .value = hill, .gradient = hill_gradient, .user = &n, .fast = 1, .quadratic = 1};
-  dvi_system *system = make_system(
-      &(dvi_system_terms){.dimension = n, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
+  const dvi_potential potential = {.name = "hill",
+                                   .value = hill,
+                                   .gradient = hill_gradient,
+                                   .user = &n,
+                                   .fast = 1,
+                                   .quadratic = 1};
+  dvi_system *system = make_system(&(dvi_system_terms){
+      .dimension = n, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
   dvi_integrator *integrator;
   ck_assert_int_eq(dvi_integrator_create(system, "imex", &integrator), DVI_BAD_SIZE);
-  check_words("the Hessian of 'hill': pattern: 2500000000 entries are too many; declare a sparse pattern");
+  check_words(
+      "the Hessian of 'hill': pattern: 2500000000 entries are too many; declare a sparse pattern");
   dvi_system_destroy(&system);
 }
 END_TEST
@@ -244,11 +258,13 @@ END_TEST
 START_TEST(of_an_indefinite_mass_the_sentence_says_so)
 {
   const double mass[] = {1, -1};
-  const dvi_potential potential = {.name = "cup", .value = cup, .gradient = cup_gradient, .fast = 1, .quadratic = 1};
-  dvi_system *system = make_system(
-      &(dvi_system_terms){.dimension = 2, .mass.diagonal = mass, .potentials = &potential, .potential_count = 1});
+  const dvi_potential potential = {
+      .name = "cup", .value = cup, .gradient = cup_gradient, .fast = 1, .quadratic = 1};
+  dvi_system *system = make_system(&(dvi_system_terms){
+      .dimension = 2, .mass.diagonal = mass, .potentials = &potential, .potential_count = 1});
   dvi_integrator *integrator = made_integrator(system, "imex");
-  ck_assert_int_eq(dvi_integrator_start(integrator, 0, (double[]){0, 1}, (double[]){0, -2}), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, (double[]){0, 1}, (double[]){0, -2}),
+                   DVI_OK);
   advance(integrator, 0.5, 1);
   ck_assert_double_eq_tol(dvi_integrator_q(integrator)[1], 3, 1e-13);
   ck_assert_int_eq(dvi_integrator_step(integrator, 1.5), DVI_NOT_CONVERGED);
@@ -264,8 +280,9 @@ START_TEST(a_step_without_a_solution_says_how_far_it_came)
   dvi_integrator *integrator = made_integrator(system, "imex");
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, &(double){0}, &(double){0}), DVI_OK);
   ck_assert_int_eq(dvi_integrator_step(integrator, 1.5), DVI_STEP_TOO_LARGE);
-  const char *const words[] = {"imex: step 1 from t = 0 with h = 1.5 failed", "the state is unchanged, try a smaller step",
-                               "iterations", "ends at h = 1.41"};
+  const char *const words[] = {"imex: step 1 from t = 0 with h = 1.5 failed",
+                               "the state is unchanged, try a smaller step", "iterations",
+                               "ends at h = 1.41"};
   for (int k = 0; k < 4; k++) check_words(words[k]);
   ck_assert_double_eq(dvi_integrator_q(integrator)[0], 0);
   advance(integrator, 0.7, 1);
@@ -280,8 +297,10 @@ END_TEST
 START_TEST(no_fast_frequency_resonates)
 {
   const double peak[] = {.99945, 1.99942, 2.99872, 3.99724};
-  for (int k = 1; k <= 45; k++) ck_assert_double_le(oscillators_energy_error("imex", 0.1, 0.1 * k, 10000), 3e-3);
-  for (int k = 0; k < 4; k++) ck_assert_double_le(oscillators_energy_error("imex", 0.1, peak[k], 10000), 3e-3);
+  for (int k = 1; k <= 45; k++)
+    ck_assert_double_le(oscillators_energy_error("imex", 0.1, 0.1 * k, 10000), 3e-3);
+  for (int k = 0; k < 4; k++)
+    ck_assert_double_le(oscillators_energy_error("imex", 0.1, peak[k], 10000), 3e-3);
   for (int k = 1; k <= 450; k++) ck_assert_double_eq(oscillators_growth("imex", 0.1, 0.01 * k), 1);
 }
 END_TEST
@@ -324,8 +343,10 @@ END_TEST
 SUITE(imex)
 {
   tcase_add_test(tests, one_linear_system_a_step_does_what_newtons_method_does);
-  tcase_add_test(tests, a_quadratic_fast_potential_takes_one_factorisation_a_run_and_one_gradient_a_step);
-  tcase_add_loop_test(tests, a_composition_takes_one_factorisation_for_each_length_of_its_substeps, 0, 3);
+  tcase_add_test(tests,
+                 a_quadratic_fast_potential_takes_one_factorisation_a_run_and_one_gradient_a_step);
+  tcase_add_loop_test(tests, a_composition_takes_one_factorisation_for_each_length_of_its_substeps,
+                      0, 3);
   tcase_add_test(tests, full_matrices_are_kept_too);
   tcase_add_test(tests, another_fast_potential_goes_to_the_midpoint_rules_solvers);
   tcase_add_loop_test(tests, steps_beyond_two_poles_are_refused_too, 0, 3);
@@ -335,5 +356,6 @@ SUITE(imex)
   tcase_add_test(tests, a_step_without_a_solution_says_how_far_it_came);
   tcase_add_test(tests, no_fast_frequency_resonates);
   tcase_add_test(tests, steps_are_stable_exactly_below_the_slow_limit_of_2);
-  tcase_add_test(tests, the_stiff_springs_keep_their_energy_over_long_times_at_steps_beyond_their_period);
+  tcase_add_test(tests,
+                 the_stiff_springs_keep_their_energy_over_long_times_at_steps_beyond_their_period);
 }

@@ -10,21 +10,28 @@
 #include "support/systems/bond.h"
 
 /* The first ones take any fast potential, all take quadratic ones. */
-static const char *const methods[] = {
-    "imex", "respa:substeps=20",     "respa:substeps=exact", "mollified", "mollified:filter=projection",
-    "trig", "trig:filter=deuflhard", "trig:filter=exact"};
+static const char *const methods[] = {"imex",
+                                      "respa:substeps=20",
+                                      "respa:substeps=exact",
+                                      "mollified",
+                                      "mollified:filter=projection",
+                                      "trig",
+                                      "trig:filter=deuflhard",
+                                      "trig:filter=exact"};
 enum { METHODS = sizeof methods / sizeof *methods, ANY_POTENTIAL = 2 };
 
 static void check_symplectic(const bond *of, const char *method, double h)
 {
   dvi_integrator *integrator = bond_integrator(of, method);
   double defect;
-  ck_assert_msg(dvi_symplecticity(integrator, 0, of->q, of->p, h, &defect) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_symplecticity(integrator, 0, of->q, of->p, h, &defect) == DVI_OK, "%s",
+                dvi_last_error());
   ck_assert_msg(defect <= 2e-10, "%s: defect %g", method, defect); /* the differences' own error */
   dvi_integrator_destroy(&integrator);
 }
 
-/* The bond's frequency is 61 without a bend: the longest steps are beyond h omega = pi, where the last method's filters end. */
+/* The bond's frequency is 61 without a bend: the longest steps are beyond h omega = pi, where the
+ * last method's filters end. */
 START_TEST(steps_are_symplectic)
 {
   bond of;
@@ -44,11 +51,13 @@ static void check_momenta(const bond *of, const char *method)
   ck_assert_int_eq(dvi_integrator_invariants(integrator, before), DVI_OK);
   advance(integrator, 0.02, 2000);
   ck_assert_int_eq(dvi_integrator_invariants(integrator, after), DVI_OK);
-  for (int k = 1; k < 3; k++) ck_assert_msg(fabs(after[k] - before[k]) < 1e-11, "%s: %g", method, after[k] - before[k]);
+  for (int k = 1; k < 3; k++)
+    ck_assert_msg(fabs(after[k] - before[k]) < 1e-11, "%s: %g", method, after[k] - before[k]);
   dvi_integrator_destroy(&integrator);
 }
 
-/* A random walk of 2000 steps, of roundings of forces that are h omega times the momenta: 1e-14 times that. */
+/* A random walk of 2000 steps, of roundings of forces that are h omega times the momenta: 1e-14
+ * times that. */
 START_TEST(momenta_of_symmetries_are_kept)
 {
   bond of;
@@ -75,12 +84,14 @@ START_TEST(a_step_back_undoes_a_step)
 }
 END_TEST
 
-/* Other lengths in between leave no trace: what is made for a length is made again, to the last bit. */
+/* Other lengths in between leave no trace: what is made for a length is made again, to the last
+ * bit. */
 START_TEST(a_step_depends_on_its_state_and_its_length_alone)
 {
   bond of;
   make_bond(2500, 0, &of);
-  dvi_integrator *mixed = bond_integrator(&of, methods[_i]), *fresh = bond_integrator(&of, methods[_i]);
+  dvi_integrator *mixed = bond_integrator(&of, methods[_i]),
+                 *fresh = bond_integrator(&of, methods[_i]);
   advance(mixed, 0.03, 1);
   advance(mixed, 0.02, 1);
   ck_assert_int_eq(dvi_integrator_start(mixed, 0, of.q, of.p), DVI_OK);
@@ -99,11 +110,14 @@ END_TEST
 static const struct {
   const char *problem, *because;
 } refused[] = {
-    {"kepler", "the method needs a fast potential (one that is declared `fast`), which the system does not declare"},
+    {"kepler", "the method needs a fast potential (one that is declared `fast`), which the system "
+               "does not declare"},
     {"double-pendulum", "the system declares a general Lagrangian, which this method cannot use"},
     {"vortices", "the system declares a one-form, which this method cannot use"},
-    {"magnetic-pair", "the system declares a Hamiltonian with constraints, which this method cannot use"},
-    {"pendulum-3d", "the system declares factors of its configuration space, which this method cannot use"},
+    {"magnetic-pair",
+     "the system declares a Hamiltonian with constraints, which this method cannot use"},
+    {"pendulum-3d",
+     "the system declares factors of its configuration space, which this method cannot use"},
 };
 enum { REFUSED = sizeof refused / sizeof *refused };
 
@@ -159,20 +173,24 @@ static int stiff_gradient(double t, const double *q, double *V_q, void *user)
 START_TEST(a_slow_force_that_fails_in_mid_run_leaves_the_state_alone)
 {
   trap set = {HUGE_VAL, 7};
-  const dvi_potential potentials[] = {{.name = "slow", .value = flat, .gradient = sprung, .user = &set},
-                                      {.name = "stiff", .value = stiff, .gradient = stiff_gradient, .fast = 1, .quadratic = 1}};
-  dvi_system *system = make_system(&(dvi_system_terms){.dimension = SITES,
-                                                       .mass = {.values = tridiagonal_mass, .pattern = tridiagonal},
-                                                       .potentials = potentials,
-                                                       .potential_count = 2});
-  dvi_integrator *tried = made_integrator(system, methods[_i]), *spared = made_integrator(system, methods[_i]);
+  const dvi_potential potentials[] = {
+      {.name = "slow", .value = flat, .gradient = sprung, .user = &set},
+      {.name = "stiff", .value = stiff, .gradient = stiff_gradient, .fast = 1, .quadratic = 1}};
+  dvi_system *system = make_system(
+      &(dvi_system_terms){.dimension = SITES,
+                          .mass = {.values = tridiagonal_mass, .pattern = tridiagonal},
+                          .potentials = potentials,
+                          .potential_count = 2});
+  dvi_integrator *tried = made_integrator(system, methods[_i]),
+                 *spared = made_integrator(system, methods[_i]);
   ck_assert_int_eq(dvi_integrator_start(tried, 0, generic_q, generic_v), DVI_OK);
   ck_assert_int_eq(dvi_integrator_start(spared, 0, generic_q, generic_v), DVI_OK);
   advance(tried, 0.1, 3);
   advance(spared, 0.1, 3);
   set.after = 0.35;
   ck_assert_int_eq(dvi_integrator_step(tried, 0.08), DVI_CALLBACK_RETRY);
-  check_words("step 4 from t = 0.3 with h = 0.08 failed; the state is unchanged, try a smaller step: slow: the gradient callback");
+  check_words("step 4 from t = 0.3 with h = 0.08 failed; the state is unchanged, try a smaller "
+              "step: slow: the gradient callback");
   set.after = HUGE_VAL;
   advance(tried, 0.1, 3);
   advance(spared, 0.1, 3);
@@ -190,6 +208,7 @@ SUITE(impulse)
   tcase_add_loop_test(tests, momenta_of_symmetries_are_kept, 0, METHODS);
   tcase_add_loop_test(tests, a_step_back_undoes_a_step, 0, METHODS);
   tcase_add_loop_test(tests, a_step_depends_on_its_state_and_its_length_alone, 0, METHODS);
-  tcase_add_loop_test(tests, systems_that_cannot_be_split_are_refused_by_name, 0, METHODS * REFUSED);
+  tcase_add_loop_test(tests, systems_that_cannot_be_split_are_refused_by_name, 0,
+                      METHODS * REFUSED);
   tcase_add_loop_test(tests, a_slow_force_that_fails_in_mid_run_leaves_the_state_alone, 0, METHODS);
 }

@@ -12,7 +12,8 @@ static const char *const methods[] = {"mollified", "mollified:filter=projection"
 START_TEST(filtered_kicks_do_not_resonate)
 {
   for (int k = 1; k <= 4; k++)
-    for (int i = -50; i <= 50; i++) ck_assert_double_le(oscillators_growth(methods[_i], 0.1, k + 8e-5 * i), 1 + 1e-7);
+    for (int i = -50; i <= 50; i++)
+      ck_assert_double_le(oscillators_growth(methods[_i], 0.1, k + 8e-5 * i), 1 + 1e-7);
 }
 END_TEST
 
@@ -20,7 +21,8 @@ END_TEST
 START_TEST(modes_that_a_step_resolves_are_not_projected)
 {
   problem *chain = made_problem("fpu", NULL);
-  dvi_integrator *projected = started(chain, "mollified:filter=projection"), *plain = started(chain, "respa:substeps=exact");
+  dvi_integrator *projected = started(chain, "mollified:filter=projection"),
+                 *plain = started(chain, "respa:substeps=exact");
   advance(projected, 0.019, 100);
   advance(plain, 0.019, 100);
   ck_assert_double_le(distance(6, dvi_integrator_q(projected), dvi_integrator_q(plain)), 1e-13);
@@ -42,7 +44,8 @@ START_TEST(the_average_asks_for_the_slow_force_at_the_mean_of_the_fast_motion)
   advance(integrator, h, 1);
   const double p_half = -h / 2 * filter * filter, q = cos(x) + sin(x) / omega * p_half;
   ck_assert_double_eq_tol(dvi_integrator_q(integrator)[0], q, 1e-15);
-  ck_assert_double_eq_tol(dvi_integrator_p(integrator)[0], cos(x) * p_half - omega * sin(x) - h / 2 * filter * filter * q, 1e-13);
+  ck_assert_double_eq_tol(dvi_integrator_p(integrator)[0],
+                          cos(x) * p_half - omega * sin(x) - h / 2 * filter * filter * q, 1e-13);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&of);
 }

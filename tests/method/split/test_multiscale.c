@@ -7,7 +7,8 @@
 #include "support/suite.h"
 #include "support/systems/systems.h"
 
-/* stiff-pendulum at k: the path as oscillations of the spring's frequency in both coordinates; and more keys. */
+/* stiff-pendulum at k: the path as oscillations of the spring's frequency in both coordinates; and
+ * more keys. */
 static const char *spring(double k, const char *keys)
 {
   return spec("multiscale:fast=0:1,omega=%.17g%s", sqrt(k), keys);
@@ -19,7 +20,8 @@ START_TEST(a_linear_oscillator_is_exact_whatever_h_omega)
 {
   static const double h[] = {1e-9, 1e-5, 1e-3, 0.01, 0.05, 0.19, 0.2, 0.21, 0.6, 1, 3.3, 20};
   problem *of = made_problem("oscillators", NULL);
-  dvi_integrator *integrator = started(of, spec("multiscale:fast=0,amplitude=%d,omega=%.17g", _i / 12, sqrt(2501)));
+  dvi_integrator *integrator = started(
+      of, spec("multiscale:fast=0,amplitude=%d,omega=%.17g", _i / 12, sqrt(2501)));
   advance(integrator, h[_i % 12], 10);
   double q, p;
   ck_assert_int_eq(of->exact(of, dvi_integrator_time(integrator), &q, &p), 0);
@@ -53,7 +55,8 @@ END_TEST
 START_TEST(where_the_oscillation_is_a_polynomial_it_is_galerkin_with_as_many_nodes)
 {
   problem *of = made_problem("kepler", NULL);
-  dvi_integrator *multiscale = started(of, "multiscale:fast=0:1,omega=1e-7"), *galerkin = started(of, "galerkin:degree=3,nodes=25");
+  dvi_integrator *multiscale = started(of, "multiscale:fast=0:1,omega=1e-7"),
+                 *galerkin = started(of, "galerkin:degree=3,nodes=25");
   advance(multiscale, 0.1, 50);
   advance(galerkin, 0.1, 50);
   ck_assert_double_le(distance(2, dvi_integrator_q(multiscale), dvi_integrator_q(galerkin)), 1e-12);
@@ -69,12 +72,14 @@ END_TEST
 /* galerkin:degree=8 with h omega = 1, which for k = 1e4 is 3e-12 from the runs of h omega = 0.5. */
 static const struct stiffness {
   double k, theta;
-} stiffnesses[] = {{1e2, 0.029870602158808268}, {1e3, -0.67372586093096465}, {1e4, -0.44519819285370654},
-                   {1e5, -0.41672294313293817}, {1e6, -0.41315619234509354}, {1e7, -0.41295298776305340},
+} stiffnesses[] = {{1e2, 0.029870602158808268}, {1e3, -0.67372586093096465},
+                   {1e4, -0.44519819285370654}, {1e5, -0.41672294313293817},
+                   {1e6, -0.41315619234509354}, {1e7, -0.41295298776305340},
                    {1e8, -0.41296487524618558}};
 
 /* At t = 10. */
-static double error_of_theta(const struct stiffness *at, const char *keys, double h, dvi_counters *counters)
+static double error_of_theta(const struct stiffness *at, const char *keys, double h,
+                             dvi_counters *counters)
 {
   problem *of = made_problem("stiff-pendulum", spec("k=%.17g", at->k));
   dvi_integrator *integrator = started(of, spring(at->k, keys));
@@ -114,14 +119,17 @@ START_TEST(steps_of_several_periods_have_an_error_below_one_in_ten_thousand)
 }
 END_TEST
 
-/* What is left out is of the fourth power of the amplitude: half of it, a sixteenth of the error. The second harmonic takes all but a hundredth of that. */
+/* What is left out is of the fourth power of the amplitude: half of it, a sixteenth of the error.
+ * The second harmonic takes all but a hundredth of that. */
 START_TEST(the_error_of_long_steps_is_the_second_harmonic)
 {
-  static const double theta[] = {-0.253079547133848, -0.41315619234509354, -0.45107746698721923}, a[] = {0.1, 0.05, 0.025};
+  static const double theta[] = {-0.253079547133848, -0.41315619234509354, -0.45107746698721923},
+                      a[] = {0.1, 0.05, 0.025};
   problem *of = made_problem("stiff-pendulum", "k=1e6");
   double error[2][3];
   for (int k = 0; k < 6; k++) {
-    dvi_integrator *integrator = made_integrator(of->system, spring(1e6, spec(",degree=4,amplitude=2,harmonics=%d", 1 + k / 3)));
+    dvi_integrator *integrator = made_integrator(
+        of->system, spring(1e6, spec(",degree=4,amplitude=2,harmonics=%d", 1 + k / 3)));
     const double q[] = {a[k % 3], 1}, p[] = {0, 0};
     ck_assert_int_eq(dvi_integrator_start(integrator, 0, q, p), DVI_OK);
     advance(integrator, 0.1, 100);
@@ -209,7 +217,8 @@ END_TEST
 START_TEST(fast_potentials_tell_the_frequency)
 {
   check_spelled("fpu", "multiscale", "multiscale:degree=3,amplitude=1,harmonics=1,omega=50");
-  check_spelled("fpu", "multiscale:omega=auto,fast=3:4:5", "multiscale:degree=3,amplitude=1,harmonics=1,omega=50,fast=3:4:5");
+  check_spelled("fpu", "multiscale:omega=auto,fast=3:4:5",
+                "multiscale:degree=3,amplitude=1,harmonics=1,omega=50,fast=3:4:5");
 }
 END_TEST
 
@@ -225,7 +234,8 @@ static double found_omega(const dvi_integrator *integrator)
   return strtod(line + strlen("omega: "), NULL);
 }
 
-/* At rest the spring's own but for the weight's part, 70/k of its square; in motion the swing adds at most 40/k to that. */
+/* At rest the spring's own but for the weight's part, 70/k of its square; in motion the swing adds
+ * at most 40/k to that. */
 START_TEST(a_frequency_that_is_not_known_is_found_at_the_first_step)
 {
   const struct stiffness *at = &stiffnesses[_i];
@@ -235,7 +245,8 @@ START_TEST(a_frequency_that_is_not_known_is_found_at_the_first_step)
   ck_assert_double_eq(found_omega(integrator), 0);
   dvi_integrator_counters(integrator, &created);
   advance(integrator, 0.1, 100);
-  ck_assert_double_eq_tol(found_omega(integrator), sqrt(at->k), (1e-5 + 70 / at->k / at->k) * sqrt(at->k));
+  ck_assert_double_eq_tol(found_omega(integrator), sqrt(at->k),
+                          (1e-5 + 70 / at->k / at->k) * sqrt(at->k));
   ck_assert_double_eq_tol(dvi_integrator_q(integrator)[1], at->theta, 1.2e-4);
   dvi_integrator_counters(integrator, &counters);
   ck_assert_int_eq(counters.allocations, created.allocations);
@@ -244,7 +255,8 @@ START_TEST(a_frequency_that_is_not_known_is_found_at_the_first_step)
 }
 END_TEST
 
-/* A pendulum at an angle of 0.3 from its rest: linear oscillations about that have cos 0.3 of the square of its small ones', its own have 1 - 0.3^2/8. */
+/* A pendulum at an angle of 0.3 from its rest: linear oscillations about that have cos 0.3 of the
+ * square of its small ones', its own have 1 - 0.3^2/8. */
 START_TEST(of_a_large_oscillation_it_is_that_at_its_start)
 {
   problem *of = made_problem("pendulum", NULL);
@@ -267,7 +279,8 @@ START_TEST(about_an_unstable_state_nothing_oscillates)
   problem *of = made_problem("pendulum", NULL);
   dvi_integrator *integrator = started(of, "multiscale:fast=0");
   ck_assert_int_eq(dvi_integrator_step(integrator, 0.1), DVI_BAD_STATE);
-  check_words("the state is unchanged: the fast coordinates do not oscillate about this state; give omega");
+  check_words(
+      "the state is unchanged: the fast coordinates do not oscillate about this state; give omega");
   dvi_integrator_destroy(&integrator);
   problem_destroy(&of);
 }
@@ -284,11 +297,14 @@ static void check_refused(const char *name, const char *method, const char *word
 
 START_TEST(what_is_not_known_is_asked_for)
 {
-  check_refused("stiff-pendulum", "multiscale",
-                "no coordinate is known to be fast: list them, as fast=0:1, or declare a fast potential");
+  check_refused(
+      "stiff-pendulum", "multiscale",
+      "no coordinate is known to be fast: list them, as fast=0:1, or declare a fast potential");
   check_refused("stiff-pendulum", "multiscale:omega=100", "no coordinate is known to be fast");
-  check_refused("stiff-pendulum", "multiscale:fast=0,omega=0", "omega=0; a positive number is possible, or auto");
-  check_refused("stiff-pendulum", "multiscale:fast=0:2,omega=1", "there is no coordinate 2; they are counted from 0 to 1");
+  check_refused("stiff-pendulum", "multiscale:fast=0,omega=0",
+                "omega=0; a positive number is possible, or auto");
+  check_refused("stiff-pendulum", "multiscale:fast=0:2,omega=1",
+                "there is no coordinate 2; they are counted from 0 to 1");
   check_refused("stiff-pendulum", "multiscale:fast=1:0:1,omega=1", "coordinate 1 is listed twice");
   check_refused("stiff-pendulum", "multiscale:fast=0.5,omega=1", "there is no coordinate 0.5");
   check_refused("stiff-pendulum", "multiscale:fast=0,omega=1,amplitude=4",
@@ -305,12 +321,14 @@ static int two_springs(double t, const double *q, double *V, void *user)
 
 START_TEST(of_two_fast_frequencies_one_must_be_chosen)
 {
-  const dvi_potential potential = {.name = "springs", .value = two_springs, .fast = 1, .quadratic = 1};
-  dvi_system *system = make_system(
-      &(dvi_system_terms){.dimension = 2, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
+  const dvi_potential potential = {
+      .name = "springs", .value = two_springs, .fast = 1, .quadratic = 1};
+  dvi_system *system = make_system(&(dvi_system_terms){
+      .dimension = 2, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
   dvi_integrator *integrator;
   ck_assert_int_eq(dvi_integrator_create(system, "multiscale", &integrator), DVI_BAD_OPTION);
-  check_words("the fast potentials have frequencies from 10 to 20; give the one that matters as omega");
+  check_words(
+      "the fast potentials have frequencies from 10 to 20; give the one that matters as omega");
   integrator = made_integrator(system, "multiscale:omega=20");
   dvi_integrator_destroy(&integrator);
   dvi_system_destroy(&system);
@@ -330,8 +348,8 @@ static int steep(double t, const double *q, double *V, void *user)
 START_TEST(of_many_fast_coordinates_it_is_asked_for)
 {
   const dvi_potential potential = {.name = "steep", .value = steep, .fast = 1};
-  dvi_system *system = make_system(
-      &(dvi_system_terms){.dimension = STEEP, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
+  dvi_system *system = make_system(&(dvi_system_terms){
+      .dimension = STEEP, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
   dvi_integrator *integrator;
   ck_assert_int_eq(dvi_integrator_create(system, "multiscale", &integrator), DVI_BAD_OPTION);
   check_words("of 17 fast coordinates the frequency is not found, of up to 16 it is: give omega");

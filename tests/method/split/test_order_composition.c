@@ -10,7 +10,8 @@
 START_TEST(compositions_of_verlet_have_their_order)
 {
   const int order = 4 + 2 * (_i % 3), index = _i / 3;
-  if (index != DOUBLE_PENDULUM) check_order(index, spec("composition:order=%d,base=verlet", order), order);
+  if (index != DOUBLE_PENDULUM)
+    check_order(index, spec("composition:order=%d,base=verlet", order), order);
 }
 END_TEST
 

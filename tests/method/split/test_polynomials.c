@@ -8,8 +8,9 @@
 #include "support/runs.h"
 #include "support/suite.h"
 
-static const char *const filters[] = {"deuflhard", "garcia-archilla", "grimm-hochbruck", "hairer-lubich",
-                                      "exact",     "gautschi",        "hochbruck-lubich"};
+static const char *const filters[] = {"deuflhard",       "garcia-archilla", "grimm-hochbruck",
+                                      "hairer-lubich",   "exact",           "gautschi",
+                                      "hochbruck-lubich"};
 enum { FILTERS = sizeof filters / sizeof *filters, VARIATIONAL = 2, WITHOUT_POLES = 4 };
 
 /* ---- the motion ---- */
@@ -29,8 +30,9 @@ static double difference(const necklace *of, const char *filter, double h)
   return found;
 }
 
-/* h omega up to 0.9, 2.7, 11 and 72. The difference is what modes lose: sums of n numbers, and a rounding of the largest omega^2, which turns by h^2 times as much; a string
- * that is pushed grows. */
+/* h omega up to 0.9, 2.7, 11 and 72. The difference is what modes lose: sums of n numbers, and a
+ * rounding of the largest omega^2, which turns by h^2 times as much; a string that is pushed
+ * grows. */
 START_TEST(polynomials_move_as_modes_do)
 {
   const double h[] = {0.5, 1.5, 6, 40};
@@ -41,8 +43,8 @@ START_TEST(polynomials_move_as_modes_do)
       make_necklace(n[k], (necklace_kind)kind, 1, &of);
       for (int j = 0; j < (_i >= WITHOUT_POLES || kind == PUSHED ? 2 : 4); j++) {
         const double found = difference(&of, filters[_i], h[j]);
-        ck_assert_msg(found <= (kind == PUSHED ? 4 : 1) * 4e-15 * (1 + h[j] * h[j]) * sqrt(n[k]), "%s, kind %d, n = %d, h = %g: %g",
-                      filters[_i], kind, n[k], h[j], found);
+        ck_assert_msg(found <= (kind == PUSHED ? 4 : 1) * 4e-15 * (1 + h[j] * h[j]) * sqrt(n[k]),
+                      "%s, kind %d, n = %d, h = %g: %g", filters[_i], kind, n[k], h[j], found);
       }
       destroy_necklace(&of);
     }
@@ -58,7 +60,8 @@ START_TEST(a_string_of_five_hundred_moves_as_modes_do)
 }
 END_TEST
 
-/* The even string has the modes sin(i a_k), lambda_k = 4 sin^2(a_k/2), a_k = k pi/(n+1): its motion over h in long double. */
+/* The even string has the modes sin(i a_k), lambda_k = 4 sin^2(a_k/2), a_k = k pi/(n+1): its motion
+ * over h in long double. */
 static double exactly(const necklace *of, double h, int i, double *p)
 {
   const int n = of->n;
@@ -100,8 +103,9 @@ END_TEST
 
 START_TEST(methods_with_one_filter_are_symplectic)
 {
-  const char *const methods[] = {"trig:motion=polynomials", "trig:filter=deuflhard,motion=polynomials",
-                                 "trig:filter=exact,motion=polynomials", "trig:filter=hairer-lubich,motion=polynomials"};
+  const char *const methods[] = {
+      "trig:motion=polynomials", "trig:filter=deuflhard,motion=polynomials",
+      "trig:filter=exact,motion=polynomials", "trig:filter=hairer-lubich,motion=polynomials"};
   necklace of;
   double defect;
   make_necklace(18, FREE, 1, &of);
@@ -116,7 +120,8 @@ START_TEST(methods_with_one_filter_are_symplectic)
 }
 END_TEST
 
-/* The fast motion alone is linear: its matrix J, column by column from rest at 0, against the symplectic form. */
+/* The fast motion alone is linear: its matrix J, column by column from rest at 0, against the
+ * symplectic form. */
 START_TEST(the_fast_motion_is_symplectic_to_rounding)
 {
   enum { N = 30 };
@@ -125,7 +130,8 @@ START_TEST(the_fast_motion_is_symplectic_to_rounding)
   necklace of;
   make_necklace(N, FREE, 1, &of);
   of.slow_off = 1;
-  dvi_integrator *integrator = made_integrator(of.system, "trig:filter=deuflhard,motion=polynomials");
+  dvi_integrator *integrator = made_integrator(of.system,
+                                               "trig:filter=deuflhard,motion=polynomials");
   for (int k = 0; k < 2 * N; k++) {
     double z[2 * N] = {0};
     z[k] = 1;
@@ -195,7 +201,8 @@ START_TEST(a_step_back_undoes_a_step)
 {
   necklace of;
   make_necklace(500, HELD, 1, &of);
-  dvi_integrator *integrator = necklace_integrator(&of, spec("trig:filter=%s,motion=polynomials", filters[_i]));
+  dvi_integrator *integrator = necklace_integrator(
+      &of, spec("trig:filter=%s,motion=polynomials", filters[_i]));
   advance(integrator, 0.8, 10);
   advance(integrator, -0.8, 10);
   ck_assert_double_le(distance(of.n, dvi_integrator_q(integrator), of.q), 1e-13);
@@ -211,8 +218,10 @@ START_TEST(a_step_depends_on_its_state_and_its_length_alone)
   necklace of;
   make_necklace(99, HELD, 1, &of);
   const size_t size = (size_t)of.n * sizeof(double);
-  dvi_integrator *mixed = necklace_integrator(&of, spec("trig:filter=%s,motion=polynomials", filters[_i]));
-  dvi_integrator *fresh = necklace_integrator(&of, spec("trig:filter=%s,motion=polynomials", filters[_i]));
+  dvi_integrator *mixed = necklace_integrator(
+      &of, spec("trig:filter=%s,motion=polynomials", filters[_i]));
+  dvi_integrator *fresh = necklace_integrator(
+      &of, spec("trig:filter=%s,motion=polynomials", filters[_i]));
   advance(mixed, 0.3, 1);
   advance(mixed, 0.8, 1);
   ck_assert_int_eq(dvi_integrator_start(mixed, 0, of.q, of.p), DVI_OK);
@@ -228,7 +237,8 @@ END_TEST
 
 /* ---- a hundred thousand ---- */
 
-/* 0 <= omega^2 <= 4: h omega <= 10, of which the motion wants two products for each of 18 degrees, phi and psi one for each of 17. */
+/* 0 <= omega^2 <= 4: h omega <= 10, of which the motion wants two products for each of 18 degrees,
+ * phi and psi one for each of 17. */
 START_TEST(a_step_of_a_long_string_takes_two_gradients_and_few_products)
 {
   const char *const methods[] = {"trig", "mollified", "respa:substeps=exact"};
@@ -250,8 +260,8 @@ START_TEST(a_step_of_a_long_string_takes_two_gradients_and_few_products)
   ck_assert_int_eq(after.solves + after.factorizations, 0);
   (void)dvi_integrator_explain(integrator, text, sizeof text);
   ck_assert_ptr_nonnull(strstr(text, "the fast ones move exactly, by polynomials"));
-  ck_assert_ptr_nonnull(
-      strstr(text, "whose omega^2 lie between 0 and 4: for steps with h omega = 1, 10, 100 of degree 7, 18, 77, which"));
+  ck_assert_ptr_nonnull(strstr(text, "whose omega^2 lie between 0 and 4: for steps with h omega = "
+                                     "1, 10, 100 of degree 7, 18, 77, which"));
   dvi_integrator_destroy(&integrator);
   destroy_necklace(&of);
 }
@@ -259,7 +269,8 @@ END_TEST
 
 /* ---- refusals ---- */
 
-static void check_step(const necklace *of, const char *method, double h, const char *because, double possible)
+static void check_step(const necklace *of, const char *method, double h, const char *because,
+                       double possible)
 {
   dvi_integrator *integrator = necklace_integrator(of, method);
   ck_assert_int_eq(dvi_integrator_step(integrator, h), DVI_NOT_CONVERGED);
@@ -274,17 +285,22 @@ START_TEST(steps_for_which_there_is_no_polynomial_fail_and_those_that_are_named_
 {
   necklace of;
   make_necklace(70, HELD, 0, &of);
-  check_step(&of, "trig", 2000, "polynomials need the degree 2069, of 1000 at most; h = 870 is possible", 870);
+  check_step(&of, "trig", 2000,
+             "polynomials need the degree 2069, of 1000 at most; h = 870 is possible", 870);
   check_step(&of, "trig:filter=gautschi,motion=polynomials", 2,
-             "h omega = 4 may be of a fast mode, where this filter does not exist: it divides by sinc(h omega), or by its root; h "
+             "h omega = 4 may be of a fast mode, where this filter does not exist: it divides by "
+             "sinc(h omega), or by its root; h "
              "= 1.5 is "
              "possible",
              1.5);
-  check_step(&of, "trig:filter=exact,motion=polynomials", 1.5707963, "h omega = 3.14159 may be of a fast mode", 1.5);
+  check_step(&of, "trig:filter=exact,motion=polynomials", 1.5707963,
+             "h omega = 3.14159 may be of a fast mode", 1.5);
   destroy_necklace(&of);
   make_necklace(70, PUSHED, 0, &of);
   check_step(&of, "trig", 6,
-             "it is only known that it is above -5, and exp(13.4) is too much for polynomials; h = 4.02 is possible", 4.02);
+             "it is only known that it is above -5, and exp(13.4) is too much for polynomials; h = "
+             "4.02 is possible",
+             4.02);
   destroy_necklace(&of);
 }
 END_TEST
@@ -294,14 +310,17 @@ START_TEST(a_filter_that_jumps_has_no_polynomial)
   necklace of;
   dvi_integrator *integrator = NULL;
   make_necklace(2001, HELD, 0, &of);
-  ck_assert_int_eq(dvi_integrator_create(of.system, "mollified:filter=projection", &integrator), DVI_BAD_SIZE);
-  check_words("mollified: polynomials: the filter jumps, they cannot follow it; take another one: normal modes: 2001 coordinates "
+  ck_assert_int_eq(dvi_integrator_create(of.system, "mollified:filter=projection", &integrator),
+                   DVI_BAD_SIZE);
+  check_words("mollified: polynomials: the filter jumps, they cannot follow it; take another one: "
+              "normal modes: 2001 coordinates "
               "are coupled");
   destroy_necklace(&of);
 }
 END_TEST
 
-/* Beads that are pushed away grow: the longest step is named, it is one, and no longer one is told of. */
+/* Beads that are pushed away grow: the longest step is named, it is one, and no longer one is told
+ * of. */
 START_TEST(steps_are_explained_as_far_as_they_are_possible)
 {
   static const char words[] = " of the motion; steps are at most ";
@@ -348,7 +367,8 @@ SUITE(polynomials)
   tcase_add_loop_test(tests, a_step_depends_on_its_state_and_its_length_alone, 0, FILTERS);
   tcase_add_loop_test(tests, a_step_of_a_long_string_takes_two_gradients_and_few_products, 0, 3);
   tcase_add_test(tests, steps_are_explained_as_far_as_they_are_possible);
-  tcase_add_test(tests, steps_for_which_there_is_no_polynomial_fail_and_those_that_are_named_do_not);
+  tcase_add_test(tests,
+                 steps_for_which_there_is_no_polynomial_fail_and_those_that_are_named_do_not);
   tcase_add_test(tests, a_filter_that_jumps_has_no_polynomial);
   tcase_add_loop_test(tests, blocks_of_more_than_64_go_by_polynomials_where_they_serve, 0, 4);
 }

@@ -13,7 +13,8 @@ START_TEST(with_one_substep_it_is_verlet)
   dvi_integrator *split = started(chain, "respa:substeps=1"), *whole = started(chain, "verlet");
   advance(split, 0.005, 200);
   advance(whole, 0.005, 200);
-  ck_assert_double_le(distance(6, dvi_integrator_q(split), dvi_integrator_q(whole)), 1e-14); /* roundings of 200 steps */
+  /* roundings of 200 steps */
+  ck_assert_double_le(distance(6, dvi_integrator_q(split), dvi_integrator_q(whole)), 1e-14);
   ck_assert_double_le(distance(6, dvi_integrator_p(split), dvi_integrator_p(whole)), 1e-13);
   dvi_integrator_destroy(&split);
   dvi_integrator_destroy(&whole);
@@ -41,11 +42,13 @@ END_TEST
 
 /* ---- exact motion ---- */
 
-/* A saddle, a free direction, and springs between sites, under a constant force; the mass couples all of them. */
+/* A saddle, a free direction, and springs between sites, under a constant force; the mass couples
+ * all of them. */
 static int hills(double t, const double *q, double *V, void *user)
 {
   (void)t, (void)user;
-  *V = 50 * (q[0] - q[1]) * (q[0] - q[1]) - 2 * q[2] * q[2] + 400 * q[3] * q[3] + 30 * q[5] * q[5] - 3 * q[1] + q[4];
+  *V = 50 * (q[0] - q[1]) * (q[0] - q[1]) - 2 * q[2] * q[2] + 400 * q[3] * q[3] + 30 * q[5] * q[5] -
+       3 * q[1] + q[4];
   return 0;
 }
 
@@ -63,12 +66,15 @@ static int hills_gradient(double t, const double *q, double *V_q, void *user)
 
 START_TEST(exact_motion_is_exact_whatever_the_step)
 {
-  const dvi_potential potential = {.name = "hills", .value = hills, .gradient = hills_gradient, .fast = 1, .quadratic = 1};
-  dvi_system *system = make_system(&(dvi_system_terms){.dimension = SITES,
-                                                       .mass = {.values = tridiagonal_mass, .pattern = tridiagonal},
-                                                       .potentials = &potential,
-                                                       .potential_count = 1});
-  dvi_integrator *exact = made_integrator(system, "respa:substeps=exact"), *judge = made_integrator(system, "galerkin:degree=8");
+  const dvi_potential potential = {
+      .name = "hills", .value = hills, .gradient = hills_gradient, .fast = 1, .quadratic = 1};
+  dvi_system *system = make_system(
+      &(dvi_system_terms){.dimension = SITES,
+                          .mass = {.values = tridiagonal_mass, .pattern = tridiagonal},
+                          .potentials = &potential,
+                          .potential_count = 1});
+  dvi_integrator *exact = made_integrator(system, "respa:substeps=exact"),
+                 *judge = made_integrator(system, "galerkin:degree=8");
   ck_assert_int_eq(dvi_integrator_start(exact, 0, generic_q, generic_v), DVI_OK);
   ck_assert_int_eq(dvi_integrator_start(judge, 0, generic_q, generic_v), DVI_OK);
   advance(exact, 1.5, 1);
@@ -94,17 +100,22 @@ START_TEST(what_has_no_modes_is_refused)
 {
   bond of;
   const double mass[SITES] = {1, 1, 1, -1, 1, 1};
-  const dvi_potential potential = {.name = "hills", .value = hills, .gradient = hills_gradient, .fast = 1, .quadratic = 1};
-  dvi_system *system = make_system(
-      &(dvi_system_terms){.dimension = SITES, .mass.diagonal = mass, .potentials = &potential, .potential_count = 1});
+  const dvi_potential potential = {
+      .name = "hills", .value = hills, .gradient = hills_gradient, .fast = 1, .quadratic = 1};
+  dvi_system *system = make_system(&(dvi_system_terms){
+      .dimension = SITES, .mass.diagonal = mass, .potentials = &potential, .potential_count = 1});
   check_refusal(system, DVI_SINGULAR, "is not positive definite");
   dvi_system_destroy(&system);
   make_bond(2500, 1, &of);
   check_refusal(of.system, DVI_UNSUPPORTED,
-                "respa: a fast potential is not declared `quadratic`, and only such ones have modes; substeps=k takes any");
+                "respa: a fast potential is not declared `quadratic`, and only such ones have "
+                "modes; substeps=k takes any");
   destroy_bond(&of);
-  system = make_system(&(dvi_system_terms){.dimension = 2001, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
-  check_refusal(system, DVI_BAD_SIZE, "respa: polynomials: K has 2001 entries in a row on average, where 100 are possible");
+  system = make_system(&(dvi_system_terms){
+      .dimension = 2001, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
+  check_refusal(
+      system, DVI_BAD_SIZE,
+      "respa: polynomials: K has 2001 entries in a row on average, where 100 are possible");
   check_words("normal modes: 2001 coordinates are coupled; 2000 at most are possible");
   dvi_system_destroy(&system);
 }
@@ -112,7 +123,8 @@ END_TEST
 
 START_TEST(substeps_are_a_number_or_exact)
 {
-  const char *const wrong[] = {"respa:substeps=0", "respa:substeps=many", "respa:substeps=", "respa:substeps=-1"};
+  const char *const wrong[] = {"respa:substeps=0", "respa:substeps=many",
+                               "respa:substeps=", "respa:substeps=-1"};
   problem *of = made_problem("oscillators", NULL);
   dvi_integrator *integrator = made_integrator(of->system, "respa");
   ck_assert_str_eq(dvi_integrator_method(integrator), "respa:substeps=10");
@@ -120,7 +132,8 @@ START_TEST(substeps_are_a_number_or_exact)
   integrator = made_integrator(of->system, "respa:substeps=exact");
   ck_assert_str_eq(dvi_integrator_method(integrator), "respa:substeps=exact");
   dvi_integrator_destroy(&integrator);
-  for (int k = 0; k < 4; k++) ck_assert_int_eq(dvi_integrator_create(of->system, wrong[k], &integrator), DVI_BAD_OPTION);
+  for (int k = 0; k < 4; k++)
+    ck_assert_int_eq(dvi_integrator_create(of->system, wrong[k], &integrator), DVI_BAD_OPTION);
   check_words("respa: substeps=-1; possible are exact and 1 to 1000000");
   problem_destroy(&of);
 }
@@ -140,8 +153,8 @@ static double peak_near(const char *method, int k, double *growth)
   return peak;
 }
 
-/* The peaks of 100 substeps, whose own frequency is a little above omega; of exact motion they stand higher up. In 10000 steps the amplitudes grow by
- * 8e6, 2900, 200 and 54. */
+/* The peaks of 100 substeps, whose own frequency is a little above omega; of exact motion they
+ * stand higher up. In 10000 steps the amplitudes grow by 8e6, 2900, 200 and 54. */
 START_TEST(kicks_in_phase_with_the_fast_motion_resonate)
 {
   const double peak[] = {.99945, 1.99942, 2.99872, 3.99724}, least[] = {1e6, 1000, 100, 30};
@@ -164,7 +177,8 @@ END_TEST
 SUITE(respa)
 {
   tcase_add_test(tests, with_one_substep_it_is_verlet);
-  tcase_add_loop_test(tests, a_step_has_one_slow_gradient_and_one_of_the_fast_potentials_for_each_substep, 0, 2);
+  tcase_add_loop_test(
+      tests, a_step_has_one_slow_gradient_and_one_of_the_fast_potentials_for_each_substep, 0, 2);
   tcase_add_test(tests, exact_motion_is_exact_whatever_the_step);
   tcase_add_test(tests, what_has_no_modes_is_refused);
   tcase_add_test(tests, substeps_are_a_number_or_exact);

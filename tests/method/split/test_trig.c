@@ -4,8 +4,9 @@
 #include "support/runs.h"
 #include "support/suite.h"
 
-static const char *const filters[] = {"exact",           "deuflhard",    "garcia-archilla", "gautschi", "hochbruck-lubich",
-                                      "grimm-hochbruck", "hairer-lubich"};
+static const char *const filters[] = {"exact",        "deuflhard",        "garcia-archilla",
+                                      "gautschi",     "hochbruck-lubich", "grimm-hochbruck",
+                                      "hairer-lubich"};
 enum { FILTERS = sizeof filters / sizeof *filters, VARIATIONAL = 3 };
 
 /* psi and phi of the two-step form q_{+} - 2 cos x q + q_{-} = h^2 psi g(phi q). */
@@ -16,14 +17,21 @@ static double sinc(double x)
 
 static double psi(int number, double x)
 {
-  const double by_half[] = {sinc(x / 2) * sqrt(sinc(x)), sinc(x),         sinc(x) * sinc(x), pow(sinc(x / 2), 2),
-                            pow(sinc(x / 2), 2),         pow(sinc(x), 3), pow(sinc(x), 2)};
+  const double by_half[] = {
+      sinc(x / 2) * sqrt(sinc(x)), sinc(x),         sinc(x) * sinc(x), pow(sinc(x / 2), 2),
+      pow(sinc(x / 2), 2),         pow(sinc(x), 3), pow(sinc(x), 2)};
   return by_half[number];
 }
 
 static double phi(int number, double x)
 {
-  const double of[] = {sinc(x / 2) / sqrt(sinc(x)), 1, sinc(x), 1, sinc(x) * (1 + pow(sin(x / 2), 2) / 3), sinc(x), 1};
+  const double of[] = {sinc(x / 2) / sqrt(sinc(x)),
+                       1,
+                       sinc(x),
+                       1,
+                       sinc(x) * (1 + pow(sin(x / 2), 2) / 3),
+                       sinc(x),
+                       1};
   return of[number];
 }
 
@@ -39,7 +47,8 @@ START_TEST(two_steps_have_the_filters_of_their_name)
       advance(integrator, h, 1);
       q[i] = dvi_integrator_q(integrator)[0];
     }
-    ck_assert_double_eq_tol(q[2] - 2 * cos(x[k]) * q[1] + q[0], -h * h * psi(_i, x[k]) * phi(_i, x[k]) * q[1], 2e-15);
+    ck_assert_double_eq_tol(q[2] - 2 * cos(x[k]) * q[1] + q[0],
+                            -h * h * psi(_i, x[k]) * phi(_i, x[k]) * q[1], 2e-15);
     dvi_integrator_destroy(&integrator);
     problem_destroy(&of);
   }
@@ -52,7 +61,8 @@ START_TEST(methods_with_one_filter_are_symplectic_and_the_others_are_not)
   dvi_integrator *integrator = started(chain, spec("trig:filter=%s", filters[_i]));
   double defect;
   advance(integrator, 0.03, 20);
-  ck_assert_int_eq(dvi_symplecticity(integrator, 0, dvi_integrator_q(integrator), dvi_integrator_p(integrator), 0.03, &defect),
+  ck_assert_int_eq(dvi_symplecticity(integrator, 0, dvi_integrator_q(integrator),
+                                     dvi_integrator_p(integrator), 0.03, &defect),
                    DVI_OK);
   if (_i < VARIATIONAL)
     ck_assert_double_le(defect, 2e-10);
@@ -82,7 +92,8 @@ END_TEST
 START_TEST(a_step_has_one_slow_gradient_and_one_fast_one)
 {
   problem *chain = made_problem("fpu", NULL);
-  dvi_integrator *integrator = started(chain, _i < FILTERS ? spec("trig:filter=%s", filters[_i]) : "mollified");
+  dvi_integrator *integrator = started(chain, _i < FILTERS ? spec("trig:filter=%s", filters[_i])
+                                                           : "mollified");
   dvi_counters first, after;
   advance(integrator, 0.02, 1);
   dvi_integrator_counters(integrator, &first);
@@ -100,8 +111,9 @@ START_TEST(a_step_at_which_a_filter_does_not_exist_fails_and_a_smaller_one_goes_
   static const struct {
     const char *method;
     double x;
-  } bad[] = {
-      {"trig:filter=exact", 4}, {"trig:filter=exact", 3.14159265358979323846}, {"trig:filter=gautschi", 3.14159265358979323846}};
+  } bad[] = {{"trig:filter=exact", 4},
+             {"trig:filter=exact", 3.14159265358979323846},
+             {"trig:filter=gautschi", 3.14159265358979323846}};
   problem *of = made_problem("oscillators", "omega=1");
   dvi_integrator *integrator = started(of, bad[_i].method);
   ck_assert_int_eq(dvi_integrator_step(integrator, bad[_i].x), DVI_NOT_CONVERGED);
@@ -117,8 +129,10 @@ END_TEST
 SUITE(trig)
 {
   tcase_add_loop_test(tests, two_steps_have_the_filters_of_their_name, 0, FILTERS);
-  tcase_add_loop_test(tests, methods_with_one_filter_are_symplectic_and_the_others_are_not, 0, FILTERS);
+  tcase_add_loop_test(tests, methods_with_one_filter_are_symplectic_and_the_others_are_not, 0,
+                      FILTERS);
   tcase_add_loop_test(tests, two_of_them_are_known_by_other_names, 0, 2);
   tcase_add_loop_test(tests, a_step_has_one_slow_gradient_and_one_fast_one, 0, FILTERS + 1);
-  tcase_add_loop_test(tests, a_step_at_which_a_filter_does_not_exist_fails_and_a_smaller_one_goes_on, 0, 3);
+  tcase_add_loop_test(
+      tests, a_step_at_which_a_filter_does_not_exist_fails_and_a_smaller_one_goes_on, 0, 3);
 }

@@ -12,7 +12,8 @@ START_TEST(a_step_is_kick_drift_kick)
   const double h = 0.25, k = 0.5, q0 = oscillator->q[0], p0 = oscillator->p[0];
   const double p_half = p0 - h / 2 * k * q0, q1 = q0 + h * p_half, p1 = p_half - h / 2 * k * q1;
   advance(integrator, h, 1);
-  ck_assert_double_eq_tol(dvi_integrator_q(integrator)[0], q1, 1e-16); /* the same operations: a rounding apart at most */
+  /* the same operations: a rounding apart at most */
+  ck_assert_double_eq_tol(dvi_integrator_q(integrator)[0], q1, 1e-16);
   ck_assert_double_eq_tol(dvi_integrator_p(integrator)[0], p1, 1e-16);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&oscillator);
@@ -27,7 +28,8 @@ START_TEST(a_step_costs_one_gradient_and_nothing_else)
   dvi_integrator_counters(integrator, &before);
   advance(integrator, 10, 1);
   dvi_integrator_counters(integrator, &after);
-  ck_assert_int_eq(after.gradients - before.gradients, 2); /* the first step needs the start's forces, too */
+  /* the first step needs the start's forces, too */
+  ck_assert_int_eq(after.gradients - before.gradients, 2);
   advance(integrator, 10, 100);
   dvi_integrator_counters(integrator, &after);
   ck_assert_int_eq(after.gradients - before.gradients, 102);
@@ -67,7 +69,8 @@ START_TEST(no_hessian_is_made_for_it)
 {
   int n = 50000;
   const dvi_potential potential = {.value = spring_value, .gradient = spring_gradient, .user = &n};
-  const dvi_system_terms terms = {.dimension = n, .mass.scalar = 1, .potentials = &potential, .potential_count = 1};
+  const dvi_system_terms terms = {
+      .dimension = n, .mass.scalar = 1, .potentials = &potential, .potential_count = 1};
   dvi_system *system = NULL;
   double *zeros = calloc((size_t)n, sizeof *zeros);
   ck_assert_ptr_nonnull(zeros);
@@ -92,18 +95,19 @@ START_TEST(what_it_cannot_do_is_refused_by_name)
     const char *words;
   } cases[] = {
       {"verlet:degree=2", DVI_BAD_OPTION, "degree"},
-      {"verlet:sweep=tidal", DVI_BAD_OPTION, "auto, wave, plain"},
+      {"verlet:blocking=tidal", DVI_BAD_OPTION, "auto, temporal, none"},
       {"verlet:threads=0", DVI_BAD_OPTION, "1 to 64"},
       {"verlet:threads=65", DVI_BAD_OPTION, "1 to 64"},
       {"verlet:threads=-1", DVI_BAD_OPTION, "plain digits"},
-      {"verlet:sweep=wave", DVI_UNSUPPORTED, "no gradient_range"},
+      {"verlet:blocking=temporal", DVI_UNSUPPORTED, "no gradient_range"},
       {"verlet:threads=2", DVI_UNSUPPORTED, "no gradient_range"},
-      {"verlet:threads=2,sweep=plain", DVI_UNSUPPORTED, "sweep=plain"},
+      {"verlet:threads=2,blocking=none", DVI_UNSUPPORTED, "blocking=none"},
       {"composition:order=4,threads=2", DVI_UNSUPPORTED, "no gradient_range"},
   };
   problem *oscillator = made_problem("oscillator", NULL);
   dvi_integrator *integrator = NULL;
-  ck_assert_int_eq(dvi_integrator_create(oscillator->system, cases[_i].method, &integrator), cases[_i].status);
+  ck_assert_int_eq(dvi_integrator_create(oscillator->system, cases[_i].method, &integrator),
+                   cases[_i].status);
   ck_assert_ptr_null(integrator);
   check_words(cases[_i].words);
   problem_destroy(&oscillator);

@@ -1,5 +1,6 @@
-/* Gragg's explicit midpoint rule, extrapolated (Hairer, Norsett and Wanner 1993, sec. II.9): with 2, 4, .. 2K substeps its error has an
- * expansion in even powers of the substep, so K of them give order 2K. The step follows the difference of the last two columns. */
+/* Gragg's explicit midpoint rule, extrapolated (Hairer, Norsett and Wanner 1993, sec. II.9): with
+ * 2, 4, .. 2K substeps its error has an expansion in even powers of the substep, so K of them give
+ * order 2K. The step follows the difference of the last two columns. */
 #include "quad.h"
 
 #include <math.h>
@@ -29,7 +30,8 @@ static void evaluate(const quad_field *f, const quad *y, quad *rate)
 }
 
 /* The midpoint rule over a step of h in `count` (even) substeps. */
-static void midpoint(const quad_field *f, const quad *y, const quad *rate, quad h, int count, quad *end)
+static void midpoint(const quad_field *f, const quad *y, const quad *rate, quad h, int count,
+                     quad *end)
 {
   const int size = 2 * f->system.n + 1;
   const quad substep = h / count;
@@ -65,7 +67,8 @@ static quad distance(int n, const quad *x, const quad *y)
   quad difference[STATE_MAX] = {0};
   for (int i = 0; i < 2 * n; i++) difference[i] = x[i] - y[i];
   const quad q = largest(n, x), v = largest(n, x + n);
-  const quad in_q = largest(n, difference) / (q > 0 ? q : 1), in_v = largest(n, difference + n) / (v > 0 ? v : 1);
+  const quad in_q = largest(n, difference) / (q > 0 ? q : 1),
+             in_v = largest(n, difference + n) / (v > 0 ? v : 1);
   return in_q <= in_v ? in_v : in_q;
 }
 
@@ -80,15 +83,16 @@ static quad extrapolate(const quad_field *f, const quad *y, quad h, quad *end)
     for (int k = j - 1; k >= 0; k--) { /* row[k] becomes the entry that uses substeps k .. j */
       const quad ratio = (quad)(j + 1) / (k + 1);
       if (k == 0 && j == COLUMNS - 1) memcpy(last, row[1], sizeof last);
-      for (int i = 0; i < size; i++) row[k][i] = row[k + 1][i] + (row[k + 1][i] - row[k][i]) / (ratio * ratio - 1);
+      for (int i = 0; i < size; i++)
+        row[k][i] = row[k + 1][i] + (row[k + 1][i] - row[k][i]) / (ratio * ratio - 1);
     }
   }
   memcpy(end, row[0], (size_t)size * sizeof *end);
   return distance(n, end, last);
 }
 
-/* Advance y by time t: along `coarse` with the steps that the tolerance asks for, along `fine` with half of them. Returns their
- * distance. */
+/* Advance y by time t: along `coarse` with the steps that the tolerance asks for, along `fine` with
+ * half of them. Returns their distance. */
 quad quad_march(const quad_field *f, quad t, quad *y)
 {
   const quad tolerance = quad_parse("1e-30", NULL);
@@ -119,12 +123,14 @@ int quad_prepare(quad_field *f, const char *problem, int setting_count, const ch
   memset(f, 0, sizeof *f);
   f->problem = quad_problem_find(problem);
   if (!f->problem) return 0;
-  for (int i = 0; f->problem->parameter[i]; i++) f->system.value[i] = quad_number(f->problem->standard[i]);
+  for (int i = 0; f->problem->parameter[i]; i++)
+    f->system.value[i] = quad_number(f->problem->standard[i]);
   for (int s = 0; s < setting_count; s++) {
     const size_t length = strcspn(settings[s], "=");
     int i = 0;
     while (f->problem->parameter[i] &&
-           (strncmp(f->problem->parameter[i], settings[s], length) != 0 || f->problem->parameter[i][length]))
+           (strncmp(f->problem->parameter[i], settings[s], length) != 0 ||
+            f->problem->parameter[i][length]))
       i++;
     if (!f->problem->parameter[i] || settings[s][length] != '=') return 0;
     f->system.value[i] = quad_number(settings[s] + length + 1);
@@ -143,7 +149,8 @@ void quad_momentum(const quad_field *f, const quad *y, quad *p)
     memcpy(p, y + n, (size_t)n * sizeof *p);
 }
 
-double quad_solve(const char *problem, int setting_count, const char *const *settings, double t, double *q, double *p)
+double quad_solve(const char *problem, int setting_count, const char *const *settings, double t,
+                  double *q, double *p)
 {
   quad_field f;
   quad y[STATE_MAX] = {0}, momenta[QUAD_N_MAX];
@@ -163,8 +170,8 @@ double quad_solve(const char *problem, int setting_count, const char *const *set
   return error;
 }
 
-double quad_digits(const char *problem, int setting_count, const char *const *settings, double t, int *n, char (*q)[QUAD_TEXT],
-                   char (*p)[QUAD_TEXT])
+double quad_digits(const char *problem, int setting_count, const char *const *settings, double t,
+                   int *n, char (*q)[QUAD_TEXT], char (*p)[QUAD_TEXT])
 {
   quad_field f;
   quad y[STATE_MAX] = {0}, momenta[QUAD_N_MAX];

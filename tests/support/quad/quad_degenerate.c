@@ -1,5 +1,6 @@
-/* The catalogue's degenerate problems in quadruple precision: the velocity from Omega(q) v = dH/dq, solved by hand where Omega has blocks of two; those
- * with a Hamiltonian and constraints by their accelerations. */
+/* The catalogue's degenerate problems in quadruple precision: the velocity from Omega(q) v = dH/dq,
+ * solved by hand where Omega has blocks of two; those with a Hamiltonian and constraints by their
+ * accelerations. */
 #include "quad_system.h"
 
 /* A block of two coordinates: omega (v2, -v1) = (H_1, H_2). */
@@ -24,7 +25,8 @@ static void lotka_volterra_rate(const quad_system *system, const quad *q, quad *
   v[1] = q[1] * (1 - q[0]);
 }
 
-static void lotka_volterra_momentum(const quad_system *system, const quad *q, const quad *v, quad *p)
+static void lotka_volterra_momentum(const quad_system *system, const quad *q, const quad *v,
+                                    quad *p)
 {
   (void)system, (void)v;
   p[0] = q[1] + quad_log(q[1]) / q[0];
@@ -119,13 +121,15 @@ static void vortices_linear_prepare(quad_system *system)
 
 static void vortices_linear_rate(const quad_system *system, const quad *q, quad *v)
 {
-  const quad dx = q[0] - q[2], dy = q[1] - q[3], strength = 2 * 8 / (4 * quad_acos(-1) * (dx * dx + dy * dy));
+  const quad dx = q[0] - q[2], dy = q[1] - q[3],
+             strength = 2 * 8 / (4 * quad_acos(-1) * (dx * dx + dy * dy));
   (void)system;
   turn(4, strength * dx, strength * dy, v);
   turn(2, -strength * dx, -strength * dy, v + 2);
 }
 
-static void vortices_linear_momentum(const quad_system *system, const quad *q, const quad *v, quad *p)
+static void vortices_linear_momentum(const quad_system *system, const quad *q, const quad *v,
+                                     quad *p)
 {
   (void)system, (void)v;
   p[0] = -2 * q[1];
@@ -145,7 +149,8 @@ static void vortices_prepare(quad_system *system)
 /* H = S_1 S_2 ln d^2/(8 pi); Omega of one vortex is (1 + 2 r^2)/2. */
 static void vortices_rate(const quad_system *system, const quad *q, quad *v)
 {
-  const quad dx = q[0] - q[2], dy = q[1] - q[3], d2 = dx * dx + dy * dy, factor = 1 / (8 * quad_acos(-1));
+  const quad dx = q[0] - q[2], dy = q[1] - q[3], d2 = dx * dx + dy * dy,
+             factor = 1 / (8 * quad_acos(-1));
   const quad r2[2] = {q[0] * q[0] + q[1] * q[1], q[2] * q[2] + q[3] * q[3]};
   const quad both = (1 + r2[0]) * (1 + r2[1]) / d2, l = quad_log(d2);
   (void)system;
@@ -181,7 +186,8 @@ static void guiding_centre_rate(const quad_system *system, const quad *q, quad *
   v[3] = 0;
 }
 
-static void guiding_centre_momentum(const quad_system *system, const quad *q, const quad *v, quad *p)
+static void guiding_centre_momentum(const quad_system *system, const quad *q, const quad *v,
+                                    quad *p)
 {
   const quad s = (2 + q[0] * q[0] + q[1] * q[1]) / 4;
   (void)system, (void)v;
@@ -213,9 +219,11 @@ static quad tokamak_field(const quad *q, quad *b)
 static quad tokamak_slopes(const quad *q, int j, quad *b_x)
 {
   const quad R = q[0], Z = q[1], R2 = R * R, B_R = -Z / (2 * R), B_Z = (R - 1) / (2 * R);
-  const quad B_Rx = j == 0 ? Z / (2 * R2) : -1 / (2 * R), B_Zx = j == 0 ? 1 / (2 * R2) : 0, inverse_x = j == 0 ? -1 / (R2 * R) : 0;
+  const quad B_Rx = j == 0 ? Z / (2 * R2) : -1 / (2 * R), B_Zx = j == 0 ? 1 / (2 * R2) : 0,
+             inverse_x = j == 0 ? -1 / (R2 * R) : 0;
   quad b[3];
-  const quad strength = tokamak_field(q, b), slope = (B_R * B_Rx + B_Z * B_Zx + inverse_x) / strength;
+  const quad strength = tokamak_field(q, b),
+             slope = (B_R * B_Rx + B_Z * B_Zx + inverse_x) / strength;
   b_x[0] = B_Rx / strength - b[0] * slope / strength;
   b_x[1] = B_Zx / strength - b[1] * slope / strength;
   b_x[2] = -b[2] * slope / strength;
@@ -272,7 +280,8 @@ static void circle_acceleration(const quad_system *system, const quad *q, const 
   a[1] = -1 - mu * q[1];
 }
 
-/* x'' = -x - y'/2, S y' = -cos z, S z' = -x'/2 - sin y with S = 1 + y^2 + z^2; the last two differentiated. */
+/* x'' = -x - y'/2, S y' = -cos z, S z' = -x'/2 - sin y with S = 1 + y^2 + z^2; the last two
+ * differentiated. */
 static void pair_velocity(const quad_system *system, const quad *q, const quad *p, quad *v)
 {
   const quad S = 1 + q[1] * q[1] + q[2] * q[2];
@@ -308,7 +317,8 @@ static void pair_momentum(const quad_system *system, const quad *q, const quad *
   p[2] = 0;
 }
 
-/* x' = cos theta, y' = sin theta, theta'' = p_x sin theta with p_x = -1; the first two differentiated. */
+/* x' = cos theta, y' = sin theta, theta'' = p_x sin theta with p_x = -1; the first two
+ * differentiated. */
 static void elastica_velocity(const quad_system *system, const quad *q, const quad *p, quad *v)
 {
   (void)system;
@@ -343,7 +353,10 @@ static void elastica_momentum(const quad_system *system, const quad *q, const qu
 #define DEGENERATE(name) .prepare = name##_prepare, .rate = name##_rate, .momentum = name##_momentum
 
 const quad_problem quad_degenerate[] = {
-    {.name = "lotka-volterra", .parameter = {"prey", "predators"}, .standard = {"1", "1"}, DEGENERATE(lotka_volterra)},
+    {.name = "lotka-volterra",
+     .parameter = {"prey", "predators"},
+     .standard = {"1", "1"},
+     DEGENERATE(lotka_volterra)},
     {.name = "lotka-volterra-4d", DEGENERATE(species)},
     {.name = "massless-particle", DEGENERATE(massless)},
     {.name = "vortices-linear", DEGENERATE(vortices_linear)},

@@ -1,20 +1,24 @@
-/* The catalogue's problems with rotations, places and directions in quadruple precision, by d'Alembert's principle for points.
+/* The catalogue's problems with rotations, places and directions in quadruple precision, by
+ * d'Alembert's principle for points.
  *
- * Everything is points r that are linear in the cells: R rho of a rotation, f x of a place, f q of a direction. A point has a mass, and its share of the potential
- * V = weight.r + spring |r|^2/2 - pull/|r|; a body's inertia is that of three points on its axes, of masses tr(J)/2 - J_kk. With velocities v (Omega in the
- * body's frame; x'; of a direction the angular velocity omega in space, q' = omega x q) and r' = B v, r'' = B v' + b:
+ * Everything is points r that are linear in the slots: R rho of a rotation, f x of a place, f q of
+ * a direction. A point has a mass, and its share of the potential V = weight.r + spring |r|^2/2 -
+ * pull/|r|; a body's inertia is that of three points on its axes, of masses tr(J)/2 - J_kk. With
+ * velocities v (Omega in the body's frame; x'; of a direction the angular velocity omega in space,
+ * q' = omega x q) and r' = B v, r'' = B v' + b:
  *     sum over points of B^t ( m (B v' + b) + V_r ) = 0,      and omega'.q = 0 for directions. */
 #include <string.h>
 
 #include "quad_system.h"
 
-enum { CELLS = QUAD_CELLS_MAX, NV = 3 * CELLS };
+enum { CELLS = QUAD_SLOTS_MAX, NV = 3 * CELLS };
 
 /* ---- vectors ---- */
 
 static void cross(const quad *a, const quad *b, quad *c)
 {
-  for (int i = 0; i < 3; i++) c[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+  for (int i = 0; i < 3; i++)
+    c[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
 }
 
 static quad dot(const quad *a, const quad *b)
@@ -77,17 +81,18 @@ static void add_potential(const quad_point *point, const quad *r, quad *force)
   for (int i = 0; i < 3; i++) force[i] += point->weight[i] + (point->spring + pull) * r[i];
 }
 
-static void add_point(const quad_system *system, const quad_point *point, const quad *q, const quad *v, mechanics *m)
+static void add_point(const quad_system *system, const quad_point *point, const quad *q,
+                      const quad *v, mechanics *m)
 {
   quad r[3] = {0}, force[3] = {0}, B[NV][3];
   int used[CELLS];
-  for (int c = 0; system->cells[c]; q += stored_of(system->cells[c]), c++) {
+  for (int c = 0; system->slots[c]; q += stored_of(system->slots[c]), c++) {
     quad part_r[3], part_b[3];
     used[c] = dot(point->arm[c], point->arm[c]) > 0;
     if (!used[c]) continue;
-    part(system->cells[c], q, v + 3 * c, point->arm[c], part_r, part_b);
+    part(system->slots[c], q, v + 3 * c, point->arm[c], part_r, part_b);
     for (int k = 0; k < 3; k++) {
-      lever(system->cells[c], q, point->arm[c], k, B[3 * c + k]);
+      lever(system->slots[c], q, point->arm[c], k, B[3 * c + k]);
       r[k] += part_r[k];
       force[k] += point->mass * part_b[k];
     }
@@ -105,8 +110,8 @@ static void gather(const quad_system *system, const quad *q, const quad *v, mech
 {
   memset(m, 0, sizeof *m);
   for (int a = 0; a < system->points; a++) add_point(system, &system->point[a], q, v, m);
-  for (int c = 0; system->cells[c]; q += stored_of(system->cells[c]), c++)
-    for (int i = 0; i < 3 && system->cells[c] == 'S'; i++)
+  for (int c = 0; system->slots[c]; q += stored_of(system->slots[c]), c++)
+    for (int i = 0; i < 3 && system->slots[c] == 'S'; i++)
       for (int j = 0; j < 3; j++) m->mass[3 * c + i][3 * c + j] += q[i] * q[j];
 }
 
@@ -140,8 +145,8 @@ static void flow(const quad_system *system, const quad *y, quad *rate)
   mechanics m;
   gather(system, y, v, &m);
   memset(rate, 0, 2 * (size_t)system->n * sizeof *rate);
-  for (int c = 0, at = 0; system->cells[c]; at += stored_of(system->cells[c]), c++)
-    rate_of(system->cells[c], y + at, v + 3 * c, rate + at);
+  for (int c = 0, at = 0; system->slots[c]; at += stored_of(system->slots[c]), c++)
+    rate_of(system->slots[c], y + at, v + 3 * c, rate + at);
   for (int i = 0; i < system->nv; i++) v_rate[i] = -m.load[i];
   solve(system->nv, m.mass, v_rate);
 }
@@ -151,11 +156,11 @@ static void momentum(const quad_system *system, const quad *q, const quad *v, qu
 {
   mechanics m;
   gather(system, q, v, &m);
-  for (int c = 0; system->cells[c]; q += stored_of(system->cells[c]), c++) {
+  for (int c = 0; system->slots[c]; q += stored_of(system->slots[c]), c++) {
     quad of_v[3] = {0};
     for (int i = 0; i < system->nv; i++)
       for (int k = 0; k < 3; k++) of_v[k] += m.mass[3 * c + k][i] * v[i];
-    if (system->cells[c] == 'S')
+    if (system->slots[c] == 'S')
       cross(of_v, q, p + 3 * c);
     else
       memcpy(p + 3 * c, of_v, sizeof of_v);
@@ -167,8 +172,8 @@ static void velocity(const quad_system *system, const quad *q, const quad *p, qu
   const quad rest[NV] = {0};
   mechanics m;
   gather(system, q, rest, &m);
-  for (int c = 0; system->cells[c]; q += stored_of(system->cells[c]), c++)
-    if (system->cells[c] == 'S')
+  for (int c = 0; system->slots[c]; q += stored_of(system->slots[c]), c++)
+    if (system->slots[c] == 'S')
       cross(q, p + 3 * c, v + 3 * c);
     else
       memcpy(v + 3 * c, p + 3 * c, 3 * sizeof *v);
@@ -178,13 +183,13 @@ static void velocity(const quad_system *system, const quad *q, const quad *p, qu
 /* ---- definitions ---- */
 
 /* Cells: R a rotation, at I; P a place; S a direction. */
-static void lay_out(quad_system *system, const char *cells)
+static void lay_out(quad_system *system, const char *slots)
 {
-  (void)strcpy(system->cells, cells);
-  system->nv = 3 * (int)strlen(cells);
-  for (int c = 0; cells[c]; c++) {
-    for (int k = 0; k < 9 && cells[c] == 'R'; k += 4) system->q[system->n + k] = 1;
-    system->n += stored_of(cells[c]);
+  (void)strcpy(system->slots, slots);
+  system->nv = 3 * (int)strlen(slots);
+  for (int c = 0; slots[c]; c++) {
+    for (int k = 0; k < 9 && slots[c] == 'R'; k += 4) system->q[system->n + k] = 1;
+    system->n += stored_of(slots[c]);
   }
 }
 
@@ -248,7 +253,8 @@ static void kovalevskaya_prepare(quad_system *system)
 
 static void spherical_double_pendulum_prepare(quad_system *system)
 {
-  const quad tenth = quad_number("0.1"), length = quad_sqrt(quad_number("0.866") * quad_number("0.866") + quad_number("0.25"));
+  const quad tenth = quad_number("0.1"),
+             length = quad_sqrt(quad_number("0.866") * quad_number("0.866") + quad_number("0.25"));
   lay_out(system, "SS");
   system->q[0] = quad_number("0.866") / length;
   system->q[2] = quad_number("0.5") / length;
@@ -289,7 +295,8 @@ static void two_body_prepare(quad_system *system)
   lay_out(system, "RPRP");
   for (int body = 0; body < 2; body++) {
     new_point(system, mass[body])->arm[2 * body + 1][0] = 1;
-    for (int k = 0; k < 3; k++) new_point(system, mass[body] / 3)->arm[2 * body][k] = quad_number(semiaxis[body][k]);
+    for (int k = 0; k < 3; k++)
+      new_point(system, mass[body] / 3)->arm[2 * body][k] = quad_number(semiaxis[body][k]);
   }
   for (int a = 0; a < 6; a++)
     for (int b = 0; b < 6; b++) {
@@ -310,7 +317,8 @@ static void two_body_prepare(quad_system *system)
 
 static void satellite_prepare(quad_system *system)
 {
-  const quad rate = quad_sqrt(quad_number("10/125")), length = quad_sqrt(quad_number("1.13")), half = quad_number("0.5");
+  const quad rate = quad_sqrt(quad_number("10/125")), length = quad_sqrt(quad_number("1.13")),
+             half = quad_number("0.5");
   lay_out(system, "RPSSSS");
   add_inertia(system, 0, quad_number("0.8"), quad_number("1.2"), quad_number("1.5"));
   quad_point *body = new_point(system, 10);
@@ -333,7 +341,8 @@ static void satellite_prepare(quad_system *system)
   system->v[4] = 5 * rate;
 }
 
-#define FACTORS(problem) .prepare = problem##_prepare, .flow = flow, .momentum = momentum, .velocity = velocity
+#define FACTORS(problem) \
+  .prepare = problem##_prepare, .flow = flow, .momentum = momentum, .velocity = velocity
 
 const quad_problem quad_factors[] = {
     {.name = "free-body",

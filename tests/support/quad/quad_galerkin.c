@@ -1,5 +1,6 @@
 /*     q(tau) = q0 + sum_k psi_k(tau) Y_k,   psi_k(0) = 0,   k = 1..s
- *     sum_j b_j ( h (psi_k - psi_k(1)) L_q + psi_k' L_v )_j = psi_k(1) p0,   p1 = p0 + h sum_j b_j L_q_j
+ *     sum_j b_j ( h (psi_k - psi_k(1)) L_q + psi_k' L_v )_j = psi_k(1) p0,
+ *     p1 = p0 + h sum_j b_j L_q_j
  * (Marsden and West 2001, sec. 2.2.6), solved by the simplest fixed point iteration. */
 #include "quad_galerkin.h"
 
@@ -50,7 +51,8 @@ static void lobatto(quad_galerkin *m)
   for (int j = 0; j < n; j++) {
     quad value[3];
     const int end = j == 0 || j == n - 1;
-    const quad x = end ? (j == 0 ? -1 : 1) : zero_near(n - 1, 1, (quad)-cos(acos(-1) * j / (n - 1)));
+    const quad x = end ? (j == 0 ? -1 : 1)
+                       : zero_near(n - 1, 1, (quad)-cos(acos(-1) * j / (n - 1)));
     if (end)
       value[0] = 1;
     else
@@ -97,7 +99,8 @@ void quad_galerkin_prepare(quad_galerkin *m, int degree, int is_lobatto, int nod
     for (int l = 0; l < degree; l++) K[c][l] /= pivot, m->inverse[c][l] /= pivot;
     for (int k = 0; k < degree; k++) {
       const quad factor = K[k][c];
-      for (int l = 0; l < degree && k != c; l++) K[k][l] -= factor * K[c][l], m->inverse[k][l] -= factor * m->inverse[c][l];
+      for (int l = 0; l < degree && k != c; l++)
+        K[k][l] -= factor * K[c][l], m->inverse[k][l] -= factor * m->inverse[c][l];
     }
   }
 }
@@ -112,8 +115,9 @@ static void momentum_at(const quad_field *f, const quad *q, const quad *v, quad 
   quad_momentum(f, y, p);
 }
 
-/* d/de p(q + e v, v) at e = 0 by central differences of order 2 SIDE: sum_k c_k (p(k step) - p(-k step)) / step with
- * c_k = -(-1)^k (SIDE!)^2 / (k (SIDE-k)! (SIDE+k)!). The high order allows a long step, and that keeps the rounding noise at 1e-30. */
+/* d/de p(q + e v, v) at e = 0 by central differences of order 2 SIDE: sum_k c_k (p(k step) - p(-k
+ * step)) / step with c_k = -(-1)^k (SIDE!)^2 / (k (SIDE-k)! (SIDE+k)!). The high order allows a
+ * long step, and that keeps the rounding noise at 1e-30. */
 static void add_transport(const quad_field *f, const quad *q, const quad *v, quad *rate)
 {
   enum { SIDE = 10 };
@@ -130,7 +134,8 @@ static void add_transport(const quad_field *f, const quad *q, const quad *v, qua
   }
 }
 
-/* L_v = p(q,v), and L_q = dp/dt = p(q,a) + d/de p(q + e v, v) for kinetic energies that are quadratic in v. */
+/* L_v = p(q,v), and L_q = dp/dt = p(q,a) + d/de p(q + e v, v) for kinetic energies that are
+ * quadratic in v. */
 static void gradient(const quad_field *f, const quad *q, const quad *v, quad *L_q, quad *L_v)
 {
   quad a[QUAD_N_MAX];
@@ -146,7 +151,8 @@ typedef struct stage {
   quad Y[QUAD_DEGREE_MAX][QUAD_N_MAX], R[QUAD_DEGREE_MAX][QUAD_N_MAX], impulse[QUAD_N_MAX];
 } stage;
 
-static void residual(const quad_galerkin *m, const quad_field *f, quad h, const quad *q0, const quad *p0, stage *s)
+static void residual(const quad_galerkin *m, const quad_field *f, quad h, const quad *q0,
+                     const quad *p0, stage *s)
 {
   const int n = f->system.n;
   memset(s->impulse, 0, sizeof s->impulse);
@@ -165,7 +171,8 @@ static void residual(const quad_galerkin *m, const quad_field *f, quad h, const 
     for (int i = 0; i < n; i++) {
       s->impulse[i] += h * m->weight[j] * L_q[i];
       for (int k = 0; k < m->degree; k++)
-        s->R[k][i] += m->weight[j] * (h * (m->psi[k][j] - m->end[k]) * L_q[i] + m->slope[k][j] * L_v[i]);
+        s->R[k][i] += m->weight[j] *
+                      (h * (m->psi[k][j] - m->end[k]) * L_q[i] + m->slope[k][j] * L_v[i]);
     }
   }
 }
@@ -193,7 +200,8 @@ static quad correct(const quad_galerkin *m, const quad_field *f, quad h, const q
 }
 
 /* Changes shrink to the noise of the residual, wherever that is, and no further. */
-static int iterate(const quad_galerkin *m, const quad_field *f, quad h, const quad *q, const quad *p, stage *s)
+static int iterate(const quad_galerkin *m, const quad_field *f, quad h, const quad *q,
+                   const quad *p, stage *s)
 {
   enum { ITERATIONS = 400 };
   const double noise = 1e-26;

@@ -1,6 +1,6 @@
 #include "support/quad/quad_graph.h"
 
-#include "scene/expr/graph_make.h"
+#include "expr/graph_make.h"
 
 #ifdef DVI_HAVE_QUADMATH
 quad quad_operate(dvi__op op, double number, quad a, quad b)
@@ -43,7 +43,8 @@ quad quad_operate(dvi__op op, double number, quad a, quad b)
   return 0;
 }
 
-quad quad_error(dvi__op op, double number, quad a, quad a_error, quad b, quad b_error, quad rounding)
+quad quad_error(dvi__op op, double number, quad a, quad a_error, quad b, quad b_error,
+                quad rounding)
 {
   const int operands = dvi__operands(op);
   const quad value = quad_operate(op, number, a, b);
@@ -57,16 +58,20 @@ quad quad_error(dvi__op op, double number, quad a, quad a_error, quad b, quad b_
   return error;
 }
 
-void quad_evaluate(const dvi__graph *graph, int count, const quad *x, quad *value, quad *error, quad rounding)
+void quad_evaluate(const dvi__graph *graph, int count, const quad *x, quad *value, quad *error,
+                   quad rounding)
 {
   for (int n = 0; n < count; n++) {
     const dvi__graph_node *node = graph->node + n;
-    const int operands = dvi__operands(node->op), a = operands > 0 ? node->a : n, b = operands > 1 ? node->b : n;
+    const int operands = dvi__operands(node->op), a = operands > 0 ? node->a : n,
+              b = operands > 1 ? node->b : n;
     if (error != NULL) error[n] = 0;
     value[n] = 0;
-    value[n] = node->op == DVI__OP_INPUT ? x[node->a] : quad_operate(node->op, node->value, value[a], value[b]);
+    value[n] = node->op == DVI__OP_INPUT ? x[node->a]
+                                         : quad_operate(node->op, node->value, value[a], value[b]);
     if (error != NULL && node->op != DVI__OP_INPUT)
-      error[n] = quad_error(node->op, node->value, value[a], error[a], value[b], error[b], rounding);
+      error[n] = quad_error(node->op, node->value, value[a], error[a], value[b], error[b],
+                            rounding);
   }
 }
 #endif

@@ -30,7 +30,8 @@ static void oscillator_prepare(quad_system *system)
   system->q[0] = quad_number("0.5");
 }
 
-static void oscillator_acceleration(const quad_system *system, const quad *q, const quad *v, quad *a)
+static void oscillator_acceleration(const quad_system *system, const quad *q, const quad *v,
+                                    quad *a)
 {
   (void)v;
   a[0] = -system->value[0] * q[0];
@@ -43,7 +44,8 @@ static void oscillators_prepare(quad_system *system)
   system->q[0] = 1;
 }
 
-static void oscillators_acceleration(const quad_system *system, const quad *q, const quad *v, quad *a)
+static void oscillators_acceleration(const quad_system *system, const quad *q, const quad *v,
+                                     quad *a)
 {
   (void)v;
   a[0] = -(1 + system->value[0] * system->value[0]) * q[0];
@@ -86,7 +88,8 @@ static void henon_heiles_prepare(quad_system *system)
   system->v[0] = system->v[1] = quad_number("0.3");
 }
 
-static void henon_heiles_acceleration(const quad_system *system, const quad *q, const quad *v, quad *a)
+static void henon_heiles_acceleration(const quad_system *system, const quad *q, const quad *v,
+                                      quad *a)
 {
   const quad lambda = system->value[0], x = q[0], y = q[1];
   (void)v;
@@ -94,14 +97,16 @@ static void henon_heiles_acceleration(const quad_system *system, const quad *q, 
   a[1] = -y - lambda * (x * x - y * y);
 }
 
-/* Two point masses m1, m2 at (l1 sin t1, -l1 cos t1) and there + (l2 sin t2, -l2 cos t2): M(theta) omega = p. */
+/* Two point masses m1, m2 at (l1 sin t1, -l1 cos t1) and there + (l2 sin t2, -l2 cos t2): M(theta)
+ * omega = p. */
 typedef struct mass_matrix {
   quad upper, coupling, lower;
 } mass_matrix;
 
 static mass_matrix double_pendulum_mass(const quad_system *system, const quad *q)
 {
-  const quad l1 = system->value[0], l2 = system->value[1], m1 = system->value[2], m2 = system->value[3];
+  const quad l1 = system->value[0], l2 = system->value[1], m1 = system->value[2],
+             m2 = system->value[3];
   return (mass_matrix){(m1 + m2) * l1 * l1, m2 * l1 * l2 * quad_cos(q[0] - q[1]), m2 * l2 * l2};
 }
 
@@ -121,47 +126,57 @@ static void double_pendulum_prepare(quad_system *system)
   system->v[1] = pi / 8;
 }
 
-static void double_pendulum_acceleration(const quad_system *system, const quad *q, const quad *v, quad *a)
+static void double_pendulum_acceleration(const quad_system *system, const quad *q, const quad *v,
+                                         quad *a)
 {
-  const quad l1 = system->value[0], l2 = system->value[1], m1 = system->value[2], m2 = system->value[3], g = system->value[4];
+  const quad l1 = system->value[0], l2 = system->value[1], m1 = system->value[2],
+             m2 = system->value[3], g = system->value[4];
   const quad sine = m2 * l1 * l2 * quad_sin(q[0] - q[1]);
   const quad upper = -sine * v[1] * v[1] - (m1 + m2) * g * l1 * quad_sin(q[0]);
   const quad lower = sine * v[0] * v[0] - m2 * g * l2 * quad_sin(q[1]);
   mass_solve(double_pendulum_mass(system, q), upper, lower, a);
 }
 
-static void double_pendulum_momentum(const quad_system *system, const quad *q, const quad *v, quad *p)
+static void double_pendulum_momentum(const quad_system *system, const quad *q, const quad *v,
+                                     quad *p)
 {
   const mass_matrix M = double_pendulum_mass(system, q);
   p[0] = M.upper * v[0] + M.coupling * v[1];
   p[1] = M.coupling * v[0] + M.lower * v[1];
 }
 
-static void double_pendulum_velocity(const quad_system *system, const quad *q, const quad *p, quad *v)
+static void double_pendulum_velocity(const quad_system *system, const quad *q, const quad *p,
+                                     quad *v)
 {
   mass_solve(double_pendulum_mass(system, q), p[0], p[1], v);
 }
 
-/* L = v^2/2 + x'(t) v cos q - cos q with x' = a omega cos(omega t); the time stands behind the velocity. */
+/* L = v^2/2 + x'(t) v cos q - cos q with x' = a omega cos(omega t); the time stands behind the
+ * velocity. */
 static void driven_pendulum_prepare(quad_system *system)
 {
   system->n = 1;
   system->q[0] = 2;
 }
 
-static void driven_pendulum_acceleration(const quad_system *system, const quad *q, const quad *v, quad *a)
+static void driven_pendulum_acceleration(const quad_system *system, const quad *q, const quad *v,
+                                         quad *a)
 {
-  const quad omega = system->value[1], pull = system->value[0] * omega * omega * quad_sin(omega * v[1]);
+  const quad omega = system->value[1],
+             pull = system->value[0] * omega * omega * quad_sin(omega * v[1]);
   a[0] = quad_sin(q[0]) + pull * quad_cos(q[0]);
 }
 
-static void driven_pendulum_momentum(const quad_system *system, const quad *q, const quad *v, quad *p)
+static void driven_pendulum_momentum(const quad_system *system, const quad *q, const quad *v,
+                                     quad *p)
 {
-  p[0] = v[0] + system->value[0] * system->value[1] * quad_cos(system->value[1] * v[1]) * quad_cos(q[0]);
+  p[0] = v[0] +
+         system->value[0] * system->value[1] * quad_cos(system->value[1] * v[1]) * quad_cos(q[0]);
 }
 
 /* At t = 0. */
-static void driven_pendulum_velocity(const quad_system *system, const quad *q, const quad *p, quad *v)
+static void driven_pendulum_velocity(const quad_system *system, const quad *q, const quad *p,
+                                     quad *v)
 {
   v[0] = p[0] - system->value[0] * system->value[1] * quad_cos(q[0]);
 }
@@ -174,28 +189,33 @@ static void stiff_pendulum_prepare(quad_system *system)
   system->q[1] = 1;
 }
 
-static void stiff_pendulum_acceleration(const quad_system *system, const quad *q, const quad *v, quad *a)
+static void stiff_pendulum_acceleration(const quad_system *system, const quad *q, const quad *v,
+                                        quad *a)
 {
-  const quad k = system->value[0], m = system->value[2], g = system->value[3], length = system->value[1] + q[0];
+  const quad k = system->value[0], m = system->value[2], g = system->value[3],
+             length = system->value[1] + q[0];
   a[0] = length * v[1] * v[1] + g * quad_cos(q[1]) - k / m * q[0];
   a[1] = -(g * quad_sin(q[1]) + 2 * v[0] * v[1]) / length;
 }
 
-static void stiff_pendulum_momentum(const quad_system *system, const quad *q, const quad *v, quad *p)
+static void stiff_pendulum_momentum(const quad_system *system, const quad *q, const quad *v,
+                                    quad *p)
 {
   const quad length = system->value[1] + q[0], m = system->value[2];
   p[0] = m * v[0];
   p[1] = m * length * length * v[1];
 }
 
-static void stiff_pendulum_velocity(const quad_system *system, const quad *q, const quad *p, quad *v)
+static void stiff_pendulum_velocity(const quad_system *system, const quad *q, const quad *p,
+                                    quad *v)
 {
   const quad length = system->value[1] + q[0], m = system->value[2];
   v[0] = p[0] / m;
   v[1] = p[1] / (m * length * length);
 }
 
-/* V = omega^2/2 sum x1_i^2 + 1/4 [ (x0_1-x1_1)^4 + sum (x0_{i+1}-x1_{i+1}-x0_i-x1_i)^4 + (x0_ell+x1_ell)^4 ]. */
+/* V = omega^2/2 sum x1_i^2 + 1/4 [ (x0_1-x1_1)^4 + sum (x0_{i+1}-x1_{i+1}-x0_i-x1_i)^4 +
+ * (x0_ell+x1_ell)^4 ]. */
 static void fpu_prepare(quad_system *system)
 {
   const int ell = (int)system->value[0];
@@ -259,13 +279,15 @@ static void toda_acceleration(const quad_system *system, const quad *q, const qu
   }
 }
 
-/* V = sum_{i=0}^{n} d_i^2/2 + beta d_i^4/4, d_i = q_{i+1} - q_i between walls at q_0 = q_{n+1} = 0; start sin(pi k i/(n+1)). */
+/* V = sum_{i=0}^{n} d_i^2/2 + beta d_i^4/4, d_i = q_{i+1} - q_i between walls at q_0 = q_{n+1} = 0;
+ * start sin(pi k i/(n+1)). */
 static void chain_prepare(quad_system *system)
 {
   const int n = (int)system->value[0];
   if (n < 1 || n > QUAD_N_MAX) return;
   system->n = n;
-  for (int i = 0; i < n; i++) system->q[i] = quad_sin(quad_acos(-1) * ((i + 1) * ((n + 7) / 8)) / (n + 1));
+  for (int i = 0; i < n; i++)
+    system->q[i] = quad_sin(quad_acos(-1) * ((i + 1) * ((n + 7) / 8)) / (n + 1));
 }
 
 static void chain_acceleration(const quad_system *system, const quad *q, const quad *v, quad *a)
@@ -274,7 +296,8 @@ static void chain_acceleration(const quad_system *system, const quad *q, const q
   (void)v;
   for (int i = 0; i < n; i++) a[i] = 0;
   for (int i = 0; i <= n; i++) {
-    const quad d = (i < n ? q[i] : 0) - (i > 0 ? q[i - 1] : 0), force = d + system->value[1] * cube(d);
+    const quad d = (i < n ? q[i] : 0) - (i > 0 ? q[i - 1] : 0),
+               force = d + system->value[1] * cube(d);
     if (i < n) a[i] -= force;
     if (i > 0) a[i - 1] += force;
   }
@@ -290,7 +313,8 @@ static void gravity_acceleration(const quad_system *system, const quad *q, const
     for (int other = 0; other < system->bodies; other++) {
       if (other == body) continue;
       quad r2 = 0;
-      for (int i = 0; i < d; i++) r2 += (q[other * d + i] - q[body * d + i]) * (q[other * d + i] - q[body * d + i]);
+      for (int i = 0; i < d; i++)
+        r2 += (q[other * d + i] - q[body * d + i]) * (q[other * d + i] - q[body * d + i]);
       const quad pull = system->G * system->mass[other] / (r2 * quad_sqrt(r2));
       for (int i = 0; i < d; i++) a[body * d + i] += pull * (q[other * d + i] - q[body * d + i]);
     }
@@ -324,14 +348,15 @@ static void gravity_prepare(quad_system *system, int bodies, int dimension, cons
 
 static void outer_solar_prepare(quad_system *system)
 {
-  gravity_prepare(system, 6, 3,
-                  "2.95912208286e-4 "
-                  "0.000954786104043  -3.5023653 -3.8169847 -1.5507963  0.00565429 -0.00412490 -0.00190589 "
-                  "0.000285583733151  9.0755314 -3.0458353 -1.6483708  0.00168318 0.00483525 0.00192462 "
-                  "0.0000437273164546  8.3101420 -16.2901086 -7.2521278  0.00354178 0.00137102 0.00055029 "
-                  "0.0000517759138449  11.4707666 -25.7294829 -10.8169456  0.00288930 0.00114527 0.00039677 "
-                  "1/1.3e8  -15.5387357 -25.2225594 -3.1902382  0.00276725 -0.00170702 -0.00136504 "
-                  "1.00000597682  0 0 0  0 0 0");
+  gravity_prepare(
+      system, 6, 3,
+      "2.95912208286e-4 "
+      "0.000954786104043  -3.5023653 -3.8169847 -1.5507963  0.00565429 -0.00412490 -0.00190589 "
+      "0.000285583733151  9.0755314 -3.0458353 -1.6483708  0.00168318 0.00483525 0.00192462 "
+      "0.0000437273164546  8.3101420 -16.2901086 -7.2521278  0.00354178 0.00137102 0.00055029 "
+      "0.0000517759138449  11.4707666 -25.7294829 -10.8169456  0.00288930 0.00114527 0.00039677 "
+      "1/1.3e8  -15.5387357 -25.2225594 -3.1902382  0.00276725 -0.00170702 -0.00136504 "
+      "1.00000597682  0 0 0  0 0 0");
 }
 
 static void figure_eight_prepare(quad_system *system)
@@ -352,14 +377,47 @@ static void pythagorean_prepare(quad_system *system)
                   "5  1 -1  0 0");
 }
 
-#define GRAVITY .acceleration = gravity_acceleration, .momentum = gravity_momentum, .velocity = gravity_velocity
+#define GRAVITY \
+  .acceleration = gravity_acceleration, .momentum = gravity_momentum, .velocity = gravity_velocity
 
 static const quad_problem problems[] = {
-    {"oscillator", {"k"}, {"0.5"}, oscillator_prepare, oscillator_acceleration, NULL, NULL, NULL, NULL},
-    {"oscillators", {"omega"}, {"50"}, oscillators_prepare, oscillators_acceleration, NULL, NULL, NULL, NULL},
-    {"pendulum", {"q0"}, {"1.1592794807274085998465837940224"}, pendulum_prepare, pendulum_acceleration, NULL, NULL, NULL, NULL},
+    {"oscillator",
+     {"k"},
+     {"0.5"},
+     oscillator_prepare,
+     oscillator_acceleration,
+     NULL,
+     NULL,
+     NULL,
+     NULL},
+    {"oscillators",
+     {"omega"},
+     {"50"},
+     oscillators_prepare,
+     oscillators_acceleration,
+     NULL,
+     NULL,
+     NULL,
+     NULL},
+    {"pendulum",
+     {"q0"},
+     {"1.1592794807274085998465837940224"},
+     pendulum_prepare,
+     pendulum_acceleration,
+     NULL,
+     NULL,
+     NULL,
+     NULL},
     {"kepler", {"e"}, {"0.6"}, kepler_prepare, kepler_acceleration, NULL, NULL, NULL, NULL},
-    {"henon-heiles", {"lambda"}, {"1"}, henon_heiles_prepare, henon_heiles_acceleration, NULL, NULL, NULL, NULL},
+    {"henon-heiles",
+     {"lambda"},
+     {"1"},
+     henon_heiles_prepare,
+     henon_heiles_acceleration,
+     NULL,
+     NULL,
+     NULL,
+     NULL},
     {"double-pendulum",
      {"l1", "l2", "m1", "m2", "g"},
      {"2", "3", "1", "2", "9.80665"},
@@ -389,7 +447,15 @@ static const quad_problem problems[] = {
      NULL},
     {"fpu", {"ell", "omega"}, {"3", "50"}, fpu_prepare, fpu_acceleration, NULL, NULL, NULL, NULL},
     {"toda", {"N"}, {"20"}, toda_prepare, toda_acceleration, NULL, NULL, NULL, NULL},
-    {"chain", {"n", "beta"}, {"32", "1"}, chain_prepare, chain_acceleration, NULL, NULL, NULL, NULL},
+    {"chain",
+     {"n", "beta"},
+     {"32", "1"},
+     chain_prepare,
+     chain_acceleration,
+     NULL,
+     NULL,
+     NULL,
+     NULL},
     {.name = "outer-solar", .prepare = outer_solar_prepare, GRAVITY},
     {.name = "figure-eight", .prepare = figure_eight_prepare, GRAVITY},
     {.name = "pythagorean", .prepare = pythagorean_prepare, GRAVITY},

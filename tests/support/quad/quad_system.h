@@ -1,4 +1,5 @@
-/* A problem in quadruple precision: between the judge's scheme (quad.c) and the definitions (quad_problems.c). */
+/* A problem in quadruple precision: between the judge's scheme (quad.c) and the definitions
+ * (quad_problems.c). */
 #ifndef SUPPORT_QUAD_SYSTEM_H
 #define SUPPORT_QUAD_SYSTEM_H
 #include "quad.h"
@@ -6,19 +7,19 @@
 
 #define QUAD_PARAMETERS_MAX 8
 #define QUAD_BODIES_MAX 6
-#define QUAD_CELLS_MAX 8
+#define QUAD_SLOTS_MAX 8
 #define QUAD_POINTS_MAX 48
 
 /* A point of a system of rotations, places and directions (quad_factors.c). */
 typedef struct quad_point {
   quad mass, weight[3], spring, pull;
-  quad arm[QUAD_CELLS_MAX][3]; /* of each cell: rho of a rotation; the factor, and 0, 0 */
+  quad arm[QUAD_SLOTS_MAX][3]; /* of each cell: rho of a rotation; the factor, and 0, 0 */
 } quad_point;
 
 typedef struct quad_system {
   int n;  /* of q */
   int nv; /* of v and p; 0 until quad_prepare: n */
-  char cells[QUAD_CELLS_MAX + 1];
+  char slots[QUAD_SLOTS_MAX + 1];
   int points;
   quad_point point[QUAD_POINTS_MAX];
   quad value[QUAD_PARAMETERS_MAX];
@@ -31,13 +32,17 @@ typedef struct quad_problem {
   const char *name;
   const char *parameter[QUAD_PARAMETERS_MAX + 1]; /* names, ended by NULL */
   const char *standard[QUAD_PARAMETERS_MAX];      /* default values */
-  void (*prepare)(quad_system *system);           /* value -> the other members; n stays 0 if there is no room */
+  /* value -> the other members; n stays 0 if there is no room */
+  void (*prepare)(quad_system *system);
   /* v [n], and behind it the time since the start */
   void (*acceleration)(const quad_system *system, const quad *q, const quad *v, quad *a);
-  void (*momentum)(const quad_system *system, const quad *q, const quad *v, quad *p); /* NULL: p = v */
+  /* NULL: p = v */
+  void (*momentum)(const quad_system *system, const quad *q, const quad *v, quad *p);
   void (*velocity)(const quad_system *system, const quad *q, const quad *p, quad *v);
-  void (*flow)(const quad_system *system, const quad *y, quad *rate); /* in place of the acceleration: y = (q, v), [2 n] */
-  void (*rate)(const quad_system *system, const quad *q, quad *qdot); /* degenerate: in place of the acceleration; v stays 0 */
+  /* in place of the acceleration: y = (q, v), [2 n] */
+  void (*flow)(const quad_system *system, const quad *y, quad *rate);
+  /* degenerate: in place of the acceleration; v stays 0 */
+  void (*rate)(const quad_system *system, const quad *q, quad *qdot);
 } quad_problem;
 
 /* The degenerate ones (quad_degenerate.c), ended by one without a name. */
@@ -56,9 +61,11 @@ typedef struct quad_field {
 const quad_problem *quad_problem_find(const char *name);
 
 /* 1 if there is such a problem, with such settings, and room for it. */
-int quad_prepare(quad_field *field, const char *problem, int setting_count, const char *const *settings);
+int quad_prepare(quad_field *field, const char *problem, int setting_count,
+                 const char *const *settings);
 
-/* Advance y = (q, v, 0) [2 n + 1] by time t, which then stands last. Returns the judge's own error as quad_solve does. */
+/* Advance y = (q, v, 0) [2 n + 1] by time t, which then stands last. Returns the judge's own error
+ * as quad_solve does. */
 quad quad_march(const quad_field *field, quad t, quad *y);
 
 /* p [nv] at y = (q, v, time). */

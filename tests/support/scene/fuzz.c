@@ -92,7 +92,8 @@ static void splice(text *t)
   const size_t other = below(corpus.count);
   const size_t first = below(corpus.size[other] + 1);
   const size_t place = below(t->size + 1);
-  replace(t, place, part_below(t->size - place + 1), corpus.at[other] + first, part_below(corpus.size[other] - first + 1));
+  replace(t, place, part_below(t->size - place + 1), corpus.at[other] + first,
+          part_below(corpus.size[other] - first + 1));
 }
 
 /* A part of it again, some times. */
@@ -185,7 +186,8 @@ static long try_for(const fuzz_target *target, int seconds, int file)
       t.size = corpus.size[from];
       memcpy(t.at, corpus.at[from], t.size);
       for (size_t k = below(6) + 1; k > 0; k--) mutate(&t, target->tokens);
-      fuzz_requires(pwrite(file, t.at, t.size, 0) == (ssize_t)t.size && ftruncate(file, (off_t)t.size) == 0);
+      fuzz_requires(pwrite(file, t.at, t.size, 0) == (ssize_t)t.size &&
+                    ftruncate(file, (off_t)t.size) == 0);
       const unsigned outcome = try_text(target, t.at, t.size);
       if (!seen[outcome]) remember(t.at, t.size);
       seen[outcome] = 1;

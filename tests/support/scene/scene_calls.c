@@ -29,7 +29,8 @@ static void judge(caller *c, int code, size_t count, double *x)
 {
   for (size_t i = 0; code == 0 && i < count; i++)
     if (!isfinite(x[i])) ck_abort_msg("a callback gives %g for a number", x[i]);
-  if (code != 0 && dvi_scene_blame()[0] == '\0') ck_abort_msg("nothing is said of the code %d", code);
+  if (code != 0 && dvi_scene_fault()[0] == '\0')
+    ck_abort_msg("nothing is said of the code %d", code);
   if (c->code == 0) c->code = code;
   free(x);
 }
@@ -69,7 +70,8 @@ static void call_lagrangian(caller *c, const dvi_lagrangian *L)
 
 static void call_one_form(caller *c, const dvi_one_form *alpha)
 {
-  const size_t n = (size_t)c->n, first = entries(&alpha->gradients, c->n, c->n), second = entries(&alpha->qq, c->n, c->n);
+  const size_t n = (size_t)c->n, first = entries(&alpha->gradients, c->n, c->n),
+               second = entries(&alpha->qq, c->n, c->n);
   double *x = numbers(n);
   judge(c, alpha->value(c->q, x, alpha->user), n, x);
   x = numbers(first);
@@ -92,8 +94,9 @@ static void call_hamiltonian(caller *c, const dvi_hamiltonian *H)
 
 static void call_constraint(caller *c, const dvi_constraint *phi)
 {
-  const size_t m = (size_t)phi->count, first = entries(&phi->gradients, 2 * c->n, phi->count), qq = entries(&phi->qq, c->n, c->n),
-               qp = entries(&phi->qp, c->n, c->n), pp = entries(&phi->pp, c->n, c->n);
+  const size_t m = (size_t)phi->count, first = entries(&phi->gradients, 2 * c->n, phi->count),
+               qq = entries(&phi->qq, c->n, c->n), qp = entries(&phi->qp, c->n, c->n),
+               pp = entries(&phi->pp, c->n, c->n);
   double *w = numbers(m), *x = numbers(m);
   for (size_t a = 0; a < m; a++) w[a] = 1.0 + (double)a;
   judge(c, phi->value(c->q, c->p, x, phi->user), m, x);

@@ -3,8 +3,9 @@
 #define TESTS_SUPPORT_SCENE_CALLS_H
 #include <dvi/scene.h>
 
-/* 0: all gave finite numbers; else the first of their codes that is not 0, for which a sentence must be there: positive where a number is not finite,
- * negative where derivatives could not be made. */
+/* 0: all gave finite numbers; else the first of their codes that is not 0, for which a sentence
+ * must be there: positive where a number is not finite, negative where derivatives could not be
+ * made. */
 int call_all(const dvi_scene *scene);
 
 #endif

@@ -1,7 +1,8 @@
 #include "support/scene/scene_text.h"
 
-#include "scene/text/heap.h"
-#include "scene/text/utf8.h"
+#include "core/memory.h"
+#include "text/heap.h"
+#include "text/utf8.h"
 #include "support/suite.h"
 
 #include <string.h>
@@ -9,12 +10,13 @@
 void open_text(scene_text *scene, const char *text, size_t size)
 {
   *scene = (scene_text){.source = {.name = "s.yaml", .text = text, .size = size}};
-  scene->complaint = (dvi__complaint){.source = &scene->source, .message = scene->message, .size = sizeof scene->message};
+  scene->complaint = (dvi__complaint){
+      .source = &scene->source, .message = scene->message, .size = sizeof scene->message};
 }
 
 void close_text(scene_text *scene)
 {
-  dvi__heap_fail_after(-1);
+  dvi__fail_allocations_after(-1);
   dvi__arena_free(&scene->arena);
 }
 
@@ -22,7 +24,7 @@ void limit_memory(scene_text *scene, size_t size)
 {
   enum { BLOCK = 65536 };
   ck_assert_ptr_nonnull(dvi__arena_take(&scene->arena, BLOCK - size, 1));
-  dvi__heap_fail_after(0); /* no second block */
+  dvi__fail_allocations_after(0); /* no second block */
 }
 
 void check_complaint(const scene_text *scene, dvi_status status, const char *message)

@@ -1,8 +1,8 @@
 /* The text of a scene in a test: what it is read into, and what is said of it. */
 #ifndef TESTS_SUPPORT_SCENE_TEXT_H
 #define TESTS_SUPPORT_SCENE_TEXT_H
-#include "scene/text/arena.h"
-#include "scene/text/complaint.h"
+#include "text/arena.h"
+#include "text/complaint.h"
 
 /* Its address must not change while it is open. */
 typedef struct scene_text {

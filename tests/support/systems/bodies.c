@@ -25,7 +25,8 @@ static int form_value(double t, const double *q, double *V, void *user)
   const form *f = user;
   (void)t;
   *V = 0;
-  for (int k = 0; k < f->count; k++) *V += f->terms[k].c * q[f->terms[k].i] * (f->terms[k].j == ALONE ? 1 : q[f->terms[k].j]);
+  for (int k = 0; k < f->count; k++)
+    *V += f->terms[k].c * q[f->terms[k].i] * (f->terms[k].j == ALONE ? 1 : q[f->terms[k].j]);
   return 0;
 }
 
@@ -83,9 +84,11 @@ static int directions_vertical(const double *q, double *xi, void *user)
 
 /* ---- the systems ---- */
 
-static const double free_inertia[] = {3, 0, 0, 0, 2, 0, 0, 0, 1.5}, pendulum_inertia[] = {.13, 0, 0, 0, .28, 0, 0, 0, .17},
+static const double free_inertia[] = {3, 0, 0, 0, 2, 0, 0, 0, 1.5},
+                    pendulum_inertia[] = {.13, 0, 0, 0, .28, 0, 0, 0, .17},
                     top_inertia[] = {15.234375, 0, 0, 0, .46875, 0, 0, 0, 15.234375},
-                    motion_inertia[] = {1.3, .1, 0, .1, 1.1, .05, 0, .05, .9}, centre[] = {.1, -.2, .15};
+                    motion_inertia[] = {1.3, .1, 0, .1, 1.1, .05, 0, .05, .9},
+                    centre[] = {.1, -.2, .15};
 
 /* Masses between coordinates: m l^2 and the like. */
 typedef struct coupling {
@@ -166,11 +169,18 @@ static description table[BODIES] = {
                  {.kind = DVI_U1, .mass = .7}},
      .factor_count = 4,
      .dimension = 20,
-     .potential =
-         {20,
-          8,
-          {{2, ALONE, .2}, {5, ALONE, .1}, {15, 15, .5}, {16, 16, 1}, {17, 17, 1.5}, {8, 15, .3}, {11, 2, .2}, {18, 14, .4}}},
-     .couplings = {{0, 3, .03}, {1, 4, .03}, {2, 5, .03}, {0, 15, .004}, {1, 16, .004}, {2, 17, .004}},
+     .potential = {20,
+                   8,
+                   {{2, ALONE, .2},
+                    {5, ALONE, .1},
+                    {15, 15, .5},
+                    {16, 16, 1},
+                    {17, 17, 1.5},
+                    {8, 15, .3},
+                    {11, 2, .2},
+                    {18, 14, .4}}},
+     .couplings =
+         {{0, 3, .03}, {1, 4, .03}, {2, 5, .03}, {0, 15, .004}, {1, 16, .004}, {2, 17, .004}},
      .q = {.866, 0, .5, 0, 0, 1, UPRIGHT, .3, 0, 0, 1, 0},
      .v = {0, 1, 0, .5, 0, 0, 1, .3, -.4, .1, 0, 0, .8}},
 };
@@ -179,8 +189,11 @@ void make_body(body_kind kind, body *of)
 {
   const description *d = &table[kind];
   double mass[BODY_Q * BODY_Q] = {0};
-  const dvi_potential potential = {
-      .name = "form", .value = form_value, .gradient = form_gradient, .hessian = form_hessian, .user = (void *)&d->potential};
+  const dvi_potential potential = {.name = "form",
+                                   .value = form_value,
+                                   .gradient = form_gradient,
+                                   .hessian = form_hessian,
+                                   .user = (void *)&d->potential};
   const dvi_symmetry symmetry = {.name = "vertical momentum", .generator = d->vertical};
   dvi_system_terms terms = {.factors = d->factors,
                             .factor_count = d->factor_count,
@@ -191,11 +204,12 @@ void make_body(body_kind kind, body *of)
                             .autonomous = 1};
   for (int k = 0; k < 6; k++)
     if (d->couplings[k].mass != 0)
-      mass[d->couplings[k].i * d->dimension + d->couplings[k].j] = mass[d->couplings[k].j * d->dimension + d->couplings[k].i] =
-          d->couplings[k].mass;
+      mass[d->couplings[k].i * d->dimension + d->couplings[k].j] =
+          mass[d->couplings[k].j * d->dimension + d->couplings[k].i] = d->couplings[k].mass;
   if (d->couplings[0].mass != 0) terms.mass.values = mass;
   *of = (body){.name = d->name, .factors = d->factors, .factor_count = d->factor_count};
-  ck_assert_msg(dvi_system_create(&terms, &of->system) == DVI_OK, "%s: %s", d->name, dvi_last_error());
+  ck_assert_msg(dvi_system_create(&terms, &of->system) == DVI_OK, "%s: %s", d->name,
+                dvi_last_error());
   of->nq = dvi_system_nq(of->system);
   of->nv = dvi_system_nv(of->system);
   memcpy(of->q, d->q, sizeof of->q);
@@ -211,8 +225,10 @@ void destroy_body(body *of)
 dvi_integrator *body_integrator(const body *of, const char *method)
 {
   dvi_integrator *made;
-  ck_assert_msg(dvi_integrator_create(of->system, method, &made) == DVI_OK, "%s, %s: %s", of->name, method, dvi_last_error());
-  ck_assert_msg(dvi_integrator_start_velocity(made, 0, of->q, of->v) == DVI_OK, "%s, %s: %s", of->name, method, dvi_last_error());
+  ck_assert_msg(dvi_integrator_create(of->system, method, &made) == DVI_OK, "%s, %s: %s", of->name,
+                method, dvi_last_error());
+  ck_assert_msg(dvi_integrator_start_velocity(made, 0, of->q, of->v) == DVI_OK, "%s, %s: %s",
+                of->name, method, dvi_last_error());
   return made;
 }
 
@@ -236,7 +252,8 @@ static int chain_gradient(double t, const double *q, double *V_q, void *user)
   const chain *of = user;
   const int n = 3 * of->links;
   (void)t;
-  for (int i = 0; i < n; i++) V_q[i] = (i % 3 == 2) - pull * ((i >= 3 ? q[i - 3] : 0) + (i + 3 < n ? q[i + 3] : 0));
+  for (int i = 0; i < n; i++)
+    V_q[i] = (i % 3 == 2) - pull * ((i >= 3 ? q[i - 3] : 0) + (i + 3 < n ? q[i + 3] : 0));
   return 0;
 }
 
@@ -290,8 +307,11 @@ void make_linked_chain(int links, chain *of)
     of->q[3 * i] = sin(angle), of->q[3 * i + 2] = -cos(angle);
     of->v[3 * i + 1] = 0.5 * cos(angle);
   }
-  const dvi_system_terms terms = {
-      .factors = factors, .factor_count = links, .potentials = &potential, .potential_count = 1, .autonomous = 1};
+  const dvi_system_terms terms = {.factors = factors,
+                                  .factor_count = links,
+                                  .potentials = &potential,
+                                  .potential_count = 1,
+                                  .autonomous = 1};
   ck_assert_msg(dvi_system_create(&terms, &of->system) == DVI_OK, "%s", dvi_last_error());
   free(factors);
   ck_assert_int_eq(dvi_system_project(of->system, of->q), DVI_OK);

@@ -8,7 +8,8 @@
 
 enum { DIRECTIONS_MOST = 2 * BODY_V, POINTS = 4 };
 
-static const double reach = 2e-3; /* of differences of order 4: they err by 1e-11, and by roundoff as much */
+/* of differences of order 4: they err by 1e-11, and by roundoff as much */
+static const double reach = 2e-3;
 
 typedef struct place {
   double q[BODY_Q], p[BODY_V];
@@ -31,7 +32,10 @@ static int turns(const dvi_factor *factor)
 
 static int stored(const dvi_factor *factor)
 {
-  return factor->kind == DVI_SO3 ? 9 : factor->kind == DVI_SE3 ? 12 : factor->kind == DVI_S2 ? 3 : 2;
+  return factor->kind == DVI_SO3   ? 9
+         : factor->kind == DVI_SE3 ? 12
+         : factor->kind == DVI_S2  ? 3
+                                   : 2;
 }
 
 static int velocities(const dvi_factor *factor)
@@ -53,7 +57,8 @@ static void move(const dvi_factor *factor, int k, double by, double *q, double *
     dvi_so3_exp(e, E);
     memcpy(R, q, sizeof R);
     for (int i = 0; i < 3; i++)
-      for (int j = 0; j < 3; j++) q[3 * i + j] = R[3 * i] * E[j] + R[3 * i + 1] * E[3 + j] + R[3 * i + 2] * E[6 + j];
+      for (int j = 0; j < 3; j++)
+        q[3 * i + j] = R[3 * i] * E[j] + R[3 * i + 1] * E[3 + j] + R[3 * i + 2] * E[6 + j];
   }
   if (factor->kind == DVI_U1 && k == 0) {
     const double angle = dvi_u1_log(q) + by;
@@ -74,7 +79,8 @@ static double size_of(int count, const double *p)
   return largest;
 }
 
-/* Direction number k of all factors in a row; momenta in units of what the factor has at the start. */
+/* Direction number k of all factors in a row; momenta in units of what the factor has at the
+ * start. */
 static void displace(const body *of, int k, double by, const place *start, place *at)
 {
   int q = 0, v = 0;
@@ -82,18 +88,21 @@ static void displace(const body *of, int k, double by, const place *start, place
     const dvi_factor *factor = &of->factors[f];
     const int nv = velocities(factor), direction = k - 2 * v;
     if (direction >= 0 && direction < 2 * nv)
-      move(factor, direction, direction < nv ? by : by * size_of(nv, start->p + v), at->q + q, at->p + v);
+      move(factor, direction, direction < nv ? by : by * size_of(nv, start->p + v), at->q + q,
+           at->p + v);
     q += stored(factor);
     v += nv;
   }
 }
 
-static void add_difference(double weight, const dvi_factor *factor, const double *q0, const double *q, double *delta)
+static void add_difference(double weight, const dvi_factor *factor, const double *q0,
+                           const double *q, double *delta)
 {
   if (turns(factor)) {
     double E[9], eta[3];
     for (int i = 0; i < 3; i++)
-      for (int j = 0; j < 3; j++) E[3 * i + j] = q0[i] * q[j] + q0[3 + i] * q[3 + j] + q0[6 + i] * q[6 + j];
+      for (int j = 0; j < 3; j++)
+        E[3 * i + j] = q0[i] * q[j] + q0[3 + i] * q[3 + j] + q0[6 + i] * q[6 + j];
     ck_assert_int_eq(dvi_so3_log(E, eta), DVI_OK);
     for (int i = 0; i < 3; i++) delta[i] += weight * eta[i];
     for (int i = 3; i < velocities(factor); i++) delta[i] += weight * (q[6 + i] - q0[6 + i]);
@@ -104,7 +113,8 @@ static void add_difference(double weight, const dvi_factor *factor, const double
   }
 }
 
-static void add_place(const body *of, double weight, const place *middle, const place *at, tangent *sum)
+static void add_place(const body *of, double weight, const place *middle, const place *at,
+                      tangent *sum)
 {
   int q = 0, v = 0;
   for (int f = 0; f < of->factor_count; f++) {
@@ -123,7 +133,8 @@ static double form(const body *of, const place *at, const tangent *a, const tang
   for (int i = 0; i < of->nv; i++) sum += a->p[i] * b->q[i] - b->p[i] * a->q[i];
   for (int f = 0; f < of->factor_count; f++) {
     const double *x = a->q + v, *y = b->q + v;
-    const double bracket[] = {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]};
+    const double bracket[] = {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2],
+                              x[0] * y[1] - x[1] * y[0]};
     if (turns(&of->factors[f])) sum -= dot(at->p + v, bracket);
     v += velocities(&of->factors[f]);
   }
@@ -134,7 +145,8 @@ static void step(const body *of, const char *method, double h, const place *from
 {
   dvi_integrator *made = NULL;
   ck_assert_msg(dvi_integrator_create(of->system, method, &made) == DVI_OK &&
-                    dvi_integrator_start(made, 0, from->q, from->p) == DVI_OK && dvi_integrator_step(made, h) == DVI_OK,
+                    dvi_integrator_start(made, 0, from->q, from->p) == DVI_OK &&
+                    dvi_integrator_step(made, h) == DVI_OK,
                 "%s, %s: %s", of->name, method, dvi_last_error());
   memcpy(to->q, dvi_integrator_q(made), (size_t)of->nq * sizeof *to->q);
   memcpy(to->p, dvi_integrator_p(made), (size_t)of->nv * sizeof *to->p);
@@ -143,7 +155,8 @@ static void step(const body *of, const char *method, double h, const place *from
 
 double symplectic_defect(const body *of, const char *method, double h)
 {
-  static const double multiple[POINTS] = {-2, -1, 1, 2}, weight[POINTS] = {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12};
+  static const double multiple[POINTS] = {-2, -1, 1, 2},
+                      weight[POINTS] = {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12};
   tangent before[DIRECTIONS_MOST] = {0}, after[DIRECTIONS_MOST] = {0};
   place start = {0}, end = {0}, near, moved = {0};
   double largest = 0;
@@ -160,6 +173,7 @@ double symplectic_defect(const body *of, const char *method, double h)
     }
   for (int k = 0; k < 2 * of->nv; k++)
     for (int l = 0; l < k; l++)
-      largest = fmax(largest, fabs(form(of, &end, &after[k], &after[l]) - form(of, &start, &before[k], &before[l])));
+      largest = fmax(largest, fabs(form(of, &end, &after[k], &after[l]) -
+                                   form(of, &start, &before[k], &before[l])));
   return largest / size_of(of->nv, start.p);
 }

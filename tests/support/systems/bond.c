@@ -69,11 +69,20 @@ static int turn(const double *q, double *xi, void *user)
 void make_bond(double stiffness, double bend, bond *made)
 {
   static const double mass[] = {1, 1, 2, 2};
-  const dvi_symmetry symmetries[] = {{.name = "momentum", .generator = shift}, {.name = "angular", .generator = turn}};
+  const dvi_symmetry symmetries[] = {{.name = "momentum", .generator = shift},
+                                     {.name = "angular", .generator = turn}};
   const dvi_potential potentials[] = {
-      {.name = "bond", .value = stiff, .gradient = stiff_gradient, .user = made, .fast = 1, .quadratic = bend == 0},
+      {.name = "bond",
+       .value = stiff,
+       .gradient = stiff_gradient,
+       .user = made,
+       .fast = 1,
+       .quadratic = bend == 0},
       {.name = "attraction", .value = attraction, .gradient = attraction_gradient}};
-  *made = (bond){.stiffness = stiffness, .bend = bend, .q = {0.6, 0.1, -0.3, -0.2}, .p = {0.4, -0.7, 0.3, 0.9}};
+  *made = (bond){.stiffness = stiffness,
+                 .bend = bend,
+                 .q = {0.6, 0.1, -0.3, -0.2},
+                 .p = {0.4, -0.7, 0.3, 0.9}};
   made->system = make_system(&(dvi_system_terms){.dimension = 4,
                                                  .mass.diagonal = mass,
                                                  .potentials = potentials,

@@ -1,4 +1,5 @@
-/* Two bodies in a plane on a stiff bond, which attract each other softly, too: q = (x1, y1, x2, y2), masses 1 and 2, r the distance,
+/* Two bodies in a plane on a stiff bond, which attract each other softly, too: q = (x1, y1, x2,
+ * y2), masses 1 and 2, r the distance,
  *
  *     fast: stiffness (r^2/2 + bend r^4/4),      slow: -1/sqrt(1 + r^2).
  *

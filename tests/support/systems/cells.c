@@ -22,7 +22,8 @@ static int mixed_value(double t, const double *q, double *V, void *user)
   const int n = *(const int *)user;
   (void)t;
   *V = 0;
-  for (int i = 0; i < n; i++) *V += alone(i) * q[i] + q[i] * q[i] / 2 + (i + 3 < n ? between(i) * q[i] * q[i + 3] : 0);
+  for (int i = 0; i < n; i++)
+    *V += alone(i) * q[i] + q[i] * q[i] / 2 + (i + 3 < n ? between(i) * q[i] * q[i + 3] : 0);
   return 0;
 }
 
@@ -31,13 +32,15 @@ static int mixed_gradient(double t, const double *q, double *V_q, void *user)
   const int n = *(const int *)user;
   (void)t;
   for (int i = 0; i < n; i++)
-    V_q[i] = alone(i) + q[i] + (i + 3 < n ? between(i) * q[i + 3] : 0) + (i >= 3 ? between(i - 3) * q[i - 3] : 0);
+    V_q[i] = alone(i) + q[i] + (i + 3 < n ? between(i) * q[i + 3] : 0) +
+             (i >= 3 ? between(i - 3) * q[i - 3] : 0);
   return 0;
 }
 
 /* ---- the systems ---- */
 
-static const double inertia_of_some[] = {1.3, .1, 0, .1, 1.1, .05, 0, .05, .9}, centre[] = {.1, -.2, .15};
+static const double inertia_of_some[] = {1.3, .1, 0, .1, 1.1, .05, 0, .05, .9},
+                    centre[] = {.1, -.2, .15};
 
 enum { WEDGED_Q = 11 };
 
@@ -78,7 +81,8 @@ void make_cells(cells_kind kind, body *of)
 {
   static int size[CELLS] = {17, 4, WEDGED_Q};
   double M[WEDGED_Q * WEDGED_Q] = {0};
-  const dvi_potential potential = {.value = mixed_value, .gradient = mixed_gradient, .user = &size[kind]};
+  const dvi_potential potential = {
+      .value = mixed_value, .gradient = mixed_gradient, .user = &size[kind]};
   dvi_system_terms terms = {.factors = factors[kind],
                             .factor_count = kind == LOOSE ? 3 : 2,
                             .potentials = &potential,
@@ -93,7 +97,8 @@ void make_free_body(const double *inertia, const double *Omega, body *of)
 {
   const double upright[] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   const dvi_factor factor = {.kind = DVI_SO3, .inertia = inertia};
-  finish(&(dvi_system_terms){.factors = &factor, .factor_count = 1, .autonomous = 1}, upright, Omega, of);
+  finish(&(dvi_system_terms){.factors = &factor, .factor_count = 1, .autonomous = 1}, upright,
+         Omega, of);
   of->factors = NULL;
   of->factor_count = 0;
 }

@@ -7,8 +7,10 @@
 
 enum { LEVELS = 4, COORDINATES_MOST = 4 };
 
-/* Errors at the end of the span for four steps; those that thousands of roundings may explain are not fitted. */
-void check_degenerate_order(const char *name, const char *setting, const char *method, double h, int expected)
+/* Errors at the end of the span for four steps; those that thousands of roundings may explain are
+ * not fitted. */
+void check_degenerate_order(const char *name, const char *setting, const char *method, double h,
+                            int expected)
 {
   problem *of = made_problem(name, setting), *standard = made_problem(name, NULL);
   double last = 0;
@@ -18,11 +20,13 @@ void check_degenerate_order(const char *name, const char *setting, const char *m
     ck_assert_int_eq(dvi_integrator_order(integrator), expected);
     advance(integrator, h, lround(of->order_t_end / h));
     const double error = distance(of->nq, dvi_integrator_q(integrator), standard->digits_q);
-    const double floor = 5e-13 * fmax(1, magnitude(of->nq, standard->digits_q)), slope = log2(last / error);
+    const double floor = 5e-13 * fmax(1, magnitude(of->nq, standard->digits_q)),
+                 slope = log2(last / error);
     if (level > 0 && error > floor) {
       /* the first pair may not be asymptotic yet */
       const double within = level == 1 ? 0.7 : 0.2;
-      ck_assert_msg(fabs(slope - expected) <= within, "%s %s: slope %.2f at h = %g (error %g)", name, method, slope, h, error);
+      ck_assert_msg(fabs(slope - expected) <= within, "%s %s: slope %.2f at h = %g (error %g)",
+                    name, method, slope, h, error);
       fitted++;
     }
     last = error;
@@ -36,14 +40,15 @@ void check_degenerate_order(const char *name, const char *setting, const char *m
 double off_constraint(const problem *of, const dvi_integrator *integrator)
 {
   double alpha[COORDINATES_MOST];
-  ck_assert_int_eq(dvi_system_momentum(of->system, 0, dvi_integrator_q(integrator), of->v, alpha), DVI_OK);
+  ck_assert_int_eq(dvi_system_momentum(of->system, 0, dvi_integrator_q(integrator), of->v, alpha),
+                   DVI_OK);
   return distance(of->nq, alpha, dvi_integrator_p(integrator));
 }
 
-/* Largest errors of the first half of a run and of the second. Over as many steps the energy of a method that drifts by 1e-14 a step would change by
- * more than what is allowed between them. */
-void check_long_run(const char *name, const char *setting, const char *method, double h, long steps, double bound,
-                    double most_of_momentum)
+/* Largest errors of the first half of a run and of the second. Over as many steps the energy of a
+ * method that drifts by 1e-14 a step would change by more than what is allowed between them. */
+void check_long_run(const char *name, const char *setting, const char *method, double h, long steps,
+                    double bound, double most_of_momentum)
 {
   problem *of = made_problem(name, setting);
   dvi_integrator *integrator = started(of, method);
@@ -56,8 +61,8 @@ void check_long_run(const char *name, const char *setting, const char *method, d
     half[2 * k / steps] = fmax(half[2 * k / steps], fabs(now[0] - first[0]) / fabs(first[0]));
     for (int i = 1; i < count; i++) momentum = fmax(momentum, fabs(now[i] - first[i]));
   }
-  ck_assert_msg(half[0] <= bound && half[1] <= 1.02 * half[0] + 1e-12, "%s %s: energy errors %g, then %g", name, method, half[0],
-                half[1]);
+  ck_assert_msg(half[0] <= bound && half[1] <= 1.02 * half[0] + 1e-12,
+                "%s %s: energy errors %g, then %g", name, method, half[0], half[1]);
   ck_assert_double_le(momentum, most_of_momentum);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&of);
@@ -77,7 +82,8 @@ static double loop_integral(int n, dvi_integrator *const *point)
   return integral;
 }
 
-double change_of_loop(const char *name, const char *setting, const char *method, double h, long steps)
+double change_of_loop(const char *name, const char *setting, const char *method, double h,
+                      long steps)
 {
   problem *of = made_problem(name, setting);
   dvi_integrator *point[POINTS];
@@ -154,9 +160,12 @@ twins made_twins(void)
   twins both = {.regular = made_problem("henon-heiles", NULL)};
   static dvi_potential well;
   well = both.regular->terms->potentials[0];
-  const dvi_one_form form = {.value = kinetic_form, .gradient = kinetic_gradient, .hessian = kinetic_hessian};
-  const dvi_potential H = {.value = energy, .gradient = energy_gradient, .hessian = energy_hessian, .user = &well};
-  const dvi_system_terms terms = {.dimension = 4, .one_form = &form, .potentials = &H, .potential_count = 1, .autonomous = 1};
+  const dvi_one_form form = {
+      .value = kinetic_form, .gradient = kinetic_gradient, .hessian = kinetic_hessian};
+  const dvi_potential H = {
+      .value = energy, .gradient = energy_gradient, .hessian = energy_hessian, .user = &well};
+  const dvi_system_terms terms = {
+      .dimension = 4, .one_form = &form, .potentials = &H, .potential_count = 1, .autonomous = 1};
   ck_assert_msg(dvi_system_create(&terms, &both.degenerate) == DVI_OK, "%s", dvi_last_error());
   return both;
 }
@@ -169,14 +178,16 @@ void destroy_twins(twins *both)
 
 static dvi_integrator *started_twin(const twins *both, const char *method)
 {
-  const double *x = both->regular->q, *y = both->regular->p, q[] = {y[0], y[1], x[0], x[1]}, p[] = {0, 0, y[0], y[1]};
+  const double *x = both->regular->q, *y = both->regular->p, q[] = {y[0], y[1], x[0], x[1]},
+               p[] = {0, 0, y[0], y[1]};
   dvi_integrator *integrator = made_integrator(both->degenerate, method);
   ck_assert_msg(dvi_integrator_start(integrator, 0, q, p) == DVI_OK, "%s", dvi_last_error());
   return integrator;
 }
 
 enum { TWIN_STEPS = 50 };
-static const double twin_h = 0.1, twin_tolerance = 2e-13; /* some roundings a step of numbers below 1 */
+/* some roundings a step of numbers below 1 */
+static const double twin_h = 0.1, twin_tolerance = 2e-13;
 
 void check_same_as_regular(const char *degenerate, const char *regular)
 {
@@ -256,7 +267,8 @@ void check_class(const char *method)
 {
   static const struct {
     const char *problem, *words;
-  } outside[] = {{"lotka-volterra", "0 of 2 are; use the gauge alpha + grad f with df/dq_i = -alpha_i for q[0],"},
+  } outside[] = {{"lotka-volterra",
+                  "0 of 2 are; use the gauge alpha + grad f with df/dq_i = -alpha_i for q[0],"},
                  {"massless-particle", "df/dq_i = -alpha_i for q[0],"},
                  {"vortices", "df/dq_i = -alpha_i for q[0], q[2],"},
                  {"guiding-centre", "1 of 4 are; use the gauge"},

@@ -14,7 +14,8 @@ static int adjoint_value(double t, const double *q, const double *p, double *H, 
   return 0;
 }
 
-static int adjoint_gradient(double t, const double *q, const double *p, double *H_q, double *H_p, void *user)
+static int adjoint_gradient(double t, const double *q, const double *p, double *H_q, double *H_p,
+                            void *user)
 {
   (void)t, (void)user;
   H_q[0] = p[0] * (1 - 2 * q[0]);
@@ -22,7 +23,8 @@ static int adjoint_gradient(double t, const double *q, const double *p, double *
   return 0;
 }
 
-static int adjoint_hessian(double t, const double *q, const double *p, double *H_qq, double *H_qp, double *H_pp, void *user)
+static int adjoint_hessian(double t, const double *q, const double *p, double *H_qq, double *H_qp,
+                           double *H_pp, void *user)
 {
   (void)t, (void)H_pp, (void)user;
   H_qq[0] = -2 * p[0];
@@ -50,7 +52,8 @@ static int stiffness_value(double t, const double *q, const double *p, double *H
   return 0;
 }
 
-static int stiffness_gradient(double t, const double *q, const double *p, double *H_q, double *H_p, void *user)
+static int stiffness_gradient(double t, const double *q, const double *p, double *H_q, double *H_p,
+                              void *user)
 {
   (void)t, (void)user;
   H_q[Q] = q[K] * q[Q];
@@ -60,7 +63,8 @@ static int stiffness_gradient(double t, const double *q, const double *p, double
   return 0;
 }
 
-static int stiffness_hessian(double t, const double *q, const double *p, double *H_qq, double *H_qp, double *H_pp, void *user)
+static int stiffness_hessian(double t, const double *q, const double *p, double *H_qq, double *H_qp,
+                             double *H_pp, void *user)
 {
   (void)t, (void)p, (void)H_qp, (void)user;
   H_qq[0] = q[K];
@@ -69,7 +73,8 @@ static int stiffness_hessian(double t, const double *q, const double *p, double 
   return 0;
 }
 
-static const int full_start[] = {0, 2, 3}, full_row[] = {Q, K, Q}, empty_start[] = {0, 0, 0}, q_start[] = {0, 1, 1};
+static const int full_start[] = {0, 2, 3}, full_row[] = {Q, K, Q}, empty_start[] = {0, 0, 0},
+                 q_start[] = {0, 1, 1};
 
 /* From q = 1 at rest with k = 4: q = cos 2t, p_k = -(t/4 + sin(4t)/16). */
 static void stiffness_exact(double t, double *q, double *p)
@@ -89,7 +94,8 @@ static int driven_value(double t, const double *q, const double *p, double *H, v
   return 0;
 }
 
-static int driven_gradient(double t, const double *q, const double *p, double *H_q, double *H_p, void *user)
+static int driven_gradient(double t, const double *q, const double *p, double *H_q, double *H_p,
+                           void *user)
 {
   (void)user;
   H_q[0] = q[0] - cos(2 * t);
@@ -111,7 +117,8 @@ static int curved_value(double t, const double *q, const double *p, double *H, v
   return 0;
 }
 
-static int curved_gradient(double t, const double *q, const double *p, double *H_q, double *H_p, void *user)
+static int curved_gradient(double t, const double *q, const double *p, double *H_q, double *H_p,
+                           void *user)
 {
   (void)t, (void)user;
   H_q[0] = q[0] * p[0] * p[0];
@@ -151,8 +158,22 @@ const hamiltonian_problem hamiltonian_problems[] = {
      {0, 0},
      1,
      stiffness_exact},
-    {"driven", 1, 0, {.value = driven_value, .gradient = driven_gradient}, {1}, {0.5}, 1, driven_exact},
-    {"curved", 1, 0, {.value = curved_value, .gradient = curved_gradient}, {0}, {1}, 1, curved_exact},
+    {"driven",
+     1,
+     0,
+     {.value = driven_value, .gradient = driven_gradient},
+     {1},
+     {0.5},
+     1,
+     driven_exact},
+    {"curved",
+     1,
+     0,
+     {.value = curved_value, .gradient = curved_gradient},
+     {0},
+     {1},
+     1,
+     curved_exact},
     {.name = NULL},
 };
 
@@ -172,7 +193,8 @@ dvi_system *hamiltonian_system(const hamiltonian_problem *of)
   return system;
 }
 
-dvi_integrator *hamiltonian_started(const dvi_system *system, const hamiltonian_problem *of, const char *method)
+dvi_integrator *hamiltonian_started(const dvi_system *system, const hamiltonian_problem *of,
+                                    const char *method)
 {
   dvi_integrator *made = made_integrator(system, method);
   ck_assert_msg(dvi_integrator_start(made, 0, of->q, of->p) == DVI_OK, "%s", dvi_last_error());
@@ -194,7 +216,8 @@ static int transform_value(double t, const double *q, const double *p, double *H
 }
 
 /* H_q = -L_q, H_p = v; the potentials' forces with a constant mass. */
-static int transform_gradient(double t, const double *q, const double *p, double *H_q, double *H_p, void *user)
+static int transform_gradient(double t, const double *q, const double *p, double *H_q, double *H_p,
+                              void *user)
 {
   const problem *of = user;
   const dvi_lagrangian *L = of->terms->lagrangian;
@@ -211,7 +234,8 @@ static int transform_gradient(double t, const double *q, const double *p, double
   }
   for (int k = 0; k < of->terms->potential_count && returned == 0; k++) {
     const dvi_potential *V = &of->terms->potentials[k];
-    returned = V->gradient != NULL ? V->gradient(t, q, forces, V->user) : V->gradient_batch(1, &t, q, forces, V->user);
+    returned = V->gradient != NULL ? V->gradient(t, q, forces, V->user)
+                                   : V->gradient_batch(1, &t, q, forces, V->user);
     for (int i = 0; i < of->nq; i++) H_q[i] += forces[i];
   }
   return returned;
@@ -220,7 +244,8 @@ static int transform_gradient(double t, const double *q, const double *p, double
 dvi_system *legendre_transform(problem *of)
 {
   const dvi_hamiltonian H = {.value = transform_value, .gradient = transform_gradient, .user = of};
-  const dvi_system_terms terms = {.dimension = of->nq, .hamiltonian = &H, .autonomous = of->terms->autonomous};
+  const dvi_system_terms terms = {
+      .dimension = of->nq, .hamiltonian = &H, .autonomous = of->terms->autonomous};
   dvi_system *system;
   ck_assert_int_le(of->nq, TRANSFORMED_MOST);
   ck_assert_msg(dvi_system_create(&terms, &system) == DVI_OK, "%s", dvi_last_error());

@@ -23,7 +23,8 @@ static int fast(double t, const double *q, double *V, void *user)
   const necklace *own = user;
   (void)t;
   *V = 0;
-  for (int i = 0; i <= own->n; i++) *V += own->spring[i] * stretch(own, q, i) * stretch(own, q, i) / 2;
+  for (int i = 0; i <= own->n; i++)
+    *V += own->spring[i] * stretch(own, q, i) * stretch(own, q, i) / 2;
   for (int i = 0; i < own->n; i++) *V -= push(own, i) * q[i] * q[i] / 2;
   return 0;
 }
@@ -33,7 +34,8 @@ static int fast_gradient(double t, const double *q, double *V_q, void *user)
   const necklace *own = user;
   (void)t;
   for (int i = 0; i < own->n; i++)
-    V_q[i] = own->spring[i] * stretch(own, q, i) - own->spring[i + 1] * stretch(own, q, i + 1) - push(own, i) * q[i];
+    V_q[i] = own->spring[i] * stretch(own, q, i) - own->spring[i + 1] * stretch(own, q, i + 1) -
+             push(own, i) * q[i];
   return 0;
 }
 
@@ -85,7 +87,9 @@ static void fill(necklace *made, int uneven)
   int at = 0;
   for (int i = 0; i < made->n; i++) {
     made->mass[i] = uneven ? 1 + 0.5 * sin(3.0 * i) * sin(3.0 * i) : 1;
-    made->spring[i] = (made->kind == FREE && i == 0) ? 0 : uneven ? 1 - 0.6 * pow(cos(2.0 * i), 2) : 1;
+    made->spring[i] = (made->kind == FREE && i == 0) ? 0
+                      : uneven                       ? 1 - 0.6 * pow(cos(2.0 * i), 2)
+                                                     : 1;
     made->q[i] = sin(0.3 * i) + 0.2 * sin(1.7 * i * i);
     made->p[i] = cos(0.2 * i) + 0.5 * cos(2.3 * i * i);
     made->first[i] = at;
@@ -108,16 +112,19 @@ void make_necklace(int n, necklace_kind kind, int uneven, necklace *made)
   made->spring = made->p + size;
   made->row = made->first + size + 1;
   fill(made, uneven);
-  const dvi_potential potentials[] = {
-      {.name = "springs",
-       .value = fast,
-       .gradient = fast_gradient,
-       .hessian = fast_hessian,
-       .qq = {made->first, made->row},
-       .user = made,
-       .fast = 1,
-       .quadratic = 1},
-      {.name = "slow", .value = slow, .gradient = slow_gradient, .qq = {made->first, made->row}, .user = made}};
+  const dvi_potential potentials[] = {{.name = "springs",
+                                       .value = fast,
+                                       .gradient = fast_gradient,
+                                       .hessian = fast_hessian,
+                                       .qq = {made->first, made->row},
+                                       .user = made,
+                                       .fast = 1,
+                                       .quadratic = 1},
+                                      {.name = "slow",
+                                       .value = slow,
+                                       .gradient = slow_gradient,
+                                       .qq = {made->first, made->row},
+                                       .user = made}};
   const dvi_symmetry shift = {.name = "momentum", .generator = along, .user = made};
   made->system = make_system(&(dvi_system_terms){.dimension = n,
                                                  .mass.diagonal = made->mass,

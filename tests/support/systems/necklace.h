@@ -1,6 +1,8 @@
-/* Beads on a string of stiff springs, a fast quadratic potential, in a soft slow one: masses m_i and the springs' constants k_i are uneven,
+/* Beads on a string of stiff springs, a fast quadratic potential, in a soft slow one: masses m_i
+ * and the springs' constants k_i are uneven,
  *
- *     fast: sum_i k_i (q_(i+1) - q_i)^2/2,      slow: sum_i (1 - cos q_i), or, of a free string, sum_i (q_(i+1) - q_i)^4/4.
+ *     fast: sum_i k_i (q_(i+1) - q_i)^2/2,
+ *     slow: sum_i (1 - cos q_i), or, of a free string, sum_i (q_(i+1) - q_i)^4/4.
  *
  * The ends are held, or free: then the momentum is conserved. */
 #ifndef SUPPORT_NECKLACE_H
@@ -12,7 +14,8 @@ typedef enum necklace_kind {
   FREE,
   PUSHED,
   NECKLACES
-} necklace_kind; /* pushed: held, and each third bead pushed away by -5 q_i^2/2, which is fast, too */
+  /* pushed: held, and each third bead pushed away by -5 q_i^2/2, which is fast, too */
+} necklace_kind;
 
 typedef struct necklace {
   int n;
@@ -24,7 +27,8 @@ typedef struct necklace {
   dvi_system *system;
 } necklace;
 
-/* `made` must stay where it is. All omega are below 2 (2 k_i/m_i <= 4); uneven = 0: they are 2 sin of even angles. */
+/* `made` must stay where it is. All omega are below 2 (2 k_i/m_i <= 4); uneven = 0: they are 2 sin
+ * of even angles. */
 void make_necklace(int n, necklace_kind kind, int uneven, necklace *made);
 void destroy_necklace(necklace *made);
 

@@ -15,7 +15,8 @@ static const int tridiagonal_row[3 * SITES - 2] = {0, 1, 0, 1, 2, 1, 2, 3, 2, 3,
 static const dvi_pattern diagonal = {diagonal_start, diagonal_row};
 static const dvi_pattern bidiagonal = {bidiagonal_start, bidiagonal_row};
 const dvi_pattern tridiagonal = {tridiagonal_start, tridiagonal_row};
-const double tridiagonal_mass[3 * SITES - 2] = {2, -.5, -.5, 3, -.5, -.5, 4, -.5, -.5, 5, -.5, -.5, 6, -.5, -.5, 7};
+const double tridiagonal_mass[3 * SITES - 2] = {2,   -.5, -.5, 3,   -.5, -.5, 4,   -.5,
+                                                -.5, 5,   -.5, -.5, 6,   -.5, -.5, 7};
 
 const double generic_q[SITES] = {0.31, -0.72, 1.13, 0.54, -1.25, 0.86};
 const double generic_v[SITES] = {-0.43, 0.64, 0.25, -1.06, 0.77, 0.98};
@@ -74,9 +75,14 @@ static int springs_hessians(int count, const double *t, const double *q, double 
     for (int j = 0; j < SITES; j++)
       for (int e = tridiagonal_start[j]; e < tridiagonal_start[j + 1]; e++) {
         const int i = tridiagonal_row[e];
-        const double left = j > 0 ? stretch(q, count, k, j - 1) : 0, right = j + 1 < SITES ? stretch(q, count, k, j) : 0;
-        const double to_left = j > 0 ? 1 + 3 * left * left : 0, to_right = j + 1 < SITES ? 1 + 3 * right * right : 0;
-        V_qq[e * count + k] = (i < j ? -to_left : i > j ? -to_right : to_left + to_right) + (e == b->at ? b->hessian_lie : 0);
+        const double left = j > 0 ? stretch(q, count, k, j - 1) : 0,
+                     right = j + 1 < SITES ? stretch(q, count, k, j) : 0;
+        const double to_left = j > 0 ? 1 + 3 * left * left : 0,
+                     to_right = j + 1 < SITES ? 1 + 3 * right * right : 0;
+        V_qq[e * count + k] = (i < j   ? -to_left
+                               : i > j ? -to_right
+                                       : to_left + to_right) +
+                              (e == b->at ? b->hessian_lie : 0);
       }
   return b->answer;
 }
@@ -134,7 +140,8 @@ static int wells_values(int count, const double *t, const double *q, double *V, 
   b->values++;
   for (int k = 0; k < count; k++) {
     V[k] = b->value_lie;
-    for (int i = 0; i < SITES; i++) V[k] += (1 + i) * pow(q[i * count + k], 4) / 4 + t[k] * q[i * count + k];
+    for (int i = 0; i < SITES; i++)
+      V[k] += (1 + i) * pow(q[i * count + k], 4) / 4 + t[k] * q[i * count + k];
   }
   return b->answer;
 }
@@ -145,7 +152,8 @@ static int wells_gradients(int count, const double *t, const double *q, double *
   b->gradients++;
   for (int k = 0; k < count; k++)
     for (int i = 0; i < SITES; i++)
-      V_q[i * count + k] = (1 + i) * pow(q[i * count + k], 3) + t[k] + (i == b->at ? b->gradient_lie : 0);
+      V_q[i * count + k] = (1 + i) * pow(q[i * count + k], 3) + t[k] +
+                           (i == b->at ? b->gradient_lie : 0);
   return b->answer;
 }
 
@@ -156,7 +164,8 @@ static int wells_hessians(int count, const double *t, const double *q, double *V
   b->hessians++;
   for (int k = 0; k < count; k++)
     for (int i = 0; i < SITES; i++)
-      V_qq[i * count + k] = 3 * (1 + i) * q[i * count + k] * q[i * count + k] + (i == b->at ? b->hessian_lie : 0);
+      V_qq[i * count + k] = 3 * (1 + i) * q[i * count + k] * q[i * count + k] +
+                            (i == b->at ? b->hessian_lie : 0);
   return b->answer;
 }
 
@@ -210,7 +219,8 @@ dvi_potential wells(behaviour *user, callback_shape shape)
 
 /* ---- rotors ---- */
 
-static int rotors_values(int count, const double *t, const double *q, const double *v, double *L, void *user)
+static int rotors_values(int count, const double *t, const double *q, const double *v, double *L,
+                         void *user)
 {
   behaviour *b = user;
   b->values++;
@@ -225,17 +235,21 @@ static int rotors_values(int count, const double *t, const double *q, const doub
   return b->answer;
 }
 
-static int rotors_gradients(int count, const double *t, const double *q, const double *v, double *L_q, double *L_v, void *user)
+static int rotors_gradients(int count, const double *t, const double *q, const double *v,
+                            double *L_q, double *L_v, void *user)
 {
   behaviour *b = user;
   b->gradients++;
   for (int k = 0; k < count; k++)
     for (int i = 0; i < SITES; i++) {
-      const double x = q[i * count + k], w = v[i * count + k], lie = i == b->at ? b->gradient_lie : 0;
-      const double before = i > 0 ? v[(i - 1) * count + k] : 0, after = i + 1 < SITES ? v[(i + 1) * count + k] : 0;
-      L_q[i * count + k] = -sin(x) * w * w / 2 + cos(x) * after - (1 + t[k]) * x + (b->block == 0 ? lie : 0);
-      L_v[i * count + k] = (2 + cos(x)) * w + (before + after) / 4 + (i > 0 ? sin(q[(i - 1) * count + k]) : 0) +
-                           (b->block == 1 ? lie : 0);
+      const double x = q[i * count + k], w = v[i * count + k],
+                   lie = i == b->at ? b->gradient_lie : 0;
+      const double before = i > 0 ? v[(i - 1) * count + k] : 0,
+                   after = i + 1 < SITES ? v[(i + 1) * count + k] : 0;
+      L_q[i * count + k] = -sin(x) * w * w / 2 + cos(x) * after - (1 + t[k]) * x +
+                           (b->block == 0 ? lie : 0);
+      L_v[i * count + k] = (2 + cos(x)) * w + (before + after) / 4 +
+                           (i > 0 ? sin(q[(i - 1) * count + k]) : 0) + (b->block == 1 ? lie : 0);
     }
   return b->answer;
 }
@@ -245,17 +259,19 @@ static double lie_of(const behaviour *b, int block, int entry)
   return b->block == block && b->at == entry ? b->hessian_lie : 0;
 }
 
-static int rotors_hessians(int count, const double *t, const double *q, const double *v, double *L_qq, double *L_qv, double *L_vv,
-                           void *user)
+static int rotors_hessians(int count, const double *t, const double *q, const double *v,
+                           double *L_qq, double *L_qv, double *L_vv, void *user)
 {
   behaviour *b = user;
   b->hessians++;
   for (int k = 0; k < count; k++)
     for (int j = 0; j < SITES; j++) {
-      const double x = q[j * count + k], w = v[j * count + k], after = j + 1 < SITES ? v[(j + 1) * count + k] : 0;
+      const double x = q[j * count + k], w = v[j * count + k],
+                   after = j + 1 < SITES ? v[(j + 1) * count + k] : 0;
       L_qq[j * count + k] = -cos(x) * w * w / 2 - sin(x) * after - (1 + t[k]) + lie_of(b, 0, j);
       for (int e = bidiagonal_start[j]; e < bidiagonal_start[j + 1]; e++)
-        L_qv[e * count + k] = (bidiagonal_row[e] == j ? -sin(x) * w : cos(q[(j - 1) * count + k])) + lie_of(b, 1, e);
+        L_qv[e * count + k] = (bidiagonal_row[e] == j ? -sin(x) * w : cos(q[(j - 1) * count + k])) +
+                              lie_of(b, 1, e);
       for (int e = tridiagonal_start[j]; e < tridiagonal_start[j + 1]; e++)
         L_vv[e * count + k] = (tridiagonal_row[e] == j ? 2 + cos(x) : 0.25) + lie_of(b, 2, e);
     }
@@ -267,17 +283,20 @@ static int rotors_value(double t, const double *q, const double *v, double *L, v
   return rotors_values(1, &t, q, v, L, user);
 }
 
-static int rotors_gradient(double t, const double *q, const double *v, double *L_q, double *L_v, void *user)
+static int rotors_gradient(double t, const double *q, const double *v, double *L_q, double *L_v,
+                           void *user)
 {
   return rotors_gradients(1, &t, q, v, L_q, L_v, user);
 }
 
-static int rotors_hessian(double t, const double *q, const double *v, double *L_qq, double *L_qv, double *L_vv, void *user)
+static int rotors_hessian(double t, const double *q, const double *v, double *L_qq, double *L_qv,
+                          double *L_vv, void *user)
 {
   return rotors_hessians(1, &t, q, v, L_qq, L_qv, L_vv, user);
 }
 
-static int rotors_rates(int count, const double *t, const double *q, const double *v, double *L_t, void *user)
+static int rotors_rates(int count, const double *t, const double *q, const double *v, double *L_t,
+                        void *user)
 {
   const behaviour *b = user;
   (void)t, (void)v;
@@ -326,6 +345,8 @@ static int runaway_gradient(double t, const double *q, double *V_q, void *user)
 
 dvi_system *runaway(int fast)
 {
-  const dvi_potential potential = {.name = "runaway", .value = runaway_value, .gradient = runaway_gradient, .fast = fast};
-  return make_system(&(dvi_system_terms){.dimension = 1, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
+  const dvi_potential potential = {
+      .name = "runaway", .value = runaway_value, .gradient = runaway_gradient, .fast = fast};
+  return make_system(&(dvi_system_terms){
+      .dimension = 1, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
 }

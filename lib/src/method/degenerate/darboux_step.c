@@ -1,6 +1,6 @@
 #include "method/degenerate/darboux_step.h"
 
-static void explain(const dvi__stepper *self, dvi__text *text)
+static void darboux_step_explain(const dvi__stepper *self, dvi__text *text)
 {
   const dvi__one_step *one = self->own;
   dvi__text_add(text, "one-form: constant in the components of");
@@ -10,7 +10,8 @@ static void explain(const dvi__stepper *self, dvi__text *text)
   dvi__text_add(text, "constraint: p = alpha(q), to the last bit after every step\n");
 }
 
-static dvi_status place(dvi__stepper *self, const dvi__state *state, double h, double part)
+static dvi_status darboux_step_place(dvi__stepper *self, const dvi__state *state, double h,
+                                     double part)
 {
   const dvi__one_step *one = self->own;
   (void)part;
@@ -18,7 +19,7 @@ static dvi_status place(dvi__stepper *self, const dvi__state *state, double h, d
   return DVI_OK;
 }
 
-DVI__STEP_KIND(darboux, place, explain);
+DVI__STEP_KIND(darboux, darboux_step_place, darboux_step_explain);
 
 dvi_status dvi__darboux_step_create(dvi__stepper *self, dvi__darboux_rule rule, int stages)
 {
@@ -30,7 +31,8 @@ dvi_status dvi__darboux_step_create(dvi__stepper *self, dvi__darboux_rule rule, 
   return dvi__one_step_create(self, sizeof(dvi__one_step), &kind, step, 0);
 }
 
-/* The last stage is solved for p1 = alpha(q1): alpha is evaluated again, so that the constraint holds to the last bit. */
+/* Evaluate alpha at q1 again for p1 = alpha(q1). The last stage solves this equation only to the
+ * tolerance, and the constraint shall hold to the last bit. */
 dvi_status dvi__darboux_step(dvi__stepper *self, dvi__state *state, double h)
 {
   const dvi__one_step *one = self->own;

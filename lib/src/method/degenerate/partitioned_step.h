@@ -1,17 +1,19 @@
-/* What methods share whose step is that of step/degenerate/partitioned.h. */
+/* Methods with a step of step/degenerate/partitioned.h share these functions. */
 #ifndef DVI_METHOD_PARTITIONED_STEP_H
 #define DVI_METHOD_PARTITIONED_STEP_H
 #include "step/degenerate/partitioned.h"
 #include "method/one_step.h"
 
-/* Make memory and own; order and symmetric are the method's. */
-dvi_status dvi__partitioned_step_create(dvi__stepper *self, dvi__tableau tableau, int stages, dvi__projection projection);
+/* Allocate memory and own. The caller sets order and symmetric. */
+dvi_status dvi__partitioned_step_create(dvi__stepper *self, dvi__tableau tableau, int stages,
+                                        dvi__projection projection);
 
-/* The other operations of dvi__method, and what goes into its initialiser for them. */
+/* The other operations of dvi__method, and their entries in its initialiser. */
 dvi_status dvi__partitioned_step(dvi__stepper *self, dvi__state *state, double h);
 const double *dvi__partitioned_step_multiplier(const dvi__stepper *self);
 
-#define DVI__PARTITIONED_OPERATIONS \
-  .step = dvi__partitioned_step, .multiplier = dvi__partitioned_step_multiplier, DVI__ONE_STEP_OPERATIONS
+#define DVI__PARTITIONED_OPERATIONS                                              \
+  .step = dvi__partitioned_step, .multiplier = dvi__partitioned_step_multiplier, \
+  DVI__ONE_STEP_OPERATIONS
 
 #endif

@@ -1,13 +1,19 @@
-/* Variational partitioned Runge-Kutta methods for degenerate Lagrangians alpha(q).v - H(q), projected onto p = alpha(q).
+/* Variational partitioned Runge-Kutta methods for degenerate Lagrangians alpha(q).v - H(q),
+ * projected onto p = alpha(q).
  *
- *     Ld = h sum_i b_i L(Q_i, V_i) with the stages of step/degenerate/partitioned.h, stationary under q1 = q0 + h sum_i b_i V_i.
+ *     Ld = h sum_i b_i L(Q_i, V_i) with the stages of step/degenerate/partitioned.h,
+ *     stationary under q1 = q0 + h sum_i b_i V_i
  *
- * Without a projection the momenta leave p = alpha(q), and the order is lost. Each projection kicks (q, p) along Omega^-1 grad phi, phi = p - alpha(q):
- *     symmetric   the same multiplier before and after the step, solved with it: symmetric, order 2s (Gauss)
- *     midpoint    the same, with grad alpha at the mean of both ends: symmetric, lower order
- *     symplectic  the multiplier of the last step before, its own after: carried from step to step; its alternating part is a parasite
+ * Without a projection the momenta leave p = alpha(q), and the order is lost. Each projection kicks
+ * (q, p) along Omega^-1 grad phi, with phi = p - alpha(q).
+ *     symmetric   the same multiplier before and after the step, solved with the step;
+ *                 symmetric, order 2s (Gauss)
+ *     midpoint    the same, with grad alpha at the mean of both ends; symmetric, lower order
+ *     symplectic  the last step's multiplier before the step, its own after the step; the
+ *                 multiplier is carried, and its alternating part is a parasite
  *     post        after the step alone
  *     none        for comparison
+ *
  * Source: Kraus 2017, arXiv:1708.07356. */
 #include "core/status.h"
 #include "method/degenerate/partitioned_step.h"
@@ -27,15 +33,18 @@ static const char *projection_name(int index)
 }
 
 static const dvi__key keys[] = {
-    {"nodes", NULL, 1, 6, 2, "the stages, 1 to 6; left out: 2"},
-    {"tableau", tableau_name, 0, 0, DVI__GAUSS, "gauss or lobatto-iiie (2 stages or more); left out: gauss"},
-    {"projection", projection_name, 0, 0, DVI__SYMMETRIC, "symmetric, midpoint, symplectic, post or none; left out: symmetric"},
+    {"nodes", NULL, 1, 6, 2, "the stages, 1 to 6; default: 2"},
+    {"tableau", tableau_name, 0, 0, DVI__GAUSS,
+     "gauss or lobatto-iiie (2 stages or more); default: gauss"},
+    {"projection", projection_name, 0, 0, DVI__SYMMETRIC,
+     "symmetric, midpoint, symplectic, post or none; default: symmetric"},
     {0},
 };
 
-/* Measured where the projections differ, on massless-particle and vortices (tests/method/degenerate/test_vprk.c): what a projection along directions that are
- * right to h, or on one side alone, leaves of the tableau's order. */
-static int order_of(int tableau, int s, int projection)
+/* These orders were measured where the projections differ, on massless-particle and vortices
+ * (tests/method/degenerate/test_vprk.c). A projection on one side alone, or along directions that
+ * are accurate to O(h), reduces the order of the tableau. */
+static int vprk_order_of(int tableau, int s, int projection)
 {
   const int gauss = tableau == DVI__GAUSS, full = gauss ? 2 * s : 2 * s - 2;
   switch (projection) {
@@ -46,23 +55,28 @@ static int order_of(int tableau, int s, int projection)
   }
 }
 
-static dvi_status create(dvi__stepper *self)
+static dvi_status vprk_create(dvi__stepper *self)
 {
   const int *value = self->settings.value;
   if (value[TABLEAU] == DVI__LOBATTO_IIIE && value[NODES] < 2)
-    return dvi__fail(DVI_BAD_OPTION, "vprk: tableau=lobatto-iiie has its nodes at both ends; nodes=2 or more is needed");
-  self->order = order_of(value[TABLEAU], value[NODES], value[PROJECTION]);
-  self->symmetric = value[PROJECTION] == DVI__SYMMETRIC || value[PROJECTION] == DVI__MIDPOINT_PROJECTION;
-  return dvi__partitioned_step_create(self, (dvi__tableau)value[TABLEAU], value[NODES], (dvi__projection)value[PROJECTION]);
+    return dvi__fail(
+        DVI_BAD_OPTION,
+        "vprk: tableau=lobatto-iiie has its nodes at both ends; nodes=2 or more is needed");
+  self->order = vprk_order_of(value[TABLEAU], value[NODES], value[PROJECTION]);
+  self->symmetric = value[PROJECTION] == DVI__SYMMETRIC ||
+                    value[PROJECTION] == DVI__MIDPOINT_PROJECTION;
+  return dvi__partitioned_step_create(self, (dvi__tableau)value[TABLEAU], value[NODES],
+                                      (dvi__projection)value[PROJECTION]);
 }
 
 const dvi__method dvi__vprk = {
     .name = "vprk",
-    .summary = "partitioned Runge-Kutta, projected onto p = alpha(q); order 2s; degenerate Lagrangians only",
+    .summary = "partitioned Runge-Kutta, projected onto p = alpha(q); order 2s; degenerate "
+               "Lagrangians only",
     .cite = "Kraus2017",
     .keys = keys,
     .needs = DVI__ONE_FORM,
     .uses = DVI__ONE_FORM | DVI__POTENTIAL,
-    .create = create,
+    .create = vprk_create,
     DVI__PARTITIONED_OPERATIONS,
 };

@@ -19,7 +19,8 @@ static double length_of(const dvi__bordered *b, const double *x)
 static dvi_status place(dvi__bordered *b, const double *x)
 {
   const double h = length_of(b, x), moved = x[b->rows] / b->unit;
-  if (!(h / b->h0 > 0) || !isnormal(h)) return dvi__fail(DVI_NOT_CONVERGED, "the energy equation leads to a step of %g", h);
+  if (!(h / b->h0 > 0) || !isnormal(h))
+    return dvi__fail(DVI_NOT_CONVERGED, "the energy equation leads to a step of %g", h);
   for (int i = 0; i < b->rows; i++) b->Y[i] = x[i] + moved * b->tangent[i];
   dvi__action_place(b->action, b->state->t, h, b->state->q, b->state->p);
   return DVI_OK;
@@ -45,7 +46,8 @@ static dvi_status derivatives(dvi__bordered *b, const double *Y)
   return DVI_OK;
 }
 
-/* The row of the energy closes each column of dR/dY; the last column is that of h along the tangent. */
+/* The row of the energy closes each column of dR/dY; the last column is that of h along the
+ * tangent. */
 static dvi_status jacobian_of(void *of, const double *x, double *values)
 {
   dvi__bordered *b = of;
@@ -67,7 +69,7 @@ static dvi_status jacobian_of(void *of, const double *x, double *values)
   return DVI_OK;
 }
 
-static dvi_status prepare_of(void *of, const double *x)
+static dvi_status prepare_chord_of(void *of, const double *x)
 {
   dvi__bordered *b = of;
   DVI_TRY(place(b, x));
@@ -90,10 +92,13 @@ static dvi_status border(const dvi__pattern *inner, dvi__pattern *pattern)
   const int n = inner->columns;
   const size_t entries = (size_t)dvi__pattern_entries(inner) + 2 * (size_t)n + 1;
   if (entries > 0x7fffffff)
-    return dvi__fail(DVI_BAD_SIZE, "sem: the Jacobian would have %zu entries; declare sparse Hessians", entries);
+    return dvi__fail(DVI_BAD_SIZE,
+                     "sem: the Jacobian would have %zu entries; declare sparse Hessians", entries);
   *pattern = (dvi__pattern){n + 1, n + 1, DVI_NEW(int, (size_t)n + 2), DVI_NEW(int, entries)};
-  if (pattern->start == NULL || pattern->row == NULL)
+  if (pattern->start == NULL || pattern->row == NULL) {
+    dvi__pattern_clear(pattern);
     return dvi__fail(DVI_NO_MEMORY, "sem: no memory for a Jacobian of %zu entries", entries);
+  }
   int at = 0;
   for (int j = 0; j < n; j++) {
     for (int e = inner->start[j]; e < inner->start[j + 1]; e++) pattern->row[at++] = inner->row[e];
@@ -105,7 +110,7 @@ static dvi_status border(const dvi__pattern *inner, dvi__pattern *pattern)
   return DVI_OK;
 }
 
-static dvi_status allocate(dvi__bordered *b, size_t n)
+static dvi_status allocate_unknowns(dvi__bordered *b, size_t n)
 {
   const size_t rows = (size_t)b->rows;
   b->x = DVI_NEW(double, rows + 1);
@@ -113,30 +118,50 @@ static dvi_status allocate(dvi__bordered *b, size_t n)
   b->Y = DVI_NEW(double, rows);
   b->tangent = DVI_NEW(double, rows);
   b->column = DVI_NEW(double, rows);
-  b->values = DVI_NEW(double, dvi__pattern_entries(dvi__action_pattern(b->action)));
   b->start = (dvi__energy_gradient){DVI_NEW(double, rows), DVI_NEW(double, n), 0};
   b->end = (dvi__energy_gradient){DVI_NEW(double, rows), DVI_NEW(double, n), 0};
-  if (b->x && b->direction && b->Y && b->tangent && b->column && b->values && b->start.Y && b->start.q0 && b->end.Y && b->end.q0)
+  if (b->x && b->direction && b->Y && b->tangent && b->column && b->start.Y && b->start.q0 &&
+      b->end.Y && b->end.q0)
     return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "sem: no memory for %zu unknowns", rows);
 }
 
-dvi_status dvi__bordered_create(const dvi__stepper *self, const dvi__action_space *space, dvi__bordered *b)
+/* What derivatives of the rows need, when they are first asked for. */
+static dvi_status prepare_derivatives(dvi__bordered *b)
 {
-  b->element = (dvi__stepper){.method = self->method, .system = self->system, .counters = self->counters};
+  const dvi__pattern *inner = dvi__action_pattern(b->action);
+  if (b->schur != NULL) return DVI_OK;
+  DVI_TRY(dvi__action_prepare_jacobian(b->action));
+  if (b->values == NULL) b->values = DVI_NEW(double, dvi__pattern_entries(inner));
+  if (b->values == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "sem: no memory for a Jacobian of %d rows", b->rows);
+  return dvi__linear_create(inner, DVI__LINEAR_AUTO, b->element.counters, &b->schur);
+}
+
+static dvi_status prepare_of(void *of, dvi__equations *equations)
+{
+  dvi__bordered *b = of;
+  DVI_TRY(prepare_derivatives(b));
+  equations->pattern = &b->pattern;
+  return b->pattern.start != NULL ? DVI_OK : border(dvi__action_pattern(b->action), &b->pattern);
+}
+
+dvi_status dvi__bordered_create(const dvi__stepper *self, const dvi__action_space *space,
+                                dvi__bordered *b)
+{
+  b->element = (dvi__stepper){
+      .method = self->method, .system = self->system, .counters = self->counters};
   DVI_TRY(dvi__element_create(&b->element, space, DVI__SOLVER_AUTO));
   b->action = dvi__element_action(&b->element);
   b->rows = dvi__action_unknowns(b->action);
   DVI_TRY(dvi__action_prepare_energy(b->action));
-  DVI_TRY(border(dvi__action_pattern(b->action), &b->pattern));
-  DVI_TRY(allocate(b, (size_t)self->system->n));
-  DVI_TRY(dvi__linear_create(dvi__action_pattern(b->action), DVI__LINEAR_AUTO, self->counters, &b->schur));
+  DVI_TRY(allocate_unknowns(b, (size_t)self->system->n));
   const dvi__equations equations = {.unknowns = b->rows + 1,
-                                    .pattern = &b->pattern,
                                     .of = b,
+                                    .prepare = prepare_of,
                                     .residual = residual_of,
                                     .jacobian = jacobian_of,
-                                    .prepare_chord = prepare_of,
+                                    .prepare_chord = prepare_chord_of,
                                     .row_scale = row_scale_of,
                                     .renewed = 1};
   return dvi__solver_create(&equations, self->counters, &b->solver);
@@ -161,7 +186,8 @@ double dvi__energy_floor(const dvi__energies *E)
   return 16 * DBL_EPSILON * E->size;
 }
 
-dvi_status dvi__bordered_energies(dvi__bordered *b, const dvi__state *state, double h, const double *Y, dvi__energies *E)
+dvi_status dvi__bordered_energies(dvi__bordered *b, const dvi__state *state, double h,
+                                  const double *Y, dvi__energies *E)
 {
   dvi__action_place(b->action, state->t, h, state->q, state->p);
   DVI_TRY(dvi__action_residual(b->action, Y, b->direction));
@@ -170,9 +196,13 @@ dvi_status dvi__bordered_energies(dvi__bordered *b, const dvi__state *state, dou
 
 dvi_status dvi__bordered_slope(dvi__bordered *b, const double *Y, double *slope)
 {
+  DVI_TRY(prepare_derivatives(b));
   DVI_TRY(derivatives(b, Y));
-  if (dvi__linear_factor(b->schur, b->values) != DVI_OK)
-    return dvi__fail_in(DVI_NOT_CONVERGED, "the Jacobian of the step's equations cannot be factored");
+  const dvi_status factored = dvi__linear_factor(b->schur, b->values);
+  if (factored == DVI_NO_MEMORY) return factored;
+  if (factored != DVI_OK)
+    return dvi__fail_in(DVI_NOT_CONVERGED,
+                        "the Jacobian of the step's equations cannot be factored");
   dvi__linear_solve(b->schur, b->column);
   *slope = b->start.h;
   for (int i = 0; i < b->rows; i++) *slope -= b->start.Y[i] * b->column[i];
@@ -188,11 +218,13 @@ static double slope_of_factor(dvi__bordered *b)
   return b->unit / b->direction[b->rows];
 }
 
-/* A rounding of the energies moves h by their size over the slope. In these units that is a thousand roundings of what y is added to, which Newton's method
- * takes for noise, and any more of it for a correction. */
+/* A rounding of the energies moves h by their size over the slope. In these units that is a
+ * thousand roundings of what y is added to, which Newton's method takes for noise, and any more of
+ * it for a correction. */
 static double unit_of(double size, const dvi__mismatch *at)
 {
-  const double certain = fabs(at->h * at->slope) / at->E.size, part = fmin(1, 1024 * fmax(1e-12, certain));
+  const double certain = fabs(at->h * at->slope) / at->E.size,
+               part = fmin(1, 1024 * fmax(1e-12, certain));
   int exponent;
   (void)frexp(part * size / fabs(at->h), &exponent);
   return ldexp(1.0, exponent);
@@ -212,8 +244,8 @@ static dvi_status begin(dvi__bordered *b, double size, const double *Y, dvi__mis
   return DVI_OK;
 }
 
-dvi_status dvi__bordered_solve(dvi__bordered *b, const dvi__state *state, double target, dvi__rung rung, const double *Y,
-                               dvi__mismatch *found)
+dvi_status dvi__bordered_solve(dvi__bordered *b, const dvi__state *state, double target,
+                               dvi__rung rung, const double *Y, dvi__mismatch *found)
 {
   const double size = dvi__largest((size_t)b->element.system->n, state->q);
   dvi__solve_report report;
@@ -224,6 +256,8 @@ dvi_status dvi__bordered_solve(dvi__bordered *b, const dvi__state *state, double
   found->h = length_of(b, b->x);
   if (status != DVI_OK) return status;
   found->slope = slope_of_factor(b);
-  if (!isfinite(found->slope)) return dvi__fail(DVI_NOT_CONVERGED, "the energy equation is degenerate at a step of %g", found->h);
+  if (!isfinite(found->slope))
+    return dvi__fail(DVI_NOT_CONVERGED, "the energy equation is degenerate at a step of %g",
+                     found->h);
   return DVI_OK;
 }

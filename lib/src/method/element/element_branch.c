@@ -1,7 +1,9 @@
-/* The branch of an element's solutions from h = 0: following it, and whether a solution is on it. */
+/* The branch of an element's solutions from h = 0: following it, and whether a solution is on
+ * it. */
 #include <math.h>
 #include <string.h>
 
+#include "core/memory.h"
 #include "core/status.h"
 #include "method/element/element_struct.h"
 #include "num/finite.h"
@@ -37,7 +39,7 @@ static dvi_status place_part(void *of, double part)
 {
   const pursuit *own = of;
   const dvi__element_place *at = own->at;
-  dvi__action_place(((dvi__element *)own->self->own)->action, at->t, part * at->h, at->q, at->p);
+  dvi__element_put(own->self->own, at, part * at->h);
   return DVI_OK;
 }
 
@@ -46,7 +48,8 @@ static dvi_status guess_part(void *of, double part, double *Y)
 {
   const pursuit *own = of;
   const dvi__element_place *at = own->at;
-  const dvi__element_place short_one = {at->t, part * at->h, at->q, at->p, at->last_h, at->last_Y, NULL};
+  const dvi__element_place short_one = {at->t,      part * at->h, at->q, at->p,
+                                        at->last_h, at->last_Y,   NULL};
   return dvi__element_straight(own->self, &short_one, Y);
 }
 
@@ -57,14 +60,16 @@ static double turn_between(void *of, const double *from, const double *Y)
 }
 
 /* In charts the sentence tells how far the path turns, too. */
-static dvi_status branch_ends(const dvi__stepper *self, const dvi__element_place *at, const double *Y, const dvi__branch_end *end,
+static dvi_status branch_ends(const dvi__stepper *self, const dvi__element_place *at,
+                              const double *Y, const dvi__branch_end *end,
                               const dvi__branch_failure *whole)
 {
   const dvi__element *own = self->own;
   const dvi_status status = dvi__branch_tell(end, at->h, whole);
   if (!own->centred) return status;
   if (end->reached == 0)
-    return dvi__fail(DVI_STEP_TOO_LARGE, "a step too large: not even that of h = %.3g has a path", at->h / DVI__BRANCH_PARTS);
+    return dvi__fail(DVI_STEP_TOO_LARGE, "a step too large: not even that of h = %.3g has a path",
+                     at->h / DVI__BRANCH_PARTS);
   dvi__action_path(own->action, Y, 1.0, 1.0, own->dq, NULL);
   return dvi__fail(DVI_STEP_TOO_LARGE,
                    "a step too large: its path continues those of shorter steps up to h = %.3g, "
@@ -87,36 +92,54 @@ static int is_symmetric(const dvi__stepper *self)
 /* In charts solutions are nearer to their guesses, and differences are noise over short parts. */
 static int parts_of(const dvi__stepper *self)
 {
-  const int coarse = ((const dvi__element *)self->own)->centred || dvi__hessian_noise(self->system) > 0;
+  const int coarse = ((const dvi__element *)self->own)->centred ||
+                     dvi__hessian_noise(self->system) > 0;
   if (self->follow > 0) return self->follow;
   return coarse ? 1 : DVI__BRANCH_CAREFUL;
+}
+
+/* Room to follow a branch, when one is followed first. */
+static dvi_status prepare_branch(dvi__element *own)
+{
+  const size_t unknowns = (size_t)dvi__action_unknowns(own->action);
+  if (own->branch != NULL) return DVI_OK;
+  own->branch = DVI_NEW(double, DVI__BRANCH_ROOM *unknowns);
+  if (own->branch == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "action: no memory to follow a branch of %zu unknowns",
+                     unknowns);
+  own->counters->preparations++;
+  return DVI_OK;
 }
 
 /* Where terms have unknowns of their own, no sign of the determinant is known. */
 static int has_signs(const dvi__stepper *self)
 {
   const dvi__element *own = self->own;
-  return dvi__action_unknowns(own->action) == self->system->n * dvi__action_space_of(own->action).degree;
+  return dvi__action_unknowns(own->action) ==
+         self->system->n * dvi__action_space_of(own->action).degree;
 }
 
-dvi_status dvi__element_follow(dvi__stepper *self, const dvi__element_place *at, dvi_status whole, double *Y)
+dvi_status dvi__element_follow(dvi__stepper *self, const dvi__element_place *at, dvi_status whole,
+                               double *Y)
 {
-  const dvi__element *own = self->own;
+  dvi__element *own = self->own;
   pursuit of = {self, at};
+  dvi__branch_failure failure;
+  dvi__branch_note(whole, &failure);
+  DVI_TRY(prepare_branch(own));
   const dvi__branch branch = {.of = &of,
                               .place = place_part,
                               .guess = guess_part,
                               .distance = own->centred ? turn_between : NULL,
                               .near = own->centred ? follows_in_charts : DVI__BRANCH_NEAR,
                               .parts = parts_of(self),
-                              .signs = has_signs(self) && (!own->centred || dvi__action_signs(own->action)),
+                              .signs = has_signs(self) &&
+                                       (!own->centred || dvi__action_signs(own->action)),
                               .definite = is_symmetric(self) ? direction(at) : 0,
                               .from_zero = 1,
                               .size = dvi__largest((size_t)self->system->n, at->q),
                               .room = own->branch};
-  dvi__branch_failure failure;
   dvi__branch_end end;
-  dvi__branch_note(whole, &failure);
   self->counters->followed++;
   self->counters->newtons += !self->follow;
   const dvi_status status = dvi__branch_follow(&branch, own->solver, Y, &end);
@@ -126,22 +149,24 @@ dvi_status dvi__element_follow(dvi__stepper *self, const dvi__element_place *at,
 
 int dvi__element_is_definite(const dvi_system *system, const dvi__evaluator *evaluator)
 {
-  return system->lagrangian == NULL && system->cells == NULL && dvi__mass_is_positive(evaluator);
+  return system->lagrangian == NULL && system->slots == NULL && dvi__mass_is_positive(evaluator);
 }
 
-/* As h goes to 0 the Jacobian is L_vv times a positive matrix over h. On the way to another solution
- * beyond a fold an eigenvalue goes through 0: it is no longer definite, where it is symmetric, and its
- * determinant may have the other sign. */
+/* As h goes to 0 the Jacobian is L_vv times a positive matrix over h. On the way to another
+ * solution beyond a fold an eigenvalue goes through 0: it is no longer definite, where it is
+ * symmetric, and its determinant may have the other sign. */
 static int is_turned(const dvi__stepper *self, const dvi__element_place *at)
 {
   const dvi__element *own = self->own;
   dvi__evaluator *evaluator = dvi__action_evaluator(own->action);
-  const int apart = own->rung == DVI__SIMPLIFIED && own->decoupled != NULL;
-  const int unknowns = dvi__action_unknowns(own->action), degree = dvi__action_space_of(own->action).degree;
+  const dvi__decoupled *apart = dvi__element_frozen(own);
+  const int unknowns = dvi__action_unknowns(own->action),
+            degree = dvi__action_space_of(own->action).degree;
   if (!has_signs(self)) return 0;
-  if (apart && own->definite) return !dvi__decoupled_is_definite(own->decoupled, direction(at));
-  if (!apart && is_symmetric(self)) return !dvi__solver_is_definite(own->solver, direction(at));
-  const int sign = (apart ? dvi__decoupled_sign(own->decoupled) : dvi__solver_sign(own->solver)) *
+  if (apart != NULL && own->definite) return !dvi__decoupled_is_definite(apart, direction(at));
+  if (apart == NULL && is_symmetric(self))
+    return !dvi__solver_is_definite(own->solver, direction(at));
+  const int sign = (apart != NULL ? dvi__decoupled_sign(apart) : dvi__solver_sign(own->solver)) *
                    (unknowns % 2 != 0 ? direction(at) : 1);
   if (sign > 0 || own->centred || degree % 2 == 0) return sign < 0;
   dvi__action_path(own->action, own->Y, at->h, 0.0, NULL, own->guess);
@@ -150,7 +175,8 @@ static int is_turned(const dvi__stepper *self, const dvi__element_place *at)
 }
 
 /* What the solution itself tells of its branch; the rest is for its energy and motion to say. */
-dvi__doubt dvi__element_doubt(const dvi__stepper *self, const dvi__element_place *at, const dvi__solve_report *report)
+dvi__doubt dvi__element_doubt(const dvi__stepper *self, const dvi__element_place *at,
+                              const dvi__solve_report *report)
 {
   const dvi__element *own = self->own;
   if (own->rung == DVI__FIXED_POINT) return DVI__SURE;

@@ -1,5 +1,6 @@
-/* The element's step for members of an ensemble side by side: the cheapest way of element_step.c alone, fixed point iteration from the last forces
- * continued. A member for which it would not be tried, or does not converge, is left to dvi__element_step. */
+/* The element's step for members of an ensemble side by side: the cheapest way of element_step.c
+ * alone, fixed point iteration from the last forces continued. A member for which it would not be
+ * tried, or does not converge, is left to dvi__element_step. */
 #include <math.h>
 #include <string.h>
 
@@ -22,13 +23,14 @@ typedef struct lanes {
   int *ended;         /* [width] lanes that ended with it */
 } lanes;
 
-/* A vector's worth of nodes fills the vectors of a single element. Members as lanes then gain only as long as they all stay in the cache of the
- * first level, and with two vectors' worth no more. */
+/* A vector's worth of nodes fills the vectors of a single element. Members as lanes then gain only
+ * as long as they all stay in the cache of the first level, and with two vectors' worth no more. */
 enum { NODES_OF_A_VECTOR = 8, POINTS_IN_CACHE = 64 };
 
 static int pays(int n, int nodes)
 {
-  return nodes < NODES_OF_A_VECTOR || (nodes < 2 * NODES_OF_A_VECTOR && n <= POINTS_IN_CACHE / nodes);
+  return nodes < NODES_OF_A_VECTOR ||
+         (nodes < 2 * NODES_OF_A_VECTOR && n <= POINTS_IN_CACHE / nodes);
 }
 
 dvi_status dvi__element_prepare_lanes(dvi__stepper *self, int capacity)
@@ -50,8 +52,8 @@ dvi_status dvi__element_prepare_lanes(dvi__stepper *self, int capacity)
   own->going = DVI_NEW(char, capacity);
   own->verdict = DVI_NEW(int64_t, capacity);
   own->ended = DVI_NEW(int, capacity);
-  if (!own->trails.last || !own->trails.ratio || !own->trails.contraction || !own->trails.own || !own->trails.size || !own->going ||
-      !own->verdict || !own->ended)
+  if (!own->trails.last || !own->trails.ratio || !own->trails.contraction || !own->trails.own ||
+      !own->trails.size || !own->going || !own->verdict || !own->ended)
     return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
   return dvi__action_members_create(action, capacity, &own->members);
 }
@@ -76,15 +78,17 @@ static double *memory_row(const dvi__members *m, size_t number)
   return m->memory + number * (size_t)m->count;
 }
 
-/* Leave the members that would not try fixed point iteration, or whose last step had another length than the others'. Gives that length; 0: no
- * member is left to be served. */
+/* Leave the members that would not try fixed point iteration, or whose last step had another length
+ * than the others'. Gives that length; 0: no member is left to be served. */
 static double choose(const lanes *own, dvi__members *m)
 {
-  const double *last_h = memory_row(m, DVI__LAST_H), *newton_steps = memory_row(m, DVI__NEWTON_STEPS);
+  const double *last_h = memory_row(m, DVI__LAST_H),
+               *newton_steps = memory_row(m, DVI__NEWTON_STEPS);
   double common = 0;
   for (int k = 0; k < m->count; k++) {
     if (common == 0 && !m->left[k]) common = last_h[k];
-    if (last_h[k] == 0 || last_h[k] != common || (newton_steps[k] != 0 && !own->patient)) m->left[k] = 1;
+    if (last_h[k] == 0 || last_h[k] != common || (newton_steps[k] != 0 && !own->patient))
+      m->left[k] = 1;
   }
   return memchr(m->left, 0, (size_t)m->count) != NULL ? common : 0;
 }
@@ -93,7 +97,8 @@ static double choose(const lanes *own, dvi__members *m)
 static void close_up(lanes *own)
 {
   dvi__action_members *at = &own->members;
-  double *const rows[] = {own->trails.last, own->trails.ratio, own->trails.contraction, own->trails.own, own->trails.size};
+  double *const rows[] = {own->trails.last, own->trails.ratio, own->trails.contraction,
+                          own->trails.own, own->trails.size};
   const int before = at->width;
   dvi__action_members_close_up(at, own->going);
   for (int i = 0; i < (int)(sizeof rows / sizeof *rows) && at->width < before; i++)
@@ -101,7 +106,8 @@ static void close_up(lanes *own)
   memset(own->going, 1, (size_t)at->width);
 }
 
-static void set_out(lanes *own, int n, size_t forces, const dvi__members *m, double h, double last_h)
+static void set_out(lanes *own, int n, size_t forces, const dvi__members *m, double h,
+                    double last_h)
 {
   const size_t count = (size_t)m->count;
   double *size = own->trails.size;
@@ -116,7 +122,8 @@ static void set_out(lanes *own, int n, size_t forces, const dvi__members *m, dou
       size[k] = q > size[k] ? q : size[k];
     }
   for (size_t k = 0; k < count; k++) own->going[k] = !m->left[k];
-  dvi__action_members_place(&own->members, m->count, h, last_h, m->t, m->q, m->p, memory_row(m, forces));
+  dvi__action_members_place(&own->members, m->count, h, last_h, m->t, m->q, m->p,
+                            memory_row(m, forces));
   close_up(own);
 }
 
@@ -136,7 +143,8 @@ static void end_lane(lanes *own, dvi__members *m, int lane, int iteration)
   m->fixed[k]++;
 }
 
-/* Judge every lane's iteration. Gives how many ended with it; *stalled: some of them must not be iterated any more. */
+/* Judge every lane's iteration. Gives how many ended with it; *stalled: some of them must not be
+ * iterated any more. */
 static int judge(lanes *own, dvi__members *m, int iteration, int *stalled)
 {
   const dvi__action_members *at = &own->members;
@@ -160,7 +168,8 @@ static void leave_going(const lanes *own, dvi__members *m)
     if (own->going[lane]) m->left[own->members.member[lane]] = 1;
 }
 
-/* Lanes that have nothing to do any more are carried along until they are half of all: to close up costs about as much as an iteration. */
+/* Lanes that have nothing to do any more are carried along until they are half of all: to close up
+ * costs about as much as an iteration. */
 static void iterate(lanes *own, dvi__members *m)
 {
   dvi__action_members *at = &own->members;
@@ -183,10 +192,10 @@ static void advance(const lanes *own, size_t n, dvi__members *m, double h)
   const dvi__action_members *at = &own->members;
   const size_t count = (size_t)m->count;
   double *last_h = memory_row(m, DVI__LAST_H);
-  dvi__lanes_add_scaled(n * count, 1.0, at->dq, m->q, m->q_carry);
-  dvi__lanes_add_scaled(n * count, 1.0, at->dq_low, m->q, m->q_carry);
-  dvi__lanes_add_scaled(n * count, 1.0, at->dp, m->p, m->p_carry);
-  for (size_t k = 0; k < count; k++) dvi__add_compensated(m->t + k, m->t_carry + k, h);
+  dvi__lanes_add_scaled(n * count, 1.0, at->dq, m->q, m->q_compensation);
+  dvi__lanes_add_scaled(n * count, 1.0, at->dq_low, m->q, m->q_compensation);
+  dvi__lanes_add_scaled(n * count, 1.0, at->dp, m->p, m->p_compensation);
+  for (size_t k = 0; k < count; k++) dvi__add_compensated(m->t + k, m->t_compensation + k, h);
   for (size_t k = 0; k < count; k++) last_h[k] = h;
   for (int i = 0; i < 2; i++) memset(memory_row(m, forgotten[i]), 0, count * sizeof(double));
 }

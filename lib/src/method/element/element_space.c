@@ -1,10 +1,12 @@
-/* What methods say of their solvers and spaces, and the space of a method for those who use its discrete action otherwise than step by step. */
+/* What methods say of their solvers and spaces, and the space of a method for those who use its
+ * discrete action otherwise than step by step. */
 #include "core/status.h"
 #include "method/element/element_step.h"
 
 const char *dvi__solver_choice(int index)
 {
-  static const char *const name[] = {"auto", "certified", "fixed-point", "simplified", "newton", "kinsol"};
+  static const char *const name[] = {"auto",       "certified", "fixed-point",
+                                     "simplified", "newton",    "kinsol"};
   return index >= 0 && index < 6 ? name[index] : NULL;
 }
 
@@ -35,8 +37,8 @@ int dvi__symmetric_rule(dvi_rule rule)
   return rule != DVI_RADAU_LEFT && rule != DVI_RADAU_RIGHT;
 }
 
-dvi_status dvi__element_space(const dvi_system *system, const char *specification, const char *user, dvi__action_space *space,
-                              dvi__text *spelled)
+dvi_status dvi__element_space(const dvi_system *system, const char *specification, const char *user,
+                              dvi__action_space *space, dvi__text *spelled)
 {
   dvi_counters counters = {0};
   dvi__stepper stepper;
@@ -44,12 +46,14 @@ dvi_status dvi__element_space(const dvi_system *system, const char *specificatio
   if (status != DVI_OK) return dvi__fail_in(status, "%s", user);
   if (stepper.method->step != dvi__element_step)
     status = dvi__fail(DVI_BAD_OPTION,
-                       "%s: %s is no discrete action with a polynomial path; galerkin, midpoint, trapezoidal, and hp and "
+                       "%s: %s is no discrete action with a polynomial path; galerkin, midpoint, "
+                       "trapezoidal, and hp and "
                        "hamiltonian of types 1 to 3 are",
                        user, stepper.method->name);
   else if (dvi__element_solver(&stepper) != DVI__SOLVER_AUTO)
-    status = dvi__fail(DVI_BAD_OPTION, "%s: solver=%s is for steps; a path is solved as a whole, leave it out", user,
-                       dvi__solver_choice(dvi__element_solver(&stepper)));
+    status = dvi__fail(DVI_BAD_OPTION,
+                       "%s: solver=%s is for steps; a path is solved as a whole, leave it out",
+                       user, dvi__solver_choice(dvi__element_solver(&stepper)));
   if (status == DVI_OK) {
     *space = dvi__action_space_of(dvi__element_action(&stepper));
     dvi__text_add(spelled, "%s", stepper.specification);

@@ -12,17 +12,15 @@
 #include "num/compensated.h"
 #include "num/finite.h"
 
-/* What is frozen, in the memory: the Jacobian at a point, by that, or as it is. */
-enum { FROZEN_H, FROZEN_ITERATIONS, FROZEN_POINT };
-
 /* A kept factor may cost this many iterations more than a new one: about as much as making one. */
 enum { MORE_ITERATIONS = 2 };
 
-/* After an iteration failed, the next better one takes over: for one step, and for twice as many each time it fails again, up to this many. */
+/* After an iteration failed, the next better one takes over: for one step, and for twice as many
+ * each time it fails again, up to this many. */
 static const double longest_wait = 64;
 
 /* Whether the rungs follow one after the other. */
-static int is_ladder(const dvi__element *own)
+int dvi__element_is_ladder(const dvi__element *own)
 {
   return own->choice == DVI__SOLVER_AUTO || own->choice == DVI__SOLVER_CERTIFIED;
 }
@@ -32,11 +30,6 @@ static int is_ladder(const dvi__element *own)
 static dvi_status residual_of(void *of, const double *Y, double *R)
 {
   return dvi__action_residual(((const dvi__element *)of)->action, Y, R);
-}
-
-static dvi_status jacobian_of(void *of, const double *Y, double *values)
-{
-  return dvi__action_jacobian(((const dvi__element *)of)->action, Y, values);
 }
 
 static dvi_status prepare_chord_of(void *of, const double *Y)
@@ -64,7 +57,8 @@ static void sweep_from_of(void *of, const double *Y)
 {
   const dvi__element *own = of;
   if (own->forces_of != NULL)
-    dvi__action_sweep_continue(own->action, own->forces_of->h / own->forces_of->last_h, own->forces_of->last_g);
+    dvi__action_sweep_continue(own->action, own->forces_of->h / own->forces_of->last_h,
+                               own->forces_of->last_g);
   else
     dvi__action_sweep_from(own->action, Y);
 }
@@ -79,75 +73,58 @@ static void sweep_to_of(void *of, double *Y)
   dvi__action_sweep_to(((const dvi__element *)of)->action, Y);
 }
 
-static dvi_status freeze_of(void *of, const double *Y)
-{
-  const dvi__element *own = of;
-  double *point = own->frozen + FROZEN_POINT;
-  if (own->keeps_whole) {
-    if (!own->keeps) DVI_TRY(dvi__solver_jacobian(own->solver, Y, point));
-    return dvi__solver_take_jacobian(own->solver, point);
-  }
-  if (!own->keeps) dvi__decoupled_point(own->decoupled, Y, point);
-  return dvi__decoupled_freeze(own->decoupled, point);
-}
-
-static void frozen_of(void *of, double *R)
-{
-  const dvi__element *own = of;
-  if (own->keeps_whole)
-    dvi__solver_apply_factor(own->solver, R);
-  else
-    dvi__decoupled_solve(own->decoupled, R);
-}
-
 static void count_memory(dvi__stepper *self, const dvi__element *own)
 {
   self->memory_count = dvi__element_forces(self) + (size_t)dvi__action_forces_count(own->action);
-  if (own->decoupled != NULL) self->memory_count += FROZEN_POINT + (size_t)dvi__decoupled_point_size(own->decoupled);
-  if (own->keeps_whole) self->memory_count += FROZEN_POINT + (size_t)dvi__pattern_entries(dvi__action_pattern(own->action));
+  if (own->decoupled != NULL)
+    self->memory_count += DVI__FROZEN_POINT + (size_t)dvi__decoupled_point_size(own->decoupled);
+  if (own->keeps_whole)
+    self->memory_count += DVI__FROZEN_POINT +
+                          (size_t)dvi__pattern_entries(dvi__action_pattern(own->action));
 }
 
 static int allocate(dvi__stepper *self, dvi__element *own)
 {
   const size_t n = (size_t)self->system->n, unknowns = (size_t)dvi__action_unknowns(own->action);
   count_memory(self, own);
-  own->Y = DVI_NEW(double, (DVI__BRANCH_ROOM + 2) * unknowns + 3 * n);
+  own->Y = DVI_NEW(double, 2 * unknowns + 3 * n);
   if (own->Y == NULL) return 0;
   own->guess = own->Y + unknowns;
-  own->branch = own->guess + unknowns;
-  own->dq = own->branch + DVI__BRANCH_ROOM * unknowns;
+  own->dq = own->guess + unknowns;
   own->dq_low = own->dq + n;
   own->dp = own->dq_low + n;
   return 1;
 }
 
-/* Simplified Newton's method is for those who may use it; in a space without a full set of eigenvectors the ladder goes without it. */
+/* Simplified Newton's method is for those who may use it; in a space without a full set of
+ * eigenvectors the ladder goes without it. */
 static dvi_status make_decoupled(dvi__stepper *self, dvi__element *own)
 {
-  if (!is_ladder(own) && own->choice != DVI__SOLVER_SIMPLIFIED) return DVI_OK;
+  if (!dvi__element_is_ladder(own) && own->choice != DVI__SOLVER_SIMPLIFIED) return DVI_OK;
   const dvi_status status = dvi__decoupled_create(own->action, self->counters, &own->decoupled);
   if (status != DVI_SINGULAR) return status;
-  return is_ladder(own) ? DVI_OK : dvi__fail_in(DVI_BAD_OPTION, "%s: solver=simplified", self->method->name);
+  return dvi__element_is_ladder(own)
+             ? DVI_OK
+             : dvi__fail_in(DVI_BAD_OPTION, "%s: solver=simplified", self->method->name);
 }
 
 static dvi_status make_solver(dvi__stepper *self, dvi__element *own)
 {
   const int sweeps = dvi__action_can_sweep(own->action);
-  const dvi__equations equations = {.unknowns = dvi__action_unknowns(own->action),
-                                    .group = dvi__action_space_of(own->action).degree,
-                                    .pattern = dvi__action_pattern(own->action),
-                                    .of = own,
-                                    .residual = residual_of,
-                                    .jacobian = jacobian_of,
-                                    .prepare_chord = prepare_chord_of,
-                                    .chord = chord_of,
-                                    .row_scale = row_scale_of,
-                                    .sweep_from = sweeps ? sweep_from_of : NULL,
-                                    .sweep = sweeps ? sweep_of : NULL,
-                                    .sweep_to = sweeps ? sweep_to_of : NULL,
-                                    .magnitudes = dvi__action_has_terms(own->action) ? magnitudes_of : NULL,
-                                    .freeze = freeze_of,
-                                    .frozen = frozen_of};
+  dvi__equations equations = {.unknowns = dvi__action_unknowns(own->action),
+                              .group = dvi__action_space_of(own->action).degree,
+                              .pattern = dvi__action_pattern(own->action),
+                              .of = own,
+                              .residual = residual_of,
+                              .prepare_chord = prepare_chord_of,
+                              .chord = chord_of,
+                              .row_scale = row_scale_of,
+                              .sweep_from = sweeps ? sweep_from_of : NULL,
+                              .sweep = sweeps ? sweep_of : NULL,
+                              .sweep_to = sweeps ? sweep_to_of : NULL,
+                              .magnitudes = dvi__action_has_terms(own->action) ? magnitudes_of
+                                                                               : NULL};
+  dvi__element_set_newton(&equations);
   return dvi__solver_create(&equations, self->counters, &own->solver);
 }
 
@@ -159,8 +136,8 @@ dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *spac
   self->symmetric = dvi__symmetric_rule(space->rule);
   self->follows = 1;
   own->choice = solver;
+  own->counters = self->counters;
   DVI_TRY(dvi__action_create(self->system, space, self->counters, &own->action));
-  DVI_TRY(dvi__action_prepare_jacobian(own->action));
   own->definite = dvi__element_is_definite(self->system, dvi__action_evaluator(own->action));
   DVI_TRY(make_decoupled(self, own));
   if (!allocate(self, own)) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
@@ -172,23 +149,28 @@ void dvi__element_destroy(dvi__stepper *self)
   dvi__element *own = self->own;
   if (own == NULL) return;
   dvi__solver_destroy(&own->solver);
+  dvi__element_clear_newton(own);
   dvi__decoupled_destroy(&own->decoupled);
   dvi__action_destroy(&own->action);
+  dvi__release(own->branch);
   dvi__release(own->Y);
   dvi__release(own);
 }
 
-/* The ladder begins with the whole Jacobian, and ends with the rounding of rows: elsewhere that would err to
- * one side. Unknowns of a term are for Newton's method. */
+/* The ladder begins with the whole Jacobian, and ends with the rounding of rows: elsewhere that
+ * would err to one side. Unknowns of a term are for Newton's method. */
 static dvi_status take_terms(dvi__stepper *self)
 {
   dvi__element *own = self->own;
   const dvi__action_space space = dvi__action_space_of(own->action);
-  if (dvi__action_unknowns(own->action) > self->system->n * space.degree) own->choice = DVI__SOLVER_NEWTON;
-  own->keeps_whole = is_ladder(own) || own->choice == DVI__SOLVER_SIMPLIFIED;
+  if (dvi__action_unknowns(own->action) > self->system->n * space.degree)
+    own->choice = DVI__SOLVER_NEWTON;
+  own->keeps_whole = dvi__element_is_ladder(own) || own->choice == DVI__SOLVER_SIMPLIFIED;
   dvi__decoupled_destroy(&own->decoupled);
   dvi__solver_destroy(&own->solver);
   dvi__release(own->Y);
+  own->Y = NULL;
+  if (own->keeps_whole) DVI_TRY(dvi__action_prepare_jacobian(own->action)); /* for the memory */
   if (!allocate(self, own)) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
   return make_solver(self, own);
 }
@@ -229,6 +211,12 @@ void dvi__element_start(dvi__stepper *self, const double *v)
   memcpy(self->memory + DVI__LAST_Y, v, (size_t)self->system->n * sizeof(double));
 }
 
+void dvi__element_put(dvi__element *own, const dvi__element_place *at, double h)
+{
+  dvi__action_place(own->action, at->t, h, at->q, at->p);
+  own->newton.is_frozen = 0;
+}
+
 /* ---- guesses ---- */
 
 /* The last path continued; without one, a straight line. */
@@ -241,14 +229,16 @@ static dvi_status guess(dvi__stepper *self, const dvi__element_place *at, double
 }
 
 /* One rung from the guess. Whether it counts is for its own counter. */
-static dvi_status solve_by(dvi__stepper *self, const dvi__element_place *at, dvi__rung rung, double *Y, dvi__solve_report *report)
+static dvi_status solve_by(dvi__stepper *self, const dvi__element_place *at, dvi__rung rung,
+                           double *Y, dvi__solve_report *report)
 {
   dvi__element *own = self->own;
   const double size = dvi__largest((size_t)self->system->n, at->q);
   const int patient = own->choice == DVI__SOLVER_FIXED_POINT;
   own->forces_of = rung == DVI__FIXED_POINT && at->last_g != NULL ? at : NULL;
   if (own->forces_of == NULL) DVI_TRY(guess(self, at, Y));
-  if (own->centred) memcpy(own->guess, Y, (size_t)dvi__action_unknowns(own->action) * sizeof(double));
+  if (own->centred)
+    memcpy(own->guess, Y, (size_t)dvi__action_unknowns(own->action) * sizeof(double));
   const dvi_status status = dvi__solve(own->solver, rung, size, 1, patient, Y, report);
   own->rung = rung;
   if (status == DVI_OK && rung == DVI__FIXED_POINT) self->counters->fixed_points++;
@@ -257,10 +247,11 @@ static dvi_status solve_by(dvi__stepper *self, const dvi__element_place *at, dvi
   return status;
 }
 
-/* Whether the user, or the steps before, want this iteration; a step that does without it is counted down. */
+/* Whether the user, or the steps before, want this iteration; a step that does without it is
+ * counted down. */
 static int is_due(const dvi__element *own, int choice, double *steps_without)
 {
-  if (own->choice != choice && !is_ladder(own)) return 0;
+  if (own->choice != choice && !dvi__element_is_ladder(own)) return 0;
   if (*steps_without == 0 || own->choice == choice) return 1;
   --*steps_without;
   return 0;
@@ -274,40 +265,50 @@ static void learn(dvi__stepper *self, dvi_status status, int steps, int wait)
   self->memory[steps] = *last;
 }
 
-/* With the factor of earlier steps as long as that is as good as a new one. All that this depends on is in the memory: a restored run finds the same
- * digits. */
-static dvi_status solve_simplified(dvi__stepper *self, const dvi__element_place *at, double *Y, dvi__solve_report *report)
+/* With the factor of earlier steps as long as that is as good as a new one. All that this depends
+ * on is in the memory: a restored run finds the same digits. */
+static dvi_status solve_simplified(dvi__stepper *self, const dvi__element_place *at, double *Y,
+                                   dvi__solve_report *report)
 {
   dvi__element *own = self->own;
-  double *frozen = own->frozen = self->memory + dvi__element_forces(self) + dvi__action_forces_count(own->action);
-  own->keeps = frozen[FROZEN_H] == at->h;
+  double *frozen = own->frozen = self->memory + dvi__element_forces(self) +
+                                 dvi__action_forces_count(own->action);
+  own->keeps = frozen[DVI__FROZEN_H] == at->h;
   dvi_status status = solve_by(self, at, DVI__SIMPLIFIED, Y, report);
   if (status > 0 && own->keeps) {
     own->keeps = 0;
     status = solve_by(self, at, DVI__SIMPLIFIED, Y, report);
   }
-  const int good = status == DVI_OK && (!own->keeps || report->iterations <= frozen[FROZEN_ITERATIONS] + MORE_ITERATIONS);
-  frozen[FROZEN_H] = good ? at->h : 0;
-  if (!own->keeps) frozen[FROZEN_ITERATIONS] = report->iterations;
+  const int good = status == DVI_OK &&
+                   (!own->keeps ||
+                    report->iterations <= frozen[DVI__FROZEN_ITERATIONS] + MORE_ITERATIONS);
+  frozen[DVI__FROZEN_H] = good ? at->h : 0;
+  if (!own->keeps) frozen[DVI__FROZEN_ITERATIONS] = report->iterations;
   return status;
 }
 
-/* Solve the element at its place, from a first guess, by the rung that the user or the measured contraction chooses. */
-static dvi_status solve_at(dvi__stepper *self, const dvi__element_place *at, double *Y, dvi__solve_report *report)
+/* Solve the element at its place, from a first guess, by the rung that the user or the measured
+ * contraction chooses. */
+static dvi_status solve_at(dvi__stepper *self, const dvi__element_place *at, double *Y,
+                           dvi__solve_report *report)
 {
   dvi__element *own = self->own;
-  dvi__action_place(own->action, at->t, at->h, at->q, at->p);
-  if ((!own->keeps_whole || !is_ladder(own)) && is_due(own, DVI__SOLVER_FIXED_POINT, &self->memory[DVI__NEWTON_STEPS])) {
+  dvi__element_put(own, at, at->h);
+  if ((!own->keeps_whole || !dvi__element_is_ladder(own)) &&
+      is_due(own, DVI__SOLVER_FIXED_POINT, &self->memory[DVI__NEWTON_STEPS])) {
     const dvi_status status = solve_by(self, at, DVI__FIXED_POINT, Y, report);
     learn(self, status, DVI__NEWTON_STEPS, DVI__NEWTON_WAIT);
     if (status <= 0) return status;
   }
-  if ((own->decoupled != NULL || own->keeps_whole) && is_due(own, DVI__SOLVER_SIMPLIFIED, &self->memory[DVI__FULL_STEPS])) {
+  if (dvi__element_is_ladder(own)) DVI_TRY(dvi__element_weigh(own));
+  const int can_freeze = own->keeps_whole || (own->decoupled != NULL && !own->is_dear);
+  if (can_freeze && is_due(own, DVI__SOLVER_SIMPLIFIED, &self->memory[DVI__FULL_STEPS])) {
     const dvi_status status = solve_simplified(self, at, Y, report);
     learn(self, status, DVI__FULL_STEPS, DVI__FULL_WAIT);
     if (status <= 0) return status;
   }
-  return solve_by(self, at, own->choice == DVI__SOLVER_KINSOL ? DVI__KINSOL : DVI__NEWTON, Y, report);
+  return solve_by(self, at, own->choice == DVI__SOLVER_KINSOL ? DVI__KINSOL : DVI__NEWTON, Y,
+                  report);
 }
 
 /* ---- the step ---- */
@@ -318,17 +319,20 @@ static dvi_status advance(dvi__stepper *self, dvi__state *state, double h)
   const int n = self->system->n;
   double duration;
   DVI_TRY(dvi__action_duration(own->action, own->Y, &duration));
-  dvi__add_compensated_all(n, state->q, state->q_carry, own->dq);
-  dvi__add_compensated_all(n, state->q, state->q_carry, own->dq_low);
-  dvi__add_compensated_all(n, state->p, state->p_carry, own->dp);
-  dvi__add_compensated(&state->t, &state->t_carry, duration);
+  dvi__add_compensated_all(n, state->q, state->q_compensation, own->dq);
+  dvi__add_compensated_all(n, state->q, state->q_compensation, own->dq_low);
+  dvi__add_compensated_all(n, state->p, state->p_compensation, own->dp);
+  dvi__add_compensated(&state->t, &state->t_compensation, duration);
   self->memory[DVI__LAST_H] = h;
-  memcpy(self->memory + DVI__LAST_Y, own->Y, (size_t)dvi__action_unknowns(own->action) * sizeof(double));
+  memcpy(self->memory + DVI__LAST_Y, own->Y,
+         (size_t)dvi__action_unknowns(own->action) * sizeof(double));
   return DVI_OK;
 }
 
-/* KINSOL judges, but what the step takes stays what the iteration found; what does not pass is solved by KINSOL itself. */
-static dvi_status certify(dvi__stepper *self, const dvi__element_place *at, double *Y, dvi__solve_report *report)
+/* KINSOL judges, but what the step takes stays what the iteration found; what does not pass is
+ * solved by KINSOL itself. */
+static dvi_status certify(dvi__stepper *self, const dvi__element_place *at, double *Y,
+                          dvi__solve_report *report)
 {
   dvi__element *own = self->own;
   const double size = dvi__largest((size_t)self->system->n, at->q);
@@ -341,7 +345,8 @@ static dvi_status certify(dvi__stepper *self, const dvi__element_place *at, doub
 
 static dvi__element_place place_of(const dvi__stepper *self, const dvi__state *state, double h)
 {
-  const int continues = self->memory[DVI__LAST_H] != 0 && dvi__action_can_sweep(dvi__element_action(self));
+  const int continues = self->memory[DVI__LAST_H] != 0 &&
+                        dvi__action_can_sweep(dvi__element_action(self));
   return (dvi__element_place){state->t,
                               h,
                               state->q,
@@ -352,7 +357,8 @@ static dvi__element_place place_of(const dvi__stepper *self, const dvi__state *s
 }
 
 /* By the ladder, and where that fails, or is not to be trusted, along the branch. */
-static dvi_status find_path(dvi__stepper *self, const dvi__element_place *at, dvi__solve_report *report)
+static dvi_status find_path(dvi__stepper *self, const dvi__element_place *at,
+                            dvi__solve_report *report)
 {
   dvi__element *own = self->own;
   const dvi_status status = self->follow ? DVI_OK : solve_at(self, at, own->Y, report);
@@ -376,42 +382,10 @@ dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
   return advance(self, state, h);
 }
 
-void dvi__element_path(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v)
+void dvi__element_path(const dvi__stepper *self, const double *q0, double h, double tau, double *q,
+                       double *v)
 {
   const dvi__element *own = self->own;
   dvi__action_path(own->action, self->memory + DVI__LAST_Y, h, tau, q, v);
   for (int i = 0; q != NULL && i < self->system->n; i++) q[i] += q0[i];
-}
-
-static void explain_solver(const dvi__element *own, dvi__text *text)
-{
-  const char *name = dvi__solver_choice(own->choice), *last = "a path followed from shorter steps";
-  if (!is_ladder(own)) {
-    dvi__text_add(text, "solver: %s, as asked; what it cannot solve goes on to %s\n", name, last);
-    return;
-  }
-  dvi__text_add(text, "solver: %s: %ssimplified Newton's method (%s), ", name,
-                own->keeps_whole ? "" : "fixed point while it contracts by 0.45 or better, else ",
-                own->keeps_whole         ? "its Jacobian kept over steps"
-                : own->decoupled != NULL ? "decoupled systems of n unknowns"
-                                         : "not in this space");
-  dvi__text_add(text, "Newton's method, last %s%s\n", last,
-                own->choice == DVI__SOLVER_CERTIFIED ? "; KINSOL certifies each solution" : "");
-}
-
-void dvi__element_explain(const dvi__stepper *self, dvi__text *text)
-{
-  const dvi__element *own = self->own;
-  const dvi__pattern *pattern = dvi__action_pattern(own->action);
-  const int general = (self->system->terms & DVI__LAGRANGIAN) != 0,
-            dense = dvi__solver_linear_kind(own->solver) == DVI__LINEAR_DENSE;
-  dvi__text_add(text, "kernel: implicit; %d unknowns a step, Jacobian with %d entries (%.3g %% of a full one)\n", pattern->columns,
-                dvi__pattern_entries(pattern), 100.0 * dvi__pattern_entries(pattern) / pattern->columns / pattern->columns);
-  dvi__text_add(text, "kinetic part: %s\n",
-                general ? "general Lagrangian; its velocity Hessian is evaluated once a step"
-                : dvi__action_can_sweep(own->action)
-                    ? "constant mass without coupling: fixed point iteration on the positions at the nodes"
-                    : "constant mass");
-  explain_solver(own, text);
-  dvi__text_add(text, "linear solver: %s\n", dense ? "dense LU (LAPACK)" : "sparse LU (KLU), analysed once, refactored after");
 }

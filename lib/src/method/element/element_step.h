@@ -1,14 +1,17 @@
-/* A step by the stationarity of one element of the discrete action: what galerkin, midpoint and trapezoidal share. */
+/* A step by the stationarity of one element of the discrete action: what galerkin, midpoint and
+ * trapezoidal share. */
 #ifndef DVI_METHOD_ELEMENT_STEP_H
 #define DVI_METHOD_ELEMENT_STEP_H
 #include "step/element/action.h"
 #include "method/method.h"
+#include "solve/nonlinear.h"
 
-/* The `solver` key of methods that step so; its index in the method's own table goes to dvi__element_create. */
-#define DVI__SOLVER_KEY                                                              \
-  {                                                                                  \
-    "solver", dvi__solver_choice, 0, 0, DVI__SOLVER_AUTO,                            \
-        "auto, certified, fixed-point, simplified, newton or kinsol; left out: auto" \
+/* The `solver` key of methods that step so; its index in the method's own table goes to
+ * dvi__element_create. */
+#define DVI__SOLVER_KEY                                                             \
+  {                                                                                 \
+    "solver", dvi__solver_choice, 0, 0, DVI__SOLVER_AUTO,                           \
+        "auto, certified, fixed-point, simplified, newton or kinsol; default: auto" \
   }
 
 enum {
@@ -21,34 +24,49 @@ enum {
 };
 const char *dvi__solver_choice(int index);
 
-/* Fill a stepper's order, symmetric, memory and own for this space; `solver` is one of the numbers above. */
+/* Fill a stepper's order, symmetric, memory and own for this space; `solver` is one of the numbers
+ * above. */
 dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *space, int solver);
 
-/* Let its paths be those of charts centred at their start, after create. What the Jacobian loses when it is taken apart, or replaced by its kinetic part, is as
- * large there as the turn of a step: the ladder begins with the whole one, kept over steps. */
+/* Let its paths be those of charts centred at their start, after create. What the Jacobian loses
+ * when it is taken apart, or replaced by its kinetic part, is as large there as the turn of a step:
+ * the ladder begins with the whole one, kept over steps. */
 dvi_status dvi__element_centre(dvi__stepper *self, const dvi__centring *centring);
 
-/* Add a term to its rows (step/element/row_term.h), after create, before the driver takes the memory's count. */
+/* Add a term to its rows (step/element/row_term.h), after create, before the driver takes the
+ * memory's count. */
 dvi_status dvi__element_add_term(dvi__stepper *self, const dvi__row_term *term);
 
-/* The memory: length of the last step (0: none); steps for which fixed point iteration and simplified Newton's method are not tried again, and how
- * many they were when the iteration last failed (0: it has not since it last succeeded); the last step's unknowns (before the first step, the
- * start's velocity in their place) and its forces; what simplified Newton's method keeps frozen. */
-enum { DVI__LAST_H, DVI__NEWTON_STEPS, DVI__FULL_STEPS, DVI__NEWTON_WAIT, DVI__FULL_WAIT, DVI__LAST_Y };
+/* The memory: length of the last step (0: none); steps for which fixed point iteration and
+ * simplified Newton's method are not tried again, and how many they were when the iteration last
+ * failed (0: it has not since it last succeeded); the last step's unknowns (before the first step,
+ * the start's velocity in their place) and its forces; what simplified Newton's method keeps
+ * frozen. */
+enum {
+  DVI__LAST_H,
+  DVI__NEWTON_STEPS,
+  DVI__FULL_STEPS,
+  DVI__NEWTON_WAIT,
+  DVI__FULL_WAIT,
+  DVI__LAST_Y
+};
 
 /* Where the forces stand in it. */
 size_t dvi__element_forces(const dvi__stepper *self);
 
-/* The space of a method that is one element of the action, by its specification, spelled out into text; DVI_BAD_OPTION for other methods, and if a
- * solver is asked for, which `user` would not heed. */
-dvi_status dvi__element_space(const dvi_system *system, const char *specification, const char *user, dvi__action_space *space,
-                              dvi__text *spelled);
+/* The space of a method that is one element of the action, by its specification, spelled out into
+ * text; DVI_BAD_OPTION for other methods, and if a solver is asked for, which `user` would not
+ * heed. */
+dvi_status dvi__element_space(const dvi_system *system, const char *specification, const char *user,
+                              dvi__action_space *space, dvi__text *spelled);
 
-/* The method's order. With a quadrature of order u the action errs by that one's error, h^u of itself, and by the square of the path's: the path is stationary,
- * and its velocity errs by h^s, or by h^(u-s+1) if the quadrature does not see all of it. */
+/* The method's order. With a quadrature of order u the action errs by that one's error, h^u of
+ * itself, and by the square of the path's: the path is stationary, and its velocity errs by h^s, or
+ * by h^(u-s+1) if the quadrature does not see all of it. */
 int dvi__element_order(const dvi__action_space *space);
 
-/* The fewest nodes of a rule whose order is 2 degree, or the most that it has; whether it is the same from both ends. */
+/* The fewest nodes of a rule whose order is 2 degree, or the most that it has; whether it is the
+ * same from both ends. */
 int dvi__fewest_nodes(dvi_rule rule, int degree);
 int dvi__symmetric_rule(dvi_rule rule);
 
@@ -56,11 +74,16 @@ int dvi__symmetric_rule(dvi_rule rule);
 dvi__action *dvi__element_action(const dvi__stepper *self);
 int dvi__element_solver(const dvi__stepper *self);
 
+/* Lines of an explanation: how many entries a Jacobian has; by which linear solver. */
+void dvi__explain_entries(double unknowns, double entries, dvi__text *text);
+void dvi__explain_linear(dvi__solver *solver, dvi__text *text);
+
 /* The other operations of dvi__method, and what goes into its initialiser for them. */
 void dvi__element_destroy(dvi__stepper *self);
 void dvi__element_start(dvi__stepper *self, const double *v);
 dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h);
-void dvi__element_path(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v);
+void dvi__element_path(const dvi__stepper *self, const double *q0, double h, double tau, double *q,
+                       double *v);
 void dvi__element_explain(const dvi__stepper *self, dvi__text *text);
 
 /* Members side by side (element_lanes.c). */
@@ -71,9 +94,10 @@ void dvi__element_step_lanes(dvi__stepper *self, dvi__members *members, double h
 /* The terms that they can use. */
 enum { DVI__ELEMENT_TERMS = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL };
 
-#define DVI__ELEMENT_OPERATIONS                                                                                          \
-  .destroy = dvi__element_destroy, .start = dvi__element_start, .step = dvi__element_step, .path = dvi__element_path,    \
-  .explain = dvi__element_explain, .prepare_lanes = dvi__element_prepare_lanes, .clear_lanes = dvi__element_clear_lanes, \
+#define DVI__ELEMENT_OPERATIONS                                                            \
+  .destroy = dvi__element_destroy, .start = dvi__element_start, .step = dvi__element_step, \
+  .path = dvi__element_path, .explain = dvi__element_explain,                              \
+  .prepare_lanes = dvi__element_prepare_lanes, .clear_lanes = dvi__element_clear_lanes,    \
   .step_lanes = dvi__element_step_lanes
 
 #endif

@@ -6,7 +6,8 @@
 #include "core/memory.h"
 #include "core/status.h"
 
-/* Of a root or a turning point, in iterations; a bracket that is not halved by three of the fast ones is bisected. */
+/* Of a root or a turning point, in iterations; a bracket that is not halved by three of the fast
+ * ones is bisected. */
 enum { MOST_ITERATIONS = 100 };
 
 /* A turning point need not be closer: D is flat there. */
@@ -18,8 +19,10 @@ dvi_status dvi__energy_search_create(dvi__bordered *b, dvi__energy_search *searc
   double *at = search->numbers = DVI_NEW(double, 4 * n);
   search->b = b;
   search->memory = DVI_NEW(double, b->element.memory_count);
-  if (at == NULL || search->memory == NULL) return dvi__fail(DVI_NO_MEMORY, "sem: no memory for %zu coordinates", n);
-  search->state = (dvi__state){.q = at, .p = at + n, .q_carry = at + 2 * n, .p_carry = at + 3 * n};
+  if (at == NULL || search->memory == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "sem: no memory for %zu coordinates", n);
+  search->state = (dvi__state){
+      .q = at, .p = at + n, .q_compensation = at + 2 * n, .p_compensation = at + 3 * n};
   return DVI_OK;
 }
 
@@ -32,7 +35,7 @@ void dvi__energy_search_clear(dvi__energy_search *search)
 static void copy_state(size_t n, const dvi__state *from, dvi__state *to)
 {
   to->t = from->t;
-  to->t_carry = from->t_carry;
+  to->t_compensation = from->t_compensation;
   memcpy(to->q, from->q, 4 * n * sizeof(double));
 }
 
@@ -47,7 +50,8 @@ void dvi__energy_search_begin(dvi__energy_search *search, const dvi__state *stat
   search->tried = 0;
 }
 
-dvi_status dvi__energy_search_try(dvi__energy_search *search, double h, int sloping, dvi__mismatch *found)
+dvi_status dvi__energy_search_try(dvi__energy_search *search, double h, int sloping,
+                                  dvi__mismatch *found)
 {
   dvi__stepper *element = &search->b->element;
   const double *Y = element->memory + DVI__LAST_Y;
@@ -92,18 +96,22 @@ static int turns_towards_zero(const dvi__mismatch *a, const dvi__mismatch *c)
   return a->value * a->slope * (c->h - a->h) < 0 && c->value * c->slope * (a->h - c->h) < 0;
 }
 
-/* Regula falsi with Illinois' weights; while it looks for a turning point, a change of sign of D ends it: then a and c bracket a root. */
-static dvi_status narrow(dvi__energy_search *search, dvi__mismatch *a, dvi__mismatch *c, int turning)
+/* Regula falsi with Illinois' weights; while it looks for a turning point, a change of sign of D
+ * ends it: then a and c bracket a root. */
+static dvi_status narrow(dvi__energy_search *search, dvi__mismatch *a, dvi__mismatch *c,
+                         int turning)
 {
   double weight_a = 1, weight_c = 1, looked_at = HUGE_VAL;
   int side = 0;
   for (int i = 0; i < MOST_ITERATIONS; i++) {
-    const double fa = weight_a * sought(a, turning), fc = weight_c * sought(c, turning), width = c->h - a->h;
+    const double fa = weight_a * sought(a, turning), fc = weight_c * sought(c, turning),
+                 width = c->h - a->h;
     const int lingers = i % 3 == 0 && fabs(width) > 0.5 * looked_at;
     double h = a->h + width * (fa / (fa - fc));
     dvi__mismatch middle;
     if (i % 3 == 0) looked_at = fabs(width);
-    if (lingers || !((h - a->h) / width > 0 && (h - a->h) / width < 1)) h = a->h + 0.5 * width; /* signs may be noise */
+    /* signs may be noise */
+    if (lingers || !((h - a->h) / width > 0 && (h - a->h) / width < 1)) h = a->h + 0.5 * width;
     if (h == a->h || h == c->h || (turning && fabs(width) <= turning_point * fabs(h))) break;
     DVI_TRY(dvi__energy_search_try(search, h, 1, &middle));
     if (dvi__energy_solved(&middle) || (turning && brackets(a, &middle, 0))) {
@@ -126,7 +134,8 @@ static dvi_status narrow(dvi__energy_search *search, dvi__mismatch *a, dvi__mism
 }
 
 /* Look for a root between two neighbours; *found if the best trial is one. */
-static dvi_status look_between(dvi__energy_search *search, dvi__mismatch a, dvi__mismatch c, int *found)
+static dvi_status look_between(dvi__energy_search *search, dvi__mismatch a, dvi__mismatch c,
+                               int *found)
 {
   if (!brackets(&a, &c, 0) && turns_towards_zero(&a, &c)) DVI_TRY(narrow(search, &a, &c, 1));
   if (brackets(&a, &c, 0)) DVI_TRY(narrow(search, &a, &c, 0));
@@ -143,7 +152,8 @@ typedef struct way {
   int open;
 } way;
 
-/* The next length on this way, and what lies between. Where the rows have no solution the way ends. */
+/* The next length on this way, and what lies between. Where the rows have no solution the way
+ * ends. */
 static dvi_status follow(dvi__energy_search *search, way *w, int *found)
 {
   const double wanted = w->last.h * w->factor;
@@ -151,7 +161,8 @@ static dvi_status follow(dvi__energy_search *search, way *w, int *found)
   dvi__mismatch next;
   w->open = !beyond;
   if (fabs(w->last.h) == w->bound) return DVI_OK;
-  const dvi_status status = dvi__energy_search_try(search, beyond ? copysign(w->bound, wanted) : wanted, 1, &next);
+  const dvi_status status = dvi__energy_search_try(
+      search, beyond ? copysign(w->bound, wanted) : wanted, 1, &next);
   if (status != DVI_OK) {
     w->open = 0;
     return status > 0 ? DVI_OK : status;
@@ -162,8 +173,10 @@ static dvi_status follow(dvi__energy_search *search, way *w, int *found)
   return between > 0 ? DVI_OK : between;
 }
 
-/* Where the branch is entered: at the last length, or at the longest of its halves at which the rows have a solution. */
-static dvi_status enter(dvi__energy_search *search, double last, double least, double most, dvi__mismatch *first)
+/* Where the branch is entered: at the last length, or at the longest of its halves at which the
+ * rows have a solution. */
+static dvi_status enter(dvi__energy_search *search, double last, double least, double most,
+                        dvi__mismatch *first)
 {
   double h = copysign(fmin(fmax(fabs(last), least), most), last);
   dvi_status status = dvi__energy_search_try(search, h, 1, first);
@@ -188,7 +201,8 @@ static dvi_status explore(dvi__energy_search *search, double last, double least,
   return DVI_OK;
 }
 
-dvi_status dvi__energy_search_find(dvi__energy_search *search, double last, double least, double most, dvi__mismatch *found)
+dvi_status dvi__energy_search_find(dvi__energy_search *search, double last, double least,
+                                   double most, dvi__mismatch *found)
 {
   search->tried = 0;
   DVI_TRY(explore(search, last, least, most));

@@ -2,7 +2,8 @@
  *
  * Space: straight line from q0 to q1.  Quadrature: midpoint.
  *     Ld(q0,q1) = h L(t0 + h/2, (q0+q1)/2, (q1-q0)/h)
- * Order 2, symmetric, symplectic, conserves quadratic invariants.  Source: Marsden and West 2001, sec. 2.3.2. */
+ * Order 2, symmetric, symplectic, conserves quadratic invariants. Source: Marsden and West 2001,
+ * sec. 2.3.2. */
 #include "method/element/element_step.h"
 
 enum { SOLVER };

@@ -1,10 +1,14 @@
 /* Symplectic-energy-momentum integrators: the times of the nodes are unknowns, too.
  *
- * Space: polynomials of degree s.  Quadrature: Gauss with s points or Lobatto with s+1.  Ld(q0,t0,q1,t1) as galerkin's, stationary in q_k and t_k:
- *     D2 Ld(k-1) + D1 Ld(k) = 0,        E+_{k-1} = E-_k,   E+ = -dLd/dt1, E- = dLd/dt0  (step/element/energy.h)
- * The first step has the given length h0 and fixes the first E+. Where the energy equation has no solution (energy_search.h) the step is the one with the
- * least (E+ - E-)^2 within hmin <= |h| <= hmax, all other rows exact. Order 2s in (t,q,p), symplectic in (t,E,q,p), conserves E of autonomous systems
- * and the momenta of symmetries.  Source: Kane, Marsden and Ortiz 1999; Leok 2004, sec. 5.2 and 5.5. */
+ * Space: polynomials of degree s. Quadrature: Gauss with s points or Lobatto with s+1.
+ * Ld(q0,t0,q1,t1) as galerkin's, stationary in q_k and t_k:
+ *     D2 Ld(k-1) + D1 Ld(k) = 0,        E+_{k-1} = E-_k,
+ *     E+ = -dLd/dt1, E- = dLd/dt0  (step/element/energy.h)
+ * The first step has the given length h0 and fixes the first E+. Where the energy equation has no
+ * solution (energy_search.h) the step is the one with the least (E+ - E-)^2 within hmin <= |h| <=
+ * hmax, all other rows exact. Order 2s in (t,q,p), symplectic in (t,E,q,p), conserves E of
+ * autonomous systems and the momenta of symmetries. Source: Kane, Marsden and Ortiz 1999; Leok
+ * 2004, sec. 5.2 and 5.5. */
 #include <math.h>
 #include <string.h>
 
@@ -28,22 +32,28 @@ static const char *solver_name(int index)
 }
 
 static const dvi__key keys[] = {
-    {"degree", NULL, 1, DVI_DEGREE_MAX, 1, "degree of the path, 1 to 40; left out: 1, the midpoint rule with Gauss"},
-    {"quadrature", rule_name, 0, 0, 0, "gauss (degree points) or lobatto (degree + 1 points); left out: gauss"},
-    {"hmin", NULL, DVI__POSITIVE, 0, 0, "the least length of a step, positive; auto, or left out: a tenth of the first step"},
-    {"hmax", NULL, DVI__POSITIVE, 0, 0, "the largest length of a step, positive; auto, or left out: thirty times the first step"},
-    {"solver", solver_name, 0, 0, 0, "of rows and energy row together: newton, or kinsol, with line search; left out: newton"},
+    {"degree", NULL, 1, DVI_DEGREE_MAX, 1,
+     "degree of the path, 1 to 40; default: 1, the midpoint rule with Gauss"},
+    {"quadrature", rule_name, 0, 0, 0,
+     "gauss (degree points) or lobatto (degree + 1 points); default: gauss"},
+    {"hmin", NULL, DVI__POSITIVE, 0, 0,
+     "the least length of a step, positive; auto, or default: a tenth of the first step"},
+    {"hmax", NULL, DVI__POSITIVE, 0, 0,
+     "the largest length of a step, positive; auto, or default: thirty times the first step"},
+    {"solver", solver_name, 0, 0, 0,
+     "of rows and energy row together: newton, or kinsol, with line search; default: newton"},
     {0},
 };
 
 /* Bounds that are left out, in units of the first step. */
 static const double least_part = 0.1, largest_part = 30;
 
-/* Lengths that a rounding of the energy moves by more than a ten-millionth of themselves say nothing about the next one. */
+/* Lengths that a rounding of the energy moves by more than a ten-millionth of themselves say
+ * nothing about the next one. */
 static const double certain = 1e-9;
 
-/* A step is at most so many times as long or as short as the last one: a length farther off may solve the equations, but it has nothing to do with the steps
- * before. */
+/* A step is at most so many times as long or as short as the last one: a length farther off may
+ * solve the equations, but it has nothing to do with the steps before. */
 static const double reach = 4;
 
 /* The memory, before the element's own. JUMPS and WORK are compensated sums. */
@@ -75,9 +85,12 @@ static dvi_status create(dvi__stepper *self)
 {
   const int degree = self->settings.value[DEGREE], lobatto = self->settings.value[QUADRATURE];
   const double hmin = self->settings.number[HMIN], hmax = self->settings.number[HMAX];
-  const dvi__action_space space = {DVI_LAGRANGE_LOBATTO, degree, lobatto ? DVI_LOBATTO : DVI_GAUSS, degree + lobatto};
+  const dvi__action_space space = {DVI_LAGRANGE_LOBATTO, degree, lobatto ? DVI_LOBATTO : DVI_GAUSS,
+                                   degree + lobatto};
   if (hmax != 0 && hmin > hmax)
-    return dvi__fail(DVI_BAD_OPTION, "sem: hmin=%g is above hmax=%g; no step has a length between them", hmin, hmax);
+    return dvi__fail(DVI_BAD_OPTION,
+                     "sem: hmin=%g is above hmax=%g; no step has a length between them", hmin,
+                     hmax);
   sem *own = self->own = DVI_NEW(sem, 1);
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "sem: no memory");
   const dvi_status status = dvi__system_has_rates(self->system);
@@ -118,7 +131,8 @@ static double least_length(const dvi__stepper *self, double first)
 {
   const double given = self->settings.number[HMIN];
   return given > 0 ? given
-                   : fmin(least_part * fabs(first), self->settings.number[HMAX] > 0 ? self->settings.number[HMAX] : HUGE_VAL);
+                   : fmin(least_part * fabs(first),
+                          self->settings.number[HMAX] > 0 ? self->settings.number[HMAX] : HUGE_VAL);
 }
 
 static double largest_length(const dvi__stepper *self, double first)
@@ -131,8 +145,10 @@ static dvi_status check_first(const dvi__stepper *self, double h)
 {
   const double least = least_length(self, h), most = largest_length(self, h);
   if (fabs(h) >= least && fabs(h) <= most) return DVI_OK;
-  return dvi__fail(DVI_BAD_OPTION, "sem: the first step h = %g is %s %s=%g; the bounds must include it", h,
-                   fabs(h) < least ? "below" : "above", fabs(h) < least ? "hmin" : "hmax", fabs(h) < least ? least : most);
+  return dvi__fail(DVI_BAD_OPTION,
+                   "sem: the first step h = %g is %s %s=%g; the bounds must include it", h,
+                   fabs(h) < least ? "below" : "above", fabs(h) < least ? "hmin" : "hmax",
+                   fabs(h) < least ? least : most);
 }
 
 /* ---- what becomes of the energy ---- */
@@ -207,7 +223,8 @@ static int within(double h, double last, double least, double most)
 
 static dvi_status far_off(const dvi__mismatch *found)
 {
-  return dvi__fail(DVI_NOT_CONVERGED, "the step found, %g, is far off, or misses the energy by %g", found->h, found->value);
+  return dvi__fail(DVI_NOT_CONVERGED, "the step found, %g, is far off, or misses the energy by %g",
+                   found->h, found->value);
 }
 
 /* The lengths continued. Where h hardly shows in the energy there is nothing to continue. */
@@ -219,9 +236,12 @@ static double likely_length(const dvi__stepper *self, double last, double least,
   return copysign(fmin(fmax(fabs(growth * last), least), most), last);
 }
 
-/* Rows and energy row in one, from the path of a likely length. They give the length alone: the step is an ordinary one, whose roundings do not add up, and it
- * decides, also where noise of h keeps Newton's method from settling. A positive status: the search has to tell whether there is a solution. */
-static dvi_status solve_together(dvi__stepper *self, dvi__state *state, double least, double most, dvi__mismatch *found)
+/* Rows and energy row in one, from the path of a likely length. They give the length alone: the
+ * step is an ordinary one, whose roundings do not add up, and it decides, also where noise of h
+ * keeps Newton's method from settling. A positive status: the search has to tell whether there is a
+ * solution. */
+static dvi_status solve_together(dvi__stepper *self, dvi__state *state, double least, double most,
+                                 dvi__mismatch *found)
 {
   sem *own = self->own;
   dvi__bordered *b = &own->bordered;
@@ -233,8 +253,10 @@ static dvi_status solve_together(dvi__stepper *self, dvi__state *state, double l
     dvi__energy_search_take(&own->search, state);
     return DVI_OK;
   }
-  const dvi_status status = dvi__bordered_solve(b, state, target, rung, b->element.memory + DVI__LAST_Y, found);
-  if (status < 0 || !within(found->h, last, least, most)) return status != DVI_OK ? status : far_off(found);
+  const dvi_status status = dvi__bordered_solve(b, state, target, rung,
+                                                b->element.memory + DVI__LAST_Y, found);
+  if (status < 0 || !within(found->h, last, least, most))
+    return status != DVI_OK ? status : far_off(found);
   DVI_TRY(dvi__energy_search_try(&own->search, found->h, status != DVI_OK, found));
   if (!dvi__energy_solved(found)) return far_off(found);
   dvi__energy_search_take(&own->search, state);
@@ -242,7 +264,8 @@ static dvi_status solve_together(dvi__stepper *self, dvi__state *state, double l
 }
 
 /* Without a solution the step is the best that the search has found. */
-static dvi_status search_length(dvi__stepper *self, dvi__state *state, double last, double least, double most, dvi__mismatch *found)
+static dvi_status search_length(dvi__stepper *self, dvi__state *state, double last, double least,
+                                double most, dvi__mismatch *found)
 {
   dvi__energy_search *search = &((sem *)self->own)->search;
   double *m = self->memory;
@@ -284,7 +307,8 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
   return status;
 }
 
-static void path(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v)
+static void path(const dvi__stepper *self, const double *q0, double h, double tau, double *q,
+                 double *v)
 {
   dvi__element_path(element_of(self), q0, h, tau, q, v);
 }
@@ -292,32 +316,33 @@ static void path(const dvi__stepper *self, const double *q0, double h, double ta
 static void explain(const dvi__stepper *self, dvi__text *text)
 {
   const sem *own = self->own;
-  const int entries = dvi__pattern_entries(&own->bordered.pattern), unknowns = own->bordered.rows + 1;
-  dvi__text_add(text, "steps: chosen by the method after the first one, whose length --h is; bounds %s to %s\n",
-                self->settings.number[HMIN] > 0 ? "hmin" : "a tenth of it",
-                self->settings.number[HMAX] > 0 ? "hmax" : "thirty times it");
-  dvi__text_add(text,
-                "kernel: implicit; %d unknowns a step, the last one its length; Jacobian with %d entries (%.3g %% of a full one)\n",
-                unknowns, entries, 100.0 * entries / unknowns / unknowns);
-  dvi__text_add(text, "energy: %s\n",
-                self->system->autonomous
-                    ? "conserved; the system is declared autonomous"
-                    : "balanced with the work of the time dependence; rates are given, what they need beside is differenced");
+  const int unknowns = own->bordered.rows + 1;
   dvi__text_add(
       text,
-      "solver: %s for rows and energy row together; where it finds no step, a search tells whether there is one, and else "
-      "takes the least-squares step\n",
-      solver_name(self->settings.value[SOLVER]));
-  dvi__text_add(text, "linear solver: %s\n",
-                dvi__solver_linear_kind(own->bordered.solver) == DVI__LINEAR_DENSE
-                    ? "dense LU (LAPACK)"
-                    : "sparse LU (KLU), analysed once, refactored after");
+      "steps: chosen by the method after the first one, whose length --h is; bounds %s to %s\n",
+      self->settings.number[HMIN] > 0 ? "hmin" : "a tenth of it",
+      self->settings.number[HMAX] > 0 ? "hmax" : "thirty times it");
+  dvi__text_add(text, "kernel: implicit; %d unknowns a step, the last one its length; ", unknowns);
+  if (dvi__solver_prepare(own->bordered.solver) == DVI_OK)
+    dvi__explain_entries(unknowns, dvi__pattern_entries(&own->bordered.pattern), text);
+  else
+    dvi__text_add(text, "no Jacobian: %s\n", dvi_last_error());
+  dvi__text_add(text, "energy: %s\n",
+                self->system->autonomous ? "conserved; the system is declared autonomous"
+                                         : "balanced with the work of the time dependence; rates "
+                                           "are given, what they need beside is differenced");
+  dvi__text_add(text,
+                "solver: %s for rows and energy row together; where it finds no step, a search "
+                "tells whether there is one, and else "
+                "takes the least-squares step\n",
+                solver_name(self->settings.value[SOLVER]));
+  dvi__explain_linear(own->bordered.solver, text);
 }
 
 const dvi__method dvi__sem = {
     .name = "sem",
-    .summary =
-        "symplectic-energy-momentum: chooses its steps so that a discrete energy is conserved; order 2 degree; any Lagrangian",
+    .summary = "symplectic-energy-momentum: chooses its steps so that a discrete energy is "
+               "conserved; order 2 degree; any Lagrangian",
     .cite = "KaneMarsdenOrtiz1999",
     .keys = keys,
     .uses = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL,

@@ -1,21 +1,24 @@
 /* Galerkin variational integrators in a space of the user's own (dvi/shapes.h).
  *
- * Space: polynomials of degree d, and in the coordinates that have them the user's functions.  Quadrature: a rule of galerkin's with r points, at least as many as there
- * are functions, or the user's.
- *     Ld(q0,q1) = ext over such paths q from q0 to q1 of  h sum_j b_j L(t0 + c_j h, q_j, q'_j/h),      p0 = -D1 Ld, p1 = D2 Ld.
- * The rows are those of step/element/action.h in another space (step/element/shaped.h). Symplectic; symmetric where space and quadrature are. Order min(2d, u, 2(u-d+1)) for a
- * quadrature of order u is what the polynomials claim; the functions may do better, and the user may say so.
+ * Space: polynomials of degree d, and in the coordinates that have them the user's functions.
+ * Quadrature: a rule of galerkin's with r points, at least as many as there are functions, or the
+ * user's.
+ *     Ld(q0,q1) = ext over such paths q from q0 to q1 of  h sum_j b_j L(t0 + c_j h, q_j, q'_j/h),
+ *     p0 = -D1 Ld, p1 = D2 Ld.
+ * The rows are those of step/element/action.h in another space (step/element/user_element.h).
+ * Symplectic; symmetric where space and quadrature are. Order min(2d, u, 2(u-d+1)) for a quadrature
+ * of order u is what the polynomials claim; the functions may do better, and the user may say so.
  * Source: Marsden and West 2001, sec. 2.2.6; Hall and Leok 2015 (spaces other than polynomials). */
 #include <math.h>
 #include <string.h>
 
-#include "step/element/shaped.h"
+#include "step/element/user_element.h"
 #include "core/hash.h"
 #include "core/memory.h"
 #include "method/element/element_step.h"
 #include "method/one_step.h"
 #include "num/compensated.h"
-#include "space/given.h"
+#include "space/user_basis.h"
 
 enum { DEGREE, QUADRATURE, NODES, DEGREE_MOST = 20 };
 
@@ -27,10 +30,13 @@ static const char *rule_name(int index)
 }
 
 static const dvi__key keys[] = {
-    {"degree", NULL, 1, DEGREE_MOST, 1, "degree of the polynomials that all coordinates have, 1 to 20; left out: 1"},
-    {"quadrature", rule_name, 0, 0, DVI__LEFT_OUT, "as of galerkin; own: the program's; left out: the program's, or gauss"},
+    {"degree", NULL, 1, DEGREE_MOST, 1,
+     "degree of the polynomials that all coordinates have, 1 to 20; default: 1"},
+    {"quadrature", rule_name, 0, 0, DVI__LEFT_OUT,
+     "as of galerkin; own: the program's; default: the program's, or gauss"},
     {"nodes", NULL, 1, DVI_SHAPES_POINTS_MOST, DVI__LEFT_OUT,
-     "quadrature points, at least as many as there are functions with those of the polynomials, at most 80; left out: the fewest "
+     "quadrature points, at least as many as there are functions with those of the polynomials, at "
+     "most 80; default: the fewest "
      "of that number"},
     {0},
 };
@@ -41,7 +47,7 @@ enum { FINGERPRINT = DVI__CARRIED, CARRIED = 1 };
 
 typedef struct shaped_galerkin {
   dvi__one_step one;
-  dvi__given *space;
+  dvi__user_basis *space;
   int coordinates;    /* that have the functions */
   double fingerprint; /* of the space at its own length */
 } shaped_galerkin;
@@ -53,9 +59,12 @@ static dvi_status mark_listed(const dvi_shapes *shapes, int n, char *has)
   for (int k = 0; k < shapes->coordinate_count; k++) {
     const int i = shapes->coordinates[k];
     if (i < 0 || i >= n)
-      return dvi__fail(DVI_BAD_ARGUMENT, "shapes %s: there is no coordinate %d; they are counted from 0 to %d", shapes->name, i,
-                       n - 1);
-    if (has[i]) return dvi__fail(DVI_BAD_ARGUMENT, "shapes %s: coordinate %d is listed twice", shapes->name, i);
+      return dvi__fail(DVI_BAD_ARGUMENT,
+                       "shapes %s: there is no coordinate %d; they are counted from 0 to %d",
+                       shapes->name, i, n - 1);
+    if (has[i])
+      return dvi__fail(DVI_BAD_ARGUMENT, "shapes %s: coordinate %d is listed twice", shapes->name,
+                       i);
     has[i] = 1;
   }
   if (shapes->coordinates == NULL) memset(has, 1, (size_t)n);
@@ -69,13 +78,14 @@ static dvi_status take_name(dvi__stepper *self)
 {
   char **rest = &self->settings.rest;
   char *wanted = dvi__written("space=%s", self->shapes->name);
-  if (wanted == NULL) return dvi__fail(DVI_NO_MEMORY, "shaped-galerkin: no memory for its specification");
+  if (wanted == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "shaped-galerkin: no memory for its specification");
   if (*rest != NULL && strcmp(*rest, wanted) != 0) {
     dvi__release(wanted);
-    return dvi__fail(
-        DVI_BAD_OPTION,
-        "shaped-galerkin: '%s' is not possible; it takes degree, quadrature, nodes, and as space the name of its shapes, %s", *rest,
-        self->shapes->name);
+    return dvi__fail(DVI_BAD_OPTION,
+                     "shaped-galerkin: '%s' is not possible; it takes degree, quadrature, nodes, "
+                     "and as space the name of its shapes, %s",
+                     *rest, self->shapes->name);
   }
   dvi__release(*rest);
   *rest = wanted;
@@ -90,8 +100,10 @@ static dvi_status take_own_rule(dvi__stepper *self)
   if (value[QUADRATURE] == DVI__LEFT_OUT) value[QUADRATURE] = RULES;
   if (value[NODES] == DVI__LEFT_OUT) value[NODES] = points;
   if (value[QUADRATURE] == RULES && value[NODES] == points) return DVI_OK;
-  return dvi__fail(DVI_BAD_OPTION, "shaped-galerkin: the shapes %s have %d points of their own; leave quadrature and nodes out",
-                   self->shapes->name, points);
+  return dvi__fail(
+      DVI_BAD_OPTION,
+      "shaped-galerkin: the shapes %s have %d points of their own; leave quadrature and nodes out",
+      self->shapes->name, points);
 }
 
 static dvi_status take_rule(dvi__stepper *self, int functions)
@@ -100,12 +112,14 @@ static dvi_status take_rule(dvi__stepper *self, int functions)
   if (value[QUADRATURE] == DVI__LEFT_OUT) value[QUADRATURE] = DVI_GAUSS;
   const dvi_rule rule = (dvi_rule)value[QUADRATURE];
   if (value[QUADRATURE] == RULES)
-    return dvi__fail(DVI_BAD_OPTION, "shaped-galerkin: quadrature=own, but the shapes %s have no points of their own",
-                     self->shapes->name);
+    return dvi__fail(
+        DVI_BAD_OPTION,
+        "shaped-galerkin: quadrature=own, but the shapes %s have no points of their own",
+        self->shapes->name);
   if (value[NODES] == DVI__LEFT_OUT) value[NODES] = dvi__fewest_nodes(rule, functions);
   if (dvi_quadrature_order(rule, value[NODES]) == 0)
-    return dvi__fail(DVI_BAD_OPTION, "shaped-galerkin: quadrature %s has no rule with %d points", dvi_rule_name(rule),
-                     value[NODES]);
+    return dvi__fail(DVI_BAD_OPTION, "shaped-galerkin: quadrature %s has no rule with %d points",
+                     dvi_rule_name(rule), value[NODES]);
   return DVI_OK;
 }
 
@@ -116,7 +130,8 @@ static dvi_status settle(dvi__stepper *self)
   DVI_TRY(self->shapes->point != NULL ? take_own_rule(self) : take_rule(self, functions));
   if (value[NODES] >= functions) return DVI_OK;
   return dvi__fail(DVI_BAD_OPTION,
-                   "shaped-galerkin: %d quadrature points see at most %d of the %d velocity modes, %d of polynomials and %d "
+                   "shaped-galerkin: %d quadrature points see at most %d of the %d velocity modes, "
+                   "%d of polynomials and %d "
                    "functions; there must be at least as "
                    "many points",
                    value[NODES], value[NODES], functions, value[DEGREE], self->shapes->functions);
@@ -128,9 +143,11 @@ static void explain(const dvi__stepper *self, dvi__text *text)
 {
   const shaped_galerkin *own = self->own;
   const int *value = self->settings.value;
-  dvi__text_add(text, "space: polynomials of degree %d, and in %d of %d coordinates %d function%s of the program's, %s\n",
-                value[DEGREE], own->coordinates, self->system->n, self->shapes->functions, self->shapes->functions == 1 ? "" : "s",
-                self->shapes->name);
+  dvi__text_add(text,
+                "space: polynomials of degree %d, and in %d of %d coordinates %d function%s of the "
+                "program's, %s\n",
+                value[DEGREE], own->coordinates, self->system->n, self->shapes->functions,
+                self->shapes->functions == 1 ? "" : "s", self->shapes->name);
   dvi__text_add(text, "quadrature: %s, %d points\n", rule_name(value[QUADRATURE]), value[NODES]);
 }
 
@@ -138,21 +155,21 @@ static dvi_status place(dvi__stepper *self, const dvi__state *state, double h, d
 {
   const shaped_galerkin *own = self->own;
   (void)part;
-  DVI_TRY(dvi__given_prepare(own->space, h));
-  dvi__shaped_place(own->one.of, state->t, h, state->q, state->p);
+  DVI_TRY(dvi__user_basis_prepare(own->space, h));
+  dvi__user_element_place(own->one.of, state->t, h, state->q, state->p);
   return DVI_OK;
 }
 
-DVI__STEP_KIND(shaped, place, explain, .renewed = 1);
+DVI__STEP_KIND(user_element, place, explain, .renewed = 1);
 
 static int smaller(int a, int b)
 {
   return a < b ? a : b;
 }
 
-static int order_of(const dvi__stepper *self, const dvi__given *space)
+static int order_of(const dvi__stepper *self, const dvi__user_basis *space)
 {
-  const int d = self->settings.value[DEGREE], u = dvi__given_quadrature_order(space),
+  const int d = self->settings.value[DEGREE], u = dvi__user_basis_quadrature_order(space),
             order = smaller(smaller(2 * d, u), 2 * (u - d + 1));
   if (self->shapes->order > 0) return self->shapes->order;
   return order > 1 ? order : 1;
@@ -162,32 +179,35 @@ static int order_of(const dvi__stepper *self, const dvi__given *space)
 static dvi_status make(dvi__stepper *self, const char *has)
 {
   const int *value = self->settings.value;
-  dvi__shaped *shaped = NULL;
-  dvi__given *space = NULL;
-  DVI_TRY(dvi__given_create(self->shapes, value[DEGREE], (dvi_rule)value[QUADRATURE], value[NODES], &space));
-  const dvi__shapes shapes = dvi__given_shapes(space);
-  dvi_status status = dvi__shaped_create(self->system, &shapes, has, value[DEGREE], self->counters, &shaped);
-  if (status == DVI_OK) status = dvi__one_step_create(self, sizeof(shaped_galerkin), &kind, shaped, CARRIED);
+  dvi__user_element *shaped = NULL;
+  dvi__user_basis *space = NULL;
+  DVI_TRY(dvi__user_basis_create(self->shapes, value[DEGREE], (dvi_rule)value[QUADRATURE],
+                                 value[NODES], &space));
+  const dvi__shapes shapes = dvi__user_basis_shapes(space);
+  dvi_status status = dvi__user_element_create(self->system, &shapes, has, value[DEGREE],
+                                               self->counters, &shaped);
+  if (status == DVI_OK)
+    status = dvi__one_step_create(self, sizeof(shaped_galerkin), &kind, shaped, CARRIED);
   shaped_galerkin *own = self->own;
   if (own == NULL) {
-    dvi__given_destroy(&space);
+    dvi__user_basis_destroy(&space);
     return status;
   }
   own->space = space;
   for (int i = 0; i < self->system->n; i++) own->coordinates += has[i];
-  own->fingerprint = dvi__given_fingerprint_of(space).sum;
+  own->fingerprint = dvi__user_basis_fingerprint_of(space).sum;
   self->fingerprint = dvi__hash(DVI__HASH_START, (size_t)self->system->n, has);
   self->fingerprinted = "coordinates that have the functions of its space";
   self->order = order_of(self, space);
-  self->symmetric = dvi__given_symmetric(space);
+  self->symmetric = dvi__user_basis_symmetric(space);
   return status;
 }
 
 static dvi_status create(dvi__stepper *self)
 {
   if (self->shapes == NULL)
-    return dvi__fail(DVI_BAD_OPTION,
-                     "shaped-galerkin: there are no shapes: a program gives them to dvi_integrator_options (dvi/shapes.h)");
+    return dvi__fail(DVI_BAD_OPTION, "shaped-galerkin: there are no shapes: a program gives them "
+                                     "to dvi_integrator_options (dvi/shapes.h)");
   DVI_TRY(settle(self));
   char *has = DVI_NEW(char, self->system->n);
   if (has == NULL) return dvi__fail(DVI_NO_MEMORY, "shaped-galerkin: no memory");
@@ -201,9 +221,9 @@ static void destroy(dvi__stepper *self)
 {
   shaped_galerkin *own = self->own;
   if (own == NULL) return;
-  dvi__given *space = own->space;
+  dvi__user_basis *space = own->space;
   dvi__one_step_destroy(self);
-  dvi__given_destroy(&space);
+  dvi__user_basis_destroy(&space);
 }
 
 /* ---- the step ---- */
@@ -220,26 +240,27 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
   const shaped_galerkin *own = self->own;
   const dvi__one_step *one = &own->one;
   DVI_TRY(dvi__one_step_solve(self, state, h));
-  dvi__shaped_ends(one->of, one->x, one->dq, one->dp);
+  dvi__user_element_ends(one->of, one->x, one->dq, one->dp);
   DVI_TRY(dvi__one_step_move(self, state, h, one->x));
-  dvi__add_compensated_all(self->system->n, state->p, state->p_carry, one->dp);
-  self->memory[FINGERPRINT] = dvi__given_fingerprint_of(own->space).sum;
+  dvi__add_compensated_all(self->system->n, state->p, state->p_compensation, one->dp);
+  self->memory[FINGERPRINT] = dvi__user_basis_fingerprint_of(own->space).sum;
   return DVI_OK;
 }
 
 /* NaN where a callback fails, which the driver tells. */
-static void path(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v)
+static void path(const dvi__stepper *self, const double *q0, double h, double tau, double *q,
+                 double *v)
 {
   const shaped_galerkin *own = self->own;
   const dvi__one_step *one = &own->one;
-  if (dvi__given_prepare(own->space, h) != DVI_OK) {
+  if (dvi__user_basis_prepare(own->space, h) != DVI_OK) {
     for (int i = 0; i < self->system->n; i++) {
       if (q != NULL) q[i] = (double)NAN;
       if (v != NULL) v[i] = (double)NAN;
     }
     return;
   }
-  dvi__shaped_path(one->of, self->memory + one->last, h, tau, q, v);
+  dvi__user_element_path(one->of, self->memory + one->last, h, tau, q, v);
   for (int i = 0; q != NULL && i < self->system->n; i++) q[i] += q0[i];
 }
 
@@ -248,8 +269,8 @@ static int recognizes(const dvi__stepper *self, const double *memory)
 {
   const shaped_galerkin *own = self->own;
   const double h = memory[DVI__LENGTH];
-  if (dvi__given_prepare(own->space, h != 0 ? h : self->shapes->h) != DVI_OK) return 0;
-  const dvi__given_fingerprint here = dvi__given_fingerprint_of(own->space);
+  if (dvi__user_basis_prepare(own->space, h != 0 ? h : self->shapes->h) != DVI_OK) return 0;
+  const dvi__user_basis_fingerprint here = dvi__user_basis_fingerprint_of(own->space);
   return fabs(here.sum - memory[FINGERPRINT]) <= 1e-9 * here.size;
 }
 

@@ -2,8 +2,8 @@
  *
  * Space: straight line from q0 to q1.  Quadrature: trapezoid.
  *     Ld(q0,q1) = h/2 L(t0, q0, (q1-q0)/h) + h/2 L(t1, q1, (q1-q0)/h)
- * Stoermer-Verlet for any Lagrangian: for a constant mass the two agree, and verlet is the cheaper one.
- * Order 2, symmetric, symplectic.  Source: Marsden and West 2001, sec. 2.3.1. */
+ * Stoermer-Verlet for any Lagrangian: for a constant mass the two agree, and verlet is the cheaper
+ * one. Order 2, symmetric, symplectic. Source: Marsden and West 2001, sec. 2.3.1. */
 #include "method/element/element_step.h"
 
 enum { SOLVER };

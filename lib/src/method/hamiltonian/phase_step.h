@@ -1,9 +1,10 @@
-/* A step of step/hamiltonian/phase.h: what dg-phase does with a Hamiltonian. */
+/* This step of step/hamiltonian/phase_element.h is that of dg-phase for a Hamiltonian. */
 #ifndef DVI_METHOD_PHASE_STEP_H
 #define DVI_METHOD_PHASE_STEP_H
 #include "method/one_step.h"
 
-/* Fill a stepper's symmetric, memory and own; not its order. `alarm` as in dg_step.h. */
+/* Set symmetric, memory and own of a stepper. The caller sets the order. The argument `alarm` is
+ * that of dg_step.h. */
 dvi_status dvi__phase_step_create(dvi__stepper *self, int degree, int moments, int alarm);
 
 dvi_status dvi__phase_step(dvi__stepper *self, dvi__state *state, double h);

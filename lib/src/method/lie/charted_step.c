@@ -8,14 +8,16 @@
 #include "num/compensated.h"
 #include "system/chart/charted.h"
 
-/* The memory: that of galerkin, with the last path as the next step's chart sees it; then this path in its own chart. */
+/* The memory is that of galerkin, with the last path in the coordinates of the next chart, followed
+ * by this path in its own chart. */
 typedef struct charted_step {
   dvi__charted *charted;
   dvi__stepper inner; /* galerkin in the charts */
-  double *local;      /* [4 nx] q, p and their carries in the charts; the other arrays lie behind */
-  double *xi, *rate;  /* [nx] */
-  double *seen;       /* [nq*(s+1)] points of the path, its start last */
-  double *offset;     /* [unknowns] */
+  /* [4 nx] q, p and their compensations in the charts; the arrays below lie behind */
+  double *local;
+  double *xi, *rate; /* [nx] */
+  double *seen;      /* [nq*(s+1)] points of the path, the start last */
+  double *offset;    /* [unknowns] */
 } charted_step;
 
 static size_t unknowns_of(const charted_step *own)
@@ -23,11 +25,12 @@ static size_t unknowns_of(const charted_step *own)
   return (size_t)dvi__action_unknowns(dvi__element_action(&own->inner));
 }
 
-/* ---- making it ---- */
+/* ---- create ---- */
 
-static dvi_status allocate(dvi__stepper *self, charted_step *own)
+static dvi_status charted_step_allocate(dvi__stepper *self, charted_step *own)
 {
-  const size_t nx = (size_t)self->system->nx, n = (size_t)self->system->n, unknowns = unknowns_of(own);
+  const size_t nx = (size_t)self->system->nx, n = (size_t)self->system->n,
+               unknowns = unknowns_of(own);
   const size_t seen = n * (unknowns / nx + 1);
   self->memory_count = own->inner.memory_count + unknowns;
   own->local = DVI_NEW(double, 6 * nx + seen + unknowns);
@@ -39,20 +42,22 @@ static dvi_status allocate(dvi__stepper *self, charted_step *own)
   return DVI_OK;
 }
 
-/* Whether a path of degree s in the charts at its start is one in those at its end: s = 1 makes one-parameter subgroups and great circles, and lines and
- * circles have one chart. */
+/* Return 1 if a path of degree s in the charts at its start is such a path in the charts at its
+ * end, too. Paths with s = 1 are one-parameter subgroups and great circles. Lines and circles have
+ * one chart. */
 static int has_two_ends(const dvi_system *system, const dvi__stepper *inner)
 {
   int turns = 0;
-  for (int c = 0; c < system->cell_count; c++)
-    turns |= system->cells[c].kind == DVI__ROTATION || system->cells[c].kind == DVI__SPHERE;
+  for (int c = 0; c < system->slot_count; c++)
+    turns |= system->slots[c].kind == DVI__ROTATION || system->slots[c].kind == DVI__SPHERE;
   return !turns || dvi__action_space_of(dvi__element_action(inner)).degree == 1;
 }
 
 static dvi_status centre_paths(charted_step *own)
 {
   dvi__centring centring;
-  DVI_TRY(dvi__charted_centring(own->charted, dvi__action_nodes(dvi__element_action(&own->inner)), &centring));
+  DVI_TRY(dvi__charted_centring(own->charted, dvi__action_nodes(dvi__element_action(&own->inner)),
+                                &centring));
   return dvi__element_centre(&own->inner, &centring);
 }
 
@@ -62,12 +67,14 @@ dvi_status dvi__charted_step_create(dvi__stepper *self, int reduced)
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
   const dvi_status made = dvi__charted_create(self->system, reduced, self->counters, &own->charted);
   if (made != DVI_OK) return dvi__fail_in(made, "%s", self->method->name);
-  const dvi_status status = dvi__stepper_create_inner(self, "galerkin", dvi__charted_system(own->charted), NULL, &own->inner);
-  if (status != DVI_OK) return dvi__fail_in(status, "%s, by the keys of galerkin", self->method->name);
+  const dvi_status status = dvi__stepper_create_inner(
+      self, "galerkin", dvi__charted_system(own->charted), NULL, &own->inner);
+  if (status != DVI_OK)
+    return dvi__fail_in(status, "%s, by the keys of galerkin", self->method->name);
   self->order = own->inner.order;
   self->symmetric = own->inner.symmetric && has_two_ends(self->system, &own->inner);
   DVI_TRY(centre_paths(own));
-  return allocate(self, own);
+  return charted_step_allocate(self, own);
 }
 
 void dvi__charted_step_destroy(dvi__stepper *self)
@@ -83,7 +90,7 @@ void dvi__charted_step_destroy(dvi__stepper *self)
 
 /* ---- the step ---- */
 
-/* Points of the step's path, before its chart is left. */
+/* Evaluate points of the path in the stored coordinates before the chart is left. */
 static void look_back(const charted_step *own, size_t n, const double *path)
 {
   const dvi__action *action = dvi__element_action(&own->inner);
@@ -95,7 +102,7 @@ static void look_back(const charted_step *own, size_t n, const double *path)
   }
 }
 
-/* The same path in the chart at its end: what the next guess continues. */
+/* Express the same path in the chart at its end, where the next guess continues it. */
 static void turn_path(const charted_step *own, size_t n, double *path)
 {
   const size_t nx = (size_t)dvi__charted_system(own->charted)->n, s = unknowns_of(own) / nx;
@@ -107,25 +114,27 @@ static void turn_path(const charted_step *own, size_t n, double *path)
   dvi__action_fit(dvi__element_action(&own->inner), own->offset, path);
 }
 
-/* In the charts at the state. */
-static dvi_status solve(dvi__stepper *self, const dvi__state *state, double h, dvi__state *local)
+/* Solve the step in the charts at the state. */
+static dvi_status charted_step_solve(dvi__stepper *self, const dvi__state *state, double h,
+                                     dvi__state *local)
 {
   charted_step *own = self->own;
   const size_t nx = (size_t)self->system->nx;
   dvi__charted_centre(own->charted, state->q);
   memset(own->local, 0, 4 * nx * sizeof(double));
   *local = (dvi__state){.t = state->t,
-                        .t_carry = state->t_carry,
+                        .t_compensation = state->t_compensation,
                         .density = state->density,
                         .q = own->local,
                         .p = own->local + nx,
-                        .q_carry = own->local + 2 * nx,
-                        .p_carry = own->local + 3 * nx};
+                        .q_compensation = own->local + 2 * nx,
+                        .p_compensation = own->local + 3 * nx};
   dvi__charted_enter(own->charted, state->p, local->p);
-  dvi__charted_enter(own->charted, state->p_carry, local->p_carry);
+  dvi__charted_enter(own->charted, state->p_compensation, local->p_compensation);
   own->inner.memory = self->memory;
   const dvi_status status = own->inner.method->step(&own->inner, local, h);
-  return status == DVI_OK ? dvi__charted_check(own->charted, local->q) : dvi__charted_explain(own->charted, status);
+  return status == DVI_OK ? dvi__charted_check(own->charted, local->q)
+                          : dvi__charted_explain(own->charted, status);
 }
 
 dvi_status dvi__charted_step(dvi__stepper *self, dvi__state *state, double h)
@@ -134,31 +143,42 @@ dvi_status dvi__charted_step(dvi__stepper *self, dvi__state *state, double h)
   const size_t n = (size_t)self->system->n, unknowns = unknowns_of(own);
   double *path = self->memory + DVI__LAST_Y, *own_path = self->memory + own->inner.memory_count;
   dvi__state local;
-  DVI_TRY(solve(self, state, h, &local));
+  DVI_TRY(charted_step_solve(self, state, h, &local));
   memcpy(own_path, path, unknowns * sizeof(double));
   memcpy(own->seen + n * (unknowns / (size_t)self->system->nx), state->q, n * sizeof(double));
   look_back(own, n, own_path);
-  dvi__charted_arrive(own->charted, &(dvi__phase){local.q, local.p, local.q_carry, local.p_carry},
-                      &(dvi__phase){state->q, state->p, state->q_carry, state->p_carry});
+  dvi__charted_arrive(own->charted,
+                      &(dvi__phase){.q = local.q,
+                                    .p = local.p,
+                                    .q_compensation = local.q_compensation,
+                                    .p_compensation = local.p_compensation},
+                      &(dvi__phase){.q = state->q,
+                                    .p = state->p,
+                                    .q_compensation = state->q_compensation,
+                                    .p_compensation = state->p_compensation});
   dvi__charted_centre(own->charted, state->q);
   turn_path(own, n, path);
   state->t = local.t;
-  state->t_carry = local.t_carry;
+  state->t_compensation = local.t_compensation;
   return DVI_OK;
 }
 
-void dvi__charted_step_path(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v)
+void dvi__charted_step_path(const dvi__stepper *self, const double *q0, double h, double tau,
+                            double *q, double *v)
 {
   const charted_step *own = self->own;
   dvi__charted_centre(own->charted, q0);
-  dvi__action_path(dvi__element_action(&own->inner), self->memory + own->inner.memory_count, h, tau, own->xi, own->rate);
+  dvi__action_path(dvi__element_action(&own->inner), self->memory + own->inner.memory_count, h, tau,
+                   own->xi, own->rate);
   dvi__charted_point(own->charted, own->xi, own->rate, q, v);
 }
 
 void dvi__charted_step_explain(const dvi__stepper *self, dvi__text *text)
 {
   const charted_step *own = self->own;
-  dvi__text_add(text, "charts: natural ones, centred at the start of each step; %d coordinates for %d stored numbers\n",
+  dvi__text_add(text,
+                "charts: natural ones, centred at the start of each step; %d coordinates for %d "
+                "stored numbers\n",
                 self->system->nx, self->system->n);
   own->inner.method->explain(&own->inner, text);
 }

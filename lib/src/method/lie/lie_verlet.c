@@ -1,15 +1,22 @@
 /* Velocity Verlet on Lie groups and spheres.
  *
- * Space: the chord from y0 to y1 in the coordinates y that contain the group.  Quadrature: the trapezoid.
- *     Ld(q0,q1) = (y1-y0).M(y1-y0)/(2h) - h/2 (V(y0) + V(y1)),     on SO(3):  tr((I - F) Jd)/h - h/2 (V(R0) + V(R1)),  F = R0^T R1
- * p0 = -D1 Ld, p1 = D2 Ld, with all forces and momenta as the tangent spaces see them:
- *     p_half = p0 - h/2 dV(q0),   F Jd - Jd F^T = (h p_half)^ gives q1 and turns p_half,   p1 = p_half - h/2 dV(q1).
- * The equation for q1 has no potential in it (step/lie/leaps.h): a step has one gradient and is explicit in the forces.
- * Order 2, symmetric, symplectic; momenta of symmetries to roundoff; a free body keeps its energy, too (Hairer and Vilmart 2006).
- * Source: Moser and Veselov 1991; Leok and Shingel 2012, sec. 2.3. */
+ * The space is the chord from y0 to y1 in the coordinates y that contain the group. The quadrature
+ * is the trapezoid.
+ *     Ld(q0,q1) = (y1-y0).M(y1-y0)/(2h) - h/2 (V(y0) + V(y1)),
+ *     on SO(3):  tr((I - F) Jd)/h - h/2 (V(R0) + V(R1)),  F = R0^T R1
+ * The momenta are p0 = -D1 Ld and p1 = D2 Ld, with all forces and momenta projected on the tangent
+ * spaces.
+ *     p_half = p0 - h/2 dV(q0),
+ *     F Jd - Jd F^T = (h p_half)^ gives q1 and rotates p_half,
+ *     p1 = p_half - h/2 dV(q1).
+ *
+ * The equation for q1 does not contain the potential (step/lie/lie_drift.h), so that a step has one
+ * gradient and is explicit in the forces. The order is 2. The method is symmetric and symplectic,
+ * and conserves momenta of symmetries to roundoff. A free body keeps its energy, too (Hairer and
+ * Vilmart 2006). Source: Moser and Veselov 1991; Leok and Shingel 2012, sec. 2.3. */
 #include <string.h>
 
-#include "step/lie/leaps.h"
+#include "step/lie/lie_drift.h"
 #include "core/memory.h"
 #include "core/status.h"
 #include "method/method.h"
@@ -17,109 +24,119 @@
 
 enum { SOLVE };
 
-static const char *solve_name(int index)
+static const char *lie_verlet_solve_name(int index)
 {
   static const char *const name[] = {"exp", "cayley"};
   return index >= 0 && index < 2 ? name[index] : NULL;
 }
 
 static const dvi__key keys[] = {
-    {"solve", solve_name, 0, 0, DVI__BY_CAYLEY,
-     "how the relative rotation of a body is parametrised in Newton's method: exp or cayley; the same rotation; left out: cayley"},
+    {"solve", lie_verlet_solve_name, 0, 0, DVI__BY_CAYLEY,
+     "how the relative rotation of a body is parametrised in Newton's method: exp or cayley; the "
+     "same rotation; default: cayley"},
     {0},
 };
 
-/* The gradient at the end of a step is that at the start of the next: memory holds it, then a flag, then what each cell did in the step. */
+/* The memory holds the gradient at the end of the last step, which is that at the start of the
+ * next, then a flag, then the displacement of each slot in the step. */
 typedef struct lie_verlet {
   dvi__evaluator *evaluator;
-  dvi__leaps *leaps;
+  dvi__lie_drift *drift;
 } lie_verlet;
 
-static double *gradient_known(const dvi__stepper *self)
+static double *lie_verlet_gradient_known(const dvi__stepper *self)
 {
   return self->memory + self->system->n;
 }
 
-static double *leap_of(const dvi__stepper *self)
+static double *displacement_of(const dvi__stepper *self)
 {
   return self->memory + self->system->n + 1;
 }
 
-static dvi_status create(dvi__stepper *self)
+static dvi_status lie_verlet_create(dvi__stepper *self)
 {
   lie_verlet *own = self->own = DVI_NEW(lie_verlet, 1);
   self->order = 2;
   self->symmetric = 1;
   self->memory_count = (size_t)self->system->n + 1 + (size_t)self->system->nv;
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "lie-verlet: no memory");
-  DVI_TRY(dvi__leaps_create(self->system, (dvi__leap_by)self->settings.value[SOLVE], self->counters, &own->leaps));
+  DVI_TRY(dvi__lie_drift_create(self->system, (dvi__moser_veselov_map)self->settings.value[SOLVE],
+                                self->counters, &own->drift));
   return dvi__evaluator_create(self->system, 1, DVI__GRADIENTS, self->counters, &own->evaluator);
 }
 
-static void destroy(dvi__stepper *self)
+static void lie_verlet_destroy(dvi__stepper *self)
 {
   lie_verlet *own = self->own;
   if (own == NULL) return;
-  dvi__leaps_destroy(&own->leaps);
+  dvi__lie_drift_destroy(&own->drift);
   dvi__evaluator_destroy(&own->evaluator);
   dvi__release(own);
 }
 
-static dvi_status gradient(const dvi__stepper *self, const dvi__state *state)
+static dvi_status lie_verlet_gradient(const dvi__stepper *self, const dvi__state *state)
 {
   const lie_verlet *own = self->own;
   if (self->system->potential_count == 0) return DVI_OK;
-  *gradient_known(self) = 1;
+  *lie_verlet_gradient_known(self) = 1;
   return dvi__potentials_gradient(own->evaluator, 1, &state->t, state->q, self->memory);
 }
 
-static void kick(const dvi__stepper *self, const dvi__phase *phase, double h)
+static void lie_verlet_kick(const dvi__stepper *self, const dvi__phase *phase, double h)
 {
   const lie_verlet *own = self->own;
-  if (self->system->potential_count > 0) dvi__leaps_kick(own->leaps, h, self->memory, phase);
+  if (self->system->potential_count > 0) dvi__lie_drift_kick(own->drift, h, self->memory, phase);
 }
 
-static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
+static dvi_status lie_verlet_step(dvi__stepper *self, dvi__state *state, double h)
 {
   const lie_verlet *own = self->own;
-  const dvi__phase phase = {state->q, state->p, state->q_carry, state->p_carry};
-  if (*gradient_known(self) == 0) DVI_TRY(gradient(self, state));
-  kick(self, &phase, 0.5 * h);
-  DVI_TRY(dvi__leaps_drift(own->leaps, h, &phase, leap_of(self)));
-  dvi__add_compensated(&state->t, &state->t_carry, h);
-  DVI_TRY(gradient(self, state));
-  kick(self, &phase, 0.5 * h);
+  const dvi__phase phase = {.q = state->q,
+                            .p = state->p,
+                            .q_compensation = state->q_compensation,
+                            .p_compensation = state->p_compensation};
+  if (*lie_verlet_gradient_known(self) == 0) DVI_TRY(lie_verlet_gradient(self, state));
+  lie_verlet_kick(self, &phase, 0.5 * h);
+  DVI_TRY(dvi__lie_drift_drift(own->drift, h, &phase, displacement_of(self)));
+  dvi__add_compensated(&state->t, &state->t_compensation, h);
+  DVI_TRY(lie_verlet_gradient(self, state));
+  lie_verlet_kick(self, &phase, 0.5 * h);
   return DVI_OK;
 }
 
-static void path(const dvi__stepper *self, const double *q0, double h, double tau, double *q, double *v)
+static void lie_verlet_path(const dvi__stepper *self, const double *q0, double h, double tau,
+                            double *q, double *v)
 {
   const lie_verlet *own = self->own;
-  dvi__leaps_path(own->leaps, q0, leap_of(self), h, tau, q, v);
+  dvi__lie_drift_path(own->drift, q0, displacement_of(self), h, tau, q, v);
 }
 
-static void explain(const dvi__stepper *self, dvi__text *text)
+static void lie_verlet_explain(const dvi__stepper *self, dvi__text *text)
 {
   const lie_verlet *own = self->own;
   int alone, coupled;
-  dvi__leaps_count(own->leaps, &alone, &coupled);
-  dvi__text_add(text, "kernel: explicit in the forces; one gradient a step (the last one of a step is the first of the next)\n");
+  dvi__lie_drift_count(own->drift, &alone, &coupled);
+  dvi__text_add(text, "kernel: explicit in the forces; one gradient a step (the last one of a step "
+                      "is the first of the next)\n");
   dvi__text_add(text,
-                "solver: cells by themselves: %d (lines, directions and angles in closed form, bodies by Newton's method, %s)\n",
-                alone, solve_name(self->settings.value[SOLVE]));
-  dvi__text_add(text, "solver: cells coupled by the mass, in one Newton iteration: %d\n", coupled);
+                "solver: slots by themselves: %d (lines, directions and angles in closed form, "
+                "bodies by Newton's method, %s)\n",
+                alone, lie_verlet_solve_name(self->settings.value[SOLVE]));
+  dvi__text_add(text, "solver: slots coupled by the mass, in one Newton iteration: %d\n", coupled);
 }
 
 const dvi__method dvi__lie_verlet = {
     .name = "lie-verlet",
-    .summary = "Verlet on rotations, rigid motions, directions, angles and products; one gradient a step; order 2; constant mass",
+    .summary = "Verlet on rotations, rigid motions, directions, angles and products; one gradient "
+               "a step; order 2; constant mass",
     .cite = "LeokShingel2012",
     .keys = keys,
     .needs = DVI__FACTORS,
     .uses = DVI__CONSTANT_MASS | DVI__POTENTIAL | DVI__FACTORS,
-    .create = create,
-    .destroy = destroy,
-    .step = step,
-    .path = path,
-    .explain = explain,
+    .create = lie_verlet_create,
+    .destroy = lie_verlet_destroy,
+    .step = lie_verlet_step,
+    .path = lie_verlet_path,
+    .explain = lie_verlet_explain,
 };

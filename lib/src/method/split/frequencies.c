@@ -1,11 +1,11 @@
-/* The fast frequencies that a system declares, for who plans steps. */
+/* The fast frequencies that a system declares help a caller to plan steps. */
 #include <dvi/diagnostics.h>
 
 #include "step/split/modes.h"
 #include "core/status.h"
 #include "system/part.h"
 
-static dvi_status find(const dvi_system *part, double *least, double *most)
+static dvi_status frequencies_find(const dvi_system *part, double *least, double *most)
 {
   dvi_counters counters = {0};
   dvi__modes *modes;
@@ -22,12 +22,14 @@ static dvi_status find(const dvi_system *part, double *least, double *most)
 dvi_status dvi_fast_frequencies(const dvi_system *system, double *least, double *most)
 {
   dvi_system *part;
-  if (!system || !least || !most) return dvi__fail(DVI_BAD_ARGUMENT, "frequencies: an argument is NULL");
-  if (!(system->terms & DVI__FAST) || !(system->terms & DVI__CONSTANT_MASS) || !dvi__system_fast_is_quadratic(system))
-    return dvi__fail(DVI_UNSUPPORTED,
-                     "frequencies: they are known of potentials that are declared fast and quadratic, with a constant mass");
+  if (!system || !least || !most)
+    return dvi__fail(DVI_BAD_ARGUMENT, "frequencies: an argument is NULL");
+  if (!(system->terms & DVI__FAST) || !(system->terms & DVI__CONSTANT_MASS) ||
+      !dvi__system_fast_is_quadratic(system))
+    return dvi__fail(DVI_UNSUPPORTED, "frequencies: they are known of potentials that are declared "
+                                      "fast and quadratic, with a constant mass");
   DVI_TRY(dvi__system_fast_part(system, &part));
-  const dvi_status status = find(part, least, most);
+  const dvi_status status = frequencies_find(part, least, most);
   dvi_system_destroy(&part);
   return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "frequencies");
 }

@@ -1,31 +1,35 @@
-/* The mollified impulse method: kicks by the slow potentials at filtered places, and between them the exact motion of quadratic fast ones.
+/* The mollified impulse method. The slow potentials kick at filtered places. Between the kicks
+ * stands the exact motion of quadratic fast potentials.
  *
- *     Ld(q0,q1) = action of the exact fast motion from q0 to q1 - h/2 (U(t0,A(q0)) + U(t1,A(q1)))
- * U(A(q)) kicks by A'(q)^T U'(A(q)), which spares the modes that kicks would drive (method/split/oscillation.h). A by the modes' x = h omega:
- *     average     the mean over a step of the fast motion that starts at rest:  phi = sin x/x;
- *     projection  modes that a step does not resolve rest at their equilibrium: phi = 0 for x > 1, else 1.
- * Order 2 as h goes to 0, symmetric, symplectic.
- * Source: Garcia-Archilla, Sanz-Serna and Skeel 1999; Izaguirre, Reich and Skeel 1999. */
+ *     Ld(q0,q1) = action of the exact fast motion from q0 to q1
+ *                 - h/2 (U(t0,A(q0)) + U(t1,A(q1)))
+ * The kicks of U(A(q)) are A'(q)^T U'(A(q)), which suppresses the modes that kicks would excite
+ * (method/split/oscillation.h). The filter A depends on x = h omega of each mode.
+ *     average     mean over a step of the fast motion that starts at rest, phi = sin x/x
+ *     projection  modes that a step does not resolve rest at their equilibrium,
+ *                 phi = 0 for x > 1, else 1
+ * The order is 2 as h goes to 0, and the method is symmetric and symplectic. Source:
+ * Garcia-Archilla, Sanz-Serna and Skeel 1999; Izaguirre, Reich and Skeel 1999. */
 #include "method/split/oscillation.h"
 
 enum { FILTER };
 
 enum { AVERAGE, PROJECTION };
 
-static const char *filter_name(int index)
+static const char *mollified_filter_name(int index)
 {
   static const char *const name[] = {"average", "projection"};
   return index >= 0 && index < 2 ? name[index] : NULL;
 }
 
 static const dvi__key keys[] = {
-    {"filter", filter_name, 0, 0, AVERAGE,
-     "where the slow potentials are asked: average (over the fast motion), or projection (without the modes of h omega > 1); "
-     "left out: average"},
+    {"filter", mollified_filter_name, 0, 0, AVERAGE,
+     "where the slow potentials are asked: average (over the fast motion), or projection (without "
+     "the modes of h omega > 1); default: average"},
     {0},
 };
 
-static int pair(int number, double s, dvi__filter *filter)
+static int mollified_pair(int number, double s, dvi__filter *filter)
 {
   double c[4];
   if (number == PROJECTION) {
@@ -38,11 +42,11 @@ static int pair(int number, double s, dvi__filter *filter)
 }
 
 static const dvi__filters filters[] = {
-    {.at = pair, .number = AVERAGE, .phi = {1, 1, 0}, .psi = {1, 1, 0}},
-    {.at = pair, .number = PROJECTION},
+    {.at = mollified_pair, .number = AVERAGE, .phi = {1, 1, 0}, .psi = {1, 1, 0}},
+    {.at = mollified_pair, .number = PROJECTION},
 };
 
-static dvi_status create(dvi__stepper *self)
+static dvi_status mollified_create(dvi__stepper *self)
 {
   return dvi__oscillation_create(self, &filters[self->settings.value[FILTER]], DVI__MOTION_AUTO,
                                  "imex and respa:substeps=k take any");
@@ -50,11 +54,12 @@ static dvi_status create(dvi__stepper *self)
 
 const dvi__method dvi__mollified = {
     .name = "mollified",
-    .summary = "mollified impulse method, to compare with: filtered kicks, exact motion of quadratic fast potentials; order 2",
+    .summary = "mollified impulse method, to compare with: filtered kicks, exact motion of "
+               "quadratic fast potentials; order 2",
     .cite = "GarciaArchillaSanzSernaSkeel1999",
     .keys = keys,
     DVI__IMPULSE_OPERATIONS,
-    .create = create,
+    .create = mollified_create,
     .destroy = dvi__oscillation_destroy,
     .explain = dvi__oscillation_explain,
 };

@@ -9,18 +9,20 @@
 
 /* ---- the step ---- */
 
-/* In the memory, behind the impulse's: the fast gradient at the state, which the filter wanted, and the next move wants. */
+/* The fast gradient at the state stands in the memory behind the numbers of the impulse method. The
+ * filter and the next move use it. */
 static double *kept_gradient(const dvi__stepper *self)
 {
   return self->memory + self->system->n + 1;
 }
 
-static dvi_status move(dvi__stepper *self, dvi__state *state, double h)
+static dvi_status oscillation_move(dvi__stepper *self, dvi__state *state, double h)
 {
   const dvi__oscillation *own = self->own;
   const double middle = state->t + 0.5 * h, *V_q = own->keeps ? kept_gradient(self) : own->V_q;
   const dvi__phase phase = dvi__impulse_phase(state);
-  if (!own->keeps) DVI_TRY(dvi__potentials_gradient(own->fast_forces, 1, &middle, state->q, own->V_q));
+  if (!own->keeps)
+    DVI_TRY(dvi__potentials_gradient(own->fast_forces, 1, &middle, state->q, own->V_q));
   if (own->polynomials != NULL) return dvi__polynomials_move(own->polynomials, h, V_q, &phase);
   dvi__modes_move(own->modes, h, V_q, &phase);
   return DVI_OK;
@@ -28,7 +30,7 @@ static dvi_status move(dvi__stepper *self, dvi__state *state, double h)
 
 /* ---- filters ---- */
 
-/* The polynomials' slots. */
+/* Slots of the polynomials. */
 enum { SHIFT, PSI };
 
 static int is_one(const dvi__growth *growth)
@@ -41,10 +43,10 @@ static dvi_status list_filters(dvi__oscillation *own, int n, double h)
   const double *square = dvi__modes_squares(own->modes);
   for (int k = 0; k < n; k++)
     if (!own->filters->at(own->filters->number, h * h * square[k], &own->filter[k]))
-      return dvi__fail(
-          DVI_NOT_CONVERGED,
-          "h omega = %.6g of a fast mode, where this filter does not exist: it divides by sinc(h omega), or by its root",
-          fabs(h) * sqrt(fabs(square[k])));
+      return dvi__fail(DVI_NOT_CONVERGED,
+                       "h omega = %.6g of a fast mode, where this filter does not exist: it "
+                       "divides by sinc(h omega), or by its root",
+                       fabs(h) * sqrt(fabs(square[k])));
   return DVI_OK;
 }
 
@@ -67,12 +69,14 @@ static double psi_at(const void *user, double s)
 static dvi_status expand_filters(dvi__oscillation *own, double h)
 {
   const dvi__filters *filters = own->filters;
-  if (!is_one(&filters->phi)) DVI_TRY(dvi__polynomials_expand(own->polynomials, SHIFT, h, &filters->phi, 1, shift_at, filters));
+  if (!is_one(&filters->phi))
+    DVI_TRY(
+        dvi__polynomials_expand(own->polynomials, SHIFT, h, &filters->phi, 1, shift_at, filters));
   if (is_one(&filters->psi)) return DVI_OK;
   return dvi__polynomials_expand(own->polynomials, PSI, h, &filters->psi, 0, psi_at, filters);
 }
 
-static dvi_status prepare(dvi__oscillation *own, int n, double h)
+static dvi_status oscillation_prepare(dvi__oscillation *own, int n, double h)
 {
   if (own->h == h) return DVI_OK;
   own->h = 0;
@@ -81,8 +85,9 @@ static dvi_status prepare(dvi__oscillation *own, int n, double h)
   return DVI_OK;
 }
 
-/* nearby = A(q), of the fast gradient at q. */
-static void approach(dvi__oscillation *own, int n, double h, const double *q, const double *fast)
+/* Set nearby = A(q), from the fast gradient at q. */
+static void oscillation_filter_place(dvi__oscillation *own, int n, double h, const double *q,
+                                     const double *fast)
 {
   if (own->modes != NULL) {
     dvi__modes_of_forces(own->modes, fast, own->y);
@@ -95,7 +100,8 @@ static void approach(dvi__oscillation *own, int n, double h, const double *q, co
   for (int i = 0; i < n; i++) own->nearby[i] += q[i];
 }
 
-static void soften(dvi__oscillation *own, int n, const double *slow, double *softened)
+static void oscillation_filter_force(dvi__oscillation *own, int n, const double *slow,
+                                     double *softened)
 {
   if (own->modes != NULL) {
     dvi__modes_of_forces(own->modes, slow, own->y);
@@ -106,24 +112,28 @@ static void soften(dvi__oscillation *own, int n, const double *slow, double *sof
   }
 }
 
-static dvi_status filtered_gradient(dvi__stepper *self, const dvi__state *state, double h, double *V_q)
+static dvi_status filtered_gradient(dvi__stepper *self, const dvi__state *state, double h,
+                                    double *V_q)
 {
   dvi__oscillation *own = self->own;
-  const int n = self->system->n, here = is_one(&own->filters->phi), hard = is_one(&own->filters->psi);
+  const int n = self->system->n, here = is_one(&own->filters->phi),
+            hard = is_one(&own->filters->psi);
   double *fast = own->keeps ? kept_gradient(self) : own->V_q, *slow = hard ? V_q : own->V_q;
-  DVI_TRY(prepare(own, n, h));
+  DVI_TRY(oscillation_prepare(own, n, h));
   if (!here) {
     DVI_TRY(dvi__potentials_gradient(own->fast_forces, 1, &state->t, state->q, fast));
-    approach(own, n, h, state->q, fast);
+    oscillation_filter_place(own, n, h, state->q, fast);
   }
-  DVI_TRY(dvi__potentials_gradient(own->impulse.forces, 1, &state->t, here ? state->q : own->nearby, slow));
-  if (!hard) soften(own, n, slow, V_q);
+  DVI_TRY(dvi__potentials_gradient(own->impulse.forces, 1, &state->t, here ? state->q : own->nearby,
+                                   slow));
+  if (!hard) oscillation_filter_force(own, n, slow, V_q);
   return DVI_OK;
 }
 
 /* ---- create, destroy ---- */
 
-/* Larger blocks are left to polynomials, where these serve as well: products with so many modes take longer. */
+/* Polynomials take larger blocks where possible, because products with so many modes take
+ * longer. */
 enum { MODES_BLOCK_QUICK = 64 };
 
 static int has_polynomials(const dvi__filters *filters)
@@ -133,12 +143,15 @@ static int has_polynomials(const dvi__filters *filters)
 
 static dvi_status make_polynomials(dvi__oscillation *own, dvi_counters *counters)
 {
-  if (has_polynomials(own->filters)) return dvi__polynomials_create(own->impulse.fast, counters, &own->polynomials);
-  return dvi__fail(DVI_UNSUPPORTED, "polynomials: the filter jumps, they cannot follow it; take another one");
+  if (has_polynomials(own->filters))
+    return dvi__polynomials_create(own->impulse.fast, counters, &own->polynomials);
+  return dvi__fail(DVI_UNSUPPORTED,
+                   "polynomials: the filter jumps, they cannot follow it; take another one");
 }
 
-/* Modes of small blocks, else polynomials; filters with poles want modes, which may lie between these, as long as there can be some. */
-static dvi_status choose(dvi__oscillation *own, dvi_counters *counters)
+/* Choose modes for small blocks, else polynomials. Filters with poles need modes, because modes may
+ * lie between the poles, as long as there can be some. */
+static dvi_status oscillation_choose(dvi__oscillation *own, dvi_counters *counters)
 {
   const dvi__filters *filters = own->filters;
   const int poles = filters != NULL && (filters->phi.poles > 0 || filters->psi.poles > 0);
@@ -153,36 +166,41 @@ static dvi_status choose(dvi__oscillation *own, dvi_counters *counters)
   return status == DVI_BAD_SIZE ? dvi__fail_in(status, "%s", because) : status;
 }
 
-static dvi_status fill(dvi__stepper *self, dvi__oscillation *own, dvi__motion motion)
+static dvi_status oscillation_initialise(dvi__stepper *self, dvi__oscillation *own,
+                                         dvi__motion motion)
 {
   const size_t n = (size_t)self->system->n;
-  DVI_TRY(motion == DVI__MOTION_MODES ? dvi__modes_create(own->impulse.fast, DVI__MODES_BLOCK_MOST, self->counters, &own->modes)
+  DVI_TRY(motion == DVI__MOTION_MODES ? dvi__modes_create(own->impulse.fast, DVI__MODES_BLOCK_MOST,
+                                                          self->counters, &own->modes)
           : motion == DVI__MOTION_POLYNOMIALS ? make_polynomials(own, self->counters)
-                                              : choose(own, self->counters));
+                                              : oscillation_choose(own, self->counters));
   own->filter = DVI_NEW(dvi__filter, n);
   own->V_q = DVI_NEW(double, n);
   own->y = DVI_NEW(double, n);
   own->nearby = DVI_NEW(double, n);
-  if (!own->filter || !own->V_q || !own->y || !own->nearby) return dvi__fail(DVI_NO_MEMORY, "no memory");
-  return dvi__evaluator_create(own->impulse.fast, 1, DVI__GRADIENTS, self->counters, &own->fast_forces);
+  if (!own->filter || !own->V_q || !own->y || !own->nearby)
+    return dvi__fail(DVI_NO_MEMORY, "no memory");
+  return dvi__evaluator_create(own->impulse.fast, 1, DVI__GRADIENTS, self->counters,
+                               &own->fast_forces);
 }
 
-dvi_status dvi__oscillation_create(dvi__stepper *self, const dvi__filters *filters, dvi__motion motion, const char *remedy)
+dvi_status dvi__oscillation_create(dvi__stepper *self, const dvi__filters *filters,
+                                   dvi__motion motion, const char *remedy)
 {
   if (!dvi__system_fast_is_quadratic(self->system))
     return dvi__fail(
         DVI_UNSUPPORTED,
-        "%s: a fast potential is not declared `quadratic`, and only such ones have modes; %s (it is '%s'; those of scenes are "
-        "declared if their second derivatives are constant)",
+        "%s: a fast potential is not declared `quadratic`, and only such ones have modes; %s (it "
+        "is '%s'; those of scenes are declared if their second derivatives are constant)",
         self->method->name, remedy, dvi__system_fast_not_quadratic(self->system));
   DVI_TRY(dvi__impulse_create(self, sizeof(dvi__oscillation), 0));
   dvi__oscillation *own = self->own;
   own->filters = filters;
-  own->impulse.move = move;
+  own->impulse.move = oscillation_move;
   own->impulse.gradient = filters != NULL ? filtered_gradient : NULL;
   own->keeps = filters != NULL && !is_one(&filters->phi) && self->system->autonomous;
   if (own->keeps) self->memory_count += (size_t)self->system->n;
-  const dvi_status status = fill(self, own, motion);
+  const dvi_status status = oscillation_initialise(self, own, motion);
   return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "%s", self->method->name);
 }
 
@@ -202,14 +220,16 @@ void dvi__oscillation_destroy(dvi__stepper *self)
 
 /* ---- explain ---- */
 
-static void explain_steps(const dvi__polynomials *polynomials, int count, const double *h, dvi__text *text)
+static void explain_steps(const dvi__polynomials *polynomials, int count, const double *h,
+                          dvi__text *text)
 {
   double bound[3];
   dvi__text_add(text, " for steps with h omega =");
   for (int k = 0; k < count; k++) dvi__text_add(text, "%s %g", k > 0 ? "," : "", pow(10, k));
   dvi__text_add(text, " of degree");
   for (int k = 0; k < count; k++)
-    dvi__text_add(text, "%s %d", k > 0 ? "," : "", dvi__polynomials_degree(polynomials, h[k], &bound[k]));
+    dvi__text_add(text, "%s %d", k > 0 ? "," : "",
+                  dvi__polynomials_degree(polynomials, h[k], &bound[k]));
   dvi__text_add(text, ", which leave out at most");
   for (int k = 0; k < count; k++) dvi__text_add(text, "%s %.2g", k > 0 ? "," : "", bound[k]);
   dvi__text_add(text, " of the motion");
@@ -225,20 +245,28 @@ static void explain_polynomials(const dvi__polynomials *polynomials, dvi__text *
     h[count] = pow(10, count) / sqrt(high);
     if (h[count] > longest) break;
   }
-  dvi__text_add(text, "solver: none; Chebyshev polynomials of M^-1 K, whose omega^2 lie between %.6g and %.6g:", low, high);
+  dvi__text_add(
+      text,
+      "solver: none; Chebyshev polynomials of M^-1 K, whose omega^2 lie between %.6g and %.6g:",
+      low, high);
   if (count > 0) explain_steps(polynomials, count, h, text);
-  if (count < 3) dvi__text_add(text, "%s steps are at most %.3g long, for modes may grow", count > 0 ? ";" : "", longest);
+  if (count < 3)
+    dvi__text_add(text, "%s steps are at most %.3g long, for modes may grow", count > 0 ? ";" : "",
+                  longest);
   dvi__text_add(text, "\n");
 }
 
 void dvi__oscillation_explain(const dvi__stepper *self, dvi__text *text)
 {
   const dvi__oscillation *own = self->own;
-  dvi__text_add(text, "kernel: kicks by the slow potentials, one gradient of them a step; the fast ones move exactly, by %s\n",
+  dvi__text_add(text,
+                "kernel: kicks by the slow potentials, one gradient of them a step; the fast ones "
+                "move exactly, by %s\n",
                 own->modes != NULL ? "their normal modes" : "polynomials");
   if (own->modes != NULL)
-    dvi__text_add(text, "solver: none; modes of %d blocks of coordinates, the largest of %d, found once\n",
-                  dvi__modes_block_count(own->modes), dvi__modes_largest_block(own->modes));
+    dvi__text_add(
+        text, "solver: none; modes of %d blocks of coordinates, the largest of %d, found once\n",
+        dvi__modes_block_count(own->modes), dvi__modes_largest_block(own->modes));
   else
     explain_polynomials(own->polynomials, text);
 }

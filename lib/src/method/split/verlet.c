@@ -1,62 +1,69 @@
 /* Stoermer-Verlet.
  *
- * Space: straight line from q0 to q1.  Quadrature: trapezoid.
+ * The space is the straight line from q0 to q1. The quadrature is the trapezoid.
  *     Ld(q0,q1) = h/2 L(q0, (q1-q0)/h) + h/2 L(q1, (q1-q0)/h)
- * For L = v.Mv/2 - V(q) the stationarity conditions p0 = -D1 Ld, p1 = D2 Ld solve themselves:
+ * For L = v.Mv/2 - V(q) the stationarity conditions p0 = -D1 Ld, p1 = D2 Ld are explicit.
  *     p_half = p0 - h/2 dV(q0),   q1 = q0 + h M^-1 p_half,   p1 = p_half - h/2 dV(q1).
- * Order 2, symmetric, symplectic.  Source: Marsden and West 2001, sec. 2.3.1; Hairer, Lubich and Wanner 2003. */
+ * The order is 2, and the method is symmetric and symplectic. Source: Marsden and West 2001, sec.
+ * 2.3.1; Hairer, Lubich and Wanner 2003. */
 #include <string.h>
 
-#include "step/split/wave.h"
+#include "step/split/temporal_blocking.h"
 #include "core/memory.h"
 #include "core/status.h"
 #include "method/split/verlet_lanes.h"
 #include "num/compensated.h"
 
-enum { SWEEP, THREADS };
+enum { BLOCKING, THREADS };
 
-enum { SWEEP_AUTO, SWEEP_WAVE, SWEEP_PLAIN };
+enum { BLOCKING_AUTO, BLOCKING_TEMPORAL, BLOCKING_NONE };
 
-static const char *sweep_name(int index)
+static const char *blocking_name(int index)
 {
-  static const char *const name[] = {"auto", "wave", "plain"};
+  static const char *const name[] = {"auto", "temporal", "none"};
   return index >= 0 && index < 3 ? name[index] : NULL;
 }
 
 static const dvi__key keys[] = {
-    {"sweep", sweep_name, 0, 0, SWEEP_AUTO,
-     "how a step goes through memory: wave (once; potentials must declare gradient_range), plain (one operation after the other), "
-     "or auto "
-     "(wave where it is possible); the same digits; left out: auto"},
-    {"threads", NULL, 1, 64, 1, "for wave: how many, 1 to 64; the same digits; left out: 1"},
+    {"blocking", blocking_name, 0, 0, BLOCKING_AUTO,
+     "how a step goes through memory: temporal (once, block by block; potentials must declare "
+     "gradient_range), none (one operation after the other), or auto (temporal where it is "
+     "possible); the same digits; default: auto"},
+    {"threads", NULL, 1, 64, 1,
+     "for blocking=temporal: how many, 1 to 64; the same digits; default: 1"},
     {0},
 };
 
-/* The gradient at the end of a step is that at the start of the next: memory holds it, then a flag. */
+/* The memory holds the gradient at the end of the last step, which is that at the start of the
+ * next, and then a flag. */
 typedef struct verlet {
   dvi__evaluator *evaluator;
-  double *change;  /* [n] */
-  dvi__wave *wave; /* NULL: plain sweeps */
+  double *change;          /* [n] */
+  dvi__blocking *blocking; /* NULL without temporal blocking */
 } verlet;
 
-static double *gradient_known(const dvi__stepper *self, double *memory)
+static double *verlet_gradient_known(const dvi__stepper *self, double *memory)
 {
   return memory + self->system->n;
 }
 
 /* ---- create, destroy ---- */
 
-static dvi_status create_wave(dvi__stepper *self, verlet *own)
+static dvi_status create_blocking(dvi__stepper *self, verlet *own)
 {
-  const int sweep = self->settings.value[SWEEP], threads = self->settings.value[THREADS];
-  const char *obstacle = sweep == SWEEP_PLAIN ? "sweep=plain is asked for" : dvi__wave_obstacle(self->system);
-  if (obstacle == NULL) return dvi__wave_create(self->system, threads, &own->wave);
-  if (sweep == SWEEP_WAVE) return dvi__fail(DVI_UNSUPPORTED, "verlet: sweep=wave is not possible: %s", obstacle);
-  if (threads > 1) return dvi__fail(DVI_UNSUPPORTED, "verlet: threads=%d needs sweep=wave, but %s", threads, obstacle);
+  const int asked = self->settings.value[BLOCKING], threads = self->settings.value[THREADS];
+  const char *obstacle = asked == BLOCKING_NONE ? "blocking=none is asked for"
+                                                : dvi__blocking_obstacle(self->system);
+  if (obstacle == NULL) return dvi__blocking_create(self->system, threads, &own->blocking);
+  if (asked == BLOCKING_TEMPORAL)
+    return dvi__fail(DVI_UNSUPPORTED, "verlet: blocking=temporal is not possible: %s", obstacle);
+  if (threads > 1)
+    return dvi__fail(DVI_UNSUPPORTED, "verlet: threads=%d needs blocking=temporal, but %s", threads,
+                     obstacle);
   return DVI_OK;
 }
 
-static dvi_status create(dvi__stepper *self)
+static dvi_status verlet_create(dvi__stepper *self)
 {
   verlet *own = self->own = DVI_NEW(verlet, 1);
   self->order = 2;
@@ -65,114 +72,129 @@ static dvi_status create(dvi__stepper *self)
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "verlet: no memory");
   own->change = DVI_NEW(double, self->system->n);
   if (own->change == NULL) return dvi__fail(DVI_NO_MEMORY, "verlet: no memory");
-  DVI_TRY(create_wave(self, own));
+  DVI_TRY(create_blocking(self, own));
   return dvi__evaluator_create(self->system, 1, DVI__GRADIENTS, self->counters, &own->evaluator);
 }
 
-static void destroy(dvi__stepper *self)
+static void verlet_destroy(dvi__stepper *self)
 {
   verlet *own = self->own;
   if (own == NULL) return;
-  dvi__wave_destroy(&own->wave);
+  dvi__blocking_destroy(&own->blocking);
   dvi__evaluator_destroy(&own->evaluator);
   dvi__release(own->change);
   dvi__release(own);
 }
 
-/* ---- plain sweeps ---- */
+/* ---- without blocking ---- */
 
-static dvi_status gradient(dvi__stepper *self, const dvi__state *state)
+static dvi_status verlet_gradient(dvi__stepper *self, const dvi__state *state)
 {
   const verlet *own = self->own;
-  *gradient_known(self, self->memory) = 1;
+  *verlet_gradient_known(self, self->memory) = 1;
   return dvi__potentials_gradient(own->evaluator, 1, &state->t, state->q, self->memory);
 }
 
-static void kick(const dvi__stepper *self, dvi__state *state, double h)
+static void verlet_kick(const dvi__stepper *self, dvi__state *state, double h)
 {
-  dvi__lanes_add_scaled((size_t)self->system->n, -h, self->memory, state->p, state->p_carry);
+  dvi__lanes_add_scaled((size_t)self->system->n, -h, self->memory, state->p, state->p_compensation);
 }
 
-static void drift(const dvi__stepper *self, dvi__state *state, double h)
+static void verlet_drift(const dvi__stepper *self, dvi__state *state, double h)
 {
   const verlet *own = self->own;
   dvi__mass_solve(own->evaluator, 1, state->p, own->change);
   for (int i = 0; i < self->system->n; i++) own->change[i] *= h;
-  dvi__add_compensated_all(self->system->n, state->q, state->q_carry, own->change);
-  dvi__add_compensated(&state->t, &state->t_carry, h);
+  dvi__add_compensated_all(self->system->n, state->q, state->q_compensation, own->change);
+  dvi__add_compensated(&state->t, &state->t_compensation, h);
 }
 
-static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
+static dvi_status verlet_step(dvi__stepper *self, dvi__state *state, double h)
 {
-  if (*gradient_known(self, self->memory) == 0) DVI_TRY(gradient(self, state));
-  kick(self, state, 0.5 * h);
-  drift(self, state, h);
-  DVI_TRY(gradient(self, state));
-  kick(self, state, 0.5 * h);
+  if (*verlet_gradient_known(self, self->memory) == 0) DVI_TRY(verlet_gradient(self, state));
+  verlet_kick(self, state, 0.5 * h);
+  verlet_drift(self, state, h);
+  DVI_TRY(verlet_gradient(self, state));
+  verlet_kick(self, state, 0.5 * h);
   return DVI_OK;
 }
 
-/* ---- waves ---- */
+/* ---- temporal blocking ---- */
 
-static dvi__phase phase_of(const dvi__state *state)
+static dvi__phase verlet_phase_of(const dvi__state *state)
 {
-  return (dvi__phase){state->q, state->p, state->q_carry, state->p_carry};
+  return (dvi__phase){.q = state->q,
+                      .p = state->p,
+                      .q_compensation = state->q_compensation,
+                      .p_compensation = state->p_compensation};
 }
 
-static int pass(dvi__stepper *self, const dvi__state *now, const double *before, dvi__state *next, const double *h, int count)
+static int verlet_pass(dvi__stepper *self, const dvi__state *now, const double *before,
+                       dvi__state *next, const double *h, int count)
 {
   const verlet *own = self->own;
-  double t[DVI__WAVE_SUBSTEPS];
-  if (own->wave == NULL || count > DVI__WAVE_SUBSTEPS) return 0;
+  double t[DVI__BLOCKING_SUBSTEPS];
+  if (own->blocking == NULL || count > DVI__BLOCKING_SUBSTEPS) return 0;
   const int known = before[self->system->n] != 0;
   next->t = now->t;
-  next->t_carry = now->t_carry;
+  next->t_compensation = now->t_compensation;
   for (int i = 0; i < count; i++) {
-    dvi__add_compensated(&next->t, &next->t_carry, h[i]);
+    dvi__add_compensated(&next->t, &next->t_compensation, h[i]);
     t[i] = next->t;
   }
   self->counters->gradients += count + !known;
-  *gradient_known(self, self->memory) = 1;
-  return dvi__wave_run(own->wave, &(dvi__wave_step){.count = count,
-                                                    .h = h,
-                                                    .t0 = now->t,
-                                                    .t = t,
-                                                    .from = phase_of(now),
-                                                    .to = phase_of(next),
-                                                    .gradient = known ? before : NULL,
-                                                    .gradient_to = self->memory});
+  *verlet_gradient_known(self, self->memory) = 1;
+  return dvi__blocking_run(own->blocking, &(dvi__blocking_step){.count = count,
+                                                                .h = h,
+                                                                .t0 = now->t,
+                                                                .t = t,
+                                                                .from = verlet_phase_of(now),
+                                                                .to = verlet_phase_of(next),
+                                                                .gradient = known ? before : NULL,
+                                                                .gradient_to = self->memory});
 }
 
-static double traffic(const dvi__stepper *self, int count)
+static double verlet_traffic(const dvi__stepper *self, int count)
 {
   const verlet *own = self->own;
-  return own->wave != NULL ? dvi__wave_traffic(own->wave, count) : 0;
+  return own->blocking != NULL ? dvi__blocking_traffic(own->blocking, count) : 0;
 }
 
 /* ---- members side by side ---- */
 
-/* A wave has coordinates as lanes: members gain only where these are too few to fill vectors, and who asks for waves gets them. */
+/* Prepare lanes only for few coordinates. Temporal blocking has coordinates as lanes, so that
+ * members as lanes gain only where the coordinates are too few to fill vectors. A user's choice of
+ * temporal blocking is kept. */
 enum { FEW_COORDINATES = 16 };
 
-static dvi_status prepare_lanes(dvi__stepper *self, int capacity)
+static dvi_status verlet_prepare_lanes(dvi__stepper *self, int capacity)
 {
   const verlet *own = self->own;
-  const int asked = self->settings.value[SWEEP] == SWEEP_WAVE || self->settings.value[THREADS] > 1;
-  const int pays = own->wave == NULL || (!asked && self->system->n <= FEW_COORDINATES);
+  const int asked = self->settings.value[BLOCKING] == BLOCKING_TEMPORAL ||
+                    self->settings.value[THREADS] > 1;
+  const int pays = own->blocking == NULL || (!asked && self->system->n <= FEW_COORDINATES);
   return pays ? dvi__verlet_prepare_lanes(self, capacity) : DVI_OK;
 }
 
-static void explain(const dvi__stepper *self, dvi__text *text)
+static void verlet_explain(const dvi__stepper *self, dvi__text *text)
 {
   const verlet *own = self->own;
-  dvi__text_add(text, "kernel: explicit; one gradient a step (the last one of a step is the first of the next)\n");
-  dvi__text_add(text, "solver: none; no Hessian, no Jacobian, no factorisation of a step's equations\n");
-  if (own->wave != NULL)
-    dvi__text_add(text, "sweep: wave; at most %d substeps in one pass through memory; threads: %d of %d\n",
-                  dvi__wave_depth(own->wave), dvi__wave_threads(own->wave, 1), self->settings.value[THREADS]);
+  dvi__text_add(
+      text,
+      "kernel: explicit; one gradient a step (the last one of a step is the first of the next)\n");
+  dvi__text_add(text,
+                "solver: none; no Hessian, no Jacobian, no factorisation of a step's equations\n");
+  if (own->blocking != NULL)
+    dvi__text_add(
+        text,
+        "blocking: temporal; at most %d substeps in one pass through memory; threads: %d of %d\n",
+        dvi__blocking_depth(own->blocking), dvi__blocking_threads(own->blocking, 1),
+        self->settings.value[THREADS]);
   else
-    dvi__text_add(text, "sweep: plain; %s\n",
-                  self->settings.value[SWEEP] == SWEEP_PLAIN ? "it is asked for" : dvi__wave_obstacle(self->system));
+    dvi__text_add(text, "blocking: none; %s\n",
+                  self->settings.value[BLOCKING] == BLOCKING_NONE
+                      ? "it is asked for"
+                      : dvi__blocking_obstacle(self->system));
 }
 
 const dvi__method dvi__verlet = {
@@ -182,13 +204,13 @@ const dvi__method dvi__verlet = {
     .keys = keys,
     .needs = DVI__CONSTANT_MASS,
     .uses = DVI__CONSTANT_MASS | DVI__POTENTIAL,
-    .create = create,
-    .destroy = destroy,
-    .step = step,
-    .pass = pass,
-    .traffic = traffic,
-    .explain = explain,
-    .prepare_lanes = prepare_lanes,
+    .create = verlet_create,
+    .destroy = verlet_destroy,
+    .step = verlet_step,
+    .pass = verlet_pass,
+    .traffic = verlet_traffic,
+    .explain = verlet_explain,
+    .prepare_lanes = verlet_prepare_lanes,
     .clear_lanes = dvi__verlet_clear_lanes,
     .step_lanes = dvi__verlet_step_lanes,
 };

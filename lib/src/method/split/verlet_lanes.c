@@ -1,4 +1,5 @@
-/* Stoermer-Verlet for many members at once: the operations of verlet.c, one batch of gradients a step. */
+/* Stoermer-Verlet for many members at once, with the operations of verlet.c and one batch of
+ * gradients a step. */
 #include "method/split/verlet_lanes.h"
 
 #include <string.h>
@@ -8,10 +9,10 @@
 #include "num/compensated.h"
 #include "num/simd/lanes.h"
 
-/* The evaluator counts for itself: what a member took is counted in dvi__members. */
+/* The evaluator has counters of its own. dvi__members counts the evaluations of each member. */
 typedef struct lanes {
   dvi__evaluator *evaluator;
-  dvi__division *by; /* [n] how each coordinate's momentum becomes a velocity */
+  dvi__division *by; /* [n] divides each coordinate's momentum by its mass */
   double *scalar;    /* [n] */
 } lanes;
 
@@ -43,61 +44,66 @@ static void leave_all(dvi__members *m)
   memset(m->left, 1, (size_t)m->count);
 }
 
-static dvi_status gradient(const dvi__stepper *self, dvi__members *m)
+static dvi_status verlet_lanes_gradient(const dvi__stepper *self, dvi__members *m)
 {
   const lanes *own = self->lanes;
   for (int k = 0; k < m->count; k++) m->gradients[k]++;
   return dvi__potentials_gradient(own->evaluator, m->count, m->t, m->q, m->memory);
 }
 
-static double *gradient_known(const dvi__stepper *self, const dvi__members *m)
+static double *verlet_lanes_gradient_known(const dvi__stepper *self, const dvi__members *m)
 {
   return m->memory + (size_t)self->system->n * (size_t)m->count;
 }
 
-/* 1: of all of them, 0: of none, -1: of some. */
-static int all_known(const dvi__stepper *self, const dvi__members *m)
+/* Return 1 if the gradients of all members are known, 0 if none is, and -1 if some are. */
+static int verlet_lanes_all_known(const dvi__stepper *self, const dvi__members *m)
 {
-  const double *known = gradient_known(self, m);
+  const double *known = verlet_lanes_gradient_known(self, m);
   int members = 0;
   for (int k = 0; k < m->count; k++) members += known[k] != 0;
   return members == m->count ? 1 : members == 0 ? 0 : -1;
 }
 
-/* The first kick and the drift, a coordinate at a time. */
-static void leap(const dvi__stepper *self, dvi__members *m, double h)
+/* Take the first kick and the drift, one coordinate at a time. */
+static void verlet_lanes_kick_drift(const dvi__stepper *self, dvi__members *m, double h)
 {
   const lanes *own = self->lanes;
   const size_t count = (size_t)m->count;
   for (size_t i = 0; i < (size_t)self->system->n; i++) {
     const size_t at = i * count;
-    const dvi__phase row = {m->q + at, m->p + at, m->q_carry + at, m->p_carry + at};
-    dvi__lanes_leap(&(dvi__leap){.count = count,
-                                 .kicks = 1,
-                                 .kick = {-0.5 * h},
-                                 .drift = h,
-                                 .by = own->by[i],
-                                 .scalar = own->scalar[i],
-                                 .force = m->memory + at,
-                                 .from = row,
-                                 .to = row});
+    const dvi__phase row = {.q = m->q + at,
+                            .p = m->p + at,
+                            .q_compensation = m->q_compensation + at,
+                            .p_compensation = m->p_compensation + at};
+    dvi__lanes_kick_drift(&(dvi__moser_veselov){.count = count,
+                                                .kicks = 1,
+                                                .kick = {-0.5 * h},
+                                                .drift = h,
+                                                .by = own->by[i],
+                                                .scalar = own->scalar[i],
+                                                .force = m->memory + at,
+                                                .from = row,
+                                                .to = row});
   }
-  for (size_t k = 0; k < count; k++) dvi__add_compensated(m->t + k, m->t_carry + k, h);
+  for (size_t k = 0; k < count; k++) dvi__add_compensated(m->t + k, m->t_compensation + k, h);
 }
 
-/* One batch serves all or none: which member a callback failed for shows when each goes on alone. */
+/* Take one batch for all members, or leave them all. When each steps alone, the member for which a
+ * callback failed shows. */
 void dvi__verlet_step_lanes(dvi__stepper *self, dvi__members *m, double h)
 {
   const size_t count = (size_t)m->count;
-  const int known = all_known(self, m);
-  if (known < 0 || (known == 0 && gradient(self, m) != DVI_OK)) {
+  const int known = verlet_lanes_all_known(self, m);
+  if (known < 0 || (known == 0 && verlet_lanes_gradient(self, m) != DVI_OK)) {
     leave_all(m);
     return;
   }
-  for (size_t k = 0; k < count && known == 0; k++) gradient_known(self, m)[k] = 1;
-  leap(self, m, h);
-  if (gradient(self, m) != DVI_OK)
+  for (size_t k = 0; k < count && known == 0; k++) verlet_lanes_gradient_known(self, m)[k] = 1;
+  verlet_lanes_kick_drift(self, m, h);
+  if (verlet_lanes_gradient(self, m) != DVI_OK)
     leave_all(m);
   else
-    dvi__lanes_add_scaled((size_t)self->system->n * count, -0.5 * h, m->memory, m->p, m->p_carry);
+    dvi__lanes_add_scaled((size_t)self->system->n * count, -0.5 * h, m->memory, m->p,
+                          m->p_compensation);
 }

@@ -1,5 +1,5 @@
-/* Verlet's step for members of an ensemble side by side. Its memory: the gradient at the end of a step, which is that at the start of the next,
- * then a flag. */
+/* Verlet's step for members of an ensemble side by side. The memory holds the gradient at the end
+ * of the last step, which is that at the start of the next, and then a flag. */
 #ifndef DVI_METHOD_VERLET_LANES_H
 #define DVI_METHOD_VERLET_LANES_H
 #include "method/method.h"

@@ -18,8 +18,10 @@ enum { FETCH_AHEAD = 1024 }; /* bytes: half of it is as good, twice as much is w
 #define LOOPS "num/simd/lanes_width.h"
 #include "num/simd/each_width.h"
 
-/* Rows of eight lanes are the most common ones, and their few terms are worth knowing at compile time. */
-INLINE void product_of_eight(int n, int terms, int width, const double *matrix, const double *x, double *out)
+/* Rows of eight lanes are the most common ones, and their few terms are worth knowing at compile
+ * time. */
+INLINE void product_of_eight(int n, int terms, int width, const double *matrix, const double *x,
+                             double *out)
 {
   switch (terms) {
   case 5: product8(n, 5, 8, width, matrix, x, out); break;
@@ -31,7 +33,8 @@ INLINE void product_of_eight(int n, int terms, int width, const double *matrix, 
 }
 
 /* Vectors as wide as the target has them, at most as wide as a row. */
-INLINE void product(int widest, int n, int terms, int lanes, int width, const double *matrix, const double *x, double *out)
+INLINE void product(int widest, int n, int terms, int lanes, int width, const double *matrix,
+                    const double *x, double *out)
 {
   const int W = lanes < widest ? lanes : widest;
   if (W == 1)
@@ -86,7 +89,8 @@ INLINE void weigh(int n, int stages, const double *weight, double *x)
   stages == 8 ? weigh1(n, 8, weight, x) : weigh1(n, stages, weight, x);
 }
 
-/* A fused product tells what rounding takes from one; where the processor has none, the library function gives the same bits. */
+/* A fused product tells what rounding takes from one; where the processor has none, the library
+ * function gives the same bits. */
 INLINE void split(const dvi__sweep *s)
 {
   for (int i = 0; i < s->n; i++) {
@@ -113,7 +117,8 @@ INLINE void ends(const dvi__ends *e, const int stages)
   }
 }
 
-/* The exponent bits are all set in NaN and Inf alone; one more in the last of them then runs over into the sign's place. */
+/* The exponent bits are all set in NaN and Inf alone; one more in the last of them then runs over
+ * into the sign's place. */
 INLINE int all_finite(size_t count, const double *x)
 {
   const uint64_t exponent = UINT64_C(0x7ff0000000000000), last = UINT64_C(0x0010000000000000);
@@ -141,7 +146,8 @@ INLINE double largest(size_t count, const double *x)
   return magnitude;
 }
 
-INLINE void leap_as(int widest, const dvi__leap *l, const int kicks, const dvi__division by)
+INLINE void leap_as(int widest, const dvi__moser_veselov *l, const int kicks,
+                    const dvi__division by)
 {
   size_t i = 0;
   if (widest == 8)
@@ -153,12 +159,12 @@ INLINE void leap_as(int widest, const dvi__leap *l, const int kicks, const dvi__
   (void)leap1(l, i, kicks, by);
 }
 
-INLINE void leap_by(int widest, const dvi__leap *l, const dvi__division by)
+INLINE void leap_by(int widest, const dvi__moser_veselov *l, const dvi__division by)
 {
   l->kicks == 2 ? leap_as(widest, l, 2, by) : leap_as(widest, l, 1, by);
 }
 
-INLINE void leap(int widest, const dvi__leap *l)
+INLINE void leap(int widest, const dvi__moser_veselov *l)
 {
   if (l->by == DVI__TIMES_SCALAR)
     leap_by(widest, l, DVI__TIMES_SCALAR);
@@ -168,7 +174,8 @@ INLINE void leap(int widest, const dvi__leap *l)
     leap_by(widest, l, DVI__BY_ARRAY);
 }
 
-INLINE void add_scaled(int widest, size_t count, double factor, const double *x, double *sum, double *carry)
+INLINE void add_scaled(int widest, size_t count, double factor, const double *x, double *sum,
+                       double *carry)
 {
   size_t i = 0;
   if (widest == 8)
@@ -189,53 +196,56 @@ typedef struct level {
   void (*split)(const dvi__sweep *s);
   void (*begin)(const dvi__sweep *s);
   void (*ends)(const dvi__ends *e);
-  void (*product)(int n, int terms, int lanes, int width, const double *matrix, const double *x, double *out);
+  void (*product)(int n, int terms, int lanes, int width, const double *matrix, const double *x,
+                  double *out);
   int (*all_finite)(size_t count, const double *x);
   double (*largest)(size_t count, const double *x);
-  void (*leap)(const dvi__leap *l);
+  void (*leap)(const dvi__moser_veselov *l);
   void (*add_scaled)(size_t count, double factor, const double *x, double *sum, double *carry);
 } level;
 
-#define LEVEL(suffix, target, widest)                                                                                             \
-  target static void sweep_##suffix(dvi__sweep *s)                                                                                \
-  {                                                                                                                               \
-    sweep(widest, s);                                                                                                             \
-  }                                                                                                                               \
-  target static void weigh_##suffix(int n, int stages, const double *weight, double *x)                                           \
-  {                                                                                                                               \
-    weigh(n, stages, weight, x);                                                                                                  \
-  }                                                                                                                               \
-  target static void split_##suffix(const dvi__sweep *s)                                                                          \
-  {                                                                                                                               \
-    split(s);                                                                                                                     \
-  }                                                                                                                               \
-  target static void begin_##suffix(const dvi__sweep *s)                                                                          \
-  {                                                                                                                               \
-    begin(widest, s);                                                                                                             \
-  }                                                                                                                               \
-  target static void ends_##suffix(const dvi__ends *e)                                                                            \
-  {                                                                                                                               \
-    e->stages == 8 ? ends(e, 8) : ends(e, e->stages);                                                                             \
-  }                                                                                                                               \
-  target static void product_##suffix(int n, int terms, int lanes, int width, const double *matrix, const double *x, double *out) \
-  {                                                                                                                               \
-    product(widest, n, terms, lanes, width, matrix, x, out);                                                                      \
-  }                                                                                                                               \
-  target static int all_finite_##suffix(size_t count, const double *x)                                                            \
-  {                                                                                                                               \
-    return all_finite(count, x);                                                                                                  \
-  }                                                                                                                               \
-  target static double largest_##suffix(size_t count, const double *x)                                                            \
-  {                                                                                                                               \
-    return largest(count, x);                                                                                                     \
-  }                                                                                                                               \
-  target static void leap_##suffix(const dvi__leap *l)                                                                            \
-  {                                                                                                                               \
-    leap(widest, l);                                                                                                              \
-  }                                                                                                                               \
-  target static void add_scaled_##suffix(size_t count, double factor, const double *x, double *sum, double *carry)                \
-  {                                                                                                                               \
-    add_scaled(widest, count, factor, x, sum, carry);                                                                             \
+#define LEVEL(suffix, target, widest)                                                     \
+  target static void sweep_##suffix(dvi__sweep *s)                                        \
+  {                                                                                       \
+    sweep(widest, s);                                                                     \
+  }                                                                                       \
+  target static void weigh_##suffix(int n, int stages, const double *weight, double *x)   \
+  {                                                                                       \
+    weigh(n, stages, weight, x);                                                          \
+  }                                                                                       \
+  target static void split_##suffix(const dvi__sweep *s)                                  \
+  {                                                                                       \
+    split(s);                                                                             \
+  }                                                                                       \
+  target static void begin_##suffix(const dvi__sweep *s)                                  \
+  {                                                                                       \
+    begin(widest, s);                                                                     \
+  }                                                                                       \
+  target static void ends_##suffix(const dvi__ends *e)                                    \
+  {                                                                                       \
+    e->stages == 8 ? ends(e, 8) : ends(e, e->stages);                                     \
+  }                                                                                       \
+  target static void product_##suffix(int n, int terms, int lanes, int width,             \
+                                      const double *matrix, const double *x, double *out) \
+  {                                                                                       \
+    product(widest, n, terms, lanes, width, matrix, x, out);                              \
+  }                                                                                       \
+  target static int all_finite_##suffix(size_t count, const double *x)                    \
+  {                                                                                       \
+    return all_finite(count, x);                                                          \
+  }                                                                                       \
+  target static double largest_##suffix(size_t count, const double *x)                    \
+  {                                                                                       \
+    return largest(count, x);                                                             \
+  }                                                                                       \
+  target static void leap_##suffix(const dvi__moser_veselov *l)                           \
+  {                                                                                       \
+    leap(widest, l);                                                                      \
+  }                                                                                       \
+  target static void add_scaled_##suffix(size_t count, double factor, const double *x,    \
+                                         double *sum, double *carry)                      \
+  {                                                                                       \
+    add_scaled(widest, count, factor, x, sum, carry);                                     \
   }
 
 LEVEL(baseline, , 2)
@@ -245,13 +255,13 @@ LEVEL(avx512, __attribute__((target("fma,avx512f,avx512dq,avx512vl"))), 8)
 #endif
 
 static const level levels[] = {
-    {"baseline", sweep_baseline, weigh_baseline, split_baseline, begin_baseline, ends_baseline, product_baseline,
-     all_finite_baseline, largest_baseline, leap_baseline, add_scaled_baseline},
+    {"baseline", sweep_baseline, weigh_baseline, split_baseline, begin_baseline, ends_baseline,
+     product_baseline, all_finite_baseline, largest_baseline, leap_baseline, add_scaled_baseline},
 #ifdef __x86_64__
-    {"avx2", sweep_avx2, weigh_avx2, split_avx2, begin_avx2, ends_avx2, product_avx2, all_finite_avx2, largest_avx2, leap_avx2,
-     add_scaled_avx2},
-    {"avx512", sweep_avx512, weigh_avx512, split_avx512, begin_avx512, ends_avx512, product_avx512, all_finite_avx512,
-     largest_avx512, leap_avx512, add_scaled_avx512},
+    {"avx2", sweep_avx2, weigh_avx2, split_avx2, begin_avx2, ends_avx2, product_avx2,
+     all_finite_avx2, largest_avx2, leap_avx2, add_scaled_avx2},
+    {"avx512", sweep_avx512, weigh_avx512, split_avx512, begin_avx512, ends_avx512, product_avx512,
+     all_finite_avx512, largest_avx512, leap_avx512, add_scaled_avx512},
 #endif
 };
 
@@ -259,7 +269,10 @@ int dvi__lanes_levels(void)
 {
 #ifdef __x86_64__
   if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) return 1;
-  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") ? 3 : 2;
+  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+                 __builtin_cpu_supports("avx512vl")
+             ? 3
+             : 2;
 #else
   return 1;
 #endif
@@ -274,7 +287,8 @@ static _Atomic(const level *) chosen;
 
 void dvi__lanes_choose(int number)
 {
-  atomic_store_explicit(&chosen, &levels[number >= 0 ? number : dvi__lanes_levels() - 1], memory_order_relaxed);
+  atomic_store_explicit(&chosen, &levels[number >= 0 ? number : dvi__lanes_levels() - 1],
+                        memory_order_relaxed);
 }
 
 /* Two threads may both choose the best at first: they choose the same. */
@@ -316,7 +330,8 @@ void dvi__lanes_ends(const dvi__ends *ends)
   best()->ends(ends);
 }
 
-void dvi__lanes_product(int n, int terms, int lanes, int width, const double *matrix, const double *x, double *out)
+void dvi__lanes_product(int n, int terms, int lanes, int width, const double *matrix,
+                        const double *x, double *out)
 {
   best()->product(n, terms, lanes, width, matrix, x, out);
 }
@@ -331,7 +346,7 @@ double dvi__lanes_largest(size_t count, const double *x)
   return best()->largest(count, x);
 }
 
-void dvi__lanes_leap(const dvi__leap *leap)
+void dvi__lanes_kick_drift(const dvi__moser_veselov *leap)
 {
   best()->leap(leap);
 }

@@ -1,9 +1,10 @@
-/* Loops for several instruction sets: small dense products with the stages of a step as lanes of vectors, and kicks and drifts with coordinates
- * as lanes.
+/* Loops for several instruction sets: small dense products with the stages of a step as lanes of
+ * vectors, and kicks and drifts with coordinates as lanes.
  *
- * A row of `lanes` numbers holds what one coordinate has at the stages, padded with zeros to 1, 2, 4 or a multiple of 8. The loops are
- * compiled for several instruction sets and chosen when they are first used; each gives the same bits, for every lane sees the same
- * operations in the same order, and none of them is a fused one. */
+ * A row of `lanes` numbers holds what one coordinate has at the stages, padded with zeros to 1, 2,
+ * 4 or a multiple of 8. The loops are compiled for several instruction sets and chosen when they
+ * are first used; each gives the same bits, for every lane sees the same operations in the same
+ * order, and none of them is a fused one. */
 #ifndef DVI_NUM_LANES_H
 #define DVI_NUM_LANES_H
 #include <stddef.h>
@@ -12,8 +13,10 @@
 int dvi__lanes_for(int stages);
 
 /* One iteration for the stages of all coordinates, from the forces at the stages before:
- *     g_ij = weight_j force_ij,   Z_i = factor_i (p0_i node + sum_j matrix_j g_ij),   Q_ij = origin_i + Z_ij.
- * The product factor_i p0_i is start_i + low_i, exactly: rounded in each step by the same momentum, it would add up. */
+ *     g_ij = weight_j force_ij,   Z_i = factor_i (p0_i node + sum_j matrix_j g_ij),
+ *     Q_ij = origin_i + Z_ij.
+ * The product factor_i p0_i is start_i + low_i, exactly: rounded in each step by the same momentum,
+ * it would add up. */
 typedef struct dvi__sweep {
   int n, stages, lanes;
   const double *matrix;   /* [stages*lanes], column j at matrix + j*lanes */
@@ -54,8 +57,10 @@ typedef struct dvi__ends {
 
 void dvi__lanes_ends(const dvi__ends *ends);
 
-/* out_i = sum_k matrix_k x_ik for n rows: x [n*terms], matrix [terms*lanes] by columns, out [n*width], width <= lanes; it may not be x. */
-void dvi__lanes_product(int n, int terms, int lanes, int width, const double *matrix, const double *x, double *out);
+/* out_i = sum_k matrix_k x_ik for n rows: x [n*terms], matrix [terms*lanes] by columns, out
+ * [n*width], width <= lanes; it may not be x. */
+void dvi__lanes_product(int n, int terms, int lanes, int width, const double *matrix,
+                        const double *x, double *out);
 
 /* Whether there is no NaN or Inf among them. */
 int dvi__lanes_all_finite(size_t count, const double *x);
@@ -65,15 +70,16 @@ double dvi__lanes_largest(size_t count, const double *x);
 
 /* Coordinates and momenta with what their compensated sums carry. */
 typedef struct dvi__phase {
-  double *q, *p, *q_carry, *p_carry;
+  double *q, *p, *q_compensation, *p_compensation;
 } dvi__phase;
 
-/* How p becomes v: times a scalar (the inverse of a mass that is a power of two, where the product has the quotient's bits), over a scalar, over
- * each one's own mass. */
+/* How p becomes v: times a scalar (the inverse of a mass that is a power of two, where the product
+ * has the quotient's bits), over a scalar, over each one's own mass. */
 typedef enum dvi__division { DVI__TIMES_SCALAR, DVI__BY_SCALAR, DVI__BY_ARRAY } dvi__division;
 
-/* p <- p + kick_k force for one kick or two, then q <- q + drift v, all sums compensated (num/compensated.h). */
-typedef struct dvi__leap {
+/* p <- p + kick_k force for one kick or two, then q <- q + drift v, all sums compensated
+ * (num/compensated.h). */
+typedef struct dvi__moser_veselov {
   size_t count;
   int kicks;
   double kick[2], drift;
@@ -83,17 +89,19 @@ typedef struct dvi__leap {
   const double *force; /* [count] */
   dvi__phase from, to; /* [count] each, the same or apart */
   int far;             /* whether all of these come from memory, not from a cache */
-} dvi__leap;
+} dvi__moser_veselov;
 
-void dvi__lanes_leap(const dvi__leap *leap);
+void dvi__lanes_kick_drift(const dvi__moser_veselov *leap);
 
 /* For one mass: the scalar and whether to divide by it. */
 dvi__division dvi__division_by(double mass, double *scalar);
 
 /* sum <- sum + factor x, compensated. */
-void dvi__lanes_add_scaled(size_t count, double factor, const double *x, double *sum, double *carry);
+void dvi__lanes_add_scaled(size_t count, double factor, const double *x, double *sum,
+                           double *carry);
 
-/* The instruction sets, from the baseline (0) up; their count includes only those that this processor has. */
+/* The instruction sets, from the baseline (0) up; their count includes only those that this
+ * processor has. */
 int dvi__lanes_levels(void);
 const char *dvi__lanes_level_name(int level);
 

@@ -1,5 +1,6 @@
-/* The loops of lanes.c for vectors of WIDTH numbers, after vector_width.h; it includes this once for each width. */
-#include "num/simd/leap_width.h"
+/* The loops of lanes.c for vectors of WIDTH numbers, after vector_width.h; it includes this once
+ * for each width. */
+#include "num/simd/kick_drift_width.h"
 
 INLINE double NAME(largest_of)(const NAME(vector) * x)
 {
@@ -9,15 +10,18 @@ INLINE double NAME(largest_of)(const NAME(vector) * x)
 }
 
 /* sum <- sum + matrix_k x_k in WIDTH lanes. */
-INLINE void NAME(add_column)(int lanes, const double *matrix, const double *x, int k, NAME(vector) * sum)
+INLINE void NAME(add_column)(int lanes, const double *matrix, const double *x, int k,
+                             NAME(vector) * sum)
 {
   NAME(vector) column;
   NAME(load)(matrix + (size_t)k * (size_t)lanes, &column);
   *sum += column * x[k];
 }
 
-/* WIDTH lanes of one row of a product; eight terms and more as four sums, which do not wait for each other. */
-INLINE void NAME(row)(int terms, int lanes, const double *matrix, const double *x, NAME(vector) * out)
+/* WIDTH lanes of one row of a product; eight terms and more as four sums, which do not wait for
+ * each other. */
+INLINE void NAME(row)(int terms, int lanes, const double *matrix, const double *x,
+                      NAME(vector) * out)
 {
   NAME(vector) sum[4] = {{0}, {0}, {0}, {0}};
   int k = 0;
@@ -31,8 +35,8 @@ INLINE void NAME(row)(int terms, int lanes, const double *matrix, const double *
   *out = terms >= 8 ? (sum[0] + sum[1]) + (sum[2] + sum[3]) : sum[0];
 }
 
-INLINE void NAME(product)(int n, int terms, int lanes, int width, const double *restrict matrix, const double *restrict x,
-                          double *restrict out)
+INLINE void NAME(product)(int n, int terms, int lanes, int width, const double *restrict matrix,
+                          const double *restrict x, double *restrict out)
 {
   for (size_t i = 0; i < (size_t)n; i++)
     for (int b = 0; b < width; b += WIDTH) {
@@ -42,16 +46,19 @@ INLINE void NAME(product)(int n, int terms, int lanes, int width, const double *
     }
 }
 
-/* All forces are weighed before the first is used: then the products take them from memory, lane by lane, at no cost. */
-INLINE void NAME(weigh)(int n, const int stages, const double *restrict weight, double *restrict force)
+/* All forces are weighed before the first is used: then the products take them from memory, lane by
+ * lane, at no cost. */
+INLINE void NAME(weigh)(int n, const int stages, const double *restrict weight,
+                        double *restrict force)
 {
   for (size_t i = 0; i < (size_t)n; i++, force += stages)
     for (int j = 0; j < stages; j++) force[j] *= weight[j];
 }
 
 /* One row of a sweep: from its sums of forces to its new offsets and places. */
-INLINE void NAME(place)(const dvi__sweep *s, size_t i, int b, const NAME(vector) * c, const NAME(vector) * sum, double *Z,
-                        double *Q, NAME(vector) * change, NAME(vector) * largest)
+INLINE void NAME(place)(const dvi__sweep *s, size_t i, int b, const NAME(vector) * c,
+                        const NAME(vector) * sum, double *Z, double *Q, NAME(vector) * change,
+                        NAME(vector) * largest)
 {
   NAME(vector) before;
   NAME(load)(Z, &before);
@@ -87,13 +94,16 @@ INLINE void NAME(sweep)(dvi__sweep *s)
       NAME(vector) sum, c;
       NAME(row)(s->stages, s->lanes, s->matrix + b, s->force + i * stages, &sum);
       NAME(load)(s->node + b, &c);
-      NAME(place)(s, i, b, &c, &sum, s->Z + i * lanes + (size_t)b, s->Q + i * stages + (size_t)b, &change, &largest);
+      NAME(place)
+      (s, i, b, &c, &sum, s->Z + i * lanes + (size_t)b, s->Q + i * stages + (size_t)b, &change,
+       &largest);
     }
   s->change = NAME(largest_of)(&change);
   s->largest = NAME(largest_of)(&largest);
 }
 
-/* The same for five to eight stages, known at compile time: the matrix' columns stay in registers while the coordinates pass by. */
+/* The same for five to eight stages, known at compile time: the matrix' columns stay in registers
+ * while the coordinates pass by. */
 INLINE void NAME(sweep_known)(dvi__sweep *sweep, const int stages)
 {
   const dvi__sweep own = *sweep, *s = &own; /* nobody else writes here */
@@ -106,10 +116,12 @@ INLINE void NAME(sweep_known)(dvi__sweep *sweep, const int stages)
     for (size_t i = 0; i < (size_t)s->n; i++) {
       const double *g = s->force + (size_t)stages * i;
       NAME(vector) sum = {0}, four[4];
-      for (int j = 0; j < 4 && stages == 8; j++) four[j] = column[j] * g[j] + column[j + 4] * g[j + 4];
+      for (int j = 0; j < 4 && stages == 8; j++)
+        four[j] = column[j] * g[j] + column[j + 4] * g[j + 4];
       for (int j = 0; j < stages && stages < 8; j++) sum += column[j] * g[j];
       if (stages == 8) sum = (four[0] + four[1]) + (four[2] + four[3]);
-      NAME(place)(s, i, b, &c, &sum, s->Z + 8 * i + b, s->Q + (size_t)stages * i + b, &change, &largest);
+      NAME(place)
+      (s, i, b, &c, &sum, s->Z + 8 * i + b, s->Q + (size_t)stages * i + b, &change, &largest);
     }
   }
   sweep->change = NAME(largest_of)(&change);

@@ -33,7 +33,8 @@ SWEEP(4)
 SWEEP(8)
 
 /* As in lanes.c. */
-INLINE void split(int n, int width, const double *factor, const double *restrict p0, double *restrict start, double *restrict low)
+INLINE void split(int n, int width, const double *factor, const double *restrict p0,
+                  double *restrict start, double *restrict low)
 {
   for (int i = 0; i < n; i++, p0 += width, start += width, low += width)
     for (int k = 0; k < width; k++) {
@@ -43,8 +44,8 @@ INLINE void split(int n, int width, const double *factor, const double *restrict
 }
 
 /* As in lanes.c, from the sums on. */
-INLINE void finish(int width, double factor, const double *restrict sum, const double *restrict p0, double *restrict moved,
-                   double *restrict low)
+INLINE void finish(int width, double factor, const double *restrict sum, const double *restrict p0,
+                   double *restrict moved, double *restrict low)
 {
   for (int k = 0; k < width; k++) {
     const double half = 0.5 * sum[k], middle = p0[k] + half, back = middle - p0[k];
@@ -54,13 +55,14 @@ INLINE void finish(int width, double factor, const double *restrict sum, const d
   }
 }
 
-#define ENDS(suffix)                                                                                           \
-  INLINE void ends_by##suffix(const dvi__members_ends *e)                                                      \
-  {                                                                                                            \
-    const size_t row = (size_t)e->width;                                                                       \
-    ALL(suffix, sums, e);                                                                                      \
-    for (size_t i = 0; i < (size_t)e->n; i++)                                                                  \
-      finish(e->width, e->factor[i], e->sum + i * row, e->p0 + i * row, e->moved + i * row, e->low + i * row); \
+#define ENDS(suffix)                                                                        \
+  INLINE void ends_by##suffix(const dvi__members_ends *e)                                   \
+  {                                                                                         \
+    const size_t row = (size_t)e->width;                                                    \
+    ALL(suffix, sums, e);                                                                   \
+    for (size_t i = 0; i < (size_t)e->n; i++)                                               \
+      finish(e->width, e->factor[i], e->sum + i * row, e->p0 + i * row, e->moved + i * row, \
+             e->low + i * row);                                                             \
   }
 ENDS(2)
 ENDS(4)
@@ -70,33 +72,36 @@ ENDS(8)
 
 typedef struct level {
   void (*sweep)(const dvi__members_sweep *s);
-  void (*split)(int n, int width, const double *factor, const double *p0, double *start, double *low);
+  void (*split)(int n, int width, const double *factor, const double *p0, double *start,
+                double *low);
   void (*begin)(const dvi__members_sweep *s);
   void (*ends)(const dvi__members_ends *e);
-  void (*product)(int n, int terms, int lanes, int rows, const double *matrix, int width, const double *x, double *out);
+  void (*product)(int n, int terms, int lanes, int rows, const double *matrix, int width,
+                  const double *x, double *out);
 } level;
 
-#define LEVEL(suffix, target, width)                                                                                             \
-  target static void sweep_##suffix(const dvi__members_sweep *s)                                                                 \
-  {                                                                                                                              \
-    sweep_by##width(s);                                                                                                          \
-  }                                                                                                                              \
-  target static void split_##suffix(int n, int members, const double *factor, const double *p0, double *start, double *low)      \
-  {                                                                                                                              \
-    split(n, members, factor, p0, start, low);                                                                                   \
-  }                                                                                                                              \
-  target static void begin_##suffix(const dvi__members_sweep *s)                                                                 \
-  {                                                                                                                              \
-    ALL(width, begin, s);                                                                                                        \
-  }                                                                                                                              \
-  target static void ends_##suffix(const dvi__members_ends *e)                                                                   \
-  {                                                                                                                              \
-    ends_by##width(e);                                                                                                           \
-  }                                                                                                                              \
-  target static void product_##suffix(int n, int terms, int lanes, int rows, const double *matrix, int members, const double *x, \
-                                      double *out)                                                                               \
-  {                                                                                                                              \
-    ALL(width, product, n, terms, lanes, rows, matrix, members, x, out);                                                         \
+#define LEVEL(suffix, target, width)                                                               \
+  target static void sweep_##suffix(const dvi__members_sweep *s)                                   \
+  {                                                                                                \
+    sweep_by##width(s);                                                                            \
+  }                                                                                                \
+  target static void split_##suffix(int n, int members, const double *factor, const double *p0,    \
+                                    double *start, double *low)                                    \
+  {                                                                                                \
+    split(n, members, factor, p0, start, low);                                                     \
+  }                                                                                                \
+  target static void begin_##suffix(const dvi__members_sweep *s)                                   \
+  {                                                                                                \
+    ALL(width, begin, s);                                                                          \
+  }                                                                                                \
+  target static void ends_##suffix(const dvi__members_ends *e)                                     \
+  {                                                                                                \
+    ends_by##width(e);                                                                             \
+  }                                                                                                \
+  target static void product_##suffix(int n, int terms, int lanes, int rows, const double *matrix, \
+                                      int members, const double *x, double *out)                   \
+  {                                                                                                \
+    ALL(width, product, n, terms, lanes, rows, matrix, members, x, out);                           \
   }
 
 LEVEL(baseline, , 2)
@@ -124,7 +129,8 @@ void dvi__members_sweep_once(const dvi__members_sweep *s)
   now()->sweep(s);
 }
 
-void dvi__members_split(int n, int width, const double *factor, const double *p0, double *start, double *low)
+void dvi__members_split(int n, int width, const double *factor, const double *p0, double *start,
+                        double *low)
 {
   now()->split(n, width, factor, p0, start, low);
 }
@@ -139,7 +145,8 @@ void dvi__members_ends_of(const dvi__members_ends *ends)
   now()->ends(ends);
 }
 
-void dvi__members_product(int n, int terms, int lanes, int rows, const double *matrix, int width, const double *x, double *out)
+void dvi__members_product(int n, int terms, int lanes, int rows, const double *matrix, int width,
+                          const double *x, double *out)
 {
   now()->product(n, terms, lanes, rows, matrix, width, x, out);
 }

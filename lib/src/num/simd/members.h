@@ -1,13 +1,15 @@
 /* Loops with the members of an ensemble as lanes of vectors.
  *
- * A row of `width` numbers holds one number of each member, so that a matrix of members is [rows*width] by rows. The loops are compiled for
- * the levels of num/simd/lanes.h, and each gives the bits that its loop gives for one member alone: every lane sees their operations in their
+ * A row of `width` numbers holds one number of each member, so that a matrix of members is
+ * [rows*width] by rows. The loops are compiled for the levels of num/simd/lanes.h, and each gives
+ * the bits that its loop gives for one member alone: every lane sees their operations in their
  * order. */
 #ifndef DVI_NUM_MEMBERS_H
 #define DVI_NUM_MEMBERS_H
 #include <stddef.h>
 
-/* A dvi__sweep for every member: what differs between them has rows of `width`, and Z has no padding. */
+/* A dvi__sweep for every member: what differs between them has rows of `width`, and Z has no
+ * padding. */
 typedef struct dvi__members_sweep {
   int n, stages, width;
   int lanes;                          /* length of the matrix's columns */
@@ -24,7 +26,8 @@ typedef struct dvi__members_sweep {
 void dvi__members_sweep_once(const dvi__members_sweep *sweep);
 
 /* dvi__lanes_split: start + low = factor p0, for p0 [n*width]. */
-void dvi__members_split(int n, int width, const double *factor, const double *p0, double *start, double *low);
+void dvi__members_split(int n, int width, const double *factor, const double *p0, double *start,
+                        double *low);
 
 /* dvi__lanes_begin: Z holds sums of forces. */
 void dvi__members_begin(const dvi__members_sweep *sweep);
@@ -42,8 +45,9 @@ typedef struct dvi__members_ends {
 /* dvi__lanes_ends. */
 void dvi__members_ends_of(const dvi__members_ends *ends);
 
-/* dvi__lanes_product: out_ij = sum_k matrix_jk x_ik for n coordinates and `rows` values of j: x [n*terms*width], matrix by columns of length
- * `lanes`, out [n*rows*width]; it may not be x. */
-void dvi__members_product(int n, int terms, int lanes, int rows, const double *matrix, int width, const double *x, double *out);
+/* dvi__lanes_product: out_ij = sum_k matrix_jk x_ik for n coordinates and `rows` values of j: x
+ * [n*terms*width], matrix by columns of length `lanes`, out [n*rows*width]; it may not be x. */
+void dvi__members_product(int n, int terms, int lanes, int rows, const double *matrix, int width,
+                          const double *x, double *out);
 
 #endif

@@ -1,8 +1,9 @@
-/* The loops of members.c for vectors of WIDTH numbers, after vector_width.h; it includes this once for each width. The last few of a row are done
- * one by one, by the same functions at WIDTH 1. */
+/* The loops of members.c for vectors of WIDTH numbers, after vector_width.h; it includes this once
+ * for each width. The last few of a row are done one by one, by the same functions at WIDTH 1. */
 
 /* sum <- sum + matrix_k x_k, with x_k and x_(k+1) `width` apart. */
-INLINE void NAME(add_term)(int lanes, const double *matrix, int width, const double *x, int k, NAME(vector) * sum)
+INLINE void NAME(add_term)(int lanes, const double *matrix, int width, const double *x, int k,
+                           NAME(vector) * sum)
 {
   NAME(vector) value;
   NAME(load)(x + (size_t)k * (size_t)width, &value);
@@ -10,7 +11,8 @@ INLINE void NAME(add_term)(int lanes, const double *matrix, int width, const dou
 }
 
 /* sum_k matrix_k x_k; eight terms and more as four sums, as in lanes_width.h. */
-INLINE void NAME(row)(int terms, int lanes, const double *matrix, int width, const double *x, NAME(vector) * out)
+INLINE void NAME(row)(int terms, int lanes, const double *matrix, int width, const double *x,
+                      NAME(vector) * out)
 {
   NAME(vector) sum[4] = {{0}, {0}, {0}, {0}};
   int k = 0;
@@ -25,7 +27,8 @@ INLINE void NAME(row)(int terms, int lanes, const double *matrix, int width, con
 }
 
 /* WIDTH members, from member m on, of coordinate i. */
-INLINE void NAME(product_at)(int terms, int lanes, int rows, const double *matrix, int width, const double *x, double *out)
+INLINE void NAME(product_at)(int terms, int lanes, int rows, const double *matrix, int width,
+                             const double *x, double *out)
 {
   for (int j = 0; j < rows; j++) {
     NAME(vector) sum;
@@ -34,12 +37,13 @@ INLINE void NAME(product_at)(int terms, int lanes, int rows, const double *matri
   }
 }
 
-INLINE int NAME(product)(int n, int terms, int lanes, int rows, const double *matrix, int width, const double *x, double *out,
-                         int m)
+INLINE int NAME(product)(int n, int terms, int lanes, int rows, const double *matrix, int width,
+                         const double *x, double *out, int m)
 {
   for (; m + WIDTH <= width; m += WIDTH)
     for (size_t i = 0; i < (size_t)n; i++) NAME(product_at)
-  (terms, lanes, rows, matrix, width, x + i * (size_t)terms * (size_t)width + m, out + i * (size_t)rows * (size_t)width + m);
+  (terms, lanes, rows, matrix, width, x + i * (size_t)terms * (size_t)width + m,
+   out + i * (size_t)rows * (size_t)width + m);
   return m;
 }
 
@@ -61,7 +65,8 @@ INLINE void NAME(load_base)(const dvi__members_sweep *s, size_t i, int m, NAME(b
 }
 
 /* One stage: from its sum of forces to its offset and place. */
-INLINE void NAME(place)(const NAME(base) * base, double node, const NAME(vector) * sum, NAME(vector) * next, double *Z, double *Q)
+INLINE void NAME(place)(const NAME(base) * base, double node, const NAME(vector) * sum,
+                        NAME(vector) * next, double *Z, double *Q)
 {
   *next = base->start * node + (base->factor * *sum + base->low * node);
   const NAME(vector) place = base->origin + *next;
@@ -88,8 +93,8 @@ INLINE int NAME(begin)(const dvi__members_sweep *s, int m)
 }
 
 /* WIDTH members of one coordinate: all forces are weighed, then the stages move. */
-INLINE void NAME(sweep_at)(const dvi__members_sweep *s, const int stages, size_t i, int m, NAME(vector) * change,
-                           NAME(vector) * largest)
+INLINE void NAME(sweep_at)(const dvi__members_sweep *s, const int stages, size_t i, int m,
+                           NAME(vector) * change, NAME(vector) * largest)
 {
   const size_t width = (size_t)s->width, at = i * (size_t)stages * width + (size_t)m;
   double *restrict force = s->force + at, *restrict Z = s->Z + at, *restrict Q = s->Q + at;

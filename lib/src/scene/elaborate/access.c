@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "scene/elaborate/elaborate.h"
-#include "scene/text/heap.h"
+#include "text/heap.h"
 #include "scene/elaborate/words.h"
 
 /* ---- names ---- */
@@ -15,20 +15,27 @@ static bool is_function(const char *name)
   return k < dvi__word_count();
 }
 
-/* Complain of a name that is not known, or not yet: what is made of parameters is read before there are coordinates and definitions. */
+/* Complain of a name that is not known, or not yet: what is made of parameters is read before there
+ * are coordinates and definitions. */
 static dvi__value unknown(dvi__context *c, const dvi__expression *e)
 {
   static const char *const section[] = {"parameters", "coordinates", "definitions"};
   const bool there[] = {true, c->scene->coordinate != NULL, c->scene->definition != NULL};
-  if (is_function(e->name)) return dvi__refused(dvi__refuse(c, e->span, "'%s' is a function; write %s(..)", e->name, e->name));
+  if (is_function(e->name))
+    return dvi__refused(
+        dvi__refuse(c, e->span, "'%s' is a function; write %s(..)", e->name, e->name));
   for (int k = 0; k < 3; k++) {
     const dvi__tree *names = dvi__tree_find(c->scene->tree, section[k]);
-    if (names == NULL || names->kind != DVI__MAPPING || dvi__tree_find(names, e->name) == NULL) continue;
-    if (!there[k]) return dvi__refused(dvi__refuse(c, e->span, "%s cannot stand in %s", section[k], c->where));
+    if (names == NULL || names->kind != DVI__MAPPING || dvi__tree_find(names, e->name) == NULL)
+      continue;
+    if (!there[k])
+      return dvi__refused(dvi__refuse(c, e->span, "%s cannot stand in %s", section[k], c->where));
     return dvi__refused(
-        dvi__refuse(c, e->span, "'%s' cannot stand in %s: it is not known yet, for it comes later", e->name, c->where));
+        dvi__refuse(c, e->span, "'%s' cannot stand in %s: it is not known yet, for it comes later",
+                    e->name, c->where));
   }
-  return dvi__refused(dvi__names_unknown(&c->scene->names, &c->scene->arena, c->scene->complaint, e->name, e->span));
+  return dvi__refused(dvi__names_unknown(&c->scene->names, &c->scene->arena, c->scene->complaint,
+                                         e->name, e->span));
 }
 
 static dvi__value index_number(dvi__context *c, const dvi__index *index)
@@ -48,15 +55,18 @@ static dvi__value parameter_value(dvi__context *c, dvi__parameter *p)
   dvi__value value = dvi__value_make(c, p->shape.rank, p->shape.rows, p->shape.columns);
   if (dvi__failed(value)) return value;
   if (p->shape.rank == 0) return dvi__number_value(dvi__constant(c->graph, p->value[0]));
-  for (int i = 0; i < dvi__value_size(value); i++) value.node[i] = dvi__constant(c->graph, p->value[i]);
+  for (int i = 0; i < dvi__value_size(value); i++)
+    value.node[i] = dvi__constant(c->graph, p->value[i]);
   return value;
 }
 
 /* An index for every element, between 1 and `count`. */
-static bool index_of(const dvi__context *c, const dvi__expression *e, int count, int **each, int *all);
+static bool index_of(const dvi__context *c, const dvi__expression *e, int count, int **each,
+                     int *all);
 
 /* The member, from 1, that two indices say for every element: *each, to be freed, or *all. */
-static bool member_of_two(const dvi__context *c, const dvi__coordinate *x, const dvi__subscripts *index, int **each, int *all)
+static bool member_of_two(const dvi__context *c, const dvi__coordinate *x,
+                          const dvi__subscripts *index, int **each, int *all)
 {
   int *row = NULL, *column = NULL, all_row = 1, all_column = 1;
   bool good = index_of(c, index->of[0], dvi__extent(x, 0), &row, &all_row) &&
@@ -67,37 +77,44 @@ static bool member_of_two(const dvi__context *c, const dvi__coordinate *x, const
     *each = dvi__heap_take((size_t)c->elements, sizeof **each);
     good = *each != NULL || dvi__scene_no_memory(c->scene);
     for (int e = 0; good && e < c->elements; e++)
-      (*each)[e] = ((row != NULL ? row[e] : all_row) - 1) * x->columns + (column != NULL ? column[e] : all_column);
+      (*each)[e] = ((row != NULL ? row[e] : all_row) - 1) * x->columns +
+                   (column != NULL ? column[e] : all_column);
   }
   dvi__heap_free(row);
   dvi__heap_free(column);
   return good;
 }
 
-bool dvi__member_numbering(dvi__context *c, const dvi__coordinate *x, const dvi__subscripts *index, const dvi__slots *places,
-                           dvi__numbering *numbering)
+bool dvi__member_numbering(dvi__context *c, const dvi__coordinate *x, const dvi__subscripts *index,
+                           const dvi__slots *places, dvi__numbering *numbering)
 {
   int *each = NULL, all = 1;
   const bool good = index->count == 0   ? true
                     : index->count == 1 ? index_of(c, index->of[0], x->size, &each, &all)
                                         : member_of_two(c, x, index, &each, &all);
-  const bool made = good && dvi__numbering_of(c, each, all, places->first - places->stride, places->stride, numbering);
+  const bool made = good && dvi__numbering_of(c, each, all, places->first - places->stride,
+                                              places->stride, numbering);
   dvi__heap_free(each);
   return made;
 }
 
-dvi__value dvi__coordinate_value(dvi__context *c, const dvi__coordinate *x, const dvi__subscripts *index, dvi__span span)
+dvi__value dvi__coordinate_value(dvi__context *c, const dvi__coordinate *x,
+                                 const dvi__subscripts *index, dvi__span span)
 {
   dvi__numbering numbering;
-  if (!dvi__may_stand(c, DVI__SAYS_Q, index->count > 0 ? index->of[0]->span : span)) return DVI__NO_VALUE;
+  if (!dvi__may_stand(c, DVI__SAYS_Q, index->count > 0 ? index->of[0]->span : span))
+    return DVI__NO_VALUE;
   if (x->kind == DVI__MOTION)
     return dvi__refused(
-        dvi__refuse(c, span, "%s is a rigid motion; take its rotation, %s.R, or its place, %s.x", x->name, x->name, x->name));
+        dvi__refuse(c, span, "%s is a rigid motion; take its rotation, %s.R, or its place, %s.x",
+                    x->name, x->name, x->name));
   if (!dvi__member_numbering(c, x, index, &x->q, &numbering)) return DVI__NO_VALUE;
   dvi__value value = dvi__value_make(c, x->shape.rank, x->shape.rows, x->shape.columns);
   if (dvi__failed(value)) return value;
-  if (x->shape.rank == 0) return dvi__number_value(dvi__variable_node(c, DVI__COORDINATES, numbering, 0));
-  for (int i = 0; i < dvi__value_size(value); i++) value.node[i] = dvi__variable_node(c, DVI__COORDINATES, numbering, i);
+  if (x->shape.rank == 0)
+    return dvi__number_value(dvi__variable_node(c, DVI__COORDINATES, numbering, 0));
+  for (int i = 0; i < dvi__value_size(value); i++)
+    value.node[i] = dvi__variable_node(c, DVI__COORDINATES, numbering, i);
   return value;
 }
 
@@ -117,7 +134,8 @@ dvi__value dvi__name_value(dvi__context *c, const dvi__expression *e)
 {
   const dvi__index *index = dvi__index_find(c, e->name);
   if (index != NULL) return index_number(c, index);
-  if (strcmp(e->name, "pi") == 0) return dvi__number_value(dvi__constant(c->graph, 3.14159265358979323846));
+  if (strcmp(e->name, "pi") == 0)
+    return dvi__number_value(dvi__constant(c->graph, 3.14159265358979323846));
   if (strcmp(e->name, "t") == 0) {
     if (!dvi__may_stand(c, DVI__SAYS_T, e->span)) return DVI__NO_VALUE;
     return dvi__number_value(dvi__variable_node(c, DVI__TIME, (dvi__numbering){0}, 0));
@@ -144,13 +162,15 @@ static const char *circumstances(const dvi__context *c, int element_number, char
   text[0] = '\0';
   for (int i = 0; i < c->index_count && used < size; i++) {
     const dvi__index *index = &c->index[i];
-    used += (size_t)snprintf(text + used, size - used, "%s%s = %d", i == 0 ? ", where " : ", ", index->name,
+    used += (size_t)snprintf(text + used, size - used, "%s%s = %d", i == 0 ? ", where " : ", ",
+                             index->name,
                              index->each != NULL ? index->each[element_number] : index->all);
   }
   return text;
 }
 
-static bool index_of(const dvi__context *c, const dvi__expression *e, int count, int **each, int *all)
+static bool index_of(const dvi__context *c, const dvi__expression *e, int count, int **each,
+                     int *all)
 {
   char text[120];
   const dvi__index *index = e->form == DVI__FORM_NAME ? dvi__index_find(c, e->name) : NULL;
@@ -168,7 +188,8 @@ static bool index_of(const dvi__context *c, const dvi__expression *e, int count,
     if (i >= 1 && i <= count) continue;
     dvi__heap_free(*each);
     *each = NULL;
-    return dvi__refuse(c, e->span, "the index %d is not between 1 and %d%s", i, count, circumstances(c, k, text, sizeof text));
+    return dvi__refuse(c, e->span, "the index %d is not between 1 and %d%s", i, count,
+                       circumstances(c, k, text, sizeof text));
   }
   return true;
 }
@@ -191,46 +212,54 @@ static dvi__node listed(dvi__context *c, const double *value, const int *positio
   return node;
 }
 
-/* The positions, for every element, that indices say: those of a matrix row by row; of a row its begin. */
-static bool positions(const dvi__context *c, const dvi__parameter *p, int count, const dvi__expression *const *index, int *position)
+/* The positions, for every element, that indices say: those of a matrix row by row; of a row its
+ * begin. */
+static bool positions(const dvi__context *c, const dvi__parameter *p, int count,
+                      const dvi__expression *const *index, int *position)
 {
   for (int k = 0; k < count; k++) {
     int *each = NULL, all = 0;
-    if (!index_of(c, index[k], k == 0 ? p->shape.rows : p->shape.columns, &each, &all)) return false;
+    if (!index_of(c, index[k], k == 0 ? p->shape.rows : p->shape.columns, &each, &all))
+      return false;
     const int stride = k == 0 && p->shape.rank == 2 ? p->shape.columns : 1;
-    for (int e = 0; e < c->elements; e++) position[e] += ((each != NULL ? each[e] : all) - 1) * stride;
+    for (int e = 0; e < c->elements; e++)
+      position[e] += ((each != NULL ? each[e] : all) - 1) * stride;
     dvi__heap_free(each);
   }
   return true;
 }
 
 /* A number of a list, or a row of a matrix. */
-static dvi__value parameter_element(dvi__context *c, dvi__parameter *p, int count, const dvi__expression *const *index,
-                                    dvi__span span)
+static dvi__value parameter_element(dvi__context *c, dvi__parameter *p, int count,
+                                    const dvi__expression *const *index, dvi__span span)
 {
   const int rest = p->shape.rank - count;
   if (!dvi__note_parameter(c->scene, p)) return DVI__NO_VALUE;
   if (rest < 0)
-    return dvi__refused(
-        dvi__refuse(c, span, "%s has %d ind%s, not %d", p->name, p->shape.rank, p->shape.rank == 1 ? "ex" : "ices", count));
+    return dvi__refused(dvi__refuse(c, span, "%s has %d ind%s, not %d", p->name, p->shape.rank,
+                                    p->shape.rank == 1 ? "ex" : "ices", count));
   int *position = dvi__heap_take((size_t)c->elements, sizeof *position);
   if (position == NULL) return dvi__refused(dvi__scene_no_memory(c->scene));
-  dvi__value value = positions(c, p, count, index, position) ? dvi__value_make(c, rest, rest == 0 ? 1 : p->shape.columns, 1)
-                                                             : DVI__NO_VALUE;
+  dvi__value value = positions(c, p, count, index, position)
+                         ? dvi__value_make(c, rest, rest == 0 ? 1 : p->shape.columns, 1)
+                         : DVI__NO_VALUE;
   if (!dvi__failed(value) && rest == 0) value.one = listed(c, p->value, position, 0);
-  for (int k = 0; value.node != NULL && k < value.shape.rows; k++) value.node[k] = listed(c, p->value, position, k);
+  for (int k = 0; value.node != NULL && k < value.shape.rows; k++)
+    value.node[k] = listed(c, p->value, position, k);
   dvi__heap_free(position);
   return value;
 }
 
 /* Elements of a value; the indices must be the same for all elements. */
-static dvi__value part_of_value(dvi__context *c, dvi__value value, int count, const dvi__expression *const *index, dvi__span span)
+static dvi__value part_of_value(dvi__context *c, dvi__value value, int count,
+                                const dvi__expression *const *index, dvi__span span)
 {
   char shape[48];
   for (int k = 0; k < count && !dvi__failed(value); k++) {
     int *each = NULL, i = 0;
     if (value.shape.rank == 0)
-      return dvi__refused(dvi__refuse(c, span, "%s has no elements", dvi__shape_text(value.shape, shape, sizeof shape)));
+      return dvi__refused(dvi__refuse(c, span, "%s has no elements",
+                                      dvi__shape_text(value.shape, shape, sizeof shape)));
     if (!index_of(c, index[k], value.shape.rows, &each, &i)) return DVI__NO_VALUE;
     if (each != NULL) {
       dvi__heap_free(each);
@@ -240,7 +269,8 @@ static dvi__value part_of_value(dvi__context *c, dvi__value value, int count, co
     if (value.shape.rank == 1)
       value = dvi__number_value(value.node[i - 1]);
     else
-      value = (dvi__value){.shape = {1, value.shape.columns, 1}, .node = value.node + (i - 1) * value.shape.columns};
+      value = (dvi__value){.shape = {1, value.shape.columns, 1},
+                           .node = value.node + (i - 1) * value.shape.columns};
   }
   return value;
 }
@@ -248,13 +278,14 @@ static dvi__value part_of_value(dvi__context *c, dvi__value value, int count, co
 enum { INDICES_OF_ONE = 4 };
 
 /* A member of a family, or an element of it: the family's indices come first. */
-static dvi__value family_element(dvi__context *c, const dvi__coordinate *x, int count, const dvi__expression *const *index,
-                                 dvi__span span)
+static dvi__value family_element(dvi__context *c, const dvi__coordinate *x, int count,
+                                 const dvi__expression *const *index, dvi__span span)
 {
   if (count < x->family) return dvi__refused(dvi__refuse_family(c, x, "", span));
   const dvi__subscripts own = {x->family, {index[0], x->family > 1 ? index[1] : NULL}};
   const dvi__value member = dvi__coordinate_value(c, x, &own, span);
-  return dvi__failed(member) ? member : part_of_value(c, member, count - x->family, index + x->family, span);
+  return dvi__failed(member) ? member
+                             : part_of_value(c, member, count - x->family, index + x->family, span);
 }
 
 dvi__value dvi__index_value(dvi__context *c, const dvi__expression *e)
@@ -268,10 +299,13 @@ dvi__value dvi__index_value(dvi__context *c, const dvi__expression *e)
     for (int k = 1; k < base->count; k++) index[k - 1] = base->part[k];
     count += base->count - 1;
   }
-  const dvi__name *name = base->form == DVI__FORM_NAME ? dvi__names_find(&c->scene->names, base->name) : NULL;
+  const dvi__name *name = base->form == DVI__FORM_NAME
+                              ? dvi__names_find(&c->scene->names, base->name)
+                              : NULL;
   if (name != NULL && name->sort == DVI__PARAMETER)
     return parameter_element(c, &c->scene->parameter[name->number], count, index, e->span);
-  if (name != NULL && name->sort == DVI__COORDINATE && c->scene->coordinate[name->number].family > 0)
+  if (name != NULL && name->sort == DVI__COORDINATE &&
+      c->scene->coordinate[name->number].family > 0)
     return family_element(c, &c->scene->coordinate[name->number], count, index, e->span);
   const dvi__value value = dvi__elaborate(c, base);
   return dvi__failed(value) ? value : part_of_value(c, value, count, index, e->span);

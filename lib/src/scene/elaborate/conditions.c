@@ -21,7 +21,8 @@ static bool condition(dvi__context *c, const dvi__expression *e, dvi__node *node
 static bool comparison(dvi__context *c, const dvi__expression *e, dvi__node *node)
 {
   dvi__node a, b;
-  if (!dvi__elaborate_number(c, e->part[0], &a) || !dvi__elaborate_number(c, e->part[1], &b)) return false;
+  if (!dvi__elaborate_number(c, e->part[0], &a) || !dvi__elaborate_number(c, e->part[1], &b))
+    return false;
   c->graph->here = e->span;
   *node = compare(c->graph, e->name, a, b);
   return true;
@@ -43,7 +44,8 @@ static bool joined(dvi__context *c, const dvi__expression *e, dvi__node *node)
     dvi__node next;
     if (!condition(c, e->part[k], &next)) return false;
     c->graph->here = e->span;
-    *node = all ? dvi__both(c->graph, *node, next) : dvi__choice(c->graph, *node, dvi__constant(c->graph, 1), next);
+    *node = all ? dvi__both(c->graph, *node, next)
+                : dvi__choice(c->graph, *node, dvi__constant(c->graph, 1), next);
   }
   return true;
 }
@@ -68,20 +70,25 @@ static bool note_names(dvi__context *c, const dvi__expression *e)
 {
   bool good = true;
   for (; e != NULL && good; e = e->count > 0 ? e->part[0] : NULL) {
-    const dvi__name *name = e->form == DVI__FORM_NAME ? dvi__names_find(&c->scene->names, e->name) : NULL;
-    if (name != NULL && name->sort == DVI__DEFINITION) c->scene->definition[name->number].stands = 1;
-    if (name != NULL && name->sort == DVI__PARAMETER) good = dvi__note_parameter(c->scene, &c->scene->parameter[name->number]);
+    const dvi__name *name = e->form == DVI__FORM_NAME ? dvi__names_find(&c->scene->names, e->name)
+                                                      : NULL;
+    if (name != NULL && name->sort == DVI__DEFINITION)
+      c->scene->definition[name->number].stands = 1;
+    if (name != NULL && name->sort == DVI__PARAMETER)
+      good = dvi__note_parameter(c->scene, &c->scene->parameter[name->number]);
     for (int k = 1; k < e->count && good; k++) good = note_names(c, e->part[k]);
   }
   return good;
 }
 
 /* a where the condition holds, b elsewhere, number by number. */
-static dvi__value choice(dvi__context *c, const dvi__expression *e, dvi__node holds, dvi__value a, dvi__value b)
+static dvi__value choice(dvi__context *c, const dvi__expression *e, dvi__node holds, dvi__value a,
+                         dvi__value b)
 {
   if (!dvi__same_shape(a.shape, b.shape)) {
     char first[48], second[48];
-    return dvi__refused(dvi__refuse(c, e->span, "the two sides of if are %s and %s", dvi__shape_text(a.shape, first, sizeof first),
+    return dvi__refused(dvi__refuse(c, e->span, "the two sides of if are %s and %s",
+                                    dvi__shape_text(a.shape, first, sizeof first),
                                     dvi__shape_text(b.shape, second, sizeof second)));
   }
   if (a.shape.rank == 0) return dvi__number_value(dvi__choice(c->graph, holds, a.one, b.one));
@@ -97,7 +104,8 @@ dvi__value dvi__if_value(dvi__context *c, const dvi__expression *e)
   if (!condition(c, e->part[0], &holds)) return DVI__NO_VALUE;
   const bool yes = is_known(c, holds, 1);
   if (yes || is_known(c, holds, 0))
-    return note_names(c, e->part[yes ? 2 : 1]) ? dvi__elaborate(c, e->part[yes ? 1 : 2]) : DVI__NO_VALUE;
+    return note_names(c, e->part[yes ? 2 : 1]) ? dvi__elaborate(c, e->part[yes ? 1 : 2])
+                                               : DVI__NO_VALUE;
   const dvi__value a = dvi__elaborate(c, e->part[1]);
   const dvi__value b = dvi__failed(a) ? a : dvi__elaborate(c, e->part[2]);
   c->graph->here = e->span;

@@ -1,10 +1,12 @@
-/* What an expression is elaborated in: a graph, where its inputs come from, and the indices that are bound.
+/* What an expression is elaborated in: a graph, where its inputs come from, and the indices that
+ * are bound.
  *
- * A context has elements: one, or those of a sum. An index is a number for every element; an expression without coordinates is one number for every
- * element, too, and becomes a constant if they are all the same and a row of data if not. */
+ * A context has elements: one, or those of a sum. An index is a number for every element; an
+ * expression without coordinates is one number for every element, too, and becomes a constant if
+ * they are all the same and a row of data if not. */
 #ifndef DVI_SCENE_CONTEXT_H
 #define DVI_SCENE_CONTEXT_H
-#include "scene/function/function.h"
+#include "expr/function/function.h"
 #include "scene/elaborate/model.h"
 
 enum { DVI__INDICES_MAX = 64 };
@@ -61,24 +63,29 @@ dvi__value dvi__elaborate(dvi__context *c, const dvi__expression *e);
 /* The same, where a number is needed. */
 bool dvi__elaborate_number(dvi__context *c, const dvi__expression *e, dvi__node *node);
 
-/* A number without coordinates for every element: *each [elements], to be freed, or NULL and it is *all for all of them. */
+/* A number without coordinates for every element: *each [elements], to be freed, or NULL and it is
+ * *all for all of them. */
 bool dvi__numbers_of(const dvi__context *c, const dvi__expression *e, double **each, double *all);
 /* The same of a node without variables. */
-bool dvi__node_numbers(dvi__context *c, const dvi__expression *e, dvi__node node, double **each, double *all);
+bool dvi__node_numbers(dvi__context *c, const dvi__expression *e, dvi__node node, double **each,
+                       double *all);
 /* The same for whole numbers; `what` for messages. */
-bool dvi__whole_numbers_of(const dvi__context *c, const dvi__expression *e, const char *what, int **each, int *all);
+bool dvi__whole_numbers_of(const dvi__context *c, const dvi__expression *e, const char *what,
+                           int **each, int *all);
 
-/* The numbers of a value in which nothing is unknown, [rows * columns]; told if one is not finite. */
+/* The numbers of a value in which nothing is unknown, [rows * columns]; told if one is not
+ * finite. */
 bool dvi__constants_of(dvi__context *c, const dvi__expression *e, dvi__value value, double *number);
 
 /* A variable of a block as a node: number numbering + offset. */
-dvi__node dvi__variable_node(dvi__context *c, dvi__block block, dvi__numbering numbering, int offset);
+dvi__node dvi__variable_node(dvi__context *c, int block, dvi__numbering numbering, int offset);
 /* The numbers scale * (each or all) + shift as a numbering. */
-bool dvi__numbering_of(dvi__context *c, const int *each, int all, int shift, int scale, dvi__numbering *numbering);
+bool dvi__numbering_of(dvi__context *c, const int *each, int all, int shift, int scale,
+                       dvi__numbering *numbering);
 /* A row of data [elements] as a node; copied. */
 dvi__node dvi__data_node(dvi__context *c, const double *row);
 /* The same variable of another block: the velocity of a coordinate. */
-dvi__node dvi__sibling_node(dvi__context *c, int input, dvi__block block);
+dvi__node dvi__sibling_node(dvi__context *c, int input, int block);
 
 /* Bind an index, without its values; refused if the name is taken. */
 bool dvi__index_bind(dvi__context *c, dvi__span span, const char *name);
@@ -94,9 +101,11 @@ bool dvi__sum_bounds(const dvi__context *c, const dvi__expression *sum, dvi__bou
 /* What an expression mentions: DVI__SAYS_.. */
 unsigned dvi__says(const dvi_scene *scene, const dvi__expression *e);
 
-/* The operators of a chain a + b - c.., from the inner to the outer one, of the same kind (sums or products) as e: *count of them. */
+/* The operators of a chain a + b - c.., from the inner to the outer one, of the same kind (sums or
+ * products) as e: *count of them. */
 const dvi__expression **dvi__spine(dvi_scene *scene, const dvi__expression *e, int *count);
 
-bool dvi__refuse(const dvi__context *c, dvi__span span, const char *format, ...) DVI__SCENE_PRINTF(3, 4);
+bool dvi__refuse(const dvi__context *c, dvi__span span, const char *format, ...)
+    DVI__TEXT_PRINTF(3, 4);
 
 #endif

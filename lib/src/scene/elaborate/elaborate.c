@@ -1,4 +1,5 @@
-/* From syntax to graphs: operators, calls, lists and sums. Names are in access.c, rates in rates.c, arithmetic in shape.c. */
+/* From syntax to graphs: operators, calls, lists and sums. Names are in access.c, rates in rates.c,
+ * arithmetic in shape.c. */
 #include "scene/elaborate/elaborate.h"
 
 #include <dvi/number.h>
@@ -7,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "scene/text/heap.h"
+#include "text/heap.h"
 
 enum { DEPTH_MAX = 512 };
 static const long work_max = 10000000;
@@ -42,7 +43,7 @@ static int is_velocity(const dvi__expression *call)
 static dvi__value call_value(dvi__context *c, const dvi__expression *e)
 {
   if (strcmp(e->name, "p") == 0) return dvi__momentum_value(c, e);
-  if (is_velocity(e)) return dvi__turn_value(c, e);
+  if (is_velocity(e)) return dvi__velocity_value(c, e);
   dvi__value *argument = dvi__arena_take(&c->scene->arena, (size_t)e->count + 1, sizeof *argument);
   if (argument == NULL) return dvi__refused(dvi__scene_no_memory(c->scene));
   for (int k = 0; k < e->count; k++) {
@@ -60,10 +61,13 @@ static dvi__value list_value(dvi__context *c, const dvi__expression *e)
     const dvi__value row = dvi__elaborate(c, e->part[i]);
     if (dvi__failed(row)) return row;
     const int size = dvi__value_size(row);
-    if (i == 0) list = dvi__value_make(c, row.shape.rank + 1, e->count, row.shape.rank == 0 ? 1 : row.shape.rows);
+    if (i == 0)
+      list = dvi__value_make(c, row.shape.rank + 1, e->count,
+                             row.shape.rank == 0 ? 1 : row.shape.rows);
     if (dvi__failed(list)) return list;
     if (row.shape.rank + 1 != list.shape.rank || size != list.shape.columns || row.shape.rank > 1)
-      return dvi__refused(dvi__refuse(c, e->part[i]->span, "a list holds numbers, or vectors of one size"));
+      return dvi__refused(
+          dvi__refuse(c, e->part[i]->span, "a list holds numbers, or vectors of one size"));
     for (int k = 0; k < size; k++) list.node[i * size + k] = dvi__value_at(row, k);
   }
   if (e->count == 0) return dvi__refused(dvi__refuse(c, e->span, "the list is empty"));
@@ -71,7 +75,8 @@ static dvi__value list_value(dvi__context *c, const dvi__expression *e)
 }
 
 /* Add the body for one choice of the indices. */
-static bool add_body(dvi__context *c, const dvi__expression *e, int first, int second, dvi__value *total)
+static bool add_body(dvi__context *c, const dvi__expression *e, int first, int second,
+                     dvi__value *total)
 {
   const int base = c->index_count - (e->name2 != NULL ? 2 : 1);
   c->index[base].all = first;
@@ -95,7 +100,9 @@ static dvi__value sum_value(dvi__context *c, const dvi__expression *e)
     c->uneven = 1;
     return DVI__NO_VALUE;
   }
-  if (!dvi__index_bind(c, e->span, e->name) || (e->name2 != NULL && !dvi__index_bind(c, e->span, e->name2))) return DVI__NO_VALUE;
+  if (!dvi__index_bind(c, e->span, e->name) ||
+      (e->name2 != NULL && !dvi__index_bind(c, e->span, e->name2)))
+    return DVI__NO_VALUE;
   const int first = bounds.all_first, last = bounds.all_last;
   dvi__value total = DVI__NO_VALUE;
   bool good = true;
@@ -119,7 +126,8 @@ static int is_chain(dvi__form form)
 
 static int same_chain(dvi__form a, dvi__form b)
 {
-  const int a_adds = a == DVI__FORM_ADD || a == DVI__FORM_SUBTRACT, b_adds = b == DVI__FORM_ADD || b == DVI__FORM_SUBTRACT;
+  const int a_adds = a == DVI__FORM_ADD || a == DVI__FORM_SUBTRACT,
+            b_adds = b == DVI__FORM_ADD || b == DVI__FORM_SUBTRACT;
   return is_chain(a) && is_chain(b) && a_adds == b_adds;
 }
 
@@ -129,7 +137,8 @@ const dvi__expression **dvi__spine(dvi_scene *scene, const dvi__expression *e, i
   for (const dvi__expression *at = e; same_chain(at->form, e->form); at = at->part[0]) length++;
   const dvi__expression **spine = dvi__arena_take(&scene->arena, (size_t)length, sizeof *spine);
   *count = spine == NULL ? 0 : length;
-  for (const dvi__expression *at = e; length > 0 && spine != NULL; at = at->part[0]) spine[--length] = at;
+  for (const dvi__expression *at = e; length > 0 && spine != NULL; at = at->part[0])
+    spine[--length] = at;
   if (spine == NULL) (void)dvi__scene_no_memory(scene);
   return spine;
 }
@@ -190,7 +199,9 @@ static dvi__value element(dvi__context *c, const dvi__expression *e)
   case DVI__FORM_COMPARE:
   case DVI__FORM_NOT:
   case DVI__FORM_AND:
-  case DVI__FORM_OR: return dvi__refused(dvi__refuse(c, e->span, "a condition where a number is needed; write if(.., a, b)"));
+  case DVI__FORM_OR:
+    return dvi__refused(
+        dvi__refuse(c, e->span, "a condition where a number is needed; write if(.., a, b)"));
   default: return chain_value(c, e);
   }
 }
@@ -208,11 +219,13 @@ dvi__value dvi__elaborate(dvi__context *c, const dvi__expression *e)
 {
   if (c->scene->complaint->status != DVI_OK) return DVI__NO_VALUE;
   if (++c->scene->work > work_max)
-    return dvi__refused(dvi__complain(c->scene->complaint, DVI_BAD_SIZE, e->span,
-                                      "more than %ld parts of expressions, with all sums written out", work_max));
+    return dvi__refused(
+        dvi__complain(c->scene->complaint, DVI_BAD_SIZE, e->span,
+                      "more than %ld parts of expressions, with all sums written out", work_max));
   if (c->depth == 0) c->whole = e->span;
   if (++c->depth > DEPTH_MAX)
-    return dvi__refused(dvi__refuse(c, c->whole, "definitions of definitions, more than %d levels deep", DEPTH_MAX));
+    return dvi__refused(dvi__refuse(
+        c, c->whole, "definitions of definitions, more than %d levels deep", DEPTH_MAX));
   c->graph->here = e->span;
   const dvi__value value = element(c, e);
   c->depth--;
@@ -225,8 +238,8 @@ bool dvi__elaborate_number(dvi__context *c, const dvi__expression *e, dvi__node 
   const dvi__value value = dvi__elaborate(c, e);
   *node = value.one;
   if (dvi__failed(value)) return false;
-  return value.shape.rank == 0 ||
-         dvi__refuse(c, e->span, "%s where a number is needed", dvi__shape_text(value.shape, shape, sizeof shape));
+  return value.shape.rank == 0 || dvi__refuse(c, e->span, "%s where a number is needed",
+                                              dvi__shape_text(value.shape, shape, sizeof shape));
 }
 
 bool dvi__constants_of(dvi__context *c, const dvi__expression *e, dvi__value value, double *number)
@@ -235,7 +248,8 @@ bool dvi__constants_of(dvi__context *c, const dvi__expression *e, dvi__value val
     const dvi__node node = dvi__value_at(value, i);
     dvi__node bad = -1;
     if (dvi__is_constant(c->graph, node, &number[i]) && isfinite(number[i])) continue;
-    if (dvi__evaluate(c->graph, NULL, 1, &node, &number[i], &bad) != DVI_OK) return dvi__scene_no_memory(c->scene);
+    if (dvi__evaluate(c->graph, NULL, 1, &node, &number[i], &bad) != DVI_OK)
+      return dvi__scene_no_memory(c->scene);
     if (bad >= 0) return dvi__refuse(c, c->graph->node[bad].span, "this is not a finite number");
     if (!isfinite(number[i])) return dvi__refuse(c, e->span, "this is not a finite number");
   }
@@ -257,7 +271,8 @@ unsigned dvi__says(const dvi_scene *scene, const dvi__expression *e)
   unsigned says = 0;
   for (; e != NULL; e = e->count > 0 ? e->part[0] : NULL) {
     if (e->form == DVI__FORM_NAME) says |= says_name(scene, e->name);
-    if (e->form == DVI__FORM_RATE || (e->form == DVI__FORM_CALL && is_velocity(e))) says |= DVI__SAYS_V;
+    if (e->form == DVI__FORM_RATE || (e->form == DVI__FORM_CALL && is_velocity(e)))
+      says |= DVI__SAYS_V;
     if (e->form == DVI__FORM_SUM) says |= DVI__SAYS_SUM;
     if (e->form == DVI__FORM_CALL && strcmp(e->name, "p") == 0) says |= DVI__SAYS_P;
     for (int k = 1; k < e->count; k++) says |= dvi__says(scene, e->part[k]);

@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "scene/elaborate/context.h"
-#include "scene/text/heap.h"
-#include "scene/expr/program.h"
+#include "text/heap.h"
+#include "expr/compile/program.h"
 #include "scene/elaborate/shape.h"
 #include "scene/elaborate/words.h"
 
@@ -19,11 +19,15 @@ const dvi__index *dvi__index_find(const dvi__context *c, const char *name)
 bool dvi__index_bind(dvi__context *c, dvi__span span, const char *name)
 {
   const dvi__name *other = dvi__names_find(&c->scene->names, name);
-  if (dvi__is_word(name)) return dvi__refuse(c, span, "'%s' is a word of the language; choose another name", name);
+  if (dvi__is_word(name))
+    return dvi__refuse(c, span, "'%s' is a word of the language; choose another name", name);
   if (other != NULL)
-    return dvi__refuse(c, span, "the index '%s' is a %s, too; choose another name", name, dvi__sort_name(other->sort));
-  if (dvi__index_find(c, name) != NULL) return dvi__refuse(c, span, "'%s' is an index around this sum already", name);
-  if (c->index_count == DVI__INDICES_MAX) return dvi__refuse(c, span, "more than %d indices at a time", DVI__INDICES_MAX);
+    return dvi__refuse(c, span, "the index '%s' is a %s, too; choose another name", name,
+                       dvi__sort_name(other->sort));
+  if (dvi__index_find(c, name) != NULL)
+    return dvi__refuse(c, span, "'%s' is an index around this sum already", name);
+  if (c->index_count == DVI__INDICES_MAX)
+    return dvi__refuse(c, span, "more than %d indices at a time", DVI__INDICES_MAX);
   c->index[c->index_count++] = (dvi__index){.name = name};
   return true;
 }
@@ -33,7 +37,8 @@ bool dvi__index_bind(dvi__context *c, dvi__span span, const char *name)
 /* A row of data from an element on, with idle lanes behind its end. */
 static void copy_row(const dvi__kernel_input *input, int first, int lanes, double *row)
 {
-  for (int k = 0; k < dvi__row_width(lanes); k++) row[k] = input->data[first + (k < lanes ? k : lanes - 1)];
+  for (int k = 0; k < dvi__row_width(lanes); k++)
+    row[k] = input->data[first + (k < lanes ? k : lanes - 1)];
 }
 
 /* Run a program over all elements; its inputs are rows of data. */
@@ -51,7 +56,8 @@ static bool run_rows(const dvi__context *c, const dvi__program *program, double 
       row[i] = numbers + (size_t)i * DVI__LANES_MAX;
     }
     dvi__program_run(program, lanes, row, registers);
-    const double *out = registers + (size_t)(program->row_count - 1) * (size_t)dvi__row_width(lanes);
+    const double *out = registers +
+                        (size_t)(program->row_count - 1) * (size_t)dvi__row_width(lanes);
     memcpy(each + first, out, (size_t)lanes * sizeof *each);
   }
   dvi__heap_free(row);
@@ -98,7 +104,8 @@ static bool still(const dvi__context *c, dvi__context *inside)
   return true;
 }
 
-bool dvi__node_numbers(dvi__context *c, const dvi__expression *e, dvi__node node, double **each, double *all)
+bool dvi__node_numbers(dvi__context *c, const dvi__expression *e, dvi__node node, double **each,
+                       double *all)
 {
   *each = NULL;
   if (dvi__is_constant(c->graph, node, all) && isfinite(*all)) return true;
@@ -123,15 +130,19 @@ bool dvi__numbers_of(const dvi__context *c, const dvi__expression *e, double **e
   return made;
 }
 
-static bool whole(const dvi__context *c, const dvi__expression *e, const char *what, double x, int *number)
+static bool whole(const dvi__context *c, const dvi__expression *e, const char *what, double x,
+                  int *number)
 {
-  if (floor(x) < x) return dvi__refuse(c, e->span, "%s must be a whole number, and is %.17g", what, x);
-  if (!(x >= -1e9 && x <= 1e9)) return dvi__refuse(c, e->span, "%s must be between -1e9 and 1e9, and is %.17g", what, x);
+  if (floor(x) < x)
+    return dvi__refuse(c, e->span, "%s must be a whole number, and is %.17g", what, x);
+  if (!(x >= -1e9 && x <= 1e9))
+    return dvi__refuse(c, e->span, "%s must be between -1e9 and 1e9, and is %.17g", what, x);
   *number = (int)x;
   return true;
 }
 
-bool dvi__whole_numbers_of(const dvi__context *c, const dvi__expression *e, const char *what, int **each, int *all)
+bool dvi__whole_numbers_of(const dvi__context *c, const dvi__expression *e, const char *what,
+                           int **each, int *all)
 {
   double *number = NULL, same = 0;
   *each = NULL;
@@ -150,7 +161,8 @@ bool dvi__whole_numbers_of(const dvi__context *c, const dvi__expression *e, cons
 
 /* ---- bounds ---- */
 
-/* What limits an index that runs over all: the first family or list that it indexes alone, and its size. */
+/* What limits an index that runs over all: the first family or list that it indexes alone, and its
+ * size. */
 typedef struct limit {
   int size;
   const char *name;
@@ -180,27 +192,33 @@ static bool meet(const dvi__context *c, const char *index, limit *found, limit n
 {
   if (next.size == 0 || next.size == found->size) return true;
   if (found->size != 0)
-    return dvi__refuse(c, next.span, "%s runs over the %d of %s, but %s has %d; give bounds: sum(%s=1..n, ..)", index, found->size,
-                       found->name, next.name, next.size, index);
+    return dvi__refuse(c, next.span,
+                       "%s runs over the %d of %s, but %s has %d; give bounds: sum(%s=1..n, ..)",
+                       index, found->size, found->name, next.name, next.size, index);
   *found = next;
   return true;
 }
 
-/* Find what an index alone indexes in e. Recursion goes into parts but the first, which the loop follows. */
-static bool find_limit(const dvi__context *c, const char *index, const dvi__expression *e, limit *found)
+/* Find what an index alone indexes in e. Recursion goes into parts but the first, which the loop
+ * follows. */
+static bool find_limit(const dvi__context *c, const char *index, const dvi__expression *e,
+                       limit *found)
 {
   for (; e != NULL; e = e->count > 0 ? e->part[0] : NULL) {
     int before = 0; /* indices that stand further inside: a[i][j] */
     const dvi__expression *base = e;
     if (e->form == DVI__FORM_INDEX) {
-      for (base = e->part[0]; base->form == DVI__FORM_INDEX; base = base->part[0]) before += base->count - 1;
+      for (base = e->part[0]; base->form == DVI__FORM_INDEX; base = base->part[0])
+        before += base->count - 1;
       while (base->form == DVI__FORM_RATE) base = base->part[0];
     }
     for (int k = 1; k < e->count; k++) {
       const dvi__expression *part = e->part[k];
-      const int alone = e->form == DVI__FORM_INDEX && part->form == DVI__FORM_NAME && strcmp(part->name, index) == 0;
+      const int alone = e->form == DVI__FORM_INDEX && part->form == DVI__FORM_NAME &&
+                        strcmp(part->name, index) == 0;
       if (alone && base->form == DVI__FORM_NAME &&
-          !meet(c, index, found, (limit){places(c->scene, base->name, before + k - 1), base->name, e->span}))
+          !meet(c, index, found,
+                (limit){places(c->scene, base->name, before + k - 1), base->name, e->span}))
         return false;
       if (!find_limit(c, index, part, found)) return false;
     }
@@ -208,14 +226,17 @@ static bool find_limit(const dvi__context *c, const char *index, const dvi__expr
   return true;
 }
 
-static bool bounds_of_families(const dvi__context *c, const dvi__expression *sum, dvi__bounds *bounds)
+static bool bounds_of_families(const dvi__context *c, const dvi__expression *sum,
+                               dvi__bounds *bounds)
 {
   limit found = {0};
   if (!find_limit(c, sum->name, sum->part[0], &found)) return false;
   if (sum->name2 != NULL && !find_limit(c, sum->name2, sum->part[0], &found)) return false;
   if (found.size == 0)
-    return dvi__refuse(c, sum->span, "nothing is indexed by %s alone, so its bounds must be given: sum(%s=1..n, ..)", sum->name,
-                       sum->name);
+    return dvi__refuse(
+        c, sum->span,
+        "nothing is indexed by %s alone, so its bounds must be given: sum(%s=1..n, ..)", sum->name,
+        sum->name);
   bounds->all_first = 1;
   bounds->all_last = found.size;
   return true;
@@ -225,8 +246,10 @@ bool dvi__sum_bounds(const dvi__context *c, const dvi__expression *sum, dvi__bou
 {
   *bounds = (dvi__bounds){0};
   if (sum->count == 1) return bounds_of_families(c, sum, bounds);
-  if (!dvi__whole_numbers_of(c, sum->part[1], "a bound", &bounds->first, &bounds->all_first)) return false;
-  if (dvi__whole_numbers_of(c, sum->part[2], "a bound", &bounds->last, &bounds->all_last)) return true;
+  if (!dvi__whole_numbers_of(c, sum->part[1], "a bound", &bounds->first, &bounds->all_first))
+    return false;
+  if (dvi__whole_numbers_of(c, sum->part[2], "a bound", &bounds->last, &bounds->all_last))
+    return true;
   dvi__heap_free(bounds->first);
   bounds->first = NULL;
   return false;

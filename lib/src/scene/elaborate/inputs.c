@@ -2,9 +2,9 @@
 #include <string.h>
 
 #include "scene/elaborate/context.h"
-#include "scene/text/heap.h"
+#include "text/heap.h"
 
-static int block_size(const dvi_scene *scene, dvi__block block)
+static int block_size(const dvi_scene *scene, int block)
 {
   if (block == DVI__TIME) return 1;
   return block == DVI__MULTIPLIERS  ? 2 * scene->n
@@ -49,10 +49,13 @@ static dvi__node add_input(dvi__context *c, const dvi__kernel_input *input)
   return dvi__input(c->graph, c->input_count++);
 }
 
-/* A variable that is the same for all elements: found by a table, for there may be as many as coordinates. */
-static dvi__node fixed_variable(dvi__context *c, dvi__block block, int number)
+/* A variable that is the same for all elements: found by a table, for there may be as many as
+ * coordinates. */
+static dvi__node fixed_variable(dvi__context *c, int block, int number)
 {
-  if (c->of_number[block] == NULL) c->of_number[block] = dvi__heap_take((size_t)block_size(c->scene, block), sizeof **c->of_number);
+  if (c->of_number[block] == NULL)
+    c->of_number[block] = dvi__heap_take((size_t)block_size(c->scene, block),
+                                         sizeof **c->of_number);
   if (c->of_number[block] == NULL) {
     (void)dvi__scene_no_memory(c->scene);
     return dvi__constant(c->graph, 0);
@@ -64,22 +67,25 @@ static dvi__node fixed_variable(dvi__context *c, dvi__block block, int number)
   return node;
 }
 
-static int same_variable(const dvi__kernel_input *a, dvi__block block, dvi__numbering n, int offset)
+static int same_variable(const dvi__kernel_input *a, int block, dvi__numbering n, int offset)
 {
-  return !a->is_data && a->block == block && a->number == n.number && a->base == n.base && a->stride == n.stride &&
-         a->offset == offset;
+  return !a->is_data && a->block == block && a->number == n.number && a->base == n.base &&
+         a->stride == n.stride && a->offset == offset;
 }
 
-dvi__node dvi__variable_node(dvi__context *c, dvi__block block, dvi__numbering n, int offset)
+dvi__node dvi__variable_node(dvi__context *c, int block, dvi__numbering n, int offset)
 {
   if (n.number == NULL && n.stride == 0) return fixed_variable(c, block, n.base + offset);
   for (int i = 0; i < c->input_count; i++)
     if (same_variable(&c->input[i], block, n, offset)) return dvi__input(c->graph, i);
-  return add_input(c,
-                   &(dvi__kernel_input){.block = block, .number = n.number, .base = n.base, .stride = n.stride, .offset = offset});
+  return add_input(c, &(dvi__kernel_input){.block = block,
+                                           .number = n.number,
+                                           .base = n.base,
+                                           .stride = n.stride,
+                                           .offset = offset});
 }
 
-dvi__node dvi__sibling_node(dvi__context *c, int input, dvi__block block)
+dvi__node dvi__sibling_node(dvi__context *c, int input, int block)
 {
   const dvi__kernel_input of = c->input[input];
   return dvi__variable_node(c, block, (dvi__numbering){of.number, of.base, of.stride}, of.offset);
@@ -89,7 +95,8 @@ dvi__node dvi__data_node(dvi__context *c, const double *row)
 {
   const size_t bytes = (size_t)c->elements * sizeof *row;
   for (int i = 0; i < c->input_count; i++)
-    if (c->input[i].is_data && memcmp(c->input[i].data, row, bytes) == 0) return dvi__input(c->graph, i);
+    if (c->input[i].is_data && memcmp(c->input[i].data, row, bytes) == 0)
+      return dvi__input(c->graph, i);
   double *copy = dvi__arena_take(&c->scene->arena, (size_t)c->elements, sizeof *copy);
   if (copy == NULL) {
     (void)dvi__scene_no_memory(c->scene);
@@ -119,7 +126,8 @@ static bool keep(dvi__context *c, const int *number, dvi__numbering *numbering)
   return true;
 }
 
-bool dvi__numbering_of(dvi__context *c, const int *each, int all, int shift, int scale, dvi__numbering *numbering)
+bool dvi__numbering_of(dvi__context *c, const int *each, int all, int shift, int scale,
+                       dvi__numbering *numbering)
 {
   *numbering = (dvi__numbering){.base = scale * all + shift};
   if (each == NULL) return true;

@@ -1,16 +1,19 @@
-/* Where an expression is taken apart into sums: through + and -, definitions, and products by what has no coordinates.
+/* Where an expression is taken apart into sums: through + and -, definitions, and products by what
+ * has no coordinates.
  *
- * What is found are leaves, each in the group of the sums around it. A group becomes one kernel: its elements are the values that the indices of these sums take. */
+ * What is found are leaves, each in the group of the sums around it. A group becomes one kernel:
+ * its elements are the values that the indices of these sums take. */
 #include "scene/elaborate/kernels.h"
 
 #include <string.h>
 
-#include "scene/text/heap.h"
+#include "text/heap.h"
 
 enum { LEAVES_MAX = 100000, LEVELS_MAX = 512 };
 static const long elements_max = 200000000;
 
-/* Something that a leaf is multiplied or divided by, with so many indices in sight; then the next one further out. */
+/* Something that a leaf is multiplied or divided by, with so many indices in sight; then the next
+ * one further out. */
 typedef struct factor {
   const dvi__expression *is;
   int divides, indices;
@@ -73,7 +76,8 @@ static bool add_leaf(walk *w, const dvi__expression *e, place at)
   leaf *made = dvi__arena_take(&w->scene->arena, 1, sizeof *made);
   if (made == NULL) return dvi__scene_no_memory(w->scene);
   if (++w->leaves > LEAVES_MAX)
-    return dvi__complain(w->scene->complaint, DVI_BAD_SIZE, e->span, "more than %d added terms", LEAVES_MAX);
+    return dvi__complain(w->scene->complaint, DVI_BAD_SIZE, e->span, "more than %d added terms",
+                         LEAVES_MAX);
   *made = (leaf){.is = e, .factor = at.factor, .negative = at.negative};
   if (at.group->last != NULL)
     at.group->last->next = made;
@@ -103,7 +107,8 @@ static const dvi__expression *operand(const dvi__expression *const *spine, int k
   return k == 0 ? spine[0]->part[0] : spine[k - 1]->part[1];
 }
 
-/* A product of one sum and of factors without coordinates: the sum, with these factors. Others are leaves. */
+/* A product of one sum and of factors without coordinates: the sum, with these factors. Others are
+ * leaves. */
 static bool gather_product(walk *w, const dvi__expression *e, place at)
 {
   int count = 0, sums = 0, fits = 1, divides;
@@ -142,7 +147,8 @@ static bool gather_form(walk *w, const dvi__expression *e, place at)
     at.group = group_of(w, at.group, e);
     return at.group != NULL && gather(w, e->part[0], at);
   }
-  const dvi__name *name = e->form == DVI__FORM_NAME ? dvi__names_find(&w->scene->names, e->name) : NULL;
+  const dvi__name *name = e->form == DVI__FORM_NAME ? dvi__names_find(&w->scene->names, e->name)
+                                                    : NULL;
   if (name != NULL && name->sort == DVI__DEFINITION && at.group->sum == NULL) {
     w->scene->definition[name->number].stands = 1;
     return gather(w, w->scene->definition[name->number].is, at);
@@ -152,7 +158,8 @@ static bool gather_form(walk *w, const dvi__expression *e, place at)
 
 static bool gather(walk *w, const dvi__expression *e, place at)
 {
-  if ((dvi__says(w->scene, e) & DVI__SAYS_SUM) == 0 || w->level == LEVELS_MAX) return add_leaf(w, e, at);
+  if ((dvi__says(w->scene, e) & DVI__SAYS_SUM) == 0 || w->level == LEVELS_MAX)
+    return add_leaf(w, e, at);
   w->level++;
   const bool good = gather_form(w, e, at);
   w->level--;
@@ -191,7 +198,8 @@ static void fill_new(const dvi__bounds *bounds, int elements, int *first_index, 
   }
 }
 
-static bool widen_index(dvi__context *c, dvi__index *index, const dvi__bounds *bounds, int pairs, long total)
+static bool widen_index(dvi__context *c, dvi__index *index, const dvi__bounds *bounds, int pairs,
+                        long total)
 {
   if (index->each == NULL) return true;
   int *wide = dvi__arena_take(&c->scene->arena, (size_t)total, sizeof *wide);
@@ -210,10 +218,13 @@ static bool widen(dvi__context *c, const dvi__expression *sum, const dvi__bounds
   long total = 0;
   for (int e = 0; e < c->elements && total <= elements_max; e++) total += choices(bounds, pairs, e);
   if (total > elements_max)
-    return dvi__complain(c->scene->complaint, DVI_BAD_SIZE, sum->span, "a sum of more than %ld terms", elements_max);
+    return dvi__complain(c->scene->complaint, DVI_BAD_SIZE, sum->span,
+                         "a sum of more than %ld terms", elements_max);
   for (int i = 0; i < before; i++)
     if (!widen_index(c, &c->index[i], bounds, pairs, total)) return false;
-  if (!dvi__index_bind(c, sum->span, sum->name) || (pairs && !dvi__index_bind(c, sum->span, sum->name2))) return false;
+  if (!dvi__index_bind(c, sum->span, sum->name) ||
+      (pairs && !dvi__index_bind(c, sum->span, sum->name2)))
+    return false;
   int *first = dvi__arena_take(&c->scene->arena, (size_t)total, sizeof *first);
   int *second = pairs ? dvi__arena_take(&c->scene->arena, (size_t)total, sizeof *second) : NULL;
   if (first == NULL || (pairs && second == NULL)) return dvi__scene_no_memory(c->scene);
@@ -230,7 +241,8 @@ static bool enter(dvi__context *c, const group *g)
   const group *chain[DVI__INDICES_MAX];
   int depth = 0;
   for (; g->sum != NULL; g = g->around) {
-    if (depth == DVI__INDICES_MAX) return dvi__refuse(c, g->sum->span, "more than %d sums in each other", DVI__INDICES_MAX);
+    if (depth == DVI__INDICES_MAX)
+      return dvi__refuse(c, g->sum->span, "more than %d sums in each other", DVI__INDICES_MAX);
     chain[depth++] = g;
   }
   bool good = true;
@@ -261,7 +273,8 @@ static bool leaf_node(dvi__context *c, const leaf *l, dvi__node *node)
     good = dvi__elaborate_number(c, f->is, &by);
     c->graph->here = f->is->span;
     if (good)
-      *node = f->divides ? dvi__apply(c->graph, DVI__OP_DIVIDE, *node, by) : dvi__apply(c->graph, DVI__OP_MULTIPLY, by, *node);
+      *node = f->divides ? dvi__apply(c->graph, DVI__OP_DIVIDE, *node, by)
+                         : dvi__apply(c->graph, DVI__OP_MULTIPLY, by, *node);
   }
   c->index_count = indices;
   return good;
@@ -274,13 +287,15 @@ static bool add_leaves(dvi__context *c, const group *g, int negative, dvi__node 
     dvi__node node;
     if (!leaf_node(c, l, &node)) return false;
     c->graph->here = l->is->span;
-    *total = dvi__apply(c->graph, l->negative != negative ? DVI__OP_SUBTRACT : DVI__OP_ADD, *total, node);
+    *total = dvi__apply(c->graph, l->negative != negative ? DVI__OP_SUBTRACT : DVI__OP_ADD, *total,
+                        node);
   }
   return true;
 }
 
 /* A kernel of one element, of all elements of a sum written out. */
-static bool write_out(const dvi__context *of, const group *g, int negative, const char *where, dvi__kernels *list)
+static bool write_out(const dvi__context *of, const group *g, int negative, const char *where,
+                      dvi__kernels *list)
 {
   dvi__context c;
   if (!dvi__context_make(&c, of->scene, of->may, where)) return false;
@@ -300,7 +315,8 @@ static bool write_out(const dvi__context *of, const group *g, int negative, cons
   return good;
 }
 
-static bool add_group(dvi_scene *scene, unsigned may, const char *where, const group *g, int negative, dvi__kernels *list)
+static bool add_group(dvi_scene *scene, unsigned may, const char *where, const group *g,
+                      int negative, dvi__kernels *list)
 {
   dvi__context c;
   if (g->first == NULL) return true;
@@ -318,22 +334,26 @@ static bool add_group(dvi_scene *scene, unsigned may, const char *where, const g
   return good;
 }
 
-bool dvi__kernels_add(dvi_scene *scene, unsigned may, const char *where, const dvi__expression *e, int negative, dvi__kernels *list)
+bool dvi__kernels_add(dvi_scene *scene, unsigned may, const char *where, const dvi__expression *e,
+                      int negative, dvi__kernels *list)
 {
   walk w = {.scene = scene};
   group *outside = group_of(&w, NULL, NULL);
   bool good = outside != NULL && gather(&w, e, (place){.group = outside});
-  for (const group *g = w.first; g != NULL && good; g = g->next) good = add_group(scene, may, where, g, negative, list);
+  for (const group *g = w.first; g != NULL && good; g = g->next)
+    good = add_group(scene, may, where, g, negative, list);
   return good;
 }
 
-bool dvi__kernels_function(dvi_scene *scene, dvi__kernels *list, int count, dvi__term **term)
+bool dvi__kernels_function(dvi_scene *scene, dvi__kernels *list, int count, dvi__scene_term **term)
 {
-  const int size[DVI__BLOCKS] = {1, scene->n, scene->velocities, count};
-  dvi__term *made = dvi__arena_take(&scene->arena, 1, sizeof *made);
+  const int width[DVI__BLOCKS] = {1, scene->n, scene->velocities, count};
+  const dvi__blocks blocks = {DVI__BLOCKS, width, DVI__PAIRS, dvi__scene_pairs};
+  dvi__scene_term *made = dvi__arena_take(&scene->arena, 1, sizeof *made);
   *term = made;
   if (made == NULL) return dvi__scene_no_memory(scene);
-  const dvi_status status = dvi__function_create(list->count, list->kernel, size, &made->function);
+  const dvi_status status = dvi__function_create(list->count, list->kernel, &blocks,
+                                                 &made->function);
   if (status != DVI_OK) return dvi__scene_no_memory(scene);
   dvi__heap_free(list->kernel);
   *list = (dvi__kernels){0};

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "scene/elaborate/slips.h"
+#include "scene/elaborate/hints.h"
 #include "scene/elaborate/words.h"
 
 static uint32_t hash_of(const char *text)
@@ -20,7 +20,8 @@ static int slot_of(const dvi__names *names, const char *text)
 {
   const int mask = names->table_size - 1;
   int slot = (int)(hash_of(text) & (uint32_t)mask);
-  while (names->table[slot] != 0 && strcmp(names->name[names->table[slot] - 1].text, text) != 0) slot = (slot + 1) & mask;
+  while (names->table[slot] != 0 && strcmp(names->name[names->table[slot] - 1].text, text) != 0)
+    slot = (slot + 1) & mask;
   return slot;
 }
 
@@ -52,31 +53,36 @@ bool dvi__is_identifier(const char *text)
   return *text != '\0' && (*text < '0' || *text > '9') && text[strspn(text, mark)] == '\0';
 }
 
-bool dvi__names_add(dvi__names *names, dvi__arena *arena, dvi__complaint *complaint, const char *text, dvi__span span,
-                    dvi__sort sort, int number)
+bool dvi__names_add(dvi__names *names, dvi__arena *arena, dvi__complaint *complaint,
+                    const char *text, dvi__span span, dvi__sort sort, int number)
 {
   if (!dvi__is_identifier(text))
-    return dvi__complain(complaint, DVI_BAD_FILE, span, "'%s' is no name: letters, digits and _, a letter first", text);
+    return dvi__complain(complaint, DVI_BAD_FILE, span,
+                         "'%s' is no name: letters, digits and _, a letter first", text);
   if (dvi__is_word(text))
-    return dvi__complain(complaint, DVI_BAD_FILE, span, "'%s' is a word of the language; choose another name", text);
+    return dvi__complain(complaint, DVI_BAD_FILE, span,
+                         "'%s' is a word of the language; choose another name", text);
   const dvi__name *other = dvi__names_find(names, text);
   if (other != NULL)
-    return dvi__complain(complaint, DVI_BAD_FILE, span, "there is a %s '%s' already", dvi__sort_name(other->sort), text);
+    return dvi__complain(complaint, DVI_BAD_FILE, span, "there is a %s '%s' already",
+                         dvi__sort_name(other->sort), text);
   if (!grow(names, arena)) return dvi__complain_of_memory(complaint);
   names->name[names->count] = (dvi__name){text, sort, number};
   names->table[slot_of(names, text)] = ++names->count;
   return true;
 }
 
-bool(dvi__names_unknown)(const dvi__names *names, dvi__arena *arena, dvi__complaint *complaint, const char *text, dvi__span span)
+bool(dvi__names_unknown)(const dvi__names *names, dvi__arena *arena, dvi__complaint *complaint,
+                         const char *text, dvi__span span)
 {
   char hint[96] = "";
   const int words = dvi__word_count(), count = words + names->count;
   const char **candidate = dvi__arena_take(arena, (size_t)count, sizeof *candidate);
   for (int i = 0; candidate != NULL && i < count; i++)
     candidate[i] = i < names->count ? names->name[i].text : dvi__word(i - names->count);
-  (void)dvi__name_elsewhere(names, text, hint, sizeof hint);
-  if (hint[0] == '\0' && candidate != NULL) (void)dvi__nearest(text, count, candidate, hint, sizeof hint);
+  (void)dvi__hint_of_name(names, text, hint, sizeof hint);
+  if (hint[0] == '\0' && candidate != NULL)
+    (void)dvi__nearest(text, count, candidate, hint, sizeof hint);
   return dvi__complain(complaint, DVI_BAD_FILE, span, "there is no '%s'%s", text, hint);
 }
 

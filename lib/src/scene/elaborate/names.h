@@ -1,8 +1,8 @@
 /* The names of a scene: parameters, coordinates and definitions, and what each of them is. */
 #ifndef DVI_SCENE_NAMES_H
 #define DVI_SCENE_NAMES_H
-#include "scene/text/arena.h"
-#include "scene/text/complaint.h"
+#include "text/arena.h"
+#include "text/complaint.h"
 #include "scene/text/syntax.h"
 
 /* rank 0: a number; 1: a vector of `rows`; 2: a matrix. rank -1: none, an error was told. */
@@ -30,9 +30,16 @@ typedef struct dvi__parameter {
   int last_made;                /* the number + 1 of the last parameter that is made of it */
 } dvi__parameter;
 
-typedef enum dvi__kind { DVI__LINES, DVI__ROTATION, DVI__MOTION, DVI__DIRECTION, DVI__ANGLE } dvi__kind;
+typedef enum dvi__kind {
+  DVI__LINES,
+  DVI__ROTATION,
+  DVI__MOTION,
+  DVI__DIRECTION,
+  DVI__ANGLE
+} dvi__kind;
 
-/* The numbers of a coordinate in q, or in v and p: member m has `components` from first + m * stride on. */
+/* The numbers of a coordinate in q, or in v and p: member m has `components` from first + m *
+ * stride on. */
 typedef struct dvi__slots {
   int first, stride, components;
 } dvi__slots;
@@ -41,9 +48,9 @@ typedef struct dvi__coordinate {
   const char *name;
   dvi__span span;
   dvi__kind kind;
-  int family;       /* how many indices it has, at most 2 */
-  int size;         /* members of the family; 1 */
-  int columns;      /* values of the last one of two indices, which members are counted by first; 1 */
+  int family;  /* how many indices it has, at most 2 */
+  int size;    /* members of the family; 1 */
+  int columns; /* values of the last one of two indices, which members are counted by first; 1 */
   dvi__shape shape; /* of a member */
   dvi__slots q, v;
   const struct dvi__coordinate *part; /* of a motion: [2], its rotation and its place */
@@ -65,7 +72,8 @@ typedef struct dvi__subscripts {
 /* What an expression mentions, definitions seen through. */
 enum { DVI__SAYS_Q = 1, DVI__SAYS_V = 2, DVI__SAYS_P = 4, DVI__SAYS_T = 8, DVI__SAYS_SUM = 16 };
 
-/* Beside what may stand somewhere: velocities there are those of a state, v, and not the rates of what is stored. */
+/* Beside what may stand somewhere: velocities there are those of a state, v, and not the rates of
+ * what is stored. */
 enum { DVI__OF_STATE = 32 };
 
 typedef struct dvi__definition {
@@ -97,14 +105,15 @@ typedef struct dvi__names {
 const dvi__name *dvi__names_find(const dvi__names *names, const char *text);
 
 /* Add a name; refused if it is no identifier, a word of the language, or there already. */
-bool dvi__names_add(dvi__names *names, dvi__arena *arena, dvi__complaint *complaint, const char *text, dvi__span span,
-                    dvi__sort sort, int number);
+bool dvi__names_add(dvi__names *names, dvi__arena *arena, dvi__complaint *complaint,
+                    const char *text, dvi__span span, dvi__sort sort, int number);
 
 /* Letters, digits and _, a letter first. */
 bool dvi__is_identifier(const char *text);
 
 /* Complain of an unknown name, with the nearest known one. */
-bool dvi__names_unknown(const dvi__names *names, dvi__arena *arena, dvi__complaint *complaint, const char *text, dvi__span span);
+bool dvi__names_unknown(const dvi__names *names, dvi__arena *arena, dvi__complaint *complaint,
+                        const char *text, dvi__span span);
 
 /* "parameter", "coordinate" or "definition". */
 const char *dvi__sort_name(dvi__sort sort);

@@ -1,10 +1,12 @@
-/* Copies of kernels: of what their root needs, and of their parts by degree in a block of variables.
+/* Copies of kernels: of what their root needs, and of their parts by degree in a block of
+ * variables.
  *
- * A node f is split into Z, where the block's variables are zero, and P = f - Z, by f's own rule: (Z_a + P_a)(Z_b + P_b) has P = P_a Z_b + Z_a P_b + P_a P_b. */
+ * A node f is split into Z, where the block's variables are zero, and P = f - Z, by f's own rule:
+ * (Z_a + P_a)(Z_b + P_b) has P = P_a Z_b + Z_a P_b + P_a P_b. */
 #include <string.h>
 
-#include "scene/expr/graph_make.h"
-#include "scene/text/heap.h"
+#include "expr/graph_make.h"
+#include "text/heap.h"
 #include "scene/elaborate/kernels.h"
 
 typedef struct copy {
@@ -14,7 +16,7 @@ typedef struct copy {
   int input_count;
   int *of_input;            /* new number + 1 of an old input */
   dvi__node *rest, *moving; /* Z and P of old nodes; moving NULL: only Z is wanted */
-  dvi__block block, as;     /* block DVI__BLOCKS: nothing moves */
+  int block, as;            /* block DVI__BLOCKS: nothing moves */
 } copy;
 
 static dvi__node apply(copy *c, dvi__op op, dvi__node a, dvi__node b)
@@ -62,7 +64,8 @@ static void copy_rest(copy *c, int i)
 /* P of a product, (Z_a + P_a)(Z_b + P_b). */
 static dvi__node moving_product(copy *c, int a, int b)
 {
-  const dvi__node mixed = apply(c, DVI__OP_ADD, apply(c, DVI__OP_MULTIPLY, c->moving[a], c->rest[b]),
+  const dvi__node mixed = apply(c, DVI__OP_ADD,
+                                apply(c, DVI__OP_MULTIPLY, c->moving[a], c->rest[b]),
                                 apply(c, DVI__OP_MULTIPLY, c->rest[a], c->moving[b]));
   return apply(c, DVI__OP_ADD, mixed, apply(c, DVI__OP_MULTIPLY, c->moving[a], c->moving[b]));
 }
@@ -84,9 +87,11 @@ static void copy_moving(copy *c, int i)
   case DVI__OP_WHERE: c->moving[i] = apply(c, DVI__OP_WHERE, c->rest[a], c->moving[b]); break;
   case DVI__OP_MULTIPLY: c->moving[i] = moving_product(c, a, b); break;
   case DVI__OP_SQUARE:
-    c->moving[i] = is_zero(c, c->rest[a]) ? apply(c, DVI__OP_SQUARE, c->moving[a], 0) : moving_product(c, a, a);
+    c->moving[i] = is_zero(c, c->rest[a]) ? apply(c, DVI__OP_SQUARE, c->moving[a], 0)
+                                          : moving_product(c, a, a);
     break;
-  default: c->moving[i] = zero(c); /* of degree 0, or no polynomial of degree 2: those are not split */
+  default:
+    c->moving[i] = zero(c); /* of degree 0, or no polynomial of degree 2: those are not split */
   }
 }
 
@@ -120,7 +125,8 @@ static void free_work(copy *c, char *needed)
 }
 
 /* Z of a kernel, or P, into a kernel of its own, in the arena but for the nodes of its graph. */
-static bool copy_part(dvi_scene *scene, const dvi__kernel *from, dvi__block block, dvi__block as, int moving, dvi__kernel *to)
+static bool copy_part(dvi_scene *scene, const dvi__kernel *from, int block, int as, int moving,
+                      dvi__kernel *to)
 {
   const size_t nodes = (size_t)from->root + 1, inputs = (size_t)from->input_count + 1;
   char *needed = dvi__heap_take(nodes, 1);
@@ -130,8 +136,8 @@ static bool copy_part(dvi_scene *scene, const dvi__kernel *from, dvi__block bloc
   c.of_input = dvi__heap_take(inputs, sizeof *c.of_input);
   c.rest = dvi__heap_take(nodes, sizeof *c.rest);
   if (moving) c.moving = dvi__heap_take(nodes, sizeof *c.moving);
-  const int made = needed != NULL && c.graph != NULL && c.input != NULL && c.of_input != NULL && c.rest != NULL &&
-                   (!moving || c.moving != NULL);
+  const int made = needed != NULL && c.graph != NULL && c.input != NULL && c.of_input != NULL &&
+                   c.rest != NULL && (!moving || c.moving != NULL);
   if (made) {
     mark(from->graph, from->root, needed);
     copy_nodes(&c, needed);
@@ -183,15 +189,20 @@ static bool append_needed(dvi_scene *scene, dvi__kernels *list, const dvi__kerne
 bool dvi__kernels_add_node(dvi__context *c, dvi__node root, dvi__kernels *list)
 {
   if (c->graph->failed == DVI_BAD_SIZE)
-    return dvi__complain(c->scene->complaint, DVI_BAD_SIZE, DVI__NOWHERE, "more than 2000000 parts, with all sums written out");
+    return dvi__complain(c->scene->complaint, DVI_BAD_SIZE, DVI__NOWHERE,
+                         "more than 2000000 parts, with all sums written out");
   if (c->graph->failed != DVI_OK) return dvi__scene_no_memory(c->scene);
   if (c->scene->complaint->status != DVI_OK) return false;
-  const dvi__kernel all = {
-      .graph = c->graph, .root = root, .elements = c->elements, .input_count = c->input_count, .input = c->input};
+  const dvi__kernel all = {.graph = c->graph,
+                           .root = root,
+                           .elements = c->elements,
+                           .input_count = c->input_count,
+                           .input = c->input};
   return append_needed(c->scene, list, &all);
 }
 
-bool dvi__kernels_at_rest(dvi_scene *scene, const dvi__kernels *of, dvi__block block, int negative, dvi__kernels *list)
+bool dvi__kernels_at_rest(dvi_scene *scene, const dvi__kernels *of, int block, int negative,
+                          dvi__kernels *list)
 {
   for (int k = 0; k < of->count; k++) {
     dvi__kernel part;
@@ -204,7 +215,8 @@ bool dvi__kernels_at_rest(dvi_scene *scene, const dvi__kernels *of, dvi__block b
   return true;
 }
 
-bool dvi__kernels_moving(dvi_scene *scene, const dvi__kernels *of, dvi__block block, dvi__block as, dvi__kernels *list)
+bool dvi__kernels_moving(dvi_scene *scene, const dvi__kernels *of, int block, int as,
+                         dvi__kernels *list)
 {
   for (int k = 0; k < of->count; k++) {
     dvi__kernel part;
@@ -221,11 +233,12 @@ bool dvi__kernels_moving(dvi_scene *scene, const dvi__kernels *of, dvi__block bl
 static dvi__degree of_product(dvi__degree a, dvi__degree b)
 {
   const int degree = a.degree + b.degree;
-  const int pure = (a.degree == 0 || (a.pure && !b.moves)) && (b.degree == 0 || (b.pure && !a.moves));
+  const int pure = (a.degree == 0 || (a.pure && !b.moves)) &&
+                   (b.degree == 0 || (b.pure && !a.moves));
   return (dvi__degree){degree > 3 ? 3 : degree, pure, a.moves || b.moves};
 }
 
-static dvi__degree of_input(const dvi__kernel_input *input, dvi__block block)
+static dvi__degree of_input(const dvi__kernel_input *input, int block)
 {
   if (input->is_data) return (dvi__degree){0, 1, 0};
   return input->block == block ? (dvi__degree){1, 1, 0} : (dvi__degree){0, 1, 1};
@@ -237,7 +250,7 @@ static dvi__degree of_other(dvi__degree a, dvi__degree b)
   return (dvi__degree){0, 1, a.moves || b.moves};
 }
 
-static dvi__degree of_node(const dvi__kernel *kernel, dvi__block block, const dvi__degree *known, int i)
+static dvi__degree of_node(const dvi__kernel *kernel, int block, const dvi__degree *known, int i)
 {
   static const dvi__degree none = {0, 1, 0};
   const dvi__graph_node *node = &kernel->graph->node[i];
@@ -250,12 +263,15 @@ static dvi__degree of_node(const dvi__kernel *kernel, dvi__block block, const dv
   case DVI__OP_ADD:
   case DVI__OP_SUBTRACT: {
     const dvi__degree a = known[node->a], b = known[node->b];
-    return (dvi__degree){a.degree > b.degree ? a.degree : b.degree, a.pure && b.pure, a.moves || b.moves};
+    return (dvi__degree){a.degree > b.degree ? a.degree : b.degree, a.pure && b.pure,
+                         a.moves || b.moves};
   }
   case DVI__OP_DIVIDE:
-    return known[node->b].degree > 0 ? of_other(known[node->a], known[node->b]) : of_product(known[node->a], known[node->b]);
+    return known[node->b].degree > 0 ? of_other(known[node->a], known[node->b])
+                                     : of_product(known[node->a], known[node->b]);
   case DVI__OP_WHERE:
-    return known[node->a].degree > 0 ? of_other(known[node->a], known[node->b]) : of_product(known[node->a], known[node->b]);
+    return known[node->a].degree > 0 ? of_other(known[node->a], known[node->b])
+                                     : of_product(known[node->a], known[node->b]);
   case DVI__OP_RAISE:
   case DVI__OP_ATAN2: return of_other(known[node->a], known[node->b]);
   default: return of_other(known[node->a], none);
@@ -268,16 +284,18 @@ static int is_sum(dvi__op op)
 }
 
 /* fits[i]: whether a node, of a sum all of its terms, is of degree 0, or of degree 2 and pure. */
-static void find_fits(const dvi__kernel *kernel, dvi__block block, dvi__degree *known, char *fits)
+static void find_fits(const dvi__kernel *kernel, int block, dvi__degree *known, char *fits)
 {
   for (int i = 0; i <= kernel->root; i++) {
     const dvi__graph_node *node = &kernel->graph->node[i];
     known[i] = of_node(kernel, block, known, i);
-    fits[i] = is_sum(node->op) ? fits[node->a] && fits[node->b] : known[i].degree == 0 || (known[i].degree == 2 && known[i].pure);
+    fits[i] = is_sum(node->op) ? fits[node->a] && fits[node->b]
+                               : known[i].degree == 0 || (known[i].degree == 2 && known[i].pure);
   }
 }
 
-bool dvi__kernel_other_term(dvi_scene *scene, const dvi__kernel *kernel, dvi__block block, dvi__span *span, int *found)
+bool dvi__kernel_other_term(dvi_scene *scene, const dvi__kernel *kernel, int block, dvi__span *span,
+                            int *found)
 {
   const dvi__graph_node *node = kernel->graph->node;
   dvi__degree *known = dvi__heap_take((size_t)kernel->root + 1, sizeof *known);
@@ -288,19 +306,32 @@ bool dvi__kernel_other_term(dvi_scene *scene, const dvi__kernel *kernel, dvi__bl
     find_fits(kernel, block, known, fits);
     *found = !fits[at];
     for (; is_sum(node[at].op); at = fits[node[at].a] ? node[at].b : node[at].a) sum = at;
-    *span = node[node[at].op == DVI__OP_INPUT ? sum : at].span; /* inputs are where they stand first */
+    *span =
+        node[node[at].op == DVI__OP_INPUT ? sum : at].span; /* inputs are where they stand first */
   }
   dvi__heap_free(known);
   dvi__heap_free(fits);
   return good;
 }
 
-bool dvi__kernel_degree(dvi_scene *scene, const dvi__kernel *kernel, dvi__block block, dvi__degree *degree)
+bool dvi__kernel_degree(dvi_scene *scene, const dvi__kernel *kernel, int block, dvi__degree *degree)
 {
   dvi__degree *known = dvi__heap_take((size_t)kernel->root + 1, sizeof *known);
   if (known == NULL) return dvi__scene_no_memory(scene);
   for (int i = 0; i <= kernel->root; i++) known[i] = of_node(kernel, block, known, i);
   *degree = known[kernel->root];
   dvi__heap_free(known);
+  return true;
+}
+
+bool dvi__kernels_degree(dvi_scene *scene, const dvi__kernels *list, int block, dvi__degree *whole)
+{
+  *whole = (dvi__degree){0, 1, 0};
+  for (int k = 0; k < list->count; k++) {
+    dvi__degree one = {0};
+    if (!dvi__kernel_degree(scene, &list->kernel[k], block, &one)) return false;
+    if (one.degree > whole->degree) whole->degree = one.degree;
+    whole->pure = whole->pure && one.pure;
+  }
   return true;
 }

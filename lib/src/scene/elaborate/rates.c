@@ -1,7 +1,7 @@
 /* Rates by the chain rule, and momenta. */
 
 #include "scene/elaborate/elaborate.h"
-#include "scene/text/heap.h"
+#include "text/heap.h"
 
 /* ---- rates and momenta ---- */
 
@@ -14,12 +14,14 @@ static dvi__node from_momentum(dvi__context *c, int input, dvi__span span)
   if (c->sample) return p;
   if (mass == NULL) {
     (void)dvi__refuse(c, span,
-                      "velocities can stand in %s only if the mass is one number for each coordinate; say it by momenta, p(x)",
+                      "velocities can stand in %s only if the mass is one number for each "
+                      "coordinate; say it by momenta, p(x)",
                       c->where);
     return p;
   }
   if (of.number == NULL && of.stride == 0)
-    return dvi__apply(c->graph, DVI__OP_DIVIDE, p, dvi__constant(c->graph, mass[dvi__input_number(&of, 0)]));
+    return dvi__apply(c->graph, DVI__OP_DIVIDE, p,
+                      dvi__constant(c->graph, mass[dvi__input_number(&of, 0)]));
   double *row = dvi__heap_take((size_t)c->elements, sizeof *row);
   if (row == NULL) {
     (void)dvi__scene_no_memory(c->scene);
@@ -55,7 +57,8 @@ static bool input_rate(dvi__context *c, int input, dvi__span span, dvi__node *ra
 }
 
 /* The rates of all inputs that occur in a value; others 0. */
-static bool input_rates(dvi__context *c, dvi__value value, dvi__span span, int count, char *used, dvi__node *rate)
+static bool input_rates(dvi__context *c, dvi__value value, dvi__span span, int count, char *used,
+                        dvi__node *rate)
 {
   const int size = dvi__value_size(value);
   dvi__node *root = dvi__heap_take((size_t)size, sizeof *root);
@@ -78,8 +81,10 @@ static dvi__value chain_rule(dvi__context *c, dvi__value value, dvi__span span)
   dvi__node *rate = dvi__heap_take((size_t)count + 1, sizeof *rate);
   dvi__value result = dvi__value_make(c, value.shape.rank, value.shape.rows, value.shape.columns);
   if (used == NULL || rate == NULL) result = dvi__refused(dvi__scene_no_memory(c->scene));
-  if (!dvi__failed(result) && !input_rates(c, value, span, count, used, rate)) result = DVI__NO_VALUE;
-  if (!dvi__failed(result) && result.shape.rank == 0) dvi__rates(c->graph, 1, &value.one, count, rate, &result.one);
+  if (!dvi__failed(result) && !input_rates(c, value, span, count, used, rate))
+    result = DVI__NO_VALUE;
+  if (!dvi__failed(result) && result.shape.rank == 0)
+    dvi__rates(c->graph, 1, &value.one, count, rate, &result.one);
   if (!dvi__failed(result) && result.shape.rank > 0)
     dvi__rates(c->graph, dvi__value_size(value), value.node, count, rate, result.node);
   dvi__heap_free(used);
@@ -87,14 +92,18 @@ static dvi__value chain_rule(dvi__context *c, dvi__value value, dvi__span span)
   return result;
 }
 
-/* The momentum, or in Lagrangians the rate, of every number of a value; false if one is no coordinate, or has none of its own. */
+/* The momentum, or in Lagrangians the rate, of every number of a value; false if one is no
+ * coordinate, or has none of its own. */
 static bool siblings(dvi__context *c, dvi__value value, dvi__value *result)
 {
-  const int size = dvi__value_size(value), of_state = (c->may & (DVI__SAYS_P | DVI__OF_STATE)) != 0 && dvi__has_factors(c->scene);
+  const int size = dvi__value_size(value),
+            of_state = (c->may & (DVI__SAYS_P | DVI__OF_STATE)) != 0 && dvi__has_factors(c->scene);
   *result = dvi__value_make(c, value.shape.rank, value.shape.rows, value.shape.columns);
   for (int i = 0; i < size && !dvi__failed(*result); i++) {
     const dvi__graph_node *node = &c->graph->node[dvi__value_at(value, i)];
-    if (node->op != DVI__OP_INPUT || c->input[node->a].is_data || c->input[node->a].block != DVI__COORDINATES) return false;
+    if (node->op != DVI__OP_INPUT || c->input[node->a].is_data ||
+        c->input[node->a].block != DVI__COORDINATES)
+      return false;
     dvi__node *to = result->node == NULL ? &result->one : &result->node[i];
     const int input = node->a;
     if (of_state && !dvi__input_momentum(c, input, to)) return false;
@@ -107,7 +116,8 @@ dvi__value dvi__rate_value(dvi__context *c, const dvi__expression *e)
 {
   dvi__value result;
   if (e->part[0]->form == DVI__FORM_RATE)
-    return dvi__refused(dvi__refuse(c, e->span, "the rate of a rate: there are no accelerations here"));
+    return dvi__refused(
+        dvi__refuse(c, e->span, "the rate of a rate: there are no accelerations here"));
   if (!dvi__may_stand(c, DVI__SAYS_V, e->span)) return DVI__NO_VALUE;
   const dvi__value value = dvi__elaborate(c, e->part[0]);
   if (dvi__failed(value)) return DVI__NO_VALUE;

@@ -24,7 +24,8 @@ dvi__value dvi__value_make(dvi__context *c, int rank, int rows, int columns)
 {
   dvi__value value = {.shape = {rank, rows, columns}};
   if (rank == 0) return value;
-  value.node = dvi__arena_take(&c->scene->arena, (size_t)rows * (size_t)columns, sizeof *value.node);
+  value.node = dvi__arena_take(&c->scene->arena, (size_t)rows * (size_t)columns,
+                               sizeof *value.node);
   if (value.node != NULL) return value;
   (void)dvi__scene_no_memory(c->scene);
   return DVI__NO_VALUE;
@@ -39,7 +40,8 @@ static void put(dvi__value *value, int i, dvi__node node)
 }
 
 /* Refuse two values for an operation: "a vector of 3 plus a number". */
-static dvi__value misfit(const dvi__context *c, dvi__value a, const char *word, dvi__value b, dvi__span span, const char *remedy)
+static dvi__value misfit(const dvi__context *c, dvi__value a, const char *word, dvi__value b,
+                         dvi__span span, const char *remedy)
 {
   char left[48], right[48];
   (void)dvi__refuse(c, span, "%s %s %s%s", dvi__shape_text(a.shape, left, sizeof left), word,
@@ -51,16 +53,19 @@ dvi__value dvi__value_negate(dvi__context *c, dvi__value a)
 {
   dvi__value result = dvi__value_make(c, a.shape.rank, a.shape.rows, a.shape.columns);
   if (result.shape.rank < 0) return result;
-  for (int i = 0; i < dvi__value_size(a); i++) put(&result, i, dvi__apply(c->graph, DVI__OP_NEGATE, dvi__value_at(a, i), 0));
+  for (int i = 0; i < dvi__value_size(a); i++)
+    put(&result, i, dvi__apply(c->graph, DVI__OP_NEGATE, dvi__value_at(a, i), 0));
   return result;
 }
 
 dvi__value dvi__value_add(dvi__context *c, dvi__op op, dvi__value a, dvi__value b, dvi__span span)
 {
-  if (!dvi__same_shape(a.shape, b.shape)) return misfit(c, a, op == DVI__OP_ADD ? "plus" : "minus", b, span, "");
+  if (!dvi__same_shape(a.shape, b.shape))
+    return misfit(c, a, op == DVI__OP_ADD ? "plus" : "minus", b, span, "");
   dvi__value result = dvi__value_make(c, a.shape.rank, a.shape.rows, a.shape.columns);
   if (result.shape.rank < 0) return result;
-  for (int i = 0; i < dvi__value_size(a); i++) put(&result, i, dvi__apply(c->graph, op, dvi__value_at(a, i), dvi__value_at(b, i)));
+  for (int i = 0; i < dvi__value_size(a); i++)
+    put(&result, i, dvi__apply(c->graph, op, dvi__value_at(a, i), dvi__value_at(b, i)));
   return result;
 }
 
@@ -70,16 +75,20 @@ static dvi__value scaled(dvi__context *c, dvi__op op, dvi__value a, dvi__node b,
   dvi__value result = dvi__value_make(c, a.shape.rank, a.shape.rows, a.shape.columns);
   if (result.shape.rank < 0) return result;
   for (int i = 0; i < dvi__value_size(a); i++)
-    put(&result, i, turned ? dvi__apply(c->graph, op, b, dvi__value_at(a, i)) : dvi__apply(c->graph, op, dvi__value_at(a, i), b));
+    put(&result, i,
+        turned ? dvi__apply(c->graph, op, b, dvi__value_at(a, i))
+               : dvi__apply(c->graph, op, dvi__value_at(a, i), b));
   return result;
 }
 
 /* sum_k a[first + k*step] b[other + k*other_step], from the left. */
-static dvi__node inner(dvi__context *c, int count, dvi__value a, int first, int step, dvi__value b, int other, int other_step)
+static dvi__node inner(dvi__context *c, int count, dvi__value a, int first, int step, dvi__value b,
+                       int other, int other_step)
 {
   dvi__node total = dvi__constant(c->graph, 0);
   for (int k = 0; k < count; k++) {
-    const dvi__node product = dvi__apply(c->graph, DVI__OP_MULTIPLY, dvi__value_at(a, first + k * step),
+    const dvi__node product = dvi__apply(c->graph, DVI__OP_MULTIPLY,
+                                         dvi__value_at(a, first + k * step),
                                          dvi__value_at(b, other + k * other_step));
     total = k == 0 ? product : dvi__apply(c->graph, DVI__OP_ADD, total, product);
   }
@@ -93,7 +102,8 @@ static dvi__value matrix_product(dvi__context *c, dvi__value a, dvi__value b)
   if (result.shape.rank < 0) return result;
   for (int i = 0; i < a.shape.rows; i++)
     for (int j = 0; j < columns; j++)
-      put(&result, i * columns + j, inner(c, a.shape.columns, a, i * a.shape.columns, 1, b, j, columns));
+      put(&result, i * columns + j,
+          inner(c, a.shape.columns, a, i * a.shape.columns, 1, b, j, columns));
   return result;
 }
 
@@ -102,20 +112,24 @@ dvi__value dvi__value_multiply(dvi__context *c, dvi__value a, dvi__value b, dvi_
   if (b.shape.rank == 0) return scaled(c, DVI__OP_MULTIPLY, a, b.one, 0);
   if (a.shape.rank == 0) return scaled(c, DVI__OP_MULTIPLY, b, a.one, 1);
   if (a.shape.rank == 2 && a.shape.columns == b.shape.rows) return matrix_product(c, a, b);
-  return misfit(c, a, "times", b, span, a.shape.rank == 1 && b.shape.rank == 1 ? ": say dot(a,b) or cross(a,b)" : "");
+  return misfit(c, a, "times", b, span,
+                a.shape.rank == 1 && b.shape.rank == 1 ? ": say dot(a,b) or cross(a,b)" : "");
 }
 
 dvi__value dvi__value_divide(dvi__context *c, dvi__value a, dvi__value b, dvi__span span)
 {
-  return b.shape.rank == 0 ? scaled(c, DVI__OP_DIVIDE, a, b.one, 0) : misfit(c, a, "by", b, span, "");
+  return b.shape.rank == 0 ? scaled(c, DVI__OP_DIVIDE, a, b.one, 0)
+                           : misfit(c, a, "by", b, span, "");
 }
 
 dvi__value dvi__value_power(dvi__context *c, dvi__value a, dvi__value b, dvi__span span)
 {
   double exponent;
   if (a.shape.rank != 0 || b.shape.rank != 0)
-    return misfit(c, a, "to the power of", b, span, a.shape.rank == 1 && b.shape.rank == 0 ? ": say dot(a,a), or norm(a)" : "");
-  if (dvi__is_constant(c->graph, b.one, &exponent)) return dvi__number_value(dvi__power(c->graph, a.one, exponent));
+    return misfit(c, a, "to the power of", b, span,
+                  a.shape.rank == 1 && b.shape.rank == 0 ? ": say dot(a,a), or norm(a)" : "");
+  if (dvi__is_constant(c->graph, b.one, &exponent))
+    return dvi__number_value(dvi__power(c->graph, a.one, exponent));
   return dvi__number_value(dvi__apply(c->graph, DVI__OP_RAISE, a.one, b.one));
 }
 
@@ -137,7 +151,8 @@ static dvi__value cross(dvi__context *c, dvi__value a, dvi__value b)
 {
   if (a.shape.rows == 2) return dvi__number_value(minor(c, a, b, 0, 1));
   dvi__value result = dvi__value_make(c, 1, 3, 1);
-  for (int i = 0; i < 3 && result.shape.rank >= 0; i++) put(&result, i, minor(c, a, b, (i + 1) % 3, (i + 2) % 3));
+  for (int i = 0; i < 3 && result.shape.rank >= 0; i++)
+    put(&result, i, minor(c, a, b, (i + 1) % 3, (i + 2) % 3));
   return result;
 }
 
@@ -150,20 +165,24 @@ static dvi__value transpose(dvi__context *c, dvi__value a)
   return result;
 }
 
-/* The rotation about an axis by an angle: cos I + sin e^ + (1 - cos) e e^T, e = axis/|axis| (Rodrigues). */
+/* The rotation about an axis by an angle: cos I + sin e^ + (1 - cos) e e^T, e = axis/|axis|
+ * (Rodrigues). */
 static dvi__value turn(dvi__context *c, dvi__value axis, dvi__node angle)
 {
   dvi__graph *g = c->graph;
   const dvi__node length = dvi__apply(g, DVI__OP_SQRT, inner(c, 3, axis, 0, 1, axis, 0, 1), 0);
   const dvi__value e = scaled(c, DVI__OP_DIVIDE, axis, length, 0);
-  const dvi__node cosine = dvi__apply(g, DVI__OP_COS, angle, 0), sine = dvi__apply(g, DVI__OP_SIN, angle, 0);
+  const dvi__node cosine = dvi__apply(g, DVI__OP_COS, angle, 0),
+                  sine = dvi__apply(g, DVI__OP_SIN, angle, 0);
   dvi__value R = dvi__value_make(c, 2, 3, 3);
   if (R.shape.rank < 0 || e.shape.rank < 0) return DVI__NO_VALUE;
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) {
-      const dvi__node along = dvi__apply(g, DVI__OP_MULTIPLY, less(c, dvi__constant(g, 1), cosine),
-                                         dvi__apply(g, DVI__OP_MULTIPLY, dvi__value_at(e, i), dvi__value_at(e, j)));
-      const dvi__node around = i == j ? cosine : dvi__apply(g, DVI__OP_MULTIPLY, sine, dvi__value_at(e, 3 - i - j));
+      const dvi__node along = dvi__apply(
+          g, DVI__OP_MULTIPLY, less(c, dvi__constant(g, 1), cosine),
+          dvi__apply(g, DVI__OP_MULTIPLY, dvi__value_at(e, i), dvi__value_at(e, j)));
+      const dvi__node around =
+          i == j ? cosine : dvi__apply(g, DVI__OP_MULTIPLY, sine, dvi__value_at(e, 3 - i - j));
       const int falls = i != j && (j + 1) % 3 != i; /* e^ has -e_3 at (1,2), e_3 at (2,1) */
       put(&R, 3 * i + j, dvi__apply(g, falls ? DVI__OP_SUBTRACT : DVI__OP_ADD, along, around));
     }
@@ -199,13 +218,15 @@ static dvi__value vector_call(dvi__context *c, const vector_word *word, const dv
   if (strcmp(word->name, "transpose") == 0) return transpose(c, a[0]);
   if (strcmp(word->name, "turn") == 0) return turn(c, a[0], a[1].one);
   const dvi__node product = inner(c, a[0].shape.rows, a[0], 0, 1, a[word->arguments - 1], 0, 1);
-  return dvi__number_value(word->arguments == 2 ? product : dvi__apply(c->graph, DVI__OP_SQRT, product, 0));
+  return dvi__number_value(word->arguments == 2 ? product
+                                                : dvi__apply(c->graph, DVI__OP_SQRT, product, 0));
 }
 
 static bool right_count(const dvi__context *c, const dvi__expression *call, int wanted)
 {
   if (call->count == wanted) return true;
-  return dvi__refuse(c, call->span, "%s takes %d argument%s, not %d", call->name, wanted, wanted == 1 ? "" : "s", call->count);
+  return dvi__refuse(c, call->span, "%s takes %d argument%s, not %d", call->name, wanted,
+                     wanted == 1 ? "" : "s", call->count);
 }
 
 /* An angle is (cos, sin). */
@@ -213,7 +234,8 @@ static const char *hint_of_angle(const dvi__context *c, const dvi__expression *e
 {
   dvi__subscripts index;
   const dvi__coordinate *x = dvi__member_named(c->scene, e, &index);
-  return x != NULL && x->kind == DVI__ANGLE ? ": the cosine of an angle u is u[1], its sine u[2]" : "";
+  return x != NULL && x->kind == DVI__ANGLE ? ": the cosine of an angle u is u[1], its sine u[2]"
+                                            : "";
 }
 
 static bool are_numbers(const dvi__context *c, const dvi__expression *call, const dvi__value *a)
@@ -222,12 +244,14 @@ static bool are_numbers(const dvi__context *c, const dvi__expression *call, cons
   for (int k = 0; k < call->count; k++)
     if (a[k].shape.rank != 0)
       return dvi__refuse(c, call->part[k]->span, "%s is taken of a number, not of %s%s", call->name,
-                         dvi__shape_text(a[k].shape, shape, sizeof shape), hint_of_angle(c, call->part[k]));
+                         dvi__shape_text(a[k].shape, shape, sizeof shape),
+                         hint_of_angle(c, call->part[k]));
   return true;
 }
 
 /* A function of numbers. */
-static dvi__value number_call(dvi__context *c, const dvi__expression *call, const dvi__function_word *word, const dvi__value *a)
+static dvi__value number_call(dvi__context *c, const dvi__expression *call,
+                              const dvi__function_word *word, const dvi__value *a)
 {
   if (!right_count(c, call, word->arguments) || !are_numbers(c, call, a)) return DVI__NO_VALUE;
   const bool turned = strcmp(word->name, "ceil") == 0; /* -floor(-x) */
@@ -237,14 +261,18 @@ static dvi__value number_call(dvi__context *c, const dvi__expression *call, cons
 }
 
 /* The largest of some numbers, or the smallest; of equal ones the last. */
-static dvi__value extreme(dvi__context *c, const dvi__expression *call, int largest, const dvi__value *a)
+static dvi__value extreme(dvi__context *c, const dvi__expression *call, int largest,
+                          const dvi__value *a)
 {
-  if (call->count < 2) return dvi__refused(dvi__refuse(c, call->span, "%s takes 2 arguments or more, not 1", call->name));
+  if (call->count < 2)
+    return dvi__refused(
+        dvi__refuse(c, call->span, "%s takes 2 arguments or more, not 1", call->name));
   if (!are_numbers(c, call, a)) return DVI__NO_VALUE;
   dvi__node best = a[0].one;
   for (int k = 1; k < call->count; k++) {
     const dvi__node next = a[k].one;
-    const dvi__node stays = largest ? dvi__greater(c->graph, best, next) : dvi__greater(c->graph, next, best);
+    const dvi__node stays = largest ? dvi__greater(c->graph, best, next)
+                                    : dvi__greater(c->graph, next, best);
     best = dvi__choice(c->graph, stays, best, next);
   }
   return dvi__number_value(best);
@@ -257,9 +285,11 @@ static dvi__value no_function(const dvi__context *c, const dvi__expression *call
   const dvi__name *name = dvi__names_find(&c->scene->names, call->name);
   const char *what = name != NULL ? dvi__sort_name(name->sort) : "number"; /* t, pi, an index */
   if (name == NULL && !dvi__is_word(call->name) && dvi__index_find(c, call->name) == NULL)
-    return dvi__refused(dvi__names_unknown(&c->scene->names, &c->scene->arena, c->scene->complaint, call->name, where));
+    return dvi__refused(dvi__names_unknown(&c->scene->names, &c->scene->arena, c->scene->complaint,
+                                           call->name, where));
   return dvi__refused(
-      dvi__refuse(c, where, "'%s' is a %s, no function; write * for a product, [..] for an element", call->name, what));
+      dvi__refuse(c, where, "'%s' is a %s, no function; write * for a product, [..] for an element",
+                  call->name, what));
 }
 
 dvi__value dvi__value_call(dvi__context *c, const dvi__expression *call, const dvi__value *argument)

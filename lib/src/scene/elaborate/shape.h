@@ -37,6 +37,7 @@ dvi__value dvi__value_multiply(dvi__context *c, dvi__value a, dvi__value b, dvi_
 dvi__value dvi__value_divide(dvi__context *c, dvi__value a, dvi__value b, dvi__span span);
 dvi__value dvi__value_power(dvi__context *c, dvi__value a, dvi__value b, dvi__span span);
 /* A function of the language that is no operator. */
-dvi__value dvi__value_call(dvi__context *c, const dvi__expression *call, const dvi__value *argument);
+dvi__value dvi__value_call(dvi__context *c, const dvi__expression *call,
+                           const dvi__value *argument);
 
 #endif

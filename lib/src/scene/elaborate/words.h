@@ -1,7 +1,7 @@
 /* The words of the language of expressions: functions and constants. */
 #ifndef DVI_SCENE_WORDS_H
 #define DVI_SCENE_WORDS_H
-#include "scene/expr/graph.h"
+#include "expr/graph.h"
 
 /* A function of one or two numbers. */
 typedef struct dvi__function_word {

@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "scene/emit/emit_parts.h"
-#include "scene/text/heap.h"
+#include "text/heap.h"
 
 enum { TEXT_MAX = 500, A_LINE = 16 };
 
@@ -56,7 +56,8 @@ static int find_array(const dvi__emitter *out, const void *address)
 /* A number for a new array. */
 static int new_array(dvi__emitter *out, const void *address)
 {
-  struct dvi__emitted_array *array = dvi__heap_grow(out->array, (size_t)out->array_count, sizeof *array);
+  struct dvi__emitted_array *array = dvi__heap_grow(out->array, (size_t)out->array_count,
+                                                    sizeof *array);
   if (array == NULL) {
     out->failed = DVI_NO_MEMORY;
     return 0;
@@ -70,7 +71,8 @@ static int emit_list(dvi__emitter *out, const void *key, int count, const int *v
 {
   const int number = new_array(out, key);
   dvi__emit(out, "static const int dvi_list_%d[] = {", number);
-  for (int i = 0; i < count; i++) dvi__emit(out, "%s%d", i == 0 ? "" : i % A_LINE == 0 ? ",\n  " : ", ", value[i]);
+  for (int i = 0; i < count; i++)
+    dvi__emit(out, "%s%d", i == 0 ? "" : i % A_LINE == 0 ? ",\n  " : ", ", value[i]);
   dvi__emit(out, count == 0 ? "0};\n" : "};\n");
   return number;
 }
@@ -91,7 +93,8 @@ int dvi__emit_lists(dvi__emitter *out, int count, const int *list)
 {
   const int number = new_array(out, NULL);
   dvi__emit(out, "static const int *const dvi_lists_%d[] = {", number);
-  for (int i = 0; i < count; i++) dvi__emit(out, "%sdvi_list_%d", i == 0 ? "" : i % A_LINE == 0 ? ",\n  " : ", ", list[i]);
+  for (int i = 0; i < count; i++)
+    dvi__emit(out, "%sdvi_list_%d", i == 0 ? "" : i % A_LINE == 0 ? ",\n  " : ", ", list[i]);
   dvi__emit(out, "};\n");
   return number;
 }
@@ -118,8 +121,11 @@ dvi_status dvi__emit_end(dvi__emitter *out)
   return out->failed;
 }
 
-/* Results shall not depend on the machine, hence no contraction of products and sums; loops with roots become vectors only if roots leave errno alone, and
- * with gcc 12 at -O2 if they are asked to. Clang shall not take several vectors at once, which is more than the few points there are. DVI_LANES may be defined, as nothing, for a program that is compiled sooner and runs on one instruction set. */
+/* Results shall not depend on the machine, hence no contraction of products and sums; loops with
+ * roots become vectors only if roots leave errno alone, and with gcc 12 at -O2 if they are asked
+ * to. Clang shall not take several vectors at once, which is more than the few points there are.
+ * DVI_LANES may be defined, as nothing, for a program that is compiled sooner and runs on one
+ * instruction set. */
 static const char *const beginning[] = {
     "#include <float.h>\n"
     "#include <math.h>\n"
@@ -148,15 +154,18 @@ static const char *const beginning[] = {
     "#define DVI_INLINE static inline\n"
     "#endif\n"
     "#if defined(DVI_LANES)\n"
-    "#elif defined(__x86_64__) && defined(__gnu_linux__) && (!defined(__clang__) || __clang_major__ >= 14) && "
+    "#elif defined(__x86_64__) && defined(__gnu_linux__) && (!defined(__clang__) || "
+    "__clang_major__ >= 14) && "
     "!defined(__SANITIZE_THREAD__)\n"
     "#define DVI_LANES __attribute__((target_clones(\"arch=x86-64-v4\", \"avx2\", \"default\")))\n"
     "#else\n"
     "#define DVI_LANES\n"
     "#endif\n\n",
-    "/* x^(-1/2), right to two ulp: a first guess by halving the exponent's bits (Lomont 2003), then the series of (1 - e)^(-1/2), "
+    "/* x^(-1/2), right to two ulp: a first guess by halving the exponent's bits (Lomont 2003), "
+    "then the series of (1 - e)^(-1/2), "
     "e = 1 - x y^2, twice.\n"
-    " * Numbers near the ends of the range, and those that have no root, want a careful caller. */\n"
+    " * Numbers near the ends of the range, and those that have no root, want a careful caller. "
+    "*/\n"
     "DVI_INLINE double dvi_inverse_root(const int careful, double x, int64_t *unusual)\n"
     "{\n"
     "  uint64_t bits;\n"
@@ -176,7 +185,8 @@ static const char *const beginning[] = {
     "DVI_INLINE void dvi_fold(int elements, const int points, const double *row, double *sum)\n"
     "{\n"
     "  int left = (elements + 1) / 2, others = (elements - left) * points;\n"
-    "  for (int k = 0; k < left * points; k++) sum[k] = k < others ? row[k] + row[left * points + k] : row[k];\n"
+    "  for (int k = 0; k < left * points; k++) sum[k] = k < others ? row[k] + row[left * points + "
+    "k] : row[k];\n"
     "  for (; left > 1; left = (left + 1) / 2) {\n"
     "    const int half = (left + 1) / 2;\n"
     "    others = (left - half) * points;\n"
@@ -187,5 +197,6 @@ static const char *const beginning[] = {
 
 void dvi__emit_begin(dvi__emitter *out)
 {
-  for (size_t i = 0; i < sizeof beginning / sizeof *beginning; i++) put(out, beginning[i], strlen(beginning[i]));
+  for (size_t i = 0; i < sizeof beginning / sizeof *beginning; i++)
+    put(out, beginning[i], strlen(beginning[i]));
 }

@@ -1,7 +1,8 @@
-/* How the rows of a unit are added to the entries of an array: one loop over all additions, whose numbers are tables, since compilers take more than their share of
- * time for a function of very many loops. */
+/* How the rows of a unit are added to the entries of an array: one loop over all additions, whose
+ * numbers are tables, since compilers take more than their share of time for a function of very
+ * many loops. */
 #include "scene/emit/emit_parts.h"
-#include "scene/text/heap.h"
+#include "text/heap.h"
 
 /* A row that goes to entries, while the tables are made. */
 typedef struct addition {
@@ -16,17 +17,21 @@ int dvi__is_one_entry(const dvi__entries *entries, int first)
   const dvi__track minor = dvi__track_of(&entries->minor, first);
   if (entries->scale == 0) return minor.list == NULL && minor.stride == 0;
   const dvi__track major = dvi__track_of(&entries->major, first);
-  return minor.list == NULL && major.list == NULL && minor.stride + entries->scale * major.stride == 0;
+  return minor.list == NULL && major.list == NULL &&
+         minor.stride + entries->scale * major.stride == 0;
 }
 
-/* Choose how rows are folded; where this is a matter of the unit, flags [count][units] are written. */
-static dvi_status declare_folds(dvi__emitter *out, int elements, int count, const addition *list, dvi__additions *all)
+/* Choose how rows are folded; where this is a matter of the unit, flags [count][units] are
+ * written. */
+static dvi_status declare_folds(dvi__emitter *out, int elements, int count, const addition *list,
+                                dvi__additions *all)
 {
   const int units = (elements + DVI__UNIT - 1) / DVI__UNIT;
   int folds = 0, *flag = dvi__heap_take((size_t)count * (size_t)units, sizeof *flag);
   if (flag == NULL) return DVI_NO_MEMORY;
   for (int a = 0; a < count; a++)
-    for (int u = 0; u < units; u++) folds += flag[a * units + u] = dvi__is_one_entry(list[a].entries, u * DVI__UNIT);
+    for (int u = 0; u < units; u++)
+      folds += flag[a * units + u] = dvi__is_one_entry(list[a].entries, u * DVI__UNIT);
   all->folds = folds == 0 ? DVI__NEVER : folds == count * units ? DVI__ALWAYS : DVI__SOMETIMES;
   if (all->folds == DVI__SOMETIMES) all->flags = dvi__emit_ints_of(out, NULL, count * units, flag);
   dvi__heap_free(flag);
@@ -55,7 +60,8 @@ static int is_listed(const dvi__entries *entries)
 }
 
 /* The list of an addition's entries, less `start`. */
-static dvi_status declare_list(dvi__emitter *out, int elements, const dvi__entries *entries, int *list, int *start)
+static dvi_status declare_list(dvi__emitter *out, int elements, const dvi__entries *entries,
+                               int *list, int *start)
 {
   if (entries->scale == 0 && entries->minor.list != NULL) {
     *list = dvi__emit_ints(out, elements, entries->minor.list);
@@ -72,7 +78,8 @@ static dvi_status declare_list(dvi__emitter *out, int elements, const dvi__entri
 }
 
 /* Entries are start + stride * e for all additions, or start + list[e] for all. */
-static dvi_status declare_places(dvi__emitter *out, int elements, int count, const addition *list, int *value, dvi__additions *all)
+static dvi_status declare_places(dvi__emitter *out, int elements, int count, const addition *list,
+                                 int *value, dvi__additions *all)
 {
   int *start = value, *step = value + count;
   for (int a = 0; a < count; a++) all->listed |= is_listed(list[a].entries);
@@ -80,7 +87,9 @@ static dvi_status declare_places(dvi__emitter *out, int elements, int count, con
     const dvi__entries *entries = list[a].entries;
     start[a] = (int)dvi__entry_at(entries, 0);
     step[a] = entries->minor.stride + entries->scale * entries->major.stride;
-    const dvi_status status = all->listed ? declare_list(out, elements, entries, &step[a], &start[a]) : DVI_OK;
+    const dvi_status status = all->listed
+                                  ? declare_list(out, elements, entries, &step[a], &start[a])
+                                  : DVI_OK;
     if (status != DVI_OK) return status;
   }
   all->start = declare(out, count, start, emit_new);
@@ -88,7 +97,8 @@ static dvi_status declare_places(dvi__emitter *out, int elements, int count, con
   return DVI_OK;
 }
 
-static dvi_status declare_tables(dvi__emitter *out, int elements, int count, const addition *list, dvi__additions *all)
+static dvi_status declare_tables(dvi__emitter *out, int elements, int count, const addition *list,
+                                 dvi__additions *all)
 {
   int *value = dvi__heap_take(2 * (size_t)count, sizeof *value);
   if (value == NULL) return DVI_NO_MEMORY;
@@ -111,17 +121,21 @@ static int collect(const dvi__part *part, int array, addition *list)
     const dvi__destination *target = &part->target[k];
     if (target->array != array) continue;
     list[count++] = (addition){&target->entry, target->output, target->negative ? -1 : 1};
-    if (target->mirrored) list[count++] = (addition){&target->mirror, target->output, target->negative ? -1 : 1};
+    if (target->mirrored)
+      list[count++] = (addition){&target->mirror, target->output, target->negative ? -1 : 1};
   }
   return count;
 }
 
-dvi_status dvi__additions_declare(dvi__emitter *out, const dvi__part *part, int array, dvi__additions *all)
+dvi_status dvi__additions_declare(dvi__emitter *out, const dvi__part *part, int array,
+                                  dvi__additions *all)
 {
   addition *list = dvi__heap_take(2 * (size_t)part->target_count + 1, sizeof *list);
   if (list == NULL) return DVI_NO_MEMORY;
   *all = (dvi__additions){.count = collect(part, array, list)};
-  const dvi_status status = all->count > 0 ? declare_tables(out, part->kernel->elements, all->count, list, all) : DVI_OK;
+  const dvi_status status = all->count > 0
+                                ? declare_tables(out, part->kernel->elements, all->count, list, all)
+                                : DVI_OK;
   dvi__heap_free(list);
   return status;
 }
@@ -161,16 +175,21 @@ static void emit_row(dvi__emitter *out, const dvi__additions *all, int elements)
   if (all->folds == DVI__NEVER) return;
   dvi__emit(out, "    ");
   if (all->folds == DVI__SOMETIMES)
-    dvi__emit(out, "if (dvi_list_%d[a * %d + first / %d]) ", all->flags, (elements + DVI__UNIT - 1) / DVI__UNIT, DVI__UNIT);
+    dvi__emit(out, "if (dvi_list_%d[a * %d + first / %d]) ", all->flags,
+              (elements + DVI__UNIT - 1) / DVI__UNIT, DVI__UNIT);
   dvi__emit(out, "dvi_fold(elements, points, row, sum), row = sum, left = 1;\n");
 }
 
-void dvi__additions_emit(dvi__emitter *out, const dvi__additions *all, const char *array, int elements)
+void dvi__additions_emit(dvi__emitter *out, const dvi__additions *all, const char *array,
+                         int elements)
 {
   if (all->count == 0) return;
   dvi__emit(out, "  for (int a = 0; a < %d; a++) {\n", all->count);
   emit_row(out, all, elements);
-  dvi__emit(out, "    for (int e = 0; e < left; e++) {\n      DVI_INDEPENDENT\n      for (int p = 0; p < points; p++) %s[(", array);
+  dvi__emit(out,
+            "    for (int e = 0; e < left; e++) {\n      DVI_INDEPENDENT\n      for (int p = 0; p "
+            "< points; p++) %s[(",
+            array);
   emit_entry(out, all);
   dvi__emit(out, ") * n + p] %s ", all->sign.list < 0 && all->sign.value < 0 ? "-=" : "+=");
   if (all->sign.list >= 0) dvi__emit(out, "dvi_list_%d[a] * ", all->sign.list);

@@ -1,9 +1,10 @@
-/* A term as C: its functions by emit.h, the callbacks around them, and the object that points to them. */
+/* A term as C: its functions by emit.h, the callbacks around them, and the object that points to
+ * them. */
 #include <stdio.h>
 #include <string.h>
 
 #include "scene/emit/emit_scene.h"
-#include "scene/text/heap.h"
+#include "text/heap.h"
 
 enum { ENTRIES_MAX = 65536 }; /* of the gradients of constraints, which wait on the stack */
 
@@ -17,11 +18,13 @@ void dvi__emit_text(dvi__emitter *out, const char *text)
 
 /* ---- callbacks ---- */
 
-/* Where the entries of d phi/dq, then those of d phi/dp, stand when they are gradients, column by column. */
-static dvi_status emit_order(dvi__emitter *out, const dvi__term *term, int *list)
+/* Where the entries of d phi/dq, then those of d phi/dp, stand when they are gradients, column by
+ * column. */
+static dvi_status emit_order(dvi__emitter *out, const dvi__scene_term *term, int *list)
 {
   const int count = term->count, *q_start = term->qw.start, *p_start = term->vw.start;
-  int *from = dvi__heap_take((size_t)q_start[count] + (size_t)p_start[count] + 1, sizeof *from), at = 0;
+  int *from = dvi__heap_take((size_t)q_start[count] + (size_t)p_start[count] + 1, sizeof *from),
+      at = 0;
   if (from == NULL) return DVI_NO_MEMORY;
   for (int a = 0; a < count; a++) {
     for (int e = q_start[a]; e < q_start[a + 1]; e++) from[at++] = e;
@@ -33,29 +36,32 @@ static dvi_status emit_order(dvi__emitter *out, const dvi__term *term, int *list
 }
 
 /* The call for gradients of constraints: d phi/dq and d phi/dp together. */
-static void emit_joined_call(dvi__emitter *out, const dvi__term *term, const char *function, const char *arguments, int list)
+static void emit_joined_call(dvi__emitter *out, const dvi__scene_term *term, const char *function,
+                             const char *arguments, int list)
 {
   const int of_q = term->qw.start[term->count], all = of_q + term->vw.start[term->count];
   dvi__emit(out, "  double z[%d];\n  %s(%s, z, z + %d);\n", all + 1, function, arguments, of_q);
   dvi__emit(out, "  for (int e = 0; e < %d; e++) phi_z[e] = z[dvi_list_%d[e]];\n", all, list);
 }
 
-static dvi_status emit_function(dvi__emitter *out, const dvi__term *term, const dvi__callback *c, const char *name, int *list)
+static dvi_status emit_function(dvi__emitter *out, const dvi__scene_term *term,
+                                const dvi__callback *c, const char *name, int *list)
 {
   const int lanes = strstr(c->name, "batch") != NULL;
   switch (c->asks) {
   case 'v': return dvi__emit_value(out, term->function, name);
-  case 'g': return dvi__emit_gradient(out, term->function, c->mask, lanes, name);
-  case 's': return dvi__emit_second(out, term->function, c->mask, lanes, name);
+  case 'g': return dvi__emit_gradient(out, term->function, c->wanted, lanes, name);
+  case 's': return dvi__emit_second(out, term->function, c->wanted, lanes, name);
   default: break;
   }
   if (term->qw.start[term->count] > ENTRIES_MAX - term->vw.start[term->count]) return DVI_BAD_SIZE;
-  const dvi_status status = dvi__emit_second(out, term->function, c->mask, lanes, name);
+  const dvi_status status = dvi__emit_second(out, term->function, c->wanted, lanes, name);
   return status != DVI_OK ? status : emit_order(out, term, list);
 }
 
 /* The function of a callback, and the callback that calls it. */
-static dvi_status emit_callback(dvi__emitter *out, const dvi__emitted_term *term, const dvi__callback *c)
+static dvi_status emit_callback(dvi__emitter *out, const dvi__emitted_term *term,
+                                const dvi__callback *c)
 {
   char function[64];
   int list = 0;
@@ -75,18 +81,21 @@ static dvi_status emit_callback(dvi__emitter *out, const dvi__emitted_term *term
 dvi_status dvi__emit_callbacks(dvi__emitter *out, const dvi__emitted_term *term)
 {
   dvi_status status = DVI_OK;
-  for (int k = 0; k < term->callback_count && status == DVI_OK; k++) status = emit_callback(out, term, &term->callback[k]);
+  for (int k = 0; k < term->callback_count && status == DVI_OK; k++)
+    status = emit_callback(out, term, &term->callback[k]);
   return status;
 }
 
 /* ---- objects ---- */
 
-void dvi__emit_pattern_arrays(dvi__emitter *out, int columns, const dvi_pattern *pattern, int number[2])
+void dvi__emit_pattern_arrays(dvi__emitter *out, int columns, const dvi_pattern *pattern,
+                              int number[2])
 {
   number[0] = number[1] = -1;
   if (pattern->start == NULL) return;
   number[0] = dvi__emit_ints(out, columns + 1, pattern->start);
-  if (pattern->start[columns] > 0) number[1] = dvi__emit_ints(out, pattern->start[columns], pattern->row);
+  if (pattern->start[columns] > 0)
+    number[1] = dvi__emit_ints(out, pattern->start[columns], pattern->row);
 }
 
 static void emit_pattern(dvi__emitter *out, const char *field, const int number[2])
@@ -99,7 +108,8 @@ static void emit_pattern(dvi__emitter *out, const char *field, const int number[
     dvi__emit(out, "dvi_list_%d}", number[1]);
 }
 
-/* The gradients of constraints are columns for them, all other patterns have one for a coordinate. */
+/* The gradients of constraints are columns for them, all other patterns have one for a
+ * coordinate. */
 static int columns_of(const dvi__emitted_term *term, int k)
 {
   return k < 3 ? term->columns : term->term->count;
@@ -113,7 +123,8 @@ void dvi__emit_fields(dvi__emitter *out, const dvi__emitted_term *term)
     dvi__emit(out, ", ");
   }
   for (int k = 0; k < term->callback_count; k++)
-    dvi__emit(out, "%s.%s = %s_%s", k > 0 ? ",\n    " : "", term->callback[k].name, term->name, term->callback[k].name);
+    dvi__emit(out, "%s.%s = %s_%s", k > 0 ? ",\n    " : "", term->callback[k].name, term->name,
+              term->callback[k].name);
 }
 
 dvi_status dvi__emit_term(dvi__emitter *out, const dvi__emitted_term *term)
@@ -121,7 +132,8 @@ dvi_status dvi__emit_term(dvi__emitter *out, const dvi__emitted_term *term)
   int number[4][2], patterns = 0;
   const dvi_status status = dvi__emit_callbacks(out, term);
   for (; patterns < 4 && term->pattern[patterns] != NULL; patterns++)
-    dvi__emit_pattern_arrays(out, columns_of(term, patterns), term->pattern[patterns], number[patterns]);
+    dvi__emit_pattern_arrays(out, columns_of(term, patterns), term->pattern[patterns],
+                             number[patterns]);
   dvi__emit(out, "static const %s %s = {\n    ", term->type, term->name);
   dvi__emit_fields(out, term);
   for (int k = 0; k < patterns; k++) emit_pattern(out, term->pattern_name[k], number[k]);

@@ -2,7 +2,7 @@
 #include <stdlib.h>
 
 #include "scene/emit/emit_parts.h"
-#include "scene/text/heap.h"
+#include "text/heap.h"
 
 static int by_entry(const void *first, const void *second)
 {
@@ -14,14 +14,17 @@ static int by_entry(const void *first, const void *second)
 
 static int entry_of(const dvi__entries *entries, int e)
 {
-  return dvi__place_at(&entries->minor, e) + (entries->scale != 0 ? entries->scale * dvi__place_at(&entries->major, e) : 0);
+  return dvi__place_at(&entries->minor, e) +
+         (entries->scale != 0 ? entries->scale * dvi__place_at(&entries->major, e) : 0);
 }
 
-static void append(dvi__contributions *all, const dvi__part *part, const dvi__destination *target, const dvi__entries *entries)
+static void append(dvi__contributions *all, const dvi__part *part, const dvi__destination *target,
+                   const dvi__entries *entries)
 {
   const int output = all->output_count + target->output;
   for (int e = 0; e < part->kernel->elements; e++, all->count++)
-    all->list[all->count] = (dvi__contribution){target->array, entry_of(entries, e), all->count, output, e, target->negative};
+    all->list[all->count] = (dvi__contribution){
+        target->array, entry_of(entries, e), all->count, output, e, target->negative};
 }
 
 static void collect(const dvi__part *part, dvi__contributions *all)
@@ -36,7 +39,8 @@ static void collect(const dvi__part *part, dvi__contributions *all)
 dvi_status dvi__contributions_find(int part_count, const dvi__part *part, dvi__contributions *all)
 {
   size_t most = 1;
-  for (int k = 0; k < part_count; k++) most += 2 * (size_t)part[k].target_count * (size_t)part[k].kernel->elements;
+  for (int k = 0; k < part_count; k++)
+    most += 2 * (size_t)part[k].target_count * (size_t)part[k].kernel->elements;
   *all = (dvi__contributions){.list = dvi__heap_take(most, sizeof *all->list)};
   if (all->list == NULL) return DVI_NO_MEMORY;
   for (int k = 0; k < part_count; k++) collect(&part[k], all);
@@ -46,12 +50,14 @@ dvi_status dvi__contributions_find(int part_count, const dvi__part *part, dvi__c
 
 int dvi__contribution_is_first(const dvi__contributions *all, int i)
 {
-  return i == 0 || all->list[i].array != all->list[i - 1].array || all->list[i].entry != all->list[i - 1].entry;
+  return i == 0 || all->list[i].array != all->list[i - 1].array ||
+         all->list[i].entry != all->list[i - 1].entry;
 }
 
 int dvi__entries_written(const dvi__contributions *all, int array)
 {
   int entries = 0;
-  for (int i = 0; i < all->count; i++) entries += all->list[i].array == array && dvi__contribution_is_first(all, i);
+  for (int i = 0; i < all->count; i++)
+    entries += all->list[i].array == array && dvi__contribution_is_first(all, i);
   return entries;
 }

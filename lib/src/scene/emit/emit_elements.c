@@ -1,10 +1,11 @@
-/* Sums with kernels of many elements: for each of them a function of one unit of elements, whose results are kept until the unit is done and then added output by
- * output, as the byte code does. It is compiled for eight, four, two and one point, and for the flat rows of a chain: neighbours in a row, whose points
- * follow each other. */
+/* Sums with kernels of many elements: for each of them a function of one unit of elements, whose
+ * results are kept until the unit is done and then added output by output, as the byte code does.
+ * It is compiled for eight, four, two and one point, and for the flat rows of a chain: neighbours
+ * in a row, whose points follow each other. */
 #include <stdio.h>
 
 #include "scene/emit/emit_parts.h"
-#include "scene/text/heap.h"
+#include "text/heap.h"
 
 enum { ROOM = 8192, ROOM_MAX = 131072, TERMS_MAX = 1024 };
 
@@ -25,25 +26,28 @@ static int is_short(const dvi__part *part)
   int few = elements <= DVI__UNIT && terms_of(part) <= TERMS_MAX;
   for (int k = 0; k < part->target_count && elements > 1; k++) {
     const dvi__destination *target = &part->target[k];
-    few = few && !dvi__is_one_entry(&target->entry, 0) && !(target->mirrored && dvi__is_one_entry(&target->mirror, 0));
+    few = few && !dvi__is_one_entry(&target->entry, 0) &&
+          !(target->mirrored && dvi__is_one_entry(&target->mirror, 0));
   }
   return few;
 }
 
 /* --- Arrays, before the functions. --- */
 
-static void declare_places(dvi__emitter *out, const dvi__places *places, int elements)
+static void declare_places(dvi__emitter *out, const dvi__element_places *places, int elements)
 {
   if (places->list != NULL) (void)dvi__emit_ints(out, elements, places->list);
 }
 
-static dvi_status declare_arrays(dvi__emitter *out, const dvi__emitted_sum *own, const dvi__part *part, dvi__additions *additions)
+static dvi_status declare_arrays(dvi__emitter *out, const dvi__emitted_sum *own,
+                                 const dvi__part *part, dvi__additions *additions)
 {
   const int elements = part->kernel->elements;
   dvi_status status = DVI_OK;
   for (int i = 0; i < part->variable_count; i++) declare_places(out, &part->variable[i], elements);
-  for (int c = 0; c < part->column_count; c++) (void)dvi__emit_doubles(out, elements, part->column[c]);
-  for (int a = 0; own->mask >> a != 0 && status == DVI_OK && !is_short(part); a++)
+  for (int c = 0; c < part->column_count; c++)
+    (void)dvi__emit_doubles(out, elements, part->column[c]);
+  for (int a = 0; a < own->sum->array_count && status == DVI_OK && !is_short(part); a++)
     status = dvi__additions_declare(out, part, a, &additions[a]);
   return status;
 }
@@ -51,10 +55,11 @@ static dvi_status declare_arrays(dvi__emitter *out, const dvi__emitted_sum *own,
 /* --- A unit. --- */
 
 /* The place of element first + e. */
-static void emit_place(dvi__emitter *out, const dvi__places *places, int elements)
+static void emit_place(dvi__emitter *out, const dvi__element_places *places, int elements)
 {
   if (places->list != NULL)
-    dvi__emit(out, "(%d + dvi_list_%d[first + e])", places->start, dvi__emit_ints(out, elements, places->list));
+    dvi__emit(out, "(%d + dvi_list_%d[first + e])", places->start,
+              dvi__emit_ints(out, elements, places->list));
   else if (places->stride == 0)
     dvi__emit(out, "%d", places->start);
   else
@@ -70,12 +75,14 @@ static void emit_inputs(dvi__emitter *out, const dvi__part *part, const int *nam
     dvi__emit(out, " * n + p];\n");
   }
   for (int c = 0; c < part->column_count; c++)
-    dvi__emit(out, "      const double r%d = dvi_row_%d[first + e];\n", name[part->variable_count + c],
-              dvi__emit_doubles(out, elements, part->column[c]));
+    dvi__emit(out, "      const double r%d = dvi_row_%d[first + e];\n",
+              name[part->variable_count + c], dvi__emit_doubles(out, elements, part->column[c]));
 }
 
-/* All entries of a short part, each with the sum of what is added to it, or to zero in arrays that the part stores. */
-static dvi_status emit_entries(dvi__emitter *out, const dvi__emitted_sum *sum, const dvi__part *part, unsigned stored)
+/* All entries of a short part, each with the sum of what is added to it, or to zero in arrays that
+ * the part stores. */
+static dvi_status emit_entries(dvi__emitter *out, const dvi__emitted_sum *sum,
+                               const dvi__part *part, unsigned stored)
 {
   dvi__contributions all;
   const dvi_status status = dvi__contributions_find(1, part, &all);
@@ -90,14 +97,16 @@ static dvi_status emit_entries(dvi__emitter *out, const dvi__emitted_sum *sum, c
       else
         dvi__emit(out, "%s[%d * n + p]", array, own->entry);
     }
-    dvi__emit(out, " %c y[%d][%d * points + p]", own->negative ? '-' : '+', own->output, own->element);
+    dvi__emit(out, " %c y[%d][%d * points + p]", own->negative ? '-' : '+', own->output,
+              own->element);
   }
   dvi__emit(out, "%s  }\n", all.count > 0 ? ";\n" : "");
   dvi__heap_free(all.list);
   return status;
 }
 
-/* Elements of a unit, and how many points are taken at once: all results of a unit stay in a near cache, and what is written out is soon compiled. */
+/* Elements of a unit, and how many points are taken at once: all results of a unit stay in a near
+ * cache, and what is written out is soon compiled. */
 static int unit_of(const dvi__part *part)
 {
   return part->kernel->elements < DVI__UNIT ? part->kernel->elements : DVI__UNIT;
@@ -111,13 +120,17 @@ static int points_of(const dvi__emitted_sum *own, const dvi__part *part)
   return points;
 }
 
-static dvi_status emit_unit(dvi__emitter *out, const dvi__emitted_sum *own, int k, const dvi__additions *additions, unsigned stored)
+static dvi_status emit_unit(dvi__emitter *out, const dvi__emitted_sum *own, int k,
+                            const dvi__additions *additions, unsigned stored)
 {
   const dvi__part *part = &own->sum->part[k];
   const dvi__program *program = &part->program;
   int next = 0, *name = dvi__name_rows(part, &next);
   if (name == NULL) return DVI_NO_MEMORY;
-  dvi__emit(out, "DVI_INLINE int64_t %s_%d(const int careful, const int points, int first, int elements,\n", own->name, k);
+  dvi__emit(
+      out,
+      "DVI_INLINE int64_t %s_%d(const int careful, const int points, int first, int elements,\n",
+      own->name, k);
   dvi__emit(out, "    const ptrdiff_t n, ptrdiff_t k");
   dvi__emit_parameters(out, own);
   dvi__emit(out, ")\n{\n");
@@ -126,18 +139,18 @@ static dvi_status emit_unit(dvi__emitter *out, const dvi__emitted_sum *own, int 
   dvi__emit(out, "  int64_t unusual = 0;\n  (void)careful, (void)first, (void)sum");
   dvi__emit_mentions(out, own);
   dvi__emit_shifts(out, own, part);
-  dvi__emit(
-      out,
-      "  DVI_INDEPENDENT\n  for (int e = 0; e < elements; e++) {\n    DVI_INDEPENDENT\n    for (int p = 0; p < points; p++) {\n");
+  dvi__emit(out, "  DVI_INDEPENDENT\n  for (int e = 0; e < elements; e++) {\n    DVI_INDEPENDENT\n "
+                 "   for (int p = 0; p < points; p++) {\n");
   emit_inputs(out, part, name + program->row_count);
   dvi__emit_program(out, program, "      ", name, &next);
   for (int i = 0; i < program->output_count; i++)
-    dvi__emit(out, "      y[%d][e * points + p] = r%d;\n", i, name[program->row_count - program->output_count + i]);
+    dvi__emit(out, "      y[%d][e * points + p] = r%d;\n", i,
+              name[program->row_count - program->output_count + i]);
   dvi__emit(out, "    }\n  }\n");
   dvi__heap_free(name);
   dvi_status status = DVI_OK;
   if (is_short(part)) status = emit_entries(out, own, part, k == 0 ? stored : 0);
-  for (int a = 0; own->mask >> a != 0 && !is_short(part); a++)
+  for (int a = 0; a < own->sum->array_count && !is_short(part); a++)
     dvi__additions_emit(out, &additions[a], own->array[a], part->kernel->elements);
   dvi__emit(out, "  return unusual;\n}\n");
   return status;
@@ -145,7 +158,7 @@ static dvi_status emit_unit(dvi__emitter *out, const dvi__emitted_sum *own, int 
 
 /* --- All units, at all points. --- */
 
-static int is_row(const dvi__places *places)
+static int is_row(const dvi__element_places *places)
 {
   return places->list == NULL && places->stride == 1;
 }
@@ -163,7 +176,8 @@ static int is_flat(const dvi__part *part)
   return flat;
 }
 
-static void emit_call(dvi__emitter *out, const dvi__emitted_sum *own, int k, const char *first_arguments)
+static void emit_call(dvi__emitter *out, const dvi__emitted_sum *own, int k,
+                      const char *first_arguments)
 {
   dvi__emit(out, "unusual |= %s_%d(careful, %s", own->name, k, first_arguments);
   dvi__emit_arguments(out, own);
@@ -178,7 +192,8 @@ static void emit_calls(dvi__emitter *out, const dvi__emitted_sum *own, int k)
   if (all <= DVI__UNIT)
     dvi__emit(out, "    const int elements = %d;\n", all);
   else
-    dvi__emit(out, "    const int elements = %d - first < %d ? %d - first : %d;\n", all, DVI__UNIT, all, DVI__UNIT);
+    dvi__emit(out, "    const int elements = %d - first < %d ? %d - first : %d;\n", all, DVI__UNIT,
+              all, DVI__UNIT);
   dvi__emit(out, "    ptrdiff_t k = 0;\n");
   if (is_flat(part)) {
     dvi__emit(out, "    if (n <= %d) {\n      ", most);
@@ -203,8 +218,9 @@ static dvi_status find_stored(const dvi__emitted_sum *own, unsigned *stored)
   *stored = 0;
   if (own->sum->part_count == 0 || !is_short(own->sum->part)) return DVI_OK;
   const dvi_status status = dvi__contributions_find(1, own->sum->part, &all);
-  for (int a = 0; own->mask >> a != 0 && status == DVI_OK; a++)
-    if ((own->mask >> a & 1U) != 0 && dvi__entries_written(&all, a) == own->size[a]) *stored |= 1U << a;
+  for (int a = 0; a < own->sum->array_count && status == DVI_OK; a++)
+    if (own->sum->wanted[a] && dvi__entries_written(&all, a) == own->sum->size[a])
+      *stored |= 1U << a;
   dvi__heap_free(all.list);
   return status;
 }
@@ -220,15 +236,17 @@ dvi_status dvi__emit_elements(dvi__emitter *out, const dvi__emitted_sum *own)
   dvi_status status = find_stored(own, &stored);
   for (int k = 0; k < own->sum->part_count && status == DVI_OK; k++) {
     dvi__additions additions[DVI__PAIRS];
-    status = is_too_large(&own->sum->part[k]) ? DVI_BAD_SIZE : declare_arrays(out, own, &own->sum->part[k], additions);
+    status = is_too_large(&own->sum->part[k])
+                 ? DVI_BAD_SIZE
+                 : declare_arrays(out, own, &own->sum->part[k], additions);
     if (status == DVI_OK) status = emit_unit(out, own, k, additions, stored);
   }
   if (status != DVI_OK) return status;
   dvi__emit(out, "DVI_INLINE int %s_at(const int careful, const ptrdiff_t n", own->name);
   dvi__emit_parameters(out, own);
   dvi__emit(out, ")\n{\n  int64_t unusual = 0;\n");
-  for (int a = 0; own->mask >> a != 0; a++)
-    if (((own->mask & ~stored) >> a & 1U) != 0) dvi__emit_zeros(out, own, a);
+  for (int a = 0; a < own->sum->array_count; a++)
+    if (own->sum->wanted[a] && (stored >> a & 1U) == 0) dvi__emit_zeros(out, own, a);
   for (int k = 0; k < own->sum->part_count; k++) emit_calls(out, own, k);
   dvi__emit(out, "  return unusual != 0;\n}\n");
   return DVI_OK;

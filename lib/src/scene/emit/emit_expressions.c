@@ -1,13 +1,13 @@
 /* Sums whose kernels have one element each: one straight line, in a loop over points. */
 
 #include "scene/emit/emit_parts.h"
-#include "scene/text/heap.h"
+#include "text/heap.h"
 
 static void emit_inputs(dvi__emitter *out, const dvi__part *part, const int *name)
 {
   for (int i = 0; i < part->variable_count; i++)
-    dvi__emit(out, "    const double r%d = %s[%d * n + k];\n", name[i], dvi__block_name[part->block[i]],
-              dvi__place_at(&part->variable[i], 0));
+    dvi__emit(out, "    const double r%d = %s[%d * n + k];\n", name[i],
+              dvi__block_name[part->block[i]], dvi__place_at(&part->variable[i], 0));
   for (int c = 0; c < part->column_count; c++) {
     dvi__emit(out, "    const double r%d = ", name[part->variable_count + c]);
     dvi__emit_number(out, part->column[c][0]);
@@ -23,33 +23,40 @@ static dvi_status emit_part(dvi__emitter *out, const dvi__part *part, int *next,
   if (name == NULL) return DVI_NO_MEMORY;
   emit_inputs(out, part, name + program->row_count);
   dvi__emit_program(out, program, "    ", name, next);
-  for (int i = 0; i < program->output_count; i++) made[i] = name[program->row_count - program->output_count + i];
+  for (int i = 0; i < program->output_count; i++)
+    made[i] = name[program->row_count - program->output_count + i];
   dvi__heap_free(name);
   return DVI_OK;
 }
 
 /* The entries, each the sum of what is added to it; `name` are the outputs'. */
-static void emit_entries(dvi__emitter *out, const dvi__emitted_sum *sum, const dvi__contributions *all, const int *name)
+static void emit_entries(dvi__emitter *out, const dvi__emitted_sum *sum,
+                         const dvi__contributions *all, const int *name)
 {
   for (int i = 0; i < all->count; i++) {
     const dvi__contribution *own = &all->list[i];
     const int first = dvi__contribution_is_first(all, i);
-    if (first) dvi__emit(out, "%s    %s[%d * n + k] =", i > 0 ? ";\n" : "", sum->array[own->array], own->entry);
+    if (first)
+      dvi__emit(out, "%s    %s[%d * n + k] =", i > 0 ? ";\n" : "", sum->array[own->array],
+                own->entry);
     dvi__emit(out, "%sr%d", own->negative ? " - " : first ? " " : " + ", name[own->output]);
   }
   if (all->count > 0) dvi__emit(out, ";\n");
 }
 
 /* Arrays that are not written in full are zero elsewhere. */
-static void emit_zeros(dvi__emitter *out, const dvi__emitted_sum *own, const dvi__contributions *all)
+static void emit_zeros(dvi__emitter *out, const dvi__emitted_sum *own,
+                       const dvi__contributions *all)
 {
-  for (int a = 0; own->mask >> a != 0; a++)
-    if ((own->mask >> a & 1U) != 0 && dvi__entries_written(all, a) < own->size[a]) dvi__emit_zeros(out, own, a);
+  for (int a = 0; a < own->sum->array_count; a++)
+    if (own->sum->wanted[a] && dvi__entries_written(all, a) < own->sum->size[a])
+      dvi__emit_zeros(out, own, a);
 }
 
-static dvi_status emit_body(dvi__emitter *out, const dvi__emitted_sum *own, const dvi__contributions *all, int *name)
+static dvi_status emit_body(dvi__emitter *out, const dvi__emitted_sum *own,
+                            const dvi__contributions *all, int *name)
 {
-  const dvi__sum *sum = own->sum;
+  const dvi__function_sum *sum = own->sum;
   dvi_status status = DVI_OK;
   int next = 0, *made = name;
   dvi__emit(out, "DVI_INLINE int %s_at(const int careful, const ptrdiff_t n", own->name);
@@ -58,7 +65,8 @@ static dvi_status emit_body(dvi__emitter *out, const dvi__emitted_sum *own, cons
   dvi__emit_mentions(out, own);
   emit_zeros(out, own, all);
   dvi__emit(out, "  DVI_INDEPENDENT\n  for (ptrdiff_t k = 0; k < n; k++) {\n");
-  for (int k = 0; k < sum->part_count && status == DVI_OK; made += sum->part[k++].program.output_count)
+  for (int k = 0; k < sum->part_count && status == DVI_OK;
+       made += sum->part[k++].program.output_count)
     status = emit_part(out, &sum->part[k], &next, made);
   emit_entries(out, own, all, name);
   dvi__emit(out, "  }\n  return unusual != 0;\n}\n");

@@ -1,18 +1,20 @@
 /* Sums of kernels as C functions. */
-#include <stdatomic.h>
-
 #include "scene/emit/emit_parts.h"
-#include "scene/text/heap.h"
+#include "text/heap.h"
 
 const char *const dvi__block_name[DVI__BLOCKS] = {"t", "q", "v", "w"};
-static const char *const value_name[] = {"f"}, *const gradient_name[DVI__BLOCKS] = {"f_t", "f_q", "f_v", "f_w"},
-                         *const second_name[DVI__PAIRS] = {"f_qq", "f_qv", "f_vv", "f_qw", "f_vw", "f_tq", "f_tv"};
+static const char *const value_name[] = {"f"},
+                         *const gradient_name[DVI__BLOCKS] = {"f_t", "f_q", "f_v", "f_w"},
+                         *const second_name[DVI__PAIRS] = {"f_qq", "f_qv", "f_vv", "f_qw",
+                                                           "f_vw", "f_tq", "f_tv"};
 
 int *dvi__name_rows(const dvi__part *part, int *next)
 {
   const dvi__program *program = &part->program;
-  int *name = dvi__heap_take((size_t)program->row_count + (size_t)program->input_count + 1, sizeof *name);
-  for (int i = 0; i < program->input_count && name != NULL; i++) name[program->row_count + i] = (*next)++;
+  int *name = dvi__heap_take((size_t)program->row_count + (size_t)program->input_count + 1,
+                             sizeof *name);
+  for (int i = 0; i < program->input_count && name != NULL; i++)
+    name[program->row_count + i] = (*next)++;
   return name;
 }
 
@@ -22,16 +24,18 @@ int *dvi__name_rows(const dvi__part *part, int *next)
 static void emit_names(dvi__emitter *out, const dvi__emitted_sum *own, const char *before)
 {
   for (int b = 0; b < DVI__BLOCKS; b++) dvi__emit(out, "%s%s", before, dvi__block_name[b]);
-  for (int a = 0; own->mask >> a != 0; a++)
-    if ((own->mask >> a & 1U) != 0) dvi__emit(out, "%s%s", before, own->array[a]);
+  for (int a = 0; a < own->sum->array_count; a++)
+    if (own->sum->wanted[a]) dvi__emit(out, "%s%s", before, own->array[a]);
 }
 
 void dvi__emit_parameters(dvi__emitter *out, const dvi__emitted_sum *own)
 {
   dvi__emit(out, ",\n    ");
-  for (int b = 0; b < DVI__BLOCKS; b++) dvi__emit(out, "const double *restrict %s, ", dvi__block_name[b]);
-  for (int a = 0, more = 0; own->mask >> a != 0; a++)
-    if ((own->mask >> a & 1U) != 0) dvi__emit(out, "%sdouble *restrict %s", more++ > 0 ? ", " : "", own->array[a]);
+  for (int b = 0; b < DVI__BLOCKS; b++)
+    dvi__emit(out, "const double *restrict %s, ", dvi__block_name[b]);
+  for (int a = 0, more = 0; a < own->sum->array_count; a++)
+    if (own->sum->wanted[a])
+      dvi__emit(out, "%sdouble *restrict %s", more++ > 0 ? ", " : "", own->array[a]);
 }
 
 void dvi__emit_arguments(dvi__emitter *out, const dvi__emitted_sum *own)
@@ -58,26 +62,28 @@ void dvi__emit_shifts(dvi__emitter *out, const dvi__emitted_sum *own, const dvi_
 
 void dvi__emit_zeros(dvi__emitter *out, const dvi__emitted_sum *own, int array)
 {
-  dvi__emit(out, "  memset(%s, 0, sizeof *%s * (size_t)n * %d);\n", own->array[array], own->array[array], own->size[array]);
+  dvi__emit(out, "  memset(%s, 0, sizeof *%s * (size_t)n * %d);\n", own->array[array],
+            own->array[array], own->sum->size[array]);
 }
 
 /* --- Functions. --- */
 
-static int has_one_element(const dvi__sum *sum)
+static int has_one_element(const dvi__function_sum *sum)
 {
   for (int k = 0; k < sum->part_count; k++)
     if (sum->part[k].kernel->elements > 1) return 0;
   return 1;
 }
 
-static int has_inverse_roots(const dvi__sum *sum)
+static int has_inverse_roots(const dvi__function_sum *sum)
 {
   for (int k = 0; k < sum->part_count; k++)
     if (dvi__program_has_inverse_roots(&sum->part[k].program)) return 1;
   return 0;
 }
 
-static void emit_head(dvi__emitter *out, const dvi__emitted_sum *own, const char *kind, const char *ending)
+static void emit_head(dvi__emitter *out, const dvi__emitted_sum *own, const char *kind,
+                      const char *ending)
 {
   dvi__emit(out, "%sstatic void %s%s(int count", kind, own->name, ending);
   dvi__emit_parameters(out, own);
@@ -94,7 +100,8 @@ static void emit_call(dvi__emitter *out, const dvi__emitted_sum *own, const char
 static dvi_status emit_sum(dvi__emitter *out, const dvi__emitted_sum *own)
 {
   const int may_be_unusual = has_inverse_roots(own->sum);
-  const dvi_status status = has_one_element(own->sum) ? dvi__emit_expressions(out, own) : dvi__emit_elements(out, own);
+  const dvi_status status = has_one_element(own->sum) ? dvi__emit_expressions(out, own)
+                                                      : dvi__emit_elements(out, own);
   if (status != DVI_OK) return status;
   if (may_be_unusual) {
     emit_head(out, own, "DVI_SELDOM ", "_careful");
@@ -113,29 +120,35 @@ static dvi_status emit_sum(dvi__emitter *out, const dvi__emitted_sum *own)
   return out->failed;
 }
 
+/* The sum is derived if need be; names are those of its arrays. */
+static dvi_status emit_derived(dvi__emitter *out, dvi__function *function, dvi__derived derived,
+                               const char *wanted, const dvi__emitted_sum *named)
+{
+  dvi__emitted_sum own = *named;
+  const dvi_status status = dvi__function_prepare(function, derived == DVI__VALUE,
+                                                  derived == DVI__GRADIENT ? wanted : NULL,
+                                                  derived == DVI__SECOND ? wanted : NULL);
+  if (status != DVI_OK) return status;
+  own.sum = dvi__function_sum_of(function, derived, wanted);
+  return emit_sum(out, &own);
+}
+
 dvi_status dvi__emit_value(dvi__emitter *out, dvi__function *function, const char *name)
 {
-  const dvi_status status = dvi__function_prepare(function, 1, 0, 0);
-  if (status != DVI_OK) return status;
-  const dvi__emitted_sum own = {atomic_load(&function->value), name, &(int){1}, value_name, 1, 1};
-  return emit_sum(out, &own);
+  const dvi__emitted_sum own = {.name = name, .array = value_name, .points = 1};
+  return emit_derived(out, function, DVI__VALUE, &(const char){1}, &own);
 }
 
-dvi_status dvi__emit_gradient(dvi__emitter *out, dvi__function *function, unsigned blocks, int lanes, const char *name)
+dvi_status dvi__emit_gradient(dvi__emitter *out, dvi__function *function, const char *blocks,
+                              int lanes, const char *name)
 {
-  const dvi_status status = dvi__function_prepare(function, 0, blocks, 0);
-  if (status != DVI_OK) return status;
-  const dvi__emitted_sum own = {
-      atomic_load(&function->gradient[blocks]), name, function->block_size, gradient_name, blocks, lanes ? 8 : 1};
-  return emit_sum(out, &own);
+  const dvi__emitted_sum own = {.name = name, .array = gradient_name, .points = lanes ? 8 : 1};
+  return emit_derived(out, function, DVI__GRADIENT, blocks, &own);
 }
 
-dvi_status dvi__emit_second(dvi__emitter *out, dvi__function *function, unsigned pairs, int lanes, const char *name)
+dvi_status dvi__emit_second(dvi__emitter *out, dvi__function *function, const char *pairs,
+                            int lanes, const char *name)
 {
-  int size[DVI__PAIRS];
-  const dvi_status status = dvi__function_prepare(function, 0, 0, pairs);
-  if (status != DVI_OK) return status;
-  for (int pair = 0; pair < DVI__PAIRS; pair++) size[pair] = function->pattern[pair].entries;
-  const dvi__emitted_sum own = {atomic_load(&function->second[pairs]), name, size, second_name, pairs, lanes ? 4 : 1};
-  return emit_sum(out, &own);
+  const dvi__emitted_sum own = {.name = name, .array = second_name, .points = lanes ? 4 : 1};
+  return emit_derived(out, function, DVI__SECOND, pairs, &own);
 }

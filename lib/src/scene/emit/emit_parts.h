@@ -2,26 +2,28 @@
 #ifndef DVI_SCENE_EMIT_PARTS_H
 #define DVI_SCENE_EMIT_PARTS_H
 #include "scene/emit/emit.h"
-#include "scene/function/function_parts.h"
+#include "expr/function/function_parts.h"
 
-/* A program's straight line: `r%d` are its numbers, from *next on, which moves. name [row_count + input_count]: of registers, then of inputs, whose
- * names must be there; the outputs' are there afterwards. */
-void dvi__emit_program(dvi__emitter *out, const dvi__program *program, const char *indent, int *name, int *next);
+/* A program's straight line: `r%d` are its numbers, from *next on, which moves. name [row_count +
+ * input_count]: of registers, then of inputs, whose names must be there; the outputs' are there
+ * afterwards. */
+void dvi__emit_program(dvi__emitter *out, const dvi__program *program, const char *indent,
+                       int *name, int *next);
 
 /* 1 if the program takes inverse roots, so that it wants `careful` and `unusual`. */
 int dvi__program_has_inverse_roots(const dvi__program *program);
 
-/* A sum as a function: array a has a name and size[a] entries for the arrays in `mask`. */
+/* A sum of a scene's function as a C function: array a of its results has a name. */
 typedef struct dvi__emitted_sum {
-  const dvi__sum *sum;
+  const dvi__function_sum *sum;
   const char *name;
-  const int *size;
   const char *const *array;
-  unsigned mask;
-  int points; /* most that are taken at once: a power of two; 1: it is compiled for one instruction set */
+  int points; /* most that are taken at once: a power of two; 1: it is compiled for one instruction
+                 set */
 } dvi__emitted_sum;
 
-/* An output of the sum's parts, counted over all of them, of an element, that is added to an entry of a result, or subtracted. */
+/* An output of the sum's parts, counted over all of them, of an element, that is added to an entry
+ * of a result, or subtracted. */
 typedef struct dvi__contribution {
   int array, entry, order, output, element, negative;
 } dvi__contribution;
@@ -46,27 +48,31 @@ typedef struct dvi__numbers {
   int list, value;
 } dvi__numbers;
 
-/* What a part adds to an array: each time a row, with a sign, to entries start + step * e, or, listed, start + the list `step` at e. */
+/* What a part adds to an array: each time a row, with a sign, to entries start + step * e, or,
+ * listed, start + the list `step` at e. */
 typedef struct dvi__additions {
   int count, listed;
   dvi__numbers row, sign, start, step;
   enum { DVI__NEVER, DVI__SOMETIMES, DVI__ALWAYS } folds; /* in units that have one entry */
-  int flags;                                              /* if sometimes: the list that says in which */
+  int flags; /* if sometimes: the list that says in which */
 } dvi__additions;
 
 /* Write the tables, before a function; and in it the loop. */
-dvi_status dvi__additions_declare(dvi__emitter *out, const dvi__part *part, int array, dvi__additions *all);
-void dvi__additions_emit(dvi__emitter *out, const dvi__additions *all, const char *array, int elements);
+dvi_status dvi__additions_declare(dvi__emitter *out, const dvi__part *part, int array,
+                                  dvi__additions *all);
+void dvi__additions_emit(dvi__emitter *out, const dvi__additions *all, const char *array,
+                         int elements);
 
-/* The name's parts: NAME_at(careful, n, ..), which returns 1 if it wants to be called again, carefully. Of kernels with one element, or any. */
+/* The name's parts: NAME_at(careful, n, ..), which returns 1 if it wants to be called again,
+ * carefully. Of kernels with one element, or any. */
 dvi_status dvi__emit_expressions(dvi__emitter *out, const dvi__emitted_sum *own);
 dvi_status dvi__emit_elements(dvi__emitter *out, const dvi__emitted_sum *own);
 
 /* The blocks' names. */
 extern const char *const dvi__block_name[DVI__BLOCKS];
 
-/* The function's last parameters, the blocks and the arrays; the same as arguments; mentioned, for those that are not used; and statements that shift those
- * which a part uses. */
+/* The function's last parameters, the blocks and the arrays; the same as arguments; mentioned, for
+ * those that are not used; and statements that shift those which a part uses. */
 void dvi__emit_parameters(dvi__emitter *out, const dvi__emitted_sum *own);
 void dvi__emit_arguments(dvi__emitter *out, const dvi__emitted_sum *own);
 void dvi__emit_mentions(dvi__emitter *out, const dvi__emitted_sum *own);
@@ -74,7 +80,8 @@ void dvi__emit_shifts(dvi__emitter *out, const dvi__emitted_sum *own, const dvi_
 /* Zeros in an array. */
 void dvi__emit_zeros(dvi__emitter *out, const dvi__emitted_sum *own, int array);
 
-/* Names for a part's rows, to be freed: its variables and columns have *next and following. NULL: no memory. */
+/* Names for a part's rows, to be freed: its variables and columns have *next and following. NULL:
+ * no memory. */
 int *dvi__name_rows(const dvi__part *part, int *next);
 
 #endif

@@ -3,7 +3,7 @@
 #include <stddef.h>
 
 #include "scene/emit/emit_parts.h"
-#include "scene/expr/program_codes.h"
+#include "expr/compile/program_codes.h"
 
 typedef struct emission {
   dvi__emitter *out;
@@ -16,7 +16,8 @@ static int name_of(const emission *e, int row)
   return row >= 0 ? e->name[row] : e->name[e->rows + ~row];
 }
 
-/* What an operation is in C: a, b and c are its operands, v its value. NULL: a function, or more than a line. */
+/* What an operation is in C: a, b and c are its operands, v its value. NULL: a function, or more
+ * than a line. */
 static const char *formula_of(int op)
 {
   switch (op) {
@@ -143,7 +144,8 @@ static int emit_instruction(const emission *e, const dvi__instruction *at)
   }
 }
 
-void dvi__emit_program(dvi__emitter *out, const dvi__program *program, const char *indent, int *name, int *next)
+void dvi__emit_program(dvi__emitter *out, const dvi__program *program, const char *indent,
+                       int *name, int *next)
 {
   const emission e = {out, indent, name, next, program->row_count};
   for (int i = 0; i < program->instruction_count; i++) {

@@ -1,9 +1,10 @@
-/* A scene as a C file: what a program declares of it, its terms, a function that makes the system, its start and its plan, and a program that runs it. */
+/* A scene as a C file: what a program declares of it, its terms, a function that makes the system,
+ * its start and its plan, and a program that runs it. */
 #include <dvi/integrator.h>
 #include <string.h>
 
 #include "scene/emit/emit_scene.h"
-#include "scene/text/heap.h"
+#include "text/heap.h"
 #include "scene/elaborate/names.h"
 
 enum { IDENTIFIER_MAX = 63 }; /* as many letters of a name are sure to count in C */
@@ -15,10 +16,14 @@ static dvi_status emit_motion(dvi__emitter *out, const dvi_scene *scene)
   const dvi_system_terms *terms = &scene->terms;
   dvi__emitted_term term;
   dvi_status status = DVI_OK;
-  if (terms->lagrangian != NULL) term = dvi__lagrangian_term(scene), status = dvi__emit_term(out, &term);
-  if (terms->one_form != NULL) term = dvi__one_form_term(scene), status = dvi__emit_term(out, &term);
-  if (terms->hamiltonian != NULL) term = dvi__hamiltonian_term(scene), status = dvi__emit_term(out, &term);
-  if (terms->constraint != NULL && status == DVI_OK) term = dvi__constraint_term(scene), status = dvi__emit_term(out, &term);
+  if (terms->lagrangian != NULL)
+    term = dvi__lagrangian_term(scene), status = dvi__emit_term(out, &term);
+  if (terms->one_form != NULL)
+    term = dvi__one_form_term(scene), status = dvi__emit_term(out, &term);
+  if (terms->hamiltonian != NULL)
+    term = dvi__hamiltonian_term(scene), status = dvi__emit_term(out, &term);
+  if (terms->constraint != NULL && status == DVI_OK)
+    term = dvi__constraint_term(scene), status = dvi__emit_term(out, &term);
   for (int k = 0; k < terms->potential_count && status == DVI_OK; k++)
     term = dvi__potential_term(scene, k), status = dvi__emit_term(out, &term);
   return status;
@@ -47,7 +52,8 @@ static void emit_mass(dvi__emitter *out, const dvi_mass *mass, const int pattern
   } else if (mass->values != NULL) {
     dvi__emit(out, "  terms.mass.values = dvi_row_%d;\n", row);
     if (pattern[0] >= 0)
-      dvi__emit(out, "  terms.mass.pattern = (dvi_pattern){dvi_list_%d, dvi_list_%d};\n", pattern[0], pattern[1]);
+      dvi__emit(out, "  terms.mass.pattern = (dvi_pattern){dvi_list_%d, dvi_list_%d};\n",
+                pattern[0], pattern[1]);
   } else if (mass->scalar < 0 || mass->scalar > 0) {
     dvi__emit(out, "  terms.mass.scalar = ");
     dvi__emit_number(out, mass->scalar);
@@ -56,7 +62,8 @@ static void emit_mass(dvi__emitter *out, const dvi_mass *mass, const int pattern
 }
 
 /* The list of a kind of terms, if there are any. */
-static void emit_list(dvi__emitter *out, const char *type, const char *term, const char *list, int length)
+static void emit_list(dvi__emitter *out, const char *type, const char *term, const char *list,
+                      int length)
 {
   if (length == 0) return;
   dvi__emit(out, "  const %s %s[] = {", type, list);
@@ -68,19 +75,25 @@ static void emit_list(dvi__emitter *out, const char *type, const char *term, con
 static void emit_inertias(dvi__emitter *out, const dvi_system_terms *terms)
 {
   for (int k = 0; k < terms->factor_count; k++) {
-    if (terms->factors[k].inertia != NULL) (void)dvi__emit_doubles(out, 9, terms->factors[k].inertia);
+    if (terms->factors[k].inertia != NULL)
+      (void)dvi__emit_doubles(out, 9, terms->factors[k].inertia);
     if (terms->factors[k].centre != NULL) (void)dvi__emit_doubles(out, 3, terms->factors[k].centre);
   }
 }
 
 static void emit_factor(dvi__emitter *out, const dvi_factor *factor)
 {
-  static const char *const kind[] = {
-      [DVI_RN] = "DVI_RN", [DVI_SO3] = "DVI_SO3", [DVI_SE3] = "DVI_SE3", [DVI_S2] = "DVI_S2", [DVI_U1] = "DVI_U1"};
+  static const char *const kind[] = {[DVI_RN] = "DVI_RN",
+                                     [DVI_SO3] = "DVI_SO3",
+                                     [DVI_SE3] = "DVI_SE3",
+                                     [DVI_S2] = "DVI_S2",
+                                     [DVI_U1] = "DVI_U1"};
   dvi__emit(out, "      {.kind = %s, .size = %d, .mass = ", kind[factor->kind], factor->size);
   dvi__emit_number(out, factor->mass);
-  if (factor->inertia != NULL) dvi__emit(out, ", .inertia = dvi_row_%d", dvi__emit_doubles(out, 9, factor->inertia));
-  if (factor->centre != NULL) dvi__emit(out, ", .centre = dvi_row_%d", dvi__emit_doubles(out, 3, factor->centre));
+  if (factor->inertia != NULL)
+    dvi__emit(out, ", .inertia = dvi_row_%d", dvi__emit_doubles(out, 9, factor->inertia));
+  if (factor->centre != NULL)
+    dvi__emit(out, ", .centre = dvi_row_%d", dvi__emit_doubles(out, 3, factor->centre));
   dvi__emit(out, "},\n");
 }
 
@@ -89,7 +102,8 @@ static void emit_factors(dvi__emitter *out, const dvi_system_terms *terms)
   if (terms->factor_count == 0) return;
   dvi__emit(out, "  const dvi_factor factors[] = {\n");
   for (int k = 0; k < terms->factor_count; k++) emit_factor(out, &terms->factors[k]);
-  dvi__emit(out, "  };\n  terms.factors = factors;\n  terms.factor_count = %d;\n", terms->factor_count);
+  dvi__emit(out, "  };\n  terms.factors = factors;\n  terms.factor_count = %d;\n",
+            terms->factor_count);
 }
 
 static void emit_create(dvi__emitter *out, const dvi_scene *scene, const char *name)
@@ -100,10 +114,14 @@ static void emit_create(dvi__emitter *out, const dvi_scene *scene, const char *n
   if (mass->diagonal != NULL) row = dvi__emit_doubles(out, scene->n, mass->diagonal);
   if (mass->values != NULL) {
     dvi__emit_pattern_arrays(out, scene->n, &mass->pattern, pattern);
-    row = dvi__emit_doubles(out, mass->pattern.start == NULL ? scene->n * scene->n : mass->pattern.start[scene->n], mass->values);
+    row = dvi__emit_doubles(
+        out, mass->pattern.start == NULL ? scene->n * scene->n : mass->pattern.start[scene->n],
+        mass->values);
   }
   emit_inertias(out, terms);
-  dvi__emit(out, "dvi_status %s_create(dvi_system **system)\n{\n  dvi_system_terms terms = {.dimension = %d, .autonomous = %d};\n",
+  dvi__emit(out,
+            "dvi_status %s_create(dvi_system **system)\n{\n  dvi_system_terms terms = {.dimension "
+            "= %d, .autonomous = %d};\n",
             name, terms->dimension, terms->autonomous);
   emit_factors(out, terms);
   emit_list(out, "dvi_potential", "potential", "potentials", terms->potential_count);
@@ -119,7 +137,8 @@ static void emit_create(dvi__emitter *out, const dvi_scene *scene, const char *n
 
 /* ---- how it is run ---- */
 
-static void emit_start(dvi__emitter *out, const char *name, const char *letter, int n, const double *x)
+static void emit_start(dvi__emitter *out, const char *name, const char *letter, int n,
+                       const double *x)
 {
   dvi__emit(out, "\nconst double %s_%s[%d] = {\n", name, letter, n);
   for (int i = 0; i < n; i++) {
@@ -138,7 +157,8 @@ static void emit_events(dvi__emitter *out, const dvi_scene *scene, const char *n
     const dvi__emitted_term term = dvi__event_term(scene, k);
     dvi__emit(out, "    {");
     dvi__emit_fields(out, &term);
-    dvi__emit(out, ", .direction = %d, .terminal = %d},\n", scene->event[k].direction, scene->event[k].terminal);
+    dvi__emit(out, ", .direction = %d, .terminal = %d},\n", scene->event[k].direction,
+              scene->event[k].terminal);
   }
   dvi__emit(out, "};\n");
 }
@@ -175,17 +195,25 @@ static const char *const run[] = {
 
 static void emit_main(dvi__emitter *out, const dvi_scene *scene, const char *name)
 {
-  dvi__emit(
-      out,
-      "\n#ifdef DVI_MAIN\n/* Run it as the scene says, and print the last time, coordinates and momenta. */\n#include <stdio.h>\n");
+  dvi__emit(out, "\n#ifdef DVI_MAIN\n/* Run it as the scene says, and print the last time, "
+                 "coordinates and momenta. */\n#include <stdio.h>\n");
   dvi__emit(out, "int main(void)\n{\n%s", run[0]);
   dvi__emit(out, "  const dvi_run_options options = {.h = %s_h, .t_end = %s_t_end", name, name);
-  if (scene->event_count > 0) dvi__emit(out, ", .events = %s_events, .event_count = %d", name, scene->event_count);
+  if (scene->event_count > 0)
+    dvi__emit(out, ", .events = %s_events, .event_count = %d", name, scene->event_count);
   dvi__emit(out, "};\n  dvi_status status = %s_create(&system);\n", name);
-  dvi__emit(out, "  if (status == DVI_OK) status = dvi_integrator_create(system, %s_method, &integrator);\n", name);
-  dvi__emit(out, "  if (status == DVI_OK) status = dvi_integrator_start(integrator, 0.0, %s_q, %s_p);\n%s", name, name, run[1]);
+  dvi__emit(
+      out,
+      "  if (status == DVI_OK) status = dvi_integrator_create(system, %s_method, &integrator);\n",
+      name);
+  dvi__emit(
+      out,
+      "  if (status == DVI_OK) status = dvi_integrator_start(integrator, 0.0, %s_q, %s_p);\n%s",
+      name, name, run[1]);
   for (const char *x = "qp"; *x != '\0'; x++)
-    dvi__emit(out, "  for (int i = 0; status == DVI_OK && i < %d; i++) printf(\",%%.17g\", dvi_integrator_%c(integrator)[i]);\n",
+    dvi__emit(out,
+              "  for (int i = 0; status == DVI_OK && i < %d; i++) printf(\",%%.17g\", "
+              "dvi_integrator_%c(integrator)[i]);\n",
               *x == 'q' ? scene->n : scene->nv, *x);
   dvi__emit(out, "%s", run[2]);
 }
@@ -195,18 +223,22 @@ static void emit_head(dvi__emitter *out, const dvi_scene *scene, const char *nam
 {
   const dvi_system_terms *terms = &scene->terms;
   dvi__emit_begin(out);
-  dvi__emit(out, "#include <dvi/dvi.h>\n\n/* The system, and its start; how it wants to be run. */\n");
+  dvi__emit(out,
+            "#include <dvi/dvi.h>\n\n/* The system, and its start; how it wants to be run. */\n");
   dvi__emit(out, "dvi_status %s_create(dvi_system **system);\n", name);
-  dvi__emit(out, "extern const double %s_q[%d], %s_v[%d], %s_p[%d];\n", name, scene->n, name, scene->nv, name, scene->nv);
+  dvi__emit(out, "extern const double %s_q[%d], %s_v[%d], %s_p[%d];\n", name, scene->n, name,
+            scene->nv, name, scene->nv);
   if (scene->plan.method != NULL) dvi__emit(out, "extern const char %s_method[];\n", name);
   dvi__emit(out, "extern const double %s_h, %s_t_end;\n", name, name);
-  if (scene->event_count > 0) dvi__emit(out, "extern const dvi_event %s_events[%d];\n", name, scene->event_count);
+  if (scene->event_count > 0)
+    dvi__emit(out, "extern const dvi_event %s_events[%d];\n", name, scene->event_count);
   dvi__emit(out, "\n");
   if (terms->one_form != NULL || terms->symmetry_count > 0 || terms->constraint != NULL)
     dvi__emit(out, "static const double dvi_zeros[%d] = {0};\n\n", 2 * scene->n);
 }
 
-/* DVI_UNSUPPORTED if the method runs the scene, but not a system without Taylor coefficients, as the file's is. */
+/* DVI_UNSUPPORTED if the method runs the scene, but not a system without Taylor coefficients, as
+ * the file's is. */
 static dvi_status check_method(const dvi_scene *scene)
 {
   dvi_system_terms terms = scene->terms;
@@ -227,13 +259,15 @@ static dvi_status check_method(const dvi_scene *scene)
   dvi_integrator_destroy(&integrator);
   dvi_system_destroy(&system);
   dvi__heap_free(potential);
-  if (status == DVI_UNSUPPORTED && dvi_integrator_create(scene->system, scene->plan.method, &integrator) != DVI_OK) status = DVI_OK;
+  if (status == DVI_UNSUPPORTED &&
+      dvi_integrator_create(scene->system, scene->plan.method, &integrator) != DVI_OK)
+    status = DVI_OK;
   dvi_integrator_destroy(&integrator);
   return status == DVI_UNSUPPORTED || status == DVI_NO_MEMORY ? status : DVI_OK;
 }
 
-dvi_status dvi_scene_emit_c(const dvi_scene *scene, const char *name, int (*write)(const char *text, size_t size, void *user),
-                            void *user)
+dvi_status dvi_scene_emit_c(const dvi_scene *scene, const char *name,
+                            int (*write)(const char *text, size_t size, void *user), void *user)
 {
   if (scene == NULL || name == NULL || write == NULL) return DVI_BAD_ARGUMENT;
   if (!dvi__is_identifier(name) || strlen(name) > IDENTIFIER_MAX) return DVI_BAD_ARGUMENT;

@@ -5,53 +5,77 @@
 
 #define BATCH "int count, const double *t, const double *q"
 #define POINT "double t, const double *q"
-#define BLOCK(b) (1U << (b))
-#define SECOND (BLOCK(DVI__PAIR_QQ) | BLOCK(DVI__PAIR_QV) | BLOCK(DVI__PAIR_VV))
-#define MOTION (BLOCK(DVI__COORDINATES) | BLOCK(DVI__VELOCITIES))
+#define ONLY(number) \
+  {                  \
+    [number] = 1     \
+  }
+#define SECOND                                                 \
+  {                                                            \
+    [DVI__PAIR_QQ] = 1, [DVI__PAIR_QV] = 1, [DVI__PAIR_VV] = 1 \
+  }
+#define MOTION                                    \
+  {                                               \
+    [DVI__COORDINATES] = 1, [DVI__VELOCITIES] = 1 \
+  }
 
 enum { RATE = 3 }; /* the callback that only systems with time have */
 
 static const dvi__callback potential_callbacks[] = {
-    {"value_batch", BATCH ", double *V", "count, t, q, NULL, NULL, V", 'v', 0},
-    {"gradient_batch", BATCH ", double *V_q", "count, t, q, NULL, NULL, V_q", 'g', BLOCK(DVI__COORDINATES)},
-    {"hessian_batch", BATCH ", double *V_qq", "count, t, q, NULL, NULL, V_qq", 's', BLOCK(DVI__PAIR_QQ)},
-    {"rate_batch", BATCH ", double *V_t", "count, t, q, NULL, NULL, V_t", 'g', BLOCK(DVI__TIME)},
+    {"value_batch", BATCH ", double *V", "count, t, q, NULL, NULL, V", 'v', {0}},
+    {"gradient_batch", BATCH ", double *V_q", "count, t, q, NULL, NULL, V_q", 'g',
+     ONLY(DVI__COORDINATES)},
+    {"hessian_batch", BATCH ", double *V_qq", "count, t, q, NULL, NULL, V_qq", 's',
+     ONLY(DVI__PAIR_QQ)},
+    {"rate_batch", BATCH ", double *V_t", "count, t, q, NULL, NULL, V_t", 'g', ONLY(DVI__TIME)},
 };
 
 static const dvi__callback lagrangian_callbacks[] = {
-    {"value_batch", BATCH ", const double *v, double *L", "count, t, q, v, NULL, L", 'v', 0},
-    {"gradient_batch", BATCH ", const double *v, double *L_q, double *L_v", "count, t, q, v, NULL, L_q, L_v", 'g', MOTION},
-    {"hessian_batch", BATCH ", const double *v, double *L_qq, double *L_qv, double *L_vv", "count, t, q, v, NULL, L_qq, L_qv, L_vv",
-     's', SECOND},
-    {"rate_batch", BATCH ", const double *v, double *L_t", "count, t, q, v, NULL, L_t", 'g', BLOCK(DVI__TIME)},
+    {"value_batch", BATCH ", const double *v, double *L", "count, t, q, v, NULL, L", 'v', {0}},
+    {"gradient_batch", BATCH ", const double *v, double *L_q, double *L_v",
+     "count, t, q, v, NULL, L_q, L_v", 'g', MOTION},
+    {"hessian_batch", BATCH ", const double *v, double *L_qq, double *L_qv, double *L_vv",
+     "count, t, q, v, NULL, L_qq, L_qv, L_vv", 's', SECOND},
+    {"rate_batch", BATCH ", const double *v, double *L_t", "count, t, q, v, NULL, L_t", 'g',
+     ONLY(DVI__TIME)},
 };
 
 static const dvi__callback form_callbacks[] = {
-    {"value", "const double *q, double *alpha", "1, NULL, q, NULL, dvi_zeros, alpha", 'g', BLOCK(DVI__MULTIPLIERS)},
-    {"gradient", "const double *q, double *alpha_q", "1, NULL, q, NULL, dvi_zeros, alpha_q", 's', BLOCK(DVI__PAIR_QW)},
-    {"hessian", "const double *q, const double *w, double *alpha_w_qq", "1, NULL, q, NULL, w, alpha_w_qq", 's',
-     BLOCK(DVI__PAIR_QQ)},
+    {"value", "const double *q, double *alpha", "1, NULL, q, NULL, dvi_zeros, alpha", 'g',
+     ONLY(DVI__MULTIPLIERS)},
+    {"gradient", "const double *q, double *alpha_q", "1, NULL, q, NULL, dvi_zeros, alpha_q", 's',
+     ONLY(DVI__PAIR_QW)},
+    {"hessian", "const double *q, const double *w, double *alpha_w_qq",
+     "1, NULL, q, NULL, w, alpha_w_qq", 's', ONLY(DVI__PAIR_QQ)},
 };
 
 static const dvi__callback hamiltonian_callbacks[] = {
-    {"value", POINT ", const double *p, double *H", "1, &t, q, p, NULL, H", 'v', 0},
-    {"gradient", POINT ", const double *p, double *H_q, double *H_p", "1, &t, q, p, NULL, H_q, H_p", 'g', MOTION},
-    {"hessian", POINT ", const double *p, double *H_qq, double *H_qp, double *H_pp", "1, &t, q, p, NULL, H_qq, H_qp, H_pp", 's',
-     SECOND},
+    {"value", POINT ", const double *p, double *H", "1, &t, q, p, NULL, H", 'v', {0}},
+    {"gradient", POINT ", const double *p, double *H_q, double *H_p", "1, &t, q, p, NULL, H_q, H_p",
+     'g', MOTION},
+    {"hessian", POINT ", const double *p, double *H_qq, double *H_qp, double *H_pp",
+     "1, &t, q, p, NULL, H_qq, H_qp, H_pp", 's', SECOND},
 };
 
 static const dvi__callback constraint_callbacks[] = {
-    {"value", "const double *q, const double *p, double *phi", "1, NULL, q, p, dvi_zeros, phi", 'g', BLOCK(DVI__MULTIPLIERS)},
-    {"gradient", "const double *q, const double *p, double *phi_z", "1, NULL, q, p, dvi_zeros", 'c',
-     BLOCK(DVI__PAIR_QW) | BLOCK(DVI__PAIR_VW)},
-    {"hessian", "const double *q, const double *p, const double *w, double *qq, double *qp, double *pp",
+    {"value", "const double *q, const double *p, double *phi", "1, NULL, q, p, dvi_zeros, phi", 'g',
+     ONLY(DVI__MULTIPLIERS)},
+    {"gradient",
+     "const double *q, const double *p, double *phi_z",
+     "1, NULL, q, p, dvi_zeros",
+     'c',
+     {[DVI__PAIR_QW] = 1, [DVI__PAIR_VW] = 1}},
+    {"hessian",
+     "const double *q, const double *p, const double *w, double *qq, double *qp, double *pp",
      "1, NULL, q, p, w, qq, qp, pp", 's', SECOND},
 };
 
-static const dvi__callback symmetry_callback = {"generator", "const double *q, double *xi", "1, NULL, q, NULL, dvi_zeros, xi", 'g',
-                                                BLOCK(DVI__MULTIPLIERS)};
-static const dvi__callback invariant_callback = {"value", POINT ", const double *p, double *I", "1, &t, q, p, NULL, I", 'v', 0};
-static const dvi__callback event_callback = {"value", POINT ", const double *v, double *g", "1, &t, q, v, NULL, g", 'v', 0};
+static const dvi__callback symmetry_callback = {"generator", "const double *q, double *xi",
+                                                "1, NULL, q, NULL, dvi_zeros, xi", 'g',
+                                                ONLY(DVI__MULTIPLIERS)};
+static const dvi__callback invariant_callback = {
+    "value", POINT ", const double *p, double *I", "1, &t, q, p, NULL, I", 'v', {0}};
+static const dvi__callback event_callback = {
+    "value", POINT ", const double *v, double *g", "1, &t, q, v, NULL, g", 'v', {0}};
 
 dvi__emitted_term dvi__lagrangian_term(const dvi_scene *scene)
 {
@@ -123,10 +147,11 @@ dvi__emitted_term dvi__potential_term(const dvi_scene *scene, int k)
 }
 
 /* One that has a callback and a name. */
-static dvi__emitted_term watched(const char *type, const char *kind, int k, const char *shown, const dvi__term *of,
-                                 const dvi__callback *callback)
+static dvi__emitted_term watched(const char *type, const char *kind, int k, const char *shown,
+                                 const dvi__scene_term *of, const dvi__callback *callback)
 {
-  dvi__emitted_term term = {.type = type, .shown = shown, .term = of, .callback_count = 1, .callback = callback};
+  dvi__emitted_term term = {
+      .type = type, .shown = shown, .term = of, .callback_count = 1, .callback = callback};
   (void)snprintf(term.name, sizeof term.name, "%s_%d", kind, k);
   return term;
 }
@@ -140,7 +165,8 @@ dvi__emitted_term dvi__symmetry_term(const dvi_scene *scene, int k)
 dvi__emitted_term dvi__invariant_term(const dvi_scene *scene, int k)
 {
   const dvi_invariant *invariant = &scene->terms.invariants[k];
-  return watched("dvi_invariant", "invariant", k, invariant->name, invariant->user, &invariant_callback);
+  return watched("dvi_invariant", "invariant", k, invariant->name, invariant->user,
+                 &invariant_callback);
 }
 
 dvi__emitted_term dvi__event_term(const dvi_scene *scene, int k)

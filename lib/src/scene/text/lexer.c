@@ -1,6 +1,7 @@
-/* Words of expressions, and remedies for characters that mean something elsewhere: in other languages, or on paper. */
+/* Words of expressions, and remedies for characters that mean something elsewhere: in other
+ * languages, or on paper. */
 #include "scene/text/lexer.h"
-#include "scene/text/utf8.h"
+#include "text/utf8.h"
 
 #include <string.h>
 
@@ -31,7 +32,8 @@ static size_t skip_digits(const text *t, size_t k)
   return k;
 }
 
-/* Where the number ends that begins at k. The two points of 1..N are none of it, and an e without digits begins a name. */
+/* Where the number ends that begins at k. The two points of 1..N are none of it, and an e without
+ * digits begins a name. */
 static size_t number_end(const text *t, size_t k)
 {
   k = skip_digits(t, k);
@@ -67,17 +69,21 @@ static size_t skip_blanks(const text *t, size_t k)
 /* What to write for a character of paper; NULL: nothing comes close. */
 static const char *spelling(unsigned code)
 {
-  static const char *const greek[] = {"alpha", "beta",   "gamma",   "delta", "epsilon", "zeta",    "eta",  "theta", "iota",
-                                      "kappa", "lambda", "mu",      "nu",    "xi",      "omicron", "pi",   "rho",   "sigma",
-                                      "sigma", "tau",    "upsilon", "phi",   "chi",     "psi",     "omega"};
+  static const char *const greek[] = {
+      "alpha", "beta",   "gamma",   "delta", "epsilon", "zeta",    "eta",  "theta", "iota",
+      "kappa", "lambda", "mu",      "nu",    "xi",      "omicron", "pi",   "rho",   "sigma",
+      "sigma", "tau",    "upsilon", "phi",   "chi",     "psi",     "omega"};
   static const struct {
     unsigned code;
     const char *spelling;
-  } mark[] = {
-      {0x2212, "-"},          {0x2013, "-"},    {0xB7, "*"},     {0x22C5, "*"},      {0xD7, "*"},       {0xF7, "/"},
-      {0xB2, "^2"},           {0xB3, "^3"},     {0x2019, "'"},   {0x2032, "'"},      {0xB4, "'"},       {0x221A, "sqrt(..)"},
-      {0x2211, "sum(i, ..)"}, {0x3D1, "theta"}, {0x3D5, "phi"},  {0x3F5, "epsilon"}, {0xA0, "a blank"}, {0x2264, "<="},
-      {0x2265, ">="},         {0x2260, "!="},   {0x2227, "and"}, {0x2228, "or"},     {0xAC, "not"},     {0x2026, ".."}};
+  } mark[] = {{0x2212, "-"},          {0x2013, "-"},     {0xB7, "*"},
+              {0x22C5, "*"},          {0xD7, "*"},       {0xF7, "/"},
+              {0xB2, "^2"},           {0xB3, "^3"},      {0x2019, "'"},
+              {0x2032, "'"},          {0xB4, "'"},       {0x221A, "sqrt(..)"},
+              {0x2211, "sum(i, ..)"}, {0x3D1, "theta"},  {0x3D5, "phi"},
+              {0x3F5, "epsilon"},     {0xA0, "a blank"}, {0x2264, "<="},
+              {0x2265, ">="},         {0x2260, "!="},    {0x2227, "and"},
+              {0x2228, "or"},         {0xAC, "not"},     {0x2026, ".."}};
   if (code >= 0x3B1 && code < 0x3B1 + sizeof greek / sizeof *greek) return greek[code - 0x3B1];
   for (size_t k = 0; k < sizeof mark / sizeof *mark; k++)
     if (mark[k].code == code) return mark[k].spelling;
@@ -91,10 +97,12 @@ static bool refuse_letter(const text *t, size_t k, dvi__complaint *complaint)
   const dvi__span where = {k, width == 0 ? 1 : width};
   const char *write = width == 0 ? NULL : spelling(code);
   if (write != NULL)
-    return dvi__complain(complaint, DVI_BAD_FILE, where, "'%.*s' has no meaning in expressions; write %s", (int)where.size,
+    return dvi__complain(complaint, DVI_BAD_FILE, where,
+                         "'%.*s' has no meaning in expressions; write %s", (int)where.size,
                          t->at + k, write);
   return dvi__complain(complaint, DVI_BAD_FILE, where,
-                       "'%.*s' has no meaning in expressions; names are made of the letters a-z and A-Z, digits and _",
+                       "'%.*s' has no meaning in expressions; names are made of the letters a-z "
+                       "and A-Z, digits and _",
                        (int)where.size, t->at + k);
 }
 
@@ -103,24 +111,26 @@ static bool refuse(const text *t, size_t k, dvi__complaint *complaint)
   static const struct {
     char mark;
     const char *remedy;
-  } known[] = {{'|', "; write abs(x) of a number, norm(a) of a vector"},
-               {':', "; a range is a..b"},
-               {';', "; elements of a list are separated by commas, rows are lists: [[a, b], [c, d]]"},
-               {'"', "; quotes stand around the whole expression, and the rate of x is x'"},
-               {'%', "; a remainder is x - n*floor(x/n)"},
-               {'{', "; write parentheses"},
-               {'}', "; write parentheses"},
-               {'\\', "; write sin(x), without a backslash"},
-               {'#', "; a blank stands before a comment"},
-               {'&', "; write and"},
-               {'?', "; write if(x < 0, a, b)"},
-               {'!', "; write not"}};
+  } known[] = {
+      {'|', "; write abs(x) of a number, norm(a) of a vector"},
+      {':', "; a range is a..b"},
+      {';', "; elements of a list are separated by commas, rows are lists: [[a, b], [c, d]]"},
+      {'"', "; quotes stand around the whole expression, and the rate of x is x'"},
+      {'%', "; a remainder is x - n*floor(x/n)"},
+      {'{', "; write parentheses"},
+      {'}', "; write parentheses"},
+      {'\\', "; write sin(x), without a backslash"},
+      {'#', "; a blank stands before a comment"},
+      {'&', "; write and"},
+      {'?', "; write if(x < 0, a, b)"},
+      {'!', "; write not"}};
   const char c = t->at[k];
   if ((unsigned char)c >= 0x80) return refuse_letter(t, k, complaint);
   const char *remedy = "";
   for (size_t i = 0; i < sizeof known / sizeof *known; i++)
     if (known[i].mark == c) remedy = known[i].remedy;
-  return dvi__complain(complaint, DVI_BAD_FILE, (dvi__span){k, 1}, "'%c' has no meaning in expressions%s", c, remedy);
+  return dvi__complain(complaint, DVI_BAD_FILE, (dvi__span){k, 1},
+                       "'%c' has no meaning in expressions%s", c, remedy);
 }
 
 /* The kind of a mark of two characters; 0: this is none. */
@@ -139,7 +149,8 @@ static int mark_of_two(char first, char second)
   return 0;
 }
 
-bool dvi__token_read(const dvi__source *source, size_t offset, size_t end, dvi__complaint *complaint, dvi__token *token)
+bool dvi__token_read(const dvi__source *source, size_t offset, size_t end,
+                     dvi__complaint *complaint, dvi__token *token)
 {
   const text t = {source->text, end};
   const size_t first = skip_blanks(&t, offset);
@@ -159,7 +170,8 @@ bool dvi__token_read(const dvi__source *source, size_t offset, size_t end, dvi__
     kind = mark_of_two(c, at(&t, last));
     last = first + 2;
   } else if (c == '*' && at(&t, last) == '*') {
-    return dvi__complain(complaint, DVI_BAD_FILE, (dvi__span){first, 2}, "powers are written x^2, not x**2");
+    return dvi__complain(complaint, DVI_BAD_FILE, (dvi__span){first, 2},
+                         "powers are written x^2, not x**2");
   } else if (c == '\0' || strchr("+-*/^()[],.'<>=", c) == NULL) {
     return refuse(&t, first, complaint);
   }

@@ -1,7 +1,7 @@
 /* The words of expressions. */
 #ifndef DVI_SCENE_LEXER_H
 #define DVI_SCENE_LEXER_H
-#include "scene/text/complaint.h"
+#include "text/complaint.h"
 
 /* Marks of one character are tokens of that character's code. */
 typedef enum dvi__token_kind {
@@ -20,8 +20,9 @@ typedef struct dvi__token {
   dvi__span span;
 } dvi__token;
 
-/* The token at `offset` or behind blanks and comments (# to the end of the line), before `end`; false, with a complaint, if something
- * else stands there. */
-bool dvi__token_read(const dvi__source *source, size_t offset, size_t end, dvi__complaint *complaint, dvi__token *token);
+/* The token at `offset` or behind blanks and comments (# to the end of the line), before `end`;
+ * false, with a complaint, if something else stands there. */
+bool dvi__token_read(const dvi__source *source, size_t offset, size_t end,
+                     dvi__complaint *complaint, dvi__token *token);
 
 #endif

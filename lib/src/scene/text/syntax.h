@@ -1,8 +1,9 @@
-/* Expressions as they are written: a tree of their parts, each with its place. docs/scenes.md has the grammar. */
+/* Expressions as they are written: a tree of their parts, each with its place. docs/scenes.md has
+ * the grammar. */
 #ifndef DVI_SCENE_SYNTAX_H
 #define DVI_SCENE_SYNTAX_H
-#include "scene/text/arena.h"
-#include "scene/text/complaint.h"
+#include "text/arena.h"
+#include "text/complaint.h"
 
 typedef enum dvi__form {
   DVI__FORM_NUMBER,   /* number */
@@ -16,11 +17,11 @@ typedef enum dvi__form {
   DVI__FORM_MULTIPLY,
   DVI__FORM_DIVIDE,
   DVI__FORM_POWER,
-  DVI__FORM_CALL,    /* name(part[0], .., part[count-1]) */
-  DVI__FORM_LIST,    /* [part[0], ..] */
-  DVI__FORM_SUM,     /* sum over name, or over name < name2, from part[1] to part[2] (count 3; count 1:
-                     as families say), of part[0] */
-  DVI__FORM_IF,      /* if(part[0], part[1], part[2]); part[0] is one of the conditions below */
+  DVI__FORM_CALL, /* name(part[0], .., part[count-1]) */
+  DVI__FORM_LIST, /* [part[0], ..] */
+  DVI__FORM_SUM,  /* sum over name, or over name < name2, from part[1] to part[2] (count 3; count 1:
+                  as families say), of part[0] */
+  DVI__FORM_IF,   /* if(part[0], part[1], part[2]); part[0] is one of the conditions below */
   DVI__FORM_COMPARE, /* part[0] name part[1], name one of < <= > >= == != */
   DVI__FORM_NOT,     /* not part[0] */
   DVI__FORM_AND,     /* part[0] and part[1] and .. */
@@ -36,9 +37,10 @@ typedef struct dvi__expression {
   struct dvi__expression *const *part;
 } dvi__expression;
 
-/* Parse a part of the source. Line breaks are blanks. At most 64 levels deep: deeper ones are refused (chains of + and - and of * and / count as one
- * level, and are nested to the left without recursion). */
-bool dvi__expression_parse(const dvi__source *source, dvi__span span, dvi__arena *arena, dvi__complaint *complaint,
-                           const dvi__expression **expression);
+/* Parse a part of the source. Line breaks are blanks. At most 64 levels deep: deeper ones are
+ * refused (chains of + and - and of * and / count as one level, and are nested to the left without
+ * recursion). */
+bool dvi__expression_parse(const dvi__source *source, dvi__span span, dvi__arena *arena,
+                           dvi__complaint *complaint, const dvi__expression **expression);
 
 #endif

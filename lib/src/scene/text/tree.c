@@ -1,10 +1,10 @@
-/* The tree is built from libyaml's events. What YAML has beyond scalars, sequences and mappings is refused: it would make a scene mean
- * what does not stand in it.
+/* The tree is built from libyaml's events. What YAML has beyond scalars, sequences and mappings is
+ * refused: it would make a scene mean what does not stand in it.
  *
- * libyaml counts characters, and spans count bytes: a place is carried along the text. The text is looked through before libyaml sees
- * it, so that what it complains of is YAML and not letters. */
+ * libyaml counts characters, and spans count bytes: a place is carried along the text. The text is
+ * looked through before libyaml sees it, so that what it complains of is YAML and not letters. */
 #include "scene/text/tree.h"
-#include "scene/text/utf8.h"
+#include "text/utf8.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -78,20 +78,26 @@ static dvi__span inside_block(const dvi__source *source, dvi__span span)
   return (dvi__span){first, end - first};
 }
 
-/* Where the value of a scalar stands: its characters there are its value but for breaks of lines and indentation. */
-static bool inside_scalar(const reader *r, yaml_scalar_style_t style, dvi__span span, dvi__span *inside)
+/* Where the value of a scalar stands: its characters there are its value but for breaks of lines
+ * and indentation. */
+static bool inside_scalar(const reader *r, yaml_scalar_style_t style, dvi__span span,
+                          dvi__span *inside)
 {
   *inside = span;
-  if (style == YAML_LITERAL_SCALAR_STYLE || style == YAML_FOLDED_SCALAR_STYLE) *inside = inside_block(r->source, span);
-  if (style != YAML_SINGLE_QUOTED_SCALAR_STYLE && style != YAML_DOUBLE_QUOTED_SCALAR_STYLE) return true;
+  if (style == YAML_LITERAL_SCALAR_STYLE || style == YAML_FOLDED_SCALAR_STYLE)
+    *inside = inside_block(r->source, span);
+  if (style != YAML_SINGLE_QUOTED_SCALAR_STYLE && style != YAML_DOUBLE_QUOTED_SCALAR_STYLE)
+    return true;
   *inside = (dvi__span){span.first + 1, span.size - 2};
   const char escape = style == YAML_DOUBLE_QUOTED_SCALAR_STYLE ? '\\' : '\'';
   const char *found = memchr(r->source->text + inside->first, escape, inside->size);
   if (found == NULL) return true;
   const dvi__span where = {(size_t)(found - r->source->text), escape == '\\' ? 1 : 2};
-  return complain(r, where,
-                  escape == '\\' ? "a backslash in double quotes makes text that does not stand here; write it without"
-                                 : "'' in single quotes stands for one '; write double quotes around the text");
+  return complain(
+      r, where,
+      escape == '\\'
+          ? "a backslash in double quotes makes text that does not stand here; write it without"
+          : "'' in single quotes stands for one '; write double quotes around the text");
 }
 
 /* Put a new node into its parent; at a place for a key it becomes the key. */
@@ -117,21 +123,25 @@ static bool attach(reader *r, dvi__tree *node, bool *is_key)
 static bool refuse_properties(const reader *r, const unsigned char *anchor, dvi__span span)
 {
   const dvi__span where = {span.first, 1};
-  if (anchor != NULL) return complain(r, where, "anchors (&) are not for scenes; write the value where it is needed");
+  if (anchor != NULL)
+    return complain(r, where, "anchors (&) are not for scenes; write the value where it is needed");
   if (span.size > 0 && r->source->text[span.first] == '!')
-    return complain(r, where, "tags (!) are not for scenes; leave it out, or put quotes around the text");
+    return complain(r, where,
+                    "tags (!) are not for scenes; leave it out, or put quotes around the text");
   return true;
 }
 
 static bool add_scalar(reader *r, const yaml_event_t *event)
 {
   dvi__span span = span_of(r, event);
-  while (span.size > 0 && dvi__is_blank(r->source->text[span.first + span.size - 1])) span.size--; /* the end of a block */
+  while (span.size > 0 && dvi__is_blank(r->source->text[span.first + span.size - 1]))
+    span.size--; /* the end of a block */
   if (!refuse_properties(r, event->data.scalar.anchor, span)) return false;
   dvi__span inside = span;
   if (!inside_scalar(r, event->data.scalar.style, span, &inside)) return false;
   dvi__tree *node = dvi__arena_take(r->arena, 1, sizeof *node);
-  const char *text = dvi__arena_text(r->arena, (const char *)event->data.scalar.value, event->data.scalar.length);
+  const char *text = dvi__arena_text(r->arena, (const char *)event->data.scalar.value,
+                                     event->data.scalar.length);
   if (node == NULL || text == NULL) return no_memory(r);
   const int plain = event->data.scalar.style == YAML_PLAIN_SCALAR_STYLE;
   *node = (dvi__tree){.kind = DVI__SCALAR, .span = inside, .text = text, .plain = plain};
@@ -144,15 +154,19 @@ static bool open_collection(reader *r, dvi__tree_kind kind, const yaml_event_t *
 {
   const dvi__span span = span_of(r, event);
   const dvi__span where = {span.first, 1};
-  const unsigned char *anchor = kind == DVI__MAPPING ? event->data.mapping_start.anchor : event->data.sequence_start.anchor;
+  const unsigned char *anchor = kind == DVI__MAPPING ? event->data.mapping_start.anchor
+                                                     : event->data.sequence_start.anchor;
   if (!refuse_properties(r, anchor, span)) return false;
-  if (r->depth == LEVELS_MAX) return dvi__complain(r->complaint, DVI_BAD_SIZE, where, "more than %d levels of nesting", LEVELS_MAX);
+  if (r->depth == LEVELS_MAX)
+    return dvi__complain(r->complaint, DVI_BAD_SIZE, where, "more than %d levels of nesting",
+                         LEVELS_MAX);
   dvi__tree *node = dvi__arena_take(r->arena, 1, sizeof *node);
   if (node == NULL) return no_memory(r);
   *node = (dvi__tree){.kind = kind, .span = span};
   bool is_key = false;
   if (!attach(r, node, &is_key)) return false;
-  if (is_key && !list) return complain(r, where, "a key is a name, or a list of names, and no mapping or sequence");
+  if (is_key && !list)
+    return complain(r, where, "a key is a name, or a list of names, and no mapping or sequence");
   r->open[r->depth++] = (level){.tree = node, .is_key = is_key};
   return true;
 }
@@ -176,8 +190,8 @@ static bool keys_differ(const reader *r, dvi__tree *const *key, size_t count)
     int line = 0;
     int column = 0;
     dvi__source_place(r->source, sorted[k - 1]->span.first, &line, &column);
-    return dvi__complain(r->complaint, DVI_BAD_FILE, sorted[k]->span, "the key '%s' stands in line %d already", sorted[k]->text,
-                         line);
+    return dvi__complain(r->complaint, DVI_BAD_FILE, sorted[k]->span,
+                         "the key '%s' stands in line %d already", sorted[k]->text, line);
   }
   return true;
 }
@@ -189,12 +203,15 @@ static bool none_assigned(const reader *r, const dvi__tree *mapping)
     const dvi__tree *key = mapping->key[k], *value = mapping->child[k];
     const size_t length = strcspn(key->text, "=:");
     size_t name = length;
-    if (key->text[length] == '\0' || !key->plain || value->kind != DVI__SCALAR || !value->plain || value->text[0] != '\0') continue;
+    if (key->text[length] == '\0' || !key->plain || value->kind != DVI__SCALAR || !value->plain ||
+        value->text[0] != '\0')
+      continue;
     while (name > 0 && dvi__is_blank(key->text[name - 1])) name--;
     const char *right = key->text + length + 1;
     while (dvi__is_blank(*right)) right++;
-    return dvi__complain(r->complaint, DVI_BAD_FILE, key->span, "a key is followed by a colon and a blank; write %.*s: %s",
-                         (int)name, key->text, right);
+    return dvi__complain(r->complaint, DVI_BAD_FILE, key->span,
+                         "a key is followed by a colon and a blank; write %.*s: %s", (int)name,
+                         key->text, right);
   }
   return true;
 }
@@ -213,21 +230,24 @@ static bool close_collection(reader *r, const yaml_event_t *event)
   const level *closed = &r->open[--r->depth];
   dvi__tree *node = closed->tree;
   const dvi__span bracket = span_of(r, event);
-  if (bracket.size > 0) r->last = bracket.first + bracket.size; /* else it ends with what it holds */
+  if (bracket.size > 0)
+    r->last = bracket.first + bracket.size; /* else it ends with what it holds */
   node->span.size = r->last - node->span.first;
   node->count = (int)closed->child_count;
   node->key = closed->key;
   node->child = closed->child;
   if (closed->is_key) return turn_to_scalar(r, node);
   if (node->kind != DVI__MAPPING) return true;
-  return none_assigned(r, node) && (node->count < 2 || keys_differ(r, node->key, closed->key_count));
+  return none_assigned(r, node) &&
+         (node->count < 2 || keys_differ(r, node->key, closed->key_count));
 }
 
 static bool start_document(reader *r, const yaml_event_t *event)
 {
   const dvi__span where = {place(r, &event->start_mark), 1};
   if (event->data.document_start.version_directive != NULL ||
-      event->data.document_start.tag_directives.start != event->data.document_start.tag_directives.end)
+      event->data.document_start.tag_directives.start !=
+          event->data.document_start.tag_directives.end)
     return complain(r, where, "directives (%) are not for scenes; leave the line out");
   if (r->root != NULL) return complain(r, where, "a second document begins here; a scene is one");
   return true;
@@ -238,13 +258,18 @@ static bool take_event(reader *r, const yaml_event_t *event)
   switch (event->type) {
   case YAML_DOCUMENT_START_EVENT: return start_document(r, event);
   case YAML_ALIAS_EVENT:
-    return complain(r, span_of(r, event), "aliases (*) are not for scenes; write the value, or put quotes around the text");
+    return complain(
+        r, span_of(r, event),
+        "aliases (*) are not for scenes; write the value, or put quotes around the text");
   case YAML_SCALAR_EVENT: return add_scalar(r, event);
   case YAML_SEQUENCE_START_EVENT:
-    return open_collection(r, DVI__SEQUENCE, event, event->data.sequence_start.style == YAML_FLOW_SEQUENCE_STYLE);
+    return open_collection(r, DVI__SEQUENCE, event,
+                           event->data.sequence_start.style == YAML_FLOW_SEQUENCE_STYLE);
   case YAML_MAPPING_START_EVENT: return open_collection(r, DVI__MAPPING, event, false);
   case YAML_SEQUENCE_END_EVENT:
-  case YAML_MAPPING_END_EVENT: return r->depth == 0 || close_collection(r, event); /* never 0, but that is not seen from here */
+  case YAML_MAPPING_END_EVENT:
+    return r->depth == 0 ||
+           close_collection(r, event); /* never 0, but that is not seen from here */
   default: return true;
   }
 }
@@ -261,11 +286,13 @@ static size_t end_of_text(const dvi__source *source)
 static bool refuse_syntax(reader *r, const yaml_parser_t *parser)
 {
   static const char *const remedy[][2] = {
-      {"mapping values are not allowed",
-       "; a text with a colon and a blank needs quotes, and keys of one mapping the same indentation"},
-      {"expected ',' or ']'", "; an element with brackets or commas needs quotes, as \"[x[1], y[1]]\" does as a whole"},
+      {"mapping values are not allowed", "; a text with a colon and a blank needs quotes, and keys "
+                                         "of one mapping the same indentation"},
+      {"expected ',' or ']'",
+       "; an element with brackets or commas needs quotes, as \"[x[1], y[1]]\" does as a whole"},
       {"expected ',' or '}'", "; an element with brackets or commas needs quotes"},
-      {"cannot start any token", "; indent by blanks, not by tabs, and put quotes around texts that begin with @, ` or %"},
+      {"cannot start any token",
+       "; indent by blanks, not by tabs, and put quotes around texts that begin with @, ` or %"},
       {"did not find expected key", "; is the line indented as those above?"},
       {"could not find expected ':'", "; a key is followed by a colon and a blank"},
   };
@@ -276,11 +303,13 @@ static bool refuse_syntax(reader *r, const yaml_parser_t *parser)
   for (size_t k = 0; k < sizeof remedy / sizeof *remedy && help[0] == '\0'; k++)
     if (strstr(problem, remedy[k][0]) != NULL) help = remedy[k][1];
   dvi__span where = {place(r, &parser->problem_mark), 1};
-  const bool begins_before = where.first == r->source->size || strstr(problem, "expected ':'") != NULL;
-  if (begins_before && parser->context != NULL) where.first = place(r, &parser->context_mark); /* where it begins says more */
+  const bool begins_before = where.first == r->source->size ||
+                             strstr(problem, "expected ':'") != NULL;
+  if (begins_before && parser->context != NULL)
+    where.first = place(r, &parser->context_mark); /* where it begins says more */
   if (where.first == r->source->size) where.first = end_of_text(r->source);
-  return dvi__complain(r->complaint, DVI_BAD_FILE, where, "this is no YAML: %s%s%s%s", problem, context[0] != '\0' ? " " : "",
-                       context, help);
+  return dvi__complain(r->complaint, DVI_BAD_FILE, where, "this is no YAML: %s%s%s%s", problem,
+                       context[0] != '\0' ? " " : "", context, help);
 }
 
 static bool read_events(reader *r, yaml_parser_t *parser)
@@ -307,27 +336,33 @@ static bool is_binary(const dvi__source *source)
 static bool check_characters(const reader *r)
 {
   const dvi__source *source = r->source;
-  if (source->size >= 2 && (memcmp(source->text, "\xFF\xFE", 2) == 0 || memcmp(source->text, "\xFE\xFF", 2) == 0))
+  if (source->size >= 2 &&
+      (memcmp(source->text, "\xFF\xFE", 2) == 0 || memcmp(source->text, "\xFE\xFF", 2) == 0))
     return complain(r, DVI__NOWHERE, "the file is UTF-16; save it as UTF-8");
-  if (is_binary(source)) return dvi__complain_of_file(r->complaint, DVI__NOWHERE, "this is a binary file");
+  if (is_binary(source))
+    return dvi__complain_of_file(r->complaint, DVI__NOWHERE, "this is a binary file");
   if (source->size >= 3 && memcmp(source->text, "\xEF\xBB\xBF", 3) == 0)
-    return complain(r, DVI__NOWHERE, "the file begins with a byte order mark; save it as UTF-8 without one");
+    return complain(r, DVI__NOWHERE,
+                    "the file begins with a byte order mark; save it as UTF-8 without one");
   unsigned code = 0;
   for (size_t k = 0, width = 0; k < source->size; k += width) {
     width = dvi__utf8(source->text + k, source->size - k, &code);
     const dvi__span where = {k, 1};
     if (width == 0) return complain(r, where, "this byte is no UTF-8; save the file as UTF-8");
     if (!dvi__utf8_printable(code))
-      return dvi__complain(r->complaint, DVI_BAD_FILE, where, "the character U+%04X cannot stand in a scene", code);
+      return dvi__complain(r->complaint, DVI_BAD_FILE, where,
+                           "the character U+%04X cannot stand in a scene", code);
   }
   return true;
 }
 
-bool dvi__tree_read(const dvi__source *source, dvi__arena *arena, dvi__complaint *complaint, const dvi__tree **root)
+bool dvi__tree_read(const dvi__source *source, dvi__arena *arena, dvi__complaint *complaint,
+                    const dvi__tree **root)
 {
   *root = NULL;
   reader r = {.source = source, .arena = arena, .complaint = complaint};
-  if (source->size > SIZE_MAX_BYTES) return dvi__complain(complaint, DVI_BAD_SIZE, DVI__NOWHERE, "the file has more than 1 MiB");
+  if (source->size > SIZE_MAX_BYTES)
+    return dvi__complain(complaint, DVI_BAD_SIZE, DVI__NOWHERE, "the file has more than 1 MiB");
   if (!check_characters(&r)) return false;
   yaml_parser_t parser;
   if (!yaml_parser_initialize(&parser)) return no_memory(&r);

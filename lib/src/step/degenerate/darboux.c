@@ -8,7 +8,7 @@
 #include "step/joint.h"
 #include "core/memory.h"
 #include "core/status.h"
-#include "system/term/half.h"
+#include "system/term/constant_components.h"
 #include "system/dynamics/one_form.h"
 
 enum { MOST = DVI__STAGES_MOST };
@@ -18,15 +18,16 @@ struct dvi__darboux {
   dvi__evaluator *evaluator;
   int n, m;                               /* coordinates; stages, with the end */
   int *is_x;                              /* [n] */
-  int collocates;                         /* at Gauss's nodes */
-  double a[MOST][MOST], abar[MOST][MOST]; /* row m-1: the weights */
-  double time[MOST], middle[MOST];        /* of a stage in the step: for H; for guesses, the mean of x's time and of p's */
-  dvi__pattern joint, pattern;            /* joint: of one block; pattern: of the Jacobian */
-  dvi__block *block;                      /* [entries of joint] */
-  /* The step. */
+  int collocates;                         /* the nodes are those of Gauss */
+  double a[MOST][MOST], abar[MOST][MOST]; /* row m-1 holds the weights */
+  /* time of a stage in the step for H, and for guesses the mean of the times of x and p */
+  double time[MOST], middle[MOST];
+  dvi__pattern joint, pattern; /* joint is the pattern of one block, pattern that of the Jacobian */
+  dvi__block *block;           /* [entries of joint] */
+  /* The current step. */
   double t0, h;
   const double *q0, *p0;
-  /* At the stages, component by component: [n*m]. */
+  /* Values at the stages, component by component [n*m]. */
   double *t, *Q, *V, *L_q, *L_v, *H_qq, *H_qv, *H_vv;
 };
 
@@ -34,8 +35,9 @@ struct dvi__darboux {
 
 static const double lobatto_IIIA[2][2] = {{0, 0}, {0.5, 0.5}}, lobatto_weight[] = {0.5, 0.5};
 
-/* Rows 0 to s-1 of a are given: add the weights' row, and make abar, the conjugate. */
-static void complete(dvi__darboux *d, const double *b)
+/* Complete the tableau from the rows 0 to s-1 of a. Add the row of the weights, and make the
+ * conjugate abar. */
+static void darboux_complete(dvi__darboux *d, const double *b)
 {
   const int s = d->m - 1;
   for (int i = 0; i < s; i++)
@@ -47,7 +49,7 @@ static void complete(dvi__darboux *d, const double *b)
   }
 }
 
-static dvi_status fill_tableau(dvi__darboux *d, dvi__darboux_rule rule)
+static dvi_status darboux_fill_tableau(dvi__darboux *d, dvi__darboux_rule rule)
 {
   double b[MOST] = {1};
   const int s = d->m - 1;
@@ -61,7 +63,7 @@ static dvi_status fill_tableau(dvi__darboux *d, dvi__darboux_rule rule)
   } else {
     d->a[0][0] = rule == DVI__EULER_B;
   }
-  complete(d, b);
+  darboux_complete(d, b);
   return DVI_OK;
 }
 
@@ -70,41 +72,44 @@ static int stages_of(dvi__darboux_rule rule, int stages)
   return rule == DVI__GAUSS_STAGES ? stages : rule == DVI__TRAPEZOIDAL_PAIR ? 2 : 1;
 }
 
-/* ---- making it ---- */
+/* ---- create ---- */
 
-static double **owned(dvi__darboux *d, int i)
+static double **darboux_owned_array(dvi__darboux *d, int i)
 {
   double **const all[] = {&d->t, &d->Q, &d->V, &d->L_q, &d->L_v, &d->H_qq, &d->H_qv, &d->H_vv};
   return i < (int)(sizeof all / sizeof *all) ? all[i] : NULL;
 }
 
-static dvi_status allocate(dvi__darboux *d)
+static dvi_status darboux_allocate(dvi__darboux *d)
 {
-  const size_t n = (size_t)d->n, m = (size_t)d->m, qq = (size_t)dvi__pattern_entries(&d->system->qq),
+  const size_t n = (size_t)d->n, m = (size_t)d->m,
+               qq = (size_t)dvi__pattern_entries(&d->system->qq),
                qv = (size_t)dvi__pattern_entries(&d->system->qv);
   const size_t size[] = {m, n * m, n * m, n * m, n * m, qq * m + 1, qv * m + 1, 1};
-  for (int i = 0; owned(d, i) != NULL; i++) {
-    *owned(d, i) = DVI_NEW(double, size[i]);
-    if (*owned(d, i) == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory for %d stages in %d dimensions", d->m, d->n);
+  for (int i = 0; darboux_owned_array(d, i) != NULL; i++) {
+    *darboux_owned_array(d, i) = DVI_NEW(double, size[i]);
+    if (*darboux_owned_array(d, i) == NULL)
+      return dvi__fail(DVI_NO_MEMORY, "no memory for %d stages in %d dimensions", d->m, d->n);
   }
   return DVI_OK;
 }
 
-static dvi_status fill(dvi__darboux *d, dvi__darboux_rule rule, dvi_counters *counters)
+static dvi_status darboux_initialise(dvi__darboux *d, dvi__darboux_rule rule,
+                                     dvi_counters *counters)
 {
   DVI_TRY(dvi__joint_check(d->system, d->m, d->m));
   d->is_x = DVI_NEW(int, d->n);
   if (d->is_x == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory");
-  DVI_TRY(dvi__form_half(d->system, d->is_x));
-  DVI_TRY(fill_tableau(d, rule));
+  DVI_TRY(dvi__form_constant_components(d->system, d->is_x));
+  DVI_TRY(darboux_fill_tableau(d, rule));
   DVI_TRY(dvi__evaluator_create(d->system, d->m, DVI__HESSIANS, counters, &d->evaluator));
   DVI_TRY(dvi__joint_create(d->system, NULL, &d->joint, &d->block));
   DVI_TRY(dvi__pattern_blocks(&d->joint, d->m, &d->pattern));
-  return allocate(d);
+  return darboux_allocate(d);
 }
 
-dvi_status dvi__darboux_create(const dvi_system *system, dvi__darboux_rule rule, int stages, dvi_counters *counters,
-                               dvi__darboux **darboux)
+dvi_status dvi__darboux_create(const dvi_system *system, dvi__darboux_rule rule, int stages,
+                               dvi_counters *counters, dvi__darboux **darboux)
 {
   *darboux = NULL;
   dvi__darboux *d = DVI_NEW(dvi__darboux, 1);
@@ -113,7 +118,7 @@ dvi_status dvi__darboux_create(const dvi_system *system, dvi__darboux_rule rule,
   d->n = system->n;
   d->m = stages_of(rule, stages) + 1;
   d->collocates = rule == DVI__GAUSS_STAGES;
-  const dvi_status status = fill(d, rule, counters);
+  const dvi_status status = darboux_initialise(d, rule, counters);
   if (status != DVI_OK) dvi__darboux_destroy(&d);
   *darboux = d;
   return status;
@@ -123,7 +128,7 @@ void dvi__darboux_destroy(dvi__darboux **darboux)
 {
   dvi__darboux *d = *darboux;
   if (d == NULL) return;
-  for (int i = 0; owned(d, i) != NULL; i++) dvi__release(*owned(d, i));
+  for (int i = 0; darboux_owned_array(d, i) != NULL; i++) dvi__release(*darboux_owned_array(d, i));
   dvi__evaluator_destroy(&d->evaluator);
   dvi__pattern_clear(&d->joint);
   dvi__pattern_clear(&d->pattern);
@@ -159,25 +164,26 @@ void dvi__darboux_place(dvi__darboux *d, double t0, double h, const double *q0, 
 
 /* ---- residual ---- */
 
-static double dot(int count, const double *x, const double *y)
+static double darboux_dot(int count, const double *x, const double *y)
 {
   double sum = 0;
   for (int j = 0; j < count; j++) sum += x[j] * y[j];
   return sum;
 }
 
-/* The velocity of y stands in no equation: its components of the one-form are constant. */
-static void points(dvi__darboux *d, const double *x)
+/* Compute the stages. The velocity of y stands in no equation, because its components of the
+ * one-form are constant. */
+static void darboux_points(dvi__darboux *d, const double *x)
 {
   const int m = d->m;
   for (int i = 0; i < d->n; i++, x += m)
     for (int k = 0; k < m; k++) {
       d->V[i * m + k] = d->is_x[i] ? x[k] / d->h : 0;
-      d->Q[i * m + k] = d->q0[i] + (d->is_x[i] ? dot(m, d->a[k], x) : x[k]);
+      d->Q[i * m + k] = d->q0[i] + (d->is_x[i] ? darboux_dot(m, d->a[k], x) : x[k]);
     }
 }
 
-/* More than roundings of a component that never moves. */
+/* The roundings of a component that never moves are smaller than this. */
 static const double constant_to = 1e-11;
 
 static dvi_status check_constants(const dvi__darboux *d)
@@ -188,37 +194,42 @@ static dvi_status check_constants(const dvi__darboux *d)
     for (int k = 0; k < d->m && !d->is_x[i]; k++)
       if (fabs(d->L_v[i * d->m + k] - d->p0[i]) > constant_to * scale)
         return dvi__fail(DVI_UNSUPPORTED,
-                         "component %d of the one-form, which was constant at all points probed, changes here by %.3g", i,
-                         d->L_v[i * d->m + k] - d->p0[i]);
+                         "component %d of the one-form, which was constant at all points probed, "
+                         "changes here by %.3g",
+                         i, d->L_v[i * d->m + k] - d->p0[i]);
   return DVI_OK;
 }
 
 dvi_status dvi__darboux_residual(dvi__darboux *d, const double *x, double *R)
 {
   const int m = d->m;
-  points(d, x);
+  darboux_points(d, x);
   DVI_TRY(dvi__lagrangian_gradient(d->evaluator, m, d->t, d->Q, d->V, d->L_q, d->L_v));
   DVI_TRY(check_constants(d));
   for (int i = 0; i < d->n; i++) {
     const double *F = d->L_q + i * m, *theta = d->L_v + i * m;
-    for (int k = 0; k < m; k++) R[i * m + k] = d->is_x[i] ? (theta[k] - d->p0[i]) - d->h * dot(m, d->abar[k], F) : d->h * F[k];
+    for (int k = 0; k < m; k++)
+      R[i * m + k] = d->is_x[i] ? (theta[k] - d->p0[i]) - d->h * darboux_dot(m, d->abar[k], F)
+                                : d->h * F[k];
   }
   return DVI_OK;
 }
 
 void dvi__darboux_end(const dvi__darboux *d, const double *x, double *dq)
 {
-  for (int i = 0; i < d->n; i++, x += d->m) dq[i] = d->is_x[i] ? dot(d->m, d->a[d->m - 1], x) : x[d->m - 1];
+  for (int i = 0; i < d->n; i++, x += d->m)
+    dq[i] = d->is_x[i] ? darboux_dot(d->m, d->a[d->m - 1], x) : x[d->m - 1];
 }
 
 /* ---- Jacobian ---- */
 
-/* What one entry (i,j) of the joint pattern has at the stages: d alpha_i/dq_j (A), and of h F_i the derivative in Q_j (K) and in W_j (B). */
+/* An entry (i,j) of the joint pattern has d alpha_i/dq_j (A) at the stages, and the derivatives of
+ * h F_i by Q_j (K) and by W_j (B). */
 typedef struct entry {
   double A[MOST], B[MOST], K[MOST];
 } entry;
 
-static entry gather_entry(const dvi__darboux *d, const dvi__block *where)
+static entry darboux_gather_entry(const dvi__darboux *d, const dvi__block *where)
 {
   entry e = {{0}, {0}, {0}};
   for (int k = 0; k < d->m; k++) {
@@ -229,26 +240,29 @@ static entry gather_entry(const dvi__darboux *d, const dvi__block *where)
   return e;
 }
 
-/* Rows of a block in its column l. Of x the unknown is W_l, which moves all X_k by a_kl; of y it is Y_l alone. */
-static void fill_column(const dvi__darboux *d, const entry *e, int row_is_x, int column_is_x, int l, double *column)
+/* Fill the rows of a block in column l. The unknown of x is W_l, which moves all X_k by a_kl. The
+ * unknown of y is Y_l alone. */
+static void fill_column(const dvi__darboux *d, const entry *e, int row_is_x, int column_is_x, int l,
+                        double *column)
 {
   double moved[MOST], F[MOST];
   for (int k = 0; k < d->m; k++) {
     moved[k] = column_is_x ? d->a[k][l] : k == l;
     F[k] = e->K[k] * moved[k] + (column_is_x && k == l ? e->B[k] : 0);
   }
-  for (int k = 0; k < d->m; k++) column[k] = row_is_x ? e->A[k] * moved[k] - dot(d->m, d->abar[k], F) : F[k];
+  for (int k = 0; k < d->m; k++)
+    column[k] = row_is_x ? e->A[k] * moved[k] - darboux_dot(d->m, d->abar[k], F) : F[k];
 }
 
 dvi_status dvi__darboux_jacobian(dvi__darboux *d, const double *x, double *values)
 {
-  points(d, x);
+  darboux_points(d, x);
   DVI_TRY(dvi__lagrangian_hessian(d->evaluator, d->m, d->t, d->Q, d->V, d->H_qq, d->H_qv, d->H_vv));
   for (int j = 0; j < d->n; j++) {
     const int first = d->joint.start[j], last = d->joint.start[j + 1];
     for (int l = 0; l < d->m; l++)
       for (int at = first; at < last; at++, values += d->m) {
-        const entry e = gather_entry(d, &d->block[at]);
+        const entry e = darboux_gather_entry(d, &d->block[at]);
         fill_column(d, &e, d->is_x[d->joint.row[at]], d->is_x[j], l, values);
       }
   }
@@ -270,14 +284,15 @@ void dvi__darboux_straight(const dvi__darboux *d, const double *v, double *x)
     for (int k = 0; k < d->m; k++) x[k] = d->h * v[i] * (d->is_x[i] ? 1 : d->middle[k]);
 }
 
-/* Only Gauss's stages lie close enough to the solution for a polynomial through them. */
+/* Continue the polynomial through the stages. Only Gauss's stages lie close enough to the solution
+ * for this. */
 static void continue_polynomial(const dvi__darboux *d, double ratio, const double *last, double *x)
 {
   for (int k = 0; k < d->m; k++) {
     double weight[MOST];
     dvi__lagrange_weights(d->m, d->middle, 1 + ratio * d->middle[k], weight);
     for (int i = 0; i < d->n; i++) {
-      const double *own = last + i * d->m, continued = dot(d->m, weight, own);
+      const double *own = last + i * d->m, continued = darboux_dot(d->m, weight, own);
       x[i * d->m + k] = d->is_x[i] ? ratio * continued : continued - own[d->m - 1];
     }
   }

@@ -16,28 +16,33 @@ struct dvi__discontinuous {
   const dvi_system *system;
   dvi__evaluator *evaluator;
   int n, S, r, points;
-  double node[MOST], phi[MOST][MOST], dphi[MOST][MOST]; /* nodes of the basis; phi_k and phi_k' at c_i: [k][i] */
+  /* nodes of the basis; phi_k and phi_k' at c_i, stored as [k][i] */
+  double node[MOST], phi[MOST][MOST], dphi[MOST][MOST];
   double b[MOST], c[MOST];
-  double side[MOST], weight[MOST]; /* of the path: 1/2 + s_g, w_g */
+  double side[MOST], weight[MOST]; /* points of the path 1/2 + s_g, and weights w_g */
   double lean;                     /* sum_g w_g s_g */
-  dvi__pattern joint, pattern;     /* joint: of one block; pattern: of the Jacobian */
-  dvi__block *block;               /* [entries of joint] */
-  int stiff;                       /* c is not 0 */
-  double *given;                   /* [n] c */
-  /* The step. */
+  dvi__pattern joint, pattern; /* joint is the pattern of one block, pattern that of the Jacobian */
+  dvi__block *block;           /* [entries of joint] */
+  int stiff;                   /* c is not 0 */
+  double *c_diagonal;          /* [n] diagonal of c */
+  /* The current step. */
   double h;
   dvi__dg_node from;
-  double *left, *stiffness;                           /* [n] dN/dq+ at its start; c with the sign of h */
-  double *t, *Q, *V, *L_q, *L_v, *H_qq, *H_qv, *H_vv; /* at c_i, component by component: [n*r] */
-  double *Y, *u;                                      /* [n*S] the coefficients less q*; [n] the jump at the end */
-  /* At one point of a path: the point, alpha, (Dalpha)^T u, and dN/dq- of them all, [n] each. */
+  /* [n] dN/dq+ at the start; diagonal of c with the sign of h */
+  double *left, *stiffness;
+  /* [n*r] values at c_i, component by component */
+  double *t, *Q, *V, *L_q, *L_v, *H_qq, *H_qv, *H_vv;
+  /* [n*S] coefficients relative to q*; [n] jump at the end */
+  double *Y, *u;
+  /* [n] values at one point of a path: the point, alpha, (Dalpha)^T u; and dN/dq- of all points */
   double *y, *alpha, *gradient, *flux;
-  double *qq, *qv, *one_qq, *one_qv; /* Hessians at points of the path, entry by entry: [entries*points]; at one point */
+  /* Hessians at the points of the path, entry by entry [entries*points]; Hessians at one point */
+  double *qq, *qv, *one_qq, *one_qv;
 };
 
 /* ---- tables ---- */
 
-static double lagrange(const dvi__discontinuous *e, int k, double tau)
+static double discontinuous_lagrange(const dvi__discontinuous *e, int k, double tau)
 {
   double product = 1;
   for (int l = 0; l < e->S; l++)
@@ -53,7 +58,8 @@ static dvi_status fill_basis(dvi__discontinuous *e)
   for (int i = 0; i < e->r; i++) {
     value[0] = 1;
     derivative[0] = 0;
-    if (e->S > 1) DVI_TRY(dvi_basis_evaluate(DVI_LAGRANGE_LOBATTO, e->S - 1, e->c[i], value, derivative));
+    if (e->S > 1)
+      DVI_TRY(dvi_basis_evaluate(DVI_LAGRANGE_LOBATTO, e->S - 1, e->c[i], value, derivative));
     for (int k = 0; k < e->S; k++) {
       e->phi[k][i] = value[k];
       e->dphi[k][i] = derivative[k];
@@ -62,7 +68,7 @@ static dvi_status fill_basis(dvi__discontinuous *e)
   return DVI_OK;
 }
 
-static dvi_status fill_path(dvi__discontinuous *e, const dvi__dg_space *space)
+static dvi_status discontinuous_fill_path(dvi__discontinuous *e, const dvi__dg_space *space)
 {
   e->points = space->points;
   DVI_TRY(dvi_quadrature(DVI_GAUSS, e->points, e->side, e->weight));
@@ -72,45 +78,52 @@ static dvi_status fill_path(dvi__discontinuous *e, const dvi__dg_space *space)
   return DVI_OK;
 }
 
-/* ---- making it ---- */
+/* ---- create ---- */
 
-static double **owned(dvi__discontinuous *e, int i)
+static double **discontinuous_owned_array(dvi__discontinuous *e, int i)
 {
-  double **const all[] = {&e->given, &e->stiffness, &e->left, &e->u,  &e->y,   &e->alpha,  &e->gradient,
-                          &e->flux,  &e->t,         &e->Q,    &e->V,  &e->L_q, &e->L_v,    &e->H_qq,
-                          &e->H_qv,  &e->H_vv,      &e->Y,    &e->qq, &e->qv,  &e->one_qq, &e->one_qv};
+  double **const all[] = {&e->c_diagonal, &e->stiffness, &e->left,  &e->u,    &e->y, &e->alpha,
+                          &e->gradient,   &e->flux,      &e->t,     &e->Q,    &e->V, &e->L_q,
+                          &e->L_v,        &e->H_qq,      &e->H_qv,  &e->H_vv, &e->Y, &e->qq,
+                          &e->qv,         &e->one_qq,    &e->one_qv};
   return i < (int)(sizeof all / sizeof *all) ? all[i] : NULL;
 }
 
-static dvi_status allocate(dvi__discontinuous *e)
+static dvi_status discontinuous_allocate(dvi__discontinuous *e)
 {
-  const size_t n = (size_t)e->n, r = (size_t)e->r, qq = (size_t)dvi__pattern_entries(&e->system->qq),
+  const size_t n = (size_t)e->n, r = (size_t)e->r, nS = n * (size_t)e->S,
+               qq = (size_t)dvi__pattern_entries(&e->system->qq),
                qv = (size_t)dvi__pattern_entries(&e->system->qv), points = (size_t)e->points;
-  const size_t size[] = {
-      n, n, n, n, n, n, n, n, r, n * r, n * r, n * r, n * r, qq * r, qv * r, 1, n * (size_t)e->S, qq * points, qv * points, qq, qv};
-  for (int i = 0; owned(e, i) != NULL; i++) {
-    *owned(e, i) = DVI_NEW(double, size[i] > 0 ? size[i] : 1);
-    if (*owned(e, i) == NULL) return dvi__fail(DVI_NO_MEMORY, "dg: no memory for degree %d in %d dimensions", e->S - 1, e->n);
+  const size_t size[] = {n,      n, n,     n,           n,           n,     n,
+                         n,      r, n * r, n * r,       n * r,       n * r, qq * r,
+                         qv * r, 1, nS,    qq * points, qv * points, qq,    qv};
+  for (int i = 0; discontinuous_owned_array(e, i) != NULL; i++) {
+    *discontinuous_owned_array(e, i) = DVI_NEW(double, size[i] > 0 ? size[i] : 1);
+    if (*discontinuous_owned_array(e, i) == NULL)
+      return dvi__fail(DVI_NO_MEMORY, "dg: no memory for degree %d in %d dimensions", e->S - 1,
+                       e->n);
   }
   return DVI_OK;
 }
 
-static dvi_status fill(dvi__discontinuous *e, const dvi__dg_space *space, dvi_counters *counters)
+static dvi_status discontinuous_initialise(dvi__discontinuous *e, const dvi__dg_space *space,
+                                           dvi_counters *counters)
 {
   DVI_TRY(dvi__joint_check(e->system, e->S, e->r));
   DVI_TRY(fill_basis(e));
-  DVI_TRY(fill_path(e, space));
+  DVI_TRY(discontinuous_fill_path(e, space));
   DVI_TRY(dvi__evaluator_create(e->system, e->r, DVI__HESSIANS, counters, &e->evaluator));
   DVI_TRY(dvi__joint_create(e->system, NULL, &e->joint, &e->block));
   DVI_TRY(dvi__pattern_blocks(&e->joint, e->S, &e->pattern));
-  DVI_TRY(allocate(e));
+  DVI_TRY(discontinuous_allocate(e));
   e->stiff = space->stiffness_count > 0;
-  for (int i = 0; e->stiff && i < e->n; i++) e->given[i] = space->stiffness[space->stiffness_count > 1 ? i : 0];
+  for (int i = 0; e->stiff && i < e->n; i++)
+    e->c_diagonal[i] = space->stiffness[space->stiffness_count > 1 ? i : 0];
   return DVI_OK;
 }
 
-dvi_status dvi__discontinuous_create(const dvi_system *system, const dvi__dg_space *space, dvi_counters *counters,
-                                     dvi__discontinuous **element)
+dvi_status dvi__discontinuous_create(const dvi_system *system, const dvi__dg_space *space,
+                                     dvi_counters *counters, dvi__discontinuous **element)
 {
   *element = NULL;
   dvi__discontinuous *e = DVI_NEW(dvi__discontinuous, 1);
@@ -119,7 +132,7 @@ dvi_status dvi__discontinuous_create(const dvi_system *system, const dvi__dg_spa
   e->n = system->n;
   e->S = space->degree + 1;
   e->r = space->nodes;
-  const dvi_status status = fill(e, space, counters);
+  const dvi_status status = discontinuous_initialise(e, space, counters);
   if (status != DVI_OK) dvi__discontinuous_destroy(&e);
   *element = e;
   return status;
@@ -129,7 +142,8 @@ void dvi__discontinuous_destroy(dvi__discontinuous **element)
 {
   dvi__discontinuous *e = *element;
   if (e == NULL) return;
-  for (int i = 0; owned(e, i) != NULL; i++) dvi__release(*owned(e, i));
+  for (int i = 0; discontinuous_owned_array(e, i) != NULL; i++)
+    dvi__release(*discontinuous_owned_array(e, i));
   dvi__evaluator_destroy(&e->evaluator);
   dvi__pattern_clear(&e->joint);
   dvi__pattern_clear(&e->pattern);
@@ -150,25 +164,30 @@ dvi__evaluator *dvi__discontinuous_evaluator(const dvi__discontinuous *e)
 
 /* ---- the nodes ---- */
 
-/* dN/dq+ (`plus`) or dN/dq- at q- = q* + below, with the jump u. p = alpha(q*) is taken off alpha here and in the element, for roundings' sake: what a
- * constant has in the rows adds up to nothing. */
-static dvi_status node_gradient(dvi__discontinuous *e, const double *below, int stride, const double *u, int plus, double *gradient)
+/* Compute dN/dq+ (`plus`) or dN/dq- at q- = q* + below, with the jump u. The constant p = alpha(q*)
+ * is subtracted from alpha here and in the element to reduce rounding errors. The contributions of
+ * a constant to the rows cancel. */
+static dvi_status node_gradient(dvi__discontinuous *e, const double *below, int stride,
+                                const double *u, int plus, double *gradient)
 {
   for (int i = 0; i < e->n; i++) gradient[i] = (plus ? e->stiffness[i] : -e->stiffness[i]) * u[i];
   for (int g = 0; g < e->points; g++) {
-    const double sign = plus ? e->weight[g] : -e->weight[g], turn = e->weight[g] * (plus ? e->side[g] : 1 - e->side[g]);
+    const double sign = plus ? e->weight[g] : -e->weight[g],
+                 turn = e->weight[g] * (plus ? e->side[g] : 1 - e->side[g]);
     for (int i = 0; i < e->n; i++) e->y[i] = e->from.q[i] + (below[i * stride] + e->side[g] * u[i]);
     DVI_TRY(dvi__form_gradient(e->evaluator, e->y, u, e->gradient, e->alpha));
-    for (int i = 0; i < e->n; i++) gradient[i] += sign * (e->alpha[i] - e->from.p[i]) + turn * e->gradient[i];
+    for (int i = 0; i < e->n; i++)
+      gradient[i] += sign * (e->alpha[i] - e->from.p[i]) + turn * e->gradient[i];
   }
   return DVI_OK;
 }
 
-dvi_status dvi__discontinuous_place(dvi__discontinuous *e, double t0, double h, const dvi__dg_node *node)
+dvi_status dvi__discontinuous_place(dvi__discontinuous *e, double t0, double h,
+                                    const dvi__dg_node *node)
 {
   e->h = h;
   e->from = *node;
-  for (int i = 0; i < e->n; i++) e->stiffness[i] = copysign(e->given[i], h);
+  for (int i = 0; i < e->n; i++) e->stiffness[i] = copysign(e->c_diagonal[i], h);
   for (int i = 0; i < e->r; i++) e->t[i] = t0 + e->c[i] * h;
   for (int i = 0; i < e->n; i++) {
     e->u[i] = node->offset[i] - 0.5 * node->jump[i];
@@ -179,14 +198,14 @@ dvi_status dvi__discontinuous_place(dvi__discontinuous *e, double t0, double h, 
 
 /* ---- residual ---- */
 
-static double dot(int count, const double *x, const double *y)
+static double discontinuous_dot(int count, const double *x, const double *y)
 {
   double sum = 0;
   for (int j = 0; j < count; j++) sum += x[j] * y[j];
   return sum;
 }
 
-static void spread(dvi__discontinuous *e, const double *x)
+static void discontinuous_spread(dvi__discontinuous *e, const double *x)
 {
   const size_t S = (size_t)e->S, r = (size_t)e->r;
   for (size_t i = 0; i < (size_t)e->n; i++, x += S) {
@@ -208,7 +227,7 @@ static void spread(dvi__discontinuous *e, const double *x)
 dvi_status dvi__discontinuous_residual(dvi__discontinuous *e, const double *x, double *R)
 {
   const size_t S = (size_t)e->S, r = (size_t)e->r;
-  spread(e, x);
+  discontinuous_spread(e, x);
   DVI_TRY(dvi__lagrangian_gradient(e->evaluator, e->r, e->t, e->Q, e->V, e->L_q, e->L_v));
   DVI_TRY(node_gradient(e, e->Y + S - 1, e->S, e->u, 0, e->flux));
   for (size_t i = 0; i < (size_t)e->n; i++) {
@@ -216,7 +235,8 @@ dvi_status dvi__discontinuous_residual(dvi__discontinuous *e, const double *x, d
     for (size_t k = 0; k < S; k++) {
       row[k] = 0;
       for (size_t l = 0; l < r; l++)
-        row[k] += e->b[l] * (e->h * e->phi[k][l] * e->L_q[i * r + l] + e->dphi[k][l] * (e->L_v[i * r + l] - e->from.p[i]));
+        row[k] += e->b[l] * (e->h * e->phi[k][l] * e->L_q[i * r + l] +
+                             e->dphi[k][l] * (e->L_v[i * r + l] - e->from.p[i]));
     }
     row[0] += e->left[i];
     row[S - 1] += e->flux[i];
@@ -230,7 +250,8 @@ static dvi_status hessians_on_path(dvi__discontinuous *e)
 {
   const int qq = dvi__pattern_entries(&e->system->qq), qv = dvi__pattern_entries(&e->system->qv);
   for (int g = 0; g < e->points; g++) {
-    for (int i = 0; i < e->n; i++) e->y[i] = e->from.q[i] + (e->Y[(i + 1) * e->S - 1] + e->side[g] * e->u[i]);
+    for (int i = 0; i < e->n; i++)
+      e->y[i] = e->from.q[i] + (e->Y[(i + 1) * e->S - 1] + e->side[g] * e->u[i]);
     DVI_TRY(dvi__form_hessian(e->evaluator, e->y, e->u, e->one_qq, e->one_qv));
     for (int k = 0; k < qq; k++) e->qq[k * e->points + g] = e->one_qq[k];
     for (int k = 0; k < qv; k++) e->qv[k * e->points + g] = e->one_qv[k];
@@ -238,43 +259,46 @@ static dvi_status hessians_on_path(dvi__discontinuous *e)
   return DVI_OK;
 }
 
-/* What one entry (i,j) of the joint pattern has at c_i: d alpha_i/dq_j (A), d alpha_j/dq_i (B), h d2L/dq2 (K); and the derivatives of dN/dq- by q- and
- * by the jump. */
+/* An entry (i,j) of the joint pattern has d alpha_i/dq_j (A), d alpha_j/dq_i (B) and h d2L/dq2 (K)
+ * at c_i, and the derivatives of dN/dq- by q- and by the jump. */
 typedef struct entry {
   double A[MOST], B[MOST], K[MOST];
   double by_trace, by_jump;
 } entry;
 
-static double at(const double *values, int where, int count, int point)
+static double discontinuous_at(const double *values, int where, int count, int point)
 {
   return where >= 0 ? values[where * count + point] : 0;
 }
 
-static void gather(const dvi__discontinuous *e, const dvi__block *where, double stiffness, entry *out)
+static void discontinuous_gather(const dvi__discontinuous *e, const dvi__block *where,
+                                 double stiffness, entry *out)
 {
   for (int k = 0; k < e->r; k++) {
-    out->A[k] = at(e->H_qv, where->vq, e->r, k);
-    out->B[k] = at(e->H_qv, where->qv, e->r, k);
-    out->K[k] = e->h * at(e->H_qq, where->qq, e->r, k);
+    out->A[k] = discontinuous_at(e->H_qv, where->vq, e->r, k);
+    out->B[k] = discontinuous_at(e->H_qv, where->qv, e->r, k);
+    out->K[k] = e->h * discontinuous_at(e->H_qq, where->qq, e->r, k);
   }
   out->by_trace = 0;
   out->by_jump = -stiffness;
   for (int g = 0; g < e->points; g++) {
-    const double A = at(e->qv, where->vq, e->points, g), B = at(e->qv, where->qv, e->points, g);
-    const double H = at(e->qq, where->qq, e->points, g), plus = e->side[g], minus = 1 - plus;
+    const double A = discontinuous_at(e->qv, where->vq, e->points, g),
+                 B = discontinuous_at(e->qv, where->qv, e->points, g);
+    const double H = discontinuous_at(e->qq, where->qq, e->points, g), plus = e->side[g],
+                 minus = 1 - plus;
     out->by_trace += e->weight[g] * (minus * H - A);
     out->by_jump += e->weight[g] * (plus * minus * H + minus * B - plus * A);
   }
 }
 
-/* Rows of a block in its column of the coefficient X_l, 0 < l. */
+/* Fill the rows of a block in the column of the coefficient X_l, 0 < l. */
 static void coefficient_column(const dvi__discontinuous *e, const entry *of, int l, double *column)
 {
   for (int k = 0; k < e->S; k++) {
     column[k] = 0;
     for (int i = 0; i < e->r; i++)
-      column[k] += e->b[i] *
-                   (e->phi[k][i] * (e->phi[l][i] * of->K[i] + e->dphi[l][i] * of->B[i]) + e->dphi[k][i] * e->phi[l][i] * of->A[i]);
+      column[k] += e->b[i] * (e->phi[k][i] * (e->phi[l][i] * of->K[i] + e->dphi[l][i] * of->B[i]) +
+                              e->dphi[k][i] * e->phi[l][i] * of->A[i]);
   }
   if (l == e->S - 1) column[l] += of->by_trace;
 }
@@ -282,7 +306,7 @@ static void coefficient_column(const dvi__discontinuous *e, const entry *of, int
 dvi_status dvi__discontinuous_jacobian(dvi__discontinuous *e, const double *x, double *values)
 {
   const size_t S = (size_t)e->S;
-  spread(e, x);
+  discontinuous_spread(e, x);
   DVI_TRY(dvi__lagrangian_hessian(e->evaluator, e->r, e->t, e->Q, e->V, e->H_qq, e->H_qv, e->H_vv));
   DVI_TRY(hessians_on_path(e));
   for (int j = 0; j < e->n; j++) {
@@ -290,8 +314,10 @@ dvi_status dvi__discontinuous_jacobian(dvi__discontinuous *e, const double *x, d
     for (size_t k = 0; k < length; k++) {
       entry of;
       double *columns = values + S * S * first + k * S, *last = columns + (S - 1) * length * S;
-      gather(e, &e->block[first + k], e->joint.row[first + k] == j ? e->stiffness[j] : 0, &of);
-      for (int l = 1; l < e->S; l++) coefficient_column(e, &of, l, columns + (size_t)(l - 1) * length * S);
+      discontinuous_gather(e, &e->block[first + k],
+                           e->joint.row[first + k] == j ? e->stiffness[j] : 0, &of);
+      for (int l = 1; l < e->S; l++)
+        coefficient_column(e, &of, l, columns + (size_t)(l - 1) * length * S);
       memset(last, 0, S * sizeof *last);
       last[S - 1] = of.by_jump;
     }
@@ -303,13 +329,14 @@ dvi_status dvi__discontinuous_scale(dvi__discontinuous *e, double *scale)
 {
   DVI_TRY(dvi__form_scale(e->evaluator, e->from.q, e->alpha));
   for (int i = 0; i < e->n; i++)
-    for (int k = 0; k < e->S; k++) scale[i * e->S + k] = fmax(e->alpha[i], e->given[i]);
+    for (int k = 0; k < e->S; k++) scale[i * e->S + k] = fmax(e->alpha[i], e->c_diagonal[i]);
   return DVI_OK;
 }
 
 /* ---- the end ---- */
 
-/* {q} - q* = Omega^-1 C u at {q} = e->y, C = c + lean (Dalpha + (Dalpha)^T) = c + lean (2 (Dalpha)^T - Omega). */
+/* Compute {q} - q* = Omega^-1 C u at {q} = e->y, with C = c + lean (Dalpha + (Dalpha)^T) = c + lean
+ * (2 (Dalpha)^T - Omega). */
 static dvi_status offset_of(dvi__discontinuous *e, const double *u, double *offset)
 {
   memset(offset, 0, (size_t)e->n * sizeof *offset);
@@ -322,11 +349,11 @@ static dvi_status offset_of(dvi__discontinuous *e, const double *u, double *offs
   return DVI_OK;
 }
 
-dvi_status dvi__discontinuous_end(dvi__discontinuous *e, const double *x, double *dq, double *jump, double *offset,
-                                  double *coefficients)
+dvi_status dvi__discontinuous_end(dvi__discontinuous *e, const double *x, double *dq, double *jump,
+                                  double *offset, double *coefficients)
 {
   const int S = e->S;
-  spread(e, x);
+  discontinuous_spread(e, x);
   for (int i = 0; i < e->n; i++) {
     dq[i] = e->Y[(i + 1) * S - 1] + 0.5 * e->u[i];
     e->y[i] = e->from.q[i] + dq[i];
@@ -342,7 +369,7 @@ dvi_status dvi__discontinuous_end(dvi__discontinuous *e, const double *x, double
 
 /* ---- the start ---- */
 
-/* y = Omega(q*) x. */
+/* Set y = Omega(q*) x. */
 static dvi_status times_two_form(dvi__discontinuous *e, const double *x, double *y)
 {
   const dvi__pattern *qv = &e->system->qv;
@@ -361,7 +388,8 @@ int dvi__discontinuous_can_settle(const dvi__discontinuous *e)
   return e->S % 2 == 1 || (e->stiff && e->lean == 0);
 }
 
-/* {q} - q* at the start, where q* is known and {q} is not: by iteration, which a jump contracts. */
+/* Compute {q} - q* at the start, where q* is known and {q} is not, by fixed-point iteration. Each
+ * iteration contracts with the size of the jump. */
 static dvi_status offset_at_start(dvi__discontinuous *e, const double *jump, double *offset)
 {
   const int enough = 8;
@@ -372,11 +400,13 @@ static dvi_status offset_at_start(dvi__discontinuous *e, const double *jump, dou
   return DVI_OK;
 }
 
-/* (1 - M)^-1 of what the jump changed by: 1/2 - Omega^-1 C for odd S, 1/2 - Omega/(4c) for even S. */
-dvi_status dvi__discontinuous_settle(dvi__discontinuous *e, const double *x, double *jump, double *offset)
+/* Multiply the change of the jump by (1 - M)^-1, which is 1/2 - Omega^-1 C for odd S and
+ * 1/2 - Omega/(4c) for even S. */
+dvi_status dvi__discontinuous_settle(dvi__discontinuous *e, const double *x, double *jump,
+                                     double *offset)
 {
   const int even = e->S % 2 == 0;
-  spread(e, x);
+  discontinuous_spread(e, x);
   for (int i = 0; i < e->n; i++) {
     e->u[i] -= jump[i];
     e->y[i] = e->from.q[i] + offset[i];
@@ -385,7 +415,8 @@ dvi_status dvi__discontinuous_settle(dvi__discontinuous *e, const double *x, dou
     DVI_TRY(times_two_form(e, e->u, e->flux));
   else
     DVI_TRY(offset_of(e, e->u, e->flux));
-  for (int i = 0; i < e->n; i++) jump[i] += 0.5 * e->u[i] - (even ? e->flux[i] / (4 * e->stiffness[i]) : e->flux[i]);
+  for (int i = 0; i < e->n; i++)
+    jump[i] += 0.5 * e->u[i] - (even ? e->flux[i] / (4 * e->stiffness[i]) : e->flux[i]);
   return offset_at_start(e, jump, offset);
 }
 
@@ -399,12 +430,15 @@ void dvi__discontinuous_straight(const dvi__discontinuous *e, const double *v, d
   }
 }
 
-void dvi__discontinuous_continue(const dvi__discontinuous *e, double ratio, const double *coefficients, double *x)
+void dvi__discontinuous_continue(const dvi__discontinuous *e, double ratio,
+                                 const double *coefficients, double *x)
 {
   for (int k = 1; k < e->S; k++) {
     double weight[MOST];
-    for (int l = 0; l < e->S; l++) weight[l] = lagrange(e, l, 1 + ratio * e->node[k]);
-    for (int i = 0; i < e->n; i++) x[i * e->S + k - 1] = e->from.jump[i] + dot(e->S, weight, coefficients + i * e->S);
+    for (int l = 0; l < e->S; l++) weight[l] = discontinuous_lagrange(e, l, 1 + ratio * e->node[k]);
+    for (int i = 0; i < e->n; i++)
+      x[i * e->S + k - 1] = e->from.jump[i] +
+                            discontinuous_dot(e->S, weight, coefficients + i * e->S);
   }
   for (int i = 0; i < e->n; i++) x[(i + 1) * e->S - 1] = e->from.jump[i];
 }

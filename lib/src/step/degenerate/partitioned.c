@@ -10,7 +10,8 @@
 #include "core/status.h"
 #include "system/dynamics/one_form.h"
 
-/* The kicks: k0 = before lambda + carried times the last lambda, k1 = after lambda; their directions at the mean of q0 and q1, or at the ends. */
+/* The kicks are k0 = before lambda + carried times the last lambda, and k1 = after lambda. Their
+ * directions are taken at the mean of q0 and q1, or at the ends. */
 typedef struct kicks {
   double before, carried, after;
   int has_multiplier, at_mean;
@@ -20,28 +21,31 @@ struct dvi__partitioned {
   const dvi_system *system;
   dvi__evaluator *evaluator;
   int n, s, m; /* coordinates, stages, unknowns of a coordinate */
-  double a[DVI__STAGES_MOST][DVI__STAGES_MOST], abar[DVI__STAGES_MOST][DVI__STAGES_MOST], b[DVI__STAGES_MOST], c[DVI__STAGES_MOST];
+  double a[DVI__STAGES_MOST][DVI__STAGES_MOST], abar[DVI__STAGES_MOST][DVI__STAGES_MOST],
+      b[DVI__STAGES_MOST], c[DVI__STAGES_MOST];
   kicks kick;
-  dvi__pattern joint, pattern; /* joint: of one block; pattern: of the Jacobian */
+  dvi__pattern joint, pattern; /* joint is the pattern of one block, pattern that of the Jacobian */
   dvi__block *block;           /* [entries of joint] */
-  /* The step. */
+  /* The current step. */
   double t0, h;
   const double *q0, *p0, *carried;
-  /* At the stages, component by component: [n*s]. */
+  /* Values at the stages, component by component [n*s]. */
   double *t, *Q, *V, *L_q, *L_v, *H_qq, *H_qv, *H_vv;
-  /* At the ends, [n] each: kicks, what they do to p, the increments of q before k1 and in all, points, alpha at q1. */
+  /* Values at the ends, [n] each. These are the kicks, their effect on p, the increments of q
+   * before k1 and in all, the points, and alpha at q1. */
   double *k0, *k1, *K0, *K1, *dq, *q1, *mean, *alpha1, *dp, *unwanted;
   double *qq0, *qv0, *qq1, *qv1, *qv_end, *qq_end; /* Hessians at the ends */
 };
 
 /* ---- tableaux ---- */
 
-static void conjugate(const dvi__partitioned *p, int i, int j, double *abar)
+static void partitioned_conjugate(const dvi__partitioned *p, int i, int j, double *abar)
 {
   *abar = p->b[j] - p->b[j] * p->a[j][i] / p->b[i];
 }
 
-/* With collocation at Lobatto's nodes a is IIIA, and its conjugate IIIB. IIIE is the mean of both, and its own conjugate (Jay 2015). */
+/* Rearrange Lobatto's tableaux. Collocation at Lobatto's nodes gives a = IIIA with the conjugate
+ * IIIB. IIIE is the mean of both, and its own conjugate (Jay 2015). */
 static void rearrange_lobatto(dvi__partitioned *p, dvi__tableau tableau)
 {
   for (int i = 0; i < p->s; i++)
@@ -52,18 +56,19 @@ static void rearrange_lobatto(dvi__partitioned *p, dvi__tableau tableau)
     }
 }
 
-static dvi_status fill_tableau(dvi__partitioned *p, dvi__tableau tableau)
+static dvi_status partitioned_fill_tableau(dvi__partitioned *p, dvi__tableau tableau)
 {
   DVI_TRY(dvi_quadrature(tableau == DVI__GAUSS ? DVI_GAUSS : DVI_LOBATTO, p->s, p->c, p->b));
   DVI_TRY(dvi__collocate(p->s, p->c, p->a));
   for (int i = 0; i < p->s; i++)
-    for (int j = 0; j < p->s; j++) conjugate(p, i, j, &p->abar[i][j]);
+    for (int j = 0; j < p->s; j++) partitioned_conjugate(p, i, j, &p->abar[i][j]);
   if (tableau != DVI__GAUSS) rearrange_lobatto(p, tableau);
   return DVI_OK;
 }
 
-/* A constraint violated at the start returns at the end multiplied by R(infinity), which is (-1)^s for both tableaux: the same multiplier at both ends
- * can only remove what does not cancel. */
+/* Choose the kicks of a projection. A violation of the constraint at the start returns at the end
+ * multiplied by R(infinity), which is (-1)^s for both tableaux. The same multiplier at both ends
+ * can only remove a violation that does not cancel. */
 static kicks kicks_of(int s, dvi__projection projection)
 {
   const double R = s % 2 == 0 ? 1 : -1;
@@ -77,41 +82,47 @@ static kicks kicks_of(int s, dvi__projection projection)
   return (kicks){0};
 }
 
-/* ---- making it ---- */
+/* ---- create ---- */
 
-static double **owned(dvi__partitioned *p, int i)
+static double **partitioned_owned_array(dvi__partitioned *p, int i)
 {
-  double **const all[] = {&p->t,  &p->Q,        &p->V,   &p->L_q, &p->L_v, &p->H_qq, &p->H_qv,   &p->H_vv,
-                          &p->k0, &p->k1,       &p->K0,  &p->K1,  &p->dq,  &p->q1,   &p->mean,   &p->alpha1,
-                          &p->dp, &p->unwanted, &p->qq0, &p->qv0, &p->qq1, &p->qv1,  &p->qv_end, &p->qq_end};
+  double **const all[] = {&p->t,    &p->Q,    &p->V,    &p->L_q,    &p->L_v,    &p->H_qq,
+                          &p->H_qv, &p->H_vv, &p->k0,   &p->k1,     &p->K0,     &p->K1,
+                          &p->dq,   &p->q1,   &p->mean, &p->alpha1, &p->dp,     &p->unwanted,
+                          &p->qq0,  &p->qv0,  &p->qq1,  &p->qv1,    &p->qv_end, &p->qq_end};
   return i < (int)(sizeof all / sizeof *all) ? all[i] : NULL;
 }
 
-static dvi_status allocate(dvi__partitioned *p)
+static dvi_status partitioned_allocate(dvi__partitioned *p)
 {
-  const size_t n = (size_t)p->n, s = (size_t)p->s, qq = (size_t)dvi__pattern_entries(&p->system->qq),
-               qv = (size_t)dvi__pattern_entries(&p->system->qv), vv = (size_t)dvi__pattern_entries(&p->system->vv);
+  const size_t n = (size_t)p->n, s = (size_t)p->s,
+               qq = (size_t)dvi__pattern_entries(&p->system->qq),
+               qv = (size_t)dvi__pattern_entries(&p->system->qv),
+               vv = (size_t)dvi__pattern_entries(&p->system->vv);
   const size_t size[] = {s, n * s, n * s, n * s, n * s, qq * s, qv * s, vv * s, n,  n,  n,  n,
                          n, n,     n,     n,     n,     n,      qq,     qv,     qq, qv, qv, qq};
-  for (int i = 0; owned(p, i) != NULL; i++) {
-    *owned(p, i) = DVI_NEW(double, size[i] > 0 ? size[i] : 1);
-    if (*owned(p, i) == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory for %d stages in %d dimensions", p->s, p->n);
+  for (int i = 0; partitioned_owned_array(p, i) != NULL; i++) {
+    *partitioned_owned_array(p, i) = DVI_NEW(double, size[i] > 0 ? size[i] : 1);
+    if (*partitioned_owned_array(p, i) == NULL)
+      return dvi__fail(DVI_NO_MEMORY, "no memory for %d stages in %d dimensions", p->s, p->n);
   }
   return DVI_OK;
 }
 
-static dvi_status fill(dvi__partitioned *p, dvi__tableau tableau, dvi_counters *counters)
+static dvi_status partitioned_initialise(dvi__partitioned *p, dvi__tableau tableau,
+                                         dvi_counters *counters)
 {
   DVI_TRY(dvi__joint_check(p->system, p->m, p->s));
-  DVI_TRY(fill_tableau(p, tableau));
+  DVI_TRY(partitioned_fill_tableau(p, tableau));
   DVI_TRY(dvi__evaluator_create(p->system, p->s, DVI__HESSIANS, counters, &p->evaluator));
   DVI_TRY(dvi__joint_create(p->system, NULL, &p->joint, &p->block));
   DVI_TRY(dvi__pattern_blocks(&p->joint, p->m, &p->pattern));
-  return allocate(p);
+  return partitioned_allocate(p);
 }
 
-dvi_status dvi__partitioned_create(const dvi_system *system, dvi__tableau tableau, int stages, dvi__projection projection,
-                                   dvi_counters *counters, dvi__partitioned **partitioned)
+dvi_status dvi__partitioned_create(const dvi_system *system, dvi__tableau tableau, int stages,
+                                   dvi__projection projection, dvi_counters *counters,
+                                   dvi__partitioned **partitioned)
 {
   *partitioned = NULL;
   dvi__partitioned *p = DVI_NEW(dvi__partitioned, 1);
@@ -121,7 +132,7 @@ dvi_status dvi__partitioned_create(const dvi_system *system, dvi__tableau tablea
   p->s = stages;
   p->kick = kicks_of(stages, projection);
   p->m = stages + p->kick.has_multiplier;
-  const dvi_status status = fill(p, tableau, counters);
+  const dvi_status status = partitioned_initialise(p, tableau, counters);
   if (status != DVI_OK) dvi__partitioned_destroy(&p);
   *partitioned = p;
   return status;
@@ -131,7 +142,8 @@ void dvi__partitioned_destroy(dvi__partitioned **partitioned)
 {
   dvi__partitioned *p = *partitioned;
   if (p == NULL) return;
-  for (int i = 0; owned(p, i) != NULL; i++) dvi__release(*owned(p, i));
+  for (int i = 0; partitioned_owned_array(p, i) != NULL; i++)
+    dvi__release(*partitioned_owned_array(p, i));
   dvi__evaluator_destroy(&p->evaluator);
   dvi__pattern_clear(&p->joint);
   dvi__pattern_clear(&p->pattern);
@@ -150,7 +162,8 @@ dvi__evaluator *dvi__partitioned_evaluator(const dvi__partitioned *p)
   return p->evaluator;
 }
 
-void dvi__partitioned_place(dvi__partitioned *p, double t0, double h, const double *q0, const double *p0, const double *carried)
+void dvi__partitioned_place(dvi__partitioned *p, double t0, double h, const double *q0,
+                            const double *p0, const double *carried)
 {
   p->t0 = t0;
   p->h = h;
@@ -160,17 +173,18 @@ void dvi__partitioned_place(dvi__partitioned *p, double t0, double h, const doub
   for (int i = 0; i < p->s; i++) p->t[i] = t0 + p->c[i] * h;
 }
 
-/* ---- the step's points ---- */
+/* ---- points ---- */
 
-static double dot(int count, const double *x, const double *y)
+static double partitioned_dot(int count, const double *x, const double *y)
 {
   double sum = 0;
   for (int j = 0; j < count; j++) sum += x[j] * y[j];
   return sum;
 }
 
-/* The increments before the kicks are added up, so that q0, the large number, comes last. */
-static void points(dvi__partitioned *p, const double *x)
+/* Compute the points. The increments before the kicks are summed first, so that q0, the large
+ * number, comes last. */
+static void partitioned_points(dvi__partitioned *p, const double *x)
 {
   const kicks *kick = &p->kick;
   const size_t s = (size_t)p->s;
@@ -179,8 +193,9 @@ static void points(dvi__partitioned *p, const double *x)
     p->k0[i] = kick->before * lambda + kick->carried * p->carried[i];
     p->k1[i] = kick->after * lambda;
     for (size_t k = 0; k < s; k++) p->V[i * s + k] = x[k] / p->h;
-    for (size_t k = 0; k < s; k++) p->Q[i * s + k] = p->q0[i] + (p->k0[i] + dot(p->s, p->a[k], x));
-    p->dq[i] = p->k0[i] + dot(p->s, p->b, x) + p->k1[i];
+    for (size_t k = 0; k < s; k++)
+      p->Q[i * s + k] = p->q0[i] + (p->k0[i] + partitioned_dot(p->s, p->a[k], x));
+    p->dq[i] = p->k0[i] + partitioned_dot(p->s, p->b, x) + p->k1[i];
     p->q1[i] = p->q0[i] + p->dq[i];
     p->mean[i] = p->q0[i] + 0.5 * p->dq[i];
   }
@@ -196,29 +211,32 @@ static const double *place_of_k1(const dvi__partitioned *p)
   return p->kick.at_mean ? p->mean : p->q1;
 }
 
-/* K0 and K1 where there are kicks, and alpha(q1). */
-static dvi_status ends(dvi__partitioned *p)
+/* Compute K0 and K1 where there are kicks, and alpha(q1). */
+static dvi_status partitioned_ends(dvi__partitioned *p)
 {
   const kicks *kick = &p->kick;
   const size_t bytes = (size_t)p->n * sizeof(double);
   memset(p->K0, 0, bytes);
   memset(p->K1, 0, bytes);
   if (!kick->has_multiplier) return DVI_OK;
-  if (kick->before != 0 || kick->carried != 0) DVI_TRY(dvi__form_gradient(p->evaluator, place_of_k0(p), p->k0, p->K0, p->unwanted));
+  if (kick->before != 0 || kick->carried != 0)
+    DVI_TRY(dvi__form_gradient(p->evaluator, place_of_k0(p), p->k0, p->K0, p->unwanted));
   DVI_TRY(dvi__form_gradient(p->evaluator, p->q1, p->k1, p->K1, p->alpha1));
-  return kick->at_mean ? dvi__form_gradient(p->evaluator, p->mean, p->k1, p->K1, p->unwanted) : DVI_OK;
+  return kick->at_mean ? dvi__form_gradient(p->evaluator, p->mean, p->k1, p->K1, p->unwanted)
+                       : DVI_OK;
 }
 
 dvi_status dvi__partitioned_residual(dvi__partitioned *p, const double *x, double *R)
 {
   const size_t s = (size_t)p->s, m = (size_t)p->m;
-  points(p, x);
+  partitioned_points(p, x);
   DVI_TRY(dvi__lagrangian_gradient(p->evaluator, p->s, p->t, p->Q, p->V, p->L_q, p->L_v));
-  DVI_TRY(ends(p));
+  DVI_TRY(partitioned_ends(p));
   for (size_t i = 0; i < (size_t)p->n; i++) {
     const double *F = p->L_q + i * s, *alpha = p->L_v + i * s;
-    for (size_t k = 0; k < s; k++) R[i * m + k] = (alpha[k] - p->p0[i]) - p->K0[i] - p->h * dot(p->s, p->abar[k], F);
-    p->dp[i] = p->K0[i] + p->h * dot(p->s, p->b, F) + p->K1[i];
+    for (size_t k = 0; k < s; k++)
+      R[i * m + k] = (alpha[k] - p->p0[i]) - p->K0[i] - p->h * partitioned_dot(p->s, p->abar[k], F);
+    p->dp[i] = p->K0[i] + p->h * partitioned_dot(p->s, p->b, F) + p->K1[i];
     if (p->kick.has_multiplier) R[i * m + s] = (p->p0[i] - p->alpha1[i]) + p->dp[i];
   }
   return DVI_OK;
@@ -242,19 +260,19 @@ static dvi_status hessians_at_ends(dvi__partitioned *p)
   return DVI_OK;
 }
 
-static double at(const double *values, int entry)
+static double partitioned_at(const double *values, int entry)
 {
   return entry >= 0 ? values[entry] : 0;
 }
 
-/* What one entry of the joint pattern has: d2L/dv_i dq_j (A; of a one-form d alpha_i/dq_j), d2L/dq_i dv_j (B), h d2L/dq2 (K) and d2L/dv2/h (M) at the
- * stages; the like at the ends. */
+/* An entry of the joint pattern has d2L/dv_i dq_j (A, for a one-form d alpha_i/dq_j), d2L/dq_i dv_j
+ * (B), h d2L/dq2 (K) and d2L/dv2/h (M) at the stages, and the corresponding values at the ends. */
 typedef struct entry {
   double A[DVI__STAGES_MOST], B[DVI__STAGES_MOST], K[DVI__STAGES_MOST], M[DVI__STAGES_MOST];
   double B0, H0, B1, H1, A_end;
 } entry;
 
-static void gather_entry(const dvi__partitioned *p, const dvi__block *where, entry *out)
+static void partitioned_gather_entry(const dvi__partitioned *p, const dvi__block *where, entry *out)
 {
   for (int k = 0; k < p->s; k++) {
     out->A[k] = where->vq >= 0 ? p->H_qv[where->vq * p->s + k] : 0;
@@ -264,42 +282,49 @@ static void gather_entry(const dvi__partitioned *p, const dvi__block *where, ent
   }
   out->B0 = out->H0 = out->B1 = out->H1 = out->A_end = 0;
   if (!p->kick.has_multiplier) return;
-  out->B0 = at(p->qv0, where->qv);
-  out->H0 = p->kick.at_mean ? 0.5 * at(p->qq0, where->qq) : 0;
-  out->B1 = at(p->qv1, where->qv);
-  out->H1 = (p->kick.at_mean ? 0.5 : 1.0) * at(p->qq1, where->qq);
-  out->A_end = at(p->qv_end, where->vq);
+  out->B0 = partitioned_at(p->qv0, where->qv);
+  out->H0 = p->kick.at_mean ? 0.5 * partitioned_at(p->qq0, where->qq) : 0;
+  out->B1 = partitioned_at(p->qv1, where->qv);
+  out->H1 = (p->kick.at_mean ? 0.5 : 1.0) * partitioned_at(p->qq1, where->qq);
+  out->A_end = partitioned_at(p->qv_end, where->vq);
 }
 
-/* sum_j w_j K_j a_jl. */
-static double impulse(const dvi__partitioned *p, const entry *e, const double *w, int l)
+/* Return sum_j w_j K_j a_jl. */
+static double partitioned_impulse(const dvi__partitioned *p, const entry *e, const double *w, int l)
 {
   double sum = 0;
   for (int j = 0; j < p->s; j++) sum += w[j] * e->K[j] * p->a[j][l];
   return sum;
 }
 
-/* Rows of a block in its column of the increment W_l. */
+/* Fill the rows of a block in the column of the increment W_l. */
 static void increment_column(const dvi__partitioned *p, const entry *e, int l, double *column)
 {
   const double start = p->b[l] * e->H0;
-  for (int k = 0; k < p->s; k++) column[k] = p->a[k][l] * e->A[k] - start - p->abar[k][l] * e->B[l] - impulse(p, e, p->abar[k], l);
+  for (int k = 0; k < p->s; k++)
+    column[k] = p->a[k][l] * e->A[k] - start - p->abar[k][l] * e->B[l] -
+                partitioned_impulse(p, e, p->abar[k], l);
   column[l] += e->M[l];
-  if (p->kick.has_multiplier) column[p->s] = start + p->b[l] * e->B[l] + impulse(p, e, p->b, l) + p->b[l] * (e->H1 - e->A_end);
+  if (p->kick.has_multiplier)
+    column[p->s] = start + p->b[l] * e->B[l] + partitioned_impulse(p, e, p->b, l) +
+                   p->b[l] * (e->H1 - e->A_end);
 }
 
-/* The same in the column of the multiplier. */
+/* Fill the rows of a block in the column of the multiplier. */
 static void multiplier_column(const dvi__partitioned *p, const entry *e, double *column)
 {
-  const double before = p->kick.before, both = before + p->kick.after, start = before * e->B0 + both * e->H0;
-  for (int k = 0; k < p->s; k++) column[k] = before * (e->A[k] - dot(p->s, p->abar[k], e->K)) - start;
-  column[p->s] = start + before * dot(p->s, p->b, e->K) + p->kick.after * e->B1 + both * (e->H1 - e->A_end);
+  const double before = p->kick.before, both = before + p->kick.after,
+               start = before * e->B0 + both * e->H0;
+  for (int k = 0; k < p->s; k++)
+    column[k] = before * (e->A[k] - partitioned_dot(p->s, p->abar[k], e->K)) - start;
+  column[p->s] = start + before * partitioned_dot(p->s, p->b, e->K) + p->kick.after * e->B1 +
+                 both * (e->H1 - e->A_end);
 }
 
 dvi_status dvi__partitioned_jacobian(dvi__partitioned *p, const double *x, double *values)
 {
   const int m = p->m;
-  points(p, x);
+  partitioned_points(p, x);
   DVI_TRY(dvi__lagrangian_hessian(p->evaluator, p->s, p->t, p->Q, p->V, p->H_qq, p->H_qv, p->H_vv));
   DVI_TRY(hessians_at_ends(p));
   for (int j = 0; j < p->n; j++) {
@@ -307,21 +332,24 @@ dvi_status dvi__partitioned_jacobian(dvi__partitioned *p, const double *x, doubl
     for (int e = 0; e < length; e++) {
       entry block = {0};
       double *columns = values + (size_t)m * (size_t)m * (size_t)first + (size_t)e * (size_t)m;
-      gather_entry(p, &p->block[first + e], &block);
-      for (int l = 0; l < p->s; l++) increment_column(p, &block, l, columns + (size_t)l * (size_t)length * (size_t)m);
-      if (p->kick.has_multiplier) multiplier_column(p, &block, columns + (size_t)p->s * (size_t)length * (size_t)m);
+      partitioned_gather_entry(p, &p->block[first + e], &block);
+      for (int l = 0; l < p->s; l++)
+        increment_column(p, &block, l, columns + (size_t)l * (size_t)length * (size_t)m);
+      if (p->kick.has_multiplier)
+        multiplier_column(p, &block, columns + (size_t)p->s * (size_t)length * (size_t)m);
     }
   }
   return DVI_OK;
 }
 
-/* By the last Jacobian's L_vv at the first stage. */
+/* Scale the rows by L_vv of the last Jacobian at the first stage. */
 static void scale_by_masses(const dvi__partitioned *p, double *scale)
 {
   const dvi__pattern *vv = &p->system->vv;
   for (int i = 0; i < p->n; i++) {
     double size = 0;
-    for (int e = vv->start[i]; e < vv->start[i + 1]; e++) size = fmax(size, fabs(p->H_vv[e * p->s]));
+    for (int e = vv->start[i]; e < vv->start[i + 1]; e++)
+      size = fmax(size, fabs(p->H_vv[e * p->s]));
     for (int k = 0; k < p->m; k++) scale[i * p->m + k] = (size > 0 ? size : 1) / fabs(p->h);
   }
 }
@@ -347,12 +375,14 @@ void dvi__partitioned_straight(const dvi__partitioned *p, const double *v, doubl
   }
 }
 
-void dvi__partitioned_continue(const dvi__partitioned *p, double ratio, const double *last, double *x)
+void dvi__partitioned_continue(const dvi__partitioned *p, double ratio, const double *last,
+                               double *x)
 {
   for (int k = 0; k < p->s; k++) {
     double weight[DVI__STAGES_MOST];
     dvi__lagrange_weights(p->s, p->c, 1 + ratio * p->c[k], weight);
-    for (int i = 0; i < p->n; i++) x[i * p->m + k] = ratio * dot(p->s, weight, last + i * p->m);
+    for (int i = 0; i < p->n; i++)
+      x[i * p->m + k] = ratio * partitioned_dot(p->s, weight, last + i * p->m);
   }
   for (int i = 0; p->kick.has_multiplier && i < p->n; i++) x[i * p->m + p->s] = 0;
 }

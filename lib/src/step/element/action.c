@@ -29,25 +29,28 @@ static dvi_status allocate_chord(dvi__action *a, dvi_counters *counters)
   a->middle[1] = DVI_NEW(double, a->n);
   a->middle_vv = DVI_NEW(double, dvi__pattern_entries(&system->vv));
   if (a->n <= DVI__CHORD_INVERSE) a->chord_inverse = DVI_NEW(double, (size_t)a->n *(size_t)a->n);
-  if (!a->middle[0] || !a->middle[1] || !a->middle_vv || (a->n <= DVI__CHORD_INVERSE && !a->chord_inverse))
+  if (!a->middle[0] || !a->middle[1] || !a->middle_vv ||
+      (a->n <= DVI__CHORD_INVERSE && !a->chord_inverse))
     return dvi__fail(DVI_NO_MEMORY, "action: no memory for the velocity Hessian");
   return dvi__linear_create(&system->vv, DVI__LINEAR_AUTO, counters, &a->chord);
 }
 
 static dvi_status fill(dvi__action *a, dvi_counters *counters)
 {
-  if (!a->shaped) DVI_TRY(dvi__joint_check(a->system, a->s, a->r));
+  if (!a->shaped) DVI_TRY(dvi__joint_check(a->system, 1, a->r > a->s ? a->r : a->s));
   DVI_TRY(dvi__action_fill_tables(a));
-  const int capacity = a->r > a->s ? a->r : a->s; /* a batch of s is solved for at once in the chord */
-  DVI_TRY(dvi__evaluator_create(a->system, capacity, DVI__HESSIANS, counters, &a->evaluator));
-  if (!allocate_batches(a)) return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d nodes in %d dimensions", a->r, a->n);
+  /* a batch of s is solved for at once in the chord */
+  const int capacity = a->r > a->s ? a->r : a->s;
+  DVI_TRY(dvi__evaluator_create(a->system, capacity, DVI__GRADIENTS, counters, &a->evaluator));
+  if (!allocate_batches(a))
+    return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d nodes in %d dimensions", a->r, a->n);
   if (a->shaped) return DVI_OK;
   DVI_TRY(dvi__action_prepare_sweep(a));
   return allocate_chord(a, counters);
 }
 
-static dvi_status create(const dvi_system *system, const dvi__action_space *space, int shaped, dvi_counters *counters,
-                         dvi__action **action)
+static dvi_status create(const dvi_system *system, const dvi__action_space *space, int shaped,
+                         dvi_counters *counters, dvi__action **action)
 {
   *action = NULL;
   dvi__action *a = DVI_NEW(dvi__action, 1);
@@ -64,16 +67,17 @@ static dvi_status create(const dvi_system *system, const dvi__action_space *spac
   return status;
 }
 
-dvi_status dvi__action_create(const dvi_system *system, const dvi__action_space *space, dvi_counters *counters,
-                              dvi__action **action)
+dvi_status dvi__action_create(const dvi_system *system, const dvi__action_space *space,
+                              dvi_counters *counters, dvi__action **action)
 {
   return create(system, space, 0, counters, action);
 }
 
-dvi_status dvi__action_create_shaped(const dvi_system *system, int functions, int points, dvi_counters *counters,
-                                     dvi__action **action)
+dvi_status dvi__action_create_by_user(const dvi_system *system, int functions, int points,
+                                      dvi_counters *counters, dvi__action **action)
 {
-  return create(system, &(dvi__action_space){.degree = functions, .nodes = points}, 1, counters, action);
+  return create(system, &(dvi__action_space){.degree = functions, .nodes = points}, 1, counters,
+                action);
 }
 
 void dvi__action_destroy(dvi__action **action)
@@ -106,11 +110,9 @@ void dvi__action_destroy(dvi__action **action)
                            a->line,
                            a->middle_vv,
                            a->chord_inverse,
+                           a->moved,
                            a->middle[0],
                            a->middle[1],
-                           a->H_qq,
-                           a->H_qv,
-                           a->H_vv,
                            a->sweep_matrix,
                            a->sweep_node,
                            a->sweep_slant,
@@ -122,14 +124,12 @@ void dvi__action_destroy(dvi__action **action)
                            a->Z,
                            a->sweep_shift.table};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) dvi__release(owned[i]);
-  dvi__action_clear_between(a);
+  dvi__action_clear_two_point(a);
   dvi__action_clear_energy(a);
   dvi__action_clear_charts(a);
   dvi__linear_destroy(&a->chord);
   dvi__evaluator_destroy(&a->evaluator);
-  dvi__pattern_clear(&a->joint);
-  dvi__pattern_clear(&a->pattern);
-  dvi__release(a->block);
+  dvi__action_clear_jacobian(a);
   dvi__release(a);
   *action = NULL;
 }

@@ -6,8 +6,8 @@
 #include "step/joint.h"
 #include "space/basis.h"
 
-/* Tables that continue what the last step found into the next: one for each ratio of their lengths. A composition of 17 substeps asks for as many
- * ratios in turn. */
+/* Tables that continue what the last step found into the next: one for each ratio of their lengths.
+ * A composition of 17 substeps asks for as many ratios in turn. */
 enum { DVI__SHIFTS = 20 };
 
 typedef struct dvi__shifts {
@@ -20,10 +20,13 @@ struct dvi__action {
   const dvi_system *system;
   dvi__evaluator *evaluator;
   dvi__action_space space;
-  int n, s, r;      /* coordinates, degree, quadrature nodes */
-  int shaped;       /* s functions and r points of any kind: the tables are filled by shaped.c; what needs a basis is not there */
+  int n, s, r; /* coordinates, degree, quadrature nodes */
+  /* s functions and r points of any kind: the tables are filled by shaped.c; what needs a basis is
+   * not there */
+  int shaped;
   dvi__space trial; /* the basis, ready for evaluation anywhere */
-  /* Length of a row over the nodes and over the functions, padded for products in lanes (num/simd/lanes.h). */
+  /* Length of a row over the nodes and over the functions, padded for products in lanes
+   * (num/simd/lanes.h). */
   int lanes, path_lanes;
   /* Tables over (k, j), stored [k*lanes + j]. */
   double *psi, *bar, *dpsi;              /* psi_k(c_j), psi_k(c_j) - psi_k(1), psi_k'(c_j) */
@@ -44,14 +47,16 @@ struct dvi__action {
   double *bar_row, *slope_row; /* psi_k(c_j) - psi_k(1), psi_k'(c_j) */
   double *stiffness_row;       /* [s*path_lanes] K^{-1} */
   /* Sweeps (sweep.h); NULL if the mass couples coordinates. */
-  double *sweep_matrix, *sweep_node, *sweep_slant; /* [r*lanes] c_i - P_ij by columns, [lanes] c, [r] 1/2 - c */
-  double *sweep_path;                              /* paths from forces */
-  double *sweep_start, *sweep_low, *sweep_factor;  /* [n] h/m p0 and what it is rounded by, h/m */
-  double sweep_h;                                  /* the h of sweep_factor and sweep_weight */
-  double *sweep_weight;                            /* [r] -h b_j */
-  double *Z;                                       /* [n*lanes] offsets of the nodes from q0 */
-  dvi__shifts sweep_shift;                         /* from the last step's forces to offsets: [r*lanes], by columns */
-  int swept;                                       /* the forces are a sweep's */
+  /* [r*lanes] c_i - P_ij by columns, [lanes] c, [r] 1/2 - c */
+  double *sweep_matrix, *sweep_node, *sweep_slant;
+  double *sweep_path;                             /* paths from forces */
+  double *sweep_start, *sweep_low, *sweep_factor; /* [n] h/m p0 and what it is rounded by, h/m */
+  double sweep_h;                                 /* the h of sweep_factor and sweep_weight */
+  double *sweep_weight;                           /* [r] -h b_j */
+  double *Z;                                      /* [n*lanes] offsets of the nodes from q0 */
+  /* from the last step's forces to offsets: [r*lanes], by columns */
+  dvi__shifts sweep_shift;
+  int swept; /* the forces are a sweep's */
   /* Chord. */
   double scaled_h;       /* the h of the last row scales */
   double *middle_vv;     /* L_vv at one point (general Lagrangians) */
@@ -63,6 +68,7 @@ struct dvi__action {
   dvi__pattern pattern;       /* ns x ns */
   dvi__block *block;          /* [entries of joint] */
   double *H_qq, *H_qv, *H_vv; /* [entries*r] */
+  double *moved;              /* [4 n*r] work of products; NULL until prepared */
   dvi__row_terms terms;
   struct dvi__centred_paths *centred; /* charts centred at the start; NULL: there are none */
   /* Between two ends (between.h); NULL until prepared. */
@@ -70,24 +76,28 @@ struct dvi__action {
   double *chi, *dchi;                /* [(s+1)*lanes] tables over the nodes */
   double *between_rows, *between_dp; /* [n*s], [n] work */
   /* Energies; NULL until prepared. */
-  double *value, *rate;             /* [r] L, L_t */
-  double *by_q, *by_v;              /* [n*r] what L_v V - L changes by with q and with the path's derivative in tau */
-  double *rate_q, *rate_v, *rate_t; /* [n*r], [n*r], [r] L_tq, L_tv, L_tt; NULL: the system is autonomous */
-  double *moved_t, *moved_rate;     /* [r] work of their differences, */
-  double *moved_q, *moved_v;        /* [n*r] and more of it */
+  double *value, *rate; /* [r] L, L_t */
+  /* [n*r] what L_v V - L changes by with q and with the path's derivative in tau */
+  double *by_q, *by_v;
+  /* [n*r], [n*r], [r] L_tq, L_tv, L_tt; NULL: the system is autonomous */
+  double *rate_q, *rate_v, *rate_t;
+  double *moved_t, *moved_rate; /* [r] work of their differences, */
+  double *moved_q, *moved_v;    /* [n*r] and more of it */
 };
 
-/* Up to so many coordinates the chord's inverse is cheaper than solving for each of the s functions. */
+/* Up to so many coordinates the chord's inverse is cheaper than solving for each of the s
+ * functions. */
 enum { DVI__CHORD_INVERSE = 8 };
 
-/* The table from the last step's forces to the sums of forces in a step `ratio` times as long: [r*lanes], by columns. */
+/* The table from the last step's forces to the sums of forces in a step `ratio` times as long:
+ * [r*lanes], by columns. */
 const double *dvi__action_sweep_shift(dvi__action *action, double ratio);
 
 typedef struct dvi__centred_paths dvi__centred_paths;
 
-/* The row terms' parts: of the joint pattern, and the Jacobian's with their own unknowns; of a path, which
- * is announced before L's derivatives are asked for; of the rows, their magnitudes, the derivatives and
- * the scales. */
+/* The row terms' parts: of the joint pattern, and the Jacobian's with their own unknowns; of a
+ * path, which is announced before L's derivatives are asked for; of the rows, their magnitudes, the
+ * derivatives and the scales. */
 dvi_status dvi__action_join_terms(const dvi__action *action, dvi__pattern *joint);
 dvi_status dvi__action_wide_pattern(const dvi__action *action, dvi__pattern *pattern);
 void dvi__action_place_terms(dvi__action *action, const double *Y);
@@ -102,9 +112,10 @@ void dvi__action_clear_charts(dvi__action *action);
 /* Free what dvi__action_prepare_energy has made. */
 void dvi__action_clear_energy(dvi__action *action);
 
-/* An element whose tables shaped.c fills, at every new length: of it there are place, residual, Hessians and ends. */
-dvi_status dvi__action_create_shaped(const dvi_system *system, int functions, int points, dvi_counters *counters,
-                                     dvi__action **action);
+/* An element whose tables shaped.c fills, at every new length: of it there are place, residual,
+ * Hessians and ends. */
+dvi_status dvi__action_create_by_user(const dvi_system *system, int functions, int points,
+                                      dvi_counters *counters, dvi__action **action);
 
 /* Row scales by the velocity Hessian in the order of vv; NULL: the constant mass. */
 void dvi__action_scale_by(const dvi__action *action, const double *L_vv, double *scale);
@@ -112,20 +123,22 @@ void dvi__action_scale_by(const dvi__action *action, const double *L_vv, double 
 /* What sweeps need that depends on h alone. */
 void dvi__action_set_step(dvi__action *action);
 
-/* The joint pattern, and memory for Hessians; the Hessians along the path Y, for what follows. */
-dvi_status dvi__action_prepare_hessians(dvi__action *action);
-dvi_status dvi__action_hessians(dvi__action *action, const double *Y);
+/* Free what was prepared for Hessians and the Jacobian, which may be prepared again. */
+void dvi__action_clear_jacobian(dvi__action *action);
 
-/* Column l of a block, its first `rows` rows: sum_j b_j [ (psi_k - psi_k(1)) (h L_qq psi_l + L_qv psi_l') + psi_k' (L_vq psi_l + L_vv psi_l'/h) ]. */
-void dvi__action_block_column(const dvi__action *action, const dvi__block *block, int l, int rows, double *column);
+/* Column l of a block, its first `rows` rows: sum_j b_j [ (psi_k - psi_k(1)) (h L_qq psi_l + L_qv
+ * psi_l') + psi_k' (L_vq psi_l + L_vv psi_l'/h) ]. */
+void dvi__action_block_column(const dvi__action *action, const dvi__block *block, int l, int rows,
+                              double *column);
 
-/* in_q and in_v [r], which may stand in `line`: b_j (h L_qq f + L_qv f') and b_j (L_vq f + L_vv f'/h) for one entry of the joint pattern and a function f of
- * which f and f' [r] are given at the nodes. */
-void dvi__action_weigh_hessian(const dvi__action *action, const dvi__block *block, const double *f, const double *df, double *in_q,
-                               double *in_v);
+/* in_q and in_v [r], which may stand in `line`: b_j (h L_qq f + L_qv f') and b_j (L_vq f + L_vv
+ * f'/h) for one entry of the joint pattern and a function f of which f and f' [r] are given at the
+ * nodes. */
+void dvi__action_weigh_hessian(const dvi__action *action, const dvi__block *block, const double *f,
+                               const double *df, double *in_q, double *in_v);
 
-/* Free what dvi__action_prepare_between made. */
-void dvi__action_clear_between(const dvi__action *action);
+/* Free what dvi__action_prepare_two_point made. */
+void dvi__action_clear_two_point(const dvi__action *action);
 
 /* Fill the batches Q and V with the path's points at the nodes. */
 void dvi__action_stages(const dvi__action *action, const double *Y);

@@ -1,5 +1,5 @@
-/* The first row term: paths in a chart that is centred at their start (system/chart/centring.h). With
- * p1 = p0 + dp + C the rows are
+/* The first row term: paths in a chart that is centred at their start (system/chart/centring.h).
+ * With p1 = p0 + dp + C the rows are
  *
  *     R_k = sum_j b_j ( h (psi_k - psi_k(1)) L_q + psi_k' L_v )_j - psi_k(1) (p0 + C) */
 #include <math.h>
@@ -20,7 +20,8 @@ static void place_chart(void *of, const dvi__row_path *path)
   centring->place(centring->of, path->q0, path->q1);
 }
 
-static dvi_status add_correction(void *of, const dvi__row_path *p, const double *own, double *R, double *dp, double *own_R)
+static dvi_status add_correction(void *of, const dvi__row_path *p, const double *own, double *R,
+                                 double *dp, double *own_R)
 {
   const dvi__centred_paths *x = of;
   (void)own, (void)own_R;
@@ -32,7 +33,8 @@ static dvi_status add_correction(void *of, const dvi__row_path *p, const double 
   return DVI_OK;
 }
 
-static void mix_magnitudes(const void *of, const dvi__row_path *p, double *magnitude, double *own_magnitude)
+static void mix_magnitudes(const void *of, const dvi__row_path *p, double *magnitude,
+                           double *own_magnitude)
 {
   const dvi__centred_paths *x = of;
   (void)own_magnitude;
@@ -42,18 +44,21 @@ static void mix_magnitudes(const void *of, const dvi__row_path *p, double *magni
 }
 
 /* dC/dY_l for one entry of the joint pattern. */
-static double change_of_correction(const dvi__row_path *p, const dvi__block *block, int l, const double *C_q1, const double *C_qq,
-                                   const double *C_qv)
+static double change_of_correction(const dvi__row_path *p, const dvi__block *block, int l,
+                                   const double *C_q1, const double *C_qq, const double *C_qv)
 {
   double sum = block->qq >= 0 ? C_q1[block->qq] * p->end[l] : 0;
   const double *psi = p->psi + l * p->lanes, *dpsi = p->dpsi + l * p->lanes;
-  for (int j = 0; j < p->r && block->qq >= 0; j++) sum += p->weight[j] * p->h * C_qq[block->qq * p->r + j] * psi[j];
-  for (int j = 0; j < p->r && block->qv >= 0; j++) sum += p->weight[j] * C_qv[block->qv * p->r + j] * dpsi[j];
+  for (int j = 0; j < p->r && block->qq >= 0; j++)
+    sum += p->weight[j] * p->h * C_qq[block->qq * p->r + j] * psi[j];
+  for (int j = 0; j < p->r && block->qv >= 0; j++)
+    sum += p->weight[j] * C_qv[block->qv * p->r + j] * dpsi[j];
   return sum;
 }
 
 /* Subtract psi_k(1) dC. */
-static dvi_status add_derivatives(void *of, const dvi__row_path *p, const double *own, const dvi__row_jacobian *J)
+static dvi_status add_derivatives(void *of, const dvi__row_path *p, const double *own,
+                                  const dvi__row_jacobian *J)
 {
   const dvi__centred_paths *x = of;
   const dvi__pattern *joint = dvi__row_joint(J);

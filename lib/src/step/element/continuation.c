@@ -7,7 +7,8 @@
 #include "space/legendre.h"
 #include "space/trial.h"
 
-/* Continuing a polynomial of degree d one step further multiplies rounding errors by about 6^d and gains little beyond this degree. */
+/* Continuing a polynomial of degree d one step further multiplies rounding errors by about 6^d and
+ * gains little beyond this degree. */
 enum { CONTINUED_DEGREE = 10 };
 
 /* The table for this ratio; if it is not kept, the oldest one is to be filled. */
@@ -30,7 +31,8 @@ static double *table_for(dvi__shifts *shifts, size_t size, double ratio, int *kn
 static void fill_path(const dvi__action *a, double ratio, double *shift)
 {
   const size_t s = (size_t)a->s, lanes = (size_t)a->path_lanes;
-  dvi__trial_shift(a->space.basis, a->s, a->s < CONTINUED_DEGREE ? a->s : CONTINUED_DEGREE, ratio, a->shift_rows);
+  dvi__trial_shift(a->space.basis, a->s, a->s < CONTINUED_DEGREE ? a->s : CONTINUED_DEGREE, ratio,
+                   a->shift_rows);
   for (size_t k = 0; k < s; k++)
     for (size_t l = 0; l < s; l++) shift[l * lanes + k] = a->shift_rows[k * s + l];
 }
@@ -47,8 +49,9 @@ void dvi__action_continue(dvi__action *a, double ratio, const double *last, doub
 
 /* ---- forces ---- */
 
-/* A polynomial in the Legendre basis fitted to values at the nodes, evaluated at the nodes of the next step: value_j = sum_k b_k U_j.W_k value_k with
- * W_k = C^{-1} P(c_k), U_j = C^{-1} P(1 + ratio c_j), C C^T = sum_k b_k P(c_k) P(c_k)^T. */
+/* A polynomial in the Legendre basis fitted to values at the nodes, evaluated at the nodes of the
+ * next step: value_j = sum_k b_k U_j.W_k value_k with W_k = C^{-1} P(c_k), U_j = C^{-1} P(1 + ratio
+ * c_j), C C^T = sum_k b_k P(c_k) P(c_k)^T. */
 typedef struct fit {
   int terms;
   long double U[DVI_QUADRATURE_MAX][CONTINUED_DEGREE], W[DVI_QUADRATURE_MAX][CONTINUED_DEGREE];
@@ -74,7 +77,8 @@ static void fill_fit(const dvi__action *a, double ratio, fit *f)
   }
 }
 
-/* From g of the last step to sum_j (c_i - P_ij) g_j of this one: with g_j = h b_j L_q_j the weights b_k of the fit cancel. */
+/* From g of the last step to sum_j (c_i - P_ij) g_j of this one: with g_j = h b_j L_q_j the weights
+ * b_k of the fit cancel. */
 static void fill_forces(const dvi__action *a, double ratio, double *shift)
 {
   fit f;
@@ -82,7 +86,8 @@ static void fill_forces(const dvi__action *a, double ratio, double *shift)
   for (int i = 0; i < a->r; i++) {
     long double row[CONTINUED_DEGREE] = {0};
     for (int j = 0; j < a->r; j++)
-      for (int m = 0; m < f.terms; m++) row[m] += a->sweep_matrix[j * a->lanes + i] * ratio * a->weight[j] * f.U[j][m];
+      for (int m = 0; m < f.terms; m++)
+        row[m] += a->sweep_matrix[j * a->lanes + i] * ratio * a->weight[j] * f.U[j][m];
     for (int k = 0; k < a->r; k++) {
       long double sum = 0;
       for (int m = 0; m < f.terms; m++) sum += row[m] * f.W[k][m];

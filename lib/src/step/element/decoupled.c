@@ -10,9 +10,9 @@
 
 /* One real eigenvalue, or a pair of complex ones. */
 typedef struct mode {
-  int place, parts;  /* its first coefficient, and how many it has: 1 or 2 */
-  double U[2], T[2]; /* real and imaginary part */
-  dvi__linear *linear;
+  int place, parts;    /* its first coefficient, and how many it has: 1 or 2 */
+  double U[2], T[2];   /* real and imaginary part */
+  dvi__linear *linear; /* NULL: not prepared */
 } mode;
 
 struct dvi__decoupled {
@@ -21,7 +21,7 @@ struct dvi__decoupled {
   int modes;
   mode mode[DVI_DEGREE_MAX];
   double *in, *out;                 /* [s*lanes] by columns: X^{-1} K^{-1} and X */
-  double *values, *b, *coefficient; /* [2 entries], [2 n], [n*s] */
+  double *values, *b, *coefficient; /* [2 entries], [2 n], [n*s]; NULL: not prepared */
   double h, *point;                 /* what is frozen: the step (0: nothing), and t, q, v */
 };
 
@@ -33,7 +33,8 @@ static void gram(const dvi__action *a, const double *left, const double *right, 
   for (int l = 0; l < a->s; l++)
     for (int k = 0; k < a->s; k++) {
       sum[l * a->s + k] = 0;
-      for (int j = 0; j < a->r; j++) sum[l * a->s + k] += a->weight[j] * left[k * a->lanes + j] * right[l * a->lanes + j];
+      for (int j = 0; j < a->r; j++)
+        sum[l * a->s + k] += a->weight[j] * left[k * a->lanes + j] * right[l * a->lanes + j];
     }
 }
 
@@ -54,11 +55,12 @@ static void pad(int s, const double *columns, double *padded)
     for (int k = 0; k < s; k++) padded[l * lanes + k] = columns[l * s + k];
 }
 
-/* Of a pair's two columns the first and second coefficients alpha, beta stand for alpha - i beta: D then multiplies it by a + ib. */
-static dvi_status make_modes(dvi__decoupled *d, int mixed, const double *real_part, const double *imaginary_part)
+/* Of a pair's two columns the first and second coefficients alpha, beta stand for alpha - i beta: D
+ * then multiplies it by a + ib. */
+static void list_modes(dvi__decoupled *d, int mixed, const double *real_part,
+                       const double *imaginary_part)
 {
-  dvi__action *a = d->action;
-  for (int k = 0; k < a->s; k += d->mode[d->modes - 1].parts) {
+  for (int k = 0; k < d->action->s; k += d->mode[d->modes - 1].parts) {
     mode *m = &d->mode[d->modes];
     const double x = real_part[k], y = imaginary_part[k];
     *m = (mode){.place = k, .parts = y != 0 ? 2 : 1};
@@ -67,17 +69,14 @@ static dvi_status make_modes(dvi__decoupled *d, int mixed, const double *real_pa
       m->T[0] = x, m->T[1] = y, m->U[0] = y * y - x * x, m->U[1] = -2 * x * y;
     else
       m->U[0] = x, m->U[1] = y;
-    const dvi__linear_kind kind = y != 0 ? DVI__LINEAR_COMPLEX : DVI__LINEAR_SPARSE;
-    DVI_TRY(k == 0 ? dvi__linear_create(&a->joint, kind, d->counters, &m->linear)
-                   : dvi__linear_create_like(d->mode[0].linear, kind, d->counters, &m->linear));
   }
-  return DVI_OK;
 }
 
 /* What the tables are made from; s x s each. */
 typedef struct workspace {
-  double matrix[DVI_DEGREE_MAX * DVI_DEGREE_MAX], X[DVI_DEGREE_MAX * DVI_DEGREE_MAX], inverse[DVI_DEGREE_MAX * DVI_DEGREE_MAX],
-      product[DVI_DEGREE_MAX * DVI_DEGREE_MAX], real_part[DVI_DEGREE_MAX], imaginary_part[DVI_DEGREE_MAX];
+  double matrix[DVI_DEGREE_MAX * DVI_DEGREE_MAX], X[DVI_DEGREE_MAX * DVI_DEGREE_MAX],
+      inverse[DVI_DEGREE_MAX * DVI_DEGREE_MAX], product[DVI_DEGREE_MAX * DVI_DEGREE_MAX],
+      real_part[DVI_DEGREE_MAX], imaginary_part[DVI_DEGREE_MAX];
 } workspace;
 
 static dvi_status fill(dvi__decoupled *d, workspace *w)
@@ -90,33 +89,34 @@ static dvi_status fill(dvi__decoupled *d, workspace *w)
   multiply(a->s, w->inverse, a->stiffness_inverse, w->product);
   pad(a->s, w->product, d->in);
   pad(a->s, w->X, d->out);
-  return make_modes(d, mixed, w->real_part, w->imaginary_part);
+  list_modes(d, mixed, w->real_part, w->imaginary_part);
+  return DVI_OK;
 }
 
-static dvi_status allocate(dvi__decoupled *d)
+static dvi_status allocate_tables(dvi__decoupled *d)
 {
   const dvi__action *a = d->action;
-  const size_t n = (size_t)a->n, s = (size_t)a->s, lanes = (size_t)dvi__lanes_for(a->s);
+  const size_t s = (size_t)a->s, lanes = (size_t)dvi__lanes_for(a->s);
   d->in = DVI_NEW(double, s *lanes);
   d->out = DVI_NEW(double, s *lanes);
-  d->values = DVI_NEW(double, 2 * (size_t)dvi__pattern_entries(&a->joint));
-  d->b = DVI_NEW(double, 2 * n);
-  d->coefficient = DVI_NEW(double, n *s);
   d->point = DVI_NEW(double, dvi__decoupled_point_size(d));
-  if (d->in && d->out && d->values && d->b && d->coefficient && d->point) return DVI_OK;
-  return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d decoupled systems in %d dimensions", a->s, a->n);
+  if (d->in && d->out && d->point) return DVI_OK;
+  return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d decoupled systems in %d dimensions",
+                   a->s, a->n);
 }
 
-dvi_status dvi__decoupled_create(dvi__action *action, dvi_counters *counters, dvi__decoupled **decoupled)
+dvi_status dvi__decoupled_create(dvi__action *action, dvi_counters *counters,
+                                 dvi__decoupled **decoupled)
 {
   *decoupled = NULL;
   dvi__decoupled *d = DVI_NEW(dvi__decoupled, 1);
   workspace *w = DVI_NEW(workspace, 1);
-  dvi_status status = d != NULL && w != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "action: no memory");
+  dvi_status status = d != NULL && w != NULL ? DVI_OK
+                                             : dvi__fail(DVI_NO_MEMORY, "action: no memory");
   if (status == DVI_OK) {
     d->action = action;
     d->counters = counters;
-    status = allocate(d);
+    status = allocate_tables(d);
   }
   if (status == DVI_OK) status = fill(d, w);
   dvi__release(w);
@@ -129,7 +129,8 @@ void dvi__decoupled_destroy(dvi__decoupled **decoupled)
 {
   dvi__decoupled *d = *decoupled;
   if (d == NULL) return;
-  for (int m = d->modes - 1; m >= 0; m--) dvi__linear_destroy(&d->mode[m].linear); /* the first one lends its analysis */
+  /* the first one lends its analysis */
+  for (int m = d->modes - 1; m >= 0; m--) dvi__linear_destroy(&d->mode[m].linear);
   dvi__release(d->in);
   dvi__release(d->out);
   dvi__release(d->values);
@@ -138,6 +139,53 @@ void dvi__decoupled_destroy(dvi__decoupled **decoupled)
   dvi__release(d->point);
   dvi__release(d);
   *decoupled = NULL;
+}
+
+/* ---- what a factor needs ---- */
+
+static dvi_status create_linear(dvi__decoupled *d, mode *m)
+{
+  const dvi__linear_kind kind = m->parts == 2 ? DVI__LINEAR_COMPLEX : DVI__LINEAR_SPARSE;
+  if (m->linear != NULL) return DVI_OK;
+  if (m == d->mode) return dvi__linear_create(&d->action->joint, kind, d->counters, &m->linear);
+  return dvi__linear_create_like(d->mode[0].linear, kind, d->counters, &m->linear);
+}
+
+/* What a failure leaves is taken up by the next call. */
+static dvi_status prepare_modes(dvi__decoupled *d)
+{
+  const dvi__action *a = d->action;
+  const size_t n = (size_t)a->n;
+  DVI_TRY(dvi__action_prepare_hessians(d->action));
+  for (int m = 0; m < d->modes; m++) DVI_TRY(create_linear(d, &d->mode[m]));
+  if (d->values == NULL) d->values = DVI_NEW(double, 2 * (size_t)dvi__pattern_entries(&a->joint));
+  if (d->b == NULL) d->b = DVI_NEW(double, 2 * n);
+  if (d->coefficient == NULL) d->coefficient = DVI_NEW(double, n *(size_t)a->s);
+  if (d->values && d->b && d->coefficient) return DVI_OK;
+  return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d decoupled systems in %d dimensions",
+                   a->s, a->n);
+}
+
+dvi_status dvi__decoupled_analyse(dvi__decoupled *d, dvi__linear_cost *cost)
+{
+  DVI_TRY(prepare_modes(d));
+  DVI_TRY(dvi__linear_analyse(d->mode[0].linear));
+  const dvi__linear_cost first = dvi__linear_cost_of(d->mode[0].linear);
+  const int is_complex = d->mode[0].parts == 2;
+  *cost = (dvi__linear_cost){0, 0};
+  for (int m = 0; m < d->modes; m++) {
+    const int parts = d->mode[m].parts;
+    cost->entries += first.entries * parts / (is_complex ? 2 : 1);
+    cost->operations += first.operations * parts * parts / (is_complex ? 4 : 1);
+  }
+  return DVI_OK;
+}
+
+double dvi__decoupled_weight(const dvi__decoupled *d)
+{
+  double weight = 0;
+  for (int m = 0; m < d->modes; m++) weight += d->mode[m].parts * d->mode[m].parts;
+  return weight;
 }
 
 /* ---- factors ---- */
@@ -152,9 +200,11 @@ static void assemble(const dvi__action *a, const mode *m, double *values)
 {
   for (int e = 0, at = 0; e < dvi__pattern_entries(&a->joint); e++) {
     const dvi__block *block = &a->block[e];
-    const double qq = a->h * entry(a->H_qq, block->qq), mixed = entry(a->H_qv, block->vq) - entry(a->H_qv, block->qv);
+    const double qq = a->h * entry(a->H_qq, block->qq),
+                 mixed = entry(a->H_qv, block->vq) - entry(a->H_qv, block->qv);
     for (int part = 0; part < m->parts; part++, at++)
-      values[at] = m->U[part] * qq + m->T[part] * mixed + (part == 0 ? entry(a->H_vv, block->vv) / a->h : 0.0);
+      values[at] = m->U[part] * qq + m->T[part] * mixed +
+                   (part == 0 ? entry(a->H_vv, block->vv) / a->h : 0.0);
   }
 }
 
@@ -176,6 +226,7 @@ static dvi_status factor(dvi__decoupled *d)
 {
   dvi__action *a = d->action;
   const double *q = d->point + 1, *v = q + a->n;
+  DVI_TRY(prepare_modes(d));
   d->counters->jacobians++;
   DVI_TRY(dvi__lagrangian_hessian(a->evaluator, 1, d->point, q, v, a->H_qq, a->H_qv, a->H_vv));
   for (int m = 0; m < d->modes; m++) {
@@ -222,9 +273,11 @@ static void solve_mode(dvi__decoupled *d, const mode *m)
     for (size_t i = 0; i < n; i++) coefficient[i * s] = d->b[i];
     return;
   }
-  for (size_t i = 0; i < n; i++) d->b[2 * i] = coefficient[i * s], d->b[2 * i + 1] = -coefficient[i * s + 1];
+  for (size_t i = 0; i < n; i++)
+    d->b[2 * i] = coefficient[i * s], d->b[2 * i + 1] = -coefficient[i * s + 1];
   dvi__linear_solve(m->linear, d->b);
-  for (size_t i = 0; i < n; i++) coefficient[i * s] = d->b[2 * i], coefficient[i * s + 1] = -d->b[2 * i + 1];
+  for (size_t i = 0; i < n; i++)
+    coefficient[i * s] = d->b[2 * i], coefficient[i * s + 1] = -d->b[2 * i + 1];
 }
 
 void dvi__decoupled_solve(dvi__decoupled *d, double *R)

@@ -10,7 +10,8 @@
 
 /* ---- memory ---- */
 
-/* Of systems that are not autonomous: two gradients at moved times, L_tq and L_tv, and over the nodes times and rates. */
+/* Of systems that are not autonomous: two gradients at moved times, L_tq and L_tv, and over the
+ * nodes times and rates. */
 static int allocate_rates(dvi__action *a)
 {
   const size_t batch = (size_t)a->n * (size_t)a->r;
@@ -21,7 +22,8 @@ static int allocate_rates(dvi__action *a)
   a->moved_t = DVI_NEW(double, a->r);
   a->rate_t = DVI_NEW(double, a->r);
   a->moved_rate = DVI_NEW(double, a->r);
-  return a->moved_q && a->moved_v && a->rate_q && a->rate_v && a->moved_t && a->rate_t && a->moved_rate;
+  return a->moved_q && a->moved_v && a->rate_q && a->rate_v && a->moved_t && a->rate_t &&
+         a->moved_rate;
 }
 
 dvi_status dvi__action_prepare_energy(dvi__action *a)
@@ -32,7 +34,8 @@ dvi_status dvi__action_prepare_energy(dvi__action *a)
   a->rate = DVI_NEW(double, a->r);
   a->by_q = DVI_NEW(double, batch);
   a->by_v = DVI_NEW(double, batch);
-  if (a->value && a->rate && a->by_q && a->by_v && (a->system->autonomous || allocate_rates(a))) return DVI_OK;
+  if (a->value && a->rate && a->by_q && a->by_v && (a->system->autonomous || allocate_rates(a)))
+    return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "action: no memory for the energies of %d coordinates", a->n);
 }
 
@@ -66,15 +69,18 @@ dvi_status dvi__action_energies(dvi__action *a, dvi__energies *E)
 /* ---- their gradients ---- */
 
 /* y += factor * H x for a batch, H in the order of the pattern. */
-static void add_product(const dvi__pattern *pattern, size_t points, const double *H, const double *x, double factor, double *y)
+static void add_product(const dvi__pattern *pattern, size_t points, const double *H,
+                        const double *x, double factor, double *y)
 {
   for (size_t column = 0; column < (size_t)pattern->columns; column++)
     for (int e = pattern->start[column]; e < pattern->start[column + 1]; e++)
       for (size_t j = 0; j < points; j++)
-        y[(size_t)pattern->row[e] * points + j] += factor * H[(size_t)e * points + j] * x[column * points + j];
+        y[(size_t)pattern->row[e] * points + j] += factor * H[(size_t)e * points + j] *
+                                                   x[column * points + j];
 }
 
-/* What L_v V - L at the nodes changes by: by_q . dQ + by_v . dQ' with the derivative Q' = h V in tau;  by_q = L_qv V - L_q,  by_v = L_vv V / h. */
+/* What L_v V - L at the nodes changes by: by_q . dQ + by_v . dQ' with the derivative Q' = h V in
+ * tau; by_q = L_qv V - L_q, by_v = L_vv V / h. */
 static dvi_status weigh_directions(dvi__action *a)
 {
   const size_t r = (size_t)a->r, batch = (size_t)a->n * r;
@@ -86,13 +92,15 @@ static dvi_status weigh_directions(dvi__action *a)
   return DVI_OK;
 }
 
-/* Differences over steps of 1/64 and 1/32 of h are of order 4: they err by 1e-9 of the derivative where h is a radian of what drives the system. */
+/* Differences over steps of 1/64 and 1/32 of h are of order 4: they err by 1e-9 of the derivative
+ * where h is a radian of what drives the system. */
 static double rate_step(const dvi__action *a, int j)
 {
   return fmax(fabs(a->h) / 64, 64 * DBL_EPSILON * fabs(a->t[j]));
 }
 
-/* Add what one moved time, m steps away, has to say: f' = sum over m of w_m ( f(t + m step) - f(t - m step) ) / (their distance). */
+/* Add what one moved time, m steps away, has to say: f' = sum over m of w_m ( f(t + m step) - f(t -
+ * m step) ) / (their distance). */
 static dvi_status add_moved_rates(dvi__action *a, int m)
 {
   const double weight = m == 1 || m == -1 ? 4.0 / 3 : -1.0 / 3;
@@ -103,7 +111,8 @@ static dvi_status add_moved_rates(dvi__action *a, int m)
     a->moved_t[j] = here;
     factor[j] = weight / (here - there);
   }
-  DVI_TRY(dvi__lagrangian_gradient(a->evaluator, a->r, a->moved_t, a->Q, a->V, a->moved_q, a->moved_v));
+  DVI_TRY(
+      dvi__lagrangian_gradient(a->evaluator, a->r, a->moved_t, a->Q, a->V, a->moved_q, a->moved_v));
   DVI_TRY(dvi__lagrangian_rate(a->evaluator, a->r, a->moved_t, a->Q, a->V, a->moved_rate));
   for (size_t i = 0; i < (size_t)a->n; i++)
     for (size_t j = 0; j < r; j++) {
@@ -127,7 +136,8 @@ static dvi_status difference_rates(dvi__action *a)
   return DVI_OK;
 }
 
-/* The time of L_t in an energy, from the node: E- looks back from its own end, E+ from the other one. */
+/* The time of L_t in an energy, from the node: E- looks back from its own end, E+ from the other
+ * one. */
 static double lever(const dvi__action *a, int at_start, int j)
 {
   return at_start - a->node[j];
@@ -154,7 +164,8 @@ static void weigh_line(const dvi__action *a, int at_start, size_t i)
 static double along_velocity(const dvi__action *a, int j, const double *x)
 {
   double sum = 0;
-  for (size_t i = 0, r = (size_t)a->r; i < (size_t)a->n; i++) sum += x[i * r + (size_t)j] * a->V[i * r + (size_t)j];
+  for (size_t i = 0, r = (size_t)a->r; i < (size_t)a->n; i++)
+    sum += x[i * r + (size_t)j] * a->V[i * r + (size_t)j];
   return sum;
 }
 
@@ -167,7 +178,8 @@ static double derivative_in_h(const dvi__action *a, int at_start)
     double term = -along_velocity(a, j, a->by_v);
     if (!a->system->autonomous) {
       const double c = a->node[j], l = lever(a, at_start, j);
-      term += (c - l) * (along_velocity(a, j, a->rate_v) - a->rate[j]) + c * l * a->h * a->rate_t[j];
+      term += (c - l) * (along_velocity(a, j, a->rate_v) - a->rate[j]) +
+              c * l * a->h * a->rate_t[j];
     }
     sum += a->weight[j] * term;
   }
@@ -189,12 +201,14 @@ static void collect(dvi__action *a, int at_start, dvi__energy_gradient *gradient
     gradient->q0[i] = 0;
     for (int j = 0; j < a->r; j++) gradient->q0[i] += in_q[j];
     for (int k = 0; k < a->s; k++)
-      gradient->Y[i * (size_t)a->s + (size_t)k] = dot(a->r, a->psi + k * a->lanes, in_q) + dot(a->r, a->dpsi + k * a->lanes, in_v);
+      gradient->Y[i * (size_t)a->s + (size_t)k] = dot(a->r, a->psi + k * a->lanes, in_q) +
+                                                  dot(a->r, a->dpsi + k * a->lanes, in_v);
   }
   gradient->h = derivative_in_h(a, at_start);
 }
 
-dvi_status dvi__action_energy_gradients(dvi__action *a, dvi__energy_gradient *start, dvi__energy_gradient *end)
+dvi_status dvi__action_energy_gradients(dvi__action *a, dvi__energy_gradient *start,
+                                        dvi__energy_gradient *end)
 {
   DVI_TRY(weigh_directions(a));
   if (!a->system->autonomous) DVI_TRY(difference_rates(a));

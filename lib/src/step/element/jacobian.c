@@ -1,4 +1,5 @@
-/* The Jacobian of the stationarity rows: one s x s block for each entry of the Hessian's joint pattern. */
+/* The Jacobian of the stationarity rows: one s x s block for each entry of the Hessian's joint
+ * pattern. */
 #include <string.h>
 
 #include "step/element/action_struct.h"
@@ -11,8 +12,12 @@ const dvi__pattern *dvi__action_pattern(const dvi__action *action)
   return &action->pattern;
 }
 
-/* What was prepared before a row term came. */
-static void clear_jacobian(dvi__action *a)
+const dvi__pattern *dvi__action_coupling(const dvi__action *a)
+{
+  return &a->joint;
+}
+
+void dvi__action_clear_jacobian(dvi__action *a)
 {
   dvi__pattern_clear(&a->joint);
   dvi__pattern_clear(&a->pattern);
@@ -24,14 +29,14 @@ static void clear_jacobian(dvi__action *a)
   a->H_qq = a->H_qv = a->H_vv = NULL;
 }
 
-dvi_status dvi__action_prepare_hessians(dvi__action *a)
+static dvi_status allocate_hessians(dvi__action *a)
 {
   const dvi_system *system = a->system;
   const size_t r = (size_t)a->r;
   dvi__pattern more = {0};
-  clear_jacobian(a);
   dvi_status status = dvi__action_join_terms(a, &more);
-  if (status == DVI_OK) status = dvi__joint_create(system, more.start != NULL ? &more : NULL, &a->joint, &a->block);
+  if (status == DVI_OK)
+    status = dvi__joint_create(system, more.start != NULL ? &more : NULL, &a->joint, &a->block);
   dvi__pattern_clear(&more);
   DVI_TRY(status);
   a->H_qq = DVI_NEW(double, (size_t)dvi__pattern_entries(&system->qq) * r);
@@ -41,22 +46,33 @@ dvi_status dvi__action_prepare_hessians(dvi__action *a)
   return dvi__fail(DVI_NO_MEMORY, "action: no memory for Hessians at %d nodes", a->r);
 }
 
+dvi_status dvi__action_prepare_hessians(dvi__action *a)
+{
+  if (a->block != NULL) return DVI_OK;
+  DVI_TRY(dvi__evaluator_prepare_hessians(a->evaluator));
+  const dvi_status status = allocate_hessians(a);
+  if (status != DVI_OK) dvi__action_clear_jacobian(a);
+  return status;
+}
+
 dvi_status dvi__action_prepare_jacobian(dvi__action *a)
 {
+  if (a->pattern.start != NULL) return DVI_OK;
   DVI_TRY(dvi__action_prepare_hessians(a));
   return dvi__action_wide_pattern(a, &a->pattern);
 }
 
 /* x[j] += factor * H[j] * table[j], where the Hessian has this entry. */
-static void accumulate(int r, const double *H, int entry, double factor, const double *table, double *x)
+static void accumulate(int r, const double *H, int entry, double factor, const double *table,
+                       double *x)
 {
   if (entry < 0) return;
   H += (size_t)entry * (size_t)r;
   for (int j = 0; j < r; j++) x[j] += factor * H[j] * table[j];
 }
 
-void dvi__action_weigh_hessian(const dvi__action *a, const dvi__block *block, const double *f, const double *df, double *in_q,
-                               double *in_v)
+void dvi__action_weigh_hessian(const dvi__action *a, const dvi__block *block, const double *f,
+                               const double *df, double *in_q, double *in_v)
 {
   const int r = a->r;
   for (int j = 0; j < r; j++) in_q[j] = in_v[j] = 0;
@@ -67,7 +83,8 @@ void dvi__action_weigh_hessian(const dvi__action *a, const dvi__block *block, co
   for (int j = 0; j < r; j++) in_q[j] *= a->weight[j], in_v[j] *= a->weight[j];
 }
 
-void dvi__action_block_column(const dvi__action *a, const dvi__block *block, int l, int rows, double *column)
+void dvi__action_block_column(const dvi__action *a, const dvi__block *block, int l, int rows,
+                              double *column)
 {
   const int r = a->r;
   double *in_q = a->line, *in_v = a->line + r;
@@ -91,12 +108,14 @@ dvi_status dvi__action_jacobian(dvi__action *a, const double *Y, double *values)
 {
   const size_t s = (size_t)a->s;
   DVI_TRY(dvi__action_hessians(a, Y));
-  if (a->terms.unknowns > 0) memset(values, 0, (size_t)dvi__pattern_entries(&a->pattern) * sizeof *values);
+  if (a->terms.unknowns > 0)
+    memset(values, 0, (size_t)dvi__pattern_entries(&a->pattern) * sizeof *values);
   for (int j = 0; j < a->n; j++) {
     const int first = a->joint.start[j], length = a->joint.start[j + 1] - first;
     for (int l = 0; l < a->s; l++) {
       double *column = values + a->pattern.start[j * a->s + l];
-      for (int e = first; e < first + length; e++, column += s) dvi__action_block_column(a, &a->block[e], l, a->s, column);
+      for (int e = first; e < first + length; e++, column += s)
+        dvi__action_block_column(a, &a->block[e], l, a->s, column);
     }
   }
   return dvi__action_add_term_derivatives(a, Y, values);
@@ -110,7 +129,39 @@ void dvi__action_move_ends(dvi__action *a, const double *dY, double *dp)
   dvi__lanes_product(a->n, a->s, a->lanes, a->r, a->dpsi, dY, a->V);
   for (int k = 0; k < a->n; k++)
     for (int e = a->joint.start[k]; e < a->joint.start[k + 1]; e++) {
-      dvi__action_weigh_hessian(a, &a->block[e], a->Q + (size_t)k * r, a->V + (size_t)k * r, in_q, in_v);
+      dvi__action_weigh_hessian(a, &a->block[e], a->Q + (size_t)k * r, a->V + (size_t)k * r, in_q,
+                                in_v);
       for (size_t j = 0; j < r; j++) dp[a->joint.row[e]] += in_q[j];
     }
+}
+
+dvi_status dvi__action_prepare_product(dvi__action *a)
+{
+  DVI_TRY(dvi__action_prepare_hessians(a));
+  if (a->moved == NULL) a->moved = DVI_NEW(double, 4 * (size_t)a->n * (size_t)a->r);
+  return a->moved != NULL
+             ? DVI_OK
+             : dvi__fail(DVI_NO_MEMORY, "action: no memory for %d nodes in %d dimensions", a->r,
+                         a->n);
+}
+
+/* The rows are linear in the changes of L_q and L_v at the nodes, and these in those of the
+ * path. */
+void dvi__action_times_jacobian(dvi__action *a, const double *x, double *y)
+{
+  const size_t r = (size_t)a->r, batch = (size_t)a->n * r;
+  double *f = a->moved, *df = f + batch, *G_q = df + batch, *G_v = G_q + batch;
+  double *in_q = a->line, *in_v = a->line + r;
+  dvi__lanes_product(a->n, a->s, a->lanes, a->r, a->psi, x, f);
+  dvi__lanes_product(a->n, a->s, a->lanes, a->r, a->dpsi, x, df);
+  memset(G_q, 0, 2 * batch * sizeof(double));
+  for (size_t k = 0; k < (size_t)a->n; k++)
+    for (int e = a->joint.start[k]; e < a->joint.start[k + 1]; e++) {
+      const size_t to = (size_t)a->joint.row[e] * r;
+      dvi__action_weigh_hessian(a, &a->block[e], f + k * r, df + k * r, in_q, in_v);
+      for (size_t j = 0; j < r; j++) G_q[to + j] += in_q[j], G_v[to + j] += in_v[j];
+    }
+  dvi__lanes_product(a->n, a->r, a->path_lanes, a->s, a->bar_row, G_q, y);
+  dvi__lanes_product(a->n, a->r, a->path_lanes, a->s, a->slope_row, G_v, a->rows);
+  for (size_t i = 0; i < (size_t)a->n * (size_t)a->s; i++) y[i] += a->rows[i];
 }

@@ -25,22 +25,26 @@ static int allocate(dvi__action_members *m, size_t capacity)
     *rows[i] = DVI_NEW(double, n *capacity);
     complete = complete && *rows[i] != NULL;
   }
-  return complete && m->member && m->going && m->change && m->largest && m->t && m->Z && m->Q && m->force;
+  return complete && m->member && m->going && m->change && m->largest && m->t && m->Z && m->Q &&
+         m->force;
 }
 
-dvi_status dvi__action_members_create(dvi__action *action, int capacity, dvi__action_members *members)
+dvi_status dvi__action_members_create(dvi__action *action, int capacity,
+                                      dvi__action_members *members)
 {
   *members = (dvi__action_members){.action = action};
   /* Counted by who knows what a member took. */
-  DVI_TRY(dvi__evaluator_create(action->system, capacity * action->r, DVI__GRADIENTS, NULL, &members->evaluator));
+  DVI_TRY(dvi__evaluator_create(action->system, capacity * action->r, DVI__GRADIENTS, NULL,
+                                &members->evaluator));
   if (allocate(members, (size_t)capacity)) return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d members", capacity);
 }
 
 void dvi__action_members_clear(dvi__action_members *m)
 {
-  double *const owned[] = {m->change,     m->largest,       m->t,         m->Z,       m->Q,  m->force,  m->packed_start,
-                           m->packed_low, m->packed_origin, m->all_start, m->all_low, m->dq, m->dq_low, m->dp};
+  double *const owned[] = {
+      m->change,     m->largest,       m->t,         m->Z,       m->Q,  m->force,  m->packed_start,
+      m->packed_low, m->packed_origin, m->all_start, m->all_low, m->dq, m->dq_low, m->dp};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) dvi__release(owned[i]);
   dvi__release(m->member);
   dvi__release(m->going);
@@ -80,13 +84,14 @@ static void put_nodes(dvi__action_members *m, double ratio)
   dvi__action *a = m->action;
   dvi__action_set_step(a);
   dvi__members_split(a->n, m->width, a->sweep_factor, m->p, m->all_start, m->all_low);
-  dvi__members_product(a->n, a->r, a->lanes, a->r, dvi__action_sweep_shift(a, ratio), m->width, m->forces, m->Z);
+  dvi__members_product(a->n, a->r, a->lanes, a->r, dvi__action_sweep_shift(a, ratio), m->width,
+                       m->forces, m->Z);
   const dvi__members_sweep sweep = sweep_of(m);
   dvi__members_begin(&sweep);
 }
 
-void dvi__action_members_place(dvi__action_members *m, int count, double h, double last_h, const double *t, const double *q,
-                               const double *p, double *forces)
+void dvi__action_members_place(dvi__action_members *m, int count, double h, double last_h,
+                               const double *t, const double *q, const double *p, double *forces)
 {
   dvi__action *a = m->action;
   m->count = m->width = count;
@@ -102,7 +107,8 @@ void dvi__action_members_place(dvi__action_members *m, int count, double h, doub
   put_nodes(m, h / last_h);
 }
 
-void dvi__action_members_pack(const dvi__action_members *m, int rows, int before, const double *x, double *packed)
+void dvi__action_members_pack(const dvi__action_members *m, int rows, int before, const double *x,
+                              double *packed)
 {
   for (size_t i = 0; i < (size_t)rows; i++) {
     const double *from = x + i * (size_t)before;
@@ -156,7 +162,8 @@ void dvi__action_members_ends(dvi__action_members *m, double *Y)
   dvi__members_product(a->n, a->r, a->path_lanes, a->s, a->sweep_path, m->count, m->forces, Y);
   for (size_t i = 0; i < n * s; i++) {
     const double *start = m->all_start + i / s * count;
-    for (size_t k = 0; k < count; k++) Y[i * count + k] = start[k] * a->straight[i % s] + a->sweep_factor[i / s] * Y[i * count + k];
+    for (size_t k = 0; k < count; k++)
+      Y[i * count + k] = start[k] * a->straight[i % s] + a->sweep_factor[i / s] * Y[i * count + k];
   }
   dvi__members_ends_of(&(dvi__members_ends){.n = a->n,
                                             .stages = a->r,

@@ -34,13 +34,15 @@ dvi_status dvi__action_residual(dvi__action *a, const double *Y, double *R)
   dvi__action_stages(a, Y);
   dvi__action_place_terms(a, Y);
   DVI_TRY(dvi__lagrangian_gradient(a->evaluator, a->r, a->t, a->Q, a->V, a->L_q, a->L_v));
-  /* The forces enter every row, and p1, with the same rounded product b_j L_q: that keeps the rows consistent to the last bit. */
+  /* The forces enter every row, and p1, with the same rounded product b_j L_q: that keeps the rows
+   * consistent to the last bit. */
   dvi__lanes_weigh(a->n, a->r, a->weight, a->L_q);
   dvi__lanes_weigh(a->n, a->r, a->weight, a->L_v);
   dvi__lanes_product(a->n, a->r, a->path_lanes, a->s, a->bar_row, a->L_q, R);
   dvi__lanes_product(a->n, a->r, a->path_lanes, a->s, a->slope_row, a->L_v, a->rows);
   for (size_t i = 0, s = (size_t)a->s; i < (size_t)a->n; i++)
-    for (size_t k = 0; k < s; k++) R[i * s + k] = a->h * R[i * s + k] + (a->rows[i * s + k] - a->end[k] * a->p0[i]);
+    for (size_t k = 0; k < s; k++)
+      R[i * s + k] = a->h * R[i * s + k] + (a->rows[i * s + k] - a->end[k] * a->p0[i]);
   return dvi__action_add_term_rows(a, Y, R);
 }
 
@@ -51,7 +53,8 @@ void dvi__action_magnitudes(const dvi__action *a, double *magnitude)
     for (int k = 0; k < a->s; k++) {
       const double *bar = a->bar + k * a->lanes, *slope = a->dpsi + k * a->lanes;
       double total = fabs(a->end[k] * a->p0[i]);
-      for (int j = 0; j < a->r; j++) total += fabs(a->h * bar[j] * a->L_q[i * a->r + j]) + fabs(slope[j] * a->L_v[i * a->r + j]);
+      for (int j = 0; j < a->r; j++)
+        total += fabs(a->h * bar[j] * a->L_q[i * a->r + j]) + fabs(slope[j] * a->L_v[i * a->r + j]);
       magnitude[i * a->s + k] = total;
     }
   dvi__action_add_term_magnitudes(a, magnitude);
@@ -64,7 +67,8 @@ static double sum(int count, const double *x)
   return total;
 }
 
-static void ends_by_rows(const dvi__action *a, const double *Y, double *dq, double *dq_low, double *dp)
+static void ends_by_rows(const dvi__action *a, const double *Y, double *dq, double *dq_low,
+                         double *dp)
 {
   for (size_t i = 0; i < (size_t)a->n; i++) {
     dq[i] = dot(a->s, a->end, Y + i * (size_t)a->s);
@@ -113,7 +117,8 @@ static void multiply_by_inverse(dvi__action *a, double *R)
   memset(a->rows, 0, n * s * sizeof(double));
   for (size_t j = 0; j < n; j++)
     for (size_t i = 0; i < n; i++)
-      for (size_t k = 0; k < s; k++) a->rows[i * s + k] += a->chord_inverse[j * n + i] * R[j * s + k];
+      for (size_t k = 0; k < s; k++)
+        a->rows[i * s + k] += a->chord_inverse[j * n + i] * R[j * s + k];
   memcpy(R, a->rows, n * s * sizeof(double));
 }
 
@@ -153,7 +158,9 @@ int dvi__action_row_scale(dvi__action *a, double *scale)
 void dvi__action_scale_by(const dvi__action *a, const double *L_vv, double *scale)
 {
   const dvi__pattern *vv = &a->system->vv;
-  const double *values = L_vv != NULL ? L_vv : a->system->mass_diagonal != NULL ? a->system->mass_diagonal : a->system->mass_values;
+  const double *values = L_vv != NULL                       ? L_vv
+                         : a->system->mass_diagonal != NULL ? a->system->mass_diagonal
+                                                            : a->system->mass_values;
   for (int i = 0; i < a->n; i++) {
     double size = 0;
     for (int e = vv->start[i]; e < vv->start[i + 1]; e++) size = fmax(size, fabs(values[e]));
@@ -172,7 +179,8 @@ dvi_status dvi__action_scale(dvi__action *a, double *scale)
 
 /* ---- paths ---- */
 
-void dvi__action_path(const dvi__action *a, const double *Y, double h, double tau, double *offset, double *v)
+void dvi__action_path(const dvi__action *a, const double *Y, double h, double tau, double *offset,
+                      double *v)
 {
   double *psi = a->line, *dpsi = a->line + a->s;
   dvi__trial_in(&a->trial, tau, psi, NULL, dpsi);

@@ -1,10 +1,10 @@
-/* Terms of an element's rows beside its action: charts that move with their start, forces, multipliers,
- * controls, noise.
+/* Terms of an element's rows beside its action: charts that move with their start, forces,
+ * multipliers, controls, noise.
  *
- * The rows of the action are R_k = sum_j b_j ( h (psi_k - psi_k(1)) L_q + psi_k' L_v )_j - psi_k(1) p0, and
- * p1 = p0 + h sum_j b_j L_q_j (action.h). A term may add to the rows and to p1 - p0, add to their
- * derivatives and to the magnitudes by which roundings are measured, and bring unknowns and rows of its
- * own, which stand behind the path's: Y [n*s], then those of each term. */
+ * The rows of the action are R_k = sum_j b_j ( h (psi_k - psi_k(1)) L_q + psi_k' L_v )_j - psi_k(1)
+ * p0, and p1 = p0 + h sum_j b_j L_q_j (action.h). A term may add to the rows and to p1 - p0, add to
+ * their derivatives and to the magnitudes by which roundings are measured, and bring unknowns and
+ * rows of its own, which stand behind the path's: Y [n*s], then those of each term. */
 #ifndef DVI_STEP_ELEMENT_ROW_TERM_H
 #define DVI_STEP_ELEMENT_ROW_TERM_H
 #include "num/pattern.h"
@@ -29,7 +29,8 @@ typedef struct dvi__row_term {
   const char *name; /* in sentences */
   void *of;         /* the first argument of the functions, which may be NULL but for `rows` */
 
-  /* Coordinates that meet in its derivatives, [n x n], beside those that meet in L's. NULL: none. */
+  /* Coordinates that meet in its derivatives, [n x n], beside those that meet in L's. NULL:
+   * none. */
   const dvi__pattern *pattern;
 
   int unknowns;               /* of its own, and rows of its own */
@@ -39,28 +40,31 @@ typedef struct dvi__row_term {
   void (*place)(void *of, const dvi__row_path *path);
 
   /* Add to R [n*s] and to dp [n], the change of the momentum; write own_R [unknowns]. */
-  dvi_status (*rows)(void *of, const dvi__row_path *path, const double *own, double *R, double *dp, double *own_R);
+  dvi_status (*rows)(void *of, const dvi__row_path *path, const double *own, double *R, double *dp,
+                     double *own_R);
 
   /* Add |what was summed| to [n*s] and to [unknowns], after `rows`. */
-  void (*magnitudes)(const void *of, const dvi__row_path *path, double *magnitude, double *own_magnitude);
+  void (*magnitudes)(const void *of, const dvi__row_path *path, double *magnitude,
+                     double *own_magnitude);
 
   /* Add to the derivatives, after `place` and L's Hessians. */
-  dvi_status (*derivatives)(void *of, const dvi__row_path *path, const double *own, const dvi__row_jacobian *J);
+  dvi_status (*derivatives)(void *of, const dvi__row_path *path, const double *own,
+                            const dvi__row_jacobian *J);
 
   /* Typical sizes [unknowns] of its own rows per unit of an unknown. */
   void (*scale)(const void *of, double h, double *scale);
 } dvi__row_term;
 
-/* dR/dY, at a coordinate's function: the s rows of coordinate `row` that meet Y_l of coordinate `column`;
- * NULL if the pattern has no such entry. */
+/* dR/dY, at a coordinate's function: the s rows of coordinate `row` that meet Y_l of coordinate
+ * `column`; NULL if the pattern has no such entry. */
 double *dvi__row_block(const dvi__row_jacobian *J, int row, int column, int l);
 
 /* The same by the number of the entry in the joint pattern (dvi__row_joint), for loops over all. */
 const dvi__pattern *dvi__row_joint(const dvi__row_jacobian *J);
 double *dvi__row_entry(const dvi__row_jacobian *J, int entry, int column, int l);
 
-/* The term's own rows [unknowns] that meet Y_l of a coordinate; the s rows of a coordinate that meet one of
- * its unknowns; its own rows [unknowns] that meet that. */
+/* The term's own rows [unknowns] that meet Y_l of a coordinate; the s rows of a coordinate that
+ * meet one of its unknowns; its own rows [unknowns] that meet that. */
 double *dvi__row_own_rows(const dvi__row_jacobian *J, int column, int l);
 double *dvi__row_own_column(const dvi__row_jacobian *J, int unknown, int row);
 double *dvi__row_own_block(const dvi__row_jacobian *J, int unknown);
@@ -71,7 +75,8 @@ void dvi__row_add_forces(const dvi__row_path *path, const double *F, double *R, 
 void dvi__row_add_force_magnitudes(const dvi__row_path *path, const double *F, double *magnitude);
 
 /* Their derivatives F_q and F_v, [entries*r] in the order of a pattern, entry-major. */
-void dvi__row_add_force_derivatives(const dvi__row_path *path, const dvi__pattern *pattern, const double *F_q, const double *F_v,
+void dvi__row_add_force_derivatives(const dvi__row_path *path, const dvi__pattern *pattern,
+                                    const double *F_q, const double *F_v,
                                     const dvi__row_jacobian *J);
 
 #endif

@@ -21,7 +21,8 @@ static dvi_status allocate_terms(dvi__action *a)
   const size_t n = (size_t)a->n;
   if (terms->numbers != NULL) return DVI_OK;
   terms->numbers = DVI_NEW(double, 3 * n);
-  if (terms->numbers == NULL) return dvi__fail(DVI_NO_MEMORY, "action: no memory for terms of the rows");
+  if (terms->numbers == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "action: no memory for terms of the rows");
   terms->q1 = terms->numbers;
   terms->in_p = terms->q1 + n;
   terms->dp = terms->in_p + n;
@@ -46,14 +47,17 @@ dvi_status dvi__action_add_term(dvi__action *a, const dvi__row_term *term)
 {
   dvi__row_terms *terms = &a->terms;
   if (terms->count == DVI__ROW_TERMS_MOST)
-    return dvi__fail(DVI_BAD_SIZE, "action: %s is one term of the rows too many; %d are possible", term->name, DVI__ROW_TERMS_MOST);
+    return dvi__fail(DVI_BAD_SIZE, "action: %s is one term of the rows too many; %d are possible",
+                     term->name, DVI__ROW_TERMS_MOST);
   DVI_TRY(allocate_terms(a));
   terms->term[terms->count] = *term;
   terms->first[terms->count] = a->n * a->s + terms->unknowns;
   terms->count++;
   terms->unknowns += term->unknowns;
   if (term->pattern == NULL && term->unknowns == 0) return DVI_OK;
-  return a->block != NULL ? dvi__action_prepare_jacobian(a) : DVI_OK;
+  if (a->block == NULL) return DVI_OK;
+  dvi__action_clear_jacobian(a);
+  return dvi__action_prepare_jacobian(a);
 }
 
 int dvi__action_has_terms(const dvi__action *a)
@@ -89,14 +93,17 @@ static int meet(const dvi__action *a, int i, int j)
 static dvi_status widen_joint(const dvi__action *a, dvi__pattern *wide)
 {
   const int size = a->n + a->terms.count;
-  const size_t most = (size_t)dvi__pattern_entries(&a->joint) + (size_t)a->terms.count * (2 * (size_t)a->n + 1);
+  const size_t most = (size_t)dvi__pattern_entries(&a->joint) +
+                      (size_t)a->terms.count * (2 * (size_t)a->n + 1);
   *wide = (dvi__pattern){size, size, DVI_NEW(int, (size_t)size + 1), DVI_NEW(int, most)};
-  if (wide->start == NULL || wide->row == NULL) return dvi__fail(DVI_NO_MEMORY, "action: no memory for the Jacobian");
+  if (wide->start == NULL || wide->row == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "action: no memory for the Jacobian");
   int entries = 0;
   for (int j = 0; j < size; j++) {
     wide->start[j] = entries;
     for (int i = 0; i < size; i++)
-      if ((i < a->n || a->terms.term[i - a->n].unknowns > 0) && (j < a->n || a->terms.term[j - a->n].unknowns > 0) && meet(a, i, j))
+      if ((i < a->n || a->terms.term[i - a->n].unknowns > 0) &&
+          (j < a->n || a->terms.term[j - a->n].unknowns > 0) && meet(a, i, j))
         wide->row[entries++] = i;
   }
   wide->start[size] = entries;
@@ -109,9 +116,12 @@ dvi_status dvi__action_wide_pattern(const dvi__action *a, dvi__pattern *pattern)
   const int n = a->n;
   if (a->terms.unknowns == 0) return dvi__pattern_blocks(&a->joint, a->s, pattern);
   int *first = DVI_NEW(int, (size_t)n + (size_t)a->terms.count + 1);
-  dvi_status status = first != NULL ? widen_joint(a, &wide) : dvi__fail(DVI_NO_MEMORY, "action: no memory for the Jacobian");
+  dvi_status status = first != NULL
+                          ? widen_joint(a, &wide)
+                          : dvi__fail(DVI_NO_MEMORY, "action: no memory for the Jacobian");
   for (int j = 0; status == DVI_OK && j <= n; j++) first[j] = j * a->s;
-  for (int k = 0; status == DVI_OK && k < a->terms.count; k++) first[n + k + 1] = first[n + k] + a->terms.term[k].unknowns;
+  for (int k = 0; status == DVI_OK && k < a->terms.count; k++)
+    first[n + k + 1] = first[n + k] + a->terms.term[k].unknowns;
   if (status == DVI_OK) status = dvi__pattern_uneven_blocks(&wide, first, pattern);
   dvi__pattern_clear(&wide);
   dvi__release(first);
@@ -147,7 +157,8 @@ dvi_status dvi__action_add_term_rows(dvi__action *a, const double *Y, double *R)
   }
   for (int k = 0; k < terms->count; k++) {
     const dvi__row_term *term = &terms->term[k];
-    DVI_TRY(term->rows(term->of, &terms->path, Y + terms->first[k], R, terms->dp, R + terms->first[k]));
+    DVI_TRY(
+        term->rows(term->of, &terms->path, Y + terms->first[k], R, terms->dp, R + terms->first[k]));
   }
   return DVI_OK;
 }
@@ -157,7 +168,8 @@ void dvi__action_add_term_magnitudes(const dvi__action *a, double *magnitude)
   const dvi__row_terms *terms = &a->terms;
   for (int k = 0; k < terms->count; k++) {
     const dvi__row_term *term = &terms->term[k];
-    if (term->magnitudes != NULL) term->magnitudes(term->of, &terms->path, magnitude, magnitude + terms->first[k]);
+    if (term->magnitudes != NULL)
+      term->magnitudes(term->of, &terms->path, magnitude, magnitude + terms->first[k]);
   }
 }
 
@@ -167,7 +179,8 @@ dvi_status dvi__action_add_term_derivatives(dvi__action *a, const double *Y, dou
   for (int k = 0; k < terms->count; k++) {
     const dvi__row_term *term = &terms->term[k];
     const dvi__row_jacobian J = {a, term, terms->first[k], values};
-    if (term->derivatives != NULL) DVI_TRY(term->derivatives(term->of, &terms->path, Y + terms->first[k], &J));
+    if (term->derivatives != NULL)
+      DVI_TRY(term->derivatives(term->of, &terms->path, Y + terms->first[k], &J));
   }
   return DVI_OK;
 }
@@ -238,10 +251,12 @@ void dvi__row_add_force_magnitudes(const dvi__row_path *p, const double *F, doub
   for (int i = 0; i < p->n; i++)
     for (int j = 0; j < p->r; j++)
       for (int k = 0; k < p->s; k++)
-        magnitude[i * p->s + k] += fabs(p->bar[k * p->lanes + j] * p->h * p->weight[j] * F[i * p->r + j]);
+        magnitude[i * p->s + k] += fabs(p->bar[k * p->lanes + j] * p->h * p->weight[j] *
+                                        F[i * p->r + j]);
 }
 
-void dvi__row_add_force_derivatives(const dvi__row_path *p, const dvi__pattern *pattern, const double *F_q, const double *F_v,
+void dvi__row_add_force_derivatives(const dvi__row_path *p, const dvi__pattern *pattern,
+                                    const double *F_q, const double *F_v,
                                     const dvi__row_jacobian *J)
 {
   for (int column = 0; column < p->n; column++)
@@ -250,7 +265,8 @@ void dvi__row_add_force_derivatives(const dvi__row_path *p, const dvi__pattern *
         double *rows = dvi__row_block(J, pattern->row[e], column, l);
         const double *psi = p->psi + l * p->lanes, *dpsi = p->dpsi + l * p->lanes;
         for (int j = 0; j < p->r; j++) {
-          const double by = p->weight[j] * (p->h * F_q[e * p->r + j] * psi[j] + F_v[e * p->r + j] * dpsi[j]);
+          const double by = p->weight[j] *
+                            (p->h * F_q[e * p->r + j] * psi[j] + F_v[e * p->r + j] * dpsi[j]);
           for (int k = 0; k < p->s; k++) rows[k] += p->bar[k * p->lanes + j] * by;
         }
       }

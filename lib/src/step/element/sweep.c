@@ -12,7 +12,8 @@
 
 /* ---- tables ---- */
 
-/* Any basis gives the same P. This one is orthogonal in the integral, and nearly so in the sums: psi_k' = P_k(1 - 2 tau), k = 0..s-1. */
+/* Any basis gives the same P. This one is orthogonal in the integral, and nearly so in the sums:
+ * psi_k' = P_k(1 - 2 tau), k = 0..s-1. */
 static void legendre_trial(int s, long double tau, long double *psi, long double *dpsi)
 {
   long double value[DVI_DEGREE_MAX + 2], difference[DVI_DEGREE_MAX + 2];
@@ -46,7 +47,8 @@ static double to_grid(long double x)
   return (double)ldexpl(nearbyintl(ldexpl(x, 53)), -53);
 }
 
-/* c_i - P_ij by columns, c, and 1/2 - c. P_ij = (C^{-1} psi_i) . (C^{-1} psi_j) is symmetric by its form. */
+/* c_i - P_ij by columns, c, and 1/2 - c. P_ij = (C^{-1} psi_i) . (C^{-1} psi_j) is symmetric by its
+ * form. */
 static void store(dvi__action *a, const long double *node, const tables *t)
 {
   const int lanes = a->lanes;
@@ -62,7 +64,8 @@ static void store(dvi__action *a, const long double *node, const tables *t)
     }
 }
 
-/* The path by the forces, Y = h/m (p0 straight - K^{-1} bar g): the last factor by columns, in the space's own basis. */
+/* The path by the forces, Y = h/m (p0 straight - K^{-1} bar g): the last factor by columns, in the
+ * space's own basis. */
 static void store_path(dvi__action *a)
 {
   const int s = a->s, r = a->r;
@@ -87,8 +90,8 @@ static dvi_status allocate(dvi__action *a)
   a->sweep_weight = DVI_NEW(double, r);
   a->Z = DVI_NEW(double, n *lanes);
   a->sweep_shift.table = DVI_NEW(double, DVI__SHIFTS *r *lanes);
-  if (a->sweep_matrix && a->sweep_node && a->sweep_slant && a->sweep_path && a->sweep_start && a->sweep_low && a->sweep_factor &&
-      a->sweep_weight && a->Z && a->sweep_shift.table)
+  if (a->sweep_matrix && a->sweep_node && a->sweep_slant && a->sweep_path && a->sweep_start &&
+      a->sweep_low && a->sweep_factor && a->sweep_weight && a->Z && a->sweep_shift.table)
     return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d nodes in %d dimensions", a->r, a->n);
 }
@@ -177,7 +180,8 @@ void dvi__action_sweep_to(dvi__action *a, double *Y)
   const size_t s = (size_t)a->s;
   dvi__lanes_product(a->n, a->r, a->path_lanes, a->s, a->sweep_path, a->L_q, Y);
   for (size_t i = 0; i < (size_t)a->n; i++)
-    for (size_t k = 0; k < s; k++) Y[i * s + k] = a->sweep_start[i] * a->straight[k] + a->sweep_factor[i] * Y[i * s + k];
+    for (size_t k = 0; k < s; k++)
+      Y[i * s + k] = a->sweep_start[i] * a->straight[k] + a->sweep_factor[i] * Y[i * s + k];
 }
 
 void dvi__action_sweep_ends(const dvi__action *a, double *dq, double *dq_low, double *dp)

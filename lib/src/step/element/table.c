@@ -14,7 +14,8 @@ static int allocate(dvi__action *a)
 {
   a->lanes = dvi__lanes_for(a->r);
   a->path_lanes = dvi__lanes_for(a->s);
-  const size_t s = (size_t)a->s, r = (size_t)a->r, lanes = (size_t)a->lanes, path_lanes = (size_t)a->path_lanes;
+  const size_t s = (size_t)a->s, r = (size_t)a->r, lanes = (size_t)a->lanes,
+               path_lanes = (size_t)a->path_lanes;
   a->psi = DVI_NEW(double, s *lanes);
   a->dpsi = DVI_NEW(double, s *lanes);
   a->bar = DVI_NEW(double, s *lanes);
@@ -31,8 +32,9 @@ static int allocate(dvi__action *a)
   a->bar_row = DVI_NEW(double, r *path_lanes);
   a->slope_row = DVI_NEW(double, r *path_lanes);
   a->stiffness_row = DVI_NEW(double, s *path_lanes);
-  return a->psi && a->dpsi && a->bar && a->node && a->weight && a->end && a->stiffness && a->stiffness_inverse && a->fit_point &&
-         a->fit && a->straight && a->shift.table && a->shift_rows && a->bar_row && a->slope_row && a->stiffness_row;
+  return a->psi && a->dpsi && a->bar && a->node && a->weight && a->end && a->stiffness &&
+         a->stiffness_inverse && a->fit_point && a->fit && a->straight && a->shift.table &&
+         a->shift_rows && a->bar_row && a->slope_row && a->stiffness_row;
 }
 
 static double largest(int count, const double *x, double size)
@@ -41,14 +43,16 @@ static double largest(int count, const double *x, double size)
   return size;
 }
 
-/* Round psi and psi(1) to one grid on which their difference is exact. The rows of the stationarity conditions are then the derivatives of
- * one discrete action to the last bit, whatever the rounding of the tables; else momenta and energy drift by a part of an epsilon in every
- * step (measured on outer-solar: angular momentum by 2e-18 of itself a step). */
+/* Round psi and psi(1) to one grid on which their difference is exact. The rows of the stationarity
+ * conditions are then the derivatives of one discrete action to the last bit, whatever the rounding
+ * of the tables; else momenta and energy drift by a part of an epsilon in every step (measured on
+ * outer-solar: angular momentum by 2e-18 of itself a step). */
 static void make_differences_exact(dvi__action *a)
 {
   const int last = a->s * a->lanes;
-  const double grid = ldexp(1.0,
-                            ilogb(largest(a->s, a->end, largest(last, a->bar, largest(last, a->psi, 1.0)))) + 1 - DBL_MANT_DIG);
+  const double grid = ldexp(
+      1.0, ilogb(largest(a->s, a->end, largest(last, a->bar, largest(last, a->psi, 1.0)))) + 1 -
+               DBL_MANT_DIG);
   for (int k = 0; k < a->s; k++) a->end[k] = grid * nearbyint(a->end[k] / grid);
   for (int k = 0; k < a->s; k++)
     for (int j = k * a->lanes; j < k * a->lanes + a->r; j++) {
@@ -77,7 +81,8 @@ static dvi_status fill_nodes(dvi__action *a)
   return DVI_OK;
 }
 
-/* Invert the positive definite stiffness by Gauss-Jordan elimination; an iteration's matrix needs no pivoting and no last digit. */
+/* Invert the positive definite stiffness by Gauss-Jordan elimination; an iteration's matrix needs
+ * no pivoting and no last digit. */
 static void invert(int s, const double *matrix, double *inverse)
 {
   double m[DVI_DEGREE_MAX][DVI_DEGREE_MAX];
@@ -89,7 +94,8 @@ static void invert(int s, const double *matrix, double *inverse)
     for (int k = 0; k < s; k++) {
       const double factor = m[k][c];
       if (k == c) continue;
-      for (int l = 0; l < s; l++) m[k][l] -= factor * m[c][l], inverse[k * s + l] -= factor * inverse[c * s + l];
+      for (int l = 0; l < s; l++)
+        m[k][l] -= factor * m[c][l], inverse[k * s + l] -= factor * inverse[c * s + l];
     }
   }
 }
@@ -99,7 +105,8 @@ static void fill_stiffness(dvi__action *a)
   for (int k = 0; k < a->s; k++)
     for (int l = 0; l < a->s; l++)
       for (int j = 0; j < a->r; j++)
-        a->stiffness[k * a->s + l] += a->weight[j] * a->dpsi[k * a->lanes + j] * a->dpsi[l * a->lanes + j];
+        a->stiffness[k * a->s + l] += a->weight[j] * a->dpsi[k * a->lanes + j] *
+                                      a->dpsi[l * a->lanes + j];
   invert(a->s, a->stiffness, a->stiffness_inverse);
 }
 
@@ -121,13 +128,15 @@ static void fill_rows(dvi__action *a)
       a->bar_row[j * a->path_lanes + k] = a->bar[k * a->lanes + j];
       a->slope_row[j * a->path_lanes + k] = a->dpsi[k * a->lanes + j];
     }
-    for (int l = 0; l < a->s; l++) a->stiffness_row[l * a->path_lanes + k] = a->stiffness_inverse[k * a->s + l];
+    for (int l = 0; l < a->s; l++)
+      a->stiffness_row[l * a->path_lanes + k] = a->stiffness_inverse[k * a->s + l];
   }
 }
 
 dvi_status dvi__action_fill_tables(dvi__action *a)
 {
-  if (!allocate(a)) return dvi__fail(DVI_NO_MEMORY, "action: no memory for tables of degree %d", a->s);
+  if (!allocate(a))
+    return dvi__fail(DVI_NO_MEMORY, "action: no memory for tables of degree %d", a->s);
   if (a->shaped) return DVI_OK;
   dvi__space_init(&a->trial, a->space.basis, a->s);
   DVI_TRY(fill_nodes(a));

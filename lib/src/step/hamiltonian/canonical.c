@@ -15,71 +15,80 @@ struct dvi__canonical {
   dvi__evaluator *evaluator;
   int n, s, r, m; /* coordinates, degree, points, unknowns of a coordinate */
   dvi__space space;
-  double psi[POINTS][DEGREE], bar[POINTS][DEGREE], slope[POINTS][DEGREE]; /* psi_k, psi_k - psi_k(1) and psi_k' at the points */
-  double end[DEGREE], line[DEGREE];                                       /* psi_k(1); the coefficients of q(tau) = tau */
-  double tau[DEGREE], fit[DEGREE * DEGREE];                               /* coefficients from values at the points tau_k = k/s */
+  /* psi_k, psi_k - psi_k(1) and psi_k' at the points */
+  double psi[POINTS][DEGREE], bar[POINTS][DEGREE], slope[POINTS][DEGREE];
+  /* psi_k(1); the coefficients of q(tau) = tau */
+  double end[DEGREE], line[DEGREE];
+  /* coefficients from values at the points tau_k = k/s */
+  double tau[DEGREE], fit[DEGREE * DEGREE];
   double ratio, shift[DEGREE][DEGREE],
-      shift_p[POINTS][POINTS]; /* from a step's unknowns to those of the next, ratio times as long */
+      /* maps a step's unknowns to those of the next, `ratio` times as long */
+      shift_p[POINTS][POINTS];
   double c[POINTS], b[POINTS];
-  dvi__pattern joint, pattern; /* joint: of one block; pattern: of the Jacobian */
+  dvi__pattern joint, pattern; /* joint is the pattern of one block, pattern that of the Jacobian */
   dvi__block *block;           /* [entries of joint] */
-  /* The step. */
+  /* The current step. */
   double t0, h;
   const double *q0, *p0, *unit;
-  /* At the points, component by component: [n*r]. */
+  /* Values at the points, component by component [n*r]. */
   double *t, *Q, *P, *H_q, *H_p, *H_qq, *H_qp, *H_pp;
 };
 
-static double dot(int count, const double *x, const double *y)
+static double canonical_dot(int count, const double *x, const double *y)
 {
   double sum = 0;
   for (int k = 0; k < count; k++) sum += x[k] * y[k];
   return sum;
 }
 
-/* ---- making it ---- */
+/* ---- create ---- */
 
-static void fill_tables(dvi__canonical *c)
+static void canonical_fill_tables(dvi__canonical *c)
 {
-  for (int j = 0; j < c->r; j++) dvi__trial_in(&c->space, c->c[j], c->psi[j], c->bar[j], c->slope[j]);
+  for (int j = 0; j < c->r; j++)
+    dvi__trial_in(&c->space, c->c[j], c->psi[j], c->bar[j], c->slope[j]);
   dvi__trial_in(&c->space, 1, c->end, NULL, NULL);
   for (int k = 0; k < c->s; k++) c->tau[k] = (k + 1.0) / c->s;
   dvi__trial_fit(c->space.basis, c->s, c->s, c->tau, c->fit);
-  for (int k = 0; k < c->s; k++) c->line[k] = dot(c->s, c->fit + k * c->s, c->tau);
+  for (int k = 0; k < c->s; k++) c->line[k] = canonical_dot(c->s, c->fit + k * c->s, c->tau);
 }
 
-static double **owned(dvi__canonical *c, int i)
+static double **canonical_owned_array(dvi__canonical *c, int i)
 {
   double **const all[] = {&c->t, &c->Q, &c->P, &c->H_q, &c->H_p, &c->H_qq, &c->H_qp, &c->H_pp};
   return i < (int)(sizeof all / sizeof *all) ? all[i] : NULL;
 }
 
-static dvi_status allocate(dvi__canonical *c)
+static dvi_status canonical_allocate(dvi__canonical *c)
 {
-  const size_t r = (size_t)c->r, n = (size_t)c->n, qq = (size_t)dvi__pattern_entries(&c->system->qq),
-               qp = (size_t)dvi__pattern_entries(&c->system->qv), pp = (size_t)dvi__pattern_entries(&c->system->vv);
+  const size_t r = (size_t)c->r, n = (size_t)c->n,
+               qq = (size_t)dvi__pattern_entries(&c->system->qq),
+               qp = (size_t)dvi__pattern_entries(&c->system->qv),
+               pp = (size_t)dvi__pattern_entries(&c->system->vv);
   const size_t size[] = {1, n, n, n, n, qq, qp, pp};
-  for (int i = 0; owned(c, i) != NULL; i++) {
-    *owned(c, i) = DVI_NEW(double, r *size[i] + 1);
-    if (*owned(c, i) == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory for %d points in %d dimensions", c->r, c->n);
+  for (int i = 0; canonical_owned_array(c, i) != NULL; i++) {
+    *canonical_owned_array(c, i) = DVI_NEW(double, size[i] * r + 1);
+    if (*canonical_owned_array(c, i) == NULL)
+      return dvi__fail(DVI_NO_MEMORY, "no memory for %d points in %d dimensions", c->r, c->n);
   }
   return DVI_OK;
 }
 
-static dvi_status fill(dvi__canonical *c, const dvi__action_space *space, dvi_counters *counters)
+static dvi_status canonical_initialise(dvi__canonical *c, const dvi__action_space *space,
+                                       dvi_counters *counters)
 {
   DVI_TRY(dvi__joint_check(c->system, c->m, c->r));
   dvi__space_init(&c->space, space->basis, c->s);
   DVI_TRY(dvi_quadrature(space->rule, c->r, c->c, c->b));
-  fill_tables(c);
+  canonical_fill_tables(c);
   DVI_TRY(dvi__evaluator_create(c->system, c->r, DVI__HESSIANS, counters, &c->evaluator));
   DVI_TRY(dvi__joint_create(c->system, NULL, &c->joint, &c->block));
   DVI_TRY(dvi__pattern_blocks(&c->joint, c->m, &c->pattern));
-  return allocate(c);
+  return canonical_allocate(c);
 }
 
-dvi_status dvi__canonical_create(const dvi_system *system, const dvi__action_space *space, dvi_counters *counters,
-                                 dvi__canonical **canonical)
+dvi_status dvi__canonical_create(const dvi_system *system, const dvi__action_space *space,
+                                 dvi_counters *counters, dvi__canonical **canonical)
 {
   *canonical = NULL;
   dvi__canonical *c = DVI_NEW(dvi__canonical, 1);
@@ -89,7 +98,7 @@ dvi_status dvi__canonical_create(const dvi_system *system, const dvi__action_spa
   c->s = space->degree;
   c->r = space->nodes;
   c->m = c->s + c->r;
-  const dvi_status status = fill(c, space, counters);
+  const dvi_status status = canonical_initialise(c, space, counters);
   if (status != DVI_OK) dvi__canonical_destroy(&c);
   *canonical = c;
   return status;
@@ -99,7 +108,8 @@ void dvi__canonical_destroy(dvi__canonical **canonical)
 {
   dvi__canonical *c = *canonical;
   if (c == NULL) return;
-  for (int i = 0; owned(c, i) != NULL; i++) dvi__release(*owned(c, i));
+  for (int i = 0; canonical_owned_array(c, i) != NULL; i++)
+    dvi__release(*canonical_owned_array(c, i));
   dvi__evaluator_destroy(&c->evaluator);
   dvi__pattern_clear(&c->joint);
   dvi__pattern_clear(&c->pattern);
@@ -118,7 +128,8 @@ dvi__evaluator *dvi__canonical_evaluator(const dvi__canonical *c)
   return c->evaluator;
 }
 
-void dvi__canonical_place(dvi__canonical *c, double t0, double h, const double *q0, const double *p0, const double *unit)
+void dvi__canonical_place(dvi__canonical *c, double t0, double h, const double *q0,
+                          const double *p0, const double *unit)
 {
   c->t0 = t0;
   c->h = h;
@@ -130,38 +141,40 @@ void dvi__canonical_place(dvi__canonical *c, double t0, double h, const double *
 
 /* ---- the rows ---- */
 
-/* The row of the point's equation q' = H_p. */
+/* Return the row of the equation q' = H_p at point j. */
 static int velocity_row(const dvi__canonical *c, int j)
 {
   return j < c->s ? j : c->s + j;
 }
 
-static void points(dvi__canonical *c, const double *x)
+static void canonical_points(dvi__canonical *c, const double *x)
 {
   for (int i = 0; i < c->n; i++, x += c->m)
     for (int j = 0; j < c->r; j++) {
-      c->Q[i * c->r + j] = c->q0[i] + dot(c->s, c->psi[j], x);
+      c->Q[i * c->r + j] = c->q0[i] + canonical_dot(c->s, c->psi[j], x);
       c->P[i * c->r + j] = c->p0[i] + c->unit[i] * x[c->s + j];
     }
 }
 
 dvi_status dvi__canonical_residual(dvi__canonical *c, const double *x, double *R)
 {
-  points(c, x);
+  canonical_points(c, x);
   DVI_TRY(dvi__lagrangian_gradient(c->evaluator, c->r, c->t, c->Q, c->P, c->H_q, c->H_p));
   for (int i = 0; i < c->n; i++, x += c->m, R += c->m) {
     const double *H_q = c->H_q + i * c->r, *H_p = c->H_p + i * c->r, *Pi = x + c->s;
-    for (int j = 0; j < c->r; j++) R[velocity_row(c, j)] = dot(c->s, c->slope[j], x) - c->h * H_p[j];
+    for (int j = 0; j < c->r; j++)
+      R[velocity_row(c, j)] = canonical_dot(c->s, c->slope[j], x) - c->h * H_p[j];
     for (int k = 0; k < c->s; k++) {
       double sum = 0;
-      for (int j = 0; j < c->r; j++) sum += c->b[j] * (c->slope[j][k] * Pi[j] - c->h / c->unit[i] * c->bar[j][k] * H_q[j]);
+      for (int j = 0; j < c->r; j++)
+        sum += c->b[j] * (c->slope[j][k] * Pi[j] - c->h / c->unit[i] * c->bar[j][k] * H_q[j]);
       R[c->s + k] = sum;
     }
   }
   return DVI_OK;
 }
 
-/* Rows are of the size of the unknowns. */
+/* The rows have the size of the unknowns. */
 dvi_status dvi__canonical_scale(dvi__canonical *c, double *scale)
 {
   for (int i = 0; i < c->n * c->m; i++) scale[i] = 1;
@@ -171,37 +184,40 @@ dvi_status dvi__canonical_scale(dvi__canonical *c, double *scale)
 void dvi__canonical_ends(const dvi__canonical *c, const double *x, double *dq, double *dp)
 {
   for (int i = 0; i < c->n; i++) {
-    dq[i] = dot(c->s, c->end, x + i * c->m);
-    dp[i] = -c->h * dot(c->r, c->b, c->H_q + i * c->r);
+    dq[i] = canonical_dot(c->s, c->end, x + i * c->m);
+    dp[i] = -c->h * canonical_dot(c->r, c->b, c->H_q + i * c->r);
   }
 }
 
 /* ---- Jacobian ---- */
 
-/* What one entry (i,j) of the joint pattern has at the points, times h: d2H/dq_i dq_j, d2H/dq_i dp_j, d2H/dp_i dq_j, d2H/dp_i dp_j. */
+/* An entry (i,j) of the joint pattern has, at the points and times h, d2H/dq_i dq_j, d2H/dq_i dp_j,
+ * d2H/dp_i dq_j and d2H/dp_i dp_j. */
 typedef struct entry {
   double qq[POINTS], qp[POINTS], pq[POINTS], pp[POINTS];
 } entry;
 
-static double at(const dvi__canonical *c, const double *values, int where, int j)
+static double canonical_at(const dvi__canonical *c, const double *values, int where, int j)
 {
   return where >= 0 ? c->h * values[where * c->r + j] : 0;
 }
 
-static void gather_entry(const dvi__canonical *c, const dvi__block *where, entry *out)
+static void canonical_gather_entry(const dvi__canonical *c, const dvi__block *where, entry *out)
 {
   for (int j = 0; j < c->r; j++) {
-    out->qq[j] = at(c, c->H_qq, where->qq, j);
-    out->qp[j] = at(c, c->H_qp, where->qv, j);
-    out->pq[j] = at(c, c->H_qp, where->vq, j);
-    out->pp[j] = at(c, c->H_pp, where->vv, j);
+    out->qq[j] = canonical_at(c, c->H_qq, where->qq, j);
+    out->qp[j] = canonical_at(c, c->H_qp, where->qv, j);
+    out->pq[j] = canonical_at(c, c->H_qp, where->vq, j);
+    out->pp[j] = canonical_at(c, c->H_pp, where->vv, j);
   }
 }
 
-/* Rows of a block in its column of Y_l; `same`: of the diagonal. */
-static void path_column(const dvi__canonical *c, const entry *e, int same, double unit_i, int l, double *column)
+/* Fill the rows of a block in the column of Y_l. `same` marks a block on the diagonal. */
+static void path_column(const dvi__canonical *c, const entry *e, int same, double unit_i, int l,
+                        double *column)
 {
-  for (int j = 0; j < c->r; j++) column[velocity_row(c, j)] = (same ? c->slope[j][l] : 0) - e->pq[j] * c->psi[j][l];
+  for (int j = 0; j < c->r; j++)
+    column[velocity_row(c, j)] = (same ? c->slope[j][l] : 0) - e->pq[j] * c->psi[j][l];
   for (int k = 0; k < c->s; k++) {
     double sum = 0;
     for (int j = 0; j < c->r; j++) sum -= c->b[j] * c->bar[j][k] * e->qq[j] * c->psi[j][l];
@@ -209,25 +225,27 @@ static void path_column(const dvi__canonical *c, const entry *e, int same, doubl
   }
 }
 
-/* The same in its column of Pi_l. */
-static void momentum_column(const dvi__canonical *c, const entry *e, int same, double unit_i, double unit_j, int l, double *column)
+/* Fill the rows of a block in the column of Pi_l. `same` marks a block on the diagonal. */
+static void momentum_column(const dvi__canonical *c, const entry *e, int same, double unit_i,
+                            double unit_j, int l, double *column)
 {
   for (int j = 0; j < c->r; j++) column[velocity_row(c, j)] = j == l ? -e->pp[l] * unit_j : 0;
   for (int k = 0; k < c->s; k++)
-    column[c->s + k] = c->b[l] * ((same ? c->slope[l][k] : 0) - c->bar[l][k] * e->qp[l] * (unit_j / unit_i));
+    column[c->s + k] = c->b[l] *
+                       ((same ? c->slope[l][k] : 0) - c->bar[l][k] * e->qp[l] * (unit_j / unit_i));
 }
 
 dvi_status dvi__canonical_jacobian(dvi__canonical *c, const double *x, double *values)
 {
   const int m = c->m;
-  points(c, x);
+  canonical_points(c, x);
   DVI_TRY(dvi__lagrangian_hessian(c->evaluator, c->r, c->t, c->Q, c->P, c->H_qq, c->H_qp, c->H_pp));
   for (int j = 0; j < c->n; j++) {
     const int first = c->joint.start[j], height = (c->joint.start[j + 1] - first) * m;
     for (int b = 0; b < height / m; b++) {
       const int i = c->joint.row[first + b];
       entry e = {0};
-      gather_entry(c, &c->block[first + b], &e);
+      canonical_gather_entry(c, &c->block[first + b], &e);
       for (int l = 0; l < m; l++) {
         double *column = values + l * height + b * m;
         if (l < c->s)
@@ -241,13 +259,14 @@ dvi_status dvi__canonical_jacobian(dvi__canonical *c, const double *x, double *v
   return DVI_OK;
 }
 
-dvi_status dvi__canonical_curvature(dvi__canonical *c, double t, const double *q, const double *p, const double **H_pp)
+dvi_status dvi__canonical_curvature(dvi__canonical *c, double t, const double *q, const double *p,
+                                    const double **H_pp)
 {
   *H_pp = c->H_pp;
   return dvi__lagrangian_hessian(c->evaluator, 1, &t, q, p, c->H_qq, c->H_qp, c->H_pp);
 }
 
-/* ---- guesses, and the path ---- */
+/* ---- guesses and path ---- */
 
 void dvi__canonical_keep(const dvi__canonical *c, const double *x, double *kept)
 {
@@ -261,12 +280,14 @@ void dvi__canonical_straight(const dvi__canonical *c, const double *v, double *x
     for (int k = 0; k < c->m; k++) *x++ = k < c->s ? c->h * v[i] * c->line[k] : 0;
 }
 
-/* q(1 + ratio tau) - q(1) by its values at the points tau_k, and the polynomial through the Pi_j less its end. */
+/* Fill the matrices that continue a step. The first gives q(1 + ratio tau) - q(1) by its values at
+ * the points tau_k. The second continues the polynomial through the Pi_j, relative to its end. */
 static void fill_shifts(dvi__canonical *c, double ratio)
 {
   double bar[DEGREE][DEGREE], end[POINTS];
   c->ratio = ratio;
-  for (int k = 0; k < c->s; k++) dvi__trial_in(&c->space, 1 + ratio * c->tau[k], NULL, bar[k], NULL);
+  for (int k = 0; k < c->s; k++)
+    dvi__trial_in(&c->space, 1 + ratio * c->tau[k], NULL, bar[k], NULL);
   for (int k = 0; k < c->s; k++)
     for (int l = 0; l < c->s; l++) {
       c->shift[k][l] = 0;
@@ -283,17 +304,19 @@ void dvi__canonical_continue(dvi__canonical *c, double ratio, const double *last
 {
   if (!(ratio == c->ratio)) fill_shifts(c, ratio);
   for (int i = 0; i < c->n; i++, last += c->m, x += c->m) {
-    for (int k = 0; k < c->s; k++) x[k] = dot(c->s, c->shift[k], last);
-    for (int j = 0; j < c->r; j++) x[c->s + j] = dot(c->r, c->shift_p[j], last + c->s) / c->unit[i];
+    for (int k = 0; k < c->s; k++) x[k] = canonical_dot(c->s, c->shift[k], last);
+    for (int j = 0; j < c->r; j++)
+      x[c->s + j] = canonical_dot(c->r, c->shift_p[j], last + c->s) / c->unit[i];
   }
 }
 
-void dvi__canonical_path(const dvi__canonical *c, const double *kept, const double *q0, double h, double tau, double *q, double *v)
+void dvi__canonical_path(const dvi__canonical *c, const double *kept, const double *q0, double h,
+                         double tau, double *q, double *v)
 {
   double psi[DEGREE], slope[DEGREE];
   dvi__trial_in(&c->space, tau, psi, NULL, slope);
   for (int i = 0; i < c->n; i++, kept += c->m) {
-    if (q != NULL) q[i] = q0[i] + dot(c->s, psi, kept);
-    if (v != NULL) v[i] = dot(c->s, slope, kept) / h;
+    if (q != NULL) q[i] = q0[i] + canonical_dot(c->s, psi, kept);
+    if (v != NULL) v[i] = canonical_dot(c->s, slope, kept) / h;
   }
 }

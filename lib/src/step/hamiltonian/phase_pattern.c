@@ -1,4 +1,5 @@
-/* The pattern of a step's Jacobian: a block for each pair of a component of z or a constraint that meet. */
+/* The pattern of a step's Jacobian has a block for each pair of components of z or constraints that
+ * are coupled. */
 #include <stdint.h>
 #include <stdlib.h>
 
@@ -6,13 +7,13 @@
 #include "core/memory.h"
 #include "core/status.h"
 
-/* Pairs (row, column) of a square matrix, as column * size + row. */
+/* Pairs (row, column) of a square matrix have the key column * size + row. */
 typedef struct pairs {
   int64_t *key, size;
   int count;
 } pairs;
 
-static void add(pairs *p, int row, int column)
+static void phase_pattern_add(pairs *p, int row, int column)
 {
   p->key[p->count++] = column * p->size + row;
 }
@@ -23,21 +24,24 @@ static int by_key(const void *a, const void *b)
   return (x > y) - (x < y);
 }
 
-static dvi_status no_memory(void)
+static dvi_status phase_pattern_no_memory(void)
 {
   return dvi__fail(DVI_NO_MEMORY, "phase space: no memory for the Jacobian");
 }
 
-/* The pattern of the pairs, which are sorted and made single. */
-static dvi_status collect(pairs *p, dvi__pattern *pattern)
+/* Make the pattern of the pairs, which are sorted and made unique. */
+static dvi_status phase_pattern_collect(pairs *p, dvi__pattern *pattern)
 {
   const int size = (int)p->size;
   int count = 0;
   qsort(p->key, (size_t)p->count, sizeof *p->key, by_key);
   for (int i = 0; i < p->count; i++)
     if (i == 0 || p->key[i] != p->key[i - 1]) p->key[count++] = p->key[i];
-  *pattern = (dvi__pattern){size, size, DVI_NEW(int, (size_t)size + 1), DVI_NEW(int, count)};
-  if (pattern->start == NULL || pattern->row == NULL) return no_memory();
+  *pattern = (dvi__pattern){.rows = size,
+                            .columns = size,
+                            .start = DVI_NEW(int, (size_t)size + 1),
+                            .row = DVI_NEW(int, count)};
+  if (pattern->start == NULL || pattern->row == NULL) return phase_pattern_no_memory();
   for (int i = 0; i < count; i++) {
     pattern->row[i] = (int)(p->key[i] % p->size);
     pattern->start[p->key[i] / p->size + 1] = i + 1;
@@ -47,29 +51,35 @@ static dvi_status collect(pairs *p, dvi__pattern *pattern)
   return DVI_OK;
 }
 
-/* ---- the derivative of a field (F_p, -F_q) ---- */
+/* ---- derivative of a vector field (F_p, -F_q) ---- */
 
-static void add_field(pairs *p, int n, const dvi__pattern *qq, const dvi__pattern *qp, const dvi__pattern *pp)
+static void add_field(pairs *p, int n, const dvi__pattern *qq, const dvi__pattern *qp,
+                      const dvi__pattern *pp)
 {
   for (int j = 0; j < n; j++) {
-    for (int e = qq->start[j]; e < qq->start[j + 1]; e++) add(p, n + qq->row[e], j);
-    for (int e = pp->start[j]; e < pp->start[j + 1]; e++) add(p, pp->row[e], n + j);
+    for (int e = qq->start[j]; e < qq->start[j + 1]; e++) phase_pattern_add(p, n + qq->row[e], j);
+    for (int e = pp->start[j]; e < pp->start[j + 1]; e++) phase_pattern_add(p, pp->row[e], n + j);
     for (int e = qp->start[j]; e < qp->start[j + 1]; e++) {
-      add(p, n + qp->row[e], n + j);
-      add(p, j, qp->row[e]);
+      phase_pattern_add(p, n + qp->row[e], n + j);
+      phase_pattern_add(p, j, qp->row[e]);
     }
   }
 }
 
-static dvi_status place_field(const dvi__pattern *joint, int n, const dvi__pattern *qq, const dvi__pattern *qp,
-                              const dvi__pattern *pp, dvi__field_places *at)
+static dvi_status place_field(const dvi__pattern *joint, int n, const dvi__pattern *qq,
+                              const dvi__pattern *qp, const dvi__pattern *pp,
+                              dvi__vector_field_places *at)
 {
-  *at = (dvi__field_places){DVI_NEW(int, dvi__pattern_entries(qq)), DVI_NEW(int, dvi__pattern_entries(qp)),
-                            DVI_NEW(int, dvi__pattern_entries(qp)), DVI_NEW(int, dvi__pattern_entries(pp))};
-  if (at->qq == NULL || at->qp_in_p == NULL || at->qp_in_q == NULL || at->pp == NULL) return no_memory();
+  *at = (dvi__vector_field_places){
+      DVI_NEW(int, dvi__pattern_entries(qq)), DVI_NEW(int, dvi__pattern_entries(qp)),
+      DVI_NEW(int, dvi__pattern_entries(qp)), DVI_NEW(int, dvi__pattern_entries(pp))};
+  if (at->qq == NULL || at->qp_in_p == NULL || at->qp_in_q == NULL || at->pp == NULL)
+    return phase_pattern_no_memory();
   for (int j = 0; j < n; j++) {
-    for (int e = qq->start[j]; e < qq->start[j + 1]; e++) at->qq[e] = dvi__pattern_find(joint, n + qq->row[e], j);
-    for (int e = pp->start[j]; e < pp->start[j + 1]; e++) at->pp[e] = dvi__pattern_find(joint, pp->row[e], n + j);
+    for (int e = qq->start[j]; e < qq->start[j + 1]; e++)
+      at->qq[e] = dvi__pattern_find(joint, n + qq->row[e], j);
+    for (int e = pp->start[j]; e < pp->start[j + 1]; e++)
+      at->pp[e] = dvi__pattern_find(joint, pp->row[e], n + j);
     for (int e = qp->start[j]; e < qp->start[j + 1]; e++) {
       at->qp_in_p[e] = dvi__pattern_find(joint, n + qp->row[e], n + j);
       at->qp_in_q[e] = dvi__pattern_find(joint, j, qp->row[e]);
@@ -78,7 +88,7 @@ static dvi_status place_field(const dvi__pattern *joint, int n, const dvi__patte
   return DVI_OK;
 }
 
-static void clear_field(dvi__field_places *at)
+static void clear_field(dvi__vector_field_places *at)
 {
   dvi__release(at->qq);
   dvi__release(at->qp_in_p);
@@ -88,103 +98,115 @@ static void clear_field(dvi__field_places *at)
 
 /* ---- constraints ---- */
 
-/* The component of the field X_phi in which the derivative in component `row` of z stands. */
-static int turned(int n, int row)
+/* Return the component of the vector field X_phi that holds the derivative by component `row` of
+ * z. */
+static int phase_pattern_turned(int n, int row)
 {
   return row < n ? n + row : row - n;
 }
 
-static void add_constraints(pairs *p, const dvi__pattern *gradients)
+static void phase_pattern_add_constraints(pairs *p, const dvi__pattern *gradients)
 {
   for (int a = 0; a < gradients->columns; a++)
     for (int e = gradients->start[a]; e < gradients->start[a + 1]; e++) {
-      add(p, gradients->rows + a, gradients->row[e]);
-      add(p, turned(gradients->rows / 2, gradients->row[e]), gradients->rows + a);
+      phase_pattern_add(p, gradients->rows + a, gradients->row[e]);
+      phase_pattern_add(p, phase_pattern_turned(gradients->rows / 2, gradients->row[e]),
+                        gradients->rows + a);
     }
 }
 
-static dvi_status place_constraints(dvi__phase *f)
+static dvi_status place_constraints(dvi__phase_element *f)
 {
   const dvi__pattern *gradients = &f->system->constraint->gradients;
   const int entries = dvi__pattern_entries(&f->joint);
   f->gradient = DVI_NEW(int, entries);
-  if (f->gradient == NULL) return no_memory();
+  if (f->gradient == NULL) return phase_pattern_no_memory();
   for (int e = 0; e < entries; e++) f->gradient[e] = -1;
   for (int a = 0; a < f->m; a++)
     for (int e = gradients->start[a]; e < gradients->start[a + 1]; e++) {
       f->gradient[dvi__pattern_find(&f->joint, 2 * f->n + a, gradients->row[e])] = e;
-      f->gradient[dvi__pattern_find(&f->joint, turned(f->n, gradients->row[e]), 2 * f->n + a)] = e;
+      f->gradient[dvi__pattern_find(&f->joint, phase_pattern_turned(f->n, gradients->row[e]),
+                                    2 * f->n + a)] = e;
     }
   return DVI_OK;
 }
 
-/* ---- the whole ---- */
+/* ---- Jacobian ---- */
 
-static dvi_status join(const dvi__phase *f, dvi__pattern *joint)
+static dvi_status phase_pattern_join(const dvi__phase_element *f, dvi__pattern *joint)
 {
   const dvi_system *s = f->system;
   const dvi__lagrangian_term *w = &s->constraint->weighted;
   size_t count = 2 * (size_t)f->n + 2 * (size_t)dvi__pattern_entries(&s->constraint->gradients);
-  const dvi__pattern *const once[] = {&s->qq, &s->qv, &s->qv, &s->vv, &w->qq, &w->qv, &w->qv, &w->vv};
+  const dvi__pattern *const once[] = {&s->qq, &s->qv, &s->qv, &s->vv,
+                                      &w->qq, &w->qv, &w->qv, &w->vv};
   for (int i = 0; i < 8; i++) count += (size_t)dvi__pattern_entries(once[i]);
-  if (count > INT32_MAX) return dvi__fail(DVI_BAD_SIZE, "phase space: %zu entries are too many; declare sparse patterns", count);
+  if (count > INT32_MAX)
+    return dvi__fail(DVI_BAD_SIZE, "phase space: %zu entries are too many; declare sparse patterns",
+                     count);
   pairs p = {.key = DVI_NEW(int64_t, count), .size = 2 * f->n + f->m};
-  if (p.key == NULL) return no_memory();
-  for (int c = 0; c < 2 * f->n; c++) add(&p, c, c);
+  if (p.key == NULL) return phase_pattern_no_memory();
+  for (int c = 0; c < 2 * f->n; c++) phase_pattern_add(&p, c, c);
   add_field(&p, f->n, &s->qq, &s->qv, &s->vv);
   add_field(&p, f->n, &w->qq, &w->qv, &w->vv);
-  add_constraints(&p, &s->constraint->gradients);
-  const dvi_status status = collect(&p, joint);
+  phase_pattern_add_constraints(&p, &s->constraint->gradients);
+  const dvi_status status = phase_pattern_collect(&p, joint);
   dvi__release(p.key);
   return status;
 }
 
-/* Rows or columns of a block, and where they begin. */
-static int length_of(const dvi__phase *f, int block)
+/* The number of rows or columns of a block, and the first of them. */
+static int phase_pattern_length_of(const dvi__phase_element *f, int block)
 {
   return block < 2 * f->n ? f->d + 1 : f->k + 1;
 }
 
-static int begin_of(const dvi__phase *f, int block)
+static int begin_of(const dvi__phase_element *f, int block)
 {
   const int z = 2 * f->n;
   return block < z ? block * (f->d + 1) : z * (f->d + 1) + (block - z) * (f->k + 1);
 }
 
-static dvi_status expand(const dvi__phase *f, dvi__pattern *pattern)
+static dvi_status phase_pattern_expand(const dvi__phase_element *f, dvi__pattern *pattern)
 {
   const dvi__pattern *joint = &f->joint;
   const int size = begin_of(f, joint->columns);
   size_t entries = 0;
   for (int j = 0; j < joint->columns; j++)
     for (int e = joint->start[j]; e < joint->start[j + 1]; e++)
-      entries += (size_t)length_of(f, j) * (size_t)length_of(f, joint->row[e]);
+      entries += (size_t)phase_pattern_length_of(f, j) *
+                 (size_t)phase_pattern_length_of(f, joint->row[e]);
   if (entries > INT32_MAX)
-    return dvi__fail(DVI_BAD_SIZE, "phase space: %zu entries are too many; declare sparse patterns", entries);
-  *pattern = (dvi__pattern){size, size, DVI_NEW(int, (size_t)size + 1), DVI_NEW(int, entries)};
-  if (pattern->start == NULL || pattern->row == NULL) return no_memory();
+    return dvi__fail(DVI_BAD_SIZE, "phase space: %zu entries are too many; declare sparse patterns",
+                     entries);
+  *pattern = (dvi__pattern){.rows = size,
+                            .columns = size,
+                            .start = DVI_NEW(int, (size_t)size + 1),
+                            .row = DVI_NEW(int, entries)};
+  if (pattern->start == NULL || pattern->row == NULL) return phase_pattern_no_memory();
   int at = 0, column = 0;
   for (int j = 0; j < joint->columns; j++)
-    for (int l = 0; l < length_of(f, j); l++) {
+    for (int l = 0; l < phase_pattern_length_of(f, j); l++) {
       for (int e = joint->start[j]; e < joint->start[j + 1]; e++)
-        for (int i = 0; i < length_of(f, joint->row[e]); i++) pattern->row[at++] = begin_of(f, joint->row[e]) + i;
+        for (int i = 0; i < phase_pattern_length_of(f, joint->row[e]); i++)
+          pattern->row[at++] = begin_of(f, joint->row[e]) + i;
       pattern->start[++column] = at;
     }
   return DVI_OK;
 }
 
-dvi_status dvi__phase_lay_out(dvi__phase *f)
+dvi_status dvi__phase_element_lay_out(dvi__phase_element *f)
 {
   const dvi_system *s = f->system;
   const dvi__lagrangian_term *w = &s->constraint->weighted;
-  DVI_TRY(join(f, &f->joint));
-  DVI_TRY(expand(f, &f->pattern));
+  DVI_TRY(phase_pattern_join(f, &f->joint));
+  DVI_TRY(phase_pattern_expand(f, &f->pattern));
   DVI_TRY(place_field(&f->joint, f->n, &s->qq, &s->qv, &s->vv, &f->of_H));
   DVI_TRY(place_field(&f->joint, f->n, &w->qq, &w->qv, &w->vv, &f->of_phi));
   return place_constraints(f);
 }
 
-void dvi__phase_clear_layout(dvi__phase *f)
+void dvi__phase_element_clear_layout(dvi__phase_element *f)
 {
   dvi__pattern_clear(&f->joint);
   dvi__pattern_clear(&f->pattern);

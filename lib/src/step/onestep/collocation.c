@@ -13,7 +13,7 @@ void dvi__lagrange_weights(int s, const double *c, double tau, double *weight)
   }
 }
 
-/* Gauss's rule with as many nodes is exact. */
+/* Integrate by Gauss's rule with s nodes, which is exact. */
 dvi_status dvi__collocate(int s, const double *c, double a[DVI__STAGES_MOST][DVI__STAGES_MOST])
 {
   double node[DVI__STAGES_MOST], gauss[DVI__STAGES_MOST], at_node[DVI__STAGES_MOST];

@@ -1,4 +1,4 @@
-/* The tableaus that are built in. */
+/* The built-in tableaus. */
 #include "step/onestep/runge_kutta.h"
 
 #include <dvi/quadrature.h>
@@ -12,138 +12,120 @@
 #define ROOT_3 1.73205080756887729353
 #define ROOT_21 4.58257569495584000659
 
-/* An explicit method: the rows of a one after the other, of 1, 2, ... numbers; then b. c follows. */
+enum { ROWS_MOST = 11 };
+
+/* An explicit method has rows a_i of 1, 2, ... numbers for the stages behind the first. c is
+ * computed. */
 typedef struct rows {
   int stages, order;
-  double number[66];
+  double a[ROWS_MOST - 1][ROWS_MOST - 1], b[ROWS_MOST];
 } rows;
 
 /* Euler 1768. */
-static const rows euler = {1, 1, {1}};
+static const rows euler = {
+    .stages = 1,
+    .order = 1,
+    .b = {1},
+};
 
 /* Runge 1895. */
-static const rows explicit_midpoint = {2, 2, {1.0 / 2, /**/ 0, 1}};
+static const rows explicit_midpoint = {
+    .stages = 2,
+    .order = 2,
+    .a = {{1.0 / 2}},
+    .b = {0, 1},
+};
 
-/* Heun 1900; of order 2 it is the trapezoid, which others call Heun's. */
-static const rows heun = {2, 2, {1, /**/ 1.0 / 2, 1.0 / 2}};
+/* Heun 1900. This is the explicit trapezoid of order 2, which is also called Heun's method. */
+static const rows heun = {
+    .stages = 2,
+    .order = 2,
+    .a = {{1}},
+    .b = {1.0 / 2, 1.0 / 2},
+};
 
 /* Kutta 1901. */
-static const rows kutta_3 = {3, 3, {1.0 / 2, -1, 2, /**/ 1.0 / 6, 2.0 / 3, 1.0 / 6}};
-static const rows rk_4 = {4, 4, {1.0 / 2, 0, 1.0 / 2, 0, 0, 1, /**/ 1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6}};
-static const rows three_eighths = {4, 4, {1.0 / 3, -1.0 / 3, 1, 1, -1, 1, /**/ 1.0 / 8, 3.0 / 8, 3.0 / 8, 1.0 / 8}};
+static const rows kutta_3 = {
+    .stages = 3,
+    .order = 3,
+    .a = {{1.0 / 2}, {-1, 2}},
+    .b = {1.0 / 6, 2.0 / 3, 1.0 / 6},
+};
+
+static const rows rk_4 = {
+    .stages = 4,
+    .order = 4,
+    .a = {{1.0 / 2}, {0, 1.0 / 2}, {0, 0, 1}},
+    .b = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6},
+};
+
+static const rows three_eighths = {
+    .stages = 4,
+    .order = 4,
+    .a = {{1.0 / 3}, {-1.0 / 3, 1}, {1, -1, 1}},
+    .b = {1.0 / 8, 3.0 / 8, 3.0 / 8, 1.0 / 8},
+};
 
 /* Dormand and Prince 1980, table 2, without the stage of the error estimate. */
-static const rows dormand_prince = {6,
-                                    5,
-                                    {1.0 / 5,
-                                     3.0 / 40,
-                                     9.0 / 40,
-                                     44.0 / 45,
-                                     -56.0 / 15,
-                                     32.0 / 9,
-                                     19372.0 / 6561,
-                                     -25360.0 / 2187,
-                                     64448.0 / 6561,
-                                     -212.0 / 729,
-                                     9017.0 / 3168,
-                                     -355.0 / 33,
-                                     46732.0 / 5247,
-                                     49.0 / 176,
-                                     -5103.0 / 18656,
-                                     35.0 / 384,
-                                     0,
-                                     500.0 / 1113,
-                                     125.0 / 192,
-                                     -2187.0 / 6784,
-                                     11.0 / 84}};
+static const rows dormand_prince = {
+    .stages = 6,
+    .order = 5,
+    .a = {{1.0 / 5},
+          {3.0 / 40, 9.0 / 40},
+          {44.0 / 45, -56.0 / 15, 32.0 / 9},
+          {19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729},
+          {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656}},
+    .b = {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84},
+};
 
 /* Butcher 1964. */
-static const rows butcher_6 = {7, 6, {1.0 / 3,         0,         2.0 / 3,   1.0 / 12,  1.0 / 3,   -1.0 / 12, -1.0 / 16,
-                                      9.0 / 8,         -3.0 / 16, -3.0 / 8,  0,         9.0 / 8,   -3.0 / 8,  -3.0 / 4,
-                                      1.0 / 2,         9.0 / 44,  -9.0 / 11, 63.0 / 44, 18.0 / 11, 0,         -16.0 / 11,
-                                      /**/ 11.0 / 120, 0,         27.0 / 40, 27.0 / 40, -4.0 / 15, -4.0 / 15, 11.0 / 120}};
+static const rows butcher_6 = {
+    .stages = 7,
+    .order = 6,
+    .a = {{1.0 / 3},
+          {0, 2.0 / 3},
+          {1.0 / 12, 1.0 / 3, -1.0 / 12},
+          {-1.0 / 16, 9.0 / 8, -3.0 / 16, -3.0 / 8},
+          {0, 9.0 / 8, -3.0 / 8, -3.0 / 4, 1.0 / 2},
+          {9.0 / 44, -9.0 / 11, 63.0 / 44, 18.0 / 11, 0, -16.0 / 11}},
+    .b = {11.0 / 120, 0, 27.0 / 40, 27.0 / 40, -4.0 / 15, -4.0 / 15, 11.0 / 120},
+};
 
 /* Cooper and Verner 1972. */
-static const rows cooper_verner = {11,
-                                   8,
-                                   {1.0 / 2,
-                                    1.0 / 4,
-                                    1.0 / 4,
-                                    1.0 / 7,
-                                    (-7 - 3 * ROOT_21) / 98,
-                                    (21 + 5 * ROOT_21) / 49,
-                                    (11 + ROOT_21) / 84,
-                                    0,
-                                    (18 + 4 * ROOT_21) / 63,
-                                    (21 - ROOT_21) / 252,
-                                    (5 + ROOT_21) / 48,
-                                    0,
-                                    (9 + ROOT_21) / 36,
-                                    (-231 + 14 * ROOT_21) / 360,
-                                    (63 - 7 * ROOT_21) / 80,
-                                    (10 - ROOT_21) / 42,
-                                    0,
-                                    (-432 + 92 * ROOT_21) / 315,
-                                    (633 - 145 * ROOT_21) / 90,
-                                    (-504 + 115 * ROOT_21) / 70,
-                                    (63 - 13 * ROOT_21) / 35,
-                                    1.0 / 14,
-                                    0,
-                                    0,
-                                    0,
-                                    (14 - 3 * ROOT_21) / 126,
-                                    (13 - 3 * ROOT_21) / 63,
-                                    1.0 / 9,
-                                    1.0 / 32,
-                                    0,
-                                    0,
-                                    0,
-                                    (91 - 21 * ROOT_21) / 576,
-                                    11.0 / 72,
-                                    (-385 - 75 * ROOT_21) / 1152,
-                                    (63 + 13 * ROOT_21) / 128,
-                                    1.0 / 14,
-                                    0,
-                                    0,
-                                    0,
-                                    1.0 / 9,
-                                    (-733 - 147 * ROOT_21) / 2205,
-                                    (515 + 111 * ROOT_21) / 504,
-                                    (-51 - 11 * ROOT_21) / 56,
-                                    (132 + 28 * ROOT_21) / 245,
-                                    0,
-                                    0,
-                                    0,
-                                    0,
-                                    (-42 + 7 * ROOT_21) / 18,
-                                    (-18 + 28 * ROOT_21) / 45,
-                                    (-273 - 53 * ROOT_21) / 72,
-                                    (301 + 53 * ROOT_21) / 72,
-                                    (28 - 28 * ROOT_21) / 45,
-                                    (49 - 7 * ROOT_21) / 18,
-                                    /**/ 1.0 / 20,
-                                    0,
-                                    0,
-                                    0,
-                                    0,
-                                    0,
-                                    0,
-                                    49.0 / 180,
-                                    16.0 / 45,
-                                    49.0 / 180,
-                                    1.0 / 20}};
+static const rows cooper_verner = {
+    .stages = 11,
+    .order = 8,
+    .a = {{1.0 / 2},
+          {1.0 / 4, 1.0 / 4},
+          {1.0 / 7, (-7 - 3 * ROOT_21) / 98, (21 + 5 * ROOT_21) / 49},
+          {(11 + ROOT_21) / 84, 0, (18 + 4 * ROOT_21) / 63, (21 - ROOT_21) / 252},
+          {(5 + ROOT_21) / 48, 0, (9 + ROOT_21) / 36, (-231 + 14 * ROOT_21) / 360,
+           (63 - 7 * ROOT_21) / 80},
+          {(10 - ROOT_21) / 42, 0, (-432 + 92 * ROOT_21) / 315, (633 - 145 * ROOT_21) / 90,
+           (-504 + 115 * ROOT_21) / 70, (63 - 13 * ROOT_21) / 35},
+          {1.0 / 14, 0, 0, 0, (14 - 3 * ROOT_21) / 126, (13 - 3 * ROOT_21) / 63, 1.0 / 9},
+          {1.0 / 32, 0, 0, 0, (91 - 21 * ROOT_21) / 576, 11.0 / 72, (-385 - 75 * ROOT_21) / 1152,
+           (63 + 13 * ROOT_21) / 128},
+          {1.0 / 14, 0, 0, 0, 1.0 / 9, (-733 - 147 * ROOT_21) / 2205, (515 + 111 * ROOT_21) / 504,
+           (-51 - 11 * ROOT_21) / 56, (132 + 28 * ROOT_21) / 245},
+          {0, 0, 0, 0, (-42 + 7 * ROOT_21) / 18, (-18 + 28 * ROOT_21) / 45,
+           (-273 - 53 * ROOT_21) / 72, (301 + 53 * ROOT_21) / 72, (28 - 28 * ROOT_21) / 45,
+           (49 - 7 * ROOT_21) / 18}},
+    .b = {1.0 / 20, 0, 0, 0, 0, 0, 0, 49.0 / 180, 16.0 / 45, 49.0 / 180, 1.0 / 20},
+};
 
 static void fill_explicit(const rows *of, dvi__runge_kutta *m)
 {
-  const double *number = of->number;
   m->order = of->order;
   for (int i = 1; i < of->stages; i++)
-    for (int j = 0; j < i; j++) m->c[i] += m->a[i][j] = *number++;
-  memcpy(m->b, number, (size_t)of->stages * sizeof *number);
+    for (int j = 0; j < i; j++) m->c[i] += m->a[i][j] = of->a[i - 1][j];
+  memcpy(m->b, of->b, (size_t)of->stages * sizeof *m->b);
 }
 
-/* Collocation at the nodes of a rule: Gauss, Lobatto (IIIA), Radau with the right end (IIA); the order is the rule's. Hairer and Wanner 1996, sec. IV.5. */
-static dvi_status fill_collocation(dvi_rule rule, dvi__runge_kutta *m)
+/* Fill a tableau by collocation at the nodes of a rule. The rules are Gauss, Lobatto (IIIA) and
+ * Radau with the right end (IIA). The order is that of the rule. Source: Hairer and Wanner 1996,
+ * sec. IV.5. */
+static dvi_status runge_kutta_fill_collocation(dvi_rule rule, dvi__runge_kutta *m)
 {
   const int s = m->stages;
   double a[DVI__STAGES_MOST][DVI__STAGES_MOST];
@@ -155,10 +137,12 @@ static dvi_status fill_collocation(dvi_rule rule, dvi__runge_kutta *m)
   return DVI_OK;
 }
 
-/* Diagonally implicit, with one number g on the diagonal: orders 3 (Norsett 1974) and 4 (Crouzeix 1975); Hairer and Wanner 1996, tables IV.6.4, IV.6.5. */
+/* Fill a diagonally implicit tableau with one number g on the diagonal. The orders are 3 (Norsett
+ * 1974) and 4 (Crouzeix 1975). Source: Hairer and Wanner 1996, tables IV.6.4, IV.6.5. */
 static void fill_sdirk(dvi__runge_kutta *m)
 {
-  const double g = m->stages == 2 ? (3 + ROOT_3) / 6 : cos(acos(-1.0) / 18) / ROOT_3 + 0.5, d = 1 / (6 * (2 * g - 1) * (2 * g - 1));
+  const double g = m->stages == 2 ? (3 + ROOT_3) / 6 : cos(acos(-1.0) / 18) / ROOT_3 + 0.5,
+               d = 1 / (6 * (2 * g - 1) * (2 * g - 1));
   m->order = m->stages + 1;
   for (int i = 0; i < m->stages; i++) m->a[i][i] = g;
   m->c[0] = g;
@@ -177,7 +161,7 @@ static void fill_sdirk(dvi__runge_kutta *m)
   m->b[1] = 1 - 2 * d;
 }
 
-/* What is built in: an explicit tableau, collocation by a rule, or SDIRK. */
+/* A built-in method is an explicit tableau, collocation by a rule, or SDIRK. */
 static const struct entry {
   const char *name;
   const rows *rows;
@@ -212,7 +196,8 @@ void dvi__runge_kutta_range(int i, int *fewest, int *most)
   *most = entries[i].most;
 }
 
-/* The adjoint method has a*_ij = b_j - a_{s+1-i,s+1-j} and the same b, backwards. */
+/* Compare the method with its adjoint, which has a*_ij = b_j - a_{s+1-i,s+1-j} and the same b,
+ * backwards. */
 void dvi__runge_kutta_classify(dvi__runge_kutta *m)
 {
   const int s = m->stages;
@@ -220,7 +205,8 @@ void dvi__runge_kutta_classify(dvi__runge_kutta *m)
   for (int i = 0; i < s; i++)
     for (int j = 0; j < s; j++) {
       m->is_explicit &= j < i || m->a[i][j] == 0;
-      m->symmetric &= fabs(m->a[i][j] + m->a[s - 1 - i][s - 1 - j] - m->b[j]) <= 1e-14 && fabs(m->b[j] - m->b[s - 1 - j]) <= 1e-14;
+      m->symmetric &= fabs(m->a[i][j] + m->a[s - 1 - i][s - 1 - j] - m->b[j]) <= 1e-14 &&
+                      fabs(m->b[j] - m->b[s - 1 - j]) <= 1e-14;
     }
 }
 
@@ -233,7 +219,7 @@ dvi_status dvi__runge_kutta_named(int i, int stages, dvi__runge_kutta *method)
   else if (of->rule == DVI_MIDPOINT)
     fill_sdirk(method);
   else
-    DVI_TRY(fill_collocation(of->rule, method));
+    DVI_TRY(runge_kutta_fill_collocation(of->rule, method));
   dvi__runge_kutta_classify(method);
   return DVI_OK;
 }

@@ -9,7 +9,7 @@
 #include "num/finite.h"
 
 struct dvi__stages {
-  dvi__field *field;
+  dvi__vector_field *field;
   const dvi__runge_kutta *method;
   int n, unknowns;
   dvi__pattern pattern; /* full */
@@ -21,29 +21,32 @@ struct dvi__stages {
   double *slope;         /* [2n*2n*s] h f_z at the stages, column by column */
   double *values;        /* [unknowns^2] */
   double *point, *image; /* [2n] */
-  double *x, *R;         /* [unknowns] increments, those of momenta over `unit`; the residual, then the correction */
+  /* [unknowns] x has the increments, those of momenta over `unit`; R has the residual, then the
+   * correction */
+  double *x, *R;
 };
 
 /* ---- equations ---- */
 
-static double *at(const dvi__stages *s, double *numbers, int j)
+static double *stages_at(const dvi__stages *s, double *numbers, int j)
 {
   return numbers + (size_t)j * 2 * (size_t)s->n;
 }
 
-static double unit_of(const dvi__stages *s, int component)
+static double stages_unit_of(const dvi__stages *s, int component)
 {
   return component < s->n ? 1 : s->unit[component - s->n];
 }
 
-/* x <- x times unit, or over it. */
-static void scale(const dvi__stages *s, int over, double *x)
+/* Multiply x by unit, or divide by unit if `over`. */
+static void stages_scale(const dvi__stages *s, int over, double *x)
 {
   for (int j = 0; j < s->method->stages; j++)
-    for (int i = s->n; i < 2 * s->n; i++) at(s, x, j)[i] *= over ? 1 / unit_of(s, i) : unit_of(s, i);
+    for (int i = s->n; i < 2 * s->n; i++)
+      stages_at(s, x, j)[i] *= over ? 1 / stages_unit_of(s, i) : stages_unit_of(s, i);
 }
 
-static dvi_status residual(dvi__stages *s, const double *x, double *R)
+static dvi_status stages_residual(dvi__stages *s, const double *x, double *R)
 {
   const dvi__runge_kutta *m = s->method;
   for (int j = 0; j < m->stages; j++) {
@@ -51,26 +54,28 @@ static dvi_status residual(dvi__stages *s, const double *x, double *R)
     for (int i = 0; i < 2 * s->n; i++) {
       double sum = 0;
       for (int k = 0; k < m->stages; k++) sum += m->a[j][k] * x[k * 2 * s->n + i];
-      s->point[i] = s->z[i] + unit_of(s, i) * sum;
+      s->point[i] = s->z[i] + stages_unit_of(s, i) * sum;
     }
-    const dvi_status status = dvi__field_place(s->field, s->first + j, s->t + m->c[j] * s->h, s->point, s->point + s->n, s->image);
+    const dvi_status status = dvi__vector_field_place(s->field, s->first + j, s->t + m->c[j] * s->h,
+                                                      s->point, s->point + s->n, s->image);
     if (status != DVI_OK) return dvi__fail_in(status, "stage %d", j + 1);
-    for (int i = 0; i < 2 * s->n; i++) R[row + (size_t)i] = x[row + (size_t)i] - s->h / unit_of(s, i) * s->image[i];
+    for (int i = 0; i < 2 * s->n; i++)
+      R[row + (size_t)i] = x[row + (size_t)i] - s->h / stages_unit_of(s, i) * s->image[i];
   }
   return DVI_OK;
 }
 
-/* h f_z at all stages. */
-static dvi_status slopes(dvi__stages *s, double h)
+/* Compute h f_z at all stages. */
+static dvi_status stages_slopes(dvi__stages *s, double h)
 {
   const int z = 2 * s->n;
   memset(s->point, 0, (size_t)z * sizeof *s->point);
   for (int j = 0; j < s->method->stages; j++) {
-    DVI_TRY(dvi__field_select(s->field, s->first + j));
+    DVI_TRY(dvi__vector_field_select(s->field, s->first + j));
     for (int c = 0; c < z; c++) {
       double *column = s->slope + (size_t)(j * z + c) * (size_t)z;
-      s->point[c] = unit_of(s, c);
-      dvi__field_product(s->field, s->point, s->image);
+      s->point[c] = stages_unit_of(s, c);
+      dvi__vector_field_product(s->field, s->point, s->image);
       s->point[c] = 0;
       for (int i = 0; i < s->n; i++) {
         column[i] = h * s->image[s->n + i];
@@ -81,49 +86,50 @@ static dvi_status slopes(dvi__stages *s, double h)
   return DVI_OK;
 }
 
-/* Entry (i,c) of block (j,k). */
-static double entry(const dvi__stages *s, int j, int i, int k, int c)
+/* Return entry (i,c) of block (j,k). */
+static double stages_entry(const dvi__stages *s, int j, int i, int k, int c)
 {
   const int z = 2 * s->n;
   return (j == k && i == c) - s->method->a[j][k] * s->slope[(j * z + c) * z + i];
 }
 
-static dvi_status matrix(dvi__stages *s, double h, int transposed, double *values)
+static dvi_status stages_matrix(dvi__stages *s, double h, int transposed, double *values)
 {
   const int z = 2 * s->n;
-  DVI_TRY(slopes(s, h));
+  DVI_TRY(stages_slopes(s, h));
   for (int column = 0; column < s->unknowns; column++)
     for (int row = 0; row < s->unknowns; row++)
-      *values++ = transposed ? entry(s, column / z, column % z, row / z, row % z)
-                             : entry(s, row / z, row % z, column / z, column % z);
+      *values++ = transposed ? stages_entry(s, column / z, column % z, row / z, row % z)
+                             : stages_entry(s, row / z, row % z, column / z, column % z);
   return DVI_OK;
 }
 
-/* ---- making it ---- */
+/* ---- create ---- */
 
-static dvi_status allocate(dvi__stages *s)
+static dvi_status stages_allocate(dvi__stages *s)
 {
   const size_t z = 2 * (size_t)s->n, all = (size_t)s->unknowns;
-  s->slope = DVI_NEW(double, z *z *(size_t)s->method->stages);
-  s->values = DVI_NEW(double, all *all);
+  s->slope = DVI_NEW(double, (z * z * (size_t)s->method->stages));
+  s->values = DVI_NEW(double, (all * all));
   s->point = DVI_NEW(double, z);
   s->image = DVI_NEW(double, z);
   s->x = DVI_NEW(double, all);
   s->R = DVI_NEW(double, all);
   if (s->slope && s->values && s->point && s->image && s->x && s->R) return DVI_OK;
-  return dvi__fail(DVI_NO_MEMORY, "no memory for %d stages in %d dimensions", s->method->stages, s->n);
+  return dvi__fail(DVI_NO_MEMORY, "no memory for %d stages in %d dimensions", s->method->stages,
+                   s->n);
 }
 
-static dvi_status fill(dvi__stages *s, dvi_counters *counters)
+static dvi_status stages_initialise(dvi__stages *s, dvi_counters *counters)
 {
   DVI_TRY(dvi__pattern_copy(&(dvi_pattern){0}, s->unknowns, "stages", &s->pattern));
-  DVI_TRY(allocate(s));
+  DVI_TRY(stages_allocate(s));
   DVI_TRY(dvi__linear_create(&s->pattern, DVI__LINEAR_DENSE, counters, &s->transposed));
   return dvi__linear_create(&s->pattern, DVI__LINEAR_DENSE, counters, &s->linear);
 }
 
-dvi_status dvi__stages_create(dvi__field *field, int n, const dvi__runge_kutta *method, dvi_counters *counters,
-                              dvi__stages **stages)
+dvi_status dvi__stages_create(dvi__vector_field *field, int n, const dvi__runge_kutta *method,
+                              dvi_counters *counters, dvi__stages **stages)
 {
   *stages = NULL;
   dvi__stages *s = DVI_NEW(dvi__stages, 1);
@@ -132,7 +138,7 @@ dvi_status dvi__stages_create(dvi__field *field, int n, const dvi__runge_kutta *
   s->method = method;
   s->n = n;
   s->unknowns = 2 * n * method->stages;
-  const dvi_status status = fill(s, counters);
+  const dvi_status status = stages_initialise(s, counters);
   if (status != DVI_OK) dvi__stages_destroy(&s);
   *stages = s;
   return status;
@@ -160,25 +166,28 @@ void dvi__stages_unit(dvi__stages *s, const double *unit)
   s->unit = unit;
 }
 
-/* ---- solving ---- */
+/* ---- solve ---- */
 
 dvi_status dvi__stages_factor(dvi__stages *s, int first, double h)
 {
   s->first = first;
-  DVI_TRY(matrix(s, h, 0, s->values));
+  DVI_TRY(stages_matrix(s, h, 0, s->values));
   return dvi__linear_factor(s->linear, s->values);
 }
 
-/* At the points of the last residual. */
-static dvi_status renew(dvi__stages *s)
+/* Compute the Jacobian at the points of the last residual. */
+static dvi_status stages_renew_jacobian(dvi__stages *s)
 {
-  DVI_TRY(dvi__field_differentiate(s->field, s->first, s->method->stages));
+  DVI_TRY(dvi__vector_field_differentiate(s->field, s->first, s->method->stages));
   const dvi_status status = dvi__stages_factor(s, s->first, s->h);
-  return status == DVI_SINGULAR ? dvi__fail_in(DVI_NOT_CONVERGED, "the stages' Jacobian cannot be factored") : status;
+  return status == DVI_SINGULAR
+             ? dvi__fail_in(DVI_NOT_CONVERGED, "the stages' Jacobian cannot be factored")
+             : status;
 }
 
-/* Newton's method to roundoff: to corrections of a few roundings, or to noise that shrinks no more. The Jacobian is kept while they shrink fast. */
-static dvi_status newton(dvi__stages *s)
+/* Iterate by Newton's method to roundoff, that is until corrections are a few roundings, or are
+ * noise that does not shrink. The Jacobian is kept while the corrections shrink fast. */
+static dvi_status stages_newton(dvi__stages *s)
 {
   enum { MOST = 40 };
   const size_t all = (size_t)s->unknowns;
@@ -186,12 +195,13 @@ static dvi_status newton(dvi__stages *s)
   double last = HUGE_VAL;
   int fresh = 0;
   for (int iteration = 0; iteration < MOST; iteration++) {
-    DVI_TRY(residual(s, s->x, s->R));
-    if (!fresh) DVI_TRY(renew(s));
+    DVI_TRY(stages_residual(s, s->x, s->R));
+    if (!fresh) DVI_TRY(stages_renew_jacobian(s));
     dvi__linear_solve(s->linear, s->R);
     for (size_t i = 0; i < all; i++) s->x[i] -= s->R[i];
     const double correction = dvi__largest(all, s->R), whole = dvi__largest(all, s->x);
-    if (correction <= few * whole || (correction <= noise * whole && correction >= 0.5 * last)) return DVI_OK;
+    if (correction <= few * whole || (correction <= noise * whole && correction >= 0.5 * last))
+      return DVI_OK;
     if (!(correction <= 1e300)) break;
     fresh = correction <= fast * last;
     last = correction;
@@ -199,37 +209,39 @@ static dvi_status newton(dvi__stages *s)
   return dvi__fail(DVI_NOT_CONVERGED, "Newton's method does not settle (change %.1e)", last);
 }
 
-/* From stages that all move as z does. */
-dvi_status dvi__stages_solve(dvi__stages *s, int first, double t, double h, const double *z, double *W)
+/* Start from stages that all move as z does. */
+dvi_status dvi__stages_solve(dvi__stages *s, int first, double t, double h, const double *z,
+                             double *W)
 {
   s->first = first;
   s->t = t;
   s->h = h;
   s->z = z;
-  DVI_TRY(dvi__field_place(s->field, first, t, z, z + s->n, s->image));
+  DVI_TRY(dvi__vector_field_place(s->field, first, t, z, z + s->n, s->image));
   for (int j = 0; j < s->method->stages; j++)
-    for (int i = 0; i < 2 * s->n; i++) at(s, s->x, j)[i] = h / unit_of(s, i) * s->image[i];
-  DVI_TRY(newton(s));
-  DVI_TRY(residual(s, s->x, s->R));
+    for (int i = 0; i < 2 * s->n; i++)
+      stages_at(s, s->x, j)[i] = h / stages_unit_of(s, i) * s->image[i];
+  DVI_TRY(stages_newton(s));
+  DVI_TRY(stages_residual(s, s->x, s->R));
   memcpy(W, s->x, (size_t)s->unknowns * sizeof *W);
-  scale(s, 0, W);
+  stages_scale(s, 0, W);
   return DVI_OK;
 }
 
 dvi_status dvi__stages_solve_transposed(dvi__stages *s, int first, double h, double *x)
 {
   s->first = first;
-  DVI_TRY(matrix(s, h, 1, s->values));
+  DVI_TRY(stages_matrix(s, h, 1, s->values));
   DVI_TRY(dvi__linear_factor(s->transposed, s->values));
-  scale(s, 0, x);
+  stages_scale(s, 0, x);
   dvi__linear_solve(s->transposed, x);
-  scale(s, 1, x);
+  stages_scale(s, 1, x);
   return DVI_OK;
 }
 
 void dvi__stages_apply(dvi__stages *s, double *x)
 {
-  scale(s, 1, x);
+  stages_scale(s, 1, x);
   dvi__linear_solve(s->linear, x);
-  scale(s, 0, x);
+  stages_scale(s, 0, x);
 }

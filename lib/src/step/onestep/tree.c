@@ -1,8 +1,10 @@
-/* The conditions under which a Runge-Kutta method has an order: one for each rooted tree,
+/* A Runge-Kutta method has an order if it satisfies one condition for each rooted tree.
  *
- *     sum_i b_i g_i(root) = 1 / product over all vertices of the size of what stands on them,
- *     g_i(vertex) = product over its children of sum_j a_ij g_j(child).
- * Trees are listed by the levels of their vertices, from the tallest to the bush (Beyer and Hedetniemi 1980). */
+ *     sum_i b_i g_i(root) = 1 / product over all vertices of the number of vertices above or at it,
+ *     g_i(vertex) = product over its children of sum_j a_ij g_j(child)
+ *
+ * Trees are listed by the levels of their vertices, from the tallest to the bush (Beyer and
+ * Hedetniemi 1980). */
 #include <math.h>
 #include <stdio.h>
 
@@ -11,14 +13,15 @@
 
 enum { TEXT = 4 * DVI__TREES_MOST };
 
-/* levels[0] = 0 is the root; the children of a vertex are those of the next level that follow it. */
+/* levels[0] = 0 is the root. The children of a vertex are the vertices of the next level that
+ * follow. */
 typedef struct tree {
   int order;
   int level[DVI__TREES_MOST];
 } tree;
 
-/* The next tree of this order; 0 after the last one. */
-static int next(tree *t)
+/* Advance to the next tree of this order. Returns 0 after the last one. */
+static int tree_next(tree *t)
 {
   int p = t->order - 1;
   while (p > 0 && t->level[p] == 1) p--;
@@ -29,14 +32,15 @@ static int next(tree *t)
   return 1;
 }
 
-/* g of the vertex at `at`, and behind it the first vertex that does not stand on it. *density is multiplied by the sizes. */
-static int weigh(const dvi__runge_kutta *m, const tree *t, int at, double *g, double *density)
+/* Compute g of the vertex at `at`. Returns the first vertex behind its subtree, and multiplies
+ * *density by the sizes. */
+static int tree_weigh(const dvi__runge_kutta *m, const tree *t, int at, double *g, double *density)
 {
   double of_child[DVI__RK_STAGES_MOST];
   int end = at + 1;
   for (int i = 0; i < m->stages; i++) g[i] = 1;
   while (end < t->order && t->level[end] > t->level[at]) {
-    end = weigh(m, t, end, of_child, density);
+    end = tree_weigh(m, t, end, of_child, density);
     for (int i = 0; i < m->stages; i++) {
       double sum = 0;
       for (int j = 0; j < m->stages; j++) sum += m->a[i][j] * of_child[j];
@@ -47,8 +51,8 @@ static int weigh(const dvi__runge_kutta *m, const tree *t, int at, double *g, do
   return end;
 }
 
-/* Each vertex as a bracket around its children. */
-static void draw(const tree *t, char text[TEXT])
+/* Write each vertex as a bracket around its children. */
+static void tree_draw(const tree *t, char text[TEXT])
 {
   int length = 0;
   for (int i = 0; i < t->order; i++) {
@@ -59,28 +63,33 @@ static void draw(const tree *t, char text[TEXT])
   text[length] = 0;
 }
 
-/* Roundings of coefficients that may be given as decimals of a double's digits. */
+/* Coefficients may be given as decimals with the digits of a double, and have this rounding. */
 static const double rounding = 1e-12;
 
-/* What a sum that is off by this little hints at. */
-static const char *hint(double off)
+/* Suggest a cause for a sum with a small error. */
+static const char *tree_hint(double off)
 {
-  return fabs(off) < 1e-3 ? ", to 1e-12; are the decimals cut off? fractions and 15 digits are exact enough" : "";
+  return fabs(off) < 1e-3
+             ? ", to 1e-12; are the decimals cut off? fractions and 15 digits are exact enough"
+             : "";
 }
 
 static dvi_status check_tree(const dvi__runge_kutta *m, const tree *t)
 {
   double g[DVI__RK_STAGES_MOST], density = 1, sum = 0, size = 0;
-  (void)weigh(m, t, 0, g, &density);
+  (void)tree_weigh(m, t, 0, g, &density);
   for (int i = 0; i < m->stages; i++) {
     sum += m->b[i] * g[i];
     size += fabs(m->b[i] * g[i]);
   }
   if (fabs(sum - 1 / density) <= rounding * (1 + size)) return DVI_OK;
   char text[TEXT];
-  draw(t, text);
-  return dvi__fail(DVI_BAD_OPTION, "the tableau has not order %d: the sum of its condition for the tree %s is %.15g, not %s%.0f%s",
-                   t->order, text, sum, density > 1 ? "1/" : "", density, hint(sum - 1 / density));
+  tree_draw(t, text);
+  return dvi__fail(DVI_BAD_OPTION,
+                   "the tableau has not order %d: the sum of its condition for the tree %s is "
+                   "%.15g, not %s%.0f%s",
+                   t->order, text, sum, density > 1 ? "1/" : "", density,
+                   tree_hint(sum - 1 / density));
 }
 
 dvi_status dvi__runge_kutta_check(const dvi__runge_kutta *method, int order)
@@ -89,14 +98,15 @@ dvi_status dvi__runge_kutta_check(const dvi__runge_kutta *method, int order)
     double sum = 0;
     for (int j = 0; j < method->stages; j++) sum += method->a[i][j];
     if (!(fabs(sum - method->c[i]) <= rounding * (1 + fabs(sum))))
-      return dvi__fail(DVI_BAD_OPTION, "the tableau's row %d of a has the sum %.15g, but c is %.15g there%s", i + 1, sum,
-                       method->c[i], hint(sum - method->c[i]));
+      return dvi__fail(DVI_BAD_OPTION,
+                       "the tableau's row %d of a has the sum %.15g, but c is %.15g there%s", i + 1,
+                       sum, method->c[i], tree_hint(sum - method->c[i]));
   }
   for (int n = 1; n <= order && n <= DVI__TREES_MOST; n++) {
     tree t = {.order = n};
     for (int i = 0; i < n; i++) t.level[i] = i;
     do DVI_TRY(check_tree(method, &t));
-    while (next(&t));
+    while (tree_next(&t));
   }
   return DVI_OK;
 }

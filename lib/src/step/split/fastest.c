@@ -7,7 +7,8 @@
 #include "core/status.h"
 #include "num/cholesky.h"
 
-/* The power method with 2^SQUARINGS powers: eigenvalues closer than a thousandth of themselves are not told from each other. */
+/* The power method uses 2^SQUARINGS powers. Eigenvalues that differ by less than a thousandth are
+ * not resolved. */
 enum { MOST = DVI__FASTEST_MOST, SQUARINGS = 12 };
 
 struct dvi__fastest {
@@ -17,9 +18,9 @@ struct dvi__fastest {
   double *H_qq, *H_qv, *H_vv; /* [entries] */
 };
 
-/* ---- making it ---- */
+/* ---- create ---- */
 
-static dvi_status fill(dvi__fastest *f, const char *fast, dvi_counters *counters)
+static dvi_status fastest_initialise(dvi__fastest *f, const char *fast, dvi_counters *counters)
 {
   const dvi_system *system = f->system;
   DVI_TRY(dvi__evaluator_create(system, 1, DVI__HESSIANS, counters, &f->evaluator));
@@ -32,12 +33,13 @@ static dvi_status fill(dvi__fastest *f, const char *fast, dvi_counters *counters
   return DVI_OK;
 }
 
-dvi_status dvi__fastest_create(const dvi_system *system, const char *fast, dvi_counters *counters, dvi__fastest **fastest)
+dvi_status dvi__fastest_create(const dvi_system *system, const char *fast, dvi_counters *counters,
+                               dvi__fastest **fastest)
 {
   dvi__fastest *f = *fastest = DVI_NEW(dvi__fastest, 1);
   if (f == NULL) return dvi__fail(DVI_NO_MEMORY, "frequency: no memory");
   f->system = system;
-  const dvi_status status = fill(f, fast, counters);
+  const dvi_status status = fastest_initialise(f, fast, counters);
   if (status != DVI_OK) dvi__fastest_destroy(fastest);
   return status;
 }
@@ -54,10 +56,11 @@ void dvi__fastest_destroy(dvi__fastest **fastest)
   *fastest = NULL;
 }
 
-/* ---- the frequency ---- */
+/* ---- frequency ---- */
 
-/* The coordinates' part of a symmetric matrix, times a sign. */
-static void gather(const dvi__fastest *f, const dvi__pattern *pattern, const double *values, double sign, long double *part)
+/* Write the coordinates' part of a symmetric matrix, times a sign. */
+static void fastest_gather(const dvi__fastest *f, const dvi__pattern *pattern, const double *values,
+                           double sign, long double *part)
 {
   for (int k = 0; k < f->count; k++)
     for (int l = 0; l < f->count; l++) {
@@ -66,7 +69,7 @@ static void gather(const dvi__fastest *f, const dvi__pattern *pattern, const dou
     }
 }
 
-static void transpose(int n, long double *A)
+static void fastest_transpose(int n, long double *A)
 {
   for (int k = 0; k < n; k++)
     for (int l = 0; l < k; l++) {
@@ -76,12 +79,12 @@ static void transpose(int n, long double *A)
     }
 }
 
-/* K <- C^{-1} K C^{-T} */
-static void reduce(int n, const long double *C, long double *K)
+/* Set K <- C^{-1} K C^{-T}. */
+static void fastest_reduce(int n, const long double *C, long double *K)
 {
   for (int side = 0; side < 2; side++) {
     for (int k = 0; k < n; k++) dvi__cholesky_half(n, C, K + k * n);
-    transpose(n, K);
+    fastest_transpose(n, K);
   }
 }
 
@@ -92,8 +95,8 @@ static long double trace_of_product(int n, const long double *A, const long doub
   return sum;
 }
 
-/* A <- A^2 over its trace; A is symmetric. */
-static void square(int n, long double *A)
+/* Set A <- A^2 over its trace, for a symmetric A. */
+static void fastest_square(int n, long double *A)
 {
   long double product[MOST * MOST];
   const long double trace = trace_of_product(n, A, A);
@@ -106,27 +109,30 @@ static void square(int n, long double *A)
   memcpy(A, product, (size_t)(n * n) * sizeof *A);
 }
 
-/* The eigenvalue of the largest magnitude, from a high power of K: but for its scale that is the projection on the eigenvectors. */
+/* Return the eigenvalue of the largest magnitude. A high power of K is, up to its scale, the
+ * projection on the eigenvectors. */
 static double largest_eigenvalue(int n, const long double *K)
 {
   long double power[MOST * MOST], trace = 0;
   memcpy(power, K, (size_t)(n * n) * sizeof *K);
-  for (int k = 0; k < SQUARINGS; k++) square(n, power);
+  for (int k = 0; k < SQUARINGS; k++) fastest_square(n, power);
   for (int k = 0; k < n; k++) trace += power[k * n + k];
   return (double)(trace_of_product(n, K, power) / trace);
 }
 
-dvi_status dvi__fastest_frequency(dvi__fastest *f, double t, const double *q, const double *v, double *omega)
+dvi_status dvi__fastest_frequency(dvi__fastest *f, double t, const double *q, const double *v,
+                                  double *omega)
 {
   long double K[MOST * MOST] = {0}, M[MOST * MOST] = {0};
   DVI_TRY(dvi__lagrangian_hessian(f->evaluator, 1, &t, q, v, f->H_qq, f->H_qv, f->H_vv));
-  gather(f, &f->system->qq, f->H_qq, -1, K);
-  gather(f, &f->system->vv, f->H_vv, 1, M);
+  fastest_gather(f, &f->system->qq, f->H_qq, -1, K);
+  fastest_gather(f, &f->system->vv, f->H_vv, 1, M);
   dvi__cholesky(f->count, M);
-  reduce(f->count, M, K);
+  fastest_reduce(f->count, M, K);
   const double square_of_it = largest_eigenvalue(f->count, K);
   if (!(square_of_it > 0) || !isfinite(square_of_it))
-    return dvi__fail(DVI_BAD_STATE, "the fast coordinates do not oscillate about this state; give omega");
+    return dvi__fail(DVI_BAD_STATE,
+                     "the fast coordinates do not oscillate about this state; give omega");
   *omega = sqrt(square_of_it);
   return DVI_OK;
 }

@@ -11,50 +11,51 @@
 #include "num/compensated.h"
 #include "num/eigen.h"
 
-/* Coordinates that are coupled, and their modes. */
+/* A block of coupled coordinates and their modes. */
 typedef struct block {
   int size;
-  const int *member; /* [size] ascending */
-  double *X, *MX;    /* [size*size] by columns, a mode each */
+  const int *member; /* [size] coordinates, ascending */
+  double *X, *MX;    /* [size*size] modes as columns */
 } block;
 
 struct dvi__modes {
   int n, block_count, largest;
   block *blocks;
-  int *member;                /* [n], block after block; modes stand in the same order */
-  double *values;             /* of all X, then of all MX */
+  int *member;                /* [n] coordinates, block after block; modes have the same order */
+  double *values;             /* owns all X and all MX */
   double *square;             /* [n] lambda */
-  double h;                   /* of the numbers below; 0: of none */
+  double h;                   /* length of step of the numbers below (0 before the first) */
   double *factor;             /* [3*n] h c_1, h^2 c_2, s c_2 of each mode */
   double *w, *force, *change; /* [n] work */
 };
 
-static dvi_status no_memory(void)
+static dvi_status modes_no_memory(void)
 {
   return dvi__fail(DVI_NO_MEMORY, "normal modes: no memory");
 }
 
 /* ---- blocks ---- */
 
-static int root_of(int *parent, int i)
+static int modes_root_of(int *parent, int i)
 {
   while (parent[i] != i) i = parent[i] = parent[parent[i]];
   return i;
 }
 
-/* parent[i] becomes the first coordinate of the block that i belongs to. */
-static void join(const dvi__pattern *pattern, int *parent)
+/* Set parent[i] to the first coordinate of the block of coordinate i. */
+static void modes_join_blocks(const dvi__pattern *pattern, int *parent)
 {
   for (int i = 0; i < pattern->columns; i++) parent[i] = i;
   for (int j = 0; j < pattern->columns; j++)
     for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++) {
-      const int a = root_of(parent, pattern->row[e]), b = root_of(parent, j);
+      const int a = modes_root_of(parent, pattern->row[e]), b = modes_root_of(parent, j);
       parent[a > b ? a : b] = a > b ? b : a;
     }
-  for (int i = 0; i < pattern->columns; i++) parent[i] = root_of(parent, i);
+  for (int i = 0; i < pattern->columns; i++) parent[i] = modes_root_of(parent, i);
 }
 
-/* Blocks in the order of their first coordinates; `first` then says the number of a coordinate's block. */
+/* List blocks in the order of their first coordinates. `first` becomes the number of a coordinate's
+ * block. */
 static void list_blocks(dvi__modes *m, int *first)
 {
   int *at = m->member;
@@ -74,26 +75,28 @@ static void list_blocks(dvi__modes *m, int *first)
   }
 }
 
-static dvi_status find_blocks(dvi__modes *m, const dvi__pattern *pattern, int most)
+static dvi_status modes_find_blocks(dvi__modes *m, const dvi__pattern *pattern, int most)
 {
   int *first = DVI_NEW(int, m->n);
   m->blocks = DVI_NEW(block, m->n);
   m->member = DVI_NEW(int, m->n);
   const int complete = first != NULL && m->blocks != NULL && m->member != NULL;
   if (complete) {
-    join(pattern, first);
+    modes_join_blocks(pattern, first);
     list_blocks(m, first);
   }
   dvi__release(first);
-  if (!complete) return no_memory();
+  if (!complete) return modes_no_memory();
   if (m->largest <= most) return DVI_OK;
-  return dvi__fail(DVI_BAD_SIZE, "normal modes: %d coordinates are coupled; %d at most are possible", m->largest, most);
+  return dvi__fail(DVI_BAD_SIZE,
+                   "normal modes: %d coordinates are coupled; %d at most are possible", m->largest,
+                   most);
 }
 
 /* ---- the modes of a block ---- */
 
-/* Where a coordinate stands among the members. */
-static int place_of(const block *b, int i)
+/* Return the index of a coordinate among the members. */
+static int modes_place_of(const block *b, int i)
 {
   int low = 0, high = b->size - 1;
   while (low < high) {
@@ -106,46 +109,50 @@ static int place_of(const block *b, int i)
   return low;
 }
 
-static void gather(const dvi__pattern *pattern, const double *values, const block *b, double *dense)
+static void modes_gather(const dvi__pattern *pattern, const double *values, const block *b,
+                         double *dense)
 {
   memset(dense, 0, (size_t)b->size * (size_t)b->size * sizeof(double));
   for (int j = 0; j < b->size; j++)
     for (int e = pattern->start[b->member[j]]; e < pattern->start[b->member[j] + 1]; e++)
-      dense[(size_t)j * (size_t)b->size + (size_t)place_of(b, pattern->row[e])] = values[e];
+      dense[(size_t)j * (size_t)b->size + (size_t)modes_place_of(b, pattern->row[e])] = values[e];
 }
 
-/* What rounding leaves of a frequency of zero would hold a free motion as a spring. */
-static void clean(int size, double *square)
+/* Clear squared frequencies of the size of rounding errors, which would hold a free motion as a
+ * spring. */
+static void modes_clear_rounding(int size, double *square)
 {
   const double rounding = size * DBL_EPSILON * fmax(fabs(square[0]), fabs(square[size - 1]));
   for (int k = 0; k < size; k++)
     if (fabs(square[k]) <= rounding) square[k] = 0;
 }
 
-/* MX = M X, by the entries of M. */
-static void multiply(const dvi__quadratic *q, const block *b)
+/* Set MX = M X, by the entries of M. */
+static void modes_multiply(const dvi__quadratic *q, const block *b)
 {
   const size_t size = (size_t)b->size;
   for (int j = 0; j < b->size; j++)
     for (int e = q->pattern.start[b->member[j]]; e < q->pattern.start[b->member[j] + 1]; e++)
-      for (size_t k = 0, i = (size_t)place_of(b, q->pattern.row[e]); k < size; k++)
+      for (size_t k = 0, i = (size_t)modes_place_of(b, q->pattern.row[e]); k < size; k++)
         b->MX[k * size + i] += q->mass[e] * b->X[k * size + (size_t)j];
 }
 
-static dvi_status find_modes(const dvi__quadratic *q, const block *b, double *square, double *K, double *M)
+static dvi_status find_modes(const dvi__quadratic *q, const block *b, double *square, double *K,
+                             double *M)
 {
-  gather(&q->pattern, q->stiffness, b, K);
-  gather(&q->pattern, q->mass, b, M);
+  modes_gather(&q->pattern, q->stiffness, b, K);
+  modes_gather(&q->pattern, q->mass, b, M);
   if (b->size > 1) {
     DVI_TRY(dvi__eigen_symmetric(b->size, K, M, square, b->X));
-    clean(b->size, square);
-  } else if (M[0] > 0) { /* many blocks are a coordinate alone */
+    modes_clear_rounding(b->size, square);
+  } else if (M[0] > 0) { /* many blocks have one coordinate */
     square[0] = K[0] / M[0];
     b->X[0] = 1 / sqrt(M[0]);
   } else {
-    return dvi__fail(DVI_SINGULAR, "normal modes: the mass of coordinate %d is not positive", b->member[0]);
+    return dvi__fail(DVI_SINGULAR, "normal modes: the mass of coordinate %d is not positive",
+                     b->member[0]);
   }
-  multiply(q, b);
+  modes_multiply(q, b);
   return DVI_OK;
 }
 
@@ -153,9 +160,11 @@ static dvi_status find_all_modes(dvi__modes *m, const dvi__quadratic *q)
 {
   const size_t most = (size_t)m->largest * (size_t)m->largest;
   size_t entries = 0;
-  for (int k = 0; k < m->block_count; k++) entries += (size_t)m->blocks[k].size * (size_t)m->blocks[k].size;
-  double *K = DVI_NEW(double, most), *M = DVI_NEW(double, most), *X = m->values = DVI_NEW(double, 2 * entries);
-  dvi_status status = K != NULL && M != NULL && X != NULL ? DVI_OK : no_memory();
+  for (int k = 0; k < m->block_count; k++)
+    entries += (size_t)m->blocks[k].size * (size_t)m->blocks[k].size;
+  double *K = DVI_NEW(double, most), *M = DVI_NEW(double, most),
+         *X = m->values = DVI_NEW(double, 2 * entries);
+  dvi_status status = K != NULL && M != NULL && X != NULL ? DVI_OK : modes_no_memory();
   for (int k = 0; k < m->block_count && status == DVI_OK; k++) {
     block *b = &m->blocks[k];
     b->X = X;
@@ -168,9 +177,10 @@ static dvi_status find_all_modes(dvi__modes *m, const dvi__quadratic *q)
   return status;
 }
 
-/* ---- making them ---- */
+/* ---- create ---- */
 
-static dvi_status fill(dvi__modes *m, const dvi_system *system, int most, dvi__evaluator *evaluator, dvi__quadratic *q)
+static dvi_status modes_initialise(dvi__modes *m, const dvi_system *system, int most,
+                                   dvi__evaluator *evaluator, dvi__quadratic *q)
 {
   const size_t n = (size_t)m->n;
   DVI_TRY(dvi__quadratic_fill(system, evaluator, q));
@@ -179,12 +189,13 @@ static dvi_status fill(dvi__modes *m, const dvi_system *system, int most, dvi__e
   m->w = DVI_NEW(double, n);
   m->force = DVI_NEW(double, n);
   m->change = DVI_NEW(double, n);
-  if (!m->square || !m->factor || !m->w || !m->force || !m->change) return no_memory();
-  DVI_TRY(find_blocks(m, &q->pattern, most));
+  if (!m->square || !m->factor || !m->w || !m->force || !m->change) return modes_no_memory();
+  DVI_TRY(modes_find_blocks(m, &q->pattern, most));
   return find_all_modes(m, q);
 }
 
-dvi_status dvi__modes_create(const dvi_system *system, int most, dvi_counters *counters, dvi__modes **modes)
+dvi_status dvi__modes_create(const dvi_system *system, int most, dvi_counters *counters,
+                             dvi__modes **modes)
 {
   dvi__evaluator *evaluator;
   dvi__quadratic quadratic = {.mass = NULL};
@@ -192,7 +203,9 @@ dvi_status dvi__modes_create(const dvi_system *system, int most, dvi_counters *c
   DVI_TRY(dvi__evaluator_create(system, 1, DVI__HESSIANS, counters, &evaluator));
   dvi__modes *made = *modes = DVI_NEW(dvi__modes, 1);
   if (made != NULL) made->n = system->n;
-  const dvi_status status = made != NULL ? fill(made, system, most, evaluator, &quadratic) : no_memory();
+  const dvi_status status = made != NULL
+                                ? modes_initialise(made, system, most, evaluator, &quadratic)
+                                : modes_no_memory();
   dvi__quadratic_clear(&quadratic);
   dvi__evaluator_destroy(&evaluator);
   if (status != DVI_OK) dvi__modes_destroy(modes);
@@ -240,7 +253,7 @@ void dvi__modes_range(const dvi__modes *m, double *least, double *most)
   *least = high > 0 ? sqrt(low) : 0;
 }
 
-/* ---- from coordinates to modes and back ---- */
+/* ---- coordinates and modes ---- */
 
 void dvi__modes_of_forces(const dvi__modes *m, const double *f, double *y)
 {
@@ -252,29 +265,33 @@ void dvi__modes_of_forces(const dvi__modes *m, const double *f, double *y)
     }
 }
 
-/* x += a column for each mode. */
-static void add_columns(const block *b, const double *columns, const double *y, double *x)
+/* Add the column of each mode, times y, to x. */
+static void modes_add_columns(const block *b, const double *columns, const double *y, double *x)
 {
   for (int k = 0; k < b->size; k++)
-    for (int i = 0; i < b->size; i++) x[b->member[i]] += columns[(size_t)k * (size_t)b->size + (size_t)i] * y[k];
+    for (int i = 0; i < b->size; i++)
+      x[b->member[i]] += columns[(size_t)k * (size_t)b->size + (size_t)i] * y[k];
 }
 
 void dvi__modes_to_coordinates(const dvi__modes *m, const double *y, double *q)
 {
   memset(q, 0, (size_t)m->n * sizeof(double));
-  for (const block *b = m->blocks; b < m->blocks + m->block_count; y += b++->size) add_columns(b, b->X, y, q);
+  for (const block *b = m->blocks; b < m->blocks + m->block_count; y += b++->size)
+    modes_add_columns(b, b->X, y, q);
 }
 
 void dvi__modes_to_forces(const dvi__modes *m, const double *y, double *f)
 {
   memset(f, 0, (size_t)m->n * sizeof(double));
-  for (const block *b = m->blocks; b < m->blocks + m->block_count; y += b++->size) add_columns(b, b->MX, y, f);
+  for (const block *b = m->blocks; b < m->blocks + m->block_count; y += b++->size)
+    modes_add_columns(b, b->MX, y, f);
 }
 
 /* ---- motion ---- */
 
-/* The hyperbolic functions of x = sqrt(-s); sinh x - x by its series where it cancels. */
-static void grow(double s, double c[4])
+/* Compute the hyperbolic functions of x = sqrt(-s), and sinh x - x by its series where it
+ * cancels. */
+static void modes_hyperbolic(double s, double c[4])
 {
   const double x = sqrt(-s), half = sinh(0.5 * x) / x;
   c[0] = cosh(x);
@@ -288,7 +305,7 @@ static void grow(double s, double c[4])
 void dvi__modes_functions(double s, double c[4])
 {
   if (s < 0)
-    grow(s, c);
+    modes_hyperbolic(s, c);
   else
     dvi__stumpff_four(s, c);
 }
@@ -306,7 +323,8 @@ static void make_factors(dvi__modes *m, double h)
   m->h = h;
 }
 
-/* y(h) - y = h c_1 w - h^2 c_2 X^T V_q,      w(h) - w = -h c_1 X^T V_q - s c_2 w. */
+/* Move each mode by y(h) - y = h c_1 w - h^2 c_2 X^T V_q and w(h) - w = -h c_1 X^T V_q - s c_2
+ * w. */
 void dvi__modes_move(dvi__modes *m, double h, const double *V_q, const dvi__phase *phase)
 {
   double *w = m->w, *force = m->force;
@@ -314,12 +332,13 @@ void dvi__modes_move(dvi__modes *m, double h, const double *V_q, const dvi__phas
   dvi__modes_of_forces(m, phase->p, w);
   dvi__modes_of_forces(m, V_q, force);
   for (int k = 0; k < m->n; k++) {
-    const double *factor = m->factor + 3 * (ptrdiff_t)k, y_change = factor[0] * w[k] - factor[1] * force[k];
+    const double *factor = m->factor + 3 * (ptrdiff_t)k,
+                 y_change = factor[0] * w[k] - factor[1] * force[k];
     w[k] = -factor[0] * force[k] - factor[2] * w[k];
     force[k] = y_change;
   }
   dvi__modes_to_coordinates(m, force, m->change);
-  dvi__add_compensated_all(m->n, phase->q, phase->q_carry, m->change);
+  dvi__add_compensated_all(m->n, phase->q, phase->q_compensation, m->change);
   dvi__modes_to_forces(m, w, m->change);
-  dvi__add_compensated_all(m->n, phase->p, phase->p_carry, m->change);
+  dvi__add_compensated_all(m->n, phase->p, phase->p_compensation, m->change);
 }

@@ -1,4 +1,4 @@
-/* Charts at one point of a configuration space, and what passes between them and the space. */
+/* Charts at one point of a configuration space, and maps between the charts and the space. */
 #include "system/chart/charted_struct.h"
 
 #include <math.h>
@@ -9,24 +9,26 @@
 
 /* ---- create, destroy ---- */
 
-static dvi_status make_system(dvi__charted *x)
+static dvi_status make_charted_system(dvi__charted *x)
 {
   const int reduced = x->reduced.bodies != NULL;
-  const dvi_lagrangian lagrangian = {.value_batch = reduced ? dvi__reduced_value : dvi__charted_value,
-                                     .gradient_batch = reduced ? dvi__reduced_gradient : dvi__charted_gradient,
-                                     .hessian_batch = reduced ? dvi__reduced_hessian : dvi__charted_hessian,
-                                     .qq = {x->qq.start, x->qq.row},
-                                     .qv = {x->qv.start, x->qv.row},
-                                     .vv = {x->vv.start, x->vv.row},
-                                     .user = x};
-  return dvi_system_create(&(dvi_system_terms){.dimension = x->base->nx, .lagrangian = &lagrangian}, &x->system);
+  const dvi_lagrangian lagrangian = {
+      .value_batch = reduced ? dvi__reduced_value : dvi__charted_value,
+      .gradient_batch = reduced ? dvi__reduced_gradient : dvi__charted_gradient,
+      .hessian_batch = reduced ? dvi__reduced_hessian : dvi__charted_hessian,
+      .qq = {x->qq.start, x->qq.row},
+      .qv = {x->qv.start, x->qv.row},
+      .vv = {x->vv.start, x->vv.row},
+      .user = x};
+  return dvi_system_create(&(dvi_system_terms){.dimension = x->base->nx, .lagrangian = &lagrangian},
+                           &x->system);
 }
 
-static dvi_status allocate(dvi__charted *x)
+static dvi_status charted_allocate(dvi__charted *x)
 {
-  const size_t group = (size_t)x->base->n * DVI__GROUP, cells = (size_t)x->base->cell_count;
-  x->chart = DVI_NEW(dvi__chart, cells);
-  x->functions = DVI_NEW(dvi__functions, DVI__GROUP * cells);
+  const size_t group = (size_t)x->base->n * DVI__GROUP, slots = (size_t)x->base->slot_count;
+  x->chart = DVI_NEW(dvi__chart, slots);
+  x->functions = DVI_NEW(dvi__functions, DVI__GROUP * slots);
   x->t = DVI_NEW(double, DVI__GROUP);
   x->y = DVI_NEW(double, group);
   x->rate = DVI_NEW(double, group);
@@ -35,31 +37,34 @@ static dvi_status allocate(dvi__charted *x)
   x->L_yy = DVI_NEW(double, (size_t)dvi__pattern_entries(&x->base->qq) * DVI__GROUP);
   x->T = DVI_NEW(double, 3 * (size_t)x->base->n);
   x->S = DVI_NEW(double, 3 * (size_t)x->base->n);
-  x->curved = DVI_NEW(double, 9 * cells);
-  x->mixed = DVI_NEW(double, 9 * cells);
-  if (x->chart && x->functions && x->t && x->y && x->rate && x->L_y && x->w && x->L_yy && x->T && x->S && x->curved && x->mixed)
+  x->curved = DVI_NEW(double, 9 * slots);
+  x->mixed = DVI_NEW(double, 9 * slots);
+  if (x->chart && x->functions && x->t && x->y && x->rate && x->L_y && x->w && x->L_yy && x->T &&
+      x->S && x->curved && x->mixed)
     return DVI_OK;
-  return dvi__fail(DVI_NO_MEMORY, "charts: no memory for %zu factors", cells);
+  return dvi__fail(DVI_NO_MEMORY, "charts: no memory for %zu factors", slots);
 }
 
-static dvi_status fill(dvi__charted *x, const dvi_system *system, int reduced, dvi_counters *counters)
+static dvi_status charted_fill(dvi__charted *x, const dvi_system *system, int reduced,
+                               dvi_counters *counters)
 {
   x->base = system;
   x->counters = counters;
   DVI_TRY(dvi__system_prepare_hessian(system));
-  DVI_TRY(allocate(x));
+  DVI_TRY(charted_allocate(x));
   DVI_TRY(dvi__evaluator_create(system, DVI__GROUP, DVI__HESSIANS, counters, &x->evaluator));
   if (reduced) DVI_TRY(dvi__reduced_create(system, &x->reduced));
   DVI_TRY(dvi__charted_make_patterns(x));
   if (reduced) DVI_TRY(dvi__reduced_place(x));
-  return make_system(x);
+  return make_charted_system(x);
 }
 
-dvi_status dvi__charted_create(const dvi_system *system, int reduced, dvi_counters *counters, dvi__charted **charted)
+dvi_status dvi__charted_create(const dvi_system *system, int reduced, dvi_counters *counters,
+                               dvi__charted **charted)
 {
   dvi__charted *x = *charted = DVI_NEW(dvi__charted, 1);
   if (x == NULL) return dvi__fail(DVI_NO_MEMORY, "charts: no memory");
-  const dvi_status status = fill(x, system, reduced, counters);
+  const dvi_status status = charted_fill(x, system, reduced, counters);
   if (status != DVI_OK) dvi__charted_destroy(charted);
   return status;
 }
@@ -74,11 +79,13 @@ void dvi__charted_destroy(dvi__charted **charted)
   dvi__pattern_clear(&x->qv);
   dvi__pattern_clear(&x->vv);
   dvi__reduced_clear(&x->reduced);
-  void *const own[] = {x->functions,  x->chart,      x->cell,       x->cell_of_x,  x->t,         x->y,         x->rate,
-                       x->L_y,        x->w,          x->L_yy,       x->T,          x->S,         x->curved,    x->mixed,
-                       x->in_qq,      x->mass_in_qq, x->mass_in_qv, x->mass_in_vv, x->own_in_qq, x->own_in_qv, x->own_in_vv,
-                       x->coupled_in, x->W,          x->end,        x->moment,     x->impulse,   x->turned_T,  x->turned_S,
-                       x->C_q1,       x->C_qq,       x->C_qv};
+  void *const own[] = {x->functions,  x->chart,      x->slot,       x->slot_of_x, x->t,
+                       x->y,          x->rate,       x->L_y,        x->w,         x->L_yy,
+                       x->T,          x->S,          x->curved,     x->mixed,     x->in_qq,
+                       x->mass_in_qq, x->mass_in_qv, x->mass_in_vv, x->own_in_qq, x->own_in_qv,
+                       x->own_in_vv,  x->coupled_in, x->W,          x->end,       x->moment,
+                       x->impulse,    x->turned_T,   x->turned_S,   x->C_q1,      x->C_qq,
+                       x->C_qv};
   for (size_t i = 0; i < sizeof own / sizeof *own; i++) dvi__release(own[i]);
   dvi__release(x);
   *charted = NULL;
@@ -89,45 +96,49 @@ const dvi_system *dvi__charted_system(const dvi__charted *x)
   return x->system;
 }
 
-/* ---- between the charts and the space ---- */
+/* ---- maps between the charts and the space ---- */
 
 void dvi__charted_centre(dvi__charted *x, const double *q)
 {
-  for (int c = 0; c < x->base->cell_count; c++) dvi__chart_centre(x->base->cells[c].kind, q + x->base->cells[c].q, &x->chart[c]);
+  for (int c = 0; c < x->base->slot_count; c++)
+    dvi__chart_centre(x->base->slots[c].kind, q + x->base->slots[c].q, &x->chart[c]);
   x->failure = DVI_OK;
 }
 
 void dvi__charted_enter(const dvi__charted *x, const double *stored, double *local)
 {
-  for (int c = 0; c < x->base->cell_count; c++)
-    dvi__chart_enter(&x->chart[c], stored + x->base->cells[c].v, local + x->base->cells[c].x);
+  for (int c = 0; c < x->base->slot_count; c++)
+    dvi__chart_enter(&x->chart[c], stored + x->base->slots[c].v, local + x->base->slots[c].x);
 }
 
 void dvi__charted_store(const dvi__charted *x, const double *local, double *stored)
 {
-  for (int c = 0; c < x->base->cell_count; c++)
-    dvi__chart_store(&x->chart[c], local + x->base->cells[c].x, stored + x->base->cells[c].v);
+  for (int c = 0; c < x->base->slot_count; c++)
+    dvi__chart_store(&x->chart[c], local + x->base->slots[c].x, stored + x->base->slots[c].v);
 }
 
 void dvi__charted_arrive(const dvi__charted *x, const dvi__phase *local, const dvi__phase *state)
 {
-  for (int c = 0; c < x->base->cell_count; c++) {
-    const dvi__cell *at = &x->base->cells[c];
-    double *y = state->q + at->q, *y_carry = state->q_carry + at->q, *p = state->p + at->v, *p_carry = state->p_carry + at->v;
+  for (int c = 0; c < x->base->slot_count; c++) {
+    const dvi__factor_slot *at = &x->base->slots[c];
+    double *y = state->q + at->q, *y_compensation = state->q_compensation + at->q,
+           *p = state->p + at->v, *p_compensation = state->p_compensation + at->v;
     if (dvi__turns(at)) {
-      dvi__chart_carry(&x->chart[c], local->q + at->x, x->impulse + 3 * c, y, y_carry, p, p_carry);
+      dvi__chart_transport(&x->chart[c], local->q + at->x, x->impulse + 3 * c, y, y_compensation, p,
+                           p_compensation);
     } else {
-      dvi__chart_move(&x->chart[c], local->q + at->x, y, y_carry);
+      dvi__chart_move(&x->chart[c], local->q + at->x, y, y_compensation);
       *p = local->p[at->x];
-      *p_carry = local->p_carry[at->x];
+      *p_compensation = local->p_compensation[at->x];
     }
   }
 }
 
-void dvi__charted_point(const dvi__charted *x, const double *xi, const double *rate, double *q, double *v)
+void dvi__charted_point(const dvi__charted *x, const double *xi, const double *rate, double *q,
+                        double *v)
 {
-  for (int c = 0; c < x->base->cell_count; c++) {
-    const dvi__cell *at = &x->base->cells[c];
+  for (int c = 0; c < x->base->slot_count; c++) {
+    const dvi__factor_slot *at = &x->base->slots[c];
     if (q != NULL) dvi__chart_place(&x->chart[c], xi + at->x, q + at->q);
     if (v == NULL) continue;
     dvi__functions functions;
@@ -138,35 +149,38 @@ void dvi__charted_point(const dvi__charted *x, const double *xi, const double *r
 
 void dvi__charted_inverse(const dvi__charted *x, const double *q, double *xi)
 {
-  for (int c = 0; c < x->base->cell_count; c++) dvi__chart_inverse(&x->chart[c], q + x->base->cells[c].q, xi + x->base->cells[c].x);
+  for (int c = 0; c < x->base->slot_count; c++)
+    dvi__chart_inverse(&x->chart[c], q + x->base->slots[c].q, xi + x->base->slots[c].x);
 }
 
 dvi_status dvi__charted_too_large(double turned)
 {
-  return dvi__fail(DVI_STEP_TOO_LARGE, "a step too large: a rotation by %.3g is beyond the chart, whose bound is half a turn, %.3g",
-                   turned, dvi__chart_bound(DVI__ROTATION));
+  return dvi__fail(
+      DVI_STEP_TOO_LARGE,
+      "a step too large: a rotation by %.3g is beyond the chart, whose bound is half a turn, %.3g",
+      turned, dvi__chart_bound(DVI__ROTATION));
 }
 
 dvi_status dvi__charted_check(const dvi__charted *x, const double *xi)
 {
-  for (int c = 0; c < x->base->cell_count; c++) {
-    const dvi__cell *cell = &x->base->cells[c];
-    const double angle = dvi__chart_angle(cell->kind, xi + cell->x);
-    if (!(angle < dvi__chart_bound(cell->kind))) return dvi__charted_too_large(angle);
+  for (int c = 0; c < x->base->slot_count; c++) {
+    const dvi__factor_slot *slot = &x->base->slots[c];
+    const double angle = dvi__chart_angle(slot->kind, xi + slot->x);
+    if (!(angle < dvi__chart_bound(slot->kind))) return dvi__charted_too_large(angle);
   }
   return DVI_OK;
 }
 
-/* Where every number of `system` was finite, those of the charts are too large. */
+/* If every number of `system` was finite, numbers of the charts are too large. */
 dvi_status dvi__charted_explain(const dvi__charted *x, dvi_status status)
 {
   const int by_callback = status == DVI_CALLBACK_RETRY || status == DVI_CALLBACK_FAILED;
   const int behind = status == DVI_STEP_TOO_LARGE && x->failure != DVI_STEP_TOO_LARGE;
-  if (x->failure != DVI_OK && (by_callback || behind)) return dvi__fail(x->failure, "%s", x->sentence);
+  if (x->failure != DVI_OK && (by_callback || behind))
+    return dvi__fail(x->failure, "%s", x->sentence);
   if (x->failure == DVI_OK && status == DVI_NOT_FINITE)
-    return dvi__fail(
-        DVI_NOT_FINITE,
-        "the derivatives of the Lagrangian overflow at this state: its velocities or forces are too large; other units "
-        "make them smaller");
+    return dvi__fail(DVI_NOT_FINITE, "the derivatives of the Lagrangian overflow at this state: "
+                                     "its velocities or forces are too large; other units "
+                                     "make them smaller");
   return status;
 }

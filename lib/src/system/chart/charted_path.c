@@ -1,7 +1,12 @@
-/* Paths from the centre. Moving the centre turns a path in space. Let N = y x L_y + y' x w be the moment of what the Lagrangian does to a rotation or a
- * direction, and mu its angular momentum. Then mu1 = mu0 + h sum_j b_j N_j, and the chart's momentum at the end is p1 = W(xi1) mu1 (group/chart.h). So
+/* Paths from the centre. Moving the centre turns a path in space. Let N = y x L_y + y' x w be the
+ * moment that the Lagrangian exerts on a rotation or a direction, and mu its angular momentum. Then
+ * mu1 = mu0 + h sum_j b_j N_j, and the chart's momentum at the end is p1 = W(xi1) mu1
+ * (group/chart.h). So
+ *
  *     C = W(xi1) mu1 - p0 - h sum_j b_j L_xi_j.
- * Without it steps have the same order, but keep neither momenta nor the symplectic form: they would have a discrete Lagrangian of their own in every step. */
+ *
+ * Without C steps have the same order, but keep neither momenta nor the symplectic form. They would
+ * have a discrete Lagrangian of their own in every step. */
 #include "system/chart/charted_struct.h"
 
 #include <math.h>
@@ -10,59 +15,64 @@
 #include "core/memory.h"
 #include "core/status.h"
 
-/* values [stored*size] = rows y x times W^T. */
-static void turn_rows(const dvi__cell *cell, const double *y, const double *W, double *values)
+/* Compute values [stored*size], the rows y x times W^T. */
+static void turn_rows(const dvi__factor_slot *slot, const double *y, const double *W,
+                      double *values)
 {
-  const int size = dvi__chart_size(cell->kind);
+  const int size = dvi__chart_size(slot->kind);
   double rows[3 * DVI__CHART_POINT];
-  dvi__chart_turns(cell->kind, y, rows);
-  for (int i = 0; i < dvi__chart_stored(cell->kind); i++)
+  dvi__chart_turns(slot->kind, y, rows);
+  for (int i = 0; i < dvi__chart_stored(slot->kind); i++)
     for (int b = 0; b < size; b++)
-      values[i * size + b] = rows[3 * i] * W[3 * b] + rows[3 * i + 1] * W[3 * b + 1] + rows[3 * i + 2] * W[3 * b + 2];
+      values[i * size + b] = rows[3 * i] * W[3 * b] + rows[3 * i + 1] * W[3 * b + 1] +
+                             rows[3 * i + 2] * W[3 * b + 2];
 }
 
 static void times_W(int size, const double *W, const double *columns, double *product)
 {
   for (int a = 0; a < size; a++)
     for (int b = 0; b < size; b++)
-      product[a * size + b] = W[3 * a] * columns[3 * b] + W[3 * a + 1] * columns[3 * b + 1] + W[3 * a + 2] * columns[3 * b + 2];
+      product[a * size + b] = W[3 * a] * columns[3 * b] + W[3 * a + 1] * columns[3 * b + 1] +
+                              W[3 * a + 2] * columns[3 * b + 2];
 }
 
-/* W times what the moment N of fixed covectors a, b changes by with xi and its rate: T_j x a + S_j x b, T_j x b. */
-static void moment_change(const dvi__charted *x, const dvi__cell *cell, const double *W, const double *a, const double *b,
-                          double *in_xi, double *in_rate)
+/* Compute W times the change of the moment N of fixed covectors a, b with xi and its rate. These
+ * are T_j x a + S_j x b and T_j x b. */
+static void moment_change(const dvi__charted *x, const dvi__factor_slot *slot, const double *W,
+                          const double *a, const double *b, double *in_xi, double *in_rate)
 {
-  const int size = dvi__chart_size(cell->kind);
+  const int size = dvi__chart_size(slot->kind);
   double by_xi[9] = {0}, by_rate[9] = {0};
   for (int j = 0; j < size; j++) {
     double T[DVI__CHART_POINT], S[DVI__CHART_POINT];
-    for (int i = 0; i < dvi__chart_stored(cell->kind); i++) {
-      T[i] = x->T[3 * cell->q + i * size + j];
-      S[i] = x->S[3 * cell->q + i * size + j];
+    for (int i = 0; i < dvi__chart_stored(slot->kind); i++) {
+      T[i] = x->T[3 * slot->q + i * size + j];
+      S[i] = x->S[3 * slot->q + i * size + j];
     }
-    dvi__chart_add_moment(cell->kind, T, a, by_xi + 3 * j);
-    dvi__chart_add_moment(cell->kind, S, b, by_xi + 3 * j);
-    dvi__chart_add_moment(cell->kind, T, b, by_rate + 3 * j);
+    dvi__chart_add_moment(slot->kind, T, a, by_xi + 3 * j);
+    dvi__chart_add_moment(slot->kind, S, b, by_xi + 3 * j);
+    dvi__chart_add_moment(slot->kind, T, b, by_rate + 3 * j);
   }
   times_W(size, W, by_xi, in_xi);
   times_W(size, W, by_rate, in_rate);
 }
 
-/* W N_xi and W N_xi' at point k of a group, into C_qq and C_qv. */
+/* Add W N_xi and W N_xi' at point k of a group to C_qq and C_qv. */
 void dvi__charted_add_moment_changes(dvi__charted *x, int count, int first, int group, int k)
 {
   const size_t to = (size_t)first + (size_t)k;
   memset(x->turned_T, 0, 3 * (size_t)x->base->n * sizeof(double));
   memset(x->turned_S, 0, 3 * (size_t)x->base->n * sizeof(double));
-  for (int c = 0; c < x->base->cell_count; c++) {
-    const dvi__cell *cell = &x->base->cells[c];
-    double y[DVI__CHART_POINT], v[DVI__CHART_POINT], a[DVI__CHART_POINT], b[DVI__CHART_POINT], in_xi[9], in_rate[9];
-    if (!dvi__turns(cell)) continue;
-    dvi__charted_pair(cell, group, k, x->y, x->rate, y, v);
-    dvi__charted_pair(cell, group, k, x->L_y, x->w, a, b);
-    turn_rows(cell, y, x->W + 9 * c, x->turned_T + 3 * (size_t)cell->q);
-    turn_rows(cell, v, x->W + 9 * c, x->turned_S + 3 * (size_t)cell->q);
-    moment_change(x, cell, x->W + 9 * c, a, b, in_xi, in_rate);
+  for (int c = 0; c < x->base->slot_count; c++) {
+    const dvi__factor_slot *slot = &x->base->slots[c];
+    double y[DVI__CHART_POINT], v[DVI__CHART_POINT], a[DVI__CHART_POINT], b[DVI__CHART_POINT],
+        in_xi[9], in_rate[9];
+    if (!dvi__turns(slot)) continue;
+    dvi__charted_pair(slot, group, k, x->y, x->rate, y, v);
+    dvi__charted_pair(slot, group, k, x->L_y, x->w, a, b);
+    turn_rows(slot, y, x->W + 9 * c, x->turned_T + 3 * (size_t)slot->q);
+    turn_rows(slot, v, x->W + 9 * c, x->turned_S + 3 * (size_t)slot->q);
+    moment_change(x, slot, x->W + 9 * c, a, b, in_xi, in_rate);
     dvi__charted_add_own_blocks(x, c, in_xi, in_rate, (size_t)count, to, x->C_qq, x->C_qv);
   }
   dvi__charted_add_potentials(x, group, k, x->turned_T, (size_t)count, to, x->C_qq);
@@ -72,8 +82,9 @@ void dvi__charted_add_moment_changes(dvi__charted *x, int count, int first, int 
 
 void dvi__charted_find_turns(dvi__charted *x)
 {
-  for (int c = 0; c < x->base->cell_count; c++)
-    if (dvi__turns(&x->base->cells[c])) dvi__chart_moments(&x->chart[c], x->end + x->base->cells[c].x, x->W + 9 * c);
+  for (int c = 0; c < x->base->slot_count; c++)
+    if (dvi__turns(&x->base->slots[c]))
+      dvi__chart_moments(&x->chart[c], x->end + x->base->slots[c].x, x->W + 9 * c);
 }
 
 int dvi__charted_on_path(const dvi__charted *x, int count)
@@ -88,15 +99,17 @@ void dvi__charted_clear_changes(dvi__charted *x, int count)
   memset(x->C_qv, 0, (size_t)dvi__pattern_entries(&x->qv) * points);
 }
 
-/* C -= H in the rows of what turns. */
-static void subtract_rows(const dvi__charted *x, const dvi__pattern *pattern, size_t count, const double *H, double *C)
+/* Subtract H from C in the rows of slots that turn. */
+static void subtract_rows(const dvi__charted *x, const dvi__pattern *pattern, size_t count,
+                          const double *H, double *C)
 {
   for (int e = 0; e < dvi__pattern_entries(pattern); e++)
-    if (dvi__turns(&x->base->cells[x->cell_of_x[pattern->row[e]]]))
+    if (dvi__turns(&x->base->slots[x->slot_of_x[pattern->row[e]]]))
       for (size_t k = (size_t)e * count; k < ((size_t)e + 1) * count; k++) C[k] -= H[k];
 }
 
-void dvi__charted_finish_changes(const dvi__charted *x, int count, const double *L_qq, const double *L_qv)
+void dvi__charted_finish_changes(const dvi__charted *x, int count, const double *L_qq,
+                                 const double *L_qv)
 {
   subtract_rows(x, &x->qq, (size_t)count, L_qq, x->C_qq);
   subtract_rows(x, &x->qv, (size_t)count, L_qv, x->C_qv);
@@ -110,68 +123,77 @@ static void place_path(void *of, const double *q0, const double *q1)
   memcpy(x->end, q1, (size_t)x->base->nx * sizeof *q1);
 }
 
-/* mu1 - mu0 = h sum_j b_j N_j of cell c. */
-static void impulse_of(const dvi__charted *x, int c, int nodes, double h, const double *weight, double *impulse)
+/* Compute mu1 - mu0 = h sum_j b_j N_j of slot c. */
+static void impulse_of(const dvi__charted *x, int c, int nodes, double h, const double *weight,
+                       double *impulse)
 {
   double in_space[3] = {0};
   for (int i = 0; i < 3; i++)
-    for (int j = 0; j < nodes; j++) in_space[i] += h * weight[j] * x->moment[(3 * c + i) * x->capacity + j];
+    for (int j = 0; j < nodes; j++)
+      in_space[i] += h * weight[j] * x->moment[(3 * c + i) * x->capacity + j];
   memset(impulse, 0, 3 * sizeof *impulse);
   dvi__chart_add_impulse(&x->chart[c], in_space, impulse);
 }
 
-/* mu1 */
-static void angular_momentum(const dvi__charted *x, int c, const double *p0, const double *impulse, double *mu)
+/* Compute mu1 of slot c. */
+static void angular_momentum(const dvi__charted *x, int c, const double *p0, const double *impulse,
+                             double *mu)
 {
-  dvi__chart_angular_momentum(&x->chart[c], p0 + x->base->cells[c].x, mu);
+  dvi__chart_angular_momentum(&x->chart[c], p0 + x->base->slots[c].x, mu);
   for (int i = 0; i < 3; i++) mu[i] += impulse[i];
 }
 
-/* C of cell c, whose impulse is known. */
-static void correct_cell(const dvi__charted *x, int c, const double *p0, const double *dp, double *C)
+/* Compute C of slot c, whose impulse is known. */
+static void correct_slot(const dvi__charted *x, int c, const double *p0, const double *dp,
+                         double *C)
 {
-  const dvi__cell *cell = &x->base->cells[c];
+  const dvi__factor_slot *slot = &x->base->slots[c];
   double mu[3], p1[DVI__CHART_SIZE];
   angular_momentum(x, c, p0, x->impulse + 3 * c, mu);
-  dvi__chart_momentum(&x->chart[c], x->end + cell->x, mu, p1);
-  for (int i = 0; i < dvi__chart_size(cell->kind); i++) C[cell->x + i] = p1[i] - p0[cell->x + i] - dp[cell->x + i];
+  dvi__chart_momentum(&x->chart[c], x->end + slot->x, mu, p1);
+  for (int i = 0; i < dvi__chart_size(slot->kind); i++)
+    C[slot->x + i] = p1[i] - p0[slot->x + i] - dp[slot->x + i];
 }
 
-static void correct_path(void *of, int nodes, double h, const double *weight, const double *p0, const double *dp, double *C)
+static void correct_path(void *of, int nodes, double h, const double *weight, const double *p0,
+                         const double *dp, double *C)
 {
   dvi__charted *x = of;
   memset(C, 0, (size_t)x->base->nx * sizeof *C);
-  for (int c = 0; c < x->base->cell_count && x->from_centre; c++)
-    if (dvi__turns(&x->base->cells[c])) {
+  for (int c = 0; c < x->base->slot_count && x->from_centre; c++)
+    if (dvi__turns(&x->base->slots[c])) {
       impulse_of(x, c, nodes, h, weight, x->impulse + 3 * c);
-      correct_cell(x, c, p0, dp, C);
+      correct_slot(x, c, p0, dp, C);
     }
 }
 
-/* Where nothing but the group's own motion changes momenta. */
-static void correct_reduced(void *of, int nodes, double h, const double *weight, const double *p0, const double *dp, double *C)
+/* Compute C where nothing but the group's own motion changes momenta. */
+static void correct_reduced(void *of, int nodes, double h, const double *weight, const double *p0,
+                            const double *dp, double *C)
 {
   dvi__charted *x = of;
   (void)nodes, (void)h, (void)weight;
   memset(C, 0, (size_t)x->base->nx * sizeof *C);
   for (int b = 0; b < x->reduced.count && x->from_centre; b++) {
-    const int c = x->reduced.bodies[b].cell;
+    const int c = x->reduced.bodies[b].slot;
     dvi__reduced_impulse(x, &x->reduced.bodies[b], p0, x->impulse + 3 * c);
-    correct_cell(x, c, p0, dp, C);
+    correct_slot(x, c, p0, dp, C);
   }
 }
 
-/* In whatever frame it is summed up, one component of a turn's momentum is rounded as the largest one. */
-static void mix_magnitudes(void *of, int s, double *magnitude)
+/* In every frame of the sum, one component of a turn's momentum is rounded as the largest component
+ * is. */
+static void mix_turn_magnitudes(void *of, int s, double *magnitude)
 {
   const dvi__charted *x = of;
-  for (int c = 0; c < x->base->cell_count; c++) {
-    const dvi__cell *cell = &x->base->cells[c];
-    double *rows = magnitude + cell->x * s;
-    for (int k = 0; k < s && dvi__turns(cell); k++) {
+  for (int c = 0; c < x->base->slot_count; c++) {
+    const dvi__factor_slot *slot = &x->base->slots[c];
+    double *rows = magnitude + slot->x * s;
+    for (int k = 0; k < s && dvi__turns(slot); k++) {
       double largest = 0;
-      for (int i = 0; i < dvi__chart_size(cell->kind); i++) largest = fmax(largest, rows[i * s + k]);
-      for (int i = 0; i < dvi__chart_size(cell->kind); i++) rows[i * s + k] = largest;
+      for (int i = 0; i < dvi__chart_size(slot->kind); i++)
+        largest = fmax(largest, rows[i * s + k]);
+      for (int i = 0; i < dvi__chart_size(slot->kind); i++) rows[i * s + k] = largest;
     }
   }
 }
@@ -180,29 +202,31 @@ static double largest_turn(void *of, int s, const double *points, const double *
 {
   const dvi__charted *x = of;
   double largest = 0;
-  for (int c = 0; c < x->base->cell_count; c++) {
-    const dvi__cell *cell = &x->base->cells[c];
-    for (int k = cell->x * s; k < (cell->x + 1) * s && cell->kind != DVI__LINE; k++) {
+  for (int c = 0; c < x->base->slot_count; c++) {
+    const dvi__factor_slot *slot = &x->base->slots[c];
+    for (int k = slot->x * s; k < (slot->x + 1) * s && slot->kind != DVI__LINE; k++) {
       double turn[DVI__CHART_SIZE];
-      for (int i = 0; i < dvi__chart_size(cell->kind); i++) turn[i] = points[k + i * s] - (others != NULL ? others[k + i * s] : 0);
-      largest = fmax(largest, dvi__chart_angle(cell->kind, turn));
+      for (int i = 0; i < dvi__chart_size(slot->kind); i++)
+        turn[i] = points[k + i * s] - (others != NULL ? others[k + i * s] : 0);
+      largest = fmax(largest, dvi__chart_angle(slot->kind, turn));
     }
   }
   return largest;
 }
 
-/* Into the diagonal block of C_q1. */
-static void derive_cell(const dvi__charted *x, int c, const double *p0, const double *impulse)
+/* Add the derivative of C to the diagonal block of C_q1. */
+static void derive_slot(const dvi__charted *x, int c, const double *p0, const double *impulse)
 {
-  const dvi__cell *cell = &x->base->cells[c];
-  const int size = dvi__chart_size(cell->kind);
+  const dvi__factor_slot *slot = &x->base->slots[c];
+  const int size = dvi__chart_size(slot->kind);
   double mu[3], derivative[9];
   angular_momentum(x, c, p0, impulse, mu);
-  dvi__chart_momentum_derivative(&x->chart[c], x->end + cell->x, mu, derivative);
+  dvi__chart_momentum_derivative(&x->chart[c], x->end + slot->x, mu, derivative);
   dvi__charted_add_block(&x->own_in_qq[c], size, size, derivative, 1, 0, x->C_q1);
 }
 
-static void name_changes(const dvi__charted *x, const double **C_q1, const double **C_qq, const double **C_qv)
+static void name_changes(const dvi__charted *x, const double **C_q1, const double **C_qq,
+                         const double **C_qv)
 {
   memset(x->C_q1, 0, (size_t)dvi__pattern_entries(&x->qq) * sizeof(double));
   *C_q1 = x->C_q1;
@@ -210,21 +234,21 @@ static void name_changes(const dvi__charted *x, const double **C_q1, const doubl
   *C_qv = x->C_qv;
 }
 
-static void derive_path(void *of, int nodes, double h, const double *weight, const double *p0, const double **C_q1,
-                        const double **C_qq, const double **C_qv)
+static void derive_path(void *of, int nodes, double h, const double *weight, const double *p0,
+                        const double **C_q1, const double **C_qq, const double **C_qv)
 {
   dvi__charted *x = of;
   double impulse[3];
   name_changes(x, C_q1, C_qq, C_qv);
-  for (int c = 0; c < x->base->cell_count && x->from_centre; c++)
-    if (dvi__turns(&x->base->cells[c])) {
+  for (int c = 0; c < x->base->slot_count && x->from_centre; c++)
+    if (dvi__turns(&x->base->slots[c])) {
       impulse_of(x, c, nodes, h, weight, impulse);
-      derive_cell(x, c, p0, impulse);
+      derive_slot(x, c, p0, impulse);
     }
 }
 
-static void derive_reduced(void *of, int nodes, double h, const double *weight, const double *p0, const double **C_q1,
-                           const double **C_qq, const double **C_qv)
+static void derive_reduced(void *of, int nodes, double h, const double *weight, const double *p0,
+                           const double **C_q1, const double **C_qq, const double **C_qv)
 {
   dvi__charted *x = of;
   double impulse[3];
@@ -232,38 +256,42 @@ static void derive_reduced(void *of, int nodes, double h, const double *weight, 
   name_changes(x, C_q1, C_qq, C_qv);
   for (int b = 0; b < x->reduced.count && x->from_centre; b++) {
     dvi__reduced_impulse(x, &x->reduced.bodies[b], p0, impulse);
-    derive_cell(x, x->reduced.bodies[b].cell, p0, impulse);
+    derive_slot(x, x->reduced.bodies[b].slot, p0, impulse);
     dvi__reduced_derive(x, &x->reduced.bodies[b], &x->coupled_in[b], p0, x->C_q1);
   }
 }
 
-static dvi_status reserve(dvi__charted *x, int nodes)
+static dvi_status charted_reserve(dvi__charted *x, int nodes)
 {
-  const size_t cells = (size_t)x->base->cell_count, n = (size_t)x->base->n, qq = (size_t)dvi__pattern_entries(&x->qq);
+  const size_t slots = (size_t)x->base->slot_count, n = (size_t)x->base->n,
+               qq = (size_t)dvi__pattern_entries(&x->qq);
   x->capacity = nodes;
-  x->W = DVI_NEW(double, 9 * cells);
+  x->W = DVI_NEW(double, 9 * slots);
   x->end = DVI_NEW(double, x->base->nx);
-  x->impulse = DVI_NEW(double, 3 * cells);
-  x->moment = DVI_NEW(double, 3 * cells * (size_t)nodes);
+  x->impulse = DVI_NEW(double, 3 * slots);
+  x->moment = DVI_NEW(double, 3 * slots * (size_t)nodes);
   x->turned_T = DVI_NEW(double, 3 * n);
   x->turned_S = DVI_NEW(double, 3 * n);
   x->C_q1 = DVI_NEW(double, qq);
   x->C_qq = DVI_NEW(double, qq *(size_t)nodes);
   x->C_qv = DVI_NEW(double, (size_t)dvi__pattern_entries(&x->qv) * (size_t)nodes);
-  if (x->W && x->end && x->impulse && x->moment && x->turned_T && x->turned_S && x->C_q1 && x->C_qq && x->C_qv) return DVI_OK;
+  if (x->W && x->end && x->impulse && x->moment && x->turned_T && x->turned_S && x->C_q1 &&
+      x->C_qq && x->C_qv)
+    return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "charts: no memory for %d nodes", nodes);
 }
 
 dvi_status dvi__charted_centring(dvi__charted *x, int nodes, dvi__centring *centring)
 {
+  const int reduced = x->reduced.bodies != NULL;
   int signs = 1;
-  for (int c = 0; c < x->base->cell_count; c++) signs &= x->base->cells[c].kind != DVI__SPHERE;
-  *centring = (dvi__centring){x,
-                              signs,
-                              place_path,
-                              x->reduced.bodies != NULL ? correct_reduced : correct_path,
-                              mix_magnitudes,
-                              largest_turn,
-                              x->reduced.bodies != NULL ? derive_reduced : derive_path};
-  return reserve(x, nodes);
+  for (int c = 0; c < x->base->slot_count; c++) signs &= x->base->slots[c].kind != DVI__SPHERE;
+  *centring = (dvi__centring){.of = x,
+                              .signs = signs,
+                              .place = place_path,
+                              .correct = reduced ? correct_reduced : correct_path,
+                              .mix = mix_turn_magnitudes,
+                              .turn = largest_turn,
+                              .derive = reduced ? derive_reduced : derive_path};
+  return charted_reserve(x, nodes);
 }

@@ -1,6 +1,6 @@
-/* Rotations, rigid motions and directions, with a constant mass: L = y'.My'/2 - V(t,y) on the stored
- * coordinates y, whose velocities and momenta are those of the tangent spaces. At a state they are
- * found in the charts centred there, where the mass is constant: p = L_vv v. */
+/* Rotations, rigid motions and directions with a constant mass have L = y'.My'/2 - V(t,y) on the
+ * stored coordinates y. Velocities and momenta are those of the tangent spaces. At a state they are
+ * found in the charts centred there, where the mass is constant, p = L_vv v. */
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/finite.h"
@@ -13,7 +13,7 @@
 typedef struct chart_memory {
   dvi__charted *charted;
   double *mass;         /* L_vv at the centre, in the order of the charts' vv */
-  double *rate, *local; /* [n] */
+  double *rate, *local; /* work [n] */
 } chart_memory;
 
 static int factors_are_declared(const dvi_system_terms *terms)
@@ -32,7 +32,8 @@ static dvi_status prepare_charts(dvi__evaluator *e, dvi__derivatives most)
   own->rate = DVI_NEW(double, n);
   own->local = DVI_NEW(double, n);
   own->mass = DVI_NEW(double, dvi__pattern_entries(vv));
-  if (!own->rate || !own->local || !own->mass) return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory");
+  if (!own->rate || !own->local || !own->mass)
+    return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory");
   return dvi__linear_create(vv, DVI__LINEAR_AUTO, e->counters, &e->velocity);
 }
 
@@ -47,27 +48,30 @@ static void release_charts(dvi__evaluator *e)
   dvi__release(own);
 }
 
-/* The rate of the stored coordinates. */
-static const double *rate_of(dvi__evaluator *e, const double *q, const double *v)
+/* Compute the rate of the stored coordinates. */
+static const double *rate_of_point(dvi__evaluator *e, const double *q, const double *v)
 {
   const chart_memory *own = e->own;
   dvi__factors_rate(e->system, q, v, own->rate);
   return own->rate;
 }
 
-static dvi_status value_on_manifold(dvi__evaluator *e, double t, const double *q, const double *v, double *L)
+static dvi_status value_on_manifold(dvi__evaluator *e, double t, const double *q, const double *v,
+                                    double *L)
 {
-  return dvi__lagrangian_value(e, 1, &t, q, rate_of(e, q, v), L);
+  return dvi__lagrangian_value(e, 1, &t, q, rate_of_point(e, q, v), L);
 }
 
-static dvi_status forces_on_manifold(dvi__evaluator *e, double t, const double *q, const double *v, double *L_q)
+static dvi_status forces_on_manifold(dvi__evaluator *e, double t, const double *q, const double *v,
+                                     double *L_q)
 {
-  return dvi__lagrangian_gradient(e, 1, &t, q, rate_of(e, q, v), L_q, NULL);
+  return dvi__lagrangian_gradient(e, 1, &t, q, rate_of_point(e, q, v), L_q, NULL);
 }
 
-static dvi_status momentum_on_manifold(dvi__evaluator *e, double t, const double *q, const double *v, double *p)
+static dvi_status momentum_on_manifold(dvi__evaluator *e, double t, const double *q,
+                                       const double *v, double *p)
 {
-  DVI_TRY(dvi__lagrangian_gradient(e, 1, &t, q, rate_of(e, q, v), NULL, e->point[0]));
+  DVI_TRY(dvi__lagrangian_gradient(e, 1, &t, q, rate_of_point(e, q, v), NULL, e->point[0]));
   dvi__factors_momentum(e->system, q, e->point[0], p);
   return DVI_OK;
 }
@@ -82,7 +86,8 @@ static dvi_status factor_chart_mass(dvi__evaluator *e, double t, const double *q
   return status == DVI_SINGULAR ? dvi__lagrangian_is_degenerate(t) : status;
 }
 
-static dvi_status velocity_in_charts(dvi__evaluator *e, double t, const double *q, const double *p, double *v)
+static dvi_status velocity_in_charts(dvi__evaluator *e, double t, const double *q, const double *p,
+                                     double *v)
 {
   const chart_memory *own = e->own;
   DVI_TRY(factor_chart_mass(e, t, q, NULL));

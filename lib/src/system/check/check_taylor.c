@@ -1,6 +1,8 @@
-/* Checking Taylor coefficients, all that may be asked for, along a curve q(s) of degree 3 through the point. The curve is written anew about points
- * s = +-sigma, +-2 sigma, +-3 sigma: if c_k(s) is coefficient k of a function about s, then (k+1) c_{k+1} is the slope of c_k, and central differences of 6th
- * order give it. What is asked for beside a coefficient may not change it: neither the degree nor which results are wanted. */
+/* Checking Taylor coefficients, all that may be requested, along a curve q(s) of degree 3 through
+ * the point. The curve is expanded anew about points s = +-sigma, +-2 sigma, +-3 sigma. If c_k(s)
+ * is coefficient k of a function about s, then (k+1) c_{k+1} is the slope of c_k. Central
+ * differences of 6th order give this slope. Neither the requested degree nor the set of requested
+ * results may change a coefficient. */
 #include "system/check/check_taylor.h"
 
 #include <dvi/taylor.h>
@@ -13,58 +15,74 @@
 #include "core/status.h"
 #include "system/evaluate/jet.h"
 
-enum { DEGREE = DVI_TAYLOR_MAX, COEFFICIENTS = DEGREE + 1, PROBE = 4, CURVE = 3, SIDES = 3, BLOCKS = 6, ALL = (1 << BLOCKS) - 1 };
+enum {
+  DEGREE = DVI_TAYLOR_MAX,
+  COEFFICIENTS = DEGREE + 1,
+  PROBE = 4,
+  CURVE = 3,
+  SIDES = 3,
+  BLOCKS = 6,
+  ALL = (1 << BLOCKS) - 1
+};
 
-/* The coefficients of a curve: of t [COEFFICIENTS], of q and v [COEFFICIENTS*n]. */
+/* The coefficients of a curve, t [COEFFICIENTS], q and v [COEFFICIENTS*n]. */
 typedef struct curve {
   double *t, *q, *v;
 } curve;
 
-/* A term, and its curve. */
+/* A term, which is one of potential and lagrangian, and its curve. */
 typedef struct subject {
-  const dvi__potential_term *potential; /* or: */
+  const dvi__potential_term *potential;
   const dvi__lagrangian_term *lagrangian;
-  char owner[48]; /* for messages */
+  char owner[48]; /* name for messages */
   dvi__scratch *scratch;
   int n;
-  curve own, moved;           /* the curve, and how it looks from another point */
-  size_t length[BLOCKS];      /* entries of L, L_q, L_v, L_qq, L_qv, L_vv; of a potential 0 where it has none */
-  double *here, *there, *sum; /* [COEFFICIENTS times all these]: about the point, about another, and the sum of the differences */
-  double noise[COEFFICIENTS]; /* what roundoff does to coefficients up to k */
+  curve own, moved; /* the curve, and its expansion about another point */
+  /* Counts of entries of L, L_q, L_v, L_qq, L_qv, L_vv. They are 0 where a potential has none. */
+  size_t length[BLOCKS];
+  /* Coefficients [COEFFICIENTS times the counts] about the point, about another point, and the sum
+   * of the differences. */
+  double *here, *there, *sum;
+  double noise[COEFFICIENTS]; /* effect of roundoff on coefficients up to k */
 } subject;
 
-static const char *const names[2][BLOCKS] = {{"V", "V_q", "", "V_qq", "", ""}, {"L", "L_q", "L_v", "L_qq", "L_qv", "L_vv"}};
+static const char *const names[2][BLOCKS] = {{"V", "V_q", "", "V_qq", "", ""},
+                                             {"L", "L_q", "L_v", "L_qq", "L_qv", "L_vv"}};
 
-/* ---- asking ---- */
+/* ---- evaluation ---- */
 
 static void place_blocks(const subject *s, int degree, double *all, double **block)
 {
   for (int b = 0; b < BLOCKS; all += (size_t)(degree + 1) * s->length[b++]) block[b] = all;
 }
 
-static size_t length_of(const subject *s, int degree)
+static size_t length_of_blocks(const subject *s, int degree)
 {
   size_t length = 0;
   for (int b = 0; b < BLOCKS; b++) length += (size_t)(degree + 1) * s->length[b];
   return length;
 }
 
-/* The series of the blocks that are wanted; each begins as NaN, so that what is left out is found. */
-static dvi_status series_of(const subject *s, int degree, const curve *along, unsigned wanted, double *all)
+/* Evaluate the series of the blocks in `wanted`. Each begins as NaN, so that missing numbers are
+ * found. */
+static dvi_status series_of(const subject *s, int degree, const curve *along, unsigned wanted,
+                            double *all)
 {
   double *block[BLOCKS];
   place_blocks(s, degree, all, block);
-  memset(all, 0xff, length_of(s, degree) * sizeof *all);
+  memset(all, 0xff, length_of_blocks(s, degree) * sizeof *all);
   for (int b = 0; b < BLOCKS; b++)
     if ((wanted >> b & 1U) == 0) block[b] = NULL;
   if (s->potential != NULL)
-    return dvi__potential_taylor(s->potential, s->n, degree, along->t, along->q, block[0], block[1], block[3]);
+    return dvi__potential_taylor(s->potential, s->n, degree, along->t, along->q, block[0], block[1],
+                                 block[3]);
   const dvi__jets jets = {block[0], block[1], block[2], block[3], block[4], block[5]};
   return dvi__general_taylor(s->lagrangian, s->n, degree, along->t, along->q, along->v, &jets);
 }
 
-/* x of `count` numbers a coefficient, about sigma: the binomial formula by repeated synthetic division. */
-static void shift(int count, const double *x, double sigma, double *moved)
+/* Expand x, of `count` numbers a coefficient, about sigma. Repeated synthetic division gives the
+ * binomial formula. */
+static void shift_series(int count, const double *x, double sigma, double *moved)
 {
   memcpy(moved, x, COEFFICIENTS * (size_t)count * sizeof *moved);
   for (int first = 0; first < CURVE; first++)
@@ -72,20 +90,20 @@ static void shift(int count, const double *x, double sigma, double *moved)
       for (int i = 0; i < count; i++) moved[k * count + i] += sigma * moved[(k + 1) * count + i];
 }
 
-static void move(const subject *s, double sigma)
+static void move_curve(const subject *s, double sigma)
 {
-  shift(1, s->own.t, sigma, s->moved.t);
-  shift(s->n, s->own.q, sigma, s->moved.q);
-  shift(s->n, s->own.v, sigma, s->moved.v);
+  shift_series(1, s->own.t, sigma, s->moved.t);
+  shift_series(s->n, s->own.q, sigma, s->moved.q);
+  shift_series(s->n, s->own.v, sigma, s->moved.v);
 }
 
-/* How many numbers a curve is; they stand in a row that begins with t. */
+/* Count the numbers of a curve. They stand in a row that begins with t. */
 static size_t numbers_of(int n)
 {
   return COEFFICIENTS * (2 * (size_t)n + 1);
 }
 
-/* What the one-point callbacks say, in the place of coefficient 0. */
+/* Evaluate the one-point callbacks in the place of coefficient 0. */
 static dvi_status points_at(const subject *s, double *all)
 {
   double *block[BLOCKS];
@@ -110,7 +128,7 @@ static double largest_of(size_t count, const double *x)
   return largest;
 }
 
-/* The largest coefficient k of all blocks, for terms of one may cancel in another. */
+/* Return the largest coefficient k of all blocks, for terms of one block may cancel in another. */
 static double largest_at(const subject *s, int degree, int k, const double *all)
 {
   double largest = 0;
@@ -119,26 +137,31 @@ static double largest_at(const subject *s, int degree, int k, const double *all)
   return largest;
 }
 
-/* How fast the coefficients grow: 1 over a length along the curve. */
+/* Return the growth rate of the coefficients, 1 over a length along the curve. */
 static double growth_of(const subject *s, int degree)
 {
   const double first = largest_at(s, degree, 0, s->here);
   double growth = 1;
-  for (int k = 1; k <= degree && first > 0; k++) growth = fmax(growth, pow(largest_at(s, degree, k, s->here) / first, 1.0 / k));
+  for (int k = 1; k <= degree && first > 0; k++)
+    growth = fmax(growth, pow(largest_at(s, degree, k, s->here) / first, 1.0 / k));
   return growth;
 }
 
-/* Rounding is that of the largest coefficient below, or what a rounding of the curve does, of several: a series may end though its recurrence does not. */
-static dvi_status measure_noise(subject *s)
+/* Estimate the rounding of each coefficient. This is a rounding of the largest coefficient
+ * below, or the effect of several roundings of the curve. A series may end though its recurrence
+ * does not. */
+static dvi_status measure_series_noise(subject *s)
 {
   enum { SAMPLES = 4 };
   double change[COEFFICIENTS] = {0}, largest = 0;
   for (int sample = 1; sample <= SAMPLES; sample++) {
     for (size_t i = 0; i < numbers_of(s->n); i++)
-      s->moved.t[i] = s->own.t[i] * (1 + copysign(DBL_EPSILON, cos((double)sample * (double)(i + 1))));
+      s->moved.t[i] = s->own.t[i] *
+                      (1 + copysign(DBL_EPSILON, cos((double)sample * (double)(i + 1))));
     DVI_TRY(series_of(s, DEGREE, &s->moved, ALL, s->there));
-    for (size_t i = 0; i < length_of(s, DEGREE); i++) s->there[i] -= s->here[i];
-    for (int k = 0; k <= DEGREE; k++) change[k] = fmax(change[k], largest_at(s, DEGREE, k, s->there));
+    for (size_t i = 0; i < length_of_blocks(s, DEGREE); i++) s->there[i] -= s->here[i];
+    for (int k = 0; k <= DEGREE; k++)
+      change[k] = fmax(change[k], largest_at(s, DEGREE, k, s->there));
   }
   for (int k = 0; k <= DEGREE; k++) {
     if (k > 0) change[k] = fmax(change[k], change[k - 1]);
@@ -150,9 +173,11 @@ static dvi_status measure_noise(subject *s)
 
 /* ---- comparing ---- */
 
-/* Coefficient k of one block as it is given and as it is found otherwise, with the noise of the latter. */
-static dvi_status compare(const subject *s, int b, int k, const double *given, const double *found, double noise, double tolerance,
-                          const char *how, dvi_derivative_check *result)
+/* Compare coefficient k of one block as given and as found otherwise, with the noise of the
+ * latter. */
+static dvi_status compare_coefficients(const subject *s, int b, int k, const double *given,
+                                       const double *found, double noise, double tolerance,
+                                       const char *how, dvi_derivative_check *result)
 {
   const double largest = fmax(largest_of(s->length[b], given), largest_of(s->length[b], found));
   for (size_t e = 0; e < s->length[b]; e++) {
@@ -160,10 +185,12 @@ static dvi_status compare(const subject *s, int b, int k, const double *given, c
     if (wrong > 0) result->taylor_error = fmax(result->taylor_error, wrong / largest);
     if (!(wrong > tolerance * largest)) continue;
     const char *name = names[s->potential == NULL][b];
-    (void)snprintf(result->where, sizeof result->where, "%s: Taylor coefficient %d of %s is wrong", s->owner, k, name);
+    (void)snprintf(result->where, sizeof result->where, "%s: Taylor coefficient %d of %s is wrong",
+                   s->owner, k, name);
     return dvi__fail(DVI_BAD_ARGUMENT,
-                     "system check: %s: Taylor coefficient %d of %s (entry %zu) is %.15g from the callback, %.15g %s", s->owner, k,
-                     name, e, given[e], found[e], how);
+                     "system check: %s: Taylor coefficient %d of %s (entry %zu) is %.15g from the "
+                     "callback, %.15g %s",
+                     s->owner, k, name, e, given[e], found[e], how);
   }
   return DVI_OK;
 }
@@ -175,36 +202,42 @@ static dvi_status compare_points(const subject *s, double tolerance, dvi_derivat
   place_blocks(s, DEGREE, s->there, found);
   DVI_TRY(points_at(s, s->there));
   for (int b = 0; b < BLOCKS; b++)
-    DVI_TRY(compare(s, b, 0, given[b], found[b], s->noise[0], tolerance, "from the one-point callback", result));
+    DVI_TRY(compare_coefficients(s, b, 0, given[b], found[b], s->noise[0], tolerance,
+                                 "from the one-point callback", result));
   return DVI_OK;
 }
 
-/* The same coefficients of a lower degree, where some blocks are not wanted. */
-static dvi_status compare_asked(const subject *s, int degree, unsigned wanted, double tolerance, dvi_derivative_check *result)
+/* Compare with the same coefficients of a lower degree, or with some blocks not requested. */
+static dvi_status compare_asked(const subject *s, int degree, unsigned wanted, double tolerance,
+                                dvi_derivative_check *result)
 {
   double *given[BLOCKS], *found[BLOCKS];
   char how[64];
   place_blocks(s, DEGREE, s->here, given);
   place_blocks(s, degree, s->there, found);
   DVI_TRY(series_of(s, degree, &s->own, wanted, s->there));
-  (void)snprintf(how, sizeof how, "if degree %d is asked for%s", degree, wanted == ALL ? "" : ", and other results are NULL");
+  (void)snprintf(how, sizeof how, "if degree %d is asked for%s", degree,
+                 wanted == ALL ? "" : ", and other results are NULL");
   for (int b = 0; b < BLOCKS; b++)
     for (int k = 0; k <= degree && (wanted >> b & 1U) != 0; k++) {
       const size_t at = (size_t)k * s->length[b];
-      DVI_TRY(compare(s, b, k, given[b] + at, found[b] + at, s->noise[k], tolerance, how, result));
+      DVI_TRY(compare_coefficients(s, b, k, given[b] + at, found[b] + at, s->noise[k], tolerance,
+                                   how, result));
     }
   return DVI_OK;
 }
 
-static dvi_status compare_differences(const subject *s, double tolerance, dvi_derivative_check *result)
+static dvi_status compare_differences(const subject *s, double tolerance,
+                                      dvi_derivative_check *result)
 {
   static const double weight[SIDES] = {45.0 / 60, -9.0 / 60, 1.0 / 60};
-  const double sigma = 1 / (4096 * growth_of(s, DEGREE)); /* (47 sigma)^6/140, of the last coefficient, is below rounding */
-  const size_t length = length_of(s, DEGREE);
+  /* the error (47 sigma)^6/140 of the last coefficient is below rounding */
+  const double sigma = 1 / (4096 * growth_of(s, DEGREE));
+  const size_t length = length_of_blocks(s, DEGREE);
   memset(s->sum, 0, length * sizeof *s->sum);
   for (int side = -SIDES; side <= SIDES; side++) {
     if (side == 0) continue;
-    move(s, side * sigma);
+    move_curve(s, side * sigma);
     DVI_TRY(series_of(s, DEGREE, &s->moved, ALL, s->there));
     const double w = (side > 0 ? weight[side - 1] : -weight[-side - 1]) / sigma;
     for (size_t i = 0; i < length; i++) s->sum[i] += w * s->there[i];
@@ -214,22 +247,25 @@ static dvi_status compare_differences(const subject *s, double tolerance, dvi_de
   place_blocks(s, DEGREE, s->sum, slope);
   for (int b = 0; b < BLOCKS; b++)
     for (int k = 0; k < DEGREE; k++) {
-      double *found = slope[b] + (size_t)k * s->length[b], *above = given[b] + (size_t)(k + 1) * s->length[b];
+      double *found = slope[b] + (size_t)k * s->length[b],
+             *above = given[b] + (size_t)(k + 1) * s->length[b];
       for (size_t e = 0; e < s->length[b]; e++) found[e] /= k + 1;
-      DVI_TRY(compare(s, b, k + 1, above, found, s->noise[k] / sigma / (k + 1), tolerance, "from differences", result));
+      DVI_TRY(compare_coefficients(s, b, k + 1, above, found, s->noise[k] / sigma / (k + 1),
+                                   tolerance, "from differences", result));
     }
   return DVI_OK;
 }
 
 /* ---- a term ---- */
 
-/* The coefficients about the point; along a slower curve if they grow so fast that high ones overflow. There need be no series at the point, for |x|^3 has two
- * derivatives at 0; then it is taken a little further along. */
-static dvi_status expand(subject *s)
+/* Expand about the point. If the coefficients grow so fast that high ones overflow, follow a slower
+ * curve. There need be no series at the point, for |x|^3 has two derivatives at 0. Then expand a
+ * little further along. */
+static dvi_status expand_term(subject *s)
 {
   enum { FASTEST = 1000 };
   if (series_of(s, PROBE, &s->own, ALL, s->here) > 0) {
-    move(s, 0.01);
+    move_curve(s, 0.01);
     memcpy(s->own.t, s->moved.t, numbers_of(s->n) * sizeof *s->own.t);
     DVI_TRY(series_of(s, PROBE, &s->own, ALL, s->here));
   }
@@ -247,15 +283,18 @@ static dvi_status expand(subject *s)
 
 static dvi_status compare_all(subject *s, double tolerance, dvi_derivative_check *result)
 {
-  DVI_TRY(expand(s));
-  DVI_TRY(measure_noise(s));
+  DVI_TRY(expand_term(s));
+  DVI_TRY(measure_series_noise(s));
   DVI_TRY(compare_points(s, tolerance, result));
-  for (int degree = 0; degree < DEGREE; degree++) DVI_TRY(compare_asked(s, degree, ALL, tolerance, result));
-  for (unsigned wanted = 1; wanted < ALL; wanted++) DVI_TRY(compare_asked(s, DEGREE, wanted, tolerance, result));
+  for (int degree = 0; degree < DEGREE; degree++)
+    DVI_TRY(compare_asked(s, degree, ALL, tolerance, result));
+  for (unsigned wanted = 1; wanted < ALL; wanted++)
+    DVI_TRY(compare_asked(s, DEGREE, wanted, tolerance, result));
   return compare_differences(s, tolerance, result);
 }
 
-static dvi_status check_term(subject s, const double *drawn, double tolerance, dvi_derivative_check *result)
+static dvi_status check_term(subject s, const double *drawn, double tolerance,
+                             dvi_derivative_check *result)
 {
   const size_t n = (size_t)s.n;
   const dvi__lagrangian_term *l = s.lagrangian;
@@ -265,9 +304,10 @@ static dvi_status check_term(subject s, const double *drawn, double tolerance, d
   s.length[3] = (size_t)dvi__pattern_entries(l != NULL ? &l->qq : &s.potential->qq);
   s.length[4] = l != NULL ? (size_t)dvi__pattern_entries(&l->qv) : 0;
   s.length[5] = l != NULL ? (size_t)dvi__pattern_entries(&l->vv) : 0;
-  const size_t length = length_of(&s, DEGREE);
+  const size_t length = length_of_blocks(&s, DEGREE);
   s.here = DVI_NEW(double, 3 * length);
-  if (s.here == NULL) return dvi__fail(DVI_NO_MEMORY, "system check: no memory for Taylor coefficients");
+  if (s.here == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "system check: no memory for Taylor coefficients");
   s.there = s.here + length;
   s.sum = s.there + length;
   memcpy(s.own.t, drawn, numbers_of(s.n) * sizeof *drawn);
@@ -284,8 +324,9 @@ static curve curve_in(int n, double *numbers)
   return (curve){.t = numbers, .q = q, .v = q + COEFFICIENTS * (size_t)n};
 }
 
-/* t = t0 + s; q begins along v and bends, in a way that is its own for each coordinate; v bends by itself. */
-static void draw(int n, double t0, const double *q0, const double *v0, const curve *c)
+/* Draw the curve t = t0 + s. q begins along v and bends differently for each coordinate. v bends
+ * independently. */
+static void draw_curve(int n, double t0, const double *q0, const double *v0, const curve *c)
 {
   const double size = fmax(largest_of((size_t)n, q0), largest_of((size_t)n, v0));
   const double bend = size > 0 ? size : 1;
@@ -301,17 +342,23 @@ static void draw(int n, double t0, const double *q0, const double *v0, const cur
   }
 }
 
-dvi_status dvi__check_taylor(const dvi_system *system, dvi__scratch *scratch, double t0, const double *q0, const double *v0,
-                             double tolerance, dvi_derivative_check *result)
+dvi_status dvi__check_taylor(const dvi_system *system, dvi__scratch *scratch, double t0,
+                             const double *q0, const double *v0, double tolerance,
+                             dvi_derivative_check *result)
 {
   const int n = system->n;
   const size_t numbers = numbers_of(n);
   double *drawn = DVI_NEW(double, 3 * numbers);
-  if (drawn == NULL) return dvi__fail(DVI_NO_MEMORY, "system check: no memory for a curve in %d dimensions", n);
+  if (drawn == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "system check: no memory for a curve in %d dimensions", n);
   const curve first = curve_in(n, drawn);
-  subject s = {.scratch = scratch, .n = n, .own = curve_in(n, drawn + numbers), .moved = curve_in(n, drawn + 2 * numbers)};
+  subject s = {.scratch = scratch,
+               .n = n,
+               .own = curve_in(n, drawn + numbers),
+               .moved = curve_in(n, drawn + 2 * numbers)};
   dvi_status status = DVI_OK;
-  draw(n, t0, q0, system->cells == NULL ? v0 : q0, &first); /* the velocities of factors are fewer numbers */
+  /* velocities of factors are fewer numbers */
+  draw_curve(n, t0, q0, system->slots == NULL ? v0 : q0, &first);
   if (system->lagrangian != NULL && dvi__general_has_taylor(system->lagrangian)) {
     s.lagrangian = system->lagrangian;
     (void)snprintf(s.owner, sizeof s.owner, "%s", s.lagrangian->name);

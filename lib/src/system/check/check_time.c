@@ -1,4 +1,5 @@
-/* Checking what a system says about time: that it is autonomous, or how fast its terms change. */
+/* Checking what a system declares about time. Either the system is autonomous, or its terms have
+ * rates. */
 #include "system/check/check_time.h"
 
 #include <float.h>
@@ -10,7 +11,7 @@
 #include "core/status.h"
 #include "system/term/difference.h"
 
-/* One term, and the point at which it is asked: one of potential and lagrangian. */
+/* One of potential and lagrangian, and the point at which it is evaluated. */
 typedef struct subject {
   const dvi__potential_term *potential;
   const dvi__lagrangian_term *lagrangian;
@@ -28,37 +29,45 @@ static void name_subject(const subject *s, size_t size, char *text)
 
 /* ---- rates ---- */
 
-/* The value as a function of time alone. */
+/* Evaluate the term as a function of time alone. */
 static dvi_status value_of_time(const void *function, int count, const double *t, double *value)
 {
   const subject *s = function;
-  return s->potential != NULL ? dvi__potential_value(s->potential, s->scratch, count, t, s->q, value)
-                              : dvi__general_value(s->lagrangian, s->scratch, count, t, s->q, s->v, value);
+  return s->potential != NULL
+             ? dvi__potential_value(s->potential, s->scratch, count, t, s->q, value)
+             : dvi__general_value(s->lagrangian, s->scratch, count, t, s->q, s->v, value);
 }
 
-static dvi_status check_rate(const subject *s, dvi__differences *d, double t, double tolerance, dvi_derivative_check *result)
+static dvi_status check_rate(const subject *s, dvi__differences *d, double t, double tolerance,
+                             dvi_derivative_check *result)
 {
   double given, differenced;
   char owner[48];
-  if (s->potential != NULL ? !dvi__potential_has_rate(s->potential) : !dvi__general_has_rate(s->lagrangian)) return DVI_OK;
-  DVI_TRY(s->potential != NULL ? dvi__potential_rate(s->potential, s->scratch, 1, &t, s->q, &given)
-                               : dvi__general_rate(s->lagrangian, s->scratch, 1, &t, s->q, s->v, &given));
+  if (s->potential != NULL ? !dvi__potential_has_rate(s->potential)
+                           : !dvi__general_has_rate(s->lagrangian))
+    return DVI_OK;
+  DVI_TRY(s->potential != NULL
+              ? dvi__potential_rate(s->potential, s->scratch, 1, &t, s->q, &given)
+              : dvi__general_rate(s->lagrangian, s->scratch, 1, &t, s->q, s->v, &given));
   DVI_TRY(dvi__difference_gradient(value_of_time, s, d, 1, 1, &t, &differenced));
   const double noise = 64 * DBL_EPSILON * fmax(fabs(d->plus[0]), fabs(d->minus[0])) / d->step[0];
-  const double wrong = fabs(given - differenced) - noise, largest = fmax(fabs(given), fabs(differenced));
+  const double wrong = fabs(given - differenced) - noise,
+               largest = fmax(fabs(given), fabs(differenced));
   if (wrong > 0) result->rate_error = fmax(result->rate_error, wrong / largest);
   if (!(wrong > tolerance * largest)) return DVI_OK;
   name_subject(s, sizeof owner, owner);
   const char *rate = s->potential != NULL ? "dV/dt" : "dL/dt";
   (void)snprintf(result->where, sizeof result->where, "%s: %s is wrong", owner, rate);
-  return dvi__fail(DVI_BAD_ARGUMENT, "system check: %s: %s is %.15g from the callback, %.15g from differences", owner, rate, given,
-                   differenced);
+  return dvi__fail(DVI_BAD_ARGUMENT,
+                   "system check: %s: %s is %.15g from the callback, %.15g from differences", owner,
+                   rate, given, differenced);
 }
 
 /* ---- autonomous systems ---- */
 
-/* All that the term gives at one time: its value, its gradient (2 n numbers), its Hessian (3 times `longest`). */
-static dvi_status portray(const subject *s, double t, size_t longest, double *numbers)
+/* Collect all numbers of the term at one time, its value, its gradient (2 n numbers) and its
+ * Hessian (3 times `longest`). */
+static dvi_status collect_numbers(const subject *s, double t, size_t longest, double *numbers)
 {
   const size_t n = (size_t)s->scratch->n;
   double *gradient = numbers + 1, *hessian = gradient + 2 * n;
@@ -68,63 +77,74 @@ static dvi_status portray(const subject *s, double t, size_t longest, double *nu
     return dvi__potential_hessian(s->potential, s->scratch, 1, &t, s->q, hessian);
   }
   DVI_TRY(dvi__general_value(s->lagrangian, s->scratch, 1, &t, s->q, s->v, numbers));
-  DVI_TRY(dvi__general_gradient(s->lagrangian, s->scratch, 1, &t, s->q, s->v, gradient, gradient + n));
-  return dvi__general_hessian(s->lagrangian, s->scratch, 1, &t, s->q, s->v, hessian, hessian + longest, hessian + 2 * longest);
+  DVI_TRY(
+      dvi__general_gradient(s->lagrangian, s->scratch, 1, &t, s->q, s->v, gradient, gradient + n));
+  return dvi__general_hessian(s->lagrangian, s->scratch, 1, &t, s->q, s->v, hessian,
+                              hessian + longest, hessian + 2 * longest);
 }
 
-static dvi_status report_change(const subject *s, size_t at, double t, double other, double here, double there,
-                                dvi_derivative_check *result)
+static dvi_status report_change(const subject *s, size_t at, double t, double other, double here,
+                                double there, dvi_derivative_check *result)
 {
-  const char *what = at == 0 ? "value" : at < 1 + 2 * (size_t)s->scratch->n ? "gradient" : "Hessian";
+  const char *what = at == 0                              ? "value"
+                     : at < 1 + 2 * (size_t)s->scratch->n ? "gradient"
+                                                          : "Hessian";
   char owner[48];
   name_subject(s, sizeof owner, owner);
   result->depends_on_time = 1;
   (void)snprintf(result->where, sizeof result->where, "%s: its %s depends on t", owner, what);
   return dvi__fail(DVI_BAD_ARGUMENT,
-                   "system check: %s: its %s has %.17g at t = %.6g and %.17g at t = %.6g, but the system is declared autonomous",
+                   "system check: %s: its %s has %.17g at t = %.6g and %.17g at t = %.6g, but the "
+                   "system is declared autonomous",
                    owner, what, here, t, there, other);
 }
 
-/* The other times are no multiples of each other: what returns after a period shows at one of them. `numbers` holds two portraits. */
-static dvi_status check_autonomous(const subject *s, double t, size_t longest, double *numbers, dvi_derivative_check *result)
+/* Compare the term at two other times, which are no multiples of each other. A periodic term
+ * differs at one of them. `numbers` holds two fingerprints. */
+static dvi_status check_autonomous(const subject *s, double t, size_t longest, double *numbers,
+                                   dvi_derivative_check *result)
 {
   const double apart[] = {0.618033988749895, -3.302775637731995};
   const size_t count = 1 + 2 * (size_t)s->scratch->n + 3 * longest;
   double *moved = numbers + count;
   memset(numbers, 0, 2 * count * sizeof(double));
-  DVI_TRY(portray(s, t, longest, numbers));
+  DVI_TRY(collect_numbers(s, t, longest, numbers));
   for (int k = 0; k < 2; k++) {
     const double other = t + apart[k] * fmax(1, fabs(t));
-    DVI_TRY(portray(s, other, longest, moved));
+    DVI_TRY(collect_numbers(s, other, longest, moved));
     for (size_t i = 0; i < count; i++)
-      if (numbers[i] != moved[i]) return report_change(s, i, t, other, numbers[i], moved[i], result);
+      if (numbers[i] != moved[i])
+        return report_change(s, i, t, other, numbers[i], moved[i], result);
   }
   return DVI_OK;
 }
 
 /* ---- all terms ---- */
 
-/* Every term in turn; `numbers` is NULL if rates are to be checked. */
-static dvi_status each_term(const dvi_system *system, subject s, dvi__differences *d, double t, double tolerance, double *numbers,
-                            dvi_derivative_check *result)
+/* Check every term. `numbers` is NULL if rates are to be checked. */
+static dvi_status each_term(const dvi_system *system, subject s, dvi__differences *d, double t,
+                            double tolerance, double *numbers, dvi_derivative_check *result)
 {
   const size_t longest = (size_t)dvi__longest_hessian(system, 1);
   for (int k = system->lagrangian != NULL ? -1 : 0; k < system->potential_count; k++) {
     s.potential = k >= 0 ? &system->potentials[k] : NULL;
     s.lagrangian = k >= 0 ? NULL : system->lagrangian;
-    DVI_TRY(numbers != NULL ? check_autonomous(&s, t, longest, numbers, result) : check_rate(&s, d, t, tolerance, result));
+    DVI_TRY(numbers != NULL ? check_autonomous(&s, t, longest, numbers, result)
+                            : check_rate(&s, d, t, tolerance, result));
   }
   return DVI_OK;
 }
 
-dvi_status dvi__check_time(const dvi_system *system, dvi__scratch *scratch, dvi__differences *differences, double t,
-                           const double *q, const double *v, double tolerance, dvi_derivative_check *result)
+dvi_status dvi__check_time(const dvi_system *system, dvi__scratch *scratch,
+                           dvi__differences *differences, double t, const double *q,
+                           const double *v, double tolerance, dvi_derivative_check *result)
 {
   const subject at = {.scratch = scratch, .q = q, .v = v};
   if (!system->autonomous) return each_term(system, at, differences, t, tolerance, NULL, result);
-  const size_t portrait = 1 + 2 * (size_t)system->n + 3 * (size_t)dvi__longest_hessian(system, 1);
-  double *numbers = DVI_NEW(double, 2 * portrait);
-  if (numbers == NULL) return dvi__fail(DVI_NO_MEMORY, "system check: no memory for %d dimensions", system->n);
+  const size_t count = 1 + 2 * (size_t)system->n + 3 * (size_t)dvi__longest_hessian(system, 1);
+  double *numbers = DVI_NEW(double, 2 * count);
+  if (numbers == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "system check: no memory for %d dimensions", system->n);
   const dvi_status status = each_term(system, at, differences, t, tolerance, numbers, result);
   dvi__release(numbers);
   return status;

@@ -1,4 +1,5 @@
-/* Making a system: every term is checked, copied, and its patterns joined to those of the whole Lagrangian. */
+/* Creation of a system. Every term is checked and copied, and its patterns are joined to those of
+ * the whole Lagrangian. */
 #include "system/system.h"
 
 #include <pthread.h>
@@ -19,7 +20,7 @@ static char *copy_text(const char *text)
   return dvi__duplicate(text, strlen(text) + 1, 1);
 }
 
-static dvi_status no_memory(void)
+static dvi_status refuse_memory_of_system(void)
 {
   return dvi__fail(DVI_NO_MEMORY, "system: no memory for its terms");
 }
@@ -29,24 +30,29 @@ static dvi_status no_memory(void)
 static dvi_status check_range(const dvi_potential *given, const char *name)
 {
   if (given->reach < 0)
-    return dvi__fail(DVI_BAD_SIZE, "system: potential '%s' has reach %d; 0 or more is possible", name, given->reach);
+    return dvi__fail(DVI_BAD_SIZE, "system: potential '%s' has reach %d; 0 or more is possible",
+                     name, given->reach);
   if (given->reach == 0 || given->gradient_range != NULL) return DVI_OK;
-  return dvi__fail(DVI_BAD_ARGUMENT, "system: potential '%s' has reach %d but no gradient_range callback", name, given->reach);
+  return dvi__fail(DVI_BAD_ARGUMENT,
+                   "system: potential '%s' has reach %d but no gradient_range callback", name,
+                   given->reach);
 }
 
-static dvi_status copy_potential(dvi_system *s, const dvi_potential *given, dvi__potential_term *term)
+static dvi_status copy_potential(dvi_system *s, const dvi_potential *given,
+                                 dvi__potential_term *term)
 {
   const char *name = given->name != NULL ? given->name : "potential";
   if (given->value == NULL && given->value_batch == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "system: potential '%s' has no value callback", name);
-  DVI_TRY(dvi__check_shapes(name, given->value && given->value_batch, given->gradient && given->gradient_batch,
-                            given->hessian && given->hessian_batch, given->rate && given->rate_batch));
+  DVI_TRY(dvi__check_shapes(
+      name, given->value && given->value_batch, given->gradient && given->gradient_batch,
+      given->hessian && given->hessian_batch, given->rate && given->rate_batch));
   DVI_TRY(dvi__check_rate(s, name, given->rate || given->rate_batch));
   DVI_TRY(check_range(given, name));
   if (given->fast) s->terms |= DVI__FAST;
   term->callbacks = *given;
   term->name = copy_text(name);
-  if (term->name == NULL) return no_memory();
+  if (term->name == NULL) return refuse_memory_of_system();
   term->callbacks.name = term->name;
   const int left_out = given->qq.start == NULL && given->qq.row == NULL;
   return left_out ? DVI_OK : dvi__pattern_copy_symmetric(&given->qq, s->n, name, &term->qq);
@@ -56,7 +62,7 @@ static dvi_status copy_potentials(dvi_system *s, const dvi_system_terms *terms)
 {
   if (terms->potential_count > 0) s->terms |= DVI__POTENTIAL;
   s->potentials = DVI_NEW(dvi__potential_term, terms->potential_count);
-  if (s->potentials == NULL) return no_memory();
+  if (s->potentials == NULL) return refuse_memory_of_system();
   for (int k = 0; k < terms->potential_count; k++) {
     s->potential_count = k + 1;
     DVI_TRY(copy_potential(s, &terms->potentials[k], &s->potentials[k]));
@@ -66,7 +72,7 @@ static dvi_status copy_potentials(dvi_system *s, const dvi_system_terms *terms)
 
 /* ---- the whole ---- */
 
-static dvi_status widen(dvi__pattern *whole, const dvi__pattern *part)
+static dvi_status widen_pattern(dvi__pattern *whole, const dvi__pattern *part)
 {
   dvi__pattern sum;
   DVI_TRY(dvi__pattern_union(whole, part, &sum));
@@ -75,11 +81,11 @@ static dvi_status widen(dvi__pattern *whole, const dvi__pattern *part)
   return DVI_OK;
 }
 
-static dvi_status embed(const dvi__pattern *part, const dvi__pattern *whole, int **where)
+static dvi_status embed_pattern(const dvi__pattern *part, const dvi__pattern *whole, int **where)
 {
   dvi__release(*where);
   *where = DVI_NEW(int, dvi__pattern_entries(part));
-  if (*where == NULL) return no_memory();
+  if (*where == NULL) return refuse_memory_of_system();
   dvi__pattern_embed(part, whole, *where);
   return DVI_OK;
 }
@@ -87,24 +93,27 @@ static dvi_status embed(const dvi__pattern *part, const dvi__pattern *whole, int
 static dvi_status complete_potential(const dvi_system *s, dvi__potential_term *term)
 {
   const int differenced = term->callbacks.hessian == NULL && term->callbacks.hessian_batch == NULL;
-  const dvi_status status = term->qq.start == NULL ? dvi__pattern_copy(&(dvi_pattern){0}, s->n, term->name, &term->qq) : DVI_OK;
+  const dvi_status status = term->qq.start == NULL
+                                ? dvi__pattern_copy(&(dvi_pattern){0}, s->n, term->name, &term->qq)
+                                : DVI_OK;
   if (status != DVI_OK) return dvi__fail_in(status, "the Hessian of '%s'", term->name);
   return differenced ? dvi__group_columns(&term->qq, &term->groups) : DVI_OK;
 }
 
-static dvi_status join_patterns(dvi_system *s, dvi__pattern *qq)
+static dvi_status join_term_patterns(dvi_system *s, dvi__pattern *qq)
 {
   for (int k = 0; k < s->potential_count; k++) DVI_TRY(complete_potential(s, &s->potentials[k]));
   DVI_TRY(dvi__pattern_empty(s->n, qq));
-  if (s->lagrangian != NULL) DVI_TRY(widen(qq, &s->lagrangian->qq));
-  for (int k = 0; k < s->potential_count; k++) DVI_TRY(widen(qq, &s->potentials[k].qq));
-  if (s->lagrangian != NULL) DVI_TRY(embed(&s->lagrangian->qq, qq, &s->lagrangian->in_qq));
-  for (int k = 0; k < s->potential_count; k++) DVI_TRY(embed(&s->potentials[k].qq, qq, &s->potentials[k].in_qq));
+  if (s->lagrangian != NULL) DVI_TRY(widen_pattern(qq, &s->lagrangian->qq));
+  for (int k = 0; k < s->potential_count; k++) DVI_TRY(widen_pattern(qq, &s->potentials[k].qq));
+  if (s->lagrangian != NULL) DVI_TRY(embed_pattern(&s->lagrangian->qq, qq, &s->lagrangian->in_qq));
+  for (int k = 0; k < s->potential_count; k++)
+    DVI_TRY(embed_pattern(&s->potentials[k].qq, qq, &s->potentials[k].in_qq));
   return DVI_OK;
 }
 
-/* Nothing that a user of the system sees changes, so the system is const to him; the lock is for users on other threads. What a failure leaves
- * is made anew by the next call, or freed with the system. */
+/* The user sees no change of the system, so it is const. The lock serves users on other threads. On
+ * failure the remains are replaced by the next call, or freed with the system. */
 dvi_status dvi__system_prepare_hessian(const dvi_system *system)
 {
   static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
@@ -113,7 +122,7 @@ dvi_status dvi__system_prepare_hessian(const dvi_system *system)
   (void)pthread_mutex_lock(&lock);
   if (s->qq.start == NULL) {
     dvi__pattern qq = {0};
-    status = join_patterns(s, &qq);
+    status = join_term_patterns(s, &qq);
     if (status == DVI_OK)
       s->qq = qq;
     else
@@ -125,10 +134,14 @@ dvi_status dvi__system_prepare_hessian(const dvi_system *system)
 
 static dvi_status copy_invariants(dvi_system *s, const dvi_system_terms *terms)
 {
-  s->symmetries = dvi__duplicate(terms->symmetries, (size_t)terms->symmetry_count, sizeof(dvi_symmetry));
-  s->invariants = dvi__duplicate(terms->invariants, (size_t)terms->invariant_count, sizeof(dvi_invariant));
-  s->invariant_names = DVI_NEW(char *, 1 + (size_t)terms->symmetry_count + (size_t)terms->invariant_count);
-  if (s->symmetries == NULL || s->invariants == NULL || s->invariant_names == NULL) return no_memory();
+  s->symmetries = dvi__duplicate(terms->symmetries, (size_t)terms->symmetry_count,
+                                 sizeof(dvi_symmetry));
+  s->invariants = dvi__duplicate(terms->invariants, (size_t)terms->invariant_count,
+                                 sizeof(dvi_invariant));
+  s->invariant_names = DVI_NEW(char *,
+                               1 + (size_t)terms->symmetry_count + (size_t)terms->invariant_count);
+  if (s->symmetries == NULL || s->invariants == NULL || s->invariant_names == NULL)
+    return refuse_memory_of_system();
   s->symmetry_count = terms->symmetry_count;
   s->invariant_count = terms->invariant_count;
   for (int i = 0; i < dvi_system_invariant_count(s); i++) {
@@ -136,40 +149,49 @@ static dvi_status copy_invariants(dvi_system *s, const dvi_system_terms *terms)
                        : i <= s->symmetry_count ? s->symmetries[i - 1].name
                                                 : s->invariants[i - 1 - s->symmetry_count].name;
     s->invariant_names[i] = copy_text(name != NULL ? name : "unnamed");
-    if (s->invariant_names[i] == NULL) return no_memory();
+    if (s->invariant_names[i] == NULL) return refuse_memory_of_system();
   }
   for (int i = 0; i < s->symmetry_count; i++) s->symmetries[i].name = s->invariant_names[1 + i];
-  for (int i = 0; i < s->invariant_count; i++) s->invariants[i].name = s->invariant_names[1 + s->symmetry_count + i];
+  for (int i = 0; i < s->invariant_count; i++)
+    s->invariants[i].name = s->invariant_names[1 + s->symmetry_count + i];
   return DVI_OK;
 }
 
 static dvi_status check_watched(const dvi_system_terms *terms)
 {
   for (int i = 0; i < terms->symmetry_count; i++)
-    if (terms->symmetries[i].generator == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "system: symmetry %d has no generator", i);
+    if (terms->symmetries[i].generator == NULL)
+      return dvi__fail(DVI_BAD_ARGUMENT, "system: symmetry %d has no generator", i);
   for (int i = 0; i < terms->invariant_count; i++)
-    if (terms->invariants[i].value == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "system: invariant %d has no value callback", i);
+    if (terms->invariants[i].value == NULL)
+      return dvi__fail(DVI_BAD_ARGUMENT, "system: invariant %d has no value callback", i);
   return DVI_OK;
 }
 
 static dvi_status check_list(const char *what, int count, const void *list)
 {
-  if (count < 0) return dvi__fail(DVI_BAD_SIZE, "system: %d %s; 0 or more are possible", count, what);
-  if (count > 0 && list == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "system: %d %s declared, but their list is NULL", count, what);
-  if (count == 0 && list != NULL) return dvi__fail(DVI_BAD_ARGUMENT, "system: a list of %s is given, but their count is 0", what);
+  if (count < 0)
+    return dvi__fail(DVI_BAD_SIZE, "system: %d %s; 0 or more are possible", count, what);
+  if (count > 0 && list == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "system: %d %s declared, but their list is NULL", count,
+                     what);
+  if (count == 0 && list != NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "system: a list of %s is given, but their count is 0", what);
   return DVI_OK;
 }
 
 static dvi_status check_hamiltonian(const dvi_system_terms *terms)
 {
   if (terms->hamiltonian == NULL && terms->constraint != NULL)
-    return dvi__fail(DVI_BAD_ARGUMENT, "system: constraints without a Hamiltonian; declare it, too");
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "system: constraints without a Hamiltonian; declare it, too");
   if (terms->hamiltonian != NULL && terms->potential_count > 0)
-    return dvi__fail(DVI_BAD_ARGUMENT, "system: %d potentials beside a Hamiltonian; add them to it", terms->potential_count);
+    return dvi__fail(DVI_BAD_ARGUMENT, "system: %d potentials beside a Hamiltonian; add them to it",
+                     terms->potential_count);
   return DVI_OK;
 }
 
-static dvi_status check_terms(const dvi_system_terms *terms)
+static dvi_status check_declared_terms(const dvi_system_terms *terms)
 {
   const dvi_mass *mass = &terms->mass;
   const int has_pattern = mass->pattern.start != NULL || mass->pattern.row != NULL;
@@ -178,8 +200,10 @@ static dvi_status check_terms(const dvi_system_terms *terms)
   if (terms->factors == NULL && terms->dimension < 1)
     return dvi__fail(DVI_BAD_SIZE, "system: dimension %d; at least 1 is needed", terms->dimension);
   if (terms->factors == NULL && terms->dimension > DVI__DIMENSION_MOST)
-    return dvi__fail(DVI_BAD_SIZE, "system: dimension %d; at most %d is possible", terms->dimension, DVI__DIMENSION_MOST);
-  if (terms->factors != NULL && (terms->lagrangian != NULL || terms->one_form != NULL || terms->hamiltonian != NULL))
+    return dvi__fail(DVI_BAD_SIZE, "system: dimension %d; at most %d is possible", terms->dimension,
+                     DVI__DIMENSION_MOST);
+  if (terms->factors != NULL &&
+      (terms->lagrangian != NULL || terms->one_form != NULL || terms->hamiltonian != NULL))
     return dvi__fail(DVI_UNSUPPORTED, "system: factors go with a constant mass, not with %s",
                      terms->lagrangian != NULL ? "a general Lagrangian"
                      : terms->one_form != NULL ? "a one-form"
@@ -187,23 +211,25 @@ static dvi_status check_terms(const dvi_system_terms *terms)
   DVI_TRY(check_list("potentials", terms->potential_count, terms->potentials));
   DVI_TRY(check_list("symmetries", terms->symmetry_count, terms->symmetries));
   DVI_TRY(check_list("invariants", terms->invariant_count, terms->invariants));
-  const int kinds = has_mass + (terms->lagrangian != NULL) + (terms->one_form != NULL) + (terms->hamiltonian != NULL);
+  const int kinds = has_mass + (terms->lagrangian != NULL) + (terms->one_form != NULL) +
+                    (terms->hamiltonian != NULL);
   if (kinds > 1)
-    return dvi__fail(
-        DVI_BAD_ARGUMENT,
-        "system: more than one of a mass, a general Lagrangian, a one-form and a Hamiltonian are declared; one of them is "
-        "possible");
+    return dvi__fail(DVI_BAD_ARGUMENT, "system: more than one of a mass, a general Lagrangian, a "
+                                       "one-form and a Hamiltonian are declared; one of them is "
+                                       "possible");
   if (kinds == 0 && terms->factors == NULL)
-    return dvi__fail(DVI_BAD_ARGUMENT,
-                     "system: neither a mass (other than 0) nor a general Lagrangian nor a one-form nor a Hamiltonian is declared");
+    return dvi__fail(DVI_BAD_ARGUMENT, "system: neither a mass (other than 0) nor a general "
+                                       "Lagrangian nor a one-form nor a Hamiltonian is declared");
   DVI_TRY(check_hamiltonian(terms));
   if (terms->gauge != NULL && terms->one_form == NULL)
-    return dvi__fail(DVI_BAD_ARGUMENT, "system: a gauge without a one-form; it changes nothing else");
-  if (has_pattern && mass->values == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "system: the mass has a pattern but no values");
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "system: a gauge without a one-form; it changes nothing else");
+  if (has_pattern && mass->values == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "system: the mass has a pattern but no values");
   return check_watched(terms);
 }
 
-/* Factors stand before the mass that goes with them. */
+/* Factors come before the mass that belongs to them. */
 static const dvi__dynamics *const kinds[] = {
 #define DYNAMICS(name) &dvi__dynamics_##name,
 #include "system/declare/dynamics.def"
@@ -217,7 +243,7 @@ static dvi_status declare_dynamics(dvi_system *s, const dvi_system_terms *terms)
   return s->dynamics->declare(terms, s);
 }
 
-static dvi_status fill(dvi_system *s, const dvi_system_terms *terms)
+static dvi_status system_fill(dvi_system *s, const dvi_system_terms *terms)
 {
   DVI_TRY(dvi__factors_lay_out(terms, s));
   s->autonomous = terms->autonomous != 0;
@@ -233,10 +259,10 @@ dvi_status dvi_system_create(const dvi_system_terms *terms, dvi_system **system)
   if (system == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "system: no place for the result");
   *system = NULL;
   if (terms == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "system: no terms");
-  DVI_TRY(check_terms(terms));
+  DVI_TRY(check_declared_terms(terms));
   dvi_system *made = DVI_NEW(dvi_system, 1);
-  if (made == NULL) return no_memory();
-  const dvi_status status = fill(made, terms);
+  if (made == NULL) return refuse_memory_of_system();
+  const dvi_status status = system_fill(made, terms);
   if (status != DVI_OK) dvi_system_destroy(&made);
   *system = made;
   return status;
@@ -267,14 +293,15 @@ void dvi_system_destroy(dvi_system **system)
   if (system == NULL || *system == NULL) return;
   dvi_system *s = *system;
   for (int k = 0; k < s->potential_count; k++) clear_potential(&s->potentials[k]);
-  for (int i = 0; s->invariant_names != NULL && i < dvi_system_invariant_count(s); i++) dvi__release(s->invariant_names[i]);
+  for (int i = 0; s->invariant_names != NULL && i < dvi_system_invariant_count(s); i++)
+    dvi__release(s->invariant_names[i]);
   if (s->lagrangian != NULL) dvi__general_clear(s->lagrangian);
   dvi__release(s->lagrangian);
   dvi__constraint_clear(&s->constraint);
   dvi__pattern_clear(&s->qq);
   dvi__pattern_clear(&s->qv);
   dvi__pattern_clear(&s->vv);
-  dvi__release(s->cells);
+  dvi__release(s->slots);
   dvi__release(s->mass_diagonal);
   dvi__release(s->mass_values);
   dvi__release(s->potentials);

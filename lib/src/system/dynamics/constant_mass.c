@@ -1,4 +1,4 @@
-/* A constant mass M and potentials: L = v.Mv/2 - V(t,q), so that v = M^-1 p. */
+/* A constant mass M and potentials have L = v.Mv/2 - V(t,q), so that v = M^-1 p. */
 #include <string.h>
 
 #include "core/status.h"
@@ -20,13 +20,15 @@ static dvi_status prepare_mass(dvi__evaluator *e, dvi__derivatives most)
   return dvi__linear_factor(e->velocity, system->mass_values);
 }
 
-static dvi_status velocity_by_mass(dvi__evaluator *e, double t, const double *q, const double *p, double *v)
+static dvi_status velocity_by_mass(dvi__evaluator *e, double t, const double *q, const double *p,
+                                   double *v)
 {
   const size_t n = (size_t)e->system->n;
   double *found = e->point[1];
   (void)q;
   dvi__mass_solve(e, 1, p, found);
-  if (dvi__first_not_finite(n, found) >= 0) return dvi__fail(DVI_NOT_FINITE, "the velocity M^-1 p at t = %.6g is not finite", t);
+  if (dvi__first_not_finite(n, found) >= 0)
+    return dvi__fail(DVI_NOT_FINITE, "the velocity M^-1 p at t = %.6g is not finite", t);
   memcpy(v, found, n * sizeof *v);
   return DVI_OK;
 }

@@ -1,4 +1,4 @@
-/* A Hamiltonian with constraints phi(q,p) = 0 of second class:
+/* A Hamiltonian with constraints phi(q,p) = 0 of second class has
  *
  *     q' = H_p + phi_p^T lambda,   p' = -H_q - phi_q^T lambda,
  *     sum_b {phi_a, phi_b} lambda_b = -{phi_a, H}.
@@ -16,7 +16,7 @@
 #include "system/dynamics/hamiltonian.h"
 #include "system/evaluate/evaluator_struct.h"
 
-static dvi_status no_memory(void)
+static dvi_status refuse_memory_of_constraints(void)
 {
   return dvi__fail(DVI_NO_MEMORY, "no memory for the constraints");
 }
@@ -25,8 +25,8 @@ static dvi_status no_memory(void)
 
 typedef struct constraint_memory {
   dvi__weighted weighted;
-  double *bracket, *multiplier; /* [m*m], [m] */
-  double *field, *pushed;       /* [2n] of H and of one constraint */
+  double *bracket, *multiplier; /* bracket [m*m], multipliers [m] */
+  double *field, *pushed;       /* vector fields [2n] of H and of one constraint */
 } constraint_memory;
 
 static constraint_memory *memory_of(const dvi__evaluator *e)
@@ -41,12 +41,13 @@ static dvi_status prepare_constraints(dvi__evaluator *e, dvi__derivatives most)
   const size_t n = (size_t)system->n, m = (size_t)system->constraint->callbacks.count;
   constraint_memory *d = e->own = DVI_NEW(constraint_memory, 1);
   (void)most;
-  if (d == NULL) return no_memory();
+  if (d == NULL) return refuse_memory_of_constraints();
   d->bracket = DVI_NEW(double, m *m);
   d->multiplier = DVI_NEW(double, m);
   d->field = DVI_NEW(double, 2 * n);
   d->pushed = DVI_NEW(double, 2 * n);
-  if (d->bracket == NULL || d->multiplier == NULL || d->field == NULL || d->pushed == NULL) return no_memory();
+  if (d->bracket == NULL || d->multiplier == NULL || d->field == NULL || d->pushed == NULL)
+    return refuse_memory_of_constraints();
   DVI_TRY(dvi__weighted_open(system, &d->weighted));
   return dvi__linear_create(bracket, dvi__linear_for_exchanges(bracket), e->counters, &e->velocity);
 }
@@ -70,26 +71,29 @@ dvi_status dvi__constraint_value(dvi__evaluator *e, const double *q, const doubl
   return dvi__verdict(c->value(q, p, phi, c->user), c->count, 1, phi, "constraint", "value", "");
 }
 
-dvi_status dvi__constraint_gradients(dvi__evaluator *e, const double *q, const double *p, double *phi_z)
+dvi_status dvi__constraint_gradients(dvi__evaluator *e, const double *q, const double *p,
+                                     double *phi_z)
 {
   const dvi__constraint_term *c = e->system->constraint;
   e->counters->gradients++;
-  return dvi__verdict(c->callbacks.gradient(q, p, phi_z, c->callbacks.user), dvi__pattern_entries(&c->gradients), 1, phi_z,
-                      "constraint", "gradient", "");
+  return dvi__verdict(c->callbacks.gradient(q, p, phi_z, c->callbacks.user),
+                      dvi__pattern_entries(&c->gradients), 1, phi_z, "constraint", "gradient", "");
 }
 
-dvi_status dvi__constraint_hessian(dvi__evaluator *e, const double *q, const double *p, const double *w, double *qq, double *qp,
-                                   double *pp)
+dvi_status dvi__constraint_hessian(dvi__evaluator *e, const double *q, const double *p,
+                                   const double *w, double *qq, double *qp, double *pp)
 {
   const double any_time = 0;
   memory_of(e)->weighted.w = w;
   e->counters->hessians++;
-  const dvi_status status = dvi__general_hessian(&memory_of(e)->weighted.term, &e->scratch, 1, &any_time, q, p, qq, qp, pp);
+  const dvi_status status = dvi__general_hessian(&memory_of(e)->weighted.term, &e->scratch, 1,
+                                                 &any_time, q, p, qq, qp, pp);
   dvi__count_differences(e);
   return status;
 }
 
-void dvi__constraint_push(const dvi__constraint_term *c, const double *phi_z, const double *w, double factor, double *z)
+void dvi__constraint_push(const dvi__constraint_term *c, const double *phi_z, const double *w,
+                          double factor, double *z)
 {
   const dvi__pattern *gradients = &c->gradients;
   const int n = gradients->rows / 2;
@@ -105,15 +109,18 @@ void dvi__constraint_push(const dvi__constraint_term *c, const double *phi_z, co
 
 /* ---- the motion ---- */
 
-/* grad phi_a.x, x [2n]: the bracket {phi_a, F} for the field x of F. */
-static double along(const dvi__pattern *gradients, const double *phi_z, int a, const double *x)
+/* Compute grad phi_a.x, x [2n]. This is the bracket {phi_a, F} for the vector field x of F. */
+static double derivative_along(const dvi__pattern *gradients, const double *phi_z, int a,
+                               const double *x)
 {
   double sum = 0;
-  for (int k = gradients->start[a]; k < gradients->start[a + 1]; k++) sum += phi_z[k] * x[gradients->row[k]];
+  for (int k = gradients->start[a]; k < gradients->start[a + 1]; k++)
+    sum += phi_z[k] * x[gradients->row[k]];
   return sum;
 }
 
-/* The bracket matrix into memory_of(e)->bracket, from the gradients that the weighted function holds. */
+/* Compute the bracket matrix in memory_of(e)->bracket, from the gradients that the weighted
+ * function holds. */
 static dvi_status evaluate_bracket(dvi__evaluator *e, const double *q, const double *p)
 {
   const dvi__constraint_term *c = e->system->constraint;
@@ -126,7 +133,8 @@ static dvi_status evaluate_bracket(dvi__evaluator *e, const double *q, const dou
     memset(d->pushed, 0, 2 * (size_t)n * sizeof *d->pushed);
     unit[b] = 1;
     dvi__constraint_push(c, phi_z, unit, 1, d->pushed);
-    for (int a = 0; a < m; a++) d->bracket[b * m + a] = along(&c->gradients, phi_z, a, d->pushed);
+    for (int a = 0; a < m; a++)
+      d->bracket[b * m + a] = derivative_along(&c->gradients, phi_z, a, d->pushed);
   }
   return DVI_OK;
 }
@@ -136,9 +144,8 @@ static dvi_status factor_bracket(dvi__evaluator *e, const double *q, const doubl
   DVI_TRY(evaluate_bracket(e, q, p));
   const dvi_status status = dvi__linear_factor(e->velocity, memory_of(e)->bracket);
   if (status != DVI_SINGULAR) return status;
-  return dvi__fail(
-      status,
-      "the constraints' bracket matrix {phi_a, phi_b} is singular at this point: they are dependent, or not all of second class");
+  return dvi__fail(status, "the constraints' bracket matrix {phi_a, phi_b} is singular at this "
+                           "point: they are dependent, or not all of second class");
 }
 
 static dvi_status bracket_side(dvi__evaluator *e, const double *q, const double *p, int *side)
@@ -151,8 +158,8 @@ static dvi_status bracket_side(dvi__evaluator *e, const double *q, const double 
   return DVI_OK;
 }
 
-static dvi_status constrained_motion(dvi__evaluator *e, double t, const double *q, const double *p, double *v, double *pdot,
-                                     double *multiplier)
+static dvi_status constrained_motion(dvi__evaluator *e, double t, const double *q, const double *p,
+                                     double *v, double *pdot, double *multiplier)
 {
   const dvi__constraint_term *c = e->system->constraint;
   const constraint_memory *d = memory_of(e);
@@ -160,10 +167,12 @@ static dvi_status constrained_motion(dvi__evaluator *e, double t, const double *
   const int m = c->callbacks.count;
   DVI_TRY(dvi__hamiltonian_vector_field(e, t, q, p, d->field, d->field + n));
   DVI_TRY(factor_bracket(e, q, p));
-  for (int a = 0; a < m; a++) d->multiplier[a] = -along(&c->gradients, d->weighted.phi_z, a, d->field);
+  for (int a = 0; a < m; a++)
+    d->multiplier[a] = -derivative_along(&c->gradients, d->weighted.phi_z, a, d->field);
   dvi__linear_solve(e->velocity, d->multiplier);
   dvi__constraint_push(c, d->weighted.phi_z, d->multiplier, 1, d->field);
-  if (dvi__first_not_finite(2 * n, d->field) >= 0) return dvi__fail(DVI_NOT_FINITE, "the velocity at t = %.6g is not finite", t);
+  if (dvi__first_not_finite(2 * n, d->field) >= 0)
+    return dvi__fail(DVI_NOT_FINITE, "the velocity at t = %.6g is not finite", t);
   memcpy(v, d->field, n * sizeof *v);
   memcpy(pdot, d->field + n, n * sizeof *pdot);
   if (multiplier != NULL) memcpy(multiplier, d->multiplier, (size_t)m * sizeof *multiplier);
@@ -172,7 +181,8 @@ static dvi_status constrained_motion(dvi__evaluator *e, double t, const double *
 
 /* ---- the constraint ---- */
 
-static dvi_status constraint_distance(dvi__evaluator *e, const double *q, const double *p, double *distance)
+static dvi_status constraint_distance(dvi__evaluator *e, const double *q, const double *p,
+                                      double *distance)
 {
   double *phi = memory_of(e)->weighted.phi;
   DVI_TRY(dvi__constraint_value(e, q, p, phi));
@@ -180,11 +190,12 @@ static dvi_status constraint_distance(dvi__evaluator *e, const double *q, const 
   return DVI_OK;
 }
 
-/* A start computed in another way differs by its roundings; one that is off the constraint, by more. */
+/* A start computed in another way differs by its roundings. A larger violation is refused. */
 static const double on_constraint = 1e-11;
 
-/* What the roundings of a point do to phi_a is measured by its gradient. */
-static double size_of(const dvi__constraint_term *c, const double *phi_z, int a, const double *q, const double *p)
+/* Measure the effect of roundings of a point on phi_a by the gradient of phi_a. */
+static double size_of_gradient(const dvi__constraint_term *c, const double *phi_z, int a,
+                               const double *q, const double *p)
 {
   const int n = c->gradients.rows / 2;
   double size = 0;
@@ -201,28 +212,29 @@ static dvi_status constraint_size(dvi__evaluator *e, const double *q, const doub
   double *phi_z = memory_of(e)->weighted.phi_z;
   *size = 0;
   DVI_TRY(dvi__constraint_gradients(e, q, p, phi_z));
-  for (int a = 0; a < c->callbacks.count; a++) *size = fmax(*size, size_of(c, phi_z, a, q, p));
+  for (int a = 0; a < c->callbacks.count; a++)
+    *size = fmax(*size, size_of_gradient(c, phi_z, a, q, p));
   return DVI_OK;
 }
 
-static dvi_status check_constraint(dvi__evaluator *e, const double *q, const double *p)
+static dvi_status check_on_constraint(dvi__evaluator *e, const double *q, const double *p)
 {
   const dvi__constraint_term *c = e->system->constraint;
   const dvi__weighted *at = &memory_of(e)->weighted;
   DVI_TRY(dvi__constraint_value(e, q, p, at->phi));
   DVI_TRY(dvi__constraint_gradients(e, q, p, at->phi_z));
   for (int a = 0; a < c->callbacks.count; a++) {
-    if (!(fabs(at->phi[a]) <= on_constraint * size_of(c, at->phi_z, a, q, p)))
-      return dvi__fail(
-          DVI_BAD_ARGUMENT,
-          "constraint %d is %.17g at this point, not 0; start with phi(q,p) = 0, or let it be projected (dvi_start_options)", a,
-          at->phi[a]);
+    if (!(fabs(at->phi[a]) <= on_constraint * size_of_gradient(c, at->phi_z, a, q, p)))
+      return dvi__fail(DVI_BAD_ARGUMENT,
+                       "constraint %d is %.17g at this point, not 0; start with phi(q,p) = 0, or "
+                       "let it be projected (dvi_start_options)",
+                       a, at->phi[a]);
   }
   return DVI_OK;
 }
 
-/* Newton's method along the vector fields (phi_p, -phi_q) of the constraints: the change X_phi mu makes
- * phi smaller by {phi, phi} mu. */
+/* Apply Newton's method along the vector fields (phi_p, -phi_q) of the constraints. The change
+ * X_phi mu makes phi smaller by {phi, phi} mu. */
 static dvi_status project_on_constraint(dvi__evaluator *e, double t, double *q, double *p)
 {
   enum { MOST_ITERATIONS = 50 };
@@ -240,19 +252,21 @@ static dvi_status project_on_constraint(dvi__evaluator *e, double t, double *q, 
     memcpy(d->pushed, q, n * sizeof *q);
     memcpy(d->pushed + n, p, n * sizeof *p);
     dvi__constraint_push(c, d->weighted.phi_z, d->multiplier, 1, d->pushed);
-    if (dvi__first_not_finite(2 * n, d->pushed) >= 0) return dvi__fail(DVI_NOT_CONVERGED, "no point of the constraint was found");
+    if (dvi__first_not_finite(2 * n, d->pushed) >= 0)
+      return dvi__fail(DVI_NOT_CONVERGED, "no point of the constraint was found");
     DVI_TRY(constraint_distance(e, d->pushed, d->pushed + n, &next));
     if (next >= size) continue;
     memcpy(q, d->pushed, n * sizeof *q);
     memcpy(p, d->pushed + n, n * sizeof *p);
   }
-  if (check_constraint(e, q, p) == DVI_OK) return DVI_OK;
+  if (check_on_constraint(e, q, p) == DVI_OK) return DVI_OK;
   return dvi__fail_in(DVI_NOT_CONVERGED, "no point of the constraint was found by Newton's method");
 }
 
 /* ---- the public view ---- */
 
-/* The largest sum of magnitudes in a column of the m x m matrix; of its inverse, by the factor. */
+/* Compute the largest sum of magnitudes in a column of the m x m matrix. The second function does
+ * so for its inverse, by the factor. */
 static double norm_of(int m, const double *matrix)
 {
   double norm = 0;
@@ -264,7 +278,7 @@ static double norm_of(int m, const double *matrix)
   return norm;
 }
 
-static double inverse_norm(dvi__evaluator *e, int m)
+static double inverse_bracket_norm(dvi__evaluator *e, int m)
 {
   double norm = 0, *column = memory_of(e)->multiplier;
   for (int b = 0; b < m; b++) {
@@ -278,26 +292,33 @@ static double inverse_norm(dvi__evaluator *e, int m)
   return norm;
 }
 
-static dvi_status measure(dvi__evaluator *e, const double *q, const double *p, double *bracket, double *condition)
+static dvi_status measure_violation(dvi__evaluator *e, const double *q, const double *p,
+                                    double *bracket, double *condition)
 {
   const int m = e->system->constraint->callbacks.count;
   const dvi_status status = factor_bracket(e, q, p);
   if (status != DVI_OK && status != DVI_SINGULAR) return status;
-  if (condition != NULL) *condition = status == DVI_OK ? norm_of(m, memory_of(e)->bracket) * inverse_norm(e, m) : HUGE_VAL;
-  if (bracket != NULL) memcpy(bracket, memory_of(e)->bracket, (size_t)m * (size_t)m * sizeof *bracket);
+  if (condition != NULL)
+    *condition = status == DVI_OK ? norm_of(m, memory_of(e)->bracket) * inverse_bracket_norm(e, m)
+                                  : HUGE_VAL;
+  if (bracket != NULL)
+    memcpy(bracket, memory_of(e)->bracket, (size_t)m * (size_t)m * sizeof *bracket);
   return DVI_OK;
 }
 
-dvi_status dvi_system_bracket(const dvi_system *system, const double *q, const double *p, double *bracket, double *condition)
+dvi_status dvi_system_bracket(const dvi_system *system, const double *q, const double *p,
+                              double *bracket, double *condition)
 {
   dvi__evaluator *e;
-  if (system == NULL || q == NULL || p == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "bracket: an argument is NULL");
-  if (system->constraint == NULL) return dvi__fail(DVI_UNSUPPORTED, "bracket: the system declares no constraints phi(q,p)");
+  if (system == NULL || q == NULL || p == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "bracket: an argument is NULL");
+  if (system->constraint == NULL)
+    return dvi__fail(DVI_UNSUPPORTED, "bracket: the system declares no constraints phi(q,p)");
   const size_t n = (size_t)system->n;
   if (dvi__first_not_finite(n, q) >= 0 || dvi__first_not_finite(n, p) >= 0)
     return dvi__fail(DVI_NOT_FINITE, "bracket: the point is not finite");
   DVI_TRY(dvi__evaluator_create(system, 1, DVI__GRADIENTS, NULL, &e));
-  const dvi_status status = measure(e, q, p, bracket, condition);
+  const dvi_status status = measure_violation(e, q, p, bracket, condition);
   dvi__evaluator_destroy(&e);
   return status;
 }
@@ -320,7 +341,8 @@ static dvi_status declare_constrained(const dvi_system_terms *terms, dvi_system 
   return dvi__constraint_copy(terms->constraint, system->n, &system->constraint);
 }
 
-static dvi_status constrained_velocity(dvi__evaluator *e, double t, const double *q, const double *p, double *v)
+static dvi_status constrained_velocity(dvi__evaluator *e, double t, const double *q,
+                                       const double *p, double *v)
 {
   double *found = e->velocity_search;
   const size_t n = (size_t)e->system->n;
@@ -331,7 +353,7 @@ static dvi_status constrained_velocity(dvi__evaluator *e, double t, const double
 
 static const dvi__state_constraint on_phase_space = {
     .matrix = "constraints' bracket matrix",
-    .check = check_constraint,
+    .check = check_on_constraint,
     .project = project_on_constraint,
     .distance = constraint_distance,
     .size = constraint_size,

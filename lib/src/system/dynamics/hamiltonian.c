@@ -1,5 +1,5 @@
-/* A Hamiltonian H(t,q,p) on phase space: q' = H_p, p' = -H_q. All functions of the evaluator give H and
- * its derivatives, p standing for v. */
+/* A Hamiltonian H(t,q,p) on phase space has q' = H_p, p' = -H_q. All functions of the evaluator
+ * give H and its derivatives. p takes the place of v. */
 #include "system/dynamics/hamiltonian.h"
 
 #include <string.h>
@@ -9,12 +9,15 @@
 #include "system/term/declare.h"
 
 const char dvi__no_taylor_of_hamiltonian[] =
-    "a Hamiltonian has no taylor callback, and derivatives beyond the second are needed; take a tableau, and a "
+    "a Hamiltonian has no taylor callback, and derivatives beyond the second are needed; take a "
+    "tableau, and a "
     "quadrature by values";
 
-dvi_status dvi__declare_hamiltonian(const dvi_system_terms *terms, dvi_system *system, dvi__term term)
+dvi_status dvi__declare_hamiltonian(const dvi_system_terms *terms, dvi_system *system,
+                                    dvi__term term)
 {
-  static const char *const part[] = {"Hamiltonian: d2H/dq2", "Hamiltonian: d2H/dqdp", "Hamiltonian: d2H/dp2"};
+  static const char *const part[] = {"Hamiltonian: d2H/dq2", "Hamiltonian: d2H/dqdp",
+                                     "Hamiltonian: d2H/dp2"};
   const dvi_hamiltonian *given = terms->hamiltonian;
   const dvi_lagrangian function = {.value = given->value,
                                    .gradient = given->gradient,
@@ -24,19 +27,22 @@ dvi_status dvi__declare_hamiltonian(const dvi_system_terms *terms, dvi_system *s
                                    .vv = given->pp,
                                    .user = given->user};
   if (given->value == NULL || given->gradient == NULL)
-    return dvi__fail(DVI_BAD_ARGUMENT, "system: the Hamiltonian has no %s callback", given->value == NULL ? "value" : "gradient");
+    return dvi__fail(DVI_BAD_ARGUMENT, "system: the Hamiltonian has no %s callback",
+                     given->value == NULL ? "value" : "gradient");
   system->terms |= term;
   return dvi__declare_function(system, &function, "Hamiltonian", part);
 }
 
-dvi_status dvi__hamiltonian_vector_field(dvi__evaluator *e, double t, const double *q, const double *p, double *qdot, double *pdot)
+dvi_status dvi__hamiltonian_vector_field(dvi__evaluator *e, double t, const double *q,
+                                         const double *p, double *qdot, double *pdot)
 {
   DVI_TRY(dvi__lagrangian_gradient(e, 1, &t, q, p, pdot, qdot));
   for (int i = 0; i < e->system->n; i++) pdot[i] = -pdot[i];
   return DVI_OK;
 }
 
-dvi_status dvi__energy_of_hamiltonian(dvi__evaluator *e, double t, const double *q, const double *v, const double *p, double *E)
+dvi_status dvi__energy_of_hamiltonian(dvi__evaluator *e, double t, const double *q, const double *v,
+                                      const double *p, double *E)
 {
   (void)v;
   return dvi__lagrangian_value(e, 1, &t, q, p, E);
@@ -58,7 +64,8 @@ static dvi_status prepare_nothing(dvi__evaluator *e, dvi__derivatives most)
   return DVI_OK;
 }
 
-static dvi_status hamiltonian_velocity(dvi__evaluator *e, double t, const double *q, const double *p, double *v)
+static dvi_status hamiltonian_velocity(dvi__evaluator *e, double t, const double *q,
+                                       const double *p, double *v)
 {
   double *found = e->velocity_search;
   const size_t n = (size_t)e->system->n;
@@ -67,8 +74,8 @@ static dvi_status hamiltonian_velocity(dvi__evaluator *e, double t, const double
   return DVI_OK;
 }
 
-static dvi_status hamiltonian_motion(dvi__evaluator *e, double t, const double *q, const double *p, double *v, double *pdot,
-                                     double *multiplier)
+static dvi_status hamiltonian_motion(dvi__evaluator *e, double t, const double *q, const double *p,
+                                     double *v, double *pdot, double *multiplier)
 {
   (void)multiplier;
   return dvi__hamiltonian_vector_field(e, t, q, p, v, pdot);

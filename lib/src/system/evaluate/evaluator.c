@@ -6,7 +6,7 @@
 #include "system/evaluate/dynamics.h"
 #include "system/evaluate/evaluator_struct.h"
 
-static size_t numbers(const dvi__evaluator *e, int count)
+static size_t count_numbers(const dvi__evaluator *e, int count)
 {
   return (size_t)e->system->n * (size_t)count;
 }
@@ -14,36 +14,65 @@ static size_t numbers(const dvi__evaluator *e, int count)
 static int allocate_general(dvi__evaluator *e)
 {
   const dvi_system *system = e->system;
-  e->unwanted = DVI_NEW(double, numbers(e, e->capacity));
-  e->velocity_search = DVI_NEW(double, 6 * numbers(e, 1));
+  e->unwanted = DVI_NEW(double, count_numbers(e, e->capacity));
+  e->velocity_search = DVI_NEW(double, 6 * count_numbers(e, 1));
   e->hessian[0] = DVI_NEW(double, dvi__pattern_entries(&system->lagrangian->qq));
   e->hessian[1] = DVI_NEW(double, dvi__pattern_entries(&system->qv));
   e->hessian[2] = DVI_NEW(double, dvi__pattern_entries(&system->vv));
   return e->unwanted && e->velocity_search && e->hessian[0] && e->hessian[1] && e->hessian[2];
 }
 
-static dvi_status allocate(dvi__evaluator *e, int hessians)
+/* Allocate scratch memory and `term`, with room for potentials' Hessians or without, in place of
+ * what is there. */
+static dvi_status evaluator_allocate_scratch(dvi__evaluator *e, int hessians)
 {
   const dvi_system *system = e->system;
-  DVI_TRY(dvi__scratch_create(system, e->capacity, hessians, &e->scratch));
-  e->term = DVI_NEW(double, (size_t)dvi__longest_hessian(system, hessians) * (size_t)e->capacity);
-  for (int i = 0; i < 3; i++) e->point[i] = DVI_NEW(double, system->n);
-  if (e->term && e->point[0] && e->point[1] && e->point[2] && (system->lagrangian == NULL || allocate_general(e))) return DVI_OK;
-  return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory for %d points in %d dimensions", e->capacity, system->n);
+  const size_t longest = (size_t)dvi__longest_hessian(system, hessians);
+  dvi__scratch scratch;
+  DVI_TRY(dvi__scratch_create(system, e->capacity, hessians, &scratch));
+  double *term = DVI_NEW(double, longest *(size_t)e->capacity);
+  if (term == NULL) {
+    dvi__scratch_clear(&scratch);
+    return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory for %d points in %d dimensions",
+                     e->capacity, system->n);
+  }
+  dvi__scratch_clear(&e->scratch);
+  dvi__release(e->term);
+  e->scratch = scratch;
+  e->term = term;
+  e->has_hessians = hessians;
+  return DVI_OK;
 }
 
-dvi_status dvi__evaluator_create(const dvi_system *system, int capacity, dvi__derivatives most, dvi_counters *counters,
-                                 dvi__evaluator **evaluator)
+dvi_status dvi__evaluator_prepare_hessians(dvi__evaluator *e)
 {
-  const int hessians = most == DVI__HESSIANS;
+  if (e->has_hessians) return DVI_OK;
+  DVI_TRY(dvi__system_prepare_hessian(e->system));
+  return evaluator_allocate_scratch(e, 1);
+}
+
+static dvi_status evaluator_allocate(dvi__evaluator *e, int hessians)
+{
+  const dvi_system *system = e->system;
+  DVI_TRY(hessians ? dvi__evaluator_prepare_hessians(e) : evaluator_allocate_scratch(e, 0));
+  for (int i = 0; i < 3; i++) e->point[i] = DVI_NEW(double, system->n);
+  if (e->point[0] && e->point[1] && e->point[2] &&
+      (system->lagrangian == NULL || allocate_general(e)))
+    return DVI_OK;
+  return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory for %d points in %d dimensions",
+                   e->capacity, system->n);
+}
+
+dvi_status dvi__evaluator_create(const dvi_system *system, int capacity, dvi__derivatives most,
+                                 dvi_counters *counters, dvi__evaluator **evaluator)
+{
   *evaluator = NULL;
-  if (hessians) DVI_TRY(dvi__system_prepare_hessian(system));
   dvi__evaluator *e = DVI_NEW(dvi__evaluator, 1);
   if (e == NULL) return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory");
   e->system = system;
   e->capacity = capacity;
   e->counters = counters != NULL ? counters : &e->own_counters;
-  dvi_status status = allocate(e, hessians);
+  dvi_status status = evaluator_allocate(e, most == DVI__HESSIANS);
   if (status == DVI_OK) status = system->dynamics->prepare(e, most);
   if (status != DVI_OK) dvi__evaluator_destroy(&e);
   *evaluator = e;
@@ -68,7 +97,7 @@ void dvi__evaluator_destroy(dvi__evaluator **evaluator)
 
 /* ---- constant mass ---- */
 
-/* y = M x for a batch. */
+/* Compute y = M x for a batch. */
 static void mass_times(const dvi_system *s, int count, const double *x, double *y)
 {
   const size_t points = (size_t)count;
@@ -80,7 +109,8 @@ static void mass_times(const dvi_system *s, int count, const double *x, double *
   memset(y, 0, (size_t)s->n * points * sizeof(double));
   for (size_t j = 0; j < (size_t)s->n; j++)
     for (int e = s->vv.start[j]; e < s->vv.start[j + 1]; e++)
-      for (size_t k = 0; k < points; k++) y[(size_t)s->vv.row[e] * points + k] += s->mass_values[e] * x[j * points + k];
+      for (size_t k = 0; k < points; k++)
+        y[(size_t)s->vv.row[e] * points + k] += s->mass_values[e] * x[j * points + k];
 }
 
 void dvi__mass_solve(dvi__evaluator *e, int count, const double *y, double *x)
@@ -126,7 +156,7 @@ void dvi__count_differences(dvi__evaluator *e)
 
 /* ---- value ---- */
 
-static void kinetic_energy(dvi__evaluator *e, int count, const double *v, double *T)
+static void constant_mass_energy(dvi__evaluator *e, int count, const double *v, double *T)
 {
   const size_t points = (size_t)count;
   memset(T, 0, points * sizeof(double));
@@ -135,14 +165,15 @@ static void kinetic_energy(dvi__evaluator *e, int count, const double *v, double
     for (size_t k = 0; k < points; k++) T[k] += 0.5 * v[i * points + k] * e->term[i * points + k];
 }
 
-dvi_status dvi__lagrangian_value(dvi__evaluator *e, int count, const double *t, const double *q, const double *v, double *L)
+dvi_status dvi__lagrangian_value(dvi__evaluator *e, int count, const double *t, const double *q,
+                                 const double *v, double *L)
 {
   const dvi_system *s = e->system;
   e->counters->values += count;
   if (s->lagrangian != NULL)
     DVI_TRY(dvi__general_value(s->lagrangian, &e->scratch, count, t, q, v, L));
   else
-    kinetic_energy(e, count, v, L);
+    constant_mass_energy(e, count, v, L);
   for (int p = 0; p < s->potential_count; p++) {
     DVI_TRY(dvi__potential_value(&s->potentials[p], &e->scratch, count, t, q, e->term));
     for (int k = 0; k < count; k++) L[k] -= e->term[k];
@@ -152,13 +183,15 @@ dvi_status dvi__lagrangian_value(dvi__evaluator *e, int count, const double *t, 
   return DVI_OK;
 }
 
-dvi_status dvi__lagrangian_rate(dvi__evaluator *e, int count, const double *t, const double *q, const double *v, double *L_t)
+dvi_status dvi__lagrangian_rate(dvi__evaluator *e, int count, const double *t, const double *q,
+                                const double *v, double *L_t)
 {
   const dvi_system *s = e->system;
   memset(L_t, 0, (size_t)count * sizeof(double));
   if (s->autonomous) return DVI_OK;
   e->counters->values += count;
-  if (s->lagrangian != NULL) DVI_TRY(dvi__general_rate(s->lagrangian, &e->scratch, count, t, q, v, L_t));
+  if (s->lagrangian != NULL)
+    DVI_TRY(dvi__general_rate(s->lagrangian, &e->scratch, count, t, q, v, L_t));
   for (int p = 0; p < s->potential_count; p++) {
     DVI_TRY(dvi__potential_rate(&s->potentials[p], &e->scratch, count, t, q, e->term));
     for (int k = 0; k < count; k++) L_t[k] -= e->term[k];
@@ -168,20 +201,23 @@ dvi_status dvi__lagrangian_rate(dvi__evaluator *e, int count, const double *t, c
 
 /* ---- gradient ---- */
 
-/* The sum of the potentials' gradients; the first one is evaluated in place. */
-static dvi_status sum_gradients(dvi__evaluator *e, int count, const double *t, const double *q, double *V_q)
+/* Sum the potentials' gradients. The first one is evaluated in place. */
+static dvi_status sum_gradients(dvi__evaluator *e, int count, const double *t, const double *q,
+                                double *V_q)
 {
   const dvi_system *s = e->system;
-  const size_t length = numbers(e, count);
+  const size_t length = count_numbers(e, count);
   if (s->potential_count == 0) memset(V_q, 0, length * sizeof(double));
   for (int p = 0; p < s->potential_count; p++) {
-    DVI_TRY(dvi__potential_gradient(&s->potentials[p], &e->scratch, count, t, q, p == 0 ? V_q : e->term));
+    DVI_TRY(dvi__potential_gradient(&s->potentials[p], &e->scratch, count, t, q,
+                                    p == 0 ? V_q : e->term));
     for (size_t i = 0; i < length && p > 0; i++) V_q[i] += e->term[i];
   }
   return DVI_OK;
 }
 
-dvi_status dvi__potentials_gradient(dvi__evaluator *e, int count, const double *t, const double *q, double *V_q)
+dvi_status dvi__potentials_gradient(dvi__evaluator *e, int count, const double *t, const double *q,
+                                    double *V_q)
 {
   e->counters->gradients += count;
   const dvi_status status = sum_gradients(e, count, t, q, V_q);
@@ -189,27 +225,28 @@ dvi_status dvi__potentials_gradient(dvi__evaluator *e, int count, const double *
   return status;
 }
 
-static dvi_status potential_forces(dvi__evaluator *e, int count, const double *t, const double *q, double *L_q)
+static dvi_status potential_forces(dvi__evaluator *e, int count, const double *t, const double *q,
+                                   double *L_q)
 {
   DVI_TRY(sum_gradients(e, count, t, q, L_q));
-  for (size_t i = 0; i < numbers(e, count); i++) L_q[i] = -L_q[i];
+  for (size_t i = 0; i < count_numbers(e, count); i++) L_q[i] = -L_q[i];
   return DVI_OK;
 }
 
-static dvi_status general_gradient(dvi__evaluator *e, int count, const double *t, const double *q, const double *v, double *L_q,
-                                   double *L_v)
+static dvi_status general_gradient(dvi__evaluator *e, int count, const double *t, const double *q,
+                                   const double *v, double *L_q, double *L_v)
 {
   const dvi_system *s = e->system;
   DVI_TRY(dvi__general_gradient(s->lagrangian, &e->scratch, count, t, q, v, L_q, L_v));
   for (int p = 0; p < s->potential_count; p++) {
     DVI_TRY(dvi__potential_gradient(&s->potentials[p], &e->scratch, count, t, q, e->term));
-    for (size_t i = 0; i < numbers(e, count); i++) L_q[i] -= e->term[i];
+    for (size_t i = 0; i < count_numbers(e, count); i++) L_q[i] -= e->term[i];
   }
   return DVI_OK;
 }
 
-dvi_status dvi__lagrangian_gradient(dvi__evaluator *e, int count, const double *t, const double *q, const double *v, double *L_q,
-                                    double *L_v)
+dvi_status dvi__lagrangian_gradient(dvi__evaluator *e, int count, const double *t, const double *q,
+                                    const double *v, double *L_q, double *L_v)
 {
   const dvi_system *s = e->system;
   if (s->lagrangian == NULL && L_v != NULL) mass_times(s, count, v, L_v);
@@ -217,7 +254,8 @@ dvi_status dvi__lagrangian_gradient(dvi__evaluator *e, int count, const double *
   e->counters->gradients += count;
   const dvi_status status = s->lagrangian == NULL
                                 ? potential_forces(e, count, t, q, L_q)
-                                : general_gradient(e, count, t, q, v, L_q ? L_q : e->unwanted, L_v ? L_v : e->unwanted);
+                                : general_gradient(e, count, t, q, v, L_q ? L_q : e->unwanted,
+                                                   L_v ? L_v : e->unwanted);
   dvi__count_differences(e);
   return status;
 }
@@ -232,42 +270,47 @@ static void copy_mass_hessian(const dvi_system *s, int count, double *L_vv)
     for (size_t k = 0; k < points; k++) L_vv[entry * points + k] = M[entry];
 }
 
-static void embed(const dvi__pattern *part, const int *where, size_t points, double sign, const double *values, double *whole)
+static void add_embedded(const dvi__pattern *part, const int *where, size_t points, double sign,
+                         const double *values, double *whole)
 {
   for (size_t entry = 0; entry < (size_t)dvi__pattern_entries(part); entry++)
-    for (size_t k = 0; k < points; k++) whole[(size_t)where[entry] * points + k] += sign * values[entry * points + k];
+    for (size_t k = 0; k < points; k++)
+      whole[(size_t)where[entry] * points + k] += sign * values[entry * points + k];
 }
 
-static dvi_status potential_hessians(dvi__evaluator *e, int count, const double *t, const double *q, double *L_qq)
+static dvi_status potential_hessians(dvi__evaluator *e, int count, const double *t, const double *q,
+                                     double *L_qq)
 {
   const dvi_system *s = e->system;
   for (int p = 0; p < s->potential_count; p++) {
     const dvi__potential_term *term = &s->potentials[p];
     DVI_TRY(dvi__potential_hessian(term, &e->scratch, count, t, q, e->term));
-    embed(&term->qq, term->in_qq, (size_t)count, -1, e->term, L_qq);
+    add_embedded(&term->qq, term->in_qq, (size_t)count, -1, e->term, L_qq);
   }
   return DVI_OK;
 }
 
-/* The Lagrangian's own block stands packed at the front of the whole L_qq: move its entries to their places, from the back. */
-static void spread(const dvi_system *s, size_t points, double *L_qq)
+/* Move the entries of the Lagrangian's own block, which are packed at the front of the whole L_qq,
+ * to their places, from the back. */
+static void spread_entries(const dvi_system *s, size_t points, double *L_qq)
 {
   int from = dvi__pattern_entries(&s->lagrangian->qq) - 1;
   for (int entry = dvi__pattern_entries(&s->qq) - 1; entry >= 0; entry--) {
     const int found = from >= 0 && s->lagrangian->in_qq[from] == entry;
-    for (size_t k = 0; k < points; k++) L_qq[(size_t)entry * points + k] = found ? L_qq[(size_t)from * points + k] : 0.0;
+    for (size_t k = 0; k < points; k++)
+      L_qq[(size_t)entry * points + k] = found ? L_qq[(size_t)from * points + k] : 0.0;
     from -= found;
   }
 }
 
-static dvi_status hessian(dvi__evaluator *e, int count, const double *t, const double *q, const double *v, double *L_qq,
-                          double *L_qv, double *L_vv)
+static dvi_status sum_hessians(dvi__evaluator *e, int count, const double *t, const double *q,
+                               const double *v, double *L_qq, double *L_qv, double *L_vv)
 {
   const dvi_system *s = e->system;
   const size_t points = (size_t)count;
   if (s->lagrangian != NULL) {
     DVI_TRY(dvi__general_hessian(s->lagrangian, &e->scratch, count, t, q, v, L_qq, L_qv, L_vv));
-    spread(s, points, L_qq);
+    spread_entries(s, points, L_qq);
     return potential_hessians(e, count, t, q, L_qq);
   }
   if (L_vv != NULL) copy_mass_hessian(s, count, L_vv);
@@ -276,39 +319,43 @@ static dvi_status hessian(dvi__evaluator *e, int count, const double *t, const d
   return potential_hessians(e, count, t, q, L_qq);
 }
 
-dvi_status dvi__lagrangian_hessian(dvi__evaluator *e, int count, const double *t, const double *q, const double *v, double *L_qq,
-                                   double *L_qv, double *L_vv)
+dvi_status dvi__lagrangian_hessian(dvi__evaluator *e, int count, const double *t, const double *q,
+                                   const double *v, double *L_qq, double *L_qv, double *L_vv)
 {
   e->counters->hessians += count;
-  const dvi_status status = hessian(e, count, t, q, v, L_qq, L_qv, L_vv);
+  const dvi_status status = sum_hessians(e, count, t, q, v, L_qq, L_qv, L_vv);
   dvi__count_differences(e);
   return status;
 }
 
-dvi_status dvi__form_gradient(dvi__evaluator *e, const double *q, const double *w, double *alpha_w_q, double *alpha)
+dvi_status dvi__form_gradient(dvi__evaluator *e, const double *q, const double *w,
+                              double *alpha_w_q, double *alpha)
 {
   const double any_time = 0;
   e->counters->gradients++;
-  return dvi__general_gradient(e->system->lagrangian, &e->scratch, 1, &any_time, q, w, alpha_w_q, alpha);
+  return dvi__general_gradient(e->system->lagrangian, &e->scratch, 1, &any_time, q, w, alpha_w_q,
+                               alpha);
 }
 
-dvi_status dvi__form_hessian(dvi__evaluator *e, const double *q, const double *w, double *alpha_w_qq, double *alpha_q)
+dvi_status dvi__form_hessian(dvi__evaluator *e, const double *q, const double *w,
+                             double *alpha_w_qq, double *alpha_q)
 {
   const double any_time = 0;
   e->counters->hessians++;
-  const dvi_status status = dvi__general_hessian(e->system->lagrangian, &e->scratch, 1, &any_time, q, w, alpha_w_qq, alpha_q,
-                                                 e->hessian[2]);
+  const dvi_status status = dvi__general_hessian(e->system->lagrangian, &e->scratch, 1, &any_time,
+                                                 q, w, alpha_w_qq, alpha_q, e->hessian[2]);
   dvi__count_differences(e);
-  if (status == DVI_OK) spread(e->system, 1, alpha_w_qq);
+  if (status == DVI_OK) spread_entries(e->system, 1, alpha_w_qq);
   return status;
 }
 
-dvi_status dvi__velocity_hessian(dvi__evaluator *e, double t, const double *q, const double *v, const double **L_vv)
+dvi_status dvi__velocity_hessian(dvi__evaluator *e, double t, const double *q, const double *v,
+                                 const double **L_vv)
 {
   e->counters->hessians++;
   *L_vv = e->hessian[2];
-  const dvi_status status = dvi__general_hessian(e->system->lagrangian, &e->scratch, 1, &t, q, v, e->hessian[0], e->hessian[1],
-                                                 e->hessian[2]);
+  const dvi_status status = dvi__general_hessian(e->system->lagrangian, &e->scratch, 1, &t, q, v,
+                                                 e->hessian[0], e->hessian[1], e->hessian[2]);
   dvi__count_differences(e);
   return status;
 }

@@ -8,18 +8,22 @@ struct dvi__evaluator {
   const dvi_system *system;
   int capacity;
   dvi_counters *counters;
-  dvi_counters own_counters; /* counts if nobody else wants them */
+  dvi_counters own_counters; /* used if the caller passes none */
   dvi__scratch scratch;
-  double *term;            /* one term's gradient or Hessian, before it is added to the others */
-  double *point[3];        /* [n] for work at one point */
-  dvi__linear *velocity;   /* factors the matrix by which the kind of dynamics finds velocities; NULL: there is none */
-  double *unwanted;        /* general Lagrangians: takes the half of a gradient that nobody asked for */
-  double *hessian[3];      /* general Lagrangians: its own L_qq, L_qv, L_vv at one point, for the inverse Legendre map */
-  double *velocity_search; /* general Lagrangians: [6 n], its work */
-  void *own;               /* the memory of the kind of dynamics */
+  double *term;     /* one term's gradient or Hessian, before addition to the others */
+  int has_hessians; /* scratch and term have room for potentials' Hessians */
+  double *point[3]; /* work [n] at one point */
+  /* Factors the matrix by which the kind of dynamics finds velocities, or NULL. */
+  dvi__linear *velocity;
+  /* Receives the half of a general Lagrangian's gradient that nobody needs. */
+  double *unwanted;
+  /* L_qq, L_qv, L_vv of a general Lagrangian at one point, for the inverse Legendre map. */
+  double *hessian[3];
+  double *velocity_search; /* work [6 n] of general Lagrangians */
+  void *own;               /* memory of the kind of dynamics */
 };
 
-/* Move the points that differences asked for to the counters. */
+/* Add the points at which differences evaluated a function to the counters. */
 void dvi__count_differences(dvi__evaluator *e);
 
 #endif

@@ -7,24 +7,26 @@
 #include "system/evaluate/dynamics.h"
 #include "system/evaluate/evaluator_struct.h"
 
-static dvi_status callback(int returned, const char *name)
+static dvi_status invariant_verdict(int returned, const char *name)
 {
   if (returned == 0) return DVI_OK;
-  return dvi__fail(returned < 0 ? DVI_CALLBACK_FAILED : DVI_CALLBACK_RETRY, "invariant '%s': the callback returned %d", name,
-                   returned);
+  return dvi__fail(returned < 0 ? DVI_CALLBACK_FAILED : DVI_CALLBACK_RETRY,
+                   "invariant '%s': the callback returned %d", name, returned);
 }
 
-/* J = p.xi(q)  (Marsden and West 2001, eq. 1.2.6). */
-static dvi_status momentum_map(dvi__evaluator *e, const dvi_symmetry *symmetry, const double *q, const double *p, double *J)
+/* Compute J = p.xi(q)  (Marsden and West 2001, eq. 1.2.6). */
+static dvi_status momentum_map(dvi__evaluator *e, const dvi_symmetry *symmetry, const double *q,
+                               const double *p, double *J)
 {
   double *xi = e->point[2];
   *J = 0;
-  DVI_TRY(callback(symmetry->generator(q, xi, symmetry->user), symmetry->name));
+  DVI_TRY(invariant_verdict(symmetry->generator(q, xi, symmetry->user), symmetry->name));
   for (int i = 0; i < e->system->nv; i++) *J += p[i] * xi[i];
   return DVI_OK;
 }
 
-dvi_status dvi__invariant(dvi__evaluator *e, double t, const double *q, const double *v, const double *p, int i, double *value)
+dvi_status dvi__invariant(dvi__evaluator *e, double t, const double *q, const double *v,
+                          const double *p, int i, double *value)
 {
   const dvi_system *s = e->system;
   const char *name = s->invariant_names[i];
@@ -34,11 +36,15 @@ dvi_status dvi__invariant(dvi__evaluator *e, double t, const double *q, const do
   else if (declared < 0)
     DVI_TRY(momentum_map(e, &s->symmetries[i - 1], q, p, value));
   else
-    DVI_TRY(callback(s->invariants[declared].value(t, q, p, value, s->invariants[declared].user), name));
-  return isfinite(*value) ? DVI_OK : dvi__fail(DVI_NOT_FINITE, "invariant '%s' is %g at t = %.6g", name, *value, t);
+    DVI_TRY(invariant_verdict(
+        s->invariants[declared].value(t, q, p, value, s->invariants[declared].user), name));
+  return isfinite(*value)
+             ? DVI_OK
+             : dvi__fail(DVI_NOT_FINITE, "invariant '%s' is %g at t = %.6g", name, *value, t);
 }
 
-dvi_status dvi__invariants(dvi__evaluator *e, double t, const double *q, const double *v, const double *p, double *value)
+dvi_status dvi__invariants(dvi__evaluator *e, double t, const double *q, const double *v,
+                           const double *p, double *value)
 {
   const int count = dvi_system_invariant_count(e->system);
   for (int i = 0; i < count; i++) DVI_TRY(dvi__invariant(e, t, q, v, p, i, &value[i]));
@@ -47,10 +53,11 @@ dvi_status dvi__invariants(dvi__evaluator *e, double t, const double *q, const d
 
 /* ---- over a step ---- */
 
-/* Of a difference of energies no more is known than a rounding of what they are summed from. */
+/* A difference of energies is known up to a rounding of its summands. */
 static const double rounding = 64 * DBL_EPSILON;
 
-static dvi_status kinetic(dvi__evaluator *e, const dvi__instant *at, double *E, double *T, double *size)
+static dvi_status kinetic_size(dvi__evaluator *e, const dvi__instant *at, double *E, double *T,
+                               double *size)
 {
   double pv = 0;
   DVI_TRY(dvi__legendre_inverse(e, at->t, at->q, at->p, at->v));
@@ -61,20 +68,22 @@ static dvi_status kinetic(dvi__evaluator *e, const dvi__instant *at, double *E, 
   return DVI_OK;
 }
 
-static dvi_status change_of_lagrangian(dvi__evaluator *e, const dvi__instant *before, const dvi__instant *after, double *change,
-                                       double *exchanged)
+static dvi_status change_of_lagrangian(dvi__evaluator *e, const dvi__instant *before,
+                                       const dvi__instant *after, double *change, double *exchanged)
 {
   double E0, E1, T0, T1, size0, size1;
-  DVI_TRY(kinetic(e, before, &E0, &T0, &size0));
-  DVI_TRY(kinetic(e, after, &E1, &T1, &size1));
+  DVI_TRY(kinetic_size(e, before, &E0, &T0, &size0));
+  DVI_TRY(kinetic_size(e, after, &E1, &T1, &size1));
   *change = fmax(fabs(E1 - E0) - rounding * fmax(size0, size1), 0);
   *exchanged = fmax(T0, T1);
   return DVI_OK;
 }
 
-/* sum |L_q dq| + |L_v dp| with L = -H(q) of a one-form at v = 0, and L = H(q,p) on phase space. */
-static dvi_status exchange(dvi__evaluator *e, const dvi__instant *at, const dvi__instant *before, const dvi__instant *after,
-                           int with_p, double *sum)
+/* Compute sum |L_q dq| + |L_v dp|, with L = -H(q) of a one-form at v = 0, and L = H(q,p) on phase
+ * space. */
+static dvi_status energy_exchange(dvi__evaluator *e, const dvi__instant *at,
+                                  const dvi__instant *before, const dvi__instant *after, int with_p,
+                                  double *sum)
 {
   const size_t n = (size_t)e->system->n;
   double *in_q = before->v, *in_p = e->point[2];
@@ -92,30 +101,33 @@ static dvi_status exchange(dvi__evaluator *e, const dvi__instant *at, const dvi_
   return DVI_OK;
 }
 
-static dvi_status change_of_hamiltonian(dvi__evaluator *e, const dvi__instant *before, const dvi__instant *after, double *change,
+static dvi_status change_of_hamiltonian(dvi__evaluator *e, const dvi__instant *before,
+                                        const dvi__instant *after, double *change,
                                         double *exchanged)
 {
   const int with_p = e->system->dynamics->by_momentum;
   double E0, E1, sum0, sum1;
   DVI_TRY(e->system->dynamics->energy(e, before->t, before->q, before->v, before->p, &E0));
   DVI_TRY(e->system->dynamics->energy(e, after->t, after->q, after->v, after->p, &E1));
-  DVI_TRY(exchange(e, before, before, after, with_p, &sum0));
-  DVI_TRY(exchange(e, after, before, after, with_p, &sum1));
+  DVI_TRY(energy_exchange(e, before, before, after, with_p, &sum0));
+  DVI_TRY(energy_exchange(e, after, before, after, with_p, &sum1));
   *change = fmax(fabs(E1 - E0) - rounding * fmax(fabs(E0), fabs(E1)), 0);
   *exchanged = fmax(sum0, sum1);
   return DVI_OK;
 }
 
-dvi_status dvi__energy_change(dvi__evaluator *e, const dvi__instant *before, const dvi__instant *after, double *change,
-                              double *exchanged)
+dvi_status dvi__energy_change(dvi__evaluator *e, const dvi__instant *before,
+                              const dvi__instant *after, double *change, double *exchanged)
 {
-  return (e->system->dynamics->has_kinetic_energy ? change_of_lagrangian : change_of_hamiltonian)(e, before, after, change,
-                                                                                                  exchanged);
+  return (e->system->dynamics->has_kinetic_energy ? change_of_lagrangian : change_of_hamiltonian)(
+      e, before, after, change, exchanged);
 }
 
-/* Rates r and what they move, x, of one kind. A rate that is a rounding of the others is no measure,
- * nor is one that moves little of an x whose size counts, as a momentum's does. */
-static double defect_of(size_t n, double h, int sized, const double *x0, const double *x1, const double *r0, const double *r1)
+/* Compute the defect of rates r and their variables x, of one kind. A rate that is a rounding of
+ * the others is no measure. Nor is a rate that changes x little, if the size of x counts, as a
+ * momentum's does. */
+static double defect_of(size_t n, double h, int sized, const double *x0, const double *x1,
+                        const double *r0, const double *r1)
 {
   double worst = 0, largest = 0;
   for (size_t i = 0; i < n; i++) largest = fmax(largest, fmax(fabs(r0[i]), fabs(r1[i])));
@@ -128,8 +140,8 @@ static double defect_of(size_t n, double h, int sized, const double *x0, const d
   return worst;
 }
 
-dvi_status dvi__motion_defect(dvi__evaluator *e, const dvi__instant *before, const dvi__instant *after, double *forces,
-                              double *defect)
+dvi_status dvi__motion_defect(dvi__evaluator *e, const dvi__instant *before,
+                              const dvi__instant *after, double *forces, double *defect)
 {
   const size_t n = (size_t)e->system->n;
   const double h = after->t - before->t;

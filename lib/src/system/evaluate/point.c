@@ -1,4 +1,4 @@
-/* The public functions of a system at one point: each makes an evaluator for the call. */
+/* The public functions of a system at one point. Each creates an evaluator for the call. */
 #include <math.h>
 #include <string.h>
 
@@ -7,11 +7,13 @@
 #include "num/finite.h"
 #include "system/evaluate/dynamics.h"
 
-static dvi_status check_point(const dvi_system *system, double t, const double *q, const double *second, const void *result)
+static dvi_status check_point(const dvi_system *system, double t, const double *q,
+                              const double *second, const void *result)
 {
   if (system == NULL || q == NULL || second == NULL || result == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "system: an argument is NULL");
-  if (!isfinite(t) || dvi__first_not_finite((size_t)system->n, q) >= 0 || dvi__first_not_finite((size_t)system->nv, second) >= 0)
+  if (!isfinite(t) || dvi__first_not_finite((size_t)system->n, q) >= 0 ||
+      dvi__first_not_finite((size_t)system->nv, second) >= 0)
     return dvi__fail(DVI_NOT_FINITE, "system: the point (t = %g) is not finite", t);
   return DVI_OK;
 }
@@ -19,11 +21,12 @@ static dvi_status check_point(const dvi_system *system, double t, const double *
 static dvi_status needs_lagrangian(const dvi_system *system)
 {
   if (!system->dynamics->by_momentum) return DVI_OK;
-  return dvi__fail(DVI_UNSUPPORTED,
-                   "system: a Hamiltonian is declared, no Lagrangian; ask at q and p: dvi_system_invariants, dvi_system_velocity");
+  return dvi__fail(DVI_UNSUPPORTED, "system: a Hamiltonian is declared, no Lagrangian; ask at q "
+                                    "and p: dvi_system_invariants, dvi_system_velocity");
 }
 
-dvi_status dvi_system_lagrangian(const dvi_system *system, double t, const double *q, const double *v, double *L)
+dvi_status dvi_system_lagrangian(const dvi_system *system, double t, const double *q,
+                                 const double *v, double *L)
 {
   dvi__evaluator *e;
   double value = 0;
@@ -37,7 +40,8 @@ dvi_status dvi_system_lagrangian(const dvi_system *system, double t, const doubl
   return status;
 }
 
-dvi_status dvi_system_momentum(const dvi_system *system, double t, const double *q, const double *v, double *p)
+dvi_status dvi_system_momentum(const dvi_system *system, double t, const double *q, const double *v,
+                               double *p)
 {
   dvi__evaluator *e;
   DVI_TRY(check_point(system, t, q, v, p));
@@ -51,7 +55,8 @@ dvi_status dvi_system_momentum(const dvi_system *system, double t, const double 
   return status;
 }
 
-dvi_status dvi_system_velocity(const dvi_system *system, double t, const double *q, const double *p, double *v)
+dvi_status dvi_system_velocity(const dvi_system *system, double t, const double *q, const double *p,
+                               double *v)
 {
   dvi__evaluator *e;
   DVI_TRY(check_point(system, t, q, p, v));
@@ -64,16 +69,23 @@ dvi_status dvi_system_velocity(const dvi_system *system, double t, const double 
   return status;
 }
 
-dvi_status dvi_system_invariants(const dvi_system *system, double t, const double *q, const double *p, double *value)
+static dvi_status invariants_at(dvi__evaluator *e, double t, const double *q, const double *p,
+                                double *v, double *value)
+{
+  DVI_TRY(dvi__state_check(e, q, p));
+  DVI_TRY(dvi__legendre_inverse(e, t, q, p, v));
+  return dvi__invariants(e, t, q, v, p, value);
+}
+
+dvi_status dvi_system_invariants(const dvi_system *system, double t, const double *q,
+                                 const double *p, double *value)
 {
   dvi__evaluator *e;
   DVI_TRY(check_point(system, t, q, p, value));
   double *v = DVI_NEW(double, system->n);
   if (v == NULL) return dvi__fail(DVI_NO_MEMORY, "system: no memory for a velocity");
   dvi_status status = dvi__evaluator_create(system, 1, DVI__STATES, NULL, &e);
-  if (status == DVI_OK) status = dvi__state_check(e, q, p);
-  if (status == DVI_OK) status = dvi__legendre_inverse(e, t, q, p, v);
-  if (status == DVI_OK) status = dvi__invariants(e, t, q, v, p, value);
+  if (status == DVI_OK) status = invariants_at(e, t, q, p, v, value);
   dvi__evaluator_destroy(&e);
   dvi__release(v);
   return status;

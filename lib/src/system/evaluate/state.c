@@ -4,23 +4,27 @@
 #include "system/evaluate/evaluator_struct.h"
 #include "system/factor.h"
 
-dvi_status dvi__value_of_point(dvi__evaluator *e, double t, const double *q, const double *v, double *L)
+dvi_status dvi__value_of_point(dvi__evaluator *e, double t, const double *q, const double *v,
+                               double *L)
 {
   return dvi__lagrangian_value(e, 1, &t, q, v, L);
 }
 
-dvi_status dvi__forces_of_point(dvi__evaluator *e, double t, const double *q, const double *v, double *L_q)
+dvi_status dvi__forces_of_point(dvi__evaluator *e, double t, const double *q, const double *v,
+                                double *L_q)
 {
   return dvi__lagrangian_gradient(e, 1, &t, q, v, L_q, NULL);
 }
 
-dvi_status dvi__momentum_of_point(dvi__evaluator *e, double t, const double *q, const double *v, double *p)
+dvi_status dvi__momentum_of_point(dvi__evaluator *e, double t, const double *q, const double *v,
+                                  double *p)
 {
   return dvi__lagrangian_gradient(e, 1, &t, q, v, NULL, p);
 }
 
-/* p.v - L */
-dvi_status dvi__energy_of_lagrangian(dvi__evaluator *e, double t, const double *q, const double *v, const double *p, double *E)
+/* Compute p.v - L. */
+dvi_status dvi__energy_of_lagrangian(dvi__evaluator *e, double t, const double *q, const double *v,
+                                     const double *p, double *E)
 {
   double L, pv = 0;
   DVI_TRY(e->system->dynamics->value(e, t, q, v, &L));
@@ -29,8 +33,8 @@ dvi_status dvi__energy_of_lagrangian(dvi__evaluator *e, double t, const double *
   return DVI_OK;
 }
 
-dvi_status dvi__motion_of_lagrangian(dvi__evaluator *e, double t, const double *q, const double *p, double *v, double *pdot,
-                                     double *multiplier)
+dvi_status dvi__motion_of_lagrangian(dvi__evaluator *e, double t, const double *q, const double *p,
+                                     double *v, double *pdot, double *multiplier)
 {
   (void)multiplier;
   DVI_TRY(dvi__legendre_inverse(e, t, q, p, v));
@@ -39,7 +43,8 @@ dvi_status dvi__motion_of_lagrangian(dvi__evaluator *e, double t, const double *
 
 dvi_status dvi__lagrangian_is_degenerate(double t)
 {
-  return dvi__fail_in(DVI_SINGULAR, "the Lagrangian is degenerate at t = %.6g: d2L/dv2 cannot be inverted", t);
+  return dvi__fail_in(DVI_SINGULAR,
+                      "the Lagrangian is degenerate at t = %.6g: d2L/dv2 cannot be inverted", t);
 }
 
 dvi_status dvi__state_check(const dvi__evaluator *e, const double *q, const double *second)
@@ -47,7 +52,8 @@ dvi_status dvi__state_check(const dvi__evaluator *e, const double *q, const doub
   return dvi__factors_check(e->system, q, second);
 }
 
-dvi_status dvi__legendre_inverse(dvi__evaluator *e, double t, const double *q, const double *p, double *v)
+dvi_status dvi__legendre_inverse(dvi__evaluator *e, double t, const double *q, const double *p,
+                                 double *v)
 {
   return e->system->dynamics->velocity(e, t, q, p, v);
 }
@@ -58,8 +64,8 @@ dvi_status dvi__legendre_regular(dvi__evaluator *e, double t, const double *q, c
   return dynamics->regular != NULL ? dynamics->regular(e, t, q, v) : DVI_OK;
 }
 
-dvi_status dvi__state_rates(dvi__evaluator *e, double t, const double *q, const double *p, double *v, double *pdot,
-                            double *multiplier)
+dvi_status dvi__state_rates(dvi__evaluator *e, double t, const double *q, const double *p,
+                            double *v, double *pdot, double *multiplier)
 {
   return e->system->dynamics->motion(e, t, q, p, v, pdot, multiplier);
 }

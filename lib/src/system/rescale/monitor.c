@@ -10,70 +10,87 @@
 #include "system/term/term.h"
 
 struct dvi__monitor {
-  dvi_system *system; /* of unit mass, with the monitor as its potential */
+  dvi_system *system; /* system of unit mass, with the monitor as its potential */
   dvi__scratch scratch;
-  double *t;              /* [capacity] zeros: a monitor has no time */
-  dvi__built_in built_in; /* of a user's function: not used */
+  double *t;              /* zeros [capacity], because a monitor has no time */
+  dvi__built_in built_in; /* not used for a user's function */
   char name[DVI__MONITOR_NAME];
 };
 
-/* ---- what is declared ---- */
+/* ---- declaration ---- */
 
 static dvi_status check_power(const char *name, double power)
 {
   if (isfinite(power) && power >= 0) return DVI_OK;
-  return dvi__fail(DVI_BAD_ARGUMENT, "monitor %s: power %g; a positive number is needed", name, power);
+  return dvi__fail(DVI_BAD_ARGUMENT, "monitor %s: power %g; a positive number is needed", name,
+                   power);
 }
 
-static dvi_status read_distance(const dvi_system *system, const dvi_monitor *given, dvi__built_in *own, char *name)
+static dvi_status read_distance(const dvi_system *system, const dvi_monitor *given,
+                                dvi__built_in *own, char *name)
 {
   own->power = given->power > 0 ? given->power : 1.5;
   own->bodies = given->bodies != 0 ? given->bodies : 1;
   own->dimension = given->dimension != 0 ? given->dimension : system->n / own->bodies;
-  if (own->bodies < 1 || own->dimension < 1 || system->n % own->bodies != 0 || system->n / own->bodies != own->dimension)
-    return dvi__fail(DVI_BAD_ARGUMENT, "monitor distance: %d points of %d coordinates are not the %d coordinates of the system",
-                     own->bodies, own->dimension, system->n);
+  if (own->bodies < 1 || own->dimension < 1 || system->n % own->bodies != 0 ||
+      system->n / own->bodies != own->dimension)
+    return dvi__fail(
+        DVI_BAD_ARGUMENT,
+        "monitor distance: %d points of %d coordinates are not the %d coordinates of the system",
+        own->bodies, own->dimension, system->n);
   char power[DVI_NUMBER_SIZE];
   dvi_number_write(own->power, power);
-  (void)snprintf(name, DVI__MONITOR_NAME, "distance:power=%s,bodies=%d,dimension=%d", power, own->bodies, own->dimension);
+  (void)snprintf(name, DVI__MONITOR_NAME, "distance:power=%s,bodies=%d,dimension=%d", power,
+                 own->bodies, own->dimension);
   return check_power("distance", given->power);
 }
 
-static dvi_status read_motion(const dvi_system *system, const dvi_monitor *given, dvi__built_in *own, char *name)
+static dvi_status read_motion(const dvi_system *system, const dvi_monitor *given,
+                              dvi__built_in *own, char *name)
 {
   const int arclength = given->kind == DVI_MONITOR_ARCLENGTH;
   const char *what = arclength ? "arclength" : "acceleration";
   if (system->lagrangian != NULL)
-    return dvi__fail(DVI_UNSUPPORTED, "monitor %s: the system declares a %s; a constant mass is needed", what,
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "monitor %s: the system declares a %s; a constant mass is needed", what,
                      system->dynamics->name);
   if (arclength && !system->autonomous)
-    return dvi__fail(DVI_UNSUPPORTED,
-                     "monitor arclength: the system is not declared autonomous, and has no energy to take the speed from");
+    return dvi__fail(DVI_UNSUPPORTED, "monitor arclength: the system is not declared autonomous, "
+                                      "and has no energy to take the speed from");
   own->power = given->power > 0 ? given->power : 0.75;
   char power[DVI_NUMBER_SIZE];
   dvi_number_write(own->power, power);
-  (void)snprintf(name, DVI__MONITOR_NAME, "%s%s%s", what, arclength ? "" : ":power=", arclength ? "" : power);
+  (void)snprintf(name, DVI__MONITOR_NAME, "%s%s%s", what,
+                 arclength ? "" : ":power=", arclength ? "" : power);
   return check_power(what, given->power);
 }
 
 /* Parameters that the kind does not have are refused, not dropped. */
 static dvi_status check_unused(const dvi_monitor *given)
 {
-  const int distance = given->kind == DVI_MONITOR_DISTANCE, acceleration = given->kind == DVI_MONITOR_ACCELERATION;
+  const int distance = given->kind == DVI_MONITOR_DISTANCE,
+            acceleration = given->kind == DVI_MONITOR_ACCELERATION;
   if (given->power != 0 && !distance && !acceleration)
-    return dvi__fail(DVI_BAD_ARGUMENT, "monitor: a power (%g) belongs to distance or acceleration alone", given->power);
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "monitor: a power (%g) belongs to distance or acceleration alone",
+                     given->power);
   if ((given->bodies != 0 || given->dimension != 0) && !distance)
     return dvi__fail(DVI_BAD_ARGUMENT, "monitor: bodies and dimension belong to distance alone");
   const dvi_potential *f = &given->function;
-  if (given->kind != DVI_MONITOR_FUNCTION && (f->value || f->value_batch || f->gradient || f->gradient_batch))
-    return dvi__fail(DVI_BAD_ARGUMENT, "monitor: a function is given beside a built-in monitor; one of them is possible");
+  if (given->kind != DVI_MONITOR_FUNCTION &&
+      (f->value || f->value_batch || f->gradient || f->gradient_batch))
+    return dvi__fail(
+        DVI_BAD_ARGUMENT,
+        "monitor: a function is given beside a built-in monitor; one of them is possible");
   if (f->qq.start != NULL || f->qq.row != NULL)
-    return dvi__fail(DVI_BAD_ARGUMENT, "monitor: a pattern is given; leave it out, the Hessian is full");
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "monitor: a pattern is given; leave it out, the Hessian is full");
   return DVI_OK;
 }
 
-/* The monitor as a potential. */
-static dvi_status declare(dvi__monitor *m, const dvi_system *system, const dvi_monitor *given, dvi_potential *function)
+/* Declare the monitor as a potential. */
+static dvi_status declare_monitor(dvi__monitor *m, const dvi_system *system,
+                                  const dvi_monitor *given, dvi_potential *function)
 {
   DVI_TRY(check_unused(given));
   m->built_in.system = system;
@@ -82,7 +99,8 @@ static dvi_status declare(dvi__monitor *m, const dvi_system *system, const dvi_m
   switch (given->kind) {
   case DVI_MONITOR_FUNCTION:
     *function = given->function;
-    (void)snprintf(m->name, DVI__MONITOR_NAME, "%s", function->name != NULL ? function->name : "function");
+    (void)snprintf(m->name, DVI__MONITOR_NAME, "%s",
+                   function->name != NULL ? function->name : "function");
     break;
   case DVI_MONITOR_DISTANCE:
     DVI_TRY(read_distance(system, given, &m->built_in, m->name));
@@ -106,7 +124,8 @@ static dvi_status declare(dvi__monitor *m, const dvi_system *system, const dvi_m
 
 /* ---- create, destroy ---- */
 
-static dvi_status allocate_built_in(dvi__built_in *own, const dvi_monitor *given, size_t capacity, dvi_counters *counters)
+static dvi_status allocate_built_in(dvi__built_in *own, const dvi_monitor *given, size_t capacity,
+                                    dvi_counters *counters)
 {
   const size_t numbers = (size_t)own->n * capacity;
   if (given->kind == DVI_MONITOR_FUNCTION) return DVI_OK;
@@ -114,23 +133,28 @@ static dvi_status allocate_built_in(dvi__built_in *own, const dvi_monitor *given
   own->square = DVI_NEW(double, capacity);
   own->rate = DVI_NEW(double, capacity);
   own->V_q = DVI_NEW(double, numbers);
-  if (!own->g || !own->square || !own->rate || !own->V_q) return dvi__fail(DVI_NO_MEMORY, "monitor: no memory");
+  if (!own->g || !own->square || !own->rate || !own->V_q)
+    return dvi__fail(DVI_NO_MEMORY, "monitor: no memory");
   if (given->kind == DVI_MONITOR_DISTANCE) return DVI_OK;
-  DVI_TRY(dvi__evaluator_create(own->system, (int)capacity, DVI__HESSIANS, counters, &own->evaluator));
+  DVI_TRY(
+      dvi__evaluator_create(own->system, (int)capacity, DVI__HESSIANS, counters, &own->evaluator));
   own->zero = DVI_NEW(double, numbers);
   own->a = DVI_NEW(double, numbers);
   own->V_qq = DVI_NEW(double, (1 + (size_t)dvi__pattern_entries(&own->system->qq)) * capacity);
   return own->zero && own->a && own->V_qq ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "monitor: no memory");
 }
 
-static dvi_status fill(dvi__monitor *m, const dvi_system *system, const dvi_monitor *given, int capacity, dvi__derivatives most,
-                       dvi_counters *counters)
+static dvi_status monitor_fill(dvi__monitor *m, const dvi_system *system, const dvi_monitor *given,
+                               int capacity, dvi__derivatives most, dvi_counters *counters)
 {
   const int hessians = most == DVI__HESSIANS;
   dvi_potential function = {0};
-  DVI_TRY(declare(m, system, given, &function));
-  const dvi_system_terms terms = {
-      .dimension = system->n, .mass.scalar = 1, .potentials = &function, .potential_count = 1, .autonomous = 1};
+  DVI_TRY(declare_monitor(m, system, given, &function));
+  const dvi_system_terms terms = {.dimension = system->n,
+                                  .mass.scalar = 1,
+                                  .potentials = &function,
+                                  .potential_count = 1,
+                                  .autonomous = 1};
   DVI_TRY(allocate_built_in(&m->built_in, given, (size_t)capacity, counters));
   m->t = DVI_NEW(double, capacity);
   if (m->t == NULL) return dvi__fail(DVI_NO_MEMORY, "monitor: no memory");
@@ -139,13 +163,14 @@ static dvi_status fill(dvi__monitor *m, const dvi_system *system, const dvi_moni
   return dvi__scratch_create(m->system, capacity, hessians, &m->scratch);
 }
 
-dvi_status dvi__monitor_create(const dvi_system *system, const dvi_monitor *given, int capacity, dvi__derivatives most,
-                               dvi_counters *counters, dvi__monitor **monitor)
+dvi_status dvi__monitor_create(const dvi_system *system, const dvi_monitor *given, int capacity,
+                               dvi__derivatives most, dvi_counters *counters,
+                               dvi__monitor **monitor)
 {
   *monitor = NULL;
   dvi__monitor *m = DVI_NEW(dvi__monitor, 1);
   if (m == NULL) return dvi__fail(DVI_NO_MEMORY, "monitor: no memory");
-  const dvi_status status = fill(m, system, given, capacity, most, counters);
+  const dvi_status status = monitor_fill(m, system, given, capacity, most, counters);
   if (status != DVI_OK) dvi__monitor_destroy(&m);
   *monitor = m;
   return status;
@@ -156,7 +181,8 @@ void dvi__monitor_destroy(dvi__monitor **monitor)
   dvi__monitor *m = *monitor;
   if (m == NULL) return;
   dvi__built_in *own = &m->built_in;
-  double *const owned[] = {own->g, own->square, own->rate, own->zero, own->V_q, own->a, own->V_qq, m->t};
+  double *const owned[] = {own->g,   own->square, own->rate, own->zero,
+                           own->V_q, own->a,      own->V_qq, m->t};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) dvi__release(owned[i]);
   dvi__evaluator_destroy(&own->evaluator);
   dvi__scratch_clear(&m->scratch);
@@ -187,7 +213,9 @@ dvi_status dvi__monitor_value(dvi__monitor *m, int count, const double *q, doubl
   DVI_TRY(dvi__potential_value(&m->system->potentials[0], &m->scratch, count, m->t, q, g));
   for (int k = 0; k < count; k++)
     if (!(g[k] > 0) || !isfinite(1 / g[k]))
-      return dvi__fail(DVI_NOT_FINITE, "monitor %s is %g; it must be positive and finite, and so must 1/g", m->name, g[k]);
+      return dvi__fail(DVI_NOT_FINITE,
+                       "monitor %s is %g; it must be positive and finite, and so must 1/g", m->name,
+                       g[k]);
   return DVI_OK;
 }
 
@@ -203,9 +231,11 @@ dvi_status dvi__monitor_hessian(dvi__monitor *m, int count, const double *q, dou
 
 /* ---- the check ---- */
 
-static dvi_status check_at(dvi__monitor *m, const double *q, double tolerance, dvi_derivative_check *check)
+static dvi_status check_at(dvi__monitor *m, const double *q, double tolerance,
+                           dvi_derivative_check *check)
 {
-  double g, *v = DVI_NEW(double, m->system->n); /* at rest: the system's own kinetic part has nothing to say */
+  /* At rest the system's own kinetic part vanishes. */
+  double g, *v = DVI_NEW(double, m->system->n);
   if (v == NULL) return dvi__fail(DVI_NO_MEMORY, "monitor check: no memory");
   dvi_status status = dvi__monitor_value(m, 1, q, &g);
   if (status == DVI_OK) status = dvi_system_check(m->system, 0, q, v, tolerance, check);
@@ -213,14 +243,16 @@ static dvi_status check_at(dvi__monitor *m, const double *q, double tolerance, d
   return status;
 }
 
-dvi_status dvi_monitor_check(const dvi_system *system, const dvi_monitor *monitor, const double *q, double tolerance,
-                             dvi_derivative_check *check)
+dvi_status dvi_monitor_check(const dvi_system *system, const dvi_monitor *monitor, const double *q,
+                             double tolerance, dvi_derivative_check *check)
 {
   dvi__monitor *m;
   dvi_counters counters = {0};
-  if (system == NULL || monitor == NULL || q == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "monitor check: an argument is NULL");
+  if (system == NULL || monitor == NULL || q == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "monitor check: an argument is NULL");
   if (monitor->kind != DVI_MONITOR_FUNCTION)
-    return dvi__fail(DVI_BAD_ARGUMENT, "monitor check: a built-in monitor has no callbacks to check");
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "monitor check: a built-in monitor has no callbacks to check");
   DVI_TRY(dvi__monitor_create(system, monitor, 1, DVI__HESSIANS, &counters, &m));
   const dvi_status status = check_at(m, q, tolerance, check);
   dvi__monitor_destroy(&m);

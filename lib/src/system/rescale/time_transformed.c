@@ -1,5 +1,5 @@
-/* The general Lagrangian g [L(q, w/g) + E0] of a time transform (transformed.h): a kind of its own for what
- * it cannot give. */
+/* The general Lagrangian g [L(q, w/g) + E0] of a time transform (transformed.h). It is a kind of
+ * its own, because some functions of a general Lagrangian are missing. */
 #include "system/evaluate/dynamics.h"
 
 static int is_never_declared(const dvi_system_terms *terms)
@@ -14,7 +14,8 @@ const dvi__dynamics dvi__dynamics_time_transformed = {
     .equations = DVI__EULER_LAGRANGE,
     .searches_velocity = 1,
     .has_kinetic_energy = 1,
-    .no_taylor = "a time-transformed system has no Taylor coefficients, and derivatives beyond the second are needed; take "
+    .no_taylor = "a time-transformed system has no Taylor coefficients, and derivatives beyond the "
+                 "second are needed; take "
                  "step control, or a method by values, as galerkin",
     .is_declared = is_never_declared,
     .prepare = dvi__prepare_velocity_hessian,

@@ -1,10 +1,12 @@
-/* With v = w/g and the energy E = L_v.v - L, all of L at (q,v):
+/* Derivatives of the transformed Lagrangian. With v = w/g and the energy E = L_v.v - L, all of L at
+ * (q,v),
  *
  *     Lg_q  = g L_q + (E0 - E) g_q            Lg_w = L_v
- *     Lg_qq = g L_qq + d g_q^T + g_q d^T + (v.L_vv v)/g g_q g_q^T + (E0 - E) g_qq,      d = L_q - L_qv v
+ *     Lg_qq = g L_qq + d g_q^T + g_q d^T + (v.L_vv v)/g g_q g_q^T + (E0 - E) g_qq,
+ *             d = L_q - L_qv v
  *     Lg_qw = L_qv - g_q (L_vv v)^T/g         Lg_ww = L_vv/g
  *
- * On the orbit E = E0, and E - E0 is what the step's nodes leave of it. */
+ * On the exact orbit E = E0. At a step's nodes E - E0 is the error of the method. */
 #include "system/rescale/transformed.h"
 
 #include <math.h>
@@ -16,12 +18,14 @@
 #include "num/finite.h"
 #include "system/evaluate/dynamics.h"
 
-/* Work for a batch; all in one block. */
+/* Work for a batch, all in one block. */
 typedef struct work {
   double *numbers;
-  double *v, *g_q, *L_q, *L_v, *d, *Mv;       /* [n*capacity]; Mv: L_vv v */
-  double *g, *lag, *vMv;                      /* [capacity]; lag: E0 - E; vMv: v.L_vv v */
-  double *g_qq, *base_qq, *base_qv, *base_vv; /* [entries*capacity] of g, and of the system's L */
+  double *v, *g_q, *L_q, *L_v, *d, *Mv; /* work [n*capacity], with Mv = L_vv v */
+  /* work [capacity], with lag = E0 - E and vMv = v.L_vv v */
+  double *g, *lag, *vMv;
+  /* Hessians [entries*capacity] of g, and of the system's L */
+  double *g_qq, *base_qq, *base_qv, *base_vv;
 } work;
 
 struct dvi__transformed {
@@ -29,7 +33,7 @@ struct dvi__transformed {
   dvi_system *system;
   dvi_monitor given;
   dvi__monitor *monitor;
-  dvi__evaluator *evaluator; /* of base */
+  dvi__evaluator *evaluator; /* evaluator of base */
   dvi_counters *counters;
   double energy;
   int capacity;
@@ -38,30 +42,36 @@ struct dvi__transformed {
 
 /* ---- room for batches ---- */
 
-static dvi_status allocate(const dvi_system *base, int capacity, work *w)
+static dvi_status work_allocate(const dvi_system *base, int capacity, work *w)
 {
   const size_t points = (size_t)capacity, n = (size_t)base->n * points;
-  const size_t qq = (size_t)dvi__pattern_entries(&base->qq) * points, qv = (size_t)dvi__pattern_entries(&base->qv) * points;
+  const size_t qq = (size_t)dvi__pattern_entries(&base->qq) * points,
+               qv = (size_t)dvi__pattern_entries(&base->qv) * points;
   const size_t vv = (size_t)dvi__pattern_entries(&base->vv) * points, full = (size_t)base->n * n;
   double **const part[] = {&w->v,   &w->g_q, &w->L_q,  &w->L_v,     &w->d,       &w->Mv,     &w->g,
                            &w->lag, &w->vMv, &w->g_qq, &w->base_qq, &w->base_qv, &w->base_vv};
   const size_t size[] = {n, n, n, n, n, n, points, points, points, full, qq, qv, vv};
   double *at = w->numbers = DVI_NEW(double, 6 * n + 3 * points + full + qq + qv + vv);
-  if (at == NULL) return dvi__fail(DVI_NO_MEMORY, "time transform: no memory for %d points in %d dimensions", capacity, base->n);
+  if (at == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "time transform: no memory for %d points in %d dimensions",
+                     capacity, base->n);
   for (size_t i = 0; i < sizeof part / sizeof *part; at += size[i++]) *part[i] = at;
   return DVI_OK;
 }
 
-static dvi_status reserve(void *of, int capacity)
+static dvi_status transformed_reserve(void *of, int capacity)
 {
   dvi__transformed *x = of;
   work room = {0};
   dvi__monitor *monitor = NULL;
   dvi__evaluator *evaluator = NULL;
   if (capacity <= x->capacity) return DVI_OK;
-  dvi_status status = dvi__evaluator_create(x->base, capacity, DVI__HESSIANS, x->counters, &evaluator);
-  if (status == DVI_OK) status = dvi__monitor_create(x->base, &x->given, capacity, DVI__HESSIANS, x->counters, &monitor);
-  if (status == DVI_OK) status = allocate(x->base, capacity, &room);
+  dvi_status status = dvi__evaluator_create(x->base, capacity, DVI__HESSIANS, x->counters,
+                                            &evaluator);
+  if (status == DVI_OK)
+    status = dvi__monitor_create(x->base, &x->given, capacity, DVI__HESSIANS, x->counters,
+                                 &monitor);
+  if (status == DVI_OK) status = work_allocate(x->base, capacity, &room);
   if (status != DVI_OK) {
     dvi__evaluator_destroy(&evaluator);
     dvi__monitor_destroy(&monitor);
@@ -80,42 +90,47 @@ static dvi_status reserve(void *of, int capacity)
 
 /* ---- evaluation ---- */
 
-/* g and v = w/g. */
-static dvi_status velocities(dvi__transformed *x, int count, const double *q, const double *w)
+/* Compute g and v = w/g. */
+static dvi_status base_velocities(dvi__transformed *x, int count, const double *q, const double *w)
 {
   const size_t points = (size_t)count;
   DVI_TRY(dvi__monitor_value(x->monitor, count, q, x->work.g));
   for (size_t i = 0; i < (size_t)x->base->n; i++)
-    for (size_t k = 0; k < points; k++) x->work.v[i * points + k] = w[i * points + k] / x->work.g[k];
+    for (size_t k = 0; k < points; k++)
+      x->work.v[i * points + k] = w[i * points + k] / x->work.g[k];
   return DVI_OK;
 }
 
-/* The evaluator that asks counts the same points; the system's own evaluator counts what is really evaluated. */
-static dvi_status value(void *of, int count, const double *t, const double *q, const double *w, double *L)
+/* The calling evaluator counts the same points. The system's own evaluator counts true
+ * evaluations. */
+static dvi_status transformed_value(void *of, int count, const double *t, const double *q,
+                                    const double *w, double *L)
 {
   dvi__transformed *x = of;
   x->counters->values -= count;
-  DVI_TRY(velocities(x, count, q, w));
+  DVI_TRY(base_velocities(x, count, q, w));
   DVI_TRY(dvi__lagrangian_value(x->evaluator, count, t, q, x->work.v, L));
   for (int k = 0; k < count; k++) L[k] = x->work.g[k] * (L[k] + x->energy);
   return DVI_OK;
 }
 
-/* lag <- L - L_v.v + E0 = E0 - E, from L. */
+/* Compute lag <- L - L_v.v + E0 = E0 - E, from L. */
 static void find_lag(const dvi__transformed *x, int count)
 {
   const work *at = &x->work;
   const size_t points = (size_t)count;
   for (size_t i = 0; i < (size_t)x->base->n; i++)
-    for (size_t k = 0; k < points; k++) at->lag[k] -= at->L_v[i * points + k] * at->v[i * points + k];
+    for (size_t k = 0; k < points; k++)
+      at->lag[k] -= at->L_v[i * points + k] * at->v[i * points + k];
   for (size_t k = 0; k < points; k++) at->lag[k] += x->energy;
 }
 
-/* Everything of first order: v, g, g_q, L_q, L_v and lag = E0 - E. */
-static dvi_status first_order(dvi__transformed *x, int count, const double *t, const double *q, const double *w)
+/* Compute all terms of first order, v, g, g_q, L_q, L_v and lag = E0 - E. */
+static dvi_status transformed_first_order(dvi__transformed *x, int count, const double *t,
+                                          const double *q, const double *w)
 {
   const work *at = &x->work;
-  DVI_TRY(velocities(x, count, q, w));
+  DVI_TRY(base_velocities(x, count, q, w));
   DVI_TRY(dvi__monitor_gradient(x->monitor, count, q, at->g_q));
   DVI_TRY(dvi__lagrangian_value(x->evaluator, count, t, q, at->v, at->lag));
   DVI_TRY(dvi__lagrangian_gradient(x->evaluator, count, t, q, at->v, at->L_q, at->L_v));
@@ -123,30 +138,35 @@ static dvi_status first_order(dvi__transformed *x, int count, const double *t, c
   return DVI_OK;
 }
 
-static dvi_status gradient(void *of, int count, const double *t, const double *q, const double *w, double *L_q, double *L_w)
+static dvi_status transformed_gradient(void *of, int count, const double *t, const double *q,
+                                       const double *w, double *L_q, double *L_w)
 {
   dvi__transformed *x = of;
   const work *at = &x->work;
   const size_t n = (size_t)x->base->n, points = (size_t)count;
   x->counters->gradients -= count;
-  DVI_TRY(first_order(x, count, t, q, w));
+  DVI_TRY(transformed_first_order(x, count, t, q, w));
   for (size_t i = 0; i < n; i++)
     for (size_t k = 0; k < points; k++)
-      L_q[i * points + k] = at->g[k] * at->L_q[i * points + k] + at->lag[k] * at->g_q[i * points + k];
+      L_q[i * points + k] = at->g[k] * at->L_q[i * points + k] +
+                            at->lag[k] * at->g_q[i * points + k];
   memcpy(L_w, at->L_v, n * points * sizeof *L_w);
-  if (dvi__first_not_finite(n * points, L_q) < 0 && dvi__first_not_finite(n * points, L_w) < 0) return DVI_OK;
+  if (dvi__first_not_finite(n * points, L_q) < 0 && dvi__first_not_finite(n * points, L_w) < 0)
+    return DVI_OK;
   return dvi__fail(DVI_NOT_FINITE, "time transform: the gradient is not finite");
 }
 
-/* y += A x (point by point), A of a pattern. */
-static void add_product(const dvi__pattern *pattern, size_t points, const double *A, const double *x, double *y)
+/* Add A x to y at every point, with A of a pattern. */
+static void add_pattern_product(const dvi__pattern *pattern, size_t points, const double *A,
+                                const double *x, double *y)
 {
   for (size_t j = 0; j < (size_t)pattern->columns; j++)
     for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++)
-      for (size_t k = 0; k < points; k++) y[(size_t)pattern->row[e] * points + k] += A[(size_t)e * points + k] * x[j * points + k];
+      for (size_t k = 0; k < points; k++)
+        y[(size_t)pattern->row[e] * points + k] += A[(size_t)e * points + k] * x[j * points + k];
 }
 
-/* d, Mv and vMv. */
+/* Compute d, Mv and vMv. */
 static void second_order(dvi__transformed *x, size_t points)
 {
   const work *at = &x->work;
@@ -154,8 +174,8 @@ static void second_order(dvi__transformed *x, size_t points)
   memset(at->d, 0, n * points * sizeof(double));
   memset(at->Mv, 0, n * points * sizeof(double));
   memset(at->vMv, 0, points * sizeof(double));
-  add_product(&x->base->qv, points, at->base_qv, at->v, at->d);
-  add_product(&x->base->vv, points, at->base_vv, at->v, at->Mv);
+  add_pattern_product(&x->base->qv, points, at->base_qv, at->v, at->d);
+  add_pattern_product(&x->base->vv, points, at->base_vv, at->v, at->Mv);
   for (size_t i = 0; i < n; i++)
     for (size_t k = i * points; k < (i + 1) * points; k++) {
       at->d[k] = at->L_q[k] - at->d[k];
@@ -163,7 +183,7 @@ static void second_order(dvi__transformed *x, size_t points)
     }
 }
 
-/* The parts of L_qq and L_qw that g's derivatives make, in all entries. */
+/* Compute the parts of L_qq and L_qw that come from g's derivatives, in all entries. */
 static void fill_full(const work *at, size_t n, size_t points, double *L_qq, double *L_qw)
 {
   for (size_t j = 0; j < n; j++)
@@ -171,54 +191,67 @@ static void fill_full(const work *at, size_t n, size_t points, double *L_qq, dou
       for (size_t k = 0; k < points; k++) {
         const size_t e = (j * n + i) * points + k, row = i * points + k, column = j * points + k;
         const double g_i = at->g_q[row], g_j = at->g_q[column], g = at->g[k];
-        L_qq[e] = at->d[row] * g_j + g_i * at->d[column] + at->vMv[k] / g * g_i * g_j + at->lag[k] * at->g_qq[e];
+        L_qq[e] = at->d[row] * g_j + g_i * at->d[column] + at->vMv[k] / g * g_i * g_j +
+                  at->lag[k] * at->g_qq[e];
         L_qw[e] = -g_i * at->Mv[column] / g;
       }
 }
 
-/* Add the system's own blocks, `by` g or not, where their patterns have entries. */
-static void add_block(const dvi__pattern *pattern, size_t n, size_t points, const double *A, const double *by, double *full)
+/* Add the system's own blocks where their patterns have entries, multiplied by `by` unless it is
+ * NULL. */
+static void add_base_block(const dvi__pattern *pattern, size_t n, size_t points, const double *A,
+                           const double *by, double *full)
 {
   for (size_t j = 0; j < n; j++)
     for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++)
       for (size_t k = 0; k < points; k++)
-        full[(j * n + (size_t)pattern->row[e]) * points + k] += (by != NULL ? by[k] : 1) * A[(size_t)e * points + k];
+        full[(j * n + (size_t)pattern->row[e]) * points + k] += (by != NULL ? by[k] : 1) *
+                                                                A[(size_t)e * points + k];
 }
 
-static dvi_status hessian(void *of, int count, const double *t, const double *q, const double *w, double *L_qq, double *L_qw,
-                          double *L_ww)
+static dvi_status transformed_hessian(void *of, int count, const double *t, const double *q,
+                                      const double *w, double *L_qq, double *L_qw, double *L_ww)
 {
   dvi__transformed *x = of;
   const work *at = &x->work;
-  const size_t n = (size_t)x->base->n, points = (size_t)count, vv = (size_t)dvi__pattern_entries(&x->base->vv);
+  const size_t n = (size_t)x->base->n, points = (size_t)count,
+               vv = (size_t)dvi__pattern_entries(&x->base->vv);
   x->counters->hessians -= count;
-  DVI_TRY(first_order(x, count, t, q, w));
+  DVI_TRY(transformed_first_order(x, count, t, q, w));
   DVI_TRY(dvi__monitor_hessian(x->monitor, count, q, at->g_qq));
-  DVI_TRY(dvi__lagrangian_hessian(x->evaluator, count, t, q, at->v, at->base_qq, at->base_qv, at->base_vv));
+  DVI_TRY(dvi__lagrangian_hessian(x->evaluator, count, t, q, at->v, at->base_qq, at->base_qv,
+                                  at->base_vv));
   second_order(x, points);
   fill_full(at, n, points, L_qq, L_qw);
-  add_block(&x->base->qq, n, points, at->base_qq, at->g, L_qq);
-  add_block(&x->base->qv, n, points, at->base_qv, NULL, L_qw);
+  add_base_block(&x->base->qq, n, points, at->base_qq, at->g, L_qq);
+  add_base_block(&x->base->qv, n, points, at->base_qv, NULL, L_qw);
   for (size_t e = 0; e < vv; e++)
-    for (size_t k = 0; k < points; k++) L_ww[e * points + k] = at->base_vv[e * points + k] / at->g[k];
-  if (dvi__first_not_finite(n * n * points, L_qq) < 0 && dvi__first_not_finite(n * n * points, L_qw) < 0 &&
+    for (size_t k = 0; k < points; k++)
+      L_ww[e * points + k] = at->base_vv[e * points + k] / at->g[k];
+  if (dvi__first_not_finite(n * n * points, L_qq) < 0 &&
+      dvi__first_not_finite(n * n * points, L_qw) < 0 &&
       dvi__first_not_finite(vv * points, L_ww) < 0)
     return DVI_OK;
   return dvi__fail(DVI_NOT_FINITE, "time transform: the Hessian is not finite");
 }
 
-static double noise(const void *of)
+static double transformed_noise(const void *of)
 {
   const dvi__transformed *x = of;
   return fmax(dvi__hessian_noise(x->base), dvi__monitor_noise(x->monitor));
 }
 
-static const dvi__computed computed = {value, gradient, hessian, noise, reserve};
+static const dvi__computed computed = {.value = transformed_value,
+                                       .gradient = transformed_gradient,
+                                       .hessian = transformed_hessian,
+                                       .noise = transformed_noise,
+                                       .reserve = transformed_reserve};
 
 /* ---- create, destroy ---- */
 
-/* g depends on all coordinates, so L_qq and L_qw are full; L_ww is where the system's is. */
-static dvi_status make_patterns(dvi_system *s, const dvi_system *base)
+/* Create the patterns. g depends on all coordinates, so L_qq and L_qw are full. L_ww has the
+ * pattern of the system's L_vv. */
+static dvi_status make_full_patterns(dvi_system *s, const dvi_system *base)
 {
   const dvi_pattern full = {0};
   dvi__lagrangian_term *term = s->lagrangian;
@@ -229,7 +262,7 @@ static dvi_status make_patterns(dvi_system *s, const dvi_system *base)
   return dvi__pattern_union(&base->vv, &base->vv, &s->vv);
 }
 
-static dvi_status make_system(dvi__transformed *x)
+static dvi_status make_transformed_system(dvi__transformed *x)
 {
   dvi_system *s = x->system = DVI_NEW(dvi_system, 1);
   if (s == NULL) return dvi__fail(DVI_NO_MEMORY, "time transform: no memory");
@@ -242,34 +275,37 @@ static dvi_status make_system(dvi__transformed *x)
   s->lagrangian->name = "Lagrangian";
   s->lagrangian->computed = &computed;
   s->lagrangian->of = x;
-  return make_patterns(s, x->base);
+  return make_full_patterns(s, x->base);
 }
 
-static dvi_status fill(dvi__transformed *x, const dvi_system *system, const dvi_monitor *monitor, dvi_counters *counters)
+static dvi_status transformed_fill(dvi__transformed *x, const dvi_system *system,
+                                   const dvi_monitor *monitor, dvi_counters *counters)
 {
   x->base = system;
   x->given = *monitor;
   x->counters = counters;
   x->energy = (double)NAN;
   if (!system->autonomous)
-    return dvi__fail(DVI_UNSUPPORTED,
-                     "the system is not declared autonomous: its energy need not be conserved, and no function of q "
-                     "alone can stand for its time");
+    return dvi__fail(DVI_UNSUPPORTED, "the system is not declared autonomous: its energy need not "
+                                      "be conserved, and no function of q "
+                                      "alone can stand for its time");
   if (!system->dynamics->has_kinetic_energy)
-    return dvi__fail(DVI_UNSUPPORTED, "the system declares a %s: its Lagrangian has no mass that could be divided by the monitor",
-                     system->lagrangian->name);
+    return dvi__fail(
+        DVI_UNSUPPORTED,
+        "the system declares a %s: its Lagrangian has no mass that could be divided by the monitor",
+        system->lagrangian->name);
   DVI_TRY(dvi__system_prepare_hessian(system));
-  DVI_TRY(reserve(x, 1));
-  return make_system(x);
+  DVI_TRY(transformed_reserve(x, 1));
+  return make_transformed_system(x);
 }
 
-dvi_status dvi__transformed_create(const dvi_system *system, const dvi_monitor *monitor, dvi_counters *counters,
-                                   dvi__transformed **transformed)
+dvi_status dvi__transformed_create(const dvi_system *system, const dvi_monitor *monitor,
+                                   dvi_counters *counters, dvi__transformed **transformed)
 {
   *transformed = NULL;
   dvi__transformed *x = DVI_NEW(dvi__transformed, 1);
   if (x == NULL) return dvi__fail(DVI_NO_MEMORY, "time transform: no memory");
-  const dvi_status status = fill(x, system, monitor, counters);
+  const dvi_status status = transformed_fill(x, system, monitor, counters);
   if (status != DVI_OK) dvi__transformed_destroy(&x);
   *transformed = x;
   return status;

@@ -3,7 +3,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 
-static dvi_status no_memory(void)
+static dvi_status refuse_memory_of_weights(void)
 {
   return dvi__fail(DVI_NO_MEMORY, "no memory for the constraints");
 }
@@ -22,16 +22,20 @@ static dvi_status copy_weighted(const dvi_constraint *given, int n, dvi__lagrang
 dvi_status dvi__constraint_copy(const dvi_constraint *given, int n, dvi__constraint_term **term)
 {
   if (given->value == NULL || given->gradient == NULL)
-    return dvi__fail(DVI_BAD_ARGUMENT, "system: the constraint has no %s callback", given->value == NULL ? "value" : "gradient");
+    return dvi__fail(DVI_BAD_ARGUMENT, "system: the constraint has no %s callback",
+                     given->value == NULL ? "value" : "gradient");
   if (given->count < 2 || given->count > 2 * n || given->count % 2 != 0)
     return dvi__fail(DVI_BAD_SIZE,
-                     "system: %d constraints; an even number from 2 to %d is needed, for others have a singular bracket matrix",
+                     "system: %d constraints; an even number from 2 to %d is needed, for others "
+                     "have a singular bracket matrix",
                      given->count, 2 * n);
   dvi__constraint_term *made = *term = DVI_NEW(dvi__constraint_term, 1);
-  if (made == NULL) return no_memory();
+  if (made == NULL) return refuse_memory_of_weights();
   made->callbacks = *given;
-  DVI_TRY(dvi__pattern_copy_rectangular(&given->gradients, 2 * n, given->count, "constraint: gradients", &made->gradients));
-  DVI_TRY(dvi__pattern_copy(&(dvi_pattern){0}, given->count, "constraint: bracket matrix", &made->bracket));
+  DVI_TRY(dvi__pattern_copy_rectangular(&given->gradients, 2 * n, given->count,
+                                        "constraint: gradients", &made->gradients));
+  DVI_TRY(dvi__pattern_copy(&(dvi_pattern){0}, given->count, "constraint: bracket matrix",
+                            &made->bracket));
   return copy_weighted(given, n, &made->weighted);
 }
 
@@ -58,7 +62,8 @@ static int weighted_value(double t, const double *q, const double *p, double *su
   return returned;
 }
 
-static int weighted_gradient(double t, const double *q, const double *p, double *sum_q, double *sum_p, void *user)
+static int weighted_gradient(double t, const double *q, const double *p, double *sum_q,
+                             double *sum_p, void *user)
 {
   const dvi__weighted *own = user;
   const dvi_constraint *c = &own->constraint->callbacks;
@@ -74,7 +79,8 @@ static int weighted_gradient(double t, const double *q, const double *p, double 
   return returned;
 }
 
-static int weighted_hessian(double t, const double *q, const double *p, double *qq, double *qp, double *pp, void *user)
+static int weighted_hessian(double t, const double *q, const double *p, double *qq, double *qp,
+                            double *pp, void *user)
 {
   const dvi__weighted *own = user;
   const dvi_constraint *c = &own->constraint->callbacks;
@@ -89,11 +95,12 @@ dvi_status dvi__weighted_open(const dvi_system *system, dvi__weighted *weighted)
                               .constraint = c,
                               .phi = DVI_NEW(double, c->callbacks.count),
                               .phi_z = DVI_NEW(double, dvi__pattern_entries(&c->gradients))};
-  weighted->term.callbacks = (dvi_lagrangian){.value = weighted_value,
-                                              .gradient = weighted_gradient,
-                                              .hessian = c->callbacks.hessian != NULL ? weighted_hessian : NULL,
-                                              .user = weighted};
-  return weighted->phi != NULL && weighted->phi_z != NULL ? DVI_OK : no_memory();
+  weighted->term.callbacks = (dvi_lagrangian){
+      .value = weighted_value,
+      .gradient = weighted_gradient,
+      .hessian = c->callbacks.hessian != NULL ? weighted_hessian : NULL,
+      .user = weighted};
+  return weighted->phi != NULL && weighted->phi_z != NULL ? DVI_OK : refuse_memory_of_weights();
 }
 
 void dvi__weighted_close(dvi__weighted *weighted)

@@ -4,7 +4,7 @@
 #include "core/status.h"
 #include "system/term/term.h"
 
-static dvi_status no_memory(void)
+static dvi_status refuse_memory_of_term(void)
 {
   return dvi__fail(DVI_NO_MEMORY, "system: no memory for its terms");
 }
@@ -13,7 +13,7 @@ dvi_status dvi__group_columns(const dvi__pattern *pattern, dvi__groups *groups)
 {
   dvi__release(groups->of_column);
   groups->of_column = DVI_NEW(int, pattern->columns);
-  if (groups->of_column == NULL) return no_memory();
+  if (groups->of_column == NULL) return refuse_memory_of_term();
   return dvi__pattern_groups(pattern, groups->of_column, &groups->count);
 }
 
@@ -30,7 +30,9 @@ dvi_status dvi__general_group(dvi__lagrangian_term *term)
 dvi_status dvi__check_shapes(const char *owner, int values, int gradients, int hessians, int rates)
 {
   if (!values && !gradients && !hessians && !rates) return DVI_OK;
-  return dvi__fail(DVI_BAD_ARGUMENT, "system: %s has its %s callback in two shapes, one-point and batch; declare one", owner,
+  return dvi__fail(DVI_BAD_ARGUMENT,
+                   "system: %s has its %s callback in two shapes, one-point and batch; declare one",
+                   owner,
                    values      ? "value"
                    : gradients ? "gradient"
                    : hessians  ? "Hessian"
@@ -40,13 +42,16 @@ dvi_status dvi__check_shapes(const char *owner, int values, int gradients, int h
 dvi_status dvi__check_rate(const dvi_system *s, const char *owner, int given)
 {
   if (!given || !s->autonomous) return DVI_OK;
-  return dvi__fail(DVI_BAD_ARGUMENT, "system: %s has a rate, but the system is declared autonomous; leave out one of them", owner);
+  return dvi__fail(
+      DVI_BAD_ARGUMENT,
+      "system: %s has a rate, but the system is declared autonomous; leave out one of them", owner);
 }
 
-dvi_status dvi__declare_function(dvi_system *s, const dvi_lagrangian *given, const char *name, const char *const part[3])
+dvi_status dvi__declare_function(dvi_system *s, const dvi_lagrangian *given, const char *name,
+                                 const char *const part[3])
 {
   dvi__lagrangian_term *term = s->lagrangian = DVI_NEW(dvi__lagrangian_term, 1);
-  if (term == NULL) return no_memory();
+  if (term == NULL) return refuse_memory_of_term();
   term->name = name;
   term->callbacks = *given;
   DVI_TRY(dvi__pattern_copy_symmetric(&given->qq, s->n, part[0], &term->qq));

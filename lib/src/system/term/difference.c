@@ -6,8 +6,8 @@
 
 #include "core/status.h"
 
-/* 6th order central differences: the weights of (f(x + m step) - f(x - m step)) / step, and the step where truncation meets
- * roundoff. */
+/* Central differences of 6th order. These are the weights of (f(x + m step) - f(x - m step)) /
+ * step, and the step where truncation meets roundoff. */
 static const double weight[3] = {45.0 / 60.0, -9.0 / 60.0, 1.0 / 60.0};
 
 static double sixth_order_step(void)
@@ -15,11 +15,12 @@ static double sixth_order_step(void)
   return pow(DBL_EPSILON, 1.0 / 7.0);
 }
 
-/* A point nearer to the origin than this is taken to pass it: steps that shrink with it would drown in the rounding of the values. */
+/* A point nearer to the origin than this is taken to pass the origin. Steps that shrink further
+ * would drown in the rounding of the values. */
 static const double smallest_size = 1e-2;
 
-/* Steps near relative * (size of the coordinate), rounded to powers of two so that multiples and quotients are exact. A coordinate near
- * zero is measured by the largest one of its point. */
+/* Choose steps near relative * (size of the coordinate), rounded to powers of two so that multiples
+ * and quotients are exact. A coordinate near zero is measured by the largest one of its point. */
 static void choose_steps(int n, int count, const double *x, double relative, double *step)
 {
   for (size_t k = 0, points = (size_t)count; k < points; k++) {
@@ -30,9 +31,10 @@ static void choose_steps(int n, int count, const double *x, double relative, dou
   }
 }
 
-/* Both estimates of a row of the gradient at all points, from the same six evaluations at each: 6th order to d->plus_v, 4th to d->minus_v. */
-static dvi_status difference_row(dvi__batch_value value, const void *function, dvi__differences *d, size_t row, int count,
-                                 const double *x)
+/* Compute both estimates of a row of the gradient at all points, from the same six evaluations at
+ * each. The 6th order goes to d->plus_v, the 4th to d->minus_v. */
+static dvi_status difference_row(dvi__batch_value value, const void *function, dvi__differences *d,
+                                 size_t row, int count, const double *x)
 {
   static const double fourth_weight[3] = {8.0 / 12.0, -1.0 / 12.0, 0};
   const size_t points = (size_t)count;
@@ -54,26 +56,30 @@ static dvi_status difference_row(dvi__batch_value value, const void *function, d
   return DVI_OK;
 }
 
-/* Where the two estimates differ by more than this, a singularity is so near that the better one errs by more than 1e-11 (for a pole at R the
- * errors are about 4 (step/R)^4 and 36 (step/R)^6), unless roundoff explains it. */
+/* If the two estimates differ by more than this, a singularity is so near that the better one errs
+ * by more than 1e-11, unless roundoff explains the difference. For a pole at R the errors are about
+ * 4 (step/R)^4 and 36 (step/R)^6. */
 static const double estimates_agree = 1e-8;
 
-/* Shorten the steps of the points at which they are too long; how many there are. */
+/* Shorten the steps of the points at which they are too long, and return the count of these
+ * points. */
 static int shorten_steps(dvi__differences *d, size_t row, int count)
 {
   int shortened = 0;
   for (int k = 0; k < count; k++) {
     double *step = d->step + row + k;
     const double noise = 16 * DBL_EPSILON * fmax(fabs(d->plus[k]), fabs(d->minus[k])) / *step;
-    if (fabs(d->plus_v[k] - d->minus_v[k]) <= estimates_agree * fabs(d->plus_v[k]) + noise) continue;
+    if (fabs(d->plus_v[k] - d->minus_v[k]) <= estimates_agree * fabs(d->plus_v[k]) + noise)
+      continue;
     *step *= 0.25;
     shortened++;
   }
   return shortened;
 }
 
-dvi_status dvi__difference_gradient(dvi__batch_value value, const void *function, dvi__differences *d, int n, int count,
-                                    const double *x, double *gradient)
+dvi_status dvi__difference_gradient(dvi__batch_value value, const void *function,
+                                    dvi__differences *d, int n, int count, const double *x,
+                                    double *gradient)
 {
   enum { MOST_TRIES = 8 };
   const size_t points = (size_t)count;
@@ -88,7 +94,8 @@ dvi_status dvi__difference_gradient(dvi__batch_value value, const void *function
   return DVI_OK;
 }
 
-static void move_group(const dvi__differences *d, const dvi__groups *groups, int g, int n, int count, double sign, const double *x)
+static void move_group(const dvi__differences *d, const dvi__groups *groups, int g, int n,
+                       int count, double sign, const double *x)
 {
   const size_t points = (size_t)count;
   for (int j = 0; j < n; j++)
@@ -96,8 +103,9 @@ static void move_group(const dvi__differences *d, const dvi__groups *groups, int
       d->moved[at] = groups->of_column[j] == g ? x[at] + sign * d->step[at] : x[at];
 }
 
-static void fill_columns(const dvi__pattern *pattern, const dvi__groups *groups, int g, int count, const double *plus,
-                         const double *minus, const double *step, double *values)
+static void fill_columns(const dvi__pattern *pattern, const dvi__groups *groups, int g, int count,
+                         const double *plus, const double *minus, const double *step,
+                         double *values)
 {
   const size_t points = (size_t)count;
   for (int j = 0; j < pattern->columns; j++) {
@@ -105,14 +113,17 @@ static void fill_columns(const dvi__pattern *pattern, const dvi__groups *groups,
     for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++)
       for (size_t k = 0; k < points; k++) {
         const size_t at = (size_t)pattern->row[e] * points + k;
-        values[(size_t)e * points + k] = (plus[at] - minus[at]) / (2 * step[(size_t)j * points + k]);
+        values[(size_t)e * points + k] = (plus[at] - minus[at]) /
+                                         (2 * step[(size_t)j * points + k]);
       }
   }
 }
 
-dvi_status dvi__difference_hessian(dvi__batch_gradient gradient, const void *function, dvi__differences *d,
-                                   const dvi__groups *groups, int noisy, int count, const double *x, const dvi__pattern *first,
-                                   double *first_values, const dvi__pattern *second, double *second_values)
+dvi_status dvi__difference_hessian(dvi__batch_gradient gradient, const void *function,
+                                   dvi__differences *d, const dvi__groups *groups, int noisy,
+                                   int count, const double *x, const dvi__pattern *first,
+                                   double *first_values, const dvi__pattern *second,
+                                   double *second_values)
 {
   const int n = first != NULL ? first->columns : second->columns;
   choose_steps(n, count, x, noisy ? 1e-3 : cbrt(DBL_EPSILON), d->step);
@@ -122,19 +133,23 @@ dvi_status dvi__difference_hessian(dvi__batch_gradient gradient, const void *fun
     move_group(d, groups, g, n, count, -1, x);
     DVI_TRY(gradient(function, count, d->moved, d->minus, d->minus_v));
     d->points += 2L * count;
-    if (first != NULL) fill_columns(first, groups, g, count, d->plus, d->minus, d->step, first_values);
-    if (second != NULL) fill_columns(second, groups, g, count, d->plus_v, d->minus_v, d->step, second_values);
+    if (first != NULL)
+      fill_columns(first, groups, g, count, d->plus, d->minus, d->step, first_values);
+    if (second != NULL)
+      fill_columns(second, groups, g, count, d->plus_v, d->minus_v, d->step, second_values);
   }
   return DVI_OK;
 }
 
-static void add_difference(int n, double factor, const double *plus, const double *minus, double *sum)
+static void add_difference(int n, double factor, const double *plus, const double *minus,
+                           double *sum)
 {
   for (int i = 0; i < n; i++) sum[i] += factor * (plus[i] - minus[i]);
 }
 
-dvi_status dvi__difference_column(dvi__batch_gradient gradient, const void *function, dvi__differences *d, int n, int j,
-                                  const double *x, double *first, double *second)
+dvi_status dvi__difference_column(dvi__batch_gradient gradient, const void *function,
+                                  dvi__differences *d, int n, int j, const double *x, double *first,
+                                  double *second)
 {
   const size_t size = (size_t)n * sizeof(double);
   choose_steps(n, 1, x, ldexp(sixth_order_step(), -d->shorter), d->step);

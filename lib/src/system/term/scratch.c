@@ -1,42 +1,47 @@
-/* Memory for one-point callbacks and differences: only what the system's missing callbacks need. */
+/* Memory for one-point callbacks and differences, only as far as the system's missing callbacks
+ * need it. */
 #include "core/memory.h"
 #include "core/status.h"
 #include "system/term/term.h"
 
-static int larger(int a, int b)
+static int larger_count(int a, int b)
 {
   return a > b ? a : b;
 }
 
 static int longest_of(const dvi__lagrangian_term *term)
 {
-  const int qq = dvi__pattern_entries(&term->qq), qv = dvi__pattern_entries(&term->qv), vv = dvi__pattern_entries(&term->vv);
-  return larger(larger(qq, qv), vv);
+  const int qq = dvi__pattern_entries(&term->qq), qv = dvi__pattern_entries(&term->qv),
+            vv = dvi__pattern_entries(&term->vv);
+  return larger_count(larger_count(qq, qv), vv);
 }
 
 int dvi__longest_hessian(const dvi_system *system, int hessians)
 {
   int longest = system->n;
   for (int k = 0; k < system->potential_count && hessians; k++)
-    longest = larger(longest, dvi__pattern_entries(&system->potentials[k].qq));
+    longest = larger_count(longest, dvi__pattern_entries(&system->potentials[k].qq));
   if (system->lagrangian == NULL) return longest;
-  if (system->constraint != NULL) longest = larger(longest, longest_of(&system->constraint->weighted));
-  return larger(longest, longest_of(system->lagrangian));
+  if (system->constraint != NULL)
+    longest = larger_count(longest, longest_of(&system->constraint->weighted));
+  return larger_count(longest, longest_of(system->lagrangian));
 }
 
 int dvi__lacks_gradient(const dvi_system *system)
 {
   int lacks = system->lagrangian != NULL && !dvi__general_has_gradient(system->lagrangian);
-  for (int k = 0; k < system->potential_count; k++) lacks |= !dvi__potential_has_gradient(&system->potentials[k]);
+  for (int k = 0; k < system->potential_count; k++)
+    lacks |= !dvi__potential_has_gradient(&system->potentials[k]);
   return lacks;
 }
 
-/* A general Lagrangian's Hessian is always asked for: by the inverse Legendre map. */
+/* The inverse Legendre map always needs a general Lagrangian's Hessian. */
 static int lacks_hessian(const dvi_system *system, int hessians)
 {
   int lacks = system->lagrangian != NULL && !dvi__general_has_hessian(system->lagrangian);
   lacks |= system->constraint != NULL && system->constraint->callbacks.hessian == NULL;
-  for (int k = 0; k < system->potential_count && hessians; k++) lacks |= !dvi__potential_has_hessian(&system->potentials[k]);
+  for (int k = 0; k < system->potential_count && hessians; k++)
+    lacks |= !dvi__potential_has_hessian(&system->potentials[k]);
   return lacks;
 }
 
@@ -50,14 +55,12 @@ double dvi__hessian_noise(const dvi_system *system)
 
 int dvi__differences_allocate(size_t numbers, dvi__differences *d)
 {
-  *d = (dvi__differences){DVI_NEW(double, numbers),
-                          DVI_NEW(double, numbers),
-                          DVI_NEW(double, numbers),
-                          DVI_NEW(double, numbers),
-                          DVI_NEW(double, numbers),
-                          DVI_NEW(double, numbers),
-                          0,
-                          0};
+  *d = (dvi__differences){.moved = DVI_NEW(double, numbers),
+                          .step = DVI_NEW(double, numbers),
+                          .plus = DVI_NEW(double, numbers),
+                          .minus = DVI_NEW(double, numbers),
+                          .plus_v = DVI_NEW(double, numbers),
+                          .minus_v = DVI_NEW(double, numbers)};
   return d->moved && d->step && d->plus && d->minus && d->plus_v && d->minus_v;
 }
 
@@ -71,25 +74,28 @@ void dvi__differences_clear(dvi__differences *d)
   dvi__release(d->minus_v);
 }
 
-static int allocate(const dvi_system *system, int capacity, int hessians, dvi__scratch *s)
+static int scratch_allocate(const dvi_system *system, int capacity, int hessians, dvi__scratch *s)
 {
   const size_t numbers = (size_t)system->n * (size_t)capacity;
   s->point_q = DVI_NEW(double, system->n);
   s->point_v = DVI_NEW(double, system->n);
-  for (int k = 0; k < 3; k++) s->result[k] = DVI_NEW(double, dvi__longest_hessian(system, hessians));
+  for (int k = 0; k < 3; k++)
+    s->result[k] = DVI_NEW(double, dvi__longest_hessian(system, hessians));
   if (!s->point_q || !s->point_v || !s->result[0] || !s->result[1] || !s->result[2]) return 0;
   if (dvi__lacks_gradient(system) && !dvi__differences_allocate(numbers, &s->of_value)) return 0;
   return !lacks_hessian(system, hessians) || dvi__differences_allocate(numbers, &s->of_gradient);
 }
 
-dvi_status dvi__scratch_create(const dvi_system *system, int capacity, int hessians, dvi__scratch *scratch)
+dvi_status dvi__scratch_create(const dvi_system *system, int capacity, int hessians,
+                               dvi__scratch *scratch)
 {
   *scratch = (dvi__scratch){.n = system->n, .capacity = capacity};
   const dvi__lagrangian_term *term = system->lagrangian;
   if (term != NULL && term->computed != NULL) DVI_TRY(term->computed->reserve(term->of, capacity));
-  if (allocate(system, capacity, hessians, scratch)) return DVI_OK;
+  if (scratch_allocate(system, capacity, hessians, scratch)) return DVI_OK;
   dvi__scratch_clear(scratch);
-  return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory for %d points in %d dimensions", capacity, system->n);
+  return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory for %d points in %d dimensions", capacity,
+                   system->n);
 }
 
 void dvi__scratch_clear(dvi__scratch *scratch)

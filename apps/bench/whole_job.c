@@ -1,0 +1,179 @@
+#include "bench/whole_job.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "bench/peer.h"
+#include "cli/command.h"
+#include "mechanics/march.h"
+#include "study/clock.h"
+
+enum { ENERGY, EVALUATIONS = 0 };
+
+static const table_column further[] = {{"energy_error", "%.3e"}, {NULL, NULL}},
+                          counted[] = {{"evaluations", "%.0f"}, {NULL, NULL}};
+
+const study_words whole_job_words = {"integrator",     "problem", "h",     "steps",
+                                     "create_seconds", further,   counted, motion_say};
+
+/* ---- methods ---- */
+
+/* Run the whole job; *preparation grows by the seconds that the integrator's creation takes. With a
+ * level NULL it is done for the clock. */
+static dvi_status method_job(const whole_job *job, double steps, double *preparation,
+                             study_level *level)
+{
+  const problem *scene = job->motion.scene;
+  dvi_integrator *integrator = NULL;
+  const double began = cpu_now();
+  dvi_status status = open_paced(scene, job->method, &job->how, &integrator) == DONE
+                          ? DVI_OK
+                          : DVI_BAD_OPTION;
+  *preparation += cpu_now() - began;
+  if (status == DVI_OK) status = dvi_integrator_start(integrator, 0.0, scene->q, scene->p);
+  if (status == DVI_OK)
+    status = march(integrator, job->span / steps, lround(steps), job->motion.t_end, NULL, NULL,
+                   NULL, NULL);
+  if (status == DVI_OK && level != NULL) {
+    dvi_counters counters;
+    dvi_integrator_counters(integrator, &counters);
+    level->counted[EVALUATIONS] = (double)counters.gradients;
+    level->parts = (double)counters.steps;
+    level->error = judge_error(job->motion.judge, scene, dvi_integrator_q(integrator));
+  }
+  dvi_integrator_destroy(&integrator);
+  return status;
+}
+
+static dvi_status method_run(void *user, double steps, study_level *level)
+{
+  const whole_job *job = user;
+  double preparation = 0.0;
+  level->length = job->span / steps;
+  const double began = cpu_now();
+  const dvi_status status = method_job(job, steps, &preparation, level);
+  level->seconds = cpu_now() - began;
+  return status;
+}
+
+static dvi_status method_watch(void *user, double steps, study_level *level)
+{
+  const whole_job *job = user;
+  return study_watch(&job->study->subject, steps, level);
+}
+
+static dvi_status method_repeat(void *user, double steps, double *preparation)
+{
+  return method_job(user, steps, preparation, NULL);
+}
+
+static const char *method_reason(void *user)
+{
+  (void)user;
+  return dvi_last_error();
+}
+
+void whole_job_of_method(whole_job *job, motion_study *study, const char *method, const pacing *how)
+{
+  *job = (whole_job){.subject = study->subject,
+                     .peer = -1,
+                     .motion = study->motion,
+                     .method = method,
+                     .how = *how,
+                     .span = study->subject.span,
+                     .study = study};
+  job->subject.words = &whole_job_words;
+  job->subject.run = method_run;
+  job->subject.watch = method_watch;
+  job->subject.repeat = method_repeat;
+  job->subject.roundoff = NULL;
+  job->subject.reason = method_reason;
+  job->subject.user = job;
+}
+
+/* ---- peers ---- */
+
+static dvi_status energy_change(const problem *scene, double t, const double *q, const double *p,
+                                double *change)
+{
+  double *value = calloc(2 * (size_t)dvi_system_invariant_count(scene->system), sizeof *value);
+  if (value == NULL) return DVI_NO_MEMORY;
+  double *then = value + dvi_system_invariant_count(scene->system);
+  dvi_status status = dvi_system_invariants(scene->system, 0.0, scene->q, scene->p, value);
+  if (status == DVI_OK) status = dvi_system_invariants(scene->system, t, q, p, then);
+  *change = fabs(then[0] - value[0]);
+  free(value);
+  return status;
+}
+
+/* A peer is run from the start to each of the ENERGY_TIMES, because it shows its state at the end
+ * only. */
+static dvi_status peer_run(void *user, double tolerance, study_level *level)
+{
+  const whole_job *job = user;
+  const problem *scene = job->motion.scene;
+  double *q = job->room, *p = q + scene->nq;
+  dvi_reference_report report = {0};
+  dvi_status status = DVI_OK;
+  level->further[ENERGY] = 0.0;
+  for (int k = 1; k <= ENERGY_TIMES && status == DVI_OK; k++) {
+    const double t = k == ENERGY_TIMES ? job->motion.t_end : job->motion.t_end * k / ENERGY_TIMES;
+    double change = 0.0;
+    const double began = cpu_now();
+    status = peer_solve(job->peer, scene, t, tolerance, q, p, &report);
+    level->seconds = cpu_now() - began;
+    if (status == DVI_OK) status = energy_change(scene, t, q, p, &change);
+    level->further[ENERGY] = fmax(level->further[ENERGY], change);
+  }
+  level->counted[EVALUATIONS] = (double)report.evaluations;
+  level->parts = (double)report.steps;
+  level->error = judge_error(job->motion.judge, scene, q);
+  return status;
+}
+
+/* A peer is created and run in one call. */
+static dvi_status peer_repeat(void *user, double tolerance, double *preparation)
+{
+  const whole_job *job = user;
+  double *q = job->room;
+  *preparation = (double)NAN;
+  return peer_solve(job->peer, job->motion.scene, job->motion.t_end, tolerance, q,
+                    q + job->motion.scene->nq, NULL);
+}
+
+static void peer_setting(void *user, double tolerance, char *text, size_t size)
+{
+  (void)user;
+  (void)snprintf(text, size, "tol=%.0e", tolerance);
+}
+
+static const char *peer_reason(void *user)
+{
+  (void)user;
+  return peer_error();
+}
+
+dvi_status whole_job_of_peer(whole_job *job, int peer, const judged_motion *motion)
+{
+  const size_t n = (size_t)motion->scene->nq;
+  *job = (whole_job){.motion = *motion, .peer = peer, .room = calloc(2 * n, sizeof *job->room)};
+  job->subject = (study_subject){.name = peer_name(peer),
+                                 .problem = motion->scene->name,
+                                 .words = &whole_job_words,
+                                 .extent = motion->t_end,
+                                 .judge = motion->judge->words,
+                                 .judge_error = motion->judge->error,
+                                 .run = peer_run,
+                                 .repeat = peer_repeat,
+                                 .setting = peer_setting,
+                                 .reason = peer_reason,
+                                 .user = job};
+  return job->room != NULL ? DVI_OK : DVI_NO_MEMORY;
+}
+
+void whole_job_clear(whole_job *job)
+{
+  free(job->room);
+  job->room = NULL;
+}

@@ -1,0 +1,176 @@
+#include "mechanics/judge.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/command.h"
+#include "mechanics/judge_runs.h"
+#include "cli/spelling.h"
+#include "study/norms.h"
+
+/* A judge that is off by this many times its own error is wrong about it. */
+static const double contradiction = 10.0;
+
+static const char *const kinds[] = {[JUDGE_AUTO] = "auto",
+                                    [JUDGE_EXACT] = "exact",
+                                    [JUDGE_STORED] = "stored",
+                                    [JUDGE_IDA] = "ida",
+                                    [JUDGE_RUNS] = "runs"};
+enum { KINDS = sizeof kinds / sizeof *kinds };
+
+static const char *kind_at(int k, const void *list)
+{
+  (void)list;
+  return k < KINDS ? kinds[k] : NULL;
+}
+
+int judge_read(const char *where, const char *name, judge_kind *kind)
+{
+  char hint[64];
+  for (int k = 0; k < KINDS; k++)
+    if (strcmp(kinds[k], name) == 0) {
+      *kind = (judge_kind)k;
+      return DONE;
+    }
+  return usage_error("%s knows auto, exact, stored, ida and runs, not '%s'%s", where, name,
+                     suggestion(name, kind_at, NULL, hint, sizeof hint));
+}
+
+static void set_words(judgement *judge, const char *words)
+{
+  (void)snprintf(judge->words, sizeof judge->words, "%s", words);
+}
+
+/* p [n]: room. */
+static bool ask_exact(judgement *judge, const problem *scene, double t_end, double *p)
+{
+  if (scene->exact == NULL || scene->exact(scene, t_end, judge->q, p) != 0) return false;
+  set_words(judge, "exact solution");
+  judge->error = 4.0 * DBL_EPSILON *
+                 fmax(1.0,
+                      norm_largest(scene->nq, judge->q)); /* some roundings in its evaluation */
+  return true;
+}
+
+static bool ask_digits(judgement *judge, const problem *scene, double t_end)
+{
+  const bool far = scene->far_q != NULL && t_end == scene->far_t_end;
+  const double *digits = far ? scene->far_q : t_end == scene->order_t_end ? scene->digits_q : NULL;
+  if (digits == NULL) return false;
+  memcpy(judge->q, digits, (size_t)scene->nq * sizeof *judge->q);
+  set_words(judge, "stored quadruple-precision result");
+  judge->error = fmax(DBL_EPSILON * norm_largest(scene->nq, judge->q),
+                      far ? scene->far_error : 0.0); /* rounded to double */
+  return true;
+}
+
+static dvi_status ask_ida(judgement *judge, const problem *scene, double t_end, double *p)
+{
+  memcpy(judge->q, scene->q, (size_t)scene->nq * sizeof *judge->q);
+  memcpy(p, scene->p, (size_t)scene->nv * sizeof *p);
+  dvi_reference_report report;
+  const dvi_status status = dvi_reference_judge(scene->system, 0.0, t_end, judge->q, p, NULL,
+                                                &report);
+  if (status != DVI_OK) return status;
+  set_words(judge, "IDA, run at two tolerances");
+  judge->error = report.error;
+  return DVI_OK;
+}
+
+/* The runs took the place of IDA, whose answer is `ida`: IDA remains as their witness, and if it
+ * contradicts them their error is not what they say. */
+static void add_witness(judgement *judge, int n, const double *ida, double ida_error)
+{
+  const double apart = norm_distance(n, judge->q, ida);
+  const size_t length = strlen(judge->words);
+  if (apart > contradiction * (ida_error + judge->error)) judge->error = apart;
+  (void)snprintf(judge->words + length, sizeof judge->words - length,
+                 " (IDA, of error %.1e, is %.1e away)", ida_error, apart);
+}
+
+/* IDA shares no code with the methods, so it is asked first; of its answer and that of the runs the
+ * one with the smaller error is taken. ida [n]: room for its answer. */
+static dvi_status ask_ida_then_runs(judgement *judge, const problem *scene, double t_end,
+                                    const judge_request *request, double *p, double *ida)
+{
+  const int n = scene->nq;
+  const dvi_status of_ida = ask_ida(judge, scene, t_end, p);
+  if (of_ida == DVI_OK && judge->error <= request->wanted) return of_ida;
+  const double ida_error = judge->error;
+  memcpy(ida, judge->q, (size_t)n * sizeof *ida);
+  const dvi_status status = judge_by_runs(judge, scene, t_end, request->progress);
+  if (of_ida != DVI_OK) {
+    const size_t length = strlen(judge->words);
+    (void)snprintf(judge->words + length, sizeof judge->words - length,
+                   " (IDA fails: they have no witness)");
+    return status;
+  }
+  if (status == DVI_OK) add_witness(judge, n, ida, ida_error);
+  if (status == DVI_OK && judge->error < ida_error) return DVI_OK;
+  free(judge->other);
+  judge->other = NULL;
+  memcpy(judge->q, ida, (size_t)n * sizeof *ida);
+  judge->error = ida_error;
+  set_words(judge, "IDA, run at two tolerances; two runs of another method do no better");
+  return DVI_OK;
+}
+
+static int refuse(const problem *scene, double t_end, const judge_request *request)
+{
+  if (request->kind == JUDGE_EXACT)
+    return usage_error("--judge exact: %s has no known exact solution", scene->name);
+  return usage_error(
+      "--judge stored: there is no stored result of %s for these parameters at t = %g", scene->name,
+      t_end);
+}
+
+/* p, ida [n]: room. */
+static int ask(judgement *judge, const problem *scene, double t_end, const judge_request *request,
+               double *p, double *ida)
+{
+  const judge_kind kind = request->kind;
+  dvi_status status;
+  if ((kind == JUDGE_AUTO || kind == JUDGE_EXACT) && ask_exact(judge, scene, t_end, p)) return DONE;
+  if ((kind == JUDGE_AUTO || kind == JUDGE_STORED) && ask_digits(judge, scene, t_end)) return DONE;
+  if (kind == JUDGE_EXACT || kind == JUDGE_STORED) return refuse(scene, t_end, request);
+  if (kind == JUDGE_RUNS)
+    status = judge_by_runs(judge, scene, t_end, request->progress);
+  else if (kind == JUDGE_IDA)
+    status = ask_ida(judge, scene, t_end, p);
+  else
+    status = ask_ida_then_runs(judge, scene, t_end, request, p, ida);
+  if (status == DVI_OK) return DONE;
+  complain("the judge, --judge %s, failed on %s to t = %g:", kinds[kind], scene->name, t_end);
+  return library_error(status);
+}
+
+int judge_init(judgement *judge, const problem *scene, double t_end, const judge_request *request)
+{
+  const size_t n = (size_t)scene->nq;
+  memset(judge, 0, sizeof *judge);
+  judge->q = calloc(n, sizeof *judge->q);
+  double *room = calloc(2 * n, sizeof *room);
+  const int code = judge->q != NULL && room != NULL
+                       ? ask(judge, scene, t_end, request, room, room + n)
+                       : library_error(DVI_NO_MEMORY);
+  free(room);
+  return code;
+}
+
+void judge_clear(judgement *judge)
+{
+  free(judge->q);
+  free(judge->other);
+  judge->q = NULL;
+  judge->other = NULL;
+}
+
+double judge_error(const judgement *judge, const problem *scene, const double *q)
+{
+  const double error = norm_distance(scene->nq, q, judge->q);
+  return judge->other == NULL ? error : fmax(error, norm_distance(scene->nq, q, judge->other));
+}

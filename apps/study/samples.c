@@ -1,0 +1,60 @@
+#include "study/samples.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+
+static int by_size(const void *left, const void *right)
+{
+  const double a = *(const double *)left;
+  const double b = *(const double *)right;
+  return (a > b) - (a < b);
+}
+
+static double quantile(int count, const double *sorted, double part)
+{
+  const double place = part * (count - 1);
+  const int below = (int)place;
+  const int above = below + 1 < count ? below + 1 : below;
+  return sorted[below] + (place - below) * (sorted[above] - sorted[below]);
+}
+
+spread samples_spread(int count, double *sample)
+{
+  qsort(sample, (size_t)count, sizeof *sample, by_size);
+  return (spread){.least = sample[0],
+                  .lower = quantile(count, sample, 0.25),
+                  .median = quantile(count, sample, 0.5),
+                  .upper = quantile(count, sample, 0.75)};
+}
+
+static bool has_logarithm(double x)
+{
+  return x > 0.0 && isfinite(x);
+}
+
+double samples_power(int count, const double *x, const double *y)
+{
+  double used = 0.0;
+  double mean_x = 0.0;
+  double mean_y = 0.0;
+  for (int i = 0; i < count; i++) {
+    if (!has_logarithm(x[i]) || !has_logarithm(y[i])) continue;
+    used += 1.0;
+    mean_x += (log(x[i]) - mean_x) / used;
+    mean_y += (log(y[i]) - mean_y) / used;
+  }
+  double square = 0.0;
+  double product = 0.0;
+  double widest = 0.0;
+  for (int i = 0; i < count; i++) {
+    if (!has_logarithm(x[i]) || !has_logarithm(y[i])) continue;
+    const double away = log(x[i]) - mean_x;
+    square += away * away;
+    product += away * (log(y[i]) - mean_y);
+    widest = fmax(widest, fabs(away));
+  }
+  return widest > 1e-12 * fmax(1.0, fabs(mean_x))
+             ? product / square
+             : (double)NAN; /* below: roundoff of one and the same x */
+}

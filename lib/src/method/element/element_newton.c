@@ -1,0 +1,198 @@
+/* What Newton's methods need of an element: the Jacobian as a matrix or as an operator, and what is
+ * frozen of it.
+ *
+ * The rule. The Jacobian of s n unknowns is a matrix if its factorisation takes at most
+ * `most_whole` operations: s^3 times those of one n x n system with the Hessians' pattern, whose
+ * graph it has with blocks of s x s. Beyond that GMRES solves by its products
+ * (step/element/action.h), preconditioned by the decoupled systems of n unknowns, frozen in the
+ * middle of the path, if their factors take at most `most_frozen` operations together; beyond that
+ * by the kinetic part, M/h: then nothing is factored, and simplified Newton's method, which needs
+ * those factors, is left out. */
+#include <math.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "method/element/element_struct.h"
+
+static const double most_whole = 2e8, most_frozen = 4e10;
+
+/* ---- the choice ---- */
+
+static dvi__decoupled *systems_of(const dvi__element *own)
+{
+  return own->decoupled != NULL ? own->decoupled : own->newton.owned;
+}
+
+/* Operations of one n x n system: at most, if that is `enough`, or there are no decoupled systems;
+ * else by their analysis. */
+static dvi_status estimate_operations(const dvi__element *own, double enough, double *operations)
+{
+  dvi__decoupled *systems = systems_of(own);
+  dvi__linear_cost all;
+  DVI_TRY(dvi__action_prepare_hessians(own->action));
+  *operations = dvi__pattern_operations(dvi__action_coupling(own->action));
+  if (*operations <= enough || systems == NULL) return DVI_OK;
+  DVI_TRY(dvi__decoupled_analyse(systems, &all));
+  *operations = all.operations / dvi__decoupled_weight(systems);
+  return DVI_OK;
+}
+
+dvi_status dvi__element_weigh(dvi__element *own)
+{
+  double operations;
+  if (own->is_weighed || own->decoupled == NULL) return DVI_OK;
+  const double weight = dvi__decoupled_weight(own->decoupled);
+  DVI_TRY(estimate_operations(own, most_frozen / weight, &operations));
+  own->is_dear = operations * weight > most_frozen;
+  own->is_weighed = 1;
+  return DVI_OK;
+}
+
+/* Systems for a preconditioner, where simplified Newton's method has none. */
+static dvi_status create_systems(dvi__element *own)
+{
+  if (systems_of(own) != NULL) return DVI_OK;
+  const dvi_status status = dvi__decoupled_create(own->action, own->counters, &own->newton.owned);
+  return status == DVI_SINGULAR ? DVI_OK : status; /* none in this space */
+}
+
+/* What terms of the rows add to the Jacobian has no products: it stays a matrix. */
+static dvi_status choose_form(dvi__element *own)
+{
+  const double s = dvi__action_space_of(own->action).degree;
+  double operations;
+  own->newton.is_operator = 0;
+  if (dvi__action_has_terms(own->action)) return DVI_OK;
+  DVI_TRY(estimate_operations(own, HUGE_VAL, &operations));
+  if (s * s * s * operations <= most_whole) return DVI_OK;
+  DVI_TRY(create_systems(own));
+  DVI_TRY(estimate_operations(own, 0, &operations));
+  if (s * s * s * operations <= most_whole) return DVI_OK;
+  const double weight = systems_of(own) != NULL ? dvi__decoupled_weight(systems_of(own)) : HUGE_VAL;
+  own->newton.is_operator = 1;
+  own->newton.systems = weight * operations <= most_frozen ? systems_of(own) : NULL;
+  return DVI_OK;
+}
+
+/* ---- the operator ---- */
+
+static void times_of(void *of, const double *x, double *y)
+{
+  const dvi__element *own = of;
+  own->counters->products++;
+  dvi__action_times_jacobian(own->action, x, y);
+}
+
+static void precondition_of(void *of, double *R)
+{
+  const dvi__element *own = of;
+  if (own->newton.systems != NULL)
+    dvi__decoupled_solve(own->newton.systems, R);
+  else
+    dvi__action_chord(own->action, R);
+}
+
+static int sign_of(void *of)
+{
+  return dvi__decoupled_sign(((const dvi__element *)of)->newton.systems);
+}
+
+static int is_definite_of(void *of, int sign)
+{
+  return dvi__decoupled_is_definite(((const dvi__element *)of)->newton.systems, sign);
+}
+
+static dvi_status prepare_operator(dvi__element *own)
+{
+  dvi__newton_form *newton = &own->newton;
+  const int has_systems = newton->systems != NULL;
+  DVI_TRY(dvi__action_prepare_product(own->action));
+  newton->A = (dvi__operator){.size = dvi__action_unknowns(own->action),
+                              .of = own,
+                              .times = times_of,
+                              .precondition = precondition_of,
+                              .sign = has_systems ? sign_of : NULL,
+                              .is_definite = has_systems ? is_definite_of : NULL};
+  if (!has_systems || newton->point != NULL) return DVI_OK;
+  newton->point = DVI_NEW(double, dvi__decoupled_point_size(newton->systems));
+  return newton->point != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "action: no memory for a point");
+}
+
+/* Frozen at Y; one serves all Jacobians of an iteration. */
+static dvi_status freeze_preconditioner(dvi__element *own, const double *Y)
+{
+  dvi__decoupled *systems = own->newton.systems;
+  if (own->newton.is_frozen) return DVI_OK;
+  if (systems != NULL) dvi__decoupled_point(systems, Y, own->newton.point);
+  const dvi_status status = systems != NULL ? dvi__decoupled_freeze(systems, own->newton.point)
+                                            : dvi__action_prepare_chord(own->action, Y);
+  if (status == DVI_SINGULAR)
+    return dvi__fail_in(DVI_NOT_CONVERGED, "the preconditioner of the Jacobian cannot be factored");
+  own->newton.is_frozen = status == DVI_OK;
+  return status;
+}
+
+/* The preconditioner, and then the Hessians that products are made of. */
+static dvi_status linearise(dvi__element *own, const double *Y)
+{
+  DVI_TRY(freeze_preconditioner(own, Y));
+  return dvi__action_hessians(own->action, Y);
+}
+
+/* ---- for the solver ---- */
+
+static dvi_status prepare_of(void *of, dvi__equations *equations)
+{
+  dvi__element *own = of;
+  DVI_TRY(choose_form(own));
+  if (!own->newton.is_operator) return dvi__action_prepare_jacobian(own->action);
+  DVI_TRY(prepare_operator(own));
+  equations->whole = &own->newton.A;
+  return DVI_OK;
+}
+
+static dvi_status jacobian_of(void *of, const double *Y, double *values)
+{
+  dvi__element *own = of;
+  return own->newton.is_operator ? linearise(own, Y) : dvi__action_jacobian(own->action, Y, values);
+}
+
+static dvi_status freeze_of(void *of, const double *Y)
+{
+  const dvi__element *own = of;
+  double *point = own->frozen + DVI__FROZEN_POINT;
+  if (own->keeps_whole) {
+    if (!own->keeps) DVI_TRY(dvi__solver_jacobian(own->solver, Y, point));
+    return dvi__solver_take_jacobian(own->solver, point);
+  }
+  if (!own->keeps) dvi__decoupled_point(own->decoupled, Y, point);
+  return dvi__decoupled_freeze(own->decoupled, point);
+}
+
+static void frozen_of(void *of, double *R)
+{
+  const dvi__element *own = of;
+  if (own->keeps_whole)
+    dvi__solver_apply_factor(own->solver, R);
+  else
+    dvi__decoupled_solve(own->decoupled, R);
+}
+
+void dvi__element_set_newton(dvi__equations *equations)
+{
+  equations->prepare = prepare_of;
+  equations->jacobian = jacobian_of;
+  equations->freeze = freeze_of;
+  equations->frozen = frozen_of;
+}
+
+void dvi__element_clear_newton(dvi__element *own)
+{
+  dvi__decoupled_destroy(&own->newton.owned);
+  dvi__release(own->newton.point);
+}
+
+const dvi__decoupled *dvi__element_frozen(const dvi__element *own)
+{
+  return own->rung == DVI__SIMPLIFIED ? own->decoupled : own->newton.systems;
+}

@@ -1,0 +1,194 @@
+/* GMRES with restarts (Saad and Schultz 1986), preconditioned from the left: what is made small is
+ * P^-1 (b - A x), which is near the error where P is near A, and in the units of the unknowns. */
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "num/factor.h"
+
+/* Directions that are kept, and how often the search begins anew from the best solution. */
+enum { DIRECTIONS = 40, RESTARTS = 5 };
+
+/* What may be left of P^-1 b. Newton's method, which asks for the solution, corrects what is
+ * left. */
+static const double enough = 1e-5;
+
+typedef struct iterative {
+  const dvi__operator *A;
+  size_t size;
+  double *basis;                        /* [DIRECTIONS+1][size] orthonormal directions */
+  double *x, *r;                        /* [size] the solution, and P^-1 b or what is left of it */
+  double H[DIRECTIONS + 1][DIRECTIONS]; /* A in these directions, as rotations make it triangular */
+  double cosine[DIRECTIONS], sine[DIRECTIONS], left[DIRECTIONS + 1];
+} iterative;
+
+static void iterative_destroy(void *factor)
+{
+  iterative *s = factor;
+  if (s == NULL) return;
+  dvi__release(s->basis);
+  dvi__release(s->x);
+  dvi__release(s->r);
+  dvi__release(s);
+}
+
+static dvi_status iterative_create(const dvi__factor_form *form, void **factor)
+{
+  iterative *s = *factor = DVI_NEW(iterative, 1);
+  if (s == NULL) return dvi__fail(DVI_NO_MEMORY, "GMRES: no memory");
+  s->A = form->A;
+  s->size = (size_t)form->A->size;
+  s->basis = DVI_NEW(double, (DIRECTIONS + 1) * s->size);
+  s->x = DVI_NEW(double, s->size);
+  s->r = DVI_NEW(double, s->size);
+  if (s->basis != NULL && s->x != NULL && s->r != NULL) return DVI_OK;
+  iterative_destroy(s);
+  *factor = NULL;
+  return dvi__fail(DVI_NO_MEMORY, "GMRES: no memory for %d directions of %d unknowns",
+                   DIRECTIONS + 1, form->A->size);
+}
+
+static dvi_status iterative_renew(void *factor, const dvi__pattern *pattern, const double *values)
+{
+  const iterative *s = factor;
+  (void)pattern, (void)values;
+  return s->A->renew != NULL ? s->A->renew(s->A->of) : DVI_OK;
+}
+
+/* ---- vectors ---- */
+
+static double *direction(const iterative *s, int k)
+{
+  return s->basis + (size_t)k * s->size;
+}
+
+/* As four sums, which do not wait for each other. */
+static double dot(size_t size, const double *x, const double *y)
+{
+  double sum[4] = {0, 0, 0, 0};
+  size_t i = 0;
+  for (; i + 4 <= size; i += 4)
+    for (size_t j = 0; j < 4; j++) sum[j] += x[i + j] * y[i + j];
+  for (; i < size; i++) sum[0] += x[i] * y[i];
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
+static void add(size_t size, double factor, const double *x, double *y)
+{
+  for (size_t i = 0; i < size; i++) y[i] += factor * x[i];
+}
+
+static void precondition(const iterative *s, double *r)
+{
+  if (s->A->precondition != NULL) s->A->precondition(s->A->of, r);
+}
+
+/* ---- one search ---- */
+
+/* The next direction, orthogonal to all before (Gram and Schmidt, one after the other); column k of
+ * H. */
+static void extend_basis(iterative *s, int k)
+{
+  double *next = direction(s, k + 1);
+  s->A->times(s->A->of, direction(s, k), next);
+  precondition(s, next);
+  for (int j = 0; j <= k; j++) {
+    s->H[j][k] = dot(s->size, direction(s, j), next);
+    add(s->size, -s->H[j][k], direction(s, j), next);
+  }
+  const double length = s->H[k + 1][k] = sqrt(dot(s->size, next, next));
+  for (size_t i = 0; i < s->size && length > 0; i++) next[i] /= length;
+}
+
+/* The rotations before, and one that takes away what is below the diagonal. */
+static void rotate_column(iterative *s, int k)
+{
+  for (int j = 0; j < k; j++) {
+    const double a = s->H[j][k], b = s->H[j + 1][k];
+    s->H[j][k] = s->cosine[j] * a + s->sine[j] * b;
+    s->H[j + 1][k] = s->cosine[j] * b - s->sine[j] * a;
+  }
+  const double length = hypot(s->H[k][k], s->H[k + 1][k]);
+  s->cosine[k] = length > 0 ? s->H[k][k] / length : 1;
+  s->sine[k] = length > 0 ? s->H[k + 1][k] / length : 0;
+  s->H[k][k] = length;
+  s->left[k + 1] = -s->sine[k] * s->left[k];
+  s->left[k] *= s->cosine[k];
+}
+
+/* x += the combination of `count` directions that makes least what is left. */
+static void add_combination(iterative *s, int count)
+{
+  for (int k = count - 1; k >= 0; k--) {
+    for (int j = k + 1; j < count; j++) s->left[k] -= s->H[k][j] * s->left[j];
+    s->left[k] = s->H[k][k] != 0 ? s->left[k] / s->H[k][k] : 0;
+  }
+  for (int k = 0; k < count; k++) add(s->size, s->left[k], direction(s, k), s->x);
+}
+
+/* From the residual r of length `length`; gives what is left of it by the recurrence. */
+static double search(iterative *s, double length, double most)
+{
+  double *first = direction(s, 0);
+  int k = 0;
+  for (size_t i = 0; i < s->size; i++) first[i] = s->r[i] / length;
+  s->left[0] = length;
+  while (k < DIRECTIONS && fabs(s->left[k]) > most) {
+    extend_basis(s, k);
+    rotate_column(s, k);
+    k++;
+  }
+  const double left = fabs(s->left[k]);
+  add_combination(s, k);
+  return left;
+}
+
+/* r = P^-1 (b - A x). */
+static double residual(iterative *s, const double *b)
+{
+  double *product = direction(s, 0);
+  s->A->times(s->A->of, s->x, product);
+  for (size_t i = 0; i < s->size; i++) s->r[i] = b[i] - product[i];
+  precondition(s, s->r);
+  return sqrt(dot(s->size, s->r, s->r));
+}
+
+/* A right side that is not finite has no better solution than itself. */
+static void iterative_solve(void *factor, const dvi__pattern *pattern, double *b)
+{
+  iterative *s = factor;
+  (void)pattern;
+  memset(s->x, 0, s->size * sizeof(double));
+  memcpy(s->r, b, s->size * sizeof(double));
+  precondition(s, s->r);
+  double length = sqrt(dot(s->size, s->r, s->r));
+  const double most = enough * length;
+  for (int i = 0; i < RESTARTS && length > most && isfinite(length); i++) {
+    if (search(s, length, most) <= most) break;
+    length = residual(s, b);
+  }
+  if (isfinite(length)) memcpy(b, s->x, s->size * sizeof(double));
+}
+
+static int iterative_sign(const void *factor, const dvi__pattern *pattern)
+{
+  const dvi__operator *A = ((const iterative *)factor)->A;
+  (void)pattern;
+  return A->sign != NULL ? A->sign(A->of) : 0;
+}
+
+static int iterative_is_definite(const void *factor, const dvi__pattern *pattern, int sign)
+{
+  const dvi__operator *A = ((const iterative *)factor)->A;
+  (void)pattern;
+  return A->is_definite != NULL && A->is_definite(A->of, sign);
+}
+
+const dvi__factor_kind dvi__iterative_factor = {.name = "GMRES",
+                                                .create = iterative_create,
+                                                .destroy = iterative_destroy,
+                                                .refactor = iterative_renew,
+                                                .solve = iterative_solve,
+                                                .sign = iterative_sign,
+                                                .is_definite = iterative_is_definite};

@@ -1,0 +1,72 @@
+/* The loops over coordinates of lanes.c, for vectors of WIDTH numbers, after lanes_width.h. Each
+ * goes on from coordinate i as far as whole vectors reach and returns where it stopped; the rest is
+ * for width 1. Every lane does what core and num do for one number, in the same order. */
+
+/* What dvi__add_compensated does. */
+INLINE void NAME(add)(NAME(vector) * sum, NAME(vector) * carry, const NAME(vector) * term)
+{
+  const NAME(vector) wanted = *term - *carry, next = *sum + wanted;
+  *carry = (next - *sum) - wanted;
+  *sum = next;
+}
+
+INLINE void NAME(kick_by)(double factor, const NAME(vector) * force, NAME(vector) * p,
+                          NAME(vector) * carry)
+{
+  const NAME(vector) term = factor * *force;
+  NAME(add)(p, carry, &term);
+}
+
+/* Numbers that the loop gets to soon. A loop over nine streams of memory outruns the hardware's own
+ * look-ahead, which stops at the end of each page; nothing is read here, so the end of the arrays
+ * does not matter. */
+INLINE void NAME(fetch)(const dvi__moser_veselov *l, size_t i)
+{
+  const double *const read[] = {l->force, l->from.p, l->from.p_compensation, l->from.q,
+                                l->from.q_compensation};
+  const double *const written[] = {l->to.p, l->to.p_compensation, l->to.q, l->to.q_compensation};
+  for (int k = 0; k < 5; k++)
+    __builtin_prefetch((const void *)((uintptr_t)(read[k] + i) + FETCH_AHEAD), 0);
+  for (int k = 0; k < 4; k++)
+    __builtin_prefetch((const void *)((uintptr_t)(written[k] + i) + FETCH_AHEAD), 1);
+}
+
+INLINE size_t NAME(leap)(const dvi__moser_veselov *whole, size_t i, const int kicks,
+                         const dvi__division by)
+{
+  const dvi__moser_veselov l = *whole; /* for the compiler cannot know that no store changes it */
+  for (; i + WIDTH <= l.count; i += WIDTH) {
+    NAME(vector) force, p, p_compensation, q, q_compensation, v;
+    if (l.far) NAME(fetch)(&l, i);
+    NAME(load)(l.force + i, &force);
+    NAME(load)(l.from.p + i, &p);
+    NAME(load)(l.from.p_compensation + i, &p_compensation);
+    for (int k = 0; k < kicks; k++) NAME(kick_by)(l.kick[k], &force, &p, &p_compensation);
+    NAME(store)(l.to.p + i, &p, WIDTH);
+    NAME(store)(l.to.p_compensation + i, &p_compensation, WIDTH);
+    if (by == DVI__BY_ARRAY) NAME(load)(l.mass + i, &v);
+    v = by == DVI__BY_ARRAY ? p / v : by == DVI__BY_SCALAR ? p / l.scalar : p * l.scalar;
+    v *= l.drift;
+    NAME(load)(l.from.q + i, &q);
+    NAME(load)(l.from.q_compensation + i, &q_compensation);
+    NAME(add)(&q, &q_compensation, &v);
+    NAME(store)(l.to.q + i, &q, WIDTH);
+    NAME(store)(l.to.q_compensation + i, &q_compensation, WIDTH);
+  }
+  return i;
+}
+
+INLINE size_t NAME(add_scaled)(size_t i, size_t count, double factor, const double *x, double *sum,
+                               double *carry)
+{
+  for (; i + WIDTH <= count; i += WIDTH) {
+    NAME(vector) term, s, c;
+    NAME(load)(x + i, &term);
+    NAME(load)(sum + i, &s);
+    NAME(load)(carry + i, &c);
+    NAME(kick_by)(factor, &term, &s, &c);
+    NAME(store)(sum + i, &s, WIDTH);
+    NAME(store)(carry + i, &c, WIDTH);
+  }
+  return i;
+}

@@ -1,0 +1,11 @@
+#include "scene/elaborate/blocks.h"
+
+const dvi__block_pair dvi__scene_pairs[DVI__PAIRS] = {
+    [DVI__PAIR_QQ] = {DVI__COORDINATES, DVI__COORDINATES},
+    [DVI__PAIR_QV] = {DVI__COORDINATES, DVI__VELOCITIES},
+    [DVI__PAIR_VV] = {DVI__VELOCITIES, DVI__VELOCITIES},
+    [DVI__PAIR_QW] = {DVI__COORDINATES, DVI__MULTIPLIERS},
+    [DVI__PAIR_VW] = {DVI__VELOCITIES, DVI__MULTIPLIERS},
+    [DVI__PAIR_TQ] = {DVI__TIME, DVI__COORDINATES},
+    [DVI__PAIR_TV] = {DVI__TIME, DVI__VELOCITIES},
+};

@@ -1,0 +1,22 @@
+/* The blocks of the functions that a scene is made of. */
+#ifndef DVI_SCENE_BLOCKS_H
+#define DVI_SCENE_BLOCKS_H
+#include "expr/function/function.h"
+
+/* Velocities stand for momenta, too, where a function is of these. */
+enum { DVI__TIME, DVI__COORDINATES, DVI__VELOCITIES, DVI__MULTIPLIERS, DVI__BLOCKS };
+
+/* The pairs whose second derivatives methods want; the first letter is that of the rows. */
+enum {
+  DVI__PAIR_QQ,
+  DVI__PAIR_QV,
+  DVI__PAIR_VV,
+  DVI__PAIR_QW,
+  DVI__PAIR_VW,
+  DVI__PAIR_TQ,
+  DVI__PAIR_TV,
+  DVI__PAIRS
+};
+extern const dvi__block_pair dvi__scene_pairs[DVI__PAIRS];
+
+#endif

@@ -1,0 +1,38 @@
+/* The section definitions. */
+#include "scene/elaborate/shape.h"
+#include "scene/sections/sections.h"
+
+/* Its shape, and the first error in it; sums are tried at their ends. */
+static bool try_definition(dvi_scene *scene, dvi__definition *d)
+{
+  dvi__context c;
+  if (!dvi__context_make(&c, scene, DVI__SAYS_Q | DVI__SAYS_V | DVI__SAYS_P | DVI__SAYS_T,
+                         "a definition"))
+    return false;
+  c.sample = 1;
+  const dvi__value value = dvi__elaborate(&c, d->is);
+  d->shape = value.shape;
+  d->says = dvi__says(scene, d->is);
+  dvi__context_free(&c);
+  return !dvi__failed(value);
+}
+
+bool dvi__read_definitions(dvi_scene *scene, const dvi__tree *section)
+{
+  if (!dvi__want_mapping(scene, section, "definitions")) return false;
+  scene->definition = dvi__arena_take(&scene->arena, (size_t)section->count + 1,
+                                      sizeof *scene->definition);
+  if (scene->definition == NULL) return dvi__scene_no_memory(scene);
+  for (int i = 0; i < section->count; i++) {
+    dvi__definition *d = &scene->definition[i];
+    d->name = section->key[i]->text;
+    d->span = section->key[i]->span;
+    if (!dvi__tree_expression(scene, section->child[i], &d->is) || !try_definition(scene, d))
+      return false;
+    scene->definition_count++;
+    if (!dvi__names_add(&scene->names, &scene->arena, scene->complaint, d->name, d->span,
+                        DVI__DEFINITION, i))
+      return false;
+  }
+  return true;
+}

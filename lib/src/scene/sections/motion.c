@@ -1,0 +1,55 @@
+/* Which section says what moves. */
+#include "scene/sections/motion.h"
+
+#include "scene/sections/sections.h"
+
+static const char *const ways_to_move[] = {"lagrangian", "kinetic", "one_form", "constraints",
+                                           "hamiltonian"};
+
+/* The last one stands with the two before it, too. */
+enum { WAYS = sizeof ways_to_move / sizeof *ways_to_move, HAMILTONIAN = WAYS - 1 };
+
+const dvi__tree *dvi__what_moves(const dvi_scene *scene)
+{
+  const dvi__tree *found = NULL;
+  for (int k = 0; k < WAYS && found == NULL; k++)
+    found = dvi__tree_find(scene->tree, ways_to_move[k]);
+  return found;
+}
+
+bool dvi__says_what_moves(dvi_scene *scene)
+{
+  static const char *const ways = "one of these: lagrangian; kinetic and potentials; one_form and "
+                                  "hamiltonian; hamiltonian, alone or with constraints";
+  const dvi__tree *found = NULL;
+  int count = 0, which = HAMILTONIAN;
+  for (int k = 0; k < HAMILTONIAN; k++) {
+    const dvi__tree *tree = dvi__tree_find(scene->tree, ways_to_move[k]);
+    if (tree == NULL) continue;
+    found = tree;
+    which = k;
+    count++;
+  }
+  const dvi__tree *H = dvi__tree_find(scene->tree, "hamiltonian"),
+                  *V = dvi__tree_find(scene->tree, "potentials");
+  if (count == 0 && H == NULL)
+    return dvi__scene_refuse(scene, DVI__NOWHERE, "what moves it is missing: %s", ways);
+  if (count > 1) return dvi__scene_refuse(scene, found->span, "there must be %s", ways);
+  if ((H != NULL) != (which >= 2))
+    return dvi__scene_refuse(scene, (H != NULL ? H : found)->span,
+                             H != NULL ? "beside %s there is no hamiltonian"
+                                       : "%s needs a hamiltonian",
+                             ways_to_move[which]);
+  return V == NULL || which == 1 ||
+         dvi__scene_refuse(scene, V->span, "potentials stand beside kinetic, not beside %s",
+                           ways_to_move[which]);
+}
+
+bool dvi__refuse_factors(dvi_scene *scene, const dvi__tree *section, const char *name)
+{
+  return !dvi__has_factors(scene) ||
+         dvi__scene_refuse(scene, section->span,
+                           "beside %s there are no rotations, motions, directions and angles; they "
+                           "go with lagrangian, or kinetic and potentials",
+                           name);
+}

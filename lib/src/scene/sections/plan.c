@@ -1,0 +1,39 @@
+/* The sections title, method, step and until: how the scene wants to be run. */
+#include "scene/sections/sections.h"
+
+bool dvi__read_title(dvi_scene *scene, const dvi__tree *section)
+{
+  scene->plan.title = section->text;
+  return dvi__want_text(scene, section, "title");
+}
+
+bool dvi__read_method(dvi_scene *scene, const dvi__tree *section)
+{
+  scene->plan.method = section->text;
+  return dvi__want_text(scene, section, "method") &&
+         dvi__scene_place_file(scene, section->span, &scene->plan.method);
+}
+
+static bool plan_number(dvi_scene *scene, const dvi__tree *section, const char *name,
+                        double *number)
+{
+  if (!dvi__tree_number(scene, section, name, number)) return false;
+  return *number > 0 || dvi__scene_refuse(scene, section->span, "%s must be positive, and is %.17g",
+                                          name, *number);
+}
+
+bool dvi__read_step(dvi_scene *scene, const dvi__tree *section)
+{
+  return plan_number(scene, section, "step", &scene->plan.h);
+}
+
+/* With more steps than a double can count the time would stand still. */
+bool dvi__read_until(dvi_scene *scene, const dvi__tree *section)
+{
+  static const double steps_max = 9007199254740992.0; /* 2^53 */
+  if (!plan_number(scene, section, "until", &scene->plan.t_end)) return false;
+  const double steps = scene->plan.t_end / scene->plan.h;
+  return steps <= steps_max ||
+         dvi__complain(scene->complaint, DVI_BAD_SIZE, dvi__tree_find(scene->tree, "step")->span,
+                       "a run of %.3g steps; at most %.16g (2^53) are possible", steps, steps_max);
+}

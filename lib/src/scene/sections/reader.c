@@ -1,0 +1,98 @@
+/* What readers of sections share. */
+#include <limits.h>
+#include <string.h>
+
+#include "scene/elaborate/shape.h"
+#include "scene/sections/sections.h"
+
+bool dvi__want_mapping(dvi_scene *scene, const dvi__tree *tree, const char *what)
+{
+  return tree->kind == DVI__MAPPING ||
+         dvi__scene_refuse(scene, tree->span, "%s is a mapping, as in 'name: value'", what);
+}
+
+bool dvi__want_text(dvi_scene *scene, const dvi__tree *tree, const char *what)
+{
+  return tree->kind == DVI__SCALAR || dvi__scene_refuse(scene, tree->span, "%s is one line", what);
+}
+
+bool dvi__want_name(dvi_scene *scene, const char *text, dvi__span span)
+{
+  return dvi__is_identifier(text) ||
+         dvi__scene_refuse(scene, span, "'%s' is no name: letters, digits and _, a letter first",
+                           text);
+}
+
+bool dvi__want_keys(dvi_scene *scene, const dvi__tree *mapping, const char *what, int count,
+                    const char *const *known)
+{
+  char hint[96];
+  for (int i = 0; i < mapping->count; i++) {
+    int k = 0;
+    while (k < count && strcmp(known[k], mapping->key[i]->text) != 0) k++;
+    if (k == count)
+      return dvi__scene_refuse(
+          scene, mapping->key[i]->span, "%s has no '%s'%s", what, mapping->key[i]->text,
+          dvi__nearest(mapping->key[i]->text, count, known, hint, sizeof hint));
+  }
+  return true;
+}
+
+/* A list in block style, or with comments in it: item by item. */
+static bool list_expression(dvi_scene *scene, const dvi__tree *tree, const dvi__expression **e)
+{
+  const dvi__expression **part = dvi__arena_take(&scene->arena, (size_t)tree->count + 1,
+                                                 sizeof(*part));
+  dvi__expression *list = dvi__arena_take(&scene->arena, 1, sizeof *list);
+  if (part == NULL || list == NULL) return dvi__scene_no_memory(scene);
+  for (int i = 0; i < tree->count; i++)
+    if (!dvi__tree_expression(scene, tree->child[i], &part[i])) return false;
+  *list = (dvi__expression){.form = DVI__FORM_LIST,
+                            .span = tree->span,
+                            .count = tree->count,
+                            .part = (dvi__expression *const *)part};
+  *e = list;
+  return true;
+}
+
+/* Whether a list can be read as an expression as it stands: commas inside of parentheses are then
+ * no ends of items. */
+static bool stands_as_expression(const dvi_scene *scene, const dvi__tree *tree)
+{
+  const char *text = scene->source.text + tree->span.first;
+  return tree->span.size > 0 && text[0] == '[' && memchr(text, '#', tree->span.size) == NULL;
+}
+
+bool dvi__tree_expression(dvi_scene *scene, const dvi__tree *tree, const dvi__expression **e)
+{
+  if (tree->kind == DVI__MAPPING)
+    return dvi__scene_refuse(scene, tree->span, "an expression belongs here");
+  if (tree->kind == DVI__SEQUENCE && !stands_as_expression(scene, tree))
+    return list_expression(scene, tree, e);
+  return dvi__expression_parse(&scene->source, tree->span, &scene->arena, scene->complaint, e);
+}
+
+bool dvi__tree_number(dvi_scene *scene, const dvi__tree *tree, const char *what, double *number)
+{
+  const dvi__expression *e;
+  dvi__context c;
+  dvi__node node;
+  if (!dvi__tree_expression(scene, tree, &e) || !dvi__context_make(&c, scene, 0, what))
+    return false;
+  const bool good = dvi__elaborate_number(&c, e, &node) &&
+                    dvi__constants_of(&c, e, dvi__number_value(node), number);
+  dvi__context_free(&c);
+  return good;
+}
+
+bool dvi__tree_whole(dvi_scene *scene, const dvi__tree *tree, const char *what, int least,
+                     int *number)
+{
+  double x;
+  if (!dvi__tree_number(scene, tree, what, &x)) return false;
+  if (!(x >= least && x <= INT_MAX) || (double)(int)x < x)
+    return dvi__scene_refuse(scene, tree->span, "%s is a whole number from %d to %d, not %.17g",
+                             what, least, INT_MAX, x);
+  *number = (int)x;
+  return true;
+}

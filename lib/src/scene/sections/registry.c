@@ -1,0 +1,88 @@
+/* The registry of sections: which are known, which must be there, and who reads them. */
+#include <string.h>
+
+#include "scene/elaborate/hints.h"
+#include "scene/sections/motion.h"
+#include "scene/sections/sections.h"
+
+typedef enum presence { OPTIONAL, REQUIRED, DEFAULTED, REFUSED } presence;
+
+typedef struct section {
+  const char *name;
+  presence presence;
+  const char *example; /* of what is required */
+  const char *reason;  /* why it is refused */
+  bool (*read)(dvi_scene *scene, const dvi__tree *section);
+} section;
+
+static const section sections[] = {
+#define SECTION(name, presence, example, line) {#name, presence, example, NULL, dvi__read_##name},
+#define REFUSED_SECTION(name, line) {#name, REFUSED, NULL, line, NULL},
+#include "scene/sections/sections.def"
+#undef SECTION
+#undef REFUSED_SECTION
+};
+
+enum { SECTIONS = sizeof sections / sizeof *sections };
+
+/* Refuse a section by the name that it has elsewhere. Keys below sections have no such names. */
+static bool registry_refuse_other_names(dvi_scene *scene)
+{
+  for (int i = 0; i < scene->tree->count; i++) {
+    const dvi__tree *key = scene->tree->key[i];
+    const char *here = dvi__hint_of_section(key->text);
+    if (here != NULL)
+      return dvi__scene_refuse(scene, key->span, "a scene has no '%s'; the section is %s",
+                               key->text, here);
+  }
+  return true;
+}
+
+/* What is no mapping, or a mapping of several keys of which none is known, was meant for
+ * something else. */
+static bool registry_knows_any(dvi_scene *scene, const char *const *known)
+{
+  const dvi__tree *tree = scene->tree;
+  char hint[96];
+  bool near = tree->count == 1;
+  for (int i = 0; tree->kind == DVI__MAPPING && i < tree->count && !near; i++)
+    for (int k = 0; k < SECTIONS && !near; k++)
+      near = strcmp(tree->key[i]->text, known[k]) == 0 ||
+             dvi__nearest(tree->key[i]->text, SECTIONS, known, hint, sizeof hint)[0] != '\0';
+  if (tree->kind == DVI__MAPPING && near) return true;
+  return dvi__complain_of_file(scene->complaint, tree->span,
+                               tree->kind == DVI__MAPPING    ? "this is a mapping of other names"
+                               : tree->kind == DVI__SEQUENCE ? "this is a list"
+                                                             : "this is a text");
+}
+
+static bool registry_check(dvi_scene *scene)
+{
+  const char *known[SECTIONS];
+  for (int k = 0; k < SECTIONS; k++) known[k] = sections[k].name;
+  if (!registry_knows_any(scene, known) || !registry_refuse_other_names(scene) ||
+      !dvi__want_keys(scene, scene->tree, "a scene", SECTIONS, known))
+    return false;
+  for (int k = 0; k < SECTIONS; k++) {
+    const dvi__tree *found = dvi__tree_find(scene->tree, sections[k].name);
+    if (found != NULL && sections[k].presence == REFUSED)
+      return dvi__scene_refuse(scene, found->span, "%s", sections[k].reason);
+    if (found == NULL && sections[k].presence == REQUIRED)
+      return dvi__scene_refuse(scene, DVI__NOWHERE, "the section '%s' is missing, as in '%s'",
+                               sections[k].name, sections[k].example);
+  }
+  return true;
+}
+
+bool dvi__scene_read_tree(dvi_scene *scene)
+{
+  static const dvi__tree empty = {.kind = DVI__MAPPING};
+  if (!registry_check(scene) || !dvi__says_what_moves(scene)) return false;
+  for (int k = 0; k < SECTIONS; k++) {
+    const dvi__tree *found = dvi__tree_find(scene->tree, sections[k].name);
+    if (found == NULL && sections[k].presence == DEFAULTED) found = &empty;
+    scene->reads = DVI__ELSEWHERE;
+    if (found != NULL && !sections[k].read(scene, found)) return false;
+  }
+  return dvi__read_uses(scene);
+}

@@ -1,0 +1,87 @@
+/* The section report. */
+#include <string.h>
+
+#include "scene/sections/sections.h"
+
+/* Each is sought among all that there are. */
+enum { COLUMNS_MAX = 1000 };
+
+/* All that dvi run may show of the scene, if `known` is not NULL; how many they are. The last of
+ * them some methods alone have. */
+static int list_columns(const dvi_scene *scene, const char **known)
+{
+  static const char *const others[] = {"t", "energy", "constraint", "distance", "h", "jump"};
+  enum { OTHERS = sizeof others / sizeof *others };
+  const char *(*const label[])(const dvi_scene *, int) = {dvi_scene_coordinate, dvi_scene_velocity,
+                                                          dvi_scene_momentum};
+  const char *name;
+  int count = 0;
+  for (int k = 0; k < 3; k++)
+    for (int i = 0; (k != 1 || scene->terms.factors != NULL) && (name = label[k](scene, i)) != NULL;
+         i++, count++)
+      if (known != NULL) known[count] = name;
+  for (int i = 0; i < scene->terms.symmetry_count; i++, count++)
+    if (known != NULL) known[count] = scene->terms.symmetries[i].name;
+  for (int i = 0; i < scene->terms.invariant_count; i++, count++)
+    if (known != NULL) known[count] = scene->terms.invariants[i].name;
+  for (int i = 0; i < OTHERS; i++, count++)
+    if (known != NULL) known[count] = others[i];
+  return count;
+}
+
+static bool all_columns(dvi_scene *scene, const dvi__tree *columns)
+{
+  char hint[96];
+  if (dvi_scene_coordinate(scene, 0) == NULL || dvi_scene_velocity(scene, 0) == NULL ||
+      dvi_scene_momentum(scene, 0) == NULL)
+    return dvi__scene_no_memory(scene);
+  const int count = list_columns(scene, NULL);
+  const char **known = dvi__arena_take(&scene->arena, (size_t)count, sizeof *known);
+  if (known == NULL) return dvi__scene_no_memory(scene);
+  (void)list_columns(scene, known);
+  for (int i = 0; i < columns->count; i++) {
+    const char *name = columns->child[i]->text;
+    int k = 0;
+    while (k < count && strcmp(known[k], name) != 0) k++;
+    if (k == count)
+      return dvi__scene_refuse(scene, columns->child[i]->span, "there is no column '%s'%s", name,
+                               dvi__nearest(name, count, known, hint, sizeof hint));
+    for (k = 0; k < i; k++)
+      if (strcmp(columns->child[k]->text, name) == 0)
+        return dvi__scene_refuse(scene, columns->child[i]->span, "column '%s' stands here twice",
+                                 name);
+  }
+  return true;
+}
+
+static bool read_columns(dvi_scene *scene, const dvi__tree *columns)
+{
+  const char **column = dvi__arena_take(&scene->arena, (size_t)columns->count + 1, sizeof *column);
+  if (column == NULL) return dvi__scene_no_memory(scene);
+  if (columns->kind != DVI__SEQUENCE)
+    return dvi__scene_refuse(scene, columns->span, "columns is a list of names, as in [x, y]");
+  if (columns->count > COLUMNS_MAX)
+    return dvi__scene_refuse(scene, columns->span,
+                             "at most %d columns; without a list all are shown", (int)COLUMNS_MAX);
+  for (int i = 0; i < columns->count; i++) {
+    if (!dvi__want_text(scene, columns->child[i], "the name of a column")) return false;
+    column[i] = columns->child[i]->text;
+  }
+  scene->plan.column = column;
+  scene->plan.column_count = columns->count;
+  return all_columns(scene, columns);
+}
+
+bool dvi__read_report(dvi_scene *scene, const dvi__tree *section)
+{
+  static const char *const known[] = {"every", "columns"};
+  int every = 0;
+  if (!dvi__want_mapping(scene, section, "report") ||
+      !dvi__want_keys(scene, section, "report", 2, known))
+    return false;
+  const dvi__tree *often = dvi__tree_find(section, "every"),
+                  *columns = dvi__tree_find(section, "columns");
+  if (often != NULL && !dvi__tree_whole(scene, often, "every", 1, &every)) return false;
+  scene->plan.every = every;
+  return columns == NULL || read_columns(scene, columns);
+}

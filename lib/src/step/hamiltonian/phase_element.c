@@ -1,0 +1,451 @@
+#include <dvi/quadrature.h>
+#include <math.h>
+#include <string.h>
+
+#include "step/hamiltonian/phase_struct.h"
+#include "step/joint.h"
+#include "core/memory.h"
+#include "core/status.h"
+#include "num/finite.h"
+#include "space/legendre.h"
+
+enum { MOST = DVI__STAGES_MOST };
+
+/* ---- create ---- */
+
+static double **phase_owned_array(dvi__phase_element *f, int i)
+{
+  double **const all[] = {&f->kick,   &f->impulse, &f->t,     &f->Z,     &f->F,      &f->phi,
+                          &f->H_qq,   &f->H_qp,    &f->H_pp,  &f->phi_z, &f->phi_qq, &f->phi_qp,
+                          &f->phi_pp, &f->slope,   &f->point, &f->end,   &f->field,  &f->weight};
+  return i < (int)(sizeof all / sizeof *all) ? all[i] : NULL;
+}
+
+static dvi_status phase_allocate(dvi__phase_element *f)
+{
+  const dvi_system *s = f->system;
+  const dvi__constraint_term *c = s->constraint;
+  const size_t z = 2 * (size_t)f->n, m = (size_t)f->m, d = (size_t)f->d;
+#define ENTRIES(pattern) (size_t) dvi__pattern_entries(&(pattern))
+  const size_t size[] = {z,
+                         m,
+                         d,
+                         z * d,
+                         z * d,
+                         m * d,
+                         ENTRIES(s->qq) * d,
+                         ENTRIES(s->qv) * d,
+                         ENTRIES(s->vv) * d,
+                         ENTRIES(c->gradients) * (d + 1),
+                         ENTRIES(c->weighted.qq),
+                         ENTRIES(c->weighted.qv),
+                         ENTRIES(c->weighted.vv),
+                         ENTRIES(f->joint) * (d + 1),
+                         z,
+                         z,
+                         z,
+                         m};
+#undef ENTRIES
+  for (int i = 0; phase_owned_array(f, i) != NULL; i++) {
+    *phase_owned_array(f, i) = DVI_NEW(double, size[i]);
+    if (*phase_owned_array(f, i) == NULL)
+      return dvi__fail(DVI_NO_MEMORY, "phase space: no memory for %d stages in %d dimensions", f->d,
+                       f->n);
+  }
+  return DVI_OK;
+}
+
+static dvi_status phase_fill_tables(dvi__phase_element *f)
+{
+  DVI_TRY(dvi_quadrature(DVI_GAUSS, f->d, f->c, f->b));
+  DVI_TRY(dvi__collocate(f->d, f->c, f->a));
+  for (int i = 0; i < f->d; i++) {
+    long double value[MOST + 1], difference[MOST + 1];
+    dvi__legendre(f->d, 1 - (long double)f->c[i], value, difference);
+    for (int l = 0; l <= f->d; l++) f->legendre[i][l] = (double)value[l];
+  }
+  return DVI_OK;
+}
+
+static dvi_status phase_initialise(dvi__phase_element *f, dvi_counters *counters)
+{
+  DVI_TRY(dvi__joint_check(f->system, f->d + 1, 2 * (f->d + 1)));
+  DVI_TRY(phase_fill_tables(f));
+  DVI_TRY(dvi__evaluator_create(f->system, f->d, DVI__HESSIANS, counters, &f->evaluator));
+  DVI_TRY(dvi__phase_element_lay_out(f));
+  return phase_allocate(f);
+}
+
+dvi_status dvi__phase_element_create(const dvi_system *system, int degree, int moments,
+                                     dvi_counters *counters, dvi__phase_element **phase)
+{
+  *phase = NULL;
+  dvi__phase_element *f = DVI_NEW(dvi__phase_element, 1);
+  if (f == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory");
+  f->system = system;
+  f->n = system->n;
+  f->m = system->constraint->callbacks.count;
+  f->d = degree;
+  f->k = moments;
+  const dvi_status status = phase_initialise(f, counters);
+  if (status != DVI_OK) dvi__phase_element_destroy(&f);
+  *phase = f;
+  return status;
+}
+
+void dvi__phase_element_destroy(dvi__phase_element **phase)
+{
+  dvi__phase_element *f = *phase;
+  if (f == NULL) return;
+  for (int i = 0; phase_owned_array(f, i) != NULL; i++) dvi__release(*phase_owned_array(f, i));
+  dvi__phase_element_clear_layout(f);
+  dvi__evaluator_destroy(&f->evaluator);
+  dvi__release(f);
+  *phase = NULL;
+}
+
+const dvi__pattern *dvi__phase_element_pattern(const dvi__phase_element *f)
+{
+  return &f->pattern;
+}
+
+dvi__evaluator *dvi__phase_element_evaluator(const dvi__phase_element *f)
+{
+  return f->evaluator;
+}
+
+/* ---- points ---- */
+
+static const double *phase_row_of(const dvi__phase_element *f, const double *x, int component)
+{
+  return x + component * (f->d + 1);
+}
+
+/* Return h lambda' of a constraint, followed by the coefficients of h Lambda. */
+static const double *phase_multipliers(const dvi__phase_element *f, const double *x, int constraint)
+{
+  return x + 2 * f->n * (f->d + 1) + constraint * (f->k + 1);
+}
+
+static double *gradients_at(const dvi__phase_element *f, int stage)
+{
+  return f->phi_z + (size_t)stage * (size_t)dvi__pattern_entries(&f->system->constraint->gradients);
+}
+
+dvi_status dvi__phase_element_place(dvi__phase_element *f, double t0, double h, const double *q,
+                                    const double *p, const double *multiplier)
+{
+  f->t0 = t0;
+  f->h = h;
+  f->q0 = q;
+  f->p0 = p;
+  for (int i = 0; i < f->d; i++) f->t[i] = t0 + f->c[i] * h;
+  for (int a = 0; a < f->m; a++) f->impulse[a] = h * multiplier[a];
+  memset(f->kick, 0, 2 * (size_t)f->n * sizeof *f->kick);
+  DVI_TRY(dvi__constraint_gradients(f->evaluator, q, p, f->phi_z));
+  dvi__constraint_push(f->system->constraint, f->phi_z, f->impulse, 0.5, f->kick);
+  return DVI_OK;
+}
+
+static double phase_start_of(const dvi__phase_element *f, int component)
+{
+  return component < f->n ? f->q0[component] : f->p0[component - f->n];
+}
+
+static void phase_points(dvi__phase_element *f, const double *x)
+{
+  const int d = f->d;
+  for (int c = 0; c < 2 * f->n; c++) {
+    const double *W = phase_row_of(f, x, c), from = phase_start_of(f, c);
+    for (int i = 0; i < d; i++) {
+      double sum = f->kick[c];
+      for (int j = 0; j < d; j++) sum += f->a[i][j] * W[j];
+      f->Z[c * d + i] = from + sum;
+    }
+    f->end[c] = from + W[d];
+  }
+}
+
+/* Write one stage to f->point, and h Lambda there to f->weight. */
+static void take_stage(const dvi__phase_element *f, const double *x, int i)
+{
+  for (int c = 0; c < 2 * f->n; c++) f->point[c] = f->Z[c * f->d + i];
+  for (int a = 0; a < f->m; a++) {
+    f->weight[a] = 0;
+    for (int l = 0; l < f->k; l++)
+      f->weight[a] += f->legendre[i][l] * phase_multipliers(f, x, a)[1 + l];
+  }
+}
+
+static void take_end(const dvi__phase_element *f, const double *x)
+{
+  memcpy(f->point, f->end, 2 * (size_t)f->n * sizeof *f->point);
+  for (int a = 0; a < f->m; a++) f->weight[a] = phase_multipliers(f, x, a)[0];
+}
+
+/* Evaluate the constraint at f->point. Keep its gradients for `stage`, and write X_phi times the
+ * weights to f->field. */
+static dvi_status phase_push_constraints(dvi__phase_element *f, int stage)
+{
+  double *phi_z = gradients_at(f, stage);
+  memset(f->field, 0, 2 * (size_t)f->n * sizeof *f->field);
+  DVI_TRY(dvi__constraint_gradients(f->evaluator, f->point, f->point + f->n, phi_z));
+  dvi__constraint_push(f->system->constraint, phi_z, f->weight, 1, f->field);
+  return DVI_OK;
+}
+
+/* ---- residual ---- */
+
+/* Set F = h X_H + h X_phi Lambda at the stages. Without moments no constraint acts there. */
+static dvi_status phase_vector_fields(dvi__phase_element *f, const double *x)
+{
+  const int half = f->n * f->d;
+  DVI_TRY(dvi__lagrangian_gradient(f->evaluator, f->d, f->t, f->Z, f->Z + half, f->F + half, f->F));
+  for (int c = 0; c < half; c++) {
+    f->F[c] *= f->h;
+    f->F[half + c] *= -f->h;
+  }
+  for (int i = 0; i < f->d && f->k > 0; i++) {
+    take_stage(f, x, i);
+    DVI_TRY(phase_push_constraints(f, i));
+    DVI_TRY(dvi__constraint_value(f->evaluator, f->point, f->point + f->n, f->phi + i * f->m));
+    for (int c = 0; c < 2 * f->n; c++) f->F[c * f->d + i] += f->field[c];
+  }
+  return DVI_OK;
+}
+
+static double phase_moment(const dvi__phase_element *f, int constraint, int l)
+{
+  double sum = 0;
+  for (int i = 0; i < f->d; i++) sum += f->b[i] * f->legendre[i][l] * f->phi[i * f->m + constraint];
+  return sum;
+}
+
+dvi_status dvi__phase_element_residual(dvi__phase_element *f, const double *x, double *R)
+{
+  const int d = f->d;
+  phase_points(f, x);
+  DVI_TRY(phase_vector_fields(f, x));
+  take_end(f, x);
+  DVI_TRY(phase_push_constraints(f, d));
+  DVI_TRY(dvi__constraint_value(f->evaluator, f->point, f->point + f->n, f->weight));
+  for (int c = 0; c < 2 * f->n; c++, R += d + 1) {
+    const double *W = phase_row_of(f, x, c);
+    R[d] = W[d] - f->kick[c] - 0.5 * f->field[c];
+    for (int i = 0; i < d; i++) {
+      R[i] = W[i] - f->F[c * d + i];
+      R[d] -= f->b[i] * W[i];
+    }
+  }
+  for (int a = 0; a < f->m; a++) {
+    *R++ = f->weight[a];
+    for (int l = 0; l < f->k; l++) *R++ = phase_moment(f, a, l);
+  }
+  return DVI_OK;
+}
+
+/* ---- Jacobian ---- */
+
+/* Add factor times the derivative of the vector field (F_p, -F_q) to slope. Entry e of F_qq is
+ * qq[e * stride]. */
+static void add_slope(const dvi__vector_field_places *at, const dvi__lagrangian_term *of,
+                      const double *qq, const double *qp, const double *pp, int stride,
+                      double factor, double *slope)
+{
+  for (int e = 0; e < dvi__pattern_entries(&of->qq); e++)
+    slope[at->qq[e]] -= factor * qq[e * stride];
+  for (int e = 0; e < dvi__pattern_entries(&of->vv); e++)
+    slope[at->pp[e]] += factor * pp[e * stride];
+  for (int e = 0; e < dvi__pattern_entries(&of->qv); e++) {
+    slope[at->qp_in_p[e]] -= factor * qp[e * stride];
+    slope[at->qp_in_q[e]] += factor * qp[e * stride];
+  }
+}
+
+/* Add the derivative of the constraints with the weights at f->point. */
+static dvi_status phase_add_constraints(dvi__phase_element *f, double *slope)
+{
+  DVI_TRY(dvi__constraint_hessian(f->evaluator, f->point, f->point + f->n, f->weight, f->phi_qq,
+                                  f->phi_qp, f->phi_pp));
+  add_slope(&f->of_phi, &f->system->constraint->weighted, f->phi_qq, f->phi_qp, f->phi_pp, 1, 1,
+            slope);
+  return DVI_OK;
+}
+
+static dvi_status phase_slopes(dvi__phase_element *f, const double *x)
+{
+  const size_t entries = (size_t)dvi__pattern_entries(&f->joint);
+  const int half = f->n * f->d;
+  memset(f->slope, 0, entries * ((size_t)f->d + 1) * sizeof *f->slope);
+  DVI_TRY(dvi__lagrangian_hessian(f->evaluator, f->d, f->t, f->Z, f->Z + half, f->H_qq, f->H_qp,
+                                  f->H_pp));
+  for (int i = 0; i < f->d; i++) {
+    double *slope = f->slope + (size_t)i * entries;
+    add_slope(&f->of_H, f->system->lagrangian, f->H_qq + i, f->H_qp + i, f->H_pp + i, f->d, f->h,
+              slope);
+    if (f->k == 0) continue;
+    take_stage(f, x, i);
+    DVI_TRY(phase_push_constraints(f, i));
+    DVI_TRY(phase_add_constraints(f, slope));
+  }
+  take_end(f, x);
+  DVI_TRY(phase_push_constraints(f, f->d));
+  return phase_add_constraints(f, f->slope + (size_t)f->d * entries);
+}
+
+/* Fill the rows of a block of two components in column l, which belongs to W_l or to {z'} - {z}. */
+static void component_column(const dvi__phase_element *f, int e, int same, int l, double *column)
+{
+  const size_t entries = (size_t)dvi__pattern_entries(&f->joint);
+  const int d = f->d;
+  for (int i = 0; i < d; i++)
+    column[i] = l == d ? 0
+                       : (same && i == l) - f->a[i][l] * f->slope[(size_t)i * entries + (size_t)e];
+  if (l == d)
+    column[d] = same - 0.5 * f->slope[(size_t)d * entries + (size_t)e];
+  else
+    column[d] = same ? -f->b[l] : 0;
+}
+
+/* Fill the rows of a constraint in the same column. */
+static void constraint_rows(const dvi__phase_element *f, int gradient, int l, double *column)
+{
+  column[0] = l == f->d ? gradients_at(f, f->d)[gradient] : 0;
+  for (int k = 0; k < f->k; k++) {
+    column[1 + k] = 0;
+    for (int i = 0; i < f->d && l < f->d; i++)
+      column[1 + k] += f->b[i] * f->legendre[i][k] * gradients_at(f, i)[gradient] * f->a[i][l];
+  }
+}
+
+/* Fill the rows of a component in column l of a constraint, which belongs to h lambda' or to a
+ * coefficient of h Lambda. The entries are phi_p for q and -phi_q for p. */
+static void constraint_column(const dvi__phase_element *f, int gradient, double sign, int l,
+                              double *column)
+{
+  for (int i = 0; i < f->d; i++)
+    column[i] = l == 0 ? 0 : -sign * f->legendre[i][l - 1] * gradients_at(f, i)[gradient];
+  column[f->d] = l == 0 ? -0.5 * sign * gradients_at(f, f->d)[gradient] : 0;
+}
+
+dvi_status dvi__phase_element_jacobian(dvi__phase_element *f, const double *x, double *values)
+{
+  const int z = 2 * f->n;
+  phase_points(f, x);
+  DVI_TRY(phase_slopes(f, x));
+  for (int j = 0; j < f->joint.columns; j++)
+    for (int l = 0; l <= (j < z ? f->d : f->k); l++)
+      for (int e = f->joint.start[j]; e < f->joint.start[j + 1]; e++) {
+        const int i = f->joint.row[e];
+        if (j >= z)
+          constraint_column(f, f->gradient[e], i < f->n ? 1 : -1, l, values);
+        else if (i < z)
+          component_column(f, e, i == j, l, values);
+        else
+          constraint_rows(f, f->gradient[e], l, values);
+        values += 1 + (i < z ? f->d : f->k);
+      }
+  return DVI_OK;
+}
+
+/* Write the scale of the rows. Rows of z have the size of the unknowns, and rows of a constraint
+ * that of its gradient. */
+dvi_status dvi__phase_element_scale(dvi__phase_element *f, double *scale)
+{
+  const dvi__pattern *gradients = &f->system->constraint->gradients;
+  DVI_TRY(dvi__constraint_gradients(f->evaluator, f->q0, f->p0, f->phi_z));
+  for (int c = 0; c < 2 * f->n * (f->d + 1); c++) *scale++ = 1;
+  for (int a = 0; a < f->m; a++) {
+    double largest = 0;
+    for (int e = gradients->start[a]; e < gradients->start[a + 1]; e++)
+      largest = fmax(largest, fabs(f->phi_z[e]));
+    for (int l = 0; l <= f->k; l++) *scale++ = largest > 0 ? largest : 1;
+  }
+  return DVI_OK;
+}
+
+/* ---- the end ---- */
+
+void dvi__phase_element_end(const dvi__phase_element *f, const double *x, double *dq, double *dp,
+                            double *multiplier)
+{
+  for (int i = 0; i < f->n; i++) {
+    dq[i] = phase_row_of(f, x, i)[f->d];
+    dp[i] = phase_row_of(f, x, f->n + i)[f->d];
+  }
+  for (int a = 0; a < f->m; a++) multiplier[a] = phase_multipliers(f, x, a)[0] / f->h;
+}
+
+dvi_status dvi__phase_element_jump(dvi__phase_element *f, const double *x, double *jump,
+                                   double *change)
+{
+  const size_t bytes = 2 * (size_t)f->n * sizeof *jump;
+  phase_points(f, x);
+  take_end(f, x);
+  DVI_TRY(phase_push_constraints(f, f->d));
+  memcpy(jump, f->field, bytes);
+  memcpy(change, f->field, bytes);
+  dvi__constraint_push(f->system->constraint, gradients_at(f, f->d), f->impulse, -1, change);
+  return DVI_OK;
+}
+
+/* Add the kicks to the sizes. The gradients are those of the end, where the multipliers of q's
+ * kicks are those of phi_p. */
+static void add_kicks(const dvi__phase_element *f, const double *x, double size[2])
+{
+  const dvi__pattern *gradients = &f->system->constraint->gradients;
+  const double *phi_z = gradients_at(f, f->d);
+  for (int a = 0; a < f->m; a++)
+    for (int e = gradients->start[a]; e < gradients->start[a + 1]; e++) {
+      double *of = &size[gradients->row[e] < f->n];
+      *of = fmax(*of, fabs(phi_z[e]) * dvi__largest((size_t)f->k + 1, phase_multipliers(f, x, a)));
+    }
+}
+
+static double phase_largest_entry(const dvi__phase_element *f, const dvi__pattern *pattern,
+                                  const double *values)
+{
+  return dvi__largest((size_t)dvi__pattern_entries(pattern) * (size_t)f->d, values);
+}
+
+void dvi__phase_element_sizes(const dvi__phase_element *f, const double *x, double size[2])
+{
+  const dvi_system *s = f->system;
+  size[0] = dvi__largest((size_t)f->n, f->q0);
+  size[1] = dvi__largest((size_t)f->n, f->p0);
+  add_kicks(f, x, size);
+  const double h = fabs(f->h), of_q = size[0];
+  size[0] += h * phase_largest_entry(f, &s->vv, f->H_pp) * size[1];
+  size[1] += h * phase_largest_entry(f, &s->qq, f->H_qq) * of_q;
+}
+
+/* ---- guesses ---- */
+
+/* Start with a straight line. p' and Lambda are not known yet, and the multiplier of the node is
+ * kept. */
+void dvi__phase_element_straight(const dvi__phase_element *f, const double *v, double *x)
+{
+  for (int c = 0; c < 2 * f->n; c++)
+    for (int i = 0; i <= f->d; i++) *x++ = c < f->n ? f->h * v[c] : 0;
+  for (int a = 0; a < f->m; a++) {
+    *x++ = f->impulse[a];
+    for (int l = 0; l < f->k; l++) *x++ = 0;
+  }
+}
+
+void dvi__phase_element_continue(const dvi__phase_element *f, double ratio, const double *last,
+                                 double *x)
+{
+  const int d = f->d;
+  for (int i = 0; i < d; i++) {
+    double weight[MOST];
+    dvi__lagrange_weights(d, f->c, 1 + ratio * f->c[i], weight);
+    for (int c = 0; c < 2 * f->n; c++) {
+      double sum = 0;
+      for (int j = 0; j < d; j++) sum += weight[j] * phase_row_of(f, last, c)[j];
+      x[c * (d + 1) + i] = ratio * sum;
+    }
+  }
+  for (int c = 0; c < 2 * f->n; c++) x[c * (d + 1) + d] = ratio * phase_row_of(f, last, c)[d];
+  for (int i = 2 * f->n * (d + 1); i < f->pattern.columns; i++) x[i] = ratio * last[i];
+}

@@ -1,0 +1,302 @@
+#include "step/split/temporal_blocking.h"
+
+#include <stdatomic.h>
+#include <stddef.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "num/team.h"
+
+/* Lags are multiples of a cache line, so that vectors stay aligned. With blocks of 512 coordinates,
+ * and the lags of 17 substeps between nearest neighbours, the window has five arrays of 800
+ * numbers, which fits into the first cache. Windows up to WINDOW fit into the second. */
+enum { LINE = 8, BLOCK = 512, WINDOW = 24 * 1024 };
+
+/* A pass reads and writes five arrays, q, p, their compensations, and the gradient. */
+enum { ARRAYS = 5 };
+
+struct dvi__blocking {
+  const dvi_system *system;
+  int threads;
+  ptrdiff_t block, lag; /* coordinates of one turn; lag of one operation behind the other */
+  dvi__division by;
+  double scalar;
+  /* [threads*block] one potential's gradient, before it is added to the others; NULL for a single
+   * potential */
+  double *term;
+  dvi__team *team;
+  atomic_int *begun; /* [threads] not 0 if the left neighbour may cross the cut */
+};
+
+static atomic_int chosen_block;
+
+void dvi__blocking_choose_block(int block)
+{
+  atomic_store(&chosen_block, block);
+}
+
+/* ---- create, destroy ---- */
+
+const char *dvi__blocking_obstacle(const dvi_system *system)
+{
+  if (system->mass_diagonal == NULL) return "the mass is not diagonal";
+  if (system->potential_count == 0) return "there is no potential";
+  for (int k = 0; k < system->potential_count; k++)
+    if (system->potentials[k].callbacks.gradient_range == NULL)
+      return "a potential has no gradient_range";
+  return NULL;
+}
+
+static dvi_status blocking_initialise(dvi__blocking *w)
+{
+  const int potentials = w->system->potential_count, block = atomic_load(&chosen_block);
+  int reach = 0;
+  for (int k = 0; k < potentials; k++)
+    reach = w->system->potentials[k].callbacks.reach > reach
+                ? w->system->potentials[k].callbacks.reach
+                : reach;
+  w->block = block > 0 ? block : BLOCK;
+  w->lag = block > 0 ? reach : ((ptrdiff_t)reach + LINE - 1) / LINE * LINE;
+  w->by = w->system->mass_scalar != 0 ? dvi__division_by(w->system->mass_scalar, &w->scalar)
+                                      : DVI__BY_ARRAY;
+  w->begun = DVI_NEW(atomic_int, w->threads);
+  if (potentials > 1) w->term = DVI_NEW(double, w->threads * w->block);
+  if (w->begun == NULL || (potentials > 1 && w->term == NULL))
+    return dvi__fail(DVI_NO_MEMORY, "temporal blocking: no memory for %d threads", w->threads);
+  return w->threads > 1 ? dvi__team_create(w->threads, &w->team) : DVI_OK;
+}
+
+dvi_status dvi__blocking_create(const dvi_system *system, int threads, dvi__blocking **blocking)
+{
+  *blocking = NULL;
+  dvi__blocking *made = DVI_NEW(dvi__blocking, 1);
+  if (made == NULL) return dvi__fail(DVI_NO_MEMORY, "temporal blocking: no memory");
+  made->system = system;
+  made->threads = threads;
+  const dvi_status status = blocking_initialise(made);
+  if (status != DVI_OK) dvi__blocking_destroy(&made);
+  *blocking = made;
+  return status;
+}
+
+void dvi__blocking_destroy(dvi__blocking **blocking)
+{
+  dvi__blocking *w = *blocking;
+  if (w == NULL) return;
+  dvi__team_destroy(&w->team);
+  dvi__release(w->begun);
+  dvi__release(w->term);
+  dvi__release(w);
+  *blocking = NULL;
+}
+
+/* ---- the operations ---- */
+
+/* A pass of some threads over all coordinates. */
+typedef struct pass {
+  const dvi__blocking *blocking;
+  dvi__blocking_step step;
+  int members;
+  atomic_int failed;
+} pass;
+
+/* The part of one thread has coordinates begin to end-1. It is cut obliquely on both sides, except
+ * at the ends of the chain. */
+typedef struct part {
+  pass *pass;
+  ptrdiff_t begin, end;
+  double *term;
+} part;
+
+typedef struct range {
+  ptrdiff_t first, last;
+} range;
+
+static dvi__phase phase_at(const dvi__phase *whole, ptrdiff_t i)
+{
+  return (dvi__phase){.q = whole->q + i,
+                      .p = whole->p + i,
+                      .q_compensation = whole->q_compensation + i,
+                      .p_compensation = whole->p_compensation + i};
+}
+
+/* Take the operation A_k, k = 0 .. count-1. The second kick of the substep before and the first
+ * kick of this one have the same gradient. */
+static void blocking_kick_drift(const part *own, int k, range r)
+{
+  const dvi__blocking *w = own->pass->blocking;
+  const dvi__blocking_step *s = &own->pass->step;
+  const double *gradient = k == 0 && s->gradient != NULL ? s->gradient : s->gradient_to;
+  const dvi__moser_veselov kick_drift = {
+      .count = (size_t)(r.last - r.first),
+      .kicks = k == 0 ? 1 : 2,
+      .kick = {k == 0 ? -0.5 * s->h[0] : -0.5 * s->h[k - 1], -0.5 * s->h[k]},
+      .drift = s->h[k],
+      .by = w->by,
+      .scalar = w->scalar,
+      .mass = w->by == DVI__BY_ARRAY ? w->system->mass_diagonal + r.first : NULL,
+      .force = gradient + r.first,
+      .from = phase_at(k == 0 ? &s->from : &s->to, r.first),
+      .to = phase_at(&s->to, r.first),
+      .far = k == 0};
+  dvi__lanes_kick_drift(&kick_drift);
+}
+
+/* Add the potentials' gradients at q, in the order of the plain operations. */
+static int blocking_gradient(const part *own, double t, const double *q, range r)
+{
+  const dvi_system *system = own->pass->blocking->system;
+  double *sum = own->pass->step.gradient_to + r.first;
+  const size_t count = (size_t)(r.last - r.first);
+  for (int k = 0; k < system->potential_count; k++) {
+    const dvi_potential *asked = &system->potentials[k].callbacks;
+    if (asked->gradient_range(t, q, (int)r.first, (int)r.last, k == 0 ? sum : own->term,
+                              asked->user) != 0)
+      return 0;
+    for (size_t i = 0; i < count && k > 0; i++) sum[i] += own->term[i];
+  }
+  return dvi__lanes_all_finite(count, sum);
+}
+
+/* Take the last kick, which leaves the new state. */
+static int blocking_last_kick(const part *own, range r)
+{
+  const dvi__blocking_step *s = &own->pass->step;
+  const dvi__phase to = phase_at(&s->to, r.first);
+  const size_t count = (size_t)(r.last - r.first);
+  dvi__lanes_add_scaled(count, -0.5 * s->h[s->count - 1], s->gradient_to + r.first, to.p,
+                        to.p_compensation);
+  return dvi__lanes_all_finite(count, to.p) && dvi__lanes_all_finite(count, to.q);
+}
+
+/* ---- one thread ---- */
+
+/* Return the range of an operation that is `lag` behind, when the first operation works from x
+ * on. */
+static range range_at(const part *own, ptrdiff_t x, ptrdiff_t lag)
+{
+  const ptrdiff_t n = own->pass->blocking->system->n, block = own->pass->blocking->block;
+  const ptrdiff_t least = own->begin == 0 ? 0 : own->begin + lag,
+                  most = own->end == n ? n : own->end + lag;
+  const range r = {x - lag > least ? x - lag : least,
+                   x - lag + block < most ? x - lag + block : most};
+  return r;
+}
+
+/* Take all operations, each in its range when the first one is at x. */
+static int work_at(const part *own, ptrdiff_t x)
+{
+  const dvi__blocking_step *s = &own->pass->step;
+  const ptrdiff_t lag = own->pass->blocking->lag;
+  range r = range_at(own, x, 0);
+  if (s->gradient == NULL && r.first < r.last && !blocking_gradient(own, s->t0, s->from.q, r))
+    return 0;
+  for (int k = 0; k < s->count; k++) {
+    r = range_at(own, x, 2 * k * lag);
+    if (r.first < r.last) blocking_kick_drift(own, k, r);
+    r = range_at(own, x, (2 * k + 1) * lag);
+    if (r.first < r.last && !blocking_gradient(own, s->t[k], s->to.q, r)) return 0;
+  }
+  return r.first >= r.last || blocking_last_kick(own, r);
+}
+
+static int blocking_await_neighbour(const part *own, int neighbour)
+{
+  for (int waited = 0; atomic_load(&own->pass->blocking->begun[neighbour]) == 0; waited++) {
+    if (atomic_load(&own->pass->failed)) return 0;
+    dvi__team_pause(waited);
+  }
+  return 1;
+}
+
+/* Run the part of one thread. Behind `clear` the thread touches no coordinate of the left
+ * neighbour, which writes `behind` coordinates beyond the cut and reads one reach more. Before
+ * `clear` no thread waits for another, so that all threads get there. */
+static int blocking_run_part(const part *own, int member)
+{
+  const dvi__blocking *w = own->pass->blocking;
+  const ptrdiff_t behind = (2 * own->pass->step.count - 1) * w->lag,
+                  clear = own->begin + 2 * (behind + w->lag);
+  const int last = member == own->pass->members - 1;
+  const ptrdiff_t end = (last ? own->end : own->end + behind) + behind;
+  int waits = !last, good = 1;
+  for (ptrdiff_t x = own->begin; x < end && good; x += w->block) {
+    if (x >= clear) atomic_store(&w->begun[member], 1);
+    if (waits && x + w->block + w->lag > own->end) {
+      good = blocking_await_neighbour(own, member + 1);
+      waits = 0;
+    }
+    good = good && !atomic_load_explicit(&own->pass->failed, memory_order_relaxed) &&
+           work_at(own, x);
+  }
+  return good;
+}
+
+static ptrdiff_t blocking_cut(const pass *p, int member)
+{
+  const ptrdiff_t n = p->blocking->system->n;
+  return member == p->members ? n : n / p->members * member / LINE * LINE;
+}
+
+static void blocking_take_part(void *user, int member)
+{
+  pass *p = user;
+  const dvi__blocking *w = p->blocking;
+  const part own = {p, blocking_cut(p, member), blocking_cut(p, member + 1),
+                    w->term != NULL ? w->term + member * w->block : NULL};
+  if (!blocking_run_part(&own, member)) atomic_store(&p->failed, 1);
+}
+
+/* ---- the whole ---- */
+
+int dvi__blocking_depth(const dvi__blocking *w)
+{
+  const ptrdiff_t depth = w->lag > 0 ? (WINDOW - w->block) / (2 * w->lag) : DVI__BLOCKING_SUBSTEPS;
+  return depth < 1 ? 1 : depth > DVI__BLOCKING_SUBSTEPS ? DVI__BLOCKING_SUBSTEPS : (int)depth;
+}
+
+int dvi__blocking_threads(const dvi__blocking *w, int count)
+{
+  const int substeps = count < dvi__blocking_depth(w) ? count : dvi__blocking_depth(w);
+  const ptrdiff_t least = 4 * (substeps + 1) * w->lag + 4 * w->block + LINE,
+                  possible = w->system->n / least;
+  return possible < 1 ? 1 : possible < w->threads ? (int)possible : w->threads;
+}
+
+static int run_pass(dvi__blocking *w, const dvi__blocking_step *step)
+{
+  pass p = {.blocking = w, .step = *step, .members = dvi__blocking_threads(w, step->count)};
+  atomic_init(&p.failed, 0);
+  for (int i = 0; i < w->threads; i++) atomic_store(&w->begun[i], 0);
+  if (p.members == 1)
+    blocking_take_part(&p, 0);
+  else
+    dvi__team_run(w->team, p.members, blocking_take_part, &p);
+  return !atomic_load(&p.failed);
+}
+
+int dvi__blocking_run(dvi__blocking *w, const dvi__blocking_step *step)
+{
+  const int depth = dvi__blocking_depth(w);
+  dvi__blocking_step rest = *step;
+  while (step->h + step->count > rest.h) {
+    const ptrdiff_t left = step->h + step->count - rest.h;
+    rest.count = left < depth ? (int)left : depth;
+    if (!run_pass(w, &rest)) return 0;
+    rest.t0 = rest.t[rest.count - 1];
+    rest.h += rest.count;
+    rest.t += rest.count;
+    rest.from = rest.to;
+    rest.gradient = rest.gradient_to;
+  }
+  return 1;
+}
+
+/* The first pass goes from one array to another, and later passes stay there. */
+double dvi__blocking_traffic(const dvi__blocking *w, int count)
+{
+  const int depth = dvi__blocking_depth(w), passes = (count + depth - 1) / depth;
+  const int arrays = 3 * ARRAYS + 2 * ARRAYS * (passes - 1) + (w->by == DVI__BY_ARRAY ? passes : 0);
+  return (double)arrays * (double)sizeof(double) * w->system->n;
+}
