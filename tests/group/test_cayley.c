@@ -27,7 +27,7 @@ START_TEST(cayley_is_right_to_2_ulp)
 {
   double worst = 0;
   uint64_t seed = 1;
-  for (int i = 0; i < POINTS; i++) {
+  for (int i = 0; i < repeats(POINTS); i++) {
     double w[3], R[9];
     quad exact[9];
     point(i, 20, &seed, w);
@@ -48,7 +48,7 @@ START_TEST(its_inverse_is_right_to_4_ulp)
 {
   double worst = 0;
   uint64_t seed = 2;
-  for (int i = 0; i < POINTS; i++) {
+  for (int i = 0; i < repeats(POINTS); i++) {
     double w[3], found[3], R[9];
     quad rotation[9], exact[3];
     point(i, 20, &seed, w);
@@ -70,7 +70,7 @@ START_TEST(dcayley_is_its_derivative_moved_back)
 {
   double worst = 0;
   uint64_t seed = 3;
-  for (int i = 0; i < POINTS; i++) {
+  for (int i = 0; i < repeats(POINTS); i++) {
     double w[3], v[3], u[3];
     quad exact_w[3], exact_v[3], W[9], U[9];
     point(i, 20, &seed, w);
@@ -104,7 +104,7 @@ START_TEST(the_rotation_of_any_quaternion_is_right_to_2_ulp)
 {
   double worst = 0;
   uint64_t seed = 4;
-  for (int i = 0; i < POINTS; i++) {
+  for (int i = 0; i < repeats(POINTS); i++) {
     const double scale = ldexp(1, 990 - i % 1980);
     double q[4], R[9];
     quad p[4];
@@ -133,7 +133,7 @@ START_TEST(the_quaternion_of_a_rotation_is_right_to_2_ulp)
 {
   double worst = 0;
   uint64_t seed = 5;
-  for (int i = 0; i < POINTS; i++) {
+  for (int i = 0; i < repeats(POINTS); i++) {
     double w[3], q[4], R[9];
     quad rotation[9], exact[4], exact_w[3];
     point(i, 2 * PI, &seed, w);

@@ -50,7 +50,7 @@ START_TEST(exp_is_right_to_3_ulp)
 {
   double worst = 0;
   uint64_t seed = 1;
-  for (int i = 0; i < POINTS; i++) {
+  for (int i = 0; i < repeats(POINTS); i++) {
     double xi[6], g[12];
     quad A[16], E[16], exact[12];
     twist(i, 4 * PI, &seed, xi);
@@ -71,7 +71,7 @@ START_TEST(log_is_right_to_6_ulp_up_to_half_turns)
 {
   double worst = 0;
   uint64_t seed = 2;
-  for (int i = 0; i < POINTS; i++) {
+  for (int i = 0; i < repeats(POINTS); i++) {
     double xi[6], found[6], g[12];
     quad A[16], E[16], motion[12], exact[6];
     twist(i, PI, &seed, xi);
@@ -93,7 +93,7 @@ START_TEST(cayley_is_right_to_2_ulp)
 {
   double worst = 0;
   uint64_t seed = 3;
-  for (int i = 0; i < POINTS; i++) {
+  for (int i = 0; i < repeats(POINTS); i++) {
     double xi[6], g[12];
     quad A[16], left[16], C[16], exact[12];
     twist(i, 4 * PI, &seed, xi);
@@ -119,7 +119,7 @@ START_TEST(dexp_is_right_to_4_ulp)
 {
   double worst = 0;
   uint64_t seed = 4;
-  for (int i = 0; i < POINTS; i++) {
+  for (int i = 0; i < repeats(POINTS); i++) {
     double xi[6], v[6], u[6];
     quad D[36], exact_v[6], exact[6];
     twist(i, 4 * PI, &seed, xi);
@@ -141,7 +141,7 @@ START_TEST(the_inverse_of_dexp_is_right_to_8_ulp)
 {
   double worst = 0;
   uint64_t seed = 5;
-  for (int i = 0; i < POINTS; i++) {
+  for (int i = 0; i < repeats(POINTS); i++) {
     double xi[6], v[6], u[6];
     quad D[36], exact[6];
     twist(i, 2 * PI, &seed, xi);

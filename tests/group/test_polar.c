@@ -43,7 +43,7 @@ START_TEST(the_projection_is_right_to_6_ulp)
 {
   double worst = 0;
   uint64_t seed = 1;
-  for (int i = 0; i < POINTS; i++) {
+  for (int i = 0; i < repeats(POINTS); i++) {
     const double size = 0.5 * pow(10, -i % 16);
     const double s[3] = {1 + size * fabs(uniform(&seed)), 1, 1 - size * fabs(uniform(&seed))};
     double M[9], R[9], factor[9];

@@ -23,7 +23,7 @@ START_TEST(exp_is_right_to_2_ulp)
 {
   double worst = 0;
   uint64_t seed = 3;
-  for (int i = 0; i < POINTS; i++) {
+  for (int i = 0; i < repeats(POINTS); i++) {
     double w[3], R[9];
     quad exact[9];
     point(i, 4 * PI, &seed, w);
@@ -45,7 +45,7 @@ START_TEST(log_is_right_to_4_ulp_up_to_half_turns)
 {
   double worst = 0;
   uint64_t seed = 4;
-  for (int i = 0; i < POINTS; i++) {
+  for (int i = 0; i < repeats(POINTS); i++) {
     double w[3], found[3], R[9];
     quad rotation[9], exact[3];
     point(i, PI, &seed, w);
@@ -71,7 +71,7 @@ START_TEST(dexp_is_right_to_3_ulp)
 {
   double worst = 0;
   uint64_t seed = 5;
-  for (int i = 0; i < POINTS; i++) {
+  for (int i = 0; i < repeats(POINTS); i++) {
     double w[3], v[3], u[3];
     quad D[9], exact[3], exact_v[3];
     point(i, 4 * PI, &seed, w);
@@ -92,7 +92,7 @@ START_TEST(the_inverse_of_dexp_is_right_to_4_ulp)
 {
   double worst = 0;
   uint64_t seed = 6;
-  for (int i = 0; i < POINTS; i++) {
+  for (int i = 0; i < repeats(POINTS); i++) {
     double w[3], v[3], u[3];
     quad D[9], exact[3];
     point(i, 2 * PI, &seed, w);
@@ -133,7 +133,7 @@ START_TEST(the_derivative_of_the_velocity_is_right_to_2_ulp)
 {
   double worst = 0;
   uint64_t seed = 7;
-  for (int i = 0; i < POINTS; i++) {
+  for (int i = 0; i < repeats(POINTS); i++) {
     double w[3], v[3], D[9];
     quad exact[9];
     point(i, 4 * PI, &seed, w);

@@ -31,7 +31,7 @@ START_TEST(all_nine_are_right_to_4_ulp_up_to_two_turns)
 {
   double worst[9] = {0};
   uint64_t seed = 1;
-  for (int i = 0; i < 20000; i++) {
+  for (int i = 0; i < repeats(20000); i++) {
     const double angle = i < SPECIAL_ANGLES ? special_angle(i) : 4 * PI * fabs(uniform(&seed)),
                  s = angle * angle;
     double c[9];

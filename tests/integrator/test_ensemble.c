@@ -286,10 +286,11 @@ END_TEST
 
 START_TEST(every_member_has_the_bits_of_a_run_alone)
 {
-  const place *at = &places[pairs.which[_i] / METHODS];
+  const place *at = &places[pairs.which[sampled_case(_i)] / METHODS];
   problem *of = made_problem(at->problem, at->setting);
   spread_start(of, 21, at->spread);
-  compare(of, methods[pairs.which[_i] % METHODS], at->h, (dvi_ensemble_options){.members = 21});
+  compare(of, methods[pairs.which[sampled_case(_i)] % METHODS], at->h,
+          (dvi_ensemble_options){.members = 21});
   problem_destroy(&of);
 }
 END_TEST
@@ -411,8 +412,8 @@ END_TEST
 /* But to prepare a solver, which each thread does for all its members. */
 START_TEST(no_step_allocates)
 {
-  const place *at = &places[pairs.which[_i] / METHODS];
-  const char *method = methods[pairs.which[_i] % METHODS];
+  const place *at = &places[pairs.which[sampled_case(_i)] / METHODS];
+  const char *method = methods[pairs.which[sampled_case(_i)] % METHODS];
   problem *of = made_problem(at->problem, at->setting);
   dvi_counters before, after;
   spread_start(of, 21, 0.05);
@@ -493,14 +494,15 @@ SUITE(ensemble)
   tcase_add_test(tests, every_method_has_its_place);
   find_accepted_cases(PLACES * METHODS, pair_is_accepted, &pairs);
   tcase_add_test(tests, every_place_is_taken_by_the_methods_for_it);
-  tcase_add_loop_test(tests, every_member_has_the_bits_of_a_run_alone, 0, pairs.count);
+  tcase_add_loop_test(tests, every_member_has_the_bits_of_a_run_alone, 0,
+                      sampled_count(pairs.count));
   tcase_add_loop_test(tests, levels_threads_and_groupings_change_no_bit, 0,
                       10 * dvi__lanes_levels());
   tcase_add_loop_test(tests, levels_agree_with_each_other, 0, 9);
   tcase_add_test(tests, a_start_in_velocities_is_one_in_their_momenta);
   tcase_add_test(tests, verlet_evaluates_once_a_step);
   tcase_add_test(tests, a_frozen_jacobian_serves_several_steps);
-  tcase_add_loop_test(tests, no_step_allocates, 0, pairs.count);
+  tcase_add_loop_test(tests, no_step_allocates, 0, sampled_count(pairs.count));
   tcase_add_test(tests, explain_says_how_members_are_grouped);
   tcase_add_test(tests, waves_are_not_given_up_for_members_as_lanes);
 }

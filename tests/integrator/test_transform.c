@@ -95,7 +95,8 @@ START_TEST(steps_back_undo_steps)
   problem *of = scene(_i);
   dvi_integrator *integrator = way(of, _i);
   double defect;
-  ck_assert_msg(dvi_reversibility(integrator, 0, of->q, of->p, ways[_i].h, 100, &defect) == DVI_OK,
+  ck_assert_msg(dvi_reversibility(integrator, 0, of->q, of->p, ways[_i].h, repeats(100), &defect) ==
+                    DVI_OK,
                 "%s", dvi_last_error());
   ck_assert_msg(defect < 1e-9, "%s: %g", ways[_i].method, defect);
   ck_assert_double_eq_tol(dvi_integrator_time(integrator), 0, 1e-9);
