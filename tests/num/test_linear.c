@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/memory.h"
+#include "core/status.h"
 #include "num/eigen.h"
 #include "num/linear.h"
 #include "support/suite.h"
@@ -411,6 +413,258 @@ START_TEST(a_border_makes_a_singular_matrix_regular)
 }
 END_TEST
 
+/* ---- when they are made ---- */
+
+START_TEST(nothing_is_made_before_the_first_factor)
+{
+  const double a[9] = {4, 1, 0, 1, 5, 2, 0, 2, 6};
+  dvi_counters counters = {0};
+  matrix m;
+  compress(3, a, &m);
+  const long before = dvi__allocation_count();
+  dvi__linear *linear = make(&m, kinds[_i], &counters);
+  ck_assert_int_eq(dvi__allocation_count() - before, 1); /* the solver's own struct */
+  ck_assert_int_eq(dvi__linear_kind_of(linear), kinds[_i]);
+  ck_assert_double_eq(dvi__linear_cost_of(linear).entries, 0);
+  ck_assert_int_eq(counters.symbolic + counters.factorizations + counters.preparations, 0);
+  for (int k = 0; k < 3; k++) ck_assert_int_eq(dvi__linear_factor(linear, m.values), DVI_OK);
+  const long made = dvi__allocation_count();
+  ck_assert_int_eq(dvi__linear_factor(linear, m.values), DVI_OK);
+  ck_assert_int_eq(dvi__allocation_count(), made);
+  ck_assert_int_eq(counters.symbolic, kinds[_i] == DVI__LINEAR_SPARSE);
+  ck_assert_int_eq(counters.preparations, 1);
+  ck_assert_double_ge(dvi__linear_cost_of(linear).entries, 7);
+  dvi__linear_destroy(&linear);
+  dvi__pattern_clear(&m.pattern);
+}
+END_TEST
+
+/* A band of width 1 has no fill-in; nothing is factored to know it. */
+START_TEST(an_analysis_tells_what_a_factor_costs)
+{
+  static double a[LARGEST * LARGEST];
+  dvi_counters counters = {0};
+  matrix m;
+  random_band(LARGEST, 1, 3, a);
+  compress(LARGEST, a, &m);
+  dvi__linear *linear = make(&m, DVI__LINEAR_SPARSE, &counters);
+  ck_assert_int_eq(dvi__linear_analyse(linear), DVI_OK);
+  ck_assert_int_eq(counters.symbolic, 1);
+  ck_assert_int_eq(counters.factorizations + counters.preparations, 0);
+  ck_assert_double_eq(dvi__linear_cost_of(linear).entries, 3 * LARGEST - 2);
+  ck_assert_double_le(dvi__linear_cost_of(linear).operations, dvi__pattern_operations(&m.pattern));
+  ck_assert_int_eq(dvi__linear_analyse(linear), DVI_OK);
+  ck_assert_int_eq(counters.symbolic, 1);
+  dvi__linear_destroy(&linear);
+  dvi__pattern_clear(&m.pattern);
+}
+END_TEST
+
+/* Values of a complex matrix in pairs, of any size: every other matrix has some small pivots on its
+ * diagonal. */
+static void random_values(const dvi__pattern *pattern, int parts, unsigned seed, double *values)
+{
+  srand(seed);
+  for (int j = 0; j < pattern->columns; j++)
+    for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++)
+      for (int part = 0; part < parts; part++) {
+        const int is_small = pattern->row[e] == j && seed % 2 == 1 && j % 7 == 0;
+        values[parts * e + part] = (rand() / (double)RAND_MAX - 0.5) * (is_small ? 1e-9 : 1) +
+                                   (pattern->row[e] == j && !is_small ? 4 : 0);
+      }
+}
+
+/* A factor depends on its matrix alone: the first one, which chooses the order of the pivots, has
+ * the bits of a later one. */
+START_TEST(the_first_factor_has_the_bits_of_any_other)
+{
+  static double a[LARGEST * LARGEST], values[2 * LARGEST * LARGEST],
+      other_values[2 * LARGEST * LARGEST];
+  const int parts = 1 + _i;
+  matrix m;
+  random_band(LARGEST, 5, 3, a);
+  compress(LARGEST, a, &m);
+  for (unsigned seed = 0; seed < 20; seed++) {
+    double x[2 * LARGEST], y[2 * LARGEST];
+    dvi__linear *linear[2];
+    for (int k = 0; k < 2; k++)
+      linear[k] = make(&m, parts == 1 ? DVI__LINEAR_SPARSE : DVI__LINEAR_COMPLEX, NULL);
+    for (int i = 0; i < parts * LARGEST; i++) x[i] = y[i] = cos(i);
+    random_values(&m.pattern, parts, seed, values);
+    random_values(&m.pattern, parts, seed + 21, other_values);
+    ck_assert_msg(dvi__linear_factor(linear[0], values) == DVI_OK, "%s", dvi_last_error());
+    ck_assert_int_eq(dvi__linear_factor(linear[1], other_values), DVI_OK);
+    ck_assert_int_eq(dvi__linear_factor(linear[1], values), DVI_OK);
+    dvi__linear_solve(linear[0], x);
+    dvi__linear_solve(linear[1], y);
+    ck_assert_mem_eq(x, y, (size_t)(parts * LARGEST) * sizeof *x);
+    for (int k = 0; k < 2; k++) dvi__linear_destroy(&linear[k]);
+  }
+  dvi__pattern_clear(&m.pattern);
+}
+END_TEST
+
+/* (4 + i) x_j + x_(j+1) + x_(j-1) with x_j = 1 + i j. */
+START_TEST(complex_systems_are_solved_in_pairs)
+{
+  static double a[LARGEST * LARGEST], values[2 * LARGEST * LARGEST];
+  double b[2 * LARGEST] = {0};
+  matrix m;
+  random_band(LARGEST, 1, 3, a);
+  compress(LARGEST, a, &m);
+  for (int j = 0; j < LARGEST; j++)
+    for (int e = m.pattern.start[j]; e < m.pattern.start[j + 1]; e++) {
+      const int row = m.pattern.row[e];
+      const double re = values[2 * e] = row == j ? 4 : 1, im = values[2 * e + 1] = row == j;
+      b[2 * row] += re - im * j;
+      b[2 * row + 1] += re * j + im;
+    }
+  dvi__linear *linear = make(&m, DVI__LINEAR_COMPLEX, NULL);
+  ck_assert_int_eq(dvi__linear_factor(linear, values), DVI_OK);
+  ck_assert_int_eq(dvi__linear_sign(linear), 0); /* it has none */
+  ck_assert_int_eq(dvi__linear_tells_definite(linear), 0);
+  dvi__linear_solve(linear, b);
+  for (int j = 0; j < LARGEST; j++) {
+    ck_assert_double_eq_tol(b[2 * j], 1, 1e-15 * LARGEST);
+    ck_assert_double_eq_tol(b[2 * j + 1], j, 1e-15 * LARGEST);
+  }
+  memset(values, 0, sizeof values);
+  ck_assert_int_eq(dvi__linear_factor(linear, values), DVI_SINGULAR);
+  dvi__linear_destroy(&linear);
+  dvi__pattern_clear(&m.pattern);
+}
+END_TEST
+
+/* ---- operators ---- */
+
+enum { SIDE = 20, GRID = SIDE * SIDE };
+
+/* Minus the Laplacian on a grid, with a term that varies; preconditioned by its diagonal, if
+ * `is_scaled`. */
+typedef struct membrane {
+  double stiffness;
+  int is_scaled;
+  long products, renewals;
+} membrane;
+
+static double diagonal_of(const membrane *of, int k)
+{
+  return 4 * of->stiffness + 1 + k % 7 * 1000;
+}
+
+static void membrane_times(void *user, const double *x, double *y)
+{
+  membrane *of = user;
+  of->products++;
+  for (int k = 0; k < GRID; k++) {
+    y[k] = diagonal_of(of, k) * x[k];
+    if (k % SIDE > 0) y[k] -= of->stiffness * x[k - 1];
+    if (k % SIDE < SIDE - 1) y[k] -= of->stiffness * x[k + 1];
+    if (k >= SIDE) y[k] -= of->stiffness * x[k - SIDE];
+    if (k < GRID - SIDE) y[k] -= of->stiffness * x[k + SIDE];
+  }
+}
+
+static void membrane_scale(void *user, double *r)
+{
+  for (int k = 0; k < GRID; k++) r[k] /= diagonal_of(user, k);
+}
+
+static dvi_status membrane_renew(void *user)
+{
+  membrane *of = user;
+  of->renewals++;
+  return of->stiffness > 0 ? DVI_OK : dvi__fail(DVI_SINGULAR, "the membrane is slack");
+}
+
+static dvi__linear *membrane_solver(membrane *of, dvi_counters *counters)
+{
+  const dvi__operator A = {.size = GRID,
+                           .of = of,
+                           .times = membrane_times,
+                           .renew = membrane_renew,
+                           .precondition = of->is_scaled ? membrane_scale : NULL};
+  dvi__linear *linear;
+  ck_assert_int_eq(dvi__linear_create_iterative(&A, counters, &linear), DVI_OK);
+  ck_assert_int_eq(dvi__linear_kind_of(linear), DVI__LINEAR_ITERATIVE);
+  return linear;
+}
+
+/* Solved again for what is left, as Newton's method does: each solve leaves 1e-5 of it, or a little
+ * more by the other norm. */
+START_TEST(an_operator_is_solved_by_its_products)
+{
+  membrane of = {.stiffness = 100, .is_scaled = _i};
+  double x[GRID] = {0}, Ax[GRID], r[GRID], left = 1, before;
+  dvi_counters counters = {0};
+  dvi__linear *linear = membrane_solver(&of, &counters);
+  ck_assert_int_eq(of.renewals + counters.preparations, 0);
+  ck_assert_int_eq(dvi__linear_factor(linear, NULL), DVI_OK);
+  ck_assert_int_eq(of.renewals, 1);
+  ck_assert_int_eq(counters.preparations, 1);
+  for (int round = 0; round < 4; round++) {
+    before = left, left = 0;
+    membrane_times(&of, x, Ax);
+    for (int k = 0; k < GRID; k++) r[k] = cos(k) - Ax[k], left = fmax(left, fabs(r[k]));
+    ck_assert_msg(round == 0 || left <= fmax(1e-3 * before, 1e-13), "%g after %g", left, before);
+    dvi__linear_solve(linear, r);
+    for (int k = 0; k < GRID; k++) x[k] += r[k];
+  }
+  ck_assert_int_lt(of.products, _i ? 100 : 400);
+  ck_assert_int_eq(counters.solves, 4);
+  ck_assert_int_eq(counters.factorizations + counters.symbolic, 0);
+  dvi__linear_destroy(&linear);
+}
+END_TEST
+
+START_TEST(an_operator_says_what_is_not_known)
+{
+  membrane of = {.stiffness = 1, .is_scaled = 1};
+  double r[GRID] = {0};
+  dvi__linear *linear = membrane_solver(&of, NULL);
+  const long before = dvi__allocation_count();
+  for (int k = 0; k < 2; k++) ck_assert_int_eq(dvi__linear_factor(linear, NULL), DVI_OK);
+  const long made = dvi__allocation_count();
+  ck_assert_int_gt(made, before);
+  dvi__linear_solve(linear, r);
+  for (int k = 0; k < GRID; k++) ck_assert_double_eq(r[k], 0);
+  ck_assert_int_eq(dvi__linear_sign(linear), 0);
+  ck_assert_int_eq(dvi__linear_tells_definite(linear), 0);
+  r[3] = (double)NAN;
+  dvi__linear_solve(linear, r);
+  ck_assert(isnan(r[3])); /* not taken for a solution */
+  of.stiffness = 0;
+  ck_assert_int_eq(dvi__linear_factor(linear, NULL), DVI_SINGULAR);
+  check_words("slack");
+  ck_assert_int_eq(dvi__allocation_count(), made);
+  dvi__linear_destroy(&linear);
+}
+END_TEST
+
+/* ---- patterns that promise too much ---- */
+
+/* Entries that are never there: the answer is that of the others. */
+START_TEST(entries_that_are_always_zero_do_no_harm)
+{
+  static double band[LARGEST * LARGEST], all[LARGEST * LARGEST];
+  double b[2][LARGEST];
+  matrix m;
+  random_band(LARGEST, 2, 5, band);
+  for (int i = 0; i < LARGEST * LARGEST; i++) all[i] = 1;
+  compress(LARGEST, all, &m);
+  for (int j = 0; j < LARGEST; j++)
+    for (int i = 0; i < LARGEST; i++) m.values[j * LARGEST + i] = band[i * LARGEST + j];
+  for (int i = 0; i < LARGEST; i++) b[0][i] = b[1][i] = cos(i);
+  dvi__linear *linear = make(&m, kinds[_i], NULL);
+  ck_assert_msg(dvi__linear_factor(linear, m.values) == DVI_OK, "%s", dvi_last_error());
+  dvi__linear_solve(linear, b[0]);
+  solve(LARGEST, band, DVI__LINEAR_DENSE, b[1]);
+  for (int i = 0; i < LARGEST; i++) ck_assert_double_eq_tol(b[0][i], b[1][i], 1e-13);
+  dvi__linear_destroy(&linear);
+  dvi__pattern_clear(&m.pattern);
+}
+END_TEST
+
 SUITE(linear)
 {
   tcase_add_loop_test(tests, determinants_have_their_sign, 0, 8);
@@ -431,5 +685,12 @@ SUITE(linear)
   tcase_add_test(tests, the_kind_is_what_was_asked_and_auto_prefers_klu_for_sparse_matrices);
   tcase_add_test(tests, auto_prefers_lapack_for_large_full_matrices);
   tcase_add_test(tests, a_border_makes_a_singular_matrix_regular);
+  tcase_add_loop_test(tests, nothing_is_made_before_the_first_factor, 0, 2);
+  tcase_add_test(tests, an_analysis_tells_what_a_factor_costs);
+  tcase_add_loop_test(tests, the_first_factor_has_the_bits_of_any_other, 0, 2);
+  tcase_add_test(tests, complex_systems_are_solved_in_pairs);
+  tcase_add_loop_test(tests, an_operator_is_solved_by_its_products, 0, 2);
+  tcase_add_test(tests, an_operator_says_what_is_not_known);
+  tcase_add_loop_test(tests, entries_that_are_always_zero_do_no_harm, 0, 2);
   tcase_add_loop_test(tests, what_is_not_square_is_refused, 0, 2);
 }

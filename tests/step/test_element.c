@@ -257,6 +257,36 @@ START_TEST(the_jacobian_is_the_derivative_of_the_residual)
 }
 END_TEST
 
+/* Without the Jacobian, by the same Hessians: sums of up to 35 terms of its size, added in another
+ * order. */
+static void check_product(int kind, dvi__action_space space)
+{
+  element e;
+  double values[UNKNOWNS_MOST * UNKNOWNS_MOST], x[UNKNOWNS_MOST], y[UNKNOWNS_MOST],
+      size[UNKNOWNS_MOST] = {0};
+  make_element(kind, space, &e);
+  must(dvi__action_prepare_jacobian(e.action));
+  must(dvi__action_prepare_product(e.action));
+  must(dvi__action_jacobian(e.action, e.Y, values));
+  const dvi__pattern *pattern = dvi__action_pattern(e.action);
+  for (int i = 0; i < pattern->columns; i++) x[i] = cos(3 * i);
+  dvi__action_times_jacobian(e.action, x, y);
+  for (int j = 0; j < pattern->columns; j++)
+    for (int entry = pattern->start[j]; entry < pattern->start[j + 1]; entry++) {
+      y[pattern->row[entry]] -= values[entry] * x[j];
+      size[pattern->row[entry]] += fabs(values[entry] * x[j]);
+    }
+  for (int i = 0; i < pattern->columns; i++)
+    ck_assert_double_le(fabs(y[i]), 1e-14 * fmax(1, size[i]));
+  free_element(&e);
+}
+
+START_TEST(products_are_those_of_the_jacobian)
+{
+  for_every_basis(check_product, _i);
+}
+END_TEST
+
 START_TEST(the_jacobian_s_pattern_is_a_block_for_each_pair_that_interacts)
 {
   static const int pairs[SYSTEMS] = {3 * SITES - 2, 3 * SITES - 2, 3 * SITES - 2, 3 * SITES - 2,
@@ -502,6 +532,7 @@ SUITE(element)
                       SYSTEMS * RULES);
   tcase_add_loop_test(tests, ends_are_the_path_s_end_and_the_discrete_momentum, 0, SYSTEMS * RULES);
   tcase_add_loop_test(tests, the_jacobian_is_the_derivative_of_the_residual, 0, SYSTEMS * RULES);
+  tcase_add_loop_test(tests, products_are_those_of_the_jacobian, 0, SYSTEMS * RULES);
   tcase_add_loop_test(tests, the_jacobian_s_pattern_is_a_block_for_each_pair_that_interacts, 0,
                       SYSTEMS);
   tcase_add_loop_test(tests, tables_are_consistent_to_the_last_bit, 0, 6 * BASES);

@@ -1,20 +1,27 @@
 /* What Newton's methods need of an element: the Jacobian as a matrix or as an operator, and what is
  * frozen of it.
  *
- * The rule. The Jacobian of s n unknowns is a matrix if its factorisation takes at most
- * `most_whole` operations: s^3 times those of one n x n system with the Hessians' pattern, whose
- * graph it has with blocks of s x s. Beyond that GMRES solves by its products
- * (step/element/action.h), preconditioned by the decoupled systems of n unknowns, frozen in the
- * middle of the path, if their factors take at most `most_frozen` operations together; beyond that
- * by the kinetic part, M/h: then nothing is factored, and simplified Newton's method, which needs
- * those factors, is left out. */
+ * The rule. The Jacobian of s n unknowns is a matrix if its factorisation takes at most MOST_WHOLE
+ * operations: s^3 times those of one n x n system with the Hessians' pattern, whose graph it has
+ * with blocks of s x s. Beyond that GMRES solves by its products (step/element/action.h),
+ * preconditioned by the decoupled systems of n unknowns, frozen in the middle of the path, as long
+ * as their factors pay; beyond that by the kinetic part, M/h: then nothing is factored, and the
+ * ladder leaves out simplified Newton's method, which needs those factors.
+ *
+ * A factor pays if it takes no more operations than OPERATIONS_PAID for each number that a product
+ * of the Jacobian reads, and no more than MOST_NUMBERS. Measured on nets of springs with h omega =
+ * 14, KLU's rate being 2 to 3e9 operations a second: preconditioned by M/h a step takes 150 to 250
+ * products at 6 operations for each number; a factor that is back after 20 such steps may take 30
+ * 000. (docs/performance.md, "Large sparse systems".) */
 #include <math.h>
 
 #include "core/memory.h"
 #include "core/status.h"
 #include "method/element/element_struct.h"
 
-static const double most_whole = 2e8, most_frozen = 4e10;
+#define MOST_WHOLE 2e8
+#define OPERATIONS_PAID 3e4
+#define MOST_NUMBERS 2e8
 
 /* ---- the choice ---- */
 
@@ -23,27 +30,43 @@ static dvi__decoupled *systems_of(const dvi__element *own)
   return own->decoupled != NULL ? own->decoupled : own->newton.owned;
 }
 
-/* Operations of one n x n system: at most, if that is `enough`, or there are no decoupled systems;
- * else by their analysis. */
-static dvi_status estimate_operations(const dvi__element *own, double enough, double *operations)
+/* The cost of one real n x n system: at most, if that is `enough` operations, or there are no
+ * decoupled systems; else by their analysis. */
+static dvi_status estimate_cost(const dvi__element *own, double enough, dvi__linear_cost *cost)
 {
   dvi__decoupled *systems = systems_of(own);
   dvi__linear_cost all;
   DVI_TRY(dvi__action_prepare_hessians(own->action));
-  *operations = dvi__pattern_operations(dvi__action_coupling(own->action));
-  if (*operations <= enough || systems == NULL) return DVI_OK;
+  *cost = (dvi__linear_cost){0, dvi__pattern_operations(dvi__action_coupling(own->action))};
+  if (cost->operations <= enough || systems == NULL) return DVI_OK;
   DVI_TRY(dvi__decoupled_analyse(systems, &all));
-  *operations = all.operations / dvi__decoupled_weight(systems);
+  const double weight = dvi__decoupled_weight(systems);
+  *cost = (dvi__linear_cost){all.entries / weight, all.operations / weight};
   return DVI_OK;
+}
+
+/* Operations that the factors of all decoupled systems may take. */
+static double most_operations(const dvi__element *own)
+{
+  const double numbers = (double)dvi__pattern_entries(dvi__action_coupling(own->action)) *
+                         dvi__action_nodes(own->action);
+  return OPERATIONS_PAID * numbers;
+}
+
+static int factors_pay(const dvi__element *own, const dvi__linear_cost *one)
+{
+  const double weight = dvi__decoupled_weight(systems_of(own));
+  return weight * one->operations <= most_operations(own) && weight * one->entries <= MOST_NUMBERS;
 }
 
 dvi_status dvi__element_weigh(dvi__element *own)
 {
-  double operations;
+  dvi__linear_cost one;
   if (own->is_weighed || own->decoupled == NULL) return DVI_OK;
-  const double weight = dvi__decoupled_weight(own->decoupled);
-  DVI_TRY(estimate_operations(own, most_frozen / weight, &operations));
-  own->is_dear = operations * weight > most_frozen;
+  DVI_TRY(dvi__action_prepare_hessians(own->action));
+  const double enough = most_operations(own) / dvi__decoupled_weight(own->decoupled);
+  DVI_TRY(estimate_cost(own, enough, &one));
+  own->is_dear = !factors_pay(own, &one);
   own->is_weighed = 1;
   return DVI_OK;
 }
@@ -60,17 +83,16 @@ static dvi_status create_systems(dvi__element *own)
 static dvi_status choose_form(dvi__element *own)
 {
   const double s = dvi__action_space_of(own->action).degree;
-  double operations;
+  dvi__linear_cost one;
   own->newton.is_operator = 0;
   if (dvi__action_has_terms(own->action)) return DVI_OK;
-  DVI_TRY(estimate_operations(own, HUGE_VAL, &operations));
-  if (s * s * s * operations <= most_whole) return DVI_OK;
+  DVI_TRY(estimate_cost(own, HUGE_VAL, &one));
+  if (s * s * s * one.operations <= MOST_WHOLE) return DVI_OK;
   DVI_TRY(create_systems(own));
-  DVI_TRY(estimate_operations(own, 0, &operations));
-  if (s * s * s * operations <= most_whole) return DVI_OK;
-  const double weight = systems_of(own) != NULL ? dvi__decoupled_weight(systems_of(own)) : HUGE_VAL;
+  DVI_TRY(estimate_cost(own, 0, &one));
+  if (s * s * s * one.operations <= MOST_WHOLE) return DVI_OK;
   own->newton.is_operator = 1;
-  own->newton.systems = weight * operations <= most_frozen ? systems_of(own) : NULL;
+  own->newton.systems = systems_of(own) != NULL && factors_pay(own, &one) ? systems_of(own) : NULL;
   return DVI_OK;
 }
 
@@ -190,6 +212,7 @@ void dvi__element_clear_newton(dvi__element *own)
 {
   dvi__decoupled_destroy(&own->newton.owned);
   dvi__release(own->newton.point);
+  own->newton = (dvi__newton_form){0};
 }
 
 const dvi__decoupled *dvi__element_frozen(const dvi__element *own)

@@ -167,8 +167,11 @@ static dvi_status take_terms(dvi__stepper *self)
   if (dvi__action_unknowns(own->action) > self->system->n * space.degree)
     own->choice = DVI__SOLVER_NEWTON;
   own->keeps_whole = dvi__element_is_ladder(own) || own->choice == DVI__SOLVER_SIMPLIFIED;
+  dvi__element_clear_newton(own);
   dvi__decoupled_destroy(&own->decoupled);
   dvi__solver_destroy(&own->solver);
+  dvi__release(own->branch);
+  own->branch = NULL;
   dvi__release(own->Y);
   own->Y = NULL;
   if (own->keeps_whole) DVI_TRY(dvi__action_prepare_jacobian(own->action)); /* for the memory */

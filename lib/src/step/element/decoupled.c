@@ -168,7 +168,8 @@ static dvi_status prepare_modes(dvi__decoupled *d)
 
 dvi_status dvi__decoupled_analyse(dvi__decoupled *d, dvi__linear_cost *cost)
 {
-  DVI_TRY(prepare_modes(d));
+  DVI_TRY(dvi__action_prepare_hessians(d->action));
+  DVI_TRY(create_linear(d, &d->mode[0]));
   DVI_TRY(dvi__linear_analyse(d->mode[0].linear));
   const dvi__linear_cost first = dvi__linear_cost_of(d->mode[0].linear);
   const int is_complex = d->mode[0].parts == 2;

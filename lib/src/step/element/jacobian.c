@@ -145,23 +145,36 @@ dvi_status dvi__action_prepare_product(dvi__action *a)
                          a->n);
 }
 
-/* The rows are linear in the changes of L_q and L_v at the nodes, and these in those of the
- * path. */
+/* y += factor H x over the nodes, where the Hessian has this entry. */
+static void add_moved(int r, const double *H, int entry, double factor, const double *x, double *y)
+{
+  if (entry < 0) return;
+  H += (size_t)entry * (size_t)r;
+  for (int j = 0; j < r; j++) y[j] += factor * H[j] * x[j];
+}
+
+/* The rows are linear in the changes of h L_q and L_v at the nodes, and these in h times those of Q
+ * and in those of V. */
 void dvi__action_times_jacobian(dvi__action *a, const double *x, double *y)
 {
   const size_t r = (size_t)a->r, batch = (size_t)a->n * r;
-  double *f = a->moved, *df = f + batch, *G_q = df + batch, *G_v = G_q + batch;
-  double *in_q = a->line, *in_v = a->line + r;
-  dvi__lanes_product(a->n, a->s, a->lanes, a->r, a->psi, x, f);
-  dvi__lanes_product(a->n, a->s, a->lanes, a->r, a->dpsi, x, df);
-  memset(G_q, 0, 2 * batch * sizeof(double));
-  for (size_t k = 0; k < (size_t)a->n; k++)
-    for (int e = a->joint.start[k]; e < a->joint.start[k + 1]; e++) {
+  double *hQ = a->moved, *V = hQ + batch, *hL_q = V + batch, *L_v = hL_q + batch;
+  dvi__lanes_product(a->n, a->s, a->lanes, a->r, a->psi, x, hQ);
+  dvi__lanes_product(a->n, a->s, a->lanes, a->r, a->dpsi, x, V);
+  for (size_t k = 0; k < batch; k++) hQ[k] *= a->h, V[k] /= a->h;
+  memset(hL_q, 0, 2 * batch * sizeof(double));
+  for (size_t j = 0; j < (size_t)a->n; j++)
+    for (int e = a->joint.start[j]; e < a->joint.start[j + 1]; e++) {
+      const dvi__block *block = &a->block[e];
       const size_t to = (size_t)a->joint.row[e] * r;
-      dvi__action_weigh_hessian(a, &a->block[e], f + k * r, df + k * r, in_q, in_v);
-      for (size_t j = 0; j < r; j++) G_q[to + j] += in_q[j], G_v[to + j] += in_v[j];
+      add_moved(a->r, a->H_qq, block->qq, 1, hQ + j * r, hL_q + to);
+      add_moved(a->r, a->H_qv, block->qv, a->h, V + j * r, hL_q + to);
+      add_moved(a->r, a->H_qv, block->vq, 1 / a->h, hQ + j * r, L_v + to);
+      add_moved(a->r, a->H_vv, block->vv, 1, V + j * r, L_v + to);
     }
-  dvi__lanes_product(a->n, a->r, a->path_lanes, a->s, a->bar_row, G_q, y);
-  dvi__lanes_product(a->n, a->r, a->path_lanes, a->s, a->slope_row, G_v, a->rows);
+  dvi__lanes_weigh(a->n, a->r, a->weight, hL_q);
+  dvi__lanes_weigh(a->n, a->r, a->weight, L_v);
+  dvi__lanes_product(a->n, a->r, a->path_lanes, a->s, a->bar_row, hL_q, y);
+  dvi__lanes_product(a->n, a->r, a->path_lanes, a->s, a->slope_row, L_v, a->rows);
   for (size_t i = 0; i < (size_t)a->n * (size_t)a->s; i++) y[i] += a->rows[i];
 }

@@ -1,0 +1,152 @@
+/* Large nets of springs: created without what no step needs, and solved by Newton's methods without
+ * the whole Jacobian. Times are for test_net_figures.c; here counters and memory tell. */
+#include <math.h>
+#include <string.h>
+
+#include "support/heap.h"
+#include "support/prepared.h"
+#include "support/runs.h"
+#include "support/suite.h"
+#include "support/systems/net.h"
+
+static dvi_integrator *net_integrator(const net *of, const char *method)
+{
+  dvi_integrator *made = made_integrator(of->system, method);
+  ck_assert_msg(dvi_integrator_start(made, 0, of->q, of->p) == DVI_OK, "%s", dvi_last_error());
+  return made;
+}
+
+/* n = 5000, degree 6: a Jacobian of 30 000 unknowns would have 1.8e6 entries, its factors 2e7. */
+START_TEST(fixed_point_iteration_takes_no_jacobian)
+{
+  net of;
+  make_net(2, 50, 1, _i, &of);
+  const long before = heap_bytes();
+  dvi_integrator *integrator = net_integrator(&of, "galerkin:degree=6");
+  advance(integrator, 0.1, 20);
+  const dvi_counters counters = counters_of(integrator);
+  ck_assert_int_eq(counters.fixed_points, 20);
+  ck_assert_int_eq(counters.symbolic + counters.factorizations + counters.preparations, 0);
+  ck_assert_int_lt(heap_bytes() - before, 12000000);
+  dvi_integrator_destroy(&integrator);
+  free_net(&of);
+}
+END_TEST
+
+/* h omega = 14. */
+START_TEST(a_stiff_step_takes_little_memory)
+{
+  static const char *const methods[] = {"galerkin:degree=6", "galerkin:degree=6,solver=newton"};
+  net of;
+  make_net(2, 50, 1, 1, &of);
+  const long before = heap_bytes();
+  dvi_integrator *integrator = net_integrator(&of, methods[_i]);
+  advance(integrator, 5, 2);
+  const dvi_counters counters = counters_of(integrator);
+  ck_assert_int_eq(_i == 0 ? counters.simplified : counters.newtons, 2);
+  ck_assert_int_eq(counters.products > 0, _i == 1);
+  ck_assert_int_eq(counters.symbolic, 1); /* one n x n pattern, for three pairs of eigenvalues */
+  ck_assert_int_lt(heap_bytes() - before, 50000000);
+  dvi_integrator_destroy(&integrator);
+  free_net(&of);
+}
+END_TEST
+
+/* Solutions of one step's equations by two ways; q is about 0.1. */
+static void check_same_step(const net *of, const char *one, const char *other, double h)
+{
+  dvi_integrator *a = net_integrator(of, one), *b = net_integrator(of, other);
+  advance(a, h, 2);
+  advance(b, h, 2);
+  const double apart = distance(of->coordinates, dvi_integrator_q(a), dvi_integrator_q(b));
+  ck_assert_msg(apart <= 1e-14, "%s, %s: %g", one, other, apart);
+  ck_assert_int_gt(counters_of(b).products, 0);
+  dvi_integrator_destroy(&a);
+  dvi_integrator_destroy(&b);
+}
+
+/* Preconditioned by decoupled systems. */
+START_TEST(newton_by_products_finds_what_the_ladder_finds)
+{
+  net of;
+  make_net(2, 40, 1, 1, &of);
+  check_same_step(&of, "galerkin:degree=6", "galerkin:degree=6,solver=newton", 4);
+  check_same_step(&of, "galerkin:degree=6", "galerkin:degree=6,solver=kinsol", 4);
+  free_net(&of);
+}
+END_TEST
+
+/* In three dimensions factors do not pay from some 15 000 unknowns on: preconditioned by the
+ * kinetic part. */
+START_TEST(newton_by_products_needs_no_factor)
+{
+  net of;
+  make_net(3, 18, 1, 1, &of);
+  check_same_step(&of, "galerkin:degree=2,solver=fixed-point", "galerkin:degree=2,solver=newton",
+                  0.5);
+  dvi_integrator *ladder = net_integrator(&of, "galerkin:degree=2");
+  advance(ladder, 3, 1);
+  ck_assert_int_eq(counters_of(ladder).newtons, 1); /* simplified Newton's method is left out */
+  ck_assert_int_eq(counters_of(ladder).simplified + counters_of(ladder).factorizations, 0);
+  dvi_integrator_destroy(&ladder);
+  free_net(&of);
+}
+END_TEST
+
+/* Restored in the middle, a run goes on with the same digits: what preconditions a step is made
+ * from that step alone. */
+START_TEST(a_step_by_products_depends_on_its_state_alone)
+{
+  net of;
+  make_net(2, 40, 1, 1, &of);
+  dvi_integrator *whole = net_integrator(&of, "galerkin:degree=6,solver=newton");
+  dvi_integrator *other = net_integrator(&of, "galerkin:degree=6,solver=newton");
+  advance(other, 3, 1); /* at other places, and lengths */
+  ck_assert_int_eq(dvi_integrator_start(other, 0, of.q, of.p), DVI_OK);
+  advance(whole, 4, 2);
+  advance(other, 4, 2);
+  ck_assert_mem_eq(dvi_integrator_q(whole), dvi_integrator_q(other),
+                   (size_t)of.coordinates * sizeof(double));
+  dvi_integrator_destroy(&whole);
+  dvi_integrator_destroy(&other);
+  free_net(&of);
+}
+END_TEST
+
+static void check_explained(const net *of, const char *method, const char *words)
+{
+  char text[2000];
+  dvi_integrator *integrator = made_integrator(of->system, method);
+  (void)dvi_integrator_explain(integrator, text, sizeof text);
+  ck_assert_msg(strstr(text, words) != NULL, "'%s' is not in:\n%s", words, text);
+  ck_assert_int_eq(counters_of(integrator).factorizations, 0);
+  dvi_integrator_destroy(&integrator);
+}
+
+START_TEST(explain_says_which_solver_it_would_be)
+{
+  net of;
+  make_net(2, 50, 1, 1, &of);
+  check_explained(&of, "midpoint", "linear solver: sparse LU (KLU) in the order of AMD, ");
+  check_explained(
+      &of, "galerkin:degree=6",
+      "linear solver: GMRES with products of the Jacobian, preconditioned by decoupled systems");
+  free_net(&of);
+  make_net(3, 18, 1, 1, &of);
+  check_explained(&of, "galerkin:degree=2",
+                  "simplified Newton's method (not for systems of this size)");
+  check_explained(&of, "galerkin:degree=2", "preconditioned by its kinetic part");
+  free_net(&of);
+}
+END_TEST
+
+SUITE(net)
+{
+  tcase_set_timeout(tests, 300);
+  tcase_add_loop_test(tests, fixed_point_iteration_takes_no_jacobian, 0, 2);
+  tcase_add_loop_test(tests, a_stiff_step_takes_little_memory, 0, 2);
+  tcase_add_test(tests, newton_by_products_finds_what_the_ladder_finds);
+  tcase_add_test(tests, newton_by_products_needs_no_factor);
+  tcase_add_test(tests, a_step_by_products_depends_on_its_state_alone);
+  tcase_add_test(tests, explain_says_which_solver_it_would_be);
+}
