@@ -2,19 +2,23 @@
 # From a bare Debian (12 or later) or Ubuntu (24.04 or later) to a built, run and tested libdvi:
 #   sh cmake/bootstrap.sh demo    build, then studies of the Kepler problem and of a pendulum that turns in space
 #   sh cmake/bootstrap.sh test    build, then all tests that a user needs to trust the build
-#   sh cmake/bootstrap.sh lint    install more tools, then sanitizers, valgrind, clang, clang-tidy, cppcheck, Doxygen, layout
-# Missing packages are installed by apt-get, with sudo if needed.  With CI=true in the environment compiler warnings are errors.
+#   sh cmake/bootstrap.sh lint    install more tools, then every gate, and all tests under sanitizers
+#   sh cmake/bootstrap.sh long    what takes hours: studies in full, the analyzer on all sources, long fuzzing
+# Missing packages are installed by apt-get, with sudo if needed. With CI=true in the environment compiler
+# warnings are errors.
 set -eu
 
-packages="gcc g++ libc6-dev make cmake pkg-config libsundials-dev libsuitesparse-dev liblapack-dev libyaml-dev check gnuplot-nox"
+packages="gcc g++ libc6-dev make cmake pkg-config libsundials-dev libsuitesparse-dev liblapack-dev libyaml-dev
+  check gnuplot-nox"
 lint_packages="clang clang-tidy clang-format cppcheck doxygen valgrind libc6-dbg libclang-rt-dev libgsl-dev"
 
 usage() {
   cat >&2 <<'END'
-usage: sh cmake/bootstrap.sh demo|test|lint
+usage: sh cmake/bootstrap.sh demo|test|lint|long
   demo   build, and run three studies; plots go to build/demo/
   test   build, and run the tests
-  lint   build with sanitizers and with clang, and run every gate
+  lint   run every gate, and the tests in a build with sanitizers
+  long   run what continuous integration leaves out because it takes too long
 END
   exit 2
 }
@@ -44,10 +48,10 @@ missing() {
 
 explain_by_hand() {
   cat >&2 <<END
-bootstrap: this system is neither Debian 12 or later nor Ubuntu 24.04 or later: please install what is needed yourself:
-  a C11 compiler, make, CMake 3.22 or later, pkg-config, SUNDIALS 6.4 to 7 with KLU, SuiteSparse, LAPACK, libyaml, Check,
-  gnuplot and, for a test, a C++ compiler; for lint also clang, clang-tidy, clang-format, cppcheck, Doxygen, valgrind and GSL.
-On Debian these packages are called
+bootstrap: this system is neither Debian 12 or later nor Ubuntu 24.04 or later: please install what is needed
+yourself: a C11 compiler, make, CMake 3.22 or later, pkg-config, SUNDIALS 6.4 to 7 with KLU, SuiteSparse,
+LAPACK, libyaml, Check, gnuplot and, for a test, a C++ compiler; for lint also clang, clang-tidy,
+clang-format, cppcheck, Doxygen, valgrind and GSL. On Debian these packages are called
   $packages
   $lint_packages
 Then:  cmake --preset release && cmake --build --preset release && ctest --preset release -LE "lint|long"
@@ -64,14 +68,16 @@ install_packages() {
   [ -n "$wanted" ] || return 0
   root=
   if [ "$(id -u)" -ne 0 ]; then
-    command -v sudo >/dev/null || refuse "not root, and there is no sudo. As root, run: apt-get install --no-install-recommends $wanted"
+    command -v sudo >/dev/null ||
+      refuse "not root, and there is no sudo. As root, run: apt-get install --no-install-recommends $wanted"
     root=sudo
   fi
   say "installing: $wanted"
   log=$(mktemp)
   # shellcheck disable=SC2086
   if ! { $root apt-get update -qq &&
-    $root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $wanted; } >"$log" 2>&1; then
+    $root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $wanted
+  } >"$log" 2>&1; then
     tail -n 20 "$log" >&2
     refuse "apt-get failed, see above"
   fi
@@ -86,18 +92,21 @@ build() {
   [ "${CI:-}" != true ] || werror=ON
   say "building: $preset"
   mkdir -p build
-  if ! { cmake --preset "$preset" -DDVI_WERROR=$werror "$@" && cmake --build --preset "$preset" -j "$cores"; } >"build/$preset.log" 2>&1; then
+  if ! {
+    cmake --preset "$preset" -DDVI_WERROR=$werror "$@" && cmake --build --preset "$preset" -j "$cores"
+  } >"build/$preset.log" 2>&1; then
     tail -n 60 "build/$preset.log" >&2
     refuse "the build failed; the whole output is in build/$preset.log"
   fi
   grep -A 4 'warning:' "build/$preset.log" || true
 }
 
+# One test more than there are cores: some wait for the disk.
 run_tests() {
   preset=$1
   shift
   say "testing: $preset"
-  ctest --preset "$preset" -j "$cores" "$@"
+  ctest --preset "$preset" -j $((cores + 1)) "$@"
 }
 
 demo() {
@@ -105,32 +114,54 @@ demo() {
   build release
   dvi=build/release/apps/dvi
   mkdir -p build/demo
-  say "order study: error against step, measured order against claimed order"
-  $dvi order kepler --method galerkin:degree=1 --method galerkin:degree=2 --method galerkin:degree=3 --method galerkin:degree=4 \
-    --plot build/demo/order.svg
-  say "speed against error"
-  $dvi bench kepler --method verlet --method galerkin:degree=2 --method galerkin:degree=4 --method galerkin:degree=8 \
-    --against cvode,arkode,ida --plot build/demo/bench.svg
-  say "a body that turns: energy and distance from SO(3) against step, time against energy"
-  # It ends with 3: the motion is chaotic, and not every order is decided.
-  $dvi order pendulum-3d --t-end 10 --h 0.04 --levels 5 --judge runs --csv build/demo/rotations.csv --plot build/demo/rotations.svg \
-    --axes h:energy_error --axes h:distance --axes energy_error:cpu_seconds --method lie-verlet:solve=exp --method lie-verlet:solve=cayley \
-    --method lie-rk:scheme=explicit-midpoint --method lie-rk:scheme=implicit-midpoint --method lie-rk:scheme=crouch-grossman \
-    --method lie-rk:scheme=munthe-kaas --method lie-galerkin:degree=2 || [ $? -eq 3 ]
+  say "order study of a planet's orbit: the error against the step, the measured order against the claimed one"
+  $dvi order kepler --method galerkin:degree=1 --method galerkin:degree=2 --method galerkin:degree=3 \
+    --method galerkin:degree=4 --plot build/demo/order.svg
+  say "speed against error, beside three codes of SUNDIALS"
+  $dvi bench kepler --method verlet --method galerkin:degree=2 --method galerkin:degree=4 \
+    --method galerkin:degree=8 --against cvode,arkode,ida --plot build/demo/bench.svg
+  say "a pendulum that turns in space: error of the energy, and distance of its attitude from the rotations"
+  $dvi order pendulum-3d --t-end 1 --h 0.02 --levels 5 --judge runs --plot build/demo/rotations.svg \
+    --axes h:error --axes h:energy_error --axes h:distance --method lie-verlet \
+    --method lie-rk:scheme=explicit-midpoint --method lie-rk:scheme=implicit-midpoint \
+    --method lie-rk:scheme=crouch-grossman --method lie-rk:scheme=munthe-kaas --method lie-galerkin:degree=2
   for plot in build/demo/order.svg build/demo/bench.svg build/demo/rotations.svg; do
     [ -s $plot ] || refuse "$plot was not written"
-    say "plot: $plot"
   done
+  cat <<END
+
+All orders are as claimed. Three pictures to look at:
+  build/demo/order.svg      halve the step, and the error falls by 2, 4, 6 or 8 powers of two, as theory says
+  build/demo/bench.svg      what an error costs, beside CVODE, ARKODE and IDA
+  build/demo/rotations.svg  the methods on rotations keep the attitude a rotation; a plain midpoint rule does not
+
+What to try next:
+  $dvi list problems
+  $dvi run pendulum --method galerkin:degree=2 --h 0.1 --t-end 20 --final --plot pendulum.svg
+  $dvi init cart.yaml    # a scene of your own: the Lagrangian as on paper; docs/cookbook.md has more
+END
 }
 
+# Gates that look at the build that users get, valgrind among them; then clang, with sanitizers.
 lint() {
   install_packages "$lint_packages"
   status=0
-  build asan
-  run_tests asan || status=1
   build lint
   run_tests lint || status=1
+  build asan
+  run_tests asan || status=1
   [ $status -eq 0 ] || refuse "a gate failed, see above"
+}
+
+long() {
+  install_packages "$lint_packages"
+  status=0
+  build lint
+  run_tests release -L long || status=1
+  DVI_ANALYZE=all run_tests lint -R lint/clang_tidy || status=1
+  build asan
+  DVI_FUZZ_SECONDS=300 run_tests asan -R fuzz || status=1
+  [ $status -eq 0 ] || refuse "a study failed, see above"
 }
 
 [ $# -eq 1 ] || usage
@@ -144,6 +175,7 @@ case $1 in
     run_tests release -LE "lint|long"
     ;;
   lint) lint ;;
+  long) long ;;
   *) usage ;;
 esac
 say "$1: done"

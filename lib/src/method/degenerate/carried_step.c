@@ -14,8 +14,8 @@ static void carried_step_explain(const dvi__stepper *self, dvi__text *text)
 {
   const carried *own = self->own;
   static const char *const gauge[] = {
-      "the gauge must make the symmetric part of Dalpha definite, and not 0, which each step "
-      "checks",
+      ("the gauge must make the symmetric part of Dalpha definite, and not 0, which each step "
+       "checks"),
       "every gauge will do",
       "the gauge must make the symmetric part of Dalpha definite, or 0, which each step checks"};
   dvi__text_add(text, "constraint: p = alpha(q), which the steps leave; %s\n",
