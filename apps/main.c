@@ -1,4 +1,4 @@
-/* dvi: the command. Each subcommand has a file of its own; this one finds it. */
+/* Find the subcommand of dvi that the command line names. Each subcommand has a file of its own. */
 #define _POSIX_C_SOURCE 200809L
 #include <signal.h>
 #include <stdio.h>
@@ -83,7 +83,7 @@ static const char *subcommand_at(int k, const void *list)
   return ((const subcommand *)list)[k].name;
 }
 
-/* A command that holds GSL is under GSL's licence, and says so. */
+/* Print the versions. A command that holds GSL is under GSL's licence, and says so. */
 static void print_version(void)
 {
   (void)printf("dvi %s (SUNDIALS %s", dvi_version(), dvi_reference_version());
@@ -121,7 +121,7 @@ static int dispatch(int argc, char **argv)
 
 int main(int argc, char **argv)
 {
-  /* A reader that goes away and a file that outgrows its limit shall be write errors, with their
+  /* A reader that goes away, and a file that outgrows its limit, become write errors with their
    * messages and clean-up. */
   (void)signal(SIGPIPE, SIG_IGN);
   (void)signal(SIGXFSZ, SIG_IGN);

@@ -8,7 +8,7 @@
 
 enum { SENTENCE_SIZE = 2048 };
 
-static void speak(const char *sentence)
+static void print_sentence(const char *sentence)
 {
   (void)fprintf(stderr, "dvi: %s\n", sentence);
 }
@@ -20,7 +20,7 @@ void complain(const char *format, ...)
   va_start(arguments, format);
   (void)vsnprintf(sentence, sizeof sentence, format, arguments);
   va_end(arguments);
-  speak(sentence);
+  print_sentence(sentence);
 }
 
 int usage_error(const char *format, ...)
@@ -30,21 +30,21 @@ int usage_error(const char *format, ...)
   va_start(arguments, format);
   (void)vsnprintf(sentence, sizeof sentence, format, arguments);
   va_end(arguments);
-  speak(sentence);
+  print_sentence(sentence);
   return USAGE;
 }
 
-/* Whether a callback's failure is what a sentence tells of, and not one that a method has got
- * over before. */
-static bool is_of_callback(dvi_status status, const char *sentence)
+/* Return whether a sentence tells of a callback's failure. A method may have recovered from an
+ * earlier failure, of which the sentence does not tell. */
+static bool tells_of_callback(dvi_status status, const char *sentence)
 {
   return status == DVI_CALLBACK_RETRY || status == DVI_CALLBACK_FAILED ||
          (status == DVI_REFERENCE_FAILED && strstr(sentence, " callback ") != NULL);
 }
 
-/* The library's sentence without its last words, of what a callback returned: the scene has told
- * why. */
-static void without_callback(char *sentence)
+/* Cut the library's last words, which tell what a callback returned. The scene has told the
+ * reason. */
+static void cut_callback(char *sentence)
 {
   static const char without[] = " has no value there";
   const char *last = strstr(sentence, " callback ");
@@ -58,13 +58,13 @@ static void without_callback(char *sentence)
 void complain_of(dvi_status status, const char *before, const char *after)
 {
   char sentence[SENTENCE_SIZE];
-  /* the command's own shortage left none */
+  /* the command's own lack of memory left no sentence */
   const char *said = status == DVI_NO_MEMORY ? "" : dvi_last_error();
   (void)snprintf(sentence, sizeof sentence, "%s",
                  said[0] != '\0' ? said : dvi_status_meaning(status));
-  if (dvi_scene_fault()[0] != '\0' && is_of_callback(status, sentence)) {
+  if (dvi_scene_fault()[0] != '\0' && tells_of_callback(status, sentence)) {
     complain("%s", dvi_scene_fault());
-    without_callback(sentence);
+    cut_callback(sentence);
   }
   complain("%s%s%s", before, sentence, after);
 }

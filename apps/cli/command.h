@@ -1,11 +1,10 @@
-/** The subcommands of dvi, their exit codes, and how they speak to the user. */
+/** The subcommands of dvi, their exit codes, and their messages to the user. */
 #ifndef COMMAND_H
 #define COMMAND_H
 #include <dvi/dvi.h>
 #include <stdbool.h>
 
-/** What the shell sees. A run that a signal ended returns 128 and the signal's number, as shells
- * do. */
+/** The exit codes. A run that a signal ended returns 128 and the signal's number, as shells do. */
 enum {
   DONE = 0,
   FAILED = 1,      /**< a numerical failure, or a file that cannot be read or written */
@@ -32,14 +31,14 @@ void complain(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /** Complain, and return USAGE. */
 int usage_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/** Complain with the library's last sentence; the exit code that fits the status. */
+/** Complain with the library's last sentence, and return the exit code that fits the status. */
 int library_error(dvi_status status);
 
-/** Complain with the library's last sentence between two texts. If an expression of a scene is
- * the cause, its place comes first. */
+/** Complain with the library's last sentence between two texts. If an expression of a scene is the
+ * cause, its place comes first. */
 void complain_of(dvi_status status, const char *before, const char *after);
 
-/** Flush standard output. False, with a complaint unless the reader has merely gone away, if any of
- * it was lost. */
+/** Flush standard output. Returns false if any output was lost. Complains then, unless the reader
+ * has merely gone away. */
 bool output_flushed(void);
 #endif

@@ -13,11 +13,12 @@
 
 enum { LINK_SIZE = 4096, LINKS_MAX = 40, UNFINISHED_MAX = 4 };
 
-/* The temporary files that there are, for a signal handler to remove: a command writes no more than
- * some at a time. Their names stand here from before they are made until after they are gone. */
+/* Names of the existing temporary files, which a signal handler removes. A command writes only a
+ * few files at a time. A name stands here from before its file is made until after the file is
+ * gone. */
 static _Atomic(const char *) unfinished[UNFINISHED_MAX];
 
-/* Put the name `by` in the place of another one, or of none: NULL. */
+/* Replace a name by the name `by`. Either may be NULL for no name. */
 static void replace_unfinished(const char *name, const char *by)
 {
   int k = 0;
@@ -25,13 +26,13 @@ static void replace_unfinished(const char *name, const char *by)
   if (k < UNFINISHED_MAX) unfinished[k] = by;
 }
 
-static bool refuse(const char *path)
+static bool refuse_to_write(const char *path)
 {
   complain("cannot write '%s': %s", path, errno != 0 ? strerror(errno) : "an earlier write failed");
   return false;
 }
 
-static char *join(const char *head, size_t head_length, const char *tail)
+static char *join_path(const char *head, size_t head_length, const char *tail)
 {
   const size_t tail_length = strlen(tail);
   char *text = malloc(head_length + tail_length + 1);
@@ -45,32 +46,32 @@ static char *join(const char *head, size_t head_length, const char *tail)
 static char *folder_of(const char *path)
 {
   const char *slash = strrchr(path, '/');
-  if (slash == NULL) return join(".", 1, "");
-  return join(path, slash == path ? 1 : (size_t)(slash - path), "");
+  if (slash == NULL) return join_path(".", 1, "");
+  return join_path(path, slash == path ? 1 : (size_t)(slash - path), "");
 }
 
-/* What the link at a path says, as a path from here. NULL, and errno EINVAL or ENOENT, if there is
- * no link. */
-static char *follow(const char *path)
+/* Return the target of the link at a path, as a path from here. Without a link NULL, and errno is
+ * EINVAL or ENOENT. */
+static char *follow_link(const char *path)
 {
   char target[LINK_SIZE];
   const ssize_t length = readlink(path, target, sizeof target - 1);
   if (length < 0) return NULL;
   target[length] = '\0';
   const char *slash = strrchr(path, '/');
-  return target[0] == '/' || slash == NULL ? join("", 0, target)
-                                           : join(path, (size_t)(slash - path) + 1, target);
+  return target[0] == '/' || slash == NULL ? join_path("", 0, target)
+                                           : join_path(path, (size_t)(slash - path) + 1, target);
 }
 
-/* The file that a path leads to, whether it is there or not: a rename must replace the file, not a
- * link to it. */
-static char *resolve(const char *path)
+/* Return the file that a path leads to, even if the file does not exist. A rename must replace the
+ * file, not a link to the file. */
+static char *resolve_path(const char *path)
 {
   char *at = realpath(path, NULL);
   if (at != NULL) return at;
-  at = join("", 0, path);
+  at = join_path("", 0, path);
   for (int i = 0; i < LINKS_MAX && at != NULL; i++) {
-    char *next = follow(at);
+    char *next = follow_link(at);
     if (next == NULL) return at;
     free(at);
     at = next;
@@ -85,7 +86,7 @@ static bool open_temporary(whole_file *file, const struct stat *old)
 {
   char tail[48];
   (void)snprintf(tail, sizeof tail, ".part-%ld", (long)getpid());
-  file->temporary = join(file->path, strlen(file->path), tail);
+  file->temporary = join_path(file->path, strlen(file->path), tail);
   if (file->temporary == NULL) return false;
   replace_unfinished(NULL, file->temporary);
   (void)unlink(file->temporary); /* left over from a killed process of the same number */
@@ -118,9 +119,9 @@ bool file_open(whole_file *file, const char *path)
     return true;
   }
   errno = 0;
-  file->path = resolve(path);
+  file->path = resolve_path(path);
   if (file->path != NULL && open_path(file)) return true;
-  (void)refuse(path);
+  (void)refuse_to_write(path);
   file_discard(file);
   return false;
 }
@@ -136,8 +137,9 @@ static const char *name_in_folder(const char *path)
   return slash != NULL ? slash + 1 : path;
 }
 
-/* Files that are not there yet are the same if their folders are, and their names. */
-static bool same_place(const char *path, const char *other)
+/* Compare two files that do not exist yet. They are the same if their folders and their names
+ * are. */
+static bool same_new_file(const char *path, const char *other)
 {
   struct stat a;
   struct stat b;
@@ -157,15 +159,15 @@ bool file_same(const char *path, const char *other)
   const bool there = stat(path, &a) == 0;
   if (there != (stat(other, &b) == 0)) return false;
   if (there) return same_inode(&a, &b);
-  char *real[] = {resolve(path), resolve(other)};
-  const bool same = real[0] != NULL && real[1] != NULL && same_place(real[0], real[1]);
+  char *real[] = {resolve_path(path), resolve_path(other)};
+  const bool same = real[0] != NULL && real[1] != NULL && same_new_file(real[0], real[1]);
   free(real[0]);
   free(real[1]);
   return same;
 }
 
-/* A rename is on disk only when its folder is. Some file systems cannot sync folders; the content
- * is safe all the same. */
+/* Sync the folder of a renamed file, because a rename is on disk only when its folder is. Some file
+ * systems cannot sync folders. The content is safe all the same. */
 static void sync_folder(const char *path)
 {
   char *folder = folder_of(path);
@@ -208,7 +210,7 @@ bool file_keep(whole_file *file)
       sync_folder(file->path);
     }
   }
-  if (!good) (void)refuse(file->path);
+  if (!good) (void)refuse_to_write(file->path);
   file_discard(file);
   return good;
 }
@@ -241,11 +243,11 @@ bool file_writable(const char *path)
   errno = exists && S_ISDIR(old.st_mode) ? EISDIR : 0;
   bool good = errno == 0 && (!exists || access(path, W_OK) == 0);
   if (good && (!exists || S_ISREG(old.st_mode))) {
-    char *real = resolve(path);
+    char *real = resolve_path(path);
     char *folder = real != NULL ? folder_of(real) : NULL;
     good = folder != NULL && access(folder, W_OK | X_OK) == 0;
     free(folder);
     free(real);
   }
-  return good || refuse(path);
+  return good || refuse_to_write(path);
 }

@@ -6,7 +6,7 @@
 #include "cli/command.h"
 #include "cli/options.h"
 
-static int read_one(const char *where, const char *text, size_t length, numbers *list)
+static int numbers_read_one(const char *where, const char *text, size_t length, numbers *list)
 {
   if (list->count == NUMBERS_MAX)
     return usage_error("%s takes %d numbers at most", where, (int)NUMBERS_MAX);
@@ -30,7 +30,7 @@ int numbers_read(const char *where, const char *text, numbers *list)
   list->count = 0;
   while (text != NULL && code == DONE) {
     const size_t length = strcspn(text, ",");
-    code = read_one(where, text, length, list);
+    code = numbers_read_one(where, text, length, list);
     text = text[length] == ',' ? text + length + 1 : NULL;
   }
   return code;

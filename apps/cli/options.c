@@ -21,9 +21,9 @@ bool parse_number(const char *text, double *number)
   return true;
 }
 
-static bool parse_count(const char *text, long *count)
+static bool option_parse_count(const char *text, long *count)
 {
-  /* strtol would take blanks and signs */
+  /* strtol would accept blanks and signs */
   if (strspn(text, "0123456789") != strlen(text) || text[0] == '0') return false;
   errno = 0;
   const long value = strtol(text, NULL, 10);
@@ -51,7 +51,7 @@ static void print_help(const command_line *command)
     (void)printf("\n%s", *paragraph);
 }
 
-/* The option that argument --name or --name=value names; -1 if there is none. */
+/* Return the option that argument --name or --name=value names, or -1. */
 static int find_option(const command_line *command, const char *name, size_t length)
 {
   for (int k = 0; command->options[k].name != NULL; k++)
@@ -61,7 +61,7 @@ static int find_option(const command_line *command, const char *name, size_t len
   return -1;
 }
 
-/* What other programs, and scenes, call some options. */
+/* Names of some options in other programs and in scenes. */
 static const struct {
   const char *other, *name;
 } other_names[] = {{"step", "h"},         {"steps", "h"},    {"dt", "h"},
@@ -92,11 +92,11 @@ static int missing_value(const command_line *command, const option *o)
   return usage_error("%s: --%s needs a value: --%s %s", command->name, o->name, o->name, o->value);
 }
 
-static int store(const command_line *command, const option *o, const char *text)
+static int store_value(const command_line *command, const option *o, const char *text)
 {
   if (o->number != NULL && !parse_number(text, o->number))
     return usage_error("%s: --%s wants a finite number, not '%s'", command->name, o->name, text);
-  if (o->count != NULL && !parse_count(text, o->count))
+  if (o->count != NULL && !option_parse_count(text, o->count))
     return usage_error("%s: --%s wants a whole number from 1, in plain digits, not '%s'",
                        command->name, o->name, text);
   if ((o->word != NULL || o->words != NULL) && text[0] == '\0') return missing_value(command, o);
@@ -126,14 +126,14 @@ static int take_option(const command_line *command, int argc, char **argv, int *
     return name[length] == '=' ? usage_error("%s: --%s takes no value", command->name, o->name)
                                : DONE;
   }
-  if (name[length] == '=') return store(command, o, name + length + 1);
+  if (name[length] == '=') return store_value(command, o, name + length + 1);
   if (*i + 1 == argc || strncmp(argv[*i + 1], "--", 2) == 0) return missing_value(command, o);
-  return store(command, o, argv[++*i]);
+  return store_value(command, o, argv[++*i]);
 }
 
 static int take_operand(const command_line *command, const char *text, const char **operand)
 {
-  /* Not help: whoever writes -h 0.1 means the step. */
+  /* -h is not taken for help, because a user who writes -h 0.1 means the step. */
   if (strcmp(text, "-h") == 0)
     return usage_error(
         "%s: unknown option '-h'; %sdvi %s --help explains all options", command->name,

@@ -7,7 +7,7 @@
 
 static const double patience = 0.25; /* seconds between two lines */
 
-static double now(void)
+static double progress_clock(void)
 {
   struct timespec t;
   (void)clock_gettime(CLOCK_MONOTONIC, &t);
@@ -18,13 +18,13 @@ void progress_start(progress_line *progress, bool shown)
 {
   progress->shown = shown && isatty(STDERR_FILENO) == 1;
   progress->dirty = false;
-  progress->began = progress->spoken = now();
+  progress->began = progress->spoken = progress_clock();
 }
 
 void progress_show(progress_line *progress, double fraction, const char *what)
 {
   if (!progress->shown) return;
-  const double t = now();
+  const double t = progress_clock();
   if (t - progress->spoken < patience) return;
   progress->spoken = t;
   progress->dirty = true;

@@ -1,22 +1,22 @@
-/** How far a long computation is, on standard error, if that is a terminal. */
+/** The progress of a long computation, shown on standard error if that is a terminal. */
 #ifndef PROGRESS_H
 #define PROGRESS_H
 #include <stdbool.h>
 
-/** All zero: silent. */
+/** A progress line. All zero is silent. */
 typedef struct progress_line {
-  bool shown, dirty;    /**< a terminal is there; a line stands on it */
+  bool shown, dirty;    /**< standard error is a terminal, and a line stands on it */
   double began, spoken; /**< seconds of the monotonic clock */
 } progress_line;
 
-/** Start the clock. `shown` false keeps silent even on a terminal, for output that goes to the same
- * one. */
+/** Start the clock. If `shown` is false, nothing is shown even on a terminal, for output that goes
+ * to the same one. */
 void progress_start(progress_line *progress, bool shown);
 
-/** Say `what`, the fraction done (negative: unknown) and the time left, a few times a second at
+/** Show `what`, the fraction done (negative if unknown) and the time left, a few times a second at
  * most. */
 void progress_show(progress_line *progress, double fraction, const char *what);
 
-/** Wipe the line. */
+/** Clear the line. */
 void progress_end(progress_line *progress);
 #endif

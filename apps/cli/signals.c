@@ -27,36 +27,38 @@ static void on_signal(int number)
   _exit(128 + number);
 }
 
-/* UCX, which SUNDIALS brings along on Debian 13, takes SIGHUP when it is loaded, and hides whether
- * nohup had it ignored. What nohup starts has no terminal. */
-static bool may_be_ignored(const struct sigaction *found)
+/* Return whether a signal may have been ignored when the command was started. UCX, which SUNDIALS
+ * brings along on Debian 13, handles SIGHUP when it is loaded, and hides whether nohup had it
+ * ignored. A process that nohup starts has no terminal. */
+static bool signal_may_be_ignored(const struct sigaction *found)
 {
   if (found->sa_handler == SIG_DFL) return false;
   return found->sa_handler == SIG_IGN ||
          !(isatty(STDIN_FILENO) || isatty(STDOUT_FILENO) || isatty(STDERR_FILENO));
 }
 
-static void take(int number, bool even_ignored)
+static void catch_signal(int number, bool even_ignored)
 {
   struct sigaction action;
-  if (sigaction(number, NULL, &action) != 0 || (!even_ignored && may_be_ignored(&action))) return;
+  if (sigaction(number, NULL, &action) != 0 || (!even_ignored && signal_may_be_ignored(&action)))
+    return;
   memset(&action, 0, sizeof action);
   action.sa_handler = on_signal;
-  action.sa_flags = (int)SA_RESTART; /* a row that waits for a slow reader shall not be lost */
+  action.sa_flags = (int)SA_RESTART; /* a row that waits for a slow reader must not be lost */
   (void)sigaction(number, &action, NULL);
 }
 
 void signals_end(bool even_ignored, const char *sentence)
 {
   farewell = sentence;
-  take(SIGINT, even_ignored);
-  take(SIGTERM, even_ignored);
-  take(SIGHUP, false);
+  catch_signal(SIGINT, even_ignored);
+  catch_signal(SIGTERM, even_ignored);
+  catch_signal(SIGHUP, false);
 }
 
 const volatile sig_atomic_t *signals_note(const char *sentence)
 {
-  noting = 1; /* first: the sentence is for what comes after the noted signal */
+  noting = 1; /* set first, because the sentence is for signals after the noted one */
   farewell = sentence;
   return &noted;
 }

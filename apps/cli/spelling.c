@@ -5,15 +5,15 @@
 
 enum { WORD_MAX = 63 };
 
-static int least(int a, int b, int c)
+static int least_of_three(int a, int b, int c)
 {
   const int ab = a < b ? a : b;
   return ab < c ? ab : c;
 }
 
-/* Insertions, deletions and replacements between two words (Levenshtein), one row of the table at a
- * time. */
-static int edits(const char *from, const char *to)
+/* Count the insertions, deletions and replacements between two words (Levenshtein), one row of the
+ * table at a time. */
+static int edit_distance(const char *from, const char *to)
 {
   const int columns = (int)strlen(to);
   int row[WORD_MAX + 1];
@@ -23,7 +23,7 @@ static int edits(const char *from, const char *to)
     row[0] = i;
     for (int j = 1; j <= columns; j++) {
       const int above = row[j];
-      row[j] = least(above + 1, row[j - 1] + 1, diagonal + (from[i - 1] != to[j - 1]));
+      row[j] = least_of_three(above + 1, row[j - 1] + 1, diagonal + (from[i - 1] != to[j - 1]));
       diagonal = above;
     }
   }
@@ -34,7 +34,7 @@ const char *nearest_word(const char *word, word_at known, const void *list)
 {
   const size_t length = strlen(word);
   if (length > WORD_MAX) return NULL;
-  /* so many edits make another word, not a slip */
+  /* with more edits the word is another word, not a slip */
   int best = length < 3 ? (int)length : length < 6 ? 3 : 4;
   const char *nearest = NULL;
   const char *candidate;
@@ -42,7 +42,7 @@ const char *nearest_word(const char *word, word_at known, const void *list)
     if (strlen(candidate) > WORD_MAX) continue;
     const int distance = strncmp(candidate, word, length) == 0 && length > 1
                              ? 1
-                             : edits(word, candidate);
+                             : edit_distance(word, candidate);
     if (distance < best) {
       best = distance;
       nearest = candidate;

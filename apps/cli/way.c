@@ -4,7 +4,7 @@
 
 #include "cli/command.h"
 
-/* As dvi_run has it: of more steps a number of double precision does not know how many they are. */
+/* dvi_run has the same limit. Beyond it a number of double precision cannot count steps. */
 static const double steps_max = 0x1p53;
 
 int way_check(const char *command, double h, double way, double t_end, bool counted)
@@ -18,6 +18,6 @@ int way_check(const char *command, double h, double way, double t_end, bool coun
   return usage_error("%s: --t-end %g is %.3g steps of %g away, and at most 2^53 (9e15) can be "
                      "counted; give an --h of %.2g or "
                      "a nearer end",
-                     /* two digits may be a twentieth less */
+                     /* the two printed digits may be a twentieth too small */
                      command, t_end, steps, h, 1.1 * way / steps_max);
 }
