@@ -12,35 +12,35 @@
 
 enum { HINT_SIZE = 512, NAMED_MOST = 12 };
 
-/* ---- what there is ---- */
+/* ---- columns of a run ---- */
 
-static void add(run_columns *c, const char *name, column_kind kind, int index)
+static void columns_add(run_columns *c, const char *name, column_kind kind, int index)
 {
-  c->all[c->there++] = (shown_column){name, kind, index};
+  c->all[c->there++] = (shown_column){.name = name, .kind = kind, .index = index};
 }
 
-static void add_all(run_columns *c, int count, char *const *name, column_kind kind)
+static void columns_add_all(run_columns *c, int count, char *const *name, column_kind kind)
 {
-  for (int i = 0; i < count; i++) add(c, name[i], kind, i);
+  for (int i = 0; i < count; i++) columns_add(c, name[i], kind, i);
 }
 
-static void list_all(run_columns *c, const dvi_integrator *integrator)
+static void columns_list(run_columns *c, const dvi_integrator *integrator)
 {
   const problem *scene = c->scene;
-  add_all(c, scene->nq, scene->coordinate, COLUMN_COORDINATE);
-  if (scene->velocity != NULL) add_all(c, scene->nv, scene->velocity, COLUMN_VELOCITY);
-  add_all(c, scene->nv, scene->momentum, COLUMN_MOMENTUM);
+  columns_add_all(c, scene->nq, scene->coordinate, COLUMN_COORDINATE);
+  if (scene->velocity != NULL) columns_add_all(c, scene->nv, scene->velocity, COLUMN_VELOCITY);
+  columns_add_all(c, scene->nv, scene->momentum, COLUMN_MOMENTUM);
   for (int i = 0; i < dvi_system_invariant_count(scene->system); i++)
-    add(c, dvi_system_invariant_name(scene->system, i), COLUMN_INVARIANT, i);
-  if (dvi_integrator_chooses_steps(integrator)) add(c, "h", COLUMN_STEP, 0);
-  if (scene->velocity != NULL) add(c, "distance", COLUMN_DISTANCE, 0);
+    columns_add(c, dvi_system_invariant_name(scene->system, i), COLUMN_INVARIANT, i);
+  if (dvi_integrator_chooses_steps(integrator)) columns_add(c, "h", COLUMN_STEP, 0);
+  if (scene->velocity != NULL) columns_add(c, "distance", COLUMN_DISTANCE, 0);
   if (scene->terms->one_form != NULL || scene->terms->constraint != NULL)
-    add(c, "constraint", COLUMN_CONSTRAINT, 0);
-  if (!isnan(dvi_integrator_jump(integrator, NULL))) add(c, "jump", COLUMN_JUMP, 0);
+    columns_add(c, "constraint", COLUMN_CONSTRAINT, 0);
+  if (!isnan(dvi_integrator_jump(integrator, NULL))) columns_add(c, "jump", COLUMN_JUMP, 0);
 }
 
-/* A method's own column must not be called as one of the problem's. */
-static int distinct(const run_columns *c, const char *method)
+/* Refuse a method's own column with the name of one of the problem's. */
+static int refuse_same_column(const run_columns *c, const char *method)
 {
   for (int k = 0; k < c->there; k++) {
     const bool own = c->all[k].kind == COLUMN_STEP || c->all[k].kind == COLUMN_JUMP;
@@ -53,26 +53,26 @@ static int distinct(const run_columns *c, const char *method)
   return DONE;
 }
 
-/* ---- what is shown ---- */
+/* ---- shown columns ---- */
 
-static void show(run_columns *c, int k)
+static void columns_show(run_columns *c, int k)
 {
   c->column[c->count++] = c->all[k];
   c->shown[k] = true;
   c->shows[c->all[k].kind] = true;
 }
 
-/* All words that a column may be named by, for the nearest one. */
-static const char *name_at(int k, const void *list)
+/* List the names of all columns, for the search for the nearest name. */
+static const char *column_name_at(int k, const void *list)
 {
   const run_columns *c = list;
   return k < c->there ? c->all[k].name : NULL;
 }
 
-/* The nearest name; without one the first of all names. */
-static const char *hint_at_name(const run_columns *c, const char *name, char hint[HINT_SIZE])
+/* Write a hint at the nearest name, or else the first of all names. */
+static const char *hint_at_column(const run_columns *c, const char *name, char hint[HINT_SIZE])
 {
-  if (suggestion(name, name_at, c, hint, HINT_SIZE)[0] != '\0') return hint;
+  if (suggestion(name, column_name_at, c, hint, HINT_SIZE)[0] != '\0') return hint;
   size_t length = 0;
   for (int k = 0; k < c->there && k < NAMED_MOST && length < HINT_SIZE; k++)
     length += (size_t)snprintf(hint + length, HINT_SIZE - length, "%s%s",
@@ -82,24 +82,24 @@ static const char *hint_at_name(const run_columns *c, const char *name, char hin
   return hint;
 }
 
-/* t is in front of every row. */
-static int show_name(run_columns *c, const char *method, const char *name)
+/* Show the column of a name. The column t opens every row anyway. */
+static int columns_show_name(run_columns *c, const char *method, const char *name)
 {
   const char *there;
   int k = 0;
   if (strcmp(name, "t") == 0) return DONE;
-  while ((there = name_at(k, c)) != NULL && strcmp(there, name) != 0) k++;
+  while ((there = column_name_at(k, c)) != NULL && strcmp(there, name) != 0) k++;
   if (there == NULL) {
     char hint[HINT_SIZE];
     return usage_error("run: %s by %s has no column '%s'%s", c->scene->name, method, name,
-                       hint_at_name(c, name, hint));
+                       hint_at_column(c, name, hint));
   }
   if (c->shown[k]) return usage_error("run: column '%s' is asked for twice", name);
-  show(c, k);
+  columns_show(c, k);
   return DONE;
 }
 
-static int show_asked(run_columns *c, const char *method, const char *asked)
+static int columns_show_asked(run_columns *c, const char *method, const char *asked)
 {
   int code = DONE;
   char *names = strdup(asked);
@@ -107,21 +107,21 @@ static int show_asked(run_columns *c, const char *method, const char *asked)
   for (char *name = names, *next; name != NULL && code == DONE; name = next) {
     next = strchr(name, ',');
     if (next != NULL) *next++ = '\0';
-    code = show_name(c, method, name);
+    code = columns_show_name(c, method, name);
   }
   free(names);
   return code;
 }
 
-static int show_wanted(run_columns *c, const char *method)
+static int columns_show_wanted(run_columns *c, const char *method)
 {
   int code = DONE;
   for (int i = 0; i < c->scene->column_count && code == DONE; i++)
-    code = show_name(c, method, c->scene->column[i]);
+    code = columns_show_name(c, method, c->scene->column[i]);
   return code;
 }
 
-static bool make_room(run_columns *c)
+static bool columns_allocate(run_columns *c)
 {
   const size_t nq = (size_t)c->scene->nq, nv = (size_t)c->scene->nv;
   const size_t invariants = (size_t)dvi_system_invariant_count(c->scene->system),
@@ -140,13 +140,13 @@ int columns_choose(run_columns *c, const problem *scene, const dvi_integrator *i
                    const char *asked)
 {
   *c = (run_columns){.scene = scene};
-  if (!make_room(c)) return library_error(DVI_NO_MEMORY);
-  list_all(c, integrator);
-  const int code = distinct(c, dvi_integrator_method(integrator));
+  if (!columns_allocate(c)) return library_error(DVI_NO_MEMORY);
+  columns_list(c, integrator);
+  const int code = refuse_same_column(c, dvi_integrator_method(integrator));
   if (code != DONE) return code;
-  if (asked != NULL) return show_asked(c, dvi_integrator_method(integrator), asked);
-  if (scene->column != NULL) return show_wanted(c, dvi_integrator_method(integrator));
-  for (int k = 0; k < c->there; k++) show(c, k);
+  if (asked != NULL) return columns_show_asked(c, dvi_integrator_method(integrator), asked);
+  if (scene->column != NULL) return columns_show_wanted(c, dvi_integrator_method(integrator));
+  for (int k = 0; k < c->there; k++) columns_show(c, k);
   return DONE;
 }
 
@@ -173,7 +173,7 @@ void columns_header(const run_columns *c, FILE *stream)
   (void)fputc('\n', stream);
 }
 
-static dvi_status measure(run_columns *c, dvi_integrator *integrator)
+static dvi_status columns_evaluate(run_columns *c, dvi_integrator *integrator)
 {
   const double t = dvi_integrator_time(integrator), *q = dvi_integrator_q(integrator),
                *p = dvi_integrator_p(integrator);
@@ -192,7 +192,7 @@ static dvi_status measure(run_columns *c, dvi_integrator *integrator)
 
 bool columns_measure(run_columns *c, dvi_integrator *integrator)
 {
-  const dvi_status status = measure(c, integrator);
+  const dvi_status status = columns_evaluate(c, integrator);
   if (status == DVI_OK) return true;
   dvi_counters counters;
   dvi_integrator_counters(integrator, &counters);

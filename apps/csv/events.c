@@ -14,13 +14,13 @@ struct watched_event {
   void *user;
 };
 
-static int value(double t, const double *q, const double *v, double *g, void *user)
+static int event_value(double t, const double *q, const double *v, double *g, void *user)
 {
   const dvi_scene_event *event = ((const watched_event *)user)->event;
   return event->value(t, q, v, g, event->user);
 }
 
-static int occurred(double t, const double *q, const double *v, void *user)
+static int event_counted(double t, const double *q, const double *v, void *user)
 {
   watched_event *w = user;
   w->found++;
@@ -50,10 +50,10 @@ bool events_list(event_list *list, const problem *scene, event_seen seen, void *
     watched_event *w = &list->watched[list->count];
     *w = (watched_event){.event = event, .index = list->count, .seen = seen, .user = user};
     list->event[list->count] = (dvi_event){.name = event->name,
-                                           .value = value,
+                                           .value = event_value,
                                            .direction = event->direction,
                                            .terminal = event->terminal,
-                                           .occurred = occurred,
+                                           .occurred = event_counted,
                                            .user = w};
   }
   return true;

@@ -16,7 +16,7 @@ void points_clear(points *list)
   *list = (points){0};
 }
 
-static bool make_room(points *to, int n)
+static bool points_grow(points *to, int n)
 {
   if (to->count < to->capacity) return true;
   if (to->capacity > INT_MAX / 2) return complain("%d points are too many", to->count + 1), false;
@@ -32,7 +32,7 @@ static bool make_room(points *to, int n)
 
 bool points_add(points *to, int n, double t, const double *q)
 {
-  if (!make_room(to, n)) return false;
+  if (!points_grow(to, n)) return false;
   to->t[to->count] = t;
   memcpy(to->q + (size_t)to->count++ * (size_t)n, q, (size_t)n * sizeof *q);
   return true;
@@ -63,12 +63,13 @@ typedef struct reader {
   row_file file;
   const problem *scene;
   int columns;
-  int *coordinate; /* [columns] of each column: -1 for t, -2 for one that is passed over */
-  bool *seen;      /* [1+n] t, then the coordinates */
-  double *q;       /* [n] the row's point */
+  /* [columns] coordinate of each column, -1 for t, -2 for a column that is skipped */
+  int *coordinate;
+  bool *seen; /* [1+n] t, then the coordinates */
+  double *q;  /* [n] point of the row */
 } reader;
 
-static int column_of(const problem *scene, const char *title)
+static int coordinate_of_title(const problem *scene, const char *title)
 {
   if (strcmp(title, "t") == 0) return -1;
   for (int i = 0; i < scene->nq; i++)
@@ -76,7 +77,7 @@ static int column_of(const problem *scene, const char *title)
   return -2;
 }
 
-static int read_header(reader *r)
+static int points_read_header(reader *r)
 {
   char title[FIELD_SIZE];
   int known = 0;
@@ -87,7 +88,7 @@ static int read_header(reader *r)
     if (grown == NULL) return complain("out of memory"), FAILED;
     r->coordinate = grown;
     rows_field(&text, title);
-    const int coordinate = r->coordinate[r->columns] = column_of(r->scene, title);
+    const int coordinate = r->coordinate[r->columns] = coordinate_of_title(r->scene, title);
     if (coordinate < -1) continue;
     if (r->seen[1 + coordinate])
       return usage_error("path: '%s' has two columns '%s'; one for each coordinate is needed",
@@ -101,7 +102,7 @@ static int read_header(reader *r)
       r->file.path, known, r->scene->nq + 1, r->scene->name);
 }
 
-static int read_row(reader *r, points *read)
+static int points_read_row(reader *r, points *read)
 {
   char field[FIELD_SIZE];
   double t = 0.0;
@@ -123,10 +124,10 @@ static int read_row(reader *r, points *read)
   return points_add(read, r->scene->nq, t, r->q) ? DONE : FAILED;
 }
 
-static int read_all(reader *r, points *read)
+static int points_read_all(reader *r, points *read)
 {
-  int code = read_header(r);
-  while (code == DONE && rows_next(&r->file)) code = read_row(r, read);
+  int code = points_read_header(r);
+  while (code == DONE && rows_next(&r->file)) code = points_read_row(r, read);
   if (code == DONE && !rows_complete(&r->file)) code = FAILED;
   if (code == DONE && read->count < 2)
     code = usage_error("path: '%s' has %d points; at least 2 are needed", r->file.path,
@@ -140,7 +141,7 @@ int points_read(const char *path, const problem *scene, points *read)
   reader r = {.scene = scene, .q = calloc(n, sizeof(double)), .seen = calloc(n + 1, sizeof(bool))};
   const bool good = r.q != NULL && r.seen != NULL;
   if (!good) complain("out of memory");
-  const int code = good && rows_open(&r.file, path) ? read_all(&r, read) : FAILED;
+  const int code = good && rows_open(&r.file, path) ? points_read_all(&r, read) : FAILED;
   rows_close(&r.file);
   free(r.seen);
   free(r.coordinate);

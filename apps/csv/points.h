@@ -1,4 +1,4 @@
-/** Points of a path from outside: lists on the command line, and CSV files. */
+/** Points of a path from lists on the command line and from CSV files. */
 #ifndef POINTS_H
 #define POINTS_H
 #include <stdbool.h>
@@ -13,16 +13,16 @@ typedef struct points {
 } points;
 
 /** Read the columns t and those of the problem's coordinates from a CSV file with a header, as `dvi
- *  run` writes it; other columns are passed over. Returns DONE, or complains and returns the exit
- *  code. */
+ * run` writes it. Other columns are skipped. Returns DONE, or complains and returns the exit
+ * code. */
 int points_read(const char *path, const problem *scene, points *read);
 
-/** Add a point. False, with a complaint, without memory. */
+/** Add a point. Complains and returns false without memory. */
 bool points_add(points *to, int n, double t, const double *q);
 
 void points_clear(points *list);
 
-/** A list of exactly n finite numbers, separated by commas. Returns DONE, or complains about
- * `where` ("path: --to") and returns USAGE. */
+/** Read a list of exactly n finite numbers, separated by commas. Returns DONE, or complains about
+ * `where`, such as "path: --to", and returns USAGE. */
 int list_read(const char *where, const char *text, const problem *scene, double *number);
 #endif

@@ -8,7 +8,7 @@
 
 enum { LINE_START = 256 };
 
-static bool unreadable(const char *path)
+static bool refuse_unreadable(const char *path)
 {
   complain("cannot read '%s': %s", path, strerror(errno));
   return false;
@@ -18,7 +18,7 @@ bool rows_open(row_file *file, const char *path)
 {
   *file = (row_file){.path = path};
   file->stream = strcmp(path, "-") == 0 ? stdin : fopen(path, "r");
-  return file->stream != NULL || unreadable(path);
+  return file->stream != NULL || refuse_unreadable(path);
 }
 
 bool rows_next(row_file *file)
@@ -42,7 +42,7 @@ bool rows_next(row_file *file)
 
 bool rows_complete(const row_file *file)
 {
-  if (ferror(file->stream)) return unreadable(file->path);
+  if (ferror(file->stream)) return refuse_unreadable(file->path);
   if (feof(file->stream)) return true;
   complain("out of memory");
   return false;

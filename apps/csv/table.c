@@ -10,7 +10,7 @@
 enum { CELL_TEXT = 32 };
 
 typedef struct cell {
-  char *text; /* owned; NULL: a number */
+  char *text; /* owned, NULL for a number */
   double number;
 } cell;
 
@@ -144,7 +144,7 @@ bool table_write(const result_table *table, const char *path)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored \
     "-Wformat-nonliteral" /* the formats come from the tables of this program's own columns */
-static const char *for_people(const result_table *table, int row, int column, char *text)
+static const char *cell_text(const result_table *table, int row, int column, char *text)
 {
   const cell *c = &table->cell[row * table->columns + column];
   if (c->text != NULL) return c->text;
@@ -160,35 +160,35 @@ static int column_width(const result_table *table, int column, int first, int la
   char text[CELL_TEXT];
   size_t width = strlen(table->column[column].title);
   for (int row = first; row < last; row++) {
-    const size_t length = strlen(for_people(table, row, column, text));
+    const size_t length = strlen(cell_text(table, row, column, text));
     width = length > width ? length : width;
   }
   return (int)width;
 }
 
-static bool for_csv_alone(const table_column *column)
+static bool is_csv_only(const table_column *column)
 {
   return column->format != NULL && column->format[0] == '\0';
 }
 
-/* Where the columns that people see end. */
+/* Return the end of the columns that are printed for people. */
 static int shown_end(const result_table *table)
 {
   int end = table->columns;
-  while (end > 0 && for_csv_alone(&table->column[end - 1])) end--;
+  while (end > 0 && is_csv_only(&table->column[end - 1])) end--;
   return end;
 }
 
-/* And those of one row that hold anything; the titles stand in row first-1. */
+/* Return the end of the columns of one row that hold anything. The titles stand in row first-1. */
 static int row_end(const result_table *table, int first, int row)
 {
   char text[CELL_TEXT];
   int end = shown_end(table);
-  while (row >= first && end > 0 && for_people(table, row, end - 1, text)[0] == '\0') end--;
+  while (row >= first && end > 0 && cell_text(table, row, end - 1, text)[0] == '\0') end--;
   return end;
 }
 
-/* Text to the left, numbers to the right; no blanks at the end of a line. */
+/* Print text to the left and numbers to the right, without blanks at the end of a line. */
 static void print_cell(const result_table *table, FILE *stream, int column, int width, bool last,
                        const char *text)
 {
@@ -205,7 +205,7 @@ void table_print(const result_table *table, FILE *stream, int skip, int first, i
     const int end = row_end(table, first, row);
     for (int j = skip; j < end; j++)
       print_cell(table, stream, j, column_width(table, j, first, last), j + 1 == end,
-                 row < first ? table->column[j].title : for_people(table, row, j, text));
+                 row < first ? table->column[j].title : cell_text(table, row, j, text));
     (void)fputc('\n', stream);
   }
 }

@@ -3,7 +3,8 @@
 #define VELOCITY_H
 #include "problem.h"
 
-/** The velocity of the nearest state on the manifold: of a system with factors, q [nq] and p [nv].
+/** Compute the velocity of the nearest state on the manifold, for a system with factors, q [nq] and
+ * p [nv].
  *
  *  @param      room  [nq + nv]
  *  @param[out] v     [nv] */
