@@ -6,18 +6,18 @@
 #include "cli/command.h"
 #include "load/open.h"
 
-/* A word that stands here is no parameter of a problem. */
+/* Reserved words, which are no parameters of a problem. */
 static const struct {
   const char *name;
   axis_kind kind;
   bool parallel;
 } reserved[] = {
-    {"degree", AXIS_KEY, false},
-    {"threads", AXIS_KEY, true},
+    {.name = "degree", .kind = AXIS_KEY},
+    {.name = "threads", .kind = AXIS_KEY, .parallel = true},
 };
 enum { RESERVED = sizeof reserved / sizeof *reserved };
 
-static void classify(scale_axis *axis)
+static void axis_classify(scale_axis *axis)
 {
   axis->kind = AXIS_PARAMETER;
   axis->parallel = false;
@@ -36,7 +36,7 @@ int axis_read(const char *text, scale_axis *axis)
                        "members, and its values, NAME=V1,V2,..., not '%s'",
                        text);
   (void)snprintf(axis->name, sizeof axis->name, "%.*s", (int)length, text);
-  classify(axis);
+  axis_classify(axis);
   const int code = numbers_read("bench: --scale", text + length + 1, &axis->values);
   if (code == DONE && axis->values.count < 2)
     return usage_error(

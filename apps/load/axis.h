@@ -1,5 +1,5 @@
-/** What dvi bench --scale varies: a parameter of the problem, which makes it grow, or a key of the
- * methods. */
+/** The quantity that dvi bench --scale varies. It is a parameter of the problem, which makes the
+ * problem grow, or a key of the methods. */
 #ifndef AXIS_H
 #define AXIS_H
 #include <stdbool.h>
@@ -10,16 +10,17 @@
 
 enum { AXIS_NAME_SIZE = 128, SPECIFICATION_SIZE = 512 };
 
-/** What its name names. */
+/** The kind of quantity that the axis names. */
 typedef enum axis_kind {
-  AXIS_PARAMETER, /**< a parameter of the problem */
-  AXIS_KEY        /**< a key that every method's specification gets: a reserved word */
+  AXIS_PARAMETER, /**< parameter of the problem */
+  AXIS_KEY        /**< reserved word, a key that is added to every method's specification */
 } axis_kind;
 
 /** The name and its values. */
 typedef struct scale_axis {
   axis_kind kind;
-  /** its values are numbers of threads: elapsed time counts, and what it gains against the first */
+  /** values are numbers of threads, so that elapsed time and speedup against the first value
+   * count */
   bool parallel;
   char name[AXIS_NAME_SIZE];
   numbers values;
@@ -29,8 +30,8 @@ typedef struct scale_axis {
  * USAGE. */
 int axis_read(const char *text, scale_axis *axis);
 
-/** Make the problem at value k; `settings` has room for one more; `one_point` as open_shaped has
- * it. Returns DONE, or complains and returns the exit code. */
+/** Create the problem at value k. `settings` needs room for one more setting. `one_point` is that
+ * of open_shaped. Returns DONE, or complains and returns the exit code. */
 int axis_problem(const scale_axis *axis, int k, const char *name, const words *settings,
                  bool one_point, problem **scene);
 
@@ -39,10 +40,10 @@ int axis_problem(const scale_axis *axis, int k, const char *name, const words *s
 int axis_method(const scale_axis *axis, int k, const char *method,
                 char specification[SPECIFICATION_SIZE]);
 
-/** What costs are fitted and drawn against: the number of coordinates, or the value. */
+/** Return the abscissa of cost fits and plots, which is the number of coordinates or the value. */
 double axis_abscissa(const scale_axis *axis, int k, int n);
 
-/** Its name in an exponent, "n" or the key, and on a plot. */
+/** Return its name in an exponent, "n" or the key, and on a plot. */
 const char *axis_symbol(const scale_axis *axis);
 const char *axis_title(const scale_axis *axis);
 #endif

@@ -33,8 +33,8 @@ void natural_scale_clear(natural_scale *s)
   s->room = NULL;
 }
 
-/* The high bits of a linear congruential generator (Numerical Recipes' numbers). */
-static bool by_chance(natural_scale *s)
+/* Return the high bit of a linear congruential generator (constants of Numerical Recipes). */
+static bool random_bit(natural_scale *s)
 {
   s->chance = s->chance * 1664525U + 1013904223U;
   return (s->chance >> 31 & 1U) != 0;
@@ -45,7 +45,7 @@ void natural_scale_look(natural_scale *s, dvi_integrator *integrator)
   const int numbers = s->scene->nq + s->scene->nv;
   read_state(s->scene, integrator, s->mixed);
   for (int i = 0; i < numbers; i++)
-    if (by_chance(s)) s->mixed[i] = s->start[i];
+    if (random_bit(s)) s->mixed[i] = s->start[i];
   if (dvi_system_invariants(s->scene->system, dvi_integrator_time(integrator), s->mixed,
                             s->mixed + s->scene->nq, s->value) != DVI_OK)
     return;

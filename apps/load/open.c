@@ -11,26 +11,26 @@
 
 enum { MESSAGE_SIZE = 1024, WORD_SIZE = 64, HINT_SIZE = 128 };
 
-static const char *problem_at(int k, const void *list)
+static const char *problem_name_at(int k, const void *list)
 {
   (void)list;
   return k < problem_count() ? problem_name(k) : NULL;
 }
 
-static const char *parameter_at(int k, const void *list)
+static const char *parameter_name_at(int k, const void *list)
 {
   return ((const problem_parameter *)list)[k].name;
 }
 
-static const char *method_at(int k, const void *list)
+static const char *method_name_at(int k, const void *list)
 {
   (void)list;
   return dvi_method_name(k);
 }
 
-/* Keys of the method whose index *list is; a composition hands keys on to its base, so those of all
- * methods follow. */
-static const char *key_at(int k, const void *list)
+/* List the keys of the method whose index is *list. A composition hands keys on to its base, so the
+ * keys of all methods follow. */
+static const char *key_name_at(int k, const void *list)
 {
   const int method = *(const int *)list;
   if (k < dvi_method_key_count(method)) return dvi_method_key_name(method, k);
@@ -42,7 +42,7 @@ static const char *key_at(int k, const void *list)
   return NULL;
 }
 
-static bool is_known(const char *word, word_at known, const void *list)
+static bool is_known_word(const char *word, word_at known, const void *list)
 {
   const char *candidate;
   for (int k = 0; (candidate = known(k, list)) != NULL; k++)
@@ -50,8 +50,8 @@ static bool is_known(const char *word, word_at known, const void *list)
   return false;
 }
 
-/* Copy what stands before any of the stop characters. Returns what follows that character, or NULL
- * at the end of the text. */
+/* Copy the text before any of the stop characters. Returns the text after that character, or NULL
+ * at the end. */
 static const char *take_word(const char *text, const char *stops, char *word)
 {
   const size_t length = strcspn(text, stops);
@@ -59,7 +59,7 @@ static const char *take_word(const char *text, const char *stops, char *word)
   return text[length] != '\0' ? text + length + 1 : NULL;
 }
 
-/* Whether a setting is of the form name=value for that name. */
+/* Return whether a setting has the form name=value with that name. */
 static bool is_value_of(const char *setting, const char *name)
 {
   const size_t length = strlen(name);
@@ -72,12 +72,12 @@ static void hint_at_setting(const words *settings, const problem_parameter *para
   hint[0] = '\0';
   for (int i = 0; i < settings->count && hint[0] == '\0'; i++) {
     (void)take_word(settings->word[i], "=", word);
-    if (!is_known(word, parameter_at, parameters))
-      (void)suggestion(word, parameter_at, parameters, hint, HINT_SIZE);
+    if (!is_known_word(word, parameter_name_at, parameters))
+      (void)suggestion(word, parameter_name_at, parameters, hint, HINT_SIZE);
   }
 }
 
-/* A scene without its ending. */
+/* Look for a scene whose name is given without its ending. */
 static bool scene_beside(const char *name, char *hint)
 {
   char path[HINT_SIZE / 2];
@@ -87,8 +87,8 @@ static bool scene_beside(const char *name, char *hint)
   return true;
 }
 
-/* A name that is none of the catalogue: most often a slip, but it may be that of a file. */
-static int refuse_name(const char *name)
+/* Refuse an unknown name. It is most often a slip, but it may be the name of a file. */
+static int refuse_problem_name(const char *name)
 {
   char hint[HINT_SIZE];
   struct stat there;
@@ -98,7 +98,7 @@ static int refuse_name(const char *name)
                        name, S_ISDIR(there.st_mode) ? "folder" : "file of another kind");
   return usage_error(
       "unknown problem '%s'%s; see dvi list problems", name,
-      scene_beside(name, hint) ? hint : suggestion(name, problem_at, NULL, hint, sizeof hint));
+      scene_beside(name, hint) ? hint : suggestion(name, problem_name_at, NULL, hint, sizeof hint));
 }
 
 int open_problem(const char *name, const words *settings, problem **scene)
@@ -108,7 +108,7 @@ int open_problem(const char *name, const words *settings, problem **scene)
   *scene = NULL;
   if (scene_is_path(name)) return scene_open(name, settings, scene);
   const int index = problem_find(name);
-  if (index < 0) return refuse_name(name);
+  if (index < 0) return refuse_problem_name(name);
   const dvi_status status = problem_create(name, settings->count, settings->word, scene, message,
                                            sizeof message);
   if (status == DVI_OK) return DONE;
@@ -162,7 +162,7 @@ static int method_index(const char *name)
   return -1;
 }
 
-/* Keys behind a blank: they stand behind a colon. */
+/* Hint at a colon if the keys stand after a blank. */
 static bool hint_at_colon(const char *method, char *hint)
 {
   char name[WORD_SIZE];
@@ -180,21 +180,22 @@ static void hint_at_method(const char *method, char *hint)
   const char *rest = take_word(method, ":", word);
   const int index = method_index(word);
   hint[0] = '\0';
-  if (index < 0) (void)suggestion(word, method_at, NULL, hint, HINT_SIZE);
+  if (index < 0) (void)suggestion(word, method_name_at, NULL, hint, HINT_SIZE);
   while (index >= 0 && rest != NULL && hint[0] == '\0') {
     char pair[WORD_SIZE];
     rest = take_word(rest, ",", pair);
     (void)take_word(pair, "=", word);
-    if (!is_known(word, key_at, &index)) (void)suggestion(word, key_at, &index, hint, HINT_SIZE);
+    if (!is_known_word(word, key_name_at, &index))
+      (void)suggestion(word, key_name_at, &index, hint, HINT_SIZE);
   }
 }
 
-static int read_monitor(const problem *scene, const char *asked, const char *specification,
-                        dvi_monitor *monitor)
+static int open_one_monitor(const problem *scene, const char *asked, const char *specification,
+                            dvi_monitor *monitor)
 {
   if (dvi_monitor_read(specification, monitor) != DVI_OK)
     return usage_error("--%s %s: %s", asked, specification, dvi_last_error());
-  /* with factors there is no monitor at all */
+  /* factors exclude any monitor, and the library refuses it */
   if (monitor->kind != DVI_MONITOR_DISTANCE || scene->velocity != NULL) return DONE;
   if (scene->bodies == 0)
     return usage_error("--%s %s: %s has no bodies whose distances could be measured; see arclength "
@@ -209,7 +210,7 @@ static int read_monitor(const problem *scene, const char *asked, const char *spe
   return DONE;
 }
 
-/* Refuse a method where it stands: in the scene, or on the command line. */
+/* Refuse a method, with its place in the scene or on the command line. */
 static int refuse_method(const problem *scene, const char *method)
 {
   char hint[HINT_SIZE], sentence[MESSAGE_SIZE], message[2 * MESSAGE_SIZE];
@@ -221,8 +222,8 @@ static int refuse_method(const problem *scene, const char *method)
   return usage_error("%s", message);
 }
 
-/* The exit code for what came of making an integrator. */
-static int opened(dvi_status status, const problem *scene, const char *method)
+/* Return the exit code for the status of an integrator's creation. */
+static int open_exit_code(dvi_status status, const problem *scene, const char *method)
 {
   if (status != DVI_BAD_OPTION) return status == DVI_OK ? DONE : library_error(status);
   return refuse_method(scene, method);
@@ -230,13 +231,15 @@ static int opened(dvi_status status, const problem *scene, const char *method)
 
 int open_integrator(const problem *scene, const char *method, dvi_integrator **integrator)
 {
-  return opened(dvi_integrator_create(scene->system, method, integrator), scene, method);
+  return open_exit_code(dvi_integrator_create(scene->system, method, integrator), scene, method);
 }
 
 int open_monitor(const problem *scene, const pacing *how, dvi_monitor *monitor)
 {
-  if (how->transform != NULL) return read_monitor(scene, "time-transform", how->transform, monitor);
-  return how->control != NULL ? read_monitor(scene, "step-control", how->control, monitor) : DONE;
+  if (how->transform != NULL)
+    return open_one_monitor(scene, "time-transform", how->transform, monitor);
+  return how->control != NULL ? open_one_monitor(scene, "step-control", how->control, monitor)
+                              : DONE;
 }
 
 dvi_status create_paced(const problem *scene, const char *method, const pacing *how,
@@ -256,6 +259,6 @@ int open_paced(const problem *scene, const char *method, const pacing *how,
   *integrator = NULL;
   const int code = open_monitor(scene, how, &monitor);
   return code == DONE
-             ? opened(create_paced(scene, method, how, &monitor, integrator), scene, method)
+             ? open_exit_code(create_paced(scene, method, how, &monitor, integrator), scene, method)
              : code;
 }

@@ -6,35 +6,39 @@
 #include "problem.h"
 #include "load/scene.h"
 
-/** Make the problem, with its "name=value" settings. Returns DONE, or complains (with the nearest
- *  known name) and returns the exit code. */
+/** Create the problem, with its "name=value" settings. Returns DONE, or complains (with the nearest
+ * known name) and returns the exit code. */
 int open_problem(const char *name, const words *settings, problem **scene);
 
-/** The same, of a scene whose text was loaded before; without a text, of the catalogue. */
+/** Do the same for a scene whose text was loaded before, or for the catalogue if there is no
+ * text. */
 int open_text(const char *name, const scene_text *text, const words *settings, problem **scene);
 
-/** As open_problem; `one_point`: with callbacks of the one-point shape. */
+/** Create the problem as open_problem does. `one_point` asks for callbacks of the one-point
+ * shape. */
 int open_shaped(const char *name, const words *settings, bool one_point, problem **scene);
 
-/** If no method is asked for, take the one that the scene wants. Returns DONE, or complains that
- * there is none: `command` wants one. */
+/** Take the scene's method if no method is asked for. Returns DONE, or complains that `command`
+ * needs a method. */
 int open_wish(const char *command, const problem *scene, const char **method);
 
-/** The first setting of a parameter that only places the start; NULL if there is none. */
+/** Return the first setting of a parameter that affects only the start, or NULL. */
 const char *start_setting(const problem *scene, const words *settings);
 
-/** Read the monitor that `how` names, if it names one. A distance is that of the problem's bodies.
- * Returns DONE, or complains. */
+/** Read the monitor of `how`, if there is one. A distance is that of the problem's bodies. Returns
+ * DONE, or complains. */
 int open_monitor(const problem *scene, const pacing *how, dvi_monitor *monitor);
 
-/** Make an integrator whose steps follow the monitor, if `how` names one, and say nothing. */
+/** Create an integrator, whose steps follow the monitor if `how` names one. Leaves messages to the
+ * caller. */
 dvi_status create_paced(const problem *scene, const char *method, const pacing *how,
                         const dvi_monitor *monitor, dvi_integrator **integrator);
 
-/** Both, in the manner of open_integrator. */
+/** Read the monitor and create the integrator. Returns and complains as open_integrator does. */
 int open_paced(const problem *scene, const char *method, const pacing *how,
                dvi_integrator **integrator);
 
-/** Make an integrator for it from a method's specification, in the same manner. */
+/** Create an integrator for the problem from a method's specification. Returns DONE, or complains
+ * and returns the exit code. */
 int open_integrator(const problem *scene, const char *method, dvi_integrator **integrator);
 #endif

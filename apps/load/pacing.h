@@ -1,19 +1,18 @@
-/** What the steps of a method follow, as the command line says it. */
+/** The monitor that chooses the steps of a method, as the command line gives it. */
 #ifndef PACING_H
 #define PACING_H
 #include <stddef.h>
 
-/** What the steps of a method follow: one monitor's specification at most; none: steps are steps of
- * time. */
+/** The specification of at most one monitor. Without one, steps are steps of time. */
 typedef struct pacing {
   const char *transform, *control; /**< --time-transform, --step-control */
 } pacing;
 
 enum { PACED_NAME = 320 };
 
-/** How tables name the method: its specification, and " @ " and what its steps follow. */
+/** Write the method's name in tables, which is its specification, then " @ " and the monitor. */
 void paced_name(const char *method, const pacing *how, char *text, size_t size);
 
-/** DONE; or complain that both are given, and return USAGE. */
+/** Refuse two monitors. Returns DONE, or complains and returns USAGE. */
 int pacing_check(const char *command, const pacing *how);
 #endif

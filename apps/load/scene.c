@@ -1,4 +1,4 @@
-/* A scene file as a problem: what the subcommands take without knowing the difference. */
+/* Problems from scene files. The subcommands treat them as problems of the catalogue. */
 #include "load/scene.h"
 
 #include <dvi/scene.h>
@@ -13,15 +13,15 @@
 #include "entry.h"
 #include "cli/file.h"
 
-/* A scene's error has its line and a caret below it. */
+/* The message of a scene's error has its line and a caret below the line. */
 enum { MESSAGE_SIZE = 2048 };
 
-/* Characters of a scene, as docs/scenes.md has it. */
+/* Limit of the characters of a scene, as docs/scenes.md states it. */
 enum { TEXT_MAX = 1 << 20 };
 
 enum { KINK_SIZE = 512 };
 
-/* Steps of an order study that begins where the scene's own step is. */
+/* Steps of an order study that begins at the scene's own step. */
 enum { STUDY_STEPS = 200 };
 
 bool scene_is_path(const char *name)
@@ -30,13 +30,13 @@ bool scene_is_path(const char *name)
   return dot != NULL && (strcmp(dot, ".yaml") == 0 || strcmp(dot, ".yml") == 0);
 }
 
-static void close_scene(problem *made)
+static void destroy_scene(problem *made)
 {
   dvi_scene *scene = made->scene;
   dvi_scene_destroy(&scene);
 }
 
-static void label(const dvi_scene *scene, problem *made)
+static void copy_labels(const dvi_scene *scene, problem *made)
 {
   for (int i = 0; i < made->nq; i++)
     (void)snprintf(made->coordinate[i], PROBLEM_LABEL_SIZE, "%s", dvi_scene_coordinate(scene, i));
@@ -46,7 +46,7 @@ static void label(const dvi_scene *scene, problem *made)
     (void)snprintf(made->velocity[i], PROBLEM_LABEL_SIZE, "%s", dvi_scene_velocity(scene, i));
 }
 
-static void place(const dvi_scene *scene, problem *made)
+static void copy_start(const dvi_scene *scene, problem *made)
 {
   const double *q, *v, *p;
   dvi_scene_start(scene, &q, &v, &p);
@@ -55,8 +55,8 @@ static void place(const dvi_scene *scene, problem *made)
   memcpy(made->p, p, (size_t)made->nv * sizeof *p);
 }
 
-/* The parameters that can be set, in the form of the catalogue's. */
-static bool list_parameters(const dvi_scene *scene, problem *made)
+/* Copy the parameters that can be set, in the catalogue's form. */
+static bool copy_parameters(const dvi_scene *scene, problem *made)
 {
   const dvi_scene_parameter *p;
   int count = 0;
@@ -75,20 +75,20 @@ static bool list_parameters(const dvi_scene *scene, problem *made)
   return true;
 }
 
-static bool describe(dvi_scene *scene, problem *made)
+static bool describe_scene(dvi_scene *scene, problem *made)
 {
   const dvi_scene_plan *plan = dvi_scene_plan_of(scene);
   made->scene = scene;
-  made->close = close_scene;
+  made->close = destroy_scene;
   made->terms = dvi_scene_terms(scene);
-  /* which is not to be changed, nor does anyone here */
+  /* nothing here changes the system */
   made->system = (dvi_system *)dvi_scene_system(scene);
   if (problem_room_of(made, dvi_system_nq(made->system), dvi_system_nv(made->system), 1) != DVI_OK)
     return false;
   if (made->terms->factors != NULL && (made->velocity = problem_names(made, made->nv)) == NULL)
     return false;
-  label(scene, made);
-  place(scene, made);
+  copy_labels(scene, made);
+  copy_start(scene, made);
   made->bodies = dvi_scene_bodies(scene);
   made->summary = plan->title != NULL ? plan->title : "a scene";
   made->method = plan->method;
@@ -99,11 +99,11 @@ static bool describe(dvi_scene *scene, problem *made)
   made->t_end = plan->t_end;
   made->order_h = plan->h;
   made->order_t_end = STUDY_STEPS * plan->h < plan->t_end ? STUDY_STEPS * plan->h : plan->t_end;
-  return list_parameters(scene, made);
+  return copy_parameters(scene, made);
 }
 
-/* "scenes/cart.yaml" is called cart. */
-static const char *name_of(problem *made, const char *path)
+/* Return the name of a scene, such as cart for "scenes/cart.yaml". */
+static const char *scene_name(problem *made, const char *path)
 {
   const char *slash = strrchr(path, '/'), *start = slash != NULL ? slash + 1 : path;
   const size_t length = (size_t)(strrchr(start, '.') - start);
@@ -111,32 +111,33 @@ static const char *name_of(problem *made, const char *path)
   return name != NULL ? memcpy(name, start, length) : NULL;
 }
 
-static problem *problem_of(dvi_scene *scene, const char *path)
+static problem *problem_of_scene(dvi_scene *scene, const char *path)
 {
   problem *made = calloc(1, sizeof *made);
   if (made == NULL) {
     dvi_scene_destroy(&scene);
     return NULL;
   }
-  if (!describe(scene, made) || (made->name = name_of(made, path)) == NULL) problem_destroy(&made);
+  if (!describe_scene(scene, made) || (made->name = scene_name(made, path)) == NULL)
+    problem_destroy(&made);
   return made;
 }
 
-/* What came of reading a scene. */
-static int read_as(const char *path, dvi_status status, const char *message, dvi_scene *read,
-                   problem **scene)
+/* Return the exit code of reading a scene, and make the problem. */
+static int scene_exit_code(const char *path, dvi_status status, const char *message,
+                           dvi_scene *read, problem **scene)
 {
   *scene = NULL;
   if (status != DVI_OK) {
     complain("%s", message);
     return status == DVI_NO_MEMORY || status == DVI_IO_ERROR ? FAILED : USAGE;
   }
-  *scene = problem_of(read, path);
+  *scene = problem_of_scene(read, path);
   if (*scene == NULL) complain("out of memory");
   return *scene != NULL ? DONE : FAILED;
 }
 
-/* A folder can be opened, and not read. */
+/* Recognise a folder, which can be opened but not read. */
 static bool is_folder(const char *path)
 {
   struct stat there;
@@ -157,7 +158,7 @@ int scene_open(const char *path, const words *settings, problem **scene)
   if (is_folder(path)) return refuse_folder(path);
   const dvi_status status = dvi_scene_read(path, settings->count, settings->word, &read, message,
                                            sizeof message);
-  return read_as(path, status, message, read, scene);
+  return scene_exit_code(path, status, message, read, scene);
 }
 
 int scene_parse(const char *path, const scene_text *text, const words *settings, problem **scene)
@@ -166,10 +167,10 @@ int scene_parse(const char *path, const scene_text *text, const words *settings,
   dvi_scene *read = NULL;
   const dvi_status status = dvi_scene_parse(path, text->text, text->length, settings->count,
                                             settings->word, &read, message, sizeof message);
-  return read_as(path, status, message, read, scene);
+  return scene_exit_code(path, status, message, read, scene);
 }
 
-/* One character more than a scene may have: dvi_scene_parse tells of that. */
+/* Read one character more than a scene may have, so that dvi_scene_parse can refuse it. */
 int scene_load(const char *path, scene_text *text)
 {
   *text = (scene_text){.text = NULL};
@@ -203,7 +204,7 @@ void scene_warn(const char *command, const problem *scene)
   if (dvi_scene_kink(scene->scene, kink, sizeof kink) >= 0) complain("%s: %s", command, kink);
 }
 
-static void tell_operations(const char *of, int operations, long points)
+static void print_operations(const char *of, int operations, long points)
 {
   if (operations < 0)
     (void)printf("%s not derived", of);
@@ -211,7 +212,7 @@ static void tell_operations(const char *of, int operations, long points)
     (void)printf("%s %d (%ld point%s)", of, operations, points, points == 1 ? "" : "s");
 }
 
-static int fast_potentials(const dvi_system_terms *terms)
+static int count_fast_potentials(const dvi_system_terms *terms)
 {
   int count = 0;
   for (int k = 0; k < terms->potential_count; k++) count += terms->potentials[k].fast != 0;
@@ -227,14 +228,14 @@ void scene_tell(const problem *scene)
   if (facts.mass != NULL) (void)printf(", mass %s", facts.mass);
   if (facts.quadratic_potentials > 0)
     (void)printf(", quadratic potentials %d", facts.quadratic_potentials);
-  if (fast_potentials(scene->terms) > 0)
-    (void)printf(", fast potentials %d", fast_potentials(scene->terms));
+  if (count_fast_potentials(scene->terms) > 0)
+    (void)printf(", fast potentials %d", count_fast_potentials(scene->terms));
   (void)printf("; %d kernel%s, %ld element%s, %d nodes\n", facts.kernels,
                facts.kernels == 1 ? "" : "s", facts.elements, facts.elements == 1 ? "" : "s",
                facts.nodes);
-  tell_operations("operations a point: value", facts.value_operations, facts.value_points);
-  tell_operations(", gradient", facts.gradient_operations, facts.gradient_points);
-  tell_operations(", Hessian", facts.hessian_operations, facts.hessian_points);
+  print_operations("operations a point: value", facts.value_operations, facts.value_points);
+  print_operations(", gradient", facts.gradient_operations, facts.gradient_points);
+  print_operations(", Hessian", facts.hessian_operations, facts.hessian_points);
   if (facts.hessian_operations >= 0)
     (void)printf(", %ld entr%s", facts.hessian_entries, facts.hessian_entries == 1 ? "y" : "ies");
   (void)printf("\n");
