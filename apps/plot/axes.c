@@ -10,7 +10,7 @@
 
 enum { NAME_SIZE = 32, HINT_SIZE = 64, TITLE_SIZE = 160 };
 
-static const char *title_at(int k, const void *list)
+static const char *table_title_at(int k, const void *list)
 {
   return ((const table_column *)list)[k].title;
 }
@@ -23,16 +23,16 @@ static int find_column(const char *command, const char *title, const table_colum
   if (columns[*column].title == NULL) {
     char hint[HINT_SIZE];
     return usage_error("%s: --axes: the table has no column '%s'%s; dvi %s --help has their names",
-                       command, title, suggestion(title, title_at, columns, hint, sizeof hint),
-                       command);
+                       command, title,
+                       suggestion(title, table_title_at, columns, hint, sizeof hint), command);
   }
   return columns[*column].format != NULL
              ? DONE
              : usage_error("%s: --axes: column '%s' has no numbers", command, title);
 }
 
-static int read_pair(const char *command, const char *text, const table_column *columns,
-                     axes_pair *pair)
+static int axes_read_pair(const char *command, const char *text, const table_column *columns,
+                          axes_pair *pair)
 {
   char name[NAME_SIZE];
   const size_t length = strcspn(text, ":");
@@ -49,16 +49,16 @@ int axes_read(const char *command, const words *asked, const char *plot, const c
 {
   if (asked->count > 0 && plot == NULL)
     return usage_error("%s: --axes draws nothing without --plot FILE.svg", command);
-  int code = read_pair(command, usual, columns, &axes->usual);
+  int code = axes_read_pair(command, usual, columns, &axes->usual);
   axes->count = asked->count > 0 ? asked->count : 1;
   axes->pair[0] = axes->usual;
   for (int k = 0; k < asked->count && code == DONE; k++)
-    code = read_pair(command, asked->word[k], columns, &axes->pair[k]);
+    code = axes_read_pair(command, asked->word[k], columns, &axes->pair[k]);
   return code;
 }
 
-/* One past the last row that begins with the same text as row `first`. */
-static int run_end(const result_table *rows, int first)
+/* Return one past the last row that begins with the same text as row `first`. */
+static int curve_end(const result_table *rows, int first)
 {
   int end = first;
   while (end < table_rows(rows) &&
@@ -67,7 +67,8 @@ static int run_end(const result_table *rows, int first)
   return end;
 }
 
-/* Curves of a pair, their numbers in number [2 rows]; how many there are. */
+/* Make the curves of a pair, with their numbers in number [2 rows]. Returns the number of
+ * curves. */
 static int add_curves(const result_table *rows, axes_pair pair, double *number, plot_curve *curve)
 {
   const int n = table_rows(rows);
@@ -78,15 +79,17 @@ static int add_curves(const result_table *rows, axes_pair pair, double *number, 
   }
   for (int first = 0; first < n; first += curve[curves++].count)
     curve[curves] = (plot_curve){.label = table_text_at(rows, first, 0),
-                                 .count = run_end(rows, first) - first,
+                                 .count = curve_end(rows, first) - first,
                                  .x = number + first,
                                  .y = number + n + first};
   return curves;
 }
 
-/* Room for the numbers, [2 rows], and the curves, [rows + guides], of every pair. */
-static bool draw(const result_table *rows, const plot_axes *axes, const char *subject, int guides,
-                 const plot_curve *guide, double *number, plot_curve *curve, const char *path)
+/* Draw every pair. `number` has [2 rows] numbers and `curve` [rows + guides] curves for each
+ * pair. */
+static bool axes_draw(const result_table *rows, const plot_axes *axes, const char *subject,
+                      int guides, const plot_curve *guide, double *number, plot_curve *curve,
+                      const char *path)
 {
   plot_panel panel[WORDS_MAX];
   char title[WORDS_MAX][TITLE_SIZE];
@@ -116,7 +119,7 @@ bool axes_plot(const result_table *rows, const plot_axes *axes, const char *subj
   plot_curve *curve = calloc(pairs * (n + (size_t)guides), sizeof *curve);
   bool good = number != NULL && curve != NULL;
   if (good)
-    good = draw(rows, axes, subject, guides, guide, number, curve, path);
+    good = axes_draw(rows, axes, subject, guides, guide, number, curve, path);
   else
     complain("out of memory for the plot");
   free(number);

@@ -8,7 +8,7 @@
 #include "cli/command.h"
 #include "cli/spelling.h"
 
-/* Characters of a header in a message. */
+/* Limit of the characters of a header in a message. */
 enum { SHOWN = 200, HINT_SIZE = 128 };
 
 /* The names of a header's columns. */
@@ -17,7 +17,7 @@ typedef struct title_list {
   char (*title)[FIELD_SIZE];
 } title_list;
 
-static int ask(const char *pair, int panel, curve_list *list)
+static int curves_ask_pair(const char *pair, int panel, curve_list *list)
 {
   if (list->curves == WORDS_MAX) return usage_error("plot: more than %d curves", (int)WORDS_MAX);
   curve_points *curve = &list->curve[list->curves++];
@@ -40,27 +40,27 @@ int curves_ask(const words *asked, curve_list *list)
   for (int k = 0; k < asked->count; k++)
     for (const char *text = asked->word[k]; text != NULL;) {
       rows_field(&text, pair);
-      if (ask(pair, k, list) != DONE) return USAGE;
+      if (curves_ask_pair(pair, k, list) != DONE) return USAGE;
     }
   return DONE;
 }
 
-static const char *title_at(int k, const void *list)
+static const char *header_title_at(int k, const void *list)
 {
   const title_list *titles = list;
   return k < titles->count ? titles->title[k] : NULL;
 }
 
-/* Refuse a column that the header lacks: with the nearest that it has, or with all of them, as far
- * as a line holds them. */
-static int refuse_column(const row_file *file, int columns, const char *name)
+/* Refuse a column that the header lacks. The message names the nearest column, or else all columns
+ * as far as a line holds them. */
+static int refuse_missing_column(const row_file *file, int columns, const char *name)
 {
   char hint[HINT_SIZE] = "";
   title_list titles = {.title = calloc((size_t)columns, sizeof *titles.title)};
   const char *text = file->line;
   while (titles.title != NULL && text != NULL && titles.count < columns)
     rows_field(&text, titles.title[titles.count++]);
-  (void)suggestion(name, title_at, &titles, hint, sizeof hint);
+  (void)suggestion(name, header_title_at, &titles, hint, sizeof hint);
   free(titles.title);
   if (hint[0] != '\0')
     return usage_error("plot: '%s' has no column '%s'%s", file->path, name, hint);
@@ -71,7 +71,7 @@ static int refuse_column(const row_file *file, int columns, const char *name)
                      file->line != NULL ? file->line : "", length < SHOWN ? "" : "..");
 }
 
-/* The columns by name; the first one that is not there is told. */
+/* Find the columns by name, and refuse the first one that is missing. */
 static int find_columns(row_file *file, curve_list *list)
 {
   char title[FIELD_SIZE];
@@ -90,12 +90,12 @@ static int find_columns(row_file *file, curve_list *list)
   for (int k = 0; k < list->curves; k++) {
     const curve_points *curve = &list->curve[k];
     if (curve->x_column >= 0 && curve->y_column >= 0) continue;
-    return refuse_column(file, column, curve->x_column < 0 ? curve->x_name : curve->y_name);
+    return refuse_missing_column(file, column, curve->x_column < 0 ? curve->x_name : curve->y_name);
   }
   return DONE;
 }
 
-static bool make_room(curve_list *list)
+static bool curves_grow(curve_list *list)
 {
   if (list->count < list->capacity) return true;
   const int capacity = list->capacity > 0 ? 2 * list->capacity : 1024;
@@ -114,7 +114,7 @@ static bool make_room(curve_list *list)
   return true;
 }
 
-static void read_row(const char *text, curve_list *list)
+static void curves_read_row(const char *text, curve_list *list)
 {
   char field[FIELD_SIZE];
   for (int k = 0; k < list->curves; k++)
@@ -136,8 +136,8 @@ int curves_read(const char *path, curve_list *list)
   row_file file;
   int code = rows_open(&file, path) ? find_columns(&file, list) : FAILED;
   while (code == DONE && rows_next(&file)) {
-    if (make_room(list))
-      read_row(file.line, list);
+    if (curves_grow(list))
+      curves_read_row(file.line, list);
     else
       code = FAILED;
   }

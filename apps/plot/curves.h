@@ -6,20 +6,20 @@
 
 /** One column against another. */
 typedef struct curve_points {
-  int panel; /**< which pair of axes, from 0 */
+  int panel; /**< index of the pair of axes, from 0 */
   char x_name[FIELD_SIZE], y_name[FIELD_SIZE];
   int x_column, y_column;
-  double *x, *y; /**< [count]; NaN where a cell is no number */
+  double *x, *y; /**< [count] NaN where a cell is no number */
 } curve_points;
 
-/** What is to be drawn, and its points. */
+/** The curves to be drawn, and their points. */
 typedef struct curve_list {
   int panels, curves, count, capacity;
   curve_points curve[WORDS_MAX];
 } curve_list;
 
-/** Read the words of --axes, each "X:Y[,X:Y...]" for one panel; Y alone is t:Y. Returns DONE, or
- * complains and returns USAGE. */
+/** Read the words of --axes, each "X:Y[,X:Y...]" for one panel. A single Y means t:Y. Returns DONE,
+ * or complains and returns USAGE. */
 int curves_ask(const words *asked, curve_list *list);
 
 /** Read the columns that are asked for from a CSV file with a header. Returns DONE, or complains

@@ -20,19 +20,19 @@ extern char **environ;
 
 enum { WIDTH = 860, PANEL_HEIGHT = 560, COLOURS = 8 };
 
-/* Pixels: less is not seen. */
+/* Smallest visible distance, in pixels. */
 static const double SEEN = 0.2;
 
-/* Okabe and Ito's colours, which the colour-blind can tell apart; their yellow is too pale for
+/* Okabe and Ito's colours, which the colour-blind can tell apart. Their yellow is too pale for
  * lines. */
 static const char *const colour[COLOURS] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
                                             "#56B4E9", "#E69F00", "#000000", "#7F3C8D"};
 
-/* A gnuplot string in double quotes. What stands between backquotes there would be run as a
- * command, and more characters mean something: of ASCII all but letters, digits and blanks are
- * written by their numbers, of which gnuplot reads four digits if the first is 0. No control
- * character can be in an SVG file. */
-static void quoted(FILE *script, const char *text)
+/* Write a gnuplot string in double quotes. gnuplot would run text between backquotes as a command,
+ * and other characters have a meaning, too. ASCII characters other than letters, digits and blanks
+ * are therefore written by their numbers. gnuplot reads four digits if the first is 0. An SVG file
+ * must hold no control character. */
+static void write_quoted(FILE *script, const char *text)
 {
   (void)fputc('"', script);
   for (const char *c = text; *c != '\0'; c++) {
@@ -47,36 +47,36 @@ static void quoted(FILE *script, const char *text)
   (void)fputc('"', script);
 }
 
-static void setting(FILE *script, const char *what, const char *text)
+static void write_setting(FILE *script, const char *what, const char *text)
 {
   (void)fprintf(script, "set %s ", what);
-  quoted(script, text);
+  write_quoted(script, text);
   (void)fputs(" noenhanced\n", script);
 }
 
-static bool drawable(const plot_panel *panel, const plot_curve *curve, int i)
+static bool is_drawable(const plot_panel *panel, const plot_curve *curve, int i)
 {
   const double x = curve->x[i];
   const double y = curve->y[i];
   return isfinite(x) && isfinite(y) && (!panel->logarithmic || (x > 0.0 && y > 0.0));
 }
 
-static int points(const plot_panel *panel, const plot_curve *curve)
+static int count_drawable(const plot_panel *panel, const plot_curve *curve)
 {
   int count = 0;
-  for (int i = 0; i < curve->count; i++) count += drawable(panel, curve, i);
+  for (int i = 0; i < curve->count; i++) count += is_drawable(panel, curve, i);
   return count;
 }
 
-/* The range of the drawable points of all curves: [least, most] of x, then of y. Whether y stays
- * where it is, up to what its labels could show; the range is then wider. */
+/* Find the range [least, most] of x, then of y, over the drawable points of all curves. Returns
+ * whether y is constant up to the digits of its labels. The range is then widened. */
 static bool find_range(const plot_panel *panel, double range[4])
 {
   range[0] = range[2] = HUGE_VAL;
   range[1] = range[3] = -HUGE_VAL;
   for (int k = 0; k < panel->curves; k++)
     for (int i = 0; i < panel->curve[k].count; i++) {
-      if (!drawable(panel, &panel->curve[k], i)) continue;
+      if (!is_drawable(panel, &panel->curve[k], i)) continue;
       range[0] = fmin(range[0], panel->curve[k].x[i]);
       range[1] = fmax(range[1], panel->curve[k].x[i]);
       range[2] = fmin(range[2], panel->curve[k].y[i]);
@@ -91,7 +91,8 @@ static bool find_range(const plot_panel *panel, double range[4])
   return stays;
 }
 
-/* The points of a smooth curve without which it would look different, to be freed; NULL: all. */
+/* Mark the points of a smooth curve without which it would look different. Returns an array to be
+ * freed, or NULL for all points. */
 static bool *needed_points(const plot_panel *panel, const plot_curve *curve)
 {
   const size_t count = (size_t)curve->count;
@@ -100,7 +101,7 @@ static bool *needed_points(const plot_panel *panel, const plot_curve *curve)
   double *x = calloc(2 * count + 1, sizeof *x), *y = x != NULL ? x + count : NULL;
   (void)find_range(panel, range);
   for (int i = 0; i < curve->count && needed != NULL && x != NULL; i++) {
-    needed[i] = drawable(panel, curve, i);
+    needed[i] = is_drawable(panel, curve, i);
     x[i] = (curve->x[i] - range[0]) / fmax(range[1] - range[0], DBL_MIN) * WIDTH;
     y[i] = (curve->y[i] - range[2]) / fmax(range[3] - range[2], DBL_MIN) * PANEL_HEIGHT;
   }
@@ -109,7 +110,7 @@ static bool *needed_points(const plot_panel *panel, const plot_curve *curve)
   return needed;
 }
 
-/* Each curve's points as a block of numbers, named by panel and curve. */
+/* Write each curve's points as a block of numbers, named by panel and curve. */
 static void write_blocks(FILE *script, int index, const plot_panel *panel)
 {
   for (int k = 0; k < panel->curves; k++) {
@@ -117,7 +118,7 @@ static void write_blocks(FILE *script, int index, const plot_panel *panel)
     (void)fprintf(script, "$panel%d_curve%d << END\n", index, k);
     bool *needed = panel->smooth && !panel->dots ? needed_points(panel, curve) : NULL;
     for (int i = 0; i < curve->count; i++)
-      if (needed != NULL ? needed[i] : drawable(panel, curve, i))
+      if (needed != NULL ? needed[i] : is_drawable(panel, curve, i))
         (void)fprintf(script, "%.9g %.9g\n", curve->x[i], curve->y[i]);
     (void)fputs("END\n", script);
     free(needed);
@@ -130,7 +131,7 @@ static void write_curve(FILE *script, int index, const plot_panel *panel, int k,
   (void)fprintf(script, "$panel%d_curve%d using 1:2 ", index, k);
   if (curve->label != NULL) {
     (void)fputs("title ", script);
-    quoted(script, curve->label);
+    write_quoted(script, curve->label);
     (void)fputs(" noenhanced with ", script);
   } else {
     (void)fputs("notitle with ", script);
@@ -146,7 +147,7 @@ static void write_curve(FILE *script, int index, const plot_panel *panel, int k,
                   colour[style % COLOURS]);
 }
 
-/* gnuplot would warn of a curve that stays at one number, and guess. */
+/* Set the range of y. gnuplot would warn of a curve that stays at one number, and guess a range. */
 static void fix_range(FILE *script, const plot_panel *panel)
 {
   double range[4];
@@ -158,10 +159,10 @@ static void fix_range(FILE *script, const plot_panel *panel)
 
 static void write_panel(FILE *script, int index, const plot_panel *panel)
 {
-  setting(script, "title", panel->title);
-  setting(script, "xlabel", panel->x_label);
+  write_setting(script, "title", panel->title);
+  write_setting(script, "xlabel", panel->x_label);
   (void)fputs("set xlabel offset 0,0.6\n", script);
-  setting(script, "ylabel", panel->y_label);
+  write_setting(script, "ylabel", panel->y_label);
   (void)fputs(panel->logarithmic
                   ? "set logscale xy 10\nset format x '10^{%L}'\nset format y '10^{%L}'\n"
                   : "unset logscale\nset format '%g'\n",
@@ -173,7 +174,7 @@ static void write_panel(FILE *script, int index, const plot_panel *panel)
   (void)fputs(panel->equal ? "set size ratio -1\n" : "set size noratio\n", script);
   const char *joint = "plot ";
   for (int k = 0, style = 0; k < panel->curves; k++) {
-    if (points(panel, &panel->curve[k]) == 0) continue;
+    if (count_drawable(panel, &panel->curve[k]) == 0) continue;
     (void)fputs(joint, script);
     write_curve(script, index, panel, k, style);
     joint = ", \\\n     ";
@@ -197,9 +198,9 @@ static void write_script(FILE *script, int panels, const plot_panel *panel)
   if (panels > 1) (void)fputs("unset multiplot\n", script);
 }
 
-/* In the child the script is the input, the pipe's end to write to is the output, and the pipe has
- * no other descriptors. */
-static int redirect(posix_spawn_file_actions_t *actions, int script, const int ends[2])
+/* Redirect the child's input to the script and its output to the write end of the pipe. The pipe
+ * has no other descriptors in the child. */
+static int redirect_gnuplot(posix_spawn_file_actions_t *actions, int script, const int ends[2])
 {
   int failure = posix_spawn_file_actions_adddup2(actions, script, STDIN_FILENO);
   if (failure == 0) failure = posix_spawn_file_actions_adddup2(actions, ends[1], STDOUT_FILENO);
@@ -209,12 +210,12 @@ static int redirect(posix_spawn_file_actions_t *actions, int script, const int e
 }
 
 /* Start gnuplot, without the start-up files of the user. Returns 0 or an error number. */
-static int spawn(int script, const int ends[2], pid_t *process)
+static int spawn_gnuplot(int script, const int ends[2], pid_t *process)
 {
   posix_spawn_file_actions_t actions;
   int failure = posix_spawn_file_actions_init(&actions);
   if (failure != 0) return failure;
-  failure = redirect(&actions, script, ends);
+  failure = redirect_gnuplot(&actions, script, ends);
   if (failure == 0) {
     char name[] = "gnuplot", alone[] = "--default-settings";
     char *arguments[] = {name, alone, NULL};
@@ -230,7 +231,7 @@ static int start_gnuplot(FILE *script, pid_t *process)
 {
   int ends[2];
   if (pipe(ends) != 0) return -1;
-  const int failure = spawn(fileno(script), ends, process);
+  const int failure = spawn_gnuplot(fileno(script), ends, process);
   (void)close(ends[1]);
   if (failure == 0) return ends[0];
   (void)close(ends[0]);
@@ -238,8 +239,8 @@ static int start_gnuplot(FILE *script, pid_t *process)
   return -1;
 }
 
-/* gnuplot does not tell when a disk is full: its picture comes through a pipe, and file_keep tells.
- * False if there is no picture. */
+/* Copy the picture from a pipe. gnuplot does not report a full disk, but file_keep does. Returns
+ * false if there is no picture. */
 static bool copy_picture(int from, FILE *picture)
 {
   char part[4096];
@@ -252,7 +253,7 @@ static bool copy_picture(int from, FILE *picture)
   return any && length == 0;
 }
 
-static bool succeeded(pid_t process)
+static bool gnuplot_succeeded(pid_t process)
 {
   int result = 0;
   pid_t ended;
@@ -261,8 +262,8 @@ static bool succeeded(pid_t process)
   return ended == process && WIFEXITED(result) && WEXITSTATUS(result) == 0;
 }
 
-/* True if gnuplot drew the picture. */
-static bool draw(FILE *script, FILE *picture, const char *path)
+/* Draw the picture. Returns true if gnuplot succeeded. */
+static bool draw_by_gnuplot(FILE *script, FILE *picture, const char *path)
 {
   pid_t process;
   const int from = start_gnuplot(script, &process);
@@ -273,7 +274,7 @@ static bool draw(FILE *script, FILE *picture, const char *path)
   }
   const bool copied = copy_picture(from, picture);
   (void)close(from);
-  if (succeeded(process) && copied) return true;
+  if (gnuplot_succeeded(process) && copied) return true;
   complain("no plot in '%s': gnuplot failed", path);
   return false;
 }
@@ -282,14 +283,15 @@ static bool anything_to_draw(int panels, const plot_panel *panel)
 {
   for (int i = 0; i < panels; i++) {
     int count = 0;
-    for (int k = 0; k < panel[i].curves; k++) count += points(&panel[i], &panel[i].curve[k]);
+    for (int k = 0; k < panel[i].curves; k++)
+      count += count_drawable(&panel[i], &panel[i].curve[k]);
     if (count == 0) return false;
   }
   return true;
 }
 
-/* A temporary file with the script, to be read from its start; NULL, with a complaint, without
- * room. */
+/* Write the script to a temporary file, to be read from its start. Complains and returns NULL if
+ * that fails. */
 static FILE *make_script(const char *path, int panels, const plot_panel *panel)
 {
   FILE *script = tmpfile();
@@ -311,7 +313,7 @@ bool plot_write(const char *path, int panels, const plot_panel *panel)
   }
   FILE *script = make_script(path, panels, panel);
   if (script == NULL) return false;
-  bool good = file_open(&picture, path) && draw(script, picture.stream, path);
+  bool good = file_open(&picture, path) && draw_by_gnuplot(script, picture.stream, path);
   if (good) good = file_keep(&picture);
   file_discard(&picture);
   (void)fclose(script);

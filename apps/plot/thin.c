@@ -7,19 +7,20 @@
 
 /* Directions from the last kept point, as angles around that of its first follower. */
 typedef struct cone {
-  double x, y; /* the kept point */
+  double x, y; /* last kept point */
   double along;
-  double least, most; /* angles to `along` */
+  double least, most; /* angles relative to `along` */
   double farthest;
 } cone;
 
-static double turned(double angle)
+static double wrap_angle(double angle)
 {
   return remainder(angle, 2.0 * acos(-1.0));
 }
 
-/* Whether a line to this point passes all points since the kept one; if so, narrow the cone. */
-static bool reaches(cone *c, bool *aimed, double x, double y, double tolerance)
+/* Return whether a line to this point passes all points since the kept one. If it does, narrow the
+ * cone. */
+static bool cone_narrow(cone *c, bool *aimed, double x, double y, double tolerance)
 {
   const double distance = hypot(x - c->x, y - c->y);
   if (distance < c->farthest - tolerance) return false;
@@ -33,14 +34,14 @@ static bool reaches(cone *c, bool *aimed, double x, double y, double tolerance)
     c->most = width;
     return true;
   }
-  const double off = turned(angle - c->along);
+  const double off = wrap_angle(angle - c->along);
   if (off < c->least || off > c->most) return false;
   c->least = fmax(c->least, off - width);
   c->most = fmin(c->most, off + width);
   return true;
 }
 
-/* A run of points, all of them drawable, from first to last. */
+/* Thin a run of points from first to last, which are all drawable. */
 static void thin_run(int first, int last, const double *x, const double *y, double tolerance,
                      bool *keep)
 {
@@ -48,11 +49,11 @@ static void thin_run(int first, int last, const double *x, const double *y, doub
   bool aimed = false;
   for (int i = first + 1; i < last; i++) keep[i] = false;
   for (int i = first + 1; i <= last; i++) {
-    if (reaches(&c, &aimed, x[i], y[i], tolerance)) continue;
+    if (cone_narrow(&c, &aimed, x[i], y[i], tolerance)) continue;
     keep[i - 1] = true;
     c = (cone){.x = x[i - 1], .y = y[i - 1]};
     aimed = false;
-    (void)reaches(&c, &aimed, x[i], y[i], tolerance);
+    (void)cone_narrow(&c, &aimed, x[i], y[i], tolerance);
   }
 }
 

@@ -10,11 +10,11 @@
 enum { MOTION, ENERGY, INVARIANTS };
 enum { USUAL_CURVES = 6, NAMES_SIZE = 512 };
 
-/* What is drawn first: places and angles, then directions; entries of matrices, of which nine
- * say what three angles do, last. */
+/* The order of choice. Places and angles come first, then directions. Entries of matrices come
+ * last, because nine of them hold as much as three angles. */
 typedef enum coordinate_rank { PLACE, DIRECTION, ENTRY } coordinate_rank;
 
-/* ---- the choice ---- */
+/* ---- choice of curves ---- */
 
 static coordinate_rank rank_of(const dvi_system_terms *terms, int i)
 {
@@ -29,7 +29,7 @@ static coordinate_rank rank_of(const dvi_system_terms *terms, int i)
   return PLACE;
 }
 
-static void choose(trace_panel *panel, int column, int most)
+static void panel_add_column(trace_panel *panel, int column, int most)
 {
   if (panel->curves < most)
     panel->column[panel->curves++] = column;
@@ -37,14 +37,14 @@ static void choose(trace_panel *panel, int column, int most)
     panel->left_out++;
 }
 
-/* Of all columns the coordinates of a rank. */
+/* Choose the coordinates of a rank from all columns. */
 static void choose_rank(run_trace *trace, coordinate_rank rank)
 {
   const run_columns *c = trace->columns;
   for (int k = 0; k < c->count; k++)
     if (c->column[k].kind == COLUMN_COORDINATE &&
         rank_of(c->scene->terms, c->column[k].index) == rank)
-      choose(&trace->panel[MOTION], k, USUAL_CURVES);
+      panel_add_column(&trace->panel[MOTION], k, USUAL_CURVES);
 }
 
 static void choose_motion(run_trace *trace)
@@ -54,7 +54,8 @@ static void choose_motion(run_trace *trace)
   choose_rank(trace, DIRECTION);
   const bool turns_only = trace->panel[MOTION].curves == 0;
   for (int k = 0; k < c->count && turns_only; k++)
-    if (c->column[k].kind == COLUMN_VELOCITY) choose(&trace->panel[MOTION], k, USUAL_CURVES);
+    if (c->column[k].kind == COLUMN_VELOCITY)
+      panel_add_column(&trace->panel[MOTION], k, USUAL_CURVES);
 }
 
 static void choose_curves(run_trace *trace, bool chosen)
@@ -64,15 +65,15 @@ static void choose_curves(run_trace *trace, bool chosen)
   for (int k = 0; k < c->count; k++) {
     const shown_column *column = &c->column[k];
     if (column->kind == COLUMN_INVARIANT)
-      choose(&trace->panel[column->index == 0 ? ENERGY : INVARIANTS], k, TRACE_CURVES);
+      panel_add_column(&trace->panel[column->index == 0 ? ENERGY : INVARIANTS], k, TRACE_CURVES);
     else if (chosen)
-      choose(&trace->panel[MOTION], k, TRACE_CURVES);
+      panel_add_column(&trace->panel[MOTION], k, TRACE_CURVES);
   }
 }
 
 /* ---- the record ---- */
 
-static bool make_room(trace_panel *panel)
+static bool panel_allocate(trace_panel *panel)
 {
   bool good = true;
   for (int i = 0; i < panel->curves; i++) {
@@ -88,7 +89,7 @@ bool trace_init(run_trace *trace, const run_columns *columns, bool chosen)
   choose_curves(trace, chosen);
   trace->t = calloc(TRACE_MAX, sizeof *trace->t);
   bool good = trace->t != NULL;
-  for (int i = 0; i < TRACE_PANELS; i++) good = make_room(&trace->panel[i]) && good;
+  for (int i = 0; i < TRACE_PANELS; i++) good = panel_allocate(&trace->panel[i]) && good;
   if (!good) complain("out of memory for the plot");
   return good;
 }
@@ -106,8 +107,8 @@ static void keep_every_other(double *x)
   for (int k = 0; k < TRACE_MAX / 2; k++) x[k] = x[2 * k];
 }
 
-/* Keep every other sample, and from now on only every other one. */
-static void halve(run_trace *trace)
+/* Keep every other sample, and from now on record only every other one. */
+static void trace_halve(run_trace *trace)
 {
   keep_every_other(trace->t);
   for (int i = 0; i < TRACE_PANELS; i++)
@@ -120,7 +121,7 @@ void trace_add(run_trace *trace, const dvi_integrator *integrator)
 {
   if (trace->seen++ % trace->stride != 0) return;
   if (trace->count == TRACE_MAX) {
-    halve(trace);
+    trace_halve(trace);
     if ((trace->seen - 1) % trace->stride != 0) return;
   }
   trace->t[trace->count] = dvi_integrator_time(integrator);
@@ -133,22 +134,22 @@ void trace_add(run_trace *trace, const dvi_integrator *integrator)
 
 /* ---- the picture ---- */
 
-static const char *name_of(const run_trace *trace, int panel, int k)
+static const char *curve_name(const run_trace *trace, int panel, int k)
 {
   return trace->columns->column[trace->panel[panel].column[k]].name;
 }
 
-/* "x, y", as far as there is room. */
+/* Write the names as "x, y", as far as there is room. */
 static void list_names(const run_trace *trace, int panel, char names[NAMES_SIZE])
 {
   size_t length = 0;
   names[0] = '\0';
   for (int k = 0; k < trace->panel[panel].curves && length < NAMES_SIZE; k++)
     length += (size_t)snprintf(names + length, NAMES_SIZE - length, "%s%s", k > 0 ? ", " : "",
-                               name_of(trace, panel, k));
+                               curve_name(trace, panel, k));
 }
 
-static void tell(const run_trace *trace, const char *path)
+static void print_drawn(const run_trace *trace, const char *path)
 {
   static const char *const what[] = {
       [MOTION] = "over t: ", [ENERGY] = "change since the start: ", [INVARIANTS] = ", "};
@@ -168,7 +169,7 @@ static void tell(const run_trace *trace, const char *path)
            left_out > 0 ? "; --columns chooses others" : "");
 }
 
-/* What is drawn of an invariant is its change. */
+/* Subtract the value at the start, because an invariant's change is drawn. */
 static void subtract_start(const run_trace *trace, const trace_panel *panel)
 {
   for (int k = 0; k < panel->curves; k++) {
@@ -184,7 +185,7 @@ static void fill_panel(const run_trace *trace, int i, plot_curve *curve, plot_pa
   const trace_panel *panel = &trace->panel[i];
   if (i != MOTION) subtract_start(trace, panel);
   for (int k = 0; k < panel->curves; k++)
-    curve[k] = (plot_curve){.label = i == ENERGY ? NULL : name_of(trace, i, k),
+    curve[k] = (plot_curve){.label = i == ENERGY ? NULL : curve_name(trace, i, k),
                             .count = trace->count,
                             .x = trace->t,
                             .y = panel->y[k]};
@@ -210,6 +211,6 @@ bool trace_plot(const run_trace *trace, const char *path)
     complain("run: no plot in '%s': --columns names nothing to draw", path);
     return true;
   }
-  tell(trace, path);
+  print_drawn(trace, path);
   return plot_write(path, count, panels);
 }
