@@ -35,11 +35,11 @@ typedef struct price {
   frontier_answer answer;
 } price;
 
-/* Time and counts have a frontier each: what a method evaluates shall not depend on the clock. Its
- * preparation takes as long for any level. */
+/* Interpolate the cost of an error. Time and counts have separate frontiers, because counts must
+ * not depend on the clock. The preparation takes as long for any level. */
 static price price_at(const work *w, int first, double asked)
 {
-  enum { SETTINGS_MAX = 64 }; /* no subject has as many */
+  enum { SETTINGS_MAX = 64 }; /* no subject has as many settings */
   double error[SETTINGS_MAX];
   double seconds[SETTINGS_MAX];
   double counted[SETTINGS_MAX];
@@ -48,7 +48,8 @@ static price price_at(const work *w, int first, double asked)
   int count = 0;
   for (int i = first; i < work_group_end(w, first) && count < SETTINGS_MAX; i++, count++) {
     const work_job *job = &w->job[i];
-    error[count] = fmax(job->level.error, w->judge_error); /* more is not credited */
+    /* no error below the judge's own one is credited */
+    error[count] = fmax(job->level.error, w->judge_error);
     seconds[count] = job->seconds.median;
     counted[count] = job->level.counted[0];
     preparation[count] = job->preparation_seconds;
@@ -61,23 +62,25 @@ static price price_at(const work *w, int first, double asked)
   return found;
 }
 
-/* Within a decade of the judge's own error the errors mean little. */
+/* Return whether an error can be judged. Errors within a decade of the judge's own error mean
+ * little. */
 static bool can_be_judged(const work *w, double asked)
 {
   return asked >= STUDY_FLOOR_MARGIN * w->judge_error;
 }
 
-static double fastest(const work *w, double asked)
+static double fastest_seconds(const work *w, double asked)
 {
   double least = (double)NAN;
   for (int first = 0; first < w->jobs; first = work_group_end(w, first))
-    least = fmin(least, price_at(w, first, asked).seconds); /* of a number and a NaN the number */
+    /* fmin of a number and a NaN is the number */
+    least = fmin(least, price_at(w, first, asked).seconds);
   return least;
 }
 
-static void add_rows(result_table *rows, const work *w, double asked)
+static void asked_add_rows(result_table *rows, const work *w, double asked)
 {
-  const double least = fastest(w, asked);
+  const double least = fastest_seconds(w, asked);
   for (int first = 0; first < w->jobs; first = work_group_end(w, first)) {
     const price found = price_at(w, first, asked);
     table_number(rows, asked);
@@ -97,7 +100,7 @@ static void add_rows(result_table *rows, const work *w, double asked)
 result_table *asked_table(const work *w, const table_column *columns)
 {
   result_table *rows = table_create(columns);
-  for (int k = 0; k < w->asked->count; k++) add_rows(rows, w, w->asked->number[k]);
+  for (int k = 0; k < w->asked->count; k++) asked_add_rows(rows, w, w->asked->number[k]);
   return rows;
 }
 

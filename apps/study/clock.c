@@ -4,10 +4,10 @@
 #include <math.h>
 #include <time.h>
 
-static const double clock_seconds = 0.02; /* process time that one measurement takes at least */
+static const double clock_seconds = 0.02; /* least process time of one measurement */
 static const double repeats_max = 1e6;
 
-static double now(clockid_t clock)
+static double clock_seconds_of(clockid_t clock)
 {
   struct timespec t;
   (void)clock_gettime(clock, &t);
@@ -16,12 +16,12 @@ static double now(clockid_t clock)
 
 double cpu_now(void)
 {
-  return now(CLOCK_PROCESS_CPUTIME_ID);
+  return clock_seconds_of(CLOCK_PROCESS_CPUTIME_ID);
 }
 
 double elapsed_now(void)
 {
-  return now(CLOCK_MONOTONIC);
+  return clock_seconds_of(CLOCK_MONOTONIC);
 }
 
 long clock_repeats(double seconds)

@@ -2,13 +2,12 @@
 #ifndef CLOCK_H
 #define CLOCK_H
 
-/** Process time in seconds. */
+/** Return the process time in seconds. */
 double cpu_now(void);
 
-/** Elapsed time in seconds, from some moment on: for work on several threads. */
+/** Return the elapsed time in seconds since some moment, for work on several threads. */
 double elapsed_now(void);
 
-/** How often something that takes so many seconds is to be run in one measurement, so that the
- * clock can tell. */
+/** Return how many runs of so many seconds each make one measurement that the clock resolves. */
 long clock_repeats(double seconds);
 #endif

@@ -1,10 +1,10 @@
-/** Maximum norms; NaN is not seen. */
+/** Maximum norms, which ignore NaN. */
 #ifndef NORMS_H
 #define NORMS_H
 
-/** The largest |a_i - b_i|. */
+/** Return the largest |a_i - b_i|. */
 double norm_distance(int n, const double *a, const double *b);
 
-/** The largest |x_i|. */
+/** Return the largest |x_i|. */
 double norm_largest(int n, const double *x);
 #endif

@@ -24,8 +24,8 @@ void order_columns(const study_words *words, table_column *columns)
   columns[count] = (table_column){NULL, NULL};
 }
 
-static void add_row(result_table *rows, const study_subject *subject, double slope,
-                    const study_level *level)
+static void order_add_row(result_table *rows, const study_subject *subject, double slope,
+                          const study_level *level)
 {
   table_text(rows, subject->name);
   table_text(rows, subject->problem);
@@ -42,7 +42,7 @@ static void add_row(result_table *rows, const study_subject *subject, double slo
 
 /* --- Levels. --- */
 
-static dvi_status run_level(const study_subject *subject, double parts, study_level *level)
+static dvi_status order_run_level(const study_subject *subject, double parts, study_level *level)
 {
   dvi_status status = study_run(subject, parts, level);
   if (status == DVI_OK) status = study_watch(subject, parts, level);
@@ -65,12 +65,12 @@ dvi_status order_measure(const study_subject *subject, const levels_choice *choi
   result->ceiling = choice->ceiling;
   for (int k = 0; k < levels; k++) {
     study_level level = {.number = NULL};
-    const dvi_status status = run_level(subject, (double)choice->parts[k], &level);
+    const dvi_status status = order_run_level(subject, (double)choice->parts[k], &level);
     if (status != DVI_OK) return status;
     result->length[k] = fabs(level.length);
     result->error[k] = level.error;
     result->levels = k + 1;
-    add_row(rows, subject, order_local_slope(result, k), &level);
+    order_add_row(rows, subject, order_local_slope(result, k), &level);
   }
   result->settled = window_fit(result->levels, result->length, result->error, result->floor,
                                result->ceiling, &result->fit);
@@ -101,11 +101,11 @@ bool order_closer_settled(const order_result *result)
   return result->closer.asked && result->closer.missing == NULL && result->closer.settled;
 }
 
-/* Whether errors of the levels fall about as the closer look foretells. Those that fall far slower,
- * as behind a kink that it did not meet, are not on their way to that order. */
+/* Return whether errors of the levels fall about as the closer look predicts. If they fall far
+ * slower, as behind a kink that it did not meet, they are not on their way to that order. */
 static bool levels_agree(const order_result *result)
 {
-  static const double unsettled = 0.7, settled = 0.9; /* of the order */
+  static const double unsettled = 0.7, settled = 0.9; /* fraction of the order */
   if (order_fitted(result) < 2) return true;
   return result->fit.slope >= (result->settled ? settled : unsettled) * result->closer.fit.slope;
 }

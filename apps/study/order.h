@@ -1,5 +1,5 @@
-/** Order studies: the error at one level after another, the slope that is fitted to it, and whether
- *  that is the order that is claimed. */
+/** Order studies. They measure the error at one level after another, fit a slope, and decide
+ * whether the slope is the claimed order. */
 #ifndef ORDER_H
 #define ORDER_H
 #include <dvi/dvi.h>
@@ -9,60 +9,62 @@
 
 enum { CLOSER_LEVELS_MAX = 16, CLOSER_WORDS = 256 };
 
-/** A closer look, where levels do not show the claimed order: other levels, whose errors are
+/** A closer look where levels do not show the claimed order. Other levels are run, whose errors are
  * measured in more digits. */
 typedef struct closer_look {
   bool asked;
-  const char *missing; /**< why there is none; NULL: it is below */
-  const char *of;      /**< "single steps" */
-  const char *digits;  /**< "in quadruple precision" */
-  const char *unlike;  /**< what to ask if these levels have the order, and the others far less */
-  char title[CLOSER_WORDS], judge[CLOSER_WORDS]; /**< of its table; who judges it */
+  const char *missing; /**< reason why there is no closer look, or NULL */
+  const char *of;      /**< its parts, such as "single steps" */
+  const char *digits;  /**< its precision, such as "in quadruple precision" */
+  /** question to ask if these levels have the order, and the others fall far slower */
+  const char *unlike;
+  char title[CLOSER_WORDS], judge[CLOSER_WORDS]; /**< title of its table, and name of its judge */
   int levels;
   double length[CLOSER_LEVELS_MAX], error[CLOSER_LEVELS_MAX];
-  double excess;     /**< the slope of these errors less the order: 1 for errors of one part */
-  dvi_order_fit fit; /**< of the order */
+  double excess;     /**< excess of these errors' slope over the order, 1 for errors of one part */
+  dvi_order_fit fit; /**< fit of the order */
   bool settled;
 } closer_look;
 
-/** What was found for one subject. */
+/** The result for one subject. */
 typedef struct order_result {
   char name[STUDY_NAME];
   const study_words *words;
-  int claimed;             /**< its order */
-  bool chooses;            /**< so that the length is that of the first part alone */
-  double extent;           /**< how far it went */
-  char judge[STUDY_JUDGE]; /**< by whom it was judged, in words */
+  int claimed; /**< claimed order */
+  /** the subject chooses lengths, so that the length is that of the first part alone */
+  bool chooses;
+  double extent;           /**< extent of the run */
+  char judge[STUDY_JUDGE]; /**< description of the judge */
   double judge_error;
   int levels;
-  double length[STUDY_LEVELS_MAX]; /**< without sign */
+  double length[STUDY_LEVELS_MAX]; /**< length without sign */
   double error[STUDY_LEVELS_MAX];
   double floor, ceiling; /**< errors outside are not fitted */
   dvi_order_fit fit;
-  bool settled;       /**< the slope is the same all over the fitted levels */
-  closer_look closer; /**< asked where the levels do not show the claimed order */
+  bool settled;       /**< slope is the same all over the fitted levels */
+  closer_look closer; /**< closer look, requested where the levels do not show the claimed order */
 } order_result;
 
-/** Run all levels, and fit the order. Each is a row of the table, whose columns are
- *  order_columns. */
+/** Run all levels, and fit the order. Each level is a row of the table, whose columns are
+ * order_columns. */
 dvi_status order_measure(const study_subject *subject, const levels_choice *choice, int levels,
                          result_table *rows, order_result *result);
 
-/** Fill in the columns of the table, ended by one without a title. */
+/** Fill in the columns of the table, which end with one without a title. */
 enum { ORDER_COLUMNS_MAX = 8 + STUDY_FURTHER_MAX + STUDY_COUNTS_MAX };
 void order_columns(const study_words *words, table_column *columns);
 
-/** The order that level k and the one before it show; NaN if there is none. */
+/** Return the order between level k and the level before it, or NaN if there is none. */
 double order_local_slope(const order_result *result, int k);
 
-/** How many levels the fit has. */
+/** Return the number of levels of the fit. */
 int order_fitted(const order_result *result);
 
-/** Whether the closer look has an order, and whether it has the last word: its order counts if
- * errors of the levels fall about as it foretells. */
+/** Return whether the closer look has an order, and whether it decides. Its order counts if errors
+ * of the levels fall about as it predicts. */
 bool order_closer_settled(const order_result *result);
 bool order_closer_decides(const order_result *result);
 
-/** Whether a settled slope is the claimed order. */
+/** Return whether a settled slope is the claimed order. */
 bool order_holds(const order_result *result);
 #endif

@@ -6,8 +6,8 @@
 
 enum { PHRASE_SIZE = 192 };
 
-/* A phrase of the subject; "" if it has none. */
-static const char *say(const order_result *result, study_phrase phrase, char *text)
+/* Return a phrase of the subject, or "" if it has none. */
+static const char *order_phrase(const order_result *result, study_phrase phrase, char *text)
 {
   const char *said = study_say(result->words, phrase, result->extent, text, PHRASE_SIZE);
   return said != NULL ? said : "";
@@ -42,7 +42,7 @@ void order_print_tables(const char *problem, const result_table *rows, int resul
   (void)printf("Order on %s\n", problem);
   int first = 0;
   for (int i = 0; i < results; i++) {
-    const char *to = say(&result[i], STUDY_REACH, reach);
+    const char *to = order_phrase(&result[i], STUDY_REACH, reach);
     (void)printf("\n%s%s%s\n", result[i].name, to[0] != '\0' ? ", " : "", to);
     table_print(rows, stdout, 2, first, first + result[i].levels);
     first += result[i].levels;
@@ -53,7 +53,7 @@ void order_print_tables(const char *problem, const result_table *rows, int resul
 
 /* ---- verdicts ---- */
 
-/* From the first on a slope may look settled before it is, from the other on hardly any levels show
+/* Beyond SLOW_ORDER a slope may look settled too early, beyond HIDDEN_ORDER hardly any levels show
  * it. */
 enum { SLOW_ORDER = 8, HIDDEN_ORDER = 12 };
 
@@ -64,31 +64,31 @@ static int count_above(const order_result *result, double bound)
   return count;
 }
 
-/* What hides small errors. */
+/* Return the cause that hides small errors. */
 static const char *floor_cause(const order_result *result, char *text)
 {
   const bool of_judge = result->floor <= 1.01 * STUDY_FLOOR_MARGIN * result->judge_error;
-  const char *said = say(result, STUDY_ROUNDOFF, text);
+  const char *said = order_phrase(result, STUDY_ROUNDOFF, text);
   return of_judge ? "the judge's own error" : said[0] != '\0' ? said : "roundoff";
 }
 
-/* End the line with what to do, if anything is known. */
+/* End the line with advice, if there is any. */
 static void print_advice(FILE *stream, const order_result *result, study_phrase phrase)
 {
   char text[PHRASE_SIZE];
-  const char *advice = say(result, phrase, text);
+  const char *advice = order_phrase(result, phrase, text);
   (void)fprintf(stream, "%s%s\n", advice[0] != '\0' ? "; " : "", advice);
 }
 
-/* A line of advice. */
+/* Print a line of advice. */
 static void print_line(FILE *stream, const order_result *result, study_phrase phrase)
 {
   char text[PHRASE_SIZE];
-  const char *advice = say(result, phrase, text);
+  const char *advice = order_phrase(result, phrase, text);
   if (advice[0] != '\0') (void)fprintf(stream, "  %s\n", advice);
 }
 
-/* Too few levels between the floor and the ceiling. */
+/* Report too few levels between the floor and the ceiling. */
 static void print_missing(FILE *stream, const order_result *result)
 {
   char text[PHRASE_SIZE];
@@ -121,7 +121,7 @@ static void slopes_between(const order_result *result, double *least, double *mo
   }
 }
 
-/* What else can be done where errors of a high order are not in line with a power of the length. */
+/* Advise on errors of a high order that do not follow a power of the length. */
 static void print_remedy(FILE *stream, const order_result *result)
 {
   const closer_look *c = &result->closer;
@@ -130,7 +130,7 @@ static void print_remedy(FILE *stream, const order_result *result)
   if (order_closer_settled(result)) {
     char whole[PHRASE_SIZE];
     (void)fprintf(stream, "  %s have the order %.2f, but over %s errors fall far slower: %s\n",
-                  c->of, c->fit.slope, say(result, STUDY_WHOLE, whole), c->unlike);
+                  c->of, c->fit.slope, order_phrase(result, STUDY_WHOLE, whole), c->unlike);
   } else if (result->chooses) {
     print_line(stream, result, STUDY_EQUAL);
   } else {
@@ -168,14 +168,14 @@ static void print_levels(FILE *stream, const order_result *result)
   }
 }
 
-/* Why the levels were not enough. */
+/* Explain why the levels were not enough. */
 static void print_hidden(FILE *stream, const order_result *result)
 {
   double least, most;
   char whole[PHRASE_SIZE], reach[PHRASE_SIZE];
   slopes_between(result, &least, &most);
   (void)fprintf(stream, "  %s %s does not show it: %d of %d levels lie between floor and ceiling",
-                say(result, STUDY_WHOLE, whole), say(result, STUDY_REACH, reach),
+                order_phrase(result, STUDY_WHOLE, whole), order_phrase(result, STUDY_REACH, reach),
                 order_fitted(result), result->levels);
   if (order_fitted(result) > 1)
     (void)fprintf(stream, ", slope %.2f, %.2f to %.2f between neighbours", result->fit.slope, least,
@@ -200,7 +200,7 @@ void order_print_verdict(FILE *stream, const order_result *result)
     print_of_closer(stream, result);
   else
     print_levels(stream, result);
-  const char *at = say(result, STUDY_PLACE, place);
+  const char *at = order_phrase(result, STUDY_PLACE, place);
   (void)fprintf(stream, "  judge%s%s: %s%serror %.1e; errors up to %.1e are not fitted\n",
                 at[0] != '\0' ? " " : "", at, result->judge, result->judge[0] != '\0' ? ", " : "",
                 result->judge_error, result->floor);
@@ -208,8 +208,9 @@ void order_print_verdict(FILE *stream, const order_result *result)
 
 /* ---- plot ---- */
 
-/* A line of the claimed order's slope, a little below the subject's errors, over its window. */
-static int guide(const order_result *result, double *x, double *y)
+/* Make a line of the claimed order's slope, a little below the subject's errors, over its
+ * window. */
+static int slope_guide(const order_result *result, double *x, double *y)
 {
   if (order_fitted(result) < 2) return 0;
   const int ends[2] = {result->fit.first, result->fit.last};
@@ -227,7 +228,7 @@ bool order_plot(const char *problem, const result_table *rows, const plot_axes *
   double x[WORDS_MAX][2];
   double y[WORDS_MAX][2];
   for (int i = 0; i < results; i++) {
-    const int count = guide(&result[i], x[i], y[i]);
+    const int count = slope_guide(&result[i], x[i], y[i]);
     curve[i] = (plot_curve){.label = i == 0 ? "slopes of the claimed orders" : NULL,
                             .count = count,
                             .x = x[i],

@@ -1,4 +1,4 @@
-/** What order studies found: as tables, verdicts and a plot. */
+/** Reports of order studies by tables, verdicts and a plot. */
 #ifndef ORDER_REPORT_H
 #define ORDER_REPORT_H
 #include <stdio.h>
@@ -6,15 +6,15 @@
 #include "plot/axes.h"
 #include "study/order.h"
 
-/** Each subject's levels, aligned; `problem` stands above them. */
+/** Print each subject's levels, aligned, with `problem` above them. */
 void order_print_tables(const char *problem, const result_table *rows, int results,
                         const order_result *result);
 
-/** Who judged a subject, and whether it has its order. */
+/** Print the judge of a subject, and whether the subject has its order. */
 void order_print_verdict(FILE *stream, const order_result *result);
 
-/** Columns of the table against each other, the error against the length with the claimed slopes,
- * as an SVG file. False, with a complaint, if it cannot be written. */
+/** Draw columns of the table against each other into an SVG file, the error against the length with
+ * the claimed slopes. Complains and returns false if it cannot be written. */
 bool order_plot(const char *problem, const result_table *rows, const plot_axes *axes, int results,
                 const order_result *result, const char *path);
 #endif

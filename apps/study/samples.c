@@ -4,7 +4,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-static int by_size(const void *left, const void *right)
+static int compare_size(const void *left, const void *right)
 {
   const double a = *(const double *)left;
   const double b = *(const double *)right;
@@ -21,7 +21,7 @@ static double quantile(int count, const double *sorted, double part)
 
 spread samples_spread(int count, double *sample)
 {
-  qsort(sample, (size_t)count, sizeof *sample, by_size);
+  qsort(sample, (size_t)count, sizeof *sample, compare_size);
   return (spread){.least = sample[0],
                   .lower = quantile(count, sample, 0.25),
                   .median = quantile(count, sample, 0.5),
@@ -56,5 +56,5 @@ double samples_power(int count, const double *x, const double *y)
   }
   return widest > 1e-12 * fmax(1.0, fabs(mean_x))
              ? product / square
-             : (double)NAN; /* below: roundoff of one and the same x */
+             : (double)NAN; /* a smaller width is roundoff of a single x */
 }

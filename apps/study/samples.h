@@ -4,16 +4,16 @@
 
 enum { ROUNDS_MAX = 99 };
 
-/** Repeated measurements of one quantity: half of them lie between the quartiles. */
+/** Repeated measurements of one quantity. Half of them lie between the quartiles. */
 typedef struct spread {
   double least, lower, median, upper;
 } spread;
 
-/** Least, quartiles and median of sample [count], count >= 1, interpolated linearly between
- * neighbours (Hyndman and Fan's type 7). Sorts the sample. */
+/** Compute the least value, quartiles and median of sample [count], count >= 1, interpolated
+ * linearly between neighbours (Hyndman and Fan's type 7). Sorts the sample. */
 spread samples_spread(int count, double *sample);
 
-/** The exponent a of y = c x^a by least squares of the logarithms. Points that have no finite
- * logarithm are left out; NaN if fewer than two different x remain. */
+/** Fit the exponent a of y = c x^a by least squares of the logarithms. Points without finite
+ * logarithms are left out. NaN if fewer than two different x remain. */
 double samples_power(int count, const double *x, const double *y);
 #endif

@@ -4,7 +4,7 @@
 
 #include "study/clock.h"
 
-/* Forget what is known of a level, but for where its numbers go. */
+/* Clear a level, except for the pointer to its numbers. */
 static void level_clear(study_level *level, double refinement)
 {
   *level = (study_level){.refinement = refinement,

@@ -2,10 +2,10 @@
 
 #include <math.h>
 
-/* Errors that fall by less than an order of 1 follow no order. */
+/* Errors that fall slower than by an order of 1 follow no order. */
 static const double slowest = 0.5;
 
-/* Less than this part of numbers of its kind is what thousands of roundings leave of a 0. */
+/* A number below this fraction of numbers of its kind is a 0 with thousands of rounding errors. */
 static const double rounding = 1e-12;
 
 double trust_ratio(double coarse, double fine)
@@ -31,7 +31,7 @@ double trust_size(double size, double of_all)
   return size < rounding * of_all ? of_all : size;
 }
 
-/* A number that is 0 without an error is all that it can be. */
+/* Count the digits. A number that is 0 without an error has all digits. */
 int trust_digits(double error, double size)
 {
   if (!(error < size)) return error > 0.0 || isnan(error) ? 0 : TRUST_DIGITS_MOST;

@@ -1,30 +1,31 @@
-/** How many digits of a result can be trusted, from results at a step, its half and its quarter. */
+/** The number of trusted digits of a result, from results at a step, its half and its quarter. */
 #ifndef TRUST_H
 #define TRUST_H
 #include <stdbool.h>
 
 enum { TRUST_LEVELS = 3, TRUST_DIGITS_MOST = 15 };
 
-/** By which factor differences fall when the step is halved, from the distances of the first
- *  level and the second, and of the second and the third: about 2^-order once the errors follow
- *  their power of h. 1 without a distance. */
+/** Return the factor by which differences fall when the step is halved, from the distances of the
+ * first level and the second, and of the second and the third. It is about 2^-order once the errors
+ * follow their power of h, and 1 without a distance. */
 double trust_ratio(double coarse, double fine);
 
-/** Whether errors that fall so follow their power of h. */
+/** Return whether errors that fall by this factor follow their power of h. */
 bool trust_falls(double ratio);
 
-/** An estimate of the error of the first level's number.
+/** Estimate the error of the first level's number.
  *
- *  Where the errors fall, it is the distance from the last level and what is left of that one's
- *  own error. Where they do not (roundoff, chaos, or steps that do not resolve the motion), it
- *  is the largest distance of any two of them, four times. */
+ * Where the errors fall, the estimate is the distance from the last level plus the remaining error
+ * of the last level. Elsewhere (roundoff, chaos, or steps that do not resolve the motion) it is
+ * four times the largest distance of any two levels. */
 double trust_error(double first, double second, double third, double ratio);
 
-/** What the digits of a number are relative to, of its largest magnitude on the way and that of
- *  all numbers of its kind: the latter where the number is nothing but rounding. */
+/** Return the size that the digits of a number are relative to, from its largest magnitude during
+ * the run and that of all numbers of its kind. The latter counts where the number is only
+ * rounding. */
 double trust_size(double size, double of_all);
 
-/** Whole digits of a number of that size with such an error: at most TRUST_DIGITS_MOST, at least
- *  0. */
+/** Count the whole digits of a number of that size with such an error, from 0 to
+ * TRUST_DIGITS_MOST. */
 int trust_digits(double error, double size);
 #endif

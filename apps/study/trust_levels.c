@@ -4,8 +4,8 @@
 
 #include "study/norms.h"
 
-/* The distances of the witness's runs, whose refinements are apart by such a factor, tell its own
- * error up to the other one. */
+/* The ratio of the refinements of the witness's runs, whose distances tell its own error up to the
+ * factor `doubt`. */
 static const double witness_factor = 10.0, doubt = 10.0;
 
 dvi_status trust_run(trust_study *t, const study_subject *subject)
@@ -18,19 +18,20 @@ dvi_status trust_run(trust_study *t, const study_subject *subject)
   return status;
 }
 
-/* How the numbers of a group fall, all together. */
-static double fall(const trust_study *t, const trust_group *g)
+/* Return the factor by which the numbers of a group fall, all together. */
+static double group_ratio(const trust_study *t, const trust_group *g)
 {
   const double *const *level = (const double *const *)t->number;
   return trust_ratio(norm_distance(g->count, level[0] + g->first, level[1] + g->first),
                      norm_distance(g->count, level[1] + g->first, level[2] + g->first));
 }
 
-/* A number falls as all of the first group do, or as all of the second, or more slowly. */
+/* Estimate the errors. A number falls as all of the first group do, or as all of the second, or
+ * more slowly. */
 void trust_estimate(trust_study *t)
 {
   const trust_group *g = t->group;
-  t->verdict.ratio = fmax(fall(t, &g[0]), g[1].count > 0 ? fall(t, &g[1]) : 0.0);
+  t->verdict.ratio = fmax(group_ratio(t, &g[0]), g[1].count > 0 ? group_ratio(t, &g[1]) : 0.0);
   for (int i = 0; i < t->count; i++) {
     const double first = t->number[0][i], second = t->number[1][i], third = t->number[2][i];
     const double own = trust_ratio(fabs(first - second), fabs(second - third));
@@ -40,7 +41,7 @@ void trust_estimate(trust_study *t)
 
 /* ---- the witness ---- */
 
-/* At its own refinement, at a finer one, and at a coarser one. */
+/* Run the witness at its own refinement, at a finer one, and at a coarser one. */
 static bool run_witness(trust_study *t, const study_subject *witness)
 {
   static const int number[TRUST_LEVELS] = {1, 0, 2};
@@ -52,8 +53,8 @@ static bool run_witness(trust_study *t, const study_subject *witness)
   return true;
 }
 
-/* Two levels may agree by chance, three hardly do. The error of the coarsest one is a hundred times
- * that of the finest. */
+/* Estimate the witness's error from three levels, because two may agree by chance. The error of the
+ * coarsest level is a hundred times that of the finest. */
 static double witness_distance(const trust_study *t, int first, int count)
 {
   const double *const *witness = (const double *const *)t->witness;
@@ -62,28 +63,28 @@ static double witness_distance(const trust_study *t, int first, int count)
                   (witness_factor * witness_factor));
 }
 
-static double relative(double error, double size)
+static double relative_error(double error, double size)
 {
   return size > 0.0 ? error / size : 0.0;
 }
 
-/* An error of the whole result turns from one group into the other and back, and no number's own
- * error is less in its size. */
+/* Estimate the witness's errors. An error of the whole result turns from one group into the other
+ * and back, so that no number's own relative error is taken as smaller. */
 static void measure_witness(trust_study *t)
 {
   double whole = 0.0;
   for (int k = 0; k < TRUST_GROUPS; k++) {
     const trust_group *g = &t->group[k];
-    whole = fmax(whole, relative(witness_distance(t, g->first, g->count),
-                                 norm_largest(g->count, t->size + g->first)));
+    whole = fmax(whole, relative_error(witness_distance(t, g->first, g->count),
+                                       norm_largest(g->count, t->size + g->first)));
   }
   for (int i = 0; i < t->count; i++)
     t->witness_error[i] = fmax(whole * t->size[i], witness_distance(t, i, 1));
 }
 
-/* Whether the witness is farther away than both errors explain; the last group that was judged is
- * told. */
-static bool judge_group(trust_study *t, const trust_group *g)
+/* Return whether the witness is farther away than both errors explain. The verdict tells of the
+ * last group that was judged. */
+static bool trust_judge_group(trust_study *t, const trust_group *g)
 {
   trust_verdict *verdict = &t->verdict;
   const double apart = norm_distance(g->count, t->number[0] + g->first, t->witness[0] + g->first);
@@ -100,8 +101,8 @@ void trust_hear(trust_study *t, const study_subject *witness)
   t->verdict.witness = run_witness(t, witness);
   if (!t->verdict.witness) return;
   measure_witness(t);
-  const bool in_second = judge_group(t, &t->group[1]);
-  if (!judge_group(t, &t->group[0]) && in_second) (void)judge_group(t, &t->group[1]);
+  const bool in_second = trust_judge_group(t, &t->group[1]);
+  if (!trust_judge_group(t, &t->group[0]) && in_second) (void)trust_judge_group(t, &t->group[1]);
   for (int i = 0; i < t->count; i++)
     t->error[i] = fmax(t->error[i],
                        fabs(t->number[0][i] - t->witness[0][i]) - doubt * t->witness_error[i]);

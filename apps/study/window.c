@@ -2,23 +2,24 @@
 
 #include <math.h>
 
-static const double half_tolerance =
-    0.1; /* half of what an order may miss: the slope still moves beyond the window */
-static const double error_tolerance = 0.05; /* a quarter of it: four standard errors */
+/* Half of the tolerance of an order, because the slope still moves beyond the window. */
+static const double half_tolerance = 0.1;
+/* a quarter of the tolerance of an order, four standard errors */
+static const double error_tolerance = 0.05;
 
-/* The slope fitted to levels first to last, whatever their errors. */
-static double slope(const double *h, const double *error, int first, int last)
+/* Fit the slope to levels first to last, whatever their errors. */
+static double fitted_slope(const double *h, const double *error, int first, int last)
 {
   dvi_order_fit fit;
   (void)dvi_order(last - first + 1, h + first, error + first, 0.0, 0.0, &fit);
   return fit.slope;
 }
 
-/* The standard error of that slope, from the distances of the points to the fitted line. */
+/* Compute the standard error of that slope, from the distances of the points to the fitted line. */
 static double slope_error(const double *h, const double *error, int first, int last)
 {
   const int count = last - first + 1;
-  const double fitted = slope(h, error, first, last);
+  const double fitted = fitted_slope(h, error, first, last);
   double x_mean = 0.0, rest_mean = 0.0, spread = 0.0, squares = 0.0;
   for (int i = first; i <= last; i++) {
     x_mean += log(h[i]) / count;
@@ -33,11 +34,11 @@ static double slope_error(const double *h, const double *error, int first, int l
   return sqrt(squares / ((count - 2) * spread));
 }
 
-static bool settled(const double *h, const double *error, int first, int last)
+static bool is_settled(const double *h, const double *error, int first, int last)
 {
   const int half = (last - first + 2) / 2;
-  const double coarse = slope(h, error, first, first + half - 1);
-  const double fine = slope(h, error, last - half + 1, last);
+  const double coarse = fitted_slope(h, error, first, first + half - 1);
+  const double fine = fitted_slope(h, error, last - half + 1, last);
   return fabs(coarse - fine) <= half_tolerance &&
          slope_error(h, error, first, last) <= error_tolerance;
 }
@@ -52,9 +53,10 @@ bool window_fit(int levels, const double *h, const double *error, double floor, 
       const int last = first + count - 1;
       bool usable = true;
       for (int i = first; i <= last; i++) usable = usable && error[i] > floor && error[i] < ceiling;
-      found = usable && settled(h, error, first, last);
+      found = usable && is_settled(h, error, first, last);
       if (found)
-        *fit = (dvi_order_fit){.slope = slope(h, error, first, last), .first = first, .last = last};
+        *fit = (dvi_order_fit){
+            .slope = fitted_slope(h, error, first, last), .first = first, .last = last};
     }
   return found;
 }

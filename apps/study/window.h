@@ -7,16 +7,16 @@
 /** Fewer levels than this decide nothing. */
 enum { WINDOW_LEVELS = 4 };
 
-/** Fit an order to the longest run of levels over which the slope is settled: its coarser and its
- * finer half show the same slope within 0.1, and the standard error of the fitted slope is 0.05 at
- * most. Of equally long runs the finest is taken. Nothing here knows which order is claimed.
+/** Fit an order to the longest run of levels with a settled slope. The slopes of its coarser and
+ * its finer half agree within 0.1, and the standard error of the fitted slope is at most 0.05. Of
+ * equally long runs the finest is taken. The function does not know which order is claimed.
  *
- *  @param      levels    how many
- *  @param      h, error  [levels], h positive and descending
- *  @param      floor     errors up to this are left out
- *  @param      ceiling   errors from this on are left out
- *  @param[out] fit       if there is no such run, the fit to the longest run between floor and
- * ceiling
+ *  @param      levels    number of levels
+ *  @param      h, error  [levels] h is positive and descending
+ *  @param      floor     errors up to this one are left out
+ *  @param      ceiling   errors from this one on are left out
+ *  @param[out] fit       the fit, to the longest run between floor and ceiling if there is no such
+ *                        run
  *  @return whether there is such a run */
 bool window_fit(int levels, const double *h, const double *error, double floor, double ceiling,
                 dvi_order_fit *fit);

@@ -10,9 +10,10 @@
 
 enum { LEVELS_DEFAULT = 6 };
 
-static const double first_error = 1e-2; /* of each subject, relative to the solution */
-static const double above_asked = 1e3;  /* the first error over the largest asked one, at most, */
-static const double more_parts = 4.0;   /* as far as that takes times as many parts at most */
+static const double first_error = 1e-2; /* first error of each subject, relative to the solution */
+/* largest ratio of the first error to the largest asked one */
+static const double above_asked = 1e3;
+static const double more_parts = 4.0; /* largest factor in parts for this ratio */
 
 /* ---- jobs ---- */
 
@@ -25,7 +26,7 @@ static void job_name(work_job *job, const study_subject *subject, double refinem
                    subject->span / refinement);
 }
 
-/* Run the level once, watched and unwatched; the job counts if it has a result. */
+/* Run the level once with `watch` and once without. The job counts if it has a result. */
 static dvi_status job_try(work *w, const study_subject *subject, double refinement)
 {
   work_job *job = &w->job[w->jobs];
@@ -40,7 +41,7 @@ static dvi_status job_try(work *w, const study_subject *subject, double refineme
   return status;
 }
 
-static void leave_out(const work *w)
+static void warn_left_out(const work *w)
 {
   const work_job *job = &w->job[w->jobs];
   const study_subject *subject = job->subject;
@@ -53,7 +54,7 @@ dvi_status work_add(work *w, const study_subject *subject, double refinement)
   if (w->jobs == w->room) return DVI_BAD_SIZE;
   const dvi_status status = job_try(w, subject, refinement);
   if (status <= 0) return status;
-  leave_out(w);
+  warn_left_out(w);
   return DVI_OK;
 }
 
@@ -66,21 +67,21 @@ double work_smallest_asked(const numbers *asked)
   return smallest;
 }
 
-/* Where a subject of this order begins: levels far above the errors that are asked for would tell
- * nothing, and of a high order take long. */
+/* Choose the first error of a subject. Levels far above the asked errors would tell nothing, and of
+ * a high order take long. */
 static double first_error_of(const work *w, const study_subject *subject)
 {
   double asked = 0.0;
   for (int i = 0; i < w->asked->count; i++) asked = fmax(asked, w->asked->number[i]);
   if (asked == 0.0) return first_error;
-  /* Else no level would lie above the floor. */
+  /* Without this bound no level would lie above the floor. */
   const double judged = STUDY_FLOOR_MARGIN * STUDY_FLOOR_MARGIN * w->judge_error;
   const double near = fmin(first_error, fmax(above_asked * asked, judged) / subject->size);
   return fmax(near, first_error * pow(more_parts, -subject->order));
 }
 
-/* Whether the last level took clearly less time than the one before: smaller parts are cheaper
- * where they let a simpler solver work. */
+/* Return whether the last level took clearly less time than the one before. Smaller parts are
+ * cheaper where they let a simpler solver work. */
 static bool became_cheaper(const work *w, int first)
 {
   static const double clearly = 0.9;
@@ -88,8 +89,8 @@ static bool became_cheaper(const work *w, int first)
   return w->jobs > first + 1 && last->level.seconds < clearly * (last - 1)->level.seconds;
 }
 
-/* Whether neither of the last two levels is better than all before them: one may be worse than a
- * larger part by chance. */
+/* Return whether neither of the last two levels is better than all before them. A single one may be
+ * worse than a larger part by chance. */
 static bool floor_is_reached(const work *w, int first)
 {
   double best = HUGE_VAL;
@@ -98,13 +99,13 @@ static bool floor_is_reached(const work *w, int first)
   return w->job[w->jobs - 2].level.error >= best && w->job[w->jobs - 1].level.error >= best;
 }
 
-/* Go on with smaller parts to the smallest asked error, as long as they make the error smaller; and
+/* Go on with smaller parts to the smallest asked error, as long as they make the error smaller, and
  * beyond it as long as they make the job cheaper. */
 static dvi_status add_smaller(work *w, const study_subject *subject, int first)
 {
   static const double ratio = 1.5;
-  static const double parts_max = 1L
-                                  << 20; /* of one job: some seconds at most for a small problem */
+  /* Limit of one job, some seconds at most for a small problem. */
+  static const double parts_max = 1L << 20;
   const double wanted = work_smallest_asked(w->asked);
   dvi_status status = DVI_OK;
   if (w->jobs == first) return DVI_OK;
@@ -119,8 +120,8 @@ static dvi_status add_smaller(work *w, const study_subject *subject, int first)
   return status;
 }
 
-/* Add larger parts, twice as large each, as long as their errors are about that of the first level:
- * those of fast phases do not fall with the length before it resolves them. */
+/* Add larger parts, each twice as large, as long as their errors are about that of the first level.
+ * Errors of fast phases do not fall with the length before it resolves them. */
 static dvi_status add_larger(work *w, const study_subject *search, const study_subject *subject,
                              long parts)
 {
@@ -157,7 +158,7 @@ dvi_status work_add_levels(work *w, const study_subject *search, const study_sub
   return status == DVI_OK && extend ? add_smaller(w, subject, first) : status;
 }
 
-/* Whether the smallest asked error is not met by the jobs from `first` on. */
+/* Return whether no job from `first` on meets the smallest asked error. */
 static bool more_wanted(const work *w, int first)
 {
   const double wanted = work_smallest_asked(w->asked);
@@ -173,7 +174,7 @@ void work_add_tolerances(work *w, const study_subject *subject, int count, const
   for (int k = 0; k < count && (k < always || more_wanted(w, first)); k++) {
     if (w->progress != NULL) progress_show(w->progress, -1.0, subject->name);
     if (w->jobs == w->room || job_try(w, subject, tolerance[k]) == DVI_OK) continue;
-    leave_out(w);
+    warn_left_out(w);
   }
 }
 

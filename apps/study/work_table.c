@@ -21,7 +21,7 @@ void work_columns(const study_words *words, table_column *columns)
   memcpy(columns + count, tail, sizeof tail);
 }
 
-static void add_row(result_table *rows, const work *w, const work_job *job)
+static void work_add_row(result_table *rows, const work *w, const work_job *job)
 {
   const study_words *words = job->subject->words;
   table_text(rows, job->subject->name);
@@ -42,7 +42,7 @@ static void add_row(result_table *rows, const work *w, const work_job *job)
 result_table *work_table(const work *w, const table_column *columns)
 {
   result_table *rows = table_create(columns);
-  for (int i = 0; i < w->jobs; i++) add_row(rows, w, &w->job[i]);
+  for (int i = 0; i < w->jobs; i++) work_add_row(rows, w, &w->job[i]);
   return rows;
 }
 
