@@ -12,7 +12,7 @@
 #include "cli/spelling.h"
 #include "study/norms.h"
 
-/* A judge that is off by this many times its own error is wrong about it. */
+/* A judge that is off by more than this multiple of its own error is contradicted. */
 static const double contradiction = 10.0;
 
 static const char *const kinds[] = {[JUDGE_AUTO] = "auto",
@@ -22,7 +22,7 @@ static const char *const kinds[] = {[JUDGE_AUTO] = "auto",
                                     [JUDGE_RUNS] = "runs"};
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
-static const char *kind_at(int k, const void *list)
+static const char *judge_kind_at(int k, const void *list)
 {
   (void)list;
   return k < KINDS ? kinds[k] : NULL;
@@ -37,7 +37,7 @@ int judge_read(const char *where, const char *name, judge_kind *kind)
       return DONE;
     }
   return usage_error("%s knows auto, exact, stored, ida and runs, not '%s'%s", where, name,
-                     suggestion(name, kind_at, NULL, hint, sizeof hint));
+                     suggestion(name, judge_kind_at, NULL, hint, sizeof hint));
 }
 
 static void set_words(judgement *judge, const char *words)
@@ -45,14 +45,15 @@ static void set_words(judgement *judge, const char *words)
   (void)snprintf(judge->words, sizeof judge->words, "%s", words);
 }
 
-/* p [n]: room. */
+/* Take the exact solution. p [n] is working memory. */
 static bool ask_exact(judgement *judge, const problem *scene, double t_end, double *p)
 {
   if (scene->exact == NULL || scene->exact(scene, t_end, judge->q, p) != 0) return false;
   set_words(judge, "exact solution");
   judge->error = 4.0 * DBL_EPSILON *
                  fmax(1.0,
-                      norm_largest(scene->nq, judge->q)); /* some roundings in its evaluation */
+                      /* some rounding errors in its evaluation */
+                      norm_largest(scene->nq, judge->q));
   return true;
 }
 
@@ -81,8 +82,8 @@ static dvi_status ask_ida(judgement *judge, const problem *scene, double t_end, 
   return DVI_OK;
 }
 
-/* The runs took the place of IDA, whose answer is `ida`: IDA remains as their witness, and if it
- * contradicts them their error is not what they say. */
+/* Add IDA as a witness of the runs, which replaced its answer `ida`. If IDA contradicts the runs,
+ * their error is the distance. */
 static void add_witness(judgement *judge, int n, const double *ida, double ida_error)
 {
   const double apart = norm_distance(n, judge->q, ida);
@@ -92,8 +93,8 @@ static void add_witness(judgement *judge, int n, const double *ida, double ida_e
                  " (IDA, of error %.1e, is %.1e away)", ida_error, apart);
 }
 
-/* IDA shares no code with the methods, so it is asked first; of its answer and that of the runs the
- * one with the smaller error is taken. ida [n]: room for its answer. */
+/* Ask IDA first, because it shares no code with the methods. Of its answer and that of the runs,
+ * the one with the smaller error is taken. ida [n] is working memory. */
 static dvi_status ask_ida_then_runs(judgement *judge, const problem *scene, double t_end,
                                     const judge_request *request, double *p, double *ida)
 {
@@ -119,7 +120,7 @@ static dvi_status ask_ida_then_runs(judgement *judge, const problem *scene, doub
   return DVI_OK;
 }
 
-static int refuse(const problem *scene, double t_end, const judge_request *request)
+static int refuse_judge(const problem *scene, double t_end, const judge_request *request)
 {
   if (request->kind == JUDGE_EXACT)
     return usage_error("--judge exact: %s has no known exact solution", scene->name);
@@ -128,15 +129,15 @@ static int refuse(const problem *scene, double t_end, const judge_request *reque
       t_end);
 }
 
-/* p, ida [n]: room. */
-static int ask(judgement *judge, const problem *scene, double t_end, const judge_request *request,
-               double *p, double *ida)
+/* Ask the judge of the request. p and ida [n] are working memory. */
+static int judge_ask(judgement *judge, const problem *scene, double t_end,
+                     const judge_request *request, double *p, double *ida)
 {
   const judge_kind kind = request->kind;
   dvi_status status;
   if ((kind == JUDGE_AUTO || kind == JUDGE_EXACT) && ask_exact(judge, scene, t_end, p)) return DONE;
   if ((kind == JUDGE_AUTO || kind == JUDGE_STORED) && ask_digits(judge, scene, t_end)) return DONE;
-  if (kind == JUDGE_EXACT || kind == JUDGE_STORED) return refuse(scene, t_end, request);
+  if (kind == JUDGE_EXACT || kind == JUDGE_STORED) return refuse_judge(scene, t_end, request);
   if (kind == JUDGE_RUNS)
     status = judge_by_runs(judge, scene, t_end, request->progress);
   else if (kind == JUDGE_IDA)
@@ -155,7 +156,7 @@ int judge_init(judgement *judge, const problem *scene, double t_end, const judge
   judge->q = calloc(n, sizeof *judge->q);
   double *room = calloc(2 * n, sizeof *room);
   const int code = judge->q != NULL && room != NULL
-                       ? ask(judge, scene, t_end, request, room, room + n)
+                       ? judge_ask(judge, scene, t_end, request, room, room + n)
                        : library_error(DVI_NO_MEMORY);
   free(room);
   return code;

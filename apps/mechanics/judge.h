@@ -1,4 +1,4 @@
-/** The judge of a study: where the solution truly is at the end. */
+/** The judge of a study, which knows the true solution at the end. */
 #ifndef JUDGE_H
 #define JUDGE_H
 #include "problem.h"
@@ -6,44 +6,44 @@
 
 enum { JUDGE_WORDS = 256 };
 
-/** Who is asked. */
+/** The kind of judge. */
 typedef enum judge_kind {
-  JUDGE_AUTO,   /**< the first of these that is there; of IDA and the runs the one of the smaller
-                   error */
+  /** the first of the following kinds that is available, and of IDA and the runs the one with the
+   * smaller error */
+  JUDGE_AUTO,
   JUDGE_EXACT,  /**< the exact solution */
   JUDGE_STORED, /**< the catalogue's digits, for the problem's own parameters and end */
   JUDGE_IDA,    /**< IDA at two tolerances */
   JUDGE_RUNS    /**< two Galerkin runs of high degree, different in degree and step */
 } judge_kind;
 
-/** What is asked for; all zero: the best judge that there is. */
+/** A request. All zero asks for the best judge. */
 typedef struct judge_request {
   judge_kind kind;
-  double wanted;           /**< auto: with an error of IDA up to this the runs are not asked */
-  progress_line *progress; /**< shown while the judge works; NULL: none */
+  double wanted;           /**< error of IDA up to which JUDGE_AUTO does not ask the runs */
+  progress_line *progress; /**< progress of the judge, or NULL */
 } judge_request;
 
-/** The best answer there is, and how good it is. */
+/** The best available answer, and its quality. */
 typedef struct judgement {
-  char words[JUDGE_WORDS]; /**< what it rests on */
-  double *q;               /**< [n], owned */
-  double
-      *other; /**< [n], owned: a second answer, which is `error` away; NULL if there is one alone */
-  double error; /**< its own error in q, in the maximum norm */
+  char words[JUDGE_WORDS]; /**< description of its basis */
+  double *q;               /**< [n] owned */
+  double *other;           /**< [n] owned second answer at the distance `error`, or NULL */
+  double error;            /**< own error in q, in the maximum norm */
 } judgement;
 
-/** Read the name of a kind. Returns DONE; or complains, about `where` ("bench: --judge"), and
+/** Read the name of a kind. Returns DONE, or complains about `where`, such as "bench: --judge", and
  * returns USAGE. */
 int judge_read(const char *where, const char *name, judge_kind *kind);
 
-/** Ask. Returns DONE, or complains and returns the exit code: there is no such judge for this
- * problem and end, or it failed. */
+/** Ask the judge. Returns DONE, or complains and returns the exit code if there is no such judge
+ * for this problem and end, or if it failed. */
 int judge_init(judgement *judge, const problem *scene, double t_end, const judge_request *request);
 
-/** Free what judge_init made; allowed on a judge that is all zero. */
+/** Free the memory of a judge. Allowed on a judge that is all zero. */
 void judge_clear(judgement *judge);
 
-/** Distance of q [n] from the judge's answer, in the maximum norm; from the farther one if there
- * are two. */
+/** Return the distance of q [n] from the judge's answer in the maximum norm, and from the farther
+ * one if there are two. */
 double judge_error(const judgement *judge, const problem *scene, const double *q);
 #endif

@@ -8,27 +8,30 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The runs share neither their polynomials nor, because the number of steps differs by a factor
- * near the golden ratio, the ends of their steps (but the first and the last). At every level both
- * halve their steps. Two runs may agree by luck, so the ends of the level before must agree too:
- * the error is the largest distance of these four from each other. */
+/* The runs do not share their polynomials. The ends of their steps differ as well, except the first
+ * and the last, because the numbers of steps differ by a factor near the golden ratio. At every
+ * level both halve their steps. Two runs may agree by luck, so the ends of the level before must
+ * agree, too. The error is the largest distance of these four from each other. */
 enum { LEVELS_MAX = 16, PROGRESS_STEPS = 256 };
 static const double other_ratio = 1.618;
-static const double first_step = 8.0; /* of the problem's own step for a first run of low degree */
-static const double steps_max = 1L << 20; /* of a run */
-static const double agreement =
-    1e-6; /* relative: before that, an error that does not fall may be one of steps too large */
+/* multiple of the problem's own step in a first run of low degree */
+static const double first_step = 8.0;
+static const double steps_max = 1L << 20; /* limit of a run */
+/* Relative error above which an error that does not fall may still be one of steps that are too
+ * large. */
+static const double agreement = 1e-6;
 
-/* A method, and the key and its two values that the runs differ in. */
+/* A method, and the key and its two values in which the runs differ. */
 typedef struct runner {
   const char *method, *key;
   int value[2];
 } runner;
 
-static const runner galerkin = {"galerkin", "degree", {16, 12}},
-                    lie_galerkin = {"lie-galerkin", "degree", {16, 12}},
-                    vprk = {"vprk", "nodes", {6, 5}}, dg_phase = {"dg-phase", "degree", {6, 5}},
-                    hamiltonian = {"hamiltonian", "degree", {6, 5}};
+static const runner galerkin = {.method = "galerkin", .key = "degree", .value = {16, 12}},
+                    lie_galerkin = {.method = "lie-galerkin", .key = "degree", .value = {16, 12}},
+                    vprk = {.method = "vprk", .key = "nodes", .value = {6, 5}},
+                    dg_phase = {.method = "dg-phase", .key = "degree", .value = {6, 5}},
+                    hamiltonian = {.method = "hamiltonian", .key = "degree", .value = {6, 5}};
 
 static const runner *runner_for(const dvi_system_terms *terms)
 {
@@ -37,13 +40,13 @@ static const runner *runner_for(const dvi_system_terms *terms)
   return terms->one_form != NULL ? &vprk : &galerkin;
 }
 
-/* Ends of runs. */
+/* The ends of the runs. */
 typedef struct levels {
   const runner *by;
-  double *now;    /* [2][n] by the first value, by the second */
-  double *before; /* [2][n] the same of the level before */
-  bool follows;   /* whether there was one */
-  double best;    /* the smallest error so far of two levels that follow each other */
+  double *now;    /* [2][n] ends by the first value and by the second */
+  double *before; /* [2][n] ends of the level before */
+  bool follows;   /* there was a level before */
+  double best;    /* smallest error so far of two levels that follow each other */
 } levels;
 
 static dvi_status run_once(const problem *scene, const runner *by, int which, long steps,
@@ -63,8 +66,8 @@ static dvi_status run_once(const problem *scene, const runner *by, int which, lo
   return status;
 }
 
-/* The largest distance of any two ends. Equal ends are no proof of no error: the last place
- * remains. */
+/* Return the largest distance of any two ends, and at least the last place, because equal ends do
+ * not prove that there is no error. */
 static double spread_of(const levels *l, int n)
 {
   const double *const end[4] = {l->now, l->now + n, l->before, l->before + n};
@@ -74,8 +77,8 @@ static double spread_of(const levels *l, int n)
   return apart;
 }
 
-static void keep(judgement *judge, int n, const runner *by, const double *ends, double error,
-                 const long *steps)
+static void keep_ends(judgement *judge, int n, const runner *by, const double *ends, double error,
+                      const long *steps)
 {
   memcpy(judge->q, ends, (size_t)n * sizeof *ends);
   memcpy(judge->other, ends + n, (size_t)n * sizeof *ends);
@@ -85,12 +88,12 @@ static void keep(judgement *judge, int n, const runner *by, const double *ends, 
                  by->value[0], steps[0], by->key, by->value[1], steps[1]);
 }
 
-/* Take the ends of a level. True if the next one will not be better. */
+/* Take the ends of a level. Returns true if the next level will not be better. */
 static bool take_level(judgement *judge, int n, levels *l, const long *steps)
 {
   const double error = spread_of(l, n);
   const bool settled = l->best <= agreement * norm_largest(n, l->now) && !(error < 0.5 * l->best);
-  if (error < l->best) keep(judge, n, l->by, l->now, error, steps);
+  if (error < l->best) keep_ends(judge, n, l->by, l->now, error, steps);
   if (l->follows) l->best = fmin(l->best, error);
   double *room = l->before;
   l->before = l->now;
@@ -99,8 +102,8 @@ static bool take_level(judgement *judge, int n, levels *l, const long *steps)
   return settled;
 }
 
-static dvi_status refine(judgement *judge, const problem *scene, double t_end,
-                         progress_line *progress, levels *l)
+static dvi_status refine_runs(judgement *judge, const problem *scene, double t_end,
+                              progress_line *progress, levels *l)
 {
   const int n = scene->nq;
   dvi_status failure = DVI_OK;
@@ -128,7 +131,7 @@ dvi_status judge_by_runs(judgement *judge, const problem *scene, double t_end,
   levels l = {
       .by = runner_for(scene->terms), .now = ends, .before = ends + 2 * n, .best = HUGE_VAL};
   const dvi_status status = ends != NULL && judge->other != NULL
-                                ? refine(judge, scene, t_end, progress, &l)
+                                ? refine_runs(judge, scene, t_end, progress, &l)
                                 : DVI_NO_MEMORY;
   free(ends);
   return status;

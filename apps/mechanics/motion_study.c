@@ -14,7 +14,7 @@
 
 const char *motion_say(study_phrase phrase, double t_end, char *text, size_t size)
 {
-  /* Of the span: for a shorter one the errors of high orders fall into line. */
+  /* Factor of a shorter span, over which the errors of high orders follow their power. */
   static const double shorter = 0.25;
   switch (phrase) {
   case STUDY_REACH: (void)snprintf(text, size, "to t = %g", t_end); return text;
@@ -54,10 +54,22 @@ const study_words *motion_words(const problem *scene)
                                                {NULL, NULL}};
   static const table_column plain[] = {
       {"residuals", "%.0f"}, {"jacobians", "%.0f"}, {"factorizations", "%.0f"}, {NULL, NULL}};
-  static const study_words on_lines = {"method",         "problem", "h",   "steps",
-                                       "create_seconds", further,   plain, motion_say};
-  static const study_words with_distance = {"method",         "problem", "h",           "steps",
-                                            "create_seconds", further,   with_manifold, motion_say};
+  static const study_words on_lines = {.subject = "method",
+                                       .problem = "problem",
+                                       .length = "h",
+                                       .parts = "steps",
+                                       .preparation = "create_seconds",
+                                       .further = further,
+                                       .counted = plain,
+                                       .say = motion_say};
+  static const study_words with_distance = {.subject = "method",
+                                            .problem = "problem",
+                                            .length = "h",
+                                            .parts = "steps",
+                                            .preparation = "create_seconds",
+                                            .further = further,
+                                            .counted = with_manifold,
+                                            .say = motion_say};
   return scene->velocity != NULL ? &with_distance : &on_lines;
 }
 
@@ -65,10 +77,10 @@ enum { RESIDUALS, JACOBIANS, FACTORIZATIONS, DISTANCE };
 
 /* ---- levels ---- */
 
-/* Integrate from q [n] and the problem's momenta with so many equal steps; `options` may be
+/* Integrate from q [n] and the problem's momenta with so many equal steps. `options` may be
  * NULL. */
-static dvi_status integrate(motion_study *s, const double *q, const dvi_start_options *options,
-                            double steps)
+static dvi_status motion_integrate(motion_study *s, const double *q,
+                                   const dvi_start_options *options, double steps)
 {
   const dvi_status status = dvi_integrator_start_with(s->integrator, 0.0, q, s->motion.scene->p,
                                                       options);
@@ -84,7 +96,7 @@ static dvi_status motion_run(void *user, double steps, study_level *level)
   dvi_integrator_counters(s->integrator, &before);
   level->parts = steps;
   level->length = s->subject.span / steps;
-  const dvi_status status = integrate(s, s->motion.scene->q, NULL, steps);
+  const dvi_status status = motion_integrate(s, s->motion.scene->q, NULL, steps);
   if (status != DVI_OK) return status;
   level->error = judge_error(s->motion.judge, s->motion.scene, dvi_integrator_q(s->integrator));
   dvi_integrator_counters(s->integrator, &after);
@@ -95,15 +107,15 @@ static dvi_status motion_run(void *user, double steps, study_level *level)
   return DVI_OK;
 }
 
-/* What a run is watched for. */
+/* The quantities that are observed along a run. */
 typedef struct watched {
   const dvi_system *system;
   double *value; /* [invariants] */
-  double first;  /* the energy at the start; NaN: not yet */
+  double first;  /* energy at the start, or NaN before it */
   double energy_error, distance;
 } watched;
 
-static int watch(dvi_integrator *integrator, void *user)
+static int motion_observe(dvi_integrator *integrator, void *user)
 {
   watched *w = user;
   if (dvi_integrator_invariants(integrator, w->value) != DVI_OK) return -1;
@@ -122,10 +134,10 @@ static dvi_status motion_watch(void *user, double steps, study_level *level)
   watched w = {.system = s->motion.scene->system, .value = value, .first = (double)NAN};
   dvi_status status = dvi_integrator_start(s->integrator, 0.0, s->motion.scene->q,
                                            s->motion.scene->p);
-  if (status == DVI_OK && watch(s->integrator, &w) != 0) status = DVI_NOT_FINITE;
+  if (status == DVI_OK && motion_observe(s->integrator, &w) != 0) status = DVI_NOT_FINITE;
   if (status == DVI_OK)
-    status = march(s->integrator, s->subject.span / steps, lround(steps), s->motion.t_end, watch,
-                   &w, NULL, NULL);
+    status = march(s->integrator, s->subject.span / steps, lround(steps), s->motion.t_end,
+                   motion_observe, &w, NULL, NULL);
   level->further[0] = w.energy_error;
   level->counted[DISTANCE] = w.distance;
   free(value);
@@ -136,11 +148,11 @@ static dvi_status motion_repeat(void *user, double steps, double *preparation)
 {
   motion_study *s = user;
   (void)preparation;
-  return integrate(s, s->motion.scene->q, NULL, steps);
+  return motion_integrate(s, s->motion.scene->q, NULL, steps);
 }
 
-/* A start that differs from the problem's in the last place. */
-static void disturb(const motion_study *s, double *q)
+/* Change the problem's start in the last place. */
+static void disturb_start(const motion_study *s, double *q)
 {
   for (int i = 0; i < s->motion.scene->nq; i++) {
     const double place = DBL_EPSILON * fmax(fabs(s->motion.scene->q[i]), 0.1 * s->subject.size);
@@ -148,8 +160,9 @@ static void disturb(const motion_study *s, double *q)
   }
 }
 
-/* How far a change of the start in its last place moves the end. The disturbed start is projected:
- * where a constraint is made of numbers that are 0, even the last place of the others is off it. */
+/* Measure how far a change of the start in its last place moves the end. The disturbed start is
+ * projected, because where a constraint consists of numbers that are 0, even the last place of the
+ * other numbers violates it. */
 static dvi_status motion_roundoff(void *user, double steps, double *moved)
 {
   motion_study *s = user;
@@ -157,11 +170,11 @@ static dvi_status motion_roundoff(void *user, double steps, double *moved)
   double *q = calloc(2 * (size_t)n, sizeof *q);
   if (q == NULL) return DVI_NO_MEMORY;
   double *end = q + n;
-  disturb(s, q);
-  dvi_status status = integrate(s, q, &(dvi_start_options){.project = 1}, steps);
+  disturb_start(s, q);
+  dvi_status status = motion_integrate(s, q, &(dvi_start_options){.project = 1}, steps);
   if (status == DVI_OK) {
     memcpy(end, dvi_integrator_q(s->integrator), (size_t)n * sizeof *end);
-    status = integrate(s, s->motion.scene->q, NULL, steps);
+    status = motion_integrate(s, s->motion.scene->q, NULL, steps);
   }
   *moved = status == DVI_OK ? norm_distance(n, end, dvi_integrator_q(s->integrator)) : 0.0;
   free(q);
@@ -184,7 +197,7 @@ int motion_study_refuse(const char *name, double t_end)
   return FAILED;
 }
 
-/* Size of the solution at the end, in the maximum norm; 1 if it is 0. */
+/* Return the size of the solution at the end in the maximum norm, or 1 if it is 0. */
 static double solution_size(const judged_motion *motion)
 {
   const double size = norm_largest(motion->scene->nq, motion->judge->q);

@@ -1,5 +1,5 @@
 /* Gragg's modified midpoint rule, extrapolated (Bulirsch and Stoer 1966), on qdot = v, pdot = L_q
- * with p = L_v(t,q,v) solved for v: no part of it is a variational integrator. */
+ * with p = L_v(t,q,v) solved for v. No part of it is a variational integrator. */
 #include "mechanics/quad_motion.h"
 
 #include <math.h>
@@ -8,10 +8,12 @@
 
 #ifdef QUAD_EXISTS
 enum { COLUMNS = 12, ITERATIONS = 200, PARTS_MAX = 64, ROOM = 2 * COLUMNS + 16 };
-static const double last_place = 1e-32;  /* of a change of the velocity, relative: two roundings */
-static const double noise = 1e-26;       /* of one that shrinks no more */
-static const double difference = 1e-12;  /* of velocities: exact for energies quadratic in them */
-static const double least_error = 3e-30; /* of a flow: more steps would gain little */
+static const double last_place = 1e-32; /* relative change of the velocity, two rounding errors */
+static const double noise = 1e-26;      /* relative change that shrinks no more */
+/* difference of velocities, exact for energies quadratic in them */
+static const double difference = 1e-12;
+/* error of a flow beyond which more steps would gain little */
+static const double least_error = 3e-30;
 
 bool quad_motion_init(quad_motion *motion, const dvi_scene *scene, int n)
 {
@@ -31,10 +33,10 @@ void quad_motion_clear(quad_motion *motion)
   free(motion->pair);
 }
 
-static dvi_pair parted(quad x)
+static dvi_pair pair_of_quad(quad x)
 {
   const double high = (double)x;
-  return (dvi_pair){high, (double)(x - (quad)high)};
+  return (dvi_pair){.high = high, .low = (double)(x - (quad)high)};
 }
 
 bool quad_motion_gradient(quad_motion *motion, quad t, const quad *q, const quad *v, quad *L_q,
@@ -42,8 +44,8 @@ bool quad_motion_gradient(quad_motion *motion, quad t, const quad *q, const quad
 {
   const int n = motion->n;
   dvi_pair *at = motion->pair, *L = at + 2 * n;
-  for (int i = 0; i < n; i++) at[i] = parted(q[i]), at[n + i] = parted(v[i]);
-  if (dvi_scene_quad_gradient(motion->scene, parted(t), at, at + n, L, L + n) != DVI_OK)
+  for (int i = 0; i < n; i++) at[i] = pair_of_quad(q[i]), at[n + i] = pair_of_quad(v[i]);
+  if (dvi_scene_quad_gradient(motion->scene, pair_of_quad(t), at, at + n, L, L + n) != DVI_OK)
     return false;
   for (int i = 0; i < n; i++) {
     L_q[i] = (quad)L[i].high + (quad)L[i].low;
@@ -68,8 +70,8 @@ bool quad_motion_settle(quad_motion *motion, quad t, const quad *q, const quad *
   return quad_invert(n, mass, motion->inverse);
 }
 
-/* change = tracked * rest. */
-static void multiply(const quad_motion *motion, const quad *rest, quad *change)
+/* Compute change = tracked * rest. */
+static void multiply_tracked(const quad_motion *motion, const quad *rest, quad *change)
 {
   const int n = motion->n;
   for (int i = 0; i < n; i++) {
@@ -78,9 +80,9 @@ static void multiply(const quad_motion *motion, const quad *rest, quad *change)
   }
 }
 
-/* After a change s = B^-1 r of the velocity that left the residual r', with w = B^-1 r':
- * B^-1 += w (s^T B^-1) / s.(s - w). */
-static void update(quad_motion *motion, const quad *s, const quad *w, quad *row)
+/* Update B^-1 after a change s = B^-1 r of the velocity that left the residual r', with w = B^-1
+ * r', by B^-1 += w (s^T B^-1) / s.(s - w). */
+static void update_tracked(quad_motion *motion, const quad *s, const quad *w, quad *row)
 {
   const int n = motion->n;
   quad divisor = 0;
@@ -94,7 +96,8 @@ static void update(quad_motion *motion, const quad *s, const quad *w, quad *row)
     for (int j = 0; j < n; j++) motion->tracked[i * n + j] += w[i] * row[j];
 }
 
-/* Broyden's method. L_q [n] belongs to the velocity before the last change, of a rounding. */
+/* Solve for v by Broyden's method. L_q [n] belongs to the velocity before the last change, which is
+ * a rounding error. */
 static bool solve_velocity(quad_motion *motion, quad t, const quad *q, const quad *p, quad *v,
                            quad *L_q)
 {
@@ -104,11 +107,11 @@ static bool solve_velocity(quad_motion *motion, quad t, const quad *q, const qua
   for (int k = 0; k < ITERATIONS; k++) {
     if (!quad_motion_gradient(motion, t, q, v, L_q, rest)) return false;
     for (int i = 0; i < n; i++) rest[i] = p[i] - rest[i];
-    multiply(motion, rest, change);
+    multiply_tracked(motion, rest, change);
     const double moved = quad_largest(n, change), size = quad_largest(n, v);
     if (k > 0 && moved > noise * size) {
-      update(motion, before, change, row);
-      multiply(motion, rest, change);
+      update_tracked(motion, before, change, row);
+      multiply_tracked(motion, rest, change);
     }
     for (int i = 0; i < n; i++) v[i] += change[i];
     if (moved <= last_place * size || (moved <= noise * size && moved >= 0.5 * last)) return true;
@@ -118,7 +121,7 @@ static bool solve_velocity(quad_motion *motion, quad t, const quad *q, const qua
   return false;
 }
 
-static void track(quad_motion *motion)
+static void start_tracking(quad_motion *motion)
 {
   memcpy(motion->tracked, motion->inverse,
          (size_t)(motion->n * motion->n) * sizeof *motion->inverse);
@@ -126,16 +129,16 @@ static void track(quad_motion *motion)
 
 bool quad_motion_velocity(quad_motion *motion, quad t, const quad *q, const quad *p, quad *v)
 {
-  track(motion);
+  start_tracking(motion);
   return solve_velocity(motion, t, q, p, v, motion->room + 4 * motion->n);
 }
 
-/* What a flow works in, [n] or [2 n] each. */
+/* Working memory of a flow, [n] or [2 n] each. */
 typedef struct flow {
   quad *v, *rate, *before, *column;
 } flow;
 
-static bool rate_at(quad_motion *motion, quad t, const quad *z, flow *f)
+static bool flow_rate(quad_motion *motion, quad t, const quad *z, flow *f)
 {
   const int n = motion->n;
   const bool good = solve_velocity(motion, t, z, z + n, f->v, f->rate + n);
@@ -143,17 +146,17 @@ static bool rate_at(quad_motion *motion, quad t, const quad *z, flow *f)
   return good;
 }
 
-/* z at t + span by `steps` steps of the midpoint rule, an even number, into `to`. */
+/* Write z at t + span to `to`, by an even number `steps` of steps of the midpoint rule. */
 static bool leapfrog(quad_motion *motion, quad t, quad span, int steps, const quad *z, flow *f,
                      quad *to)
 {
   const int size = 2 * motion->n;
   const quad h = span / steps;
   memcpy(f->before, z, (size_t)size * sizeof *z);
-  if (!rate_at(motion, t, z, f)) return false;
+  if (!flow_rate(motion, t, z, f)) return false;
   for (int i = 0; i < size; i++) to[i] = z[i] + h * f->rate[i];
   for (int k = 1; k < steps; k++) {
-    if (!rate_at(motion, t + k * h, to, f)) return false;
+    if (!flow_rate(motion, t + k * h, to, f)) return false;
     for (int i = 0; i < size; i++) {
       const quad next = f->before[i] + 2 * h * f->rate[i];
       f->before[i] = to[i];
@@ -163,8 +166,8 @@ static bool leapfrog(quad_motion *motion, quad t, quad span, int steps, const qu
   return true;
 }
 
-/* Columns of 2, 4, 6, .. steps are extrapolated to none, by Neville's scheme in h^2. */
-static bool extrapolate(quad_motion *motion, quad t, quad span, flow *f, quad *z)
+/* Extrapolate columns of 2, 4, 6, .. steps to h = 0 by Neville's scheme in h^2. */
+static bool extrapolate_flow(quad_motion *motion, quad t, quad span, flow *f, quad *z)
 {
   const int size = 2 * motion->n;
   for (int k = 0; k < COLUMNS; k++) {
@@ -195,12 +198,12 @@ bool quad_motion_flow(quad_motion *motion, quad t, quad span, const quad *v, qua
   flow f = {.v = now + 2 * n, .rate = now + 3 * n, .before = now + 5 * n, .column = now + 7 * n};
   const double wanted = fmax(*error, least_error);
   *error = HUGE_VAL;
-  track(motion);
+  start_tracking(motion);
   for (int parts = 1; parts <= PARTS_MAX && *error > wanted; parts *= 2) {
     memcpy(now, z, 2 * n * sizeof *now);
     memcpy(f.v, v, n * sizeof *f.v);
     for (int k = 0; k < parts; k++)
-      if (!extrapolate(motion, t + k * span / parts, span / parts, &f, now)) return false;
+      if (!extrapolate_flow(motion, t + k * span / parts, span / parts, &f, now)) return false;
     const double apart = parts > 1 ? quad_motion_distance(motion, now, last) : HUGE_VAL;
     memcpy(last, now, 2 * n * sizeof *last);
     if (parts > 1 && apart >= *error) break;

@@ -1,12 +1,12 @@
-/* The path of a step has the velocity sum_k P_k Y_k, k < s, with Legendre's polynomials on [0,1]:
+/* The path of a step has the velocity sum_k P_k Y_k, k < s, with Legendre's polynomials on [0,1].
  *
  *     q(tau) = q0 + h sum_k I_k(tau) Y_k,   I_k(tau) the integral of P_k from 0,
  *     sum_j b_j ( h (I_k - I_k(1)) L_q + P_k L_v )_j = I_k(1) p0,
  *     q1 = q0 + h Y_0,   p1 = p0 + h sum_j b_j L_q_j
  *
- * (Marsden and West 2001, sec. 2.2.6), with I_k(1) = 0 but for k = 0. Solved by fixed point
- * iteration with the inverse of K (x) M, K_kl = sum_j b_j P_k P_l: whatever the basis of the
- * library's own path, polynomials of that degree are the same space. */
+ * (Marsden and West 2001, sec. 2.2.6), with I_k(1) = 0 except for k = 0. The equations are solved
+ * by fixed-point iteration with the inverse of K (x) M, K_kl = sum_j b_j P_k P_l. The basis of the
+ * library's own path does not matter, because polynomials of that degree are the same space. */
 #include "mechanics/quad_step.h"
 
 #include <dvi/dvi.h>
@@ -17,8 +17,8 @@
 
 #ifdef QUAD_EXISTS
 enum { NODES_MAX = 16, DEGREE_MAX = NODES_MAX, ITERATIONS = 400, NEWTON_STEPS = 6 };
-static const double noise =
-    1e-28; /* changes below this end the iteration once they shrink no more */
+/* Relative changes below this one end the iteration once they shrink no more. */
+static const double noise = 1e-28;
 
 struct quad_step {
   int n, degree, nodes;
@@ -37,12 +37,12 @@ typedef struct rule {
   int one, two;
 } rule;
 
-static const rule rules[] = {{"gauss", DVI_GAUSS, 0, 0},
-                             {"lobatto", DVI_LOBATTO, 0, -1},
-                             {"radau-left", DVI_RADAU_LEFT, 1, 0},
-                             {"radau-right", DVI_RADAU_RIGHT, -1, 0}};
+static const rule rules[] = {{.name = "gauss", .number = DVI_GAUSS},
+                             {.name = "lobatto", .number = DVI_LOBATTO, .two = -1},
+                             {.name = "radau-left", .number = DVI_RADAU_LEFT, .one = 1},
+                             {.name = "radau-right", .number = DVI_RADAU_RIGHT, .one = -1}};
 
-/* P_0 .. P_count at x, and their derivatives. */
+/* Evaluate P_0 .. P_count and their derivatives at x. */
 static void legendre(int count, quad x, quad *value, quad *slope)
 {
   value[0] = 1, value[1] = x;
@@ -53,7 +53,7 @@ static void legendre(int count, quad x, quad *value, quad *slope)
   }
 }
 
-/* The doubles that the library has, continued by Newton's method. */
+/* Refine the library's nodes, which are doubles, by Newton's method. */
 static bool place_nodes(quad_step *s, const rule *by)
 {
   const int r = s->nodes;
@@ -74,7 +74,8 @@ static bool place_nodes(quad_step *s, const rule *by)
   return true;
 }
 
-/* The weights integrate P_0 .. P_(r-1), of which all but the first have the integral 0. */
+/* Compute the weights, which integrate P_0 .. P_(r-1) exactly. All integrals but the first are
+ * 0. */
 static bool weigh_nodes(quad_step *s)
 {
   const int r = s->nodes;
@@ -89,7 +90,7 @@ static bool weigh_nodes(quad_step *s)
   return true;
 }
 
-static bool tabulate(quad_step *s)
+static bool tabulate_polynomials(quad_step *s)
 {
   quad K[DEGREE_MAX * DEGREE_MAX] = {0}, value[DEGREE_MAX + 2], slope[DEGREE_MAX + 2];
   for (int j = 0; j < s->nodes; j++) {
@@ -105,7 +106,7 @@ static bool tabulate(quad_step *s)
   return quad_invert(s->degree, K, s->inverse);
 }
 
-static const rule *read_method(const char *method, int *degree, int *nodes)
+static const rule *quad_step_read_method(const char *method, int *degree, int *nodes)
 {
   char name[32];
   int numbers = 0;
@@ -122,7 +123,7 @@ static const rule *read_method(const char *method, int *degree, int *nodes)
   return NULL;
 }
 
-static bool make_room(quad_step *s)
+static bool quad_step_allocate(quad_step *s)
 {
   const size_t n = (size_t)s->n, block = n * (size_t)s->degree;
   s->room = calloc(3 * block + 5 * n, sizeof *s->room);
@@ -141,13 +142,13 @@ static bool make_room(quad_step *s)
 quad_step *quad_step_create(const char *method, int n)
 {
   int degree = 0, nodes = 0;
-  const rule *by = read_method(method, &degree, &nodes);
+  const rule *by = quad_step_read_method(method, &degree, &nodes);
   quad_step *s = by != NULL ? calloc(1, sizeof *s) : NULL;
   if (s == NULL) return NULL;
   s->n = n;
   s->degree = degree;
   s->nodes = nodes;
-  if (!make_room(s) || !place_nodes(s, by) || !weigh_nodes(s) || !tabulate(s))
+  if (!quad_step_allocate(s) || !place_nodes(s, by) || !weigh_nodes(s) || !tabulate_polynomials(s))
     quad_step_destroy(&s);
   return s;
 }
@@ -159,7 +160,7 @@ void quad_step_destroy(quad_step **step)
   *step = NULL;
 }
 
-/* Add what quadrature point j has in the residual and in the impulse. */
+/* Add the contribution of quadrature point j to the residual and to the impulse. */
 static bool add_node(quad_step *s, quad_motion *motion, quad t, quad h, const quad *q0, int j)
 {
   const int n = s->n;
@@ -181,8 +182,8 @@ static bool add_node(quad_step *s, quad_motion *motion, quad t, quad h, const qu
   return true;
 }
 
-/* Y -= (K (x) M)^-1 R; the largest change. */
-static double correct(quad_step *s, const quad_motion *motion)
+/* Correct Y -= (K (x) M)^-1 R, and return the largest change. */
+static double correct_step(quad_step *s, const quad_motion *motion)
 {
   const int n = s->n;
   double most = 0.0;
@@ -214,7 +215,8 @@ bool quad_step_take(quad_step *s, quad_motion *motion, quad t, quad h, const qua
     for (int i = 0; i < n; i++) s->R[i] = -z[n + i];
     for (int j = 0; j < s->nodes; j++)
       if (!add_node(s, motion, t, h, z, j)) return false;
-    const double change = correct(s, motion) / fmax(quad_largest(s->degree * n, s->Y), DBL_MIN);
+    const double change = correct_step(s, motion) /
+                          fmax(quad_largest(s->degree * n, s->Y), DBL_MIN);
     if (!isfinite(change)) return false;
     if (change < noise && change >= 0.5 * last) {
       for (int i = 0; i < n; i++) z[i] += h * s->Y[i], z[n + i] += s->impulse[i];

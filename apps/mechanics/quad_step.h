@@ -7,13 +7,14 @@
 /** A degree and a quadrature. */
 typedef struct quad_step quad_step;
 
-/** Read what a galerkin integrator calls itself, dvi_integrator_method. NULL: another method, a
- *  quadrature without a polynomial whose zeros it has, or no memory. n: coordinates. */
+/** Read the name of a galerkin integrator, dvi_integrator_method, with n coordinates. NULL for
+ * another method, for a quadrature whose nodes are not the zeros of a polynomial known here, or
+ * without memory. */
 quad_step *quad_step_create(const char *method, int n);
 void quad_step_destroy(quad_step **step);
 
-/** Take a step of h from t with z = (q, p) [2 n]; v [n]: the velocity there. False if the iteration
- *  does not converge. The motion's mass is that of a place near by. */
+/** Take a step of h from t with z = (q, p) [2 n]. v [n] is the velocity there. Returns false if the
+ * iteration does not converge. The motion's mass is that of a place near by. */
 bool quad_step_take(quad_step *step, quad_motion *motion, quad t, quad h, const quad *v, quad *z);
 #endif
 

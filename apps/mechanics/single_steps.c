@@ -1,10 +1,10 @@
 /* A step's equations are solved in quadruple precision (quad_step.c), and compared with the
- * solution (quad_motion.c). The proof has two halves, for the program in quadruple precision is not
- * the library: the errors have the order, and at the largest step, where doubles still show the
- * error, the library's step is that one.
+ * solution (quad_motion.c). The proof has two halves, because the program in quadruple precision is
+ * not the library. The errors have the order, and the library takes the same step at the largest
+ * step size, where doubles still show the error.
  *
- * Steps are centred: from -h/2 to h/2 about a fixed time the error of a symmetric method is
- * h^(p+1) times a series in h^2, and falls into its leading term twice as fast as from a fixed
+ * Steps are centred. From -h/2 to h/2 about a fixed time the error of a symmetric method is h^(p+1)
+ * times a series in h^2, and is dominated by its leading term twice as fast as from a fixed
  * start. */
 #include "mechanics/single_steps.h"
 
@@ -27,13 +27,15 @@ static const closer_look look = {
 
 #ifdef QUAD_EXISTS
 enum { SEARCH_TRIES = 60, N_MAX = 64 };
-static const double common_error =
-    1e-10; /* of the steps that are compared with the library's: above its roundings */
+/* Error of the steps that are compared with the library's, above its rounding errors. */
+static const double common_error = 1e-10;
 static const double first_error = 1e-18,
-                    last_error = 1e-28; /* of the levels: to 100 roundings of the judge */
-static const double guide_method_steps =
-    4.0;                             /* of the run to the points, for one of the problem's */
-static const double sameness = 0.01; /* of the first error: how far the library's step may be off */
+                    /* last error of the levels, 100 rounding errors of the judge */
+    last_error = 1e-28;
+/* Steps of the run to the points, in one step of the problem. */
+static const double guide_method_steps = 4.0;
+/* largest difference of the library's step, relative to the first error */
+static const double sameness = 0.01;
 
 /* A point of the motion. */
 typedef struct centre {
@@ -45,17 +47,17 @@ typedef struct study {
   const problem *scene;
   const char *method;
   dvi_integrator *integrator;
-  dvi_scene *read; /* of the catalogue; NULL: the problem is a scene itself */
+  dvi_scene *read; /* scene of the catalogue, or NULL if the problem is a scene itself */
   quad_motion motion;
   quad_step *step;
   centre centre[SINGLE_POINTS];
-  quad *room; /* of the centres; [SINGLE_POINTS + 2][3 n] */
+  quad *room; /* [SINGLE_POINTS + 2][3 n] memory of the centres */
   double *state;
   int order;
   progress_line *progress;
 } study;
 
-/* The scene behind a problem, for its expressions; NULL if there is none. */
+/* Return the scene behind a problem, for its expressions, or NULL if there is none. */
 static const dvi_scene *expressions_of(study *s, const words *settings)
 {
   if (s->scene->scene != NULL) return s->scene->scene;
@@ -67,7 +69,7 @@ static const dvi_scene *expressions_of(study *s, const words *settings)
   return s->read;
 }
 
-/* Take the motion to the points, by runs in doubles: any points near it do. */
+/* Move to the points on the motion by runs in doubles. Points near the motion are good enough. */
 static dvi_status place_centres(study *s, double t_end)
 {
   const int n = s->scene->nq;
@@ -94,8 +96,8 @@ static dvi_status place_centres(study *s, double t_end)
   return status;
 }
 
-/* Sizes of q and p over all centres: at one of them either may vanish. */
-static void measure_sizes(study *s)
+/* Measure the sizes of q and p over all centres, because either may vanish at one of them. */
+static void measure_motion_sizes(study *s)
 {
   const int n = s->scene->nq;
   double q = 0.0, p = 0.0;
@@ -107,9 +109,9 @@ static void measure_sizes(study *s)
   s->motion.p_size = p > 0.0 ? p : 1.0;
 }
 
-/* Find the mass and the velocity at a centre: once with the velocity of the start, once with its
- * own. */
-static bool settle(study *s, const centre *c)
+/* Compute the mass and the velocity at a centre, first with the velocity of the start, then with
+ * its own. */
+static bool settle_centre(study *s, const centre *c)
 {
   const int n = s->scene->nq;
   for (int i = 0; i < 2; i++)
@@ -119,8 +121,8 @@ static bool settle(study *s, const centre *c)
   return true;
 }
 
-/* The error of the step of h about a centre; `start` [2 n]: where it begins. *judge_error: what is
- * wanted, then what it is. */
+/* Compute the error of the step of h about a centre. start [2 n] is the start of the step.
+ * *judge_error is the wanted error on entry, and the actual one on return. */
 static bool step_error(study *s, const centre *c, double h, quad *start, double *error,
                        double *judge_error)
 {
@@ -131,7 +133,7 @@ static bool step_error(study *s, const centre *c, double h, quad *start, double 
   double of_start = wanted, of_end = wanted;
   memcpy(start, c->z, 2 * n * sizeof *start);
   memcpy(end, c->z, 2 * n * sizeof *end);
-  if (!settle(s, c) || !quad_motion_flow(&s->motion, t, -half, c->v, start, &of_start) ||
+  if (!settle_centre(s, c) || !quad_motion_flow(&s->motion, t, -half, c->v, start, &of_start) ||
       !quad_motion_flow(&s->motion, t, half, c->v, end, &of_end))
     return false;
   memcpy(step, start, 2 * n * sizeof *step);
@@ -141,9 +143,9 @@ static bool step_error(study *s, const centre *c, double h, quad *start, double 
   return true;
 }
 
-/* The error of a step of h, over all points. It will be about `foreseen`, of which the judge's own
- * error is to be a small part. */
-static bool error_at(study *s, double h, double foreseen, double *error, double *judge_error)
+/* Compute the error of a step of h, over all points. It will be about `foreseen`, and the judge's
+ * own error is to be a small part of it. */
+static bool mean_step_error(study *s, double h, double foreseen, double *error, double *judge_error)
 {
   static const double part = 1e-4;
   double squares = 0.0;
@@ -160,13 +162,13 @@ static bool error_at(study *s, double h, double foreseen, double *error, double 
   return isfinite(*error);
 }
 
-/* Search for the step that is compared with the library's; 0: there is none. The claimed order is
- * but a guess of how errors fall. */
+/* Search for the step that is compared with the library's. Returns 0 if there is none. The claimed
+ * order is only a guess of how errors fall. */
 static double find_common(study *s, double *of_common)
 {
   double h = copysign(s->scene->order_h, s->centre[0].t), error = 0.0, judge_error = 0.0;
   for (int i = 0; i < SEARCH_TRIES; i++) {
-    const bool good = error_at(s, h, common_error, &error, &judge_error);
+    const bool good = mean_step_error(s, h, common_error, &error, &judge_error);
     if (good && error > 0.1 * common_error && error < 10.0 * common_error) {
       *of_common = error;
       return h;
@@ -176,9 +178,9 @@ static double find_common(study *s, double *of_common)
   return 0.0;
 }
 
-/* How far the library's step from a centre is from that in quadruple precision, from the same
+/* Compare the library's step from a centre with that in quadruple precision, from the same
  * doubles. */
-static bool compare(study *s, const centre *c, double h, double *apart)
+static bool compare_with_library(study *s, const centre *c, double h, double *apart)
 {
   const int n = s->scene->nq;
   quad *start = s->room + 3 * n * SINGLE_POINTS, *mine = start + 2 * n;
@@ -198,14 +200,14 @@ static bool compare(study *s, const centre *c, double h, double *apart)
   return true;
 }
 
-/* What a measurement rests on. */
+/* The evidence of a measurement. */
 typedef struct evidence {
-  double judge_error; /* the largest of the solutions that the smallest steps are compared with */
-  double common_h, common_error; /* of larger steps, which doubles show, too */
-  double apart; /* the largest distance of the library's own steps of that length from these */
+  double judge_error; /* largest error of the solutions that the smallest steps are compared with */
+  double common_h, common_error; /* length and error of larger steps, which doubles show, too */
+  double apart; /* largest distance between the library's own steps of that length and these */
 } evidence;
 
-/* Fit the order: the slope of the errors over the lengths of their steps. */
+/* Fit the order to the slope of the errors over the lengths of their steps. */
 static void fit_levels(closer_look *found, double judge_error)
 {
   double of_unit[SINGLE_LEVELS];
@@ -217,7 +219,7 @@ static void fit_levels(closer_look *found, double judge_error)
 static const char *measure_levels(study *s, closer_look *found, evidence *rests)
 {
   double of_common = 0.0;
-  measure_sizes(s);
+  measure_motion_sizes(s);
   const double common = find_common(s, &of_common),
                fall = pow(last_error / first_error, 1.0 / (SINGLE_LEVELS - 1));
   if (!(fabs(common) > 0.0))
@@ -225,12 +227,12 @@ static const char *measure_levels(study *s, closer_look *found, evidence *rests)
   for (int k = 0; k < SINGLE_LEVELS; k++) {
     const double foreseen = first_error * pow(fall, k),
                  h = common * pow(foreseen / of_common, 1.0 / (s->order + 1.0));
-    if (!error_at(s, h, foreseen, &found->error[k], &rests->judge_error))
+    if (!mean_step_error(s, h, foreseen, &found->error[k], &rests->judge_error))
       return "their equations could not be solved";
     found->length[k] = fabs(h);
   }
   for (int k = 0; k < SINGLE_POINTS; k++)
-    if (!compare(s, &s->centre[k], common, &rests->apart))
+    if (!compare_with_library(s, &s->centre[k], common, &rests->apart))
       return "the library's own step of that length fails";
   if (!(rests->apart <= sameness * of_common))
     return "the library's own steps are not those in quadruple precision";
@@ -240,7 +242,7 @@ static const char *measure_levels(study *s, closer_look *found, evidence *rests)
   return NULL;
 }
 
-static void describe(closer_look *found, double t_end, const evidence *rests)
+static void describe_evidence(closer_look *found, double t_end, const evidence *rests)
 {
   (void)snprintf(found->title, sizeof found->title,
                  "single steps from %d points to t = %g, in quadruple precision",
@@ -251,7 +253,7 @@ static void describe(closer_look *found, double t_end, const evidence *rests)
                  rests->judge_error, rests->common_h, rests->common_error, rests->apart);
 }
 
-static dvi_status prepare(study *s, const words *settings, double t_end, closer_look *found)
+static dvi_status prepare_study(study *s, const words *settings, double t_end, closer_look *found)
 {
   const size_t n = (size_t)s->scene->nq;
   const dvi_scene *expressions = s->scene->velocity == NULL && n <= N_MAX
@@ -282,10 +284,10 @@ dvi_status single_steps_measure(const problem *scene, const words *settings, con
   evidence rests = {0};
   *found = look;
   found->levels = SINGLE_LEVELS;
-  const dvi_status status = prepare(&s, settings, t_end, found);
+  const dvi_status status = prepare_study(&s, settings, t_end, found);
   if (status == DVI_OK && found->missing == NULL)
     found->missing = measure_levels(&s, found, &rests);
-  describe(found, t_end, &rests);
+  describe_evidence(found, t_end, &rests);
   quad_step_destroy(&s.step);
   quad_motion_clear(&s.motion);
   dvi_integrator_destroy(&s.integrator);
