@@ -10,12 +10,12 @@
 #include "cli/command.h"
 #include "cli/spelling.h"
 
-/* Rows of more points than these would not fit into memory. */
+/* Limit beyond which the rows of a sweep would not fit into memory. */
 enum { POINTS_MAX = 10000000, HINT_SIZE = 128 };
 
 /* ---- options ---- */
 
-static bool make_values(grid_axis *axis, long count)
+static bool axis_allocate(grid_axis *axis, long count)
 {
   axis->count = count;
   axis->value = calloc((size_t)count, sizeof *axis->value);
@@ -23,8 +23,8 @@ static bool make_values(grid_axis *axis, long count)
   return axis->value != NULL;
 }
 
-/* The number that ends with the character `stop`. Returns what follows it; NULL if there is
- * none. */
+/* Read the number that ends with the character `stop`. Returns the text after it, or NULL if there
+ * is no number. */
 static const char *take_number(const char *text, char stop, double *number)
 {
   if (text == NULL) return NULL;
@@ -32,8 +32,8 @@ static const char *take_number(const char *text, char stop, double *number)
   return end != text && *end == stop && isfinite(*number) ? end + 1 : NULL;
 }
 
-/* FROM:TO:COUNT, both ends included. */
-static int read_range(const char *setting, const char *text, grid_axis *axis)
+/* Read FROM:TO:COUNT, both ends included. */
+static int axis_read_range(const char *setting, const char *text, grid_axis *axis)
 {
   double from = 0.0, to = 0.0, count = 0.0;
   text = take_number(take_number(take_number(text, ':', &from), ':', &to), '\0', &count);
@@ -43,14 +43,14 @@ static int read_range(const char *setting, const char *text, grid_axis *axis)
         (int)POINTS_MAX);
   if (!isfinite((to - from) * count))
     return usage_error("sweep: --set %s: the range is too wide", setting);
-  if (!make_values(axis, (long)count)) return FAILED;
+  if (!axis_allocate(axis, (long)count)) return FAILED;
   for (long k = 0; k < axis->count; k++)
     axis->value[k] = from + (to - from) * (double)k / (double)(axis->count - 1);
   axis->value[axis->count - 1] = to;
   return DONE;
 }
 
-static int read_list(const char *setting, const char *text, grid_axis *axis)
+static int axis_read_list(const char *setting, const char *text, grid_axis *axis)
 {
   const size_t room = GRID_SETTING_SIZE - 1 - strlen(axis->name) - 1;
   axis->list = text;
@@ -83,8 +83,8 @@ static int read_axis(const char *setting, grid *read)
   (void)snprintf(axis.name, sizeof axis.name, "%.*s", (int)length, setting);
   if (find_axis(read, axis.name) >= 0) return usage_error("sweep: --set names %s twice", axis.name);
   const char *values = setting + length + 1;
-  const int code = strchr(values, ':') != NULL ? read_range(setting, values, &axis)
-                                               : read_list(setting, values, &axis);
+  const int code = strchr(values, ':') != NULL ? axis_read_range(setting, values, &axis)
+                                               : axis_read_list(setting, values, &axis);
   if (code == DONE) read->axis[read->axes++] = axis;
   return code;
 }
@@ -99,7 +99,7 @@ int grid_read(const words *settings, grid *read)
 
 /* ---- points ---- */
 
-static void spell(const grid_axis *axis, long k, char *text, size_t size)
+static void axis_spell(const grid_axis *axis, long k, char *text, size_t size)
 {
   if (axis->list == NULL) {
     char number[DVI_NUMBER_SIZE];
@@ -112,11 +112,11 @@ static void spell(const grid_axis *axis, long k, char *text, size_t size)
   (void)snprintf(text, size, "%.*s", (int)strcspn(at, ","), at);
 }
 
-static void set(const grid_axis *axis, long k, grid_point *point)
+static void point_set_axis(const grid_axis *axis, long k, grid_point *point)
 {
   char *text = point->text[point->settings.count];
   const int length = snprintf(text, GRID_SETTING_SIZE, "%s=", axis->name);
-  spell(axis, k, text + length, (size_t)(GRID_SETTING_SIZE - length));
+  axis_spell(axis, k, text + length, (size_t)(GRID_SETTING_SIZE - length));
   point->settings.word[point->settings.count++] = text;
 }
 
@@ -124,53 +124,53 @@ void grid_fixed(const grid *of, grid_point *point)
 {
   point->settings.count = 0;
   for (int i = 0; i < of->axes; i++)
-    if (of->axis[i].count == 1) set(&of->axis[i], 0, point);
+    if (of->axis[i].count == 1) point_set_axis(&of->axis[i], 0, point);
 }
 
 void grid_at(const grid *of, long k, grid_point *point)
 {
-  long block = of->points; /* points with the same values of the axes so far */
+  long block = of->points; /* number of points with the same values of the axes so far */
   point->settings.count = 0;
   for (int i = 0; i < of->axes; i++) {
     block /= of->axis[i].count;
-    set(&of->axis[i], k / block % of->axis[i].count, point);
+    point_set_axis(&of->axis[i], k / block % of->axis[i].count, point);
   }
 }
 
 /* ---- with the problem ---- */
 
-static const char *parameter_at(int k, const void *list)
+static const char *grid_parameter_at(int k, const void *list)
 {
   return ((const problem_parameter *)list)[k].name;
 }
 
-static int check_name(const problem *scene, const char *name)
+static int refuse_unknown_parameter(const problem *scene, const char *name)
 {
   char hint[HINT_SIZE];
   for (const problem_parameter *p = scene->parameter; p->name != NULL; p++)
     if (strcmp(p->name, name) == 0) return DONE;
   return usage_error("sweep: %s has no parameter '%s' that could be set%s", scene->name, name,
-                     suggestion(name, parameter_at, scene->parameter, hint, sizeof hint));
+                     suggestion(name, grid_parameter_at, scene->parameter, hint, sizeof hint));
 }
 
-static int take_range(const dvi_scene_range *range, grid_axis *axis)
+static int axis_take_range(const dvi_scene_range *range, grid_axis *axis)
 {
   if (strlen(range->name) >= GRID_SETTING_SIZE / 2)
     return usage_error("sweep: the name '%s' is too long", range->name);
   (void)snprintf(axis->name, sizeof axis->name, "%s", range->name);
-  if (!make_values(axis, range->count)) return FAILED;
+  if (!axis_allocate(axis, range->count)) return FAILED;
   memcpy(axis->value, range->value, (size_t)range->count * sizeof *range->value);
   return DONE;
 }
 
-/* The scene's range becomes axis i, or that of the options with its name does. */
+/* Make the scene's range axis i, or the range of the options with its name. */
 static int place_range(const dvi_scene_range *range, int i, grid *all)
 {
   int at = find_axis(all, range->name);
   if (at < 0) {
     if (all->axes == WORDS_MAX)
       return usage_error("sweep: more than %d parameters", (int)WORDS_MAX);
-    const int code = take_range(range, &all->axis[all->axes]);
+    const int code = axis_take_range(range, &all->axis[all->axes]);
     if (code != DONE) return code;
     at = all->axes++;
   }
@@ -188,7 +188,8 @@ int grid_complete(const problem *scene, grid *all)
                   (range = dvi_scene_range_at(scene->scene, i)) != NULL;
        i++)
     code = place_range(range, i, all);
-  for (int i = 0; i < all->axes && code == DONE; i++) code = check_name(scene, all->axis[i].name);
+  for (int i = 0; i < all->axes && code == DONE; i++)
+    code = refuse_unknown_parameter(scene, all->axis[i].name);
   if (code != DONE) return code;
   if (all->axes == 0)
     return usage_error(

@@ -1,4 +1,4 @@
-/** Points of a sweep: all combinations of values of parameters. */
+/** The points of a sweep, which are all combinations of values of parameters. */
 #ifndef GRID_H
 #define GRID_H
 #include "cli/options.h"
@@ -10,12 +10,12 @@ enum { GRID_SETTING_SIZE = 128 };
 typedef struct grid_axis {
   char name[GRID_SETTING_SIZE];
   long count;
-  /** the values as the user spelled them, with commas between them; NULL: they are numbers */
+  /** values as the user spelled them, with commas between them, or NULL for numbers */
   const char *list;
-  double *value; /**< [count] then */
+  double *value; /**< [count] values if list is NULL */
 } grid_axis;
 
-/** The axes; the last one's value changes from point to point. */
+/** The axes. The last axis's value changes from point to point. */
 typedef struct grid {
   int axes;
   grid_axis axis[WORDS_MAX];
@@ -32,15 +32,15 @@ typedef struct grid_point {
  * the exit code. */
 int grid_read(const words *settings, grid *read);
 
-/** The settings that are the same at all points of the options. */
+/** Return the settings that are the same at all points of the options. */
 void grid_fixed(const grid *of, grid_point *point);
 
-/** Put the axes that the problem's scene asks for in front, with the options' values where these
- *  name them, too; check that the problem has the parameters, and count the points. In the same
- *  manner. */
+/** Put the axes that the problem's scene asks for in front, check that the problem has the
+ * parameters, and count the points. Where the options name an axis of the scene, their values
+ * count. Returns DONE, or complains and returns the exit code. */
 int grid_complete(const problem *scene, grid *all);
 
-/** The settings of point k, from 0. */
+/** Return the settings of point k, from 0. */
 void grid_at(const grid *of, long k, grid_point *point);
 
 void grid_clear(grid *old);

@@ -2,8 +2,9 @@
 
 #include <math.h>
 
-/* The lowest point beside point i in one direction, before higher ones, and to the left before
- * equal ones. It is infinity if such a point is next to it, -infinity if the range ends there. */
+/* Return the lowest point beside point i in one direction, before higher ones, and to the left
+ * before equal ones. It is infinity if such a point is next to point i, and -infinity if the range
+ * ends there. */
 static double lowest_beside(int count, const double *y, int i, int direction)
 {
   double lowest = (double)INFINITY;

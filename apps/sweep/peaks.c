@@ -15,24 +15,24 @@ enum { LINE_SIZE = 64 };
 
 static const double floor_of_errors = 1e-12;
 
-/* A search under way; the lock guards what stands below it. */
+/* The state of a search. The lock guards the members below it. */
 typedef struct round_of_runs {
   const resonance_task *task;
   peaks_found *found;
   pthread_mutex_t lock;
-  int next; /* the points from here on are still to be run */
+  int next; /* first point that is still to be run */
   progress_line progress;
 } round_of_runs;
 
 double peaks_height(const resonance_point *point)
 {
-  /* fmax takes a NaN for the floor */
+  /* fmax of a NaN and the floor is the floor */
   return log10(fmin(fmax(point->error, floor_of_errors), RESONANCE_LIMIT));
 }
 
 /* ---- runs ---- */
 
-static int take_point(round_of_runs *r)
+static int peaks_take_point(round_of_runs *r)
 {
   char line[LINE_SIZE];
   (void)pthread_mutex_lock(&r->lock);
@@ -44,26 +44,26 @@ static int take_point(round_of_runs *r)
   return k;
 }
 
-static void *work(void *user)
+static void *peaks_work(void *user)
 {
   round_of_runs *r = user;
-  for (int k = take_point(r); k >= 0; k = take_point(r))
+  for (int k = peaks_take_point(r); k >= 0; k = peaks_take_point(r))
     resonance_run(r->task, &r->found->point[k]);
   return NULL;
 }
 
-static int by_value(const void *left, const void *right)
+static int compare_value(const void *left, const void *right)
 {
   const double a = ((const resonance_point *)left)->value,
                b = ((const resonance_point *)right)->value;
   return (a > b) - (a < b);
 }
 
-static void run_new(round_of_runs *r, long threads)
+static void run_new_points(round_of_runs *r, long threads)
 {
   const long left = r->found->count - r->next;
-  parallel_work(threads < left ? threads : left, work, r);
-  qsort(r->found->point, (size_t)r->found->count, sizeof *r->found->point, by_value);
+  parallel_work(threads < left ? threads : left, peaks_work, r);
+  qsort(r->found->point, (size_t)r->found->count, sizeof *r->found->point, compare_value);
 }
 
 /* ---- points ---- */
@@ -81,7 +81,7 @@ static void add_grid(const peaks_search *search, peaks_found *found)
   found->point[found->count - 1].value = search->to;
 }
 
-/* The middles of the gaps that want one; false if there is room for some of them only. */
+/* Add the middles of the marked gaps. Returns false if there is room for only some of them. */
 static bool add_middles(const peaks_search *search, peaks_found *found, double *x, bool *halve)
 {
   const int count = found->count;
@@ -96,12 +96,12 @@ static bool add_middles(const peaks_search *search, peaks_found *found, double *
   return found->count == count + wanted;
 }
 
-static void run_rounds(round_of_runs *r, const peaks_search *search, double *x, bool *halve)
+static void peaks_run_rounds(round_of_runs *r, const peaks_search *search, double *x, bool *halve)
 {
   progress_start(&r->progress, true);
   add_grid(search, r->found);
   while (r->next < r->found->count) {
-    run_new(r, search->threads);
+    run_new_points(r, search->threads);
     r->found->complete = add_middles(search, r->found, x, halve);
   }
   progress_end(&r->progress);
@@ -118,7 +118,7 @@ bool peaks_find(const resonance_task *task, const peaks_search *search, peaks_fo
   const bool good = found->point != NULL && found->top != NULL && x != NULL && halve != NULL;
   (void)pthread_mutex_init(&r.lock, NULL);
   if (good)
-    run_rounds(&r, search, x, halve);
+    peaks_run_rounds(&r, search, x, halve);
   else
     complain("out of memory");
   (void)pthread_mutex_destroy(&r.lock);

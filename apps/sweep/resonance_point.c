@@ -8,30 +8,30 @@
 
 enum { SETTING_SIZE = 192 };
 
-/* Where a run stood, and how far the invariant had moved by then at most. */
+/* A time of a run, and the largest change of the invariant until then. */
 typedef struct mark {
   double t, error;
 } mark;
 
-/* A run under way. Marks are set at steps 1, 2, 4, 8, ..: the last but one lies between a quarter
- * and a half of the way. */
+/* The state of a run. Marks are set at steps 1, 2, 4, 8, .., so that the last but one lies between
+ * a quarter and a half of the run. */
 typedef struct watch {
   int watched;
   double first, largest;
-  long steps; /* -1: not begun */
+  long steps; /* number of steps, -1 before the start */
   mark last, before;
-  dvi_status status; /* of looking at the invariant */
+  dvi_status status; /* status of the invariant's evaluation */
 } watch;
 
 static void set_mark(watch *w, double t)
 {
   if (w->steps == 0 || (w->steps & (w->steps - 1)) != 0) return;
   w->before = w->last;
-  w->last = (mark){t, w->largest};
+  w->last = (mark){.t = t, .error = w->largest};
 }
 
-/* The driver calls this at the start and after each step. */
-static int observe(dvi_integrator *integrator, void *user)
+/* Watch the invariant. The driver calls this function at the start and after each step. */
+static int resonance_observe(dvi_integrator *integrator, void *user)
 {
   watch *w = user;
   double value = (double)NAN;
@@ -46,7 +46,7 @@ static int observe(dvi_integrator *integrator, void *user)
   return !(w->largest < RESONANCE_LIMIT);
 }
 
-static double rate(const watch *w, double t)
+static double growth_rate(const watch *w, double t)
 {
   const double span = fabs(t - w->before.t);
   return span > 0.0 && w->before.error > 0.0 && isfinite(w->largest)
@@ -54,18 +54,18 @@ static double rate(const watch *w, double t)
              : (double)NAN;
 }
 
-static void say(const resonance_task *task, double value, const char *sentence)
+static void resonance_complain(const resonance_task *task, double value, const char *sentence)
 {
   complain("resonance: %s=%.17g: %s", task->name, value, sentence);
 }
 
-static dvi_status advance(const resonance_task *task, const problem *scene,
-                          dvi_integrator *integrator, resonance_point *point)
+static dvi_status resonance_advance(const resonance_task *task, const problem *scene,
+                                    dvi_integrator *integrator, resonance_point *point)
 {
   watch w = {.watched = task->watched, .steps = -1};
   const dvi_run_options options = {.h = task->steps_vary ? point->value : task->h,
                                    .t_end = task->t_end,
-                                   .observe = observe,
+                                   .observe = resonance_observe,
                                    .user = &w};
   dvi_run_report report = {.steps = 0};
   dvi_status status = dvi_integrator_start(integrator, 0.0, scene->q, scene->p);
@@ -73,23 +73,24 @@ static dvi_status advance(const resonance_task *task, const problem *scene,
   point->steps = report.steps;
   point->t = dvi_integrator_time(integrator);
   point->error = w.steps > 0 ? fmin(w.largest, RESONANCE_LIMIT) : (double)NAN;
-  point->growth = rate(&w, point->t);
+  point->growth = growth_rate(&w, point->t);
   point->unbounded = report.end == DVI_RUN_STOPPED;
   if (point->unbounded) point->status = "unbounded";
   return w.status != DVI_OK ? w.status : status;
 }
 
-static void run(const resonance_task *task, const problem *scene, resonance_point *point)
+static void resonance_run_problem(const resonance_task *task, const problem *scene,
+                                  resonance_point *point)
 {
   dvi_integrator *integrator = NULL;
   dvi_status status = dvi_integrator_create(scene->system, task->method, &integrator);
   point->status = dvi_status_name(DVI_OK);
-  if (status == DVI_OK) status = advance(task, scene, integrator, point);
+  if (status == DVI_OK) status = resonance_advance(task, scene, integrator, point);
   point->failed = status != DVI_OK;
   if (point->failed) {
     point->status = dvi_status_name(status);
-    say(task, point->value,
-        dvi_last_error()[0] != '\0' ? dvi_last_error() : dvi_status_meaning(status));
+    resonance_complain(task, point->value,
+                       dvi_last_error()[0] != '\0' ? dvi_last_error() : dvi_status_meaning(status));
   }
   dvi_integrator_destroy(&integrator);
 }
@@ -108,8 +109,8 @@ void resonance_run(const resonance_task *task, resonance_point *point)
                              .error = (double)NAN,
                              .growth = (double)NAN};
   if (open_text(task->operand, &task->text, &settings, &scene) == DONE)
-    run(task, scene, point);
+    resonance_run_problem(task, scene, point);
   else
-    say(task, point->value, "the problem cannot be made with this value");
+    resonance_complain(task, point->value, "the problem cannot be made with this value");
   problem_destroy(&scene);
 }

@@ -1,43 +1,44 @@
-/** One run of a search for resonances: how far does an invariant move, and does it grow? */
+/** One run of a search for resonances. It measures the change of an invariant, and its growth. */
 #ifndef RESONANCE_POINT_H
 #define RESONANCE_POINT_H
 #include "problem.h"
 #include "load/scene.h"
 
-/** An invariant that has moved by so many times its start is beyond all bounds: the run ends. */
+/** Limit of an invariant's change, as a multiple of its start. Beyond it the run ends as
+ * unbounded. */
 #define RESONANCE_LIMIT 1e30
 
-/** What is the same at all points. */
+/** The part of a run that is the same at all points. */
 typedef struct resonance_task {
-  const char *operand; /**< a name of the catalogue, or the path that the text was read from */
-  scene_text text;     /**< of a scene; else empty */
+  const char *operand; /**< name of the catalogue, or path of the text */
+  scene_text text;     /**< text of a scene, empty for the catalogue */
   const char *method;
-  words settings;   /**< of the other parameters */
-  const char *name; /**< of the parameter that varies; "h": the step */
+  words settings;   /**< settings of the other parameters */
+  const char *name; /**< name of the parameter that varies, or "h" for the step */
   bool steps_vary;
   double h, t_end;
-  int watched; /**< which invariant */
+  int watched; /**< index of the invariant */
 } resonance_task;
 
-/** What became of the run with one value. */
+/** The result of the run with one value. */
 typedef struct resonance_point {
   double value;
-  /** DVI_OK, unbounded, why it failed, or refused where the problem cannot be made; static
-   * storage */
+  /** DVI_OK, unbounded, the status of a failure, or refused if the problem cannot be created. In
+   * static storage. */
   const char *status;
-  /** the invariant moved by RESONANCE_LIMIT times its start, and the run was ended */
+  /** the invariant moved by RESONANCE_LIMIT times its start, which ended the run */
   bool unbounded;
-  bool failed; /**< it is neither DVI_OK nor unbounded */
+  bool failed; /**< neither DVI_OK nor unbounded */
   long steps;
   double t;
-  /** largest change of the invariant over the run, relative to its start if that is not 0; NaN:
-   * there was none */
+  /** largest change of the invariant over the run, relative to its start if that is not 0, or NaN
+   * without one */
   double error;
-  /** (d/dt) ln error, over the last half to three quarters of the run; NaN: not known */
+  /** (d/dt) ln error over the last half to three quarters of the run, or NaN if it is not known */
   double growth;
 } resonance_point;
 
-/** Run with point->value and fill in the rest. What fails is told by a complaint, too. May be
+/** Run with point->value and fill in the other members. Failures are also complained about. May be
  * called from several threads at once. */
 void resonance_run(const resonance_task *task, resonance_point *point);
 #endif

@@ -16,7 +16,7 @@ static const char tail[] = ".part";
 
 /* ---- sums ---- */
 
-/* FNV-1a (Fowler, Noll and Vo), 64 bits. */
+/* Add bytes to a sum by FNV-1a (Fowler, Noll and Vo), 64 bits. */
 static uint64_t add_bytes(uint64_t sum, const void *bytes, size_t size)
 {
   const unsigned char *byte = bytes;
@@ -24,7 +24,7 @@ static uint64_t add_bytes(uint64_t sum, const void *bytes, size_t size)
   return sum;
 }
 
-/* With the zero at its end, so that two texts side by side are not one. */
+/* Add a text with the zero at its end, which separates it from the next text. */
 static uint64_t add_text(uint64_t sum, const char *text)
 {
   return add_bytes(sum, text, strlen(text) + 1);
@@ -52,7 +52,7 @@ uint64_t sweep_key(const sweep_task *task)
 
 /* ---- lines ---- */
 
-static bool refuse(const sweep_part *part)
+static bool refuse_part(const sweep_part *part)
 {
   complain("cannot write '%s': %s", part->path, strerror(errno));
   return false;
@@ -63,16 +63,16 @@ static void write_head(uint64_t key, char *head)
   (void)snprintf(head, HEAD_SIZE, "dvi sweep %016" PRIx64 "\n", key);
 }
 
-/* What a line says, before its sum: its number, whether the point failed, the row. */
-static uint64_t sum_of(uint64_t key, long k, const sweep_row *row)
+/* Return the sum of a line's number, failure and row. */
+static uint64_t row_sum(uint64_t key, long k, const sweep_row *row)
 {
   uint64_t sum = add_bytes(key, &k, sizeof k);
   sum = add_bytes(sum, &row->failed, sizeof row->failed);
   return add_text(sum, row->text);
 }
 
-/* Take "K FAILED SUM ROW\n". False if the line is not whole. */
-static bool read_line(uint64_t key, char *line, ssize_t length, long points, sweep_row *row)
+/* Read "K FAILED SUM ROW\n". Returns false if the line is not complete. */
+static bool part_read_line(uint64_t key, char *line, ssize_t length, long points, sweep_row *row)
 {
   char *end;
   if (length < 1 || line[length - 1] != '\n' || strlen(line) != (size_t)length) return false;
@@ -82,7 +82,7 @@ static bool read_line(uint64_t key, char *line, ssize_t length, long points, swe
   const uint64_t sum = strtoull(end, &end, 16);
   if (k < 0 || k >= points || *end != ' ') return false;
   sweep_row read = {.text = end + 1, .failed = failed != 0};
-  if (sum_of(key, k, &read) != sum) return false;
+  if (row_sum(key, k, &read) != sum) return false;
   free(row[k].text);
   row[k].failed = read.failed;
   row[k].text = strdup(read.text);
@@ -91,8 +91,8 @@ static bool read_line(uint64_t key, char *line, ssize_t length, long points, swe
 
 /* ---- the file ---- */
 
-/* Two processes would write the same rows. */
-static bool lock(const sweep_part *part)
+/* Lock the file, because two processes would write the same rows. */
+static bool part_lock(const sweep_part *part)
 {
   struct flock all = {.l_type = (short)F_WRLCK, .l_whence = (short)SEEK_SET};
   if (fcntl(fileno(part->stream), F_SETLK, &all) == 0 || (errno != EACCES && errno != EAGAIN))
@@ -101,24 +101,24 @@ static bool lock(const sweep_part *part)
   return false;
 }
 
-/* The rows up to the first line that is not whole; what stands from there on is cut off. */
-static bool read_rows(sweep_part *part, long points, sweep_row *row)
+/* Read the rows up to the first line that is not complete, and cut off the rest. */
+static bool part_read_rows(sweep_part *part, long points, sweep_row *row)
 {
   char *line = NULL;
   size_t size = 0;
   long good = ftell(part->stream);
   ssize_t length = getline(&line, &size, part->stream);
-  while (length > 0 && read_line(part->key, line, length, points, row)) {
+  while (length > 0 && part_read_line(part->key, line, length, points, row)) {
     good += (long)length;
     length = getline(&line, &size, part->stream);
   }
   free(line);
   if (fseek(part->stream, good, SEEK_SET) == 0 && ftruncate(fileno(part->stream), (off_t)good) == 0)
     return true;
-  return refuse(part);
+  return refuse_part(part);
 }
 
-static bool read_part(sweep_part *part, long points, sweep_row *row)
+static bool part_read(sweep_part *part, long points, sweep_row *row)
 {
   char head[HEAD_SIZE];
   char found[HEAD_SIZE] = "";
@@ -128,9 +128,9 @@ static bool read_part(sweep_part *part, long points, sweep_row *row)
     if (fseek(part->stream, 0, SEEK_SET) == 0 && fputs(head, part->stream) >= 0 &&
         fflush(part->stream) == 0)
       return true;
-    return refuse(part);
+    return refuse_part(part);
   }
-  if (strcmp(found, head) == 0) return read_rows(part, points, row);
+  if (strcmp(found, head) == 0) return part_read_rows(part, points, row);
   complain("sweep: '%s' was begun with another scene or other settings; remove it, or give another "
            "--out",
            part->path);
@@ -148,19 +148,19 @@ bool sweep_part_open(sweep_part *part, const char *out, uint64_t key, long point
   memcpy(part->path, out, length);
   memcpy(part->path + length, tail, sizeof tail);
   const int descriptor = open(part->path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (descriptor < 0) return refuse(part);
+  if (descriptor < 0) return refuse_part(part);
   part->stream = fdopen(descriptor, "r+");
-  if (part->stream != NULL) return lock(part) && read_part(part, points, row);
+  if (part->stream != NULL) return part_lock(part) && part_read(part, points, row);
   (void)close(descriptor);
-  return refuse(part);
+  return refuse_part(part);
 }
 
 bool sweep_part_add(sweep_part *part, long k, const sweep_row *row)
 {
   errno = 0;
   (void)fprintf(part->stream, "%ld %d %016" PRIx64 " %s\n", k, row->failed,
-                sum_of(part->key, k, row), row->text);
-  return (fflush(part->stream) == 0 && !ferror(part->stream)) || refuse(part);
+                row_sum(part->key, k, row), row->text);
+  return (fflush(part->stream) == 0 && !ferror(part->stream)) || refuse_part(part);
 }
 
 void sweep_part_close(sweep_part *part, bool complete)

@@ -12,21 +12,21 @@
 
 enum { LABEL_SIZE = 1024, WORD_SIZE = 256 };
 
-/* A run under way. */
+/* The state of a run. */
 typedef struct watch {
   double *invariant; /* [invariants] */
   double first, largest;
   bool begun;
-  dvi_status status; /* of looking at the energy */
+  dvi_status status; /* status of the energy's evaluation */
 } watch;
 
-/* What becomes of a point. */
+/* The result at a point. */
 typedef struct outcome {
-  char word[WORD_SIZE]; /* of its column status */
+  char word[WORD_SIZE]; /* content of its column status */
   bool failed;
   long steps;
   double t;
-  const double *q, *p, *invariant; /* NULL: none */
+  const double *q, *p, *invariant; /* NULL if there is none */
   double energy_error;
 } outcome;
 
@@ -57,7 +57,7 @@ void sweep_header(const sweep_task *task, FILE *stream)
   (void)fputs("energy_error", stream);
 }
 
-/* Cells of numbers that are not there, or not finite, are empty. */
+/* Write numbers. Cells of missing numbers, and of numbers that are not finite, are empty. */
 static void write_numbers(FILE *stream, int count, const double *number)
 {
   for (int i = 0; i < count; i++) {
@@ -66,8 +66,8 @@ static void write_numbers(FILE *stream, int count, const double *number)
   }
 }
 
-static void write_row(const sweep_task *task, const grid_point *point, const outcome *end,
-                      FILE *stream)
+static void sweep_write_row(const sweep_task *task, const grid_point *point, const outcome *end,
+                            FILE *stream)
 {
   const problem *model = task->model;
   for (int i = 0; i < point->settings.count; i++) {
@@ -83,13 +83,13 @@ static void write_row(const sweep_task *task, const grid_point *point, const out
   write_numbers(stream, 1, &end->energy_error);
 }
 
-static sweep_row make_row(const sweep_task *task, const grid_point *point, const outcome *end)
+static sweep_row sweep_make_row(const sweep_task *task, const grid_point *point, const outcome *end)
 {
   sweep_row row = {.failed = end->failed};
   size_t size;
   FILE *stream = open_memstream(&row.text, &size);
   if (stream == NULL) return row;
-  write_row(task, point, end, stream);
+  sweep_write_row(task, point, end, stream);
   const bool good = !ferror(stream);
   if (fclose(stream) == 0 && good) return row;
   free(row.text);
@@ -99,7 +99,7 @@ static sweep_row make_row(const sweep_task *task, const grid_point *point, const
 
 /* ---- run ---- */
 
-static void say(const grid_point *point, const char *sentence)
+static void sweep_complain(const grid_point *point, const char *sentence)
 {
   char label[LABEL_SIZE] = "";
   int length = 0;
@@ -109,8 +109,8 @@ static void say(const grid_point *point, const char *sentence)
   complain("sweep: %s: %s", label, sentence);
 }
 
-/* The driver calls this at the start and after each step. */
-static int observe(dvi_integrator *integrator, void *user)
+/* Watch the energy. The driver calls this function at the start and after each step. */
+static int sweep_observe(dvi_integrator *integrator, void *user)
 {
   watch *w = user;
   w->status = dvi_integrator_invariants(integrator, w->invariant);
@@ -122,14 +122,15 @@ static int observe(dvi_integrator *integrator, void *user)
   return 0;
 }
 
-static dvi_status advance(const sweep_task *task, const problem *scene, const event_list *events,
-                          dvi_integrator *integrator, watch *w, outcome *end)
+static dvi_status sweep_advance(const sweep_task *task, const problem *scene,
+                                const event_list *events, dvi_integrator *integrator, watch *w,
+                                outcome *end)
 {
   const double t_end = isnan(task->t_end) ? scene->t_end : task->t_end;
   const double h = isnan(task->h) ? copysign(scene->h, t_end) : task->h;
   const dvi_run_options options = {.h = h,
                                    .t_end = t_end,
-                                   .observe = observe,
+                                   .observe = sweep_observe,
                                    .user = w,
                                    .events = events->event,
                                    .event_count = events->count};
@@ -146,9 +147,9 @@ static dvi_status advance(const sweep_task *task, const problem *scene, const ev
   return w->status != DVI_OK ? w->status : status;
 }
 
-/* The integrator owns the state that `end` shows. */
-static void run(const sweep_task *task, const problem *scene, const grid_point *point,
-                dvi_integrator **integrator, watch *w, outcome *end)
+/* Run the problem at a point. The integrator owns the state that `end` shows. */
+static void sweep_run_problem(const sweep_task *task, const problem *scene, const grid_point *point,
+                              dvi_integrator **integrator, watch *w, outcome *end)
 {
   event_list events;
   dvi_status status = events_list(&events, scene, NULL, NULL) ? DVI_OK : DVI_NO_MEMORY;
@@ -157,14 +158,14 @@ static void run(const sweep_task *task, const problem *scene, const grid_point *
                                    task->method != NULL ? task->method : scene->method, integrator);
   if (status == DVI_OK) status = dvi_integrator_start(*integrator, 0.0, scene->q, scene->p);
   (void)snprintf(end->word, sizeof end->word, "%s", dvi_status_name(DVI_OK));
-  if (status == DVI_OK) status = advance(task, scene, &events, *integrator, w, end);
+  if (status == DVI_OK) status = sweep_advance(task, scene, &events, *integrator, w, end);
   events_clear(&events);
   end->failed = status != DVI_OK;
   if (status == DVI_OK) return;
   (void)snprintf(end->word, sizeof end->word, "%s", dvi_status_name(status));
   const char *sentence = status == DVI_NO_MEMORY || w->status == DVI_NOT_FINITE ? ""
                                                                                 : dvi_last_error();
-  say(point, sentence[0] != '\0' ? sentence : dvi_status_meaning(status));
+  sweep_complain(point, sentence[0] != '\0' ? sentence : dvi_status_meaning(status));
 }
 
 static bool has_columns(const problem *scene, const problem *model)
@@ -186,13 +187,14 @@ sweep_row sweep_run(const sweep_task *task, long k)
                        sizeof *w.invariant);
   if (w.invariant == NULL) return row;
   if (open_text(task->operand, &task->text, &point.settings, &scene) != DONE)
-    say(&point, "the problem cannot be made with these values");
+    sweep_complain(&point, "the problem cannot be made with these values");
   else if (!has_columns(scene, task->model))
-    say(&point, "with these values the problem has other coordinates than without; sweep over "
-                "sizes by runs of their own");
+    sweep_complain(&point,
+                   "with these values the problem has other coordinates than without; sweep over "
+                   "sizes by runs of their own");
   else
-    run(task, scene, &point, &integrator, &w, &end);
-  row = make_row(task, &point, &end);
+    sweep_run_problem(task, scene, &point, &integrator, &w, &end);
+  row = sweep_make_row(task, &point, &end);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&scene);
   free(w.invariant);

@@ -1,4 +1,5 @@
-/** One point of a sweep: the problem made anew with its settings, run, and told in one row. */
+/** One point of a sweep. The problem is created with its settings and run, and the result is one
+ * row. */
 #ifndef SWEEP_POINT_H
 #define SWEEP_POINT_H
 #include <stdio.h>
@@ -7,27 +8,27 @@
 #include "problem.h"
 #include "load/scene.h"
 
-/** What is the same at all points. */
+/** The part of a sweep that is the same at all points. */
 typedef struct sweep_task {
-  const char *operand; /**< a name of the catalogue, or the path that the text was read from */
-  scene_text text;     /**< of a scene; else empty */
-  const char *method;  /**< NULL: the scene's own */
-  double h, t_end;     /**< NaN: the problem's */
+  const char *operand; /**< name of the catalogue, or path of the text */
+  scene_text text;     /**< text of a scene, empty for the catalogue */
+  const char *method;  /**< NULL for the scene's own method */
+  double h, t_end;     /**< NaN for the problem's values */
   grid grid;
-  /** the problem with the settings that are the same at all points: its columns are those of all */
+  /** problem with the settings of all points, whose columns are those of all points */
   const problem *model;
 } sweep_task;
 
-/** A row, to be freed. NULL: no memory was left for it. */
+/** A row, to be freed. NULL without memory. */
 typedef struct sweep_row {
   char *text;
   bool failed; /**< the point's run did not come to its end */
 } sweep_row;
 
-/** The names of the columns, with commas between them. */
+/** Write the names of the columns, with commas between them. */
 void sweep_header(const sweep_task *task, FILE *stream);
 
-/** Run point k. What fails is told in the row, and by a complaint. May be called from several
- * threads at once. */
+/** Run point k. The row and a complaint report a failure. May be called from several threads at
+ * once. */
 sweep_row sweep_run(const sweep_task *task, long k);
 #endif
