@@ -14,7 +14,7 @@ static const char *invariant_at(int k, const void *list)
   return dvi_system_invariant_name(((const problem *)list)->system, k);
 }
 
-static int read_alarm(const problem *scene, const char *text, alarm_bound *alarm)
+static int alarm_read(const problem *scene, const char *text, alarm_bound *alarm)
 {
   const size_t length = strcspn(text, "=");
   *alarm = (alarm_bound){.passed = (double)NAN};
@@ -31,7 +31,7 @@ static int read_alarm(const problem *scene, const char *text, alarm_bound *alarm
                      suggestion(name, invariant_at, scene, hint, sizeof hint));
 }
 
-static int check_new(const alarm_list *list, const alarm_bound *alarm)
+static int refuse_second_alarm(const alarm_list *list, const alarm_bound *alarm)
 {
   for (int i = 0; i < list->count; i++)
     if (list->alarm[i].invariant == alarm->invariant)
@@ -44,8 +44,8 @@ int alarms_read(alarm_list *list, const problem *scene, const words *asked)
   int code = DONE;
   for (list->count = 0; list->count < asked->count && code == DONE; list->count++) {
     alarm_bound *alarm = &list->alarm[list->count];
-    code = read_alarm(scene, asked->word[list->count], alarm);
-    if (code == DONE) code = check_new(list, alarm);
+    code = alarm_read(scene, asked->word[list->count], alarm);
+    if (code == DONE) code = refuse_second_alarm(list, alarm);
   }
   return code;
 }

@@ -1,4 +1,4 @@
-/** Bounds of invariants that dvi run watches: it says when one is passed, and goes on. */
+/** Bounds of invariants that dvi run watches. It reports when a bound is passed, and goes on. */
 #ifndef ALARMS_H
 #define ALARMS_H
 #include "cli/options.h"
@@ -7,9 +7,9 @@
 typedef struct alarm_bound {
   int invariant;
   const char *name;
-  double bound;              /**< of the size */
-  double passed;             /**< when it was passed first; NaN: not yet */
-  double largest, largest_t; /**< the invariant where its size was largest, and when */
+  double bound;              /**< bound of the size */
+  double passed;             /**< time when it was first passed, or NaN */
+  double largest, largest_t; /**< invariant where its size was largest, and that time */
 } alarm_bound;
 
 typedef struct alarm_list {
@@ -20,9 +20,9 @@ typedef struct alarm_list {
 /** Read alarms "NAME=BOUND". Returns DONE, or complains and returns USAGE. */
 int alarms_read(alarm_list *list, const problem *scene, const words *asked);
 
-/** Look at the state. False, with a complaint, if an invariant is no number. */
+/** Check the bounds at the state. Complains and returns false if an invariant is not finite. */
 bool alarms_look(alarm_list *list, dvi_integrator *integrator);
 
-/** Say which bounds were passed. */
+/** Report the bounds that were passed. */
 void alarms_tell(const alarm_list *list);
 #endif

@@ -8,14 +8,15 @@
 
 enum { ADVICE_SIZE = 128, GOOD_ORDER = 4 };
 
-/* Of the scale: what is told; the same of methods whose steps go beyond the periods of fast
- * potentials on purpose, and let their energy oscillate; what a better step aims at; and errors
- * of steps that do not resolve the motion at all. */
+/* Fractions of the scale. Errors above bound_of_most are reported, and above bound_of_splitting for
+ * methods whose steps exceed the periods of fast potentials on purpose and let their energy
+ * oscillate. A better step aims at target. Errors above unresolved belong to steps that do not
+ * resolve the motion at all. */
 static const double bound_of_most = 0.01, bound_of_splitting = 0.1, target = 0.001,
                     unresolved = 0.3;
 
-/* Down to a number of two digits. */
-static double rounded_down(double x)
+/* Round down to a number of two digits. */
+static double round_down(double x)
 {
   const double unit = pow(10.0, floor(log10(fabs(x))) - 1.0);
   return copysign(floor(fabs(x) / unit) * unit, x);
@@ -24,7 +25,7 @@ static double rounded_down(double x)
 double energy_shorter_step(double h, int order, double part, double most)
 {
   const double shorter = fabs(h) * pow(part, 1.0 / fmax(order, 1.0));
-  return rounded_down(copysign(fmin(shorter, most), h));
+  return round_down(copysign(fmin(shorter, most), h));
 }
 
 const char *energy_better_method(const dvi_system_terms *terms)
@@ -35,7 +36,8 @@ const char *energy_better_method(const dvi_system_terms *terms)
   return terms->one_form != NULL ? "vprk:nodes=4" : "galerkin:degree=4";
 }
 
-/* The problem's own step is good for a first run, if it is one in time. */
+/* Return the longest step to advise. The problem's own step is good for a first run, if it is one
+ * in time. */
 static double longest_step(const energy_watch *watch, const run_request *request)
 {
   return dvi_integrator_monitor(watch->integrator) == NULL
@@ -43,8 +45,8 @@ static double longest_step(const energy_watch *watch, const run_request *request
              : fabs(request->h);
 }
 
-/* An error that has forgotten how it grew tells no step, but the problem's own one does: it
- * suits an order of 4. At an order of 2 a fifth of it has about the same error. */
+/* Choose a better step. A saturated error predicts no step, but the problem's own step suits an
+ * order of 4. At an order of 2 a fifth of it has about the same error. */
 static double better_step(const run_request *request, int order, double ratio, double most)
 {
   const bool known = ratio < unresolved;
@@ -52,10 +54,10 @@ static double better_step(const run_request *request, int order, double ratio, d
                              known || order > 2 ? most : 0.2 * most);
 }
 
-/* What is better than a shorter step: more order, once the steps resolve the motion; near
- * collisions steps that follow it. */
-static void advise(const energy_watch *watch, const run_request *request, double ratio, double most,
-                   char advice[ADVICE_SIZE])
+/* Advise on better choices than a shorter step. Once the steps resolve the motion, a higher order
+ * is better. Near collisions, steps that follow it are. */
+static void energy_advise(const energy_watch *watch, const run_request *request, double ratio,
+                          double most, char advice[ADVICE_SIZE])
 {
   const problem *scene = watch->scene;
   const bool resolved = ratio < unresolved || most < fabs(request->h);
@@ -70,7 +72,7 @@ static void advise(const energy_watch *watch, const run_request *request, double
                    ", or --time-transform distance, whose steps follow close encounters");
 }
 
-/* A method that takes the fast potentials apart from the others, and a system that has some. */
+/* Return whether the method separates the fast potentials of the system from the others. */
 static bool steps_over_periods(const dvi_system_terms *terms, const char *method)
 {
   static const char *const splitting[] = {"imex", "respa", "mollified", "trig", "multiscale"};
@@ -93,7 +95,7 @@ void energy_tell(energy_watch *watch, const run_request *request)
   const double most = longest_step(watch, request);
   const int order = dvi_integrator_order(watch->integrator);
   char advice[ADVICE_SIZE];
-  advise(watch, request, verdict.ratio, most, advice);
+  energy_advise(watch, request, verdict.ratio, most, advice);
   complain("run: the energy error of %s with --h %g passed %g %% of the %s at t = %.6g, and was "
            "%.3g %% of it at t = %.6g",
            request->method, request->h, 100.0 * watch->bound, energy_scale_name(watch->scene),

@@ -6,11 +6,11 @@
 
 #include "cli/command.h"
 
-/* A prime number of steps: a motion whose period is a whole number of them is seen at all its
- * phases. */
+/* A prime number of steps, so that a motion whose period is a whole number of steps is seen at all
+ * its phases. */
 enum { EVERY_STEP = 32, STRIDE = 61 };
 
-/* The scale is at least this part of the energy itself: of a system at rest there is no other. */
+/* Least scale, as a fraction of the energy. A system at rest has no other scale. */
 static const double least_scale = 1e-8;
 
 static bool has_kinetic_energy(const problem *scene)
@@ -41,8 +41,8 @@ static bool potential_energy(const dvi_system_terms *terms, double t, const doub
   return good;
 }
 
-/* Of a constant mass T = E - V; of a general Lagrangian p.v/2, which is T where it is quadratic
- * in v. */
+/* Compute the kinetic energy, for a constant mass as T = E - V, and for a general Lagrangian as
+ * p.v/2, which is T if it is quadratic in v. */
 static bool kinetic_energy(energy_watch *w, double t, double energy, double *T)
 {
   const problem *scene = w->scene;
@@ -60,7 +60,7 @@ static bool kinetic_energy(energy_watch *w, double t, double energy, double *T)
   return true;
 }
 
-/* The energy of a system that has no velocities in it. */
+/* Evaluate the energy of a system without velocities. */
 static bool plain_energy(const dvi_system_terms *terms, double t, const double *q, const double *p,
                          double *H)
 {
@@ -69,9 +69,9 @@ static bool plain_energy(const dvi_system_terms *terms, double t, const double *
   return potential_energy(terms, t, q, H);
 }
 
-/* By how much the energy changes if one number goes back to the start, times how many numbers
- * there are: each look takes the next one. */
-static bool exchange(energy_watch *w, double t, double energy, double *change)
+/* Compute the change of the energy if one number goes back to the start, times the count of
+ * numbers. Each look takes the next number. */
+static bool exchanged_energy(energy_watch *w, double t, double energy, double *change)
 {
   const problem *scene = w->scene;
   const int numbers = scene->nq + (scene->terms->hamiltonian != NULL ? scene->nv : 0);
@@ -86,43 +86,45 @@ static bool exchange(energy_watch *w, double t, double energy, double *change)
   return true;
 }
 
-static double mean(const energy_watch *w)
+static double mean_scale(const energy_watch *w)
 {
   const double span = fabs(w->t - w->t_start);
   return fmax(span > 0.0 ? w->exchanged / span : 0.0, least_scale * fabs(w->first));
 }
 
-static double ratio_of(const energy_look *look, double scale)
+static double look_ratio(const energy_look *look, double scale)
 {
   return look->error > 0.0 ? look->error / fmax(scale, look->local) : 0.0;
 }
 
-/* Of two neighbours the worse one stays. */
-static void halve(energy_watch *w)
+/* Keep the worse one of two neighbours. */
+static void energy_watch_halve(energy_watch *w)
 {
-  const double scale = mean(w);
+  const double scale = mean_scale(w);
   for (int k = 0; k < ENERGY_LOOKS_MAX / 2; k++) {
     const energy_look *one = &w->look[2 * k], *other = one + 1;
-    w->look[k] = ratio_of(one, scale) < ratio_of(other, scale) ? *other : *one;
+    w->look[k] = look_ratio(one, scale) < look_ratio(other, scale) ? *other : *one;
   }
   w->looks = ENERGY_LOOKS_MAX / 2;
 }
 
-/* What cannot be evaluated ends the watch, and nothing else. */
-static void look(energy_watch *w)
+/* Look at the energy. If it cannot be evaluated, only the watch ends. */
+static void energy_watch_look(energy_watch *w)
 {
   const double t = dvi_integrator_time(w->integrator);
   double energy, T;
   const bool kinetic = has_kinetic_energy(w->scene);
   w->blind = dvi_integrator_invariant(w->integrator, 0, &energy) != DVI_OK ||
-             !(kinetic ? kinetic_energy : exchange)(w, t, energy, &T) || !isfinite(energy) ||
-             !isfinite(T);
+             !(kinetic ? kinetic_energy : exchanged_energy)(w, t, energy, &T) ||
+             !isfinite(energy) || !isfinite(T);
   if (w->blind) return;
   w->exchanged += T * fabs(t - w->t);
   w->t = t;
-  if (w->looks == ENERGY_LOOKS_MAX) halve(w);
-  w->look[w->looks++] = (energy_look){t, fabs(energy - w->first), kinetic ? T : 0.0};
-  if (isnan(w->passed) && ratio_of(&w->look[w->looks - 1], mean(w)) > w->bound) w->passed = t;
+  if (w->looks == ENERGY_LOOKS_MAX) energy_watch_halve(w);
+  w->look[w->looks++] = (energy_look){
+      .t = t, .error = fabs(energy - w->first), .local = kinetic ? T : 0.0};
+  if (isnan(w->passed) && look_ratio(&w->look[w->looks - 1], mean_scale(w)) > w->bound)
+    w->passed = t;
 }
 
 bool energy_look_due(long steps)
@@ -160,17 +162,17 @@ void energy_watch_clear(energy_watch *w)
 void energy_watch_step(energy_watch *w)
 {
   w->steps++;
-  if (!w->blind && energy_look_due(w->steps)) look(w);
+  if (!w->blind && energy_look_due(w->steps)) energy_watch_look(w);
 }
 
 energy_verdict energy_watch_end(energy_watch *w)
 {
   energy_verdict verdict = {.ratio = (double)NAN, .passed = (double)NAN};
-  if (!w->blind && dvi_integrator_time(w->integrator) != w->t) look(w);
-  const double scale = mean(w);
+  if (!w->blind && dvi_integrator_time(w->integrator) != w->t) energy_watch_look(w);
+  const double scale = mean_scale(w);
   for (int k = 0; k < w->looks; k++) {
     const energy_look *seen = &w->look[k];
-    const double ratio = ratio_of(seen, scale);
+    const double ratio = look_ratio(seen, scale);
     if (ratio <= verdict.ratio) continue;
     verdict.ratio = ratio;
     verdict.t = seen->t;

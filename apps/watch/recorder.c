@@ -16,7 +16,7 @@
 #include "cli/signals.h"
 #include "plot/trace.h"
 
-/* A run under way. */
+/* The state of a run. */
 typedef struct recorder {
   const run_request *request;
   const problem *scene;
@@ -26,42 +26,42 @@ typedef struct recorder {
   alarm_list alarms;
   run_trace trace;
   progress_line progress;
-  double t_start, t;        /* where the run began; where the last observed step ended */
-  double shortest, longest; /* steps, of methods that choose them; 0: none yet */
+  double t_start, t;        /* start of the run, and end of the last observed step */
+  double shortest, longest; /* steps of methods that choose them, 0 before the first */
   energy_watch watch;
   long steps_taken, given_steps;
-  long step; /* counted from t = 0, so that a resumed run writes the rows of an uninterrupted one */
+  /* number counted from t = 0, so that a resumed run writes the rows of an uninterrupted one */
+  long step;
   bool chooses; /* the method chooses its steps */
   bool begun, row_written, stop_silently;
-  const volatile sig_atomic_t
-      *caught; /* the signal that ends the run after its step; 0: none yet */
+  const volatile sig_atomic_t *caught; /* signal that ends the run after its step, or 0 */
 } recorder;
 
 static const char ended_again[] =
     "dvi: run: a second Ctrl-C ended the run at once; FILEs not yet complete stay as they were\n";
 
-/* main complains about standard output. */
-static bool written(const whole_file *file)
+/* Check a file. main complains about standard output. */
+static bool stream_is_good(const whole_file *file)
 {
   if (!ferror(file->stream)) return true;
   if (file->path != NULL) complain("cannot write '%s': %s", file->path, strerror(errno));
   return false;
 }
 
-static bool write_row(recorder *r, dvi_integrator *integrator)
+static bool recorder_write_row(recorder *r, dvi_integrator *integrator)
 {
   columns_row(&r->columns, integrator, r->out.stream);
   r->row_written = true;
-  return written(&r->out);
+  return stream_is_good(&r->out);
 }
 
-/* An event was found. */
-static int write_event(int index, double t, const double *q, const double *v, void *user)
+/* Write an event that was found. */
+static int recorder_write_event(int index, double t, const double *q, const double *v, void *user)
 {
   recorder *r = user;
   if (r->events_out.stream == NULL) return 0;
   events_row(r->scene, index, t, q, v, r->events_out.stream);
-  r->stop_silently = !written(&r->events_out);
+  r->stop_silently = !stream_is_good(&r->events_out);
   return r->stop_silently ? -1 : 0;
 }
 
@@ -70,7 +70,7 @@ static bool row_is_due(const recorder *r)
   return !r->request->final && (!r->begun || r->step % r->request->every == 0);
 }
 
-/* The lengths that the method chose: not that of the step that ends the run on time. */
+/* Note the lengths that the method chose, without the step that ends the run on time. */
 static void note_step(recorder *r, const dvi_integrator *integrator)
 {
   const double length = fabs(dvi_integrator_last_step(integrator));
@@ -85,8 +85,9 @@ static void note_step(recorder *r, const dvi_integrator *integrator)
   r->steps_taken++;
 }
 
-/* The driver calls this at the start, after each step, and once more at the end. */
-static int observe(dvi_integrator *integrator, void *user)
+/* Record a state. The driver calls this function at the start, after each step, and once more at
+ * the end. */
+static int recorder_observe(dvi_integrator *integrator, void *user)
 {
   recorder *r = user;
   const double t = dvi_integrator_time(integrator);
@@ -100,7 +101,7 @@ static int observe(dvi_integrator *integrator, void *user)
   r->begun = true;
   bool good = true;
   if (row || r->trace.t != NULL) good = columns_measure(&r->columns, integrator);
-  if (good && row) good = write_row(r, integrator);
+  if (good && row) good = recorder_write_row(r, integrator);
   if (good) good = alarms_look(&r->alarms, integrator);
   if (good && r->trace.t != NULL) trace_add(&r->trace, integrator);
   if (r->progress.shown)
@@ -109,14 +110,15 @@ static int observe(dvi_integrator *integrator, void *user)
   return good ? 0 : -1;
 }
 
-/* The last state is always a row, whatever --every says. */
+/* Write the last state. It is always a row, for any --every. */
 static bool write_last_row(recorder *r, dvi_integrator *integrator)
 {
-  return r->row_written || (columns_measure(&r->columns, integrator) && write_row(r, integrator));
+  return r->row_written ||
+         (columns_measure(&r->columns, integrator) && recorder_write_row(r, integrator));
 }
 
-/* The number of the step that ends at t on the grid 0, h, 2h, ...; 0 if t is not on it. In another
- * time there is no such grid, but a count. */
+/* Return the number of the step that ends at t on the grid 0, h, 2h, ..., or 0 if t is not on it.
+ * In another time there is no such grid, and the steps are counted. */
 static long step_number(const dvi_integrator *integrator, double t, double h)
 {
   dvi_counters counters;
@@ -126,7 +128,7 @@ static long step_number(const dvi_integrator *integrator, double t, double h)
   return steps > 0.0 && steps < 1e15 && fabs(steps - round(steps)) < 1e-6 ? lround(steps) : 0;
 }
 
-static void say_interrupted(const recorder *r)
+static void report_interrupted(const recorder *r)
 {
   complain("run: signal %d ended the run at t = %.17g of %g; the output is complete up to there",
            (int)*r->caught, r->t, r->request->t_end);
@@ -134,8 +136,8 @@ static void say_interrupted(const recorder *r)
     complain("run: continue with --resume %s", r->request->checkpoint);
 }
 
-/* Of methods that choose their steps: what they chose, and where the energy jumped. */
-static void say_steps(const recorder *r, const dvi_integrator *integrator)
+/* Report the steps of methods that choose them, and the jumps of the energy. */
+static void report_steps(const recorder *r, const dvi_integrator *integrator)
 {
   dvi_energy_balance energy;
   if (!r->chooses || r->steps_taken == 0) return;
@@ -156,12 +158,12 @@ static void say_steps(const recorder *r, const dvi_integrator *integrator)
 }
 
 /* Drive the integrator to the end and write all rows. */
-static int advance(recorder *r, dvi_integrator *integrator)
+static int recorder_advance(recorder *r, dvi_integrator *integrator)
 {
   const run_request *request = r->request;
   const dvi_run_options options = {.h = request->h,
                                    .t_end = request->t_end,
-                                   .observe = observe,
+                                   .observe = recorder_observe,
                                    .user = r,
                                    .events = r->events.event,
                                    .event_count = r->events.count,
@@ -176,21 +178,21 @@ static int advance(recorder *r, dvi_integrator *integrator)
   dvi_run_report report;
   const dvi_status status = dvi_run(integrator, &options, &report);
   progress_end(&r->progress);
-  /* Said at once: what is asked below may leave a sentence of its own. */
+  /* Complain at once, because the calls below may leave a sentence of their own. */
   const int code = status == DVI_OK ? DONE : r->stop_silently ? FAILED : library_error(status);
-  say_steps(r, integrator);
+  report_steps(r, integrator);
   events_tell(&r->events, "run", &report);
   alarms_tell(&r->alarms);
   energy_tell(&r->watch, r->request);
   if (r->stop_silently) return FAILED;
   const bool complete = (status != DVI_OK && request->final) || write_last_row(r, integrator);
   if (status != DVI_OK) return code;
-  if (*r->caught != 0) say_interrupted(r);
+  if (*r->caught != 0) report_interrupted(r);
   return !complete ? FAILED : *r->caught != 0 ? 128 + (int)*r->caught : DONE;
 }
 
-/* Whether what was written is to stay: all but what a failure has cut short. */
-static bool to_be_kept(int code)
+/* Return whether the output is kept. Only a failure that cut it short discards it. */
+static bool recorder_keeps_files(int code)
 {
   return code == DONE || code > CHECK_FAILED;
 }
@@ -206,10 +208,11 @@ static int write_files(recorder *r, dvi_integrator *integrator)
   }
   if (file_open(&r->out, request->out) &&
       (request->events == NULL || file_open(&r->events_out, request->events)))
-    code = advance(r, integrator);
-  if (to_be_kept(code) && !file_keep(&r->out)) code = FAILED;
-  if (to_be_kept(code) && request->events != NULL && !file_keep(&r->events_out)) code = FAILED;
-  if (to_be_kept(code) && request->plot != NULL && !trace_plot(&r->trace, request->plot))
+    code = recorder_advance(r, integrator);
+  if (recorder_keeps_files(code) && !file_keep(&r->out)) code = FAILED;
+  if (recorder_keeps_files(code) && request->events != NULL && !file_keep(&r->events_out))
+    code = FAILED;
+  if (recorder_keeps_files(code) && request->plot != NULL && !trace_plot(&r->trace, request->plot))
     code = FAILED;
   file_discard(&r->out);
   file_discard(&r->events_out);
@@ -228,7 +231,8 @@ int record(const run_request *request, const problem *scene, dvi_integrator *int
     code = FAILED;
   r.caught = signals_note(ended_again);
   if (code == DONE)
-    code = events_list(&r.events, scene, write_event, &r) ? write_files(&r, integrator) : FAILED;
+    code = events_list(&r.events, scene, recorder_write_event, &r) ? write_files(&r, integrator)
+                                                                   : FAILED;
   events_clear(&r.events);
   energy_watch_clear(&r.watch);
   columns_clear(&r.columns);

@@ -1,4 +1,4 @@
-/** What the command line of dvi run asks for. */
+/** The request of dvi run's command line. */
 #ifndef RUN_REQUEST_H
 #define RUN_REQUEST_H
 #include <stdbool.h>
@@ -8,13 +8,13 @@
 
 typedef struct run_request {
   const char *method, *momenta, *columns, *out, *events, *checkpoint, *resume, *plot;
-  double h, t_end, tolerance; /**< tolerance: NaN, or refused */
+  double h, t_end, tolerance; /**< the tolerance is NaN, or refused */
   pacing how;
-  long every, checkpoint_every; /**< 0: not given */
+  long every, checkpoint_every; /**< 0 if not given */
   bool project, final;
   bool verify;
-  long digits;     /**< that --verify is to find; 0: not given */
-  const char *csv; /**< of --verify */
+  long digits;     /**< number of digits that --verify must find, 0 if not given */
+  const char *csv; /**< file of --verify */
   words settings, alarms;
 } run_request;
 #endif

@@ -18,15 +18,15 @@
 #include "study/trust_levels.h"
 #include "watch/verify_report.h"
 
-/* IDA's three runs may take as long as those of the method, or so many seconds. Nothing ends a
- * factorisation on the way: so many coordinates bound that of a full Jacobian, which has three
- * unknowns for each. */
+/* The limits of IDA's three runs, which may take as long as those of the method, or so many
+ * seconds. Nothing can end a factorisation, so the number of coordinates is bounded. A full
+ * Jacobian has three unknowns for each coordinate. */
 enum { WITNESS_STEPS = 200000 };
 static const double witness_seconds = 2.0;
 
 static const char ended_again[] = "dvi: run: a second Ctrl-C ended the verification at once\n";
 
-/* The numbers of a result: t, q, p, and the columns. */
+/* The numbers of a result are t, q, p, and the columns. */
 typedef struct verifier {
   const run_request *request;
   const problem *scene;
@@ -37,16 +37,16 @@ typedef struct verifier {
   const volatile sig_atomic_t *caught;
   trust_group group[TRUST_GROUPS]; /* coordinates and momenta */
   trust_study trust;
-  natural_scale scale;      /* of the invariants */
-  double seconds;           /* of process time that the levels took */
-  double witness_tolerance; /* the witness's own */
-  double refinement;        /* of the level that runs */
+  natural_scale scale;      /* scales of the invariants */
+  double seconds;           /* process time of the levels */
+  double witness_tolerance; /* tolerance of the witness */
+  double refinement;        /* refinement of the current level */
   long steps;
   bool by_event; /* an event ended a run */
-  int code;      /* of the level that failed */
+  int code;      /* exit code of the level that failed */
 } verifier;
 
-static bool start(verifier *v)
+static bool verify_start(verifier *v)
 {
   const dvi_start_options options = {.project = v->request->project};
   const dvi_status status = dvi_integrator_start_with(v->integrator, 0.0, v->scene->q, v->scene->p,
@@ -66,9 +66,9 @@ static bool read_numbers(verifier *v, double *number)
   return true;
 }
 
-/* How large the numbers become is seen in the first run; its end is their room until it is
- * there. */
-static int observe(dvi_integrator *integrator, void *user)
+/* Observe the sizes of the numbers in the first run. The vector of its end serves as working memory
+ * until the end. */
+static int verify_observe(dvi_integrator *integrator, void *user)
 {
   verifier *v = user;
   const double part = dvi_integrator_time(integrator) / v->request->t_end, done = v->refinement;
@@ -84,8 +84,9 @@ static int observe(dvi_integrator *integrator, void *user)
   return 0;
 }
 
-/* A column that is 0 up to rounding has the scale of the terms that cancel in it. */
-static void measure_sizes(verifier *v)
+/* Measure the sizes. A column that is 0 up to rounding has the scale of the terms that cancel in
+ * it. */
+static void measure_result_sizes(verifier *v)
 {
   const int nq = v->scene->nq, nv = v->scene->nv, first = 1 + nq + nv;
   for (int i = 0; i < v->trust.count; i++)
@@ -102,16 +103,16 @@ static void measure_sizes(verifier *v)
   }
 }
 
-static double step_of(const verifier *v)
+static double level_step(const verifier *v)
 {
   return v->request->h / v->refinement;
 }
 
-static dvi_status drive(verifier *v, dvi_run_report *report)
+static dvi_status verify_drive(verifier *v, dvi_run_report *report)
 {
-  const dvi_run_options options = {.h = step_of(v),
+  const dvi_run_options options = {.h = level_step(v),
                                    .t_end = v->request->t_end,
-                                   .observe = observe,
+                                   .observe = verify_observe,
                                    .user = v,
                                    .events = v->events.event,
                                    .event_count = v->events.count,
@@ -119,14 +120,14 @@ static dvi_status drive(verifier *v, dvi_run_report *report)
   return dvi_run(v->integrator, &options, report);
 }
 
-static int run_level(verifier *v, double *number)
+static int verify_run_level(verifier *v, double *number)
 {
   dvi_run_report report = {0};
-  if (!start(v)) return FAILED;
-  const dvi_status status = drive(v, &report);
+  if (!verify_start(v)) return FAILED;
+  const dvi_status status = verify_drive(v, &report);
   if (status != DVI_OK) {
     const int code = library_error(status);
-    complain("run: --verify: that was the run with --h %g", step_of(v));
+    complain("run: --verify: that was the run with --h %g", level_step(v));
     return code;
   }
   if (*v->caught != 0) {
@@ -137,17 +138,17 @@ static int run_level(verifier *v, double *number)
   return read_numbers(v, number) ? DONE : FAILED;
 }
 
-/* The method, refined by its step. What fails is told at once. */
+/* Run the method, refined by its step. Complains about a failure at once. */
 static dvi_status verify_run(void *user, double refinement, study_level *level)
 {
   verifier *v = user;
   v->refinement = refinement;
-  v->code = run_level(v, level->number);
+  v->code = verify_run_level(v, level->number);
   return v->code == DONE ? DVI_OK : DVI_CALLBACK_FAILED;
 }
 
-/* IDA shares no code with the methods. It is asked from the start as the integrator has it,
- * projected if it was off. Its default tolerance is refined. */
+/* Run IDA, which shares no code with the methods, from the integrator's start, which may have been
+ * projected. Its default tolerance is refined. */
 static dvi_status witness_run(void *user, double refinement, study_level *level)
 {
   verifier *v = user;
@@ -160,7 +161,7 @@ static dvi_status witness_run(void *user, double refinement, study_level *level)
       .max_steps = WITNESS_STEPS,
       .max_seconds = fmax(witness_seconds, v->seconds) / TRUST_LEVELS};
   dvi_reference_report report;
-  if (!start(v)) return DVI_CALLBACK_FAILED;
+  if (!verify_start(v)) return DVI_CALLBACK_FAILED;
   memcpy(q, dvi_integrator_q(v->integrator), (size_t)nq * sizeof *q);
   memcpy(p, dvi_integrator_p(v->integrator), (size_t)nv * sizeof *p);
   dvi_status status = dvi_reference_solve(v->scene->system, 0.0, v->request->t_end, q, p, &options,
@@ -173,7 +174,7 @@ static dvi_status witness_run(void *user, double refinement, study_level *level)
   return read_numbers(v, level->number) ? DVI_OK : DVI_CALLBACK_FAILED;
 }
 
-static int examine(verifier *v)
+static int verify_examine(verifier *v)
 {
   const study_subject method = {.run = verify_run, .user = v},
                       witness = {.run = witness_run, .user = v};
@@ -184,12 +185,16 @@ static int examine(verifier *v)
   progress_end(&v->progress);
   if (status != DVI_OK) return v->code;
   v->seconds = (double)(clock() - began) / CLOCKS_PER_SEC;
-  measure_sizes(v);
+  measure_result_sizes(v);
   trust_estimate(&v->trust);
   const bool too_large = v->scene->nq > WITNESS_COORDINATES;
   if (!v->by_event && !too_large) trust_hear(&v->trust, &witness);
-  const verify_verdict verdict = {v->trust.verdict, v->by_event, too_large};
-  const trust_numbers numbers = {v->trust.count, v->trust.number[0], v->trust.size, v->trust.error};
+  const verify_verdict verdict = {
+      .trust = v->trust.verdict, .by_event = v->by_event, .too_large = too_large};
+  const trust_numbers numbers = {.count = v->trust.count,
+                                 .value = v->trust.number[0],
+                                 .size = v->trust.size,
+                                 .error = v->trust.error};
   return verify_tell(v->request, v->scene, v->integrator, &v->columns, &numbers, &verdict);
 }
 
@@ -199,7 +204,8 @@ int verify(const run_request *request, const problem *scene, dvi_integrator *int
   verifier v = {.request = request,
                 .scene = scene,
                 .integrator = integrator,
-                .group = {{"coordinates", 1, scene->nq}, {"momenta", 1 + scene->nq, scene->nv}}};
+                .group = {{.name = "coordinates", .first = 1, .count = scene->nq},
+                          {.name = "momenta", .first = 1 + scene->nq, .count = scene->nv}}};
   trust_study *t = &v.trust;
   int code = columns_choose(&v.columns, scene, integrator, request->columns);
   t->group = v.group;
@@ -211,9 +217,9 @@ int verify(const run_request *request, const problem *scene, dvi_integrator *int
   for (int k = 0; k < VECTORS && room != NULL; k++)
     *vector[k] = room + (size_t)k * (size_t)t->count;
   if (code == DONE && room == NULL) code = library_error(DVI_NO_MEMORY);
-  if (code == DONE && !start(&v)) code = FAILED;
+  if (code == DONE && !verify_start(&v)) code = FAILED;
   if (code == DONE && !natural_scale_start(&v.scale, scene, integrator)) code = FAILED;
-  if (code == DONE) code = events_list(&v.events, scene, NULL, NULL) ? examine(&v) : FAILED;
+  if (code == DONE) code = events_list(&v.events, scene, NULL, NULL) ? verify_examine(&v) : FAILED;
   natural_scale_clear(&v.scale);
   events_clear(&v.events);
   columns_clear(&v.columns);

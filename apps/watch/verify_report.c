@@ -14,7 +14,8 @@ enum { ROWS_MOST = 64 };
 static const table_column titles[] = {{"column", NULL},   {"value", "%.15g"}, {"error", "%.1e"},
                                       {"digits", "%.0f"}, {"size", ""},       {NULL, NULL}};
 
-static void add_row(result_table *table, const char *name, double value, double error, double size)
+static void report_add_row(result_table *table, const char *name, double value, double error,
+                           double size)
 {
   table_text(table, name);
   table_number(table, value);
@@ -23,37 +24,38 @@ static void add_row(result_table *table, const char *name, double value, double 
   table_number(table, size);
 }
 
-/* Of some numbers together: the largest error in the largest magnitude. */
-static void add_norm(result_table *table, const char *name, const trust_numbers *all, int first,
-                     int count)
+/* Add a row for several numbers, with their largest error and largest magnitude. */
+static void report_add_norm(result_table *table, const char *name, const trust_numbers *all,
+                            int first, int count)
 {
-  add_row(table, name, (double)NAN, norm_largest(count, all->error + first),
-          norm_largest(count, all->size + first));
+  report_add_row(table, name, (double)NAN, norm_largest(count, all->error + first),
+                 norm_largest(count, all->size + first));
 }
 
-/* Columns that measure the method, not the motion, have no true value. */
+/* Return whether a column has a true value. Columns that measure the method instead of the motion
+ * have none. */
 static bool is_of_motion(const shown_column *column)
 {
   return column->kind == COLUMN_COORDINATE || column->kind == COLUMN_VELOCITY ||
          column->kind == COLUMN_MOMENTUM || column->kind == COLUMN_INVARIANT;
 }
 
-static result_table *make_table(const problem *scene, const run_columns *columns,
-                                const trust_numbers *all, bool by_event)
+static result_table *report_table(const problem *scene, const run_columns *columns,
+                                  const trust_numbers *all, bool by_event)
 {
   const int first = 1 + scene->nq + scene->nv;
   result_table *table = table_create(titles);
-  add_norm(table, "all coordinates", all, 1, scene->nq);
-  add_norm(table, "all momenta", all, 1 + scene->nq, scene->nv);
-  if (by_event) add_row(table, "t", all->value[0], all->error[0], all->size[0]);
+  report_add_norm(table, "all coordinates", all, 1, scene->nq);
+  report_add_norm(table, "all momenta", all, 1 + scene->nq, scene->nv);
+  if (by_event) report_add_row(table, "t", all->value[0], all->error[0], all->size[0]);
   for (int k = 0; k < columns->count; k++)
     if (is_of_motion(&columns->column[k]))
-      add_row(table, columns->column[k].name, all->value[first + k], all->error[first + k],
-              all->size[first + k]);
+      report_add_row(table, columns->column[k].name, all->value[first + k], all->error[first + k],
+                     all->size[first + k]);
   return table;
 }
 
-/* Those of the state; of columns, too, that were asked for by name. */
+/* Return the fewest digits of the state, and of the columns if they were asked for by name. */
 static int fewest_digits(const result_table *table, bool columns_too)
 {
   enum { STATE_ROWS = 2, DIGITS = 3 };
@@ -82,9 +84,9 @@ static void print_witness(const run_request *request, const verify_verdict *verd
                                              : "");
 }
 
-static void print_all(const run_request *request, const problem *scene,
-                      const dvi_integrator *integrator, const result_table *table,
-                      const verify_verdict *verdict)
+static void report_print(const run_request *request, const problem *scene,
+                         const dvi_integrator *integrator, const result_table *table,
+                         const verify_verdict *verdict)
 {
   const int rows = table_rows(table), hidden = rows > ROWS_MOST ? rows - ROWS_MOST : 0;
   (void)printf("%s by %s with --h %g to t = %g, against --h %g and %g\n", scene->name,
@@ -101,10 +103,10 @@ static void print_all(const run_request *request, const problem *scene,
   print_witness(request, verdict);
 }
 
-/* Where errors fall, a step with so many digits more is known. One that is far too short also
- * gathers roundoff: there a higher order has them at this step. */
-static void advise(const run_request *request, const problem *scene,
-                   const dvi_integrator *integrator, int digits)
+/* Advise a step. Where errors fall, a step with so many digits more is known. A step that is far
+ * too short also gathers roundoff. A higher order then has the digits at the present step. */
+static void advise_step(const run_request *request, const problem *scene,
+                        const dvi_integrator *integrator, int digits)
 {
   static const double shortest = 1e-3;
   const double part = pow(10.0, (double)(digits - request->digits - 1));
@@ -117,14 +119,15 @@ static void advise(const run_request *request, const problem *scene,
     complain("run: try --h %g", step);
 }
 
-static int say_fewer(const run_request *request, const problem *scene,
-                     const dvi_integrator *integrator, int digits, const verify_verdict *verdict)
+static int report_fewer_digits(const run_request *request, const problem *scene,
+                               const dvi_integrator *integrator, int digits,
+                               const verify_verdict *verdict)
 {
   complain("run: --digits %ld: %d can be trusted%s", request->digits, digits,
            trust_falls(verdict->trust.ratio)
                ? ""
                : "; see whether a step much smaller, or a method of another order, has more");
-  if (trust_falls(verdict->trust.ratio)) advise(request, scene, integrator, digits);
+  if (trust_falls(verdict->trust.ratio)) advise_step(request, scene, integrator, digits);
   return CHECK_FAILED;
 }
 
@@ -132,14 +135,15 @@ int verify_tell(const run_request *request, const problem *scene, const dvi_inte
                 const run_columns *columns, const trust_numbers *numbers,
                 const verify_verdict *verdict)
 {
-  result_table *table = make_table(scene, columns, numbers, verdict->by_event);
+  result_table *table = report_table(scene, columns, numbers, verdict->by_event);
   bool good = table_good(table);
   if (good && (request->csv == NULL || strcmp(request->csv, "-") != 0))
-    print_all(request, scene, integrator, table, verdict);
+    report_print(request, scene, integrator, table, verdict);
   if (good && request->csv != NULL) good = table_write(table, request->csv);
   const int digits = good ? fewest_digits(table, request->columns != NULL) : 0;
   table_destroy(&table);
   if (!good) return FAILED;
   if (digits >= request->digits) return DONE;
-  return output_flushed() ? say_fewer(request, scene, integrator, digits, verdict) : FAILED;
+  return output_flushed() ? report_fewer_digits(request, scene, integrator, digits, verdict)
+                          : FAILED;
 }
