@@ -55,7 +55,7 @@ static bool plot_jobs(const bench_results *results, const result_table *rows, co
   return axes_plot(rows, axes, subject, 0, NULL, path);
 }
 
-static bool on_standard_output(const char *path)
+static bool is_standard_output(const char *path)
 {
   return path != NULL && strcmp(path, "-") == 0;
 }
@@ -67,7 +67,7 @@ static bool report_asked(FILE *stream, const work *w, const bench_outputs *outpu
   asked_columns(&whole_job_words, columns);
   result_table *rows = asked_table(w, columns);
   bool good = table_good(rows);
-  if (good && !on_standard_output(outputs->at_csv)) asked_print(w, rows, stream);
+  if (good && !is_standard_output(outputs->at_csv)) asked_print(w, rows, stream);
   if (good && outputs->at_csv != NULL) good = table_write(rows, outputs->at_csv);
   table_destroy(&rows);
   return good;
@@ -75,12 +75,12 @@ static bool report_asked(FILE *stream, const work *w, const bench_outputs *outpu
 
 int bench_report(const bench_results *results, const bench_outputs *outputs)
 {
-  FILE *report = on_standard_output(outputs->csv) || on_standard_output(outputs->at_csv) ? stderr
+  FILE *report = is_standard_output(outputs->csv) || is_standard_output(outputs->at_csv) ? stderr
                                                                                          : stdout;
   result_table *rows = work_table(results->work, outputs->columns);
   bool good = table_good(rows);
   print_head(report, results);
-  if (good && !on_standard_output(outputs->csv)) work_print(results->work, rows, report);
+  if (good && !is_standard_output(outputs->csv)) work_print(results->work, rows, report);
   good = good && report_asked(report, results->work, outputs);
   print_notes(report, results);
   if (good && outputs->csv != NULL) good = table_write(rows, outputs->csv);

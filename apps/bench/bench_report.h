@@ -1,4 +1,4 @@
-/** What a bench found, as tables for people, CSV files and a plot. */
+/** The report of a bench, with tables for people, CSV files and a plot. */
 #ifndef BENCH_REPORT_H
 #define BENCH_REPORT_H
 #include <stdbool.h>
@@ -10,18 +10,19 @@
 #include "study/work.h"
 #include "study/work_table.h"
 
-/** Where the results go; NULL: nowhere, "-": standard output, and all words to standard error. */
+/** The destinations of the results. NULL for none, "-" for standard output, in which case all words
+ * go to standard error. */
 typedef struct bench_outputs {
   const char *csv, *plot, *at_csv;
-  table_column columns[WORK_COLUMNS_MAX]; /**< of the table */
-  plot_axes axes;                         /**< of the plot */
+  table_column columns[WORK_COLUMNS_MAX]; /**< columns of the table */
+  plot_axes axes;                         /**< axes of the plot */
   numbers asked;                          /**< errors at which the integrators are compared */
 } bench_outputs;
 
-/** All that was measured, of whole jobs. */
+/** All measurements of whole jobs. */
 typedef struct bench_results {
   const judged_motion *motion;
-  bool one_point; /**< callbacks of the one-point shape */
+  bool one_point; /**< callbacks have the one-point shape */
   const work *work;
 } bench_results;
 

@@ -1,4 +1,4 @@
-/* The options of dvi bench, their help, and what can be said against them before anything runs. */
+/* The options of dvi bench, their help, and the checks before anything runs. */
 #include "bench/bench_request.h"
 
 #include <math.h>
@@ -11,11 +11,12 @@
 
 enum { ROUNDS_DEFAULT = 5 };
 
-static int check_outputs(const bench_outputs *outputs, const char *name)
+static int bench_check_outputs(const bench_outputs *outputs, const char *name)
 {
   const char *const paths[] = {outputs->csv, outputs->plot, outputs->at_csv};
-  const named_file files[] = {
-      {"csv", outputs->csv}, {"plot", outputs->plot}, {"at-csv", outputs->at_csv}};
+  const named_file files[] = {{.option = "csv", .path = outputs->csv},
+                              {.option = "plot", .path = outputs->plot},
+                              {.option = "at-csv", .path = outputs->at_csv}};
   enum { FILES = sizeof files / sizeof *files };
   int code = outputs_plot("bench", "plot", outputs->plot);
   if (code == DONE) code = scene_spared("bench", name, FILES, files);
@@ -29,8 +30,9 @@ static int check_outputs(const bench_outputs *outputs, const char *name)
   return DONE;
 }
 
-/* With --scale every method takes the same few steps, and nothing has an error. */
-static int check_modes(const bench_request *r)
+/* Check the options of the two modes. With --scale every method takes the same few steps, and
+ * nothing has an error. */
+static int bench_check_modes(const bench_request *r)
 {
   static const char reason[] = "--scale measures single steps";
   if (r->scale == NULL && !isnan(r->h))
@@ -53,7 +55,7 @@ static int check_modes(const bench_request *r)
   return r->h == 0.0 ? usage_error("bench: --h 0 leads nowhere") : DONE;
 }
 
-static int check_request(bench_request *request)
+static int bench_check_request(bench_request *request)
 {
   if (request->levels > WORK_LEVELS_MAX)
     return usage_error("bench: --levels %ld is too many, %d are possible", request->levels,
@@ -65,7 +67,7 @@ static int check_request(bench_request *request)
     return usage_error("bench: --steps %ld is too many, %d are possible", request->steps,
                        (int)STEPS_MAX);
   if (request->t_end == 0.0) return usage_error("bench: --t-end 0 leaves nothing to do");
-  int code = check_modes(request);
+  int code = bench_check_modes(request);
   if (code == DONE) code = words_distinct("bench", "method", &request->methods);
   if (code == DONE) code = words_distinct("bench", "time-transform", &request->transforms);
   if (code == DONE && request->at != NULL)
@@ -77,7 +79,7 @@ static int check_request(bench_request *request)
     code = axes_read("bench", &request->axes, request->outputs.plot, "error:cpu_seconds",
                      request->outputs.columns, &request->outputs.axes);
   if (code == DONE) code = peers_read(&request->against, &request->peers);
-  return code == DONE ? check_outputs(&request->outputs, request->name) : code;
+  return code == DONE ? bench_check_outputs(&request->outputs, request->name) : code;
 }
 
 static const char *const details[] = {
@@ -176,7 +178,7 @@ static const char *const details[] = {
     NULL,
 };
 
-/* What is measured, and how. */
+/* Add the options for the measured quantities. */
 static int add_measured(bench_request *r, option *options)
 {
   const option list[] = {
@@ -187,8 +189,8 @@ static int add_measured(bench_request *r, option *options)
       {.name = "time-transform",
        .words = &r->transforms,
        .value = "MONITOR",
-       .help = "every method in this time (see dvi run --help), or in none; may be repeated; left "
-               "out: none"},
+       .help = "every method in this time (see dvi run --help), or in none; may be repeated; "
+               "default: none"},
       {.name = "against",
        .words = &r->against,
        .value = "CODES",
@@ -234,7 +236,7 @@ static int add_measured(bench_request *r, option *options)
   return (int)(sizeof list / sizeof *list);
 }
 
-/* How far, of what, and where the results go. */
+/* Add the options for the span, the problem, and the destinations of the results. */
 static int add_outputs(bench_request *r, option *options)
 {
   const option list[] = {
@@ -281,6 +283,6 @@ bool bench_request_read(int argc, char **argv, bench_request *r, int *exit_code)
       .details = details,
   };
   if (!options_parse(&command, argc, argv, &r->name, exit_code)) return false;
-  *exit_code = check_request(r);
+  *exit_code = bench_check_request(r);
   return *exit_code == DONE;
 }

@@ -8,7 +8,7 @@
 #include "bench/peer.h"
 #include "study/clock.h"
 
-/* A sanitizer brings a malloc of its own, of which the C library knows nothing. */
+/* A sanitizer has a malloc of its own, which the C library does not know. */
 #if defined(__SANITIZE_ADDRESS__)
 #define HAS_SANITIZER
 #elif defined(__has_feature)
@@ -18,7 +18,7 @@
 #endif
 
 #if defined(HAS_SANITIZER)
-size_t __sanitizer_get_current_allocated_bytes(void); /* its header is not in every package */
+size_t __sanitizer_get_current_allocated_bytes(void); /* not every package has its header */
 #elif defined(__GLIBC__)
 #include <malloc.h>
 #if __GLIBC__ > 2 || __GLIBC_MINOR__ >= 33
@@ -26,7 +26,7 @@ size_t __sanitizer_get_current_allocated_bytes(void); /* its header is not in ev
 #endif
 #endif
 
-/* Given by the build; a compiler that is called by hand leaves them out. */
+/* Defined by the build, but not for a compiler that is called by hand. */
 #ifndef DVI_BUILD_COMPILER
 #define DVI_BUILD_COMPILER "unknown"
 #endif
@@ -36,8 +36,9 @@ size_t __sanitizer_get_current_allocated_bytes(void); /* its header is not in ev
 
 enum { LINE_SIZE = 256 };
 
-/* Linux on x86 has a line "model name : ..." for each core; other processors have no such line. */
-static void processor(char *name)
+/* Read the name of the processor. Linux on x86 has a line "model name : ..." for each core. Other
+ * processors have no such line. */
+static void read_processor(char *name)
 {
   static const char key[] = "model name";
   char line[LINE_SIZE];
@@ -57,7 +58,7 @@ static void processor(char *name)
 void machine_print(FILE *stream)
 {
   char name[LINE_SIZE];
-  processor(name);
+  read_processor(name);
   (void)fprintf(stream, "processor: %s\n", name);
   (void)fprintf(stream, "compiler: %s, %s\n", DVI_BUILD_COMPILER, DVI_BUILD_FLAGS);
   (void)fprintf(stream, "libraries: dvi %s, SUNDIALS %s", dvi_version(), dvi_reference_version());
@@ -68,7 +69,8 @@ void machine_print(FILE *stream)
 double machine_multiplications(void)
 {
   enum { RUN = 10000000, SCALE = 10 };
-  volatile double start = 1.0; /* unknown to the compiler, as is what becomes of the product */
+  /* the compiler must not know the value, nor the use of the product */
+  volatile double start = 1.0;
   const double factor = start + 1e-10;
   double product = start;
   const double began = cpu_now();
@@ -86,7 +88,7 @@ void machine_print_calibration(FILE *stream, const spread *seconds)
       seconds->median, seconds->least, seconds->lower, seconds->upper);
 }
 
-/* The best that the processor has: a yardstick shall not be short. */
+/* Use the processor's best instructions, because the loop serves as a yardstick. */
 #if defined(__x86_64__) && defined(__gnu_linux__) && (!defined(__clang__) || __clang_major__ >= 14)
 __attribute__((target_clones("arch=x86-64-v4", "avx2", "default")))
 #endif

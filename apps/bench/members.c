@@ -18,17 +18,17 @@
 
 enum { STEPS_DEFAULT = 64, MEMBERS_MOST = 1000000, LABEL_SIZE = 300 };
 
-/* Members start within this part of the problem's own start, coordinate by coordinate. */
+/* Members start within this fraction of the problem's own start, coordinate by coordinate. */
 static const double around = 0.01;
 
 static const char axis_word[] = "members=";
 
-/* One method with so many members. */
+/* One method with one number of members. */
 typedef struct cell {
   double together[ROUNDS_MAX]; /* seconds of a member's step, in each round */
   double alone[ROUNDS_MAX];
   spread of_together, of_alone;
-  double evaluations; /* of a step */
+  double evaluations; /* evaluations of a step */
 } cell;
 
 typedef struct comparison {
@@ -36,9 +36,9 @@ typedef struct comparison {
   numbers counts;
   problem *scene;
   double h;
-  long steps;    /* of one run */
-  double *q, *p; /* [n*members] the members' starts */
-  double *point; /* [2 n] one member's */
+  long steps;    /* steps of one run */
+  double *q, *p; /* [n*members] starts of the members */
+  double *point; /* [2 n] state of one member */
   cell *cell;    /* [methods][counts] */
   spread calibration;
   progress_line progress;
@@ -66,12 +66,12 @@ bool members_asked(const char *scaled)
   return strncmp(scaled, axis_word, sizeof axis_word - 1) == 0;
 }
 
-static cell *cell_at(const comparison *c, int method, int k)
+static cell *members_cell(const comparison *c, int method, int k)
 {
   return &c->cell[method * c->counts.count + k];
 }
 
-/* A one-form sets p, whatever v. */
+/* Place a member. A one-form determines p for any v. */
 static dvi_status place_member(const comparison *c, int k)
 {
   const int n = c->scene->nq;
@@ -87,7 +87,8 @@ static dvi_status place_member(const comparison *c, int k)
              : DVI_OK;
 }
 
-/* No two members alike, and the same ones in every run of this command. */
+/* Place the members. No two members are alike, and they are the same in every run of this
+ * command. */
 static dvi_status place_members(comparison *c, int members)
 {
   const size_t n = (size_t)c->scene->nq, count = (size_t)members;
@@ -102,7 +103,7 @@ static dvi_status place_members(comparison *c, int members)
   return status;
 }
 
-/* ---- two ways ---- */
+/* ---- runs together and alone ---- */
 
 static dvi_status run_together(const comparison *c, dvi_ensemble *ensemble, double *spent)
 {
@@ -113,7 +114,8 @@ static dvi_status run_together(const comparison *c, dvi_ensemble *ensemble, doub
   return status;
 }
 
-static dvi_status run_one(const comparison *c, dvi_integrator *integrator, size_t members, size_t k)
+static dvi_status run_one_alone(const comparison *c, dvi_integrator *integrator, size_t members,
+                                size_t k)
 {
   const size_t n = (size_t)c->scene->nq;
   for (size_t i = 0; i < n; i++) {
@@ -132,7 +134,7 @@ static dvi_status run_alone(const comparison *c, dvi_integrator *integrator, int
   dvi_status status = DVI_OK;
   const double began = cpu_now();
   for (int k = 0; k < members && status == DVI_OK; k++)
-    status = run_one(c, integrator, (size_t)members, (size_t)k);
+    status = run_one_alone(c, integrator, (size_t)members, (size_t)k);
   *spent = cpu_now() - began;
   return status;
 }
@@ -147,7 +149,7 @@ static dvi_status measure_together(const comparison *c, const char *method, int 
   double spent = 0.0;
   double total = 0.0;
   dvi_status status = dvi_ensemble_create(c->scene->system, method, &options, &ensemble);
-  /* The first run finds memory and the machine's caches as they will be: it is not timed. */
+  /* The first run fills memory and the machine's caches, and is not timed. */
   if (status == DVI_OK) status = run_together(c, ensemble, &spent);
   dvi_ensemble_counters(ensemble, &before);
   const long repeats = clock_repeats(spent);
@@ -189,7 +191,7 @@ static int measure_round(comparison *c, int round)
     if (status != DVI_OK) return library_error(status);
     for (int i = 0; i < c->request->methods->count; i++) {
       const char *method = c->request->methods->word[i];
-      cell *at = cell_at(c, i, k);
+      cell *at = members_cell(c, i, k);
       progress_show(&c->progress, -1.0, method);
       status = measure_together(c, method, members, &at->together[round], &at->evaluations);
       if (status == DVI_OK) status = measure_alone(c, method, members, &at->alone[round]);
@@ -199,7 +201,7 @@ static int measure_round(comparison *c, int round)
   return DONE;
 }
 
-static int measure(comparison *c)
+static int members_measure(comparison *c)
 {
   double calibration[ROUNDS_MAX];
   const int rounds = (int)c->request->rounds;
@@ -228,12 +230,12 @@ static void add_spread(result_table *rows, const spread *seconds)
   table_number(rows, seconds->upper);
 }
 
-static result_table *make_table(const comparison *c)
+static result_table *members_table(const comparison *c)
 {
   result_table *rows = table_create(columns);
   for (int i = 0; i < c->request->methods->count; i++)
     for (int k = 0; k < c->counts.count; k++) {
-      const cell *at = cell_at(c, i, k);
+      const cell *at = members_cell(c, i, k);
       table_text(rows, c->request->methods->word[i]);
       table_text(rows, c->request->problem);
       table_number(rows, c->counts.number[k]);
@@ -247,7 +249,7 @@ static result_table *make_table(const comparison *c)
   return rows;
 }
 
-static void print_all(FILE *stream, const comparison *c, const result_table *rows)
+static void members_print(FILE *stream, const comparison *c, const result_table *rows)
 {
   (void)fprintf(stream, "Cost of a member's step on %s\n", c->request->problem);
   machine_print(stream);
@@ -265,8 +267,8 @@ static void print_all(FILE *stream, const comparison *c, const result_table *row
   (void)fprintf(stream, "gain: alone_seconds over step_seconds\n");
 }
 
-/* Two curves for each method. */
-static bool plot_cells(const comparison *c)
+/* Plot two curves for each method. */
+static bool members_plot(const comparison *c)
 {
   plot_curve curve[2 * WORDS_MAX];
   static char label[2 * WORDS_MAX][LABEL_SIZE];
@@ -279,7 +281,7 @@ static bool plot_cells(const comparison *c)
   }
   for (int i = 0; i < 2 * methods; i++) {
     for (int k = 0; k < counts; k++) {
-      const cell *at = cell_at(c, i / 2, k);
+      const cell *at = members_cell(c, i / 2, k);
       y[i * counts + k] = i % 2 == 0 ? at->of_together.median : at->of_alone.median;
     }
     (void)snprintf(label[i], sizeof label[i], "%s%s", c->request->methods->word[i / 2],
@@ -298,22 +300,22 @@ static bool plot_cells(const comparison *c)
   return good;
 }
 
-static int report(const comparison *c)
+static int members_report(const comparison *c)
 {
   const scale_request *request = c->request;
   const bool csv_only = request->csv != NULL && strcmp(request->csv, "-") == 0;
-  result_table *rows = make_table(c);
+  result_table *rows = members_table(c);
   bool good = table_good(rows);
-  if (good) print_all(csv_only ? stderr : stdout, c, rows);
+  if (good) members_print(csv_only ? stderr : stdout, c, rows);
   if (good && request->csv != NULL) good = table_write(rows, request->csv);
-  if (good && request->plot != NULL) good = plot_cells(c);
+  if (good && request->plot != NULL) good = members_plot(c);
   table_destroy(&rows);
   return good ? DONE : FAILED;
 }
 
 /* ---- request ---- */
 
-static int read_counts(comparison *c)
+static int members_read_counts(comparison *c)
 {
   const int code = numbers_read("bench: --scale", c->request->scaled + sizeof axis_word - 1,
                                 &c->counts);
@@ -324,7 +326,7 @@ static int read_counts(comparison *c)
   return code;
 }
 
-static int check_methods(const comparison *c)
+static int members_check_methods(const comparison *c)
 {
   int code = DONE;
   for (int i = 0; i < c->request->methods->count && code == DONE; i++) {
@@ -335,7 +337,7 @@ static int check_methods(const comparison *c)
   return code;
 }
 
-static bool make_room(comparison *c)
+static bool members_allocate(comparison *c)
 {
   double most = 0.0;
   for (int k = 0; k < c->counts.count; k++) most = fmax(most, c->counts.number[k]);
@@ -352,7 +354,7 @@ int members_run(const scale_request *request)
   comparison c = {.request = request, .steps = request->steps > 0 ? request->steps : STEPS_DEFAULT};
   if (request->methods->count == 0)
     return usage_error("bench: --scale needs a method: --method SPEC");
-  int code = read_counts(&c);
+  int code = members_read_counts(&c);
   if (code == DONE)
     code = open_shaped(request->problem, request->settings, request->one_point, &c.scene);
   if (code != DONE) return code;
@@ -364,14 +366,14 @@ int members_run(const scale_request *request)
     return code;
   }
   c.h = isnan(request->h) ? c.scene->h : request->h;
-  code = check_methods(&c);
+  code = members_check_methods(&c);
   if (code == DONE) events_passed("bench", c.scene);
-  if (code == DONE && !make_room(&c)) {
+  if (code == DONE && !members_allocate(&c)) {
     complain("out of memory");
     code = FAILED;
   }
-  if (code == DONE) code = measure(&c);
-  if (code == DONE) code = report(&c);
+  if (code == DONE) code = members_measure(&c);
+  if (code == DONE) code = members_report(&c);
   free(c.q);
   free(c.p);
   free(c.point);

@@ -13,7 +13,7 @@ static const char gsl_name[] = "gsl-rk8pd";
 static char reason[512];
 
 #ifdef DVI_GSL
-/* SUNDIALS' codes have the library's numbers; GSL's follows them. */
+/* Return GSL's number, which follows those of SUNDIALS' codes. They have the library's numbers. */
 static int gsl_number(void)
 {
   int count = 0;
@@ -39,19 +39,20 @@ const char *peer_gsl_version(void)
 #endif
 }
 
-/* "cvode" alone is its Adams formula, the better one where nothing is stiff: it comes first. */
-static bool is_named(const char *name, const char *text, size_t length)
+/* Compare a peer's name. "cvode" alone is its Adams formula, the better one for problems that are
+ * not stiff, and comes first. */
+static bool peer_is_named(const char *name, const char *text, size_t length)
 {
   return (length == strlen(name) || length == strcspn(name, "-")) &&
          strncmp(name, text, length) == 0;
 }
 
-static int read_peer(const char *text, size_t length, peer_list *list)
+static int peer_read(const char *text, size_t length, peer_list *list)
 {
   int peer = 0;
-  while (peer_name(peer) != NULL && !is_named(peer_name(peer), text, length)) peer++;
+  while (peer_name(peer) != NULL && !peer_is_named(peer_name(peer), text, length)) peer++;
   const char *name = peer_name(peer);
-  if (name == NULL && is_named(gsl_name, text, length))
+  if (name == NULL && peer_is_named(gsl_name, text, length))
     return usage_error("bench: --against gsl: this dvi was built without GSL; configure with "
                        "-DDVI_GSL=ON (Debian's package: libgsl-dev); "
                        "a binary built so is under the GPL");
@@ -61,7 +62,8 @@ static int read_peer(const char *text, size_t length, peer_list *list)
         (int)length, text);
   for (int i = 0; i < list->count; i++)
     if (list->peer[i] == peer) return usage_error("bench: --against names %s twice", name);
-  list->peer[list->count++] = peer; /* each once: there are fewer than PEERS_MAX */
+  /* each peer is added once, and there are fewer than PEERS_MAX */
+  list->peer[list->count++] = peer;
   return DONE;
 }
 
@@ -72,7 +74,7 @@ int peers_read(const words *against, peer_list *list)
   for (int i = 0; i < against->count; i++)
     for (const char *text = against->word[i]; text != NULL && code == DONE;) {
       const size_t length = strcspn(text, ",");
-      code = read_peer(text, length, list);
+      code = peer_read(text, length, list);
       text = text[length] == ',' ? text + length + 1 : NULL;
     }
   return code;

@@ -15,35 +15,35 @@
 #include <string.h>
 
 enum { ITERATIONS_MAX = 30 };
-static const unsigned long steps_max = 50000000; /* as many as the codes of SUNDIALS get */
+static const unsigned long steps_max = 50000000; /* the limit of SUNDIALS' codes */
 
 typedef struct flow {
   const dvi_system_terms *terms;
   int n;
   long evaluations;
-  double *v;                  /* [n] the velocity, and the guess for the next one */
+  double *v;                  /* [n] velocity, and guess for the next one */
   double *L_v;                /* [n] */
-  double *V_q;                /* [n] of one potential */
-  double *residual, *step;    /* [n] of the search for v */
-  double *L_qq, *L_qv, *L_vv; /* [n*n] at most; a general Lagrangian's */
-  gsl_matrix *factors;        /* [n,n] of L_vv */
+  double *V_q;                /* [n] gradient of one potential */
+  double *residual, *step;    /* [n] vectors of Newton's method for v */
+  double *L_qq, *L_qv, *L_vv; /* [n*n] at most, for a general Lagrangian */
+  gsl_matrix *factors;        /* [n,n] factors of L_vv */
   gsl_permutation *permutation;
 } flow;
 
-static int potential_gradient(const dvi_potential *of, double t, const double *q, double *V_q)
+static int rk8pd_potential_gradient(const dvi_potential *of, double t, const double *q, double *V_q)
 {
   return of->gradient_batch != NULL ? of->gradient_batch(1, &t, q, V_q, of->user)
                                     : of->gradient(t, q, V_q, of->user);
 }
 
-static int lagrangian_gradient(const dvi_lagrangian *of, double t, const double *q, const double *v,
-                               double *L_q, double *L_v)
+static int rk8pd_lagrangian_gradient(const dvi_lagrangian *of, double t, const double *q,
+                                     const double *v, double *L_q, double *L_v)
 {
   return of->gradient_batch != NULL ? of->gradient_batch(1, &t, q, v, L_q, L_v, of->user)
                                     : of->gradient(t, q, v, L_q, L_v, of->user);
 }
 
-static int lagrangian_hessian(flow *f, double t, const double *q)
+static int rk8pd_lagrangian_hessian(flow *f, double t, const double *q)
 {
   const dvi_lagrangian *of = f->terms->lagrangian;
   return of->hessian_batch != NULL
@@ -51,7 +51,7 @@ static int lagrangian_hessian(flow *f, double t, const double *q)
              : of->hessian(t, q, f->v, f->L_qq, f->L_qv, f->L_vv, of->user);
 }
 
-static double largest(int n, const double *x)
+static double rk8pd_norm(int n, const double *x)
 {
   double size = 0.0;
   for (int i = 0; i < n; i++) size = isnan(x[i]) ? HUGE_VAL : fmax(size, fabs(x[i]));
@@ -65,11 +65,11 @@ static void set_mass_velocity(flow *f, const double *p)
     f->v[i] = p[i] / (mass->diagonal != NULL ? mass->diagonal[i] : mass->scalar);
 }
 
-static int factor(flow *f, double t, const double *q)
+static int rk8pd_factor(flow *f, double t, const double *q)
 {
   const dvi_pattern *vv = &f->terms->lagrangian->vv;
   int sign;
-  const int code = lagrangian_hessian(f, t, q);
+  const int code = rk8pd_lagrangian_hessian(f, t, q);
   if (code != 0) return code;
   gsl_matrix_set_zero(f->factors);
   for (int column = 0, e = 0; column < f->n; column++) {
@@ -81,23 +81,24 @@ static int factor(flow *f, double t, const double *q)
   return gsl_linalg_LU_decomp(f->factors, f->permutation, &sign);
 }
 
-/* Newton's method on p - L_v = 0 with the L_vv of its first guess: for the usual kinetic energies,
- * quadratic in v, the second residual is roundoff, and L_q was evaluated along with it. */
+/* Solve p - L_v = 0 by Newton's method with the L_vv of its first guess. For the usual kinetic
+ * energies, quadratic in v, the second residual is roundoff, and L_q was evaluated along with
+ * it. */
 static int find_velocity(flow *f, double t, const double *q, const double *p, double *L_q)
 {
   double before = HUGE_VAL;
   gsl_vector_view residual = gsl_vector_view_array(f->residual, (size_t)f->n);
   gsl_vector_view step = gsl_vector_view_array(f->step, (size_t)f->n);
   for (int i = 0; i < ITERATIONS_MAX; i++) {
-    int code = lagrangian_gradient(f->terms->lagrangian, t, q, f->v, L_q, f->L_v);
+    int code = rk8pd_lagrangian_gradient(f->terms->lagrangian, t, q, f->v, L_q, f->L_v);
     f->evaluations++;
-    if (code == 0 && i == 0) code = factor(f, t, q);
+    if (code == 0 && i == 0) code = rk8pd_factor(f, t, q);
     for (int j = 0; j < f->n; j++) f->residual[j] = p[j] - f->L_v[j];
     if (code == 0)
       code = gsl_linalg_LU_solve(f->factors, f->permutation, &residual.vector, &step.vector);
     if (code != 0) return code;
     for (int j = 0; j < f->n; j++) f->v[j] += f->step[j];
-    const double size = largest(f->n, f->step), scale = largest(f->n, f->v);
+    const double size = rk8pd_norm(f->n, f->step), scale = rk8pd_norm(f->n, f->v);
     if (size <= 4.0 * DBL_EPSILON * scale || (size <= 1e-10 * scale && size >= 0.5 * before))
       return 0;
     if (!isfinite(size)) break;
@@ -106,8 +107,8 @@ static int find_velocity(flow *f, double t, const double *q, const double *p, do
   return GSL_EFAILED;
 }
 
-/* GSL tries a smaller step after any failure but GSL_EBADFUNC, and takes a NaN for a small
- * error. */
+/* Evaluate the right side. GSL tries a smaller step after any failure but GSL_EBADFUNC, and takes a
+ * NaN for a small error. */
 static int right_side(double t, const double y[], double ydot[], void *user)
 {
   flow *f = user;
@@ -123,15 +124,15 @@ static int right_side(double t, const double y[], double ydot[], void *user)
     f->evaluations++;
   }
   for (int k = 0; k < f->terms->potential_count && code == 0; k++) {
-    code = potential_gradient(&f->terms->potentials[k], t, q, f->V_q);
+    code = rk8pd_potential_gradient(&f->terms->potentials[k], t, q, f->V_q);
     for (int i = 0; i < f->n; i++) pdot[i] -= f->V_q[i];
   }
   memcpy(ydot, f->v, (size_t)f->n * sizeof *ydot);
-  if (code == 0 && !isfinite(largest(2 * f->n, ydot))) code = GSL_EFAILED;
+  if (code == 0 && !isfinite(rk8pd_norm(2 * f->n, ydot))) code = GSL_EFAILED;
   return code == 0 ? GSL_SUCCESS : code < 0 ? GSL_EBADFUNC : GSL_EFAILED;
 }
 
-static bool provided_for(const dvi_system_terms *terms)
+static bool rk8pd_provides_for(const dvi_system_terms *terms)
 {
   if (terms->factors != NULL) return false;
   for (int k = 0; k < terms->potential_count; k++)
@@ -144,8 +145,8 @@ static bool provided_for(const dvi_system_terms *terms)
   return terms->mass.values == NULL;
 }
 
-/* Room for 5 n numbers, and for three matrices where the Lagrangian is general. */
-static bool reserve(flow *f)
+/* Allocate memory for 5 n numbers, and for three matrices if the Lagrangian is general. */
+static bool rk8pd_allocate(flow *f)
 {
   const size_t n = (size_t)f->n;
   const size_t block = f->terms->lagrangian != NULL ? n * n : 0;
@@ -164,18 +165,19 @@ static bool reserve(flow *f)
   return f->factors != NULL && f->permutation != NULL;
 }
 
-static void release(flow *f)
+static void rk8pd_release(flow *f)
 {
   gsl_permutation_free(f->permutation);
   gsl_matrix_free(f->factors);
   free(f->v);
 }
 
-/* y [2n] from the start to the end. */
-static dvi_status integrate(flow *f, const problem *scene, double t_end, double tolerance,
-                            double *y, long *steps, char *reason, size_t size)
+/* Integrate y [2n] from the start to the end. */
+static dvi_status rk8pd_integrate(flow *f, const problem *scene, double t_end, double tolerance,
+                                  double *y, long *steps, char *reason, size_t size)
 {
-  const gsl_odeiv2_system equations = {right_side, NULL, 2 * (size_t)f->n, f};
+  const gsl_odeiv2_system equations = {
+      .function = right_side, .dimension = 2 * (size_t)f->n, .params = f};
   const double h = copysign(fmin(scene->h, fabs(t_end)), t_end);
   gsl_odeiv2_driver *driver = gsl_odeiv2_driver_alloc_y_new(&equations, gsl_odeiv2_step_rk8pd, h,
                                                             tolerance, tolerance);
@@ -192,8 +194,9 @@ static dvi_status integrate(flow *f, const problem *scene, double t_end, double 
   return DVI_REFERENCE_FAILED;
 }
 
-static dvi_status run(flow *f, const problem *scene, double t_end, double tolerance, double *q,
-                      double *p, dvi_reference_report *report, char *reason, size_t size)
+static dvi_status rk8pd_run(flow *f, const problem *scene, double t_end, double tolerance,
+                            double *q, double *p, dvi_reference_report *report, char *reason,
+                            size_t size)
 {
   const size_t n = (size_t)f->n;
   double *y = calloc(2 * n, sizeof *y);
@@ -201,7 +204,8 @@ static dvi_status run(flow *f, const problem *scene, double t_end, double tolera
   memcpy(y, q, n * sizeof *y);
   memcpy(y + n, p, n * sizeof *y);
   memcpy(f->v, scene->v, n * sizeof *f->v);
-  const dvi_status status = integrate(f, scene, t_end, tolerance, y, &report->steps, reason, size);
+  const dvi_status status = rk8pd_integrate(f, scene, t_end, tolerance, y, &report->steps, reason,
+                                            size);
   if (status == DVI_OK) {
     memcpy(q, y, n * sizeof *q);
     memcpy(p, y + n, n * sizeof *p);
@@ -215,18 +219,19 @@ dvi_status rk8pd_solve(const problem *scene, double t_end, double tolerance, dou
                        dvi_reference_report *report, char *reason, size_t size)
 {
   flow f = {.terms = scene->terms, .n = scene->nq};
-  if (!provided_for(f.terms)) {
+  if (!rk8pd_provides_for(f.terms)) {
     (void)snprintf(reason, size,
                    "gsl-rk8pd: it is provided for scalar and diagonal masses on R^n and for "
                    "general Lagrangians with Hessians");
     return DVI_UNSUPPORTED;
   }
-  gsl_error_handler_t *handler = gsl_set_error_handler_off(); /* GSL's own ends the program */
-  dvi_status status = reserve(&f) ? DVI_OK : DVI_NO_MEMORY;
-  if (status == DVI_OK) status = run(&f, scene, t_end, tolerance, q, p, report, reason, size);
+  /* GSL's own handler ends the program */
+  gsl_error_handler_t *handler = gsl_set_error_handler_off();
+  dvi_status status = rk8pd_allocate(&f) ? DVI_OK : DVI_NO_MEMORY;
+  if (status == DVI_OK) status = rk8pd_run(&f, scene, t_end, tolerance, q, p, report, reason, size);
   if (status == DVI_NO_MEMORY)
     (void)snprintf(reason, size, "gsl-rk8pd: no memory for %d coordinates", f.n);
-  release(&f);
+  rk8pd_release(&f);
   (void)gsl_set_error_handler(handler);
   return status;
 }

@@ -22,20 +22,20 @@ enum { STEPS_DEFAULT = 32, TITLE_SIZE = 160 };
 typedef struct cell {
   int n;
   double h;
-  double step[ROUNDS_MAX]; /* seconds of one, in each round */
-  spread seconds;          /* of all rounds; set when they are over */
-  double bytes;            /* NaN: not known */
-  dvi_counters counted;    /* in the steps of one run */
-  double traffic;          /* bytes that a step moves; 0: not known */
-  double axpy[ROUNDS_MAX]; /* bytes a second that one moves beside it, in each round, where the
-                              traffic is known */
-  spread bandwidth;        /* of these */
+  double step[ROUNDS_MAX]; /* seconds of one step, in each round */
+  spread seconds;          /* seconds over all rounds, set at their end */
+  double bytes;            /* NaN if not known */
+  dvi_counters counted;    /* counters of the steps of one run */
+  double traffic;          /* bytes that a step moves, 0 if not known */
+  /* bytes a second of an axpy beside the steps, in each round, where the traffic is known */
+  double axpy[ROUNDS_MAX];
+  spread bandwidth; /* spread of axpy */
 } cell;
 
 typedef struct scaling {
   const scale_request *request;
   scale_axis axis;
-  long steps; /* of one run */
+  long steps; /* steps of one run */
   cell *cell; /* [methods][values] */
   spread calibration;
   progress_line progress;
@@ -60,28 +60,28 @@ static const table_column columns[] = {
     {NULL, NULL},
 };
 
-static cell *cell_at(const scaling *s, int method, int k)
+static cell *scale_cell(const scaling *s, int method, int k)
 {
   return &s->cell[method * s->axis.values.count + k];
 }
 
-/* Of several threads process time is the sum. */
-static double now(const scaling *s)
+/* Read the clock. With several threads, process time would be the sum of theirs. */
+static double scale_clock(const scaling *s)
 {
   return s->axis.parallel ? elapsed_now() : cpu_now();
 }
 
-/* The first steps from the start: their time, and what they counted. */
-static dvi_status run_steps(const scaling *s, dvi_integrator *integrator, const problem *scene,
-                            cell *c, double *spent)
+/* Time the first steps from the start, and count their work. */
+static dvi_status scale_run_steps(const scaling *s, dvi_integrator *integrator,
+                                  const problem *scene, cell *c, double *spent)
 {
   dvi_counters before;
   dvi_status status = dvi_integrator_start(integrator, 0.0, scene->q, scene->p);
   dvi_integrator_counters(integrator, &before);
-  const double began = now(s);
+  const double began = scale_clock(s);
   for (long i = 0; i < s->steps && status == DVI_OK; i++)
     status = dvi_integrator_step(integrator, c->h);
-  *spent = now(s) - began;
+  *spent = scale_clock(s) - began;
   dvi_integrator_counters(integrator, &c->counted);
   c->counted.gradients -= before.gradients;
   c->counted.residuals -= before.residuals;
@@ -97,15 +97,15 @@ static dvi_status measure_cell(const scaling *s, const char *method, const probl
   double total = 0.0;
   const double heap = machine_heap();
   dvi_status status = dvi_integrator_create(scene->system, method, &integrator);
-  /* The first run finds memory and the machine's caches as they will be: it is not timed. */
+  /* The first run fills memory and the machine's caches, and is not timed. */
   for (int i = 0; i < 2 && status == DVI_OK; i++)
-    status = run_steps(s, integrator, scene, c, &spent);
+    status = scale_run_steps(s, integrator, scene, c, &spent);
   const double grown = machine_heap() - heap;
   if (round == 0)
     c->bytes = grown > 0.0 ? grown : (double)NAN; /* another malloc does not show there */
   const long repeats = clock_repeats(spent);
   for (long i = 0; i < repeats && status == DVI_OK; i++) {
-    status = run_steps(s, integrator, scene, c, &spent);
+    status = scale_run_steps(s, integrator, scene, c, &spent);
     total += spent;
   }
   c->step[round] = total / ((double)s->steps * (double)repeats);
@@ -119,7 +119,7 @@ static int measure_methods(scaling *s, const problem *scene, int k, int round)
   char method[SPECIFICATION_SIZE];
   int code = DONE;
   for (int i = 0; i < s->request->methods->count && code == DONE; i++) {
-    cell *c = cell_at(s, i, k);
+    cell *c = scale_cell(s, i, k);
     c->n = scene->nq;
     c->h = isnan(s->request->h) ? scene->h : s->request->h;
     progress_show(&s->progress, -1.0, s->request->methods->word[i]);
@@ -143,9 +143,9 @@ static int measure_value(scaling *s, int k, int round)
   return code;
 }
 
-/* Every round measures everything once, so that whatever slows the machine for a while slows all of
- * it. */
-static int measure(scaling *s)
+/* Measure everything once in every round, so that whatever slows the machine for a while slows all
+ * of it. */
+static int scale_measure(scaling *s)
 {
   double calibration[ROUNDS_MAX];
   const int rounds = (int)s->request->rounds;
@@ -166,12 +166,12 @@ static int measure(scaling *s)
   return DONE;
 }
 
-static result_table *make_table(const scaling *s)
+static result_table *scale_table(const scaling *s)
 {
   result_table *rows = table_create(columns);
   for (int i = 0; i < s->request->methods->count; i++)
     for (int k = 0; k < s->axis.values.count; k++) {
-      const cell *c = cell_at(s, i, k);
+      const cell *c = scale_cell(s, i, k);
       table_text(rows, s->request->methods->word[i]);
       table_text(rows, s->request->problem);
       table_text(rows, s->axis.name);
@@ -208,7 +208,7 @@ static void print_powers(FILE *stream, const scaling *s, int method)
   double bytes[NUMBERS_MAX];
   double evaluations[NUMBERS_MAX];
   for (int k = 0; k < s->axis.values.count; k++) {
-    const cell *c = cell_at(s, method, k);
+    const cell *c = scale_cell(s, method, k);
     x[k] = axis_abscissa(&s->axis, k, c->n);
     seconds[k] = c->seconds.median;
     bytes[k] = c->bytes;
@@ -225,15 +225,16 @@ static void print_speed_up(FILE *stream, const scaling *s, int method)
   (void)fprintf(stream, "  speed-up against %s=%s:", s->axis.name, s->axis.values.text[0]);
   for (int k = 1; k < s->axis.values.count; k++)
     (void)fprintf(stream, "  %.2f",
-                  cell_at(s, method, 0)->seconds.median / cell_at(s, method, k)->seconds.median);
+                  scale_cell(s, method, 0)->seconds.median /
+                      scale_cell(s, method, k)->seconds.median);
   (void)fputc('\n', stream);
 }
 
-/* How much of the machine's memory bandwidth the steps use. */
+/* Print the fraction of the machine's memory bandwidth that the steps use. */
 static void print_traffic(FILE *stream, const scaling *s, int method)
 {
   for (int k = 0; k < s->axis.values.count; k++) {
-    const cell *c = cell_at(s, method, k);
+    const cell *c = scale_cell(s, method, k);
     const double moved = c->traffic / c->seconds.median;
     const double axpy = c->bandwidth.median;
     if (c->traffic > 0.0)
@@ -257,7 +258,7 @@ static void print_meaning(FILE *stream, const scaling *s)
                         "mallinfo2; the problem's own is not counted\n");
 }
 
-static void print_all(FILE *stream, const scaling *s, const result_table *rows)
+static void scale_print(FILE *stream, const scaling *s, const result_table *rows)
 {
   (void)fprintf(stream, "Cost of a step on %s\n", s->request->problem);
   machine_print(stream);
@@ -275,7 +276,7 @@ static void print_all(FILE *stream, const scaling *s, const result_table *rows)
   print_meaning(stream, s);
 }
 
-static bool plot_cells(const scaling *s)
+static bool scale_plot(const scaling *s)
 {
   plot_curve curve[WORDS_MAX];
   char title[TITLE_SIZE];
@@ -310,20 +311,20 @@ static bool plot_cells(const scaling *s)
   return good;
 }
 
-static int report(const scaling *s)
+static int scale_report(const scaling *s)
 {
   const scale_request *request = s->request;
   const bool csv_only = request->csv != NULL && strcmp(request->csv, "-") == 0;
-  result_table *rows = make_table(s);
+  result_table *rows = scale_table(s);
   bool good = table_good(rows);
-  if (good) print_all(csv_only ? stderr : stdout, s, rows);
+  if (good) scale_print(csv_only ? stderr : stdout, s, rows);
   if (good && request->csv != NULL) good = table_write(rows, request->csv);
-  if (good && request->plot != NULL) good = plot_cells(s);
+  if (good && request->plot != NULL) good = scale_plot(s);
   table_destroy(&rows);
   return good ? DONE : FAILED;
 }
 
-static int check_methods(const scaling *s, const problem *scene, int k)
+static int scale_check_methods(const scaling *s, const problem *scene, int k)
 {
   char method[SPECIFICATION_SIZE];
   int code = DONE;
@@ -336,7 +337,7 @@ static int check_methods(const scaling *s, const problem *scene, int k)
   return code;
 }
 
-/* Value k makes a problem of another size than those before it, n [k]. */
+/* Check that value k makes a problem of another size than the values before it, n [k]. */
 static int check_growth(const scaling *s, const int *n, int k)
 {
   const char(*value)[NUMBER_SIZE] = s->axis.values.text;
@@ -348,8 +349,8 @@ static int check_growth(const scaling *s, const int *n, int k)
   return DONE;
 }
 
-/* Before anything is measured: each problem and each specification can be made. What a method says
- * to a problem does not depend on the problem's size, so it is asked once. */
+/* Check that each problem and each specification can be created, before anything is measured. A
+ * method's answer does not depend on the problem's size, so it is created once. */
 static int check_values(const scaling *s)
 {
   int n[NUMBERS_MAX];
@@ -360,7 +361,7 @@ static int check_values(const scaling *s)
                         s->request->one_point, &scene);
     if (code != DONE) return code;
     n[k] = scene->nq;
-    if (k == 0 || s->axis.kind != AXIS_PARAMETER) code = check_methods(s, scene, k);
+    if (k == 0 || s->axis.kind != AXIS_PARAMETER) code = scale_check_methods(s, scene, k);
     if (k == 0 && code == DONE) events_passed("bench", scene);
     problem_destroy(&scene);
     if (code == DONE) code = check_growth(s, n, k);
@@ -384,8 +385,8 @@ int scale_run(const scale_request *request)
     complain("out of memory");
     return FAILED;
   }
-  code = measure(&s);
-  if (code == DONE) code = report(&s);
+  code = scale_measure(&s);
+  if (code == DONE) code = scale_report(&s);
   free(s.cell);
   return code;
 }

@@ -1,17 +1,19 @@
-/** dvi bench --scale: what a step costs as the problem grows, or as a method's key does. */
+/** dvi bench --scale, which measures the cost of a step as the problem, or a method's key,
+ * grows. */
 #ifndef SCALE_H
 #define SCALE_H
 #include "cli/options.h"
 
-/** What is asked for. */
+/** The request of a measurement. */
 typedef struct scale_request {
   const char *problem;
-  const char *scaled; /**< "ell=100,1000" or "threads=1,2": what is varied, and its values */
+  /** varied quantity and its values, such as "ell=100,1000" or "threads=1,2" */
+  const char *scaled;
   const words *methods, *settings;
-  bool one_point; /**< callbacks of the one-point shape */
-  double h;       /**< NaN: the problem's */
+  bool one_point; /**< callbacks have the one-point shape */
+  double h;       /**< NaN for the problem's step */
   long rounds;
-  long steps; /**< timed from the start; 0: 32 */
+  long steps; /**< number of timed steps from the start (default 32) */
   const char *csv, *plot;
 } scale_request;
 

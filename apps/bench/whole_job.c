@@ -14,13 +14,19 @@ enum { ENERGY, EVALUATIONS = 0 };
 static const table_column further[] = {{"energy_error", "%.3e"}, {NULL, NULL}},
                           counted[] = {{"evaluations", "%.0f"}, {NULL, NULL}};
 
-const study_words whole_job_words = {"integrator",     "problem", "h",     "steps",
-                                     "create_seconds", further,   counted, motion_say};
+const study_words whole_job_words = {.subject = "integrator",
+                                     .problem = "problem",
+                                     .length = "h",
+                                     .parts = "steps",
+                                     .preparation = "create_seconds",
+                                     .further = further,
+                                     .counted = counted,
+                                     .say = motion_say};
 
 /* ---- methods ---- */
 
-/* Run the whole job; *preparation grows by the seconds that the integrator's creation takes. With a
- * level NULL it is done for the clock. */
+/* Run the whole job. *preparation grows by the seconds of the integrator's creation. level is NULL
+ * for a run for the clock. */
 static dvi_status method_job(const whole_job *job, double steps, double *preparation,
                              study_level *level)
 {
@@ -107,8 +113,8 @@ static dvi_status energy_change(const problem *scene, double t, const double *q,
   return status;
 }
 
-/* A peer is run from the start to each of the ENERGY_TIMES, because it shows its state at the end
- * only. */
+/* Run a peer from the start to each of the ENERGY_TIMES, because it shows its state only at the
+ * end. */
 static dvi_status peer_run(void *user, double tolerance, study_level *level)
 {
   const whole_job *job = user;
@@ -132,7 +138,7 @@ static dvi_status peer_run(void *user, double tolerance, study_level *level)
   return status;
 }
 
-/* A peer is created and run in one call. */
+/* Run a peer for the clock. Creation and run are one call. */
 static dvi_status peer_repeat(void *user, double tolerance, double *preparation)
 {
   const whole_job *job = user;
