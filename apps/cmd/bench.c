@@ -1,4 +1,5 @@
-/* dvi bench: speed against error, all in one run; and the cost of a step against size. */
+/* dvi bench, which measures speed against error, all in one run, or the cost of a step against
+ * size. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,8 +17,8 @@
 #include "bench/whole_job.h"
 #include "mechanics/motion_study.h"
 
-/* What runs if neither the command line nor the scene names a method; those that the problem's
- * structure excludes are left out. For every kind of system there is one at least. */
+/* The methods that run if neither the command line nor the scene names one. Methods that the
+ * problem's structure excludes are left out. Every kind of system has at least one. */
 static const char *const selection[] = {"verlet",
                                         "composition:order=8,base=verlet",
                                         "midpoint",
@@ -35,7 +36,8 @@ static const char *const selection[] = {"verlet",
                                         "hamiltonian:degree=4",
                                         NULL};
 
-/* Of peers; from FREE_TOLERANCES on only as far as a smaller error is asked for. */
+/* Tolerances of peers. Those from FREE_TOLERANCES on are used only as far as a smaller error is
+ * asked for. */
 static const double tolerances[] = {1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-13, 1e-14};
 enum {
   TOLERANCES = sizeof tolerances / sizeof *tolerances,
@@ -43,16 +45,17 @@ enum {
   JOBS_MAX = WORDS_MAX * (WORK_LONGER_MAX + WORK_LEVELS_MAX) + PEERS_MAX * TOLERANCES
 };
 
-static const double error_of_judge = 1e-10; /* that is good enough if no errors are asked for */
+/* error that is good enough if no errors are asked for */
+static const double error_of_judge = 1e-10;
 
-/* A method as it is measured: with steps of time, or that follow a monitor. */
+/* A measured method, with steps of time or with a monitor. */
 typedef struct entry {
   const char *method;
   pacing how;
   char name[PACED_NAME];
 } entry;
 
-/* All the work. */
+/* The state of a bench. */
 typedef struct bench {
   const bench_request *request;
   const problem *scene;
@@ -66,7 +69,7 @@ typedef struct bench {
 } bench;
 
 /* Add a method's levels. */
-static int add_method(bench *b, int number)
+static int bench_add_method(bench *b, int number)
 {
   const entry *of = &b->entry[number];
   motion_study study;
@@ -84,8 +87,8 @@ static int add_method(bench *b, int number)
   return status == DVI_OK ? DONE : library_error(status);
 }
 
-/* Add a peer at its tolerances. One that it cannot keep is left out, and said. */
-static int add_peer(bench *b, int number)
+/* Add a peer at its tolerances. A tolerance that it cannot keep is left out with a message. */
+static int bench_add_peer(bench *b, int number)
 {
   whole_job *job = &b->of_peer[number];
   const dvi_status status = whole_job_of_peer(job, b->request->peers.peer[number], &b->motion);
@@ -94,27 +97,27 @@ static int add_peer(bench *b, int number)
   return DONE;
 }
 
-static int add_jobs(bench *b)
+static int bench_add_jobs(bench *b)
 {
   int code = DONE;
-  for (int i = 0; i < b->entries && code == DONE; i++) code = add_method(b, i);
-  for (int i = 0; i < b->request->peers.count && code == DONE; i++) code = add_peer(b, i);
+  for (int i = 0; i < b->entries && code == DONE; i++) code = bench_add_method(b, i);
+  for (int i = 0; i < b->request->peers.count && code == DONE; i++) code = bench_add_peer(b, i);
   return code;
 }
 
-static int run_rounds(bench *b)
+static int bench_run_rounds(bench *b)
 {
   const dvi_status status = work_run(&b->work, machine_multiplications);
   return status == DVI_OK ? DONE : library_error(status);
 }
 
-static int report(bench *b)
+static int bench_print(bench *b)
 {
   const bench_results results = {&b->motion, b->request->one_point, &b->work};
   return bench_report(&results, &b->request->outputs);
 }
 
-/* Ask the judge, find the levels, and run the rounds: what is shown on the progress line. */
+/* Ask the judge, find the levels, and run the rounds. The progress line shows these stages. */
 static int judge_and_measure(bench *b)
 {
   const double asked = work_smallest_asked(&b->request->outputs.asked);
@@ -126,17 +129,17 @@ static int judge_and_measure(bench *b)
   int code = judge_init(&b->judge, b->scene, b->request->t_end, &judge);
   b->motion = (judged_motion){b->scene, &b->judge, b->request->t_end};
   b->work.judge_error = b->judge.error;
-  if (code == DONE) code = add_jobs(b);
+  if (code == DONE) code = bench_add_jobs(b);
   if (code == DONE) {
     progress_end(&b->progress);
     progress_start(&b->progress, true);
-    code = run_rounds(b);
+    code = bench_run_rounds(b);
   }
   progress_end(&b->progress);
   return code;
 }
 
-static int measure(bench *b)
+static int bench_measure(bench *b)
 {
   b->work = (work){.command = "bench",
                    .shown = "dvi bench",
@@ -146,14 +149,14 @@ static int measure(bench *b)
                    .room = JOBS_MAX,
                    .job = calloc(JOBS_MAX, sizeof *b->work.job)};
   int code = b->work.job != NULL ? judge_and_measure(b) : library_error(DVI_NO_MEMORY);
-  if (code == DONE) code = report(b);
+  if (code == DONE) code = bench_print(b);
   for (int i = 0; i < PEERS_MAX; i++) whole_job_clear(&b->of_peer[i]);
   free(b->work.job);
   judge_clear(&b->judge);
   return code;
 }
 
-static void keep_entry(bench *b, const char *method, const pacing *how)
+static void bench_keep_entry(bench *b, const char *method, const pacing *how)
 {
   entry *e = &b->entry[b->entries++];
   e->method = method;
@@ -161,9 +164,10 @@ static void keep_entry(bench *b, const char *method, const pacing *how)
   paced_name(method, how, e->name, sizeof e->name);
 }
 
-/* Add a method, unless its structure forbids it: of the selection it is left out then; one that is
- * asked for is refused, or, if there are other times to take it in, left out with a word. */
-static int add_entry(bench *b, const char *method, const pacing *how, const dvi_monitor *monitor)
+/* Add a method, unless its structure forbids it. A method of the selection is then left out. A
+ * requested method is refused, or left out with a message if there are other times for it. */
+static int bench_add_entry(bench *b, const char *method, const pacing *how,
+                           const dvi_monitor *monitor)
 {
   dvi_integrator *integrator = NULL;
   const bool asked = b->request->methods.count > 0, several = b->request->transforms.count > 1;
@@ -171,16 +175,16 @@ static int add_entry(bench *b, const char *method, const pacing *how, const dvi_
     return usage_error("bench: more than %d methods and time transforms", (int)WORDS_MAX);
   const dvi_status status = create_paced(b->scene, method, how, monitor, &integrator);
   dvi_integrator_destroy(&integrator);
-  if (status == DVI_OK) keep_entry(b, method, how);
+  if (status == DVI_OK) bench_keep_entry(b, method, how);
   if (status == DVI_OK || (!asked && status == DVI_UNSUPPORTED)) return DONE;
-  /* which says why it fails */
+  /* open_paced says why it fails */
   if (!several || status != DVI_UNSUPPORTED) return open_paced(b->scene, method, how, &integrator);
   complain("bench: left out %s @ %s: %s", method, how->transform != NULL ? how->transform : "none",
            dvi_last_error());
   return DONE;
 }
 
-/* Every method with every time transform. */
+/* Add every method with every time transform. */
 static int choose_methods(bench *b)
 {
   const words *methods = &b->request->methods, *transforms = &b->request->transforms;
@@ -193,7 +197,8 @@ static int choose_methods(bench *b)
     const pacing how = {.transform = plain ? NULL : transforms->word[k]};
     dvi_monitor monitor = {0};
     code = open_monitor(b->scene, &how, &monitor);
-    for (int i = 0; i < count && code == DONE; i++) code = add_entry(b, method[i], &how, &monitor);
+    for (int i = 0; i < count && code == DONE; i++)
+      code = bench_add_entry(b, method[i], &how, &monitor);
   }
   return code == DONE && b->entries == 0 ? usage_error("bench: no method is left") : code;
 }
@@ -206,7 +211,7 @@ static int bench_problem(bench_request *request, const problem *scene)
   bench b = {.request = request, .scene = scene};
   const int code = choose_methods(&b);
   if (code == DONE) events_passed("bench", scene);
-  return code == DONE ? measure(&b) : code;
+  return code == DONE ? bench_measure(&b) : code;
 }
 
 static int scale_problem(const bench_request *r)

@@ -1,4 +1,5 @@
-/* dvi check: are the derivatives those of the values, and does the method take the problem? */
+/* dvi check, which compares the derivatives with the values, and tries the method on the
+ * problem. */
 #include <dvi/scene.h>
 #include <math.h>
 #include <stdint.h>
@@ -10,29 +11,29 @@
 #include "cli/options.h"
 #include "load/scene.h"
 
-/* Points beside the start, and how far they are from it. */
+/* Number of points beside the start, and their distance from it. */
 enum { POINTS = 4 };
 static const double APART = 0.01;
 
 /* Above this many coordinates the check's n^2 gradients take too long. */
 enum { COORDINATES_MAX = 2000 };
 
-/* Numbers from -1 to 1, the same in every run. */
-static double draw(uint64_t *state)
+/* Return a number from -1 to 1, the same ones in every run. */
+static double check_random(uint64_t *state)
 {
   *state = *state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
   return (double)(*state >> 11) / 4503599627370496.0 - 1.0;
 }
 
-/* A point near the start: velocities, or momenta of a Hamiltonian, are moved, and coordinates where
- * there is no manifold to leave. */
-static void move(const problem *scene, uint64_t *state, double *q, double *v)
+/* Move to a point near the start. Velocities, or momenta of a Hamiltonian, are moved, and
+ * coordinates if there is no manifold to leave. */
+static void check_move(const problem *scene, uint64_t *state, double *q, double *v)
 {
   const double *rates = scene->terms->hamiltonian != NULL ? scene->p : scene->v;
   for (int i = 0; i < scene->nq; i++)
-    q[i] = scene->q[i] + (scene->velocity == NULL ? APART * draw(state) : 0.0);
+    q[i] = scene->q[i] + (scene->velocity == NULL ? APART * check_random(state) : 0.0);
   for (int i = 0; i < scene->nv; i++)
-    v[i] = rates[i] + (scene->velocity == NULL ? APART * draw(state) : 0.0);
+    v[i] = rates[i] + (scene->velocity == NULL ? APART * check_random(state) : 0.0);
 }
 
 static bool has_kink(const problem *scene)
@@ -41,7 +42,7 @@ static bool has_kink(const problem *scene)
   return dvi_scene_kink(scene->scene, unread, sizeof unread) >= 0;
 }
 
-static void tell_derivatives(double worst, int at_kink)
+static void print_derivatives(double worst, int at_kink)
 {
   if (worst > 0.0)
     (void)printf("derivatives: within %.1e of differences at %d points near the start", worst,
@@ -53,9 +54,9 @@ static void tell_derivatives(double worst, int at_kink)
   (void)putchar('\n');
 }
 
-/* Returns DONE, or complains of the first derivative that is wrong. With a kink another point may
- * take the place of one that fails, for differences across it are not those of a smooth function;
- * what is wrong fails at the others, too. */
+/* Check the derivatives. Returns DONE, or complains about the first one that is wrong. With a kink
+ * another point may replace one that fails, because differences across it are not those of a smooth
+ * function. A derivative that is wrong fails at the other points, too. */
 static int check_derivatives(const problem *scene, double *q, double *v)
 {
   uint64_t state = 1;
@@ -63,7 +64,7 @@ static int check_derivatives(const problem *scene, double *q, double *v)
   int at_kink = 0;
   for (int k = 0; k < POINTS;) {
     dvi_derivative_check found;
-    move(scene, &state, q, v);
+    check_move(scene, &state, q, v);
     const dvi_status status = dvi_system_check(scene->system, 0.0, q, v, 0.0, &found);
     if (status == DVI_BAD_ARGUMENT && at_kink < POINTS && has_kink(scene)) {
       at_kink++;
@@ -80,7 +81,7 @@ static int check_derivatives(const problem *scene, double *q, double *v)
     worst = fmax(worst, fmax(found.gradient_error, found.hessian_error));
     k++;
   }
-  tell_derivatives(worst, at_kink);
+  print_derivatives(worst, at_kink);
   return DONE;
 }
 
@@ -101,7 +102,7 @@ static int check_all_derivatives(const problem *scene)
   return code;
 }
 
-/* What is watched has values at the start. */
+/* Check that the invariants have values at the start. */
 static int check_invariants(const problem *scene)
 {
   double *value = calloc((size_t)dvi_system_invariant_count(scene->system), sizeof *value);
@@ -114,8 +115,8 @@ static int check_invariants(const problem *scene)
   return status == DVI_OK ? DONE : library_error(status);
 }
 
-/* One step of the method from the start. */
-static int check_step(const problem *scene, const char *method)
+/* Take one step of the method from the start. */
+static int check_one_step(const problem *scene, const char *method)
 {
   dvi_integrator *integrator = NULL;
   int code = open_integrator(scene, method, &integrator);
@@ -128,8 +129,8 @@ static int check_step(const problem *scene, const char *method)
   return code;
 }
 
-/* What is declared and has no use is told: it may be a name that was changed elsewhere. */
-static void tell_unused(const problem *scene)
+/* Warn of declarations without use, which may be names that were changed elsewhere. */
+static void warn_unused(const problem *scene)
 {
   const char *name;
   for (int i = 0; scene->scene != NULL && (name = dvi_scene_unused(scene->scene, i)) != NULL; i++)
@@ -180,9 +181,9 @@ int check_command(int argc, char **argv)
   (void)printf("%s: %s\n", scene->name, scene->summary);
   code = check_all_derivatives(scene);
   if (code == DONE) code = check_invariants(scene);
-  if (code == DONE && method != NULL) code = check_step(scene, method);
+  if (code == DONE && method != NULL) code = check_one_step(scene, method);
   if (code == DONE) scene_tell(scene);
-  tell_unused(scene);
+  warn_unused(scene);
   problem_destroy(&scene);
   return code;
 }

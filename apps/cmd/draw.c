@@ -1,4 +1,4 @@
-/* dvi plot: columns of a CSV file against each other. */
+/* dvi plot, which draws columns of a CSV file against each other. */
 #include <stdio.h>
 #include <string.h>
 
@@ -14,8 +14,8 @@ typedef struct plot_request {
   bool dots, equal, logarithmic;
 } plot_request;
 
-/* The name that all curves of a panel have on one axis; "" if they differ, for the legend has
- * them. */
+/* Return the name that all curves of a panel have on one axis, or "" if they differ, because the
+ * legend then has them. */
 static const char *name_axis(const curve_list *list, int first, int count, bool of_x)
 {
   const char *name = of_x ? list->curve[first].x_name : list->curve[first].y_name;
@@ -30,7 +30,7 @@ static const char *name_pair(const curve_points *curve, char name[2 * FIELD_SIZE
   return name;
 }
 
-static bool draw(const plot_request *request, const curve_list *list, const char *path)
+static bool plot_draw(const plot_request *request, const curve_list *list, const char *path)
 {
   plot_curve curve[WORDS_MAX];
   plot_panel panel[WORDS_MAX];
@@ -69,7 +69,7 @@ static int plot_file(const plot_request *request, const char *path)
   if (code == DONE) code = curves_ask(&request->axes, &list);
   if (code != DONE) return code;
   code = curves_read(path, &list);
-  if (code == DONE && !draw(request, &list, path)) code = FAILED;
+  if (code == DONE && !plot_draw(request, &list, path)) code = FAILED;
   curves_clear(&list);
   return code;
 }

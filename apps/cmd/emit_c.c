@@ -1,4 +1,4 @@
-/* dvi emit-c: a scene as a C file. */
+/* dvi emit-c, which writes a scene as a C file. */
 #include <dvi/scene.h>
 #include <stdio.h>
 #include <string.h>
@@ -16,7 +16,7 @@ typedef struct emit_request {
   words settings;
 } emit_request;
 
-/* The scene's name, with '-' as '_'. */
+/* Make an identifier of the scene's name, with '-' as '_'. */
 static int identifier_of(const problem *scene, char *name)
 {
   if (strlen(scene->name) >= NAME_SIZE)
@@ -43,15 +43,15 @@ static int write_code(const problem *scene, const char *name, const char *path)
   else if (status == DVI_UNSUPPORTED)
     code = usage_error("emit-c: the scene's method needs Taylor coefficients, and C files have "
                        "none; take another method, or `dvi run` the scene");
-  else if (status != DVI_OK && status != DVI_IO_ERROR) /* that one is said by file_keep, which knows
-                                      the reason */
+  /* file_keep reports this one with its reason */
+  else if (status != DVI_OK && status != DVI_IO_ERROR)
     code = library_error(status);
   if (code == DONE && !file_keep(&file)) code = FAILED;
   file_discard(&file);
   return code;
 }
 
-static int emit(const emit_request *request, const char *path)
+static int emit_c(const emit_request *request, const char *path)
 {
   char name[NAME_SIZE];
   problem *scene;
@@ -109,5 +109,5 @@ int emit_c_command(int argc, char **argv)
     return usage_error("emit-c: '%s' is no scene; the problems of the catalogue are C already",
                        path);
   code = scene_spared("emit-c", path, 1, &(named_file){"out", r.out});
-  return code == DONE ? emit(&r, path) : code;
+  return code == DONE ? emit_c(&r, path) : code;
 }

@@ -1,4 +1,4 @@
-/* dvi explain: what a method makes of a problem before a single step is taken. */
+/* dvi explain, which shows the choices of a method for a problem before any step is taken. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,8 +14,8 @@ enum { NAMES_SHOWN = 12 };
 
 static const double pi = 3.14159265358979323846;
 
-/* The value that a parameter has: its setting, else the default. */
-static void print_parameter(const problem_parameter *parameter, const words *settings)
+/* Print the value of a parameter, which is its setting or the default. */
+static void explain_parameter(const problem_parameter *parameter, const words *settings)
 {
   const size_t length = strlen(parameter->name);
   for (int i = 0; i < settings->count; i++)
@@ -29,11 +29,11 @@ static void print_parameter(const problem_parameter *parameter, const words *set
   (void)printf("  parameter    %s=%s   %s (default)\n", parameter->name, spelling, parameter->help);
 }
 
-static void print_problem(const problem *scene, const words *settings)
+static void explain_problem(const problem *scene, const words *settings)
 {
   (void)printf("problem %s: %s\n", scene->name, scene->summary);
   for (const problem_parameter *k = scene->parameter; k->name != NULL; k++)
-    print_parameter(k, settings);
+    explain_parameter(k, settings);
   if (scene->velocity != NULL)
     (void)printf("  coordinates  %d, velocities %d:", scene->nq, scene->nv);
   else
@@ -52,7 +52,7 @@ static void print_problem(const problem *scene, const words *settings)
                    : "IDA or two runs");
 }
 
-static int print_method(const dvi_integrator *integrator)
+static int explain_method(const dvi_integrator *integrator)
 {
   const size_t size = dvi_integrator_explain(integrator, NULL, 0) + 1;
   char *text = malloc(size);
@@ -66,8 +66,8 @@ static int print_method(const dvi_integrator *integrator)
   return DONE;
 }
 
-/* What a step of length h does to a fast frequency. */
-static void print_turn(const char *method, double h, double omega)
+/* Print the effect of a step of length h on a fast frequency. */
+static void explain_turn(const char *method, double h, double omega)
 {
   double turn, rate;
   (void)printf("fast motion: omega = %g, h omega = %g; ", omega, h * omega);
@@ -79,27 +79,27 @@ static void print_turn(const char *method, double h, double omega)
     (void)printf("%s\n", dvi_last_error());
 }
 
-static void print_fast_motion(const problem *scene, const char *method, double h)
+static void explain_fast_motion(const problem *scene, const char *method, double h)
 {
   double least, most;
   if (dvi_fast_frequencies(scene->system, &least, &most) != DVI_OK) {
     (void)printf("fast motion: %s\n", dvi_last_error());
     return;
   }
-  print_turn(method, h, most);
-  if (least < (1 - 1e-6) * most) print_turn(method, h, least);
+  explain_turn(method, h, most);
+  if (least < (1 - 1e-6) * most) explain_turn(method, h, least);
 }
 
-static int explain(const problem *scene, const char *method, const pacing *how, double h)
+static int explain_all(const problem *scene, const char *method, const pacing *how, double h)
 {
   dvi_integrator *integrator = NULL;
   int code = open_paced(scene, method, how, &integrator);
   if (code != DONE) return code;
   const dvi_status status = dvi_integrator_start(integrator, 0.0, scene->q, scene->p);
-  code = status == DVI_OK ? print_method(integrator) : library_error(status);
-  if (code == DONE && !isnan(h)) print_fast_motion(scene, method, fabs(h));
-  /* A scene derives what is asked for: one step asks for all that the method wants. Whether it
-   * succeeds does not matter. */
+  code = status == DVI_OK ? explain_method(integrator) : library_error(status);
+  if (code == DONE && !isnan(h)) explain_fast_motion(scene, method, fabs(h));
+  /* A scene derives expressions on demand, and one step demands all that the method needs. It does
+   * not matter whether the step succeeds. */
   if (code == DONE && scene->scene != NULL) (void)dvi_integrator_step(integrator, scene->h);
   if (code == DONE) scene_tell(scene);
   dvi_integrator_destroy(&integrator);
@@ -169,8 +169,8 @@ int explain_command(int argc, char **argv)
   code = open_problem(name, &settings, &scene);
   if (code != DONE) return code;
   code = open_wish("explain", scene, &method);
-  if (code == DONE) print_problem(scene, &settings);
-  if (code == DONE) code = explain(scene, method, &how, h);
+  if (code == DONE) explain_problem(scene, &settings);
+  if (code == DONE) code = explain_all(scene, method, &how, h);
   problem_destroy(&scene);
   return code;
 }

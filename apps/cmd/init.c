@@ -1,4 +1,4 @@
-/* dvi init: a scene to begin with. */
+/* dvi init, which writes an example of a scene. */
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -8,7 +8,7 @@
 #include "cli/options.h"
 #include "load/scene.h"
 
-/* The pendulum on a cart of docs/scenes.md, with a word on each section. */
+/* The pendulum on a cart of docs/scenes.md, with a comment on each section. */
 static const char example[] =
     "# A pendulum hangs from a cart on a rail. Run it:        dvi run cart.yaml --final\n"
     "# Compare its derivatives with differences:             dvi check cart.yaml\n"

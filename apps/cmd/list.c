@@ -1,4 +1,4 @@
-/* dvi list: what there is to choose from. */
+/* dvi list, which shows the methods and the problems. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,21 +17,21 @@ static const table_column method_columns[] = {
 static const table_column problem_columns[] = {
     {"problem", NULL}, {"summary", NULL}, {"parameters", NULL}, {NULL, NULL}};
 
-static const char *list_at(int k, const void *list)
+static const char *problem_list_at(int k, const void *list)
 {
   (void)list;
   return k == 0 ? "methods" : k == 1 ? "problems" : NULL;
 }
 
-/* Append a word to a list of words; one that does not fit is left out. */
-static void append(char *text, const char *word)
+/* Append a word to a list of words, or leave it out if it does not fit. */
+static void append_word(char *text, const char *word)
 {
   const size_t length = strlen(text);
   if (length + strlen(word) + 2 <= NAMES_SIZE)
     (void)snprintf(text + length, NAMES_SIZE - length, "%s%s", length > 0 ? " " : "", word);
 }
 
-static void print_method(int i)
+static void list_method(int i)
 {
   (void)printf("%-*s %s [%s]\n", NAME_COLUMN, dvi_method_name(i), dvi_method_summary(i),
                dvi_method_citation(i));
@@ -40,9 +40,9 @@ static void print_method(int i)
                  dvi_method_key_help(i, k));
 }
 
-static void print_methods(void)
+static void list_methods(void)
 {
-  for (int i = 0; i < dvi_method_count(); i++) print_method(i);
+  for (int i = 0; i < dvi_method_count(); i++) list_method(i);
   (void)printf("\nA method is named as name[:key=value,...], for example "
                "galerkin:degree=4,quadrature=lobatto,nodes=5\n");
 }
@@ -52,7 +52,7 @@ static result_table *methods_table(void)
   result_table *t = table_create(method_columns);
   for (int i = 0; i < dvi_method_count(); i++) {
     char keys[NAMES_SIZE] = "";
-    for (int k = 0; k < dvi_method_key_count(i); k++) append(keys, dvi_method_key_name(i, k));
+    for (int k = 0; k < dvi_method_key_count(i); k++) append_word(keys, dvi_method_key_name(i, k));
     table_text(t, dvi_method_name(i));
     table_text(t, dvi_method_summary(i));
     table_text(t, dvi_method_citation(i));
@@ -61,7 +61,7 @@ static result_table *methods_table(void)
   return t;
 }
 
-static void print_problem(int i)
+static void list_problem(int i)
 {
   (void)printf("%-*s %s\n", NAME_COLUMN, problem_name(i), problem_summary(i));
   for (const problem_parameter *k = problem_parameters(i); k->name != NULL; k++) {
@@ -72,9 +72,9 @@ static void print_problem(int i)
   }
 }
 
-static void print_problems(void)
+static void list_problems(void)
 {
-  for (int i = 0; i < problem_count(); i++) print_problem(i);
+  for (int i = 0; i < problem_count(); i++) list_problem(i);
   (void)printf("\nParameters are set with --set name=value, for example dvi run kepler --method "
                "verlet --set e=0.9\n"
                "A problem of one's own is a scene, FILE.yaml in place of a name: dvi init "
@@ -90,7 +90,7 @@ static result_table *problems_table(void)
       char spelling[32], pair[128];
       problem_spell(k, k->value, spelling, sizeof spelling);
       (void)snprintf(pair, sizeof pair, "%s=%s", k->name, spelling);
-      append(parameters, pair);
+      append_word(parameters, pair);
     }
     table_text(t, problem_name(i));
     table_text(t, problem_summary(i));
@@ -99,18 +99,18 @@ static result_table *problems_table(void)
   return t;
 }
 
-/* What has this name: a method, a problem, or nothing. */
-static bool print_named(const char *name)
+/* Print the method or the problem of this name. Returns false if there is neither. */
+static bool list_named(const char *name)
 {
   const int methods = dvi_method_count(), found = problem_find(name);
   int method = 0;
   while (method < methods && strcmp(dvi_method_name(method), name) != 0) method++;
-  if (method < methods) print_method(method);
-  if (found >= 0) print_problem(found);
+  if (method < methods) list_method(method);
+  if (found >= 0) list_problem(found);
   return method < methods || found >= 0;
 }
 
-static int write_csv(const result_table *table, const char *path)
+static int list_write_csv(const result_table *table, const char *path)
 {
   whole_file csv;
   if (!table_good(table) || !file_open(&csv, path)) return FAILED;
@@ -150,18 +150,18 @@ int list_command(int argc, char **argv)
   if (!options_parse(&command, argc, argv, &what, &code)) return code;
   const bool methods = strcmp(what, "methods") == 0;
   const bool all = methods || strcmp(what, "problems") == 0;
-  if (!all && csv == NULL && print_named(what)) return DONE;
+  if (!all && csv == NULL && list_named(what)) return DONE;
   if (!all) {
     char hint[HINT_SIZE];
     return usage_error("list: there are methods, problems and the name of one to list, not '%s'%s",
-                       what, suggestion(what, list_at, NULL, hint, sizeof hint));
+                       what, suggestion(what, problem_list_at, NULL, hint, sizeof hint));
   }
   if (csv == NULL) {
-    (methods ? print_methods : print_problems)();
+    (methods ? list_methods : list_problems)();
     return DONE;
   }
   result_table *t = methods ? methods_table() : problems_table();
-  code = write_csv(t, csv);
+  code = list_write_csv(t, csv);
   table_destroy(&t);
   return code;
 }

@@ -1,4 +1,4 @@
-/* dvi order: does a method have the order that it claims? */
+/* dvi order, which measures whether a method has the order that it claims. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,36 +21,36 @@
 #include "csv/table.h"
 #include "study/window.h"
 
-/* A high order is asymptotic only near the floor, if at all: more levels there let the window begin
+/* A high order is asymptotic only near the floor, if at all. More levels there let the window begin
  * where it is. */
 enum { LEVELS_DEFAULT = 6, LEVELS_HIGH_ORDER = 12, HIGH_ORDER = 8, LENGTHENINGS = 3 };
 static const double lengthening = 4.0;
 
-/* What the command line asks for. */
+/* The request of the command line. */
 typedef struct order_request {
   const char *csv, *plot, *judged_by;
   judge_kind judge;
   double h, t_end, ratio;
-  long levels;                    /* 0: chosen */
-  words methods, settings, asked; /* asked: the axes of the plot */
+  long levels;                    /* 0 for a choice */
+  words methods, settings, asked; /* asked holds the axes of the plot */
   table_column columns[ORDER_COLUMNS_MAX];
   plot_axes axes;
   pacing how;
 } order_request;
 
-/* A study of one method, and who judges it. */
-typedef struct hearing {
+/* The study of one method, and its judge. */
+typedef struct order_study {
   const order_request *request;
   const problem *scene;
   judgement judge;
-  double judged_at; /* the time that the judge was asked for; NaN: not yet */
+  double judged_at; /* time that the judge was asked for, or NaN before */
   levels_choice choice;
   progress_line progress;
   result_table *rows;
-} hearing;
+} order_study;
 
-/* Have the judge's answer for this time. */
-static int ask_judge(hearing *ask, double t_end)
+/* Get the judge's answer for this time. */
+static int ask_judge(order_study *ask, double t_end)
 {
   const judge_request request = {.kind = ask->request->judge, .progress = &ask->progress};
   if (t_end == ask->judged_at) return DONE;
@@ -68,8 +68,10 @@ static int level_count(const order_request *request, int order)
   return order < HIGH_ORDER ? LEVELS_DEFAULT : LEVELS_HIGH_ORDER;
 }
 
-/* Choose the levels of a method, and run them: not if they must fit above the floor and do not. */
-static dvi_status run_levels(hearing *ask, const study_subject *of, bool must_fit, order_result *to)
+/* Choose the levels of a method, and run them, except if they must fit above the floor and do
+ * not. */
+static dvi_status run_levels(order_study *ask, const study_subject *of, bool must_fit,
+                             order_result *to)
 {
   const order_request *request = ask->request;
   const levels_request wanted = {.length = isnan(request->h) ? 0.0 : request->h,
@@ -83,14 +85,15 @@ static dvi_status run_levels(hearing *ask, const study_subject *of, bool must_fi
 
 /* Study up to t_end. If the levels do not fit above the floor there, and that matters, *room
  * becomes false instead. */
-static int study_until(hearing *ask, const char *method, double t_end, bool *room, order_result *to)
+static int study_until(order_study *ask, const char *method, double t_end, bool *room,
+                       order_result *to)
 {
   motion_study study;
   char name[PACED_NAME];
   int code = ask_judge(ask, t_end);
   if (code != DONE) return code;
   paced_name(method, &ask->request->how, name, sizeof name);
-  const judged_motion motion = {ask->scene, &ask->judge, t_end};
+  const judged_motion motion = {.scene = ask->scene, .judge = &ask->judge, .t_end = t_end};
   code = motion_study_init(&study, &motion, method, &ask->request->how, name);
   if (code != DONE) return code;
   study.progress = &ask->progress;
@@ -105,10 +108,10 @@ static int study_until(hearing *ask, const char *method, double t_end, bool *roo
   return FAILED;
 }
 
-/* Where the span does not show the claimed order, single steps are asked: they are measured in more
+/* Study single steps if the span does not show the claimed order, because they are measured in more
  * digits. With fewer levels than a verdict needs none is wanted, and with a monitor a step has no
  * length of its own. */
-static int study_single_steps(hearing *ask, const char *method, order_result *result)
+static int study_single_steps(order_study *ask, const char *method, order_result *result)
 {
   const order_request *request = ask->request;
   const bool few = request->levels > 0 && request->levels < WINDOW_LEVELS;
@@ -123,16 +126,16 @@ static int study_single_steps(hearing *ask, const char *method, order_result *re
   return status == DVI_OK ? DONE : library_error(status);
 }
 
-/* The end of the study, unless it is lengthened. */
+/* Return the end of the study, before any lengthening. */
 static double study_end(const order_request *request, const problem *scene)
 {
   return isnan(request->t_end) ? scene->order_t_end : request->t_end;
 }
 
-/* One method. If the problem's own span is so short that a few steps meet the floor, it is
- * lengthened; unless that would exchange the stored result, which is for this span, for IDA, whose
- * error would leave less room than the longer span gains. */
-static int study_method(hearing *ask, const char *method, order_result *result)
+/* Study one method. If the problem's own span is so short that a few steps meet the floor, it is
+ * lengthened. This is not done if there is a stored result, which is for this span. It would be
+ * replaced by IDA, whose error would leave less room than the longer span gains. */
+static int study_method(order_study *ask, const char *method, order_result *result)
 {
   const order_request *request = ask->request;
   const bool fixed = !isnan(request->t_end) || !isnan(request->h) ||
@@ -150,7 +153,7 @@ static int study_method(hearing *ask, const char *method, order_result *result)
 }
 
 /* Refuse a first step that would not be taken as it is. */
-static int check_step(const order_request *request, const problem *scene)
+static int order_check_step(const order_request *request, const problem *scene)
 {
   const double t_end = study_end(request, scene);
   if (!(fabs(t_end) / request->h > FIRST_PARTS_MAX)) return DONE;
@@ -159,7 +162,7 @@ static int check_step(const order_request *request, const problem *scene)
       request->h, fabs(t_end) / request->h, t_end, (int)FIRST_PARTS_MAX);
 }
 
-static bool write_csv(const result_table *rows, const char *path)
+static bool order_write_csv(const result_table *rows, const char *path)
 {
   whole_file csv;
   if (!file_open(&csv, path)) return false;
@@ -167,8 +170,8 @@ static bool write_csv(const result_table *rows, const char *path)
   return file_keep(&csv);
 }
 
-/* Tables, verdicts, files; the exit code. */
-static int report(const hearing *ask, order_result *result)
+/* Print and write tables, verdicts and files. Returns the exit code. */
+static int order_report(const order_study *ask, order_result *result)
 {
   const order_request *request = ask->request;
   const int results = request->methods.count;
@@ -179,7 +182,7 @@ static int report(const hearing *ask, order_result *result)
     order_print_verdict(csv_only ? stderr : stdout, &result[i]);
     all_hold = all_hold && order_holds(&result[i]);
   }
-  if (request->csv != NULL && !write_csv(ask->rows, request->csv)) return FAILED;
+  if (request->csv != NULL && !order_write_csv(ask->rows, request->csv)) return FAILED;
   if (request->plot != NULL &&
       !order_plot(ask->scene->name, ask->rows, &request->axes, results, result, request->plot))
     return FAILED;
@@ -189,21 +192,21 @@ static int report(const hearing *ask, order_result *result)
 static int study_all(const order_request *request, const problem *scene)
 {
   result_table *rows = table_create(request->columns);
-  hearing ask = {.request = request, .scene = scene, .judged_at = (double)NAN, .rows = rows};
+  order_study ask = {.request = request, .scene = scene, .judged_at = (double)NAN, .rows = rows};
   order_result *result = calloc((size_t)request->methods.count, sizeof *result);
   int code = result != NULL && table_good(ask.rows) ? DONE : FAILED;
   progress_start(&ask.progress, true);
   for (int i = 0; i < request->methods.count && code == DONE; i++)
     code = study_method(&ask, request->methods.word[i], &result[i]);
   progress_end(&ask.progress);
-  if (code == DONE) code = table_good(ask.rows) ? report(&ask, result) : FAILED;
+  if (code == DONE) code = table_good(ask.rows) ? order_report(&ask, result) : FAILED;
   free(result);
   table_destroy(&ask.rows);
   judge_clear(&ask.judge);
   return code;
 }
 
-/* None asked for: the one that the scene wants. */
+/* Take the scene's method if none is asked for. */
 static int wish_method(order_request *request, const problem *scene)
 {
   const char *wish = NULL;
@@ -214,7 +217,7 @@ static int wish_method(order_request *request, const problem *scene)
 }
 
 /* Refuse a wrong method before the judge starts to work. */
-static int check_methods(const order_request *request, const problem *scene)
+static int order_check_methods(const order_request *request, const problem *scene)
 {
   int code = DONE;
   for (int i = 0; i < request->methods.count && code == DONE; i++) {
@@ -225,7 +228,7 @@ static int check_methods(const order_request *request, const problem *scene)
   return code;
 }
 
-static int check_request(order_request *request, const char *name)
+static int order_check_request(order_request *request, const char *name)
 {
   const int most = STUDY_LEVELS_MAX;
   if (request->levels > most)
@@ -377,7 +380,7 @@ int order_command(int argc, char **argv)
   const char *name;
   int code;
   if (!options_parse(&command, argc, argv, &name, &code)) return code;
-  code = check_request(&r, name);
+  code = order_check_request(&r, name);
   if (code != DONE) return code;
   problem *scene;
   code = open_problem(name, &r.settings, &scene);
@@ -385,8 +388,8 @@ int order_command(int argc, char **argv)
   order_columns(motion_words(scene), r.columns);
   code = axes_read("order", &r.asked, r.plot, "h:error", r.columns, &r.axes);
   if (code == DONE) code = wish_method(&r, scene);
-  if (code == DONE) code = check_step(&r, scene);
-  if (code == DONE) code = check_methods(&r, scene);
+  if (code == DONE) code = order_check_step(&r, scene);
+  if (code == DONE) code = order_check_methods(&r, scene);
   if (code == DONE) events_passed("order", scene);
   if (code == DONE) scene_warn("order", scene);
   if (code == DONE) code = study_all(&r, scene);

@@ -1,4 +1,4 @@
-/* dvi path: a whole path at once, between ends or closed. */
+/* dvi path, which finds a whole path at once, between ends or closed. */
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -17,37 +17,37 @@
 
 enum { VALUES_MOST = 10000, NAME_SIZE = 64, SETTING_SIZE = 128 };
 
-/* What the command line asks for. */
+/* The request of the command line. */
 typedef struct path_request {
   const char *method, *ends, *from, *to, *momentum, *symmetry, *guess, *follow, *out;
-  long steps; /* 0: not given */
+  long steps; /* 0 if not given */
   double t_end, period, energy;
   bool free_period;
   words settings;
 } path_request;
 
-/* A family of problems: values of one parameter. */
+/* A family of problems with values of one parameter. */
 typedef struct family {
   char name[NAME_SIZE];
   double first, last;
-  long parts; /* 0: there is only one problem */
+  long parts; /* 0 for a single problem */
 } family;
 
-/* One member of it: the problem, and its path. */
+/* A member of the family, with its problem and its path. */
 typedef struct member {
   problem *scene;
   dvi_path *path;
   dvi_path_report report;
-  bool found; /* a stationary path, and its report; its steps may be too long all the same */
+  bool found; /* the path is stationary and has a report, but its steps may be too long */
 } member;
 
-/* ---- what the path is to be ---- */
+/* ---- ends ---- */
 
 static const char *const ends_name[] = {
     [DVI_ENDS_FIXED] = "fixed", [DVI_ENDS_INITIAL] = "initial", [DVI_ENDS_PERIODIC] = "periodic"};
 
-/* The ends by their name; 0: unknown. */
-static dvi_ends ends_of(const char *name)
+/* Return the ends of a name, or 0 if it is unknown. */
+static dvi_ends ends_from_name(const char *name)
 {
   for (int ends = DVI_ENDS_FIXED; ends <= DVI_ENDS_PERIODIC; ends++)
     if (strcmp(name, ends_name[ends]) == 0) return (dvi_ends)ends;
@@ -60,17 +60,21 @@ typedef struct arrays {
   int *start, *row;
 } arrays;
 
-static bool allocate(arrays *a, size_t n)
+static bool arrays_allocate(arrays *a, size_t n)
 {
-  *a = (arrays){calloc(n, sizeof(double)), calloc(n, sizeof(double)), calloc(n, sizeof(double)),
-                calloc(n, sizeof(double)), calloc(n, sizeof(double)), calloc(n + 1, sizeof(int)),
-                calloc(n, sizeof(int))};
+  *a = (arrays){.q0 = calloc(n, sizeof(double)),
+                .q1 = calloc(n, sizeof(double)),
+                .p0 = calloc(n, sizeof(double)),
+                .signs = calloc(n, sizeof(double)),
+                .symmetry = calloc(n, sizeof(double)),
+                .start = calloc(n + 1, sizeof(int)),
+                .row = calloc(n, sizeof(int))};
   if (a->q0 && a->q1 && a->p0 && a->signs && a->symmetry && a->start && a->row) return true;
   complain("out of memory");
   return false;
 }
 
-static void release(arrays *a)
+static void arrays_release(arrays *a)
 {
   free(a->q0);
   free(a->q1);
@@ -81,8 +85,8 @@ static void release(arrays *a)
   free(a->row);
 }
 
-/* "3,4,-1,-2": coordinate i of the last node is coordinate 3, 4, .. of the first one, or its
- * negative. One entry in each column of the matrix. */
+/* Read a text such as "3,4,-1,-2". Coordinate i of the last node is coordinate 3, 4, .. of the
+ * first one, or its negative. Each column of the matrix has one entry. */
 static int read_symmetry(const char *text, const problem *scene, arrays *a)
 {
   const int code = list_read("path: --symmetry", text, scene, a->signs);
@@ -102,7 +106,7 @@ static int read_symmetry(const char *text, const problem *scene, arrays *a)
   return DONE;
 }
 
-/* Given on the command line, else by the guess, else by the problem. */
+/* Read an end of the command line. The default is that of the guess or of the problem. */
 static int read_end(const char *where, const char *text, const problem *scene,
                     const double *otherwise, double *end)
 {
@@ -158,7 +162,8 @@ static int read_energy(const path_request *request, const problem *scene, dvi_pa
 
 /* ---- guesses ---- */
 
-/* As many steps forward by the method itself, from the start of the options or the problem. */
+/* Make a guess by steps forward with the method itself, from the start of the options or of the
+ * problem. */
 static int guess_by_steps(const dvi_path_options *o, const char *method, const problem *scene,
                           points *guess)
 {
@@ -198,13 +203,14 @@ static int make_guess(const path_request *request, const dvi_path_options *o, co
 
 /* ---- one path ---- */
 
-static int create_with(const path_request *request, const points *guess, member *m, arrays *a)
+static int member_create_path(const path_request *request, const points *guess, member *m,
+                              arrays *a)
 {
   const problem *scene = m->scene;
   const double span = !isnan(request->period)  ? request->period
                       : !isnan(request->t_end) ? request->t_end
                                                : scene->t_end;
-  dvi_path_options options = {.ends = ends_of(request->ends),
+  dvi_path_options options = {.ends = ends_from_name(request->ends),
                               .steps = (int)request->steps,
                               .span = span,
                               .dimension = scene->nq};
@@ -219,8 +225,9 @@ static int create_with(const path_request *request, const points *guess, member 
   return make_guess(request, &options, scene, guess, m->path);
 }
 
-/* The problem with its settings, and its path with a guess. */
-static int create(const char *name, const path_request *request, const words *settings, member *m)
+/* Create the problem with its settings, and its path with a guess. */
+static int member_create(const char *name, const path_request *request, const words *settings,
+                         member *m)
 {
   points guess = {0};
   arrays a = {0};
@@ -233,13 +240,14 @@ static int create(const char *name, const path_request *request, const words *se
                        name);
   if (code == DONE && request->guess != NULL) code = points_read(request->guess, m->scene, &guess);
   if (code == DONE)
-    code = allocate(&a, (size_t)m->scene->nq) ? create_with(&own, &guess, m, &a) : FAILED;
-  release(&a);
+    code = arrays_allocate(&a, (size_t)m->scene->nq) ? member_create_path(&own, &guess, m, &a)
+                                                     : FAILED;
+  arrays_release(&a);
   points_clear(&guess);
   return code;
 }
 
-static void destroy(member *m)
+static void member_destroy(member *m)
 {
   dvi_path_destroy(&m->path);
   problem_destroy(&m->scene);
@@ -247,7 +255,7 @@ static void destroy(member *m)
 
 /* ---- families ---- */
 
-/* "e=0.1:0.9:8" */
+/* Read a family such as "e=0.1:0.9:8". */
 static int read_family(const path_request *request, family *f)
 {
   const char *text = request->follow;
@@ -266,16 +274,16 @@ static int read_family(const path_request *request, family *f)
   return DONE;
 }
 
-static int solve(member *m)
+static int member_solve(member *m)
 {
   const dvi_status status = dvi_path_solve(m->path, &m->report);
   m->found = status == DVI_OK || status == DVI_STEP_TOO_LARGE;
   return status == DVI_OK ? DONE : library_error(status);
 }
 
-/* Member k of the family, guessed along the two before it. */
-static int follow(const char *name, const path_request *request, const family *f, long k,
-                  const member *last, const member *before, member *next)
+/* Solve member k of the family, with a guess along the two members before it. */
+static int member_follow(const char *name, const path_request *request, const family *f, long k,
+                         const member *last, const member *before, member *next)
 {
   char setting[SETTING_SIZE];
   words settings = request->settings;
@@ -284,17 +292,17 @@ static int follow(const char *name, const path_request *request, const family *f
                    f->first + (f->last - f->first) * ((double)k / (double)f->parts));
     settings.word[settings.count++] = setting;
   }
-  int code = create(name, request, &settings, next);
+  int code = member_create(name, request, &settings, next);
   if (code == DONE && last->path != NULL) {
     const dvi_status status = dvi_path_guess_along(next->path, last->path, before->path, 1.0);
     code = status == DVI_OK ? DONE : library_error(status);
   }
-  if (code == DONE) code = solve(next);
+  if (code == DONE) code = member_solve(next);
   if (code != DONE && f->parts > 0) complain("path: this was at %s", setting);
   return code;
 }
 
-/* The last member of the family. */
+/* Solve for the last member of the family. */
 static int solve_family(const char *name, const path_request *request, const family *f,
                         member *last)
 {
@@ -303,12 +311,12 @@ static int solve_family(const char *name, const path_request *request, const fam
   long k = 0;
   do {
     member next = {0};
-    code = follow(name, request, f, k, last, &before, &next);
-    destroy(&before);
+    code = member_follow(name, request, f, k, last, &before, &next);
+    member_destroy(&before);
     before = *last;
     *last = next;
   } while (code == DONE && ++k <= f->parts);
-  destroy(&before);
+  member_destroy(&before);
   return code;
 }
 
@@ -357,7 +365,7 @@ static void print_report(const member *m, const path_request *request, FILE *str
                 r->iterations, counters.factorizations, counters.symbolic);
 }
 
-static void write_header(const problem *scene, FILE *stream)
+static void path_write_header(const problem *scene, FILE *stream)
 {
   (void)fputs("t", stream);
   for (int i = 0; i < 2 * scene->nq; i++) {
@@ -371,7 +379,7 @@ static void write_header(const problem *scene, FILE *stream)
   (void)fputc('\n', stream);
 }
 
-static dvi_status write_rows(const member *m, double *invariant, FILE *stream)
+static dvi_status path_write_rows(const member *m, double *invariant, FILE *stream)
 {
   for (int k = 0; k <= dvi_path_steps(m->path); k++) {
     const double t = dvi_path_time(m->path, k), *q = dvi_path_q(m->path, k),
@@ -396,8 +404,8 @@ static int write_path(const member *m, const char *out)
   int code = invariant != NULL && file_open(&file, out) ? DONE : FAILED;
   if (invariant == NULL) complain("out of memory");
   if (code == DONE) {
-    write_header(m->scene, file.stream);
-    const dvi_status status = write_rows(m, invariant, file.stream);
+    path_write_header(m->scene, file.stream);
+    const dvi_status status = path_write_rows(m, invariant, file.stream);
     if (status != DVI_OK) code = library_error(status);
   }
   if (code == DONE && !file_keep(&file)) code = FAILED;
@@ -408,10 +416,10 @@ static int write_path(const member *m, const char *out)
 
 /* ---- the command ---- */
 
-/* An option that these ends would not heed. */
-static int check_uses(const path_request *r)
+/* Refuse an option that these ends would ignore. */
+static int path_check_uses(const path_request *r)
 {
-  const dvi_ends ends = ends_of(r->ends);
+  const dvi_ends ends = ends_from_name(r->ends);
   const struct {
     const char *option;
     bool given;
@@ -431,10 +439,10 @@ static int check_uses(const path_request *r)
   return DONE;
 }
 
-static int check_request(const path_request *r, const char *name)
+static int path_check_request(const path_request *r, const char *name)
 {
   if (r->ends == NULL) return usage_error("path: --ends is missing: fixed, periodic or initial");
-  if (ends_of(r->ends) == 0)
+  if (ends_from_name(r->ends) == 0)
     return usage_error("path: --ends %s: there are fixed, periodic and initial", r->ends);
   if (r->steps == 0) return usage_error("path: --steps is missing");
   if (r->steps > 0x7fffffff) return usage_error("path: --steps %ld are too many", r->steps);
@@ -443,7 +451,7 @@ static int check_request(const path_request *r, const char *name)
     return usage_error("path: --%s %g is not a positive time",
                        !isnan(r->period) ? "period" : "t-end", span);
   const int code = scene_spared("path", name, 1, &(named_file){"out", r->out});
-  return code == DONE ? check_uses(r) : code;
+  return code == DONE ? path_check_uses(r) : code;
 }
 
 static const char *const details[] = {
@@ -485,11 +493,11 @@ static const char *const details[] = {
     NULL,
 };
 
-static int run(const char *name, const path_request *request)
+static int path_run(const char *name, const path_request *request)
 {
   family values = {.parts = 0};
   member found = {0};
-  int code = check_request(request, name);
+  int code = path_check_request(request, name);
   if (code == DONE) code = read_family(request, &values);
   if (code == DONE && request->out != NULL && strcmp(request->out, "-") != 0 &&
       !file_writable(request->out))
@@ -499,7 +507,7 @@ static int run(const char *name, const path_request *request)
   if (code == DONE) events_passed("path", found.scene);
   if (found.found) print_report(&found, request, rows_on_output ? stderr : stdout);
   if (code == DONE && request->out != NULL) code = write_path(&found, request->out);
-  destroy(&found);
+  member_destroy(&found);
   return code;
 }
 
@@ -575,5 +583,5 @@ int path_command(int argc, char **argv)
   const char *name;
   int code;
   if (!options_parse(&command, argc, argv, &name, &code)) return code;
-  return run(name, &r);
+  return path_run(name, &r);
 }

@@ -1,4 +1,5 @@
-/* dvi resonance: at which values of a parameter does a method let an invariant grow? */
+/* dvi resonance, which searches for the values of a parameter at which a method lets an invariant
+ * grow. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -27,14 +28,14 @@ enum {
   TEXT_SIZE = 256
 };
 
-/* Gaps beside a peak are halved to this part of the range. */
+/* Gaps beside a peak are halved down to this fraction of the range. */
 static const double width_default = 1e-5;
 
-/* What the command line asks for. */
+/* The request of the command line. */
 typedef struct resonance_request {
   const char *varied, *watched, *csv, *plot;
   double width, bound;
-  long grid, points, threads; /* 0: not given */
+  long grid, points, threads; /* 0 if not given */
   char name[NAME_SIZE];
   peaks_search search;
 } resonance_request;
@@ -55,13 +56,14 @@ static const char *watched_name(const report *r)
   return dvi_system_invariant_name(r->model->system, r->task->watched);
 }
 
-/* A top between two other points. That at an end of the range is the flank of what lies beyond. */
+/* Return whether a top lies between two other points. A top at an end of the range is the flank of
+ * a peak beyond it. */
 static bool is_peak(const peaks_found *found, int i)
 {
   return i > 0 && i + 1 < found->count && found->top[i];
 }
 
-/* The tops of peaks, for people. */
+/* Print the tops of peaks, for people. */
 static void print_peaks(const report *r, FILE *stream)
 {
   const table_column columns[] = {{r->task->name, "%.9g"}, {"within", "%.1e"}, {"status", NULL},
@@ -101,7 +103,7 @@ static bool write_points(const report *r)
   return good;
 }
 
-static bool draw(const report *r)
+static bool resonance_draw(const report *r)
 {
   const int count = r->found->count;
   char title[TEXT_SIZE], label[TEXT_SIZE];
@@ -129,8 +131,8 @@ static bool draw(const report *r)
   return good;
 }
 
-/* The point with the largest error; -1 if none has one. */
-static int largest(const peaks_found *found)
+/* Return the point with the largest error, or -1 if no point has one. */
+static int worst_point(const peaks_found *found)
 {
   int at = -1;
   for (int i = 0; i < found->count; i++)
@@ -161,7 +163,7 @@ static void print_unbounded(const report *r, FILE *stream)
     (void)fprintf(stream, "unbounded at %d points, from %.9g to %.9g\n", count, first, last);
 }
 
-static void print_all(const report *r, int worst, FILE *stream)
+static void print_resonances(const report *r, int worst, FILE *stream)
 {
   const peaks_search *search = &r->request->search;
   (void)fprintf(stream, "Largest errors of %s on %s by %s, to t = %g\n", watched_name(r),
@@ -178,8 +180,9 @@ static void print_all(const report *r, int worst, FILE *stream)
   (void)fputc('\n', stream);
 }
 
-/* DONE, or why not: what was asked for is not known, or does not hold. */
-static int judge(const report *r, int worst, FILE *stream)
+/* Return DONE, or complain and return FAILED if a result is not known, or CHECK_FAILED if the bound
+ * does not hold. */
+static int resonance_exit_code(const report *r, int worst, FILE *stream)
 {
   int failed = 0;
   for (int i = 0; i < r->found->count; i++) failed += r->found->point[i].failed;
@@ -196,20 +199,20 @@ static int judge(const report *r, int worst, FILE *stream)
   return holds ? DONE : CHECK_FAILED;
 }
 
-static int tell(const report *r)
+static int resonance_report(const report *r)
 {
   FILE *stream = r->request->csv != NULL && strcmp(r->request->csv, "-") == 0 ? stderr : stdout;
-  const int worst = largest(r->found);
-  print_all(r, worst, stream);
+  const int worst = worst_point(r->found);
+  print_resonances(r, worst, stream);
   if (r->request->csv != NULL && !write_points(r)) return FAILED;
-  if (r->request->plot != NULL && !draw(r)) return FAILED;
-  return judge(r, worst, stream);
+  if (r->request->plot != NULL && !resonance_draw(r)) return FAILED;
+  return resonance_exit_code(r, worst, stream);
 }
 
 /* ---- request ---- */
 
-/* NAME=FROM:TO; the name stays. */
-static int read_range(resonance_request *request)
+/* Read NAME=FROM:TO, and keep the name. */
+static int read_varied(resonance_request *request)
 {
   const char *text = request->varied;
   peaks_search *search = &request->search;
@@ -229,8 +232,8 @@ static int read_range(resonance_request *request)
   return DONE;
 }
 
-/* Room for the parameter that varies, which no --set may name, too. */
-static int check_settings(const words *settings, const char *name)
+/* Check that there is room for the parameter that varies, and that no --set names it, too. */
+static int check_varied(const words *settings, const char *name)
 {
   if (settings->count == WORDS_MAX) return usage_error("resonance: --set is given too often");
   for (int i = 0; i < settings->count; i++)
@@ -266,11 +269,11 @@ static int complete_search(resonance_request *request)
   return DONE;
 }
 
-static int check_request(resonance_request *request, const resonance_task *task)
+static int resonance_check_request(resonance_request *request, const resonance_task *task)
 {
   const named_file files[] = {{"csv", request->csv}, {"plot", request->plot}};
-  int code = read_range(request);
-  if (code == DONE) code = check_settings(&task->settings, request->name);
+  int code = read_varied(request);
+  if (code == DONE) code = check_varied(&task->settings, request->name);
   if (code == DONE) code = complete_search(request);
   if (code == DONE) code = outputs_plot("resonance", "plot", request->plot);
   if (code == DONE) code = scene_spared("resonance", task->operand, 2, files);
@@ -282,12 +285,12 @@ static int check_request(resonance_request *request, const resonance_task *task)
   return request->plot == NULL || file_writable(request->plot) ? DONE : FAILED;
 }
 
-static const char *parameter_at(int k, const void *list)
+static const char *model_parameter_at(int k, const void *list)
 {
   return ((const problem_parameter *)list)[k].name;
 }
 
-/* A parameter of the problem, or the step if it has none of the name h. */
+/* Find the varied parameter of the problem, or the step if no parameter has the name h. */
 static int find_varied(const problem *model, resonance_task *task)
 {
   char hint[TEXT_SIZE];
@@ -295,9 +298,9 @@ static int find_varied(const problem *model, resonance_task *task)
     if (strcmp(p->name, task->name) == 0) return DONE;
   task->steps_vary = strcmp(task->name, "h") == 0;
   if (task->steps_vary) return DONE;
-  return usage_error("resonance: %s has no parameter '%s' that could be swept%s", model->name,
-                     task->name,
-                     suggestion(task->name, parameter_at, model->parameter, hint, sizeof hint));
+  return usage_error(
+      "resonance: %s has no parameter '%s' that could be swept%s", model->name, task->name,
+      suggestion(task->name, model_parameter_at, model->parameter, hint, sizeof hint));
 }
 
 static int find_watched(const problem *model, const char *name, resonance_task *task)
@@ -309,7 +312,7 @@ static int find_watched(const problem *model, const char *name, resonance_task *
                       : usage_error("resonance: %s has no invariant '%s'", model->name, name);
 }
 
-/* What is wrong at all points is told before the first one. */
+/* Complete the task. Errors at all points are reported before the first one. */
 static int complete_task(const resonance_request *request, const problem *model,
                          resonance_task *task)
 {
@@ -340,12 +343,12 @@ static int search_peaks(const resonance_request *request, const problem *model,
 {
   peaks_found found;
   const report r = {.task = task, .request = request, .model = model, .found = &found};
-  const int code = peaks_find(task, &request->search, &found) ? tell(&r) : FAILED;
+  const int code = peaks_find(task, &request->search, &found) ? resonance_report(&r) : FAILED;
   peaks_clear(&found);
   return code;
 }
 
-static int run_request(resonance_request *request, resonance_task *task)
+static int resonance_run_request(resonance_request *request, resonance_task *task)
 {
   problem *model = NULL;
   int code = scene_is_path(task->operand) ? scene_load(task->operand, &task->text) : DONE;
@@ -459,8 +462,8 @@ int resonance_command(int argc, char **argv)
   };
   int code;
   if (!options_parse(&command, argc, argv, &task.operand, &code)) return code;
-  code = check_request(&r, &task);
+  code = resonance_check_request(&r, &task);
   if (code != DONE) return code;
   signals_end(true, ended);
-  return run_request(&r, &task);
+  return resonance_run_request(&r, &task);
 }

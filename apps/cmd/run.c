@@ -1,4 +1,4 @@
-/* dvi run: one trajectory with its invariants, as CSV. */
+/* dvi run, which computes one trajectory with its invariants, as CSV. */
 #include <dvi/number.h>
 #include <float.h>
 #include <math.h>
@@ -19,7 +19,7 @@
 #include "watch/verify.h"
 #include "cli/way.h"
 
-/* Before the first step no file is open: a signal ends the process at once. */
+/* Before the first step no file is open, and a signal ends the process at once. */
 static const char ended_before[] =
     "dvi: run: a signal ended the run before its first step; nothing was written\n";
 
@@ -28,7 +28,7 @@ static bool has_constraint(const problem *scene)
   return scene->terms->one_form != NULL || scene->terms->constraint != NULL;
 }
 
-/* The start's momenta, "P1,P2,...". */
+/* Read the start's momenta, "P1,P2,...". */
 static bool parse_momenta(const char *text, int n, double *p)
 {
   for (int i = 0; i < n; i++) {
@@ -57,7 +57,8 @@ static int check_events(const run_request *request, const problem *scene)
                      scene->name);
 }
 
-static bool place(const run_request *request, const problem *scene, dvi_integrator *integrator)
+static bool place_start(const run_request *request, const problem *scene,
+                        dvi_integrator *integrator)
 {
   const dvi_start_options options = {.project = request->project};
   const dvi_status status = request->resume != NULL
@@ -69,24 +70,25 @@ static bool place(const run_request *request, const problem *scene, dvi_integrat
   return false;
 }
 
-/* The way to the end; 0 if only roundings of the time lie between. */
-static double way_to_end(double t, double t_end)
+/* Return the time to the end, or 0 if it is only a rounding error. */
+static double time_to_end(double t, double t_end)
 {
   return fabs(t_end - t) <= 16 * DBL_EPSILON * fmax(fabs(t), fabs(t_end)) ? 0.0 : t_end - t;
 }
 
-/* A checkpoint that stands past the end: only who gives a step back wants to go back. */
+/* Return whether a checkpoint stands past the end. Only a user who gives a step back wants to go
+ * back. */
 static bool is_past(const run_request *request, double t, double way)
 {
   return request->resume != NULL && way * t < 0.0 && !(request->h * way > 0.0);
 }
 
-/* Fill in what was left out, and refuse a step that cannot lead to the end. */
-static int complete(run_request *request, const problem *scene, double t)
+/* Fill in defaults, and refuse a step that cannot lead to the end. */
+static int complete_request(run_request *request, const problem *scene, double t)
 {
   if (request->every == 0) request->every = scene->every > 0 ? scene->every : 1;
   if (isnan(request->t_end)) request->t_end = scene->t_end;
-  const double way = way_to_end(t, request->t_end);
+  const double way = time_to_end(t, request->t_end);
   if (is_past(request, t, way))
     return usage_error("run: '%s' stands at t = %.17g, past --t-end %g; --h %g would lead back",
                        request->resume, t, request->t_end, copysign(scene->h, way));
@@ -95,12 +97,12 @@ static int complete(run_request *request, const problem *scene, double t)
                    request->how.transform == NULL && request->how.control == NULL);
 }
 
-static int run(run_request *request, const problem *scene)
+static int run_integrator(run_request *request, const problem *scene)
 {
   dvi_integrator *integrator = NULL;
   int code = open_paced(scene, request->method, &request->how, &integrator);
-  if (code == DONE && !place(request, scene, integrator)) code = FAILED;
-  if (code == DONE) code = complete(request, scene, dvi_integrator_time(integrator));
+  if (code == DONE && !place_start(request, scene, integrator)) code = FAILED;
+  if (code == DONE) code = complete_request(request, scene, dvi_integrator_time(integrator));
   if (code == DONE) code = (request->verify ? verify : record)(request, scene, integrator);
   dvi_integrator_destroy(&integrator);
   return code;
@@ -111,7 +113,8 @@ static bool is_stream(const char *path)
   return path != NULL && strcmp(path, "-") == 0;
 }
 
-/* A run may go on in its own checkpoint; no two other files may be the same. */
+/* Check the files. A run may continue in its own checkpoint, but no two other files may be the
+ * same. */
 static int check_files(const run_request *request, const char *name)
 {
   const named_file files[] = {{"resume", request->resume},
@@ -129,7 +132,8 @@ static int check_files(const run_request *request, const char *name)
   return code == DONE ? outputs_distinct("run", 4, files) : code;
 }
 
-/* A verification writes one table, and stands at no other state than the start. */
+/* Check --verify. A verification writes one table, and starts from no other state than the
+ * start. */
 static int check_verify(const run_request *request)
 {
   const named_file others[] = {{"out", request->out},
@@ -158,7 +162,7 @@ static int check_verify(const run_request *request)
                            request->digits, (int)TRUST_DIGITS_MOST);
 }
 
-static int check_request(const run_request *request, const char *name)
+static int run_check_request(const run_request *request, const char *name)
 {
   if (check_verify(request) != DONE) return USAGE;
   if (request->checkpoint_every > 0 && request->checkpoint == NULL)
@@ -181,8 +185,8 @@ static int check_request(const run_request *request, const char *name)
   return request->plot == NULL || file_writable(request->plot) ? DONE : FAILED;
 }
 
-/* A setting that a resumed run would not heed. */
-static int check_settings(const run_request *request, const problem *scene)
+/* Refuse a setting that a resumed run would ignore. */
+static int run_check_settings(const run_request *request, const problem *scene)
 {
   const char *setting = start_setting(scene, &request->settings);
   if (setting == NULL || request->resume == NULL) return DONE;
@@ -190,7 +194,7 @@ static int check_settings(const run_request *request, const problem *scene)
       "run: --set %s places the start, which --resume replaces; leave out one of them", setting);
 }
 
-/* The line makes sense: everything else. */
+/* Run the problem of a command line that has been checked. */
 static int run_problem(run_request *request, const char *name)
 {
   problem *scene;
@@ -201,8 +205,8 @@ static int run_problem(run_request *request, const char *name)
   code = open_wish("run", scene, &request->method);
   if (code == DONE) code = place_momenta(request, scene);
   if (code == DONE) code = check_events(request, scene);
-  if (code == DONE) code = check_settings(request, scene);
-  if (code == DONE) code = run(request, scene);
+  if (code == DONE) code = run_check_settings(request, scene);
+  if (code == DONE) code = run_integrator(request, scene);
   problem_destroy(&scene);
   return code;
 }
@@ -400,6 +404,6 @@ int run_command(int argc, char **argv)
   const char *name;
   int code;
   if (!options_parse(&command, argc, argv, &name, &code)) return code;
-  code = check_request(&r, name);
+  code = run_check_request(&r, name);
   return code == DONE ? run_problem(&r, name) : code;
 }

@@ -1,4 +1,4 @@
-/* dvi sweep: one run at each point of a grid of parameters. */
+/* dvi sweep, which runs a problem once at each point of a grid of parameters. */
 #define _POSIX_C_SOURCE 200809L
 #include <math.h>
 #include <pthread.h>
@@ -17,18 +17,18 @@
 #include "sweep/sweep_point.h"
 #include "cli/way.h"
 
-/* A sweep under way; the lock guards what stands below it. */
+/* The state of a sweep. The lock guards the members below it. */
 typedef struct sweep {
   const sweep_task *task;
-  long points, there; /* all; those that an earlier sweep left */
+  long points, there; /* number of all points, and of those that an earlier sweep left */
   pthread_mutex_t lock;
-  sweep_row *row; /* [points] without a text: still to be run */
-  long next;      /* where the search for one goes on */
+  sweep_row *row; /* [points] a row without a text is still to be run */
+  long next;      /* point where the search for such a row goes on */
   long done;
   sweep_part part;
   progress_line progress;
-  bool lost;    /* a row could not be written, or there was no memory for it */
-  bool written; /* all rows are where they were asked for */
+  bool lost;    /* a row could not be written, or had no memory */
+  bool written; /* all rows are written to their destination */
 } sweep;
 
 static const char ended[] =
@@ -36,8 +36,8 @@ static const char ended[] =
 
 /* ---- points ---- */
 
-/* The next point without a row; -1 if there is none, or none shall be begun. */
-static long take_point(sweep *s)
+/* Return the next point without a row, or -1 if there is none, or none is to be begun. */
+static long sweep_take_point(sweep *s)
 {
   (void)pthread_mutex_lock(&s->lock);
   while (s->next < s->points && s->row[s->next].text != NULL) s->next++;
@@ -46,7 +46,7 @@ static long take_point(sweep *s)
   return k;
 }
 
-static void give_row(sweep *s, long k, const sweep_row *row)
+static void sweep_give_row(sweep *s, long k, const sweep_row *row)
 {
   (void)pthread_mutex_lock(&s->lock);
   s->row[k] = *row;
@@ -57,21 +57,21 @@ static void give_row(sweep *s, long k, const sweep_row *row)
   (void)pthread_mutex_unlock(&s->lock);
 }
 
-static void *work(void *user)
+static void *sweep_work(void *user)
 {
   sweep *s = user;
-  for (long k = take_point(s); k >= 0; k = take_point(s)) {
+  for (long k = sweep_take_point(s); k >= 0; k = sweep_take_point(s)) {
     const sweep_row row = sweep_run(s->task, k);
-    give_row(s, k, &row);
+    sweep_give_row(s, k, &row);
   }
   return NULL;
 }
 
-static void run_points(sweep *s, long threads)
+static void sweep_run_points(sweep *s, long threads)
 {
   const long left = s->points - s->there;
   progress_start(&s->progress, true);
-  parallel_work(threads < left ? threads : left, work, s);
+  parallel_work(threads < left ? threads : left, sweep_work, s);
   progress_end(&s->progress);
 }
 
@@ -85,7 +85,7 @@ static long count_rows(const sweep *s, bool failed_only)
   return count;
 }
 
-static bool write_rows(const sweep *s, const char *path)
+static bool sweep_write_rows(const sweep *s, const char *path)
 {
   whole_file out;
   if (!file_open(&out, path)) return false;
@@ -95,9 +95,9 @@ static bool write_rows(const sweep *s, const char *path)
   return file_keep(&out);
 }
 
-static int finish(sweep *s, const char *path)
+static int sweep_finish(sweep *s, const char *path)
 {
-  s->written = !s->lost && write_rows(s, path);
+  s->written = !s->lost && sweep_write_rows(s, path);
   if (!s->written) return FAILED;
   const long failed = count_rows(s, true);
   if (failed == 0) return DONE;
@@ -118,8 +118,8 @@ static int sweep_all(const sweep_task *task, long threads, const char *path)
     s.there = count_rows(&s, false);
     if (s.there > 0)
       complain("sweep: %ld of %ld points are in '%s' already", s.there, s.points, s.part.path);
-    run_points(&s, threads);
-    code = finish(&s, path);
+    sweep_run_points(&s, threads);
+    code = sweep_finish(&s, path);
   }
   sweep_part_close(&s.part, s.written);
   for (long k = 0; s.row != NULL && k < s.points; k++) free(s.row[k].text);
@@ -132,11 +132,11 @@ static int sweep_all(const sweep_task *task, long threads, const char *path)
 
 typedef struct sweep_request {
   const char *out;
-  long threads; /* 0: not given */
+  long threads; /* 0 if not given */
   words settings;
 } sweep_request;
 
-/* What is wrong at all points is told before the first one. */
+/* Check the task. Errors at all points are reported before the first one. */
 static int check_task(const sweep_task *task)
 {
   const problem *model = task->model;
@@ -151,7 +151,7 @@ static int check_task(const sweep_task *task)
                    true);
 }
 
-static int check_request(const sweep_request *request)
+static int sweep_check_request(const sweep_request *request)
 {
   if (request->out == NULL)
     return usage_error("sweep: --out FILE.csv is missing: where the rows go, and from where an "
@@ -164,7 +164,7 @@ static int check_request(const sweep_request *request)
   return file_writable(request->out) ? DONE : FAILED;
 }
 
-static int run_request(const sweep_request *request, sweep_task *task)
+static int sweep_run_request(const sweep_request *request, sweep_task *task)
 {
   grid_point fixed;
   problem *model = NULL;
@@ -246,9 +246,9 @@ int sweep_command(int argc, char **argv)
   };
   int code;
   if (!options_parse(&command, argc, argv, &task.operand, &code)) return code;
-  code = check_request(&r);
+  code = sweep_check_request(&r);
   if (code == DONE) code = scene_spared("sweep", task.operand, 1, &(named_file){"out", r.out});
   if (code != DONE) return code;
   signals_end(true, ended);
-  return run_request(&r, &task);
+  return sweep_run_request(&r, &task);
 }
