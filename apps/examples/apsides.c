@@ -1,4 +1,4 @@
-/* Kepler's orbit by its apsides: the times when the distance is least or largest are located as
+/* Kepler's orbit by its apsides. The times when the distance is least or largest are located as
  * events, and give the period. */
 #include <dvi/dvi.h>
 #include <math.h>
@@ -6,14 +6,14 @@
 
 static const double eccentricity = 0.6, period = 6.283185307179586;
 
-static int value(double t, const double *q, double *V, void *user)
+static int apsides_potential(double t, const double *q, double *V, void *user)
 {
   (void)t, (void)user;
   *V = -1 / hypot(q[0], q[1]);
   return 0;
 }
 
-static int gradient(double t, const double *q, double *V_q, void *user)
+static int apsides_gradient(double t, const double *q, double *V_q, void *user)
 {
   (void)t, (void)user;
   const double r = hypot(q[0], q[1]), cubed = r * r * r;
@@ -22,8 +22,8 @@ static int gradient(double t, const double *q, double *V_q, void *user)
   return 0;
 }
 
-/* Half the time derivative of r^2: negative on the way in. */
-static int radial(double t, const double *q, const double *v, double *g, void *user)
+/* Half the time derivative of r^2, negative while the distance falls. */
+static int apsides_radial_motion(double t, const double *q, const double *v, double *g, void *user)
 {
   (void)t, (void)user;
   *g = q[0] * v[0] + q[1] * v[1];
@@ -32,10 +32,10 @@ static int radial(double t, const double *q, const double *v, double *g, void *u
 
 typedef struct passages {
   int count;
-  double last, worst; /* time of the last one; largest error of a period */
+  double last, worst; /* time of the last passage, and largest error of a period */
 } passages;
 
-static int pericentre(double t, const double *q, const double *v, void *user)
+static int apsides_passed(double t, const double *q, const double *v, void *user)
 {
   passages *seen = (passages *)user;
   (void)v;
@@ -47,13 +47,16 @@ static int pericentre(double t, const double *q, const double *v, void *user)
   return 0;
 }
 
-static dvi_status orbit(dvi_integrator *integrator, passages *seen)
+static dvi_status apsides_orbit(dvi_integrator *integrator, passages *seen)
 {
-  /* the apocentre */
+  /* start at the apocentre */
   const double q[] = {1 + eccentricity, 0},
                p[] = {0, sqrt((1 - eccentricity) / (1 + eccentricity))};
-  const dvi_event event = {
-      .name = "pericentre", .value = radial, .direction = +1, .occurred = pericentre, .user = seen};
+  const dvi_event event = {.name = "pericentre",
+                           .value = apsides_radial_motion,
+                           .direction = +1,
+                           .occurred = apsides_passed,
+                           .user = seen};
   const dvi_run_options options = {
       .h = 0.05, .t_end = 5 * period, .events = &event, .event_count = 1};
   const dvi_status status = dvi_integrator_start(integrator, 0, q, p);
@@ -62,7 +65,8 @@ static dvi_status orbit(dvi_integrator *integrator, passages *seen)
 
 int main(void)
 {
-  const dvi_potential gravity = {.name = "gravity", .value = value, .gradient = gradient};
+  const dvi_potential gravity = {
+      .name = "gravity", .value = apsides_potential, .gradient = apsides_gradient};
   const dvi_system_terms terms = {
       .dimension = 2, .mass = {.scalar = 1}, .potentials = &gravity, .potential_count = 1};
   dvi_system *system = NULL;
@@ -70,11 +74,11 @@ int main(void)
   passages seen = {0};
   dvi_status status = dvi_system_create(&terms, &system);
   if (status == DVI_OK) status = dvi_integrator_create(system, "galerkin:degree=10", &integrator);
-  if (status == DVI_OK) status = orbit(integrator, &seen);
+  if (status == DVI_OK) status = apsides_orbit(integrator, &seen);
   if (status != DVI_OK) fprintf(stderr, "%s: %s\n", dvi_status_name(status), dvi_last_error());
   dvi_integrator_destroy(&integrator);
   dvi_system_destroy(&system);
-  /* Five passages; an event is right to a few roundings of its time, about 30, and a period is
-   * the difference of two. */
+  /* Five passages. An event is right to a few roundings of its time, about 30, and a period is the
+   * difference of two. */
   return status == DVI_OK && seen.count == 5 && seen.worst < 6e-11 ? 0 : 1;
 }

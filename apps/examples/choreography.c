@@ -1,13 +1,13 @@
-/* Three equal masses that chase each other along one curve: from three rough points to the figure
- * eight of Chenciner and Montgomery (2000), all steps at once; then steps forward, to see that it
- * closes. */
+/* Three equal masses that chase each other along one curve. The path leads from three rough points
+ * to the figure eight of Chenciner and Montgomery (2000), by all steps at once. Steps forward then
+ * show that it closes. */
 #include <dvi/dvi.h>
 #include <math.h>
 #include <stdio.h>
 
 enum { BODIES = 3, N = 2 * BODIES, STEPS = 10, POINTS = 3 };
 
-static int value(double t, const double *q, double *V, void *user)
+static int choreography_potential(double t, const double *q, double *V, void *user)
 {
   (void)t, (void)user;
   *V = 0;
@@ -16,7 +16,7 @@ static int value(double t, const double *q, double *V, void *user)
   return 0;
 }
 
-static int gradient(double t, const double *q, double *V_q, void *user)
+static int choreography_gradient(double t, const double *q, double *V_q, void *user)
 {
   (void)t, (void)user;
   for (int i = 0; i < N; i++) V_q[i] = 0;
@@ -32,35 +32,36 @@ static int gradient(double t, const double *q, double *V_q, void *user)
   return 0;
 }
 
-/* Declared symmetries are directions in which a closed path may be moved; the solver holds it in
+/* Declared symmetries are directions in which a closed path may be moved. The solver holds it in
  * place along them. */
-static int shift_x(const double *q, double *xi, void *user)
+static int choreography_shift_x(const double *q, double *xi, void *user)
 {
   (void)q, (void)user;
   for (int i = 0; i < N; i++) xi[i] = i % 2 == 0;
   return 0;
 }
 
-static int shift_y(const double *q, double *xi, void *user)
+static int choreography_shift_y(const double *q, double *xi, void *user)
 {
   (void)q, (void)user;
   for (int i = 0; i < N; i++) xi[i] = i % 2 == 1;
   return 0;
 }
 
-static int rotate(const double *q, double *xi, void *user)
+static int choreography_rotation(const double *q, double *xi, void *user)
 {
   (void)user;
   for (int i = 0; i < N; i += 2) xi[i] = -q[i + 1], xi[i + 1] = q[i];
   return 0;
 }
 
-static dvi_status make_system(dvi_system **system)
+static dvi_status choreography_system(dvi_system **system)
 {
-  const dvi_potential gravity = {.name = "gravity", .value = value, .gradient = gradient};
-  const dvi_symmetry symmetries[] = {{"momentum_x", shift_x, NULL},
-                                     {"momentum_y", shift_y, NULL},
-                                     {"angular_momentum", rotate, NULL}};
+  const dvi_potential gravity = {
+      .name = "gravity", .value = choreography_potential, .gradient = choreography_gradient};
+  const dvi_symmetry symmetries[] = {{"momentum_x", choreography_shift_x, NULL},
+                                     {"momentum_y", choreography_shift_y, NULL},
+                                     {"angular_momentum", choreography_rotation, NULL}};
   const dvi_system_terms terms = {.dimension = N,
                                   .mass = {.scalar = 1},
                                   .potentials = &gravity,
@@ -71,9 +72,9 @@ static dvi_status make_system(dvi_system **system)
   return dvi_system_create(&terms, system);
 }
 
-/* After a third of the period each body stands where the next one stood: q_N = A q_0, with one
- * entry in each column of A. */
-static dvi_status make_path(const dvi_system *system, dvi_path **path)
+/* Make a path on which after a third of the period each body stands where the next one stood. The
+ * condition is q_N = A q_0, with one entry in each column of A. */
+static dvi_status choreography_path(const dvi_system *system, dvi_path **path)
 {
   static const double ones[N] = {1, 1, 1, 1, 1, 1};
   static const int start[N + 1] = {0, 1, 2, 3, 4, 5, 6}, row[N] = {4, 5, 0, 1, 2, 3};
@@ -90,8 +91,9 @@ static dvi_status make_path(const dvi_system *system, dvi_path **path)
   return status == DVI_OK ? dvi_path_guess(*path, POINTS, N, t, q) : status;
 }
 
-/* Three times as many steps forward from the path's first node; how far they end from it. */
-static dvi_status turn_once(const dvi_system *system, const dvi_path *path, double *gap)
+/* Take three times as many steps forward from the path's first node, and measure how far they end
+ * from it. */
+static dvi_status choreography_gap(const dvi_system *system, const dvi_path *path, double *gap)
 {
   dvi_integrator *integrator = NULL;
   const double h = (dvi_path_time(path, STEPS) - dvi_path_time(path, 0)) / (double)STEPS;
@@ -112,10 +114,10 @@ int main(void)
   dvi_path *path = NULL;
   dvi_path_report found = {0};
   double gap = 0;
-  dvi_status status = make_system(&system);
-  if (status == DVI_OK) status = make_path(system, &path);
+  dvi_status status = choreography_system(&system);
+  if (status == DVI_OK) status = choreography_path(system, &path);
   if (status == DVI_OK) status = dvi_path_solve(path, &found);
-  if (status == DVI_OK) status = turn_once(system, path, &gap);
+  if (status == DVI_OK) status = choreography_gap(system, path, &gap);
   if (status == DVI_OK) {
     printf("action %.11f over the whole curve, energy %.11f\n", 3 * found.action, found.energy);
     printf("%ld negative and %ld zero eigenvalues, %d of symmetry\n", found.negative, found.zero,

@@ -1,19 +1,19 @@
-/* A comet of eccentricity 0.99 in a time that runs with its distance from the sun: equal steps that
- * are short at the perihelion, a hundred in an orbit. */
+/* A comet of eccentricity 0.99 in a time that runs with its distance from the sun. The equal steps
+ * of that time, a hundred in an orbit, are short at the perihelion. */
 #include <dvi/dvi.h>
 #include <math.h>
 #include <stdio.h>
 
 static const double eccentricity = 0.99, period = 6.283185307179586;
 
-static int value(double t, const double *q, double *V, void *user)
+static int comet_potential(double t, const double *q, double *V, void *user)
 {
   (void)t, (void)user;
   *V = -1 / hypot(q[0], q[1]);
   return 0;
 }
 
-static int gradient(double t, const double *q, double *V_q, void *user)
+static int comet_gradient(double t, const double *q, double *V_q, void *user)
 {
   (void)t, (void)user;
   const double r = hypot(q[0], q[1]), cubed = r * r * r;
@@ -22,16 +22,16 @@ static int gradient(double t, const double *q, double *V_q, void *user)
   return 0;
 }
 
-/* Half the time derivative of r^2: negative on the way in. */
-static int radial(double t, const double *q, const double *v, double *g, void *user)
+/* Half the time derivative of r^2, negative while the distance falls. */
+static int comet_radial_motion(double t, const double *q, const double *v, double *g, void *user)
 {
   (void)t, (void)user;
   *g = q[0] * v[0] + q[1] * v[1];
   return 0;
 }
 
-/* From the aphelion, the k-th perihelion is at (k + 1/2) periods. */
-static int perihelion(double t, const double *q, const double *v, void *user)
+/* Print a passage. From the aphelion, the k-th perihelion is at (k + 1/2) periods. */
+static int comet_perihelion(double t, const double *q, const double *v, void *user)
 {
   int *passages = (int *)user;
   (void)v;
@@ -41,15 +41,15 @@ static int perihelion(double t, const double *q, const double *v, void *user)
   return 0;
 }
 
-static dvi_status orbits(dvi_integrator *integrator, int count, dvi_run_report *report)
+static dvi_status comet_run(dvi_integrator *integrator, int count, dvi_run_report *report)
 {
   int passages = 0;
   const double q[] = {1 + eccentricity, 0},
                p[] = {0, sqrt((1 - eccentricity) / (1 + eccentricity))};
   const dvi_event event = {.name = "perihelion",
-                           .value = radial,
+                           .value = comet_radial_motion,
                            .direction = +1,
-                           .occurred = perihelion,
+                           .occurred = comet_perihelion,
                            .user = &passages};
   const dvi_run_options options = {
       .h = 0.1, .t_end = count * period, .events = &event, .event_count = 1};
@@ -59,7 +59,8 @@ static dvi_status orbits(dvi_integrator *integrator, int count, dvi_run_report *
 
 int main(void)
 {
-  const dvi_potential gravity = {.name = "gravity", .value = value, .gradient = gradient};
+  const dvi_potential gravity = {
+      .name = "gravity", .value = comet_potential, .gradient = comet_gradient};
   const dvi_system_terms terms = {.dimension = 2,
                                   .mass = {.scalar = 1},
                                   .potentials = &gravity,
@@ -76,7 +77,7 @@ int main(void)
                                           .pacing = DVI_TIME_TRANSFORM,
                                           .monitor = &distance};
   if (status == DVI_OK) status = dvi_integrator_create_with(system, &options, &integrator);
-  if (status == DVI_OK) status = orbits(integrator, 5, &report);
+  if (status == DVI_OK) status = comet_run(integrator, 5, &report);
   if (status == DVI_OK) status = dvi_integrator_invariants(integrator, &energy);
   if (status == DVI_OK)
     printf("%ld steps, t_end missed by %.0e, energy error %.1e\n", report.steps,

@@ -1,16 +1,16 @@
-/* A bead on a hoop that turns freely: a Lagrangian whose mass depends on the coordinates.
+/* A bead on a hoop that turns freely, as a Lagrangian whose mass depends on the coordinates.
  *
  *     L = v1^2/2 + (J + sin^2 q1) v2^2/2 + cos q1,
  *     q1 the bead's angle from below, q2 the hoop's turn.
  *
- * The check of the derivatives, the Legendre map, a momentum map and the way back in time. */
+ * The program checks the derivatives, the Legendre map, a momentum map and the reversed motion. */
 #include <dvi/dvi.h>
 #include <math.h>
 #include <stdio.h>
 
 static const double J = 0.5;
 
-static int value(double t, const double *q, const double *v, double *L, void *user)
+static int hoop_lagrangian(double t, const double *q, const double *v, double *L, void *user)
 {
   (void)t, (void)user;
   const double s = sin(q[0]);
@@ -18,8 +18,8 @@ static int value(double t, const double *q, const double *v, double *L, void *us
   return 0;
 }
 
-static int gradient(double t, const double *q, const double *v, double *L_q, double *L_v,
-                    void *user)
+static int hoop_gradient(double t, const double *q, const double *v, double *L_q, double *L_v,
+                         void *user)
 {
   (void)t, (void)user;
   const double s = sin(q[0]);
@@ -30,8 +30,8 @@ static int gradient(double t, const double *q, const double *v, double *L_q, dou
   return 0;
 }
 
-/* Turning the hoop changes nothing; the momentum map is the angular momentum about the vertical. */
-static int turn(const double *q, double *xi, void *user)
+/* Turning the hoop is a symmetry. Its momentum map is the angular momentum about the vertical. */
+static int hoop_rotation(const double *q, double *xi, void *user)
 {
   (void)q, (void)user;
   xi[0] = 0;
@@ -39,24 +39,24 @@ static int turn(const double *q, double *xi, void *user)
   return 0;
 }
 
-static dvi_status create(dvi_system **system)
+static dvi_status hoop_system(dvi_system **system)
 {
-  /* the Hessian is differenced */
-  const dvi_lagrangian lagrangian = {.value = value, .gradient = gradient};
-  const dvi_symmetry symmetry = {.name = "angular_momentum", .generator = turn};
+  /* the Hessian is computed by differences */
+  const dvi_lagrangian lagrangian = {.value = hoop_lagrangian, .gradient = hoop_gradient};
+  const dvi_symmetry symmetry = {.name = "angular_momentum", .generator = hoop_rotation};
   const dvi_system_terms terms = {
       .dimension = 2, .lagrangian = &lagrangian, .symmetries = &symmetry, .symmetry_count = 1};
   return dvi_system_create(&terms, system);
 }
 
-/* Largest errors of the energy and of the angular momentum on the way, and of the state after the
- * way back. */
+/* Largest errors of the energy and of the angular momentum along the run, and of the state after
+ * the way back. */
 typedef struct findings {
   double energy, momentum, way_back;
 } findings;
 
-static dvi_status travel(const dvi_system *system, const double *q, const double *p,
-                         findings *found)
+static dvi_status hoop_run(const dvi_system *system, const double *q, const double *p,
+                           findings *found)
 {
   const double h = 0.1;
   double first[2] = {0}, now[2] = {0};
@@ -81,11 +81,11 @@ int main(void)
   double p[2], again[2] = {0, 0};
   findings found = {0};
   dvi_system *system = NULL;
-  dvi_status status = create(&system);
+  dvi_status status = hoop_system(&system);
   if (status == DVI_OK) status = dvi_system_check(system, 0, q, v, 0, NULL);
   if (status == DVI_OK) status = dvi_system_momentum(system, 0, q, v, p);
   if (status == DVI_OK) status = dvi_system_velocity(system, 0, q, p, again);
-  if (status == DVI_OK) status = travel(system, q, p, &found);
+  if (status == DVI_OK) status = hoop_run(system, q, p, &found);
   dvi_system_destroy(&system);
   if (status != DVI_OK) {
     fprintf(stderr, "%s: %s\n", dvi_status_name(status), dvi_last_error());
@@ -95,7 +95,7 @@ int main(void)
   printf("Legendre map there and back %.1e\nenergy error %.1e, angular momentum error %.1e\nway "
          "back %.1e\n",
          map, found.energy, found.momentum, found.way_back);
-  /* Roundoff, but for the energy: order 6 in h = 0.1. */
+  /* The bounds are roundoff, except for the energy, which has order 6 in h = 0.1. */
   return map < 1e-14 && found.energy < 1e-6 && found.momentum < 1e-12 && found.way_back < 1e-11 ? 0
                                                                                                 : 1;
 }
