@@ -1,6 +1,7 @@
-/* The chain of Fermi, Pasta, Ulam and Tsingou with quartic springs between two walls, V =
- * sum_{i=1}^{n+1} d_i^2/2 + beta d_i^4/4, d_i = q_i - q_{i-1}, q_0 = q_{n+1} = 0: a site knows its
- * two neighbours, and gradients come by ranges. */
+/* The chain of Fermi, Pasta, Ulam and Tsingou with quartic springs between two walls. A site knows
+ * its two neighbours, and gradients come by ranges.
+ *
+ *     V = sum_{i=1}^{n+1} d_i^2/2 + beta d_i^4/4,  d_i = q_i - q_{i-1},  q_0 = q_{n+1} = 0 */
 #include <math.h>
 
 #include "entry.h"
@@ -8,22 +9,22 @@
 typedef struct springs {
   int n;
   double beta;
-  int *start, *row; /* the Hessian's pattern, three diagonals */
+  int *start, *row; /* pattern of the Hessian, three diagonals */
 } springs;
 
-PROBLEM_INLINE double tension(double beta, double d)
+PROBLEM_INLINE double spring_tension(double beta, double d)
 {
   return d * (1.0 + beta * (d * d));
 }
 
-/* One site between its neighbours: the one expression behind the gradient's shapes, so that they
- * have the same bits. */
-PROBLEM_INLINE double pull(double beta, double left, double here, double right)
+/* Compute the pull on a site between its neighbours. All shapes of the gradient use this one
+ * expression, so that they have the same bits. */
+PROBLEM_INLINE double chain_pull(double beta, double left, double here, double right)
 {
-  return tension(beta, here - left) - tension(beta, right - here);
+  return spring_tension(beta, here - left) - spring_tension(beta, right - here);
 }
 
-static int value(int count, const double *t, const double *q, double *V, void *user)
+static int chain_potential(int count, const double *t, const double *q, double *V, void *user)
 {
   const springs *own = user;
   (void)t;
@@ -37,59 +38,60 @@ static int value(int count, const double *t, const double *q, double *V, void *u
   return 0;
 }
 
-PROBLEM_LANES static int gradient_range(double t, const double *q, int first, int last,
-                                        double *restrict V_q, void *user)
+PROBLEM_LANES static int chain_gradient_range(double t, const double *q, int first, int last,
+                                              double *restrict V_q, void *user)
 {
   const springs *own = user;
   const double beta = own->beta;
-  /* between them both neighbours are sites */
+  /* both neighbours of these sites are sites */
   const int n = own->n, from = first > 0 ? first : 1, to = last < n ? last : n - 1;
   (void)t;
   if (n == 1) {
-    V_q[0] = pull(beta, 0.0, q[0], 0.0);
+    V_q[0] = chain_pull(beta, 0.0, q[0], 0.0);
     return 0;
   }
-  if (first == 0) V_q[0] = pull(beta, 0.0, q[0], q[1]);
-  for (int i = from; i < to; i++) V_q[i - first] = pull(beta, q[i - 1], q[i], q[i + 1]);
-  if (last == n) V_q[n - 1 - first] = pull(beta, q[n - 2], q[n - 1], 0.0);
+  if (first == 0) V_q[0] = chain_pull(beta, 0.0, q[0], q[1]);
+  for (int i = from; i < to; i++) V_q[i - first] = chain_pull(beta, q[i - 1], q[i], q[i + 1]);
+  if (last == n) V_q[n - 1 - first] = chain_pull(beta, q[n - 2], q[n - 1], 0.0);
   return 0;
 }
 
-PROBLEM_LANES static void gradient_row(int count, double beta, const double *left,
-                                       const double *here, const double *right,
-                                       double *restrict V_q)
+PROBLEM_LANES static void chain_gradient_row(int count, double beta, const double *left,
+                                             const double *here, const double *right,
+                                             double *restrict V_q)
 {
   for (int k = 0; k < count; k++)
-    V_q[k] = pull(beta, left != NULL ? left[k] : 0.0, here[k], right != NULL ? right[k] : 0.0);
+    V_q[k] = chain_pull(beta, left != NULL ? left[k] : 0.0, here[k],
+                        right != NULL ? right[k] : 0.0);
 }
 
-static int gradient(int count, const double *t, const double *q, double *V_q, void *user)
+static int chain_gradient(int count, const double *t, const double *q, double *V_q, void *user)
 {
   const springs *own = user;
-  if (count == 1) return gradient_range(t[0], q, 0, own->n, V_q, user);
+  if (count == 1) return chain_gradient_range(t[0], q, 0, own->n, V_q, user);
   for (size_t i = 0, n = (size_t)own->n, points = (size_t)count; i < n; i++)
-    gradient_row(count, own->beta, i > 0 ? q + (i - 1) * points : NULL, q + i * points,
-                 i + 1 < n ? q + (i + 1) * points : NULL, V_q + i * points);
+    chain_gradient_row(count, own->beta, i > 0 ? q + (i - 1) * points : NULL, q + i * points,
+                       i + 1 < n ? q + (i + 1) * points : NULL, V_q + i * points);
   return 0;
 }
 
-/* The curvature of the spring before site i. */
-static double curvature(const springs *own, int count, int k, const double *q, int i)
+/* Compute the curvature of the spring before site i. */
+static double spring_curvature(const springs *own, int count, int k, const double *q, int i)
 {
   const size_t points = (size_t)count, at = (size_t)i * points + (size_t)k;
   const double d = (i < own->n ? q[at] : 0.0) - (i > 0 ? q[at - points] : 0.0);
   return 1.0 + 3.0 * own->beta * (d * d);
 }
 
-static int hessian(int count, const double *t, const double *q, double *V_qq, void *user)
+static int chain_hessian(int count, const double *t, const double *q, double *V_qq, void *user)
 {
   const springs *own = user;
   (void)t;
   for (int k = 0; k < count; k++) {
     double *entry = V_qq + k;
     for (int j = 0; j < own->n; j++) {
-      const double before = curvature(own, count, k, q, j),
-                   after = curvature(own, count, k, q, j + 1);
+      const double before = spring_curvature(own, count, k, q, j),
+                   after = spring_curvature(own, count, k, q, j + 1);
       if (j > 0) *entry = -before, entry += count;
       *entry = before + after, entry += count;
       if (j + 1 < own->n) *entry = -after, entry += count;
@@ -98,7 +100,7 @@ static int hessian(int count, const double *t, const double *q, double *V_qq, vo
   return 0;
 }
 
-static dvi_status make_pattern(problem *made, springs *own)
+static dvi_status chain_make_pattern(problem *made, springs *own)
 {
   const int n = own->n;
   int *numbers = problem_allocate(made, 4 * (size_t)n + 1, sizeof(int)), entries = 0;
@@ -112,15 +114,15 @@ static dvi_status make_pattern(problem *made, springs *own)
   return DVI_OK;
 }
 
-/* The normal mode of the harmonic chain whose waves are about 16 sites long: sin(pi k i/(n+1)), its
- * argument reduced exactly. */
-static double standing_wave(int i, int n)
+/* Compute the normal mode of the harmonic chain whose waves are about 16 sites long. It is sin(pi k
+ * i/(n+1)), with its argument reduced exactly. */
+static double chain_mode(int i, int n)
 {
   const int64_t k = (n + 7) / 8, walls = (int64_t)n + 1, half_turns = i * k % (2 * walls);
   return sin(3.14159265358979323846 * ((double)half_turns / (double)walls));
 }
 
-static dvi_status make(const double *setting, problem *made)
+static dvi_status chain_make(const double *setting, problem *made)
 {
   const int n = (int)setting[0];
   dvi_status status = problem_room(made, n, sizeof(springs));
@@ -128,20 +130,20 @@ static dvi_status make(const double *setting, problem *made)
   springs *own = made->parameters;
   own->n = n;
   own->beta = setting[1];
-  status = make_pattern(made, own);
+  status = chain_make_pattern(made, own);
   if (status != DVI_OK) return status;
   for (int i = 0; i < n; i++) {
     problem_label(made, i, "q_%d", i + 1);
-    made->q[i] = standing_wave(i + 1, n);
+    made->q[i] = chain_mode(i + 1, n);
   }
 
   const dvi_potential potential = {.name = "springs",
-                                   .value_batch = value,
-                                   .gradient_batch = gradient,
-                                   .hessian_batch = hessian,
+                                   .value_batch = chain_potential,
+                                   .gradient_batch = chain_gradient,
+                                   .hessian_batch = chain_hessian,
                                    .qq = {own->start, own->row},
                                    .user = own,
-                                   .gradient_range = gradient_range,
+                                   .gradient_range = chain_gradient_range,
                                    .reach = 1};
   const dvi_system_terms terms = {.dimension = n,
                                   .mass = {.scalar = 1.0},
@@ -192,7 +194,7 @@ const problem_entry problem_entry_chain = {
     .name = "chain",
     .summary = "masses between two walls, joined by springs with a quartic part; for long chains",
     .parameters = parameters,
-    .make = make,
+    .make = chain_make,
     .h = 0.1,
     .t_end = 100.0,
     .order_h = 0.25,

@@ -1,5 +1,5 @@
-/* Two point masses on two rods in a plane, angles from straight down: a general Lagrangian whose
- * mass depends on q.
+/* Two point masses on two rods in a plane, with angles from straight down. The general Lagrangian
+ * has a mass that depends on q.
  *
  *     L = A v1^2/2 + B v2^2/2 + C cos(q1 - q2) v1 v2 + G1 cos q1 + G2 cos q2,
  *     A = (m1+m2) l1^2,  B = m2 l2^2,  C = m2 l1 l2,  G1 = (m1+m2) g l1,  G2 = m2 g l2. */
@@ -12,8 +12,8 @@ typedef struct coefficients {
   double A, B, C, G1, G2;
 } coefficients;
 
-static int value(int count, const double *t, const double *q, const double *v, double *L,
-                 void *user)
+static int double_pendulum_lagrangian(int count, const double *t, const double *q, const double *v,
+                                      double *L, void *user)
 {
   const coefficients *own = user;
   const double *restrict q1 = q, *restrict q2 = q + count, *restrict v1 = v,
@@ -26,8 +26,8 @@ static int value(int count, const double *t, const double *q, const double *v, d
   return 0;
 }
 
-static int gradient(int count, const double *t, const double *q, const double *v, double *L_q,
-                    double *L_v, void *user)
+static int double_pendulum_gradient(int count, const double *t, const double *q, const double *v,
+                                    double *L_q, double *L_v, void *user)
 {
   const coefficients own = *(const coefficients *)user;
   const double *restrict q1 = q, *restrict q2 = q + count, *restrict v1 = v,
@@ -45,8 +45,8 @@ static int gradient(int count, const double *t, const double *q, const double *v
   return 0;
 }
 
-static int hessian(int count, const double *t, const double *q, const double *v, double *L_qq,
-                   double *L_qv, double *L_vv, void *user)
+static int double_pendulum_hessian(int count, const double *t, const double *q, const double *v,
+                                   double *L_qq, double *L_qv, double *L_vv, void *user)
 {
   const coefficients own = *(const coefficients *)user;
   const double *restrict q1 = q, *restrict q2 = q + count, *restrict v1 = v,
@@ -71,17 +71,17 @@ static int hessian(int count, const double *t, const double *q, const double *v,
   return 0;
 }
 
-/* The series that L and its derivatives along a curve are sums of. */
+/* The series in the sums of L and its derivatives along a curve. */
 typedef struct series {
   double v1[DVI_TAYLOR_MAX + 1], v2[DVI_TAYLOR_MAX + 1];
-  double sine_1[DVI_TAYLOR_MAX + 1], cosine_1[DVI_TAYLOR_MAX + 1]; /* of q1 */
+  double sine_1[DVI_TAYLOR_MAX + 1], cosine_1[DVI_TAYLOR_MAX + 1]; /* series of q1 */
   double sine_2[DVI_TAYLOR_MAX + 1], cosine_2[DVI_TAYLOR_MAX + 1];
-  double s[DVI_TAYLOR_MAX + 1], c[DVI_TAYLOR_MAX + 1]; /* C times those of q1 - q2 */
+  double s[DVI_TAYLOR_MAX + 1], c[DVI_TAYLOR_MAX + 1]; /* C times the series of q1 - q2 */
   double v1_v2[DVI_TAYLOR_MAX + 1];
 } series;
 
-static void expand(const coefficients *own, int degree, const double *q, const double *v,
-                   series *of)
+static void double_pendulum_expand(const coefficients *own, int degree, const double *q,
+                                   const double *v, series *of)
 {
   double q1[DVI_TAYLOR_MAX + 1], q2[DVI_TAYLOR_MAX + 1], between[DVI_TAYLOR_MAX + 1];
   dvi_taylor_get(degree, 2, q, 0, q1);
@@ -99,9 +99,9 @@ static void expand(const coefficients *own, int degree, const double *q, const d
   dvi_taylor_multiply(degree, of->v1, of->v2, of->v1_v2);
 }
 
-/* Coefficient k of the Hessian. */
-static void series_hessian(const coefficients *own, const series *of, int k, double *L_qq,
-                           double *L_qv, double *L_vv)
+/* Compute coefficient k of the Hessian. */
+static void double_pendulum_series_hessian(const coefficients *own, const series *of, int k,
+                                           double *L_qq, double *L_qv, double *L_vv)
 {
   const double c_v1_v2 = dvi_taylor_product(k, of->c, of->v1_v2);
   const double s_v1 = dvi_taylor_product(k, of->s, of->v1),
@@ -124,13 +124,14 @@ static void series_hessian(const coefficients *own, const series *of, int k, dou
   }
 }
 
-static int taylor(int degree, const double *t, const double *q, const double *v, double *L,
-                  double *L_q, double *L_v, double *L_qq, double *L_qv, double *L_vv, void *user)
+static int double_pendulum_taylor(int degree, const double *t, const double *q, const double *v,
+                                  double *L, double *L_q, double *L_v, double *L_qq, double *L_qv,
+                                  double *L_vv, void *user)
 {
   const coefficients own = *(const coefficients *)user;
   series of;
   (void)t;
-  expand(&own, degree, q, v, &of);
+  double_pendulum_expand(&own, degree, q, v, &of);
   for (int k = 0; k <= degree; k++) {
     const double s_v1_v2 = dvi_taylor_product(k, of.s, of.v1_v2);
     if (L)
@@ -146,31 +147,34 @@ static int taylor(int degree, const double *t, const double *q, const double *v,
       L_v[2 * k] = own.A * of.v1[k] + dvi_taylor_product(k, of.c, of.v2);
       L_v[2 * k + 1] = own.B * of.v2[k] + dvi_taylor_product(k, of.c, of.v1);
     }
-    if (L_qq || L_qv || L_vv) series_hessian(&own, &of, k, L_qq, L_qv, L_vv);
+    if (L_qq || L_qv || L_vv) double_pendulum_series_hessian(&own, &of, k, L_qq, L_qv, L_vv);
   }
   return 0;
 }
 
-static dvi_status make(const double *setting, problem *made)
+static dvi_status double_pendulum_make(const double *setting, problem *made)
 {
   const dvi_status status = problem_room(made, 2, sizeof(coefficients));
   if (status != DVI_OK) return status;
   const double pi = 3.14159265358979323846;
   const double l1 = setting[0], l2 = setting[1], m1 = setting[2], m2 = setting[3], g = setting[4];
   coefficients *own = made->parameters;
-  *own = (coefficients){(m1 + m2) * l1 * l1, m2 * l2 * l2, m2 * l1 * l2, (m1 + m2) * g * l1,
-                        m2 * g * l2};
+  *own = (coefficients){.A = (m1 + m2) * l1 * l1,
+                        .B = m2 * l2 * l2,
+                        .C = m2 * l1 * l2,
+                        .G1 = (m1 + m2) * g * l1,
+                        .G2 = m2 * g * l2};
   problem_label(made, 0, "theta_1");
   problem_label(made, 1, "theta_2");
   made->q[0] = pi / 4.0;
   made->q[1] = pi / 2.0;
   made->v[1] = pi / 8.0;
 
-  const dvi_lagrangian lagrangian = {.value_batch = value,
-                                     .gradient_batch = gradient,
-                                     .hessian_batch = hessian,
+  const dvi_lagrangian lagrangian = {.value_batch = double_pendulum_lagrangian,
+                                     .gradient_batch = double_pendulum_gradient,
+                                     .hessian_batch = double_pendulum_hessian,
                                      .user = own,
-                                     .taylor = taylor};
+                                     .taylor = double_pendulum_taylor};
   const dvi_system_terms terms = {.dimension = 2, .lagrangian = &lagrangian, .autonomous = 1};
   return problem_system(made, &terms);
 }
@@ -208,7 +212,7 @@ const problem_entry problem_entry_double_pendulum = {
     .name = "double-pendulum",
     .summary = "two masses on two rods; a Lagrangian that is not separable",
     .parameters = parameters,
-    .make = make,
+    .make = double_pendulum_make,
     .h = 0.02,
     .t_end = 20.0,
     .order_h = 0.05,

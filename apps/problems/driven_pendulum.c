@@ -1,22 +1,22 @@
-/* A pendulum in a plane whose pivot swings to and fro: x = a sin(omega t), the angle measured from
- * the top.
+/* A pendulum in a plane whose pivot swings to and fro by x = a sin(omega t), with the angle
+ * measured from the top.
  *
  *     L = v^2/2 + a omega cos(omega t) v cos q - cos q
  *     (without the pivot's own energy, which moves nothing)
  *
- * A general Lagrangian that depends on time, and its momentum p = v + a omega cos(omega t) cos q,
- * too. */
+ * The general Lagrangian depends on time, and so does its momentum p = v + a omega cos(omega t) cos
+ * q. */
 #include <dvi/taylor.h>
 #include <math.h>
 
 #include "entry.h"
 
 typedef struct drive {
-  double speed, omega; /* a omega */
+  double speed, omega; /* speed is a omega */
 } drive;
 
-static int value(int count, const double *t, const double *q, const double *v, double *L,
-                 void *user)
+static int driven_pendulum_lagrangian(int count, const double *t, const double *q, const double *v,
+                                      double *L, void *user)
 {
   const drive own = *(const drive *)user;
   for (int k = 0; k < count; k++)
@@ -24,8 +24,8 @@ static int value(int count, const double *t, const double *q, const double *v, d
   return 0;
 }
 
-static int rate(int count, const double *t, const double *q, const double *v, double *L_t,
-                void *user)
+static int driven_pendulum_rate(int count, const double *t, const double *q, const double *v,
+                                double *L_t, void *user)
 {
   const drive own = *(const drive *)user;
   for (int k = 0; k < count; k++)
@@ -33,8 +33,8 @@ static int rate(int count, const double *t, const double *q, const double *v, do
   return 0;
 }
 
-static int gradient(int count, const double *t, const double *q, const double *v, double *L_q,
-                    double *L_v, void *user)
+static int driven_pendulum_gradient(int count, const double *t, const double *q, const double *v,
+                                    double *L_q, double *L_v, void *user)
 {
   const drive own = *(const drive *)user;
   for (int k = 0; k < count; k++) {
@@ -45,8 +45,8 @@ static int gradient(int count, const double *t, const double *q, const double *v
   return 0;
 }
 
-static int hessian(int count, const double *t, const double *q, const double *v, double *L_qq,
-                   double *L_qv, double *L_vv, void *user)
+static int driven_pendulum_hessian(int count, const double *t, const double *q, const double *v,
+                                   double *L_qq, double *L_qv, double *L_vv, void *user)
 {
   const drive own = *(const drive *)user;
   for (int k = 0; k < count; k++) {
@@ -58,9 +58,10 @@ static int hessian(int count, const double *t, const double *q, const double *v,
   return 0;
 }
 
-/* The same along a curve, on which t is a series, too. */
-static int taylor(int degree, const double *t, const double *q, const double *v, double *L,
-                  double *L_q, double *L_v, double *L_qq, double *L_qv, double *L_vv, void *user)
+/* Evaluate L and its derivatives along a curve, on which t is a series, too. */
+static int driven_pendulum_taylor(int degree, const double *t, const double *q, const double *v,
+                                  double *L, double *L_q, double *L_v, double *L_qq, double *L_qv,
+                                  double *L_vv, void *user)
 {
   const drive own = *(const drive *)user;
   double phase[DVI_TAYLOR_MAX + 1], unwanted[DVI_TAYLOR_MAX + 1], pivot[DVI_TAYLOR_MAX + 1],
@@ -82,21 +83,21 @@ static int taylor(int degree, const double *t, const double *q, const double *v,
   return 0;
 }
 
-static dvi_status make(const double *setting, problem *made)
+static dvi_status driven_pendulum_make(const double *setting, problem *made)
 {
   const dvi_status status = problem_room(made, 1, sizeof(drive));
   if (status != DVI_OK) return status;
   drive *own = made->parameters;
-  *own = (drive){setting[0] * setting[1], setting[1]};
+  *own = (drive){.speed = setting[0] * setting[1], .omega = setting[1]};
   problem_label(made, 0, "q");
   made->q[0] = 2.0;
 
-  const dvi_lagrangian lagrangian = {.value_batch = value,
-                                     .gradient_batch = gradient,
-                                     .hessian_batch = hessian,
-                                     .rate_batch = rate,
+  const dvi_lagrangian lagrangian = {.value_batch = driven_pendulum_lagrangian,
+                                     .gradient_batch = driven_pendulum_gradient,
+                                     .hessian_batch = driven_pendulum_hessian,
+                                     .rate_batch = driven_pendulum_rate,
                                      .user = own,
-                                     .taylor = taylor};
+                                     .taylor = driven_pendulum_taylor};
   const dvi_system_terms terms = {.dimension = 1, .lagrangian = &lagrangian};
   return problem_system(made, &terms);
 }
@@ -123,7 +124,7 @@ const problem_entry problem_entry_driven_pendulum = {
     .name = "driven-pendulum",
     .summary = "a pendulum whose pivot swings; a Lagrangian that depends on time",
     .parameters = parameters,
-    .make = make,
+    .make = driven_pendulum_make,
     .h = 0.05,
     .t_end = 20.0,
     .order_h = 0.1,

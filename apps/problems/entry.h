@@ -1,4 +1,4 @@
-/* What a problem's file gives to the table in problem.c, and what the files share. */
+/* The interface between a problem's file and the table in problem.c, and shared functions. */
 #ifndef PROBLEMS_ENTRY_H
 #define PROBLEMS_ENTRY_H
 #include <stdint.h>
@@ -6,8 +6,8 @@
 
 #include "problem.h"
 
-/* A callback with loops over a batch's points is compiled for several instruction sets, and the
- * processor chooses when the program starts. All give the same bits: no sums are reordered, and
+/* Compile a callback with loops over a batch's points for several instruction sets. The processor
+ * chooses when the program starts. All give the same bits, because no sums are reordered, and
  * -ffp-contract=off keeps products and sums apart. The choice is made before gcc's thread sanitizer
  * can watch it. */
 #if defined(__x86_64__) && defined(__gnu_linux__) && \
@@ -17,16 +17,17 @@
 #define PROBLEM_LANES
 #endif
 
-/* Compiled into its callers, once for each of their instruction sets. */
+/* Compile a function into its callers, once for each of their instruction sets. */
 #define PROBLEM_INLINE static inline __attribute__((always_inline))
 
-/* Numbers that are worked on together. */
+/* Count of numbers that are worked on together. */
 #define PROBLEM_TILE 32
 
-/* x <- x^(-3/2), right to three ulp, for positive normal numbers; not finite for 0 and NaN. A
- * square root and a division take longer: the exponent's bits halved and negated are right to 3.5 %
- * (Lomont 2003), then e = 1 - x y^2 shrinks by the series of (1 - e)^(-1/2). Each line is a loop,
- * for one number after the other the chain of operations would wait for itself. */
+/* Replace x by x^(-3/2), right to three ulp, for positive normal numbers. 0 and NaN give numbers
+ * that are not finite. A square root and a division would take longer. The exponent's bits halved
+ * and negated are right to 3.5 % (Lomont 2003). The series of (1 - e)^(-1/2) then reduces e = 1 - x
+ * y^2. Each line is a loop, because for single numbers each operation would wait for the one
+ * before. */
 PROBLEM_INLINE void problem_inverse_cubes(const int count, double *restrict x)
 {
   double y[PROBLEM_TILE], e[PROBLEM_TILE];
@@ -43,26 +44,26 @@ PROBLEM_INLINE void problem_inverse_cubes(const int count, double *restrict x)
   for (int k = 0; k < count; k++) x[k] = y[k] * y[k] * y[k];
 }
 
-/* Most parameters that a problem may have. */
+/* Largest number of parameters of a problem. */
 #define PROBLEM_PARAMETERS_MAX 12
 
-/* Room for one number's name. */
+/* Memory for one number's name. */
 #define PROBLEM_LABEL_SIZE 24
 
 /* One problem of the catalogue. */
 typedef struct problem_entry {
   const char *name, *summary;
-  const problem_parameter *parameters; /* ended by one without a name; NULL: none */
-  /* Given the parameters' values, allocate with problem_room, label the coordinates, fill q and v,
-   * create the system with problem_system. The momenta are p = L_v(q, v) for all problems, and with
-   * a one-form v is that of the equations of motion; problem_create sees to them. With a
-   * Hamiltonian p is filled in the place of v. */
+  const problem_parameter *parameters; /* ends with one without a name, or NULL for none */
+  /* Allocate with problem_room, label the coordinates, fill q and v, and create the system with
+   * problem_system, for the parameters' values. problem_create computes the momenta p = L_v(q, v),
+   * and with a one-form the v of the equations of motion. With a Hamiltonian p is filled instead of
+   * v. */
   dvi_status (*make)(const double *value, problem *made);
   int (*exact)(const problem *made, double t, double *q, double *p);
   double h, t_end, order_h, order_t_end;
-  /* for the default parameters; recomputed by tests/reference/test_digits */
+  /* results for the default parameters, recomputed by tests/reference/test_digits */
   const double *digits_q, *digits_p;
-  double far_t_end, far_error; /* as in problem.h; 0 without far_q */
+  double far_t_end, far_error; /* as in problem.h, 0 without far_q */
   const double *far_q;         /* recomputed by tests/reference/test_far_digits */
 } problem_entry;
 
@@ -70,24 +71,24 @@ typedef struct problem_entry {
 #include "problems.def"
 #undef PROBLEM_ENTRY
 
-/* Zeroed memory that problem_destroy frees; NULL if there is none left. */
+/* Allocate zeroed memory that problem_destroy frees. NULL without memory. */
 void *problem_allocate(problem *made, size_t count, size_t size);
 
 /* Set nq = nv = n, and allocate q, v, p, the labels, and `parameters` of that size. */
 dvi_status problem_room(problem *made, int n, size_t parameters_size);
 
-/* The same with nq coordinates and nv velocities; and room for so many names, NULL if there is
- * none. */
+/* Do the same with nq coordinates and nv velocities. problem_names allocates so many names, or
+ * returns NULL without memory. */
 dvi_status problem_room_of(problem *made, int nq, int nv, size_t parameters_size);
 char **problem_names(problem *made, int count);
 
-/* The same for a product of SO(3), SE(3) and S^2, with the names of all numbers; rotations are set
- * to the identity, their places and the directions are left 0. */
+/* Do the same for a product of SO(3), SE(3) and S^2, with the names of all numbers. Rotations are
+ * set to the identity. Their places and the directions are left 0. */
 dvi_status problem_factors(problem *made, int count, const dvi_factor *factors,
                            size_t parameters_size);
 
-/* Make the system from these terms, and keep them with the problem. What they point to, but for the
- * arrays of terms, lives as long as the problem: parameters, patterns, masses. */
+/* Make the system from these terms, and keep them with the problem. Except for the arrays of terms,
+ * all that they point to (parameters, patterns, masses) must live as long as the problem. */
 dvi_status problem_system(problem *made, const dvi_system_terms *terms);
 
 /* Name coordinate i, and its momentum after it. */
@@ -96,11 +97,11 @@ __attribute__((format(printf, 3, 4)))
 #endif
 void problem_label(problem *made, int i, const char *format, ...);
 
-/* cos(w t) and sin(w t) for w = sqrt(square), right to a few ulp even if w t is large: the
- * roundings of w and of w t are carried along. */
+/* Compute cos(w t) and sin(w t) for w = sqrt(square), right to a few ulp even if w t is large. The
+ * rounding errors of w and of w t are corrected. */
 void problem_oscillation(double square, double t, double *cosine, double *sine);
 
-/* V = k q^2/2 of one coordinate, as dvi_potential's taylor. */
+/* Evaluate V = k q^2/2 of one coordinate, as dvi_potential's taylor. */
 void problem_spring_taylor(double k, int degree, const double *q, double *V, double *V_q,
                            double *V_qq);
 

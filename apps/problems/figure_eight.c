@@ -1,5 +1,5 @@
-/* Three equal masses that chase each other along one figure eight (Chenciner and Montgomery 2000);
- * period 6.32591398. Simo's start has eight digits: the orbit closes to 3e-8. */
+/* Three equal masses that chase each other along one figure eight (Chenciner and Montgomery 2000),
+ * with the period 6.32591398. Simo's start has eight digits, so that the orbit closes to 3e-8. */
 #include "entry.h"
 #include "nbody.h"
 
@@ -15,7 +15,7 @@ static const nbody bodies = {
                  {-0.93240737, -0.86473146}},
 };
 
-static dvi_status make(const double *setting, problem *made)
+static dvi_status figure_eight_make(const double *setting, problem *made)
 {
   (void)setting;
   return nbody_make(&bodies, made);
@@ -34,7 +34,7 @@ static const double digits_p[] = {
 const problem_entry problem_entry_figure_eight = {
     .name = "figure-eight",
     .summary = "three equal masses on one figure eight; periodic",
-    .make = make,
+    .make = figure_eight_make,
     .h = 0.02,
     .t_end = 6.32591398,
     .order_h = 0.05,

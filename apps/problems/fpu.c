@@ -1,10 +1,10 @@
 /* The chain of Fermi, Pasta and Ulam with alternating soft (quartic) and stiff (harmonic) springs
  * (Hairer, Lubich and Wanner 2006, sec. I.5.1), in the centres x0_i and the lengths x1_i of the
- * stiff springs:
+ * stiff springs.
  *
- *     slow: 1/4 sum_{i=0}^{ell} d_i^4,  d_i = (x0_{i+1} - x1_{i+1}) - (x0_i + x1_i)
+ *     slow  1/4 sum_{i=0}^{ell} d_i^4,  d_i = (x0_{i+1} - x1_{i+1}) - (x0_i + x1_i)
  *       with zeros beyond both ends,
- *     fast: omega^2/2 sum_i x1_i^2.
+ *     fast  omega^2/2 sum_i x1_i^2.
  *
  * q holds x0_1 .. x0_ell, x1_1 .. x1_ell. In a batch both halves are flat arrays in which the
  * neighbours of a number stand `count` places away, so that one loop over all sites and points
@@ -13,7 +13,7 @@
 
 #include "entry.h"
 
-/* The stiff energies are watched up to this many springs, their sum always. */
+/* Largest number of springs whose stiff energies are watched. Their sum is always watched. */
 #define WATCHED_MAX 8
 
 struct chain;
@@ -30,61 +30,63 @@ typedef struct chain {
   stiff_spring watched[WATCHED_MAX];
 } chain;
 
-static double cube(double x)
+static double fpu_cube(double x)
 {
   return x * x * x;
 }
 
-/* The soft spring between the right end `left` of one stiff spring and the left end `right` of the
- * next. */
-static double quartic(double left, double right)
+/* Compute the potential of the soft spring between the right end `left` of one stiff spring and the
+ * left end `right` of the next. */
+static double fpu_quartic(double left, double right)
 {
   const double d = right - left;
   return 0.25 * (d * d) * (d * d);
 }
 
-static int slow_value(int count, const double *t, const double *q, double *V, void *user)
+static int fpu_slow_potential(int count, const double *t, const double *q, double *V, void *user)
 {
   const int ell = ((const chain *)user)->ell;
   const double *restrict x0 = q, *restrict x1 = q + (size_t)ell * (size_t)count;
   (void)t;
-  for (int k = 0; k < count; k++) V[k] = quartic(0.0, x0[k] - x1[k]);
+  for (int k = 0; k < count; k++) V[k] = fpu_quartic(0.0, x0[k] - x1[k]);
   for (int i = 1; i < ell; i++)
     for (int k = 0, j = i * count; k < count; k++, j++)
-      V[k] += quartic(x0[j - count] + x1[j - count], x0[j] - x1[j]);
-  for (int k = 0, j = (ell - 1) * count; k < count; k++, j++) V[k] += quartic(x0[j] + x1[j], 0.0);
+      V[k] += fpu_quartic(x0[j - count] + x1[j - count], x0[j] - x1[j]);
+  for (int k = 0, j = (ell - 1) * count; k < count; k++, j++)
+    V[k] += fpu_quartic(x0[j] + x1[j], 0.0);
   return 0;
 }
 
-/* Derivatives at one site between the neighbours' ends `left` and `right`. */
-static void slow_forces(double left, double x0, double x1, double right, double *V_x0, double *V_x1)
+/* Compute the derivatives at one site between the neighbours' ends `left` and `right`. */
+static void fpu_slow_forces(double left, double x0, double x1, double right, double *V_x0,
+                            double *V_x1)
 {
-  const double before = cube((x0 - x1) - left), after = cube(right - (x0 + x1));
+  const double before = fpu_cube((x0 - x1) - left), after = fpu_cube(right - (x0 + x1));
   *V_x0 = before - after;
   *V_x1 = -before - after;
 }
 
-PROBLEM_LANES static int slow_gradient(int count, const double *t, const double *q, double *V_q,
-                                       void *user)
+PROBLEM_LANES static int fpu_slow_gradient(int count, const double *t, const double *q, double *V_q,
+                                           void *user)
 {
   const int ell = ((const chain *)user)->ell, last = (ell - 1) * count;
   const double *restrict x0 = q, *restrict x1 = q + last + count;
   double *restrict V_x0 = V_q, *restrict V_x1 = V_q + last + count;
   (void)t;
   for (int j = 0; j < count; j++)
-    slow_forces(0.0, x0[j], x1[j], ell > 1 ? x0[j + count] - x1[j + count] : 0.0, &V_x0[j],
-                &V_x1[j]);
+    fpu_slow_forces(0.0, x0[j], x1[j], ell > 1 ? x0[j + count] - x1[j + count] : 0.0, &V_x0[j],
+                    &V_x1[j]);
   for (int j = count; j < last; j++)
-    slow_forces(x0[j - count] + x1[j - count], x0[j], x1[j], x0[j + count] - x1[j + count],
-                &V_x0[j], &V_x1[j]);
+    fpu_slow_forces(x0[j - count] + x1[j - count], x0[j], x1[j], x0[j + count] - x1[j + count],
+                    &V_x0[j], &V_x1[j]);
   for (int j = last; ell > 1 && j < last + count; j++)
-    slow_forces(x0[j - count] + x1[j - count], x0[j], x1[j], 0.0, &V_x0[j], &V_x1[j]);
+    fpu_slow_forces(x0[j - count] + x1[j - count], x0[j], x1[j], 0.0, &V_x0[j], &V_x1[j]);
   return 0;
 }
 
-/* Columns x0_i and x1_i hold the rows x0_{i-1}, x0_i, x0_{i+1}, x1_{i-1}, x1_i, x1_{i+1}, as far as
- * they exist. */
-static int slow_hessian(int count, const double *t, const double *q, double *V_qq, void *user)
+/* Evaluate the Hessian. Columns x0_i and x1_i hold the rows x0_{i-1}, x0_i, x0_{i+1}, x1_{i-1},
+ * x1_i, x1_{i+1}, as far as they exist. */
+static int fpu_slow_hessian(int count, const double *t, const double *q, double *V_qq, void *user)
 {
   const chain *own = user;
   const int ell = own->ell;
@@ -116,7 +118,7 @@ static int slow_hessian(int count, const double *t, const double *q, double *V_q
   return 0;
 }
 
-static int fast_value(int count, const double *t, const double *q, double *V, void *user)
+static int fpu_fast_potential(int count, const double *t, const double *q, double *V, void *user)
 {
   const chain *own = user;
   const double square = own->omega * own->omega;
@@ -127,8 +129,8 @@ static int fast_value(int count, const double *t, const double *q, double *V, vo
   return 0;
 }
 
-PROBLEM_LANES static int fast_gradient(int count, const double *t, const double *q, double *V_q,
-                                       void *user)
+PROBLEM_LANES static int fpu_fast_gradient(int count, const double *t, const double *q, double *V_q,
+                                           void *user)
 {
   const chain *own = user;
   const int half = own->ell * count;
@@ -141,7 +143,7 @@ PROBLEM_LANES static int fast_gradient(int count, const double *t, const double 
   return 0;
 }
 
-static int fast_hessian(int count, const double *t, const double *q, double *V_qq, void *user)
+static int fpu_fast_hessian(int count, const double *t, const double *q, double *V_qq, void *user)
 {
   const chain *own = user;
   const double square = own->omega * own->omega;
@@ -150,9 +152,9 @@ static int fast_hessian(int count, const double *t, const double *q, double *V_q
   return 0;
 }
 
-/* I_i = (y1_i^2 + omega^2 x1_i^2)/2: their sum is nearly conserved over times exponentially long in
- * omega. */
-static int stiff_energy(double t, const double *q, const double *p, double *I, void *user)
+/* Compute I_i = (y1_i^2 + omega^2 x1_i^2)/2. The sum of all I_i is nearly conserved over times
+ * exponentially long in omega. */
+static int fpu_stiff_energy(double t, const double *q, const double *p, double *I, void *user)
 {
   const stiff_spring *own = user;
   const double omega = own->chain->omega;
@@ -162,21 +164,21 @@ static int stiff_energy(double t, const double *q, const double *p, double *I, v
   return 0;
 }
 
-/* Their sum, which `user`, the chain, takes over all springs. */
-static int all_stiff_energy(double t, const double *q, const double *p, double *I, void *user)
+/* Compute the sum of the I_i over all springs of the chain `user`. */
+static int fpu_total_stiff_energy(double t, const double *q, const double *p, double *I, void *user)
 {
   chain *own = user;
   double sum = 0.0;
   for (int i = 0; i < own->ell; i++) {
-    stiff_spring spring = {own, i};
-    (void)stiff_energy(t, q, p, I, &spring);
+    stiff_spring spring = {.chain = own, .i = i};
+    (void)fpu_stiff_energy(t, q, p, I, &spring);
     sum += *I;
   }
   *I = sum;
   return 0;
 }
 
-static dvi_status make_patterns(problem *made, chain *own)
+static dvi_status fpu_make_patterns(problem *made, chain *own)
 {
   const int ell = own->ell, n = 2 * ell;
   int *numbers = problem_allocate(made, 13 * (size_t)ell + 2 * ((size_t)n + 1), sizeof(int));
@@ -199,7 +201,7 @@ static dvi_status make_patterns(problem *made, chain *own)
   return DVI_OK;
 }
 
-static void make_start(problem *made, const chain *own)
+static void fpu_make_start(problem *made, const chain *own)
 {
   const int ell = own->ell;
   for (int i = 0; i < ell; i++) {
@@ -212,33 +214,33 @@ static void make_start(problem *made, const chain *own)
   made->v[ell] = 1.0;
 }
 
-static dvi_status make_system(problem *made, chain *own)
+static dvi_status fpu_make_system(problem *made, chain *own)
 {
   static const char *const energy_names[WATCHED_MAX] = {"I_1", "I_2", "I_3", "I_4",
                                                         "I_5", "I_6", "I_7", "I_8"};
   const dvi_potential springs[2] = {
       {.name = "slow",
-       .value_batch = slow_value,
-       .gradient_batch = slow_gradient,
-       .hessian_batch = slow_hessian,
+       .value_batch = fpu_slow_potential,
+       .gradient_batch = fpu_slow_gradient,
+       .hessian_batch = fpu_slow_hessian,
        .qq = {own->slow_start, own->slow_row},
        .user = own},
       {.name = "fast",
-       .value_batch = fast_value,
-       .gradient_batch = fast_gradient,
-       .hessian_batch = fast_hessian,
+       .value_batch = fpu_fast_potential,
+       .gradient_batch = fpu_fast_gradient,
+       .hessian_batch = fpu_fast_hessian,
        .qq = {own->fast_start, own->fast_row},
        .user = own,
        .fast = 1,
        .quadratic = 1},
   };
   dvi_invariant energies[WATCHED_MAX + 1];
-  energies[0] = (dvi_invariant){.name = "I", .value = all_stiff_energy, .user = own};
+  energies[0] = (dvi_invariant){.name = "I", .value = fpu_total_stiff_energy, .user = own};
   const int watched = own->ell <= WATCHED_MAX ? own->ell : 0;
   for (int i = 0; i < watched; i++) {
-    own->watched[i] = (stiff_spring){own, i};
+    own->watched[i] = (stiff_spring){.chain = own, .i = i};
     energies[i + 1] = (dvi_invariant){
-        .name = energy_names[i], .value = stiff_energy, .user = &own->watched[i]};
+        .name = energy_names[i], .value = fpu_stiff_energy, .user = &own->watched[i]};
   }
   const dvi_system_terms terms = {.dimension = 2 * own->ell,
                                   .mass = {.scalar = 1.0},
@@ -250,7 +252,7 @@ static dvi_status make_system(problem *made, chain *own)
   return problem_system(made, &terms);
 }
 
-static dvi_status make(const double *setting, problem *made)
+static dvi_status fpu_make(const double *setting, problem *made)
 {
   const int ell = (int)setting[0];
   dvi_status status = problem_room(made, 2 * ell, sizeof(chain));
@@ -258,10 +260,10 @@ static dvi_status make(const double *setting, problem *made)
   chain *own = made->parameters;
   own->ell = ell;
   own->omega = setting[1];
-  status = make_patterns(made, own);
+  status = fpu_make_patterns(made, own);
   if (status != DVI_OK) return status;
-  make_start(made, own);
-  return make_system(made, own);
+  fpu_make_start(made, own);
+  return fpu_make_system(made, own);
 }
 
 static const problem_parameter parameters[] = {
@@ -298,7 +300,7 @@ const problem_entry problem_entry_fpu = {
     .summary =
         "a chain of soft and stiff springs in turn, any length; slow exchange of stiff energies",
     .parameters = parameters,
-    .make = make,
+    .make = fpu_make,
     .h = 0.005,
     .t_end = 50.0,
     .order_h = 0.005,

@@ -1,11 +1,12 @@
-/* The Henon-Heiles system, V = (x^2+y^2)/2 + lambda (x^2 y - y^3/3): a star in the meridian plane
- * of a galaxy. */
+/* The Henon-Heiles system, V = (x^2+y^2)/2 + lambda (x^2 y - y^3/3). It models a star in the
+ * meridian plane of a galaxy. */
 #include <dvi/taylor.h>
 #include <float.h>
 
 #include "entry.h"
 
-static int value(int count, const double *t, const double *q, double *V, void *user)
+static int henon_heiles_potential(int count, const double *t, const double *q, double *V,
+                                  void *user)
 {
   const double lambda = *(const double *)user;
   const double *restrict x = q, *restrict y = q + count;
@@ -15,7 +16,8 @@ static int value(int count, const double *t, const double *q, double *V, void *u
   return 0;
 }
 
-static int gradient(int count, const double *t, const double *q, double *V_q, void *user)
+static int henon_heiles_gradient(int count, const double *t, const double *q, double *V_q,
+                                 void *user)
 {
   const double lambda = *(const double *)user;
   const double *restrict x = q, *restrict y = q + count;
@@ -28,7 +30,8 @@ static int gradient(int count, const double *t, const double *q, double *V_q, vo
   return 0;
 }
 
-static int hessian(int count, const double *t, const double *q, double *V_qq, void *user)
+static int henon_heiles_hessian(int count, const double *t, const double *q, double *V_qq,
+                                void *user)
 {
   const double lambda = *(const double *)user;
   const double *restrict x = q, *restrict y = q + count;
@@ -44,9 +47,9 @@ static int hessian(int count, const double *t, const double *q, double *V_qq, vo
   return 0;
 }
 
-/* The same along a curve. */
-static int taylor(int degree, const double *t, const double *q, double *V, double *V_q,
-                  double *V_qq, void *user)
+/* Evaluate V and its derivatives along a curve. */
+static int henon_heiles_taylor(int degree, const double *t, const double *q, double *V, double *V_q,
+                               double *V_qq, void *user)
 {
   const double lambda = *(const double *)user;
   double x[DVI_TAYLOR_MAX + 1], y[DVI_TAYLOR_MAX + 1], xx[DVI_TAYLOR_MAX + 1],
@@ -74,7 +77,7 @@ static int taylor(int degree, const double *t, const double *q, double *V, doubl
   return 0;
 }
 
-static dvi_status make(const double *setting, problem *made)
+static dvi_status henon_heiles_make(const double *setting, problem *made)
 {
   const dvi_status status = problem_room(made, 2, sizeof(double));
   if (status != DVI_OK) return status;
@@ -86,11 +89,11 @@ static dvi_status make(const double *setting, problem *made)
   made->v[0] = made->v[1] = 0.3;
 
   const dvi_potential well = {.name = "well",
-                              .value_batch = value,
-                              .gradient_batch = gradient,
-                              .hessian_batch = hessian,
+                              .value_batch = henon_heiles_potential,
+                              .gradient_batch = henon_heiles_gradient,
+                              .hessian_batch = henon_heiles_hessian,
                               .user = lambda,
-                              .taylor = taylor};
+                              .taylor = henon_heiles_taylor};
   const dvi_system_terms terms = {.dimension = 2,
                                   .mass = {.scalar = 1.0},
                                   .potentials = &well,
@@ -116,7 +119,7 @@ const problem_entry problem_entry_henon_heiles = {
     .name = "henon-heiles",
     .summary = "a star in a galaxy's meridian plane; regular and chaotic orbits",
     .parameters = parameters,
-    .make = make,
+    .make = henon_heiles_make,
     .h = 0.1,
     .t_end = 100.0,
     .order_h = 0.1,

@@ -6,7 +6,7 @@
 
 #include "entry.h"
 
-static int value(int count, const double *t, const double *q, double *V, void *user)
+static int kepler_potential(int count, const double *t, const double *q, double *V, void *user)
 {
   const double *restrict x = q, *restrict y = q + count;
   (void)t, (void)user;
@@ -14,10 +14,10 @@ static int value(int count, const double *t, const double *q, double *V, void *u
   return 0;
 }
 
-/* At most as many points as a tile has. */
-PROBLEM_INLINE void gradient_at(const int points, const double *restrict x,
-                                const double *restrict y, double *restrict V_x,
-                                double *restrict V_y)
+/* Compute the gradient at no more points than a tile has. */
+PROBLEM_INLINE void kepler_gradient_at(const int points, const double *restrict x,
+                                       const double *restrict y, double *restrict V_x,
+                                       double *restrict V_y)
 {
   double r[PROBLEM_TILE];
   for (int k = 0; k < points; k++) r[k] = x[k] * x[k] + y[k] * y[k];
@@ -28,17 +28,18 @@ PROBLEM_INLINE void gradient_at(const int points, const double *restrict x,
   }
 }
 
-PROBLEM_LANES static int gradient(int count, const double *t, const double *q, double *V_q,
-                                  void *user)
+PROBLEM_LANES static int kepler_gradient(int count, const double *t, const double *q, double *V_q,
+                                         void *user)
 {
   int k = 0;
   (void)t, (void)user;
-  for (; k + 8 <= count; k += 8) gradient_at(8, q + k, q + count + k, V_q + k, V_q + count + k);
-  for (; k < count; k++) gradient_at(1, q + k, q + count + k, V_q + k, V_q + count + k);
+  for (; k + 8 <= count; k += 8)
+    kepler_gradient_at(8, q + k, q + count + k, V_q + k, V_q + count + k);
+  for (; k < count; k++) kepler_gradient_at(1, q + k, q + count + k, V_q + k, V_q + count + k);
   return 0;
 }
 
-static int hessian(int count, const double *t, const double *q, double *V_qq, void *user)
+static int kepler_hessian(int count, const double *t, const double *q, double *V_qq, void *user)
 {
   const double *restrict x = q, *restrict y = q + count;
   double *restrict V_xx = V_qq, *restrict V_yx = V_qq + count, *restrict V_xy = V_qq + 2 * count,
@@ -55,9 +56,9 @@ static int hessian(int count, const double *t, const double *q, double *V_qq, vo
   return 0;
 }
 
-/* The Hessian's part of what follows; cube is r^-3. */
-static void curvature(int degree, double q_i[2][DVI_TAYLOR_MAX + 1], const double *square,
-                      const double *cube, double *V_qq)
+/* Evaluate the Hessian's series for kepler_taylor. cube is r^-3. */
+static void kepler_series_hessian(int degree, double q_i[2][DVI_TAYLOR_MAX + 1],
+                                  const double *square, const double *cube, double *V_qq)
 {
   double fifth[DVI_TAYLOR_MAX + 1], slope[DVI_TAYLOR_MAX + 1], entry[DVI_TAYLOR_MAX + 1];
   dvi_taylor_divide(degree, cube, square, fifth);
@@ -71,9 +72,10 @@ static void curvature(int degree, double q_i[2][DVI_TAYLOR_MAX + 1], const doubl
   }
 }
 
-/* V = -1/r along a curve: V_x = x/r^3, V_xy = -3 x y/r^5 + (1/r^3 on the diagonal). */
-static int taylor(int degree, const double *t, const double *q, double *V, double *V_q,
-                  double *V_qq, void *user)
+/* Evaluate V = -1/r along a curve, with V_x = x/r^3 and V_xy = -3 x y/r^5 (+ 1/r^3 on the
+ * diagonal). */
+static int kepler_taylor(int degree, const double *t, const double *q, double *V, double *V_q,
+                         double *V_qq, void *user)
 {
   double q_i[2][DVI_TAYLOR_MAX + 1], square[DVI_TAYLOR_MAX + 1], power[DVI_TAYLOR_MAX + 1],
       product[DVI_TAYLOR_MAX + 1];
@@ -88,11 +90,11 @@ static int taylor(int degree, const double *t, const double *q, double *V, doubl
     dvi_taylor_multiply(degree, q_i[i], power, product);
     dvi_taylor_put(degree, 2, product, 1.0, i, V_q);
   }
-  if (V_qq) curvature(degree, q_i, square, power, V_qq);
+  if (V_qq) kepler_series_hessian(degree, q_i, square, power, V_qq);
   return 0;
 }
 
-static int rotation(const double *q, double *xi, void *user)
+static int kepler_rotation(const double *q, double *xi, void *user)
 {
   (void)user;
   xi[0] = -q[1];
@@ -100,22 +102,23 @@ static int rotation(const double *q, double *xi, void *user)
   return 0;
 }
 
-/* The Laplace-Runge-Lenz vector p x (q x p) - q/|q| points to the pericentre and has length e. */
-static int laplace_x(double t, const double *q, const double *p, double *I, void *user)
+/* Compute the Laplace-Runge-Lenz vector p x (q x p) - q/|q|, which points to the pericentre and has
+ * length e. */
+static int kepler_laplace_x(double t, const double *q, const double *p, double *I, void *user)
 {
   (void)t, (void)user;
   *I = p[1] * (q[0] * p[1] - q[1] * p[0]) - q[0] / hypot(q[0], q[1]);
   return 0;
 }
 
-static int laplace_y(double t, const double *q, const double *p, double *I, void *user)
+static int kepler_laplace_y(double t, const double *q, const double *p, double *I, void *user)
 {
   (void)t, (void)user;
   *I = -p[0] * (q[0] * p[1] - q[1] * p[0]) - q[1] / hypot(q[0], q[1]);
   return 0;
 }
 
-/* E - sin E without cancellation. */
+/* Compute E - sin E without cancellation. */
 static double minus_sine(double E)
 {
   if (fabs(E) > 1.0) return E - sin(E);
@@ -127,8 +130,8 @@ static double minus_sine(double E)
   return sum;
 }
 
-/* The mean anomaly t mod 2 pi, in [-pi, pi]. 2 pi is subtracted in two parts, the first one
- * exactly: t may be millions of periods. */
+/* Return the mean anomaly t mod 2 pi, in [-pi, pi]. 2 pi is subtracted in two parts, the first one
+ * exactly, because t may be millions of periods. */
 static double mean_anomaly(double t)
 {
   const double period = 6.2831853071795865, period_rest = 2.4492935982947064e-16;
@@ -136,9 +139,9 @@ static double mean_anomaly(double t)
   return fma(-turns, period, t) - turns * period_rest;
 }
 
-/* Kepler's equation E - e sin E = M. On [0, pi] the left side rises and is convex, so Newton's
- * method comes down to the root from any point to the right of it, such as M + e or pi; it has
- * arrived when it no longer comes down. */
+/* Solve Kepler's equation E - e sin E = M. On [0, pi] the left side rises and is convex, so that
+ * Newton's method comes down to the root from any point to the right of it, such as M + e or pi.
+ * The iteration ends when it no longer comes down. */
 static double eccentric_anomaly(double e, double M)
 {
   const double target = fabs(M);
@@ -151,7 +154,7 @@ static double eccentric_anomaly(double e, double M)
   return copysign(E, M);
 }
 
-static int exact(const problem *made, double t, double *q, double *p)
+static int kepler_exact(const problem *made, double t, double *q, double *p)
 {
   const double e = *(const double *)made->parameters;
   if (!isfinite(t)) return -1;
@@ -165,7 +168,7 @@ static int exact(const problem *made, double t, double *q, double *p)
   return 0;
 }
 
-static dvi_status make(const double *setting, problem *made)
+static dvi_status kepler_make(const double *setting, problem *made)
 {
   const dvi_status status = problem_room(made, 2, sizeof(double));
   if (status != DVI_OK) return status;
@@ -178,13 +181,13 @@ static dvi_status make(const double *setting, problem *made)
   made->v[1] = sqrt((1.0 + *e) / (1.0 - *e));
 
   const dvi_potential gravity = {.name = "gravity",
-                                 .value_batch = value,
-                                 .gradient_batch = gradient,
-                                 .hessian_batch = hessian,
-                                 .taylor = taylor};
-  const dvi_symmetry symmetry = {.name = "angular_momentum", .generator = rotation};
-  const dvi_invariant laplace[2] = {{.name = "laplace_x", .value = laplace_x},
-                                    {.name = "laplace_y", .value = laplace_y}};
+                                 .value_batch = kepler_potential,
+                                 .gradient_batch = kepler_gradient,
+                                 .hessian_batch = kepler_hessian,
+                                 .taylor = kepler_taylor};
+  const dvi_symmetry symmetry = {.name = "angular_momentum", .generator = kepler_rotation};
+  const dvi_invariant laplace[2] = {{.name = "laplace_x", .value = kepler_laplace_x},
+                                    {.name = "laplace_y", .value = kepler_laplace_y}};
   const dvi_system_terms terms = {.dimension = 2,
                                   .mass = {.scalar = 1.0},
                                   .potentials = &gravity,
@@ -215,8 +218,8 @@ const problem_entry problem_entry_kepler = {
     .name = "kepler",
     .summary = "two bodies in a plane, period 2 pi, eccentricity e; exact solution known",
     .parameters = parameters,
-    .make = make,
-    .exact = exact,
+    .make = kepler_make,
+    .exact = kepler_exact,
     .h = 0.05,
     .t_end = 100.0,
     .order_h = 0.02,

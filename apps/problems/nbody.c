@@ -12,7 +12,7 @@ typedef struct motion {
   int axis;
 } motion;
 
-/* What the callbacks and generators point to. */
+/* The state of the callbacks and generators. */
 typedef struct gravity {
   nbody bodies;
   double masses[3 * NBODY_MAX];
@@ -22,8 +22,8 @@ typedef struct gravity {
 /* The kernels below take the dimension as a constant at each of their callers, so that the loops
  * over the axes are unrolled and the loop over the points is the one that is vectorised. */
 
-static inline int value(const int dimension, int count, const double *q, double *V,
-                        const nbody *own)
+static inline int nbody_potential(const int dimension, int count, const double *q, double *V,
+                                  const nbody *own)
 {
   for (int k = 0; k < count; k++) V[k] = 0.0;
   for (int a = 0; a < own->bodies; a++)
@@ -43,8 +43,8 @@ static inline int value(const int dimension, int count, const double *q, double 
   return 0;
 }
 
-/* Squared distances of all pairs at `lanes` points, [pairs*lanes]; rows of q are `stride` apart.
- * Returns their number. */
+/* Compute the squared distances of all pairs at `lanes` points, [pairs*lanes]. Rows of q are
+ * `stride` apart. Returns the number of squares. */
 PROBLEM_INLINE int squared_distances(const int dimension, const int lanes, int stride,
                                      const double *restrict q, const nbody *own,
                                      double *restrict r2)
@@ -64,10 +64,10 @@ PROBLEM_INLINE int squared_distances(const int dimension, const int lanes, int s
   return at;
 }
 
-/* The pulls of all pairs, added to one gradient row and subtracted from the other. */
-PROBLEM_INLINE void pull(const int dimension, const int lanes, int stride, const double *restrict q,
-                         const nbody *own, const double *restrict inverse_cube,
-                         double *restrict V_q)
+/* Add the pulls of all pairs to one gradient row, and subtract them from the other. */
+PROBLEM_INLINE void nbody_pull(const int dimension, const int lanes, int stride,
+                               const double *restrict q, const nbody *own,
+                               const double *restrict inverse_cube, double *restrict V_q)
 {
   const int row = dimension * stride;
   for (int a = 0; a < own->bodies; a++)
@@ -83,47 +83,47 @@ PROBLEM_INLINE void pull(const int dimension, const int lanes, int stride, const
     }
 }
 
-PROBLEM_INLINE void gradient_at(const int dimension, const int lanes, int stride, const double *q,
-                                double *V_q, const nbody *own)
+PROBLEM_INLINE void nbody_gradient_at(const int dimension, const int lanes, int stride,
+                                      const double *q, double *V_q, const nbody *own)
 {
   double r[NBODY_PAIRS_MAX * 8 + PROBLEM_TILE];
   const int tile = lanes == 1 ? PROBLEM_TILE / 2 : PROBLEM_TILE; /* six bodies have 15 pairs */
   const int numbers = squared_distances(dimension, lanes, stride, q, own, r);
   for (int k = numbers; k < numbers + tile; k++) r[k] = 1.0; /* the last tile is computed in full */
   for (int k = 0; k < numbers; k += tile) problem_inverse_cubes(tile, r + k);
-  pull(dimension, lanes, stride, q, own, r, V_q);
+  nbody_pull(dimension, lanes, stride, q, own, r, V_q);
 }
 
-/* Fewer than eight points: the last one fills up. */
-PROBLEM_INLINE void gradient_of_few(const int dimension, int points, int stride, const double *q,
-                                    double *V_q, const nbody *own)
+/* Compute the gradients at fewer than eight points. The last point fills the others. */
+PROBLEM_INLINE void nbody_gradient_of_few(const int dimension, int points, int stride,
+                                          const double *q, double *V_q, const nbody *own)
 {
   double filled[24 * NBODY_MAX] = {0}, result[24 * NBODY_MAX] = {0};
   const int n = own->bodies * dimension;
   for (int i = 0; i < n; i++)
     for (int k = 0; k < 8; k++) filled[8 * i + k] = q[i * stride + (k < points ? k : points - 1)];
-  gradient_at(dimension, 8, 8, filled, result, own);
+  nbody_gradient_at(dimension, 8, 8, filled, result, own);
   for (int i = 0; i < n; i++)
     for (int k = 0; k < points; k++) V_q[i * stride + k] = result[8 * i + k];
 }
 
-/* Eight points at once: loops of known length need no preparation, which would cost more than their
- * work. One point alone has its pairs for that. */
-PROBLEM_INLINE int gradient(const int dimension, int count, const double *q, double *V_q,
-                            const nbody *own)
+/* Compute the gradients at eight points at once. Loops of known length need no preparation, which
+ * would cost more than their work. For a single point the pairs take the place of points. */
+PROBLEM_INLINE int nbody_gradient(const int dimension, int count, const double *q, double *V_q,
+                                  const nbody *own)
 {
   int k = 0;
   for (int j = 0; j < own->bodies * dimension * count; j++) V_q[j] = 0.0;
-  for (; k + 8 <= count; k += 8) gradient_at(dimension, 8, count, q + k, V_q + k, own);
-  if (count - k > 1) gradient_of_few(dimension, count - k, count, q + k, V_q + k, own);
-  if (count - k == 1) gradient_at(dimension, 1, count, q + k, V_q + k, own);
+  for (; k + 8 <= count; k += 8) nbody_gradient_at(dimension, 8, count, q + k, V_q + k, own);
+  if (count - k > 1) nbody_gradient_of_few(dimension, count - k, count, q + k, V_q + k, own);
+  if (count - k == 1) nbody_gradient_at(dimension, 1, count, q + k, V_q + k, own);
   return 0;
 }
 
-/* The block weight (1/r^3 - 3 d d^T/r^5) of a pair: added to both diagonal blocks, subtracted off
- * the diagonal. */
-static inline int hessian(const int dimension, int count, const double *q, double *V_qq,
-                          const nbody *own)
+/* Evaluate the Hessian. The block weight (1/r^3 - 3 d d^T/r^5) of a pair is added to both diagonal
+ * blocks, and subtracted off the diagonal. */
+static inline int nbody_hessian(const int dimension, int count, const double *q, double *V_qq,
+                                const nbody *own)
 {
   const int n = own->bodies * dimension;
   for (int j = 0; j < n * n * count; j++) V_qq[j] = 0.0;
@@ -158,24 +158,24 @@ static inline int hessian(const int dimension, int count, const double *q, doubl
   static int value_##dimension(int count, const double *t, const double *q, double *V, void *user) \
   {                                                                                                \
     (void)t;                                                                                       \
-    return value(dimension, count, q, V, user);                                                    \
+    return nbody_potential(dimension, count, q, V, user);                                          \
   }                                                                                                \
   PROBLEM_LANES static int gradient_##dimension(int count, const double *t, const double *q,       \
                                                 double *V_q, void *user)                           \
   {                                                                                                \
     (void)t;                                                                                       \
-    return gradient(dimension, count, q, V_q, user);                                               \
+    return nbody_gradient(dimension, count, q, V_q, user);                                         \
   }                                                                                                \
   static int hessian_##dimension(int count, const double *t, const double *q, double *V_qq,        \
                                  void *user)                                                       \
   {                                                                                                \
     (void)t;                                                                                       \
-    return hessian(dimension, count, q, V_qq, user);                                               \
+    return nbody_hessian(dimension, count, q, V_qq, user);                                         \
   }
 CALLBACKS(2)
 CALLBACKS(3)
 
-static int translation(const double *q, double *xi, void *user)
+static int nbody_translation(const double *q, double *xi, void *user)
 {
   const motion *own = user;
   (void)q;
@@ -184,8 +184,8 @@ static int translation(const double *q, double *xi, void *user)
   return 0;
 }
 
-/* xi = e_axis x x for each body; in the plane the axis is the third. */
-static int rotation(const double *q, double *xi, void *user)
+/* Compute xi = e_axis x x for each body. In the plane the axis is the third one. */
+static int nbody_rotation(const double *q, double *xi, void *user)
 {
   const motion *own = user;
   const int dimension = own->bodies->dimension, first = (own->axis + 1) % 3,
@@ -198,7 +198,7 @@ static int rotation(const double *q, double *xi, void *user)
   return 0;
 }
 
-static int make_symmetries(gravity *own, dvi_symmetry *symmetries)
+static int nbody_make_symmetries(gravity *own, dvi_symmetry *symmetries)
 {
   static const char *const momentum[3] = {"momentum_x", "momentum_y", "momentum_z"};
   static const char *const angular[3] = {"angular_momentum_x", "angular_momentum_y",
@@ -206,18 +206,21 @@ static int make_symmetries(gravity *own, dvi_symmetry *symmetries)
   const int planar = own->bodies.dimension == 2;
   int count = 0;
   for (int axis = 0; axis < own->bodies.dimension; axis++, count++)
-    symmetries[count] = (dvi_symmetry){.name = momentum[axis], .generator = translation};
+    symmetries[count] = (dvi_symmetry){.name = momentum[axis], .generator = nbody_translation};
   for (int axis = planar ? 2 : 0; axis < 3; axis++, count++)
     symmetries[count] = (dvi_symmetry){.name = planar ? "angular_momentum" : angular[axis],
-                                       .generator = rotation};
+                                       .generator = nbody_rotation};
   for (int i = 0; i < count; i++) {
-    own->motions[i] = (motion){&own->bodies, i < own->bodies.dimension ? i : planar ? 2 : i - 3};
+    own->motions[i] = (motion){.bodies = &own->bodies,
+                               .axis = i < own->bodies.dimension ? i
+                                       : planar                  ? 2
+                                                                 : i - 3};
     symmetries[i].user = &own->motions[i];
   }
   return count;
 }
 
-static dvi_status make_system(gravity *own, problem *made)
+static dvi_status nbody_make_system(gravity *own, problem *made)
 {
   const int planar = own->bodies.dimension == 2;
   const dvi_potential attraction = {.name = "gravity",
@@ -226,7 +229,7 @@ static dvi_status make_system(gravity *own, problem *made)
                                     .hessian_batch = planar ? hessian_2 : hessian_3,
                                     .user = &own->bodies};
   dvi_symmetry symmetries[SYMMETRIES_MAX];
-  const int symmetry_count = make_symmetries(own, symmetries);
+  const int symmetry_count = nbody_make_symmetries(own, symmetries);
   const dvi_system_terms terms = {.dimension = made->nq,
                                   .mass = {.diagonal = own->masses},
                                   .potentials = &attraction,
@@ -253,5 +256,5 @@ dvi_status nbody_make(const nbody *bodies, problem *made)
       made->v[j] = bodies->velocity[a][i];
       own->masses[j] = bodies->mass[a];
     }
-  return make_system(own, made);
+  return nbody_make_system(own, made);
 }

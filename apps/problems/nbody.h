@@ -9,7 +9,7 @@
 
 /* Masses and start. q holds body after body. */
 typedef struct nbody {
-  int bodies;    /* up to NBODY_MAX */
+  int bodies;    /* at most NBODY_MAX */
   int dimension; /* 2 or 3 */
   double G;
   double mass[NBODY_MAX];

@@ -4,7 +4,7 @@
 
 #include "entry.h"
 
-static int value(double t, const double *q, double *V, void *user)
+static int oscillator_potential(double t, const double *q, double *V, void *user)
 {
   const double k = *(const double *)user;
   (void)t;
@@ -12,7 +12,7 @@ static int value(double t, const double *q, double *V, void *user)
   return 0;
 }
 
-static int gradient(double t, const double *q, double *V_q, void *user)
+static int oscillator_gradient(double t, const double *q, double *V_q, void *user)
 {
   const double k = *(const double *)user;
   (void)t;
@@ -20,24 +20,24 @@ static int gradient(double t, const double *q, double *V_q, void *user)
   return 0;
 }
 
-static int hessian(double t, const double *q, double *V_qq, void *user)
+static int oscillator_hessian(double t, const double *q, double *V_qq, void *user)
 {
   (void)t, (void)q;
   V_qq[0] = *(const double *)user;
   return 0;
 }
 
-/* V = k q^2/2 along a curve. */
-static int taylor(int degree, const double *t, const double *q, double *V, double *V_q,
-                  double *V_qq, void *user)
+/* Evaluate V = k q^2/2 along a curve. */
+static int oscillator_taylor(int degree, const double *t, const double *q, double *V, double *V_q,
+                             double *V_qq, void *user)
 {
   (void)t;
   problem_spring_taylor(*(const double *)user, degree, q, V, V_q, V_qq);
   return 0;
 }
 
-/* q = q0 cos(w t), p = -w q0 sin(w t), w^2 = k. */
-static int exact(const problem *made, double t, double *q, double *p)
+/* Compute q = q0 cos(w t), p = -w q0 sin(w t), w^2 = k. */
+static int oscillator_exact(const problem *made, double t, double *q, double *p)
 {
   const double k = *(const double *)made->parameters;
   double c, s;
@@ -47,7 +47,7 @@ static int exact(const problem *made, double t, double *q, double *p)
   return 0;
 }
 
-static dvi_status make(const double *setting, problem *made)
+static dvi_status oscillator_make(const double *setting, problem *made)
 {
   const dvi_status status = problem_room(made, 1, sizeof(double));
   if (status != DVI_OK) return status;
@@ -57,11 +57,11 @@ static dvi_status make(const double *setting, problem *made)
   made->q[0] = 0.5;
 
   const dvi_potential spring = {.name = "spring",
-                                .value = value,
-                                .gradient = gradient,
-                                .hessian = hessian,
+                                .value = oscillator_potential,
+                                .gradient = oscillator_gradient,
+                                .hessian = oscillator_hessian,
                                 .user = k,
-                                .taylor = taylor};
+                                .taylor = oscillator_taylor};
   const dvi_system_terms terms = {.dimension = 1,
                                   .mass = {.scalar = 1.0},
                                   .potentials = &spring,
@@ -87,8 +87,8 @@ const problem_entry problem_entry_oscillator = {
     .name = "oscillator",
     .summary = "a harmonic oscillator; exact solution known",
     .parameters = parameters,
-    .make = make,
-    .exact = exact,
+    .make = oscillator_make,
+    .exact = oscillator_exact,
     .h = 0.1,
     .t_end = 20.0,
     .order_h = 0.1,

@@ -1,12 +1,12 @@
-/* A stiff and a soft spring on one unit mass: slow potential q^2/2, fast potential omega^2 q^2/2.
- * Splitting methods meet their resonances here. */
+/* A stiff and a soft spring on one unit mass, with the slow potential q^2/2 and the fast potential
+ * omega^2 q^2/2. Splitting methods meet their resonances here. */
 #include <float.h>
 #include <math.h>
 
 #include "entry.h"
 
-/* Both potentials are stiffness q^2/2; `user` is the stiffness. */
-static int value(int count, const double *t, const double *q, double *V, void *user)
+/* Evaluate stiffness q^2/2, which is both potentials. `user` is the stiffness. */
+static int oscillators_potential(int count, const double *t, const double *q, double *V, void *user)
 {
   const double stiffness = *(const double *)user;
   (void)t;
@@ -14,7 +14,8 @@ static int value(int count, const double *t, const double *q, double *V, void *u
   return 0;
 }
 
-static int gradient(int count, const double *t, const double *q, double *V_q, void *user)
+static int oscillators_gradient(int count, const double *t, const double *q, double *V_q,
+                                void *user)
 {
   const double stiffness = *(const double *)user;
   (void)t;
@@ -22,7 +23,8 @@ static int gradient(int count, const double *t, const double *q, double *V_q, vo
   return 0;
 }
 
-static int hessian(int count, const double *t, const double *q, double *V_qq, void *user)
+static int oscillators_hessian(int count, const double *t, const double *q, double *V_qq,
+                               void *user)
 {
   const double stiffness = *(const double *)user;
   (void)t, (void)q;
@@ -30,9 +32,9 @@ static int hessian(int count, const double *t, const double *q, double *V_qq, vo
   return 0;
 }
 
-/* The same along a curve. */
-static int taylor(int degree, const double *t, const double *q, double *V, double *V_q,
-                  double *V_qq, void *user)
+/* Evaluate stiffness q^2/2 along a curve. */
+static int oscillators_taylor(int degree, const double *t, const double *q, double *V, double *V_q,
+                              double *V_qq, void *user)
 {
   (void)t;
   problem_spring_taylor(*(const double *)user, degree, q, V, V_q, V_qq);
@@ -43,8 +45,8 @@ typedef struct stiffnesses {
   double slow, fast;
 } stiffnesses;
 
-/* q = q0 cos(w t), p = -w q0 sin(w t), w^2 = 1 + omega^2. */
-static int exact(const problem *made, double t, double *q, double *p)
+/* Compute q = q0 cos(w t), p = -w q0 sin(w t), w^2 = 1 + omega^2. */
+static int oscillators_exact(const problem *made, double t, double *q, double *p)
 {
   const stiffnesses *own = made->parameters;
   const double square = own->slow + own->fast;
@@ -55,7 +57,7 @@ static int exact(const problem *made, double t, double *q, double *p)
   return 0;
 }
 
-static dvi_status make(const double *setting, problem *made)
+static dvi_status oscillators_make(const double *setting, problem *made)
 {
   const dvi_status status = problem_room(made, 1, sizeof(stiffnesses));
   if (status != DVI_OK) return status;
@@ -67,19 +69,19 @@ static dvi_status make(const double *setting, problem *made)
 
   dvi_potential springs[2] = {
       {.name = "slow",
-       .value_batch = value,
-       .gradient_batch = gradient,
-       .hessian_batch = hessian,
+       .value_batch = oscillators_potential,
+       .gradient_batch = oscillators_gradient,
+       .hessian_batch = oscillators_hessian,
        .user = &own->slow,
-       .taylor = taylor},
+       .taylor = oscillators_taylor},
       {.name = "fast",
-       .value_batch = value,
-       .gradient_batch = gradient,
-       .hessian_batch = hessian,
+       .value_batch = oscillators_potential,
+       .gradient_batch = oscillators_gradient,
+       .hessian_batch = oscillators_hessian,
        .user = &own->fast,
        .fast = 1,
        .quadratic = 1,
-       .taylor = taylor},
+       .taylor = oscillators_taylor},
   };
   const dvi_system_terms terms = {.dimension = 1,
                                   .mass = {.scalar = 1.0},
@@ -107,8 +109,8 @@ const problem_entry problem_entry_oscillators = {
     .summary =
         "a stiff and a soft spring on one mass, declared as two potentials; exact solution known",
     .parameters = parameters,
-    .make = make,
-    .exact = exact,
+    .make = oscillators_make,
+    .exact = oscillators_exact,
     .h = 0.002,
     .t_end = 10.0,
     .order_h = 0.001,

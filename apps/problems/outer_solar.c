@@ -1,6 +1,6 @@
-/* The outer solar system: the Sun (with the inner planets' mass) and five bodies; lengths in AU,
- * times in days, masses in suns. The start is that of September 5, 1994 (Hairer, Lubich and Wanner
- * 2006, sec. I.2.4). */
+/* The outer solar system with the Sun (and the inner planets' mass) and five bodies. Lengths are in
+ * AU, times in days, masses in suns. The start is that of September 5, 1994 (Hairer, Lubich and
+ * Wanner 2006, sec. I.2.4). */
 #include "entry.h"
 #include "nbody.h"
 
@@ -25,7 +25,7 @@ static const nbody bodies = {
                  {0.0, 0.0, 0.0}},
 };
 
-static dvi_status make(const double *setting, problem *made)
+static dvi_status outer_solar_make(const double *setting, problem *made)
 {
   (void)setting;
   return nbody_make(&bodies, made);
@@ -58,7 +58,7 @@ static const double far_q[] = {
 const problem_entry problem_entry_outer_solar = {
     .name = "outer-solar",
     .summary = "the Sun, Jupiter, Saturn, Uranus, Neptune and Pluto; AU and days",
-    .make = make,
+    .make = outer_solar_make,
     .h = 100.0,
     .t_end = 500000.0,
     .order_h = 100.0,

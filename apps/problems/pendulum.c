@@ -1,4 +1,4 @@
-/* A pendulum in a plane, L = v^2/2 - cos q: the angle is measured from the top, so that a start
+/* A pendulum in a plane, L = v^2/2 - cos q. The angle is measured from the top, so that a start
  * near q = 0 stays near the separatrix. */
 #include <dvi/taylor.h>
 #include <float.h>
@@ -6,30 +6,30 @@
 
 #include "entry.h"
 
-static int value(int count, const double *t, const double *q, double *V, void *user)
+static int pendulum_potential(int count, const double *t, const double *q, double *V, void *user)
 {
   (void)t, (void)user;
   for (int k = 0; k < count; k++) V[k] = cos(q[k]);
   return 0;
 }
 
-static int gradient(int count, const double *t, const double *q, double *V_q, void *user)
+static int pendulum_gradient(int count, const double *t, const double *q, double *V_q, void *user)
 {
   (void)t, (void)user;
   for (int k = 0; k < count; k++) V_q[k] = -sin(q[k]);
   return 0;
 }
 
-static int hessian(int count, const double *t, const double *q, double *V_qq, void *user)
+static int pendulum_hessian(int count, const double *t, const double *q, double *V_qq, void *user)
 {
   (void)t, (void)user;
   for (int k = 0; k < count; k++) V_qq[k] = -cos(q[k]);
   return 0;
 }
 
-/* V = cos q along a curve. */
-static int taylor(int degree, const double *t, const double *q, double *V, double *V_q,
-                  double *V_qq, void *user)
+/* Evaluate V = cos q along a curve. */
+static int pendulum_taylor(int degree, const double *t, const double *q, double *V, double *V_q,
+                           double *V_qq, void *user)
 {
   double sine[DVI_TAYLOR_MAX + 1], cosine[DVI_TAYLOR_MAX + 1];
   (void)t, (void)user;
@@ -40,7 +40,7 @@ static int taylor(int degree, const double *t, const double *q, double *V, doubl
   return 0;
 }
 
-static dvi_status make(const double *setting, problem *made)
+static dvi_status pendulum_make(const double *setting, problem *made)
 {
   const dvi_status status = problem_room(made, 1, 1);
   if (status != DVI_OK) return status;
@@ -48,10 +48,10 @@ static dvi_status make(const double *setting, problem *made)
   made->q[0] = setting[0];
 
   const dvi_potential gravity = {.name = "gravity",
-                                 .value_batch = value,
-                                 .gradient_batch = gradient,
-                                 .hessian_batch = hessian,
-                                 .taylor = taylor};
+                                 .value_batch = pendulum_potential,
+                                 .gradient_batch = pendulum_gradient,
+                                 .hessian_batch = pendulum_hessian,
+                                 .taylor = pendulum_taylor};
   const dvi_system_terms terms = {.dimension = 1,
                                   .mass = {.scalar = 1.0},
                                   .potentials = &gravity,
@@ -78,7 +78,7 @@ const problem_entry problem_entry_pendulum = {
     .name = "pendulum",
     .summary = "a plane pendulum, angle from the top",
     .parameters = parameters,
-    .make = make,
+    .make = pendulum_make,
     .h = 0.1,
     .t_end = 20.0,
     .order_h = 0.1,

@@ -1,4 +1,4 @@
-/* The table of problems: finding one, reading its settings, making it. */
+/* The table of problems, which finds a problem, reads its settings, and creates it. */
 #include <dvi/number.h>
 #include <dvi/taylor.h>
 #include <float.h>
@@ -11,7 +11,7 @@
 
 #include "entry.h"
 
-/* Room for the names of all parameters of a problem. */
+/* Memory for the names of all parameters of a problem. */
 enum { NAMES_SIZE = 1024 };
 
 #define PROBLEM_ENTRY(name) &problem_entry_##name,
@@ -22,7 +22,7 @@ static const problem_entry *const table[] = {
 
 static const problem_parameter no_parameters[1];
 
-/* Where a refusal is written. */
+/* The destination of a refusal. */
 typedef struct report {
   char *message;
   size_t size;
@@ -33,7 +33,7 @@ int problem_count(void)
   return (int)(sizeof table / sizeof *table);
 }
 
-static const problem_entry *entry_of(int i)
+static const problem_entry *entry_at(int i)
 {
   return i >= 0 && i < problem_count() ? table[i] : NULL;
 }
@@ -45,19 +45,19 @@ static const problem_parameter *parameters_of(const problem_entry *entry)
 
 const char *problem_name(int i)
 {
-  const problem_entry *entry = entry_of(i);
+  const problem_entry *entry = entry_at(i);
   return entry ? entry->name : NULL;
 }
 
 const char *problem_summary(int i)
 {
-  const problem_entry *entry = entry_of(i);
+  const problem_entry *entry = entry_at(i);
   return entry ? entry->summary : NULL;
 }
 
 const problem_parameter *problem_parameters(int i)
 {
-  const problem_entry *entry = entry_of(i);
+  const problem_entry *entry = entry_at(i);
   return entry ? parameters_of(entry) : NULL;
 }
 
@@ -72,7 +72,7 @@ int problem_find(const char *name)
 __attribute__((format(printf, 3, 4)))
 #endif
 static dvi_status
-refuse(const report *r, dvi_status status, const char *format, ...)
+refuse_problem(const report *r, dvi_status status, const char *format, ...)
 {
   va_list arguments;
   va_start(arguments, format);
@@ -82,15 +82,15 @@ refuse(const report *r, dvi_status status, const char *format, ...)
 }
 
 /* Refuse a parameter's name, and list those that there are. */
-static dvi_status refuse_name(const report *r, const problem_entry *entry, const char *setting,
-                              size_t length)
+static dvi_status refuse_parameter_name(const report *r, const problem_entry *entry,
+                                        const char *setting, size_t length)
 {
   char names[NAMES_SIZE] = "none";
   size_t used = 0;
   for (const problem_parameter *p = parameters_of(entry); p->name && used < sizeof names; p++)
     used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", p->name);
-  return refuse(r, DVI_BAD_OPTION, "%s has no parameter '%.*s'; it has: %s", entry->name,
-                (int)length, setting, names);
+  return refuse_problem(r, DVI_BAD_OPTION, "%s has no parameter '%.*s'; it has: %s", entry->name,
+                        (int)length, setting, names);
 }
 
 void problem_spell(const problem_parameter *parameter, double x, char *text, size_t size)
@@ -100,60 +100,63 @@ void problem_spell(const problem_parameter *parameter, double x, char *text, siz
   (void)snprintf(text, size, "%s", parameter->choice ? parameter->choice[(int)x] : number);
 }
 
-/* Refuse a number outside of a parameter's range, and say where that ends. */
-static dvi_status refuse_value(const report *r, const problem_entry *entry, const char *setting,
-                               const problem_parameter *parameter, double x)
+/* Refuse a number outside of a parameter's range, and name the limit. */
+static dvi_status refuse_parameter_value(const report *r, const problem_entry *entry,
+                                         const char *setting, const problem_parameter *parameter,
+                                         double x)
 {
   char limit[32];
   problem_spell(parameter, x < parameter->least ? parameter->least : parameter->most, limit,
                 sizeof limit);
-  return refuse(r, DVI_BAD_OPTION, "%s: %s is %s %s, the %s that is taken; %s is %s", entry->name,
-                setting, x < parameter->least ? "below" : "above", limit,
-                x < parameter->least ? "least" : "most", parameter->name, parameter->help);
+  return refuse_problem(r, DVI_BAD_OPTION, "%s: %s is %s %s, the %s that is taken; %s is %s",
+                        entry->name, setting, x < parameter->least ? "below" : "above", limit,
+                        x < parameter->least ? "least" : "most", parameter->name, parameter->help);
 }
 
-static dvi_status read_choice(const report *r, const problem_entry *entry, const char *setting,
-                              const problem_parameter *parameter, const char *name, double *value)
+static dvi_status problem_read_choice(const report *r, const problem_entry *entry,
+                                      const char *setting, const problem_parameter *parameter,
+                                      const char *name, double *value)
 {
   for (int k = 0; parameter->choice[k]; k++)
     if (strcmp(parameter->choice[k], name) == 0) {
       *value = k;
       return DVI_OK;
     }
-  return refuse(r, DVI_BAD_OPTION, "%s: %s is no choice; %s is %s", entry->name, setting,
-                parameter->name, parameter->help);
+  return refuse_problem(r, DVI_BAD_OPTION, "%s: %s is no choice; %s is %s", entry->name, setting,
+                        parameter->name, parameter->help);
 }
 
-/* Read one "name=value"; given: which parameters were read before. */
-static dvi_status read_setting(const report *r, const problem_entry *entry, const char *setting,
-                               double *value, int *given)
+/* Read one "name=value". `given` marks the parameters that were read before. */
+static dvi_status problem_read_setting(const report *r, const problem_entry *entry,
+                                       const char *setting, double *value, int *given)
 {
   const char *equals = setting ? strchr(setting, '=') : NULL;
   if (!equals)
-    return refuse(r, DVI_BAD_OPTION, "%s: the setting '%s' is not of the form name=value",
-                  entry->name, setting ? setting : "");
+    return refuse_problem(r, DVI_BAD_OPTION, "%s: the setting '%s' is not of the form name=value",
+                          entry->name, setting ? setting : "");
   const size_t length = (size_t)(equals - setting);
   const problem_parameter *parameters = parameters_of(entry);
   int i = 0;
   while (parameters[i].name &&
          (strncmp(parameters[i].name, setting, length) != 0 || parameters[i].name[length]))
     i++;
-  if (!parameters[i].name) return refuse_name(r, entry, setting, length);
+  if (!parameters[i].name) return refuse_parameter_name(r, entry, setting, length);
   if (given[i])
-    return refuse(r, DVI_BAD_OPTION, "%s: %s is set twice", entry->name, parameters[i].name);
+    return refuse_problem(r, DVI_BAD_OPTION, "%s: %s is set twice", entry->name,
+                          parameters[i].name);
   given[i] = 1;
 
   if (parameters[i].choice)
-    return read_choice(r, entry, setting, &parameters[i], equals + 1, value + i);
+    return problem_read_choice(r, entry, setting, &parameters[i], equals + 1, value + i);
   double x = 0;
   const char *end = dvi_number_read(equals + 1, &x);
   const int number = end != equals + 1 && *end == '\0' && isfinite(x);
   if (!number || (parameters[i].whole && floor(x) != x))
-    return refuse(r, DVI_BAD_OPTION, "%s: %s is no %s; %s is %s", entry->name, setting,
-                  parameters[i].whole ? "whole number" : "finite number", parameters[i].name,
-                  parameters[i].help);
+    return refuse_problem(r, DVI_BAD_OPTION, "%s: %s is no %s; %s is %s", entry->name, setting,
+                          parameters[i].whole ? "whole number" : "finite number",
+                          parameters[i].name, parameters[i].help);
   if (x < parameters[i].least || x > parameters[i].most)
-    return refuse_value(r, entry, setting, &parameters[i], x);
+    return refuse_parameter_value(r, entry, setting, &parameters[i], x);
   value[i] = x;
   return DVI_OK;
 }
@@ -166,8 +169,8 @@ static int all_default(const problem_entry *entry, const double *value)
   return 1;
 }
 
-static dvi_status make(const report *r, const problem_entry *entry, const double *value,
-                       problem *made)
+static dvi_status make_entry(const report *r, const problem_entry *entry, const double *value,
+                             problem *made)
 {
   made->name = entry->name;
   made->summary = entry->summary;
@@ -191,35 +194,37 @@ static dvi_status make(const report *r, const problem_entry *entry, const double
     status = dvi_system_momentum(made->system, 0.0, made->q, made->v, made->p);
   if (status == DVI_OK) return DVI_OK;
   const char *reason = status == DVI_NO_MEMORY ? dvi_status_meaning(status) : dvi_last_error();
-  /* each parameter is in its range, but not together: the triangle inequality of inertias */
+  /* each parameter is in its range, but not all together, as in the triangle inequality of
+   * inertias */
   if (status == DVI_BAD_ARGUMENT)
-    return refuse(r, DVI_BAD_OPTION, "%s with these parameters: %s", entry->name, reason);
-  return refuse(r, status, "%s: %s", entry->name, reason);
+    return refuse_problem(r, DVI_BAD_OPTION, "%s with these parameters: %s", entry->name, reason);
+  return refuse_problem(r, status, "%s: %s", entry->name, reason);
 }
 
 dvi_status problem_create(const char *name, int setting_count, const char *const *settings,
                           problem **out, char *message, size_t size)
 {
   const report r = {message, size};
-  if (!out) return refuse(&r, DVI_BAD_ARGUMENT, "there is no place for the problem");
+  if (!out) return refuse_problem(&r, DVI_BAD_ARGUMENT, "there is no place for the problem");
   *out = NULL;
-  const problem_entry *entry = entry_of(problem_find(name));
+  const problem_entry *entry = entry_at(problem_find(name));
   if (!entry)
-    return refuse(&r, DVI_BAD_OPTION, "there is no problem '%s'; see dvi list problems",
-                  name ? name : "");
+    return refuse_problem(&r, DVI_BAD_OPTION, "there is no problem '%s'; see dvi list problems",
+                          name ? name : "");
 
   double value[PROBLEM_PARAMETERS_MAX] = {0.0};
   int given[PROBLEM_PARAMETERS_MAX] = {0};
   for (int i = 0; parameters_of(entry)[i].name; i++) value[i] = parameters_of(entry)[i].value;
   for (int i = 0; i < setting_count; i++) {
-    const dvi_status status = read_setting(&r, entry, settings[i], value, given);
+    const dvi_status status = problem_read_setting(&r, entry, settings[i], value, given);
     if (status != DVI_OK) return status;
   }
 
   problem *made = calloc(1, sizeof *made);
   if (!made)
-    return refuse(&r, DVI_NO_MEMORY, "%s: %s", entry->name, dvi_status_meaning(DVI_NO_MEMORY));
-  const dvi_status status = make(&r, entry, value, made);
+    return refuse_problem(&r, DVI_NO_MEMORY, "%s: %s", entry->name,
+                          dvi_status_meaning(DVI_NO_MEMORY));
+  const dvi_status status = make_entry(&r, entry, value, made);
   if (status == DVI_OK)
     *out = made;
   else
@@ -227,8 +232,8 @@ dvi_status problem_create(const char *name, int setting_count, const char *const
   return status;
 }
 
-/* A block starts with the address of the next one; the union keeps what follows aligned for every
- * type. */
+/* A block of memory. It starts with the address of the next one, and the union aligns the memory
+ * after it for every type. */
 typedef union block {
   union block *next;
   max_align_t alignment;

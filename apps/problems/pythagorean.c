@@ -1,6 +1,6 @@
-/* Burrau's problem: masses 3, 4 and 5 at rest in the corners of a right triangle, each opposite to
- * the side of its length. Close encounters, the closest of 4.14e-4 at t = 15.8299, until one body
- * leaves for good. */
+/* Burrau's problem of masses 3, 4 and 5 at rest in the corners of a right triangle, each opposite
+ * to the side of its length. Close encounters follow, the closest of 4.14e-4 at t = 15.8299, until
+ * one body leaves for good. */
 #include "entry.h"
 #include "nbody.h"
 
@@ -13,7 +13,7 @@ static const nbody bodies = {
     .position = {{1.0, 3.0}, {-2.0, -1.0}, {1.0, -1.0}},
 };
 
-static dvi_status make(const double *setting, problem *made)
+static dvi_status pythagorean_make(const double *setting, problem *made)
 {
   (void)setting;
   return nbody_make(&bodies, made);
@@ -32,7 +32,7 @@ static const double digits_p[] = {
 const problem_entry problem_entry_pythagorean = {
     .name = "pythagorean",
     .summary = "masses 3, 4, 5 from rest; close encounters, then one body leaves",
-    .make = make,
+    .make = pythagorean_make,
     .h = 0.001,
     .t_end = 10.0,
     .order_h = 0.01,

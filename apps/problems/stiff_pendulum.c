@@ -1,4 +1,4 @@
-/* A mass on a stiff spring that swings in a plane: a is the spring's extension, th the angle from
+/* A mass on a stiff spring that swings in a plane. a is the spring's extension, th the angle from
  * straight down.
  *
  *     L = m/2 (a'^2 + (l+a)^2 th'^2) + m g (l+a) cos th - k a^2/2
@@ -12,7 +12,8 @@ typedef struct coefficients {
   double k, l, m, g;
 } coefficients;
 
-static int value(double t, const double *q, const double *v, double *L, void *user)
+static int stiff_pendulum_lagrangian(double t, const double *q, const double *v, double *L,
+                                     void *user)
 {
   const coefficients *own = user;
   const double length = own->l + q[0], swing = length * v[1];
@@ -22,8 +23,8 @@ static int value(double t, const double *q, const double *v, double *L, void *us
   return 0;
 }
 
-static int gradient(double t, const double *q, const double *v, double *L_q, double *L_v,
-                    void *user)
+static int stiff_pendulum_gradient(double t, const double *q, const double *v, double *L_q,
+                                   double *L_v, void *user)
 {
   const coefficients *own = user;
   const double length = own->l + q[0];
@@ -35,12 +36,12 @@ static int gradient(double t, const double *q, const double *v, double *L_q, dou
   return 0;
 }
 
-/* L_qq is full, L_qv has the entry (a, th') alone, L_vv is diagonal. */
+/* L_qq is full, L_qv has only the entry (a, th'), L_vv is diagonal. */
 static const int qv_start[] = {0, 0, 1}, qv_row[] = {0};
 static const int vv_start[] = {0, 1, 2}, vv_row[] = {0, 1};
 
-static int hessian(double t, const double *q, const double *v, double *L_qq, double *L_qv,
-                   double *L_vv, void *user)
+static int stiff_pendulum_hessian(double t, const double *q, const double *v, double *L_qq,
+                                  double *L_qv, double *L_vv, void *user)
 {
   const coefficients *own = user;
   const double length = own->l + q[0];
@@ -54,20 +55,20 @@ static int hessian(double t, const double *q, const double *v, double *L_qq, dou
   return 0;
 }
 
-static dvi_status make(const double *setting, problem *made)
+static dvi_status stiff_pendulum_make(const double *setting, problem *made)
 {
   const dvi_status status = problem_room(made, 2, sizeof(coefficients));
   if (status != DVI_OK) return status;
   coefficients *own = made->parameters;
-  *own = (coefficients){setting[0], setting[1], setting[2], setting[3]};
+  *own = (coefficients){.k = setting[0], .l = setting[1], .m = setting[2], .g = setting[3]};
   problem_label(made, 0, "a");
   problem_label(made, 1, "theta");
   made->q[0] = 0.05;
   made->q[1] = 1.0;
 
-  const dvi_lagrangian lagrangian = {.value = value,
-                                     .gradient = gradient,
-                                     .hessian = hessian,
+  const dvi_lagrangian lagrangian = {.value = stiff_pendulum_lagrangian,
+                                     .gradient = stiff_pendulum_gradient,
+                                     .hessian = stiff_pendulum_hessian,
                                      .qv = {qv_start, qv_row},
                                      .vv = {vv_start, vv_row},
                                      .user = own};
@@ -103,7 +104,7 @@ const problem_entry problem_entry_stiff_pendulum = {
     .name = "stiff-pendulum",
     .summary = "a mass on a stiff spring that swings; fast and slow motion, coupled",
     .parameters = parameters,
-    .make = make,
+    .make = stiff_pendulum_make,
     .h = 0.002,
     .t_end = 10.0,
     .order_h = 0.001,

@@ -1,9 +1,8 @@
-/* The terms of a problem's system: kept with the problem, and turned into their one-point
- * shapes. */
+/* The terms of a problem's system, which are kept with the problem, and their one-point shapes. */
 #include "entry.h"
 
-/* A copy that the problem owns; NULL for an empty array. */
-static void *keep(problem *made, const void *array, int count, size_t size, int *lost)
+/* Copy an array into the problem's memory. NULL for an empty array. */
+static void *keep_array(problem *made, const void *array, int count, size_t size, int *lost)
 {
   if (count == 0) return NULL;
   void *copy = problem_allocate(made, (size_t)count, size);
@@ -14,27 +13,29 @@ static void *keep(problem *made, const void *array, int count, size_t size, int 
   return copy;
 }
 
-/* The struct and the arrays of terms; what these point to is the problem's anyway. */
+/* Keep the struct and the arrays of terms. All that these point to belongs to the problem
+ * anyway. */
 static dvi_system_terms *keep_terms(problem *made, const dvi_system_terms *terms)
 {
   int lost = 0;
-  dvi_system_terms *kept = keep(made, terms, 1, sizeof *terms, &lost);
+  dvi_system_terms *kept = keep_array(made, terms, 1, sizeof *terms, &lost);
   if (!kept) return NULL;
-  kept->lagrangian = keep(made, terms->lagrangian, terms->lagrangian != NULL,
-                          sizeof *terms->lagrangian, &lost);
-  kept->one_form = keep(made, terms->one_form, terms->one_form != NULL, sizeof *terms->one_form,
-                        &lost);
-  kept->hamiltonian = keep(made, terms->hamiltonian, terms->hamiltonian != NULL,
-                           sizeof *terms->hamiltonian, &lost);
-  kept->constraint = keep(made, terms->constraint, terms->constraint != NULL,
-                          sizeof *terms->constraint, &lost);
-  kept->potentials = keep(made, terms->potentials, terms->potential_count,
-                          sizeof *terms->potentials, &lost);
-  kept->symmetries = keep(made, terms->symmetries, terms->symmetry_count, sizeof *terms->symmetries,
-                          &lost);
-  kept->factors = keep(made, terms->factors, terms->factor_count, sizeof *terms->factors, &lost);
-  kept->invariants = keep(made, terms->invariants, terms->invariant_count,
-                          sizeof *terms->invariants, &lost);
+  kept->lagrangian = keep_array(made, terms->lagrangian, terms->lagrangian != NULL,
+                                sizeof *terms->lagrangian, &lost);
+  kept->one_form = keep_array(made, terms->one_form, terms->one_form != NULL,
+                              sizeof *terms->one_form, &lost);
+  kept->hamiltonian = keep_array(made, terms->hamiltonian, terms->hamiltonian != NULL,
+                                 sizeof *terms->hamiltonian, &lost);
+  kept->constraint = keep_array(made, terms->constraint, terms->constraint != NULL,
+                                sizeof *terms->constraint, &lost);
+  kept->potentials = keep_array(made, terms->potentials, terms->potential_count,
+                                sizeof *terms->potentials, &lost);
+  kept->symmetries = keep_array(made, terms->symmetries, terms->symmetry_count,
+                                sizeof *terms->symmetries, &lost);
+  kept->factors = keep_array(made, terms->factors, terms->factor_count, sizeof *terms->factors,
+                             &lost);
+  kept->invariants = keep_array(made, terms->invariants, terms->invariant_count,
+                                sizeof *terms->invariants, &lost);
   return lost ? NULL : kept;
 }
 
@@ -44,83 +45,86 @@ dvi_status problem_system(problem *made, const dvi_system_terms *terms)
   return made->terms ? dvi_system_create(made->terms, &made->system) : DVI_NO_MEMORY;
 }
 
-/* One-point callbacks (and ranges, which are of one point anyway) whose `user` is the declared
- * term, and which hand it their point as a batch of one. */
+/* One-point callbacks, whose `user` is the declared term, and which hand it their point as a batch
+ * of one. Ranges are of one point anyway. */
 
-static int value(double t, const double *q, double *V, void *user)
+static int one_point_value(double t, const double *q, double *V, void *user)
 {
   const dvi_potential *own = user;
   return own->value_batch ? own->value_batch(1, &t, q, V, own->user)
                           : own->value(t, q, V, own->user);
 }
 
-static int gradient(double t, const double *q, double *V_q, void *user)
+static int one_point_gradient(double t, const double *q, double *V_q, void *user)
 {
   const dvi_potential *own = user;
   return own->gradient_batch ? own->gradient_batch(1, &t, q, V_q, own->user)
                              : own->gradient(t, q, V_q, own->user);
 }
 
-static int gradient_range(double t, const double *q, int first, int last, double *V_q, void *user)
+static int one_point_gradient_range(double t, const double *q, int first, int last, double *V_q,
+                                    void *user)
 {
   const dvi_potential *own = user;
   return own->gradient_range(t, q, first, last, V_q, own->user);
 }
 
-static int hessian(double t, const double *q, double *V_qq, void *user)
+static int one_point_hessian(double t, const double *q, double *V_qq, void *user)
 {
   const dvi_potential *own = user;
   return own->hessian_batch ? own->hessian_batch(1, &t, q, V_qq, own->user)
                             : own->hessian(t, q, V_qq, own->user);
 }
 
-static int lagrangian_value(double t, const double *q, const double *v, double *L, void *user)
+static int one_point_lagrangian_value(double t, const double *q, const double *v, double *L,
+                                      void *user)
 {
   const dvi_lagrangian *own = user;
   return own->value_batch ? own->value_batch(1, &t, q, v, L, own->user)
                           : own->value(t, q, v, L, own->user);
 }
 
-static int lagrangian_gradient(double t, const double *q, const double *v, double *L_q, double *L_v,
-                               void *user)
+static int one_point_lagrangian_gradient(double t, const double *q, const double *v, double *L_q,
+                                         double *L_v, void *user)
 {
   const dvi_lagrangian *own = user;
   return own->gradient_batch ? own->gradient_batch(1, &t, q, v, L_q, L_v, own->user)
                              : own->gradient(t, q, v, L_q, L_v, own->user);
 }
 
-static int lagrangian_hessian(double t, const double *q, const double *v, double *L_qq,
-                              double *L_qv, double *L_vv, void *user)
+static int one_point_lagrangian_hessian(double t, const double *q, const double *v, double *L_qq,
+                                        double *L_qv, double *L_vv, void *user)
 {
   const dvi_lagrangian *own = user;
   return own->hessian_batch ? own->hessian_batch(1, &t, q, v, L_qq, L_qv, L_vv, own->user)
                             : own->hessian(t, q, v, L_qq, L_qv, L_vv, own->user);
 }
 
-static int rate(double t, const double *q, double *V_t, void *user)
+static int one_point_rate(double t, const double *q, double *V_t, void *user)
 {
   const dvi_potential *own = user;
   return own->rate_batch ? own->rate_batch(1, &t, q, V_t, own->user)
                          : own->rate(t, q, V_t, own->user);
 }
 
-static int lagrangian_rate(double t, const double *q, const double *v, double *L_t, void *user)
+static int one_point_lagrangian_rate(double t, const double *q, const double *v, double *L_t,
+                                     void *user)
 {
   const dvi_lagrangian *own = user;
   return own->rate_batch ? own->rate_batch(1, &t, q, v, L_t, own->user)
                          : own->rate(t, q, v, L_t, own->user);
 }
 
-static int taylor(int degree, const double *t, const double *q, double *V, double *V_q,
-                  double *V_qq, void *user)
+static int one_point_taylor(int degree, const double *t, const double *q, double *V, double *V_q,
+                            double *V_qq, void *user)
 {
   const dvi_potential *own = user;
   return own->taylor(degree, t, q, V, V_q, V_qq, own->user);
 }
 
-static int lagrangian_taylor(int degree, const double *t, const double *q, const double *v,
-                             double *L, double *L_q, double *L_v, double *L_qq, double *L_qv,
-                             double *L_vv, void *user)
+static int one_point_lagrangian_taylor(int degree, const double *t, const double *q,
+                                       const double *v, double *L, double *L_q, double *L_v,
+                                       double *L_qq, double *L_qv, double *L_vv, void *user)
 {
   const dvi_lagrangian *own = user;
   return own->taylor(degree, t, q, v, L, L_q, L_v, L_qq, L_qv, L_vv, own->user);
@@ -128,41 +132,42 @@ static int lagrangian_taylor(int degree, const double *t, const double *q, const
 
 static dvi_potential one_point_potential(const dvi_potential *declared)
 {
-  return (dvi_potential){.name = declared->name,
-                         .value = value,
-                         .gradient = declared->gradient || declared->gradient_batch ? gradient
-                                                                                    : NULL,
-                         .hessian = declared->hessian || declared->hessian_batch ? hessian : NULL,
-                         .qq = declared->qq,
-                         .gradient_range = declared->gradient_range ? gradient_range : NULL,
-                         .reach = declared->reach,
-                         .rate = declared->rate || declared->rate_batch ? rate : NULL,
-                         .user = (void *)declared,
-                         .fast = declared->fast,
-                         .quadratic = declared->quadratic,
-                         .taylor = declared->taylor ? taylor : NULL};
+  return (dvi_potential){
+      .name = declared->name,
+      .value = one_point_value,
+      .gradient = declared->gradient || declared->gradient_batch ? one_point_gradient : NULL,
+      .hessian = declared->hessian || declared->hessian_batch ? one_point_hessian : NULL,
+      .qq = declared->qq,
+      .gradient_range = declared->gradient_range ? one_point_gradient_range : NULL,
+      .reach = declared->reach,
+      .rate = declared->rate || declared->rate_batch ? one_point_rate : NULL,
+      .user = (void *)declared,
+      .fast = declared->fast,
+      .quadratic = declared->quadratic,
+      .taylor = declared->taylor ? one_point_taylor : NULL};
 }
 
 static dvi_lagrangian one_point_lagrangian(const dvi_lagrangian *declared)
 {
   return (dvi_lagrangian){
-      .value = lagrangian_value,
-      .gradient = declared->gradient || declared->gradient_batch ? lagrangian_gradient : NULL,
-      .hessian = declared->hessian || declared->hessian_batch ? lagrangian_hessian : NULL,
+      .value = one_point_lagrangian_value,
+      .gradient = declared->gradient || declared->gradient_batch ? one_point_lagrangian_gradient
+                                                                 : NULL,
+      .hessian = declared->hessian || declared->hessian_batch ? one_point_lagrangian_hessian : NULL,
       .qq = declared->qq,
       .qv = declared->qv,
       .vv = declared->vv,
-      .rate = declared->rate || declared->rate_batch ? lagrangian_rate : NULL,
+      .rate = declared->rate || declared->rate_batch ? one_point_lagrangian_rate : NULL,
       .user = (void *)declared,
-      .taylor = declared->taylor ? lagrangian_taylor : NULL};
+      .taylor = declared->taylor ? one_point_lagrangian_taylor : NULL};
 }
 
 dvi_status problem_one_point(problem *made)
 {
   int lost = 0;
   dvi_system_terms terms = *made->terms;
-  dvi_potential *potentials = keep(made, terms.potentials, terms.potential_count,
-                                   sizeof *potentials, &lost);
+  dvi_potential *potentials = keep_array(made, terms.potentials, terms.potential_count,
+                                         sizeof *potentials, &lost);
   if (lost) return DVI_NO_MEMORY;
   for (int k = 0; k < terms.potential_count; k++)
     potentials[k] = one_point_potential(&made->terms->potentials[k]);

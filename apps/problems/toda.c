@@ -6,17 +6,17 @@
 
 static const double strength = 0.64;
 
-/* The Hessian holds, for the bond of i and i+1, the curvature c_i at (i,i) and (i+1,i+1) and -c_i
- * at (i,i+1) and (i+1,i). */
+/* The lattice. The Hessian holds, for the bond of i and i+1, the curvature c_i at (i,i) and
+ * (i+1,i+1) and -c_i at (i,i+1) and (i+1,i). */
 typedef struct lattice {
   int N;
-  int *start, *row; /* the Hessian's pattern */
-  int *own;         /* [N] its entry (i,i) */
-  int *above;       /* [N] its entry (i,i+1) */
-  int *below;       /* [N] its entry (i+1,i) */
+  int *start, *row; /* pattern of the Hessian */
+  int *own;         /* [N] index of entry (i,i) */
+  int *above;       /* [N] index of entry (i,i+1) */
+  int *below;       /* [N] index of entry (i+1,i) */
 } lattice;
 
-static int value(int count, const double *t, const double *q, double *V, void *user)
+static int toda_potential(int count, const double *t, const double *q, double *V, void *user)
 {
   const lattice *own = user;
   (void)t;
@@ -28,7 +28,7 @@ static int value(int count, const double *t, const double *q, double *V, void *u
   return 0;
 }
 
-static int gradient(int count, const double *t, const double *q, double *V_q, void *user)
+static int toda_gradient(int count, const double *t, const double *q, double *V_q, void *user)
 {
   const lattice *own = user;
   (void)t;
@@ -44,7 +44,7 @@ static int gradient(int count, const double *t, const double *q, double *V_q, vo
   return 0;
 }
 
-static int hessian(int count, const double *t, const double *q, double *V_qq, void *user)
+static int toda_hessian(int count, const double *t, const double *q, double *V_qq, void *user)
 {
   const lattice *own = user;
   (void)t;
@@ -62,8 +62,8 @@ static int hessian(int count, const double *t, const double *q, double *V_qq, vo
   return 0;
 }
 
-/* One bond's curvature to the Hessian of one coefficient. */
-static void add_bond(const lattice *own, int i, double curvature, double *V_qq)
+/* Add one bond's curvature to the Hessian of one coefficient. */
+static void toda_add_bond(const lattice *own, int i, double curvature, double *V_qq)
 {
   V_qq[own->own[i]] += curvature;
   V_qq[own->own[(i + 1) % own->N]] += curvature;
@@ -71,9 +71,9 @@ static void add_bond(const lattice *own, int i, double curvature, double *V_qq)
   V_qq[own->below[i]] -= curvature;
 }
 
-/* The same along a curve, bond by bond. */
-static int taylor(int degree, const double *t, const double *q, double *V, double *V_q,
-                  double *V_qq, void *user)
+/* Evaluate V and its derivatives along a curve, bond by bond. */
+static int toda_taylor(int degree, const double *t, const double *q, double *V, double *V_q,
+                       double *V_qq, void *user)
 {
   const lattice *own = user;
   const int N = own->N, entries = own->start[N];
@@ -94,13 +94,13 @@ static int taylor(int degree, const double *t, const double *q, double *V, doubl
       if (V) V[k] += force;
       if (V_q) V_q[k * N + i] += force;
       if (V_q) V_q[k * N + next] -= force;
-      if (V_qq) add_bond(own, i, force, V_qq + (ptrdiff_t)k * entries);
+      if (V_qq) toda_add_bond(own, i, force, V_qq + (ptrdiff_t)k * entries);
     }
   }
   return 0;
 }
 
-static int translation(const double *q, double *xi, void *user)
+static int toda_translation(const double *q, double *xi, void *user)
 {
   const lattice *own = user;
   (void)q;
@@ -108,8 +108,8 @@ static int translation(const double *q, double *xi, void *user)
   return 0;
 }
 
-/* Add `row` to the last column if it is not there yet, in order. */
-static void add_row(int first, int *entries, int *rows, int row)
+/* Add `row` to the last column in order, if it is not there yet. */
+static void toda_add_row(int first, int *entries, int *rows, int row)
 {
   int e = *entries;
   while (e > first && rows[e - 1] > row) e--;
@@ -119,15 +119,16 @@ static void add_row(int first, int *entries, int *rows, int row)
   ++*entries;
 }
 
-static int find_row(const lattice *own, int row, int column)
+static int toda_find_row(const lattice *own, int row, int column)
 {
   int e = own->start[column];
   while (own->row[e] != row) e++;
   return e;
 }
 
-/* A site meets itself and its two neighbours, which are one and the same if N = 2. */
-static dvi_status make_pattern(problem *made, lattice *own)
+/* Make the pattern. A site meets itself and its two neighbours, which are the same site if N =
+ * 2. */
+static dvi_status toda_make_pattern(problem *made, lattice *own)
 {
   const int N = own->N;
   int *numbers = problem_allocate(made, 7 * (size_t)N + 1, sizeof(int));
@@ -139,49 +140,50 @@ static dvi_status make_pattern(problem *made, lattice *own)
   own->row = numbers + 4 * N + 1;
   for (int i = 0, entries = 0; i < N; i++) {
     own->start[i] = entries;
-    add_row(own->start[i], &entries, own->row, (i + N - 1) % N);
-    add_row(own->start[i], &entries, own->row, i);
-    add_row(own->start[i], &entries, own->row, (i + 1) % N);
+    toda_add_row(own->start[i], &entries, own->row, (i + N - 1) % N);
+    toda_add_row(own->start[i], &entries, own->row, i);
+    toda_add_row(own->start[i], &entries, own->row, (i + 1) % N);
     own->start[i + 1] = entries;
   }
   for (int i = 0; i < N; i++) {
-    own->own[i] = find_row(own, i, i);
-    own->above[i] = find_row(own, i, (i + 1) % N);
-    own->below[i] = find_row(own, (i + 1) % N, i);
+    own->own[i] = toda_find_row(own, i, i);
+    own->above[i] = toda_find_row(own, i, (i + 1) % N);
+    own->below[i] = toda_find_row(own, (i + 1) % N, i);
   }
   return DVI_OK;
 }
 
-/* A cubic spline of half width 1/3 about -0.15, on sites spread evenly over [-1/2, 1/2]. */
-static double bump(int i, int N)
+/* Compute the start by a cubic spline of half width 1/3 about -0.15, on sites spread evenly over
+ * [-1/2, 1/2]. */
+static double toda_bump(int i, int N)
 {
   const double s = 6.0 * fabs(-0.5 + (double)i / (N - 1) + 0.15);
   if (s <= 1.0) return 1.0 - 1.5 * s * s + 0.75 * s * s * s;
   return s <= 2.0 ? 0.25 * (2.0 - s) * (2.0 - s) * (2.0 - s) : 0.0;
 }
 
-static dvi_status make(const double *setting, problem *made)
+static dvi_status toda_make(const double *setting, problem *made)
 {
   const int N = (int)setting[0];
   dvi_status status = problem_room(made, N, sizeof(lattice));
   if (status != DVI_OK) return status;
   lattice *own = made->parameters;
   own->N = N;
-  status = make_pattern(made, own);
+  status = toda_make_pattern(made, own);
   if (status != DVI_OK) return status;
   for (int i = 0; i < N; i++) {
     problem_label(made, i, "q_%d", i + 1);
-    made->q[i] = bump(i, N);
+    made->q[i] = toda_bump(i, N);
   }
 
   const dvi_potential bonds = {.name = "bonds",
-                               .value_batch = value,
-                               .gradient_batch = gradient,
-                               .hessian_batch = hessian,
+                               .value_batch = toda_potential,
+                               .gradient_batch = toda_gradient,
+                               .hessian_batch = toda_hessian,
                                .qq = {own->start, own->row},
                                .user = own,
-                               .taylor = taylor};
-  const dvi_symmetry symmetry = {.name = "momentum", .generator = translation, .user = own};
+                               .taylor = toda_taylor};
+  const dvi_symmetry symmetry = {.name = "momentum", .generator = toda_translation, .user = own};
   const dvi_system_terms terms = {.dimension = N,
                                   .mass = {.scalar = 1.0},
                                   .potentials = &bonds,
@@ -224,7 +226,7 @@ const problem_entry problem_entry_toda = {
     .name = "toda",
     .summary = "a periodic lattice with exponential springs, started from a bump; integrable",
     .parameters = parameters,
-    .make = make,
+    .make = toda_make,
     .h = 0.1,
     .t_end = 100.0,
     .order_h = 0.25,

@@ -1,17 +1,17 @@
-/* A rigid body without forces: Pi' = Pi x Omega, R' = R Omega^. Exact solution by Jacobi's elliptic
- * functions.
+/* A rigid body without forces, Pi' = Pi x Omega, R' = R Omega^, with the exact solution by Jacobi's
+ * elliptic functions.
  *
- * Axes 1, 2, 3 by their inertia, 2 the middle one, and 3 that about which the motion goes round.
- * With u = lambda t + epsilon
+ * Axes 1, 2, 3 are ordered by their inertia, 2 is the middle one, and the motion goes round 3. With
+ * u = lambda t + epsilon
  *     Omega = (A cn u, B sn u, C dn u),
- * A, B, C and the modulus k from energy and momentum, written as sums of positive terms of the
- * start. The attitude: with l the constant direction of the angular momentum L in space, axis 3
- * turns about l at the rate
+ * where A, B, C and the modulus k follow from energy and momentum, written as sums of positive
+ * terms of the start. For the attitude let l be the constant direction of the angular momentum L in
+ * space. Axis 3 turns about l at the rate
  *     phi' = |L| (2 E - I3 Omega3^2)/(|L|^2 - I3^2 Omega3^2),
  * whose integral is one of the third kind, in u. Everything else follows from l in the body's
- * frame. am by the descending Landen transformation (Abramowitz and Stegun 1964, sec. 16.4); F and
- * Pi as Carlson's R_F and R_J (Carlson 1995, Numer. Algorithms 10:13). In long double: where that
- * has more digits than double, the result is that much closer. */
+ * frame. am is computed by the descending Landen transformation (Abramowitz and Stegun 1964, sec.
+ * 16.4), F and Pi by Carlson's R_F and R_J (Carlson 1995, Numer. Algorithms 10:13). The computation
+ * is in long double, so that the result is closer where that has more digits than double. */
 #include <float.h>
 #include <math.h>
 
@@ -21,18 +21,18 @@ typedef long double real;
 
 enum { LANDEN_MAX = 12 }; /* quadratic convergence */
 
-/* The motion in the axes' order. */
+/* The motion in the order of the axes. */
 typedef struct motion {
-  int axis[3];              /* which of the body's axes is 1, 2, 3 */
-  real A, B, C, lambda, k2; /* Omega, u's rate and the modulus squared */
+  int axis[3];              /* indices of the body's axes 1, 2, 3 */
+  real A, B, C, lambda, k2; /* amplitudes of Omega, rate of u, and modulus squared */
   real rest;                /* 1 - k2, without cancellation */
-  real momentum, bend;      /* |L|; bend is n in the integral of the third kind, below 0 */
+  real momentum, bend;      /* |L|, and n in the integral of the third kind, below 0 */
   real mean, excess;        /* phi = mean t + excess times that integral */
 } motion;
 
 /* ---- elliptic integrals ---- */
 
-static real R_F(real x, real y, real z)
+static real carlson_R_F(real x, real y, real z)
 {
   const real close = powl(3.0L * LDBL_EPSILON, 1.0L / 6.0L);
   for (;;) {
@@ -49,16 +49,16 @@ static real R_F(real x, real y, real z)
   }
 }
 
-/* R_C(1, 1 + e) for small e > -1: atan(sqrt e)/sqrt e or its continuation. */
-static real R_C1(real e)
+/* Compute R_C(1, 1 + e) for small e > -1, which is atan(sqrt e)/sqrt e or its continuation. */
+static real carlson_R_C1(real e)
 {
   if (fabsl(e) < 1e-5L) return 1.0L - e * (1.0L / 3.0L - e * (0.2L - e * (1.0L / 7.0L - e / 9.0L)));
   const real root = sqrtl(fabsl(e));
   return e > 0.0L ? atanl(root) / root : atanhl(root) / root;
 }
 
-/* R_J's series where the arguments X, Y, Z, P are nearly alike. */
-static real near_R_J(real X, real Y, real Z)
+/* Compute R_J's series for arguments X, Y, Z, P that are nearly equal. */
+static real carlson_near_R_J(real X, real Y, real Z)
 {
   const real P = -0.5L * (X + Y + Z), XYZ = X * Y * Z, E2 = X * Y + X * Z + Y * Z - 3.0L * P * P;
   const real E3 = XYZ + 2.0L * E2 * P + 4.0L * P * P * P,
@@ -67,7 +67,7 @@ static real near_R_J(real X, real Y, real Z)
          9.0L * E2 * E3 / 52.0L + 3.0L * E5 / 26.0L;
 }
 
-static real R_J(real x, real y, real z, real p)
+static real carlson_R_J(real x, real y, real z, real p)
 {
   const real first = (x + y + z + 2.0L * p) / 5.0L, X = first - x, Y = first - y, Z = first - z;
   const real apart = fmaxl(fmaxl(fabsl(X), fabsl(Y)), fmaxl(fabsl(Z), fabsl(first - p))) *
@@ -77,7 +77,7 @@ static real R_J(real x, real y, real z, real p)
     const real root_x = sqrtl(x), root_y = sqrtl(y), root_z = sqrtl(z), root_p = sqrtl(p);
     const real d = (root_p + root_x) * (root_p + root_y) * (root_p + root_z);
     const real shift = root_x * root_y + root_y * root_z + root_z * root_x;
-    sum += scale / d * R_C1(delta / (d * d));
+    sum += scale / d * carlson_R_C1(delta / (d * d));
     x = 0.25L * (x + shift);
     y = 0.25L * (y + shift);
     z = 0.25L * (z + shift);
@@ -87,25 +87,25 @@ static real R_J(real x, real y, real z, real p)
     scale *= 0.25L;
   }
   const real part = scale / mean;
-  return part / sqrtl(mean) * near_R_J(part * X, part * Y, part * Z) + 6.0L * sum;
+  return part / sqrtl(mean) * carlson_near_R_J(part * X, part * Y, part * Z) + 6.0L * sum;
 }
 
-/* The integrals of du and of du/(1 - n sn^2 u) from 0 to the amplitude whose sine and cosine are
- * given, |amplitude| <= pi/2. */
+/* Compute the integrals of du and of du/(1 - n sn^2 u) from 0 to the amplitude whose sine and
+ * cosine are given, |amplitude| <= pi/2. */
 static real first_kind(const motion *m, real sine, real cosine)
 {
-  return sine * R_F(cosine * cosine, cosine * cosine + m->rest * sine * sine, 1.0L);
+  return sine * carlson_R_F(cosine * cosine, cosine * cosine + m->rest * sine * sine, 1.0L);
 }
 
 static real third_kind(const motion *m, real sine, real cosine)
 {
   const real s2 = sine * sine, c2 = cosine * cosine, d2 = c2 + m->rest * s2;
-  return sine * R_F(c2, d2, 1.0L) +
-         m->bend / 3.0L * sine * s2 * R_J(c2, d2, 1.0L, 1.0L - m->bend * s2);
+  return sine * carlson_R_F(c2, d2, 1.0L) +
+         m->bend / 3.0L * sine * s2 * carlson_R_J(c2, d2, 1.0L, 1.0L - m->bend * s2);
 }
 
-/* am(u) for |u| <= K. */
-static real amplitude(const motion *m, real u)
+/* Compute am(u) for |u| <= K. */
+static real jacobi_amplitude(const motion *m, real u)
 {
   real a[LANDEN_MAX + 1], c[LANDEN_MAX + 1], b = sqrtl(m->rest);
   int last = 0;
@@ -124,8 +124,8 @@ static real amplitude(const motion *m, real u)
 
 /* ---- the motion ---- */
 
-/* Axes by descending inertia, or by ascending ones if the motion goes round the largest. Returns
- * the sign of this permutation. */
+/* Sort the axes by descending inertia, or by ascending inertia if the motion goes round the
+ * largest. Returns the sign of this permutation. */
 static int sort_axes(const double *J, const double *Omega, int *axis)
 {
   int sign = 1;
@@ -147,8 +147,8 @@ static int sort_axes(const double *J, const double *Omega, int *axis)
   return -sign;
 }
 
-/* What follows from the start. 0, or 1 on the separatrix, where the motion tends to a turn about
- * the middle axis. */
+/* Compute the constants of the motion from the start. Returns 0, or 1 on the separatrix, where the
+ * motion tends to a turn about the middle axis. */
 static int find_motion(const double *J, const double *Omega, motion *m)
 {
   const int sign = sort_axes(J, Omega, m->axis);
@@ -162,7 +162,7 @@ static int find_motion(const double *J, const double *Omega, motion *m)
   m->k2 = (I1 - I2) * I2 * m->B * m->B / (I3 * (I1 - I3) * m->C * m->C);
   m->rest = (I1 * (I1 - I2) * w1 * w1 + I3 * (I3 - I2) * w3 * w3) / (I3 * (I3 - I2) * m->C * m->C);
   if (!(m->rest > 0.0L)) return 1;
-  const real least = I1 * I1 * m->A * m->A; /* the least |L|^2 - I3^2 Omega3^2 */
+  const real least = I1 * I1 * m->A * m->A; /* least |L|^2 - I3^2 Omega3^2 */
   m->momentum = sqrtl(L2);
   m->bend = -I3 * I3 * m->C * m->C * m->k2 / least;
   m->mean = m->momentum / I3;
@@ -171,16 +171,16 @@ static int find_motion(const double *J, const double *Omega, motion *m)
   return 0;
 }
 
-/* Omega at time t in the body's axes, and by how much axis 3 has turned about the angular momentum
- * since t = 0. */
-static void follow(const motion *m, const double *Omega, real t, real *w, real *phi)
+/* Compute Omega at time t in the body's axes, and the angle phi by which axis 3 has turned about
+ * the angular momentum since t = 0. */
+static void follow_motion(const motion *m, const double *Omega, real t, real *w, real *phi)
 {
   const real K = first_kind(m, 1.0L, 0.0L), whole = third_kind(m, 1.0L, 0.0L);
   const real cosine = Omega[m->axis[0]] / m->A, sine = Omega[m->axis[1]] / m->B,
              side = cosine < 0.0L ? -1.0L : 1.0L;
   const real before = cosine < 0.0L; /* half periods */
   const real u = 2.0L * K * before + first_kind(m, side * sine, side * cosine) + m->lambda * t;
-  const real halves = roundl(u / (2.0L * K)), am = amplitude(m, u - 2.0L * K * halves);
+  const real halves = roundl(u / (2.0L * K)), am = jacobi_amplitude(m, u - 2.0L * K * halves);
   const real sn = sinl(am), cn = cosl(am), turn = fmodl(fabsl(halves), 2.0L) > 0.5L ? -1.0L : 1.0L;
   w[m->axis[0]] = turn * m->A * cn;
   w[m->axis[1]] = turn * m->B * sn;
@@ -190,8 +190,8 @@ static void follow(const motion *m, const double *Omega, real t, real *w, real *
   *phi = m->mean * t + m->excess * integral;
 }
 
-/* T [9], a rotation: rows the part of axis `third` across the angular momentum Pi, that crossed,
- * and Pi's direction. */
+/* Compute a rotation T [9]. Its rows are the part of axis `third` across the angular momentum Pi,
+ * the cross product of that part, and Pi's direction. */
 static void momentum_frame(const real *Pi, int third, real *T)
 {
   const real size = sqrtl(Pi[0] * Pi[0] + Pi[1] * Pi[1] + Pi[2] * Pi[2]);
@@ -205,8 +205,8 @@ static void momentum_frame(const real *Pi, int third, real *T)
     T[3 + k] = T[6 + (k + 1) % 3] * T[(k + 2) % 3] - T[6 + (k + 2) % 3] * T[(k + 1) % 3];
 }
 
-/* R = T0^T (turn by phi about the third axis) T, from R = I at the start. */
-static void attitude(const real *T0, const real *T, real phi, double *R)
+/* Compute R = T0^T (turn by phi about the third axis) T, from R = I at the start. */
+static void motion_attitude(const real *T0, const real *T, real phi, double *R)
 {
   const real c = cosl(phi), s = sinl(phi);
   for (int j = 0; j < 3; j++) {
@@ -216,8 +216,8 @@ static void attitude(const real *T0, const real *T, real phi, double *R)
   }
 }
 
-/* A turn about a principal axis, or any turn of a ball, goes on: R = exp(t Omega^), by
- * Rodrigues. */
+/* Compute R = exp(t Omega^) by Rodrigues' formula. A turn about a principal axis, or any turn of a
+ * ball, is steady. */
 static void turn_steadily(const double *Omega, real t, double *R)
 {
   const real x = Omega[0], y = Omega[1], z = Omega[2], rate = sqrtl(x * x + y * y + z * z),
@@ -242,7 +242,7 @@ static int is_steady(const double *Pi, const double *Omega)
   return steady;
 }
 
-static int exact(const problem *made, double t, double *q, double *p)
+static int free_body_exact(const problem *made, double t, double *q, double *p)
 {
   const double *full = ((const top *)made->parameters)->J, J[3] = {full[0], full[4], full[8]};
   motion m;
@@ -253,7 +253,7 @@ static int exact(const problem *made, double t, double *q, double *p)
     return 0;
   }
   if (find_motion(J, made->v, &m) != 0) return 1;
-  follow(&m, made->v, t, w, &phi);
+  follow_motion(&m, made->v, t, w, &phi);
   for (int i = 0; i < 3; i++) {
     start[i] = (real)J[i] * made->v[i];
     end[i] = J[i] * w[i];
@@ -261,11 +261,11 @@ static int exact(const problem *made, double t, double *q, double *p)
   }
   momentum_frame(start, m.axis[2], T0);
   momentum_frame(end, m.axis[2], T);
-  attitude(T0, T, phi, q);
+  motion_attitude(T0, T, phi, q);
   return 0;
 }
 
-static dvi_status make(const double *setting, problem *made)
+static dvi_status free_body_make(const double *setting, problem *made)
 {
   const dvi_status status = top_room(made, setting + 3);
   if (status != DVI_OK) return status;
@@ -289,8 +289,8 @@ const problem_entry problem_entry_free_body = {
     .name = "free-body",
     .summary = "a rigid body without forces; rotations, exact solution known",
     .parameters = parameters,
-    .make = make,
-    .exact = exact,
+    .make = free_body_make,
+    .exact = free_body_exact,
     .h = 0.1,
     .t_end = 100.0,
     .order_h = 0.2,

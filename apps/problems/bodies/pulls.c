@@ -2,8 +2,8 @@
 
 #include <math.h>
 
-/* r of a pull at point k. */
-static void vector_of(const pull *of, int count, int k, const double *q, double *r)
+/* Compute the vector r of a pull at point k. */
+static void pull_vector(const pull *of, int count, int k, const double *q, double *r)
 {
   r[0] = r[1] = r[2] = 0.0;
   for (int a = 0; a < of->arms; a++)
@@ -11,7 +11,7 @@ static void vector_of(const pull *of, int count, int k, const double *q, double 
       r[i] += of->arm[a].factor * q[(of->arm[a].first + i * of->arm[a].stride) * count + k];
 }
 
-static int value(int count, const double *t, const double *q, double *V, void *user)
+static int pulls_value(int count, const double *t, const double *q, double *V, void *user)
 {
   const pulls *all = user;
   (void)t;
@@ -19,17 +19,17 @@ static int value(int count, const double *t, const double *q, double *V, void *u
     double r[3];
     V[k] = 0.0;
     for (int j = 0; j < all->count; j++) {
-      vector_of(&all->pull[j], count, k, q, r);
+      pull_vector(&all->pull[j], count, k, q, r);
       V[k] -= all->pull[j].strength / sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
     }
   }
   return 0;
 }
 
-static void add_gradient(const pull *of, int count, int k, const double *q, double *V_q)
+static void pull_add_gradient(const pull *of, int count, int k, const double *q, double *V_q)
 {
   double r[3];
-  vector_of(of, count, k, q, r);
+  pull_vector(of, count, k, q, r);
   const double r2 = r[0] * r[0] + r[1] * r[1] + r[2] * r[2], force = of->strength / (r2 * sqrt(r2));
   for (int a = 0; a < of->arms; a++)
     for (int i = 0; i < 3; i++)
@@ -37,21 +37,22 @@ static void add_gradient(const pull *of, int count, int k, const double *q, doub
                                                                      r[i];
 }
 
-static int gradient(int count, const double *t, const double *q, double *V_q, void *user)
+static int pulls_gradient(int count, const double *t, const double *q, double *V_q, void *user)
 {
   const pulls *all = user;
   (void)t;
   memset(V_q, 0, (size_t)all->nq * (size_t)count * sizeof *V_q);
   for (int k = 0; k < count; k++)
-    for (int j = 0; j < all->count; j++) add_gradient(&all->pull[j], count, k, q, V_q);
+    for (int j = 0; j < all->count; j++) pull_add_gradient(&all->pull[j], count, k, q, V_q);
   return 0;
 }
 
-/* The Hessian of -1/|r| in r is I/|r|^3 - 3 r r^t/|r|^5. */
-static void add_hessian(const pull *of, int nq, int count, int k, const double *q, double *V_qq)
+/* Add the Hessian. That of -1/|r| in r is I/|r|^3 - 3 r r^t/|r|^5. */
+static void pull_add_hessian(const pull *of, int nq, int count, int k, const double *q,
+                             double *V_qq)
 {
   double r[3];
-  vector_of(of, count, k, q, r);
+  pull_vector(of, count, k, q, r);
   const double r2 = r[0] * r[0] + r[1] * r[1] + r[2] * r[2], force = of->strength / (r2 * sqrt(r2));
   for (int a = 0; a < 3 * of->arms; a++)
     for (int b = 0; b < 3 * of->arms; b++) {
@@ -63,21 +64,22 @@ static void add_hessian(const pull *of, int nq, int count, int k, const double *
     }
 }
 
-static int hessian(int count, const double *t, const double *q, double *V_qq, void *user)
+static int pulls_hessian(int count, const double *t, const double *q, double *V_qq, void *user)
 {
   const pulls *all = user;
   (void)t;
   memset(V_qq, 0, (size_t)all->nq * (size_t)all->nq * (size_t)count * sizeof *V_qq);
   for (int k = 0; k < count; k++)
-    for (int j = 0; j < all->count; j++) add_hessian(&all->pull[j], all->nq, count, k, q, V_qq);
+    for (int j = 0; j < all->count; j++)
+      pull_add_hessian(&all->pull[j], all->nq, count, k, q, V_qq);
   return 0;
 }
 
 dvi_potential pulls_potential(const char *name, const pulls *all)
 {
   return (dvi_potential){.name = name,
-                         .value_batch = value,
-                         .gradient_batch = gradient,
-                         .hessian_batch = hessian,
+                         .value_batch = pulls_value,
+                         .gradient_batch = pulls_gradient,
+                         .hessian_batch = pulls_hessian,
                          .user = (void *)all};
 }

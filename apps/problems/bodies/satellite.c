@@ -1,11 +1,13 @@
-/* A rigid satellite with a chain of n links in orbit: SE(3) x (S^2)^n, coupled through the mass.
+/* A rigid satellite with a chain of n links in orbit, on SE(3) x (S^2)^n, coupled through the mass.
  *
  *     L = satellite + sum_k ( m |r_k'|^2/2 + m mu/|r_k| ) + M mu/|x|,
  *     r_k = x + R rho + l (q_1 + .. + q_k)
- * with point masses m at the links' ends, the chain fixed to the satellite at rho, and Newton's
- * field of a centre of strength mu at the origin. It starts on a circular orbit's speed, turning
- * with it as if it were rigid, with the chain a little off the direction to the centre. Source:
- * Lee, Leok and McClamroch 2009, Int. J. Numer. Meth. Engng 79:1147 (chains of directions). */
+ *
+ * There are point masses m at the links' ends. The chain is fixed to the satellite at rho. Newton's
+ * field of strength mu has its centre at the origin. The start has a circular orbit's speed, and
+ * turns with the orbit as if it were rigid, with the chain a little off the direction to the
+ * centre. Source: Lee, Leok and McClamroch 2009, Int. J. Numer. Meth. Engng 79:1147 (chains of
+ * directions). */
 #include <math.h>
 
 #include "bodies/pulls.h"
@@ -17,61 +19,64 @@ typedef struct satellite {
   double l, inertia[9];
   pulls all;
   pull *pull;
-  arm *arm; /* of r_k: x, rho's three columns of R, q_1 .. q_k; all pulls share the beginning */
+  /* arms of r_k, which are x, rho's three columns of R, q_1 .. q_k. All pulls share the
+   * beginning. */
+  arm *arm;
   double *mass;
   int *start, *row;
 } satellite;
 
 static const double rho[3] = {-0.5, 0.0, 0.1};
-static const double inertia[3] = {0.8, 1.2, 1.5}; /* for M = 10 */
+static const double inertia[3] = {0.8, 1.2, 1.5}; /* inertia for M = 10 */
 
-static void set_arms(satellite *own, double body_pull, double link_pull)
+static void satellite_set_arms(satellite *own, double body_pull, double link_pull)
 {
-  own->arm[0] = (arm){9, 1, 1.0};
-  for (int k = 0; k < 3; k++) own->arm[1 + k] = (arm){k, 3, rho[k]};
-  for (int j = 0; j < own->links; j++) own->arm[4 + j] = (arm){BODY + 3 * j, 1, own->l};
+  own->arm[0] = (arm){.first = 9, .stride = 1, .factor = 1.0};
+  for (int k = 0; k < 3; k++) own->arm[1 + k] = (arm){.first = k, .stride = 3, .factor = rho[k]};
+  for (int j = 0; j < own->links; j++)
+    own->arm[4 + j] = (arm){.first = BODY + 3 * j, .stride = 1, .factor = own->l};
   own->pull[0] = (pull){.strength = body_pull, .arms = 1, .arm = own->arm};
   for (int k = 1; k <= own->links; k++)
     own->pull[k] = (pull){.strength = link_pull, .arms = 4 + k, .arm = own->arm};
   own->all = (pulls){.nq = own->nq, .count = own->links + 1, .pull = own->pull};
 }
 
-/* What links k.. have in common of the coordinates a and b: m |r_k'|^2/2 for every k that reaches
+/* Compute the coupling of the coordinates a and b through m |r_k'|^2/2 for every k that reaches
  * both. */
-static double coupling(const satellite *own, double m, const arm *a, const arm *b)
+static double satellite_coupling(const satellite *own, double m, const arm *a, const arm *b)
 {
   const ptrdiff_t later = a > b ? a - own->arm : b - own->arm;
   const int reached = later < 4 ? own->links : own->links - (int)(later - 4);
   return m * reached * a->factor * b->factor;
 }
 
-/* Stored number s is component *i of this arm. */
-static const arm *arm_of(const satellite *own, int s, int *i)
+/* Return the arm of stored number s, which is its component *i. */
+static const arm *satellite_arm(const satellite *own, int s, int *i)
 {
   *i = s < 9 ? s / 3 : s % 3;
   return own->arm + (s < 9 ? 1 + s % 3 : s < BODY ? 0 : 4 + (s - BODY) / 3);
 }
 
-/* Numbers of the same component are coupled, column by column. */
-static void fill_mass(const satellite *own, double m)
+/* Fill the mass, column by column. Numbers of the same component are coupled. */
+static void satellite_fill_mass(const satellite *own, double m)
 {
   int e = 0;
   for (int column = 0; column < own->nq; column++) {
     int i, j;
-    const arm *b = arm_of(own, column, &j);
+    const arm *b = satellite_arm(own, column, &j);
     own->start[column] = e;
     for (int row = 0; row < own->nq; row++) {
-      const arm *a = arm_of(own, row, &i);
+      const arm *a = satellite_arm(own, row, &i);
       if (i != j) continue;
       own->row[e] = row;
-      own->mass[e++] = coupling(own, m, a, b);
+      own->mass[e++] = satellite_coupling(own, m, a, b);
     }
   }
   own->start[own->nq] = e;
 }
 
-/* Turns in space about e: Omega = R^t e, x' = e x x, q' = e x q. */
-static int turn(const satellite *own, const double *q, double *xi, int e)
+/* Turn in space about e, with Omega = R^t e, x' = e x x, q' = e x q. */
+static int satellite_turn(const satellite *own, const double *q, double *xi, int e)
 {
   const int i = (e + 1) % 3, j = (e + 2) % 3;
   for (int k = 0; k < 3; k++) xi[k] = q[3 * e + k];
@@ -83,22 +88,22 @@ static int turn(const satellite *own, const double *q, double *xi, int e)
   return 0;
 }
 
-static int turn_x(const double *q, double *xi, void *user)
+static int satellite_turn_x(const double *q, double *xi, void *user)
 {
-  return turn(user, q, xi, 0);
+  return satellite_turn(user, q, xi, 0);
 }
 
-static int turn_y(const double *q, double *xi, void *user)
+static int satellite_turn_y(const double *q, double *xi, void *user)
 {
-  return turn(user, q, xi, 1);
+  return satellite_turn(user, q, xi, 1);
 }
 
-static int turn_z(const double *q, double *xi, void *user)
+static int satellite_turn_z(const double *q, double *xi, void *user)
 {
-  return turn(user, q, xi, 2);
+  return satellite_turn(user, q, xi, 2);
 }
 
-static dvi_status room(problem *made, int n, dvi_factor *factors)
+static dvi_status satellite_allocate(problem *made, int n, dvi_factor *factors)
 {
   factors[0] = (dvi_factor){.kind = DVI_SE3};
   for (int j = 1; j <= n; j++) factors[j] = (dvi_factor){.kind = DVI_S2};
@@ -116,8 +121,8 @@ static dvi_status room(problem *made, int n, dvi_factor *factors)
   return own->pull && own->arm && own->mass && own->row && own->start ? DVI_OK : DVI_NO_MEMORY;
 }
 
-/* At (r,0,0), all of it turning about z with the orbit's rate. */
-static void place(const problem *made, double r, double mu)
+/* Place all at (r,0,0), turning about z with the orbit's rate. */
+static void satellite_place(const problem *made, double r, double mu)
 {
   const double rate = sqrt(mu / r) / r, length = sqrt(1.0 + 0.3 * 0.3 + 0.2 * 0.2);
   made->q[9] = r;
@@ -133,26 +138,26 @@ static void place(const problem *made, double r, double mu)
   }
 }
 
-static dvi_status make(const double *setting, problem *made)
+static dvi_status satellite_make(const double *setting, problem *made)
 {
   const int n = (int)setting[0];
   const double m = setting[1], M = setting[3], mu = setting[4];
   dvi_factor factors[LINKS_MAX + 1];
-  const dvi_status status = room(made, n, factors);
+  const dvi_status status = satellite_allocate(made, n, factors);
   if (status != DVI_OK) return status;
   satellite *own = made->parameters;
   own->l = setting[2];
   for (int k = 0; k < 3; k++) own->inertia[4 * k] = inertia[k] * M / 10.0;
-  set_arms(own, M * mu, m * mu);
-  fill_mass(own, m);
-  place(made, setting[5], mu);
+  satellite_set_arms(own, M * mu, m * mu);
+  satellite_fill_mass(own, m);
+  satellite_place(made, setting[5], mu);
 
   factors[0].mass = M;
   factors[0].inertia = own->inertia;
   const dvi_symmetry symmetries[] = {
-      {.name = "angular_momentum_x", .generator = turn_x, .user = own},
-      {.name = "angular_momentum_y", .generator = turn_y, .user = own},
-      {.name = "angular_momentum_z", .generator = turn_z, .user = own}};
+      {.name = "angular_momentum_x", .generator = satellite_turn_x, .user = own},
+      {.name = "angular_momentum_y", .generator = satellite_turn_y, .user = own},
+      {.name = "angular_momentum_z", .generator = satellite_turn_z, .user = own}};
   const dvi_potential gravity = pulls_potential("gravity", &own->all);
   const dvi_system_terms terms = {.factors = factors,
                                   .factor_count = n + 1,
@@ -221,7 +226,7 @@ const problem_entry problem_entry_satellite = {
     .summary = "a rigid satellite with a flexible chain in orbit; rigid motions and directions, "
                "coupled by their mass",
     .parameters = parameters,
-    .make = make,
+    .make = satellite_make,
     .h = 0.05,
     .t_end = 100.0,
     .order_h = 0.05,

@@ -1,24 +1,24 @@
 /* Pendula that swing in all directions, q_i on the sphere S^2, gravity along +z.
  *
- * spherical-double-pendulum: m l^2 (2 |q1'|^2 + 2 q1'.q2' + |q2'|^2)/2 + m g l (2 z1 + z2): one
- * hangs on the other, and the mass couples them. spherical-chain: |q_i'|^2/2 for each of n, V = - g
- * sum z_i + k/2 sum |q_{i+1} - q_i|^2: neighbours are coupled by springs alone, so that the Hessian
- * is sparse. It starts at rest, at the angle a from the vertical, once round along the chain.
- * Source: Lee, Leok and McClamroch 2009, Int. J. Numer. Meth. Engng 79:1147. */
+ * spherical-double-pendulum has m l^2 (2 |q1'|^2 + 2 q1'.q2' + |q2'|^2)/2 + m g l (2 z1 + z2). One
+ * pendulum hangs on the other, and the mass couples them. spherical-chain has |q_i'|^2/2 for each
+ * of n, and V = - g sum z_i + k/2 sum |q_{i+1} - q_i|^2. Only springs couple neighbours, so that
+ * the Hessian is sparse. It starts at rest, at the angle a from the vertical, once round along the
+ * chain. Source: Lee, Leok and McClamroch 2009, Int. J. Numer. Meth. Engng 79:1147. */
 #include <math.h>
 
 #include "entry.h"
 
-/* Springs and weights: V = - sum_i weight_i z_i + k/2 sum |q_{i+1} - q_i|^2. */
+/* Springs and weights, V = - sum_i weight_i z_i + k/2 sum |q_{i+1} - q_i|^2. */
 typedef struct pendula {
   int n;
   double k;
   double *weight;
-  int *start, *row; /* the Hessian's pattern */
-  double *mass;     /* of the double pendulum */
+  int *start, *row; /* pattern of the Hessian */
+  double *mass;     /* mass of the double pendulum */
 } pendula;
 
-static int value(int count, const double *t, const double *q, double *V, void *user)
+static int pendula_potential(int count, const double *t, const double *q, double *V, void *user)
 {
   const pendula *own = user;
   (void)t;
@@ -36,7 +36,7 @@ static int value(int count, const double *t, const double *q, double *V, void *u
   return 0;
 }
 
-static int gradient(int count, const double *t, const double *q, double *V_q, void *user)
+static int pendula_gradient(int count, const double *t, const double *q, double *V_q, void *user)
 {
   const pendula *own = user;
   (void)t;
@@ -56,8 +56,9 @@ static int gradient(int count, const double *t, const double *q, double *V_q, vo
   return 0;
 }
 
-/* Constant: as many springs as a pendulum has neighbours on the diagonal, -k beside it. */
-static int hessian(int count, const double *t, const double *q, double *V_qq, void *user)
+/* Fill the constant Hessian. Its diagonal has as many springs as a pendulum has neighbours, with -k
+ * beside it. */
+static int pendula_hessian(int count, const double *t, const double *q, double *V_qq, void *user)
 {
   const pendula *own = user;
   (void)t, (void)q;
@@ -70,8 +71,8 @@ static int hessian(int count, const double *t, const double *q, double *V_qq, vo
   return 0;
 }
 
-/* Column j: pendula i - 1, i, i + 1, the same component. */
-static void fill_pattern(const pendula *own)
+/* Fill the pattern. Column j has the pendula i - 1, i, i + 1 with the same component. */
+static void pendula_fill_pattern(const pendula *own)
 {
   int e = 0;
   for (int j = 0; j < 3 * own->n; j++) {
@@ -82,8 +83,8 @@ static void fill_pattern(const pendula *own)
   own->start[3 * own->n] = e;
 }
 
-/* All turn about the vertical: z x q. */
-static int turn(const double *q, double *xi, void *user)
+/* Turn all pendula about the vertical, z x q. */
+static int pendula_turn(const double *q, double *xi, void *user)
 {
   const pendula *own = user;
   for (int i = 0; i < 3 * own->n; i += 3) {
@@ -94,8 +95,8 @@ static int turn(const double *q, double *xi, void *user)
   return 0;
 }
 
-/* Room for n pendula, their factors of this inertia, and their pattern. */
-static dvi_status room(problem *made, int n, double inertia, dvi_factor **factors)
+/* Allocate memory for n pendula, their factors of this inertia, and their pattern. */
+static dvi_status pendula_allocate(problem *made, int n, double inertia, dvi_factor **factors)
 {
   *factors = problem_allocate(made, (size_t)n, sizeof **factors);
   if (!*factors) return DVI_NO_MEMORY;
@@ -108,20 +109,21 @@ static dvi_status room(problem *made, int n, double inertia, dvi_factor **factor
   own->start = problem_allocate(made, 3 * (size_t)n + 1, sizeof *own->start);
   own->row = problem_allocate(made, 9 * (size_t)n, sizeof *own->row);
   if (!own->weight || !own->start || !own->row) return DVI_NO_MEMORY;
-  fill_pattern(own);
+  pendula_fill_pattern(own);
   return DVI_OK;
 }
 
-static dvi_status make_system(problem *made, const dvi_factor *factors, dvi_mass mass)
+static dvi_status pendula_make_system(problem *made, const dvi_factor *factors, dvi_mass mass)
 {
   pendula *own = made->parameters;
   const dvi_potential potential = {.name = "gravity and springs",
-                                   .value_batch = value,
-                                   .gradient_batch = gradient,
-                                   .hessian_batch = hessian,
+                                   .value_batch = pendula_potential,
+                                   .gradient_batch = pendula_gradient,
+                                   .hessian_batch = pendula_hessian,
                                    .qq = {own->start, own->row},
                                    .user = own};
-  const dvi_symmetry symmetry = {.name = "angular_momentum_z", .generator = turn, .user = own};
+  const dvi_symmetry symmetry = {
+      .name = "angular_momentum_z", .generator = pendula_turn, .user = own};
   const dvi_system_terms terms = {.factors = factors,
                                   .factor_count = own->n,
                                   .mass = mass,
@@ -133,18 +135,18 @@ static dvi_status make_system(problem *made, const dvi_factor *factors, dvi_mass
   return problem_system(made, &terms);
 }
 
-/* v = omega x q. */
-static void turn_with(const double *omega, const double *q, double *v)
+/* Compute v = omega x q. */
+static void spherical_velocity(const double *omega, const double *q, double *v)
 {
   for (int i = 0; i < 3; i++)
     v[i] = omega[(i + 1) % 3] * q[(i + 2) % 3] - omega[(i + 2) % 3] * q[(i + 1) % 3];
 }
 
-static dvi_status make_double(const double *setting, problem *made)
+static dvi_status spherical_make_double(const double *setting, problem *made)
 {
   static const double omega[2][3] = {{-0.433, 0.0, 0.75}, {0.0, 1.0, 0.0}};
   dvi_factor *factors;
-  const dvi_status status = room(made, 2, 0.0, &factors);
+  const dvi_status status = pendula_allocate(made, 2, 0.0, &factors);
   if (status != DVI_OK) return status;
   pendula *own = made->parameters;
   const double m = setting[0], l = setting[1], g = setting[2],
@@ -157,16 +159,16 @@ static dvi_status make_double(const double *setting, problem *made)
   made->q[0] = 0.866 / length;
   made->q[2] = 0.5 / length;
   made->q[5] = 1.0;
-  for (int i = 0; i < 6; i += 3) turn_with(omega[i / 3], made->q + i, made->v + i);
-  return make_system(made, factors,
-                     (dvi_mass){.values = own->mass, .pattern = {own->start, own->row}});
+  for (int i = 0; i < 6; i += 3) spherical_velocity(omega[i / 3], made->q + i, made->v + i);
+  return pendula_make_system(made, factors,
+                             (dvi_mass){.values = own->mass, .pattern = {own->start, own->row}});
 }
 
-static dvi_status make_chain(const double *setting, problem *made)
+static dvi_status spherical_make_chain(const double *setting, problem *made)
 {
   const int n = (int)setting[0];
   dvi_factor *factors;
-  const dvi_status status = room(made, n, 1.0, &factors);
+  const dvi_status status = pendula_allocate(made, n, 1.0, &factors);
   if (status != DVI_OK) return status;
   pendula *own = made->parameters;
   own->k = setting[1];
@@ -177,7 +179,7 @@ static dvi_status make_chain(const double *setting, problem *made)
     made->q[3 * i + 1] = sin(setting[3]) * sin(round);
     made->q[3 * i + 2] = cos(setting[3]);
   }
-  return make_system(made, factors, (dvi_mass){0});
+  return pendula_make_system(made, factors, (dvi_mass){0});
 }
 
 static const problem_parameter double_parameters[] = {
@@ -230,7 +232,7 @@ const problem_entry problem_entry_spherical_double_pendulum = {
     .summary =
         "two masses on two rods that swing in all directions; directions, coupled by their mass",
     .parameters = double_parameters,
-    .make = make_double,
+    .make = spherical_make_double,
     .h = 0.005,
     .t_end = 10.0,
     .order_h = 0.01,
@@ -258,7 +260,7 @@ const problem_entry problem_entry_spherical_chain = {
     .name = "spherical-chain",
     .summary = "n spherical pendula with springs between neighbours; directions, sparse",
     .parameters = chain_parameters,
-    .make = make_chain,
+    .make = spherical_make_chain,
     .h = 0.05,
     .t_end = 100.0,
     .order_h = 0.1,

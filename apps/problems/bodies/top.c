@@ -3,7 +3,7 @@
 /* Row 3 of R in y = (R11, R12 .. R33). */
 enum { UP = 6 };
 
-static int value(int count, const double *t, const double *q, double *V, void *user)
+static int top_potential(int count, const double *t, const double *q, double *V, void *user)
 {
   const double *w = ((const top *)user)->weight;
   const double *restrict up = q + (ptrdiff_t)UP * count;
@@ -13,7 +13,7 @@ static int value(int count, const double *t, const double *q, double *V, void *u
   return 0;
 }
 
-static int gradient(int count, const double *t, const double *q, double *V_q, void *user)
+static int top_gradient(int count, const double *t, const double *q, double *V_q, void *user)
 {
   const double *w = ((const top *)user)->weight;
   (void)t, (void)q;
@@ -22,7 +22,7 @@ static int gradient(int count, const double *t, const double *q, double *V_q, vo
   return 0;
 }
 
-static int hessian(int count, const double *t, const double *q, double *V_qq, void *user)
+static int top_hessian(int count, const double *t, const double *q, double *V_qq, void *user)
 {
   (void)count, (void)t, (void)q, (void)V_qq, (void)user; /* the pattern is empty */
   return 0;
@@ -30,22 +30,22 @@ static int hessian(int count, const double *t, const double *q, double *V_qq, vo
 
 static const int none_start[10], none_row[1];
 
-/* What the generators point to. */
+/* The axes that the generators point to. */
 static int axes[] = {0, 1, 2};
 
-/* A turn in space about axis e: Omega = R^T e, that row of R. */
-static int turn(const double *q, double *xi, void *user)
+/* Turn in space about axis e. Omega = R^T e is that row of R. */
+static int top_turn(const double *q, double *xi, void *user)
 {
   const int e = *(const int *)user;
   for (int i = 0; i < 3; i++) xi[i] = q[3 * e + i];
   return 0;
 }
 
-/* The vertical one, which weight leaves, is the last. */
+/* The vertical symmetry, which a weight leaves, is the last one. */
 static const dvi_symmetry symmetries[] = {
-    {.name = "angular_momentum_x", .generator = turn, .user = &axes[0]},
-    {.name = "angular_momentum_y", .generator = turn, .user = &axes[1]},
-    {.name = "angular_momentum_z", .generator = turn, .user = &axes[2]}};
+    {.name = "angular_momentum_x", .generator = top_turn, .user = &axes[0]},
+    {.name = "angular_momentum_y", .generator = top_turn, .user = &axes[1]},
+    {.name = "angular_momentum_z", .generator = top_turn, .user = &axes[2]}};
 
 void top_inertia(top *body, const double *J)
 {
@@ -66,9 +66,9 @@ dvi_status top_system(problem *made, const dvi_invariant *invariant)
   const int heavy = own->weight[0] != 0.0 || own->weight[1] != 0.0 || own->weight[2] != 0.0;
   const dvi_factor factor = {.kind = DVI_SO3, .inertia = own->J};
   const dvi_potential potential = {.name = "weight",
-                                   .value_batch = value,
-                                   .gradient_batch = gradient,
-                                   .hessian_batch = hessian,
+                                   .value_batch = top_potential,
+                                   .gradient_batch = top_gradient,
+                                   .hessian_batch = top_hessian,
                                    .qq = {none_start, none_row},
                                    .user = own};
   const dvi_system_terms terms = {.factors = &factor,

@@ -1,25 +1,26 @@
-/* Rigid bodies that turn about a fixed point, under their weight or none: on SO(3), V = w.R^T e3
- * with the vector w = m g X in the body's frame, X from the fixed point to the centre of mass and
- * e3 up. */
+/* Rigid bodies that turn about a fixed point, with or without weight. On SO(3), V = w.R^T e3 with
+ * the vector w = m g X in the body's frame, X from the fixed point to the centre of mass, and e3
+ * up. */
 #ifndef PROBLEMS_TOP_H
 #define PROBLEMS_TOP_H
 #include "entry.h"
 
-/* What is said about a body. */
+/* The parameters of a body. */
 typedef struct top {
-  double J[9];      /* the inertia about the fixed point, in the body's frame */
-  double weight[3]; /* w */
+  double J[9];      /* inertia about the fixed point, in the body's frame */
+  double weight[3]; /* vector w */
 } top;
 
-/* Room for a body, which `made->parameters` points to then, at R = I and with this angular
+/* Allocate a body, which `made->parameters` then points to, at R = I and with this angular
  * velocity. J and w are still to be set. */
 dvi_status top_room(problem *made, const double *Omega);
 
-/* The principal inertias. */
+/* Set the principal inertias. */
 void top_inertia(top *body, const double *J);
 
-/* Make the system. Without weight (the vector is 0) there is no potential, and the angular momentum
- * has three components in space; with weight that about the vertical is left. */
+/* Make the system. Without weight (a vector of 0) there is no potential, and all three components
+ * of the angular momentum in space are conserved. With weight only the one about the vertical
+ * is. */
 dvi_status top_system(problem *made, const dvi_invariant *invariant);
 
 #define TOP_START(title, number)                                                     \

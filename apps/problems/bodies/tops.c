@@ -1,12 +1,16 @@
-/* Heavy bodies that turn about a fixed point. Their motion is that of Euler and Poisson: Pi' = Pi x
- * Omega + (R^T e3) x w, R' = R Omega^.
+/* Heavy bodies that turn about a fixed point. Their equations are those of Euler and Poisson.
  *
- * pendulum-3d: a body that hangs from a pivot, the centre of mass at l e3 in its frame, gravity
- * along +e3 of space: V = -m g l R33. heavy-top: the centre of mass at l e2; its inertia about
- * that, and about the pivot J = J_com + m (|X|^2 I - X X^T). Units kg, m, s. kovalevskaya: J =
- * (2,2,1), X along e1: the third integrable case. |(Omega1 + i Omega2)^2 - (G1 + i G2)|^2 is
- * conserved, G = R^T e3, for the unit weight. Sources: Leok and Shingel 2012, sec. 2.4
- * (pendulum-3d); Kovalevskaya 1889, Acta Math. 12:177. */
+ *     Pi' = Pi x Omega + (R^T e3) x w,   R' = R Omega^
+ *
+ * pendulum-3d is a body that hangs from a pivot, with the centre of mass at l e3 in its frame,
+ * gravity along +e3 of space, and V = -m g l R33. heavy-top has the centre of mass at l e2, its
+ * inertia about that point, and J = J_com + m (|X|^2 I - X X^T) about the pivot, in kg, m, s.
+ * kovalevskaya has J = (2,2,1), X along e1, and is the third integrable case. With G = R^T e3 and
+ * the unit weight it conserves
+ *
+ *     |(Omega1 + i Omega2)^2 - (G1 + i G2)|^2.
+ *
+ * Sources: Leok and Shingel 2012, sec. 2.4 (pendulum-3d); Kovalevskaya 1889, Acta Math. 12:177. */
 #include "bodies/top.h"
 
 static dvi_status make_pendulum(const double *setting, problem *made)

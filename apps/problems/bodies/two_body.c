@@ -1,10 +1,14 @@
-/* The full two-body problem: two extended rigid bodies, each six point masses on its principal
+/* The full two-body problem. Two extended rigid bodies, each of six point masses on its principal
  * axes, attract each other by Newton's law, G = 1.
  *
  *     V = - sum_ab  m_a m_b / |x1 + R1 rho_a - x2 - R2 rho_b|        on SE(3) x SE(3)
- * A body of mass m and semi-axes s_1, s_2, s_3 has masses m/6 at +- s_k e_k, and so J_kk = m (|s|^2
- * - s_k^2)/3. Orbit and rotations exchange momentum. Source: Lee, Leok and McClamroch 2007 (Lie
- * group variational integrators for the full body problem), Comput. Methods Appl. Mech. Engrg.
+ *
+ * A body of mass m and semi-axes s_1, s_2, s_3 has masses m/6 at +- s_k e_k, and so the inertia
+ *
+ *     J_kk = m (|s|^2 - s_k^2)/3.
+ *
+ * Orbit and rotations exchange momentum. Source: Lee, Leok and McClamroch 2007 (Lie group
+ * variational integrators for the full body problem), Comput. Methods Appl. Mech. Engrg.
  * 196:2907. */
 #include "bodies/pulls.h"
 
@@ -19,21 +23,21 @@ typedef struct bodies {
 
 static const double shape[2][3] = {{0.6, 0.4, 0.3}, {0.35, 0.3, 0.15}};
 
-/* x1 + R1 rho_a - x2 - R2 rho_b. */
-static void connect(bodies *own, int a, int b, double size, double strength)
+/* Set the arms of x1 + R1 rho_a - x2 - R2 rho_b. */
+static void two_body_connect(bodies *own, int a, int b, double size, double strength)
 {
   const int index = POINTS * a + b;
   const double rho[2] = {(a % 2 == 0 ? size : -size) * shape[0][a / 2],
                          (b % 2 == 0 ? size : -size) * shape[1][b / 2]};
   arm *arms = own->arm[index];
-  arms[0] = (arm){9, 1, 1.0};
-  arms[1] = (arm){a / 2, 3, rho[0]};
-  arms[2] = (arm){STORED + 9, 1, -1.0};
-  arms[3] = (arm){STORED + b / 2, 3, -rho[1]};
+  arms[0] = (arm){.first = 9, .stride = 1, .factor = 1.0};
+  arms[1] = (arm){.first = a / 2, .stride = 3, .factor = rho[0]};
+  arms[2] = (arm){.first = STORED + 9, .stride = 1, .factor = -1.0};
+  arms[3] = (arm){.first = STORED + b / 2, .stride = 3, .factor = -rho[1]};
   own->pull[index] = (pull){.strength = strength, .arms = 4, .arm = arms};
 }
 
-static void set_inertia(const double *semiaxis, double size, double mass, double *J)
+static void two_body_set_inertia(const double *semiaxis, double size, double mass, double *J)
 {
   const double square = semiaxis[0] * semiaxis[0] + semiaxis[1] * semiaxis[1] +
                         semiaxis[2] * semiaxis[2];
@@ -41,11 +45,11 @@ static void set_inertia(const double *semiaxis, double size, double mass, double
     J[4 * k] = mass * size * size * (square - semiaxis[k] * semiaxis[k]) / 3.0;
 }
 
-/* What the generators point to. */
+/* The axes that the generators point to. */
 static int axes[] = {0, 1, 2};
 
-/* Shifts along axis e; turns in space about it: Omega = R^t e, x' = e x x. */
-static int shift(const double *q, double *xi, void *user)
+/* Shift along axis e. two_body_turn turns in space about it, with Omega = R^t e, x' = e x x. */
+static int two_body_shift(const double *q, double *xi, void *user)
 {
   const int e = *(const int *)user;
   (void)q;
@@ -54,7 +58,7 @@ static int shift(const double *q, double *xi, void *user)
   return 0;
 }
 
-static int turn(const double *q, double *xi, void *user)
+static int two_body_turn(const double *q, double *xi, void *user)
 {
   const int e = *(const int *)user, i = (e + 1) % 3, j = (e + 2) % 3;
   for (int body = 0; body < 2; body++, q += STORED, xi += VELOCITIES) {
@@ -67,16 +71,17 @@ static int turn(const double *q, double *xi, void *user)
 }
 
 static const dvi_symmetry symmetries[] = {
-    {.name = "momentum_x", .generator = shift, .user = &axes[0]},
-    {.name = "momentum_y", .generator = shift, .user = &axes[1]},
-    {.name = "momentum_z", .generator = shift, .user = &axes[2]},
-    {.name = "angular_momentum_x", .generator = turn, .user = &axes[0]},
-    {.name = "angular_momentum_y", .generator = turn, .user = &axes[1]},
-    {.name = "angular_momentum_z", .generator = turn, .user = &axes[2]},
+    {.name = "momentum_x", .generator = two_body_shift, .user = &axes[0]},
+    {.name = "momentum_y", .generator = two_body_shift, .user = &axes[1]},
+    {.name = "momentum_z", .generator = two_body_shift, .user = &axes[2]},
+    {.name = "angular_momentum_x", .generator = two_body_turn, .user = &axes[0]},
+    {.name = "angular_momentum_y", .generator = two_body_turn, .user = &axes[1]},
+    {.name = "angular_momentum_z", .generator = two_body_turn, .user = &axes[2]},
 };
 
-/* The centre of mass rests at the origin; the bodies are apart along x and move along y. */
-static void place(problem *made, double m1, double m2, double distance, double speed)
+/* Place the bodies. The centre of mass rests at the origin. The bodies are apart along x and move
+ * along y. */
+static void two_body_place(problem *made, double m1, double m2, double distance, double speed)
 {
   static const double Omega[2][3] = {{0.2, 0.3, 0.5}, {-0.4, 0.1, 0.8}};
   const double part[2] = {m2 / (m1 + m2), -m1 / (m1 + m2)};
@@ -87,7 +92,7 @@ static void place(problem *made, double m1, double m2, double distance, double s
   }
 }
 
-static dvi_status make(const double *setting, problem *made)
+static dvi_status two_body_make(const double *setting, problem *made)
 {
   const dvi_factor kinds[2] = {{.kind = DVI_SE3}, {.kind = DVI_SE3}};
   const dvi_status status = problem_factors(made, 2, kinds, sizeof(bodies));
@@ -97,10 +102,10 @@ static dvi_status make(const double *setting, problem *made)
   own->all = (pulls){.nq = 2 * STORED, .count = POINTS * POINTS, .pull = own->pull};
   for (int a = 0; a < POINTS; a++)
     for (int b = 0; b < POINTS; b++)
-      connect(own, a, b, size, mass[0] * mass[1] / (POINTS * POINTS));
+      two_body_connect(own, a, b, size, mass[0] * mass[1] / (POINTS * POINTS));
   for (int body = 0; body < 2; body++)
-    set_inertia(shape[body], size, mass[body], own->inertia[body]);
-  place(made, mass[0], mass[1], setting[2], setting[3]);
+    two_body_set_inertia(shape[body], size, mass[body], own->inertia[body]);
+  two_body_place(made, mass[0], mass[1], setting[2], setting[3]);
 
   const dvi_factor factors[2] = {{.kind = DVI_SE3, .mass = mass[0], .inertia = own->inertia[0]},
                                  {.kind = DVI_SE3, .mass = mass[1], .inertia = own->inertia[1]}};
@@ -163,7 +168,7 @@ const problem_entry problem_entry_two_body = {
     .name = "two-body",
     .summary = "two extended bodies that attract each other: orbit and attitude; rigid motions",
     .parameters = parameters,
-    .make = make,
+    .make = two_body_make,
     .h = 0.05,
     .t_end = 100.0,
     .order_h = 0.1,

@@ -1,16 +1,16 @@
-/* A pendulum as a particle on a circle: H = |p|^2/2 + y in the plane, phi = (|q|^2 - 1)/2 and q.p,
- * of second class: {phi_1, phi_2} = |q|^2. Source: Dirac 1964. */
+/* A pendulum as a particle on a circle. H = |p|^2/2 + y in the plane, and phi = (|q|^2 - 1)/2 and
+ * q.p are of second class, {phi_1, phi_2} = |q|^2. Source: Dirac 1964. */
 #include "entry.h"
 
-static int H(double t, const double *q, const double *p, double *value, void *user)
+static int circle_hamiltonian(double t, const double *q, const double *p, double *value, void *user)
 {
   (void)t, (void)user;
   *value = (p[0] * p[0] + p[1] * p[1]) / 2 + q[1];
   return 0;
 }
 
-static int H_gradient(double t, const double *q, const double *p, double *H_q, double *H_p,
-                      void *user)
+static int circle_gradient(double t, const double *q, const double *p, double *H_q, double *H_p,
+                           void *user)
 {
   (void)t, (void)q, (void)user;
   H_q[0] = 0;
@@ -20,15 +20,15 @@ static int H_gradient(double t, const double *q, const double *p, double *H_q, d
   return 0;
 }
 
-static int H_hessian(double t, const double *q, const double *p, double *H_qq, double *H_qp,
-                     double *H_pp, void *user)
+static int circle_hessian(double t, const double *q, const double *p, double *H_qq, double *H_qp,
+                          double *H_pp, void *user)
 {
   (void)t, (void)q, (void)p, (void)H_qq, (void)H_qp, (void)user;
   H_pp[0] = H_pp[1] = 1;
   return 0;
 }
 
-static int phi(const double *q, const double *p, double *value, void *user)
+static int circle_constraint(const double *q, const double *p, double *value, void *user)
 {
   (void)user;
   value[0] = (q[0] * q[0] + q[1] * q[1] - 1) / 2;
@@ -36,8 +36,8 @@ static int phi(const double *q, const double *p, double *value, void *user)
   return 0;
 }
 
-/* Of the first in q, of the second in q and p. */
-static int phi_gradient(const double *q, const double *p, double *phi_z, void *user)
+/* Evaluate the gradient of the first constraint in q, and of the second one in q and p. */
+static int circle_constraint_gradient(const double *q, const double *p, double *phi_z, void *user)
 {
   (void)user;
   for (int i = 0; i < 2; i++) {
@@ -47,8 +47,8 @@ static int phi_gradient(const double *q, const double *p, double *phi_z, void *u
   return 0;
 }
 
-static int phi_hessian(const double *q, const double *p, const double *w, double *qq, double *qp,
-                       double *pp, void *user)
+static int circle_constraint_hessian(const double *q, const double *p, const double *w, double *qq,
+                                     double *qp, double *pp, void *user)
 {
   (void)q, (void)p, (void)pp, (void)user;
   qq[0] = qq[1] = w[0];
@@ -59,7 +59,7 @@ static int phi_hessian(const double *q, const double *p, const double *w, double
 static const int none_start[] = {0, 0, 0}, diagonal_start[] = {0, 1, 2}, diagonal_row[] = {0, 1};
 static const int phi_start[] = {0, 2, 6}, phi_row[] = {0, 1, 0, 1, 2, 3};
 
-static dvi_status make(const double *setting, problem *made)
+static dvi_status circle_make(const double *setting, problem *made)
 {
   const dvi_status status = problem_room(made, 2, 1);
   if (status != DVI_OK) return status;
@@ -71,16 +71,16 @@ static dvi_status make(const double *setting, problem *made)
   made->p[1] = -0.8 * setting[0];
 
   const dvi_pattern none = {none_start, NULL}, diagonal = {diagonal_start, diagonal_row};
-  const dvi_hamiltonian hamiltonian = {.value = H,
-                                       .gradient = H_gradient,
-                                       .hessian = H_hessian,
+  const dvi_hamiltonian hamiltonian = {.value = circle_hamiltonian,
+                                       .gradient = circle_gradient,
+                                       .hessian = circle_hessian,
                                        .qq = none,
                                        .qp = none,
                                        .pp = diagonal};
   const dvi_constraint constraint = {.count = 2,
-                                     .value = phi,
-                                     .gradient = phi_gradient,
-                                     .hessian = phi_hessian,
+                                     .value = circle_constraint,
+                                     .gradient = circle_constraint_gradient,
+                                     .hessian = circle_constraint_hessian,
                                      .gradients = {phi_start, phi_row},
                                      .qq = diagonal,
                                      .qp = diagonal,
@@ -108,7 +108,7 @@ const problem_entry problem_entry_circle_dirac = {
     .name = "circle-dirac",
     .summary = "a pendulum as a particle held on a circle; Hamiltonian with two constraints",
     .parameters = parameters,
-    .make = make,
+    .make = circle_make,
     .h = 0.1,
     .t_end = 100.0,
     .order_h = 0.2,

@@ -1,25 +1,28 @@
-/* Euler's elastica: a bent rod, or a car that is steered at unit speed with the least effort. q =
- * (x, y, theta), and by Pontryagin's principle
- *     x' = cos theta, y' = sin theta, theta' = u with the least integral of u^2/2:
- *     H = p_x cos theta + p_y sin theta + p_theta^2/2,
- * linear in two momenta: d2H/dp2 is singular, and there is no Lagrangian. p_x = -1 and p_y = 0 are
- * the force at the rod's end, p_theta is its curvature. Source: Jurdjevic 1997, Geometric Control
- * Theory, ch. 7. */
+/* Euler's elastica, which is a bent rod, or a car that is steered at unit speed with the least
+ * effort. q = (x, y, theta), and by Pontryagin's principle
+ *
+ *     x' = cos theta, y' = sin theta, theta' = u with the least integral of u^2/2,
+ *     H = p_x cos theta + p_y sin theta + p_theta^2/2.
+ *
+ * H is linear in two momenta, d2H/dp2 is singular, and there is no Lagrangian. p_x = -1 and p_y = 0
+ * are the force at the rod's end, p_theta is its curvature. Source: Jurdjevic 1997, Geometric
+ * Control Theory, ch. 7. */
 #include <math.h>
 
 #include "entry.h"
 
 enum { X, Y, THETA };
 
-static int H(double t, const double *q, const double *p, double *value, void *user)
+static int elastica_hamiltonian(double t, const double *q, const double *p, double *value,
+                                void *user)
 {
   (void)t, (void)user;
   *value = p[X] * cos(q[THETA]) + p[Y] * sin(q[THETA]) + p[THETA] * p[THETA] / 2;
   return 0;
 }
 
-static int H_gradient(double t, const double *q, const double *p, double *H_q, double *H_p,
-                      void *user)
+static int elastica_gradient(double t, const double *q, const double *p, double *H_q, double *H_p,
+                             void *user)
 {
   const double c = cos(q[THETA]), s = sin(q[THETA]);
   (void)t, (void)user;
@@ -31,8 +34,8 @@ static int H_gradient(double t, const double *q, const double *p, double *H_q, d
   return 0;
 }
 
-static int H_hessian(double t, const double *q, const double *p, double *H_qq, double *H_qp,
-                     double *H_pp, void *user)
+static int elastica_hessian(double t, const double *q, const double *p, double *H_qq, double *H_qp,
+                            double *H_pp, void *user)
 {
   const double c = cos(q[THETA]), s = sin(q[THETA]);
   (void)t, (void)user;
@@ -43,7 +46,7 @@ static int H_hessian(double t, const double *q, const double *p, double *H_qq, d
   return 0;
 }
 
-static int along_x(const double *q, double *xi, void *user)
+static int elastica_along_x(const double *q, double *xi, void *user)
 {
   (void)q, (void)user;
   xi[X] = 1;
@@ -51,7 +54,7 @@ static int along_x(const double *q, double *xi, void *user)
   return 0;
 }
 
-static int along_y(const double *q, double *xi, void *user)
+static int elastica_along_y(const double *q, double *xi, void *user)
 {
   (void)q, (void)user;
   xi[Y] = 1;
@@ -59,7 +62,7 @@ static int along_y(const double *q, double *xi, void *user)
   return 0;
 }
 
-static int turn(const double *q, double *xi, void *user)
+static int elastica_turn(const double *q, double *xi, void *user)
 {
   (void)user;
   xi[X] = -q[Y];
@@ -72,9 +75,9 @@ static int turn(const double *q, double *xi, void *user)
 
 enum { MEANS = 8 };
 
-/* sin and cos of the amplitude am(u, k) of Jacobi's functions, and E(am(u, k), k), by arithmetic
- * and geometric means (Abramowitz and Stegun 1964, 16.4 and 17.6). */
-static void jacobi(double u, double k, double *sn, double *cn, double *E)
+/* Compute sin and cos of the amplitude am(u, k) of Jacobi's functions, and E(am(u, k), k), by
+ * arithmetic and geometric means (Abramowitz and Stegun 1964, 16.4 and 17.6). */
+static void elastica_jacobi(double u, double k, double *sn, double *cn, double *E)
 {
   double a[MEANS + 1] = {1}, c[MEANS + 1] = {k}, b = sqrt((1 - k) * (1 + k)), lost = k * k / 2;
   for (int m = 0; m < MEANS; m++) {
@@ -93,13 +96,13 @@ static void jacobi(double u, double k, double *sn, double *cn, double *E)
   *cn = cos(phi);
 }
 
-/* theta'' = -sin theta is a pendulum's equation; x' = 1 - 2 sin^2(theta/2), and p_theta + y is
- * kept. */
-static int exact(const problem *made, double t, double *q, double *p)
+/* Compute the solution. theta'' = -sin theta is a pendulum's equation, x' = 1 - 2 sin^2(theta/2),
+ * and p_theta + y is conserved. */
+static int elastica_exact(const problem *made, double t, double *q, double *p)
 {
   const double k = made->p[THETA] / 2;
   double sn, cn, E;
-  jacobi(t, k, &sn, &cn, &E);
+  elastica_jacobi(t, k, &sn, &cn, &E);
   q[X] = 2 * E - t;
   q[Y] = 2 * k * (1 - cn);
   q[THETA] = 2 * asin(k * sn);
@@ -114,7 +117,7 @@ static int exact(const problem *made, double t, double *q, double *p)
 static const int theta_start[] = {0, 0, 0, 1}, theta_row[] = {THETA};
 static const int mixed_start[] = {0, 1, 2, 2}, mixed_row[] = {THETA, THETA};
 
-static dvi_status make(const double *setting, problem *made)
+static dvi_status elastica_make(const double *setting, problem *made)
 {
   const dvi_status status = problem_room(made, 3, 1);
   if (status != DVI_OK) return status;
@@ -124,15 +127,15 @@ static dvi_status make(const double *setting, problem *made)
   made->p[X] = -1;
   made->p[THETA] = setting[0];
 
-  const dvi_hamiltonian hamiltonian = {.value = H,
-                                       .gradient = H_gradient,
-                                       .hessian = H_hessian,
+  const dvi_hamiltonian hamiltonian = {.value = elastica_hamiltonian,
+                                       .gradient = elastica_gradient,
+                                       .hessian = elastica_hessian,
                                        .qq = {theta_start, theta_row},
                                        .qp = {mixed_start, mixed_row},
                                        .pp = {theta_start, theta_row}};
-  const dvi_symmetry symmetries[] = {{.name = "force_x", .generator = along_x},
-                                     {.name = "force_y", .generator = along_y},
-                                     {.name = "moment", .generator = turn}};
+  const dvi_symmetry symmetries[] = {{.name = "force_x", .generator = elastica_along_x},
+                                     {.name = "force_y", .generator = elastica_along_y},
+                                     {.name = "moment", .generator = elastica_turn}};
   const dvi_system_terms terms = {.dimension = 3,
                                   .autonomous = 1,
                                   .hamiltonian = &hamiltonian,
@@ -160,8 +163,8 @@ const problem_entry problem_entry_elastica = {
     .summary = "a bent rod, or a car steered with least effort: a degenerate Hamiltonian, exact "
                "solution known",
     .parameters = parameters,
-    .make = make,
-    .exact = exact,
+    .make = elastica_make,
+    .exact = elastica_exact,
     .h = 0.1,
     .t_end = 100.0,
     .order_h = 0.2,

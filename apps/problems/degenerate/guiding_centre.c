@@ -1,13 +1,16 @@
-/* The guiding centre of a charged particle in the field 1 + r^2 along z: alpha = (-y s, x s, u, 0),
- * s = (2 + r^2)/4, H = u^2/2 + mu (1 + r^2). Exact: it turns about the axis at the rate 2 mu/(1 +
- * r^2), and moves along it with the speed u. Source: Kraus 2017, arXiv:1708.07356. */
+/* The guiding centre of a charged particle in the field 1 + r^2 along z.
+ *
+ *     alpha = (-y s, x s, u, 0),  s = (2 + r^2)/4,  H = u^2/2 + mu (1 + r^2)
+ *
+ * The exact motion turns about the axis at the rate 2 mu/(1 + r^2), and moves along it with the
+ * speed u. Source: Kraus 2017, arXiv:1708.07356. */
 #include <math.h>
 
 #include "entry.h"
 
 static const double mu = 0.01;
 
-static int value(const double *q, double *alpha, void *user)
+static int guiding_centre_one_form(const double *q, double *alpha, void *user)
 {
   const double x = q[0], y = q[1], s = 0.25 * (2 + x * x + y * y);
   (void)user;
@@ -21,7 +24,7 @@ static int value(const double *q, double *alpha, void *user)
 /* alpha_x and alpha_y depend on x and y, alpha_z on u. */
 static const int gradient_start[] = {0, 2, 4, 5, 5}, gradient_row[] = {0, 1, 0, 1, 3};
 
-static int gradient(const double *q, double *alpha_q, void *user)
+static int guiding_centre_one_form_gradient(const double *q, double *alpha_q, void *user)
 {
   const double x = q[0], y = q[1], s = 0.25 * (2 + x * x + y * y);
   (void)user;
@@ -35,7 +38,8 @@ static int gradient(const double *q, double *alpha_q, void *user)
 
 static const int hessian_start[] = {0, 2, 4, 4, 4}, hessian_row[] = {0, 1, 0, 1};
 
-static int hessian(const double *q, const double *w, double *alpha_w_qq, void *user)
+static int guiding_centre_one_form_hessian(const double *q, const double *w, double *alpha_w_qq,
+                                           void *user)
 {
   const double x = q[0], y = q[1];
   (void)user;
@@ -45,14 +49,14 @@ static int hessian(const double *q, const double *w, double *alpha_w_qq, void *u
   return 0;
 }
 
-static int H(double t, const double *q, double *value_of_H, void *user)
+static int guiding_centre_hamiltonian(double t, const double *q, double *value_of_H, void *user)
 {
   (void)t, (void)user;
   *value_of_H = 0.5 * q[3] * q[3] + mu * (1 + q[0] * q[0] + q[1] * q[1]);
   return 0;
 }
 
-static int H_gradient(double t, const double *q, double *H_q, void *user)
+static int guiding_centre_gradient(double t, const double *q, double *H_q, void *user)
 {
   (void)t, (void)user;
   H_q[0] = 2 * mu * q[0];
@@ -64,7 +68,7 @@ static int H_gradient(double t, const double *q, double *H_q, void *user)
 
 static const int H_start[] = {0, 1, 2, 2, 3}, H_row[] = {0, 1, 3};
 
-static int H_hessian(double t, const double *q, double *H_qq, void *user)
+static int guiding_centre_hessian(double t, const double *q, double *H_qq, void *user)
 {
   (void)t, (void)q, (void)user;
   H_qq[0] = H_qq[1] = 2 * mu;
@@ -72,7 +76,7 @@ static int H_hessian(double t, const double *q, double *H_qq, void *user)
   return 0;
 }
 
-static int rotation(const double *q, double *xi, void *user)
+static int guiding_centre_rotation(const double *q, double *xi, void *user)
 {
   (void)user;
   xi[0] = -q[1];
@@ -81,7 +85,7 @@ static int rotation(const double *q, double *xi, void *user)
   return 0;
 }
 
-static int shift(const double *q, double *xi, void *user)
+static int guiding_centre_shift(const double *q, double *xi, void *user)
 {
   (void)q, (void)user;
   xi[0] = xi[1] = xi[3] = 0;
@@ -89,7 +93,7 @@ static int shift(const double *q, double *xi, void *user)
   return 0;
 }
 
-static int exact(const problem *made, double t, double *q, double *p)
+static int guiding_centre_exact(const problem *made, double t, double *q, double *p)
 {
   const double x = made->q[0], y = made->q[1], u = made->q[3],
                angle = 2 * mu / (1 + x * x + y * y) * t;
@@ -97,10 +101,10 @@ static int exact(const problem *made, double t, double *q, double *p)
   q[1] = x * sin(angle) + y * cos(angle);
   q[2] = made->q[2] + u * t;
   q[3] = u;
-  return value(q, p, NULL);
+  return guiding_centre_one_form(q, p, NULL);
 }
 
-static dvi_status make(const double *setting, problem *made)
+static dvi_status guiding_centre_make(const double *setting, problem *made)
 {
   (void)setting;
   const dvi_status status = problem_room(made, 4, 1);
@@ -111,18 +115,19 @@ static dvi_status make(const double *setting, problem *made)
   problem_label(made, 3, "u");
   made->q[0] = made->q[3] = 0.5;
 
-  const dvi_one_form form = {.value = value,
-                             .gradient = gradient,
-                             .hessian = hessian,
+  const dvi_one_form form = {.value = guiding_centre_one_form,
+                             .gradient = guiding_centre_one_form_gradient,
+                             .hessian = guiding_centre_one_form_hessian,
                              .gradients = {gradient_start, gradient_row},
                              .qq = {hessian_start, hessian_row}};
   const dvi_potential hamiltonian = {.name = "H",
-                                     .value = H,
-                                     .gradient = H_gradient,
-                                     .hessian = H_hessian,
+                                     .value = guiding_centre_hamiltonian,
+                                     .gradient = guiding_centre_gradient,
+                                     .hessian = guiding_centre_hessian,
                                      .qq = {H_start, H_row}};
-  const dvi_symmetry symmetries[] = {{.name = "angular_momentum", .generator = rotation},
-                                     {.name = "axial_momentum", .generator = shift}};
+  const dvi_symmetry symmetries[] = {
+      {.name = "angular_momentum", .generator = guiding_centre_rotation},
+      {.name = "axial_momentum", .generator = guiding_centre_shift}};
   const dvi_system_terms terms = {.dimension = 4,
                                   .one_form = &form,
                                   .potentials = &hamiltonian,
@@ -141,8 +146,8 @@ const problem_entry problem_entry_guiding_centre = {
     .name = "guiding-centre",
     .summary = "the guiding centre of a particle in an axial magnetic field; degenerate, exact "
                "solution known",
-    .make = make,
-    .exact = exact,
+    .make = guiding_centre_make,
+    .exact = guiding_centre_exact,
     .h = 0.5,
     .t_end = 1000.0,
     .order_h = 4.0,

@@ -1,6 +1,9 @@
-/* Predators and their prey: H = a.q + b.ln q with the two-form of 1/(q1 q2). Three one-forms, which
- * differ by the gradient of a function, give it: alpha = ( c q2 + left ln q2 / q1, c q1 + right ln
- * q1 / q2 ). Source: Kraus 2017, arXiv:1708.07356. */
+/* Predators and their prey, H = a.q + b.ln q with the two-form of 1/(q1 q2). Three one-forms, which
+ * differ by the gradient of a function, give this two-form.
+ *
+ *     alpha = ( c q2 + left ln q2 / q1, c q1 + right ln q1 / q2 )
+ *
+ * Source: Kraus 2017, arXiv:1708.07356. */
 #include <math.h>
 
 #include "entry.h"
@@ -9,7 +12,7 @@ typedef struct gauge {
   double c, left, right;
 } gauge;
 
-static int value(const double *q, double *alpha, void *user)
+static int lotka_volterra_one_form(const double *q, double *alpha, void *user)
 {
   const gauge *g = user;
   if (!(q[0] > 0 && q[1] > 0)) return 1;
@@ -18,7 +21,7 @@ static int value(const double *q, double *alpha, void *user)
   return 0;
 }
 
-static int gradient(const double *q, double *alpha_q, void *user)
+static int lotka_volterra_one_form_gradient(const double *q, double *alpha_q, void *user)
 {
   const gauge *g = user;
   if (!(q[0] > 0 && q[1] > 0)) return 1;
@@ -29,7 +32,8 @@ static int gradient(const double *q, double *alpha_q, void *user)
   return 0;
 }
 
-static int hessian(const double *q, const double *w, double *alpha_w_qq, void *user)
+static int lotka_volterra_one_form_hessian(const double *q, const double *w, double *alpha_w_qq,
+                                           void *user)
 {
   const gauge *g = user;
   if (!(q[0] > 0 && q[1] > 0)) return 1;
@@ -42,7 +46,7 @@ static int hessian(const double *q, const double *w, double *alpha_w_qq, void *u
 
 static const double a[2] = {1, 1}, b[2] = {-1, -2};
 
-static int H(double t, const double *q, double *value_of_H, void *user)
+static int lotka_volterra_hamiltonian(double t, const double *q, double *value_of_H, void *user)
 {
   (void)t, (void)user;
   if (!(q[0] > 0 && q[1] > 0)) return 1;
@@ -50,14 +54,14 @@ static int H(double t, const double *q, double *value_of_H, void *user)
   return 0;
 }
 
-static int H_gradient(double t, const double *q, double *H_q, void *user)
+static int lotka_volterra_gradient(double t, const double *q, double *H_q, void *user)
 {
   (void)t, (void)user;
   for (int i = 0; i < 2; i++) H_q[i] = a[i] + b[i] / q[i];
   return 0;
 }
 
-static int H_hessian(double t, const double *q, double *H_qq, void *user)
+static int lotka_volterra_hessian(double t, const double *q, double *H_qq, void *user)
 {
   (void)t, (void)user;
   for (int i = 0; i < 2; i++) H_qq[i] = -b[i] / (q[i] * q[i]);
@@ -67,9 +71,9 @@ static int H_hessian(double t, const double *q, double *H_qq, void *user)
 static const int diagonal_start[] = {0, 1, 2}, diagonal_row[] = {0, 1};
 static const char *const gauges[] = {"standard", "singular", "symmetric", NULL};
 
-static dvi_status make(const double *setting, problem *made)
+static dvi_status lotka_volterra_make(const double *setting, problem *made)
 {
-  static const gauge of_name[] = {{1, 1, 0}, {0, 1, 0}, {0, 0.5, -0.5}};
+  static const gauge of_name[] = {{.c = 1, .left = 1}, {.left = 1}, {.left = 0.5, .right = -0.5}};
   const dvi_status status = problem_room(made, 2, sizeof(gauge));
   if (status != DVI_OK) return status;
   gauge *own = made->parameters;
@@ -79,11 +83,14 @@ static dvi_status make(const double *setting, problem *made)
   made->q[0] = setting[1];
   made->q[1] = setting[2];
 
-  const dvi_one_form form = {.value = value, .gradient = gradient, .hessian = hessian, .user = own};
+  const dvi_one_form form = {.value = lotka_volterra_one_form,
+                             .gradient = lotka_volterra_one_form_gradient,
+                             .hessian = lotka_volterra_one_form_hessian,
+                             .user = own};
   const dvi_potential hamiltonian = {.name = "H",
-                                     .value = H,
-                                     .gradient = H_gradient,
-                                     .hessian = H_hessian,
+                                     .value = lotka_volterra_hamiltonian,
+                                     .gradient = lotka_volterra_gradient,
+                                     .hessian = lotka_volterra_hessian,
                                      .qq = {diagonal_start, diagonal_row}};
   const dvi_system_terms terms = {.dimension = 2,
                                   .one_form = &form,
@@ -122,7 +129,7 @@ const problem_entry problem_entry_lotka_volterra = {
     .name = "lotka-volterra",
     .summary = "predators and their prey; degenerate, in three gauges",
     .parameters = parameters,
-    .make = make,
+    .make = lotka_volterra_make,
     .h = 0.1,
     .t_end = 100.0,
     .order_h = 0.1,

@@ -1,16 +1,19 @@
-/* A charged particle without mass in a plane, in the magnetic field 1 + 2 r^2: alpha = (1 + r^2)/2
- * (-y, x), or with the gauge that leaves one component, (-y (1 + 2 x^2 + 2 y^2/3), 0); H = cos x +
- * sin y. Source: Kraus 2017, arXiv:1708.07356. */
+/* A charged particle without mass in a plane, in the magnetic field 1 + 2 r^2, H = cos x + sin y.
+ * The second gauge of the one-form leaves one component.
+ *
+ *     alpha = (1 + r^2)/2 (-y, x)   or   alpha = (-y (1 + 2 x^2 + 2 y^2/3), 0)
+ *
+ * Source: Kraus 2017, arXiv:1708.07356. */
 #include <math.h>
 
 #include "entry.h"
 
-/* Both are ( -y (c + d x^2 + e y^2),  f x (1 + x^2 + y^2) ). */
+/* The coefficients of both gauges, ( -y (c + d x^2 + e y^2),  f x (1 + x^2 + y^2) ). */
 typedef struct gauge {
   double c, d, e, f;
 } gauge;
 
-static int value(const double *q, double *alpha, void *user)
+static int massless_particle_one_form(const double *q, double *alpha, void *user)
 {
   const gauge *g = user;
   const double x = q[0], y = q[1];
@@ -19,7 +22,7 @@ static int value(const double *q, double *alpha, void *user)
   return 0;
 }
 
-static int gradient(const double *q, double *alpha_q, void *user)
+static int massless_particle_one_form_gradient(const double *q, double *alpha_q, void *user)
 {
   const gauge *g = user;
   const double x = q[0], y = q[1];
@@ -30,7 +33,8 @@ static int gradient(const double *q, double *alpha_q, void *user)
   return 0;
 }
 
-static int hessian(const double *q, const double *w, double *alpha_w_qq, void *user)
+static int massless_particle_one_form_hessian(const double *q, const double *w, double *alpha_w_qq,
+                                              void *user)
 {
   const gauge *g = user;
   const double x = q[0], y = q[1];
@@ -40,14 +44,14 @@ static int hessian(const double *q, const double *w, double *alpha_w_qq, void *u
   return 0;
 }
 
-static int H(double t, const double *q, double *value_of_H, void *user)
+static int massless_particle_hamiltonian(double t, const double *q, double *value_of_H, void *user)
 {
   (void)t, (void)user;
   *value_of_H = cos(q[0]) + sin(q[1]);
   return 0;
 }
 
-static int H_gradient(double t, const double *q, double *H_q, void *user)
+static int massless_particle_gradient(double t, const double *q, double *H_q, void *user)
 {
   (void)t, (void)user;
   H_q[0] = -sin(q[0]);
@@ -55,7 +59,7 @@ static int H_gradient(double t, const double *q, double *H_q, void *user)
   return 0;
 }
 
-static int H_hessian(double t, const double *q, double *H_qq, void *user)
+static int massless_particle_hessian(double t, const double *q, double *H_qq, void *user)
 {
   (void)t, (void)user;
   H_qq[0] = -cos(q[0]);
@@ -66,9 +70,10 @@ static int H_hessian(double t, const double *q, double *H_qq, void *user)
 static const int diagonal_start[] = {0, 1, 2}, diagonal_row[] = {0, 1};
 static const char *const gauges[] = {"standard", "singular", NULL};
 
-static dvi_status make(const double *setting, problem *made)
+static dvi_status massless_particle_make(const double *setting, problem *made)
 {
-  static const gauge of_name[] = {{0.5, 0.5, 0.5, 0.5}, {1, 2, 2.0 / 3.0, 0}};
+  static const gauge of_name[] = {{.c = 0.5, .d = 0.5, .e = 0.5, .f = 0.5},
+                                  {.c = 1, .d = 2, .e = 2.0 / 3.0}};
   const dvi_status status = problem_room(made, 2, sizeof(gauge));
   if (status != DVI_OK) return status;
   gauge *own = made->parameters;
@@ -77,11 +82,14 @@ static dvi_status make(const double *setting, problem *made)
   problem_label(made, 1, "y");
   made->q[0] = made->q[1] = 1;
 
-  const dvi_one_form form = {.value = value, .gradient = gradient, .hessian = hessian, .user = own};
+  const dvi_one_form form = {.value = massless_particle_one_form,
+                             .gradient = massless_particle_one_form_gradient,
+                             .hessian = massless_particle_one_form_hessian,
+                             .user = own};
   const dvi_potential hamiltonian = {.name = "H",
-                                     .value = H,
-                                     .gradient = H_gradient,
-                                     .hessian = H_hessian,
+                                     .value = massless_particle_hamiltonian,
+                                     .gradient = massless_particle_gradient,
+                                     .hessian = massless_particle_hessian,
                                      .qq = {diagonal_start, diagonal_row}};
   const dvi_system_terms terms = {.dimension = 2,
                                   .one_form = &form,
@@ -108,7 +116,7 @@ const problem_entry problem_entry_massless_particle = {
     .name = "massless-particle",
     .summary = "a charge without mass in a magnetic field; degenerate, in two gauges",
     .parameters = parameters,
-    .make = make,
+    .make = massless_particle_make,
     .h = 0.2,
     .t_end = 100.0,
     .order_h = 0.1,

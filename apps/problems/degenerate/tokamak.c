@@ -1,12 +1,12 @@
 /* The guiding centre of a particle in a tokamak, in cylindrical coordinates (R, Z, phi) with the
- * velocity u along the field:
+ * velocity u along the field.
  *
  *     alpha = A + u b,  A = ( Z/(2R), -ln(R)/2, r^2/4 ),  r^2 = (R-1)^2 + Z^2,
- *     H = u^2/2 + mu |B|.
+ *     H = u^2/2 + mu |B|,
+ *     |B| = sqrt(N)/(2R),  b = ( -Z, R-1, 2R )/sqrt(N),  N = r^2 + 4.
  *
- * With N = r^2 + 4 the field's strength is |B| = sqrt(N)/(2R), its direction b = ( -Z, R-1, 2R
- * )/sqrt(N) in covariant components. Source: Qin, Guan and Tang 2009, Phys. Plasmas 16:042510;
- * Kraus 2017, arXiv:1708.07356. */
+ * |B| is the field's strength, and b its direction in covariant components. Sources: Qin, Guan and
+ * Tang 2009, Phys. Plasmas 16:042510, and Kraus 2017, arXiv:1708.07356. */
 #include <math.h>
 
 #include "entry.h"
@@ -18,19 +18,24 @@ typedef struct root {
   double f, f_R, f_Z, f_RR, f_RZ, f_ZZ;
 } root;
 
-static root root_at(const double *q)
+static root tokamak_root(const double *q)
 {
   const double x = q[R] - 1, z = q[Z], f = 1 / sqrt(x * x + z * z + 4), f3 = f * f * f,
                f5 = f3 * f * f;
-  return (root){f, -x * f3, -z * f3, 3 * x * x * f5 - f3, 3 * x * z * f5, 3 * z * z * f5 - f3};
+  return (root){.f = f,
+                .f_R = -x * f3,
+                .f_Z = -z * f3,
+                .f_RR = 3 * x * x * f5 - f3,
+                .f_RZ = 3 * x * z * f5,
+                .f_ZZ = 3 * z * z * f5 - f3};
 }
 
-static int value(const double *q, double *alpha, void *user)
+static int tokamak_one_form(const double *q, double *alpha, void *user)
 {
   const double x = q[R] - 1, z = q[Z], u = q[U];
   (void)user;
   if (!(q[R] > 0)) return 1;
-  const root g = root_at(q);
+  const root g = tokamak_root(q);
   alpha[R] = 0.5 * z / q[R] - u * z * g.f;
   alpha[Z] = -0.5 * log(q[R]) + u * x * g.f;
   alpha[PHI] = 0.25 * (x * x + z * z) + 2 * u * q[R] * g.f;
@@ -41,12 +46,12 @@ static int value(const double *q, double *alpha, void *user)
 /* Columns R, Z and phi hold the derivatives in R, Z and u. */
 static const int gradient_start[] = {0, 3, 6, 9, 9}, gradient_row[] = {R, Z, U, R, Z, U, R, Z, U};
 
-static int gradient(const double *q, double *alpha_q, void *user)
+static int tokamak_one_form_gradient(const double *q, double *alpha_q, void *user)
 {
   const double x = q[R] - 1, z = q[Z], u = q[U], rr = q[R] * q[R];
   (void)user;
   if (!(q[R] > 0)) return 1;
-  const root g = root_at(q);
+  const root g = tokamak_root(q);
   alpha_q[0] = -0.5 * z / rr - u * z * g.f_R;
   alpha_q[1] = 0.5 / q[R] - u * (g.f + z * g.f_Z);
   alpha_q[2] = -z * g.f;
@@ -59,15 +64,16 @@ static int gradient(const double *q, double *alpha_q, void *user)
   return 0;
 }
 
-/* All of R, Z and u but for the derivative in u alone. */
+/* All derivatives in R, Z and u except the one in u alone. */
 static const int hessian_start[] = {0, 3, 6, 6, 8}, hessian_row[] = {R, Z, U, R, Z, U, R, Z};
 
-static int hessian(const double *q, const double *w, double *alpha_w_qq, void *user)
+static int tokamak_one_form_hessian(const double *q, const double *w, double *alpha_w_qq,
+                                    void *user)
 {
   const double x = q[R] - 1, z = q[Z], u = q[U], rr = q[R] * q[R];
   (void)user;
   if (!(q[R] > 0)) return 1;
-  const root g = root_at(q);
+  const root g = tokamak_root(q);
   /* b(q).w = b f */
   const double b = -w[R] * z + w[Z] * x + 2 * w[PHI] * q[R], b_R = w[Z] + 2 * w[PHI], b_Z = -w[R];
   alpha_w_qq[0] = w[R] * z / (rr * q[R]) + w[Z] * 0.5 / rr + 0.5 * w[PHI] +
@@ -81,21 +87,21 @@ static int hessian(const double *q, const double *w, double *alpha_w_qq, void *u
 
 static const double mu = 2.25e-6;
 
-static int H(double t, const double *q, double *value_of_H, void *user)
+static int tokamak_hamiltonian(double t, const double *q, double *value_of_H, void *user)
 {
   (void)t, (void)user;
   if (!(q[R] > 0)) return 1;
-  *value_of_H = 0.5 * q[U] * q[U] + 0.5 * mu / (q[R] * root_at(q).f);
+  *value_of_H = 0.5 * q[U] * q[U] + 0.5 * mu / (q[R] * tokamak_root(q).f);
   return 0;
 }
 
-/* |B| = N f/(2R) with N_R = 2 x, N_Z = 2 z. */
-static int H_gradient(double t, const double *q, double *H_q, void *user)
+/* Evaluate the gradient. |B| = N f/(2R) with N_R = 2 x, N_Z = 2 z. */
+static int tokamak_gradient(double t, const double *q, double *H_q, void *user)
 {
   const double x = q[R] - 1, z = q[Z];
   (void)t, (void)user;
   if (!(q[R] > 0)) return 1;
-  const root g = root_at(q);
+  const root g = tokamak_root(q);
   H_q[R] = 0.5 * mu * (x * g.f / q[R] - 1 / (g.f * q[R] * q[R]));
   H_q[Z] = 0.5 * mu * z * g.f / q[R];
   H_q[PHI] = 0;
@@ -105,12 +111,12 @@ static int H_gradient(double t, const double *q, double *H_q, void *user)
 
 static const int H_start[] = {0, 2, 4, 4, 5}, H_row[] = {R, Z, R, Z, U};
 
-static int H_hessian(double t, const double *q, double *H_qq, void *user)
+static int tokamak_hessian(double t, const double *q, double *H_qq, void *user)
 {
   const double x = q[R] - 1, z = q[Z], rr = q[R] * q[R];
   (void)t, (void)user;
   if (!(q[R] > 0)) return 1;
-  const root g = root_at(q);
+  const root g = tokamak_root(q);
   H_qq[0] = 0.5 * mu * ((g.f + x * g.f_R) / q[R] - 2 * x * g.f / rr + 2 / (g.f * rr * q[R]));
   H_qq[1] = H_qq[2] = 0.5 * mu * (x * g.f_Z / q[R] - z * g.f / rr);
   H_qq[3] = 0.5 * mu * (g.f + z * g.f_Z) / q[R];
@@ -118,7 +124,7 @@ static int H_hessian(double t, const double *q, double *H_qq, void *user)
   return 0;
 }
 
-static int around(const double *q, double *xi, void *user)
+static int tokamak_rotation(const double *q, double *xi, void *user)
 {
   (void)q, (void)user;
   xi[R] = xi[Z] = xi[U] = 0;
@@ -126,7 +132,7 @@ static int around(const double *q, double *xi, void *user)
   return 0;
 }
 
-static dvi_status make(const double *setting, problem *made)
+static dvi_status tokamak_make(const double *setting, problem *made)
 {
   static const double start[] = {1.05, 0, 0, 4.306e-4};
   (void)setting;
@@ -138,17 +144,17 @@ static dvi_status make(const double *setting, problem *made)
   problem_label(made, PHI, "phi");
   problem_label(made, U, "u");
 
-  const dvi_one_form form = {.value = value,
-                             .gradient = gradient,
-                             .hessian = hessian,
+  const dvi_one_form form = {.value = tokamak_one_form,
+                             .gradient = tokamak_one_form_gradient,
+                             .hessian = tokamak_one_form_hessian,
                              .gradients = {gradient_start, gradient_row},
                              .qq = {hessian_start, hessian_row}};
   const dvi_potential hamiltonian = {.name = "H",
-                                     .value = H,
-                                     .gradient = H_gradient,
-                                     .hessian = H_hessian,
+                                     .value = tokamak_hamiltonian,
+                                     .gradient = tokamak_gradient,
+                                     .hessian = tokamak_hessian,
                                      .qq = {H_start, H_row}};
-  const dvi_symmetry symmetry = {.name = "toroidal_momentum", .generator = around};
+  const dvi_symmetry symmetry = {.name = "toroidal_momentum", .generator = tokamak_rotation};
   const dvi_system_terms terms = {.dimension = 4,
                                   .one_form = &form,
                                   .potentials = &hamiltonian,
@@ -168,7 +174,7 @@ static const double digits_p[] = {0.024520402012874389, -0.029206095464070679,
 const problem_entry problem_entry_tokamak = {
     .name = "tokamak",
     .summary = "the guiding centre of a particle on a banana orbit in a tokamak; degenerate",
-    .make = make,
+    .make = tokamak_make,
     .h = 500.0,
     .t_end = 500000.0,
     .order_h = 400.0,

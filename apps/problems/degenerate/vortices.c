@@ -1,6 +1,9 @@
-/* Two point vortices in a plane: alpha = gamma S/2 (-y, x) for each. vortices-linear has S = 1 and
- * H = gamma_1 gamma_2 ln d^2/(4 pi), in which they turn about their centre; vortices has S = 1 +
- * r^2 and H = gamma_1 gamma_2 S_1 S_2 ln d^2/(2 pi). Source: Kraus 2017, arXiv:1708.07356. */
+/* Two point vortices in a plane. The one-form is alpha = gamma S/2 (-y, x) for each.
+ *
+ *     vortices-linear   S = 1,         H = gamma_1 gamma_2 ln d^2/(4 pi)
+ *     vortices          S = 1 + r^2,   H = gamma_1 gamma_2 S_1 S_2 ln d^2/(2 pi)
+ *
+ * The first pair turns about its centre. Source: Kraus 2017, arXiv:1708.07356. */
 #include <math.h>
 
 #include "entry.h"
@@ -12,30 +15,30 @@ typedef struct pair {
 
 static const double pi = 3.14159265358979323846;
 
-/* alpha of a vortex depends on its own coordinates alone. */
+/* alpha of a vortex depends only on its own coordinates. */
 static const int block_start[] = {0, 2, 4, 6, 8}, block_row[] = {0, 1, 0, 1, 2, 3, 2, 3};
 
-static double weight(const pair *own, const double *x)
+static double vortex_weight(const pair *own, const double *x)
 {
   return 1 + own->kappa * (x[0] * x[0] + x[1] * x[1]);
 }
 
-static int value(const double *q, double *alpha, void *user)
+static int vortices_one_form(const double *q, double *alpha, void *user)
 {
   const pair *own = user;
   for (int k = 0; k < 2; k++) {
-    const double *x = q + 2 * k, half = 0.5 * own->gamma[k] * weight(own, x);
+    const double *x = q + 2 * k, half = 0.5 * own->gamma[k] * vortex_weight(own, x);
     alpha[2 * k] = -half * x[1];
     alpha[2 * k + 1] = half * x[0];
   }
   return 0;
 }
 
-static int gradient(const double *q, double *alpha_q, void *user)
+static int vortices_one_form_gradient(const double *q, double *alpha_q, void *user)
 {
   const pair *own = user;
   for (int k = 0; k < 2; k++) {
-    const double *x = q + 2 * k, half = 0.5 * own->gamma[k], S = weight(own, x),
+    const double *x = q + 2 * k, half = 0.5 * own->gamma[k], S = vortex_weight(own, x),
                  twice = 2 * own->kappa;
     double *out = alpha_q + 4 * k;
     out[0] = -half * twice * x[0] * x[1];
@@ -46,7 +49,8 @@ static int gradient(const double *q, double *alpha_q, void *user)
   return 0;
 }
 
-static int hessian(const double *q, const double *w, double *alpha_w_qq, void *user)
+static int vortices_one_form_hessian(const double *q, const double *w, double *alpha_w_qq,
+                                     void *user)
 {
   const pair *own = user;
   for (int k = 0; k < 2; k++) {
@@ -59,15 +63,15 @@ static int hessian(const double *q, const double *w, double *alpha_w_qq, void *u
   return 0;
 }
 
-/* What H and its derivatives are made of: d = x_1 - x_2, weights, and their gradients in the four
- * coordinates. */
+/* The parts of H and its derivatives, which are d = x_1 - x_2, weights, and their gradients in the
+ * four coordinates. */
 typedef struct parts {
   double S[2], l, d2, l_q[4], S_q[2][4];
 } parts;
 
-static parts part(const pair *own, const double *q)
+static parts vortices_parts(const pair *own, const double *q)
 {
-  parts p = {.S = {weight(own, q), weight(own, q + 2)}};
+  parts p = {.S = {vortex_weight(own, q), vortex_weight(own, q + 2)}};
   const double dx = q[0] - q[2], dy = q[1] - q[3];
   p.d2 = dx * dx + dy * dy;
   p.l = log(p.d2);
@@ -80,19 +84,19 @@ static parts part(const pair *own, const double *q)
   return p;
 }
 
-static int H(double t, const double *q, double *value_of_H, void *user)
+static int vortices_hamiltonian(double t, const double *q, double *value_of_H, void *user)
 {
   const pair *own = user;
-  const parts p = part(own, q);
+  const parts p = vortices_parts(own, q);
   (void)t;
   *value_of_H = own->factor * p.S[0] * p.S[1] * p.l;
   return 0;
 }
 
-static int H_gradient(double t, const double *q, double *H_q, void *user)
+static int vortices_gradient(double t, const double *q, double *H_q, void *user)
 {
   const pair *own = user;
-  const parts p = part(own, q);
+  const parts p = vortices_parts(own, q);
   (void)t;
   for (int i = 0; i < 4; i++)
     H_q[i] = own->factor *
@@ -100,17 +104,18 @@ static int H_gradient(double t, const double *q, double *H_q, void *user)
   return 0;
 }
 
-/* d2 ln d^2/dq2: 2 delta_ij/d^2 with the sign of the block, minus the product of the gradients. */
-static double log_hessian(const parts *p, int i, int j)
+/* Compute d2 ln d^2/dq2, which is 2 delta_ij/d^2 with the sign of the block, minus the product of
+ * the gradients. */
+static double vortices_log_hessian(const parts *p, int i, int j)
 {
   const double sign = i / 2 == j / 2 ? 1 : -1;
   return (i % 2 == j % 2 ? 2 * sign / p->d2 : 0) - p->l_q[i] * p->l_q[j];
 }
 
-static int H_hessian(double t, const double *q, double *H_qq, void *user)
+static int vortices_hessian(double t, const double *q, double *H_qq, void *user)
 {
   const pair *own = user;
-  const parts p = part(own, q);
+  const parts p = vortices_parts(own, q);
   (void)t;
   for (int j = 0; j < 4; j++)
     for (int i = 0; i < 4; i++) {
@@ -119,12 +124,12 @@ static int H_hessian(double t, const double *q, double *H_qq, void *user)
       double mixed = p.S_q[0][i] * p.S_q[1][j] + p.S_q[1][i] * p.S_q[0][j];
       if (i == j) mixed += 2 * own->kappa * p.S[1 - i / 2];
       H_qq[4 * j + i] = own->factor * (mixed * p.l + both_i * p.l_q[j] + both_j * p.l_q[i] +
-                                       p.S[0] * p.S[1] * log_hessian(&p, i, j));
+                                       p.S[0] * p.S[1] * vortices_log_hessian(&p, i, j));
     }
   return 0;
 }
 
-static int rotation(const double *q, double *xi, void *user)
+static int vortices_rotation(const double *q, double *xi, void *user)
 {
   (void)user;
   for (int k = 0; k < 2; k++) {
@@ -134,18 +139,19 @@ static int rotation(const double *q, double *xi, void *user)
   return 0;
 }
 
-/* Both turn about the centre of circulation, here the origin, at the rate 3/pi. */
-static int exact_linear(const problem *made, double t, double *q, double *p)
+/* Compute the solution. Both turn about the centre of circulation, here the origin, at the rate
+ * 3/pi. */
+static int vortices_exact_linear(const problem *made, double t, double *q, double *p)
 {
   const double angle = 3 / pi * t;
   for (int k = 0; k < 4; k += 2) {
     q[k] = made->q[k] * cos(angle) - made->q[k + 1] * sin(angle);
     q[k + 1] = made->q[k] * sin(angle) + made->q[k + 1] * cos(angle);
   }
-  return value(q, p, made->parameters);
+  return vortices_one_form(q, p, made->parameters);
 }
 
-static dvi_status make(pair own, const double *start, problem *made)
+static dvi_status vortices_make(pair own, const double *start, problem *made)
 {
   const dvi_status status = problem_room(made, 4, sizeof(pair));
   if (status != DVI_OK) return status;
@@ -153,18 +159,18 @@ static dvi_status make(pair own, const double *start, problem *made)
   memcpy(made->q, start, 4 * sizeof *start);
   for (int i = 0; i < 4; i++) problem_label(made, i, "%c_%d", i % 2 ? 'y' : 'x', i / 2 + 1);
 
-  const dvi_one_form form = {.value = value,
-                             .gradient = gradient,
-                             .hessian = hessian,
+  const dvi_one_form form = {.value = vortices_one_form,
+                             .gradient = vortices_one_form_gradient,
+                             .hessian = vortices_one_form_hessian,
                              .gradients = {block_start, block_row},
                              .qq = {block_start, block_row},
                              .user = made->parameters};
   const dvi_potential hamiltonian = {.name = "H",
-                                     .value = H,
-                                     .gradient = H_gradient,
-                                     .hessian = H_hessian,
+                                     .value = vortices_hamiltonian,
+                                     .gradient = vortices_gradient,
+                                     .hessian = vortices_hessian,
                                      .user = made->parameters};
-  const dvi_symmetry symmetry = {.name = "angular_momentum", .generator = rotation};
+  const dvi_symmetry symmetry = {.name = "angular_momentum", .generator = vortices_rotation};
   const dvi_system_terms terms = {.dimension = 4,
                                   .one_form = &form,
                                   .potentials = &hamiltonian,
@@ -175,18 +181,19 @@ static dvi_status make(pair own, const double *start, problem *made)
   return problem_system(made, &terms);
 }
 
-static dvi_status make_linear(const double *setting, problem *made)
+static dvi_status vortices_make_linear(const double *setting, problem *made)
 {
   static const double start[] = {1.0 / 3.0, 0, -2.0 / 3.0, 0};
   (void)setting;
-  return make((pair){{4, 2}, 0, 8 / (4 * pi)}, start, made);
+  return vortices_make((pair){.gamma = {4, 2}, .factor = 8 / (4 * pi)}, start, made);
 }
 
-static dvi_status make_weighted(const double *setting, problem *made)
+static dvi_status vortices_make_weighted(const double *setting, problem *made)
 {
   static const double start[] = {0.5, 0.1, 0.5, -0.1};
   (void)setting;
-  return make((pair){{0.5, 0.5}, 1, 0.25 / (2 * pi)}, start, made);
+  return vortices_make((pair){.gamma = {0.5, 0.5}, .kappa = 1, .factor = 0.25 / (2 * pi)}, start,
+                       made);
 }
 
 /* Quadruple-precision results, recomputed by tests/reference/test_digits. */
@@ -198,8 +205,8 @@ static const double digits_p_linear[] = {-0.54418207239294758, 0.385110784749740
 const problem_entry problem_entry_vortices_linear = {
     .name = "vortices-linear",
     .summary = "two point vortices that turn about each other; degenerate, exact solution known",
-    .make = make_linear,
-    .exact = exact_linear,
+    .make = vortices_make_linear,
+    .exact = vortices_exact_linear,
     .h = 0.1,
     .t_end = 100.0,
     .order_h = 0.1,
@@ -216,7 +223,7 @@ static const double digits_p[] = {0.092090122739494767, 0.10329505584786046, 0.0
 const problem_entry problem_entry_vortices = {
     .name = "vortices",
     .summary = "two point vortices with a weight that grows outwards; degenerate",
-    .make = make_weighted,
+    .make = vortices_make_weighted,
     .h = 0.1,
     .t_end = 100.0,
     .order_h = 0.1,
