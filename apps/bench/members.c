@@ -24,22 +24,22 @@ static const double around = 0.01;
 static const char axis_word[] = "members=";
 
 /* One method with one number of members. */
-typedef struct cell {
+typedef struct members_result {
   double together[ROUNDS_MAX]; /* seconds of a member's step, in each round */
   double alone[ROUNDS_MAX];
   spread of_together, of_alone;
   double evaluations; /* evaluations of a step */
-} cell;
+} members_result;
 
 typedef struct comparison {
   const scale_request *request;
   numbers counts;
   problem *scene;
   double h;
-  long steps;    /* steps of one run */
-  double *q, *p; /* [n*members] starts of the members */
-  double *point; /* [2 n] state of one member */
-  cell *cell;    /* [methods][counts] */
+  long steps;           /* steps of one run */
+  double *q, *p;        /* [n*members] starts of the members */
+  double *point;        /* [2 n] state of one member */
+  members_result *cell; /* [methods][counts] */
   spread calibration;
   progress_line progress;
 } comparison;
@@ -66,7 +66,7 @@ bool members_asked(const char *scaled)
   return strncmp(scaled, axis_word, sizeof axis_word - 1) == 0;
 }
 
-static cell *members_cell(const comparison *c, int method, int k)
+static members_result *members_cell(const comparison *c, int method, int k)
 {
   return &c->cell[method * c->counts.count + k];
 }
@@ -191,7 +191,7 @@ static int measure_round(comparison *c, int round)
     if (status != DVI_OK) return library_error(status);
     for (int i = 0; i < c->request->methods->count; i++) {
       const char *method = c->request->methods->word[i];
-      cell *at = members_cell(c, i, k);
+      members_result *at = members_cell(c, i, k);
       progress_show(&c->progress, -1.0, method);
       status = measure_together(c, method, members, &at->together[round], &at->evaluations);
       if (status == DVI_OK) status = measure_alone(c, method, members, &at->alone[round]);
@@ -235,7 +235,7 @@ static result_table *members_table(const comparison *c)
   result_table *rows = table_create(columns);
   for (int i = 0; i < c->request->methods->count; i++)
     for (int k = 0; k < c->counts.count; k++) {
-      const cell *at = members_cell(c, i, k);
+      const members_result *at = members_cell(c, i, k);
       table_text(rows, c->request->methods->word[i]);
       table_text(rows, c->request->problem);
       table_number(rows, c->counts.number[k]);
@@ -281,7 +281,7 @@ static bool members_plot(const comparison *c)
   }
   for (int i = 0; i < 2 * methods; i++) {
     for (int k = 0; k < counts; k++) {
-      const cell *at = members_cell(c, i / 2, k);
+      const members_result *at = members_cell(c, i / 2, k);
       y[i * counts + k] = i % 2 == 0 ? at->of_together.median : at->of_alone.median;
     }
     (void)snprintf(label[i], sizeof label[i], "%s%s", c->request->methods->word[i / 2],

@@ -17,7 +17,7 @@
 enum { ITERATIONS_MAX = 30 };
 static const unsigned long steps_max = 50000000; /* the limit of SUNDIALS' codes */
 
-typedef struct flow {
+typedef struct rk8pd_flow {
   const dvi_system_terms *terms;
   int n;
   long evaluations;
@@ -28,7 +28,7 @@ typedef struct flow {
   double *L_qq, *L_qv, *L_vv; /* [n*n] at most, for a general Lagrangian */
   gsl_matrix *factors;        /* [n,n] factors of L_vv */
   gsl_permutation *permutation;
-} flow;
+} rk8pd_flow;
 
 static int rk8pd_potential_gradient(const dvi_potential *of, double t, const double *q, double *V_q)
 {
@@ -43,7 +43,7 @@ static int rk8pd_lagrangian_gradient(const dvi_lagrangian *of, double t, const d
                                     : of->gradient(t, q, v, L_q, L_v, of->user);
 }
 
-static int rk8pd_lagrangian_hessian(flow *f, double t, const double *q)
+static int rk8pd_lagrangian_hessian(rk8pd_flow *f, double t, const double *q)
 {
   const dvi_lagrangian *of = f->terms->lagrangian;
   return of->hessian_batch != NULL
@@ -58,14 +58,14 @@ static double rk8pd_norm(int n, const double *x)
   return size;
 }
 
-static void set_mass_velocity(flow *f, const double *p)
+static void set_mass_velocity(rk8pd_flow *f, const double *p)
 {
   const dvi_mass *mass = &f->terms->mass;
   for (int i = 0; i < f->n; i++)
     f->v[i] = p[i] / (mass->diagonal != NULL ? mass->diagonal[i] : mass->scalar);
 }
 
-static int rk8pd_factor(flow *f, double t, const double *q)
+static int rk8pd_factor(rk8pd_flow *f, double t, const double *q)
 {
   const dvi_pattern *vv = &f->terms->lagrangian->vv;
   int sign;
@@ -84,7 +84,7 @@ static int rk8pd_factor(flow *f, double t, const double *q)
 /* Solve p - L_v = 0 by Newton's method with the L_vv of its first guess. For the usual kinetic
  * energies, quadratic in v, the second residual is roundoff, and L_q was evaluated along with
  * it. */
-static int find_velocity(flow *f, double t, const double *q, const double *p, double *L_q)
+static int find_velocity(rk8pd_flow *f, double t, const double *q, const double *p, double *L_q)
 {
   double before = HUGE_VAL;
   gsl_vector_view residual = gsl_vector_view_array(f->residual, (size_t)f->n);
@@ -111,7 +111,7 @@ static int find_velocity(flow *f, double t, const double *q, const double *p, do
  * NaN for a small error. */
 static int right_side(double t, const double y[], double ydot[], void *user)
 {
-  flow *f = user;
+  rk8pd_flow *f = user;
   const double *q = y;
   const double *p = y + f->n;
   double *pdot = ydot + f->n;
@@ -146,7 +146,7 @@ static bool rk8pd_provides_for(const dvi_system_terms *terms)
 }
 
 /* Allocate memory for 5 n numbers, and for three matrices if the Lagrangian is general. */
-static bool rk8pd_allocate(flow *f)
+static bool rk8pd_allocate(rk8pd_flow *f)
 {
   const size_t n = (size_t)f->n;
   const size_t block = f->terms->lagrangian != NULL ? n * n : 0;
@@ -165,7 +165,7 @@ static bool rk8pd_allocate(flow *f)
   return f->factors != NULL && f->permutation != NULL;
 }
 
-static void rk8pd_release(flow *f)
+static void rk8pd_release(rk8pd_flow *f)
 {
   gsl_permutation_free(f->permutation);
   gsl_matrix_free(f->factors);
@@ -173,8 +173,9 @@ static void rk8pd_release(flow *f)
 }
 
 /* Integrate y [2n] from the start to the end. */
-static dvi_status rk8pd_integrate(flow *f, const problem *scene, double t_end, double tolerance,
-                                  double *y, long *steps, char *reason, size_t size)
+static dvi_status rk8pd_integrate(rk8pd_flow *f, const problem *scene, double t_end,
+                                  double tolerance, double *y, long *steps, char *reason,
+                                  size_t size)
 {
   const gsl_odeiv2_system equations = {
       .function = right_side, .dimension = 2 * (size_t)f->n, .params = f};
@@ -194,7 +195,7 @@ static dvi_status rk8pd_integrate(flow *f, const problem *scene, double t_end, d
   return DVI_REFERENCE_FAILED;
 }
 
-static dvi_status rk8pd_run(flow *f, const problem *scene, double t_end, double tolerance,
+static dvi_status rk8pd_run(rk8pd_flow *f, const problem *scene, double t_end, double tolerance,
                             double *q, double *p, dvi_reference_report *report, char *reason,
                             size_t size)
 {
@@ -218,7 +219,7 @@ static dvi_status rk8pd_run(flow *f, const problem *scene, double t_end, double 
 dvi_status rk8pd_solve(const problem *scene, double t_end, double tolerance, double *q, double *p,
                        dvi_reference_report *report, char *reason, size_t size)
 {
-  flow f = {.terms = scene->terms, .n = scene->nq};
+  rk8pd_flow f = {.terms = scene->terms, .n = scene->nq};
   if (!rk8pd_provides_for(f.terms)) {
     (void)snprintf(reason, size,
                    "gsl-rk8pd: it is provided for scalar and diagonal masses on R^n and for "

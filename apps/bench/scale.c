@@ -19,7 +19,7 @@
 enum { STEPS_DEFAULT = 32, TITLE_SIZE = 160 };
 
 /* One method at one value. */
-typedef struct cell {
+typedef struct scale_result {
   int n;
   double h;
   double step[ROUNDS_MAX]; /* seconds of one step, in each round */
@@ -30,13 +30,13 @@ typedef struct cell {
   /* bytes a second of an axpy beside the steps, in each round, where the traffic is known */
   double axpy[ROUNDS_MAX];
   spread bandwidth; /* spread of axpy */
-} cell;
+} scale_result;
 
 typedef struct scaling {
   const scale_request *request;
   scale_axis axis;
-  long steps; /* steps of one run */
-  cell *cell; /* [methods][values] */
+  long steps;         /* steps of one run */
+  scale_result *cell; /* [methods][values] */
   spread calibration;
   progress_line progress;
 } scaling;
@@ -60,7 +60,7 @@ static const table_column columns[] = {
     {NULL, NULL},
 };
 
-static cell *scale_cell(const scaling *s, int method, int k)
+static scale_result *scale_cell(const scaling *s, int method, int k)
 {
   return &s->cell[method * s->axis.values.count + k];
 }
@@ -73,7 +73,7 @@ static double scale_clock(const scaling *s)
 
 /* Time the first steps from the start, and count their work. */
 static dvi_status scale_run_steps(const scaling *s, dvi_integrator *integrator,
-                                  const problem *scene, cell *c, double *spent)
+                                  const problem *scene, scale_result *c, double *spent)
 {
   dvi_counters before;
   dvi_status status = dvi_integrator_start(integrator, 0.0, scene->q, scene->p);
@@ -89,8 +89,8 @@ static dvi_status scale_run_steps(const scaling *s, dvi_integrator *integrator,
   return status;
 }
 
-static dvi_status measure_cell(const scaling *s, const char *method, const problem *scene, cell *c,
-                               int round)
+static dvi_status measure_cell(const scaling *s, const char *method, const problem *scene,
+                               scale_result *c, int round)
 {
   dvi_integrator *integrator = NULL;
   double spent = 0.0;
@@ -119,7 +119,7 @@ static int measure_methods(scaling *s, const problem *scene, int k, int round)
   char method[SPECIFICATION_SIZE];
   int code = DONE;
   for (int i = 0; i < s->request->methods->count && code == DONE; i++) {
-    cell *c = scale_cell(s, i, k);
+    scale_result *c = scale_cell(s, i, k);
     c->n = scene->nq;
     c->h = isnan(s->request->h) ? scene->h : s->request->h;
     progress_show(&s->progress, -1.0, s->request->methods->word[i]);
@@ -171,7 +171,7 @@ static result_table *scale_table(const scaling *s)
   result_table *rows = table_create(columns);
   for (int i = 0; i < s->request->methods->count; i++)
     for (int k = 0; k < s->axis.values.count; k++) {
-      const cell *c = scale_cell(s, i, k);
+      const scale_result *c = scale_cell(s, i, k);
       table_text(rows, s->request->methods->word[i]);
       table_text(rows, s->request->problem);
       table_text(rows, s->axis.name);
@@ -208,7 +208,7 @@ static void print_powers(FILE *stream, const scaling *s, int method)
   double bytes[NUMBERS_MAX];
   double evaluations[NUMBERS_MAX];
   for (int k = 0; k < s->axis.values.count; k++) {
-    const cell *c = scale_cell(s, method, k);
+    const scale_result *c = scale_cell(s, method, k);
     x[k] = axis_abscissa(&s->axis, k, c->n);
     seconds[k] = c->seconds.median;
     bytes[k] = c->bytes;
@@ -234,7 +234,7 @@ static void print_speed_up(FILE *stream, const scaling *s, int method)
 static void print_traffic(FILE *stream, const scaling *s, int method)
 {
   for (int k = 0; k < s->axis.values.count; k++) {
-    const cell *c = scale_cell(s, method, k);
+    const scale_result *c = scale_cell(s, method, k);
     const double moved = c->traffic / c->seconds.median;
     const double axpy = c->bandwidth.median;
     if (c->traffic > 0.0)

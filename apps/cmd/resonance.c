@@ -44,14 +44,14 @@ static const char ended[] = "dvi: resonance: a signal ended the search; nothing 
 
 /* ---- report ---- */
 
-typedef struct report {
+typedef struct resonance_findings {
   const resonance_task *task;
   const resonance_request *request;
   const problem *model;
   const peaks_found *found;
-} report;
+} resonance_findings;
 
-static const char *watched_name(const report *r)
+static const char *watched_name(const resonance_findings *r)
 {
   return dvi_system_invariant_name(r->model->system, r->task->watched);
 }
@@ -64,7 +64,7 @@ static bool is_peak(const peaks_found *found, int i)
 }
 
 /* Print the tops of peaks, for people. */
-static void print_peaks(const report *r, FILE *stream)
+static void print_peaks(const resonance_findings *r, FILE *stream)
 {
   const table_column columns[] = {{r->task->name, "%.9g"}, {"within", "%.1e"}, {"status", NULL},
                                   {"error", "%.3e"},       {"growth", "%.3e"}, {NULL, NULL}};
@@ -84,7 +84,7 @@ static void print_peaks(const report *r, FILE *stream)
   table_destroy(&rows);
 }
 
-static bool write_points(const report *r)
+static bool write_points(const resonance_findings *r)
 {
   const table_column columns[] = {{r->task->name, ""}, {"status", NULL}, {"steps", ""}, {"t", ""},
                                   {"error", ""},       {"growth", ""},   {NULL, NULL}};
@@ -103,7 +103,7 @@ static bool write_points(const report *r)
   return good;
 }
 
-static bool resonance_draw(const report *r)
+static bool resonance_draw(const resonance_findings *r)
 {
   const int count = r->found->count;
   char title[TEXT_SIZE], label[TEXT_SIZE];
@@ -141,7 +141,7 @@ static int worst_point(const peaks_found *found)
   return at;
 }
 
-static void print_end(const report *r, int end, FILE *stream)
+static void print_end(const resonance_findings *r, int end, FILE *stream)
 {
   const resonance_point *point = &r->found->point[end];
   if (r->found->top[end])
@@ -149,7 +149,7 @@ static void print_end(const report *r, int end, FILE *stream)
                   point->value, point->error);
 }
 
-static void print_unbounded(const report *r, FILE *stream)
+static void print_unbounded(const resonance_findings *r, FILE *stream)
 {
   int count = 0;
   double first = 0.0, last = 0.0;
@@ -163,7 +163,7 @@ static void print_unbounded(const report *r, FILE *stream)
     (void)fprintf(stream, "unbounded at %d points, from %.9g to %.9g\n", count, first, last);
 }
 
-static void print_resonances(const report *r, int worst, FILE *stream)
+static void print_resonances(const resonance_findings *r, int worst, FILE *stream)
 {
   const peaks_search *search = &r->request->search;
   (void)fprintf(stream, "Largest errors of %s on %s by %s, to t = %g\n", watched_name(r),
@@ -182,7 +182,7 @@ static void print_resonances(const report *r, int worst, FILE *stream)
 
 /* Return DONE, or complain and return FAILED if a result is not known, or CHECK_FAILED if the bound
  * does not hold. */
-static int resonance_exit_code(const report *r, int worst, FILE *stream)
+static int resonance_exit_code(const resonance_findings *r, int worst, FILE *stream)
 {
   int failed = 0;
   for (int i = 0; i < r->found->count; i++) failed += r->found->point[i].failed;
@@ -199,7 +199,7 @@ static int resonance_exit_code(const report *r, int worst, FILE *stream)
   return holds ? DONE : CHECK_FAILED;
 }
 
-static int resonance_report(const report *r)
+static int resonance_report(const resonance_findings *r)
 {
   FILE *stream = r->request->csv != NULL && strcmp(r->request->csv, "-") == 0 ? stderr : stdout;
   const int worst = worst_point(r->found);
@@ -342,7 +342,7 @@ static int search_peaks(const resonance_request *request, const problem *model,
                         const resonance_task *task)
 {
   peaks_found found;
-  const report r = {.task = task, .request = request, .model = model, .found = &found};
+  const resonance_findings r = {.task = task, .request = request, .model = model, .found = &found};
   const int code = peaks_find(task, &request->search, &found) ? resonance_report(&r) : FAILED;
   peaks_clear(&found);
   return code;

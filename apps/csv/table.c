@@ -9,16 +9,16 @@
 
 enum { CELL_TEXT = 32 };
 
-typedef struct cell {
+typedef struct table_cell {
   char *text; /* owned, NULL for a number */
   double number;
-} cell;
+} table_cell;
 
 struct result_table {
   const table_column *column;
   int columns;
   int cells, capacity;
-  cell *cell;
+  table_cell *cell;
   bool lost;
 };
 
@@ -40,12 +40,12 @@ void table_destroy(result_table **table)
   *table = NULL;
 }
 
-static cell *next_cell(result_table *t)
+static table_cell *next_cell(result_table *t)
 {
   if (t == NULL || t->lost) return NULL;
   if (t->cells == t->capacity) {
     const int capacity = t->capacity > 0 ? 2 * t->capacity : 128;
-    cell *grown = realloc(t->cell, (size_t)capacity * sizeof *grown);
+    table_cell *grown = realloc(t->cell, (size_t)capacity * sizeof *grown);
     if (grown == NULL) {
       t->lost = true;
       return NULL;
@@ -53,7 +53,7 @@ static cell *next_cell(result_table *t)
     t->cell = grown;
     t->capacity = capacity;
   }
-  cell *c = &t->cell[t->cells++];
+  table_cell *c = &t->cell[t->cells++];
   c->text = NULL;
   c->number = (double)NAN;
   return c;
@@ -61,13 +61,13 @@ static cell *next_cell(result_table *t)
 
 void table_number(result_table *table, double number)
 {
-  cell *c = next_cell(table);
+  table_cell *c = next_cell(table);
   if (c != NULL) c->number = number;
 }
 
 void table_text(result_table *table, const char *text)
 {
-  cell *c = next_cell(table);
+  table_cell *c = next_cell(table);
   if (c == NULL) return;
   const size_t size = strlen(text) + 1;
   c->text = malloc(size);
@@ -123,7 +123,7 @@ void table_csv(const result_table *table, FILE *stream)
   for (int j = 0; j < table->columns; j++)
     (void)fprintf(stream, "%s%s", j > 0 ? "," : "", table->column[j].title);
   for (int i = 0; i < table->cells; i++) {
-    const cell *c = &table->cell[i];
+    const table_cell *c = &table->cell[i];
     (void)fputc(i % table->columns == 0 ? '\n' : ',', stream);
     if (c->text != NULL)
       csv_text(stream, c->text);
@@ -146,7 +146,7 @@ bool table_write(const result_table *table, const char *path)
     "-Wformat-nonliteral" /* the formats come from the tables of this program's own columns */
 static const char *cell_text(const result_table *table, int row, int column, char *text)
 {
-  const cell *c = &table->cell[row * table->columns + column];
+  const table_cell *c = &table->cell[row * table->columns + column];
   if (c->text != NULL) return c->text;
   text[0] = '\0';
   if (!isnan(c->number) && table->column[column].format != NULL)

@@ -51,12 +51,12 @@ static dvi_status hoop_system(dvi_system **system)
 
 /* Largest errors of the energy and of the angular momentum along the run, and of the state after
  * the way back. */
-typedef struct findings {
+typedef struct hoop_errors {
   double energy, momentum, way_back;
-} findings;
+} hoop_errors;
 
 static dvi_status hoop_run(const dvi_system *system, const double *q, const double *p,
-                           findings *found)
+                           hoop_errors *found)
 {
   const double h = 0.1;
   double first[2] = {0}, now[2] = {0};
@@ -79,7 +79,7 @@ int main(void)
 {
   const double q[] = {1, 0}, v[] = {0.2, 1.5};
   double p[2], again[2] = {0, 0};
-  findings found = {0};
+  hoop_errors found = {0};
   dvi_system *system = NULL;
   dvi_status status = hoop_system(&system);
   if (status == DVI_OK) status = dvi_system_check(system, 0, q, v, 0, NULL);

@@ -134,11 +134,11 @@ bool quad_motion_velocity(quad_motion *motion, quad t, const quad *q, const quad
 }
 
 /* Working memory of a flow, [n] or [2 n] each. */
-typedef struct flow {
+typedef struct quad_flow {
   quad *v, *rate, *before, *column;
-} flow;
+} quad_flow;
 
-static bool flow_rate(quad_motion *motion, quad t, const quad *z, flow *f)
+static bool flow_rate(quad_motion *motion, quad t, const quad *z, quad_flow *f)
 {
   const int n = motion->n;
   const bool good = solve_velocity(motion, t, z, z + n, f->v, f->rate + n);
@@ -147,7 +147,7 @@ static bool flow_rate(quad_motion *motion, quad t, const quad *z, flow *f)
 }
 
 /* Write z at t + span to `to`, by an even number `steps` of steps of the midpoint rule. */
-static bool leapfrog(quad_motion *motion, quad t, quad span, int steps, const quad *z, flow *f,
+static bool leapfrog(quad_motion *motion, quad t, quad span, int steps, const quad *z, quad_flow *f,
                      quad *to)
 {
   const int size = 2 * motion->n;
@@ -167,7 +167,7 @@ static bool leapfrog(quad_motion *motion, quad t, quad span, int steps, const qu
 }
 
 /* Extrapolate columns of 2, 4, 6, .. steps to h = 0 by Neville's scheme in h^2. */
-static bool extrapolate_flow(quad_motion *motion, quad t, quad span, flow *f, quad *z)
+static bool extrapolate_flow(quad_motion *motion, quad t, quad span, quad_flow *f, quad *z)
 {
   const int size = 2 * motion->n;
   for (int k = 0; k < COLUMNS; k++) {
@@ -195,7 +195,8 @@ bool quad_motion_flow(quad_motion *motion, quad t, quad span, const quad *v, qua
 {
   const size_t n = (size_t)motion->n;
   quad *last = motion->room + 4 * n, *now = last + 2 * n;
-  flow f = {.v = now + 2 * n, .rate = now + 3 * n, .before = now + 5 * n, .column = now + 7 * n};
+  quad_flow f = {
+      .v = now + 2 * n, .rate = now + 3 * n, .before = now + 5 * n, .column = now + 7 * n};
   const double wanted = fmax(*error, least_error);
   *error = HUGE_VAL;
   start_tracking(motion);

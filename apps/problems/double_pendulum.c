@@ -8,14 +8,14 @@
 
 #include "entry.h"
 
-typedef struct coefficients {
+typedef struct double_pendulum_coefficients {
   double A, B, C, G1, G2;
-} coefficients;
+} double_pendulum_coefficients;
 
 static int double_pendulum_lagrangian(int count, const double *t, const double *q, const double *v,
                                       double *L, void *user)
 {
-  const coefficients *own = user;
+  const double_pendulum_coefficients *own = user;
   const double *restrict q1 = q, *restrict q2 = q + count, *restrict v1 = v,
                          *restrict v2 = v + count;
   (void)t;
@@ -29,7 +29,7 @@ static int double_pendulum_lagrangian(int count, const double *t, const double *
 static int double_pendulum_gradient(int count, const double *t, const double *q, const double *v,
                                     double *L_q, double *L_v, void *user)
 {
-  const coefficients own = *(const coefficients *)user;
+  const double_pendulum_coefficients own = *(const double_pendulum_coefficients *)user;
   const double *restrict q1 = q, *restrict q2 = q + count, *restrict v1 = v,
                          *restrict v2 = v + count;
   double *restrict L_q1 = L_q, *restrict L_q2 = L_q + count, *restrict L_v1 = L_v,
@@ -48,7 +48,7 @@ static int double_pendulum_gradient(int count, const double *t, const double *q,
 static int double_pendulum_hessian(int count, const double *t, const double *q, const double *v,
                                    double *L_qq, double *L_qv, double *L_vv, void *user)
 {
-  const coefficients own = *(const coefficients *)user;
+  const double_pendulum_coefficients own = *(const double_pendulum_coefficients *)user;
   const double *restrict q1 = q, *restrict q2 = q + count, *restrict v1 = v,
                          *restrict v2 = v + count;
   (void)t;
@@ -80,8 +80,8 @@ typedef struct series {
   double v1_v2[DVI_TAYLOR_MAX + 1];
 } series;
 
-static void double_pendulum_expand(const coefficients *own, int degree, const double *q,
-                                   const double *v, series *of)
+static void double_pendulum_expand(const double_pendulum_coefficients *own, int degree,
+                                   const double *q, const double *v, series *of)
 {
   double q1[DVI_TAYLOR_MAX + 1], q2[DVI_TAYLOR_MAX + 1], between[DVI_TAYLOR_MAX + 1];
   dvi_taylor_get(degree, 2, q, 0, q1);
@@ -100,8 +100,9 @@ static void double_pendulum_expand(const coefficients *own, int degree, const do
 }
 
 /* Compute coefficient k of the Hessian. */
-static void double_pendulum_series_hessian(const coefficients *own, const series *of, int k,
-                                           double *L_qq, double *L_qv, double *L_vv)
+static void double_pendulum_series_hessian(const double_pendulum_coefficients *own,
+                                           const series *of, int k, double *L_qq, double *L_qv,
+                                           double *L_vv)
 {
   const double c_v1_v2 = dvi_taylor_product(k, of->c, of->v1_v2);
   const double s_v1 = dvi_taylor_product(k, of->s, of->v1),
@@ -128,7 +129,7 @@ static int double_pendulum_taylor(int degree, const double *t, const double *q, 
                                   double *L, double *L_q, double *L_v, double *L_qq, double *L_qv,
                                   double *L_vv, void *user)
 {
-  const coefficients own = *(const coefficients *)user;
+  const double_pendulum_coefficients own = *(const double_pendulum_coefficients *)user;
   series of;
   (void)t;
   double_pendulum_expand(&own, degree, q, v, &of);
@@ -154,16 +155,16 @@ static int double_pendulum_taylor(int degree, const double *t, const double *q, 
 
 static dvi_status double_pendulum_make(const double *setting, problem *made)
 {
-  const dvi_status status = problem_room(made, 2, sizeof(coefficients));
+  const dvi_status status = problem_room(made, 2, sizeof(double_pendulum_coefficients));
   if (status != DVI_OK) return status;
   const double pi = 3.14159265358979323846;
   const double l1 = setting[0], l2 = setting[1], m1 = setting[2], m2 = setting[3], g = setting[4];
-  coefficients *own = made->parameters;
-  *own = (coefficients){.A = (m1 + m2) * l1 * l1,
-                        .B = m2 * l2 * l2,
-                        .C = m2 * l1 * l2,
-                        .G1 = (m1 + m2) * g * l1,
-                        .G2 = m2 * g * l2};
+  double_pendulum_coefficients *own = made->parameters;
+  *own = (double_pendulum_coefficients){.A = (m1 + m2) * l1 * l1,
+                                        .B = m2 * l2 * l2,
+                                        .C = m2 * l1 * l2,
+                                        .G1 = (m1 + m2) * g * l1,
+                                        .G2 = m2 * g * l2};
   problem_label(made, 0, "theta_1");
   problem_label(made, 1, "theta_2");
   made->q[0] = pi / 4.0;

@@ -7,16 +7,16 @@
 #define SYMMETRIES_MAX 6
 
 /* A translation along an axis, or a rotation about it. */
-typedef struct motion {
+typedef struct nbody_motion {
   const nbody *bodies;
   int axis;
-} motion;
+} nbody_motion;
 
 /* The state of the callbacks and generators. */
 typedef struct gravity {
   nbody bodies;
   double masses[3 * NBODY_MAX];
-  motion motions[SYMMETRIES_MAX];
+  nbody_motion motions[SYMMETRIES_MAX];
 } gravity;
 
 /* The kernels below take the dimension as a constant at each of their callers, so that the loops
@@ -177,7 +177,7 @@ CALLBACKS(3)
 
 static int nbody_translation(const double *q, double *xi, void *user)
 {
-  const motion *own = user;
+  const nbody_motion *own = user;
   (void)q;
   for (int i = 0; i < own->bodies->bodies * own->bodies->dimension; i++)
     xi[i] = i % own->bodies->dimension == own->axis;
@@ -187,7 +187,7 @@ static int nbody_translation(const double *q, double *xi, void *user)
 /* Compute xi = e_axis x x for each body. In the plane the axis is the third one. */
 static int nbody_rotation(const double *q, double *xi, void *user)
 {
-  const motion *own = user;
+  const nbody_motion *own = user;
   const int dimension = own->bodies->dimension, first = (own->axis + 1) % 3,
             second = (own->axis + 2) % 3;
   for (int i = 0; i < own->bodies->bodies * dimension; i++) xi[i] = 0.0;
@@ -211,10 +211,10 @@ static int nbody_make_symmetries(gravity *own, dvi_symmetry *symmetries)
     symmetries[count] = (dvi_symmetry){.name = planar ? "angular_momentum" : angular[axis],
                                        .generator = nbody_rotation};
   for (int i = 0; i < count; i++) {
-    own->motions[i] = (motion){.bodies = &own->bodies,
-                               .axis = i < own->bodies.dimension ? i
-                                       : planar                  ? 2
-                                                                 : i - 3};
+    own->motions[i] = (nbody_motion){.bodies = &own->bodies,
+                                     .axis = i < own->bodies.dimension ? i
+                                             : planar                  ? 2
+                                                                       : i - 3};
     symmetries[i].user = &own->motions[i];
   }
   return count;

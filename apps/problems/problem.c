@@ -23,10 +23,10 @@ static const problem_entry *const table[] = {
 static const problem_parameter no_parameters[1];
 
 /* The destination of a refusal. */
-typedef struct report {
+typedef struct refusal {
   char *message;
   size_t size;
-} report;
+} refusal;
 
 int problem_count(void)
 {
@@ -72,7 +72,7 @@ int problem_find(const char *name)
 __attribute__((format(printf, 3, 4)))
 #endif
 static dvi_status
-refuse_problem(const report *r, dvi_status status, const char *format, ...)
+refuse_problem(const refusal *r, dvi_status status, const char *format, ...)
 {
   va_list arguments;
   va_start(arguments, format);
@@ -82,7 +82,7 @@ refuse_problem(const report *r, dvi_status status, const char *format, ...)
 }
 
 /* Refuse a parameter's name, and list those that there are. */
-static dvi_status refuse_parameter_name(const report *r, const problem_entry *entry,
+static dvi_status refuse_parameter_name(const refusal *r, const problem_entry *entry,
                                         const char *setting, size_t length)
 {
   char names[NAMES_SIZE] = "none";
@@ -101,7 +101,7 @@ void problem_spell(const problem_parameter *parameter, double x, char *text, siz
 }
 
 /* Refuse a number outside of a parameter's range, and name the limit. */
-static dvi_status refuse_parameter_value(const report *r, const problem_entry *entry,
+static dvi_status refuse_parameter_value(const refusal *r, const problem_entry *entry,
                                          const char *setting, const problem_parameter *parameter,
                                          double x)
 {
@@ -113,7 +113,7 @@ static dvi_status refuse_parameter_value(const report *r, const problem_entry *e
                         x < parameter->least ? "least" : "most", parameter->name, parameter->help);
 }
 
-static dvi_status problem_read_choice(const report *r, const problem_entry *entry,
+static dvi_status problem_read_choice(const refusal *r, const problem_entry *entry,
                                       const char *setting, const problem_parameter *parameter,
                                       const char *name, double *value)
 {
@@ -127,7 +127,7 @@ static dvi_status problem_read_choice(const report *r, const problem_entry *entr
 }
 
 /* Read one "name=value". `given` marks the parameters that were read before. */
-static dvi_status problem_read_setting(const report *r, const problem_entry *entry,
+static dvi_status problem_read_setting(const refusal *r, const problem_entry *entry,
                                        const char *setting, double *value, int *given)
 {
   const char *equals = setting ? strchr(setting, '=') : NULL;
@@ -169,7 +169,7 @@ static int all_default(const problem_entry *entry, const double *value)
   return 1;
 }
 
-static dvi_status make_entry(const report *r, const problem_entry *entry, const double *value,
+static dvi_status make_entry(const refusal *r, const problem_entry *entry, const double *value,
                              problem *made)
 {
   made->name = entry->name;
@@ -204,7 +204,7 @@ static dvi_status make_entry(const report *r, const problem_entry *entry, const 
 dvi_status problem_create(const char *name, int setting_count, const char *const *settings,
                           problem **out, char *message, size_t size)
 {
-  const report r = {message, size};
+  const refusal r = {message, size};
   if (!out) return refuse_problem(&r, DVI_BAD_ARGUMENT, "there is no place for the problem");
   *out = NULL;
   const problem_entry *entry = entry_at(problem_find(name));

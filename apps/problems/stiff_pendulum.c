@@ -8,14 +8,14 @@
 
 #include "entry.h"
 
-typedef struct coefficients {
+typedef struct stiff_pendulum_coefficients {
   double k, l, m, g;
-} coefficients;
+} stiff_pendulum_coefficients;
 
 static int stiff_pendulum_lagrangian(double t, const double *q, const double *v, double *L,
                                      void *user)
 {
-  const coefficients *own = user;
+  const stiff_pendulum_coefficients *own = user;
   const double length = own->l + q[0], swing = length * v[1];
   (void)t;
   *L = 0.5 * own->m * (v[0] * v[0] + swing * swing) + own->m * own->g * length * cos(q[1]) -
@@ -26,7 +26,7 @@ static int stiff_pendulum_lagrangian(double t, const double *q, const double *v,
 static int stiff_pendulum_gradient(double t, const double *q, const double *v, double *L_q,
                                    double *L_v, void *user)
 {
-  const coefficients *own = user;
+  const stiff_pendulum_coefficients *own = user;
   const double length = own->l + q[0];
   (void)t;
   L_q[0] = own->m * (length * v[1] * v[1] + own->g * cos(q[1])) - own->k * q[0];
@@ -43,7 +43,7 @@ static const int vv_start[] = {0, 1, 2}, vv_row[] = {0, 1};
 static int stiff_pendulum_hessian(double t, const double *q, const double *v, double *L_qq,
                                   double *L_qv, double *L_vv, void *user)
 {
-  const coefficients *own = user;
+  const stiff_pendulum_coefficients *own = user;
   const double length = own->l + q[0];
   (void)t;
   L_qq[0] = own->m * v[1] * v[1] - own->k;
@@ -57,10 +57,11 @@ static int stiff_pendulum_hessian(double t, const double *q, const double *v, do
 
 static dvi_status stiff_pendulum_make(const double *setting, problem *made)
 {
-  const dvi_status status = problem_room(made, 2, sizeof(coefficients));
+  const dvi_status status = problem_room(made, 2, sizeof(stiff_pendulum_coefficients));
   if (status != DVI_OK) return status;
-  coefficients *own = made->parameters;
-  *own = (coefficients){.k = setting[0], .l = setting[1], .m = setting[2], .g = setting[3]};
+  stiff_pendulum_coefficients *own = made->parameters;
+  *own = (stiff_pendulum_coefficients){
+      .k = setting[0], .l = setting[1], .m = setting[2], .g = setting[3]};
   problem_label(made, 0, "a");
   problem_label(made, 1, "theta");
   made->q[0] = 0.05;

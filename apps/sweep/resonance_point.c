@@ -15,15 +15,15 @@ typedef struct mark {
 
 /* The state of a run. Marks are set at steps 1, 2, 4, 8, .., so that the last but one lies between
  * a quarter and a half of the run. */
-typedef struct watch {
+typedef struct resonance_watch {
   int watched;
   double first, largest;
   long steps; /* number of steps, -1 before the start */
   mark last, before;
   dvi_status status; /* status of the invariant's evaluation */
-} watch;
+} resonance_watch;
 
-static void set_mark(watch *w, double t)
+static void set_mark(resonance_watch *w, double t)
 {
   if (w->steps == 0 || (w->steps & (w->steps - 1)) != 0) return;
   w->before = w->last;
@@ -33,7 +33,7 @@ static void set_mark(watch *w, double t)
 /* Watch the invariant. The driver calls this function at the start and after each step. */
 static int resonance_observe(dvi_integrator *integrator, void *user)
 {
-  watch *w = user;
+  resonance_watch *w = user;
   double value = (double)NAN;
   w->status = dvi_integrator_invariant(integrator, w->watched, &value);
   if (w->status != DVI_OK) return -1;
@@ -46,7 +46,7 @@ static int resonance_observe(dvi_integrator *integrator, void *user)
   return !(w->largest < RESONANCE_LIMIT);
 }
 
-static double growth_rate(const watch *w, double t)
+static double growth_rate(const resonance_watch *w, double t)
 {
   const double span = fabs(t - w->before.t);
   return span > 0.0 && w->before.error > 0.0 && isfinite(w->largest)
@@ -62,7 +62,7 @@ static void resonance_complain(const resonance_task *task, double value, const c
 static dvi_status resonance_advance(const resonance_task *task, const problem *scene,
                                     dvi_integrator *integrator, resonance_point *point)
 {
-  watch w = {.watched = task->watched, .steps = -1};
+  resonance_watch w = {.watched = task->watched, .steps = -1};
   const dvi_run_options options = {.h = task->steps_vary ? point->value : task->h,
                                    .t_end = task->t_end,
                                    .observe = resonance_observe,

@@ -13,12 +13,12 @@
 enum { LABEL_SIZE = 1024, WORD_SIZE = 256 };
 
 /* The state of a run. */
-typedef struct watch {
+typedef struct sweep_watch {
   double *invariant; /* [invariants] */
   double first, largest;
   bool begun;
   dvi_status status; /* status of the energy's evaluation */
-} watch;
+} sweep_watch;
 
 /* The result at a point. */
 typedef struct outcome {
@@ -112,7 +112,7 @@ static void sweep_complain(const grid_point *point, const char *sentence)
 /* Watch the energy. The driver calls this function at the start and after each step. */
 static int sweep_observe(dvi_integrator *integrator, void *user)
 {
-  watch *w = user;
+  sweep_watch *w = user;
   w->status = dvi_integrator_invariants(integrator, w->invariant);
   if (w->status == DVI_OK && !isfinite(w->invariant[0])) w->status = DVI_NOT_FINITE;
   if (w->status != DVI_OK) return -1;
@@ -123,8 +123,8 @@ static int sweep_observe(dvi_integrator *integrator, void *user)
 }
 
 static dvi_status sweep_advance(const sweep_task *task, const problem *scene,
-                                const event_list *events, dvi_integrator *integrator, watch *w,
-                                outcome *end)
+                                const event_list *events, dvi_integrator *integrator,
+                                sweep_watch *w, outcome *end)
 {
   const double t_end = isnan(task->t_end) ? scene->t_end : task->t_end;
   const double h = isnan(task->h) ? copysign(scene->h, t_end) : task->h;
@@ -149,7 +149,7 @@ static dvi_status sweep_advance(const sweep_task *task, const problem *scene,
 
 /* Run the problem at a point. The integrator owns the state that `end` shows. */
 static void sweep_run_problem(const sweep_task *task, const problem *scene, const grid_point *point,
-                              dvi_integrator **integrator, watch *w, outcome *end)
+                              dvi_integrator **integrator, sweep_watch *w, outcome *end)
 {
   event_list events;
   dvi_status status = events_list(&events, scene, NULL, NULL) ? DVI_OK : DVI_NO_MEMORY;
@@ -178,7 +178,7 @@ sweep_row sweep_run(const sweep_task *task, long k)
 {
   grid_point point;
   outcome end = {.word = "refused", .failed = true, .t = (double)NAN, .energy_error = (double)NAN};
-  watch w = {.status = DVI_OK};
+  sweep_watch w = {.status = DVI_OK};
   problem *scene = NULL;
   dvi_integrator *integrator = NULL;
   sweep_row row = {.text = NULL};

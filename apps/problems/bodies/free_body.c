@@ -22,13 +22,13 @@ typedef long double real;
 enum { LANDEN_MAX = 12 }; /* quadratic convergence */
 
 /* The motion in the order of the axes. */
-typedef struct motion {
+typedef struct free_body_motion {
   int axis[3];              /* indices of the body's axes 1, 2, 3 */
   real A, B, C, lambda, k2; /* amplitudes of Omega, rate of u, and modulus squared */
   real rest;                /* 1 - k2, without cancellation */
   real momentum, bend;      /* |L|, and n in the integral of the third kind, below 0 */
   real mean, excess;        /* phi = mean t + excess times that integral */
-} motion;
+} free_body_motion;
 
 /* ---- elliptic integrals ---- */
 
@@ -92,12 +92,12 @@ static real carlson_R_J(real x, real y, real z, real p)
 
 /* Compute the integrals of du and of du/(1 - n sn^2 u) from 0 to the amplitude whose sine and
  * cosine are given, |amplitude| <= pi/2. */
-static real first_kind(const motion *m, real sine, real cosine)
+static real first_kind(const free_body_motion *m, real sine, real cosine)
 {
   return sine * carlson_R_F(cosine * cosine, cosine * cosine + m->rest * sine * sine, 1.0L);
 }
 
-static real third_kind(const motion *m, real sine, real cosine)
+static real third_kind(const free_body_motion *m, real sine, real cosine)
 {
   const real s2 = sine * sine, c2 = cosine * cosine, d2 = c2 + m->rest * s2;
   return sine * carlson_R_F(c2, d2, 1.0L) +
@@ -105,7 +105,7 @@ static real third_kind(const motion *m, real sine, real cosine)
 }
 
 /* Compute am(u) for |u| <= K. */
-static real jacobi_amplitude(const motion *m, real u)
+static real jacobi_amplitude(const free_body_motion *m, real u)
 {
   real a[LANDEN_MAX + 1], c[LANDEN_MAX + 1], b = sqrtl(m->rest);
   int last = 0;
@@ -149,7 +149,7 @@ static int sort_axes(const double *J, const double *Omega, int *axis)
 
 /* Compute the constants of the motion from the start. Returns 0, or 1 on the separatrix, where the
  * motion tends to a turn about the middle axis. */
-static int find_motion(const double *J, const double *Omega, motion *m)
+static int find_motion(const double *J, const double *Omega, free_body_motion *m)
 {
   const int sign = sort_axes(J, Omega, m->axis);
   const real I1 = J[m->axis[0]], I2 = J[m->axis[1]], I3 = J[m->axis[2]];
@@ -173,7 +173,8 @@ static int find_motion(const double *J, const double *Omega, motion *m)
 
 /* Compute Omega at time t in the body's axes, and the angle phi by which axis 3 has turned about
  * the angular momentum since t = 0. */
-static void follow_motion(const motion *m, const double *Omega, real t, real *w, real *phi)
+static void follow_motion(const free_body_motion *m, const double *Omega, real t, real *w,
+                          real *phi)
 {
   const real K = first_kind(m, 1.0L, 0.0L), whole = third_kind(m, 1.0L, 0.0L);
   const real cosine = Omega[m->axis[0]] / m->A, sine = Omega[m->axis[1]] / m->B,
@@ -245,7 +246,7 @@ static int is_steady(const double *Pi, const double *Omega)
 static int free_body_exact(const problem *made, double t, double *q, double *p)
 {
   const double *full = ((const top *)made->parameters)->J, J[3] = {full[0], full[4], full[8]};
-  motion m;
+  free_body_motion m;
   real w[3], start[3], end[3], phi, T0[9], T[9];
   if (is_steady(made->p, made->v)) {
     turn_steadily(made->v, t, q);

@@ -8,13 +8,13 @@
 
 #include "entry.h"
 
-typedef struct gauge {
+typedef struct lotka_volterra_gauge {
   double c, left, right;
-} gauge;
+} lotka_volterra_gauge;
 
 static int lotka_volterra_one_form(const double *q, double *alpha, void *user)
 {
-  const gauge *g = user;
+  const lotka_volterra_gauge *g = user;
   if (!(q[0] > 0 && q[1] > 0)) return 1;
   alpha[0] = g->c * q[1] + g->left * log(q[1]) / q[0];
   alpha[1] = g->c * q[0] + g->right * log(q[0]) / q[1];
@@ -23,7 +23,7 @@ static int lotka_volterra_one_form(const double *q, double *alpha, void *user)
 
 static int lotka_volterra_one_form_gradient(const double *q, double *alpha_q, void *user)
 {
-  const gauge *g = user;
+  const lotka_volterra_gauge *g = user;
   if (!(q[0] > 0 && q[1] > 0)) return 1;
   alpha_q[0] = -g->left * log(q[1]) / (q[0] * q[0]);
   alpha_q[1] = g->c + g->left / (q[0] * q[1]);
@@ -35,7 +35,7 @@ static int lotka_volterra_one_form_gradient(const double *q, double *alpha_q, vo
 static int lotka_volterra_one_form_hessian(const double *q, const double *w, double *alpha_w_qq,
                                            void *user)
 {
-  const gauge *g = user;
+  const lotka_volterra_gauge *g = user;
   if (!(q[0] > 0 && q[1] > 0)) return 1;
   const double left = g->left * w[0] / q[0], right = g->right * w[1] / q[1];
   alpha_w_qq[0] = (2 * left * log(q[1]) / q[0] - right / q[0]) / q[0];
@@ -73,10 +73,11 @@ static const char *const gauges[] = {"standard", "singular", "symmetric", NULL};
 
 static dvi_status lotka_volterra_make(const double *setting, problem *made)
 {
-  static const gauge of_name[] = {{.c = 1, .left = 1}, {.left = 1}, {.left = 0.5, .right = -0.5}};
-  const dvi_status status = problem_room(made, 2, sizeof(gauge));
+  static const lotka_volterra_gauge of_name[] = {
+      {.c = 1, .left = 1}, {.left = 1}, {.left = 0.5, .right = -0.5}};
+  const dvi_status status = problem_room(made, 2, sizeof(lotka_volterra_gauge));
   if (status != DVI_OK) return status;
-  gauge *own = made->parameters;
+  lotka_volterra_gauge *own = made->parameters;
   *own = of_name[(int)setting[0]];
   problem_label(made, 0, "prey");
   problem_label(made, 1, "predators");

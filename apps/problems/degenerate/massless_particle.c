@@ -9,13 +9,13 @@
 #include "entry.h"
 
 /* The coefficients of both gauges, ( -y (c + d x^2 + e y^2),  f x (1 + x^2 + y^2) ). */
-typedef struct gauge {
+typedef struct massless_particle_gauge {
   double c, d, e, f;
-} gauge;
+} massless_particle_gauge;
 
 static int massless_particle_one_form(const double *q, double *alpha, void *user)
 {
-  const gauge *g = user;
+  const massless_particle_gauge *g = user;
   const double x = q[0], y = q[1];
   alpha[0] = -y * (g->c + g->d * x * x + g->e * y * y);
   alpha[1] = g->f * x * (1 + x * x + y * y);
@@ -24,7 +24,7 @@ static int massless_particle_one_form(const double *q, double *alpha, void *user
 
 static int massless_particle_one_form_gradient(const double *q, double *alpha_q, void *user)
 {
-  const gauge *g = user;
+  const massless_particle_gauge *g = user;
   const double x = q[0], y = q[1];
   alpha_q[0] = -2 * g->d * x * y;
   alpha_q[1] = -(g->c + g->d * x * x + 3 * g->e * y * y);
@@ -36,7 +36,7 @@ static int massless_particle_one_form_gradient(const double *q, double *alpha_q,
 static int massless_particle_one_form_hessian(const double *q, const double *w, double *alpha_w_qq,
                                               void *user)
 {
-  const gauge *g = user;
+  const massless_particle_gauge *g = user;
   const double x = q[0], y = q[1];
   alpha_w_qq[0] = -2 * g->d * y * w[0] + 6 * g->f * x * w[1];
   alpha_w_qq[1] = alpha_w_qq[2] = -2 * g->d * x * w[0] + 2 * g->f * y * w[1];
@@ -72,11 +72,11 @@ static const char *const gauges[] = {"standard", "singular", NULL};
 
 static dvi_status massless_particle_make(const double *setting, problem *made)
 {
-  static const gauge of_name[] = {{.c = 0.5, .d = 0.5, .e = 0.5, .f = 0.5},
-                                  {.c = 1, .d = 2, .e = 2.0 / 3.0}};
-  const dvi_status status = problem_room(made, 2, sizeof(gauge));
+  static const massless_particle_gauge of_name[] = {{.c = 0.5, .d = 0.5, .e = 0.5, .f = 0.5},
+                                                    {.c = 1, .d = 2, .e = 2.0 / 3.0}};
+  const dvi_status status = problem_room(made, 2, sizeof(massless_particle_gauge));
   if (status != DVI_OK) return status;
-  gauge *own = made->parameters;
+  massless_particle_gauge *own = made->parameters;
   *own = of_name[(int)setting[0]];
   problem_label(made, 0, "x");
   problem_label(made, 1, "y");
