@@ -243,7 +243,8 @@ static int order_check_request(order_request *request, const char *name)
   if (pacing_check("order", &request->how) != DONE ||
       words_distinct("order", "method", &request->methods) != DONE)
     return USAGE;
-  const named_file files[] = {{"csv", request->csv}, {"plot", request->plot}};
+  const named_file files[] = {{.option = "csv", .path = request->csv},
+                              {.option = "plot", .path = request->plot}};
   int code = request->judged_by != NULL
                  ? judge_read("order: --judge", request->judged_by, &request->judge)
                  : DONE;

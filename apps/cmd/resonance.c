@@ -271,7 +271,8 @@ static int complete_search(resonance_request *request)
 
 static int resonance_check_request(resonance_request *request, const resonance_task *task)
 {
-  const named_file files[] = {{"csv", request->csv}, {"plot", request->plot}};
+  const named_file files[] = {{.option = "csv", .path = request->csv},
+                              {.option = "plot", .path = request->plot}};
   int code = read_varied(request);
   if (code == DONE) code = check_varied(&task->settings, request->name);
   if (code == DONE) code = complete_search(request);

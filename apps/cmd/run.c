@@ -117,11 +117,11 @@ static bool is_stream(const char *path)
  * same. */
 static int check_files(const run_request *request, const char *name)
 {
-  const named_file files[] = {{"resume", request->resume},
-                              {"out", request->out},
-                              {"events", request->events},
-                              {"plot", request->plot},
-                              {"checkpoint", request->checkpoint}};
+  const named_file files[] = {{.option = "resume", .path = request->resume},
+                              {.option = "out", .path = request->out},
+                              {.option = "events", .path = request->events},
+                              {.option = "plot", .path = request->plot},
+                              {.option = "checkpoint", .path = request->checkpoint}};
   if (is_stream(request->checkpoint))
     return usage_error("run: --checkpoint -: a checkpoint goes to a file, not to standard output");
   if (is_stream(request->events) && is_stream(request->out))
@@ -136,11 +136,11 @@ static int check_files(const run_request *request, const char *name)
  * start. */
 static int check_verify(const run_request *request)
 {
-  const named_file others[] = {{"out", request->out},
-                               {"events", request->events},
-                               {"checkpoint", request->checkpoint},
-                               {"resume", request->resume},
-                               {"plot", request->plot}};
+  const named_file others[] = {{.option = "out", .path = request->out},
+                               {.option = "events", .path = request->events},
+                               {.option = "checkpoint", .path = request->checkpoint},
+                               {.option = "resume", .path = request->resume},
+                               {.option = "plot", .path = request->plot}};
   if (!request->verify) {
     if (request->digits > 0)
       return usage_error("run: --digits %ld is for --verify, which finds digits", request->digits);
