@@ -230,15 +230,17 @@ expect 0 'more tolerances' bench kepler --method verlet --levels 1 --rounds 1 \
 # Sizes.
 expect 0 'sizes' bench fpu --method verlet --method galerkin:degree=2 --scale ell=5,50,10 \
   --rounds 1 --csv - --plot scale.svg
-header=method,problem,parameter,value,n,h,step_seconds,step_lower,step_upper,bytes,step_evaluations
-header=$header,step_residuals,step_factorizations,calibration_seconds,calibration_least
+header=method,problem,parameter,value,n,h,step_seconds,step_lower,step_upper,bytes,create_seconds
+header=$header,first_seconds,step_evaluations,step_residuals,step_factorizations
+header=$header,calibration_seconds,calibration_least
 [ "$(head -n 1 out)" = $header ] || fail 'header of sizes'
-[ "$(awk -F, 'NF == 15' out | wc -l)" -eq 7 ] || fail 'two methods at three sizes'
-awk -F, 'NR > 1 && !($5 == 2 * $4 && $7 > 0 && $8 <= $7 && $7 <= $9 && $11 > 0)' out | grep -q . &&
+[ "$(awk -F, 'NF == 17' out | wc -l)" -eq 7 ] || fail 'two methods at three sizes'
+awk -F, 'NR > 1 && !($5 == 2 * $4 && $7 > 0 && $8 <= $7 && $7 <= $9 && $11 > 0 && $12 > 0 &&
+  $13 > 0)' out | grep -q . &&
   fail 'two coordinates to a spring, times, counts'
 awk -F, 'NR > 1 && $6 != 0.005' out | grep -q . && fail "the problem's own step"
 # verlet evaluates once a step, and once at the start; 32 steps are counted.
-awk -F, '$1 == "verlet" && $11 * 32 != 33' out | grep -q . && fail 'evaluations of verlet'
+awk -F, '$1 == "verlet" && $13 * 32 != 33' out | grep -q . && fail 'evaluations of verlet'
 # The heap is not known under a sanitizer; where it is, more coordinates take more.
 bytes() { awk -F, -v ell="$1" '$1 == "verlet" && $4 == ell { print $10 }' out; }
 [ -z "$(bytes 5)" ] || [ "$(bytes 50)" -gt "$(bytes 5)" ] || fail 'bytes grow'
@@ -299,14 +301,14 @@ expect 0 'degrees' bench kepler --method galerkin --method composition:order=4,b
 [ "$(grep -c '^galerkin,kepler,degree,[142],2,' out)" -eq 3 ] || fail 'three degrees'
 [ "$(grep -c '^"composition:order=4,base=galerkin",kepler,degree,' out)" -eq 3 ] ||
   fail 'three degrees of the base'
-awk -F, '$1 == "galerkin" && !($12 > 0 && $11 == $4 * $12 && $13 == 0)' out | grep -q . &&
+awk -F, '$1 == "galerkin" && !($14 > 0 && $13 == $4 * $14 && $15 == 0)' out | grep -q . &&
   fail 'evaluations and residuals of fixed point iteration'
 says err '  step_seconds ~ degree^[-0-9.]*  bytes ~ .*  step_evaluations ~ degree^0' \
   'exponents of the degree'
 if command -v gnuplot >/dev/null; then says scale.svg '</svg>' 'the plot of degrees is whole'; fi
 expect 0 'factorisations' bench fpu --method galerkin:solver=newton --scale degree=1,2 --rounds 1 \
   --csv -
-awk -F, '$1 ~ /^galerkin/ && !($13 > 0)' out | grep -q . && fail "factorisations of Newton's method"
+awk -F, '$1 ~ /^galerkin/ && !($15 > 0)' out | grep -q . && fail "factorisations of Newton's method"
 for bad in degree=2,2.5 degree=1,200 degree=2 degree=2,2; do
   expect 2 "scale $bad" bench kepler --method galerkin --scale "$bad"
 done
@@ -327,7 +329,7 @@ expect 0 'threads' bench chain --set n=20000 --method verlet --method compositio
   --scale threads=1,2 --steps 3 --rounds 2 --csv - --plot threads.svg
 awk -F, 'NR > 1 && !($3 == "threads" && $5 == 20000 && $7 > 0 && $8 <= $7 && $7 <= $9)' out |
   grep -q . && fail 'threads: rows'
-[ "$(awk -F, '$1 == "verlet" { print $4, $11 * 3 }' out | tr '\n' ' ')" = '1 4 2 4 ' ] ||
+[ "$(awk -F, '$1 == "verlet" { print $4, $13 * 3 }' out | tr '\n' ' ')" = '1 4 2 4 ' ] ||
   fail 'one gradient a step, one at the start, on any number of threads'
 says err '^  speed-up against threads=1:  [0-9.]*$' 'the speed-up'
 rate='[0-9.]* GB/s: [0-9.]* of the [0-9.]* GB/s of an in-place axpy'
