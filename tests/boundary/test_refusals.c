@@ -15,7 +15,7 @@ static const dvi_path_options good = {
 
 static void set_up(void)
 {
-  kepler = made_problem("kepler", NULL);
+  kepler = create_problem("kepler", NULL);
 }
 
 static void tear_down(void)
@@ -256,7 +256,7 @@ static void unsolvable(const dvi_system *system, dvi_path_options options, dvi_s
 START_TEST(conjugate_ends_are_named)
 {
   const double from[] = {0, 0, 0.5}, to[] = {0, 1, -0.5};
-  problem *of = made_problem("oscillator", NULL);
+  problem *model = create_problem("oscillator", NULL);
   for (int k = 0; k < 3; k++) {
     const dvi_path_options options = {.ends = DVI_ENDS_FIXED,
                                       .steps = 20,
@@ -264,9 +264,9 @@ START_TEST(conjugate_ends_are_named)
                                       .dimension = 1,
                                       .q0 = from + k,
                                       .q1 = to + k};
-    unsolvable(of->system, options, DVI_SINGULAR, "its ends are conjugate");
+    unsolvable(model->system, options, DVI_SINGULAR, "its ends are conjugate");
   }
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -286,15 +286,15 @@ END_TEST
 START_TEST(a_period_that_no_path_has_is_named)
 {
   static const double t[] = {0, 1, 2}, q[] = {1, -1, 1};
-  problem *of = made_problem("oscillator", NULL);
+  problem *model = create_problem("oscillator", NULL);
   const dvi_path_options options = {.ends = DVI_ENDS_PERIODIC, .steps = 20, .span = 7};
   dvi_path *path = NULL;
-  ck_assert_int_eq(dvi_path_create(of->system, "galerkin:degree=4", &options, &path), DVI_OK);
+  ck_assert_int_eq(dvi_path_create(model->system, "galerkin:degree=4", &options, &path), DVI_OK);
   ck_assert_int_eq(dvi_path_guess(path, 3, 1, t, q), DVI_OK);
   ck_assert_int_eq(dvi_path_solve(path, NULL), DVI_NOT_CONVERGED);
   check_words("no path of this period");
   dvi_path_destroy(&path);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

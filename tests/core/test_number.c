@@ -114,7 +114,7 @@ static int print(char *text, size_t size, const char *format, ...)
 START_TEST(all_is_the_same_with_a_decimal_comma)
 {
   char text[64];
-  set_comma();
+  set_comma_locale();
   check_all_reads();
   check_all_refusals();
   check_all_writes();
@@ -122,7 +122,7 @@ START_TEST(all_is_the_same_with_a_decimal_comma)
   ck_assert_str_eq(text, "0.25 and 1,5");
   (void)snprintf(text, sizeof text, "%.2f", 0.25);
   ck_assert_str_eq(text, "0,25"); /* the locale is as it was */
-  set_point();
+  set_point_locale();
 }
 END_TEST
 

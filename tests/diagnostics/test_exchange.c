@@ -127,7 +127,7 @@ static double time_to_share(const char *method, double h, double turn)
   };
   dvi_system *system = make_system(&(dvi_system_terms){
       .dimension = 2, .mass.scalar = 1, .potentials = springs, .potential_count = 2});
-  dvi_integrator *integrator = made_integrator(system, method);
+  dvi_integrator *integrator = create_integrator(system, method);
   const double q[] = {1, 0}, p[] = {0, 0};
   double before[2], ahead = 1;
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, q, p), DVI_OK);
@@ -177,7 +177,7 @@ END_TEST
 START_TEST(fast_frequencies_are_those_of_the_declared_potentials)
 {
   double least, most;
-  problem *chain = made_problem("fpu", "omega=70");
+  problem *chain = create_problem("fpu", "omega=70");
   ck_assert_int_eq(dvi_fast_frequencies(chain->system, &least, &most), DVI_OK);
   ck_assert_double_eq_tol(least, 70, 1e-12);
   ck_assert_double_eq_tol(most, 70, 1e-12);
@@ -188,7 +188,7 @@ END_TEST
 START_TEST(a_system_without_them_is_refused)
 {
   double least = 7, most = 8;
-  problem *orbit = made_problem("kepler", NULL);
+  problem *orbit = create_problem("kepler", NULL);
   dvi_system *far = runaway(1);
   ck_assert_int_eq(dvi_fast_frequencies(orbit->system, &least, &most), DVI_UNSUPPORTED);
   ck_assert_int_eq(dvi_fast_frequencies(far, &least, &most), DVI_UNSUPPORTED);

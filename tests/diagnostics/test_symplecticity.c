@@ -13,8 +13,8 @@
 
 static double defect_of(const char *name, const char *method, double step_factor)
 {
-  problem *p = made_problem(name, NULL);
-  dvi_integrator *integrator = made_integrator(p->system, method);
+  problem *p = create_problem(name, NULL);
+  dvi_integrator *integrator = create_integrator(p->system, method);
   double defect = -1;
   const dvi_status status = dvi_symplecticity(integrator, 0, p->q, p->p, step_factor * p->h,
                                               &defect);
@@ -62,7 +62,7 @@ static dvi_integrator *made(const dvi_lagrangian *lagrangian, int n, const char 
   dvi_system *system = NULL;
   const dvi_system_terms terms = {.dimension = n, .lagrangian = lagrangian};
   ck_assert_msg(dvi_system_create(&terms, &system) == DVI_OK, "%s", dvi_last_error());
-  return made_integrator(system, method);
+  return create_integrator(system, method);
 }
 
 static dvi_integrator *made_with_potential(const dvi_potential *potential, int n,
@@ -72,7 +72,7 @@ static dvi_integrator *made_with_potential(const dvi_potential *potential, int n
   const dvi_system_terms terms = {
       .dimension = n, .mass = {.scalar = 1}, .potentials = potential, .potential_count = 1};
   ck_assert_msg(dvi_system_create(&terms, &system) == DVI_OK, "%s", dvi_last_error());
-  return made_integrator(system, method);
+  return create_integrator(system, method);
 }
 
 static void released(dvi_integrator *integrator)
@@ -374,9 +374,9 @@ END_TEST
 
 START_TEST(the_integrator_goes_on_as_if_nothing_had_happened)
 {
-  problem *p = made_problem("kepler", NULL);
-  dvi_integrator *probed = made_integrator(p->system, "galerkin:degree=3"),
-                 *alone = made_integrator(p->system, "galerkin:degree=3");
+  problem *p = create_problem("kepler", NULL);
+  dvi_integrator *probed = create_integrator(p->system, "galerkin:degree=3"),
+                 *alone = create_integrator(p->system, "galerkin:degree=3");
   dvi_counters before, after;
   double defect;
   ck_assert_int_eq(dvi_integrator_start(probed, 0, p->q, p->p), DVI_OK);
@@ -407,8 +407,8 @@ END_TEST
 START_TEST(a_start_in_a_singularity_is_reported_and_nothing_is_written)
 {
   const double origin[] = {0, 0};
-  problem *p = made_problem("kepler", NULL);
-  dvi_integrator *integrator = made_integrator(p->system, "verlet");
+  problem *p = create_problem("kepler", NULL);
+  dvi_integrator *integrator = create_integrator(p->system, "verlet");
   double defect = 7;
   ck_assert_int_ne(dvi_symplecticity(integrator, 0, origin, p->p, p->h, &defect), DVI_OK);
   ck_assert(defect == 7);
@@ -419,8 +419,8 @@ END_TEST
 
 START_TEST(missing_arguments_and_a_step_of_0_are_refused)
 {
-  problem *p = made_problem("pendulum", NULL);
-  dvi_integrator *integrator = made_integrator(p->system, "verlet");
+  problem *p = create_problem("pendulum", NULL);
+  dvi_integrator *integrator = create_integrator(p->system, "verlet");
   double defect = 7;
   ck_assert_int_eq(dvi_symplecticity(NULL, 0, p->q, p->p, p->h, &defect), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_symplecticity(integrator, 0, NULL, p->p, p->h, &defect), DVI_BAD_ARGUMENT);
@@ -440,8 +440,8 @@ START_TEST(factors_have_no_canonical_coordinates)
 {
   static const char *const place[] = {"free-body", "spherical-double-pendulum", "two-body"};
   for (size_t k = 0; k < sizeof place / sizeof *place; k++) {
-    problem *p = made_problem(place[k], NULL);
-    dvi_integrator *integrator = made_integrator(p->system, "lie-verlet");
+    problem *p = create_problem(place[k], NULL);
+    dvi_integrator *integrator = create_integrator(p->system, "lie-verlet");
     double defect = 7;
     ck_assert_int_eq(dvi_symplecticity(integrator, 0, p->q, p->p, p->h, &defect), DVI_UNSUPPORTED);
     ck_assert(defect == 7);
@@ -459,8 +459,8 @@ START_TEST(degenerate_systems_are_refused_and_the_sentence_names_the_loop_integr
                                          {"vortices-linear", "hp:type=2"},
                                          {"circle-dirac", "dg-phase"}};
   for (size_t k = 0; k < sizeof place / sizeof *place; k++) {
-    problem *p = made_problem(place[k][0], NULL);
-    dvi_integrator *integrator = made_integrator(p->system, place[k][1]);
+    problem *p = create_problem(place[k][0], NULL);
+    dvi_integrator *integrator = create_integrator(p->system, place[k][1]);
     double defect = 7;
     ck_assert_int_eq(dvi_symplecticity(integrator, 0, p->q, p->p, p->h, &defect), DVI_UNSUPPORTED);
     check_words("use dvi_loop_integral over a loop of starts");
@@ -473,8 +473,8 @@ END_TEST
 
 START_TEST(every_failing_allocation_is_reported)
 {
-  problem *p = made_problem("pendulum", NULL);
-  dvi_integrator *integrator = made_integrator(p->system, "verlet");
+  problem *p = create_problem("pendulum", NULL);
+  dvi_integrator *integrator = create_integrator(p->system, "verlet");
   double defect = 7;
   dvi_status status = DVI_NO_MEMORY;
   for (long successes = 0; status != DVI_OK; successes++) {

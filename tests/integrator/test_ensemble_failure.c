@@ -29,7 +29,7 @@ static void fill_start(void)
 static void set_up(void)
 {
   const dvi_ensemble_options options = {.members = MEMBERS, .block = 5};
-  kepler = made_problem("kepler", NULL);
+  kepler = create_problem("kepler", NULL);
   fill_start();
   ck_assert_int_eq(dvi_ensemble_create(kepler->system, "verlet", &options, &ensemble), DVI_OK);
 }
@@ -350,13 +350,13 @@ static const struct {
 
 START_TEST(creation_survives_every_failure_of_memory)
 {
-  problem *of = made_problem(places[_i].problem, NULL);
+  problem *model = create_problem(places[_i].problem, NULL);
   const dvi_system *systems[MEMBERS];
-  for (int k = 0; k < MEMBERS; k++) systems[k] = of->system;
+  for (int k = 0; k < MEMBERS; k++) systems[k] = model->system;
   const dvi_ensemble_options options[] = {{.members = MEMBERS, .threads = 2},
                                           {.members = MEMBERS, .systems = systems}};
   for (int way = 0; way < 2; way++) {
-    const dvi_system *system = way == 0 ? of->system : NULL;
+    const dvi_system *system = way == 0 ? model->system : NULL;
     dvi_ensemble *made = NULL;
     ck_assert_int_eq(dvi_ensemble_create(system, places[_i].method, &options[way], &made), DVI_OK);
     /* the first one completes the system, and libraries take what they keep */
@@ -380,7 +380,7 @@ START_TEST(creation_survives_every_failure_of_memory)
     }
     ck_assert_int_eq(heap_bytes(), bytes_before);
   }
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

@@ -24,7 +24,7 @@ typedef struct mark {
 /* What was reported, in this order. */
 static struct {
   int count;
-  const mark *of[MARKS_MOST];
+  const mark *watched[MARKS_MOST];
   double t[MARKS_MOST], q[MARKS_MOST];
 } record;
 
@@ -46,7 +46,7 @@ static int take_down(double t, const double *q, const double *v, void *user)
   const mark *m = user;
   (void)v;
   ck_assert_int_lt(record.count, MARKS_MOST);
-  record.of[record.count] = m;
+  record.watched[record.count] = m;
   record.t[record.count] = t;
   record.q[record.count++] = q[0];
   return m->answer;
@@ -57,19 +57,19 @@ static dvi_event at_times(mark *m)
   return (dvi_event){.name = "alarm", .value = clock_value, .occurred = take_down, .user = m};
 }
 
-static problem *of;
+static problem *model;
 static dvi_integrator *integrator;
 
 static void set_up(void)
 {
-  of = made_problem("oscillator", NULL);
-  integrator = started(of, "galerkin:degree=8");
+  model = create_problem("oscillator", NULL);
+  integrator = start_integrator(model, "galerkin:degree=8");
 }
 
 static void tear_down(void)
 {
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 
 static dvi_run_report watch(double h, double t_end, const dvi_event *events, int count)
@@ -150,8 +150,8 @@ static int radial_speed(double t, const double *q, const double *v, double *g, v
 START_TEST(apsides_of_a_kepler_orbit_are_where_theory_says)
 {
   const int direction = _i - 1;
-  problem *kepler = made_problem("kepler", "e=0.6");
-  dvi_integrator *orbit = started(kepler, "galerkin:degree=12");
+  problem *kepler = create_problem("kepler", "e=0.6");
+  dvi_integrator *orbit = start_integrator(kepler, "galerkin:degree=12");
   const dvi_event event = {
       .name = "apsis", .value = radial_speed, .direction = direction, .occurred = note_time};
   const dvi_run_options options = {.h = 0.05, .t_end = 32, .events = &event, .event_count = 1};
@@ -222,7 +222,7 @@ START_TEST(the_callback_gets_the_path_at_the_event)
   double q, p;
   (void)watch(0.1, 2, &event, 1);
   ck_assert_int_eq(record.count, 1);
-  ck_assert_int_eq(of->exact(of, 1.2345, &q, &p), 0);
+  ck_assert_int_eq(model->exact(model, 1.2345, &q, &p), 0);
   ck_assert_double_eq_tol(record.q[0], q, 1e-12);
 }
 END_TEST
@@ -277,7 +277,7 @@ START_TEST(runs_that_end_between_events_find_each_once)
   const dvi_event event = {.value = position, .occurred = note_time, .user = &zero};
   for (int k = 1; k <= 90; k++) (void)watch(0.37, k / 3.0, &event, 1);
   const int in_parts = times.count;
-  ck_assert_int_eq(dvi_integrator_start(integrator, 0, of->q, of->p), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, model->q, model->p), DVI_OK);
   (void)watch(0.37, 30, &event, 1);
   ck_assert_int_eq(times.count, 2 * in_parts);
 }
@@ -294,7 +294,7 @@ START_TEST(events_of_one_step_come_in_the_order_of_the_run)
   const dvi_event events[] = {at_times(&late), at_times(&middle), at_times(&early)};
   const double forward[] = {0.29, 0.30, 0.31, 0.55, 0.70, 0.71};
   const mark *const whose[] = {&early, &middle, &late, &middle, &early, &late};
-  if (_i == 1) ck_assert_int_eq(dvi_integrator_start(integrator, 1, of->q, of->p), DVI_OK);
+  if (_i == 1) ck_assert_int_eq(dvi_integrator_start(integrator, 1, model->q, model->p), DVI_OK);
   const dvi_run_report report = watch(_i == 0 ? 1 : -1, _i == 0 ? 1 : 0, events, 3);
   ck_assert_int_eq(report.steps, 1);
   ck_assert_int_eq(report.events, 6);
@@ -302,7 +302,7 @@ START_TEST(events_of_one_step_come_in_the_order_of_the_run)
   for (int k = 0; k < 6; k++) {
     const int j = _i == 0 ? k : 5 - k;
     ck_assert_double_eq_tol(record.t[k], forward[j], 1e-12);
-    ck_assert_ptr_eq(record.of[k], whose[j]);
+    ck_assert_ptr_eq(record.watched[k], whose[j]);
   }
   ck_assert_int_eq(report.event, _i == 0 ? 0 : 2);
   ck_assert_double_eq(report.event_time, record.t[5]);
@@ -314,8 +314,8 @@ START_TEST(of_two_events_at_one_time_the_first_of_the_list_comes_first)
   mark one = {.count = 1, .time = {0.5}}, two = {.count = 1, .time = {0.5}};
   const dvi_event events[] = {at_times(&one), at_times(&two)};
   ck_assert_int_eq(watch(0.125, 1, events, 2).events, 2);
-  ck_assert_ptr_eq(record.of[0], &one);
-  ck_assert_ptr_eq(record.of[1], &two);
+  ck_assert_ptr_eq(record.watched[0], &one);
+  ck_assert_ptr_eq(record.watched[1], &two);
 }
 END_TEST
 
@@ -409,7 +409,7 @@ START_TEST(a_function_that_fails_in_mid_run_fails_the_run)
   ck_assert_int_eq(report.steps, 3);
   ck_assert_int_eq(report.events, 0);
   ck_assert_double_eq(dvi_integrator_time(integrator), 0.375);
-  dvi_integrator *other = started(of, dvi_integrator_method(integrator));
+  dvi_integrator *other = start_integrator(model, dvi_integrator_method(integrator));
   advance(other, 0.125, 3);
   check_same_state(integrator, other);
   advance(integrator, 0.1, 4);
@@ -448,7 +448,7 @@ START_TEST(a_function_that_fails_at_the_start_fails_the_run)
 {
   mark m = {.value_after = 0.45, .value_answer = ailments[_i].answer, .value = ailments[_i].value};
   const dvi_event event = at_times(&m);
-  ck_assert_int_eq(dvi_integrator_start(integrator, 0.5, of->q, of->p), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0.5, model->q, model->p), DVI_OK);
   const dvi_run_report report = failing(ailments[_i].status, &event);
   check_words(ailments[_i].words);
   ck_assert_int_eq(report.steps, 0);

@@ -59,7 +59,7 @@ static double error_in_units(double unit, double begin,
       .h = unit, .t_end = begin + 10 * unit, .events = &event, .event_count = 1};
   dvi_system *system = NULL;
   ck_assert_msg(dvi_system_create(&terms, &system) == DVI_OK, "%s", dvi_last_error());
-  dvi_integrator *integrator = made_integrator(system, "verlet");
+  dvi_integrator *integrator = create_integrator(system, "verlet");
   ck_assert_int_eq(dvi_integrator_start(integrator, begin, &q, &p), DVI_OK);
   ck_assert_msg(dvi_run(integrator, &options, NULL) == DVI_OK, "%s", dvi_last_error());
   dvi_integrator_destroy(&integrator);

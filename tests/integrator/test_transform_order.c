@@ -13,13 +13,14 @@
 
 enum { LEVELS = 5, MOST = 8 };
 
-static dvi_integrator *transformed(const problem *of, const dvi_monitor *monitor,
+static dvi_integrator *transformed(const problem *model, const dvi_monitor *monitor,
                                    const char *method)
 {
   dvi_integrator *made = NULL;
-  ck_assert_msg(create_transformed(of->system, monitor, method, &made) == DVI_OK, "%s",
+  ck_assert_msg(create_transformed(model->system, monitor, method, &made) == DVI_OK, "%s",
                 dvi_last_error());
-  ck_assert_msg(dvi_integrator_start(made, 0, of->q, of->p) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_integrator_start(made, 0, model->q, model->p) == DVI_OK, "%s",
+                dvi_last_error());
   return made;
 }
 
@@ -66,7 +67,7 @@ static void check_on_kepler(const char *method, int order, int first, double tau
   const double q[2] = {cos(tau) - e, b * sin(tau)}, p[2] = {-sin(tau) / r, b * cos(tau) / r},
                t = tau - e * sin(tau);
   double error[3][LEVELS];
-  problem *kepler = made_problem("kepler", "e=0.3");
+  problem *kepler = create_problem("kepler", "e=0.3");
   const dvi_monitor monitor = {.kind = DVI_MONITOR_DISTANCE, .power = 1};
   for (int k = 0; k < LEVELS; k++) {
     dvi_integrator *integrator = transformed(kepler, &monitor, method);
@@ -136,7 +137,7 @@ static int is_measured(const char *name)
 START_TEST(every_method_is_measured_or_refuses)
 {
   const dvi_monitor monitor = {.kind = DVI_MONITOR_DISTANCE};
-  problem *kepler = made_problem("kepler", NULL);
+  problem *kepler = create_problem("kepler", NULL);
   for (int i = 0; i < dvi_method_count(); i++) {
     dvi_integrator *none = NULL;
     if (is_measured(dvi_method_name(i))) continue;
@@ -153,7 +154,7 @@ START_TEST(a_method_of_higher_derivatives_says_why_not)
 {
   const dvi_monitor monitor = {.kind = DVI_MONITOR_DISTANCE};
   const char *const of_derivatives[] = {"prolongation-collocation", "shooting:onestep=taylor"};
-  problem *kepler = made_problem("kepler", NULL);
+  problem *kepler = create_problem("kepler", NULL);
   for (int i = 0; i < 2; i++) {
     dvi_integrator *none = NULL;
     ck_assert_int_eq(create_transformed(kepler->system, &monitor, of_derivatives[i], &none),
@@ -186,23 +187,23 @@ static void check_runs(const char *name, const dvi_monitor *monitor, const char 
                        int first)
 {
   double error[LEVELS], q[MOST], p[MOST];
-  problem *of = made_problem(name, NULL);
-  const double t_end = of->order_t_end;
-  for (int i = 0; i < of->nq; i++) q[i] = of->q[i], p[i] = of->p[i];
+  problem *model = create_problem(name, NULL);
+  const double t_end = model->order_t_end;
+  for (int i = 0; i < model->nq; i++) q[i] = model->q[i], p[i] = model->p[i];
   ck_assert_double_lt(quad_solve(name, 0, NULL, t_end, q, p), 1e-15);
   for (int k = 0; k < LEVELS; k++) {
-    dvi_integrator *integrator = transformed(of, monitor, method);
+    dvi_integrator *integrator = transformed(model, monitor, method);
     ck_assert_msg(dvi_run(integrator,
                           &(dvi_run_options){.h = t_end / steps_at(first, k), .t_end = t_end},
                           NULL) == DVI_OK,
                   "%s", dvi_last_error());
     /* 16 roundings */
     ck_assert_double_eq_tol(dvi_integrator_time(integrator), t_end, 4e-15 * t_end);
-    error[k] = distance(of->nq, dvi_integrator_q(integrator), q);
+    error[k] = distance(model->nq, dvi_integrator_q(integrator), q);
     dvi_integrator_destroy(&integrator);
   }
   check_slope(name, method, first, error, order);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 
 START_TEST(a_mass_that_depends_on_the_coordinates_may_be_transformed)

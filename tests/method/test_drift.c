@@ -26,8 +26,8 @@ enum { RUNS = sizeof run / sizeof *run };
 START_TEST(energy_does_not_drift_over_a_million_steps)
 {
   const int steps = repeats(1000000);
-  problem *of = made_problem(run[_i].problem, NULL);
-  dvi_integrator *integrator = started(of, run[_i].method);
+  problem *model = create_problem(run[_i].problem, NULL);
+  dvi_integrator *integrator = start_integrator(model, run[_i].method);
   double value[16];
   dvi_drift energy;
   dvi_drift_fit fit;
@@ -46,7 +46,7 @@ START_TEST(energy_does_not_drift_over_a_million_steps)
                 "%s, %s: change %g, significance %g", run[_i].problem, run[_i].method, fit.change,
                 fit.significance);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -77,7 +77,7 @@ static void check_energy(dvi_system *system, const char *method, const double *q
                          int steps, double tolerance)
 {
   double first, last;
-  dvi_integrator *integrator = made_integrator(system, method);
+  dvi_integrator *integrator = create_integrator(system, method);
   ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, q, v), DVI_OK);
   ck_assert_int_eq(dvi_integrator_invariants(integrator, &first), DVI_OK);
   advance(integrator, 0.1, steps);
@@ -157,8 +157,8 @@ START_TEST(the_energy_error_grows_like_the_square_root_of_the_steps)
   double error[OCTAVES] = {0}, x = 0, y = 0, xx = 0, xy = 0;
   for (int orbit = 0; orbit < ORBITS; orbit++) {
     double first[8], value[8];
-    problem *of = made_problem("kepler", spec("e=%g", 0.3 + 0.03 * orbit));
-    dvi_integrator *integrator = started(of, "galerkin:degree=8");
+    problem *model = create_problem("kepler", method_spec("e=%g", 0.3 + 0.03 * orbit));
+    dvi_integrator *integrator = start_integrator(model, "galerkin:degree=8");
     ck_assert_int_eq(dvi_integrator_invariants(integrator, first), DVI_OK);
     for (int k = 0; k < octaves; k++) {
       advance(integrator, 0.1, k == 0 ? FIRST : FIRST << (k - 1));
@@ -166,7 +166,7 @@ START_TEST(the_energy_error_grows_like_the_square_root_of_the_steps)
       error[k] += fabs(value[0] - first[0]) / ORBITS;
     }
     dvi_integrator_destroy(&integrator);
-    problem_destroy(&of);
+    problem_destroy(&model);
   }
   for (int k = 0; k < octaves; k++)
     x += k, y += log2(error[k]), xx += k * k, xy += k * log2(error[k]);

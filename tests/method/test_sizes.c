@@ -49,13 +49,14 @@ static dvi_status make_points(int n, dvi_system **system)
 
 START_TEST(more_members_than_there_is_memory_for)
 {
-  problem *of = made_problem("oscillator", NULL);
+  problem *model = create_problem("oscillator", NULL);
   const dvi_ensemble_options options = {.members = INT_MAX, .threads = 4 * _i};
   dvi_ensemble *ensemble = NULL;
-  ck_assert_int_eq(dvi_ensemble_create(of->system, "verlet", &options, &ensemble), DVI_NO_MEMORY);
+  ck_assert_int_eq(dvi_ensemble_create(model->system, "verlet", &options, &ensemble),
+                   DVI_NO_MEMORY);
   ck_assert_ptr_null(ensemble);
   check_words("ensemble: no memory for 2147483647 members, 80 bytes each");
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

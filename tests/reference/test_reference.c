@@ -17,15 +17,15 @@ static double distance(int n, const double *a, const double *b)
 }
 
 /* Distance from the exact state at t_end after a run of one code. */
-static double exact_error(const problem *of, dvi_reference_options options, double t_end,
+static double exact_error(const problem *model, dvi_reference_options options, double t_end,
                           dvi_reference_report *report)
 {
   double q[MOST], p[MOST], exact_q[MOST], exact_p[MOST];
-  start(of, q, p);
-  ck_assert_msg(dvi_reference_solve(of->system, 0, t_end, q, p, &options, report) == DVI_OK, "%s",
-                dvi_last_error());
-  ck_assert_int_eq(of->exact(of, t_end, exact_q, exact_p), 0);
-  return fmax(distance(of->nq, q, exact_q), distance(of->nq, p, exact_p));
+  start(model, q, p);
+  ck_assert_msg(dvi_reference_solve(model->system, 0, t_end, q, p, &options, report) == DVI_OK,
+                "%s", dvi_last_error());
+  ck_assert_int_eq(model->exact(model, t_end, exact_q, exact_p), 0);
+  return fmax(distance(model->nq, q, exact_q), distance(model->nq, p, exact_p));
 }
 
 /* The codes bound the error of each step, so the errors after all steps lie above the tolerance:
@@ -292,20 +292,20 @@ START_TEST(ida_bounds_its_own_error)
 {
   const char *const names[] = {"oscillator", "kepler"};
   for (int k = 0; k < 2; k++) {
-    problem *of = make(names[k], NULL);
+    problem *model = make(names[k], NULL);
     for (int digits = 6; digits <= 12; digits++) {
       const double tolerance = pow(10, -digits);
       double q[2], p[2], exact_q[2], exact_p[2];
       dvi_reference_report report;
       const dvi_reference_options options = option(DVI_IDA, tolerance);
-      start(of, q, p);
-      ck_assert_int_eq(dvi_reference_judge(of->system, 0, 5, q, p, &options, &report), DVI_OK);
-      ck_assert_int_eq(of->exact(of, 5, exact_q, exact_p), 0);
-      ck_assert_msg(distance(of->nq, q, exact_q) <= 5 * report.error + 1e-14,
+      start(model, q, p);
+      ck_assert_int_eq(dvi_reference_judge(model->system, 0, 5, q, p, &options, &report), DVI_OK);
+      ck_assert_int_eq(model->exact(model, 5, exact_q, exact_p), 0);
+      ck_assert_msg(distance(model->nq, q, exact_q) <= 5 * report.error + 1e-14,
                     "%s at %g: error %g, claimed %g", names[k], tolerance,
-                    distance(of->nq, q, exact_q), report.error);
+                    distance(model->nq, q, exact_q), report.error);
     }
-    problem_destroy(&of);
+    problem_destroy(&model);
   }
 }
 END_TEST
@@ -395,15 +395,15 @@ START_TEST(tolerances_down_to_1e_14_work_or_are_refused_in_words)
   const char *const names[] = {"oscillator", "kepler", "double-pendulum", "stiff-pendulum"};
   int worked = 0;
   for (int k = 0; k < 4; k++) {
-    problem *of = make(names[k], NULL);
+    problem *model = make(names[k], NULL);
     double q[2], p[2];
-    start(of, q, p);
+    start(model, q, p);
     const dvi_reference_options options = option(_i, 1e-14);
-    const dvi_status status = dvi_reference_judge(of->system, 0, 1, q, p, &options, NULL);
+    const dvi_status status = dvi_reference_judge(model->system, 0, 1, q, p, &options, NULL);
     ck_assert(status == DVI_OK || (status == DVI_REFERENCE_FAILED &&
                                    strstr(dvi_last_error(), "stopped at t = ") != NULL));
     worked += status == DVI_OK;
-    problem_destroy(&of);
+    problem_destroy(&model);
   }
   ck_assert_int_ge(worked, 3); /* IDA refuses the double pendulum */
 }

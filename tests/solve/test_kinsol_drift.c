@@ -101,12 +101,12 @@ static void tell(const char *who, const dvi_drift_fit *fit)
 
 START_TEST(kinsol_as_it_comes_drifts)
 {
-  problem *of = made_problem("pendulum", NULL);
+  problem *model = create_problem("pendulum", NULL);
   plain k;
   dvi_drift drift;
   dvi_drift_fit fit;
   dvi_drift_init(&drift);
-  make_plain(of->q[0], of->p[0], &k);
+  make_plain(model->q[0], model->p[0], &k);
   for (long i = 0; i <= STEPS; i++) {
     dvi_drift_add(&drift, (double)i * h, energy(k.q, k.p));
     if (step_plainly(&k) < 0) ck_abort_msg("KINSOL failed in step %ld", i);
@@ -117,7 +117,7 @@ START_TEST(kinsol_as_it_comes_drifts)
   ck_assert_double_gt(fabs(fit.change), 1e-4);
   ck_assert_double_gt(fit.significance, 10);
   free_plain(&k);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -127,8 +127,8 @@ START_TEST(the_library_s_midpoint_rule_does_not)
 {
   static const char *const methods[] = {"midpoint", "midpoint:solver=newton",
                                         "midpoint:solver=kinsol"};
-  problem *of = made_problem("pendulum", NULL);
-  dvi_integrator *integrator = started(of, methods[_i]);
+  problem *model = create_problem("pendulum", NULL);
+  dvi_integrator *integrator = start_integrator(model, methods[_i]);
   dvi_drift drift;
   dvi_drift_fit fit;
   dvi_drift_init(&drift);
@@ -143,7 +143,7 @@ START_TEST(the_library_s_midpoint_rule_does_not)
   ck_assert_double_lt(fit.significance, 3);
   ck_assert_double_eq_tol(fit.largest, 8.2e-4, 2e-5);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

@@ -235,58 +235,59 @@ static const struct {
 
 START_TEST(points_off_the_manifold_are_refused_and_projected_on_request)
 {
-  body of;
+  body model;
   dvi_integrator *integrator;
   double before[BODY_Q];
-  make_body(places[_i].kind, &of);
-  of.q[places[_i].at] = places[_i].value;
-  memcpy(before, of.q, sizeof before);
-  ck_assert_int_eq(dvi_integrator_create(of.system, "lie-galerkin", &integrator), DVI_OK);
-  ck_assert_msg(dvi_integrator_start_velocity(integrator, 0, of.q, of.v) == places[_i].start,
+  make_body(places[_i].kind, &model);
+  model.q[places[_i].at] = places[_i].value;
+  memcpy(before, model.q, sizeof before);
+  ck_assert_int_eq(dvi_integrator_create(model.system, "lie-galerkin", &integrator), DVI_OK);
+  ck_assert_msg(dvi_integrator_start_velocity(integrator, 0, model.q, model.v) == places[_i].start,
                 "%d: %s", _i, dvi_last_error());
   check_words(places[_i].words);
-  ck_assert_int_eq(dvi_system_project(of.system, of.q), places[_i].project);
+  ck_assert_int_eq(dvi_system_project(model.system, model.q), places[_i].project);
   if (places[_i].project == DVI_OK) {
-    ck_assert_double_le(dvi_system_distance(of.system, of.q), 1e-15);
-    ck_assert_msg(dvi_integrator_start_velocity(integrator, 0, of.q, of.v) == DVI_OK, "%s",
+    ck_assert_double_le(dvi_system_distance(model.system, model.q), 1e-15);
+    ck_assert_msg(dvi_integrator_start_velocity(integrator, 0, model.q, model.v) == DVI_OK, "%s",
                   dvi_last_error());
   } else {
     check_words(places[_i].project_words);
-    ck_assert_mem_eq(before, of.q, sizeof before);
+    ck_assert_mem_eq(before, model.q, sizeof before);
   }
   dvi_integrator_destroy(&integrator);
-  destroy_body(&of);
+  destroy_body(&model);
 }
 END_TEST
 
 START_TEST(velocities_off_the_tangent_plane_are_refused)
 {
-  body of;
+  body model;
   dvi_integrator *integrator;
-  make_body(DIRECTIONS, &of);
-  of.v[5] = 1e-3;
-  ck_assert_int_eq(dvi_integrator_create(of.system, "lie-galerkin", &integrator), DVI_OK);
-  ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, of.q, of.v), DVI_BAD_ARGUMENT);
+  make_body(DIRECTIONS, &model);
+  model.v[5] = 1e-3;
+  ck_assert_int_eq(dvi_integrator_create(model.system, "lie-galerkin", &integrator), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, model.q, model.v),
+                   DVI_BAD_ARGUMENT);
   check_words("numbers 3 to 5 of the velocity or momentum of a direction q are not orthogonal to "
               "it: off by");
   check_words("subtract (p.q) q");
   dvi_integrator_destroy(&integrator);
-  destroy_body(&of);
+  destroy_body(&model);
 }
 END_TEST
 
 START_TEST(distances_are_those_of_the_nearest_point)
 {
-  body of;
-  make_body(FREE_BODY, &of);
-  ck_assert_double_eq(dvi_system_distance(of.system, of.q), 0);
-  for (int i = 0; i < 9; i++) of.q[i] *= 1.1; /* 0.1 times |I| */
-  ck_assert_double_eq_tol(dvi_system_distance(of.system, of.q), 0.1 * sqrt(3), 1e-15);
-  of.q[4] = NAN;
-  ck_assert(isnan(dvi_system_distance(of.system, of.q)));
-  ck_assert(isnan(dvi_system_distance(NULL, of.q)));
-  ck_assert_int_eq(dvi_system_project(NULL, of.q), DVI_BAD_ARGUMENT);
-  destroy_body(&of);
+  body model;
+  make_body(FREE_BODY, &model);
+  ck_assert_double_eq(dvi_system_distance(model.system, model.q), 0);
+  for (int i = 0; i < 9; i++) model.q[i] *= 1.1; /* 0.1 times |I| */
+  ck_assert_double_eq_tol(dvi_system_distance(model.system, model.q), 0.1 * sqrt(3), 1e-15);
+  model.q[4] = NAN;
+  ck_assert(isnan(dvi_system_distance(model.system, model.q)));
+  ck_assert(isnan(dvi_system_distance(NULL, model.q)));
+  ck_assert_int_eq(dvi_system_project(NULL, model.q), DVI_BAD_ARGUMENT);
+  destroy_body(&model);
 }
 END_TEST
 

@@ -129,7 +129,7 @@ START_TEST(a_range_alone_serves_every_method)
     if (shape == 2) potential.gradient_batch = line_gradient_batch;
     dvi_system *system = NULL;
     ck_assert_int_eq(create(&potential, &system), DVI_OK);
-    dvi_integrator *integrator = made_integrator(system, methods[_i]);
+    dvi_integrator *integrator = create_integrator(system, methods[_i]);
     ck_assert_msg(dvi_integrator_start(integrator, 0, q, p) == DVI_OK, "%s", dvi_last_error());
     advance(integrator, 0.05, 20);
     memcpy(end[shape], dvi_integrator_q(integrator), sizeof end[0]);
@@ -160,9 +160,9 @@ START_TEST(where_waves_are_not_possible_auto_sweeps_plainly_and_says_why)
     potential.gradient = line_gradient, potential.gradient_range = NULL, potential.reach = 0;
   if (_i == 2) terms.mass = (dvi_mass){.values = values, .pattern = {start, row}};
   ck_assert_msg(dvi_system_create(&terms, &system) == DVI_OK, "%s", dvi_last_error());
-  dvi_integrator *integrator = made_integrator(system, "verlet"), *wave = integrator;
+  dvi_integrator *integrator = create_integrator(system, "verlet"), *wave = integrator;
   (void)dvi_integrator_explain(integrator, text, sizeof text);
-  ck_assert_msg(strstr(text, spec("blocking: none; %s", words[_i])) != NULL, "%s", text);
+  ck_assert_msg(strstr(text, method_spec("blocking: none; %s", words[_i])) != NULL, "%s", text);
   ck_assert_int_eq(dvi_integrator_create(system, "verlet:blocking=temporal", &wave),
                    DVI_UNSUPPORTED);
   ck_assert_ptr_null(wave);

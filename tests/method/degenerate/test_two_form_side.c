@@ -131,7 +131,7 @@ START_TEST(no_step_leads_over_a_singular_two_form)
   static const double start[2] = {199.9, 1};
   dvi_system *system = made_bend();
   for (double h = 0.4; h > 0.005; h /= is_short_run() ? 1.728 : 1.2) {
-    dvi_integrator *integrator = made_integrator(system, general[_i]);
+    dvi_integrator *integrator = create_integrator(system, general[_i]);
     const dvi_status status = run(integrator, start, h, 200);
     ck_assert_msg(status > 0, "%s h=%g: %d at x = %.17g", general[_i], h, status,
                   dvi_integrator_q(integrator)[0]);
@@ -148,7 +148,7 @@ START_TEST(nor_does_one_of_a_one_step_method)
   static const double start[2] = {0.3, -0.1};
   dvi_system *system = made_fold();
   for (double h = 0.4; h > 0.005; h /= is_short_run() ? 1.728 : 1.2) {
-    dvi_integrator *integrator = made_integrator(system, one_step[_i]);
+    dvi_integrator *integrator = create_integrator(system, one_step[_i]);
     const dvi_status status = run(integrator, start, h, 200);
     ck_assert_msg(status > 0, "%s h=%g: %d at y = %.17g", one_step[_i], h, status,
                   dvi_integrator_q(integrator)[1]);
@@ -165,7 +165,7 @@ START_TEST(both_sides_can_be_started_on)
 {
   static const double here[2] = {199.9, 1}, there[2] = {201, 1};
   dvi_system *system = made_bend();
-  dvi_integrator *integrator = made_integrator(system, "dg");
+  dvi_integrator *integrator = create_integrator(system, "dg");
   ck_assert_int_eq(run(integrator, here, 0.03, 3), DVI_OK);
   ck_assert_int_eq(run(integrator, there, -0.03, 3), DVI_OK);
   ck_assert_int_eq(run(integrator, here, 0.03, 3), DVI_OK);

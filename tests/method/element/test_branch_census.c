@@ -275,25 +275,25 @@ typedef struct plan {
   double least, most, periods; /* of h, in periods; of a run */
 } plan;
 
-static void run_lengths(const problem *of, dvi_system *system, const double *q, int which,
+static void run_lengths(const problem *model, dvi_system *system, const double *q, int which,
                         const char *method, const plan *plan_of, tally *bands)
 {
   dvi_integrator *run = NULL, *judge = NULL;
   if (dvi_integrator_create(system, method, &run) == DVI_OK)
-    judge = made_integrator(system,
-                            run->stepper.method->chooses_steps ? "galerkin:degree=4" : method);
+    judge = create_integrator(system,
+                              run->stepper.method->chooses_steps ? "galerkin:degree=4" : method);
   for (int i = 0; i < plan_of->lengths && judge != NULL; i++) {
     const double part = plan_of->least *
                         pow(plan_of->most / plan_of->least, (double)i / (plan_of->lengths - 1)),
                  h = part * cases[which].period;
     static const double rest[2 * VORTICES];
-    const dvi_status status = of != NULL ? dvi_integrator_start(run, 0, of->q, of->p)
-                                         : dvi_integrator_start_velocity(run, 0, q, rest);
-    ck_assert_msg(status == DVI_OK &&
-                      dvi_integrator_start_velocity(judge, 0, of != NULL ? of->q : q,
-                                                    of != NULL ? of->v : rest) >= DVI_BAD_STATE,
+    const dvi_status status = model != NULL ? dvi_integrator_start(run, 0, model->q, model->p)
+                                            : dvi_integrator_start_velocity(run, 0, q, rest);
+    ck_assert_msg(status == DVI_OK && dvi_integrator_start_velocity(
+                                          judge, 0, model != NULL ? model->q : q,
+                                          model != NULL ? model->v : rest) >= DVI_BAD_STATE,
                   "%s", dvi_last_error());
-    if (of != NULL) ck_assert_int_eq(dvi_integrator_start(judge, 0, of->q, of->p), DVI_OK);
+    if (model != NULL) ck_assert_int_eq(dvi_integrator_start(judge, 0, model->q, model->p), DVI_OK);
     dvi_counters before, after;
     dvi_integrator_counters(run, &before);
     tally *count = &bands[part >= 0.35];
@@ -308,12 +308,12 @@ static void run_lengths(const problem *of, dvi_system *system, const double *q, 
 
 static void count_method(int which, int method, const plan *plan_of, tally *bands)
 {
-  problem *of = cases[which].make == NULL ? made_problem(cases[which].name, NULL) : NULL;
-  dvi_system *made = of == NULL ? cases[which].make() : NULL;
-  run_lengths(of, of != NULL ? of->system : made, cases[which].q, which, methods[method], plan_of,
-              bands);
+  problem *model = cases[which].make == NULL ? create_problem(cases[which].name, NULL) : NULL;
+  dvi_system *made = model == NULL ? cases[which].make() : NULL;
+  run_lengths(model, model != NULL ? model->system : made, cases[which].q, which, methods[method],
+              plan_of, bands);
   dvi_system_destroy(&made);
-  if (of != NULL) problem_destroy(&of);
+  if (model != NULL) problem_destroy(&model);
 }
 
 static void print_row(int which, int method, const tally *bands)

@@ -13,19 +13,20 @@ enum { BASES = sizeof bases / sizeof *bases, DEGREES = 8 };
  * trajectory. */
 static void check_bases_agree(const char *problem_name, int degree, const char *basis)
 {
-  problem *of = made_problem(problem_name, NULL);
-  dvi_integrator *lobatto = started(of, spec("galerkin:degree=%d", degree));
-  dvi_integrator *other = started(of, spec("galerkin:degree=%d,basis=%s", degree, basis));
-  advance(lobatto, of->h, 100);
-  advance(other, of->h, 100);
-  const double apart = distance(of->nq, dvi_integrator_q(lobatto), dvi_integrator_q(other));
+  problem *model = create_problem(problem_name, NULL);
+  dvi_integrator *lobatto = start_integrator(model, method_spec("galerkin:degree=%d", degree));
+  dvi_integrator *other = start_integrator(
+      model, method_spec("galerkin:degree=%d,basis=%s", degree, basis));
+  advance(lobatto, model->h, 100);
+  advance(other, model->h, 100);
+  const double apart = distance(model->nq, dvi_integrator_q(lobatto), dvi_integrator_q(other));
   /* 100 steps' roundings, with the basis' Lebesgue constant (10 at most here), far below what users
    * can see */
   ck_assert_msg(apart <= 1e-12, "%s: degree %d, basis %s: %g apart", problem_name, degree, basis,
                 apart);
   dvi_integrator_destroy(&lobatto);
   dvi_integrator_destroy(&other);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 
 START_TEST(all_bases_of_a_degree_give_one_trajectory)
@@ -39,8 +40,8 @@ END_TEST
 
 static void check_order(const char *method, int order)
 {
-  problem *oscillator = made_problem("oscillator", NULL);
-  dvi_integrator *integrator = made_integrator(oscillator->system, method);
+  problem *oscillator = create_problem("oscillator", NULL);
+  dvi_integrator *integrator = create_integrator(oscillator->system, method);
   ck_assert_msg(dvi_integrator_order(integrator) == order, "%s claims order %d", method,
                 dvi_integrator_order(integrator));
   dvi_integrator_destroy(&integrator);
@@ -63,9 +64,9 @@ END_TEST
 
 START_TEST(nodes_left_out_are_the_fewest_of_full_order)
 {
-  problem *oscillator = made_problem("oscillator", NULL);
-  dvi_integrator *integrator = made_integrator(oscillator->system,
-                                               "galerkin:degree=5,quadrature=lobatto");
+  problem *oscillator = create_problem("oscillator", NULL);
+  dvi_integrator *integrator = create_integrator(oscillator->system,
+                                                 "galerkin:degree=5,quadrature=lobatto");
   ck_assert_str_eq(dvi_integrator_method(integrator),
                    "galerkin:degree=5,basis=lobatto,quadrature=lobatto,nodes=6,solver=auto");
   dvi_integrator_destroy(&integrator);
@@ -101,7 +102,7 @@ enum { REFUSED = sizeof refused / sizeof *refused };
 
 START_TEST(a_wrong_specification_is_refused_with_its_reason)
 {
-  problem *oscillator = made_problem("oscillator", NULL);
+  problem *oscillator = create_problem("oscillator", NULL);
   dvi_integrator *integrator = NULL;
   ck_assert_int_eq(dvi_integrator_create(oscillator->system, refused[_i].method, &integrator),
                    DVI_BAD_OPTION);
@@ -116,8 +117,9 @@ END_TEST
  * method; the counters tell. */
 START_TEST(the_contraction_chooses_the_solver)
 {
-  problem *chain = made_problem("fpu", NULL);
-  dvi_integrator *slow = started(chain, "galerkin"), *stiff = started(chain, "galerkin");
+  problem *chain = create_problem("fpu", NULL);
+  dvi_integrator *slow = start_integrator(chain, "galerkin"),
+                 *stiff = start_integrator(chain, "galerkin");
   dvi_counters counters;
   advance(slow, 0.001, 20);
   dvi_integrator_counters(slow, &counters);
@@ -139,9 +141,10 @@ END_TEST
 START_TEST(all_solvers_find_the_same_step)
 {
   const char *const solvers[] = {"fixed-point", "newton", "kinsol"};
-  problem *pendula = made_problem("double-pendulum", NULL);
-  dvi_integrator *automatic = started(pendula, "galerkin:degree=3"),
-                 *other = started(pendula, spec("galerkin:degree=3,solver=%s", solvers[_i]));
+  problem *pendula = create_problem("double-pendulum", NULL);
+  dvi_integrator *automatic = start_integrator(pendula, "galerkin:degree=3"),
+                 *other = start_integrator(pendula,
+                                           method_spec("galerkin:degree=3,solver=%s", solvers[_i]));
   advance(automatic, 0.02, 20);
   advance(other, 0.02, 20);
   /* 20 steps of a rounding each */
@@ -206,10 +209,11 @@ START_TEST(kinsol_certifies_every_step)
   } runs[] = {{"kepler", 1, 0.05},     {"kepler", 8, 0.2},           {"fpu", 6, 0.1},
               {"outer-solar", 8, 300}, {"double-pendulum", 5, 0.05}, {"toda", 12, 0.5}};
   enum { STEPS = 40 };
-  problem *of = made_problem(runs[_i].problem, NULL);
-  dvi_integrator *plain = started(of, spec("galerkin:degree=%d", runs[_i].degree));
-  dvi_integrator *certified = started(of,
-                                      spec("galerkin:degree=%d,solver=certified", runs[_i].degree));
+  problem *model = create_problem(runs[_i].problem, NULL);
+  dvi_integrator *plain = start_integrator(model,
+                                           method_spec("galerkin:degree=%d", runs[_i].degree));
+  dvi_integrator *certified = start_integrator(
+      model, method_spec("galerkin:degree=%d,solver=certified", runs[_i].degree));
   dvi_counters counters;
   advance(plain, runs[_i].h, STEPS);
   advance(certified, runs[_i].h, STEPS);
@@ -217,11 +221,11 @@ START_TEST(kinsol_certifies_every_step)
   ck_assert_int_ge(counters.certified, STEPS); /* one more for each step that is taken again */
   ck_assert_int_le(counters.certified, STEPS + counters.followed);
   ck_assert_int_eq(counters.kinsols, 0);
-  ck_assert_double_le(distance(of->nq, dvi_integrator_q(plain), dvi_integrator_q(certified)),
-                      1e-11 * magnitude(of->nq, dvi_integrator_q(plain)));
+  ck_assert_double_le(distance(model->nq, dvi_integrator_q(plain), dvi_integrator_q(certified)),
+                      1e-11 * magnitude(model->nq, dvi_integrator_q(plain)));
   dvi_integrator_destroy(&plain);
   dvi_integrator_destroy(&certified);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

@@ -42,11 +42,11 @@ START_TEST(fixed_point_iteration_takes_no_jacobian)
   problem *net = made_net(2, 50);
   dvi_system *without = _i == 0 ? system_without_hessian(net) : NULL;
   const long before = heap_bytes();
-  dvi_integrator *integrator = made_integrator(_i == 0 ? without : net->system,
-                                               "galerkin:degree=6");
+  dvi_integrator *integrator = create_integrator(_i == 0 ? without : net->system,
+                                                 "galerkin:degree=6");
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, net->q, net->p), DVI_OK);
   advance(integrator, 0.1, 20);
-  const dvi_counters counters = counters_of(integrator);
+  const dvi_counters counters = read_counters(integrator);
   ck_assert_int_eq(counters.fixed_points, 20);
   ck_assert_int_eq(counters.symbolic + counters.factorizations + counters.preparations, 0);
   ck_assert_int_lt(heap_bytes() - before, 12000000);
@@ -62,9 +62,9 @@ START_TEST(a_stiff_step_takes_little_memory)
   static const char *const methods[] = {"galerkin:degree=6", "galerkin:degree=6,solver=newton"};
   problem *net = made_net(2, 50);
   const long before = heap_bytes();
-  dvi_integrator *integrator = started(net, methods[_i]);
+  dvi_integrator *integrator = start_integrator(net, methods[_i]);
   advance(integrator, 5, 2);
-  const dvi_counters counters = counters_of(integrator);
+  const dvi_counters counters = read_counters(integrator);
   ck_assert_int_eq(_i == 0 ? counters.simplified : counters.newtons, 2);
   ck_assert_int_eq(counters.products > 0, _i == 1);
   ck_assert_int_eq(counters.symbolic, 1); /* one n x n pattern, for three pairs of eigenvalues */
@@ -77,12 +77,12 @@ END_TEST
 /* Solutions of one step's equations by two ways; q is about 0.1. */
 static void check_same_step(const problem *net, const char *one, const char *other, double h)
 {
-  dvi_integrator *a = started(net, one), *b = started(net, other);
+  dvi_integrator *a = start_integrator(net, one), *b = start_integrator(net, other);
   advance(a, h, 2);
   advance(b, h, 2);
   const double apart = distance(net->nq, dvi_integrator_q(a), dvi_integrator_q(b));
   ck_assert_msg(apart <= 1e-14, "%s, %s: %g", one, other, apart);
-  ck_assert_int_gt(counters_of(b).products, 0);
+  ck_assert_int_gt(read_counters(b).products, 0);
   dvi_integrator_destroy(&a);
   dvi_integrator_destroy(&b);
 }
@@ -104,10 +104,10 @@ START_TEST(newton_by_products_needs_no_factor)
   problem *net = made_net(3, 18);
   check_same_step(net, "galerkin:degree=2,solver=fixed-point", "galerkin:degree=2,solver=newton",
                   0.5);
-  dvi_integrator *ladder = started(net, "galerkin:degree=2");
+  dvi_integrator *ladder = start_integrator(net, "galerkin:degree=2");
   advance(ladder, 3, 1);
-  ck_assert_int_eq(counters_of(ladder).newtons, 1); /* simplified Newton's method is left out */
-  ck_assert_int_eq(counters_of(ladder).simplified + counters_of(ladder).factorizations, 0);
+  ck_assert_int_eq(read_counters(ladder).newtons, 1); /* simplified Newton's method is left out */
+  ck_assert_int_eq(read_counters(ladder).simplified + read_counters(ladder).factorizations, 0);
   dvi_integrator_destroy(&ladder);
   problem_destroy(&net);
 }
@@ -118,8 +118,8 @@ END_TEST
 START_TEST(a_step_by_products_depends_on_its_state_alone)
 {
   problem *net = made_net(2, 40);
-  dvi_integrator *whole = started(net, "galerkin:degree=6,solver=newton");
-  dvi_integrator *other = started(net, "galerkin:degree=6,solver=newton");
+  dvi_integrator *whole = start_integrator(net, "galerkin:degree=6,solver=newton");
+  dvi_integrator *other = start_integrator(net, "galerkin:degree=6,solver=newton");
   advance(other, 3, 1); /* at other places, and lengths */
   ck_assert_int_eq(dvi_integrator_start(other, 0, net->q, net->p), DVI_OK);
   advance(whole, 4, 2);
@@ -135,10 +135,10 @@ END_TEST
 static void check_explained(const problem *net, const char *method, const char *words)
 {
   char text[2000];
-  dvi_integrator *integrator = made_integrator(net->system, method);
+  dvi_integrator *integrator = create_integrator(net->system, method);
   (void)dvi_integrator_explain(integrator, text, sizeof text);
   ck_assert_msg(strstr(text, words) != NULL, "'%s' is not in:\n%s", words, text);
-  ck_assert_int_eq(counters_of(integrator).factorizations, 0);
+  ck_assert_int_eq(read_counters(integrator).factorizations, 0);
   dvi_integrator_destroy(&integrator);
 }
 

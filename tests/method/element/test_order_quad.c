@@ -103,9 +103,9 @@ static double slope(int count, const double *steps, const double *error)
 
 /* Level by level the steps get shorter by a factor of about 1.3, until the error comes near the
  * judge's. The five finest count. */
-static void check_order(const place *at, const variant *of, int degree)
+static void check_order(const place *at, const variant *chosen, int degree)
 {
-  const int order = 2 * degree - of->order_lost;
+  const int order = 2 * degree - chosen->order_lost;
   double steps[LEVELS], error[LEVELS];
   int count = 0;
   quad_galerkin method;
@@ -113,7 +113,7 @@ static void check_order(const place *at, const variant *of, int degree)
   quad exact[2 * QUAD_N_MAX + 1] = {0};
   state z;
   make_field(at, &field);
-  quad_galerkin_prepare(&method, degree, of->lobatto, degree + of->more_nodes);
+  quad_galerkin_prepare(&method, degree, chosen->lobatto, degree + chosen->more_nodes);
   judge(at, &field, exact);
   for (; count < LEVELS; count++) {
     steps[count] = count == 0 ? at->steps : ceil(1.25 * steps[count - 1]);
@@ -126,7 +126,7 @@ static void check_order(const place *at, const variant *of, int degree)
   const double found = slope(FITTED, steps + count - FITTED, error + count - FITTED);
   ck_assert_msg(fabs(found - order) <= 0.2,
                 "%s, %s, degree %d, %d nodes: order %.2f, not %d (errors %.1e to %.1e)",
-                at->problem, of->rule, degree, degree + of->more_nodes, found, order,
+                at->problem, chosen->rule, degree, degree + chosen->more_nodes, found, order,
                 error[count - FITTED], error[count - 1]);
 }
 
@@ -135,8 +135,8 @@ static accepted_cases cases;
 
 static int case_has_rule(int which)
 {
-  const variant *of = &variants[which / DEGREES % VARIANTS];
-  return !of->lobatto || 1 + which % DEGREES + of->more_nodes >= 2;
+  const variant *chosen = &variants[which / DEGREES % VARIANTS];
+  return !chosen->lobatto || 1 + which % DEGREES + chosen->more_nodes >= 2;
 }
 
 START_TEST(the_equations_of_a_step_have_the_claimed_order)
@@ -151,19 +151,20 @@ END_TEST
  * amplify little. */
 static const double roundoff = 500 * DBL_EPSILON;
 
-static void check_same(const place *at, const variant *of, int degree)
+static void check_same(const place *at, const variant *chosen, int degree)
 {
   quad_galerkin method;
   quad_field field;
   state z;
-  problem *made = made_problem(at->problem, at->setting);
-  dvi_integrator *integrator = started(made, spec("galerkin:degree=%d,quadrature=%s,nodes=%d",
-                                                  degree, of->rule, degree + of->more_nodes));
+  problem *made = create_problem(at->problem, at->setting);
+  dvi_integrator *integrator = start_integrator(
+      made, method_spec("galerkin:degree=%d,quadrature=%s,nodes=%d", degree, chosen->rule,
+                        degree + chosen->more_nodes));
   make_field(at, &field);
-  quad_galerkin_prepare(&method, degree, of->lobatto, degree + of->more_nodes);
+  quad_galerkin_prepare(&method, degree, chosen->lobatto, degree + chosen->more_nodes);
   run(at, &field, &method, at->steps, &z);
   advance(integrator, at->t_end / at->steps, at->steps);
-  ck_assert_int_eq(dvi_integrator_order(integrator), 2 * degree - of->order_lost);
+  ck_assert_int_eq(dvi_integrator_order(integrator), 2 * degree - chosen->order_lost);
   double most = 0;
   for (int i = 0; i < made->nq; i++) {
     most = fmax(most, fabs((double)(z.q[i] - (quad)dvi_integrator_q(integrator)[i])) /
@@ -171,7 +172,7 @@ static void check_same(const place *at, const variant *of, int degree)
     most = fmax(most, fabs((double)(z.p[i] - (quad)dvi_integrator_p(integrator)[i])) /
                           magnitude(made->nq, dvi_integrator_p(integrator)));
   }
-  ck_assert_msg(most <= roundoff, "%s, %s, degree %d: %g apart", at->problem, of->rule, degree,
+  ck_assert_msg(most <= roundoff, "%s, %s, degree %d: %g apart", at->problem, chosen->rule, degree,
                 most);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&made);

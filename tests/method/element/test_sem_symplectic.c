@@ -99,13 +99,13 @@ enum { PLACES = sizeof places / sizeof *places };
 START_TEST(the_form_is_the_same_before_and_after)
 {
   const place *at = &places[_i];
-  problem *of = made_problem(at->problem, at->setting);
-  const int n = of->nq, columns = 2 * n + 2;
-  dvi_integrator *integrator = made_integrator(of->system, at->method);
+  problem *model = create_problem(at->problem, at->setting);
+  const int n = model->nq, columns = 2 * n + 2;
+  dvi_integrator *integrator = create_integrator(model->system, at->method);
   double start[COLUMNS_MOST] = {0.3, at->h}, worst = 0, largest = 0;
   point dF[COLUMNS_MOST], dG[COLUMNS_MOST];
-  memcpy(start + 2, of->q, (size_t)n * sizeof(double));
-  memcpy(start + 2 + n, of->p, (size_t)n * sizeof(double));
+  memcpy(start + 2, model->q, (size_t)n * sizeof(double));
+  memcpy(start + 2 + n, model->p, (size_t)n * sizeof(double));
   for (int j = 0; j < columns; j++) differentiate(integrator, at, n, start, j, &dF[j], &dG[j]);
   for (int i = 0; i < columns; i++)
     for (int j = 0; j < i; j++) {
@@ -118,7 +118,7 @@ START_TEST(the_form_is_the_same_before_and_after)
   ck_assert_msg(worst <= 1e-10 * largest, "%s %s: the form changes by %g of %g", at->problem,
                 at->method, worst, largest);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -126,8 +126,8 @@ END_TEST
  * measures, wherever the integrator stands. */
 START_TEST(the_first_step_is_symplectic_in_q_and_p_alone)
 {
-  problem *kepler = made_problem("kepler", "e=0.2");
-  dvi_integrator *integrator = started(kepler, "sem:degree=2");
+  problem *kepler = create_problem("kepler", "e=0.2");
+  dvi_integrator *integrator = start_integrator(kepler, "sem:degree=2");
   double defect;
   advance(integrator, 0.5, 3);
   ck_assert_int_eq(dvi_symplecticity(integrator, 0, dvi_integrator_q(integrator),

@@ -34,11 +34,11 @@ typedef struct measured {
   double seconds;
 } measured;
 
-static long entries_of(const problem *of, const dvi__action_space *space)
+static long entries_of(const problem *model, const dvi__action_space *space)
 {
   dvi__action *action;
   dvi_counters counters = {0};
-  ck_assert_int_eq(dvi__action_create(of->system, space, &counters, &action), DVI_OK);
+  ck_assert_int_eq(dvi__action_create(model->system, space, &counters, &action), DVI_OK);
   ck_assert_int_eq(dvi__action_prepare_jacobian(action), DVI_OK);
   const long entries = dvi__pattern_entries(dvi__action_pattern(action));
   dvi__action_destroy(&action);
@@ -55,7 +55,7 @@ static void take_steps(dvi_integrator *integrator, measured *m)
   int failed = 0;
   for (int i = 0; i < STEPS && !failed; i++) {
     dvi_status status;
-    calls += calls_of_step(integrator, h, &status);
+    calls += count_calls_of_step(integrator, h, &status);
     failed = status != DVI_OK;
   }
   m->seconds = (double)(clock() - start) / CLOCKS_PER_SEC / (double)STEPS;
@@ -77,15 +77,15 @@ static void take_steps(dvi_integrator *integrator, measured *m)
 
 static void measure(const kind *k, int ell, measured *m)
 {
-  problem *of = made_problem("fpu", spec("ell=%d", ell));
-  m->n = of->nq;
-  m->entries = entries_of(of, &k->space);
+  problem *model = create_problem("fpu", method_spec("ell=%d", ell));
+  m->n = model->nq;
+  m->entries = entries_of(model, &k->space);
   const long before = heap_bytes();
-  dvi_integrator *integrator = started(of, k->method);
+  dvi_integrator *integrator = start_integrator(model, k->method);
   take_steps(integrator, m);
   m->bytes = heap_bytes() - before;
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 
 /* A chain has two ends that lack a few entries, and a few blocks do not grow with it: within a

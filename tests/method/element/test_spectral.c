@@ -28,9 +28,9 @@ static double position_error(const problem *kepler, double t, const double *q)
 
 static void check_spectral(const char *basis, int degree, double bound)
 {
-  problem *kepler = made_problem("kepler", NULL);
-  dvi_integrator *integrator = started(
-      kepler, spec("galerkin:degree=%d,nodes=%d,basis=%s", degree, 2 * degree, basis));
+  problem *kepler = create_problem("kepler", NULL);
+  dvi_integrator *integrator = start_integrator(
+      kepler, method_spec("galerkin:degree=%d,nodes=%d,basis=%s", degree, 2 * degree, basis));
   double start[4], now[4], error = 0, momentum = 0;
   ck_assert_int_eq(dvi_integrator_invariants(integrator, start), DVI_OK);
   while (dvi_integrator_time(integrator) < 199) {

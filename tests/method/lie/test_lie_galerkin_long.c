@@ -23,12 +23,12 @@ static const struct {
  * distance is that of the last rounding. */
 START_TEST(a_million_steps_keep_what_they_should)
 {
-  body of;
+  body model;
   double first[2], now[2], far = 0, momentum = 0;
   dvi_drift drift;
   dvi_drift_fit energy;
-  make_body(runs[_i].kind, &of);
-  dvi_integrator *made = body_integrator(&of, runs[_i].method);
+  make_body(runs[_i].kind, &model);
+  dvi_integrator *made = body_integrator(&model, runs[_i].method);
   ck_assert_int_eq(dvi_integrator_invariants(made, first), DVI_OK);
   dvi_drift_init(&drift);
   for (long n = 0; n < repeats(1000000); n += SAMPLING) {
@@ -36,15 +36,16 @@ START_TEST(a_million_steps_keep_what_they_should)
     ck_assert_int_eq(dvi_integrator_invariants(made, now), DVI_OK);
     dvi_drift_add(&drift, dvi_integrator_time(made), now[0]);
     momentum = fmax(momentum, fabs(now[1] - first[1]));
-    far = fmax(far, dvi_system_distance(of.system, dvi_integrator_q(made)));
+    far = fmax(far, dvi_system_distance(model.system, dvi_integrator_q(made)));
   }
   dvi_drift_result(&drift, &energy);
-  ck_assert_msg(energy.significance < 3, "%s: energy %.1e, drift %.1e, significance %.1f", of.name,
-                energy.largest, energy.change, energy.significance);
-  ck_assert_msg(momentum < 1e-12 * fmax(1, fabs(first[1])), "%s: momentum %.1e", of.name, momentum);
-  ck_assert_msg(far < 1e-15, "%s: distance %.1e", of.name, far);
+  ck_assert_msg(energy.significance < 3, "%s: energy %.1e, drift %.1e, significance %.1f",
+                model.name, energy.largest, energy.change, energy.significance);
+  ck_assert_msg(momentum < 1e-12 * fmax(1, fabs(first[1])), "%s: momentum %.1e", model.name,
+                momentum);
+  ck_assert_msg(far < 1e-15, "%s: distance %.1e", model.name, far);
   dvi_integrator_destroy(&made);
-  destroy_body(&of);
+  destroy_body(&model);
 }
 END_TEST
 

@@ -2,7 +2,7 @@
 #include <check.h>
 #include <math.h>
 
-#include "support/systems/cells.h"
+#include "support/systems/mixed_factors.h"
 #include "support/runs.h"
 #include "support/suite.h"
 

@@ -3,7 +3,7 @@
 #include <dvi/group.h>
 #include <math.h>
 
-#include "support/systems/cells.h"
+#include "support/systems/mixed_factors.h"
 #include "support/runs.h"
 #include "support/suite.h"
 
@@ -92,7 +92,7 @@ START_TEST(directions_and_angles_keep_their_length)
       dvi_system_create(&(dvi_system_terms){.factors = factors, .factor_count = 2, .autonomous = 1},
                         &system),
       DVI_OK);
-  dvi_integrator *integrator = made_integrator(system, "lie-verlet");
+  dvi_integrator *integrator = create_integrator(system, "lie-verlet");
   ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, q, v), DVI_OK);
   advance(integrator, .1, STEPS);
   ck_assert_double_le(dvi_system_distance(system, dvi_integrator_q(integrator)), 4 * rounding);

@@ -72,7 +72,7 @@ START_TEST(steady_turns_keep_to_the_group_and_keep_their_momentum)
       dvi_system_create(&(dvi_system_terms){.factors = factor, .factor_count = 1, .autonomous = 1},
                         &system),
       DVI_OK);
-  dvi_integrator *integrator = made_integrator(system, cases[_i].method);
+  dvi_integrator *integrator = create_integrator(system, cases[_i].method);
   for (int i = 0; i < 3; i++) v[i] = cases[_i].rate * motions[cases[_i].motion].v[i];
   ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, motions[cases[_i].motion].q, v),
                    DVI_OK);
@@ -131,7 +131,7 @@ START_TEST(a_pendulum_keeps_its_vertical_momentum)
                                   .potential_count = 1,
                                   .autonomous = 1};
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
-  dvi_integrator *integrator = made_integrator(system, pendulums[_i].method);
+  dvi_integrator *integrator = create_integrator(system, pendulums[_i].method);
   ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, q, v), DVI_OK);
   momentum_in_space(DVI_S2, integrator, space[0]);
   advance(integrator, pendulums[_i].h, STEPS);

@@ -28,8 +28,8 @@ enum { PLACES = sizeof places / sizeof *places };
 /* Of so many steps after a first one, which starts the integrator, too. */
 static dvi_counters counted(int place, const char *method)
 {
-  problem *of = made_problem(places[place].name, places[place].setting);
-  dvi_integrator *integrator = started(of, method);
+  problem *model = create_problem(places[place].name, places[place].setting);
+  dvi_integrator *integrator = start_integrator(model, method);
   dvi_counters first, n;
   advance(integrator, places[place].h, 1);
   dvi_integrator_counters(integrator, &first);
@@ -41,7 +41,7 @@ static dvi_counters counted(int place, const char *method)
   n.jacobians -= first.jacobians;
   n.followed -= first.followed;
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
   return n;
 }
 

@@ -9,8 +9,8 @@
 /* Energies every twenty steps. */
 static dvi_drift_fit energy_of(const char *method, double h, int steps)
 {
-  problem *of = made_problem("pendulum", NULL);
-  dvi_integrator *integrator = started(of, method);
+  problem *model = create_problem("pendulum", NULL);
+  dvi_integrator *integrator = start_integrator(model, method);
   double value[8];
   dvi_drift energy;
   dvi_drift_fit fit;
@@ -22,7 +22,7 @@ static dvi_drift_fit energy_of(const char *method, double h, int steps)
   }
   dvi_drift_result(&energy, &fit);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
   return fit;
 }
 

@@ -9,8 +9,9 @@
 
 START_TEST(with_one_substep_it_is_verlet)
 {
-  problem *chain = made_problem("fpu", NULL);
-  dvi_integrator *split = started(chain, "respa:substeps=1"), *whole = started(chain, "verlet");
+  problem *chain = create_problem("fpu", NULL);
+  dvi_integrator *split = start_integrator(chain, "respa:substeps=1"),
+                 *whole = start_integrator(chain, "verlet");
   advance(split, 0.005, 200);
   advance(whole, 0.005, 200);
   /* roundings of 200 steps */
@@ -26,8 +27,8 @@ START_TEST(a_step_has_one_slow_gradient_and_one_of_the_fast_potentials_for_each_
 {
   const char *const method[] = {"respa:substeps=7", "respa:substeps=exact"};
   const long fast[] = {7, 1};
-  problem *chain = made_problem("fpu", NULL);
-  dvi_integrator *integrator = started(chain, method[_i]);
+  problem *chain = create_problem("fpu", NULL);
+  dvi_integrator *integrator = start_integrator(chain, method[_i]);
   dvi_counters first, after;
   advance(integrator, 0.01, 1);
   dvi_integrator_counters(integrator, &first);
@@ -73,8 +74,8 @@ START_TEST(exact_motion_is_exact_whatever_the_step)
                           .mass = {.values = tridiagonal_mass, .pattern = tridiagonal},
                           .potentials = &potential,
                           .potential_count = 1});
-  dvi_integrator *exact = made_integrator(system, "respa:substeps=exact"),
-                 *judge = made_integrator(system, "galerkin:degree=8");
+  dvi_integrator *exact = create_integrator(system, "respa:substeps=exact"),
+                 *judge = create_integrator(system, "galerkin:degree=8");
   ck_assert_int_eq(dvi_integrator_start(exact, 0, generic_q, generic_v), DVI_OK);
   ck_assert_int_eq(dvi_integrator_start(judge, 0, generic_q, generic_v), DVI_OK);
   advance(exact, 1.5, 1);
@@ -98,7 +99,7 @@ static void check_refusal(const dvi_system *system, dvi_status status, const cha
 
 START_TEST(what_has_no_modes_is_refused)
 {
-  bond of;
+  bond pair;
   const double mass[SITES] = {1, 1, 1, -1, 1, 1};
   const dvi_potential potential = {
       .name = "hills", .value = hills, .gradient = hills_gradient, .fast = 1, .quadratic = 1};
@@ -106,11 +107,11 @@ START_TEST(what_has_no_modes_is_refused)
       .dimension = SITES, .mass.diagonal = mass, .potentials = &potential, .potential_count = 1});
   check_refusal(system, DVI_SINGULAR, "is not positive definite");
   dvi_system_destroy(&system);
-  make_bond(2500, 1, &of);
-  check_refusal(of.system, DVI_UNSUPPORTED,
+  make_bond(2500, 1, &pair);
+  check_refusal(pair.system, DVI_UNSUPPORTED,
                 "respa: a fast potential is not declared `quadratic`, and only such ones have "
                 "modes; substeps=k takes any");
-  destroy_bond(&of);
+  destroy_bond(&pair);
   system = make_system(&(dvi_system_terms){
       .dimension = 2001, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
   check_refusal(
@@ -125,17 +126,17 @@ START_TEST(substeps_are_a_number_or_exact)
 {
   const char *const wrong[] = {"respa:substeps=0", "respa:substeps=many",
                                "respa:substeps=", "respa:substeps=-1"};
-  problem *of = made_problem("oscillators", NULL);
-  dvi_integrator *integrator = made_integrator(of->system, "respa");
+  problem *model = create_problem("oscillators", NULL);
+  dvi_integrator *integrator = create_integrator(model->system, "respa");
   ck_assert_str_eq(dvi_integrator_method(integrator), "respa:substeps=10");
   dvi_integrator_destroy(&integrator);
-  integrator = made_integrator(of->system, "respa:substeps=exact");
+  integrator = create_integrator(model->system, "respa:substeps=exact");
   ck_assert_str_eq(dvi_integrator_method(integrator), "respa:substeps=exact");
   dvi_integrator_destroy(&integrator);
   for (int k = 0; k < 4; k++)
-    ck_assert_int_eq(dvi_integrator_create(of->system, wrong[k], &integrator), DVI_BAD_OPTION);
+    ck_assert_int_eq(dvi_integrator_create(model->system, wrong[k], &integrator), DVI_BAD_OPTION);
   check_words("respa: substeps=-1; possible are exact and 1 to 1000000");
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

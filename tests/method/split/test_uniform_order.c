@@ -16,9 +16,9 @@ static double error_constant(const char *method, double x, int level)
 {
   const long steps = 10L << level, resolved = lround(5.0 * x) * steps;
   const double h = 1.0 / (double)steps;
-  problem *chain = made_problem("fpu", spec("omega=%.17g", x / h));
-  dvi_integrator *integrator = started(chain, method),
-                 *judge = started(chain, "composition:order=8,base=verlet");
+  problem *chain = create_problem("fpu", method_spec("omega=%.17g", x / h));
+  dvi_integrator *integrator = start_integrator(chain, method),
+                 *judge = start_integrator(chain, "composition:order=8,base=verlet");
   advance(integrator, h, steps);
   advance(judge, 1.0 / (double)resolved, resolved);
   const double error = distance(chain->nq, dvi_integrator_q(integrator), dvi_integrator_q(judge)) /
