@@ -8,8 +8,8 @@
 #include "support/files.h"
 #include "support/suite.h"
 
-/* Characters and numbers, which are all that the locale has: localedef is on every Debian, but not
- * the files that the package locales brings along for it. */
+/* Writes the characters and numbers of the locale, and nothing else. Every Debian has localedef,
+ * but not the files that the package locales installs for it. */
 static void write_sources(void)
 {
   FILE *characters = fopen(path_in_folder("characters"), "w"),

@@ -17,9 +17,9 @@ typedef struct span {
   double length;
 } span;
 
-/* A problem whose orders show: the span, the steps of the coarsest run of a global study, and the
- * longest step of a local one, a little more than the distance of the nearest singularity in
- * complex time. */
+/* A problem whose orders show: its span, the steps of the coarsest run of a global study, and the
+ * longest step of a local study. That step is a little more than the distance of the nearest
+ * singularity in complex time. */
 typedef struct order_place {
   span over;
   int first;
@@ -67,7 +67,8 @@ static void check_slope(const char *problem_name, const char *method, double slo
                 slope, order);
 }
 
-/* Solves the small normal equations a x = b in place by elimination. Their scales need no pivots. */
+/* Solves the small normal equations a x = b in place by elimination. Their scales need no
+ * pivots. */
 enum { TERMS_MOST = 4 };
 
 static void solve_normal_equations(int count, double a[TERMS_MOST][TERMS_MOST], double *b)

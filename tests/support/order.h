@@ -1,4 +1,4 @@
-/* Measuring orders against the quadruple-precision judge. */
+/* Measures orders against the quadruple-precision judge. */
 #ifndef SUPPORT_ORDER_H
 #define SUPPORT_ORDER_H
 /* The problems of an order study: kepler, pendulum, henon-heiles, double-pendulum and toda. Only

@@ -6,7 +6,7 @@
 
 #include "support/heap.h"
 
-/* More solvers than any integrator has to prepare: a composition of imex keeps nine factors. */
+/* More solvers than any integrator prepares. A composition of imex keeps nine factors. */
 enum { PREPARATIONS_MOST = 16 };
 
 static inline dvi_counters read_counters(const dvi_integrator *integrator)

@@ -23,8 +23,8 @@ int repeats(int often);
 /* Returns 1 where DVI_TEST_FEWER is set. */
 int is_short_run(void);
 
-/* Select every third case of a loop in a short run, else all: the number of selected cases, and the
- * number of the i-th of them. */
+/* Select every third case of a loop in a short run, else all. They return the number of selected
+ * cases, and the number of the i-th of them. */
 int sampled_count(int cases);
 int sampled_case(int i);
 

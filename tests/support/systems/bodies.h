@@ -1,5 +1,5 @@
-/* Systems with factors: bodies that turn, directions, angles, and a product of all of them whose
- * mass couples factors. */
+/* Systems with factors: rotations, directions, angles, and a product of all of them whose mass
+ * couples the factors. */
 #ifndef TESTS_SUPPORT_BODIES_H
 #define TESTS_SUPPORT_BODIES_H
 #include <dvi/integrator.h>
@@ -31,7 +31,8 @@ typedef struct body {
 void make_body(body_kind kind, body *model);
 void destroy_body(body *model);
 
-/* A chain of directions with springs between neighbours, and weights. It must not move in memory. */
+/* A chain of directions with springs between neighbours, and weights. It must not move in
+ * memory. */
 typedef struct direction_chain {
   int links;
   int *start, *row; /* the pattern of the potential's Hessian */

@@ -1,5 +1,5 @@
-/* Two bodies in a plane on a stiff bond, which also attract each other softly. With q = (x1, y1, x2,
- * y2), masses 1 and 2, and the distance r,
+/* Two bodies in a plane on a stiff bond, which also attract each other softly. With
+ * q = (x1, y1, x2, y2), masses 1 and 2, and the distance r,
  *
  *     fast: stiffness (r^2/2 + bend r^4/4),      slow: -1/sqrt(1 + r^2).
  *

@@ -76,7 +76,7 @@ static int stiffness_hessian(double t, const double *q, const double *p, double 
 static const int full_start[] = {0, 2, 3}, full_row[] = {Q, K, Q}, empty_start[] = {0, 0, 0},
                  q_start[] = {0, 1, 1};
 
-/* From q = 1 at rest with k = 4: q = cos 2t, p_k = -(t/4 + sin(4t)/16). */
+/* From q = 1 at rest with k = 4 the solution is q = cos 2t, p_k = -(t/4 + sin(4t)/16). */
 static void stiffness_exact(double t, double *q, double *p)
 {
   q[Q] = cos(2 * t);
@@ -216,7 +216,7 @@ static int transform_value(double t, const double *q, const double *p, double *H
   return 0;
 }
 
-/* H_q = -L_q, H_p = v; the potentials' forces with a constant mass. */
+/* Gives H_q = -L_q and H_p = v. With a constant mass H_q is the potentials' gradient. */
 static int transform_gradient(double t, const double *q, const double *p, double *H_q, double *H_p,
                               void *user)
 {

@@ -19,7 +19,7 @@ typedef enum necklace_kind {
 typedef struct necklace {
   int n;
   necklace_kind kind;
-  double *mass, *spring; /* [n], [n+1]: the first and the last one hold the ends */
+  double *mass, *spring; /* [n], [n+1], where the first and the last spring hold the ends */
   double *q, *p;         /* [n] a start */
   int *first, *row;      /* the pattern */
   int slow_off;          /* if not 0, the slow potential is 0 */

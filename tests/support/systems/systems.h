@@ -18,10 +18,10 @@ typedef struct behaviour {
   int at, block;
 } behaviour;
 
-/* V = sum over neighbours of d^2/2 + d^4/4, d = q_(i+1) - q_i; tridiagonal. */
+/* V = sum over neighbours of d^2/2 + d^4/4, d = q_(i+1) - q_i, with a tridiagonal Hessian. */
 dvi_potential springs(behaviour *user, callback_shape shape);
 
-/* V = sum of (1 + i) q_i^4/4 + t q_i; diagonal. */
+/* V = sum of (1 + i) q_i^4/4 + t q_i, with a diagonal Hessian. */
 dvi_potential wells(behaviour *user, callback_shape shape);
 
 /* L = sum of (2 + cos q_i) v_i^2/2 - (1 + t) q_i^2/2, and over neighbours v_i v_(i+1)/4 +
