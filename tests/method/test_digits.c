@@ -26,8 +26,8 @@ static const char *good_method(const problem *model)
   return terms->one_form != NULL ? "vprk:nodes=6" : "galerkin:degree=8";
 }
 
-/* Small enough that the method's own error is far below: a tenth of the step that an order study of
- * order 2 starts with. */
+/* Gives a step so small that the method's own error is far below: a tenth of the first step of an
+ * order study of order 2. */
 START_TEST(a_method_of_high_order_meets_the_digits)
 {
   problem *model = with_digits(_i);

@@ -1,4 +1,4 @@
-/* A host program with a decimal comma: what the library reads and says is the same. */
+/* In a host program with a decimal comma the library reads and says the same. */
 #include <dvi/dvi.h>
 #include <locale.h>
 #include <stdio.h>
@@ -13,7 +13,7 @@
 
 enum { TEXT_SIZE = 4096 };
 
-/* What came of a few steps. */
+/* The state after a few steps. */
 typedef struct outcome {
   char method[TEXT_SIZE], explained[TEXT_SIZE], monitor[TEXT_SIZE], error[TEXT_SIZE];
   double q[64], p[64];

@@ -1,5 +1,5 @@
 /* labels: order slow long */
-/* Measured orders are the claimed ones, for every degree and problem; here with Gauss quadrature.
+/* Measured orders are the claimed ones for every degree and problem, here with Gauss quadrature.
  * The judge works in quadruple precision. Orders up to 6 are measured at the end of a span, the
  * higher ones by the error of one step (support/order.c). */
 #include <check.h>

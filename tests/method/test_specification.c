@@ -21,8 +21,8 @@ START_TEST(verlet_is_refused_on_a_general_lagrangian_by_name)
 }
 END_TEST
 
-/* A specification, and words that the refusal must hold; more of galerkin's own are in
- * test_galerkin.c. */
+/* A specification, and words that its refusal must hold. test_galerkin.c has more of galerkin's
+ * own. */
 static const struct {
   const char *method, *because;
 } refused[] = {
@@ -100,7 +100,7 @@ START_TEST(a_specification_without_end_is_refused)
 }
 END_TEST
 
-/* Whether the list that ends a sentence ends with that word, behind a comma. */
+/* Returns 1 if the list that ends a sentence ends with that word, behind a comma. */
 static void check_list_end(const char *method, const problem *model, dvi_status status,
                            const char *last)
 {

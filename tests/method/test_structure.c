@@ -1,6 +1,6 @@
 /* labels: invariant */
-/* What the discrete action promises beside its order: a symplectic and reversible step, and momenta
- * conserved to roundoff. */
+/* The discrete action promises, beside its order, a symplectic and reversible step, and momenta
+ * conserved up to roundoff. */
 #include <check.h>
 #include <float.h>
 #include <math.h>
@@ -73,8 +73,8 @@ START_TEST(every_method_is_symplectic_on_every_problem)
 }
 END_TEST
 
-/* Roundings of 200 steps, amplified by the flow: the bound is what a user may rely on, not what is
- * measured (1e-15 to 1e-12). */
+/* Roundings of 200 steps, amplified by the flow. A user may rely on this bound, which is larger
+ * than the measured errors (1e-15 to 1e-12). */
 START_TEST(symmetric_methods_return_to_the_start)
 {
   problem *model = create_problem(problem_name(symmetric_pairs.which[sampled_case(_i)] / METHODS),
@@ -91,8 +91,8 @@ START_TEST(symmetric_methods_return_to_the_start)
 }
 END_TEST
 
-/* Largest possible size of each momentum: the sum of the absolute terms of p.xi, which bounds what
- * one rounding can do to it. */
+/* Gives the largest possible size of each momentum, the sum of the absolute terms of p.xi. It
+ * bounds the effect of one rounding. */
 static void momentum_sizes(const problem *solar, double size[6])
 {
   double linear = 0, angular = 0;

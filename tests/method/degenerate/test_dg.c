@@ -68,8 +68,8 @@ START_TEST(degrees_fluxes_and_stiffnesses_have_the_order_that_they_claim)
 }
 END_TEST
 
-/* S = 5 and 6 have order 10: the floor is reached after a few halvings of steps so long that slopes
- * still scatter. Over the whole of them they do not. */
+/* S = 5 and 6 have order 10. After a few halvings the error is at the floor, and the steps before
+ * are so long that slopes still scatter. The slope over all of them does not. */
 START_TEST(five_and_six_coefficients_have_order_10)
 {
   problem *model = create_problem("lotka-volterra-4d", NULL);
@@ -104,7 +104,8 @@ END_TEST
 
 /* ---- the parasite ---- */
 
-/* Relative energy errors of the quarters of a run; 0 steps: it breaks down. */
+/* Measures the relative energy errors of the quarters of a run. 0 steps mean that it breaks
+ * down. */
 static long run_energies(const char *name, const char *method, double h, long steps,
                          double *quarter)
 {
@@ -147,7 +148,7 @@ START_TEST(energy_stays_bounded)
 }
 END_TEST
 
-/* What a stiffness is for: without one these break down. */
+/* These runs break down without a stiffness. */
 START_TEST(runs_without_a_stiffness_break_down_and_the_alarm_stops_them_first)
 {
   double quarter[4];
@@ -213,8 +214,8 @@ START_TEST(a_step_out_of_the_logarithms_domain_leaves_the_state)
 }
 END_TEST
 
-/* A start chooses the jump that varies as little as the motion does; from a jump of 0 its change
- * would be as large as itself. */
+/* A start chooses the jump that varies as little as the motion does. A start with the jump 0 would
+ * change it by as much as its own size. */
 START_TEST(a_run_starts_on_the_smooth_branch)
 {
   static const char *const methods[] = {"dg:degree=0", "dg:degree=2", "dg:degree=2,stiffness=1",
@@ -299,8 +300,8 @@ static const struct {
                   {"dg:degree=1,stiffness=1", 1, 0.1},
                   {"dg:degree=3,stiffness=1", 1, 0.5}};
 
-/* From the first step on: the start knows no jump. With another c than the method's it is not
- * conserved, which shows that the test can tell. */
+/* Compares from the first step on, because the start knows no jump. With another c than the
+ * method's the form is not conserved, which shows that the test can tell. */
 START_TEST(loop_integrals_of_the_map_of_both_sides_are_conserved)
 {
   problem *model = create_problem("massless-particle", NULL);
@@ -381,7 +382,7 @@ static dvi_integrator *turned(double *g, const char *method, dvi_system **system
   return integrator;
 }
 
-/* Both may start off the smooth branch in their own way; that needs S odd. */
+/* Both integrators may start off the smooth branch in their own way. That needs S odd. */
 START_TEST(a_flux_at_one_side_is_an_average_flux_with_the_gauges_stiffness)
 {
   dvi_system *here = NULL, *there = NULL;
@@ -399,8 +400,8 @@ START_TEST(a_flux_at_one_side_is_an_average_flux_with_the_gauges_stiffness)
 }
 END_TEST
 
-/* Exact Jacobians: Newton's method alone, with few iterations, also with a stiffness and points off
- * the middle of the path. */
+/* The Jacobians are exact: Newton's method alone takes few iterations, also with a stiffness and
+ * points off the middle of the path. */
 START_TEST(newtons_method_suffices)
 {
   static const char *const methods[] = {"dg", "dg:degree=3,stiffness=1",

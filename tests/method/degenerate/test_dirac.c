@@ -11,8 +11,8 @@
 
 enum { LEVELS = 4 };
 
-/* `steps` is the number of the first level; each level has sqrt 2 times as many. Few enough that
- * the errors stay above 1e-12. */
+/* `steps` is the number of the first level, and each level has sqrt 2 times as many. Few levels
+ * keep the errors above 1e-12. */
 static const struct {
   const char *problem, *method;
   int order, steps;
@@ -58,7 +58,7 @@ START_TEST(claimed_order_is_measured)
 }
 END_TEST
 
-/* The angle from the top is the pendulum's; galerkin of degree 8 at this step is right to
+/* The angle from the top is the pendulum's. galerkin of degree 8 at this step is right up to
  * roundings. */
 START_TEST(the_particle_on_a_circle_is_the_pendulum)
 {
@@ -151,8 +151,8 @@ static void check_printed_step(const problem *model, double h, const double *q, 
   }
 }
 
-/* Without Hessians: they are differenced. The trajectory is that of the one-form, too, up to the
- * parasite h^3 that the starts leave. */
+/* Without Hessians the method differences them. The trajectory is that of the one-form, too, up to
+ * the parasitic mode of size h^3 from the starts. */
 START_TEST(without_moments_every_degree_takes_the_steps_of_the_one_form)
 {
   problem *model = create_problem("massless-particle", NULL);
@@ -275,8 +275,8 @@ START_TEST(energy_stays_and_the_constraint_holds)
 }
 END_TEST
 
-/* Without moments the node's multiplier is that of the motion up to h^2; with them it holds what
- * they leave, and is small. */
+/* Without moments the node's multiplier is that of the motion up to h^2. With moments it is small,
+ * because it holds only their remainder. */
 START_TEST(the_multiplier_is_that_of_the_motion_or_what_is_left_of_it)
 {
   problem *model = create_problem("circle-dirac", NULL);
@@ -364,8 +364,8 @@ START_TEST(starts_off_the_constraint_are_refused)
 }
 END_TEST
 
-/* The fields of (|q|^2 - 1)/2 and q.p at (q,p) are (0, -q) and (q, -p): the first has to change p
- * along q, the second scales q. */
+/* The Hamiltonian vector fields of (|q|^2 - 1)/2 and q.p at (q,p) are (0, -q) and (q, -p). The
+ * first one has to change p along q, the second one scales q. */
 START_TEST(a_start_off_the_constraint_is_projected_on_request)
 {
   problem *model = create_problem("circle-dirac", NULL);

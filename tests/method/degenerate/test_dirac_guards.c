@@ -1,6 +1,6 @@
 /* labels: invariant */
-/* What watches over a Hamiltonian with constraints, and over a one-form like it: the alarm, the
- * bracket matrix, statuses, checkpoints. */
+/* Guards of a Hamiltonian with constraints, and of a one-form like it: the alarm, the bracket
+ * matrix, statuses, checkpoints. */
 #include <math.h>
 #include <string.h>
 
@@ -11,8 +11,8 @@
 typedef struct world {
   double radius;  /* of the circle */
   double shift;   /* of the one-form */
-  int calls_left; /* of phi's gradient, until it returns `returned`, and NaN; below 0: for ever */
-  int returned;
+  int calls_left; /* calls until phi's gradient fails (negative, never) */
+  int returned;   /* by a failing gradient, beside a NaN */
 } world;
 
 static const world whole = {.radius = 1, .shift = 0, .calls_left = -1, .returned = 0};
@@ -134,7 +134,7 @@ static void check_quiet(const dvi_system *system, const char *method, const doub
   dvi_integrator_destroy(&integrator);
 }
 
-/* The constraint's force is large where nothing moves along it; at rest only roundings move. */
+/* The constraint's force is large although nothing moves along it. At rest only roundings move. */
 START_TEST(a_force_without_motion_rings_no_alarm)
 {
   static const double origin[3] = {0, 0, 0}, along[3] = {1, 0, 0}, bottom[2] = {0, -1},
@@ -177,7 +177,7 @@ END_TEST
 
 /* ---- the bracket matrix ---- */
 
-/* Of x and p_x (1 - z): it is 0 at z = 1. */
+/* The bracket of x and p_x (1 - z) is 0 at z = 1. */
 static int fold_phi(const double *q, const double *p, double *phi, void *user)
 {
   (void)user;
@@ -261,8 +261,8 @@ END_TEST
 
 /* ---- checkpoints ---- */
 
-/* alpha = (shift - y/2, x/2), H = |q|^2/2: at rest at 0 neither the Lagrangian nor its forces know
- * the shift. */
+/* alpha = (shift - y/2, x/2), H = |q|^2/2. At rest at 0 neither the Lagrangian nor its forces
+ * depend on the shift. */
 static int form(const double *q, double *alpha, void *user)
 {
   alpha[0] = ((const world *)user)->shift - q[1] / 2;

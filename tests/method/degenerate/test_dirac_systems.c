@@ -11,8 +11,8 @@
 
 /* ---- beads on hoops ---- */
 
-/* Free particles of unit mass, each on the unit circle in the plane n.q = 0: four constraints for
- * each of them, (|q|^2 - 1)/2, q.p, n.q and n.p. They turn about n at constant rates. */
+/* Free particles of unit mass, each on the unit circle in the plane n.q = 0. Each has the four
+ * constraints (|q|^2 - 1)/2, q.p, n.q and n.p, and turns about n at a constant rate. */
 enum { BEADS_MOST = 24, N = 3 * BEADS_MOST, M = 4 * BEADS_MOST };
 
 static const double axis[3] = {1.0 / 3, 2.0 / 3, 2.0 / 3};
@@ -66,7 +66,7 @@ static int beads_phi(const double *q, const double *p, double *phi, void *user)
   return 0;
 }
 
-/* 15 entries a bead: of the constraints 3, 6, 3 and 3. */
+/* A bead has 15 entries, and its constraints have 3, 6, 3 and 3. */
 static int beads_phi_gradient(const double *q, const double *p, double *phi_z, void *user)
 {
   const beads *string = user;
@@ -108,7 +108,8 @@ static void fill_patterns(beads *string)
   for (int i = 0; i < n; i++) string->diagonal_row[i] = i;
 }
 
-/* At time t; bead b turns at the rate 1 + b/10. The vectors span the plane, and axis = u x w. */
+/* Places the beads at time t. Bead b turns at the rate 1 + b/10. The vectors span the plane, and
+ * axis = u x w. */
 static void place_beads(const beads *string, double t, double *q, double *p)
 {
   static const double u[3] = {2.0 / 3, 1.0 / 3, -2.0 / 3}, w[3] = {-2.0 / 3, 2.0 / 3, -1.0 / 3};
@@ -251,7 +252,7 @@ static int height(double t, const double *q, double *g, void *user)
   return 0;
 }
 
-/* Steps as long as 3/2 + y says, forth and back; the parasite that a change of length starts turns
+/* Steps have the length 3/2 + y, forth and back. The parasitic mode from a change of length turns
  * back with them. */
 START_TEST(controlled_steps_back_undo_steps)
 {

@@ -1,6 +1,6 @@
 /* labels: order invariant */
-/* One-step methods for degenerate Lagrangians with half of the one-form's components constant: what
- * dvrk is, and what all five conserve. */
+/* One-step methods for degenerate Lagrangians whose one-form has constant components in one half:
+ * the step of dvrk, and conserved quantities of all five. */
 #include <math.h>
 #include <string.h>
 
@@ -26,8 +26,8 @@ static const char *const family[] = {"dvi-a",           "dvi-b", "dvi-midpoint",
                                      "dvi-trapezoidal", "dvrk",  "dvrk:nodes=3"};
 enum { FAMILY = sizeof family / sizeof *family };
 
-/* A circle of starts; 600 steps of roundoff. vprk:projection=post is not symplectic, and loses 1e-8
- * (test_vprk). */
+/* A circle of starts moves with 600 steps of roundoff. vprk:projection=post is not symplectic, and
+ * loses 1e-8 (test_vprk). */
 START_TEST(loop_integrals_are_conserved)
 {
   ck_assert_double_le(
@@ -191,8 +191,8 @@ END_TEST
 
 /* ---- time ---- */
 
-/* V = (1 + sin(3 t)/2) x^4/4, of a regular system of one coordinate; H = y^2/2 + V of (y, x) with
- * alpha = (0, y). */
+/* V = (1 + sin(3 t)/2) x^4/4 of a regular system of one coordinate, and H = y^2/2 + V of (y, x)
+ * with alpha = (0, y). */
 static int driven(double t, const double *x, double *V, void *user)
 {
   (void)user;

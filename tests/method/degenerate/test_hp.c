@@ -1,5 +1,5 @@
 /* labels: order */
-/* Hamilton-Pontryagin integrators: what the four types are, in lowest and in higher degrees. */
+/* Hamilton-Pontryagin integrators: the steps of the four types, in lowest and in higher degrees. */
 #include <math.h>
 #include <string.h>
 
@@ -48,7 +48,7 @@ END_TEST
 
 static const double h = 0.1;
 
-/* Gauss's tableau is its own conjugate. The tolerance: some roundings a step. */
+/* Gauss's tableau is its own conjugate. The tolerance allows some roundings a step. */
 START_TEST(type_4_with_gauss_points_is_gauss_collocation)
 {
   problem *model = create_problem("double-pendulum", NULL);
@@ -81,7 +81,7 @@ static void drift(double length, const double *p, double *x)
   for (int i = 0; i < N_MOST; i++) x[i] += length * p[i];
 }
 
-/* Kick and drift; drift and kick; half a drift, kick, half a drift. */
+/* The steps are kick and drift, drift and kick, or half a drift, kick and half a drift. */
 static void explicit_step(const problem *model, int type, double *x, double *p)
 {
   if (type == 4) drift(h / 2, p, x);
@@ -91,7 +91,7 @@ static void explicit_step(const problem *model, int type, double *x, double *p)
   if (type == 4) drift(h / 2, p, x);
 }
 
-/* The tolerance: a rounding or two of numbers below 1 a step. */
+/* The tolerance allows a rounding or two of numbers below 1 a step. */
 START_TEST(lowest_degrees_are_the_explicit_formulae)
 {
   problem *model = create_problem("henon-heiles", NULL);
@@ -114,8 +114,9 @@ static void velocity(const problem *model, const double *q, const double *p, dou
   ck_assert_int_eq(dvi_system_velocity(model->system, 0, q, p, v), DVI_OK);
 }
 
-/* The generalised formulae where the mass depends on q: p1 = L_v(q0,v) or p0 = L_v(q1,v) with v =
- * (q1-q0)/h; of type 4 the half-way point q0 + h/2 v0, v0 = v(q,p0), and q1 = q + h/2 v(q,p1). */
+/* Gives the generalised formulae where the mass depends on q: p1 = L_v(q0,v) or p0 = L_v(q1,v)
+ * with v = (q1-q0)/h. Type 4 has the half-way point q0 + h/2 v0, v0 = v(q,p0), and q1 = q + h/2
+ * v(q,p1). */
 START_TEST(lowest_degrees_are_the_generalised_formulae_with_any_lagrangian)
 {
   problem *model = create_problem("double-pendulum", NULL);
@@ -171,7 +172,8 @@ static const struct {
               {"henon-heiles", "type=1,degree=3,quadrature=simpson", 4, 0.25}};
 enum { CLAIMS = sizeof claims / sizeof *claims };
 
-/* Errors at t = 1, against quadruple precision; the slope between the last two of four steps. */
+/* Measures errors at t = 1 against quadruple precision, and the slope between the last two of four
+ * steps. */
 START_TEST(orders_are_those_claimed)
 {
   problem *model = create_problem(claims[_i].problem, NULL);

@@ -9,8 +9,8 @@
 
 /* ---- quadratures that see all of a constant two-form: every gauge ---- */
 
-/* Degree d has order d+1 for odd d, d for even d; on problems where alpha and H are not nearly
- * linear and quadratic, where Gauss's points do better. */
+/* Degree d has order d+1 for odd d, d for even d. These problems have an alpha and H that are not
+ * nearly linear and quadratic, for which Gauss's points do better. */
 static const struct {
   const char *problem, *gauge, *setting;
   int order;
@@ -42,7 +42,7 @@ START_TEST(orders_are_those_claimed_in_every_gauge)
 }
 END_TEST
 
-/* 20000 steps; docs/methods/hp.md has where other quadratures and problems break. */
+/* Runs 20000 steps. docs/methods/hp.md tells where other quadratures and problems break. */
 START_TEST(energy_stays_bounded_over_long_runs)
 {
   check_long_run("lotka-volterra", NULL, "hp:type=2,degree=3,quadrature=gauss", 0.1, 20000, 1e-5,
@@ -146,8 +146,8 @@ static const struct {
 } lifts[] = {{"lotka-volterra", 0.003125}, {"massless-particle", 0.0125}, {"vortices", 0.0005}};
 enum { LIFTS = sizeof lifts / sizeof *lifts, LEVELS = 4 };
 
-/* The parasite has the size h^d, and sets both the distance from the constraint and the error; the
- * error's phase at the end is the parasite's, so that the distance tells the order. */
+/* The parasitic mode has the size h^d, and sets both the distance from the constraint and the
+ * error. The error's phase at the end is that of the mode, so the distance tells the order. */
 START_TEST(radaus_distance_from_the_constraint_shrinks_with_the_order_and_bounds_the_error)
 {
   problem *model = create_problem(lifts[_i].problem, NULL);
@@ -216,7 +216,7 @@ END_TEST
 
 /* ---- the parasite ---- */
 
-/* alpha = (S, W; -W, 2 S) q with S = 0.3, W = -1/2: the symmetric part is definite. */
+/* With alpha = (S, W; -W, 2 S) q, S = 0.3, W = -1/2 the symmetric part is definite. */
 static int form(const double *q, double *alpha, void *user)
 {
   (void)user;
@@ -276,9 +276,9 @@ static void find_changes(const char *method, double (*change)[2])
   dvi_system_destroy(&system);
 }
 
-/* (-1)^(d-1) times the eigenvalues of Dalpha^-T Dalpha: their sum and product by Cayley and
- * Hamilton, from three changes that follow each other. The trace of Dalpha^-T Dalpha is 2 (ad -
- * b^2/2 - c^2/2)/(ad - bc). */
+/* Gives (-1)^(d-1) times the eigenvalues of Dalpha^-T Dalpha. Their sum and product follow by
+ * Cayley and Hamilton from three successive changes. The trace of Dalpha^-T Dalpha is 2 (ad - b^2/2
+ * - c^2/2)/(ad - bc). */
 START_TEST(the_parasites_multipliers_are_those_of_the_one_form_with_radaus_rules)
 {
   const double expected = (_i % 2 == 1 ? 1 : -1) * 2 * (0.18 - 0.25) / (0.18 + 0.25);
@@ -302,7 +302,7 @@ START_TEST(with_lobattos_points_it_is_one_or_minus_one)
 }
 END_TEST
 
-/* What is left are roundings. */
+/* Only roundings are left. */
 START_TEST(with_gauss_points_there_is_none_where_alpha_is_linear)
 {
   double D[CHANGES][2];

@@ -22,7 +22,7 @@ static const struct {
               {"tokamak", NULL, 800}};
 enum { PLACES = sizeof places / sizeof *places };
 
-/* Orders 2, 4 and 6 show over four steps; order 8 is at the floor after two of them on most
+/* Orders 2, 4 and 6 show over four steps. Order 8 is at the floor after two of them on most
  * problems. */
 START_TEST(gauss_with_the_symmetric_projection_has_order_2s)
 {
@@ -153,7 +153,7 @@ START_TEST(energy_stays_bounded_and_momenta_are_conserved)
 }
 END_TEST
 
-/* The banana orbit turns back: R stays between the same two radii from beginning to end. */
+/* The banana orbit turns back, and R stays between the same two radii from beginning to end. */
 START_TEST(a_banana_stays_a_banana)
 {
   problem *model = create_problem("tokamak", NULL);

@@ -139,7 +139,7 @@ static const double links_start[LINKS] = {0.8, 1.1, 0.4, 1.6, 2.0},
 static const struct {
   const char *name;
   double period;             /* the fastest one of the motion */
-  dvi_system *(*make)(void); /* NULL: of the catalogue */
+  dvi_system *(*make)(void); /* default NULL, a problem of the catalogue */
   const double *q;
 } cases[] = {{"double-pendulum", 1.3, NULL, NULL},
              {"kepler", 1.257, NULL, NULL},
@@ -156,8 +156,8 @@ static const struct {
              {"elastica", 6.0, NULL, NULL}};
 enum { CASES = sizeof cases / sizeof *cases };
 
-/* The first ones have Lagrangians that are regular. Of the degenerate ones the judge is not
- * settled: their rows are printed, and nothing is claimed. */
+/* The first ones have regular Lagrangians. For the degenerate ones the judge is not settled, so
+ * their rows are printed and nothing is claimed. */
 enum { REGULAR = 8 };
 
 static const char *const methods[] = {"midpoint",
@@ -190,14 +190,15 @@ static const char *const methods[] = {"midpoint",
 enum { METHODS = sizeof methods / sizeof *methods };
 
 typedef struct tally {
-  long steps, followed, strayed, refused,
-      missed; /* strayed: off the branch, and not told; missed: refused, and there is a solution */
+  long steps, followed, refused;
+  long strayed; /* steps that left the branch without a warning */
+  long missed;  /* refused steps that have a solution */
 } tally;
 
 /* ---- the judge ---- */
 
-/* The step from `state` followed in small parts. sem chooses its steps: the one that it took is
- * judged, as a first one of galerkin's. */
+/* Follows the step from `state` in small parts. sem chooses its steps, and its chosen step is
+ * judged as a first step of galerkin. */
 static dvi_status judged_step(const dvi_integrator *run, const dvi__state *state,
                               const double *memory, dvi_integrator *judge, double h)
 {
@@ -259,7 +260,7 @@ static int take_step(dvi_integrator *run, dvi_integrator *judge, double h, tally
     if (judged == DVI_OK) trace("missed", run, judge, h, judged);
     return 0;
   }
-  /* the run has blown up: in no case are there such numbers */
+  /* the run has blown up, because no case reaches such numbers */
   if (magnitude(run->system->n, run->now.q) > 1e4) return 0;
   count->steps++;
   if (judged == DVI_OK && is_right(run, judge)) return 1;
@@ -272,7 +273,7 @@ static int take_step(dvi_integrator *run, dvi_integrator *judge, double h, tally
 
 typedef struct plan {
   int lengths;
-  double least, most, periods; /* of h, in periods; of a run */
+  double least, most, periods; /* length of h and of a run in periods */
 } plan;
 
 static void run_lengths(const problem *model, dvi_system *system, const double *q, int which,

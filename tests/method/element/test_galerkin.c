@@ -9,8 +9,8 @@ static const char *const bases[] = {"gauss", "chebyshev-lobatto", "equispaced", 
                                     "chebyshev"};
 enum { BASES = sizeof bases / sizeof *bases, DEGREES = 8 };
 
-/* All bases of one degree span the same polynomials: the discrete action is the same, and so is the
- * trajectory. */
+/* All bases of one degree span the same polynomials, so they have the same discrete action and the
+ * same trajectory. */
 static void check_bases_agree(const char *problem_name, int degree, const char *basis)
 {
   problem *model = create_problem(problem_name, NULL);
@@ -113,8 +113,8 @@ START_TEST(a_wrong_specification_is_refused_with_its_reason)
 }
 END_TEST
 
-/* With slow forces fixed point iteration does it; a stiff spring at h omega = 5 needs Newton's
- * method; the counters tell. */
+/* Slow forces need only fixed-point iteration, and a stiff spring at h omega = 5 needs Newton's
+ * method. The counters tell which one ran. */
 START_TEST(the_contraction_chooses_the_solver)
 {
   problem *chain = create_problem("fpu", NULL);
@@ -136,7 +136,7 @@ START_TEST(the_contraction_chooses_the_solver)
 }
 END_TEST
 
-/* One discrete action has one stationary path near the true one: every solver finds it to
+/* One discrete action has one stationary path near the true one, and every solver finds it up to
  * roundoff. */
 START_TEST(all_solvers_find_the_same_step)
 {
@@ -155,7 +155,7 @@ START_TEST(all_solvers_find_the_same_step)
 }
 END_TEST
 
-/* Two oscillators, the second in a unit a billion times longer: V = (w x)^2/2 + (w y/unit)^2/2 with
+/* Two oscillators, the second in a unit a billion times longer. V = (w x)^2/2 + (w y/unit)^2/2 with
  * masses 1 and 1/unit^2. */
 static const double unit = 1e-9, stiffness = 1e4;
 
@@ -174,12 +174,12 @@ static int two_forces(double t, const double *q, double *V_q, void *user)
   return 0;
 }
 
-/* Newton's method must not stop when the large coordinate alone is at roundoff: both are one
- * oscillator, and must stay so. */
+/* Newton's method must not stop when only the large coordinate is at roundoff. Both oscillators are
+ * the same, and must stay so. */
 START_TEST(a_small_coordinate_is_solved_to_its_own_roundoff)
 {
   const double masses[] = {1, 1 / (unit * unit)}, q[] = {1, unit}, p[] = {0, 0};
-  /* the Hessian is differenced: not quite right */
+  /* the Hessian is differenced and slightly wrong */
   const dvi_potential springs = {.value = two_springs, .gradient = two_forces};
   const dvi_system_terms terms = {
       .dimension = 2, .mass.diagonal = masses, .potentials = &springs, .potential_count = 1};
@@ -198,8 +198,8 @@ START_TEST(a_small_coordinate_is_solved_to_its_own_roundoff)
 }
 END_TEST
 
-/* KINSOL's own test accepts what the iterations found, at every step, and the trajectory is the
- * same but for roundings: in easy steps, in stiff ones and for a general Lagrangian. */
+/* KINSOL's own test accepts the result of the iterations at every step, and the trajectory is the
+ * same up to roundings, in easy steps, in stiff ones and for a general Lagrangian. */
 START_TEST(kinsol_certifies_every_step)
 {
   static const struct {

@@ -29,7 +29,7 @@ START_TEST(a_quadratic_invariant_is_conserved_to_roundoff)
   ck_assert_int_eq(dvi_integrator_invariants(integrator, &before), DVI_OK);
   advance(integrator, 0.7, 10000);
   ck_assert_int_eq(dvi_integrator_invariants(integrator, &after), DVI_OK);
-  /* 1e4 roundings that walk at random: 100 of them */
+  /* 1e4 roundings that walk at random add up to 100 of them */
   ck_assert_double_eq_tol(after, before, 1e-14 * before * 100);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&oscillator);

@@ -23,7 +23,7 @@ static problem *made_net(int dim, int side)
   return net;
 }
 
-/* The same system with a potential that has no Hessian: every entry of it counts. */
+/* Creates the system with a potential without a Hessian, so that every entry counts as not zero. */
 static dvi_system *system_without_hessian(const problem *net)
 {
   dvi_system *system = NULL;
@@ -36,7 +36,8 @@ static dvi_system *system_without_hessian(const problem *net)
   return system;
 }
 
-/* n = 5000, degree 6: a Jacobian of 30 000 unknowns would have 1.8e6 entries, its factors 2e7. */
+/* With n = 5000 and degree 6 a Jacobian of 30 000 unknowns would have 1.8e6 entries, and its
+ * factors 2e7. */
 START_TEST(fixed_point_iteration_takes_no_jacobian)
 {
   problem *net = made_net(2, 50);
@@ -74,7 +75,7 @@ START_TEST(a_stiff_step_takes_little_memory)
 }
 END_TEST
 
-/* Solutions of one step's equations by two ways; q is about 0.1. */
+/* Compares solutions of one step's equations by two solvers. q is about 0.1. */
 static void check_same_step(const problem *net, const char *one, const char *other, double h)
 {
   dvi_integrator *a = start_integrator(net, one), *b = start_integrator(net, other);
@@ -97,8 +98,8 @@ START_TEST(newton_by_products_finds_what_the_ladder_finds)
 }
 END_TEST
 
-/* In three dimensions factors do not pay from some 15 000 unknowns on: preconditioned by the
- * kinetic part. */
+/* In three dimensions factors do not pay beyond some 15 000 unknowns, and the kinetic part is the
+ * preconditioner. */
 START_TEST(newton_by_products_needs_no_factor)
 {
   problem *net = made_net(3, 18);
@@ -113,8 +114,8 @@ START_TEST(newton_by_products_needs_no_factor)
 }
 END_TEST
 
-/* Restored in the middle, a run goes on with the same digits: what preconditions a step is made
- * from that step alone. */
+/* A run that is restored in the middle goes on with the same digits, because a step's
+ * preconditioner is made from that step alone. */
 START_TEST(a_step_by_products_depends_on_its_state_alone)
 {
   problem *net = made_net(2, 40);

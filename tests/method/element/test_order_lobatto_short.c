@@ -18,7 +18,7 @@ START_TEST(lobatto_with_as_many_nodes_as_degrees_has_order_2s_minus_2)
 }
 END_TEST
 
-/* By s and r: u is r, or r+1 for odd r. */
+/* Orders by s and r. u is r, or r+1 for odd r. */
 static const struct {
   int s, r, order;
 } few[] = {{3, 3, 4}, {4, 4, 2}, {5, 5, 4}, {5, 6, 4}, {6, 6, 2}, {5, 7, 8}, {6, 7, 6}, {7, 7, 4}};
@@ -26,7 +26,8 @@ enum { FEW = sizeof few / sizeof *few };
 
 START_TEST(clenshaw_curtis_with_few_nodes_has_the_order_that_its_own_allows)
 {
-  /* pendulum, henon-heiles, toda: elsewhere the last term is small beside the next ones */
+  /* pendulum, henon-heiles and toda, because elsewhere the last term is small beside the next
+   * ones */
   static const int places[] = {1, 2, 4};
   const int which = sampled_case(_i), place = places[which / FEW];
   const int s = few[which % FEW].s, r = few[which % FEW].r, order = few[which % FEW].order;

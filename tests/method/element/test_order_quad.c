@@ -15,13 +15,13 @@
 #include "support/runs.h"
 #include "support/suite.h"
 
-/* A span, and the steps of the coarsest run: short enough for fixed point iteration, and for the
- * leading term to rule. */
+/* A span, and the steps of the coarsest run. They are short enough for fixed-point iteration, and
+ * for the leading term to dominate. */
 typedef struct place {
   const char *problem, *setting;
   double t_end;
   int steps;
-  double floor; /* errors that are left to measure: a hundred times the noise of both programs */
+  double floor; /* errors above a hundred times the noise of both programs are measured */
 } place;
 
 static const place places[] = {
@@ -62,7 +62,7 @@ static void run(const place *at, const quad_field *field, const quad_galerkin *m
     ck_assert(quad_galerkin_step(method, field, (quad)at->t_end / steps, z->q, z->p));
 }
 
-/* The judge's answer; its own error must be far below all errors that are measured. */
+/* Gives the judge's result. Its own error must be far below all measured errors. */
 static void judge(const place *at, const quad_field *field, quad *y)
 {
   const int n = field->system.n;
@@ -72,8 +72,8 @@ static void judge(const place *at, const quad_field *field, quad *y)
   ck_assert_msg(error < 1e-29, "%s: the judge's error is %g", at->problem, error);
 }
 
-/* Length of the difference in q and p, each relative to its size: a component whose error happens
- * to vanish does no harm. */
+/* Gives the length of the difference in q and p, each relative to its size. A component whose error
+ * happens to vanish does no harm. */
 static double error_of(const quad_field *field, const state *z, const quad *y)
 {
   quad p[QUAD_N_MAX];
@@ -147,8 +147,8 @@ START_TEST(the_equations_of_a_step_have_the_claimed_order)
 }
 END_TEST
 
-/* A few dozen steps of a few roundings each; relative to the largest coordinate, on solutions that
- * amplify little. */
+/* A few dozen steps make a few roundings each, relative to the largest coordinate, on solutions
+ * that amplify little. */
 static const double roundoff = 500 * DBL_EPSILON;
 
 static void check_same(const place *at, const variant *chosen, int degree)

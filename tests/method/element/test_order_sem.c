@@ -1,6 +1,6 @@
 /* labels: order */
-/* sem has its order in (t,q,p): the points that it reaches, at the times that it chooses, lie on
- * the exact trajectory to O(h^2s). */
+/* sem has its order in (t,q,p). The points that it reaches, at the times that it chooses, lie on
+ * the exact trajectory up to O(h^2s). */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* labels: invariant */
-/* Symplectic-energy-momentum integrators: what they conserve, how they go on where the energy
- * equation has no solution, and what they refuse. */
+/* Symplectic-energy-momentum integrators: conserved quantities, steps without a solution of the
+ * energy equation, and refusals. */
 #include <math.h>
 #include <string.h>
 
@@ -18,7 +18,7 @@ static dvi_energy_balance balance_of(const dvi_integrator *integrator)
   return energy;
 }
 
-/* What is not accounted for: 0 but for roundings. */
+/* Gives the part of the energy that is not accounted for. It is 0 up to roundings. */
 static double defect_of(const dvi_energy_balance *e)
 {
   return fabs(e->energy - (e->first + e->work + e->jumps));
@@ -78,7 +78,7 @@ START_TEST(energy_and_angular_momentum_are_conserved)
 }
 END_TEST
 
-/* A step of h solves the ordinary rows: q and p are those of the Galerkin method with the same
+/* A step of h solves the ordinary rows, so q and p are those of the Galerkin method with the same
  * steps. */
 START_TEST(the_steps_are_galerkin_steps_of_other_lengths)
 {
@@ -134,8 +134,8 @@ static int duffing_hessian(double t, const double *q, double *V_qq, void *user)
 
 typedef struct hard_place {
   const char *problem, *setting, *method;
-  double h, q[2], p[2]; /* the start, unless it is the problem's: all 0 */
-  double most;          /* length of a step over h; 0: the bounds are left out */
+  double h, q[2], p[2]; /* the start (default 0, the problem's start) */
+  double most;          /* length of a step over h (default 0, without bounds) */
 } hard_place;
 
 /* henon-heiles at H = 0.166, just below the escape energy 1/6. */
@@ -172,8 +172,8 @@ static dvi_system *duffing(void)
   return system;
 }
 
-/* 1e4 steps: each forward, within its bounds and finite; each jump counted; the balance at roundoff
- * with the jumps, so that none is silent. */
+/* In 1e4 steps each one goes forward, within its bounds, to a finite state, and each jump is
+ * counted. The balance with the jumps is at roundoff, so none is silent. */
 static void check_hard(dvi_integrator *integrator, const char *what, double h, double most)
 {
   double size = 0;
@@ -217,7 +217,7 @@ START_TEST(hard_places_are_passed_with_every_jump_counted)
 }
 END_TEST
 
-/* A rotating pendulum fails on each turn: f = v^2 V'' + V'^2 changes its sign. */
+/* A rotating pendulum fails on each turn, because f = v^2 V'' + V'^2 changes its sign. */
 START_TEST(a_rotating_pendulum_falls_back)
 {
   problem *model = create_problem("pendulum", NULL);
@@ -234,7 +234,7 @@ END_TEST
 
 /* ---- time dependence ---- */
 
-/* E+ - E- of all steps is the work; along the exact solution it is the integral of -L_t, by which
+/* E+ - E- of all steps is the work. Along the exact solution it is the integral of -L_t, by which
  * the energy p v - L changes. */
 START_TEST(the_driven_pendulum_keeps_the_extended_energy_balance)
 {

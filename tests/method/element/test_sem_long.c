@@ -9,7 +9,7 @@
 
 enum { DEGREES = 4 };
 
-/* Steps that still show in the energy: shorter ones would not change any more. */
+/* These steps still show in the energy, which shorter ones would not change any more. */
 static const double first_step[DEGREES] = {0.05, 0.1, 0.4, 0.4};
 
 /* No step's energy row errs by more than 16 roundings of T + |V|, 1e-13 of the energy, and these

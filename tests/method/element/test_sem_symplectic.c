@@ -15,7 +15,7 @@
 
 enum { N_MOST = 2, COLUMNS_MOST = 2 * N_MOST + 2 };
 
-/* Numbers of a point: t, E, q, p. */
+/* Indices of a point's numbers t, E, q, p. */
 typedef struct point {
   double x[COLUMNS_MOST];
 } point;
@@ -78,8 +78,8 @@ static double form(int n, const point *a, const point *b)
   return sum;
 }
 
-/* The higher the degree, the less h shows in the energy, and the more roundings move it: long steps
- * are needed then. */
+/* The higher the degree, the less h changes the energy, and the more roundings move it. High
+ * degrees need long steps. */
 static const place places[] = {
     {"kepler", "e=0.2", "sem:degree=1", 0.5, 1e-3, 4},
     {"kepler", "e=0.2", "sem:degree=1,quadrature=lobatto", 0.5, 1e-3, 4},
@@ -122,8 +122,8 @@ START_TEST(the_form_is_the_same_before_and_after)
 }
 END_TEST
 
-/* dq ^ dp at a fixed h belongs to the ordinary step that begins a run: what dvi_symplecticity
- * measures, wherever the integrator stands. */
+/* dq ^ dp at a fixed h belongs to the ordinary step that begins a run. dvi_symplecticity measures
+ * it, wherever the integrator stands. */
 START_TEST(the_first_step_is_symplectic_in_q_and_p_alone)
 {
   problem *kepler = create_problem("kepler", "e=0.2");

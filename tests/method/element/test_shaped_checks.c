@@ -1,6 +1,6 @@
 /* labels: unit */
-/* What a program's function space is asked to be, how its callbacks fail, and what else knows it:
- * checkpoints, ensembles, copies. */
+/* User bases: their requirements, failures of their callbacks, and their effect on checkpoints,
+ * ensembles and copies. */
 #include <dvi/dvi.h>
 #include <math.h>
 #include <string.h>
@@ -15,7 +15,7 @@
 
 /* ---- what is refused ---- */
 
-/* The function tau^2, and what is wrong with it; point adds it at the nodes of a rule of three
+/* The function tau^2 and its planted faults. `point` gives it at the nodes of a rule of three
  * points. */
 typedef struct fault {
   int answer;          /* of the callbacks */
@@ -252,7 +252,7 @@ static int evaluate_step(double h, double tau, double *value, double *derivative
   return 0;
 }
 
-/* All of a step of 200 is between two of 8 points; 80 points see it, and 8 see one of 20. */
+/* A step of 200 lies between two of 8 points. 80 points see it, and 8 points see a step of 20. */
 START_TEST(points_that_do_not_see_a_function_are_refused)
 {
   static double steepness = 200;

@@ -40,7 +40,7 @@ START_TEST(polynomials_given_as_functions_are_galerkin)
 }
 END_TEST
 
-/* The same space, whatever basis of it is given. */
+/* All bases of one space give the same trajectory. */
 static int mixed(double h, double tau, double *value, double *derivative, void *user)
 {
   (void)h, (void)user;

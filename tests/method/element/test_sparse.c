@@ -45,7 +45,7 @@ static long entries_of(const problem *model, const dvi__action_space *space)
   return entries;
 }
 
-/* Steps of one chain; what must hold at every length is asserted here. */
+/* Takes steps of one chain, and asserts the facts that hold at every length. */
 static void take_steps(dvi_integrator *integrator, measured *m)
 {
   dvi_counters before, after;
@@ -62,15 +62,16 @@ static void take_steps(dvi_integrator *integrator, measured *m)
   ck_assert_msg(!failed, "%s", dvi_last_error());
   if (heap_is_counted()) ck_assert_int_eq(calls, 0);
   dvi_integrator_counters(integrator, &after);
-  /* Nothing is analysed before a step needs it, and each pattern once: of the whole Jacobian, and
-   * of the decoupled systems. */
+  /* Nothing is analysed before a step needs it, and each pattern is analysed once, that of the
+   * whole Jacobian and those of the decoupled systems. */
   ck_assert_int_eq(before.symbolic, 0);
   ck_assert_int_ge(after.symbolic, 1);
   ck_assert_int_le(after.symbolic, 2);
-  /* omega h = 5: fixed point iteration does not contract */
+  /* omega h = 5, where fixed-point iteration does not contract */
   ck_assert_int_eq(after.simplified, STEPS);
   ck_assert_int_ge(after.factorizations, 1);
-  /* Kept while they are good; of the first steps some are followed, with some for each part. */
+  /* Factors are kept while they are good. Some of the first steps are followed, with some factors
+   * for each part. */
   ck_assert_int_lt(after.factorizations, STEPS + 24 * after.followed);
   ck_assert_int_le(after.followed, STEPS);
 }
@@ -88,8 +89,8 @@ static void measure(const kind *k, int ell, measured *m)
   problem_destroy(&model);
 }
 
-/* A chain has two ends that lack a few entries, and a few blocks do not grow with it: within a
- * tenth for the shortest. */
+/* A chain lacks a few entries at its two ends, and a few blocks do not grow with it. That is within
+ * a tenth for the shortest chain. */
 static void check_proportional(long small, int n, long large, int most)
 {
   const double ratio = ((double)small / n) / ((double)large / most);

@@ -4,7 +4,7 @@
 #include "support/runs.h"
 #include "support/suite.h"
 
-/* With a constant mass the trapezoidal rule is Stoermer-Verlet: the two differ by roundings
+/* With a constant mass the trapezoidal rule is Stoermer-Verlet, and the two differ by roundings
  * only. */
 START_TEST(with_a_constant_mass_it_is_verlet)
 {

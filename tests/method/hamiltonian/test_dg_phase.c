@@ -51,7 +51,7 @@ START_TEST(every_degree_has_order_2)
 }
 END_TEST
 
-/* Of massless-particle: alpha = (1 + r^2)/2 (-y, x), and the gradient of alpha.w. */
+/* Gives alpha = (1 + r^2)/2 (-y, x) of massless-particle, and the gradient of alpha.w. */
 static void form(const double *q, const double *w, double *alpha, double *gradient)
 {
   const double x = q[0], y = q[1], s = (1 + x * x + y * y) / 2, turn = -y * w[0] + x * w[1];

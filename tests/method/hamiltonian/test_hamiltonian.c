@@ -1,6 +1,6 @@
 /* labels: order invariant */
-/* Discrete Hamiltonians: what their types are, where they coincide, what they keep, what they
- * refuse. */
+/* Discrete Hamiltonians: the steps of their types, cases where the types coincide, conserved
+ * quantities, refusals. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -92,8 +92,8 @@ START_TEST(all_types_are_the_same_steps_and_on_a_lagrangian_those_of_galerkin)
 }
 END_TEST
 
-/* H+ = p1.q0 + h H(q0,p1) and H- = -p0.q1 + h H(q1,p0): the symplectic Euler methods. The
- * tolerance: some roundings. */
+/* H+ = p1.q0 + h H(q0,p1) and H- = -p0.q1 + h H(q1,p0) are the symplectic Euler methods. The
+ * tolerance allows some roundings. */
 START_TEST(lowest_degrees_are_the_symplectic_euler_methods)
 {
   problem *model = create_problem("elastica", "kappa=1.5");
@@ -159,8 +159,8 @@ START_TEST(symmetric_quadratures_go_back_the_way_they_came)
 }
 END_TEST
 
-/* The forces are momenta of translations, the moment is that of the turns: affine in q, so that
- * paths of any degree keep them. */
+/* The forces are momenta of translations, the moment is that of the rotations. They are affine in
+ * q, so paths of any degree keep them. */
 START_TEST(energy_stays_and_momenta_are_kept_over_long_runs)
 {
   check_long_run("elastica", "kappa=1.5", method_spec("hamiltonian:degree=%d", _i), 0.2,
@@ -173,7 +173,7 @@ END_TEST
 
 /* ---- units ---- */
 
-/* H'(q,p) = S H(q, p/S): momenta in other units. S is a power of 2, which rounds nothing. */
+/* H'(q,p) = S H(q, p/S) has momenta in other units. S is a power of 2, which rounds nothing. */
 static const double unit = 0x1p30;
 
 static int scaled_value(double t, const double *q, const double *p, double *H, void *user)
@@ -233,8 +233,8 @@ START_TEST(units_of_momenta_change_no_bit)
 }
 END_TEST
 
-/* What is almost 0 at the start is no measure of what moves, nor is a momentum that is the rounding
- * of another one. */
+/* A momentum that is almost 0 at the start is no scale of the motion, nor is a momentum that is
+ * only the rounding of another one. */
 START_TEST(a_start_that_is_almost_zero_is_a_start)
 {
   problem *model = create_problem("elastica", NULL);
@@ -254,7 +254,7 @@ END_TEST
 
 /* ---- dense output ---- */
 
-/* The path of degree s errs by h^(s+1) between the ends; h falls by two. */
+/* The path of degree s errs by h^(s+1) between the ends, and h is halved. */
 START_TEST(dense_output_is_the_path)
 {
   problem *model = create_problem("elastica", NULL);
@@ -297,7 +297,7 @@ START_TEST(type_1_refuses_a_degenerate_hamiltonian_by_name)
 }
 END_TEST
 
-/* Patterns that are left out say nothing: the first step looks at the numbers. */
+/* Missing patterns give no information, and the first step looks at the numbers. */
 START_TEST(a_degenerate_hamiltonian_with_full_patterns_is_refused_by_the_first_step)
 {
   problem *model = create_problem("elastica", NULL);

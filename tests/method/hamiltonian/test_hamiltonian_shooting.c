@@ -12,8 +12,8 @@ enum { LEVELS = 5 };
 
 static const double floor_of_errors = 3e-14;
 
-/* What has this order, by the one-step method or by the quadrature, and a number of steps that
- * shows it. */
+/* A method of this order, which the one-step method or the quadrature decides, and a number of
+ * steps that shows it. */
 static const struct {
   const char *method;
   int order, steps;
@@ -62,7 +62,7 @@ START_TEST(the_order_is_the_lower_one_of_both)
 }
 END_TEST
 
-/* Where H is linear in all momenta p.H_p - H is 0, and nothing is left to the quadrature. */
+/* If H is linear in all momenta, p.H_p - H is 0, and the quadrature adds nothing. */
 START_TEST(the_order_is_the_one_step_methods_where_h_is_linear)
 {
   check_order_of(find_hamiltonian_problem("adjoint"),

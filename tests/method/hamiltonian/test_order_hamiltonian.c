@@ -24,7 +24,8 @@ static void check_slope(const char *name, const char *method, int order, const d
                 method, fit.slope, order, error[0], error[LEVELS - 1]);
 }
 
-/* Five numbers of steps, the next 2^(1/3) as large: with a high order errors fall fast. */
+/* Five numbers of steps, each 2^(1/3) times the one before, because errors of a high order fall
+ * fast. */
 static int steps_of(int order, int level, double as_many)
 {
   static const int first[] = {0, 200, 100, 40, 24, 16, 12, 10, 6};

@@ -1,5 +1,5 @@
-/* The reduced form: the steps of lie-galerkin from the momentum alone, the discrete Euler-Poincare
- * equation, and what it refuses. */
+/* The reduced form takes the steps of lie-galerkin from the momentum alone. Also tested are the
+ * discrete Euler-Poincare equation, and refusals. */
 #include <math.h>
 #include <string.h>
 
@@ -34,7 +34,7 @@ static const double product_q[PRODUCT_Q] = {0, -1, 0, 1, 0, 0, 0, 0,  1,   .6, .
                                             0, 0,  1, 0, 0, 0, 1, .3, -.2, .1, .5, .7},
                     product_v[12] = {1, .3, -.4, .9, -.2, .8, 1.1, .4, -.3, .6, .5, -.7};
 
-/* 200 steps of both; roundoff of the states adds up. */
+/* Both take 200 steps, and roundoff of the states adds up. */
 static void compare(const dvi_system *system, const double *q, const double *v, const char *keys,
                     double h)
 {
@@ -76,7 +76,7 @@ START_TEST(it_takes_the_steps_of_lie_galerkin)
 }
 END_TEST
 
-/* mu1 = Ad*_f mu0 from f = g0^{-1} g1 alone: Pi1 = F^T (Pi0 - R0^T (x1 - x0) x p). */
+/* Gives mu1 = Ad*_f mu0 from f = g0^{-1} g1 alone, Pi1 = F^T (Pi0 - R0^T (x1 - x0) x p). */
 START_TEST(momenta_follow_the_coadjoint_action)
 {
   body model;

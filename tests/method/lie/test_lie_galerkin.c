@@ -1,6 +1,6 @@
 /* labels: order */
 /* Galerkin steps in natural charts: orders, agreement of bases, symmetry under rotations, known
- * digits, refusals, what is kept from step to step. */
+ * digits, refusals, and structures that steps keep. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -39,8 +39,8 @@ typedef struct state {
   double q[BODY_Q], p[BODY_V];
 } state;
 
-/* By galerkin of degree 8, of the Lagrangian in one chart as an ordinary one: nothing is centred
- * anew. */
+/* Judges by galerkin of degree 8, with the Lagrangian in one chart as an ordinary one. The chart
+ * stays where it is. */
 static void judge(state *end)
 {
   dvi_counters counters = {0};
@@ -108,7 +108,7 @@ START_TEST(gauss_has_order_2s)
 }
 END_TEST
 
-/* Where errors between the chart's bound and roundoff leave a window of a factor of two in h. */
+/* Between the chart's bound and roundoff errors leave a window of a factor of two in h. */
 START_TEST(degree_5_has_order_10)
 {
   take_body(_i == 0 ? FREE_BODY : MOTION);
@@ -193,7 +193,7 @@ START_TEST(turned_starts_have_turned_trajectories)
 }
 END_TEST
 
-/* The momentum in space of free bodies: R Pi, and x x p + R Pi. */
+/* Gives the momentum in space of free bodies, R Pi, and x x p + R Pi. */
 static void space_momentum(const state *at, double *mu)
 {
   const double *R = at->q, *p = at->p, *x = at->q + 9;
@@ -219,8 +219,8 @@ START_TEST(free_bodies_keep_all_of_their_momenta)
 }
 END_TEST
 
-/* With weight: that about the vertical. Steps so long that a centre that does not move
- * (system/chart/centring.h) loses 1e-6. */
+/* With weight the momentum about the vertical is kept. The steps are so long that a centre that
+ * does not move (system/chart/centring.h) would lose 1e-6. */
 START_TEST(vertical_momentum_is_kept)
 {
   static const int kinds[] = {PENDULUM_3D, HEAVY_TOP, DIRECTIONS};
@@ -237,9 +237,9 @@ START_TEST(vertical_momentum_is_kept)
 }
 END_TEST
 
-/* A path of degree 1 is the same from its other end: a one-parameter subgroup, a great circle. A
- * longer polynomial in the chart at its start is none in that at its end, unless the chart is that
- * of a line or a circle. */
+/* A path of degree 1 is the same from its other end, because it is a one-parameter subgroup or a
+ * great circle. A polynomial of higher degree in the chart at its start is none in the chart at its
+ * end, unless the chart is that of a line or a circle. */
 START_TEST(steps_back_undo_steps_of_degree_1)
 {
   take_body(_i);
@@ -273,8 +273,8 @@ static void check_digits(const double *found, const double *known, double tolera
                 found[0], found[1], found[2]);
 }
 
-/* The free body's by its Taylor series in 40 digits; the others' by Gauss-Legendre of order 12 at
- * two steps, which agree. */
+/* The digits of the free body come from its Taylor series in 40 digits, the others from
+ * Gauss-Legendre of order 12 at two steps, which agree. */
 START_TEST(known_digits_are_met)
 {
   const double pendulum[] = {-6.751473860336227, .1484346732487297, 3.362315606396518},

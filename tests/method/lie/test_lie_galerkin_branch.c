@@ -1,6 +1,6 @@
 /* labels: invariant */
-/* Long steps of thin bodies, whose equations have several solutions: the one that is found
- * continues those of shorter steps, and is the motion's. Or the step is refused. */
+/* Long steps of thin bodies, whose equations have several solutions. The step takes the branch
+ * connected to h = 0, which is the motion's, or it is refused. */
 #include <dvi/integrator.h>
 #include <math.h>
 #include <string.h>
@@ -108,7 +108,7 @@ static const struct {
     {1e-5, .1, 3000, "lie-galerkin:degree=3"},   {1e-9, .1, 1000, "lie-galerkin:degree=4"},
     {.01, 1.5, 3000, "euler-poincare:degree=3"}, {1e-4, .3, 3000, "euler-poincare:degree=2"}};
 
-/* A step to another solution changes the energy by a thousandth; no step is refused. */
+/* A step to another solution would change the energy by a thousandth. No step is refused. */
 START_TEST(runs_of_rods_stay_with_the_motion)
 {
   const double J[] = {runs[_i].thin, 1 + runs[_i].thin / 2, 1 + .3 * runs[_i].thin},
@@ -131,7 +131,7 @@ START_TEST(runs_of_rods_stay_with_the_motion)
 }
 END_TEST
 
-/* With forces: energy alone would not tell. */
+/* With forces the energy alone would not show the branch. */
 START_TEST(steps_with_forces_find_the_motion)
 {
   static const char *const methods[] = {"lie-galerkin:degree=1", "lie-galerkin:degree=2",
@@ -157,8 +157,8 @@ END_TEST
 
 /* ---- steps that cannot be taken ---- */
 
-/* Such a body's path ends at a fold where it turns by less than 1.9; the next solution is near, and
- * errs by a third. */
+/* The path of such a body ends at a fold where it turns by less than 1.9. The next solution is
+ * near, and errs by a third. */
 START_TEST(steps_beyond_a_fold_are_refused)
 {
   const double J[] = {1.6045548e-06, 1.0000007, 1.0000009}, v[] = {.574447, -.698831, -.4262};
@@ -175,7 +175,8 @@ START_TEST(steps_beyond_a_fold_are_refused)
 }
 END_TEST
 
-/* The angle is the path's own, not that of an iterate that runs away; and no number is nan. */
+/* The sentence has the path's angle, not that of an iterate that runs away, and no number is
+ * nan. */
 START_TEST(refusals_tell_how_far_a_step_may_go)
 {
   static const struct {

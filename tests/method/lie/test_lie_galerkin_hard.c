@@ -1,5 +1,5 @@
-/* Galerkin steps in charts where charts are hard: fast tops, steps of nearly and of more than half
- * a turn, thin bodies; and what every method owes. */
+/* Galerkin steps where charts are hard: fast tops, steps of nearly and of more than half a turn,
+ * thin bodies. Also tested are the duties of every method. */
 #include <dvi/group.h>
 #include <math.h>
 #include <stdio.h>
@@ -11,7 +11,7 @@
 #include "support/runs.h"
 #include "support/suite.h"
 
-/* About its axis the top turns by 1 in every step: 1e3 radians in all. */
+/* The top turns about its axis by 1 in every step, 1e3 radians in all. */
 START_TEST(fast_tops_keep_energy_and_spin)
 {
   body model;
@@ -111,9 +111,9 @@ START_TEST(nearly_degenerate_bodies_keep_energy_and_momentum)
 }
 END_TEST
 
-/* A body that is a million times lighter about one axis, or half as heavy about two: momentum about
- * that axis is rounded as that about the others, so that no iteration knows its unknowns to more
- * than 1e-10 of themselves. Newton's method must see that. */
+/* A body that is a million times lighter about one axis, or half as heavy about two. The momentum
+ * about that axis is rounded as that about the others, so no iteration knows its unknowns to more
+ * than 1e-10 of their size. Newton's method must notice that. */
 static const struct {
   double J[3];
   const char *method;
@@ -216,7 +216,8 @@ static const struct {
      "height: the gradient callback failed with -7"},
 };
 
-/* Its name and its status, of the start and of the step; then all goes on. */
+/* Checks the method's name and its status, of the start and of the step, and that it goes on
+ * afterwards. */
 START_TEST(failing_callbacks_are_named)
 {
   const double q[] = {1, 0, 0}, v[] = {0, 1, .5};
@@ -343,8 +344,8 @@ START_TEST(paths_between_states_are_those_of_the_group)
 }
 END_TEST
 
-/* A step of the pendulum by about a third of a radian: the kept Jacobian serves, one is made in two
- * to three steps, and no more residuals than the 17 digits take. */
+/* A step of the pendulum turns by about a third of a radian. The kept Jacobian serves, one is made
+ * in two to three steps, and there are no more residuals than 17 digits take. */
 START_TEST(steps_cost_what_they_did)
 {
   body model;

@@ -1,6 +1,6 @@
 /* labels: invariant slow long */
-/* A million steps on groups, never put back on them: momenta, energy, and the distance from the
- * group. */
+/* A million steps on groups, which are never projected back: momenta, energy, and the distance from
+ * the group. */
 #include <dvi/diagnostics.h>
 #include <math.h>
 #include <string.h>
@@ -19,7 +19,7 @@ static const struct {
             {FREE_BODY, "euler-poincare:degree=2", 0.2},
             {DIRECTIONS, "sphere-galerkin:degree=2", 0.005}};
 
-/* Of 1e6 steps the roundings of the impulses leave 1e3 ulp in the momentum, and no trend; the
+/* Over 1e6 steps the roundings of the impulses leave 1e3 ulp in the momentum, and no trend. The
  * distance is that of the last rounding. */
 START_TEST(a_million_steps_keep_what_they_should)
 {

@@ -74,8 +74,8 @@ START_TEST(products_show_the_order)
 }
 END_TEST
 
-/* Exponentials stay on the group, and the implicit midpoint rule does; the explicit one leaves it
- * by its error. What stays can be started from. */
+/* Exponentials and the implicit midpoint rule stay on the group, and the explicit midpoint rule
+ * leaves it by its error. A state on the group can be a start. */
 START_TEST(the_group_is_kept_or_left)
 {
   body cells;
@@ -163,8 +163,8 @@ START_TEST(an_implicit_step_too_large_fails_by_name)
 }
 END_TEST
 
-/* The mass between cells is singular somewhere off the group: no guess goes there, so that the
- * matrix keeps the order of its pivots, and KLU its memory. */
+/* The mass between factors is singular somewhere off the group. No guess goes there, so the matrix
+ * keeps the order of its pivots, and KLU its memory. */
 START_TEST(coupled_cells_refuse_steps_too_large)
 {
   static const double h[] = {2, 50, 1e4};

@@ -169,7 +169,7 @@ START_TEST(a_step_back_undoes_a_step)
 END_TEST
 
 /* The discrete free body has the energy and the momentum of the continuous one (Hairer and Vilmart
- * 2006): no error but rounding, however thin and fast it is. */
+ * 2006) up to rounding, however thin and fast it is. */
 START_TEST(thin_and_fast_bodies_keep_energy_and_momentum)
 {
   static const struct {
@@ -200,7 +200,8 @@ END_TEST
 
 /* ---- steps too large ---- */
 
-/* h p just below the moment of inertia can be solved, just above not; the state stays. */
+/* The step can be solved for h p just below the moment of inertia, and not just above. The state
+ * stays. */
 START_TEST(a_step_beyond_the_bound_is_refused)
 {
   static const double inertia[] = {2, 0, 0, 0, 2, 0, 0, 0, 2};
@@ -271,8 +272,8 @@ static int weight(double t, const double *q, double *V_q, void *user)
   return 0;
 }
 
-/* A ball under a weight along an axis of its own; as a system of its own with -L: the scalar mass
- * -1 makes I of J into -I. */
+/* A ball under a weight along an axis of its own, and a system with the Lagrangian -L. Its scalar
+ * mass -1 makes I of J into -I. */
 static dvi_integrator *ball(const char *method, double sign, body *model)
 {
   static const double J[] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
@@ -393,7 +394,7 @@ START_TEST(hundreds_of_bodies_leap_one_by_one)
 }
 END_TEST
 
-/* A rigid motion without forces: the centre of mass goes straight, in every step. */
+/* The centre of mass of a rigid motion without forces moves on a straight line in every step. */
 START_TEST(a_centre_of_mass_goes_straight)
 {
   const double centre[] = {.1, -.2, .15}, mass = 2, h = .1, steps = 1000;
@@ -433,7 +434,7 @@ START_TEST(between_steps_it_stays_on_the_group)
   ck_assert_double_le(distance(n, q, dvi_integrator_q(integrator)), 1e-14);
   ck_assert_int_eq(dvi_integrator_interpolate(integrator, 0, q, v), DVI_OK);
   ck_assert_double_le(distance(n, q, product.q), 1e-15);
-  /* the step's constant velocity: right to O(h) */
+  /* the step's constant velocity, right up to O(h) */
   ck_assert_double_le(distance(dvi_system_nv(product.system), v, product.v), .2);
   dvi_integrator_destroy(&integrator);
   destroy_body(&product);

@@ -1,6 +1,6 @@
 /* labels: invariant */
-/* Directions alone: the steps of lie-galerkin, their length, chains at linear cost, and what is
- * refused. */
+/* Directions alone: the steps of lie-galerkin, the length of directions, chains at linear cost, and
+ * refusals. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -29,8 +29,8 @@ START_TEST(it_takes_the_steps_of_lie_galerkin)
 }
 END_TEST
 
-/* A free direction goes round a great circle: always the same step, in which rounding errors of one
- * sign would add up to 1e-10. */
+/* A free direction goes round a great circle with the same step each time, in which rounding errors
+ * of one sign would add up to 1e-10. */
 START_TEST(a_free_direction_keeps_its_momentum)
 {
   const dvi_factor factor = {.kind = DVI_S2, .mass = 1};
@@ -52,7 +52,7 @@ START_TEST(a_free_direction_keeps_its_momentum)
 }
 END_TEST
 
-/* |q| = 1 and p orthogonal to q, without projection; the vertical momentum. */
+/* |q| = 1 and p is orthogonal to q, without projection, and the vertical momentum is kept. */
 START_TEST(directions_stay_directions)
 {
   body model;
@@ -107,8 +107,8 @@ static cost cost_of(int links)
   return found;
 }
 
-/* Ten times the links: ten times the memory, and as many residuals and Jacobians, whose entries
- * test_charted counts; what a chain of one link needs is part of both. */
+/* Ten times the links take ten times the memory, and as many residuals and Jacobians, whose entries
+ * test_charted counts. The cost of a chain of one link is part of both. */
 START_TEST(chains_cost_as_much_as_they_have_links)
 {
   const cost few = cost_of(100), many = cost_of(1000);

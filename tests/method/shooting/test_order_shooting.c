@@ -38,7 +38,8 @@ static const struct {
               {"double-pendulum", NULL, 1, {0, 300, 60, 50, 30, 30, 30, 0, 29}}};
 enum { PLACES = sizeof places / sizeof *places };
 
-/* Runs are by as much finer from one to the next; the last ones must stay above roundoff. */
+/* Each run is finer than the one before by the same factor. The last ones must stay above
+ * roundoff. */
 static double ratio_of(int order)
 {
   return order <= 4 ? 1.6 : order <= 6 ? 1.4 : 1.15;
@@ -130,9 +131,9 @@ START_TEST(the_order_is_the_lower_of_both)
 }
 END_TEST
 
-/* A motion that can be run backwards makes the leading error of an odd order small: on pendulum and
- * kepler the next, even order is seen first. On the double pendulum, which has the errors of its
- * mass, too, it is not. */
+/* A motion that can be run backwards makes the leading error of an odd order small. On pendulum and
+ * kepler the next, even order shows first. On the double pendulum, which also has errors of its
+ * mass, it does not. */
 START_TEST(odd_orders_are_no_lower_than_claimed)
 {
   static const char *const odd[] = {
@@ -145,8 +146,8 @@ START_TEST(odd_orders_are_no_lower_than_claimed)
 }
 END_TEST
 
-/* Its errors of order 5 and 6 have opposite signs on the double pendulum: the slope comes up to 5
- * from below, 4.6 with 60 steps. */
+/* Its errors of order 5 and 6 have opposite signs on the double pendulum. The slope approaches 5
+ * from below, and is 4.6 with 60 steps. */
 START_TEST(dormand_prince_comes_up_to_order_5)
 {
   check_slope_on(2, "shooting:onestep=dormand-prince,quadrature=lobatto,nodes=5", 5, 5.2,
@@ -185,7 +186,7 @@ START_TEST(series_have_the_order_of_their_degree)
 END_TEST
 
 /* One step from end to end has no nodes between, and the double pendulum's motion has poles at 0.18
- * from the real line up to t = 1: what remains of the next orders dies out late, and the error
+ * from the real line up to t = 1. The remainder of the next orders dies out late, and the error
  * changes its sign on the way (taylor,stages=8 between 31 and 44 steps). */
 static const struct {
   const char *setting;
@@ -232,8 +233,8 @@ static double radius_at(const problem *model, double t)
   return 1 / most;
 }
 
-/* At t = 6.2 the double pendulum's rods whip round. A residual makes the last error smaller by the
- * step's own: from half the radius on not at all. */
+/* At t = 6.2 the double pendulum's rods whip round. Each residual reduces the error by a factor
+ * like the step's own error, and by none for steps from half the radius on. */
 START_TEST(newtons_method_is_as_fast_as_the_step_is_short)
 {
   static const struct {

@@ -1,5 +1,5 @@
 /* labels: order invariant */
-/* prolongation-collocation: its orders, what it conserves, what it refuses, how it fails. */
+/* prolongation-collocation: its orders, conserved quantities, refusals and failures. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -10,13 +10,14 @@
 #include "support/runs.h"
 #include "support/suite.h"
 
-/* The quadrature's: [m/2] terms of Euler and Maclaurin beside the trapezoid. */
+/* Gives the order of the quadrature, which has [m/2] terms of Euler and Maclaurin beside the
+ * trapezoid. */
 static int order_of(int m)
 {
   return 2 * (m / 2) + 2;
 }
 
-/* Short spans: errors of order 4 come to roundoff after some hundred steps. */
+/* The spans are short, because errors of order 4 come to roundoff after some hundred steps. */
 static const struct {
   const char *problem, *setting;
   double length;
@@ -53,8 +54,8 @@ START_TEST(time_may_stand_in_the_lagrangian)
 }
 END_TEST
 
-/* The line through the ends and the trapezoid: 20 steps of an orbit that amplifies roundings
- * little. */
+/* The line through the ends and the trapezoid give the same steps over 20 steps of an orbit that
+ * amplifies roundings little. */
 START_TEST(one_derivative_makes_it_verlet)
 {
   problem *model = create_problem("kepler", NULL);
@@ -91,7 +92,7 @@ START_TEST(angular_momentum_of_kepler_stays_at_roundoff)
 }
 END_TEST
 
-/* Error bounds: measured and doubled. */
+/* The error bounds are twice the measured errors. */
 START_TEST(energy_does_not_drift)
 {
   static const struct {

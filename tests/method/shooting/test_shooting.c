@@ -11,7 +11,7 @@
 
 /* ---- structure ---- */
 
-/* Of high orders what is not symmetric cannot be told from roundoff. */
+/* Methods of high orders that are not symmetric cannot be told from roundoff. */
 enum { UNSYMMETRIC, SYMMETRIC, NEARLY };
 
 static const struct {
@@ -71,8 +71,8 @@ END_TEST
 
 /* ---- momenta ---- */
 
-/* Kepler's problem where x = q0, y = q1 + q0^2: a rotation is no affine map of q, and no
- * Runge-Kutta method is equivariant under it. */
+/* Kepler's problem with x = q0, y = q1 + q0^2. A rotation is no affine map of q, and no Runge-Kutta
+ * method is equivariant under it. */
 typedef struct bent {
   double x, y, vx, vy, r3;
 } bent;
@@ -114,7 +114,7 @@ static int bent_hessian(double t, const double *q, const double *v, double *L_qq
   L_qq[0] = 4 * v[0] * v[0] + xx + 2 * s * xy + s * s * yy - 2 * b.y / b.r3;
   L_qq[1] = L_qq[2] = xy + s * yy;
   L_qq[3] = yy;
-  L_qv[0] = 2 * b.vy + s * 2 * v[0]; /* column by column: row q, column v */
+  L_qv[0] = 2 * b.vy + s * 2 * v[0]; /* column by column, with row q and column v */
   L_qv[1] = 0;
   L_qv[2] = 2 * v[0];
   L_qv[3] = 0;
@@ -145,7 +145,7 @@ static double momentum_error(dvi_integrator *integrator, double h, int steps)
   return largest;
 }
 
-/* 1e5 steps of a compensated sum; the bound is some tens of roundings of one. */
+/* Takes 1e5 steps of a compensated sum. The bound is some tens of roundings of one. */
 START_TEST(momenta_of_equivariant_one_step_methods_stay_at_roundoff)
 {
   static const char *const method[] = {"shooting:onestep=heun,quadrature=trapezoid", "shooting",
@@ -189,7 +189,8 @@ START_TEST(momenta_of_other_one_step_methods_do_not)
 }
 END_TEST
 
-/* Where twenty steps lead from the pericentre, all turned by an angle, in Cartesian coordinates. */
+/* Gives the end of twenty steps from the pericentre, all turned by an angle, in Cartesian
+ * coordinates. */
 static void end_of_turned(dvi_integrator *integrator, int is_bent, double angle, double *x)
 {
   const double e = 0.3, r = 1 - e, speed = sqrt((1 + e) / (1 - e)), c = cos(angle), s = sin(angle);
@@ -264,7 +265,7 @@ START_TEST(what_does_not_go_is_refused)
 }
 END_TEST
 
-/* Of the catalogue all have them that have a mass and few coordinates. */
+/* All problems of the catalogue that have a mass and few coordinates have them. */
 START_TEST(what_needs_taylor_coefficients_says_who_lacks_them)
 {
   problem *model = create_problem("kepler", NULL);
@@ -306,8 +307,8 @@ static int wall_gradient(double t, const double *q, double *V_q, void *user)
   return q[0] < 1 ? 0 : 1;
 }
 
-/* Steps of a system whose callbacks `given` says: values alone, gradients too, or all; q goes to
- * where they end. */
+/* Takes steps of a system with the callbacks that `given` selects: values alone, gradients too, or
+ * all. q becomes the final state. */
 static void step_rotors(const char *method, int given, double *q)
 {
   behaviour calls = {0};
@@ -328,7 +329,7 @@ static const char *const noisy[] = {"shooting", "shooting:type=2", "shooting:typ
                                     "shooting:onestep=gauss", "shooting:solve=stages"};
 enum { NOISY = sizeof noisy / sizeof *noisy };
 
-/* The residual holds second derivatives: their noise is its floor, and that of the steps. */
+/* The residual holds second derivatives, whose noise is its floor, and that of the steps. */
 START_TEST(derivatives_that_are_left_out_are_differenced)
 {
   double q[3][SITES];

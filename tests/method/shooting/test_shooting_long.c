@@ -1,5 +1,5 @@
 /* labels: invariant slow long */
-/* Shooting over a million steps: explicit one-step methods keep the energy, if the search for the
+/* Shooting over a million steps. Explicit one-step methods keep the energy, if the search for the
  * velocity is tight. */
 #include <math.h>
 
@@ -28,11 +28,11 @@ static dvi_drift_fit energy_of(const char *method, double h, int steps)
 
 static const struct {
   const char *method;
-  double bound; /* on the oscillation at h = 0.1: measured and doubled */
+  double bound; /* on the oscillation at h = 0.1, twice the measured size */
 } run[] = {{"shooting", 3e-6}, {"shooting:onestep=heun,quadrature=trapezoid", 2.2e-2}};
 enum { RUNS = sizeof run / sizeof *run };
 
-/* 3 is the usual threshold of significance; as in test_drift.c. */
+/* 3 is the usual threshold of significance, as in test_drift.c. */
 START_TEST(explicit_one_step_methods_do_not_drift)
 {
   const dvi_drift_fit fit = energy_of(run[_i].method, 0.1, repeats(1000000));

@@ -27,7 +27,7 @@ static double apart(int n, const double *a, const double *b, const double *start
   return distance(n, a, b) / fmax(magnitude(n, a), magnitude(n, start));
 }
 
-/* The same equations, in other unknowns: some roundings a step. */
+/* Both solve the same equations in other unknowns, which differ by some roundings a step. */
 START_TEST(all_stages_at_once_give_the_same_steps)
 {
   for (int place = 0; place < PLACES; place++) {
@@ -49,8 +49,8 @@ START_TEST(all_stages_at_once_give_the_same_steps)
 }
 END_TEST
 
-/* A chain's neighbours alone meet: the factors stay sparse, where those of the shot would take 2000
- * x 2000 numbers. */
+/* Only neighbours of a chain couple. The factors stay sparse, where those of the shot would take
+ * 2000 x 2000 numbers. */
 START_TEST(long_chains_are_solved_by_all_stages_at_once)
 {
   problem *model = create_problem("chain", "n=1000");
@@ -65,8 +65,8 @@ START_TEST(long_chains_are_solved_by_all_stages_at_once)
 }
 END_TEST
 
-/* rk4 and Simpson's rule have 21 blocks, with gauss 13; outer-solar's Hessian is full, the double
- * pendulum's mass not diagonal. */
+/* rk4 and Simpson's rule have 21 blocks, gauss has 13. outer-solar's Hessian is full, and the
+ * double pendulum's mass is not diagonal. */
 static const struct {
   const char *problem, *setting, *method, *solve;
 } taken[] = {{"chain", "n=126", "shooting", "solve=shot"},

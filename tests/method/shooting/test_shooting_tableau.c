@@ -1,5 +1,5 @@
 /* labels: unit */
-/* Shooting's one-step methods: tableaus and their conditions of order, built in and from files. */
+/* One-step methods of shooting: tableaus, their order conditions, built in and from files. */
 #define _POSIX_C_SOURCE 200809L /* mkfifo */
 #include <stdio.h>
 #include <stdlib.h>

@@ -39,7 +39,7 @@ START_TEST(a_composition_of_compositions_is_refused)
 }
 END_TEST
 
-/* The order conditions: the weights sum to 1, and so do steps of the clock. */
+/* The order conditions are that the weights sum to 1, and so do steps of the clock. */
 START_TEST(the_substeps_add_up_to_the_step)
 {
   const char *const order[] = {"4", "6", "8"};

@@ -14,8 +14,7 @@ static dvi_counters read_counters(const dvi_integrator *integrator)
   return counters;
 }
 
-/* Both take the same step; they differ by roundings of forces that are as large as 25 times the
- * momenta. */
+/* Both take the same step, up to roundings of forces that are 25 times as large as the momenta. */
 START_TEST(one_linear_system_a_step_does_what_newtons_method_does)
 {
   problem *chain = create_problem("fpu", NULL);
@@ -187,8 +186,8 @@ static int cup_gradient(double t, const double *q, double *V_q, void *user)
   return 0;
 }
 
-/* V = -k |q|^2/2 for any number of coordinates: the determinant changes its sign as often as there
- * are of them, at h = 1. */
+/* V = -k |q|^2/2 for any number of coordinates. The determinant changes its sign as often as there
+ * are coordinates, at h = 1. */
 
 enum { HILLS = 80 };
 
@@ -294,7 +293,7 @@ END_TEST
 
 /* ---- oscillators: slow q^2/2, fast omega^2 q^2/2 ---- */
 
-/* Where substeps resonate (test_respa.c), and in between. */
+/* Steps where substeps resonate (test_respa.c), and in between. */
 START_TEST(no_fast_frequency_resonates)
 {
   const double peak[] = {.99945, 1.99942, 2.99872, 3.99724};

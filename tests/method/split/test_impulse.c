@@ -1,5 +1,5 @@
 /* labels: unit */
-/* What all methods have in common that split: structure, refusals, failures. */
+/* Tests of all methods that split: structure, refusals, failures. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,7 +30,7 @@ static void check_symplectic(const bond *pair, const char *method, double h)
   dvi_integrator_destroy(&integrator);
 }
 
-/* The bond's frequency is 61 without a bend: the longest steps are beyond h omega = pi, where the
+/* The bond's frequency is 61 without a bend. The longest steps are beyond h omega = pi, where the
  * last method's filters end. */
 START_TEST(steps_are_symplectic)
 {
@@ -57,7 +57,7 @@ static void check_momenta(const bond *pair, const char *method)
   dvi_integrator_destroy(&integrator);
 }
 
-/* A random walk of 2000 steps, of roundings of forces that are h omega times the momenta: 1e-14
+/* The error is a random walk of 2000 roundings of forces that are h omega times the momenta, 1e-14
  * times that. */
 START_TEST(momenta_of_symmetries_are_kept)
 {
@@ -85,7 +85,7 @@ START_TEST(a_step_back_undoes_a_step)
 }
 END_TEST
 
-/* Other lengths in between leave no trace: what is made for a length is made again, to the last
+/* Steps of other lengths in between leave no trace: tables of a length are made again, to the last
  * bit. */
 START_TEST(a_step_depends_on_its_state_and_its_length_alone)
 {

@@ -35,7 +35,8 @@ START_TEST(modes_that_a_step_resolves_are_not_projected)
 }
 END_TEST
 
-/* The mean of the fast motion that starts at rest at q: of oscillators sin(h omega)/(h omega) q. */
+/* Gives the mean of the fast motion that starts at rest at q, for oscillators sin(h omega)/(h
+ * omega) q. */
 START_TEST(the_average_asks_for_the_slow_force_at_the_mean_of_the_fast_motion)
 {
   const double h = 0.05, omega = 50, x = h * omega, filter = sin(x) / x;

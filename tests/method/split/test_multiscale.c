@@ -7,8 +7,8 @@
 #include "support/suite.h"
 #include "support/systems/systems.h"
 
-/* stiff-pendulum at k: the path as oscillations of the spring's frequency in both coordinates; and
- * more keys. */
+/* stiff-pendulum at k, with the path as oscillations of the spring's frequency in both coordinates,
+ * and more keys. */
 static const char *spring(double k, const char *keys)
 {
   return method_spec("multiscale:fast=0:1,omega=%.17g%s", sqrt(k), keys);
@@ -92,7 +92,7 @@ static double error_of_theta(const struct stiffness *at, const char *keys, doubl
   return error;
 }
 
-/* 25 points; 3 or 4 iterations, and 5 where roundings of k a are seen: whatever k. */
+/* 25 points take 3 or 4 iterations for every k, and 5 where roundings of k a show. */
 START_TEST(steps_of_a_tenth_have_four_digits_at_every_stiffness)
 {
   dvi_counters counters;
@@ -120,8 +120,8 @@ START_TEST(steps_of_several_periods_have_an_error_below_one_in_ten_thousand)
 }
 END_TEST
 
-/* What is left out is of the fourth power of the amplitude: half of it, a sixteenth of the error.
- * The second harmonic takes all but a hundredth of that. */
+/* The neglected terms have the fourth power of the amplitude, so half the amplitude has a sixteenth
+ * of the error. The second harmonic takes all but a hundredth of that. */
 START_TEST(the_error_of_long_steps_is_the_second_harmonic)
 {
   static const double theta[] = {-0.253079547133848, -0.41315619234509354, -0.45107746698721923},
@@ -226,7 +226,7 @@ END_TEST
 
 /* ---- the frequency, found ---- */
 
-/* 0: not yet. */
+/* Reads omega from the explanation. 0 means that there is none yet. */
 static double found_omega(const dvi_integrator *integrator)
 {
   char text[1024];
@@ -236,8 +236,8 @@ static double found_omega(const dvi_integrator *integrator)
   return strtod(line + strlen("omega: "), NULL);
 }
 
-/* At rest the spring's own but for the weight's part, 70/k of its square; in motion the swing adds
- * at most 40/k to that. */
+/* At rest the energy is the spring's up to the weight's part, 70/k of its square. In motion the
+ * swing adds at most 40/k to that. */
 START_TEST(a_frequency_that_is_not_known_is_found_at_the_first_step)
 {
   const struct stiffness *at = &stiffnesses[_i];
@@ -258,8 +258,8 @@ START_TEST(a_frequency_that_is_not_known_is_found_at_the_first_step)
 }
 END_TEST
 
-/* A pendulum at an angle of 0.3 from its rest: linear oscillations about that have cos 0.3 of the
- * square of its small ones', its own have 1 - 0.3^2/8. */
+/* A pendulum at an angle of 0.3 from its rest. Linear oscillations about that angle have cos 0.3
+ * times the square of its small frequency, its own have 1 - 0.3^2/8. */
 START_TEST(of_a_large_oscillation_it_is_that_at_its_start)
 {
   problem *model = create_problem("pendulum", NULL);

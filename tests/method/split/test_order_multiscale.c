@@ -1,6 +1,6 @@
 /* labels: order reference */
-/* As h goes to 0 with fixed omega the space is as good as polynomials of as many degrees as it has
- * functions: d + 2m + 2, and 2 more with the second harmonic. */
+/* As h goes to 0 with fixed omega the space is as good as polynomials with the same number of
+ * functions. The order is d + 2m + 2, and 2 more with the second harmonic. */
 #include <check.h>
 
 #include "support/order.h"

@@ -33,9 +33,9 @@ static double difference(const necklace *string, const char *filter, double h)
   return found;
 }
 
-/* h omega up to 0.9, 2.7, 11 and 72. The difference is what modes lose: sums of n numbers, and a
- * rounding of the largest omega^2, which turns by h^2 times as much; a string that is pushed
- * grows. */
+/* h omega goes up to 0.9, 2.7, 11 and 72. The difference is the error of the modes: sums of n
+ * numbers, and a rounding of the largest omega^2, which rotates h^2 times as much. A string that is
+ * pushed grows. */
 START_TEST(polynomials_move_as_modes_do)
 {
   const double h[] = {0.5, 1.5, 6, 40};
@@ -63,8 +63,8 @@ START_TEST(a_string_of_five_hundred_moves_as_modes_do)
 }
 END_TEST
 
-/* The even string has the modes sin(i a_k), lambda_k = 4 sin^2(a_k/2), a_k = k pi/(n+1): its motion
- * over h in long double. */
+/* The even string has the modes sin(i a_k), lambda_k = 4 sin^2(a_k/2), a_k = k pi/(n+1). Gives its
+ * motion over h in long double. */
 static double exactly(const necklace *string, double h, int i, double *p)
 {
   const int n = string->n;
@@ -125,7 +125,7 @@ START_TEST(methods_with_one_filter_are_symplectic)
 }
 END_TEST
 
-/* The fast motion alone is linear: its matrix J, column by column from rest at 0, against the
+/* The fast motion alone is linear. Tests its matrix J, column by column from rest at 0, against the
  * symplectic form. */
 START_TEST(the_fast_motion_is_symplectic_to_rounding)
 {
@@ -158,7 +158,7 @@ END_TEST
 
 /* ---- runs ---- */
 
-/* Where a run by steps of h is at t = 3. */
+/* Gives the state at t = 3 of a run by steps of h. */
 static void run(const necklace *string, const char *method, double h, double *q)
 {
   dvi_integrator *integrator = necklace_integrator(string, method);
@@ -243,8 +243,8 @@ END_TEST
 
 /* ---- a hundred thousand ---- */
 
-/* 0 <= omega^2 <= 4: h omega <= 10, of which the motion wants two products for each of 18 degrees,
- * phi and psi one for each of 17. */
+/* 0 <= omega^2 <= 4 and h omega <= 10. The motion takes two products for each of 18 degrees, phi
+ * and psi take one for each of 17. */
 START_TEST(a_step_of_a_long_string_takes_two_gradients_and_few_products)
 {
   const char *const methods[] = {"trig", "mollified", "respa:substeps=exact"};
@@ -325,8 +325,8 @@ START_TEST(a_filter_that_jumps_has_no_polynomial)
 }
 END_TEST
 
-/* Beads that are pushed away grow: the longest step is named, it is one, and no longer one is told
- * of. */
+/* Beads that are pushed away grow. The sentence names the longest step, which works, and a longer
+ * one does not. */
 START_TEST(steps_are_explained_as_far_as_they_are_possible)
 {
   static const char words[] = " of the motion; steps are at most ";

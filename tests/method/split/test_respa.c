@@ -43,7 +43,7 @@ END_TEST
 
 /* ---- exact motion ---- */
 
-/* A saddle, a free direction, and springs between sites, under a constant force; the mass couples
+/* A saddle, a free direction, and springs between sites, under a constant force. The mass couples
  * all of them. */
 static int hills(double t, const double *q, double *V, void *user)
 {
@@ -80,7 +80,7 @@ START_TEST(exact_motion_is_exact_whatever_the_step)
   ck_assert_int_eq(dvi_integrator_start(judge, 0, generic_q, generic_v), DVI_OK);
   advance(exact, 1.5, 1);
   advance(judge, 1.5 / 32, 32);
-  /* K is differenced: to ten digits of its largest entry */
+  /* K is differenced, to ten digits of its largest entry */
   ck_assert_double_le(distance(SITES, dvi_integrator_q(exact), dvi_integrator_q(judge)), 1e-9);
   ck_assert_double_le(distance(SITES, dvi_integrator_p(exact), dvi_integrator_p(judge)), 1e-7);
   dvi_integrator_destroy(&exact);
@@ -142,7 +142,7 @@ END_TEST
 
 /* ---- resonance ---- */
 
-/* Where in (k - 0.004, k + 0.004) a step grows most. */
+/* Finds the place in (k - 0.004, k + 0.004) at which a step grows most. */
 static double peak_near(const char *method, int k, double *growth)
 {
   double peak = 0;
@@ -154,7 +154,7 @@ static double peak_near(const char *method, int k, double *growth)
   return peak;
 }
 
-/* The peaks of 100 substeps, whose own frequency is a little above omega; of exact motion they
+/* The peaks of 100 substeps, whose own frequency is a little above omega. With exact motion they
  * stand higher up. In 10000 steps the amplitudes grow by 8e6, 2900, 200 and 54. */
 START_TEST(kicks_in_phase_with_the_fast_motion_resonate)
 {

@@ -107,7 +107,7 @@ START_TEST(a_step_has_one_slow_gradient_and_one_fast_one)
 }
 END_TEST
 
-/* exact needs sinc x > 0; gautschi divides by it. */
+/* exact needs sinc x > 0, and gautschi divides by it. */
 START_TEST(a_step_at_which_a_filter_does_not_exist_fails_and_a_smaller_one_goes_on)
 {
   static const struct {

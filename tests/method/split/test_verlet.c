@@ -12,7 +12,7 @@ START_TEST(a_step_is_kick_drift_kick)
   const double h = 0.25, k = 0.5, q0 = oscillator->q[0], p0 = oscillator->p[0];
   const double p_half = p0 - h / 2 * k * q0, q1 = q0 + h * p_half, p1 = p_half - h / 2 * k * q1;
   advance(integrator, h, 1);
-  /* the same operations: a rounding apart at most */
+  /* the same operations, at most a rounding apart */
   ck_assert_double_eq_tol(dvi_integrator_q(integrator)[0], q1, 1e-16);
   ck_assert_double_eq_tol(dvi_integrator_p(integrator)[0], p1, 1e-16);
   dvi_integrator_destroy(&integrator);
@@ -64,7 +64,7 @@ static int spring_gradient(double t, const double *q, double *V_q, void *user)
   return 0;
 }
 
-/* The Hessian that nobody gave would have 2.5e9 entries; who needs it is told. */
+/* The missing Hessian would have 2.5e9 entries, and a method that needs it says so. */
 START_TEST(no_hessian_is_made_for_it)
 {
   int n = 50000;
