@@ -1,7 +1,7 @@
 /* labels: unit */
-/* Creating, running, saving and restoring survive the failure of each of their allocations: status,
- * no object, nothing leaked (the heap is counted here; the sanitizer and valgrind runs of this test
- * look closer). */
+/* Creating, running, saving and restoring survive the failure of each of their allocations, with a
+ * status, without an object or a leak. The heap is counted here, and the sanitizer and valgrind
+ * runs of this test look closer. */
 #include <stdio.h>
 #include <string.h>
 
@@ -167,8 +167,8 @@ static int place_has_path(int which)
   return strncmp(places[which].method, "lie-rk", 6) != 0;
 }
 
-/* Allocations of a run are those for its events and its checkpoints; a step makes none
- * once its solvers are prepared (test_late.c). */
+/* A run allocates for its events and its checkpoints. A step allocates nothing once its solvers are
+ * prepared (test_late.c). */
 START_TEST(a_run_survives_every_failure)
 {
   const int place = with_path.which[_i];
@@ -192,7 +192,7 @@ START_TEST(a_run_survives_every_failure)
     ck_assert_int_eq(report.end, DVI_RUN_FAILED);
     ck_assert_int_le(report.steps, 6); /* sem may take one more than those of a fixed h */
   }
-  /* What was left off can be taken up. */
+  /* An interrupted run can be continued. */
   ck_assert_msg(run(model, integrator, 2 * t_end, &report) == DVI_OK, "%s", dvi_last_error());
   ck_assert_int_eq(report.end, DVI_RUN_COMPLETE);
   dvi_integrator_destroy(&integrator);

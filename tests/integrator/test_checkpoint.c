@@ -15,8 +15,8 @@
 
 /* ---- going on bit for bit ---- */
 
-/* In the first run fixed point iteration gives up near the pericentre, and better ones take over;
- * stiff steps keep the factors of earlier ones. */
+/* In the first run fixed-point iteration gives up near the pericentre, and more robust solvers take
+ * over. Stiff steps keep the factors of earlier ones. */
 static const struct {
   const char *problem, *setting, *method;
   double h;
@@ -62,7 +62,7 @@ static const struct {
 };
 enum { RUNS = sizeof runs / sizeof *runs, COORDINATES_MOST = 8, INVARIANTS_MOST = 16 };
 
-/* What both can be asked between two steps. */
+/* Compares everything that both can be asked between two steps. */
 static void check_same_answers(dvi_integrator *a, dvi_integrator *b, double t)
 {
   double qv[2][2][COORDINATES_MOST] = {0}, invariants[2][INVARIANTS_MOST] = {0};
@@ -141,8 +141,8 @@ START_TEST(time_and_number_of_steps_are_restored)
 }
 END_TEST
 
-/* What an alarm does is no part of the steps: a run that was stopped goes on with warnings, and one
- * that was warned with stops. */
+/* The effect of an alarm is no part of the steps. A run that was stopped goes on with warnings, and
+ * one that was warned with stops. */
 START_TEST(a_run_goes_on_under_another_alarm_and_under_no_other_key)
 {
   problem *model = create_problem("vortices", NULL);
@@ -359,7 +359,7 @@ START_TEST(a_checkpoint_of_another_system_or_other_parameters_is_refused)
 }
 END_TEST
 
-/* The start is no parameter of a system: kepler's e only says where it begins. */
+/* The start is no parameter of a system, and kepler's e only sets the start. */
 START_TEST(a_checkpoint_of_another_start_is_taken)
 {
   problem *one = create_problem("kepler", "e=0.6"), *two = create_problem("kepler", "e=0.2");
@@ -466,7 +466,7 @@ START_TEST(neither_neighbours_nor_the_file_s_rights_change)
 }
 END_TEST
 
-/* A limit on the size of files stands for the full disk: writing stops in mid-file. */
+/* A limit on the size of files stands for the full disk, so writing stops in mid-file. */
 START_TEST(a_full_disk_leaves_the_old_checkpoint)
 {
   scene s = made_scene();

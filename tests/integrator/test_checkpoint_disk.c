@@ -1,6 +1,6 @@
 /* labels: unit */
-/* How a checkpoint gets to the disk: the file, then its name, then the folder; and what a save
- * that fails leaves behind. */
+/* The order in which a checkpoint gets to the disk: the file, then its name, then the folder. A
+ * save that fails leaves no file behind. */
 #define _GNU_SOURCE /* syscall */
 #include <errno.h>
 #include <fcntl.h>
@@ -22,7 +22,7 @@ static char calls[64];
 static const char *failing;
 static int reason;
 
-/* Note a call; whether it is to fail. */
+/* Notes a call, and returns 1 if it is to fail. */
 static int fails(const char *call)
 {
   (void)snprintf(calls + strlen(calls), sizeof calls - strlen(calls), "%s ", call);
@@ -90,7 +90,7 @@ START_TEST(a_call_that_fails_leaves_the_old_file_and_no_part)
 }
 END_TEST
 
-/* Some file systems cannot flush a folder, which is no failure; a broken disk is one. */
+/* Some file systems cannot flush a folder, which is no failure. A broken disk is one. */
 START_TEST(a_folder_that_cannot_be_flushed_is_told_if_it_could)
 {
   problem *model = create_problem("kepler", NULL);

@@ -1,6 +1,6 @@
 /* labels: unit */
-/* A checkpoint is taken by whoever takes the same steps, and by nobody else: a refusal says what
- * differs. */
+/* An integrator takes a checkpoint only if it takes the same steps. A refusal names the
+ * difference. */
 #include <dvi/dvi.h>
 #include <math.h>
 #include <stdio.h>
@@ -378,7 +378,7 @@ END_TEST
 
 /* ---- files that are not whole ---- */
 
-/* Write a file that differs in one byte, or ends before it; neither is taken. */
+/* Writes a file that differs in one byte, or ends before it. Neither is taken. */
 static void check_byte(dvi_integrator *by, bytes file, size_t at, unsigned char damage)
 {
   write_bytes(path_in_folder("cut"), file.at, at);
@@ -409,8 +409,8 @@ END_TEST
 
 /* ---- forged files ---- */
 
-/* Numbers that no checksum defends: a step from them may fail, but it ends, and no status but
- * DVI_OK goes with finite numbers alone. */
+/* No checksum protects these numbers. A step from them may fail, but it ends, and DVI_OK goes with
+ * finite numbers alone. */
 static dvi_status status_of_forged(dvi_integrator *integrator, double h)
 {
   dvi_status status = dvi_integrator_restore(integrator, path_in_folder("forged"));
@@ -420,8 +420,8 @@ static dvi_status status_of_forged(dvi_integrator *integrator, double h)
   return status;
 }
 
-/* Where a section of a file begins; its header has 40 bytes, of which the last 8 are its hash and
- * the 8 before them its size (lib/src/march/sections.h). */
+/* Finds the beginning of a section of a file. Its header has 40 bytes, of which the last 8 are its
+ * hash and the 8 before them its size (lib/src/march/sections.h). */
 static unsigned char *find_section(const bytes *file, const char *name, uint64_t *size)
 {
   unsigned char *at = file->at + 16;

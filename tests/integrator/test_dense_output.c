@@ -1,6 +1,6 @@
 /* labels: unit order */
-/* The trajectory inside the last step: right at the ends, of the promised order between them, and
- * only there. */
+/* The trajectory inside the last step is right at the ends, has the promised order between them,
+ * and exists only there. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -27,8 +27,8 @@ static const char *const methods[] = {
 };
 enum { METHODS = sizeof methods / sizeof *methods };
 
-/* The path's ends are sums of the same few numbers as the states, in another order: a few roundings
- * of numbers of size 1. Times are odd, so that t0 + h is rounded. */
+/* The path's ends are sums of the same few numbers as the states, in another order, and differ by a
+ * few roundings of numbers of size 1. Times are odd, so that t0 + h is rounded. */
 START_TEST(the_path_passes_through_both_ends)
 {
   const double rounding = 8 * DBL_EPSILON;
@@ -50,7 +50,7 @@ START_TEST(the_path_passes_through_both_ends)
 }
 END_TEST
 
-/* Hermite's cubic has the velocities that belong to the momenta at its ends; the mass is 1. */
+/* Hermite's cubic has the velocities that belong to the momenta at its ends. The mass is 1. */
 START_TEST(the_cubic_has_the_velocities_of_the_ends)
 {
   problem *model = create_problem("kepler", NULL);
@@ -87,8 +87,8 @@ END_TEST
 
 enum { LEVELS = 5, INSIDE = 8 };
 
-/* Largest error of q and v inside one step of h around t = 1, from the exact solution: where the
- * middle stays, so does the derivative that makes the error. */
+/* Gives the largest error of q and v inside one step of h around t = 1, from the exact solution.
+ * The middle stays, and so does the derivative that makes the error. */
 static void errors_inside(const problem *model, dvi_integrator *integrator, double h,
                           double *q_error, double *v_error)
 {
@@ -202,7 +202,7 @@ START_TEST(without_a_step_there_is_no_path)
 }
 END_TEST
 
-/* What another answers about the middle of the last step. */
+/* Compares the answers of another integrator about the middle of the last step. */
 static void check_same_path(dvi_integrator *a, dvi_integrator *b, double t)
 {
   double found[2][2];

@@ -23,7 +23,7 @@ static void best_again(void)
 
 /* ---- members and their twins ---- */
 
-/* Initial states near the problem's own, no two alike; component-major. */
+/* Makes initial states near the problem's own, no two alike, component-major. */
 static double first_q[N_MOST * MEMBERS_MOST], first_p[N_MOST * MEMBERS_MOST];
 
 static void take(int n, int members, int k, const double *all, double *one)
@@ -107,7 +107,7 @@ static void same_member(dvi_ensemble *e, int k, dvi_integrator *single)
   ck_assert_mem_eq(&t[k], &t_single, sizeof(double));
   ck_assert_mem_eq(q_k, dvi_integrator_q(single), (size_t)n * sizeof(double));
   ck_assert_mem_eq(p_k, dvi_integrator_p(single), (size_t)nv * sizeof(double));
-  /* Where a run has blown up there is no energy, on both sides. */
+  /* A run that has blown up has no energy, on both sides. */
   const dvi_status status = dvi_integrator_invariants(single, there);
   ck_assert_int_eq(dvi_ensemble_invariants(e, k, here), status);
   if (status == DVI_OK) ck_assert_mem_eq(here, there, (size_t)invariants * sizeof(double));
@@ -149,9 +149,9 @@ static void check_counters(dvi_counters got, dvi_counters wanted, const dvi_coun
 
 /* ---- places ---- */
 
-/* The chain of 40 goes in waves, that of 8 in lanes. fpu at h = 0.1 is stiff: fixed point iteration
- * fails. At h = 0.02 it fails for some members and steps, and at pericentre kepler's goes through
- * all solvers. */
+/* The chain of 40 takes temporal blocking, that of 8 goes in lanes. fpu at h = 0.1 is stiff, and
+ * fixed-point iteration fails. At h = 0.02 it fails for some members and steps, and at pericentre
+ * kepler's goes through all solvers. */
 typedef struct place {
   const char *problem, *setting;
   double h, spread;
@@ -296,7 +296,7 @@ START_TEST(every_member_has_the_bits_of_a_run_alone)
 }
 END_TEST
 
-/* Levels, threads and groupings, one after the other: each is compared with runs alone at the best
+/* Compares levels, threads and groupings, one after the other, with runs alone at the best
  * level. */
 START_TEST(levels_threads_and_groupings_change_no_bit)
 {
@@ -321,8 +321,8 @@ START_TEST(levels_threads_and_groupings_change_no_bit)
 }
 END_TEST
 
-/* The ensemble's state at each level against that of the baseline: `compare` has both sides at one
- * level. */
+/* Compares the ensemble's state at each level with that of the baseline. `compare` has both sides
+ * at one level. */
 START_TEST(levels_agree_with_each_other)
 {
   static double base_q[N_MOST * MEMBERS_MOST], q[N_MOST * MEMBERS_MOST];
@@ -384,8 +384,8 @@ START_TEST(verlet_evaluates_once_a_step)
 }
 END_TEST
 
-/* A stiff step: simplified Newton's method keeps its Jacobian as long as it serves. Members that go
- * on alone take 1, 2, 4, ... 32 steps at a time. */
+/* In a stiff step simplified Newton's method keeps its Jacobian as long as it serves. Members that
+ * go on alone take 1, 2, 4, ... 32 steps at a time. */
 START_TEST(a_frozen_jacobian_serves_several_steps)
 {
   enum { ALL = 21, SPAN = 63 };

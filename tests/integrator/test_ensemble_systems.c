@@ -1,5 +1,5 @@
 /* labels: unit */
-/* Sweeps of parameters: members with systems of their own have the bits of integrators of these
+/* In sweeps of parameters members with systems of their own have the bits of integrators of these
  * systems. */
 #include <string.h>
 
@@ -28,7 +28,7 @@ static const char *const methods[] = {"verlet", "galerkin", "galerkin:degree=8",
                                       "composition:order=6,base=midpoint"};
 enum { METHODS = 5 };
 
-/* `interleaved`: neighbours have different systems. */
+/* Makes the members. With `interleaved` neighbours have different systems. */
 static void make_sweep(int which, int interleaved)
 {
   for (int s = 0; s < SYSTEMS; s++)
@@ -133,7 +133,7 @@ START_TEST(methods_that_split_have_the_parts_of_each_members_system)
 }
 END_TEST
 
-/* A block has an integrator of its own: each member's system is asked for its Hessian once. */
+/* A block has an integrator of its own, and each member's system is asked for its Hessian once. */
 START_TEST(neighbours_with_one_system_share_its_modes)
 {
   make_sweep(OSCILLATORS, 0);
@@ -284,7 +284,7 @@ START_TEST(a_reach_of_its_own_is_refused)
 }
 END_TEST
 
-/* Calls, not points: neighbours with one system share them. */
+/* Counts calls, not points, because neighbours with one system share them. */
 static int calls;
 
 static int counted_gradient(int count, const double *t, const double *x, double *V_q, void *user)
@@ -314,7 +314,7 @@ START_TEST(neighbours_with_one_system_share_a_call)
   ck_assert_int_eq(dvi_ensemble_step(e, 0.1), DVI_OK);
   calls = 0;
   ck_assert_int_eq(dvi_ensemble_advance(e, 0.1, 10), DVI_OK);
-  /* 12 members of a system: a block of 12, or two of 8 and 4. */
+  /* 12 members of a system make a block of 12, or two of 8 and 4. */
   ck_assert_int_ge(calls, 20);
   ck_assert_int_le(calls, 40);
   dvi_ensemble_destroy(&e);
@@ -324,7 +324,7 @@ END_TEST
 
 /* ---- constraints ---- */
 
-/* H = |p|^2/2 + y on a circle of radius r: phi = (|q|^2 - r^2)/2 and q.p. */
+/* H = |p|^2/2 + y on a circle of radius r, with phi = (|q|^2 - r^2)/2 and q.p. */
 static int H(double t, const double *x, const double *momentum, double *value, void *user)
 {
   (void)t, (void)user;
@@ -404,7 +404,7 @@ END_TEST
 
 /* ---- a parameter as a coordinate ---- */
 
-/* V = x[1] x[0]^2 / 2, with no force on x[1]: it rests, and each member has its own. */
+/* V = x[1] x[0]^2 / 2, without a force on x[1], which rests and differs between members. */
 static int sprung(int count, const double *t, const double *x, double *V, void *user)
 {
   (void)t, (void)user;

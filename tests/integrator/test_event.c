@@ -1,5 +1,5 @@
 /* labels: unit */
-/* Events: found where they are, in the order of the run, once. */
+/* Events are found at the right time, in the order of the run, once. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -21,7 +21,7 @@ typedef struct mark {
   double value_after, value;
 } mark;
 
-/* What was reported, in this order. */
+/* The reported events, in this order. */
 static struct {
   int count;
   const mark *watched[MARKS_MOST];
@@ -102,8 +102,8 @@ static int note_time(double t, const double *q, const double *v, void *user)
   return 0;
 }
 
-/* q = cos(w t)/2 vanishes at (k + 1/2) pi/w. With degree 8 and h = 0.1 the path's own error is (w
- * h/2)^9/9!, nothing; the promise is 1e-12 max(1,|t|). */
+/* q = cos(w t)/2 vanishes at (k + 1/2) pi/w. With degree 8 and h = 0.1 the path's own error (w
+ * h/2)^9/9! is negligible. The promise is 1e-12 max(1,|t|). */
 START_TEST(zeros_of_an_oscillator_are_where_theory_says)
 {
   double zero = 0;
@@ -144,9 +144,9 @@ static int radial_speed(double t, const double *q, const double *v, double *g, v
 }
 
 /* The apsides of a Kepler orbit from its pericentre are at k pi. With degree 12 and h = 0.05 the
- * velocity inside a step, at an eccentricity of 0.6, is right to 24^-12 (the nearest singularity is
- * 0.3 away in complex time): roundoff. What the run's roundoff does to the phase stays below 1e-13
- * over five turns. The start, itself a pericentre, is none of the run's events. */
+ * velocity inside a step, at an eccentricity of 0.6, is right to 24^-12, which is roundoff (the
+ * nearest singularity is 0.3 away in complex time). The run's roundoff changes the phase by less
+ * than 1e-13 over five turns. The start, itself a pericentre, is none of the run's events. */
 START_TEST(apsides_of_a_kepler_orbit_are_where_theory_says)
 {
   const int direction = _i - 1;
@@ -166,9 +166,9 @@ START_TEST(apsides_of_a_kepler_orbit_are_where_theory_says)
 }
 END_TEST
 
-/* A function of time alone is known to the last digit: what is left is the search. The cube is flat
- * at its zero, the sign has no slope to go by, the steep one's values left and right of it differ
- * by 10^17, the product of two values of the tiny one is zero in floating point. */
+/* A function of time alone is known to the last digit, so only the search can err. The cube is flat
+ * at its zero, the sign has no useful slope, the values of the steep one left and right of it
+ * differ by 10^17, and the product of two values of the tiny one is zero in floating point. */
 static int cube(double t, const double *q, const double *v, double *g, void *user)
 {
   (void)q, (void)v, (void)user;
@@ -247,8 +247,8 @@ START_TEST(a_double_zero_inside_a_quarter_is_no_event)
 }
 END_TEST
 
-/* With h = 0.125 these times are points of the search, exactly: the end of a step, a quarter, the
- * end of the run. */
+/* With h = 0.125 the search evaluates exactly these times: the end of a step, a quarter, the end of
+ * the run. */
 START_TEST(a_zero_on_a_point_of_the_search_is_reported_once)
 {
   const double exact[] = {0.5, 0.53125, 1};
@@ -285,7 +285,7 @@ END_TEST
 
 /* ---- in order ---- */
 
-/* Six zeros in one step, from three events, in two quarters of it, listed late to early; backward
+/* Six zeros in one step, from three events, in two quarters of it, listed late to early. Backward
  * the order is reversed. */
 START_TEST(events_of_one_step_come_in_the_order_of_the_run)
 {
@@ -398,7 +398,7 @@ static const struct {
 };
 enum { AILMENTS = sizeof ailments / sizeof *ailments };
 
-/* Its step is taken back, so that a smaller one may be tried: what follows goes as if it had not
+/* Its step is taken back, so that a smaller one may be tried. Later steps are as if it had not
  * been. */
 START_TEST(a_function_that_fails_in_mid_run_fails_the_run)
 {

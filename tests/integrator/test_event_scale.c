@@ -7,13 +7,13 @@
 #include "support/runs.h"
 #include "support/suite.h"
 
-/* A point moves freely; g is a function of time alone, so that what is left is the search. */
+/* A point moves freely, and g is a function of time alone, so only the search can err. */
 typedef struct clock {
   double unit, zero;
   double found;
 } clock;
 
-/* Flat at its zero, and without a slope to go by: both need many bisections. */
+/* Functions that are flat at the zero, or without a useful slope, need many bisections. */
 static int cube(double t, const double *q, const double *v, double *g, void *user)
 {
   const clock *c = user;
@@ -75,7 +75,7 @@ START_TEST(femtoseconds_are_located_as_well_as_years)
 }
 END_TEST
 
-/* Far from t = 0 times themselves are rounded, by half an ulp: what is found is a few of them
+/* Far from t = 0 times themselves are rounded by half an ulp, so the found times are a few of them
  * off. */
 START_TEST(late_events_are_located_to_the_rounding_of_the_clock)
 {

@@ -196,8 +196,8 @@ START_TEST(steps_that_do_not_move_the_time_are_refused)
 }
 END_TEST
 
-/* At rest and free the coordinates stay 0; it is the time that overflows. A step later the
- * coordinate does. */
+/* At rest and free the coordinates stay 0, and the time overflows. A step later the coordinate
+ * does. */
 START_TEST(a_step_beyond_the_largest_number_fails)
 {
   static const char *const some[] = {"verlet", "midpoint"};
@@ -257,7 +257,8 @@ START_TEST(equations_without_a_solution_are_reported_and_a_smaller_step_goes_on)
 }
 END_TEST
 
-/* At 1.87 two of the three bodies are about to meet: the path of degree 8 turns within the step. */
+/* At 1.87 two of the three bodies are about to meet, and the path of degree 8 turns within the
+ * step. */
 START_TEST(a_step_through_a_close_encounter_is_reported_and_smaller_ones_go_on)
 {
   problem *model = create_problem("pythagorean", NULL);
@@ -306,7 +307,7 @@ START_TEST(a_bad_start_leaves_the_old_state)
 }
 END_TEST
 
-/* L = q_1 v_0 - |q|^2/2: the velocity Hessian vanishes. */
+/* L = q_1 v_0 - |q|^2/2, whose velocity Hessian vanishes. */
 static int linear_in_v(double t, const double *q, const double *v, double *L, void *user)
 {
   (void)t, (void)user;

@@ -1,5 +1,5 @@
-/* Solvers are made ready by the step that is the first to need them: counters tell, and a step that
- * finds no memory for them leaves all as it was. */
+/* The first step that needs a solver prepares it, as counters tell. A step that finds no memory for
+ * it changes nothing. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -39,7 +39,7 @@ static int has_state_of(const dvi_integrator *integrator, const problem *model)
          memcmp(dvi_integrator_p(integrator), model->p, (size_t)model->nv * sizeof(double)) == 0;
 }
 
-/* Failures of every allocation that the first step makes, the library's own; then it goes on as one
+/* Makes every allocation of the library in the first step fail. Then the integrator goes on as one
  * that never failed. */
 START_TEST(a_step_without_memory_for_its_solver_leaves_the_state)
 {
@@ -76,8 +76,8 @@ START_TEST(a_step_without_memory_for_its_solver_leaves_the_state)
 }
 END_TEST
 
-/* The same of every request of the program: those of KLU, too. SUNDIALS 6.4 ends the program where
- * it has no memory for its context. */
+/* Makes every request of the program fail, those of KLU, too. SUNDIALS 6.4 ends the program if it
+ * has no memory for its context. */
 START_TEST(a_step_survives_every_failure_of_the_heap)
 {
   problem *model = create_problem(places[_i].problem, places[_i].setting);
@@ -109,7 +109,7 @@ START_TEST(a_step_survives_every_failure_of_the_heap)
 }
 END_TEST
 
-/* At create nothing is analysed; each solver is at its first use, and then never again. */
+/* At create nothing is analysed. Each solver analyses at its first use, and never again. */
 START_TEST(a_ladder_prepares_each_rung_when_it_is_needed)
 {
   problem *model = create_problem("fpu", "ell=40");

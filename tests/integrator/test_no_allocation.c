@@ -1,5 +1,5 @@
-/* A step takes no memory from the heap and gives none back: not the library's own, nor that of
- * SUNDIALS, KLU and LAPACK. But a solver is prepared by the step that is the first to need it. */
+/* A step takes no memory from the heap and gives none back, neither the library's own nor that of
+ * SUNDIALS, KLU and LAPACK. The first step that needs a solver prepares it. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -90,7 +90,7 @@ START_TEST(every_place_is_taken_by_the_methods_for_it)
 END_TEST
 
 /* SUNDIALS 7 puts the message of a failed solve, which the library discards, into memory of its
- * own: one block, taken and given back. */
+ * own, one block that is taken and given back. */
 static long calls_of_messages(const dvi_integrator *integrator)
 {
   dvi_counters counters;
@@ -98,9 +98,9 @@ static long calls_of_messages(const dvi_integrator *integrator)
   return atoi(dvi_reference_version()) >= 7 ? 2 * counters.kinsols : 0;
 }
 
-/* Heap calls of some steps, beside preparations. Their length changes, and with it the tables of
- * the continued path. The first one must succeed; verlet and the trapezoidal rule soon blow up on
- * the stiff springs, but a step that fails shall take no memory either. */
+/* Counts heap calls of some steps, without preparations. Their length changes, and with it the
+ * tables of the continued path. The first step must succeed. verlet and the trapezoidal rule soon
+ * blow up on the stiff springs, but a step that fails shall take no memory, either. */
 static long calls_of_steps(dvi_integrator *integrator, double h, int steps)
 {
   long calls = 0;
@@ -193,7 +193,7 @@ START_TEST(invariants_and_dense_output_do_not_allocate)
 }
 END_TEST
 
-/* The midpoint rule has no solution here, at pericentre: the way leads through the ladder and along
+/* The midpoint rule has no solution here, at pericentre. The step goes through the ladder and along
  * the branch from h = 0 to a sentence. */
 START_TEST(a_step_that_fails_does_not_allocate)
 {

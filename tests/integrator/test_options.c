@@ -1,5 +1,5 @@
 /* labels: unit */
-/* Options of an integrator: what is left out is default, and what does not go together is
+/* Missing options of an integrator have defaults, and options that do not go together are
  * refused. */
 #include <stddef.h>
 

@@ -1,5 +1,5 @@
 /* labels: unit */
-/* The driver of a run: where it goes, whom it calls, how it ends. Events are in test_event.c. */
+/* The driver of a run: its end, its observers and its report. Events are in test_event.c. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -11,7 +11,7 @@
 
 enum { VISITS_MOST = 256 };
 
-/* What an observer saw, and what it shall do. */
+/* The observer's notes, and its planned answers. */
 typedef struct diary {
   int visits;
   double t[VISITS_MOST];
@@ -83,7 +83,7 @@ START_TEST(a_last_shorter_step_ends_the_run_at_t_end)
 }
 END_TEST
 
-/* Ten times 0.1 is not quite 1; no eleventh step of 1e-16 mends it. */
+/* Ten times 0.1 is not quite 1, and there must be no eleventh step of 1e-16. */
 START_TEST(rounding_makes_no_extra_step)
 {
   dvi_run_report report;
@@ -106,8 +106,8 @@ START_TEST(a_run_leads_backward_to_where_it_began)
   ck_assert_int_eq(d.visits, 9);
   for (int k = 1; k < 9; k++) ck_assert_double_lt(d.t[k], d.t[k - 1]);
   ck_assert_double_eq_tol(dvi_integrator_time(integrator), 0, DBL_EPSILON);
-  /* Forth and back the steps differ, 0.1 and 0.05 at either end: what is left is the error of order
-   * 8. */
+  /* Forth and back the steps differ, 0.1 and 0.05 at either end, so only the error of order 8 is
+   * left. */
   ck_assert_double_eq_tol(dvi_integrator_q(integrator)[0], model->q[0], 1e-13);
 }
 END_TEST
@@ -210,8 +210,7 @@ START_TEST(a_flag_set_before_the_run_ends_it_after_one_step)
 }
 END_TEST
 
-/* The observer comes after the look at the flag: the step after it is the one in which the flag is
- * seen. */
+/* The observer is called after the look at the flag, so the flag is seen in the step after it. */
 START_TEST(a_flag_set_in_mid_run_ends_it_with_the_next_step)
 {
   diary d = {.cancel_at = 3};
@@ -232,7 +231,7 @@ END_TEST
 
 /* ---- checkpoints ---- */
 
-/* After every step: the time of the checkpoint that is on the disk, -1 if there is none. */
+/* Reads after every step the time of the checkpoint on the disk, -1 if there is none. */
 static int read_checkpoint(dvi_integrator *running, void *user)
 {
   diary *d = user;
@@ -313,8 +312,8 @@ static int wall_gradient(double t, const double *q, double *V_q, void *user)
   return 0;
 }
 
-/* The step from 0.5 fails; the report, the state and the checkpoint are those of 0.5, and so is the
- * sentence; if there is no place for the checkpoint, it says that too. */
+/* The step from 0.5 fails. The report, the state and the checkpoint are those of 0.5, and so is the
+ * sentence. If the checkpoint cannot be written, the sentence says that, too. */
 START_TEST(a_step_that_fails_ends_the_run_at_the_last_good_state)
 {
   const dvi_potential potential = {.name = "wall", .value = wall_value, .gradient = wall_gradient};
@@ -404,8 +403,8 @@ START_TEST(checkpoints_on_the_way_need_a_file)
 }
 END_TEST
 
-/* Julian days: the rounded time misses t by up to 2e-10, a shorter last step must not. q = cos(t -
- * t0)/2 at the end. */
+/* With Julian days the rounded time misses t by up to 2e-10, but a shorter last step must not. q =
+ * cos(t - t0)/2 at the end. */
 START_TEST(a_last_shorter_step_is_right_at_large_times)
 {
   const double t0 = 2451545, way = 1.0625;
@@ -430,7 +429,7 @@ START_TEST(a_step_that_time_does_not_feel_fails_the_run)
 }
 END_TEST
 
-/* However long h is, the run ends at t_end; and once there, it has nothing to do. */
+/* However long h is, the run ends at t_end. A second run to t_end does nothing. */
 START_TEST(a_step_longer_than_the_way_is_cut_to_it)
 {
   const double lengths[] = {1e300, 1e10, 1.0000001};
@@ -442,7 +441,7 @@ START_TEST(a_step_longer_than_the_way_is_cut_to_it)
 }
 END_TEST
 
-/* The rounded weights of a composition do not sum to 1; a thousand steps must not show it. */
+/* The rounded weights of a composition do not sum to 1. A thousand steps must not show it. */
 START_TEST(a_composition_ends_at_t_end_and_may_be_asked_again)
 {
   const char *const order[] = {"4", "6", "8"};

@@ -129,7 +129,7 @@ START_TEST(a_velocity_is_found_where_the_hessian_at_rest_is_singular_or_indefini
 }
 END_TEST
 
-/* Newton's first step from rest leads far beyond the speed of light; L = sqrt(1 + p^2) there. */
+/* Newton's first step from rest leads far beyond the speed of light. L = sqrt(1 + p^2) there. */
 START_TEST(a_velocity_near_the_edge_of_the_domain_is_found)
 {
   const double momenta[] = {0.5, 3, -50, 1e4};
@@ -157,8 +157,8 @@ START_TEST(a_momentum_that_none_has_or_that_is_degenerate_is_refused)
 }
 END_TEST
 
-/* q' is the velocity meant, to the error h of a quotient, and stays on its branch: for v near -1, 0
- * and 1 the motions differ. */
+/* q' is the right velocity, up to the error h of a quotient, and stays on its branch. For v near
+ * -1, 0 and 1 the motions differ. */
 START_TEST(a_start_velocity_chooses_among_those_of_one_momentum)
 {
   static const char *const methods[] = {"midpoint", "galerkin:degree=3",

@@ -1,5 +1,5 @@
 /* labels: unit */
-/* Steps in a fictitious time: what they conserve, how runs end, what checkpoints hold. */
+/* Steps in a fictitious time: conserved quantities, ends of runs, checkpoints. */
 #include <math.h>
 #include <string.h>
 
@@ -44,7 +44,7 @@ static dvi_integrator *way(const problem *model, int i)
 
 /* ---- what is conserved ---- */
 
-/* 16 to 27 n steps; what differences can not resolve is the floor. */
+/* 16 to 27 n steps, with a floor below which differences resolve nothing */
 START_TEST(a_step_in_tau_is_symplectic)
 {
   static const char *const methods[] = {"midpoint",
@@ -74,7 +74,7 @@ START_TEST(a_step_in_tau_is_symplectic)
 }
 END_TEST
 
-/* As its page says; and the test above can fail. */
+/* The test above can fail, as the method's page says. */
 START_TEST(a_controlled_step_is_not_symplectic)
 {
   problem *kepler = create_problem("kepler", "e=0.6");
@@ -91,7 +91,7 @@ START_TEST(a_controlled_step_is_not_symplectic)
 }
 END_TEST
 
-/* A hundred steps through the pericentre and back: roundoff that the passage amplifies. */
+/* A hundred steps through the pericentre and back, which amplify roundoff. */
 START_TEST(steps_back_undo_steps)
 {
   problem *model = scene(_i);
@@ -210,8 +210,8 @@ START_TEST(a_terminal_event_ends_the_run_at_its_time)
 }
 END_TEST
 
-/* From the exact solution: degree 8 with short steps has no error to speak of, at the ends or
- * inside. */
+/* Compares with the exact solution. Degree 8 with short steps has a negligible error at the ends
+ * and inside. */
 START_TEST(dense_output_is_in_physical_time)
 {
   problem *kepler = create_problem("kepler", "e=0.9");
@@ -326,7 +326,7 @@ static double energy_change(dvi_integrator *integrator, const double *q, const d
   return fabs(after[0] - before[0]);
 }
 
-/* As its docstring warns; and an integrator of its own takes every start's own energy. */
+/* The docstring warns of this. An integrator of its own takes every start's own energy. */
 START_TEST(one_like_another_keeps_its_E0)
 {
   problem *kepler = create_problem("kepler", "e=0.5");

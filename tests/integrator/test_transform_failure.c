@@ -1,6 +1,6 @@
 /* labels: unit */
-/* What cannot be transformed or controlled is refused with a sentence, and a step that fails leaves
- * the state as it was. */
+/* A system or method that cannot be transformed or controlled is refused with a sentence, and a
+ * step that fails leaves the state as it was. */
 #include <math.h>
 #include <stdint.h>
 
@@ -77,8 +77,8 @@ START_TEST(control_wants_a_symmetric_method)
 }
 END_TEST
 
-/* A one-form has no mass to divide by the monitor; control goes with symmetric methods for it, to
- * their order: halved steps divide the error by 64. */
+/* A one-form has no mass to divide by the monitor. Symmetric methods for it take control, to their
+ * order: halved steps divide the error by 64. */
 START_TEST(a_one_form_takes_control_alone)
 {
   static const double h = 0.2;
@@ -275,8 +275,8 @@ START_TEST(a_step_where_the_monitor_is_not_positive_leaves_the_state_untouched)
 }
 END_TEST
 
-/* The step past the end looks at where the run never comes to; one that ends beyond the cliff
- * cannot be taken. */
+/* The step past the end evaluates points that the run never reaches. A step that ends beyond the
+ * cliff cannot be taken. */
 START_TEST(a_failure_past_the_end_does_not_matter)
 {
   problem *kepler = create_problem("kepler", NULL);
@@ -298,7 +298,7 @@ START_TEST(a_failure_past_the_end_does_not_matter)
 }
 END_TEST
 
-/* The callback's own word counts: positive may be mended by a smaller step, negative not. */
+/* The callback's code counts: a smaller step may mend a positive one, but not a negative one. */
 static int moody(double t, const double *q, double *g, void *user)
 {
   (void)t;
@@ -336,7 +336,7 @@ START_TEST(a_control_step_too_large_for_the_monitor_is_refused)
 }
 END_TEST
 
-/* A failing start leaves E0, too: the next step is as it would have been. */
+/* A failing start leaves E0, too, and the next step is as it would have been. */
 START_TEST(a_start_that_fails_leaves_the_state)
 {
   problem *kepler = create_problem("kepler", NULL);

@@ -1,5 +1,5 @@
 /* labels: invariant */
-/* What time transforms are for: eccentric orbits over a thousand periods, and close encounters. */
+/* Time transforms serve eccentric orbits over a thousand periods, and close encounters. */
 #include <math.h>
 
 #include "support/paced.h"
@@ -19,8 +19,8 @@ static int watch_energy(dvi_integrator *integrator, void *user)
   return 0;
 }
 
-/* The energy oscillates along the orbit, with the errors of the method; its trend over the run must
- * be nothing beside that. */
+/* The energy oscillates along the orbit with the errors of the method. Its trend over the run must
+ * be negligible beside that. */
 static void check_no_drift(paced_create create, const char *method, double h, double bound)
 {
   problem *kepler = create_problem("kepler", "e=0.99");
@@ -133,7 +133,7 @@ static double energy_of_the_first(const double *q, const double *p)
   return speed * speed / 2 - 12 / d;
 }
 
-/* Of bodies 2 and 3, in quadruple precision. */
+/* Gives the distance of bodies 2 and 3, in quadruple precision. */
 static double distance_by_the_judge(const problem *model, double t)
 {
   double q[6], p[6];
@@ -163,11 +163,11 @@ START_TEST(burraus_three_bodies_meet_and_part_as_they_must)
   const double *q = dvi_integrator_q(integrator);
   ck_assert_double_eq_tol(closest, 4.14e-4, 1e-6); /* docs/problems.md */
   ck_assert_double_eq_tol(at, 15.8299, 1e-4);
-  /* At the least distance an error of the time counts by its square; this is what the orbit has
-   * lost since the start. */
+  /* At the least distance an error of the time counts by its square. This is the orbit's loss since
+   * the start. */
   ck_assert_double_eq_tol(closest, distance_by_the_judge(model, at), 1e-10);
   ck_assert_double_eq_tol(after[0], before[0], 1e-11 * fabs(before[0]));
-  /* Body 1 goes upwards for good; 2 and 3 are a pair. */
+  /* Body 1 goes upwards for good, and 2 and 3 are a pair. */
   ck_assert_double_gt(energy_of_the_first(q, dvi_integrator_p(integrator)), 0);
   ck_assert_double_gt(q[1], 8);
   ck_assert_double_lt(hypot(q[2] - q[4], q[3] - q[5]), 1.5);

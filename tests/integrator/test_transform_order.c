@@ -24,8 +24,8 @@ static dvi_integrator *transformed(const problem *model, const dvi_monitor *moni
   return made;
 }
 
-/* Levels, each with half as many steps again as the one before: high orders would meet the floor
- * otherwise. */
+/* Each level has half as many steps again as the one before, because high orders would meet the
+ * floor otherwise. */
 static int steps_at(int first, int level)
 {
   return (int)lround(first * pow(1.5, level));
@@ -59,7 +59,7 @@ static void check_slope(const char *what, const char *method, int first, const d
                 order);
 }
 
-/* With g = r, tau is the eccentric anomaly: q = (cos tau - e, sqrt(1-e^2) sin tau), t = tau - e sin
+/* With g = r, tau is the eccentric anomaly, q = (cos tau - e, sqrt(1-e^2) sin tau), t = tau - e sin
  * tau. */
 static void check_on_kepler(const char *method, int order, int first, double tau)
 {
@@ -86,7 +86,7 @@ static void check_on_kepler(const char *method, int order, int first, double tau
 
 static const struct {
   const char *method;
-  int order, first; /* first: steps of the coarsest run */
+  int order, first; /* `first` is the number of steps of the coarsest run */
 } methods[] = {
     {"midpoint", 2, 100},
     {"trapezoidal", 2, 100},
@@ -123,7 +123,7 @@ START_TEST(coordinates_momenta_and_time_have_the_order_of_the_method)
 }
 END_TEST
 
-/* Whether the method is among those above. */
+/* Returns 1 if the method is among those above. */
 static int is_measured(const char *name)
 {
   for (int i = 0; i < METHODS; i++)
@@ -165,7 +165,7 @@ START_TEST(a_method_of_higher_derivatives_says_why_not)
 }
 END_TEST
 
-/* A monitor without sense for the motion: the order does not depend on what it is. */
+/* A monitor without meaning for the motion. The order does not depend on the monitor. */
 static int wave(double t, const double *q, double *g, void *user)
 {
   (void)t, (void)user;
@@ -181,7 +181,7 @@ static int wave_gradient(double t, const double *q, double *g_q, void *user)
   return 0;
 }
 
-/* A run to a physical time, whose last step is shorter: the end is at that time to roundoff, and of
+/* A run to a physical time, whose last step is shorter. It ends at that time up to roundoff, with
  * the method's order. */
 static void check_runs(const char *name, const dvi_monitor *monitor, const char *method, int order,
                        int first)

@@ -1,5 +1,5 @@
 /* labels: jacobian */
-/* A step by a discrete Hamiltonian: its Jacobian, and the functions that generate it. */
+/* The Jacobian of a step by a discrete Hamiltonian, and the functions that generate the step. */
 #include "step/hamiltonian/canonical.h"
 
 #include <math.h>
@@ -37,7 +37,8 @@ static dvi__canonical *made_step(const problem *model, const dvi__action_space *
   return step;
 }
 
-/* Central differences of the rows over 1e-4: an error of 1e-8, and roundings of 1e-12. */
+/* Takes central differences of the rows over 1e-4, with an error of 1e-8, and roundings of
+ * 1e-12. */
 START_TEST(the_jacobian_is_the_derivative_of_the_rows)
 {
   problem *model = create_problem("elastica", NULL);
@@ -145,8 +146,8 @@ static double rise(const double *a, const double *plus, const double *minus, dou
   return product(a, difference);
 }
 
-/* dH+ = q1.dp1 + p0.dq0 and dH- = -q0.dp0 - p1.dq1 along every direction of the start: the discrete
- * Hamilton's equations. Central differences. */
+/* dH+ = q1.dp1 + p0.dq0 and dH- = -q0.dp0 - p1.dq1 along every direction of the start are the
+ * discrete Hamilton's equations. They are tested by central differences. */
 START_TEST(the_right_and_the_left_discrete_hamiltonian_generate_the_step)
 {
   problem *model = create_problem("elastica", NULL);

@@ -60,8 +60,8 @@ static void start_near(const problem *model, double *q, double *v)
   }
 }
 
-/* Short enough for 16 terms: the radius of convergence of kepler's start, the smallest here, is
- * some tenths. */
+/* The step is short enough for 16 terms. The radius of convergence at kepler's start, the smallest
+ * here, is some tenths. */
 START_TEST(the_sum_is_where_an_integrator_arrives)
 {
   problem *model = create_problem(places[_i], NULL);
@@ -84,7 +84,7 @@ START_TEST(the_sum_is_where_an_integrator_arrives)
 }
 END_TEST
 
-/* What a differenced column holds: q_k, v_k and L_k one after the other. */
+/* Gives a differenced column: q_k, v_k and L_k one after the other. */
 enum { LOW = 5, COLUMN = (LOW + 1) * MOST + LOW };
 
 static void column_at(dvi__flow_series *series, int n, const double *q, const double *v,
@@ -95,7 +95,7 @@ static void column_at(dvi__flow_series *series, int n, const double *q, const do
   ck_assert_int_eq(dvi__flow_series_lagrangian(series, column + (LOW + 1) * n, NULL, NULL), DVI_OK);
 }
 
-/* Central differences of 6th order over 1e-2 of numbers of size 1; near kepler's centre
+/* Takes central differences of 6th order over 1e-2 of numbers of size 1. Near kepler's centre
  * coefficients grow by 3 with each order, and their derivatives with them. */
 static void difference(dvi__flow_series *series, int n, double *q, double *v, double *moved,
                        double *column)
@@ -142,8 +142,8 @@ START_TEST(derivatives_agree_with_differences)
 }
 END_TEST
 
-/* A motion's derivative is symplectic: dq_i.dv_j - dq_j.dv_i stays what it is at the start, for a
- * unit mass, at all s, so each coefficient but the first is 0. */
+/* A motion's derivative is symplectic. For a unit mass dq_i.dv_j - dq_j.dv_i is the same at all s,
+ * so each coefficient but the first is 0. */
 START_TEST(the_derivative_is_symplectic_order_by_order)
 {
   problem *model = create_problem("kepler", NULL);

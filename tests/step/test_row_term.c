@@ -1,6 +1,6 @@
 /* labels: order */
-/* Row terms: a force of Rayleigh's kind and a multiplier, each added to the step of galerkin from
- * outside of the library's files, as CONTRIBUTING's recipe "a new term" says. */
+/* Row terms from outside of the library's files, as CONTRIBUTING's recipe "a new term" says. A
+ * force of Rayleigh's kind and a multiplier are each added to the step of galerkin. */
 #include "step/element/row_term.h"
 
 #include <math.h>
@@ -38,7 +38,7 @@ static void start(run *r, const dvi_system_terms *terms, const char *method,
   memcpy(r->state.p, p, (size_t)terms->dimension * sizeof *p);
 }
 
-/* Steps of h from the start; velocity is p, for masses are 1. */
+/* Takes steps of h from the start. The velocity is p, for masses are 1. */
 static void take_steps(run *r, double h, int steps)
 {
   dvi__stepper_start(&r->stepper, r->state.p);
@@ -180,8 +180,8 @@ static int weight_hessian(double t, const double *q, double *V_qq, void *user)
   return 0;
 }
 
-/* The start's momentum is p0 + lambda G(q0), G = 2 q: R_k -= psi_k(1) lambda G (Leimkuhler and
- * Skeel 1994). */
+/* The start's momentum is p0 + lambda G(q0) with G = 2 q, hence R_k -= psi_k(1) lambda G
+ * (Leimkuhler and Skeel 1994). */
 static dvi_status add_rod(void *user, const dvi__row_path *p, const double *own, double *R,
                           double *dp, double *own_R)
 {
@@ -213,8 +213,8 @@ static void scale_rod(const void *user, double h, double *scale)
   scale[0] = 1;
 }
 
-/* The angle after the time 2 of a pendulum that starts at rest, at 1 radian from below; and the
- * largest |phi|. */
+/* Gives the angle after the time 2 of a pendulum that starts at rest, at 1 radian from below, and
+ * the largest |phi|. */
 static double rod_angle(int degree, int steps, double *off)
 {
   const dvi_potential weight = {
@@ -242,8 +242,8 @@ static double rod_angle(int degree, int steps, double *off)
   return angle;
 }
 
-/* A multiplier at the ends has order 2 whatever the degree is: the path between them knows nothing
- * of the rod. */
+/* A multiplier at the ends has order 2 for every degree, because the path between them does not
+ * depend on the rod. */
 START_TEST(a_multiplier_holds_its_constraint_and_has_order_2)
 {
   for (int degree = 1; degree <= 2; degree++) {

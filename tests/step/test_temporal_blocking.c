@@ -1,6 +1,6 @@
 /* labels: unit */
-/* Waves have the bits of plain sweeps: for any length, reach, block, cut and instruction set, and
- * when something fails. */
+/* Temporal blocking has the bits of plain passes over all sites, for any length, reach, block, cut
+ * and instruction set, and when something fails. */
 #include <math.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -201,7 +201,8 @@ START_TEST(any_length_reach_and_block_has_the_bits_of_the_plain_sweep)
 }
 END_TEST
 
-/* Long enough for default blocks on four threads: 4 (17+1) 8 + 4 512 + 8 coordinates for each. */
+/* The chain is long enough for default blocks on four threads, 4 (17+1) 8 + 4 512 + 8 coordinates
+ * for each. */
 START_TEST(every_instruction_set_and_thread_count_has_the_same_bits)
 {
   enum { LENGTH = 12347 };
@@ -224,8 +225,8 @@ START_TEST(every_instruction_set_and_thread_count_has_the_same_bits)
 }
 END_TEST
 
-/* A reach of rows of a mesh: the window of all substeps would not stay in the cache, so a step
- * takes several passes. */
+/* The reach is that of rows of a mesh. The window of all substeps would not stay in the cache, so a
+ * step takes several passes. */
 START_TEST(a_long_reach_takes_several_passes_with_the_same_bits)
 {
   static const int reaches[] = {900, 5000, 30000};
@@ -256,7 +257,7 @@ START_TEST(a_long_reach_takes_several_passes_with_the_same_bits)
 }
 END_TEST
 
-/* Plain callbacks and ranges of one potential: the chain of the catalogue has both. */
+/* The chain of the catalogue has both plain callbacks and ranges of one potential. */
 START_TEST(the_catalogues_chain_has_the_same_bits_by_both_sweeps)
 {
   static const char *const sizes[] = {"n=1", "n=2", "n=32", "n=4099"};
@@ -300,7 +301,7 @@ START_TEST(each_gradient_is_evaluated_once_and_nothing_is_allocated)
 }
 END_TEST
 
-/* Five arrays from one place to another: read, fetched, written. */
+/* Five arrays move from one place to another, and are read, fetched and written. */
 START_TEST(traffic_is_known_of_waves_alone)
 {
   pair p;
@@ -332,7 +333,7 @@ static void make_trouble(pair *p, const trouble *what)
   p->lattice.bad_time = 0.25 + 0.2 + 0.05;
 }
 
-/* The same status, the same sentence, and both go on as if nothing had been. */
+/* Both give one status and one sentence, and go on as if nothing had happened. */
 START_TEST(a_failure_in_mid_wave_is_that_of_the_plain_sweep_and_leaves_no_trace)
 {
   for (int threads = 1; threads <= THREADS_MOST; threads++) {
@@ -377,7 +378,7 @@ START_TEST(a_state_that_is_not_finite_is_refused_by_both)
 }
 END_TEST
 
-/* The last gradient is finite, and its kick is not: no callback sees it. */
+/* The last gradient is finite, and its kick is not. No callback sees it. */
 START_TEST(a_last_kick_that_overflows_is_refused_by_both)
 {
   for (int threads = 1; threads <= 2; threads++) {

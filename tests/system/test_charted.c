@@ -26,7 +26,7 @@ static body model;
 static dvi_counters counters;
 static dvi__charted *charts;
 
-/* All bodies; then the free ones by the group's own velocity. */
+/* All bodies, then the free ones by the group's own velocity. */
 static int is_reduced(int kind)
 {
   return kind >= REDUCED;
@@ -71,7 +71,7 @@ START_TEST(derivatives_are_those_of_the_value)
 }
 END_TEST
 
-/* At y(xi) with the stored velocity; the reduced one, too. */
+/* Evaluates at y(xi) with the stored velocity, the reduced one, too. */
 START_TEST(the_value_is_the_systems_own)
 {
   double xi[BODY_V], rate[BODY_V], q[BODY_Q], v[BODY_V], in_charts, in_space;
@@ -127,7 +127,7 @@ static dvi__action *centred_action(void)
   return made;
 }
 
-/* Central differences of order 4: 1e-12 beside roundoff over the length. */
+/* Takes central differences of order 4, with an error of 1e-12 beside roundoff over the length. */
 static void difference(dvi__action *action, const double *Y, int column, double *in_column)
 {
   static const double weight[] = {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12},
@@ -192,7 +192,7 @@ START_TEST(charts_survive_every_failure)
 }
 END_TEST
 
-/* Beyond half a turn: the status, how far, and nothing else. */
+/* Beyond half a turn only the status and the distance are known. */
 START_TEST(beyond_half_a_turn_there_is_no_chart)
 {
   double xi[BODY_V] = {0}, rate[BODY_V] = {0}, L;
@@ -207,7 +207,7 @@ START_TEST(beyond_half_a_turn_there_is_no_chart)
 }
 END_TEST
 
-/* Entries of the patterns, of chains of n links: 3 n - 2 blocks of 4. */
+/* The patterns of a chain of n links have 3 n - 2 blocks of 4 entries. */
 START_TEST(a_chains_patterns_are_sparse)
 {
   direction_chain long_chain;

@@ -1,4 +1,4 @@
-/* Configuration spaces with factors: layout, mass, what is refused, and points off the manifold. */
+/* Configuration spaces with factors: layout, mass, refusals, and points off the manifold. */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -162,7 +162,7 @@ START_TEST(inertia_has_any_unit)
 }
 END_TEST
 
-/* Rounding is taken off: a mass is symmetric. */
+/* Rounding is removed, because a mass is symmetric. */
 START_TEST(inertia_is_made_symmetric)
 {
   const double rounded[] = {1.3, .1 + 1e-14, 0, .1, 1.1, .05, 0, .05 - 1e-14, .9};
@@ -211,7 +211,8 @@ END_TEST
 
 /* ---- points ---- */
 
-/* Where a number is off, whether a start is refused, and whether there is a nearest point. */
+/* A wrong number of a start, the status of the start, and that of the projection to the nearest
+ * point. */
 static const struct {
   body_kind kind;
   int at;
@@ -310,7 +311,7 @@ START_TEST(massless_factors_may_be_coupled)
 }
 END_TEST
 
-/* A direction with a mass along x alone: across it a velocity has no momentum. */
+/* A direction with a mass along x alone. A velocity across x has no momentum. */
 START_TEST(singular_masses_cannot_start)
 {
   const dvi_factor factor = {.kind = DVI_S2};

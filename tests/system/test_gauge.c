@@ -1,5 +1,5 @@
 /* labels: unit order */
-/* Changes of gauge: alpha + grad f has the same two-form and the same motion, and other momenta. */
+/* A change of gauge, alpha + grad f, keeps the two-form and the motion, and changes the momenta. */
 #include <math.h>
 #include <string.h>
 
@@ -7,7 +7,7 @@
 #include "support/runs.h"
 #include "support/suite.h"
 
-/* f = sum over pairs (x,y) of c (x y + kappa (x^3 y/3 + x y^3)): takes the first component from
+/* f = sum over pairs (x,y) of c (x y + kappa (x^3 y/3 + x y^3)) removes the first component from
  * alpha = c (1 + kappa r^2) (-y, x). */
 typedef struct product {
   int pairs;
@@ -59,7 +59,7 @@ typedef struct place {
   product f;
 } place;
 
-/* vortices: gamma = 1/2, halved. The last two leave the class again. */
+/* vortices has gamma = 1/2, halved. The last two leave the class again. */
 static const place places[] = {
     {"vortices", NULL, {2, 0.25, 1}},
     {"guiding-centre", NULL, {1, 0.5, 0.5}},
@@ -124,8 +124,8 @@ START_TEST(the_two_form_stays_and_the_momenta_move_by_the_gradient)
 }
 END_TEST
 
-/* The error of one method at the problem's digits, over four steps: that of the order, in every
- * gauge. */
+/* Requires that the error of one method at the problem's digits, over four steps, has the order in
+ * every gauge. */
 static void check_order(const problem *model, const dvi_system *system, const char *method,
                         double h, int order)
 {
@@ -155,7 +155,7 @@ START_TEST(in_another_gauge_the_trajectory_is_the_same_to_the_methods_order)
   product own;
   const place *at = &places[_i];
   problem *model = create_problem(at->problem,
-                                  NULL); /* its digits; the motion is that of every gauge */
+                                  NULL); /* its digits, because the motion is that of every gauge */
   problem *in_gauge = create_problem(at->problem, at->setting);
   const dvi_gauge f = declared(at, model->nq, &own);
   dvi_system *system = gauged(in_gauge, &f);
@@ -186,8 +186,8 @@ START_TEST(a_gauge_brings_systems_into_the_class_of_one_step_methods)
 }
 END_TEST
 
-/* singular + grad (x y) is the catalogue's standard gauge, number for number up to roundoff; also
- * with differences for what is left out. */
+/* singular + grad (x y) is the catalogue's standard gauge, number for number up to roundoff, also
+ * if missing callbacks are differenced. */
 START_TEST(a_gauge_is_the_one_form_that_it_gives)
 {
   product own;

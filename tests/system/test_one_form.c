@@ -1,5 +1,5 @@
 /* labels: unit */
-/* Degenerate Lagrangians: what a one-form gives, and what is refused. */
+/* Degenerate Lagrangians: the callbacks of a one-form, and refusals. */
 #include <math.h>
 #include <string.h>
 
@@ -7,8 +7,8 @@
 #include "support/suite.h"
 #include "system/evaluate/evaluator.h"
 
-/* alpha = (-x^2 y, lie + x y^2 + z, w, 0) of n coordinates, or 0 if `flat`; a wrong gradient where
- * `lie` is not 0. */
+/* alpha = (-x^2 y, lie + x y^2 + z, w, 0) of n coordinates, or 0 if `flat`. The gradient is wrong
+ * if `lie` is not 0. */
 typedef struct form {
   double lie;
   int flat;
@@ -123,7 +123,7 @@ START_TEST(a_wrong_gradient_is_found)
 }
 END_TEST
 
-/* A Hessian that is left out is differenced, and it alone: the gradients are given. */
+/* A missing Hessian is differenced, and nothing else, because the gradients are given. */
 START_TEST(gradients_are_taken_as_they_are_given_where_the_hessian_is_differenced)
 {
   form right = {0};
@@ -143,7 +143,7 @@ START_TEST(gradients_are_taken_as_they_are_given_where_the_hessian_is_difference
   ck_assert_int_eq(dvi__lagrangian_hessian(evaluator, 2, t, twice_q, twice_v, all_qq, all_qv, none),
                    DVI_OK);
   for (int e = 0; e < 6; e++) ck_assert(all_qv[2 * e] == given[e] && all_qv[2 * e + 1] == given[e]);
-  /* d2(alpha.v)/dxdy; differences err by some 1e-10 */
+  /* d2(alpha.v)/dxdy, where differences err by some 1e-10 */
   ck_assert_double_eq_tol(qq[1], -2 * q[0] * v[0] + 2 * q[1] * v[1], 1e-8);
   dvi__evaluator_destroy(&evaluator);
   dvi_system_destroy(&system);
@@ -272,7 +272,7 @@ START_TEST(without_a_one_form_a_projection_changes_nothing)
 }
 END_TEST
 
-/* alpha = (ln y/x, 0) vanishes at (1,1): there a rounding of q moves it by more than its size. */
+/* alpha = (ln y/x, 0) vanishes at (1,1), where a rounding of q moves it by more than its size. */
 START_TEST(a_start_that_is_rounded_where_the_one_form_vanishes_is_not_off_the_constraint)
 {
   problem *model = create_problem("lotka-volterra", "gauge=singular");

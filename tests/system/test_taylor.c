@@ -132,7 +132,7 @@ static double sum_of(int degree, int count, int i, const double *series, double 
   return sum;
 }
 
-/* A curve of degree 2, s = 1/20: what is left out is of size (s/rho)^17, far below rounding. */
+/* A curve of degree 2 at s = 1/20. The remainder has the size (s/rho)^17, far below rounding. */
 static void compare_with_points(const dvi_system *system)
 {
   enum { D = 16, MOST = 128 };
@@ -217,15 +217,15 @@ END_TEST
 
 /* ---- what is wrong ---- */
 
-/* What lies beside honest callbacks: their `user` stays theirs. */
+/* Honest callbacks, which keep their `user`, with planted faults beside them. */
 static struct {
   dvi_potential potential;
   dvi_lagrangian lagrangian;
-  int block, coefficient, entries; /* which coefficient of its first entry is wrong, by: */
-  double by;
-  /* if that degree is asked for, 0: if any is; if the value is not wanted; and always returns
-   * this */
-  int degree, alone, returned;
+  int block, coefficient, entries; /* the wrong coefficient of the block's first entry */
+  double by;                       /* the error of that coefficient */
+  int degree;                      /* the error is made for this degree (default 0, any) */
+  int alone;                       /* the error is made only if the value is not wanted */
+  int returned;                    /* by every call */
 } lie;
 
 static void lie_in(double *block, const double *value, int degree)
@@ -321,7 +321,7 @@ static dvi_status check_lying(const char *name, int block, int coefficient, int 
   return status;
 }
 
-/* The planet passes in a fifth of a unit of time: coefficients grow by 5 or so each, and rounding
+/* The planet passes in a fifth of a unit of time. Coefficients grow by 5 or so each, and rounding
  * hides none. */
 START_TEST(a_wrong_coefficient_of_any_degree_is_found)
 {

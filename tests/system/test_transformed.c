@@ -26,7 +26,8 @@ static int bowl_gradient(double t, const double *q, double *g_q, void *user)
 
 static const struct {
   const char *problem, *monitor; /* NULL: bowl */
-  /* for Hessians that are differenced: noise of 1e-10 relative, grown by the entries' spread */
+  /* for Hessians that are differenced, with a relative noise of 1e-10, grown by the entries'
+   * spread */
   double tolerance;
 } places[] = {
     {"kepler", "distance", 1e-9},          {"kepler", "distance:power=2.5", 1e-9},
