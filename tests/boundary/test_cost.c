@@ -1,6 +1,6 @@
 /* labels: unit */
-/* What a path costs: in proportion to its steps, one symbolic analysis, and every failure of memory
- * survived. */
+/* The cost of a path is proportional to its steps, it has one symbolic analysis, and it survives
+ * every failure of memory. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -26,7 +26,7 @@ static dvi_path *planets(const problem *model, int steps, const double *q1)
   return path;
 }
 
-/* Twice as many steps: twice the memory, twice the evaluations, and as many factorisations. */
+/* Twice as many steps take twice the memory, twice the evaluations, and as many factorisations. */
 START_TEST(memory_and_work_are_in_proportion_to_the_steps)
 {
   problem *model = create_problem("outer-solar", NULL);
@@ -62,8 +62,8 @@ START_TEST(memory_and_work_are_in_proportion_to_the_steps)
 END_TEST
 
 /* A closed path of three bodies with four symmetries and a free period, each of which has a full
- * row and column in the Jacobian: four times the steps, and perhaps a second order of pivots beside
- * the first one. Fill-in would be sixteen times as much. */
+ * row and column in the Jacobian. It has four times the steps, and perhaps a second order of pivots
+ * beside the first one. Fill-in would be sixteen times as much. */
 START_TEST(full_rows_and_columns_leave_it_in_proportion)
 {
   problem *model = create_problem("figure-eight", NULL);
@@ -138,7 +138,7 @@ START_TEST(a_path_survives_every_failure_of_memory)
 }
 END_TEST
 
-/* What a solve takes, it gives back; without it the path stays as it was. */
+/* A solve gives back all memory that it takes. Without memory the path stays as it was. */
 START_TEST(a_solve_without_memory_fails)
 {
   problem *model = create_problem("pendulum", NULL);

@@ -1,5 +1,6 @@
 /* labels: reference */
-/* Paths keep the energy of the motion that they follow; those that follow none are not solved. */
+/* Paths keep the energy of the motion that they follow. Paths that follow no motion are not
+ * solved. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -45,7 +46,7 @@ static double energy_at(const problem *model, const dvi_path *path, int k)
   return invariant[0];
 }
 
-/* Unit mass: the kinetic energy is p.p/2. */
+/* With unit mass the kinetic energy is p.p/2. */
 static double kinetic_at(const dvi_path *path, int k)
 {
   const double *p = dvi_path_p(path, k);

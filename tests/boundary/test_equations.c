@@ -1,6 +1,6 @@
 /* labels: jacobian */
-/* The Jacobian of a whole path, with symmetry, free span and multipliers, against differences of
- * its residual; and its pattern. */
+/* Tests the Jacobian of a whole path, with symmetry, free span and multipliers, against differences
+ * of its residual, and its pattern. */
 #include <math.h>
 #include <string.h>
 
@@ -61,8 +61,8 @@ static dvi_path *make(const problem *model, int kind)
 
 static const double moved[3] = {0.003, 0.006, 0.009}, share[3] = {1.5, -0.6, 0.1};
 
-/* Differences of order 6: with d = 0.003 they err by d^6/140 of the seventh derivative, and by
- * roundings of 1e-15 over d. */
+/* Takes differences of order 6. With d = 0.003 they err by d^6/140 of the seventh derivative, and
+ * by roundings of 1e-15 over d. */
 static void check_jacobian(dvi_path *path)
 {
   const dvi__equations *equations = &path->solver->equations;

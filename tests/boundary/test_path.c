@@ -78,7 +78,7 @@ static double difference(const dvi_path *path, const run *r)
 static const struct {
   const char *problem, *setting, *method;
   double span;
-  /* 1: from the straight line; 0: from the run, each number moved by a per cent */
+  /* 1 for the straight line, 0 for the run with each number moved by a per cent */
   int steps, rough;
 } places[] = {
     {"pendulum", NULL, "midpoint", 2, 50, 1},
@@ -177,7 +177,7 @@ END_TEST
 
 /* ---- signs of the second variation ---- */
 
-/* L = v^2/2 - q^2/4: conjugate points at multiples of pi sqrt 2 = 4.44 (Morse). */
+/* L = v^2/2 - q^2/4 has conjugate points at multiples of pi sqrt 2 = 4.44 (Morse). */
 START_TEST(the_index_counts_conjugate_points)
 {
   const double q0[] = {0}, q1[] = {1}, spans[] = {1, 4.4, 4.5, 8.8, 8.9, 13.3, 13.4, 38};
@@ -203,9 +203,9 @@ START_TEST(the_index_counts_conjugate_points)
 }
 END_TEST
 
-/* From (1,0) to (0,1) in the time of three quarters of the unit circle: that circle, clockwise, has
- * L = 1/2 + 1; counterclockwise there is an ellipse, of which the far end lies between. Both are
- * minima: a path in the plane cannot cross the centre to become the other. */
+/* From (1,0) to (0,1) in the time of three quarters of the unit circle. That circle, clockwise, has
+ * L = 1/2 + 1. Counterclockwise there is an ellipse, whose far end lies between. Both are minima,
+ * because a path in the plane cannot cross the centre to become the other. */
 START_TEST(paths_of_one_problem_are_told_apart_by_their_guess)
 {
   enum { POINTS = 13 };
@@ -239,8 +239,8 @@ END_TEST
 static const double exchange[] = {0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0,
                                   0, 1, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1, 0, 0};
 
-/* Three points of each body on x = sin, y = 0.4 sin 2, rounded to one digit: a third of the figure,
- * body after body. */
+/* Gives three points of each body on x = sin, y = 0.4 sin 2, rounded to one digit, a third of the
+ * figure, body after body. */
 static const double sketch_t[] = {0, 1, 2};
 static const double sketch[] = {0, 0,    0.9,  -0.3, -0.9, 0.3,  0.9, 0.3, 0,
                                 0, -0.9, -0.3, 0.9,  -0.3, -0.9, 0.3, 0,   0};
@@ -250,8 +250,8 @@ static const double sketch[] = {0, 0,    0.9,  -0.3, -0.9, 0.3,  0.9, 0.3, 0,
 static const double eight_period = 6.32591398, eight_action = 24.4270486407709,
                     eight_energy = -1.28714199602879;
 
-/* From the path's first state on, steps of the method must come back to it; the orbit is stable,
- * and roundoff grows slowly. */
+/* Steps of the method from the path's first state must come back to it. The orbit is stable, and
+ * roundoff grows slowly. */
 static void check_closes(const problem *model, const char *method, const dvi_path *path,
                          const double *turn)
 {
@@ -285,7 +285,8 @@ START_TEST(the_figure_eight_comes_from_three_points)
   ck_assert_double_lt(report.gradient, 2e-14);
   ck_assert_double_eq_tol(3 * report.action, eight_action, 1e-11);
   ck_assert_double_eq_tol(report.energy, eight_energy, 1e-11);
-  /* A minimum among choreographies; it may be moved in the plane, turned, and in time. */
+  /* The path is a minimum among choreographies. It may be moved in the plane, rotated, and shifted
+   * in time. */
   ck_assert_int_eq(report.negative, 0);
   ck_assert_int_eq(report.zero, 4);
   ck_assert_int_eq(report.symmetries, 4);
@@ -342,8 +343,8 @@ START_TEST(a_nearly_periodic_run_closes_to_roundoff)
 }
 END_TEST
 
-/* 12 steps of order 8 make the discrete motion prefer some times: where it is held at another one
- * 7e-9 of the gradient are left. */
+/* 12 steps of order 8 make the discrete motion prefer some times. Held at another one, it keeps
+ * 7e-9 of the gradient. */
 START_TEST(long_steps_choose_their_time)
 {
   static run r;
@@ -382,8 +383,8 @@ START_TEST(steps_that_do_not_resolve_a_symmetry_have_no_index)
 }
 END_TEST
 
-/* q_N = q_0 + 2 pi: the pendulum turns over. Its period with energy E = 2, by the
- * arithmetic-geometric mean: T = 2 pi / agm(sqrt(2 (E+1)), sqrt(2 (E-1))). */
+/* q_N = q_0 + 2 pi, so the pendulum turns over. Its period with energy E = 2, by the
+ * arithmetic-geometric mean, is T = 2 pi / agm(sqrt(2 (E+1)), sqrt(2 (E-1))). */
 START_TEST(a_pendulum_that_turns_over_is_periodic_up_to_a_shift)
 {
   const double shift[] = {2 * pi}, t[] = {0, 1}, line[] = {0.3, 0.3 + 2 * pi};
@@ -411,7 +412,7 @@ START_TEST(a_pendulum_that_turns_over_is_periodic_up_to_a_shift)
 }
 END_TEST
 
-/* A circle is its own image turned by any angle; time and rotation move it in one direction. */
+/* A circle rotated by any angle is the same circle. Time and rotation move it in one direction. */
 START_TEST(a_circle_is_relatively_periodic)
 {
   const double turn[] = {cos(1), sin(1), -sin(1), cos(1)}, t[] = {0, 0.5, 1},
@@ -432,8 +433,8 @@ START_TEST(a_circle_is_relatively_periodic)
 }
 END_TEST
 
-/* V = q^2/2 - q cos 2t: q'' + q = cos 2t has the solution -cos(2t)/3 of the drive's period, and no
- * other. */
+/* With V = q^2/2 - q cos 2t the equation q'' + q = cos 2t has the solution -cos(2t)/3 of the
+ * drive's period, and no other. */
 static int swing(double t, const double *q, double *V, void *user)
 {
   (void)user;
@@ -466,8 +467,8 @@ START_TEST(a_driven_oscillator_follows_its_drive)
                    DVI_OK);
   ck_assert_int_eq(dvi_path_solve(path, NULL), DVI_BAD_ARGUMENT);
   check_words("the period is none of the Lagrangian's");
-  /* Of modes cos(2 m t) and sin(2 m t), with (2m)^2 - 1, the constant alone is negative; the phase
-   * is the drive's. */
+  /* The modes cos(2 m t) and sin(2 m t) have (2m)^2 - 1, and the constant alone is negative. The
+   * drive sets the phase. */
   ck_assert_int_eq(report.negative, 1);
   ck_assert_int_eq(report.zero, 0);
   ck_assert_int_eq(report.symmetries, 0);

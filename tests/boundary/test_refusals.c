@@ -1,5 +1,6 @@
 /* labels: unit */
-/* What cannot be is refused with a sentence that says why, and leaves the path as it was. */
+/* Options that cannot be solved are refused with a sentence that gives the reason, and the path
+ * stays as it was. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -252,7 +253,7 @@ static void unsolvable(const dvi_system *system, dvi_path_options options, dvi_s
   dvi_path_destroy(&path);
 }
 
-/* Half a period: from 0 all paths come to 0 (many), none to 1; and to -q0, from q0, many. */
+/* In half a period all paths from 0 come to 0 (many), none to 1, and many lead from q0 to -q0. */
 START_TEST(conjugate_ends_are_named)
 {
   const double from[] = {0, 0, 0.5}, to[] = {0, 1, -0.5};
@@ -298,8 +299,8 @@ START_TEST(a_period_that_no_path_has_is_named)
 }
 END_TEST
 
-/* All of Kepler's ellipses have one period: each is one of a family that no declared symmetry
- * explains. Steps of a low order give each a period of its own, by a little. */
+/* All of Kepler's ellipses have one period, so each is one of a family that no declared symmetry
+ * explains. Steps of a low order give each a slightly different period. */
 START_TEST(a_family_of_closed_paths_is_named)
 {
   static const struct {
@@ -343,8 +344,8 @@ START_TEST(what_the_lagrangian_does_not_have_is_no_symmetry)
 }
 END_TEST
 
-/* V = q^2/2 - q f: at the guess, at rest in 0, V vanishes whatever f is. `user`: the frequency of f
- * = cos, or 0. */
+/* V = q^2/2 - q f. At the guess, at rest in 0, V vanishes for any f. `user` is the frequency of f =
+ * cos, or 0. */
 static int pushed_value(double t, const double *q, double *value, void *user)
 {
   *value = q[0] * q[0] / 2 - q[0] * cos(*(const double *)user * t);
@@ -389,8 +390,8 @@ START_TEST(a_path_at_rest_hides_no_force)
 }
 END_TEST
 
-/* V = q^2/2 + q^3 sin t - q cos(2 pi t): at the guess, at rest in 0, it looks as if 1 were its
- * period; the path that is found sees more. */
+/* V = q^2/2 + q^3 sin t - q cos(2 pi t). At the guess, at rest in 0, it looks as if 1 were its
+ * period, but the solution depends on more. */
 static int hidden_value(double t, const double *q, double *value, void *user)
 {
   (void)user;

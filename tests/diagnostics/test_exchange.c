@@ -13,7 +13,8 @@ static const double pi = 3.14159265358979323846;
 static const double products[] = {0.01, 0.5, 1, 1.5, 2, 5, 20, 100, 1000};
 enum { PRODUCTS = sizeof products / sizeof *products };
 
-/* The rate is differenced: a thousandth of a slope's relative change, squared, and rounding. */
+/* The rate is differenced, with the error of a thousandth of a slope's relative change, squared,
+ * and rounding. */
 static void check_exchange(const char *method, double x, double turn, double rate)
 {
   double angle, found;
@@ -46,7 +47,7 @@ START_TEST(verlet_exchanges_too_fast)
 }
 END_TEST
 
-/* Hairer, Lubich and Wanner 2006, sec. XIII.4: psi phi/sinc. */
+/* Gives psi phi/sinc (Hairer, Lubich and Wanner 2006, sec. XIII.4). */
 START_TEST(filters_exchange_at_the_rate_of_their_product)
 {
   const double x = products[_i], s = sin(x) / x, half = 2 * sin(x / 2) / x, turn = fmod(x, 2 * pi);
@@ -117,8 +118,8 @@ static double amplitude(double before, double now, double turn)
   return (before * before + now * now - 2 * before * now * cos(turn)) / (sin(turn) * sin(turn));
 }
 
-/* When the second spring swings as far as the first, which swings alone at the start. The modes are
- * at kappa = 0 and 2: exactly at pi omega/2. */
+/* Gives the time when the second spring swings as far as the first, which swings alone at the
+ * start. The modes are at kappa = 0 and 2, so the time is exactly pi omega/2. */
 static double time_to_share(const char *method, double h, double turn)
 {
   const dvi_potential springs[] = {
@@ -143,8 +144,8 @@ static double time_to_share(const char *method, double h, double turn)
   return t;
 }
 
-/* 1 per cent: the exchange's own error is of the relative size kappa/omega^2 and h^2 kappa, the
- * time is known to h. */
+/* 1 per cent, because the exchange's own error is of the relative size kappa/omega^2 and h^2 kappa,
+ * and the time is known to h */
 START_TEST(a_run_exchanges_energy_at_the_predicted_rate)
 {
   static const struct {

@@ -39,8 +39,8 @@ START_TEST(the_start_may_be_the_integrators_own_state)
 }
 END_TEST
 
-/* A force that is stronger on the way back: time runs on between the first and the last call of a
- * gradient. */
+/* A force that is stronger on the way back, because time runs on between the first and the last
+ * call of a gradient. */
 static int value(double t, const double *q, double *V, void *user)
 {
   (void)t, (void)user;

@@ -56,7 +56,8 @@ START_TEST(a_step_backward_is_symplectic_too)
 }
 END_TEST
 
-/* A Lagrangian of n freedoms with nothing else, in an integrator; released() frees both. */
+/* Creates an integrator of a system with this Lagrangian of n coordinates alone. released() frees
+ * both. */
 static dvi_integrator *made(const dvi_lagrangian *lagrangian, int n, const char *method)
 {
   dvi_system *system = NULL;
@@ -82,8 +83,8 @@ static void released(dvi_integrator *integrator)
   dvi_system_destroy(&system);
 }
 
-/* L = v^2/2 + v^4/4 + cos q: velocity is no analytic function of momenta beyond 0.4 i, however
- * small h is. */
+/* L = v^2/2 + v^4/4 + cos q, whose velocity is no analytic function of momenta beyond 0.4 i,
+ * however small h is. */
 static int quartic(double t, const double *q, const double *v, double *L, void *user)
 {
   (void)t, (void)user;
@@ -122,7 +123,7 @@ START_TEST(a_kinetic_energy_that_is_not_quadratic_shows_no_defect)
 }
 END_TEST
 
-/* L = -sqrt(1 - v.v) - q.q/2, of two freedoms; beyond |v| = 1 the callbacks give `user`. */
+/* L = -sqrt(1 - v.v) - q.q/2 of two coordinates. Beyond |v| = 1 the callbacks return `user`. */
 static int relativistic(double t, const double *q, const double *v, double *L, void *user)
 {
   (void)t;
@@ -174,7 +175,7 @@ START_TEST(an_edge_of_the_domain_of_velocities_shows_no_defect)
 }
 END_TEST
 
-/* V = -log(1 - q); beyond its wall NaN, or the failure in `user`. */
+/* V = -log(1 - q). Beyond its wall it gives NaN, or returns the failure in `user`. */
 static int wall(double t, const double *q, double *V, void *user)
 {
   (void)t, (void)user;
@@ -222,9 +223,9 @@ START_TEST(a_callback_that_fails_for_good_ends_the_search)
 }
 END_TEST
 
-/* Angles that turned often: waves of a force are much shorter than the coordinate. In an eighth of
- * 1600 pi there are 100 periods, in 59 hundredths of it 59: differences over these two lengths
- * agree that there is no force. */
+/* After many turns of an angle the periods of a force are much shorter than the coordinate. In an
+ * eighth of 1600 pi there are 100 periods, in 59 hundredths of it 59, so differences over these two
+ * lengths agree that there is no force. */
 static int cosine(double t, const double *q, double *V, void *user)
 {
   (void)t, (void)user;
@@ -258,7 +259,7 @@ START_TEST(an_angle_of_many_turns_shows_no_defect)
 }
 END_TEST
 
-/* At t = 0 the force exists in a single point: the step there succeeds, and none beside it. */
+/* At t = 0 the force exists in a single point. The step there succeeds, and none beside it does. */
 static int one_point(double t, const double *q, double *V_q, void *user)
 {
   (void)user;
@@ -298,7 +299,7 @@ START_TEST(a_step_that_fails_has_no_defect_even_if_all_around_it_succeed)
 }
 END_TEST
 
-/* A force c (y, -x) with curl, declared as a gradient: no potential has it, and verlet with it is
+/* A force c (y, -x) with curl, declared as a gradient. It has no potential, and verlet with it is
  * not symplectic. */
 static int no_value(double t, const double *q, double *V, void *user)
 {

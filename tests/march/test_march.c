@@ -1,6 +1,6 @@
 /* labels: unit */
-/* The loop of a run serves what has neither coordinates nor a step of one length: here a set of
- * clocks, each of which advances when it is due. */
+/* The loop of a run serves objects without coordinates and without steps of one length. Here they
+ * are a set of clocks, each of which advances when it is due. */
 #include "march/march.h"
 
 #include <math.h>
@@ -9,7 +9,7 @@
 
 enum { CLOCKS = 3 };
 
-/* Clocks of periods 1, sqrt(2) and pi: an advance moves the one that is due first. */
+/* Clocks of periods 1, sqrt(2) and pi. An advance moves the one that is due first. */
 typedef struct clocks {
   double now, before; /* time of the last tick, and of the one before */
   double due[CLOCKS], due_before[CLOCKS];

@@ -8,7 +8,7 @@
 
 enum { SIDE = 20, GRID = SIDE * SIDE };
 
-/* Minus the Laplacian on a grid, with a term that varies; preconditioned by its diagonal, if
+/* Minus the Laplacian on a grid, with a term that varies, preconditioned by its diagonal if
  * `is_scaled`. */
 typedef struct membrane {
   double stiffness;
@@ -59,8 +59,8 @@ static dvi__linear *membrane_solver(membrane *grid, dvi_counters *counters)
   return linear;
 }
 
-/* Solved again for what is left, as Newton's method does: each solve leaves 1e-5 of it, or a little
- * more by the other norm. */
+/* Solves again for the remaining residual, as Newton's method does. Each solve leaves 1e-5 of it,
+ * or a little more by the other norm. */
 START_TEST(an_operator_is_solved_by_its_products)
 {
   membrane grid = {.stiffness = 100, .is_scaled = _i};

@@ -13,8 +13,8 @@ static const char *const names[PROBLEMS] = {
     "lotka-volterra", "lotka-volterra-4d", "massless-particle", "vortices-linear", "vortices",
     "guiding-centre", "tokamak",           "circle-dirac",      "magnetic-pair",   "elastica"};
 
-/* A code's own error is the distance of two runs; ten times that, or what its tolerance leaves at a
- * thousand steps. */
+/* A code's own error is the distance of two runs. The bound is ten times that, or the error that
+ * its tolerance leaves at a thousand steps. */
 START_TEST(each_code_meets_the_digits_to_its_own_error)
 {
   problem *model = create_problem(names[_i % PROBLEMS], NULL);

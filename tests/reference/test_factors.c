@@ -1,6 +1,6 @@
 /* labels: reference */
-/* The reference codes on rotations, directions and angles: against exact solutions and digits, and
- * their own word about their errors. */
+/* Tests the reference codes on rotations, directions and angles against exact solutions and digits,
+ * and against the errors that they state. */
 #include <check.h>
 #include <math.h>
 #include <stdio.h>
@@ -58,8 +58,8 @@ START_TEST(the_judge_knows_its_error_on_the_free_body)
 }
 END_TEST
 
-/* Turned in space as a whole, the free body moves as before: from attitudes at which each of a
- * quaternion's four numbers is the largest. */
+/* The free body moves as before if it is rotated in space as a whole, from attitudes at which each
+ * of a quaternion's four numbers is the largest. */
 START_TEST(every_attitude_is_a_start)
 {
   static const double turned[4][9] = {{1, 0, 0, 0, 1, 0, 0, 0, 1},

@@ -9,7 +9,7 @@
 #include "support/runs.h"
 #include "support/suite.h"
 
-/* What the judge may say about itself where 1e-17 is wanted. */
+/* The largest own error of the judge where 1e-17 is wanted. */
 static const double judge_error = 1e-20;
 
 static const char *const names[] = {"double-pendulum", "fpu", "outer-solar"};

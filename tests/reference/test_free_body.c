@@ -23,7 +23,7 @@ static problem *made_with(const char *const *settings)
   return made;
 }
 
-/* Roundings of the start in double and a few ulp of R and Pi; where the modulus is near 1 both
+/* Roundings of the start in double, and a few ulp of R and Pi. Where the modulus is near 1 both
  * grow. */
 static void check_at(const char *const *settings, double t, double tolerance)
 {
@@ -60,8 +60,8 @@ START_TEST(the_attitude_is_exact_whatever_the_axes_and_signs)
 }
 END_TEST
 
-/* A turn about the middle axis, disturbed by 1e-4, tumbles: disturbances of the start grow by
- * 1e4. */
+/* A rotation about the middle axis, disturbed by 1e-4, tumbles, and disturbances of the start grow
+ * by 1e4. */
 START_TEST(it_is_exact_near_the_separatrix)
 {
   static const char *const settings[SETTINGS] = {"J1=1",        "J2=2",     "J3=3",
@@ -95,8 +95,8 @@ START_TEST(on_the_separatrix_there_is_none)
 }
 END_TEST
 
-/* 16000 turns of axis 3: what a rounding of J or Omega makes of the phase, 1e4 radians, is what can
- * be asked for. */
+/* 16000 turns of axis 3. The bound is the effect of a rounding of J or Omega on the phase, 1e4
+ * radians. */
 START_TEST(long_times_cost_only_the_roundings_of_the_phase)
 {
   problem *model = make("free-body", NULL);

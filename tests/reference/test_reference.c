@@ -55,8 +55,8 @@ START_TEST(each_code_goes_backward)
 }
 END_TEST
 
-/* Four orders in the tolerance give at least three in the error: variable-order codes are not
- * exactly proportional. */
+/* Four orders in the tolerance give at least three in the error, because variable-order codes are
+ * not exactly proportional. */
 START_TEST(the_error_follows_the_tolerance)
 {
   problem *kepler = make("kepler", NULL);
@@ -67,7 +67,7 @@ START_TEST(the_error_follows_the_tolerance)
 }
 END_TEST
 
-/* Its mass depends on q: the inverse Legendre map and the blocks L_qv and L_vv are at work. */
+/* Its mass depends on q, so the inverse Legendre map and the blocks L_qv and L_vv are used. */
 START_TEST(each_code_meets_the_digits_of_the_double_pendulum)
 {
   static const double digits[] = {0.614904069579215873, 0.379818946939410850};
@@ -83,7 +83,8 @@ END_TEST
 
 /* ---- charged particles in a trap: sparse, with an unsymmetric L_qv ---- */
 
-/* Particle k has coordinates x = q[2k], y = q[2k+1]; L = v.v/2 + B (x vy - y vx)/2 - K q.q/2. */
+/* Particle k has coordinates x = q[2k], y = q[2k+1], with L = v.v/2 + B (x vy - y vx)/2 - K
+ * q.q/2. */
 typedef struct trap {
   int n;
   double B, K;
@@ -120,7 +121,7 @@ static int trap_hessian(double t, const double *q, const double *v, double *L_qq
   (void)t, (void)q, (void)v;
   for (int i = 0; i < own->n; i++) {
     L_qq[i] = -own->K;
-    L_qv[i] = i % 2 == 0 ? -0.5 * own->B : 0.5 * own->B; /* columns vx, vy: rows y, x */
+    L_qv[i] = i % 2 == 0 ? -0.5 * own->B : 0.5 * own->B; /* columns vx, vy with rows y, x */
     L_vv[i] = 1;
   }
   return 0;
@@ -149,7 +150,7 @@ static dvi_system *trapped(trap *own)
   return system;
 }
 
-/* z = x + iy solves z" + i B z' + K z = 0; the start is on the slow circle z = exp(i a t), a^2 + B
+/* z = x + iy solves z" + i B z' + K z = 0. The start is on the slow circle z = exp(i a t), a^2 + B
  * a = K, where all particles stay. */
 static double circle(const trap *own, double *q, double *p)
 {
@@ -199,7 +200,7 @@ START_TEST(ida_has_the_right_jacobian)
 }
 END_TEST
 
-/* The same for BDF: stiff springs at rest, pushed by the slow ones only. The right Jacobian takes
+/* For BDF the stiff springs are at rest, and only the slow ones push them. The right Jacobian takes
  * about 120 evaluations. */
 START_TEST(bdf_has_the_right_jacobian)
 {
@@ -216,7 +217,7 @@ START_TEST(bdf_has_the_right_jacobian)
 }
 END_TEST
 
-/* Forty coordinates: KLU in IDA and BDF. */
+/* Forty coordinates, with KLU in IDA and BDF. */
 START_TEST(sparse_systems_agree_with_the_explicit_code)
 {
   problem *fpu = make("fpu", "ell=20");
@@ -234,7 +235,7 @@ END_TEST
 
 /* ---- time in the Lagrangian, and no derivatives given ---- */
 
-/* L = exp(t) (v^2 - 2 q^2)/2, that is q" + q' + 2 q = 0: p = exp(t) v. */
+/* L = exp(t) (v^2 - 2 q^2)/2, with q" + q' + 2 q = 0 and p = exp(t) v. */
 static int damped_value(double t, const double *q, const double *v, double *L, void *user)
 {
   (void)user;
@@ -250,7 +251,7 @@ START_TEST(each_code_takes_a_lagrangian_with_time_and_without_derivatives)
       dvi_system_create(&(dvi_system_terms){.dimension = 1, .lagrangian = &lagrangian}, &system),
       DVI_OK);
   double q = 1, p = 1;
-  /* differences of differences: about 1e-8 is their floor */
+  /* differences of differences have a floor of about 1e-8 */
   const dvi_reference_options options = option(_i, 1e-7);
   ck_assert_msg(dvi_reference_solve(system, 0, 0.5, &q, &p, &options, NULL) == DVI_OK, "%s",
                 dvi_last_error());

@@ -1,5 +1,5 @@
-/* Equations whose callbacks fail or give NaN: every rung ends, says so, prints nothing, and works
- * again. */
+/* If callbacks of equations fail or give NaN, every rung ends with a sentence, prints nothing, and
+ * works again. */
 #define _POSIX_C_SOURCE 200809L /* dup, fileno */
 #include <float.h>
 #include <math.h>
@@ -13,7 +13,7 @@
 static const dvi_status answers[] = {DVI_CALLBACK_RETRY, DVI_CALLBACK_FAILED, DVI_NOT_FINITE};
 enum { ANSWERS = sizeof answers / sizeof *answers };
 
-/* A fatal answer comes through every rung as it is; one that a smaller step might mend may become
+/* Every rung returns a fatal status as it is. A failure that a smaller step might mend may become
  * "not solved". */
 static void comes_through(dvi_status status, dvi_status answer)
 {

@@ -1,4 +1,4 @@
-/* What each rung of the ladder solves, on small equations made up here, and when it gives up. */
+/* The rungs of the ladder on small equations: the ones that each solves, and when each gives up. */
 #include <float.h>
 #include <math.h>
 
@@ -51,7 +51,7 @@ START_TEST(counters_count_what_was_called)
 }
 END_TEST
 
-/* Equations of which the Jacobian hardly changes: the factor of the first iteration serves the
+/* The Jacobian of these equations hardly changes, so the factor of the first iteration serves the
  * others. */
 START_TEST(newton_keeps_a_factor_that_works)
 {
@@ -86,8 +86,8 @@ START_TEST(line_search_finds_what_newton_overshoots)
 }
 END_TEST
 
-/* A start from which Newton's method might end at another solution: for R = x^2 - 1 from 0.3 it
- * jumps to 1.8, and then farther. */
+/* From this start Newton's method might end at another solution. For R = x^2 - 1 from 0.3 it jumps
+ * to 1.8, and then farther. */
 START_TEST(a_wary_newton_refuses_a_misleading_guess)
 {
   single_equation equation = {parabola, parabola_slope, 1, -HUGE_VAL, 0};
@@ -140,7 +140,7 @@ END_TEST
 START_TEST(divergence_ends_even_patience)
 {
   single_equation equation = {slow, slow_slope, 0.5, -HUGE_VAL,
-                              0}; /* 1 - 1.77/0.5: grows 2.5 times an iteration */
+                              0}; /* 1 - 1.77/0.5, so it grows 2.5 times an iteration */
   solver_bench bench;
   double x = 0;
   create_single_solver(&equation, &bench);
@@ -160,7 +160,7 @@ START_TEST(no_solution_is_a_failure_after_a_bounded_number_of_iterations)
   double x = 0.7;
   create_single_solver(&equation, &bench);
   check_failure(solve_by_rung(&bench, rungs[_i], &x), DVI_NOT_CONVERGED);
-  /* KINSOL: 100 iterations with up to a dozen points on each line, then 40 by Newton */
+  /* KINSOL takes 100 iterations with up to a dozen points on each line, then 40 by Newton */
   ck_assert_int_le(equation.residuals, 2000);
   destroy_solver_bench(&bench, NULL);
 }
@@ -178,7 +178,7 @@ START_TEST(a_singular_jacobian_is_a_step_s_failure)
 }
 END_TEST
 
-/* The slope vanishes at the start alone: KINSOL cannot begin there either, and no rung may claim a
+/* The slope vanishes at the start alone. KINSOL cannot begin there, either, and no rung may claim a
  * solution. */
 START_TEST(a_start_on_a_critical_point_is_a_failure)
 {
@@ -191,8 +191,8 @@ START_TEST(a_start_on_a_critical_point_is_a_failure)
 }
 END_TEST
 
-/* No correction becomes small: where the row is known to be rounding, the solution is, too. Without
- * that, or with a row above it, there is none. */
+/* No correction becomes small. If the row is known to be rounding, the solution is, too. Without
+ * that, or with a row above it, there is no solution. */
 START_TEST(a_row_that_is_rounding_is_solved)
 {
   single_equation equation = {faint, faint_slope, 1, -HUGE_VAL, 0},
