@@ -18,9 +18,9 @@ static dvi_status emit_motion(dvi__emitter *out, const dvi_scene *scene)
   dvi_status status = DVI_OK;
   if (terms->lagrangian != NULL)
     term = dvi__lagrangian_term(scene), status = dvi__emit_term(out, &term);
-  if (terms->one_form != NULL)
+  if (terms->one_form != NULL && status == DVI_OK)
     term = dvi__one_form_term(scene), status = dvi__emit_term(out, &term);
-  if (terms->hamiltonian != NULL)
+  if (terms->hamiltonian != NULL && status == DVI_OK)
     term = dvi__hamiltonian_term(scene), status = dvi__emit_term(out, &term);
   if (terms->constraint != NULL && status == DVI_OK)
     term = dvi__constraint_term(scene), status = dvi__emit_term(out, &term);
