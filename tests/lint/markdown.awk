@@ -14,7 +14,7 @@ block ~ /```(console|sh|text)$/ || /^ *\|/ { next }
 /^ *([-*] )?!?(\[[^]]*\]\([^)]*\)|<?https?:[^ ]*)[.,:]?$/ { next }
 
 length($0) > 100 {
-  printf "%s:%d: line of %d columns; 100 at most\n", FILENAME, FNR, length($0)
+  printf "%s:%d: line of %d columns, 100 at most: wrap it\n", FILENAME, FNR, length($0)
   failed = 1
 }
 
