@@ -1,11 +1,11 @@
 #!/bin/sh
 # Runs clang-tidy over the library, the command, the problems and the examples, with the checks of
-# .clang-tidy. Its static analyzer takes nearly all of the time. It looks at a source if the source, a header of
-# ours that it includes or the checks have changed since the commit that the file `analyzed` beside
-# this script names, and if they have not passed in this build folder since. DVI_ANALYZE=all looks
-# at every source and, if all pass, writes the commit into that file, to be committed (`sh
-# cmake/bootstrap.sh long` does that). Without history, or without that commit in it, the analyzer
-# looks at every source, too.
+# .clang-tidy. Its static analyzer takes nearly all of the time. It looks at a source if the source,
+# a header of ours that it includes or the checks have changed since the commit that the file
+# `analyzed` beside this script names, and if they have not passed in this build folder since. With
+# DVI_ANALYZE=all it looks at every source and, if all pass, writes the commit into that file, to be
+# committed (`sh cmake/bootstrap.sh long` does that). Without history, or without that commit in it,
+# the analyzer looks at every source, too.
 # Usage: clang_tidy.sh TOP BUILD CLANG_TIDY C_COMPILER
 set -u
 
@@ -101,7 +101,7 @@ done <"$work/parts" >"$work/todo"
 
 echo "the analyzer looks at $(wc -l <"$work/todo") of $(wc -l <"$work/sources") sources"
 xargs -n 2 -P "$cores" sh "$0" --one analyze "$top" "$build" "$tool" <"$work/todo" || rc=1
-if [ "${DVI_ANALYZE:-}" = all ] && [ $rc -eq 0 ] && git diff --quiet HEAD -- lib apps 2>/dev/null; then
+if [ "${DVI_ANALYZE:-}" = all ] && [ $rc -eq 0 ] && git diff --quiet HEAD -- lib apps; then
   git rev-parse HEAD >tests/lint/analyzed
   echo "tests/lint/analyzed names this commit now; please commit it"
 fi
