@@ -56,6 +56,7 @@ docs() { sh "$lint/docs.sh" "$work" "$compiler"; }
 methods() { sh "$lint/methods.sh" "$work" leap; }
 messages() { sh "$lint/messages.sh" "$work"; }
 sections() { sh "$lint/sections.sh" "$work"; }
+markdown() { sh "$lint/markdown.sh" "$work"; }
 headers() { sh "$lint/headers.sh" "$work/lib/include" c "$compiler" -std=c11; }
 symbols() {
   echo 'DVI_1 { global: dvi_*; stray; local: *; };' >one.map
@@ -143,6 +144,22 @@ sees headers lib/include/dvi/one.h 'size_t dvi_size(void);'
 sees symbols lib/src/core/one.c 'int dvi_two;'
 sees symbols lib/src/core/one.c 'int stray;'
 sees symbols lib/include/dvi/one.h 'int dvi_promised(int a);'
+
+# A line of 101 columns is seen in prose, in a formula, in C and in YAML, and allowed in a table, in
+# output, and for a single link.
+clean
+passes markdown
+long=$(awk 'BEGIN { while (i++ < 50) printf "a "; print "b" }')
+for text in "$long" "    $long" "- $long" '```c\n'"$long"'\n```' '```yaml\n'"$long"'\n```' \
+  '```console\na\n```\n'"$long"; do
+  for page in README.md docs/methods/leap.md; do sees markdown $page "$text"; done
+done
+for text in "| $long |" '```console\n'"$long"'\n```' "- [$long](docs/guide.md)."; do
+  clean
+  printf '%b\n' "$text" >>README.md
+  passes markdown
+done
+
 for file in lib/src/method/element/leap.c tests/method/element/test_leap.c docs/methods/leap.md \
   docs/references.bib; do
   clean
