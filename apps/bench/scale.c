@@ -24,6 +24,9 @@ typedef struct cell {
   double h;
   double step[ROUNDS_MAX]; /* seconds of one, in each round */
   spread seconds;          /* of all rounds; set when they are over */
+  double create[ROUNDS_MAX], first[ROUNDS_MAX]; /* seconds of creation and start; of the first
+                                                   step, with all that is prepared in it */
+  spread creation, first_step;
   double bytes;            /* NaN: not known */
   dvi_counters counted;    /* in the steps of one run */
   double traffic;          /* bytes that a step moves; 0: not known */
@@ -52,6 +55,8 @@ static const table_column columns[] = {
     {"step_lower", "%.3e"},
     {"step_upper", "%.3e"},
     {"bytes", "%.0f"},
+    {"create_seconds", "%.3e"},
+    {"first_seconds", "%.3e"},
     {"step_evaluations", "%.2f"},
     {"step_residuals", "%.2f"},
     {"step_factorizations", "%.2f"},
@@ -89,6 +94,21 @@ static dvi_status run_steps(const scaling *s, dvi_integrator *integrator, const 
   return status;
 }
 
+/* What is analysed, factored and allocated is made when a step first needs it, so the first step of
+ * all is measured apart. */
+static dvi_status create_and_step(const scaling *s, const char *method, const problem *scene,
+                                  cell *c, int round, dvi_integrator **integrator)
+{
+  const double began = now(s);
+  dvi_status status = dvi_integrator_create(scene->system, method, integrator);
+  if (status == DVI_OK) status = dvi_integrator_start(*integrator, 0.0, scene->q, scene->p);
+  const double created = now(s);
+  if (status == DVI_OK) status = dvi_integrator_step(*integrator, c->h);
+  c->create[round] = created - began;
+  c->first[round] = now(s) - created;
+  return status;
+}
+
 static dvi_status measure_cell(const scaling *s, const char *method, const problem *scene, cell *c,
                                int round)
 {
@@ -96,7 +116,7 @@ static dvi_status measure_cell(const scaling *s, const char *method, const probl
   double spent = 0.0;
   double total = 0.0;
   const double heap = machine_heap();
-  dvi_status status = dvi_integrator_create(scene->system, method, &integrator);
+  dvi_status status = create_and_step(s, method, scene, c, round, &integrator);
   /* The first run finds memory and the machine's caches as they will be: it is not timed. */
   for (int i = 0; i < 2 && status == DVI_OK; i++)
     status = run_steps(s, integrator, scene, c, &spent);
@@ -161,6 +181,8 @@ static int measure(scaling *s)
   s->calibration = samples_spread(rounds, calibration);
   for (int i = 0; i < s->request->methods->count * s->axis.values.count; i++) {
     s->cell[i].seconds = samples_spread(rounds, s->cell[i].step);
+    s->cell[i].creation = samples_spread(rounds, s->cell[i].create);
+    s->cell[i].first_step = samples_spread(rounds, s->cell[i].first);
     s->cell[i].bandwidth = samples_spread(rounds, s->cell[i].axpy);
   }
   return DONE;
@@ -182,6 +204,8 @@ static result_table *make_table(const scaling *s)
       table_number(rows, c->seconds.lower);
       table_number(rows, c->seconds.upper);
       table_number(rows, c->bytes);
+      table_number(rows, c->creation.median);
+      table_number(rows, c->first_step.median);
       table_number(rows, (double)c->counted.gradients / (double)s->steps);
       table_number(rows, (double)c->counted.residuals / (double)s->steps);
       table_number(rows, (double)c->counted.factorizations / (double)s->steps);
@@ -206,16 +230,22 @@ static void print_powers(FILE *stream, const scaling *s, int method)
   double x[NUMBERS_MAX];
   double seconds[NUMBERS_MAX];
   double bytes[NUMBERS_MAX];
+  double create[NUMBERS_MAX];
+  double first[NUMBERS_MAX];
   double evaluations[NUMBERS_MAX];
   for (int k = 0; k < s->axis.values.count; k++) {
     const cell *c = cell_at(s, method, k);
     x[k] = axis_abscissa(&s->axis, k, c->n);
     seconds[k] = c->seconds.median;
     bytes[k] = c->bytes;
+    create[k] = c->creation.median;
+    first[k] = c->first_step.median;
     evaluations[k] = (double)c->counted.gradients;
   }
   print_power(stream, s, "step_seconds", x, seconds);
   print_power(stream, s, "bytes", x, bytes);
+  print_power(stream, s, "create_seconds", x, create);
+  print_power(stream, s, "first_seconds", x, first);
   print_power(stream, s, "step_evaluations", x, evaluations);
   (void)fputc('\n', stream);
 }
@@ -254,7 +284,10 @@ static void print_meaning(FILE *stream, const scaling *s)
   (void)fprintf(stream, "rounds; step_lower, step_upper: quartiles%s\n",
                 s->axis.parallel ? "" : "; the fitted exponents are least squares over all rows");
   (void)fprintf(stream, "bytes: what the integrator holds of the heap after its first steps, by "
-                        "mallinfo2; the problem's own is not counted\n");
+                        "mallinfo2; the problem's own is not counted\n"
+                        "create_seconds, first_seconds: creation and start, and the first step "
+                        "after it with all that it\n"
+                        "prepares; medians of the rounds\n");
 }
 
 static void print_all(FILE *stream, const scaling *s, const result_table *rows)

@@ -108,6 +108,7 @@ int emit_c_command(int argc, char **argv)
   if (!scene_is_path(path))
     return usage_error("emit-c: '%s' is no scene; the problems of the catalogue are C already",
                        path);
-  code = scene_spared("emit-c", path, 1, &(named_file){"out", r.out});
+  const named_file out = {"out", r.out};
+  code = scene_spared("emit-c", path, 1, &out);
   return code == DONE ? emit(&r, path) : code;
 }

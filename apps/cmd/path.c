@@ -442,7 +442,8 @@ static int check_request(const path_request *r, const char *name)
   if (span <= 0.0)
     return usage_error("path: --%s %g is not a positive time",
                        !isnan(r->period) ? "period" : "t-end", span);
-  const int code = scene_spared("path", name, 1, &(named_file){"out", r->out});
+  const named_file out = {"out", r->out};
+  const int code = scene_spared("path", name, 1, &out);
   return code == DONE ? check_uses(r) : code;
 }
 

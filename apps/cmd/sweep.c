@@ -247,7 +247,8 @@ int sweep_command(int argc, char **argv)
   int code;
   if (!options_parse(&command, argc, argv, &task.operand, &code)) return code;
   code = check_request(&r);
-  if (code == DONE) code = scene_spared("sweep", task.operand, 1, &(named_file){"out", r.out});
+  const named_file out = {"out", r.out};
+  if (code == DONE) code = scene_spared("sweep", task.operand, 1, &out);
   if (code != DONE) return code;
   signals_end(true, ended);
   return run_request(&r, &task);

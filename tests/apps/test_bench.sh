@@ -166,13 +166,13 @@ expect 0 'more tolerances' bench kepler --method verlet --levels 1 --rounds 1 --
 
 # Sizes.
 expect 0 'sizes' bench fpu --method verlet --method galerkin:degree=2 --scale ell=5,50,10 --rounds 1 --csv - --plot scale.svg
-[ "$(head -n 1 out)" = method,problem,parameter,value,n,h,step_seconds,step_lower,step_upper,bytes,step_evaluations,step_residuals,step_factorizations,calibration_seconds,calibration_least ] ||
+[ "$(head -n 1 out)" = method,problem,parameter,value,n,h,step_seconds,step_lower,step_upper,bytes,create_seconds,first_seconds,step_evaluations,step_residuals,step_factorizations,calibration_seconds,calibration_least ] ||
   fail 'header of sizes'
-[ "$(awk -F, 'NF == 15' out | wc -l)" -eq 7 ] || fail 'two methods at three sizes'
-awk -F, 'NR > 1 && !($5 == 2 * $4 && $7 > 0 && $8 <= $7 && $7 <= $9 && $11 > 0)' out | grep -q . && fail 'two coordinates to a spring, times, counts'
+[ "$(awk -F, 'NF == 17' out | wc -l)" -eq 7 ] || fail 'two methods at three sizes'
+awk -F, 'NR > 1 && !($5 == 2 * $4 && $7 > 0 && $8 <= $7 && $7 <= $9 && $11 > 0 && $12 > 0 && $13 > 0)' out | grep -q . && fail 'two coordinates to a spring, times, counts'
 awk -F, 'NR > 1 && $6 != 0.005' out | grep -q . && fail "the problem's own step"
 # verlet evaluates once a step, and once at the start; 32 steps are counted.
-awk -F, '$1 == "verlet" && $11 * 32 != 33' out | grep -q . && fail 'evaluations of verlet'
+awk -F, '$1 == "verlet" && $13 * 32 != 33' out | grep -q . && fail 'evaluations of verlet'
 # The heap is not known under a sanitizer; where it is, more coordinates take more.
 bytes() { awk -F, -v ell="$1" '$1 == "verlet" && $4 == ell { print $10 }' out; }
 [ -z "$(bytes 5)" ] || [ "$(bytes 50)" -gt "$(bytes 5)" ] || fail 'bytes grow'
@@ -218,11 +218,11 @@ expect 1 'members that fail' bench kepler --method midpoint --set e=0.6 --h 0.3 
 expect 0 'degrees' bench kepler --method galerkin --method composition:order=4,base=galerkin --scale degree=1,4,2 --rounds 1 --csv - --plot scale.svg
 [ "$(grep -c '^galerkin,kepler,degree,[142],2,' out)" -eq 3 ] || fail 'three degrees'
 [ "$(grep -c '^"composition:order=4,base=galerkin",kepler,degree,' out)" -eq 3 ] || fail 'three degrees of the base'
-awk -F, '$1 == "galerkin" && !($12 > 0 && $11 == $4 * $12 && $13 == 0)' out | grep -q . && fail 'evaluations and residuals of fixed point iteration'
+awk -F, '$1 == "galerkin" && !($14 > 0 && $13 == $4 * $14 && $15 == 0)' out | grep -q . && fail 'evaluations and residuals of fixed point iteration'
 says err '  step_seconds ~ degree^[-0-9.]*  bytes ~ .*  step_evaluations ~ degree^0' 'exponents of the degree'
 if command -v gnuplot >/dev/null; then says scale.svg '</svg>' 'the plot of degrees is whole'; fi
 expect 0 'factorisations' bench fpu --method galerkin:solver=newton --scale degree=1,2 --rounds 1 --csv -
-awk -F, '$1 ~ /^galerkin/ && !($13 > 0)' out | grep -q . && fail "factorisations of Newton's method"
+awk -F, '$1 ~ /^galerkin/ && !($15 > 0)' out | grep -q . && fail "factorisations of Newton's method"
 for bad in degree=2,2.5 degree=1,200 degree=2 degree=2,2; do expect 2 "scale $bad" bench kepler --method galerkin --scale "$bad"; done
 expect 2 'a degree that is given' bench kepler --method galerkin:degree=3 --scale degree=1,2
 says err 'degree is given twice' 'why it is refused'
@@ -237,7 +237,7 @@ expect 2 'h without sizes' bench kepler --method verlet --h 0.1
 # Threads, steps, and what waves move through memory: 120 bytes a coordinate.
 expect 0 'threads' bench chain --set n=20000 --method verlet --method composition:order=4 --scale threads=1,2 --steps 3 --rounds 2 --csv - --plot threads.svg
 awk -F, 'NR > 1 && !($3 == "threads" && $5 == 20000 && $7 > 0 && $8 <= $7 && $7 <= $9)' out | grep -q . && fail 'threads: rows'
-[ "$(awk -F, '$1 == "verlet" { print $4, $11 * 3 }' out | tr '\n' ' ')" = '1 4 2 4 ' ] || fail 'one gradient a step, one at the start, on any number of threads'
+[ "$(awk -F, '$1 == "verlet" { print $4, $13 * 3 }' out | tr '\n' ' ')" = '1 4 2 4 ' ] || fail 'one gradient a step, one at the start, on any number of threads'
 says err '^  speed-up against threads=1:  [0-9.]*$' 'the speed-up'
 says err '^  threads=2: a step moves 2.4e+06 bytes, [0-9.]* GB/s: [0-9.]* of the [0-9.]* GB/s of an in-place axpy' 'the traffic'
 says err '^step_seconds: elapsed time of a step, mean of the first 3' 'which time'

@@ -1,6 +1,6 @@
 /* The same for the library of scenes: dvi__complain and its like return false. */
-/* As syntax.c says, before any header. */
-#define _POSIX_C_SOURCE 200809L
+/* Sources ask for these before any header: syntax.c for POSIX, files.c for realpath. */
+#define _XOPEN_SOURCE 700
 #include "scene/terms/callbacks.h"
 #include "scene/terms/fault.h"
 #include "text/complaint.h"

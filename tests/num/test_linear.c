@@ -535,112 +535,6 @@ START_TEST(complex_systems_are_solved_in_pairs)
 }
 END_TEST
 
-/* ---- operators ---- */
-
-enum { SIDE = 20, GRID = SIDE * SIDE };
-
-/* Minus the Laplacian on a grid, with a term that varies; preconditioned by its diagonal, if
- * `is_scaled`. */
-typedef struct membrane {
-  double stiffness;
-  int is_scaled;
-  long products, renewals;
-} membrane;
-
-static double diagonal_of(const membrane *of, int k)
-{
-  return 4 * of->stiffness + 1 + k % 7 * 1000;
-}
-
-static void membrane_times(void *user, const double *x, double *y)
-{
-  membrane *of = user;
-  of->products++;
-  for (int k = 0; k < GRID; k++) {
-    y[k] = diagonal_of(of, k) * x[k];
-    if (k % SIDE > 0) y[k] -= of->stiffness * x[k - 1];
-    if (k % SIDE < SIDE - 1) y[k] -= of->stiffness * x[k + 1];
-    if (k >= SIDE) y[k] -= of->stiffness * x[k - SIDE];
-    if (k < GRID - SIDE) y[k] -= of->stiffness * x[k + SIDE];
-  }
-}
-
-static void membrane_scale(void *user, double *r)
-{
-  for (int k = 0; k < GRID; k++) r[k] /= diagonal_of(user, k);
-}
-
-static dvi_status membrane_renew(void *user)
-{
-  membrane *of = user;
-  of->renewals++;
-  return of->stiffness > 0 ? DVI_OK : dvi__fail(DVI_SINGULAR, "the membrane is slack");
-}
-
-static dvi__linear *membrane_solver(membrane *of, dvi_counters *counters)
-{
-  const dvi__operator A = {.size = GRID,
-                           .of = of,
-                           .times = membrane_times,
-                           .renew = membrane_renew,
-                           .precondition = of->is_scaled ? membrane_scale : NULL};
-  dvi__linear *linear;
-  ck_assert_int_eq(dvi__linear_create_iterative(&A, counters, &linear), DVI_OK);
-  ck_assert_int_eq(dvi__linear_kind_of(linear), DVI__LINEAR_ITERATIVE);
-  return linear;
-}
-
-/* Solved again for what is left, as Newton's method does: each solve leaves 1e-5 of it, or a little
- * more by the other norm. */
-START_TEST(an_operator_is_solved_by_its_products)
-{
-  membrane of = {.stiffness = 100, .is_scaled = _i};
-  double x[GRID] = {0}, Ax[GRID], r[GRID], left = 1, before;
-  dvi_counters counters = {0};
-  dvi__linear *linear = membrane_solver(&of, &counters);
-  ck_assert_int_eq(of.renewals + counters.preparations, 0);
-  ck_assert_int_eq(dvi__linear_factor(linear, NULL), DVI_OK);
-  ck_assert_int_eq(of.renewals, 1);
-  ck_assert_int_eq(counters.preparations, 1);
-  for (int round = 0; round < 4; round++) {
-    before = left, left = 0;
-    membrane_times(&of, x, Ax);
-    for (int k = 0; k < GRID; k++) r[k] = cos(k) - Ax[k], left = fmax(left, fabs(r[k]));
-    ck_assert_msg(round == 0 || left <= fmax(1e-3 * before, 1e-13), "%g after %g", left, before);
-    dvi__linear_solve(linear, r);
-    for (int k = 0; k < GRID; k++) x[k] += r[k];
-  }
-  ck_assert_int_lt(of.products, _i ? 100 : 400);
-  ck_assert_int_eq(counters.solves, 4);
-  ck_assert_int_eq(counters.factorizations + counters.symbolic, 0);
-  dvi__linear_destroy(&linear);
-}
-END_TEST
-
-START_TEST(an_operator_says_what_is_not_known)
-{
-  membrane of = {.stiffness = 1, .is_scaled = 1};
-  double r[GRID] = {0};
-  dvi__linear *linear = membrane_solver(&of, NULL);
-  const long before = dvi__allocation_count();
-  for (int k = 0; k < 2; k++) ck_assert_int_eq(dvi__linear_factor(linear, NULL), DVI_OK);
-  const long made = dvi__allocation_count();
-  ck_assert_int_gt(made, before);
-  dvi__linear_solve(linear, r);
-  for (int k = 0; k < GRID; k++) ck_assert_double_eq(r[k], 0);
-  ck_assert_int_eq(dvi__linear_sign(linear), 0);
-  ck_assert_int_eq(dvi__linear_tells_definite(linear), 0);
-  r[3] = (double)NAN;
-  dvi__linear_solve(linear, r);
-  ck_assert(isnan(r[3])); /* not taken for a solution */
-  of.stiffness = 0;
-  ck_assert_int_eq(dvi__linear_factor(linear, NULL), DVI_SINGULAR);
-  check_words("slack");
-  ck_assert_int_eq(dvi__allocation_count(), made);
-  dvi__linear_destroy(&linear);
-}
-END_TEST
-
 /* ---- patterns that promise too much ---- */
 
 /* Entries that are never there: the answer is that of the others. */
@@ -689,8 +583,6 @@ SUITE(linear)
   tcase_add_test(tests, an_analysis_tells_what_a_factor_costs);
   tcase_add_loop_test(tests, the_first_factor_has_the_bits_of_any_other, 0, 2);
   tcase_add_test(tests, complex_systems_are_solved_in_pairs);
-  tcase_add_loop_test(tests, an_operator_is_solved_by_its_products, 0, 2);
-  tcase_add_test(tests, an_operator_says_what_is_not_known);
   tcase_add_loop_test(tests, entries_that_are_always_zero_do_no_harm, 0, 2);
   tcase_add_loop_test(tests, what_is_not_square_is_refused, 0, 2);
 }

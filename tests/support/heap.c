@@ -31,7 +31,8 @@ long heap_bytes(void)
   return bytes;
 }
 
-/* By pointers, as another program's calls: here the compiler could put in malloc's body below, whatever took its place. */
+/* By pointers, as another program's calls: here the compiler could put in malloc's body below,
+ * whatever took its place. */
 int heap_is_counted(void)
 {
   void *(*volatile take)(size_t size) = malloc;

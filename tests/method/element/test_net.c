@@ -1,35 +1,58 @@
 /* Large nets of springs: created without what no step needs, and solved by Newton's methods without
- * the whole Jacobian. Times are for test_net_figures.c; here counters and memory tell. */
+ * the whole Jacobian. Counters and memory tell; docs/performance.md has the times, "Large sparse
+ * systems". */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "support/heap.h"
 #include "support/prepared.h"
 #include "support/runs.h"
 #include "support/suite.h"
-#include "support/systems/net.h"
 
-static dvi_integrator *net_integrator(const net *of, const char *method)
+/* The catalogue's net of side^dim masses, k = 1. */
+static problem *made_net(int dim, int side)
 {
-  dvi_integrator *made = made_integrator(of->system, method);
-  ck_assert_msg(dvi_integrator_start(made, 0, of->q, of->p) == DVI_OK, "%s", dvi_last_error());
-  return made;
+  char dim_setting[16], side_setting[16], message[256] = "";
+  const char *const settings[] = {dim_setting, side_setting};
+  problem *net = NULL;
+  (void)snprintf(dim_setting, sizeof dim_setting, "dim=%d", dim);
+  (void)snprintf(side_setting, sizeof side_setting, "side=%d", side);
+  ck_assert_msg(problem_create("net", 2, settings, &net, message, sizeof message) == DVI_OK, "%s",
+                message);
+  return net;
+}
+
+/* The same system with a potential that has no Hessian: every entry of it counts. */
+static dvi_system *system_without_hessian(const problem *net)
+{
+  dvi_system *system = NULL;
+  dvi_system_terms terms = *net->terms;
+  dvi_potential springs = terms.potentials[0];
+  springs.hessian_batch = NULL;
+  springs.qq = (dvi_pattern){NULL, NULL};
+  terms.potentials = &springs;
+  ck_assert_msg(dvi_system_create(&terms, &system) == DVI_OK, "%s", dvi_last_error());
+  return system;
 }
 
 /* n = 5000, degree 6: a Jacobian of 30 000 unknowns would have 1.8e6 entries, its factors 2e7. */
 START_TEST(fixed_point_iteration_takes_no_jacobian)
 {
-  net of;
-  make_net(2, 50, 1, _i, &of);
+  problem *net = made_net(2, 50);
+  dvi_system *without = _i == 0 ? system_without_hessian(net) : NULL;
   const long before = heap_bytes();
-  dvi_integrator *integrator = net_integrator(&of, "galerkin:degree=6");
+  dvi_integrator *integrator = made_integrator(_i == 0 ? without : net->system,
+                                               "galerkin:degree=6");
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, net->q, net->p), DVI_OK);
   advance(integrator, 0.1, 20);
   const dvi_counters counters = counters_of(integrator);
   ck_assert_int_eq(counters.fixed_points, 20);
   ck_assert_int_eq(counters.symbolic + counters.factorizations + counters.preparations, 0);
   ck_assert_int_lt(heap_bytes() - before, 12000000);
   dvi_integrator_destroy(&integrator);
-  free_net(&of);
+  dvi_system_destroy(&without);
+  problem_destroy(&net);
 }
 END_TEST
 
@@ -37,10 +60,9 @@ END_TEST
 START_TEST(a_stiff_step_takes_little_memory)
 {
   static const char *const methods[] = {"galerkin:degree=6", "galerkin:degree=6,solver=newton"};
-  net of;
-  make_net(2, 50, 1, 1, &of);
+  problem *net = made_net(2, 50);
   const long before = heap_bytes();
-  dvi_integrator *integrator = net_integrator(&of, methods[_i]);
+  dvi_integrator *integrator = started(net, methods[_i]);
   advance(integrator, 5, 2);
   const dvi_counters counters = counters_of(integrator);
   ck_assert_int_eq(_i == 0 ? counters.simplified : counters.newtons, 2);
@@ -48,17 +70,17 @@ START_TEST(a_stiff_step_takes_little_memory)
   ck_assert_int_eq(counters.symbolic, 1); /* one n x n pattern, for three pairs of eigenvalues */
   ck_assert_int_lt(heap_bytes() - before, 50000000);
   dvi_integrator_destroy(&integrator);
-  free_net(&of);
+  problem_destroy(&net);
 }
 END_TEST
 
 /* Solutions of one step's equations by two ways; q is about 0.1. */
-static void check_same_step(const net *of, const char *one, const char *other, double h)
+static void check_same_step(const problem *net, const char *one, const char *other, double h)
 {
-  dvi_integrator *a = net_integrator(of, one), *b = net_integrator(of, other);
+  dvi_integrator *a = started(net, one), *b = started(net, other);
   advance(a, h, 2);
   advance(b, h, 2);
-  const double apart = distance(of->coordinates, dvi_integrator_q(a), dvi_integrator_q(b));
+  const double apart = distance(net->nq, dvi_integrator_q(a), dvi_integrator_q(b));
   ck_assert_msg(apart <= 1e-14, "%s, %s: %g", one, other, apart);
   ck_assert_int_gt(counters_of(b).products, 0);
   dvi_integrator_destroy(&a);
@@ -68,11 +90,10 @@ static void check_same_step(const net *of, const char *one, const char *other, d
 /* Preconditioned by decoupled systems. */
 START_TEST(newton_by_products_finds_what_the_ladder_finds)
 {
-  net of;
-  make_net(2, 40, 1, 1, &of);
-  check_same_step(&of, "galerkin:degree=6", "galerkin:degree=6,solver=newton", 4);
-  check_same_step(&of, "galerkin:degree=6", "galerkin:degree=6,solver=kinsol", 4);
-  free_net(&of);
+  problem *net = made_net(2, 40);
+  check_same_step(net, "galerkin:degree=6", "galerkin:degree=6,solver=newton", 4);
+  check_same_step(net, "galerkin:degree=6", "galerkin:degree=6,solver=kinsol", 4);
+  problem_destroy(&net);
 }
 END_TEST
 
@@ -80,16 +101,15 @@ END_TEST
  * kinetic part. */
 START_TEST(newton_by_products_needs_no_factor)
 {
-  net of;
-  make_net(3, 18, 1, 1, &of);
-  check_same_step(&of, "galerkin:degree=2,solver=fixed-point", "galerkin:degree=2,solver=newton",
+  problem *net = made_net(3, 18);
+  check_same_step(net, "galerkin:degree=2,solver=fixed-point", "galerkin:degree=2,solver=newton",
                   0.5);
-  dvi_integrator *ladder = net_integrator(&of, "galerkin:degree=2");
+  dvi_integrator *ladder = started(net, "galerkin:degree=2");
   advance(ladder, 3, 1);
   ck_assert_int_eq(counters_of(ladder).newtons, 1); /* simplified Newton's method is left out */
   ck_assert_int_eq(counters_of(ladder).simplified + counters_of(ladder).factorizations, 0);
   dvi_integrator_destroy(&ladder);
-  free_net(&of);
+  problem_destroy(&net);
 }
 END_TEST
 
@@ -97,26 +117,25 @@ END_TEST
  * from that step alone. */
 START_TEST(a_step_by_products_depends_on_its_state_alone)
 {
-  net of;
-  make_net(2, 40, 1, 1, &of);
-  dvi_integrator *whole = net_integrator(&of, "galerkin:degree=6,solver=newton");
-  dvi_integrator *other = net_integrator(&of, "galerkin:degree=6,solver=newton");
+  problem *net = made_net(2, 40);
+  dvi_integrator *whole = started(net, "galerkin:degree=6,solver=newton");
+  dvi_integrator *other = started(net, "galerkin:degree=6,solver=newton");
   advance(other, 3, 1); /* at other places, and lengths */
-  ck_assert_int_eq(dvi_integrator_start(other, 0, of.q, of.p), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_start(other, 0, net->q, net->p), DVI_OK);
   advance(whole, 4, 2);
   advance(other, 4, 2);
   ck_assert_mem_eq(dvi_integrator_q(whole), dvi_integrator_q(other),
-                   (size_t)of.coordinates * sizeof(double));
+                   (size_t)net->nq * sizeof(double));
   dvi_integrator_destroy(&whole);
   dvi_integrator_destroy(&other);
-  free_net(&of);
+  problem_destroy(&net);
 }
 END_TEST
 
-static void check_explained(const net *of, const char *method, const char *words)
+static void check_explained(const problem *net, const char *method, const char *words)
 {
   char text[2000];
-  dvi_integrator *integrator = made_integrator(of->system, method);
+  dvi_integrator *integrator = made_integrator(net->system, method);
   (void)dvi_integrator_explain(integrator, text, sizeof text);
   ck_assert_msg(strstr(text, words) != NULL, "'%s' is not in:\n%s", words, text);
   ck_assert_int_eq(counters_of(integrator).factorizations, 0);
@@ -125,18 +144,17 @@ static void check_explained(const net *of, const char *method, const char *words
 
 START_TEST(explain_says_which_solver_it_would_be)
 {
-  net of;
-  make_net(2, 50, 1, 1, &of);
-  check_explained(&of, "midpoint", "linear solver: sparse LU (KLU) in the order of AMD, ");
+  problem *net = made_net(2, 50);
+  check_explained(net, "midpoint", "linear solver: sparse LU (KLU) in the order of AMD, ");
   check_explained(
-      &of, "galerkin:degree=6",
+      net, "galerkin:degree=6",
       "linear solver: GMRES with products of the Jacobian, preconditioned by decoupled systems");
-  free_net(&of);
-  make_net(3, 18, 1, 1, &of);
-  check_explained(&of, "galerkin:degree=2",
+  problem_destroy(&net);
+  net = made_net(3, 18);
+  check_explained(net, "galerkin:degree=2",
                   "simplified Newton's method (not for systems of this size)");
-  check_explained(&of, "galerkin:degree=2", "preconditioned by its kinetic part");
-  free_net(&of);
+  check_explained(net, "galerkin:degree=2", "preconditioned by its kinetic part");
+  problem_destroy(&net);
 }
 END_TEST
 

@@ -303,6 +303,57 @@ static void chain_acceleration(const quad_system *system, const quad *q, const q
   }
 }
 
+/* V = k/2 sum (|d| - 0.8)^2 over the springs of a net of side^dim masses, and those to its walls; q
+ * are displacements from a grid of spacing 1. A mass has 2 dim springs, each judged from its own
+ * end. */
+static int net_masses(const quad_system *system)
+{
+  const int side = (int)system->value[1];
+  return (int)system->value[0] == 2 ? side * side : side * side * side;
+}
+
+static void net_prepare(quad_system *system)
+{
+  const int dim = (int)system->value[0], side = (int)system->value[1];
+  if (dim < 2 || dim > 3 || side < 1 || side > 5 || net_masses(system) * dim > QUAD_N_MAX) return;
+  system->n = net_masses(system) * dim;
+  for (int i = 0; i < system->n; i++) {
+    quad bulge = quad_number(i % dim == 0 ? "0.1" : "0.05");
+    for (int axis = 0, place = i / dim; axis < dim; axis++, place /= side)
+      bulge *= quad_sin(quad_acos(-1) * (1 + place % side) / (side + 1));
+    system->q[i] = bulge;
+  }
+}
+
+/* The force on the mass whose coordinates begin at `at`, by the spring along an axis to `other`,
+ * NULL for the wall. */
+static void net_pull(int dim, quad k, const quad *at, const quad *other, int axis, int step,
+                     quad *a)
+{
+  quad d[3], square = 0;
+  for (int c = 0; c < dim; c++) {
+    d[c] = (c == axis ? step : 0) + (other != NULL ? other[c] : 0) - at[c];
+    square += d[c] * d[c];
+  }
+  const quad factor = k * (1 - quad_number("0.8") / quad_sqrt(square));
+  for (int c = 0; c < dim; c++) a[c] += factor * d[c];
+}
+
+static void net_acceleration(const quad_system *system, const quad *q, const quad *v, quad *a)
+{
+  const int dim = (int)system->value[0], side = (int)system->value[1];
+  (void)v;
+  for (int i = 0; i < system->n; i++) a[i] = 0;
+  for (int mass = 0; mass < system->n / dim; mass++)
+    for (int axis = 0, stride = 1; axis < dim; axis++, stride *= side)
+      for (int step = -1; step <= 1; step += 2) {
+        const int place = mass / stride % side + step;
+        const quad *at = q + mass * dim;
+        const quad *other = place >= 0 && place < side ? at + step * stride * dim : NULL;
+        net_pull(dim, system->value[2], at, other, axis, step, a + mass * dim);
+      }
+}
+
 /* Newton's gravity between point masses; q holds body after body. */
 static void gravity_acceleration(const quad_system *system, const quad *q, const quad *v, quad *a)
 {
@@ -456,6 +507,11 @@ static const quad_problem problems[] = {
      NULL,
      NULL,
      NULL},
+    {.name = "net",
+     .parameter = {"dim", "side", "k"},
+     .standard = {"2", "4", "1"},
+     .prepare = net_prepare,
+     .acceleration = net_acceleration},
     {.name = "outer-solar", .prepare = outer_solar_prepare, GRAVITY},
     {.name = "figure-eight", .prepare = figure_eight_prepare, GRAVITY},
     {.name = "pythagorean", .prepare = pythagorean_prepare, GRAVITY},

@@ -230,7 +230,7 @@ static dvi_status check_declared_terms(const dvi_system_terms *terms)
 }
 
 /* Factors come before the mass that belongs to them. */
-static const dvi__dynamics *const kinds[] = {
+static const dvi__dynamics *const all_kinds[] = {
 #define DYNAMICS(name) &dvi__dynamics_##name,
 #include "system/declare/dynamics.def"
 #undef DYNAMICS
@@ -238,8 +238,8 @@ static const dvi__dynamics *const kinds[] = {
 
 static dvi_status declare_dynamics(dvi_system *s, const dvi_system_terms *terms)
 {
-  for (size_t k = 0; k < sizeof kinds / sizeof *kinds && s->dynamics == NULL; k++)
-    if (kinds[k]->is_declared(terms)) s->dynamics = kinds[k];
+  for (size_t k = 0; k < sizeof all_kinds / sizeof *all_kinds && s->dynamics == NULL; k++)
+    if (all_kinds[k]->is_declared(terms)) s->dynamics = all_kinds[k];
   return s->dynamics->declare(terms, s);
 }
 
