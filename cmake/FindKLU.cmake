@@ -1,4 +1,5 @@
-# Finds KLU of SuiteSparse by its header and libraries: SuiteSparse has a CMake package only from version 7 on.
+# Finds KLU of SuiteSparse by its header and libraries: SuiteSparse has a CMake package only from
+# version 7 on.
 # Gives KLU::KLU, and KLU_FOUND.
 
 find_path(KLU_INCLUDE_DIR klu.h PATH_SUFFIXES suitesparse)

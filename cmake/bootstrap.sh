@@ -1,16 +1,17 @@
 #!/bin/sh
 # From a bare Debian (12 or later) or Ubuntu (24.04 or later) to a built, run and tested libdvi:
-#   sh cmake/bootstrap.sh demo    build, then studies of the Kepler problem and of a pendulum that turns in space
-#   sh cmake/bootstrap.sh test    build, then all tests that a user needs to trust the build
-#   sh cmake/bootstrap.sh lint    install more tools, then every gate, and all tests under sanitizers
-#   sh cmake/bootstrap.sh long    what takes hours: studies in full, the analyzer on all sources, long fuzzing
-# Missing packages are installed by apt-get, with sudo if needed. With CI=true in the environment compiler
-# warnings are errors.
+#   sh cmake/bootstrap.sh demo    build, and study the Kepler problem and a pendulum in space
+#   sh cmake/bootstrap.sh test    build, and run all tests that a user needs to trust the build
+#   sh cmake/bootstrap.sh lint    install more tools, run every gate, and all tests under sanitizers
+#   sh cmake/bootstrap.sh long    run for hours: full studies, the analyzer on all sources, fuzzing
+# Missing packages are installed by apt-get, with sudo if needed. With CI=true in the environment
+# compiler warnings are errors.
 set -eu
 
-packages="gcc g++ libc6-dev make cmake pkg-config libsundials-dev libsuitesparse-dev liblapack-dev libyaml-dev
-  check gnuplot-nox"
-lint_packages="clang clang-tidy clang-format cppcheck doxygen valgrind libc6-dbg libclang-rt-dev libgsl-dev"
+packages="gcc g++ libc6-dev make cmake pkg-config libsundials-dev libsuitesparse-dev liblapack-dev
+  libyaml-dev check gnuplot-nox"
+lint_packages="clang clang-tidy clang-format cppcheck doxygen valgrind libc6-dbg libclang-rt-dev
+  libgsl-dev"
 
 usage() {
   cat >&2 <<'END'
@@ -42,24 +43,27 @@ known_system() {
 # Prints those of the named packages that are not installed.
 missing() {
   for package; do
-    dpkg-query -W -f '${Status}\n' "$package" 2>/dev/null | grep -q ' installed$' || printf '%s ' "$package"
+    dpkg-query -W -f '${Status}\n' "$package" 2>/dev/null | grep -q ' installed$' ||
+      printf '%s ' "$package"
   done
 }
 
 explain_by_hand() {
   cat >&2 <<END
-bootstrap: this system is neither Debian 12 or later nor Ubuntu 24.04 or later: please install what is needed
-yourself: a C11 compiler, make, CMake 3.22 or later, pkg-config, SUNDIALS 6.4 to 7 with KLU, SuiteSparse,
-LAPACK, libyaml, Check, gnuplot and, for a test, a C++ compiler; for lint also clang, clang-tidy,
-clang-format, cppcheck, Doxygen, valgrind and GSL. On Debian these packages are called
+bootstrap: this system is neither Debian 12 or later nor Ubuntu 24.04 or later: please install what
+is needed yourself: a C11 compiler, make, CMake 3.22 or later, pkg-config, SUNDIALS 6.4 to 7 with
+KLU, SuiteSparse, LAPACK, libyaml, Check, gnuplot and, for a test, a C++ compiler; for lint also
+clang, clang-tidy, clang-format, cppcheck, Doxygen, valgrind and GSL. On Debian these packages are
+called
   $packages
   $lint_packages
-Then:  cmake --preset release && cmake --build --preset release && ctest --preset release -LE "lint|long"
+Then:  cmake --preset release && cmake --build --preset release
+       ctest --preset release -LE "lint|long"
 END
   exit 1
 }
 
-# install_packages [MORE]: what is missing of the packages, and of MORE.
+# install_packages [MORE]: install those of the packages, and of MORE, that are missing.
 install_packages() {
   if ! known_system || ! command -v apt-get >/dev/null; then explain_by_hand; fi
   # The lists are meant to be split into words, here and below.
@@ -69,7 +73,8 @@ install_packages() {
   root=
   if [ "$(id -u)" -ne 0 ]; then
     command -v sudo >/dev/null ||
-      refuse "not root, and there is no sudo. As root, run: apt-get install --no-install-recommends $wanted"
+      refuse "not root, and there is no sudo." \
+        "As root, run: apt-get install --no-install-recommends $wanted"
     root=sudo
   fi
   say "installing: $wanted"
@@ -93,7 +98,8 @@ build() {
   say "building: $preset"
   mkdir -p build
   if ! {
-    cmake --preset "$preset" -DDVI_WERROR=$werror "$@" && cmake --build --preset "$preset" -j "$cores"
+    cmake --preset "$preset" -DDVI_WERROR=$werror "$@" &&
+      cmake --build --preset "$preset" -j "$cores"
   } >"build/$preset.log" 2>&1; then
     tail -n 60 "build/$preset.log" >&2
     refuse "the build failed; the whole output is in build/$preset.log"
@@ -114,42 +120,48 @@ demo() {
   build release
   dvi=build/release/apps/dvi
   mkdir -p build/demo
-  say "order study of a planet's orbit: the error against the step, the measured order against the claimed one"
-  $dvi order kepler --method galerkin:degree=1 --method galerkin:degree=2 --method galerkin:degree=3 \
-    --method galerkin:degree=4 --plot build/demo/order.svg
+  say "order study of a planet's orbit: the error against the step," \
+    "the measured order against the claimed one"
+  $dvi order kepler --method galerkin:degree=1 --method galerkin:degree=2 \
+    --method galerkin:degree=3 --method galerkin:degree=4 --plot build/demo/order.svg
   say "speed against error, beside three codes of SUNDIALS"
   $dvi bench kepler --method verlet --method galerkin:degree=2 --method galerkin:degree=4 \
     --method galerkin:degree=8 --against cvode,arkode,ida --plot build/demo/bench.svg
-  say "a pendulum that turns in space: error of the energy, and distance of its attitude from the rotations"
-  $dvi order pendulum-3d --t-end 1 --h 0.02 --levels 5 --judge runs --plot build/demo/rotations.svg \
-    --axes h:error --axes h:energy_error --axes h:distance --method lie-verlet \
+  say "a pendulum that turns in space: error of the energy," \
+    "and distance of its attitude from the rotations"
+  $dvi order pendulum-3d --t-end 1 --h 0.02 --levels 5 --judge runs \
+    --plot build/demo/rotations.svg --axes h:error --axes h:energy_error --axes h:distance \
+    --method lie-verlet \
     --method lie-rk:scheme=explicit-midpoint --method lie-rk:scheme=implicit-midpoint \
-    --method lie-rk:scheme=crouch-grossman --method lie-rk:scheme=munthe-kaas --method lie-galerkin:degree=2
+    --method lie-rk:scheme=crouch-grossman --method lie-rk:scheme=munthe-kaas \
+    --method lie-galerkin:degree=2
   for plot in build/demo/order.svg build/demo/bench.svg build/demo/rotations.svg; do
     [ -s $plot ] || refuse "$plot was not written"
   done
   cat <<END
 
 All orders are as claimed. Three pictures to look at:
-  build/demo/order.svg      halve the step, and the error falls by 2, 4, 6 or 8 powers of two, as theory says
+  build/demo/order.svg      halve the step, and the error falls by 2, 4, 6 or 8 powers of two,
+                            as theory says
   build/demo/bench.svg      what an error costs, beside CVODE, ARKODE and IDA
-  build/demo/rotations.svg  the methods on rotations keep the attitude a rotation; a plain midpoint rule does not
+  build/demo/rotations.svg  the methods on rotations keep the attitude a rotation; a plain midpoint
+                            rule does not
 
 What to try next:
   $dvi list problems
   $dvi run pendulum --method galerkin:degree=2 --h 0.1 --t-end 20 --final --plot pendulum.svg
-  $dvi init cart.yaml    # a scene of your own: the Lagrangian as on paper; docs/cookbook.md has more
+  $dvi init cart.yaml  # a scene of your own: the Lagrangian as on paper; docs/cookbook.md has more
 END
 }
 
-# Gates that look at the build that users get, valgrind among them; then clang, with sanitizers.
+# Runs the gates and valgrind on the build that users get, then all tests by clang with sanitizers.
 lint() {
   install_packages "$lint_packages"
   status=0
   build lint
   run_tests lint || status=1
   build asan
-  run_tests asan || status=1
+  DVI_FUZZ_SECONDS=${DVI_FUZZ_SECONDS:-15} run_tests asan || status=1
   [ $status -eq 0 ] || refuse "a gate failed, see above"
 }
 

@@ -1,15 +1,16 @@
-# dvi_flags(TARGET): how every source of this project is compiled.
+# dvi_flags(TARGET): set the compiler's options that every source of this project gets.
 #
-# Results must not depend on the machine: no -march=native, no -ffast-math, and no fused multiply-adds that the compiler chooses.
-# Warnings are errors only on request (DVI_WERROR, set in continuous integration), so that a newer compiler does not stop a user.
+# Results must not depend on the machine: no -march=native, no -ffast-math, and no fused
+# multiply-adds that the compiler chooses. Warnings are errors only on request (DVI_WERROR, set in
+# continuous integration), so that a newer compiler does not stop a user.
 
 set(CMAKE_C_FLAGS_RELEASE "-O3 -DNDEBUG" CACHE STRING "Flags of a Release build")
 
 function(dvi_flags target)
   set_target_properties(${target} PROPERTIES C_STANDARD 11 C_STANDARD_REQUIRED ON C_EXTENSIONS OFF)
-  target_compile_options(${target} PRIVATE -ffp-contract=off -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes
-                                           -Wmissing-prototypes -Wvla)
-  # Left to gcc: for clang 19 NAN and INFINITY, which are constants of type float, are promotions.
+  target_compile_options(${target} PRIVATE -ffp-contract=off -Wall -Wextra -Wpedantic -Wconversion
+                                           -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla)
+  # Only gcc warns of promotions: clang 19 finds one in NAN and INFINITY, constants of type float.
   if(NOT CMAKE_C_COMPILER_ID MATCHES Clang)
     target_compile_options(${target} PRIVATE -Wdouble-promotion)
   endif()
@@ -17,7 +18,8 @@ function(dvi_flags target)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
   if(DVI_SANITIZE)
-    target_compile_options(${target} PRIVATE -fsanitize=${DVI_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    target_compile_options(${target} PRIVATE -fsanitize=${DVI_SANITIZE} -fno-sanitize-recover=all
+                                             -fno-omit-frame-pointer)
     target_link_options(${target} PRIVATE -fsanitize=${DVI_SANITIZE})
   endif()
 endfunction()

@@ -1,4 +1,5 @@
-# Installation: headers, both libraries, the command, its manual page, and what find_package and pkg-config read.
+# Installation: headers, both libraries, the command, its manual page, and the files that
+# find_package and pkg-config read.
 
 include(CMakePackageConfigHelpers)
 set(package_directory "${CMAKE_INSTALL_LIBDIR}/cmake/dvi")
@@ -14,7 +15,7 @@ if(TARGET dvi_command)
 endif()
 file(GLOB scenes CONFIGURE_DEPENDS apps/scenes/*.yaml apps/scenes/*/*.yaml)
 install(FILES ${scenes} DESTINATION "${CMAKE_INSTALL_DATADIR}/dvi/scenes")
-# The pages lie as they do here, with all that they lead to.
+# The pages keep their folders, and everything that they link to is installed with them.
 install(FILES README.md CHANGELOG.md LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}"
         FILES_MATCHING PATTERN "*.md" PATTERN "*.svg" PATTERN "*.bib")
@@ -24,13 +25,14 @@ if(EXISTS "${PROJECT_SOURCE_DIR}/docs/dvi.1")
   install(FILES docs/dvi.1 DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
 endif()
 
-# The static library needs what it is made of, the shared one brings it along: two export sets, and only who asks for the component
-# `static` must have SUNDIALS and SuiteSparse in place.
+# A program that links the static library needs SUNDIALS and SuiteSparse; the shared library brings
+# them along. With two export sets only projects that ask for the component `static` must have them.
 install(EXPORT dviTargets NAMESPACE dvi:: DESTINATION "${package_directory}")
 install(EXPORT dviStaticTargets NAMESPACE dvi:: DESTINATION "${package_directory}")
 install(FILES cmake/FindSUNDIALS.cmake cmake/FindKLU.cmake DESTINATION "${package_directory}")
-configure_package_config_file(cmake/dviConfig.cmake.in dviConfig.cmake INSTALL_DESTINATION "${package_directory}"
-                              NO_SET_AND_CHECK_MACRO)
+configure_package_config_file(
+  cmake/dviConfig.cmake.in dviConfig.cmake INSTALL_DESTINATION "${package_directory}"
+  NO_SET_AND_CHECK_MACRO)
 # Before version 1.0 a new minor version may change the interface.
 write_basic_package_version_file(dviConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/dviConfig.cmake" "${PROJECT_BINARY_DIR}/dviConfigVersion.cmake"
@@ -38,7 +40,8 @@ install(FILES "${PROJECT_BINARY_DIR}/dviConfig.cmake" "${PROJECT_BINARY_DIR}/dvi
 
 # pkg-config names libraries as the linker does.
 set(pc_private "")
-foreach(library ${SUNDIALS_LIBRARIES} ${KLU_LIBRARIES} ${LAPACK_LIBRARIES} ${MPI_C_LIBRARIES} ${CMAKE_THREAD_LIBS_INIT} m)
+foreach(library ${SUNDIALS_LIBRARIES} ${KLU_LIBRARIES} ${LAPACK_LIBRARIES} ${MPI_C_LIBRARIES}
+                ${CMAKE_THREAD_LIBS_INIT} m)
   get_filename_component(name "${library}" NAME_WE)
   string(REGEX REPLACE "^(lib|-l)" "" name "${name}")
   list(APPEND pc_private "-l${name}")
@@ -49,4 +52,5 @@ file(RELATIVE_PATH pc_prefix "${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig" "${CMAKE_I
 string(REGEX REPLACE "/$" "" pc_prefix "${pc_prefix}")
 configure_file(cmake/dvi.pc.in dvi.pc @ONLY)
 configure_file(cmake/dvi-scene.pc.in dvi-scene.pc @ONLY)
-install(FILES "${PROJECT_BINARY_DIR}/dvi.pc" "${PROJECT_BINARY_DIR}/dvi-scene.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+install(FILES "${PROJECT_BINARY_DIR}/dvi.pc" "${PROJECT_BINARY_DIR}/dvi-scene.pc"
+        DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")

@@ -1,6 +1,8 @@
-# Sourced by the tests of the command: counts what does not hold.  $1 of the test is the dvi binary.
+# The tests of the command source this file. It counts the assertions that fail. The first argument
+# of a test is the dvi binary.
 dvi=$1
-# On Debian 13 UCX, which comes along with SUNDIALS, takes SIGHUP for its own debugging; this leaves the signal to the tests.
+# On Debian 13 UCX, which comes along with SUNDIALS, takes SIGHUP for its own debugging. This
+# setting leaves the signal to the tests.
 export UCX_DEBUG_SIGNO=0
 failures=0
 folder=$(mktemp -d) || exit 1
@@ -9,34 +11,41 @@ cd "$folder" || exit 1
 
 fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
 
-# some WORD...: all of them. Where memory is watched, and DVI_TEST_FEWER is set, every third: these are more examples of one kind.
+# some WORD...: print all words, or every third where DVI_TEST_FEWER is set because memory is
+# watched. The words are examples of one kind.
 some() {
   [ -n "${DVI_TEST_FEWER:-}" ] || { echo "$@"; return; }
   echo "$@" | tr ' ' '\n' | awk 'NR % 3 == 1' | tr '\n' ' '
 }
 
-# expect CODE NAME ARGUMENTS...: run dvi; its output stands in files out and err.
+# expect CODE NAME ARGUMENTS...: run dvi, which must end with this exit code. Its output goes to the
+# files out and err.
 expect() {
   wanted=$1 name=$2
   shift 2
   code=0
   "$dvi" "$@" >out 2>err || code=$?
-  [ "$code" -eq "$wanted" ] || { fail "$name: exit code $code instead of $wanted: dvi $*"; sed 's/^/    /' err; }
+  [ "$code" -eq "$wanted" ] || {
+    fail "$name: exit code $code instead of $wanted: dvi $*"
+    sed 's/^/    /' err
+  }
 }
 
-# says FILE PATTERN NAME: the file has a line that matches.
-says() { grep -q -e "$2" "$1" || { fail "$3: no line with '$2' in $1:"; sed 's/^/    /' "$1" | head -n 5; }; }
+# says FILE PATTERN NAME: require a line of the file that matches.
+says() {
+  grep -q -e "$2" "$1" || { fail "$3: no line with '$2' in $1:"; sed 's/^/    /' "$1" | head -n 5; }
+}
 
-# same FILE FILE NAME
+# same FILE FILE NAME: require two files with the same bytes.
 same() { cmp -s "$1" "$2" || fail "$3: $1 and $2 differ"; }
 
-# no_trace NAME: no temporary file was left behind.
+# no_trace NAME: require that no temporary file was left behind.
 no_trace() { for left in *.part-*; do [ ! -e "$left" ] || fail "$1: $left was left behind"; done; }
 
-# part_of FILE: its temporary file is there.
+# part_of FILE: succeed if the temporary file of FILE exists.
 part_of() { ls "$1".part-* >/dev/null 2>&1; }
 
-# wait_for_part FILE: until its temporary file is there, some seconds at most.
+# wait_for_part FILE: wait some seconds at most until the temporary file of FILE exists.
 wait_for_part() {
   for _ in $(seq 100); do
     part_of "$1" && return
@@ -45,7 +54,7 @@ wait_for_part() {
   fail "no temporary file of $1"
 }
 
-# ends CODE NAME: the background process ends with that exit code.
+# ends CODE NAME: require that the background process ends with this exit code.
 ends() {
   code=0
   wait $! || code=$?

@@ -5,14 +5,14 @@
 
 printf 't,a,b\n0,1,2\n1,3,5\n2,4,7\n' >cells.csv
 
-# Text that a picture shows: what XML takes for its own is written otherwise, and what no line can
-# hold is a blank.
+# A picture escapes the characters that XML reserves, and shows a blank for a character that no line
+# can hold.
 as_xml() { printf '%s' "$1" | tr '\n\t\001' '   ' | sed 's/&/\&amp;/g; s/</\&lt;/g'; }
 shows() { grep -qF "$(as_xml "$2")<" "$1" || fail "$3: the picture does not show $2"; }
 unharmed() { [ ! -e run ] || fail "$1: a command was run"; rm -f run; }
 
-# Whatever a language of plots, of shells or of printf might take for its own; no comma, for names
-# of columns have none.
+# All characters that mean something to gnuplot, to shells or to printf. There is no comma, because
+# names of columns have none.
 # shellcheck disable=SC2016,SC1003
 {
 hostile='`touch run` $(touch run) "; system "touch run" # '\''; !touch run @run '\
@@ -22,7 +22,8 @@ shows title.svg "$hostile" 'a title'
 unharmed 'a title'
 # Digits behind a character are none of its number.
 for digit in 0 1 2 3 4 5 6 7 8 9; do
-  text=$(printf '! " # $ %% & ( ) * + - . / : ; < = > ? @ [ \\ ] ^ _ { | } ~' | sed "s/ /$digit/g")$digit
+  text=$(printf '! " # $ %% & ( ) * + - . / : ; < = > ? @ [ \\ ] ^ _ { | } ~' |
+    sed "s/ /$digit/g")$digit
   expect 0 "digits $digit" plot cells.csv --axes a --title "$text" --out digits.svg
   shows digits.svg "$text" "digits $digit"
 done

@@ -4,34 +4,40 @@
 "$dvi" init cart.yaml
 cart='sweep cart.yaml --t-end 2'
 
-# lines FILE N NAME
+# lines FILE N NAME: require N lines.
 lines() { [ "$(wc -l <"$1")" -eq "$2" ] || fail "$3: $(wc -l <"$1") lines instead of $2 in $1"; }
 
-# alone FILE NAME: no rows of a sweep under way were left.
+# alone FILE NAME: require that no rows of an unfinished sweep were left.
 alone() { [ ! -e "$1.part" ] || fail "$2: $1.part was left behind"; }
 
 # shellcheck disable=SC2086
 {
-# The section, and what replaces it.
+# The section of a scene, and the options that replace it.
 expect 0 'the section' $cart --threads 1 --out one.csv
 lines one.csv 10 'three lengths, three masses'
-says one.csv '^l,m,status,steps,t,x,theta,p_x,p_theta,energy,along_the_rail,height,energy_error$' 'the columns'
+says one.csv '^l,m,status,steps,t,x,theta,p_x,p_theta,energy,along_the_rail,height,energy_error$' \
+  'the columns'
 alone one.csv 'a complete sweep'
 expect 0 'threads' $cart --threads 3 --out three.csv
 same one.csv three.csv 'the number of threads does not matter'
 expect 0 'a list' $cart --set m=0.2,0.3 --set g=1:2:3 --out list.csv
 lines list.csv 19 'three lengths of the section, two masses, three of g'
-[ "$(sed -n 2,5p list.csv | cut -d, -f1-3 | tr '\n' ' ')" = '0.25,0.2,1 0.25,0.2,1.5 0.25,0.2,2 0.25,0.3,1 ' ] || fail 'the order of the points'
+[ "$(sed -n 2,5p list.csv | cut -d, -f1-3 | tr '\n' ' ')" = \
+  '0.25,0.2,1 0.25,0.2,1.5 0.25,0.2,2 0.25,0.3,1 ' ] || fail 'the order of the points'
 expect 0 'one point' $cart --set l=0.7 --set m=0.3 --out point.csv
 expect 0 'its run' run cart.yaml --t-end 2 --set l=0.7 --set m=0.3 --final
-[ "$(sed -n 2p point.csv | cut -d, -f5-12)" = "$(sed -n 2p out)" ] || fail 'a row is the last one of dvi run'
-expect 0 'the catalogue' sweep kepler --method galerkin:degree=4 --set e=0:0.6:3 --h 0.1 --t-end 1 --out kepler.csv
+[ "$(sed -n 2p point.csv | cut -d, -f5-12)" = "$(sed -n 2p out)" ] ||
+  fail 'a row is the last one of dvi run'
+expect 0 'the catalogue' sweep kepler --method galerkin:degree=4 --set e=0:0.6:3 --h 0.1 --t-end 1 \
+  --out kepler.csv
 lines kepler.csv 4 'three orbits'
 expect 0 'its run' run kepler --method galerkin:degree=4 --set e=0.3 --h 0.1 --t-end 1 --final
-[ "$(sed -n 3p kepler.csv | cut -d, -f4-10)" = "$(sed -n 2p out | cut -d, -f1-7)" ] || fail 'a row of the catalogue is the last one of dvi run'
+[ "$(sed -n 3p kepler.csv | cut -d, -f4-10)" = "$(sed -n 2p out | cut -d, -f1-7)" ] ||
+  fail 'a row of the catalogue is the last one of dvi run'
 
 # Points that fail.
-expect 1 'points that fail' sweep kepler --method midpoint --set e=0,0.5,2 --h 0.1 --t-end 1 --out some.csv
+expect 1 'points that fail' sweep kepler --method midpoint --set e=0,0.5,2 --h 0.1 --t-end 1 \
+  --out some.csv
 says some.csv '^0.5,DVI_OK,10,1,' 'the others are there'
 says some.csv '^2,refused,0,,,,,' 'the word for it'
 says err '1 of 3 points failed' 'how many'
@@ -62,8 +68,8 @@ expect 1 'sizes' sweep family.yaml --set N=2,3 --out family.csv
 says family.csv '^2,DVI_OK,' 'the size of the scene'
 says err 'N=3: with these values the problem has other coordinates' 'the reason'
 
-# Interrupted sweeps: rows that are there are taken, whatever became of the last one.
-# Long enough to be interrupted; sanitized the shorter one takes as long.
+# An interrupted sweep keeps its complete rows, even if the last row is torn. These sweeps last long
+# enough to be interrupted; under sanitizers the shorter one takes as long.
 end=400
 [ -z "${DVI_TEST_FEWER:-}" ] || end=40
 long="sweep cart.yaml --set l=0.5 --set m=0.2 --set g=9:10:30 --t-end $end"
@@ -82,7 +88,8 @@ for signal in 15 9; do
   expect 1 "signal $signal: another step" $long --h 0.01 --out cut.csv
   says err 'was begun with another scene or other settings' 'the reason'
   sed 's/theta: 1$/theta: 1.5/' cart.yaml >other.yaml
-  expect 1 "signal $signal: another scene" sweep other.yaml --set l=0.5 --set m=0.2 --set g=9:10:30 --t-end $end --out cut.csv
+  expect 1 "signal $signal: another scene" sweep other.yaml --set l=0.5 --set m=0.2 \
+    --set g=9:10:30 --t-end $end --out cut.csv
   expect 0 "signal $signal: the same" $long --threads 1 --out cut.csv
   says err 'points are in .cut.csv.part. already' 'it went on'
   same cut.csv whole.csv "signal $signal: as if nothing had happened"
@@ -90,12 +97,12 @@ for signal in 15 9; do
   rm cut.csv
 done
 
-# What is no sweep's stays.
+# A file that is no sweep's stays.
 echo 'my notes' >notes.csv.part
 expect 1 'a foreign file' $cart --out notes.csv
 [ "$(cat notes.csv.part)" = 'my notes' ] || fail 'a foreign file was changed'
 
-# A full disk: what was found stays, and the sweep goes on when there is room.
+# On a full disk the rows that were found stay, and the sweep goes on when there is room.
 (
   failures=0
   ulimit -f 2
@@ -118,7 +125,9 @@ expect 2 'no method' sweep kepler --set e=0,0.1 --out no.csv
 expect 2 'nothing to sweep' sweep kepler --method midpoint --out no.csv
 expect 2 'an unknown name' $cart --set ll=1,2 --out no.csv
 says err "did you mean 'l'" 'a hint'
-for values in 1,,2 1:2 1:2:1 1:2:2.5 :1:2 a:b:c 1:inf:3 1:2:1e9; do expect 2 "values $values" $cart --set l=$values --out no.csv; done
+for values in 1,,2 1:2 1:2:1 1:2:2.5 :1:2 a:b:c 1:inf:3 1:2:1e9; do
+  expect 2 "values $values" $cart --set l=$values --out no.csv
+done
 expect 2 'a name twice' $cart --set l=1 --set l=2 --out no.csv
 expect 2 'too many points' $cart --set l=0:1:10000 --set m=0:1:10000 --out no.csv
 expect 2 'no step' $cart --h 0 --out no.csv

@@ -1,5 +1,6 @@
 #!/bin/sh
-# Wrong command lines end with 2 and a message that helps; help and lists end with 0.  Usage: test_usage.sh DVI
+# Wrong command lines end with 2 and a message that helps; help and lists end with 0.
+# Usage: test_usage.sh DVI
 . "$(dirname "$0")/check.sh"
 
 expect 2 'no command'
@@ -15,7 +16,8 @@ done
 
 for word in --version --help -h help; do expect 2 "$word and more" "$word" x; done
 expect 0 'short help' -h
-for command in 'list methods' 'explain kepler' 'run kepler --method verlet' 'order kepler --method verlet' 'bench kepler'; do
+for command in 'list methods' 'explain kepler' 'run kepler --method verlet' \
+  'order kepler --method verlet' 'bench kepler'; do
   # shellcheck disable=SC2086
   expect 2 "-h after $command" $command -h 0.1
   says err '\-\-help explains' "-h after $command: where help is"
@@ -30,9 +32,11 @@ expect 2 'unknown option' run kepler --method verlet --tend 5
 says err "did you mean '--t-end'" 'nearest option'
 while read -r typed meant; do
   expect 2 "--$typed" run kepler --method verlet "--$typed" 5
-  says err "unknown option '--$typed' (did you mean '--$meant'?)" "--$typed: the option that is meant"
+  says err "unknown option '--$typed' (did you mean '--$meant'?)" \
+    "--$typed: the option that is meant"
   expect 2 "--$typed=5" run kepler --method verlet "--$typed=5"
-  says err "unknown option '--$typed' (did you mean '--$meant'?)" "--$typed=5: the option that is meant"
+  says err "unknown option '--$typed' (did you mean '--$meant'?)" \
+    "--$typed=5: the option that is meant"
 done <<'END'
 step h
 dt h
@@ -53,7 +57,8 @@ says err "it has R11_1, .* and 44 others$" 'some columns, and how many more'
 expect 2 'unknown invariant' run kepler --method verlet --alarm enrgy=1
 says err "did you mean 'energy'" 'nearest invariant'
 expect 2 'a method of no name near' run kepler --method foo
-says err "galerkin, verlet, .*, $("$dvi" list methods --csv - | tail -n 1 | cut -d, -f1)$" 'all methods'
+says err "galerkin, verlet, .*, $("$dvi" list methods --csv - | tail -n 1 | cut -d, -f1)$" \
+  'all methods'
 expect 2 'short option' run kepler -m verlet
 expect 2 'unknown problem' run keppler --method verlet
 says err "did you mean 'kepler'" 'nearest problem'
@@ -81,7 +86,9 @@ expect 2 'option twice' run kepler --method verlet --h 0.1 --h 0.2
 expect 2 'option without value' run kepler --method verlet --h
 expect 2 'option as value' run kepler --h --method verlet
 expect 2 'flag with value' run kepler --method verlet --final=yes
-for bad in 0.1x '' nan inf 1e999 abc; do expect 2 "h is '$bad'" run kepler --method verlet --h "$bad"; done
+for bad in 0.1x '' nan inf 1e999 abc; do
+  expect 2 "h is '$bad'" run kepler --method verlet --h "$bad"
+done
 for bad in 0 -1 1.5 99999999999999999999 x '' +2 ' 2' '2 ' 02; do
   expect 2 "every is '$bad'" run kepler --method verlet --every "$bad"
   expect 2 "levels are '$bad'" order kepler --method verlet --levels "$bad"
@@ -96,7 +103,7 @@ says err 'below 0, the least that is taken' 'the end of the range'
 expect 2 'parameter that is no number' run kepler --method verlet --set e=nan
 says err 'no finite number' 'no number'
 
-# Files that would overwrite each other, and plots that would not be what their name says.
+# Files that would overwrite each other, and plots whose ending names another format.
 ln -s a.svg link.svg
 expect 2 'out and checkpoint' run kepler --method verlet --out a --checkpoint ./a
 says err '--out a and --checkpoint ./a are the same file' 'both are named'
@@ -105,7 +112,8 @@ ln -s there.csv another.csv
 expect 2 'files that are there' run kepler --method verlet --out there.csv --checkpoint another.csv
 [ "$(cat there.csv)" = old ] || fail 'a refused command leaves the old file'
 expect 2 'out and plot' run kepler --method verlet --out a.svg --plot "$PWD/a.svg"
-expect 2 'checkpoint and plot, by a link' run kepler --method verlet --checkpoint a.svg --plot link.svg
+expect 2 'checkpoint and plot, by a link' run kepler --method verlet --checkpoint a.svg \
+  --plot link.svg
 expect 2 'resume and out' run kepler --method verlet --resume a --out a
 expect 2 'resume and plot' run kepler --method verlet --resume a.svg --plot a.svg
 expect 2 'checkpoint on standard output' run kepler --method verlet --checkpoint -
@@ -119,17 +127,22 @@ for command in run order bench; do
     says err "ends in .svg" "$command: what a plot is"
   done
 done
-for name in a a.svg x.png ./-; do [ ! -e "$name" ] || fail "$name was written by a refused command"; done
+for name in a a.svg x.png ./-; do
+  [ ! -e "$name" ] || fail "$name was written by a refused command"
+done
 expect 2 'h zero' run kepler --method verlet --h 0
 expect 2 'h against t-end' run kepler --method verlet --h -0.1 --t-end 5
 expect 2 'nodes below degree' run kepler --method galerkin:degree=4,nodes=2
 expect 2 'verlet on a general Lagrangian' run double-pendulum --method verlet
 expect 2 'checkpoint-every alone' run kepler --method verlet --checkpoint-every 5
 expect 2 'order without method' order kepler
-expect 2 'checkpoint-every without a number' run kepler --method verlet --checkpoint a --checkpoint-every +5
+expect 2 'checkpoint-every without a number' run kepler --method verlet --checkpoint a \
+  --checkpoint-every +5
 expect 2 'too many levels' order kepler --method verlet --levels 1000
 expect 2 'ratio one' order kepler --method verlet --ratio 1
-for peers in cvodes ida, ,ida ida,,arkode , cvode,cvode-adams ida,ida; do expect 2 "peers $peers" bench kepler --against "$peers"; done
+for peers in cvodes ida, ,ida ida,,arkode , cvode,cvode-adams ida,ida; do
+  expect 2 "peers $peers" bench kepler --against "$peers"
+done
 says err 'ida twice' 'which peer is named twice'
 expect 2 'list what' list integrators
 expect 2 'list two' list methods verlet
@@ -158,11 +171,13 @@ says out 'e=0.6' 'explain says the parameters'
 expect 0 'explain with setting' explain kepler --method verlet --set e=0.25
 says out 'e=0.25' 'explain says what was set'
 
-# More steps than can be counted are refused before the first one, in all commands that take h and t-end;
-# the step that is recommended is then taken.
-for command in 'run kepler --method verlet' 'sweep kepler --method verlet --set e=0.1,0.2 --out many.csv' \
+# More steps than can be counted are refused before the first one, in all commands that take h and
+# t-end; the step that is recommended is then taken.
+for command in 'run kepler --method verlet' \
+  'sweep kepler --method verlet --set e=0.1,0.2 --out many.csv' \
                'resonance oscillators --method imex --sweep omega=1:10 --csv many.csv' \
-               'run kepler --method sem' 'run kepler --method verlet --plot many.svg --checkpoint many.state'; do
+               'run kepler --method sem' \
+               'run kepler --method verlet --plot many.svg --checkpoint many.state'; do
   for ends in '--h 1e-12 --t-end 1e9' '--h -1e-12 --t-end -1e9'; do
     # shellcheck disable=SC2086
     expect 2 "many steps: $command $ends" $command $ends
@@ -173,9 +188,12 @@ for command in 'run kepler --method verlet' 'sweep kepler --method verlet --set 
 done
 expect 2 'many steps of a study' order kepler --method verlet --h 1e-12 --t-end 1e9 --csv many.csv
 expect 2 'many steps of a range' resonance oscillators --method imex --sweep h=1e-12:1 --t-end 1e9
-expect 2 'many steps to a far end' sweep kepler --method verlet --set e=0.1,0.2 --t-end 1e30 --out many.csv
+expect 2 'many steps to a far end' sweep kepler --method verlet --set e=0.1,0.2 --t-end 1e30 \
+  --out many.csv
 expect 2 'many steps' run kepler --method verlet --h 1e-12 --t-end 1e9
-says err 'dvi: run: --t-end 1e+09 is 1e+21 steps of 1e-12 away, and at most 2^53 (9e15) can be counted' 'many steps'
+says err \
+  'dvi: run: --t-end 1e+09 is 1e+21 steps of 1e-12 away, and at most 2^53 (9e15) can be counted' \
+  'many steps'
 h=$(sed 's/.*give an --h of \([^ ]*\).*/\1/' err)
 "$dvi" run kepler --method verlet --h "$h" --t-end 1e9 >out 2>err &
 sleep 1

@@ -1,5 +1,6 @@
 /* labels: reference */
-/* Paths keep the energy of the motion that they follow; those that follow none are not solved. */
+/* Paths keep the energy of the motion that they follow. Paths that follow no motion are not
+ * solved. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -14,17 +15,17 @@ typedef struct between {
 
 static const between arc = {{1, 0}, {-0.5, 1}}, swing = {{2.8, 1.5}, {-1, -1.5}};
 
-static dvi_path *made(const problem *of, const char *method, int steps, double span,
+static dvi_path *made(const problem *model, const char *method, int steps, double span,
                       const between *ends)
 {
   const dvi_path_options options = {.ends = DVI_ENDS_FIXED,
                                     .steps = steps,
                                     .span = span,
-                                    .dimension = of->nq,
+                                    .dimension = model->nq,
                                     .q0 = ends->from,
                                     .q1 = ends->to};
   dvi_path *path = NULL;
-  const dvi_status status = dvi_path_create(of->system, method, &options, &path);
+  const dvi_status status = dvi_path_create(model->system, method, &options, &path);
   ck_assert_msg(status == DVI_OK, "%s", dvi_last_error());
   return path;
 }
@@ -36,16 +37,16 @@ static dvi_path_report solved(dvi_path *path)
   return report;
 }
 
-static double energy_at(const problem *of, const dvi_path *path, int k)
+static double energy_at(const problem *model, const dvi_path *path, int k)
 {
   double invariant[8];
-  ck_assert_int_le(dvi_system_invariant_count(of->system), 8);
+  ck_assert_int_le(dvi_system_invariant_count(model->system), 8);
   const double t = dvi_path_time(path, k), *q = dvi_path_q(path, k), *p = dvi_path_p(path, k);
-  ck_assert_int_eq(dvi_system_invariants(of->system, t, q, p, invariant), DVI_OK);
+  ck_assert_int_eq(dvi_system_invariants(model->system, t, q, p, invariant), DVI_OK);
   return invariant[0];
 }
 
-/* Unit mass: the kinetic energy is p.p/2. */
+/* With unit mass the kinetic energy is p.p/2. */
 static double kinetic_at(const dvi_path *path, int k)
 {
   const double *p = dvi_path_p(path, k);
@@ -55,18 +56,19 @@ static double kinetic_at(const dvi_path *path, int k)
 START_TEST(the_spread_is_that_of_the_energies_at_the_nodes)
 {
   enum { STEPS = 12 };
-  problem *of = made_problem("kepler", NULL);
-  dvi_path *path = made(of, "midpoint", STEPS, 3, &arc);
+  problem *model = create_problem("kepler", NULL);
+  dvi_path *path = made(model, "midpoint", STEPS, 3, &arc);
   const dvi_path_report report = solved(path);
   double least = HUGE_VAL, most = -HUGE_VAL, kinetic = 0, jump = 0;
   int step = -1;
   for (int k = 0; k <= STEPS; k++) {
-    const double E = energy_at(of, path, k), K = kinetic_at(path, k);
+    const double E = energy_at(model, path, k), K = kinetic_at(path, k);
     least = fmin(least, E);
     most = fmax(most, E);
     kinetic = fmax(kinetic, K);
     if (k == 0) continue;
-    const double change = fabs(E - energy_at(of, path, k - 1)) / fmax(K, kinetic_at(path, k - 1));
+    const double change = fabs(E - energy_at(model, path, k - 1)) /
+                          fmax(K, kinetic_at(path, k - 1));
     if (change > jump) jump = change, step = k - 1;
   }
   /* Terms of size 1, of which 64 roundings are taken off. */
@@ -76,25 +78,25 @@ START_TEST(the_spread_is_that_of_the_energies_at_the_nodes)
   ck_assert_int_eq(report.jump_step, step);
   ck_assert_double_gt(report.energy_spread, 1e-4);
   dvi_path_destroy(&path);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 /* Momenta at the nodes have the order of the method, 2s, and with them the energies. */
 START_TEST(the_spread_falls_with_the_order_of_the_method)
 {
-  problem *of = made_problem("kepler", NULL);
+  problem *model = create_problem("kepler", NULL);
   double spread[2];
   for (int s = 1; s <= 3; s++) {
     for (int k = 0; k < 2; k++) {
-      dvi_path *path = made(of, spec("galerkin:degree=%d", s), 10 << k, 3, &arc);
+      dvi_path *path = made(model, method_spec("galerkin:degree=%d", s), 10 << k, 3, &arc);
       spread[k] = solved(path).energy_spread;
       dvi_path_destroy(&path);
     }
     const double order = log2(spread[0] / spread[1]);
     ck_assert_msg(fabs(order - 2 * s) < 0.3, "degree %d: %.2f", s, order);
   }
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -103,8 +105,8 @@ END_TEST
 START_TEST(a_path_that_follows_no_motion_is_not_solved)
 {
   enum { STEPS = 4 };
-  problem *of = made_problem("double-pendulum", NULL);
-  dvi_path *path = made(of, "galerkin:degree=2", STEPS, 2, &swing);
+  problem *model = create_problem("double-pendulum", NULL);
+  dvi_path *path = made(model, "galerkin:degree=2", STEPS, 2, &swing);
   dvi_path_report report = {0};
   ck_assert_int_eq(dvi_path_solve(path, &report), DVI_STEP_TOO_LARGE);
   const char *said = dvi_last_error(), *advice = strstr(said, "; try about ");
@@ -115,23 +117,23 @@ START_TEST(a_path_that_follows_no_motion_is_not_solved)
   ck_assert_int_eq(report.jump_step, STEPS - 1);
   ck_assert_double_gt(report.energy_jump, 0.5);
   ck_assert_double_lt(report.gradient, 1e-12);
-  const double change = fabs(energy_at(of, path, 4) - energy_at(of, path, 3));
+  const double change = fabs(energy_at(model, path, 4) - energy_at(model, path, 3));
   ck_assert_double_eq_tol(change, report.energy_jump * report.kinetic, 1e-9 * report.kinetic);
   dvi_path_destroy(&path);
   ck_assert_int_ge(steps, 2 * STEPS);
-  path = made(of, "galerkin:degree=2", steps, 2, &swing);
+  path = made(model, "galerkin:degree=2", steps, 2, &swing);
   ck_assert_double_lt(solved(path).energy_jump, 0.1);
   dvi_path_destroy(&path);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 /* Another path can be guessed from one that was refused, as from a solved one. */
 START_TEST(a_refused_path_may_be_gone_on_from)
 {
-  problem *of = made_problem("double-pendulum", NULL);
-  dvi_path *path = made(of, "galerkin:degree=2", 4, 2, &swing);
-  dvi_path *next = made(of, "galerkin:degree=2", 4, 2, &swing);
+  problem *model = create_problem("double-pendulum", NULL);
+  dvi_path *path = made(model, "galerkin:degree=2", 4, 2, &swing);
+  dvi_path *next = made(model, "galerkin:degree=2", 4, 2, &swing);
   ck_assert_int_eq(dvi_path_solve(path, NULL), DVI_STEP_TOO_LARGE);
   ck_assert_int_eq(dvi_path_guess_along(next, path, NULL, 1), DVI_OK);
   for (int k = 0; k <= 4; k++) {
@@ -140,7 +142,7 @@ START_TEST(a_refused_path_may_be_gone_on_from)
   }
   dvi_path_destroy(&next);
   dvi_path_destroy(&path);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -148,26 +150,26 @@ END_TEST
 START_TEST(a_motion_below_the_roundings_of_its_energy_is_not_refused)
 {
   const between ends = {{1e-8, 0}, {0, 1e-8}};
-  problem *of = made_problem("double-pendulum", NULL);
-  dvi_path *path = made(of, "galerkin:degree=3", 20, 1, &ends);
+  problem *model = create_problem("double-pendulum", NULL);
+  dvi_path *path = made(model, "galerkin:degree=3", 20, 1, &ends);
   const dvi_path_report report = solved(path);
   ck_assert_double_lt(report.kinetic, 1e-13);
   ck_assert_double_eq(report.energy_spread, 0);
   ck_assert_double_eq(report.energy_jump, 0);
   dvi_path_destroy(&path);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(what_depends_on_time_keeps_no_energy)
 {
   const between ends = {{0}, {3}};
-  problem *of = made_problem("driven-pendulum", NULL);
-  dvi_path *path = made(of, "midpoint", 3, 4, &ends);
+  problem *model = create_problem("driven-pendulum", NULL);
+  dvi_path *path = made(model, "midpoint", 3, 4, &ends);
   const dvi_path_report report = solved(path);
   ck_assert(isnan(report.energy_spread) && isnan(report.kinetic) && isnan(report.energy_jump));
   dvi_path_destroy(&path);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

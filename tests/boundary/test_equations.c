@@ -1,6 +1,6 @@
 /* labels: jacobian */
-/* The Jacobian of a whole path, with symmetry, free span and multipliers, against differences of
- * its residual; and its pattern. */
+/* Tests the Jacobian of a whole path, with symmetry, free span and multipliers, against differences
+ * of its residual, and its pattern. */
 #include <math.h>
 #include <string.h>
 
@@ -45,10 +45,10 @@ enum { KINDS = sizeof kinds / sizeof *kinds };
 
 /* A path of kepler or of the double pendulum in no special place, with multipliers that do not
  * vanish. */
-static dvi_path *make(const problem *of, int kind)
+static dvi_path *make(const problem *model, int kind)
 {
   dvi_path *path = NULL;
-  ck_assert_msg(dvi_path_create(of->system, kinds[kind].method, &kinds[kind].options, &path) ==
+  ck_assert_msg(dvi_path_create(model->system, kinds[kind].method, &kinds[kind].options, &path) ==
                     DVI_OK,
                 "%s", dvi_last_error());
   for (int c = 0; c < path->core; c++) path->x[c] = 1 + 0.3 * cos(2 * c + 1);
@@ -61,8 +61,8 @@ static dvi_path *make(const problem *of, int kind)
 
 static const double moved[3] = {0.003, 0.006, 0.009}, share[3] = {1.5, -0.6, 0.1};
 
-/* Differences of order 6: with d = 0.003 they err by d^6/140 of the seventh derivative, and by
- * roundings of 1e-15 over d. */
+/* Takes differences of order 6. With d = 0.003 they err by d^6/140 of the seventh derivative, and
+ * by roundings of 1e-15 over d. */
 static void check_jacobian(dvi_path *path)
 {
   const dvi__equations *equations = &path->solver->equations;
@@ -92,19 +92,19 @@ static void check_jacobian(dvi_path *path)
 START_TEST(the_jacobian_is_the_derivative_of_the_residual)
 {
   static const char *const names[] = {"kepler", "double-pendulum"};
-  problem *of = made_problem(names[_i / KINDS], NULL);
-  dvi_path *path = make(of, _i % KINDS);
+  problem *model = create_problem(names[_i / KINDS], NULL);
+  dvi_path *path = make(model, _i % KINDS);
   check_jacobian(path);
   dvi_path_destroy(&path);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 /* Hessians are symmetric, but for initial ends, whose rows stand with the next node. */
 START_TEST(the_jacobian_is_a_hessian)
 {
-  problem *of = made_problem("kepler", NULL);
-  dvi_path *path = make(of, _i);
+  problem *model = create_problem("kepler", NULL);
+  dvi_path *path = make(model, _i);
   double values[MOST * MOST];
   ck_assert_int_eq(dvi__path_jacobian(path, path->x, values), DVI_OK);
   for (int column = 0; column < path->unknowns && kinds[_i].options.ends != DVI_ENDS_INITIAL;
@@ -115,7 +115,7 @@ START_TEST(the_jacobian_is_a_hessian)
       ck_assert_double_eq_tol(values[e], values[other], 1e-12 * fmax(1, fabs(values[e])));
     }
   dvi_path_destroy(&path);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

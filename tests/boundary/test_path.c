@@ -19,11 +19,13 @@ typedef struct run {
   double span, t[NODES_MOST], q[ROOM], p[ROOM];
 } run;
 
-static void keep(run *r, int k, const dvi_integrator *of)
+static void keep(run *r, int k, const dvi_integrator *integrator)
 {
   r->t[k] = k * (r->span / r->steps);
-  memcpy(r->q + (size_t)k * (size_t)r->n, dvi_integrator_q(of), (size_t)r->n * sizeof(double));
-  memcpy(r->p + (size_t)k * (size_t)r->n, dvi_integrator_p(of), (size_t)r->n * sizeof(double));
+  memcpy(r->q + (size_t)k * (size_t)r->n, dvi_integrator_q(integrator),
+         (size_t)r->n * sizeof(double));
+  memcpy(r->p + (size_t)k * (size_t)r->n, dvi_integrator_p(integrator),
+         (size_t)r->n * sizeof(double));
 }
 
 static void record(const dvi_system *system, const double *q, const double *p, const char *method,
@@ -31,7 +33,7 @@ static void record(const dvi_system *system, const double *q, const double *p, c
 {
   *r = (run){.n = dvi_system_nq(system), .steps = steps, .span = span};
   ck_assert((steps + 1) * r->n <= ROOM);
-  dvi_integrator *stepped = made_integrator(system, method);
+  dvi_integrator *stepped = create_integrator(system, method);
   ck_assert_msg(dvi_integrator_start(stepped, 0, q, p) == DVI_OK, "%s", dvi_last_error());
   keep(r, 0, stepped);
   for (int k = 1; k <= steps; k++) {
@@ -76,7 +78,7 @@ static double difference(const dvi_path *path, const run *r)
 static const struct {
   const char *problem, *setting, *method;
   double span;
-  /* 1: from the straight line; 0: from the run, each number moved by a per cent */
+  /* 1 for the straight line, 0 for the run with each number moved by a per cent */
   int steps, rough;
 } places[] = {
     {"pendulum", NULL, "midpoint", 2, 50, 1},
@@ -96,9 +98,9 @@ enum { PLACES = sizeof places / sizeof *places };
 static void check_place(int index, dvi_ends ends)
 {
   static run r;
-  problem *of = made_problem(places[index].problem, places[index].setting);
-  const int steps = places[index].steps, n = of->nq;
-  record(of->system, of->q, of->p, places[index].method, places[index].span, steps, &r);
+  problem *model = create_problem(places[index].problem, places[index].setting);
+  const int steps = places[index].steps, n = model->nq;
+  record(model->system, model->q, model->p, places[index].method, places[index].span, steps, &r);
   const dvi_path_options options = {.ends = ends,
                                     .steps = steps,
                                     .span = places[index].span,
@@ -106,7 +108,7 @@ static void check_place(int index, dvi_ends ends)
                                     .q0 = r.q,
                                     .q1 = ends == DVI_ENDS_FIXED ? r.q + steps * n : NULL,
                                     .p0 = ends == DVI_ENDS_INITIAL ? r.p : NULL};
-  dvi_path *path = made_path(of->system, places[index].method, &options);
+  dvi_path *path = made_path(model->system, places[index].method, &options);
   if (!places[index].rough || ends == DVI_ENDS_INITIAL) {
     static double moved[ROOM];
     for (int i = 0; i < (steps + 1) * n; i++) moved[i] = r.q[i] * (1 + 0.01 * sin(3 * i));
@@ -121,7 +123,7 @@ static void check_place(int index, dvi_ends ends)
   ck_assert(dvi_path_time(path, steps) == places[index].span ||
             fabs(dvi_path_time(path, steps) / places[index].span - 1) < 1e-15);
   dvi_path_destroy(&path);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 
 START_TEST(a_two_point_problem_finds_the_run_between_its_ends)
@@ -149,7 +151,7 @@ START_TEST(time_dependent_systems_have_paths)
                                                        .potential_count = 1});
   const double start = 0.5;
   r = (run){.n = SITES, .steps = 10, .span = 1};
-  dvi_integrator *stepped = made_integrator(system, "galerkin:degree=3");
+  dvi_integrator *stepped = create_integrator(system, "galerkin:degree=3");
   ck_assert_int_eq(dvi_integrator_start_velocity(stepped, start, generic_q, generic_v), DVI_OK);
   keep(&r, 0, stepped);
   for (int k = 1; k <= r.steps; k++) {
@@ -175,12 +177,12 @@ END_TEST
 
 /* ---- signs of the second variation ---- */
 
-/* L = v^2/2 - q^2/4: conjugate points at multiples of pi sqrt 2 = 4.44 (Morse). */
+/* L = v^2/2 - q^2/4 has conjugate points at multiples of pi sqrt 2 = 4.44 (Morse). */
 START_TEST(the_index_counts_conjugate_points)
 {
   const double q0[] = {0}, q1[] = {1}, spans[] = {1, 4.4, 4.5, 8.8, 8.9, 13.3, 13.4, 38};
   const int conjugate[] = {0, 0, 1, 1, 2, 2, 3, 8};
-  problem *of = made_problem("oscillator", NULL);
+  problem *model = create_problem("oscillator", NULL);
   for (int k = 0; k < 8; k++)
     for (int degree = 1; degree <= 4; degree++) {
       const dvi_path_options options = {.ends = DVI_ENDS_FIXED,
@@ -189,20 +191,21 @@ START_TEST(the_index_counts_conjugate_points)
                                         .dimension = 1,
                                         .q0 = q0,
                                         .q1 = q1};
-      dvi_path *path = made_path(of->system, spec("galerkin:degree=%d", degree), &options);
+      dvi_path *path = made_path(model->system, method_spec("galerkin:degree=%d", degree),
+                                 &options);
       const dvi_path_report report = solved(path);
       ck_assert_msg(report.negative == conjugate[k] && report.zero == 0,
                     "degree %d, span %g: %ld negative, %ld zero", degree, spans[k], report.negative,
                     report.zero);
       dvi_path_destroy(&path);
     }
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* From (1,0) to (0,1) in the time of three quarters of the unit circle: that circle, clockwise, has
- * L = 1/2 + 1; counterclockwise there is an ellipse, of which the far end lies between. Both are
- * minima: a path in the plane cannot cross the centre to become the other. */
+/* From (1,0) to (0,1) in the time of three quarters of the unit circle. That circle, clockwise, has
+ * L = 1/2 + 1. Counterclockwise there is an ellipse, whose far end lies between. Both are minima,
+ * because a path in the plane cannot cross the centre to become the other. */
 START_TEST(paths_of_one_problem_are_told_apart_by_their_guess)
 {
   enum { POINTS = 13 };
@@ -213,10 +216,10 @@ START_TEST(paths_of_one_problem_are_told_apart_by_their_guess)
     round[2 * k] = 0.9 * cos(pi * k / 8);
     round[2 * k + 1] = -0.9 * sin(pi * k / 8);
   }
-  problem *of = made_problem("kepler", NULL);
+  problem *model = create_problem("kepler", NULL);
   const dvi_path_options options = {
       .ends = DVI_ENDS_FIXED, .steps = 40, .span = 1.5 * pi, .dimension = 2, .q0 = q0, .q1 = q1};
-  dvi_path *path = made_path(of->system, "galerkin:degree=4", &options);
+  dvi_path *path = made_path(model->system, "galerkin:degree=4", &options);
   ck_assert_int_eq(dvi_path_guess(path, POINTS, 2, t, round), DVI_OK);
   dvi_path_report report = solved(path);
   ck_assert_double_eq_tol(report.action, 2.25 * pi, 1e-11);
@@ -227,7 +230,7 @@ START_TEST(paths_of_one_problem_are_told_apart_by_their_guess)
   ck_assert_double_gt(dvi_path_q(path, 20)[0], 1);
   ck_assert_int_eq(report.negative, 0);
   dvi_path_destroy(&path);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -236,8 +239,8 @@ END_TEST
 static const double exchange[] = {0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0,
                                   0, 1, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1, 0, 0};
 
-/* Three points of each body on x = sin, y = 0.4 sin 2, rounded to one digit: a third of the figure,
- * body after body. */
+/* Gives three points of each body on x = sin, y = 0.4 sin 2, rounded to one digit, a third of the
+ * figure, body after body. */
 static const double sketch_t[] = {0, 1, 2};
 static const double sketch[] = {0, 0,    0.9,  -0.3, -0.9, 0.3,  0.9, 0.3, 0,
                                 0, -0.9, -0.3, 0.9,  -0.3, -0.9, 0.3, 0,   0};
@@ -247,15 +250,15 @@ static const double sketch[] = {0, 0,    0.9,  -0.3, -0.9, 0.3,  0.9, 0.3, 0,
 static const double eight_period = 6.32591398, eight_action = 24.4270486407709,
                     eight_energy = -1.28714199602879;
 
-/* From the path's first state on, steps of the method must come back to it; the orbit is stable,
- * and roundoff grows slowly. */
-static void check_closes(const problem *of, const char *method, const dvi_path *path,
+/* Steps of the method from the path's first state must come back to it. The orbit is stable, and
+ * roundoff grows slowly. */
+static void check_closes(const problem *model, const char *method, const dvi_path *path,
                          const double *turn)
 {
   static run r;
-  const int n = of->nq, steps = dvi_path_steps(path);
+  const int n = model->nq, steps = dvi_path_steps(path);
   double q[8] = {0}, p[8] = {0};
-  record(of->system, dvi_path_q(path, 0), dvi_path_p(path, 0), method,
+  record(model->system, dvi_path_q(path, 0), dvi_path_p(path, 0), method,
          dvi_path_time(path, steps) - dvi_path_time(path, 0), steps, &r);
   for (int i = 0; i < n; i++)
     for (int j = 0; j < n; j++) {
@@ -270,31 +273,32 @@ static void check_closes(const problem *of, const char *method, const dvi_path *
 START_TEST(the_figure_eight_comes_from_three_points)
 {
   const char *method = "galerkin:degree=8";
-  problem *of = made_problem("figure-eight", NULL);
+  problem *model = create_problem("figure-eight", NULL);
   const dvi_path_options options = {.ends = DVI_ENDS_PERIODIC,
                                     .steps = 10,
                                     .span = eight_period / 3,
                                     .dimension = 6,
                                     .symmetry = exchange};
-  dvi_path *path = made_path(of->system, method, &options);
+  dvi_path *path = made_path(model->system, method, &options);
   ck_assert_int_eq(dvi_path_guess(path, 3, 6, sketch_t, sketch), DVI_OK);
   const dvi_path_report report = solved(path);
   ck_assert_double_lt(report.gradient, 2e-14);
   ck_assert_double_eq_tol(3 * report.action, eight_action, 1e-11);
   ck_assert_double_eq_tol(report.energy, eight_energy, 1e-11);
-  /* A minimum among choreographies; it may be moved in the plane, turned, and in time. */
+  /* The path is a minimum among choreographies. It may be moved in the plane, rotated, and shifted
+   * in time. */
   ck_assert_int_eq(report.negative, 0);
   ck_assert_int_eq(report.zero, 4);
   ck_assert_int_eq(report.symmetries, 4);
-  check_closes(of, method, path, exchange);
+  check_closes(model, method, path, exchange);
   dvi_path_destroy(&path);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(an_energy_has_its_period)
 {
-  problem *of = made_problem("figure-eight", NULL);
+  problem *model = create_problem("figure-eight", NULL);
   const dvi_path_options options = {.ends = DVI_ENDS_PERIODIC,
                                     .steps = 10,
                                     .span = 2.3,
@@ -302,7 +306,7 @@ START_TEST(an_energy_has_its_period)
                                     .symmetry = exchange,
                                     .free_span = 1,
                                     .energy = eight_energy};
-  dvi_path *path = made_path(of->system, "galerkin:degree=8", &options);
+  dvi_path *path = made_path(model->system, "galerkin:degree=8", &options);
   ck_assert_int_eq(dvi_path_guess(path, 3, 6, sketch_t, sketch), DVI_OK);
   const dvi_path_report report = solved(path);
   ck_assert_double_eq_tol(3 * report.span, eight_period, 1e-11);
@@ -314,7 +318,7 @@ START_TEST(an_energy_has_its_period)
   ck_assert_double_eq_tol(dvi_path_q(path, 3)[0], before, 1e-14);
   ck_assert_double_eq_tol(again.span, report.span, 1e-14);
   dvi_path_destroy(&path);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -323,37 +327,37 @@ START_TEST(a_nearly_periodic_run_closes_to_roundoff)
 {
   static run r;
   const char *method = "galerkin:degree=8";
-  problem *of = made_problem("figure-eight", NULL);
-  record(of->system, of->q, of->p, method, eight_period, 24, &r);
+  problem *model = create_problem("figure-eight", NULL);
+  record(model->system, model->q, model->p, method, eight_period, 24, &r);
   const dvi_path_options options = {.ends = DVI_ENDS_PERIODIC, .steps = 24, .span = eight_period};
-  dvi_path *path = made_path(of->system, method, &options);
+  dvi_path *path = made_path(model->system, method, &options);
   ck_assert_int_eq(dvi_path_guess(path, 25, 6, r.t, r.q), DVI_OK);
   const dvi_path_report report = solved(path);
   ck_assert_double_lt(report.gradient, 2e-14);
   ck_assert_double_eq_tol(report.action, eight_action, 1e-12);
   ck_assert_double_eq_tol(report.energy, eight_energy, 1e-13);
   ck_assert_int_eq(report.zero, 4);
-  check_closes(of, method, path, NULL);
+  check_closes(model, method, path, NULL);
   dvi_path_destroy(&path);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* 12 steps of order 8 make the discrete motion prefer some times: where it is held at another one
- * 7e-9 of the gradient are left. */
+/* 12 steps of order 8 make the discrete motion prefer some times. Held at another one, it keeps
+ * 7e-9 of the gradient. */
 START_TEST(long_steps_choose_their_time)
 {
   static run r;
   const char *method = "galerkin:degree=4";
-  problem *of = made_problem("figure-eight", NULL);
-  record(of->system, of->q, of->p, method, eight_period, 12, &r);
+  problem *model = create_problem("figure-eight", NULL);
+  record(model->system, model->q, model->p, method, eight_period, 12, &r);
   dvi_path *path = made_path(
-      of->system, method,
+      model->system, method,
       &(dvi_path_options){.ends = DVI_ENDS_PERIODIC, .steps = 12, .span = eight_period});
   ck_assert_int_eq(dvi_path_guess(path, 13, 6, r.t, r.q), DVI_OK);
   ck_assert_double_lt(solved(path).gradient, 1e-13);
   dvi_path_destroy(&path);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -362,11 +366,11 @@ START_TEST(steps_that_do_not_resolve_a_symmetry_have_no_index)
 {
   static run r;
   const int steps[] = {8, 30};
-  problem *of = made_problem("pendulum", NULL);
+  problem *model = create_problem("pendulum", NULL);
   for (int k = 0; k < 2; k++) {
-    record(of->system, of->q, of->p, "midpoint", 7, steps[k], &r);
+    record(model->system, model->q, model->p, "midpoint", 7, steps[k], &r);
     dvi_path *path = made_path(
-        of->system, "midpoint",
+        model->system, "midpoint",
         &(dvi_path_options){.ends = DVI_ENDS_PERIODIC, .steps = steps[k], .span = 7});
     ck_assert_int_eq(dvi_path_guess(path, steps[k] + 1, 1, r.t, r.q), DVI_OK);
     const dvi_path_report report = solved(path);
@@ -375,12 +379,12 @@ START_TEST(steps_that_do_not_resolve_a_symmetry_have_no_index)
     ck_assert_int_eq(report.negative, k == 0 ? -1 : 1);
     dvi_path_destroy(&path);
   }
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* q_N = q_0 + 2 pi: the pendulum turns over. Its period with energy E = 2, by the
- * arithmetic-geometric mean: T = 2 pi / agm(sqrt(2 (E+1)), sqrt(2 (E-1))). */
+/* q_N = q_0 + 2 pi, so the pendulum turns over. Its period with energy E = 2, by the
+ * arithmetic-geometric mean, is T = 2 pi / agm(sqrt(2 (E+1)), sqrt(2 (E-1))). */
 START_TEST(a_pendulum_that_turns_over_is_periodic_up_to_a_shift)
 {
   const double shift[] = {2 * pi}, t[] = {0, 1}, line[] = {0.3, 0.3 + 2 * pi};
@@ -390,7 +394,7 @@ START_TEST(a_pendulum_that_turns_over_is_periodic_up_to_a_shift)
     g = sqrt(a * g);
     a = mean;
   }
-  problem *of = made_problem("pendulum", NULL);
+  problem *model = create_problem("pendulum", NULL);
   const dvi_path_options options = {.ends = DVI_ENDS_PERIODIC,
                                     .steps = 20,
                                     .span = 3,
@@ -398,39 +402,39 @@ START_TEST(a_pendulum_that_turns_over_is_periodic_up_to_a_shift)
                                     .shift = shift,
                                     .free_span = 1,
                                     .energy = 2};
-  dvi_path *path = made_path(of->system, "galerkin:degree=8", &options);
+  dvi_path *path = made_path(model->system, "galerkin:degree=8", &options);
   ck_assert_int_eq(dvi_path_guess(path, 2, 1, t, line), DVI_OK);
   const dvi_path_report report = solved(path);
   ck_assert_double_eq_tol(report.span, 2 * pi / a, 1e-11);
   ck_assert_double_eq_tol(dvi_path_q(path, 20)[0] - dvi_path_q(path, 0)[0], 2 * pi, 1e-15);
   dvi_path_destroy(&path);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* A circle is its own image turned by any angle; time and rotation move it in one direction. */
+/* A circle rotated by any angle is the same circle. Time and rotation move it in one direction. */
 START_TEST(a_circle_is_relatively_periodic)
 {
   const double turn[] = {cos(1), sin(1), -sin(1), cos(1)}, t[] = {0, 0.5, 1},
                q[] = {1.1, 0, 0.8, 0.5, 0.5, 0.9};
-  problem *of = made_problem("kepler", "e=0");
+  problem *model = create_problem("kepler", "e=0");
   const dvi_path_options options = {
       .ends = DVI_ENDS_PERIODIC, .steps = 5, .span = 1, .dimension = 2, .symmetry = turn};
-  dvi_path *path = made_path(of->system, "galerkin:degree=6", &options);
+  dvi_path *path = made_path(model->system, "galerkin:degree=6", &options);
   ck_assert_int_eq(dvi_path_guess(path, 3, 2, t, q), DVI_OK);
   const dvi_path_report report = solved(path);
   ck_assert_double_eq_tol(report.action, 1.5, 1e-12);
   ck_assert_double_eq_tol(report.energy, -0.5, 1e-11);
   for (int k = 0; k <= 5; k++)
     ck_assert_double_eq_tol(hypot(dvi_path_q(path, k)[0], dvi_path_q(path, k)[1]), 1, 1e-12);
-  check_closes(of, "galerkin:degree=6", path, turn);
+  check_closes(model, "galerkin:degree=6", path, turn);
   dvi_path_destroy(&path);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* V = q^2/2 - q cos 2t: q'' + q = cos 2t has the solution -cos(2t)/3 of the drive's period, and no
- * other. */
+/* With V = q^2/2 - q cos 2t the equation q'' + q = cos 2t has the solution -cos(2t)/3 of the
+ * drive's period, and no other. */
 static int swing(double t, const double *q, double *V, void *user)
 {
   (void)user;
@@ -463,8 +467,8 @@ START_TEST(a_driven_oscillator_follows_its_drive)
                    DVI_OK);
   ck_assert_int_eq(dvi_path_solve(path, NULL), DVI_BAD_ARGUMENT);
   check_words("the period is none of the Lagrangian's");
-  /* Of modes cos(2 m t) and sin(2 m t), with (2m)^2 - 1, the constant alone is negative; the phase
-   * is the drive's. */
+  /* The modes cos(2 m t) and sin(2 m t) have (2m)^2 - 1, and the constant alone is negative. The
+   * drive sets the phase. */
   ck_assert_int_eq(report.negative, 1);
   ck_assert_int_eq(report.zero, 0);
   ck_assert_int_eq(report.symmetries, 0);
@@ -486,29 +490,29 @@ static double apart(const dvi_path *a, const dvi_path *b)
 /* The tangent's prediction errs by the square of the step, the last path by the step. */
 START_TEST(a_guess_along_two_paths_is_better_than_the_last_one)
 {
-  problem *of[3];
+  problem *model[3];
   dvi_path *path[3];
   for (int k = 0; k < 3; k++) {
-    of[k] = made_problem("kepler", spec("e=%g", 0.3 + 0.02 * k));
+    model[k] = create_problem("kepler", method_spec("e=%g", 0.3 + 0.02 * k));
     const dvi_path_options options = {.ends = DVI_ENDS_INITIAL,
                                       .steps = 20,
                                       .span = 2,
                                       .dimension = 2,
-                                      .q0 = of[k]->q,
-                                      .p0 = of[k]->p};
-    path[k] = made_path(of[k]->system, "galerkin:degree=3", &options);
+                                      .q0 = model[k]->q,
+                                      .p0 = model[k]->p};
+    path[k] = made_path(model[k]->system, "galerkin:degree=3", &options);
     if (k > 0)
       ck_assert_int_eq(dvi_path_guess_along(path[k], path[k - 1], k > 1 ? path[k - 2] : NULL, 1),
                        DVI_OK);
     if (k < 2) (void)solved(path[k]);
   }
-  dvi_path *last = made_path(of[2]->system, "galerkin:degree=3",
+  dvi_path *last = made_path(model[2]->system, "galerkin:degree=3",
                              &(dvi_path_options){.ends = DVI_ENDS_INITIAL,
                                                  .steps = 20,
                                                  .span = 2,
                                                  .dimension = 2,
-                                                 .q0 = of[2]->q,
-                                                 .p0 = of[2]->p});
+                                                 .q0 = model[2]->q,
+                                                 .p0 = model[2]->p});
   ck_assert_int_eq(dvi_path_guess_along(last, path[1], NULL, 1), DVI_OK);
   (void)solved(last);
   ck_assert_double_gt(apart(path[1], last), 0.01);
@@ -518,7 +522,7 @@ START_TEST(a_guess_along_two_paths_is_better_than_the_last_one)
   dvi_path_destroy(&last);
   for (int k = 0; k < 3; k++) {
     dvi_path_destroy(&path[k]);
-    problem_destroy(&of[k]);
+    problem_destroy(&model[k]);
   }
 }
 END_TEST

@@ -1,5 +1,6 @@
 /* labels: unit */
-/* What cannot be is refused with a sentence that says why, and leaves the path as it was. */
+/* Options that cannot be solved are refused with a sentence that gives the reason, and the path
+ * stays as it was. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -15,7 +16,7 @@ static const dvi_path_options good = {
 
 static void set_up(void)
 {
-  kepler = made_problem("kepler", NULL);
+  kepler = create_problem("kepler", NULL);
 }
 
 static void tear_down(void)
@@ -252,11 +253,11 @@ static void unsolvable(const dvi_system *system, dvi_path_options options, dvi_s
   dvi_path_destroy(&path);
 }
 
-/* Half a period: from 0 all paths come to 0 (many), none to 1; and to -q0, from q0, many. */
+/* In half a period all paths from 0 come to 0 (many), none to 1, and many lead from q0 to -q0. */
 START_TEST(conjugate_ends_are_named)
 {
   const double from[] = {0, 0, 0.5}, to[] = {0, 1, -0.5};
-  problem *of = made_problem("oscillator", NULL);
+  problem *model = create_problem("oscillator", NULL);
   for (int k = 0; k < 3; k++) {
     const dvi_path_options options = {.ends = DVI_ENDS_FIXED,
                                       .steps = 20,
@@ -264,9 +265,9 @@ START_TEST(conjugate_ends_are_named)
                                       .dimension = 1,
                                       .q0 = from + k,
                                       .q1 = to + k};
-    unsolvable(of->system, options, DVI_SINGULAR, "its ends are conjugate");
+    unsolvable(model->system, options, DVI_SINGULAR, "its ends are conjugate");
   }
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -286,20 +287,20 @@ END_TEST
 START_TEST(a_period_that_no_path_has_is_named)
 {
   static const double t[] = {0, 1, 2}, q[] = {1, -1, 1};
-  problem *of = made_problem("oscillator", NULL);
+  problem *model = create_problem("oscillator", NULL);
   const dvi_path_options options = {.ends = DVI_ENDS_PERIODIC, .steps = 20, .span = 7};
   dvi_path *path = NULL;
-  ck_assert_int_eq(dvi_path_create(of->system, "galerkin:degree=4", &options, &path), DVI_OK);
+  ck_assert_int_eq(dvi_path_create(model->system, "galerkin:degree=4", &options, &path), DVI_OK);
   ck_assert_int_eq(dvi_path_guess(path, 3, 1, t, q), DVI_OK);
   ck_assert_int_eq(dvi_path_solve(path, NULL), DVI_NOT_CONVERGED);
   check_words("no path of this period");
   dvi_path_destroy(&path);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* All of Kepler's ellipses have one period: each is one of a family that no declared symmetry
- * explains. Steps of a low order give each a period of its own, by a little. */
+/* All of Kepler's ellipses have one period, so each is one of a family that no declared symmetry
+ * explains. Steps of a low order give each a slightly different period. */
 START_TEST(a_family_of_closed_paths_is_named)
 {
   static const struct {
@@ -343,8 +344,8 @@ START_TEST(what_the_lagrangian_does_not_have_is_no_symmetry)
 }
 END_TEST
 
-/* V = q^2/2 - q f: at the guess, at rest in 0, V vanishes whatever f is. `user`: the frequency of f
- * = cos, or 0. */
+/* V = q^2/2 - q f. At the guess, at rest in 0, V vanishes for any f. `user` is the frequency of f =
+ * cos, or 0. */
 static int pushed_value(double t, const double *q, double *value, void *user)
 {
   *value = q[0] * q[0] / 2 - q[0] * cos(*(const double *)user * t);
@@ -389,8 +390,8 @@ START_TEST(a_path_at_rest_hides_no_force)
 }
 END_TEST
 
-/* V = q^2/2 + q^3 sin t - q cos(2 pi t): at the guess, at rest in 0, it looks as if 1 were its
- * period; the path that is found sees more. */
+/* V = q^2/2 + q^3 sin t - q cos(2 pi t). At the guess, at rest in 0, it looks as if 1 were its
+ * period, but the solution depends on more. */
 static int hidden_value(double t, const double *q, double *value, void *user)
 {
   (void)user;

@@ -1,4 +1,5 @@
-/* Numbers as text: read to the last bit, written so that they are read back, in any locale. */
+/* Numbers as text are read to the last bit, and written so that they are read back, in any
+ * locale. */
 #include <dvi/number.h>
 #include <locale.h>
 #include <math.h>
@@ -29,7 +30,7 @@ static void check_all_reads(void)
   check_reads("1.5.25", 1.5, ".25");
   check_reads("3e", 3, "e");
   check_reads("-0", -0.0, "");
-  check_reads("9007199254740993", 0x1p53, ""); /* a tie: to even */
+  check_reads("9007199254740993", 0x1p53, ""); /* a tie rounds to even */
   check_reads("9007199254740993.00000000000000000000001", 0x1.0000000000001p53, "");
   check_reads("2.2250738585072011e-308", 0x0.fffffffffffffp-1022, "");
   check_reads("1e-400", 0, "");
@@ -54,7 +55,7 @@ static void check_writes(double number, const char *text)
   ck_assert_str_eq(written, text);
 }
 
-/* Doubles of all sizes: their bits by a linear congruence. */
+/* Gives doubles of all sizes, with bits by a linear congruence. */
 static void check_round_trips(void)
 {
   uint64_t bits = 1;
@@ -114,7 +115,7 @@ static int print(char *text, size_t size, const char *format, ...)
 START_TEST(all_is_the_same_with_a_decimal_comma)
 {
   char text[64];
-  set_comma();
+  set_comma_locale();
   check_all_reads();
   check_all_refusals();
   check_all_writes();
@@ -122,7 +123,7 @@ START_TEST(all_is_the_same_with_a_decimal_comma)
   ck_assert_str_eq(text, "0.25 and 1,5");
   (void)snprintf(text, sizeof text, "%.2f", 0.25);
   ck_assert_str_eq(text, "0,25"); /* the locale is as it was */
-  set_point();
+  set_point_locale();
 }
 END_TEST
 

@@ -77,7 +77,7 @@ START_TEST(a_line_gives_its_slope_whatever_the_number_of_samples)
   static const long counts[] = {2, 3, 8, 63, 64, 65, 127, 128, 129, 1000, 12345, 100000};
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
     const dvi_drift_fit fit = record(counts[i], 0.1, line, 1);
-    /* values near 2 are rounded to 2e-16, times go up to 1e4; errors are sums of up to 2e3
+    /* values near 2 are rounded to 2e-16, times go up to 1e4, and errors are sums of up to 2e3
      * samples */
     ck_assert_double_eq_tol(fit.slope, -3e-7, 1e-14 / (0.1 * (double)counts[i]));
     ck_assert_double_eq_tol(fit.largest, 3e-7 * 0.1 * (double)(counts[i] - 1), 1e-15);
@@ -128,7 +128,7 @@ START_TEST(white_noise_is_rarely_called_a_drift)
   int called = 0;
   for (unsigned seed = 1; seed <= 200; seed++)
     called += record(1000, 0.1, white_noise, 7919 * seed).significance > 3;
-  /* a normal variable exceeds 3 in one of 370; measured: at most one of 100 */
+  /* a normal variable exceeds 3 in one of 370, the measured rate is at most one of 100 */
   ck_assert_int_le(called, 4);
 }
 END_TEST
@@ -146,7 +146,8 @@ START_TEST(a_random_walk_is_seldom_called_a_drift)
     dvi_drift_result(&drift, &fit);
     called += fit.significance > 3;
   }
-  ck_assert_int_le(called, 50); /* about 1 of 7 are; with independent blocks it would be 4 of 5 */
+  ck_assert_int_le(called,
+                   50); /* about 1 of 7 are, and with independent blocks it would be 4 of 5 */
 }
 END_TEST
 
@@ -158,8 +159,8 @@ START_TEST(the_slope_of_white_noise_scatters_as_its_deviation_says)
     squares += fit.slope * fit.slope;
     variance += fit.deviation * fit.deviation;
   }
-  /* the correction for correlation errs on the safe side, by up to a factor 1.3; 300 samples give 4
-   * percent */
+  /* the correction for correlation errs on the safe side, by up to a factor 1.3, and 300 samples
+   * give 4 percent */
   ck_assert_double_ge(sqrt(variance / squares), 0.9);
   ck_assert_double_le(sqrt(variance / squares), 1.5);
 }
@@ -206,7 +207,7 @@ START_TEST(no_sample_is_lost_when_blocks_are_joined)
     double recorded = 0;
     for (int b = 0; b < drift.blocks; b++) recorded += drift.error[b];
     sum += i;
-    ck_assert(recorded == sum); /* whole numbers: exact */
+    ck_assert(recorded == sum); /* whole numbers are exact */
     ck_assert_int_eq((int)((drift.blocks - 1) * drift.per_block + drift.filled), i + 1);
   }
 }

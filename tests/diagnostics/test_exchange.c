@@ -13,7 +13,8 @@ static const double pi = 3.14159265358979323846;
 static const double products[] = {0.01, 0.5, 1, 1.5, 2, 5, 20, 100, 1000};
 enum { PRODUCTS = sizeof products / sizeof *products };
 
-/* The rate is differenced: a thousandth of a slope's relative change, squared, and rounding. */
+/* The rate is differenced, with the error of a thousandth of a slope's relative change, squared,
+ * and rounding. */
 static void check_exchange(const char *method, double x, double turn, double rate)
 {
   double angle, found;
@@ -46,7 +47,7 @@ START_TEST(verlet_exchanges_too_fast)
 }
 END_TEST
 
-/* Hairer, Lubich and Wanner 2006, sec. XIII.4: psi phi/sinc. */
+/* Gives psi phi/sinc (Hairer, Lubich and Wanner 2006, sec. XIII.4). */
 START_TEST(filters_exchange_at_the_rate_of_their_product)
 {
   const double x = products[_i], s = sin(x) / x, half = 2 * sin(x / 2) / x, turn = fmod(x, 2 * pi);
@@ -117,8 +118,8 @@ static double amplitude(double before, double now, double turn)
   return (before * before + now * now - 2 * before * now * cos(turn)) / (sin(turn) * sin(turn));
 }
 
-/* When the second spring swings as far as the first, which swings alone at the start. The modes are
- * at kappa = 0 and 2: exactly at pi omega/2. */
+/* Gives the time when the second spring swings as far as the first, which swings alone at the
+ * start. The modes are at kappa = 0 and 2, so the time is exactly pi omega/2. */
 static double time_to_share(const char *method, double h, double turn)
 {
   const dvi_potential springs[] = {
@@ -127,7 +128,7 @@ static double time_to_share(const char *method, double h, double turn)
   };
   dvi_system *system = make_system(&(dvi_system_terms){
       .dimension = 2, .mass.scalar = 1, .potentials = springs, .potential_count = 2});
-  dvi_integrator *integrator = made_integrator(system, method);
+  dvi_integrator *integrator = create_integrator(system, method);
   const double q[] = {1, 0}, p[] = {0, 0};
   double before[2], ahead = 1;
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, q, p), DVI_OK);
@@ -143,8 +144,8 @@ static double time_to_share(const char *method, double h, double turn)
   return t;
 }
 
-/* 1 per cent: the exchange's own error is of the relative size kappa/omega^2 and h^2 kappa, the
- * time is known to h. */
+/* 1 per cent, because the exchange's own error is of the relative size kappa/omega^2 and h^2 kappa,
+ * and the time is known to h */
 START_TEST(a_run_exchanges_energy_at_the_predicted_rate)
 {
   static const struct {
@@ -177,7 +178,7 @@ END_TEST
 START_TEST(fast_frequencies_are_those_of_the_declared_potentials)
 {
   double least, most;
-  problem *chain = made_problem("fpu", "omega=70");
+  problem *chain = create_problem("fpu", "omega=70");
   ck_assert_int_eq(dvi_fast_frequencies(chain->system, &least, &most), DVI_OK);
   ck_assert_double_eq_tol(least, 70, 1e-12);
   ck_assert_double_eq_tol(most, 70, 1e-12);
@@ -188,7 +189,7 @@ END_TEST
 START_TEST(a_system_without_them_is_refused)
 {
   double least = 7, most = 8;
-  problem *orbit = made_problem("kepler", NULL);
+  problem *orbit = create_problem("kepler", NULL);
   dvi_system *far = runaway(1);
   ck_assert_int_eq(dvi_fast_frequencies(orbit->system, &least, &most), DVI_UNSUPPORTED);
   ck_assert_int_eq(dvi_fast_frequencies(far, &least, &most), DVI_UNSUPPORTED);

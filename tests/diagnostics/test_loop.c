@@ -1,5 +1,5 @@
 /* labels: unit */
-/* Loop integrals: areas that are known. */
+/* Loop integrals are compared with known areas. */
 #include <check.h>
 #include <dvi/diagnostics.h>
 #include <math.h>
@@ -25,7 +25,7 @@ static double area(int count, double uneven)
   return integral;
 }
 
-/* What 200 points around 20, each rounded by 2e-15, and weights of order 1 add up to. */
+/* The sum of errors of 200 points around 20, each rounded by 2e-15, with weights of order 1. */
 static const double roundoff = 1e-12;
 
 /* The only harmonic is below half the number of points. */

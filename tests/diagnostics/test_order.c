@@ -18,7 +18,7 @@ START_TEST(a_power_law_gives_its_exponent)
   for (int order = 1; order <= 16; order++) {
     for (int i = 0; i < 6; i++) error[i] = 3 * pow(h[i], order);
     ck_assert_int_eq(dvi_order(6, h, error, 0, 0, &fit), DVI_OK);
-    /* logarithms of numbers up to 1e-29: 70 ulp over a span of 3.5 */
+    /* logarithms of numbers up to 1e-29, 70 ulp over a span of 3.5 */
     ck_assert_double_eq_tol(fit.slope, order, 1e-13);
     ck_assert_int_eq(fit.first, 0);
     ck_assert_int_eq(fit.last, 5);

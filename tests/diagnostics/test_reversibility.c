@@ -10,8 +10,8 @@
 
 START_TEST(verlet_returns_to_its_start)
 {
-  problem *p = made_problem("henon-heiles", NULL);
-  dvi_integrator *integrator = made_integrator(p->system, "verlet");
+  problem *p = create_problem("henon-heiles", NULL);
+  dvi_integrator *integrator = create_integrator(p->system, "verlet");
   double defect = -1;
   ck_assert_int_eq(dvi_reversibility(integrator, 0, p->q, p->p, p->h, 100, &defect), DVI_OK);
   ck_assert_double_ge(defect, 0);
@@ -23,8 +23,8 @@ END_TEST
 
 START_TEST(the_start_may_be_the_integrators_own_state)
 {
-  problem *p = made_problem("kepler", NULL);
-  dvi_integrator *integrator = made_integrator(p->system, "verlet");
+  problem *p = create_problem("kepler", NULL);
+  dvi_integrator *integrator = create_integrator(p->system, "verlet");
   double defect = -1;
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, p->q, p->p), DVI_OK);
   ck_assert_int_eq(dvi_integrator_step(integrator, p->h), DVI_OK);
@@ -39,8 +39,8 @@ START_TEST(the_start_may_be_the_integrators_own_state)
 }
 END_TEST
 
-/* A force that is stronger on the way back: time runs on between the first and the last call of a
- * gradient. */
+/* A force that is stronger on the way back, because time runs on between the first and the last
+ * call of a gradient. */
 static int value(double t, const double *q, double *V, void *user)
 {
   (void)t, (void)user;
@@ -66,7 +66,7 @@ START_TEST(a_force_that_changes_between_the_ways_is_found)
   dvi_system *system = NULL;
   double defect = 0;
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
-  dvi_integrator *integrator = made_integrator(system, "verlet");
+  dvi_integrator *integrator = create_integrator(system, "verlet");
   ck_assert_int_eq(dvi_reversibility(integrator, 0, &q, &p, 0.1, 20, &defect), DVI_OK);
   ck_assert_double_gt(defect, 1e-3); /* the force grew by about 20 per mille over a time of 2 */
   dvi_integrator_destroy(&integrator);
@@ -76,8 +76,8 @@ END_TEST
 
 START_TEST(bad_arguments_are_refused_and_nothing_is_written)
 {
-  problem *p = made_problem("pendulum", NULL);
-  dvi_integrator *integrator = made_integrator(p->system, "verlet");
+  problem *p = create_problem("pendulum", NULL);
+  dvi_integrator *integrator = create_integrator(p->system, "verlet");
   double defect = 7;
   ck_assert_int_eq(dvi_reversibility(NULL, 0, p->q, p->p, p->h, 1, &defect), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_reversibility(integrator, 0, NULL, p->p, p->h, 1, &defect),

@@ -13,8 +13,8 @@
 
 static double defect_of(const char *name, const char *method, double step_factor)
 {
-  problem *p = made_problem(name, NULL);
-  dvi_integrator *integrator = made_integrator(p->system, method);
+  problem *p = create_problem(name, NULL);
+  dvi_integrator *integrator = create_integrator(p->system, method);
   double defect = -1;
   const dvi_status status = dvi_symplecticity(integrator, 0, p->q, p->p, step_factor * p->h,
                                               &defect);
@@ -56,13 +56,14 @@ START_TEST(a_step_backward_is_symplectic_too)
 }
 END_TEST
 
-/* A Lagrangian of n freedoms with nothing else, in an integrator; released() frees both. */
+/* Creates an integrator of a system with this Lagrangian of n coordinates alone. released() frees
+ * both. */
 static dvi_integrator *made(const dvi_lagrangian *lagrangian, int n, const char *method)
 {
   dvi_system *system = NULL;
   const dvi_system_terms terms = {.dimension = n, .lagrangian = lagrangian};
   ck_assert_msg(dvi_system_create(&terms, &system) == DVI_OK, "%s", dvi_last_error());
-  return made_integrator(system, method);
+  return create_integrator(system, method);
 }
 
 static dvi_integrator *made_with_potential(const dvi_potential *potential, int n,
@@ -72,7 +73,7 @@ static dvi_integrator *made_with_potential(const dvi_potential *potential, int n
   const dvi_system_terms terms = {
       .dimension = n, .mass = {.scalar = 1}, .potentials = potential, .potential_count = 1};
   ck_assert_msg(dvi_system_create(&terms, &system) == DVI_OK, "%s", dvi_last_error());
-  return made_integrator(system, method);
+  return create_integrator(system, method);
 }
 
 static void released(dvi_integrator *integrator)
@@ -82,8 +83,8 @@ static void released(dvi_integrator *integrator)
   dvi_system_destroy(&system);
 }
 
-/* L = v^2/2 + v^4/4 + cos q: velocity is no analytic function of momenta beyond 0.4 i, however
- * small h is. */
+/* L = v^2/2 + v^4/4 + cos q, whose velocity is no analytic function of momenta beyond 0.4 i,
+ * however small h is. */
 static int quartic(double t, const double *q, const double *v, double *L, void *user)
 {
   (void)t, (void)user;
@@ -122,7 +123,7 @@ START_TEST(a_kinetic_energy_that_is_not_quadratic_shows_no_defect)
 }
 END_TEST
 
-/* L = -sqrt(1 - v.v) - q.q/2, of two freedoms; beyond |v| = 1 the callbacks give `user`. */
+/* L = -sqrt(1 - v.v) - q.q/2 of two coordinates. Beyond |v| = 1 the callbacks return `user`. */
 static int relativistic(double t, const double *q, const double *v, double *L, void *user)
 {
   (void)t;
@@ -174,7 +175,7 @@ START_TEST(an_edge_of_the_domain_of_velocities_shows_no_defect)
 }
 END_TEST
 
-/* V = -log(1 - q); beyond its wall NaN, or the failure in `user`. */
+/* V = -log(1 - q). Beyond its wall it gives NaN, or returns the failure in `user`. */
 static int wall(double t, const double *q, double *V, void *user)
 {
   (void)t, (void)user;
@@ -222,9 +223,9 @@ START_TEST(a_callback_that_fails_for_good_ends_the_search)
 }
 END_TEST
 
-/* Angles that turned often: waves of a force are much shorter than the coordinate. In an eighth of
- * 1600 pi there are 100 periods, in 59 hundredths of it 59: differences over these two lengths
- * agree that there is no force. */
+/* After many turns of an angle the periods of a force are much shorter than the coordinate. In an
+ * eighth of 1600 pi there are 100 periods, in 59 hundredths of it 59, so differences over these two
+ * lengths agree that there is no force. */
 static int cosine(double t, const double *q, double *V, void *user)
 {
   (void)t, (void)user;
@@ -258,7 +259,7 @@ START_TEST(an_angle_of_many_turns_shows_no_defect)
 }
 END_TEST
 
-/* At t = 0 the force exists in a single point: the step there succeeds, and none beside it. */
+/* At t = 0 the force exists in a single point. The step there succeeds, and none beside it does. */
 static int one_point(double t, const double *q, double *V_q, void *user)
 {
   (void)user;
@@ -298,7 +299,7 @@ START_TEST(a_step_that_fails_has_no_defect_even_if_all_around_it_succeed)
 }
 END_TEST
 
-/* A force c (y, -x) with curl, declared as a gradient: no potential has it, and verlet with it is
+/* A force c (y, -x) with curl, declared as a gradient. It has no potential, and verlet with it is
  * not symplectic. */
 static int no_value(double t, const double *q, double *V, void *user)
 {
@@ -374,9 +375,9 @@ END_TEST
 
 START_TEST(the_integrator_goes_on_as_if_nothing_had_happened)
 {
-  problem *p = made_problem("kepler", NULL);
-  dvi_integrator *probed = made_integrator(p->system, "galerkin:degree=3"),
-                 *alone = made_integrator(p->system, "galerkin:degree=3");
+  problem *p = create_problem("kepler", NULL);
+  dvi_integrator *probed = create_integrator(p->system, "galerkin:degree=3"),
+                 *alone = create_integrator(p->system, "galerkin:degree=3");
   dvi_counters before, after;
   double defect;
   ck_assert_int_eq(dvi_integrator_start(probed, 0, p->q, p->p), DVI_OK);
@@ -407,8 +408,8 @@ END_TEST
 START_TEST(a_start_in_a_singularity_is_reported_and_nothing_is_written)
 {
   const double origin[] = {0, 0};
-  problem *p = made_problem("kepler", NULL);
-  dvi_integrator *integrator = made_integrator(p->system, "verlet");
+  problem *p = create_problem("kepler", NULL);
+  dvi_integrator *integrator = create_integrator(p->system, "verlet");
   double defect = 7;
   ck_assert_int_ne(dvi_symplecticity(integrator, 0, origin, p->p, p->h, &defect), DVI_OK);
   ck_assert(defect == 7);
@@ -419,8 +420,8 @@ END_TEST
 
 START_TEST(missing_arguments_and_a_step_of_0_are_refused)
 {
-  problem *p = made_problem("pendulum", NULL);
-  dvi_integrator *integrator = made_integrator(p->system, "verlet");
+  problem *p = create_problem("pendulum", NULL);
+  dvi_integrator *integrator = create_integrator(p->system, "verlet");
   double defect = 7;
   ck_assert_int_eq(dvi_symplecticity(NULL, 0, p->q, p->p, p->h, &defect), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_symplecticity(integrator, 0, NULL, p->p, p->h, &defect), DVI_BAD_ARGUMENT);
@@ -440,8 +441,8 @@ START_TEST(factors_have_no_canonical_coordinates)
 {
   static const char *const place[] = {"free-body", "spherical-double-pendulum", "two-body"};
   for (size_t k = 0; k < sizeof place / sizeof *place; k++) {
-    problem *p = made_problem(place[k], NULL);
-    dvi_integrator *integrator = made_integrator(p->system, "lie-verlet");
+    problem *p = create_problem(place[k], NULL);
+    dvi_integrator *integrator = create_integrator(p->system, "lie-verlet");
     double defect = 7;
     ck_assert_int_eq(dvi_symplecticity(integrator, 0, p->q, p->p, p->h, &defect), DVI_UNSUPPORTED);
     ck_assert(defect == 7);
@@ -459,8 +460,8 @@ START_TEST(degenerate_systems_are_refused_and_the_sentence_names_the_loop_integr
                                          {"vortices-linear", "hp:type=2"},
                                          {"circle-dirac", "dg-phase"}};
   for (size_t k = 0; k < sizeof place / sizeof *place; k++) {
-    problem *p = made_problem(place[k][0], NULL);
-    dvi_integrator *integrator = made_integrator(p->system, place[k][1]);
+    problem *p = create_problem(place[k][0], NULL);
+    dvi_integrator *integrator = create_integrator(p->system, place[k][1]);
     double defect = 7;
     ck_assert_int_eq(dvi_symplecticity(integrator, 0, p->q, p->p, p->h, &defect), DVI_UNSUPPORTED);
     check_words("use dvi_loop_integral over a loop of starts");
@@ -473,8 +474,8 @@ END_TEST
 
 START_TEST(every_failing_allocation_is_reported)
 {
-  problem *p = made_problem("pendulum", NULL);
-  dvi_integrator *integrator = made_integrator(p->system, "verlet");
+  problem *p = create_problem("pendulum", NULL);
+  dvi_integrator *integrator = create_integrator(p->system, "verlet");
   double defect = 7;
   dvi_status status = DVI_NO_MEMORY;
   for (long successes = 0; status != DVI_OK; successes++) {

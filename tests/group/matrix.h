@@ -16,7 +16,8 @@ static inline void multiply(const double A[9], const double B[9], double C[9])
       C[3 * i + j] = A[3 * i] * B[j] + A[3 * i + 1] * B[3 + j] + A[3 * i + 2] * B[6 + j];
 }
 
-/* defect = R^T R - I, each product and sum exact to some 1e-19; returns its largest entry. */
+/* Computes defect = R^T R - I, each product and sum exact to some 1e-19, and returns its largest
+ * entry. */
 static inline double orthogonality(const double R[9], double defect[9])
 {
   double largest = 0;

@@ -1,5 +1,5 @@
-/* Where the group's functions are tested: random vectors, and the lengths at which formulas are apt
- * to break. */
+/* Points for tests of the group's functions: random vectors, and the lengths at which formulas are
+ * apt to break. */
 #ifndef TEST_GROUP_POINTS_H
 #define TEST_GROUP_POINTS_H
 #include <float.h>
@@ -28,7 +28,7 @@ static inline double uniform(uint64_t *seed)
   return (double)((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1;
 }
 
-/* Of this length, in a random direction. */
+/* Gives a vector of this length in a random direction. */
 static inline void random_vector(uint64_t *seed, double length, double w[3])
 {
   double size = 0;
@@ -39,8 +39,8 @@ static inline void random_vector(uint64_t *seed, double length, double w[3])
   for (int i = 0; i < 3; i++) w[i] *= length / size;
 }
 
-/* Of point `i`: the special lengths in turn, axes of coordinates among the directions, then random
- * lengths below `longest`. */
+/* Gives point `i`. The special lengths come in turn, with axes of coordinates among the directions,
+ * then random lengths below `longest`. */
 static inline void point(int i, double longest, uint64_t *seed, double w[3])
 {
   random_vector(seed,

@@ -10,7 +10,7 @@ typedef __float128 quad;
 
 enum { QUAD_ROWS = 6, QUAD_SERIES = 120 };
 
-/* C = A B; C is another one. */
+/* Computes C = A B. C is another matrix. */
 static inline void quad_multiply(int n, const quad *A, const quad *B, quad *C)
 {
   for (int i = 0; i < n; i++)
@@ -27,7 +27,8 @@ static inline quad quad_norm(int count, const quad *x)
   return sqrtq(sum);
 }
 
-/* sum_j A^j / (j + shift)!: the exponential for shift 0, dexp for shift 1 and A = ad. */
+/* Sums A^j / (j + shift)! over j, which is the exponential for shift 0, and dexp for shift 1 and A
+ * = ad. */
 static inline void quad_series(int n, int shift, const quad *A, quad *sum)
 {
   quad power[QUAD_ROWS * QUAD_ROWS], next[QUAD_ROWS * QUAD_ROWS];

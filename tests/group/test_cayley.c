@@ -76,7 +76,7 @@ START_TEST(dcayley_is_its_derivative_moved_back)
     point(i, 20, &seed, w);
     random_vector(&seed, 1, v);
     dvi_so3_dcayley(w, v, u);
-    /* with A = (I - W/2)^-1: hat(u) = A hat(v) A^T */
+    /* With A = (I - W/2)^-1 it is hat(u) = A hat(v) A^T. */
     quad_from(3, w, exact_w);
     quad_from(3, v, exact_v);
     quad_hat(exact_w, W);
@@ -128,7 +128,7 @@ START_TEST(the_rotation_of_any_quaternion_is_right_to_2_ulp)
 }
 END_TEST
 
-/* The judge: (cos |w|/2, w sin(|w|/2) / |w|). */
+/* Judges by (cos |w|/2, w sin(|w|/2) / |w|). */
 START_TEST(the_quaternion_of_a_rotation_is_right_to_2_ulp)
 {
   double worst = 0;

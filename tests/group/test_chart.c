@@ -1,5 +1,5 @@
-/* Charts of rotations, directions, angles and lines: every derivative against differences of what
- * it is the derivative of, and the way back. */
+/* Charts of rotations, directions, angles and lines. Every derivative is tested against differences
+ * of its function, and every chart by the way back. */
 #include <dvi/group.h>
 #include <float.h>
 #include <math.h>
@@ -11,7 +11,7 @@
 
 enum { KINDS = DVI__ROTATION + 1, LENGTHS = 4 };
 
-/* |xi|: where series would be used, ordinary, near half a turn. */
+/* lengths |xi| where series would be used, ordinary ones, and ones near half a turn */
 static const double lengths[LENGTHS] = {1e-6, 0.3, 1.9, 3.1};
 
 typedef struct scene {
@@ -151,7 +151,7 @@ START_TEST(derivatives_are_those_of_points)
 }
 END_TEST
 
-/* The velocity is the derivative along the rate; a stored velocity leads to it. */
+/* The velocity is the derivative along the rate, and a stored velocity leads back to it. */
 START_TEST(velocities_are_those_of_points)
 {
   const scene s = set(_i);
@@ -177,7 +177,7 @@ START_TEST(velocities_are_those_of_points)
 }
 END_TEST
 
-/* p.rate, the power of the momentum, is that of the angular momentum; and its derivative. */
+/* p.rate, the power of the momentum, is that of the angular momentum, and so is its derivative. */
 START_TEST(momenta_are_those_of_turns)
 {
   const scene s = set(_i);
@@ -207,8 +207,8 @@ START_TEST(spins_have_their_derivatives)
 }
 END_TEST
 
-/* Rotations have their digits up to half a turn; a direction close to the opposite one has only
- * those of where it lies around it. */
+/* Rotations have their digits up to half a turn. A direction close to the opposite one has only the
+ * digits of its angle around it. */
 START_TEST(points_are_found_again)
 {
   scene s = set(_i * LENGTHS);
@@ -226,7 +226,7 @@ START_TEST(points_are_found_again)
 }
 END_TEST
 
-/* dR = (w x) R, of all columns; and of a direction. */
+/* Gives dR = (w x) R of all columns, and of a direction. */
 START_TEST(turns_are_those_of_space)
 {
   const dvi__chart_kind kind = _i == 0 ? DVI__SPHERE : DVI__ROTATION;

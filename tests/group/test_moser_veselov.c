@@ -15,7 +15,7 @@ static double next_number(unsigned *seed)
   return (double)(*seed >> 8) / (1u << 23) - 1;
 }
 
-/* Jd = B B^T of a body: of any shape, or thin by 1e-3 a direction. */
+/* Gives Jd = B B^T of a body of any shape, or thin by 1e-3 a direction. */
 static void some_moments(unsigned *seed, int thin, double Jd[9])
 {
   double B[9];
@@ -39,8 +39,8 @@ static double residual(const double Jd[9], const double w[3], const double g[3])
 
 enum { CASES = 4000, PARTS = 100 };
 
-/* Every h Pi that has a leap has one for all its parts, and it goes on continuously from 0: no
- * other branch is ever taken. */
+/* If h Pi has a Moser-Veselov step, all fractions of it have one, and it depends continuously on
+ * the fraction from 0 on. No other branch is ever taken. */
 static void check_branch(const dvi__body *body, dvi__moser_veselov_map by, const double g[3])
 {
   double last[3] = {0};
@@ -75,7 +75,7 @@ START_TEST(a_leap_solves_its_equation_on_the_branch_of_short_steps)
     if (n % 20 == 0) check_branch(&body, by, g);
   }
   ck_assert_int_gt(solved, CASES / 20);     /* most others are beyond the bound */
-  ck_assert_int_le(iterations, 4 * solved); /* up to the bound; short steps take two */
+  ck_assert_int_le(iterations, 4 * solved); /* up to the bound, and short steps take two */
 }
 END_TEST
 

@@ -32,7 +32,7 @@ static void quad_motion(const quad E[16], quad g[12])
   for (int i = 0; i < 3; i++) g[9 + i] = E[4 * i + 3];
 }
 
-/* dexp_xi, from ad = [hat(w), 0; hat(u), hat(w)]. */
+/* Gives dexp_xi, from ad = [hat(w), 0; hat(u), hat(w)]. */
 static void quad_dexp(const double xi[6], quad D[36])
 {
   quad exact[6], W[9], U[9], ad[36];
@@ -114,7 +114,8 @@ START_TEST(cayley_is_right_to_2_ulp)
 }
 END_TEST
 
-/* Against |v| = |(a, b)|; |u| = 1. Large angles are known to 1 ulp of themselves. */
+/* Errors are relative to |v| = |(a, b)|, with |u| = 1. Large angles are known to 1 ulp of
+ * themselves. */
 START_TEST(dexp_is_right_to_4_ulp)
 {
   double worst = 0;
@@ -160,8 +161,8 @@ START_TEST(the_inverse_of_dexp_is_right_to_8_ulp)
 END_TEST
 #endif
 
-/* The body velocity (Omega, V) of exp(xi + t v): R' = R hat(Omega), x' = R V, by central
- * differences; their error is 1e-10. */
+/* Gives the body velocity (Omega, V) of exp(xi + t v), R' = R hat(Omega), x' = R V, by central
+ * differences with an error of 1e-10. */
 START_TEST(dexp_of_the_opposite_twist_is_the_body_velocity)
 {
   const double step = 1e-5;

@@ -7,8 +7,8 @@
 #include "quad.h"
 #include "support/suite.h"
 
-/* R diag(s) Q with random rotations R, Q; `factor` becomes R Q, which is closest to it if s_1 >=
- * s_2 >= |s_3|, s_2 + s_3 > 0. */
+/* Gives R diag(s) Q with random rotations R, Q. `factor` becomes R Q, which is closest to it if s_1
+ * >= s_2 >= |s_3|, s_2 + s_3 > 0. */
 static void stretched(uint64_t *seed, const double s[3], double M[9], double factor[9])
 {
   double w[3], R[9], Q[9], SQ[9];
@@ -105,7 +105,7 @@ START_TEST(what_was_refused_is_taken_after_its_projection)
   ck_assert_int_eq(dvi_so3_log(R, w), DVI_BAD_ARGUMENT);
   dvi_so3_project(R, R);
   ck_assert_int_eq(dvi_so3_log(R, w), DVI_OK);
-  /* in the plane: tan w = (M_21 - M_12) / (M_11 + M_22) */
+  /* in the plane tan w = (M_21 - M_12) / (M_11 + M_22) */
   ck_assert_double_eq_tol(w[2], -atan(0.01), 2 * DBL_EPSILON);
 }
 END_TEST

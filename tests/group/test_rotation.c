@@ -87,7 +87,8 @@ START_TEST(dexp_is_right_to_3_ulp)
 }
 END_TEST
 
-/* Against |v|; near full turns the angle's roundoff, over the distance from there, comes on top. */
+/* Errors are relative to |v|. Near full turns the angle's roundoff, over the distance from there,
+ * comes on top. */
 START_TEST(the_inverse_of_dexp_is_right_to_4_ulp)
 {
   double worst = 0;
@@ -109,8 +110,8 @@ START_TEST(the_inverse_of_dexp_is_right_to_4_ulp)
 }
 END_TEST
 
-/* d/dw of dexp_{-w} v by central differences with the step 1e-11, in quadruple precision: right to
- * 1e-21. */
+/* Gives d/dw of dexp_{-w} v by central differences with the step 1e-11, in quadruple precision,
+ * right to 1e-21. */
 static void quad_velocity_derivative(const double w[3], const double v[3], quad D[9])
 {
   const quad step = (quad)1e-11;
@@ -128,7 +129,7 @@ static void quad_velocity_derivative(const double w[3], const double v[3], quad 
   }
 }
 
-/* Against |v|; large angles are known to 1 ulp of themselves. */
+/* Errors are relative to |v|. Large angles are known to 1 ulp of themselves. */
 START_TEST(the_derivative_of_the_velocity_is_right_to_2_ulp)
 {
   double worst = 0;
@@ -180,8 +181,8 @@ START_TEST(exp_is_orthogonal_to_1_ulp)
 }
 END_TEST
 
-/* A step of the walk, the roundoff of an exponential and of a product, is about 1 ulp; a bias of 1
- * % of that would show: 1e4 > 3e3. */
+/* A step of the walk, the roundoff of an exponential and of a product, is about 1 ulp. A bias of 1
+ * % of that would show, as 1e4 > 3e3. */
 START_TEST(a_million_factors_leave_the_group_as_a_random_walk_does)
 {
   enum { FACTORS = 1000000 };

@@ -56,8 +56,8 @@ START_TEST(exp_on_the_sphere_is_right_to_3_ulp)
 }
 END_TEST
 
-/* The judge, from the numbers given: |t| is the angle between them, and t lies in their plane.
- * Close to half turns the direction is known as well as z + y. */
+/* Judges from the given numbers. |t| is the angle between them, and t lies in their plane. Close to
+ * half turns the direction is known as well as z + y. */
 START_TEST(log_on_the_sphere_is_right_to_3_ulp)
 {
   double worst = 0;

@@ -18,8 +18,8 @@ static quad exact(int k, double s)
   return sum;
 }
 
-/* In units of 2.2e-16 of the function's size: its absolute value, or for those that have zeros the
- * bound of their oscillation. */
+/* Gives the error in units of 2.2e-16 of the function's size, which is its absolute value, or the
+ * bound of the oscillation for functions with zeros. */
 static double ulps(int k, double s, double computed)
 {
   const double bound[3] = {1, 1 / fmax(1, sqrt(s)), 1 / fmax(2, s / 4)};
@@ -43,8 +43,8 @@ START_TEST(all_nine_are_right_to_4_ulp_up_to_two_turns)
 }
 END_TEST
 
-/* Its zeros at full turns are double: 2 (sin(theta/2)/theta)^2 has them where they are. The angle's
- * rounding counts twice. */
+/* Its zeros at full turns are double, and 2 (sin(theta/2)/theta)^2 has them at the right places.
+ * The angle's rounding counts twice. */
 START_TEST(c_2_keeps_its_digits_close_to_a_full_turn)
 {
   for (double gap = 0.1; gap > 1e-6; gap /= 10) {

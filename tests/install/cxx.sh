@@ -1,6 +1,7 @@
 #!/bin/sh
-# C++20 programs use the library: each public header alone, with all functions that it declares, and the programs of the pages and
-# the examples, which print what they print in C.  All are linked and run.  Usage: cxx.sh TOP BUILD CXX_COMPILER
+# C++20 programs use the library. Each public header compiles alone, and all functions that it
+# declares link. The programs of the pages and the examples print the same as in C.
+# Usage: cxx.sh TOP BUILD CXX_COMPILER
 set -u
 top=$1 build=$2 compiler=$3
 work=$(mktemp -d) || exit 1
@@ -11,11 +12,12 @@ case $compiler in
 *NOTFOUND | '') fail "no C++ compiler: install one (on Debian: g++)"; exit 1 ;;
 esac
 
-# translate SOURCE NAME FLAG...: to $work/NAME.
+# translate SOURCE NAME FLAG...: build the program $work/NAME.
 translate() {
   source=$1 program=$work/$2
   shift 2
-  "$compiler" -std=c++20 -Wall -Wextra -Wpedantic -Werror "$@" -I "$top/lib/include" -x c++ "$source" -x none -o "$program" \
+  "$compiler" -std=c++20 -Wall -Wextra -Wpedantic -Werror "$@" -I "$top/lib/include" -x c++ \
+    "$source" -x none -o "$program" \
     -L "$build/lib" -ldvi -ldvi-scene -lm -Wl,-rpath,"$build/lib"
 }
 
@@ -27,23 +29,35 @@ for header in "$top"/lib/include/dvi/*.h; do
     echo "static const function functions[] = {nullptr"
     awk -f "$top/tests/lint/declared.awk" "$header" | sed 's/.*/, reinterpret_cast<function>(\&&)/'
     echo "};"
-    echo "int main() { return functions[sizeof functions / sizeof *functions - 1] == functions[0] && sizeof functions > sizeof *functions; }"
+    echo "const unsigned long count = sizeof functions / sizeof *functions;"
+    echo "int main() { return functions[count - 1] == functions[0] && count > 1; }"
   } >"$work/$name.cc"
-  translate "$work/$name.cc" "header_$name" -Wno-cast-function-type || { fail "$name.h: does not compile or link as C++20"; continue; }
+  translate "$work/$name.cc" "header_$name" -Wno-cast-function-type || {
+    fail "$name.h: does not compile or link as C++20"
+    continue
+  }
   "$work/header_$name" || fail "$name.h: the program does not run"
 done
 
-# Members that a designated initialiser leaves out are 0, as meant.
+# Members that a designated initialiser leaves out are 0, as the examples intend.
 for example in "$top"/apps/examples/*.c; do
   name=$(basename "$example" .c)
-  translate "$example" "$name" -Wno-missing-field-initializers || { fail "apps/examples/$name.c: no C++20 program"; continue; }
+  translate "$example" "$name" -Wno-missing-field-initializers || {
+    fail "apps/examples/$name.c: no C++20 program"
+    continue
+  }
   "$work/$name" >"$work/$name.cxx" || fail "apps/examples/$name.c: fails as C++20"
   "$build/apps/$name" >"$work/$name.c11" || fail "apps/examples/$name.c: fails as C"
-  cmp -s "$work/$name.cxx" "$work/$name.c11" || { fail "apps/examples/$name.c: prints something else as C++20"; diff "$work/$name.cxx" "$work/$name.c11"; }
+  cmp -s "$work/$name.cxx" "$work/$name.c11" || {
+    fail "apps/examples/$name.c: prints something else as C++20"
+    diff "$work/$name.cxx" "$work/$name.c11"
+  }
 done
 
-# The README's program and that of docs/shapes.md are examples (lint/docs sees to it); the guide's is its own.
-awk '$0 == "```c" { inside = 1; next } /^```$/ { inside = 0 } inside' "$top/docs/guide.md" >"$work/guide.c"
+# The programs of the README and of docs/shapes.md are examples, as lint/docs checks. The guide has
+# a program of its own.
+awk '$0 == "```c" { inside = 1; next } /^```$/ { inside = 0 } inside' "$top/docs/guide.md" \
+  >"$work/guide.c"
 if translate "$work/guide.c" guide -Wno-missing-field-initializers; then
   "$work/guide" >"$work/guide.out" || fail "docs/guide.md: its program fails as C++20"
 else

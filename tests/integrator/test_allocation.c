@@ -1,7 +1,7 @@
 /* labels: unit */
-/* Creating, running, saving and restoring survive the failure of each of their allocations: status,
- * no object, nothing leaked (the heap is counted here; the sanitizer and valgrind runs of this test
- * look closer). */
+/* Creating, running, saving and restoring survive the failure of each of their allocations, with a
+ * status, without an object or a leak. The heap is counted here, and the sanitizer and valgrind
+ * runs of this test look closer. */
 #include <stdio.h>
 #include <string.h>
 
@@ -98,40 +98,40 @@ END_TEST
 
 START_TEST(an_integrator_survives_every_failure)
 {
-  problem *of = made_problem(places[_i].problem, places[_i].setting);
+  problem *model = create_problem(places[_i].problem, places[_i].setting);
   /* the first one completes the system */
-  dvi_integrator *integrator = made_integrator(of->system, places[_i].method);
+  dvi_integrator *integrator = create_integrator(model->system, places[_i].method);
   dvi_integrator_destroy(&integrator);
   const long before = dvi__allocation_count();
-  integrator = made_integrator(of->system, places[_i].method);
+  integrator = create_integrator(model->system, places[_i].method);
   const long needed = dvi__allocation_count() - before;
   dvi_integrator_destroy(&integrator);
   ck_assert(needed > 5 && needed < MOST);
   const long bytes_before = heap_bytes();
   for (long successes = 0; successes < needed; successes++) {
-    integrator = (dvi_integrator *)of;
+    integrator = (dvi_integrator *)model;
     dvi__fail_allocations_after(successes);
-    const dvi_status status = dvi_integrator_create(of->system, places[_i].method, &integrator);
+    const dvi_status status = dvi_integrator_create(model->system, places[_i].method, &integrator);
     out_of_memory(status);
     ck_assert_ptr_null(integrator);
   }
   ck_assert_int_eq(heap_bytes(), bytes_before);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(an_integrator_gives_back_all_that_it_took)
 {
-  problem *of = made_problem(places[_i].problem, places[_i].setting);
-  dvi_integrator *integrator = started(of, places[_i].method);
-  advance(integrator, of->h, 1); /* what libraries keep for themselves is taken once */
+  problem *model = create_problem(places[_i].problem, places[_i].setting);
+  dvi_integrator *integrator = start_integrator(model, places[_i].method);
+  advance(integrator, model->h, 1); /* what libraries keep for themselves is taken once */
   dvi_integrator_destroy(&integrator);
   const long bytes_before = heap_bytes();
-  integrator = started(of, places[_i].method);
-  advance(integrator, of->h, 3);
+  integrator = start_integrator(model, places[_i].method);
+  advance(integrator, model->h, 3);
   dvi_integrator_destroy(&integrator);
   ck_assert_int_eq(heap_bytes(), bytes_before);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -144,17 +144,17 @@ static int first_coordinate(double t, const double *q, const double *v, double *
   return 0;
 }
 
-static dvi_status run(const problem *of, dvi_integrator *integrator, double t_end,
+static dvi_status run(const problem *model, dvi_integrator *integrator, double t_end,
                       dvi_run_report *report)
 {
-  double level = of->q[0];
+  double level = model->q[0];
   const dvi_event events[] = {{.name = "there", .value = first_coordinate, .user = &level},
                               {.name = "here", .value = first_coordinate, .user = &level}};
-  const dvi_run_options options = {.h = of->h,
+  const dvi_run_options options = {.h = model->h,
                                    .t_end = t_end,
                                    .events = events,
                                    .event_count = 2,
-                                   .checkpoint = in_folder("checkpoint"),
+                                   .checkpoint = path_in_folder("checkpoint"),
                                    .checkpoint_every = 2};
   return dvi_run(integrator, &options, report);
 }
@@ -167,55 +167,55 @@ static int place_has_path(int which)
   return strncmp(places[which].method, "lie-rk", 6) != 0;
 }
 
-/* Allocations of a run are those for its events and its checkpoints; a step makes none
- * once its solvers are prepared (test_late.c). */
+/* A run allocates for its events and its checkpoints. A step allocates nothing once its solvers are
+ * prepared (test_late.c). */
 START_TEST(a_run_survives_every_failure)
 {
   const int place = with_path.which[_i];
-  problem *of = made_problem(places[place].problem, places[place].setting);
-  dvi_integrator *integrator = started(of, places[place].method);
-  const double t_end = 5 * of->h;
+  problem *model = create_problem(places[place].problem, places[place].setting);
+  dvi_integrator *integrator = start_integrator(model, places[place].method);
+  const double t_end = 5 * model->h;
   dvi_run_report report;
-  ck_assert_msg(run(of, integrator, t_end, &report) == DVI_OK, "%s", dvi_last_error());
-  ck_assert_int_eq(dvi_integrator_start(integrator, 0, of->q, of->p), DVI_OK);
+  ck_assert_msg(run(model, integrator, t_end, &report) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, model->q, model->p), DVI_OK);
   const long before = dvi__allocation_count();
-  ck_assert_msg(run(of, integrator, t_end, &report) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(run(model, integrator, t_end, &report) == DVI_OK, "%s", dvi_last_error());
   const long needed = dvi__allocation_count() - before;
   ck_assert(needed >= 7 && needed < MOST); /* four for events, three checkpoints */
   for (long successes = 0; successes < needed; successes++) {
-    ck_assert_int_eq(dvi_integrator_start(integrator, 0, of->q, of->p), DVI_OK);
+    ck_assert_int_eq(dvi_integrator_start(integrator, 0, model->q, model->p), DVI_OK);
     const long bytes_before = heap_bytes();
     dvi__fail_allocations_after(successes);
-    const dvi_status status = run(of, integrator, t_end, &report);
+    const dvi_status status = run(model, integrator, t_end, &report);
     out_of_memory(status);
     ck_assert_int_eq(heap_bytes(), bytes_before);
     ck_assert_int_eq(report.end, DVI_RUN_FAILED);
     ck_assert_int_le(report.steps, 6); /* sem may take one more than those of a fixed h */
   }
-  /* What was left off can be taken up. */
-  ck_assert_msg(run(of, integrator, 2 * t_end, &report) == DVI_OK, "%s", dvi_last_error());
+  /* An interrupted run can be continued. */
+  ck_assert_msg(run(model, integrator, 2 * t_end, &report) == DVI_OK, "%s", dvi_last_error());
   ck_assert_int_eq(report.end, DVI_RUN_COMPLETE);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(saving_and_restoring_survive_the_failure)
 {
-  problem *of = made_problem(places[_i].problem, places[_i].setting);
-  dvi_integrator *integrator = started(of, places[_i].method);
-  advance(integrator, of->h, 2);
+  problem *model = create_problem(places[_i].problem, places[_i].setting);
+  dvi_integrator *integrator = start_integrator(model, places[_i].method);
+  advance(integrator, model->h, 2);
   dvi__fail_allocations_after(0);
-  out_of_memory(dvi_integrator_save(integrator, in_folder("checkpoint")));
-  ck_assert_int_eq(files_in_folder(), 0);
-  ck_assert_int_eq(dvi_integrator_save(integrator, in_folder("checkpoint")), DVI_OK);
-  advance(integrator, of->h, 1);
-  const bytes before = state_of(integrator);
+  out_of_memory(dvi_integrator_save(integrator, path_in_folder("checkpoint")));
+  ck_assert_int_eq(count_files_in_folder(), 0);
+  ck_assert_int_eq(dvi_integrator_save(integrator, path_in_folder("checkpoint")), DVI_OK);
+  advance(integrator, model->h, 1);
+  const bytes before = read_state(integrator);
   dvi__fail_allocations_after(0);
-  out_of_memory(dvi_integrator_restore(integrator, in_folder("checkpoint")));
+  out_of_memory(dvi_integrator_restore(integrator, path_in_folder("checkpoint")));
   check_state(integrator, before);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

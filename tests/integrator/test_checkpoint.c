@@ -15,8 +15,8 @@
 
 /* ---- going on bit for bit ---- */
 
-/* In the first run fixed point iteration gives up near the pericentre, and better ones take over;
- * stiff steps keep the factors of earlier ones. */
+/* In the first run fixed-point iteration gives up near the pericentre, and more robust solvers take
+ * over. Stiff steps keep the factors of earlier ones. */
 static const struct {
   const char *problem, *setting, *method;
   double h;
@@ -62,7 +62,7 @@ static const struct {
 };
 enum { RUNS = sizeof runs / sizeof *runs, COORDINATES_MOST = 8, INVARIANTS_MOST = 16 };
 
-/* What both can be asked between two steps. */
+/* Compares everything that both can be asked between two steps. */
 static void check_same_answers(dvi_integrator *a, dvi_integrator *b, double t)
 {
   double qv[2][2][COORDINATES_MOST] = {0}, invariants[2][INVARIANTS_MOST] = {0};
@@ -76,13 +76,13 @@ static void check_same_answers(dvi_integrator *a, dvi_integrator *b, double t)
 
 /* Restore the first one's checkpoint into an integrator with another past, and take the same step
  * with both. */
-static void check_step_after_restoring(const problem *of, const char *method, dvi_integrator *first,
-                                       double h, int asked)
+static void check_step_after_restoring(const problem *model, const char *method,
+                                       dvi_integrator *first, double h, int asked)
 {
-  dvi_integrator *second = started(of, method);
+  dvi_integrator *second = start_integrator(model, method);
   advance(second, 0.6 * h, 2);
-  ck_assert_int_eq(dvi_integrator_save(first, in_folder("checkpoint")), DVI_OK);
-  ck_assert_msg(dvi_integrator_restore(second, in_folder("checkpoint")) == DVI_OK, "%s",
+  ck_assert_int_eq(dvi_integrator_save(first, path_in_folder("checkpoint")), DVI_OK);
+  ck_assert_msg(dvi_integrator_restore(second, path_in_folder("checkpoint")) == DVI_OK, "%s",
                 dvi_last_error());
   if (asked)
     check_same_answers(first, second,
@@ -95,80 +95,81 @@ static void check_step_after_restoring(const problem *of, const char *method, dv
 
 START_TEST(a_restored_run_continues_bit_for_bit_from_any_step)
 {
-  problem *of = made_problem(runs[_i].problem, runs[_i].setting);
-  dvi_integrator *integrator = started(of, runs[_i].method);
+  problem *model = create_problem(runs[_i].problem, runs[_i].setting);
+  dvi_integrator *integrator = start_integrator(model, runs[_i].method);
   for (int step = 0; step < runs[_i].steps; step++)
-    check_step_after_restoring(of, runs[_i].method, integrator,
+    check_step_after_restoring(model, runs[_i].method, integrator,
                                runs[_i].h * (step % 10 == 9 ? 0.7 : 1), step > 0);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 /* Else the test above would not see a checkpoint that forgets which of the two is in charge. */
 START_TEST(the_first_run_changes_its_solver_on_the_way)
 {
-  problem *of = made_problem(runs[0].problem, runs[0].setting);
-  dvi_integrator *integrator = started(of, runs[0].method);
+  problem *model = create_problem(runs[0].problem, runs[0].setting);
+  dvi_integrator *integrator = start_integrator(model, runs[0].method);
   dvi_counters counters;
   advance(integrator, runs[0].h, runs[0].steps);
   dvi_integrator_counters(integrator, &counters);
   ck_assert_int_gt(counters.newtons, 0);
   ck_assert_int_gt(counters.fixed_points, 0);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(time_and_number_of_steps_are_restored)
 {
-  problem *of = made_problem("pendulum", NULL);
-  dvi_integrator *first = started(of, "midpoint"),
-                 *second = made_integrator(of->system, "midpoint");
+  problem *model = create_problem("pendulum", NULL);
+  dvi_integrator *first = start_integrator(model, "midpoint"),
+                 *second = create_integrator(model->system, "midpoint");
   dvi_counters counters;
   advance(first, 0.1, 7);
-  ck_assert_int_eq(dvi_integrator_save(first, in_folder("checkpoint")), DVI_OK);
-  ck_assert_int_eq(dvi_integrator_restore(second, in_folder("checkpoint")), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_save(first, path_in_folder("checkpoint")), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_restore(second, path_in_folder("checkpoint")), DVI_OK);
   ck_assert_double_eq(dvi_integrator_time(second), dvi_integrator_time(first));
   ck_assert_double_eq(dvi_integrator_q(second)[0], dvi_integrator_q(first)[0]);
   ck_assert_double_eq(dvi_integrator_p(second)[0], dvi_integrator_p(first)[0]);
   dvi_integrator_counters(second, &counters);
   ck_assert_int_eq(counters.steps, 7);
-  ck_assert_int_eq(files_in_folder(), 1);
+  ck_assert_int_eq(count_files_in_folder(), 1);
   dvi_integrator_destroy(&first);
   dvi_integrator_destroy(&second);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* What an alarm does is no part of the steps: a run that was stopped goes on with warnings, and one
- * that was warned with stops. */
+/* The effect of an alarm is no part of the steps. A run that was stopped goes on with warnings, and
+ * one that was warned with stops. */
 START_TEST(a_run_goes_on_under_another_alarm_and_under_no_other_key)
 {
-  problem *of = made_problem("vortices", NULL);
+  problem *model = create_problem("vortices", NULL);
   const char *const method[] = {"dg", "dg-phase"}, *const other[] = {"dg:nodes=4,alarm=warn",
                                                                      "dg-phase:degree=2"};
-  dvi_integrator *stops = started(of, method[_i]),
-                 *warns = made_integrator(of->system, spec("%s:alarm=warn", method[_i]));
-  dvi_integrator *differs = made_integrator(of->system, other[_i]);
+  dvi_integrator *stops = start_integrator(model, method[_i]),
+                 *warns = create_integrator(model->system,
+                                            method_spec("%s:alarm=warn", method[_i]));
+  dvi_integrator *differs = create_integrator(model->system, other[_i]);
   advance(stops, 0.02, 3);
-  ck_assert_int_eq(dvi_integrator_save(stops, in_folder("checkpoint")), DVI_OK);
-  ck_assert_msg(dvi_integrator_restore(warns, in_folder("checkpoint")) == DVI_OK, "%s",
+  ck_assert_int_eq(dvi_integrator_save(stops, path_in_folder("checkpoint")), DVI_OK);
+  ck_assert_msg(dvi_integrator_restore(warns, path_in_folder("checkpoint")) == DVI_OK, "%s",
                 dvi_last_error());
   advance(stops, 0.02, 3);
   advance(warns, 0.02, 3);
   ck_assert_mem_eq(dvi_integrator_q(stops), dvi_integrator_q(warns),
-                   (size_t)of->nq * sizeof(double));
+                   (size_t)model->nq * sizeof(double));
   ck_assert_mem_eq(dvi_integrator_p(stops), dvi_integrator_p(warns),
-                   (size_t)of->nq * sizeof(double));
-  ck_assert_int_eq(dvi_integrator_save(warns, in_folder("checkpoint")), DVI_OK);
-  ck_assert_int_eq(dvi_integrator_restore(stops, in_folder("checkpoint")), DVI_OK);
-  ck_assert_int_eq(dvi_integrator_restore(differs, in_folder("checkpoint")), DVI_BAD_FILE);
-  check_words(spec("written by %s", dvi_integrator_method(warns)));
+                   (size_t)model->nq * sizeof(double));
+  ck_assert_int_eq(dvi_integrator_save(warns, path_in_folder("checkpoint")), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_restore(stops, path_in_folder("checkpoint")), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_restore(differs, path_in_folder("checkpoint")), DVI_BAD_FILE);
+  check_words(method_spec("written by %s", dvi_integrator_method(warns)));
   dvi_integrator_destroy(&stops);
   dvi_integrator_destroy(&warns);
   dvi_integrator_destroy(&differs);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -176,17 +177,17 @@ END_TEST
 
 /* An integrator in mid-run, and the bytes of a checkpoint of its past. */
 typedef struct scene {
-  problem *of;
+  problem *model;
   dvi_integrator *integrator;
   bytes past;
 } scene;
 
 static scene made_scene(void)
 {
-  scene s = {.of = made_problem("kepler", NULL)};
-  s.integrator = started(s.of, "galerkin:degree=2");
+  scene s = {.model = create_problem("kepler", NULL)};
+  s.integrator = start_integrator(s.model, "galerkin:degree=2");
   advance(s.integrator, 0.05, 2);
-  s.past = state_of(s.integrator);
+  s.past = read_state(s.integrator);
   advance(s.integrator, 0.05, 2);
   return s;
 }
@@ -194,13 +195,13 @@ static scene made_scene(void)
 static void clear_scene(scene *s)
 {
   dvi_integrator_destroy(&s->integrator);
-  problem_destroy(&s->of);
+  problem_destroy(&s->model);
   free(s->past.at);
 }
 
 static void refused(const scene *s, size_t count)
 {
-  const char *file = in_folder("bad");
+  const char *file = path_in_folder("bad");
   write_bytes(file, s->past.at, count);
   ck_assert_int_eq(dvi_integrator_restore(s->integrator, file), DVI_BAD_FILE);
   check_words(file);
@@ -209,7 +210,7 @@ static void refused(const scene *s, size_t count)
 START_TEST(a_checkpoint_cut_anywhere_is_refused)
 {
   scene s = made_scene();
-  const bytes before = state_of(s.integrator);
+  const bytes before = read_state(s.integrator);
   for (size_t count = 0; count < s.past.count; count++) {
     refused(&s, count);
     check_words("cut short");
@@ -222,7 +223,7 @@ END_TEST
 START_TEST(a_checkpoint_that_is_too_long_is_refused)
 {
   scene s = made_scene();
-  const bytes before = state_of(s.integrator);
+  const bytes before = read_state(s.integrator);
   s.past.at = realloc(s.past.at, s.past.count + 1);
   ck_assert_ptr_nonnull(s.past.at);
   s.past.at[s.past.count] = 0;
@@ -237,15 +238,15 @@ START_TEST(a_checkpoint_damaged_at_any_byte_is_refused)
 {
   const unsigned char damages[] = {0x01, 0x80, 0xff};
   scene s = made_scene();
-  const bytes before = state_of(s.integrator);
+  const bytes before = read_state(s.integrator);
   for (size_t at = 0; at < s.past.count; at++) {
     s.past.at[at] ^= damages[at % 3];
     refused(&s, s.past.count);
     s.past.at[at] ^= damages[at % 3];
   }
   check_state(s.integrator, before);
-  write_bytes(in_folder("good"), s.past.at, s.past.count);
-  ck_assert_int_eq(dvi_integrator_restore(s.integrator, in_folder("good")), DVI_OK);
+  write_bytes(path_in_folder("good"), s.past.at, s.past.count);
+  ck_assert_int_eq(dvi_integrator_restore(s.integrator, path_in_folder("good")), DVI_OK);
   clear_scene(&s);
 }
 END_TEST
@@ -265,7 +266,7 @@ END_TEST
 
 static void check_still(const dvi_integrator *integrator, bytes expected)
 {
-  const bytes found = state_of(integrator);
+  const bytes found = read_state(integrator);
   ck_assert_uint_eq(found.count, expected.count);
   ck_assert_mem_eq(found.at, expected.at, found.count);
   free(found.at);
@@ -275,7 +276,7 @@ START_TEST(a_state_in_memory_is_that_of_a_file)
 {
   scene s = made_scene();
   size_t size = 0;
-  const bytes now = state_of(s.integrator);
+  const bytes now = read_state(s.integrator);
   ck_assert_int_eq(dvi_integrator_save_memory(s.integrator, NULL, 0, &size), DVI_OK);
   ck_assert_uint_eq(size, now.count);
   unsigned char *room = malloc(size + 1);
@@ -304,12 +305,12 @@ END_TEST
 
 /* ---- files of others ---- */
 
-static void refused_by(const char *of, const char *setting, const char *method, const char *words)
+static void refused_by(const char *name, const char *setting, const char *method, const char *words)
 {
-  problem *other = made_problem(of, setting);
-  dvi_integrator *integrator = started(other, method);
-  const bytes before = state_of(integrator);
-  ck_assert_int_eq(dvi_integrator_restore(integrator, in_folder("other")), DVI_BAD_FILE);
+  problem *other = create_problem(name, setting);
+  dvi_integrator *integrator = start_integrator(other, method);
+  const bytes before = read_state(integrator);
+  ck_assert_int_eq(dvi_integrator_restore(integrator, path_in_folder("other")), DVI_BAD_FILE);
   check_words(words);
   check_state(integrator, before);
   dvi_integrator_destroy(&integrator);
@@ -319,7 +320,7 @@ static void refused_by(const char *of, const char *setting, const char *method, 
 START_TEST(a_checkpoint_of_another_method_or_dimension_is_refused)
 {
   scene s = made_scene();
-  ck_assert_int_eq(dvi_integrator_save(s.integrator, in_folder("other")), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_save(s.integrator, path_in_folder("other")), DVI_OK);
   refused_by("kepler", NULL, "verlet", "written by galerkin:degree=2");
   refused_by("kepler", NULL, "galerkin:degree=3", "not by galerkin:degree=3");
   refused_by("kepler", NULL, "galerkin:degree=2,solver=newton", "written by");
@@ -335,17 +336,19 @@ END_TEST
 START_TEST(a_checkpoint_of_another_system_or_other_parameters_is_refused)
 {
   scene s = made_scene();
-  ck_assert_int_eq(dvi_integrator_save(s.integrator, in_folder("other")), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_save(s.integrator, path_in_folder("other")), DVI_OK);
   refused_by("henon-heiles", NULL, "galerkin:degree=2",
              "of a system that declares other names or speeds of potentials");
-  problem *stiff = made_problem("fpu", "omega=50"), *softer = made_problem("fpu", "omega=49.9999");
-  dvi_integrator *first = started(stiff, "verlet"), *second = started(softer, "verlet");
+  problem *stiff = create_problem("fpu", "omega=50"),
+          *softer = create_problem("fpu", "omega=49.9999");
+  dvi_integrator *first = start_integrator(stiff, "verlet"),
+                 *second = start_integrator(softer, "verlet");
   /* at the start the velocity is the start's, later the step's */
   for (int steps = 0; steps < 2; steps++) {
-    ck_assert_int_eq(dvi_integrator_save(first, in_folder("other")), DVI_OK);
-    ck_assert_int_eq(dvi_integrator_restore(second, in_folder("other")), DVI_BAD_FILE);
+    ck_assert_int_eq(dvi_integrator_save(first, path_in_folder("other")), DVI_OK);
+    ck_assert_int_eq(dvi_integrator_restore(second, path_in_folder("other")), DVI_BAD_FILE);
     check_words("other parameters");
-    ck_assert_int_eq(dvi_integrator_restore(first, in_folder("other")), DVI_OK);
+    ck_assert_int_eq(dvi_integrator_restore(first, path_in_folder("other")), DVI_OK);
     advance(first, 0.01, 1);
   }
   dvi_integrator_destroy(&first);
@@ -356,13 +359,14 @@ START_TEST(a_checkpoint_of_another_system_or_other_parameters_is_refused)
 }
 END_TEST
 
-/* The start is no parameter of a system: kepler's e only says where it begins. */
+/* The start is no parameter of a system, and kepler's e only sets the start. */
 START_TEST(a_checkpoint_of_another_start_is_taken)
 {
-  problem *one = made_problem("kepler", "e=0.6"), *two = made_problem("kepler", "e=0.2");
-  dvi_integrator *first = started(one, "midpoint"), *second = started(two, "midpoint");
-  ck_assert_int_eq(dvi_integrator_save(first, in_folder("other")), DVI_OK);
-  ck_assert_msg(dvi_integrator_restore(second, in_folder("other")) == DVI_OK, "%s",
+  problem *one = create_problem("kepler", "e=0.6"), *two = create_problem("kepler", "e=0.2");
+  dvi_integrator *first = start_integrator(one, "midpoint"),
+                 *second = start_integrator(two, "midpoint");
+  ck_assert_int_eq(dvi_integrator_save(first, path_in_folder("other")), DVI_OK);
+  ck_assert_msg(dvi_integrator_restore(second, path_in_folder("other")) == DVI_OK, "%s",
                 dvi_last_error());
   check_same_state(first, second);
   dvi_integrator_destroy(&first);
@@ -375,14 +379,14 @@ END_TEST
 START_TEST(a_file_that_is_none_or_a_folder_cannot_be_read)
 {
   scene s = made_scene();
-  const bytes before = state_of(s.integrator);
-  ck_assert_int_eq(dvi_integrator_restore(s.integrator, in_folder("missing")), DVI_IO_ERROR);
+  const bytes before = read_state(s.integrator);
+  ck_assert_int_eq(dvi_integrator_restore(s.integrator, path_in_folder("missing")), DVI_IO_ERROR);
   check_words("No such file");
-  ck_assert_int_eq(dvi_integrator_restore(s.integrator, in_folder(".")), DVI_IO_ERROR);
+  ck_assert_int_eq(dvi_integrator_restore(s.integrator, path_in_folder(".")), DVI_IO_ERROR);
   check_words("directory");
   ck_assert_int_eq(dvi_integrator_restore(s.integrator, ""), DVI_IO_ERROR);
-  write_bytes(in_folder("text"), (const unsigned char *)"t,x,y,p_x,p_y\n", 14);
-  ck_assert_int_eq(dvi_integrator_restore(s.integrator, in_folder("text")), DVI_BAD_FILE);
+  write_bytes(path_in_folder("text"), (const unsigned char *)"t,x,y,p_x,p_y\n", 14);
+  ck_assert_int_eq(dvi_integrator_restore(s.integrator, path_in_folder("text")), DVI_BAD_FILE);
   check_state(s.integrator, before);
   clear_scene(&s);
 }
@@ -401,19 +405,19 @@ START_TEST(a_place_that_cannot_be_written_is_reported)
   enum { TOO_LONG = 10000 };
   static char endless[TOO_LONG];
   scene s = made_scene();
-  const char *full = in_folder("full");
+  const char *full = path_in_folder("full");
   memset(endless, 'x', TOO_LONG - 1);
-  not_written(s.integrator, in_folder("missing/file"), "No such file");
+  not_written(s.integrator, path_in_folder("missing/file"), "No such file");
   not_written(s.integrator, endless, "too long");
   not_written(s.integrator, "", "cannot write");
-  write_bytes(in_folder("file"), s.past.at, 1);
-  not_written(s.integrator, in_folder("file/inside"), "Not a directory");
+  write_bytes(path_in_folder("file"), s.past.at, 1);
+  not_written(s.integrator, path_in_folder("file/inside"), "Not a directory");
   ck_assert_int_eq(mkdir(full, 0700), 0);
   not_written(s.integrator, full, "not a regular file");
-  ck_assert_int_eq(files_in_folder(), 2);
+  ck_assert_int_eq(count_files_in_folder(), 2);
   if (geteuid() != 0) { /* root may write anywhere */
     ck_assert_int_eq(chmod(full, 0500), 0);
-    not_written(s.integrator, in_folder("full/file"), "Permission denied");
+    not_written(s.integrator, path_in_folder("full/file"), "Permission denied");
   }
   clear_scene(&s);
 }
@@ -423,12 +427,12 @@ START_TEST(a_link_is_followed_and_stays)
 {
   scene s = made_scene();
   struct stat about;
-  write_bytes(in_folder("target"), s.past.at, 1);
-  ck_assert_int_eq(symlink("target", in_folder("link")), 0);
-  ck_assert_int_eq(dvi_integrator_save(s.integrator, in_folder("link")), DVI_OK);
-  ck_assert_int_eq(lstat(in_folder("link"), &about), 0);
+  write_bytes(path_in_folder("target"), s.past.at, 1);
+  ck_assert_int_eq(symlink("target", path_in_folder("link")), 0);
+  ck_assert_int_eq(dvi_integrator_save(s.integrator, path_in_folder("link")), DVI_OK);
+  ck_assert_int_eq(lstat(path_in_folder("link"), &about), 0);
   ck_assert(S_ISLNK(about.st_mode));
-  ck_assert_int_eq(dvi_integrator_restore(s.integrator, in_folder("target")), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_restore(s.integrator, path_in_folder("target")), DVI_OK);
   clear_scene(&s);
 }
 END_TEST
@@ -437,9 +441,9 @@ START_TEST(a_pipe_is_no_place_for_a_checkpoint)
 {
   scene s = made_scene();
   struct stat about;
-  ck_assert_int_eq(mkfifo(in_folder("pipe"), 0600), 0);
-  not_written(s.integrator, in_folder("pipe"), "not a regular file");
-  ck_assert_int_eq(stat(in_folder("pipe"), &about), 0);
+  ck_assert_int_eq(mkfifo(path_in_folder("pipe"), 0600), 0);
+  not_written(s.integrator, path_in_folder("pipe"), "not a regular file");
+  ck_assert_int_eq(stat(path_in_folder("pipe"), &about), 0);
   ck_assert(S_ISFIFO(about.st_mode));
   clear_scene(&s);
 }
@@ -449,24 +453,24 @@ START_TEST(neither_neighbours_nor_the_file_s_rights_change)
 {
   scene s = made_scene();
   struct stat about;
-  write_bytes(in_folder("w.part"), s.past.at, 3);
-  write_bytes(in_folder("w"), s.past.at, 3);
-  ck_assert_int_eq(chmod(in_folder("w"), 0600), 0);
-  ck_assert_int_eq(dvi_integrator_save(s.integrator, in_folder("w")), DVI_OK);
-  ck_assert_int_eq(stat(in_folder("w"), &about), 0);
+  write_bytes(path_in_folder("w.part"), s.past.at, 3);
+  write_bytes(path_in_folder("w"), s.past.at, 3);
+  ck_assert_int_eq(chmod(path_in_folder("w"), 0600), 0);
+  ck_assert_int_eq(dvi_integrator_save(s.integrator, path_in_folder("w")), DVI_OK);
+  ck_assert_int_eq(stat(path_in_folder("w"), &about), 0);
   ck_assert_int_eq(about.st_mode & 0777, 0600);
-  ck_assert_int_eq(stat(in_folder("w.part"), &about), 0);
+  ck_assert_int_eq(stat(path_in_folder("w.part"), &about), 0);
   ck_assert_int_eq(about.st_size, 3);
-  ck_assert_int_eq(files_in_folder(), 2);
+  ck_assert_int_eq(count_files_in_folder(), 2);
   clear_scene(&s);
 }
 END_TEST
 
-/* A limit on the size of files stands for the full disk: writing stops in mid-file. */
+/* A limit on the size of files stands for the full disk, so writing stops in mid-file. */
 START_TEST(a_full_disk_leaves_the_old_checkpoint)
 {
   scene s = made_scene();
-  const char *file = in_folder("checkpoint"); /* few other paths are asked for below */
+  const char *file = path_in_folder("checkpoint"); /* few other paths are asked for below */
   struct rlimit unlimited, limited;
   write_bytes(file, s.past.at, s.past.count);
   ck_assert_int_eq(getrlimit(RLIMIT_FSIZE, &unlimited), 0);
@@ -479,7 +483,7 @@ START_TEST(a_full_disk_leaves_the_old_checkpoint)
     ck_assert_int_eq(setrlimit(RLIMIT_FSIZE, &unlimited), 0);
     ck_assert_int_eq(status, DVI_IO_ERROR);
     check_words("File too large");
-    ck_assert_int_eq(files_in_folder(), 1); /* and no half of the new one */
+    ck_assert_int_eq(count_files_in_folder(), 1); /* and no half of the new one */
     const bytes old = read_bytes(file);
     ck_assert_uint_eq(old.count, s.past.count);
     ck_assert_mem_eq(old.at, s.past.at, old.count);

@@ -1,6 +1,6 @@
 /* labels: unit */
-/* How a checkpoint gets to the disk: the file, then its name, then the folder; and what a save
- * that fails leaves behind. */
+/* The order in which a checkpoint gets to the disk: the file, then its name, then the folder. A
+ * save that fails leaves no file behind. */
 #define _GNU_SOURCE /* syscall */
 #include <errno.h>
 #include <fcntl.h>
@@ -22,7 +22,7 @@ static char calls[64];
 static const char *failing;
 static int reason;
 
-/* Note a call; whether it is to fail. */
+/* Notes a call, and returns 1 if it is to fail. */
 static int fails(const char *call)
 {
   (void)snprintf(calls + strlen(calls), sizeof calls - strlen(calls), "%s ", call);
@@ -55,71 +55,72 @@ static dvi_status save_failing(const dvi_integrator *integrator, const char *pat
 
 START_TEST(the_file_is_flushed_then_named_then_its_folder_is_flushed)
 {
-  problem *of = made_problem("kepler", NULL);
-  dvi_integrator *integrator = started(of, "verlet");
-  ck_assert_int_eq(save_failing(integrator, in_folder("state"), NULL, 0), DVI_OK);
+  problem *model = create_problem("kepler", NULL);
+  dvi_integrator *integrator = start_integrator(model, "verlet");
+  ck_assert_int_eq(save_failing(integrator, path_in_folder("state"), NULL, 0), DVI_OK);
   ck_assert_str_eq(calls, "file name folder ");
-  ck_assert_int_eq(chdir(in_folder(".")), 0);
+  ck_assert_int_eq(chdir(path_in_folder(".")), 0);
   ck_assert_int_eq(save_failing(integrator, "state", NULL, 0), DVI_OK);
   ck_assert_str_eq(calls, "file name folder ");
   ck_assert_int_eq(chdir("/"), 0);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(a_call_that_fails_leaves_the_old_file_and_no_part)
 {
   const char *call[] = {"file", "name"};
-  problem *of = made_problem("kepler", NULL);
-  dvi_integrator *integrator = started(of, "verlet");
-  ck_assert_int_eq(dvi_integrator_save(integrator, in_folder("state")), DVI_OK);
-  const bytes old = read_bytes(in_folder("state"));
+  problem *model = create_problem("kepler", NULL);
+  dvi_integrator *integrator = start_integrator(model, "verlet");
+  ck_assert_int_eq(dvi_integrator_save(integrator, path_in_folder("state")), DVI_OK);
+  const bytes old = read_bytes(path_in_folder("state"));
   advance(integrator, 0.1, 1);
-  ck_assert_int_eq(save_failing(integrator, in_folder("state"), call[_i], ENOSPC), DVI_IO_ERROR);
+  ck_assert_int_eq(save_failing(integrator, path_in_folder("state"), call[_i], ENOSPC),
+                   DVI_IO_ERROR);
   check_words("No space left");
-  ck_assert_int_eq(files_in_folder(), 1);
-  const bytes now = read_bytes(in_folder("state"));
+  ck_assert_int_eq(count_files_in_folder(), 1);
+  const bytes now = read_bytes(path_in_folder("state"));
   ck_assert_uint_eq(now.count, old.count);
   ck_assert_mem_eq(now.at, old.at, old.count);
   free(now.at);
   free(old.at);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* Some file systems cannot flush a folder, which is no failure; a broken disk is one. */
+/* Some file systems cannot flush a folder, which is no failure. A broken disk is one. */
 START_TEST(a_folder_that_cannot_be_flushed_is_told_if_it_could)
 {
-  problem *of = made_problem("kepler", NULL);
-  dvi_integrator *integrator = started(of, "verlet");
-  ck_assert_int_eq(save_failing(integrator, in_folder("state"), "folder", EINVAL), DVI_OK);
-  ck_assert_int_eq(save_failing(integrator, in_folder("state"), "folder", EIO), DVI_IO_ERROR);
+  problem *model = create_problem("kepler", NULL);
+  dvi_integrator *integrator = start_integrator(model, "verlet");
+  ck_assert_int_eq(save_failing(integrator, path_in_folder("state"), "folder", EINVAL), DVI_OK);
+  ck_assert_int_eq(save_failing(integrator, path_in_folder("state"), "folder", EIO), DVI_IO_ERROR);
   check_words("its folder cannot be flushed");
-  ck_assert_int_eq(files_in_folder(), 1);
-  ck_assert_int_eq(dvi_integrator_restore(integrator, in_folder("state")), DVI_OK);
+  ck_assert_int_eq(count_files_in_folder(), 1);
+  ck_assert_int_eq(dvi_integrator_restore(integrator, path_in_folder("state")), DVI_OK);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(a_save_without_memory_leaves_no_part)
 {
-  problem *of = made_problem("kepler", NULL);
-  dvi_integrator *integrator = started(of, "verlet");
-  ck_assert_int_eq(dvi_integrator_save(integrator, in_folder("state")), DVI_OK);
+  problem *model = create_problem("kepler", NULL);
+  dvi_integrator *integrator = start_integrator(model, "verlet");
+  ck_assert_int_eq(dvi_integrator_save(integrator, path_in_folder("state")), DVI_OK);
   for (long successes = 0; successes < 8; successes++) {
     heap_fail_after(successes);
-    const dvi_status status = dvi_integrator_save(integrator, in_folder("state"));
+    const dvi_status status = dvi_integrator_save(integrator, path_in_folder("state"));
     heap_fail_after(-1);
     ck_assert_msg(status == DVI_OK || status == DVI_NO_MEMORY || status == DVI_IO_ERROR, "%s",
                   dvi_last_error());
-    ck_assert_int_eq(files_in_folder(), 1);
+    ck_assert_int_eq(count_files_in_folder(), 1);
   }
-  ck_assert_int_eq(dvi_integrator_restore(integrator, in_folder("state")), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_restore(integrator, path_in_folder("state")), DVI_OK);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

@@ -1,6 +1,6 @@
 /* labels: unit */
-/* A checkpoint is taken by whoever takes the same steps, and by nobody else: a refusal says what
- * differs. */
+/* An integrator takes a checkpoint only if it takes the same steps. A refusal names the
+ * difference. */
 #include <dvi/dvi.h>
 #include <math.h>
 #include <stdio.h>
@@ -16,8 +16,10 @@
 
 static void check_taken(const dvi_integrator *from, dvi_integrator *by)
 {
-  ck_assert_msg(dvi_integrator_save(from, in_folder("state")) == DVI_OK, "%s", dvi_last_error());
-  ck_assert_msg(dvi_integrator_restore(by, in_folder("state")) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_integrator_save(from, path_in_folder("state")) == DVI_OK, "%s",
+                dvi_last_error());
+  ck_assert_msg(dvi_integrator_restore(by, path_in_folder("state")) == DVI_OK, "%s",
+                dvi_last_error());
   const dvi_system *system = dvi_integrator_system(from);
   ck_assert_double_eq(dvi_integrator_time(from), dvi_integrator_time(by));
   ck_assert_mem_eq(dvi_integrator_q(from), dvi_integrator_q(by),
@@ -28,8 +30,9 @@ static void check_taken(const dvi_integrator *from, dvi_integrator *by)
 
 static void check_refused(const dvi_integrator *from, dvi_integrator *by, const char *words)
 {
-  ck_assert_msg(dvi_integrator_save(from, in_folder("state")) == DVI_OK, "%s", dvi_last_error());
-  ck_assert_int_eq(dvi_integrator_restore(by, in_folder("state")), DVI_BAD_FILE);
+  ck_assert_msg(dvi_integrator_save(from, path_in_folder("state")) == DVI_OK, "%s",
+                dvi_last_error());
+  ck_assert_int_eq(dvi_integrator_restore(by, path_in_folder("state")), DVI_BAD_FILE);
   check_words(words);
 }
 
@@ -42,7 +45,7 @@ static const char three_eighths[] = "order 4\na\na 1/3\na -1/3 1\na 1 -1 1\nb 1/
 
 static void write_text(const char *name, const char *text)
 {
-  write_bytes(in_folder(name), (const unsigned char *)text, strlen(text));
+  write_bytes(path_in_folder(name), (const unsigned char *)text, strlen(text));
 }
 
 /* "shooting:tableau=<path>,<rest>", where the path takes a thousand characters to get to the
@@ -53,18 +56,18 @@ static const char *by_a_long_way(const char *name, const char *rest)
   static int next;
   char way[LONG] = "", *text = texts[next++ % 2];
   while (strlen(way) < LONG - 200) strcat(way, "/.");
-  (void)snprintf(text, sizeof texts[0], "shooting:tableau=%s%s/%s,%s", in_folder("."), way, name,
-                 rest);
+  (void)snprintf(text, sizeof texts[0], "shooting:tableau=%s%s/%s,%s", path_in_folder("."), way,
+                 name, rest);
   return text;
 }
 
 START_TEST(a_long_specification_is_kept_whole)
 {
-  problem *of = made_problem("kepler", NULL);
+  problem *model = create_problem("kepler", NULL);
   write_text("kutta", kutta);
-  dvi_integrator *one = started(of, by_a_long_way("kutta", "type=1")),
-                 *same = started(of, by_a_long_way("kutta", "type=1"));
-  dvi_integrator *other = started(of, by_a_long_way("kutta", "type=2")), *like = NULL;
+  dvi_integrator *one = start_integrator(model, by_a_long_way("kutta", "type=1")),
+                 *same = start_integrator(model, by_a_long_way("kutta", "type=1"));
+  dvi_integrator *other = start_integrator(model, by_a_long_way("kutta", "type=2")), *like = NULL;
   advance(one, 0.01, 3);
   advance(other, 0.01, 1);
   ck_assert_uint_gt(strlen(dvi_integrator_method(one)), 1000);
@@ -72,7 +75,8 @@ START_TEST(a_long_specification_is_kept_whole)
   check_taken(one, same);
   check_refused(one, other, "type=1 there, type=2 here");
   write_text("same", kutta);
-  dvi_integrator *elsewhere = started(of, spec("shooting:tableau=%s,type=2", in_folder("same")));
+  dvi_integrator *elsewhere = start_integrator(
+      model, method_spec("shooting:tableau=%s,type=2", path_in_folder("same")));
   /* and not the path, which may be any */
   check_refused(one, elsewhere, "type=1 there, type=2 here");
   dvi_integrator_destroy(&elsewhere);
@@ -82,38 +86,42 @@ START_TEST(a_long_specification_is_kept_whole)
   dvi_integrator_destroy(&same);
   dvi_integrator_destroy(&other);
   dvi_integrator_destroy(&like);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(a_specification_may_have_any_length)
 {
   enum { LENGTH = 1000000 };
-  problem *of = made_problem("kepler", NULL);
+  problem *model = create_problem("kepler", NULL);
   char *text = malloc(LENGTH + 1);
   dvi_integrator *integrator = NULL;
   ck_assert_ptr_nonnull(text);
   memset(text, 'x', LENGTH);
   text[LENGTH] = 0;
   memcpy(text, "shooting:tableau=", strlen("shooting:tableau="));
-  ck_assert_int_eq(dvi_integrator_create(of->system, text, &integrator), DVI_BAD_OPTION);
+  ck_assert_int_eq(dvi_integrator_create(model->system, text, &integrator), DVI_BAD_OPTION);
   check_words("shooting: xxx"); /* no file has this name, and nothing is said of its length */
   free(text);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(a_tableau_is_known_by_its_coefficients_not_by_its_path)
 {
-  problem *of = made_problem("kepler", NULL);
+  problem *model = create_problem("kepler", NULL);
   write_text("one", kutta);
   write_text("other", kutta);
   write_text("third", three_eighths);
-  dvi_integrator *one = started(of, spec("shooting:tableau=%s", in_folder("one"))),
-                 *other = started(of, spec("shooting:tableau=%s", in_folder("other"))),
-                 *third = started(of, spec("shooting:tableau=%s", in_folder("third")));
+  dvi_integrator *one = start_integrator(model,
+                                         method_spec("shooting:tableau=%s", path_in_folder("one"))),
+                 *other = start_integrator(
+                     model, method_spec("shooting:tableau=%s", path_in_folder("other"))),
+                 *third = start_integrator(
+                     model, method_spec("shooting:tableau=%s", path_in_folder("third")));
   write_text("one", three_eighths);
-  dvi_integrator *rewritten = started(of, spec("shooting:tableau=%s", in_folder("one")));
+  dvi_integrator *rewritten = start_integrator(
+      model, method_spec("shooting:tableau=%s", path_in_folder("one")));
   advance(one, 0.01, 3);
   check_taken(one, other);
   check_refused(one, third, "other coefficients of the tableau");
@@ -123,7 +131,7 @@ START_TEST(a_tableau_is_known_by_its_coefficients_not_by_its_path)
   dvi_integrator_destroy(&other);
   dvi_integrator_destroy(&third);
   dvi_integrator_destroy(&rewritten);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -134,18 +142,18 @@ START_TEST(a_space_is_known_before_the_first_step)
 {
   static const double five = 5, six = 6;
   const dvi_shapes shapes = oscillation(&five), others = oscillation(&six);
-  problem *of = made_problem("henon-heiles", NULL);
+  problem *model = create_problem("henon-heiles", NULL);
   const char *method = _i == 0 ? "shaped-galerkin:nodes=6"
                                : "composition:order=4,base=shaped-galerkin,nodes=6";
-  dvi_integrator *one = shaped_started(of, &shapes, method),
-                 *same = shaped_started(of, &shapes, method),
-                 *other = shaped_started(of, &others, method);
+  dvi_integrator *one = start_integrator_with_shapes(model, &shapes, method),
+                 *same = start_integrator_with_shapes(model, &shapes, method),
+                 *other = start_integrator_with_shapes(model, &others, method);
   check_taken(one, same);
   check_refused(one, other, "another function space of the same name");
   dvi_integrator_destroy(&one);
   dvi_integrator_destroy(&same);
   dvi_integrator_destroy(&other);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -160,20 +168,20 @@ static int g_value(double t, const double *q, double *g, void *user)
 START_TEST(a_monitor_is_known_by_its_values)
 {
   double one_c = 0.25, other_c = 0.26;
-  problem *of = made_problem("kepler", NULL);
+  problem *model = create_problem("kepler", NULL);
   const dvi_monitor one = {.function = {.name = "mine", .value = g_value, .user = &one_c}},
                     other = {.function = {.name = "mine", .value = g_value, .user = &other_c}};
   dvi_integrator *first = NULL, *same = NULL, *second = NULL;
   dvi_status (*create)(const dvi_system *, const dvi_monitor *, const char *,
                        dvi_integrator **) = _i == 0 ? create_transformed : create_controlled;
-  ck_assert_int_eq(create(of->system, &one, "midpoint", &first), DVI_OK);
-  ck_assert_int_eq(create(of->system, &one, "midpoint", &same), DVI_OK);
-  ck_assert_int_eq(create(of->system, &other, "midpoint", &second), DVI_OK);
-  ck_assert_int_eq(dvi_integrator_start(first, 0, of->q, of->p), DVI_OK);
+  ck_assert_int_eq(create(model->system, &one, "midpoint", &first), DVI_OK);
+  ck_assert_int_eq(create(model->system, &one, "midpoint", &same), DVI_OK);
+  ck_assert_int_eq(create(model->system, &other, "midpoint", &second), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_start(first, 0, model->q, model->p), DVI_OK);
   advance(first, 0.01, 3);
   check_taken(first, same);
   check_refused(first, second, "of another monitor");
-  dvi_integrator *plain = started(of, "midpoint");
+  dvi_integrator *plain = start_integrator(model, "midpoint");
   check_refused(first, plain,
                 _i == 0 ? "of steps in another time, by mine, not of steps of time"
                         : "of steps controlled by mine");
@@ -182,7 +190,7 @@ START_TEST(a_monitor_is_known_by_its_values)
   dvi_integrator_destroy(&same);
   dvi_integrator_destroy(&second);
   dvi_integrator_destroy(&plain);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -233,8 +241,8 @@ static void check_springs(const springs *changed, const char *words)
   const double q[SPRINGS] = {1, 1, 1, 1, 1, 1, 1, 1, 1}, p[SPRINGS] = {0};
   springs one = nine, other = *changed;
   dvi_system *first = made_springs(&one), *second = made_springs(&other);
-  dvi_integrator *saved = made_integrator(first, "verlet"),
-                 *taker = made_integrator(second, "verlet");
+  dvi_integrator *saved = create_integrator(first, "verlet"),
+                 *taker = create_integrator(second, "verlet");
   ck_assert_int_eq(dvi_integrator_start(saved, 0, q, p), DVI_OK);
   check_refused(saved, taker, words);
   dvi_integrator_destroy(&saved);
@@ -284,10 +292,11 @@ END_TEST
 
 START_TEST(what_a_system_declares_is_named)
 {
-  problem *kepler = made_problem("kepler", NULL), *henon = made_problem("henon-heiles", NULL);
-  problem *light = made_problem("double-pendulum", NULL);
-  dvi_integrator *saved = started(kepler, "midpoint"), *other = started(henon, "midpoint"),
-                 *general = started(light, "midpoint");
+  problem *kepler = create_problem("kepler", NULL), *henon = create_problem("henon-heiles", NULL);
+  problem *light = create_problem("double-pendulum", NULL);
+  dvi_integrator *saved = start_integrator(kepler, "midpoint"),
+                 *other = start_integrator(henon, "midpoint"),
+                 *general = start_integrator(light, "midpoint");
   check_refused(saved, other, "declares other names or speeds of potentials");
   check_refused(saved, general, "declares other terms");
   dvi_integrator_destroy(&saved);
@@ -346,15 +355,15 @@ enum { FAMILIES = sizeof families / sizeof *families };
 
 START_TEST(no_method_takes_the_checkpoint_of_another)
 {
-  problem *of = made_problem(families[_i].problem, NULL);
+  problem *model = create_problem(families[_i].problem, NULL);
   const char *const *methods = families[_i].methods;
   for (int i = 0; i < 20 && methods[i] != NULL; i++) {
-    dvi_integrator *saved = started(of, methods[i]);
+    dvi_integrator *saved = start_integrator(model, methods[i]);
     advance(saved, families[_i].h, 3);
-    ck_assert_int_eq(dvi_integrator_save(saved, in_folder("state")), DVI_OK);
+    ck_assert_int_eq(dvi_integrator_save(saved, path_in_folder("state")), DVI_OK);
     for (int k = 0; k < 20 && methods[k] != NULL; k++) {
-      dvi_integrator *by = started(of, methods[k]);
-      const dvi_status status = dvi_integrator_restore(by, in_folder("state"));
+      dvi_integrator *by = start_integrator(model, methods[k]);
+      const dvi_status status = dvi_integrator_restore(by, path_in_folder("state"));
       ck_assert_msg(status == (i == k ? DVI_OK : DVI_BAD_FILE), "%s by %s: %s", methods[i],
                     methods[k], dvi_status_name(status));
       if (status != DVI_OK) check_words(" there, ");
@@ -363,59 +372,59 @@ START_TEST(no_method_takes_the_checkpoint_of_another)
     }
     dvi_integrator_destroy(&saved);
   }
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 /* ---- files that are not whole ---- */
 
-/* Write a file that differs in one byte, or ends before it; neither is taken. */
-static void check_byte(dvi_integrator *by, bytes of, size_t at, unsigned char damage)
+/* Writes a file that differs in one byte, or ends before it. Neither is taken. */
+static void check_byte(dvi_integrator *by, bytes file, size_t at, unsigned char damage)
 {
-  write_bytes(in_folder("cut"), of.at, at);
-  ck_assert_int_eq(dvi_integrator_restore(by, in_folder("cut")), DVI_BAD_FILE);
-  of.at[at] ^= damage;
-  write_bytes(in_folder("flipped"), of.at, of.count);
-  ck_assert_int_eq(dvi_integrator_restore(by, in_folder("flipped")), DVI_BAD_FILE);
-  of.at[at] ^= damage;
+  write_bytes(path_in_folder("cut"), file.at, at);
+  ck_assert_int_eq(dvi_integrator_restore(by, path_in_folder("cut")), DVI_BAD_FILE);
+  file.at[at] ^= damage;
+  write_bytes(path_in_folder("flipped"), file.at, file.count);
+  ck_assert_int_eq(dvi_integrator_restore(by, path_in_folder("flipped")), DVI_BAD_FILE);
+  file.at[at] ^= damage;
 }
 
 START_TEST(no_method_takes_what_is_cut_or_damaged_at_any_byte)
 {
   static const unsigned char damages[] = {0x01, 0x10, 0x80, 0xff};
   const size_t stride = (size_t)(10 / repeats(10)); /* every tenth where memory is watched */
-  problem *of = made_problem(families[_i].problem, NULL);
+  problem *model = create_problem(families[_i].problem, NULL);
   for (int k = 0; k < 20 && families[_i].methods[k] != NULL; k++) {
-    dvi_integrator *integrator = started(of, families[_i].methods[k]);
+    dvi_integrator *integrator = start_integrator(model, families[_i].methods[k]);
     advance(integrator, families[_i].h, 3);
-    const bytes good = state_of(integrator);
+    const bytes good = read_state(integrator);
     for (size_t at = 0; at < good.count; at += stride)
       check_byte(integrator, good, at, damages[(at + (size_t)k) % 4]);
     check_state(integrator, good);
     dvi_integrator_destroy(&integrator);
   }
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 /* ---- forged files ---- */
 
-/* Numbers that no checksum defends: a step from them may fail, but it ends, and no status but
- * DVI_OK goes with finite numbers alone. */
+/* No checksum protects these numbers. A step from them may fail, but it ends, and DVI_OK goes with
+ * finite numbers alone. */
 static dvi_status status_of_forged(dvi_integrator *integrator, double h)
 {
-  dvi_status status = dvi_integrator_restore(integrator, in_folder("forged"));
+  dvi_status status = dvi_integrator_restore(integrator, path_in_folder("forged"));
   if (status == DVI_OK) status = dvi_integrator_step(integrator, h);
   for (int i = 0; status == DVI_OK && i < dvi_system_nq(dvi_integrator_system(integrator)); i++)
     ck_assert(isfinite(dvi_integrator_q(integrator)[i]));
   return status;
 }
 
-/* Where a section of a file begins; its header has 40 bytes, of which the last 8 are its hash and
- * the 8 before them its size (lib/src/march/sections.h). */
-static unsigned char *find_section(const bytes *of, const char *name, uint64_t *size)
+/* Finds the beginning of a section of a file. Its header has 40 bytes, of which the last 8 are its
+ * hash and the 8 before them its size (lib/src/march/sections.h). */
+static unsigned char *find_section(const bytes *file, const char *name, uint64_t *size)
 {
-  unsigned char *at = of->at + 16;
+  unsigned char *at = file->at + 16;
   for (;; at += 40 + (*size + 7) / 8 * 8) {
     memcpy(size, at + 24, sizeof *size);
     if (strcmp((const char *)at, name) == 0) return at;
@@ -423,13 +432,13 @@ static unsigned char *find_section(const bytes *of, const char *name, uint64_t *
   }
 }
 
-static void forge(bytes *of, unsigned long long draw)
+static void forge(bytes *file, unsigned long long draw)
 {
   static const double evil[] = {(double)NAN, (double)INFINITY, -1e308, 1e-310, 0, -1,
                                 1e9,         4294967297.0};
   uint64_t size;
-  unsigned char *section = find_section(of, draw % 2 == 0 ? "state" : "memory", &size);
-  if (size == 0) section = find_section(of, "state", &size);
+  unsigned char *section = find_section(file, draw % 2 == 0 ? "state" : "memory", &size);
+  if (size == 0) section = find_section(file, "state", &size);
   memcpy(section + 40 + (draw / 2) % (size / 8) * 8, &evil[(draw >> 32) % 8], sizeof(double));
   const uint64_t hash = dvi__hash(dvi__hash(DVI__HASH_START, 32, section), size, section + 40);
   memcpy(section + 32, &hash, sizeof hash);
@@ -437,21 +446,21 @@ static void forge(bytes *of, unsigned long long draw)
 
 START_TEST(forged_numbers_do_no_harm)
 {
-  problem *of = made_problem(families[_i].problem, NULL);
+  problem *model = create_problem(families[_i].problem, NULL);
   unsigned long long draw = 88172645463325252ULL;
   int gone_on = 0, refused = 0;
   for (int k = 0; k < 20 && families[_i].methods[k] != NULL; k++) {
-    dvi_integrator *saved = started(of, families[_i].methods[k]),
-                   *taker = started(of, families[_i].methods[k]);
+    dvi_integrator *saved = start_integrator(model, families[_i].methods[k]),
+                   *taker = start_integrator(model, families[_i].methods[k]);
     advance(saved, families[_i].h, 3);
-    const bytes good = state_of(saved);
+    const bytes good = read_state(saved);
     for (int i = 0; i < repeats(60); i++) {
       bytes bad = {malloc(good.count), good.count};
       ck_assert_ptr_nonnull(bad.at);
       memcpy(bad.at, good.at, good.count);
       draw ^= draw << 13, draw ^= draw >> 7, draw ^= draw << 17;
       forge(&bad, draw);
-      write_bytes(in_folder("forged"), bad.at, bad.count);
+      write_bytes(path_in_folder("forged"), bad.at, bad.count);
       if (status_of_forged(taker, families[_i].h) == DVI_OK)
         gone_on++;
       else
@@ -464,7 +473,7 @@ START_TEST(forged_numbers_do_no_harm)
   }
   ck_assert_int_gt(gone_on, 0);
   ck_assert_int_gt(refused, 0);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

@@ -1,6 +1,6 @@
 /* labels: unit order */
-/* The trajectory inside the last step: right at the ends, of the promised order between them, and
- * only there. */
+/* The trajectory inside the last step is right at the ends, has the promised order between them,
+ * and exists only there. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -27,13 +27,13 @@ static const char *const methods[] = {
 };
 enum { METHODS = sizeof methods / sizeof *methods };
 
-/* The path's ends are sums of the same few numbers as the states, in another order: a few roundings
- * of numbers of size 1. Times are odd, so that t0 + h is rounded. */
+/* The path's ends are sums of the same few numbers as the states, in another order, and differ by a
+ * few roundings of numbers of size 1. Times are odd, so that t0 + h is rounded. */
 START_TEST(the_path_passes_through_both_ends)
 {
   const double rounding = 8 * DBL_EPSILON;
-  problem *of = made_problem("kepler", NULL);
-  dvi_integrator *integrator = started(of, methods[_i]);
+  problem *model = create_problem("kepler", NULL);
+  dvi_integrator *integrator = start_integrator(model, methods[_i]);
   for (int step = 0; step < 20; step++) {
     const double from = dvi_integrator_time(integrator);
     double before[2], q[2];
@@ -46,31 +46,31 @@ START_TEST(the_path_passes_through_both_ends)
     ck_assert_double_le(distance(2, q, dvi_integrator_q(integrator)), rounding);
   }
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* Hermite's cubic has the velocities that belong to the momenta at its ends; the mass is 1. */
+/* Hermite's cubic has the velocities that belong to the momenta at its ends. The mass is 1. */
 START_TEST(the_cubic_has_the_velocities_of_the_ends)
 {
-  problem *of = made_problem("kepler", NULL);
-  dvi_integrator *integrator = started(of, "verlet");
+  problem *model = create_problem("kepler", NULL);
+  dvi_integrator *integrator = start_integrator(model, "verlet");
   double v[2];
   advance(integrator, -0.05, 1);
   ck_assert_int_eq(dvi_integrator_interpolate(integrator, -0.05, NULL, v), DVI_OK);
   ck_assert_double_le(distance(2, v, dvi_integrator_p(integrator)), 1e-14);
   ck_assert_int_eq(dvi_integrator_interpolate(integrator, 0, NULL, v), DVI_OK);
-  ck_assert_double_le(distance(2, v, of->p), 1e-14);
+  ck_assert_double_le(distance(2, v, model->p), 1e-14);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(position_and_velocity_may_be_asked_for_alone)
 {
-  problem *of = made_problem("double-pendulum", NULL);
+  problem *model = create_problem("double-pendulum", NULL);
   const char *method = _i == 0 ? "galerkin:degree=3" : "composition:order=4,base=midpoint";
-  dvi_integrator *integrator = started(of, method);
+  dvi_integrator *integrator = start_integrator(model, method);
   double q[2], v[2], q_alone[2], v_alone[2];
   advance(integrator, 0.02, 3);
   ck_assert_int_eq(dvi_integrator_interpolate(integrator, 0.047, q, v), DVI_OK);
@@ -79,7 +79,7 @@ START_TEST(position_and_velocity_may_be_asked_for_alone)
   ck_assert_mem_eq(q, q_alone, sizeof q);
   ck_assert_mem_eq(v, v_alone, sizeof v);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -87,23 +87,23 @@ END_TEST
 
 enum { LEVELS = 5, INSIDE = 8 };
 
-/* Largest error of q and v inside one step of h around t = 1, from the exact solution: where the
- * middle stays, so does the derivative that makes the error. */
-static void errors_inside(const problem *of, dvi_integrator *integrator, double h, double *q_error,
-                          double *v_error)
+/* Gives the largest error of q and v inside one step of h around t = 1, from the exact solution.
+ * The middle stays, and so does the derivative that makes the error. */
+static void errors_inside(const problem *model, dvi_integrator *integrator, double h,
+                          double *q_error, double *v_error)
 {
   double q[2], p[2], found_q[2], found_v[2];
   const double from = 1 - h / 2;
-  ck_assert_int_eq(of->exact(of, from, q, p), 0);
+  ck_assert_int_eq(model->exact(model, from, q, p), 0);
   ck_assert_int_eq(dvi_integrator_start(integrator, from, q, p), DVI_OK);
   advance(integrator, h, 1);
   *q_error = *v_error = 0;
   for (int k = 1; k < INSIDE; k++) {
     const double t = from + h * k / (double)INSIDE;
-    ck_assert_int_eq(of->exact(of, t, q, p), 0);
+    ck_assert_int_eq(model->exact(model, t, q, p), 0);
     ck_assert_int_eq(dvi_integrator_interpolate(integrator, t, found_q, found_v), DVI_OK);
-    *q_error = fmax(*q_error, distance(of->nq, found_q, q));
-    *v_error = fmax(*v_error, distance(of->nq, found_v, p));
+    *q_error = fmax(*q_error, distance(model->nq, found_q, q));
+    *v_error = fmax(*v_error, distance(model->nq, found_v, p));
   }
 }
 
@@ -150,16 +150,16 @@ static void check_order(const char *what, const double *h, const double *error, 
 START_TEST(the_error_inside_a_step_has_the_order_of_the_path)
 {
   double h[LEVELS], q_error[LEVELS], v_error[LEVELS];
-  problem *of = made_problem("kepler", NULL);
-  dvi_integrator *integrator = made_integrator(of->system, paths[_i].method);
+  problem *model = create_problem("kepler", NULL);
+  dvi_integrator *integrator = create_integrator(model->system, paths[_i].method);
   for (int level = 0; level < LEVELS; level++) {
     h[level] = paths[_i].h * pow(0.5, 1 + 0.5 * level);
-    errors_inside(of, integrator, h[level], &q_error[level], &v_error[level]);
+    errors_inside(model, integrator, h[level], &q_error[level], &v_error[level]);
   }
-  check_order(spec("the path of %s", paths[_i].method), h, q_error, paths[_i].order);
-  check_order(spec("the velocity of %s", paths[_i].method), h, v_error, paths[_i].order - 1);
+  check_order(method_spec("the path of %s", paths[_i].method), h, q_error, paths[_i].order);
+  check_order(method_spec("the velocity of %s", paths[_i].method), h, v_error, paths[_i].order - 1);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -168,8 +168,8 @@ END_TEST
 START_TEST(times_outside_of_the_last_step_are_refused)
 {
   const double outside[] = {0.29, 0.2999, 0.4001, 0.5, -1, (double)NAN, HUGE_VAL, -HUGE_VAL};
-  problem *of = made_problem("pendulum", NULL);
-  dvi_integrator *integrator = started(of, methods[_i]);
+  problem *model = create_problem("pendulum", NULL);
+  dvi_integrator *integrator = start_integrator(model, methods[_i]);
   double q, v;
   advance(integrator, 0.1, 4);
   for (int k = 0; k < 8; k++) {
@@ -180,29 +180,29 @@ START_TEST(times_outside_of_the_last_step_are_refused)
     ck_assert_double_eq(v, 77);
   }
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(without_a_step_there_is_no_path)
 {
-  problem *of = made_problem("pendulum", NULL);
-  dvi_integrator *integrator = made_integrator(of->system, methods[_i]);
+  problem *model = create_problem("pendulum", NULL);
+  dvi_integrator *integrator = create_integrator(model->system, methods[_i]);
   double q;
   ck_assert_int_eq(dvi_integrator_interpolate(integrator, 0, &q, NULL), DVI_BAD_STATE);
-  ck_assert_int_eq(dvi_integrator_start(integrator, 0, of->q, of->p), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, model->q, model->p), DVI_OK);
   ck_assert_int_eq(dvi_integrator_interpolate(integrator, 0, &q, NULL), DVI_BAD_STATE);
   check_words("no step was taken yet");
   advance(integrator, 0.1, 1);
   ck_assert_int_eq(dvi_integrator_interpolate(integrator, 0.05, &q, NULL), DVI_OK);
-  ck_assert_int_eq(dvi_integrator_start(integrator, 0, of->q, of->p), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, model->q, model->p), DVI_OK);
   ck_assert_int_eq(dvi_integrator_interpolate(integrator, 0, &q, NULL), DVI_BAD_STATE);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* What another answers about the middle of the last step. */
+/* Compares the answers of another integrator about the middle of the last step. */
 static void check_same_path(dvi_integrator *a, dvi_integrator *b, double t)
 {
   double found[2][2];
@@ -213,16 +213,16 @@ static void check_same_path(dvi_integrator *a, dvi_integrator *b, double t)
 
 START_TEST(the_path_is_in_the_checkpoint)
 {
-  problem *of = made_problem("pendulum", NULL);
-  dvi_integrator *first = started(of, methods[_i]),
-                 *second = made_integrator(of->system, methods[_i]);
+  problem *model = create_problem("pendulum", NULL);
+  dvi_integrator *first = start_integrator(model, methods[_i]),
+                 *second = create_integrator(model->system, methods[_i]);
   advance(first, 0.1, 4);
-  ck_assert_int_eq(dvi_integrator_save(first, in_folder("checkpoint")), DVI_OK);
-  ck_assert_int_eq(dvi_integrator_restore(second, in_folder("checkpoint")), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_save(first, path_in_folder("checkpoint")), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_restore(second, path_in_folder("checkpoint")), DVI_OK);
   for (int k = 0; k <= 10; k++) check_same_path(first, second, 0.3 + 0.01 * k);
   dvi_integrator_destroy(&first);
   dvi_integrator_destroy(&second);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

@@ -23,7 +23,7 @@ static void best_again(void)
 
 /* ---- members and their twins ---- */
 
-/* Initial states near the problem's own, no two alike; component-major. */
+/* Makes initial states near the problem's own, no two alike, component-major. */
 static double first_q[N_MOST * MEMBERS_MOST], first_p[N_MOST * MEMBERS_MOST];
 
 static void take(int n, int members, int k, const double *all, double *one)
@@ -32,39 +32,39 @@ static void take(int n, int members, int k, const double *all, double *one)
 }
 
 /* p = alpha(q), where there is a one-form. */
-static void constrain(const problem *of, int members, int k)
+static void constrain(const problem *model, int members, int k)
 {
   double q[N_MOST], p[N_MOST];
-  take(of->nq, members, k, first_q, q);
-  ck_assert_int_eq(dvi_system_momentum(of->system, 0, q, of->v, p), DVI_OK);
-  for (int i = 0; i < of->nq; i++) first_p[i * members + k] = p[i];
+  take(model->nq, members, k, first_q, q);
+  ck_assert_int_eq(dvi_system_momentum(model->system, 0, q, model->v, p), DVI_OK);
+  for (int i = 0; i < model->nq; i++) first_p[i * members + k] = p[i];
 }
 
 /* With factors the places stay on their manifold, and the momenta in its tangent spaces. */
-static void spread_momenta(const problem *of, int members, double spread)
+static void spread_momenta(const problem *model, int members, double spread)
 {
   for (int k = 0; k < members; k++) {
-    for (int i = 0; i < of->nq; i++) first_q[i * members + k] = of->q[i];
-    for (int i = 0; i < of->nv; i++)
-      first_p[i * members + k] = of->p[i] * (1 + spread * k / members);
+    for (int i = 0; i < model->nq; i++) first_q[i * members + k] = model->q[i];
+    for (int i = 0; i < model->nv; i++)
+      first_p[i * members + k] = model->p[i] * (1 + spread * k / members);
   }
 }
 
-static void spread_start(const problem *of, int members, double spread)
+static void spread_start(const problem *model, int members, double spread)
 {
-  ck_assert_int_le(of->nq, N_MOST);
+  ck_assert_int_le(model->nq, N_MOST);
   ck_assert_int_le(members, MEMBERS_MOST);
-  if (of->terms->factors != NULL) {
-    spread_momenta(of, members, spread);
+  if (model->terms->factors != NULL) {
+    spread_momenta(model, members, spread);
     return;
   }
   for (int k = 0; k < members; k++)
-    for (int i = 0; i < of->nq; i++) {
-      const double u = fmod(0.618033988749895 * (k * of->nq + i + 1), 1.0) - 0.5;
-      first_q[i * members + k] = of->q[i] + spread * u * (1 + fabs(of->q[i]));
-      first_p[i * members + k] = of->p[i] * (1 + spread * u);
+    for (int i = 0; i < model->nq; i++) {
+      const double u = fmod(0.618033988749895 * (k * model->nq + i + 1), 1.0) - 0.5;
+      first_q[i * members + k] = model->q[i] + spread * u * (1 + fabs(model->q[i]));
+      first_p[i * members + k] = model->p[i] * (1 + spread * u);
     }
-  for (int k = 0; k < members && of->terms->one_form != NULL; k++) constrain(of, members, k);
+  for (int k = 0; k < members && model->terms->one_form != NULL; k++) constrain(model, members, k);
 }
 
 static dvi_ensemble *made_ensemble(const dvi_system *system, const char *method,
@@ -85,7 +85,7 @@ static void start_all(dvi_ensemble *e)
 static dvi_integrator *twin(const dvi_system *system, const char *method, int members, int k)
 {
   double q[N_MOST], p[N_MOST];
-  dvi_integrator *made = made_integrator(system, method);
+  dvi_integrator *made = create_integrator(system, method);
   take(dvi_system_nq(system), members, k, first_q, q);
   take(dvi_system_nv(system), members, k, first_p, p);
   ck_assert_msg(dvi_integrator_start(made, 0.25, q, p) == DVI_OK, "%s", dvi_last_error());
@@ -107,7 +107,7 @@ static void same_member(dvi_ensemble *e, int k, dvi_integrator *single)
   ck_assert_mem_eq(&t[k], &t_single, sizeof(double));
   ck_assert_mem_eq(q_k, dvi_integrator_q(single), (size_t)n * sizeof(double));
   ck_assert_mem_eq(p_k, dvi_integrator_p(single), (size_t)nv * sizeof(double));
-  /* Where a run has blown up there is no energy, on both sides. */
+  /* A run that has blown up has no energy, on both sides. */
   const dvi_status status = dvi_integrator_invariants(single, there);
   ck_assert_int_eq(dvi_ensemble_invariants(e, k, here), status);
   if (status == DVI_OK) ck_assert_mem_eq(here, there, (size_t)invariants * sizeof(double));
@@ -149,9 +149,9 @@ static void check_counters(dvi_counters got, dvi_counters wanted, const dvi_coun
 
 /* ---- places ---- */
 
-/* The chain of 40 goes in waves, that of 8 in lanes. fpu at h = 0.1 is stiff: fixed point iteration
- * fails. At h = 0.02 it fails for some members and steps, and at pericentre kepler's goes through
- * all solvers. */
+/* The chain of 40 takes temporal blocking, that of 8 goes in lanes. fpu at h = 0.1 is stiff, and
+ * fixed-point iteration fails. At h = 0.02 it fails for some members and steps, and at pericentre
+ * kepler's goes through all solvers. */
 typedef struct place {
   const char *problem, *setting;
   double h, spread;
@@ -239,11 +239,12 @@ END_TEST
 
 /* One way to run an ensemble beside the twins, which take the same steps. Some members may fail, on
  * both sides. */
-static void compare(const problem *of, const char *method, double h, dvi_ensemble_options options)
+static void compare(const problem *model, const char *method, double h,
+                    dvi_ensemble_options options)
 {
   dvi_counters wanted = {0}, got, creation, single;
-  dvi_ensemble *e = made_ensemble(of->system, method, options);
-  dvi_integrator *probe = made_integrator(of->system, method);
+  dvi_ensemble *e = made_ensemble(model->system, method, options);
+  dvi_integrator *probe = create_integrator(model->system, method);
   dvi_integrator_counters(probe, &creation);
   dvi_integrator_destroy(&probe);
   start_all(e);
@@ -252,7 +253,7 @@ static void compare(const problem *of, const char *method, double h, dvi_ensembl
   if (worst == DVI_OK) worst = dvi_ensemble_advance(e, -0.7 * h, 2);
   dvi_ensemble_counters(e, &got);
   for (int k = 0; k < options.members; k++) {
-    dvi_integrator *alone = twin(of->system, method, options.members, k);
+    dvi_integrator *alone = twin(model->system, method, options.members, k);
     dvi_status status = DVI_OK;
     for (int i = 0; i < (worst == DVI_OK ? STEPS : STEPS - 3) && status == DVI_OK; i++)
       status = dvi_integrator_step(alone, i < STEPS - 2 ? h : -0.7 * h);
@@ -287,15 +288,15 @@ END_TEST
 START_TEST(every_member_has_the_bits_of_a_run_alone)
 {
   const place *at = &places[pairs.which[sampled_case(_i)] / METHODS];
-  problem *of = made_problem(at->problem, at->setting);
-  spread_start(of, 21, at->spread);
-  compare(of, methods[pairs.which[sampled_case(_i)] % METHODS], at->h,
+  problem *model = create_problem(at->problem, at->setting);
+  spread_start(model, 21, at->spread);
+  compare(model, methods[pairs.which[sampled_case(_i)] % METHODS], at->h,
           (dvi_ensemble_options){.members = 21});
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* Levels, threads and groupings, one after the other: each is compared with runs alone at the best
+/* Compares levels, threads and groupings, one after the other, with runs alone at the best
  * level. */
 START_TEST(levels_threads_and_groupings_change_no_bit)
 {
@@ -307,57 +308,58 @@ START_TEST(levels_threads_and_groupings_change_no_bit)
                                      "composition:order=6,base=galerkin,degree=2",
                                      "galerkin:degree=8"};
   const int way = _i % 10, level = _i / 10;
-  problem *of = made_problem("kepler", "e=0.5");
+  problem *model = create_problem("kepler", "e=0.5");
   for (int m = 0; m < 5; m++) {
     dvi__lanes_choose(level);
-    spread_start(of, ways[way].members, 0.1);
-    compare(of, some[m], 0.05,
+    spread_start(model, ways[way].members, 0.1);
+    compare(model, some[m], 0.05,
             (dvi_ensemble_options){.members = ways[way].members,
                                    .threads = ways[way].threads,
                                    .block = ways[way].block});
   }
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* The ensemble's state at each level against that of the baseline: `compare` has both sides at one
- * level. */
+/* Compares the ensemble's state at each level with that of the baseline. `compare` has both sides
+ * at one level. */
 START_TEST(levels_agree_with_each_other)
 {
   static double base_q[N_MOST * MEMBERS_MOST], q[N_MOST * MEMBERS_MOST];
-  problem *of = made_problem("outer-solar", NULL);
-  spread_start(of, 33, 0.01);
+  problem *model = create_problem("outer-solar", NULL);
+  spread_start(model, 33, 0.01);
   for (int level = 0; level < dvi__lanes_levels(); level++) {
     dvi__lanes_choose(level);
-    dvi_ensemble *e = made_ensemble(of->system, methods[_i], (dvi_ensemble_options){.members = 33});
+    dvi_ensemble *e = made_ensemble(model->system, methods[_i],
+                                    (dvi_ensemble_options){.members = 33});
     start_all(e);
     ck_assert_msg(dvi_ensemble_advance(e, 50, 20) == DVI_OK, "%s", dvi_last_error());
     ck_assert_int_eq(dvi_ensemble_state(e, NULL, level == 0 ? base_q : q, NULL), DVI_OK);
-    if (level > 0) ck_assert_mem_eq(q, base_q, (size_t)of->nq * 33 * sizeof(double));
+    if (level > 0) ck_assert_mem_eq(q, base_q, (size_t)model->nq * 33 * sizeof(double));
     dvi_ensemble_destroy(&e);
   }
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(a_start_in_velocities_is_one_in_their_momenta)
 {
-  problem *of = made_problem("double-pendulum", NULL);
+  problem *model = create_problem("double-pendulum", NULL);
   double v[N_MOST], momentum[N_MOST], p[N_MOST * 5];
-  spread_start(of, 5, 0.2);
-  dvi_ensemble *e = made_ensemble(of->system, "galerkin",
+  spread_start(model, 5, 0.2);
+  dvi_ensemble *e = made_ensemble(model->system, "galerkin",
                                   (dvi_ensemble_options){.members = 5, .threads = 2});
   /* any numbers will do */
   ck_assert_int_eq(dvi_ensemble_start_velocity(e, 0, first_q, first_p), DVI_OK);
   ck_assert_int_eq(dvi_ensemble_state(e, NULL, NULL, p), DVI_OK);
   for (int k = 0; k < 5; k++) {
     double q[N_MOST];
-    take(of->nq, 5, k, first_q, q), take(of->nq, 5, k, first_p, v);
-    ck_assert_int_eq(dvi_system_momentum(of->system, 0, q, v, momentum), DVI_OK);
-    for (int i = 0; i < of->nq; i++) ck_assert_double_eq(p[i * 5 + k], momentum[i]);
+    take(model->nq, 5, k, first_q, q), take(model->nq, 5, k, first_p, v);
+    ck_assert_int_eq(dvi_system_momentum(model->system, 0, q, v, momentum), DVI_OK);
+    for (int i = 0; i < model->nq; i++) ck_assert_double_eq(p[i * 5 + k], momentum[i]);
   }
   dvi_ensemble_destroy(&e);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -366,10 +368,10 @@ END_TEST
 /* A step of verlet takes one gradient for each member, and one more at the start of all. */
 START_TEST(verlet_evaluates_once_a_step)
 {
-  problem *of = made_problem("kepler", NULL);
+  problem *model = create_problem("kepler", NULL);
   dvi_counters before, after;
-  spread_start(of, 64, 0.1);
-  dvi_ensemble *e = made_ensemble(of->system, "verlet", (dvi_ensemble_options){.members = 64});
+  spread_start(model, 64, 0.1);
+  dvi_ensemble *e = made_ensemble(model->system, "verlet", (dvi_ensemble_options){.members = 64});
   start_all(e);
   dvi_ensemble_counters(e, &before);
   ck_assert_int_eq(dvi_ensemble_advance(e, 0.01, 50), DVI_OK);
@@ -378,25 +380,26 @@ START_TEST(verlet_evaluates_once_a_step)
   ck_assert_int_eq(after.steps, 64 * 50);
   ck_assert_int_eq(after.residuals, 0);
   dvi_ensemble_destroy(&e);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* A stiff step: simplified Newton's method keeps its Jacobian as long as it serves. Members that go
- * on alone take 1, 2, 4, ... 32 steps at a time. */
+/* In a stiff step simplified Newton's method keeps its Jacobian as long as it serves. Members that
+ * go on alone take 1, 2, 4, ... 32 steps at a time. */
 START_TEST(a_frozen_jacobian_serves_several_steps)
 {
   enum { ALL = 21, SPAN = 63 };
-  problem *of = made_problem("fpu", "ell=3");
+  problem *model = create_problem("fpu", "ell=3");
   dvi_counters got, single;
   long alone = 0;
-  spread_start(of, ALL, 0.01);
-  dvi_ensemble *e = made_ensemble(of->system, "galerkin", (dvi_ensemble_options){.members = ALL});
+  spread_start(model, ALL, 0.01);
+  dvi_ensemble *e = made_ensemble(model->system, "galerkin",
+                                  (dvi_ensemble_options){.members = ALL});
   start_all(e);
   ck_assert_int_eq(dvi_ensemble_advance(e, 0.1, SPAN), DVI_OK);
   dvi_ensemble_counters(e, &got);
   for (int k = 0; k < ALL; k++) {
-    dvi_integrator *one = twin(of->system, "galerkin", ALL, k);
+    dvi_integrator *one = twin(model->system, "galerkin", ALL, k);
     advance(one, 0.1, SPAN);
     dvi_integrator_counters(one, &single);
     alone += single.jacobians;
@@ -405,7 +408,7 @@ START_TEST(a_frozen_jacobian_serves_several_steps)
   ck_assert_int_gt(got.simplified, ALL * SPAN / 2);
   ck_assert_int_le(got.jacobians, alone + 7 * ALL);
   dvi_ensemble_destroy(&e);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -414,10 +417,10 @@ START_TEST(no_step_allocates)
 {
   const place *at = &places[pairs.which[sampled_case(_i)] / METHODS];
   const char *method = methods[pairs.which[sampled_case(_i)] % METHODS];
-  problem *of = made_problem(at->problem, at->setting);
+  problem *model = create_problem(at->problem, at->setting);
   dvi_counters before, after;
-  spread_start(of, 21, 0.05);
-  dvi_ensemble *e = made_ensemble(of->system, method,
+  spread_start(model, 21, 0.05);
+  dvi_ensemble *e = made_ensemble(model->system, method,
                                   (dvi_ensemble_options){.members = 21, .threads = 2, .block = 4});
   start_all(e);
   dvi_ensemble_counters(e, &before);
@@ -436,15 +439,15 @@ START_TEST(no_step_allocates)
   }
   ck_assert_int_le(after.preparations, 2 * PREPARATIONS_MOST);
   dvi_ensemble_destroy(&e);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(explain_says_how_members_are_grouped)
 {
   char text[2048], little[20];
-  problem *of = made_problem("kepler", NULL);
-  dvi_ensemble *e = made_ensemble(of->system, "verlet",
+  problem *model = create_problem("kepler", NULL);
+  dvi_ensemble *e = made_ensemble(model->system, "verlet",
                                   (dvi_ensemble_options){.members = 64, .block = 16});
   const size_t length = dvi_ensemble_explain(e, text, sizeof text);
   ck_assert_uint_eq(length, strlen(text));
@@ -455,24 +458,24 @@ START_TEST(explain_says_how_members_are_grouped)
   ck_assert_uint_eq(dvi_ensemble_explain(e, NULL, 0), length);
   ck_assert_str_eq(dvi_ensemble_method(e), "verlet:blocking=auto,threads=1");
   dvi_ensemble_destroy(&e);
-  e = made_ensemble(of->system, "galerkin:degree=16",
+  e = made_ensemble(model->system, "galerkin:degree=16",
                     (dvi_ensemble_options){.members = 64, .threads = 2});
   (void)dvi_ensemble_explain(e, text, sizeof text);
   ck_assert_ptr_nonnull(strstr(text, "64 members in 64 blocks, one after the other, 2 threads\n"));
   dvi_ensemble_destroy(&e);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 static void explained(const char *method, const char *setting, const char *words)
 {
   char text[2048];
-  problem *of = made_problem("chain", setting);
-  dvi_ensemble *e = made_ensemble(of->system, method, (dvi_ensemble_options){.members = 16});
+  problem *model = create_problem("chain", setting);
+  dvi_ensemble *e = made_ensemble(model->system, method, (dvi_ensemble_options){.members = 16});
   (void)dvi_ensemble_explain(e, text, sizeof text);
   ck_assert_msg(strstr(text, words) != NULL, "%s", text);
   dvi_ensemble_destroy(&e);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 
 START_TEST(waves_are_not_given_up_for_members_as_lanes)

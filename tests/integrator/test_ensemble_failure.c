@@ -1,5 +1,5 @@
 /* labels: unit */
-/* What an ensemble does with wrong arguments and with members that fail: it says which, and loses
+/* An ensemble with wrong arguments, or with members that fail, says which ones, and loses
  * nothing. */
 #include <float.h>
 #include <math.h>
@@ -29,7 +29,7 @@ static void fill_start(void)
 static void set_up(void)
 {
   const dvi_ensemble_options options = {.members = MEMBERS, .block = 5};
-  kepler = made_problem("kepler", NULL);
+  kepler = create_problem("kepler", NULL);
   fill_start();
   ck_assert_int_eq(dvi_ensemble_create(kepler->system, "verlet", &options, &ensemble), DVI_OK);
 }
@@ -176,7 +176,7 @@ END_TEST
 
 /* ---- members that fail ---- */
 
-/* A free fall in which callbacks refuse, or fail for good, below a floor; q[0] rises or falls with
+/* A free fall in which callbacks refuse, or fail for good, below a floor. q[0] rises or falls with
  * p[0]. */
 typedef struct ground {
   double retry_below, fail_below, nan_below;
@@ -217,8 +217,8 @@ static dvi_system *made_fall(ground *g)
 static const char *const falling_methods[] = {
     "verlet", "galerkin:degree=2", "composition:order=4,base=midpoint", "galerkin:degree=9"};
 
-/* Member 4 falls from x = 1 with velocity -1 through the floor at x = 0.05, member 8 from 2; all
- * others rise. */
+/* Member 4 falls from x = 1 with velocity -1 through the floor at x = 0.05, member 8 falls from 2,
+ * and all others rise. */
 static void drop(double *x, double *momentum)
 {
   for (int k = 0; k < MEMBERS; k++) {
@@ -261,7 +261,7 @@ START_TEST(a_member_that_fails_stays_and_the_others_go_on)
   dvi_ensemble_counters(e, &counters);
   ck_assert_int_eq(counters.steps, 12 * (MEMBERS - 1) + 7);
   ck_assert_int_eq(counters.failed_steps, 1);
-  /* The next call tries it again, and member 8 fails as well; the first one is named. */
+  /* The next call tries it again, and member 8 fails as well. The sentence names the first one. */
   ck_assert_int_eq(dvi_ensemble_advance(e, 0.125, 12), statuses[kind]);
   check_words("ensemble: member 4, one of 2 that failed: ");
   ck_assert_int_eq(dvi_ensemble_steps(e, 8), 15);
@@ -275,8 +275,8 @@ START_TEST(a_member_that_fails_stays_and_the_others_go_on)
 }
 END_TEST
 
-/* Member 4 meets a smaller-step request first; member 8, later, a failure for good: that one is the
- * worse. */
+/* Member 4 meets a request for a smaller step first, and member 8 later a failure for good, which
+ * is the worse. */
 START_TEST(a_fatal_failure_is_worse_than_an_earlier_member)
 {
   for (int threads = 1; threads <= 3; threads++) {
@@ -303,8 +303,8 @@ START_TEST(a_fatal_failure_is_worse_than_an_earlier_member)
 }
 END_TEST
 
-/* A force on x < 0 whose second kick overflows the momentum; the mass is so large that nobody moves
- * much. */
+/* A force on x < 0 whose second kick overflows the momentum. The mass is so large that no member
+ * moves much. */
 static int huge_gradient(int count, const double *t, const double *x, double *V_q, void *user)
 {
   (void)t, (void)user;
@@ -350,13 +350,13 @@ static const struct {
 
 START_TEST(creation_survives_every_failure_of_memory)
 {
-  problem *of = made_problem(places[_i].problem, NULL);
+  problem *model = create_problem(places[_i].problem, NULL);
   const dvi_system *systems[MEMBERS];
-  for (int k = 0; k < MEMBERS; k++) systems[k] = of->system;
+  for (int k = 0; k < MEMBERS; k++) systems[k] = model->system;
   const dvi_ensemble_options options[] = {{.members = MEMBERS, .threads = 2},
                                           {.members = MEMBERS, .systems = systems}};
   for (int way = 0; way < 2; way++) {
-    const dvi_system *system = way == 0 ? of->system : NULL;
+    const dvi_system *system = way == 0 ? model->system : NULL;
     dvi_ensemble *made = NULL;
     ck_assert_int_eq(dvi_ensemble_create(system, places[_i].method, &options[way], &made), DVI_OK);
     /* the first one completes the system, and libraries take what they keep */
@@ -380,7 +380,7 @@ START_TEST(creation_survives_every_failure_of_memory)
     }
     ck_assert_int_eq(heap_bytes(), bytes_before);
   }
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

@@ -1,5 +1,5 @@
 /* labels: unit */
-/* Sweeps of parameters: members with systems of their own have the bits of integrators of these
+/* In sweeps of parameters members with systems of their own have the bits of integrators of these
  * systems. */
 #include <string.h>
 
@@ -9,7 +9,7 @@
 
 enum { SYSTEMS = 4, EACH = 6, MEMBERS = SYSTEMS * EACH, N_MOST = 32 };
 
-static problem *of[SYSTEMS];
+static problem *model[SYSTEMS];
 static const dvi_system *systems[MEMBERS];
 static double q[N_MOST * MEMBERS], p[N_MOST * MEMBERS];
 
@@ -28,15 +28,15 @@ static const char *const methods[] = {"verlet", "galerkin", "galerkin:degree=8",
                                       "composition:order=6,base=midpoint"};
 enum { METHODS = 5 };
 
-/* `interleaved`: neighbours have different systems. */
+/* Makes the members. With `interleaved` neighbours have different systems. */
 static void make_sweep(int which, int interleaved)
 {
   for (int s = 0; s < SYSTEMS; s++)
-    of[s] = made_problem(sweeps[which].problem, sweeps[which].setting[s]);
-  const int n = of[0]->nq;
+    model[s] = create_problem(sweeps[which].problem, sweeps[which].setting[s]);
+  const int n = model[0]->nq;
   ck_assert_int_le(n, N_MOST);
   for (int k = 0; k < MEMBERS; k++) {
-    const problem *own = of[interleaved ? k % SYSTEMS : k / EACH];
+    const problem *own = model[interleaved ? k % SYSTEMS : k / EACH];
     systems[k] = own->system;
     for (int i = 0; i < n; i++) {
       q[i * MEMBERS + k] = own->q[i] * (1 + 0.01 * (k % 7));
@@ -47,7 +47,7 @@ static void make_sweep(int which, int interleaved)
 
 static void clear_sweep(void)
 {
-  for (int s = 0; s < SYSTEMS; s++) problem_destroy(&of[s]);
+  for (int s = 0; s < SYSTEMS; s++) problem_destroy(&model[s]);
 }
 
 static void same_as_alone(dvi_ensemble *e, const char *method, double h, int steps)
@@ -58,7 +58,7 @@ static void same_as_alone(dvi_ensemble *e, const char *method, double h, int ste
     double q_k[N_MOST], p_k[N_MOST], here[16], there[16];
     const int n = dvi_system_nq(systems[k]);
     for (int i = 0; i < n; i++) q_k[i] = q[i * MEMBERS + k], p_k[i] = p[i * MEMBERS + k];
-    dvi_integrator *alone = made_integrator(systems[k], method);
+    dvi_integrator *alone = create_integrator(systems[k], method);
     ck_assert_int_eq(dvi_integrator_start(alone, 0, q_k, p_k), DVI_OK);
     advance(alone, h, steps);
     for (int i = 0; i < n; i++) {
@@ -133,7 +133,7 @@ START_TEST(methods_that_split_have_the_parts_of_each_members_system)
 }
 END_TEST
 
-/* A block has an integrator of its own: each member's system is asked for its Hessian once. */
+/* A block has an integrator of its own, and each member's system is asked for its Hessian once. */
 START_TEST(neighbours_with_one_system_share_its_modes)
 {
   make_sweep(OSCILLATORS, 0);
@@ -150,7 +150,7 @@ END_TEST
 
 START_TEST(systems_that_are_not_alike_are_refused)
 {
-  problem *one = made_problem("kepler", NULL), *other = made_problem("henon-heiles", NULL);
+  problem *one = create_problem("kepler", NULL), *other = create_problem("henon-heiles", NULL);
   const dvi_system *pair[] = {one->system, other->system};
   dvi_ensemble *e = NULL;
   ck_assert_int_eq(dvi_ensemble_create(NULL, "verlet",
@@ -237,7 +237,7 @@ START_TEST(slow_potentials_are_those_of_each_member)
   ck_assert_int_eq(dvi_ensemble_advance(e, 0.05, 10), DVI_OK);
   ck_assert_int_eq(dvi_ensemble_state(e, NULL, end, NULL), DVI_OK);
   for (int s = 0; s < 2; s++) {
-    dvi_integrator *alone = made_integrator(made[s], split[_i]);
+    dvi_integrator *alone = create_integrator(made[s], split[_i]);
     ck_assert_int_eq(dvi_integrator_start(alone, 0, x, rest), DVI_OK);
     advance(alone, 0.05, 10);
     ck_assert_mem_eq(&end[s], dvi_integrator_q(alone), sizeof(double));
@@ -284,7 +284,7 @@ START_TEST(a_reach_of_its_own_is_refused)
 }
 END_TEST
 
-/* Calls, not points: neighbours with one system share them. */
+/* Counts calls, not points, because neighbours with one system share them. */
 static int calls;
 
 static int counted_gradient(int count, const double *t, const double *x, double *V_q, void *user)
@@ -314,7 +314,7 @@ START_TEST(neighbours_with_one_system_share_a_call)
   ck_assert_int_eq(dvi_ensemble_step(e, 0.1), DVI_OK);
   calls = 0;
   ck_assert_int_eq(dvi_ensemble_advance(e, 0.1, 10), DVI_OK);
-  /* 12 members of a system: a block of 12, or two of 8 and 4. */
+  /* 12 members of a system make a block of 12, or two of 8 and 4. */
   ck_assert_int_ge(calls, 20);
   ck_assert_int_le(calls, 40);
   dvi_ensemble_destroy(&e);
@@ -324,7 +324,7 @@ END_TEST
 
 /* ---- constraints ---- */
 
-/* H = |p|^2/2 + y on a circle of radius r: phi = (|q|^2 - r^2)/2 and q.p. */
+/* H = |p|^2/2 + y on a circle of radius r, with phi = (|q|^2 - r^2)/2 and q.p. */
 static int H(double t, const double *x, const double *momentum, double *value, void *user)
 {
   (void)t, (void)user;
@@ -389,7 +389,7 @@ START_TEST(circles_of_different_radii_hold_their_own_particles)
   ck_assert_msg(dvi_ensemble_advance(e, 0.1, 5) == DVI_OK, "%s", dvi_last_error());
   ck_assert_int_eq(dvi_ensemble_state(e, NULL, end, NULL), DVI_OK);
   for (int s = 0; s < 2; s++) {
-    dvi_integrator *alone = made_integrator(made[s], "dg-phase");
+    dvi_integrator *alone = create_integrator(made[s], "dg-phase");
     ck_assert_int_eq(dvi_integrator_start(alone, 0, (double[]){x[s], 0}, (double[]){0, 0.3}),
                      DVI_OK);
     advance(alone, 0.1, 5);
@@ -404,7 +404,7 @@ END_TEST
 
 /* ---- a parameter as a coordinate ---- */
 
-/* V = x[1] x[0]^2 / 2, with no force on x[1]: it rests, and each member has its own. */
+/* V = x[1] x[0]^2 / 2, without a force on x[1], which rests and differs between members. */
 static int sprung(int count, const double *t, const double *x, double *V, void *user)
 {
   (void)t, (void)user;
@@ -448,7 +448,7 @@ START_TEST(a_parameter_that_rests_is_one_to_the_last_bit)
         .dimension = 1, .mass.scalar = 1, .potentials = &fixed, .potential_count = 1};
     dvi_system *of_member = NULL;
     ck_assert_int_eq(dvi_system_create(&alone, &of_member), DVI_OK);
-    dvi_integrator *integrator = made_integrator(of_member, "verlet");
+    dvi_integrator *integrator = create_integrator(of_member, "verlet");
     ck_assert_int_eq(dvi_integrator_start(integrator, 0, x + k, momentum + k), DVI_OK);
     advance(integrator, 0.1, STEPS);
     ck_assert_mem_eq(dvi_integrator_q(integrator), end + k, sizeof(double));

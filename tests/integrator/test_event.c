@@ -1,5 +1,5 @@
 /* labels: unit */
-/* Events: found where they are, in the order of the run, once. */
+/* Events are found at the right time, in the order of the run, once. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -21,10 +21,10 @@ typedef struct mark {
   double value_after, value;
 } mark;
 
-/* What was reported, in this order. */
+/* The reported events, in this order. */
 static struct {
   int count;
-  const mark *of[MARKS_MOST];
+  const mark *watched[MARKS_MOST];
   double t[MARKS_MOST], q[MARKS_MOST];
 } record;
 
@@ -46,7 +46,7 @@ static int take_down(double t, const double *q, const double *v, void *user)
   const mark *m = user;
   (void)v;
   ck_assert_int_lt(record.count, MARKS_MOST);
-  record.of[record.count] = m;
+  record.watched[record.count] = m;
   record.t[record.count] = t;
   record.q[record.count++] = q[0];
   return m->answer;
@@ -57,19 +57,19 @@ static dvi_event at_times(mark *m)
   return (dvi_event){.name = "alarm", .value = clock_value, .occurred = take_down, .user = m};
 }
 
-static problem *of;
+static problem *model;
 static dvi_integrator *integrator;
 
 static void set_up(void)
 {
-  of = made_problem("oscillator", NULL);
-  integrator = started(of, "galerkin:degree=8");
+  model = create_problem("oscillator", NULL);
+  integrator = start_integrator(model, "galerkin:degree=8");
 }
 
 static void tear_down(void)
 {
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 
 static dvi_run_report watch(double h, double t_end, const dvi_event *events, int count)
@@ -102,8 +102,8 @@ static int note_time(double t, const double *q, const double *v, void *user)
   return 0;
 }
 
-/* q = cos(w t)/2 vanishes at (k + 1/2) pi/w. With degree 8 and h = 0.1 the path's own error is (w
- * h/2)^9/9!, nothing; the promise is 1e-12 max(1,|t|). */
+/* q = cos(w t)/2 vanishes at (k + 1/2) pi/w. With degree 8 and h = 0.1 the path's own error (w
+ * h/2)^9/9! is negligible. The promise is 1e-12 max(1,|t|). */
 START_TEST(zeros_of_an_oscillator_are_where_theory_says)
 {
   double zero = 0;
@@ -144,14 +144,14 @@ static int radial_speed(double t, const double *q, const double *v, double *g, v
 }
 
 /* The apsides of a Kepler orbit from its pericentre are at k pi. With degree 12 and h = 0.05 the
- * velocity inside a step, at an eccentricity of 0.6, is right to 24^-12 (the nearest singularity is
- * 0.3 away in complex time): roundoff. What the run's roundoff does to the phase stays below 1e-13
- * over five turns. The start, itself a pericentre, is none of the run's events. */
+ * velocity inside a step, at an eccentricity of 0.6, is right to 24^-12, which is roundoff (the
+ * nearest singularity is 0.3 away in complex time). The run's roundoff changes the phase by less
+ * than 1e-13 over five turns. The start, itself a pericentre, is none of the run's events. */
 START_TEST(apsides_of_a_kepler_orbit_are_where_theory_says)
 {
   const int direction = _i - 1;
-  problem *kepler = made_problem("kepler", "e=0.6");
-  dvi_integrator *orbit = started(kepler, "galerkin:degree=12");
+  problem *kepler = create_problem("kepler", "e=0.6");
+  dvi_integrator *orbit = start_integrator(kepler, "galerkin:degree=12");
   const dvi_event event = {
       .name = "apsis", .value = radial_speed, .direction = direction, .occurred = note_time};
   const dvi_run_options options = {.h = 0.05, .t_end = 32, .events = &event, .event_count = 1};
@@ -166,9 +166,9 @@ START_TEST(apsides_of_a_kepler_orbit_are_where_theory_says)
 }
 END_TEST
 
-/* A function of time alone is known to the last digit: what is left is the search. The cube is flat
- * at its zero, the sign has no slope to go by, the steep one's values left and right of it differ
- * by 10^17, the product of two values of the tiny one is zero in floating point. */
+/* A function of time alone is known to the last digit, so only the search can err. The cube is flat
+ * at its zero, the sign has no useful slope, the values of the steep one left and right of it
+ * differ by 10^17, and the product of two values of the tiny one is zero in floating point. */
 static int cube(double t, const double *q, const double *v, double *g, void *user)
 {
   (void)q, (void)v, (void)user;
@@ -222,7 +222,7 @@ START_TEST(the_callback_gets_the_path_at_the_event)
   double q, p;
   (void)watch(0.1, 2, &event, 1);
   ck_assert_int_eq(record.count, 1);
-  ck_assert_int_eq(of->exact(of, 1.2345, &q, &p), 0);
+  ck_assert_int_eq(model->exact(model, 1.2345, &q, &p), 0);
   ck_assert_double_eq_tol(record.q[0], q, 1e-12);
 }
 END_TEST
@@ -247,8 +247,8 @@ START_TEST(a_double_zero_inside_a_quarter_is_no_event)
 }
 END_TEST
 
-/* With h = 0.125 these times are points of the search, exactly: the end of a step, a quarter, the
- * end of the run. */
+/* With h = 0.125 the search evaluates exactly these times: the end of a step, a quarter, the end of
+ * the run. */
 START_TEST(a_zero_on_a_point_of_the_search_is_reported_once)
 {
   const double exact[] = {0.5, 0.53125, 1};
@@ -277,7 +277,7 @@ START_TEST(runs_that_end_between_events_find_each_once)
   const dvi_event event = {.value = position, .occurred = note_time, .user = &zero};
   for (int k = 1; k <= 90; k++) (void)watch(0.37, k / 3.0, &event, 1);
   const int in_parts = times.count;
-  ck_assert_int_eq(dvi_integrator_start(integrator, 0, of->q, of->p), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, model->q, model->p), DVI_OK);
   (void)watch(0.37, 30, &event, 1);
   ck_assert_int_eq(times.count, 2 * in_parts);
 }
@@ -285,7 +285,7 @@ END_TEST
 
 /* ---- in order ---- */
 
-/* Six zeros in one step, from three events, in two quarters of it, listed late to early; backward
+/* Six zeros in one step, from three events, in two quarters of it, listed late to early. Backward
  * the order is reversed. */
 START_TEST(events_of_one_step_come_in_the_order_of_the_run)
 {
@@ -294,7 +294,7 @@ START_TEST(events_of_one_step_come_in_the_order_of_the_run)
   const dvi_event events[] = {at_times(&late), at_times(&middle), at_times(&early)};
   const double forward[] = {0.29, 0.30, 0.31, 0.55, 0.70, 0.71};
   const mark *const whose[] = {&early, &middle, &late, &middle, &early, &late};
-  if (_i == 1) ck_assert_int_eq(dvi_integrator_start(integrator, 1, of->q, of->p), DVI_OK);
+  if (_i == 1) ck_assert_int_eq(dvi_integrator_start(integrator, 1, model->q, model->p), DVI_OK);
   const dvi_run_report report = watch(_i == 0 ? 1 : -1, _i == 0 ? 1 : 0, events, 3);
   ck_assert_int_eq(report.steps, 1);
   ck_assert_int_eq(report.events, 6);
@@ -302,7 +302,7 @@ START_TEST(events_of_one_step_come_in_the_order_of_the_run)
   for (int k = 0; k < 6; k++) {
     const int j = _i == 0 ? k : 5 - k;
     ck_assert_double_eq_tol(record.t[k], forward[j], 1e-12);
-    ck_assert_ptr_eq(record.of[k], whose[j]);
+    ck_assert_ptr_eq(record.watched[k], whose[j]);
   }
   ck_assert_int_eq(report.event, _i == 0 ? 0 : 2);
   ck_assert_double_eq(report.event_time, record.t[5]);
@@ -314,8 +314,8 @@ START_TEST(of_two_events_at_one_time_the_first_of_the_list_comes_first)
   mark one = {.count = 1, .time = {0.5}}, two = {.count = 1, .time = {0.5}};
   const dvi_event events[] = {at_times(&one), at_times(&two)};
   ck_assert_int_eq(watch(0.125, 1, events, 2).events, 2);
-  ck_assert_ptr_eq(record.of[0], &one);
-  ck_assert_ptr_eq(record.of[1], &two);
+  ck_assert_ptr_eq(record.watched[0], &one);
+  ck_assert_ptr_eq(record.watched[1], &two);
 }
 END_TEST
 
@@ -398,7 +398,7 @@ static const struct {
 };
 enum { AILMENTS = sizeof ailments / sizeof *ailments };
 
-/* Its step is taken back, so that a smaller one may be tried: what follows goes as if it had not
+/* Its step is taken back, so that a smaller one may be tried. Later steps are as if it had not
  * been. */
 START_TEST(a_function_that_fails_in_mid_run_fails_the_run)
 {
@@ -409,7 +409,7 @@ START_TEST(a_function_that_fails_in_mid_run_fails_the_run)
   ck_assert_int_eq(report.steps, 3);
   ck_assert_int_eq(report.events, 0);
   ck_assert_double_eq(dvi_integrator_time(integrator), 0.375);
-  dvi_integrator *other = started(of, dvi_integrator_method(integrator));
+  dvi_integrator *other = start_integrator(model, dvi_integrator_method(integrator));
   advance(other, 0.125, 3);
   check_same_state(integrator, other);
   advance(integrator, 0.1, 4);
@@ -448,7 +448,7 @@ START_TEST(a_function_that_fails_at_the_start_fails_the_run)
 {
   mark m = {.value_after = 0.45, .value_answer = ailments[_i].answer, .value = ailments[_i].value};
   const dvi_event event = at_times(&m);
-  ck_assert_int_eq(dvi_integrator_start(integrator, 0.5, of->q, of->p), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0.5, model->q, model->p), DVI_OK);
   const dvi_run_report report = failing(ailments[_i].status, &event);
   check_words(ailments[_i].words);
   ck_assert_int_eq(report.steps, 0);

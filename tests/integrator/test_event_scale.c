@@ -7,13 +7,13 @@
 #include "support/runs.h"
 #include "support/suite.h"
 
-/* A point moves freely; g is a function of time alone, so that what is left is the search. */
+/* A point moves freely, and g is a function of time alone, so only the search can err. */
 typedef struct clock {
   double unit, zero;
   double found;
 } clock;
 
-/* Flat at its zero, and without a slope to go by: both need many bisections. */
+/* Functions that are flat at the zero, or without a useful slope, need many bisections. */
 static int cube(double t, const double *q, const double *v, double *g, void *user)
 {
   const clock *c = user;
@@ -59,7 +59,7 @@ static double error_in_units(double unit, double begin,
       .h = unit, .t_end = begin + 10 * unit, .events = &event, .event_count = 1};
   dvi_system *system = NULL;
   ck_assert_msg(dvi_system_create(&terms, &system) == DVI_OK, "%s", dvi_last_error());
-  dvi_integrator *integrator = made_integrator(system, "verlet");
+  dvi_integrator *integrator = create_integrator(system, "verlet");
   ck_assert_int_eq(dvi_integrator_start(integrator, begin, &q, &p), DVI_OK);
   ck_assert_msg(dvi_run(integrator, &options, NULL) == DVI_OK, "%s", dvi_last_error());
   dvi_integrator_destroy(&integrator);
@@ -75,7 +75,7 @@ START_TEST(femtoseconds_are_located_as_well_as_years)
 }
 END_TEST
 
-/* Far from t = 0 times themselves are rounded, by half an ulp: what is found is a few of them
+/* Far from t = 0 times themselves are rounded by half an ulp, so the found times are a few of them
  * off. */
 START_TEST(late_events_are_located_to_the_rounding_of_the_clock)
 {

@@ -93,7 +93,7 @@ static dvi_system *bend(trap *set)
 static dvi_integrator *launched(const dvi_system *system, const char *method)
 {
   const double q[] = {0.7, -0.4}, p[] = {0.3, 0.5};
-  dvi_integrator *made = made_integrator(system, method);
+  dvi_integrator *made = create_integrator(system, method);
   ck_assert_msg(dvi_integrator_start(made, 0, q, p) == DVI_OK, "%s", dvi_last_error());
   return made;
 }
@@ -178,33 +178,33 @@ END_TEST
 START_TEST(steps_that_do_not_move_the_time_are_refused)
 {
   const double lengths[] = {0, -0.0, (double)NAN, HUGE_VAL, -HUGE_VAL, 1e-17, -1e-320};
-  problem *of = made_problem("pendulum", NULL);
-  dvi_integrator *integrator = started(of, methods[_i]);
+  problem *model = create_problem("pendulum", NULL);
+  dvi_integrator *integrator = start_integrator(model, methods[_i]);
   advance(integrator, 0.5, 2);
-  const bytes before = state_of(integrator);
+  const bytes before = read_state(integrator);
   for (int k = 0; k < 7; k++) {
     ck_assert_int_eq(dvi_integrator_step(integrator, lengths[k]), DVI_BAD_ARGUMENT);
     check_words("does not move the time");
   }
   check_state(integrator, before);
   /* here even the smallest number moves the time */
-  ck_assert_int_eq(dvi_integrator_start(integrator, 0, of->q, of->p), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, model->q, model->p), DVI_OK);
   ck_assert_int_eq(dvi_integrator_step(integrator, 1e-320), DVI_BAD_ARGUMENT);
   check_words("so small that 1/h cannot be computed");
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* At rest and free the coordinates stay 0; it is the time that overflows. A step later the
- * coordinate does. */
+/* At rest and free the coordinates stay 0, and the time overflows. A step later the coordinate
+ * does. */
 START_TEST(a_step_beyond_the_largest_number_fails)
 {
   static const char *const some[] = {"verlet", "midpoint"};
   dvi_system *system = make_system(&(dvi_system_terms){.dimension = 1, .mass.scalar = 1});
-  dvi_integrator *integrator = made_integrator(system, some[_i]);
+  dvi_integrator *integrator = create_integrator(system, some[_i]);
   ck_assert_int_eq(dvi_integrator_start(integrator, 1e308, &(double){0}, &(double){0}), DVI_OK);
-  const bytes before = state_of(integrator);
+  const bytes before = read_state(integrator);
   ck_assert_int_eq(dvi_integrator_step(integrator, 1.7e308), DVI_NOT_FINITE);
   check_state(integrator, before);
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, &(double){1e308}, &(double){1e150}), DVI_OK);
@@ -218,18 +218,18 @@ END_TEST
 START_TEST(nothing_works_before_the_start)
 {
   double out[8];
-  problem *of = made_problem("pendulum", NULL);
-  dvi_integrator *integrator = made_integrator(of->system, methods[_i]);
+  problem *model = create_problem("pendulum", NULL);
+  dvi_integrator *integrator = create_integrator(model->system, methods[_i]);
   ck_assert_int_eq(dvi_integrator_step(integrator, 0.1), DVI_BAD_STATE);
   check_words("dvi_integrator_start");
   ck_assert_int_eq(dvi_run(integrator, &(dvi_run_options){.h = 0.1, .t_end = 1}, NULL),
                    DVI_BAD_STATE);
   ck_assert_int_eq(dvi_integrator_invariants(integrator, out), DVI_BAD_STATE);
   ck_assert_int_eq(dvi_integrator_interpolate(integrator, 0, out, out), DVI_BAD_STATE);
-  ck_assert_int_eq(dvi_integrator_save(integrator, in_folder("none")), DVI_BAD_STATE);
-  ck_assert_int_eq(files_in_folder(), 0);
+  ck_assert_int_eq(dvi_integrator_save(integrator, path_in_folder("none")), DVI_BAD_STATE);
+  ck_assert_int_eq(count_files_in_folder(), 0);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -237,9 +237,9 @@ START_TEST(equations_without_a_solution_are_reported_and_a_smaller_step_goes_on)
 {
   static const char *const choices[] = {"auto", "newton", "kinsol", "fixed-point"};
   dvi_system *system = runaway(0);
-  const char *method = spec("midpoint:solver=%s", choices[_i]);
-  dvi_integrator *tried = made_integrator(system, method),
-                 *spared = made_integrator(system, method);
+  const char *method = method_spec("midpoint:solver=%s", choices[_i]);
+  dvi_integrator *tried = create_integrator(system, method),
+                 *spared = create_integrator(system, method);
   ck_assert_int_eq(dvi_integrator_start(tried, 0, &(double){0}, &(double){0}), DVI_OK);
   ck_assert_int_eq(dvi_integrator_start(spared, 0, &(double){0}, &(double){0}), DVI_OK);
   ck_assert_int_eq(dvi_integrator_step(tried, 1.5), DVI_STEP_TOO_LARGE);
@@ -257,12 +257,13 @@ START_TEST(equations_without_a_solution_are_reported_and_a_smaller_step_goes_on)
 }
 END_TEST
 
-/* At 1.87 two of the three bodies are about to meet: the path of degree 8 turns within the step. */
+/* At 1.87 two of the three bodies are about to meet, and the path of degree 8 turns within the
+ * step. */
 START_TEST(a_step_through_a_close_encounter_is_reported_and_smaller_ones_go_on)
 {
-  problem *of = made_problem("pythagorean", NULL);
-  dvi_integrator *tried = started(of, "galerkin:degree=8"),
-                 *spared = started(of, "galerkin:degree=8");
+  problem *model = create_problem("pythagorean", NULL);
+  dvi_integrator *tried = start_integrator(model, "galerkin:degree=8"),
+                 *spared = start_integrator(model, "galerkin:degree=8");
   advance(tried, 0.01, 187);
   advance(spared, 0.01, 187);
   ck_assert_int_eq(dvi_integrator_step(tried, 0.01), DVI_STEP_TOO_LARGE);
@@ -277,7 +278,7 @@ START_TEST(a_step_through_a_close_encounter_is_reported_and_smaller_ones_go_on)
   }
   dvi_integrator_destroy(&tried);
   dvi_integrator_destroy(&spared);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -287,10 +288,10 @@ START_TEST(a_bad_start_leaves_the_old_state)
 {
   const double nan = (double)NAN, fine[] = {1, 1}, bad_q[] = {1, nan}, bad_p[] = {HUGE_VAL, 0},
                centre[] = {0, 0}, near[] = {1e-180, 0};
-  problem *of = made_problem("kepler", NULL);
-  dvi_integrator *integrator = started(of, methods[_i]);
+  problem *model = create_problem("kepler", NULL);
+  dvi_integrator *integrator = start_integrator(model, methods[_i]);
   advance(integrator, 0.05, 3);
-  const bytes before = state_of(integrator);
+  const bytes before = read_state(integrator);
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, bad_q, fine), DVI_NOT_FINITE);
   check_words("the start's q[1] = ");
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, fine, bad_p), DVI_NOT_FINITE);
@@ -302,11 +303,11 @@ START_TEST(a_bad_start_leaves_the_old_state)
   check_state(integrator, before);
   advance(integrator, 0.05, 1);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* L = q_1 v_0 - |q|^2/2: the velocity Hessian vanishes. */
+/* L = q_1 v_0 - |q|^2/2, whose velocity Hessian vanishes. */
 static int linear_in_v(double t, const double *q, const double *v, double *L, void *user)
 {
   (void)t, (void)user;
@@ -343,10 +344,10 @@ START_TEST(a_degenerate_lagrangian_is_refused_at_the_start_by_name)
       .value = linear_in_v, .gradient = linear_in_v_gradient, .hessian = linear_in_v_hessian};
   const double q[] = {1, 0}, p[] = {0, 0};
   dvi_system *system = make_system(&(dvi_system_terms){.dimension = 2, .lagrangian = &lagrangian});
-  dvi_integrator *integrator = made_integrator(system, methods[_i]);
+  dvi_integrator *integrator = create_integrator(system, methods[_i]);
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, q, p), DVI_SINGULAR);
-  check_words(spec("%.*s: cannot start at t = 0: the Lagrangian is degenerate",
-                   (int)strcspn(methods[_i], ":"), methods[_i]));
+  check_words(method_spec("%.*s: cannot start at t = 0: the Lagrangian is degenerate",
+                          (int)strcspn(methods[_i], ":"), methods[_i]));
   ck_assert_int_eq(dvi_integrator_step(integrator, 0.1), DVI_BAD_STATE);
   dvi_integrator_destroy(&integrator);
   dvi_system_destroy(&system);
@@ -355,29 +356,29 @@ END_TEST
 
 START_TEST(arguments_that_are_missing_are_refused)
 {
-  problem *of = made_problem("pendulum", NULL);
-  dvi_integrator *integrator = started(of, methods[_i]), *none = integrator;
+  problem *model = create_problem("pendulum", NULL);
+  dvi_integrator *integrator = start_integrator(model, methods[_i]), *none = integrator;
   const dvi_run_options options = {.h = 0.1, .t_end = 1};
   double out[8];
   advance(integrator, 0.1, 2);
-  const bytes before = state_of(integrator);
+  const bytes before = read_state(integrator);
   ck_assert_int_eq(dvi_integrator_create(NULL, "verlet", &none), DVI_BAD_ARGUMENT);
   ck_assert_ptr_null(none);
   none = integrator;
-  ck_assert_int_eq(dvi_integrator_create(of->system, NULL, &none), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_integrator_create(model->system, NULL, &none), DVI_BAD_ARGUMENT);
   ck_assert_ptr_null(none);
-  ck_assert_int_eq(dvi_integrator_create(of->system, "verlet", NULL), DVI_BAD_ARGUMENT);
-  ck_assert_int_eq(dvi_integrator_start(NULL, 0, of->q, of->p), DVI_BAD_ARGUMENT);
-  ck_assert_int_eq(dvi_integrator_start(integrator, 0, NULL, of->p), DVI_BAD_ARGUMENT);
-  ck_assert_int_eq(dvi_integrator_start(integrator, 0, of->q, NULL), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_integrator_create(model->system, "verlet", NULL), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_integrator_start(NULL, 0, model->q, model->p), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, NULL, model->p), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, model->q, NULL), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_integrator_step(NULL, 0.1), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_integrator_invariants(NULL, out), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_integrator_invariants(integrator, NULL), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_integrator_interpolate(NULL, 0.2, out, out), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_integrator_interpolate(integrator, 0.2, NULL, NULL), DVI_OK);
-  ck_assert_int_eq(dvi_integrator_save(NULL, in_folder("none")), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_integrator_save(NULL, path_in_folder("none")), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_integrator_save(integrator, NULL), DVI_BAD_ARGUMENT);
-  ck_assert_int_eq(dvi_integrator_restore(NULL, in_folder("none")), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_integrator_restore(NULL, path_in_folder("none")), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_integrator_restore(integrator, NULL), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_run(NULL, &options, NULL), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_run(integrator, NULL, NULL), DVI_BAD_ARGUMENT);
@@ -387,7 +388,7 @@ START_TEST(arguments_that_are_missing_are_refused)
   dvi_integrator_destroy(&none);
   dvi_integrator_destroy(NULL);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

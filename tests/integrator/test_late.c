@@ -1,5 +1,5 @@
-/* Solvers are made ready by the step that is the first to need them: counters tell, and a step that
- * finds no memory for them leaves all as it was. */
+/* The first step that needs a solver prepares it, as counters tell. A step that finds no memory for
+ * it changes nothing. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -32,20 +32,20 @@ static const struct {
 };
 enum { PLACES = sizeof places / sizeof *places };
 
-static int has_state_of(const dvi_integrator *integrator, const problem *of)
+static int has_state_of(const dvi_integrator *integrator, const problem *model)
 {
   return dvi_integrator_time(integrator) == 0 &&
-         memcmp(dvi_integrator_q(integrator), of->q, (size_t)of->nq * sizeof(double)) == 0 &&
-         memcmp(dvi_integrator_p(integrator), of->p, (size_t)of->nv * sizeof(double)) == 0;
+         memcmp(dvi_integrator_q(integrator), model->q, (size_t)model->nq * sizeof(double)) == 0 &&
+         memcmp(dvi_integrator_p(integrator), model->p, (size_t)model->nv * sizeof(double)) == 0;
 }
 
-/* Failures of every allocation that the first step makes, the library's own; then it goes on as one
+/* Makes every allocation of the library in the first step fail. Then the integrator goes on as one
  * that never failed. */
 START_TEST(a_step_without_memory_for_its_solver_leaves_the_state)
 {
-  problem *of = made_problem(places[_i].problem, places[_i].setting);
-  dvi_integrator *integrator = started(of, places[_i].method),
-                 *other = started(of, places[_i].method);
+  problem *model = create_problem(places[_i].problem, places[_i].setting);
+  dvi_integrator *integrator = start_integrator(model, places[_i].method),
+                 *other = start_integrator(model, places[_i].method);
   const long before = dvi__allocation_count();
   advance(other, places[_i].h, 1);
   const long needed = dvi__allocation_count() - before;
@@ -59,33 +59,33 @@ START_TEST(a_step_without_memory_for_its_solver_leaves_the_state)
     if (status == DVI_OK) break;
     ck_assert_msg(status == DVI_NO_MEMORY, "%s: %s", dvi_status_name(status), dvi_last_error());
     check_words("no memory");
-    ck_assert(has_state_of(integrator, of));
+    ck_assert(has_state_of(integrator, model));
     ck_assert_int_lt(++failures, MOST);
   }
   ck_assert_int_gt(failures, 0);
-  ck_assert_int_eq(counters_of(integrator).failed_steps, failures);
+  ck_assert_int_eq(read_counters(integrator).failed_steps, failures);
   advance(integrator, places[_i].h, 4);
   advance(other, places[_i].h, 4);
   ck_assert_mem_eq(dvi_integrator_q(integrator), dvi_integrator_q(other),
-                   (size_t)of->nq * sizeof(double));
+                   (size_t)model->nq * sizeof(double));
   ck_assert_mem_eq(dvi_integrator_p(integrator), dvi_integrator_p(other),
-                   (size_t)of->nv * sizeof(double));
+                   (size_t)model->nv * sizeof(double));
   dvi_integrator_destroy(&integrator);
   dvi_integrator_destroy(&other);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* The same of every request of the program: those of KLU, too. SUNDIALS 6.4 ends the program where
- * it has no memory for its context. */
+/* Makes every request of the program fail, those of KLU, too. SUNDIALS 6.4 ends the program if it
+ * has no memory for its context. */
 START_TEST(a_step_survives_every_failure_of_the_heap)
 {
-  problem *of = made_problem(places[_i].problem, places[_i].setting);
+  problem *model = create_problem(places[_i].problem, places[_i].setting);
   const int needs_kinsol = strstr(places[_i].method, "kinsol") != NULL ||
                            strstr(places[_i].method, "certified") != NULL;
   if (heap_is_counted() && !needs_kinsol) {
     const long bytes_before = heap_bytes();
-    dvi_integrator *integrator = started(of, places[_i].method);
+    dvi_integrator *integrator = start_integrator(model, places[_i].method);
     int failures = 0;
     dvi_status status = DVI_NO_MEMORY;
     while (status != DVI_OK) {
@@ -95,9 +95,9 @@ START_TEST(a_step_survives_every_failure_of_the_heap)
       if (status == DVI_OK) break;
       ck_assert_msg(status == DVI_NO_MEMORY, "%d: %s: %s", failures, dvi_status_name(status),
                     dvi_last_error());
-      ck_assert(has_state_of(integrator, of));
+      ck_assert(has_state_of(integrator, model));
       dvi_integrator_destroy(&integrator);
-      integrator = started(of, places[_i].method);
+      integrator = start_integrator(model, places[_i].method);
       ck_assert_int_lt(++failures, 20 * MOST);
     }
     ck_assert_int_gt(failures, 0);
@@ -105,60 +105,60 @@ START_TEST(a_step_survives_every_failure_of_the_heap)
     /* what the system and the libraries keep */
     ck_assert_int_le(heap_bytes() - bytes_before, 20000);
   }
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* At create nothing is analysed; each solver is at its first use, and then never again. */
+/* At create nothing is analysed. Each solver analyses at its first use, and never again. */
 START_TEST(a_ladder_prepares_each_rung_when_it_is_needed)
 {
-  problem *of = made_problem("fpu", "ell=40");
-  dvi_integrator *integrator = started(of, "galerkin:degree=3");
-  dvi_counters counters = counters_of(integrator);
+  problem *model = create_problem("fpu", "ell=40");
+  dvi_integrator *integrator = start_integrator(model, "galerkin:degree=3");
+  dvi_counters counters = read_counters(integrator);
   ck_assert_int_eq(counters.symbolic + counters.factorizations + counters.preparations, 0);
   const long created = counters.allocations;
   advance(integrator, 0.001, 20); /* fixed point iteration */
-  counters = counters_of(integrator);
+  counters = read_counters(integrator);
   ck_assert_int_eq(counters.fixed_points, 20);
   ck_assert_int_eq(counters.symbolic + counters.factorizations + counters.preparations, 0);
   ck_assert_int_eq(counters.allocations, created);
   advance(integrator, 0.1, 1); /* simplified Newton's method, of one real system and a pair */
-  counters = counters_of(integrator);
+  counters = read_counters(integrator);
   ck_assert_int_eq(counters.simplified, 1);
   ck_assert_int_eq(counters.symbolic, 1 + (counters.newtons + counters.followed > 0));
   ck_assert_int_ge(counters.preparations, 2);
   const dvi_counters first = counters;
   advance(integrator, 0.1, 20);
   advance(integrator, 0.09, 20);
-  counters = counters_of(integrator);
+  counters = read_counters(integrator);
   ck_assert_int_le(counters.symbolic, 2);
   /* the whole Jacobian, and a branch */
   ck_assert_int_le(counters.preparations - first.preparations, 2);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 /* A state that was saved before a solver was prepared, or after, goes on with the same digits. */
 START_TEST(checkpoints_do_not_see_what_is_prepared)
 {
-  problem *of = made_problem(places[_i].problem, places[_i].setting);
-  dvi_integrator *whole = started(of, places[_i].method),
-                 *later = made_integrator(of->system, places[_i].method);
+  problem *model = create_problem(places[_i].problem, places[_i].setting);
+  dvi_integrator *whole = start_integrator(model, places[_i].method),
+                 *later = create_integrator(model->system, places[_i].method);
   advance(whole, places[_i].h, 3);
-  ck_assert_msg(dvi_integrator_save(whole, in_folder("checkpoint")) == DVI_OK, "%s",
+  ck_assert_msg(dvi_integrator_save(whole, path_in_folder("checkpoint")) == DVI_OK, "%s",
                 dvi_last_error());
   advance(whole, places[_i].h, 5);
-  ck_assert_msg(dvi_integrator_restore(later, in_folder("checkpoint")) == DVI_OK, "%s",
+  ck_assert_msg(dvi_integrator_restore(later, path_in_folder("checkpoint")) == DVI_OK, "%s",
                 dvi_last_error());
   advance(later, places[_i].h, 5);
   ck_assert_mem_eq(dvi_integrator_q(whole), dvi_integrator_q(later),
-                   (size_t)of->nq * sizeof(double));
+                   (size_t)model->nq * sizeof(double));
   ck_assert_mem_eq(dvi_integrator_p(whole), dvi_integrator_p(later),
-                   (size_t)of->nv * sizeof(double));
+                   (size_t)model->nv * sizeof(double));
   dvi_integrator_destroy(&whole);
   dvi_integrator_destroy(&later);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -190,10 +190,10 @@ START_TEST(a_pattern_that_was_left_out_costs_nothing_before_it_is_needed)
   numbers[0] = 1;
   const long before = heap_bytes();
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
-  dvi_integrator *integrator = made_integrator(system, "galerkin:degree=2");
+  dvi_integrator *integrator = create_integrator(system, "galerkin:degree=2");
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, numbers, numbers + n), DVI_OK);
   advance(integrator, 0.1, 5);
-  ck_assert_int_eq(counters_of(integrator).fixed_points, 5);
+  ck_assert_int_eq(read_counters(integrator).fixed_points, 5);
   ck_assert_int_lt(heap_bytes() - before, 100L * n * (long)sizeof(double));
   dvi_integrator_destroy(&integrator);
   dvi_system_destroy(&system);

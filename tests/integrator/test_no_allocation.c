@@ -1,5 +1,5 @@
-/* A step takes no memory from the heap and gives none back: not the library's own, nor that of
- * SUNDIALS, KLU and LAPACK. But a solver is prepared by the step that is the first to need it. */
+/* A step takes no memory from the heap and gives none back, neither the library's own nor that of
+ * SUNDIALS, KLU and LAPACK. The first step that needs a solver prepares it. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -90,7 +90,7 @@ START_TEST(every_place_is_taken_by_the_methods_for_it)
 END_TEST
 
 /* SUNDIALS 7 puts the message of a failed solve, which the library discards, into memory of its
- * own: one block, taken and given back. */
+ * own, one block that is taken and given back. */
 static long calls_of_messages(const dvi_integrator *integrator)
 {
   dvi_counters counters;
@@ -98,15 +98,15 @@ static long calls_of_messages(const dvi_integrator *integrator)
   return atoi(dvi_reference_version()) >= 7 ? 2 * counters.kinsols : 0;
 }
 
-/* Heap calls of some steps, beside preparations. Their length changes, and with it the tables of
- * the continued path. The first one must succeed; verlet and the trapezoidal rule soon blow up on
- * the stiff springs, but a step that fails shall take no memory either. */
+/* Counts heap calls of some steps, without preparations. Their length changes, and with it the
+ * tables of the continued path. The first step must succeed. verlet and the trapezoidal rule soon
+ * blow up on the stiff springs, but a step that fails shall take no memory, either. */
 static long calls_of_steps(dvi_integrator *integrator, double h, int steps)
 {
   long calls = 0;
   for (int i = 0; i < steps; i++) {
     dvi_status status;
-    calls += calls_of_step(integrator, i % 3 == 2 ? 0.9 * h : h, &status);
+    calls += count_calls_of_step(integrator, i % 3 == 2 ? 0.9 * h : h, &status);
     if (status != DVI_OK && steps == 1) ck_abort_msg("%s", dvi_last_error());
   }
   return calls;
@@ -116,21 +116,21 @@ START_TEST(no_step_allocates_but_to_prepare_a_solver)
 {
   const place *at = &places[pairs.which[_i] / METHODS];
   const char *method = methods[pairs.which[_i] % METHODS];
-  problem *of = made_problem(at->name, at->setting);
-  dvi_integrator *integrator = started(of, method);
-  const dvi_counters created = counters_of(integrator);
+  problem *model = create_problem(at->name, at->setting);
+  dvi_integrator *integrator = start_integrator(model, method);
+  const dvi_counters created = read_counters(integrator);
   ck_assert_int_gt(created.allocations, 0);
   const long first = calls_of_steps(integrator, at->h, 1);
   const long later = calls_of_steps(integrator, at->h, repeats(STEPS));
   const long back = calls_of_steps(integrator, -at->h, 2);
-  const dvi_counters after = counters_of(integrator);
+  const dvi_counters after = read_counters(integrator);
   ck_assert_msg(first == 0 && later + back <= calls_of_messages(integrator),
                 "%s, %s: %ld, %ld and %ld heap calls", at->name, method, first, later, back);
   ck_assert_int_le(after.preparations, PREPARATIONS_MOST);
   if (after.preparations == created.preparations)
     ck_assert_int_eq(after.allocations, created.allocations);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -155,19 +155,19 @@ static const struct {
 
 START_TEST(steps_of_chosen_lengths_do_not_allocate)
 {
-  problem *of = made_problem(chosen[_i].name, chosen[_i].setting);
-  dvi_integrator *integrator = started(of, chosen[_i].method);
+  problem *model = create_problem(chosen[_i].name, chosen[_i].setting);
+  dvi_integrator *integrator = start_integrator(model, chosen[_i].method);
   const int steps = repeats(4 * STEPS);
   long calls = 0;
   for (int i = 0; i < steps; i++) {
     dvi_status status;
-    calls += calls_of_step(integrator, chosen[_i].h, &status);
+    calls += count_calls_of_step(integrator, chosen[_i].h, &status);
     if (status != DVI_OK) ck_abort_msg("%s", dvi_last_error());
   }
   ck_assert_int_le(calls, calls_of_messages(integrator));
-  ck_assert_int_le(counters_of(integrator).preparations, PREPARATIONS_MOST);
+  ck_assert_int_le(read_counters(integrator).preparations, PREPARATIONS_MOST);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -176,10 +176,10 @@ START_TEST(invariants_and_dense_output_do_not_allocate)
   const place *at = &places[pairs.which[_i] / METHODS];
   const char *method = methods[pairs.which[_i] % METHODS];
   double value[INVARIANTS_MOST], q[COORDINATES_MOST], v[COORDINATES_MOST];
-  problem *of = made_problem(at->name, at->setting);
-  ck_assert_int_le(of->nq, COORDINATES_MOST);
-  ck_assert_int_le(dvi_system_invariant_count(of->system), INVARIANTS_MOST);
-  dvi_integrator *integrator = started(of, method);
+  problem *model = create_problem(at->name, at->setting);
+  ck_assert_int_le(model->nq, COORDINATES_MOST);
+  ck_assert_int_le(dvi_system_invariant_count(model->system), INVARIANTS_MOST);
+  dvi_integrator *integrator = start_integrator(model, method);
   (void)calls_of_steps(integrator, at->h, 2);
   const double t = dvi_integrator_time(integrator) - 0.3 * at->h;
   const long before = heap_calls();
@@ -189,56 +189,56 @@ START_TEST(invariants_and_dense_output_do_not_allocate)
   ck_assert_msg(!failed, "%s", dvi_last_error());
   ck_assert_msg(calls == 0, "%s, %s: %ld heap calls", at->name, method, calls);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* The midpoint rule has no solution here, at pericentre: the way leads through the ladder and along
+/* The midpoint rule has no solution here, at pericentre. The step goes through the ladder and along
  * the branch from h = 0 to a sentence. */
 START_TEST(a_step_that_fails_does_not_allocate)
 {
-  problem *of = made_problem("kepler", "e=0.6");
-  dvi_integrator *integrator = started(of, "midpoint");
+  problem *model = create_problem("kepler", "e=0.6");
+  dvi_integrator *integrator = start_integrator(model, "midpoint");
   long calls = 0;
   for (int k = 1; k <= 3; k++) {
     dvi_status status;
-    calls += calls_of_step(integrator, 0.3, &status);
+    calls += count_calls_of_step(integrator, 0.3, &status);
     ck_assert_int_gt(status, 0);
-    ck_assert_int_eq(counters_of(integrator).failed_steps, k);
-    ck_assert_int_eq(counters_of(integrator).followed, k);
+    ck_assert_int_eq(read_counters(integrator).failed_steps, k);
+    ck_assert_int_eq(read_counters(integrator).followed, k);
   }
   ck_assert_int_le(calls, calls_of_messages(integrator));
   /* frozen systems, whole ones, room for the branch */
-  ck_assert_int_eq(counters_of(integrator).preparations, 3);
+  ck_assert_int_eq(read_counters(integrator).preparations, 3);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 /* Else the zeros above would say nothing about the solvers. */
 START_TEST(the_places_reach_every_solver)
 {
-  problem *of = made_problem("fpu", "ell=200");
-  dvi_integrator *integrator = started(of, "galerkin:degree=2");
+  problem *model = create_problem("fpu", "ell=200");
+  dvi_integrator *integrator = start_integrator(model, "galerkin:degree=2");
   dvi_counters counters;
   (void)calls_of_steps(integrator, 0.1, STEPS);
   dvi_integrator_counters(integrator, &counters);
   ck_assert_int_gt(counters.simplified, 0);
   dvi_integrator_destroy(&integrator);
-  integrator = started(of, "galerkin:degree=4,solver=newton");
+  integrator = start_integrator(model, "galerkin:degree=4,solver=newton");
   (void)calls_of_steps(integrator, 0.1, STEPS);
   dvi_integrator_counters(integrator, &counters);
   ck_assert_int_gt(counters.newtons, 0);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
-  of = made_problem("outer-solar", NULL);
-  integrator = started(of, "galerkin:degree=4,solver=kinsol");
+  problem_destroy(&model);
+  model = create_problem("outer-solar", NULL);
+  integrator = start_integrator(model, "galerkin:degree=4,solver=kinsol");
   (void)calls_of_steps(integrator, 100.0, 3);
   dvi_integrator_counters(integrator, &counters);
   ck_assert_int_eq(counters.kinsols, 3);
   ck_assert_int_eq(counters.symbolic, 0); /* dense LU */
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

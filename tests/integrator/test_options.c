@@ -1,5 +1,5 @@
 /* labels: unit */
-/* Options of an integrator: what is left out is default, and what does not go together is
+/* Missing options of an integrator have defaults, and options that do not go together are
  * refused. */
 #include <stddef.h>
 
@@ -7,22 +7,23 @@
 #include "support/runs.h"
 #include "support/suite.h"
 
-static problem *of;
+static problem *model;
 
 static void make_kepler(void)
 {
-  of = made_problem("kepler", NULL);
+  model = create_problem("kepler", NULL);
 }
 
 static void destroy_kepler(void)
 {
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 
 static void check_refused(dvi_integrator_options options, const char *words)
 {
   dvi_integrator *integrator = NULL;
-  ck_assert_int_eq(dvi_integrator_create_with(of->system, &options, &integrator), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_integrator_create_with(model->system, &options, &integrator),
+                   DVI_BAD_ARGUMENT);
   check_words(words);
   ck_assert_ptr_null(integrator);
 }
@@ -39,12 +40,12 @@ END_TEST
 
 START_TEST(a_struct_of_an_older_header_has_default_values_behind_its_end)
 {
-  const dvi_monitor monitor = monitor_of("distance");
+  const dvi_monitor monitor = read_monitor("distance");
   dvi_integrator_options options = {
       .method = "midpoint", .pacing = DVI_TIME_TRANSFORM, .monitor = &monitor};
   dvi_integrator *integrator = NULL;
   options.size = offsetof(dvi_integrator_options, pacing);
-  ck_assert_int_eq(dvi_integrator_create_with(of->system, &options, &integrator), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_create_with(model->system, &options, &integrator), DVI_OK);
   ck_assert_ptr_null(dvi_integrator_monitor(integrator));
   dvi_integrator_destroy(&integrator);
 }
@@ -52,7 +53,7 @@ END_TEST
 
 START_TEST(options_that_do_not_go_together_are_refused)
 {
-  const dvi_monitor monitor = monitor_of("distance");
+  const dvi_monitor monitor = read_monitor("distance");
   const size_t size = sizeof(dvi_integrator_options);
   dvi_integrator *integrator = NULL;
   check_refused((dvi_integrator_options){.size = size}, "the method is NULL");
@@ -64,12 +65,12 @@ START_TEST(options_that_do_not_go_together_are_refused)
   check_refused(
       (dvi_integrator_options){.size = size, .method = "midpoint", .pacing = (dvi_pacing)3},
       "no pacing number 3");
-  ck_assert_int_eq(dvi_integrator_create_with(of->system, NULL, &integrator), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_integrator_create_with(model->system, NULL, &integrator), DVI_BAD_ARGUMENT);
   check_words("the options are NULL");
   ck_assert_int_eq(dvi_integrator_create_with(NULL, &(dvi_integrator_options){0}, &integrator),
                    DVI_BAD_ARGUMENT);
   check_words("the system is NULL");
-  ck_assert_int_eq(dvi_integrator_create_with(of->system, &(dvi_integrator_options){0}, NULL),
+  ck_assert_int_eq(dvi_integrator_create_with(model->system, &(dvi_integrator_options){0}, NULL),
                    DVI_BAD_ARGUMENT);
 }
 END_TEST

@@ -1,5 +1,5 @@
 /* labels: unit */
-/* The driver of a run: where it goes, whom it calls, how it ends. Events are in test_event.c. */
+/* The driver of a run: its end, its observers and its report. Events are in test_event.c. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -11,7 +11,7 @@
 
 enum { VISITS_MOST = 256 };
 
-/* What an observer saw, and what it shall do. */
+/* The observer's notes, and its planned answers. */
 typedef struct diary {
   int visits;
   double t[VISITS_MOST];
@@ -29,20 +29,20 @@ static int write_down(dvi_integrator *integrator, void *user)
   return d->visits == d->answer_at ? d->answer : 0;
 }
 
-static problem *of;
+static problem *model;
 static dvi_integrator *integrator;
 
 static void set_up(void)
 {
   make_folder();
-  of = made_problem("oscillator", NULL);
-  integrator = started(of, "galerkin:degree=4");
+  model = create_problem("oscillator", NULL);
+  integrator = start_integrator(model, "galerkin:degree=4");
 }
 
 static void tear_down(void)
 {
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
   remove_folder();
 }
 
@@ -56,7 +56,8 @@ enum { METHODS = sizeof methods / sizeof *methods };
 START_TEST(a_run_is_its_steps_bit_for_bit)
 {
   dvi_run_report report;
-  dvi_integrator *runner = started(of, methods[_i]), *walker = started(of, methods[_i]);
+  dvi_integrator *runner = start_integrator(model, methods[_i]),
+                 *walker = start_integrator(model, methods[_i]);
   ck_assert_int_eq(dvi_run(runner, &(dvi_run_options){.h = 0.125, .t_end = 2}, &report), DVI_OK);
   advance(walker, 0.125, 16);
   check_same_state(runner, walker);
@@ -82,7 +83,7 @@ START_TEST(a_last_shorter_step_ends_the_run_at_t_end)
 }
 END_TEST
 
-/* Ten times 0.1 is not quite 1; no eleventh step of 1e-16 mends it. */
+/* Ten times 0.1 is not quite 1, and there must be no eleventh step of 1e-16. */
 START_TEST(rounding_makes_no_extra_step)
 {
   dvi_run_report report;
@@ -105,9 +106,9 @@ START_TEST(a_run_leads_backward_to_where_it_began)
   ck_assert_int_eq(d.visits, 9);
   for (int k = 1; k < 9; k++) ck_assert_double_lt(d.t[k], d.t[k - 1]);
   ck_assert_double_eq_tol(dvi_integrator_time(integrator), 0, DBL_EPSILON);
-  /* Forth and back the steps differ, 0.1 and 0.05 at either end: what is left is the error of order
-   * 8. */
-  ck_assert_double_eq_tol(dvi_integrator_q(integrator)[0], of->q[0], 1e-13);
+  /* Forth and back the steps differ, 0.1 and 0.05 at either end, so only the error of order 8 is
+   * left. */
+  ck_assert_double_eq_tol(dvi_integrator_q(integrator)[0], model->q[0], 1e-13);
 }
 END_TEST
 
@@ -115,7 +116,7 @@ START_TEST(at_the_end_there_is_nothing_to_do)
 {
   diary d = {0};
   dvi_run_report report;
-  const bytes before = state_of(integrator);
+  const bytes before = read_state(integrator);
   const dvi_run_options options = {.h = -0.1, .t_end = 0, .observe = write_down, .user = &d};
   ck_assert_int_eq(dvi_run(integrator, &options, &report), DVI_OK);
   ck_assert_int_eq(report.end, DVI_RUN_COMPLETE);
@@ -168,7 +169,7 @@ START_TEST(an_observer_that_fails_fails_the_run)
   dvi_run_report report;
   const dvi_run_options options = {.h = 0.125, .t_end = 0.5, .observe = write_down, .user = &d};
   ck_assert_int_eq(dvi_run(integrator, &options, &report), DVI_CALLBACK_FAILED);
-  check_words(spec("the observer failed with -7 at t = %.9g", 0.125 * (_i - 1)));
+  check_words(method_spec("the observer failed with -7 at t = %.9g", 0.125 * (_i - 1)));
   ck_assert_int_eq(report.end, DVI_RUN_FAILED);
   ck_assert_int_eq(report.steps, _i - 1);
 }
@@ -209,8 +210,7 @@ START_TEST(a_flag_set_before_the_run_ends_it_after_one_step)
 }
 END_TEST
 
-/* The observer comes after the look at the flag: the step after it is the one in which the flag is
- * seen. */
+/* The observer is called after the look at the flag, so the flag is seen in the step after it. */
 START_TEST(a_flag_set_in_mid_run_ends_it_with_the_next_step)
 {
   diary d = {.cancel_at = 3};
@@ -220,23 +220,23 @@ START_TEST(a_flag_set_in_mid_run_ends_it_with_the_next_step)
                                    .observe = write_down,
                                    .user = &d,
                                    .cancel = &d.cancel,
-                                   .checkpoint = in_folder("checkpoint")};
+                                   .checkpoint = path_in_folder("checkpoint")};
   ck_assert_int_eq(dvi_run(integrator, &options, &report), DVI_OK);
   ck_assert_int_eq(report.end, DVI_RUN_CANCELLED);
   ck_assert_int_eq(report.steps, 3);
-  ck_assert_int_eq(dvi_integrator_restore(integrator, in_folder("checkpoint")), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_restore(integrator, path_in_folder("checkpoint")), DVI_OK);
   ck_assert_double_eq(dvi_integrator_time(integrator), 0.375);
 }
 END_TEST
 
 /* ---- checkpoints ---- */
 
-/* After every step: the time of the checkpoint that is on the disk, -1 if there is none. */
+/* Reads after every step the time of the checkpoint on the disk, -1 if there is none. */
 static int read_checkpoint(dvi_integrator *running, void *user)
 {
   diary *d = user;
-  dvi_integrator *reader = made_integrator(of->system, dvi_integrator_method(running));
-  const int found = dvi_integrator_restore(reader, in_folder("checkpoint")) == DVI_OK;
+  dvi_integrator *reader = create_integrator(model->system, dvi_integrator_method(running));
+  const int found = dvi_integrator_restore(reader, path_in_folder("checkpoint")) == DVI_OK;
   d->t[d->visits++] = found ? dvi_integrator_time(reader) : -1;
   dvi_integrator_destroy(&reader);
   return d->visits == d->answer_at ? d->answer : 0;
@@ -250,12 +250,12 @@ START_TEST(checkpoints_are_written_every_third_step_and_at_the_end)
                                    .t_end = 1,
                                    .observe = read_checkpoint,
                                    .user = &d,
-                                   .checkpoint = in_folder("checkpoint"),
+                                   .checkpoint = path_in_folder("checkpoint"),
                                    .checkpoint_every = 3};
   ck_assert_int_eq(dvi_run(integrator, &options, NULL), DVI_OK);
   ck_assert_int_eq(d.visits, 9);
   for (int k = 0; k < 9; k++) ck_assert_double_eq(d.t[k], seen[k]);
-  dvi_integrator *reader = made_integrator(of->system, "galerkin:degree=4");
+  dvi_integrator *reader = create_integrator(model->system, "galerkin:degree=4");
   ck_assert_int_eq(dvi_integrator_restore(reader, options.checkpoint), DVI_OK);
   check_same_state(integrator, reader);
   dvi_integrator_destroy(&reader);
@@ -264,9 +264,10 @@ END_TEST
 
 START_TEST(a_run_in_two_parts_is_the_whole_run_bit_for_bit)
 {
-  dvi_integrator *whole = started(of, methods[_i]), *part = started(of, methods[_i]),
-                 *rest = made_integrator(of->system, methods[_i]);
-  const char *file = in_folder("checkpoint");
+  dvi_integrator *whole = start_integrator(model, methods[_i]),
+                 *part = start_integrator(model, methods[_i]),
+                 *rest = create_integrator(model->system, methods[_i]);
+  const char *file = path_in_folder("checkpoint");
   ck_assert_int_eq(dvi_run(whole, &(dvi_run_options){.h = 0.1, .t_end = 3}, NULL), DVI_OK);
   diary d = {.answer_at = 12, .answer = 1};
   const dvi_run_options first = {
@@ -286,7 +287,7 @@ START_TEST(a_checkpoint_that_cannot_be_written_fails_the_run)
   dvi_run_report report;
   const dvi_run_options options = {.h = 0.125,
                                    .t_end = 1,
-                                   .checkpoint = in_folder("missing/checkpoint"),
+                                   .checkpoint = path_in_folder("missing/checkpoint"),
                                    .checkpoint_every = _i};
   ck_assert_int_eq(dvi_run(integrator, &options, &report), DVI_IO_ERROR);
   ck_assert_int_eq(report.end, DVI_RUN_FAILED);
@@ -311,18 +312,18 @@ static int wall_gradient(double t, const double *q, double *V_q, void *user)
   return 0;
 }
 
-/* The step from 0.5 fails; the report, the state and the checkpoint are those of 0.5, and so is the
- * sentence; if there is no place for the checkpoint, it says that too. */
+/* The step from 0.5 fails. The report, the state and the checkpoint are those of 0.5, and so is the
+ * sentence. If the checkpoint cannot be written, the sentence says that, too. */
 START_TEST(a_step_that_fails_ends_the_run_at_the_last_good_state)
 {
   const dvi_potential potential = {.name = "wall", .value = wall_value, .gradient = wall_gradient};
   const dvi_system_terms terms = {
       .dimension = 1, .mass.scalar = 1, .potentials = &potential, .potential_count = 1};
-  const char *const file = in_folder(_i % 2 == 0 ? "checkpoint" : "missing/checkpoint");
+  const char *const file = path_in_folder(_i % 2 == 0 ? "checkpoint" : "missing/checkpoint");
   diary d = {0};
   dvi_system *system = NULL;
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
-  dvi_integrator *runner = made_integrator(system, methods[_i / 2]);
+  dvi_integrator *runner = create_integrator(system, methods[_i / 2]);
   ck_assert_int_eq(dvi_integrator_start(runner, 0, &(double){1}, &(double){0}), DVI_OK);
   dvi_run_report report;
   const dvi_run_options options = {
@@ -337,8 +338,8 @@ START_TEST(a_step_that_fails_ends_the_run_at_the_last_good_state)
   /* the substeps of a composition round */
   ck_assert_double_eq_tol(dvi_integrator_time(runner), 0.5, DBL_EPSILON);
   if (_i % 2 == 0) {
-    dvi_integrator *reader = made_integrator(system, methods[_i / 2]);
-    ck_assert_int_eq(dvi_integrator_restore(reader, in_folder("checkpoint")), DVI_OK);
+    dvi_integrator *reader = create_integrator(system, methods[_i / 2]);
+    ck_assert_int_eq(dvi_integrator_restore(reader, path_in_folder("checkpoint")), DVI_OK);
     check_same_state(runner, reader);
     dvi_integrator_destroy(&reader);
   }
@@ -380,16 +381,16 @@ START_TEST(bad_options_are_refused_with_their_reason)
   diary d = {0};
   dvi_run_options options = refused[_i].options;
   dvi_run_report report = {.end = DVI_RUN_COMPLETE, .steps = 5};
-  const bytes before = state_of(integrator);
+  const bytes before = read_state(integrator);
   options.observe = write_down;
   options.user = &d;
-  options.checkpoint = in_folder("checkpoint");
+  options.checkpoint = path_in_folder("checkpoint");
   ck_assert_int_eq(dvi_run(integrator, &options, &report), DVI_BAD_ARGUMENT);
   check_words(refused[_i].because);
   ck_assert_int_eq(report.end, DVI_RUN_FAILED);
   ck_assert_int_eq(report.steps, 0);
   ck_assert_int_eq(d.visits, 0);
-  ck_assert_int_eq(files_in_folder(), 0);
+  ck_assert_int_eq(count_files_in_folder(), 0);
   check_state(integrator, before);
 }
 END_TEST
@@ -402,13 +403,13 @@ START_TEST(checkpoints_on_the_way_need_a_file)
 }
 END_TEST
 
-/* Julian days: the rounded time misses t by up to 2e-10, a shorter last step must not. q = cos(t -
- * t0)/2 at the end. */
+/* With Julian days the rounded time misses t by up to 2e-10, but a shorter last step must not. q =
+ * cos(t - t0)/2 at the end. */
 START_TEST(a_last_shorter_step_is_right_at_large_times)
 {
   const double t0 = 2451545, way = 1.0625;
-  ck_assert_int_eq(dvi_integrator_start(integrator, t0, of->q, of->p), DVI_OK);
-  dvi_integrator *beside = started(of, "galerkin:degree=4");
+  ck_assert_int_eq(dvi_integrator_start(integrator, t0, model->q, model->p), DVI_OK);
+  dvi_integrator *beside = start_integrator(model, "galerkin:degree=4");
   ck_assert_int_eq(dvi_run(integrator, &(dvi_run_options){.h = 0.01, .t_end = t0 + way}, NULL),
                    DVI_OK);
   ck_assert_int_eq(dvi_run(beside, &(dvi_run_options){.h = 0.01, .t_end = way}, NULL), DVI_OK);
@@ -420,7 +421,7 @@ END_TEST
 START_TEST(a_step_that_time_does_not_feel_fails_the_run)
 {
   dvi_run_report report;
-  ck_assert_int_eq(dvi_integrator_start(integrator, 1e9, of->q, of->p), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_start(integrator, 1e9, model->q, model->p), DVI_OK);
   ck_assert_int_eq(dvi_run(integrator, &(dvi_run_options){.h = 1e-9, .t_end = 1e9 + 1}, &report),
                    DVI_BAD_ARGUMENT);
   check_words("does not move the time");
@@ -428,7 +429,7 @@ START_TEST(a_step_that_time_does_not_feel_fails_the_run)
 }
 END_TEST
 
-/* However long h is, the run ends at t_end; and once there, it has nothing to do. */
+/* However long h is, the run ends at t_end. A second run to t_end does nothing. */
 START_TEST(a_step_longer_than_the_way_is_cut_to_it)
 {
   const double lengths[] = {1e300, 1e10, 1.0000001};
@@ -440,11 +441,12 @@ START_TEST(a_step_longer_than_the_way_is_cut_to_it)
 }
 END_TEST
 
-/* The rounded weights of a composition do not sum to 1; a thousand steps must not show it. */
+/* The rounded weights of a composition do not sum to 1. A thousand steps must not show it. */
 START_TEST(a_composition_ends_at_t_end_and_may_be_asked_again)
 {
   const char *const order[] = {"4", "6", "8"};
-  dvi_integrator *composed = started(of, spec("composition:order=%s", order[_i]));
+  dvi_integrator *composed = start_integrator(model,
+                                              method_spec("composition:order=%s", order[_i]));
   dvi_run_report report;
   const dvi_run_options options = {.h = 0.01, .t_end = 10};
   ck_assert_int_eq(dvi_run(composed, &options, &report), DVI_OK);

@@ -109,7 +109,7 @@ static double energy_after_start(kinetic *term, double p)
 {
   double energy;
   dvi_system *system = system_of(term);
-  dvi_integrator *integrator = made_integrator(system, "galerkin");
+  dvi_integrator *integrator = create_integrator(system, "galerkin");
   ck_assert_msg(dvi_integrator_start(integrator, 0, &(double){0}, &p) == DVI_OK, "%s",
                 dvi_last_error());
   ck_assert_int_eq(dvi_integrator_invariants(integrator, &energy), DVI_OK);
@@ -129,7 +129,7 @@ START_TEST(a_velocity_is_found_where_the_hessian_at_rest_is_singular_or_indefini
 }
 END_TEST
 
-/* Newton's first step from rest leads far beyond the speed of light; L = sqrt(1 + p^2) there. */
+/* Newton's first step from rest leads far beyond the speed of light. L = sqrt(1 + p^2) there. */
 START_TEST(a_velocity_near_the_edge_of_the_domain_is_found)
 {
   const double momenta[] = {0.5, 3, -50, 1e4};
@@ -142,8 +142,8 @@ END_TEST
 START_TEST(a_momentum_that_none_has_or_that_is_degenerate_is_refused)
 {
   dvi_system *falling = system_of(&exponential_term), *flat = system_of(&quartic_term);
-  dvi_integrator *one = made_integrator(falling, "midpoint"),
-                 *two = made_integrator(flat, "midpoint");
+  dvi_integrator *one = create_integrator(falling, "midpoint"),
+                 *two = create_integrator(flat, "midpoint");
   ck_assert_int_eq(dvi_integrator_start(one, 0, &(double){0}, &(double){-1}), DVI_NOT_CONVERGED);
   check_words("no velocity found for the momentum");
   ck_assert_int_eq(dvi_integrator_start(two, 0, &(double){0}, &(double){0}), DVI_SINGULAR);
@@ -157,8 +157,8 @@ START_TEST(a_momentum_that_none_has_or_that_is_degenerate_is_refused)
 }
 END_TEST
 
-/* q' is the velocity meant, to the error h of a quotient, and stays on its branch: for v near -1, 0
- * and 1 the motions differ. */
+/* q' is the right velocity, up to the error h of a quotient, and stays on its branch. For v near
+ * -1, 0 and 1 the motions differ. */
 START_TEST(a_start_velocity_chooses_among_those_of_one_momentum)
 {
   static const char *const methods[] = {"midpoint", "galerkin:degree=3",
@@ -166,7 +166,7 @@ START_TEST(a_start_velocity_chooses_among_those_of_one_momentum)
                                         "galerkin:degree=2,solver=kinsol"};
   const double velocities[] = {-0.9, 0.2, 1.1}, v = velocities[_i % 3], h = 1e-3;
   dvi_system *system = system_of(&wells_term);
-  dvi_integrator *integrator = made_integrator(system, methods[_i / 3]);
+  dvi_integrator *integrator = create_integrator(system, methods[_i / 3]);
   double energy, later;
   ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, &(double){0.1}, &v), DVI_OK);
   ck_assert_double_eq_tol(dvi_integrator_p(integrator)[0], wells_of_v1(v), 2 * DBL_EPSILON);
@@ -185,37 +185,37 @@ END_TEST
 START_TEST(both_starts_are_one_where_the_velocity_is_unique)
 {
   static const char *const methods[] = {"verlet", "galerkin:degree=4"};
-  problem *of = made_problem("kepler", NULL);
-  dvi_integrator *first = started(of, methods[_i]),
-                 *second = made_integrator(of->system, methods[_i]);
+  problem *model = create_problem("kepler", NULL);
+  dvi_integrator *first = start_integrator(model, methods[_i]),
+                 *second = create_integrator(model->system, methods[_i]);
   /* the mass is 1 */
-  ck_assert_int_eq(dvi_integrator_start_velocity(second, 0, of->q, of->p), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_start_velocity(second, 0, model->q, model->p), DVI_OK);
   advance(first, 0.05, 5);
   advance(second, 0.05, 5);
   ck_assert_mem_eq(dvi_integrator_q(first), dvi_integrator_q(second), 2 * sizeof(double));
   ck_assert_mem_eq(dvi_integrator_p(first), dvi_integrator_p(second), 2 * sizeof(double));
   dvi_integrator_destroy(&first);
   dvi_integrator_destroy(&second);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(bad_velocities_are_refused_and_the_state_stays)
 {
-  problem *of = made_problem("pendulum", NULL);
-  dvi_integrator *integrator = started(of, "midpoint");
-  ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, of->q, &(double){(double)NAN}),
+  problem *model = create_problem("pendulum", NULL);
+  dvi_integrator *integrator = start_integrator(model, "midpoint");
+  ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, model->q, &(double){(double)NAN}),
                    DVI_NOT_FINITE);
   check_words("v[0] = nan");
-  ck_assert_int_eq(dvi_integrator_start_velocity(integrator, (double)NAN, of->q, of->p),
+  ck_assert_int_eq(dvi_integrator_start_velocity(integrator, (double)NAN, model->q, model->p),
                    DVI_NOT_FINITE);
-  ck_assert_int_eq(dvi_integrator_start_velocity(NULL, 0, of->q, of->p), DVI_BAD_ARGUMENT);
-  ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, NULL, of->p), DVI_BAD_ARGUMENT);
-  ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, of->q, NULL), DVI_BAD_ARGUMENT);
-  ck_assert_double_eq(dvi_integrator_q(integrator)[0], of->q[0]);
+  ck_assert_int_eq(dvi_integrator_start_velocity(NULL, 0, model->q, model->p), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, NULL, model->p), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, model->q, NULL), DVI_BAD_ARGUMENT);
+  ck_assert_double_eq(dvi_integrator_q(integrator)[0], model->q[0]);
   advance(integrator, 0.1, 1);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

@@ -1,5 +1,5 @@
 /* labels: unit */
-/* Steps in a fictitious time: what they conserve, how runs end, what checkpoints hold. */
+/* Steps in a fictitious time: conserved quantities, ends of runs, checkpoints. */
 #include <math.h>
 #include <string.h>
 
@@ -34,17 +34,17 @@ enum { WAYS = sizeof ways / sizeof *ways, MOST = 64 };
 
 static problem *scene(int i)
 {
-  return made_problem(ways[i].problem, ways[i].setting);
+  return create_problem(ways[i].problem, ways[i].setting);
 }
 
-static dvi_integrator *way(const problem *of, int i)
+static dvi_integrator *way(const problem *model, int i)
 {
-  return paced(of, ways[i].create, ways[i].monitor, ways[i].method);
+  return start_paced_integrator(model, ways[i].create, ways[i].monitor, ways[i].method);
 }
 
 /* ---- what is conserved ---- */
 
-/* 16 to 27 n steps; what differences can not resolve is the floor. */
+/* 16 to 27 n steps, with a floor below which differences resolve nothing */
 START_TEST(a_step_in_tau_is_symplectic)
 {
   static const char *const methods[] = {"midpoint",
@@ -58,9 +58,10 @@ START_TEST(a_step_in_tau_is_symplectic)
                                         "multiscale:fast=0:1,omega=1"};
   static const char *const monitors[] = {"distance", "distance:power=1", "arclength",
                                          "acceleration"};
-  problem *kepler = made_problem("kepler", "e=0.6");
+  problem *kepler = create_problem("kepler", "e=0.6");
   for (int m = 0; m < 4; m++) {
-    dvi_integrator *integrator = paced(kepler, create_transformed, monitors[m], methods[_i]);
+    dvi_integrator *integrator = start_paced_integrator(kepler, create_transformed, monitors[m],
+                                                        methods[_i]);
     double defect;
     advance(integrator, 0.3, 3);
     ck_assert_int_eq(dvi_symplecticity(integrator, 0, dvi_integrator_q(integrator),
@@ -73,11 +74,12 @@ START_TEST(a_step_in_tau_is_symplectic)
 }
 END_TEST
 
-/* As its page says; and the test above can fail. */
+/* The test above can fail, as the method's page says. */
 START_TEST(a_controlled_step_is_not_symplectic)
 {
-  problem *kepler = made_problem("kepler", "e=0.6");
-  dvi_integrator *integrator = paced(kepler, create_controlled, "distance", "midpoint");
+  problem *kepler = create_problem("kepler", "e=0.6");
+  dvi_integrator *integrator = start_paced_integrator(kepler, create_controlled, "distance",
+                                                      "midpoint");
   double defect;
   advance(integrator, 0.3, 3);
   ck_assert_int_eq(dvi_symplecticity(integrator, 0, dvi_integrator_q(integrator),
@@ -89,27 +91,28 @@ START_TEST(a_controlled_step_is_not_symplectic)
 }
 END_TEST
 
-/* A hundred steps through the pericentre and back: roundoff that the passage amplifies. */
+/* A hundred steps through the pericentre and back, which amplify roundoff. */
 START_TEST(steps_back_undo_steps)
 {
-  problem *of = scene(_i);
-  dvi_integrator *integrator = way(of, _i);
+  problem *model = scene(_i);
+  dvi_integrator *integrator = way(model, _i);
   double defect;
-  ck_assert_msg(dvi_reversibility(integrator, 0, of->q, of->p, ways[_i].h, repeats(100), &defect) ==
-                    DVI_OK,
+  ck_assert_msg(dvi_reversibility(integrator, 0, model->q, model->p, ways[_i].h, repeats(100),
+                                  &defect) == DVI_OK,
                 "%s", dvi_last_error());
   ck_assert_msg(defect < 1e-9, "%s: %g", ways[_i].method, defect);
   ck_assert_double_eq_tol(dvi_integrator_time(integrator), 0, 1e-9);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 /* Distances do not change under rotations, so the momentum of the new system is that of the old. */
 START_TEST(angular_momentum_is_conserved)
 {
-  problem *kepler = made_problem("kepler", "e=0.9");
-  dvi_integrator *integrator = paced(kepler, create_transformed, "distance", "galerkin:degree=2");
+  problem *kepler = create_problem("kepler", "e=0.9");
+  dvi_integrator *integrator = start_paced_integrator(kepler, create_transformed, "distance",
+                                                      "galerkin:degree=2");
   double before[4], after[4];
   ck_assert_int_eq(dvi_integrator_invariants(integrator, before), DVI_OK);
   advance(integrator, 0.1, 2000);
@@ -123,8 +126,8 @@ END_TEST
 
 START_TEST(a_step_takes_no_memory)
 {
-  problem *of = scene(_i);
-  dvi_integrator *integrator = way(of, _i);
+  problem *model = scene(_i);
+  dvi_integrator *integrator = way(model, _i);
   dvi_counters before, after;
   advance(integrator, ways[_i].h, 1);
   for (int i = 0; i < 40; i++) {
@@ -136,7 +139,7 @@ START_TEST(a_step_takes_no_memory)
   }
   ck_assert_int_le(after.preparations, 8);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -153,8 +156,8 @@ static int clock_goes_on(dvi_integrator *integrator, void *user)
 
 START_TEST(a_run_ends_at_its_physical_time)
 {
-  problem *of = scene(_i);
-  dvi_integrator *integrator = way(of, _i);
+  problem *model = scene(_i);
+  dvi_integrator *integrator = way(model, _i);
   double last = -1;
   dvi_run_report report;
   const dvi_run_options options = {
@@ -165,7 +168,7 @@ START_TEST(a_run_ends_at_its_physical_time)
   run_to(integrator, -ways[_i].h, 1);
   ck_assert_double_eq(dvi_integrator_time(integrator), 1);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -178,8 +181,8 @@ static int clock_value(double t, const double *q, const double *v, double *g, vo
 
 START_TEST(an_event_at_the_end_is_seen)
 {
-  problem *of = scene(_i);
-  dvi_integrator *integrator = way(of, _i);
+  problem *model = scene(_i);
+  dvi_integrator *integrator = way(model, _i);
   dvi_run_report report;
   const dvi_event at_end = {.value = clock_value};
   const dvi_run_options options = {
@@ -188,14 +191,14 @@ START_TEST(an_event_at_the_end_is_seen)
   ck_assert_int_eq(report.events, 1);
   ck_assert_double_eq(report.event_time, 3);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(a_terminal_event_ends_the_run_at_its_time)
 {
-  problem *of = scene(_i);
-  dvi_integrator *integrator = way(of, _i);
+  problem *model = scene(_i);
+  dvi_integrator *integrator = way(model, _i);
   dvi_run_report report;
   const dvi_event end = {.value = clock_value, .terminal = 1};
   const dvi_run_options options = {.h = ways[_i].h, .t_end = 5, .events = &end, .event_count = 1};
@@ -203,16 +206,17 @@ START_TEST(a_terminal_event_ends_the_run_at_its_time)
   ck_assert_int_eq(report.end, DVI_RUN_EVENT);
   ck_assert_double_eq_tol(dvi_integrator_time(integrator), 3, 1e-12);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* From the exact solution: degree 8 with short steps has no error to speak of, at the ends or
- * inside. */
+/* Compares with the exact solution. Degree 8 with short steps has a negligible error at the ends
+ * and inside. */
 START_TEST(dense_output_is_in_physical_time)
 {
-  problem *kepler = made_problem("kepler", "e=0.9");
-  dvi_integrator *integrator = paced(kepler, create_transformed, "distance", "galerkin:degree=8");
+  problem *kepler = create_problem("kepler", "e=0.9");
+  dvi_integrator *integrator = start_paced_integrator(kepler, create_transformed, "distance",
+                                                      "galerkin:degree=8");
   double q[2], v[2], exact_q[2], exact_p[2];
   for (int step = 0; step < 60; step++) {
     const double from = dvi_integrator_time(integrator);
@@ -234,17 +238,17 @@ END_TEST
 
 START_TEST(dense_output_meets_the_ends_of_a_step)
 {
-  problem *of = scene(_i);
-  dvi_integrator *integrator = way(of, _i);
+  problem *model = scene(_i);
+  dvi_integrator *integrator = way(model, _i);
   double q[MOST];
-  ck_assert_int_le(of->nq, MOST);
+  ck_assert_int_le(model->nq, MOST);
   advance(integrator, ways[_i].h, 5);
   ck_assert_int_eq(dvi_integrator_interpolate(integrator, dvi_integrator_time(integrator), q, NULL),
                    DVI_OK);
-  ck_assert_double_le(distance(of->nq, q, dvi_integrator_q(integrator)),
-                      4e-16 * magnitude(of->nq, q) * of->nq);
+  ck_assert_double_le(distance(model->nq, q, dvi_integrator_q(integrator)),
+                      4e-16 * magnitude(model->nq, q) * model->nq);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -252,12 +256,12 @@ END_TEST
 
 START_TEST(a_restored_run_continues_bit_for_bit)
 {
-  problem *of = scene(_i);
-  dvi_integrator *first = way(of, _i), *second = way(of, _i);
+  problem *model = scene(_i);
+  dvi_integrator *first = way(model, _i), *second = way(model, _i);
   advance(second, 0.5 * ways[_i].h, 2);
   for (int step = 0; step < 30; step++) {
-    ck_assert_int_eq(dvi_integrator_save(first, in_folder("checkpoint")), DVI_OK);
-    ck_assert_msg(dvi_integrator_restore(second, in_folder("checkpoint")) == DVI_OK, "%s",
+    ck_assert_int_eq(dvi_integrator_save(first, path_in_folder("checkpoint")), DVI_OK);
+    ck_assert_msg(dvi_integrator_restore(second, path_in_folder("checkpoint")) == DVI_OK, "%s",
                   dvi_last_error());
     advance(first, ways[_i].h, 1);
     advance(second, ways[_i].h, 1);
@@ -268,21 +272,22 @@ START_TEST(a_restored_run_continues_bit_for_bit)
   check_same_state(first, second);
   dvi_integrator_destroy(&first);
   dvi_integrator_destroy(&second);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(a_checkpoint_of_another_monitor_is_refused)
 {
-  problem *kepler = made_problem("kepler", NULL);
-  dvi_integrator *others[] = {paced(kepler, create_transformed, "distance", "midpoint"),
-                              paced(kepler, create_transformed, "distance:power=1", "midpoint"),
-                              paced(kepler, create_controlled, "distance", "midpoint"),
-                              started(kepler, "midpoint")};
+  problem *kepler = create_problem("kepler", NULL);
+  dvi_integrator *others[] = {
+      start_paced_integrator(kepler, create_transformed, "distance", "midpoint"),
+      start_paced_integrator(kepler, create_transformed, "distance:power=1", "midpoint"),
+      start_paced_integrator(kepler, create_controlled, "distance", "midpoint"),
+      start_integrator(kepler, "midpoint")};
   for (int i = 0; i < 4; i++) {
-    ck_assert_int_eq(dvi_integrator_save(others[i], in_folder("checkpoint")), DVI_OK);
+    ck_assert_int_eq(dvi_integrator_save(others[i], path_in_folder("checkpoint")), DVI_OK);
     for (int k = 0; k < 4; k++) {
-      const dvi_status status = dvi_integrator_restore(others[k], in_folder("checkpoint"));
+      const dvi_status status = dvi_integrator_restore(others[k], path_in_folder("checkpoint"));
       ck_assert_int_eq(status, i == k ? DVI_OK : DVI_BAD_FILE);
     }
   }
@@ -295,18 +300,18 @@ END_TEST
 
 START_TEST(one_like_another_takes_the_same_steps)
 {
-  problem *of = scene(_i);
-  dvi_integrator *integrator = way(of, _i), *like;
+  problem *model = scene(_i);
+  dvi_integrator *integrator = way(model, _i), *like;
   ck_assert_msg(dvi_integrator_create_like(integrator, &like) == DVI_OK, "%s", dvi_last_error());
   ck_assert_str_eq(dvi_integrator_method(like), dvi_integrator_method(integrator));
   ck_assert_str_eq(dvi_integrator_monitor(like), dvi_integrator_monitor(integrator));
-  ck_assert_int_eq(dvi_integrator_start(like, 0, of->q, of->p), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_start(like, 0, model->q, model->p), DVI_OK);
   advance(like, ways[_i].h, 3);
   advance(integrator, ways[_i].h, 3);
   check_same_state(like, integrator);
   dvi_integrator_destroy(&like);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -321,11 +326,12 @@ static double energy_change(dvi_integrator *integrator, const double *q, const d
   return fabs(after[0] - before[0]);
 }
 
-/* As its docstring warns; and an integrator of its own takes every start's own energy. */
+/* The docstring warns of this. An integrator of its own takes every start's own energy. */
 START_TEST(one_like_another_keeps_its_E0)
 {
-  problem *kepler = made_problem("kepler", "e=0.5");
-  dvi_integrator *integrator = paced(kepler, create_transformed, "distance", "galerkin:degree=8"),
+  problem *kepler = create_problem("kepler", "e=0.5");
+  dvi_integrator *integrator = start_paced_integrator(kepler, create_transformed, "distance",
+                                                      "galerkin:degree=8"),
                  *like;
   const double q[] = {1.2, 0}, p[] = {0, 1};
   ck_assert_int_eq(dvi_integrator_create_like(integrator, &like), DVI_OK);
@@ -339,15 +345,16 @@ END_TEST
 
 START_TEST(explain_says_what_a_step_is)
 {
-  problem *kepler = made_problem("kepler", NULL);
-  dvi_integrator *integrator = paced(kepler, create_transformed, "distance", "midpoint");
+  problem *kepler = create_problem("kepler", NULL);
+  dvi_integrator *integrator = start_paced_integrator(kepler, create_transformed, "distance",
+                                                      "midpoint");
   char text[2000];
   (void)dvi_integrator_explain(integrator, text, sizeof text);
   ck_assert_ptr_nonnull(strstr(text, "time: transformed, dt/dtau = g(q), distance:power=1.5"));
   ck_assert_str_eq(dvi_integrator_monitor(integrator), "distance:power=1.5,bodies=1,dimension=2");
   ck_assert_ptr_eq(dvi_integrator_system(integrator), kepler->system);
   dvi_integrator_destroy(&integrator);
-  integrator = made_integrator(kepler->system, "midpoint");
+  integrator = create_integrator(kepler->system, "midpoint");
   ck_assert_ptr_null(dvi_integrator_monitor(integrator));
   ck_assert_ptr_null(dvi_integrator_monitor(NULL));
   dvi_integrator_destroy(&integrator);

@@ -1,6 +1,6 @@
 /* labels: unit */
-/* What cannot be transformed or controlled is refused with a sentence, and a step that fails leaves
- * the state as it was. */
+/* A system or method that cannot be transformed or controlled is refused with a sentence, and a
+ * step that fails leaves the state as it was. */
 #include <math.h>
 #include <stdint.h>
 
@@ -33,7 +33,7 @@ START_TEST(a_system_that_may_depend_on_time_is_not_transformed)
   const dvi_potential driven = {.name = "drive", .value = drive};
   const dvi_system_terms terms = {
       .dimension = 1, .mass.scalar = 1, .potentials = &driven, .potential_count = 1};
-  const dvi_monitor distance = monitor_of("distance"), arclength = monitor_of("arclength");
+  const dvi_monitor distance = read_monitor("distance"), arclength = read_monitor("arclength");
   dvi_system *system;
   dvi_integrator *integrator;
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
@@ -50,8 +50,8 @@ END_TEST
 
 START_TEST(explicit_methods_are_not_transformed)
 {
-  problem *kepler = made_problem("kepler", NULL);
-  const dvi_monitor distance = monitor_of("distance");
+  problem *kepler = create_problem("kepler", NULL);
+  const dvi_monitor distance = read_monitor("distance");
   dvi_integrator *integrator;
   refused(create_transformed(kepler->system, &distance, "verlet", &integrator), DVI_UNSUPPORTED,
           "time transform");
@@ -65,8 +65,8 @@ END_TEST
 
 START_TEST(control_wants_a_symmetric_method)
 {
-  problem *kepler = made_problem("kepler", NULL);
-  const dvi_monitor distance = monitor_of("distance");
+  problem *kepler = create_problem("kepler", NULL);
+  const dvi_monitor distance = read_monitor("distance");
   dvi_integrator *integrator;
   refused(create_controlled(kepler->system, &distance, "galerkin:degree=2,quadrature=radau-left",
                             &integrator),
@@ -77,13 +77,13 @@ START_TEST(control_wants_a_symmetric_method)
 }
 END_TEST
 
-/* A one-form has no mass to divide by the monitor; control goes with symmetric methods for it, to
- * their order: halved steps divide the error by 64. */
+/* A one-form has no mass to divide by the monitor. Symmetric methods for it take control, to their
+ * order: halved steps divide the error by 64. */
 START_TEST(a_one_form_takes_control_alone)
 {
   static const double h = 0.2;
-  problem *prey = made_problem("lotka-volterra", NULL);
-  const dvi_monitor distance_to_origin = monitor_of("distance");
+  problem *prey = create_problem("lotka-volterra", NULL);
+  const dvi_monitor distance_to_origin = read_monitor("distance");
   double error[2];
   dvi_integrator *integrator;
   refused(create_transformed(prey->system, &distance_to_origin, "dg", &integrator), DVI_UNSUPPORTED,
@@ -91,7 +91,7 @@ START_TEST(a_one_form_takes_control_alone)
   refused(create_controlled(prey->system, &distance_to_origin, "vprk:projection=post", &integrator),
           DVI_UNSUPPORTED, "choose dg, dg-phase, dvrk, or vprk with its symmetric projection");
   for (int k = 0; k < 2; k++) {
-    integrator = paced(prey, create_controlled, "distance", "vprk:nodes=3");
+    integrator = start_paced_integrator(prey, create_controlled, "distance", "vprk:nodes=3");
     run_to(integrator, ldexp(h, -k), prey->order_t_end);
     error[k] = distance(2, dvi_integrator_q(integrator), prey->digits_q);
     dvi_integrator_destroy(&integrator);
@@ -106,9 +106,9 @@ END_TEST
 START_TEST(factors_have_no_monitor)
 {
   static const char *const method[] = {"galerkin", "lie-galerkin:degree=1", "lie-verlet"};
-  problem *body = made_problem("free-body", NULL);
-  const dvi_monitor given[] = {monitor_of("arclength"), monitor_of("acceleration"),
-                               monitor_of("distance")};
+  problem *body = create_problem("free-body", NULL);
+  const dvi_monitor given[] = {read_monitor("arclength"), read_monitor("acceleration"),
+                               read_monitor("distance")};
   dvi_integrator *integrator;
   for (int k = 0; k < 9; k++) {
     refused(create_transformed(body->system, &given[k / 3], method[k % 3], &integrator),
@@ -122,8 +122,8 @@ END_TEST
 
 START_TEST(methods_that_choose_their_steps_have_no_monitor_beside_them)
 {
-  problem *kepler = made_problem("kepler", NULL);
-  const dvi_monitor distance = monitor_of("distance");
+  problem *kepler = create_problem("kepler", NULL);
+  const dvi_monitor distance = read_monitor("distance");
   dvi_integrator *integrator;
   refused(both[_i](kepler->system, &distance, "sem", &integrator), DVI_UNSUPPORTED,
           "chooses the lengths of its steps itself");
@@ -133,8 +133,8 @@ END_TEST
 
 START_TEST(monitors_of_the_motion_want_a_constant_mass)
 {
-  problem *pendulum = made_problem("double-pendulum", NULL);
-  const dvi_monitor monitors[] = {monitor_of("arclength"), monitor_of("acceleration")};
+  problem *pendulum = create_problem("double-pendulum", NULL);
+  const dvi_monitor monitors[] = {read_monitor("arclength"), read_monitor("acceleration")};
   dvi_integrator *integrator;
   refused(both[_i](pendulum->system, &monitors[0], "midpoint", &integrator), DVI_UNSUPPORTED,
           "a constant mass is needed");
@@ -176,7 +176,7 @@ enum { WRONG = sizeof wrong / sizeof *wrong };
 
 START_TEST(a_monitor_that_is_not_well_declared_is_refused)
 {
-  problem *kepler = made_problem("kepler", NULL);
+  problem *kepler = create_problem("kepler", NULL);
   for (int k = 0; k < 2; k++) {
     dvi_integrator *integrator = (dvi_integrator *)kepler;
     refused(both[k](kepler->system, &wrong[_i].monitor, "midpoint", &integrator), DVI_BAD_ARGUMENT,
@@ -189,8 +189,8 @@ END_TEST
 
 START_TEST(null_arguments_are_refused)
 {
-  problem *kepler = made_problem("kepler", NULL);
-  const dvi_monitor distance = monitor_of("distance");
+  problem *kepler = create_problem("kepler", NULL);
+  const dvi_monitor distance = read_monitor("distance");
   dvi_integrator *integrator;
   ck_assert_int_eq(both[_i](kepler->system, NULL, "midpoint", &integrator), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(both[_i](NULL, &distance, "midpoint", &integrator), DVI_BAD_ARGUMENT);
@@ -239,7 +239,7 @@ static dvi_integrator *at_cliff(const problem *kepler, paced_create create, clif
 
 START_TEST(a_start_where_the_monitor_is_not_positive_is_refused)
 {
-  problem *kepler = made_problem("kepler", NULL);
+  problem *kepler = create_problem("kepler", NULL);
   for (int k = 0; k < 2; k++) {
     cliff c = {1, not_positive[_i]}; /* the start is at x = 0.4 */
     dvi_integrator *integrator = at_cliff(kepler, both[k], &c);
@@ -253,7 +253,7 @@ END_TEST
 
 START_TEST(a_step_where_the_monitor_is_not_positive_leaves_the_state_untouched)
 {
-  problem *kepler = made_problem("kepler", NULL);
+  problem *kepler = create_problem("kepler", NULL);
   for (int k = 0; k < 2; k++) {
     cliff c = {-0.5, not_positive[_i]};
     dvi_integrator *integrator = at_cliff(kepler, both[k], &c);
@@ -266,7 +266,7 @@ START_TEST(a_step_where_the_monitor_is_not_positive_leaves_the_state_untouched)
     ck_assert_int_eq(report.end, DVI_RUN_FAILED);
     ck_assert_double_gt(dvi_integrator_q(integrator)[0], -0.5);
     ck_assert_double_gt(dvi_integrator_time(integrator), 0.5);
-    const bytes before = state_of(integrator);
+    const bytes before = read_state(integrator);
     ck_assert_int_eq(dvi_integrator_step(integrator, 0.1), DVI_NOT_FINITE);
     check_state(integrator, before);
     dvi_integrator_destroy(&integrator);
@@ -275,11 +275,11 @@ START_TEST(a_step_where_the_monitor_is_not_positive_leaves_the_state_untouched)
 }
 END_TEST
 
-/* The step past the end looks at where the run never comes to; one that ends beyond the cliff
- * cannot be taken. */
+/* The step past the end evaluates points that the run never reaches. A step that ends beyond the
+ * cliff cannot be taken. */
 START_TEST(a_failure_past_the_end_does_not_matter)
 {
-  problem *kepler = made_problem("kepler", NULL);
+  problem *kepler = create_problem("kepler", NULL);
   double q[2], p[2];
   ck_assert_int_eq(kepler->exact(kepler, 2, q, p), 0);
   for (int k = 0; k < 2; k++) {
@@ -298,7 +298,7 @@ START_TEST(a_failure_past_the_end_does_not_matter)
 }
 END_TEST
 
-/* The callback's own word counts: positive may be mended by a smaller step, negative not. */
+/* The callback's code counts: a smaller step may mend a positive one, but not a negative one. */
 static int moody(double t, const double *q, double *g, void *user)
 {
   (void)t;
@@ -308,7 +308,7 @@ static int moody(double t, const double *q, double *g, void *user)
 
 START_TEST(what_the_monitor_returns_is_passed_on)
 {
-  problem *kepler = made_problem("kepler", NULL);
+  problem *kepler = create_problem("kepler", NULL);
   int answer = _i == 0 ? 1 : -1;
   const dvi_monitor monitor = {.function = {.name = "moody", .value = moody, .user = &answer}};
   for (int k = 0; k < 2; k++) {
@@ -325,8 +325,9 @@ END_TEST
 
 START_TEST(a_control_step_too_large_for_the_monitor_is_refused)
 {
-  problem *kepler = made_problem("kepler", "e=0.9");
-  dvi_integrator *integrator = paced(kepler, create_controlled, "distance:power=4", "verlet");
+  problem *kepler = create_problem("kepler", "e=0.9");
+  dvi_integrator *integrator = start_paced_integrator(kepler, create_controlled, "distance:power=4",
+                                                      "verlet");
   dvi_run_report report;
   const dvi_status status = dvi_run(integrator, &(dvi_run_options){.h = 500, .t_end = 6}, &report);
   refused(status, DVI_NOT_CONVERGED, "step control: the steps' density z went from");
@@ -335,14 +336,14 @@ START_TEST(a_control_step_too_large_for_the_monitor_is_refused)
 }
 END_TEST
 
-/* A failing start leaves E0, too: the next step is as it would have been. */
+/* A failing start leaves E0, too, and the next step is as it would have been. */
 START_TEST(a_start_that_fails_leaves_the_state)
 {
-  problem *kepler = made_problem("kepler", NULL);
-  dvi_integrator *integrator = paced(kepler, both[_i], "distance", "midpoint");
+  problem *kepler = create_problem("kepler", NULL);
+  dvi_integrator *integrator = start_paced_integrator(kepler, both[_i], "distance", "midpoint");
   const double origin[2] = {0, 0};
   advance(integrator, 0.1, 3);
-  const bytes before = state_of(integrator);
+  const bytes before = read_state(integrator);
   ck_assert_int_ne(dvi_integrator_start(integrator, 0, origin, kepler->p), DVI_OK);
   check_state(integrator, before);
   dvi_integrator_destroy(&integrator);
@@ -353,8 +354,8 @@ END_TEST
 START_TEST(steps_of_no_length_are_refused)
 {
   static const double lengths[] = {0, (double)NAN, (double)INFINITY, 1e-310};
-  problem *kepler = made_problem("kepler", NULL);
-  dvi_integrator *integrator = paced(kepler, both[_i], "distance", "midpoint");
+  problem *kepler = create_problem("kepler", NULL);
+  dvi_integrator *integrator = start_paced_integrator(kepler, both[_i], "distance", "midpoint");
   for (int k = 0; k < 4; k++)
     ck_assert_int_eq(dvi_integrator_step(integrator, lengths[k]), DVI_BAD_ARGUMENT);
   refused(dvi_run(integrator, &(dvi_run_options){.h = -0.1, .t_end = 1}, NULL), DVI_BAD_ARGUMENT,
@@ -373,22 +374,22 @@ END_TEST
 
 /* ---- memory ---- */
 
-static void survives(const problem *of, paced_create create, const char *monitor,
+static void survives(const problem *model, paced_create create, const char *monitor,
                      const char *method)
 {
-  const dvi_monitor chosen = monitor_of(monitor);
+  const dvi_monitor chosen = read_monitor(monitor);
   /* the first one completes the system */
-  dvi_integrator *integrator = paced(of, create, monitor, method);
+  dvi_integrator *integrator = start_paced_integrator(model, create, monitor, method);
   dvi_integrator_destroy(&integrator);
   const long before = dvi__allocation_count();
-  integrator = paced(of, create, monitor, method);
+  integrator = start_paced_integrator(model, create, monitor, method);
   const long needed = dvi__allocation_count() - before;
   dvi_integrator_destroy(&integrator);
   const long bytes_before = heap_bytes();
   for (long successes = 0; successes < needed; successes++) {
-    integrator = (dvi_integrator *)(uintptr_t)of;
+    integrator = (dvi_integrator *)(uintptr_t)model;
     dvi__fail_allocations_after(successes);
-    const dvi_status status = create(of->system, &chosen, method, &integrator);
+    const dvi_status status = create(model->system, &chosen, method, &integrator);
     dvi__fail_allocations_after(-1);
     ck_assert_msg(status == DVI_NO_MEMORY, "%ld of %ld: %s", successes, needed, dvi_last_error());
     ck_assert_ptr_null(integrator);
@@ -398,7 +399,7 @@ static void survives(const problem *of, paced_create create, const char *monitor
 
 START_TEST(creation_survives_every_failure_of_memory)
 {
-  problem *kepler = made_problem("kepler", NULL);
+  problem *kepler = create_problem("kepler", NULL);
   survives(kepler, create_transformed, "distance", "galerkin");
   survives(kepler, create_transformed, "arclength", "composition:base=midpoint");
   survives(kepler, create_controlled, "acceleration", "verlet");

@@ -1,5 +1,5 @@
 /* labels: invariant */
-/* What time transforms are for: eccentric orbits over a thousand periods, and close encounters. */
+/* Time transforms serve eccentric orbits over a thousand periods, and close encounters. */
 #include <math.h>
 
 #include "support/paced.h"
@@ -19,12 +19,12 @@ static int watch_energy(dvi_integrator *integrator, void *user)
   return 0;
 }
 
-/* The energy oscillates along the orbit, with the errors of the method; its trend over the run must
- * be nothing beside that. */
+/* The energy oscillates along the orbit with the errors of the method. Its trend over the run must
+ * be negligible beside that. */
 static void check_no_drift(paced_create create, const char *method, double h, double bound)
 {
-  problem *kepler = made_problem("kepler", "e=0.99");
-  dvi_integrator *integrator = paced(kepler, create, "distance", method);
+  problem *kepler = create_problem("kepler", "e=0.99");
+  dvi_integrator *integrator = start_paced_integrator(kepler, create, "distance", method);
   dvi_drift energy;
   dvi_drift_fit fit;
   dvi_drift_init(&energy);
@@ -77,12 +77,13 @@ START_TEST(a_transformed_run_needs_a_tenth_of_the_evaluations_of_fixed_steps)
   } at[] = {{"galerkin:degree=2", 0.05, 1e-4},
             {"galerkin:degree=4", 0.3, 1e-3},
             {"galerkin:degree=8", 0.8, 2e-3}};
-  problem *kepler = made_problem("kepler", "e=0.99");
+  problem *kepler = create_problem("kepler", "e=0.99");
   long transformed, fixed;
   const double error = error_of(
-      kepler, paced(kepler, create_transformed, "distance", at[_i].method), at[_i].h, &transformed);
+      kepler, start_paced_integrator(kepler, create_transformed, "distance", at[_i].method),
+      at[_i].h, &transformed);
   /* The fixed steps have the larger error and yet need ten times as much. */
-  ck_assert_double_gt(error_of(kepler, started(kepler, at[_i].method),
+  ck_assert_double_gt(error_of(kepler, start_integrator(kepler, at[_i].method),
                                period / ceil(period / at[_i].fixed), &fixed),
                       error);
   ck_assert_msg(fixed > 10 * transformed, "%s: %ld against %ld", at[_i].method, fixed, transformed);
@@ -132,20 +133,20 @@ static double energy_of_the_first(const double *q, const double *p)
   return speed * speed / 2 - 12 / d;
 }
 
-/* Of bodies 2 and 3, in quadruple precision. */
-static double distance_by_the_judge(const problem *of, double t)
+/* Gives the distance of bodies 2 and 3, in quadruple precision. */
+static double distance_by_the_judge(const problem *model, double t)
 {
   double q[6], p[6];
-  for (int i = 0; i < 6; i++) q[i] = of->q[i], p[i] = of->p[i];
+  for (int i = 0; i < 6; i++) q[i] = model->q[i], p[i] = model->p[i];
   ck_assert_double_lt(quad_solve("pythagorean", 0, NULL, t, q, p), 1e-15);
   return hypot(q[2] - q[4], q[3] - q[5]);
 }
 
 START_TEST(burraus_three_bodies_meet_and_part_as_they_must)
 {
-  problem *of = made_problem("pythagorean", NULL);
-  dvi_integrator *integrator = paced(of, create_transformed, "distance:bodies=3,dimension=2",
-                                     "galerkin:degree=8");
+  problem *model = create_problem("pythagorean", NULL);
+  dvi_integrator *integrator = start_paced_integrator(
+      model, create_transformed, "distance:bodies=3,dimension=2", "galerkin:degree=8");
   double closest = HUGE_VAL, at = 0, before[8], after[8];
   encounter pairs[] = {{0, 1, &closest, &at}, {0, 2, &closest, &at}, {1, 2, &closest, &at}};
   dvi_event events[3];
@@ -162,16 +163,16 @@ START_TEST(burraus_three_bodies_meet_and_part_as_they_must)
   const double *q = dvi_integrator_q(integrator);
   ck_assert_double_eq_tol(closest, 4.14e-4, 1e-6); /* docs/problems.md */
   ck_assert_double_eq_tol(at, 15.8299, 1e-4);
-  /* At the least distance an error of the time counts by its square; this is what the orbit has
-   * lost since the start. */
-  ck_assert_double_eq_tol(closest, distance_by_the_judge(of, at), 1e-10);
+  /* At the least distance an error of the time counts by its square. This is the orbit's loss since
+   * the start. */
+  ck_assert_double_eq_tol(closest, distance_by_the_judge(model, at), 1e-10);
   ck_assert_double_eq_tol(after[0], before[0], 1e-11 * fabs(before[0]));
-  /* Body 1 goes upwards for good; 2 and 3 are a pair. */
+  /* Body 1 goes upwards for good, and 2 and 3 are a pair. */
   ck_assert_double_gt(energy_of_the_first(q, dvi_integrator_p(integrator)), 0);
   ck_assert_double_gt(q[1], 8);
   ck_assert_double_lt(hypot(q[2] - q[4], q[3] - q[5]), 1.5);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

@@ -13,18 +13,19 @@
 
 enum { LEVELS = 5, MOST = 8 };
 
-static dvi_integrator *transformed(const problem *of, const dvi_monitor *monitor,
+static dvi_integrator *transformed(const problem *model, const dvi_monitor *monitor,
                                    const char *method)
 {
   dvi_integrator *made = NULL;
-  ck_assert_msg(create_transformed(of->system, monitor, method, &made) == DVI_OK, "%s",
+  ck_assert_msg(create_transformed(model->system, monitor, method, &made) == DVI_OK, "%s",
                 dvi_last_error());
-  ck_assert_msg(dvi_integrator_start(made, 0, of->q, of->p) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_integrator_start(made, 0, model->q, model->p) == DVI_OK, "%s",
+                dvi_last_error());
   return made;
 }
 
-/* Levels, each with half as many steps again as the one before: high orders would meet the floor
- * otherwise. */
+/* Each level has half as many steps again as the one before, because high orders would meet the
+ * floor otherwise. */
 static int steps_at(int first, int level)
 {
   return (int)lround(first * pow(1.5, level));
@@ -58,7 +59,7 @@ static void check_slope(const char *what, const char *method, int first, const d
                 order);
 }
 
-/* With g = r, tau is the eccentric anomaly: q = (cos tau - e, sqrt(1-e^2) sin tau), t = tau - e sin
+/* With g = r, tau is the eccentric anomaly, q = (cos tau - e, sqrt(1-e^2) sin tau), t = tau - e sin
  * tau. */
 static void check_on_kepler(const char *method, int order, int first, double tau)
 {
@@ -66,7 +67,7 @@ static void check_on_kepler(const char *method, int order, int first, double tau
   const double q[2] = {cos(tau) - e, b * sin(tau)}, p[2] = {-sin(tau) / r, b * cos(tau) / r},
                t = tau - e * sin(tau);
   double error[3][LEVELS];
-  problem *kepler = made_problem("kepler", "e=0.3");
+  problem *kepler = create_problem("kepler", "e=0.3");
   const dvi_monitor monitor = {.kind = DVI_MONITOR_DISTANCE, .power = 1};
   for (int k = 0; k < LEVELS; k++) {
     dvi_integrator *integrator = transformed(kepler, &monitor, method);
@@ -85,7 +86,7 @@ static void check_on_kepler(const char *method, int order, int first, double tau
 
 static const struct {
   const char *method;
-  int order, first; /* first: steps of the coarsest run */
+  int order, first; /* `first` is the number of steps of the coarsest run */
 } methods[] = {
     {"midpoint", 2, 100},
     {"trapezoidal", 2, 100},
@@ -122,7 +123,7 @@ START_TEST(coordinates_momenta_and_time_have_the_order_of_the_method)
 }
 END_TEST
 
-/* Whether the method is among those above. */
+/* Returns 1 if the method is among those above. */
 static int is_measured(const char *name)
 {
   for (int i = 0; i < METHODS; i++)
@@ -136,7 +137,7 @@ static int is_measured(const char *name)
 START_TEST(every_method_is_measured_or_refuses)
 {
   const dvi_monitor monitor = {.kind = DVI_MONITOR_DISTANCE};
-  problem *kepler = made_problem("kepler", NULL);
+  problem *kepler = create_problem("kepler", NULL);
   for (int i = 0; i < dvi_method_count(); i++) {
     dvi_integrator *none = NULL;
     if (is_measured(dvi_method_name(i))) continue;
@@ -153,7 +154,7 @@ START_TEST(a_method_of_higher_derivatives_says_why_not)
 {
   const dvi_monitor monitor = {.kind = DVI_MONITOR_DISTANCE};
   const char *const of_derivatives[] = {"prolongation-collocation", "shooting:onestep=taylor"};
-  problem *kepler = made_problem("kepler", NULL);
+  problem *kepler = create_problem("kepler", NULL);
   for (int i = 0; i < 2; i++) {
     dvi_integrator *none = NULL;
     ck_assert_int_eq(create_transformed(kepler->system, &monitor, of_derivatives[i], &none),
@@ -164,7 +165,7 @@ START_TEST(a_method_of_higher_derivatives_says_why_not)
 }
 END_TEST
 
-/* A monitor without sense for the motion: the order does not depend on what it is. */
+/* A monitor without meaning for the motion. The order does not depend on the monitor. */
 static int wave(double t, const double *q, double *g, void *user)
 {
   (void)t, (void)user;
@@ -180,29 +181,29 @@ static int wave_gradient(double t, const double *q, double *g_q, void *user)
   return 0;
 }
 
-/* A run to a physical time, whose last step is shorter: the end is at that time to roundoff, and of
+/* A run to a physical time, whose last step is shorter. It ends at that time up to roundoff, with
  * the method's order. */
 static void check_runs(const char *name, const dvi_monitor *monitor, const char *method, int order,
                        int first)
 {
   double error[LEVELS], q[MOST], p[MOST];
-  problem *of = made_problem(name, NULL);
-  const double t_end = of->order_t_end;
-  for (int i = 0; i < of->nq; i++) q[i] = of->q[i], p[i] = of->p[i];
+  problem *model = create_problem(name, NULL);
+  const double t_end = model->order_t_end;
+  for (int i = 0; i < model->nq; i++) q[i] = model->q[i], p[i] = model->p[i];
   ck_assert_double_lt(quad_solve(name, 0, NULL, t_end, q, p), 1e-15);
   for (int k = 0; k < LEVELS; k++) {
-    dvi_integrator *integrator = transformed(of, monitor, method);
+    dvi_integrator *integrator = transformed(model, monitor, method);
     ck_assert_msg(dvi_run(integrator,
                           &(dvi_run_options){.h = t_end / steps_at(first, k), .t_end = t_end},
                           NULL) == DVI_OK,
                   "%s", dvi_last_error());
     /* 16 roundings */
     ck_assert_double_eq_tol(dvi_integrator_time(integrator), t_end, 4e-15 * t_end);
-    error[k] = distance(of->nq, dvi_integrator_q(integrator), q);
+    error[k] = distance(model->nq, dvi_integrator_q(integrator), q);
     dvi_integrator_destroy(&integrator);
   }
   check_slope(name, method, first, error, order);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 
 START_TEST(a_mass_that_depends_on_the_coordinates_may_be_transformed)

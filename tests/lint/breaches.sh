@@ -1,5 +1,6 @@
 #!/bin/sh
-# A gate that cannot fail is no gate: every breach planted here must be seen by its gate, and the clean tree before it must pass.
+# A gate that cannot fail is no gate: each gate must see every breach planted here, and must pass
+# the clean tree before it.
 # Usage: breaches.sh LINT_FOLDER C_COMPILER
 set -u
 lint=$1 compiler=$2
@@ -8,32 +9,48 @@ trap 'rm -rf "$work"' EXIT
 rc=0
 
 clean() {
-  rm -rf "${work:?}"/*
+  rm -rf "${work:?}"/* "$work/.ci"
   cd "$work" || exit 1
-  for room in core num group space system solve step/element method/element diagnostics reference text expr scene scene/sections; do mkdir -p lib/src/$room; done
+  for room in core num group space system solve step/element method/element diagnostics reference \
+    text expr scene scene/sections; do
+    mkdir -p lib/src/$room
+  done
   mkdir -p lib/include/dvi apps/cli apps/problems apps/examples tests/method/element docs/methods
+  mkdir -p cmake .ci
   printf '/** One. */\nint dvi_one(int a);\n' >lib/include/dvi/one.h
   printf '#include <dvi/one.h>\n\nint dvi_one(int a)\n{\n  return a;\n}\n' >lib/src/core/one.c
   printf '#include <dvi/one.h>\n' >lib/src/method/element/leap.c
   printf '/* .cite = "Euler1744" */\n' >>lib/src/method/element/leap.c
   printf '#include <dvi/one.h>\n' >apps/main.c
-  touch tests/method/element/test_leap.c docs/methods/leap.md
+  touch tests/method/element/test_leap.c docs/methods/leap.md CMakeLists.txt
   printf '@book{Euler1744,\n}\n' >docs/references.bib
   printf 'int main(void)\n{\n  return 0;\n}\n' >apps/examples/pendulum.c
   printf 'int main(void)\n{\n  return 0;\n}\n' >apps/examples/shapes.c
-  { echo '# One'; echo '```c'; cat apps/examples/pendulum.c; echo '```'; echo 'See [the guide](docs/guide.md#two-words), Euler1744.'; } >README.md
+  {
+    echo '# One'
+    echo '```c'
+    cat apps/examples/pendulum.c
+    echo '```'
+    echo 'See [the guide](docs/guide.md#two-words), Euler1744.'
+  } >README.md
   { echo '# Shapes'; echo '```c'; cat apps/examples/shapes.c; echo '```'; } >docs/shapes.md
-  printf 'int told = refuse("there is no \047%%s\047\\n", "a name"); /* "not this" */\n' >lib/src/scene/one.c
-  printf '# Errors\n\n- `there is no \047<name>\047`\n  A slip.\n  - `a name`\n  - `a step`\n' >docs/scene-errors.md
+  printf 'int told = refuse("there is no \047%%s\047\\n", "a name"); /* "not this" */\n' \
+    >lib/src/scene/one.c
+  printf '# Errors\n\n- `there is no \047<name>\047`\n  A slip.\n  - `a name`\n  - `a step`\n' \
+    >docs/scene-errors.md
   printf 'SECTION(step, REQUIRED, "a step", "how far")\n' >lib/src/scene/sections/sections.def
-  printf '| section | what it holds | needed |\n|---|---|---|\n| `step` | how far | yes |\n' >docs/scenes.md
-  { echo '# Two words'; echo '```c'; echo '#include <dvi/one.h>'; echo 'int two(void);'; echo '```'; } >docs/guide.md
+  printf '| section | what it holds | needed |\n|---|---|---|\n| `step` | how far | yes |\n' \
+    >docs/scenes.md
+  printf '# Two words\n```c\n#include <dvi/one.h>\nint two(void);\n```\n' >docs/guide.md
+  printf '<!-- rooms: begin -->\n<!-- rooms: end -->\n' >docs/CONTRIBUTING.md
+  sh "$lint/rooms.sh" --update "$work"
 }
 
 # The gates, called by name.
 # shellcheck disable=SC2317
 layers() { sh "$lint/sources.sh" "$work" "$lint/layers.awk" leap; }
-text() { sh "$lint/sources.sh" "$work" "$lint/text.awk"; }
+rooms() { sh "$lint/rooms.sh" "$work"; }
+text() { sh "$lint/text.sh" "$work"; }
 documented() { awk -f "$lint/documented.awk" lib/include/dvi/*.h; }
 docs() { sh "$lint/docs.sh" "$work" "$compiler"; }
 methods() { sh "$lint/methods.sh" "$work" leap; }
@@ -42,8 +59,10 @@ sections() { sh "$lint/sections.sh" "$work"; }
 headers() { sh "$lint/headers.sh" "$work/lib/include" c "$compiler" -std=c11; }
 symbols() {
   echo 'DVI_1 { global: dvi_*; stray; local: *; };' >one.map
-  "$compiler" -shared -fPIC -I lib/include lib/src/core/*.c -Wl,--version-script=one.map -o libone.so && "$compiler" -c -I lib/include lib/src/core/one.c -o one.o &&
-    rm -f libone.a && ar rc libone.a one.o && sh "$lint/symbols.sh" libone.so libone.a lib/include/dvi/*.h
+  "$compiler" -shared -fPIC -I lib/include lib/src/core/*.c -Wl,--version-script=one.map \
+    -o libone.so && "$compiler" -c -I lib/include lib/src/core/one.c -o one.o &&
+    rm -f libone.a && ar rc libone.a one.o &&
+    sh "$lint/symbols.sh" libone.so libone.a lib/include/dvi/*.h
 }
 
 passes() { "$1" >log 2>&1 || { echo "$1: the clean tree does not pass"; cat log; rc=1; }; }
@@ -56,7 +75,9 @@ sees() {
 }
 
 clean
-for gate in layers text documented methods messages sections docs headers symbols; do passes $gate; done
+for gate in layers rooms text documented methods messages sections docs headers symbols; do
+  passes $gate
+done
 
 sees layers lib/src/core/one.c '#include "num/linear.h"'
 sees layers lib/src/num/one.c '#include "system/system.h"'
@@ -89,12 +110,19 @@ sees layers apps/main.c '#include "core/status.h"'
 sees layers apps/examples/one.c '#include <kinsol/kinsol.h>'
 sees layers apps/cli/one.c '#include "plot/plot.h"'
 sees layers apps/problems/one.c 'dvi__release(x);'
+sees rooms lib/src/num/one.c '#include "core/one.h"'
 sees text lib/src/core/one.c 'int\ta;'
 sees text lib/src/core/one.c 'int a; '
 sees text lib/src/core/one.c '/* TO''DO: finish */'
 sees text lib/src/core/one.c '/* caf\0303\0251 */'
-sees text lib/src/core/long.c "int f(void)\n{\n$(awk 'BEGIN { for (i = 0; i < 60; i++) printf "  g();\\n" }')}"
+sees text lib/src/core/long.c \
+  "int f(void)\n{\n$(awk 'BEGIN { for (i = 0; i < 60; i++) printf "  g();\\n" }')}"
 sees text lib/src/core/long.c "$(awk 'BEGIN { for (i = 0; i < 601; i++) printf "int a%d;\\n", i }')"
+long=$(printf '# %0100d' 0)
+for file in tests/one.sh tests/one.awk cmake/one.cmake CMakeLists.txt apps/CMakeLists.txt \
+  .ci/run; do
+  sees text $file "$long"
+done
 sees documented lib/include/dvi/one.h '\nint dvi_two(int a);'
 sees documented lib/include/dvi/one.h '\ntypedef struct dvi_two { int a; } dvi_two;'
 sees methods docs/methods/other.md 'a page without a method'
@@ -102,7 +130,8 @@ sees messages lib/src/scene/one.c 'int two = refuse("there are %d of them");'
 sees messages docs/scene-errors.md '- `there is no <name>`'
 sees messages docs/scene-errors.md '- `a name`'
 sees messages lib/src/scene/sections/sections.def 'REFUSED_SECTION(dash, "no dashes")'
-sees sections lib/src/scene/sections/sections.def 'SECTION(dash, OPTIONAL, NULL, "a "\n        "dash")'
+sees sections lib/src/scene/sections/sections.def \
+  'SECTION(dash, OPTIONAL, NULL, "a "\n        "dash")'
 sees sections docs/scenes.md '| `dash` | a dash | |'
 sees docs README.md '[nowhere](docs/nowhere.md)'
 sees docs README.md '[no heading](docs/guide.md#three-words)'
@@ -114,9 +143,24 @@ sees headers lib/include/dvi/one.h 'size_t dvi_size(void);'
 sees symbols lib/src/core/one.c 'int dvi_two;'
 sees symbols lib/src/core/one.c 'int stray;'
 sees symbols lib/include/dvi/one.h 'int dvi_promised(int a);'
-for file in lib/src/method/element/leap.c tests/method/element/test_leap.c docs/methods/leap.md docs/references.bib; do
+for file in lib/src/method/element/leap.c tests/method/element/test_leap.c docs/methods/leap.md \
+  docs/references.bib; do
   clean
   rm $file
   if methods >log 2>&1; then echo "methods does not see that $file is missing"; rc=1; fi
 done
+
+# refuses GATE WORDS: GATE fails, and says WORDS.
+refuses() {
+  if "$1" >log 2>&1 || ! grep -q "$2" log; then echo "$1 does not say: $2"; rc=1; fi
+}
+
+clean
+echo '#include "num/one.h"' >>lib/src/core/one.c
+refuses rooms 'sh tests/lint/rooms.sh --update'
+echo '#include "core/one.h"' >lib/src/num/one.c
+refuses rooms 'in a circle: core -> num -> core'
+clean
+for i in $(seq 31); do touch "lib/src/core/file_$i.c"; done
+refuses rooms 'lib/src/core has 32 files'
 exit $rc

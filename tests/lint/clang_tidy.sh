@@ -1,13 +1,17 @@
 #!/bin/sh
-# clang-tidy over the library, the command, the problems and the examples; the checks are in .clang-tidy.
-# Its static analyzer takes nearly all of the time. It looks at a source again when the source, a header of ours that it includes or
-# the checks have changed, either since the source last passed in this build folder, or since the branch left main. On main itself,
-# and where there is no history, it looks at every source that has not passed. DVI_ANALYZE=all: at every source.
+# Runs clang-tidy over the library, the command, the problems and the examples, with the checks of
+# .clang-tidy. Its static analyzer takes nearly all of the time. It looks at a source if the source,
+# a header of ours that it includes or the checks have changed since the commit that the file
+# `analyzed` beside this script names, and if they have not passed in this build folder since. With
+# DVI_ANALYZE=all it looks at every source and, if all pass, writes the commit into that file, to be
+# committed (`sh cmake/bootstrap.sh long` does that). Without history, or without that commit in it,
+# the analyzer looks at every source, too.
 # Usage: clang_tidy.sh TOP BUILD CLANG_TIDY C_COMPILER
 set -u
 
-# tidy TOP BUILD CLANG_TIDY CHECKS FILE: on failure its messages. One file a run, because the analyzer of version 14 carries
-# va_lists over from one file to the next.
+# tidy TOP BUILD CLANG_TIDY CHECKS FILE: look at one file, and print the messages if it fails. Each
+# file gets a run of its own, because the analyzer of version 14 carries va_lists over from one file
+# to the next.
 tidy() {
   top=$1 build=$2 tool=$3 checks=$4 file=$5
   cd "$top" || exit 1
@@ -18,13 +22,16 @@ tidy() {
     lib/*) header=analyzer.h ;;
   esac
   set -- --extra-arg=-Wno-unknown-warning-option --extra-arg=-Wno-double-promotion
-  [ -z "$header" ] || set -- "$@" --extra-arg=-include --extra-arg="$top/tests/lint/$header" --extra-arg=-Wno-unused-value
-  said=$("$tool" -p "$build" --quiet --warnings-as-errors='*' --checks="$checks" "$@" "$file" 2>&1) && return
+  [ -z "$header" ] ||
+    set -- "$@" --extra-arg=-include --extra-arg="$top/tests/lint/$header" \
+      --extra-arg=-Wno-unused-value
+  set -- -p "$build" --quiet --warnings-as-errors='*' --checks="$checks" "$@" "$file"
+  said=$("$tool" "$@" 2>&1) && return
   printf '%s\n' "$said" | grep -v ' warnings\? .*generated\.$\|^Suppressed \|^Use -header-filter'
   return 1
 }
 
-# analyze TOP BUILD CLANG_TIDY KEY FILE: what passes leaves its key.
+# analyze TOP BUILD CLANG_TIDY KEY FILE: analyse a file, and leave its key if it passes.
 analyze() {
   tidy "$1" "$2" "$3" '' "$5" && touch "$2/analyzed/$4"
 }
@@ -41,26 +48,43 @@ rc=0
 
 find lib/src apps -name '*.c' | LC_ALL=C sort >"$work/sources"
 [ -s "$work/sources" ] || { echo "no sources"; exit 1; }
-xargs -n 1 -P "$cores" sh "$0" --one tidy "$top" "$build" "$tool" '-clang-analyzer-*' <"$work/sources" || rc=1
+xargs -n 1 -P "$cores" sh "$0" --one tidy "$top" "$build" "$tool" '-clang-analyzer-*' \
+  <"$work/sources" || rc=1
 
-# A line a source: itself, and its headers.
-xargs "$compiler" -MM -MG -I lib/include -I lib/src -I apps -I apps/problems <"$work/sources" 2>"$work/errors" |
-  awk '{ rule = rule " " $0 } !/\\$/ { gsub(/\\/, "", rule); sub(/^ *[^ ]*: */, "", rule); gsub(/  +/, " ", rule); print rule; rule = "" }' |
+# Each line of $work/parts names a source and its headers.
+xargs "$compiler" -MM -MG -I lib/include -I lib/src -I apps -I apps/problems <"$work/sources" \
+  2>"$work/errors" |
+  awk '{ rule = rule " " $0 }
+    !/\\$/ {
+      gsub(/\\/, "", rule)
+      sub(/^ *[^ ]*: */, "", rule)
+      gsub(/  +/, " ", rule)
+      print rule
+      rule = ""
+    }' |
   LC_ALL=C sort >"$work/parts"
-[ "$(wc -l <"$work/parts")" -eq "$(wc -l <"$work/sources")" ] || { cat "$work/errors"; echo "some sources have no list of headers"; exit 1; }
+[ "$(wc -l <"$work/parts")" -eq "$(wc -l <"$work/sources")" ] || {
+  cat "$work/errors"
+  echo "some sources have no list of headers"
+  exit 1
+}
 
-# What has changed since the branch left main; everything on main, and without history.
-base=$(git merge-base HEAD main 2>/dev/null || git merge-base HEAD origin/main 2>/dev/null) || base=
-[ "$base" != "$(git rev-parse HEAD 2>/dev/null)" ] || base=
+# $work/changed lists the files that changed since the analyzer last passed on all. It does not
+# exist without history.
+base=$(cat tests/lint/analyzed)
+git merge-base --is-ancestor "$base" HEAD 2>/dev/null || base=
 case ${DVI_ANALYZE:-} in
   all) base=; rm -f "$build"/analyzed/* ;;
 esac
-if [ -n "$base" ]; then { git diff --name-only "$base"; git ls-files --others --exclude-standard; } >"$work/changed"; fi
+if [ -n "$base" ]; then
+  { git diff --name-only "$base"; git ls-files --others --exclude-standard; } >"$work/changed"
+fi
 
-# is_changed FILE...: one of them has, or the checks have.
+# is_changed FILE...: succeed if one of the files changed, or the checks did.
 is_changed() {
   [ -n "$base" ] || return 0
-  printf '%s\n' .clang-tidy tests/lint/analyzer.h tests/lint/analyzer_scene.h tests/lint/clang_tidy.sh "$@" |
+  printf '%s\n' .clang-tidy tests/lint/analyzer.h tests/lint/analyzer_scene.h \
+    tests/lint/clang_tidy.sh "$@" |
     grep -q -x -F -f "$work/changed"
 }
 
@@ -77,4 +101,8 @@ done <"$work/parts" >"$work/todo"
 
 echo "the analyzer looks at $(wc -l <"$work/todo") of $(wc -l <"$work/sources") sources"
 xargs -n 2 -P "$cores" sh "$0" --one analyze "$top" "$build" "$tool" <"$work/todo" || rc=1
+if [ "${DVI_ANALYZE:-}" = all ] && [ $rc -eq 0 ] && git diff --quiet HEAD -- lib apps; then
+  git rev-parse HEAD >tests/lint/analyzed
+  echo "tests/lint/analyzed names this commit now; please commit it"
+fi
 exit $rc

@@ -1,5 +1,5 @@
-# The functions that public headers declare, a line each: comments are cut out; what is left before an opening parenthesis at a
-# prototype's start is its name.
+# Prints the functions that public headers declare, one a line. A name is the word before the first
+# parenthesis of a prototype, after comments are cut out.
 { text = text " " $0 "\n" }
 END {
   while ((start = index(text, "/*")) > 0) {

@@ -1,6 +1,8 @@
 #!/bin/sh
-# The pages hold together: links lead somewhere, cited sources are in the bibliography, the programs of the README and of docs/shapes.md
-# are the examples that they name, the guide's program compiles.  Usage: docs.sh TOP C_COMPILER
+# Checks the pages: links lead to files and headings, the bibliography has all cited sources, the
+# programs of the README and of docs/shapes.md are the examples that they name, and the guide's
+# program compiles.
+# Usage: docs.sh TOP C_COMPILER
 set -u
 cd "$1" || exit 1
 compiler=$2
@@ -9,15 +11,27 @@ trap 'rm -rf "$work"' EXIT
 rc=0
 breach() { echo "$*"; rc=1; }
 
-# The lines of all fences of a language in a page.
-fences() { awk -v fence="\`\`\`$1" '$0 == fence { inside = 1; next } /^```$/ { inside = 0 } inside' "$2"; }
-
-# The anchors that a page's headings make.
-anchors() {
-  awk '/^```/ { code = !code } !code && /^#+ / { sub(/^#+ /, ""); $0 = tolower($0); gsub(/[^a-z0-9 _-]/, ""); gsub(/ /, "-"); print }' "$1"
+# fences LANGUAGE PAGE: print the lines of all fences of a language.
+fences() {
+  awk -v fence="\`\`\`$1" '$0 == fence { inside = 1; next } /^```$/ { inside = 0 } inside' "$2"
 }
 
-links() { awk '/^```/ { code = !code } !code' "$1" | grep -o '](\([^)]*\))' | sed 's/^](//; s/)$//'; }
+# anchors PAGE: print the anchors of the page's headings.
+anchors() {
+  awk '
+    /^```/ { code = !code }
+    !code && /^#+ / {
+      sub(/^#+ /, "")
+      $0 = tolower($0)
+      gsub(/[^a-z0-9 _-]/, "")
+      gsub(/ /, "-")
+      print
+    }' "$1"
+}
+
+links() {
+  awk '/^```/ { code = !code } !code' "$1" | grep -o '](\([^)]*\))' | sed 's/^](//; s/)$//'
+}
 
 for page in *.md docs/*.md docs/methods/*.md; do
   [ -e "$page" ] || continue
@@ -29,7 +43,8 @@ for page in *.md docs/*.md docs/methods/*.md; do
     [ -z "$path" ] || target=$folder/$path
     [ -e "$target" ] || { breach "$page: the link to $link leads nowhere"; continue; }
     case $link in
-    *#*) anchors "$target" | grep -q -x -e "${link#*#}" || breach "$page: $target has no heading for #${link#*#}" ;;
+    *#*) anchors "$target" | grep -q -x -e "${link#*#}" ||
+      breach "$page: $target has no heading for #${link#*#}" ;;
     esac
   done
   for key in $(grep -o '\<[A-Z][A-Za-z]*[12][0-9][0-9][0-9]\>' "$page" | sort -u); do
@@ -38,9 +53,12 @@ for page in *.md docs/*.md docs/methods/*.md; do
 done
 
 fences c README.md >"$work/readme.c"
-cmp -s "$work/readme.c" apps/examples/pendulum.c || breach "README.md: its program is not apps/examples/pendulum.c"
+cmp -s "$work/readme.c" apps/examples/pendulum.c ||
+  breach "README.md: its program is not apps/examples/pendulum.c"
 fences c docs/shapes.md >"$work/shapes.c"
-cmp -s "$work/shapes.c" apps/examples/shapes.c || breach "docs/shapes.md: its program is not apps/examples/shapes.c"
+cmp -s "$work/shapes.c" apps/examples/shapes.c ||
+  breach "docs/shapes.md: its program is not apps/examples/shapes.c"
 fences c docs/guide.md >"$work/guide.c"
-"$compiler" -std=c11 -Wall -Wextra -Wpedantic -Werror -I lib/include -fsyntax-only "$work/guide.c" || breach "docs/guide.md: its program does not compile"
+"$compiler" -std=c11 -Wall -Wextra -Wpedantic -Werror -I lib/include -fsyntax-only \
+  "$work/guide.c" || breach "docs/guide.md: its program does not compile"
 exit $rc

@@ -1,9 +1,14 @@
-# Every function and every type with content of a public header follows its comment, or a declaration that shares it.
-# Usage: awk -f documented.awk HEADER...   Prints every breach and exits 1 if there is one.
+# Every function and every type with content of a public header follows its comment, or a
+# declaration that shares it.
+# Prints every breach, and exits with 1 if there is one.
+# Usage: awk -f documented.awk HEADER...
 
-function starts_declaration() { return /^(typedef (struct|enum|union|int|double)|(const |unsigned )*[a-z][a-z_]* \**dvi_[a-z_0-9]+\()/ }
+function starts_declaration() {
+  return /^typedef (struct|enum|union|int|double)/ ||
+    /^(const |unsigned )*[a-z][a-z_]* \**dvi_[a-z_0-9]+\(/
+}
 
-# An opaque handle is explained by the functions that make it, if its header opens with what it is.
+# An opaque handle needs no comment if its header opens with one: its functions explain it.
 function opaque() { return /^typedef struct dvi_[a-z_]+ dvi_[a-z_]+;/ && header_comment }
 
 FNR == 1 { covered = 0; header_comment = /^\/\*\* .*\*\/$/ }

@@ -1,8 +1,11 @@
-# Which room may include which, and what the library leaves to others.  Usage: awk -f layers.awk [-v methods="a b"] FILE...   Paths are relative to the top of the tree.
-# Prints every breach and exits 1 if there is one.
+# Checks which room includes which, and which calls the library leaves to others. Prints every
+# breach, and exits with 1 if there is one.
+# Usage: awk -f layers.awk [-v methods="a b"] FILE...
+# Paths are relative to the top of the tree.
 
 BEGIN {
-  # Rooms of lib/src that a room may look into, besides itself; a room without its sub-room's name stands for all of them.
+  # The rooms of lib/src that a room may include, besides itself. A name without a sub-room stands
+  # for all of its sub-rooms.
   sees["core"] = ""
   sees["num/simd"] = "core"
   sees["num"] = "core num/simd"
@@ -16,7 +19,7 @@ BEGIN {
   sees["system/chart"] = "core num group system system/evaluate"
   sees["system/rescale"] = "core num system system/evaluate system/term"
   sees["system/check"] = "core num system system/evaluate system/term"
-  sees["system/declare"] = "core num group system system/term system/evaluate system/chart system/rescale"
+  sees["system/declare"] = sees["system/chart"] " system/term system/chart system/rescale"
   sees["step"] = "core num system"
   sees["step/element"] = "core num group space system step"
   sees["step/onestep"] = "core num space system step"
@@ -36,7 +39,7 @@ BEGIN {
   sees["boundary"] = "core num solve system step/element method/element"
   sees["diagnostics"] = "core num system"
   sees["reference"] = "core num system"
-  # A library of its own, beside libdvi's public headers.
+  # The library of scenes includes libdvi's public headers, too.
   sees["text"] = ""
   sees["expr"] = "text"
   sees["expr/compile"] = "text expr"
@@ -47,7 +50,7 @@ BEGIN {
   sees["scene/sections"] = sees["scene/terms"] " scene/terms"
   sees["scene"] = sees["scene/sections"] " scene/sections"
   sees["scene/emit"] = sees["scene"] " scene"
-  # The command, on public headers and those of the problems.
+  # The command includes public headers and those of the problems, too.
   uses["cli"] = ""
   uses["csv"] = "cli"
   uses["load"] = "cli"
@@ -58,9 +61,9 @@ BEGIN {
   uses["watch"] = uses["bench"] = uses["mechanics"] " mechanics"
   uses["cmd"] = uses["watch"] " watch bench sweep"
   uses["main.c"] = "cli bench"
-  # Single headers that are open to a room beyond that.
+  # Single headers of other rooms that a room may include.
   also["reference solve/sundials_compat.h"] = 1
-  # What libdvi shares with sister libraries (lib/exports.map, DVI_PRIVATE).
+  # libdvi shares these headers with sister libraries (lib/exports.map, DVI_PRIVATE).
   also["text core/memory.h"] = also["expr/compile num/simd/lanes.h"] = 1
   # Standard headers that a public header may need.
   split("math.h stdarg.h stddef.h", open_headers)
@@ -71,52 +74,73 @@ BEGIN {
 
 function breach(why) { printf "%s:%d: %s: %s\n", FILENAME, FNR, why, $0; failed = 1 }
 
-function part_of_sundials(header) { return header ~ /^(sundials|kinsol|ida|idas|cvode|cvodes|arkode|nvector|sunlinsol|sunmatrix|sunnonlinsol)\// }
+function part_of_sundials(header) {
+  return header ~ /^(sundials|kinsol|idas?|cvodes?|arkode)\// ||
+    header ~ /^(nvector|sunlinsol|sunmatrix|sunnonlinsol)\//
+}
 
-function part_of_suitesparse(header) { return header ~ /^(suitesparse\/)?(klu|amd|colamd|btf|SuiteSparse_config)\.h$/ }
+function part_of_suitesparse(header) {
+  return header ~ /^(suitesparse\/)?(klu|amd|colamd|btf|SuiteSparse_config)\.h$/
+}
 
 function check_library(quoted, header,   target) {
   if (!quoted) {
-    if (part_of_sundials(header) && room != "solve" && room != "reference") breach("SUNDIALS belongs to solve/ and reference/")
-    if (header ~ /^gsl\//) breach("GSL is under the GPL, and not for the library")
-    if (part_of_suitesparse(header) && room != "num" && room != "reference") breach("KLU belongs to num/ and reference/")
+    if (part_of_sundials(header) && room != "solve" && room != "reference")
+      breach("call SUNDIALS in solve/ or reference/ only")
+    if (header ~ /^gsl\//) breach("GSL is under the GPL: the library may not include it")
+    if (part_of_suitesparse(header) && room != "num" && room != "reference")
+      breach("call KLU in num/ or reference/ only")
     return
   }
-  if (header !~ /^[a-z]+\/([a-z]+\/)?[a-z_0-9]+\.(h|def)$/) { breach("write \"room/file.h\""); return }
+  if (header !~ /^[a-z]+\/([a-z]+\/)?[a-z_0-9]+\.(h|def)$/) {
+    breach("write \"room/file.h\", relative to lib/src")
+    return
+  }
   target = file = header
   sub(/\/[^\/]*$/, "", target)
   sub(/.*\//, "", file)
-  if (target ~ /^method/ && file in method) breach("methods never include each other")
+  if (target ~ /^method/ && file in method)
+    breach("methods never include each other: move shared code to step/ or num/")
   if (target == room || (room " " header) in also || is_seen(target)) return
-  breach(room "/ may not see " target "/")
+  breach(room "/ may not include " target "/: move the code, or allow it in tests/lint/layers.awk")
 }
 
-# A room, or the one that it is a part of.
+# Tells if the file's room may include the target room, or the hall that the target is a part of.
 function is_seen(target,   whole) {
   whole = target
   sub(/\/.*/, "", whole)
-  return index(" " sees[room] " ", " " target " ") > 0 || (whole != hall && index(" " sees[room] " ", " " whole " ") > 0)
+  if (index(" " sees[room] " ", " " target " ") > 0) return 1
+  return whole != hall && index(" " sees[room] " ", " " whole " ") > 0
 }
 
 function check_public(quoted, header) {
-  if (quoted || (header !~ /^dvi\// && !(header in standard))) breach("a public header includes only <dvi/...>, <math.h>, <stdarg.h> and <stddef.h>")
+  if (quoted || (header !~ /^dvi\// && !(header in standard)))
+    breach("a public header includes only <dvi/...>, <math.h>, <stdarg.h> and <stddef.h>")
 }
 
 # The command, the problems and the examples are users of the library.
 function check_user(quoted, header,   target) {
-  if (part_of_sundials(header) || part_of_suitesparse(header)) breach("apps/ reach the solvers through the library")
+  if (part_of_sundials(header) || part_of_suitesparse(header))
+    breach("call the solvers through the library: apps/ may not include their headers")
   if (!quoted || header !~ /\//) return
   target = header
   sub(/\/.*/, "", target)
   if (target == room || index(" " uses[room] " ", " " target " ") > 0) return
   if (room == "problems" && target ~ /^(bodies|degenerate)$/) return
-  breach("apps/" room " may not see apps/" target)
+  breach("apps/" room " may not include apps/" target \
+    ": move the code, or allow it in tests/lint/layers.awk")
 }
 
 FNR == 1 {
   room = FILENAME
   zone = "other"
-  if (sub(/^lib\/src\//, "", room)) { zone = "library"; sub(/\/[^\/]*$/, "", room); hall = room; sub(/\/.*/, "", hall); if (!(room in sees)) { breach("unknown room " room) } }
+  if (sub(/^lib\/src\//, "", room)) {
+    zone = "library"
+    sub(/\/[^\/]*$/, "", room)
+    hall = room
+    sub(/\/.*/, "", hall)
+    if (!(room in sees)) breach("unknown room " room ": add it to tests/lint/layers.awk")
+  }
   else if (FILENAME ~ /^lib\/include\//) zone = "public"
   else if (sub(/^apps\//, "", room)) { zone = "user"; sub(/\/.*/, "", room) }
 }
@@ -132,24 +156,32 @@ FNR == 1 {
   if (zone == "user") check_user(quoted, header)
 }
 
-# What stands in quotes is text: the library writes C, too.
+# Text in quotes is left out, because the library writes C, too.
 zone == "library" {
   code = $0
   gsub(/"([^"\\]|\\.)*"/, "\"\"", code)
-  if (code ~ /(^|[^A-Za-z0-9_])(printf|puts|putchar|exit|abort|assert)\(|std(out|err)/) breach("the library never prints, exits or aborts")
+  if (code ~ /(^|[^A-Za-z0-9_])(printf|puts|putchar|exit|abort|assert)\(|std(out|err)/)
+    breach("the library never prints, exits or aborts: return a status by dvi__fail")
 }
-# A program may have set a locale with a decimal comma.
-FILENAME != "lib/src/core/number.c" && (zone == "library" && /[^A-Za-z0-9_]vsnprintf\(/ || (zone == "library" || zone == "user") && /[^A-Za-z0-9_](strtod|strtof|strtold|atof|setlocale)\(/) {
-  breach("numbers are read and written by dvi/number.h, the same in every locale")
+
+# The program may have set a locale with a decimal comma.
+function check_numbers() {
+  if (zone == "library" && /[^A-Za-z0-9_]vsnprintf\(/ ||
+      (zone == "library" || zone == "user") &&
+      /[^A-Za-z0-9_](strtod|strtof|strtold|atof|setlocale)\(/)
+    breach("read and write numbers by dvi/number.h, the same in every locale")
 }
-zone == "library" && FILENAME != "lib/src/core/memory.c" && /(^|[^A-Za-z0-9_])(malloc|calloc|realloc|strdup)\(/ {
-  breach("the heap is behind core/memory.h")
+
+# SUNDIALS hands over some strings that the caller frees.
+function check_heap() {
+  if (/(^|[^A-Za-z0-9_])(malloc|calloc|realloc|strdup)\(/ ||
+      room != "solve" && room != "reference" && /(^|[^A-Za-z0-9_])free\(/)
+    breach("call the heap by core/memory.h")
 }
-# SUNDIALS hands over some strings that are to be freed.
-zone == "library" && FILENAME != "lib/src/core/memory.c" && room != "solve" && room != "reference" && /(^|[^A-Za-z0-9_])free\(/ {
-  breach("the heap is behind core/memory.h")
-}
-zone == "user" && /dvi__/ { breach("apps/ may not use internal names") }
-zone == "public" && /dvi__/ { breach("internal name in a public header") }
+
+FILENAME != "lib/src/core/number.c" { check_numbers() }
+zone == "library" && FILENAME != "lib/src/core/memory.c" { check_heap() }
+zone == "user" && /dvi__/ { breach("use public names: apps/ may not use internal ones") }
+zone == "public" && /dvi__/ { breach("a public header may not have internal names") }
 
 END { exit failed }

@@ -1,4 +1,6 @@
-# The sentences of C sources: all string literals of two words or more, one a line, with <> for what a format fills in.  Usage: awk -f messages.awk FILE...
+# Prints the sentences of C sources: all string literals of two words or more, one a line, with <>
+# for each value that a format fills in.
+# Usage: awk -f messages.awk FILE...
 
 FNR == 1 { text = text "\n" }
 /^#/ { next }
@@ -25,7 +27,10 @@ END {
     if (substr(text, i, 2) == "/*") { i += index(substr(text, i), "*/"); continue }
     if (c == "'") { i += substr(text, i + 1, 1) == "\\" ? 3 : 2; continue }
     if (c == "\"") {
-      for (i++; (c = substr(text, i, 1)) != "\""; i++) { inside = inside c; if (c == "\\") inside = inside substr(text, ++i, 1) }
+      for (i++; (c = substr(text, i, 1)) != "\""; i++) {
+        inside = inside c
+        if (c == "\\") inside = inside substr(text, ++i, 1)
+      }
       continue
     }
     if (c == " " || c == "\n") continue

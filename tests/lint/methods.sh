@@ -1,15 +1,22 @@
 #!/bin/sh
-# A method is complete: source, test, page, and a source in the bibliography; and no file of a method is left without its line.
+# Each method has a source, a test, a page and an entry of the bibliography, and each page of a
+# method has its line in methods.def.
 # Usage: methods.sh TOP NAME...
 set -u
 cd "$1" || exit 1
 shift
 rc=0
-need() { [ -e "$1" ] || { echo "missing: $1 (its method is in lib/src/method/methods.def)"; rc=1; }; }
+need() {
+  [ -e "$1" ] || { echo "missing: $1 (its method is in lib/src/method/methods.def)"; rc=1; }
+}
 [ $# -gt 0 ] || { echo "no METHOD(name) line in lib/src/method/methods.def"; exit 1; }
 for name; do
   source=$(find lib/src/method -name "$name.c")
-  [ -n "$source" ] || { echo "missing: lib/src/method/*/$name.c (its method is in lib/src/method/methods.def)"; rc=1; continue; }
+  [ -n "$source" ] || {
+    echo "missing: lib/src/method/*/$name.c (its method is in lib/src/method/methods.def)"
+    rc=1
+    continue
+  }
   folder=$(dirname "${source#lib/src/}")
   need "tests/$folder/test_$name.c"
   need "docs/methods/$name.md"
@@ -22,6 +29,9 @@ for name; do
 done
 for page in docs/methods/*.md; do
   page=$(basename "$page" .md)
-  case " README index * $* " in *" $page "*) ;; *) echo "docs/methods/$page.md: no METHOD($page) in methods.def"; rc=1 ;; esac
+  case " README index * $* " in
+    *" $page "*) ;;
+    *) echo "docs/methods/$page.md: no METHOD($page) in methods.def"; rc=1 ;;
+  esac
 done
 exit $rc

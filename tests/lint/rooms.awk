@@ -1,7 +1,8 @@
-# Draws the rooms of a tree by floors, from the includes of its files.  Usage: awk -v root=lib/src/ -f rooms.awk FILE...
-# A room is a folder below root. It stands one floor above the highest room that it includes. Beside it stand the rooms that it
-# includes, but for those that it includes by way of these.
-# Exits with 1, and names the rooms, if they include each other in a circle.
+# Draws the rooms of a tree by floors, from the includes of its files.
+# Usage: awk -v root=lib/src/ -f rooms.awk FILE...
+# A room is a folder below root. It stands one floor above the highest room that it includes. Beside
+# it stand the rooms that it includes, without those that it includes by way of others.
+# Exits with 1 and names the rooms if they include each other in a circle.
 
 function folder(path) { return path ~ /\// ? substr(path, 1, match(path, /\/[^\/]*$/) - 1) : "" }
 
@@ -32,34 +33,49 @@ function find_arrows(   pair, end, target) {
   }
 }
 
-# The room's floor. The rooms on the way to it are marked, so that a circle is seen.
+# Gives the room's floor. The rooms on the way to it are marked, so that a circle shows.
 function floor_of(from, way,   to, below, highest) {
   if (from in floor) return floor[from]
-  if (from in open) { print "rooms include each other in a circle:" way " " from; circle = 1; return 0 }
+  if (from in open) {
+    print "rooms include each other in a circle:" way " " from \
+      ": move the header that closes it into a room below both"
+    circle = 1
+    return 0
+  }
   open[from] = 1
   highest = -1
-  for (to in is_room) if ((from, to) in sees) { below = floor_of(to, way " " from " ->"); if (below > highest) highest = below }
+  for (to in is_room)
+    if ((from, to) in sees) {
+      below = floor_of(to, way " " from " ->")
+      if (below > highest) highest = below
+    }
   delete open[from]
   return floor[from] = highest + 1
 }
 
 function is_seen_farther(from, to,   over) {
   for (over in is_room)
-    if ((from, over) in sees && over != to && ((over, to) in sees || is_seen_farther(over, to))) return 1
+    if ((from, over) in sees && over != to)
+      if ((over, to) in sees || is_seen_farther(over, to)) return 1
   return 0
 }
 
 function list_seen(from,   i, text) {
   text = ""
   for (i = 1; i <= count; i++)
-    if ((from, name[i]) in sees && !is_seen_farther(from, name[i])) text = text (text == "" ? "" : ", ") name[i]
+    if ((from, name[i]) in sees && !is_seen_farther(from, name[i]))
+      text = text (text == "" ? "" : ", ") name[i]
   return text
 }
 
 function sort_rooms(   room, i, j, t) {
   for (room in is_room) name[++count] = room
   for (i = 2; i <= count; i++)
-    for (j = i; j > 1 && name[j - 1] > name[j]; j--) { t = name[j]; name[j] = name[j - 1]; name[j - 1] = t }
+    for (j = i; j > 1 && name[j - 1] > name[j]; j--) {
+      t = name[j]
+      name[j] = name[j - 1]
+      name[j - 1] = t
+    }
 }
 
 function draw_floor(level,   i, first, line) {

@@ -1,7 +1,8 @@
 #!/bin/sh
-# The rooms of the library and of the command include each other in no circle, no folder has more than 30 files at one level, and
-# docs/CONTRIBUTING.md shows the rooms as they are.
-# Usage: rooms.sh [--update] [TOP]   --update: draw the rooms anew in docs/CONTRIBUTING.md
+# The rooms of the library and of the command include each other in no circle, no folder has more
+# than 30 files at one level, and docs/CONTRIBUTING.md shows the rooms as they are.
+# Usage: rooms.sh [--update] [TOP]
+# With --update it draws the rooms anew in docs/CONTRIBUTING.md.
 set -u
 lint=$(cd "$(dirname "$0")" && pwd)
 update=no
@@ -22,15 +23,25 @@ done >"$work/drawing" || exit 1
 
 for folder in $(find lib apps tests cmake docs -type d ! -path docs/pictures); do
   count=$(find "$folder" -maxdepth 1 -type f | wc -l)
-  if [ "$count" -gt $most ]; then echo "$folder has $count files at one level; $most at most"; rc=1; fi
+  if [ "$count" -gt $most ]; then
+    echo "$folder has $count files at one level, $most at most: move some into a folder below it"
+    rc=1
+  fi
 done
 
 # The page with the drawing between its two comments.
 awk -v drawing="$work/drawing" '
   /^<!-- rooms: end -->$/ { inside = 0; ended = 1 }
   !inside { print }
-  /^<!-- rooms: begin/ { inside = 1; begun = 1; print ""; while ((getline line < drawing) > 0) print line }
-  END { exit !(begun && ended) }' $page >"$work/page" || { echo "$page: no comments <!-- rooms: begin .. --> and <!-- rooms: end -->"; exit 1; }
+  /^<!-- rooms: begin/ {
+    inside = begun = 1
+    print ""
+    while ((getline line < drawing) > 0) print line
+  }
+  END { exit !(begun && ended) }' $page >"$work/page" || {
+  echo "$page: write the comments <!-- rooms: begin .. --> and <!-- rooms: end -->"
+  exit 1
+}
 if [ $update = yes ]; then
   cp "$work/page" $page
 elif ! cmp -s "$work/page" $page; then

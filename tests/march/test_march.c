@@ -1,6 +1,6 @@
 /* labels: unit */
-/* The loop of a run serves what has neither coordinates nor a step of one length: here a set of
- * clocks, each of which advances when it is due. */
+/* The loop of a run serves objects without coordinates and without steps of one length. Here they
+ * are a set of clocks, each of which advances when it is due. */
 #include "march/march.h"
 
 #include <math.h>
@@ -9,7 +9,7 @@
 
 enum { CLOCKS = 3 };
 
-/* Clocks of periods 1, sqrt(2) and pi: an advance moves the one that is due first. */
+/* Clocks of periods 1, sqrt(2) and pi. An advance moves the one that is due first. */
 typedef struct clocks {
   double now, before; /* time of the last tick, and of the one before */
   double due[CLOCKS], due_before[CLOCKS];
@@ -24,24 +24,24 @@ static clocks made_clocks(void)
   return (clocks){.due = {1, 1.4142135623730951, 3.141592653589793}, .fails_at = -1};
 }
 
-static double time_of(const void *of)
+static double time_of(const void *user)
 {
-  return ((const clocks *)of)->now;
+  return ((const clocks *)user)->now;
 }
 
-static double time_left(const void *of, double t_end)
+static double time_left(const void *user, double t_end)
 {
-  return t_end - time_of(of);
+  return t_end - time_of(user);
 }
 
-static long ticks_of(const void *of)
+static long ticks_of(const void *user)
 {
-  return ((const clocks *)of)->ticks;
+  return ((const clocks *)user)->ticks;
 }
 
-static dvi_status advance(void *of, double h, double t_end, double tolerance)
+static dvi_status advance(void *user, double h, double t_end, double tolerance)
 {
-  clocks *c = of;
+  clocks *c = user;
   int first = 0;
   (void)h, (void)tolerance;
   for (int k = 1; k < CLOCKS; k++)
@@ -54,61 +54,61 @@ static dvi_status advance(void *of, double h, double t_end, double tolerance)
   return DVI_OK;
 }
 
-static void take_back(void *of)
+static void take_back(void *user)
 {
-  clocks *c = of;
+  clocks *c = user;
   c->now = c->before;
   for (int k = 0; k < CLOCKS; k++) c->due[k] = c->due_before[k];
   c->ticks--;
 }
 
-static dvi_status reject(void *of, dvi_status status)
+static dvi_status reject(void *user, dvi_status status)
 {
-  take_back(of);
-  ((clocks *)of)->rejected++;
+  take_back(user);
+  ((clocks *)user)->rejected++;
   return status;
 }
 
-static dvi__watched event(const void *of, int k)
+static dvi__watched event(const void *user, int k)
 {
-  (void)of;
+  (void)user;
   return (dvi__watched){.direction = 1, .terminal = k == 1};
 }
 
 /* Event 0 is at 2.5, event 1 at 7.25. */
-static dvi_status value(void *of, int k, double t, double *g)
+static dvi_status value(void *user, int k, double t, double *g)
 {
-  const clocks *c = of;
+  const clocks *c = user;
   if (c->fails_at >= 0 && t > c->fails_at) return DVI_NOT_FINITE;
   *g = t - (k == 0 ? 2.5 : 7.25);
   return DVI_OK;
 }
 
-static dvi_status value_at_start(void *of, int k, double *g)
+static dvi_status value_at_start(void *user, int k, double *g)
 {
-  return value(of, k, time_of(of), g);
+  return value(user, k, time_of(user), g);
 }
 
-static dvi_status occurred(void *of, int k, double t, int *returned)
+static dvi_status occurred(void *user, int k, double t, int *returned)
 {
-  clocks *c = of;
+  clocks *c = user;
   *returned = 0;
   c->occurred++;
   ck_assert(fabs(t - (k == 0 ? 2.5 : 7.25)) < 1e-12);
   return DVI_OK;
 }
 
-static int observe(void *of)
+static int observe(void *user)
 {
-  ((clocks *)of)->observed++;
+  ((clocks *)user)->observed++;
   return 0;
 }
 
 static int saves;
 
-static dvi_status save(const void *of, const char *path)
+static dvi_status save(const void *user, const char *path)
 {
-  (void)of;
+  (void)user;
   ck_assert_str_eq(path, "there");
   saves++;
   return DVI_OK;

@@ -1,5 +1,6 @@
 /* labels: unit */
-/* Sections of a saved state: what was written is read, what is damaged or unknown is refused. */
+/* Sections of a saved state are read as they were written, and damaged or unknown ones are
+ * refused. */
 #include "march/sections.h"
 
 #include <string.h>

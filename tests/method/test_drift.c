@@ -1,5 +1,5 @@
 /* labels: invariant slow long */
-/* A million steps, and a tenth of them in a short run: the energy error stays bounded, without a
+/* In a million steps, or a tenth of them in a short run, the energy error stays bounded, without a
  * trend that the scatter of its block means could not explain. */
 #include <check.h>
 #include <math.h>
@@ -9,7 +9,7 @@
 
 static const struct {
   const char *problem, *method;
-  double h, bound; /* on the oscillation: C h^order, measured and doubled */
+  double h, bound; /* on the oscillation, C h^order, twice the measured size */
 } run[] = {
     {"pendulum", "midpoint", 0.1, 1.7e-3},
     {"pendulum", "midpoint:solver=newton", 0.1, 1.7e-3},
@@ -26,8 +26,8 @@ enum { RUNS = sizeof run / sizeof *run };
 START_TEST(energy_does_not_drift_over_a_million_steps)
 {
   const int steps = repeats(1000000);
-  problem *of = made_problem(run[_i].problem, NULL);
-  dvi_integrator *integrator = started(of, run[_i].method);
+  problem *model = create_problem(run[_i].problem, NULL);
+  dvi_integrator *integrator = start_integrator(model, run[_i].method);
   double value[16];
   dvi_drift energy;
   dvi_drift_fit fit;
@@ -40,18 +40,18 @@ START_TEST(energy_does_not_drift_over_a_million_steps)
   dvi_drift_result(&energy, &fit);
   ck_assert_msg(fit.largest <= run[_i].bound, "%s, %s: energy error %g", run[_i].problem,
                 run[_i].method, fit.largest);
-  /* Significance 3 is the usual threshold; a trend of less than 1e-3 of the oscillation could hide,
-   * which 1e6 steps make 1e-9 of it a step. */
+  /* Significance 3 is the usual threshold. A trend of less than 1e-3 of the oscillation could hide,
+   * which is 1e-9 of it a step over 1e6 steps. */
   ck_assert_msg(fit.significance < 3 || fabs(fit.change) < 1e-3 * fit.largest,
                 "%s, %s: change %g, significance %g", run[_i].problem, run[_i].method, fit.change,
                 fit.significance);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* L = |v|^2/2 + B (x v_y - y v_x)/2: a charge goes round in circles, and Gauss quadrature keeps
- * energy and angular momentum exactly. What remains is the solvers' doing. */
+/* L = |v|^2/2 + B (x v_y - y v_x)/2. A charge goes round in circles, and Gauss quadrature keeps
+ * energy and angular momentum exactly. The solvers make the remaining errors. */
 static int charge_value(double t, const double *q, const double *v, double *L, void *user)
 {
   const double B = *(const double *)user;
@@ -77,7 +77,7 @@ static void check_energy(dvi_system *system, const char *method, const double *q
                          int steps, double tolerance)
 {
   double first, last;
-  dvi_integrator *integrator = made_integrator(system, method);
+  dvi_integrator *integrator = create_integrator(system, method);
   ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, q, v), DVI_OK);
   ck_assert_int_eq(dvi_integrator_invariants(integrator, &first), DVI_OK);
   advance(integrator, 0.1, steps);
@@ -87,7 +87,7 @@ static void check_energy(dvi_system *system, const char *method, const double *q
   dvi_system_destroy(&system);
 }
 
-/* Iterations that stop with forces of the point before the last err in one direction: 1.7e-12 in
+/* Iterations that stop with forces of the point before the last err in one direction, 1.7e-12 in
  * these 1e5 steps. Random roundings of an energy of 0.2 make 1e-14. */
 START_TEST(a_charge_in_a_magnetic_field_keeps_its_energy_at_roundoff)
 {
@@ -123,8 +123,8 @@ static int pair_gradient(double t, const double *q, double *V_q, void *user)
   return 0;
 }
 
-/* Fixed point iterations contract by modes that turn at h omega = 1 to 2.7, and a correction may be
- * small by chance: iterations that stopped there erred in one direction, 1e-12 in 65536 steps,
+/* Fixed-point iterations contract by modes that rotate at h omega = 1 to 2.7, and a correction may
+ * be small by chance. Iterations that stopped there erred in one direction, 1e-12 in 65536 steps,
  * where roundings of an energy of 1 make 3e-14. */
 START_TEST(a_stiff_oscillator_keeps_its_energy_at_roundoff)
 {
@@ -147,7 +147,7 @@ START_TEST(a_stiff_oscillator_keeps_its_energy_at_roundoff)
 }
 END_TEST
 
-/* Brouwer's law: roundings without a common direction make an energy error that grows like the
+/* By Brouwer's law roundings without a common direction make an energy error that grows like the
  * square root of the steps. Averaged over orbits of different shape, the exponent is known to about
  * 0.1. With h/m p0 rounded, in stages and ends alike, it was 0.83 from 6.6e4 to 4.2e6 steps. */
 START_TEST(the_energy_error_grows_like_the_square_root_of_the_steps)
@@ -157,8 +157,8 @@ START_TEST(the_energy_error_grows_like_the_square_root_of_the_steps)
   double error[OCTAVES] = {0}, x = 0, y = 0, xx = 0, xy = 0;
   for (int orbit = 0; orbit < ORBITS; orbit++) {
     double first[8], value[8];
-    problem *of = made_problem("kepler", spec("e=%g", 0.3 + 0.03 * orbit));
-    dvi_integrator *integrator = started(of, "galerkin:degree=8");
+    problem *model = create_problem("kepler", method_spec("e=%g", 0.3 + 0.03 * orbit));
+    dvi_integrator *integrator = start_integrator(model, "galerkin:degree=8");
     ck_assert_int_eq(dvi_integrator_invariants(integrator, first), DVI_OK);
     for (int k = 0; k < octaves; k++) {
       advance(integrator, 0.1, k == 0 ? FIRST : FIRST << (k - 1));
@@ -166,7 +166,7 @@ START_TEST(the_energy_error_grows_like_the_square_root_of_the_steps)
       error[k] += fabs(value[0] - first[0]) / ORBITS;
     }
     dvi_integrator_destroy(&integrator);
-    problem_destroy(&of);
+    problem_destroy(&model);
   }
   for (int k = 0; k < octaves; k++)
     x += k, y += log2(error[k]), xx += k * k, xy += k * log2(error[k]);

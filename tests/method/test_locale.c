@@ -1,4 +1,4 @@
-/* A host program with a decimal comma: what the library reads and says is the same. */
+/* In a host program with a decimal comma the library reads and says the same. */
 #include <dvi/dvi.h>
 #include <locale.h>
 #include <stdio.h>
@@ -13,13 +13,13 @@
 
 enum { TEXT_SIZE = 4096 };
 
-/* What came of a few steps. */
+/* The state after a few steps. */
 typedef struct outcome {
   char method[TEXT_SIZE], explained[TEXT_SIZE], monitor[TEXT_SIZE], error[TEXT_SIZE];
   double q[64], p[64];
 } outcome;
 
-static void take_steps(const problem *of, dvi_integrator *integrator, outcome *seen)
+static void take_steps(const problem *model, dvi_integrator *integrator, outcome *seen)
 {
   advance(integrator, 0.05, 5);
   (void)snprintf(seen->method, TEXT_SIZE, "%s", dvi_integrator_method(integrator));
@@ -27,8 +27,8 @@ static void take_steps(const problem *of, dvi_integrator *integrator, outcome *s
                  dvi_integrator_monitor(integrator) != NULL ? dvi_integrator_monitor(integrator)
                                                             : "");
   (void)dvi_integrator_explain(integrator, seen->explained, TEXT_SIZE);
-  memcpy(seen->q, dvi_integrator_q(integrator), (size_t)of->nq * sizeof(double));
-  memcpy(seen->p, dvi_integrator_p(integrator), (size_t)of->nv * sizeof(double));
+  memcpy(seen->q, dvi_integrator_q(integrator), (size_t)model->nq * sizeof(double));
+  memcpy(seen->p, dvi_integrator_p(integrator), (size_t)model->nv * sizeof(double));
   /* A sentence with numbers, of the state. */
   ck_assert_int_eq(dvi_run(integrator, &(dvi_run_options){.h = -0.25, .t_end = 1.5}, NULL),
                    DVI_BAD_ARGUMENT);
@@ -60,14 +60,14 @@ enum { RUNS = sizeof runs / sizeof *runs };
 
 static void run(int i, outcome *seen)
 {
-  problem *of = made_problem(runs[i].problem, runs[i].setting);
+  problem *model = create_problem(runs[i].problem, runs[i].setting);
   memset(seen, 0, sizeof *seen);
-  take_steps(of,
-             runs[i].monitor != NULL
-                 ? paced(of, create_transformed, runs[i].monitor, runs[i].method)
-                 : started(of, runs[i].method),
+  take_steps(model,
+             runs[i].monitor != NULL ? start_paced_integrator(model, create_transformed,
+                                                              runs[i].monitor, runs[i].method)
+                                     : start_integrator(model, runs[i].method),
              seen);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 
 START_TEST(specifications_lists_monitors_and_tableaus_are_read_the_same)
@@ -78,10 +78,10 @@ START_TEST(specifications_lists_monitors_and_tableaus_are_read_the_same)
   (void)fputs("order 4\nc 0 0.5 0.5 1\na\na 0.5\na 0 1/2\na 0 0 1\nb 0.5/3 1/3 1/3 1/6\n", tableau);
   ck_assert_int_eq(fclose(tableau), 0);
   run(_i, &point);
-  set_comma();
+  set_comma_locale();
   run(_i, &comma);
   ck_assert_str_eq(localeconv()->decimal_point, ",");
-  set_point();
+  set_point_locale();
   ck_assert_int_eq(remove("half.tableau"), 0);
   check_same(&point, &comma);
 }
@@ -90,30 +90,31 @@ END_TEST
 START_TEST(commas_are_refused)
 {
   dvi_monitor monitor;
-  problem *of = made_problem("kepler", NULL);
+  problem *model = create_problem("kepler", NULL);
   dvi_integrator *none;
-  set_comma();
+  set_comma_locale();
   ck_assert_int_eq(dvi_monitor_read("distance:power=1,5", &monitor), DVI_BAD_OPTION);
-  ck_assert_int_eq(dvi_integrator_create(of->system, "shooting:tolerance=1,5", &none),
+  ck_assert_int_eq(dvi_integrator_create(model->system, "shooting:tolerance=1,5", &none),
                    DVI_BAD_OPTION);
-  set_point();
-  problem_destroy(&of);
+  set_point_locale();
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(the_command_writes_the_same_rows)
 {
   char command[1024];
-  set_comma();
+  set_comma_locale();
   for (int k = 0; k < 2; k++) {
     (void)snprintf(
         command, sizeof command,
         "LC_ALL=%s '%s' run kepler --set e=0.25 --method verlet --h 0.125 --t-end 1.5 --out %s",
-        k == 0 ? "comma" : "C", DVI_COMMAND, in_folder(k == 0 ? "comma.csv" : "point.csv"));
+        k == 0 ? "comma" : "C", DVI_COMMAND, path_in_folder(k == 0 ? "comma.csv" : "point.csv"));
     ck_assert_int_eq(system(command), 0); /* NOLINT(cert-env33-c): the command of the build */
   }
-  set_point();
-  bytes comma = read_bytes(in_folder("comma.csv")), point = read_bytes(in_folder("point.csv"));
+  set_point_locale();
+  bytes comma = read_bytes(path_in_folder("comma.csv")),
+        point = read_bytes(path_in_folder("point.csv"));
   ck_assert_uint_gt(point.count, 0);
   ck_assert_uint_eq(comma.count, point.count);
   ck_assert_mem_eq(comma.at, point.at, point.count);

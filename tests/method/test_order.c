@@ -1,5 +1,5 @@
 /* labels: order slow long */
-/* Measured orders are the claimed ones, for every degree and problem; here with Gauss quadrature.
+/* Measured orders are the claimed ones for every degree and problem, here with Gauss quadrature.
  * The judge works in quadruple precision. Orders up to 6 are measured at the end of a span, the
  * higher ones by the error of one step (support/order.c). */
 #include <check.h>
@@ -13,8 +13,8 @@ enum { MOST_DEGREE = 8 };
 START_TEST(gauss_with_as_many_nodes_as_degrees_has_order_2s)
 {
   const int which = sampled_case(_i), s = 1 + which % MOST_DEGREE;
-  check_order(which / MOST_DEGREE, spec("galerkin:degree=%d,quadrature=gauss,nodes=%d", s, s),
-              2 * s);
+  check_order(which / MOST_DEGREE,
+              method_spec("galerkin:degree=%d,quadrature=gauss,nodes=%d", s, s), 2 * s);
 }
 END_TEST
 

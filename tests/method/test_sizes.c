@@ -1,6 +1,6 @@
 /* labels: unit */
-/* What is too large is refused at once, before memory is taken, with the numbers that are too
- * large. */
+/* Systems that are too large are refused at once, before memory is taken, with the numbers that are
+ * too large. */
 #include <dvi/dvi.h>
 #include <limits.h>
 #include <stdlib.h>
@@ -24,7 +24,7 @@ static int no_force(double t, const double *q, double *V_q, void *user)
   return 0;
 }
 
-/* Free points; their potential has a diagonal Hessian. */
+/* Free points, whose potential has a diagonal Hessian. */
 static dvi_status make_points(int n, dvi_system **system)
 {
   int *start = malloc(((size_t)n + 1) * sizeof *start), *row = malloc((size_t)n * sizeof *row);
@@ -49,13 +49,14 @@ static dvi_status make_points(int n, dvi_system **system)
 
 START_TEST(more_members_than_there_is_memory_for)
 {
-  problem *of = made_problem("oscillator", NULL);
+  problem *model = create_problem("oscillator", NULL);
   const dvi_ensemble_options options = {.members = INT_MAX, .threads = 4 * _i};
   dvi_ensemble *ensemble = NULL;
-  ck_assert_int_eq(dvi_ensemble_create(of->system, "verlet", &options, &ensemble), DVI_NO_MEMORY);
+  ck_assert_int_eq(dvi_ensemble_create(model->system, "verlet", &options, &ensemble),
+                   DVI_NO_MEMORY);
   ck_assert_ptr_null(ensemble);
   check_words("ensemble: no memory for 2147483647 members, 80 bytes each");
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -73,7 +74,7 @@ START_TEST(more_coordinates_than_ints_count)
 }
 END_TEST
 
-/* 2 blocks of 271 unknowns a coordinate: 2.2e9 of them, which wrapped around. */
+/* 2 blocks of 271 unknowns a coordinate are 2.2e9 unknowns, a number that wrapped around. */
 START_TEST(more_unknowns_than_an_int_counts)
 {
   enum { N = 4000000 };

@@ -9,20 +9,20 @@
 
 START_TEST(verlet_is_refused_on_a_general_lagrangian_by_name)
 {
-  problem *of = made_problem("double-pendulum", NULL);
+  problem *model = create_problem("double-pendulum", NULL);
   dvi_integrator *integrator = NULL;
   ck_assert_int_eq(
-      dvi_integrator_create(of->system, _i == 0 ? "verlet" : "composition", &integrator),
+      dvi_integrator_create(model->system, _i == 0 ? "verlet" : "composition", &integrator),
       DVI_UNSUPPORTED);
   ck_assert_ptr_null(integrator);
   check_words("verlet: ");
   check_words("a general Lagrangian");
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* A specification, and words that the refusal must hold; more of galerkin's own are in
- * test_galerkin.c. */
+/* A specification, and words that its refusal must hold. test_galerkin.c has more of galerkin's
+ * own. */
 static const struct {
   const char *method, *because;
 } refused[] = {
@@ -66,13 +66,13 @@ enum { REFUSED = sizeof refused / sizeof *refused };
 
 START_TEST(a_wrong_specification_is_refused_with_its_reason)
 {
-  problem *of = made_problem("oscillator", NULL);
-  dvi_integrator *integrator = (dvi_integrator *)of;
-  ck_assert_int_eq(dvi_integrator_create(of->system, refused[_i].method, &integrator),
+  problem *model = create_problem("oscillator", NULL);
+  dvi_integrator *integrator = (dvi_integrator *)model;
+  ck_assert_int_eq(dvi_integrator_create(model->system, refused[_i].method, &integrator),
                    DVI_BAD_OPTION);
   ck_assert_ptr_null(integrator);
   check_words(refused[_i].because);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -82,7 +82,7 @@ START_TEST(a_specification_without_end_is_refused)
       "", "verlet:", "galerkin:degree=", "galerkin:basis=", "galerkin:", "composition:order=4,"};
   enum { LENGTH = 100000 };
   const char *const tails[] = {"", "=1"};
-  problem *of = made_problem("oscillator", NULL);
+  problem *model = create_problem("oscillator", NULL);
   char *text = malloc(LENGTH + 32);
   dvi_integrator *integrator = NULL;
   ck_assert_ptr_nonnull(text);
@@ -91,22 +91,22 @@ START_TEST(a_specification_without_end_is_refused)
   memset(text + front, '7', LENGTH);
   for (int k = 0; k < 2; k++) {
     memcpy(text + LENGTH, tails[k], strlen(tails[k]) + 1);
-    ck_assert_int_eq(dvi_integrator_create(of->system, text, &integrator), DVI_BAD_OPTION);
+    ck_assert_int_eq(dvi_integrator_create(model->system, text, &integrator), DVI_BAD_OPTION);
     ck_assert_ptr_null(integrator);
     ck_assert_uint_lt(strlen(dvi_last_error()), 1024); /* the sentence's own limit */
   }
   free(text);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* Whether the list that ends a sentence ends with that word, behind a comma. */
-static void check_list_end(const char *method, const problem *of, dvi_status status,
+/* Returns 1 if the list that ends a sentence ends with that word, behind a comma. */
+static void check_list_end(const char *method, const problem *model, dvi_status status,
                            const char *last)
 {
   char end[64];
   dvi_integrator *integrator = NULL;
-  ck_assert_int_eq(dvi_integrator_create(of->system, method, &integrator), status);
+  ck_assert_int_eq(dvi_integrator_create(model->system, method, &integrator), status);
   const char *sentence = dvi_last_error();
   (void)snprintf(end, sizeof end, ", %s", last);
   ck_assert_uint_ge(strlen(sentence), strlen(end));
@@ -116,18 +116,18 @@ static void check_list_end(const char *method, const problem *of, dvi_status sta
 START_TEST(no_list_of_a_sentence_is_cut_short)
 {
   char longest[600];
-  problem *of = made_problem("kepler", NULL);
+  problem *model = create_problem("kepler", NULL);
   const char *last = dvi_method_name(dvi_method_count() - 1);
   memset(longest, 'x', sizeof longest);
   longest[sizeof longest - 1] = '\0';
-  check_list_end("unheard-of", of, DVI_BAD_OPTION, last);
+  check_list_end("unheard-of", model, DVI_BAD_OPTION, last);
   for (int i = 0; i < dvi_method_count(); i++) check_words(dvi_method_name(i));
-  check_list_end(longest, of, DVI_BAD_OPTION, last);
-  check_list_end("lie-verlet", of, DVI_UNSUPPORTED, "prolongation-collocation");
-  check_list_end("shooting:onestep=unheard-of", of, DVI_BAD_OPTION, "file");
-  check_list_end("trig:filter=unheard-of", of, DVI_BAD_OPTION, "hairer-lubich");
-  check_list_end("shooting:unheard-of=1", of, DVI_BAD_OPTION, "type");
-  problem_destroy(&of);
+  check_list_end(longest, model, DVI_BAD_OPTION, last);
+  check_list_end("lie-verlet", model, DVI_UNSUPPORTED, "prolongation-collocation");
+  check_list_end("shooting:onestep=unheard-of", model, DVI_BAD_OPTION, "file");
+  check_list_end("trig:filter=unheard-of", model, DVI_BAD_OPTION, "hairer-lubich");
+  check_list_end("shooting:unheard-of=1", model, DVI_BAD_OPTION, "type");
+  problem_destroy(&model);
 }
 END_TEST
 

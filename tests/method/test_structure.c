@@ -1,6 +1,6 @@
 /* labels: invariant */
-/* What the discrete action promises beside its order: a symplectic and reversible step, and momenta
- * conserved to roundoff. */
+/* The discrete action promises, beside its order, a symplectic and reversible step, and momenta
+ * conserved up to roundoff. */
 #include <check.h>
 #include <float.h>
 #include <math.h>
@@ -61,36 +61,38 @@ END_TEST
 /* Differences of 10th order resolve defects of about 1e-12. */
 START_TEST(every_method_is_symplectic_on_every_problem)
 {
-  problem *of = made_problem(problem_name(pairs.which[sampled_case(_i)] / METHODS), NULL);
+  problem *model = create_problem(problem_name(pairs.which[sampled_case(_i)] / METHODS), NULL);
   const char *method = methods[pairs.which[sampled_case(_i)] % METHODS].name;
-  dvi_integrator *integrator = made_integrator(of->system, method);
+  dvi_integrator *integrator = create_integrator(model->system, method);
   double defect = 0;
-  const dvi_status status = dvi_symplecticity(integrator, 0, of->q, of->p, of->h, &defect);
-  ck_assert_msg(status == DVI_OK, "%s, %s: %s", of->name, method, dvi_last_error());
-  ck_assert_msg(defect < 1e-10, "%s, %s: defect %g", of->name, method, defect);
+  const dvi_status status = dvi_symplecticity(integrator, 0, model->q, model->p, model->h, &defect);
+  ck_assert_msg(status == DVI_OK, "%s, %s: %s", model->name, method, dvi_last_error());
+  ck_assert_msg(defect < 1e-10, "%s, %s: defect %g", model->name, method, defect);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* Roundings of 200 steps, amplified by the flow: the bound is what a user may rely on, not what is
- * measured (1e-15 to 1e-12). */
+/* Roundings of 200 steps, amplified by the flow. A user may rely on this bound, which is larger
+ * than the measured errors (1e-15 to 1e-12). */
 START_TEST(symmetric_methods_return_to_the_start)
 {
-  problem *of = made_problem(problem_name(symmetric_pairs.which[sampled_case(_i)] / METHODS), NULL);
+  problem *model = create_problem(problem_name(symmetric_pairs.which[sampled_case(_i)] / METHODS),
+                                  NULL);
   const char *method = methods[symmetric_pairs.which[sampled_case(_i)] % METHODS].name;
-  dvi_integrator *integrator = made_integrator(of->system, method);
+  dvi_integrator *integrator = create_integrator(model->system, method);
   double defect = 0;
-  const dvi_status status = dvi_reversibility(integrator, 0, of->q, of->p, of->h, 100, &defect);
-  ck_assert_msg(status == DVI_OK, "%s, %s: %s", of->name, method, dvi_last_error());
-  ck_assert_msg(defect < 1e-11, "%s, %s: defect %g", of->name, method, defect);
+  const dvi_status status = dvi_reversibility(integrator, 0, model->q, model->p, model->h, 100,
+                                              &defect);
+  ck_assert_msg(status == DVI_OK, "%s, %s: %s", model->name, method, dvi_last_error());
+  ck_assert_msg(defect < 1e-11, "%s, %s: defect %g", model->name, method, defect);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* Largest possible size of each momentum: the sum of the absolute terms of p.xi, which bounds what
- * one rounding can do to it. */
+/* Gives the largest possible size of each momentum, the sum of the absolute terms of p.xi. It
+ * bounds the effect of one rounding. */
 static void momentum_sizes(const problem *solar, double size[6])
 {
   double linear = 0, angular = 0;
@@ -107,8 +109,8 @@ static void momentum_sizes(const problem *solar, double size[6])
 static void check_momenta(const char *method, double h)
 {
   const int steps = repeats(100000);
-  problem *solar = made_problem("outer-solar", NULL);
-  dvi_integrator *integrator = started(solar, method);
+  problem *solar = create_problem("outer-solar", NULL);
+  dvi_integrator *integrator = start_integrator(solar, method);
   double start[7], now[7], size[6], largest[6] = {0};
   momentum_sizes(solar, size);
   ck_assert_int_eq(dvi_integrator_invariants(integrator, start), DVI_OK);

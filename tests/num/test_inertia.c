@@ -9,7 +9,7 @@
 
 enum { MOST = 48 };
 
-/* A full pattern holds any matrix; what lies outside of the blocks is 0. */
+/* A full pattern holds any matrix. Entries outside of the blocks are 0. */
 typedef struct matrix {
   int n;
   dvi__pattern pattern;
@@ -35,8 +35,8 @@ static long negatives(const matrix *m, int size, int block)
   return negative;
 }
 
-/* 2 - shift on the diagonal, -1 beside it: eigenvalues 2 - 2 cos(k pi/(n+1)) - shift. Shifts of 1
- * and 2 make leading minors zero. */
+/* 2 - shift on the diagonal, -1 beside it. The eigenvalues are 2 - 2 cos(k pi/(n+1)) - shift.
+ * Shifts of 1 and 2 make leading minors zero. */
 START_TEST(a_chain_has_its_cosines)
 {
   const double shift[] = {-0.1, 0.1, 1.000001, 2 + 1e-9, 2 - 1e-9, 3.1, 4.1};
@@ -55,7 +55,7 @@ START_TEST(a_chain_has_its_cosines)
 }
 END_TEST
 
-/* The same closed to a ring: 2 - 2 cos(2 k pi/n) - shift. */
+/* That chain closed to a ring, with 2 - 2 cos(2 k pi/n) - shift. */
 START_TEST(a_ring_has_its_cosines)
 {
   const double shift[] = {-0.1, 0.1, 1.000001, 2 + 1e-9, 3.1, 4.1};
@@ -74,8 +74,8 @@ START_TEST(a_ring_has_its_cosines)
 }
 END_TEST
 
-/* Blocks on the diagonal that are zero but for their coupling: [0 1; 1 0] in each, which no
- * diagonal pivot can eliminate. */
+/* Blocks on the diagonal that are zero but for their coupling, [0 1; 1 0] in each. No diagonal
+ * pivot can eliminate them. */
 START_TEST(zero_diagonals_are_no_trouble)
 {
   matrix m;

@@ -8,7 +8,7 @@
 
 enum { SIDE = 20, GRID = SIDE * SIDE };
 
-/* Minus the Laplacian on a grid, with a term that varies; preconditioned by its diagonal, if
+/* Minus the Laplacian on a grid, with a term that varies, preconditioned by its diagonal if
  * `is_scaled`. */
 typedef struct membrane {
   double stiffness;
@@ -16,21 +16,21 @@ typedef struct membrane {
   long products, renewals;
 } membrane;
 
-static double diagonal_of(const membrane *of, int k)
+static double diagonal_of(const membrane *grid, int k)
 {
-  return 4 * of->stiffness + 1 + k % 7 * 1000;
+  return 4 * grid->stiffness + 1 + k % 7 * 1000;
 }
 
 static void membrane_times(void *user, const double *x, double *y)
 {
-  membrane *of = user;
-  of->products++;
+  membrane *grid = user;
+  grid->products++;
   for (int k = 0; k < GRID; k++) {
-    y[k] = diagonal_of(of, k) * x[k];
-    if (k % SIDE > 0) y[k] -= of->stiffness * x[k - 1];
-    if (k % SIDE < SIDE - 1) y[k] -= of->stiffness * x[k + 1];
-    if (k >= SIDE) y[k] -= of->stiffness * x[k - SIDE];
-    if (k < GRID - SIDE) y[k] -= of->stiffness * x[k + SIDE];
+    y[k] = diagonal_of(grid, k) * x[k];
+    if (k % SIDE > 0) y[k] -= grid->stiffness * x[k - 1];
+    if (k % SIDE < SIDE - 1) y[k] -= grid->stiffness * x[k + 1];
+    if (k >= SIDE) y[k] -= grid->stiffness * x[k - SIDE];
+    if (k < GRID - SIDE) y[k] -= grid->stiffness * x[k + SIDE];
   }
 }
 
@@ -41,45 +41,45 @@ static void membrane_scale(void *user, double *r)
 
 static dvi_status membrane_renew(void *user)
 {
-  membrane *of = user;
-  of->renewals++;
-  return of->stiffness > 0 ? DVI_OK : dvi__fail(DVI_SINGULAR, "the membrane is slack");
+  membrane *grid = user;
+  grid->renewals++;
+  return grid->stiffness > 0 ? DVI_OK : dvi__fail(DVI_SINGULAR, "the membrane is slack");
 }
 
-static dvi__linear *membrane_solver(membrane *of, dvi_counters *counters)
+static dvi__linear *membrane_solver(membrane *grid, dvi_counters *counters)
 {
   const dvi__operator A = {.size = GRID,
-                           .of = of,
+                           .of = grid,
                            .times = membrane_times,
                            .renew = membrane_renew,
-                           .precondition = of->is_scaled ? membrane_scale : NULL};
+                           .precondition = grid->is_scaled ? membrane_scale : NULL};
   dvi__linear *linear;
   ck_assert_int_eq(dvi__linear_create_iterative(&A, counters, &linear), DVI_OK);
   ck_assert_int_eq(dvi__linear_kind_of(linear), DVI__LINEAR_ITERATIVE);
   return linear;
 }
 
-/* Solved again for what is left, as Newton's method does: each solve leaves 1e-5 of it, or a little
- * more by the other norm. */
+/* Solves again for the remaining residual, as Newton's method does. Each solve leaves 1e-5 of it,
+ * or a little more by the other norm. */
 START_TEST(an_operator_is_solved_by_its_products)
 {
-  membrane of = {.stiffness = 100, .is_scaled = _i};
+  membrane grid = {.stiffness = 100, .is_scaled = _i};
   double x[GRID] = {0}, Ax[GRID], r[GRID], left = 1, before;
   dvi_counters counters = {0};
-  dvi__linear *linear = membrane_solver(&of, &counters);
-  ck_assert_int_eq(of.renewals + counters.preparations, 0);
+  dvi__linear *linear = membrane_solver(&grid, &counters);
+  ck_assert_int_eq(grid.renewals + counters.preparations, 0);
   ck_assert_int_eq(dvi__linear_factor(linear, NULL), DVI_OK);
-  ck_assert_int_eq(of.renewals, 1);
+  ck_assert_int_eq(grid.renewals, 1);
   ck_assert_int_eq(counters.preparations, 1);
   for (int round = 0; round < 4; round++) {
     before = left, left = 0;
-    membrane_times(&of, x, Ax);
+    membrane_times(&grid, x, Ax);
     for (int k = 0; k < GRID; k++) r[k] = cos(k) - Ax[k], left = fmax(left, fabs(r[k]));
     ck_assert_msg(round == 0 || left <= fmax(1e-3 * before, 1e-13), "%g after %g", left, before);
     dvi__linear_solve(linear, r);
     for (int k = 0; k < GRID; k++) x[k] += r[k];
   }
-  ck_assert_int_lt(of.products, _i ? 100 : 400);
+  ck_assert_int_lt(grid.products, _i ? 100 : 400);
   ck_assert_int_eq(counters.solves, 4);
   ck_assert_int_eq(counters.factorizations + counters.symbolic, 0);
   dvi__linear_destroy(&linear);
@@ -88,9 +88,9 @@ END_TEST
 
 START_TEST(an_operator_says_what_is_not_known)
 {
-  membrane of = {.stiffness = 1, .is_scaled = 1};
+  membrane grid = {.stiffness = 1, .is_scaled = 1};
   double r[GRID] = {0};
-  dvi__linear *linear = membrane_solver(&of, NULL);
+  dvi__linear *linear = membrane_solver(&grid, NULL);
   const long before = dvi__allocation_count();
   for (int k = 0; k < 2; k++) ck_assert_int_eq(dvi__linear_factor(linear, NULL), DVI_OK);
   const long made = dvi__allocation_count();
@@ -102,7 +102,7 @@ START_TEST(an_operator_says_what_is_not_known)
   r[3] = (double)NAN;
   dvi__linear_solve(linear, r);
   ck_assert(isnan(r[3])); /* not taken for a solution */
-  of.stiffness = 0;
+  grid.stiffness = 0;
   ck_assert_int_eq(dvi__linear_factor(linear, NULL), DVI_SINGULAR);
   check_words("slack");
   ck_assert_int_eq(dvi__allocation_count(), made);

@@ -242,17 +242,17 @@ START_TEST(steps_have_the_same_bits_at_every_level)
               {"double-pendulum", "galerkin:degree=9", 0.05},
               {"kepler", "composition:order=8,base=galerkin,degree=4", 0.1}};
   double q[64];
-  problem *of = made_problem(runs[_i].problem, NULL);
+  problem *model = create_problem(runs[_i].problem, NULL);
   for (int level = 0; level < dvi__lanes_levels(); level++) {
     dvi__lanes_choose(level);
-    dvi_integrator *integrator = started(of, runs[_i].method);
+    dvi_integrator *integrator = start_integrator(model, runs[_i].method);
     advance(integrator, runs[_i].h, 50);
     if (level > 0)
-      ck_assert_mem_eq(q, dvi_integrator_q(integrator), (size_t)of->nq * sizeof(double));
-    memcpy(q, dvi_integrator_q(integrator), (size_t)of->nq * sizeof(double));
+      ck_assert_mem_eq(q, dvi_integrator_q(integrator), (size_t)model->nq * sizeof(double));
+    memcpy(q, dvi_integrator_q(integrator), (size_t)model->nq * sizeof(double));
     dvi_integrator_destroy(&integrator);
   }
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

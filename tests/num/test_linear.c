@@ -70,13 +70,13 @@ START_TEST(a_known_system_has_its_known_solution)
   const double a[9] = {0, 2, 1, 1, 0, 0, 3, 0, 1};
   double b[3] = {7, 1, 6};
   solve(3, a, kinds[_i], b);
-  ck_assert_double_eq_tol(b[0], 1, 1e-15); /* integers: a few roundings at most */
+  ck_assert_double_eq_tol(b[0], 1, 1e-15); /* integers with a few roundings at most */
   ck_assert_double_eq_tol(b[1], 2, 1e-15);
   ck_assert_double_eq_tol(b[2], 3, 2e-15);
 }
 END_TEST
 
-/* By cofactors; exchanged rows change it, a scale does not. */
+/* Compares with cofactors. Exchanged rows change the sign, a scale does not. */
 START_TEST(determinants_have_their_sign)
 {
   static const double a[][16] = {{0, 2, 0, 1, 0, 0, 3, 0, 1},
@@ -95,8 +95,8 @@ START_TEST(determinants_have_their_sign)
 }
 END_TEST
 
-/* A = S L D L^T S with entries of L in (-1,1), some of them 0, and powers of two S, which differ by
- * 2^40; D is 1 but for two rows of -1 or none. */
+/* Makes A = S L D L^T S with entries of L in (-1,1), some of them 0, and powers of two S, which
+ * differ by 2^40. D is 1 but for two rows of -1 or none. */
 static void product(unsigned *state, int negative, double *a)
 {
   enum { N = 8 };
@@ -149,7 +149,8 @@ START_TEST(one_unknown_is_a_division)
 }
 END_TEST
 
-/* A band with a random part; diagonally dominant, so that its condition is about 10. */
+/* Makes a band with a random part. It is diagonally dominant, so its condition number is about
+ * 10. */
 static void random_band(int n, int width, unsigned seed, double *a)
 {
   srand(seed);
@@ -263,7 +264,7 @@ START_TEST(a_column_without_entries_is_singular_at_the_factorisation)
 }
 END_TEST
 
-/* Units must not matter: rows and columns that differ by 1e200 leave the answer as exact as it
+/* Units must not matter. Rows and columns that differ by 1e200 leave the solution as exact as it
  * was. */
 START_TEST(badly_scaled_rows_and_columns_are_solved_as_well_as_good_ones)
 {
@@ -278,7 +279,7 @@ START_TEST(badly_scaled_rows_and_columns_are_solved_as_well_as_good_ones)
 }
 END_TEST
 
-/* A multiplier's column beside masses of 1e30: no row scaling alone sees that this is harmless. */
+/* A multiplier's column beside masses of 1e30. No row scaling alone sees that this is harmless. */
 START_TEST(a_column_of_small_numbers_is_not_taken_for_singular)
 {
   const double a[4] = {1e30, 1, -1e30, 1};
@@ -361,8 +362,8 @@ enum {
   RING_MOST = 3 * RING + (2 * RING + BORDER) * BORDER
 };
 
-/* Entry (i,j) of a ring of springs, which nothing holds in place; bordered by what does, and by
- * waves. */
+/* Gives entry (i,j) of a ring of springs, which nothing holds in place, bordered by a row that
+ * holds it, and by waves. */
 static double ring_entry(int i, int j, double hold)
 {
   if (i < RING && j < RING)
@@ -372,7 +373,7 @@ static double ring_entry(int i, int j, double hold)
   return border == RING ? hold : 2 + sin(0.1 * at);
 }
 
-/* Whether it can be solved, and how wrong the solution is. */
+/* Returns the status of the solution, and how wrong it is. */
 static dvi_status solve_ring(double hold, double *worst)
 {
   static int start[RINGED + 1], row[RING_MOST];
@@ -402,8 +403,8 @@ static dvi_status solve_ring(double hold, double *worst)
   return status;
 }
 
-/* The ring alone is singular, and its other eigenvalues reach down to (2 pi/300)^2 = 4e-4; pivots
- * that are kept may cost six digits. */
+/* The ring alone is singular, and its other eigenvalues reach down to (2 pi/300)^2 = 4e-4. Kept
+ * pivots may cost six digits. */
 START_TEST(a_border_makes_a_singular_matrix_regular)
 {
   double worst;
@@ -439,7 +440,7 @@ START_TEST(nothing_is_made_before_the_first_factor)
 }
 END_TEST
 
-/* A band of width 1 has no fill-in; nothing is factored to know it. */
+/* A band of width 1 has no fill-in, which is known without a factor. */
 START_TEST(an_analysis_tells_what_a_factor_costs)
 {
   static double a[LARGEST * LARGEST];
@@ -460,8 +461,8 @@ START_TEST(an_analysis_tells_what_a_factor_costs)
 }
 END_TEST
 
-/* Values of a complex matrix in pairs, of any size: every other matrix has some small pivots on its
- * diagonal. */
+/* Gives values of a complex matrix in pairs, of any size. Every other matrix has some small pivots
+ * on its diagonal. */
 static void random_values(const dvi__pattern *pattern, int parts, unsigned seed, double *values)
 {
   srand(seed);
@@ -474,7 +475,7 @@ static void random_values(const dvi__pattern *pattern, int parts, unsigned seed,
       }
 }
 
-/* A factor depends on its matrix alone: the first one, which chooses the order of the pivots, has
+/* A factor depends on its matrix alone. The first one, which chooses the order of the pivots, has
  * the bits of a later one. */
 START_TEST(the_first_factor_has_the_bits_of_any_other)
 {
@@ -537,7 +538,7 @@ END_TEST
 
 /* ---- patterns that promise too much ---- */
 
-/* Entries that are never there: the answer is that of the others. */
+/* Entries that are always zero do not change the solution. */
 START_TEST(entries_that_are_always_zero_do_no_harm)
 {
   static double band[LARGEST * LARGEST], all[LARGEST * LARGEST];

@@ -103,7 +103,7 @@ START_TEST(sums_are_those_of_the_full_matrix)
 }
 END_TEST
 
-/* G x = 0: only C_k T_k(-1) are added, in each row alike, and the rows stay alike. */
+/* G x = 0. Only C_k T_k(-1) are added, in each row alike, and the rows stay alike. */
 START_TEST(where_the_matrix_vanishes_rows_stay_alike)
 {
   static const double zeros[3] = {1, 2, 3}, even[3] = {1, 1, 1};

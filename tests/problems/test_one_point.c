@@ -8,9 +8,9 @@
 
 enum { STEPS = 10 };
 
-static const char *method_for(const problem *of)
+static const char *method_for(const problem *model)
 {
-  const dvi_system_terms *terms = of->terms;
+  const dvi_system_terms *terms = model->terms;
   if (terms->hamiltonian != NULL)
     return terms->constraint != NULL ? "dg-phase:degree=3" : "hamiltonian:degree=3";
   if (terms->factors != NULL) return "lie-galerkin:degree=5";
@@ -18,11 +18,11 @@ static const char *method_for(const problem *of)
 }
 
 /* The end of some steps, and what they counted. */
-static void end_of_run(const problem *of, double *q, dvi_counters *counted)
+static void end_of_run(const problem *model, double *q, dvi_counters *counted)
 {
-  dvi_integrator *integrator = started(of, method_for(of));
-  advance(integrator, of->h, STEPS);
-  memcpy(q, dvi_integrator_q(integrator), (size_t)of->nq * sizeof *q);
+  dvi_integrator *integrator = start_integrator(model, method_for(model));
+  advance(integrator, model->h, STEPS);
+  memcpy(q, dvi_integrator_q(integrator), (size_t)model->nq * sizeof *q);
   dvi_integrator_counters(integrator, counted);
   dvi_integrator_destroy(&integrator);
 }
@@ -30,26 +30,26 @@ static void end_of_run(const problem *of, double *q, dvi_counters *counted)
 START_TEST(one_point_callbacks_give_the_same_digits_and_counts)
 {
   enum { MOST = 64 };
-  problem *of = made_problem(problem_name(_i), NULL);
+  problem *model = create_problem(problem_name(_i), NULL);
   double batches[MOST], points[MOST];
   dvi_counters of_batches, of_points;
-  ck_assert_int_le(of->nq, MOST);
-  end_of_run(of, batches, &of_batches);
-  ck_assert_int_eq(problem_one_point(of), DVI_OK);
-  end_of_run(of, points, &of_points);
-  ck_assert_mem_eq(batches, points, (size_t)of->nq * sizeof *points);
+  ck_assert_int_le(model->nq, MOST);
+  end_of_run(model, batches, &of_batches);
+  ck_assert_int_eq(problem_one_point(model), DVI_OK);
+  end_of_run(model, points, &of_points);
+  ck_assert_mem_eq(batches, points, (size_t)model->nq * sizeof *points);
   ck_assert_int_eq(of_batches.gradients, of_points.gradients);
   ck_assert_int_eq(of_batches.hessians, of_points.hessians);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(no_batch_is_left_and_no_term_is_lost)
 {
-  problem *of = made_problem(problem_name(_i), NULL);
-  const dvi_system_terms declared = *of->terms;
-  ck_assert_int_eq(problem_one_point(of), DVI_OK);
-  const dvi_system_terms *terms = of->terms;
+  problem *model = create_problem(problem_name(_i), NULL);
+  const dvi_system_terms declared = *model->terms;
+  ck_assert_int_eq(problem_one_point(model), DVI_OK);
+  const dvi_system_terms *terms = model->terms;
   ck_assert_int_eq(terms->dimension, declared.dimension);
   ck_assert_int_eq(terms->factor_count, declared.factor_count);
   ck_assert_int_eq(terms->potential_count, declared.potential_count);
@@ -67,25 +67,25 @@ START_TEST(no_batch_is_left_and_no_term_is_lost)
     ck_assert(!terms->lagrangian->value_batch && !terms->lagrangian->gradient_batch &&
               !terms->lagrangian->hessian_batch);
   }
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(without_memory_the_problem_stays_as_it_was)
 {
-  problem *of = made_problem("double-pendulum", NULL);
-  const dvi_system *system = of->system;
-  const dvi_system_terms *terms = of->terms;
+  problem *model = create_problem("double-pendulum", NULL);
+  const dvi_system *system = model->system;
+  const dvi_system_terms *terms = model->terms;
   dvi__fail_allocations_after(1);
-  const dvi_status status = problem_one_point(of);
+  const dvi_status status = problem_one_point(model);
   dvi__fail_allocations_after(-1);
   ck_assert_int_eq(status, DVI_NO_MEMORY);
-  ck_assert_ptr_eq(of->system, system);
-  ck_assert_ptr_eq(of->terms, terms);
+  ck_assert_ptr_eq(model->system, system);
+  ck_assert_ptr_eq(model->terms, terms);
   double q[2];
   dvi_counters counted;
-  end_of_run(of, q, &counted);
-  problem_destroy(&of);
+  end_of_run(model, q, &counted);
+  problem_destroy(&model);
 }
 END_TEST
 

@@ -1,4 +1,5 @@
-/* The catalogue: every derivative and pattern against differences, every start, every refusal. */
+/* Tests every derivative and pattern of the catalogue against differences, every start, and every
+ * refusal. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,7 +10,7 @@
 #include "support/accepted.h"
 #include "support/suite.h"
 
-/* Differences of the value are good to about 1e-10 at these points; a wrong term shows at 1. */
+/* Differences of the value are good to about 1e-10 at these points, and a wrong term shows at 1. */
 #define TOLERANCE 1e-7
 
 static problem *create(const char *name, int setting_count, const char *const *settings)
@@ -103,11 +104,11 @@ START_TEST(derivatives_agree_for_other_parameters)
 }
 END_TEST
 
-/* Points of a batch: more than one vector register holds, and not a multiple of it. */
+/* The points of a batch are more than one vector register holds, and not a multiple of it. */
 #define POINTS 5
 
-/* Entry e of point k of a batch is entry e of that point alone, bit for bit: no callback mixes
- * points. */
+/* Entry e of point k of a batch is entry e of that point alone, bit for bit, because no callback
+ * mixes points. */
 static void check_same(const char *name, const char *what, int entries, const double *batch, int k,
                        const double *alone)
 {
@@ -178,7 +179,7 @@ START_TEST(momenta_are_the_legendre_transform_of_the_velocities)
   memcpy(v, made->v, n * sizeof *v);
   for (size_t i = 0; i < n; i++) v[i] += 1e-3 * size_of(made->nv, made->v);
   ck_assert_int_eq(dvi_system_velocity(made->system, 0.0, made->q, made->p, v), DVI_OK);
-  /* M is well conditioned in all of them: roundoff of one solve */
+  /* M is well conditioned in all of them, so the error is the roundoff of one solve */
   for (size_t i = 0; i < n; i++)
     ck_assert_double_eq_tol(v[i], made->v[i], 1e-13 * size_of(made->nv, made->v));
   free(v);
@@ -308,7 +309,7 @@ START_TEST(exact_solutions_meet_start_and_digits)
     if (i < made->nv) ck_assert_double_eq_tol(p[i], made->p[i], 1e-15);
   }
   ck_assert_int_eq(made->exact(made, made->order_t_end, q, p), 0);
-  /* a few ulp; the parameter itself is rounded (e = 0.6) */
+  /* a few ulp, because the parameter itself is rounded (e = 0.6) */
   for (int i = 0; i < made->nq; i++) {
     ck_assert_double_eq_tol(q[i], made->digits_q[i],
                             1e-15 * size_of(made->nq, made->digits_q) * made->order_t_end);
@@ -347,8 +348,8 @@ START_TEST(keplers_equation_is_solved_for_any_eccentricity_and_time)
               mirror_p[1] == p[1]);
     const double r = hypot(q[0], q[1]), kinetic = 0.5 * (p[0] * p[0] + p[1] * p[1]);
     const double E = atan2(q[1] / sqrt(b2), q[0] + e), period = 0x1.921fb54442d18p2;
-    /* a few ulp of the reduced time, and of E where dt/dE is 1 + e; beyond 1e4 the period's own
-     * rounding counts */
+    /* a few ulp of the reduced time, and of E where dt/dE is 1 + e, and beyond 1e4 the period's own
+     * rounding */
     if (times[j] < 1e4)
       ck_assert_double_eq_tol(E - e * sin(E), remainder(times[j], period),
                               2e-15 + 2e-16 * times[j]);
@@ -360,7 +361,7 @@ START_TEST(keplers_equation_is_solved_for_any_eccentricity_and_time)
 }
 END_TEST
 
-/* One period is 2 pi: 6.283185307179586 is 2 pi minus 4.77e-16, so k of them end 4.77e-16 k before
+/* One period is 2 pi. 6.283185307179586 is 2 pi minus 4.77e-16, so k of them end 4.77e-16 k before
  * the pericentre. */
 START_TEST(many_periods_are_reduced_without_loss)
 {
@@ -371,7 +372,7 @@ START_TEST(many_periods_are_reduced_without_loss)
   double q[2], p[2], near_q[2], near_p[2];
   ck_assert_int_eq(made->exact(made, turns * period, q, p), 0);
   ck_assert_int_eq(made->exact(made, -turns * period_rest, near_q, near_p), 0);
-  /* relative: y is 1e-9 there */
+  /* relative, because y is 1e-9 there */
   ck_assert_double_eq_tol(q[1] / near_q[1], 1.0, 1e-13);
   ck_assert_double_eq_tol(q[0], near_q[0], 1e-15);
   problem_destroy(&made);
@@ -428,8 +429,8 @@ START_TEST(invariants_hold_between_start_and_digits)
       DVI_OK);
   for (int i = 0; i < count; i++) {
     const char *name = dvi_system_invariant_name(made->system, i);
-    /* roundoff of the digits, times the largest force or speed: 1e3 in stiff-pendulum, q p ~ 1e-4
-     * in outer-solar */
+    /* roundoff of the digits times the largest force or speed, 1e3 in stiff-pendulum, q p ~ 1e-4 in
+     * outer-solar */
     if (name[0] != 'I' && (i > 0 || dvi_system_autonomous(made->system)))
       ck_assert_msg(fabs(end[i] - start[i]) <= 4e-15 * fmax(size_of(count, start), 1e-7),
                     "%s: %s changes by %g of %g", made->name, name, end[i] - start[i], start[i]);

@@ -25,10 +25,10 @@ static inline dvi_reference_options option(int code, double tolerance)
   return (dvi_reference_options){.code = (dvi_reference_code)code, .relative_tolerance = tolerance};
 }
 
-static inline void start(const problem *of, double *q, double *p)
+static inline void start(const problem *model, double *q, double *p)
 {
-  memcpy(q, of->q, (size_t)of->nq * sizeof *q);
-  memcpy(p, of->p, (size_t)of->nv * sizeof *p);
+  memcpy(q, model->q, (size_t)model->nq * sizeof *q);
+  memcpy(p, model->p, (size_t)model->nv * sizeof *p);
 }
 
 #endif

@@ -11,7 +11,7 @@
 #include "support/quad/quad_real.h"
 #include "support/suite.h"
 
-/* What the judge may say about itself where 1e-17 is wanted: 1e-20 leaves three digits. */
+/* The largest own error of the judge where 1e-17 is wanted. 1e-20 leaves three digits. */
 #define JUDGE_ERROR 1e-20
 
 typedef char text[QUAD_TEXT];
@@ -54,7 +54,7 @@ START_TEST(stored_digits_are_those_of_the_judge)
 }
 END_TEST
 
-/* The judge from the rounded start, as a method sees it: roundoff of the start, grown at most
+/* Runs the judge from the rounded start, as a method sees it. Roundoff of the start grows at most
  * thirtyfold (kepler, T = 10). */
 START_TEST(the_judge_agrees_with_itself_from_the_rounded_start)
 {
@@ -81,8 +81,8 @@ static double units_apart(quad number, const char *printed)
   return (double)(quad_abs(number - quad_parse(printed, NULL)) / unit);
 }
 
-/* Rounded right to its last digit: half a unit, and the printed number's own rounding in quadruple
- * precision. */
+/* A digit is rounded right to its last place, by half a unit, and the printed number has its own
+ * rounding in quadruple precision. */
 static void check_printed(const char *name, quad number, const char *printed)
 {
   const double apart = units_apart(number, printed);
@@ -173,8 +173,8 @@ START_TEST(the_judge_refuses_what_it_does_not_know)
 }
 END_TEST
 
-/* fpu at T = 200 is sensitive: from 1/50 rounded to a double, as here, x0_1 differs by 5e-14 from
- * what exact 1/50 gives. The printed digits are those of the rounded start. */
+/* fpu at T = 200 is sensitive. From 1/50 rounded to a double, as here, x0_1 differs by 5e-14 from
+ * the result for exact 1/50. The printed digits are those of the rounded start. */
 START_TEST(fpu_has_the_printed_state_at_200)
 {
   static const double printed[6] = {0.0568458230701694,  0.797913189042865,  0.229526402291378,

@@ -108,7 +108,7 @@ START_TEST(a_collision_ends_the_run_in_words)
 }
 END_TEST
 
-/* A spring whose force misbehaves once q falls below a half: at about t = 1.05. */
+/* A spring whose force fails once q falls below a half, at about t = 1.05. */
 typedef struct bad_spring {
   int returned;
   double force;
@@ -195,7 +195,7 @@ START_TEST(failures_print_nothing)
 }
 END_TEST
 
-/* Every allocation of a run fails once; leaks are for valgrind and the sanitizers to see. */
+/* Every allocation of a run fails once. valgrind and the sanitizers look for leaks. */
 START_TEST(no_memory_is_a_status)
 {
   problem *kepler = make("kepler", NULL);

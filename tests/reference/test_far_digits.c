@@ -9,7 +9,7 @@
 #include "support/runs.h"
 #include "support/suite.h"
 
-/* What the judge may say about itself where 1e-17 is wanted. */
+/* The largest own error of the judge where 1e-17 is wanted. */
 static const double judge_error = 1e-20;
 
 static const char *const names[] = {"double-pendulum", "fpu", "outer-solar"};
@@ -17,44 +17,45 @@ enum { NAMES = sizeof names / sizeof *names, N_MAX = 18 };
 
 START_TEST(far_digits_are_those_of_the_judge)
 {
-  problem *of = made_problem(names[_i], NULL);
+  problem *model = create_problem(names[_i], NULL);
   char q[QUAD_N_MAX][QUAD_TEXT], p[QUAD_N_MAX][QUAD_TEXT];
   int n = 0;
-  ck_assert_ptr_nonnull(of->far_q);
-  ck_assert_double_lt(quad_digits(of->name, 0, NULL, of->far_t_end, &n, q, p), judge_error);
-  ck_assert_int_eq(n, of->nq);
+  ck_assert_ptr_nonnull(model->far_q);
+  ck_assert_double_lt(quad_digits(model->name, 0, NULL, model->far_t_end, &n, q, p), judge_error);
+  ck_assert_int_eq(n, model->nq);
   for (int i = 0; i < n; i++) {
     const double judged = strtod(q[i], NULL);
     /* half an ulp of each of the two roundings */
-    ck_assert_msg(fabs(of->far_q[i] - judged) <= 2.3e-16 * fabs(judged),
-                  "%s: number %d is %.17g, the judge says %s", of->name, i, of->far_q[i], q[i]);
+    ck_assert_msg(fabs(model->far_q[i] - judged) <= 2.3e-16 * fabs(judged),
+                  "%s: number %d is %.17g, the judge says %s", model->name, i, model->far_q[i],
+                  q[i]);
   }
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(the_rounded_start_ends_where_is_said)
 {
-  problem *of = made_problem(names[_i], NULL);
+  problem *model = create_problem(names[_i], NULL);
   double q[N_MAX], p[N_MAX];
-  memcpy(q, of->q, (size_t)of->nq * sizeof *q);
-  memcpy(p, of->p, (size_t)of->nq * sizeof *p);
-  ck_assert_double_lt(quad_solve(of->name, 0, NULL, of->far_t_end, q, p), judge_error);
-  const double moved = distance(of->nq, q, of->far_q);
-  ck_assert_msg(moved <= of->far_error && moved > 0.1 * of->far_error, "%s: moved by %g", of->name,
-                moved);
-  problem_destroy(&of);
+  memcpy(q, model->q, (size_t)model->nq * sizeof *q);
+  memcpy(p, model->p, (size_t)model->nq * sizeof *p);
+  ck_assert_double_lt(quad_solve(model->name, 0, NULL, model->far_t_end, q, p), judge_error);
+  const double moved = distance(model->nq, q, model->far_q);
+  ck_assert_msg(moved <= model->far_error && moved > 0.1 * model->far_error, "%s: moved by %g",
+                model->name, moved);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(other_parameters_and_problems_have_no_far_digits)
 {
-  problem *of = made_problem("fpu", "ell=4");
-  ck_assert_ptr_null(of->far_q);
-  problem_destroy(&of);
-  of = made_problem("kepler", NULL);
-  ck_assert_ptr_null(of->far_q);
-  problem_destroy(&of);
+  problem *model = create_problem("fpu", "ell=4");
+  ck_assert_ptr_null(model->far_q);
+  problem_destroy(&model);
+  model = create_problem("kepler", NULL);
+  ck_assert_ptr_null(model->far_q);
+  problem_destroy(&model);
 }
 END_TEST
 

@@ -23,21 +23,21 @@ static problem *made_with(const char *const *settings)
   return made;
 }
 
-/* Roundings of the start in double and a few ulp of R and Pi; where the modulus is near 1 both
+/* Roundings of the start in double, and a few ulp of R and Pi. Where the modulus is near 1 both
  * grow. */
 static void check_at(const char *const *settings, double t, double tolerance)
 {
-  problem *of = made_with(settings);
+  problem *model = made_with(settings);
   double q[9], p[3], exact_q[9], exact_p[3];
-  start(of, q, p);
+  start(model, q, p);
   ck_assert_double_lt(quad_solve("free-body", SETTINGS, settings, t, q, p), 1e-20);
-  ck_assert_int_eq(of->exact(of, t, exact_q, exact_p), 0);
+  ck_assert_int_eq(model->exact(model, t, exact_q, exact_p), 0);
   ck_assert_msg(distance(9, q, exact_q) <= tolerance, "%s, %s at %g: R is %g away", settings[3],
                 settings[4], t, distance(9, q, exact_q));
   ck_assert_msg(distance(3, p, exact_p) <= tolerance * fmax(1, magnitude(3, p)),
                 "%s, %s at %g: Pi is %g away", settings[3], settings[4], t,
                 distance(3, p, exact_p));
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 
 START_TEST(the_attitude_is_exact_whatever_the_axes_and_signs)
@@ -60,8 +60,8 @@ START_TEST(the_attitude_is_exact_whatever_the_axes_and_signs)
 }
 END_TEST
 
-/* A turn about the middle axis, disturbed by 1e-4, tumbles: disturbances of the start grow by
- * 1e4. */
+/* A rotation about the middle axis, disturbed by 1e-4, tumbles, and disturbances of the start grow
+ * by 1e4. */
 START_TEST(it_is_exact_near_the_separatrix)
 {
   static const char *const settings[SETTINGS] = {"J1=1",        "J2=2",     "J3=3",
@@ -88,29 +88,29 @@ START_TEST(on_the_separatrix_there_is_none)
 {
   static const char *const settings[SETTINGS] = {"J1=9",     "J2=8",       "J3=4",
                                                  "Omega1=4", "Omega2=0.5", "Omega3=3"};
-  problem *of = made_with(settings);
+  problem *model = made_with(settings);
   double q[9], p[3];
-  ck_assert_int_ne(of->exact(of, 1, q, p), 0);
-  problem_destroy(&of);
+  ck_assert_int_ne(model->exact(model, 1, q, p), 0);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* 16000 turns of axis 3: what a rounding of J or Omega makes of the phase, 1e4 radians, is what can
- * be asked for. */
+/* 16000 turns of axis 3. The bound is the effect of a rounding of J or Omega on the phase, 1e4
+ * radians. */
 START_TEST(long_times_cost_only_the_roundings_of_the_phase)
 {
-  problem *of = make("free-body", NULL);
+  problem *model = make("free-body", NULL);
   double q[9], p[3], later_q[9], later_p[3];
-  ck_assert_int_eq(of->exact(of, 1e5, q, p), 0);
-  ck_assert_int_eq(of->exact(of, 1e5 * (1 + 2.3e-16), later_q, later_p), 0);
+  ck_assert_int_eq(model->exact(model, 1e5, q, p), 0);
+  ck_assert_int_eq(model->exact(model, 1e5 * (1 + 2.3e-16), later_q, later_p), 0);
   ck_assert_double_le(distance(9, q, later_q), 1e-10);
   double value[4];
-  ck_assert_int_eq(dvi_system_invariants(of->system, 1e5, q, p, value), DVI_OK);
+  ck_assert_int_eq(dvi_system_invariants(model->system, 1e5, q, p, value), DVI_OK);
   ck_assert_double_eq_tol(value[0], 0.745, 1e-15);
   ck_assert_double_eq_tol(value[1], 1.5, 2e-15);
   ck_assert_double_eq_tol(value[2], -1, 2e-15);
   ck_assert_double_eq_tol(value[3], 0.6, 1e-15);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

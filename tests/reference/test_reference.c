@@ -17,15 +17,15 @@ static double distance(int n, const double *a, const double *b)
 }
 
 /* Distance from the exact state at t_end after a run of one code. */
-static double exact_error(const problem *of, dvi_reference_options options, double t_end,
+static double exact_error(const problem *model, dvi_reference_options options, double t_end,
                           dvi_reference_report *report)
 {
   double q[MOST], p[MOST], exact_q[MOST], exact_p[MOST];
-  start(of, q, p);
-  ck_assert_msg(dvi_reference_solve(of->system, 0, t_end, q, p, &options, report) == DVI_OK, "%s",
-                dvi_last_error());
-  ck_assert_int_eq(of->exact(of, t_end, exact_q, exact_p), 0);
-  return fmax(distance(of->nq, q, exact_q), distance(of->nq, p, exact_p));
+  start(model, q, p);
+  ck_assert_msg(dvi_reference_solve(model->system, 0, t_end, q, p, &options, report) == DVI_OK,
+                "%s", dvi_last_error());
+  ck_assert_int_eq(model->exact(model, t_end, exact_q, exact_p), 0);
+  return fmax(distance(model->nq, q, exact_q), distance(model->nq, p, exact_p));
 }
 
 /* The codes bound the error of each step, so the errors after all steps lie above the tolerance:
@@ -55,8 +55,8 @@ START_TEST(each_code_goes_backward)
 }
 END_TEST
 
-/* Four orders in the tolerance give at least three in the error: variable-order codes are not
- * exactly proportional. */
+/* Four orders in the tolerance give at least three in the error, because variable-order codes are
+ * not exactly proportional. */
 START_TEST(the_error_follows_the_tolerance)
 {
   problem *kepler = make("kepler", NULL);
@@ -67,7 +67,7 @@ START_TEST(the_error_follows_the_tolerance)
 }
 END_TEST
 
-/* Its mass depends on q: the inverse Legendre map and the blocks L_qv and L_vv are at work. */
+/* Its mass depends on q, so the inverse Legendre map and the blocks L_qv and L_vv are used. */
 START_TEST(each_code_meets_the_digits_of_the_double_pendulum)
 {
   static const double digits[] = {0.614904069579215873, 0.379818946939410850};
@@ -83,7 +83,8 @@ END_TEST
 
 /* ---- charged particles in a trap: sparse, with an unsymmetric L_qv ---- */
 
-/* Particle k has coordinates x = q[2k], y = q[2k+1]; L = v.v/2 + B (x vy - y vx)/2 - K q.q/2. */
+/* Particle k has coordinates x = q[2k], y = q[2k+1], with L = v.v/2 + B (x vy - y vx)/2 - K
+ * q.q/2. */
 typedef struct trap {
   int n;
   double B, K;
@@ -120,7 +121,7 @@ static int trap_hessian(double t, const double *q, const double *v, double *L_qq
   (void)t, (void)q, (void)v;
   for (int i = 0; i < own->n; i++) {
     L_qq[i] = -own->K;
-    L_qv[i] = i % 2 == 0 ? -0.5 * own->B : 0.5 * own->B; /* columns vx, vy: rows y, x */
+    L_qv[i] = i % 2 == 0 ? -0.5 * own->B : 0.5 * own->B; /* columns vx, vy with rows y, x */
     L_vv[i] = 1;
   }
   return 0;
@@ -149,7 +150,7 @@ static dvi_system *trapped(trap *own)
   return system;
 }
 
-/* z = x + iy solves z" + i B z' + K z = 0; the start is on the slow circle z = exp(i a t), a^2 + B
+/* z = x + iy solves z" + i B z' + K z = 0. The start is on the slow circle z = exp(i a t), a^2 + B
  * a = K, where all particles stay. */
 static double circle(const trap *own, double *q, double *p)
 {
@@ -199,7 +200,7 @@ START_TEST(ida_has_the_right_jacobian)
 }
 END_TEST
 
-/* The same for BDF: stiff springs at rest, pushed by the slow ones only. The right Jacobian takes
+/* For BDF the stiff springs are at rest, and only the slow ones push them. The right Jacobian takes
  * about 120 evaluations. */
 START_TEST(bdf_has_the_right_jacobian)
 {
@@ -216,7 +217,7 @@ START_TEST(bdf_has_the_right_jacobian)
 }
 END_TEST
 
-/* Forty coordinates: KLU in IDA and BDF. */
+/* Forty coordinates, with KLU in IDA and BDF. */
 START_TEST(sparse_systems_agree_with_the_explicit_code)
 {
   problem *fpu = make("fpu", "ell=20");
@@ -234,7 +235,7 @@ END_TEST
 
 /* ---- time in the Lagrangian, and no derivatives given ---- */
 
-/* L = exp(t) (v^2 - 2 q^2)/2, that is q" + q' + 2 q = 0: p = exp(t) v. */
+/* L = exp(t) (v^2 - 2 q^2)/2, with q" + q' + 2 q = 0 and p = exp(t) v. */
 static int damped_value(double t, const double *q, const double *v, double *L, void *user)
 {
   (void)user;
@@ -250,7 +251,7 @@ START_TEST(each_code_takes_a_lagrangian_with_time_and_without_derivatives)
       dvi_system_create(&(dvi_system_terms){.dimension = 1, .lagrangian = &lagrangian}, &system),
       DVI_OK);
   double q = 1, p = 1;
-  /* differences of differences: about 1e-8 is their floor */
+  /* differences of differences have a floor of about 1e-8 */
   const dvi_reference_options options = option(_i, 1e-7);
   ck_assert_msg(dvi_reference_solve(system, 0, 0.5, &q, &p, &options, NULL) == DVI_OK, "%s",
                 dvi_last_error());
@@ -292,20 +293,20 @@ START_TEST(ida_bounds_its_own_error)
 {
   const char *const names[] = {"oscillator", "kepler"};
   for (int k = 0; k < 2; k++) {
-    problem *of = make(names[k], NULL);
+    problem *model = make(names[k], NULL);
     for (int digits = 6; digits <= 12; digits++) {
       const double tolerance = pow(10, -digits);
       double q[2], p[2], exact_q[2], exact_p[2];
       dvi_reference_report report;
       const dvi_reference_options options = option(DVI_IDA, tolerance);
-      start(of, q, p);
-      ck_assert_int_eq(dvi_reference_judge(of->system, 0, 5, q, p, &options, &report), DVI_OK);
-      ck_assert_int_eq(of->exact(of, 5, exact_q, exact_p), 0);
-      ck_assert_msg(distance(of->nq, q, exact_q) <= 5 * report.error + 1e-14,
+      start(model, q, p);
+      ck_assert_int_eq(dvi_reference_judge(model->system, 0, 5, q, p, &options, &report), DVI_OK);
+      ck_assert_int_eq(model->exact(model, 5, exact_q, exact_p), 0);
+      ck_assert_msg(distance(model->nq, q, exact_q) <= 5 * report.error + 1e-14,
                     "%s at %g: error %g, claimed %g", names[k], tolerance,
-                    distance(of->nq, q, exact_q), report.error);
+                    distance(model->nq, q, exact_q), report.error);
     }
-    problem_destroy(&of);
+    problem_destroy(&model);
   }
 }
 END_TEST
@@ -395,15 +396,15 @@ START_TEST(tolerances_down_to_1e_14_work_or_are_refused_in_words)
   const char *const names[] = {"oscillator", "kepler", "double-pendulum", "stiff-pendulum"};
   int worked = 0;
   for (int k = 0; k < 4; k++) {
-    problem *of = make(names[k], NULL);
+    problem *model = make(names[k], NULL);
     double q[2], p[2];
-    start(of, q, p);
+    start(model, q, p);
     const dvi_reference_options options = option(_i, 1e-14);
-    const dvi_status status = dvi_reference_judge(of->system, 0, 1, q, p, &options, NULL);
+    const dvi_status status = dvi_reference_judge(model->system, 0, 1, q, p, &options, NULL);
     ck_assert(status == DVI_OK || (status == DVI_REFERENCE_FAILED &&
                                    strstr(dvi_last_error(), "stopped at t = ") != NULL));
     worked += status == DVI_OK;
-    problem_destroy(&of);
+    problem_destroy(&model);
   }
   ck_assert_int_ge(worked, 3); /* IDA refuses the double pendulum */
 }

@@ -177,7 +177,7 @@ static void emit_main(dvi__emitter *out, const results *all, const double *const
 
 static void write_program(dvi__function *function, const results *all, const double *const *x)
 {
-  FILE *file = fopen(in_folder("emitted.c"), "w");
+  FILE *file = fopen(path_in_folder("emitted.c"), "w");
   ck_assert_ptr_nonnull(file);
   dvi__emitter out = {.write = write_text, .user = file};
   dvi__emit_begin(&out);
@@ -196,10 +196,10 @@ static void check_output(const results *all)
   (void)snprintf(command, sizeof command,
                  "%s -std=c11 -O2 -Wall -Wextra -Wconversion -Wpedantic -Wno-unknown-pragmas "
                  "-Werror %s -o %s -lm && %s >%s",
-                 DVI_C_COMPILER, in_folder("emitted.c"), in_folder("emitted"), in_folder("emitted"),
-                 in_folder("numbers"));
+                 DVI_C_COMPILER, path_in_folder("emitted.c"), path_in_folder("emitted"),
+                 path_in_folder("emitted"), path_in_folder("numbers"));
   ck_assert_int_eq(system(command), 0); /* NOLINT(cert-env33-c): the compiler of the build */
-  FILE *file = fopen(in_folder("numbers"), "r");
+  FILE *file = fopen(path_in_folder("numbers"), "r");
   ck_assert_ptr_nonnull(file);
   char line[80];
   for (int i = 0; i < all->count; i++) {

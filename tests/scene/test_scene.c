@@ -78,7 +78,7 @@ static void systems_agree(void)
   same(hand->nv, p[0], p[1], 100, "p");
 }
 
-static dvi_integrator *started(const dvi_system *system, const char *method)
+static dvi_integrator *start_integrator(const dvi_system *system, const char *method)
 {
   dvi_integrator *integrator;
   ck_assert_msg(dvi_integrator_create(system, method, &integrator) == DVI_OK, "%s",
@@ -105,8 +105,8 @@ static void step_agrees(dvi_integrator *mine, dvi_integrator *theirs, double t, 
 static void steps_agree(const char *method, double h)
 {
   double q[SIZE_MAX_OF_STATE], p[SIZE_MAX_OF_STATE];
-  dvi_integrator *mine = started(dvi_scene_system(scene), method),
-                 *theirs = started(hand->system, method);
+  dvi_integrator *mine = start_integrator(dvi_scene_system(scene), method),
+                 *theirs = start_integrator(hand->system, method);
   memcpy(q, hand->q, (size_t)hand->nq * sizeof *q);
   memcpy(p, hand->p, (size_t)hand->nv * sizeof *p);
   for (int k = 0; k < STEPS; k++) step_agrees(mine, theirs, k * h, h, q, p);
@@ -163,7 +163,7 @@ START_TEST(verlet_asks_for_one_gradient_a_step_and_nothing_else)
 {
   dvi_counters counters;
   open_both(kepler, "kepler");
-  dvi_integrator *integrator = started(dvi_scene_system(scene), "verlet");
+  dvi_integrator *integrator = start_integrator(dvi_scene_system(scene), "verlet");
   const long before = facts()->gradient_points;
   for (int k = 0; k < STEPS; k++) ck_assert_int_eq(dvi_integrator_step(integrator, 0.05), DVI_OK);
   dvi_integrator_counters(integrator, &counters);
@@ -183,7 +183,7 @@ START_TEST(explicit_methods_derive_nothing_twice_and_have_no_multiplier)
   open_both(kepler, "kepler");
   ck_assert_int_eq(dvi_system_constraint_count(dvi_scene_system(scene)), 0);
   for (int k = 0; k < 2; k++) {
-    dvi_integrator *integrator = started(dvi_scene_system(scene), method[k]);
+    dvi_integrator *integrator = start_integrator(dvi_scene_system(scene), method[k]);
     for (int i = 0; i < STEPS; i++) ck_assert_int_eq(dvi_integrator_step(integrator, 0.05), DVI_OK);
     dvi_integrator_counters(integrator, &counters);
     ck_assert_int_eq(
@@ -202,7 +202,7 @@ START_TEST(the_energy_is_evaluated_where_it_is_asked_for)
   double value[4], one;
   open_both(kepler, "kepler");
   for (int k = 0; k < 3; k++) {
-    dvi_integrator *integrator = started(dvi_scene_system(scene), method[k]);
+    dvi_integrator *integrator = start_integrator(dvi_scene_system(scene), method[k]);
     const long before = facts()->value_points;
     for (int i = 0; i < STEPS; i++) ck_assert_int_eq(dvi_integrator_step(integrator, 0.05), DVI_OK);
     for (int i = 1; i < 4; i++)

@@ -15,7 +15,7 @@ enum { MESSAGE_SIZE = 2048 };
 
 static void write_file(const char *name, const char *text)
 {
-  write_bytes(in_folder(name), (const unsigned char *)text, strlen(text));
+  write_bytes(path_in_folder(name), (const unsigned char *)text, strlen(text));
 }
 
 /* The folder holds outside.tableau, and scenes/ with ralston.tableau, links and below/, which holds
@@ -24,24 +24,24 @@ static void make_files(void)
 {
   static const char tableau[] = "order 2\nc 0 2/3\na\na 2/3\nb 1/4 3/4\n";
   make_folder();
-  ck_assert_int_eq(mkdir(in_folder("scenes"), 0700), 0);
-  ck_assert_int_eq(mkdir(in_folder("scenes/below"), 0700), 0);
-  ck_assert_int_eq(mkdir(in_folder("scenes-beside"), 0700), 0);
+  ck_assert_int_eq(mkdir(path_in_folder("scenes"), 0700), 0);
+  ck_assert_int_eq(mkdir(path_in_folder("scenes/below"), 0700), 0);
+  ck_assert_int_eq(mkdir(path_in_folder("scenes-beside"), 0700), 0);
   write_file("outside.tableau", tableau);
   write_file("scenes-beside/ralston.tableau", tableau);
   write_file("scenes/ralston.tableau", tableau);
   write_file("scenes/below/ralston.tableau", tableau);
-  ck_assert_int_eq(symlink("../ralston.tableau", in_folder("scenes/below/inside.tableau")), 0);
-  ck_assert_int_eq(symlink("../outside.tableau", in_folder("scenes/link.tableau")), 0);
-  ck_assert_int_eq(symlink("/etc/passwd", in_folder("scenes/passwd")), 0);
-  ck_assert_int_eq(symlink("..", in_folder("scenes/up")), 0);
-  ck_assert_int_eq(symlink("scenes", in_folder("by-link")), 0);
+  ck_assert_int_eq(symlink("../ralston.tableau", path_in_folder("scenes/below/inside.tableau")), 0);
+  ck_assert_int_eq(symlink("../outside.tableau", path_in_folder("scenes/link.tableau")), 0);
+  ck_assert_int_eq(symlink("/etc/passwd", path_in_folder("scenes/passwd")), 0);
+  ck_assert_int_eq(symlink("..", path_in_folder("scenes/up")), 0);
+  ck_assert_int_eq(symlink("scenes", path_in_folder("by-link")), 0);
 }
 
 static void remove_files(void)
 {
   char command[512];
-  (void)snprintf(command, sizeof command, "rm -r %s*", in_folder(""));
+  (void)snprintf(command, sizeof command, "rm -r %s*", path_in_folder(""));
   ck_assert_int_eq(system(command), 0); /* NOLINT(cert-env33-c): a folder of the test's own */
   remove_folder();
 }
@@ -55,7 +55,7 @@ static dvi_status read_scene(const char *scene_path, const char *method, dvi_sce
                  "%s\nstep: 0.1\nuntil: 2\n",
                  method);
   write_file(scene_path, text);
-  return dvi_scene_read(in_folder(scene_path), 0, NULL, scene, message, MESSAGE_SIZE);
+  return dvi_scene_read(path_in_folder(scene_path), 0, NULL, scene, message, MESSAGE_SIZE);
 }
 
 static const struct {
@@ -123,7 +123,7 @@ START_TEST(a_folder_with_a_comma_is_refused)
 {
   char message[MESSAGE_SIZE];
   dvi_scene *scene;
-  ck_assert_int_eq(mkdir(in_folder("with,comma"), 0700), 0);
+  ck_assert_int_eq(mkdir(path_in_folder("with,comma"), 0700), 0);
   write_file("with,comma/ralston.tableau", "order 1\na\nb 1\n");
   ck_assert_int_eq(
       read_scene("with,comma/s.yaml", "shooting:tableau=ralston.tableau", &scene, message),
@@ -141,10 +141,11 @@ START_TEST(a_text_has_the_folder_of_its_name)
       "shooting:tableau=ralston.tableau\nstep: 1\nuntil: 2\n";
   char message[MESSAGE_SIZE], method[512];
   dvi_scene *scene;
-  ck_assert_int_eq(dvi_scene_parse(in_folder("scenes/none.yaml"), text, strlen(text), 0, NULL,
+  ck_assert_int_eq(dvi_scene_parse(path_in_folder("scenes/none.yaml"), text, strlen(text), 0, NULL,
                                    &scene, message, MESSAGE_SIZE),
                    DVI_OK);
-  (void)snprintf(method, sizeof method, "shooting:tableau=%s", in_folder("scenes/ralston.tableau"));
+  (void)snprintf(method, sizeof method, "shooting:tableau=%s",
+                 path_in_folder("scenes/ralston.tableau"));
   ck_assert_str_eq(dvi_scene_plan_of(scene)->method, method);
   dvi_scene_destroy(&scene);
   ck_assert_int_eq(

@@ -53,10 +53,10 @@ START_TEST(scenes_and_settings_are_read_and_written_the_same)
 {
   static collected point, comma;
   emit("m=0.375", &point);
-  set_comma();
+  set_comma_locale();
   emit("m=0.375", &comma);
   ck_assert_str_eq(localeconv()->decimal_point, ",");
-  set_point();
+  set_point_locale();
   ck_assert_uint_eq(comma.size, point.size);
   ck_assert_str_eq(comma.text, point.text);
   ck_assert_ptr_nonnull(strstr(point.text, "0.375"));
@@ -76,9 +76,9 @@ START_TEST(errors_are_told_the_same)
 {
   dvi_scene *scene;
   char message[MESSAGE_SIZE];
-  set_comma();
+  set_comma_locale();
   ck_assert_int_ne(parse(broken[_i].text, broken[_i].setting, &scene, message), DVI_OK);
-  set_point();
+  set_point_locale();
   ck_assert_str_eq(message, broken[_i].message);
 }
 END_TEST
@@ -92,7 +92,7 @@ START_TEST(what_is_not_finite_is_told_the_same)
   dvi_scene *scene;
   dvi_integrator *integrator;
   char message[MESSAGE_SIZE], sentence[MESSAGE_SIZE];
-  set_comma();
+  set_comma_locale();
   ck_assert_msg(parse(text, NULL, &scene, message) == DVI_OK, "%s", message);
   ck_assert_int_eq(dvi_integrator_create(dvi_scene_system(scene), "verlet", &integrator), DVI_OK);
   dvi_status status = dvi_integrator_start(integrator, 0.25, &q, &p);
@@ -100,7 +100,7 @@ START_TEST(what_is_not_finite_is_told_the_same)
   (void)snprintf(sentence, sizeof sentence, "%s", dvi_last_error());
   dvi_integrator_destroy(&integrator);
   dvi_scene_destroy(&scene);
-  set_point();
+  set_point_locale();
   ck_assert_int_ne(status, DVI_OK);
   ck_assert_msg(strstr(sentence, "0.25") != NULL && strstr(sentence, "0,") == NULL, "%s", sentence);
 }

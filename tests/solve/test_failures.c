@@ -1,5 +1,5 @@
-/* Equations whose callbacks fail or give NaN: every rung ends, says so, prints nothing, and works
- * again. */
+/* If callbacks of equations fail or give NaN, every rung ends with a sentence, prints nothing, and
+ * works again. */
 #define _POSIX_C_SOURCE 200809L /* dup, fileno */
 #include <float.h>
 #include <math.h>
@@ -13,7 +13,7 @@
 static const dvi_status answers[] = {DVI_CALLBACK_RETRY, DVI_CALLBACK_FAILED, DVI_NOT_FINITE};
 enum { ANSWERS = sizeof answers / sizeof *answers };
 
-/* A fatal answer comes through every rung as it is; one that a smaller step might mend may become
+/* Every rung returns a fatal status as it is. A failure that a smaller step might mend may become
  * "not solved". */
 static void comes_through(dvi_status status, dvi_status answer)
 {
@@ -27,16 +27,16 @@ START_TEST(a_residual_that_fails_ends_the_solve)
 {
   const dvi_status answer = answers[_i % ANSWERS];
   for (long at = 1; at <= 3; at++) {
-    chain c;
-    bench b;
-    double x[SIZE] = {0};
-    make_chain(0.2, &c);
-    c.residual_fault = (fault){at, answer, 0};
-    for_chain(&c, &b);
-    comes_through(run_rung(&b, rungs[_i / ANSWERS], x), answer);
+    equation_chain chain;
+    solver_bench bench;
+    double x[CHAIN_SIZE] = {0};
+    make_chain(0.2, &chain);
+    chain.residual_fault = (callback_fault){at, answer, 0};
+    create_chain_solver(&chain, &bench);
+    comes_through(solve_by_rung(&bench, rungs[_i / ANSWERS], x), answer);
     /* after a fatal answer nobody calls again */
-    ck_assert_int_le(c.residuals, answer < 0 ? at : 100);
-    free_bench(&b, &c);
+    ck_assert_int_le(chain.residuals, answer < 0 ? at : 100);
+    destroy_solver_bench(&bench, &chain);
   }
 }
 END_TEST
@@ -44,15 +44,15 @@ END_TEST
 START_TEST(a_jacobian_that_fails_ends_the_solve)
 {
   const dvi_status answer = answers[_i % ANSWERS];
-  chain c;
-  bench b;
-  double x[SIZE] = {0};
-  make_chain(0.2, &c);
-  c.jacobian_fault = (fault){1, answer, 0};
-  for_chain(&c, &b);
-  comes_through(run_rung(&b, rungs[1 + _i / ANSWERS], x), answer);
-  ck_assert_int_le(c.jacobians, 10);
-  free_bench(&b, &c);
+  equation_chain chain;
+  solver_bench bench;
+  double x[CHAIN_SIZE] = {0};
+  make_chain(0.2, &chain);
+  chain.jacobian_fault = (callback_fault){1, answer, 0};
+  create_chain_solver(&chain, &bench);
+  comes_through(solve_by_rung(&bench, rungs[1 + _i / ANSWERS], x), answer);
+  ck_assert_int_le(chain.jacobians, 10);
+  destroy_solver_bench(&bench, &chain);
 }
 END_TEST
 
@@ -69,15 +69,15 @@ static double reciprocal(double x)
 /* A recoverable answer at a trial point makes the search shorten its step. */
 START_TEST(line_search_steps_back_from_where_the_residual_does_not_exist)
 {
-  single s = {logarithm, reciprocal, 1, 0, 0};
-  bench b;
+  single_equation equation = {logarithm, reciprocal, 1, 0, 0};
+  solver_bench bench;
   double x = 5; /* Newton's first point is 5 - 5 log 5 = -3.05 */
-  for_single(&s, &b);
-  ck_assert_int_gt(run_rung(&b, DVI__NEWTON, &x), 0);
+  create_single_solver(&equation, &bench);
+  ck_assert_int_gt(solve_by_rung(&bench, DVI__NEWTON, &x), 0);
   x = 5;
-  ck_assert_msg(run_rung(&b, DVI__KINSOL, &x) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(solve_by_rung(&bench, DVI__KINSOL, &x) == DVI_OK, "%s", dvi_last_error());
   ck_assert_double_eq_tol(x, 1, 2 * DBL_EPSILON);
-  free_bench(&b, NULL);
+  destroy_solver_bench(&bench, NULL);
 }
 END_TEST
 
@@ -86,15 +86,15 @@ END_TEST
 START_TEST(nan_is_never_a_solution)
 {
   for (long at = 1; at <= 3; at++) {
-    chain c;
-    bench b;
-    double x[SIZE] = {0};
-    make_chain(0.2, &c);
-    c.residual_fault = (fault){at, DVI_OK, 1};
-    for_chain(&c, &b);
-    ck_assert_int_gt(run_rung(&b, rungs[_i], x), 0);
-    ck_assert_int_le(c.residuals, 2000);
-    free_bench(&b, &c);
+    equation_chain chain;
+    solver_bench bench;
+    double x[CHAIN_SIZE] = {0};
+    make_chain(0.2, &chain);
+    chain.residual_fault = (callback_fault){at, DVI_OK, 1};
+    create_chain_solver(&chain, &bench);
+    ck_assert_int_gt(solve_by_rung(&bench, rungs[_i], x), 0);
+    ck_assert_int_le(chain.residuals, 2000);
+    destroy_solver_bench(&bench, &chain);
   }
 }
 END_TEST
@@ -113,42 +113,43 @@ static double tiny_slope(double x)
 
 START_TEST(a_correction_that_overflows_is_a_failure)
 {
-  single s = {huge, tiny_slope, 1e-100, -HUGE_VAL, 0};
-  bench b;
+  single_equation equation = {huge, tiny_slope, 1e-100, -HUGE_VAL, 0};
+  solver_bench bench;
   double x = 1;
-  for_single(&s, &b);
-  failed_with(run_rung(&b, rungs[_i], &x), DVI_NOT_CONVERGED);
-  free_bench(&b, NULL);
+  create_single_solver(&equation, &bench);
+  check_failure(solve_by_rung(&bench, rungs[_i], &x), DVI_NOT_CONVERGED);
+  destroy_solver_bench(&bench, NULL);
 }
 END_TEST
 
 START_TEST(nan_in_a_jacobian_is_a_failure)
 {
-  chain c;
-  bench b;
-  double x[SIZE] = {0};
-  make_chain(0.2, &c);
-  c.jacobian_fault = (fault){1, DVI_OK, 1};
-  for_chain(&c, &b);
-  ck_assert_int_gt(run_rung(&b, rungs[1 + _i], x), 0);
-  free_bench(&b, &c);
+  equation_chain chain;
+  solver_bench bench;
+  double x[CHAIN_SIZE] = {0};
+  make_chain(0.2, &chain);
+  chain.jacobian_fault = (callback_fault){1, DVI_OK, 1};
+  create_chain_solver(&chain, &bench);
+  ck_assert_int_gt(solve_by_rung(&bench, rungs[1 + _i], x), 0);
+  destroy_solver_bench(&bench, &chain);
 }
 END_TEST
 
 START_TEST(a_solver_works_again_after_a_failure)
 {
-  chain c;
-  bench b;
-  double x[SIZE] = {0};
-  make_chain(0.2, &c);
-  c.residual_fault = (fault){1, answers[_i % ANSWERS], 1};
-  for_chain(&c, &b);
-  ck_assert_int_ne(run_rung(&b, rungs[_i / ANSWERS], x), DVI_OK);
-  c.residual_fault.at = 0;
+  equation_chain chain;
+  solver_bench bench;
+  double x[CHAIN_SIZE] = {0};
+  make_chain(0.2, &chain);
+  chain.residual_fault = (callback_fault){1, answers[_i % ANSWERS], 1};
+  create_chain_solver(&chain, &bench);
+  ck_assert_int_ne(solve_by_rung(&bench, rungs[_i / ANSWERS], x), DVI_OK);
+  chain.residual_fault.at = 0;
   memset(x, 0, sizeof x);
-  ck_assert_msg(run_rung(&b, rungs[_i / ANSWERS], x) == DVI_OK, "%s", dvi_last_error());
-  for (int i = 0; i < SIZE; i++) ck_assert_double_eq_tol(x[i], c.solution[i], 8 * DBL_EPSILON);
-  free_bench(&b, &c);
+  ck_assert_msg(solve_by_rung(&bench, rungs[_i / ANSWERS], x) == DVI_OK, "%s", dvi_last_error());
+  for (int i = 0; i < CHAIN_SIZE; i++)
+    ck_assert_double_eq_tol(x[i], chain.solution[i], 8 * DBL_EPSILON);
+  destroy_solver_bench(&bench, &chain);
 }
 END_TEST
 
@@ -159,19 +160,20 @@ static void fail_in_every_way(void)
 {
   for (int rung = 0; rung < 3; rung++)
     for (int way = 0; way < 6; way++) {
-      single s = {way == 0 ? never_zero : arctangent, way == 1 ? flat_slope : arctangent_slope,
-                  1e-3, -HUGE_VAL, 0};
-      chain c;
-      bench b;
-      double x[SIZE] = {3, 3, 3, 3, 3};
-      make_chain(0.2, &c);
-      if (way >= 3) c.residual_fault = (fault){1 + way % 2, answers[way % ANSWERS], way == 5};
+      single_equation equation = {way == 0 ? never_zero : arctangent,
+                                  way == 1 ? flat_slope : arctangent_slope, 1e-3, -HUGE_VAL, 0};
+      equation_chain chain;
+      solver_bench bench;
+      double x[CHAIN_SIZE] = {3, 3, 3, 3, 3};
+      make_chain(0.2, &chain);
+      if (way >= 3)
+        chain.residual_fault = (callback_fault){1 + way % 2, answers[way % ANSWERS], way == 5};
       if (way < 3)
-        for_single(&s, &b);
+        create_single_solver(&equation, &bench);
       else
-        for_chain(&c, &b);
-      (void)run_rung(&b, rungs[rung], x);
-      free_bench(&b, &c);
+        create_chain_solver(&chain, &bench);
+      (void)solve_by_rung(&bench, rungs[rung], x);
+      destroy_solver_bench(&bench, &chain);
     }
 }
 

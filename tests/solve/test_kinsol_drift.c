@@ -1,6 +1,6 @@
 /* labels: slow */
-/* Why kinsol.c sets every tolerance: KINSOL as it comes makes the midpoint rule on the pendulum
- * drift in energy, which the library's midpoint rule does not. */
+/* Shows why kinsol.c sets every tolerance. With KINSOL's defaults the midpoint rule on the pendulum
+ * drifts in energy, and the library's midpoint rule does not. */
 #include <kinsol/kinsol.h>
 #include <math.h>
 #include <nvector/nvector_serial.h>
@@ -27,8 +27,8 @@ typedef struct plain {
   double q, p, last_q; /* the step's start, and that of the step before */
 } plain;
 
-/* The library's own equation for this rule: x is the new angle, (x - q)/h - p - h/2 sin((q + x)/2)
- * = 0, from V = cos q. */
+/* The library's own equation for this rule, with the new angle x, is (x - q)/h - p - h/2 sin((q +
+ * x)/2) = 0, from V = cos q. */
 static int residual(N_Vector x, N_Vector r, void *user)
 {
   const plain *k = user;
@@ -101,34 +101,34 @@ static void tell(const char *who, const dvi_drift_fit *fit)
 
 START_TEST(kinsol_as_it_comes_drifts)
 {
-  problem *of = made_problem("pendulum", NULL);
+  problem *model = create_problem("pendulum", NULL);
   plain k;
   dvi_drift drift;
   dvi_drift_fit fit;
   dvi_drift_init(&drift);
-  make_plain(of->q[0], of->p[0], &k);
+  make_plain(model->q[0], model->p[0], &k);
   for (long i = 0; i <= STEPS; i++) {
     dvi_drift_add(&drift, (double)i * h, energy(k.q, k.p));
     if (step_plainly(&k) < 0) ck_abort_msg("KINSOL failed in step %ld", i);
   }
   dvi_drift_result(&drift, &fit);
   tell("KINSOL's defaults", &fit);
-  /* -3.9e-2 with SUNDIALS 6.4.1; other guesses gave -1e-2 to 3e-2 */
+  /* -3.9e-2 with SUNDIALS 6.4.1, other guesses gave -1e-2 to 3e-2 */
   ck_assert_double_gt(fabs(fit.change), 1e-4);
   ck_assert_double_gt(fit.significance, 10);
   free_plain(&k);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* The energy swings by 8.2e-4, for it is a modified energy, h^2 away, that the rule keeps. The run
- * is no whole number of swings; that leaves the fitted line a change far below 1e-6. */
+/* The energy swings by 8.2e-4, for the rule keeps a modified energy, h^2 away. The run is no whole
+ * number of swings, which leaves the fitted line a change far below 1e-6. */
 START_TEST(the_library_s_midpoint_rule_does_not)
 {
   static const char *const methods[] = {"midpoint", "midpoint:solver=newton",
                                         "midpoint:solver=kinsol"};
-  problem *of = made_problem("pendulum", NULL);
-  dvi_integrator *integrator = started(of, methods[_i]);
+  problem *model = create_problem("pendulum", NULL);
+  dvi_integrator *integrator = start_integrator(model, methods[_i]);
   dvi_drift drift;
   dvi_drift_fit fit;
   dvi_drift_init(&drift);
@@ -143,7 +143,7 @@ START_TEST(the_library_s_midpoint_rule_does_not)
   ck_assert_double_lt(fit.significance, 3);
   ck_assert_double_eq_tol(fit.largest, 8.2e-4, 2e-5);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

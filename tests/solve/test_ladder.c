@@ -1,4 +1,4 @@
-/* What each rung of the ladder solves, on small equations made up here, and when it gives up. */
+/* The rungs of the ladder on small equations: the ones that each solves, and when each gives up. */
 #include <float.h>
 #include <math.h>
 
@@ -7,63 +7,64 @@
 
 START_TEST(every_rung_finds_the_solution_to_roundoff)
 {
-  chain c;
-  bench b;
-  double x[SIZE] = {0};
-  make_chain(0.2, &c);
-  for_chain(&c, &b);
-  ck_assert_msg(run_rung(&b, rungs[_i], x) == DVI_OK, "%s", dvi_last_error());
+  equation_chain chain;
+  solver_bench bench;
+  double x[CHAIN_SIZE] = {0};
+  make_chain(0.2, &chain);
+  create_chain_solver(&chain, &bench);
+  ck_assert_msg(solve_by_rung(&bench, rungs[_i], x) == DVI_OK, "%s", dvi_last_error());
   /* numbers up to 2 */
-  for (int i = 0; i < SIZE; i++) ck_assert_double_eq_tol(x[i], c.solution[i], 8 * DBL_EPSILON);
-  ck_assert_int_ge(b.report.iterations, 2);
-  free_bench(&b, &c);
+  for (int i = 0; i < CHAIN_SIZE; i++)
+    ck_assert_double_eq_tol(x[i], chain.solution[i], 8 * DBL_EPSILON);
+  ck_assert_int_ge(bench.report.iterations, 2);
+  destroy_solver_bench(&bench, &chain);
 }
 END_TEST
 
 START_TEST(counters_count_what_was_called)
 {
-  chain c;
-  bench b;
-  double x[SIZE] = {0};
-  make_chain(0.2, &c);
-  for_chain(&c, &b);
-  ck_assert_int_eq(b.counters.symbolic, 0); /* nothing is made before it is needed */
-  ck_assert_int_eq(run_rung(&b, rungs[_i], x), DVI_OK);
-  ck_assert_int_eq(b.counters.residuals, c.residuals);
-  ck_assert_int_eq(b.counters.jacobians, c.jacobians);
-  ck_assert_int_eq(b.counters.factorizations, c.jacobians);
-  ck_assert_int_eq(b.counters.symbolic, rungs[_i] != DVI__FIXED_POINT);
-  ck_assert_int_eq(b.counters.preparations, rungs[_i] == DVI__FIXED_POINT ? 0
-                                            : rungs[_i] == DVI__KINSOL    ? 2
-                                                                          : 1);
-  ck_assert_int_eq(b.counters.kinsols, rungs[_i] == DVI__KINSOL);
+  equation_chain chain;
+  solver_bench bench;
+  double x[CHAIN_SIZE] = {0};
+  make_chain(0.2, &chain);
+  create_chain_solver(&chain, &bench);
+  ck_assert_int_eq(bench.counters.symbolic, 0); /* nothing is made before it is needed */
+  ck_assert_int_eq(solve_by_rung(&bench, rungs[_i], x), DVI_OK);
+  ck_assert_int_eq(bench.counters.residuals, chain.residuals);
+  ck_assert_int_eq(bench.counters.jacobians, chain.jacobians);
+  ck_assert_int_eq(bench.counters.factorizations, chain.jacobians);
+  ck_assert_int_eq(bench.counters.symbolic, rungs[_i] != DVI__FIXED_POINT);
+  ck_assert_int_eq(bench.counters.preparations, rungs[_i] == DVI__FIXED_POINT ? 0
+                                                : rungs[_i] == DVI__KINSOL    ? 2
+                                                                              : 1);
+  ck_assert_int_eq(bench.counters.kinsols, rungs[_i] == DVI__KINSOL);
   if (rungs[_i] == DVI__FIXED_POINT) {
-    ck_assert_int_eq(c.jacobians, 0);
-    ck_assert_int_eq(b.report.iterations, c.residuals);
-    ck_assert_int_eq(c.chords, c.residuals);
+    ck_assert_int_eq(chain.jacobians, 0);
+    ck_assert_int_eq(bench.report.iterations, chain.residuals);
+    ck_assert_int_eq(chain.chords, chain.residuals);
   } else {
-    ck_assert_int_ge(c.jacobians, 1);
-    ck_assert_int_eq(c.chords, 0);
-    ck_assert_int_ge(b.counters.solves, 2);
+    ck_assert_int_ge(chain.jacobians, 1);
+    ck_assert_int_eq(chain.chords, 0);
+    ck_assert_int_ge(bench.counters.solves, 2);
   }
-  free_bench(&b, &c);
+  destroy_solver_bench(&bench, &chain);
 }
 END_TEST
 
-/* Equations of which the Jacobian hardly changes: the factor of the first iteration serves the
+/* The Jacobian of these equations hardly changes, so the factor of the first iteration serves the
  * others. */
 START_TEST(newton_keeps_a_factor_that_works)
 {
-  chain c;
-  bench b;
-  double x[SIZE];
-  make_chain(0.2, &c);
-  for (int i = 0; i < SIZE; i++) x[i] = c.solution[i] + 1e-3 * (1 + i % 2);
-  for_chain(&c, &b);
-  ck_assert_int_eq(run_rung(&b, DVI__NEWTON, x), DVI_OK);
-  ck_assert_int_ge(c.residuals, 4);
-  ck_assert_int_le(c.jacobians, 2);
-  free_bench(&b, &c);
+  equation_chain chain;
+  solver_bench bench;
+  double x[CHAIN_SIZE];
+  make_chain(0.2, &chain);
+  for (int i = 0; i < CHAIN_SIZE; i++) x[i] = chain.solution[i] + 1e-3 * (1 + i % 2);
+  create_chain_solver(&chain, &bench);
+  ck_assert_int_eq(solve_by_rung(&bench, DVI__NEWTON, x), DVI_OK);
+  ck_assert_int_ge(chain.residuals, 4);
+  ck_assert_int_le(chain.jacobians, 2);
+  destroy_solver_bench(&bench, &chain);
 }
 END_TEST
 
@@ -71,34 +72,35 @@ END_TEST
  * time. */
 START_TEST(line_search_finds_what_newton_overshoots)
 {
-  single s = {arctangent, arctangent_slope, 1, -HUGE_VAL, 0};
-  bench b;
+  single_equation equation = {arctangent, arctangent_slope, 1, -HUGE_VAL, 0};
+  solver_bench bench;
   double x = 3;
-  for_single(&s, &b);
-  failed_with(run_rung(&b, DVI__NEWTON, &x), DVI_NOT_CONVERGED);
-  ck_assert_int_eq(b.counters.kinsols, 0);
+  create_single_solver(&equation, &bench);
+  check_failure(solve_by_rung(&bench, DVI__NEWTON, &x), DVI_NOT_CONVERGED);
+  ck_assert_int_eq(bench.counters.kinsols, 0);
   x = 3;
-  ck_assert_msg(run_rung(&b, DVI__KINSOL, &x) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(solve_by_rung(&bench, DVI__KINSOL, &x) == DVI_OK, "%s", dvi_last_error());
   ck_assert_double_eq_tol(x, 0, 1e-15);
-  ck_assert_int_eq(b.counters.kinsols, 1);
-  free_bench(&b, NULL);
+  ck_assert_int_eq(bench.counters.kinsols, 1);
+  destroy_solver_bench(&bench, NULL);
 }
 END_TEST
 
-/* A start from which Newton's method might end at another solution: for R = x^2 - 1 from 0.3 it
- * jumps to 1.8, and then farther. */
+/* From this start Newton's method might end at another solution. For R = x^2 - 1 from 0.3 it jumps
+ * to 1.8, and then farther. */
 START_TEST(a_wary_newton_refuses_a_misleading_guess)
 {
-  single s = {parabola, parabola_slope, 1, -HUGE_VAL, 0};
-  bench b;
+  single_equation equation = {parabola, parabola_slope, 1, -HUGE_VAL, 0};
+  solver_bench bench;
   double x = 0.3;
-  for_single(&s, &b);
-  failed_with(dvi__solve(b.solver, DVI__NEWTON, 1.0, 1, 0, &x, &b.report), DVI_NOT_CONVERGED);
-  ck_assert_int_le(s.residuals, 3);
+  create_single_solver(&equation, &bench);
+  check_failure(dvi__solve(bench.solver, DVI__NEWTON, 1.0, 1, 0, &x, &bench.report),
+                DVI_NOT_CONVERGED);
+  ck_assert_int_le(equation.residuals, 3);
   x = 0.3;
-  ck_assert_int_eq(dvi__solve(b.solver, DVI__NEWTON, 1.0, 0, 0, &x, &b.report), DVI_OK);
+  ck_assert_int_eq(dvi__solve(bench.solver, DVI__NEWTON, 1.0, 0, 0, &x, &bench.report), DVI_OK);
   ck_assert_double_eq_tol(x, -1, 2 * DBL_EPSILON); /* the farther one of the two */
-  free_bench(&b, NULL);
+  destroy_solver_bench(&bench, NULL);
 }
 END_TEST
 
@@ -117,32 +119,35 @@ static double slow_slope(double x)
 
 START_TEST(slow_contraction_is_given_up_unless_patient)
 {
-  single s = {slow, slow_slope, 10, -HUGE_VAL, 0};
-  bench b;
+  single_equation equation = {slow, slow_slope, 10, -HUGE_VAL, 0};
+  solver_bench bench;
   double x = 0, judge = 0;
-  for_single(&s, &b);
-  failed_with(dvi__solve(b.solver, DVI__FIXED_POINT, 1.0, 0, 0, &x, &b.report), DVI_NOT_CONVERGED);
-  ck_assert_int_le(s.residuals, 5); /* the first ratio of two corrections tells */
+  create_single_solver(&equation, &bench);
+  check_failure(dvi__solve(bench.solver, DVI__FIXED_POINT, 1.0, 0, 0, &x, &bench.report),
+                DVI_NOT_CONVERGED);
+  ck_assert_int_le(equation.residuals, 5); /* the first ratio of two corrections tells */
   x = 0;
-  ck_assert_msg(dvi__solve(b.solver, DVI__FIXED_POINT, 1.0, 0, 1, &x, &b.report) == DVI_OK, "%s",
-                dvi_last_error());
-  ck_assert_int_gt(b.report.iterations, 60);
-  ck_assert_int_eq(run_rung(&b, DVI__NEWTON, &judge), DVI_OK);
+  ck_assert_msg(dvi__solve(bench.solver, DVI__FIXED_POINT, 1.0, 0, 1, &x, &bench.report) == DVI_OK,
+                "%s", dvi_last_error());
+  ck_assert_int_gt(bench.report.iterations, 60);
+  ck_assert_int_eq(solve_by_rung(&bench, DVI__NEWTON, &judge), DVI_OK);
   /* The last correction, 4 epsilons of x or less, is 0.177 of the distance that is left. */
   ck_assert_double_eq_tol(x, judge, 4 / 0.177 * DBL_EPSILON);
-  free_bench(&b, NULL);
+  destroy_solver_bench(&bench, NULL);
 }
 END_TEST
 
 START_TEST(divergence_ends_even_patience)
 {
-  single s = {slow, slow_slope, 0.5, -HUGE_VAL, 0}; /* 1 - 1.77/0.5: grows 2.5 times an iteration */
-  bench b;
+  single_equation equation = {slow, slow_slope, 0.5, -HUGE_VAL,
+                              0}; /* 1 - 1.77/0.5, so it grows 2.5 times an iteration */
+  solver_bench bench;
   double x = 0;
-  for_single(&s, &b);
-  failed_with(dvi__solve(b.solver, DVI__FIXED_POINT, 1.0, 0, 1, &x, &b.report), DVI_NOT_CONVERGED);
-  ck_assert_int_le(s.residuals, 1000);
-  free_bench(&b, NULL);
+  create_single_solver(&equation, &bench);
+  check_failure(dvi__solve(bench.solver, DVI__FIXED_POINT, 1.0, 0, 1, &x, &bench.report),
+                DVI_NOT_CONVERGED);
+  ck_assert_int_le(equation.residuals, 1000);
+  destroy_solver_bench(&bench, NULL);
 }
 END_TEST
 
@@ -150,60 +155,60 @@ END_TEST
 
 START_TEST(no_solution_is_a_failure_after_a_bounded_number_of_iterations)
 {
-  single s = {never_zero, parabola_slope, 2, -HUGE_VAL, 0};
-  bench b;
+  single_equation equation = {never_zero, parabola_slope, 2, -HUGE_VAL, 0};
+  solver_bench bench;
   double x = 0.7;
-  for_single(&s, &b);
-  failed_with(run_rung(&b, rungs[_i], &x), DVI_NOT_CONVERGED);
-  /* KINSOL: 100 iterations with up to a dozen points on each line, then 40 by Newton */
-  ck_assert_int_le(s.residuals, 2000);
-  free_bench(&b, NULL);
+  create_single_solver(&equation, &bench);
+  check_failure(solve_by_rung(&bench, rungs[_i], &x), DVI_NOT_CONVERGED);
+  /* KINSOL takes 100 iterations with up to a dozen points on each line, then 40 by Newton */
+  ck_assert_int_le(equation.residuals, 2000);
+  destroy_solver_bench(&bench, NULL);
 }
 END_TEST
 
 START_TEST(a_singular_jacobian_is_a_step_s_failure)
 {
-  single s = {never_zero, flat_slope, 1, -HUGE_VAL, 0};
-  bench b;
+  single_equation equation = {never_zero, flat_slope, 1, -HUGE_VAL, 0};
+  solver_bench bench;
   double x = 0.7;
-  for_single(&s, &b);
-  failed_with(run_rung(&b, rungs[1 + _i], &x), DVI_NOT_CONVERGED);
+  create_single_solver(&equation, &bench);
+  check_failure(solve_by_rung(&bench, rungs[1 + _i], &x), DVI_NOT_CONVERGED);
   check_words("singular");
-  free_bench(&b, NULL);
+  destroy_solver_bench(&bench, NULL);
 }
 END_TEST
 
-/* The slope vanishes at the start alone: KINSOL cannot begin there either, and no rung may claim a
+/* The slope vanishes at the start alone. KINSOL cannot begin there, either, and no rung may claim a
  * solution. */
 START_TEST(a_start_on_a_critical_point_is_a_failure)
 {
-  single s = {parabola, parabola_slope, 1, -HUGE_VAL, 0};
-  bench b;
+  single_equation equation = {parabola, parabola_slope, 1, -HUGE_VAL, 0};
+  solver_bench bench;
   double x = 0;
-  for_single(&s, &b);
-  failed_with(run_rung(&b, rungs[1 + _i], &x), DVI_NOT_CONVERGED);
-  free_bench(&b, NULL);
+  create_single_solver(&equation, &bench);
+  check_failure(solve_by_rung(&bench, rungs[1 + _i], &x), DVI_NOT_CONVERGED);
+  destroy_solver_bench(&bench, NULL);
 }
 END_TEST
 
-/* No correction becomes small: where the row is known to be rounding, the solution is, too. Without
- * that, or with a row above it, there is none. */
+/* No correction becomes small. If the row is known to be rounding, the solution is, too. Without
+ * that, or with a row above it, there is no solution. */
 START_TEST(a_row_that_is_rounding_is_solved)
 {
-  single s = {faint, faint_slope, 1, -HUGE_VAL, 0},
-         none = {never_zero, parabola_slope, 1, -HUGE_VAL, 0};
-  bench b;
+  single_equation equation = {faint, faint_slope, 1, -HUGE_VAL, 0},
+                  none = {never_zero, parabola_slope, 1, -HUGE_VAL, 0};
+  solver_bench bench;
   double x = 1.3;
-  for_sum(&s, &b);
-  ck_assert_msg(run_rung(&b, rungs[1 + _i], &x) == DVI_OK, "%s", dvi_last_error());
+  create_sum_solver(&equation, &bench);
+  ck_assert_msg(solve_by_rung(&bench, rungs[1 + _i], &x) == DVI_OK, "%s", dvi_last_error());
   ck_assert_double_eq_tol(x, 1, 1e-9);
-  free_bench(&b, NULL);
-  for_single(&s, &b);
-  failed_with(run_rung(&b, rungs[1 + _i], &x), DVI_NOT_CONVERGED);
-  free_bench(&b, NULL);
-  for_sum(&none, &b);
-  failed_with(run_rung(&b, rungs[1 + _i], &x), DVI_NOT_CONVERGED);
-  free_bench(&b, NULL);
+  destroy_solver_bench(&bench, NULL);
+  create_single_solver(&equation, &bench);
+  check_failure(solve_by_rung(&bench, rungs[1 + _i], &x), DVI_NOT_CONVERGED);
+  destroy_solver_bench(&bench, NULL);
+  create_sum_solver(&none, &bench);
+  check_failure(solve_by_rung(&bench, rungs[1 + _i], &x), DVI_NOT_CONVERGED);
+  destroy_solver_bench(&bench, NULL);
 }
 END_TEST
 

@@ -1,4 +1,4 @@
-/* The roundoff that long double has where the test runs, which LDBL_EPSILON does not always tell:
+/* The roundoff of long double where the test runs, which LDBL_EPSILON does not always tell, because
  * emulators such as valgrind compute it as double. */
 #ifndef TEST_SPACE_ROUNDOFF_H
 #define TEST_SPACE_ROUNDOFF_H

@@ -12,8 +12,8 @@
 #define MODAL DVI_LEGENDRE
 #define BASES (DVI_CHEBYSHEV + 1)
 
-/* Points of all kinds: inside, outside, at the ends, very near to the ends and to the middle, and
- * all around each node. */
+/* Gives points of all kinds: inside, outside, at the ends, very near to the ends and to the middle,
+ * and all around each node. */
 static int points(dvi_basis basis, int degree, double *tau)
 {
   static const double fixed[] = {
@@ -50,7 +50,8 @@ static void quad_nodes(dvi_basis basis, int degree, quad *node)
   }
 }
 
-/* By the definition: products for nodal bases, the recurrences in x = 2 tau - 1 for modal ones. */
+/* Evaluates by the definition, products for nodal bases, the recurrences in x = 2 tau - 1 for modal
+ * ones. */
 static void quad_basis(dvi_basis basis, int degree, const quad *node, quad tau, quad *value,
                        quad *slope)
 {
@@ -113,8 +114,8 @@ START_TEST(nodal_functions_sum_to_1_and_their_derivatives_to_0)
         sum += value[k];
         slope_sum += slope[k];
       }
-      /* each function is rounded to half an ulp, each addition too; a tenfold margin for the narrow
-       * long double */
+      /* each function and each addition is rounded to half an ulp, with a tenfold margin for the
+       * narrow long double */
       const double roundoff = 10 * (degree + 1) * DBL_EPSILON;
       ck_assert_double_eq_tol(sum, 1, roundoff * fmax(1, largest(degree + 1, value)));
       ck_assert_double_eq_tol(slope_sum, 0, roundoff * largest(degree + 1, slope));
@@ -133,7 +134,7 @@ START_TEST(a_nodal_function_is_1_at_its_node_and_0_at_the_others)
     dvi__space_init(&space, (dvi_basis)_i, degree);
     for (int k = 0; k <= degree; k++) {
       dvi__space_evaluate(&space, space.mark[k] / space.scale, value, NULL);
-      /* the 0 has a factor 0; the 1 is a product and its inverse */
+      /* the 0 has a factor 0, the 1 is a product and its inverse */
       for (int j = 0; j <= degree; j++)
         ck_assert(j == k ? fabsl(value[j] - 1) <= 2 * DVI_DEGREE_MAX * long_roundoff()
                          : value[j] == 0);
@@ -181,7 +182,7 @@ START_TEST(modal_functions_are_1_at_the_right_end_and_alternate_at_the_left_one)
     for (int k = 0; k <= DVI_DEGREE_MAX; k++) {
       const double sign = !end && k % 2 ? -1 : 1;
       ck_assert(value[k] == sign);
-      /* P_k'(1) = k(k+1)/2, T_k'(1) = k^2; twice that with respect to tau */
+      /* P_k'(1) = k(k+1)/2, T_k'(1) = k^2, and twice that with respect to tau */
       ck_assert(slope[k] ==
                 (end ? sign : -sign) * (basis == DVI_LEGENDRE ? k * (k + 1) : 2 * k * k));
     }

@@ -10,7 +10,7 @@ enum { FUNCTIONS = DVI__OSCILLATING_FUNCTIONS };
 /* Each for one harmonic, and for two. */
 static const double lengths[] = {1e-9, 1e-3, 0.1, 1, 9.9, 10.1, 29.9, 30.1, 300, -12};
 
-/* Of frequency 1: h is h omega. */
+/* Creates a space of frequency 1, so that h is h omega. */
 static dvi__oscillating *made(int harmonics, double h)
 {
   dvi__oscillating *space = dvi__oscillating_create(3, 1, harmonics, 1);

@@ -10,8 +10,8 @@ static double binomial(int n, int k)
   return round(tgamma(n + 1.0) / tgamma(k + 1.0) / tgamma(n - k + 1.0));
 }
 
-/* The rule's error for tau^d: a_j = 1 if j = d, b_j = binomial(d, j). The magnitude of what is
- * summed comes along. */
+/* Gives the rule's error for tau^d, with a_j = 1 if j = d, b_j = binomial(d, j), and the magnitude
+ * of its terms. */
 static double error_of(dvi__osculation rule, int terms, int d, double *magnitude)
 {
   double weight[DVI_TAYLOR_MAX + 1], sum = 0;

@@ -85,7 +85,7 @@ START_TEST(a_rule_of_order_p_is_exact_below_degree_p_and_not_at_p)
   for (int n = fewest(rule); n <= most(rule); n++) {
     const int order = dvi_quadrature_order(rule, n);
     ck_assert_int_eq(dvi_quadrature(rule, n, node, weight), DVI_OK);
-    /* |P_k| <= 1 and its recurrence: roundoff grows with the degree */
+    /* |P_k| <= 1, and the roundoff of its recurrence grows with the degree */
     for (int degree = 0; degree < order; degree++)
       ck_assert_double_eq_tol(integral_of_legendre(n, node, weight, degree), degree == 0,
                               2e-16 * (4 + order));

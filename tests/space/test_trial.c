@@ -45,7 +45,7 @@ static void fit(dvi_basis basis, int degree, int points, int polynomial_degree, 
   multiply(degree, points, matrix, value, Y);
 }
 
-/* What a sum of numbers near 1 may miss; where long double is as short as double, nothing hides the
+/* The error of a sum of numbers near 1. Where long double is as short as double, nothing hides the
  * roundoff inside. */
 static double roundoff(void)
 {
@@ -95,7 +95,7 @@ END_TEST
 START_TEST(psi_keeps_its_digits_near_0)
 {
   double psi[MOST], dpsi[MOST];
-  /* so small that 1 + tau rounds to 1 in double; the next term is degree^4 tau^2 */
+  /* so small that 1 + tau rounds to 1 in double, and the next term is degree^4 tau^2 */
   const double tau = 1e-3 * DBL_EPSILON;
   dvi__trial_at((dvi_basis)_i, 5, tau, psi, NULL, NULL);
   dvi__trial_at((dvi_basis)_i, 5, 0, NULL, NULL, dpsi);
@@ -123,7 +123,7 @@ START_TEST(fit_gives_back_a_polynomial_from_its_values)
   for (int degree = 1; degree <= highest(basis); degree++)
     for (int more = 0; more <= 3; more++) {
       fit(basis, degree, degree + more, degree, Y);
-      /* values up to degree, each rounded; Lebesgue constants below 50 */
+      /* values up to degree, each rounded, with Lebesgue constants below 50 */
       for (double tau = 0; tau <= 1; tau += 0.125)
         ck_assert_double_eq_tol(evaluate(basis, degree, Y, tau),
                                 polynomial(degree, tau) - polynomial(degree, 0),
@@ -182,7 +182,7 @@ END_TEST
 
 START_TEST(shift_backward_by_the_whole_step_returns_the_step)
 {
-  /* ratio -1: q(1 - tau) - q(1), for every degree, as no extrapolation takes part */
+  /* ratio -1 gives q(1 - tau) - q(1) for every degree, as no extrapolation takes part */
   const dvi_basis basis = (dvi_basis)_i;
   double Y[MOST], next[MOST], shift[MOST * MOST];
   for (int degree = 1; degree <= highest(basis); degree++) {
@@ -199,7 +199,7 @@ END_TEST
 
 START_TEST(shift_drops_derivatives_orthogonal_to_the_kept_degree)
 {
-  /* q' = P_m with m >= keep: its best approximation of degree keep-1 is 0 */
+  /* q' = P_m with m >= keep, whose best approximation of degree keep-1 is 0 */
   const dvi_basis basis = (dvi_basis)_i;
   enum { DEGREE = 6 };
   double matrix[DEGREE * DEGREE], Y[DEGREE], next[DEGREE], shift[DEGREE * DEGREE], tau[DEGREE],

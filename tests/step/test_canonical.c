@@ -1,5 +1,5 @@
 /* labels: jacobian */
-/* A step by a discrete Hamiltonian: its Jacobian, and the functions that generate it. */
+/* The Jacobian of a step by a discrete Hamiltonian, and the functions that generate the step. */
 #include "step/hamiltonian/canonical.h"
 
 #include <math.h>
@@ -29,19 +29,20 @@ static const dvi__action_space spaces[] = {{DVI_LAGRANGE_LOBATTO, 1, DVI_GAUSS, 
 /* the first ones serve a degenerate H */
 enum { SPACES = sizeof spaces / sizeof *spaces, SERVE = 4 };
 
-static dvi__canonical *made_step(const problem *of, const dvi__action_space *space)
+static dvi__canonical *made_step(const problem *model, const dvi__action_space *space)
 {
   dvi__canonical *step;
-  ck_assert_int_eq(dvi__canonical_create(of->system, space, NULL, &step), DVI_OK);
+  ck_assert_int_eq(dvi__canonical_create(model->system, space, NULL, &step), DVI_OK);
   dvi__canonical_place(step, 0, h, q0, p0, unit);
   return step;
 }
 
-/* Central differences of the rows over 1e-4: an error of 1e-8, and roundings of 1e-12. */
+/* Takes central differences of the rows over 1e-4, with an error of 1e-8, and roundings of
+ * 1e-12. */
 START_TEST(the_jacobian_is_the_derivative_of_the_rows)
 {
-  problem *of = made_problem("elastica", NULL);
-  dvi__canonical *step = made_step(of, &spaces[_i]);
+  problem *model = create_problem("elastica", NULL);
+  dvi__canonical *step = made_step(model, &spaces[_i]);
   const dvi__pattern *pattern = dvi__canonical_pattern(step);
   double x[MOST], plus[MOST], minus[MOST], values[ENTRIES_MOST];
   ck_assert_int_le(dvi__pattern_entries(pattern), ENTRIES_MOST);
@@ -61,7 +62,7 @@ START_TEST(the_jacobian_is_the_derivative_of_the_rows)
     }
   }
   dvi__canonical_destroy(&step);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -90,7 +91,7 @@ static void solve(dvi__canonical *step, double *x)
   dvi__linear_destroy(&linear);
 }
 
-static double action_of(const problem *of, const dvi__action_space *space, const taken *step,
+static double action_of(const problem *model, const dvi__action_space *space, const taken *step,
                         const double *x)
 {
   double c[DVI__CANONICAL_POINTS], b[DVI__CANONICAL_POINTS], S = 0;
@@ -105,21 +106,21 @@ static double action_of(const problem *of, const dvi__action_space *space, const
       for (int k = 0; k < space->degree; k++) Q[i] += psi[k] * Y[k];
       for (int k = 0; k < space->degree; k++) S += b[j] * P[i] * slope[k] * Y[k];
     }
-    ck_assert_int_eq(of->terms->hamiltonian->value(0, Q, P, &H, NULL), 0);
+    ck_assert_int_eq(model->terms->hamiltonian->value(0, Q, P, &H, NULL), 0);
     S -= h * b[j] * H;
   }
   return S;
 }
 
 /* From the start moved by e in component `along` of (q0,p0). */
-static taken take(const problem *of, const dvi__action_space *space, int along, double e)
+static taken take(const problem *model, const dvi__action_space *space, int along, double e)
 {
   taken step;
   double x[MOST] = {0}, dq[N], dp[N];
   memcpy(step.q0, q0, sizeof q0);
   memcpy(step.p0, p0, sizeof p0);
   *(along < N ? &step.q0[along] : &step.p0[along - N]) += e;
-  dvi__canonical *made = made_step(of, space);
+  dvi__canonical *made = made_step(model, space);
   dvi__canonical_place(made, 0, h, step.q0, step.p0, unit);
   solve(made, x);
   dvi__canonical_ends(made, x, dq, dp);
@@ -127,7 +128,7 @@ static taken take(const problem *of, const dvi__action_space *space, int along, 
     step.q1[i] = step.q0[i] + dq[i];
     step.p1[i] = step.p0[i] + dp[i];
   }
-  step.S = action_of(of, space, &step, x);
+  step.S = action_of(model, space, &step, x);
   dvi__canonical_destroy(&made);
   return step;
 }
@@ -145,15 +146,15 @@ static double rise(const double *a, const double *plus, const double *minus, dou
   return product(a, difference);
 }
 
-/* dH+ = q1.dp1 + p0.dq0 and dH- = -q0.dp0 - p1.dq1 along every direction of the start: the discrete
- * Hamilton's equations. Central differences. */
+/* dH+ = q1.dp1 + p0.dq0 and dH- = -q0.dp0 - p1.dq1 along every direction of the start are the
+ * discrete Hamilton's equations. They are tested by central differences. */
 START_TEST(the_right_and_the_left_discrete_hamiltonian_generate_the_step)
 {
-  problem *of = made_problem("elastica", NULL);
+  problem *model = create_problem("elastica", NULL);
   const double e = 1e-4;
   for (int along = 0; along < 2 * N; along++) {
-    const taken at = take(of, &spaces[_i], along, 0), plus = take(of, &spaces[_i], along, e),
-                minus = take(of, &spaces[_i], along, -e);
+    const taken at = take(model, &spaces[_i], along, 0), plus = take(model, &spaces[_i], along, e),
+                minus = take(model, &spaces[_i], along, -e);
     const double right =
         (product(plus.p1, plus.q1) - plus.S - product(minus.p1, minus.q1) + minus.S) / (2 * e);
     const double left =
@@ -163,7 +164,7 @@ START_TEST(the_right_and_the_left_discrete_hamiltonian_generate_the_step)
     ck_assert_double_eq_tol(
         left, -rise(at.q0, plus.p0, minus.p0, e) - rise(at.p1, plus.q1, minus.q1, e), 2e-8);
   }
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

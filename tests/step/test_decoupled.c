@@ -1,5 +1,5 @@
 /* labels: unit jacobian */
-/* For a quadratic Lagrangian the frozen Jacobian is the Jacobian: the decoupled systems invert
+/* For a quadratic Lagrangian the frozen Jacobian is the Jacobian, and the decoupled systems invert
  * it. */
 #include <math.h>
 #include <string.h>

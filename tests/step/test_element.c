@@ -1,5 +1,5 @@
 /* labels: jacobian */
-/* One element against its definition: the discrete action is summed here from the public
+/* Tests one element against its definition. The discrete action is summed here from the public
  * quadrature, basis and Lagrangian, and the stationarity rows must be its derivatives. */
 #include <float.h>
 #include <math.h>
@@ -28,8 +28,8 @@ enum {
   SYSTEMS
 };
 
-/* The dense kinds leave Hessian and pattern out: then every entry may be nonzero, and the library
- * differences. */
+/* The dense kinds leave Hessian and pattern out, so every entry may be nonzero, and the library
+ * takes differences. */
 static dvi_system *system_of(int kind)
 {
   static const double diagonal[SITES] = {1, 2, 0.5, 3, 1.5, 0.7};
@@ -56,7 +56,7 @@ static dvi_system *system_of(int kind)
 
 enum { BASES = DVI_CHEBYSHEV + 1 };
 
-/* Degree, rule and nodes; the rules are short, just enough, and long. */
+/* Degrees, rules and nodes. The rules are short, just enough, or long. */
 static const dvi__action_space rules[] = {
     {0, 1, DVI_MIDPOINT, 1}, {0, 1, DVI_TRAPEZOID, 2},   {0, 2, DVI_GAUSS, 2},
     {0, 2, DVI_SIMPSON, 3},  {0, 3, DVI_LOBATTO, 3},     {0, 3, DVI_RADAU_LEFT, 4},
@@ -64,7 +64,7 @@ static const dvi__action_space rules[] = {
 };
 enum { RULES = sizeof rules / sizeof *rules };
 
-/* The kind of system and the rule of a looped test; the bases are looped over here. */
+/* The kind of system and the rule of a looped test, which also loops over the bases. */
 static void for_every_basis(void (*check)(int kind, dvi__action_space space), int index)
 {
   dvi__action_space space = rules[index % RULES];
@@ -104,7 +104,7 @@ static void free_element(element *e)
   dvi_system_destroy(&e->system);
 }
 
-/* Check's assertions write a record each; these calls come by the million. */
+/* Requires DVI_OK. Check's assertions write a record each, and these calls come by the million. */
 static void must(dvi_status status)
 {
   if (status != DVI_OK) ck_abort_msg("%s", dvi_last_error());
@@ -152,8 +152,8 @@ static double discrete_action(const element *e, const double *q0, const double *
 
 static const double moved[3] = {0.01, 0.02, 0.03}, share[3] = {1.5, -0.6, 0.1};
 
-/* dS/dx of one number of q0 or Y: the central difference of order 6 with d = 0.01. Its error is
- * d^6/140 of the 7th derivative, about 1e-11, and an epsilon of S over d, about 1e-13. */
+/* Gives dS/dx of one number of q0 or Y by the central difference of order 6 with d = 0.01. Its
+ * error is d^6/140 of the 7th derivative, about 1e-11, and an epsilon of S over d, about 1e-13. */
 static double slope(const element *e, double *x, const double *q0, const double *Y)
 {
   const double at = *x;
@@ -231,7 +231,7 @@ static double check_column(element *e, int x, const double *values)
   for (int i = 0; i < count; i++) {
     const int entry = dvi__pattern_find(pattern, i, x);
     if (entry < 0) outside = fmax(outside, fabs(column[i]));
-    /* Entries are up to 1e3 (K M/h); the dense kinds' Hessians are differences with an error of
+    /* Entries are up to 1e3 (K M/h). The dense kinds' Hessians are differences with an error of
      * 1e-9 of that. */
     else
       ck_assert_double_eq_tol(values[entry], column[i], 1e-7 * fmax(1, fabs(column[i])));
@@ -257,8 +257,8 @@ START_TEST(the_jacobian_is_the_derivative_of_the_residual)
 }
 END_TEST
 
-/* Without the Jacobian, by the same Hessians: sums of up to 35 terms of its size, added in another
- * order. */
+/* Products without the Jacobian use the same Hessians. They are sums of up to 35 terms of its size,
+ * added in another order. */
 static void check_product(int kind, dvi__action_space space)
 {
   element e;
@@ -365,7 +365,7 @@ static double polynomial(int degree, int i, double tau, double *derivative)
   return value;
 }
 
-/* Y of that polynomial: by its values at the fitting points. */
+/* Gives Y of that polynomial, by its values at the fitting points. */
 static void fit_polynomial(const element *e, double *Y)
 {
   const int s = e->space.degree;
@@ -454,7 +454,7 @@ END_TEST
 
 /* ---- the chord ---- */
 
-/* Column j of L_vv in the middle of the path. L_v is linear in v for all these systems: a
+/* Gives column j of L_vv in the middle of the path. L_v is linear in v for all these systems, so a
  * difference of two momenta is exact. */
 static void velocity_hessian_column(const element *e, int j, double *column)
 {
@@ -492,8 +492,8 @@ static void check_chord(int kind, dvi__action_space space)
   }
   ck_assert_msg(dvi__action_prepare_chord(e.action, e.Y) == DVI_OK, "%s", dvi_last_error());
   dvi__action_chord(e.action, R);
-  /* Conditions of K and L_vv multiply to at most 1e4; differenced L_vv (the dense general kind) are
-   * right to 1e-8. */
+  /* The condition numbers of K and L_vv multiply to at most 1e4. Differenced L_vv (the dense
+   * general kind) are right to 1e-8. */
   for (int x = 0; x < SITES * s; x++)
     ck_assert_double_eq_tol(R[x], e.Y[x], kind == DENSE_GENERAL ? 1e-6 : 1e-12);
   free_element(&e);
@@ -510,7 +510,7 @@ START_TEST(rows_are_scaled_by_the_velocity_hessian_over_the_step)
   element e;
   double scale[UNKNOWNS_MOST], column[SITES];
   make_element(_i, (dvi__action_space){DVI_LEGENDRE, 2, DVI_GAUSS, 2}, &e);
-  /* backward: scales stay positive, L_vv depends on q alone */
+  /* backward, where scales stay positive, and L_vv depends on q alone */
   dvi__action_place(e.action, t0 + h, -h, e.q0, e.p0);
   must(dvi__action_prepare_chord(e.action, e.Y));
   ck_assert_int_eq(dvi__action_row_scale(e.action, scale), 1);

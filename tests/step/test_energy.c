@@ -1,6 +1,6 @@
 /* labels: jacobian */
-/* The energies of an element are derivatives of its action in its times, and their gradients the
- * derivatives of both: all against differences. */
+/* The energies of an element are derivatives of its action in its times, and their gradients are
+ * derivatives of both. All are tested against differences. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -16,7 +16,7 @@ static const double t0 = 0.4, h0 = 0.3;
 
 enum { AUTONOMOUS, DRIVEN_MASS, DRIVEN_LAGRANGIAN, SYSTEMS };
 
-/* V = sin(3 t + q_0) q_1: it has all of V_tq and V_tt, which differences of the element must get
+/* V = sin(3 t + q_0) q_1 has all of V_tq and V_tt, which differences of the element must get
  * right. */
 static int wave_value(double t, const double *q, double *V, void *user)
 {
@@ -139,7 +139,8 @@ START_TEST(the_energies_are_the_derivatives_of_the_action_in_the_times_of_the_en
 }
 END_TEST
 
-/* The rows and both energies at a moved point: Y by `direction`, q0 by `start`, h by `length`. */
+/* Gives the rows and both energies at a point moved in Y by `direction`, in q0 by `start` and in h
+ * by `length`. */
 static void rows_at(const element *e, double d, const double *direction, const double *start,
                     double length, double *R, dvi__energies *E)
 {
@@ -179,7 +180,7 @@ static void gradients_of(element *e, dvi__energy_gradient *start, dvi__energy_gr
 
 static const double still[UNKNOWNS_MOST];
 
-/* L_tq, L_tv and L_tt are differenced themselves: 1e-8 of a rate of some units. */
+/* L_tq, L_tv and L_tt are differenced, with an error of 1e-8 of a rate of some units. */
 START_TEST(the_h_column_is_the_derivative_of_the_rows)
 {
   element e;

@@ -1,5 +1,6 @@
 /* labels: reference */
-/* What Chebyshev polynomials leave out, against its bound: functions in long double. */
+/* Tests the remainder of Chebyshev expansions against its bound. The functions are in long
+ * double. */
 #include "step/split/expansion.h"
 
 #include <float.h>
@@ -58,7 +59,7 @@ static long double shift(long double s)
   return fabsl(s) < 1 ? series(0, s) : (1 - sinc(s)) / s;
 }
 
-/* With a = sinc(x/2), b = sinc x: 1 - a/sqrt(b) = (b - a^2)/(b + a sqrt(b)). */
+/* With a = sinc(x/2), b = sinc x it is 1 - a/sqrt(b) = (b - a^2)/(b + a sqrt(b)). */
 static long double stern_shift(long double s)
 {
   const long double a = sinc(s / 4), b = sinc(s);
@@ -82,7 +83,7 @@ static const function functions[] = {{{1, 1, 0}, 0, cosine},
                                      {{0.5, 1, 0.5}, 1, stern_shift}};
 enum { FUNCTIONS = sizeof functions / sizeof *functions };
 
-/* The intervals of s; poles begin at 9.87. */
+/* The intervals of s. Poles begin at 9.87. */
 static const double intervals[][2] = {{0, 0.01}, {0, 1},    {-1, 4},   {-0.1, 9},
                                       {0, 100},  {-9, 400}, {0, 40000}};
 enum { INTERVALS = sizeof intervals / sizeof *intervals, WITHOUT_POLES = 4 };
@@ -108,8 +109,8 @@ static double left_out(const function *f, int degree, double low, double high)
   return (double)most;
 }
 
-/* Coefficients are rounded, to a rounding of their size each, and so is s; and three quarters of
- * the degree would not do. */
+/* Coefficients are rounded to a rounding of their size each, and so is s. Three quarters of the
+ * degree would not be enough. */
 START_TEST(what_is_left_out_is_within_its_bound)
 {
   const double tolerance[] = {1e-2, 1e-5, 1e-9, DBL_EPSILON / 2};

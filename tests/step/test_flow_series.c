@@ -9,10 +9,11 @@
 
 enum { DEGREE = 16, MOST = 20 };
 
-static dvi__flow_series *made_series(const problem *of, int degree)
+static dvi__flow_series *made_series(const problem *model, int degree)
 {
   dvi__flow_series *series = NULL;
-  ck_assert_msg(dvi__flow_series_create(of->system, degree, DVI__HESSIANS, NULL, &series) == DVI_OK,
+  ck_assert_msg(dvi__flow_series_create(model->system, degree, DVI__HESSIANS, NULL, &series) ==
+                    DVI_OK,
                 "%s", dvi_last_error());
   return series;
 }
@@ -26,8 +27,8 @@ static double sum_of(int degree, size_t stride, const double *series, double s)
 
 START_TEST(an_oscillator_has_the_series_of_the_cosine)
 {
-  problem *of = made_problem("oscillator", "k=4");
-  dvi__flow_series *series = made_series(of, DEGREE);
+  problem *model = create_problem("oscillator", "k=4");
+  dvi__flow_series *series = made_series(model, DEGREE);
   const double q0 = 0.3, v0 = 0.5;
   ck_assert_int_eq(dvi__flow_series_expand(series, 0, &q0, &v0), DVI_OK);
   ck_assert_int_eq(dvi__flow_series_vary(series), DVI_OK);
@@ -42,7 +43,7 @@ START_TEST(an_oscillator_has_the_series_of_the_cosine)
     ck_assert_double_eq_tol(dq[2 * k + 1], 0.5 * sine, 1e-15);
   }
   dvi__flow_series_destroy(&series);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -51,39 +52,39 @@ static const char *const places[] = {"pendulum",        "kepler", "henon-heiles"
 enum { PLACES = sizeof places / sizeof *places };
 
 /* A start in general position. */
-static void start_near(const problem *of, double *q, double *v)
+static void start_near(const problem *model, double *q, double *v)
 {
-  for (int i = 0; i < of->nq; i++) {
-    q[i] = of->q[i] + 0.1 * cos(i + 1);
-    v[i] = of->v[i] + 0.2 * sin(2 * i + 1);
+  for (int i = 0; i < model->nq; i++) {
+    q[i] = model->q[i] + 0.1 * cos(i + 1);
+    v[i] = model->v[i] + 0.2 * sin(2 * i + 1);
   }
 }
 
-/* Short enough for 16 terms: the radius of convergence of kepler's start, the smallest here, is
- * some tenths. */
+/* The step is short enough for 16 terms. The radius of convergence at kepler's start, the smallest
+ * here, is some tenths. */
 START_TEST(the_sum_is_where_an_integrator_arrives)
 {
-  problem *of = made_problem(places[_i], NULL);
-  dvi__flow_series *series = made_series(of, DEGREE);
+  problem *model = create_problem(places[_i], NULL);
+  dvi__flow_series *series = made_series(model, DEGREE);
   const double h = 0.02;
   double q[MOST], v[MOST];
-  start_near(of, q, v);
-  dvi_integrator *judge = made_integrator(of->system, "galerkin:degree=8");
+  start_near(model, q, v);
+  dvi_integrator *judge = create_integrator(model->system, "galerkin:degree=8");
   double p[MOST];
-  ck_assert_int_eq(dvi_system_momentum(of->system, 0.3, q, v, p), DVI_OK);
+  ck_assert_int_eq(dvi_system_momentum(model->system, 0.3, q, v, p), DVI_OK);
   ck_assert_int_eq(dvi_integrator_start(judge, 0.3, q, p), DVI_OK);
   advance(judge, h, 1);
   ck_assert_int_eq(dvi__flow_series_expand(series, 0.3, q, v), DVI_OK);
-  for (int i = 0; i < of->nq; i++)
-    ck_assert_double_eq_tol(sum_of(DEGREE, (size_t)of->nq, dvi__flow_series_q(series) + i, h),
+  for (int i = 0; i < model->nq; i++)
+    ck_assert_double_eq_tol(sum_of(DEGREE, (size_t)model->nq, dvi__flow_series_q(series) + i, h),
                             dvi_integrator_q(judge)[i], 4e-15);
   dvi_integrator_destroy(&judge);
   dvi__flow_series_destroy(&series);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* What a differenced column holds: q_k, v_k and L_k one after the other. */
+/* Gives a differenced column: q_k, v_k and L_k one after the other. */
 enum { LOW = 5, COLUMN = (LOW + 1) * MOST + LOW };
 
 static void column_at(dvi__flow_series *series, int n, const double *q, const double *v,
@@ -94,7 +95,7 @@ static void column_at(dvi__flow_series *series, int n, const double *q, const do
   ck_assert_int_eq(dvi__flow_series_lagrangian(series, column + (LOW + 1) * n, NULL, NULL), DVI_OK);
 }
 
-/* Central differences of 6th order over 1e-2 of numbers of size 1; near kepler's centre
+/* Takes central differences of 6th order over 1e-2 of numbers of size 1. Near kepler's centre
  * coefficients grow by 3 with each order, and their derivatives with them. */
 static void difference(dvi__flow_series *series, int n, double *q, double *v, double *moved,
                        double *column)
@@ -120,11 +121,11 @@ static void check_near(double found, double expected)
 
 START_TEST(derivatives_agree_with_differences)
 {
-  problem *of = made_problem(places[_i], strcmp(places[_i], "toda") == 0 ? "N=4" : NULL);
-  const int n = of->nq;
-  dvi__flow_series *series = made_series(of, LOW);
+  problem *model = create_problem(places[_i], strcmp(places[_i], "toda") == 0 ? "N=4" : NULL);
+  const int n = model->nq;
+  dvi__flow_series *series = made_series(model, LOW);
   double q[MOST], v[MOST], L[LOW], L_start[2][LOW * MOST], dq[(LOW + 1) * 2 * 16], column[COLUMN];
-  start_near(of, q, v);
+  start_near(model, q, v);
   ck_assert_int_eq(dvi__flow_series_expand(series, 0.3, q, v), DVI_OK);
   ck_assert_int_eq(dvi__flow_series_vary(series), DVI_OK);
   ck_assert_int_eq(dvi__flow_series_lagrangian(series, L, L_start[0], L_start[1]), DVI_OK);
@@ -137,18 +138,18 @@ START_TEST(derivatives_agree_with_differences)
       check_near(column[(LOW + 1) * n + k], L_start[j >= n][k * n + j % n]);
   }
   dvi__flow_series_destroy(&series);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* A motion's derivative is symplectic: dq_i.dv_j - dq_j.dv_i stays what it is at the start, for a
- * unit mass, at all s, so each coefficient but the first is 0. */
+/* A motion's derivative is symplectic. For a unit mass dq_i.dv_j - dq_j.dv_i is the same at all s,
+ * so each coefficient but the first is 0. */
 START_TEST(the_derivative_is_symplectic_order_by_order)
 {
-  problem *of = made_problem("kepler", NULL);
+  problem *model = create_problem("kepler", NULL);
   enum { D = 12 };
-  dvi__flow_series *series = made_series(of, D);
-  ck_assert_int_eq(dvi__flow_series_expand(series, 0, of->q, of->v), DVI_OK);
+  dvi__flow_series *series = made_series(model, D);
+  ck_assert_int_eq(dvi__flow_series_expand(series, 0, model->q, model->v), DVI_OK);
   ck_assert_int_eq(dvi__flow_series_vary(series), DVI_OK);
   const double *dq = dvi__flow_series_dq(series), *dv = dvi__flow_series_dv(series);
   for (int k = 1; k < D; k++)
@@ -165,46 +166,46 @@ START_TEST(the_derivative_is_symplectic_order_by_order)
         ck_assert_double_eq_tol(sum, 0, 1e-14 * size);
       }
   dvi__flow_series_destroy(&series);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 /* But by the first factor. */
 START_TEST(nothing_is_allocated_after_the_first_use)
 {
-  problem *of = made_problem("double-pendulum", NULL);
-  dvi__flow_series *series = made_series(of, 8);
+  problem *model = create_problem("double-pendulum", NULL);
+  dvi__flow_series *series = made_series(model, 8);
   double L[8], L_q0[16], L_v0[16];
   long before = 0;
   for (int i = 0; i < 3; i++) {
     if (i == 1) before = dvi__allocation_count();
-    ck_assert_int_eq(dvi__flow_series_expand(series, 0, of->q, of->v), DVI_OK);
+    ck_assert_int_eq(dvi__flow_series_expand(series, 0, model->q, model->v), DVI_OK);
     ck_assert_int_eq(dvi__flow_series_vary(series), DVI_OK);
     ck_assert_int_eq(dvi__flow_series_lagrangian(series, L, L_q0, L_v0), DVI_OK);
   }
   ck_assert_int_eq(dvi__allocation_count(), before);
   dvi__flow_series_destroy(&series);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(failures_are_said)
 {
-  problem *of = made_problem("kepler", NULL);
-  dvi__flow_series *series = made_series(of, 4);
+  problem *model = create_problem("kepler", NULL);
+  dvi__flow_series *series = made_series(model, 4);
   const double centre[2] = {0, 0};
-  ck_assert_int_eq(dvi__flow_series_expand(series, 0, centre, of->v), DVI_NOT_FINITE);
+  ck_assert_int_eq(dvi__flow_series_expand(series, 0, centre, model->v), DVI_NOT_FINITE);
   check_words("gravity: the taylor callback gave");
   dvi__flow_series_destroy(&series);
   dvi_status status = DVI_NO_MEMORY;
   for (int successes = 0; status != DVI_OK; successes++) {
     dvi__fail_allocations_after(successes);
-    status = dvi__flow_series_create(of->system, 4, DVI__HESSIANS, NULL, &series);
+    status = dvi__flow_series_create(model->system, 4, DVI__HESSIANS, NULL, &series);
     dvi__fail_allocations_after(-1);
     ck_assert(status == DVI_OK || (status == DVI_NO_MEMORY && series == NULL));
   }
   dvi__flow_series_destroy(&series);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

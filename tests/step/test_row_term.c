@@ -1,6 +1,6 @@
 /* labels: order */
-/* Row terms: a force of Rayleigh's kind and a multiplier, each added to the step of galerkin from
- * outside of the library's files, as CONTRIBUTING's recipe "a new term" says. */
+/* Row terms from outside of the library's files, as CONTRIBUTING's recipe "a new term" says. A
+ * force of Rayleigh's kind and a multiplier are each added to the step of galerkin. */
 #include "step/element/row_term.h"
 
 #include <math.h>
@@ -38,7 +38,7 @@ static void start(run *r, const dvi_system_terms *terms, const char *method,
   memcpy(r->state.p, p, (size_t)terms->dimension * sizeof *p);
 }
 
-/* Steps of h from the start; velocity is p, for masses are 1. */
+/* Takes steps of h from the start. The velocity is p, for masses are 1. */
 static void take_steps(run *r, double h, int steps)
 {
   dvi__stepper_start(&r->stepper, r->state.p);
@@ -64,27 +64,27 @@ typedef struct rayleigh {
   double F[NODES_MOST], F_q[NODES_MOST], F_v[NODES_MOST];
 } rayleigh;
 
-static dvi_status add_damping(void *of, const dvi__row_path *path, const double *own, double *R,
+static dvi_status add_damping(void *user, const dvi__row_path *path, const double *own, double *R,
                               double *dp, double *own_R)
 {
-  rayleigh *r = of;
+  rayleigh *r = user;
   (void)own, (void)own_R;
   for (int j = 0; j < path->r; j++) r->F[j] = -damping * path->V[j];
   dvi__row_add_forces(path, r->F, R, dp);
   return DVI_OK;
 }
 
-static void add_damping_magnitudes(const void *of, const dvi__row_path *path, double *magnitude,
+static void add_damping_magnitudes(const void *user, const dvi__row_path *path, double *magnitude,
                                    double *own_magnitude)
 {
   (void)own_magnitude;
-  dvi__row_add_force_magnitudes(path, ((const rayleigh *)of)->F, magnitude);
+  dvi__row_add_force_magnitudes(path, ((const rayleigh *)user)->F, magnitude);
 }
 
-static dvi_status add_damping_derivatives(void *of, const dvi__row_path *path, const double *own,
+static dvi_status add_damping_derivatives(void *user, const dvi__row_path *path, const double *own,
                                           const dvi__row_jacobian *J)
 {
-  rayleigh *r = of;
+  rayleigh *r = user;
   (void)own;
   for (int j = 0; j < path->r; j++) r->F_q[j] = 0, r->F_v[j] = -damping;
   dvi__row_add_force_derivatives(path, &r->pattern, r->F_q, r->F_v, J);
@@ -144,7 +144,7 @@ START_TEST(a_damped_oscillator_has_the_order_of_the_method)
   const char *const solver[] = {"", ",solver=newton", ",solver=kinsol", ",solver=simplified"};
   for (int degree = 1; degree <= 3; degree++)
     for (int k = 0; k < 4; k++) {
-      const char *method = spec("galerkin:degree=%d%s", degree, solver[k]);
+      const char *method = method_spec("galerkin:degree=%d%s", degree, solver[k]);
       double before = damping_error(method, 4);
       for (int steps = 8; steps <= 32; steps *= 2) {
         const double error = damping_error(method, steps), order = log2(before / error);
@@ -180,12 +180,12 @@ static int weight_hessian(double t, const double *q, double *V_qq, void *user)
   return 0;
 }
 
-/* The start's momentum is p0 + lambda G(q0), G = 2 q: R_k -= psi_k(1) lambda G (Leimkuhler and
- * Skeel 1994). */
-static dvi_status add_rod(void *of, const dvi__row_path *p, const double *own, double *R,
+/* The start's momentum is p0 + lambda G(q0) with G = 2 q, hence R_k -= psi_k(1) lambda G
+ * (Leimkuhler and Skeel 1994). */
+static dvi_status add_rod(void *user, const dvi__row_path *p, const double *own, double *R,
                           double *dp, double *own_R)
 {
-  (void)of;
+  (void)user;
   for (int i = 0; i < 2; i++) {
     const double impulse = own[0] * 2 * p->q0[i];
     for (int k = 0; k < p->s; k++) R[i * p->s + k] -= p->end[k] * impulse;
@@ -195,10 +195,10 @@ static dvi_status add_rod(void *of, const dvi__row_path *p, const double *own, d
   return DVI_OK;
 }
 
-static dvi_status add_rod_derivatives(void *of, const dvi__row_path *p, const double *own,
+static dvi_status add_rod_derivatives(void *user, const dvi__row_path *p, const double *own,
                                       const dvi__row_jacobian *J)
 {
-  (void)of, (void)own;
+  (void)user, (void)own;
   for (int i = 0; i < 2; i++) {
     double *column = dvi__row_own_column(J, 0, i);
     for (int k = 0; k < p->s; k++) column[k] -= p->end[k] * 2 * p->q0[i];
@@ -207,14 +207,14 @@ static dvi_status add_rod_derivatives(void *of, const dvi__row_path *p, const do
   return DVI_OK;
 }
 
-static void scale_rod(const void *of, double h, double *scale)
+static void scale_rod(const void *user, double h, double *scale)
 {
-  (void)of, (void)h;
+  (void)user, (void)h;
   scale[0] = 1;
 }
 
-/* The angle after the time 2 of a pendulum that starts at rest, at 1 radian from below; and the
- * largest |phi|. */
+/* Gives the angle after the time 2 of a pendulum that starts at rest, at 1 radian from below, and
+ * the largest |phi|. */
 static double rod_angle(int degree, int steps, double *off)
 {
   const dvi_potential weight = {
@@ -231,8 +231,9 @@ static double rod_angle(int degree, int steps, double *off)
                               .derivatives = add_rod_derivatives,
                               .scale = scale_rod};
   run made;
-  start(&made, &terms, spec("galerkin:degree=%d,quadrature=lobatto,nodes=%d", degree, degree + 1),
-        &term, q, rest);
+  start(&made, &terms,
+        method_spec("galerkin:degree=%d,quadrature=lobatto,nodes=%d", degree, degree + 1), &term, q,
+        rest);
   take_steps(&made, 2.0 / steps, steps);
   *off = fabs(hypot(made.state.q[0], made.state.q[1]) - 1);
   const double angle = atan2(made.state.q[0], -made.state.q[1]);
@@ -241,8 +242,8 @@ static double rod_angle(int degree, int steps, double *off)
   return angle;
 }
 
-/* A multiplier at the ends has order 2 whatever the degree is: the path between them knows nothing
- * of the rod. */
+/* A multiplier at the ends has order 2 for every degree, because the path between them does not
+ * depend on the rod. */
 START_TEST(a_multiplier_holds_its_constraint_and_has_order_2)
 {
   for (int degree = 1; degree <= 2; degree++) {

@@ -1,6 +1,6 @@
 /* labels: unit */
-/* Waves have the bits of plain sweeps: for any length, reach, block, cut and instruction set, and
- * when something fails. */
+/* Temporal blocking has the bits of plain passes over all sites, for any length, reach, block, cut
+ * and instruction set, and when something fails. */
 #include <math.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -136,8 +136,9 @@ static void make_pair(pair *p, int n, int reach, int potentials, int mass, const
   ck_assert_msg(dvi_system_create(&terms, &p->system) == DVI_OK, "%s", dvi_last_error());
   free(diagonal);
   dvi__blocking_choose_block(block);
-  p->wave = made_integrator(p->system, spec("%sblocking=temporal,threads=%d", method, threads));
-  p->plain = made_integrator(p->system, spec("%sblocking=none", method));
+  p->wave = create_integrator(p->system,
+                              method_spec("%sblocking=temporal,threads=%d", method, threads));
+  p->plain = create_integrator(p->system, method_spec("%sblocking=none", method));
   dvi__blocking_choose_block(0);
   start_alike(p);
 }
@@ -200,7 +201,8 @@ START_TEST(any_length_reach_and_block_has_the_bits_of_the_plain_sweep)
 }
 END_TEST
 
-/* Long enough for default blocks on four threads: 4 (17+1) 8 + 4 512 + 8 coordinates for each. */
+/* The chain is long enough for default blocks on four threads, 4 (17+1) 8 + 4 512 + 8 coordinates
+ * for each. */
 START_TEST(every_instruction_set_and_thread_count_has_the_same_bits)
 {
   enum { LENGTH = 12347 };
@@ -211,8 +213,8 @@ START_TEST(every_instruction_set_and_thread_count_has_the_same_bits)
         char text[2048];
         make_pair(&p, LENGTH, 2, 2, threads, methods[method], threads, 0);
         dvi_integrator_explain(p.wave, text, sizeof text);
-        ck_assert_msg(strstr(text, spec("threads: %d of %d\n", threads, threads)) != NULL, "%s",
-                      text);
+        ck_assert_msg(strstr(text, method_spec("threads: %d of %d\n", threads, threads)) != NULL,
+                      "%s", text);
         dvi__lanes_choose(level);
         for (int i = 0; i < 3; i++) advance(p.wave, 0.04, 1);
         dvi__lanes_choose(0);
@@ -223,8 +225,8 @@ START_TEST(every_instruction_set_and_thread_count_has_the_same_bits)
 }
 END_TEST
 
-/* A reach of rows of a mesh: the window of all substeps would not stay in the cache, so a step
- * takes several passes. */
+/* The reach is that of rows of a mesh. The window of all substeps would not stay in the cache, so a
+ * step takes several passes. */
 START_TEST(a_long_reach_takes_several_passes_with_the_same_bits)
 {
   static const int reaches[] = {900, 5000, 30000};
@@ -240,8 +242,8 @@ START_TEST(a_long_reach_takes_several_passes_with_the_same_bits)
     const dvi_system_terms terms = {
         .dimension = 40000, .mass.scalar = 1, .potentials = &wells, .potential_count = 1};
     ck_assert_int_eq(dvi_system_create(&terms, &p.system), DVI_OK);
-    p.wave = made_integrator(p.system, "composition:order=6,blocking=temporal,threads=2");
-    p.plain = made_integrator(p.system, "composition:order=6,blocking=none");
+    p.wave = create_integrator(p.system, "composition:order=6,blocking=temporal,threads=2");
+    p.plain = create_integrator(p.system, "composition:order=6,blocking=none");
     dvi_integrator_explain(p.wave, text, sizeof text);
     ck_assert_msg(strstr(text, k == 0   ? "at most 13 substeps"
                                : k == 1 ? "at most 2 substeps"
@@ -255,16 +257,16 @@ START_TEST(a_long_reach_takes_several_passes_with_the_same_bits)
 }
 END_TEST
 
-/* Plain callbacks and ranges of one potential: the chain of the catalogue has both. */
+/* The chain of the catalogue has both plain callbacks and ranges of one potential. */
 START_TEST(the_catalogues_chain_has_the_same_bits_by_both_sweeps)
 {
   static const char *const sizes[] = {"n=1", "n=2", "n=32", "n=4099"};
-  problem *chain = made_problem("chain", sizes[_i]);
-  dvi_integrator *plain = started(chain, "composition:order=8,blocking=none");
+  problem *chain = create_problem("chain", sizes[_i]);
+  dvi_integrator *plain = start_integrator(chain, "composition:order=8,blocking=none");
   advance(plain, 0.1, 20);
   for (int threads = 1; threads <= 2; threads++) {
-    dvi_integrator *wave = started(
-        chain, spec("composition:order=8,blocking=temporal,threads=%d", threads));
+    dvi_integrator *wave = start_integrator(
+        chain, method_spec("composition:order=8,blocking=temporal,threads=%d", threads));
     advance(wave, 0.1, 20);
     check_same(wave, plain, "chain");
     dvi_integrator_destroy(&wave);
@@ -299,7 +301,7 @@ START_TEST(each_gradient_is_evaluated_once_and_nothing_is_allocated)
 }
 END_TEST
 
-/* Five arrays from one place to another: read, fetched, written. */
+/* Five arrays move from one place to another, and are read, fetched and written. */
 START_TEST(traffic_is_known_of_waves_alone)
 {
   pair p;
@@ -331,7 +333,7 @@ static void make_trouble(pair *p, const trouble *what)
   p->lattice.bad_time = 0.25 + 0.2 + 0.05;
 }
 
-/* The same status, the same sentence, and both go on as if nothing had been. */
+/* Both give one status and one sentence, and go on as if nothing had happened. */
 START_TEST(a_failure_in_mid_wave_is_that_of_the_plain_sweep_and_leaves_no_trace)
 {
   for (int threads = 1; threads <= THREADS_MOST; threads++) {
@@ -376,7 +378,7 @@ START_TEST(a_state_that_is_not_finite_is_refused_by_both)
 }
 END_TEST
 
-/* The last gradient is finite, and its kick is not: no callback sees it. */
+/* The last gradient is finite, and its kick is not. No callback sees it. */
 START_TEST(a_last_kick_that_overflows_is_refused_by_both)
 {
   for (int threads = 1; threads <= 2; threads++) {
@@ -445,10 +447,10 @@ START_TEST(a_checkpoint_continues_bit_for_bit)
   pair p;
   make_pair(&p, 777, 3, 2, 4, methods[_i], 2, 16);
   for (int i = 0; i < 3; i++) step_both(&p, 0.1);
-  ck_assert_msg(dvi_integrator_save(p.wave, in_folder("checkpoint")) == DVI_OK, "%s",
+  ck_assert_msg(dvi_integrator_save(p.wave, path_in_folder("checkpoint")) == DVI_OK, "%s",
                 dvi_last_error());
-  dvi_integrator *restored = made_integrator(p.system, dvi_integrator_method(p.wave));
-  ck_assert_msg(dvi_integrator_restore(restored, in_folder("checkpoint")) == DVI_OK, "%s",
+  dvi_integrator *restored = create_integrator(p.system, dvi_integrator_method(p.wave));
+  ck_assert_msg(dvi_integrator_restore(restored, path_in_folder("checkpoint")) == DVI_OK, "%s",
                 dvi_last_error());
   for (int i = 0; i < 3; i++) step_both(&p, 0.1);
   advance(restored, 0.1, 3);

@@ -1,5 +1,5 @@
 /* labels: jacobian */
-/* An element between two ends: its path, and its first and second derivatives against
+/* Tests the path of an element between two ends, and its first and second derivatives against
  * differences. */
 #include <math.h>
 #include <string.h>

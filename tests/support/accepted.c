@@ -3,7 +3,7 @@
 #include "support/runs.h"
 #include "support/suite.h"
 
-void find_accepted_cases(int total, int (*is_accepted)(int which), accepted_cases *found)
+void find_accepted_cases(int total, int (*is_accepted)(int number), accepted_cases *found)
 {
   found->count = 0;
   for (int i = 0; i < total; i++)
@@ -34,8 +34,8 @@ int method_accepts(const dvi_system *system, const char *method)
 
 int method_accepts_problem(const char *name, const char *setting, const char *method)
 {
-  problem *of = made_problem(name, setting);
-  const int accepts = method_accepts(of->system, method);
-  problem_destroy(&of);
+  problem *model = create_problem(name, setting);
+  const int accepts = method_accepts(model->system, method);
+  problem_destroy(&model);
   return accepts;
 }

@@ -2,11 +2,11 @@
 #ifndef SUPPORT_COMMA_H
 #define SUPPORT_COMMA_H
 
-/* Make one in the folder (support/files.h), for none need be installed, and set it for this process
- * and for those that it starts. The test fails where that cannot be. */
-void set_comma(void);
+/* Make such a locale in the folder (support/files.h), because none need be installed. Set it for
+ * this process and for the processes that it starts. The test fails if that is impossible. */
+void set_comma_locale(void);
 
-/* Back to the locale C, without the other one. */
-void set_point(void);
+/* Set the locale C, and remove the other one. */
+void set_point_locale(void);
 
 #endif

@@ -10,125 +10,126 @@ const dvi__rung rungs[3] = {DVI__FIXED_POINT, DVI__NEWTON, DVI__KINSOL};
 
 static double neighbours(const double *x, int i)
 {
-  return (i > 0 ? sin(x[i - 1]) : 0) + (i + 1 < SIZE ? sin(x[i + 1]) : 0);
+  return (i > 0 ? sin(x[i - 1]) : 0) + (i + 1 < CHAIN_SIZE ? sin(x[i + 1]) : 0);
 }
 
-static dvi_status answer_of(const fault *f, long calls, double *number)
+static dvi_status answer_of(const callback_fault *fault, long calls, double *number)
 {
-  if (f->at == 0 || calls < f->at) return DVI_OK;
-  if (f->nan) *number = NAN;
-  return f->answer;
+  if (fault->at == 0 || calls < fault->at) return DVI_OK;
+  if (fault->nan) *number = NAN;
+  return fault->answer;
 }
 
-static dvi_status chain_residual(void *of, const double *x, double *r)
+static dvi_status chain_residual(void *user, const double *x, double *r)
 {
-  chain *c = of;
-  c->residuals++;
-  for (int i = 0; i < SIZE; i++)
-    r[i] = (2 + i) * (x[i] - c->solution[i]) +
-           c->strength * (neighbours(x, i) - neighbours(c->solution, i));
-  return answer_of(&c->residual_fault, c->residuals, &r[2]);
+  equation_chain *chain = user;
+  chain->residuals++;
+  for (int i = 0; i < CHAIN_SIZE; i++)
+    r[i] = (2 + i) * (x[i] - chain->solution[i]) +
+           chain->strength * (neighbours(x, i) - neighbours(chain->solution, i));
+  return answer_of(&chain->residual_fault, chain->residuals, &r[2]);
 }
 
-static dvi_status chain_jacobian(void *of, const double *x, double *values)
+static dvi_status chain_jacobian(void *user, const double *x, double *values)
 {
-  chain *c = of;
-  c->jacobians++;
-  for (int j = 0; j < SIZE; j++)
-    for (int e = c->pattern.start[j]; e < c->pattern.start[j + 1]; e++)
-      values[e] = c->pattern.row[e] == j ? 2 + j : c->strength * cos(x[j]);
-  return answer_of(&c->jacobian_fault, c->jacobians, &values[3]);
+  equation_chain *chain = user;
+  chain->jacobians++;
+  for (int j = 0; j < CHAIN_SIZE; j++)
+    for (int e = chain->pattern.start[j]; e < chain->pattern.start[j + 1]; e++)
+      values[e] = chain->pattern.row[e] == j ? 2 + j : chain->strength * cos(x[j]);
+  return answer_of(&chain->jacobian_fault, chain->jacobians, &values[3]);
 }
 
-static dvi_status chain_prepare(void *of, const double *x)
+static dvi_status chain_prepare(void *user, const double *x)
 {
-  (void)of, (void)x;
+  (void)user, (void)x;
   return DVI_OK;
 }
 
-static void chain_chord(void *of, double *r)
+static void chain_chord(void *user, double *r)
 {
-  chain *c = of;
-  c->chords++;
-  for (int i = 0; i < SIZE; i++) r[i] /= 2 + i;
+  equation_chain *chain = user;
+  chain->chords++;
+  for (int i = 0; i < CHAIN_SIZE; i++) r[i] /= 2 + i;
 }
 
-static dvi_status chain_scale(void *of, double *scale, int *unchanged)
+static dvi_status chain_scale(void *user, double *scale, int *unchanged)
 {
-  (void)of, (void)unchanged;
-  for (int i = 0; i < SIZE; i++) scale[i] = 2 + i;
+  (void)user, (void)unchanged;
+  for (int i = 0; i < CHAIN_SIZE; i++) scale[i] = 2 + i;
   return DVI_OK;
 }
 
-void make_chain(double strength, chain *c)
+void make_chain(double strength, equation_chain *chain)
 {
-  static const int start[SIZE + 1] = {0, 2, 5, 8, 11, 13},
-                                row[3 * SIZE - 2] = {0, 1, 0, 1, 2, 1, 2, 3, 2, 3, 4, 3, 4};
-  *c = (chain){.strength = strength, .solution = {0.3, -1.2, 0.8, 2.1, -0.4}};
-  ck_assert_int_eq(dvi__pattern_copy(&(dvi_pattern){start, row}, SIZE, "chain", &c->pattern),
-                   DVI_OK);
+  static const int start[CHAIN_SIZE + 1] = {0, 2, 5, 8, 11, 13},
+                                      row[3 * CHAIN_SIZE - 2] = {0, 1, 0, 1, 2, 1, 2,
+                                                                 3, 2, 3, 4, 3, 4};
+  *chain = (equation_chain){.strength = strength, .solution = {0.3, -1.2, 0.8, 2.1, -0.4}};
+  ck_assert_int_eq(
+      dvi__pattern_copy(&(dvi_pattern){start, row}, CHAIN_SIZE, "chain", &chain->pattern), DVI_OK);
 }
 
-static dvi_status single_residual(void *of, const double *x, double *r)
+static dvi_status single_residual(void *user, const double *x, double *r)
 {
-  single *s = of;
-  s->residuals++;
-  if (x[0] < s->least) return DVI_CALLBACK_RETRY;
-  r[0] = s->f(x[0]);
+  single_equation *equation = user;
+  equation->residuals++;
+  if (x[0] < equation->least) return DVI_CALLBACK_RETRY;
+  r[0] = equation->f(x[0]);
   return DVI_OK;
 }
 
-static dvi_status single_jacobian(void *of, const double *x, double *values)
+static dvi_status single_jacobian(void *user, const double *x, double *values)
 {
-  values[0] = ((const single *)of)->slope(x[0]);
+  values[0] = ((const single_equation *)user)->slope(x[0]);
   return DVI_OK;
 }
 
-static void single_chord(void *of, double *r)
+static void single_chord(void *user, double *r)
 {
-  r[0] /= ((const single *)of)->chord;
+  r[0] /= ((const single_equation *)user)->chord;
 }
 
-static dvi_status single_scale(void *of, double *scale, int *unchanged)
+static dvi_status single_scale(void *user, double *scale, int *unchanged)
 {
-  (void)of, (void)unchanged;
+  (void)user, (void)unchanged;
   scale[0] = 1;
   return DVI_OK;
 }
 
-static void make_solver(const dvi__equations *equations, bench *b)
+static void make_solver(const dvi__equations *equations, solver_bench *bench)
 {
-  *b = (bench){0};
-  ck_assert_msg(dvi__solver_create(equations, &b->counters, &b->solver) == DVI_OK, "%s",
+  *bench = (solver_bench){0};
+  ck_assert_msg(dvi__solver_create(equations, &bench->counters, &bench->solver) == DVI_OK, "%s",
                 dvi_last_error());
 }
 
-void for_chain(chain *c, bench *b)
+void create_chain_solver(equation_chain *chain, solver_bench *bench)
 {
-  make_solver(&(dvi__equations){.unknowns = SIZE,
-                                .pattern = &c->pattern,
-                                .of = c,
+  make_solver(&(dvi__equations){.unknowns = CHAIN_SIZE,
+                                .pattern = &chain->pattern,
+                                .of = chain,
                                 .residual = chain_residual,
                                 .jacobian = chain_jacobian,
                                 .prepare_chord = chain_prepare,
                                 .chord = chain_chord,
                                 .row_scale = chain_scale},
-              b);
+              bench);
 }
 
-static void of_size_1(void *of, double *magnitude)
+static void of_size_1(void *user, double *magnitude)
 {
-  (void)of;
+  (void)user;
   magnitude[0] = 1;
 }
 
-static dvi__equations equations_of(single *s)
+static dvi__equations equations_of(single_equation *equation)
 {
   static int start[2] = {0, 1}, row[1] = {0};
   static const dvi__pattern one = {1, 1, start, row};
   return (dvi__equations){.unknowns = 1,
                           .pattern = &one,
-                          .of = s,
+                          .of = equation,
                           .residual = single_residual,
                           .jacobian = single_jacobian,
                           .prepare_chord = chain_prepare,
@@ -136,31 +137,31 @@ static dvi__equations equations_of(single *s)
                           .row_scale = single_scale};
 }
 
-void for_single(single *s, bench *b)
+void create_single_solver(single_equation *equation, solver_bench *bench)
 {
-  const dvi__equations equations = equations_of(s);
-  make_solver(&equations, b);
+  const dvi__equations equations = equations_of(equation);
+  make_solver(&equations, bench);
 }
 
-void for_sum(single *s, bench *b)
+void create_sum_solver(single_equation *equation, solver_bench *bench)
 {
-  dvi__equations equations = equations_of(s);
+  dvi__equations equations = equations_of(equation);
   equations.magnitudes = of_size_1;
-  make_solver(&equations, b);
+  make_solver(&equations, bench);
 }
 
-dvi_status run_rung(bench *b, dvi__rung rung, double *x)
+dvi_status solve_by_rung(solver_bench *bench, dvi__rung rung, double *x)
 {
-  return dvi__solve(b->solver, rung, 1.0, 0, 0, x, &b->report);
+  return dvi__solve(bench->solver, rung, 1.0, 0, 0, x, &bench->report);
 }
 
-void free_bench(bench *b, chain *c)
+void destroy_solver_bench(solver_bench *bench, equation_chain *chain)
 {
-  dvi__solver_destroy(&b->solver);
-  if (c != NULL) dvi__pattern_clear(&c->pattern);
+  dvi__solver_destroy(&bench->solver);
+  if (chain != NULL) dvi__pattern_clear(&chain->pattern);
 }
 
-void failed_with(dvi_status status, dvi_status expected)
+void check_failure(dvi_status status, dvi_status expected)
 {
   ck_assert_msg(status == expected, "%s, not %s: %s", dvi_status_name(status),
                 dvi_status_name(expected), dvi_last_error());

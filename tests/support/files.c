@@ -21,7 +21,7 @@ void make_folder(void)
   ck_assert_ptr_nonnull(mkdtemp(folder));
 }
 
-const char *in_folder(const char *name)
+const char *path_in_folder(const char *name)
 {
   static char paths[8][320];
   static int next;
@@ -30,8 +30,8 @@ const char *in_folder(const char *name)
   return path;
 }
 
-/* Count the files, and remove them if asked. */
-static int sweep(int removing)
+/* Counts the files, and removes them if asked. */
+static int visit_files(int removing)
 {
   int count = 0;
   DIR *open_folder = opendir(folder);
@@ -39,21 +39,21 @@ static int sweep(int removing)
   for (const struct dirent *entry = readdir(open_folder); entry != NULL;
        entry = readdir(open_folder)) {
     if (strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0) continue;
-    if (removing) (void)remove(in_folder(entry->d_name));
+    if (removing) (void)remove(path_in_folder(entry->d_name));
     count++;
   }
   (void)closedir(open_folder);
   return count;
 }
 
-int files_in_folder(void)
+int count_files_in_folder(void)
 {
-  return sweep(0);
+  return visit_files(0);
 }
 
 void remove_folder(void)
 {
-  (void)sweep(1);
+  (void)visit_files(1);
   ck_assert_int_eq(rmdir(folder), 0);
 }
 
@@ -78,9 +78,9 @@ void write_bytes(const char *path, const unsigned char *at, size_t count)
   ck_assert_int_eq(fclose(stream), 0);
 }
 
-bytes state_of(const dvi_integrator *integrator)
+bytes read_state(const dvi_integrator *integrator)
 {
-  const char *path = in_folder("state");
+  const char *path = path_in_folder("state");
   ck_assert_msg(dvi_integrator_save(integrator, path) == DVI_OK, "%s", dvi_last_error());
   const bytes state = read_bytes(path);
   ck_assert_int_eq(remove(path), 0);
@@ -89,7 +89,7 @@ bytes state_of(const dvi_integrator *integrator)
 
 void check_state(const dvi_integrator *integrator, bytes expected)
 {
-  const bytes found = state_of(integrator);
+  const bytes found = read_state(integrator);
   ck_assert_uint_eq(found.count, expected.count);
   ck_assert_msg(memcmp(found.at, expected.at, found.count) == 0, "the states differ at t = %.17g",
                 dvi_integrator_time(integrator));
@@ -99,5 +99,5 @@ void check_state(const dvi_integrator *integrator, bytes expected)
 
 void check_same_state(const dvi_integrator *a, const dvi_integrator *b)
 {
-  check_state(a, state_of(b));
+  check_state(a, read_state(b));
 }

@@ -31,8 +31,8 @@ long heap_bytes(void)
   return bytes;
 }
 
-/* By pointers, as another program's calls: here the compiler could put in malloc's body below,
- * whatever took its place. */
+/* Calls by pointers, as another program would. The compiler could inline malloc's body of this file
+ * even if another replacement came first. */
 int heap_is_counted(void)
 {
   void *(*volatile take)(size_t size) = malloc;

@@ -22,20 +22,21 @@ dvi_status create_controlled(const dvi_system *system, const dvi_monitor *monito
   return create_paced(system, monitor, method, DVI_STEP_CONTROL, integrator);
 }
 
-dvi_monitor monitor_of(const char *specification)
+dvi_monitor read_monitor(const char *specification)
 {
   dvi_monitor monitor = {0};
   ck_assert_msg(dvi_monitor_read(specification, &monitor) == DVI_OK, "%s", dvi_last_error());
   return monitor;
 }
 
-dvi_integrator *paced(const problem *of, paced_create create, const char *monitor,
-                      const char *method)
+dvi_integrator *start_paced_integrator(const problem *model, paced_create create,
+                                       const char *monitor, const char *method)
 {
   dvi_integrator *made = NULL;
-  const dvi_monitor chosen = monitor_of(monitor);
-  ck_assert_msg(create(of->system, &chosen, method, &made) == DVI_OK, "%s", dvi_last_error());
-  ck_assert_msg(dvi_integrator_start(made, 0, of->q, of->p) == DVI_OK, "%s", dvi_last_error());
+  const dvi_monitor chosen = read_monitor(monitor);
+  ck_assert_msg(create(model->system, &chosen, method, &made) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_integrator_start(made, 0, model->q, model->p) == DVI_OK, "%s",
+                dvi_last_error());
   return made;
 }
 

@@ -31,7 +31,7 @@ static const test_suite *find_suite(const char *name)
   return NULL;
 }
 
-/* A suite of which no case ran has shown nothing. */
+/* Runs a suite. One without cases has shown nothing and is skipped. */
 static int run_suite(const test_suite *suite)
 {
   TCase *cases = tcase_create(suite->name);

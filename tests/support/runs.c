@@ -6,7 +6,7 @@
 
 #include "support/suite.h"
 
-const char *spec(const char *format, ...)
+const char *method_spec(const char *format, ...)
 {
   static char texts[8][256];
   static int next;
@@ -18,7 +18,7 @@ const char *spec(const char *format, ...)
   return text;
 }
 
-problem *made_problem(const char *name, const char *setting)
+problem *create_problem(const char *name, const char *setting)
 {
   problem *made = NULL;
   char message[256] = "";
@@ -28,17 +28,18 @@ problem *made_problem(const char *name, const char *setting)
   return made;
 }
 
-dvi_integrator *made_integrator(const dvi_system *system, const char *method)
+dvi_integrator *create_integrator(const dvi_system *system, const char *method)
 {
   dvi_integrator *made = NULL;
   ck_assert_msg(dvi_integrator_create(system, method, &made) == DVI_OK, "%s", dvi_last_error());
   return made;
 }
 
-dvi_integrator *started(const problem *of, const char *method)
+dvi_integrator *start_integrator(const problem *model, const char *method)
 {
-  dvi_integrator *made = made_integrator(of->system, method);
-  ck_assert_msg(dvi_integrator_start(made, 0, of->q, of->p) == DVI_OK, "%s", dvi_last_error());
+  dvi_integrator *made = create_integrator(model->system, method);
+  ck_assert_msg(dvi_integrator_start(made, 0, model->q, model->p) == DVI_OK, "%s",
+                dvi_last_error());
   return made;
 }
 

@@ -5,26 +5,29 @@
 
 #include "support/suite.h"
 
-dvi_status create_shaped(const dvi_system *system, const dvi_shapes *shapes, const char *method,
-                         dvi_integrator **integrator)
+dvi_status create_with_shapes(const dvi_system *system, const dvi_shapes *shapes,
+                              const char *method, dvi_integrator **integrator)
 {
   const dvi_integrator_options options = {
       .size = sizeof options, .method = method, .shapes = shapes};
   return dvi_integrator_create_with(system, &options, integrator);
 }
 
-dvi_integrator *shaped_integrator(const dvi_system *system, const dvi_shapes *shapes,
-                                  const char *method)
+dvi_integrator *create_integrator_with_shapes(const dvi_system *system, const dvi_shapes *shapes,
+                                              const char *method)
 {
   dvi_integrator *made = NULL;
-  ck_assert_msg(create_shaped(system, shapes, method, &made) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(create_with_shapes(system, shapes, method, &made) == DVI_OK, "%s",
+                dvi_last_error());
   return made;
 }
 
-dvi_integrator *shaped_started(const problem *of, const dvi_shapes *shapes, const char *method)
+dvi_integrator *start_integrator_with_shapes(const problem *model, const dvi_shapes *shapes,
+                                             const char *method)
 {
-  dvi_integrator *made = shaped_integrator(of->system, shapes, method);
-  ck_assert_msg(dvi_integrator_start(made, 0, of->q, of->p) == DVI_OK, "%s", dvi_last_error());
+  dvi_integrator *made = create_integrator_with_shapes(model->system, shapes, method);
+  ck_assert_msg(dvi_integrator_start(made, 0, model->q, model->p) == DVI_OK, "%s",
+                dvi_last_error());
   return made;
 }
 
@@ -111,7 +114,7 @@ static int evaluate_spline(double h, double tau, double *value, double *derivati
 
 enum { EACH = 4 };
 
-/* B-spline i of a degree, 0 to 3, by de Boor's recursion. */
+/* Gives B-spline i of a degree, 0 to 3, by de Boor's recursion. */
 static double b_spline(int degree, int i, double tau)
 {
   static const double knot[] = {0, 0, 0, 0, 0.5, 1, 1, 1, 1};

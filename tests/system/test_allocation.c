@@ -1,5 +1,5 @@
-/* Every create must survive the failure of each of its allocations: status, no object, nothing
- * leaked (the sanitizer and valgrind runs of this test see the leaks). */
+/* Every create must survive the failure of each of its allocations, with a status, without an
+ * object or a leak (the sanitizer and valgrind runs of this test see the leaks). */
 #include <string.h>
 
 #include "core/memory.h"
@@ -75,7 +75,7 @@ START_TEST(a_system_survives_every_failure)
 }
 END_TEST
 
-/* What a failure leaves is used or made anew by the next call. */
+/* The next call uses the remains of a failure, or makes them anew. */
 START_TEST(completing_a_system_survives_every_failure)
 {
   scene c;
@@ -116,8 +116,8 @@ START_TEST(an_evaluator_survives_every_failure)
 }
 END_TEST
 
-/* Created, and with its first factor, which takes the memory; what a failure leaves is taken up by
- * the next call. */
+/* Creates the object and its first factor, which takes the memory. The next call takes up the
+ * remains of a failure. */
 START_TEST(a_linear_solver_survives_every_failure)
 {
   const dvi__linear_kind kinds[] = {DVI__LINEAR_DENSE, DVI__LINEAR_SPARSE};

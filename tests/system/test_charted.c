@@ -22,11 +22,11 @@ enum {
   ENTRIES_MOST = UNKNOWNS_MOST * UNKNOWNS_MOST
 };
 
-static body of;
+static body model;
 static dvi_counters counters;
 static dvi__charted *charts;
 
-/* All bodies; then the free ones by the group's own velocity. */
+/* All bodies, then the free ones by the group's own velocity. */
 static int is_reduced(int kind)
 {
   return kind >= REDUCED;
@@ -34,16 +34,19 @@ static int is_reduced(int kind)
 
 static void take(int kind)
 {
-  make_body(kind == REDUCED ? FREE_BODY : kind == REDUCED + 1 ? FREE_MOTION : (body_kind)kind, &of);
-  ck_assert_msg(dvi__charted_create(of.system, is_reduced(kind), &counters, &charts) == DVI_OK,
+  make_body(kind == REDUCED       ? FREE_BODY
+            : kind == REDUCED + 1 ? FREE_MOTION
+                                  : (body_kind)kind,
+            &model);
+  ck_assert_msg(dvi__charted_create(model.system, is_reduced(kind), &counters, &charts) == DVI_OK,
                 "%s", dvi_last_error());
-  dvi__charted_centre(charts, of.q);
+  dvi__charted_centre(charts, model.q);
 }
 
 static void give_back(void)
 {
   dvi__charted_destroy(&charts);
-  destroy_body(&of);
+  destroy_body(&model);
 }
 
 /* Numbers without a pattern, of size 1. */
@@ -63,12 +66,12 @@ START_TEST(derivatives_are_those_of_the_value)
   take(_i);
   scatter(dvi_system_nq(local()), 0.6, xi);
   scatter(dvi_system_nq(local()), -1.3, rate);
-  ck_assert_msg(dvi_system_check(local(), 0, xi, rate, 1e-8, NULL) == DVI_OK, "%s: %s", of.name,
+  ck_assert_msg(dvi_system_check(local(), 0, xi, rate, 1e-8, NULL) == DVI_OK, "%s: %s", model.name,
                 dvi_last_error());
 }
 END_TEST
 
-/* At y(xi) with the stored velocity; the reduced one, too. */
+/* Evaluates at y(xi) with the stored velocity, the reduced one, too. */
 START_TEST(the_value_is_the_systems_own)
 {
   double xi[BODY_V], rate[BODY_V], q[BODY_Q], v[BODY_V], in_charts, in_space;
@@ -77,7 +80,7 @@ START_TEST(the_value_is_the_systems_own)
   scatter(dvi_system_nq(local()), -1.3, rate);
   dvi__charted_point(charts, xi, rate, q, v);
   ck_assert_int_eq(dvi_system_lagrangian(local(), 0, xi, rate, &in_charts), DVI_OK);
-  ck_assert_int_eq(dvi_system_lagrangian(of.system, 0, q, v, &in_space), DVI_OK);
+  ck_assert_int_eq(dvi_system_lagrangian(model.system, 0, q, v, &in_space), DVI_OK);
   ck_assert_double_eq_tol(in_charts, in_space, 1e-14 * fmax(1, fabs(in_space)) * 50);
 }
 END_TEST
@@ -107,7 +110,7 @@ START_TEST(points_are_found_again)
   dvi__charted_point(charts, xi, NULL, q, NULL);
   dvi__charted_inverse(charts, q, found);
   ck_assert_double_le(distance(dvi_system_nq(local()), xi, found), 1e-14);
-  ck_assert_double_le(dvi_system_distance(of.system, q), 1e-15);
+  ck_assert_double_le(dvi_system_distance(model.system, q), 1e-15);
 }
 END_TEST
 
@@ -124,7 +127,7 @@ static dvi__action *centred_action(void)
   return made;
 }
 
-/* Central differences of order 4: 1e-12 beside roundoff over the length. */
+/* Takes central differences of order 4, with an error of 1e-12 beside roundoff over the length. */
 static void difference(dvi__action *action, const double *Y, int column, double *in_column)
 {
   static const double weight[] = {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12},
@@ -161,7 +164,7 @@ START_TEST(the_centred_jacobian_is_that_of_the_rows)
       error = fmax(error, fabs(column[i] - (e >= 0 ? values[e] : 0)));
     }
   }
-  ck_assert_msg(error < 1e-9 * size, "%s: %.1e of %.1e", of.name, error, size);
+  ck_assert_msg(error < 1e-9 * size, "%s: %.1e of %.1e", model.name, error, size);
   free(values);
   dvi__action_destroy(&action);
 }
@@ -174,13 +177,13 @@ START_TEST(charts_survive_every_failure)
   take(_i);
   const long before = dvi__allocation_count();
   dvi__charted *made;
-  ck_assert_int_eq(dvi__charted_create(of.system, is_reduced(_i), &counters, &made), DVI_OK);
+  ck_assert_int_eq(dvi__charted_create(model.system, is_reduced(_i), &counters, &made), DVI_OK);
   const long needed = dvi__allocation_count() - before;
   dvi__charted_destroy(&made);
   ck_assert_int_gt(needed, 20);
   for (long successes = 0; successes < needed; successes++) {
     dvi__fail_allocations_after(successes);
-    const dvi_status status = dvi__charted_create(of.system, is_reduced(_i), &counters, &made);
+    const dvi_status status = dvi__charted_create(model.system, is_reduced(_i), &counters, &made);
     dvi__fail_allocations_after(-1);
     ck_assert_int_eq(status, DVI_NO_MEMORY);
     ck_assert_ptr_null(made);
@@ -189,7 +192,7 @@ START_TEST(charts_survive_every_failure)
 }
 END_TEST
 
-/* Beyond half a turn: the status, how far, and nothing else. */
+/* Beyond half a turn only the status and the distance are known. */
 START_TEST(beyond_half_a_turn_there_is_no_chart)
 {
   double xi[BODY_V] = {0}, rate[BODY_V] = {0}, L;
@@ -204,17 +207,17 @@ START_TEST(beyond_half_a_turn_there_is_no_chart)
 }
 END_TEST
 
-/* Entries of the patterns, of chains of n links: 3 n - 2 blocks of 4. */
+/* The patterns of a chain of n links have 3 n - 2 blocks of 4 entries. */
 START_TEST(a_chains_patterns_are_sparse)
 {
-  chain long_chain;
-  make_linked_chain(100, &long_chain);
+  direction_chain long_chain;
+  make_direction_chain(100, &long_chain);
   ck_assert_int_eq(dvi__charted_create(long_chain.system, 0, &counters, &charts), DVI_OK);
   ck_assert_int_eq(dvi__pattern_entries(&charts->qq), 4 * (3 * 100 - 2));
   ck_assert_int_eq(dvi__pattern_entries(&charts->qv), 4 * 100);
   ck_assert_int_eq(dvi__pattern_entries(&charts->vv), 4 * 100);
   dvi__charted_destroy(&charts);
-  destroy_chain(&long_chain);
+  destroy_direction_chain(&long_chain);
 }
 END_TEST
 

@@ -120,7 +120,7 @@ START_TEST(an_entry_that_a_pattern_misses_is_named)
   scene c;
   build(&c);
   c.potentials[0].qq = (dvi_pattern){start, row};
-  c.potentials[0].hessian_batch = NULL; /* a missing callback is not checked; its pattern is */
+  c.potentials[0].hessian_batch = NULL; /* a missing callback is not checked, but its pattern is */
   ck_assert_int_eq(check_scene(&c), DVI_BAD_ARGUMENT);
   says(dvi_last_error(),
        "potential 'springs': d2V/dq2 (3,2) is not in the pattern, but differences give -");
@@ -180,8 +180,8 @@ START_TEST(a_wrong_gradient_is_blamed_before_the_hessian_that_disagrees_with_it)
 }
 END_TEST
 
-/* At the origin nearly all derivatives vanish, and differences give roundoff: nothing to complain
- * about. */
+/* At the origin nearly all derivatives vanish, and differences give roundoff, which is no reason to
+ * complain. */
 START_TEST(roundoff_in_vanishing_derivatives_is_no_error)
 {
   const double zero[SITES] = {0}, tiny[SITES] = {1e-9, -2e-9, 3e-9, 1e-20, 0, 1e-9};
@@ -192,8 +192,8 @@ START_TEST(roundoff_in_vanishing_derivatives_is_no_error)
 }
 END_TEST
 
-/* A constant that dwarfs what varies: its roundoff, over the step, is larger than 1e-6 of the
- * gradient. */
+/* The constant is much larger than the varying part. Its roundoff, over the step, is larger than
+ * 1e-6 of the gradient. */
 START_TEST(roundoff_of_a_large_constant_is_no_error)
 {
   scene c;
@@ -203,8 +203,8 @@ START_TEST(roundoff_of_a_large_constant_is_no_error)
 }
 END_TEST
 
-/* Gravity: a linear potential with an empty pattern, and a constant whose roundoff shows in second
- * differences of the value. */
+/* Gravity is a linear potential with an empty pattern, and a constant whose roundoff shows in
+ * second differences of the value. */
 static int weight_value(double t, const double *q, double *V, void *user)
 {
   (void)t, (void)user;

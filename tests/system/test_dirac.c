@@ -15,58 +15,62 @@ static dvi_system *made_system(const dvi_system_terms *terms)
 
 START_TEST(the_velocity_is_that_of_the_constrained_motion)
 {
-  problem *of = made_problem("magnetic-pair", NULL);
-  const double S = 1 + of->q[1] * of->q[1] + of->q[2] * of->q[2], u = of->p[0] - of->q[1] / 2;
-  ck_assert_int_eq(dvi_system_constraint_count(of->system), 2);
-  ck_assert_double_eq_tol(of->v[0], u, 1e-15);
-  ck_assert_double_eq_tol(of->v[1], -cos(of->q[2]) / S, 1e-15);
-  ck_assert_double_eq_tol(of->v[2], (-u / 2 - sin(of->q[1])) / S, 1e-15);
-  problem_destroy(&of);
+  problem *model = create_problem("magnetic-pair", NULL);
+  const double S = 1 + model->q[1] * model->q[1] + model->q[2] * model->q[2],
+               u = model->p[0] - model->q[1] / 2;
+  ck_assert_int_eq(dvi_system_constraint_count(model->system), 2);
+  ck_assert_double_eq_tol(model->v[0], u, 1e-15);
+  ck_assert_double_eq_tol(model->v[1], -cos(model->q[2]) / S, 1e-15);
+  ck_assert_double_eq_tol(model->v[2], (-u / 2 - sin(model->q[1])) / S, 1e-15);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(the_energy_is_the_hamiltonian)
 {
-  problem *of = made_problem("circle-dirac", NULL);
+  problem *model = create_problem("circle-dirac", NULL);
   double energy;
-  ck_assert_int_eq(dvi_system_invariants(of->system, 0, of->q, of->p, &energy), DVI_OK);
+  ck_assert_int_eq(dvi_system_invariants(model->system, 0, model->q, model->p, &energy), DVI_OK);
   ck_assert_double_eq_tol(energy, 0.25 / 2 + 0.6, 1e-15);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(the_bracket_matrix_is_that_of_the_gradients)
 {
-  problem *of = made_problem("circle-dirac", NULL), *vortices = made_problem("vortices", NULL);
+  problem *model = create_problem("circle-dirac", NULL),
+          *vortices = create_problem("vortices", NULL);
   const double nowhere[2] = {0, 0};
   double bracket[4], condition, v[2] = {7, 7};
-  ck_assert_int_eq(dvi_system_bracket(of->system, of->q, of->p, bracket, &condition), DVI_OK);
+  ck_assert_int_eq(dvi_system_bracket(model->system, model->q, model->p, bracket, &condition),
+                   DVI_OK);
   ck_assert_double_eq(bracket[0], 0);
   ck_assert_double_eq(bracket[3], 0);
   ck_assert_double_eq_tol(bracket[2], 1, 1e-15);
   ck_assert_double_eq_tol(bracket[1], -1, 1e-15);
   ck_assert_double_eq_tol(condition, 1, 1e-14);
-  ck_assert_int_eq(dvi_system_bracket(of->system, nowhere, of->p, NULL, &condition), DVI_OK);
+  ck_assert_int_eq(dvi_system_bracket(model->system, nowhere, model->p, NULL, &condition), DVI_OK);
   ck_assert(isinf(condition));
-  ck_assert_int_eq(dvi_system_velocity(of->system, 0, nowhere, of->p, v), DVI_SINGULAR);
+  ck_assert_int_eq(dvi_system_velocity(model->system, 0, nowhere, model->p, v), DVI_SINGULAR);
   check_words("bracket matrix {phi_a, phi_b} is singular");
   ck_assert_double_eq(v[0], 7);
   ck_assert_int_eq(dvi_system_bracket(vortices->system, vortices->q, vortices->p, bracket, NULL),
                    DVI_UNSUPPORTED);
   ck_assert_int_eq(dvi_system_constraint_count(vortices->system), 0);
   problem_destroy(&vortices);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(there_is_no_lagrangian)
 {
-  problem *of = made_problem("circle-dirac", NULL);
+  problem *model = create_problem("circle-dirac", NULL);
   double L, p[2];
-  ck_assert_int_eq(dvi_system_lagrangian(of->system, 0, of->q, of->v, &L), DVI_UNSUPPORTED);
-  ck_assert_int_eq(dvi_system_momentum(of->system, 0, of->q, of->v, p), DVI_UNSUPPORTED);
+  ck_assert_int_eq(dvi_system_lagrangian(model->system, 0, model->q, model->v, &L),
+                   DVI_UNSUPPORTED);
+  ck_assert_int_eq(dvi_system_momentum(model->system, 0, model->q, model->v, p), DVI_UNSUPPORTED);
   check_words("a Hamiltonian is declared, no Lagrangian");
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -120,8 +124,8 @@ static void check_offender(const dvi_system_terms *terms, const char *words)
 
 START_TEST(the_check_names_the_offender)
 {
-  problem *of = made_problem("magnetic-pair", NULL);
-  dvi_system_terms terms = *of->terms;
+  problem *model = create_problem("magnetic-pair", NULL);
+  dvi_system_terms terms = *model->terms;
   dvi_hamiltonian H = *terms.hamiltonian;
   dvi_constraint phi = *terms.constraint;
   wronged = terms.hamiltonian;
@@ -143,27 +147,27 @@ START_TEST(the_check_names_the_offender)
   phi.qq = phi.qp;
   phi.hessian = NULL;
   check_offender(&terms, "is not in the pattern");
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 /* Newton's method ends at the same floor. */
 START_TEST(differenced_hessians_give_the_same_steps)
 {
-  problem *of = made_problem("magnetic-pair", NULL);
-  dvi_system_terms terms = *of->terms;
+  problem *model = create_problem("magnetic-pair", NULL);
+  dvi_system_terms terms = *model->terms;
   dvi_hamiltonian H = *terms.hamiltonian;
   dvi_constraint phi = *terms.constraint;
   H.hessian = NULL;
   phi.hessian = NULL;
   phi.gradients = phi.qq = phi.qp = phi.pp = H.qq = H.qp = H.pp = (dvi_pattern){NULL, NULL};
-  phi.gradients = of->terms->constraint->gradients;
+  phi.gradients = model->terms->constraint->gradients;
   terms.hamiltonian = &H;
   terms.constraint = &phi;
   dvi_system *system = made_system(&terms);
-  dvi_integrator *given = started(of, "dg-phase:degree=3"),
-                 *differenced = made_integrator(system, "dg-phase:degree=3");
-  ck_assert_int_eq(dvi_integrator_start(differenced, 0, of->q, of->p), DVI_OK);
+  dvi_integrator *given = start_integrator(model, "dg-phase:degree=3"),
+                 *differenced = create_integrator(system, "dg-phase:degree=3");
+  ck_assert_int_eq(dvi_integrator_start(differenced, 0, model->q, model->p), DVI_OK);
   advance(given, 0.1, 20);
   advance(differenced, 0.1, 20);
   ck_assert_double_le(distance(3, dvi_integrator_q(given), dvi_integrator_q(differenced)), 1e-13);
@@ -171,7 +175,7 @@ START_TEST(differenced_hessians_give_the_same_steps)
   dvi_integrator_destroy(&given);
   dvi_integrator_destroy(&differenced);
   dvi_system_destroy(&system);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -187,8 +191,9 @@ static void check_terms(const dvi_system_terms *terms, dvi_status status, const 
 
 START_TEST(terms_that_do_not_go_together_are_refused)
 {
-  problem *of = made_problem("circle-dirac", NULL), *well = made_problem("henon-heiles", NULL);
-  const dvi_system_terms declared = *of->terms;
+  problem *model = create_problem("circle-dirac", NULL),
+          *well = create_problem("henon-heiles", NULL);
+  const dvi_system_terms declared = *model->terms;
   dvi_constraint phi = *declared.constraint;
   dvi_hamiltonian H = *declared.hamiltonian;
   dvi_system_terms terms = declared;
@@ -213,7 +218,7 @@ START_TEST(terms_that_do_not_go_together_are_refused)
   H.gradient = NULL;
   check_terms(&terms, DVI_BAD_ARGUMENT, "the Hamiltonian has no gradient callback");
   problem_destroy(&well);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

@@ -69,7 +69,7 @@ static dvi_system *made_particle(dvi__dynamics *kind)
 static double end_of_run(const dvi_system *system, double *energy)
 {
   const double q = 1, p = 0.5;
-  dvi_integrator *integrator = made_integrator(system, "galerkin:degree=4");
+  dvi_integrator *integrator = create_integrator(system, "galerkin:degree=4");
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, &q, &p), DVI_OK);
   for (int step = 0; step < 50; step++)
     ck_assert_int_eq(dvi_integrator_step(integrator, 0.1), DVI_OK);

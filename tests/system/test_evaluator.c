@@ -200,8 +200,8 @@ START_TEST(a_constant_mass_has_its_own_derivatives)
 }
 END_TEST
 
-/* The tolerances are those that system/term/difference.h states; these functions vary over lengths
- * of about 1, their steps as well. */
+/* The tolerances are those of system/term/difference.h. These functions vary over lengths of about
+ * 1, and so do their steps. */
 START_TEST(what_is_missing_is_differenced_to_the_stated_accuracy)
 {
   static evaluation exact, differenced;
@@ -228,9 +228,9 @@ START_TEST(what_is_missing_is_differenced_to_the_stated_accuracy)
 }
 END_TEST
 
-/* L = -sqrt(1 - v^2), as near to the speed of light as the first column says: steps made for v
- * itself would lead close to it. The values' roundoff, over steps that shrink with the distance, is
- * what remains. */
+/* L = -sqrt(1 - v^2), as near to the speed of light as the first column says. Steps made for v
+ * itself would lead close to it. The remaining error is the values' roundoff over steps that shrink
+ * with the distance. */
 static int moving_value(double t, const double *q, const double *v, double *L, void *user)
 {
   (void)t, (void)q, (void)user;
@@ -284,8 +284,8 @@ START_TEST(a_tridiagonal_hessian_costs_two_gradients_for_each_of_three_groups)
 }
 END_TEST
 
-/* qq is diagonal: one group. The bidiagonal qv and the tridiagonal vv share their columns: three
- * groups. */
+/* qq is diagonal, and has one group. The bidiagonal qv and the tridiagonal vv share their columns
+ * in three groups. */
 START_TEST(a_general_hessian_is_grouped_by_its_patterns)
 {
   behaviour b = {0};
@@ -351,7 +351,7 @@ START_TEST(points_are_counted_and_nothing_is_allocated_after_create)
 }
 END_TEST
 
-/* A constant mass: L_v costs no callback, and the halves of the gradient can be left out. */
+/* With a constant mass L_v costs no callback, and either part of the gradient can be left out. */
 START_TEST(only_what_is_asked_is_evaluated)
 {
   static evaluation x;

@@ -1,4 +1,4 @@
-/* Configuration spaces with factors: layout, mass, what is refused, and points off the manifold. */
+/* Configuration spaces with factors: layout, mass, refusals, and points off the manifold. */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -162,7 +162,7 @@ START_TEST(inertia_has_any_unit)
 }
 END_TEST
 
-/* Rounding is taken off: a mass is symmetric. */
+/* Rounding is removed, because a mass is symmetric. */
 START_TEST(inertia_is_made_symmetric)
 {
   const double rounded[] = {1.3, .1 + 1e-14, 0, .1, 1.1, .05, 0, .05 - 1e-14, .9};
@@ -211,7 +211,8 @@ END_TEST
 
 /* ---- points ---- */
 
-/* Where a number is off, whether a start is refused, and whether there is a nearest point. */
+/* A wrong number of a start, the status of the start, and that of the projection to the nearest
+ * point. */
 static const struct {
   body_kind kind;
   int at;
@@ -235,58 +236,59 @@ static const struct {
 
 START_TEST(points_off_the_manifold_are_refused_and_projected_on_request)
 {
-  body of;
+  body model;
   dvi_integrator *integrator;
   double before[BODY_Q];
-  make_body(places[_i].kind, &of);
-  of.q[places[_i].at] = places[_i].value;
-  memcpy(before, of.q, sizeof before);
-  ck_assert_int_eq(dvi_integrator_create(of.system, "lie-galerkin", &integrator), DVI_OK);
-  ck_assert_msg(dvi_integrator_start_velocity(integrator, 0, of.q, of.v) == places[_i].start,
+  make_body(places[_i].kind, &model);
+  model.q[places[_i].at] = places[_i].value;
+  memcpy(before, model.q, sizeof before);
+  ck_assert_int_eq(dvi_integrator_create(model.system, "lie-galerkin", &integrator), DVI_OK);
+  ck_assert_msg(dvi_integrator_start_velocity(integrator, 0, model.q, model.v) == places[_i].start,
                 "%d: %s", _i, dvi_last_error());
   check_words(places[_i].words);
-  ck_assert_int_eq(dvi_system_project(of.system, of.q), places[_i].project);
+  ck_assert_int_eq(dvi_system_project(model.system, model.q), places[_i].project);
   if (places[_i].project == DVI_OK) {
-    ck_assert_double_le(dvi_system_distance(of.system, of.q), 1e-15);
-    ck_assert_msg(dvi_integrator_start_velocity(integrator, 0, of.q, of.v) == DVI_OK, "%s",
+    ck_assert_double_le(dvi_system_distance(model.system, model.q), 1e-15);
+    ck_assert_msg(dvi_integrator_start_velocity(integrator, 0, model.q, model.v) == DVI_OK, "%s",
                   dvi_last_error());
   } else {
     check_words(places[_i].project_words);
-    ck_assert_mem_eq(before, of.q, sizeof before);
+    ck_assert_mem_eq(before, model.q, sizeof before);
   }
   dvi_integrator_destroy(&integrator);
-  destroy_body(&of);
+  destroy_body(&model);
 }
 END_TEST
 
 START_TEST(velocities_off_the_tangent_plane_are_refused)
 {
-  body of;
+  body model;
   dvi_integrator *integrator;
-  make_body(DIRECTIONS, &of);
-  of.v[5] = 1e-3;
-  ck_assert_int_eq(dvi_integrator_create(of.system, "lie-galerkin", &integrator), DVI_OK);
-  ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, of.q, of.v), DVI_BAD_ARGUMENT);
+  make_body(DIRECTIONS, &model);
+  model.v[5] = 1e-3;
+  ck_assert_int_eq(dvi_integrator_create(model.system, "lie-galerkin", &integrator), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, model.q, model.v),
+                   DVI_BAD_ARGUMENT);
   check_words("numbers 3 to 5 of the velocity or momentum of a direction q are not orthogonal to "
               "it: off by");
   check_words("subtract (p.q) q");
   dvi_integrator_destroy(&integrator);
-  destroy_body(&of);
+  destroy_body(&model);
 }
 END_TEST
 
 START_TEST(distances_are_those_of_the_nearest_point)
 {
-  body of;
-  make_body(FREE_BODY, &of);
-  ck_assert_double_eq(dvi_system_distance(of.system, of.q), 0);
-  for (int i = 0; i < 9; i++) of.q[i] *= 1.1; /* 0.1 times |I| */
-  ck_assert_double_eq_tol(dvi_system_distance(of.system, of.q), 0.1 * sqrt(3), 1e-15);
-  of.q[4] = NAN;
-  ck_assert(isnan(dvi_system_distance(of.system, of.q)));
-  ck_assert(isnan(dvi_system_distance(NULL, of.q)));
-  ck_assert_int_eq(dvi_system_project(NULL, of.q), DVI_BAD_ARGUMENT);
-  destroy_body(&of);
+  body model;
+  make_body(FREE_BODY, &model);
+  ck_assert_double_eq(dvi_system_distance(model.system, model.q), 0);
+  for (int i = 0; i < 9; i++) model.q[i] *= 1.1; /* 0.1 times |I| */
+  ck_assert_double_eq_tol(dvi_system_distance(model.system, model.q), 0.1 * sqrt(3), 1e-15);
+  model.q[4] = NAN;
+  ck_assert(isnan(dvi_system_distance(model.system, model.q)));
+  ck_assert(isnan(dvi_system_distance(NULL, model.q)));
+  ck_assert_int_eq(dvi_system_project(NULL, model.q), DVI_BAD_ARGUMENT);
+  destroy_body(&model);
 }
 END_TEST
 
@@ -309,7 +311,7 @@ START_TEST(massless_factors_may_be_coupled)
 }
 END_TEST
 
-/* A direction with a mass along x alone: across it a velocity has no momentum. */
+/* A direction with a mass along x alone. A velocity across x has no momentum. */
 START_TEST(singular_masses_cannot_start)
 {
   const dvi_factor factor = {.kind = DVI_S2};

@@ -1,5 +1,5 @@
 /* labels: unit order */
-/* Changes of gauge: alpha + grad f has the same two-form and the same motion, and other momenta. */
+/* A change of gauge, alpha + grad f, keeps the two-form and the motion, and changes the momenta. */
 #include <math.h>
 #include <string.h>
 
@@ -7,7 +7,7 @@
 #include "support/runs.h"
 #include "support/suite.h"
 
-/* f = sum over pairs (x,y) of c (x y + kappa (x^3 y/3 + x y^3)): takes the first component from
+/* f = sum over pairs (x,y) of c (x y + kappa (x^3 y/3 + x y^3)) removes the first component from
  * alpha = c (1 + kappa r^2) (-y, x). */
 typedef struct product {
   int pairs;
@@ -59,7 +59,7 @@ typedef struct place {
   product f;
 } place;
 
-/* vortices: gamma = 1/2, halved. The last two leave the class again. */
+/* vortices has gamma = 1/2, halved. The last two leave the class again. */
 static const place places[] = {
     {"vortices", NULL, {2, 0.25, 1}},
     {"guiding-centre", NULL, {1, 0.5, 0.5}},
@@ -89,12 +89,12 @@ static int gradient_of_two(const double *q, double *f_q, void *user)
   return returned;
 }
 
-static dvi_system *gauged(const problem *of, const dvi_gauge *gauge)
+static dvi_system *gauged(const problem *model, const dvi_gauge *gauge)
 {
-  dvi_system_terms terms = *of->terms;
+  dvi_system_terms terms = *model->terms;
   dvi_gauge f = *gauge;
   dvi_system *system = NULL;
-  if (of->nq == 2) f.gradient = gradient_of_two;
+  if (model->nq == 2) f.gradient = gradient_of_two;
   terms.gauge = &f;
   ck_assert_msg(dvi_system_create(&terms, &system) == DVI_OK, "%s", dvi_last_error());
   return system;
@@ -106,61 +106,62 @@ START_TEST(the_two_form_stays_and_the_momenta_move_by_the_gradient)
 {
   product own;
   const place *at = &places[_i];
-  problem *of = made_problem(at->problem, at->setting);
-  const dvi_gauge f = declared(at, of->nq, &own);
-  dvi_system *system = gauged(of, &f);
+  problem *model = create_problem(at->problem, at->setting);
+  const dvi_gauge f = declared(at, model->nq, &own);
+  dvi_system *system = gauged(model, &f);
   double before[16], after[16], p[4], moved[4], f_q[4];
-  ck_assert_int_eq(dvi_system_two_form(of->system, q, before, NULL), DVI_OK);
+  ck_assert_int_eq(dvi_system_two_form(model->system, q, before, NULL), DVI_OK);
   ck_assert_int_eq(dvi_system_two_form(system, q, after, NULL), DVI_OK);
-  ck_assert_double_le(distance(of->nq * of->nq, before, after),
-                      1e-15 * fmax(1, magnitude(of->nq * of->nq, before)));
-  ck_assert_int_eq(dvi_system_momentum(of->system, 0, q, v, p), DVI_OK);
+  ck_assert_double_le(distance(model->nq * model->nq, before, after),
+                      1e-15 * fmax(1, magnitude(model->nq * model->nq, before)));
+  ck_assert_int_eq(dvi_system_momentum(model->system, 0, q, v, p), DVI_OK);
   ck_assert_int_eq(dvi_system_momentum(system, 0, q, v, moved), DVI_OK);
   (void)gradient(q, f_q, &own);
-  for (int i = 0; i < of->nq; i++) ck_assert_double_eq(moved[i], p[i] + f_q[i]);
+  for (int i = 0; i < model->nq; i++) ck_assert_double_eq(moved[i], p[i] + f_q[i]);
   ck_assert_msg(dvi_system_check(system, 0, q, v, 0, NULL) == DVI_OK, "%s", dvi_last_error());
   dvi_system_destroy(&system);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* The error of one method at the problem's digits, over four steps: that of the order, in every
- * gauge. */
-static void check_order(const problem *of, const dvi_system *system, const char *method, double h,
-                        int order)
+/* Requires that the error of one method at the problem's digits, over four steps, has the order in
+ * every gauge. */
+static void check_order(const problem *model, const dvi_system *system, const char *method,
+                        double h, int order)
 {
   double last = 0;
   for (int level = 0; level < 4; level++, h /= 2) {
-    dvi_integrator *integrator = made_integrator(system, method);
-    ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, of->q, of->v), DVI_OK);
-    advance(integrator, h, lround(of->order_t_end / h));
-    const double error = distance(of->nq, dvi_integrator_q(integrator), of->digits_q),
+    dvi_integrator *integrator = create_integrator(system, method);
+    ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, model->q, model->v), DVI_OK);
+    advance(integrator, h, lround(model->order_t_end / h));
+    const double error = distance(model->nq, dvi_integrator_q(integrator), model->digits_q),
                  slope = log2(last / error);
     ck_assert_msg(level == 0 || fabs(slope - order) <= (level == 1 ? 0.6 : 0.2),
-                  "%s %s: slope %.2f at h = %g (error %g)", of->name, method, slope, h, error);
+                  "%s %s: slope %.2f at h = %g (error %g)", model->name, method, slope, h, error);
     last = error;
     dvi_integrator_destroy(&integrator);
   }
 }
 
-static double step_of(const problem *of)
+static double step_of(const problem *model)
 {
-  return strcmp(of->name, "vortices") == 0         ? 0.0625
-         : strcmp(of->name, "guiding-centre") == 0 ? 32
-                                                   : 0.25;
+  return strcmp(model->name, "vortices") == 0         ? 0.0625
+         : strcmp(model->name, "guiding-centre") == 0 ? 32
+                                                      : 0.25;
 }
 
 START_TEST(in_another_gauge_the_trajectory_is_the_same_to_the_methods_order)
 {
   product own;
   const place *at = &places[_i];
-  problem *of = made_problem(at->problem, NULL); /* its digits; the motion is that of every gauge */
-  problem *in_gauge = made_problem(at->problem, at->setting);
-  const dvi_gauge f = declared(at, of->nq, &own);
+  problem *model = create_problem(at->problem,
+                                  NULL); /* its digits, because the motion is that of every gauge */
+  problem *in_gauge = create_problem(at->problem, at->setting);
+  const dvi_gauge f = declared(at, model->nq, &own);
   dvi_system *system = gauged(in_gauge, &f);
-  check_order(of, system, "vprk", step_of(of), 4);
+  check_order(model, system, "vprk", step_of(model), 4);
   dvi_system_destroy(&system);
-  problem_destroy(&of);
+  problem_destroy(&model);
   problem_destroy(&in_gauge);
 }
 END_TEST
@@ -173,31 +174,31 @@ START_TEST(a_gauge_brings_systems_into_the_class_of_one_step_methods)
   } claims[] = {{"dvi-midpoint", 2}, {"dvi-trapezoidal", 2}, {"dvrk", 4}};
   product own;
   const place *at = &places[_i];
-  problem *of = made_problem(at->problem, at->setting);
-  const dvi_gauge f = declared(at, of->nq, &own);
-  dvi_system *system = gauged(of, &f);
+  problem *model = create_problem(at->problem, at->setting);
+  const dvi_gauge f = declared(at, model->nq, &own);
+  dvi_system *system = gauged(model, &f);
   dvi_integrator *none = NULL;
-  ck_assert_int_eq(dvi_integrator_create(of->system, "dvrk", &none), DVI_UNSUPPORTED);
+  ck_assert_int_eq(dvi_integrator_create(model->system, "dvrk", &none), DVI_UNSUPPORTED);
   for (int k = 0; k < 3; k++)
-    check_order(of, system, claims[k].method, step_of(of) / 2, claims[k].order);
+    check_order(model, system, claims[k].method, step_of(model) / 2, claims[k].order);
   dvi_system_destroy(&system);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* singular + grad (x y) is the catalogue's standard gauge, number for number up to roundoff; also
- * with differences for what is left out. */
+/* singular + grad (x y) is the catalogue's standard gauge, number for number up to roundoff, also
+ * if missing callbacks are differenced. */
 START_TEST(a_gauge_is_the_one_form_that_it_gives)
 {
   product own;
   const place *at = &places[4];
-  problem *singular = made_problem(at->problem, at->setting),
-          *standard = made_problem(at->problem, NULL);
+  problem *singular = create_problem(at->problem, at->setting),
+          *standard = create_problem(at->problem, NULL);
   dvi_gauge f = declared(at, 2, &own);
   if (_i == 1) f.third = NULL;
   dvi_system *system = gauged(singular, &f);
-  dvi_integrator *a = made_integrator(system, "vprk:nodes=3"),
-                 *b = started(standard, "vprk:nodes=3");
+  dvi_integrator *a = create_integrator(system, "vprk:nodes=3"),
+                 *b = start_integrator(standard, "vprk:nodes=3");
   ck_assert_msg(dvi_integrator_start(a, 0, standard->q, standard->p) == DVI_OK, "%s",
                 dvi_last_error());
   advance(a, 0.1, 50);
@@ -230,11 +231,12 @@ START_TEST(bad_gauges_are_refused_and_wrong_ones_found)
 {
   static const int upper_start[] = {0, 1, 3}, upper_row[] = {0, 0, 1};
   product own;
-  problem *of = made_problem("massless-particle", NULL), *regular = made_problem("kepler", NULL);
+  problem *model = create_problem("massless-particle", NULL),
+          *regular = create_problem("kepler", NULL);
   const dvi_gauge good = declared(&places[2], 2, &own);
   dvi_gauge bad = good;
   dvi_system *system = NULL;
-  dvi_system_terms terms = *of->terms;
+  dvi_system_terms terms = *model->terms;
   terms.gauge = &bad;
   bad.hessian = NULL;
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_BAD_ARGUMENT);
@@ -245,13 +247,13 @@ START_TEST(bad_gauges_are_refused_and_wrong_ones_found)
   check_words("both triangles");
   bad = good;
   bad.hessian = wrong_hessian;
-  system = gauged(of, &bad);
+  system = gauged(model, &bad);
   ck_assert_int_eq(dvi_system_check(system, 0, q, v, 0, NULL), DVI_BAD_ARGUMENT);
   check_words("system check: gauge: d2f/dq2 (1,0) is");
   dvi_system_destroy(&system);
   bad = good;
   bad.third = wrong_third;
-  system = gauged(of, &bad);
+  system = gauged(model, &bad);
   ck_assert_int_eq(dvi_system_check(system, 0, q, v, 0, NULL), DVI_BAD_ARGUMENT);
   check_words("system check: gauge: d2(grad f.v)/dq2 (0,0) is");
   dvi_system_destroy(&system);
@@ -259,7 +261,7 @@ START_TEST(bad_gauges_are_refused_and_wrong_ones_found)
   terms.gauge = &good;
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_BAD_ARGUMENT);
   check_words("a gauge without a one-form");
-  problem_destroy(&of);
+  problem_destroy(&model);
   problem_destroy(&regular);
 }
 END_TEST
@@ -267,13 +269,13 @@ END_TEST
 START_TEST(a_system_in_another_gauge_survives_every_failure_of_memory)
 {
   product own;
-  problem *of = made_problem("vortices", NULL);
+  problem *model = create_problem("vortices", NULL);
   const dvi_gauge f = declared(&places[0], 4, &own);
   const long before = dvi__allocation_count();
-  dvi_system *system = gauged(of, &f);
+  dvi_system *system = gauged(model, &f);
   const long needed = dvi__allocation_count() - before;
   dvi_system_destroy(&system);
-  dvi_system_terms terms = *of->terms;
+  dvi_system_terms terms = *model->terms;
   terms.gauge = &f;
   for (long successes = 0; successes < needed; successes++) {
     dvi__fail_allocations_after(successes);
@@ -283,7 +285,7 @@ START_TEST(a_system_in_another_gauge_survives_every_failure_of_memory)
     ck_assert_ptr_null(system);
   }
   ck_assert_int_gt(needed, 20);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

@@ -90,7 +90,7 @@ START_TEST(the_values_are_those_of_their_definitions)
 }
 END_TEST
 
-/* For the rotors the magnetic term drops out: E = (T with both v) + q^2 (1+t)/2 + springs. */
+/* For the rotors the magnetic term drops out, and E = (T with both v) + q^2 (1+t)/2 + springs. */
 START_TEST(the_energy_of_a_general_lagrangian_uses_the_inverse_legendre_map)
 {
   int answer = 0;

@@ -6,7 +6,7 @@
 
 static behaviour quiet;
 
-/* The rotors' mass is at least 1/2 and at most 7/2: a relative residual of a few roundings is an
+/* The rotors' mass is at least 1/2 and at most 7/2, so a relative residual of a few roundings is an
  * error of a few tens of them. */
 #define ROUNDING 1e-14
 
@@ -31,8 +31,8 @@ START_TEST(a_mass_that_depends_on_q_is_inverted_from_any_guess)
 }
 END_TEST
 
-/* The momentum of a magnetic term does not vanish at v = 0; then v has no size by which to measure
- * convergence. */
+/* The momentum of a magnetic term does not vanish at v = 0, where v gives no size to measure
+ * convergence by. */
 START_TEST(a_body_at_rest_is_found_in_spite_of_a_magnetic_momentum)
 {
   dvi_system *s = rotor_system();
@@ -83,7 +83,7 @@ START_TEST(constant_masses_are_inverted_in_every_form)
 }
 END_TEST
 
-/* L = (v0 - v1)^2/2: degenerate. */
+/* L = (v0 - v1)^2/2 is degenerate. */
 static int difference_value(double t, const double *q, const double *v, double *L, void *user)
 {
   (void)t, (void)q, (void)user;
@@ -127,7 +127,7 @@ START_TEST(a_degenerate_lagrangian_has_a_momentum_but_no_velocity)
 }
 END_TEST
 
-/* L = sqrt(1 + v^2): p = v / sqrt(1 + v^2) never reaches 1. */
+/* With L = sqrt(1 + v^2) p = v / sqrt(1 + v^2) never reaches 1. */
 static int bounded_value(double t, const double *q, const double *v, double *L, void *user)
 {
   (void)t, (void)q, (void)user;
@@ -159,7 +159,7 @@ START_TEST(a_momentum_that_no_velocity_has_is_reported_and_the_guess_stays)
 }
 END_TEST
 
-/* L = v^4/4 - v^2 + 2 v with p = 0: from v = 0 Newton's method goes to 1 and back again, for
+/* With L = v^4/4 - v^2 + 2 v and p = 0 Newton's method goes from v = 0 to 1 and back again, for
  * ever. */
 static int cycling_value(double t, const double *q, const double *v, double *L, void *user)
 {

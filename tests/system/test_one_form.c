@@ -1,5 +1,5 @@
 /* labels: unit */
-/* Degenerate Lagrangians: what a one-form gives, and what is refused. */
+/* Degenerate Lagrangians: the callbacks of a one-form, and refusals. */
 #include <math.h>
 #include <string.h>
 
@@ -7,8 +7,8 @@
 #include "support/suite.h"
 #include "system/evaluate/evaluator.h"
 
-/* alpha = (-x^2 y, lie + x y^2 + z, w, 0) of n coordinates, or 0 if `flat`; a wrong gradient where
- * `lie` is not 0. */
+/* alpha = (-x^2 y, lie + x y^2 + z, w, 0) of n coordinates, or 0 if `flat`. The gradient is wrong
+ * if `lie` is not 0. */
 typedef struct form {
   double lie;
   int flat;
@@ -123,7 +123,7 @@ START_TEST(a_wrong_gradient_is_found)
 }
 END_TEST
 
-/* A Hessian that is left out is differenced, and it alone: the gradients are given. */
+/* A missing Hessian is differenced, and nothing else, because the gradients are given. */
 START_TEST(gradients_are_taken_as_they_are_given_where_the_hessian_is_differenced)
 {
   form right = {0};
@@ -143,7 +143,7 @@ START_TEST(gradients_are_taken_as_they_are_given_where_the_hessian_is_difference
   ck_assert_int_eq(dvi__lagrangian_hessian(evaluator, 2, t, twice_q, twice_v, all_qq, all_qv, none),
                    DVI_OK);
   for (int e = 0; e < 6; e++) ck_assert(all_qv[2 * e] == given[e] && all_qv[2 * e + 1] == given[e]);
-  /* d2(alpha.v)/dxdy; differences err by some 1e-10 */
+  /* d2(alpha.v)/dxdy, where differences err by some 1e-10 */
   ck_assert_double_eq_tol(qq[1], -2 * q[0] * v[0] + 2 * q[1] * v[1], 1e-8);
   dvi__evaluator_destroy(&evaluator);
   dvi_system_destroy(&system);
@@ -208,8 +208,8 @@ END_TEST
 
 START_TEST(methods_for_one_kind_of_system_refuse_the_other)
 {
-  problem *degenerate = made_problem("lotka-volterra", NULL),
-          *regular = made_problem("kepler", NULL);
+  problem *degenerate = create_problem("lotka-volterra", NULL),
+          *regular = create_problem("kepler", NULL);
   dvi_integrator *none = NULL;
   ck_assert_int_eq(dvi_integrator_create(degenerate->system, "galerkin", &none), DVI_UNSUPPORTED);
   check_words("declares a one-form, which this method cannot use; methods for this system: vprk");
@@ -224,63 +224,65 @@ END_TEST
 
 START_TEST(a_start_off_the_constraint_is_refused)
 {
-  problem *of = made_problem("massless-particle", NULL);
-  dvi_integrator *integrator = made_integrator(of->system, "vprk");
-  double p[2] = {of->p[0], of->p[1] + 1e-9}, q_end[2] = {of->q[0], of->q[1]};
-  ck_assert_int_eq(dvi_integrator_start(integrator, 0, of->q, p), DVI_BAD_ARGUMENT);
+  problem *model = create_problem("massless-particle", NULL);
+  dvi_integrator *integrator = create_integrator(model->system, "vprk");
+  double p[2] = {model->p[0], model->p[1] + 1e-9}, q_end[2] = {model->q[0], model->q[1]};
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, model->q, p), DVI_BAD_ARGUMENT);
   check_words("1e-09 away; start with p = alpha(q)");
-  ck_assert_int_eq(dvi_reference_solve(of->system, 0, 1, q_end, p, NULL, NULL), DVI_BAD_ARGUMENT);
-  ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, of->q, of->v), DVI_OK);
-  ck_assert_mem_eq(dvi_integrator_p(integrator), of->p, sizeof p);
+  ck_assert_int_eq(dvi_reference_solve(model->system, 0, 1, q_end, p, NULL, NULL),
+                   DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, model->q, model->v), DVI_OK);
+  ck_assert_mem_eq(dvi_integrator_p(integrator), model->p, sizeof p);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(a_start_off_the_constraint_is_projected_on_request)
 {
-  problem *of = made_problem("massless-particle", NULL);
-  dvi_integrator *integrator = made_integrator(of->system, "vprk");
-  const double p[2] = {of->p[0] + 3, of->p[1] - 2}, not_finite[2] = {(double)NAN, 0};
+  problem *model = create_problem("massless-particle", NULL);
+  dvi_integrator *integrator = create_integrator(model->system, "vprk");
+  const double p[2] = {model->p[0] + 3, model->p[1] - 2}, not_finite[2] = {(double)NAN, 0};
   const dvi_start_options refused = {0}, projected = {.project = 1};
-  ck_assert_int_eq(dvi_integrator_start_with(integrator, 0, of->q, p, &refused), DVI_BAD_ARGUMENT);
-  ck_assert_int_eq(dvi_integrator_start_with(integrator, 0, of->q, p, NULL), DVI_BAD_ARGUMENT);
-  ck_assert_int_eq(dvi_integrator_start_with(integrator, 0, of->q, not_finite, &projected),
+  ck_assert_int_eq(dvi_integrator_start_with(integrator, 0, model->q, p, &refused),
+                   DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_integrator_start_with(integrator, 0, model->q, p, NULL), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_integrator_start_with(integrator, 0, model->q, not_finite, &projected),
                    DVI_NOT_FINITE);
-  ck_assert_int_eq(dvi_integrator_start_with(integrator, 0, of->q, p, &projected), DVI_OK);
-  ck_assert_mem_eq(dvi_integrator_q(integrator), of->q, sizeof p);
-  ck_assert_mem_eq(dvi_integrator_p(integrator), of->p, sizeof p);
+  ck_assert_int_eq(dvi_integrator_start_with(integrator, 0, model->q, p, &projected), DVI_OK);
+  ck_assert_mem_eq(dvi_integrator_q(integrator), model->q, sizeof p);
+  ck_assert_mem_eq(dvi_integrator_p(integrator), model->p, sizeof p);
   ck_assert_int_eq(dvi_integrator_step(integrator, 0.1), DVI_OK);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(without_a_one_form_a_projection_changes_nothing)
 {
-  problem *of = made_problem("kepler", NULL);
-  dvi_integrator *integrator = made_integrator(of->system, "verlet");
+  problem *model = create_problem("kepler", NULL);
+  dvi_integrator *integrator = create_integrator(model->system, "verlet");
   const double p[2] = {0.25, -1};
   ck_assert_int_eq(
-      dvi_integrator_start_with(integrator, 0, of->q, p, &(dvi_start_options){.project = 1}),
+      dvi_integrator_start_with(integrator, 0, model->q, p, &(dvi_start_options){.project = 1}),
       DVI_OK);
   ck_assert_mem_eq(dvi_integrator_p(integrator), p, sizeof p);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* alpha = (ln y/x, 0) vanishes at (1,1): there a rounding of q moves it by more than its size. */
+/* alpha = (ln y/x, 0) vanishes at (1,1), where a rounding of q moves it by more than its size. */
 START_TEST(a_start_that_is_rounded_where_the_one_form_vanishes_is_not_off_the_constraint)
 {
-  problem *of = made_problem("lotka-volterra", "gauge=singular");
-  dvi_integrator *integrator = made_integrator(of->system, "vprk");
+  problem *model = create_problem("lotka-volterra", "gauge=singular");
+  dvi_integrator *integrator = create_integrator(model->system, "vprk");
   const double beside[] = {1, 1 - 0x1p-53}, far[] = {1, 1 - 0x1p-33}, none[] = {0, 0};
   ck_assert_msg(dvi_integrator_start(integrator, 0, beside, none) == DVI_OK, "%s",
                 dvi_last_error());
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, far, none), DVI_BAD_ARGUMENT);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

@@ -1,6 +1,6 @@
 /* labels: unit */
-/* Gradients by ranges: what is refused, that one alone serves every method, and that the check
- * finds broken promises. */
+/* Gradients by ranges: refusals, methods that need ranges alone, and broken promises that the check
+ * finds. */
 #include <math.h>
 #include <string.h>
 
@@ -10,11 +10,12 @@
 
 enum { LENGTH = 11 };
 
-/* Springs d^2/2 + d^4/4 between sites that are two apart, and how the range lies: it looks farther,
- * adds something to the entries of long or short ranges, writes one entry more, fails. */
+/* Springs d^2/2 + d^4/4 between sites that are two apart. On demand the range breaks its promise:
+ * it looks farther, adds something to the entries of long or short ranges, writes one entry more,
+ * or fails. */
 typedef struct line {
-  int looks_at;        /* 0: nobody; else how far the first site of a range looks, too */
-  double lie;          /* added to the site `at` */
+  int looks_at; /* distance at which the first site of a range looks, too (default 0, none) */
+  double lie;   /* added to the site `at` */
   int at, longest_lie; /* of ranges up to this length */
   int writes_behind, writes_before, answer;
 } line;
@@ -129,7 +130,7 @@ START_TEST(a_range_alone_serves_every_method)
     if (shape == 2) potential.gradient_batch = line_gradient_batch;
     dvi_system *system = NULL;
     ck_assert_int_eq(create(&potential, &system), DVI_OK);
-    dvi_integrator *integrator = made_integrator(system, methods[_i]);
+    dvi_integrator *integrator = create_integrator(system, methods[_i]);
     ck_assert_msg(dvi_integrator_start(integrator, 0, q, p) == DVI_OK, "%s", dvi_last_error());
     advance(integrator, 0.05, 20);
     memcpy(end[shape], dvi_integrator_q(integrator), sizeof end[0]);
@@ -160,9 +161,9 @@ START_TEST(where_waves_are_not_possible_auto_sweeps_plainly_and_says_why)
     potential.gradient = line_gradient, potential.gradient_range = NULL, potential.reach = 0;
   if (_i == 2) terms.mass = (dvi_mass){.values = values, .pattern = {start, row}};
   ck_assert_msg(dvi_system_create(&terms, &system) == DVI_OK, "%s", dvi_last_error());
-  dvi_integrator *integrator = made_integrator(system, "verlet"), *wave = integrator;
+  dvi_integrator *integrator = create_integrator(system, "verlet"), *wave = integrator;
   (void)dvi_integrator_explain(integrator, text, sizeof text);
-  ck_assert_msg(strstr(text, spec("blocking: none; %s", words[_i])) != NULL, "%s", text);
+  ck_assert_msg(strstr(text, method_spec("blocking: none; %s", words[_i])) != NULL, "%s", text);
   ck_assert_int_eq(dvi_integrator_create(system, "verlet:blocking=temporal", &wave),
                    DVI_UNSUPPORTED);
   ck_assert_ptr_null(wave);
@@ -216,7 +217,7 @@ START_TEST(a_range_that_looks_beyond_its_reach_is_found)
 {
   line own = {.looks_at = 0};
   dvi_potential p = line_potential(&own);
-  p.reach = 1; /* the neighbours are two away: the first that has one is coordinate 0 */
+  p.reach = 1; /* the neighbours are two away, so coordinate 0 is the first that has one */
   found_lie(&p, 0, "is the reach 1 too small?");
   p.reach = 2;
   own.looks_at = 3;

@@ -67,7 +67,7 @@ START_TEST(a_potential_that_is_not_quadratic_although_it_is_declared_so_is_named
 }
 END_TEST
 
-/* q_i of the point: what a part's potentials give at it. */
+/* Gives the gradient of a part's potentials at the point. */
 static void ask(const dvi_system *part, double *V_q)
 {
   const double t = 0.3;

@@ -258,7 +258,7 @@ START_TEST(symmetries_and_invariants_need_their_callbacks)
 }
 END_TEST
 
-/* Who needs no Hessian can have the system; who does is refused, each time anew. */
+/* A method that needs no Hessian takes the system. One that needs it is refused each time. */
 START_TEST(a_full_pattern_that_no_int_can_count_is_refused_where_it_is_needed)
 {
   dvi_potential p = springs(&quiet, ONE_POINT);

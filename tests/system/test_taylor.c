@@ -132,7 +132,7 @@ static double sum_of(int degree, int count, int i, const double *series, double 
   return sum;
 }
 
-/* A curve of degree 2, s = 1/20: what is left out is of size (s/rho)^17, far below rounding. */
+/* A curve of degree 2 at s = 1/20. The remainder has the size (s/rho)^17, far below rounding. */
 static void compare_with_points(const dvi_system *system)
 {
   enum { D = 16, MOST = 128 };
@@ -173,16 +173,16 @@ START_TEST(series_of_all_terms_sum_to_what_the_points_have)
   static const char *const names[] = {"oscillators",  "pendulum",        "kepler",
                                       "henon-heiles", "driven-pendulum", "double-pendulum",
                                       "toda"};
-  problem *of = made_problem(names[_i], NULL);
-  compare_with_points(of->system);
-  problem_destroy(&of);
+  problem *model = create_problem(names[_i], NULL);
+  compare_with_points(model->system);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(a_general_lagrangian_and_a_potential_are_added)
 {
-  problem *pendulum = made_problem("double-pendulum", NULL),
-          *star = made_problem("henon-heiles", NULL);
+  problem *pendulum = create_problem("double-pendulum", NULL),
+          *star = create_problem("henon-heiles", NULL);
   dvi_system *system = general_with_potential(pendulum, star);
   compare_with_points(system);
   dvi_system_destroy(&system);
@@ -193,14 +193,14 @@ END_TEST
 
 START_TEST(wanting_less_gives_the_same_numbers)
 {
-  problem *of = made_problem("toda", NULL);
+  problem *model = create_problem("toda", NULL);
   dvi__jet *jet = NULL;
   dvi_counters counters = {0};
   enum { D = 3, N = 20 };
   double t[D + 1] = {0, 1}, all[(D + 1) * N], alone[(D + 1) * N], value[D + 1], curve[(D + 1) * N],
                hessian[(D + 1) * 3 * N];
   for (int i = 0; i < (D + 1) * N; i++) curve[i] = sin(i);
-  ck_assert_int_eq(dvi__jet_create(of->system, D, DVI__HESSIANS, &counters, &jet), DVI_OK);
+  ck_assert_int_eq(dvi__jet_create(model->system, D, DVI__HESSIANS, &counters, &jet), DVI_OK);
   ck_assert_int_eq(dvi__jet_along(jet, D, t, curve, curve,
                                   &(dvi__jets){.L = value, .L_q = all, .L_qq = hessian}),
                    DVI_OK);
@@ -211,21 +211,21 @@ START_TEST(wanting_less_gives_the_same_numbers)
   ck_assert_mem_eq(all, alone, sizeof all);
   ck_assert_int_eq(counters.gradients, 2 * (D + 1));
   dvi__jet_destroy(&jet);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 /* ---- what is wrong ---- */
 
-/* What lies beside honest callbacks: their `user` stays theirs. */
+/* Honest callbacks, which keep their `user`, with planted faults beside them. */
 static struct {
   dvi_potential potential;
   dvi_lagrangian lagrangian;
-  int block, coefficient, entries; /* which coefficient of its first entry is wrong, by: */
-  double by;
-  /* if that degree is asked for, 0: if any is; if the value is not wanted; and always returns
-   * this */
-  int degree, alone, returned;
+  int block, coefficient, entries; /* the wrong coefficient of the block's first entry */
+  double by;                       /* the error of that coefficient */
+  int degree;                      /* the error is made for this degree (default 0, any) */
+  int alone;                       /* the error is made only if the value is not wanted */
+  int returned;                    /* by every call */
 } lie;
 
 static void lie_in(double *block, const double *value, int degree)
@@ -254,10 +254,10 @@ static int lying_lagrangian(int degree, const double *t, const double *q, const 
 }
 
 /* The system of a problem with one potential or a Lagrangian alone, which lies. */
-static dvi_system *lying_system(const problem *of, int block, int coefficient, int entries,
+static dvi_system *lying_system(const problem *model, int block, int coefficient, int entries,
                                 double by)
 {
-  dvi_system_terms terms = *of->terms;
+  dvi_system_terms terms = *model->terms;
   dvi_potential potential = {0};
   dvi_lagrangian lagrangian = {0};
   dvi_system *system = NULL;
@@ -278,21 +278,21 @@ static dvi_system *lying_system(const problem *of, int block, int coefficient, i
 static void check_named(const char *name, const char *owner, int block, int coefficient,
                         int entries, const char *what)
 {
-  problem *of = made_problem(name, NULL);
-  dvi_system *system = lying_system(of, block, coefficient, entries, 0.1);
+  problem *model = create_problem(name, NULL);
+  dvi_system *system = lying_system(model, block, coefficient, entries, 0.1);
   dvi_derivative_check found;
-  ck_assert_int_eq(dvi_system_check(system, 0.4, of->q, of->v, 0, &found), DVI_BAD_ARGUMENT);
-  check_words(spec("%s: Taylor coefficient %d of %s", owner, coefficient, what));
-  ck_assert_ptr_nonnull(strstr(
-      found.where, spec("%s: Taylor coefficient %d of %s is wrong", owner, coefficient, what)));
+  ck_assert_int_eq(dvi_system_check(system, 0.4, model->q, model->v, 0, &found), DVI_BAD_ARGUMENT);
+  check_words(method_spec("%s: Taylor coefficient %d of %s", owner, coefficient, what));
+  ck_assert_ptr_nonnull(strstr(found.where, method_spec("%s: Taylor coefficient %d of %s is wrong",
+                                                        owner, coefficient, what)));
   ck_assert_double_gt(found.taylor_error, 1e-6);
   lie.by = 0;
-  ck_assert_msg(dvi_system_check(system, 0.4, of->q, of->v, 0, &found) == DVI_OK, "%s",
+  ck_assert_msg(dvi_system_check(system, 0.4, model->q, model->v, 0, &found) == DVI_OK, "%s",
                 dvi_last_error());
   /* differences of 6th order over a 128th of the curve's length */
   ck_assert_double_lt(found.taylor_error, 1e-8);
   dvi_system_destroy(&system);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 
 START_TEST(a_wrong_coefficient_of_a_potential_is_named)
@@ -313,22 +313,22 @@ END_TEST
 static dvi_status check_lying(const char *name, int block, int coefficient, int entries, double by)
 {
   dvi_derivative_check found;
-  problem *of = made_problem(name, NULL);
-  dvi_system *system = lying_system(of, block, coefficient, entries, by);
-  const dvi_status status = dvi_system_check(system, 0.4, of->q, of->v, 0, &found);
+  problem *model = create_problem(name, NULL);
+  dvi_system *system = lying_system(model, block, coefficient, entries, by);
+  const dvi_status status = dvi_system_check(system, 0.4, model->q, model->v, 0, &found);
   dvi_system_destroy(&system);
-  problem_destroy(&of);
+  problem_destroy(&model);
   return status;
 }
 
-/* The planet passes in a fifth of a unit of time: coefficients grow by 5 or so each, and rounding
+/* The planet passes in a fifth of a unit of time. Coefficients grow by 5 or so each, and rounding
  * hides none. */
 START_TEST(a_wrong_coefficient_of_any_degree_is_found)
 {
   for (int coefficient = 5; coefficient <= DVI_TAYLOR_MAX; coefficient += 5) {
     ck_assert_int_eq(check_lying("kepler", 1, coefficient, 2, 0.1 * pow(5, coefficient)),
                      DVI_BAD_ARGUMENT);
-    check_words(spec("Taylor coefficient %d of V_q", coefficient));
+    check_words(method_spec("Taylor coefficient %d of V_q", coefficient));
   }
 }
 END_TEST
@@ -337,7 +337,7 @@ START_TEST(a_callback_that_gives_no_number_or_refuses_is_no_good_one)
 {
   for (int coefficient = 1; coefficient <= DVI_TAYLOR_MAX; coefficient += 13) {
     ck_assert_int_eq(check_lying("kepler", 1, coefficient, 2, (double)NAN), DVI_NOT_FINITE);
-    check_words(spec("gave nan for coefficient %d of V_q", coefficient));
+    check_words(method_spec("gave nan for coefficient %d of V_q", coefficient));
   }
   lie.returned = 1;
   ck_assert_int_eq(check_lying("kepler", 1, 0, 2, 0), DVI_CALLBACK_RETRY);
@@ -351,7 +351,7 @@ START_TEST(results_that_depend_on_what_else_is_asked_are_found)
 {
   for (lie.degree = 1; lie.degree < DVI_TAYLOR_MAX; lie.degree++) {
     ck_assert_int_eq(check_lying("kepler", 1, 1, 2, 0.1), DVI_BAD_ARGUMENT);
-    check_words(spec("if degree %d is asked for", lie.degree));
+    check_words(method_spec("if degree %d is asked for", lie.degree));
   }
   lie.degree = 0;
   lie.alone = 1;
@@ -420,8 +420,8 @@ START_TEST(a_coefficient_that_is_not_finite_is_named)
 {
   const double t[3] = {0, 1}, q[6] = {1, 0.2}, v[6] = {0};
   double V_q[6];
-  problem *of = made_problem("kepler", NULL);
-  dvi_system *system = lying_system(of, 1, 2, 2, (double)NAN);
+  problem *model = create_problem("kepler", NULL);
+  dvi_system *system = lying_system(model, 1, 2, 2, (double)NAN);
   dvi__jet *jet = NULL;
   ck_assert_int_eq(dvi__jet_create(system, 2, DVI__GRADIENTS, NULL, &jet), DVI_OK);
   ck_assert_int_eq(dvi__jet_along(jet, 2, t, q, v, &(dvi__jets){.L_q = V_q}), DVI_NOT_FINITE);
@@ -429,14 +429,14 @@ START_TEST(a_coefficient_that_is_not_finite_is_named)
   check_words("for coefficient 2 of V_q (entry 0)");
   dvi__jet_destroy(&jet);
   dvi_system_destroy(&system);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(a_term_without_coefficients_is_named)
 {
-  problem *of = made_problem("oscillators", NULL);
-  dvi_system_terms terms = *of->terms;
+  problem *model = create_problem("oscillators", NULL);
+  dvi_system_terms terms = *model->terms;
   dvi_potential potentials[2] = {terms.potentials[0], terms.potentials[1]};
   dvi_system *system = NULL;
   dvi__jet *jet = NULL;
@@ -446,20 +446,20 @@ START_TEST(a_term_without_coefficients_is_named)
   ck_assert_int_eq(dvi__jet_create(system, 2, DVI__GRADIENTS, NULL, &jet), DVI_UNSUPPORTED);
   ck_assert_ptr_null(jet);
   check_words("'fast' has no taylor callback");
-  ck_assert_int_eq(dvi__system_alike(system, of->system), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi__system_alike(system, model->system), DVI_BAD_ARGUMENT);
   dvi_system_destroy(&system);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(every_failure_of_memory_is_survived)
 {
-  problem *of = made_problem("kepler", NULL);
+  problem *model = create_problem("kepler", NULL);
   dvi_status status = DVI_NO_MEMORY;
   for (int successes = 0; status != DVI_OK; successes++) {
     dvi__jet *jet = NULL;
     dvi__fail_allocations_after(successes);
-    status = dvi__jet_create(of->system, 3, DVI__HESSIANS, NULL, &jet);
+    status = dvi__jet_create(model->system, 3, DVI__HESSIANS, NULL, &jet);
     dvi__fail_allocations_after(-1);
     ck_assert(status == DVI_OK || (status == DVI_NO_MEMORY && jet == NULL));
     dvi__jet_destroy(&jet);
@@ -467,11 +467,11 @@ START_TEST(every_failure_of_memory_is_survived)
   status = DVI_NO_MEMORY;
   for (int successes = 0; status != DVI_OK; successes++) {
     dvi__fail_allocations_after(successes);
-    status = dvi_system_check(of->system, 0, of->q, of->v, 0, NULL);
+    status = dvi_system_check(model->system, 0, model->q, model->v, 0, NULL);
     dvi__fail_allocations_after(-1);
     ck_assert(status == DVI_OK || status == DVI_NO_MEMORY);
   }
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

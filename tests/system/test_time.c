@@ -1,4 +1,4 @@
-/* What a system declares about time: that it is autonomous, or its rates. */
+/* A system declares that it is autonomous, or its rates. */
 #include <math.h>
 #include <string.h>
 
@@ -44,7 +44,8 @@ START_TEST(right_rates_pass)
   dvi_derivative_check found;
   const dvi_system_terms terms = build(&c, (callback_shape)_i);
   ck_assert_msg(check_terms(&terms, &found) == DVI_OK, "%s", dvi_last_error());
-  ck_assert_double_le(found.rate_error, 1e-11); /* the terms are linear in t: roundoff alone */
+  ck_assert_double_le(found.rate_error,
+                      1e-11); /* the terms are linear in t, so only roundoff is left */
   ck_assert_int_eq(found.depends_on_time, 0);
 }
 END_TEST

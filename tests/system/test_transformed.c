@@ -26,7 +26,8 @@ static int bowl_gradient(double t, const double *q, double *g_q, void *user)
 
 static const struct {
   const char *problem, *monitor; /* NULL: bowl */
-  /* for Hessians that are differenced: noise of 1e-10 relative, grown by the entries' spread */
+  /* for Hessians that are differenced, with a relative noise of 1e-10, grown by the entries'
+   * spread */
   double tolerance;
 } places[] = {
     {"kepler", "distance", 1e-9},          {"kepler", "distance:power=2.5", 1e-9},
@@ -39,60 +40,61 @@ static const struct {
 enum { PLACES = sizeof places / sizeof *places, MOST = 64 };
 
 /* A point near the start, none of whose numbers is 0 or like another. */
-static void generic_point(const problem *of, double *q, double *v)
+static void generic_point(const problem *model, double *q, double *v)
 {
-  ck_assert_int_le(of->nq, MOST);
-  for (int i = 0; i < of->nq; i++) {
-    q[i] = of->q[i] + 0.1 * sin(1.0 + i);
-    v[i] = of->v[i] + 0.1 * cos(2.0 + i);
+  ck_assert_int_le(model->nq, MOST);
+  for (int i = 0; i < model->nq; i++) {
+    q[i] = model->q[i] + 0.1 * sin(1.0 + i);
+    v[i] = model->v[i] + 0.1 * cos(2.0 + i);
   }
 }
 
-static dvi__transformed *transformed(const problem *of, const char *monitor, dvi_counters *counters)
+static dvi__transformed *transformed(const problem *model, const char *monitor,
+                                     dvi_counters *counters)
 {
   dvi__transformed *made = NULL;
   dvi_monitor chosen = {
       .function = {
-          .name = "bowl", .value = bowl, .gradient = bowl_gradient, .user = (void *)&of->nq}};
+          .name = "bowl", .value = bowl, .gradient = bowl_gradient, .user = (void *)&model->nq}};
   if (monitor != NULL)
     ck_assert_msg(dvi_monitor_read(monitor, &chosen) == DVI_OK, "%s", dvi_last_error());
-  ck_assert_msg(dvi__transformed_create(of->system, &chosen, counters, &made) == DVI_OK, "%s",
+  ck_assert_msg(dvi__transformed_create(model->system, &chosen, counters, &made) == DVI_OK, "%s",
                 dvi_last_error());
   return made;
 }
 
-static double energy_at(const problem *of, const double *q, const double *v)
+static double energy_at(const problem *model, const double *q, const double *v)
 {
   double p[MOST], invariant[MOST];
-  ck_assert_int_eq(dvi_system_momentum(of->system, 0, q, v, p), DVI_OK);
-  ck_assert_int_eq(dvi_system_invariants(of->system, 0, q, p, invariant), DVI_OK);
+  ck_assert_int_eq(dvi_system_momentum(model->system, 0, q, v, p), DVI_OK);
+  ck_assert_int_eq(dvi_system_invariants(model->system, 0, q, p, invariant), DVI_OK);
   return invariant[0];
 }
 
 /* Off the orbit, so that the terms with E0 - E count. */
 START_TEST(its_derivatives_are_those_of_its_value)
 {
-  problem *of = made_problem(places[_i].problem, NULL);
+  problem *model = create_problem(places[_i].problem, NULL);
   dvi_counters counters = {0};
   double q[MOST], v[MOST];
   dvi_derivative_check found;
-  dvi__transformed *x = transformed(of, places[_i].monitor, &counters);
-  generic_point(of, q, v);
-  dvi__transformed_set_energy(x, energy_at(of, q, v) + 0.3);
+  dvi__transformed *x = transformed(model, places[_i].monitor, &counters);
+  generic_point(model, q, v);
+  dvi__transformed_set_energy(x, energy_at(model, q, v) + 0.3);
   const dvi_status status = dvi_system_check(dvi__transformed_system(x), 0, q, v,
                                              places[_i].tolerance, &found);
-  ck_assert_msg(status == DVI_OK, "%s, %s: %s", of->name, places[_i].monitor, dvi_last_error());
+  ck_assert_msg(status == DVI_OK, "%s, %s: %s", model->name, places[_i].monitor, dvi_last_error());
   /* differences of 6th order, of values with a cancelling E0 */
   ck_assert_double_le(found.gradient_error, 1e-10);
   dvi__transformed_destroy(&x);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 /* Lg(q,w) = g (L(q,w/g) + E0) for g = r^1.5 on a point of kepler, by hand. */
 START_TEST(its_value_is_the_definition)
 {
-  problem *kepler = made_problem("kepler", NULL);
+  problem *kepler = create_problem("kepler", NULL);
   dvi_counters counters = {0};
   dvi__transformed *x = transformed(kepler, "distance", &counters);
   const double q[2] = {0.6, -0.8}, w[2] = {0.3, 0.5}, far[2] = {2.4, -3.2}, E0 = -0.4;
@@ -110,19 +112,19 @@ END_TEST
 
 START_TEST(pairs_of_bodies_are_summed)
 {
-  problem *of = made_problem("pythagorean", NULL);
+  problem *model = create_problem("pythagorean", NULL);
   dvi_counters counters = {0};
   dvi_monitor chosen;
   dvi__monitor *monitor;
   double g;
   ck_assert_int_eq(dvi_monitor_read("distance:bodies=3,dimension=2,power=2", &chosen), DVI_OK);
-  ck_assert_int_eq(dvi__monitor_create(of->system, &chosen, 1, DVI__GRADIENTS, &counters, &monitor),
-                   DVI_OK);
-  ck_assert_int_eq(dvi__monitor_value(monitor, 1, of->q, &g), DVI_OK);
+  ck_assert_int_eq(
+      dvi__monitor_create(model->system, &chosen, 1, DVI__GRADIENTS, &counters, &monitor), DVI_OK);
+  ck_assert_int_eq(dvi__monitor_value(monitor, 1, model->q, &g), DVI_OK);
   /* the triangle of sides 3, 4, 5 */
   ck_assert_double_eq_tol(1 / g, 1.0 / 9 + 1.0 / 16 + 1.0 / 25, 1e-16);
   dvi__monitor_destroy(&monitor);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -138,7 +140,7 @@ static int wrong_gradient(double t, const double *q, double *g_q, void *user)
 
 START_TEST(a_wrong_gradient_of_a_monitor_is_named)
 {
-  problem *kepler = made_problem("kepler", NULL);
+  problem *kepler = create_problem("kepler", NULL);
   dvi_derivative_check found;
   const double q[2] = {0.6, -0.8};
   dvi_monitor monitor = {

@@ -121,7 +121,8 @@ END_TEST
 
 START_TEST(what_is_far_from_all_names_gets_no_hint)
 {
-  ck_assert_str_eq(hint_for("y"), ""); /* one letter for another: nothing is left of it */
+  ck_assert_str_eq(hint_for("y"),
+                   ""); /* one letter is exchanged for another, and nothing is left of it */
   ck_assert_str_eq(hint_for("energy"), "");
   ck_assert_str_eq(hint_for(""), "");
   ck_assert_str_eq(hint_for("a_name_of_more_than_sixty_three_letters_is_not_compared_with_others"),

@@ -10,7 +10,8 @@ enum { COUNT = 5 };
 static const double error[COUNT] = {1e-4, 1e-12, 1e-8, 1.0, 1e-16};
 static const double cost[COUNT] = {1e1, 1e3, 1e2, 1e0, 1e4};
 
-static const double roundoff = 1e-13; /* some hundred ulp: a power of a quotient of logarithms */
+static const double roundoff =
+    1e-13; /* some hundred ulp, for a power of a quotient of logarithms */
 
 START_TEST(a_straight_line_in_logarithms_is_met_between_its_points)
 {
@@ -61,8 +62,8 @@ END_TEST
 
 START_TEST(a_setting_that_another_one_beats_is_left_out)
 {
-  /* The second one costs more than the third, which is better: the line leads from the first to the
-   * third. */
+  /* The second one costs more than the third, which is better, so the line leads from the first to
+   * the third. */
   const double errors[] = {1e-2, 1e-3, 1e-6};
   const double costs[] = {1.0, 1e3, 1e2};
   double least;

@@ -48,7 +48,7 @@ START_TEST(steep_gaps_are_halved_down_to_the_width)
 }
 END_TEST
 
-/* Two resonances of width 1e-6 with tails of the inverse distance, from 9 points: each is found to
+/* Two resonances of width 1e-6 with tails of the inverse distance, from 9 points. Each is found to
  * 1e-6, with some hundred points. */
 static double tails(double at)
 {

@@ -1,4 +1,4 @@
-/* Digits from three step sizes: no more than there are. */
+/* Digits from three step sizes are never more than the right ones. */
 #include "study/trust.h"
 
 #include <math.h>
@@ -27,7 +27,7 @@ START_TEST(an_error_that_follows_its_power_is_found)
 }
 END_TEST
 
-/* Errors of roundoff: each level is off by as much as it likes, up to `off`. */
+/* Errors of roundoff put each level off by any amount up to `off`. */
 START_TEST(errors_that_do_not_fall_are_not_made_small)
 {
   static const double off = 1e-12;

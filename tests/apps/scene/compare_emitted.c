@@ -19,7 +19,7 @@ static double seconds(void)
   return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* One run of `steps` steps; less than 0 if it fails. */
+/* Times one run of `steps` steps. Returns less than 0 if it fails. */
 static double run(dvi_integrator *integrator, const problem *problem, double h, long steps)
 {
   if (dvi_integrator_start(integrator, 0.0, problem->q, problem->p) != DVI_OK) return -1.0;

@@ -1,5 +1,6 @@
 #!/bin/sh
-# dvi emit-c: C files compile without a warning, and their runs are the scenes', digit for digit.  Usage: test_emit.sh DVI
+# dvi emit-c: C files compile without a warning, and their runs are the scenes', digit for digit.
+# Usage: test_emit.sh DVI
 top=$(cd "$(dirname "$0")/../../.." && pwd)
 . "$(dirname "$0")/../check.sh"
 libraries=$(cd "$(dirname "$dvi")/../lib" && pwd)
@@ -35,28 +36,36 @@ step: 0.1
 until: 3
 END
 
-# All that users turn on. For one instruction set alone, which is compiled sooner.
+# The warnings that users turn on. One instruction set alone compiles sooner.
 compiler=${CC:-cc}
 flags='-std=c11 -O2 -Wall -Wextra -Wconversion -Wpedantic -Werror -DDVI_LANES='
 
-# compiles SCENE OPTIONS..: to a program that prints the last state in a file `compiled`.
+# compiles SCENE OPTIONS..: build a program, which writes the last state to the file `compiled`.
 compiles() {
   scene=$1
   shift
   expect 0 "$scene as C" emit-c "$scene" "$@" --out scene.c
   # shellcheck disable=SC2086
-  "$compiler" $flags -DDVI_MAIN -I"$top/lib/include" scene.c -o scene "$libraries/libdvi.so" -lm || fail "$scene does not compile"
+  "$compiler" $flags -DDVI_MAIN -I"$top/lib/include" scene.c -o scene "$libraries/libdvi.so" -lm ||
+    fail "$scene does not compile"
   LD_LIBRARY_PATH=$libraries ./scene >compiled || fail "$scene does not run as C"
 }
 
-# Whether the numbers of the first file, t, q and p, are those of a row of the second one, beside which there may be others.
+# Succeeds if the numbers of the first file (t, q and p) stand in this order in a row of the second
+# one, in which there may be others.
 # shellcheck disable=SC2016
-in_turn='NR == 1 { count = split($0, number) } FNR == 2 { for (i = k = 1; i <= NF && k <= count; i++) k += $i "" == number[k] ""; exit k <= count }'
+in_turn='NR == 1 { count = split($0, number) }
+  FNR == 2 {
+    for (i = k = 1; i <= NF && k <= count; i++) k += $i "" == number[k] ""
+    exit k <= count
+  }'
 
 # A program without a sanitizer does not run with a library that has one.
-if command -v "$compiler" >/dev/null && ! grep -q '__[at]san_init\|__ubsan_handle' "$libraries/libdvi.so"; then
+if command -v "$compiler" >/dev/null &&
+  ! grep -q '__[at]san_init\|__ubsan_handle' "$libraries/libdvi.so"; then
   cp "$top"/apps/scenes/*.yaml "$top"/apps/scenes/*/*.yaml .
-  for each in drop pits kepler oscillator driven-pendulum double-pendulum guiding-centre circle-dirac magnetic-pair elastica fpu vortices \
+  for each in drop pits kepler oscillator driven-pendulum double-pendulum guiding-centre \
+    circle-dirac magnetic-pair elastica fpu vortices \
     free-body spherical-double-pendulum satellite; do
     compiles $each.yaml
     expect 0 "$each" run $each.yaml --final
@@ -65,7 +74,7 @@ if command -v "$compiler" >/dev/null && ! grep -q '__[at]san_init\|__ubsan_handl
   done
 fi
 
-# What is refused, and what was there stays.
+# Refused commands leave existing files alone.
 echo mine >kept.c
 expect 2 'no C name' emit-c swinging-cart.yaml --name 1st --out kept.c
 says err 'no name in C' 'the reason'

@@ -1,5 +1,7 @@
 #!/bin/sh
-# The scenes of apps/scenes: each has the derivatives that it should, and moves as the problem of the catalogue that it is named after.  Usage: test_scenes.sh DVI
+# Each scene of apps/scenes has right derivatives, and moves as the problem of the catalogue with
+# its name.
+# Usage: test_scenes.sh DVI
 set -u
 dvi=$1
 here=$(cd "$(dirname "$0")" && pwd)
@@ -20,7 +22,7 @@ for scene in "$here"/../../../apps/scenes/*.yaml "$here"/../../../apps/scenes/*/
   end=$(awk "BEGIN { print 3 * $h }")
   mine=$("$dvi" run "$scene" --t-end "$end" --final 2>&1 | tail -n 1)
   theirs=$("$dvi" run "$name" --method "$method" --h "$h" --t-end "$end" --final 2>&1 | tail -n 1)
-  # Three steps: a few roundings each of states of size 1, and of what is solved for.
+  # Three steps make a few roundings each, of states of size 1 and of the unknowns.
   printf '%s\n%s\n' "$mine" "$theirs" | awk -F, -v name="$name" '
     NR == 1 { fields = split($0, mine, ",") }
     NR == 2 {
@@ -28,7 +30,10 @@ for scene in "$here"/../../../apps/scenes/*.yaml "$here"/../../../apps/scenes/*/
       for (i = 1; i <= fields && i <= NF; i++) {
         difference = mine[i] - $i; if (difference < 0) difference = -difference
         size = $i < 0 ? -$i : $i; if (size < 1) size = 1
-        if (!(difference <= 3e-13 * size)) { print name ": column " i ": " mine[i] " is not " $i; exit 1 }
+        if (!(difference <= 3e-13 * size)) {
+          print name ": column " i ": " mine[i] " is not " $i
+          exit 1
+        }
       }
     }' || rc=1
 done

@@ -13,7 +13,7 @@
 typedef struct rule {
   double (*integrand)(double x);
   double exact;
-  int order;     /* 2: trapezoids, 4: Simpson */
+  int order;     /* 2 for trapezoids, 4 for Simpson's rule */
   double offset; /* a mistake that no refinement mends */
   int odd_fails; /* levels of an odd number of panels have no result */
   long evaluations;
@@ -131,7 +131,8 @@ static inline dvi_status poisson_run(void *user, double cells, study_level *leve
   for (int i = n - 2; i >= 0; i--) u[i] += c[i] * u[i + 1];
   level->error = 0.0;
   for (int i = 0; i < n; i++) level->error = fmax(level->error, fabs(u[i] - sin(pi * (i + 1) * h)));
-  level->further[0] = fabs(u[0] / h - pi); /* the slope at the end: of first order for sin'' = 0 */
+  level->further[0] = fabs(u[0] / h -
+                           pi); /* the slope at the end, of first order because sin'' = 0 */
   level->parts = cells;
   level->length = h;
   level->counted[0] = n;

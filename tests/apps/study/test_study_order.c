@@ -31,7 +31,7 @@ static result_table *study_order(const study_subject *subject, int levels, order
   return rows;
 }
 
-/* What a report writes. */
+/* Gives the text of a report. */
 static void read_back(FILE *file, char *text)
 {
   rewind(file);
@@ -147,7 +147,7 @@ START_TEST(the_table_has_the_titles_of_the_subject)
 }
 END_TEST
 
-/* A level without a result is too rough, and the search goes on; one that ends the study ends
+/* A level without a result is too rough, and the search goes on. A level that ends the study ends
  * it. */
 static dvi_status no_run(void *user, double parts, study_level *level)
 {

@@ -1,5 +1,5 @@
-/* What small errors cost of things that are no motions, and how many of their digits can be
- * trusted. */
+/* The cost of small errors, and the number of digits that can be trusted, of subjects that are no
+ * motions. */
 #include <check.h>
 #include <math.h>
 #include <stdio.h>
@@ -13,7 +13,7 @@
 
 /* --- Work against error. --- */
 
-/* Simpson's rule on halves until two levels agree: refined by a tolerance. */
+/* Applies Simpson's rule on halves until two levels agree, refined by a tolerance. */
 static dvi_status adaptive_run(void *user, double tolerance, study_level *level)
 {
   rule *r = user;

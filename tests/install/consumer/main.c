@@ -1,5 +1,5 @@
-/* Prints the version of the linked library; fails if it is not the one that the headers speak of,
- * or if the library does not work. */
+/* Prints the version of the linked library. Fails if it is not the version of the headers, or if
+ * the library does not work. */
 #include <dvi/dvi.h>
 #include <stdio.h>
 

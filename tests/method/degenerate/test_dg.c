@@ -11,11 +11,11 @@ enum { LEVELS = 4 };
 
 /* ---- orders ---- */
 
-static double error_at_end(problem *of, const problem *standard, const char *method, double h)
+static double error_at_end(problem *model, const problem *standard, const char *method, double h)
 {
-  dvi_integrator *integrator = started(of, method);
-  advance(integrator, h, lround(of->order_t_end / h));
-  const double error = distance(of->nq, dvi_integrator_q(integrator), standard->digits_q);
+  dvi_integrator *integrator = start_integrator(model, method);
+  advance(integrator, h, lround(model->order_t_end / h));
+  const double error = distance(model->nq, dvi_integrator_q(integrator), standard->digits_q);
   dvi_integrator_destroy(&integrator);
   return error;
 }
@@ -68,15 +68,16 @@ START_TEST(degrees_fluxes_and_stiffnesses_have_the_order_that_they_claim)
 }
 END_TEST
 
-/* S = 5 and 6 have order 10: the floor is reached after a few halvings of steps so long that slopes
- * still scatter. Over the whole of them they do not. */
+/* S = 5 and 6 have order 10. After a few halvings the error is at the floor, and the steps before
+ * are so long that slopes still scatter. The slope over all of them does not. */
 START_TEST(five_and_six_coefficients_have_order_10)
 {
-  problem *of = made_problem("lotka-volterra-4d", NULL);
-  const char *method = spec("dg:degree=%d", _i);
-  const double ratio = error_at_end(of, of, method, 0.5) / error_at_end(of, of, method, 0.125);
+  problem *model = create_problem("lotka-volterra-4d", NULL);
+  const char *method = method_spec("dg:degree=%d", _i);
+  const double ratio = error_at_end(model, model, method, 0.5) /
+                       error_at_end(model, model, method, 0.125);
   ck_assert_msg(fabs(log2(ratio) / 2 - 10) <= 1, "%s: slope %.2f", method, log2(ratio) / 2);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -85,29 +86,31 @@ END_TEST
 START_TEST(a_stiffness_that_goes_with_the_step_has_order_2S)
 {
   const int S = 1 + _i;
-  problem *of = made_problem("vortices", NULL);
+  problem *model = create_problem("vortices", NULL);
   double last = 0, h = 0.0625;
   int fitted = 0;
   for (int level = 0; level < LEVELS; level++, h /= 2) {
     const double c = S % 2 == 0 ? 0.5 / h : h;
-    const double error = error_at_end(of, of, spec("dg:degree=%d,stiffness=%.10g", S - 1, c), h);
-    if (level > 0 && error > 3e-13) check_slope(spec("S=%d", S), last, error, level, 2 * S);
+    const double error = error_at_end(model, model,
+                                      method_spec("dg:degree=%d,stiffness=%.10g", S - 1, c), h);
+    if (level > 0 && error > 3e-13) check_slope(method_spec("S=%d", S), last, error, level, 2 * S);
     fitted += level > 0 && error > 3e-13;
     last = error;
   }
   ck_assert_int_ge(fitted, 1);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 /* ---- the parasite ---- */
 
-/* Relative energy errors of the quarters of a run; 0 steps: it breaks down. */
+/* Measures the relative energy errors of the quarters of a run. 0 steps mean that it breaks
+ * down. */
 static long run_energies(const char *name, const char *method, double h, long steps,
                          double *quarter)
 {
-  problem *of = made_problem(name, NULL);
-  dvi_integrator *integrator = started(of, method);
+  problem *model = create_problem(name, NULL);
+  dvi_integrator *integrator = start_integrator(model, method);
   double first[8], now[8];
   long k = 0;
   memset(quarter, 0, 4 * sizeof *quarter);
@@ -117,7 +120,7 @@ static long run_energies(const char *name, const char *method, double h, long st
     quarter[4 * k / steps] = fmax(quarter[4 * k / steps], fabs(now[0] / first[0] - 1));
   }
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
   return k;
 }
 
@@ -145,7 +148,7 @@ START_TEST(energy_stays_bounded)
 }
 END_TEST
 
-/* What a stiffness is for: without one these break down. */
+/* These runs break down without a stiffness. */
 START_TEST(runs_without_a_stiffness_break_down_and_the_alarm_stops_them_first)
 {
   double quarter[4];
@@ -155,16 +158,18 @@ START_TEST(runs_without_a_stiffness_break_down_and_the_alarm_stops_them_first)
   const long steps = run_energies(name, method, h, 2000, quarter);
   check_words("the parasite has grown");
   ck_assert_int_lt(steps, 700);
-  ck_assert_int_lt(steps, run_energies(name, spec("%s,alarm=warn", method), h, 2000, quarter));
-  ck_assert_int_lt(run_energies(name, spec("%s,alarm=warn", method), h, 2000, quarter), 2000);
+  ck_assert_int_lt(steps,
+                   run_energies(name, method_spec("%s,alarm=warn", method), h, 2000, quarter));
+  ck_assert_int_lt(run_energies(name, method_spec("%s,alarm=warn", method), h, 2000, quarter),
+                   2000);
 }
 END_TEST
 
 START_TEST(an_alarm_leaves_the_state_or_is_counted)
 {
-  problem *of = made_problem("lotka-volterra", NULL);
-  dvi_integrator *stops = started(of, "dg:degree=1"),
-                 *warns = started(of, "dg:degree=1,alarm=warn");
+  problem *model = create_problem("lotka-volterra", NULL);
+  dvi_integrator *stops = start_integrator(model, "dg:degree=1"),
+                 *warns = start_integrator(model, "dg:degree=1,alarm=warn");
   dvi_counters counters;
   double q[2], jump[2], after[2];
   dvi_status status = DVI_OK;
@@ -183,15 +188,16 @@ START_TEST(an_alarm_leaves_the_state_or_is_counted)
   ck_assert_mem_eq(jump, after, sizeof jump);
   dvi_integrator_destroy(&stops);
   dvi_integrator_destroy(&warns);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 /* Also the first step, which tries twice before it is taken, and keeps no jump of these trials. */
 START_TEST(a_step_out_of_the_logarithms_domain_leaves_the_state)
 {
-  problem *of = made_problem("lotka-volterra", NULL);
-  dvi_integrator *integrator = started(of, "dg"), *untroubled = started(of, "dg");
+  problem *model = create_problem("lotka-volterra", NULL);
+  dvi_integrator *integrator = start_integrator(model, "dg"),
+                 *untroubled = start_integrator(model, "dg");
   for (int steps = 0; steps < 3; steps++) {
     ck_assert_int_gt(dvi_integrator_step(integrator, 40), 0);
     check_words("the state is unchanged");
@@ -204,18 +210,18 @@ START_TEST(a_step_out_of_the_logarithms_domain_leaves_the_state)
   }
   dvi_integrator_destroy(&integrator);
   dvi_integrator_destroy(&untroubled);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* A start chooses the jump that varies as little as the motion does; from a jump of 0 its change
- * would be as large as itself. */
+/* A start chooses the jump that varies as little as the motion does. A start with the jump 0 would
+ * change it by as much as its own size. */
 START_TEST(a_run_starts_on_the_smooth_branch)
 {
   static const char *const methods[] = {"dg:degree=0", "dg:degree=2", "dg:degree=2,stiffness=1",
                                         "dg:degree=3,stiffness=1"};
-  problem *of = made_problem("massless-particle", NULL);
-  dvi_integrator *integrator = started(of, methods[_i]);
+  problem *model = create_problem("massless-particle", NULL);
+  dvi_integrator *integrator = start_integrator(model, methods[_i]);
   double last[2], jump[2];
   ck_assert_double_eq(dvi_integrator_jump(integrator, NULL), 0);
   advance(integrator, 0.02, 1);
@@ -227,7 +233,7 @@ START_TEST(a_run_starts_on_the_smooth_branch)
     ck_assert_double_le(distance(2, jump, last), 0.15 * size);
   }
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -294,18 +300,18 @@ static const struct {
                   {"dg:degree=1,stiffness=1", 1, 0.1},
                   {"dg:degree=3,stiffness=1", 1, 0.5}};
 
-/* From the first step on: the start knows no jump. With another c than the method's it is not
- * conserved, which shows that the test can tell. */
+/* Compares from the first step on, because the start knows no jump. With another c than the
+ * method's the form is not conserved, which shows that the test can tell. */
 START_TEST(loop_integrals_of_the_map_of_both_sides_are_conserved)
 {
-  problem *of = made_problem("massless-particle", NULL);
+  problem *model = create_problem("massless-particle", NULL);
   dvi_integrator *at[POINTS];
   for (int k = 0; k < POINTS; k++) {
     const double angle = 2 * 3.14159265358979323846 * k / POINTS,
                  q[2] = {1 + 0.05 * cos(angle), 1 + 0.05 * sin(angle)};
     double p[2];
-    at[k] = made_integrator(of->system, symplectic[_i].method);
-    ck_assert_int_eq(dvi_system_momentum(of->system, 0, q, of->v, p), DVI_OK);
+    at[k] = create_integrator(model->system, symplectic[_i].method);
+    ck_assert_int_eq(dvi_system_momentum(model->system, 0, q, model->v, p), DVI_OK);
     ck_assert_int_eq(dvi_integrator_start(at[k], 0, q, p), DVI_OK);
     advance(at[k], symplectic[_i].h, 1);
   }
@@ -315,7 +321,7 @@ START_TEST(loop_integrals_of_the_map_of_both_sides_are_conserved)
   ck_assert_double_le(fabs(loop_integral(at, c) / before - 1), 1e-11);
   ck_assert_double_ge(fabs(loop_integral(at, c + 1) / other - 1), 1e-10);
   for (int k = 0; k < POINTS; k++) dvi_integrator_destroy(&at[k]);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -323,13 +329,13 @@ START_TEST(symmetric_fluxes_go_back_the_way_they_came)
 {
   static const char *const methods[] = {"dg", "dg:degree=1,stiffness=1",
                                         "dg:degree=3,flux=path,stiffness=0.5"};
-  problem *of = made_problem("vortices", NULL);
-  dvi_integrator *integrator = started(of, methods[_i]);
+  problem *model = create_problem("vortices", NULL);
+  dvi_integrator *integrator = start_integrator(model, methods[_i]);
   advance(integrator, 0.05, 20);
   advance(integrator, -0.05, 20);
-  ck_assert_double_le(distance(of->nq, dvi_integrator_q(integrator), of->q), 1e-13);
+  ck_assert_double_le(distance(model->nq, dvi_integrator_q(integrator), model->q), 1e-13);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -370,13 +376,13 @@ static dvi_integrator *turned(double *g, const char *method, dvi_system **system
   const double q[2] = {0.5, 0.2}, v[2] = {0};
   double p[2];
   ck_assert_int_eq(dvi_system_create(&terms, system), DVI_OK);
-  dvi_integrator *integrator = made_integrator(*system, method);
+  dvi_integrator *integrator = create_integrator(*system, method);
   ck_assert_int_eq(dvi_system_momentum(*system, 0, q, v, p), DVI_OK);
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, q, p), DVI_OK);
   return integrator;
 }
 
-/* Both may start off the smooth branch in their own way; that needs S odd. */
+/* Both integrators may start off the smooth branch in their own way. That needs S odd. */
 START_TEST(a_flux_at_one_side_is_an_average_flux_with_the_gauges_stiffness)
 {
   dvi_system *here = NULL, *there = NULL;
@@ -394,14 +400,14 @@ START_TEST(a_flux_at_one_side_is_an_average_flux_with_the_gauges_stiffness)
 }
 END_TEST
 
-/* Exact Jacobians: Newton's method alone, with few iterations, also with a stiffness and points off
- * the middle of the path. */
+/* The Jacobians are exact: Newton's method alone takes few iterations, also with a stiffness and
+ * points off the middle of the path. */
 START_TEST(newtons_method_suffices)
 {
   static const char *const methods[] = {"dg", "dg:degree=3,stiffness=1",
                                         "dg:degree=2,flux=path,points=3", "dg:degree=0"};
-  problem *of = made_problem("vortices", NULL);
-  dvi_integrator *integrator = started(of, methods[_i]);
+  problem *model = create_problem("vortices", NULL);
+  dvi_integrator *integrator = start_integrator(model, methods[_i]);
   dvi_counters counters;
   advance(integrator, 0.05, 20);
   dvi_integrator_counters(integrator, &counters);
@@ -410,7 +416,7 @@ START_TEST(newtons_method_suffices)
   ck_assert_int_le(counters.residuals, (_i == 3 ? 72 : 12) * 22);
   ck_assert_int_eq(counters.jump_alarms, 0);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -445,30 +451,30 @@ enum { REFUSED = sizeof refused / sizeof *refused };
 
 START_TEST(what_cannot_be_is_refused_with_its_reason)
 {
-  problem *of = made_problem("lotka-volterra", NULL);
+  problem *model = create_problem("lotka-volterra", NULL);
   dvi_integrator *none = NULL;
-  ck_assert_int_eq(dvi_integrator_create(of->system, refused[_i].method, &none), DVI_BAD_OPTION);
+  ck_assert_int_eq(dvi_integrator_create(model->system, refused[_i].method, &none), DVI_BAD_OPTION);
   check_words(refused[_i].because);
   ck_assert_ptr_null(none);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(specifications_are_spelled_out_and_read_again)
 {
-  problem *of = made_problem("lotka-volterra", NULL);
-  dvi_integrator *first = made_integrator(of->system, "dg:stiffness=0.00002:3,degree=1");
+  problem *model = create_problem("lotka-volterra", NULL);
+  dvi_integrator *first = create_integrator(model->system, "dg:stiffness=0.00002:3,degree=1");
   ck_assert_str_eq(dvi_integrator_method(first),
                    "dg:degree=1,nodes=2,flux=average,points=1,alarm=stop,stiffness=0.00002:3");
-  dvi_integrator *again = made_integrator(of->system, dvi_integrator_method(first));
+  dvi_integrator *again = create_integrator(model->system, dvi_integrator_method(first));
   ck_assert_str_eq(dvi_integrator_method(first), dvi_integrator_method(again));
   ck_assert(isnan(dvi_integrator_jump(first, NULL))); /* it has not started */
-  dvi_integrator *continuous = started(of, "vprk");
+  dvi_integrator *continuous = start_integrator(model, "vprk");
   ck_assert(isnan(dvi_integrator_jump(continuous, NULL)));
   dvi_integrator_destroy(&first);
   dvi_integrator_destroy(&again);
   dvi_integrator_destroy(&continuous);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

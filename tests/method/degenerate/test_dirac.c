@@ -11,8 +11,8 @@
 
 enum { LEVELS = 4 };
 
-/* `steps` is the number of the first level; each level has sqrt 2 times as many. Few enough that
- * the errors stay above 1e-12. */
+/* `steps` is the number of the first level, and each level has sqrt 2 times as many. Few levels
+ * keep the errors above 1e-12. */
 static const struct {
   const char *problem, *method;
   int order, steps;
@@ -29,42 +29,43 @@ static const struct {
               {"magnetic-pair", "dg-phase:degree=5,moments=2", 6, 10}};
 enum { CLAIMS = sizeof claims / sizeof *claims };
 
-static double error_of(const problem *of, const char *method, int order, int steps)
+static double error_of(const problem *model, const char *method, int order, int steps)
 {
-  dvi_integrator *integrator = started(of, method);
+  dvi_integrator *integrator = start_integrator(model, method);
   ck_assert_int_eq(dvi_integrator_order(integrator), order);
-  advance(integrator, of->order_t_end / steps, steps);
-  const double error = fmax(distance(of->nq, dvi_integrator_q(integrator), of->digits_q),
-                            distance(of->nq, dvi_integrator_p(integrator), of->digits_p));
+  advance(integrator, model->order_t_end / steps, steps);
+  const double error = fmax(distance(model->nq, dvi_integrator_q(integrator), model->digits_q),
+                            distance(model->nq, dvi_integrator_p(integrator), model->digits_p));
   dvi_integrator_destroy(&integrator);
   return error;
 }
 
 START_TEST(claimed_order_is_measured)
 {
-  problem *of = made_problem(claims[_i].problem, NULL);
+  problem *model = create_problem(claims[_i].problem, NULL);
   int steps = claims[_i].steps;
-  double last = error_of(of, claims[_i].method, claims[_i].order, steps);
+  double last = error_of(model, claims[_i].method, claims[_i].order, steps);
   for (int level = 1; level < LEVELS; level++) {
     const int more = (int)lround(steps * 1.4142135623730951);
-    const double error = error_of(of, claims[_i].method, claims[_i].order, more);
+    const double error = error_of(model, claims[_i].method, claims[_i].order, more);
     const double slope = log(last / error) / log((double)more / steps);
     ck_assert_msg(fabs(slope - claims[_i].order) <= 0.2, "%s %s: slope %.2f at %d steps (error %g)",
-                  of->name, claims[_i].method, slope, more, error);
+                  model->name, claims[_i].method, slope, more, error);
     last = error;
     steps = more;
   }
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* The angle from the top is the pendulum's; galerkin of degree 8 at this step is right to
+/* The angle from the top is the pendulum's. galerkin of degree 8 at this step is right up to
  * roundings. */
 START_TEST(the_particle_on_a_circle_is_the_pendulum)
 {
-  problem *circle = made_problem("circle-dirac", NULL), *pendulum = made_problem("pendulum", NULL);
-  dvi_integrator *particle = started(circle, "dg-phase:degree=6"),
-                 *angle = made_integrator(pendulum->system, "galerkin:degree=8");
+  problem *circle = create_problem("circle-dirac", NULL),
+          *pendulum = create_problem("pendulum", NULL);
+  dvi_integrator *particle = start_integrator(circle, "dg-phase:degree=6"),
+                 *angle = create_integrator(pendulum->system, "galerkin:degree=8");
   ck_assert_int_eq(dvi_integrator_start(angle, 0, (double[]){atan2(0.8, 0.6)}, (double[]){0.5}),
                    DVI_OK);
   advance(particle, 0.05, 60);
@@ -125,11 +126,11 @@ static int form_phi_gradient(const double *q, const double *p, double *phi_z, vo
  * lambda:
  *     q' = q + ([q] + [q'])/2,   alpha' = alpha - h H_q(q + [q]/2) + ((Dalpha)^T [q] + (Dalpha')^T
  * [q'])/2. */
-static void check_printed_step(const problem *of, double h, const double *q, const double *jump,
+static void check_printed_step(const problem *model, double h, const double *q, const double *jump,
                                const dvi_integrator *integrator)
 {
-  const dvi_one_form *form = of->terms->one_form;
-  const dvi_potential *V = of->terms->potentials;
+  const dvi_one_form *form = model->terms->one_form;
+  const dvi_potential *V = model->terms->potentials;
   const double *next_q = dvi_integrator_q(integrator);
   double next_jump[2], alpha[2], next_alpha[2], alpha_q[4], next_alpha_q[4], H_q[2];
   (void)dvi_integrator_jump(integrator, next_jump);
@@ -150,21 +151,22 @@ static void check_printed_step(const problem *of, double h, const double *q, con
   }
 }
 
-/* Without Hessians: they are differenced. The trajectory is that of the one-form, too, up to the
- * parasite h^3 that the starts leave. */
+/* Without Hessians the method differences them. The trajectory is that of the one-form, too, up to
+ * the parasitic mode of size h^3 from the starts. */
 START_TEST(without_moments_every_degree_takes_the_steps_of_the_one_form)
 {
-  problem *of = made_problem("massless-particle", NULL);
-  const dvi_hamiltonian H = {.value = form_H, .gradient = form_H_gradient, .user = of};
+  problem *model = create_problem("massless-particle", NULL);
+  const dvi_hamiltonian H = {.value = form_H, .gradient = form_H_gradient, .user = model};
   const dvi_constraint phi = {
-      .count = 2, .value = form_phi, .gradient = form_phi_gradient, .user = of};
+      .count = 2, .value = form_phi, .gradient = form_phi_gradient, .user = model};
   const dvi_system_terms terms = {
       .dimension = 2, .autonomous = 1, .hamiltonian = &H, .constraint = &phi};
   dvi_system *system = NULL;
   ck_assert_msg(dvi_system_create(&terms, &system) == DVI_OK, "%s", dvi_last_error());
-  dvi_integrator *form = started(of, "dg-phase"),
-                 *general = made_integrator(system, spec("dg-phase:degree=%d,moments=0", _i));
-  ck_assert_int_eq(dvi_integrator_start(general, 0, of->q, of->p), DVI_OK);
+  dvi_integrator *form = start_integrator(model, "dg-phase"),
+                 *general = create_integrator(system,
+                                              method_spec("dg-phase:degree=%d,moments=0", _i));
+  ck_assert_int_eq(dvi_integrator_start(general, 0, model->q, model->p), DVI_OK);
   const double h = 0.1;
   advance(form, h, 1);
   advance(general, h, 1);
@@ -174,13 +176,13 @@ START_TEST(without_moments_every_degree_takes_the_steps_of_the_one_form)
     (void)dvi_integrator_jump(general, jump);
     advance(form, h, 1);
     advance(general, h, 1);
-    check_printed_step(of, h, q, jump, general);
+    check_printed_step(model, h, q, jump, general);
     ck_assert_double_le(distance(2, dvi_integrator_q(form), dvi_integrator_q(general)), 1e-3);
   }
   dvi_integrator_destroy(&form);
   dvi_integrator_destroy(&general);
   dvi_system_destroy(&system);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -213,14 +215,14 @@ START_TEST(the_two_form_of_both_sides_is_conserved)
   static const char *const methods[] = {"dg-phase", "dg-phase:degree=2", "dg-phase:degree=3",
                                         "dg-phase:degree=3,moments=0"};
   const double h = 0.1;
-  problem *of = made_problem("circle-dirac", NULL);
+  problem *model = create_problem("circle-dirac", NULL);
   dvi_integrator *point[POINTS];
   double alone[2];
   for (int k = 0; k < POINTS; k++) {
     const double turn = 2 * 3.14159265358979323846 * k / POINTS, angle = 1 + 0.1 * cos(turn),
                  speed = 0.5 + 0.1 * sin(turn);
     const double q[2] = {sin(angle), cos(angle)}, p[2] = {speed * q[1], -speed * q[0]};
-    point[k] = made_integrator(of->system, methods[_i]);
+    point[k] = create_integrator(model->system, methods[_i]);
     ck_assert_msg(dvi_integrator_start(point[k], 0, q, p) == DVI_OK, "%s", dvi_last_error());
     advance(point[k], h, 1);
   }
@@ -231,7 +233,7 @@ START_TEST(the_two_form_of_both_sides_is_conserved)
   ck_assert_double_eq_tol(after, before, 1e-12);
   if (_i == 0) ck_assert_double_gt(fabs(alone[1] - alone[0]), 1e-8);
   for (int k = 0; k < POINTS; k++) dvi_integrator_destroy(&point[k]);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -241,14 +243,14 @@ static const char *const structured[] = {"dg-phase", "dg-phase:degree=2", "dg-ph
 /* Up to roundings, which the way back doubles. */
 START_TEST(steps_back_undo_steps)
 {
-  problem *of = made_problem(_i % 2 ? "magnetic-pair" : "circle-dirac", NULL);
-  dvi_integrator *integrator = started(of, structured[_i / 2]);
+  problem *model = create_problem(_i % 2 ? "magnetic-pair" : "circle-dirac", NULL);
+  dvi_integrator *integrator = start_integrator(model, structured[_i / 2]);
   advance(integrator, 0.1, 50);
   advance(integrator, -0.1, 50);
-  ck_assert_double_le(distance(of->nq, dvi_integrator_q(integrator), of->q), 1e-11);
-  ck_assert_double_le(distance(of->nq, dvi_integrator_p(integrator), of->p), 1e-11);
+  ck_assert_double_le(distance(model->nq, dvi_integrator_q(integrator), model->q), 1e-11);
+  ck_assert_double_le(distance(model->nq, dvi_integrator_p(integrator), model->p), 1e-11);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -256,8 +258,8 @@ END_TEST
 START_TEST(energy_stays_and_the_constraint_holds)
 {
   static const double bound[] = {2e-2, 4e-5, 2e-8, 2e-11};
-  problem *of = made_problem("circle-dirac", NULL);
-  dvi_integrator *integrator = started(of, structured[_i]);
+  problem *model = create_problem("circle-dirac", NULL);
+  dvi_integrator *integrator = start_integrator(model, structured[_i]);
   double first, now, off;
   ck_assert_int_eq(dvi_integrator_invariants(integrator, &first), DVI_OK);
   for (int step = 0; step < 2000; step++) {
@@ -269,16 +271,17 @@ START_TEST(energy_stays_and_the_constraint_holds)
     ck_assert_double_le(off, 1e-14);
   }
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* Without moments the node's multiplier is that of the motion up to h^2; with them it holds what
- * they leave, and is small. */
+/* Without moments the node's multiplier is that of the motion up to h^2. With moments it is small,
+ * because it holds only their remainder. */
 START_TEST(the_multiplier_is_that_of_the_motion_or_what_is_left_of_it)
 {
-  problem *of = made_problem("circle-dirac", NULL);
-  dvi_integrator *whole = started(of, "dg-phase"), *rest = started(of, "dg-phase:degree=2");
+  problem *model = create_problem("circle-dirac", NULL);
+  dvi_integrator *whole = start_integrator(model, "dg-phase"),
+                 *rest = start_integrator(model, "dg-phase:degree=2");
   ck_assert_ptr_null(dvi_integrator_multiplier(whole));
   advance(whole, 0.01, 100);
   advance(rest, 0.01, 100);
@@ -288,7 +291,7 @@ START_TEST(the_multiplier_is_that_of_the_motion_or_what_is_left_of_it)
   ck_assert_double_le(fabs(dvi_integrator_multiplier(rest)[0]), 1e-3);
   dvi_integrator_destroy(&whole);
   dvi_integrator_destroy(&rest);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -296,8 +299,9 @@ END_TEST
 
 START_TEST(the_parasite_rings_the_alarm)
 {
-  problem *of = made_problem("magnetic-pair", NULL);
-  dvi_integrator *stops = started(of, "dg-phase"), *warns = started(of, "dg-phase:alarm=warn");
+  problem *model = create_problem("magnetic-pair", NULL);
+  dvi_integrator *stops = start_integrator(model, "dg-phase"),
+                 *warns = start_integrator(model, "dg-phase:alarm=warn");
   dvi_status status = DVI_OK;
   int steps = 0;
   dvi_counters counters;
@@ -309,7 +313,7 @@ START_TEST(the_parasite_rings_the_alarm)
   ck_assert_int_eq(counters.jump_alarms, 1);
   dvi_integrator_destroy(&stops);
   dvi_integrator_destroy(&warns);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -318,12 +322,12 @@ END_TEST
 static void check_refused(const char *problem_name, const char *method, dvi_status status,
                           const char *words)
 {
-  problem *of = made_problem(problem_name, NULL);
+  problem *model = create_problem(problem_name, NULL);
   dvi_integrator *none = NULL;
-  ck_assert_int_eq(dvi_integrator_create(of->system, method, &none), status);
+  ck_assert_int_eq(dvi_integrator_create(model->system, method, &none), status);
   ck_assert_ptr_null(none);
   check_words(words);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 
 START_TEST(what_cannot_be_is_refused_by_name)
@@ -344,27 +348,28 @@ END_TEST
 
 START_TEST(starts_off_the_constraint_are_refused)
 {
-  problem *of = made_problem("circle-dirac", NULL);
-  dvi_integrator *integrator = made_integrator(of->system, "dg-phase");
-  ck_assert_int_eq(dvi_integrator_start(integrator, 0, (double[]){0.8, 0.61}, of->p),
+  problem *model = create_problem("circle-dirac", NULL);
+  dvi_integrator *integrator = create_integrator(model->system, "dg-phase");
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, (double[]){0.8, 0.61}, model->p),
                    DVI_BAD_ARGUMENT);
   check_words("constraint 0 is");
-  ck_assert_int_eq(dvi_integrator_start(integrator, 0, of->q, (double[]){0.3, 0.4}),
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, model->q, (double[]){0.3, 0.4}),
                    DVI_BAD_ARGUMENT);
   check_words("constraint 1 is");
-  ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, of->q, of->v), DVI_UNSUPPORTED);
+  ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, model->q, model->v),
+                   DVI_UNSUPPORTED);
   check_words("start with q and p");
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* The fields of (|q|^2 - 1)/2 and q.p at (q,p) are (0, -q) and (q, -p): the first has to change p
- * along q, the second scales q. */
+/* The Hamiltonian vector fields of (|q|^2 - 1)/2 and q.p at (q,p) are (0, -q) and (q, -p). The
+ * first one has to change p along q, the second one scales q. */
 START_TEST(a_start_off_the_constraint_is_projected_on_request)
 {
-  problem *of = made_problem("circle-dirac", NULL);
-  dvi_integrator *integrator = made_integrator(of->system, "dg-phase");
+  problem *model = create_problem("circle-dirac", NULL);
+  dvi_integrator *integrator = create_integrator(model->system, "dg-phase");
   const dvi_start_options projected = {.project = 1};
   double distance;
   ck_assert_int_eq(dvi_integrator_start_with(integrator, 0, (double[]){0.9, 0.5},
@@ -381,7 +386,7 @@ START_TEST(a_start_off_the_constraint_is_projected_on_request)
   check_words("singular");
   ck_assert_double_gt(dvi_integrator_time(integrator), 0.05);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

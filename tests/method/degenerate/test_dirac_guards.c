@@ -1,6 +1,6 @@
 /* labels: invariant */
-/* What watches over a Hamiltonian with constraints, and over a one-form like it: the alarm, the
- * bracket matrix, statuses, checkpoints. */
+/* Guards of a Hamiltonian with constraints, and of a one-form like it: the alarm, the bracket
+ * matrix, statuses, checkpoints. */
 #include <math.h>
 #include <string.h>
 
@@ -11,8 +11,8 @@
 typedef struct world {
   double radius;  /* of the circle */
   double shift;   /* of the one-form */
-  int calls_left; /* of phi's gradient, until it returns `returned`, and NaN; below 0: for ever */
-  int returned;
+  int calls_left; /* calls until phi's gradient fails (negative, never) */
+  int returned;   /* by a failing gradient, beside a NaN */
 } world;
 
 static const world whole = {.radius = 1, .shift = 0, .calls_left = -1, .returned = 0};
@@ -29,7 +29,7 @@ static dvi_system *made(int n, const dvi_hamiltonian *H, const dvi_constraint *p
 static dvi_integrator *started_at(const dvi_system *system, const char *method, const double *q,
                                   const double *p)
 {
-  dvi_integrator *integrator = made_integrator(system, method);
+  dvi_integrator *integrator = create_integrator(system, method);
   ck_assert_msg(dvi_integrator_start(integrator, 0, q, p) == DVI_OK, "%s", dvi_last_error());
   return integrator;
 }
@@ -96,28 +96,28 @@ static int circle_H_gradient(double t, const double *q, const double *p, double 
 
 static int circle_phi(const double *q, const double *p, double *phi, void *user)
 {
-  const world *of = user;
-  phi[0] = (q[0] * q[0] + q[1] * q[1] - of->radius * of->radius) / 2;
+  const world *setup = user;
+  phi[0] = (q[0] * q[0] + q[1] * q[1] - setup->radius * setup->radius) / 2;
   phi[1] = q[0] * p[0] + q[1] * p[1];
   return 0;
 }
 
 static int circle_phi_gradient(const double *q, const double *p, double *phi_z, void *user)
 {
-  world *of = user;
+  world *setup = user;
   const double values[8] = {q[0], q[1], 0, 0, p[0], p[1], q[0], q[1]};
   memcpy(phi_z, values, sizeof values);
-  if (of->calls_left > 0) of->calls_left--;
-  if (of->calls_left != 0) return 0;
+  if (setup->calls_left > 0) setup->calls_left--;
+  if (setup->calls_left != 0) return 0;
   phi_z[0] = (double)NAN;
-  return of->returned;
+  return setup->returned;
 }
 
-static dvi_system *made_circle(world *of)
+static dvi_system *made_circle(world *setup)
 {
   return made(2, &(dvi_hamiltonian){.value = circle_H, .gradient = circle_H_gradient},
               &(dvi_constraint){
-                  .count = 2, .value = circle_phi, .gradient = circle_phi_gradient, .user = of});
+                  .count = 2, .value = circle_phi, .gradient = circle_phi_gradient, .user = setup});
 }
 
 /* ---- the alarm ---- */
@@ -134,13 +134,13 @@ static void check_quiet(const dvi_system *system, const char *method, const doub
   dvi_integrator_destroy(&integrator);
 }
 
-/* The constraint's force is large where nothing moves along it; at rest only roundings move. */
+/* The constraint's force is large although nothing moves along it. At rest only roundings move. */
 START_TEST(a_force_without_motion_rings_no_alarm)
 {
   static const double origin[3] = {0, 0, 0}, along[3] = {1, 0, 0}, bottom[2] = {0, -1},
                       slow[2] = {1e-3, 0}, swing[2] = {0.1, 0};
-  world of = whole;
-  dvi_system *table = made_table(), *circle = made_circle(&of);
+  world setup = whole;
+  dvi_system *table = made_table(), *circle = made_circle(&setup);
   check_quiet(table, methods[_i], origin, along);
   check_quiet(table, methods[_i], origin, origin);
   check_quiet(circle, methods[_i], bottom, origin);
@@ -163,21 +163,21 @@ static const struct {
 
 START_TEST(a_parasite_does_with_a_remedy_that_is_another_method)
 {
-  problem *of = made_problem(parasites[_i].problem, NULL);
-  dvi_integrator *integrator = started(of, parasites[_i].method);
+  problem *model = create_problem(parasites[_i].problem, NULL);
+  dvi_integrator *integrator = start_integrator(model, parasites[_i].method);
   dvi_status status = DVI_OK;
   for (int step = 0; step < 20000 && status == DVI_OK; step++)
     status = dvi_integrator_step(integrator, parasites[_i].h);
   ck_assert_int_eq(status, DVI_JUMP);
   check_words(parasites[_i].remedy);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 /* ---- the bracket matrix ---- */
 
-/* Of x and p_x (1 - z): it is 0 at z = 1. */
+/* The bracket of x and p_x (1 - z) is 0 at z = 1. */
 static int fold_phi(const double *q, const double *p, double *phi, void *user)
 {
   (void)user;
@@ -240,18 +240,18 @@ END_TEST
 START_TEST(a_gradient_that_fails_from_some_call_on_says_so)
 {
   static const double q[2] = {0.6, -0.8}, p[2] = {0.4, 0.3};
-  world of = whole;
-  dvi_system *system = made_circle(&of);
+  world setup = whole;
+  dvi_system *system = made_circle(&setup);
   for (int calls = 1; calls <= 4; calls++)
     for (int returned = 0; returned <= 1; returned++) {
       dvi_integrator *integrator = started_at(system, methods[_i], q, p);
       advance(integrator, 0.1, 1);
-      of.calls_left = calls;
-      of.returned = returned;
+      setup.calls_left = calls;
+      setup.returned = returned;
       ck_assert_int_eq(dvi_integrator_step(integrator, 0.1),
                        returned ? DVI_CALLBACK_RETRY : DVI_NOT_FINITE);
       check_words("try a smaller step");
-      of.calls_left = -1;
+      setup.calls_left = -1;
       advance(integrator, 0.1, 1);
       dvi_integrator_destroy(&integrator);
     }
@@ -261,8 +261,8 @@ END_TEST
 
 /* ---- checkpoints ---- */
 
-/* alpha = (shift - y/2, x/2), H = |q|^2/2: at rest at 0 neither the Lagrangian nor its forces know
- * the shift. */
+/* alpha = (shift - y/2, x/2), H = |q|^2/2. At rest at 0 neither the Lagrangian nor its forces
+ * depend on the shift. */
 static int form(const double *q, double *alpha, void *user)
 {
   alpha[0] = ((const world *)user)->shift - q[1] / 2;
@@ -292,9 +292,9 @@ static int bowl_gradient(double t, const double *q, double *H_q, void *user)
   return 0;
 }
 
-static dvi_system *made_form(world *of)
+static dvi_system *made_form(world *setup)
 {
-  const dvi_one_form alpha = {.value = form, .gradient = form_gradient, .user = of};
+  const dvi_one_form alpha = {.value = form, .gradient = form_gradient, .user = setup};
   const dvi_potential H = {.value = bowl, .gradient = bowl_gradient};
   const dvi_system_terms terms = {
       .dimension = 2, .one_form = &alpha, .potentials = &H, .potential_count = 1, .autonomous = 1};
@@ -307,14 +307,14 @@ static void check_known_again(const dvi_system *system, const char *method, cons
                               const double *p, double *parameter)
 {
   dvi_integrator *first = started_at(system, method, q, p),
-                 *second = made_integrator(system, method);
+                 *second = create_integrator(system, method);
   advance(first, 0.1, 3);
-  ck_assert_int_eq(dvi_integrator_save(first, in_folder("state")), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_save(first, path_in_folder("state")), DVI_OK);
   *parameter += 1e-3;
-  ck_assert_int_eq(dvi_integrator_restore(second, in_folder("state")), DVI_BAD_FILE);
+  ck_assert_int_eq(dvi_integrator_restore(second, path_in_folder("state")), DVI_BAD_FILE);
   check_words("another constraint");
   *parameter -= 1e-3;
-  ck_assert_msg(dvi_integrator_restore(second, in_folder("state")) == DVI_OK, "%s",
+  ck_assert_msg(dvi_integrator_restore(second, path_in_folder("state")) == DVI_OK, "%s",
                 dvi_last_error());
   dvi_integrator_destroy(&first);
   dvi_integrator_destroy(&second);
@@ -323,9 +323,9 @@ static void check_known_again(const dvi_system *system, const char *method, cons
 START_TEST(a_checkpoint_of_another_constraint_is_refused)
 {
   static const double q[2] = {0.6, -0.8}, p[2] = {0.4, 0.3};
-  world of = whole;
-  dvi_system *system = made_circle(&of);
-  check_known_again(system, methods[_i], q, p, &of.radius);
+  world setup = whole;
+  dvi_system *system = made_circle(&setup);
+  check_known_again(system, methods[_i], q, p, &setup.radius);
   dvi_system_destroy(&system);
 }
 END_TEST
@@ -335,9 +335,9 @@ START_TEST(a_checkpoint_of_another_one_form_is_refused)
   static const char *const of_forms[] = {"vprk", "vprk:projection=none", "dg", "dg-phase",
                                          "hp:type=2,quadrature=gauss"};
   static const double origin[2] = {0, 0};
-  world of = whole;
-  dvi_system *system = made_form(&of);
-  check_known_again(system, of_forms[_i], origin, origin, &of.shift);
+  world setup = whole;
+  dvi_system *system = made_form(&setup);
+  check_known_again(system, of_forms[_i], origin, origin, &setup.shift);
   dvi_system_destroy(&system);
 }
 END_TEST

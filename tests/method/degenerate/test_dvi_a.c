@@ -1,5 +1,5 @@
 /* labels: order */
-/* dvi-a: symplectic Euler of the momentum first, where y is the momentum. */
+/* dvi-a is symplectic Euler with the momentum first, where y is the momentum. */
 #include "support/systems/degenerate.h"
 #include "support/suite.h"
 

@@ -1,5 +1,5 @@
 /* labels: order */
-/* dvi-b: symplectic Euler of the position first, where y is the momentum. */
+/* dvi-b is symplectic Euler with the position first, where y is the momentum. */
 #include "support/systems/degenerate.h"
 #include "support/suite.h"
 

@@ -1,5 +1,5 @@
 /* labels: order */
-/* dvi-midpoint: the midpoint rule, where y is the momentum. */
+/* dvi-midpoint is the midpoint rule, where y is the momentum. */
 #include "support/systems/degenerate.h"
 #include "support/suite.h"
 

@@ -1,5 +1,5 @@
 /* labels: order */
-/* dvi-trapezoidal: Stoermer-Verlet, where y is the momentum. */
+/* dvi-trapezoidal is Stoermer-Verlet, where y is the momentum. */
 #include "support/systems/degenerate.h"
 #include "support/suite.h"
 

@@ -1,6 +1,6 @@
 /* labels: order invariant */
-/* One-step methods for degenerate Lagrangians with half of the one-form's components constant: what
- * dvrk is, and what all five conserve. */
+/* One-step methods for degenerate Lagrangians whose one-form has constant components in one half:
+ * the step of dvrk, and conserved quantities of all five. */
 #include <math.h>
 #include <string.h>
 
@@ -9,15 +9,15 @@
 
 START_TEST(it_is_galerkin_with_gauss_where_y_is_the_momentum)
 {
-  check_same_as_regular(spec("dvrk:nodes=%d", _i), spec("galerkin:degree=%d", _i));
+  check_same_as_regular(method_spec("dvrk:nodes=%d", _i), method_spec("galerkin:degree=%d", _i));
 }
 END_TEST
 
 START_TEST(gauss_stages_have_order_2s)
 {
-  check_degenerate_order("lotka-volterra", "gauge=singular", spec("dvrk:nodes=%d", _i), 0.5,
+  check_degenerate_order("lotka-volterra", "gauge=singular", method_spec("dvrk:nodes=%d", _i), 0.5,
                          2 * _i);
-  check_degenerate_order("massless-particle", "gauge=singular", spec("dvrk:nodes=%d", _i), 1,
+  check_degenerate_order("massless-particle", "gauge=singular", method_spec("dvrk:nodes=%d", _i), 1,
                          2 * _i);
 }
 END_TEST
@@ -26,12 +26,12 @@ static const char *const family[] = {"dvi-a",           "dvi-b", "dvi-midpoint",
                                      "dvi-trapezoidal", "dvrk",  "dvrk:nodes=3"};
 enum { FAMILY = sizeof family / sizeof *family };
 
-/* A circle of starts; 600 steps of roundoff. vprk:projection=post is not symplectic, and loses 1e-8
- * (test_vprk). */
+/* A circle of starts moves with 600 steps of roundoff. vprk:projection=post is not symplectic, and
+ * loses 1e-8 (test_vprk). */
 START_TEST(loop_integrals_are_conserved)
 {
-  ck_assert_double_le(change_of_loop("massless-particle", "gauge=singular", family[_i], 0.1, 600),
-                      2e-12);
+  ck_assert_double_le(
+      loop_integral_change("massless-particle", "gauge=singular", family[_i], 0.1, 600), 2e-12);
 }
 END_TEST
 
@@ -59,14 +59,14 @@ END_TEST
 
 START_TEST(every_step_ends_on_the_constraint)
 {
-  problem *of = made_problem("massless-particle", "gauge=singular");
-  dvi_integrator *integrator = started(of, family[_i]);
+  problem *model = create_problem("massless-particle", "gauge=singular");
+  dvi_integrator *integrator = start_integrator(model, family[_i]);
   for (int step = 0; step < 200; step++) {
     advance(integrator, 0.1, 1);
-    ck_assert_double_eq(off_constraint(of, integrator), 0);
+    ck_assert_double_eq(constraint_defect(model, integrator), 0);
   }
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -75,15 +75,16 @@ START_TEST(symmetric_methods_return_and_the_two_eulers_are_adjoint)
 {
   static const char *const back[] = {"dvi-b",           "dvi-a", "dvi-midpoint",
                                      "dvi-trapezoidal", "dvrk",  "dvrk:nodes=3"};
-  problem *of = made_problem("massless-particle", "gauge=singular");
-  dvi_integrator *there = started(of, family[_i]), *home = made_integrator(of->system, back[_i]);
+  problem *model = create_problem("massless-particle", "gauge=singular");
+  dvi_integrator *there = start_integrator(model, family[_i]),
+                 *home = create_integrator(model->system, back[_i]);
   for (int step = 0; step < 20; step++) {
     advance(there, 0.2, 1);
     double q[2];
     memcpy(q, dvi_integrator_q(there), sizeof q);
     ck_assert_int_eq(dvi_integrator_start(home, 0, q, dvi_integrator_p(there)), DVI_OK);
     advance(home, -0.2, 1);
-    dvi_integrator *again = made_integrator(of->system, family[_i]);
+    dvi_integrator *again = create_integrator(model->system, family[_i]);
     ck_assert_int_eq(dvi_integrator_start(again, 0, dvi_integrator_q(home), dvi_integrator_p(home)),
                      DVI_OK);
     advance(again, 0.2, 1);
@@ -92,13 +93,13 @@ START_TEST(symmetric_methods_return_and_the_two_eulers_are_adjoint)
   }
   dvi_integrator_destroy(&there);
   dvi_integrator_destroy(&home);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(other_one_forms_are_refused)
 {
-  check_class("dvrk:nodes=3");
+  check_refused_one_forms("dvrk:nodes=3");
 }
 END_TEST
 
@@ -136,7 +137,7 @@ START_TEST(a_component_that_changes_after_all_stops_the_step)
   const dvi_system_terms terms = {
       .dimension = 2, .one_form = &form, .potentials = &H, .potential_count = 1};
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
-  dvi_integrator *integrator = made_integrator(system, "dvi-midpoint");
+  dvi_integrator *integrator = create_integrator(system, "dvi-midpoint");
   const double q[] = {-300, 190}, p[] = {190, 0};
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, q, p), DVI_OK);
   ck_assert_int_eq(dvi_integrator_step(integrator, 0.1), DVI_UNSUPPORTED);
@@ -190,8 +191,8 @@ END_TEST
 
 /* ---- time ---- */
 
-/* V = (1 + sin(3 t)/2) x^4/4, of a regular system of one coordinate; H = y^2/2 + V of (y, x) with
- * alpha = (0, y). */
+/* V = (1 + sin(3 t)/2) x^4/4 of a regular system of one coordinate, and H = y^2/2 + V of (y, x)
+ * with alpha = (0, y). */
 static int driven(double t, const double *x, double *V, void *user)
 {
   (void)user;
@@ -261,8 +262,8 @@ START_TEST(a_hamiltonian_that_depends_on_time_is_met_at_the_same_times)
                                                          .potential_count = 1},
                                      &other),
                    DVI_OK);
-  dvi_integrator *a = made_integrator(one, pairs[_i].degenerate),
-                 *b = made_integrator(other, pairs[_i].regular);
+  dvi_integrator *a = create_integrator(one, pairs[_i].degenerate),
+                 *b = create_integrator(other, pairs[_i].regular);
   ck_assert_int_eq(dvi_integrator_start(a, 0.4, q, p), DVI_OK);
   ck_assert_int_eq(dvi_integrator_start(b, 0.4, &x, &y), DVI_OK);
   advance(a, 0.1, 40);

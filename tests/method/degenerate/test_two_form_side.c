@@ -1,12 +1,12 @@
-/* Where the two-form becomes singular a trajectory ends: a step that went over such a point would
- * go on with one that is none. */
+/* A trajectory ends where the two-form becomes singular. A step across such a point would continue
+ * with a curve that is no trajectory. */
 #include <math.h>
 #include <string.h>
 
 #include "support/runs.h"
 #include "support/suite.h"
 
-/* alpha = (y, max(0,x-200)^2), H = y^2/2: the two-form 2 max(0,x-200) - 1 is 0 at x = 200.5, where
+/* alpha = (y, max(0,x-200)^2), H = y^2/2. The two-form 2 max(0,x-200) - 1 is 0 at x = 200.5, where
  * x' = y/(1 - 2 max(0,x-200)) has no bound. */
 static const double end_of_bend = 200.5;
 
@@ -46,7 +46,7 @@ static int bend_force(double t, const double *q, double *H_q, void *user)
   return 0;
 }
 
-/* alpha = (y - y^3/3, 0), H = x + y^2/2: alpha falls as -t, and the two-form y^2 - 1 is 0 at y =
+/* alpha = (y - y^3/3, 0), H = x + y^2/2. alpha falls as -t, and the two-form y^2 - 1 is 0 at y =
  * -1. */
 static const double end_of_fold = -1;
 
@@ -102,7 +102,7 @@ static dvi_system *made_fold(void)
               &(dvi_potential){.value = fold_energy, .gradient = fold_force});
 }
 
-/* Steps until one fails, at most so many; the state is then where it was before. */
+/* Takes steps until one fails, at most so many. The state is then the one before that step. */
 static dvi_status run(dvi_integrator *integrator, const double *start, double h, int most)
 {
   double p[2], v[2] = {0, 0}, q[2];
@@ -131,7 +131,7 @@ START_TEST(no_step_leads_over_a_singular_two_form)
   static const double start[2] = {199.9, 1};
   dvi_system *system = made_bend();
   for (double h = 0.4; h > 0.005; h /= is_short_run() ? 1.728 : 1.2) {
-    dvi_integrator *integrator = made_integrator(system, general[_i]);
+    dvi_integrator *integrator = create_integrator(system, general[_i]);
     const dvi_status status = run(integrator, start, h, 200);
     ck_assert_msg(status > 0, "%s h=%g: %d at x = %.17g", general[_i], h, status,
                   dvi_integrator_q(integrator)[0]);
@@ -148,7 +148,7 @@ START_TEST(nor_does_one_of_a_one_step_method)
   static const double start[2] = {0.3, -0.1};
   dvi_system *system = made_fold();
   for (double h = 0.4; h > 0.005; h /= is_short_run() ? 1.728 : 1.2) {
-    dvi_integrator *integrator = made_integrator(system, one_step[_i]);
+    dvi_integrator *integrator = create_integrator(system, one_step[_i]);
     const dvi_status status = run(integrator, start, h, 200);
     ck_assert_msg(status > 0, "%s h=%g: %d at y = %.17g", one_step[_i], h, status,
                   dvi_integrator_q(integrator)[1]);
@@ -165,7 +165,7 @@ START_TEST(both_sides_can_be_started_on)
 {
   static const double here[2] = {199.9, 1}, there[2] = {201, 1};
   dvi_system *system = made_bend();
-  dvi_integrator *integrator = made_integrator(system, "dg");
+  dvi_integrator *integrator = create_integrator(system, "dg");
   ck_assert_int_eq(run(integrator, here, 0.03, 3), DVI_OK);
   ck_assert_int_eq(run(integrator, there, -0.03, 3), DVI_OK);
   ck_assert_int_eq(run(integrator, here, 0.03, 3), DVI_OK);

@@ -22,12 +22,12 @@ static const struct {
               {"tokamak", NULL, 800}};
 enum { PLACES = sizeof places / sizeof *places };
 
-/* Orders 2, 4 and 6 show over four steps; order 8 is at the floor after two of them on most
+/* Orders 2, 4 and 6 show over four steps. Order 8 is at the floor after two of them on most
  * problems. */
 START_TEST(gauss_with_the_symmetric_projection_has_order_2s)
 {
   const int s = 1 + _i / PLACES, at = _i % PLACES;
-  check_degenerate_order(places[at].problem, places[at].setting, spec("vprk:nodes=%d", s),
+  check_degenerate_order(places[at].problem, places[at].setting, method_spec("vprk:nodes=%d", s),
                          places[at].h, 2 * s);
 }
 END_TEST
@@ -77,24 +77,25 @@ END_TEST
 
 START_TEST(projected_steps_end_on_the_constraint_and_others_leave_it)
 {
-  problem *of = made_problem("massless-particle", NULL);
+  problem *model = create_problem("massless-particle", NULL);
   static const char *const projected[] = {"symmetric", "midpoint", "symplectic", "post"};
   for (int k = 0; k < 4; k++) {
-    dvi_integrator *integrator = started(of, spec("vprk:projection=%s", projected[k]));
+    dvi_integrator *integrator = start_integrator(model,
+                                                  method_spec("vprk:projection=%s", projected[k]));
     for (int step = 0; step < 200; step++) {
       advance(integrator, 0.1, 1);
-      ck_assert_double_eq(off_constraint(of, integrator), 0);
+      ck_assert_double_eq(constraint_defect(model, integrator), 0);
     }
     dvi_integrator_destroy(&integrator);
   }
-  dvi_integrator *unprojected = started(of, "vprk:projection=none");
+  dvi_integrator *unprojected = start_integrator(model, "vprk:projection=none");
   double queried;
   advance(unprojected, 0.1, 200);
-  ck_assert_double_gt(off_constraint(of, unprojected), 1e-8);
+  ck_assert_double_gt(constraint_defect(model, unprojected), 1e-8);
   ck_assert_int_eq(dvi_integrator_constraint(unprojected, &queried), DVI_OK);
-  ck_assert_double_eq(queried, off_constraint(of, unprojected));
+  ck_assert_double_eq(queried, constraint_defect(model, unprojected));
   dvi_integrator_destroy(&unprojected);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -116,9 +117,11 @@ enum { RUNS = sizeof runs / sizeof *runs };
 /* From one start post ends where none does, but for its kick. */
 START_TEST(the_multiplier_is_the_kick)
 {
-  problem *of = made_problem("massless-particle", NULL), *regular = made_problem("kepler", NULL);
-  dvi_integrator *post = started(of, "vprk:projection=post"),
-                 *none = started(of, "vprk:projection=none"), *other = started(regular, "midpoint");
+  problem *model = create_problem("massless-particle", NULL),
+          *regular = create_problem("kepler", NULL);
+  dvi_integrator *post = start_integrator(model, "vprk:projection=post"),
+                 *none = start_integrator(model, "vprk:projection=none"),
+                 *other = start_integrator(regular, "midpoint");
   double unwanted;
   ck_assert_ptr_null(dvi_integrator_multiplier(post));
   advance(post, 0.2, 1);
@@ -136,7 +139,7 @@ START_TEST(the_multiplier_is_the_kick)
   dvi_integrator_destroy(&post);
   dvi_integrator_destroy(&none);
   dvi_integrator_destroy(&other);
-  problem_destroy(&of);
+  problem_destroy(&model);
   problem_destroy(&regular);
 }
 END_TEST
@@ -150,11 +153,11 @@ START_TEST(energy_stays_bounded_and_momenta_are_conserved)
 }
 END_TEST
 
-/* The banana orbit turns back: R stays between the same two radii from beginning to end. */
+/* The banana orbit turns back, and R stays between the same two radii from beginning to end. */
 START_TEST(a_banana_stays_a_banana)
 {
-  problem *of = made_problem("tokamak", NULL);
-  dvi_integrator *integrator = started(of, "vprk");
+  problem *model = create_problem("tokamak", NULL);
+  dvi_integrator *integrator = start_integrator(model, "vprk");
   double inner[2] = {2, 2}, outer[2] = {0, 0};
   int turned = 0;
   const int steps = 20000;
@@ -171,20 +174,21 @@ START_TEST(a_banana_stays_a_banana)
     ck_assert_double_eq_tol(outer[k], 1.081944, 2e-5);
   }
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(loop_integrals_are_conserved_by_symplectic_maps_alone)
 {
-  ck_assert_double_le(
-      change_of_loop("massless-particle", NULL, "vprk:nodes=2,projection=symplectic", 0.1, 600),
-      1e-11);
-  ck_assert_double_le(
-      change_of_loop("massless-particle", NULL, "vprk:nodes=3,projection=symplectic", 0.1, 600),
-      1e-11);
+  ck_assert_double_le(loop_integral_change("massless-particle", NULL,
+                                           "vprk:nodes=2,projection=symplectic", 0.1, 600),
+                      1e-11);
+  ck_assert_double_le(loop_integral_change("massless-particle", NULL,
+                                           "vprk:nodes=3,projection=symplectic", 0.1, 600),
+                      1e-11);
   ck_assert_double_ge(
-      change_of_loop("massless-particle", NULL, "vprk:nodes=2,projection=post", 0.1, 600), 1e-9);
+      loop_integral_change("massless-particle", NULL, "vprk:nodes=2,projection=post", 0.1, 600),
+      1e-9);
 }
 END_TEST
 
@@ -192,8 +196,8 @@ END_TEST
 
 START_TEST(a_step_out_of_the_logarithms_domain_leaves_the_state)
 {
-  problem *of = made_problem("lotka-volterra", NULL);
-  dvi_integrator *integrator = started(of, "vprk");
+  problem *model = create_problem("lotka-volterra", NULL);
+  dvi_integrator *integrator = start_integrator(model, "vprk");
   advance(integrator, 0.1, 3);
   double q[2], p[2];
   memcpy(q, dvi_integrator_q(integrator), sizeof q);
@@ -204,7 +208,7 @@ START_TEST(a_step_out_of_the_logarithms_domain_leaves_the_state)
   ck_assert_mem_eq(p, dvi_integrator_p(integrator), sizeof p);
   advance(integrator, 0.1, 1);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -253,7 +257,7 @@ START_TEST(a_callback_that_goes_on_asking_for_smaller_steps_is_heard)
   const double q[2] = {1, 0}, v[2] = {0, 1};
   dvi_system *system = NULL;
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
-  dvi_integrator *integrator = made_integrator(system, "vprk:nodes=3");
+  dvi_integrator *integrator = create_integrator(system, "vprk:nodes=3");
   calls_left = 1000;
   ck_assert_msg(dvi_integrator_start_velocity(integrator, 0, q, v) == DVI_OK, "%s",
                 dvi_last_error());
@@ -267,13 +271,13 @@ END_TEST
 
 START_TEST(lobatto_wants_two_nodes)
 {
-  problem *of = made_problem("lotka-volterra", NULL);
+  problem *model = create_problem("lotka-volterra", NULL);
   dvi_integrator *none = NULL;
-  ck_assert_int_eq(dvi_integrator_create(of->system, "vprk:nodes=1,tableau=lobatto-iiie", &none),
+  ck_assert_int_eq(dvi_integrator_create(model->system, "vprk:nodes=1,tableau=lobatto-iiie", &none),
                    DVI_BAD_OPTION);
   check_words("nodes=2 or more");
   ck_assert_ptr_null(none);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

@@ -139,7 +139,7 @@ static const double links_start[LINKS] = {0.8, 1.1, 0.4, 1.6, 2.0},
 static const struct {
   const char *name;
   double period;             /* the fastest one of the motion */
-  dvi_system *(*make)(void); /* NULL: of the catalogue */
+  dvi_system *(*make)(void); /* default NULL, a problem of the catalogue */
   const double *q;
 } cases[] = {{"double-pendulum", 1.3, NULL, NULL},
              {"kepler", 1.257, NULL, NULL},
@@ -156,8 +156,8 @@ static const struct {
              {"elastica", 6.0, NULL, NULL}};
 enum { CASES = sizeof cases / sizeof *cases };
 
-/* The first ones have Lagrangians that are regular. Of the degenerate ones the judge is not
- * settled: their rows are printed, and nothing is claimed. */
+/* The first ones have regular Lagrangians. For the degenerate ones the judge is not settled, so
+ * their rows are printed and nothing is claimed. */
 enum { REGULAR = 8 };
 
 static const char *const methods[] = {"midpoint",
@@ -190,14 +190,15 @@ static const char *const methods[] = {"midpoint",
 enum { METHODS = sizeof methods / sizeof *methods };
 
 typedef struct tally {
-  long steps, followed, strayed, refused,
-      missed; /* strayed: off the branch, and not told; missed: refused, and there is a solution */
+  long steps, followed, refused;
+  long strayed; /* steps that left the branch without a warning */
+  long missed;  /* refused steps that have a solution */
 } tally;
 
 /* ---- the judge ---- */
 
-/* The step from `state` followed in small parts. sem chooses its steps: the one that it took is
- * judged, as a first one of galerkin's. */
+/* Follows the step from `state` in small parts. sem chooses its steps, and its chosen step is
+ * judged as a first step of galerkin. */
 static dvi_status judged_step(const dvi_integrator *run, const dvi__state *state,
                               const double *memory, dvi_integrator *judge, double h)
 {
@@ -259,7 +260,7 @@ static int take_step(dvi_integrator *run, dvi_integrator *judge, double h, tally
     if (judged == DVI_OK) trace("missed", run, judge, h, judged);
     return 0;
   }
-  /* the run has blown up: in no case are there such numbers */
+  /* the run has blown up, because no case reaches such numbers */
   if (magnitude(run->system->n, run->now.q) > 1e4) return 0;
   count->steps++;
   if (judged == DVI_OK && is_right(run, judge)) return 1;
@@ -272,28 +273,28 @@ static int take_step(dvi_integrator *run, dvi_integrator *judge, double h, tally
 
 typedef struct plan {
   int lengths;
-  double least, most, periods; /* of h, in periods; of a run */
+  double least, most, periods; /* length of h and of a run in periods */
 } plan;
 
-static void run_lengths(const problem *of, dvi_system *system, const double *q, int which,
+static void run_lengths(const problem *model, dvi_system *system, const double *q, int which,
                         const char *method, const plan *plan_of, tally *bands)
 {
   dvi_integrator *run = NULL, *judge = NULL;
   if (dvi_integrator_create(system, method, &run) == DVI_OK)
-    judge = made_integrator(system,
-                            run->stepper.method->chooses_steps ? "galerkin:degree=4" : method);
+    judge = create_integrator(system,
+                              run->stepper.method->chooses_steps ? "galerkin:degree=4" : method);
   for (int i = 0; i < plan_of->lengths && judge != NULL; i++) {
     const double part = plan_of->least *
                         pow(plan_of->most / plan_of->least, (double)i / (plan_of->lengths - 1)),
                  h = part * cases[which].period;
     static const double rest[2 * VORTICES];
-    const dvi_status status = of != NULL ? dvi_integrator_start(run, 0, of->q, of->p)
-                                         : dvi_integrator_start_velocity(run, 0, q, rest);
-    ck_assert_msg(status == DVI_OK &&
-                      dvi_integrator_start_velocity(judge, 0, of != NULL ? of->q : q,
-                                                    of != NULL ? of->v : rest) >= DVI_BAD_STATE,
+    const dvi_status status = model != NULL ? dvi_integrator_start(run, 0, model->q, model->p)
+                                            : dvi_integrator_start_velocity(run, 0, q, rest);
+    ck_assert_msg(status == DVI_OK && dvi_integrator_start_velocity(
+                                          judge, 0, model != NULL ? model->q : q,
+                                          model != NULL ? model->v : rest) >= DVI_BAD_STATE,
                   "%s", dvi_last_error());
-    if (of != NULL) ck_assert_int_eq(dvi_integrator_start(judge, 0, of->q, of->p), DVI_OK);
+    if (model != NULL) ck_assert_int_eq(dvi_integrator_start(judge, 0, model->q, model->p), DVI_OK);
     dvi_counters before, after;
     dvi_integrator_counters(run, &before);
     tally *count = &bands[part >= 0.35];
@@ -308,12 +309,12 @@ static void run_lengths(const problem *of, dvi_system *system, const double *q, 
 
 static void count_method(int which, int method, const plan *plan_of, tally *bands)
 {
-  problem *of = cases[which].make == NULL ? made_problem(cases[which].name, NULL) : NULL;
-  dvi_system *made = of == NULL ? cases[which].make() : NULL;
-  run_lengths(of, of != NULL ? of->system : made, cases[which].q, which, methods[method], plan_of,
-              bands);
+  problem *model = cases[which].make == NULL ? create_problem(cases[which].name, NULL) : NULL;
+  dvi_system *made = model == NULL ? cases[which].make() : NULL;
+  run_lengths(model, model != NULL ? model->system : made, cases[which].q, which, methods[method],
+              plan_of, bands);
   dvi_system_destroy(&made);
-  if (of != NULL) problem_destroy(&of);
+  if (model != NULL) problem_destroy(&model);
 }
 
 static void print_row(int which, int method, const tally *bands)

@@ -9,23 +9,24 @@ static const char *const bases[] = {"gauss", "chebyshev-lobatto", "equispaced", 
                                     "chebyshev"};
 enum { BASES = sizeof bases / sizeof *bases, DEGREES = 8 };
 
-/* All bases of one degree span the same polynomials: the discrete action is the same, and so is the
- * trajectory. */
+/* All bases of one degree span the same polynomials, so they have the same discrete action and the
+ * same trajectory. */
 static void check_bases_agree(const char *problem_name, int degree, const char *basis)
 {
-  problem *of = made_problem(problem_name, NULL);
-  dvi_integrator *lobatto = started(of, spec("galerkin:degree=%d", degree));
-  dvi_integrator *other = started(of, spec("galerkin:degree=%d,basis=%s", degree, basis));
-  advance(lobatto, of->h, 100);
-  advance(other, of->h, 100);
-  const double apart = distance(of->nq, dvi_integrator_q(lobatto), dvi_integrator_q(other));
+  problem *model = create_problem(problem_name, NULL);
+  dvi_integrator *lobatto = start_integrator(model, method_spec("galerkin:degree=%d", degree));
+  dvi_integrator *other = start_integrator(
+      model, method_spec("galerkin:degree=%d,basis=%s", degree, basis));
+  advance(lobatto, model->h, 100);
+  advance(other, model->h, 100);
+  const double apart = distance(model->nq, dvi_integrator_q(lobatto), dvi_integrator_q(other));
   /* 100 steps' roundings, with the basis' Lebesgue constant (10 at most here), far below what users
    * can see */
   ck_assert_msg(apart <= 1e-12, "%s: degree %d, basis %s: %g apart", problem_name, degree, basis,
                 apart);
   dvi_integrator_destroy(&lobatto);
   dvi_integrator_destroy(&other);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 
 START_TEST(all_bases_of_a_degree_give_one_trajectory)
@@ -39,8 +40,8 @@ END_TEST
 
 static void check_order(const char *method, int order)
 {
-  problem *oscillator = made_problem("oscillator", NULL);
-  dvi_integrator *integrator = made_integrator(oscillator->system, method);
+  problem *oscillator = create_problem("oscillator", NULL);
+  dvi_integrator *integrator = create_integrator(oscillator->system, method);
   ck_assert_msg(dvi_integrator_order(integrator) == order, "%s claims order %d", method,
                 dvi_integrator_order(integrator));
   dvi_integrator_destroy(&integrator);
@@ -63,9 +64,9 @@ END_TEST
 
 START_TEST(nodes_left_out_are_the_fewest_of_full_order)
 {
-  problem *oscillator = made_problem("oscillator", NULL);
-  dvi_integrator *integrator = made_integrator(oscillator->system,
-                                               "galerkin:degree=5,quadrature=lobatto");
+  problem *oscillator = create_problem("oscillator", NULL);
+  dvi_integrator *integrator = create_integrator(oscillator->system,
+                                                 "galerkin:degree=5,quadrature=lobatto");
   ck_assert_str_eq(dvi_integrator_method(integrator),
                    "galerkin:degree=5,basis=lobatto,quadrature=lobatto,nodes=6,solver=auto");
   dvi_integrator_destroy(&integrator);
@@ -101,7 +102,7 @@ enum { REFUSED = sizeof refused / sizeof *refused };
 
 START_TEST(a_wrong_specification_is_refused_with_its_reason)
 {
-  problem *oscillator = made_problem("oscillator", NULL);
+  problem *oscillator = create_problem("oscillator", NULL);
   dvi_integrator *integrator = NULL;
   ck_assert_int_eq(dvi_integrator_create(oscillator->system, refused[_i].method, &integrator),
                    DVI_BAD_OPTION);
@@ -112,12 +113,13 @@ START_TEST(a_wrong_specification_is_refused_with_its_reason)
 }
 END_TEST
 
-/* With slow forces fixed point iteration does it; a stiff spring at h omega = 5 needs Newton's
- * method; the counters tell. */
+/* Slow forces need only fixed-point iteration, and a stiff spring at h omega = 5 needs Newton's
+ * method. The counters tell which one ran. */
 START_TEST(the_contraction_chooses_the_solver)
 {
-  problem *chain = made_problem("fpu", NULL);
-  dvi_integrator *slow = started(chain, "galerkin"), *stiff = started(chain, "galerkin");
+  problem *chain = create_problem("fpu", NULL);
+  dvi_integrator *slow = start_integrator(chain, "galerkin"),
+                 *stiff = start_integrator(chain, "galerkin");
   dvi_counters counters;
   advance(slow, 0.001, 20);
   dvi_integrator_counters(slow, &counters);
@@ -134,14 +136,15 @@ START_TEST(the_contraction_chooses_the_solver)
 }
 END_TEST
 
-/* One discrete action has one stationary path near the true one: every solver finds it to
+/* One discrete action has one stationary path near the true one, and every solver finds it up to
  * roundoff. */
 START_TEST(all_solvers_find_the_same_step)
 {
   const char *const solvers[] = {"fixed-point", "newton", "kinsol"};
-  problem *pendula = made_problem("double-pendulum", NULL);
-  dvi_integrator *automatic = started(pendula, "galerkin:degree=3"),
-                 *other = started(pendula, spec("galerkin:degree=3,solver=%s", solvers[_i]));
+  problem *pendula = create_problem("double-pendulum", NULL);
+  dvi_integrator *automatic = start_integrator(pendula, "galerkin:degree=3"),
+                 *other = start_integrator(pendula,
+                                           method_spec("galerkin:degree=3,solver=%s", solvers[_i]));
   advance(automatic, 0.02, 20);
   advance(other, 0.02, 20);
   /* 20 steps of a rounding each */
@@ -152,7 +155,7 @@ START_TEST(all_solvers_find_the_same_step)
 }
 END_TEST
 
-/* Two oscillators, the second in a unit a billion times longer: V = (w x)^2/2 + (w y/unit)^2/2 with
+/* Two oscillators, the second in a unit a billion times longer. V = (w x)^2/2 + (w y/unit)^2/2 with
  * masses 1 and 1/unit^2. */
 static const double unit = 1e-9, stiffness = 1e4;
 
@@ -171,12 +174,12 @@ static int two_forces(double t, const double *q, double *V_q, void *user)
   return 0;
 }
 
-/* Newton's method must not stop when the large coordinate alone is at roundoff: both are one
- * oscillator, and must stay so. */
+/* Newton's method must not stop when only the large coordinate is at roundoff. Both oscillators are
+ * the same, and must stay so. */
 START_TEST(a_small_coordinate_is_solved_to_its_own_roundoff)
 {
   const double masses[] = {1, 1 / (unit * unit)}, q[] = {1, unit}, p[] = {0, 0};
-  /* the Hessian is differenced: not quite right */
+  /* the Hessian is differenced and slightly wrong */
   const dvi_potential springs = {.value = two_springs, .gradient = two_forces};
   const dvi_system_terms terms = {
       .dimension = 2, .mass.diagonal = masses, .potentials = &springs, .potential_count = 1};
@@ -195,8 +198,8 @@ START_TEST(a_small_coordinate_is_solved_to_its_own_roundoff)
 }
 END_TEST
 
-/* KINSOL's own test accepts what the iterations found, at every step, and the trajectory is the
- * same but for roundings: in easy steps, in stiff ones and for a general Lagrangian. */
+/* KINSOL's own test accepts the result of the iterations at every step, and the trajectory is the
+ * same up to roundings, in easy steps, in stiff ones and for a general Lagrangian. */
 START_TEST(kinsol_certifies_every_step)
 {
   static const struct {
@@ -206,10 +209,11 @@ START_TEST(kinsol_certifies_every_step)
   } runs[] = {{"kepler", 1, 0.05},     {"kepler", 8, 0.2},           {"fpu", 6, 0.1},
               {"outer-solar", 8, 300}, {"double-pendulum", 5, 0.05}, {"toda", 12, 0.5}};
   enum { STEPS = 40 };
-  problem *of = made_problem(runs[_i].problem, NULL);
-  dvi_integrator *plain = started(of, spec("galerkin:degree=%d", runs[_i].degree));
-  dvi_integrator *certified = started(of,
-                                      spec("galerkin:degree=%d,solver=certified", runs[_i].degree));
+  problem *model = create_problem(runs[_i].problem, NULL);
+  dvi_integrator *plain = start_integrator(model,
+                                           method_spec("galerkin:degree=%d", runs[_i].degree));
+  dvi_integrator *certified = start_integrator(
+      model, method_spec("galerkin:degree=%d,solver=certified", runs[_i].degree));
   dvi_counters counters;
   advance(plain, runs[_i].h, STEPS);
   advance(certified, runs[_i].h, STEPS);
@@ -217,11 +221,11 @@ START_TEST(kinsol_certifies_every_step)
   ck_assert_int_ge(counters.certified, STEPS); /* one more for each step that is taken again */
   ck_assert_int_le(counters.certified, STEPS + counters.followed);
   ck_assert_int_eq(counters.kinsols, 0);
-  ck_assert_double_le(distance(of->nq, dvi_integrator_q(plain), dvi_integrator_q(certified)),
-                      1e-11 * magnitude(of->nq, dvi_integrator_q(plain)));
+  ck_assert_double_le(distance(model->nq, dvi_integrator_q(plain), dvi_integrator_q(certified)),
+                      1e-11 * magnitude(model->nq, dvi_integrator_q(plain)));
   dvi_integrator_destroy(&plain);
   dvi_integrator_destroy(&certified);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

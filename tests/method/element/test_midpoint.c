@@ -7,8 +7,8 @@
 /* For L = v^2/2 - k q^2/2 the midpoint rule is the Cayley transform, which can be written down. */
 START_TEST(on_an_oscillator_a_step_is_the_cayley_transform)
 {
-  problem *oscillator = made_problem("oscillator", NULL);
-  dvi_integrator *integrator = started(oscillator, "midpoint");
+  problem *oscillator = create_problem("oscillator", NULL);
+  dvi_integrator *integrator = start_integrator(oscillator, "midpoint");
   const double h = 0.3, k = 0.5, a = h * h * k / 4, q0 = oscillator->q[0], p0 = 0;
   advance(integrator, h, 1);
   /* a few roundings of 0.5 */
@@ -23,13 +23,13 @@ END_TEST
 
 START_TEST(a_quadratic_invariant_is_conserved_to_roundoff)
 {
-  problem *oscillator = made_problem("oscillator", NULL);
-  dvi_integrator *integrator = started(oscillator, "midpoint");
+  problem *oscillator = create_problem("oscillator", NULL);
+  dvi_integrator *integrator = start_integrator(oscillator, "midpoint");
   double before, after;
   ck_assert_int_eq(dvi_integrator_invariants(integrator, &before), DVI_OK);
   advance(integrator, 0.7, 10000);
   ck_assert_int_eq(dvi_integrator_invariants(integrator, &after), DVI_OK);
-  /* 1e4 roundings that walk at random: 100 of them */
+  /* 1e4 roundings that walk at random add up to 100 of them */
   ck_assert_double_eq_tol(after, before, 1e-14 * before * 100);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&oscillator);
@@ -38,15 +38,15 @@ END_TEST
 
 static void check_same(const char *problem_name, const char *a, const char *b)
 {
-  problem *of = made_problem(problem_name, NULL);
-  dvi_integrator *first = started(of, a), *second = started(of, b);
-  advance(first, of->h, 50);
-  advance(second, of->h, 50);
-  ck_assert_double_eq(distance(of->nq, dvi_integrator_q(first), dvi_integrator_q(second)), 0);
-  ck_assert_double_eq(distance(of->nq, dvi_integrator_p(first), dvi_integrator_p(second)), 0);
+  problem *model = create_problem(problem_name, NULL);
+  dvi_integrator *first = start_integrator(model, a), *second = start_integrator(model, b);
+  advance(first, model->h, 50);
+  advance(second, model->h, 50);
+  ck_assert_double_eq(distance(model->nq, dvi_integrator_q(first), dvi_integrator_q(second)), 0);
+  ck_assert_double_eq(distance(model->nq, dvi_integrator_p(first), dvi_integrator_p(second)), 0);
   dvi_integrator_destroy(&first);
   dvi_integrator_destroy(&second);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 
 START_TEST(it_is_galerkin_of_degree_1_with_the_midpoint_bit_for_bit)

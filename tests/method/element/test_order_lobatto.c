@@ -12,8 +12,8 @@ enum { MOST_DEGREE = 8 };
 START_TEST(lobatto_with_one_node_more_has_order_2s)
 {
   const int which = sampled_case(_i), s = 1 + which % MOST_DEGREE;
-  check_order(which / MOST_DEGREE, spec("galerkin:degree=%d,quadrature=lobatto,nodes=%d", s, s + 1),
-              2 * s);
+  check_order(which / MOST_DEGREE,
+              method_spec("galerkin:degree=%d,quadrature=lobatto,nodes=%d", s, s + 1), 2 * s);
 }
 END_TEST
 

@@ -14,11 +14,11 @@ START_TEST(lobatto_with_as_many_nodes_as_degrees_has_order_2s_minus_2)
 {
   const int which = sampled_case(_i), s = 2 + which % (MOST_DEGREE - 1);
   check_order(which / (MOST_DEGREE - 1),
-              spec("galerkin:degree=%d,quadrature=lobatto,nodes=%d", s, s), 2 * s - 2);
+              method_spec("galerkin:degree=%d,quadrature=lobatto,nodes=%d", s, s), 2 * s - 2);
 }
 END_TEST
 
-/* By s and r: u is r, or r+1 for odd r. */
+/* Orders by s and r. u is r, or r+1 for odd r. */
 static const struct {
   int s, r, order;
 } few[] = {{3, 3, 4}, {4, 4, 2}, {5, 5, 4}, {5, 6, 4}, {6, 6, 2}, {5, 7, 8}, {6, 7, 6}, {7, 7, 4}};
@@ -26,16 +26,17 @@ enum { FEW = sizeof few / sizeof *few };
 
 START_TEST(clenshaw_curtis_with_few_nodes_has_the_order_that_its_own_allows)
 {
-  /* pendulum, henon-heiles, toda: elsewhere the last term is small beside the next ones */
+  /* pendulum, henon-heiles and toda, because elsewhere the last term is small beside the next
+   * ones */
   static const int places[] = {1, 2, 4};
   const int which = sampled_case(_i), place = places[which / FEW];
   const int s = few[which % FEW].s, r = few[which % FEW].r, order = few[which % FEW].order;
-  const char *method = spec("galerkin:degree=%d,quadrature=clenshaw-curtis,nodes=%d", s, r);
-  problem *of = made_problem("oscillator", NULL);
-  dvi_integrator *integrator = made_integrator(of->system, method);
+  const char *method = method_spec("galerkin:degree=%d,quadrature=clenshaw-curtis,nodes=%d", s, r);
+  problem *model = create_problem("oscillator", NULL);
+  dvi_integrator *integrator = create_integrator(model->system, method);
   ck_assert_int_eq(dvi_integrator_order(integrator), order);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
   check_order(place, method, order);
 }
 END_TEST

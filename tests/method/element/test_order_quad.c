@@ -15,13 +15,13 @@
 #include "support/runs.h"
 #include "support/suite.h"
 
-/* A span, and the steps of the coarsest run: short enough for fixed point iteration, and for the
- * leading term to rule. */
+/* A span, and the steps of the coarsest run. They are short enough for fixed-point iteration, and
+ * for the leading term to dominate. */
 typedef struct place {
   const char *problem, *setting;
   double t_end;
   int steps;
-  double floor; /* errors that are left to measure: a hundred times the noise of both programs */
+  double floor; /* errors above a hundred times the noise of both programs are measured */
 } place;
 
 static const place places[] = {
@@ -62,7 +62,7 @@ static void run(const place *at, const quad_field *field, const quad_galerkin *m
     ck_assert(quad_galerkin_step(method, field, (quad)at->t_end / steps, z->q, z->p));
 }
 
-/* The judge's answer; its own error must be far below all errors that are measured. */
+/* Gives the judge's result. Its own error must be far below all measured errors. */
 static void judge(const place *at, const quad_field *field, quad *y)
 {
   const int n = field->system.n;
@@ -72,8 +72,8 @@ static void judge(const place *at, const quad_field *field, quad *y)
   ck_assert_msg(error < 1e-29, "%s: the judge's error is %g", at->problem, error);
 }
 
-/* Length of the difference in q and p, each relative to its size: a component whose error happens
- * to vanish does no harm. */
+/* Gives the length of the difference in q and p, each relative to its size. A component whose error
+ * happens to vanish does no harm. */
 static double error_of(const quad_field *field, const state *z, const quad *y)
 {
   quad p[QUAD_N_MAX];
@@ -103,9 +103,9 @@ static double slope(int count, const double *steps, const double *error)
 
 /* Level by level the steps get shorter by a factor of about 1.3, until the error comes near the
  * judge's. The five finest count. */
-static void check_order(const place *at, const variant *of, int degree)
+static void check_order(const place *at, const variant *chosen, int degree)
 {
-  const int order = 2 * degree - of->order_lost;
+  const int order = 2 * degree - chosen->order_lost;
   double steps[LEVELS], error[LEVELS];
   int count = 0;
   quad_galerkin method;
@@ -113,7 +113,7 @@ static void check_order(const place *at, const variant *of, int degree)
   quad exact[2 * QUAD_N_MAX + 1] = {0};
   state z;
   make_field(at, &field);
-  quad_galerkin_prepare(&method, degree, of->lobatto, degree + of->more_nodes);
+  quad_galerkin_prepare(&method, degree, chosen->lobatto, degree + chosen->more_nodes);
   judge(at, &field, exact);
   for (; count < LEVELS; count++) {
     steps[count] = count == 0 ? at->steps : ceil(1.25 * steps[count - 1]);
@@ -126,7 +126,7 @@ static void check_order(const place *at, const variant *of, int degree)
   const double found = slope(FITTED, steps + count - FITTED, error + count - FITTED);
   ck_assert_msg(fabs(found - order) <= 0.2,
                 "%s, %s, degree %d, %d nodes: order %.2f, not %d (errors %.1e to %.1e)",
-                at->problem, of->rule, degree, degree + of->more_nodes, found, order,
+                at->problem, chosen->rule, degree, degree + chosen->more_nodes, found, order,
                 error[count - FITTED], error[count - 1]);
 }
 
@@ -135,8 +135,8 @@ static accepted_cases cases;
 
 static int case_has_rule(int which)
 {
-  const variant *of = &variants[which / DEGREES % VARIANTS];
-  return !of->lobatto || 1 + which % DEGREES + of->more_nodes >= 2;
+  const variant *chosen = &variants[which / DEGREES % VARIANTS];
+  return !chosen->lobatto || 1 + which % DEGREES + chosen->more_nodes >= 2;
 }
 
 START_TEST(the_equations_of_a_step_have_the_claimed_order)
@@ -147,23 +147,24 @@ START_TEST(the_equations_of_a_step_have_the_claimed_order)
 }
 END_TEST
 
-/* A few dozen steps of a few roundings each; relative to the largest coordinate, on solutions that
- * amplify little. */
+/* A few dozen steps make a few roundings each, relative to the largest coordinate, on solutions
+ * that amplify little. */
 static const double roundoff = 500 * DBL_EPSILON;
 
-static void check_same(const place *at, const variant *of, int degree)
+static void check_same(const place *at, const variant *chosen, int degree)
 {
   quad_galerkin method;
   quad_field field;
   state z;
-  problem *made = made_problem(at->problem, at->setting);
-  dvi_integrator *integrator = started(made, spec("galerkin:degree=%d,quadrature=%s,nodes=%d",
-                                                  degree, of->rule, degree + of->more_nodes));
+  problem *made = create_problem(at->problem, at->setting);
+  dvi_integrator *integrator = start_integrator(
+      made, method_spec("galerkin:degree=%d,quadrature=%s,nodes=%d", degree, chosen->rule,
+                        degree + chosen->more_nodes));
   make_field(at, &field);
-  quad_galerkin_prepare(&method, degree, of->lobatto, degree + of->more_nodes);
+  quad_galerkin_prepare(&method, degree, chosen->lobatto, degree + chosen->more_nodes);
   run(at, &field, &method, at->steps, &z);
   advance(integrator, at->t_end / at->steps, at->steps);
-  ck_assert_int_eq(dvi_integrator_order(integrator), 2 * degree - of->order_lost);
+  ck_assert_int_eq(dvi_integrator_order(integrator), 2 * degree - chosen->order_lost);
   double most = 0;
   for (int i = 0; i < made->nq; i++) {
     most = fmax(most, fabs((double)(z.q[i] - (quad)dvi_integrator_q(integrator)[i])) /
@@ -171,7 +172,7 @@ static void check_same(const place *at, const variant *of, int degree)
     most = fmax(most, fabs((double)(z.p[i] - (quad)dvi_integrator_p(integrator)[i])) /
                           magnitude(made->nq, dvi_integrator_p(integrator)));
   }
-  ck_assert_msg(most <= roundoff, "%s, %s, degree %d: %g apart", at->problem, of->rule, degree,
+  ck_assert_msg(most <= roundoff, "%s, %s, degree %d: %g apart", at->problem, chosen->rule, degree,
                 most);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&made);

@@ -1,6 +1,6 @@
 /* labels: order */
-/* sem has its order in (t,q,p): the points that it reaches, at the times that it chooses, lie on
- * the exact trajectory to O(h^2s). */
+/* sem has its order in (t,q,p). The points that it reaches, at the times that it chooses, lie on
+ * the exact trajectory up to O(h^2s). */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,14 +15,14 @@ enum { DEGREES = 4, LEVELS = 5 };
 
 /* The largest distance in q and p, over a revolution of kepler with e = 0.1, of the points from
  * where the exact solution is at their times. */
-static double error_of(const problem *of, const char *method, double h)
+static double error_of(const problem *model, const char *method, double h)
 {
-  dvi_integrator *integrator = started(of, method);
+  dvi_integrator *integrator = start_integrator(model, method);
   dvi_energy_balance energy = {0};
   double worst = 0, q[2], p[2];
   while (dvi_integrator_time(integrator) < 6.3) {
     advance(integrator, h, 1);
-    ck_assert_int_eq(of->exact(of, dvi_integrator_time(integrator), q, p), 0);
+    ck_assert_int_eq(model->exact(model, dvi_integrator_time(integrator), q, p), 0);
     worst = fmax(worst, distance(2, q, dvi_integrator_q(integrator)));
     worst = fmax(worst, distance(2, p, dvi_integrator_p(integrator)));
   }
@@ -36,13 +36,13 @@ START_TEST(degree_s_has_order_2s)
 {
   static const double first_step[DEGREES] = {0.05, 0.2, 0.4, 0.5};
   const int degree = 1 + _i % DEGREES;
-  const char *method = spec("sem:degree=%d,quadrature=%s", degree,
-                            _i < DEGREES ? "gauss" : "lobatto");
-  problem *of = made_problem("kepler", "e=0.1");
+  const char *method = method_spec("sem:degree=%d,quadrature=%s", degree,
+                                   _i < DEGREES ? "gauss" : "lobatto");
+  problem *model = create_problem("kepler", "e=0.1");
   double h[LEVELS], error[LEVELS];
   for (int k = 0; k < LEVELS; k++) {
     h[k] = first_step[degree - 1] * pow(degree < 3 ? 0.5 : 0.8, k);
-    error[k] = error_of(of, method, h[k]);
+    error[k] = error_of(model, method, h[k]);
     if (getenv("DVI_SHOW_ORDERS")) printf("%s: %g %.2e\n", method, h[k], error[k]);
   }
   dvi_order_fit fit;
@@ -50,7 +50,7 @@ START_TEST(degree_s_has_order_2s)
   if (getenv("DVI_SHOW_ORDERS")) printf("%s: %.2f\n", method, fit.slope);
   ck_assert_int_ge(fit.last - fit.first, 3);
   ck_assert_msg(fabs(fit.slope - 2 * degree) <= 0.2, "%s: order %.2f", method, fit.slope);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

@@ -1,6 +1,6 @@
 /* labels: invariant */
-/* Symplectic-energy-momentum integrators: what they conserve, how they go on where the energy
- * equation has no solution, and what they refuse. */
+/* Symplectic-energy-momentum integrators: conserved quantities, steps without a solution of the
+ * energy equation, and refusals. */
 #include <math.h>
 #include <string.h>
 
@@ -18,7 +18,7 @@ static dvi_energy_balance balance_of(const dvi_integrator *integrator)
   return energy;
 }
 
-/* What is not accounted for: 0 but for roundings. */
+/* Gives the part of the energy that is not accounted for. It is 0 up to roundings. */
 static double defect_of(const dvi_energy_balance *e)
 {
   return fabs(e->energy - (e->first + e->work + e->jumps));
@@ -36,8 +36,8 @@ typedef struct place {
  * central forces, 1e-15 each, that are right to a rounding. */
 static void check_conservation(const place *at, long steps)
 {
-  problem *of = made_problem(at->problem, at->setting);
-  dvi_integrator *integrator = started(of, at->method);
+  problem *model = create_problem(at->problem, at->setting);
+  dvi_integrator *integrator = start_integrator(model, at->method);
   double start[8], end[8];
   ck_assert_int_eq(dvi_integrator_invariants(integrator, start), DVI_OK);
   double worst = 0;
@@ -54,7 +54,7 @@ static void check_conservation(const place *at, long steps)
   ck_assert_int_eq(dvi_integrator_invariants(integrator, end), DVI_OK);
   if (strcmp(at->problem, "kepler") == 0) ck_assert_double_eq_tol(end[1], start[1], 1e-13);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 
 static const place conserving[] = {
@@ -78,24 +78,25 @@ START_TEST(energy_and_angular_momentum_are_conserved)
 }
 END_TEST
 
-/* A step of h solves the ordinary rows: q and p are those of the Galerkin method with the same
+/* A step of h solves the ordinary rows, so q and p are those of the Galerkin method with the same
  * steps. */
 START_TEST(the_steps_are_galerkin_steps_of_other_lengths)
 {
-  problem *of = made_problem("kepler", "e=0.3");
-  dvi_integrator *sem = started(of, "sem:degree=2"), *galerkin = started(of, "galerkin:degree=2");
+  problem *model = create_problem("kepler", "e=0.3");
+  dvi_integrator *sem = start_integrator(model, "sem:degree=2"),
+                 *galerkin = start_integrator(model, "galerkin:degree=2");
   int lengths = 0;
   for (int i = 0; i < 200; i++) {
     advance(sem, 0.05, 1);
     lengths += fabs(dvi_integrator_last_step(sem) - 0.05) > 1e-3;
     advance(galerkin, dvi_integrator_last_step(sem), 1);
-    ck_assert_double_eq_tol(distance(of->nq, dvi_integrator_q(sem), dvi_integrator_q(galerkin)), 0,
-                            1e-12);
+    ck_assert_double_eq_tol(distance(model->nq, dvi_integrator_q(sem), dvi_integrator_q(galerkin)),
+                            0, 1e-12);
   }
   ck_assert_int_gt(lengths, 100);
   dvi_integrator_destroy(&sem);
   dvi_integrator_destroy(&galerkin);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -133,8 +134,8 @@ static int duffing_hessian(double t, const double *q, double *V_qq, void *user)
 
 typedef struct hard_place {
   const char *problem, *setting, *method;
-  double h, q[2], p[2]; /* the start, unless it is the problem's: all 0 */
-  double most;          /* length of a step over h; 0: the bounds are left out */
+  double h, q[2], p[2]; /* the start (default 0, the problem's start) */
+  double most;          /* length of a step over h (default 0, without bounds) */
 } hard_place;
 
 /* henon-heiles at H = 0.166, just below the escape energy 1/6. */
@@ -171,8 +172,8 @@ static dvi_system *duffing(void)
   return system;
 }
 
-/* 1e4 steps: each forward, within its bounds and finite; each jump counted; the balance at roundoff
- * with the jumps, so that none is silent. */
+/* In 1e4 steps each one goes forward, within its bounds, to a finite state, and each jump is
+ * counted. The balance with the jumps is at roundoff, so none is silent. */
 static void check_hard(dvi_integrator *integrator, const char *what, double h, double most)
 {
   double size = 0;
@@ -200,44 +201,45 @@ START_TEST(hard_places_are_passed_with_every_jump_counted)
 {
   const hard_place *at = &hard[_i];
   const int own = strcmp(at->problem, "duffing") == 0;
-  problem *of = own ? NULL : made_problem(at->problem, at->setting);
-  dvi_system *system = own ? duffing() : of->system;
-  dvi_integrator *integrator = made_integrator(system, at->method);
+  problem *model = own ? NULL : create_problem(at->problem, at->setting);
+  dvi_system *system = own ? duffing() : model->system;
+  dvi_integrator *integrator = create_integrator(system, at->method);
   const int given = own || at->q[0] != 0 || at->p[0] != 0;
   ck_assert_int_eq(
-      dvi_integrator_start(integrator, 0, given ? at->q : of->q, given ? at->p : of->p), DVI_OK);
+      dvi_integrator_start(integrator, 0, given ? at->q : model->q, given ? at->p : model->p),
+      DVI_OK);
   check_hard(integrator, at->problem, at->h, at->most > 0 ? at->most : 30);
   dvi_integrator_destroy(&integrator);
   if (own)
     dvi_system_destroy(&system);
   else
-    problem_destroy(&of);
+    problem_destroy(&model);
 }
 END_TEST
 
-/* A rotating pendulum fails on each turn: f = v^2 V'' + V'^2 changes its sign. */
+/* A rotating pendulum fails on each turn, because f = v^2 V'' + V'^2 changes its sign. */
 START_TEST(a_rotating_pendulum_falls_back)
 {
-  problem *of = made_problem("pendulum", NULL);
-  dvi_integrator *integrator = made_integrator(of->system, "sem");
+  problem *model = create_problem("pendulum", NULL);
+  dvi_integrator *integrator = create_integrator(model->system, "sem");
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, (double[]){1}, (double[]){2.5}), DVI_OK);
   advance(integrator, 0.1, 1000);
   const dvi_energy_balance energy = balance_of(integrator);
   ck_assert_int_gt(energy.fallbacks, 0);
   ck_assert(energy.largest_jump != 0);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 /* ---- time dependence ---- */
 
-/* E+ - E- of all steps is the work; along the exact solution it is the integral of -L_t, by which
+/* E+ - E- of all steps is the work. Along the exact solution it is the integral of -L_t, by which
  * the energy p v - L changes. */
 START_TEST(the_driven_pendulum_keeps_the_extended_energy_balance)
 {
-  problem *of = made_problem("driven-pendulum", NULL);
-  dvi_integrator *integrator = started(of, "sem:degree=3,hmin=0.05,hmax=0.2");
+  problem *model = create_problem("driven-pendulum", NULL);
+  dvi_integrator *integrator = start_integrator(model, "sem:degree=3,hmin=0.05,hmax=0.2");
   double start[1], end[1];
   ck_assert_int_eq(dvi_integrator_invariants(integrator, start), DVI_OK);
   for (int i = 0; i < 100; i++) {
@@ -252,7 +254,7 @@ START_TEST(the_driven_pendulum_keeps_the_extended_energy_balance)
   ck_assert_double_eq_tol(energy.energy, end[0], 1e-5);
   ck_assert_double_eq_tol(energy.work + energy.jumps, end[0] - start[0], 1e-5);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -260,9 +262,9 @@ END_TEST
 
 START_TEST(a_run_ends_on_time_by_an_ordinary_step)
 {
-  problem *of = made_problem("kepler", "e=0.3");
+  problem *model = create_problem("kepler", "e=0.3");
   for (int direction = -1; direction <= 1; direction += 2) {
-    dvi_integrator *integrator = started(of, "sem:degree=2");
+    dvi_integrator *integrator = start_integrator(model, "sem:degree=2");
     dvi_run_report report;
     const dvi_run_options options = {.h = 0.1 * direction, .t_end = 10.0 * direction};
     ck_assert_msg(dvi_run(integrator, &options, &report) == DVI_OK, "%s", dvi_last_error());
@@ -270,11 +272,11 @@ START_TEST(a_run_ends_on_time_by_an_ordinary_step)
     ck_assert_int_eq(balance_of(integrator).given_steps, 1);
     ck_assert_int_lt(report.steps, 100);
     double q[2], p[2];
-    ck_assert_int_eq(of->exact(of, 10.0 * direction, q, p), 0);
+    ck_assert_int_eq(model->exact(model, 10.0 * direction, q, p), 0);
     ck_assert_double_le(distance(2, q, dvi_integrator_q(integrator)), 1e-3); /* h^4, times 30 */
     dvi_integrator_destroy(&integrator);
   }
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -287,8 +289,8 @@ static int at_pericentre(double t, const double *q, const double *v, double *g, 
 
 START_TEST(events_are_found_in_steps_of_any_length)
 {
-  problem *of = made_problem("kepler", "e=0.3");
-  dvi_integrator *integrator = started(of, "sem:degree=4");
+  problem *model = create_problem("kepler", "e=0.3");
+  dvi_integrator *integrator = start_integrator(model, "sem:degree=4");
   const dvi_event event = {
       .name = "pericentre", .value = at_pericentre, .direction = 1, .terminal = 1};
   dvi_run_report report;
@@ -303,15 +305,15 @@ START_TEST(events_are_found_in_steps_of_any_length)
   ck_assert_double_eq_tol(report.event_time, 6.283185307179586, 1e-4);
   ck_assert_double_eq_tol(dvi_integrator_time(integrator), report.event_time, 1e-14);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 /* Another h begins a new sequence by an ordinary step of that length. */
 START_TEST(another_length_begins_anew)
 {
-  problem *of = made_problem("kepler", "e=0.3");
-  dvi_integrator *integrator = started(of, "sem");
+  problem *model = create_problem("kepler", "e=0.3");
+  dvi_integrator *integrator = start_integrator(model, "sem");
   advance(integrator, 0.01, 10);
   ck_assert(dvi_integrator_last_step(integrator) > 0.01);
   advance(integrator, 0.02, 1);
@@ -321,18 +323,18 @@ START_TEST(another_length_begins_anew)
   ck_assert(energy.given_jumps != 0 && energy.fallbacks == 0);
   ck_assert_double_le(defect_of(&energy), 1e-14);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 /* ---- refusals ---- */
 
-static void refused(const problem *of, const char *method, double h, dvi_status status,
+static void refused(const problem *model, const char *method, double h, dvi_status status,
                     const char *words)
 {
   dvi_integrator *integrator = NULL;
-  dvi_status found = dvi_integrator_create(of->system, method, &integrator);
-  if (found == DVI_OK) found = dvi_integrator_start(integrator, 0, of->q, of->p);
+  dvi_status found = dvi_integrator_create(model->system, method, &integrator);
+  if (found == DVI_OK) found = dvi_integrator_start(integrator, 0, model->q, model->p);
   if (found == DVI_OK) found = dvi_integrator_step(integrator, h);
   ck_assert_msg(found == status, "%s: %s, %s", method, dvi_status_name(found), dvi_last_error());
   check_words(words);
@@ -341,27 +343,27 @@ static void refused(const problem *of, const char *method, double h, dvi_status 
 
 START_TEST(bounds_that_cannot_be_are_refused)
 {
-  problem *of = made_problem("kepler", NULL);
-  refused(of, "sem:hmin=0.2,hmax=0.1", 0.1, DVI_BAD_OPTION, "sem: hmin=0.2 is above hmax=0.1");
-  refused(of, "sem:hmin=-1", 0.1, DVI_BAD_OPTION,
+  problem *model = create_problem("kepler", NULL);
+  refused(model, "sem:hmin=0.2,hmax=0.1", 0.1, DVI_BAD_OPTION, "sem: hmin=0.2 is above hmax=0.1");
+  refused(model, "sem:hmin=-1", 0.1, DVI_BAD_OPTION,
           "sem: hmin=-1; a positive number is possible, or auto");
-  refused(of, "sem:hmax=0", 0.1, DVI_BAD_OPTION,
+  refused(model, "sem:hmax=0", 0.1, DVI_BAD_OPTION,
           "sem: hmax=0; a positive number is possible, or auto");
-  refused(of, "sem:hmax=nan", 0.1, DVI_BAD_OPTION, "sem: hmax=nan; a positive number");
-  refused(of, "sem:hmax=1e400", 0.1, DVI_BAD_OPTION, "sem: hmax=1e400; a positive number");
-  refused(of, "sem:hmin=0.2", 0.1, DVI_BAD_OPTION,
+  refused(model, "sem:hmax=nan", 0.1, DVI_BAD_OPTION, "sem: hmax=nan; a positive number");
+  refused(model, "sem:hmax=1e400", 0.1, DVI_BAD_OPTION, "sem: hmax=1e400; a positive number");
+  refused(model, "sem:hmin=0.2", 0.1, DVI_BAD_OPTION,
           "the first step h = 0.1 is below hmin=0.2; the bounds must include it");
-  refused(of, "sem:hmax=0.05", -0.1, DVI_BAD_OPTION,
+  refused(model, "sem:hmax=0.05", -0.1, DVI_BAD_OPTION,
           "the first step h = -0.1 is above hmax=0.05; the bounds must include it");
-  refused(of, "sem", 0, DVI_BAD_ARGUMENT, "a finite step other than 0 is needed");
-  problem_destroy(&of);
+  refused(model, "sem", 0, DVI_BAD_ARGUMENT, "a finite step other than 0 is needed");
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(bounds_are_spelled_out_and_kept)
 {
-  problem *of = made_problem("kepler", "e=0.3");
-  dvi_integrator *integrator = started(of, "sem:hmax=0.0125");
+  problem *model = create_problem("kepler", "e=0.3");
+  dvi_integrator *integrator = start_integrator(model, "sem:hmax=0.0125");
   ck_assert_str_eq(dvi_integrator_method(integrator),
                    "sem:degree=1,quadrature=gauss,hmin=auto,hmax=0.0125,solver=newton");
   double longest = 0;
@@ -372,19 +374,19 @@ START_TEST(bounds_are_spelled_out_and_kept)
   ck_assert(longest == 0.0125); /* without the bound: above 0.02 */
   ck_assert_int_gt(balance_of(integrator).fallbacks, 0);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(a_run_away_from_its_end_is_refused)
 {
-  problem *of = made_problem("kepler", NULL);
-  dvi_integrator *integrator = started(of, "sem");
+  problem *model = create_problem("kepler", NULL);
+  dvi_integrator *integrator = start_integrator(model, "sem");
   ck_assert_int_eq(dvi_run(integrator, &(dvi_run_options){.h = -0.1, .t_end = 1}, NULL),
                    DVI_BAD_ARGUMENT);
   check_words("leads away from");
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -405,21 +407,22 @@ END_TEST
 
 START_TEST(ensembles_refuse_it)
 {
-  problem *of = made_problem("kepler", NULL);
+  problem *model = create_problem("kepler", NULL);
   dvi_ensemble *ensemble = NULL;
   ck_assert_int_eq(
-      dvi_ensemble_create(of->system, "sem", &(dvi_ensemble_options){.members = 2}, &ensemble),
+      dvi_ensemble_create(model->system, "sem", &(dvi_ensemble_options){.members = 2}, &ensemble),
       DVI_UNSUPPORTED);
   check_words("sem chooses its steps");
   ck_assert_ptr_null(ensemble);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(queries_answer_for_methods_of_fixed_steps)
 {
-  problem *of = made_problem("kepler", NULL);
-  dvi_integrator *integrator = started(of, "verlet"), *sem = started(of, "sem");
+  problem *model = create_problem("kepler", NULL);
+  dvi_integrator *integrator = start_integrator(model, "verlet"),
+                 *sem = start_integrator(model, "sem");
   dvi_energy_balance energy;
   ck_assert_int_eq(dvi_integrator_chooses_steps(integrator), 0);
   ck_assert_int_eq(dvi_integrator_chooses_steps(sem), 1);
@@ -432,7 +435,7 @@ START_TEST(queries_answer_for_methods_of_fixed_steps)
   ck_assert_int_eq(dvi_integrator_energy_balance(NULL, &energy), DVI_BAD_ARGUMENT);
   dvi_integrator_destroy(&integrator);
   dvi_integrator_destroy(&sem);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

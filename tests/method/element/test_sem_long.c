@@ -9,7 +9,7 @@
 
 enum { DEGREES = 4 };
 
-/* Steps that still show in the energy: shorter ones would not change any more. */
+/* These steps still show in the energy, which shorter ones would not change any more. */
 static const double first_step[DEGREES] = {0.05, 0.1, 0.4, 0.4};
 
 /* No step's energy row errs by more than 16 roundings of T + |V|, 1e-13 of the energy, and these
@@ -18,9 +18,10 @@ static const double first_step[DEGREES] = {0.05, 0.1, 0.4, 0.4};
 START_TEST(energy_is_conserved_to_1e_12_over_1e5_steps)
 {
   const int degree = 1 + _i % DEGREES, lobatto = _i / DEGREES;
-  const char *method = spec("sem:degree=%d,quadrature=%s", degree, lobatto ? "lobatto" : "gauss");
-  problem *of = made_problem("kepler", "e=0.1");
-  dvi_integrator *integrator = started(of, method);
+  const char *method = method_spec("sem:degree=%d,quadrature=%s", degree,
+                                   lobatto ? "lobatto" : "gauss");
+  problem *model = create_problem("kepler", "e=0.1");
+  dvi_integrator *integrator = start_integrator(model, method);
   dvi_energy_balance energy = {0};
   double worst = 0, start[4], end[4];
   ck_assert_int_eq(dvi_integrator_invariants(integrator, start), DVI_OK);
@@ -35,7 +36,7 @@ START_TEST(energy_is_conserved_to_1e_12_over_1e5_steps)
   ck_assert_msg(worst <= 1e-12, "%s: the energy moves by %g of itself", method, worst);
   ck_assert_double_eq_tol(end[1], start[1], 1e-13);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

@@ -15,7 +15,7 @@
 
 enum { N_MOST = 2, COLUMNS_MOST = 2 * N_MOST + 2 };
 
-/* Numbers of a point: t, E, q, p. */
+/* Indices of a point's numbers t, E, q, p. */
 typedef struct point {
   double x[COLUMNS_MOST];
 } point;
@@ -78,8 +78,8 @@ static double form(int n, const point *a, const point *b)
   return sum;
 }
 
-/* The higher the degree, the less h shows in the energy, and the more roundings move it: long steps
- * are needed then. */
+/* The higher the degree, the less h changes the energy, and the more roundings move it. High
+ * degrees need long steps. */
 static const place places[] = {
     {"kepler", "e=0.2", "sem:degree=1", 0.5, 1e-3, 4},
     {"kepler", "e=0.2", "sem:degree=1,quadrature=lobatto", 0.5, 1e-3, 4},
@@ -99,13 +99,13 @@ enum { PLACES = sizeof places / sizeof *places };
 START_TEST(the_form_is_the_same_before_and_after)
 {
   const place *at = &places[_i];
-  problem *of = made_problem(at->problem, at->setting);
-  const int n = of->nq, columns = 2 * n + 2;
-  dvi_integrator *integrator = made_integrator(of->system, at->method);
+  problem *model = create_problem(at->problem, at->setting);
+  const int n = model->nq, columns = 2 * n + 2;
+  dvi_integrator *integrator = create_integrator(model->system, at->method);
   double start[COLUMNS_MOST] = {0.3, at->h}, worst = 0, largest = 0;
   point dF[COLUMNS_MOST], dG[COLUMNS_MOST];
-  memcpy(start + 2, of->q, (size_t)n * sizeof(double));
-  memcpy(start + 2 + n, of->p, (size_t)n * sizeof(double));
+  memcpy(start + 2, model->q, (size_t)n * sizeof(double));
+  memcpy(start + 2 + n, model->p, (size_t)n * sizeof(double));
   for (int j = 0; j < columns; j++) differentiate(integrator, at, n, start, j, &dF[j], &dG[j]);
   for (int i = 0; i < columns; i++)
     for (int j = 0; j < i; j++) {
@@ -118,16 +118,16 @@ START_TEST(the_form_is_the_same_before_and_after)
   ck_assert_msg(worst <= 1e-10 * largest, "%s %s: the form changes by %g of %g", at->problem,
                 at->method, worst, largest);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* dq ^ dp at a fixed h belongs to the ordinary step that begins a run: what dvi_symplecticity
- * measures, wherever the integrator stands. */
+/* dq ^ dp at a fixed h belongs to the ordinary step that begins a run. dvi_symplecticity measures
+ * it, wherever the integrator stands. */
 START_TEST(the_first_step_is_symplectic_in_q_and_p_alone)
 {
-  problem *kepler = made_problem("kepler", "e=0.2");
-  dvi_integrator *integrator = started(kepler, "sem:degree=2");
+  problem *kepler = create_problem("kepler", "e=0.2");
+  dvi_integrator *integrator = start_integrator(kepler, "sem:degree=2");
   double defect;
   advance(integrator, 0.5, 3);
   ck_assert_int_eq(dvi_symplecticity(integrator, 0, dvi_integrator_q(integrator),

@@ -1,6 +1,6 @@
 /* labels: unit */
-/* What a program's function space is asked to be, how its callbacks fail, and what else knows it:
- * checkpoints, ensembles, copies. */
+/* User bases: their requirements, failures of their callbacks, and their effect on checkpoints,
+ * ensembles and copies. */
 #include <dvi/dvi.h>
 #include <math.h>
 #include <string.h>
@@ -15,7 +15,7 @@
 
 /* ---- what is refused ---- */
 
-/* The function tau^2, and what is wrong with it; point adds it at the nodes of a rule of three
+/* The function tau^2 and its planted faults. `point` gives it at the nodes of a rule of three
  * points. */
 typedef struct fault {
   int answer;          /* of the callbacks */
@@ -53,12 +53,12 @@ static int point(double h, int j, double *tau, double *weight, double *value, do
 static void check_refused(const dvi_shapes *shapes, const char *method, dvi_status status,
                           const char *words)
 {
-  problem *of = made_problem("kepler", NULL);
-  dvi_integrator *integrator = (dvi_integrator *)of;
-  ck_assert_int_eq(create_shaped(of->system, shapes, method, &integrator), status);
+  problem *model = create_problem("kepler", NULL);
+  dvi_integrator *integrator = (dvi_integrator *)model;
+  ck_assert_int_eq(create_with_shapes(model->system, shapes, method, &integrator), status);
   check_words(words);
   ck_assert_ptr_null(integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 
 START_TEST(what_is_missing_or_out_of_range_is_named)
@@ -131,7 +131,7 @@ START_TEST(what_is_missing_or_out_of_range_is_named)
     check_refused(&wrong[k].shapes, "shaped-galerkin", wrong[k].status, wrong[k].words);
   check_refused(NULL, "shaped-galerkin", DVI_BAD_OPTION, "there are no shapes");
   check_refused(&good, NULL, DVI_BAD_ARGUMENT, "the method is NULL");
-  ck_assert_int_eq(create_shaped(NULL, &good, "shaped-galerkin", NULL), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(create_with_shapes(NULL, &good, "shaped-galerkin", NULL), DVI_BAD_ARGUMENT);
 }
 END_TEST
 
@@ -252,55 +252,62 @@ static int evaluate_step(double h, double tau, double *value, double *derivative
   return 0;
 }
 
-/* All of a step of 200 is between two of 8 points; 80 points see it, and 8 see one of 20. */
+/* A step of 200 lies between two of 8 points. 80 points see it, and 8 points see a step of 20. */
 START_TEST(points_that_do_not_see_a_function_are_refused)
 {
   static double steepness = 200;
   const dvi_shapes step = {
       .name = "step", .functions = 1, .evaluate = evaluate_step, .user = &steepness};
-  problem *of = made_problem("kepler", NULL);
+  problem *model = create_problem("kepler", NULL);
   check_refused(&step, "shaped-galerkin:nodes=8", DVI_BAD_ARGUMENT,
                 "the 8 points are much too coarse for function 0");
-  dvi_integrator *fine = shaped_integrator(of->system, &step, "shaped-galerkin:nodes=80");
+  dvi_integrator *fine = create_integrator_with_shapes(model->system, &step,
+                                                       "shaped-galerkin:nodes=80");
   dvi_integrator_destroy(&fine);
   steepness = 20;
-  dvi_integrator *flat = shaped_integrator(of->system, &step, "shaped-galerkin:nodes=8");
+  dvi_integrator *flat = create_integrator_with_shapes(model->system, &step,
+                                                       "shaped-galerkin:nodes=8");
   dvi_integrator_destroy(&flat);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(without_shapes_there_is_no_such_method)
 {
-  problem *of = made_problem("kepler", NULL);
+  problem *model = create_problem("kepler", NULL);
   dvi_integrator *integrator;
   dvi_ensemble *ensemble;
   dvi_path *path;
   const dvi_monitor monitor = {.kind = DVI_MONITOR_DISTANCE};
-  ck_assert_int_eq(dvi_integrator_create(of->system, "shaped-galerkin", &integrator),
+  ck_assert_int_eq(dvi_integrator_create(model->system, "shaped-galerkin", &integrator),
                    DVI_BAD_OPTION);
   check_words("there are no shapes: a program gives them to dvi_integrator_options");
-  ck_assert_int_eq(create_transformed(of->system, &monitor, "shaped-galerkin", &integrator),
+  ck_assert_int_eq(create_transformed(model->system, &monitor, "shaped-galerkin", &integrator),
                    DVI_BAD_OPTION);
-  ck_assert_int_eq(dvi_ensemble_create(of->system, "shaped-galerkin",
+  ck_assert_int_eq(dvi_ensemble_create(model->system, "shaped-galerkin",
                                        &(dvi_ensemble_options){.members = 2}, &ensemble),
                    DVI_BAD_OPTION);
-  const dvi_path_options options = {
-      .ends = DVI_ENDS_FIXED, .dimension = 2, .steps = 4, .span = 1, .q0 = of->q, .q1 = of->q};
-  ck_assert_int_eq(dvi_path_create(of->system, "shaped-galerkin", &options, &path), DVI_BAD_OPTION);
+  const dvi_path_options options = {.ends = DVI_ENDS_FIXED,
+                                    .dimension = 2,
+                                    .steps = 4,
+                                    .span = 1,
+                                    .q0 = model->q,
+                                    .q1 = model->q};
+  ck_assert_int_eq(dvi_path_create(model->system, "shaped-galerkin", &options, &path),
+                   DVI_BAD_OPTION);
   check_words("there are no shapes");
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(terms_that_it_cannot_use_are_refused)
 {
-  problem *of = made_problem("vortices", NULL);
+  problem *model = create_problem("vortices", NULL);
   dvi_integrator *integrator;
-  ck_assert_int_eq(create_shaped(of->system, &decay, "shaped-galerkin", &integrator),
+  ck_assert_int_eq(create_with_shapes(model->system, &decay, "shaped-galerkin", &integrator),
                    DVI_UNSUPPORTED);
   check_words("the system declares a one-form");
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -319,7 +326,7 @@ START_TEST(a_failing_callback_leaves_the_state)
                {{.from = 0.2, .weight = (double)INFINITY}, 3, DVI_NOT_FINITE},
                {{.from = 0.2, .weight = 0.1}, 3, DVI_BAD_ARGUMENT},
                {{.from = 0.2, .node = -1}, 3, DVI_BAD_ARGUMENT}};
-  problem *of = made_problem("kepler", NULL);
+  problem *model = create_problem("kepler", NULL);
   fault wrong = cases[_i].wrong;
   const dvi_shapes shapes = {.name = "square",
                              .functions = 1,
@@ -328,12 +335,12 @@ START_TEST(a_failing_callback_leaves_the_state)
                              .user = &wrong,
                              .points = cases[_i].points,
                              .point = cases[_i].points > 0 ? point : NULL};
-  dvi_integrator *integrator = shaped_started(of, &shapes, "shaped-galerkin"),
-                 *other = shaped_started(of, &shapes, "shaped-galerkin");
+  dvi_integrator *integrator = start_integrator_with_shapes(model, &shapes, "shaped-galerkin"),
+                 *other = start_integrator_with_shapes(model, &shapes, "shaped-galerkin");
   double q[2][2], v[2];
   advance(integrator, 0.1, 2);
   advance(other, 0.1, 2);
-  const bytes before = state_of(integrator);
+  const bytes before = read_state(integrator);
   ck_assert_int_eq(dvi_integrator_step(integrator, 0.3), cases[_i].status);
   check_words("shapes square");
   check_words("the state is unchanged");
@@ -346,17 +353,17 @@ START_TEST(a_failing_callback_leaves_the_state)
   ck_assert_mem_eq(dvi_integrator_q(integrator), dvi_integrator_q(other), sizeof q[0]);
   dvi_integrator_destroy(&integrator);
   dvi_integrator_destroy(&other);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(dense_output_says_where_a_function_fails)
 {
-  problem *of = made_problem("kepler", NULL);
+  problem *model = create_problem("kepler", NULL);
   fault wrong = {0};
   const dvi_shapes shapes = {
       .name = "square", .functions = 1, .evaluate = evaluate, .user = &wrong};
-  dvi_integrator *integrator = shaped_started(of, &shapes, "shaped-galerkin");
+  dvi_integrator *integrator = start_integrator_with_shapes(model, &shapes, "shaped-galerkin");
   double q[2];
   advance(integrator, 0.1, 2);
   wrong.answer = 1;
@@ -365,7 +372,7 @@ START_TEST(dense_output_says_where_a_function_fails)
   wrong.answer = 0;
   ck_assert_int_eq(dvi_integrator_interpolate(integrator, 0.17, q, NULL), DVI_OK);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -373,11 +380,12 @@ END_TEST
 
 START_TEST(a_step_of_the_same_length_asks_no_function)
 {
-  problem *of = made_problem("kepler", NULL);
+  problem *model = create_problem("kepler", NULL);
   fault none = {0};
   const dvi_shapes shapes = {
       .name = "square", .functions = 1, .evaluate = evaluate, .h = 0.1, .user = &none};
-  dvi_integrator *integrator = shaped_started(of, &shapes, "shaped-galerkin:nodes=5");
+  dvi_integrator *integrator = start_integrator_with_shapes(model, &shapes,
+                                                            "shaped-galerkin:nodes=5");
   advance(integrator, 0.1, 1);
   const long before = none.calls;
   advance(integrator, 0.1, 10);
@@ -385,7 +393,7 @@ START_TEST(a_step_of_the_same_length_asks_no_function)
   advance(integrator, 0.2, 10);
   ck_assert_int_le(none.calls, before + 5 + 5); /* the points, and ends */
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -396,9 +404,9 @@ START_TEST(a_step_takes_no_memory)
   static const double omega = 5;
   static const char *const methods[] = {"shaped-galerkin:nodes=6",
                                         "composition:order=4,base=shaped-galerkin,nodes=6"};
-  problem *of = made_problem("henon-heiles", NULL);
+  problem *model = create_problem("henon-heiles", NULL);
   const dvi_shapes shapes = oscillation(&omega);
-  dvi_integrator *integrator = shaped_started(of, &shapes, methods[_i]);
+  dvi_integrator *integrator = start_integrator_with_shapes(model, &shapes, methods[_i]);
   double q[2], v[2];
   advance(integrator, 0.1, 1);
   const long before = heap_calls();
@@ -409,7 +417,7 @@ START_TEST(a_step_takes_no_memory)
   dvi__fail_allocations_after(-1);
   ck_assert_int_eq(heap_calls(), before);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -417,16 +425,17 @@ START_TEST(creation_survives_every_failure_of_memory)
 {
   enum { MOST = 1000 };
   static const int first = 0;
-  problem *of = made_problem("kepler", NULL);
+  problem *model = create_problem("kepler", NULL);
   dvi_shapes shapes = spline;
   shapes.coordinates = &first, shapes.coordinate_count = 1;
-  dvi_integrator *integrator = shaped_integrator(of->system, &shapes, "shaped-galerkin");
+  dvi_integrator *integrator = create_integrator_with_shapes(model->system, &shapes,
+                                                             "shaped-galerkin");
   dvi_integrator_destroy(&integrator);
   const long bytes_before = heap_bytes();
   long successes = 0;
   for (dvi_status status = DVI_NO_MEMORY; status != DVI_OK && successes < MOST; successes++) {
     dvi__fail_allocations_after(successes);
-    status = create_shaped(of->system, &shapes, "shaped-galerkin", &integrator);
+    status = create_with_shapes(model->system, &shapes, "shaped-galerkin", &integrator);
     dvi__fail_allocations_after(-1);
     ck_assert(status == DVI_OK || status == DVI_NO_MEMORY);
     ck_assert_int_eq(status == DVI_OK, integrator != NULL);
@@ -434,7 +443,7 @@ START_TEST(creation_survives_every_failure_of_memory)
   dvi_integrator_destroy(&integrator);
   ck_assert(successes > 20 && successes < MOST);
   ck_assert_int_eq(heap_bytes(), bytes_before);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -445,13 +454,13 @@ static const double five = 5, six = 6;
 static void check_restores(const dvi_shapes *shapes, const char *method, const dvi_shapes *others,
                            const char *other_method, const char *words)
 {
-  problem *of = made_problem("henon-heiles", NULL);
-  dvi_integrator *saved = shaped_started(of, shapes, method),
-                 *restored = shaped_started(of, others, other_method);
+  problem *model = create_problem("henon-heiles", NULL);
+  dvi_integrator *saved = start_integrator_with_shapes(model, shapes, method),
+                 *restored = start_integrator_with_shapes(model, others, other_method);
   advance(saved, 0.1, 7);
   advance(restored, 0.3, 2);
-  ck_assert_int_eq(dvi_integrator_save(saved, in_folder("checkpoint")), DVI_OK);
-  ck_assert_int_eq(dvi_integrator_restore(restored, in_folder("checkpoint")),
+  ck_assert_int_eq(dvi_integrator_save(saved, path_in_folder("checkpoint")), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_restore(restored, path_in_folder("checkpoint")),
                    words != NULL ? DVI_BAD_FILE : DVI_OK);
   if (words != NULL) {
     check_words(words);
@@ -465,7 +474,7 @@ static void check_restores(const dvi_shapes *shapes, const char *method, const d
   }
   dvi_integrator_destroy(&saved);
   dvi_integrator_destroy(&restored);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 
 START_TEST(checkpoints_know_the_space)
@@ -496,46 +505,49 @@ START_TEST(what_the_program_gave_is_copied)
   char name[] = "oscillation";
   dvi_shapes shapes = oscillation(&five);
   shapes.name = name, shapes.coordinates = &first, shapes.coordinate_count = 1;
-  problem *of = made_problem("henon-heiles", NULL);
-  dvi_integrator *integrator = shaped_started(of, &shapes, "shaped-galerkin:nodes=6"), *like = NULL;
+  problem *model = create_problem("henon-heiles", NULL);
+  dvi_integrator *integrator = start_integrator_with_shapes(model, &shapes,
+                                                            "shaped-galerkin:nodes=6"),
+                 *like = NULL;
   memset(name, 'x', sizeof name - 1), first = 1;
   memset(&shapes, 0, sizeof shapes);
   ck_assert_str_eq(dvi_integrator_method(integrator),
                    "shaped-galerkin:degree=1,quadrature=gauss,nodes=6,space=oscillation");
   ck_assert_msg(dvi_integrator_create_like(integrator, &like) == DVI_OK, "%s", dvi_last_error());
   ck_assert_str_eq(dvi_integrator_method(like), dvi_integrator_method(integrator));
-  ck_assert_int_eq(dvi_integrator_start(like, 0, of->q, of->p), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_start(like, 0, model->q, model->p), DVI_OK);
   advance(integrator, 0.1, 5);
   advance(like, 0.1, 5);
   check_same_state(integrator, like);
   dvi_integrator_destroy(&integrator);
   dvi_integrator_destroy(&like);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(members_of_an_ensemble_have_the_digits_of_single_runs)
 {
   enum { MEMBERS = 5 };
-  problem *of = made_problem("henon-heiles", NULL);
+  problem *model = create_problem("henon-heiles", NULL);
   const dvi_shapes shapes = oscillation(&five);
   const dvi_ensemble_options options = {.members = MEMBERS, .threads = 2, .shapes = &shapes};
   double q[2 * MEMBERS], p[2 * MEMBERS];
   dvi_ensemble *ensemble;
   for (int k = 0; k < MEMBERS; k++)
     for (int i = 0; i < 2; i++) {
-      q[i * MEMBERS + k] = of->q[i] * (1 + 0.1 * k);
-      p[i * MEMBERS + k] = of->p[i];
+      q[i * MEMBERS + k] = model->q[i] * (1 + 0.1 * k);
+      p[i * MEMBERS + k] = model->p[i];
     }
-  ck_assert_msg(dvi_ensemble_create(of->system, "shaped-galerkin:nodes=6", &options, &ensemble) ==
-                    DVI_OK,
-                "%s", dvi_last_error());
+  ck_assert_msg(
+      dvi_ensemble_create(model->system, "shaped-galerkin:nodes=6", &options, &ensemble) == DVI_OK,
+      "%s", dvi_last_error());
   ck_assert_int_eq(dvi_ensemble_start(ensemble, 0, q, p), DVI_OK);
   ck_assert_int_eq(dvi_ensemble_advance(ensemble, 0.1, 10), DVI_OK);
-  dvi_integrator *single = shaped_integrator(of->system, &shapes, "shaped-galerkin:nodes=6");
+  dvi_integrator *single = create_integrator_with_shapes(model->system, &shapes,
+                                                         "shaped-galerkin:nodes=6");
   for (int k = 0; k < MEMBERS; k++) {
-    const double q_k[] = {of->q[0] * (1 + 0.1 * k), of->q[1] * (1 + 0.1 * k)};
-    ck_assert_int_eq(dvi_integrator_start(single, 0, q_k, of->p), DVI_OK);
+    const double q_k[] = {model->q[0] * (1 + 0.1 * k), model->q[1] * (1 + 0.1 * k)};
+    ck_assert_int_eq(dvi_integrator_start(single, 0, q_k, model->p), DVI_OK);
     advance(single, 0.1, 10);
     ck_assert_int_eq(dvi_ensemble_state(ensemble, NULL, q, p), DVI_OK);
     for (int i = 0; i < 2; i++)
@@ -545,11 +557,11 @@ START_TEST(members_of_an_ensemble_have_the_digits_of_single_runs)
   dvi_ensemble_destroy(&ensemble);
   dvi_shapes nameless = shapes;
   nameless.name = NULL;
-  ck_assert_int_eq(dvi_ensemble_create(of->system, "shaped-galerkin",
+  ck_assert_int_eq(dvi_ensemble_create(model->system, "shaped-galerkin",
                                        &(dvi_ensemble_options){.members = 2, .shapes = &nameless},
                                        &ensemble),
                    DVI_BAD_ARGUMENT);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

@@ -13,16 +13,17 @@
 static void check_same_run(const char *name, const char *method, const dvi_shapes *shapes,
                            const char *shaped, double h, double tolerance)
 {
-  problem *of = made_problem(name, NULL);
-  const int n = dvi_system_nq(of->system);
-  dvi_integrator *galerkin = started(of, method), *given = shaped_started(of, shapes, shaped);
+  problem *model = create_problem(name, NULL);
+  const int n = dvi_system_nq(model->system);
+  dvi_integrator *galerkin = start_integrator(model, method),
+                 *given = start_integrator_with_shapes(model, shapes, shaped);
   advance(galerkin, h, 50);
   advance(given, h, 50);
   ck_assert_double_le(distance(n, dvi_integrator_q(galerkin), dvi_integrator_q(given)), tolerance);
   ck_assert_double_le(distance(n, dvi_integrator_p(galerkin), dvi_integrator_p(given)), tolerance);
   dvi_integrator_destroy(&galerkin);
   dvi_integrator_destroy(&given);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 
 START_TEST(polynomials_given_as_functions_are_galerkin)
@@ -39,7 +40,7 @@ START_TEST(polynomials_given_as_functions_are_galerkin)
 }
 END_TEST
 
-/* The same space, whatever basis of it is given. */
+/* All bases of one space give the same trajectory. */
 static int mixed(double h, double tau, double *value, double *derivative, void *user)
 {
   (void)h, (void)user;
@@ -65,20 +66,21 @@ static const double omega_of_oscillators = 50.009999000199950014;
 START_TEST(an_oscillator_of_the_given_frequency_is_exact)
 {
   static const double h[] = {1e-3, 0.01, 0.1, 0.3, -0.1};
-  problem *of = made_problem("oscillators", NULL);
+  problem *model = create_problem("oscillators", NULL);
   const dvi_shapes shapes = oscillation(&omega_of_oscillators);
-  dvi_integrator *integrator = shaped_started(of, &shapes, "shaped-galerkin:nodes=30");
+  dvi_integrator *integrator = start_integrator_with_shapes(model, &shapes,
+                                                            "shaped-galerkin:nodes=30");
   advance(integrator, h[_i], 10);
   double q, p, path, v;
-  ck_assert_int_eq(of->exact(of, dvi_integrator_time(integrator), &q, &p), 0);
+  ck_assert_int_eq(model->exact(model, dvi_integrator_time(integrator), &q, &p), 0);
   ck_assert_double_eq_tol(dvi_integrator_q(integrator)[0], q, 1e-12);
   ck_assert_double_eq_tol(dvi_integrator_p(integrator)[0], p, 5e-11);
-  ck_assert_int_eq(of->exact(of, 9.3 * h[_i], &q, &p), 0);
+  ck_assert_int_eq(model->exact(model, 9.3 * h[_i], &q, &p), 0);
   ck_assert_int_eq(dvi_integrator_interpolate(integrator, 9.3 * h[_i], &path, &v), DVI_OK);
   ck_assert_double_eq_tol(path, q, 1e-12);
   ck_assert_double_eq_tol(v, p, 1e-9);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -87,21 +89,22 @@ START_TEST(functions_that_become_polynomials_are_left_out)
 {
   static const double slow = 1e-7;
   const dvi_shapes shapes = oscillation(&slow);
-  problem *of = made_problem("pendulum", NULL);
+  problem *model = create_problem("pendulum", NULL);
   dvi_shapes fast = shapes;
   fast.h = 1e7;
-  dvi_integrator *integrator = shaped_started(of, &fast, "shaped-galerkin:degree=3,nodes=8"),
-                 *galerkin = started(of, "galerkin:degree=3,nodes=8");
+  dvi_integrator *integrator = start_integrator_with_shapes(model, &fast,
+                                                            "shaped-galerkin:degree=3,nodes=8"),
+                 *galerkin = start_integrator(model, "galerkin:degree=3,nodes=8");
   advance(integrator, 0.2, 50);
   advance(galerkin, 0.2, 50);
   ck_assert_double_eq_tol(*dvi_integrator_q(integrator), *dvi_integrator_q(galerkin), 1e-13);
   dvi_integrator_destroy(&integrator);
   dvi_integrator_destroy(&galerkin);
   ck_assert_int_eq(
-      create_shaped(of->system, &shapes, "shaped-galerkin:degree=3,nodes=8", &integrator),
+      create_with_shapes(model->system, &shapes, "shaped-galerkin:degree=3,nodes=8", &integrator),
       DVI_BAD_ARGUMENT);
   check_words("function 0 is a combination of a constant, polynomials up to degree 3");
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -132,8 +135,9 @@ START_TEST(coordinates_that_are_not_listed_have_polynomials)
       .dimension = 2, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
   dvi_shapes shapes = oscillation(&omega);
   shapes.coordinates = &first, shapes.coordinate_count = 1;
-  dvi_integrator *given = shaped_integrator(system, &shapes, "shaped-galerkin:degree=3,nodes=20"),
-                 *galerkin = made_integrator(system, "galerkin:degree=3,nodes=20");
+  dvi_integrator *given = create_integrator_with_shapes(system, &shapes,
+                                                        "shaped-galerkin:degree=3,nodes=20"),
+                 *galerkin = create_integrator(system, "galerkin:degree=3,nodes=20");
   ck_assert_int_eq(dvi_integrator_start(given, 0, q, p), DVI_OK);
   ck_assert_int_eq(dvi_integrator_start(galerkin, 0, q, p), DVI_OK);
   advance(given, 0.2, 20);
@@ -175,45 +179,45 @@ static dvi_shapes shapes_of(int i)
 
 START_TEST(steps_are_symplectic_and_keep_momenta_in_every_space)
 {
-  problem *of = made_problem("kepler", NULL);
+  problem *model = create_problem("kepler", NULL);
   const dvi_shapes shapes = shapes_of(_i);
-  dvi_integrator *integrator = shaped_started(of, &shapes,
-                                              spec("shaped-galerkin:%s", structures[_i].keys));
+  dvi_integrator *integrator = start_integrator_with_shapes(
+      model, &shapes, method_spec("shaped-galerkin:%s", structures[_i].keys));
   double defect, before[8], after[8];
-  ck_assert_int_eq(dvi_symplecticity(integrator, 0, of->q, of->p, 0.1, &defect), DVI_OK);
+  ck_assert_int_eq(dvi_symplecticity(integrator, 0, model->q, model->p, 0.1, &defect), DVI_OK);
   ck_assert_double_le(defect, 1e-10);
   ck_assert_int_eq(dvi_integrator_invariants(integrator, before), DVI_OK);
   advance(integrator, 0.1, repeats(2000));
   ck_assert_int_eq(dvi_integrator_invariants(integrator, after), DVI_OK);
   ck_assert_double_eq_tol(after[0], before[0], 1e-2); /* the energy does not drift */
-  ck_assert_str_eq(dvi_system_invariant_name(of->system, 1), "angular_momentum");
+  ck_assert_str_eq(dvi_system_invariant_name(model->system, 1), "angular_momentum");
   ck_assert_double_eq_tol(after[1], before[1], 1e-12);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(symmetry_is_found_out)
 {
-  problem *of = made_problem("kepler", NULL);
+  problem *model = create_problem("kepler", NULL);
   const dvi_shapes shapes = shapes_of(_i);
-  dvi_integrator *integrator = shaped_started(of, &shapes,
-                                              spec("shaped-galerkin:%s", structures[_i].keys)),
+  dvi_integrator *integrator = start_integrator_with_shapes(
+                     model, &shapes, method_spec("shaped-galerkin:%s", structures[_i].keys)),
                  *composed = NULL;
   char text[1000];
   double defect;
   (void)dvi_integrator_explain(integrator, text, sizeof text);
   ck_assert_int_eq(strstr(text, ", symmetric\n") != NULL, structures[_i].symmetric);
-  ck_assert_int_eq(dvi_reversibility(integrator, 0, of->q, of->p, 0.1, 10, &defect), DVI_OK);
+  ck_assert_int_eq(dvi_reversibility(integrator, 0, model->q, model->p, 0.1, 10, &defect), DVI_OK);
   ck_assert_int_eq(defect < 1e-11, structures[_i].symmetric);
-  const dvi_status status = create_shaped(
-      of->system, &shapes, spec("composition:order=4,base=shaped-galerkin,%s", structures[_i].keys),
-      &composed);
+  const dvi_status status = create_with_shapes(
+      model->system, &shapes,
+      method_spec("composition:order=4,base=shaped-galerkin,%s", structures[_i].keys), &composed);
   ck_assert_int_eq(status, structures[_i].symmetric ? DVI_OK : DVI_BAD_OPTION);
   if (status != DVI_OK) check_words("is not symmetric");
   dvi_integrator_destroy(&composed);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -222,15 +226,15 @@ END_TEST
 static double slope_of(const dvi_shapes *shapes, const char *method, int first, int *claimed)
 {
   enum { LEVELS = 5 };
-  problem *of = made_problem("pendulum", NULL);
-  dvi_integrator *judge = started(of, "galerkin:degree=10"),
-                 *integrator = shaped_integrator(of->system, shapes, method);
+  problem *model = create_problem("pendulum", NULL);
+  dvi_integrator *judge = start_integrator(model, "galerkin:degree=10"),
+                 *integrator = create_integrator_with_shapes(model->system, shapes, method);
   double h[LEVELS], error[LEVELS];
   advance(judge, 0.05, 40);
   for (int k = 0; k < LEVELS; k++) {
     const int steps = first << k;
     h[k] = 2.0 / steps;
-    ck_assert_int_eq(dvi_integrator_start(integrator, 0, of->q, of->p), DVI_OK);
+    ck_assert_int_eq(dvi_integrator_start(integrator, 0, model->q, model->p), DVI_OK);
     advance(integrator, h[k], steps);
     error[k] = hypot(*dvi_integrator_q(integrator) - *dvi_integrator_q(judge),
                      *dvi_integrator_p(integrator) - *dvi_integrator_p(judge));
@@ -240,7 +244,7 @@ static double slope_of(const dvi_shapes *shapes, const char *method, int first, 
   *claimed = dvi_integrator_order(integrator);
   dvi_integrator_destroy(&judge);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
   return fit.slope;
 }
 
@@ -254,7 +258,8 @@ START_TEST(the_order_is_that_of_the_polynomials)
              {&steep, 1, 2},    {&steep, 2, 4},    {&steep, 2, 3},    {&milne, 1, 3}};
   int claimed;
   const double slope = slope_of(
-      few[_i].shapes, spec("shaped-galerkin:degree=%d,nodes=%d", few[_i].degree, few[_i].nodes), 20,
+      few[_i].shapes,
+      method_spec("shaped-galerkin:degree=%d,nodes=%d", few[_i].degree, few[_i].nodes), 20,
       &claimed);
   ck_assert_int_eq(claimed, 2 * few[_i].degree);
   ck_assert_double_ge(slope, claimed - 0.2);
@@ -265,7 +270,8 @@ START_TEST(straight_motion_is_exact)
 {
   const double q = 1, p = -3;
   dvi_system *system = make_system(&(dvi_system_terms){.dimension = 1, .mass.scalar = 2});
-  dvi_integrator *integrator = shaped_integrator(system, &steep, "shaped-galerkin:nodes=2");
+  dvi_integrator *integrator = create_integrator_with_shapes(system, &steep,
+                                                             "shaped-galerkin:nodes=2");
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, &q, &p), DVI_OK);
   advance(integrator, 0.5, 100);
   double between, v;
@@ -289,9 +295,10 @@ END_TEST
 
 START_TEST(a_basis_of_b_splines_has_the_same_paths)
 {
-  problem *of = made_problem("kepler", NULL);
-  dvi_integrator *powers_of_it = shaped_started(of, &spline, "shaped-galerkin:degree=3"),
-                 *basis = shaped_started(of, &b_splines, "shaped-galerkin");
+  problem *model = create_problem("kepler", NULL);
+  dvi_integrator *powers_of_it = start_integrator_with_shapes(model, &spline,
+                                                              "shaped-galerkin:degree=3"),
+                 *basis = start_integrator_with_shapes(model, &b_splines, "shaped-galerkin");
   ck_assert_int_eq(dvi_integrator_order(basis), dvi_integrator_order(powers_of_it));
   advance(powers_of_it, 0.1, 50);
   advance(basis, 0.1, 50);
@@ -299,7 +306,7 @@ START_TEST(a_basis_of_b_splines_has_the_same_paths)
   ck_assert_double_le(distance(2, dvi_integrator_p(powers_of_it), dvi_integrator_p(basis)), 1e-12);
   dvi_integrator_destroy(&powers_of_it);
   dvi_integrator_destroy(&basis);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

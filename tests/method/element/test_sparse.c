@@ -34,18 +34,18 @@ typedef struct measured {
   double seconds;
 } measured;
 
-static long entries_of(const problem *of, const dvi__action_space *space)
+static long entries_of(const problem *model, const dvi__action_space *space)
 {
   dvi__action *action;
   dvi_counters counters = {0};
-  ck_assert_int_eq(dvi__action_create(of->system, space, &counters, &action), DVI_OK);
+  ck_assert_int_eq(dvi__action_create(model->system, space, &counters, &action), DVI_OK);
   ck_assert_int_eq(dvi__action_prepare_jacobian(action), DVI_OK);
   const long entries = dvi__pattern_entries(dvi__action_pattern(action));
   dvi__action_destroy(&action);
   return entries;
 }
 
-/* Steps of one chain; what must hold at every length is asserted here. */
+/* Takes steps of one chain, and asserts the facts that hold at every length. */
 static void take_steps(dvi_integrator *integrator, measured *m)
 {
   dvi_counters before, after;
@@ -55,41 +55,42 @@ static void take_steps(dvi_integrator *integrator, measured *m)
   int failed = 0;
   for (int i = 0; i < STEPS && !failed; i++) {
     dvi_status status;
-    calls += calls_of_step(integrator, h, &status);
+    calls += count_calls_of_step(integrator, h, &status);
     failed = status != DVI_OK;
   }
   m->seconds = (double)(clock() - start) / CLOCKS_PER_SEC / (double)STEPS;
   ck_assert_msg(!failed, "%s", dvi_last_error());
   if (heap_is_counted()) ck_assert_int_eq(calls, 0);
   dvi_integrator_counters(integrator, &after);
-  /* Nothing is analysed before a step needs it, and each pattern once: of the whole Jacobian, and
-   * of the decoupled systems. */
+  /* Nothing is analysed before a step needs it, and each pattern is analysed once, that of the
+   * whole Jacobian and those of the decoupled systems. */
   ck_assert_int_eq(before.symbolic, 0);
   ck_assert_int_ge(after.symbolic, 1);
   ck_assert_int_le(after.symbolic, 2);
-  /* omega h = 5: fixed point iteration does not contract */
+  /* omega h = 5, where fixed-point iteration does not contract */
   ck_assert_int_eq(after.simplified, STEPS);
   ck_assert_int_ge(after.factorizations, 1);
-  /* Kept while they are good; of the first steps some are followed, with some for each part. */
+  /* Factors are kept while they are good. Some of the first steps are followed, with some factors
+   * for each part. */
   ck_assert_int_lt(after.factorizations, STEPS + 24 * after.followed);
   ck_assert_int_le(after.followed, STEPS);
 }
 
 static void measure(const kind *k, int ell, measured *m)
 {
-  problem *of = made_problem("fpu", spec("ell=%d", ell));
-  m->n = of->nq;
-  m->entries = entries_of(of, &k->space);
+  problem *model = create_problem("fpu", method_spec("ell=%d", ell));
+  m->n = model->nq;
+  m->entries = entries_of(model, &k->space);
   const long before = heap_bytes();
-  dvi_integrator *integrator = started(of, k->method);
+  dvi_integrator *integrator = start_integrator(model, k->method);
   take_steps(integrator, m);
   m->bytes = heap_bytes() - before;
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 
-/* A chain has two ends that lack a few entries, and a few blocks do not grow with it: within a
- * tenth for the shortest. */
+/* A chain lacks a few entries at its two ends, and a few blocks do not grow with it. That is within
+ * a tenth for the shortest chain. */
 static void check_proportional(long small, int n, long large, int most)
 {
   const double ratio = ((double)small / n) / ((double)large / most);

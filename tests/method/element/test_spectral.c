@@ -1,5 +1,5 @@
 /* labels: order invariant */
-/* At a fixed step, growing degree: the error falls geometrically for analytic solutions (Hall and
+/* At a fixed step and growing degree the error falls geometrically for analytic solutions (Hall and
  * Leok 2015). */
 #include <check.h>
 #include <math.h>
@@ -7,16 +7,16 @@
 #include "support/runs.h"
 #include "support/suite.h"
 
-/* Two bodies with e = 0.6 and three steps a turn. The bounds are those that theory makes one
- * expect: two digits for eight degrees. */
+/* Two bodies with e = 0.6 and three steps a turn. The bounds follow from the theory, two digits for
+ * eight degrees. */
 static const struct {
   int degree;
   double error;
 } expected[] = {{16, 1e-1}, {24, 1e-3}, {32, 1e-5}, {40, 1e-7}};
 enum { DEGREES = sizeof expected / sizeof *expected };
 
-/* A hundred steps: the rotation of each conserves it to one rounding of 1, and they add up like a
- * random walk. */
+/* Each of a hundred steps rotates it up to one rounding of 1, and roundings add up like a random
+ * walk. */
 static const double angular_momentum_roundoff = 1e-13;
 
 static double position_error(const problem *kepler, double t, const double *q)
@@ -28,9 +28,9 @@ static double position_error(const problem *kepler, double t, const double *q)
 
 static void check_spectral(const char *basis, int degree, double bound)
 {
-  problem *kepler = made_problem("kepler", NULL);
-  dvi_integrator *integrator = started(
-      kepler, spec("galerkin:degree=%d,nodes=%d,basis=%s", degree, 2 * degree, basis));
+  problem *kepler = create_problem("kepler", NULL);
+  dvi_integrator *integrator = start_integrator(
+      kepler, method_spec("galerkin:degree=%d,nodes=%d,basis=%s", degree, 2 * degree, basis));
   double start[4], now[4], error = 0, momentum = 0;
   ck_assert_int_eq(dvi_integrator_invariants(integrator, start), DVI_OK);
   while (dvi_integrator_time(integrator) < 199) {

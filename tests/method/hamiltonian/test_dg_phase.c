@@ -9,12 +9,12 @@
 
 enum { LEVELS = 4 };
 
-static double error_at_end(problem *of, const problem *standard, const char *method, double h)
+static double error_at_end(problem *model, const problem *standard, const char *method, double h)
 {
-  dvi_integrator *integrator = started(of, method);
+  dvi_integrator *integrator = start_integrator(model, method);
   ck_assert_int_eq(dvi_integrator_order(integrator), 2);
-  advance(integrator, h, lround(of->order_t_end / h));
-  const double error = distance(of->nq, dvi_integrator_q(integrator), standard->digits_q);
+  advance(integrator, h, lround(model->order_t_end / h));
+  const double error = distance(model->nq, dvi_integrator_q(integrator), standard->digits_q);
   dvi_integrator_destroy(&integrator);
   return error;
 }
@@ -37,21 +37,21 @@ enum { PLACES = sizeof places / sizeof *places };
 START_TEST(every_degree_has_order_2)
 {
   const int at = _i % PLACES, degree = 1 + _i / PLACES;
-  problem *of = made_problem(places[at].problem, places[at].setting),
-          *standard = made_problem(places[at].problem, NULL);
-  const char *method = spec("dg-phase:degree=%d", degree);
-  double h = places[at].h, last = error_at_end(of, standard, method, h);
+  problem *model = create_problem(places[at].problem, places[at].setting),
+          *standard = create_problem(places[at].problem, NULL);
+  const char *method = method_spec("dg-phase:degree=%d", degree);
+  double h = places[at].h, last = error_at_end(model, standard, method, h);
   for (int level = 1; level < LEVELS; level++) {
-    const double error = error_at_end(of, standard, method, h /= 2), slope = log2(last / error);
+    const double error = error_at_end(model, standard, method, h /= 2), slope = log2(last / error);
     ck_assert_msg(fabs(slope - 2) <= 0.2, "%s: slope %.2f at h = %g", places[at].problem, slope, h);
     last = error;
   }
-  problem_destroy(&of);
+  problem_destroy(&model);
   problem_destroy(&standard);
 }
 END_TEST
 
-/* Of massless-particle: alpha = (1 + r^2)/2 (-y, x), and the gradient of alpha.w. */
+/* Gives alpha = (1 + r^2)/2 (-y, x) of massless-particle, and the gradient of alpha.w. */
 static void form(const double *q, const double *w, double *alpha, double *gradient)
 {
   const double x = q[0], y = q[1], s = (1 + x * x + y * y) / 2, turn = -y * w[0] + x * w[1];
@@ -66,8 +66,8 @@ static void form(const double *q, const double *w, double *alpha, double *gradie
 START_TEST(steps_solve_the_printed_equations)
 {
   const double h = 0.1;
-  problem *of = made_problem("massless-particle", NULL);
-  dvi_integrator *integrator = started(of, "dg-phase");
+  problem *model = create_problem("massless-particle", NULL);
+  dvi_integrator *integrator = start_integrator(model, "dg-phase");
   double q[2], jump[2], next[2], alpha[2], gradient[2], next_alpha[2], next_gradient[2];
   advance(integrator, h, 1);
   for (int step = 0; step < 50; step++) {
@@ -87,7 +87,7 @@ START_TEST(steps_solve_the_printed_equations)
     }
   }
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -95,21 +95,23 @@ START_TEST(degrees_and_nodes_give_the_steps_of_degree_0_on_the_configurations)
 {
   static const char *const methods[] = {"dg-phase", "dg-phase:degree=3",
                                         "dg-phase:degree=2,nodes=4"};
-  problem *of = made_problem("vortices", NULL);
-  dvi_integrator *one = started(of, methods[_i]), *other = started(of, "dg:degree=0");
+  problem *model = create_problem("vortices", NULL);
+  dvi_integrator *one = start_integrator(model, methods[_i]),
+                 *other = start_integrator(model, "dg:degree=0");
   advance(one, 0.02, 20);
   advance(other, 0.02, 20);
-  ck_assert_mem_eq(dvi_integrator_q(one), dvi_integrator_q(other), (size_t)of->nq * sizeof(double));
+  ck_assert_mem_eq(dvi_integrator_q(one), dvi_integrator_q(other),
+                   (size_t)model->nq * sizeof(double));
   dvi_integrator_destroy(&one);
   dvi_integrator_destroy(&other);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(energy_stays_bounded)
 {
-  problem *of = made_problem("massless-particle", NULL);
-  dvi_integrator *integrator = started(of, "dg-phase");
+  problem *model = create_problem("massless-particle", NULL);
+  dvi_integrator *integrator = start_integrator(model, "dg-phase");
   double first, now, worst[2] = {0, 0};
   const int steps = 20000;
   ck_assert_int_eq(dvi_integrator_invariants(integrator, &first), DVI_OK);
@@ -121,18 +123,18 @@ START_TEST(energy_stays_bounded)
   ck_assert_double_le(worst[0], 5e-4);
   ck_assert_double_le(worst[1], 1.02 * worst[0]);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(too_few_nodes_are_refused)
 {
-  problem *of = made_problem("vortices", NULL);
+  problem *model = create_problem("vortices", NULL);
   dvi_integrator *none = NULL;
-  ck_assert_int_eq(dvi_integrator_create(of->system, "dg-phase:degree=3,nodes=2", &none),
+  ck_assert_int_eq(dvi_integrator_create(model->system, "dg-phase:degree=3,nodes=2", &none),
                    DVI_BAD_OPTION);
   check_words("take 3 or more");
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

@@ -12,8 +12,8 @@ enum { LEVELS = 5 };
 
 static const double floor_of_errors = 3e-14;
 
-/* What has this order, by the one-step method or by the quadrature, and a number of steps that
- * shows it. */
+/* A method of this order, which the one-step method or the quadrature decides, and a number of
+ * steps that shows it. */
 static const struct {
   const char *method;
   int order, steps;
@@ -28,55 +28,57 @@ static const struct {
              {"onestep=cooper-verner,quadrature=lobatto,nodes=4", 6, 8}};
 enum { PAIRS = sizeof pairs / sizeof *pairs };
 
-static void check_order_of(const hamiltonian_problem *of, const char *method, int order, int first)
+static void check_order_of(const hamiltonian_problem *model, const char *method, int order,
+                           int first)
 {
-  dvi_system *system = hamiltonian_system(of);
+  dvi_system *system = create_hamiltonian_system(model);
   double h[LEVELS], error[LEVELS], q[HAMILTONIAN_MOST], p[HAMILTONIAN_MOST];
   dvi_order_fit fit;
-  of->exact(1.5, q, p);
+  model->exact(1.5, q, p);
   for (int level = 0; level < LEVELS; level++) {
-    const int steps = (int)lround(first * of->pace * pow(2, 0.5 * level));
-    dvi_integrator *step = hamiltonian_started(system, of, method);
+    const int steps = (int)lround(first * model->step_factor * pow(2, 0.5 * level));
+    dvi_integrator *step = start_hamiltonian_integrator(system, model, method);
     ck_assert_int_eq(dvi_integrator_order(step), order);
     h[level] = 1.5 / steps;
     advance(step, h[level], steps);
-    error[level] = fmax(distance(of->n, dvi_integrator_q(step), q),
-                        distance(of->n, dvi_integrator_p(step), p));
+    error[level] = fmax(distance(model->n, dvi_integrator_q(step), q),
+                        distance(model->n, dvi_integrator_p(step), p));
     dvi_integrator_destroy(&step);
   }
   ck_assert_int_eq(dvi_order(LEVELS, h, error, floor_of_errors, 0, &fit), DVI_OK);
   ck_assert_msg(fit.last - fit.first >= 3 && fabs(fit.slope - order) <= 0.2,
-                "%s %s: slope %.2f over %d, not %d (errors %g to %g)", of->name, method, fit.slope,
-                fit.last - fit.first + 1, order, error[0], error[LEVELS - 1]);
+                "%s %s: slope %.2f over %d, not %d (errors %g to %g)", model->name, method,
+                fit.slope, fit.last - fit.first + 1, order, error[0], error[LEVELS - 1]);
   dvi_system_destroy(&system);
 }
 
 START_TEST(the_order_is_the_lower_one_of_both)
 {
   for (int type = 2; type <= 3; type++) {
-    const char *method = spec("shooting:type=%d,%s", type, pairs[_i].method);
-    check_order_of(hamiltonian_problem_of("stiffness"), method, pairs[_i].order, pairs[_i].steps);
-    check_order_of(hamiltonian_problem_of("driven"), method, pairs[_i].order, pairs[_i].steps);
+    const char *method = method_spec("shooting:type=%d,%s", type, pairs[_i].method);
+    check_order_of(find_hamiltonian_problem("stiffness"), method, pairs[_i].order, pairs[_i].steps);
+    check_order_of(find_hamiltonian_problem("driven"), method, pairs[_i].order, pairs[_i].steps);
   }
 }
 END_TEST
 
-/* Where H is linear in all momenta p.H_p - H is 0, and nothing is left to the quadrature. */
+/* If H is linear in all momenta, p.H_p - H is 0, and the quadrature adds nothing. */
 START_TEST(the_order_is_the_one_step_methods_where_h_is_linear)
 {
-  check_order_of(hamiltonian_problem_of("adjoint"),
+  check_order_of(find_hamiltonian_problem("adjoint"),
                  "shooting:type=2,onestep=heun,quadrature=trapezoid", 2, 60);
   dvi_integrator *by[2];
-  const hamiltonian_problem *of = hamiltonian_problem_of("adjoint");
-  dvi_system *system = hamiltonian_system(of);
+  const hamiltonian_problem *model = find_hamiltonian_problem("adjoint");
+  dvi_system *system = create_hamiltonian_system(model);
   for (int k = 0; k < 2; k++) {
-    by[k] = hamiltonian_started(system, of,
-                                k == 0 ? "shooting:quadrature=trapezoid,onestep=gauss"
-                                       : "shooting:quadrature=lobatto,nodes=2,onestep=gauss");
+    by[k] = start_hamiltonian_integrator(system, model,
+                                         k == 0
+                                             ? "shooting:quadrature=trapezoid,onestep=gauss"
+                                             : "shooting:quadrature=lobatto,nodes=2,onestep=gauss");
     advance(by[k], 0.2, 10);
   }
   double q[1], p[1];
-  of->exact(2, q, p);
+  model->exact(2, q, p);
   ck_assert_double_le(distance(1, dvi_integrator_q(by[0]), q), 1e-5); /* h^4/720 and not h^2 */
   ck_assert_double_le(distance(1, dvi_integrator_q(by[0]), dvi_integrator_q(by[1])), 1e-14);
   dvi_integrator_destroy(&by[0]);
@@ -92,18 +94,22 @@ START_TEST(elastica_shows_the_same_orders)
 {
   const int i = on_elastica[_i];
   for (int type = 2; type <= 3; type++)
-    check_degenerate_order("elastica", NULL, spec("shooting:type=%d,%s", type, pairs[i].method),
-                           0.2, pairs[i].order);
+    check_degenerate_order("elastica", NULL,
+                           method_spec("shooting:type=%d,%s", type, pairs[i].method), 0.2,
+                           pairs[i].order);
 }
 END_TEST
 
 START_TEST(explicit_one_step_methods_make_symplectic_steps)
 {
   static const double q[3] = {0.2, -0.4, 0.7}, p[3] = {-0.8, 0.3, 1.1};
-  problem *of = made_problem("elastica", NULL), *regular = made_problem("double-pendulum", NULL);
+  problem *model = create_problem("elastica", NULL),
+          *regular = create_problem("double-pendulum", NULL);
   for (int type = 2; type <= 3; type++) {
-    dvi_integrator *degenerate = started(of, spec("shooting:type=%d,%s", type, pairs[_i].method)),
-                   *other = started(regular, spec("shooting:type=%d,%s", type, pairs[_i].method));
+    dvi_integrator *degenerate = start_integrator(
+                       model, method_spec("shooting:type=%d,%s", type, pairs[_i].method)),
+                   *other = start_integrator(
+                       regular, method_spec("shooting:type=%d,%s", type, pairs[_i].method));
     double defect;
     ck_assert_msg(dvi_symplecticity(degenerate, 0, q, p, 0.3, &defect) == DVI_OK, "%s",
                   dvi_last_error());
@@ -114,7 +120,7 @@ START_TEST(explicit_one_step_methods_make_symplectic_steps)
     dvi_integrator_destroy(&degenerate);
     dvi_integrator_destroy(&other);
   }
-  problem_destroy(&of);
+  problem_destroy(&model);
   problem_destroy(&regular);
 }
 END_TEST
@@ -124,9 +130,10 @@ START_TEST(types_2_and_3_of_symmetric_pairs_undo_each_other)
 {
   static const char *const symmetric[] = {"onestep=implicit-midpoint,quadrature=trapezoid",
                                           "onestep=gauss,quadrature=simpson"};
-  problem *of = made_problem("elastica", NULL);
-  dvi_integrator *there = started(of, spec("shooting:type=2,%s", symmetric[_i])),
-                 *back = made_integrator(of->system, spec("shooting:type=3,%s", symmetric[_i]));
+  problem *model = create_problem("elastica", NULL);
+  dvi_integrator *there = start_integrator(model, method_spec("shooting:type=2,%s", symmetric[_i])),
+                 *back = create_integrator(model->system,
+                                           method_spec("shooting:type=3,%s", symmetric[_i]));
   advance(there, 0.3, 3);
   const double q[3] = {dvi_integrator_q(there)[0], dvi_integrator_q(there)[1],
                        dvi_integrator_q(there)[2]},
@@ -140,7 +147,7 @@ START_TEST(types_2_and_3_of_symmetric_pairs_undo_each_other)
   ck_assert_double_le(distance(3, dvi_integrator_p(back), p), 1e-13);
   dvi_integrator_destroy(&there);
   dvi_integrator_destroy(&back);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -154,13 +161,13 @@ END_TEST
 
 START_TEST(type_1_is_for_lagrangians)
 {
-  problem *of = made_problem("elastica", NULL);
+  problem *model = create_problem("elastica", NULL);
   dvi_integrator *none = NULL;
-  ck_assert_int_eq(dvi_integrator_create(of->system, "shooting:type=1", &none), DVI_UNSUPPORTED);
+  ck_assert_int_eq(dvi_integrator_create(model->system, "shooting:type=1", &none), DVI_UNSUPPORTED);
   check_words(
       "shooting: type=1 shoots for a discrete Lagrangian, and the system declares a Hamiltonian");
-  ck_assert_int_eq(dvi_integrator_create(of->system, "shooting:type=4", &none), DVI_BAD_OPTION);
-  problem_destroy(&of);
+  ck_assert_int_eq(dvi_integrator_create(model->system, "shooting:type=4", &none), DVI_BAD_OPTION);
+  problem_destroy(&model);
 }
 END_TEST
 

@@ -24,7 +24,8 @@ static void check_slope(const char *name, const char *method, int order, const d
                 method, fit.slope, order, error[0], error[LEVELS - 1]);
 }
 
-/* Five numbers of steps, the next 2^(1/3) as large: with a high order errors fall fast. */
+/* Five numbers of steps, each 2^(1/3) times the one before, because errors of a high order fall
+ * fast. */
 static int steps_of(int order, int level, double as_many)
 {
   static const int first[] = {0, 200, 100, 40, 24, 16, 12, 10, 6};
@@ -38,33 +39,33 @@ static double error_after(dvi_integrator *step, int n, double h, int steps, cons
   return fmax(distance(n, dvi_integrator_q(step), q), distance(n, dvi_integrator_p(step), p));
 }
 
-static void check_order_on(const hamiltonian_problem *of, const char *method, double span)
+static void check_order_on(const hamiltonian_problem *model, const char *method, double span)
 {
-  dvi_system *system = hamiltonian_system(of);
+  dvi_system *system = create_hamiltonian_system(model);
   double h[LEVELS], error[LEVELS], q[MOST], p[MOST];
   int order = 0;
-  of->exact(span, q, p);
+  model->exact(span, q, p);
   for (int level = 0; level < LEVELS; level++) {
-    dvi_integrator *step = hamiltonian_started(system, of, method);
+    dvi_integrator *step = start_hamiltonian_integrator(system, model, method);
     order = dvi_integrator_order(step);
-    const int steps = steps_of(order, level, of->pace);
+    const int steps = steps_of(order, level, model->step_factor);
     h[level] = span / steps;
-    error[level] = error_after(step, of->n, h[level], steps, q, p);
+    error[level] = error_after(step, model->n, h[level], steps, q, p);
     dvi_integrator_destroy(&step);
   }
-  check_slope(of->name, method, order, h, error);
+  check_slope(model->name, method, order, h, error);
   dvi_system_destroy(&system);
 }
 
 static void check_order_of_elastica(const char *method)
 {
-  problem *of = made_problem("elastica", "kappa=1.5");
+  problem *model = create_problem("elastica", "kappa=1.5");
   double h[LEVELS], error[LEVELS], q[MOST], p[MOST];
   const double span = 3;
   int order = 0;
-  ck_assert_int_eq(of->exact(of, span, q, p), 0);
+  ck_assert_int_eq(model->exact(model, span, q, p), 0);
   for (int level = 0; level < LEVELS; level++) {
-    dvi_integrator *step = started(of, method);
+    dvi_integrator *step = start_integrator(model, method);
     order = dvi_integrator_order(step);
     const int steps = steps_of(order, level, 2);
     h[level] = span / steps;
@@ -72,43 +73,43 @@ static void check_order_of_elastica(const char *method)
     dvi_integrator_destroy(&step);
   }
   check_slope("elastica", method, order, h, error);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 
 static void check_orders(const char *method, int regular)
 {
   check_order_of_elastica(method);
-  for (const hamiltonian_problem *of = hamiltonian_problems; of->name != NULL; of++)
-    if (regular || of->degenerate) check_order_on(of, method, 2);
+  for (const hamiltonian_problem *model = hamiltonian_problems; model->name != NULL; model++)
+    if (regular || model->degenerate) check_order_on(model, method, 2);
 }
 
 START_TEST(gauss_has_order_2s)
 {
   for (int type = 2; type <= 3; type++)
-    check_orders(spec("hamiltonian:type=%d,degree=%d", type, _i), 1);
+    check_orders(method_spec("hamiltonian:type=%d,degree=%d", type, _i), 1);
 }
 END_TEST
 
 /* On `curved` the odd power of h is so small beside the next one that no slope shows it. */
 START_TEST(radau_has_order_2s_minus_1)
 {
-  check_orders(spec("hamiltonian:type=2,degree=%d,quadrature=radau-left", _i), 0);
-  check_orders(spec("hamiltonian:type=3,degree=%d,quadrature=radau-right", _i), 0);
+  check_orders(method_spec("hamiltonian:type=2,degree=%d,quadrature=radau-left", _i), 0);
+  check_orders(method_spec("hamiltonian:type=3,degree=%d,quadrature=radau-right", _i), 0);
 }
 END_TEST
 
 START_TEST(lobatto_with_as_many_points_has_order_2s_minus_2)
 {
-  check_orders(spec("hamiltonian:degree=%d,quadrature=lobatto,nodes=%d", _i, _i), 1);
+  check_orders(method_spec("hamiltonian:degree=%d,quadrature=lobatto,nodes=%d", _i, _i), 1);
 }
 END_TEST
 
 START_TEST(more_points_have_order_2s_where_h_is_regular)
 {
-  check_order_on(hamiltonian_problem_of("driven"),
-                 spec("hamiltonian:degree=%d,quadrature=lobatto", _i), 2);
-  check_order_on(hamiltonian_problem_of("curved"),
-                 spec("hamiltonian:type=1,degree=%d,quadrature=lobatto", _i), 2);
+  check_order_on(find_hamiltonian_problem("driven"),
+                 method_spec("hamiltonian:degree=%d,quadrature=lobatto", _i), 2);
+  check_order_on(find_hamiltonian_problem("curved"),
+                 method_spec("hamiltonian:type=1,degree=%d,quadrature=lobatto", _i), 2);
 }
 END_TEST
 

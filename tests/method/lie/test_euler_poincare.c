@@ -1,5 +1,5 @@
-/* The reduced form: the steps of lie-galerkin from the momentum alone, the discrete Euler-Poincare
- * equation, and what it refuses. */
+/* The reduced form takes the steps of lie-galerkin from the momentum alone. Also tested are the
+ * discrete Euler-Poincare equation, and refusals. */
 #include <math.h>
 #include <string.h>
 
@@ -12,7 +12,7 @@ static const double inertia[] = {1.3, .1, 0, .1, 1.1, .05, 0, .05, .9}, centre[]
 /* Two bodies, an angle, and two coordinates whose mass is full. */
 enum { PRODUCT_Q = 9 + 2 + 12 + 2, FIRST_LINE = 9 + 2 + 12 };
 
-static void make_product(double between_lines, double across, body *of)
+static void make_product(double between_lines, double across, body *model)
 {
   static const dvi_factor factors[] = {
       {.kind = DVI_SO3, .inertia = inertia},
@@ -26,20 +26,20 @@ static void make_product(double between_lines, double across, body *of)
   mass[FIRST_LINE * PRODUCT_Q + 4] = mass[4 * PRODUCT_Q + FIRST_LINE] = across;
   const dvi_system_terms terms = {
       .factors = factors, .factor_count = 4, .mass.values = mass, .autonomous = 1};
-  *of = (body){.name = "product", .factors = factors, .factor_count = 4};
-  ck_assert_msg(dvi_system_create(&terms, &of->system) == DVI_OK, "%s", dvi_last_error());
+  *model = (body){.name = "product", .factors = factors, .factor_count = 4};
+  ck_assert_msg(dvi_system_create(&terms, &model->system) == DVI_OK, "%s", dvi_last_error());
 }
 
 static const double product_q[PRODUCT_Q] = {0, -1, 0, 1, 0, 0, 0, 0,  1,   .6, .8, 1, 0,
                                             0, 0,  1, 0, 0, 0, 1, .3, -.2, .1, .5, .7},
                     product_v[12] = {1, .3, -.4, .9, -.2, .8, 1.1, .4, -.3, .6, .5, -.7};
 
-/* 200 steps of both; roundoff of the states adds up. */
+/* Both take 200 steps, and roundoff of the states adds up. */
 static void compare(const dvi_system *system, const double *q, const double *v, const char *keys,
                     double h)
 {
-  dvi_integrator *whole = made_integrator(system, spec("lie-galerkin:%s", keys)),
-                 *reduced = made_integrator(system, spec("euler-poincare:%s", keys));
+  dvi_integrator *whole = create_integrator(system, method_spec("lie-galerkin:%s", keys)),
+                 *reduced = create_integrator(system, method_spec("euler-poincare:%s", keys));
   ck_assert_msg(dvi_integrator_start_velocity(whole, 0, q, v) == DVI_OK, "%s", dvi_last_error());
   ck_assert_msg(dvi_integrator_start_velocity(reduced, 0, q, v) == DVI_OK, "%s", dvi_last_error());
   advance(whole, h, 200);
@@ -64,24 +64,24 @@ enum { KEYS = sizeof keys / sizeof *keys };
 START_TEST(it_takes_the_steps_of_lie_galerkin)
 {
   static const body_kind kinds[] = {FREE_BODY, FREE_MOTION};
-  body of;
+  body model;
   for (int k = 0; k < 2; k++) {
-    make_body(kinds[k], &of);
-    compare(of.system, of.q, of.v, keys[_i], 0.1);
-    destroy_body(&of);
+    make_body(kinds[k], &model);
+    compare(model.system, model.q, model.v, keys[_i], 0.1);
+    destroy_body(&model);
   }
-  make_product(.2, 0, &of);
-  compare(of.system, product_q, product_v, keys[_i], 0.1);
-  destroy_body(&of);
+  make_product(.2, 0, &model);
+  compare(model.system, product_q, product_v, keys[_i], 0.1);
+  destroy_body(&model);
 }
 END_TEST
 
-/* mu1 = Ad*_f mu0 from f = g0^{-1} g1 alone: Pi1 = F^T (Pi0 - R0^T (x1 - x0) x p). */
+/* Gives mu1 = Ad*_f mu0 from f = g0^{-1} g1 alone, Pi1 = F^T (Pi0 - R0^T (x1 - x0) x p). */
 START_TEST(momenta_follow_the_coadjoint_action)
 {
-  body of;
-  make_body(FREE_MOTION, &of);
-  dvi_integrator *made = body_integrator(&of, "euler-poincare:degree=2");
+  body model;
+  make_body(FREE_MOTION, &model);
+  dvi_integrator *made = body_integrator(&model, "euler-poincare:degree=2");
   for (int n = 0; n < 50; n++) {
     double q0[12], p0[6], shift[3], moment[3], due[3] = {0};
     memcpy(q0, dvi_integrator_q(made), sizeof q0);
@@ -100,24 +100,24 @@ START_TEST(momenta_follow_the_coadjoint_action)
     ck_assert_mem_eq(p0 + 3, p1 + 3, 3 * sizeof *p0);
   }
   dvi_integrator_destroy(&made);
-  destroy_body(&of);
+  destroy_body(&model);
 }
 END_TEST
 
 START_TEST(its_steps_are_symplectic)
 {
-  body of;
-  make_body(_i == 0 ? FREE_BODY : FREE_MOTION, &of);
-  const double defect = symplectic_defect(&of, "euler-poincare:degree=3", 0.4);
-  ck_assert_msg(defect < 1e-8, "%s: %.1e", of.name, defect);
-  destroy_body(&of);
+  body model;
+  make_body(_i == 0 ? FREE_BODY : FREE_MOTION, &model);
+  const double defect = symplectic_defect(&model, "euler-poincare:degree=3", 0.4);
+  ck_assert_msg(defect < 1e-8, "%s: %.1e", model.name, defect);
+  destroy_body(&model);
 }
 END_TEST
 
-static void check_refusal(const body *of, const char *words)
+static void check_refusal(const body *model, const char *words)
 {
   dvi_integrator *made;
-  ck_assert_int_eq(dvi_integrator_create(of->system, "euler-poincare", &made), DVI_UNSUPPORTED);
+  ck_assert_int_eq(dvi_integrator_create(model->system, "euler-poincare", &made), DVI_UNSUPPORTED);
   ck_assert_ptr_null(made);
   check_words("euler-poincare");
   check_words(words);
@@ -129,49 +129,49 @@ START_TEST(what_the_group_does_not_leave_alone_is_refused)
   const dvi_factor direction = {.kind = DVI_S2, .mass = 1};
   const double plane[] = {1, 0, 0, 2}; /* an ellipse's circle */
   const dvi_factor angle = {.kind = DVI_U1};
-  body of;
-  make_body(PENDULUM_3D, &of);
-  check_refusal(&of, "potentials");
-  destroy_body(&of);
-  ck_assert_int_eq(
-      dvi_system_create(&(dvi_system_terms){.factors = &direction, .factor_count = 1}, &of.system),
-      DVI_OK);
-  check_refusal(&of, "directions (S^2)");
-  destroy_body(&of);
-  make_product(0, .1, &of);
-  check_refusal(&of, "the mass of coordinates");
-  destroy_body(&of);
+  body model;
+  make_body(PENDULUM_3D, &model);
+  check_refusal(&model, "potentials");
+  destroy_body(&model);
+  ck_assert_int_eq(dvi_system_create(&(dvi_system_terms){.factors = &direction, .factor_count = 1},
+                                     &model.system),
+                   DVI_OK);
+  check_refusal(&model, "directions (S^2)");
+  destroy_body(&model);
+  make_product(0, .1, &model);
+  check_refusal(&model, "the mass of coordinates");
+  destroy_body(&model);
   ck_assert_int_eq(
       dvi_system_create(
           &(dvi_system_terms){.factors = &angle, .factor_count = 1, .mass.values = plane},
-          &of.system),
+          &model.system),
       DVI_OK);
-  check_refusal(&of, "the mass of coordinates 1 and 1");
-  destroy_body(&of);
+  check_refusal(&model, "the mass of coordinates 1 and 1");
+  destroy_body(&model);
   const dvi_system_terms one_entry = {
       .factors = &angle,
       .factor_count = 1,
       .mass = {.values = plane, .pattern = {(const int[]){0, 1, 1}, (const int[]){0}}}};
-  ck_assert_int_eq(dvi_system_create(&one_entry, &of.system), DVI_OK);
-  check_refusal(&of, "the mass of coordinates 1 and 1");
-  destroy_body(&of);
+  ck_assert_int_eq(dvi_system_create(&one_entry, &model.system), DVI_OK);
+  check_refusal(&model, "the mass of coordinates 1 and 1");
+  destroy_body(&model);
 }
 END_TEST
 
 START_TEST(a_turn_beyond_the_chart_is_a_step_too_large)
 {
-  body of;
-  make_body(FREE_BODY, &of);
-  dvi_integrator *made = body_integrator(&of, "euler-poincare:degree=2");
+  body model;
+  make_body(FREE_BODY, &model);
+  dvi_integrator *made = body_integrator(&model, "euler-poincare:degree=2");
   double p[3];
   memcpy(p, dvi_integrator_p(made), sizeof p);
   ck_assert_int_eq(dvi_integrator_step(made, 8), DVI_STEP_TOO_LARGE);
   check_words("half a turn");
   ck_assert_mem_eq(p, dvi_integrator_p(made), sizeof p);
-  ck_assert_mem_eq(of.q, dvi_integrator_q(made), 9 * sizeof *of.q);
+  ck_assert_mem_eq(model.q, dvi_integrator_q(made), 9 * sizeof *model.q);
   advance(made, 0.5, 3);
   dvi_integrator_destroy(&made);
-  destroy_body(&of);
+  destroy_body(&model);
 }
 END_TEST
 

@@ -1,6 +1,6 @@
 /* labels: order */
 /* Galerkin steps in natural charts: orders, agreement of bases, symmetry under rotations, known
- * digits, refusals, what is kept from step to step. */
+ * digits, refusals, and structures that steps keep. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -15,11 +15,11 @@
 #include "support/suite.h"
 #include "system/chart/charted.h"
 
-static body of;
+static body model;
 
 static void forget_body(void)
 {
-  destroy_body(&of);
+  destroy_body(&model);
 }
 
 /* ---- an independent judge: the ordinary method in one chart that stays where it is ---- */
@@ -31,7 +31,7 @@ static double span;
 /* The body of a looped test. */
 static void take_body(int kind)
 {
-  make_body((body_kind)kind, &of);
+  make_body((body_kind)kind, &model);
   span = spans[kind];
 }
 
@@ -39,19 +39,19 @@ typedef struct state {
   double q[BODY_Q], p[BODY_V];
 } state;
 
-/* By galerkin of degree 8, of the Lagrangian in one chart as an ordinary one: nothing is centred
- * anew. */
+/* Judges by galerkin of degree 8, with the Lagrangian in one chart as an ordinary one. The chart
+ * stays where it is. */
 static void judge(state *end)
 {
   dvi_counters counters = {0};
   dvi__charted *charts;
   dvi_integrator *made;
   double zero[BODY_V] = {0}, rate[BODY_V], v[BODY_V];
-  ck_assert_msg(dvi__charted_create(of.system, 0, &counters, &charts) == DVI_OK, "%s",
+  ck_assert_msg(dvi__charted_create(model.system, 0, &counters, &charts) == DVI_OK, "%s",
                 dvi_last_error());
-  dvi__charted_centre(charts, of.q);
-  dvi__charted_enter(charts, of.v, rate);
-  made = made_integrator(dvi__charted_system(charts), "galerkin:degree=8");
+  dvi__charted_centre(charts, model.q);
+  dvi__charted_enter(charts, model.v, rate);
+  made = create_integrator(dvi__charted_system(charts), "galerkin:degree=8");
   ck_assert_msg(dvi_integrator_start_velocity(made, 0, zero, rate) == DVI_OK, "%s",
                 dvi_last_error());
   advance(made, span / 16, 16);
@@ -59,23 +59,24 @@ static void judge(state *end)
                                        dvi_integrator_p(made), rate),
                    DVI_OK);
   dvi__charted_point(charts, dvi_integrator_q(made), rate, end->q, v);
-  ck_assert_int_eq(dvi_system_momentum(of.system, span, end->q, v, end->p), DVI_OK);
+  ck_assert_int_eq(dvi_system_momentum(model.system, span, end->q, v, end->p), DVI_OK);
   dvi_integrator_destroy(&made);
   dvi__charted_destroy(&charts);
 }
 
 static void run(const char *method, double h, long steps, state *end)
 {
-  dvi_integrator *made = body_integrator(&of, method);
+  dvi_integrator *made = body_integrator(&model, method);
   advance(made, h, steps);
-  memcpy(end->q, dvi_integrator_q(made), (size_t)of.nq * sizeof *end->q);
-  memcpy(end->p, dvi_integrator_p(made), (size_t)of.nv * sizeof *end->p);
+  memcpy(end->q, dvi_integrator_q(made), (size_t)model.nq * sizeof *end->q);
+  memcpy(end->p, dvi_integrator_p(made), (size_t)model.nv * sizeof *end->p);
   dvi_integrator_destroy(&made);
 }
 
 static double apart(const state *a, const state *b)
 {
-  return fmax(distance(of.nq, a->q, b->q), distance(of.nv, a->p, b->p) / magnitude(of.nv, b->p));
+  return fmax(distance(model.nq, a->q, b->q),
+              distance(model.nv, a->p, b->p) / magnitude(model.nv, b->p));
 }
 
 /* The judge errs by roundoff of 16 steps and of the comparison. */
@@ -92,22 +93,22 @@ static void check_order_of(const char *method, int order)
     run(method, h[k], steps[k], &end);
     error[k] = apart(&end, &exact);
     if (getenv("DVI_SHOW_ORDERS") != NULL)
-      printf("%s, %s: h = %.4g, error %.2e\n", of.name, method, h[k], error[k]);
+      printf("%s, %s: h = %.4g, error %.2e\n", model.name, method, h[k], error[k]);
   }
   ck_assert_msg(dvi_order(COUNT, h, error, 4e-13, fmax(pow(10, -order - 1), 1e-9), &fit) == DVI_OK,
-                "%s, %s: no window", of.name, method);
-  ck_assert_msg(fabs(fit.slope - order) < 0.4, "%s, %s: order %.2f, not %d", of.name, method,
+                "%s, %s: no window", model.name, method);
+  ck_assert_msg(fabs(fit.slope - order) < 0.4, "%s, %s: order %.2f, not %d", model.name, method,
                 fit.slope, order);
 }
 
 START_TEST(gauss_has_order_2s)
 {
   take_body(_i);
-  for (int s = 1; s <= 4; s++) check_order_of(spec("lie-galerkin:degree=%d", s), 2 * s);
+  for (int s = 1; s <= 4; s++) check_order_of(method_spec("lie-galerkin:degree=%d", s), 2 * s);
 }
 END_TEST
 
-/* Where errors between the chart's bound and roundoff leave a window of a factor of two in h. */
+/* Between the chart's bound and roundoff errors leave a window of a factor of two in h. */
 START_TEST(degree_5_has_order_10)
 {
   take_body(_i == 0 ? FREE_BODY : MOTION);
@@ -119,7 +120,8 @@ START_TEST(lobatto_with_one_node_more_has_order_2s)
 {
   take_body(_i);
   for (int s = 1; s <= 4; s++)
-    check_order_of(spec("lie-galerkin:degree=%d,quadrature=lobatto,nodes=%d", s, s + 1), 2 * s);
+    check_order_of(method_spec("lie-galerkin:degree=%d,quadrature=lobatto,nodes=%d", s, s + 1),
+                   2 * s);
 }
 END_TEST
 
@@ -135,13 +137,13 @@ START_TEST(all_bases_and_solvers_agree)
   take_body(_i);
   run("lie-galerkin:degree=4", span / 10, 10, &first);
   for (size_t k = 0; k < sizeof basis / sizeof *basis; k++) {
-    run(spec("lie-galerkin:degree=4,basis=%s", basis[k]), span / 10, 10, &other);
-    ck_assert_msg(apart(&first, &other) < 1e-12, "%s, %s: %.1e", of.name, basis[k],
+    run(method_spec("lie-galerkin:degree=4,basis=%s", basis[k]), span / 10, 10, &other);
+    ck_assert_msg(apart(&first, &other) < 1e-12, "%s, %s: %.1e", model.name, basis[k],
                   apart(&first, &other));
   }
   for (size_t k = 0; k < sizeof solver / sizeof *solver; k++) {
-    run(spec("lie-galerkin:degree=4,solver=%s", solver[k]), span / 10, 10, &other);
-    ck_assert_msg(apart(&first, &other) < 1e-12, "%s, %s: %.1e", of.name, solver[k],
+    run(method_spec("lie-galerkin:degree=4,solver=%s", solver[k]), span / 10, 10, &other);
+    ck_assert_msg(apart(&first, &other) < 1e-12, "%s, %s: %.1e", model.name, solver[k],
                   apart(&first, &other));
   }
 }
@@ -159,8 +161,8 @@ static void turn_vector(const double *A, double *x)
 static void turn_state(const double *A, double *q, double *second)
 {
   int v = 0;
-  for (int f = 0; f < of.factor_count; f++) {
-    const dvi_factor_kind kind = of.factors[f].kind;
+  for (int f = 0; f < model.factor_count; f++) {
+    const dvi_factor_kind kind = model.factors[f].kind;
     const int body_turns = kind == DVI_SO3 || kind == DVI_SE3;
     for (int j = 0; j < 3 && body_turns; j++) {
       double column[] = {q[j], q[3 + j], q[6 + j]};
@@ -184,19 +186,19 @@ START_TEST(turned_starts_have_turned_trajectories)
   state end, turned;
   dvi_so3_exp(kinds[_i] == FREE_BODY || kinds[_i] == FREE_MOTION ? any : vertical, A);
   run("lie-galerkin:degree=3", span / 5, 5, &end);
-  turn_state(A, of.q, of.v);
+  turn_state(A, model.q, model.v);
   run("lie-galerkin:degree=3", span / 5, 5, &turned);
   turn_state(A, end.q, end.p);
-  ck_assert_msg(apart(&end, &turned) < 1e-13, "%s: %.1e", of.name, apart(&end, &turned));
+  ck_assert_msg(apart(&end, &turned) < 1e-13, "%s: %.1e", model.name, apart(&end, &turned));
 }
 END_TEST
 
-/* The momentum in space of free bodies: R Pi, and x x p + R Pi. */
+/* Gives the momentum in space of free bodies, R Pi, and x x p + R Pi. */
 static void space_momentum(const state *at, double *mu)
 {
   const double *R = at->q, *p = at->p, *x = at->q + 9;
   for (int i = 0; i < 3; i++) mu[i] = R[3 * i] * p[0] + R[3 * i + 1] * p[1] + R[3 * i + 2] * p[2];
-  if (of.nq < 12) return;
+  if (model.nq < 12) return;
   mu[0] += x[1] * p[5] - x[2] * p[4];
   mu[1] += x[2] * p[3] - x[0] * p[5];
   mu[2] += x[0] * p[4] - x[1] * p[3];
@@ -213,40 +215,40 @@ START_TEST(free_bodies_keep_all_of_their_momenta)
   space_momentum(&end, after);
   ck_assert_msg(distance(3, before, after) < 1e-13 * magnitude(3, before) * 10, "%.1e",
                 distance(3, before, after));
-  if (of.nq == 12) ck_assert_double_le(distance(3, start.p + 3, end.p + 3), 1e-14);
+  if (model.nq == 12) ck_assert_double_le(distance(3, start.p + 3, end.p + 3), 1e-14);
 }
 END_TEST
 
-/* With weight: that about the vertical. Steps so long that a centre that does not move
- * (system/chart/centring.h) loses 1e-6. */
+/* With weight the momentum about the vertical is kept. The steps are so long that a centre that
+ * does not move (system/chart/centring.h) would lose 1e-6. */
 START_TEST(vertical_momentum_is_kept)
 {
   static const int kinds[] = {PENDULUM_3D, HEAVY_TOP, DIRECTIONS};
   take_body(kinds[_i]);
-  dvi_integrator *made = body_integrator(&of, "lie-galerkin:degree=2");
+  dvi_integrator *made = body_integrator(&model, "lie-galerkin:degree=2");
   double before[2], after[2];
   ck_assert_int_eq(dvi_integrator_invariants(made, before), DVI_OK);
   advance(made, span / 16, 1000);
   ck_assert_int_eq(dvi_integrator_invariants(made, after), DVI_OK);
-  ck_assert_msg(fabs(after[1] - before[1]) < 1e-13 * fmax(1, fabs(before[1])), "%s: %.1e", of.name,
-                after[1] - before[1]);
-  ck_assert_double_le(dvi_system_distance(of.system, dvi_integrator_q(made)), 1e-13);
+  ck_assert_msg(fabs(after[1] - before[1]) < 1e-13 * fmax(1, fabs(before[1])), "%s: %.1e",
+                model.name, after[1] - before[1]);
+  ck_assert_double_le(dvi_system_distance(model.system, dvi_integrator_q(made)), 1e-13);
   dvi_integrator_destroy(&made);
 }
 END_TEST
 
-/* A path of degree 1 is the same from its other end: a one-parameter subgroup, a great circle. A
- * longer polynomial in the chart at its start is none in that at its end, unless the chart is that
- * of a line or a circle. */
+/* A path of degree 1 is the same from its other end, because it is a one-parameter subgroup or a
+ * great circle. A polynomial of higher degree in the chart at its start is none in the chart at its
+ * end, unless the chart is that of a line or a circle. */
 START_TEST(steps_back_undo_steps_of_degree_1)
 {
   take_body(_i);
-  dvi_integrator *made = body_integrator(&of, _i == ANGLE ? "lie-galerkin:degree=3"
-                                                          : "lie-galerkin:degree=1");
+  dvi_integrator *made = body_integrator(&model, _i == ANGLE ? "lie-galerkin:degree=3"
+                                                             : "lie-galerkin:degree=1");
   advance(made, span / 8, 8);
   advance(made, -span / 8, 8);
-  ck_assert_msg(distance(of.nq, dvi_integrator_q(made), of.q) < 1e-13, "%s: %.1e", of.name,
-                distance(of.nq, dvi_integrator_q(made), of.q));
+  ck_assert_msg(distance(model.nq, dvi_integrator_q(made), model.q) < 1e-13, "%s: %.1e", model.name,
+                distance(model.nq, dvi_integrator_q(made), model.q));
   dvi_integrator_destroy(&made);
 }
 END_TEST
@@ -256,8 +258,9 @@ START_TEST(steps_are_symplectic)
 {
   take_body(_i);
   for (int s = 1; s <= 3; s++) {
-    const double defect = symplectic_defect(&of, spec("lie-galerkin:degree=%d", s), span / 4);
-    ck_assert_msg(defect < 1e-8, "%s, degree %d: %.1e", of.name, s, defect);
+    const double defect = symplectic_defect(&model, method_spec("lie-galerkin:degree=%d", s),
+                                            span / 4);
+    ck_assert_msg(defect < 1e-8, "%s, degree %d: %.1e", model.name, s, defect);
   }
 }
 END_TEST
@@ -266,12 +269,12 @@ END_TEST
 
 static void check_digits(const double *found, const double *known, double tolerance)
 {
-  ck_assert_msg(distance(3, found, known) < tolerance, "%s: (%.15g, %.15g, %.15g)", of.name,
+  ck_assert_msg(distance(3, found, known) < tolerance, "%s: (%.15g, %.15g, %.15g)", model.name,
                 found[0], found[1], found[2]);
 }
 
-/* The free body's by its Taylor series in 40 digits; the others' by Gauss-Legendre of order 12 at
- * two steps, which agree. */
+/* The digits of the free body come from its Taylor series in 40 digits, the others from
+ * Gauss-Legendre of order 12 at two steps, which agree. */
 START_TEST(known_digits_are_met)
 {
   const double pendulum[] = {-6.751473860336227, .1484346732487297, 3.362315606396518},

@@ -1,6 +1,6 @@
 /* labels: invariant */
-/* Long steps of thin bodies, whose equations have several solutions: the one that is found
- * continues those of shorter steps, and is the motion's. Or the step is refused. */
+/* Long steps of thin bodies, whose equations have several solutions. The step takes the branch
+ * connected to h = 0, which is the motion's, or it is refused. */
 #include <dvi/integrator.h>
 #include <math.h>
 #include <string.h>
@@ -78,8 +78,8 @@ static const struct {
 START_TEST(steps_of_rods_find_the_motion)
 {
   dvi_system *system = free_rod(rods[_i].J);
-  dvi_integrator *made = made_integrator(system, rods[_i].method),
-                 *fine = made_integrator(system, "lie-verlet");
+  dvi_integrator *made = create_integrator(system, rods[_i].method),
+                 *fine = create_integrator(system, "lie-verlet");
   const double spacing = (rods[_i].to - rods[_i].from) / (rods[_i].count - 1);
   ck_assert_int_eq(dvi_integrator_start_velocity(fine, 0, unit, rods[_i].v), DVI_OK);
   advance(fine, rods[_i].from / 4000, 4000);
@@ -108,14 +108,14 @@ static const struct {
     {1e-5, .1, 3000, "lie-galerkin:degree=3"},   {1e-9, .1, 1000, "lie-galerkin:degree=4"},
     {.01, 1.5, 3000, "euler-poincare:degree=3"}, {1e-4, .3, 3000, "euler-poincare:degree=2"}};
 
-/* A step to another solution changes the energy by a thousandth; no step is refused. */
+/* A step to another solution would change the energy by a thousandth. No step is refused. */
 START_TEST(runs_of_rods_stay_with_the_motion)
 {
   const double J[] = {runs[_i].thin, 1 + runs[_i].thin / 2, 1 + .3 * runs[_i].thin},
                v[] = {.4, .8, .447};
   double start, before, after;
   dvi_system *system = free_rod(J);
-  dvi_integrator *made = made_integrator(system, runs[_i].method);
+  dvi_integrator *made = create_integrator(system, runs[_i].method);
   ck_assert_int_eq(dvi_integrator_start_velocity(made, 0, unit, v), DVI_OK);
   ck_assert_int_eq(dvi_integrator_invariants(made, &start), DVI_OK);
   before = start;
@@ -131,40 +131,40 @@ START_TEST(runs_of_rods_stay_with_the_motion)
 }
 END_TEST
 
-/* With forces: energy alone would not tell. */
+/* With forces the energy alone would not show the branch. */
 START_TEST(steps_with_forces_find_the_motion)
 {
   static const char *const methods[] = {"lie-galerkin:degree=1", "lie-galerkin:degree=2",
                                         "lie-galerkin:degree=3",
                                         "lie-galerkin:degree=3,solver=kinsol"};
-  body of;
-  make_body(PENDULUM_3D, &of);
-  dvi_integrator *made = body_integrator(&of, methods[_i]),
-                 *fine = body_integrator(&of, "lie-verlet");
+  body model;
+  make_body(PENDULUM_3D, &model);
+  dvi_integrator *made = body_integrator(&model, methods[_i]),
+                 *fine = body_integrator(&model, "lie-verlet");
   double worst = 0;
   for (int k = 1; k <= 100; k++) {
-    ck_assert_int_eq(dvi_integrator_start_velocity(made, 0, of.q, of.v), DVI_OK);
+    ck_assert_int_eq(dvi_integrator_start_velocity(made, 0, model.q, model.v), DVI_OK);
     advance(fine, 1e-5, 100);
     advance(made, 1e-3 * k, 1);
-    worst = fmax(worst, distance(of.nq, dvi_integrator_q(made), dvi_integrator_q(fine)));
+    worst = fmax(worst, distance(model.nq, dvi_integrator_q(made), dvi_integrator_q(fine)));
   }
   ck_assert_msg(worst < .3, "%.2g", worst);
   dvi_integrator_destroy(&made);
   dvi_integrator_destroy(&fine);
-  destroy_body(&of);
+  destroy_body(&model);
 }
 END_TEST
 
 /* ---- steps that cannot be taken ---- */
 
-/* Such a body's path ends at a fold where it turns by less than 1.9; the next solution is near, and
- * errs by a third. */
+/* The path of such a body ends at a fold where it turns by less than 1.9. The next solution is
+ * near, and errs by a third. */
 START_TEST(steps_beyond_a_fold_are_refused)
 {
   const double J[] = {1.6045548e-06, 1.0000007, 1.0000009}, v[] = {.574447, -.698831, -.4262};
   dvi_system *system = free_rod(J);
-  dvi_integrator *made = made_integrator(system, _i == 0 ? "lie-galerkin:degree=5"
-                                                         : "euler-poincare:degree=5,solver=newton");
+  dvi_integrator *made = create_integrator(
+      system, _i == 0 ? "lie-galerkin:degree=5" : "euler-poincare:degree=5,solver=newton");
   for (int k = 0; k <= 100; k++) {
     ck_assert_int_eq(dvi_integrator_start_velocity(made, 0, unit, v), DVI_OK);
     ck_assert_int_eq(dvi_integrator_step(made, 1.9 + .002 * k), DVI_STEP_TOO_LARGE);
@@ -175,7 +175,8 @@ START_TEST(steps_beyond_a_fold_are_refused)
 }
 END_TEST
 
-/* The angle is the path's own, not that of an iterate that runs away; and no number is nan. */
+/* The sentence has the path's angle, not that of an iterate that runs away, and no number is
+ * nan. */
 START_TEST(refusals_tell_how_far_a_step_may_go)
 {
   static const struct {
@@ -184,14 +185,14 @@ START_TEST(refusals_tell_how_far_a_step_may_go)
   } places[] = {{9, "up to h = 4."},
                 {9, "where it turns by 3."},
                 {1e300, "not even that of h = 2.44e+296 has a path"}};
-  body of;
-  make_body(FREE_BODY, &of);
-  dvi_integrator *made = body_integrator(&of, "lie-galerkin:degree=3");
+  body model;
+  make_body(FREE_BODY, &model);
+  dvi_integrator *made = body_integrator(&model, "lie-galerkin:degree=3");
   ck_assert_int_eq(dvi_integrator_step(made, places[_i].h), DVI_STEP_TOO_LARGE);
   check_words(places[_i].words);
-  ck_assert_mem_eq(dvi_integrator_q(made), of.q, (size_t)of.nq * sizeof(double));
+  ck_assert_mem_eq(dvi_integrator_q(made), model.q, (size_t)model.nq * sizeof(double));
   dvi_integrator_destroy(&made);
-  destroy_body(&of);
+  destroy_body(&model);
 }
 END_TEST
 
@@ -202,7 +203,7 @@ START_TEST(usual_steps_are_not_followed)
                v[] = {.4, .8, .447};
   dvi_counters counters;
   dvi_system *system = free_rod(J[_i]);
-  dvi_integrator *made = made_integrator(system, "lie-galerkin:degree=3");
+  dvi_integrator *made = create_integrator(system, "lie-galerkin:degree=3");
   ck_assert_int_eq(dvi_integrator_start_velocity(made, 0, unit, v), DVI_OK);
   advance(made, _i == 2 ? -.4 : .4, 2000);
   dvi_integrator_counters(made, &counters);

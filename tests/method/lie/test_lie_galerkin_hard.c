@@ -1,5 +1,5 @@
-/* Galerkin steps in charts where charts are hard: fast tops, steps of nearly and of more than half
- * a turn, thin bodies; and what every method owes. */
+/* Galerkin steps where charts are hard: fast tops, steps of nearly and of more than half a turn,
+ * thin bodies. Also tested are the duties of every method. */
 #include <dvi/group.h>
 #include <math.h>
 #include <stdio.h>
@@ -11,14 +11,14 @@
 #include "support/runs.h"
 #include "support/suite.h"
 
-/* About its axis the top turns by 1 in every step: 1e3 radians in all. */
+/* The top turns about its axis by 1 in every step, 1e3 radians in all. */
 START_TEST(fast_tops_keep_energy_and_spin)
 {
-  body of;
+  body model;
   double before[2], after[2];
-  make_body(HEAVY_TOP, &of);
-  of.v[1] = 1000;
-  dvi_integrator *made = body_integrator(&of, "lie-galerkin:degree=4");
+  make_body(HEAVY_TOP, &model);
+  model.v[1] = 1000;
+  dvi_integrator *made = body_integrator(&model, "lie-galerkin:degree=4");
   ck_assert_int_eq(dvi_integrator_invariants(made, before), DVI_OK);
   advance(made, 1e-3, 1000);
   ck_assert_int_eq(dvi_integrator_invariants(made, after), DVI_OK);
@@ -26,7 +26,7 @@ START_TEST(fast_tops_keep_energy_and_spin)
   ck_assert_msg(fabs(after[0] - before[0]) < 1e-9 * before[0], "%.1e", after[0] / before[0] - 1);
   ck_assert_double_le(fabs(after[1] - before[1]), 1e-10);
   dvi_integrator_destroy(&made);
-  destroy_body(&of);
+  destroy_body(&model);
 }
 END_TEST
 
@@ -38,15 +38,15 @@ START_TEST(steps_of_nearly_half_a_turn_are_taken)
                                         "euler-poincare:degree=3"};
   const double v[] = {0, 0, 3.1}, all[] = {0, 0, 31};
   double R[9];
-  body of;
-  make_body(FREE_BODY, &of);
-  memcpy(of.v, v, sizeof v);
-  dvi_integrator *made = body_integrator(&of, methods[_i]);
+  body model;
+  make_body(FREE_BODY, &model);
+  memcpy(model.v, v, sizeof v);
+  dvi_integrator *made = body_integrator(&model, methods[_i]);
   advance(made, 1, 10);
   dvi_so3_exp(all, R);
   ck_assert_double_le(distance(9, R, dvi_integrator_q(made)), 1e-13);
   dvi_integrator_destroy(&made);
-  destroy_body(&of);
+  destroy_body(&model);
 }
 END_TEST
 
@@ -61,23 +61,23 @@ START_TEST(more_than_half_a_turn_is_a_step_too_large)
                 {DIRECTIONS, "sphere-galerkin:degree=2", 3, 1},
                 {ANGLE, "lie-galerkin:degree=2", .5, 6},
                 {FREE_BODY, "lie-galerkin:degree=1,solver=kinsol", 9, 1}};
-  body of;
+  body model;
   double p[BODY_V];
-  make_body(places[_i].kind, &of);
-  for (int i = 0; i < of.nv; i++) of.v[i] *= places[_i].faster;
-  dvi_integrator *made = body_integrator(&of, places[_i].method);
-  memcpy(p, dvi_integrator_p(made), (size_t)of.nv * sizeof *p);
+  make_body(places[_i].kind, &model);
+  for (int i = 0; i < model.nv; i++) model.v[i] *= places[_i].faster;
+  dvi_integrator *made = body_integrator(&model, places[_i].method);
+  memcpy(p, dvi_integrator_p(made), (size_t)model.nv * sizeof *p);
   const dvi_status status = dvi_integrator_step(made, places[_i].h);
-  ck_assert_msg(status == DVI_STEP_TOO_LARGE, "%s: %s: %s", of.name, dvi_status_name(status),
+  ck_assert_msg(status == DVI_STEP_TOO_LARGE, "%s: %s: %s", model.name, dvi_status_name(status),
                 dvi_last_error());
   check_words("half a turn");
   check_words("try a smaller step");
-  ck_assert_mem_eq(dvi_integrator_q(made), of.q, (size_t)of.nq * sizeof *p);
-  ck_assert_mem_eq(dvi_integrator_p(made), p, (size_t)of.nv * sizeof *p);
+  ck_assert_mem_eq(dvi_integrator_q(made), model.q, (size_t)model.nq * sizeof *p);
+  ck_assert_mem_eq(dvi_integrator_p(made), p, (size_t)model.nv * sizeof *p);
   ck_assert_double_eq(dvi_integrator_time(made), 0);
   advance(made, places[_i].h / 200, 3);
   dvi_integrator_destroy(&made);
-  destroy_body(&of);
+  destroy_body(&model);
 }
 END_TEST
 
@@ -95,7 +95,7 @@ START_TEST(nearly_degenerate_bodies_keep_energy_and_momentum)
       dvi_system_create(&(dvi_system_terms){.factors = &factor, .factor_count = 1, .autonomous = 1},
                         &system) == DVI_OK,
       "%s", dvi_last_error());
-  dvi_integrator *made = made_integrator(system, "lie-galerkin:degree=3");
+  dvi_integrator *made = create_integrator(system, "lie-galerkin:degree=3");
   ck_assert_int_eq(dvi_integrator_start_velocity(made, 0, q, v), DVI_OK);
   ck_assert_int_eq(dvi_integrator_invariants(made, &before), DVI_OK);
   advance(made, 0.02, repeats(1000));
@@ -111,9 +111,9 @@ START_TEST(nearly_degenerate_bodies_keep_energy_and_momentum)
 }
 END_TEST
 
-/* A body that is a million times lighter about one axis, or half as heavy about two: momentum about
- * that axis is rounded as that about the others, so that no iteration knows its unknowns to more
- * than 1e-10 of themselves. Newton's method must see that. */
+/* A body that is a million times lighter about one axis, or half as heavy about two. The momentum
+ * about that axis is rounded as that about the others, so no iteration knows its unknowns to more
+ * than 1e-10 of their size. Newton's method must notice that. */
 static const struct {
   double J[3];
   const char *method;
@@ -156,7 +156,7 @@ START_TEST(steps_of_thin_bodies_are_solved)
       dvi_system_create(&(dvi_system_terms){.factors = &factor, .factor_count = 1, .autonomous = 1},
                         &system) == DVI_OK,
       "%s", dvi_last_error());
-  dvi_integrator *made = made_integrator(system, method);
+  dvi_integrator *made = create_integrator(system, method);
   ck_assert_int_eq(dvi_integrator_start_velocity(made, 0, q, v), DVI_OK);
   advance(made, 0.05, repeats(2000));
   check_momentum(made, start);
@@ -216,7 +216,8 @@ static const struct {
      "height: the gradient callback failed with -7"},
 };
 
-/* Its name and its status, of the start and of the step; then all goes on. */
+/* Checks the method's name and its status, of the start and of the step, and that it goes on
+ * afterwards. */
 START_TEST(failing_callbacks_are_named)
 {
   const double q[] = {1, 0, 0}, v[] = {0, 1, .5};
@@ -232,7 +233,7 @@ START_TEST(failing_callbacks_are_named)
                                                          .autonomous = 1},
                                      &system),
                    DVI_OK);
-  dvi_integrator *made = made_integrator(system, traps[_i].method);
+  dvi_integrator *made = create_integrator(system, traps[_i].method);
   ck_assert_int_eq(dvi_integrator_start_velocity(made, 0, q, v), DVI_OK);
   advance(made, .05, 2);
   set = traps[_i].set;
@@ -251,14 +252,14 @@ END_TEST
 START_TEST(a_start_too_fast_for_its_energy_is_refused)
 {
   static const char *const names[] = {"lie-galerkin:degree=2", "euler-poincare:degree=2"};
-  body of;
-  make_body(FREE_BODY, &of);
-  of.v[0] = 1e200;
-  dvi_integrator *made = made_integrator(of.system, names[_i]);
-  ck_assert_int_eq(dvi_integrator_start_velocity(made, 0, of.q, of.v), DVI_NOT_FINITE);
+  body model;
+  make_body(FREE_BODY, &model);
+  model.v[0] = 1e200;
+  dvi_integrator *made = create_integrator(model.system, names[_i]);
+  ck_assert_int_eq(dvi_integrator_start_velocity(made, 0, model.q, model.v), DVI_NOT_FINITE);
   check_words("the Lagrangian's value is not finite");
   dvi_integrator_destroy(&made);
-  destroy_body(&of);
+  destroy_body(&model);
 }
 END_TEST
 
@@ -269,19 +270,19 @@ static const char *const methods[] = {"lie-galerkin:degree=2",
                                       "euler-poincare:degree=3", "sphere-galerkin:degree=2"};
 enum { METHODS = sizeof methods / sizeof *methods };
 
-static void take_body_for(int method, body *of)
+static void take_body_for(int method, body *model)
 {
-  make_body(method == 2 ? FREE_MOTION : method == 3 ? DIRECTIONS : PRODUCT, of);
+  make_body(method == 2 ? FREE_MOTION : method == 3 ? DIRECTIONS : PRODUCT, model);
 }
 
 START_TEST(checkpoints_continue_bit_for_bit)
 {
-  body of;
+  body model;
   char path[64];
-  take_body_for(_i, &of);
+  take_body_for(_i, &model);
   (void)snprintf(path, sizeof path, "lie_galerkin_%d.dvi", _i);
-  dvi_integrator *whole = body_integrator(&of, methods[_i]),
-                 *later = body_integrator(&of, methods[_i]);
+  dvi_integrator *whole = body_integrator(&model, methods[_i]),
+                 *later = body_integrator(&model, methods[_i]);
   advance(whole, 0.02, 7);
   ck_assert_msg(dvi_integrator_save(whole, path) == DVI_OK, "%s", dvi_last_error());
   advance(whole, 0.02, 9);
@@ -289,68 +290,68 @@ START_TEST(checkpoints_continue_bit_for_bit)
   (void)remove(path);
   advance(later, 0.02, 9);
   ck_assert_mem_eq(dvi_integrator_q(whole), dvi_integrator_q(later),
-                   (size_t)of.nq * sizeof(double));
+                   (size_t)model.nq * sizeof(double));
   ck_assert_mem_eq(dvi_integrator_p(whole), dvi_integrator_p(later),
-                   (size_t)of.nv * sizeof(double));
+                   (size_t)model.nv * sizeof(double));
   dvi_integrator_destroy(&whole);
   dvi_integrator_destroy(&later);
-  destroy_body(&of);
+  destroy_body(&model);
 }
 END_TEST
 
 START_TEST(no_step_allocates_but_to_prepare_a_solver)
 {
-  body of;
-  take_body_for(_i, &of);
-  dvi_integrator *made = body_integrator(&of, methods[_i]);
+  body model;
+  take_body_for(_i, &model);
+  dvi_integrator *made = body_integrator(&model, methods[_i]);
   long calls = 0;
   for (int i = 0; i < 40; i++) {
     dvi_status status;
-    calls += calls_of_step(made, i < 20 ? 0.02 : 0.013, &status);
+    calls += count_calls_of_step(made, i < 20 ? 0.02 : 0.013, &status);
     ck_assert_msg(status == DVI_OK, "%s", dvi_last_error());
   }
   ck_assert_int_eq(calls, 0);
-  ck_assert_int_le(counters_of(made).preparations, PREPARATIONS_MOST);
+  ck_assert_int_le(read_counters(made).preparations, PREPARATIONS_MOST);
   dvi_integrator_destroy(&made);
-  destroy_body(&of);
+  destroy_body(&model);
 }
 END_TEST
 
 /* On the group, at the ends the states themselves, and between them right to the path's order. */
 START_TEST(paths_between_states_are_those_of_the_group)
 {
-  body of;
+  body model;
   double q[BODY_Q], v[BODY_V];
-  take_body_for(_i, &of);
-  dvi_integrator *made = body_integrator(&of, methods[_i]),
-                 *fine = body_integrator(&of, methods[_i]);
+  take_body_for(_i, &model);
+  dvi_integrator *made = body_integrator(&model, methods[_i]),
+                 *fine = body_integrator(&model, methods[_i]);
   advance(made, 0.02, 3);
   advance(fine, 0.01, 5);
   ck_assert_int_eq(dvi_integrator_interpolate(made, 0.06, q, v), DVI_OK);
-  ck_assert_double_le(distance(of.nq, q, dvi_integrator_q(made)), 1e-14);
+  ck_assert_double_le(distance(model.nq, q, dvi_integrator_q(made)), 1e-14);
   ck_assert_int_eq(dvi_integrator_interpolate(made, 0.05, q, v), DVI_OK);
-  ck_assert_double_le(dvi_system_distance(of.system, q), 1e-14);
-  ck_assert_msg(distance(of.nq, q, dvi_integrator_q(fine)) < 1e-4, "%.1e",
-                distance(of.nq, q, dvi_integrator_q(fine)));
+  ck_assert_double_le(dvi_system_distance(model.system, q), 1e-14);
+  ck_assert_msg(distance(model.nq, q, dvi_integrator_q(fine)) < 1e-4, "%.1e",
+                distance(model.nq, q, dvi_integrator_q(fine)));
   double found[BODY_V] = {0};
-  ck_assert_int_eq(
-      dvi_system_velocity(of.system, 0.05, dvi_integrator_q(fine), dvi_integrator_p(fine), found),
-      DVI_OK);
-  ck_assert_msg(distance(of.nv, v, found) < 5e-2, "%.1e", distance(of.nv, v, found));
+  ck_assert_int_eq(dvi_system_velocity(model.system, 0.05, dvi_integrator_q(fine),
+                                       dvi_integrator_p(fine), found),
+                   DVI_OK);
+  ck_assert_msg(distance(model.nv, v, found) < 5e-2, "%.1e", distance(model.nv, v, found));
   dvi_integrator_destroy(&made);
   dvi_integrator_destroy(&fine);
-  destroy_body(&of);
+  destroy_body(&model);
 }
 END_TEST
 
-/* A step of the pendulum by about a third of a radian: the kept Jacobian serves, one is made in two
- * to three steps, and no more residuals than the 17 digits take. */
+/* A step of the pendulum turns by about a third of a radian. The kept Jacobian serves, one is made
+ * in two to three steps, and there are no more residuals than 17 digits take. */
 START_TEST(steps_cost_what_they_did)
 {
-  body of;
+  body model;
   dvi_counters counters;
-  make_body(PENDULUM_3D, &of);
-  dvi_integrator *made = body_integrator(&of, "lie-galerkin:degree=3");
+  make_body(PENDULUM_3D, &model);
+  dvi_integrator *made = body_integrator(&model, "lie-galerkin:degree=3");
   advance(made, 0.01, 1000);
   dvi_integrator_counters(made, &counters);
   ck_assert_int_eq(counters.simplified, 1000);
@@ -360,7 +361,7 @@ START_TEST(steps_cost_what_they_did)
   /* three nodes a residual, and starts */
   ck_assert_msg(counters.gradients <= 19000, "%ld", (long)counters.gradients);
   dvi_integrator_destroy(&made);
-  destroy_body(&of);
+  destroy_body(&model);
 }
 END_TEST
 

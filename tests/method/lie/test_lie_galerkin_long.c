@@ -1,6 +1,6 @@
 /* labels: invariant slow long */
-/* A million steps on groups, never put back on them: momenta, energy, and the distance from the
- * group. */
+/* A million steps on groups, which are never projected back: momenta, energy, and the distance from
+ * the group. */
 #include <dvi/diagnostics.h>
 #include <math.h>
 #include <string.h>
@@ -19,16 +19,16 @@ static const struct {
             {FREE_BODY, "euler-poincare:degree=2", 0.2},
             {DIRECTIONS, "sphere-galerkin:degree=2", 0.005}};
 
-/* Of 1e6 steps the roundings of the impulses leave 1e3 ulp in the momentum, and no trend; the
+/* Over 1e6 steps the roundings of the impulses leave 1e3 ulp in the momentum, and no trend. The
  * distance is that of the last rounding. */
 START_TEST(a_million_steps_keep_what_they_should)
 {
-  body of;
+  body model;
   double first[2], now[2], far = 0, momentum = 0;
   dvi_drift drift;
   dvi_drift_fit energy;
-  make_body(runs[_i].kind, &of);
-  dvi_integrator *made = body_integrator(&of, runs[_i].method);
+  make_body(runs[_i].kind, &model);
+  dvi_integrator *made = body_integrator(&model, runs[_i].method);
   ck_assert_int_eq(dvi_integrator_invariants(made, first), DVI_OK);
   dvi_drift_init(&drift);
   for (long n = 0; n < repeats(1000000); n += SAMPLING) {
@@ -36,15 +36,16 @@ START_TEST(a_million_steps_keep_what_they_should)
     ck_assert_int_eq(dvi_integrator_invariants(made, now), DVI_OK);
     dvi_drift_add(&drift, dvi_integrator_time(made), now[0]);
     momentum = fmax(momentum, fabs(now[1] - first[1]));
-    far = fmax(far, dvi_system_distance(of.system, dvi_integrator_q(made)));
+    far = fmax(far, dvi_system_distance(model.system, dvi_integrator_q(made)));
   }
   dvi_drift_result(&drift, &energy);
-  ck_assert_msg(energy.significance < 3, "%s: energy %.1e, drift %.1e, significance %.1f", of.name,
-                energy.largest, energy.change, energy.significance);
-  ck_assert_msg(momentum < 1e-12 * fmax(1, fabs(first[1])), "%s: momentum %.1e", of.name, momentum);
-  ck_assert_msg(far < 1e-15, "%s: distance %.1e", of.name, far);
+  ck_assert_msg(energy.significance < 3, "%s: energy %.1e, drift %.1e, significance %.1f",
+                model.name, energy.largest, energy.change, energy.significance);
+  ck_assert_msg(momentum < 1e-12 * fmax(1, fabs(first[1])), "%s: momentum %.1e", model.name,
+                momentum);
+  ck_assert_msg(far < 1e-15, "%s: distance %.1e", model.name, far);
   dvi_integrator_destroy(&made);
-  destroy_body(&of);
+  destroy_body(&model);
 }
 END_TEST
 

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "support/systems/cells.h"
+#include "support/systems/mixed_factors.h"
 #include "support/runs.h"
 #include "support/suite.h"
 
@@ -44,15 +44,16 @@ START_TEST(a_pendulum_shows_the_order)
 END_TEST
 
 /* Distance of q and p at time 1 from those of lie-galerkin:degree=6. */
-static double error_of_product(const body *of, const char *method, double h)
+static double error_of_product(const body *model, const char *method, double h)
 {
-  dvi_integrator *judge = body_integrator(of, "lie-galerkin:degree=6"),
-                 *integrator = body_integrator(of, method);
+  dvi_integrator *judge = body_integrator(model, "lie-galerkin:degree=6"),
+                 *integrator = body_integrator(model, method);
   advance(judge, 1.0 / 16, 16);
   advance(integrator, h, lround(1 / h));
   const double error = fmax(
-      distance(dvi_system_nq(of->system), dvi_integrator_q(judge), dvi_integrator_q(integrator)),
-      distance(dvi_system_nv(of->system), dvi_integrator_p(judge), dvi_integrator_p(integrator)));
+      distance(dvi_system_nq(model->system), dvi_integrator_q(judge), dvi_integrator_q(integrator)),
+      distance(dvi_system_nv(model->system), dvi_integrator_p(judge),
+               dvi_integrator_p(integrator)));
   dvi_integrator_destroy(&judge);
   dvi_integrator_destroy(&integrator);
   return error;
@@ -62,8 +63,8 @@ START_TEST(products_show_the_order)
 {
   body cells;
   const char *method = schemes[_i % 4].method;
-  if (_i / 4 < CELLS)
-    make_cells((cells_kind)(_i / 4), &cells);
+  if (_i / 4 < MIXED_KINDS)
+    make_mixed_factors((mixed_kind)(_i / 4), &cells);
   else
     make_body(PRODUCT, &cells);
   const double coarse = error_of_product(&cells, method, 1.0 / 64),
@@ -73,8 +74,8 @@ START_TEST(products_show_the_order)
 }
 END_TEST
 
-/* Exponentials stay on the group, and the implicit midpoint rule does; the explicit one leaves it
- * by its error. What stays can be started from. */
+/* Exponentials and the implicit midpoint rule stay on the group, and the explicit midpoint rule
+ * leaves it by its error. A state on the group can be a start. */
 START_TEST(the_group_is_kept_or_left)
 {
   body cells;
@@ -162,8 +163,8 @@ START_TEST(an_implicit_step_too_large_fails_by_name)
 }
 END_TEST
 
-/* The mass between cells is singular somewhere off the group: no guess goes there, so that the
- * matrix keeps the order of its pivots, and KLU its memory. */
+/* The mass between factors is singular somewhere off the group. No guess goes there, so the matrix
+ * keeps the order of its pivots, and KLU its memory. */
 START_TEST(coupled_cells_refuse_steps_too_large)
 {
   static const double h[] = {2, 50, 1e4};
@@ -200,7 +201,7 @@ END_TEST
 SUITE(lie_rk)
 {
   tcase_add_loop_test(tests, a_pendulum_shows_the_order, 0, 4);
-  tcase_add_loop_test(tests, products_show_the_order, 0, 4 * (CELLS + 1));
+  tcase_add_loop_test(tests, products_show_the_order, 0, 4 * (MIXED_KINDS + 1));
   tcase_add_loop_test(tests, the_group_is_kept_or_left, 0, 4);
   tcase_add_test(tests, there_is_no_path_between_steps);
   tcase_add_loop_test(tests, stages_count_gradients_and_take_no_memory, 0, 4);

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "support/systems/cells.h"
+#include "support/systems/mixed_factors.h"
 #include "support/runs.h"
 #include "support/suite.h"
 
@@ -20,10 +20,10 @@ static const char *const solves[] = {"lie-verlet:solve=exp", "lie-verlet:solve=c
 /* ---- order ---- */
 
 /* The error of Omega at time T. */
-static double error_of(const body *of, const char *method, double h, double T,
+static double error_of(const body *model, const char *method, double h, double T,
                        const double *moments, const double *end)
 {
-  dvi_integrator *integrator = body_integrator(of, method);
+  dvi_integrator *integrator = body_integrator(model, method);
   advance(integrator, h, lround(T / h));
   const double *Pi = dvi_integrator_p(integrator),
                Omega[] = {Pi[0] / moments[0], Pi[1] / moments[1], Pi[2] / moments[2]};
@@ -57,11 +57,11 @@ START_TEST(a_pendulum_has_order_2)
 END_TEST
 
 /* Distance of q and p at time 1 from those of lie-galerkin:degree=6. */
-static double distance_from_galerkin(const body *of, const char *method, double h)
+static double distance_from_galerkin(const body *model, const char *method, double h)
 {
-  const int n = dvi_system_nq(of->system), nv = dvi_system_nv(of->system);
-  dvi_integrator *judge = body_integrator(of, "lie-galerkin:degree=6"),
-                 *integrator = body_integrator(of, method);
+  const int n = dvi_system_nq(model->system), nv = dvi_system_nv(model->system);
+  dvi_integrator *judge = body_integrator(model, "lie-galerkin:degree=6"),
+                 *integrator = body_integrator(model, method);
   advance(judge, 1.0 / 16, 16);
   advance(integrator, h, lround(1 / h));
   const double error = fmax(distance(n, dvi_integrator_q(judge), dvi_integrator_q(integrator)),
@@ -71,38 +71,38 @@ static double distance_from_galerkin(const body *of, const char *method, double 
   return error;
 }
 
-enum { PRODUCTS = CELLS + 1 };
+enum { PRODUCTS = MIXED_KINDS + 1 };
 
-static void make_product(int number, body *of)
+static void make_product(int number, body *model)
 {
-  if (number < CELLS)
-    make_cells((cells_kind)number, of);
+  if (number < MIXED_KINDS)
+    make_mixed_factors((mixed_kind)number, model);
   else
-    make_body(PRODUCT, of);
+    make_body(PRODUCT, model);
 }
 
 START_TEST(products_have_order_2)
 {
-  body cells;
-  make_product(_i, &cells);
-  const double coarse = distance_from_galerkin(&cells, "lie-verlet", 1.0 / 64),
-               fine = distance_from_galerkin(&cells, "lie-verlet", 1.0 / 128);
+  body product;
+  make_product(_i, &product);
+  const double coarse = distance_from_galerkin(&product, "lie-verlet", 1.0 / 64),
+               fine = distance_from_galerkin(&product, "lie-verlet", 1.0 / 128);
   ck_assert_double_le(fine, 1e-3);
   ck_assert_double_eq_tol(log2(coarse / fine), 2, .1);
-  destroy_body(&cells);
+  destroy_body(&product);
 }
 END_TEST
 
 START_TEST(compositions_have_order_4)
 {
   const char *method = "composition:order=4,base=lie-verlet";
-  body cells;
-  make_product(_i, &cells);
-  const double coarse = distance_from_galerkin(&cells, method, 1.0 / 32),
-               fine = distance_from_galerkin(&cells, method, 1.0 / 64);
+  body product;
+  make_product(_i, &product);
+  const double coarse = distance_from_galerkin(&product, method, 1.0 / 32),
+               fine = distance_from_galerkin(&product, method, 1.0 / 64);
   ck_assert_double_le(fine, 1e-5);
   ck_assert_double_eq_tol(log2(coarse / fine), 4, .2);
-  destroy_body(&cells);
+  destroy_body(&product);
 }
 END_TEST
 
@@ -132,44 +132,44 @@ START_TEST(a_step_is_symplectic)
     double h;
   } cases[] = {{FREE_BODY, .2},   {PENDULUM_3D, .02}, {HEAVY_TOP, .002}, {MOTION, .2},
                {DIRECTIONS, .02}, {ANGLE, .2},        {PRODUCT, .05}};
-  body cells;
-  make_body(cases[_i].kind, &cells);
-  ck_assert_double_le(symplectic_defect(&cells, "lie-verlet", cases[_i].h), 1e-9);
-  destroy_body(&cells);
+  body product;
+  make_body(cases[_i].kind, &product);
+  ck_assert_double_le(symplectic_defect(&product, "lie-verlet", cases[_i].h), 1e-9);
+  destroy_body(&product);
 }
 END_TEST
 
 START_TEST(a_step_of_cells_is_symplectic)
 {
-  body cells;
-  make_cells(_i == 0 ? LOOSE : WEDGED, &cells);
-  ck_assert_double_le(symplectic_defect(&cells, "lie-verlet", .2), 1e-9);
+  body product;
+  make_mixed_factors(_i == 0 ? LOOSE : WEDGED, &product);
+  ck_assert_double_le(symplectic_defect(&product, "lie-verlet", .2), 1e-9);
   /* the test can tell */
-  ck_assert_double_ge(symplectic_defect(&cells, "lie-rk:scheme=crouch-grossman", .2), 1e-5);
-  destroy_body(&cells);
+  ck_assert_double_ge(symplectic_defect(&product, "lie-rk:scheme=crouch-grossman", .2), 1e-5);
+  destroy_body(&product);
 }
 END_TEST
 
 START_TEST(a_step_back_undoes_a_step)
 {
-  body cells;
-  make_product(_i, &cells);
-  const int n = dvi_system_nq(cells.system), nv = dvi_system_nv(cells.system);
-  dvi_integrator *integrator = body_integrator(&cells, "lie-verlet");
+  body product;
+  make_product(_i, &product);
+  const int n = dvi_system_nq(product.system), nv = dvi_system_nv(product.system);
+  dvi_integrator *integrator = body_integrator(&product, "lie-verlet");
   double p[BODY_V];
   memcpy(p, dvi_integrator_p(integrator), (size_t)nv * sizeof *p);
   advance(integrator, .1, 10);
-  ck_assert_double_ge(distance(n, dvi_integrator_q(integrator), cells.q), .1);
+  ck_assert_double_ge(distance(n, dvi_integrator_q(integrator), product.q), .1);
   advance(integrator, -.1, 10);
-  ck_assert_double_le(distance(n, dvi_integrator_q(integrator), cells.q), 1e-13);
+  ck_assert_double_le(distance(n, dvi_integrator_q(integrator), product.q), 1e-13);
   ck_assert_double_le(distance(nv, dvi_integrator_p(integrator), p), 1e-13);
   dvi_integrator_destroy(&integrator);
-  destroy_body(&cells);
+  destroy_body(&product);
 }
 END_TEST
 
 /* The discrete free body has the energy and the momentum of the continuous one (Hairer and Vilmart
- * 2006): no error but rounding, however thin and fast it is. */
+ * 2006) up to rounding, however thin and fast it is. */
 START_TEST(thin_and_fast_bodies_keep_energy_and_momentum)
 {
   static const struct {
@@ -200,7 +200,8 @@ END_TEST
 
 /* ---- steps too large ---- */
 
-/* h p just below the moment of inertia can be solved, just above not; the state stays. */
+/* The step can be solved for h p just below the moment of inertia, and not just above. The state
+ * stays. */
 START_TEST(a_step_beyond_the_bound_is_refused)
 {
   static const double inertia[] = {2, 0, 0, 0, 2, 0, 0, 0, 2};
@@ -241,16 +242,16 @@ END_TEST
 
 START_TEST(coupled_cells_refuse_steps_too_large)
 {
-  body cells;
-  make_body(PRODUCT, &cells);
-  dvi_integrator *integrator = body_integrator(&cells, "lie-verlet");
+  body product;
+  make_body(PRODUCT, &product);
+  dvi_integrator *integrator = body_integrator(&product, "lie-verlet");
   ck_assert_int_eq(dvi_integrator_step(integrator, 3), DVI_STEP_TOO_LARGE);
   check_words("too far");
-  ck_assert_int_eq(memcmp(dvi_integrator_q(integrator), cells.q, (size_t)cells.nq * sizeof(double)),
-                   0);
+  ck_assert_int_eq(
+      memcmp(dvi_integrator_q(integrator), product.q, (size_t)product.nq * sizeof(double)), 0);
   advance(integrator, .1, 1);
   dvi_integrator_destroy(&integrator);
-  destroy_body(&cells);
+  destroy_body(&product);
 }
 END_TEST
 
@@ -271,9 +272,9 @@ static int weight(double t, const double *q, double *V_q, void *user)
   return 0;
 }
 
-/* A ball under a weight along an axis of its own; as a system of its own with -L: the scalar mass
- * -1 makes I of J into -I. */
-static dvi_integrator *ball(const char *method, double sign, body *of)
+/* A ball under a weight along an axis of its own, and a system with the Lagrangian -L. Its scalar
+ * mass -1 makes I of J into -I. */
+static dvi_integrator *ball(const char *method, double sign, body *model)
 {
   static const double J[] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   static double signs[2];
@@ -282,7 +283,7 @@ static dvi_integrator *ball(const char *method, double sign, body *of)
   const dvi_factor factor = {.kind = DVI_SO3, .inertia = J};
   const dvi_potential potential = {
       .name = "weight", .value = height, .gradient = weight, .user = own};
-  *of = (body){
+  *model = (body){
       .name = "ball", .nq = 9, .nv = 3, .q = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .v = {1, .5, .2}};
   const dvi_system_terms terms = {.factors = &factor,
                                   .factor_count = 1,
@@ -290,8 +291,8 @@ static dvi_integrator *ball(const char *method, double sign, body *of)
                                   .potential_count = 1,
                                   .mass = {.scalar = sign < 0 ? -1 : 0},
                                   .autonomous = 1};
-  ck_assert_int_eq(dvi_system_create(&terms, &of->system), DVI_OK);
-  return body_integrator(of, method);
+  ck_assert_int_eq(dvi_system_create(&terms, &model->system), DVI_OK);
+  return body_integrator(model, method);
 }
 
 /* -L has the same motions as L. */
@@ -339,9 +340,9 @@ END_TEST
 
 START_TEST(a_step_costs_one_gradient_and_no_memory)
 {
-  body cells;
-  make_product(_i, &cells);
-  dvi_integrator *integrator = body_integrator(&cells, "lie-verlet");
+  body product;
+  make_product(_i, &product);
+  dvi_integrator *integrator = body_integrator(&product, "lie-verlet");
   dvi_counters before, after;
   advance(integrator, .1, 1);
   dvi_integrator_counters(integrator, &before);
@@ -352,7 +353,7 @@ START_TEST(a_step_costs_one_gradient_and_no_memory)
   ck_assert_int_eq(after.allocations, before.allocations);
   ck_assert_int_le(after.jacobians - before.jacobians, _i == LOOSE || _i == LINES ? 0 : 20 * 6);
   dvi_integrator_destroy(&integrator);
-  destroy_body(&cells);
+  destroy_body(&product);
 }
 END_TEST
 
@@ -376,7 +377,7 @@ START_TEST(hundreds_of_bodies_leap_one_by_one)
       dvi_system_create(
           &(dvi_system_terms){.factors = factors, .factor_count = MANY, .autonomous = 1}, &system),
       DVI_OK);
-  dvi_integrator *integrator = made_integrator(system, "lie-verlet");
+  dvi_integrator *integrator = create_integrator(system, "lie-verlet");
   ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, numbers, v), DVI_OK);
   double first, last;
   dvi_counters before, after;
@@ -393,7 +394,7 @@ START_TEST(hundreds_of_bodies_leap_one_by_one)
 }
 END_TEST
 
-/* A rigid motion without forces: the centre of mass goes straight, in every step. */
+/* The centre of mass of a rigid motion without forces moves on a straight line in every step. */
 START_TEST(a_centre_of_mass_goes_straight)
 {
   const double centre[] = {.1, -.2, .15}, mass = 2, h = .1, steps = 1000;
@@ -421,28 +422,28 @@ END_TEST
 
 START_TEST(between_steps_it_stays_on_the_group)
 {
-  body cells;
-  make_product(_i, &cells);
-  const int n = dvi_system_nq(cells.system);
-  dvi_integrator *integrator = body_integrator(&cells, "lie-verlet");
+  body product;
+  make_product(_i, &product);
+  const int n = dvi_system_nq(product.system);
+  dvi_integrator *integrator = body_integrator(&product, "lie-verlet");
   double q[BODY_Q], v[BODY_V];
   advance(integrator, .1, 1);
   ck_assert_int_eq(dvi_integrator_interpolate(integrator, .05, q, v), DVI_OK);
-  ck_assert_double_le(dvi_system_distance(cells.system, q), 1e-15);
+  ck_assert_double_le(dvi_system_distance(product.system, q), 1e-15);
   ck_assert_int_eq(dvi_integrator_interpolate(integrator, .1, q, v), DVI_OK);
   ck_assert_double_le(distance(n, q, dvi_integrator_q(integrator)), 1e-14);
   ck_assert_int_eq(dvi_integrator_interpolate(integrator, 0, q, v), DVI_OK);
-  ck_assert_double_le(distance(n, q, cells.q), 1e-15);
-  /* the step's constant velocity: right to O(h) */
-  ck_assert_double_le(distance(dvi_system_nv(cells.system), v, cells.v), .2);
+  ck_assert_double_le(distance(n, q, product.q), 1e-15);
+  /* the step's constant velocity, right up to O(h) */
+  ck_assert_double_le(distance(dvi_system_nv(product.system), v, product.v), .2);
   dvi_integrator_destroy(&integrator);
-  destroy_body(&cells);
+  destroy_body(&product);
 }
 END_TEST
 
 START_TEST(systems_without_factors_are_refused)
 {
-  problem *oscillator = made_problem("oscillator", NULL);
+  problem *oscillator = create_problem("oscillator", NULL);
   dvi_integrator *integrator = NULL;
   ck_assert_int_eq(dvi_integrator_create(oscillator->system, "lie-verlet", &integrator),
                    DVI_UNSUPPORTED);

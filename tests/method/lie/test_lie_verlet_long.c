@@ -2,7 +2,7 @@
 #include <check.h>
 #include <math.h>
 
-#include "support/systems/cells.h"
+#include "support/systems/mixed_factors.h"
 #include "support/runs.h"
 #include "support/suite.h"
 
@@ -19,7 +19,7 @@ static double mean_energy(dvi_integrator *integrator, double first, double h, in
 }
 
 /* A million steps of half a radian each. Roundings of one step are 1e-16 of the angle, and add up
- * as a random walk: 1e3 times that. */
+ * as a random walk to 1e3 times that. */
 START_TEST(a_million_steps_stay_on_the_group_with_their_momentum)
 {
   body pendulum;

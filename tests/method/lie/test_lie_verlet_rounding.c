@@ -3,13 +3,13 @@
 #include <dvi/group.h>
 #include <math.h>
 
-#include "support/systems/cells.h"
+#include "support/systems/mixed_factors.h"
 #include "support/runs.h"
 #include "support/suite.h"
 
-/* What is the same in every step adds up: a defect of 1e-18 a step is 1e-12 after these. Roundings
- * that differ from step to step are a random walk, of 1000 times one of them: those of the leaps,
- * which change the energy. Turns have none. */
+/* Equal errors of all steps add up, so a defect of 1e-18 a step is 1e-12 after these. Roundings
+ * that differ from step to step are a random walk of 1000 times one of them. Kick-drift steps,
+ * which change the energy, have such roundings, and pure rotations have none. */
 enum { STEPS = 1000000 };
 
 static const double rounding = 1.1e-16, walk = 1000;
@@ -21,7 +21,7 @@ static void momentum_in_space(const dvi_integrator *integrator, double *momentum
     momentum[i] = R[3 * i] * Pi[0] + R[3 * i + 1] * Pi[1] + R[3 * i + 2] * Pi[2];
 }
 
-/* The same rotation in all steps. */
+/* All steps have the same rotation. */
 START_TEST(a_steady_rotation_stays_on_the_group)
 {
   static const double J[] = {1, 0, 0, 0, 1, 0, 0, 0, 1},
@@ -59,7 +59,7 @@ START_TEST(tumbling_bodies_keep_energy_and_momentum)
     double moment[3], Omega[3], w[3], h;
     const char *method;
   } cases[] = {
-      /* a rod: small errors of the turn are large ones of its spin */
+      /* a rod, in which small errors of the rotation are large ones of its spin */
       {{1e-6, 1, 1}, {.3, .2, .5}, {0}, .4, "lie-verlet"},
       {{1e-6, 1, 1}, {.3, .2, .5}, {0}, .4, "lie-verlet:solve=exp"},
       /* its axes are not those of the frame */
@@ -92,7 +92,7 @@ START_TEST(directions_and_angles_keep_their_length)
       dvi_system_create(&(dvi_system_terms){.factors = factors, .factor_count = 2, .autonomous = 1},
                         &system),
       DVI_OK);
-  dvi_integrator *integrator = made_integrator(system, "lie-verlet");
+  dvi_integrator *integrator = create_integrator(system, "lie-verlet");
   ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, q, v), DVI_OK);
   advance(integrator, .1, STEPS);
   ck_assert_double_le(dvi_system_distance(system, dvi_integrator_q(integrator)), 4 * rounding);

@@ -5,16 +5,16 @@
 #include "support/runs.h"
 #include "support/suite.h"
 
-/* What is moved and its momentum keep twice the digits, so that only the last rounding of both is
- * seen. What one rounding of a step would give, all to one side, is STEPS times as much; their
- * random walk 300 times. */
+/* The state and its momentum keep twice the digits, so that only the last rounding of both
+ * shows. One rounding a step to the same side would give STEPS times as much, and a random walk
+ * 300 times. */
 enum { STEPS = 100000 };
 
 static const double rounding = 1.1e-16;
 
 static const double inertia[][9] = {{1.1, 0, 0, 0, .8, 0, 0, 0, .9}, {1, 0, 0, 0, 1, 0, 0, 0, 1}};
 
-/* One factor that turns by the same angle in all steps: about one axis of a body; about any of a
+/* One factor turns by the same angle in all steps, about one axis of a body, or about any axis of a
  * spherical one. */
 static const struct {
   dvi_factor factor;
@@ -72,7 +72,7 @@ START_TEST(steady_turns_keep_to_the_group_and_keep_their_momentum)
       dvi_system_create(&(dvi_system_terms){.factors = factor, .factor_count = 1, .autonomous = 1},
                         &system),
       DVI_OK);
-  dvi_integrator *integrator = made_integrator(system, cases[_i].method);
+  dvi_integrator *integrator = create_integrator(system, cases[_i].method);
   for (int i = 0; i < 3; i++) v[i] = cases[_i].rate * motions[cases[_i].motion].v[i];
   ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, motions[cases[_i].motion].q, v),
                    DVI_OK);
@@ -80,7 +80,7 @@ START_TEST(steady_turns_keep_to_the_group_and_keep_their_momentum)
   advance(integrator, .1, STEPS);
   momentum_in_space(factor->kind, integrator, space[1]);
   ck_assert_double_le(dvi_system_distance(system, dvi_integrator_q(integrator)), 4 * rounding);
-  /* An angle's momentum is the sum of what its rows leave: a random walk. */
+  /* An angle's momentum is the sum of the residuals of its rows, a random walk. */
   ck_assert_double_le(distance(3, space[0], space[1]),
                       (factor->kind == DVI_U1 ? 300 : 8) * rounding * magnitude(3, space[0]));
   dvi_integrator_destroy(&integrator);
@@ -131,7 +131,7 @@ START_TEST(a_pendulum_keeps_its_vertical_momentum)
                                   .potential_count = 1,
                                   .autonomous = 1};
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
-  dvi_integrator *integrator = made_integrator(system, pendulums[_i].method);
+  dvi_integrator *integrator = create_integrator(system, pendulums[_i].method);
   ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, q, v), DVI_OK);
   momentum_in_space(DVI_S2, integrator, space[0]);
   advance(integrator, pendulums[_i].h, STEPS);

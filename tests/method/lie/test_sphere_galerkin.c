@@ -1,6 +1,6 @@
 /* labels: invariant */
-/* Directions alone: the steps of lie-galerkin, their length, chains at linear cost, and what is
- * refused. */
+/* Directions alone: the steps of lie-galerkin, the length of directions, chains at linear cost, and
+ * refusals. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -13,24 +13,24 @@
 
 START_TEST(it_takes_the_steps_of_lie_galerkin)
 {
-  body of;
-  make_body(_i == 0 ? DIRECTIONS : ANGLE, &of);
-  dvi_integrator *mine = body_integrator(&of, "sphere-galerkin:degree=3"),
-                 *theirs = body_integrator(&of, "lie-galerkin:degree=3");
+  body model;
+  make_body(_i == 0 ? DIRECTIONS : ANGLE, &model);
+  dvi_integrator *mine = body_integrator(&model, "sphere-galerkin:degree=3"),
+                 *theirs = body_integrator(&model, "lie-galerkin:degree=3");
   advance(mine, 0.02, 100);
   advance(theirs, 0.02, 100);
   ck_assert_mem_eq(dvi_integrator_q(mine), dvi_integrator_q(theirs),
-                   (size_t)of.nq * sizeof(double));
+                   (size_t)model.nq * sizeof(double));
   ck_assert_mem_eq(dvi_integrator_p(mine), dvi_integrator_p(theirs),
-                   (size_t)of.nv * sizeof(double));
+                   (size_t)model.nv * sizeof(double));
   dvi_integrator_destroy(&mine);
   dvi_integrator_destroy(&theirs);
-  destroy_body(&of);
+  destroy_body(&model);
 }
 END_TEST
 
-/* A free direction goes round a great circle: always the same step, in which rounding errors of one
- * sign would add up to 1e-10. */
+/* A free direction goes round a great circle with the same step each time, in which rounding errors
+ * of one sign would add up to 1e-10. */
 START_TEST(a_free_direction_keeps_its_momentum)
 {
   const dvi_factor factor = {.kind = DVI_S2, .mass = 1};
@@ -39,7 +39,7 @@ START_TEST(a_free_direction_keeps_its_momentum)
       dvi_system_create(&(dvi_system_terms){.factors = &factor, .factor_count = 1, .autonomous = 1},
                         &system),
       DVI_OK);
-  dvi_integrator *made = made_integrator(system, "sphere-galerkin:degree=2");
+  dvi_integrator *made = create_integrator(system, "sphere-galerkin:degree=2");
   ck_assert_int_eq(
       dvi_integrator_start_velocity(made, 0, (double[]){1, 0, 0}, (double[]){0, .7, .4}), DVI_OK);
   advance(made, 1e-3, 100000);
@@ -52,37 +52,37 @@ START_TEST(a_free_direction_keeps_its_momentum)
 }
 END_TEST
 
-/* |q| = 1 and p orthogonal to q, without projection; the vertical momentum. */
+/* |q| = 1 and p is orthogonal to q, without projection, and the vertical momentum is kept. */
 START_TEST(directions_stay_directions)
 {
-  body of;
+  body model;
   double before[2], after[2];
-  make_body(DIRECTIONS, &of);
-  dvi_integrator *made = body_integrator(&of, "sphere-galerkin:degree=2");
+  make_body(DIRECTIONS, &model);
+  dvi_integrator *made = body_integrator(&model, "sphere-galerkin:degree=2");
   ck_assert_int_eq(dvi_integrator_invariants(made, before), DVI_OK);
   advance(made, 0.01, 10000);
   ck_assert_int_eq(dvi_integrator_invariants(made, after), DVI_OK);
   const double *q = dvi_integrator_q(made), *p = dvi_integrator_p(made);
-  ck_assert_double_le(dvi_system_distance(of.system, q), 1e-15);
+  ck_assert_double_le(dvi_system_distance(model.system, q), 1e-15);
   for (int i = 0; i < 6; i += 3)
     ck_assert_double_le(fabs(q[i] * p[i] + q[i + 1] * p[i + 1] + q[i + 2] * p[i + 2]),
                         1e-14 * magnitude(6, p));
   ck_assert_double_le(fabs(after[1] - before[1]), 1e-15);
   dvi_integrator_destroy(&made);
-  destroy_body(&of);
+  destroy_body(&model);
 }
 END_TEST
 
 START_TEST(rotations_are_refused_by_name)
 {
-  body of;
+  body model;
   dvi_integrator *made;
-  make_body(PRODUCT, &of);
-  ck_assert_int_eq(dvi_integrator_create(of.system, "sphere-galerkin", &made), DVI_UNSUPPORTED);
+  make_body(PRODUCT, &model);
+  ck_assert_int_eq(dvi_integrator_create(model.system, "sphere-galerkin", &made), DVI_UNSUPPORTED);
   check_words("sphere-galerkin: the system declares rotations");
   check_words("methods for this system: composition, lie-galerkin");
   ck_assert_ptr_null(strstr(dvi_last_error(), "lie-rk, sphere-galerkin"));
-  destroy_body(&of);
+  destroy_body(&model);
 }
 END_TEST
 
@@ -93,22 +93,22 @@ typedef struct cost {
 
 static cost cost_of(int links)
 {
-  chain of;
+  direction_chain linked;
   cost found;
-  make_linked_chain(links, &of);
+  make_direction_chain(links, &linked);
   const long before = heap_bytes();
-  dvi_integrator *made = made_integrator(of.system, "sphere-galerkin:degree=2,solver=newton");
+  dvi_integrator *made = create_integrator(linked.system, "sphere-galerkin:degree=2,solver=newton");
   found.bytes = heap_bytes() - before;
-  ck_assert_int_eq(dvi_integrator_start_velocity(made, 0, of.q, of.v), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_start_velocity(made, 0, linked.q, linked.v), DVI_OK);
   advance(made, 0.02, 10);
   dvi_integrator_counters(made, &found.counters);
   dvi_integrator_destroy(&made);
-  destroy_chain(&of);
+  destroy_direction_chain(&linked);
   return found;
 }
 
-/* Ten times the links: ten times the memory, and as many residuals and Jacobians, whose entries
- * test_charted counts; what a chain of one link needs is part of both. */
+/* Ten times the links take ten times the memory, and as many residuals and Jacobians, whose entries
+ * test_charted counts. The cost of a chain of one link is part of both. */
 START_TEST(chains_cost_as_much_as_they_have_links)
 {
   const cost few = cost_of(100), many = cost_of(1000);

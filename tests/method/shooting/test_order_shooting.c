@@ -38,21 +38,22 @@ static const struct {
               {"double-pendulum", NULL, 1, {0, 300, 60, 50, 30, 30, 30, 0, 29}}};
 enum { PLACES = sizeof places / sizeof *places };
 
-/* Runs are by as much finer from one to the next; the last ones must stay above roundoff. */
+/* Each run is finer than the one before by the same factor. The last ones must stay above
+ * roundoff. */
 static double ratio_of(int order)
 {
   return order <= 4 ? 1.6 : order <= 6 ? 1.4 : 1.15;
 }
 
 /* A part of the coordinates' and momenta's largest, against quadruple precision. */
-static double error_of(const problem *of, double length, long steps, const char *method,
+static double error_of(const problem *model, double length, long steps, const char *method,
                        const double *q, const double *p)
 {
-  dvi_integrator *integrator = started(of, method);
+  dvi_integrator *integrator = start_integrator(model, method);
   advance(integrator, length / (double)steps, steps);
   const double error = fmax(
-      distance(of->nq, q, dvi_integrator_q(integrator)) / magnitude(of->nq, q),
-      distance(of->nq, p, dvi_integrator_p(integrator)) / magnitude(of->nq, p));
+      distance(model->nq, q, dvi_integrator_q(integrator)) / magnitude(model->nq, q),
+      distance(model->nq, p, dvi_integrator_p(integrator)) / magnitude(model->nq, p));
   dvi_integrator_destroy(&integrator);
   return error;
 }
@@ -73,35 +74,35 @@ static double slope_of(int place, const char *method, ladder on)
 {
   enum { LEVELS = 4, N = QUAD_N_MAX };
   double q[N], p[N], x = 0, y = 0, xx = 0, xy = 0;
-  problem *of = made_problem(places[place].problem, places[place].setting);
-  memcpy(q, of->q, (size_t)of->nq * sizeof *q);
-  memcpy(p, of->p, (size_t)of->nq * sizeof *p);
-  ck_assert_double_le(quad_solve(of->name, places[place].setting != NULL, &places[place].setting,
+  problem *model = create_problem(places[place].problem, places[place].setting);
+  memcpy(q, model->q, (size_t)model->nq * sizeof *q);
+  memcpy(p, model->p, (size_t)model->nq * sizeof *p);
+  ck_assert_double_le(quad_solve(model->name, places[place].setting != NULL, &places[place].setting,
                                  places[place].length, q, p),
                       1e-17);
   for (int level = 0; level < LEVELS; level++) {
     const long steps = lround(on.first * pow(on.ratio, level));
-    const double error = error_of(of, places[place].length, steps, method, q, p),
+    const double error = error_of(model, places[place].length, steps, method, q, p),
                  a = -log((double)steps), b = log(error);
     if (getenv("DVI_SHOW_ORDERS") != NULL)
-      printf("%s %s %ld %.2e\n", of->name, method, steps, error);
+      printf("%s %s %ld %.2e\n", model->name, method, steps, error);
     ck_assert_double_ge(error, 1e-14);
     x += a;
     y += b;
     xx += a * a;
     xy += a * b;
   }
-  problem_destroy(&of);
+  problem_destroy(&model);
   return (LEVELS * xy - x * y) / (LEVELS * xx - x * x);
 }
 
 static void check_claim(int place, const char *method, int order)
 {
-  problem *of = made_problem(places[place].problem, NULL);
-  dvi_integrator *integrator = made_integrator(of->system, method);
+  problem *model = create_problem(places[place].problem, NULL);
+  dvi_integrator *integrator = create_integrator(model->system, method);
   ck_assert_int_eq(dvi_integrator_order(integrator), order);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 
 static void check_slope_on(int place, const char *method, int order, double most, ladder on)
@@ -124,29 +125,29 @@ START_TEST(the_order_is_the_lower_of_both)
   const int which = sampled_case(_i), one = which / RULES, rule = which % RULES;
   const int order = one_steps[one].order < rules[rule].order ? one_steps[one].order
                                                              : rules[rule].order;
-  const char *method = spec("shooting:onestep=%s,quadrature=%s", one_steps[one].setting,
-                            rules[rule].setting);
+  const char *method = method_spec("shooting:onestep=%s,quadrature=%s", one_steps[one].setting,
+                                   rules[rule].setting);
   for (int place = 0; place < PLACES; place++) check_slope(place, method, order, order + 0.2);
 }
 END_TEST
 
-/* A motion that can be run backwards makes the leading error of an odd order small: on pendulum and
- * kepler the next, even order is seen first. On the double pendulum, which has the errors of its
- * mass, too, it is not. */
+/* A motion that can be run backwards makes the leading error of an odd order small. On pendulum and
+ * kepler the next, even order shows first. On the double pendulum, which also has errors of its
+ * mass, it does not. */
 START_TEST(odd_orders_are_no_lower_than_claimed)
 {
   static const char *const odd[] = {
       "kutta3,quadrature=lobatto,nodes=4", "radau-iia,quadrature=lobatto,nodes=4",
       "dormand-prince,quadrature=lobatto,nodes=4", "radau-iia,stages=3,quadrature=lobatto,nodes=5"};
   const int order = _i < 2 ? 3 : 5;
-  check_slope(0, spec("shooting:onestep=%s", odd[_i]), order, order + 1.5);
-  check_slope(1, spec("shooting:onestep=%s", odd[_i]), order, order + 1.5);
-  if (_i != 2) check_slope(2, spec("shooting:onestep=%s", odd[_i]), order, order + 0.2);
+  check_slope(0, method_spec("shooting:onestep=%s", odd[_i]), order, order + 1.5);
+  check_slope(1, method_spec("shooting:onestep=%s", odd[_i]), order, order + 1.5);
+  if (_i != 2) check_slope(2, method_spec("shooting:onestep=%s", odd[_i]), order, order + 0.2);
 }
 END_TEST
 
-/* Its errors of order 5 and 6 have opposite signs on the double pendulum: the slope comes up to 5
- * from below, 4.6 with 60 steps. */
+/* Its errors of order 5 and 6 have opposite signs on the double pendulum. The slope approaches 5
+ * from below, and is 4.6 with 60 steps. */
 START_TEST(dormand_prince_comes_up_to_order_5)
 {
   check_slope_on(2, "shooting:onestep=dormand-prince,quadrature=lobatto,nodes=5", 5, 5.2,
@@ -159,8 +160,8 @@ START_TEST(compositions_have_the_order_of_the_scheme)
   static const char *const composed[] = {"implicit-midpoint,composition=4", "gauss,composition=6"};
   const int order = _i == 0 ? 4 : 6;
   for (int place = 0; place < PLACES; place++)
-    check_slope(place, spec("shooting:onestep=%s,quadrature=lobatto,nodes=5", composed[_i]), order,
-                order + 0.2);
+    check_slope(place, method_spec("shooting:onestep=%s,quadrature=lobatto,nodes=5", composed[_i]),
+                order, order + 0.2);
 }
 END_TEST
 
@@ -179,13 +180,13 @@ enum { SERIES = sizeof series / sizeof *series };
 START_TEST(series_have_the_order_of_their_degree)
 {
   for (int place = 0; place < PLACES; place++)
-    check_slope(place, spec("shooting:onestep=%s", series[_i].setting), series[_i].order,
+    check_slope(place, method_spec("shooting:onestep=%s", series[_i].setting), series[_i].order,
                 series[_i].order + 0.2);
 }
 END_TEST
 
 /* One step from end to end has no nodes between, and the double pendulum's motion has poles at 0.18
- * from the real line up to t = 1: what remains of the next orders dies out late, and the error
+ * from the real line up to t = 1. The remainder of the next orders dies out late, and the error
  * changes its sign on the way (taylor,stages=8 between 31 and 44 steps). */
 static const struct {
   const char *setting;
@@ -202,58 +203,59 @@ START_TEST(euler_maclaurin_has_order_twice_its_terms_and_2)
 {
   const int order = summed[_i].order;
   for (int place = 0; place < PLACES; place++)
-    check_slope_on(place, spec("shooting:onestep=%s", summed[_i].setting), order, order + 0.2,
-                   (ladder){summed[_i].first[place], ratio_of(order)});
+    check_slope_on(place, method_spec("shooting:onestep=%s", summed[_i].setting), order,
+                   order + 0.2, (ladder){summed[_i].first[place], ratio_of(order)});
 }
 END_TEST
 
 /* The radius of convergence of the motion's Taylor series at a time, by the roots of its last
  * coefficients. */
-static double radius_at(const problem *of, double t)
+static double radius_at(const problem *model, double t)
 {
   enum { DEGREE = 20, FIRST = 16, N = QUAD_N_MAX };
   double q[N], p[N], v[N] = {0}, most = 0;
   dvi__flow_series *motion;
   dvi__evaluator *evaluator;
-  memcpy(q, of->q, (size_t)of->nq * sizeof *q);
-  memcpy(p, of->p, (size_t)of->nq * sizeof *p);
-  ck_assert_double_le(quad_solve(of->name, 0, NULL, t, q, p), 1e-17);
-  ck_assert_int_eq(dvi__flow_series_create(of->system, DEGREE, DVI__GRADIENTS, NULL, &motion),
+  memcpy(q, model->q, (size_t)model->nq * sizeof *q);
+  memcpy(p, model->p, (size_t)model->nq * sizeof *p);
+  ck_assert_double_le(quad_solve(model->name, 0, NULL, t, q, p), 1e-17);
+  ck_assert_int_eq(dvi__flow_series_create(model->system, DEGREE, DVI__GRADIENTS, NULL, &motion),
                    DVI_OK);
-  ck_assert_int_eq(dvi__evaluator_create(of->system, 1, DVI__HESSIANS, NULL, &evaluator), DVI_OK);
+  ck_assert_int_eq(dvi__evaluator_create(model->system, 1, DVI__HESSIANS, NULL, &evaluator),
+                   DVI_OK);
   ck_assert_int_eq(dvi__legendre_inverse(evaluator, t, q, p, v), DVI_OK);
   ck_assert_int_eq(dvi__flow_series_expand(motion, t, q, v), DVI_OK);
   for (int k = FIRST; k <= DEGREE; k++)
-    for (int i = 0; i < of->nq; i++)
-      most = fmax(most, pow(fabs(dvi__flow_series_q(motion)[k * of->nq + i]), 1.0 / k));
+    for (int i = 0; i < model->nq; i++)
+      most = fmax(most, pow(fabs(dvi__flow_series_q(motion)[k * model->nq + i]), 1.0 / k));
   dvi__evaluator_destroy(&evaluator);
   dvi__flow_series_destroy(&motion);
   return 1 / most;
 }
 
-/* At t = 6.2 the double pendulum's rods whip round. A residual makes the last error smaller by the
- * step's own: from half the radius on not at all. */
+/* At t = 6.2 the double pendulum's rods whip round. Each residual reduces the error by a factor
+ * like the step's own error, and by none for steps from half the radius on. */
 START_TEST(newtons_method_is_as_fast_as_the_step_is_short)
 {
   static const struct {
     double h, error;
     long residuals;
   } steps[] = {{0.028, 1e-2, 9}, {0.0166, 5e-4, 5}, {0.0098, 2e-5, 4}};
-  problem *of = made_problem("double-pendulum", NULL);
+  problem *model = create_problem("double-pendulum", NULL);
   double q[2], p[2];
-  ck_assert_double_eq_tol(radius_at(of, 0.95), 0.184, 0.005);
-  ck_assert_double_eq_tol(radius_at(of, 6.2), 0.115, 0.005);
-  memcpy(q, of->q, sizeof q);
-  memcpy(p, of->p, sizeof p);
-  ck_assert_double_le(quad_solve(of->name, 0, NULL, 6.2, q, p), 1e-17);
+  ck_assert_double_eq_tol(radius_at(model, 0.95), 0.184, 0.005);
+  ck_assert_double_eq_tol(radius_at(model, 6.2), 0.115, 0.005);
+  memcpy(q, model->q, sizeof q);
+  memcpy(p, model->p, sizeof p);
+  ck_assert_double_le(quad_solve(model->name, 0, NULL, 6.2, q, p), 1e-17);
   for (size_t k = 0; k < sizeof steps / sizeof *steps; k++) {
-    dvi_integrator *integrator = made_integrator(
-        of->system, "shooting:onestep=taylor,quadrature=euler-maclaurin");
+    dvi_integrator *integrator = create_integrator(
+        model->system, "shooting:onestep=taylor,quadrature=euler-maclaurin");
     double end_q[2], end_p[2];
     dvi_counters counters;
     memcpy(end_q, q, sizeof q);
     memcpy(end_p, p, sizeof p);
-    ck_assert_double_le(quad_solve(of->name, 0, NULL, steps[k].h, end_q, end_p), 1e-17);
+    ck_assert_double_le(quad_solve(model->name, 0, NULL, steps[k].h, end_q, end_p), 1e-17);
     ck_assert_int_eq(dvi_integrator_start(integrator, 0, q, p), DVI_OK);
     advance(integrator, steps[k].h, 1);
     dvi_integrator_counters(integrator, &counters);
@@ -261,7 +263,7 @@ START_TEST(newtons_method_is_as_fast_as_the_step_is_short)
     ck_assert_double_le(distance(2, end_p, dvi_integrator_p(integrator)), steps[k].error);
     dvi_integrator_destroy(&integrator);
   }
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

@@ -11,7 +11,7 @@
 
 /* ---- structure ---- */
 
-/* Of high orders what is not symmetric cannot be told from roundoff. */
+/* Methods of high orders that are not symmetric cannot be told from roundoff. */
 enum { UNSYMMETRIC, SYMMETRIC, NEARLY };
 
 static const struct {
@@ -50,29 +50,29 @@ enum { PLACES = sizeof places / sizeof *places };
 /* 1e-10 is the floor of differences, see dvi_symplecticity. */
 START_TEST(steps_are_symplectic_and_symmetric_pairs_symmetric)
 {
-  const char *method = spec("shooting:%s", pairs[_i].setting);
+  const char *method = method_spec("shooting:%s", pairs[_i].setting);
   for (int place = 0; place < PLACES; place++) {
-    problem *of = made_problem(places[place].problem, NULL);
-    dvi_integrator *integrator = started(of, method);
+    problem *model = create_problem(places[place].problem, NULL);
+    dvi_integrator *integrator = start_integrator(model, method);
     double defect;
-    ck_assert_int_eq(dvi_symplecticity(integrator, 0, of->q, of->p, places[place].h, &defect),
+    ck_assert_int_eq(dvi_symplecticity(integrator, 0, model->q, model->p, places[place].h, &defect),
                      DVI_OK);
-    ck_assert_msg(defect <= 1e-10, "%s %s: symplectic to %g", of->name, method, defect);
-    ck_assert_int_eq(dvi_reversibility(integrator, 0, of->q, of->p, places[place].h, 20, &defect),
-                     DVI_OK);
+    ck_assert_msg(defect <= 1e-10, "%s %s: symplectic to %g", model->name, method, defect);
+    ck_assert_int_eq(
+        dvi_reversibility(integrator, 0, model->q, model->p, places[place].h, 20, &defect), DVI_OK);
     if (pairs[_i].symmetric != NEARLY)
       ck_assert_msg((pairs[_i].symmetric == SYMMETRIC) == (defect <= 1e-12),
-                    "%s %s: reversible to %g", of->name, method, defect);
+                    "%s %s: reversible to %g", model->name, method, defect);
     dvi_integrator_destroy(&integrator);
-    problem_destroy(&of);
+    problem_destroy(&model);
   }
 }
 END_TEST
 
 /* ---- momenta ---- */
 
-/* Kepler's problem where x = q0, y = q1 + q0^2: a rotation is no affine map of q, and no
- * Runge-Kutta method is equivariant under it. */
+/* Kepler's problem with x = q0, y = q1 + q0^2. A rotation is no affine map of q, and no Runge-Kutta
+ * method is equivariant under it. */
 typedef struct bent {
   double x, y, vx, vy, r3;
 } bent;
@@ -114,7 +114,7 @@ static int bent_hessian(double t, const double *q, const double *v, double *L_qq
   L_qq[0] = 4 * v[0] * v[0] + xx + 2 * s * xy + s * s * yy - 2 * b.y / b.r3;
   L_qq[1] = L_qq[2] = xy + s * yy;
   L_qq[3] = yy;
-  L_qv[0] = 2 * b.vy + s * 2 * v[0]; /* column by column: row q, column v */
+  L_qv[0] = 2 * b.vy + s * 2 * v[0]; /* column by column, with row q and column v */
   L_qv[1] = 0;
   L_qv[2] = 2 * v[0];
   L_qv[3] = 0;
@@ -145,16 +145,16 @@ static double momentum_error(dvi_integrator *integrator, double h, int steps)
   return largest;
 }
 
-/* 1e5 steps of a compensated sum; the bound is some tens of roundings of one. */
+/* Takes 1e5 steps of a compensated sum. The bound is some tens of roundings of one. */
 START_TEST(momenta_of_equivariant_one_step_methods_stay_at_roundoff)
 {
   static const char *const method[] = {"shooting:onestep=heun,quadrature=trapezoid", "shooting",
                                        "shooting:onestep=implicit-midpoint"};
-  problem *of = made_problem("kepler", "e=0.3");
-  dvi_integrator *integrator = started(of, method[_i]);
+  problem *model = create_problem("kepler", "e=0.3");
+  dvi_integrator *integrator = start_integrator(model, method[_i]);
   ck_assert_double_le(momentum_error(integrator, 0.05, repeats(_i < 2 ? 100000 : 10000)), 1e-13);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -177,7 +177,7 @@ START_TEST(momenta_of_other_one_step_methods_do_not)
   dvi_system *system = bent_system();
   ck_assert_msg(dvi_system_check(system, 0, q, (double[]){0.3, vy}, 0, NULL) == DVI_OK, "%s",
                 dvi_last_error());
-  dvi_integrator *integrator = made_integrator(system, "shooting");
+  dvi_integrator *integrator = create_integrator(system, "shooting");
   double defect;
   ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, q, v), DVI_OK);
   ck_assert_double_ge(momentum_error(integrator, 0.05, 5000), 1e-6);
@@ -189,7 +189,8 @@ START_TEST(momenta_of_other_one_step_methods_do_not)
 }
 END_TEST
 
-/* Where twenty steps lead from the pericentre, all turned by an angle, in Cartesian coordinates. */
+/* Gives the end of twenty steps from the pericentre, all turned by an angle, in Cartesian
+ * coordinates. */
 static void end_of_turned(dvi_integrator *integrator, int is_bent, double angle, double *x)
 {
   const double e = 0.3, r = 1 - e, speed = sqrt((1 + e) / (1 - e)), c = cos(angle), s = sin(angle);
@@ -214,16 +215,16 @@ static double turning_error(dvi_integrator *integrator, int is_bent)
 /* 20 steps, each of which rounds numbers of size 1. */
 START_TEST(steps_are_equivariant_where_the_one_step_method_is)
 {
-  problem *of = made_problem("kepler", "e=0.3");
+  problem *model = create_problem("kepler", "e=0.3");
   dvi_system *other = bent_system();
-  dvi_integrator *straight_steps = made_integrator(of->system, "shooting"),
-                 *bent_steps = made_integrator(other, "shooting");
+  dvi_integrator *straight_steps = create_integrator(model->system, "shooting"),
+                 *bent_steps = create_integrator(other, "shooting");
   ck_assert_double_le(turning_error(straight_steps, 0), 1e-14);
   ck_assert_double_ge(turning_error(bent_steps, 1), 1e-7);
   dvi_integrator_destroy(&straight_steps);
   dvi_integrator_destroy(&bent_steps);
   dvi_system_destroy(&other);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -255,25 +256,25 @@ enum { REFUSED = sizeof refused / sizeof *refused };
 
 START_TEST(what_does_not_go_is_refused)
 {
-  problem *of = made_problem("kepler", NULL);
+  problem *model = create_problem("kepler", NULL);
   dvi_integrator *none = NULL;
-  ck_assert_int_eq(dvi_integrator_create(of->system, refused[_i].method, &none), DVI_BAD_OPTION);
+  ck_assert_int_eq(dvi_integrator_create(model->system, refused[_i].method, &none), DVI_BAD_OPTION);
   check_words(refused[_i].words);
   ck_assert_ptr_null(none);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* Of the catalogue all have them that have a mass and few coordinates. */
+/* All problems of the catalogue that have a mass and few coordinates have them. */
 START_TEST(what_needs_taylor_coefficients_says_who_lacks_them)
 {
-  problem *of = made_problem("kepler", NULL);
+  problem *model = create_problem("kepler", NULL);
   const dvi_potential plain = {.name = "plain",
-                               .value = of->terms->potentials[0].value,
-                               .gradient = of->terms->potentials[0].gradient,
-                               .value_batch = of->terms->potentials[0].value_batch,
-                               .gradient_batch = of->terms->potentials[0].gradient_batch,
-                               .user = of->terms->potentials[0].user};
+                               .value = model->terms->potentials[0].value,
+                               .gradient = model->terms->potentials[0].gradient,
+                               .value_batch = model->terms->potentials[0].value_batch,
+                               .gradient_batch = model->terms->potentials[0].gradient_batch,
+                               .user = model->terms->potentials[0].user};
   const dvi_system_terms terms = {
       .dimension = 2, .mass = {.scalar = 1}, .potentials = &plain, .potential_count = 1};
   dvi_system *system;
@@ -288,7 +289,7 @@ START_TEST(what_needs_taylor_coefficients_says_who_lacks_them)
   check_words("shooting: onestep=taylor");
   ck_assert_ptr_null(none);
   dvi_system_destroy(&system);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -306,8 +307,8 @@ static int wall_gradient(double t, const double *q, double *V_q, void *user)
   return q[0] < 1 ? 0 : 1;
 }
 
-/* Steps of a system whose callbacks `given` says: values alone, gradients too, or all; q goes to
- * where they end. */
+/* Takes steps of a system with the callbacks that `given` selects: values alone, gradients too, or
+ * all. q becomes the final state. */
 static void step_rotors(const char *method, int given, double *q)
 {
   behaviour calls = {0};
@@ -316,7 +317,7 @@ static void step_rotors(const char *method, int given, double *q)
   if (given < 1) lagrangian.gradient = NULL;
   dvi_system *system = make_system(
       &(dvi_system_terms){.dimension = SITES, .lagrangian = &lagrangian});
-  dvi_integrator *integrator = made_integrator(system, method);
+  dvi_integrator *integrator = create_integrator(system, method);
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, generic_q, generic_v), DVI_OK);
   advance(integrator, 0.1, 40);
   memcpy(q, dvi_integrator_q(integrator), SITES * sizeof *q);
@@ -328,7 +329,7 @@ static const char *const noisy[] = {"shooting", "shooting:type=2", "shooting:typ
                                     "shooting:onestep=gauss", "shooting:solve=stages"};
 enum { NOISY = sizeof noisy / sizeof *noisy };
 
-/* The residual holds second derivatives: their noise is its floor, and that of the steps. */
+/* The residual holds second derivatives, whose noise is its floor, and that of the steps. */
 START_TEST(derivatives_that_are_left_out_are_differenced)
 {
   double q[3][SITES];
@@ -346,8 +347,8 @@ START_TEST(a_one_step_method_that_fails_inside_a_step_leaves_the_state)
   const double q = 0, p = 4;
   dvi_system *system;
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
-  dvi_integrator *integrator = made_integrator(system,
-                                               _i == 0 ? "shooting" : "shooting:onestep=gauss");
+  dvi_integrator *integrator = create_integrator(system,
+                                                 _i == 0 ? "shooting" : "shooting:onestep=gauss");
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, &q, &p), DVI_OK);
   ck_assert_int_gt(dvi_integrator_step(integrator, 2), 0);
   check_words(_i == 0 ? "stage 2 of the one-step method from node 1 on"

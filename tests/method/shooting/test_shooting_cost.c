@@ -1,5 +1,5 @@
 /* labels: invariant */
-/* What a step of shooting costs, in evaluations: as many shots with their second derivatives as
+/* The cost of a step of shooting in evaluations: as many shots with their second derivatives as
  * residuals, and no more. */
 #include "support/runs.h"
 #include "support/suite.h"
@@ -25,11 +25,11 @@ static const struct {
 } places[] = {{"pendulum", NULL, 0.1}, {"kepler", "e=0.3", 0.05}, {"henon-heiles", NULL, 0.1}};
 enum { PLACES = sizeof places / sizeof *places };
 
-/* Of so many steps after a first one, which starts the integrator, too. */
+/* Counts over so many steps after a first one, which starts the integrator, too. */
 static dvi_counters counted(int place, const char *method)
 {
-  problem *of = made_problem(places[place].name, places[place].setting);
-  dvi_integrator *integrator = started(of, method);
+  problem *model = create_problem(places[place].name, places[place].setting);
+  dvi_integrator *integrator = start_integrator(model, method);
   dvi_counters first, n;
   advance(integrator, places[place].h, 1);
   dvi_integrator_counters(integrator, &first);
@@ -41,7 +41,7 @@ static dvi_counters counted(int place, const char *method)
   n.jacobians -= first.jacobians;
   n.followed -= first.followed;
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
   return n;
 }
 
@@ -52,8 +52,8 @@ START_TEST(a_step_is_as_many_shots_as_residuals)
   for (int place = 0; place < PLACES; place++) {
     const dvi_counters n = counted(place, shots[_i].method);
     ck_assert_double_le((double)n.jacobians, shots[_i].jacobians * STEPS);
-    /* A step that is followed is placed at each of its parts, which takes a shot; of one that is
-     * doubted the forces at both ends are asked for. */
+    /* A step that is followed is placed at each of its parts, which takes a shot. For one that is
+     * doubted the forces at both ends are evaluated. */
     const long fired = n.residuals + 6 * n.followed;
     ck_assert_int_le(n.gradients, shots[_i].points * fired + n.gradients / 20);
     ck_assert_int_le(n.hessians, shots[_i].points * fired);
@@ -63,8 +63,8 @@ START_TEST(a_step_is_as_many_shots_as_residuals)
 }
 END_TEST
 
-/* All stages at once: a sweep makes the guess, points serve the Jacobian and the residual that are
- * asked for there, and one residual closes the step. */
+/* All stages are evaluated at once. A fixed-point iteration makes the guess, points serve the
+ * Jacobian and the residual there, and one residual closes the step. */
 START_TEST(all_stages_are_evaluated_once_a_point)
 {
   enum { STAGES = 2 * 4, POINTS = STAGES + 3 };

@@ -1,5 +1,5 @@
 /* labels: invariant slow long */
-/* Shooting over a million steps: explicit one-step methods keep the energy, if the search for the
+/* Shooting over a million steps. Explicit one-step methods keep the energy, if the search for the
  * velocity is tight. */
 #include <math.h>
 
@@ -9,8 +9,8 @@
 /* Energies every twenty steps. */
 static dvi_drift_fit energy_of(const char *method, double h, int steps)
 {
-  problem *of = made_problem("pendulum", NULL);
-  dvi_integrator *integrator = started(of, method);
+  problem *model = create_problem("pendulum", NULL);
+  dvi_integrator *integrator = start_integrator(model, method);
   double value[8];
   dvi_drift energy;
   dvi_drift_fit fit;
@@ -22,17 +22,17 @@ static dvi_drift_fit energy_of(const char *method, double h, int steps)
   }
   dvi_drift_result(&energy, &fit);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
   return fit;
 }
 
 static const struct {
   const char *method;
-  double bound; /* on the oscillation at h = 0.1: measured and doubled */
+  double bound; /* on the oscillation at h = 0.1, twice the measured size */
 } run[] = {{"shooting", 3e-6}, {"shooting:onestep=heun,quadrature=trapezoid", 2.2e-2}};
 enum { RUNS = sizeof run / sizeof *run };
 
-/* 3 is the usual threshold of significance; as in test_drift.c. */
+/* 3 is the usual threshold of significance, as in test_drift.c. */
 START_TEST(explicit_one_step_methods_do_not_drift)
 {
   const dvi_drift_fit fit = energy_of(run[_i].method, 0.1, repeats(1000000));

@@ -27,44 +27,46 @@ static double apart(int n, const double *a, const double *b, const double *start
   return distance(n, a, b) / fmax(magnitude(n, a), magnitude(n, start));
 }
 
-/* The same equations, in other unknowns: some roundings a step. */
+/* Both solve the same equations in other unknowns, which differ by some roundings a step. */
 START_TEST(all_stages_at_once_give_the_same_steps)
 {
   for (int place = 0; place < PLACES; place++) {
-    problem *of = made_problem(places[place].problem, places[place].setting);
-    dvi_integrator *shot = started(of, spec("shooting:onestep=%s,solve=shot", solved[_i])),
-                   *stages = started(of, spec("shooting:onestep=%s,solve=stages", solved[_i]));
+    problem *model = create_problem(places[place].problem, places[place].setting);
+    dvi_integrator *shot = start_integrator(
+                       model, method_spec("shooting:onestep=%s,solve=shot", solved[_i])),
+                   *stages = start_integrator(
+                       model, method_spec("shooting:onestep=%s,solve=stages", solved[_i]));
     advance(shot, places[place].h, STEPS);
     advance(stages, places[place].h, STEPS);
     const double difference = fmax(
-        apart(of->nq, dvi_integrator_q(shot), dvi_integrator_q(stages), of->q),
-        apart(of->nq, dvi_integrator_p(shot), dvi_integrator_p(stages), of->p));
-    ck_assert_msg(difference <= 2e-13, "%s %s: apart by %g", of->name, solved[_i], difference);
+        apart(model->nq, dvi_integrator_q(shot), dvi_integrator_q(stages), model->q),
+        apart(model->nq, dvi_integrator_p(shot), dvi_integrator_p(stages), model->p));
+    ck_assert_msg(difference <= 2e-13, "%s %s: apart by %g", model->name, solved[_i], difference);
     dvi_integrator_destroy(&shot);
     dvi_integrator_destroy(&stages);
-    problem_destroy(&of);
+    problem_destroy(&model);
   }
 }
 END_TEST
 
-/* A chain's neighbours alone meet: the factors stay sparse, where those of the shot would take 2000
- * x 2000 numbers. */
+/* Only neighbours of a chain couple. The factors stay sparse, where those of the shot would take
+ * 2000 x 2000 numbers. */
 START_TEST(long_chains_are_solved_by_all_stages_at_once)
 {
-  problem *of = made_problem("chain", "n=1000");
-  dvi_integrator *integrator = started(of,
-                                       "shooting:onestep=heun,quadrature=trapezoid,solve=stages");
+  problem *model = create_problem("chain", "n=1000");
+  dvi_integrator *integrator = start_integrator(
+      model, "shooting:onestep=heun,quadrature=trapezoid,solve=stages");
   dvi_counters counters;
   advance(integrator, 0.1, 2);
   dvi_integrator_counters(integrator, &counters);
   ck_assert_int_eq(counters.newtons, 2);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* rk4 and Simpson's rule have 21 blocks, with gauss 13; outer-solar's Hessian is full, the double
- * pendulum's mass not diagonal. */
+/* rk4 and Simpson's rule have 21 blocks, gauss has 13. outer-solar's Hessian is full, and the
+ * double pendulum's mass is not diagonal. */
 static const struct {
   const char *problem, *setting, *method, *solve;
 } taken[] = {{"chain", "n=126", "shooting", "solve=shot"},
@@ -81,11 +83,11 @@ enum { TAKEN = sizeof taken / sizeof *taken };
 
 START_TEST(left_out_the_cheaper_one_is_taken)
 {
-  problem *of = made_problem(taken[_i].problem, taken[_i].setting);
-  dvi_integrator *integrator = made_integrator(of->system, taken[_i].method);
+  problem *model = create_problem(taken[_i].problem, taken[_i].setting);
+  dvi_integrator *integrator = create_integrator(model->system, taken[_i].method);
   ck_assert_ptr_nonnull(strstr(dvi_integrator_method(integrator), taken[_i].solve));
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -99,12 +101,12 @@ enum { REFUSED = sizeof refused / sizeof *refused };
 
 START_TEST(what_is_too_large_or_has_no_such_way_is_refused)
 {
-  problem *of = made_problem("chain", refused[_i].setting);
+  problem *model = create_problem("chain", refused[_i].setting);
   dvi_integrator *none = NULL;
-  ck_assert_int_ne(dvi_integrator_create(of->system, refused[_i].method, &none), DVI_OK);
+  ck_assert_int_ne(dvi_integrator_create(model->system, refused[_i].method, &none), DVI_OK);
   check_words(refused[_i].words);
   ck_assert_ptr_null(none);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

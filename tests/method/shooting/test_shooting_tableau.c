@@ -1,5 +1,5 @@
 /* labels: unit */
-/* Shooting's one-step methods: tableaus and their conditions of order, built in and from files. */
+/* One-step methods of shooting: tableaus, their order conditions, built in and from files. */
 #define _POSIX_C_SOURCE 200809L /* mkfifo */
 #include <stdio.h>
 #include <stdlib.h>
@@ -55,11 +55,11 @@ static const char *written(const char *text)
 
 START_TEST(a_tableau_in_a_file_is_the_built_in_one)
 {
-  problem *of = made_problem("kepler", NULL);
+  problem *model = create_problem("kepler", NULL);
   const char *path = written("# Kutta 1901\norder 4\nc 0 1/2 1/2 1\na\na 1/2\na 0 0.5\na 0 0 1 # "
                              "the last one\nb 1/6 1/3 1/3 1/6\n");
-  dvi_integrator *file = started(of, spec("shooting:tableau=%s", path)),
-                 *built_in = started(of, "shooting:onestep=rk4");
+  dvi_integrator *file = start_integrator(model, method_spec("shooting:tableau=%s", path)),
+                 *built_in = start_integrator(model, "shooting:onestep=rk4");
   ck_assert_int_eq(dvi_integrator_order(file), 4);
   ck_assert_str_eq(dvi_integrator_method(file),
                    "shooting:onestep=file,stages=4,tableau=shooting.tableau,composition=none,"
@@ -70,7 +70,7 @@ START_TEST(a_tableau_in_a_file_is_the_built_in_one)
   ck_assert_mem_eq(dvi_integrator_p(file), dvi_integrator_p(built_in), 2 * sizeof(double));
   dvi_integrator_destroy(&file);
   dvi_integrator_destroy(&built_in);
-  problem_destroy(&of);
+  problem_destroy(&model);
   ck_assert_int_eq(remove(path), 0);
 }
 END_TEST
@@ -106,14 +106,15 @@ enum { BROKEN = sizeof broken / sizeof *broken };
 
 START_TEST(broken_files_are_refused)
 {
-  problem *of = made_problem("pendulum", NULL);
+  problem *model = create_problem("pendulum", NULL);
   dvi_integrator *none = NULL;
   const char *path = written(broken[_i].text);
-  ck_assert_int_eq(dvi_integrator_create(of->system, spec("shooting:tableau=%s", path), &none),
-                   DVI_BAD_OPTION);
+  ck_assert_int_eq(
+      dvi_integrator_create(model->system, method_spec("shooting:tableau=%s", path), &none),
+      DVI_BAD_OPTION);
   check_words(broken[_i].words);
   ck_assert_ptr_null(none);
-  problem_destroy(&of);
+  problem_destroy(&model);
   ck_assert_int_eq(remove(path), 0);
 }
 END_TEST

@@ -6,7 +6,7 @@
 
 static void check_refused(const char *method, const char *because)
 {
-  problem *oscillator = made_problem("oscillator", NULL);
+  problem *oscillator = create_problem("oscillator", NULL);
   dvi_integrator *integrator = NULL;
   ck_assert_int_eq(dvi_integrator_create(oscillator->system, method, &integrator), DVI_BAD_OPTION);
   ck_assert_ptr_null(integrator);
@@ -39,12 +39,13 @@ START_TEST(a_composition_of_compositions_is_refused)
 }
 END_TEST
 
-/* The order conditions: the weights sum to 1, and so do steps of the clock. */
+/* The order conditions are that the weights sum to 1, and so do steps of the clock. */
 START_TEST(the_substeps_add_up_to_the_step)
 {
   const char *const order[] = {"4", "6", "8"};
-  problem *oscillator = made_problem("oscillator", NULL);
-  dvi_integrator *integrator = started(oscillator, spec("composition:order=%s", order[_i]));
+  problem *oscillator = create_problem("oscillator", NULL);
+  dvi_integrator *integrator = start_integrator(oscillator,
+                                                method_spec("composition:order=%s", order[_i]));
   advance(integrator, 0.5, 1);
   /* up to 17 roundings, compensated */
   ck_assert_double_eq_tol(dvi_integrator_time(integrator), 0.5, 1e-15);
@@ -55,8 +56,9 @@ END_TEST
 
 START_TEST(a_base_of_higher_order_keeps_its_order)
 {
-  problem *oscillator = made_problem("oscillator", NULL);
-  dvi_integrator *integrator = started(oscillator, "composition:order=4,base=galerkin,degree=3");
+  problem *oscillator = create_problem("oscillator", NULL);
+  dvi_integrator *integrator = start_integrator(oscillator,
+                                                "composition:order=4,base=galerkin,degree=3");
   ck_assert_int_eq(dvi_integrator_order(integrator), 6);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&oscillator);
@@ -65,8 +67,8 @@ END_TEST
 
 START_TEST(verlet_keeps_its_one_gradient_a_substep)
 {
-  problem *stars = made_problem("henon-heiles", NULL);
-  dvi_integrator *integrator = started(stars, "composition:order=8");
+  problem *stars = create_problem("henon-heiles", NULL);
+  dvi_integrator *integrator = start_integrator(stars, "composition:order=8");
   dvi_counters before, after;
   advance(integrator, 0.1, 1);
   dvi_integrator_counters(integrator, &before);

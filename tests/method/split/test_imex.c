@@ -7,19 +7,19 @@
 #include "support/suite.h"
 #include "support/systems/systems.h"
 
-static dvi_counters counters_of(const dvi_integrator *integrator)
+static dvi_counters read_counters(const dvi_integrator *integrator)
 {
   dvi_counters counters;
   dvi_integrator_counters(integrator, &counters);
   return counters;
 }
 
-/* Both take the same step; they differ by roundings of forces that are as large as 25 times the
- * momenta. */
+/* Both take the same step, up to roundings of forces that are 25 times as large as the momenta. */
 START_TEST(one_linear_system_a_step_does_what_newtons_method_does)
 {
-  problem *chain = made_problem("fpu", NULL);
-  dvi_integrator *linear = started(chain, "imex"), *newton = started(chain, "imex:solver=newton");
+  problem *chain = create_problem("fpu", NULL);
+  dvi_integrator *linear = start_integrator(chain, "imex"),
+                 *newton = start_integrator(chain, "imex:solver=newton");
   advance(linear, 0.1, 100);
   advance(newton, 0.1, 100);
   ck_assert_double_le(distance(6, dvi_integrator_q(linear), dvi_integrator_q(newton)), 1e-13);
@@ -32,10 +32,10 @@ END_TEST
 
 START_TEST(a_quadratic_fast_potential_takes_one_factorisation_a_run_and_one_gradient_a_step)
 {
-  problem *chain = made_problem("fpu", "ell=100");
-  dvi_integrator *integrator = started(chain, "imex");
+  problem *chain = create_problem("fpu", "ell=100");
+  dvi_integrator *integrator = start_integrator(chain, "imex");
   advance(integrator, 0.1, 500);
-  const dvi_counters c = counters_of(integrator);
+  const dvi_counters c = read_counters(integrator);
   ck_assert_int_eq(c.factorizations, 1);
   ck_assert_int_eq(c.symbolic, 1);
   ck_assert_int_eq(c.solves, 500);
@@ -43,7 +43,7 @@ START_TEST(a_quadratic_fast_potential_takes_one_factorisation_a_run_and_one_grad
   ck_assert_int_eq(c.hessians, 1);
   ck_assert_int_eq(c.jacobians + c.residuals + c.newtons, 0);
   advance(integrator, 0.05, 1);
-  ck_assert_int_eq(counters_of(integrator).factorizations, 2);
+  ck_assert_int_eq(read_counters(integrator).factorizations, 2);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&chain);
 }
@@ -58,15 +58,15 @@ START_TEST(a_composition_takes_one_factorisation_for_each_length_of_its_substeps
   } of[] = {{"composition:order=4,base=imex", 2, 5},
             {"composition:order=6,base=imex", 5, 9},
             {"composition:order=8,base=imex", 9, 17}};
-  problem *chain = made_problem("fpu", "ell=100");
-  dvi_integrator *integrator = started(chain, of[_i].method);
+  problem *chain = create_problem("fpu", "ell=100");
+  dvi_integrator *integrator = start_integrator(chain, of[_i].method);
   advance(integrator, 0.05, 100);
-  dvi_counters c = counters_of(integrator);
+  dvi_counters c = read_counters(integrator);
   ck_assert_int_eq(c.factorizations, of[_i].lengths);
   ck_assert_int_eq(c.symbolic, 1);
   ck_assert_int_eq(c.solves, 100 * of[_i].substeps);
   advance(integrator, 0.04, 100);
-  c = counters_of(integrator);
+  c = read_counters(integrator);
   ck_assert_int_eq(c.factorizations, 2 * of[_i].lengths);
   dvi_integrator_destroy(&integrator);
   problem_destroy(&chain);
@@ -75,15 +75,15 @@ END_TEST
 
 START_TEST(another_fast_potential_goes_to_the_midpoint_rules_solvers)
 {
-  bond of;
-  make_bond(2500, 0.5, &of);
-  dvi_integrator *integrator = bond_integrator(&of, "imex");
+  bond pair;
+  make_bond(2500, 0.5, &pair);
+  dvi_integrator *integrator = bond_integrator(&pair, "imex");
   advance(integrator, 0.1, 50);
-  const dvi_counters c = counters_of(integrator);
+  const dvi_counters c = read_counters(integrator);
   ck_assert_int_ge(c.fixed_points + c.simplified + c.newtons, 50);
   ck_assert_int_gt(c.jacobians, 0);
   dvi_integrator_destroy(&integrator);
-  destroy_bond(&of);
+  destroy_bond(&pair);
 }
 END_TEST
 
@@ -115,12 +115,12 @@ START_TEST(full_matrices_are_kept_too)
       .name = "pull", .value = pull, .gradient = pull_gradient, .fast = 1, .quadratic = 1};
   dvi_system *system = make_system(&(dvi_system_terms){
       .dimension = MASSES, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
-  dvi_integrator *integrator = made_integrator(system, "composition:order=4,base=imex");
+  dvi_integrator *integrator = create_integrator(system, "composition:order=4,base=imex");
   const double q[MASSES] = {1}, p[MASSES] = {0};
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, q, p), DVI_OK);
   advance(integrator, 0.01, 50);
-  ck_assert_int_eq(counters_of(integrator).factorizations, 2);
-  ck_assert_int_eq(counters_of(integrator).symbolic, 0);
+  ck_assert_int_eq(read_counters(integrator).factorizations, 2);
+  ck_assert_int_eq(read_counters(integrator).symbolic, 0);
   dvi_integrator_destroy(&integrator);
   dvi_system_destroy(&system);
 }
@@ -150,7 +150,7 @@ START_TEST(along_a_saddle_the_motion_grows_and_steps_beyond_its_pole_are_refused
       .name = "saddle", .value = saddle, .gradient = saddle_gradient, .fast = 1, .quadratic = 1};
   dvi_system *system = make_system(&(dvi_system_terms){
       .dimension = 2, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
-  dvi_integrator *integrator = made_integrator(system, "imex");
+  dvi_integrator *integrator = create_integrator(system, "imex");
   const double q[] = {0, 1}, p[] = {0, 2};
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, q, p), DVI_OK);
   advance(integrator, 0.5, 1);
@@ -186,8 +186,8 @@ static int cup_gradient(double t, const double *q, double *V_q, void *user)
   return 0;
 }
 
-/* V = -k |q|^2/2 for any number of coordinates: the determinant changes its sign as often as there
- * are of them, at h = 1. */
+/* V = -k |q|^2/2 for any number of coordinates. The determinant changes its sign as often as there
+ * are coordinates, at h = 1. */
 
 enum { HILLS = 80 };
 
@@ -223,7 +223,7 @@ START_TEST(steps_beyond_two_poles_are_refused_too)
                                                        .mass = _i == 0 ? sparse : scalar,
                                                        .potentials = &potential,
                                                        .potential_count = 1});
-  dvi_integrator *integrator = made_integrator(system, "imex");
+  dvi_integrator *integrator = create_integrator(system, "imex");
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, q, p), DVI_OK);
   for (int k = 0; k < 2; k++) {
     ck_assert_int_eq(dvi_integrator_step(integrator, k == 0 ? 1.0 : -1.5), DVI_NOT_CONVERGED);
@@ -262,7 +262,7 @@ START_TEST(of_an_indefinite_mass_the_sentence_says_so)
       .name = "cup", .value = cup, .gradient = cup_gradient, .fast = 1, .quadratic = 1};
   dvi_system *system = make_system(&(dvi_system_terms){
       .dimension = 2, .mass.diagonal = mass, .potentials = &potential, .potential_count = 1});
-  dvi_integrator *integrator = made_integrator(system, "imex");
+  dvi_integrator *integrator = create_integrator(system, "imex");
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, (double[]){0, 1}, (double[]){0, -2}),
                    DVI_OK);
   advance(integrator, 0.5, 1);
@@ -277,7 +277,7 @@ END_TEST
 START_TEST(a_step_without_a_solution_says_how_far_it_came)
 {
   dvi_system *system = runaway(1);
-  dvi_integrator *integrator = made_integrator(system, "imex");
+  dvi_integrator *integrator = create_integrator(system, "imex");
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, &(double){0}, &(double){0}), DVI_OK);
   ck_assert_int_eq(dvi_integrator_step(integrator, 1.5), DVI_STEP_TOO_LARGE);
   const char *const words[] = {"imex: step 1 from t = 0 with h = 1.5 failed",
@@ -293,7 +293,7 @@ END_TEST
 
 /* ---- oscillators: slow q^2/2, fast omega^2 q^2/2 ---- */
 
-/* Where substeps resonate (test_respa.c), and in between. */
+/* Steps where substeps resonate (test_respa.c), and in between. */
 START_TEST(no_fast_frequency_resonates)
 {
   const double peak[] = {.99945, 1.99942, 2.99872, 3.99724};
@@ -320,8 +320,8 @@ END_TEST
 /* The largest |I - 1| of the stiff springs' energies until then. */
 static double exchange_error(double t_end)
 {
-  problem *chain = made_problem("fpu", NULL);
-  dvi_integrator *integrator = started(chain, "imex");
+  problem *chain = create_problem("fpu", NULL);
+  dvi_integrator *integrator = start_integrator(chain, "imex");
   double worst = 0, I = 0;
   for (long step = 0; step < lround(t_end / 0.1); step++) {
     advance(integrator, 0.1, 1);

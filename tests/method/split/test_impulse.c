@@ -1,5 +1,5 @@
 /* labels: unit */
-/* What all methods have in common that split: structure, refusals, failures. */
+/* Tests of all methods that split: structure, refusals, failures. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,33 +20,34 @@ static const char *const methods[] = {"imex",
                                       "trig:filter=exact"};
 enum { METHODS = sizeof methods / sizeof *methods, ANY_POTENTIAL = 2 };
 
-static void check_symplectic(const bond *of, const char *method, double h)
+static void check_symplectic(const bond *pair, const char *method, double h)
 {
-  dvi_integrator *integrator = bond_integrator(of, method);
+  dvi_integrator *integrator = bond_integrator(pair, method);
   double defect;
-  ck_assert_msg(dvi_symplecticity(integrator, 0, of->q, of->p, h, &defect) == DVI_OK, "%s",
+  ck_assert_msg(dvi_symplecticity(integrator, 0, pair->q, pair->p, h, &defect) == DVI_OK, "%s",
                 dvi_last_error());
   ck_assert_msg(defect <= 2e-10, "%s: defect %g", method, defect); /* the differences' own error */
   dvi_integrator_destroy(&integrator);
 }
 
-/* The bond's frequency is 61 without a bend: the longest steps are beyond h omega = pi, where the
+/* The bond's frequency is 61 without a bend. The longest steps are beyond h omega = pi, where the
  * last method's filters end. */
 START_TEST(steps_are_symplectic)
 {
-  bond of;
-  make_bond(2500, 0, &of);
-  for (int k = 1; k < (_i < METHODS - 1 ? 4 : 3); k++) check_symplectic(&of, methods[_i], 0.02 * k);
-  destroy_bond(&of);
-  make_bond(2500, 0.5, &of);
-  if (_i < ANY_POTENTIAL) check_symplectic(&of, methods[_i], 0.02);
-  destroy_bond(&of);
+  bond pair;
+  make_bond(2500, 0, &pair);
+  for (int k = 1; k < (_i < METHODS - 1 ? 4 : 3); k++)
+    check_symplectic(&pair, methods[_i], 0.02 * k);
+  destroy_bond(&pair);
+  make_bond(2500, 0.5, &pair);
+  if (_i < ANY_POTENTIAL) check_symplectic(&pair, methods[_i], 0.02);
+  destroy_bond(&pair);
 }
 END_TEST
 
-static void check_momenta(const bond *of, const char *method)
+static void check_momenta(const bond *pair, const char *method)
 {
-  dvi_integrator *integrator = bond_integrator(of, method);
+  dvi_integrator *integrator = bond_integrator(pair, method);
   double before[3], after[3];
   ck_assert_int_eq(dvi_integrator_invariants(integrator, before), DVI_OK);
   advance(integrator, 0.02, 2000);
@@ -56,52 +57,52 @@ static void check_momenta(const bond *of, const char *method)
   dvi_integrator_destroy(&integrator);
 }
 
-/* A random walk of 2000 steps, of roundings of forces that are h omega times the momenta: 1e-14
+/* The error is a random walk of 2000 roundings of forces that are h omega times the momenta, 1e-14
  * times that. */
 START_TEST(momenta_of_symmetries_are_kept)
 {
-  bond of;
-  make_bond(2500, 0, &of);
-  check_momenta(&of, methods[_i]);
-  destroy_bond(&of);
-  make_bond(2500, 0.5, &of);
-  if (_i < ANY_POTENTIAL) check_momenta(&of, methods[_i]);
-  destroy_bond(&of);
+  bond pair;
+  make_bond(2500, 0, &pair);
+  check_momenta(&pair, methods[_i]);
+  destroy_bond(&pair);
+  make_bond(2500, 0.5, &pair);
+  if (_i < ANY_POTENTIAL) check_momenta(&pair, methods[_i]);
+  destroy_bond(&pair);
 }
 END_TEST
 
 START_TEST(a_step_back_undoes_a_step)
 {
-  bond of;
-  make_bond(2500, _i < ANY_POTENTIAL ? 0.5 : 0, &of);
-  dvi_integrator *integrator = bond_integrator(&of, methods[_i]);
+  bond pair;
+  make_bond(2500, _i < ANY_POTENTIAL ? 0.5 : 0, &pair);
+  dvi_integrator *integrator = bond_integrator(&pair, methods[_i]);
   advance(integrator, 0.02, 10);
   advance(integrator, -0.02, 10);
-  ck_assert_double_le(distance(4, dvi_integrator_q(integrator), of.q), 1e-13);
-  ck_assert_double_le(distance(4, dvi_integrator_p(integrator), of.p), 1e-11); /* of size 50 */
+  ck_assert_double_le(distance(4, dvi_integrator_q(integrator), pair.q), 1e-13);
+  ck_assert_double_le(distance(4, dvi_integrator_p(integrator), pair.p), 1e-11); /* of size 50 */
   dvi_integrator_destroy(&integrator);
-  destroy_bond(&of);
+  destroy_bond(&pair);
 }
 END_TEST
 
-/* Other lengths in between leave no trace: what is made for a length is made again, to the last
+/* Steps of other lengths in between leave no trace: tables of a length are made again, to the last
  * bit. */
 START_TEST(a_step_depends_on_its_state_and_its_length_alone)
 {
-  bond of;
-  make_bond(2500, 0, &of);
-  dvi_integrator *mixed = bond_integrator(&of, methods[_i]),
-                 *fresh = bond_integrator(&of, methods[_i]);
+  bond pair;
+  make_bond(2500, 0, &pair);
+  dvi_integrator *mixed = bond_integrator(&pair, methods[_i]),
+                 *fresh = bond_integrator(&pair, methods[_i]);
   advance(mixed, 0.03, 1);
   advance(mixed, 0.02, 1);
-  ck_assert_int_eq(dvi_integrator_start(mixed, 0, of.q, of.p), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_start(mixed, 0, pair.q, pair.p), DVI_OK);
   advance(mixed, 0.02, 5);
   advance(fresh, 0.02, 5);
-  ck_assert_mem_eq(dvi_integrator_q(mixed), dvi_integrator_q(fresh), sizeof of.q);
-  ck_assert_mem_eq(dvi_integrator_p(mixed), dvi_integrator_p(fresh), sizeof of.p);
+  ck_assert_mem_eq(dvi_integrator_q(mixed), dvi_integrator_q(fresh), sizeof pair.q);
+  ck_assert_mem_eq(dvi_integrator_p(mixed), dvi_integrator_p(fresh), sizeof pair.p);
   dvi_integrator_destroy(&mixed);
   dvi_integrator_destroy(&fresh);
-  destroy_bond(&of);
+  destroy_bond(&pair);
 }
 END_TEST
 
@@ -124,13 +125,13 @@ enum { REFUSED = sizeof refused / sizeof *refused };
 START_TEST(systems_that_cannot_be_split_are_refused_by_name)
 {
   const char *method = methods[_i / REFUSED];
-  problem *of = made_problem(refused[_i % REFUSED].problem, NULL);
+  problem *model = create_problem(refused[_i % REFUSED].problem, NULL);
   dvi_integrator *integrator = NULL;
-  ck_assert_int_eq(dvi_integrator_create(of->system, method, &integrator), DVI_UNSUPPORTED);
+  ck_assert_int_eq(dvi_integrator_create(model->system, method, &integrator), DVI_UNSUPPORTED);
   ck_assert_ptr_null(integrator);
   check_words(refused[_i % REFUSED].because);
   check_words("methods for this system: ");
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -181,8 +182,8 @@ START_TEST(a_slow_force_that_fails_in_mid_run_leaves_the_state_alone)
                           .mass = {.values = tridiagonal_mass, .pattern = tridiagonal},
                           .potentials = potentials,
                           .potential_count = 2});
-  dvi_integrator *tried = made_integrator(system, methods[_i]),
-                 *spared = made_integrator(system, methods[_i]);
+  dvi_integrator *tried = create_integrator(system, methods[_i]),
+                 *spared = create_integrator(system, methods[_i]);
   ck_assert_int_eq(dvi_integrator_start(tried, 0, generic_q, generic_v), DVI_OK);
   ck_assert_int_eq(dvi_integrator_start(spared, 0, generic_q, generic_v), DVI_OK);
   advance(tried, 0.1, 3);

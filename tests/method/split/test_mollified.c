@@ -20,9 +20,9 @@ END_TEST
 /* With h omega below 1 the projection leaves all modes in, and nothing is filtered. */
 START_TEST(modes_that_a_step_resolves_are_not_projected)
 {
-  problem *chain = made_problem("fpu", NULL);
-  dvi_integrator *projected = started(chain, "mollified:filter=projection"),
-                 *plain = started(chain, "respa:substeps=exact");
+  problem *chain = create_problem("fpu", NULL);
+  dvi_integrator *projected = start_integrator(chain, "mollified:filter=projection"),
+                 *plain = start_integrator(chain, "respa:substeps=exact");
   advance(projected, 0.019, 100);
   advance(plain, 0.019, 100);
   ck_assert_double_le(distance(6, dvi_integrator_q(projected), dvi_integrator_q(plain)), 1e-13);
@@ -35,31 +35,32 @@ START_TEST(modes_that_a_step_resolves_are_not_projected)
 }
 END_TEST
 
-/* The mean of the fast motion that starts at rest at q: of oscillators sin(h omega)/(h omega) q. */
+/* Gives the mean of the fast motion that starts at rest at q, for oscillators sin(h omega)/(h
+ * omega) q. */
 START_TEST(the_average_asks_for_the_slow_force_at_the_mean_of_the_fast_motion)
 {
   const double h = 0.05, omega = 50, x = h * omega, filter = sin(x) / x;
-  problem *of = made_problem("oscillators", NULL);
-  dvi_integrator *integrator = started(of, "mollified");
+  problem *model = create_problem("oscillators", NULL);
+  dvi_integrator *integrator = start_integrator(model, "mollified");
   advance(integrator, h, 1);
   const double p_half = -h / 2 * filter * filter, q = cos(x) + sin(x) / omega * p_half;
   ck_assert_double_eq_tol(dvi_integrator_q(integrator)[0], q, 1e-15);
   ck_assert_double_eq_tol(dvi_integrator_p(integrator)[0],
                           cos(x) * p_half - omega * sin(x) - h / 2 * filter * filter * q, 1e-13);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(fast_potentials_that_are_not_quadratic_are_refused)
 {
-  bond of;
+  bond pair;
   dvi_integrator *integrator = NULL;
-  make_bond(2500, 1, &of);
-  ck_assert_int_eq(dvi_integrator_create(of.system, methods[_i], &integrator), DVI_UNSUPPORTED);
+  make_bond(2500, 1, &pair);
+  ck_assert_int_eq(dvi_integrator_create(pair.system, methods[_i], &integrator), DVI_UNSUPPORTED);
   check_words("mollified: a fast potential is not declared `quadratic`");
   check_words("imex and respa:substeps=k take any");
-  destroy_bond(&of);
+  destroy_bond(&pair);
 }
 END_TEST
 

@@ -7,11 +7,11 @@
 #include "support/suite.h"
 #include "support/systems/systems.h"
 
-/* stiff-pendulum at k: the path as oscillations of the spring's frequency in both coordinates; and
- * more keys. */
+/* stiff-pendulum at k, with the path as oscillations of the spring's frequency in both coordinates,
+ * and more keys. */
 static const char *spring(double k, const char *keys)
 {
-  return spec("multiscale:fast=0:1,omega=%.17g%s", sqrt(k), keys);
+  return method_spec("multiscale:fast=0:1,omega=%.17g%s", sqrt(k), keys);
 }
 
 /* ---- linear oscillators ---- */
@@ -19,34 +19,35 @@ static const char *spring(double k, const char *keys)
 START_TEST(a_linear_oscillator_is_exact_whatever_h_omega)
 {
   static const double h[] = {1e-9, 1e-5, 1e-3, 0.01, 0.05, 0.19, 0.2, 0.21, 0.6, 1, 3.3, 20};
-  problem *of = made_problem("oscillators", NULL);
-  dvi_integrator *integrator = started(
-      of, spec("multiscale:fast=0,amplitude=%d,omega=%.17g", _i / 12, sqrt(2501)));
+  problem *model = create_problem("oscillators", NULL);
+  dvi_integrator *integrator = start_integrator(
+      model, method_spec("multiscale:fast=0,amplitude=%d,omega=%.17g", _i / 12, sqrt(2501)));
   advance(integrator, h[_i % 12], 10);
   double q, p;
-  ck_assert_int_eq(of->exact(of, dvi_integrator_time(integrator), &q, &p), 0);
+  ck_assert_int_eq(model->exact(model, dvi_integrator_time(integrator), &q, &p), 0);
   const double phase = sqrt(2501) * dvi_integrator_time(integrator), error = 1e-12 + 1e-15 * phase;
   ck_assert_double_eq_tol(dvi_integrator_q(integrator)[0], q, error);
   ck_assert_double_eq_tol(dvi_integrator_p(integrator)[0], p, 50 * error);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(between_its_steps_too)
 {
-  problem *of = made_problem("oscillators", NULL);
-  dvi_integrator *integrator = started(of, spec("multiscale:fast=0,omega=%.17g", sqrt(2501)));
+  problem *model = create_problem("oscillators", NULL);
+  dvi_integrator *integrator = start_integrator(
+      model, method_spec("multiscale:fast=0,omega=%.17g", sqrt(2501)));
   advance(integrator, 0.7, 3);
   double q, p, path, v;
   for (int k = 1; k < 8; k++) {
-    ck_assert_int_eq(of->exact(of, 1.4 + 0.7 * k / 8, &q, &p), 0);
+    ck_assert_int_eq(model->exact(model, 1.4 + 0.7 * k / 8, &q, &p), 0);
     ck_assert_int_eq(dvi_integrator_interpolate(integrator, 1.4 + 0.7 * k / 8, &path, &v), DVI_OK);
     ck_assert_double_eq_tol(path, q, 1e-12);
     ck_assert_double_eq_tol(v, p, 1e-10);
   }
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -54,16 +55,16 @@ END_TEST
 
 START_TEST(where_the_oscillation_is_a_polynomial_it_is_galerkin_with_as_many_nodes)
 {
-  problem *of = made_problem("kepler", NULL);
-  dvi_integrator *multiscale = started(of, "multiscale:fast=0:1,omega=1e-7"),
-                 *galerkin = started(of, "galerkin:degree=3,nodes=25");
+  problem *model = create_problem("kepler", NULL);
+  dvi_integrator *multiscale = start_integrator(model, "multiscale:fast=0:1,omega=1e-7"),
+                 *galerkin = start_integrator(model, "galerkin:degree=3,nodes=25");
   advance(multiscale, 0.1, 50);
   advance(galerkin, 0.1, 50);
   ck_assert_double_le(distance(2, dvi_integrator_q(multiscale), dvi_integrator_q(galerkin)), 1e-12);
   ck_assert_double_le(distance(2, dvi_integrator_p(multiscale), dvi_integrator_p(galerkin)), 1e-12);
   dvi_integrator_destroy(&multiscale);
   dvi_integrator_destroy(&galerkin);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -81,17 +82,17 @@ static const struct stiffness {
 static double error_of_theta(const struct stiffness *at, const char *keys, double h,
                              dvi_counters *counters)
 {
-  problem *of = made_problem("stiff-pendulum", spec("k=%.17g", at->k));
-  dvi_integrator *integrator = started(of, spring(at->k, keys));
+  problem *model = create_problem("stiff-pendulum", method_spec("k=%.17g", at->k));
+  dvi_integrator *integrator = start_integrator(model, spring(at->k, keys));
   advance(integrator, h, lround(10 / h));
   const double error = fabs(dvi_integrator_q(integrator)[1] - at->theta);
   dvi_integrator_counters(integrator, counters);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
   return error;
 }
 
-/* 25 points; 3 or 4 iterations, and 5 where roundings of k a are seen: whatever k. */
+/* 25 points take 3 or 4 iterations for every k, and 5 where roundings of k a show. */
 START_TEST(steps_of_a_tenth_have_four_digits_at_every_stiffness)
 {
   dvi_counters counters;
@@ -119,17 +120,17 @@ START_TEST(steps_of_several_periods_have_an_error_below_one_in_ten_thousand)
 }
 END_TEST
 
-/* What is left out is of the fourth power of the amplitude: half of it, a sixteenth of the error.
- * The second harmonic takes all but a hundredth of that. */
+/* The neglected terms have the fourth power of the amplitude, so half the amplitude has a sixteenth
+ * of the error. The second harmonic takes all but a hundredth of that. */
 START_TEST(the_error_of_long_steps_is_the_second_harmonic)
 {
   static const double theta[] = {-0.253079547133848, -0.41315619234509354, -0.45107746698721923},
                       a[] = {0.1, 0.05, 0.025};
-  problem *of = made_problem("stiff-pendulum", "k=1e6");
+  problem *model = create_problem("stiff-pendulum", "k=1e6");
   double error[2][3];
   for (int k = 0; k < 6; k++) {
-    dvi_integrator *integrator = made_integrator(
-        of->system, spring(1e6, spec(",degree=4,amplitude=2,harmonics=%d", 1 + k / 3)));
+    dvi_integrator *integrator = create_integrator(
+        model->system, spring(1e6, method_spec(",degree=4,amplitude=2,harmonics=%d", 1 + k / 3)));
     const double q[] = {a[k % 3], 1}, p[] = {0, 0};
     ck_assert_int_eq(dvi_integrator_start(integrator, 0, q, p), DVI_OK);
     advance(integrator, 0.1, 100);
@@ -138,7 +139,7 @@ START_TEST(the_error_of_long_steps_is_the_second_harmonic)
   }
   for (int k = 0; k < 3; k++) ck_assert_double_le(error[1][k], 0.011 * error[0][k]);
   for (int k = 1; k < 3; k++) ck_assert_double_eq_tol(error[0][k - 1] / error[0][k], 16, 1.5);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -154,8 +155,8 @@ END_TEST
 START_TEST(small_and_vanishing_amplitudes_are_starts_like_any_other)
 {
   static const double a[] = {0, 1e-300, 1e-12, 1e-4};
-  problem *of = made_problem("stiff-pendulum", NULL);
-  dvi_integrator *integrator = made_integrator(of->system, spring(1e4, ""));
+  problem *model = create_problem("stiff-pendulum", NULL);
+  dvi_integrator *integrator = create_integrator(model->system, spring(1e4, ""));
   for (int k = 0; k < 4; k++) {
     const double q[] = {a[k], 1}, p[] = {0, 0};
     double before, after;
@@ -166,24 +167,25 @@ START_TEST(small_and_vanishing_amplitudes_are_starts_like_any_other)
     ck_assert_double_eq_tol(after, before, 1e-5);
   }
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(the_step_is_symplectic_and_reversible)
 {
   static const double h[] = {0.01, 0.1, 0.2};
-  problem *of = made_problem("stiff-pendulum", NULL);
-  dvi_integrator *integrator = started(of, spring(1e4, _i ? ",harmonics=2" : ""));
+  problem *model = create_problem("stiff-pendulum", NULL);
+  dvi_integrator *integrator = start_integrator(model, spring(1e4, _i ? ",harmonics=2" : ""));
   for (int k = 0; k < 3; k++) {
     double defect;
-    ck_assert_int_eq(dvi_symplecticity(integrator, 0, of->q, of->p, h[k], &defect), DVI_OK);
+    ck_assert_int_eq(dvi_symplecticity(integrator, 0, model->q, model->p, h[k], &defect), DVI_OK);
     ck_assert_double_le(defect, 1e-10);
-    ck_assert_int_eq(dvi_reversibility(integrator, 0, of->q, of->p, h[k], 10, &defect), DVI_OK);
+    ck_assert_int_eq(dvi_reversibility(integrator, 0, model->q, model->p, h[k], 10, &defect),
+                     DVI_OK);
     ck_assert_double_le(defect, 1e-10);
   }
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -191,11 +193,11 @@ END_TEST
 
 static void check_spelled(const char *name, const char *given, const char *spelled)
 {
-  problem *of = made_problem(name, NULL);
-  dvi_integrator *integrator = made_integrator(of->system, given);
+  problem *model = create_problem(name, NULL);
+  dvi_integrator *integrator = create_integrator(model->system, given);
   ck_assert_str_eq(dvi_integrator_method(integrator), spelled);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 
 /* 3 slow coordinates of degree 3, 3 fast ones with 4 functions more. */
@@ -203,14 +205,14 @@ START_TEST(slow_coordinates_have_the_unknowns_of_their_polynomials)
 {
   char text[1024];
   double defect;
-  problem *of = made_problem("fpu", NULL);
-  dvi_integrator *integrator = started(of, "multiscale");
+  problem *model = create_problem("fpu", NULL);
+  dvi_integrator *integrator = start_integrator(model, "multiscale");
   ck_assert_uint_lt(dvi_integrator_explain(integrator, text, sizeof text), sizeof text);
   ck_assert_ptr_nonnull(strstr(text, "30 unknowns a step"));
-  ck_assert_int_eq(dvi_symplecticity(integrator, 0, of->q, of->p, 0.3, &defect), DVI_OK);
+  ck_assert_int_eq(dvi_symplecticity(integrator, 0, model->q, model->p, 0.3, &defect), DVI_OK);
   ck_assert_double_le(defect, 1e-10);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
@@ -224,7 +226,7 @@ END_TEST
 
 /* ---- the frequency, found ---- */
 
-/* 0: not yet. */
+/* Reads omega from the explanation. 0 means that there is none yet. */
 static double found_omega(const dvi_integrator *integrator)
 {
   char text[1024];
@@ -234,13 +236,13 @@ static double found_omega(const dvi_integrator *integrator)
   return strtod(line + strlen("omega: "), NULL);
 }
 
-/* At rest the spring's own but for the weight's part, 70/k of its square; in motion the swing adds
- * at most 40/k to that. */
+/* At rest the energy is the spring's up to the weight's part, 70/k of its square. In motion the
+ * swing adds at most 40/k to that. */
 START_TEST(a_frequency_that_is_not_known_is_found_at_the_first_step)
 {
   const struct stiffness *at = &stiffnesses[_i];
-  problem *of = made_problem("stiff-pendulum", spec("k=%.17g", at->k));
-  dvi_integrator *integrator = started(of, "multiscale:fast=0:1");
+  problem *model = create_problem("stiff-pendulum", method_spec("k=%.17g", at->k));
+  dvi_integrator *integrator = start_integrator(model, "multiscale:fast=0:1");
   dvi_counters created, counters;
   ck_assert_double_eq(found_omega(integrator), 0);
   advance(integrator, 0.1, 1);
@@ -252,16 +254,16 @@ START_TEST(a_frequency_that_is_not_known_is_found_at_the_first_step)
   dvi_integrator_counters(integrator, &counters);
   ck_assert_int_eq(counters.allocations, created.allocations);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
-/* A pendulum at an angle of 0.3 from its rest: linear oscillations about that have cos 0.3 of the
- * square of its small ones', its own have 1 - 0.3^2/8. */
+/* A pendulum at an angle of 0.3 from its rest. Linear oscillations about that angle have cos 0.3
+ * times the square of its small frequency, its own have 1 - 0.3^2/8. */
 START_TEST(of_a_large_oscillation_it_is_that_at_its_start)
 {
-  problem *of = made_problem("pendulum", NULL);
-  dvi_integrator *integrator = made_integrator(of->system, "multiscale:fast=0");
+  problem *model = create_problem("pendulum", NULL);
+  dvi_integrator *integrator = create_integrator(model->system, "multiscale:fast=0");
   const double down = 4 * atan(1), p = 0;
   double angle = down - 0.3, small;
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, &down, &p), DVI_OK);
@@ -271,29 +273,29 @@ START_TEST(of_a_large_oscillation_it_is_that_at_its_start)
   advance(integrator, 0.5, 1);
   ck_assert_double_eq_tol(found_omega(integrator), sqrt(cos(0.3)) * small, 1e-5 * small);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 START_TEST(about_an_unstable_state_nothing_oscillates)
 {
-  problem *of = made_problem("pendulum", NULL);
-  dvi_integrator *integrator = started(of, "multiscale:fast=0");
+  problem *model = create_problem("pendulum", NULL);
+  dvi_integrator *integrator = start_integrator(model, "multiscale:fast=0");
   ck_assert_int_eq(dvi_integrator_step(integrator, 0.1), DVI_BAD_STATE);
   check_words(
       "the state is unchanged: the fast coordinates do not oscillate about this state; give omega");
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 static void check_refused(const char *name, const char *method, const char *words)
 {
-  problem *of = made_problem(name, NULL);
+  problem *model = create_problem(name, NULL);
   dvi_integrator *integrator;
-  ck_assert_int_eq(dvi_integrator_create(of->system, method, &integrator), DVI_BAD_OPTION);
+  ck_assert_int_eq(dvi_integrator_create(model->system, method, &integrator), DVI_BAD_OPTION);
   check_words(words);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 
 START_TEST(what_is_not_known_is_asked_for)
@@ -330,7 +332,7 @@ START_TEST(of_two_fast_frequencies_one_must_be_chosen)
   ck_assert_int_eq(dvi_integrator_create(system, "multiscale", &integrator), DVI_BAD_OPTION);
   check_words(
       "the fast potentials have frequencies from 10 to 20; give the one that matters as omega");
-  integrator = made_integrator(system, "multiscale:omega=20");
+  integrator = create_integrator(system, "multiscale:omega=20");
   dvi_integrator_destroy(&integrator);
   dvi_system_destroy(&system);
 }

@@ -11,14 +11,14 @@ START_TEST(compositions_of_verlet_have_their_order)
 {
   const int order = 4 + 2 * (_i % 3), index = _i / 3;
   if (index != DOUBLE_PENDULUM)
-    check_order(index, spec("composition:order=%d,base=verlet", order), order);
+    check_order(index, method_spec("composition:order=%d,base=verlet", order), order);
 }
 END_TEST
 
 START_TEST(compositions_of_midpoint_have_their_order)
 {
   const int order = 4 + 2 * (_i % 3);
-  check_order(_i / 3, spec("composition:order=%d,base=midpoint", order), order);
+  check_order(_i / 3, method_spec("composition:order=%d,base=midpoint", order), order);
 }
 END_TEST
 

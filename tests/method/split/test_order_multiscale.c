@@ -1,6 +1,6 @@
 /* labels: order reference */
-/* As h goes to 0 with fixed omega the space is as good as polynomials of as many degrees as it has
- * functions: d + 2m + 2, and 2 more with the second harmonic. */
+/* As h goes to 0 with fixed omega the space is as good as polynomials with the same number of
+ * functions. The order is d + 2m + 2, and 2 more with the second harmonic. */
 #include <check.h>
 
 #include "support/order.h"
@@ -33,8 +33,8 @@ START_TEST(at_every_degree_of_path_and_amplitudes)
 {
   const char *fast = cases[_i].place == PENDULUM ? "0" : "0:1";
   check_order(cases[_i].place,
-              spec("multiscale:degree=%d,amplitude=%d,harmonics=%d,fast=%s,omega=1",
-                   cases[_i].degree, cases[_i].amplitude, cases[_i].harmonics, fast),
+              method_spec("multiscale:degree=%d,amplitude=%d,harmonics=%d,fast=%s,omega=1",
+                          cases[_i].degree, cases[_i].amplitude, cases[_i].harmonics, fast),
               cases[_i].order);
 }
 END_TEST

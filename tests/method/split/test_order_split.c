@@ -28,8 +28,8 @@ END_TEST
 START_TEST(compositions_of_imex_have_theirs)
 {
   const int order = 4 + 2 * _i;
-  check_order_over("fpu", NULL, 1, 400 / order, spec("composition:order=%d,base=imex", order),
-                   order);
+  check_order_over("fpu", NULL, 1, 400 / order,
+                   method_spec("composition:order=%d,base=imex", order), order);
 }
 END_TEST
 

@@ -9,8 +9,9 @@
 
 START_TEST(with_one_substep_it_is_verlet)
 {
-  problem *chain = made_problem("fpu", NULL);
-  dvi_integrator *split = started(chain, "respa:substeps=1"), *whole = started(chain, "verlet");
+  problem *chain = create_problem("fpu", NULL);
+  dvi_integrator *split = start_integrator(chain, "respa:substeps=1"),
+                 *whole = start_integrator(chain, "verlet");
   advance(split, 0.005, 200);
   advance(whole, 0.005, 200);
   /* roundings of 200 steps */
@@ -26,8 +27,8 @@ START_TEST(a_step_has_one_slow_gradient_and_one_of_the_fast_potentials_for_each_
 {
   const char *const method[] = {"respa:substeps=7", "respa:substeps=exact"};
   const long fast[] = {7, 1};
-  problem *chain = made_problem("fpu", NULL);
-  dvi_integrator *integrator = started(chain, method[_i]);
+  problem *chain = create_problem("fpu", NULL);
+  dvi_integrator *integrator = start_integrator(chain, method[_i]);
   dvi_counters first, after;
   advance(integrator, 0.01, 1);
   dvi_integrator_counters(integrator, &first);
@@ -42,7 +43,7 @@ END_TEST
 
 /* ---- exact motion ---- */
 
-/* A saddle, a free direction, and springs between sites, under a constant force; the mass couples
+/* A saddle, a free direction, and springs between sites, under a constant force. The mass couples
  * all of them. */
 static int hills(double t, const double *q, double *V, void *user)
 {
@@ -73,13 +74,13 @@ START_TEST(exact_motion_is_exact_whatever_the_step)
                           .mass = {.values = tridiagonal_mass, .pattern = tridiagonal},
                           .potentials = &potential,
                           .potential_count = 1});
-  dvi_integrator *exact = made_integrator(system, "respa:substeps=exact"),
-                 *judge = made_integrator(system, "galerkin:degree=8");
+  dvi_integrator *exact = create_integrator(system, "respa:substeps=exact"),
+                 *judge = create_integrator(system, "galerkin:degree=8");
   ck_assert_int_eq(dvi_integrator_start(exact, 0, generic_q, generic_v), DVI_OK);
   ck_assert_int_eq(dvi_integrator_start(judge, 0, generic_q, generic_v), DVI_OK);
   advance(exact, 1.5, 1);
   advance(judge, 1.5 / 32, 32);
-  /* K is differenced: to ten digits of its largest entry */
+  /* K is differenced, to ten digits of its largest entry */
   ck_assert_double_le(distance(SITES, dvi_integrator_q(exact), dvi_integrator_q(judge)), 1e-9);
   ck_assert_double_le(distance(SITES, dvi_integrator_p(exact), dvi_integrator_p(judge)), 1e-7);
   dvi_integrator_destroy(&exact);
@@ -98,7 +99,7 @@ static void check_refusal(const dvi_system *system, dvi_status status, const cha
 
 START_TEST(what_has_no_modes_is_refused)
 {
-  bond of;
+  bond pair;
   const double mass[SITES] = {1, 1, 1, -1, 1, 1};
   const dvi_potential potential = {
       .name = "hills", .value = hills, .gradient = hills_gradient, .fast = 1, .quadratic = 1};
@@ -106,11 +107,11 @@ START_TEST(what_has_no_modes_is_refused)
       .dimension = SITES, .mass.diagonal = mass, .potentials = &potential, .potential_count = 1});
   check_refusal(system, DVI_SINGULAR, "is not positive definite");
   dvi_system_destroy(&system);
-  make_bond(2500, 1, &of);
-  check_refusal(of.system, DVI_UNSUPPORTED,
+  make_bond(2500, 1, &pair);
+  check_refusal(pair.system, DVI_UNSUPPORTED,
                 "respa: a fast potential is not declared `quadratic`, and only such ones have "
                 "modes; substeps=k takes any");
-  destroy_bond(&of);
+  destroy_bond(&pair);
   system = make_system(&(dvi_system_terms){
       .dimension = 2001, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
   check_refusal(
@@ -125,23 +126,23 @@ START_TEST(substeps_are_a_number_or_exact)
 {
   const char *const wrong[] = {"respa:substeps=0", "respa:substeps=many",
                                "respa:substeps=", "respa:substeps=-1"};
-  problem *of = made_problem("oscillators", NULL);
-  dvi_integrator *integrator = made_integrator(of->system, "respa");
+  problem *model = create_problem("oscillators", NULL);
+  dvi_integrator *integrator = create_integrator(model->system, "respa");
   ck_assert_str_eq(dvi_integrator_method(integrator), "respa:substeps=10");
   dvi_integrator_destroy(&integrator);
-  integrator = made_integrator(of->system, "respa:substeps=exact");
+  integrator = create_integrator(model->system, "respa:substeps=exact");
   ck_assert_str_eq(dvi_integrator_method(integrator), "respa:substeps=exact");
   dvi_integrator_destroy(&integrator);
   for (int k = 0; k < 4; k++)
-    ck_assert_int_eq(dvi_integrator_create(of->system, wrong[k], &integrator), DVI_BAD_OPTION);
+    ck_assert_int_eq(dvi_integrator_create(model->system, wrong[k], &integrator), DVI_BAD_OPTION);
   check_words("respa: substeps=-1; possible are exact and 1 to 1000000");
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 
 /* ---- resonance ---- */
 
-/* Where in (k - 0.004, k + 0.004) a step grows most. */
+/* Finds the place in (k - 0.004, k + 0.004) at which a step grows most. */
 static double peak_near(const char *method, int k, double *growth)
 {
   double peak = 0;
@@ -153,7 +154,7 @@ static double peak_near(const char *method, int k, double *growth)
   return peak;
 }
 
-/* The peaks of 100 substeps, whose own frequency is a little above omega; of exact motion they
+/* The peaks of 100 substeps, whose own frequency is a little above omega. With exact motion they
  * stand higher up. In 10000 steps the amplitudes grow by 8e6, 2900, 200 and 54. */
 START_TEST(kicks_in_phase_with_the_fast_motion_resonate)
 {

@@ -40,8 +40,9 @@ START_TEST(two_steps_have_the_filters_of_their_name)
 {
   const double h = 0.05, x[] = {0.3, 2.5, 4};
   for (int k = _i == 0 ? 1 : 2; k >= 0; k--) {
-    problem *of = made_problem("oscillators", spec("omega=%.17g", x[k] / h));
-    dvi_integrator *integrator = started(of, spec("trig:filter=%s", filters[_i]));
+    problem *model = create_problem("oscillators", method_spec("omega=%.17g", x[k] / h));
+    dvi_integrator *integrator = start_integrator(model,
+                                                  method_spec("trig:filter=%s", filters[_i]));
     double q[3] = {1};
     for (int i = 1; i < 3; i++) {
       advance(integrator, h, 1);
@@ -50,15 +51,15 @@ START_TEST(two_steps_have_the_filters_of_their_name)
     ck_assert_double_eq_tol(q[2] - 2 * cos(x[k]) * q[1] + q[0],
                             -h * h * psi(_i, x[k]) * phi(_i, x[k]) * q[1], 2e-15);
     dvi_integrator_destroy(&integrator);
-    problem_destroy(&of);
+    problem_destroy(&model);
   }
 }
 END_TEST
 
 START_TEST(methods_with_one_filter_are_symplectic_and_the_others_are_not)
 {
-  problem *chain = made_problem("fpu", NULL);
-  dvi_integrator *integrator = started(chain, spec("trig:filter=%s", filters[_i]));
+  problem *chain = create_problem("fpu", NULL);
+  dvi_integrator *integrator = start_integrator(chain, method_spec("trig:filter=%s", filters[_i]));
   double defect;
   advance(integrator, 0.03, 20);
   ck_assert_int_eq(dvi_symplecticity(integrator, 0, dvi_integrator_q(integrator),
@@ -77,8 +78,9 @@ START_TEST(two_of_them_are_known_by_other_names)
 {
   const char *const pair[][2] = {{"trig:filter=deuflhard", "respa:substeps=exact"},
                                  {"trig:filter=garcia-archilla", "mollified:filter=average"}};
-  problem *chain = made_problem("fpu", NULL);
-  dvi_integrator *one = started(chain, pair[_i][0]), *other = started(chain, pair[_i][1]);
+  problem *chain = create_problem("fpu", NULL);
+  dvi_integrator *one = start_integrator(chain, pair[_i][0]),
+                 *other = start_integrator(chain, pair[_i][1]);
   advance(one, 0.1, 50);
   advance(other, 0.1, 50);
   ck_assert_double_le(distance(6, dvi_integrator_q(one), dvi_integrator_q(other)), 1e-13);
@@ -91,9 +93,9 @@ END_TEST
 /* The filter and the motion ask for the fast gradient at one place. */
 START_TEST(a_step_has_one_slow_gradient_and_one_fast_one)
 {
-  problem *chain = made_problem("fpu", NULL);
-  dvi_integrator *integrator = started(chain, _i < FILTERS ? spec("trig:filter=%s", filters[_i])
-                                                           : "mollified");
+  problem *chain = create_problem("fpu", NULL);
+  dvi_integrator *integrator = start_integrator(
+      chain, _i < FILTERS ? method_spec("trig:filter=%s", filters[_i]) : "mollified");
   dvi_counters first, after;
   advance(integrator, 0.02, 1);
   dvi_integrator_counters(integrator, &first);
@@ -105,7 +107,7 @@ START_TEST(a_step_has_one_slow_gradient_and_one_fast_one)
 }
 END_TEST
 
-/* exact needs sinc x > 0; gautschi divides by it. */
+/* exact needs sinc x > 0, and gautschi divides by it. */
 START_TEST(a_step_at_which_a_filter_does_not_exist_fails_and_a_smaller_one_goes_on)
 {
   static const struct {
@@ -114,15 +116,15 @@ START_TEST(a_step_at_which_a_filter_does_not_exist_fails_and_a_smaller_one_goes_
   } bad[] = {{"trig:filter=exact", 4},
              {"trig:filter=exact", 3.14159265358979323846},
              {"trig:filter=gautschi", 3.14159265358979323846}};
-  problem *of = made_problem("oscillators", "omega=1");
-  dvi_integrator *integrator = started(of, bad[_i].method);
+  problem *model = create_problem("oscillators", "omega=1");
+  dvi_integrator *integrator = start_integrator(model, bad[_i].method);
   ck_assert_int_eq(dvi_integrator_step(integrator, bad[_i].x), DVI_NOT_CONVERGED);
   check_words("trig: step 1 from t = 0");
   check_words("the state is unchanged, try a smaller step: h omega = ");
   ck_assert_double_eq(dvi_integrator_q(integrator)[0], 1);
   advance(integrator, 0.5, 1);
   dvi_integrator_destroy(&integrator);
-  problem_destroy(&of);
+  problem_destroy(&model);
 }
 END_TEST
 

@@ -1,6 +1,6 @@
 /* labels: order */
-/* Second order of methods with exact fast motion, uniformly in the fast frequency: h omega stays,
- * omega grows as h falls. */
+/* Methods with exact fast motion have second order uniformly in the fast frequency. h omega stays,
+ * and omega grows as h falls. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,15 +10,15 @@
 
 enum { LEVELS = 5 };
 
-/* The largest error of a coordinate of fpu at t = 1, divided by h^2, at h = 0.1/2^level and omega =
- * x/h. The judge resolves the fast motion: 31 steps a period, of order 8. */
+/* Gives the largest error of a coordinate of fpu at t = 1, divided by h^2, at h = 0.1/2^level and
+ * omega = x/h. The judge resolves the fast motion by 31 steps a period, of order 8. */
 static double error_constant(const char *method, double x, int level)
 {
   const long steps = 10L << level, resolved = lround(5.0 * x) * steps;
   const double h = 1.0 / (double)steps;
-  problem *chain = made_problem("fpu", spec("omega=%.17g", x / h));
-  dvi_integrator *integrator = started(chain, method),
-                 *judge = started(chain, "composition:order=8,base=verlet");
+  problem *chain = create_problem("fpu", method_spec("omega=%.17g", x / h));
+  dvi_integrator *integrator = start_integrator(chain, method),
+                 *judge = start_integrator(chain, "composition:order=8,base=verlet");
   advance(integrator, h, steps);
   advance(judge, 1.0 / (double)resolved, resolved);
   const double error = distance(chain->nq, dvi_integrator_q(integrator), dvi_integrator_q(judge)) /
@@ -87,7 +87,7 @@ START_TEST(near_multiples_of_pi_only_those_have_it_for_which_the_theorem_holds)
 }
 END_TEST
 
-/* Its phi divides by the root of sinc: it does not exist where sinc < 0, and is not bounded
+/* Its phi divides by the root of sinc. It does not exist where sinc < 0, and is not bounded
  * before. */
 START_TEST(exact_filters_have_it_far_from_the_zeros_of_sinc_alone)
 {

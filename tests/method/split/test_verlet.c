@@ -7,12 +7,12 @@
 
 START_TEST(a_step_is_kick_drift_kick)
 {
-  problem *oscillator = made_problem("oscillator", NULL);
-  dvi_integrator *integrator = started(oscillator, "verlet");
+  problem *oscillator = create_problem("oscillator", NULL);
+  dvi_integrator *integrator = start_integrator(oscillator, "verlet");
   const double h = 0.25, k = 0.5, q0 = oscillator->q[0], p0 = oscillator->p[0];
   const double p_half = p0 - h / 2 * k * q0, q1 = q0 + h * p_half, p1 = p_half - h / 2 * k * q1;
   advance(integrator, h, 1);
-  /* the same operations: a rounding apart at most */
+  /* the same operations, at most a rounding apart */
   ck_assert_double_eq_tol(dvi_integrator_q(integrator)[0], q1, 1e-16);
   ck_assert_double_eq_tol(dvi_integrator_p(integrator)[0], p1, 1e-16);
   dvi_integrator_destroy(&integrator);
@@ -22,8 +22,8 @@ END_TEST
 
 START_TEST(a_step_costs_one_gradient_and_nothing_else)
 {
-  problem *solar = made_problem("outer-solar", NULL);
-  dvi_integrator *integrator = started(solar, "verlet");
+  problem *solar = create_problem("outer-solar", NULL);
+  dvi_integrator *integrator = start_integrator(solar, "verlet");
   dvi_counters before, after;
   dvi_integrator_counters(integrator, &before);
   advance(integrator, 10, 1);
@@ -41,7 +41,7 @@ END_TEST
 
 START_TEST(a_general_lagrangian_is_refused_by_name)
 {
-  problem *pendula = made_problem("double-pendulum", NULL);
+  problem *pendula = create_problem("double-pendulum", NULL);
   dvi_integrator *integrator = NULL;
   ck_assert_int_eq(dvi_integrator_create(pendula->system, "verlet", &integrator), DVI_UNSUPPORTED);
   ck_assert_ptr_null(integrator);
@@ -64,7 +64,7 @@ static int spring_gradient(double t, const double *q, double *V_q, void *user)
   return 0;
 }
 
-/* The Hessian that nobody gave would have 2.5e9 entries; who needs it is told. */
+/* The missing Hessian would have 2.5e9 entries, and a method that needs it says so. */
 START_TEST(no_hessian_is_made_for_it)
 {
   int n = 50000;
@@ -75,7 +75,7 @@ START_TEST(no_hessian_is_made_for_it)
   double *zeros = calloc((size_t)n, sizeof *zeros);
   ck_assert_ptr_nonnull(zeros);
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
-  dvi_integrator *integrator = made_integrator(system, "verlet"), *implicit = integrator;
+  dvi_integrator *integrator = create_integrator(system, "verlet"), *implicit = integrator;
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, zeros, zeros), DVI_OK);
   advance(integrator, 0.1, 3);
   ck_assert_int_eq(dvi_integrator_create(system, "midpoint", &implicit), DVI_BAD_SIZE);
@@ -104,7 +104,7 @@ START_TEST(what_it_cannot_do_is_refused_by_name)
       {"verlet:threads=2,blocking=none", DVI_UNSUPPORTED, "blocking=none"},
       {"composition:order=4,threads=2", DVI_UNSUPPORTED, "no gradient_range"},
   };
-  problem *oscillator = made_problem("oscillator", NULL);
+  problem *oscillator = create_problem("oscillator", NULL);
   dvi_integrator *integrator = NULL;
   ck_assert_int_eq(dvi_integrator_create(oscillator->system, cases[_i].method, &integrator),
                    cases[_i].status);

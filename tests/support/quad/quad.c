@@ -11,7 +11,7 @@
 #define COLUMNS 12
 #define STATE_MAX (2 * QUAD_N_MAX + 1)
 
-/* y = (q, v, time), rate = (v, a, 1). */
+/* Evaluates rate = (v, a, 1) at y = (q, v, time). */
 static void evaluate(const quad_field *f, const quad *y, quad *rate)
 {
   const int n = f->system.n;
@@ -29,7 +29,7 @@ static void evaluate(const quad_field *f, const quad *y, quad *rate)
   f->problem->acceleration(&f->system, y, y + n, rate + n);
 }
 
-/* The midpoint rule over a step of h in `count` (even) substeps. */
+/* Applies the midpoint rule over a step of h in `count` (even) substeps. */
 static void midpoint(const quad_field *f, const quad *y, const quad *rate, quad h, int count,
                      quad *end)
 {
@@ -61,7 +61,8 @@ static quad largest(int count, const quad *x)
   return most;
 }
 
-/* |x - y| relative to |x| in the first half (q) and in the second (v or p): the larger one. */
+/* Returns the larger one of |x - y| relative to |x| in the first half (q) and in the second (v or
+ * p). */
 static quad distance(int n, const quad *x, const quad *y)
 {
   quad difference[STATE_MAX] = {0};
@@ -72,7 +73,8 @@ static quad distance(int n, const quad *x, const quad *y)
   return in_q <= in_v ? in_v : in_q;
 }
 
-/* One step of h; returns the difference of the last two columns of the extrapolation table. */
+/* Takes a step of h, and returns the difference of the last two columns of the extrapolation
+ * table. */
 static quad extrapolate(const quad_field *f, const quad *y, quad h, quad *end)
 {
   const int n = f->system.n, size = 2 * n + 1;
@@ -91,8 +93,8 @@ static quad extrapolate(const quad_field *f, const quad *y, quad h, quad *end)
   return distance(n, end, last);
 }
 
-/* Advance y by time t: along `coarse` with the steps that the tolerance asks for, along `fine` with
- * half of them. Returns their distance. */
+/* Advances y by time t. `coarse` takes the steps that the tolerance asks for, `fine` takes two
+ * steps of half the length. Returns their distance. */
 quad quad_march(const quad_field *f, quad t, quad *y)
 {
   const quad tolerance = quad_parse("1e-30", NULL);

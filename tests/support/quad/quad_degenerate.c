@@ -1,16 +1,16 @@
-/* The catalogue's degenerate problems in quadruple precision: the velocity from Omega(q) v = dH/dq,
- * solved by hand where Omega has blocks of two; those with a Hamiltonian and constraints by their
+/* The catalogue's degenerate problems in quadruple precision. The velocity solves Omega(q) v =
+ * dH/dq, by hand where Omega has blocks of two. Problems with a Hamiltonian and constraints have
  * accelerations. */
 #include "quad_system.h"
 
-/* A block of two coordinates: omega (v2, -v1) = (H_1, H_2). */
+/* Solves a block of two coordinates, omega (v2, -v1) = (H_1, H_2). */
 static void turn(quad omega, quad H_1, quad H_2, quad *v)
 {
   v[0] = -H_2 / omega;
   v[1] = H_1 / omega;
 }
 
-/* Volterra's own equations; Omega_12 = -1/(q1 q2). */
+/* Volterra's equations, with Omega_12 = -1/(q1 q2). */
 static void lotka_volterra_prepare(quad_system *system)
 {
   system->n = 2;
@@ -69,7 +69,7 @@ static void eliminate(quad A[4][4], quad *b)
   }
 }
 
-/* Omega_ij = -C_ij/(q_i q_j): sum_j C_ij (v_j/q_j) = -(q_i + b_i). */
+/* With Omega_ij = -C_ij/(q_i q_j) the equations are sum_j C_ij (v_j/q_j) = -(q_i + b_i). */
 static void species_rate(const quad_system *system, const quad *q, quad *v)
 {
   static const int b[4] = {-1, -2, -1, -1};
@@ -146,7 +146,7 @@ static void vortices_prepare(quad_system *system)
   system->q[3] = quad_number("-0.1");
 }
 
-/* H = S_1 S_2 ln d^2/(8 pi); Omega of one vortex is (1 + 2 r^2)/2. */
+/* H = S_1 S_2 ln d^2/(8 pi), and Omega of one vortex is (1 + 2 r^2)/2. */
 static void vortices_rate(const quad_system *system, const quad *q, quad *v)
 {
   const quad dx = q[0] - q[2], dy = q[1] - q[3], d2 = dx * dx + dy * dy,
@@ -204,7 +204,8 @@ static void tokamak_prepare(quad_system *system)
   system->q[3] = quad_number("4.306e-4");
 }
 
-/* b = B/|B| in covariant components, from |B|^2 = B_R^2 + B_Z^2 + B_phi^2/R^2; returns |B|. */
+/* Gives b = B/|B| in covariant components, from |B|^2 = B_R^2 + B_Z^2 + B_phi^2/R^2, and returns
+ * |B|. */
 static quad tokamak_field(const quad *q, quad *b)
 {
   const quad R = q[0], Z = q[1], B_R = -Z / (2 * R), B_Z = (R - 1) / (2 * R);
@@ -262,7 +263,7 @@ static void tokamak_momentum(const quad_system *system, const quad *q, const qua
   p[3] = 0;
 }
 
-/* A particle on a circle: x'' = (0,-1) - mu x with the mu that keeps |x| = 1. */
+/* A particle on a circle, x'' = (0,-1) - mu x with the mu that keeps |x| = 1. */
 static void circle_prepare(quad_system *system)
 {
   system->n = 2;
@@ -280,7 +281,7 @@ static void circle_acceleration(const quad_system *system, const quad *q, const 
   a[1] = -1 - mu * q[1];
 }
 
-/* x'' = -x - y'/2, S y' = -cos z, S z' = -x'/2 - sin y with S = 1 + y^2 + z^2; the last two
+/* x'' = -x - y'/2, S y' = -cos z, S z' = -x'/2 - sin y with S = 1 + y^2 + z^2. The last two are
  * differentiated. */
 static void pair_velocity(const quad_system *system, const quad *q, const quad *p, quad *v)
 {
@@ -317,7 +318,7 @@ static void pair_momentum(const quad_system *system, const quad *q, const quad *
   p[2] = 0;
 }
 
-/* x' = cos theta, y' = sin theta, theta'' = p_x sin theta with p_x = -1; the first two
+/* x' = cos theta, y' = sin theta, theta'' = p_x sin theta with p_x = -1. The first two are
  * differentiated. */
 static void elastica_velocity(const quad_system *system, const quad *q, const quad *p, quad *v)
 {

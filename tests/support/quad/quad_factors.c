@@ -33,7 +33,7 @@ static void turn_by(const quad *R, const quad *x, quad *y)
 
 /* ---- points ---- */
 
-/* What a cell gives to r, to b, and column k of B. */
+/* Adds a slot's part of r, of b, and of column k of B. */
 static void part(char cell, const quad *q, const quad *v, const quad *arm, quad *r, quad *b)
 {
   quad x[3], y[3];
@@ -115,7 +115,7 @@ static void gather(const quad_system *system, const quad *q, const quad *v, mech
       for (int j = 0; j < 3; j++) m->mass[3 * c + i][3 * c + j] += q[i] * q[j];
 }
 
-/* x <- mass^-1 x, the mass being positive definite; it is destroyed. */
+/* Solves mass x = x in place. The mass is positive definite and is overwritten. */
 static void solve(int n, quad A[NV][NV], quad *x)
 {
   for (int k = 0; k < n; k++)
@@ -151,7 +151,7 @@ static void flow(const quad_system *system, const quad *y, quad *rate)
   solve(system->nv, m.mass, v_rate);
 }
 
-/* Of a direction p is the momentum of q', tangent; that of omega is q x p. */
+/* Gives the momentum of a direction. p belongs to q' and is tangent, and q x p belongs to omega. */
 static void momentum(const quad_system *system, const quad *q, const quad *v, quad *p)
 {
   mechanics m;
@@ -182,7 +182,7 @@ static void velocity(const quad_system *system, const quad *q, const quad *p, qu
 
 /* ---- definitions ---- */
 
-/* Cells: R a rotation, at I; P a place; S a direction. */
+/* The slots are R, a rotation that starts at I, P, a place, and S, a direction. */
 static void lay_out(quad_system *system, const char *slots)
 {
   (void)strcpy(system->slots, slots);
@@ -287,7 +287,7 @@ static void spherical_chain_prepare(quad_system *system)
   }
 }
 
-/* Six points on the axes of each body; all pairs pull. */
+/* Puts six points on the axes of each body. All pairs attract each other. */
 static void two_body_prepare(quad_system *system)
 {
   static const char *const semiaxis[2][3] = {{"0.6", "0.4", "0.3"}, {"0.35", "0.3", "0.15"}};

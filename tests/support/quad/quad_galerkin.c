@@ -23,7 +23,7 @@ static void legendre(int n, quad x, quad value[3])
   value[2] = (2 * x * value[1] - n * (n + 1) * value[0]) / (1 - x * x);
 }
 
-/* The zero of P_n (derivative 0) or P_n' (derivative 1) near x. */
+/* Gives the zero of P_n (derivative 0) or P_n' (derivative 1) near x. */
 static quad zero_near(int n, int derivative, quad x)
 {
   quad value[3];
@@ -94,7 +94,7 @@ void quad_galerkin_prepare(quad_galerkin *m, int degree, int is_lobatto, int nod
     for (int l = 0; l < degree; l++)
       for (int j = 0; j < nodes; j++) K[k][l] += m->weight[j] * m->slope[k][j] * m->slope[l][j];
   }
-  for (int c = 0; c < degree; c++) { /* Gauss-Jordan: K is positive definite */
+  for (int c = 0; c < degree; c++) { /* Gauss-Jordan elimination, as K is positive definite */
     const quad pivot = K[c][c];
     for (int l = 0; l < degree; l++) K[c][l] /= pivot, m->inverse[c][l] /= pivot;
     for (int k = 0; k < degree; k++) {
@@ -177,7 +177,7 @@ static void residual(const quad_galerkin *m, const quad_field *f, quad h, const 
   }
 }
 
-/* Y -= h (K (x) M)^-1 R with the mass at q; returns the largest change. */
+/* Computes Y -= h (K (x) M)^-1 R with the mass at q, and returns the largest change. */
 static quad correct(const quad_galerkin *m, const quad_field *f, quad h, const quad *q, stage *s)
 {
   const int n = f->system.n;
@@ -199,7 +199,8 @@ static quad correct(const quad_galerkin *m, const quad_field *f, quad h, const q
   return change;
 }
 
-/* Changes shrink to the noise of the residual, wherever that is, and no further. */
+/* Iterates until the changes shrink to the noise of the residual, wherever that is, and no
+ * further. */
 static int iterate(const quad_galerkin *m, const quad_field *f, quad h, const quad *q,
                    const quad *p, stage *s)
 {

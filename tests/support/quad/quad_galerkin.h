@@ -1,6 +1,6 @@
-/* Galerkin variational integrators in quadruple precision, written again from their definition: the
- * library's own arithmetic has too few digits to show an order of 16, whose leading term rules only
- * where the error is below double roundoff. */
+/* Galerkin variational integrators in quadruple precision, written again from their definition. The
+ * library's own arithmetic has too few digits to show an order of 16, whose leading term dominates
+ * only where the error is below double roundoff. */
 #ifndef SUPPORT_QUAD_GALERKIN_H
 #define SUPPORT_QUAD_GALERKIN_H
 #include "quad_system.h"
@@ -17,10 +17,10 @@ typedef struct quad_galerkin {
   quad inverse[QUAD_DEGREE_MAX][QUAD_DEGREE_MAX]; /* of K_kl = sum_j b_j psi_k' psi_l' */
 } quad_galerkin;
 
-/* nodes >= degree; Gauss or (from 2 nodes) Lobatto. */
+/* Prepares a method with nodes >= degree, of Gauss or (from 2 nodes) Lobatto. */
 void quad_galerkin_prepare(quad_galerkin *method, int degree, int lobatto, int nodes);
 
-/* One step of h on state (q, p), in place. 1 if the iteration settled. */
+/* Takes a step of h on the state (q, p) in place. Returns 1 if the iteration settled. */
 int quad_galerkin_step(const quad_galerkin *method, const quad_field *field, quad h, quad *q,
                        quad *p);
 

@@ -3,7 +3,7 @@
 
 #include "quad_system.h"
 
-/* The number at *text, which moves behind it. */
+/* Reads the number at *text, and moves *text behind it. */
 static quad next_number(const char **text)
 {
   char *end;
@@ -97,8 +97,8 @@ static void henon_heiles_acceleration(const quad_system *system, const quad *q, 
   a[1] = -y - lambda * (x * x - y * y);
 }
 
-/* Two point masses m1, m2 at (l1 sin t1, -l1 cos t1) and there + (l2 sin t2, -l2 cos t2): M(theta)
- * omega = p. */
+/* Two point masses m1, m2. The first is at (l1 sin t1, -l1 cos t1), the second is (l2 sin t2, -l2
+ * cos t2) away from it, and M(theta) omega = p. */
 typedef struct mass_matrix {
   quad upper, coupling, lower;
 } mass_matrix;
@@ -151,7 +151,7 @@ static void double_pendulum_velocity(const quad_system *system, const quad *q, c
   mass_solve(double_pendulum_mass(system, q), p[0], p[1], v);
 }
 
-/* L = v^2/2 + x'(t) v cos q - cos q with x' = a omega cos(omega t); the time stands behind the
+/* L = v^2/2 + x'(t) v cos q - cos q with x' = a omega cos(omega t). The time stands behind the
  * velocity. */
 static void driven_pendulum_prepare(quad_system *system)
 {
@@ -279,8 +279,8 @@ static void toda_acceleration(const quad_system *system, const quad *q, const qu
   }
 }
 
-/* V = sum_{i=0}^{n} d_i^2/2 + beta d_i^4/4, d_i = q_{i+1} - q_i between walls at q_0 = q_{n+1} = 0;
- * start sin(pi k i/(n+1)). */
+/* V = sum_{i=0}^{n} d_i^2/2 + beta d_i^4/4, d_i = q_{i+1} - q_i between walls at q_0 = q_{n+1} = 0,
+ * with the start sin(pi k i/(n+1)). */
 static void chain_prepare(quad_system *system)
 {
   const int n = (int)system->value[0];
@@ -303,7 +303,7 @@ static void chain_acceleration(const quad_system *system, const quad *q, const q
   }
 }
 
-/* V = k/2 sum (|d| - 0.8)^2 over the springs of a net of side^dim masses, and those to its walls; q
+/* V = k/2 sum (|d| - 0.8)^2 over the springs of a net of side^dim masses, and those to its walls. q
  * are displacements from a grid of spacing 1. A mass has 2 dim springs, each judged from its own
  * end. */
 static int net_masses(const quad_system *system)
@@ -354,7 +354,7 @@ static void net_acceleration(const quad_system *system, const quad *q, const qua
       }
 }
 
-/* Newton's gravity between point masses; q holds body after body. */
+/* Newton's gravity between point masses. q holds body after body. */
 static void gravity_acceleration(const quad_system *system, const quad *q, const quad *v, quad *a)
 {
   const int d = system->dimension;

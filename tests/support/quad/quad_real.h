@@ -1,5 +1,5 @@
-/* 128-bit real numbers: __float128 with libquadmath on x86, long double where that has 113 bits
- * (aarch64). */
+/* Real numbers of 128 bits are __float128 with libquadmath on x86, or long double where that has
+ * 113 bits (aarch64). */
 #ifndef SUPPORT_QUAD_REAL_H
 #define SUPPORT_QUAD_REAL_H
 #include <float.h>

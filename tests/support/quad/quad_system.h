@@ -1,5 +1,5 @@
-/* A problem in quadruple precision: between the judge's scheme (quad.c) and the definitions
- * (quad_problems.c). */
+/* A problem in quadruple precision, the interface between the judge's scheme (quad.c) and the
+ * definitions (quad_problems.c). */
 #ifndef SUPPORT_QUAD_SYSTEM_H
 #define SUPPORT_QUAD_SYSTEM_H
 #include "quad.h"
@@ -13,12 +13,12 @@
 /* A point of a system of rotations, places and directions (quad_factors.c). */
 typedef struct quad_point {
   quad mass, weight[3], spring, pull;
-  quad arm[QUAD_SLOTS_MAX][3]; /* of each cell: rho of a rotation; the factor, and 0, 0 */
+  quad arm[QUAD_SLOTS_MAX][3]; /* of each slot, rho of a rotation, or (factor, 0, 0) */
 } quad_point;
 
 typedef struct quad_system {
   int n;  /* of q */
-  int nv; /* of v and p; 0 until quad_prepare: n */
+  int nv; /* length of v and p (default n, set by quad_prepare) */
   char slots[QUAD_SLOTS_MAX + 1];
   int points;
   quad_point point[QUAD_POINTS_MAX];
@@ -32,16 +32,16 @@ typedef struct quad_problem {
   const char *name;
   const char *parameter[QUAD_PARAMETERS_MAX + 1]; /* names, ended by NULL */
   const char *standard[QUAD_PARAMETERS_MAX];      /* default values */
-  /* value -> the other members; n stays 0 if there is no room */
+  /* sets the other members from `value`; n stays 0 if there is no room */
   void (*prepare)(quad_system *system);
   /* v [n], and behind it the time since the start */
   void (*acceleration)(const quad_system *system, const quad *q, const quad *v, quad *a);
-  /* NULL: p = v */
+  /* default NULL, p = v */
   void (*momentum)(const quad_system *system, const quad *q, const quad *v, quad *p);
   void (*velocity)(const quad_system *system, const quad *q, const quad *p, quad *v);
-  /* in place of the acceleration: y = (q, v), [2 n] */
+  /* replaces the acceleration, for y = (q, v), [2 n] */
   void (*flow)(const quad_system *system, const quad *y, quad *rate);
-  /* degenerate: in place of the acceleration; v stays 0 */
+  /* replaces the acceleration of a degenerate problem, whose v stays 0 */
   void (*rate)(const quad_system *system, const quad *q, quad *qdot);
 } quad_problem;
 
@@ -57,21 +57,22 @@ typedef struct quad_field {
   quad_system system;
 } quad_field;
 
-/* NULL if there is none. */
+/* Finds a problem, or returns NULL. */
 const quad_problem *quad_problem_find(const char *name);
 
-/* 1 if there is such a problem, with such settings, and room for it. */
+/* Sets the parameters of a problem. Returns 1 if there is such a problem, with such settings, and
+ * room for it. */
 int quad_prepare(quad_field *field, const char *problem, int setting_count,
                  const char *const *settings);
 
-/* Advance y = (q, v, 0) [2 n + 1] by time t, which then stands last. Returns the judge's own error
+/* Advances y = (q, v, 0) [2 n + 1] by time t, which then stands last. Returns the judge's own error
  * as quad_solve does. */
 quad quad_march(const quad_field *field, quad t, quad *y);
 
-/* p [nv] at y = (q, v, time). */
+/* Gives p [nv] at y = (q, v, time). */
 void quad_momentum(const quad_field *field, const quad *y, quad *p);
 
-/* A decimal number or a quotient of two, "1/1.3e8". */
+/* Reads a decimal number or a quotient of two, such as "1/1.3e8". */
 quad quad_number(const char *text);
 
 #endif

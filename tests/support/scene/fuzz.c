@@ -34,8 +34,8 @@ typedef struct pool {
 static pool corpus;
 static uint64_t state;
 
-/* splitmix64, from 0 to bound - 1 */
-static size_t below(size_t bound)
+/* Draws a number from 0 to bound - 1, by splitmix64. */
+static size_t random_below(size_t bound)
 {
   state += 0x9E3779B97F4A7C15U;
   uint64_t z = state;
@@ -44,10 +44,10 @@ static size_t below(size_t bound)
   return (size_t)((z ^ (z >> 31)) % bound);
 }
 
-/* A full corpus gives up any other text for a new one. */
-static void remember(const char *at, size_t size)
+/* Adds a text to the corpus, in place of any other text if the corpus is full. */
+static void add_to_corpus(const char *at, size_t size)
 {
-  const size_t place = corpus.count < POOL_MAX ? corpus.count++ : below(POOL_MAX);
+  const size_t place = corpus.count < POOL_MAX ? corpus.count++ : random_below(POOL_MAX);
   char *copy = malloc(size + 1);
   fuzz_requires(copy != NULL);
   memcpy(copy, at, size);
@@ -56,13 +56,13 @@ static void remember(const char *at, size_t size)
   corpus.size[place] = size;
 }
 
-static void forget_all(void)
+static void clear_corpus(void)
 {
   for (size_t k = 0; k < corpus.count; k++) free(corpus.at[k]);
   corpus = (pool){0};
 }
 
-/* Put `size` bytes in the place of `gone` others, if there is room. */
+/* Puts `size` bytes in the place of `gone` others, if there is room. */
 static void replace(text *t, size_t place, size_t gone, const char *by, size_t size)
 {
   if (t->size - gone + size > TEXT_MAX) return;
@@ -71,50 +71,52 @@ static void replace(text *t, size_t place, size_t gone, const char *by, size_t s
   t->size = t->size - gone + size;
 }
 
-/* A short part, more often than a long one. */
-static size_t part_below(size_t bound)
+/* Draws a length up to `bound`, more often a short one. */
+static size_t random_part(size_t bound)
 {
-  return bound == 0 ? 0 : below(below(bound) + 1);
+  return bound == 0 ? 0 : random_below(random_below(bound) + 1);
 }
 
 static void put_token(text *t, const char *const *tokens)
 {
   size_t count = 0;
   while (tokens[count] != NULL) count++;
-  const char *token = tokens[below(count)];
-  const size_t place = below(t->size + 1);
-  replace(t, place, below(2) == 0 ? 0 : part_below(t->size - place + 1), token, strlen(token));
+  const char *token = tokens[random_below(count)];
+  const size_t place = random_below(t->size + 1);
+  replace(t, place, random_below(2) == 0 ? 0 : random_part(t->size - place + 1), token,
+          strlen(token));
 }
 
-/* A part of another text. */
+/* Puts in a part of another text. */
 static void splice(text *t)
 {
-  const size_t other = below(corpus.count);
-  const size_t first = below(corpus.size[other] + 1);
-  const size_t place = below(t->size + 1);
-  replace(t, place, part_below(t->size - place + 1), corpus.at[other] + first,
-          part_below(corpus.size[other] - first + 1));
+  const size_t other = random_below(corpus.count);
+  const size_t first = random_below(corpus.size[other] + 1);
+  const size_t place = random_below(t->size + 1);
+  replace(t, place, random_part(t->size - place + 1), corpus.at[other] + first,
+          random_part(corpus.size[other] - first + 1));
 }
 
-/* A part of it again, some times. */
+/* Repeats a part of the text some times. */
 static void repeat(text *t)
 {
   static char copy[TEXT_MAX];
-  const size_t first = below(t->size + 1);
-  const size_t size = part_below(t->size - first + 1);
+  const size_t first = random_below(t->size + 1);
+  const size_t size = random_part(t->size - first + 1);
   memcpy(copy, t->at + first, size);
-  for (size_t k = below(below(8) == 0 ? 200 : 4) + 1; k > 0; k--) replace(t, first, 0, copy, size);
+  for (size_t k = random_below(random_below(8) == 0 ? 200 : 4) + 1; k > 0; k--)
+    replace(t, first, 0, copy, size);
 }
 
 static void mutate(text *t, const char *const *tokens)
 {
-  const size_t place = below(t->size + 1);
-  const char byte = (char)below(256);
-  switch (below(8)) {
-  case 0: replace(t, place, part_below(t->size - place + 1), "", 0); break;
+  const size_t place = random_below(t->size + 1);
+  const char byte = (char)random_below(256);
+  switch (random_below(8)) {
+  case 0: replace(t, place, random_part(t->size - place + 1), "", 0); break;
   case 1: replace(t, place, 0, &byte, 1); break;
   case 2:
-    if (place < t->size) t->at[place] = (char)(t->at[place] ^ (1 << below(8)));
+    if (place < t->size) t->at[place] = (char)(t->at[place] ^ (1 << random_below(8)));
     break;
   case 3: splice(t); break;
   case 4: repeat(t); break;
@@ -122,26 +124,27 @@ static void mutate(text *t, const char *const *tokens)
   }
 }
 
-/* Texts grow by themselves, and short ones take less time. */
+/* Draws a text. Texts grow by mutation, and short ones take less time. */
 static size_t shorter_of_two(void)
 {
-  const size_t a = below(corpus.count);
-  const size_t b = below(corpus.count);
+  const size_t a = random_below(corpus.count);
+  const size_t b = random_below(corpus.count);
   return corpus.size[a] < corpus.size[b] ? a : b;
 }
 
-/* One byte beyond its end is not ours. */
+/* Tries a copy of the text whose memory ends with it, so that the sanitizer sees a byte read
+ * beyond. */
 static unsigned try_text(const fuzz_target *target, const char *at, size_t size)
 {
   char *exact = malloc(size > 0 ? size : 1);
   fuzz_requires(exact != NULL);
   memcpy(exact, at, size);
-  const unsigned outcome = target->one(exact, size);
+  const unsigned outcome = target->try_text(exact, size);
   free(exact);
   return outcome % OUTCOMES;
 }
 
-static double now(void)
+static double seconds_now(void)
 {
   struct timespec time;
   (void)clock_gettime(CLOCK_MONOTONIC, &time);
@@ -180,16 +183,16 @@ static long try_for(const fuzz_target *target, int seconds, int file)
   static text t;
   static char seen[OUTCOMES];
   long tried = 0;
-  for (const double end = now() + seconds; now() < end;)
+  for (const double end = seconds_now() + seconds; seconds_now() < end;)
     for (int round = 0; round < ROUNDS; round++, tried++) {
       const size_t from = shorter_of_two();
       t.size = corpus.size[from];
       memcpy(t.at, corpus.at[from], t.size);
-      for (size_t k = below(6) + 1; k > 0; k--) mutate(&t, target->tokens);
+      for (size_t k = random_below(6) + 1; k > 0; k--) mutate(&t, target->tokens);
       fuzz_requires(pwrite(file, t.at, t.size, 0) == (ssize_t)t.size &&
                     ftruncate(file, (off_t)t.size) == 0);
       const unsigned outcome = try_text(target, t.at, t.size);
-      if (!seen[outcome]) remember(t.at, t.size);
+      if (!seen[outcome]) add_to_corpus(t.at, t.size);
       seen[outcome] = 1;
     }
   return tried;
@@ -205,11 +208,11 @@ long fuzz(const fuzz_target *target)
   state = 0;
   for (int k = 0; target->corpus[k] != NULL; k++) {
     (void)try_text(target, target->corpus[k], strlen(target->corpus[k]));
-    remember(target->corpus[k], strlen(target->corpus[k]));
+    add_to_corpus(target->corpus[k], strlen(target->corpus[k]));
   }
   const long tried = try_for(target, seconds_asked(), file);
   printf("%s: %ld texts tried, %zu kept\n", target->name, tried, corpus.count);
-  forget_all();
+  clear_corpus();
   (void)close(file);
   (void)unlink(path);
   return tried;

@@ -1,5 +1,5 @@
-/* Hostile texts for readers: made by mutation of good ones, the same in every run, so that a
- * failure comes again. */
+/* Tries readers with hostile texts, made by mutation of good ones. They are the same in every run,
+ * so that a failure comes again. */
 #ifndef TESTS_SUPPORT_FUZZ_H
 #define TESTS_SUPPORT_FUZZ_H
 #include <stddef.h>
@@ -7,29 +7,29 @@
 #include "support/suite.h"
 
 typedef struct fuzz_target {
-  /* the text on trial is kept in the file fuzz-NAME.txt, which stays where the trial fails */
+  /* the file fuzz-NAME.txt holds the text on trial, and stays if the trial fails */
   const char *name;
   const char *const *corpus; /* good texts, ended by NULL */
   const char *const *tokens; /* words of the language, ended by NULL */
   /* Try a text of which exactly `size` bytes can be read, and fail the test if something is wrong.
-   * The result says what happened: a text with a new one joins the corpus. */
-  unsigned (*one)(const char *text, size_t size);
+   * The result is a number of the outcome. A text with a new outcome joins the corpus. */
+  unsigned (*try_text)(const char *text, size_t size);
 } fuzz_target;
 
-/* Try texts for as long as DVI_FUZZ_SECONDS says; else 30 s where the address sanitizer watches, 2
- * s where not. With DVI_FUZZ_TEXT try the text in this file alone. Returns how many were tried. */
+/* Tries texts for DVI_FUZZ_SECONDS (default 2, or 30 under the address sanitizer), and returns
+ * their number. With DVI_FUZZ_TEXT it tries the text in this file alone. */
 long fuzz(const fuzz_target *target);
 
-/* As ck_assert, which writes a line each time: far too many in `one`. */
+/* Asserts a condition in `try_text`, where ck_assert would write far too many lines. */
 #define fuzz_requires(condition)                      \
   do {                                                \
     if (!(condition)) ck_abort_msg("%s", #condition); \
   } while (0)
 
-/* How long a case of Check may take that fuzzes. */
+/* Gives the time limit of a case of Check that fuzzes. */
 int fuzz_timeout(void);
 
-/* A number for what a message says: its first line, but for digits and what stands in quotes. */
+/* Gives a number for a message: its first line without digits and without text in quotes. */
 unsigned fuzz_hash(const char *message);
 
 #endif

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Where the callbacks are called, and what they have said. */
+/* The point at which callbacks are called, and the first code that is not 0. */
 typedef struct caller {
   const double *q, *v, *p;
   int n, code;
@@ -24,8 +24,8 @@ static double *numbers(size_t count)
   return made;
 }
 
-/* What a callback returned and left in x [count], which is freed. */
-static void judge(caller *c, int code, size_t count, double *x)
+/* Checks the code of a callback and its numbers x [count], which are freed. */
+static void check_result(caller *c, int code, size_t count, double *x)
 {
   for (size_t i = 0; code == 0 && i < count; i++)
     if (!isfinite(x[i])) ck_abort_msg("a callback gives %g for a number", x[i]);
@@ -39,14 +39,14 @@ static void call_potential(caller *c, const dvi_potential *V)
 {
   const size_t n = (size_t)c->n, second = entries(&V->qq, c->n, c->n);
   double *x = numbers(1);
-  judge(c, V->value_batch(1, &t, c->q, x, V->user), 1, x);
+  check_result(c, V->value_batch(1, &t, c->q, x, V->user), 1, x);
   x = numbers(n);
-  judge(c, V->gradient_batch(1, &t, c->q, x, V->user), n, x);
+  check_result(c, V->gradient_batch(1, &t, c->q, x, V->user), n, x);
   x = numbers(second);
-  judge(c, V->hessian_batch(1, &t, c->q, x, V->user), second, x);
+  check_result(c, V->hessian_batch(1, &t, c->q, x, V->user), second, x);
   x = numbers(1);
   if (V->rate_batch != NULL)
-    judge(c, V->rate_batch(1, &t, c->q, x, V->user), 1, x);
+    check_result(c, V->rate_batch(1, &t, c->q, x, V->user), 1, x);
   else
     free(x);
 }
@@ -56,14 +56,15 @@ static void call_lagrangian(caller *c, const dvi_lagrangian *L)
   const size_t n = (size_t)c->n, qq = entries(&L->qq, c->n, c->n), qv = entries(&L->qv, c->n, c->n),
                vv = entries(&L->vv, c->n, c->n);
   double *x = numbers(1);
-  judge(c, L->value_batch(1, &t, c->q, c->v, x, L->user), 1, x);
+  check_result(c, L->value_batch(1, &t, c->q, c->v, x, L->user), 1, x);
   x = numbers(2 * n);
-  judge(c, L->gradient_batch(1, &t, c->q, c->v, x, x + n, L->user), 2 * n, x);
+  check_result(c, L->gradient_batch(1, &t, c->q, c->v, x, x + n, L->user), 2 * n, x);
   x = numbers(qq + qv + vv);
-  judge(c, L->hessian_batch(1, &t, c->q, c->v, x, x + qq, x + qq + qv, L->user), qq + qv + vv, x);
+  check_result(c, L->hessian_batch(1, &t, c->q, c->v, x, x + qq, x + qq + qv, L->user),
+               qq + qv + vv, x);
   x = numbers(1);
   if (L->rate_batch != NULL)
-    judge(c, L->rate_batch(1, &t, c->q, c->v, x, L->user), 1, x);
+    check_result(c, L->rate_batch(1, &t, c->q, c->v, x, L->user), 1, x);
   else
     free(x);
 }
@@ -73,11 +74,11 @@ static void call_one_form(caller *c, const dvi_one_form *alpha)
   const size_t n = (size_t)c->n, first = entries(&alpha->gradients, c->n, c->n),
                second = entries(&alpha->qq, c->n, c->n);
   double *x = numbers(n);
-  judge(c, alpha->value(c->q, x, alpha->user), n, x);
+  check_result(c, alpha->value(c->q, x, alpha->user), n, x);
   x = numbers(first);
-  judge(c, alpha->gradient(c->q, x, alpha->user), first, x);
+  check_result(c, alpha->gradient(c->q, x, alpha->user), first, x);
   x = numbers(second);
-  judge(c, alpha->hessian(c->q, c->v, x, alpha->user), second, x);
+  check_result(c, alpha->hessian(c->q, c->v, x, alpha->user), second, x);
 }
 
 static void call_hamiltonian(caller *c, const dvi_hamiltonian *H)
@@ -85,11 +86,11 @@ static void call_hamiltonian(caller *c, const dvi_hamiltonian *H)
   const size_t n = (size_t)c->n, qq = entries(&H->qq, c->n, c->n), qp = entries(&H->qp, c->n, c->n),
                pp = entries(&H->pp, c->n, c->n);
   double *x = numbers(1);
-  judge(c, H->value(t, c->q, c->p, x, H->user), 1, x);
+  check_result(c, H->value(t, c->q, c->p, x, H->user), 1, x);
   x = numbers(2 * n);
-  judge(c, H->gradient(t, c->q, c->p, x, x + n, H->user), 2 * n, x);
+  check_result(c, H->gradient(t, c->q, c->p, x, x + n, H->user), 2 * n, x);
   x = numbers(qq + qp + pp);
-  judge(c, H->hessian(t, c->q, c->p, x, x + qq, x + qq + qp, H->user), qq + qp + pp, x);
+  check_result(c, H->hessian(t, c->q, c->p, x, x + qq, x + qq + qp, H->user), qq + qp + pp, x);
 }
 
 static void call_constraint(caller *c, const dvi_constraint *phi)
@@ -99,11 +100,11 @@ static void call_constraint(caller *c, const dvi_constraint *phi)
                pp = entries(&phi->pp, c->n, c->n);
   double *w = numbers(m), *x = numbers(m);
   for (size_t a = 0; a < m; a++) w[a] = 1.0 + (double)a;
-  judge(c, phi->value(c->q, c->p, x, phi->user), m, x);
+  check_result(c, phi->value(c->q, c->p, x, phi->user), m, x);
   x = numbers(first);
-  judge(c, phi->gradient(c->q, c->p, x, phi->user), first, x);
+  check_result(c, phi->gradient(c->q, c->p, x, phi->user), first, x);
   x = numbers(qq + qp + pp);
-  judge(c, phi->hessian(c->q, c->p, w, x, x + qq, x + qq + qp, phi->user), qq + qp + pp, x);
+  check_result(c, phi->hessian(c->q, c->p, w, x, x + qq, x + qq + qp, phi->user), qq + qp + pp, x);
   free(w);
 }
 
@@ -111,16 +112,17 @@ static void call_watchers(caller *c, const dvi_scene *scene, const dvi_system_te
 {
   for (int k = 0; k < terms->symmetry_count; k++) {
     double *x = numbers((size_t)c->n);
-    judge(c, terms->symmetries[k].generator(c->q, x, terms->symmetries[k].user), (size_t)c->n, x);
+    check_result(c, terms->symmetries[k].generator(c->q, x, terms->symmetries[k].user),
+                 (size_t)c->n, x);
   }
   for (int k = 0; k < terms->invariant_count; k++) {
     double *x = numbers(1);
-    judge(c, terms->invariants[k].value(t, c->q, c->p, x, terms->invariants[k].user), 1, x);
+    check_result(c, terms->invariants[k].value(t, c->q, c->p, x, terms->invariants[k].user), 1, x);
   }
   const dvi_scene_event *event = NULL;
   for (int k = 0; (event = dvi_scene_event_at(scene, k)) != NULL; k++) {
     double *x = numbers(1);
-    judge(c, event->value(t, c->q, c->v, x, event->user), 1, x);
+    check_result(c, event->value(t, c->q, c->v, x, event->user), 1, x);
   }
 }
 

@@ -1,4 +1,4 @@
-/* The text of a scene in a test: what it is read into, and what is said of it. */
+/* The text of a scene in a test, the memory that it is read into, and the complaint about it. */
 #ifndef TESTS_SUPPORT_SCENE_TEXT_H
 #define TESTS_SUPPORT_SCENE_TEXT_H
 #include "text/arena.h"
@@ -12,20 +12,20 @@ typedef struct scene_text {
   char message[1024];
 } scene_text;
 
-/* Named s.yaml; the text stays the caller's. */
+/* Opens a text by the name s.yaml. The text stays the caller's. */
 void open_text(scene_text *scene, const char *text, size_t size);
 void close_text(scene_text *scene);
 
-/* After open_text: let the scene take so many bytes and no more; at most 65536. */
+/* Lets an opened text take so many bytes and no more, at most 65536. */
 void limit_memory(scene_text *scene, size_t size);
 
-/* The complaint must have this status and must be this message, whole. */
+/* Requires a complaint with this status and this whole message. */
 void check_complaint(const scene_text *scene, dvi_status status, const char *message);
 
-/* There must be a message, with the name of the file, of characters that can be printed. */
+/* Requires a message with the name of the file, of characters that can be printed. */
 void check_printable(const scene_text *scene);
 
-/* These characters must stand at the span. */
+/* Requires these characters at the span. */
 void check_span(const scene_text *scene, dvi__span span, const char *characters);
 
 #endif

@@ -8,21 +8,21 @@
 
 /* ---- potentials: V = sum c q_i q_j, or c q_i where there is no j ---- */
 
-typedef struct product_of {
+typedef struct form_term {
   int i, j;
   double c;
-} product_of;
+} form_term;
 
 enum { ALONE = -1, TERMS_MOST = 12 };
 
-typedef struct form {
+typedef struct quadratic_form {
   int n, count;
-  product_of terms[TERMS_MOST];
-} form;
+  form_term terms[TERMS_MOST];
+} quadratic_form;
 
 static int form_value(double t, const double *q, double *V, void *user)
 {
-  const form *f = user;
+  const quadratic_form *f = user;
   (void)t;
   *V = 0;
   for (int k = 0; k < f->count; k++)
@@ -32,11 +32,11 @@ static int form_value(double t, const double *q, double *V, void *user)
 
 static int form_gradient(double t, const double *q, double *V_q, void *user)
 {
-  const form *f = user;
+  const quadratic_form *f = user;
   (void)t;
   memset(V_q, 0, (size_t)f->n * sizeof *V_q);
   for (int k = 0; k < f->count; k++) {
-    const product_of *term = &f->terms[k];
+    const form_term *term = &f->terms[k];
     V_q[term->i] += term->c * (term->j == ALONE ? 1 : q[term->j]);
     if (term->j != ALONE) V_q[term->j] += term->c * q[term->i];
   }
@@ -45,12 +45,12 @@ static int form_gradient(double t, const double *q, double *V_q, void *user)
 
 static int form_hessian(double t, const double *q, double *V_qq, void *user)
 {
-  const form *f = user;
+  const quadratic_form *f = user;
   (void)t;
   (void)q;
   memset(V_qq, 0, (size_t)(f->n * f->n) * sizeof *V_qq);
   for (int k = 0; k < f->count; k++) {
-    const product_of *term = &f->terms[k];
+    const form_term *term = &f->terms[k];
     if (term->j == ALONE) continue;
     V_qq[term->i * f->n + term->j] += term->c;
     V_qq[term->j * f->n + term->i] += term->c;
@@ -90,7 +90,7 @@ static const double free_inertia[] = {3, 0, 0, 0, 2, 0, 0, 0, 1.5},
                     motion_inertia[] = {1.3, .1, 0, .1, 1.1, .05, 0, .05, .9},
                     centre[] = {.1, -.2, .15};
 
-/* Masses between coordinates: m l^2 and the like. */
+/* A mass between two coordinates, such as m l^2. */
 typedef struct coupling {
   int i, j;
   double mass;
@@ -100,7 +100,7 @@ typedef struct description {
   const char *name;
   dvi_factor factors[4];
   int factor_count, dimension;
-  form potential;
+  quadratic_form potential;
   coupling couplings[6];
   int (*vertical)(const double *q, double *xi, void *user);
   double q[BODY_Q], v[BODY_V];
@@ -185,7 +185,7 @@ static description table[BODIES] = {
      .v = {0, 1, 0, .5, 0, 0, 1, .3, -.4, .1, 0, 0, .8}},
 };
 
-void make_body(body_kind kind, body *of)
+void make_body(body_kind kind, body *model)
 {
   const description *d = &table[kind];
   double mass[BODY_Q * BODY_Q] = {0};
@@ -207,121 +207,122 @@ void make_body(body_kind kind, body *of)
       mass[d->couplings[k].i * d->dimension + d->couplings[k].j] =
           mass[d->couplings[k].j * d->dimension + d->couplings[k].i] = d->couplings[k].mass;
   if (d->couplings[0].mass != 0) terms.mass.values = mass;
-  *of = (body){.name = d->name, .factors = d->factors, .factor_count = d->factor_count};
-  ck_assert_msg(dvi_system_create(&terms, &of->system) == DVI_OK, "%s: %s", d->name,
+  *model = (body){.name = d->name, .factors = d->factors, .factor_count = d->factor_count};
+  ck_assert_msg(dvi_system_create(&terms, &model->system) == DVI_OK, "%s: %s", d->name,
                 dvi_last_error());
-  of->nq = dvi_system_nq(of->system);
-  of->nv = dvi_system_nv(of->system);
-  memcpy(of->q, d->q, sizeof of->q);
-  memcpy(of->v, d->v, sizeof of->v);
-  ck_assert_msg(dvi_system_project(of->system, of->q) == DVI_OK, "%s", dvi_last_error());
+  model->nq = dvi_system_nq(model->system);
+  model->nv = dvi_system_nv(model->system);
+  memcpy(model->q, d->q, sizeof model->q);
+  memcpy(model->v, d->v, sizeof model->v);
+  ck_assert_msg(dvi_system_project(model->system, model->q) == DVI_OK, "%s", dvi_last_error());
 }
 
-void destroy_body(body *of)
+void destroy_body(body *model)
 {
-  dvi_system_destroy(&of->system);
+  dvi_system_destroy(&model->system);
 }
 
-dvi_integrator *body_integrator(const body *of, const char *method)
+dvi_integrator *body_integrator(const body *model, const char *method)
 {
   dvi_integrator *made;
-  ck_assert_msg(dvi_integrator_create(of->system, method, &made) == DVI_OK, "%s, %s: %s", of->name,
-                method, dvi_last_error());
-  ck_assert_msg(dvi_integrator_start_velocity(made, 0, of->q, of->v) == DVI_OK, "%s, %s: %s",
-                of->name, method, dvi_last_error());
+  ck_assert_msg(dvi_integrator_create(model->system, method, &made) == DVI_OK, "%s, %s: %s",
+                model->name, method, dvi_last_error());
+  ck_assert_msg(dvi_integrator_start_velocity(made, 0, model->q, model->v) == DVI_OK, "%s, %s: %s",
+                model->name, method, dvi_last_error());
   return made;
 }
 
 /* ---- the chain ---- */
 
-static const double pull = 0.3, mass_of_link = 0.1;
+static const double spring_constant = 0.3, mass_of_link = 0.1;
 
 static int chain_value(double t, const double *q, double *V, void *user)
 {
-  const chain *of = user;
-  const int n = 3 * of->links;
+  const direction_chain *linked = user;
+  const int n = 3 * linked->links;
   (void)t;
   *V = 0;
   for (int i = 2; i < n; i += 3) *V += q[i];
-  for (int i = 3; i < n; i++) *V -= pull * q[i] * q[i - 3];
+  for (int i = 3; i < n; i++) *V -= spring_constant * q[i] * q[i - 3];
   return 0;
 }
 
 static int chain_gradient(double t, const double *q, double *V_q, void *user)
 {
-  const chain *of = user;
-  const int n = 3 * of->links;
+  const direction_chain *linked = user;
+  const int n = 3 * linked->links;
   (void)t;
   for (int i = 0; i < n; i++)
-    V_q[i] = (i % 3 == 2) - pull * ((i >= 3 ? q[i - 3] : 0) + (i + 3 < n ? q[i + 3] : 0));
+    V_q[i] = (i % 3 == 2) -
+             spring_constant * ((i >= 3 ? q[i - 3] : 0) + (i + 3 < n ? q[i + 3] : 0));
   return 0;
 }
 
 static int chain_hessian(double t, const double *q, double *V_qq, void *user)
 {
-  const chain *of = user;
+  const direction_chain *linked = user;
   (void)t;
   (void)q;
-  for (int e = 0; e < 6 * (of->links - 1); e++) V_qq[e] = -pull;
+  for (int e = 0; e < 6 * (linked->links - 1); e++) V_qq[e] = -spring_constant;
   return 0;
 }
 
-static void *room(size_t count, size_t size)
+static void *allocate(size_t count, size_t size)
 {
   void *made = calloc(count, size);
   ck_assert_ptr_nonnull(made);
   return made;
 }
 
-/* Coordinate j meets those of the links before and after. */
-static void chain_pattern(chain *of)
+/* Lists the pattern. Coordinate j couples to those of the links before and after. */
+static void chain_pattern(direction_chain *linked)
 {
-  const int n = 3 * of->links;
+  const int n = 3 * linked->links;
   int entries = 0;
   for (int j = 0; j < n; j++) {
-    if (j >= 3) of->row[entries++] = j - 3;
-    if (j + 3 < n) of->row[entries++] = j + 3;
-    of->start[j + 1] = entries;
+    if (j >= 3) linked->row[entries++] = j - 3;
+    if (j + 3 < n) linked->row[entries++] = j + 3;
+    linked->start[j + 1] = entries;
   }
 }
 
-void make_linked_chain(int links, chain *of)
+void make_direction_chain(int links, direction_chain *linked)
 {
   const size_t n = 3 * (size_t)links;
-  dvi_factor *factors = room((size_t)links, sizeof *factors);
-  *of = (chain){.links = links,
-                .start = room(n + 1, sizeof(int)),
-                .row = room(2 * n, sizeof(int)),
-                .q = room(n, sizeof(double)),
-                .v = room(n, sizeof(double))};
-  chain_pattern(of);
+  dvi_factor *factors = allocate((size_t)links, sizeof *factors);
+  *linked = (direction_chain){.links = links,
+                              .start = allocate(n + 1, sizeof(int)),
+                              .row = allocate(2 * n, sizeof(int)),
+                              .q = allocate(n, sizeof(double)),
+                              .v = allocate(n, sizeof(double))};
+  chain_pattern(linked);
   const dvi_potential potential = {.name = "chain",
                                    .value = chain_value,
                                    .gradient = chain_gradient,
                                    .hessian = chain_hessian,
-                                   .qq = {of->start, of->row},
-                                   .user = of};
+                                   .qq = {linked->start, linked->row},
+                                   .user = linked};
   for (int i = 0; i < links; i++) {
     const double angle = 0.1 * i;
     factors[i] = (dvi_factor){.kind = DVI_S2, .mass = mass_of_link};
-    of->q[3 * i] = sin(angle), of->q[3 * i + 2] = -cos(angle);
-    of->v[3 * i + 1] = 0.5 * cos(angle);
+    linked->q[3 * i] = sin(angle), linked->q[3 * i + 2] = -cos(angle);
+    linked->v[3 * i + 1] = 0.5 * cos(angle);
   }
   const dvi_system_terms terms = {.factors = factors,
                                   .factor_count = links,
                                   .potentials = &potential,
                                   .potential_count = 1,
                                   .autonomous = 1};
-  ck_assert_msg(dvi_system_create(&terms, &of->system) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_system_create(&terms, &linked->system) == DVI_OK, "%s", dvi_last_error());
   free(factors);
-  ck_assert_int_eq(dvi_system_project(of->system, of->q), DVI_OK);
+  ck_assert_int_eq(dvi_system_project(linked->system, linked->q), DVI_OK);
 }
 
-void destroy_chain(chain *of)
+void destroy_direction_chain(direction_chain *linked)
 {
-  dvi_system_destroy(&of->system);
-  free(of->start);
-  free(of->row);
-  free(of->q);
-  free(of->v);
+  dvi_system_destroy(&linked->system);
+  free(linked->start);
+  free(linked->row);
+  free(linked->q);
+  free(linked->v);
 }

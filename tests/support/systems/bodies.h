@@ -1,30 +1,25 @@
-/* Systems with factors: bodies that turn, directions, angles, and a product of all of them whose
- * mass couples factors. */
+/* Systems with factors: rotations, directions, angles, and a product of all of them whose mass
+ * couples the factors. */
 #ifndef TESTS_SUPPORT_BODIES_H
 #define TESTS_SUPPORT_BODIES_H
 #include <dvi/integrator.h>
 
 enum { BODY_Q = 20, BODY_V = 13 };
 
-/* free_body: J = (3, 2, 1.5), no potential. pendulum_3d: J = (.13, .28, .17), its centre of mass
- * below the pivot at (0, 0, .3). heavy_top: about 150 radians per unit of time about the axis e2.
- * free_motion, motion: a body on SE(3) whose centre of mass is not its origin; without potential,
- * and tied by springs. directions: a spherical double pendulum. angle: a pendulum on the circle.
- * product: two directions, a motion, an angle, with masses between them. */
 typedef enum body_kind {
-  FREE_BODY,
-  PENDULUM_3D,
-  HEAVY_TOP,
-  FREE_MOTION,
-  MOTION,
-  DIRECTIONS,
-  ANGLE,
-  PRODUCT,
+  FREE_BODY,   /* J = (3, 2, 1.5), no potential */
+  PENDULUM_3D, /* J = (.13, .28, .17), centre of mass (0, 0, .3) below the pivot */
+  HEAVY_TOP,   /* about 150 radians per unit of time about the axis e2 */
+  FREE_MOTION, /* a body on SE(3) whose centre of mass is not its origin, without potential */
+  MOTION,      /* that body, tied by springs */
+  DIRECTIONS,  /* a spherical double pendulum */
+  ANGLE,       /* a pendulum on the circle */
+  PRODUCT,     /* two directions, a motion and an angle, with masses between them */
   BODIES
 } body_kind;
 
-/* A system and a start; all but the product know their momentum of turns about the vertical as
- * invariant 1, where it is one (not angle and motion). */
+/* A system and a start. Invariant 1 is the momentum of turns about the vertical. ANGLE, MOTION and
+ * PRODUCT lack it. */
 typedef struct body {
   const char *name;
   dvi_system *system;
@@ -33,25 +28,27 @@ typedef struct body {
   double q[BODY_Q], v[BODY_V];
 } body;
 
-void make_body(body_kind kind, body *of);
-void destroy_body(body *of);
+void make_body(body_kind kind, body *model);
+void destroy_body(body *model);
 
-/* A chain of directions with springs between neighbours, and weights; must not move in memory. */
-typedef struct chain {
-  int links, *start, *row; /* and the potential's pattern */
+/* A chain of directions with springs between neighbours, and weights. It must not move in
+ * memory. */
+typedef struct direction_chain {
+  int links;
+  int *start, *row; /* the pattern of the potential's Hessian */
   dvi_system *system;
   double *q, *v; /* [3*links] */
-} chain;
+} direction_chain;
 
-void make_linked_chain(int links, chain *of);
-void destroy_chain(chain *of);
+void make_direction_chain(int links, direction_chain *linked);
+void destroy_direction_chain(direction_chain *linked);
 
-/* An integrator at the start. */
-dvi_integrator *body_integrator(const body *of, const char *method);
+/* Creates an integrator, and starts it at the body's start. */
+dvi_integrator *body_integrator(const body *model, const char *method);
 
-/* How far one step is from symplectic: the largest change of the form dp ^ dq, in the letters of
- * dvi/system.h, over pairs of differenced directions of unit size in units of the momentum. On
- * SO(3) it is dPi1.eta2 - dPi2.eta1 - Pi.(eta1 x eta2), R^T dR = eta^. */
-double symplectic_defect(const body *of, const char *method, double h);
+/* Measures how far one step is from symplectic: the largest change of the form dp ^ dq, in the
+ * letters of dvi/system.h, over pairs of differenced directions of unit size in units of the
+ * momentum. On SO(3) it is dPi1.eta2 - dPi2.eta1 - Pi.(eta1 x eta2), with R^T dR = eta^. */
+double symplectic_defect(const body *model, const char *method, double h);
 
 #endif

@@ -76,7 +76,7 @@ static int stiffness_hessian(double t, const double *q, const double *p, double 
 static const int full_start[] = {0, 2, 3}, full_row[] = {Q, K, Q}, empty_start[] = {0, 0, 0},
                  q_start[] = {0, 1, 1};
 
-/* From q = 1 at rest with k = 4: q = cos 2t, p_k = -(t/4 + sin(4t)/16). */
+/* From q = 1 at rest with k = 4 the solution is q = cos 2t, p_k = -(t/4 + sin(4t)/16). */
 static void stiffness_exact(double t, double *q, double *p)
 {
   q[Q] = cos(2 * t);
@@ -177,27 +177,28 @@ const hamiltonian_problem hamiltonian_problems[] = {
     {.name = NULL},
 };
 
-const hamiltonian_problem *hamiltonian_problem_of(const char *name)
+const hamiltonian_problem *find_hamiltonian_problem(const char *name)
 {
-  for (const hamiltonian_problem *of = hamiltonian_problems; of->name != NULL; of++)
-    if (strcmp(of->name, name) == 0) return of;
+  for (const hamiltonian_problem *model = hamiltonian_problems; model->name != NULL; model++)
+    if (strcmp(model->name, name) == 0) return model;
   ck_abort_msg("no Hamiltonian %s", name);
   return NULL;
 }
 
-dvi_system *hamiltonian_system(const hamiltonian_problem *of)
+dvi_system *create_hamiltonian_system(const hamiltonian_problem *model)
 {
-  const dvi_system_terms terms = {.dimension = of->n, .hamiltonian = &of->hamiltonian};
+  const dvi_system_terms terms = {.dimension = model->n, .hamiltonian = &model->hamiltonian};
   dvi_system *system;
   ck_assert_msg(dvi_system_create(&terms, &system) == DVI_OK, "%s", dvi_last_error());
   return system;
 }
 
-dvi_integrator *hamiltonian_started(const dvi_system *system, const hamiltonian_problem *of,
-                                    const char *method)
+dvi_integrator *start_hamiltonian_integrator(const dvi_system *system,
+                                             const hamiltonian_problem *model, const char *method)
 {
-  dvi_integrator *made = made_integrator(system, method);
-  ck_assert_msg(dvi_integrator_start(made, 0, of->q, of->p) == DVI_OK, "%s", dvi_last_error());
+  dvi_integrator *made = create_integrator(system, method);
+  ck_assert_msg(dvi_integrator_start(made, 0, model->q, model->p) == DVI_OK, "%s",
+                dvi_last_error());
   return made;
 }
 
@@ -207,47 +208,48 @@ enum { TRANSFORMED_MOST = 24, INVARIANTS_MOST = 16 };
 
 static int transform_value(double t, const double *q, const double *p, double *H, void *user)
 {
-  const problem *of = user;
+  const problem *model = user;
   double values[INVARIANTS_MOST];
-  ck_assert_int_le(dvi_system_invariant_count(of->system), INVARIANTS_MOST);
-  if (dvi_system_invariants(of->system, t, q, p, values) != DVI_OK) return 1;
+  ck_assert_int_le(dvi_system_invariant_count(model->system), INVARIANTS_MOST);
+  if (dvi_system_invariants(model->system, t, q, p, values) != DVI_OK) return 1;
   *H = values[0];
   return 0;
 }
 
-/* H_q = -L_q, H_p = v; the potentials' forces with a constant mass. */
+/* Gives H_q = -L_q and H_p = v. With a constant mass H_q is the potentials' gradient. */
 static int transform_gradient(double t, const double *q, const double *p, double *H_q, double *H_p,
                               void *user)
 {
-  const problem *of = user;
-  const dvi_lagrangian *L = of->terms->lagrangian;
+  const problem *model = user;
+  const dvi_lagrangian *L = model->terms->lagrangian;
   double forces[TRANSFORMED_MOST];
   int returned = 0;
-  memset(H_p, 0, (size_t)of->nq * sizeof *H_p);
-  memset(H_q, 0, (size_t)of->nq * sizeof *H_q);
-  if (dvi_system_velocity(of->system, t, q, p, H_p) != DVI_OK) return 1;
+  memset(H_p, 0, (size_t)model->nq * sizeof *H_p);
+  memset(H_q, 0, (size_t)model->nq * sizeof *H_q);
+  if (dvi_system_velocity(model->system, t, q, p, H_p) != DVI_OK) return 1;
   if (L != NULL) {
     double momenta[TRANSFORMED_MOST];
     returned = L->gradient != NULL ? L->gradient(t, q, H_p, forces, momenta, L->user)
                                    : L->gradient_batch(1, &t, q, H_p, forces, momenta, L->user);
-    for (int i = 0; i < of->nq; i++) H_q[i] -= forces[i];
+    for (int i = 0; i < model->nq; i++) H_q[i] -= forces[i];
   }
-  for (int k = 0; k < of->terms->potential_count && returned == 0; k++) {
-    const dvi_potential *V = &of->terms->potentials[k];
+  for (int k = 0; k < model->terms->potential_count && returned == 0; k++) {
+    const dvi_potential *V = &model->terms->potentials[k];
     returned = V->gradient != NULL ? V->gradient(t, q, forces, V->user)
                                    : V->gradient_batch(1, &t, q, forces, V->user);
-    for (int i = 0; i < of->nq; i++) H_q[i] += forces[i];
+    for (int i = 0; i < model->nq; i++) H_q[i] += forces[i];
   }
   return returned;
 }
 
-dvi_system *legendre_transform(problem *of)
+dvi_system *create_legendre_transform(problem *model)
 {
-  const dvi_hamiltonian H = {.value = transform_value, .gradient = transform_gradient, .user = of};
+  const dvi_hamiltonian H = {
+      .value = transform_value, .gradient = transform_gradient, .user = model};
   const dvi_system_terms terms = {
-      .dimension = of->nq, .hamiltonian = &H, .autonomous = of->terms->autonomous};
+      .dimension = model->nq, .hamiltonian = &H, .autonomous = model->terms->autonomous};
   dvi_system *system;
-  ck_assert_int_le(of->nq, TRANSFORMED_MOST);
+  ck_assert_int_le(model->nq, TRANSFORMED_MOST);
   ck_assert_msg(dvi_system_create(&terms, &system) == DVI_OK, "%s", dvi_last_error());
   return system;
 }

@@ -7,25 +7,25 @@
 #include "support/runs.h"
 #include "support/systems/systems.h"
 
-/* Of spring i, before bead i. */
-static double stretch(const necklace *own, const double *q, int i)
+/* Gives the stretch of spring i, before bead i. */
+static double stretch_of_spring(const necklace *own, const double *q, int i)
 {
   return (i < own->n ? q[i] : 0) - (i > 0 ? q[i - 1] : 0);
 }
 
-static double push(const necklace *own, int i)
+static double push_of_bead(const necklace *own, int i)
 {
   return own->kind == PUSHED && i % 3 == 0 ? 5 : 0;
 }
 
-static int fast(double t, const double *q, double *V, void *user)
+static int fast_value(double t, const double *q, double *V, void *user)
 {
   const necklace *own = user;
   (void)t;
   *V = 0;
   for (int i = 0; i <= own->n; i++)
-    *V += own->spring[i] * stretch(own, q, i) * stretch(own, q, i) / 2;
-  for (int i = 0; i < own->n; i++) *V -= push(own, i) * q[i] * q[i] / 2;
+    *V += own->spring[i] * stretch_of_spring(own, q, i) * stretch_of_spring(own, q, i) / 2;
+  for (int i = 0; i < own->n; i++) *V -= push_of_bead(own, i) * q[i] * q[i] / 2;
   return 0;
 }
 
@@ -34,8 +34,8 @@ static int fast_gradient(double t, const double *q, double *V_q, void *user)
   const necklace *own = user;
   (void)t;
   for (int i = 0; i < own->n; i++)
-    V_q[i] = own->spring[i] * stretch(own, q, i) - own->spring[i + 1] * stretch(own, q, i + 1) -
-             push(own, i) * q[i];
+    V_q[i] = own->spring[i] * stretch_of_spring(own, q, i) -
+             own->spring[i + 1] * stretch_of_spring(own, q, i + 1) - push_of_bead(own, i) * q[i];
   return 0;
 }
 
@@ -45,13 +45,13 @@ static int fast_hessian(double t, const double *q, double *V_qq, void *user)
   (void)t, (void)q;
   for (int i = 0; i < own->n; i++) {
     if (i > 0) *V_qq++ = -own->spring[i];
-    *V_qq++ = own->spring[i] + own->spring[i + 1] - push(own, i);
+    *V_qq++ = own->spring[i] + own->spring[i + 1] - push_of_bead(own, i);
     if (i + 1 < own->n) *V_qq++ = -own->spring[i + 1];
   }
   return 0;
 }
 
-static int slow(double t, const double *q, double *V, void *user)
+static int slow_value(double t, const double *q, double *V, void *user)
 {
   const necklace *own = user;
   (void)t;
@@ -74,7 +74,7 @@ static int slow_gradient(double t, const double *q, double *V_q, void *user)
   return 0;
 }
 
-static int along(const double *q, double *xi, void *user)
+static int generate_shift(const double *q, double *xi, void *user)
 {
   const necklace *own = user;
   (void)q;
@@ -82,7 +82,7 @@ static int along(const double *q, double *xi, void *user)
   return 0;
 }
 
-static void fill(necklace *made, int uneven)
+static void fill_necklace(necklace *made, int uneven)
 {
   int at = 0;
   for (int i = 0; i < made->n; i++) {
@@ -111,9 +111,9 @@ void make_necklace(int n, necklace_kind kind, int uneven, necklace *made)
   made->p = made->q + size;
   made->spring = made->p + size;
   made->row = made->first + size + 1;
-  fill(made, uneven);
+  fill_necklace(made, uneven);
   const dvi_potential potentials[] = {{.name = "springs",
-                                       .value = fast,
+                                       .value = fast_value,
                                        .gradient = fast_gradient,
                                        .hessian = fast_hessian,
                                        .qq = {made->first, made->row},
@@ -121,11 +121,11 @@ void make_necklace(int n, necklace_kind kind, int uneven, necklace *made)
                                        .fast = 1,
                                        .quadratic = 1},
                                       {.name = "slow",
-                                       .value = slow,
+                                       .value = slow_value,
                                        .gradient = slow_gradient,
                                        .qq = {made->first, made->row},
                                        .user = made}};
-  const dvi_symmetry shift = {.name = "momentum", .generator = along, .user = made};
+  const dvi_symmetry shift = {.name = "momentum", .generator = generate_shift, .user = made};
   made->system = make_system(&(dvi_system_terms){.dimension = n,
                                                  .mass.diagonal = made->mass,
                                                  .potentials = potentials,
@@ -142,9 +142,9 @@ void destroy_necklace(necklace *made)
   free(made->first);
 }
 
-dvi_integrator *necklace_integrator(const necklace *of, const char *method)
+dvi_integrator *necklace_integrator(const necklace *string, const char *method)
 {
-  dvi_integrator *integrator = made_integrator(of->system, method);
-  ck_assert_int_eq(dvi_integrator_start(integrator, 0, of->q, of->p), DVI_OK);
+  dvi_integrator *integrator = create_integrator(string->system, method);
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, string->q, string->p), DVI_OK);
   return integrator;
 }

@@ -3,12 +3,12 @@
 #ifndef SUPPORT_OSCILLATORS_H
 #define SUPPORT_OSCILLATORS_H
 
-/* By what a step multiplies the amplitude that grows fastest, at omega h = pi x; 1 where none
- * does. */
+/* Gives the factor by which a step multiplies the amplitude that grows fastest, at omega h = pi x,
+ * or 1 if none grows. */
 double oscillators_growth(const char *method, double h, double x);
 
-/* The largest change of the energy in so many steps from q = 1, p = 0, relative to it; a run that
- * grows beyond 1e6 ends. */
+/* Gives the largest relative change of the energy in so many steps from q = 1, p = 0. A run ends
+ * when the change exceeds 1e6. */
 double oscillators_energy_error(const char *method, double h, double x, long steps);
 
 #endif
