@@ -43,7 +43,7 @@ static double lane(int terms, int lanes, const double *matrix, const double *x)
 }
 
 /* What lanes.h says, one number after the other. */
-static void plain_sweep(dvi__sweep *s)
+static void plain_iteration(dvi__fixed_point *s)
 {
   s->change = s->largest = 0;
   for (int i = 0; i < s->n; i++) {
@@ -61,26 +61,26 @@ static void plain_sweep(dvi__sweep *s)
   }
 }
 
-static dvi__sweep made_sweep(int stages, int which)
+static dvi__fixed_point made_iteration(int stages, int which)
 {
   const int lanes = dvi__lanes_for(stages);
   fill(N * stages, force[which], 1);
   fill(N * lanes, Z[which], 2);
   fill(N * stages, Q[which], 3);
-  return (dvi__sweep){.n = N,
-                      .stages = stages,
-                      .lanes = lanes,
-                      .matrix = sweep_matrix,
-                      .node = node,
-                      .weight = weight,
-                      .p0 = p0,
-                      .start = start,
-                      .low = low,
-                      .factor = factor,
-                      .origin = origin,
-                      .force = force[which],
-                      .Z = Z[which],
-                      .Q = Q[which]};
+  return (dvi__fixed_point){.n = N,
+                            .stages = stages,
+                            .lanes = lanes,
+                            .matrix = sweep_matrix,
+                            .node = node,
+                            .weight = weight,
+                            .p0 = p0,
+                            .start = start,
+                            .low = low,
+                            .factor = factor,
+                            .origin = origin,
+                            .force = force[which],
+                            .Z = Z[which],
+                            .Q = Q[which]};
 }
 
 START_TEST(a_sweep_has_the_bits_of_plain_loops)
@@ -89,7 +89,7 @@ START_TEST(a_sweep_has_the_bits_of_plain_loops)
   dvi__lanes_choose(_i / STAGES_MOST);
   fill(stages * lanes, sweep_matrix, 4), fill(lanes, node, 5), fill(stages, weight, 6);
   fill(N, p0, 7), fill(N, factor, 8), fill(N, origin, 9);
-  dvi__sweep fast = made_sweep(stages, 0), plain = made_sweep(stages, 1);
+  dvi__fixed_point fast = made_iteration(stages, 0), plain = made_iteration(stages, 1);
   dvi__lanes_split(&fast);
   for (int i = 0; i < N; i++) {
     ck_assert_double_eq(start[i], factor[i] * p0[i]);
@@ -97,8 +97,8 @@ START_TEST(a_sweep_has_the_bits_of_plain_loops)
   }
   for (int again = 0; again < 2; again++) {
     for (int k = 0; k < lanes; k++) Q[0][N * stages + k] = 42;
-    dvi__lanes_sweep(&fast);
-    plain_sweep(&plain);
+    dvi__lanes_iterate(&fast);
+    plain_iteration(&plain);
     /* nothing is written behind */
     for (int k = 0; k < lanes; k++) ck_assert_double_eq(Q[0][N * stages + k], 42);
     ck_assert_mem_eq(force[0], force[1], (size_t)(N * stages) * sizeof(double));
@@ -149,7 +149,7 @@ static coordinates made_coordinates(void)
 }
 
 /* What lanes.h says, one number after the other. */
-static void plain_leap(const dvi__moser_veselov *l)
+static void plain_kick_drift(const dvi__kick_drift *l)
 {
   for (size_t i = 0; i < l->count; i++) {
     double p = l->from.p[i], q = l->from.q[i], p_compensation = l->from.p_compensation[i],
@@ -174,21 +174,21 @@ START_TEST(a_leap_has_the_bits_of_plain_loops)
   for (int variant = 0; variant < 12; variant++) {
     coordinates from = made_coordinates(), fast = from, plain = from;
     const int in_place = variant >= 6;
-    dvi__moser_veselov leap = {.count = (size_t)count,
-                               .kicks = 1 + variant % 2,
-                               .kick = {-0.3, 0.7},
-                               .drift = 0.1,
-                               .by = (dvi__division)(variant % 3),
-                               .scalar = 3,
-                               .mass = masses,
-                               .force = forces,
-                               .from = phase_of(in_place ? &fast : &from),
-                               .to = phase_of(&fast),
-                               .far = variant % 2};
-    dvi__lanes_kick_drift(&leap);
-    leap.from = phase_of(in_place ? &plain : &from);
-    leap.to = phase_of(&plain);
-    plain_leap(&leap);
+    dvi__kick_drift kick_drift = {.count = (size_t)count,
+                                  .kicks = 1 + variant % 2,
+                                  .kick = {-0.3, 0.7},
+                                  .drift = 0.1,
+                                  .by = (dvi__division)(variant % 3),
+                                  .scalar = 3,
+                                  .mass = masses,
+                                  .force = forces,
+                                  .from = phase_of(in_place ? &fast : &from),
+                                  .to = phase_of(&fast),
+                                  .far = variant % 2};
+    dvi__lanes_kick_drift(&kick_drift);
+    kick_drift.from = phase_of(in_place ? &plain : &from);
+    kick_drift.to = phase_of(&plain);
+    plain_kick_drift(&kick_drift);
     ck_assert_mem_eq(&fast, &plain, sizeof fast); /* nothing is written behind, either */
   }
 }

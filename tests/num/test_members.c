@@ -41,11 +41,11 @@ static double old_force[N * STAGES_MOST * WIDTH_MOST], old_Z[N * STAGES_MOST * W
 
 /* ---- sweeps ---- */
 
-/* What dvi__lanes_split, dvi__lanes_begin and dvi__lanes_sweep work on for one member. */
+/* What dvi__lanes_split, dvi__lanes_begin and dvi__lanes_iterate work on for one member. */
 typedef struct single {
   double p0[N], start[N], low[N], origin[N], force[N * STAGES_MOST], Z[N * LANES_MOST],
       Q[N * STAGES_MOST];
-  dvi__sweep sweep;
+  dvi__fixed_point iteration;
 } single;
 
 static void take_member(int k, int stages, int lanes, int width, single *one)
@@ -57,21 +57,21 @@ static void take_member(int k, int stages, int lanes, int width, single *one)
   take(N * stages, width, k, old_Z, z);
   for (int i = 0; i < N; i++)
     memcpy(one->Z + i * lanes, z + i * stages, (size_t)stages * sizeof(double));
-  one->sweep = (dvi__sweep){.n = N,
-                            .stages = stages,
-                            .lanes = lanes,
-                            .matrix = matrix,
-                            .node = node,
-                            .weight = weight,
-                            .factor = factor,
-                            .p0 = one->p0,
-                            .start = one->start,
-                            .low = one->low,
-                            .origin = one->origin,
-                            .force = one->force,
-                            .Z = one->Z,
-                            .Q = one->Q};
-  dvi__lanes_split(&one->sweep);
+  one->iteration = (dvi__fixed_point){.n = N,
+                                      .stages = stages,
+                                      .lanes = lanes,
+                                      .matrix = matrix,
+                                      .node = node,
+                                      .weight = weight,
+                                      .factor = factor,
+                                      .p0 = one->p0,
+                                      .start = one->start,
+                                      .low = one->low,
+                                      .origin = one->origin,
+                                      .force = one->force,
+                                      .Z = one->Z,
+                                      .Q = one->Q};
+  dvi__lanes_split(&one->iteration);
 }
 
 static void same_member(int k, int stages, int lanes, int width, const single *one)
@@ -120,59 +120,60 @@ static void fill_members(int stages, int width)
   memcpy(old_Z, Z, sizeof Z);
 }
 
-static dvi__members_sweep made_sweep(int stages, int lanes, int width)
+static dvi__members_fixed_point made_iteration(int stages, int lanes, int width)
 {
-  return (dvi__members_sweep){.n = N,
-                              .stages = stages,
-                              .width = width,
-                              .lanes = lanes,
-                              .matrix = matrix,
-                              .node = node,
-                              .weight = weight,
-                              .factor = factor,
-                              .start = start,
-                              .low = low,
-                              .origin = origin,
-                              .force = force,
-                              .Z = Z,
-                              .Q = Q,
-                              .change = change,
-                              .largest = largest};
+  return (dvi__members_fixed_point){.n = N,
+                                    .stages = stages,
+                                    .width = width,
+                                    .lanes = lanes,
+                                    .matrix = matrix,
+                                    .node = node,
+                                    .weight = weight,
+                                    .factor = factor,
+                                    .start = start,
+                                    .low = low,
+                                    .origin = origin,
+                                    .force = force,
+                                    .Z = Z,
+                                    .Q = Q,
+                                    .change = change,
+                                    .largest = largest};
 }
 
 /* Many members by one loop, and each alone by the other, for case number i. */
-static void compare(int i, void (*many)(const dvi__members_sweep *s), void (*alone)(dvi__sweep *s))
+static void compare(int i, void (*many)(const dvi__members_fixed_point *s),
+                    void (*alone)(dvi__fixed_point *s))
 {
   const int level = i / STAGES_MOST, stages = 1 + i % STAGES_MOST, lanes = dvi__lanes_for(stages);
   dvi__lanes_choose(level);
   fill_tables(stages, lanes);
   for (int width = 1; width <= WIDTH_MOST; width += width < 9 ? 1 : 13) {
-    const dvi__members_sweep sweep = made_sweep(stages, lanes, width);
+    const dvi__members_fixed_point iteration = made_iteration(stages, lanes, width);
     fill_members(stages, width);
     dvi__members_split(N, width, factor, p0, start, low);
     for (int k = 0; k < width; k++) change[k] = largest[k] = 0;
-    many(&sweep);
+    many(&iteration);
     for (int k = 0; k < width; k++) {
       single one;
       take_member(k, stages, lanes, width, &one);
-      one.sweep.change = one.sweep.largest = 0;
-      alone(&one.sweep);
+      one.iteration.change = one.iteration.largest = 0;
+      alone(&one.iteration);
       same_member(k, stages, lanes, width, &one);
-      ck_assert_double_eq(change[k], one.sweep.change);
-      ck_assert_double_eq(largest[k], one.sweep.largest);
+      ck_assert_double_eq(change[k], one.iteration.change);
+      ck_assert_double_eq(largest[k], one.iteration.largest);
     }
   }
 }
 
 START_TEST(a_sweep_has_the_bits_of_one_member_alone)
 {
-  compare(_i, dvi__members_sweep_once, dvi__lanes_sweep);
+  compare(_i, dvi__members_iterate, dvi__lanes_iterate);
 }
 END_TEST
 
-static void begin_alone(dvi__sweep *sweep)
+static void begin_alone(dvi__fixed_point *iteration)
 {
-  dvi__lanes_begin(sweep);
+  dvi__lanes_begin(iteration);
 }
 
 START_TEST(a_beginning_has_the_bits_of_one_member_alone)

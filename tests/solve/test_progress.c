@@ -38,19 +38,20 @@ static void make_courses(void)
 START_TEST(many_are_judged_as_each_alone)
 {
   const int level = _i / 4, patient = _i % 2, sweeps = _i / 2 % 2;
-  const dvi__pace pace = dvi__fixed_point_pace(patient, sweeps);
+  const dvi__criteria pace = dvi__fixed_point_criteria(patient, sweeps);
   static double last[COURSES], ratio[COURSES], contraction[COURSES], own[COURSES];
-  static dvi__trail alone[COURSES];
+  static dvi__history alone[COURSES];
   static int64_t verdicts[COURSES];
   long seen[3] = {0};
   make_courses();
-  const dvi__trails trails = {last, ratio, contraction, own, size};
+  const dvi__histories trails = {last, ratio, contraction, own, size};
   for (int i = 0; i < ITERATIONS; i++) {
     dvi__lanes_choose(level);
-    dvi__judge_all(COURSES, course[i], unknown, &pace, &trails, verdicts);
+    dvi__test_corrections(COURSES, course[i], unknown, &pace, &trails, verdicts);
     dvi__lanes_choose(-1);
     for (int k = 0; k < COURSES; k++) {
-      const dvi__progress verdict = dvi__judge(course[i][k], &alone[k], &pace, unknown[k], size[k]);
+      const dvi__progress verdict = dvi__test_correction(course[i][k], &alone[k], &pace, unknown[k],
+                                                         size[k]);
       ck_assert_int_eq(verdicts[k], verdict);
       seen[verdict]++;
     }
@@ -60,12 +61,12 @@ START_TEST(many_are_judged_as_each_alone)
 END_TEST
 
 /* How many corrections were judged until the verdict, and the verdict itself. */
-static int judged(const double *corrections, int count, const dvi__pace *pace,
+static int judged(const double *corrections, int count, const dvi__criteria *pace,
                   dvi__progress *verdict)
 {
-  dvi__trail trail = {0};
+  dvi__history trail = {0};
   int i = 0;
-  do *verdict = dvi__judge(corrections[i++], &trail, pace, 1, 1);
+  do *verdict = dvi__test_correction(corrections[i++], &trail, pace, 1, 1);
   while (*verdict == DVI__GO_ON && i < count);
   return i;
 }
@@ -75,7 +76,7 @@ static int judged(const double *corrections, int count, const dvi__pace *pace,
 START_TEST(a_correction_that_is_small_by_chance_ends_nothing)
 {
   enum { MOST = 60 };
-  const dvi__pace pace = dvi__fixed_point_pace(0, 1);
+  const dvi__criteria pace = dvi__fixed_point_criteria(0, 1);
   double corrections[MOST];
   dvi__progress verdict;
   const double contraction = 0.05 + 0.05 * _i;
@@ -98,7 +99,7 @@ START_TEST(noise_does_not_keep_an_iteration_from_its_end)
   double corrections[MOST];
   dvi__progress verdict;
   for (int sweeps = 0; sweeps < 2; sweeps++) {
-    const dvi__pace pace = dvi__fixed_point_pace(0, sweeps);
+    const dvi__criteria pace = dvi__fixed_point_criteria(0, sweeps);
     for (int i = 0; i < MOST; i++)
       corrections[i] = pow(0.002, i) + 4 * DBL_EPSILON * (0.5 + number(i + _i));
     ck_assert_int_le(judged(corrections, MOST, &pace, &verdict), 10);
@@ -109,7 +110,7 @@ END_TEST
 
 START_TEST(slow_contraction_is_given_up)
 {
-  const dvi__pace pace = dvi__fixed_point_pace(0, 1);
+  const dvi__criteria pace = dvi__fixed_point_criteria(0, 1);
   const double slow[] = {1, 0.5, 0.25}, growing[] = {1, 1.5}, bad[] = {1, (double)NAN},
                worse[] = {1, HUGE_VAL};
   dvi__progress verdict;

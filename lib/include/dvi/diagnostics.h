@@ -62,8 +62,8 @@ void dvi_drift_result(const dvi_drift *drift, dvi_drift_fit *fit);
  *
  *  @param      count     number of step sizes
  *  @param      h, error  [count], h positive and descending
- *  @param      floor     errors up to this are default: roundoff, or the error of the reference
- *                        solution, decides them
+ *  @param      floor     errors up to this are left out, because roundoff, or the error of the
+ *                        reference solution, decides them
  *  @param      ceiling   errors above this are left out, because they are pre-asymptotic. Default:
  *                        no such limit
  *  @param[out] fit       the slope and its window

@@ -26,7 +26,7 @@ typedef struct dvi_ensemble_options {
    *  follows from the system's size. The block changes speed alone. */
   int block;
   /** [members] the system of each member, for sweeps of parameters. The array is copied, and the
-   *  systems must outlive the ensemble. NULL: all members have the system of dvi_ensemble_create.
+   *  systems must outlive the ensemble. By default all have that of dvi_ensemble_create.
    *
    *  The systems must declare the same terms, masses, patterns, names, derivatives and reaches, and
    *  differ in what their callbacks compute. Only neighbours with the same system are worked on
@@ -36,7 +36,7 @@ typedef struct dvi_ensemble_options {
    *  members of one system next to each other. */
   const dvi_system *const *systems;
   /** Functions of your own for `shaped-galerkin`, as in dvi_integrator_options. Copied. With more
-   *  threads than one their callbacks run at the same time, too. NULL: none. */
+   *  threads than one their callbacks run at the same time, too. May be NULL. */
   const dvi_shapes *shapes;
 } dvi_ensemble_options;
 

@@ -55,10 +55,10 @@ void dvi_so3_dexp(const double w[3], const double v[3], double u[3]);
  *  do. */
 void dvi_so3_dexp_inverse(const double w[3], const double v[3], double u[3]);
 
-/** Compute the derivative in w of the body velocity dexp_{-w} v, with v held.
+/** Compute the derivative by w of the body velocity dexp_{-w} v at constant v.
  *
- *  @param      w, v  [3]
- *  @param[out] D     [9] D_ij = d(dexp_{-w} v)_i / dw_j. Neither w nor v may overlap D */
+ *  @param      w, v  [3], which may be the same array
+ *  @param[out] D     [9] D_ij = d(dexp_{-w} v)_i / dw_j. D must not overlap w or v */
 void dvi_so3_velocity_derivative(const double w[3], const double v[3], double D[9]);
 
 /** Compute Cayley's map, R = (I - hat(w)/2)^-1 (I + hat(w)/2), the rotation about w by

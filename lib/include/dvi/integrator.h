@@ -76,7 +76,7 @@ typedef struct dvi_energy_balance {
 
 /** Options of a start. Zero means default. */
 typedef struct dvi_start_options {
-  /** not 0: project a start off the constraint. By default such a start is refused.
+  /** not 0 to project a start off the constraint. By default such a start is refused.
    *
    *  With a one-form q stays and p becomes alpha(q), the simplest projection onto p = alpha(q). The
    *  motion is then that of q, whatever p was. With constraints phi(q,p) = 0 the state moves along
@@ -103,7 +103,7 @@ typedef struct dvi_integrator_options {
   size_t size;
   const char *method; /**< a specification, see dvi/method.h. Required */
   /** Functions of your own, for the method `shaped-galerkin` (dvi/shapes.h). Copied, but for the
-   *  data at `user`. Default: none */
+   *  data at `user`. Default none */
   const struct dvi_shapes *shapes;
   dvi_pacing pacing; /**< default: steps of time */
   /** The monitor of another pacing (dvi/transform.h). Copied, but for the data at `user` */

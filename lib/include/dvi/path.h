@@ -35,7 +35,7 @@ typedef struct dvi_path_options {
   const double *q0; /**< first node, for fixed and initial ends */
   const double *q1; /**< last node, for fixed ends */
   const double *p0; /**< first momentum, for initial ends */
-  /** A [nq x nq] by columns, or on a pattern, for periodic ends. Default: the identity. A must be a
+  /** A [nq x nq] by columns, or on a pattern, for periodic ends (default the identity). A must be a
    *  symmetry of the Lagrangian. A symmetry that exchanges bodies makes them follow each other on
    *  one curve (a choreography of which this path is one part). A rotation makes the path
    *  relatively periodic. */
@@ -44,7 +44,7 @@ typedef struct dvi_path_options {
   /** a [nq], added to the last node (an angle that has turned by 2 pi), for periodic ends. Default:
    *  0 */
   const double *shift;
-  /** not 0: the span is an unknown, and the path has the discrete energy below. For periodic ends
+  /** not 0 if the span is an unknown, and the path has the discrete energy below. For periodic ends
    *  of autonomous systems */
   int free_span;
   double energy; /**< the discrete energy -dS/dspan with free_span, else 0 */

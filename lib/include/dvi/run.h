@@ -9,7 +9,7 @@ typedef struct dvi_event {
   int (*value)(double t, const double *q, const double *v, double *g, void *user);
   /** +1: g rises through zero, -1: g falls, 0: both. The sense is that of the run */
   int direction;
-  /** not 0: the run ends at the event. The step is taken again, up to the event */
+  /** not 0 if the run ends at the event. The step is taken again, up to the event */
   int terminal;
   /** Called at each event, at the time where the step's polynomial has g = 0, right to 1e-12 of
    *  the step and a few roundings of t. May be NULL.
@@ -34,10 +34,10 @@ typedef struct dvi_run_options {
   void *user;
   const dvi_event *events;
   int event_count;
-  /** path of the checkpoint that is written when the run ends, for any reason. Default: none */
+  /** path of the checkpoint that is written when the run ends, for any reason. Default none */
   const char *checkpoint;
   long checkpoint_every; /**< checkpoint interval in steps (default: only at the end) */
-  /** the run ends after the step in which this becomes not 0. NULL: never */
+  /** the run ends after the step in which this becomes not 0. May be NULL */
   const volatile int *cancel;
 } dvi_run_options;
 

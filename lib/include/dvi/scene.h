@@ -15,8 +15,8 @@ typedef struct dvi_scene dvi_scene;
 typedef struct dvi_scene_parameter {
   const char *name;
   double value; /**< current value. NaN if the parameter is not one number */
-  int settable; /**< 1: the parameter is a number that a setting may replace */
-  /** 1: of all sections `initial` alone uses the parameter and the definitions made of it */
+  int settable; /**< 1 if the parameter is a number that a setting may replace */
+  /** 1 if of all sections `initial` alone uses the parameter and the definitions made of it */
   int start_only;
 } dvi_scene_parameter;
 
@@ -145,14 +145,19 @@ const dvi_scene_range *dvi_scene_range_at(const dvi_scene *scene, int i);
 void dvi_scene_facts_of(const dvi_scene *scene, dvi_scene_facts *facts);
 
 /** Find translations and rotations under which the Lagrangian (or the Hamiltonian and its
- *  constraints) is invariant, of each coordinate and of all coordinates of one shape.
+ *  constraints) is invariant. Candidates move one coordinate, all coordinates of one shape
+ *  together, or two coordinates that are numbers as those of a plane.
  *
- *  The invariance is proved on the expressions. Momenta of symmetries that the scene declares are
- *  watched along a run. The search is not complete. Of functions it knows only that equal arguments
- *  give equal values, and in large scenes it tries some candidates only. The call allocates.
- *  @param[out] text  [size] "translation of x, rotation of q about z". Cut off at size
+ *  The expressions are tested with exact numbers at random points, and a candidate that does not
+ *  hold passes with a chance of less than 1e-8. The search is not complete. It treats functions
+ *  such as sin as unknown, except that equal arguments give equal values, and it tries only some
+ *  candidates in large scenes. Symmetries that the scene declares play no part here. The call
+ *  allocates.
+ *  @param[out] text  [size] the list, as in "translation of x, rotation of q about z". Cut off at
+ *                    size, "" if none is found
  *  @return the number found. -1 for scenes with rotations, motions, directions or angles, for more
- *          than 2e6 parts of all elements, without memory, and for NULL */
+ *          than 2e6 nodes of expressions over all elements, without memory, and if a pointer is
+ *          NULL */
 int dvi_scene_invariance(const dvi_scene *scene, char *text, size_t size);
 
 /** Evaluate the derivatives of the Lagrangian in quadruple precision, for the errors of steps that

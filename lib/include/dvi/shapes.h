@@ -71,11 +71,11 @@ typedef struct dvi_shapes {
    *  do not depend on it, and callbacks get h = 1. */
   double h;
   /** [coordinate_count] coordinates that have the functions, numbered from 0. All others have the
-   *  polynomials alone. NULL: all have the functions. */
+   *  polynomials alone. NULL if all have the functions. */
   const int *coordinates;
   int coordinate_count;
   /** A quadrature of your own: the place of point j in [0,1], its weight b_j, and f_k and df_k/dtau
-   *  [functions] there. NULL: the quadrature of the keys `quadrature` and `nodes`.
+   *  [functions] there. Default: the quadrature of the keys `quadrature` and `nodes`.
    *
    *  The weights sum to 1. A point need not lie on the path. A rule for oscillations samples
    *  several phases of one time (docs/methods/multiscale.md), and values are then those of the

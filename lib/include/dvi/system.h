@@ -1,4 +1,4 @@
-/** The mechanical system: a Lagrangian, or a Hamiltonian, with constraints or without, declared as
+/** The mechanical system, a Lagrangian, or a Hamiltonian, with constraints or without, declared as
  *  terms.
  *
  *      L(t,q,v) = K(t,q,v) - sum_k V_k(t,q),     q, v in R^n,
@@ -52,8 +52,8 @@ typedef struct dvi_lagrangian {
   int (*value)(double t, const double *q, const double *v, double *L, void *user);
   int (*value_batch)(int count, const double *t, const double *q, const double *v, double *L,
                      void *user);
-  /** dL/dq [n] and dL/dv [n]. Default: differences of the value, which take 12 n calls a point
-   *  (near a singularity up to four times as many) and lose about three digits. */
+  /** dL/dq [n] and dL/dv [n]. By default the value is differenced, which takes 12 n calls a point
+   *  (near a singularity up to four times as many) and loses about three digits. */
   int (*gradient)(double t, const double *q, const double *v, double *L_q, double *L_v, void *user);
   int (*gradient_batch)(int count, const double *t, const double *q, const double *v, double *L_q,
                         double *L_v, void *user);
@@ -89,7 +89,7 @@ typedef struct dvi_one_form {
    *  d alpha_j/dq. Required. */
   int (*gradient)(const double *q, double *alpha_q, void *user);
   /** The Hessian of the function alpha(q).w, w [n] fixed, in the order of the pattern `qq`.
-   *  Default: differences of the gradients. */
+   *  By default the gradients are differenced. */
   int (*hessian)(const double *q, const double *w, double *alpha_w_qq, void *user);
   dvi_pattern gradients, qq;
   void *user;
@@ -143,7 +143,7 @@ typedef struct dvi_constraint {
    *  Required. */
   int (*gradient)(const double *q, const double *p, double *phi_z, void *user);
   /** The second derivatives of the function phi(q,p).w, w [m] fixed, in the order of the patterns
-   *  qq, qp and pp. Default: differences of the gradients. */
+   *  qq, qp and pp. By default the gradients are differenced. */
   int (*hessian)(const double *q, const double *p, const double *w, double *phi_w_qq,
                  double *phi_w_qp, double *phi_w_pp, void *user);
   dvi_pattern gradients, qq, qp, pp;
@@ -156,12 +156,12 @@ typedef struct dvi_potential {
   /** The value V. Required (or value_batch). */
   int (*value)(double t, const double *q, double *V, void *user);
   int (*value_batch)(int count, const double *t, const double *q, double *V, void *user);
-  /** dV/dq [n]. Default: differences of the value, which take 6 n calls a point (near a singularity
-   *  up to four times as many) and lose about three digits. */
+  /** dV/dq [n]. By default the value is differenced, which takes 6 n calls a point (near a
+   *  singularity up to four times as many) and loses about three digits. */
   int (*gradient)(double t, const double *q, double *V_q, void *user);
   int (*gradient_batch)(int count, const double *t, const double *q, double *V_q, void *user);
-  /** d2V/dq2 in the order of the pattern. Default: differences of the gradient by column groups. A
-   *  method without Hessians spends neither memory nor time on them, whether they are given or
+  /** d2V/dq2 in the order of the pattern. By default the gradient is differenced by column groups.
+   *  A method without Hessians spends neither memory nor time on them, whether they are given or
    *  not. */
   int (*hessian)(double t, const double *q, double *V_qq, void *user);
   int (*hessian_batch)(int count, const double *t, const double *q, double *V_qq, void *user);
@@ -184,10 +184,10 @@ typedef struct dvi_potential {
    *  unless the system is autonomous. */
   int (*rate)(double t, const double *q, double *V_t, void *user);
   int (*rate_batch)(int count, const double *t, const double *q, double *V_t, void *user);
-  /** not 0: the potential's forces are stiff. Splitting methods treat it apart from the others
+  /** not 0 if the potential's forces are stiff. Splitting methods treat it apart from the others
    *  (docs/methods/imex.md). All other methods treat it as the rest */
   int fast;
-  /** not 0: V = q.Kq/2 + b(t).q + c(t) with a constant K, whose Hessian is evaluated once.
+  /** not 0 if V = q.Kq/2 + b(t).q + c(t) with a constant K, whose Hessian is evaluated once.
    *  dvi_system_check tests this */
   int quadratic;
   /** Taylor coefficients of V, V_q and V_qq along the curve t(s) = sum_k t[k] s^k,
@@ -242,10 +242,10 @@ typedef struct dvi_factor {
   dvi_factor_kind kind;
   int size; /**< n for R^n, 0 for the others */
   /** mass of every coordinate of R^n, mass of the body of SE(3), m l^2 of S^2, or moment of inertia
-   *  of U(1). Default: the mass is in the system's mass alone */
+   *  of U(1). By default the mass is in the system's mass alone */
   double mass;
-  /** [9] inertia of SO(3) or SE(3) about the body's origin, symmetric. Copied. Default: the inertia
-   *  is in the system's mass alone */
+  /** [9] inertia of SO(3) or SE(3) about the body's origin, symmetric. Copied. By default the
+   *  inertia is in the system's mass alone */
   const double *inertia;
   /** [3] centre of mass of SE(3) in the body's frame (default: its origin) */
   const double *centre;
@@ -267,7 +267,11 @@ typedef struct dvi_invariant {
 } dvi_invariant;
 
 /** The terms of a system. Only declared terms exist. All terms are copied (but for the data at
- *  `user`). Exactly one of mass (or factors), lagrangian, one_form and hamiltonian is given. */
+ *  `user`).
+ *
+ *  Exactly one kind of dynamics is declared: a constant mass (by `mass`, by `factors`, or by both,
+ *  which are added), or `lagrangian`, or `one_form`, or `hamiltonian`. Potentials may stand beside
+ *  all kinds but a Hamiltonian. */
 typedef struct dvi_system_terms {
   /** number of coordinates n, at least 1, even with a one-form. 0 with factors, which determine
    *  n */
@@ -283,10 +287,10 @@ typedef struct dvi_system_terms {
   int symmetry_count;
   const dvi_invariant *invariants;
   int invariant_count;
-  /** not 0: no callback depends on t (dvi_system_check tests this), and no rates are given */
+  /** not 0 if no callback depends on t (dvi_system_check tests this). No rates are given then */
   int autonomous;
   const dvi_hamiltonian *hamiltonian; /**< a Hamiltonian, without potentials */
-  const dvi_constraint *constraint;   /**< constraints of the Hamiltonian. Default: none */
+  const dvi_constraint *constraint;   /**< constraints of the Hamiltonian (default none) */
   const dvi_factor *factors;          /**< factors of the configuration space (default: R^n) */
   int factor_count;
 } dvi_system_terms;
@@ -313,7 +317,7 @@ extern "C" {
  *                            has potentials beside it
  *  @retval DVI_SINGULAR      the constant mass is singular or not finite. With factors the mass is
  *                            not finite, or there is none at all at a factor's coordinates
- *  @retval DVI_UNSUPPORTED   factors beside a general Lagrangian or a one-form
+ *  @retval DVI_UNSUPPORTED   factors beside a general Lagrangian, a one-form or a Hamiltonian
  *  @retval DVI_NO_MEMORY     memory could not be allocated */
 dvi_status dvi_system_create(const dvi_system_terms *terms, dvi_system **system);
 
@@ -440,9 +444,9 @@ typedef struct dvi_derivative_check {
   int range_row;
   /** largest difference of given and differenced rate, relative to the rate */
   double rate_error;
-  /** 1: the system is declared autonomous, but a callback's results change with t */
+  /** 1 if the system is declared autonomous, but a callback's results change with t */
   int depends_on_time;
-  /** 1: a potential is declared quadratic, but its Hessian changes with q or t */
+  /** 1 if a potential is declared quadratic, but its Hessian changes with q or t */
   int not_quadratic;
   /** largest difference of a Taylor coefficient and the one-point callbacks, or differences of the
    *  coefficient below it, relative */

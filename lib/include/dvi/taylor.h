@@ -134,7 +134,8 @@ static inline void dvi_taylor_log(int degree, const double *a, double *c)
   }
 }
 
-/** Compute sin(a) and cos(a) from sine' = a' cosine, cosine' = -a' sine. */
+/** Compute the trigonometric functions sin(a) and cos(a) from sine' = a' cosine and
+ *  cosine' = -a' sine. */
 static inline void dvi_taylor_sin_cos(int degree, const double *a, double *sine, double *cosine)
 {
   sine[0] = sin(a[0]);
@@ -150,7 +151,8 @@ static inline void dvi_taylor_sin_cos(int degree, const double *a, double *sine,
   }
 }
 
-/** Compute sinh(a) and cosh(a) from sine' = a' cosine, cosine' = a' sine. */
+/** Compute the hyperbolic functions sinh(a) and cosh(a) from sine' = a' cosine and
+ *  cosine' = a' sine. */
 static inline void dvi_taylor_sinh_cosh(int degree, const double *a, double *sine, double *cosine)
 {
   sine[0] = sinh(a[0]);

@@ -1,8 +1,8 @@
 /* Sparse LU of a matrix whose last rows and columns, its border, are full. KLU may take a full row
- * for an early pivot, and all that comes later fills in. So the border is stretched (Grcar 1990):
- * row r is cut into pieces that hand on a sum, r_p x + y_(p-1) - y_p = 0, and column c into copies
- * of its unknown, c_p = c_(p+1), each for LENGTH unknowns of the core. What is factored then is
- * sparse all over, and work and memory are in proportion to its size. */
+ * for an early pivot, and all later columns fill in. So the border is stretched (Grcar 1990). Row r
+ * is cut into pieces that hand on a sum, r_p x + y_(p-1) - y_p = 0, and column c into copies of its
+ * unknown, c_p = c_(p+1), each for LENGTH unknowns of the core. The stretched matrix is sparse all
+ * over, and work and memory are in proportion to its size. */
 #include <limits.h>
 #include <string.h>
 
@@ -14,30 +14,30 @@ enum { LENGTH = 64 };
 
 typedef struct bordered {
   int core, border, pieces;
-  /* stretched: core, last pieces, and for each earlier piece of each row and column its sum and its
-   * copy */
+  /* pattern of the stretched matrix, in the order core, last pieces, and the sum and the copy of
+   * each earlier piece of each row and column */
   dvi__pattern pattern;
-  int *where; /* of each entry of the matrix */
+  int *where; /* index of each entry of the matrix */
   double *values, *b;
   void *factor;
 } bordered;
 
-/* Row and unknown of the sum (0) or the copy (1) at piece p of border c. */
-static int index_of(const bordered *s, int p, int c, int copy)
+/* Give the row and unknown of the sum (0) or the copy (1) at piece p of border c. */
+static int stretched_index(const bordered *s, int p, int c, int copy)
 {
   return s->core + c + (p == s->pieces - 1 ? 0 : s->border + 2 * p * s->border + c + copy);
 }
 
-/* Where entry (row, column) goes. */
-static void place(const bordered *s, int *row, int *column)
+/* Find the place of entry (row, column) in the stretched matrix. */
+static void stretched_place(const bordered *s, int *row, int *column)
 {
   const int i = *row, j = *column;
-  if (i >= s->core && j < s->core) *row = index_of(s, j / LENGTH, i - s->core, 0);
-  if (j >= s->core && i < s->core) *column = index_of(s, i / LENGTH, j - s->core, 1);
+  if (i >= s->core && j < s->core) *row = stretched_index(s, j / LENGTH, i - s->core, 0);
+  if (j >= s->core && i < s->core) *column = stretched_index(s, i / LENGTH, j - s->core, 1);
 }
 
-/* The next free place of a column; its end moves on. */
-static int put(const bordered *s, int row, int column, double value)
+/* Put an entry at the next free place of a column and move its end on. */
+static int stretched_put(const bordered *s, int row, int column, double value)
 {
   const int at = s->pattern.start[column]++;
   s->pattern.row[at] = row;
@@ -45,18 +45,18 @@ static int put(const bordered *s, int row, int column, double value)
   return at;
 }
 
-/* Calls `entry` for what binds the pieces together. */
-typedef void link(bordered *s, int row, int column, double value);
+/* Call `entry` for the entries that bind the pieces together. */
+typedef void bordered_link(bordered *s, int row, int column, double value);
 
-static void each_link(bordered *s, link *entry)
+static void each_link(bordered *s, bordered_link *entry)
 {
   for (int p = 0; p + 1 < s->pieces; p++)
     for (int c = 0; c < s->border; c++) {
-      const int sum = index_of(s, p, c, 0), copy = index_of(s, p, c, 1);
+      const int sum = stretched_index(s, p, c, 0), copy = stretched_index(s, p, c, 1);
       entry(s, sum, sum, -1);
-      entry(s, index_of(s, p + 1, c, 0), sum, 1);
+      entry(s, stretched_index(s, p + 1, c, 0), sum, 1);
       entry(s, copy, copy, 1);
-      entry(s, copy, index_of(s, p + 1, c, 1), -1);
+      entry(s, copy, stretched_index(s, p + 1, c, 1), -1);
     }
 }
 
@@ -68,16 +68,16 @@ static void count_link(bordered *s, int row, int column, double value)
 
 static void put_link(bordered *s, int row, int column, double value)
 {
-  (void)put(s, row, column, value);
+  (void)stretched_put(s, row, column, value);
 }
 
-static void stretch(bordered *s, const dvi__pattern *pattern)
+static void bordered_stretch(bordered *s, const dvi__pattern *pattern)
 {
   int *start = s->pattern.start;
   for (int j = 0; j < pattern->columns; j++)
     for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++) {
       int row = pattern->row[e], column = j;
-      place(s, &row, &column);
+      stretched_place(s, &row, &column);
       start[column + 1]++;
     }
   each_link(s, count_link);
@@ -85,8 +85,8 @@ static void stretch(bordered *s, const dvi__pattern *pattern)
   for (int j = 0; j < pattern->columns; j++)
     for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++) {
       int row = pattern->row[e], column = j;
-      place(s, &row, &column);
-      s->where[e] = put(s, row, column, 0);
+      stretched_place(s, &row, &column);
+      s->where[e] = stretched_put(s, row, column, 0);
     }
   each_link(s, put_link);
   memmove(start + 1, start, (size_t)s->pattern.columns * sizeof *start);
@@ -123,7 +123,7 @@ static dvi_status bordered_fill(bordered *s, const dvi__pattern *pattern)
   if (!s->pattern.start || !s->pattern.row || !s->where || !s->values || !s->b)
     return dvi__fail(DVI_NO_MEMORY, "KLU: no memory for %d columns with a border of %d",
                      pattern->columns, s->border);
-  stretch(s, pattern);
+  bordered_stretch(s, pattern);
   return dvi__sparse_factor.create(&(dvi__factor_form){.pattern = &s->pattern}, &s->factor);
 }
 

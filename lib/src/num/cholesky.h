@@ -1,11 +1,10 @@
-/* Cholesky's factor of small symmetric positive definite matrices, in long double: for tables that
+/* Cholesky's factor of small symmetric positive definite matrices, in long double, for tables that
  * are made once. */
 #ifndef DVI_NUM_CHOLESKY_H
 #define DVI_NUM_CHOLESKY_H
 #include <math.h>
 
-/* K = C C^T: C takes the place of the lower triangle of K [n*n] by rows; the upper one is not
- * read. */
+/* Factor K = C C^T. C replaces the lower triangle of K [n*n] by rows. The upper one is not read. */
 static inline void dvi__cholesky(int n, long double *K)
 {
   for (int k = 0; k < n; k++)
@@ -16,7 +15,7 @@ static inline void dvi__cholesky(int n, long double *K)
     }
 }
 
-/* x [n] <- C^{-1} x. */
+/* Replace x [n] by C^{-1} x. */
 static inline void dvi__cholesky_half(int n, const long double *C, long double *x)
 {
   for (int k = 0; k < n; k++) {

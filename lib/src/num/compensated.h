@@ -2,30 +2,30 @@
 #ifndef DVI_NUM_COMPENSATED_H
 #define DVI_NUM_COMPENSATED_H
 
-/* *sum += term; *carry holds what the sum is too large by. Over N steps the error stays at one
- * rounding instead of N. */
-static inline void dvi__add_compensated(double *sum, double *carry, double term)
+/* Add `term` to *sum. *compensation holds the excess of the sum over its exact value. Over N steps
+ * the error stays at one rounding instead of N. */
+static inline void dvi__add_compensated(double *sum, double *compensation, double term)
 {
-  const double wanted = term - *carry;
+  const double wanted = term - *compensation;
   const double next = *sum + wanted;
-  *carry = (next - *sum) - wanted;
+  *compensation = (next - *sum) - wanted;
   *sum = next;
 }
 
-/* The same for every component. */
-static inline void dvi__add_compensated_all(int count, double *sum, double *carry,
+/* Add to every component. */
+static inline void dvi__add_compensated_all(int count, double *sum, double *compensation,
                                             const double *term)
 {
-  for (int i = 0; i < count; i++) dvi__add_compensated(sum + i, carry + i, term[i]);
+  for (int i = 0; i < count; i++) dvi__add_compensated(sum + i, compensation + i, term[i]);
 }
 
-/* head + tail: a number of twice the digits (Dekker 1971). A sum with its carry is one, with the
- * tail -carry. */
+/* A number head + tail of twice the digits (Dekker 1971). A sum with its compensation is one, with
+ * the tail -compensation. */
 typedef struct dvi__twofold {
   double head, tail;
 } dvi__twofold;
 
-/* a + b and a b, without an error. */
+/* Give a + b and a b without an error. */
 static inline dvi__twofold dvi__exact_sum(double a, double b)
 {
   const double head = a + b, added = head - a;
@@ -38,26 +38,28 @@ static inline dvi__twofold dvi__exact_product(double a, double b)
   return (dvi__twofold){head, __builtin_fma(a, b, -head)};
 }
 
-/* The tail may be as large as a few roundings of the head. */
+/* Add two such numbers. The tail may be as large as a few roundings of the head. */
 static inline dvi__twofold dvi__twofold_sum(dvi__twofold a, dvi__twofold b)
 {
   const dvi__twofold sum = dvi__exact_sum(a.head, b.head);
   return (dvi__twofold){sum.head, sum.tail + (a.tail + b.tail)};
 }
 
-/* Sums with their carries as such numbers, and back, where the tail is at most half a rounding. */
-static inline void dvi__twofold_get(int count, const double *sum, const double *carry,
+/* Convert sums with their compensations to such numbers, and back to tails of at most half a
+ * rounding. */
+static inline void dvi__twofold_get(int count, const double *sum, const double *compensation,
                                     dvi__twofold *x)
 {
-  for (int i = 0; i < count; i++) x[i] = (dvi__twofold){sum[i], -carry[i]};
+  for (int i = 0; i < count; i++) x[i] = (dvi__twofold){sum[i], -compensation[i]};
 }
 
-static inline void dvi__twofold_put(int count, const dvi__twofold *x, double *sum, double *carry)
+static inline void dvi__twofold_put(int count, const dvi__twofold *x, double *sum,
+                                    double *compensation)
 {
   for (int i = 0; i < count; i++) {
     const dvi__twofold rounded = dvi__exact_sum(x[i].head, x[i].tail);
     sum[i] = rounded.head;
-    carry[i] = -rounded.tail;
+    compensation[i] = -rounded.tail;
   }
 }
 

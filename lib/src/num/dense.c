@@ -6,7 +6,7 @@
 #include "core/status.h"
 #include "num/factor.h"
 
-/* LAPACK's Fortran interface; character arguments carry a hidden length that gfortran passes
+/* LAPACK's Fortran interface. Character arguments carry a hidden length that gfortran passes
  * last. */
 extern void dgetrf_(const int *m, const int *n, double *a, const int *lda, int *ipiv, int *info);
 extern void dgetrs_(const char *trans, const int *n, const int *nrhs, const double *a,
@@ -17,7 +17,7 @@ extern void dgecon_(const char *norm, const int *n, const double *a, const int *
                     size_t norm_length);
 
 typedef struct dense {
-  double *lu;   /* [n*n], columns */
+  double *lu;   /* [n*n] by columns */
   double *work; /* [4 n] */
   int *pivot, *iwork;
 } dense;
@@ -45,8 +45,8 @@ static dvi_status dense_create(const dvi__factor_form *form, void **factor)
   return dvi__fail(DVI_NO_MEMORY, "dense LU: no memory for %zu x %zu numbers", n, n);
 }
 
-/* Fills the square and returns its 1-norm. */
-static double scatter(dense *d, const dvi__pattern *pattern, const double *values)
+/* Fill the square and return its 1-norm. */
+static double dense_fill(dense *d, const dvi__pattern *pattern, const double *values)
 {
   const size_t n = (size_t)pattern->rows;
   double norm = 0;
@@ -68,7 +68,7 @@ static dvi_status dense_refactor(void *factor, const dvi__pattern *pattern, cons
   const int n = pattern->rows;
   int status = 0;
   double reciprocal_condition = 0;
-  const double norm = scatter(d, pattern, values);
+  const double norm = dense_fill(d, pattern, values);
   dgetrf_(&n, &n, d->lu, &n, d->pivot, &status);
   if (status == 0)
     dgecon_("1", &n, d->lu, &n, &norm, &reciprocal_condition, d->work, d->iwork, &status, 1);

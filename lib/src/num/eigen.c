@@ -5,7 +5,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 
-/* LAPACK's Fortran interface; character arguments carry a hidden length that gfortran passes
+/* LAPACK's Fortran interface. Character arguments carry a hidden length that gfortran passes
  * last. */
 extern void dgeev_(const char *left, const char *right, const int *n, double *a, const int *lda,
                    double *wr, double *wi, double *vl, const int *ldvl, double *vr, const int *ldvr,
@@ -21,10 +21,11 @@ extern void dgesv_(const int *n, const int *sides, double *a, const int *lda, in
 extern void dpotrf_(const char *triangle, const int *n, double *a, const int *lda, int *info,
                     size_t triangle_length);
 
-/* LAPACK keeps Re and Im of a pair's vector in two columns: T (x + iy) = (a + ib)(x + iy), so that
- * T x = a x - b y, T y = b x + a y. */
-static int vectors(int n, double *copy, double *real_part, double *imaginary_part, double *X,
-                   double *work)
+/* Find eigenvalues and vectors. LAPACK keeps Re and Im of a pair's vector in two columns.
+ *
+ *     T (x + iy) = (a + ib)(x + iy),   so that   T x = a x - b y,   T y = b x + a y. */
+static int eigen_vectors(int n, double *copy, double *real_part, double *imaginary_part, double *X,
+                         double *work)
 {
   const int length = 8 * n, one = 1;
   int info = 0;
@@ -33,7 +34,7 @@ static int vectors(int n, double *copy, double *real_part, double *imaginary_par
   return info;
 }
 
-static int invert(int n, const double *X, double *copy, int *pivot, double *inverse)
+static int invert_eigenvectors(int n, const double *X, double *copy, int *pivot, double *inverse)
 {
   int info = 0;
   memcpy(copy, X, (size_t)n * (size_t)n * sizeof(double));
@@ -51,8 +52,8 @@ dvi_status dvi__eigen(int n, const double *T, double *real_part, double *imagina
   dvi_status status = DVI_OK;
   if (copy == NULL || work == NULL || pivot == NULL)
     status = dvi__fail(DVI_NO_MEMORY, "eigenvalues: no memory for a matrix of %d columns", n);
-  else if (vectors(n, copy, real_part, imaginary_part, X, work) != 0 ||
-           invert(n, X, copy, pivot, inverse) != 0)
+  else if (eigen_vectors(n, copy, real_part, imaginary_part, X, work) != 0 ||
+           invert_eigenvectors(n, X, copy, pivot, inverse) != 0)
     status = dvi__fail(DVI_SINGULAR,
                        "eigenvalues: a matrix of %d columns has no full set of eigenvectors", n);
   dvi__release(copy);

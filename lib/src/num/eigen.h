@@ -3,20 +3,20 @@
 #define DVI_NUM_EIGEN_H
 #include <dvi/status.h>
 
-/* T = X D X^{-1} with real X: D is diagonal but for 2 x 2 blocks [[a, b], [-b, a]] of the pairs a
- * +- ib, b > 0.
+/* Find T = X D X^{-1} with real X. D is diagonal but for 2 x 2 blocks [[a, b], [-b, a]] of the
+ * pairs a +- ib, b > 0.
  *
- * T, X and inverse are [n*n] by columns, real_part and imaginary_part [n]; of a pair the one with b
- * > 0 stands first. DVI_SINGULAR if T has no full set of eigenvectors, DVI_NO_MEMORY. */
+ * T, X and inverse are [n*n] by columns, real_part and imaginary_part [n]. The number of a pair
+ * with b > 0 stands first. DVI_SINGULAR if T has no full set of eigenvectors, DVI_NO_MEMORY. */
 dvi_status dvi__eigen(int n, const double *T, double *real_part, double *imaginary_part, double *X,
                       double *inverse);
 
-/* K X = M X diag(lambda) with X^T M X = 1, for symmetric K and positive definite M, both [n*n] by
- * columns; lambda [n] ascending. DVI_SINGULAR if M, the mass, is not positive definite,
+/* Solve K X = M X diag(lambda) with X^T M X = 1 for symmetric K and positive definite M, both [n*n]
+ * by columns. lambda [n] is ascending. DVI_SINGULAR if M, the mass, is not positive definite,
  * DVI_NO_MEMORY. */
 dvi_status dvi__eigen_symmetric(int n, const double *K, const double *M, double *lambda, double *X);
 
-/* Whether a symmetric A [n*n], whose lower triangle is overwritten, is positive definite. */
+/* Tell whether a symmetric A [n*n], whose lower triangle is overwritten, is positive definite. */
 int dvi__is_positive_definite(int n, double *A);
 
 #endif

@@ -1,4 +1,4 @@
-/* Kinds of solvers behind num/linear.h: one const struct and one file each. Those of matrices see
+/* Kinds of solvers behind num/linear.h, one const struct and one file each. Those of matrices see
  * finite, equilibrated values. */
 #ifndef DVI_NUM_FACTOR_H
 #define DVI_NUM_FACTOR_H
@@ -6,31 +6,31 @@
 
 #include "num/linear.h"
 
-/* Smallest reciprocal condition of an equilibrated matrix that is not called singular: its
- * solutions have no right digit left. */
+/* Smallest reciprocal condition of an equilibrated matrix that is not called singular. Solutions
+ * have no right digit left there. */
 #define DVI__LEAST_RCOND (16 * DBL_EPSILON)
 
-/* What a factor is made for. */
+/* The matrix or operator that a factor is made for. */
 typedef struct dvi__factor_form {
-  const dvi__pattern *pattern; /* NULL: of an operator */
-  const void *like;            /* a sparse factor of the same pattern, which outlives this one and
-                                * whose analysis serves it, too; or NULL */
-  int border;                  /* so many last rows and columns may be full */
+  const dvi__pattern *pattern; /* NULL for an operator */
+  /* a sparse factor of the same pattern, or NULL; it outlives this one, which uses its analysis */
+  const void *like;
+  int border; /* number of last rows and columns that may be full */
   const dvi__operator *A;
 } dvi__factor_form;
 
 typedef struct dvi__factor_kind {
   const char *name;
-  /* Analyse; memory for numbers may wait for the first `refactor`. */
+  /* Analyse the matrix. Memory for numbers may wait for the first `refactor`. */
   dvi_status (*create)(const dvi__factor_form *form, void **factor);
   void (*destroy)(void *factor);
-  /* Returns DVI_SINGULAR with a sentence if the reciprocal condition is below DVI__LEAST_RCOND. */
+  /* Factor. DVI_SINGULAR with a sentence if the reciprocal condition is below DVI__LEAST_RCOND. */
   dvi_status (*refactor)(void *factor, const dvi__pattern *pattern, const double *values);
   void (*solve)(void *factor, const dvi__pattern *pattern, double *b);
-  /* dvi__linear_sign and dvi__linear_is_definite; NULL: not known. */
+  /* dvi__linear_sign and dvi__linear_is_definite, or NULL if not known. */
   int (*sign)(const void *factor, const dvi__pattern *pattern);
   int (*is_definite)(const void *factor, const dvi__pattern *pattern, int sign);
-  /* NULL: not known. */
+  /* NULL if not known. */
   dvi__linear_cost (*cost)(const void *factor, const dvi__pattern *pattern);
 } dvi__factor_kind;
 

@@ -1,5 +1,6 @@
-/* GMRES with restarts (Saad and Schultz 1986), preconditioned from the left: what is made small is
- * P^-1 (b - A x), which is near the error where P is near A, and in the units of the unknowns. */
+/* GMRES with restarts (Saad and Schultz 1986), preconditioned from the left. The iteration
+ * minimises P^-1 (b - A x), which is near the error where P is near A, and in the units of the
+ * unknowns. */
 #include <math.h>
 #include <string.h>
 
@@ -7,18 +8,17 @@
 #include "core/status.h"
 #include "num/factor.h"
 
-/* Directions that are kept, and how often the search begins anew from the best solution. */
+/* Number of directions that are kept, and of restarts from the best solution. */
 enum { DIRECTIONS = 40, RESTARTS = 5 };
 
-/* What may be left of P^-1 b. Newton's method, which asks for the solution, corrects what is
- * left. */
+/* Part of P^-1 b that may be left. Newton's method, which uses the solution, corrects the rest. */
 static const double enough = 1e-5;
 
 typedef struct iterative {
   const dvi__operator *A;
   size_t size;
   double *basis;                        /* [DIRECTIONS+1][size] orthonormal directions */
-  double *x, *r;                        /* [size] the solution, and P^-1 b or what is left of it */
+  double *x, *r;                        /* [size] solution, and P^-1 b or its remaining part */
   double H[DIRECTIONS + 1][DIRECTIONS]; /* A in these directions, as rotations make it triangular */
   double cosine[DIRECTIONS], sine[DIRECTIONS], left[DIRECTIONS + 1];
 } iterative;
@@ -58,13 +58,13 @@ static dvi_status iterative_renew(void *factor, const dvi__pattern *pattern, con
 
 /* ---- vectors ---- */
 
-static double *direction(const iterative *s, int k)
+static double *gmres_direction(const iterative *s, int k)
 {
   return s->basis + (size_t)k * s->size;
 }
 
-/* As four sums, which do not wait for each other. */
-static double dot(size_t size, const double *x, const double *y)
+/* Give the scalar product as four sums, which do not wait for each other. */
+static double gmres_dot(size_t size, const double *x, const double *y)
 {
   double sum[4] = {0, 0, 0, 0};
   size_t i = 0;
@@ -74,34 +74,34 @@ static double dot(size_t size, const double *x, const double *y)
   return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
-static void add(size_t size, double factor, const double *x, double *y)
+static void gmres_add(size_t size, double factor, const double *x, double *y)
 {
   for (size_t i = 0; i < size; i++) y[i] += factor * x[i];
 }
 
-static void precondition(const iterative *s, double *r)
+static void gmres_precondition(const iterative *s, double *r)
 {
   if (s->A->precondition != NULL) s->A->precondition(s->A->of, r);
 }
 
 /* ---- one search ---- */
 
-/* The next direction, orthogonal to all before (Gram and Schmidt, one after the other); column k of
- * H. */
+/* Find the next direction, orthogonal to all before (Gram and Schmidt, one after the other), and
+ * column k of H. */
 static void extend_basis(iterative *s, int k)
 {
-  double *next = direction(s, k + 1);
-  s->A->times(s->A->of, direction(s, k), next);
-  precondition(s, next);
+  double *next = gmres_direction(s, k + 1);
+  s->A->times(s->A->of, gmres_direction(s, k), next);
+  gmres_precondition(s, next);
   for (int j = 0; j <= k; j++) {
-    s->H[j][k] = dot(s->size, direction(s, j), next);
-    add(s->size, -s->H[j][k], direction(s, j), next);
+    s->H[j][k] = gmres_dot(s->size, gmres_direction(s, j), next);
+    gmres_add(s->size, -s->H[j][k], gmres_direction(s, j), next);
   }
-  const double length = s->H[k + 1][k] = sqrt(dot(s->size, next, next));
+  const double length = s->H[k + 1][k] = sqrt(gmres_dot(s->size, next, next));
   for (size_t i = 0; i < s->size && length > 0; i++) next[i] /= length;
 }
 
-/* The rotations before, and one that takes away what is below the diagonal. */
+/* Apply the rotations before, and one that removes the entry below the diagonal. */
 static void rotate_column(iterative *s, int k)
 {
   for (int j = 0; j < k; j++) {
@@ -117,20 +117,21 @@ static void rotate_column(iterative *s, int k)
   s->left[k] *= s->cosine[k];
 }
 
-/* x += the combination of `count` directions that makes least what is left. */
+/* Add to x the combination of `count` directions that minimises the residual. */
 static void add_combination(iterative *s, int count)
 {
   for (int k = count - 1; k >= 0; k--) {
     for (int j = k + 1; j < count; j++) s->left[k] -= s->H[k][j] * s->left[j];
     s->left[k] = s->H[k][k] != 0 ? s->left[k] / s->H[k][k] : 0;
   }
-  for (int k = 0; k < count; k++) add(s->size, s->left[k], direction(s, k), s->x);
+  for (int k = 0; k < count; k++) gmres_add(s->size, s->left[k], gmres_direction(s, k), s->x);
 }
 
-/* From the residual r of length `length`; gives what is left of it by the recurrence. */
-static double search(iterative *s, double length, double most)
+/* Search from the residual r of length `length`. Gives the length that remains by the
+ * recurrence. */
+static double gmres_search(iterative *s, double length, double most)
 {
-  double *first = direction(s, 0);
+  double *first = gmres_direction(s, 0);
   int k = 0;
   for (size_t i = 0; i < s->size; i++) first[i] = s->r[i] / length;
   s->left[0] = length;
@@ -144,29 +145,29 @@ static double search(iterative *s, double length, double most)
   return left;
 }
 
-/* r = P^-1 (b - A x). */
-static double residual(iterative *s, const double *b)
+/* Set r = P^-1 (b - A x). */
+static double gmres_residual(iterative *s, const double *b)
 {
-  double *product = direction(s, 0);
+  double *product = gmres_direction(s, 0);
   s->A->times(s->A->of, s->x, product);
   for (size_t i = 0; i < s->size; i++) s->r[i] = b[i] - product[i];
-  precondition(s, s->r);
-  return sqrt(dot(s->size, s->r, s->r));
+  gmres_precondition(s, s->r);
+  return sqrt(gmres_dot(s->size, s->r, s->r));
 }
 
-/* A right side that is not finite has no better solution than itself. */
+/* Solve. A right side that is not finite has no better solution than itself. */
 static void iterative_solve(void *factor, const dvi__pattern *pattern, double *b)
 {
   iterative *s = factor;
   (void)pattern;
   memset(s->x, 0, s->size * sizeof(double));
   memcpy(s->r, b, s->size * sizeof(double));
-  precondition(s, s->r);
-  double length = sqrt(dot(s->size, s->r, s->r));
+  gmres_precondition(s, s->r);
+  double length = sqrt(gmres_dot(s->size, s->r, s->r));
   const double most = enough * length;
   for (int i = 0; i < RESTARTS && length > most && isfinite(length); i++) {
-    if (search(s, length, most) <= most) break;
-    length = residual(s, b);
+    if (gmres_search(s, length, most) <= most) break;
+    length = gmres_residual(s, b);
   }
   if (isfinite(length)) memcpy(b, s->x, s->size * sizeof(double));
 }

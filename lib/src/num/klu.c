@@ -1,6 +1,6 @@
-/* Sparse LU by KLU: one symbolic analysis, then numeric refactorisations with one order of the
+/* Sparse LU by KLU, with one symbolic analysis, then numeric refactorisations with one order of the
  * pivots, chosen once. A matrix for which that order is bad gets a full factorisation of its own.
- * So a factor depends on its matrix alone, not on earlier ones: a restarted run gives the same
+ * So a factor depends on its matrix alone, not on earlier ones, and a restarted run gives the same
  * bits.
  *
  * Columns are ordered by approximate minimum degree (KLU's own call of AMD). Other orders and other
@@ -14,7 +14,7 @@
  *
  * and of real ones 0.13 s by KLU beside 0.08 s by CHOLMOD's supernodes on the first net, 9.5 s
  * beside 1.0 s on the last. UMFPACK and CHOLMOD take memory from the heap in every factorisation,
- * which a step may not; both are under the GPL (CHOLMOD in its supernodal part), which the library
+ * which a step may not. Both are under the GPL (CHOLMOD in its supernodal part), which the library
  * is not. Where KLU takes long, large systems go without a factor (step/element/newton_form.h). */
 #include <klu.h>
 #include <stdint.h>
@@ -24,8 +24,8 @@
 #include "core/status.h"
 #include "num/factor.h"
 
-/* Smallest reciprocal pivot growth with which kept pivots are trusted: six digits lost, which
- * Newton's iteration mends. */
+/* Smallest reciprocal pivot growth with which kept pivots are trusted. Six digits are lost then,
+ * which Newton's iteration restores. */
 #define LEAST_GROWTH 1e-6
 
 /* Small enough beside ones for the diagonal to be preferred as pivots. */
@@ -55,11 +55,11 @@ typedef struct sparse {
   const arithmetic *of;
   klu_common common;
   klu_symbolic *symbolic;
-  int owns_symbolic;     /* else it is another one's, of the same pattern */
-  int has_room;          /* for a factor in the standing order of the pivots: */
-  klu_numeric *standing; /* NULL if the pattern has no such order */
-  klu_numeric *own;      /* of one matrix that needed an order of its own */
-  klu_numeric *current;  /* one of the two */
+  int owns_symbolic;     /* else the analysis belongs to another solver of the same pattern */
+  int has_room;          /* room for a factor in the standing order of the pivots has been made */
+  klu_numeric *standing; /* factor in the standing order, NULL if the pattern has no such order */
+  klu_numeric *own;      /* factor of one matrix that needed an order of its own */
+  klu_numeric *current;  /* one of the two factors */
   char *seen;            /* [n] work */
 } sparse;
 
@@ -74,16 +74,16 @@ static void klu_destroy(void *factor)
   dvi__release(s);
 }
 
-/* More fill-in than an int can count is a lack of memory too. */
+/* More fill-in than an int can count is a lack of memory, too. */
 static int lacks_memory(int status)
 {
   return status == KLU_OUT_OF_MEMORY || status == KLU_TOO_LARGE;
 }
 
-/* A factor of a made-up matrix, so that later ones find their memory and no step allocates. It puts
- * the pivots on the diagonal, where they are good for the Jacobians of short steps. A pattern
- * without one may leave no factor; each real matrix then makes its own. */
-static dvi_status make_room(sparse *s, const dvi__pattern *pattern)
+/* Factor a made-up matrix, so that later factors find their memory and no step allocates. Its
+ * pivots are on the diagonal, where they are good for the Jacobians of short steps. A pattern
+ * without a diagonal may leave no factor. Each real matrix then makes its own. */
+static dvi_status klu_make_room(sparse *s, const dvi__pattern *pattern)
 {
   const int parts = s->of->parts;
   double *entries = DVI_NEW(double, (size_t)parts *(size_t)dvi__pattern_entries(pattern));
@@ -99,7 +99,7 @@ static dvi_status make_room(sparse *s, const dvi__pattern *pattern)
   return dvi__fail(DVI_NO_MEMORY, "KLU: no memory to factor %d columns", pattern->columns);
 }
 
-static dvi_status analyse(sparse *s, const dvi__pattern *pattern, const sparse *like)
+static dvi_status klu_analyse(sparse *s, const dvi__pattern *pattern, const sparse *like)
 {
   klu_defaults(&s->common);
   s->common.scale = 0; /* the values come equilibrated */
@@ -122,7 +122,7 @@ static dvi_status klu_create(const dvi__factor_form *form, const arithmetic *of,
   s->of = of;
   s->seen = DVI_NEW(char, (size_t)n);
   const dvi_status status = s->seen != NULL
-                                ? analyse(s, form->pattern, form->like)
+                                ? klu_analyse(s, form->pattern, form->like)
                                 : dvi__fail(DVI_NO_MEMORY, "KLU: no memory for %d columns", n);
   if (status == DVI_OK) return DVI_OK;
   klu_destroy(s);
@@ -130,24 +130,25 @@ static dvi_status klu_create(const dvi__factor_form *form, const arithmetic *of,
   return status;
 }
 
-static dvi_status create_real(const dvi__factor_form *form, void **factor)
+static dvi_status klu_create_real(const dvi__factor_form *form, void **factor)
 {
   return klu_create(form, &real, factor);
 }
 
-static dvi_status create_complex(const dvi__factor_form *form, void **factor)
+static dvi_status klu_create_complex(const dvi__factor_form *form, void **factor)
 {
   return klu_create(form, &complex, factor);
 }
 
-/* By the smallest and largest pivot: coarser than LAPACK's estimate, but nearly free. */
+/* Estimate the condition by the smallest and largest pivot, which is coarser than LAPACK's
+ * estimate, but nearly free. */
 static int well_conditioned(sparse *s)
 {
   return s->of->condition(s->symbolic, s->current, &s->common) &&
          s->common.rcond >= DVI__LEAST_RCOND;
 }
 
-/* Whether the factor at hand, with these entries, can be trusted. */
+/* Tell whether the current factor, with these entries, can be trusted. */
 static int is_good(sparse *s, const dvi__pattern *pattern, double *entries)
 {
   return s->of->growth(pattern->start, pattern->row, entries, s->symbolic, s->current,
@@ -162,9 +163,9 @@ static int is_on_diagonal(const sparse *s, const klu_numeric *numeric, int n)
   return 1;
 }
 
-/* The first matrix, if its pivots are good on the diagonal, makes the room itself: the order of its
- * pivots is that of a made-up matrix, and its numbers are those of a refactorisation, to the last
- * bit (tests/num/test_linear.c). */
+/* Factor the first matrix. If its pivots are good on the diagonal, it makes the room itself. The
+ * order of its pivots is that of a made-up matrix, and its numbers are those of a refactorisation,
+ * to the last bit (tests/num/test_linear.c). */
 static int factor_first(sparse *s, const dvi__pattern *pattern, double *entries)
 {
   s->current = s->standing = s->of->factor(pattern->start, pattern->row, entries, s->symbolic,
@@ -175,8 +176,8 @@ static int factor_first(sparse *s, const dvi__pattern *pattern, double *entries)
   return s->has_room;
 }
 
-/* klu_refactor keeps the order of the pivots and allocates nothing. A matrix for which the order is
- * bad shows in the reciprocal pivot growth. */
+/* Refactor in the standing order. klu_refactor keeps the order of the pivots and allocates nothing.
+ * The reciprocal pivot growth reveals a matrix for which the order is bad. */
 static int refactor_in_order(sparse *s, const dvi__pattern *pattern, double *entries)
 {
   s->current = s->standing;
@@ -186,14 +187,15 @@ static int refactor_in_order(sparse *s, const dvi__pattern *pattern, double *ent
          is_good(s, pattern, entries);
 }
 
-/* A full factorisation lets entries grow 1/0.001 times at a pivot before it chooses another one. */
+/* Factor. A full factorisation lets entries grow 1/0.001 times at a pivot before it chooses another
+ * one. */
 static dvi_status klu_factor_again(void *factor, const dvi__pattern *pattern, const double *values)
 {
   sparse *s = factor;
-  double *entries = (double *)(uintptr_t)values; /* KLU's interface lacks const; it only reads */
+  double *entries = (double *)(uintptr_t)values; /* KLU's interface lacks const, but only reads */
   s->of->forget(&s->own, &s->common);
   if (!s->has_room && factor_first(s, pattern, entries)) return DVI_OK;
-  if (!s->has_room) DVI_TRY(make_room(s, pattern));
+  if (!s->has_room) DVI_TRY(klu_make_room(s, pattern));
   if (refactor_in_order(s, pattern, entries)) return DVI_OK;
   s->current = s->own = s->of->factor(pattern->start, pattern->row, entries, s->symbolic,
                                       &s->common);
@@ -210,8 +212,8 @@ static void klu_solve_one(void *factor, const dvi__pattern *pattern, double *b)
   s->of->solve(s->symbolic, s->current, pattern->rows, 1, b, &s->common);
 }
 
-/* Whether the permutation takes an odd number of exchanges: a cycle takes one less than it has
- * members. */
+/* Tell whether the permutation takes an odd number of exchanges. A cycle takes one less than its
+ * length. */
 static int is_odd(int n, const int *permutation, char *seen)
 {
   int odd = 0;
@@ -234,8 +236,8 @@ static int klu_sign(const void *factor, const dvi__pattern *pattern)
   return negative ? -1 : 1;
 }
 
-/* Pivots on the diagonal are those of A = L D L^T. A definite matrix keeps them there: none of them
- * is small beside its column. */
+/* Pivots on the diagonal are those of A = L D L^T. A definite matrix keeps them there, because none
+ * of them is small beside its column. */
 static int klu_is_definite(const void *factor, const dvi__pattern *pattern, int sign)
 {
   const sparse *s = factor;
@@ -245,7 +247,7 @@ static int klu_is_definite(const void *factor, const dvi__pattern *pattern, int 
   return is_on_diagonal(s, s->current, pattern->columns);
 }
 
-/* AMD estimates both from below; a factor knows its entries. */
+/* AMD estimates both costs from below. A factor counts its entries. */
 static dvi__linear_cost klu_cost(const void *factor, const dvi__pattern *pattern)
 {
   const sparse *s = factor;
@@ -255,7 +257,7 @@ static dvi__linear_cost klu_cost(const void *factor, const dvi__pattern *pattern
 }
 
 const dvi__factor_kind dvi__sparse_factor = {.name = "sparse LU (KLU)",
-                                             .create = create_real,
+                                             .create = klu_create_real,
                                              .destroy = klu_destroy,
                                              .refactor = klu_factor_again,
                                              .solve = klu_solve_one,
@@ -264,15 +266,15 @@ const dvi__factor_kind dvi__sparse_factor = {.name = "sparse LU (KLU)",
                                              .cost = klu_cost};
 
 /* A multiplication of complex numbers takes four of real ones. */
-static dvi__linear_cost complex_cost(const void *factor, const dvi__pattern *pattern)
+static dvi__linear_cost klu_complex_cost(const void *factor, const dvi__pattern *pattern)
 {
   const dvi__linear_cost one = klu_cost(factor, pattern);
   return (dvi__linear_cost){2 * one.entries, 4 * one.operations};
 }
 
 const dvi__factor_kind dvi__complex_factor = {.name = "sparse complex LU (KLU)",
-                                              .create = create_complex,
+                                              .create = klu_create_complex,
                                               .destroy = klu_destroy,
                                               .refactor = klu_factor_again,
                                               .solve = klu_solve_one,
-                                              .cost = complex_cost};
+                                              .cost = klu_complex_cost};

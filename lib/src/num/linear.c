@@ -8,34 +8,34 @@
 #include "num/factor.h"
 #include "num/finite.h"
 
-/* Where the kinds meet, measured with Debian's reference LAPACK and KLU 5.12 on one x86-64 core,
- * medians, one factorisation with one or five solves.
+/* Sizes at which the kinds are equally fast, measured with Debian's reference LAPACK and KLU 5.12
+ * on one x86-64 core, medians, one factorisation with one or five solves.
  *
  * Chains of dense blocks of 1 to 8 unknowns are faster in KLU at every size (1.5 to 6 times below
  * 48 unknowns, 30 to 180 times at 400), full matrices up to 32 unknowns too (LAPACK's condition
- * estimate alone costs a microsecond). Full matrices meet at 48 and are 1.25 to 1.65 times faster
- * in LAPACK from 64; half full ones meet between 64 and 96. Scattered entries would gain up to 1.35
- * times at densities of 0.2 to 0.5 beyond 100 unknowns, but a band of that density, which KLU
- * exploits, would lose more. */
+ * estimate alone costs a microsecond). Full matrices are equal at 48 and are 1.25 to 1.65 times
+ * faster in LAPACK from 64. Half full ones are equal between 64 and 96. Scattered entries would
+ * gain up to 1.35 times at densities of 0.2 to 0.5 beyond 100 unknowns, but a band of that density,
+ * which KLU exploits, would lose more. */
 enum { LEAST_DENSE = 64 };
 #define LEAST_DENSITY 0.6
 
-/* Up to here a dense factorisation costs at most about as much as a search for pivots by KLU. */
+/* Largest size at which a dense factorisation costs about as much as a search for pivots by KLU. */
 enum { MOST_EXCHANGED = 96 };
 
 struct dvi__linear {
   const dvi__factor_kind *kind;
   dvi__factor_form form;
-  dvi__operator A;   /* of form */
-  dvi__linear *like; /* its analysis serves this one, too */
-  int parts;         /* numbers in an entry: 2 for complex ones */
+  dvi__operator A;   /* operator of form */
+  dvi__linear *like; /* solver whose analysis serves this one, too */
+  int parts;         /* numbers in an entry, 2 for complex ones */
   dvi_counters *counters;
-  void *factor;                     /* NULL: the pattern is not analysed yet */
-  double *row_scale, *column_scale; /* [n], powers of two; NULL before the first factor */
-  double *scaled;                   /* [entries*parts], what is factored */
+  void *factor;                     /* NULL before the pattern is analysed */
+  double *row_scale, *column_scale; /* [n] powers of two, NULL before the first factor */
+  double *scaled;                   /* [entries*parts] scaled matrix, which is factored */
 };
 
-/* ---- making it ---- */
+/* ---- create ---- */
 
 dvi__linear_kind dvi__linear_for_exchanges(const dvi__pattern *pattern)
 {
@@ -65,7 +65,7 @@ static dvi_status linear_create(const dvi__linear *given, dvi__linear **linear)
   return DVI_OK;
 }
 
-static dvi_status check_square(const dvi__pattern *pattern)
+static dvi_status linear_check_square(const dvi__pattern *pattern)
 {
   if (pattern->columns >= 1 && pattern->rows == pattern->columns) return DVI_OK;
   return dvi__fail(DVI_BAD_SIZE, "linear solver: the matrix is %d x %d; a square one is needed",
@@ -76,7 +76,7 @@ dvi_status dvi__linear_create(const dvi__pattern *pattern, dvi__linear_kind kind
                               dvi_counters *counters, dvi__linear **linear)
 {
   *linear = NULL;
-  DVI_TRY(check_square(pattern));
+  DVI_TRY(linear_check_square(pattern));
   return linear_create(&(dvi__linear){.kind = factor_kind_for(pattern, kind),
                                       .form.pattern = pattern,
                                       .parts = kind == DVI__LINEAR_COMPLEX ? 2 : 1,
@@ -88,7 +88,7 @@ dvi_status dvi__linear_create_bordered(const dvi__pattern *pattern, int border,
                                        dvi_counters *counters, dvi__linear **linear)
 {
   *linear = NULL;
-  DVI_TRY(check_square(pattern));
+  DVI_TRY(linear_check_square(pattern));
   return linear_create(&(dvi__linear){.kind = &dvi__bordered_factor,
                                       .form = {.pattern = pattern, .border = border},
                                       .parts = 1,
@@ -124,7 +124,7 @@ void dvi__linear_destroy(dvi__linear **linear)
   *linear = NULL;
 }
 
-/* ---- what it is ---- */
+/* ---- properties ---- */
 
 dvi__linear_kind dvi__linear_kind_of(const dvi__linear *linear)
 {
@@ -144,7 +144,7 @@ dvi__linear_cost dvi__linear_cost_of(const dvi__linear *linear)
   return linear->kind->cost(linear->factor, linear->form.pattern);
 }
 
-/* ---- when it is first needed ---- */
+/* ---- prepare for the first use ---- */
 
 dvi_status dvi__linear_analyse(dvi__linear *linear)
 {
@@ -159,7 +159,7 @@ dvi_status dvi__linear_analyse(dvi__linear *linear)
   return DVI_OK;
 }
 
-static dvi_status allocate_scales(dvi__linear *linear)
+static dvi_status linear_allocate_scales(dvi__linear *linear)
 {
   const dvi__pattern *pattern = linear->form.pattern;
   const size_t entries = (size_t)linear->parts * (size_t)dvi__pattern_entries(pattern);
@@ -173,34 +173,35 @@ static dvi_status allocate_scales(dvi__linear *linear)
   linear->scaled = NULL;
   return dvi__fail(DVI_NO_MEMORY, "linear solver: no memory for %zu entries", entries);
 }
-/* Counted, for memory is taken. What a failure leaves is taken up by the next call. */
-static dvi_status prepare(dvi__linear *linear)
+/* Prepare, and count the preparation, because it allocates memory. The next call completes what a
+ * failure has left. */
+static dvi_status linear_prepare(dvi__linear *linear)
 {
   const int is_matrix = linear->form.pattern != NULL;
   if (linear->factor != NULL && (!is_matrix || linear->scaled != NULL)) return DVI_OK;
   DVI_TRY(dvi__linear_analyse(linear));
-  if (is_matrix) DVI_TRY(allocate_scales(linear));
+  if (is_matrix) DVI_TRY(linear_allocate_scales(linear));
   if (linear->counters != NULL) linear->counters->preparations++;
   return DVI_OK;
 }
 
-/* ---- factoring ---- */
+/* ---- factor ---- */
 
-/* The power of two that brings each largest magnitude into [1,2); 1 where there is none. */
+/* Give the power of two that brings each largest magnitude into [1,2), 1 where there is none. */
 static void invert_scales(int n, double *scale)
 {
   for (int i = 0; i < n; i++)
     scale[i] = scale[i] > 0 ? ldexp(1.0, ilogb(scale[i]) < -1023 ? 1023 : -ilogb(scale[i])) : 1.0;
 }
 
-static double larger(double a, double b)
+static double larger_of_two(double a, double b)
 {
   return a > b ? a : b;
 }
 
-static double magnitude(int parts, const double *entry)
+static double entry_magnitude(int parts, const double *entry)
 {
-  return parts == 1 ? fabs(entry[0]) : larger(fabs(entry[0]), fabs(entry[1]));
+  return parts == 1 ? fabs(entry[0]) : larger_of_two(fabs(entry[0]), fabs(entry[1]));
 }
 
 static void scale_entry(int parts, double scale, double *entry)
@@ -210,22 +211,22 @@ static void scale_entry(int parts, double scale, double *entry)
 }
 
 /* Rows of a stage system differ by the ratio of the masses, columns by the units of coordinates and
- * momenta; neither says anything about its condition. Powers of two round nothing. */
-static void equilibrate(dvi__linear *linear, const double *values)
+ * momenta. Neither affects the condition of the problem. Powers of two round nothing. */
+static void linear_equilibrate(dvi__linear *linear, const double *values)
 {
   const dvi__pattern *pattern = linear->form.pattern;
   const int n = pattern->columns, parts = linear->parts, *row = pattern->row;
   double *rows = linear->row_scale, *columns = linear->column_scale, *scaled = linear->scaled;
   memset(rows, 0, (size_t)n * sizeof(double));
   for (ptrdiff_t e = 0; e < pattern->start[n]; e++)
-    rows[row[e]] = larger(rows[row[e]], magnitude(parts, values + parts * e));
+    rows[row[e]] = larger_of_two(rows[row[e]], entry_magnitude(parts, values + parts * e));
   invert_scales(n, rows);
   memcpy(scaled, values, (size_t)parts * (size_t)pattern->start[n] * sizeof(double));
   for (int j = 0; j < n; j++) {
     columns[j] = 0;
     for (ptrdiff_t e = pattern->start[j]; e < pattern->start[j + 1]; e++) {
       scale_entry(parts, rows[row[e]], scaled + parts * e);
-      columns[j] = larger(columns[j], magnitude(parts, scaled + parts * e));
+      columns[j] = larger_of_two(columns[j], entry_magnitude(parts, scaled + parts * e));
     }
   }
   invert_scales(n, columns);
@@ -234,7 +235,7 @@ static void equilibrate(dvi__linear *linear, const double *values)
       scale_entry(parts, columns[j], scaled + parts * e);
 }
 
-static dvi_status check_finite(const dvi__linear *linear, const double *values)
+static dvi_status linear_check_finite(const dvi__linear *linear, const double *values)
 {
   const size_t entries = (size_t)dvi__pattern_entries(linear->form.pattern);
   const ptrdiff_t bad = dvi__first_not_finite((size_t)linear->parts * entries, values);
@@ -246,14 +247,14 @@ static dvi_status check_finite(const dvi__linear *linear, const double *values)
 dvi_status dvi__linear_factor(dvi__linear *linear, const double *values)
 {
   const int is_matrix = linear->form.pattern != NULL;
-  if (is_matrix) DVI_TRY(check_finite(linear, values));
-  DVI_TRY(prepare(linear));
+  if (is_matrix) DVI_TRY(linear_check_finite(linear, values));
+  DVI_TRY(linear_prepare(linear));
   if (linear->counters != NULL && is_matrix) linear->counters->factorizations++;
-  if (is_matrix) equilibrate(linear, values);
+  if (is_matrix) linear_equilibrate(linear, values);
   return linear->kind->refactor(linear->factor, linear->form.pattern, linear->scaled);
 }
 
-/* The scales are positive. */
+/* The scales are positive and keep the sign. */
 int dvi__linear_sign(const dvi__linear *linear)
 {
   if (linear->kind->sign == NULL) return 0;
@@ -272,9 +273,9 @@ int dvi__linear_tells_definite(const dvi__linear *linear)
   return linear->kind->is_definite != NULL;
 }
 
-/* ---- solving ---- */
+/* ---- solve ---- */
 
-static void scale(int n, int parts, const double *by, double *b)
+static void scale_vector(int n, int parts, const double *by, double *b)
 {
   for (int i = 0; i < n; i++) scale_entry(parts, by[i], b + (ptrdiff_t)parts * i);
 }
@@ -283,7 +284,7 @@ void dvi__linear_solve(dvi__linear *linear, double *b)
 {
   const dvi__pattern *pattern = linear->form.pattern;
   if (linear->counters != NULL) linear->counters->solves++;
-  if (pattern != NULL) scale(pattern->columns, linear->parts, linear->row_scale, b);
+  if (pattern != NULL) scale_vector(pattern->columns, linear->parts, linear->row_scale, b);
   linear->kind->solve(linear->factor, pattern, b);
-  if (pattern != NULL) scale(pattern->columns, linear->parts, linear->column_scale, b);
+  if (pattern != NULL) scale_vector(pattern->columns, linear->parts, linear->column_scale, b);
 }

@@ -18,7 +18,7 @@ void dvi__pattern_clear(dvi__pattern *pattern)
   *pattern = (dvi__pattern){0};
 }
 
-static dvi_status allocate(int rows, int columns, size_t entries, dvi__pattern *pattern)
+static dvi_status pattern_allocate(int rows, int columns, size_t entries, dvi__pattern *pattern)
 {
   if (entries > 0x7fffffff)
     return dvi__fail(DVI_BAD_SIZE, "pattern: %zu entries are too many; declare a sparse pattern",
@@ -33,20 +33,20 @@ static dvi_status allocate(int rows, int columns, size_t entries, dvi__pattern *
 
 dvi_status dvi__pattern_empty(int n, dvi__pattern *pattern)
 {
-  return allocate(n, n, 0, pattern);
+  return pattern_allocate(n, n, 0, pattern);
 }
 
 dvi_status dvi__pattern_diagonal(int n, dvi__pattern *pattern)
 {
-  DVI_TRY(allocate(n, n, (size_t)n, pattern));
+  DVI_TRY(pattern_allocate(n, n, (size_t)n, pattern));
   for (int j = 0; j < n; j++) pattern->start[j] = pattern->row[j] = j;
   pattern->start[n] = n;
   return DVI_OK;
 }
 
-static dvi_status full(int rows, int columns, dvi__pattern *pattern)
+static dvi_status pattern_full(int rows, int columns, dvi__pattern *pattern)
 {
-  DVI_TRY(allocate(rows, columns, (size_t)rows * (size_t)columns, pattern));
+  DVI_TRY(pattern_allocate(rows, columns, (size_t)rows * (size_t)columns, pattern));
   for (int j = 0; j < columns; j++) {
     pattern->start[j] = j * rows;
     for (int i = 0; i < rows; i++) pattern->row[j * rows + i] = i;
@@ -55,8 +55,8 @@ static dvi_status full(int rows, int columns, dvi__pattern *pattern)
   return DVI_OK;
 }
 
-/* All the starts are checked before any row is read: start[n] is then how many rows the caller
- * has. */
+/* Check all starts before any row is read, because start[n] is then the number of the caller's
+ * rows. */
 static dvi_status validate_starts(const dvi_pattern *declared, int n, const char *name)
 {
   if (declared->start == NULL)
@@ -91,10 +91,10 @@ dvi_status dvi__pattern_copy_rectangular(const dvi_pattern *declared, int rows, 
                                          const char *name, dvi__pattern *copy)
 {
   *copy = (dvi__pattern){0};
-  if (declared->start == NULL && declared->row == NULL) return full(rows, columns, copy);
+  if (declared->start == NULL && declared->row == NULL) return pattern_full(rows, columns, copy);
   DVI_TRY(validate_starts(declared, columns, name));
   for (int j = 0; j < columns; j++) DVI_TRY(validate_column(declared, rows, j, name));
-  DVI_TRY(allocate(rows, columns, (size_t)declared->start[columns], copy));
+  DVI_TRY(pattern_allocate(rows, columns, (size_t)declared->start[columns], copy));
   memcpy(copy->start, declared->start, ((size_t)columns + 1) * sizeof(int));
   if (declared->start[columns] > 0)
     memcpy(copy->row, declared->row, (size_t)declared->start[columns] * sizeof(int));
@@ -107,7 +107,7 @@ dvi_status dvi__pattern_copy(const dvi_pattern *declared, int n, const char *nam
   return dvi__pattern_copy_rectangular(declared, n, n, name, copy);
 }
 
-/* Merge two ascending columns; the rows are written if out is not NULL. Returns their number. */
+/* Merge two ascending columns. The rows are written if out is not NULL. Returns their number. */
 static int merge_column(const dvi__pattern *a, const dvi__pattern *b, int j, int *out)
 {
   int i = a->start[j], k = b->start[j], count = 0;
@@ -127,7 +127,7 @@ dvi_status dvi__pattern_union(const dvi__pattern *a, const dvi__pattern *b, dvi_
 {
   size_t entries = 0;
   for (int j = 0; j < a->columns; j++) entries += (size_t)merge_column(a, b, j, NULL);
-  DVI_TRY(allocate(a->rows, a->columns, entries, sum));
+  DVI_TRY(pattern_allocate(a->rows, a->columns, entries, sum));
   for (int j = 0; j < a->columns; j++)
     sum->start[j + 1] = sum->start[j] + merge_column(a, b, j, sum->row + sum->start[j]);
   return DVI_OK;
@@ -135,14 +135,14 @@ dvi_status dvi__pattern_union(const dvi__pattern *a, const dvi__pattern *b, dvi_
 
 dvi_status dvi__pattern_transpose(const dvi__pattern *pattern, dvi__pattern *transpose)
 {
-  DVI_TRY(
-      allocate(pattern->columns, pattern->rows, (size_t)dvi__pattern_entries(pattern), transpose));
+  DVI_TRY(pattern_allocate(pattern->columns, pattern->rows, (size_t)dvi__pattern_entries(pattern),
+                           transpose));
   for (int e = 0; e < dvi__pattern_entries(pattern); e++) transpose->start[pattern->row[e] + 1]++;
   for (int i = 0; i < pattern->rows; i++) transpose->start[i + 1] += transpose->start[i];
   for (int j = 0; j < pattern->columns; j++)
     for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++)
       transpose->row[transpose->start[pattern->row[e]]++] = j;
-  /* The starts have moved to the ends: move them back. */
+  /* The starts have moved to the ends, and are moved back. */
   for (int i = pattern->rows; i > 0; i--) transpose->start[i] = transpose->start[i - 1];
   transpose->start[0] = 0;
   return DVI_OK;
@@ -235,8 +235,8 @@ void dvi__pattern_embed(const dvi__pattern *part, const dvi__pattern *whole, int
       where[e] = dvi__pattern_find(whole, part->row[e], j);
 }
 
-/* The smallest group none of whose columns meets column j; taken[g] == j marks the groups that do.
- * There are at most j of them. */
+/* Find the smallest group none of whose columns meets column j. taken[g] == j marks the groups that
+ * do. There are at most j of them. */
 static int free_group(const dvi__pattern *pattern, const dvi__pattern *transpose, const int *group,
                       int j, int *taken)
 {
@@ -252,7 +252,7 @@ static int free_group(const dvi__pattern *pattern, const dvi__pattern *transpose
   return g;
 }
 
-/* A full pattern needs no search: every column meets every other. */
+/* A full pattern needs no search, because every column meets every other. */
 static int is_full(const dvi__pattern *pattern)
 {
   return (size_t)dvi__pattern_entries(pattern) == (size_t)pattern->rows * (size_t)pattern->columns;

@@ -1,11 +1,11 @@
-/* Elimination by pivots of two rows and columns, which leaves the rest skew-symmetric; rows and
- * columns are exchanged together, for the largest pivot of the row at hand. Source: Parlett and
+/* Elimination by pivots of two rows and columns, which leaves the rest skew-symmetric. Rows and
+ * columns are exchanged together, for the largest pivot of the current row. Source: Parlett and
  * Reid 1970; Wimmer 2012, arXiv:1102.3440. */
 #include "num/pfaffian.h"
 
 #include <math.h>
 
-static void exchange(size_t n, double *A, size_t i, size_t j)
+static void exchange_rows_and_columns(size_t n, double *A, size_t i, size_t j)
 {
   for (size_t k = 0; k < n; k++) {
     const double kept = A[i * n + k];
@@ -34,7 +34,7 @@ int dvi__pfaffian_sign(size_t n, double *A)
     const size_t other = largest_of_row(n, A, k);
     const double pivot = A[k * n + other], *row = A + k * n, *next = row + n;
     if (pivot == 0) return 0;
-    if (other != k + 1) exchange(n, A, k + 1, other);
+    if (other != k + 1) exchange_rows_and_columns(n, A, k + 1, other);
     sign *= (pivot > 0) == (other == k + 1) ? 1 : -1;
     for (size_t i = k + 2; i < n; i++)
       for (size_t j = k + 2; j < n; j++)

@@ -13,15 +13,15 @@
 #define WIDTH 4
 #include "num/simd/vector_width.h"
 
-/* ---- the matrix ---- */
+/* ---- matrix ---- */
 
-/* Four rows' entries, in ascending order of their diagonals. */
+/* Entries of four rows, in ascending order of their diagonals. */
 typedef struct merge {
   const dvi__pattern *pattern;
-  int at[4], beyond[4]; /* the next entry of each row, and where it ends */
+  int at[4], beyond[4]; /* next entry of each row, and its end */
 } merge;
 
-static merge begin(const dvi__pattern *pattern, int first)
+static merge merge_begin(const dvi__pattern *pattern, int first)
 {
   merge m = {.pattern = pattern};
   for (int l = 0; l < 4 && first + l < pattern->columns; l++) {
@@ -31,29 +31,29 @@ static merge begin(const dvi__pattern *pattern, int first)
   return m;
 }
 
-/* Where row l's next entry has its diagonal at the first row. */
-static int column_of(const merge *m, int l)
+/* Give the column in which the diagonal of row l's next entry meets the first row. */
+static int merge_column_of(const merge *m, int l)
 {
   return m->at[l] < m->beyond[l] ? m->pattern->row[m->at[l]] - l : INT_MAX;
 }
 
-/* The next diagonal, and the entry of each row on it, or -1. 0: there is none. */
-static int next(merge *m, int *column, int entry[4])
+/* Find the next diagonal, and the entry of each row on it, or -1. 0 if there is none. */
+static int merge_next(merge *m, int *column, int entry[4])
 {
   *column = INT_MAX;
   for (int l = 0; l < 4; l++)
-    if (column_of(m, l) < *column) *column = column_of(m, l);
+    if (merge_column_of(m, l) < *column) *column = merge_column_of(m, l);
   for (int l = 0; l < 4; l++)
-    entry[l] = *column != INT_MAX && column_of(m, l) == *column ? m->at[l]++ : -1;
+    entry[l] = *column != INT_MAX && merge_column_of(m, l) == *column ? m->at[l]++ : -1;
   return *column != INT_MAX;
 }
 
-static dvi_status count(dvi__stripes *s, const dvi__pattern *pattern)
+static dvi_status count_stripes(dvi__stripes *s, const dvi__pattern *pattern)
 {
   long stripes = 0;
   for (int f = 0; f < s->fours; f++) {
     int column, entry[4];
-    for (merge m = begin(pattern, 4 * f); next(&m, &column, entry);) stripes++;
+    for (merge m = merge_begin(pattern, 4 * f); merge_next(&m, &column, entry);) stripes++;
     if (stripes > INT_MAX / 4)
       return dvi__fail(DVI_BAD_SIZE, "a matrix of %d rows has too many entries", s->n);
     s->start[f + 1] = (int)stripes;
@@ -61,13 +61,13 @@ static dvi_status count(dvi__stripes *s, const dvi__pattern *pattern)
   return DVI_OK;
 }
 
-static void put(dvi__stripes *s, const dvi__pattern *pattern, const double *values,
-                const double *scale, double shift)
+static void put_stripes(dvi__stripes *s, const dvi__pattern *pattern, const double *values,
+                        const double *scale, double shift)
 {
   int at = 0;
   for (int f = 0; f < s->fours; f++) {
     int entry[4];
-    for (merge m = begin(pattern, 4 * f); next(&m, &s->column[at], entry); at++) {
+    for (merge m = merge_begin(pattern, 4 * f); merge_next(&m, &s->column[at], entry); at++) {
       for (int l = 0; l < 4; l++)
         if (entry[l] >= 0)
           s->value[4 * (size_t)at + (size_t)l] = scale[4 * f + l] * values[entry[l]] -
@@ -85,12 +85,12 @@ dvi_status dvi__stripes_fill(const dvi__pattern *pattern, const double *values, 
   s->room = 4 * (size_t)s->fours + 2 * DVI__STRIPES_MARGIN;
   s->start = DVI_NEW(int, (size_t)s->fours + 1);
   if (s->start == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory");
-  DVI_TRY(count(s, pattern));
-  /* one for the last look at where nothing is left */
+  DVI_TRY(count_stripes(s, pattern));
+  /* one more for the last call of merge_next, which finds nothing */
   s->column = DVI_NEW(int, (size_t)s->start[s->fours] + 1);
   s->value = DVI_NEW(double, 4 * (size_t)s->start[s->fours]);
   if (s->column == NULL || s->value == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory");
-  put(s, pattern, values, scale, shift);
+  put_stripes(s, pattern, values, scale, shift);
   return DVI_OK;
 }
 
@@ -102,14 +102,14 @@ void dvi__stripes_clear(dvi__stripes *s)
   *s = (dvi__stripes){.start = NULL};
 }
 
-/* ---- the sums ---- */
+/* ---- sums ---- */
 
-/* Fours in a piece: forty steps of two vectors fit into a megabyte. */
+/* Number of fours in a piece. Forty steps of two vectors fit into a megabyte. */
 enum { PIECE = 64 };
 
-/* sum_j c_j x_j over the lanes of a row of C. */
-INLINE void combine(const dvi__clenshaw *s, const int lanes, const double *c, size_t i,
-                    vector4 *sum)
+/* Add sum_j c_j x_j over the lanes of a row of C. */
+INLINE void clenshaw_combine(const dvi__clenshaw *s, const int lanes, const double *c, size_t i,
+                             vector4 *sum)
 {
   for (int j = 0; j < lanes; j++) {
     vector4 x;
@@ -118,9 +118,9 @@ INLINE void combine(const dvi__clenshaw *s, const int lanes, const double *c, si
   }
 }
 
-/* A piece of step k of the recurrence: fours from `first` on, up to `beyond`. Steps read b where
- * the one before has left it, and leave it in the other place. */
-INLINE void descend(const dvi__clenshaw *s, const int lanes, int k, int first, int beyond)
+/* Make step k of the recurrence for a piece, the fours from `first` on, up to `beyond`. Steps read
+ * b where the one before has left it, and write to the other place. */
+INLINE void clenshaw_step(const dvi__clenshaw *s, const int lanes, int k, int first, int beyond)
 {
   const dvi__stripes G = *s->G;
   const int even = (s->degree - 1 - k) % 2 == 0;
@@ -143,7 +143,7 @@ INLINE void descend(const dvi__clenshaw *s, const int lanes, int k, int first, i
       load4(s->d + at, &d);
       load4(b + at, &before);
       sum[l] = part * sum[l] - d;
-      combine(s, lanes, C + (size_t)l * (size_t)lanes, i, &sum[l]);
+      clenshaw_combine(s, lanes, C + (size_t)l * (size_t)lanes, i, &sum[l]);
       before = sum[l] - before;
       store4(s->d + at, &sum[l], 4);
       store4(to + at, &before, 4);
@@ -151,42 +151,42 @@ INLINE void descend(const dvi__clenshaw *s, const int lanes, int k, int first, i
   }
 }
 
-WIDE static void descend_one(const dvi__clenshaw *s, int k, int first, int beyond)
+WIDE static void clenshaw_step_one(const dvi__clenshaw *s, int k, int first, int beyond)
 {
-  descend(s, 1, k, first, beyond);
+  clenshaw_step(s, 1, k, first, beyond);
 }
 
-WIDE static void descend_two(const dvi__clenshaw *s, int k, int first, int beyond)
+WIDE static void clenshaw_step_two(const dvi__clenshaw *s, int k, int first, int beyond)
 {
-  descend(s, 2, k, first, beyond);
+  clenshaw_step(s, 2, k, first, beyond);
 }
 
-/* d = b = C x of the highest term. */
-static void start(const dvi__clenshaw *s)
+/* Set d = b = C x of the highest term. */
+static void clenshaw_begin(const dvi__clenshaw *s)
 {
   const double *c = s->c + (size_t)s->degree * (size_t)(s->lanes * s->lanes);
   for (int l = 0; l < s->lanes; l++, c += s->lanes)
     for (size_t i = DVI__STRIPES_MARGIN; i < s->G->room - DVI__STRIPES_MARGIN; i += 4) {
       vector4 sum = {0};
-      combine(s, s->lanes, c, i, &sum);
+      clenshaw_combine(s, s->lanes, c, i, &sum);
       store4(s->d + (size_t)l * s->G->room + i, &sum, 4);
       store4(s->b + (size_t)l * s->G->room + i, &sum, 4);
     }
 }
 
-/* In pieces that reach no further than their neighbours: a step is one piece behind the step
- * before, so that what all of them work on stays in the cache. The bits are those of one step after
+/* Sum in pieces that reach no further than their neighbours. A step is one piece behind the step
+ * before, so that the numbers of all steps stay in the cache. The bits are those of one step after
  * the other. */
 void dvi__stripes_sum(const dvi__clenshaw *s)
 {
   const int piece = s->G->reach > PIECE ? s->G->reach : PIECE,
             pieces = (s->G->fours + piece - 1) / piece;
-  start(s);
+  clenshaw_begin(s);
   for (int front = 0; front < pieces + s->degree - 1; front++)
     for (int behind = front < pieces ? 0 : front - pieces + 1;
          behind <= front && behind < s->degree; behind++) {
       const int first = (front - behind) * piece, left = s->G->fours - first;
-      (s->lanes == 1 ? descend_one : descend_two)(s, s->degree - 1 - behind, first,
-                                                  first + (left < piece ? left : piece));
+      (s->lanes == 1 ? clenshaw_step_one : clenshaw_step_two)(
+          s, s->degree - 1 - behind, first, first + (left < piece ? left : piece));
     }
 }

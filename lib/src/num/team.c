@@ -9,11 +9,11 @@
 #include "core/memory.h"
 #include "core/status.h"
 
-/* Between two steps that follow each other a thread shall not fall asleep: waking it takes longer
- * than this many looks. */
+/* Looks at the work before a thread sleeps. A thread shall not sleep between two steps that follow
+ * each other, because waking it takes longer than this many looks. */
 enum { LOOKS = 1000, LOOKS_BEFORE_YIELDING = 200 };
 
-/* Of the items that are shared, for each member: many enough that all end together, few enough that
+/* Portions of shared items for each member, many enough that all end together, few enough that
  * taking them costs nothing. */
 enum { PORTIONS = 8 };
 
@@ -24,11 +24,11 @@ typedef struct member {
 } member;
 
 struct dvi__team {
-  int started; /* threads */
+  int started; /* number of threads */
   member *members;
   pthread_mutex_t lock;
   pthread_cond_t begin, end;
-  /* What to do; written under the lock before `turn` changes. */
+  /* The work, which is written under the lock before `turn` changes. */
   void (*work)(void *user, int number);
   void *user;
   int count;
@@ -44,7 +44,7 @@ void dvi__team_pause(int waited)
   if (waited > LOOKS_BEFORE_YIELDING) (void)sched_yield();
 }
 
-static void await_turn(dvi__team *team, unsigned long seen)
+static void team_await_turn(dvi__team *team, unsigned long seen)
 {
   for (int i = 0; i < LOOKS && atomic_load(&team->turn) == seen; i++) dvi__team_pause(i);
   (void)pthread_mutex_lock(&team->lock);
@@ -52,8 +52,8 @@ static void await_turn(dvi__team *team, unsigned long seen)
   (void)pthread_mutex_unlock(&team->lock);
 }
 
-/* The last one wakes the caller, should he sleep. */
-static void end_turn(dvi__team *team)
+/* End a thread's turn. The last thread wakes the caller, which may sleep. */
+static void team_end_turn(dvi__team *team)
 {
   if (atomic_fetch_sub(&team->busy, 1) != 1) return;
   (void)pthread_mutex_lock(&team->lock);
@@ -61,20 +61,21 @@ static void end_turn(dvi__team *team)
   (void)pthread_mutex_unlock(&team->lock);
 }
 
-/* A turn without work is the last. */
-static void *serve(void *argument)
+/* Serve turns. A turn without work is the last. */
+static void *team_serve(void *argument)
 {
   const member *self = argument;
   dvi__team *team = self->team;
   for (unsigned long turn = 0;; turn++) {
-    await_turn(team, turn);
+    team_await_turn(team, turn);
     if (team->work == NULL) return NULL;
     if (self->number < team->count) team->work(team->user, self->number);
-    end_turn(team);
+    team_end_turn(team);
   }
 }
 
-static void begin_turn(dvi__team *team, int count, void (*work)(void *user, int member), void *user)
+static void team_begin_turn(dvi__team *team, int count, void (*work)(void *user, int member),
+                            void *user)
 {
   (void)pthread_mutex_lock(&team->lock);
   team->work = work;
@@ -88,7 +89,7 @@ static void begin_turn(dvi__team *team, int count, void (*work)(void *user, int 
 
 void dvi__team_run(dvi__team *team, int count, void (*work)(void *user, int member), void *user)
 {
-  begin_turn(team, count, work, user);
+  team_begin_turn(team, count, work, user);
   work(user, 0);
   for (int i = 0; i < LOOKS && atomic_load(&team->busy) > 0; i++) dvi__team_pause(i);
   (void)pthread_mutex_lock(&team->lock);
@@ -103,7 +104,7 @@ typedef struct shared {
   atomic_int next;
 } shared;
 
-static void take_items(void *user, int number)
+static void team_take_items(void *user, int number)
 {
   shared *items = user;
   for (;;) {
@@ -120,11 +121,11 @@ void dvi__team_share(dvi__team *team, int count, void (*work)(void *user, int me
   const int size = team->started + 1;
   shared items = {
       .work = work, .user = user, .count = count, .portion = count / (PORTIONS * size) + 1};
-  dvi__team_run(team, size, take_items, &items);
+  dvi__team_run(team, size, team_take_items, &items);
 }
 
-/* The program's signals are for its own threads. */
-static void start_threads(dvi__team *team, int size)
+/* Start the threads with all signals blocked. The program's signals are for its own threads. */
+static void team_start_threads(dvi__team *team, int size)
 {
   sigset_t all, before;
   (void)sigfillset(&all);
@@ -132,7 +133,7 @@ static void start_threads(dvi__team *team, int size)
   for (int i = 1; i < size; i++) {
     member *next = &team->members[i];
     *next = (member){.team = team, .number = i};
-    if (pthread_create(&next->thread, NULL, serve, next) != 0) break;
+    if (pthread_create(&next->thread, NULL, team_serve, next) != 0) break;
     team->started++;
   }
   (void)pthread_sigmask(SIG_SETMASK, &before, NULL);
@@ -153,7 +154,7 @@ dvi_status dvi__team_create(int size, dvi__team **team)
   (void)pthread_mutex_init(&made->lock, NULL);
   (void)pthread_cond_init(&made->begin, NULL);
   (void)pthread_cond_init(&made->end, NULL);
-  start_threads(made, size);
+  team_start_threads(made, size);
   if (made->started == size - 1) {
     *team = made;
     return DVI_OK;
@@ -168,7 +169,7 @@ void dvi__team_destroy(dvi__team **team)
 {
   dvi__team *t = *team;
   if (t == NULL) return;
-  begin_turn(t, 0, NULL, NULL);
+  team_begin_turn(t, 0, NULL, NULL);
   for (int i = 1; i <= t->started; i++) (void)pthread_join(t->members[i].thread, NULL);
   (void)pthread_mutex_destroy(&t->lock);
   (void)pthread_cond_destroy(&t->begin);

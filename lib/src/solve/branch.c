@@ -9,25 +9,25 @@
 #include "num/finite.h"
 #include "solve/solver_struct.h"
 
-/* In parts of the step: the first one, and the least by which the branch goes on. */
+/* The first part of the step, and the least part by which the branch goes on. */
 static const double first_part = 1.0 / 16, least_part = 1.0 / DVI__BRANCH_PARTS;
 
 /* A guess is in the domain of Newton's method if the second correction is this part of the first.
  * Elsewhere, and where the Jacobian is not exact, solutions have to be closer to their guesses. */
 static const double contraction = 0.5, at_first = 0.4, closer = 0.1;
 
-/* Of smaller corrections, relative to the unknowns, rounding may be a large part. */
+/* Rounding may be a large part of corrections below this size relative to the unknowns. */
 static const double negligible = 1e-6;
 
 /* The solutions found last, the latest first. */
-typedef struct history {
-  int count, solved; /* points; of these the ones that were solved for */
+typedef struct branch_history {
+  int count, solved; /* number of points, and of those that were solved for */
   double part[DVI__BRANCH_POINTS];
   double *x[DVI__BRANCH_POINTS];
-  double *first; /* where the branch begins, or the first solution */
-} history;
+  double *first; /* start of the branch, or the first solution */
+} branch_history;
 
-static void remember(history *past, size_t unknowns, double part, const double *x)
+static void add_to_history(branch_history *past, size_t unknowns, double part, const double *x)
 {
   double *oldest = past->x[DVI__BRANCH_POINTS - 1];
   for (int k = DVI__BRANCH_POINTS - 1; k > 0; k--) {
@@ -40,8 +40,8 @@ static void remember(history *past, size_t unknowns, double part, const double *
   if (past->count < DVI__BRANCH_POINTS) past->count++;
 }
 
-/* The polynomial in the length of the step through the last solutions. */
-static void extrapolate(const history *past, size_t unknowns, double part, double *x)
+/* Extrapolate the polynomial in the length of the step through the last solutions. */
+static void extrapolate_branch(const branch_history *past, size_t unknowns, double part, double *x)
 {
   memset(x, 0, unknowns * sizeof *x);
   for (int k = 0; k < past->count; k++) {
@@ -52,9 +52,11 @@ static void extrapolate(const history *past, size_t unknowns, double part, doubl
   }
 }
 
-/* Unknowns with other units, and of small parts of a system, count as much as large ones. */
-static double distance(const dvi__branch *branch, const dvi__solver *solver, const history *past,
-                       double part, const double *guess, const double *x)
+/* Measure how far a solution is from its guess. Unknowns with other units, and of small parts of a
+ * system, count as much as large ones. */
+static double distance_of_guess(const dvi__branch *branch, const dvi__solver *solver,
+                                const branch_history *past, double part, const double *guess,
+                                const double *x)
 {
   const size_t unknowns = (size_t)solver->equations.unknowns,
                group = (size_t)solver->equations.group;
@@ -74,9 +76,9 @@ static double distance(const dvi__branch *branch, const dvi__solver *solver, con
   return worst;
 }
 
-/* Of a motion that begins at rest the first guesses are no measure; short steps, whose equations
- * are nearly linear, have no other solution near. */
-static int is_near(const dvi__branch *branch, const dvi__solver *solver, const history *past,
+/* Tell whether a solution is near its guess. The first guesses of a motion that begins at rest are
+ * no measure. Short steps, whose equations are nearly linear, have no other solution near. */
+static int is_near(const dvi__branch *branch, const dvi__solver *solver, const branch_history *past,
                    double part, const double *guess, const double *x,
                    const dvi__solve_report *report)
 {
@@ -85,25 +87,26 @@ static int is_near(const dvi__branch *branch, const dvi__solver *solver, const h
   if (branch->distance == NULL && past->count < DVI__BRANCH_POINTS &&
       dvi__branch_is_straight(report))
     return 1;
-  const double away = measurable ? distance(branch, solver, past, part, guess, x) : 0;
+  const double away = measurable ? distance_of_guess(branch, solver, past, part, guess, x) : 0;
   const int contracts = report->contraction <= (measurable ? contraction : at_first) ||
                         report->largest_first <= negligible * dvi__largest(unknowns, x);
   const double near = contracts ? branch->near : closer * branch->near;
   return measurable ? away <= near : contracts;
 }
 
-/* From the caller's guess until there are two points. */
-static dvi_status guess_at(const dvi__branch *branch, const history *past, size_t unknowns,
+/* Guess by the caller's function until there are two points. */
+static dvi_status guess_at(const dvi__branch *branch, const branch_history *past, size_t unknowns,
                            double part, double *x)
 {
   DVI_TRY(branch->place(branch->of, part));
   if (past->count < 2) return branch->guess(branch->of, part, x);
-  extrapolate(past, unknowns, part, x);
+  extrapolate_branch(past, unknowns, part, x);
   return DVI_OK;
 }
 
-static dvi_status solve_at(const dvi__branch *branch, dvi__solver *solver, const history *past,
-                           double part, double *x, double *guess, dvi__solve_report *report)
+static dvi_status solve_branch_at(const dvi__branch *branch, dvi__solver *solver,
+                                  const branch_history *past, double part, double *x, double *guess,
+                                  dvi__solve_report *report)
 {
   const size_t unknowns = (size_t)solver->equations.unknowns;
   DVI_TRY(guess_at(branch, past, unknowns, part, guess));
@@ -111,17 +114,17 @@ static dvi_status solve_at(const dvi__branch *branch, dvi__solver *solver, const
   return dvi__solve(solver, DVI__NEWTON, branch->size, 0, 0, x, report);
 }
 
-static void begin(const dvi__branch *branch, size_t unknowns, history *past)
+static void branch_begin(const dvi__branch *branch, size_t unknowns, branch_history *past)
 {
-  *past = (history){0};
+  *past = (branch_history){0};
   past->first = branch->room + unknowns;
   for (size_t k = 0; k < DVI__BRANCH_POINTS; k++) past->x[k] = past->first + (k + 1) * unknowns;
   memset(past->first, 0, unknowns * sizeof(double));
-  if (branch->from_zero) remember(past, unknowns, 0, past->first);
+  if (branch->from_zero) add_to_history(past, unknowns, 0, past->first);
 }
 
-/* Whether the last solution is beyond a fold; before it the determinant had a sign, if any were
- * solved. */
+/* Tell whether the last solution is beyond a fold. `sign` is that of the determinant before, if any
+ * solutions were found. */
 static int is_folded(const dvi__branch *branch, const dvi__solver *solver, int solved, int sign)
 {
   if (branch->definite != 0 && !dvi__solver_is_definite(solver, branch->definite)) return 1;
@@ -134,13 +137,13 @@ dvi_status dvi__branch_follow(const dvi__branch *branch, dvi__solver *solver, do
   const size_t unknowns = (size_t)solver->equations.unknowns;
   const double most_part = 1.0 / branch->parts;
   double part = fmin(first_part, most_part), *guess = branch->room;
-  history past;
+  branch_history past;
   int sign = 0;
-  begin(branch, unknowns, &past);
+  branch_begin(branch, unknowns, &past);
   *end = (dvi__branch_end){0};
   while (end->reached < 1 && part >= least_part) {
     const double next = fmin(1, end->reached + part);
-    end->status = solve_at(branch, solver, &past, next, x, guess, &end->report);
+    end->status = solve_branch_at(branch, solver, &past, next, x, guess, &end->report);
     if (end->status < 0) return end->status;
     const int solved = end->status == DVI_OK,
               folded = solved && is_folded(branch, solver, past.solved, sign);
@@ -153,7 +156,7 @@ dvi_status dvi__branch_follow(const dvi__branch *branch, dvi__solver *solver, do
     if (past.solved > 0) part = fmin(2 * part, most_part); /* the first part is taken twice */
     sign = dvi__solver_sign(solver);
     if (past.count == 0) memcpy(past.first, x, unknowns * sizeof *x);
-    remember(&past, unknowns, next, x);
+    add_to_history(&past, unknowns, next, x);
     past.solved++;
     end->reached = next;
   }

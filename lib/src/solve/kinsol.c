@@ -1,9 +1,9 @@
-/* KINSOL with line search, on our own matrix and linear solver.
+/* KINSOL with line search, on own matrix and linear solver.
  *
- * SUNDIALS' wrapper of KLU analyses and factors anew at the first setup of each call; here the one
+ * SUNDIALS' wrapper of KLU analyses and factors anew at the first setup of each call. Here the one
  * analysis of num/linear.h serves Newton's method and KINSOL alike. KINSOL's defaults are loose and
  * reuse old Jacobians, which shows as energy drift over long runs
- * (tests/solve/test_kinsol_drift.c): every tolerance is set here. */
+ * (tests/solve/test_kinsol_drift.c). Therefore every tolerance is set here. */
 #include <float.h>
 #include <kinsol/kinsol.h>
 #include <math.h>
@@ -22,15 +22,16 @@ struct dvi__kinsol {
   SUNContext context;
   void *memory;
   N_Vector x, x_scale, r_scale;
-  /* [unknowns] as the equations gave it, and the unknowns' size: what both scales are made of */
+  /* [unknowns] scale of the rows as the equations gave it, and size of the unknowns, from which
+   * both scales are made */
   double *row_scale, whole;
-  SUNMatrix matrix; /* content: this struct */
+  SUNMatrix matrix; /* its content is this struct */
   SUNLinearSolver linear;
-  dvi_status fatal; /* of a callback; 0: none */
-  dvi_status last;  /* of the last callback */
+  dvi_status fatal; /* failure of a callback, 0 if none */
+  dvi_status last;  /* status of the last callback */
 };
 
-/* ---- what KINSOL calls ---- */
+/* ---- callbacks of KINSOL ---- */
 
 static int callback_return(dvi__kinsol *k, dvi_status status)
 {
@@ -39,14 +40,14 @@ static int callback_return(dvi__kinsol *k, dvi_status status)
   return status == DVI_OK ? 0 : status > 0 ? 1 : -1;
 }
 
-/* KINSOL's line search halves its step for ever once a NaN is among its numbers: none may get
- * there. */
+/* Find NaN and infinity, which must not reach KINSOL. Its line search halves the step for ever once
+ * a NaN is among its numbers. */
 static int not_finite(const dvi__kinsol *k, N_Vector x)
 {
   return dvi__first_not_finite((size_t)k->solver->equations.unknowns, N_VGetArrayPointer(x)) >= 0;
 }
 
-static int residual(N_Vector x, N_Vector r, void *user)
+static int kinsol_residual(N_Vector x, N_Vector r, void *user)
 {
   dvi__kinsol *k = user;
   const int failed = callback_return(
@@ -54,8 +55,8 @@ static int residual(N_Vector x, N_Vector r, void *user)
   return failed != 0 ? failed : not_finite(k, r);
 }
 
-static int jacobian(N_Vector x, N_Vector r, SUNMatrix matrix, void *user, N_Vector work1,
-                    N_Vector work2)
+static int kinsol_jacobian(N_Vector x, N_Vector r, SUNMatrix matrix, void *user, N_Vector work1,
+                           N_Vector work2)
 {
   dvi__kinsol *k = user;
   (void)r, (void)matrix, (void)work1, (void)work2;
@@ -96,9 +97,9 @@ static int linear_solve(SUNLinearSolver linear, SUNMatrix matrix, N_Vector x, N_
   return not_finite(k, x);
 }
 
-/* ---- making it ---- */
+/* ---- create ---- */
 
-static int create_matrix(dvi__kinsol *k)
+static int kinsol_create_matrix(dvi__kinsol *k)
 {
   k->matrix = SUNMatNewEmpty(k->context);
   k->linear = SUNLinSolNewEmpty(k->context);
@@ -113,32 +114,32 @@ static int create_matrix(dvi__kinsol *k)
   return 1;
 }
 
-static N_Vector made_vector(const dvi__kinsol *k)
+static N_Vector kinsol_new_vector(const dvi__kinsol *k)
 {
   N_Vector made = N_VNew_Serial(k->solver->equations.unknowns, k->context);
   if (made != NULL) dvi__vector_use_own_operations(made);
   return made;
 }
 
-static int create_vectors(dvi__kinsol *k)
+static int kinsol_create_vectors(dvi__kinsol *k)
 {
-  k->x = made_vector(k);
-  k->x_scale = made_vector(k);
-  k->r_scale = made_vector(k);
+  k->x = kinsol_new_vector(k);
+  k->x_scale = kinsol_new_vector(k);
+  k->r_scale = kinsol_new_vector(k);
   k->row_scale = DVI_NEW(double, k->solver->equations.unknowns);
   return k->x != NULL && k->x_scale != NULL && k->r_scale != NULL && k->row_scale != NULL;
 }
 
 /* KINSOL accepts a guess whose scaled norm is a hundredth of its tolerance. Roundings of the rows
- * make 1e-15 to 1e-13 of the unknowns, the more the higher the degree. */
+ * make 1e-15 to 1e-13 of the unknowns, and more at higher degrees. */
 static const double tolerance = 1e-13, tolerance_of_guess = 1e-10;
 
-static int configure(dvi__kinsol *k)
+static int kinsol_configure(dvi__kinsol *k)
 {
   void *m = k->memory = KINCreate(k->context);
   return m != NULL && DVI__SUNDIALS_SILENCE(KINSetErrHandlerFn, m) == 0 &&
-         KINInit(m, residual, k->x) == 0 && KINSetUserData(m, k) == 0 &&
-         KINSetLinearSolver(m, k->linear, k->matrix) == 0 && KINSetJacFn(m, jacobian) == 0 &&
+         KINInit(m, kinsol_residual, k->x) == 0 && KINSetUserData(m, k) == 0 &&
+         KINSetLinearSolver(m, k->linear, k->matrix) == 0 && KINSetJacFn(m, kinsol_jacobian) == 0 &&
          KINSetFuncNormTol(m, tolerance) == 0 && KINSetScaledStepTol(m, 1e-15) == 0 &&
          KINSetMaxSetupCalls(m, 1) == 0 && KINSetMaxNewtonStep(m, 1e3) == 0 &&
          KINSetNumMaxIters(m, 100) == 0;
@@ -149,11 +150,11 @@ dvi_status dvi__kinsol_create(dvi__solver *solver, dvi__kinsol **kinsol)
   dvi__kinsol *k = *kinsol = DVI_NEW(dvi__kinsol, 1);
   if (k == NULL) return dvi__fail(DVI_NO_MEMORY, "KINSOL: no memory");
   k->solver = solver;
-  if (dvi__sundials_context(&k->context) == 0 && create_vectors(k) && create_matrix(k) &&
-      configure(k))
+  if (dvi__sundials_context(&k->context) == 0 && kinsol_create_vectors(k) &&
+      kinsol_create_matrix(k) && kinsol_configure(k))
     return DVI_OK;
   dvi__kinsol_destroy(kinsol);
-  /* All that it was given is valid. */
+  /* Only memory can be missing, because all arguments are valid. */
   return dvi__fail(DVI_NO_MEMORY, "KINSOL: no memory for %d unknowns", solver->equations.unknowns);
 }
 
@@ -173,10 +174,10 @@ void dvi__kinsol_destroy(dvi__kinsol **kinsol)
   *kinsol = NULL;
 }
 
-/* ---- using it ---- */
+/* ---- solve ---- */
 
-/* 1 / (row * whole): rows of one coordinate have the same scale, and a division costs more than all
- * else here. */
+/* Set the scales of the rows to 1 / (row * whole). Rows of one coordinate have the same scale, and
+ * a division costs more than all else here. */
 static int invert_rows(dvi__kinsol *k)
 {
   double *r_scale = N_VGetArrayPointer(k->r_scale), row = 0, inverse = 0;
@@ -192,7 +193,7 @@ static int invert_rows(dvi__kinsol *k)
   return usable;
 }
 
-/* The power of two just above, where it is a number. */
+/* Give the power of two just above, where that is a number. */
 static double power_above(double x)
 {
   int exponent;
@@ -200,8 +201,8 @@ static double power_above(double x)
   return exponent < DBL_MAX_EXP ? ldexp(1.0, exponent) : x;
 }
 
-/* Both norms in units of the unknowns' size, to a factor of 2, which seldom changes: a residual row
- * over row_scale is a change of an unknown. */
+/* Set the scales of both norms in units of the unknowns' size, to a factor of 2, which seldom
+ * changes. A residual row over row_scale is a change of an unknown. */
 static dvi_status set_scales(dvi__kinsol *k, double size, const double *x)
 {
   double whole = dvi__largest((size_t)k->solver->equations.unknowns, x);
@@ -214,7 +215,7 @@ static dvi_status set_scales(dvi__kinsol *k, double size, const double *x)
   N_VConst(1 / whole, k->x_scale);
   if (invert_rows(k) && 1 / whole > 0 && 1 / whole <= DBL_MAX) return DVI_OK;
   k->whole = 0;
-  /* KINSOL would take it for a fault of its caller, but a smaller step may have a finite path. */
+  /* KINSOL would call this a fault of its caller, but a smaller step may have a finite path. */
   return dvi__fail(DVI_NOT_FINITE,
                    "the guess of the path is too large or too small to be scaled (size %g)", whole);
 }
@@ -249,7 +250,7 @@ dvi_status dvi__kinsol_solve(dvi__kinsol *k, double size, double *x, dvi__solve_
   memcpy(x, N_VGetArrayPointer(k->x), bytes);
   if (flag == KIN_SUCCESS || flag == KIN_INITIAL_GUESS_OK) return DVI_OK;
   if (flag == KIN_ILL_INPUT && k->last > 0)
-    return k->last; /* a first residual that fails looks like its caller's fault to KINSOL */
+    return k->last; /* KINSOL takes a first residual that fails for its caller's fault */
   if (flag == KIN_MEM_NULL || flag == KIN_ILL_INPUT || flag == KIN_NO_MALLOC ||
       flag == KIN_MEM_FAIL)
     return dvi__fail(DVI_SOLVER_FAILED, "KINSOL refused the step's equations (flag %d)", flag);

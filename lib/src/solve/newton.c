@@ -9,32 +9,32 @@
 
 enum { MOST_ITERATIONS = 40 };
 
-/* Beyond this ratio of two corrections a new Jacobian costs less than the iterations that it
+/* Ratio of two corrections beyond which a new Jacobian costs less than the iterations that it
  * saves. */
 static const double keep_below = 0.05;
 
 /* Newton's corrections shrink fast until rounding noise of the residual, amplified by a stiff
- * Jacobian, keeps them; one that doubles is a bad sign, two are the end. */
-static const dvi__pace roundoff = {0.5, 1e4 * DBL_EPSILON, 2.0, 0, 0};
+ * Jacobian, dominates. One correction that doubles is a bad sign, and two end the iteration. */
+static const dvi__criteria roundoff = {.stagnant = 0.5, .noise = 1e4 * DBL_EPSILON, .slowest = 2.0};
 
 /* Corrections of noisy residuals may be noise from larger ones on. */
-static dvi__pace pace_of(const dvi__solver *s)
+static dvi__criteria newton_criteria(const dvi__solver *s)
 {
-  dvi__pace pace = roundoff;
-  pace.noise = fmax(pace.noise, s->equations.noise);
-  return pace;
+  dvi__criteria criteria = roundoff;
+  criteria.noise = fmax(criteria.noise, s->equations.noise);
+  return criteria;
 }
 
 /* A guess is as likely to lead to another solution as to the wanted one if the second correction is
  * larger than the first, or if the first one is a large part of the unknowns and does not shrink
  * fast. */
-int dvi__misleading(const dvi__trail *trail, double whole)
+int dvi__misleading(const dvi__history *history, double whole)
 {
-  return trail->last > trail->before ||
-         (trail->before > 0.5 * whole && trail->last > 0.25 * trail->before);
+  return history->last > history->before ||
+         (history->before > 0.5 * whole && history->last > 0.25 * history->before);
 }
 
-/* Largest change of an unknown relative to that unknown itself. */
+/* Give the largest change of an unknown relative to that unknown itself. */
 static double relative_change(int count, const double *correction, const double *x)
 {
   double largest = 0;
@@ -44,8 +44,9 @@ static double relative_change(int count, const double *correction, const double 
   return largest;
 }
 
-/* When the largest unknowns are at roundoff, much smaller ones may not be: Newton's method goes on
- * until each has lost its own error, or none gets better. */
+/* Tell whether small unknowns have settled. When the largest unknowns are at roundoff, much smaller
+ * ones may not be. Newton's method goes on until each has lost its own error, or none gets
+ * better. */
 static int small_ones_settled(dvi__solver *s, const double *x, double *last)
 {
   const double change = relative_change(s->equations.unknowns, s->residual, x);
@@ -54,9 +55,9 @@ static int small_ones_settled(dvi__solver *s, const double *x, double *last)
   return settled;
 }
 
-/* Where errors are squared, a correction's ratio to the last one is squared, too, and is the same
- * for all unknowns, small ones as well. A kept Jacobian only keeps the ratio. Whether a part of the
- * correction does not count any more: */
+/* Tell whether a part of the correction no longer counts. Where errors are squared, a correction's
+ * ratio to the last one is squared, too, and is the same for all unknowns, small ones as well. A
+ * kept Jacobian only keeps the ratio. */
 static int is_unseen(const dvi__solver *s, double part, double correction, double whole,
                      const double *x)
 {
@@ -66,8 +67,8 @@ static int is_unseen(const dvi__solver *s, double part, double correction, doubl
 
 dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__solve_report *report)
 {
-  const dvi__pace pace = pace_of(s);
-  dvi__trail trail = {0};
+  const dvi__criteria criteria = newton_criteria(s);
+  dvi__history history = {0};
   double whole, last_relative = HUGE_VAL;
   int fresh = 0, growing = 0, converged = 0;
   for (report->iterations = 1; report->iterations <= MOST_ITERATIONS; report->iterations++) {
@@ -77,25 +78,26 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
     dvi__linear_solve(s->linear, s->residual);
     dvi__correct(s->equations.unknowns, s->residual, x, &report->correction, &whole);
     dvi__solver_note(s, x, report);
-    const dvi__progress progress = dvi__judge(report->correction, &trail, &pace, whole, size);
-    const double ratio = dvi__ratio(report->correction, &trail),
+    const dvi__progress progress = dvi__test_correction(report->correction, &history, &criteria,
+                                                        whole, size);
+    const double ratio = dvi__ratio(report->correction, &history),
                  next = fresh ? ratio : ratio * ratio;
     if (progress != DVI__STALLED && !converged && is_unseen(s, next, report->correction, whole, x))
       return DVI_OK;
     int at_floor = 0;
-    if (progress != DVI__CONVERGED && report->correction >= pace.stagnant * trail.before)
+    if (progress != DVI__CONVERGED && report->correction >= criteria.stagnant * history.before)
       DVI_TRY(dvi__solver_at_floor(s, x, &at_floor));
     if (at_floor) return DVI_OK;
     converged |= progress == DVI__CONVERGED;
     if (converged && small_ones_settled(s, x, &last_relative)) return DVI_OK;
     growing = progress == DVI__STALLED ? growing + 1 : 0;
     if (growing == 2 || report->correction > 1e300) break;
-    if (wary && report->iterations == 2 && !converged && dvi__misleading(&trail, whole)) break;
+    if (wary && report->iterations == 2 && !converged && dvi__misleading(&history, whole)) break;
     fresh = converged || is_unseen(s, next * next, report->correction, whole, x) ||
             (!s->equations.renewed &&
-             (trail.before == 0 || trail.last < keep_below * trail.before));
+             (history.before == 0 || history.last < keep_below * history.before));
   }
   if (converged) return DVI_OK;
   return dvi__fail(DVI_NOT_CONVERGED, "Newton's method does not settle (change %.1e after %.1e)",
-                   trail.last, trail.before);
+                   history.last, history.before);
 }

@@ -17,21 +17,21 @@ dvi_status dvi__solver_residual(dvi__solver *solver, const double *x, double *r)
   return solver->equations.residual(solver->equations.of, x, r);
 }
 
-/* ---- what Newton's method needs ---- */
+/* ---- Jacobian of Newton's method ---- */
 
-static size_t entries_of(const dvi__solver *solver)
+static size_t jacobian_entries(const dvi__solver *solver)
 {
   return (size_t)dvi__pattern_entries(solver->equations.pattern);
 }
 
-static dvi_status create_linear(dvi__solver *s)
+static dvi_status solver_create_linear(dvi__solver *s)
 {
   const dvi__equations *e = &s->equations;
   if (e->whole != NULL) return dvi__linear_create_iterative(e->whole, s->counters, &s->linear);
-  if (s->values == NULL) s->values = DVI_NEW(double, entries_of(s));
+  if (s->values == NULL) s->values = DVI_NEW(double, jacobian_entries(s));
   if (s->values == NULL)
     return dvi__fail(DVI_NO_MEMORY, "solver: no memory for a Jacobian of %zu entries",
-                     entries_of(s));
+                     jacobian_entries(s));
   if (e->border > 0)
     return dvi__linear_create_bordered(e->pattern, e->border, s->counters, &s->linear);
   return dvi__linear_create(e->pattern, e->linear, s->counters, &s->linear);
@@ -42,7 +42,7 @@ dvi_status dvi__solver_prepare(dvi__solver *solver)
   dvi__equations *equations = &solver->equations;
   if (solver->linear != NULL) return DVI_OK;
   if (equations->prepare != NULL) DVI_TRY(equations->prepare(equations->of, equations));
-  return create_linear(solver);
+  return solver_create_linear(solver);
 }
 
 dvi_status dvi__solver_jacobian(dvi__solver *solver, const double *x, double *values)
@@ -52,9 +52,9 @@ dvi_status dvi__solver_jacobian(dvi__solver *solver, const double *x, double *va
   return solver->equations.jacobian(solver->equations.of, x, values);
 }
 
-/* A singular Jacobian at one point of one step: a smaller step may avoid it. Memory does not grow
- * with smaller steps. */
-static dvi_status judge_factor(dvi_status factored)
+/* Turn a failure to factor into the failure of a step. A Jacobian may be singular at one point of
+ * one step, which a smaller step may avoid. Memory does not grow with smaller steps. */
+static dvi_status solver_test_factor(dvi_status factored)
 {
   if (factored == DVI_OK) return DVI_OK;
   if (factored != DVI_SINGULAR && factored < 0)
@@ -70,13 +70,13 @@ dvi_status dvi__solver_factor(dvi__solver *solver, const double *x)
   const dvi_status factored = dvi__linear_factor(solver->linear, solver->values);
   solver->factored = factored == DVI_OK;
   solver->in_use = 1;
-  return judge_factor(factored);
+  return solver_test_factor(factored);
 }
 
 dvi_status dvi__solver_take_jacobian(dvi__solver *solver, const double *values)
 {
   DVI_TRY(dvi__solver_prepare(solver));
-  const size_t bytes = entries_of(solver) * sizeof *values;
+  const size_t bytes = jacobian_entries(solver) * sizeof *values;
   solver->in_use = 1;
   if (solver->factored && memcmp(solver->values, values, bytes) == 0) return DVI_OK;
   memcpy(solver->values, values, bytes);
@@ -85,7 +85,7 @@ dvi_status dvi__solver_take_jacobian(dvi__solver *solver, const double *values)
   return status;
 }
 
-/* Of smaller changes, relative to the largest unknowns, rounding is a large part. */
+/* Rounding is a large part of changes below this size relative to the largest unknowns. */
 static const double rounding = 1e-9;
 
 double dvi__solver_least_part(const dvi__solver *solver)
@@ -93,7 +93,8 @@ double dvi__solver_least_part(const dvi__solver *solver)
   return fmax(rounding, sqrt(solver->equations.noise));
 }
 
-/* The worst ratio of two vectors, group by group; of groups of `to` no less than `least` counts. */
+/* Give the largest ratio of two vectors over the groups. Groups of `to` count with at least
+ * `least`. */
 static double worst_ratio(const dvi__solver *solver, double least, const double *of,
                           const double *to)
 {
@@ -122,7 +123,7 @@ void dvi__solver_note(const dvi__solver *solver, const double *x, dvi__solve_rep
   report->bend = worst_ratio(solver, least, solver->residual, solver->before);
 }
 
-/* Each term of a row is itself the end of a few products and sums. */
+/* Each term of a row is itself the result of a few products and sums. */
 static const double floor_of_row = 4 * DBL_EPSILON;
 
 dvi_status dvi__solver_at_floor(dvi__solver *solver, const double *x, int *at_floor)
@@ -141,7 +142,7 @@ dvi_status dvi__solver_at_floor(dvi__solver *solver, const double *x, int *at_fl
   return DVI_OK;
 }
 
-/* ---- making it ---- */
+/* ---- create ---- */
 
 static dvi_status solver_allocate(dvi__solver *solver)
 {
@@ -203,16 +204,17 @@ dvi__linear *dvi__solver_linear(const dvi__solver *solver)
   return solver->linear;
 }
 
-/* Fixed point iteration pays while each iteration gains a third of a digit: a step by simplified
- * Newton's method costs about as much as 40 to 300 of them. A patient user takes any gain. */
-static const dvi__pace paying = {0.35, 32 * DBL_EPSILON, 0.45, 1, 0},
-                       any_gain = {1.0, 1e4 * DBL_EPSILON, 1.0, 1, 0};
+/* Fixed point iteration pays while each iteration gains a third of a digit. A step by simplified
+ * Newton's method costs about as much as 40 to 300 iterations. A patient user takes any gain. */
+static const dvi__criteria
+    paying = {.stagnant = 0.35, .noise = 32 * DBL_EPSILON, .slowest = 0.45, .steady = 1},
+    any_gain = {.stagnant = 1.0, .noise = 1e4 * DBL_EPSILON, .slowest = 1.0, .steady = 1};
 
-dvi__pace dvi__fixed_point_pace(int patient, int sweeps)
+dvi__criteria dvi__fixed_point_criteria(int patient, int own_variables)
 {
-  dvi__pace pace = patient ? any_gain : paying;
-  pace.ahead = sweeps;
-  return pace;
+  dvi__criteria criteria = patient ? any_gain : paying;
+  criteria.ahead = own_variables;
+  return criteria;
 }
 
 int dvi__fixed_point_most(int patient)
@@ -220,13 +222,13 @@ int dvi__fixed_point_most(int patient)
   return patient ? MOST_PATIENT_ITERATIONS : MOST_FIXED_POINT_ITERATIONS;
 }
 
-/* One iteration: the largest correction, and the largest unknown. */
-static dvi_status iterate(dvi__solver *s, double *x, double *correction, double *whole)
+/* Make one iteration. Gives the largest correction and the largest unknown. */
+static dvi_status fixed_point_iterate(dvi__solver *s, double *x, double *correction, double *whole)
 {
   const dvi__equations *equations = &s->equations;
-  if (equations->sweep != NULL) {
+  if (equations->fixed_point_iterate != NULL) {
     s->counters->residuals++;
-    return equations->sweep(equations->of, correction, whole);
+    return equations->fixed_point_iterate(equations->of, correction, whole);
   }
   DVI_TRY(dvi__solver_residual(s, x, s->residual));
   equations->chord(equations->of, s->residual);
@@ -234,44 +236,49 @@ static dvi_status iterate(dvi__solver *s, double *x, double *correction, double 
   return DVI_OK;
 }
 
-static dvi_status prepare(dvi__solver *s, const double *x)
+static dvi_status fixed_point_begin(dvi__solver *s, const double *x)
 {
-  if (s->equations.sweep == NULL) return s->equations.prepare_chord(s->equations.of, x);
-  s->equations.sweep_from(s->equations.of, x);
+  if (s->equations.fixed_point_iterate == NULL)
+    return s->equations.prepare_chord(s->equations.of, x);
+  s->equations.fixed_point_begin(s->equations.of, x);
   return DVI_OK;
 }
 
-static dvi_status fixed_point(dvi__solver *s, double size, int patient, double *x,
-                              dvi__solve_report *report)
+static dvi_status solve_by_fixed_point(dvi__solver *s, double size, int patient, double *x,
+                                       dvi__solve_report *report)
 {
   const int most = dvi__fixed_point_most(patient);
-  const dvi__pace pace = dvi__fixed_point_pace(patient, s->equations.sweep != NULL);
-  dvi__trail trail = {0};
+  const dvi__criteria criteria = dvi__fixed_point_criteria(
+      patient, s->equations.fixed_point_iterate != NULL);
+  dvi__history history = {0};
   double whole;
-  DVI_TRY(prepare(s, x));
+  DVI_TRY(fixed_point_begin(s, x));
   for (report->iterations = 1; report->iterations <= most; report->iterations++) {
-    DVI_TRY(iterate(s, x, &report->correction, &whole));
-    const dvi__progress progress = dvi__judge(report->correction, &trail, &pace, whole, size);
+    DVI_TRY(fixed_point_iterate(s, x, &report->correction, &whole));
+    const dvi__progress progress = dvi__test_correction(report->correction, &history, &criteria,
+                                                        whole, size);
     if (progress == DVI__CONVERGED) {
-      if (s->equations.sweep != NULL) s->equations.sweep_to(s->equations.of, x);
+      if (s->equations.fixed_point_iterate != NULL)
+        s->equations.fixed_point_end(s->equations.of, x);
       return DVI_OK;
     }
     if (progress == DVI__STALLED) break;
   }
   return dvi__fail(DVI_NOT_CONVERGED,
                    "fixed point iteration contracts too slowly (change %.1e after %.1e)",
-                   trail.last, trail.before);
+                   history.last, history.before);
 }
 
-/* Half a digit an iteration is worth it: n x n systems cost a small part of the one that Newton's
+/* Half a digit is worth an iteration. n x n systems cost a small part of the one that Newton's
  * method factors. */
-static const dvi__pace frozen = {0.35, 1e4 * DBL_EPSILON, 0.3, 1, 0};
+static const dvi__criteria frozen_criteria = {
+    .stagnant = 0.35, .noise = 1e4 * DBL_EPSILON, .slowest = 0.3, .steady = 1};
 
-static dvi_status simplified(dvi__solver *s, double size, int wary, double *x,
-                             dvi__solve_report *report)
+static dvi_status solve_by_simplified_newton(dvi__solver *s, double size, int wary, double *x,
+                                             dvi__solve_report *report)
 {
   const dvi__equations *equations = &s->equations;
-  dvi__trail trail = {0};
+  dvi__history history = {0};
   double whole;
   s->in_use = 0;
   const dvi_status frozen_at = equations->freeze(equations->of, x);
@@ -284,20 +291,21 @@ static dvi_status simplified(dvi__solver *s, double size, int wary, double *x,
     equations->frozen(equations->of, s->residual);
     dvi__correct(equations->unknowns, s->residual, x, &report->correction, &whole);
     dvi__solver_note(s, x, report);
-    const dvi__progress progress = dvi__judge(report->correction, &trail, &frozen, whole, size);
+    const dvi__progress progress = dvi__test_correction(report->correction, &history,
+                                                        &frozen_criteria, whole, size);
     int converged = progress == DVI__CONVERGED;
     if (progress == DVI__STALLED) DVI_TRY(dvi__solver_at_floor(s, x, &converged));
     if (converged) return DVI_OK;
     if (progress == DVI__STALLED ||
-        (wary && report->iterations == 2 && dvi__misleading(&trail, whole)))
+        (wary && report->iterations == 2 && dvi__misleading(&history, whole)))
       break;
   }
   return dvi__fail(DVI_NOT_CONVERGED,
                    "simplified Newton's method contracts too slowly (change %.1e after %.1e)",
-                   trail.last, trail.before);
+                   history.last, history.before);
 }
 
-static dvi_status prepare_kinsol(dvi__solver *s)
+static dvi_status solver_prepare_kinsol(dvi__solver *s)
 {
   if (s->kinsol != NULL) return DVI_OK;
   DVI_TRY(dvi__kinsol_create(s, &s->kinsol));
@@ -305,18 +313,19 @@ static dvi_status prepare_kinsol(dvi__solver *s)
   return DVI_OK;
 }
 
-static dvi_status kinsol(dvi__solver *s, double size, double *x, dvi__solve_report *report)
+static dvi_status solve_by_kinsol(dvi__solver *s, double size, double *x, dvi__solve_report *report)
 {
-  DVI_TRY(prepare_kinsol(s));
+  DVI_TRY(solver_prepare_kinsol(s));
   s->counters->kinsols++;
   DVI_TRY(s->equations.prepare_chord(s->equations.of, x));
-  /* KINSOL's verdict is not asked for: Newton's method from its last point is the stricter test. */
+  /* KINSOL's own test is skipped. Newton's method from its last point is the stricter test. */
   const dvi_status searched = dvi__kinsol_solve(s->kinsol, size, x, report);
   if (searched < 0) return searched;
   const int iterations = report->iterations;
   const dvi_status polished = dvi__newton(s, size, 0, x, report);
   report->iterations += iterations;
-  report->first = report->bend = 0; /* they were those of the polish alone */
+  /* first and bend were those of the final Newton iterations alone */
+  report->first = report->bend = 0;
   return polished;
 }
 
@@ -325,10 +334,10 @@ dvi_status dvi__solve(dvi__solver *solver, dvi__rung rung, double size, int wary
 {
   *report = (dvi__solve_report){0};
   switch (rung) {
-  case DVI__FIXED_POINT: return fixed_point(solver, size, patient, x, report);
-  case DVI__SIMPLIFIED: return simplified(solver, size, wary, x, report);
+  case DVI__FIXED_POINT: return solve_by_fixed_point(solver, size, patient, x, report);
+  case DVI__SIMPLIFIED: return solve_by_simplified_newton(solver, size, wary, x, report);
   case DVI__NEWTON: return dvi__newton(solver, size, wary, x, report);
-  case DVI__KINSOL: return kinsol(solver, size, x, report);
+  case DVI__KINSOL: return solve_by_kinsol(solver, size, x, report);
   }
   return dvi__fail(DVI_BAD_ARGUMENT, "solver: unknown rung %d", (int)rung);
 }
@@ -337,7 +346,7 @@ dvi_status dvi__certify(dvi__solver *solver, double size, const double *x,
                         dvi__solve_report *report)
 {
   int certified = 0;
-  DVI_TRY(prepare_kinsol(solver));
+  DVI_TRY(solver_prepare_kinsol(solver));
   DVI_TRY(solver->equations.prepare_chord(solver->equations.of, x));
   DVI_TRY(dvi__kinsol_certify(solver->kinsol, size, x, &certified, report));
   if (!certified)

@@ -1,60 +1,65 @@
-/* How far an iteration has come: one verdict for the solver's own loops, and for loops over many
- * problems side by side, which must stop where each of them would stop alone. */
+/* Tests of convergence. The solver's own loops share them with loops over many problems side by
+ * side, each of which must stop where it would stop alone. */
 #ifndef DVI_SOLVE_PROGRESS_H
 #define DVI_SOLVE_PROGRESS_H
 #include <stdint.h>
 
 typedef enum dvi__progress { DVI__GO_ON, DVI__CONVERGED, DVI__STALLED } dvi__progress;
 
-/* How an iteration is expected to go. */
-typedef struct dvi__pace {
+/* Criteria of convergence, which depend on how an iteration is expected to go. */
+typedef struct dvi__criteria {
   /* a correction above this part of the last one, both below the noise, is noise alone */
   double stagnant;
-  /* corrections below it may be rounding noise; relative to the numbers that are added */
+  /* corrections below it may be rounding noise, relative to the numbers that are added */
   double noise;
-  double slowest; /* a correction above this part of what was to be feared ends the iteration */
-  /* it contracts by about one factor, of several modes that may hide each other; else faster and
-   * faster */
+  double slowest; /* a correction above this part of the largest expected one ends the iteration */
+  /* the iteration contracts by about one factor, of several modes that may hide each other, rather
+   * than faster and faster */
   int steady;
-  /* what counts is the next correction's own part: the step takes nothing from the point before the
+  /* the next correction's own part counts, because the step reads nothing at the point before the
    * last */
   int ahead;
-} dvi__pace;
+} dvi__criteria;
 
-/* What an iteration has gone through; 0: not yet. Below the noise nothing can be measured: there
- * the contraction that was seen above it goes on. */
-typedef struct dvi__trail {
-  double last, before; /* the corrections before the one at hand */
-  double ratio;        /* the last one measured of two corrections */
-  double contraction;  /* by which the iteration's own part shrinks */
-  /* what may be left of that part: a correction may be small by chance, where complex modes turn */
+/* The history of an iteration, 0 before it starts. Below the noise nothing can be measured, and the
+ * contraction that was seen above it is taken to go on. */
+typedef struct dvi__history {
+  double last, before; /* corrections before the current one */
+  double ratio;        /* last measured ratio of two corrections */
+  double contraction;  /* factor by which the iteration's own part of a correction shrinks */
+  /* bound on that part; a correction may be small by chance, where complex modes turn */
   double own;
-} dvi__trail;
+} dvi__history;
 
-/* Judge one correction and add it to the trail: converged at the roundoff floor, or stalled above
- * it. `unknown` and `size` are the sizes of the unknowns and of what they are added to. */
-dvi__progress dvi__judge(double correction, dvi__trail *trail, const dvi__pace *pace,
-                         double unknown, double size);
+/* Test one correction and add it to the history. The iteration has converged at the roundoff floor,
+ * has stalled above it, or goes on. `unknown` and `size` are the sizes of the unknowns and of the
+ * numbers that they are added to. */
+dvi__progress dvi__test_correction(double correction, dvi__history *history,
+                                   const dvi__criteria *criteria, double unknown, double size);
 
-/* The ratio of a correction to the one before, after the verdict; 1 if there is none, or it grows.
- * Whether one that is expected would be below the roundoff floor. */
-double dvi__ratio(double correction, const dvi__trail *trail);
+/* Give the ratio of a correction to the one before, after the test. 1 if there is none, or it
+ * grows. */
+double dvi__ratio(double correction, const dvi__history *history);
+
+/* Tell whether a correction of the size `expected` would be below the roundoff floor. */
 int dvi__unseen(double expected, double unknown);
 
-/* Iterations of many problems, [count] each: what they have gone through, as a dvi__trail has it
- * (without `before`), and their sizes. */
-typedef struct dvi__trails {
+/* Histories of many problems, [count] each, without `before`, and the problems' sizes. */
+typedef struct dvi__histories {
   double *last, *ratio, *contraction, *own;
   double *size;
-} dvi__trails;
+} dvi__histories;
 
-/* The same for all of them: verdicts[k] is dvi__judge's on problem k. */
-void dvi__judge_all(int count, const double *correction, const double *unknown,
-                    const dvi__pace *pace, const dvi__trails *trails, int64_t *verdicts);
+/* Test all of them. verdicts[k] is that of dvi__test_correction on problem k. */
+void dvi__test_corrections(int count, const double *correction, const double *unknown,
+                           const dvi__criteria *criteria, const dvi__histories *histories,
+                           int64_t *verdicts);
 
-/* What the fixed point rung (nonlinear.h) judges by, with `patient` as there; `sweeps`: by the
- * equations' own variables. Its most iterations. */
-dvi__pace dvi__fixed_point_pace(int patient, int sweeps);
+/* Give the criteria of the fixed point rung (nonlinear.h), with `patient` as there. `own_variables`
+ * says that the equations iterate in variables of their own. */
+dvi__criteria dvi__fixed_point_criteria(int patient, int own_variables);
+
+/* Give the largest number of iterations of the fixed point rung. */
 int dvi__fixed_point_most(int patient);
 
 #endif

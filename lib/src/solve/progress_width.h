@@ -1,14 +1,15 @@
-/* The verdict of progress.c for vectors of WIDTH problems, after vector_width.h; it includes this
- * once for each width.
+/* The tests of progress.c for vectors of WIDTH problems, after vector_width.h. progress.c includes
+ * this file once for each width.
  *
- * There is no branch: which of many iterations end with this correction nobody could predict. */
+ * There is no branch, because nobody could predict which of many iterations end with this
+ * correction. */
 
-/* A dvi__trail of each. */
-typedef struct NAME(trail) {
+/* A dvi__history of each problem. */
+typedef struct NAME(history) {
   NAME(vector) last, ratio, contraction, own;
-} NAME(trail);
+} NAME(history);
 
-/* where ? yes : no, lane by lane. */
+/* Choose where ? yes : no, lane by lane. */
 INLINE void NAME(choose)(const NAME(mask) * where, const NAME(vector) * yes,
                          const NAME(vector) * no, NAME(vector) * chosen)
 {
@@ -21,13 +22,14 @@ INLINE void NAME(larger_of)(const NAME(vector) * x, const NAME(vector) * y, NAME
   NAME(choose)(&above, x, y, larger);
 }
 
-/* Go on with the trail by one correction; gives the contraction to be expected, 1 if there is no
- * telling. */
-INLINE void NAME(follow)(const NAME(vector) * correction, const NAME(vector) * noise,
-                         const dvi__pace *pace, NAME(trail) * t, NAME(vector) * expected)
+/* Update the history by one correction. Gives the contraction to be expected, 1 if not known. */
+INLINE void NAME(update_history)(const NAME(vector) * correction, const NAME(vector) * noise,
+                                 const dvi__criteria *criteria, NAME(history) * t,
+                                 NAME(vector) * expected)
 {
-  const NAME(vector) one = (NAME(vector)){0} + 1.0,
-                     most = (NAME(vector)){0} + (pace->slowest < hardly ? pace->slowest : hardly);
+  const NAME(vector)
+      one = (NAME(vector)){0} + 1.0,
+      most = (NAME(vector)){0} + (criteria->slowest < hardly ? criteria->slowest : hardly);
   const NAME(mask) first = (NAME(mask))(t->last == 0.0), measured = (NAME(mask))(t->last > *noise),
                    loud = (NAME(mask))(*correction > *noise);
   const NAME(vector) quotient = *correction / t->last;
@@ -36,61 +38,61 @@ INLINE void NAME(follow)(const NAME(vector) * correction, const NAME(vector) * n
   NAME(choose)(&grows, &most, &quotient, &shrinking);
   NAME(choose)(&first, &one, &shrinking, &shrinking);
   NAME(larger_of)(&shrinking, &t->ratio, &larger);
-  NAME(choose)(&measured, pace->steady ? &larger : &shrinking, &t->contraction, &contraction);
+  NAME(choose)(&measured, criteria->steady ? &larger : &shrinking, &t->contraction, &contraction);
   NAME(choose)(&measured, &shrinking, &t->ratio, &t->ratio);
   const NAME(mask) blind = (NAME(mask))(contraction == 0.0);
   NAME(choose)(&blind, &shrinking, &contraction, expected);
   own = contraction * t->own;
   NAME(larger_of)(correction, &own, &larger);
-  const NAME(mask) none = {0}, fresh = first | blind | (pace->steady ? none : loud);
+  const NAME(mask) none = {0}, fresh = first | blind | (criteria->steady ? none : loud);
   NAME(choose)(&loud, &larger, &own, &own);
   NAME(choose)(&fresh, correction, &own, &t->own);
   t->contraction = contraction;
 }
 
 /* Every comparison with NaN is false. */
-INLINE void NAME(judge)(const NAME(vector) * correction, const NAME(vector) * unknown,
-                        const NAME(vector) * size, const dvi__pace *pace, NAME(trail) * t,
-                        NAME(mask) * verdict)
+INLINE void NAME(test)(const NAME(vector) * correction, const NAME(vector) * unknown,
+                       const NAME(vector) * size, const dvi__criteria *criteria, NAME(history) * t,
+                       NAME(mask) * verdict)
 {
-  const NAME(vector) last = t->last, feared = t->own, noise = pace->noise * (*unknown + *size);
+  const NAME(vector) last = t->last, feared = t->own, noise = criteria->noise * (*unknown + *size);
   const NAME(mask) finite = (NAME(mask))(*correction <= DBL_MAX),
                    quiet = (NAME(mask))(*correction <= noise);
   const NAME(mask) loud_before = (NAME(mask))(last > noise), second = (NAME(mask))(last != 0.0);
   NAME(vector) expected;
-  NAME(follow)(correction, &noise, pace, t, &expected);
+  NAME(update_history)(correction, &noise, criteria, t, &expected);
   t->last = *correction;
-  const NAME(vector) shows = pace->ahead ? expected * t->own : t->own;
+  const NAME(vector) shows = criteria->ahead ? expected * t->own : t->own;
   const NAME(mask)
-      still = quiet & (NAME(mask))(shows <= (pace->ahead ? unseen : settled) * *unknown);
+      still = quiet & (NAME(mask))(shows <= (criteria->ahead ? unseen : settled) * *unknown);
   const NAME(mask) stagnant = second & quiet & ~loud_before & (NAME(mask))(t->contraction == 0.0) &
-                              (NAME(mask))(*correction >= pace->stagnant * last);
-  const NAME(mask) slow = loud_before & (NAME(mask))(*correction > pace->slowest * feared);
+                              (NAME(mask))(*correction >= criteria->stagnant * last);
+  const NAME(mask) slow = loud_before & (NAME(mask))(*correction > criteria->slowest * feared);
   const NAME(mask) converged = finite & (still | stagnant);
   *verdict = (converged & DVI__CONVERGED) | (~converged & (slow | ~finite) & DVI__STALLED);
 }
 
-INLINE int NAME(judge_from)(int count, const double *correction, const double *unknown,
-                            const dvi__pace *pace, const dvi__trails *trails, int64_t *verdicts,
-                            int k)
+INLINE int NAME(test_from)(int count, const double *correction, const double *unknown,
+                           const dvi__criteria *criteria, const dvi__histories *histories,
+                           int64_t *verdicts, int k)
 {
   for (; k + WIDTH <= count; k += WIDTH) {
     NAME(vector) now, whole, size;
-    NAME(trail) t;
+    NAME(history) t;
     NAME(mask) verdict;
     NAME(load)(correction + k, &now);
     NAME(load)(unknown + k, &whole);
-    NAME(load)(trails->size + k, &size);
-    NAME(load)(trails->last + k, &t.last);
-    NAME(load)(trails->ratio + k, &t.ratio);
-    NAME(load)(trails->contraction + k, &t.contraction);
-    NAME(load)(trails->own + k, &t.own);
-    NAME(judge)(&now, &whole, &size, pace, &t, &verdict);
+    NAME(load)(histories->size + k, &size);
+    NAME(load)(histories->last + k, &t.last);
+    NAME(load)(histories->ratio + k, &t.ratio);
+    NAME(load)(histories->contraction + k, &t.contraction);
+    NAME(load)(histories->own + k, &t.own);
+    NAME(test)(&now, &whole, &size, criteria, &t, &verdict);
     memcpy(verdicts + k, &verdict, sizeof verdict);
-    memcpy(trails->last + k, &t.last, sizeof now);
-    memcpy(trails->ratio + k, &t.ratio, sizeof now);
-    memcpy(trails->contraction + k, &t.contraction, sizeof now);
-    memcpy(trails->own + k, &t.own, sizeof now);
+    memcpy(histories->last + k, &t.last, sizeof now);
+    memcpy(histories->ratio + k, &t.ratio, sizeof now);
+    memcpy(histories->contraction + k, &t.contraction, sizeof now);
+    memcpy(histories->own + k, &t.own, sizeof now);
   }
   return k;
 }

@@ -1,8 +1,8 @@
-/* Everything that differs between SUNDIALS 6.4 and 7.x.
+/* All differences between SUNDIALS 6.4 and 7.x.
  *
  * 7.0 gave SUNContext_Create a communicator of its own type and moved error handling from each
- * integrator to the context; 7.1 gave ARKODE's steppers one set of functions. The library never
- * prints, so SUNDIALS must not either: its error handlers are replaced by one that discards, and
+ * integrator to the context. 7.1 gave ARKODE's steppers one set of functions. The library never
+ * prints, so SUNDIALS must not either. Its error handlers are replaced by one that discards, and
  * its logger, which warns past the handlers, is taken away. */
 #ifndef DVI_SOLVE_SUNDIALS_COMPAT_H
 #define DVI_SOLVE_SUNDIALS_COMPAT_H
@@ -33,7 +33,7 @@ static inline int dvi__sundials_silence_context(SUNContext context)
   return cleared != 0 ? cleared : SUNContext_PushErrHandler(context, dvi__sundials_discard, NULL);
 }
 
-/* Silent already through its context. */
+/* An integrator is silent already through its context. */
 #define DVI__SUNDIALS_SILENCE(set_error_handler, memory) ((void)(memory), 0)
 
 #else
@@ -53,14 +53,14 @@ static inline int dvi__sundials_silence_context(SUNContext context)
   return 0;
 }
 
-/* Silence one integrator: DVI__SUNDIALS_SILENCE(KINSetErrHandlerFn, memory). 0 on success. */
+/* Silence one integrator, as in DVI__SUNDIALS_SILENCE(KINSetErrHandlerFn, memory). 0 on success. */
 #define DVI__SUNDIALS_SILENCE(set_error_handler, memory) \
   set_error_handler((memory), dvi__sundials_discard, NULL)
 
 #endif
 
-/* Make a context that says nothing; 0 on success. On failure *context is NULL. Freed by
- * SUNContext_Free. */
+/* Make a silent context. Returns 0 on success. On failure *context is NULL. SUNContext_Free frees
+ * it. */
 static inline int dvi__sundials_context(SUNContext *context)
 {
   *context = NULL;
@@ -72,7 +72,7 @@ static inline int dvi__sundials_context(SUNContext *context)
   return silenced;
 }
 
-/* The names of 7.1 for ARKODE's functions; <arkode/arkode_arkstep.h> declares them. */
+/* The names of 7.1 for ARKODE's functions, which <arkode/arkode_arkstep.h> declares. */
 #if !DVI__SUNDIALS_AT_LEAST(7, 1)
 #define ARKodeSStolerances ARKStepSStolerances
 #define ARKodeSetUserData ARKStepSetUserData

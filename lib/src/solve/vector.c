@@ -4,50 +4,50 @@
 
 #include "num/finite.h"
 
-/* Numbers that are reduced side by side, so that none waits for the one before. */
+/* Number of sums that are made side by side, so that none waits for the one before. */
 enum { IN_TURN = 8 };
 
-/* The length and the numbers of a vector. */
-static sunindextype length(N_Vector x)
+/* Give the length of a vector, and its numbers. */
+static sunindextype vector_length(N_Vector x)
 {
   return NV_LENGTH_S(x);
 }
 
-static double *numbers(N_Vector x)
+static double *vector_numbers(N_Vector x)
 {
   return NV_DATA_S(x);
 }
 
-static void linear_sum(sunrealtype a, N_Vector x, sunrealtype b, N_Vector y, N_Vector z)
+static void vector_linear_sum(sunrealtype a, N_Vector x, sunrealtype b, N_Vector y, N_Vector z)
 {
-  const double *xs = numbers(x), *ys = numbers(y);
-  double *zs = numbers(z);
-  for (sunindextype i = 0, n = length(x); i < n; i++) zs[i] = a * xs[i] + b * ys[i];
+  const double *xs = vector_numbers(x), *ys = vector_numbers(y);
+  double *zs = vector_numbers(z);
+  for (sunindextype i = 0, n = vector_length(x); i < n; i++) zs[i] = a * xs[i] + b * ys[i];
 }
 
-static void scale(sunrealtype a, N_Vector x, N_Vector z)
+static void vector_scale(sunrealtype a, N_Vector x, N_Vector z)
 {
-  const double *xs = numbers(x);
-  double *zs = numbers(z);
-  for (sunindextype i = 0, n = length(x); i < n; i++) zs[i] = a * xs[i];
+  const double *xs = vector_numbers(x);
+  double *zs = vector_numbers(z);
+  for (sunindextype i = 0, n = vector_length(x); i < n; i++) zs[i] = a * xs[i];
 }
 
-static void product(N_Vector x, N_Vector y, N_Vector z)
+static void vector_product(N_Vector x, N_Vector y, N_Vector z)
 {
-  const double *xs = numbers(x), *ys = numbers(y);
-  double *zs = numbers(z);
-  for (sunindextype i = 0, n = length(x); i < n; i++) zs[i] = xs[i] * ys[i];
+  const double *xs = vector_numbers(x), *ys = vector_numbers(y);
+  double *zs = vector_numbers(z);
+  for (sunindextype i = 0, n = vector_length(x); i < n; i++) zs[i] = xs[i] * ys[i];
 }
 
-static sunrealtype max_norm(N_Vector x)
+static sunrealtype vector_max_norm(N_Vector x)
 {
-  return dvi__largest((size_t)length(x), numbers(x));
+  return dvi__largest((size_t)vector_length(x), vector_numbers(x));
 }
 
-static sunrealtype least(N_Vector x)
+static sunrealtype vector_least(N_Vector x)
 {
-  const double *xs = numbers(x);
-  const sunindextype n = length(x);
+  const double *xs = vector_numbers(x);
+  const sunindextype n = vector_length(x);
   double least[IN_TURN];
   for (int j = 0; j < IN_TURN; j++) least[j] = xs[0];
   sunindextype i = 0;
@@ -58,10 +58,10 @@ static sunrealtype least(N_Vector x)
   return least[0];
 }
 
-static sunrealtype weighted_norm(N_Vector x, N_Vector w)
+static sunrealtype vector_weighted_norm(N_Vector x, N_Vector w)
 {
-  const double *xs = numbers(x), *ws = numbers(w);
-  const sunindextype n = length(x);
+  const double *xs = vector_numbers(x), *ws = vector_numbers(w);
+  const sunindextype n = vector_length(x);
   double sum[IN_TURN] = {0};
   sunindextype i = 0;
   for (; i + IN_TURN <= n; i += IN_TURN)
@@ -73,10 +73,10 @@ static sunrealtype weighted_norm(N_Vector x, N_Vector w)
 
 void dvi__vector_use_own_operations(N_Vector vector)
 {
-  vector->ops->nvlinearsum = linear_sum;
-  vector->ops->nvscale = scale;
-  vector->ops->nvprod = product;
-  vector->ops->nvmaxnorm = max_norm;
-  vector->ops->nvmin = least;
-  vector->ops->nvwl2norm = weighted_norm;
+  vector->ops->nvlinearsum = vector_linear_sum;
+  vector->ops->nvscale = vector_scale;
+  vector->ops->nvprod = vector_product;
+  vector->ops->nvmaxnorm = vector_max_norm;
+  vector->ops->nvmin = vector_least;
+  vector->ops->nvwl2norm = vector_weighted_norm;
 }

@@ -62,15 +62,15 @@ dvi_status dvi__joint_check(const dvi_system *system, int size, int most)
 }
 
 dvi_status dvi__joint_create(const dvi_system *system, const dvi__pattern *more,
-                             dvi__pattern *joint, dvi__block **block)
+                             dvi__pattern *joint, dvi__joint_entry **block)
 {
   DVI_TRY(joint_join(system, more, joint));
-  *block = DVI_NEW(dvi__block, dvi__pattern_entries(joint));
+  *block = DVI_NEW(dvi__joint_entry, dvi__pattern_entries(joint));
   if (*block == NULL) return dvi__fail(DVI_NO_MEMORY, "action: no memory for the Jacobian");
   for (int j = 0; j < joint->columns; j++)
     for (int e = joint->start[j]; e < joint->start[j + 1]; e++) {
       const int i = joint->row[e];
-      (*block)[e] = (dvi__block){
+      (*block)[e] = (dvi__joint_entry){
           dvi__pattern_find(&system->qq, i, j), dvi__pattern_find(&system->qv, i, j),
           dvi__pattern_find(&system->qv, j, i), dvi__pattern_find(&system->vv, i, j)};
     }

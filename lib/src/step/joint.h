@@ -5,9 +5,9 @@
 #include "system/system.h"
 
 /* The indices of an entry (i,j) of the joint pattern in the Hessian's blocks, or -1. */
-typedef struct dvi__block {
+typedef struct dvi__joint_entry {
   int qq, qv, vq, vv;
-} dvi__block;
+} dvi__joint_entry;
 
 /* Check sizes before memory is allocated. DVI_BAD_SIZE unless an int can count `most` numbers for
  * each coordinate, and the entries of a Jacobian with a block of size x size for each entry of the
@@ -18,6 +18,6 @@ dvi_status dvi__joint_check(const dvi_system *system, int size, int most);
  * caller owns the remains, too. The system must be prepared for Hessians. `more` has further
  * entries [n x n] of the pattern, or is NULL. */
 dvi_status dvi__joint_create(const dvi_system *system, const dvi__pattern *more,
-                             dvi__pattern *joint, dvi__block **block);
+                             dvi__pattern *joint, dvi__joint_entry **block);
 
 #endif

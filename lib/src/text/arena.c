@@ -9,12 +9,12 @@ enum { BLOCK_SIZE = 1 << 16, ALIGNMENT = 16 };
 
 struct dvi__arena_block {
   struct dvi__arena_block *before;
-  size_t used, size; /* of `byte` */
+  size_t used, size; /* bytes used and bytes of `byte` */
   _Alignas(ALIGNMENT) unsigned char byte[];
 };
 
-/* A zeroed block with room for so many bytes; NULL if there is none. */
-static struct dvi__arena_block *new_block(dvi__arena *arena, size_t wanted)
+/* Add a zeroed block with room for so many bytes. NULL if there is no memory. */
+static struct dvi__arena_block *arena_new_block(dvi__arena *arena, size_t wanted)
 {
   const size_t size = wanted > BLOCK_SIZE ? wanted : BLOCK_SIZE;
   struct dvi__arena_block *block = dvi__heap_take(1, sizeof *block + size);
@@ -27,12 +27,12 @@ static struct dvi__arena_block *new_block(dvi__arena *arena, size_t wanted)
 
 void *dvi__arena_take(dvi__arena *arena, size_t count, size_t size)
 {
-  const size_t most = SIZE_MAX / 2; /* as much as is refused */
+  const size_t most = SIZE_MAX / 2; /* an amount that is refused */
   const size_t wanted = size != 0 && count > most / size
                             ? most
                             : (count * size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
   struct dvi__arena_block *block = arena->last;
-  if (block == NULL || wanted > block->size - block->used) block = new_block(arena, wanted);
+  if (block == NULL || wanted > block->size - block->used) block = arena_new_block(arena, wanted);
   if (block == NULL) {
     arena->failed = 1;
     return NULL;

@@ -1,5 +1,5 @@
-/* Errors as compilers print them: the place, the sentence, the line and a caret. Whatever a hostile
- * file holds, what is shown can be printed and is of bounded length. */
+/* Errors as compilers print them, with the place, the sentence, the line and a caret. Whatever a
+ * hostile file holds, the message can be printed and is of bounded length. */
 #include "text/complaint.h"
 #include "text/heap.h"
 #include "text/utf8.h"
@@ -10,10 +10,10 @@
 #include <string.h>
 
 enum {
-  SHOWN = 114,    /* characters of a line at most */
-  BEFORE = 70,    /* of these before the caret, where the line is cut */
-  WORD_MAX = 63,  /* letters of words that are compared */
-  SENTENCE = 1024 /* bytes */
+  SHOWN = 114,    /* most characters of a line */
+  BEFORE = 70,    /* most characters before the caret, where the line is cut */
+  WORD_MAX = 63,  /* most letters of words that are compared */
+  SENTENCE = 1024 /* in bytes */
 };
 
 int dvi__print(char *text, size_t size, const char *format, ...)
@@ -25,7 +25,7 @@ int dvi__print(char *text, size_t size, const char *format, ...)
   return length;
 }
 
-/* A message that is being written: whole characters only, as many as fit. */
+/* A message that is being written, as many whole characters as fit. */
 typedef struct writer {
   char *text;
   size_t size, used;
@@ -34,7 +34,7 @@ typedef struct writer {
 static void put_bytes(writer *w, const char *bytes, size_t count)
 {
   if (w->size < count + 1 || w->used > w->size - count - 1) {
-    w->size = w->used + 1; /* nothing after what did not fit */
+    w->size = w->used + 1; /* nothing is written after a part that did not fit */
     return;
   }
   memcpy(w->text + w->used, bytes, count);
@@ -47,15 +47,15 @@ static void put_text(writer *w, const char *text)
   put_bytes(w, text, strlen(text));
 }
 
-static size_t width_of(const char *text, size_t size)
+static size_t character_width(const char *text, size_t size)
 {
   unsigned code = 0;
   const size_t width = dvi__utf8(text, size, &code);
   return width == 0 ? 1 : width;
 }
 
-/* One character as it is shown: tabs stay, since the line of the caret has them too. Returns how
- * many bytes it takes. */
+/* Put one character as the message shows it. Tabs stay, because the line of the caret has them,
+ * too. Returns the number of bytes. */
 static size_t put_shown(writer *w, const char *text, size_t size)
 {
   unsigned code = 0;
@@ -88,19 +88,19 @@ static size_t line_end(const dvi__source *source, size_t offset)
   return offset;
 }
 
-/* How many characters two places are apart. */
-static size_t characters(const dvi__source *source, size_t from, size_t to)
+/* Count the characters between two places. */
+static size_t count_characters(const dvi__source *source, size_t from, size_t to)
 {
   size_t count = 0;
-  for (size_t k = from; k < to; k += width_of(source->text + k, source->size - k)) count++;
+  for (size_t k = from; k < to; k += character_width(source->text + k, source->size - k)) count++;
   return count;
 }
 
-/* The place that is so many characters after another one, at most `end`. */
-static size_t ahead(const dvi__source *source, size_t from, size_t count, size_t end)
+/* Give the place that is so many characters after another one, at most `end`. */
+static size_t characters_ahead(const dvi__source *source, size_t from, size_t count, size_t end)
 {
   for (; count > 0 && from < end; count--)
-    from += width_of(source->text + from, source->size - from);
+    from += character_width(source->text + from, source->size - from);
   return from < end ? from : end;
 }
 
@@ -111,31 +111,31 @@ void dvi__source_place(const dvi__source *source, size_t offset, int *line, int 
   for (size_t k = 0; k < offset; k++) {
     const char c = source->text[k];
     const int pair = c == '\r' && k + 1 < source->size &&
-                     source->text[k + 1] == '\n'; /* counted with its second half */
+                     source->text[k + 1] == '\n'; /* the second half of CR LF is counted */
     *line += (c == '\n' || c == '\r') && !pair;
   }
-  *column = 1 + (int)characters(source, line_start(source, offset), offset);
+  *column = 1 + (int)count_characters(source, line_start(source, offset), offset);
 }
 
-/* The line with the span's head, cut to what can be shown, and a caret under it. */
+/* Put the line with the span's head, cut to a length that can be shown, and a caret under it. */
 static void put_excerpt(writer *w, const dvi__source *source, dvi__span where)
 {
   size_t first = line_start(source, where.first);
   const size_t line_ends = line_end(source, where.first);
-  const size_t before = characters(source, first, where.first);
-  const int head_cut = before > BEFORE && characters(source, first, line_ends) > SHOWN;
-  if (head_cut) first = ahead(source, first, before - BEFORE, where.first);
-  const size_t last = ahead(source, first, SHOWN, line_ends);
+  const size_t before = count_characters(source, first, where.first);
+  const int head_cut = before > BEFORE && count_characters(source, first, line_ends) > SHOWN;
+  if (head_cut) first = characters_ahead(source, first, before - BEFORE, where.first);
+  const size_t last = characters_ahead(source, first, SHOWN, line_ends);
   if (first == last) return;
   put_text(w, head_cut ? "\n  .." : "\n  ");
   for (size_t k = first; k < last;) k += put_shown(w, source->text + k, last - k);
   put_text(w, last < line_ends ? "..\n  " : "\n  ");
   if (head_cut) put_text(w, "  ");
-  for (size_t k = first; k < where.first; k += width_of(source->text + k, source->size - k))
+  for (size_t k = first; k < where.first; k += character_width(source->text + k, source->size - k))
     put_text(w, source->text[k] == '\t' ? "\t" : " ");
   put_text(w, "^");
   const size_t end = where.size > last - where.first ? last : where.first + where.size;
-  for (size_t k = characters(source, where.first, end); k > 1; k--) put_text(w, "~");
+  for (size_t k = count_characters(source, where.first, end); k > 1; k--) put_text(w, "~");
 }
 
 bool(dvi__complain)(dvi__complaint *complaint, dvi_status status, dvi__span where,
@@ -184,25 +184,26 @@ bool dvi__complain_of_file(dvi__complaint *complaint, dvi__span where, const cha
                        is);
 }
 
-static int lower(char c)
+static int lower_case(char c)
 {
   return c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c;
 }
 
-/* In halves: a letter for another one is a whole edit, for itself in the other case a half. */
-static int replacement(char a, char b)
+/* Give the cost in half edits. Another letter is a whole edit, the same letter in the other case a
+ * half. */
+static int cost_of_replacement(char a, char b)
 {
-  return a == b ? 0 : lower(a) == lower(b) ? 1 : 2;
+  return a == b ? 0 : lower_case(a) == lower_case(b) ? 1 : 2;
 }
 
-static int least(int a, int b)
+static int least_edits(int a, int b)
 {
   return a < b ? a : b;
 }
 
-/* Insertions, deletions, replacements and exchanges of neighbours between two words, in halves;
- * three rows of the table. */
-static int edits(const char *from, const char *to)
+/* Count insertions, deletions, replacements and exchanges of neighbours between two words, in half
+ * edits. Three rows of the table are kept. */
+static int count_edits(const char *from, const char *to)
 {
   const int columns = (int)strlen(to);
   int row[3][WORD_MAX + 1];
@@ -215,10 +216,10 @@ static int edits(const char *from, const char *to)
     const int *second = row[(i + 1) % 3];
     here[0] = 2 * i;
     for (int j = 1; j <= columns; j++) {
-      here[j] = least(least(above[j], here[j - 1]) + 2,
-                      above[j - 1] + replacement(from[i - 1], to[j - 1]));
+      here[j] = least_edits(least_edits(above[j], here[j - 1]) + 2,
+                            above[j - 1] + cost_of_replacement(from[i - 1], to[j - 1]));
       if (i > 1 && j > 1 && from[i - 1] == to[j - 2] && from[i - 2] == to[j - 1])
-        here[j] = least(here[j], second[j - 2] + 2);
+        here[j] = least_edits(here[j], second[j - 2] + 2);
     }
   }
   return row[i % 3][columns];
@@ -230,14 +231,14 @@ const char *dvi__nearest(const char *word, int count, const char *const *candida
   if (size > 0) hint[0] = '\0';
   const size_t length = strlen(word);
   if (length > WORD_MAX) return hint;
-  int best = 2 * least((int)length,
-                       length < 6 ? 3 : 4); /* this many edits make another word, not a slip */
+  int best = 2 * least_edits((int)length,
+                             length < 6 ? 3 : 4); /* so many edits make another word, not a slip */
   const char *nearest = NULL;
   for (int k = 0; k < count; k++) {
     if (strlen(candidate[k]) > WORD_MAX || strcmp(candidate[k], word) == 0)
-      continue; /* known, but not there */
+      continue; /* the word is known, but not here */
     const int begun = length > 1 && strncmp(candidate[k], word, length) == 0;
-    const int distance = begun ? 2 : edits(word, candidate[k]);
+    const int distance = begun ? 2 : count_edits(word, candidate[k]);
     if (distance >= best) continue;
     best = distance;
     nearest = candidate[k];

@@ -7,10 +7,10 @@
 
 static const size_t limit = (size_t)1 << 30;
 
-/* In front of each block. */
+/* Header in front of each block. */
 typedef struct header {
   _Alignas(16) dvi__ledger *ledger;
-  size_t size; /* header included */
+  size_t size; /* in bytes, header included */
 } header;
 
 static _Thread_local dvi__ledger *charged;
@@ -24,7 +24,7 @@ dvi__ledger *dvi__heap_charge(dvi__ledger *ledger)
   return before;
 }
 
-static void *refuse(dvi_status why)
+static void *heap_refuse(dvi_status why)
 {
   refusal = why;
   return NULL;
@@ -35,24 +35,24 @@ dvi_status dvi__heap_refusal(void)
   return refusal;
 }
 
-static void pay_back(dvi__ledger *ledger, size_t bytes)
+static void ledger_pay_back(dvi__ledger *ledger, size_t bytes)
 {
   if (ledger != NULL) atomic_fetch_sub_explicit(&ledger->taken, bytes, memory_order_relaxed);
 }
 
-/* Whether the ledger has so much left; then it is charged. */
-static int charge(dvi__ledger *ledger, size_t bytes)
+/* Charge the ledger if it has so much left. Tells whether it has. */
+static int ledger_charge(dvi__ledger *ledger, size_t bytes)
 {
   if (ledger == NULL) return 1;
   if (bytes <= limit &&
       atomic_fetch_add_explicit(&ledger->taken, bytes, memory_order_relaxed) <= limit - bytes)
     return 1;
-  if (bytes <= limit) pay_back(ledger, bytes);
+  if (bytes <= limit) ledger_pay_back(ledger, bytes);
   return 0;
 }
 
-/* Bytes of a block; SIZE_MAX: too many. */
-static size_t whole(size_t count, size_t size)
+/* Give the bytes of a block, or SIZE_MAX if they are too many. */
+static size_t block_bytes(size_t count, size_t size)
 {
   return size > 0 && count > (SIZE_MAX - sizeof(header)) / size ? SIZE_MAX
                                                                 : sizeof(header) + count * size;
@@ -60,12 +60,12 @@ static size_t whole(size_t count, size_t size)
 
 void *dvi__heap_take(size_t count, size_t size)
 {
-  const size_t bytes = whole(count, size);
-  if (bytes == SIZE_MAX || !charge(charged, bytes)) return refuse(DVI_BAD_SIZE);
+  const size_t bytes = block_bytes(count, size);
+  if (bytes == SIZE_MAX || !ledger_charge(charged, bytes)) return heap_refuse(DVI_BAD_SIZE);
   header *made = dvi__allocate(1, bytes);
   if (made == NULL) {
-    pay_back(charged, bytes);
-    return refuse(DVI_NO_MEMORY);
+    ledger_pay_back(charged, bytes);
+    return heap_refuse(DVI_NO_MEMORY);
   }
   *made = (header){charged, bytes};
   return made + 1;
@@ -79,12 +79,12 @@ void *dvi__heap_grow(void *items, size_t count, size_t size)
   if (!full) return items;
   header *old = (header *)items - 1;
   dvi__ledger *ledger = old->ledger;
-  const size_t bytes = whole(2 * count, size), more = bytes - old->size;
-  if (bytes == SIZE_MAX || !charge(ledger, more)) return refuse(DVI_BAD_SIZE);
+  const size_t bytes = block_bytes(2 * count, size), more = bytes - old->size;
+  if (bytes == SIZE_MAX || !ledger_charge(ledger, more)) return heap_refuse(DVI_BAD_SIZE);
   header *moved = dvi__allocate(1, bytes);
   if (moved == NULL) {
-    pay_back(ledger, more);
-    return refuse(DVI_NO_MEMORY);
+    ledger_pay_back(ledger, more);
+    return heap_refuse(DVI_NO_MEMORY);
   }
   memcpy(moved, old, old->size);
   moved->size = bytes;
@@ -96,6 +96,6 @@ void dvi__heap_free(void *memory)
 {
   if (memory == NULL) return;
   header *own = (header *)memory - 1;
-  pay_back(own->ledger, own->size);
+  ledger_pay_back(own->ledger, own->size);
   dvi__release(own);
 }

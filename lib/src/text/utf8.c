@@ -1,8 +1,8 @@
 #include "text/utf8.h"
 
-/* The bytes that a first byte announces, with the bits that it holds of the code; 0: it is no first
- * byte. */
-static size_t announced(unsigned char first, unsigned *bits)
+/* Give the number of bytes that a first byte announces, and the bits of the code in it. 0 if it is
+ * no first byte. */
+static size_t announced_bytes(unsigned char first, unsigned *bits)
 {
   static const struct {
     unsigned char mask, mark;
@@ -17,9 +17,10 @@ static size_t announced(unsigned char first, unsigned *bits)
 
 size_t dvi__utf8(const char *text, size_t size, unsigned *code)
 {
-  static const unsigned least[5] = {0, 0, 0x80, 0x800, 0x10000}; /* below it fewer bytes would do */
+  /* smaller codes need fewer bytes */
+  static const unsigned least[5] = {0, 0, 0x80, 0x800, 0x10000};
   unsigned value = 0;
-  const size_t width = size == 0 ? 0 : announced((unsigned char)text[0], &value);
+  const size_t width = size == 0 ? 0 : announced_bytes((unsigned char)text[0], &value);
   if (width == 0 || width > size) return 0;
   for (size_t k = 1; k < width; k++) {
     const unsigned char byte = (unsigned char)text[k];

@@ -3,15 +3,15 @@
 #define DVI_TEXT_UTF8_H
 #include <stddef.h>
 
-/* How many bytes the character at the head of the text takes, with its code; 0 if it is none
- * (overlong, a surrogate, cut short, above U+10FFFF), or if size is 0. */
+/* Give the number of bytes of the character at the head of the text, and its code. 0 if there is
+ * none (overlong, a surrogate, cut short, above U+10FFFF), or if size is 0. */
 size_t dvi__utf8(const char *text, size_t size, unsigned *code);
 
-/* Whether it may stand in a scene: no control character but tab, LF and CR, and no other break of
- * lines: YAML 1.1 has them, 1.2 has not. */
+/* Tell whether a character may stand in a scene. Control characters other than tab, LF and CR, and
+ * other line breaks, may not. YAML 1.1 has such line breaks, 1.2 has not. */
 int dvi__utf8_printable(unsigned code);
 
-/* Whether it is a blank, a tab, or part of a break of lines. */
+/* Tell whether a character is a blank, a tab, or part of a line break. */
 int dvi__is_blank(char c);
 
 #endif

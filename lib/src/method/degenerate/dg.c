@@ -29,17 +29,34 @@ static const dvi__key keys[] = {
     {0},
 };
 
-static dvi_status dg_choose(int *value)
+typedef struct dg_options {
+  int degree, nodes, points, alarm;
+  dvi__flux flux;
+} dg_options;
+
+/* Read the options. Numbers that are chosen here become part of the specification. */
+static dg_options dg_read_options(dvi__settings *settings)
 {
-  if (value[NODES] == DVI__LEFT_OUT) value[NODES] = value[DEGREE] + 1;
-  if (value[POINTS] == DVI__LEFT_OUT) value[POINTS] = value[FLUX] == DVI__PATH_FLUX ? 2 : 1;
-  if (value[NODES] <= value[DEGREE])
+  int *value = settings->value;
+  dg_options o = {.degree = value[DEGREE],
+                  .nodes = value[NODES],
+                  .points = value[POINTS],
+                  .alarm = value[ALARM],
+                  .flux = (dvi__flux)value[FLUX]};
+  if (o.nodes == DVI__LEFT_OUT) o.nodes = value[NODES] = o.degree + 1;
+  if (o.points == DVI__LEFT_OUT) o.points = value[POINTS] = o.flux == DVI__PATH_FLUX ? 2 : 1;
+  return o;
+}
+
+static dvi_status dg_check_options(const dg_options *o)
+{
+  if (o->nodes <= o->degree)
     return dvi__fail(DVI_BAD_OPTION,
                      "dg: nodes=%d leave a polynomial of degree %d undetermined; take %d or more",
-                     value[NODES], value[DEGREE], value[DEGREE] + 1);
-  if (value[POINTS] == 1 || value[FLUX] == DVI__PATH_FLUX) return DVI_OK;
+                     o->nodes, o->degree, o->degree + 1);
+  if (o->points == 1 || o->flux == DVI__PATH_FLUX) return DVI_OK;
   return dvi__fail(DVI_BAD_OPTION, "dg: flux=%s has one point; points=%d goes with flux=path",
-                   flux_name(value[FLUX]), value[POINTS]);
+                   flux_name((int)o->flux), o->points);
 }
 
 static dvi_status check_stiffness(const dvi__settings *settings, int n)
@@ -64,26 +81,26 @@ static dvi_status check_stiffness(const dvi__settings *settings, int n)
  * that does not change with h adds c j^2/2 per node of the smooth jump j = O(h^S), that is
  * O(h^(2S-1)) to the energy. A flux at one side has the symmetric part of Dalpha as its
  * stiffness. */
-static int dg_order_of(const dvi__settings *settings)
+static int dg_order_of(const dg_options *o, int has_stiffness)
 {
-  const int S = settings->value[DEGREE] + 1, flux = settings->value[FLUX];
-  if (settings->listed > 0 || flux == DVI__LEFT_FLUX || flux == DVI__RIGHT_FLUX) return 2 * S - 1;
+  const int S = o->degree + 1;
+  if (has_stiffness || o->flux == DVI__LEFT_FLUX || o->flux == DVI__RIGHT_FLUX) return 2 * S - 1;
   return S % 2 == 1 ? 2 * S : 2 * S - 2;
 }
 
 static dvi_status dg_create(dvi__stepper *self)
 {
-  int *value = self->settings.value;
-  DVI_TRY(dg_choose(value));
+  const dg_options o = dg_read_options(&self->settings);
+  DVI_TRY(dg_check_options(&o));
   DVI_TRY(check_stiffness(&self->settings, self->system->n));
-  self->order = dg_order_of(&self->settings);
-  const dvi__dg_space space = {.degree = value[DEGREE],
-                               .nodes = value[NODES],
-                               .flux = (dvi__flux)value[FLUX],
-                               .points = value[POINTS],
+  self->order = dg_order_of(&o, self->settings.listed > 0);
+  const dvi__dg_space space = {.degree = o.degree,
+                               .nodes = o.nodes,
+                               .flux = o.flux,
+                               .points = o.points,
                                .stiffness_count = self->settings.listed,
                                .stiffness = self->settings.list};
-  return dvi__dg_create(self, &space, value[ALARM],
+  return dvi__dg_create(self, &space, o.alarm,
                         "from the start on, a stiffness (dg:stiffness=c) keeps it small");
 }
 

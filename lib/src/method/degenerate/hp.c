@@ -130,11 +130,11 @@ static int nodes_of(dvi_rule rule, int degree)
 static dvi_status hp_create(dvi__stepper *self)
 {
   static const dvi_rule by_type[] = {DVI_LOBATTO, DVI_RADAU_LEFT, DVI_RADAU_RIGHT, DVI_LOBATTO};
-  int *value = self->settings.value;
-  const int type = value[TYPE], degree = value[DEGREE],
+  int *chosen = &self->settings.value[QUADRATURE];
+  const int type = self->settings.value[TYPE], degree = self->settings.value[DEGREE],
             degenerate = (self->system->terms & DVI__ONE_FORM) != 0;
-  if (value[QUADRATURE] == DVI__LEFT_OUT) value[QUADRATURE] = (int)by_type[type - 1];
-  const dvi_rule rule = (dvi_rule)value[QUADRATURE];
+  if (*chosen == DVI__LEFT_OUT) *chosen = (int)by_type[type - 1];
+  const dvi_rule rule = (dvi_rule)*chosen;
   if (degenerate && (type == 1 || type == 4)) return refuse_form(type);
   if (type == 4) return create_momentum_centred(self, degree, rule);
   const dvi__action_space space = {.basis = DVI_LAGRANGE_LOBATTO,

@@ -44,7 +44,7 @@ static const dvi__key keys[] = {
 /* These orders were measured where the projections differ, on massless-particle and vortices
  * (tests/method/degenerate/test_vprk.c). A projection on one side alone, or along directions that
  * are accurate to O(h), reduces the order of the tableau. */
-static int vprk_order_of(int tableau, int s, int projection)
+static int vprk_order_of(dvi__tableau tableau, int s, dvi__projection projection)
 {
   const int gauss = tableau == DVI__GAUSS, full = gauss ? 2 * s : 2 * s - 2;
   switch (projection) {
@@ -57,16 +57,16 @@ static int vprk_order_of(int tableau, int s, int projection)
 
 static dvi_status vprk_create(dvi__stepper *self)
 {
-  const int *value = self->settings.value;
-  if (value[TABLEAU] == DVI__LOBATTO_IIIE && value[NODES] < 2)
+  const int *value = self->settings.value, nodes = value[NODES];
+  const dvi__tableau tableau = (dvi__tableau)value[TABLEAU];
+  const dvi__projection projection = (dvi__projection)value[PROJECTION];
+  if (tableau == DVI__LOBATTO_IIIE && nodes < 2)
     return dvi__fail(
         DVI_BAD_OPTION,
         "vprk: tableau=lobatto-iiie has its nodes at both ends; nodes=2 or more is needed");
-  self->order = vprk_order_of(value[TABLEAU], value[NODES], value[PROJECTION]);
-  self->symmetric = value[PROJECTION] == DVI__SYMMETRIC ||
-                    value[PROJECTION] == DVI__MIDPOINT_PROJECTION;
-  return dvi__partitioned_step_create(self, (dvi__tableau)value[TABLEAU], value[NODES],
-                                      (dvi__projection)value[PROJECTION]);
+  self->order = vprk_order_of(tableau, nodes, projection);
+  self->symmetric = projection == DVI__SYMMETRIC || projection == DVI__MIDPOINT_PROJECTION;
+  return dvi__partitioned_step_create(self, tableau, nodes, projection);
 }
 
 const dvi__method dvi__vprk = {

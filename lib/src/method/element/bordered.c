@@ -8,17 +8,17 @@
 #include "core/status.h"
 #include "num/finite.h"
 
-/* ---- the equations ---- */
+/* ---- equations ---- */
 
-static double length_of(const dvi__bordered *b, const double *x)
+static double bordered_length(const dvi__bordered *b, const double *x)
 {
   return b->h0 + x[b->rows] / b->unit;
 }
 
-/* From x to the path Y, with the action placed there. */
-static dvi_status place(dvi__bordered *b, const double *x)
+/* Find the path Y from x and place the action there. */
+static dvi_status bordered_place(dvi__bordered *b, const double *x)
 {
-  const double h = length_of(b, x), moved = x[b->rows] / b->unit;
+  const double h = bordered_length(b, x), moved = x[b->rows] / b->unit;
   if (!(h / b->h0 > 0) || !isnormal(h))
     return dvi__fail(DVI_NOT_CONVERGED, "the energy equation leads to a step of %g", h);
   for (int i = 0; i < b->rows; i++) b->Y[i] = x[i] + moved * b->tangent[i];
@@ -26,19 +26,19 @@ static dvi_status place(dvi__bordered *b, const double *x)
   return DVI_OK;
 }
 
-static dvi_status residual_of(void *of, const double *x, double *R)
+static dvi_status bordered_residual(void *of, const double *x, double *R)
 {
   dvi__bordered *b = of;
   dvi__energies E;
-  DVI_TRY(place(b, x));
+  DVI_TRY(bordered_place(b, x));
   DVI_TRY(dvi__action_residual(b->action, b->Y, R));
   DVI_TRY(dvi__action_energies(b->action, &E));
   R[b->rows] = E.start - b->target;
   return DVI_OK;
 }
 
-/* dR/dY, dR/dh and the gradient of E- at a path of the action. */
-static dvi_status derivatives(dvi__bordered *b, const double *Y)
+/* Evaluate dR/dY, dR/dh and the gradient of E- at a path of the action. */
+static dvi_status bordered_derivatives(dvi__bordered *b, const double *Y)
 {
   DVI_TRY(dvi__action_jacobian(b->action, Y, b->values));
   DVI_TRY(dvi__action_energy_gradients(b->action, &b->start, &b->end));
@@ -46,15 +46,15 @@ static dvi_status derivatives(dvi__bordered *b, const double *Y)
   return DVI_OK;
 }
 
-/* The row of the energy closes each column of dR/dY; the last column is that of h along the
- * tangent. */
-static dvi_status jacobian_of(void *of, const double *x, double *values)
+/* Evaluate the Jacobian. The row of the energy ends each column of dR/dY. The last column is that
+ * of h along the tangent. */
+static dvi_status bordered_jacobian(void *of, const double *x, double *values)
 {
   dvi__bordered *b = of;
   const dvi__pattern *inner = dvi__action_pattern(b->action);
   double *at = values;
-  DVI_TRY(place(b, x));
-  DVI_TRY(derivatives(b, b->Y));
+  DVI_TRY(bordered_place(b, x));
+  DVI_TRY(bordered_derivatives(b, b->Y));
   double energy = b->start.h;
   for (int j = 0; j < b->rows; j++) {
     for (int e = inner->start[j]; e < inner->start[j + 1]; e++) {
@@ -69,14 +69,14 @@ static dvi_status jacobian_of(void *of, const double *x, double *values)
   return DVI_OK;
 }
 
-static dvi_status prepare_chord_of(void *of, const double *x)
+static dvi_status bordered_prepare_chord(void *of, const double *x)
 {
   dvi__bordered *b = of;
-  DVI_TRY(place(b, x));
+  DVI_TRY(bordered_place(b, x));
   return dvi__action_prepare_chord(b->action, b->Y);
 }
 
-static dvi_status row_scale_of(void *of, double *scale, int *unchanged)
+static dvi_status bordered_row_scale(void *of, double *scale, int *unchanged)
 {
   const dvi__bordered *b = of;
   (void)unchanged;
@@ -85,9 +85,9 @@ static dvi_status row_scale_of(void *of, double *scale, int *unchanged)
   return DVI_OK;
 }
 
-/* ---- making it ---- */
+/* ---- create ---- */
 
-static dvi_status border(const dvi__pattern *inner, dvi__pattern *pattern)
+static dvi_status add_border(const dvi__pattern *inner, dvi__pattern *pattern)
 {
   const int n = inner->columns;
   const size_t entries = (size_t)dvi__pattern_entries(inner) + 2 * (size_t)n + 1;
@@ -110,7 +110,7 @@ static dvi_status border(const dvi__pattern *inner, dvi__pattern *pattern)
   return DVI_OK;
 }
 
-static dvi_status allocate_unknowns(dvi__bordered *b, size_t n)
+static dvi_status bordered_allocate(dvi__bordered *b, size_t n)
 {
   const size_t rows = (size_t)b->rows;
   b->x = DVI_NEW(double, rows + 1);
@@ -126,8 +126,8 @@ static dvi_status allocate_unknowns(dvi__bordered *b, size_t n)
   return dvi__fail(DVI_NO_MEMORY, "sem: no memory for %zu unknowns", rows);
 }
 
-/* What derivatives of the rows need, when they are first asked for. */
-static dvi_status prepare_derivatives(dvi__bordered *b)
+/* Prepare the derivatives of the rows when they are first needed. */
+static dvi_status bordered_prepare_derivatives(dvi__bordered *b)
 {
   const dvi__pattern *inner = dvi__action_pattern(b->action);
   if (b->schur != NULL) return DVI_OK;
@@ -138,12 +138,13 @@ static dvi_status prepare_derivatives(dvi__bordered *b)
   return dvi__linear_create(inner, DVI__LINEAR_AUTO, b->element.counters, &b->schur);
 }
 
-static dvi_status prepare_of(void *of, dvi__equations *equations)
+static dvi_status bordered_prepare(void *of, dvi__equations *equations)
 {
   dvi__bordered *b = of;
-  DVI_TRY(prepare_derivatives(b));
+  DVI_TRY(bordered_prepare_derivatives(b));
   equations->pattern = &b->pattern;
-  return b->pattern.start != NULL ? DVI_OK : border(dvi__action_pattern(b->action), &b->pattern);
+  return b->pattern.start != NULL ? DVI_OK
+                                  : add_border(dvi__action_pattern(b->action), &b->pattern);
 }
 
 dvi_status dvi__bordered_create(const dvi__stepper *self, const dvi__action_space *space,
@@ -155,14 +156,14 @@ dvi_status dvi__bordered_create(const dvi__stepper *self, const dvi__action_spac
   b->action = dvi__element_action(&b->element);
   b->rows = dvi__action_unknowns(b->action);
   DVI_TRY(dvi__action_prepare_energy(b->action));
-  DVI_TRY(allocate_unknowns(b, (size_t)self->system->n));
+  DVI_TRY(bordered_allocate(b, (size_t)self->system->n));
   const dvi__equations equations = {.unknowns = b->rows + 1,
                                     .of = b,
-                                    .prepare = prepare_of,
-                                    .residual = residual_of,
-                                    .jacobian = jacobian_of,
-                                    .prepare_chord = prepare_chord_of,
-                                    .row_scale = row_scale_of,
+                                    .prepare = bordered_prepare,
+                                    .residual = bordered_residual,
+                                    .jacobian = bordered_jacobian,
+                                    .prepare_chord = bordered_prepare_chord,
+                                    .row_scale = bordered_row_scale,
                                     .renewed = 1};
   return dvi__solver_create(&equations, self->counters, &b->solver);
 }
@@ -178,9 +179,9 @@ void dvi__bordered_clear(dvi__bordered *b)
   dvi__element_destroy(&b->element);
 }
 
-/* ---- using it ---- */
+/* ---- solve ---- */
 
-/* Some roundings: of the summands, and of the path that they are taken at. */
+/* Allow some roundings of the summands, and of the path. */
 double dvi__energy_floor(const dvi__energies *E)
 {
   return 16 * DBL_EPSILON * E->size;
@@ -196,8 +197,8 @@ dvi_status dvi__bordered_energies(dvi__bordered *b, const dvi__state *state, dou
 
 dvi_status dvi__bordered_slope(dvi__bordered *b, const double *Y, double *slope)
 {
-  DVI_TRY(prepare_derivatives(b));
-  DVI_TRY(derivatives(b, Y));
+  DVI_TRY(bordered_prepare_derivatives(b));
+  DVI_TRY(bordered_derivatives(b, Y));
   const dvi_status factored = dvi__linear_factor(b->schur, b->values);
   if (factored == DVI_NO_MEMORY) return factored;
   if (factored != DVI_OK)
@@ -210,7 +211,7 @@ dvi_status dvi__bordered_slope(dvi__bordered *b, const double *Y, double *slope)
 }
 
 /* The last column of the inverse ends with 1 / (dD/d(h unit)). */
-static double slope_of_factor(dvi__bordered *b)
+static double bordered_slope_of_factor(dvi__bordered *b)
 {
   memset(b->direction, 0, (size_t)b->rows * sizeof(double));
   b->direction[b->rows] = 1;
@@ -218,10 +219,10 @@ static double slope_of_factor(dvi__bordered *b)
   return b->unit / b->direction[b->rows];
 }
 
-/* A rounding of the energies moves h by their size over the slope. In these units that is a
- * thousand roundings of what y is added to, which Newton's method takes for noise, and any more of
- * it for a correction. */
-static double unit_of(double size, const dvi__mismatch *at)
+/* Choose the unit of h. A rounding of the energies moves h by their size over the slope. In these
+ * units that is a thousand roundings of the numbers that y is added to. Newton's method takes that
+ * for noise, and larger changes for corrections. */
+static double unit_of_length(double size, const dvi__mismatch *at)
 {
   const double certain = fabs(at->h * at->slope) / at->E.size,
                part = fmin(1, 1024 * fmax(1e-12, certain));
@@ -230,8 +231,9 @@ static double unit_of(double size, const dvi__mismatch *at)
   return ldexp(1.0, exponent);
 }
 
-/* The unknowns and their scales around the point that *found describes; size is that of q0. */
-static dvi_status begin(dvi__bordered *b, double size, const double *Y, dvi__mismatch *found)
+/* Set the unknowns and their scales around the point that *found describes. size is that of q0. */
+static dvi_status bordered_begin(dvi__bordered *b, double size, const double *Y,
+                                 dvi__mismatch *found)
 {
   DVI_TRY(dvi__bordered_slope(b, Y, &found->slope));
   const double largest = dvi__largest((size_t)b->rows, Y), whole = largest > 0 ? largest : 1;
@@ -239,7 +241,7 @@ static dvi_status begin(dvi__bordered *b, double size, const double *Y, dvi__mis
   memcpy(b->x, Y, (size_t)b->rows * sizeof(double));
   b->x[b->rows] = 0;
   b->h0 = found->h;
-  b->unit = unit_of(fmax(whole, size), found);
+  b->unit = unit_of_length(fmax(whole, size), found);
   b->row = found->E.size / whole;
   return DVI_OK;
 }
@@ -251,11 +253,11 @@ dvi_status dvi__bordered_solve(dvi__bordered *b, const dvi__state *state, double
   dvi__solve_report report;
   b->state = state;
   b->target = target;
-  DVI_TRY(begin(b, size, Y, found));
+  DVI_TRY(bordered_begin(b, size, Y, found));
   const dvi_status status = dvi__solve(b->solver, rung, size, 0, 0, b->x, &report);
-  found->h = length_of(b, b->x);
+  found->h = bordered_length(b, b->x);
   if (status != DVI_OK) return status;
-  found->slope = slope_of_factor(b);
+  found->slope = bordered_slope_of_factor(b);
   if (!isfinite(found->slope))
     return dvi__fail(DVI_NOT_CONVERGED, "the energy equation is degenerate at a step of %g",
                      found->h);

@@ -1,5 +1,5 @@
-/* The branch of an element's solutions from h = 0: following it, and whether a solution is on
- * it. */
+/* The branch of an element's solutions from h = 0, which is followed, and to which a solution may
+ * belong or not. */
 #include <math.h>
 #include <string.h>
 
@@ -8,15 +8,16 @@
 #include "method/element/element_struct.h"
 #include "num/finite.h"
 
-/* Radians between a guess and its solution in charts. Other solutions were found by a third of a
- * radian and more away, but by a fortieth where the smallest moment of inertia is 1e-5 of the
- * others. Steps below half a radian are nearer to their guess. */
+/* Largest turn in radians between a guess and its solution in charts. Other solutions were found by
+ * a third of a radian and more away, but by a fortieth where the smallest moment of inertia is 1e-5
+ * of the others. Steps below half a radian are nearer to their guess. */
 static const double near_in_charts = 0.03;
 
-/* The same between an extrapolated guess and the next solution of a branch. */
+/* Largest turn between an extrapolated guess and the next solution of a branch. */
 static const double follows_in_charts = 0.01;
 
-/* A straight line along the velocity at the start, which is sought from that of the last path. */
+/* Guess a straight line along the velocity at the start, which is found from that of the last
+ * path. */
 dvi_status dvi__element_straight(dvi__stepper *self, const dvi__element_place *at, double *Y)
 {
   dvi__element *own = self->own;
@@ -29,40 +30,40 @@ dvi_status dvi__element_straight(dvi__stepper *self, const dvi__element_place *a
   return DVI_OK;
 }
 
-/* What a branch is followed for. */
-typedef struct pursuit {
+/* The step whose branch is followed. */
+typedef struct followed_step {
   dvi__stepper *self;
   const dvi__element_place *at;
-} pursuit;
+} followed_step;
 
-static dvi_status place_part(void *of, double part)
+static dvi_status followed_place(void *of, double part)
 {
-  const pursuit *own = of;
+  const followed_step *own = of;
   const dvi__element_place *at = own->at;
   dvi__element_put(own->self->own, at, part * at->h);
   return DVI_OK;
 }
 
-/* A straight line along the velocity at the start. */
-static dvi_status guess_part(void *of, double part, double *Y)
+/* Guess a straight line along the velocity at the start. */
+static dvi_status followed_guess(void *of, double part, double *Y)
 {
-  const pursuit *own = of;
+  const followed_step *own = of;
   const dvi__element_place *at = own->at;
   const dvi__element_place short_one = {at->t,      part * at->h, at->q, at->p,
                                         at->last_h, at->last_Y,   NULL};
   return dvi__element_straight(own->self, &short_one, Y);
 }
 
-static double turn_between(void *of, const double *from, const double *Y)
+static double followed_turn(void *of, const double *from, const double *Y)
 {
-  const pursuit *own = of;
+  const followed_step *own = of;
   return dvi__action_turn(((dvi__element *)own->self->own)->action, from, Y);
 }
 
-/* In charts the sentence tells how far the path turns, too. */
-static dvi_status branch_ends(const dvi__stepper *self, const dvi__element_place *at,
-                              const double *Y, const dvi__branch_end *end,
-                              const dvi__branch_failure *whole)
+/* Fail where the branch ends. In charts the sentence tells how far the path turns, too. */
+static dvi_status fail_at_branch_end(const dvi__stepper *self, const dvi__element_place *at,
+                                     const double *Y, const dvi__branch_end *end,
+                                     const dvi__branch_failure *whole)
 {
   const dvi__element *own = self->own;
   const dvi_status status = dvi__branch_tell(end, at->h, whole);
@@ -77,20 +78,21 @@ static dvi_status branch_ends(const dvi__stepper *self, const dvi__element_place
                    end->reached * at->h, dvi__action_turned(own->action, own->dq));
 }
 
-static int direction(const dvi__element_place *at)
+static int direction_of_time(const dvi__element_place *at)
 {
   return at->h < 0 ? -1 : 1;
 }
 
-/* Of one coefficient a coordinate the whole Jacobian is symmetric. */
-static int is_symmetric(const dvi__stepper *self)
+/* Tell whether the whole Jacobian is symmetric, as it is with one coefficient a coordinate. */
+static int element_is_symmetric(const dvi__stepper *self)
 {
   const dvi__element *own = self->own;
   return own->definite && dvi__action_unknowns(own->action) == self->system->n;
 }
 
-/* In charts solutions are nearer to their guesses, and differences are noise over short parts. */
-static int parts_of(const dvi__stepper *self)
+/* Give the least number of parts of a step. In charts solutions are nearer to their guesses, and
+ * differences are noise over short parts. */
+static int element_branch_parts(const dvi__stepper *self)
 {
   const int coarse = ((const dvi__element *)self->own)->centred ||
                      dvi__hessian_noise(self->system) > 0;
@@ -98,8 +100,8 @@ static int parts_of(const dvi__stepper *self)
   return coarse ? 1 : DVI__BRANCH_CAREFUL;
 }
 
-/* Room to follow a branch, when one is followed first. */
-static dvi_status prepare_branch(dvi__element *own)
+/* Allocate the work to follow a branch, when one is followed first. */
+static dvi_status element_prepare_branch(dvi__element *own)
 {
   const size_t unknowns = (size_t)dvi__action_unknowns(own->action);
   if (own->branch != NULL) return DVI_OK;
@@ -111,8 +113,8 @@ static dvi_status prepare_branch(dvi__element *own)
   return DVI_OK;
 }
 
-/* Where terms have unknowns of their own, no sign of the determinant is known. */
-static int has_signs(const dvi__stepper *self)
+/* Tell whether the sign of the determinant is known, which it is not with unknowns of terms. */
+static int element_has_signs(const dvi__stepper *self)
 {
   const dvi__element *own = self->own;
   return dvi__action_unknowns(own->action) ==
@@ -123,19 +125,19 @@ dvi_status dvi__element_follow(dvi__stepper *self, const dvi__element_place *at,
                                double *Y)
 {
   dvi__element *own = self->own;
-  pursuit of = {self, at};
+  followed_step of = {self, at};
   dvi__branch_failure failure;
   dvi__branch_note(whole, &failure);
-  DVI_TRY(prepare_branch(own));
+  DVI_TRY(element_prepare_branch(own));
   const dvi__branch branch = {.of = &of,
-                              .place = place_part,
-                              .guess = guess_part,
-                              .distance = own->centred ? turn_between : NULL,
+                              .place = followed_place,
+                              .guess = followed_guess,
+                              .distance = own->centred ? followed_turn : NULL,
                               .near = own->centred ? follows_in_charts : DVI__BRANCH_NEAR,
-                              .parts = parts_of(self),
-                              .signs = has_signs(self) &&
+                              .parts = element_branch_parts(self),
+                              .signs = element_has_signs(self) &&
                                        (!own->centred || dvi__action_signs(own->action)),
-                              .definite = is_symmetric(self) ? direction(at) : 0,
+                              .definite = element_is_symmetric(self) ? direction_of_time(at) : 0,
                               .from_zero = 1,
                               .size = dvi__largest((size_t)self->system->n, at->q),
                               .room = own->branch};
@@ -144,7 +146,7 @@ dvi_status dvi__element_follow(dvi__stepper *self, const dvi__element_place *at,
   self->counters->newtons += !self->follow;
   const dvi_status status = dvi__branch_follow(&branch, own->solver, Y, &end);
   if (status > 0 && end.ends) self->doubt = DVI__ASTRAY;
-  return status <= 0 ? status : branch_ends(self, at, Y, &end, &failure);
+  return status <= 0 ? status : fail_at_branch_end(self, at, Y, &end, &failure);
 }
 
 int dvi__element_is_definite(const dvi_system *system, const dvi__evaluator *evaluator)
@@ -152,46 +154,48 @@ int dvi__element_is_definite(const dvi_system *system, const dvi__evaluator *eva
   return system->lagrangian == NULL && system->slots == NULL && dvi__mass_is_positive(evaluator);
 }
 
-/* As h goes to 0 the Jacobian is L_vv times a positive matrix over h. On the way to another
- * solution beyond a fold an eigenvalue goes through 0: it is no longer definite, where it is
- * symmetric, and its determinant may have the other sign. */
-static int is_turned(const dvi__stepper *self, const dvi__element_place *at)
+/* Tell whether the solution lies beyond a fold. As h goes to 0 the Jacobian is L_vv times a
+ * positive matrix over h. On the way to another solution beyond a fold an eigenvalue passes through
+ * 0. Then the Jacobian is no longer definite, where it is symmetric, and its determinant may have
+ * the other sign. */
+static int element_is_folded(const dvi__stepper *self, const dvi__element_place *at)
 {
   const dvi__element *own = self->own;
   dvi__evaluator *evaluator = dvi__action_evaluator(own->action);
   const dvi__decoupled *apart = dvi__element_frozen(own);
   const int unknowns = dvi__action_unknowns(own->action),
             degree = dvi__action_space_of(own->action).degree;
-  if (!has_signs(self)) return 0;
-  if (apart != NULL && own->definite) return !dvi__decoupled_is_definite(apart, direction(at));
-  if (apart == NULL && is_symmetric(self))
-    return !dvi__solver_is_definite(own->solver, direction(at));
+  if (!element_has_signs(self)) return 0;
+  if (apart != NULL && own->definite)
+    return !dvi__decoupled_is_definite(apart, direction_of_time(at));
+  if (apart == NULL && element_is_symmetric(self))
+    return !dvi__solver_is_definite(own->solver, direction_of_time(at));
   const int sign = (apart != NULL ? dvi__decoupled_sign(apart) : dvi__solver_sign(own->solver)) *
-                   (unknowns % 2 != 0 ? direction(at) : 1);
+                   (unknowns % 2 != 0 ? direction_of_time(at) : 1);
   if (sign > 0 || own->centred || degree % 2 == 0) return sign < 0;
   dvi__action_path(own->action, own->Y, at->h, 0.0, NULL, own->guess);
   if (dvi__legendre_regular(evaluator, at->t, at->q, own->guess) != DVI_OK) return 1;
   return dvi__mass_sign(evaluator) > 0;
 }
 
-/* What the solution itself tells of its branch; the rest is for its energy and motion to say. */
+/* Judge the branch by the solution alone. Its energy and motion decide the rest. */
 dvi__doubt dvi__element_doubt(const dvi__stepper *self, const dvi__element_place *at,
                               const dvi__solve_report *report)
 {
   const dvi__element *own = self->own;
   if (own->rung == DVI__FIXED_POINT) return DVI__SURE;
-  if (is_turned(self, at)) return DVI__ASTRAY;
-  if (own->rung == DVI__KINSOL) return DVI__DOUBTED; /* of its way nothing is known */
+  if (element_is_folded(self, at)) return DVI__ASTRAY;
+  if (own->rung == DVI__KINSOL) return DVI__DOUBTED; /* KINSOL reports nothing of its way */
   if (own->rung == DVI__NEWTON && report->iterations <= 4) return DVI__SURE;
   if (dvi__branch_is_near(report)) return DVI__SURE;
   return dvi__branch_is_straight(report) ? DVI__LINEAR : DVI__DOUBTED;
 }
 
-/* Whether a solution in charts is not the one that continues shorter steps: it turns far away from
- * its guess, or the sign of the determinant is another. */
+/* Tell whether a solution in charts is not the one that continues shorter steps. It turns far away
+ * from its guess, or the determinant has the other sign. */
 int dvi__element_strays(const dvi__stepper *self, const dvi__element_place *at)
 {
   const dvi__element *own = self->own;
-  if (dvi__action_signs(own->action) && is_turned(self, at)) return 1;
+  if (dvi__action_signs(own->action) && element_is_folded(self, at)) return 1;
   return !(dvi__action_turn(own->action, own->guess, own->Y) <= near_in_charts);
 }

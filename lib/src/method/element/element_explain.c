@@ -1,10 +1,10 @@
-/* What is said of a step's solvers. To say it patterns are made and analysed, but nothing is
+/* Explanations of a step's solvers. Patterns are made and analysed for them, but nothing is
  * factored. */
 #include "core/status.h"
 #include "method/element/element_struct.h"
-#include "step/element/sweep.h"
+#include "step/element/fixed_point.h"
 
-/* ---- for all who solve by solve/nonlinear.h ---- */
+/* ---- for all methods with solve/nonlinear.h ---- */
 
 void dvi__explain_entries(double unknowns, double entries, dvi__text *text)
 {
@@ -65,7 +65,7 @@ static void explain_ladder(dvi__element *own, dvi__text *text)
                 own->choice == DVI__SOLVER_CERTIFIED ? "; KINSOL certifies each solution" : "");
 }
 
-/* An operator has no name of its own: what preconditions it counts. */
+/* An operator has no name of its own, so the preconditioner is named. */
 static void explain_newton(dvi__element *own, dvi__text *text)
 {
   if (dvi__solver_prepare(own->solver) != DVI_OK || !own->newton.is_operator) {
@@ -94,7 +94,7 @@ void dvi__element_explain(const dvi__stepper *self, dvi__text *text)
   dvi__text_add(
       text, "kinetic part: %s\n",
       general ? "general Lagrangian; its velocity Hessian is evaluated once a step"
-      : dvi__action_can_sweep(own->action)
+      : dvi__action_has_fixed_point(own->action)
           ? "constant mass without coupling: fixed point iteration on the positions at the nodes"
           : "constant mass");
   explain_ladder(own, text);

@@ -1,11 +1,11 @@
-/* The element's step for members of an ensemble side by side: the cheapest way of element_step.c
- * alone, fixed point iteration from the last forces continued. A member for which it would not be
- * tried, or does not converge, is left to dvi__element_step. */
+/* The element's step for members of an ensemble side by side. It is the cheapest way of
+ * element_step.c alone, fixed point iteration from the continued last forces. Members for which
+ * that would not be tried, or does not converge, are left to dvi__element_step. */
 #include <math.h>
 #include <string.h>
 
 #include "step/element/members.h"
-#include "step/element/sweep.h"
+#include "step/element/fixed_point.h"
 #include "core/memory.h"
 #include "core/status.h"
 #include "method/element/element_step.h"
@@ -15,19 +15,20 @@
 
 typedef struct lanes {
   dvi__action_members members;
-  dvi__pace pace;
+  dvi__criteria criteria;
   int patient;
-  dvi__trails trails; /* of the lanes; their size is that of q at the step's start */
-  char *going;        /* [width] the lane iterates on */
-  int64_t *verdict;   /* [width] of the last iteration */
-  int *ended;         /* [width] lanes that ended with it */
+  /* histories of the lanes, whose size is that of q at the step's start */
+  dvi__histories histories;
+  char *going;      /* [width] the lane iterates on */
+  int64_t *verdict; /* [width] verdict on the last iteration */
+  int *ended;       /* [width] lanes that ended with it */
 } lanes;
 
 /* A vector's worth of nodes fills the vectors of a single element. Members as lanes then gain only
  * as long as they all stay in the cache of the first level, and with two vectors' worth no more. */
 enum { NODES_OF_A_VECTOR = 8, POINTS_IN_CACHE = 64 };
 
-static int pays(int n, int nodes)
+static int lanes_pay(int n, int nodes)
 {
   return nodes < NODES_OF_A_VECTOR ||
          (nodes < 2 * NODES_OF_A_VECTOR && n <= POINTS_IN_CACHE / nodes);
@@ -38,22 +39,23 @@ dvi_status dvi__element_prepare_lanes(dvi__stepper *self, int capacity)
   dvi__action *action = dvi__element_action(self);
   const int solver = dvi__element_solver(self), patient = solver == DVI__SOLVER_FIXED_POINT;
   if (!patient && solver != DVI__SOLVER_AUTO) return DVI_OK;
-  if (!pays(self->system->n, dvi__action_nodes(action))) return DVI_OK;
-  if (!dvi__action_can_sweep(action) || !dvi__system_has_gradients(self->system)) return DVI_OK;
+  if (!lanes_pay(self->system->n, dvi__action_nodes(action))) return DVI_OK;
+  if (!dvi__action_has_fixed_point(action) || !dvi__system_has_gradients(self->system))
+    return DVI_OK;
   lanes *own = self->lanes = DVI_NEW(lanes, 1);
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
   own->patient = patient;
-  own->pace = dvi__fixed_point_pace(patient, 1);
-  own->trails.last = DVI_NEW(double, capacity);
-  own->trails.ratio = DVI_NEW(double, capacity);
-  own->trails.contraction = DVI_NEW(double, capacity);
-  own->trails.own = DVI_NEW(double, capacity);
-  own->trails.size = DVI_NEW(double, capacity);
+  own->criteria = dvi__fixed_point_criteria(patient, 1);
+  own->histories.last = DVI_NEW(double, capacity);
+  own->histories.ratio = DVI_NEW(double, capacity);
+  own->histories.contraction = DVI_NEW(double, capacity);
+  own->histories.own = DVI_NEW(double, capacity);
+  own->histories.size = DVI_NEW(double, capacity);
   own->going = DVI_NEW(char, capacity);
   own->verdict = DVI_NEW(int64_t, capacity);
   own->ended = DVI_NEW(int, capacity);
-  if (!own->trails.last || !own->trails.ratio || !own->trails.contraction || !own->trails.own ||
-      !own->trails.size || !own->going || !own->verdict || !own->ended)
+  if (!own->histories.last || !own->histories.ratio || !own->histories.contraction ||
+      !own->histories.own || !own->histories.size || !own->going || !own->verdict || !own->ended)
     return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
   return dvi__action_members_create(action, capacity, &own->members);
 }
@@ -62,11 +64,11 @@ void dvi__element_clear_lanes(dvi__stepper *self)
 {
   lanes *own = self->lanes;
   dvi__action_members_clear(&own->members);
-  dvi__release(own->trails.last);
-  dvi__release(own->trails.ratio);
-  dvi__release(own->trails.contraction);
-  dvi__release(own->trails.own);
-  dvi__release(own->trails.size);
+  dvi__release(own->histories.last);
+  dvi__release(own->histories.ratio);
+  dvi__release(own->histories.contraction);
+  dvi__release(own->histories.own);
+  dvi__release(own->histories.size);
   dvi__release(own->going);
   dvi__release(own->verdict);
   dvi__release(own->ended);
@@ -79,8 +81,8 @@ static double *memory_row(const dvi__members *m, size_t number)
 }
 
 /* Leave the members that would not try fixed point iteration, or whose last step had another length
- * than the others'. Gives that length; 0: no member is left to be served. */
-static double choose(const lanes *own, dvi__members *m)
+ * than the others'. Gives that length, or 0 if no member remains. */
+static double lanes_choose(const lanes *own, dvi__members *m)
 {
   const double *last_h = memory_row(m, DVI__LAST_H),
                *newton_steps = memory_row(m, DVI__NEWTON_STEPS);
@@ -93,12 +95,12 @@ static double choose(const lanes *own, dvi__members *m)
   return memchr(m->left, 0, (size_t)m->count) != NULL ? common : 0;
 }
 
-/* Lanes that have nothing to do any more make room. */
-static void close_up(lanes *own)
+/* Remove the lanes that have ended. */
+static void lanes_close_up(lanes *own)
 {
   dvi__action_members *at = &own->members;
-  double *const rows[] = {own->trails.last, own->trails.ratio, own->trails.contraction,
-                          own->trails.own, own->trails.size};
+  double *const rows[] = {own->histories.last, own->histories.ratio, own->histories.contraction,
+                          own->histories.own, own->histories.size};
   const int before = at->width;
   dvi__action_members_close_up(at, own->going);
   for (int i = 0; i < (int)(sizeof rows / sizeof *rows) && at->width < before; i++)
@@ -106,15 +108,15 @@ static void close_up(lanes *own)
   memset(own->going, 1, (size_t)at->width);
 }
 
-static void set_out(lanes *own, int n, size_t forces, const dvi__members *m, double h,
-                    double last_h)
+static void lanes_begin(lanes *own, int n, size_t forces, const dvi__members *m, double h,
+                        double last_h)
 {
   const size_t count = (size_t)m->count;
-  double *size = own->trails.size;
-  memset(own->trails.last, 0, count * sizeof(double));
-  memset(own->trails.ratio, 0, count * sizeof(double));
-  memset(own->trails.contraction, 0, count * sizeof(double));
-  memset(own->trails.own, 0, count * sizeof(double));
+  double *size = own->histories.size;
+  memset(own->histories.last, 0, count * sizeof(double));
+  memset(own->histories.ratio, 0, count * sizeof(double));
+  memset(own->histories.contraction, 0, count * sizeof(double));
+  memset(own->histories.own, 0, count * sizeof(double));
   memset(size, 0, count * sizeof(double));
   for (size_t i = 0; i < (size_t)n; i++)
     for (size_t k = 0; k < count; k++) {
@@ -124,11 +126,11 @@ static void set_out(lanes *own, int n, size_t forces, const dvi__members *m, dou
   for (size_t k = 0; k < count; k++) own->going[k] = !m->left[k];
   dvi__action_members_place(&own->members, m->count, h, last_h, m->t, m->q, m->p,
                             memory_row(m, forces));
-  close_up(own);
+  lanes_close_up(own);
 }
 
-/* A lane's iteration has ended with this one. */
-static void end_lane(lanes *own, dvi__members *m, int lane, int iteration)
+/* End a lane's iteration with this one. */
+static void lanes_end_one(lanes *own, dvi__members *m, int lane, int iteration)
 {
   dvi__action_members *at = &own->members;
   const int k = at->member[lane];
@@ -143,50 +145,51 @@ static void end_lane(lanes *own, dvi__members *m, int lane, int iteration)
   m->fixed[k]++;
 }
 
-/* Judge every lane's iteration. Gives how many ended with it; *stalled: some of them must not be
- * iterated any more. */
-static int judge(lanes *own, dvi__members *m, int iteration, int *stalled)
+/* Test every lane's iteration. Gives how many ended with it. *stalled tells that some of them must
+ * not be iterated any more. */
+static int lanes_test(lanes *own, dvi__members *m, int iteration, int *stalled)
 {
   const dvi__action_members *at = &own->members;
   int ended = 0;
-  dvi__judge_all(at->width, at->change, at->largest, &own->pace, &own->trails, own->verdict);
+  dvi__test_corrections(at->width, at->change, at->largest, &own->criteria, &own->histories,
+                        own->verdict);
   for (int lane = 0; lane < at->width; lane++) {
     own->ended[ended] = lane;
     ended += own->going[lane] & (own->verdict[lane] != DVI__GO_ON);
   }
   for (int i = 0; i < ended; i++) {
-    end_lane(own, m, own->ended[i], iteration);
+    lanes_end_one(own, m, own->ended[i], iteration);
     *stalled |= own->verdict[own->ended[i]] == DVI__STALLED;
   }
   return ended;
 }
 
-/* Members whose iteration is cut short are left. */
-static void leave_going(const lanes *own, dvi__members *m)
+/* Leave the members whose iteration is cut short. */
+static void lanes_leave(const lanes *own, dvi__members *m)
 {
   for (int lane = 0; lane < own->members.width; lane++)
     if (own->going[lane]) m->left[own->members.member[lane]] = 1;
 }
 
-/* Lanes that have nothing to do any more are carried along until they are half of all: to close up
- * costs about as much as an iteration. */
-static void iterate(lanes *own, dvi__members *m)
+/* Iterate. Lanes that have ended stay until they are half of all, because closing up costs about as
+ * much as an iteration. */
+static void lanes_iterate(lanes *own, dvi__members *m)
 {
   dvi__action_members *at = &own->members;
   const int most = dvi__fixed_point_most(own->patient);
   int going = at->width;
   for (int iteration = 1; iteration <= most; iteration++) {
     int stalled = 0;
-    if (dvi__action_members_sweep(at) != DVI_OK) break;
-    going -= judge(own, m, iteration, &stalled);
+    if (dvi__action_members_iterate(at) != DVI_OK) break;
+    going -= lanes_test(own, m, iteration, &stalled);
     if (going == 0) return;
-    if (stalled || 2 * going <= at->width) close_up(own);
+    if (stalled || 2 * going <= at->width) lanes_close_up(own);
   }
-  leave_going(own, m);
+  lanes_leave(own, m);
 }
 
-/* What a step that fixed point iteration has solved does to the state and the memory. */
-static void advance(const lanes *own, size_t n, dvi__members *m, double h)
+/* Advance the state and the memory by a step that fixed point iteration has solved. */
+static void lanes_advance(const lanes *own, size_t n, dvi__members *m, double h)
 {
   static const size_t forgotten[] = {DVI__NEWTON_STEPS, DVI__NEWTON_WAIT};
   const dvi__action_members *at = &own->members;
@@ -203,10 +206,10 @@ static void advance(const lanes *own, size_t n, dvi__members *m, double h)
 void dvi__element_step_lanes(dvi__stepper *self, dvi__members *m, double h)
 {
   lanes *own = self->lanes;
-  const double last_h = choose(own, m);
+  const double last_h = lanes_choose(own, m);
   if (last_h == 0) return;
-  set_out(own, self->system->n, dvi__element_forces(self), m, h, last_h);
-  iterate(own, m);
+  lanes_begin(own, self->system->n, dvi__element_forces(self), m, h, last_h);
+  lanes_iterate(own, m);
   dvi__action_members_ends(&own->members, memory_row(m, DVI__LAST_Y));
-  advance(own, (size_t)self->system->n, m, h);
+  lanes_advance(own, (size_t)self->system->n, m, h);
 }

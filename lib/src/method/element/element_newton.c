@@ -1,18 +1,18 @@
-/* What Newton's methods need of an element: the Jacobian as a matrix or as an operator, and what is
- * frozen of it.
+/* The Jacobian of an element for Newton's method, as a matrix or as an operator, and its frozen
+ * part.
  *
- * The rule. The Jacobian of s n unknowns is a matrix if its factorisation takes at most MOST_WHOLE
- * operations: s^3 times those of one n x n system with the Hessians' pattern, whose graph it has
- * with blocks of s x s. Beyond that GMRES solves by its products (step/element/action.h),
+ * The Jacobian of s n unknowns is a matrix if its factorisation takes at most MOST_WHOLE
+ * operations, which are s^3 times those of one n x n system with the Hessians' pattern, whose graph
+ * it has with blocks of s x s. Beyond that GMRES solves by its products (step/element/action.h),
  * preconditioned by the decoupled systems of n unknowns, frozen in the middle of the path, as long
- * as their factors pay; beyond that by the kinetic part, M/h: then nothing is factored, and the
- * ladder leaves out simplified Newton's method, which needs those factors.
+ * as their factors pay. Beyond that the kinetic part, M/h, preconditions. Then nothing is factored,
+ * and the ladder leaves out simplified Newton's method, which needs those factors.
  *
  * A factor pays if it takes no more operations than OPERATIONS_PAID for each number that a product
- * of the Jacobian reads, and no more than MOST_NUMBERS. Measured on nets of springs with h omega =
- * 14, KLU's rate being 2 to 3e9 operations a second: preconditioned by M/h a step takes 150 to 250
- * products at 6 operations for each number; a factor that is back after 20 such steps may take 30
- * 000. (docs/performance.md, "Large sparse systems".) */
+ * of the Jacobian reads, and no more than MOST_NUMBERS. This was measured on nets of springs with h
+ * omega = 14, at KLU's rate of 2 to 3e9 operations a second. Preconditioned by M/h a step takes 150
+ * to 250 products at 6 operations for each number. A factor that is back after 20 such steps may
+ * take 30 000. (docs/performance.md, "Large sparse systems".) */
 #include <math.h>
 
 #include "core/memory.h"
@@ -23,18 +23,19 @@
 #define OPERATIONS_PAID 3e4
 #define MOST_NUMBERS 2e8
 
-/* ---- the choice ---- */
+/* ---- choice ---- */
 
-static dvi__decoupled *systems_of(const dvi__element *own)
+static dvi__decoupled *newton_systems(const dvi__element *own)
 {
   return own->decoupled != NULL ? own->decoupled : own->newton.owned;
 }
 
-/* The cost of one real n x n system: at most, if that is `enough` operations, or there are no
- * decoupled systems; else by their analysis. */
-static dvi_status estimate_cost(const dvi__element *own, double enough, dvi__linear_cost *cost)
+/* Estimate the cost of one real n x n system. A bound serves if it is `enough` operations at most,
+ * or if there are no decoupled systems. Else their analysis tells the cost. */
+static dvi_status newton_estimate_cost(const dvi__element *own, double enough,
+                                       dvi__linear_cost *cost)
 {
-  dvi__decoupled *systems = systems_of(own);
+  dvi__decoupled *systems = newton_systems(own);
   dvi__linear_cost all;
   DVI_TRY(dvi__action_prepare_hessians(own->action));
   *cost = (dvi__linear_cost){0, dvi__pattern_operations(dvi__action_coupling(own->action))};
@@ -45,18 +46,19 @@ static dvi_status estimate_cost(const dvi__element *own, double enough, dvi__lin
   return DVI_OK;
 }
 
-/* Operations that the factors of all decoupled systems may take. */
-static double most_operations(const dvi__element *own)
+/* Give the largest number of operations for the factors of all decoupled systems. */
+static double newton_most_operations(const dvi__element *own)
 {
   const double numbers = (double)dvi__pattern_entries(dvi__action_coupling(own->action)) *
                          dvi__action_nodes(own->action);
   return OPERATIONS_PAID * numbers;
 }
 
-static int factors_pay(const dvi__element *own, const dvi__linear_cost *one)
+static int newton_factors_pay(const dvi__element *own, const dvi__linear_cost *one)
 {
-  const double weight = dvi__decoupled_weight(systems_of(own));
-  return weight * one->operations <= most_operations(own) && weight * one->entries <= MOST_NUMBERS;
+  const double weight = dvi__decoupled_weight(newton_systems(own));
+  return weight * one->operations <= newton_most_operations(own) &&
+         weight * one->entries <= MOST_NUMBERS;
 }
 
 dvi_status dvi__element_weigh(dvi__element *own)
@@ -64,48 +66,51 @@ dvi_status dvi__element_weigh(dvi__element *own)
   dvi__linear_cost one;
   if (own->is_weighed || own->decoupled == NULL) return DVI_OK;
   DVI_TRY(dvi__action_prepare_hessians(own->action));
-  const double enough = most_operations(own) / dvi__decoupled_weight(own->decoupled);
-  DVI_TRY(estimate_cost(own, enough, &one));
-  own->is_dear = !factors_pay(own, &one);
+  const double enough = newton_most_operations(own) / dvi__decoupled_weight(own->decoupled);
+  DVI_TRY(newton_estimate_cost(own, enough, &one));
+  own->is_dear = !newton_factors_pay(own, &one);
   own->is_weighed = 1;
   return DVI_OK;
 }
 
-/* Systems for a preconditioner, where simplified Newton's method has none. */
-static dvi_status create_systems(dvi__element *own)
+/* Create systems for a preconditioner, where simplified Newton's method has none. */
+static dvi_status newton_create_systems(dvi__element *own)
 {
-  if (systems_of(own) != NULL) return DVI_OK;
+  if (newton_systems(own) != NULL) return DVI_OK;
   const dvi_status status = dvi__decoupled_create(own->action, own->counters, &own->newton.owned);
   return status == DVI_SINGULAR ? DVI_OK : status; /* none in this space */
 }
 
-/* What terms of the rows add to the Jacobian has no products: it stays a matrix. */
-static dvi_status choose_form(dvi__element *own)
+/* Choose the form. The parts of row terms in the Jacobian have no products, and it stays a
+ * matrix. */
+static dvi_status newton_choose_form(dvi__element *own)
 {
   const double s = dvi__action_space_of(own->action).degree;
   dvi__linear_cost one;
   own->newton.is_operator = 0;
   if (dvi__action_has_terms(own->action)) return DVI_OK;
-  DVI_TRY(estimate_cost(own, HUGE_VAL, &one));
+  DVI_TRY(newton_estimate_cost(own, HUGE_VAL, &one));
   if (s * s * s * one.operations <= MOST_WHOLE) return DVI_OK;
-  DVI_TRY(create_systems(own));
-  DVI_TRY(estimate_cost(own, 0, &one));
+  DVI_TRY(newton_create_systems(own));
+  DVI_TRY(newton_estimate_cost(own, 0, &one));
   if (s * s * s * one.operations <= MOST_WHOLE) return DVI_OK;
   own->newton.is_operator = 1;
-  own->newton.systems = systems_of(own) != NULL && factors_pay(own, &one) ? systems_of(own) : NULL;
+  own->newton.systems = newton_systems(own) != NULL && newton_factors_pay(own, &one)
+                            ? newton_systems(own)
+                            : NULL;
   return DVI_OK;
 }
 
-/* ---- the operator ---- */
+/* ---- operator ---- */
 
-static void times_of(void *of, const double *x, double *y)
+static void newton_times(void *of, const double *x, double *y)
 {
   const dvi__element *own = of;
   own->counters->products++;
   dvi__action_times_jacobian(own->action, x, y);
 }
 
-static void precondition_of(void *of, double *R)
+static void newton_precondition(void *of, double *R)
 {
   const dvi__element *own = of;
   if (own->newton.systems != NULL)
@@ -114,34 +119,34 @@ static void precondition_of(void *of, double *R)
     dvi__action_chord(own->action, R);
 }
 
-static int sign_of(void *of)
+static int newton_sign(void *of)
 {
   return dvi__decoupled_sign(((const dvi__element *)of)->newton.systems);
 }
 
-static int is_definite_of(void *of, int sign)
+static int newton_is_definite(void *of, int sign)
 {
   return dvi__decoupled_is_definite(((const dvi__element *)of)->newton.systems, sign);
 }
 
-static dvi_status prepare_operator(dvi__element *own)
+static dvi_status newton_prepare_operator(dvi__element *own)
 {
   dvi__newton_form *newton = &own->newton;
   const int has_systems = newton->systems != NULL;
   DVI_TRY(dvi__action_prepare_product(own->action));
   newton->A = (dvi__operator){.size = dvi__action_unknowns(own->action),
                               .of = own,
-                              .times = times_of,
-                              .precondition = precondition_of,
-                              .sign = has_systems ? sign_of : NULL,
-                              .is_definite = has_systems ? is_definite_of : NULL};
+                              .times = newton_times,
+                              .precondition = newton_precondition,
+                              .sign = has_systems ? newton_sign : NULL,
+                              .is_definite = has_systems ? newton_is_definite : NULL};
   if (!has_systems || newton->point != NULL) return DVI_OK;
   newton->point = DVI_NEW(double, dvi__decoupled_point_size(newton->systems));
   return newton->point != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "action: no memory for a point");
 }
 
-/* Frozen at Y; one serves all Jacobians of an iteration. */
-static dvi_status freeze_preconditioner(dvi__element *own, const double *Y)
+/* Freeze the preconditioner at Y. One serves all Jacobians of an iteration. */
+static dvi_status newton_freeze_preconditioner(dvi__element *own, const double *Y)
 {
   dvi__decoupled *systems = own->newton.systems;
   if (own->newton.is_frozen) return DVI_OK;
@@ -154,32 +159,33 @@ static dvi_status freeze_preconditioner(dvi__element *own, const double *Y)
   return status;
 }
 
-/* The preconditioner, and then the Hessians that products are made of. */
-static dvi_status linearise(dvi__element *own, const double *Y)
+/* Freeze the preconditioner, and evaluate the Hessians for products. */
+static dvi_status newton_linearise(dvi__element *own, const double *Y)
 {
-  DVI_TRY(freeze_preconditioner(own, Y));
+  DVI_TRY(newton_freeze_preconditioner(own, Y));
   return dvi__action_hessians(own->action, Y);
 }
 
-/* ---- for the solver ---- */
+/* ---- callbacks of the solver ---- */
 
-static dvi_status prepare_of(void *of, dvi__equations *equations)
+static dvi_status newton_prepare(void *of, dvi__equations *equations)
 {
   dvi__element *own = of;
-  DVI_TRY(choose_form(own));
+  DVI_TRY(newton_choose_form(own));
   if (!own->newton.is_operator) return dvi__action_prepare_jacobian(own->action);
-  DVI_TRY(prepare_operator(own));
+  DVI_TRY(newton_prepare_operator(own));
   equations->whole = &own->newton.A;
   return DVI_OK;
 }
 
-static dvi_status jacobian_of(void *of, const double *Y, double *values)
+static dvi_status newton_jacobian(void *of, const double *Y, double *values)
 {
   dvi__element *own = of;
-  return own->newton.is_operator ? linearise(own, Y) : dvi__action_jacobian(own->action, Y, values);
+  return own->newton.is_operator ? newton_linearise(own, Y)
+                                 : dvi__action_jacobian(own->action, Y, values);
 }
 
-static dvi_status freeze_of(void *of, const double *Y)
+static dvi_status newton_freeze(void *of, const double *Y)
 {
   const dvi__element *own = of;
   double *point = own->frozen + DVI__FROZEN_POINT;
@@ -191,7 +197,7 @@ static dvi_status freeze_of(void *of, const double *Y)
   return dvi__decoupled_freeze(own->decoupled, point);
 }
 
-static void frozen_of(void *of, double *R)
+static void newton_solve_frozen(void *of, double *R)
 {
   const dvi__element *own = of;
   if (own->keeps_whole)
@@ -202,10 +208,10 @@ static void frozen_of(void *of, double *R)
 
 void dvi__element_set_newton(dvi__equations *equations)
 {
-  equations->prepare = prepare_of;
-  equations->jacobian = jacobian_of;
-  equations->freeze = freeze_of;
-  equations->frozen = frozen_of;
+  equations->prepare = newton_prepare;
+  equations->jacobian = newton_jacobian;
+  equations->freeze = newton_freeze;
+  equations->frozen = newton_solve_frozen;
 }
 
 void dvi__element_clear_newton(dvi__element *own)

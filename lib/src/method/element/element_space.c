@@ -1,5 +1,5 @@
-/* What methods say of their solvers and spaces, and the space of a method for those who use its
- * discrete action otherwise than step by step. */
+/* Names of solvers, orders of spaces, and the space of a method for other uses of its discrete
+ * action than step by step. */
 #include "core/status.h"
 #include "method/element/element_step.h"
 
@@ -10,7 +10,7 @@ const char *dvi__solver_choice(int index)
   return index >= 0 && index < 6 ? name[index] : NULL;
 }
 
-static int smaller(int a, int b)
+static int smaller_order(int a, int b)
 {
   return a < b ? a : b;
 }
@@ -18,7 +18,7 @@ static int smaller(int a, int b)
 int dvi__element_order(const dvi__action_space *space)
 {
   const int s = space->degree, u = dvi_quadrature_order(space->rule, space->nodes);
-  return smaller(smaller(2 * s, u), 2 * (u - s + 1));
+  return smaller_order(smaller_order(2 * s, u), 2 * (u - s + 1));
 }
 
 int dvi__fewest_nodes(dvi_rule rule, int degree)
@@ -47,8 +47,7 @@ dvi_status dvi__element_space(const dvi_system *system, const char *specificatio
   if (stepper.method->step != dvi__element_step)
     status = dvi__fail(DVI_BAD_OPTION,
                        "%s: %s is no discrete action with a polynomial path; galerkin, midpoint, "
-                       "trapezoidal, and hp and "
-                       "hamiltonian of types 1 to 3 are",
+                       "trapezoidal, and hp and hamiltonian of types 1 to 3 are",
                        user, stepper.method->name);
   else if (dvi__element_solver(&stepper) != DVI__SOLVER_AUTO)
     status = dvi__fail(DVI_BAD_OPTION,

@@ -1,79 +1,80 @@
-/* Solving one element: a guess, the ladder of solvers, the branch from shorter steps if that fails,
- * and the new state. */
+/* Step of one element, by a guess, the ladder of solvers, the branch from shorter steps if that
+ * fails, and the new state. */
 #include "method/element/element_struct.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
-#include "step/element/sweep.h"
+#include "step/element/fixed_point.h"
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/compensated.h"
 #include "num/finite.h"
 
-/* A kept factor may cost this many iterations more than a new one: about as much as making one. */
+/* Number of iterations that a kept factor may cost more than a new one, about as much as making
+ * one. */
 enum { MORE_ITERATIONS = 2 };
 
-/* After an iteration failed, the next better one takes over: for one step, and for twice as many
- * each time it fails again, up to this many. */
+/* Largest number of steps that skip an iteration after it failed. It is one at first, and doubles
+ * with each failure. */
 static const double longest_wait = 64;
 
-/* Whether the rungs follow one after the other. */
+/* Tell whether the rungs follow one after the other. */
 int dvi__element_is_ladder(const dvi__element *own)
 {
   return own->choice == DVI__SOLVER_AUTO || own->choice == DVI__SOLVER_CERTIFIED;
 }
 
-/* ---- making it ---- */
+/* ---- create ---- */
 
-static dvi_status residual_of(void *of, const double *Y, double *R)
+static dvi_status element_residual(void *of, const double *Y, double *R)
 {
   return dvi__action_residual(((const dvi__element *)of)->action, Y, R);
 }
 
-static dvi_status prepare_chord_of(void *of, const double *Y)
+static dvi_status element_prepare_chord(void *of, const double *Y)
 {
   return dvi__action_prepare_chord(((const dvi__element *)of)->action, Y);
 }
 
-static void chord_of(void *of, double *R)
+static void element_chord(void *of, double *R)
 {
   dvi__action_chord(((const dvi__element *)of)->action, R);
 }
 
-static dvi_status row_scale_of(void *of, double *scale, int *unchanged)
+static dvi_status element_row_scale(void *of, double *scale, int *unchanged)
 {
   *unchanged = !dvi__action_row_scale(((const dvi__element *)of)->action, scale);
   return DVI_OK;
 }
 
-static void magnitudes_of(void *of, double *magnitude)
+static void element_magnitudes(void *of, double *magnitude)
 {
   dvi__action_magnitudes(((const dvi__element *)of)->action, magnitude);
 }
 
-static void sweep_from_of(void *of, const double *Y)
+static void element_fixed_point_begin(void *of, const double *Y)
 {
   const dvi__element *own = of;
   if (own->forces_of != NULL)
-    dvi__action_sweep_continue(own->action, own->forces_of->h / own->forces_of->last_h,
-                               own->forces_of->last_g);
+    dvi__action_fixed_point_continue(own->action, own->forces_of->h / own->forces_of->last_h,
+                                     own->forces_of->last_g);
   else
-    dvi__action_sweep_from(own->action, Y);
+    dvi__action_fixed_point_begin(own->action, Y);
 }
 
-static dvi_status sweep_of(void *of, double *change, double *largest)
+static dvi_status element_fixed_point_iterate(void *of, double *change, double *largest)
 {
-  return dvi__action_sweep(((const dvi__element *)of)->action, change, largest);
+  return dvi__action_iterate(((const dvi__element *)of)->action, change, largest);
 }
 
-static void sweep_to_of(void *of, double *Y)
+static void element_fixed_point_end(void *of, double *Y)
 {
-  dvi__action_sweep_to(((const dvi__element *)of)->action, Y);
+  dvi__action_fixed_point_path(((const dvi__element *)of)->action, Y);
 }
 
-static void count_memory(dvi__stepper *self, const dvi__element *own)
+static void element_count_memory(dvi__stepper *self, const dvi__element *own)
 {
   self->memory_count = dvi__element_forces(self) + (size_t)dvi__action_forces_count(own->action);
   if (own->decoupled != NULL)
@@ -83,10 +84,10 @@ static void count_memory(dvi__stepper *self, const dvi__element *own)
                           (size_t)dvi__pattern_entries(dvi__action_pattern(own->action));
 }
 
-static int allocate(dvi__stepper *self, dvi__element *own)
+static int element_allocate(dvi__stepper *self, dvi__element *own)
 {
   const size_t n = (size_t)self->system->n, unknowns = (size_t)dvi__action_unknowns(own->action);
-  count_memory(self, own);
+  element_count_memory(self, own);
   own->Y = DVI_NEW(double, 2 * unknowns + 3 * n);
   if (own->Y == NULL) return 0;
   own->guess = own->Y + unknowns;
@@ -96,9 +97,9 @@ static int allocate(dvi__stepper *self, dvi__element *own)
   return 1;
 }
 
-/* Simplified Newton's method is for those who may use it; in a space without a full set of
- * eigenvectors the ladder goes without it. */
-static dvi_status make_decoupled(dvi__stepper *self, dvi__element *own)
+/* Decouple the Jacobian for solvers that may use simplified Newton's method. In a space without a
+ * full set of eigenvectors the ladder goes without it. */
+static dvi_status element_decouple(dvi__stepper *self, dvi__element *own)
 {
   if (!dvi__element_is_ladder(own) && own->choice != DVI__SOLVER_SIMPLIFIED) return DVI_OK;
   const dvi_status status = dvi__decoupled_create(own->action, self->counters, &own->decoupled);
@@ -108,22 +109,22 @@ static dvi_status make_decoupled(dvi__stepper *self, dvi__element *own)
              : dvi__fail_in(DVI_BAD_OPTION, "%s: solver=simplified", self->method->name);
 }
 
-static dvi_status make_solver(dvi__stepper *self, dvi__element *own)
+static dvi_status element_create_solver(dvi__stepper *self, dvi__element *own)
 {
-  const int sweeps = dvi__action_can_sweep(own->action);
-  dvi__equations equations = {.unknowns = dvi__action_unknowns(own->action),
-                              .group = dvi__action_space_of(own->action).degree,
-                              .pattern = dvi__action_pattern(own->action),
-                              .of = own,
-                              .residual = residual_of,
-                              .prepare_chord = prepare_chord_of,
-                              .chord = chord_of,
-                              .row_scale = row_scale_of,
-                              .sweep_from = sweeps ? sweep_from_of : NULL,
-                              .sweep = sweeps ? sweep_of : NULL,
-                              .sweep_to = sweeps ? sweep_to_of : NULL,
-                              .magnitudes = dvi__action_has_terms(own->action) ? magnitudes_of
-                                                                               : NULL};
+  const int has_fixed_point = dvi__action_has_fixed_point(own->action);
+  dvi__equations equations = {
+      .unknowns = dvi__action_unknowns(own->action),
+      .group = dvi__action_space_of(own->action).degree,
+      .pattern = dvi__action_pattern(own->action),
+      .of = own,
+      .residual = element_residual,
+      .prepare_chord = element_prepare_chord,
+      .chord = element_chord,
+      .row_scale = element_row_scale,
+      .fixed_point_begin = has_fixed_point ? element_fixed_point_begin : NULL,
+      .fixed_point_iterate = has_fixed_point ? element_fixed_point_iterate : NULL,
+      .fixed_point_end = has_fixed_point ? element_fixed_point_end : NULL,
+      .magnitudes = dvi__action_has_terms(own->action) ? element_magnitudes : NULL};
   dvi__element_set_newton(&equations);
   return dvi__solver_create(&equations, self->counters, &own->solver);
 }
@@ -140,9 +141,10 @@ dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *spac
   own->counters = self->counters;
   DVI_TRY(dvi__action_create(self->system, space, self->counters, &own->action));
   own->definite = dvi__element_is_definite(self->system, dvi__action_evaluator(own->action));
-  DVI_TRY(make_decoupled(self, own));
-  if (!allocate(self, own)) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
-  return make_solver(self, own);
+  DVI_TRY(element_decouple(self, own));
+  if (!element_allocate(self, own))
+    return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
+  return element_create_solver(self, own);
 }
 
 void dvi__element_destroy(dvi__stepper *self)
@@ -158,9 +160,10 @@ void dvi__element_destroy(dvi__stepper *self)
   dvi__release(own);
 }
 
-/* The ladder begins with the whole Jacobian, and ends with the rounding of rows: elsewhere that
- * would err to one side. Unknowns of a term are for Newton's method. */
-static dvi_status take_terms(dvi__stepper *self)
+/* Take account of a new term. The ladder begins with the whole Jacobian, and ends with the rounding
+ * of rows, because roundings would err to one side otherwise. Unknowns of a term are for Newton's
+ * method. */
+static dvi_status element_renew_solver(dvi__stepper *self)
 {
   dvi__element *own = self->own;
   const dvi__action_space space = dvi__action_space_of(own->action);
@@ -174,9 +177,11 @@ static dvi_status take_terms(dvi__stepper *self)
   own->branch = NULL;
   dvi__release(own->Y);
   own->Y = NULL;
-  if (own->keeps_whole) DVI_TRY(dvi__action_prepare_jacobian(own->action)); /* for the memory */
-  if (!allocate(self, own)) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
-  return make_solver(self, own);
+  /* for the memory's count */
+  if (own->keeps_whole) DVI_TRY(dvi__action_prepare_jacobian(own->action));
+  if (!element_allocate(self, own))
+    return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
+  return element_create_solver(self, own);
 }
 
 dvi_status dvi__element_centre(dvi__stepper *self, const dvi__centring *centring)
@@ -184,7 +189,7 @@ dvi_status dvi__element_centre(dvi__stepper *self, const dvi__centring *centring
   dvi__element *own = self->own;
   own->centred = 1;
   DVI_TRY(dvi__action_centre(own->action, centring));
-  return take_terms(self);
+  return element_renew_solver(self);
 }
 
 dvi_status dvi__element_add_term(dvi__stepper *self, const dvi__row_term *term)
@@ -192,7 +197,7 @@ dvi_status dvi__element_add_term(dvi__stepper *self, const dvi__row_term *term)
   dvi__element *own = self->own;
   own->definite = 0;
   DVI_TRY(dvi__action_add_term(own->action, term));
-  return take_terms(self);
+  return element_renew_solver(self);
 }
 
 dvi__action *dvi__element_action(const dvi__stepper *self)
@@ -223,8 +228,8 @@ void dvi__element_put(dvi__element *own, const dvi__element_place *at, double h)
 
 /* ---- guesses ---- */
 
-/* The last path continued; without one, a straight line. */
-static dvi_status guess(dvi__stepper *self, const dvi__element_place *at, double *Y)
+/* Guess the continued last path, or a straight line without one. */
+static dvi_status element_guess(dvi__stepper *self, const dvi__element_place *at, double *Y)
 {
   dvi__element *own = self->own;
   if (at->last_h == 0) return dvi__element_straight(self, at, Y);
@@ -232,15 +237,15 @@ static dvi_status guess(dvi__stepper *self, const dvi__element_place *at, double
   return DVI_OK;
 }
 
-/* One rung from the guess. Whether it counts is for its own counter. */
-static dvi_status solve_by(dvi__stepper *self, const dvi__element_place *at, dvi__rung rung,
-                           double *Y, dvi__solve_report *report)
+/* Try one rung from the guess. Each rung has its own counter. */
+static dvi_status element_solve_by(dvi__stepper *self, const dvi__element_place *at, dvi__rung rung,
+                                   double *Y, dvi__solve_report *report)
 {
   dvi__element *own = self->own;
   const double size = dvi__largest((size_t)self->system->n, at->q);
   const int patient = own->choice == DVI__SOLVER_FIXED_POINT;
   own->forces_of = rung == DVI__FIXED_POINT && at->last_g != NULL ? at : NULL;
-  if (own->forces_of == NULL) DVI_TRY(guess(self, at, Y));
+  if (own->forces_of == NULL) DVI_TRY(element_guess(self, at, Y));
   if (own->centred)
     memcpy(own->guess, Y, (size_t)dvi__action_unknowns(own->action) * sizeof(double));
   const dvi_status status = dvi__solve(own->solver, rung, size, 1, patient, Y, report);
@@ -251,9 +256,9 @@ static dvi_status solve_by(dvi__stepper *self, const dvi__element_place *at, dvi
   return status;
 }
 
-/* Whether the user, or the steps before, want this iteration; a step that does without it is
- * counted down. */
-static int is_due(const dvi__element *own, int choice, double *steps_without)
+/* Tell whether the user, or the steps before, want this iteration. A step without it is counted
+ * down. */
+static int element_is_due(const dvi__element *own, int choice, double *steps_without)
 {
   if (own->choice != choice && !dvi__element_is_ladder(own)) return 0;
   if (*steps_without == 0 || own->choice == choice) return 1;
@@ -261,27 +266,27 @@ static int is_due(const dvi__element *own, int choice, double *steps_without)
   return 0;
 }
 
-/* What an iteration's success or failure means for the next steps. */
-static void learn(dvi__stepper *self, dvi_status status, int steps, int wait)
+/* Back off. Skip an iteration that failed for 1, 2, 4 ... 64 steps. Success resets the wait. */
+static void update_backoff(dvi__stepper *self, dvi_status status, int steps, int wait)
 {
   double *last = &self->memory[wait];
   *last = status == DVI_OK ? 0 : *last == 0 ? 1 : fmin(2 * *last, longest_wait);
   self->memory[steps] = *last;
 }
 
-/* With the factor of earlier steps as long as that is as good as a new one. All that this depends
- * on is in the memory: a restored run finds the same digits. */
-static dvi_status solve_simplified(dvi__stepper *self, const dvi__element_place *at, double *Y,
-                                   dvi__solve_report *report)
+/* Solve with the factor of earlier steps as long as that is as good as a new one. All that this
+ * depends on is in the memory, so that a restored run finds the same digits. */
+static dvi_status element_solve_simplified(dvi__stepper *self, const dvi__element_place *at,
+                                           double *Y, dvi__solve_report *report)
 {
   dvi__element *own = self->own;
   double *frozen = own->frozen = self->memory + dvi__element_forces(self) +
                                  dvi__action_forces_count(own->action);
   own->keeps = frozen[DVI__FROZEN_H] == at->h;
-  dvi_status status = solve_by(self, at, DVI__SIMPLIFIED, Y, report);
+  dvi_status status = element_solve_by(self, at, DVI__SIMPLIFIED, Y, report);
   if (status > 0 && own->keeps) {
     own->keeps = 0;
-    status = solve_by(self, at, DVI__SIMPLIFIED, Y, report);
+    status = element_solve_by(self, at, DVI__SIMPLIFIED, Y, report);
   }
   const int good = status == DVI_OK &&
                    (!own->keeps ||
@@ -293,31 +298,31 @@ static dvi_status solve_simplified(dvi__stepper *self, const dvi__element_place 
 
 /* Solve the element at its place, from a first guess, by the rung that the user or the measured
  * contraction chooses. */
-static dvi_status solve_at(dvi__stepper *self, const dvi__element_place *at, double *Y,
-                           dvi__solve_report *report)
+static dvi_status element_solve(dvi__stepper *self, const dvi__element_place *at, double *Y,
+                                dvi__solve_report *report)
 {
   dvi__element *own = self->own;
   dvi__element_put(own, at, at->h);
   if ((!own->keeps_whole || !dvi__element_is_ladder(own)) &&
-      is_due(own, DVI__SOLVER_FIXED_POINT, &self->memory[DVI__NEWTON_STEPS])) {
-    const dvi_status status = solve_by(self, at, DVI__FIXED_POINT, Y, report);
-    learn(self, status, DVI__NEWTON_STEPS, DVI__NEWTON_WAIT);
+      element_is_due(own, DVI__SOLVER_FIXED_POINT, &self->memory[DVI__NEWTON_STEPS])) {
+    const dvi_status status = element_solve_by(self, at, DVI__FIXED_POINT, Y, report);
+    update_backoff(self, status, DVI__NEWTON_STEPS, DVI__NEWTON_WAIT);
     if (status <= 0) return status;
   }
   if (dvi__element_is_ladder(own)) DVI_TRY(dvi__element_weigh(own));
   const int can_freeze = own->keeps_whole || (own->decoupled != NULL && !own->is_dear);
-  if (can_freeze && is_due(own, DVI__SOLVER_SIMPLIFIED, &self->memory[DVI__FULL_STEPS])) {
-    const dvi_status status = solve_simplified(self, at, Y, report);
-    learn(self, status, DVI__FULL_STEPS, DVI__FULL_WAIT);
+  if (can_freeze && element_is_due(own, DVI__SOLVER_SIMPLIFIED, &self->memory[DVI__FULL_STEPS])) {
+    const dvi_status status = element_solve_simplified(self, at, Y, report);
+    update_backoff(self, status, DVI__FULL_STEPS, DVI__FULL_WAIT);
     if (status <= 0) return status;
   }
-  return solve_by(self, at, own->choice == DVI__SOLVER_KINSOL ? DVI__KINSOL : DVI__NEWTON, Y,
-                  report);
+  return element_solve_by(self, at, own->choice == DVI__SOLVER_KINSOL ? DVI__KINSOL : DVI__NEWTON,
+                          Y, report);
 }
 
-/* ---- the step ---- */
+/* ---- step ---- */
 
-static dvi_status advance(dvi__stepper *self, dvi__state *state, double h)
+static dvi_status element_advance(dvi__stepper *self, dvi__state *state, double h)
 {
   const dvi__element *own = self->own;
   const int n = self->system->n;
@@ -333,10 +338,10 @@ static dvi_status advance(dvi__stepper *self, dvi__state *state, double h)
   return DVI_OK;
 }
 
-/* KINSOL judges, but what the step takes stays what the iteration found; what does not pass is
- * solved by KINSOL itself. */
-static dvi_status certify(dvi__stepper *self, const dvi__element_place *at, double *Y,
-                          dvi__solve_report *report)
+/* Let KINSOL test the solution. The step keeps the solution of the iteration. KINSOL itself solves
+ * those that do not pass. */
+static dvi_status element_certify(dvi__stepper *self, const dvi__element_place *at, double *Y,
+                                  dvi__solve_report *report)
 {
   dvi__element *own = self->own;
   const double size = dvi__largest((size_t)self->system->n, at->q);
@@ -347,10 +352,10 @@ static dvi_status certify(dvi__stepper *self, const dvi__element_place *at, doub
   return DVI_OK;
 }
 
-static dvi__element_place place_of(const dvi__stepper *self, const dvi__state *state, double h)
+static dvi__element_place element_place(const dvi__stepper *self, const dvi__state *state, double h)
 {
   const int continues = self->memory[DVI__LAST_H] != 0 &&
-                        dvi__action_can_sweep(dvi__element_action(self));
+                        dvi__action_has_fixed_point(dvi__element_action(self));
   return (dvi__element_place){state->t,
                               h,
                               state->q,
@@ -360,12 +365,12 @@ static dvi__element_place place_of(const dvi__stepper *self, const dvi__state *s
                               continues ? self->memory + dvi__element_forces(self) : NULL};
 }
 
-/* By the ladder, and where that fails, or is not to be trusted, along the branch. */
-static dvi_status find_path(dvi__stepper *self, const dvi__element_place *at,
-                            dvi__solve_report *report)
+/* Find the path by the ladder, and along the branch where the ladder fails, or is not certain. */
+static dvi_status element_find_path(dvi__stepper *self, const dvi__element_place *at,
+                                    dvi__solve_report *report)
 {
   dvi__element *own = self->own;
-  const dvi_status status = self->follow ? DVI_OK : solve_at(self, at, own->Y, report);
+  const dvi_status status = self->follow ? DVI_OK : element_solve(self, at, own->Y, report);
   if (status < 0) return status;
   if (status != DVI_OK || self->follow || (own->centred && dvi__element_strays(self, at)))
     return dvi__element_follow(self, at, status, own->Y);
@@ -378,12 +383,12 @@ dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
 {
   dvi__element *own = self->own;
   dvi__solve_report report = {0};
-  const dvi__element_place at = place_of(self, state, h);
-  DVI_TRY(find_path(self, &at, &report));
+  const dvi__element_place at = element_place(self, state, h);
+  DVI_TRY(element_find_path(self, &at, &report));
   dvi__action_ends(own->action, own->Y, own->dq, own->dq_low, own->dp);
   dvi__action_forces(own->action, self->memory + dvi__element_forces(self));
-  if (own->choice == DVI__SOLVER_CERTIFIED) DVI_TRY(certify(self, &at, own->Y, &report));
-  return advance(self, state, h);
+  if (own->choice == DVI__SOLVER_CERTIFIED) DVI_TRY(element_certify(self, &at, own->Y, &report));
+  return element_advance(self, state, h);
 }
 
 void dvi__element_path(const dvi__stepper *self, const double *q0, double h, double tau, double *q,

@@ -1,4 +1,4 @@
-/* A step by the stationarity of one element of the discrete action: what galerkin, midpoint and
+/* A step by the stationarity of one element of the discrete action, which galerkin, midpoint and
  * trapezoidal share. */
 #ifndef DVI_METHOD_ELEMENT_STEP_H
 #define DVI_METHOD_ELEMENT_STEP_H
@@ -6,7 +6,7 @@
 #include "method/method.h"
 #include "solve/nonlinear.h"
 
-/* The `solver` key of methods that step so; its index in the method's own table goes to
+/* The `solver` key of methods with such a step. Its index in the method's own table goes to
  * dvi__element_create. */
 #define DVI__SOLVER_KEY                                                             \
   {                                                                                 \
@@ -24,24 +24,30 @@ enum {
 };
 const char *dvi__solver_choice(int index);
 
-/* Fill a stepper's order, symmetric, memory and own for this space; `solver` is one of the numbers
+/* Set a stepper's order, symmetric, memory and own for this space. `solver` is one of the numbers
  * above. */
 dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *space, int solver);
 
-/* Let its paths be those of charts centred at their start, after create. What the Jacobian loses
- * when it is taken apart, or replaced by its kinetic part, is as large there as the turn of a step:
- * the ladder begins with the whole one, kept over steps. */
+/* Let the paths be those of charts centred at their start, after create. Decoupling the Jacobian,
+ * or replacing it by its kinetic part, costs as much accuracy there as the turn of a step. So the
+ * ladder begins with the whole Jacobian, kept over steps. */
 dvi_status dvi__element_centre(dvi__stepper *self, const dvi__centring *centring);
 
-/* Add a term to its rows (step/element/row_term.h), after create, before the driver takes the
+/* Add a term to the rows (step/element/row_term.h), after create, before the driver reads the
  * memory's count. */
 dvi_status dvi__element_add_term(dvi__stepper *self, const dvi__row_term *term);
 
-/* The memory: length of the last step (0: none); steps for which fixed point iteration and
- * simplified Newton's method are not tried again, and how many they were when the iteration last
- * failed (0: it has not since it last succeeded); the last step's unknowns (before the first step,
- * the start's velocity in their place) and its forces; what simplified Newton's method keeps
- * frozen. */
+/* Places of the memory.
+ *
+ *   DVI__LAST_H        length of the last step, 0 if there was none
+ *   DVI__NEWTON_STEPS  number of steps that skip fixed point iteration
+ *   DVI__FULL_STEPS    number of steps that skip simplified Newton's method
+ *   DVI__NEWTON_WAIT   number of steps skipped after the last failure of fixed point iteration,
+ *                      0 since its last success
+ *   DVI__FULL_WAIT     the same number for simplified Newton's method
+ *   DVI__LAST_Y        unknowns of the last step, or the start's velocity before the first step
+ *
+ * The forces of the last step and the frozen Jacobian of simplified Newton's method follow. */
 enum {
   DVI__LAST_H,
   DVI__NEWTON_STEPS,
@@ -51,34 +57,34 @@ enum {
   DVI__LAST_Y
 };
 
-/* Where the forces stand in it. */
+/* Give the place of the forces in the memory. */
 size_t dvi__element_forces(const dvi__stepper *self);
 
-/* The space of a method that is one element of the action, by its specification, spelled out into
- * text; DVI_BAD_OPTION for other methods, and if a solver is asked for, which `user` would not
- * heed. */
+/* Give the space of a method that is one element of the action, by its specification, spelled out
+ * into text. DVI_BAD_OPTION for other methods, and if the specification names a solver, which
+ * `user` would ignore. */
 dvi_status dvi__element_space(const dvi_system *system, const char *specification, const char *user,
                               dvi__action_space *space, dvi__text *spelled);
 
-/* The method's order. With a quadrature of order u the action errs by that one's error, h^u of
- * itself, and by the square of the path's: the path is stationary, and its velocity errs by h^s, or
- * by h^(u-s+1) if the quadrature does not see all of it. */
+/* Give the method's order. With a quadrature of order u the relative error of the action is h^u
+ * from the quadrature, and the square of the path's error. The path is stationary, and its velocity
+ * has an error of h^s, or of h^(u-s+1) if the quadrature does not see all of it. */
 int dvi__element_order(const dvi__action_space *space);
 
-/* The fewest nodes of a rule whose order is 2 degree, or the most that it has; whether it is the
- * same from both ends. */
+/* Give the fewest nodes of a rule whose order is 2 degree, or the most that it has. Tell whether
+ * the rule is symmetric. */
 int dvi__fewest_nodes(dvi_rule rule, int degree);
 int dvi__symmetric_rule(dvi_rule rule);
 
-/* What it was made of. */
+/* Give the parts that the element was made of. */
 dvi__action *dvi__element_action(const dvi__stepper *self);
 int dvi__element_solver(const dvi__stepper *self);
 
-/* Lines of an explanation: how many entries a Jacobian has; by which linear solver. */
+/* Write lines of an explanation, on the entries of a Jacobian and on the linear solver. */
 void dvi__explain_entries(double unknowns, double entries, dvi__text *text);
 void dvi__explain_linear(dvi__solver *solver, dvi__text *text);
 
-/* The other operations of dvi__method, and what goes into its initialiser for them. */
+/* The other operations of dvi__method, and the initialiser for them. */
 void dvi__element_destroy(dvi__stepper *self);
 void dvi__element_start(dvi__stepper *self, const double *v);
 dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h);
@@ -86,12 +92,12 @@ void dvi__element_path(const dvi__stepper *self, const double *q0, double h, dou
                        double *v);
 void dvi__element_explain(const dvi__stepper *self, dvi__text *text);
 
-/* Members side by side (element_lanes.c). */
+/* Step members side by side (element_lanes.c). */
 dvi_status dvi__element_prepare_lanes(dvi__stepper *self, int capacity);
 void dvi__element_clear_lanes(dvi__stepper *self);
 void dvi__element_step_lanes(dvi__stepper *self, dvi__members *members, double h);
 
-/* The terms that they can use. */
+/* The terms that these methods can use. */
 enum { DVI__ELEMENT_TERMS = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL };
 
 #define DVI__ELEMENT_OPERATIONS                                                            \

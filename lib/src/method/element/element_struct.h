@@ -5,91 +5,91 @@
 #include "method/element/element_step.h"
 #include "solve/branch.h"
 
-/* One step's worth of arguments: where it starts and what is known of the step before. */
+/* Arguments of a step, which are its start and the results of the step before. */
 typedef struct dvi__element_place {
   double t, h;
   const double *q, *p;
-  double last_h;        /* 0: there was none */
-  const double *last_Y; /* its unknowns; without a step before, a guess of the velocity [n] */
-  const double *last_g; /* its forces; NULL: not known */
+  double last_h;        /* 0 if there was none */
+  const double *last_Y; /* last unknowns; without a step before, a guess of the velocity [n] */
+  const double *last_g; /* last forces, NULL if not known */
 } dvi__element_place;
 
-/* How Newton's method has the Jacobian, which is chosen when it is first needed
+/* Form of the Jacobian in Newton's method, which is chosen when it is first needed
  * (element_newton.c). */
 typedef struct dvi__newton_form {
-  int is_operator;         /* 0: it is a matrix */
-  dvi__operator A;         /* its products, and what preconditions them: */
-  dvi__decoupled *systems; /* decoupled systems; NULL: the kinetic part */
-  dvi__decoupled *owned;   /* these, where simplified Newton's method has none */
-  double *point;           /* where they are frozen: work */
-  int is_frozen;           /* what preconditions was made for the equations where they stand */
+  int is_operator;         /* the Jacobian is an operator, not a matrix */
+  dvi__operator A;         /* products of the Jacobian and their preconditioner */
+  dvi__decoupled *systems; /* decoupled systems that precondition, NULL for the kinetic part */
+  dvi__decoupled *owned;   /* the same systems, where simplified Newton's method has none */
+  double *point;           /* work, the point at which they are frozen */
+  int is_frozen;           /* the preconditioner belongs to the current place of the equations */
 } dvi__newton_form;
 
-/* What is frozen, in the memory: the step's length, 0: nothing is; how many iterations it took when
- * it was new; and the Jacobian at a point, by that, or as it is. */
+/* Places of the frozen part of the memory, which are the step's length (0 if nothing is frozen),
+ * the number of iterations with the new factor, and the point of the frozen Jacobian, or the
+ * Jacobian. */
 enum { DVI__FROZEN_H, DVI__FROZEN_ITERATIONS, DVI__FROZEN_POINT };
 
 typedef struct dvi__element {
   dvi__action *action;
   dvi_counters *counters;
-  /* simplified Newton's method takes the Jacobian apart; NULL: it does not */
+  /* systems of simplified Newton's method, or NULL */
   dvi__decoupled *decoupled;
-  int is_weighed, is_dear; /* its factors' cost is known; and too high for the ladder */
-  int centred,
-      /* in charts at its start, where a path that is not near its guess is followed; it keeps the
-       * whole Jacobian */
-      keeps_whole;
-  /* symmetric Jacobians, and real parts of them, are definite for short steps: the mass is
-   * constant, and positive */
+  int is_weighed, is_dear; /* the cost of their factors is known, and is too high for the ladder */
+  /* paths are in charts at their start, and a path that is not near its guess is followed */
+  int centred;
+  int keeps_whole; /* the whole Jacobian is kept over steps */
+  /* symmetric Jacobians, and real parts of them, are definite for short steps, because the mass is
+   * constant and positive */
   int definite;
   dvi__solver *solver;
   dvi__newton_form newton;
-  int choice;     /* of the solver */
-  dvi__rung rung; /* that was tried last */
-  double *Y;      /* the unknowns; the arrays below lie behind */
-  double *frozen; /* in the memory: what is frozen */
+  int choice;     /* choice of the solver */
+  dvi__rung rung; /* the rung tried last */
+  double *Y;      /* unknowns, followed by the arrays below */
+  double *frozen; /* the frozen part of the memory */
   int keeps;      /* the Jacobian is not frozen anew */
-  /* the place whose iteration starts from the last step's forces; NULL: from Y */
+  /* the place whose iteration starts from the last step's forces, NULL if it starts from Y */
   const dvi__element_place *forces_of;
   double *dq, *dq_low, *dp;
-  double *guess;  /* [unknowns] of the iteration, in charts */
-  double *branch; /* [DVI__BRANCH_ROOM * unknowns] room to follow one; NULL: not needed yet */
+  double *guess;  /* [unknowns] guess of the iteration, in charts */
+  double *branch; /* [DVI__BRANCH_ROOM * unknowns] work to follow a branch, NULL until needed */
 } dvi__element;
 
 /* Put the equations at a step of length h from there. */
 void dvi__element_put(dvi__element *own, const dvi__element_place *at, double h);
 
-/* Whether the rungs follow one after the other. */
+/* Tell whether the rungs follow one after the other. */
 int dvi__element_is_ladder(const dvi__element *own);
 
-/* Complete the equations by what Newton's methods need; free it. */
+/* Set the members of the equations that Newton's methods need, and free their memory. */
 void dvi__element_set_newton(dvi__equations *equations);
 void dvi__element_clear_newton(dvi__element *own);
 
-/* Find out whether the factors of simplified Newton's method are too dear for the ladder.
+/* Find whether the factors of simplified Newton's method are too expensive for the ladder.
  * DVI_NO_MEMORY, DVI_BAD_SIZE, DVI_SOLVER_FAILED. */
 dvi_status dvi__element_weigh(dvi__element *own);
 
-/* The systems that the last rung went by; NULL: it went by the whole Jacobian, or by none. */
+/* Give the systems that the last rung used, or NULL if it used the whole Jacobian, or none. */
 const dvi__decoupled *dvi__element_frozen(const dvi__element *own);
 
-/* Y of a straight line along the velocity at the start, which is sought from that of the last
+/* Guess Y by a straight line along the velocity at the start, which is found from that of the last
  * path. */
 dvi_status dvi__element_straight(dvi__stepper *self, const dvi__element_place *at, double *Y);
 
-/* Y of the solution that continues those of shorter steps; `whole`: what the ladder failed by, with
- * the thread's sentence, or DVI_OK. */
+/* Find Y of the solution that continues those of shorter steps. `whole` is the failure of the
+ * ladder, with the thread's sentence, or DVI_OK. */
 dvi_status dvi__element_follow(dvi__stepper *self, const dvi__element_place *at, dvi_status whole,
                                double *Y);
 
-/* Whether the mass makes what is symmetric of a short step's Jacobian definite. */
+/* Tell whether the mass makes the symmetric parts of a short step's Jacobian definite. */
 int dvi__element_is_definite(const dvi_system *system, const dvi__evaluator *evaluator);
 
-/* Of the solution that the ladder has found: what it tells of its branch. */
+/* Tell how certain it is that the ladder's solution lies on the branch connected to h = 0. */
 dvi__doubt dvi__element_doubt(const dvi__stepper *self, const dvi__element_place *at,
                               const dvi__solve_report *report);
 
-/* The same in charts, where the turn from the guess decides: whether it is to be followed. */
+/* Tell the same in charts, where the turn from the guess decides whether the branch is followed. */
 int dvi__element_strays(const dvi__stepper *self, const dvi__element_place *at);
 
 #endif

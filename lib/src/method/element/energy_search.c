@@ -6,11 +6,11 @@
 #include "core/memory.h"
 #include "core/status.h"
 
-/* Of a root or a turning point, in iterations; a bracket that is not halved by three of the fast
- * ones is bisected. */
+/* Iterations for a root or a turning point. A bracket that three of the fast ones do not halve is
+ * bisected. */
 enum { MOST_ITERATIONS = 100 };
 
-/* A turning point need not be closer: D is flat there. */
+/* Relative distance at which a turning point is close enough, because D is flat there. */
 static const double turning_point = 1e-8;
 
 dvi_status dvi__energy_search_create(dvi__bordered *b, dvi__energy_search *search)
@@ -79,33 +79,33 @@ int dvi__energy_solved(const dvi__mismatch *found)
 
 /* ---- between two trials ---- */
 
-/* What is sought between two lengths: a zero of D, or of its slope. */
-static double sought(const dvi__mismatch *m, int turning)
+/* Give the function whose zero is searched between two lengths, D or its slope. */
+static double searched_function(const dvi__mismatch *m, int turning)
 {
   return turning ? m->slope : m->value;
 }
 
-static int brackets(const dvi__mismatch *a, const dvi__mismatch *c, int turning)
+static int is_bracket(const dvi__mismatch *a, const dvi__mismatch *c, int turning)
 {
-  return (sought(a, turning) > 0) != (sought(c, turning) > 0);
+  return (searched_function(a, turning) > 0) != (searched_function(c, turning) > 0);
 }
 
-/* |D| falls from both ends into the interval. */
+/* Tell whether |D| falls from both ends into the interval. */
 static int turns_towards_zero(const dvi__mismatch *a, const dvi__mismatch *c)
 {
   return a->value * a->slope * (c->h - a->h) < 0 && c->value * c->slope * (a->h - c->h) < 0;
 }
 
-/* Regula falsi with Illinois' weights; while it looks for a turning point, a change of sign of D
- * ends it: then a and c bracket a root. */
-static dvi_status narrow(dvi__energy_search *search, dvi__mismatch *a, dvi__mismatch *c,
-                         int turning)
+/* Narrow a bracket by regula falsi with Illinois' weights. In a search for a turning point, a
+ * change of sign of D ends it, and a and c bracket a root. */
+static dvi_status narrow_bracket(dvi__energy_search *search, dvi__mismatch *a, dvi__mismatch *c,
+                                 int turning)
 {
   double weight_a = 1, weight_c = 1, looked_at = HUGE_VAL;
   int side = 0;
   for (int i = 0; i < MOST_ITERATIONS; i++) {
-    const double fa = weight_a * sought(a, turning), fc = weight_c * sought(c, turning),
-                 width = c->h - a->h;
+    const double fa = weight_a * searched_function(a, turning),
+                 fc = weight_c * searched_function(c, turning), width = c->h - a->h;
     const int lingers = i % 3 == 0 && fabs(width) > 0.5 * looked_at;
     double h = a->h + width * (fa / (fa - fc));
     dvi__mismatch middle;
@@ -114,11 +114,11 @@ static dvi_status narrow(dvi__energy_search *search, dvi__mismatch *a, dvi__mism
     if (lingers || !((h - a->h) / width > 0 && (h - a->h) / width < 1)) h = a->h + 0.5 * width;
     if (h == a->h || h == c->h || (turning && fabs(width) <= turning_point * fabs(h))) break;
     DVI_TRY(dvi__energy_search_try(search, h, 1, &middle));
-    if (dvi__energy_solved(&middle) || (turning && brackets(a, &middle, 0))) {
+    if (dvi__energy_solved(&middle) || (turning && is_bracket(a, &middle, 0))) {
       *c = middle;
       break;
     }
-    if (brackets(a, &middle, turning)) {
+    if (is_bracket(a, &middle, turning)) {
       *c = middle;
       weight_c = 1;
       if (side == 1) weight_a *= 0.5;
@@ -133,28 +133,29 @@ static dvi_status narrow(dvi__energy_search *search, dvi__mismatch *a, dvi__mism
   return DVI_OK;
 }
 
-/* Look for a root between two neighbours; *found if the best trial is one. */
+/* Look for a root between two neighbours. *found tells whether the best trial is one. */
 static dvi_status look_between(dvi__energy_search *search, dvi__mismatch a, dvi__mismatch c,
                                int *found)
 {
-  if (!brackets(&a, &c, 0) && turns_towards_zero(&a, &c)) DVI_TRY(narrow(search, &a, &c, 1));
-  if (brackets(&a, &c, 0)) DVI_TRY(narrow(search, &a, &c, 0));
+  if (!is_bracket(&a, &c, 0) && turns_towards_zero(&a, &c))
+    DVI_TRY(narrow_bracket(search, &a, &c, 1));
+  if (is_bracket(&a, &c, 0)) DVI_TRY(narrow_bracket(search, &a, &c, 0));
   *found = dvi__energy_solved(&search->best);
   return DVI_OK;
 }
 
 /* ---- along the branch ---- */
 
-/* One of the two ways out from the last length. */
-typedef struct way {
+/* One of the two directions from the last length. */
+typedef struct search_direction {
   dvi__mismatch last;
   double factor, bound;
   int open;
-} way;
+} search_direction;
 
-/* The next length on this way, and what lies between. Where the rows have no solution the way
- * ends. */
-static dvi_status follow(dvi__energy_search *search, way *w, int *found)
+/* Try the next length in this direction, and search the lengths between. The direction ends where
+ * the rows have no solution. */
+static dvi_status search_next_length(dvi__energy_search *search, search_direction *w, int *found)
 {
   const double wanted = w->last.h * w->factor;
   const int beyond = w->factor > 1 ? fabs(wanted) >= w->bound : fabs(wanted) <= w->bound;
@@ -173,10 +174,10 @@ static dvi_status follow(dvi__energy_search *search, way *w, int *found)
   return between > 0 ? DVI_OK : between;
 }
 
-/* Where the branch is entered: at the last length, or at the longest of its halves at which the
- * rows have a solution. */
-static dvi_status enter(dvi__energy_search *search, double last, double least, double most,
-                        dvi__mismatch *first)
+/* Enter the branch at the last length, or at the longest of its halves at which the rows have a
+ * solution. */
+static dvi_status enter_branch(dvi__energy_search *search, double last, double least, double most,
+                               dvi__mismatch *first)
 {
   double h = copysign(fmin(fmax(fabs(last), least), most), last);
   dvi_status status = dvi__energy_search_try(search, h, 1, first);
@@ -187,17 +188,19 @@ static dvi_status enter(dvi__energy_search *search, double last, double least, d
   return status;
 }
 
-static dvi_status explore(dvi__energy_search *search, double last, double least, double most)
+static dvi_status search_both_directions(dvi__energy_search *search, double last, double least,
+                                         double most)
 {
   const double ratio = sqrt(2.0);
   dvi__mismatch first;
   int found = 0;
-  DVI_TRY(enter(search, last, least, most, &first));
-  way ways[2] = {{first, ratio, most, 1}, {first, 1 / ratio, least, 1}};
+  DVI_TRY(enter_branch(search, last, least, most, &first));
+  search_direction ways[2] = {{.last = first, .factor = ratio, .bound = most, .open = 1},
+                              {.last = first, .factor = 1 / ratio, .bound = least, .open = 1}};
   found = dvi__energy_solved(&first);
   while (!found && (ways[0].open || ways[1].open))
     for (int k = 0; k < 2 && !found; k++)
-      if (ways[k].open) DVI_TRY(follow(search, &ways[k], &found));
+      if (ways[k].open) DVI_TRY(search_next_length(search, &ways[k], &found));
   return DVI_OK;
 }
 
@@ -205,6 +208,6 @@ dvi_status dvi__energy_search_find(dvi__energy_search *search, double last, doub
                                    double most, dvi__mismatch *found)
 {
   search->tried = 0;
-  DVI_TRY(explore(search, last, least, most));
+  DVI_TRY(search_both_directions(search, last, least, most));
   return dvi__energy_search_try(search, search->best.h, 1, found);
 }

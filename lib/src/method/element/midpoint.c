@@ -8,11 +8,12 @@
 
 enum { SOLVER };
 
-static const dvi__key keys[] = {DVI__SOLVER_KEY, {0}};
+static const dvi__key midpoint_keys[] = {DVI__SOLVER_KEY, {0}};
 
-static dvi_status create(dvi__stepper *self)
+static dvi_status midpoint_create(dvi__stepper *self)
 {
-  const dvi__action_space space = {DVI_LAGRANGE_LOBATTO, 1, DVI_MIDPOINT, 1};
+  const dvi__action_space space = {
+      .basis = DVI_LAGRANGE_LOBATTO, .degree = 1, .rule = DVI_MIDPOINT, .nodes = 1};
   return dvi__element_create(self, &space, self->settings.value[SOLVER]);
 }
 
@@ -20,8 +21,8 @@ const dvi__method dvi__midpoint = {
     .name = "midpoint",
     .summary = "implicit midpoint rule: straight line, midpoint; order 2; any Lagrangian",
     .cite = "MarsdenWest2001",
-    .keys = keys,
+    .keys = midpoint_keys,
     .uses = DVI__ELEMENT_TERMS,
-    .create = create,
+    .create = midpoint_create,
     DVI__ELEMENT_OPERATIONS,
 };

@@ -1,14 +1,16 @@
-/* Symplectic-energy-momentum integrators: the times of the nodes are unknowns, too.
+/* Symplectic-energy-momentum integrators. The times of the nodes are unknowns, too.
  *
  * Space: polynomials of degree s. Quadrature: Gauss with s points or Lobatto with s+1.
  * Ld(q0,t0,q1,t1) as galerkin's, stationary in q_k and t_k:
- *     D2 Ld(k-1) + D1 Ld(k) = 0,        E+_{k-1} = E-_k,
- *     E+ = -dLd/dt1, E- = dLd/dt0  (step/element/energy.h)
+ *   D2 Ld(k-1) + D1 Ld(k) = 0,        E+_{k-1} = E-_k,
+ *   E+ = -dLd/dt1, E- = dLd/dt0  (step/element/energy.h)
+ *
  * The first step has the given length h0 and fixes the first E+. Where the energy equation has no
  * solution (energy_search.h) the step is the one with the least (E+ - E-)^2 within hmin <= |h| <=
  * hmax, all other rows exact. Order 2s in (t,q,p), symplectic in (t,E,q,p), conserves E of
- * autonomous systems and the momenta of symmetries. Source: Kane, Marsden and Ortiz 1999; Leok
- * 2004, sec. 5.2 and 5.5. */
+ * autonomous systems and the momenta of symmetries.
+ *
+ * Source: Kane, Marsden and Ortiz 1999; Leok 2004, sec. 5.2 and 5.5. */
 #include <math.h>
 #include <string.h>
 
@@ -19,44 +21,44 @@
 
 enum { DEGREE, QUADRATURE, HMIN, HMAX, SOLVER };
 
-static const char *rule_name(int index)
+static const char *sem_rule_name(int index)
 {
   static const char *const name[] = {"gauss", "lobatto"};
   return index >= 0 && index < 2 ? name[index] : NULL;
 }
 
-static const char *solver_name(int index)
+static const char *sem_solver_name(int index)
 {
   static const char *const name[] = {"newton", "kinsol"};
   return index >= 0 && index < 2 ? name[index] : NULL;
 }
 
-static const dvi__key keys[] = {
+static const dvi__key sem_keys[] = {
     {"degree", NULL, 1, DVI_DEGREE_MAX, 1,
      "degree of the path, 1 to 40; default: 1, the midpoint rule with Gauss"},
-    {"quadrature", rule_name, 0, 0, 0,
+    {"quadrature", sem_rule_name, 0, 0, 0,
      "gauss (degree points) or lobatto (degree + 1 points); default: gauss"},
     {"hmin", NULL, DVI__POSITIVE, 0, 0,
      "the least length of a step, positive; auto, or default: a tenth of the first step"},
     {"hmax", NULL, DVI__POSITIVE, 0, 0,
      "the largest length of a step, positive; auto, or default: thirty times the first step"},
-    {"solver", solver_name, 0, 0, 0,
+    {"solver", sem_solver_name, 0, 0, 0,
      "of rows and energy row together: newton, or kinsol, with line search; default: newton"},
     {0},
 };
 
-/* Bounds that are left out, in units of the first step. */
+/* Default bounds, in units of the first step. */
 static const double least_part = 0.1, largest_part = 30;
 
-/* Lengths that a rounding of the energy moves by more than a ten-millionth of themselves say
- * nothing about the next one. */
+/* A length says nothing about the next one if a rounding of the energy moves it by more than a
+ * ten-millionth of itself. */
 static const double certain = 1e-9;
 
-/* A step is at most so many times as long or as short as the last one: a length farther off may
- * solve the equations, but it has nothing to do with the steps before. */
+/* Largest ratio of a step to the last one. A length farther off may solve the equations, but it has
+ * nothing to do with the steps before. */
 static const double reach = 4;
 
-/* The memory, before the element's own. JUMPS and WORK are compensated sums. */
+/* Places of the memory, before the element's own. JUMPS and WORK are compensated sums. */
 enum {
   FIRST_H,
   BEFORE_H,
@@ -65,9 +67,9 @@ enum {
   FIRST,
   ENERGY,
   WORK,
-  WORK_CARRY,
+  WORK_COMPENSATION,
   JUMPS,
-  JUMPS_CARRY,
+  JUMPS_COMPENSATION,
   FALLBACKS,
   LAST_JUMP,
   LARGEST_JUMP,
@@ -81,16 +83,32 @@ typedef struct sem {
   dvi__energy_search search;
 } sem;
 
-static dvi_status create(dvi__stepper *self)
+typedef struct sem_options {
+  int degree, lobatto, solver;
+  double hmin, hmax; /* 0 for the default */
+} sem_options;
+
+static sem_options sem_options_of(const dvi__stepper *self)
 {
-  const int degree = self->settings.value[DEGREE], lobatto = self->settings.value[QUADRATURE];
-  const double hmin = self->settings.number[HMIN], hmax = self->settings.number[HMAX];
-  const dvi__action_space space = {DVI_LAGRANGE_LOBATTO, degree, lobatto ? DVI_LOBATTO : DVI_GAUSS,
-                                   degree + lobatto};
-  if (hmax != 0 && hmin > hmax)
+  const dvi__settings *s = &self->settings;
+  return (sem_options){.degree = s->value[DEGREE],
+                       .lobatto = s->value[QUADRATURE],
+                       .solver = s->value[SOLVER],
+                       .hmin = s->number[HMIN],
+                       .hmax = s->number[HMAX]};
+}
+
+static dvi_status sem_create(dvi__stepper *self)
+{
+  const sem_options o = sem_options_of(self);
+  const dvi__action_space space = {.basis = DVI_LAGRANGE_LOBATTO,
+                                   .degree = o.degree,
+                                   .rule = o.lobatto ? DVI_LOBATTO : DVI_GAUSS,
+                                   .nodes = o.degree + o.lobatto};
+  if (o.hmax != 0 && o.hmin > o.hmax)
     return dvi__fail(DVI_BAD_OPTION,
-                     "sem: hmin=%g is above hmax=%g; no step has a length between them", hmin,
-                     hmax);
+                     "sem: hmin=%g is above hmax=%g; no step has a length between them", o.hmin,
+                     o.hmax);
   sem *own = self->own = DVI_NEW(sem, 1);
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "sem: no memory");
   const dvi_status status = dvi__system_has_rates(self->system);
@@ -103,7 +121,7 @@ static dvi_status create(dvi__stepper *self)
   return DVI_OK;
 }
 
-static void destroy(dvi__stepper *self)
+static void sem_destroy(dvi__stepper *self)
 {
   sem *own = self->own;
   if (own == NULL) return;
@@ -112,33 +130,32 @@ static void destroy(dvi__stepper *self)
   dvi__release(own);
 }
 
-/* The element's stepper, which works on this method's memory. */
-static dvi__stepper *element_of(const dvi__stepper *self)
+/* Give the element's stepper, which works on this method's memory. */
+static dvi__stepper *sem_element(const dvi__stepper *self)
 {
   sem *own = self->own;
   own->bordered.element.memory = self->memory + OWN;
   return &own->bordered.element;
 }
 
-static void start(dvi__stepper *self, const double *v)
+static void sem_start(dvi__stepper *self, const double *v)
 {
-  dvi__element_start(element_of(self), v);
+  dvi__element_start(sem_element(self), v);
 }
 
 /* ---- bounds ---- */
 
 static double least_length(const dvi__stepper *self, double first)
 {
-  const double given = self->settings.number[HMIN];
-  return given > 0 ? given
-                   : fmin(least_part * fabs(first),
-                          self->settings.number[HMAX] > 0 ? self->settings.number[HMAX] : HUGE_VAL);
+  const sem_options o = sem_options_of(self);
+  if (o.hmin > 0) return o.hmin;
+  return fmin(least_part * fabs(first), o.hmax > 0 ? o.hmax : HUGE_VAL);
 }
 
 static double largest_length(const dvi__stepper *self, double first)
 {
-  const double given = self->settings.number[HMAX];
-  return given > 0 ? given : largest_part * fabs(first);
+  const sem_options o = sem_options_of(self);
+  return o.hmax > 0 ? o.hmax : largest_part * fabs(first);
 }
 
 static dvi_status check_first(const dvi__stepper *self, double h)
@@ -151,32 +168,32 @@ static dvi_status check_first(const dvi__stepper *self, double h)
                    fabs(h) < least ? least : most);
 }
 
-/* ---- what becomes of the energy ---- */
+/* ---- energy ---- */
 
-/* E+ of the last step, as all that happened since the start says. */
-static double target_of(const dvi__stepper *self)
+/* Give E+ of the last step as the sum of all changes since the start. */
+static double sem_target(const dvi__stepper *self)
 {
   const double *m = self->memory;
-  return m[FIRST] + ((m[WORK] - m[WORK_CARRY]) + (m[JUMPS] - m[JUMPS_CARRY]));
+  return m[FIRST] + ((m[WORK] - m[WORK_COMPENSATION]) + (m[JUMPS] - m[JUMPS_COMPENSATION]));
 }
 
-static void note(dvi__stepper *self, const dvi__mismatch *taken)
+static void sem_note(dvi__stepper *self, const dvi__mismatch *taken)
 {
   double *m = self->memory;
-  dvi__add_compensated(&m[WORK], &m[WORK_CARRY], taken->E.end - taken->E.start);
+  dvi__add_compensated(&m[WORK], &m[WORK_COMPENSATION], taken->E.end - taken->E.start);
   m[ENERGY] = taken->E.end;
   m[SLOPE] = taken->slope;
   m[SIZE] = taken->E.size;
   self->taken = taken->h;
 }
 
-/* A step that does not solve the energy equation. */
+/* Note a step that does not solve the energy equation. */
 static void note_jump(dvi__stepper *self, double jump)
 {
-  dvi__add_compensated(&self->memory[JUMPS], &self->memory[JUMPS_CARRY], jump);
+  dvi__add_compensated(&self->memory[JUMPS], &self->memory[JUMPS_COMPENSATION], jump);
 }
 
-static void balance(const dvi__stepper *self, dvi_energy_balance *b)
+static void sem_balance(const dvi__stepper *self, dvi_energy_balance *b)
 {
   const double *m = self->memory;
   *b = (dvi_energy_balance){.first = m[FIRST],
@@ -192,15 +209,15 @@ static void balance(const dvi__stepper *self, dvi_energy_balance *b)
 
 /* ---- steps ---- */
 
-/* An ordinary step of length h: it begins a sequence, or ends a run. */
-static dvi_status given_step(dvi__stepper *self, dvi__state *state, double h)
+/* Take an ordinary step of length h, which begins a sequence, or ends a run. */
+static dvi_status sem_step_of_given_length(dvi__stepper *self, dvi__state *state, double h)
 {
   dvi__energy_search *search = &((sem *)self->own)->search;
   double *m = self->memory;
-  const int continues = element_of(self)->memory[DVI__LAST_H] != 0;
+  const int continues = sem_element(self)->memory[DVI__LAST_H] != 0;
   dvi__mismatch found;
   if (!self->exact) DVI_TRY(check_first(self, h));
-  dvi__energy_search_begin(search, state, target_of(self));
+  dvi__energy_search_begin(search, state, sem_target(self));
   DVI_TRY(dvi__energy_search_try(search, h, 1, &found));
   dvi__energy_search_take(search, state);
   if (continues) {
@@ -212,22 +229,23 @@ static dvi_status given_step(dvi__stepper *self, dvi__state *state, double h)
   }
   m[FIRST_H] = self->exact ? 0 : h;
   m[BEFORE_H] = 0;
-  note(self, &found);
+  sem_note(self, &found);
   return DVI_OK;
 }
 
-static int within(double h, double last, double least, double most)
+static int is_within(double h, double last, double least, double most)
 {
   return h / last > 0 && fabs(h) >= least && fabs(h) <= most;
 }
 
-static dvi_status far_off(const dvi__mismatch *found)
+static dvi_status fail_far_off(const dvi__mismatch *found)
 {
   return dvi__fail(DVI_NOT_CONVERGED, "the step found, %g, is far off, or misses the energy by %g",
                    found->h, found->value);
 }
 
-/* The lengths continued. Where h hardly shows in the energy there is nothing to continue. */
+/* Continue the lengths of the last steps. Where h hardly shows in the energy there is nothing to
+ * continue. */
 static double likely_length(const dvi__stepper *self, double last, double least, double most)
 {
   const double *m = self->memory;
@@ -236,17 +254,17 @@ static double likely_length(const dvi__stepper *self, double last, double least,
   return copysign(fmin(fmax(fabs(growth * last), least), most), last);
 }
 
-/* Rows and energy row in one, from the path of a likely length. They give the length alone: the
- * step is an ordinary one, whose roundings do not add up, and it decides, also where noise of h
- * keeps Newton's method from settling. A positive status: the search has to tell whether there is a
- * solution. */
+/* Solve rows and energy row in one system, from the path of a likely length. They give the length
+ * alone. The step is an ordinary one, whose roundings do not add up. That step decides, also where
+ * noise of h keeps Newton's method from settling. After a positive status the search has to tell
+ * whether there is a solution. */
 static dvi_status solve_together(dvi__stepper *self, dvi__state *state, double least, double most,
                                  dvi__mismatch *found)
 {
   sem *own = self->own;
   dvi__bordered *b = &own->bordered;
-  const dvi__rung rung = self->settings.value[SOLVER] == 0 ? DVI__NEWTON : DVI__KINSOL;
-  const double last = b->element.memory[DVI__LAST_H], target = target_of(self);
+  const dvi__rung rung = sem_options_of(self).solver == 0 ? DVI__NEWTON : DVI__KINSOL;
+  const double last = b->element.memory[DVI__LAST_H], target = sem_target(self);
   DVI_TRY(dvi__energy_search_try(&own->search, likely_length(self, last, least, most), 0, found));
   found->slope = self->memory[SLOPE];
   if (dvi__energy_solved(found)) {
@@ -255,15 +273,15 @@ static dvi_status solve_together(dvi__stepper *self, dvi__state *state, double l
   }
   const dvi_status status = dvi__bordered_solve(b, state, target, rung,
                                                 b->element.memory + DVI__LAST_Y, found);
-  if (status < 0 || !within(found->h, last, least, most))
-    return status != DVI_OK ? status : far_off(found);
+  if (status < 0 || !is_within(found->h, last, least, most))
+    return status != DVI_OK ? status : fail_far_off(found);
   DVI_TRY(dvi__energy_search_try(&own->search, found->h, status != DVI_OK, found));
-  if (!dvi__energy_solved(found)) return far_off(found);
+  if (!dvi__energy_solved(found)) return fail_far_off(found);
   dvi__energy_search_take(&own->search, state);
   return DVI_OK;
 }
 
-/* Without a solution the step is the best that the search has found. */
+/* Search the length. Without a solution the step is the best that the search has found. */
 static dvi_status search_length(dvi__stepper *self, dvi__state *state, double last, double least,
                                 double most, dvi__mismatch *found)
 {
@@ -280,48 +298,49 @@ static dvi_status search_length(dvi__stepper *self, dvi__state *state, double la
   return DVI_OK;
 }
 
-static dvi_status chosen_step(dvi__stepper *self, dvi__state *state)
+static dvi_status sem_step_of_chosen_length(dvi__stepper *self, dvi__state *state)
 {
-  const double first = self->memory[FIRST_H], last = element_of(self)->memory[DVI__LAST_H];
+  const double first = self->memory[FIRST_H], last = sem_element(self)->memory[DVI__LAST_H];
   const double least = fmax(least_length(self, first), fabs(last) / reach);
   const double most = fmin(largest_length(self, first), fabs(last) * reach);
   dvi__mismatch found = {0};
-  dvi__energy_search_begin(&((sem *)self->own)->search, state, target_of(self));
+  dvi__energy_search_begin(&((sem *)self->own)->search, state, sem_target(self));
   dvi_status status = solve_together(self, state, least, most, &found);
   if (status > 0) status = search_length(self, state, last, least, most, &found);
-  if (status == DVI_OK) note(self, &found);
+  if (status == DVI_OK) sem_note(self, &found);
   if (status == DVI_OK) self->memory[BEFORE_H] = last;
   return status;
 }
 
-static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
+static dvi_status sem_step(dvi__stepper *self, dvi__state *state, double h)
 {
-  dvi__stepper *element = element_of(self);
+  dvi__stepper *element = sem_element(self);
   element->follow = self->follow;
   element->doubt = DVI__SURE;
   element->bend = 0;
   const int given = self->exact || self->memory[FIRST_H] != h;
-  const dvi_status status = given ? given_step(self, state, h) : chosen_step(self, state);
+  const dvi_status status = given ? sem_step_of_given_length(self, state, h)
+                                  : sem_step_of_chosen_length(self, state);
   self->doubt = element->doubt;
   self->bend = element->bend;
   return status;
 }
 
-static void path(const dvi__stepper *self, const double *q0, double h, double tau, double *q,
-                 double *v)
+static void sem_path(const dvi__stepper *self, const double *q0, double h, double tau, double *q,
+                     double *v)
 {
-  dvi__element_path(element_of(self), q0, h, tau, q, v);
+  dvi__element_path(sem_element(self), q0, h, tau, q, v);
 }
 
-static void explain(const dvi__stepper *self, dvi__text *text)
+static void sem_explain(const dvi__stepper *self, dvi__text *text)
 {
   const sem *own = self->own;
+  const sem_options o = sem_options_of(self);
   const int unknowns = own->bordered.rows + 1;
   dvi__text_add(
       text,
       "steps: chosen by the method after the first one, whose length --h is; bounds %s to %s\n",
-      self->settings.number[HMIN] > 0 ? "hmin" : "a tenth of it",
-      self->settings.number[HMAX] > 0 ? "hmax" : "thirty times it");
+      o.hmin > 0 ? "hmin" : "a tenth of it", o.hmax > 0 ? "hmax" : "thirty times it");
   dvi__text_add(text, "kernel: implicit; %d unknowns a step, the last one its length; ", unknowns);
   if (dvi__solver_prepare(own->bordered.solver) == DVI_OK)
     dvi__explain_entries(unknowns, dvi__pattern_entries(&own->bordered.pattern), text);
@@ -333,9 +352,8 @@ static void explain(const dvi__stepper *self, dvi__text *text)
                                            "are given, what they need beside is differenced");
   dvi__text_add(text,
                 "solver: %s for rows and energy row together; where it finds no step, a search "
-                "tells whether there is one, and else "
-                "takes the least-squares step\n",
-                solver_name(self->settings.value[SOLVER]));
+                "tells whether there is one, and else takes the least-squares step\n",
+                sem_solver_name(o.solver));
   dvi__explain_linear(own->bordered.solver, text);
 }
 
@@ -344,14 +362,14 @@ const dvi__method dvi__sem = {
     .summary = "symplectic-energy-momentum: chooses its steps so that a discrete energy is "
                "conserved; order 2 degree; any Lagrangian",
     .cite = "KaneMarsdenOrtiz1999",
-    .keys = keys,
+    .keys = sem_keys,
     .uses = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL,
     .chooses_steps = 1,
-    .create = create,
-    .destroy = destroy,
-    .start = start,
-    .step = step,
-    .path = path,
-    .explain = explain,
-    .balance = balance,
+    .create = sem_create,
+    .destroy = sem_destroy,
+    .start = sem_start,
+    .step = sem_step,
+    .path = sem_path,
+    .explain = sem_explain,
+    .balance = sem_balance,
 };

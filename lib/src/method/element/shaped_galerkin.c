@@ -3,11 +3,13 @@
  * Space: polynomials of degree d, and in the coordinates that have them the user's functions.
  * Quadrature: a rule of galerkin's with r points, at least as many as there are functions, or the
  * user's.
- *     Ld(q0,q1) = ext over such paths q from q0 to q1 of  h sum_j b_j L(t0 + c_j h, q_j, q'_j/h),
- *     p0 = -D1 Ld, p1 = D2 Ld.
+ *   Ld(q0,q1) = ext over such paths q from q0 to q1 of  h sum_j b_j L(t0 + c_j h, q_j, q'_j/h),
+ *   p0 = -D1 Ld, p1 = D2 Ld.
  * The rows are those of step/element/action.h in another space (step/element/user_element.h).
- * Symplectic; symmetric where space and quadrature are. Order min(2d, u, 2(u-d+1)) for a quadrature
- * of order u is what the polynomials claim; the functions may do better, and the user may say so.
+ *
+ * Symplectic; symmetric where space and quadrature are. The polynomials guarantee order min(2d, u,
+ * 2(u-d+1)) for a quadrature of order u. The functions may do better, and the user may say so.
+ *
  * Source: Marsden and West 2001, sec. 2.2.6; Hall and Leok 2015 (spaces other than polynomials). */
 #include <math.h>
 #include <string.h>
@@ -24,37 +26,47 @@ enum { DEGREE, QUADRATURE, NODES, DEGREE_MOST = 20 };
 
 enum { RULES = DVI_SIMPSON + 1 };
 
-static const char *rule_name(int index)
+static const char *shaped_rule_name(int index)
 {
   return index == RULES ? "own" : dvi_rule_name((dvi_rule)index);
 }
 
-static const dvi__key keys[] = {
+static const dvi__key shaped_keys[] = {
     {"degree", NULL, 1, DEGREE_MOST, 1,
      "degree of the polynomials that all coordinates have, 1 to 20; default: 1"},
-    {"quadrature", rule_name, 0, 0, DVI__LEFT_OUT,
+    {"quadrature", shaped_rule_name, 0, 0, DVI__LEFT_OUT,
      "as of galerkin; own: the program's; default: the program's, or gauss"},
     {"nodes", NULL, 1, DVI_SHAPES_POINTS_MOST, DVI__LEFT_OUT,
      "quadrature points, at least as many as there are functions with those of the polynomials, at "
-     "most 80; default: the fewest "
-     "of that number"},
+     "most 80; default: the fewest of that number"},
     {0},
 };
 
-/* What it carries beside its step: the space's fingerprint at the last step's length, or its own
- * before the first. */
+/* Memory beside that of the step, which is the space's fingerprint at the last step's length, or at
+ * its own before the first. */
 enum { FINGERPRINT = DVI__CARRIED, CARRIED = 1 };
+
+typedef struct shaped_options {
+  int degree, rule, nodes; /* rule is a dvi_rule, or RULES for the program's own */
+} shaped_options;
+
+static shaped_options shaped_options_of(const dvi__stepper *self)
+{
+  const int *value = self->settings.value;
+  return (shaped_options){
+      .degree = value[DEGREE], .rule = value[QUADRATURE], .nodes = value[NODES]};
+}
 
 typedef struct shaped_galerkin {
   dvi__one_step one;
   dvi__user_basis *space;
-  int coordinates;    /* that have the functions */
-  double fingerprint; /* of the space at its own length */
+  int coordinates;    /* number of coordinates with the functions */
+  double fingerprint; /* fingerprint of the space at its own length */
 } shaped_galerkin;
 
-/* ---- which coordinates have the functions ---- */
+/* ---- coordinates with the functions ---- */
 
-static dvi_status mark_listed(const dvi_shapes *shapes, int n, char *has)
+static dvi_status mark_listed_coordinates(const dvi_shapes *shapes, int n, char *has)
 {
   for (int k = 0; k < shapes->coordinate_count; k++) {
     const int i = shapes->coordinates[k];
@@ -71,10 +83,11 @@ static dvi_status mark_listed(const dvi_shapes *shapes, int n, char *has)
   return DVI_OK;
 }
 
-/* ---- the specification ---- */
+/* ---- specification ---- */
 
-/* The space's name is a key that the program's struct gives: what is written of it must be that. */
-static dvi_status take_name(dvi__stepper *self)
+/* Take the space's name, a key that the program's struct gives. A name in the specification must be
+ * the same. */
+static dvi_status shaped_take_name(dvi__stepper *self)
 {
   char **rest = &self->settings.rest;
   char *wanted = dvi__written("space=%s", self->shapes->name);
@@ -92,66 +105,67 @@ static dvi_status take_name(dvi__stepper *self)
   return DVI_OK;
 }
 
-/* The program's quadrature stands in the specification, too. */
-static dvi_status take_own_rule(dvi__stepper *self)
+/* Take the program's quadrature, which stands in the specification, too. */
+static dvi_status shaped_take_own_rule(const dvi__stepper *self, shaped_options *o)
 {
-  int *value = self->settings.value;
   const int points = self->shapes->points;
-  if (value[QUADRATURE] == DVI__LEFT_OUT) value[QUADRATURE] = RULES;
-  if (value[NODES] == DVI__LEFT_OUT) value[NODES] = points;
-  if (value[QUADRATURE] == RULES && value[NODES] == points) return DVI_OK;
+  if (o->rule == DVI__LEFT_OUT) o->rule = RULES;
+  if (o->nodes == DVI__LEFT_OUT) o->nodes = points;
+  if (o->rule == RULES && o->nodes == points) return DVI_OK;
   return dvi__fail(
       DVI_BAD_OPTION,
       "shaped-galerkin: the shapes %s have %d points of their own; leave quadrature and nodes out",
       self->shapes->name, points);
 }
 
-static dvi_status take_rule(dvi__stepper *self, int functions)
+static dvi_status shaped_take_rule(const dvi__stepper *self, int functions, shaped_options *o)
 {
-  int *value = self->settings.value;
-  if (value[QUADRATURE] == DVI__LEFT_OUT) value[QUADRATURE] = DVI_GAUSS;
-  const dvi_rule rule = (dvi_rule)value[QUADRATURE];
-  if (value[QUADRATURE] == RULES)
+  if (o->rule == DVI__LEFT_OUT) o->rule = DVI_GAUSS;
+  const dvi_rule rule = (dvi_rule)o->rule;
+  if (o->rule == RULES)
     return dvi__fail(
         DVI_BAD_OPTION,
         "shaped-galerkin: quadrature=own, but the shapes %s have no points of their own",
         self->shapes->name);
-  if (value[NODES] == DVI__LEFT_OUT) value[NODES] = dvi__fewest_nodes(rule, functions);
-  if (dvi_quadrature_order(rule, value[NODES]) == 0)
+  if (o->nodes == DVI__LEFT_OUT) o->nodes = dvi__fewest_nodes(rule, functions);
+  if (dvi_quadrature_order(rule, o->nodes) == 0)
     return dvi__fail(DVI_BAD_OPTION, "shaped-galerkin: quadrature %s has no rule with %d points",
-                     dvi_rule_name(rule), value[NODES]);
+                     dvi_rule_name(rule), o->nodes);
   return DVI_OK;
 }
 
-static dvi_status settle(dvi__stepper *self)
+/* Settle the options. Rule and nodes that are chosen here become part of the specification. */
+static dvi_status shaped_settle(dvi__stepper *self)
 {
-  const int *value = self->settings.value, functions = value[DEGREE] + self->shapes->functions;
-  DVI_TRY(take_name(self));
-  DVI_TRY(self->shapes->point != NULL ? take_own_rule(self) : take_rule(self, functions));
-  if (value[NODES] >= functions) return DVI_OK;
+  shaped_options o = shaped_options_of(self);
+  const int functions = o.degree + self->shapes->functions;
+  DVI_TRY(shaped_take_name(self));
+  DVI_TRY(self->shapes->point != NULL ? shaped_take_own_rule(self, &o)
+                                      : shaped_take_rule(self, functions, &o));
+  self->settings.value[QUADRATURE] = o.rule;
+  self->settings.value[NODES] = o.nodes;
+  if (o.nodes >= functions) return DVI_OK;
   return dvi__fail(DVI_BAD_OPTION,
                    "shaped-galerkin: %d quadrature points see at most %d of the %d velocity modes, "
-                   "%d of polynomials and %d "
-                   "functions; there must be at least as "
-                   "many points",
-                   value[NODES], value[NODES], functions, value[DEGREE], self->shapes->functions);
+                   "%d of polynomials and %d functions; there must be at least as many points",
+                   o.nodes, o.nodes, functions, o.degree, self->shapes->functions);
 }
 
-/* ---- making it ---- */
+/* ---- create ---- */
 
-static void explain(const dvi__stepper *self, dvi__text *text)
+static void shaped_explain(const dvi__stepper *self, dvi__text *text)
 {
   const shaped_galerkin *own = self->own;
-  const int *value = self->settings.value;
+  const shaped_options o = shaped_options_of(self);
   dvi__text_add(text,
                 "space: polynomials of degree %d, and in %d of %d coordinates %d function%s of the "
                 "program's, %s\n",
-                value[DEGREE], own->coordinates, self->system->n, self->shapes->functions,
+                o.degree, own->coordinates, self->system->n, self->shapes->functions,
                 self->shapes->functions == 1 ? "" : "s", self->shapes->name);
-  dvi__text_add(text, "quadrature: %s, %d points\n", rule_name(value[QUADRATURE]), value[NODES]);
+  dvi__text_add(text, "quadrature: %s, %d points\n", shaped_rule_name(o.rule), o.nodes);
 }
 
-static dvi_status place(dvi__stepper *self, const dvi__state *state, double h, double part)
+static dvi_status shaped_place(dvi__stepper *self, const dvi__state *state, double h, double part)
 {
   const shaped_galerkin *own = self->own;
   (void)part;
@@ -160,34 +174,33 @@ static dvi_status place(dvi__stepper *self, const dvi__state *state, double h, d
   return DVI_OK;
 }
 
-DVI__STEP_KIND(user_element, place, explain, .renewed = 1);
+DVI__STEP_KIND(user_element, shaped_place, shaped_explain, .renewed = 1);
 
-static int smaller(int a, int b)
+static int smaller_of_two(int a, int b)
 {
   return a < b ? a : b;
 }
 
-static int order_of(const dvi__stepper *self, const dvi__user_basis *space)
+static int shaped_order(const dvi__stepper *self, const dvi__user_basis *space)
 {
-  const int d = self->settings.value[DEGREE], u = dvi__user_basis_quadrature_order(space),
-            order = smaller(smaller(2 * d, u), 2 * (u - d + 1));
+  const int d = shaped_options_of(self).degree, u = dvi__user_basis_quadrature_order(space),
+            order = smaller_of_two(smaller_of_two(2 * d, u), 2 * (u - d + 1));
   if (self->shapes->order > 0) return self->shapes->order;
   return order > 1 ? order : 1;
 }
 
-/* The space is owned by the stepper from the moment there is one. */
-static dvi_status make(dvi__stepper *self, const char *has)
+/* Make the parts of a stepper, which owns the space from the moment there is one. */
+static dvi_status shaped_make(dvi__stepper *self, const char *has)
 {
-  const int *value = self->settings.value;
-  dvi__user_element *shaped = NULL;
+  const shaped_options o = shaped_options_of(self);
+  dvi__user_element *element = NULL;
   dvi__user_basis *space = NULL;
-  DVI_TRY(dvi__user_basis_create(self->shapes, value[DEGREE], (dvi_rule)value[QUADRATURE],
-                                 value[NODES], &space));
+  DVI_TRY(dvi__user_basis_create(self->shapes, o.degree, (dvi_rule)o.rule, o.nodes, &space));
   const dvi__shapes shapes = dvi__user_basis_shapes(space);
-  dvi_status status = dvi__user_element_create(self->system, &shapes, has, value[DEGREE],
-                                               self->counters, &shaped);
+  dvi_status status = dvi__user_element_create(self->system, &shapes, has, o.degree, self->counters,
+                                               &element);
   if (status == DVI_OK)
-    status = dvi__one_step_create(self, sizeof(shaped_galerkin), &kind, shaped, CARRIED);
+    status = dvi__one_step_create(self, sizeof(shaped_galerkin), &kind, element, CARRIED);
   shaped_galerkin *own = self->own;
   if (own == NULL) {
     dvi__user_basis_destroy(&space);
@@ -198,26 +211,26 @@ static dvi_status make(dvi__stepper *self, const char *has)
   own->fingerprint = dvi__user_basis_fingerprint_of(space).sum;
   self->fingerprint = dvi__hash(DVI__HASH_START, (size_t)self->system->n, has);
   self->fingerprinted = "coordinates that have the functions of its space";
-  self->order = order_of(self, space);
+  self->order = shaped_order(self, space);
   self->symmetric = dvi__user_basis_symmetric(space);
   return status;
 }
 
-static dvi_status create(dvi__stepper *self)
+static dvi_status shaped_create(dvi__stepper *self)
 {
   if (self->shapes == NULL)
     return dvi__fail(DVI_BAD_OPTION, "shaped-galerkin: there are no shapes: a program gives them "
                                      "to dvi_integrator_options (dvi/shapes.h)");
-  DVI_TRY(settle(self));
+  DVI_TRY(shaped_settle(self));
   char *has = DVI_NEW(char, self->system->n);
   if (has == NULL) return dvi__fail(DVI_NO_MEMORY, "shaped-galerkin: no memory");
-  dvi_status status = mark_listed(self->shapes, self->system->n, has);
-  if (status == DVI_OK) status = make(self, has);
+  dvi_status status = mark_listed_coordinates(self->shapes, self->system->n, has);
+  if (status == DVI_OK) status = shaped_make(self, has);
   dvi__release(has);
   return status;
 }
 
-static void destroy(dvi__stepper *self)
+static void shaped_destroy(dvi__stepper *self)
 {
   shaped_galerkin *own = self->own;
   if (own == NULL) return;
@@ -226,16 +239,16 @@ static void destroy(dvi__stepper *self)
   dvi__user_basis_destroy(&space);
 }
 
-/* ---- the step ---- */
+/* ---- step ---- */
 
-static void start(dvi__stepper *self, const double *v)
+static void shaped_start(dvi__stepper *self, const double *v)
 {
   const shaped_galerkin *own = self->own;
   dvi__one_step_start(self, v);
   self->memory[FINGERPRINT] = own->fingerprint;
 }
 
-static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
+static dvi_status shaped_step(dvi__stepper *self, dvi__state *state, double h)
 {
   const shaped_galerkin *own = self->own;
   const dvi__one_step *one = &own->one;
@@ -247,9 +260,9 @@ static dvi_status step(dvi__stepper *self, dvi__state *state, double h)
   return DVI_OK;
 }
 
-/* NaN where a callback fails, which the driver tells. */
-static void path(const dvi__stepper *self, const double *q0, double h, double tau, double *q,
-                 double *v)
+/* Evaluate the path, or NaN where a callback fails, which the driver reports. */
+static void shaped_path(const dvi__stepper *self, const double *q0, double h, double tau, double *q,
+                        double *v)
 {
   const shaped_galerkin *own = self->own;
   const dvi__one_step *one = &own->one;
@@ -264,8 +277,8 @@ static void path(const dvi__stepper *self, const double *q0, double h, double ta
   for (int i = 0; q != NULL && i < self->system->n; i++) q[i] += q0[i];
 }
 
-/* To nine digits, as the system is known again (checkpoint.c). */
-static int recognizes(const dvi__stepper *self, const double *memory)
+/* Compare fingerprints to nine digits, as those of the system (checkpoint.c). */
+static int shaped_recognizes(const dvi__stepper *self, const double *memory)
 {
   const shaped_galerkin *own = self->own;
   const double h = memory[DVI__LENGTH];
@@ -278,15 +291,15 @@ const dvi__method dvi__shaped_galerkin = {
     .name = "shaped-galerkin",
     .summary = "polynomials and functions of the program's own, any quadrature; symplectic",
     .cite = "HallLeok2015",
-    .keys = keys,
+    .keys = shaped_keys,
     .takes_rest = 1,
     .takes_shapes = 1,
     .uses = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL,
-    .create = create,
-    .destroy = destroy,
-    .start = start,
-    .step = step,
-    .path = path,
-    .recognizes = recognizes,
+    .create = shaped_create,
+    .destroy = shaped_destroy,
+    .start = shaped_start,
+    .step = shaped_step,
+    .path = shaped_path,
+    .recognizes = shaped_recognizes,
     .explain = dvi__one_step_explain,
 };

@@ -46,17 +46,34 @@ static int has_form(const dvi__stepper *self)
   return (self->system->terms & DVI__ONE_FORM) != 0;
 }
 
-static dvi_status create_for_form(dvi__stepper *self)
+typedef struct dg_phase_options {
+  int degree, nodes, moments, alarm;
+} dg_phase_options;
+
+/* Read the options. Numbers that are chosen here become part of the specification. */
+static dg_phase_options dg_phase_read_options(dvi__stepper *self)
 {
-  const int *value = self->settings.value;
+  int *value = self->settings.value;
+  dg_phase_options o = {.degree = value[DEGREE],
+                        .nodes = value[NODES],
+                        .moments = value[MOMENTS],
+                        .alarm = value[ALARM]};
+  if (o.nodes == DVI__LEFT_OUT) o.nodes = value[NODES] = o.degree;
+  if (o.moments == DVI__LEFT_OUT)
+    o.moments = value[MOMENTS] = has_form(self) ? 0 : o.degree - o.degree % 2;
+  return o;
+}
+
+static dvi_status create_for_form(dvi__stepper *self, const dg_phase_options *o)
+{
   const dvi__dg_space space = {.degree = 0, .nodes = 1, .flux = DVI__AVERAGE_FLUX, .points = 1};
-  if (value[MOMENTS] != 0)
+  if (o->moments != 0)
     return dvi__fail(DVI_BAD_OPTION,
                      "dg-phase: moments=%d with a one-form; take 0, or vprk:projection=symplectic, "
                      "whose stages fulfil the constraint",
-                     value[MOMENTS]);
+                     o->moments);
   self->order = 2;
-  return dvi__dg_create(self, &space, value[ALARM],
+  return dvi__dg_create(self, &space, o->alarm,
                         "take another method, dg:degree=3,stiffness=c, from the start on");
 }
 
@@ -67,34 +84,30 @@ static int dg_phase_order_of(int degree, int moments)
   return moments < degree - 1 ? 2 * moments + 2 : 2 * degree;
 }
 
-static dvi_status create_for_hamiltonian(dvi__stepper *self)
+static dvi_status create_for_hamiltonian(dvi__stepper *self, const dg_phase_options *o)
 {
-  const int *value = self->settings.value, degree = value[DEGREE], moments = value[MOMENTS];
-  if (value[NODES] != degree)
+  if (o->nodes != o->degree)
     return dvi__fail(DVI_BAD_OPTION,
                      "dg-phase: nodes=%d for degree %d; with a Hamiltonian more nodes than degrees "
                      "leave jumps that no multiplier makes; take nodes=%d",
-                     value[NODES], degree, degree);
-  if (moments % 2 != 0 || moments > degree)
+                     o->nodes, o->degree, o->degree);
+  if (o->moments % 2 != 0 || o->moments > o->degree)
     return dvi__fail(DVI_BAD_OPTION,
                      "dg-phase: moments=%d for degree %d; an even number up to the degree is "
                      "possible, for odd ones let the multiplier drift",
-                     moments, degree);
-  self->order = dg_phase_order_of(degree, moments);
-  return dvi__phase_step_create(self, degree, moments, value[ALARM]);
+                     o->moments, o->degree);
+  self->order = dg_phase_order_of(o->degree, o->moments);
+  return dvi__phase_step_create(self, o->degree, o->moments, o->alarm);
 }
 
 static dvi_status dg_phase_create(dvi__stepper *self)
 {
-  int *value = self->settings.value;
-  const int degree = value[DEGREE];
-  if (value[NODES] == DVI__LEFT_OUT) value[NODES] = degree;
-  if (value[MOMENTS] == DVI__LEFT_OUT) value[MOMENTS] = has_form(self) ? 0 : degree - degree % 2;
-  if (value[NODES] < degree)
+  const dg_phase_options o = dg_phase_read_options(self);
+  if (o.nodes < o.degree)
     return dvi__fail(DVI_BAD_OPTION,
-                     "dg-phase: nodes=%d are too few for degree %d; take %d or more", value[NODES],
-                     degree, degree);
-  return has_form(self) ? create_for_form(self) : create_for_hamiltonian(self);
+                     "dg-phase: nodes=%d are too few for degree %d; take %d or more", o.nodes,
+                     o.degree, o.degree);
+  return has_form(self) ? create_for_form(self, &o) : create_for_hamiltonian(self, &o);
 }
 
 static dvi_status dg_phase_step(dvi__stepper *self, dvi__state *state, double h)

@@ -46,6 +46,20 @@ static const dvi__key keys[] = {
     {0},
 };
 
+typedef struct hamiltonian_options {
+  int type, degree, nodes;
+  dvi_rule rule;
+} hamiltonian_options;
+
+static hamiltonian_options hamiltonian_options_of(const dvi__stepper *self)
+{
+  const int *value = self->settings.value;
+  return (hamiltonian_options){.type = value[TYPE],
+                               .degree = value[DEGREE],
+                               .nodes = value[NODES],
+                               .rule = (dvi_rule)value[QUADRATURE]};
+}
+
 /* ---- Hamiltonians ---- */
 
 /* The memory holds the largest |q_i| so far, or the motion of the first step, and the largest |p_i|
@@ -62,8 +76,8 @@ static void hamiltonian_explain(const dvi__stepper *self, dvi__text *text)
 {
   static const char *const ends[] = {"Ld(q0,q1)", "H+(q0,p1)", "H-(p0,q1)"};
   const canonical *own = self->own;
-  dvi__text_add(text, "discrete Hamiltonian: type %d, %s%s\n", self->settings.value[TYPE],
-                ends[self->settings.value[TYPE] - 1],
+  const int type = hamiltonian_options_of(self).type;
+  dvi__text_add(text, "discrete Hamiltonian: type %d, %s%s\n", type, ends[type - 1],
                 own->second != NULL ? "; H_pp must be regular, which each step checks"
                                     : "; H may be degenerate");
 }
@@ -81,8 +95,8 @@ DVI__STEP_KIND(canonical, hamiltonian_place, hamiltonian_explain);
 
 static dvi_status hamiltonian_refuse(const dvi__stepper *self, dvi_status status)
 {
-  const int *value = self->settings.value;
-  if (value[TYPE] == 1)
+  const hamiltonian_options o = hamiltonian_options_of(self);
+  if (o.type == 1)
     return dvi__fail(
         status,
         "the Hamiltonian is degenerate, d2H/dp2 is singular: not every q1 can be reached from a "
@@ -90,7 +104,7 @@ static dvi_status hamiltonian_refuse(const dvi__stepper *self, dvi_status status
   return dvi__fail(status,
                    "the Hamiltonian is degenerate, d2H/dp2 is singular: %d points want more "
                    "velocities than a path of degree %d has; take nodes=%d",
-                   value[NODES], value[DEGREE], value[DEGREE]);
+                   o.nodes, o.degree, o.degree);
 }
 
 /* Check that H_pp is regular at the start of the step. */
@@ -173,7 +187,7 @@ static dvi_status watch_regular(dvi__stepper *self, const dvi__action_space *spa
 {
   canonical *own = self->own;
   const dvi__pattern *pp = &self->system->vv;
-  if (self->settings.value[TYPE] != 1 && space->nodes == space->degree) return DVI_OK;
+  if (hamiltonian_options_of(self).type != 1 && space->nodes == space->degree) return DVI_OK;
   for (int j = 0; j < pp->columns; j++)
     if (pp->start[j] == pp->start[j + 1])
       return dvi__fail_in(hamiltonian_refuse(self, DVI_UNSUPPORTED), "hamiltonian");
@@ -201,12 +215,13 @@ static dvi_status create_on_phase_space(dvi__stepper *self, const dvi__action_sp
 
 static dvi_status hamiltonian_create(dvi__stepper *self)
 {
-  int *value = self->settings.value;
-  const dvi_rule rule = (dvi_rule)value[QUADRATURE];
-  const int degree = value[DEGREE], radau = !dvi__symmetric_rule(rule);
-  if (value[NODES] == DVI__LEFT_OUT)
-    value[NODES] = radau ? degree : dvi__fewest_nodes(rule, degree);
-  const int nodes = value[NODES];
+  const hamiltonian_options o = hamiltonian_options_of(self);
+  const dvi_rule rule = o.rule;
+  const int degree = o.degree, radau = !dvi__symmetric_rule(rule),
+            nodes = o.nodes != DVI__LEFT_OUT ? o.nodes
+                    : radau                  ? degree
+                                             : dvi__fewest_nodes(rule, degree);
+  self->settings.value[NODES] = nodes; /* part of the specification, chosen or not */
   if (dvi_quadrature_order(rule, nodes) == 0 || nodes > DVI__CANONICAL_POINTS)
     return dvi__fail(
         DVI_BAD_OPTION,

@@ -44,6 +44,20 @@ static const dvi__key keys[] = {
     {0},
 };
 
+typedef struct multiscale_options {
+  int degree, amplitude, harmonics;
+  double omega; /* 0 if it is to be found */
+} multiscale_options;
+
+static multiscale_options multiscale_options_of(const dvi__stepper *self)
+{
+  const int *value = self->settings.value;
+  return (multiscale_options){.degree = value[DEGREE],
+                              .amplitude = value[AMPLITUDE],
+                              .harmonics = value[HARMONICS],
+                              .omega = self->settings.number[OMEGA]};
+}
+
 /* The memory holds the omega of the first step where the user gives none. */
 enum { FOUND = DVI__CARRIED };
 
@@ -128,8 +142,9 @@ static dvi_status ask_fast_part(dvi__stepper *self, char *fast)
 static dvi_status find_fast(dvi__stepper *self, char *fast)
 {
   DVI_TRY(multiscale_mark_listed(self, fast));
-  return self->settings.listed == 0 || self->settings.number[OMEGA] == 0 ? ask_fast_part(self, fast)
-                                                                         : DVI_OK;
+  return self->settings.listed == 0 || multiscale_options_of(self).omega == 0
+             ? ask_fast_part(self, fast)
+             : DVI_OK;
 }
 
 /* ---- create ---- */
@@ -151,12 +166,12 @@ static void explain_omega(const dvi__stepper *self, dvi__text *text)
 static void multiscale_explain(const dvi__stepper *self, dvi__text *text)
 {
   const multiscale *own = self->own;
-  const int *value = self->settings.value;
+  const multiscale_options o = multiscale_options_of(self);
   dvi__text_add(text,
                 "space: polynomials of degree %d, and in %d fast coordinate%s of degree %d times "
                 "sin and cos of omega t%s\n",
-                value[DEGREE], own->fast, own->fast == 1 ? "" : "s", value[AMPLITUDE],
-                value[HARMONICS] == 2 ? ", and these of 2 omega t" : "");
+                o.degree, own->fast, own->fast == 1 ? "" : "s", o.amplitude,
+                o.harmonics == 2 ? ", and these of 2 omega t" : "");
   explain_omega(self, text);
   dvi__text_add(
       text,
@@ -196,38 +211,37 @@ static dvi_status prepare_to_find(dvi__stepper *self, const char *fast)
  * known. */
 static dvi_status multiscale_initialise(dvi__stepper *self, const char *fast)
 {
-  const int *value = self->settings.value;
-  const double omega = self->settings.number[OMEGA];
+  const multiscale_options o = multiscale_options_of(self);
   dvi__user_element *element = NULL;
-  dvi__oscillating *space = dvi__oscillating_create(value[DEGREE], value[AMPLITUDE],
-                                                    value[HARMONICS], omega);
+  dvi__oscillating *space = dvi__oscillating_create(o.degree, o.amplitude, o.harmonics, o.omega);
   if (space == NULL) return dvi__fail(DVI_NO_MEMORY, "multiscale: no memory");
   const dvi__shapes shapes = dvi__oscillating_shapes(space);
-  dvi_status status = dvi__user_element_create(self->system, &shapes, fast, value[DEGREE],
+  dvi_status status = dvi__user_element_create(self->system, &shapes, fast, o.degree,
                                                self->counters, &element);
   if (status == DVI_OK)
-    status = dvi__one_step_create(self, sizeof(multiscale), &kind, element, omega == 0);
+    status = dvi__one_step_create(self, sizeof(multiscale), &kind, element, o.omega == 0);
   multiscale *own = self->own;
   if (own == NULL) {
     dvi__oscillating_destroy(&space);
     return status;
   }
   own->space = space;
-  own->omega = omega;
+  own->omega = o.omega;
   for (int i = 0; i < self->system->n; i++) own->fast += fast[i];
-  self->order = 2 * (own->fast < self->system->n ? value[DEGREE] : shapes.functions);
+  self->order = 2 * (own->fast < self->system->n ? o.degree : shapes.functions);
   self->symmetric = 1;
-  return status == DVI_OK && omega == 0 ? prepare_to_find(self, fast) : status;
+  return status == DVI_OK && o.omega == 0 ? prepare_to_find(self, fast) : status;
 }
 
 static dvi_status multiscale_create(dvi__stepper *self)
 {
-  int *value = self->settings.value;
-  if (value[AMPLITUDE] == DVI__LEFT_OUT) value[AMPLITUDE] = 1;
-  if (value[AMPLITUDE] > value[DEGREE])
+  int *amplitude = &self->settings.value[AMPLITUDE];
+  if (*amplitude == DVI__LEFT_OUT) *amplitude = 1;
+  const int degree = multiscale_options_of(self).degree;
+  if (*amplitude > degree)
     return dvi__fail(DVI_BAD_OPTION,
                      "multiscale: amplitude=%d is above degree=%d; 0 to degree are possible",
-                     value[AMPLITUDE], value[DEGREE]);
+                     *amplitude, degree);
   char *fast = DVI_NEW(char, self->system->n);
   if (fast == NULL) return dvi__fail(DVI_NO_MEMORY, "multiscale: no memory");
   dvi_status status = find_fast(self, fast);

@@ -1,5 +1,5 @@
 /* Includes vector_width.h and LOOPS, a header in quotes, for vectors of 1, 2, 4 and 8 numbers.
- * After num/simd/width.h. */
+ * Follows num/simd/width.h. */
 #define WIDTH 1
 #include "num/simd/vector_width.h"
 #include LOOPS

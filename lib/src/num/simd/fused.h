@@ -1,6 +1,7 @@
 /* Functions full of fused multiply-adds, compiled also for processors that have them as an
- * instruction: elsewhere each is a call. The bits are the same. For static functions. The processor
- * chooses when the program starts; gcc's thread sanitizer cannot watch that yet. */
+ * instruction, because elsewhere each is a call. The bits are the same. FUSED is for static
+ * functions. The processor chooses when the program starts. gcc's thread sanitizer cannot watch
+ * that yet. */
 #ifndef DVI_NUM_FUSED_H
 #define DVI_NUM_FUSED_H
 
@@ -11,7 +12,7 @@
 #define FUSED
 #endif
 
-/* Compiled into such functions. */
+/* For functions that are compiled into such functions. */
 #define FUSED_INLINE static inline __attribute__((always_inline))
 
 #endif

@@ -1,26 +1,26 @@
 /* The loops over coordinates of lanes.c, for vectors of WIDTH numbers, after lanes_width.h. Each
- * goes on from coordinate i as far as whole vectors reach and returns where it stopped; the rest is
+ * goes on from coordinate i as far as whole vectors reach and returns where it stopped. The rest is
  * for width 1. Every lane does what core and num do for one number, in the same order. */
 
-/* What dvi__add_compensated does. */
-INLINE void NAME(add)(NAME(vector) * sum, NAME(vector) * carry, const NAME(vector) * term)
+/* Add as dvi__add_compensated does. */
+INLINE void NAME(add)(NAME(vector) * sum, NAME(vector) * compensation, const NAME(vector) * term)
 {
-  const NAME(vector) wanted = *term - *carry, next = *sum + wanted;
-  *carry = (next - *sum) - wanted;
+  const NAME(vector) wanted = *term - *compensation, next = *sum + wanted;
+  *compensation = (next - *sum) - wanted;
   *sum = next;
 }
 
 INLINE void NAME(kick_by)(double factor, const NAME(vector) * force, NAME(vector) * p,
-                          NAME(vector) * carry)
+                          NAME(vector) * compensation)
 {
   const NAME(vector) term = factor * *force;
-  NAME(add)(p, carry, &term);
+  NAME(add)(p, compensation, &term);
 }
 
-/* Numbers that the loop gets to soon. A loop over nine streams of memory outruns the hardware's own
- * look-ahead, which stops at the end of each page; nothing is read here, so the end of the arrays
- * does not matter. */
-INLINE void NAME(fetch)(const dvi__moser_veselov *l, size_t i)
+/* Fetch numbers that the loop gets to soon. A loop over nine streams of memory outruns the
+ * hardware's own look-ahead, which stops at the end of each page. Nothing is read here, so the end
+ * of the arrays does not matter. */
+INLINE void NAME(fetch)(const dvi__kick_drift *l, size_t i)
 {
   const double *const read[] = {l->force, l->from.p, l->from.p_compensation, l->from.q,
                                 l->from.q_compensation};
@@ -31,10 +31,11 @@ INLINE void NAME(fetch)(const dvi__moser_veselov *l, size_t i)
     __builtin_prefetch((const void *)((uintptr_t)(written[k] + i) + FETCH_AHEAD), 1);
 }
 
-INLINE size_t NAME(leap)(const dvi__moser_veselov *whole, size_t i, const int kicks,
-                         const dvi__division by)
+INLINE size_t NAME(kick_drift)(const dvi__kick_drift *whole, size_t i, const int kicks,
+                               const dvi__division by)
 {
-  const dvi__moser_veselov l = *whole; /* for the compiler cannot know that no store changes it */
+  /* a copy, because the compiler cannot know that no store changes it */
+  const dvi__kick_drift l = *whole;
   for (; i + WIDTH <= l.count; i += WIDTH) {
     NAME(vector) force, p, p_compensation, q, q_compensation, v;
     if (l.far) NAME(fetch)(&l, i);
@@ -57,16 +58,16 @@ INLINE size_t NAME(leap)(const dvi__moser_veselov *whole, size_t i, const int ki
 }
 
 INLINE size_t NAME(add_scaled)(size_t i, size_t count, double factor, const double *x, double *sum,
-                               double *carry)
+                               double *compensation)
 {
   for (; i + WIDTH <= count; i += WIDTH) {
     NAME(vector) term, s, c;
     NAME(load)(x + i, &term);
     NAME(load)(sum + i, &s);
-    NAME(load)(carry + i, &c);
+    NAME(load)(compensation + i, &c);
     NAME(kick_by)(factor, &term, &s, &c);
     NAME(store)(sum + i, &s, WIDTH);
-    NAME(store)(carry + i, &c, WIDTH);
+    NAME(store)(compensation + i, &c, WIDTH);
   }
   return i;
 }

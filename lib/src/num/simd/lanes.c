@@ -13,7 +13,7 @@ int dvi__lanes_for(int stages)
   return stages <= 2 ? stages : stages <= 4 ? 4 : (stages + 7) / 8 * 8;
 }
 
-enum { FETCH_AHEAD = 1024 }; /* bytes: half of it is as good, twice as much is worse */
+enum { FETCH_AHEAD = 1024 }; /* in bytes; half of it is as good, twice as much is worse */
 
 #define LOOPS "num/simd/lanes_width.h"
 #include "num/simd/each_width.h"
@@ -32,7 +32,7 @@ INLINE void product_of_eight(int n, int terms, int width, const double *matrix, 
   }
 }
 
-/* Vectors as wide as the target has them, at most as wide as a row. */
+/* Multiply in vectors as wide as the target has them, and at most as wide as a row. */
 INLINE void product(int widest, int n, int terms, int lanes, int width, const double *matrix,
                     const double *x, double *out)
 {
@@ -49,29 +49,29 @@ INLINE void product(int widest, int n, int terms, int lanes, int width, const do
     product8(n, terms, lanes, width, matrix, x, out);
 }
 
-#define SWEEP(width)                       \
-  switch (s->lanes == 8 ? s->stages : 0) { \
-  case 5: sweep_known##width(s, 5); break; \
-  case 6: sweep_known##width(s, 6); break; \
-  case 7: sweep_known##width(s, 7); break; \
-  case 8: sweep_known##width(s, 8); break; \
-  default: sweep##width(s);                \
+#define ITERATE(width)                       \
+  switch (s->lanes == 8 ? s->stages : 0) {   \
+  case 5: iterate_known##width(s, 5); break; \
+  case 6: iterate_known##width(s, 6); break; \
+  case 7: iterate_known##width(s, 7); break; \
+  case 8: iterate_known##width(s, 8); break; \
+  default: iterate##width(s);                \
   }
 
-INLINE void sweep(int widest, dvi__sweep *s)
+INLINE void iterate(int widest, dvi__fixed_point *s)
 {
   const int W = s->lanes < widest ? s->lanes : widest;
   if (W == 1)
-    sweep1(s);
+    iterate1(s);
   else if (W == 2)
-    SWEEP(2)
+    ITERATE(2)
   else if (W == 4)
-    SWEEP(4)
+    ITERATE(4)
   else
-    SWEEP(8)
+    ITERATE(8)
 }
 
-INLINE void begin(int widest, const dvi__sweep *s)
+INLINE void begin(int widest, const dvi__fixed_point *s)
 {
   const int W = s->lanes < widest ? s->lanes : widest;
   if (W == 1)
@@ -89,9 +89,9 @@ INLINE void weigh(int n, int stages, const double *weight, double *x)
   stages == 8 ? weigh1(n, 8, weight, x) : weigh1(n, stages, weight, x);
 }
 
-/* A fused product tells what rounding takes from one; where the processor has none, the library
+/* A fused product gives the rounding error of a product. Where the processor has none, the library
  * function gives the same bits. */
-INLINE void split(const dvi__sweep *s)
+INLINE void split(const dvi__fixed_point *s)
 {
   for (int i = 0; i < s->n; i++) {
     s->start[i] = s->factor[i] * s->p0[i];
@@ -117,8 +117,8 @@ INLINE void ends(const dvi__ends *e, const int stages)
   }
 }
 
-/* The exponent bits are all set in NaN and Inf alone; one more in the last of them then runs over
- * into the sign's place. */
+/* The exponent bits are all set in NaN and Inf alone. Adding one to the last of them then carries
+ * into the sign bit. */
 INLINE int all_finite(size_t count, const double *x)
 {
   const uint64_t exponent = UINT64_C(0x7ff0000000000000), last = UINT64_C(0x0010000000000000);
@@ -146,78 +146,79 @@ INLINE double largest(size_t count, const double *x)
   return magnitude;
 }
 
-INLINE void leap_as(int widest, const dvi__moser_veselov *l, const int kicks,
-                    const dvi__division by)
+INLINE void kick_drift_with_kicks(int widest, const dvi__kick_drift *l, const int kicks,
+                                  const dvi__division by)
 {
   size_t i = 0;
   if (widest == 8)
-    i = leap8(l, i, kicks, by);
+    i = kick_drift8(l, i, kicks, by);
   else if (widest == 4)
-    i = leap4(l, i, kicks, by);
+    i = kick_drift4(l, i, kicks, by);
   else
-    i = leap2(l, i, kicks, by);
-  (void)leap1(l, i, kicks, by);
+    i = kick_drift2(l, i, kicks, by);
+  (void)kick_drift1(l, i, kicks, by);
 }
 
-INLINE void leap_by(int widest, const dvi__moser_veselov *l, const dvi__division by)
+INLINE void kick_drift_with_division(int widest, const dvi__kick_drift *l, const dvi__division by)
 {
-  l->kicks == 2 ? leap_as(widest, l, 2, by) : leap_as(widest, l, 1, by);
+  l->kicks == 2 ? kick_drift_with_kicks(widest, l, 2, by) : kick_drift_with_kicks(widest, l, 1, by);
 }
 
-INLINE void leap(int widest, const dvi__moser_veselov *l)
+INLINE void kick_drift(int widest, const dvi__kick_drift *l)
 {
   if (l->by == DVI__TIMES_SCALAR)
-    leap_by(widest, l, DVI__TIMES_SCALAR);
+    kick_drift_with_division(widest, l, DVI__TIMES_SCALAR);
   else if (l->by == DVI__BY_SCALAR)
-    leap_by(widest, l, DVI__BY_SCALAR);
+    kick_drift_with_division(widest, l, DVI__BY_SCALAR);
   else
-    leap_by(widest, l, DVI__BY_ARRAY);
+    kick_drift_with_division(widest, l, DVI__BY_ARRAY);
 }
 
 INLINE void add_scaled(int widest, size_t count, double factor, const double *x, double *sum,
-                       double *carry)
+                       double *compensation)
 {
   size_t i = 0;
   if (widest == 8)
-    i = add_scaled8(i, count, factor, x, sum, carry);
+    i = add_scaled8(i, count, factor, x, sum, compensation);
   else if (widest == 4)
-    i = add_scaled4(i, count, factor, x, sum, carry);
+    i = add_scaled4(i, count, factor, x, sum, compensation);
   else
-    i = add_scaled2(i, count, factor, x, sum, carry);
-  (void)add_scaled1(i, count, factor, x, sum, carry);
+    i = add_scaled2(i, count, factor, x, sum, compensation);
+  (void)add_scaled1(i, count, factor, x, sum, compensation);
 }
 
 /* ---- instruction sets ---- */
 
 typedef struct level {
   const char *name;
-  void (*sweep)(dvi__sweep *s);
+  void (*iterate)(dvi__fixed_point *s);
   void (*weigh)(int n, int stages, const double *weight, double *x);
-  void (*split)(const dvi__sweep *s);
-  void (*begin)(const dvi__sweep *s);
+  void (*split)(const dvi__fixed_point *s);
+  void (*begin)(const dvi__fixed_point *s);
   void (*ends)(const dvi__ends *e);
   void (*product)(int n, int terms, int lanes, int width, const double *matrix, const double *x,
                   double *out);
   int (*all_finite)(size_t count, const double *x);
   double (*largest)(size_t count, const double *x);
-  void (*leap)(const dvi__moser_veselov *l);
-  void (*add_scaled)(size_t count, double factor, const double *x, double *sum, double *carry);
+  void (*kick_drift)(const dvi__kick_drift *l);
+  void (*add_scaled)(size_t count, double factor, const double *x, double *sum,
+                     double *compensation);
 } level;
 
 #define LEVEL(suffix, target, widest)                                                     \
-  target static void sweep_##suffix(dvi__sweep *s)                                        \
+  target static void iterate_##suffix(dvi__fixed_point *s)                                \
   {                                                                                       \
-    sweep(widest, s);                                                                     \
+    iterate(widest, s);                                                                   \
   }                                                                                       \
   target static void weigh_##suffix(int n, int stages, const double *weight, double *x)   \
   {                                                                                       \
     weigh(n, stages, weight, x);                                                          \
   }                                                                                       \
-  target static void split_##suffix(const dvi__sweep *s)                                  \
+  target static void split_##suffix(const dvi__fixed_point *s)                            \
   {                                                                                       \
     split(s);                                                                             \
   }                                                                                       \
-  target static void begin_##suffix(const dvi__sweep *s)                                  \
+  target static void begin_##suffix(const dvi__fixed_point *s)                            \
   {                                                                                       \
     begin(widest, s);                                                                     \
   }                                                                                       \
@@ -238,14 +239,14 @@ typedef struct level {
   {                                                                                       \
     return largest(count, x);                                                             \
   }                                                                                       \
-  target static void leap_##suffix(const dvi__moser_veselov *l)                           \
+  target static void kick_drift_##suffix(const dvi__kick_drift *l)                        \
   {                                                                                       \
-    leap(widest, l);                                                                      \
+    kick_drift(widest, l);                                                                \
   }                                                                                       \
   target static void add_scaled_##suffix(size_t count, double factor, const double *x,    \
-                                         double *sum, double *carry)                      \
+                                         double *sum, double *compensation)               \
   {                                                                                       \
-    add_scaled(widest, count, factor, x, sum, carry);                                     \
+    add_scaled(widest, count, factor, x, sum, compensation);                              \
   }
 
 LEVEL(baseline, , 2)
@@ -255,13 +256,14 @@ LEVEL(avx512, __attribute__((target("fma,avx512f,avx512dq,avx512vl"))), 8)
 #endif
 
 static const level levels[] = {
-    {"baseline", sweep_baseline, weigh_baseline, split_baseline, begin_baseline, ends_baseline,
-     product_baseline, all_finite_baseline, largest_baseline, leap_baseline, add_scaled_baseline},
+    {"baseline", iterate_baseline, weigh_baseline, split_baseline, begin_baseline, ends_baseline,
+     product_baseline, all_finite_baseline, largest_baseline, kick_drift_baseline,
+     add_scaled_baseline},
 #ifdef __x86_64__
-    {"avx2", sweep_avx2, weigh_avx2, split_avx2, begin_avx2, ends_avx2, product_avx2,
-     all_finite_avx2, largest_avx2, leap_avx2, add_scaled_avx2},
-    {"avx512", sweep_avx512, weigh_avx512, split_avx512, begin_avx512, ends_avx512, product_avx512,
-     all_finite_avx512, largest_avx512, leap_avx512, add_scaled_avx512},
+    {"avx2", iterate_avx2, weigh_avx2, split_avx2, begin_avx2, ends_avx2, product_avx2,
+     all_finite_avx2, largest_avx2, kick_drift_avx2, add_scaled_avx2},
+    {"avx512", iterate_avx512, weigh_avx512, split_avx512, begin_avx512, ends_avx512,
+     product_avx512, all_finite_avx512, largest_avx512, kick_drift_avx512, add_scaled_avx512},
 #endif
 };
 
@@ -291,7 +293,7 @@ void dvi__lanes_choose(int number)
                         memory_order_relaxed);
 }
 
-/* Two threads may both choose the best at first: they choose the same. */
+/* Give the level in use. Two threads may both choose the best at first, and choose the same. */
 static const level *best(void)
 {
   const level *found = atomic_load_explicit(&chosen, memory_order_relaxed);
@@ -305,9 +307,9 @@ int dvi__lanes_level(void)
   return (int)(best() - levels);
 }
 
-void dvi__lanes_sweep(dvi__sweep *s)
+void dvi__lanes_iterate(dvi__fixed_point *s)
 {
-  best()->sweep(s);
+  best()->iterate(s);
 }
 
 void dvi__lanes_weigh(int n, int stages, const double *weight, double *x)
@@ -315,12 +317,12 @@ void dvi__lanes_weigh(int n, int stages, const double *weight, double *x)
   best()->weigh(n, stages, weight, x);
 }
 
-void dvi__lanes_split(const dvi__sweep *s)
+void dvi__lanes_split(const dvi__fixed_point *s)
 {
   best()->split(s);
 }
 
-void dvi__lanes_begin(const dvi__sweep *s)
+void dvi__lanes_begin(const dvi__fixed_point *s)
 {
   best()->begin(s);
 }
@@ -346,14 +348,15 @@ double dvi__lanes_largest(size_t count, const double *x)
   return best()->largest(count, x);
 }
 
-void dvi__lanes_kick_drift(const dvi__moser_veselov *leap)
+void dvi__lanes_kick_drift(const dvi__kick_drift *kick_drift)
 {
-  best()->leap(leap);
+  best()->kick_drift(kick_drift);
 }
 
-void dvi__lanes_add_scaled(size_t count, double factor, const double *x, double *sum, double *carry)
+void dvi__lanes_add_scaled(size_t count, double factor, const double *x, double *sum,
+                           double *compensation)
 {
-  best()->add_scaled(count, factor, x, sum, carry);
+  best()->add_scaled(count, factor, x, sum, compensation);
 }
 
 dvi__division dvi__division_by(double mass, double *scalar)

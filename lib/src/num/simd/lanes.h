@@ -1,23 +1,23 @@
-/* Loops for several instruction sets: small dense products with the stages of a step as lanes of
- * vectors, and kicks and drifts with coordinates as lanes.
+/* Loops for several instruction sets. Small dense products have the stages of a step as lanes of
+ * vectors, and kicks and drifts have the coordinates as lanes.
  *
- * A row of `lanes` numbers holds what one coordinate has at the stages, padded with zeros to 1, 2,
- * 4 or a multiple of 8. The loops are compiled for several instruction sets and chosen when they
- * are first used; each gives the same bits, for every lane sees the same operations in the same
- * order, and none of them is a fused one. */
+ * A row of `lanes` numbers holds the numbers of one coordinate at the stages, padded with zeros to
+ * 1, 2, 4 or a multiple of 8. The loops are compiled for several instruction sets and chosen when
+ * they are first used. Each gives the same bits, because every lane sees the same operations in the
+ * same order, and none of them is a fused one. */
 #ifndef DVI_NUM_LANES_H
 #define DVI_NUM_LANES_H
 #include <stddef.h>
 
-/* The least row length for so many stages. */
+/* Give the least row length for so many stages. */
 int dvi__lanes_for(int stages);
 
-/* One iteration for the stages of all coordinates, from the forces at the stages before:
+/* One fixed-point iteration for the stages of all coordinates, from the forces at the old stages:
  *     g_ij = weight_j force_ij,   Z_i = factor_i (p0_i node + sum_j matrix_j g_ij),
  *     Q_ij = origin_i + Z_ij.
- * The product factor_i p0_i is start_i + low_i, exactly: rounded in each step by the same momentum,
- * it would add up. */
-typedef struct dvi__sweep {
+ * The product factor_i p0_i is exactly start_i + low_i. Its rounding by the same momentum in each
+ * step would add up. */
+typedef struct dvi__fixed_point {
   int n, stages, lanes;
   const double *matrix;   /* [stages*lanes], column j at matrix + j*lanes */
   const double *node;     /* [lanes] */
@@ -29,23 +29,23 @@ typedef struct dvi__sweep {
   double *force;          /* [n*stages], replaced by g */
   double *Z;              /* [n*lanes], old and new */
   double *Q;              /* [n*stages] */
-  double change, largest; /* results: largest |Z - old Z|, largest |Z| */
-} dvi__sweep;
+  double change, largest; /* results: largest |Z - old Z| and largest |Z| */
+} dvi__fixed_point;
 
-void dvi__lanes_sweep(dvi__sweep *sweep);
+void dvi__lanes_iterate(dvi__fixed_point *iteration);
 
-/* x_ij <- weight_j x_ij for n rows of `stages`. */
+/* Replace x_ij by weight_j x_ij for n rows of `stages`. */
 void dvi__lanes_weigh(int n, int stages, const double *weight, double *x);
 
-/* Before the first sweep: set start and low. */
-void dvi__lanes_split(const dvi__sweep *sweep);
+/* Set start and low before the first iteration. */
+void dvi__lanes_split(const dvi__fixed_point *iteration);
 
 /* Then, if Z holds sums of forces, replace them by Z_i = factor_i (p0_i node + Z_i), and set Q. */
-void dvi__lanes_begin(const dvi__sweep *sweep);
+void dvi__lanes_begin(const dvi__fixed_point *iteration);
 
-/* The ends of a step by the g of its last sweep:
+/* The end values of a step by the g of its last iteration:
  *     sum = sum_j g_ij,   moved + low = factor (p0 + sum/2 + sum_j slant_j g_ij),
- * where moved is the rounded factor (p0 + sum/2), and low holds what rounding takes from it. */
+ * where moved is the rounded factor (p0 + sum/2), and low holds the rounding error. */
 typedef struct dvi__ends {
   int n, stages;
   const double *g;           /* [n*stages] */
@@ -57,58 +57,59 @@ typedef struct dvi__ends {
 
 void dvi__lanes_ends(const dvi__ends *ends);
 
-/* out_i = sum_k matrix_k x_ik for n rows: x [n*terms], matrix [terms*lanes] by columns, out
- * [n*width], width <= lanes; it may not be x. */
+/* Multiply out_i = sum_k matrix_k x_ik for n rows, with x [n*terms], matrix [terms*lanes] by
+ * columns, out [n*width], width <= lanes. out may not be x. */
 void dvi__lanes_product(int n, int terms, int lanes, int width, const double *matrix,
                         const double *x, double *out);
 
-/* Whether there is no NaN or Inf among them. */
+/* Tell whether no number is NaN or Inf. */
 int dvi__lanes_all_finite(size_t count, const double *x);
 
 /* See num/finite.h. */
 double dvi__lanes_largest(size_t count, const double *x);
 
-/* Coordinates and momenta with what their compensated sums carry. */
+/* Coordinates and momenta with the compensations of their sums. */
 typedef struct dvi__phase {
   double *q, *p, *q_compensation, *p_compensation;
 } dvi__phase;
 
-/* How p becomes v: times a scalar (the inverse of a mass that is a power of two, where the product
- * has the quotient's bits), over a scalar, over each one's own mass. */
+/* Division of p by the mass, which gives v. DVI__TIMES_SCALAR multiplies by the inverse of a mass
+ * that is a power of two, where the product has the quotient's bits. DVI__BY_SCALAR divides by one
+ * mass, DVI__BY_ARRAY by the mass of each coordinate. */
 typedef enum dvi__division { DVI__TIMES_SCALAR, DVI__BY_SCALAR, DVI__BY_ARRAY } dvi__division;
 
-/* p <- p + kick_k force for one kick or two, then q <- q + drift v, all sums compensated
- * (num/compensated.h). */
-typedef struct dvi__moser_veselov {
+/* Kicks and a drift. p <- p + kick_k force for one kick or two, then q <- q + drift v, all sums
+ * compensated (num/compensated.h). */
+typedef struct dvi__kick_drift {
   size_t count;
   int kicks;
   double kick[2], drift;
   dvi__division by;
   double scalar;
-  const double *mass;  /* [count], for DVI__BY_ARRAY */
+  const double *mass;  /* [count] for DVI__BY_ARRAY */
   const double *force; /* [count] */
   dvi__phase from, to; /* [count] each, the same or apart */
-  int far;             /* whether all of these come from memory, not from a cache */
-} dvi__moser_veselov;
+  int far;             /* all of these come from memory, not from a cache */
+} dvi__kick_drift;
 
-void dvi__lanes_kick_drift(const dvi__moser_veselov *leap);
+void dvi__lanes_kick_drift(const dvi__kick_drift *kick_drift);
 
-/* For one mass: the scalar and whether to divide by it. */
+/* Choose the division by one mass and its scalar. */
 dvi__division dvi__division_by(double mass, double *scalar);
 
-/* sum <- sum + factor x, compensated. */
+/* Add factor x to sum, compensated. */
 void dvi__lanes_add_scaled(size_t count, double factor, const double *x, double *sum,
-                           double *carry);
+                           double *compensation);
 
-/* The instruction sets, from the baseline (0) up; their count includes only those that this
- * processor has. */
+/* Describe the instruction sets, from the baseline (0) up. Their count includes only those that
+ * this processor has. */
 int dvi__lanes_levels(void);
 const char *dvi__lanes_level_name(int level);
 
-/* The one in use. */
+/* Give the level in use. */
 int dvi__lanes_level(void);
 
-/* For tests: use this level from now on, on all threads; -1: the best. */
+/* Use this level from now on, on all threads. For tests. -1 chooses the best. */
 void dvi__lanes_choose(int level);
 
 #endif

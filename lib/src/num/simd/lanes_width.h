@@ -1,5 +1,5 @@
-/* The loops of lanes.c for vectors of WIDTH numbers, after vector_width.h; it includes this once
- * for each width. */
+/* The loops of lanes.c for vectors of WIDTH numbers, after vector_width.h. lanes.c includes this
+ * header once for each width. */
 #include "num/simd/kick_drift_width.h"
 
 INLINE double NAME(largest_of)(const NAME(vector) * x)
@@ -9,7 +9,7 @@ INLINE double NAME(largest_of)(const NAME(vector) * x)
   return largest;
 }
 
-/* sum <- sum + matrix_k x_k in WIDTH lanes. */
+/* Add matrix_k x_k to sum in WIDTH lanes. */
 INLINE void NAME(add_column)(int lanes, const double *matrix, const double *x, int k,
                              NAME(vector) * sum)
 {
@@ -18,8 +18,8 @@ INLINE void NAME(add_column)(int lanes, const double *matrix, const double *x, i
   *sum += column * x[k];
 }
 
-/* WIDTH lanes of one row of a product; eight terms and more as four sums, which do not wait for
- * each other. */
+/* Multiply WIDTH lanes of one row. Eight terms and more are four sums, which do not wait for each
+ * other. */
 INLINE void NAME(row)(int terms, int lanes, const double *matrix, const double *x,
                       NAME(vector) * out)
 {
@@ -46,8 +46,8 @@ INLINE void NAME(product)(int n, int terms, int lanes, int width, const double *
     }
 }
 
-/* All forces are weighed before the first is used: then the products take them from memory, lane by
- * lane, at no cost. */
+/* Weigh all forces before the first is used. Then the products read them from memory, lane by lane,
+ * at no cost. */
 INLINE void NAME(weigh)(int n, const int stages, const double *restrict weight,
                         double *restrict force)
 {
@@ -55,8 +55,8 @@ INLINE void NAME(weigh)(int n, const int stages, const double *restrict weight,
     for (int j = 0; j < stages; j++) force[j] *= weight[j];
 }
 
-/* One row of a sweep: from its sums of forces to its new offsets and places. */
-INLINE void NAME(place)(const dvi__sweep *s, size_t i, int b, const NAME(vector) * c,
+/* Make one row of an iteration, from its sums of forces to its new offsets and places. */
+INLINE void NAME(place)(const dvi__fixed_point *s, size_t i, int b, const NAME(vector) * c,
                         const NAME(vector) * sum, double *Z, double *Q, NAME(vector) * change,
                         NAME(vector) * largest)
 {
@@ -70,8 +70,8 @@ INLINE void NAME(place)(const dvi__sweep *s, size_t i, int b, const NAME(vector)
   NAME(store)(Q, &at, s->stages - b);
 }
 
-/* Z holds the sums of forces. */
-INLINE void NAME(begin)(const dvi__sweep *s)
+/* Begin with the sums of forces in Z. */
+INLINE void NAME(begin)(const dvi__fixed_point *s)
 {
   NAME(vector) change = {0}, largest = {0};
   for (size_t i = 0; i < (size_t)s->n; i++)
@@ -84,7 +84,7 @@ INLINE void NAME(begin)(const dvi__sweep *s)
     }
 }
 
-INLINE void NAME(sweep)(dvi__sweep *s)
+INLINE void NAME(iterate)(dvi__fixed_point *s)
 {
   const size_t stages = (size_t)s->stages, lanes = (size_t)s->lanes;
   NAME(vector) change = {0}, largest = {0};
@@ -102,11 +102,11 @@ INLINE void NAME(sweep)(dvi__sweep *s)
   s->largest = NAME(largest_of)(&largest);
 }
 
-/* The same for five to eight stages, known at compile time: the matrix' columns stay in registers
- * while the coordinates pass by. */
-INLINE void NAME(sweep_known)(dvi__sweep *sweep, const int stages)
+/* Iterate for five to eight stages, known at compile time. The matrix' columns stay in registers
+ * while the loop passes over the coordinates. */
+INLINE void NAME(iterate_known)(dvi__fixed_point *iteration, const int stages)
 {
-  const dvi__sweep own = *sweep, *s = &own; /* nobody else writes here */
+  const dvi__fixed_point own = *iteration, *s = &own; /* a copy, which nothing else writes */
   NAME(vector) change = {0}, largest = {0};
   NAME(weigh)(s->n, stages, s->weight, s->force);
   for (int b = 0; b < 8; b += WIDTH) {
@@ -124,6 +124,6 @@ INLINE void NAME(sweep_known)(dvi__sweep *sweep, const int stages)
       (s, i, b, &c, &sum, s->Z + 8 * i + b, s->Q + (size_t)stages * i + b, &change, &largest);
     }
   }
-  sweep->change = NAME(largest_of)(&change);
-  sweep->largest = NAME(largest_of)(&largest);
+  iteration->change = NAME(largest_of)(&change);
+  iteration->largest = NAME(largest_of)(&largest);
 }

@@ -9,30 +9,30 @@
 #define LOOPS "num/simd/members_width.h"
 #include "num/simd/each_width.h"
 
-/* Whole vectors first, the rest in shorter ones. */
+/* Make whole vectors first, the rest in shorter ones. */
 #define TAIL2(name, ...) name##2(__VA_ARGS__, 0)
 #define TAIL4(name, ...) name##2(__VA_ARGS__, name##4(__VA_ARGS__, 0))
 #define TAIL8(name, ...) name##2(__VA_ARGS__, name##4(__VA_ARGS__, name##8(__VA_ARGS__, 0)))
 #define ALL(width, name, ...) ((void)name##1(__VA_ARGS__, TAIL##width(name, __VA_ARGS__)))
 
-/* Few stages are where members are lanes: their loops are worth knowing at compile time. */
-#define SWEEP(width)                                       \
-  INLINE void sweep_by##width(const dvi__members_sweep *s) \
-  {                                                        \
-    switch (s->stages) {                                   \
-    case 1: ALL(width, sweep, s, 1); break;                \
-    case 2: ALL(width, sweep, s, 2); break;                \
-    case 3: ALL(width, sweep, s, 3); break;                \
-    case 4: ALL(width, sweep, s, 4); break;                \
-    case 8: ALL(width, sweep, s, 8); break;                \
-    default: ALL(width, sweep, s, s->stages);              \
-    }                                                      \
+/* Members are lanes where stages are few, and these loops are worth knowing at compile time. */
+#define ITERATE(width)                                             \
+  INLINE void iterate_by##width(const dvi__members_fixed_point *s) \
+  {                                                                \
+    switch (s->stages) {                                           \
+    case 1: ALL(width, iterate, s, 1); break;                      \
+    case 2: ALL(width, iterate, s, 2); break;                      \
+    case 3: ALL(width, iterate, s, 3); break;                      \
+    case 4: ALL(width, iterate, s, 4); break;                      \
+    case 8: ALL(width, iterate, s, 8); break;                      \
+    default: ALL(width, iterate, s, s->stages);                    \
+    }                                                              \
   }
-SWEEP(2)
-SWEEP(4)
-SWEEP(8)
+ITERATE(2)
+ITERATE(4)
+ITERATE(8)
 
-/* As in lanes.c. */
+/* Split as in lanes.c. */
 INLINE void split(int n, int width, const double *factor, const double *restrict p0,
                   double *restrict start, double *restrict low)
 {
@@ -43,7 +43,7 @@ INLINE void split(int n, int width, const double *factor, const double *restrict
     }
 }
 
-/* As in lanes.c, from the sums on. */
+/* Find the end values as in lanes.c, from the sums on. */
 INLINE void finish(int width, double factor, const double *restrict sum, const double *restrict p0,
                    double *restrict moved, double *restrict low)
 {
@@ -71,26 +71,26 @@ ENDS(8)
 /* ---- instruction sets ---- */
 
 typedef struct level {
-  void (*sweep)(const dvi__members_sweep *s);
+  void (*iterate)(const dvi__members_fixed_point *s);
   void (*split)(int n, int width, const double *factor, const double *p0, double *start,
                 double *low);
-  void (*begin)(const dvi__members_sweep *s);
+  void (*begin)(const dvi__members_fixed_point *s);
   void (*ends)(const dvi__members_ends *e);
   void (*product)(int n, int terms, int lanes, int rows, const double *matrix, int width,
                   const double *x, double *out);
 } level;
 
 #define LEVEL(suffix, target, width)                                                               \
-  target static void sweep_##suffix(const dvi__members_sweep *s)                                   \
+  target static void iterate_##suffix(const dvi__members_fixed_point *s)                           \
   {                                                                                                \
-    sweep_by##width(s);                                                                            \
+    iterate_by##width(s);                                                                          \
   }                                                                                                \
   target static void split_##suffix(int n, int members, const double *factor, const double *p0,    \
                                     double *start, double *low)                                    \
   {                                                                                                \
     split(n, members, factor, p0, start, low);                                                     \
   }                                                                                                \
-  target static void begin_##suffix(const dvi__members_sweep *s)                                   \
+  target static void begin_##suffix(const dvi__members_fixed_point *s)                             \
   {                                                                                                \
     ALL(width, begin, s);                                                                          \
   }                                                                                                \
@@ -110,43 +110,43 @@ LEVEL(avx2, __attribute__((target("avx2,fma"))), 4)
 LEVEL(avx512, __attribute__((target("fma,avx512f,avx512dq,avx512vl"))), 8)
 #endif
 
-/* In the order of num/simd/lanes.c. */
+/* Levels in the order of num/simd/lanes.c. */
 static const level levels[] = {
-    {sweep_baseline, split_baseline, begin_baseline, ends_baseline, product_baseline},
+    {iterate_baseline, split_baseline, begin_baseline, ends_baseline, product_baseline},
 #ifdef __x86_64__
-    {sweep_avx2, split_avx2, begin_avx2, ends_avx2, product_avx2},
-    {sweep_avx512, split_avx512, begin_avx512, ends_avx512, product_avx512},
+    {iterate_avx2, split_avx2, begin_avx2, ends_avx2, product_avx2},
+    {iterate_avx512, split_avx512, begin_avx512, ends_avx512, product_avx512},
 #endif
 };
 
-static const level *now(void)
+static const level *level_in_use(void)
 {
   return &levels[dvi__lanes_level()];
 }
 
-void dvi__members_sweep_once(const dvi__members_sweep *s)
+void dvi__members_iterate(const dvi__members_fixed_point *s)
 {
-  now()->sweep(s);
+  level_in_use()->iterate(s);
 }
 
 void dvi__members_split(int n, int width, const double *factor, const double *p0, double *start,
                         double *low)
 {
-  now()->split(n, width, factor, p0, start, low);
+  level_in_use()->split(n, width, factor, p0, start, low);
 }
 
-void dvi__members_begin(const dvi__members_sweep *s)
+void dvi__members_begin(const dvi__members_fixed_point *s)
 {
-  now()->begin(s);
+  level_in_use()->begin(s);
 }
 
 void dvi__members_ends_of(const dvi__members_ends *ends)
 {
-  now()->ends(ends);
+  level_in_use()->ends(ends);
 }
 
 void dvi__members_product(int n, int terms, int lanes, int rows, const double *matrix, int width,
                           const double *x, double *out)
 {
-  now()->product(n, terms, lanes, rows, matrix, width, x, out);
+  level_in_use()->product(n, terms, lanes, rows, matrix, width, x, out);
 }

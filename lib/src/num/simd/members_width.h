@@ -1,7 +1,8 @@
-/* The loops of members.c for vectors of WIDTH numbers, after vector_width.h; it includes this once
- * for each width. The last few of a row are done one by one, by the same functions at WIDTH 1. */
+/* The loops of members.c for vectors of WIDTH numbers, after vector_width.h. members.c includes
+ * this header once for each width. The last few of a row are done one by one, by the same functions
+ * at WIDTH 1. */
 
-/* sum <- sum + matrix_k x_k, with x_k and x_(k+1) `width` apart. */
+/* Add matrix_k x_k to sum, with x_k and x_(k+1) `width` apart. */
 INLINE void NAME(add_term)(int lanes, const double *matrix, int width, const double *x, int k,
                            NAME(vector) * sum)
 {
@@ -10,7 +11,7 @@ INLINE void NAME(add_term)(int lanes, const double *matrix, int width, const dou
   *sum += value * matrix[(size_t)k * (size_t)lanes];
 }
 
-/* sum_k matrix_k x_k; eight terms and more as four sums, as in lanes_width.h. */
+/* Give sum_k matrix_k x_k. Eight terms and more are four sums, as in lanes_width.h. */
 INLINE void NAME(row)(int terms, int lanes, const double *matrix, int width, const double *x,
                       NAME(vector) * out)
 {
@@ -26,7 +27,7 @@ INLINE void NAME(row)(int terms, int lanes, const double *matrix, int width, con
   *out = terms >= 8 ? (sum[0] + sum[1]) + (sum[2] + sum[3]) : sum[0];
 }
 
-/* WIDTH members, from member m on, of coordinate i. */
+/* Multiply for WIDTH members, from member m on, of coordinate i. */
 INLINE void NAME(product_at)(int terms, int lanes, int rows, const double *matrix, int width,
                              const double *x, double *out)
 {
@@ -47,15 +48,15 @@ INLINE int NAME(product)(int n, int terms, int lanes, int rows, const double *ma
   return m;
 }
 
-/* ---- sweeps ---- */
+/* ---- iterations ---- */
 
-/* What WIDTH members have at one coordinate. */
+/* Numbers of WIDTH members at one coordinate. */
 typedef struct NAME(base) {
   NAME(vector) start, low, origin;
   double factor;
 } NAME(base);
 
-INLINE void NAME(load_base)(const dvi__members_sweep *s, size_t i, int m, NAME(base) * base)
+INLINE void NAME(load_base)(const dvi__members_fixed_point *s, size_t i, int m, NAME(base) * base)
 {
   const size_t at = i * (size_t)s->width + (size_t)m;
   NAME(load)(s->start + at, &base->start);
@@ -64,7 +65,7 @@ INLINE void NAME(load_base)(const dvi__members_sweep *s, size_t i, int m, NAME(b
   base->factor = s->factor[i];
 }
 
-/* One stage: from its sum of forces to its offset and place. */
+/* Place one stage, from its sum of forces to its offset and place. */
 INLINE void NAME(place)(const NAME(base) * base, double node, const NAME(vector) * sum,
                         NAME(vector) * next, double *Z, double *Q)
 {
@@ -74,8 +75,8 @@ INLINE void NAME(place)(const NAME(base) * base, double node, const NAME(vector)
   NAME(store)(Q, &place, WIDTH);
 }
 
-/* Z holds the sums of forces. */
-INLINE int NAME(begin)(const dvi__members_sweep *s, int m)
+/* Begin with the sums of forces in Z. */
+INLINE int NAME(begin)(const dvi__members_fixed_point *s, int m)
 {
   const size_t width = (size_t)s->width, stages = (size_t)s->stages;
   for (; m + WIDTH <= s->width; m += WIDTH)
@@ -92,9 +93,9 @@ INLINE int NAME(begin)(const dvi__members_sweep *s, int m)
   return m;
 }
 
-/* WIDTH members of one coordinate: all forces are weighed, then the stages move. */
-INLINE void NAME(sweep_at)(const dvi__members_sweep *s, const int stages, size_t i, int m,
-                           NAME(vector) * change, NAME(vector) * largest)
+/* Iterate for WIDTH members of one coordinate. All forces are weighed, then the stages move. */
+INLINE void NAME(iterate_at)(const dvi__members_fixed_point *s, const int stages, size_t i, int m,
+                             NAME(vector) * change, NAME(vector) * largest)
 {
   const size_t width = (size_t)s->width, at = i * (size_t)stages * width + (size_t)m;
   double *restrict force = s->force + at, *restrict Z = s->Z + at, *restrict Q = s->Q + at;
@@ -117,11 +118,11 @@ INLINE void NAME(sweep_at)(const dvi__members_sweep *s, const int stages, size_t
   }
 }
 
-INLINE int NAME(sweep)(const dvi__members_sweep *s, const int stages, int m)
+INLINE int NAME(iterate)(const dvi__members_fixed_point *s, const int stages, int m)
 {
   for (; m + WIDTH <= s->width; m += WIDTH) {
     NAME(vector) change = {0}, largest = {0};
-    for (size_t i = 0; i < (size_t)s->n; i++) NAME(sweep_at)(s, stages, i, m, &change, &largest);
+    for (size_t i = 0; i < (size_t)s->n; i++) NAME(iterate_at)(s, stages, i, m, &change, &largest);
     NAME(store)(s->change + m, &change, WIDTH);
     NAME(store)(s->largest + m, &largest, WIDTH);
   }
@@ -130,7 +131,7 @@ INLINE int NAME(sweep)(const dvi__members_sweep *s, const int stages, int m)
 
 /* ---- ends ---- */
 
-/* sum_j g_j, and sum_j slant_j g_j in the place of `low`. */
+/* Give sum_j g_j, and sum_j slant_j g_j in the place of `low`. */
 INLINE int NAME(sums)(const dvi__members_ends *e, int m)
 {
   const size_t width = (size_t)e->width, stages = (size_t)e->stages;

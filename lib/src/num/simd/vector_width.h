@@ -1,8 +1,8 @@
-/* Vectors of WIDTH numbers, for the files that include num/simd/width.h: once for each width,
- * before what works on them.
+/* Vectors of WIDTH numbers, for the files that include num/simd/width.h. Included once for each
+ * width, before the functions on them.
  *
- * GCC and clang lower a vector that the target lacks to smaller ones, lane by lane: the same
- * operations. Vectors are handed on by pointers: as arguments they would have another calling
+ * GCC and clang lower a vector that the target lacks to smaller ones, lane by lane, with the same
+ * operations. Vectors are passed by pointers, because as arguments they would have another calling
  * convention on every target. */
 
 typedef double NAME(vector) __attribute__((vector_size(WIDTH * sizeof(double))));
@@ -13,8 +13,8 @@ INLINE void NAME(load)(const double *x, NAME(vector) * loaded)
   memcpy(loaded, x, sizeof *loaded);
 }
 
-/* The first `count` lanes, none if it is not positive: of fewer than WIDTH in pieces of known size,
- * for a call of memcpy costs more than all of them. */
+/* Store the first `count` lanes, none if it is not positive. Fewer than WIDTH are stored in pieces
+ * of known size, because a call of memcpy costs more than all of them. */
 INLINE void NAME(store)(double *out, const NAME(vector) * x, int count)
 {
   if (count >= WIDTH) {
@@ -30,7 +30,7 @@ INLINE void NAME(store)(double *out, const NAME(vector) * x, int count)
     }
 }
 
-/* largest <- max(largest, |x|), lane by lane; NaN is not seen. */
+/* Replace largest by max(largest, |x|), lane by lane. NaN is ignored. */
 INLINE void NAME(larger)(NAME(vector) * largest, const NAME(vector) * x)
 {
   const NAME(mask) magnitude = (NAME(mask)) * x & INT64_MAX,

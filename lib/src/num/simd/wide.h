@@ -1,6 +1,6 @@
-/* Functions that are compiled also for processors with wider vectors. The bits are the same. For
- * static functions; the processor chooses when the program starts; gcc's thread sanitizer cannot
- * watch that yet. */
+/* Functions that are compiled also for processors with wider vectors. The bits are the same. WIDE
+ * is for static functions. The processor chooses when the program starts. gcc's thread sanitizer
+ * cannot watch that yet. */
 #ifndef DVI_NUM_WIDE_H
 #define DVI_NUM_WIDE_H
 

@@ -1,4 +1,4 @@
-/* Functions that are compiled once for each width of vectors: a file defines WIDTH and includes the
+/* Functions that are compiled once for each width of vectors. A file defines WIDTH and includes the
  * header that holds them. */
 #ifndef DVI_NUM_WIDTH_H
 #define DVI_NUM_WIDTH_H

@@ -23,7 +23,7 @@ struct dvi__darboux {
   /* time of a stage in the step for H, and for guesses the mean of the times of x and p */
   double time[MOST], middle[MOST];
   dvi__pattern joint, pattern; /* joint is the pattern of one block, pattern that of the Jacobian */
-  dvi__block *block;           /* [entries of joint] */
+  dvi__joint_entry *block;     /* [entries of joint] */
   /* The current step. */
   double t0, h;
   const double *q0, *p0;
@@ -229,7 +229,7 @@ typedef struct entry {
   double A[MOST], B[MOST], K[MOST];
 } entry;
 
-static entry darboux_gather_entry(const dvi__darboux *d, const dvi__block *where)
+static entry darboux_gather_entry(const dvi__darboux *d, const dvi__joint_entry *where)
 {
   entry e = {{0}, {0}, {0}};
   for (int k = 0; k < d->m; k++) {

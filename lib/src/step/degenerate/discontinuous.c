@@ -22,7 +22,7 @@ struct dvi__discontinuous {
   double side[MOST], weight[MOST]; /* points of the path 1/2 + s_g, and weights w_g */
   double lean;                     /* sum_g w_g s_g */
   dvi__pattern joint, pattern; /* joint is the pattern of one block, pattern that of the Jacobian */
-  dvi__block *block;           /* [entries of joint] */
+  dvi__joint_entry *block;     /* [entries of joint] */
   int stiff;                   /* c is not 0 */
   double *c_diagonal;          /* [n] diagonal of c */
   /* The current step. */
@@ -271,7 +271,7 @@ static double discontinuous_at(const double *values, int where, int count, int p
   return where >= 0 ? values[where * count + point] : 0;
 }
 
-static void discontinuous_gather(const dvi__discontinuous *e, const dvi__block *where,
+static void discontinuous_gather(const dvi__discontinuous *e, const dvi__joint_entry *where,
                                  double stiffness, entry *out)
 {
   for (int k = 0; k < e->r; k++) {

@@ -25,7 +25,7 @@ struct dvi__partitioned {
       b[DVI__STAGES_MOST], c[DVI__STAGES_MOST];
   kicks kick;
   dvi__pattern joint, pattern; /* joint is the pattern of one block, pattern that of the Jacobian */
-  dvi__block *block;           /* [entries of joint] */
+  dvi__joint_entry *block;     /* [entries of joint] */
   /* The current step. */
   double t0, h;
   const double *q0, *p0, *carried;
@@ -272,7 +272,8 @@ typedef struct entry {
   double B0, H0, B1, H1, A_end;
 } entry;
 
-static void partitioned_gather_entry(const dvi__partitioned *p, const dvi__block *where, entry *out)
+static void partitioned_gather_entry(const dvi__partitioned *p, const dvi__joint_entry *where,
+                                     entry *out)
 {
   for (int k = 0; k < p->s; k++) {
     out->A[k] = where->vq >= 0 ? p->H_qv[where->vq * p->s + k] : 0;

@@ -3,12 +3,12 @@
 #include <string.h>
 
 #include "step/element/action_struct.h"
-#include "step/element/sweep.h"
+#include "step/element/fixed_point.h"
 #include "step/element/table.h"
 #include "core/memory.h"
 #include "core/status.h"
 
-static int allocate_batches(dvi__action *a)
+static int action_allocate_batches(dvi__action *a)
 {
   const size_t batch = (size_t)a->n * (size_t)a->r;
   a->t = DVI_NEW(double, a->r);
@@ -21,7 +21,7 @@ static int allocate_batches(dvi__action *a)
   return a->t && a->Q && a->V && a->L_q && a->L_v && a->line && a->rows;
 }
 
-static dvi_status allocate_chord(dvi__action *a, dvi_counters *counters)
+static dvi_status action_allocate_chord(dvi__action *a, dvi_counters *counters)
 {
   const dvi_system *system = a->system;
   if (system->lagrangian == NULL || system->terms & DVI__ONE_FORM) return DVI_OK;
@@ -35,22 +35,22 @@ static dvi_status allocate_chord(dvi__action *a, dvi_counters *counters)
   return dvi__linear_create(&system->vv, DVI__LINEAR_AUTO, counters, &a->chord);
 }
 
-static dvi_status fill(dvi__action *a, dvi_counters *counters)
+static dvi_status action_allocate(dvi__action *a, dvi_counters *counters)
 {
-  if (!a->shaped) DVI_TRY(dvi__joint_check(a->system, 1, a->r > a->s ? a->r : a->s));
+  if (!a->by_user) DVI_TRY(dvi__joint_check(a->system, 1, a->r > a->s ? a->r : a->s));
   DVI_TRY(dvi__action_fill_tables(a));
-  /* a batch of s is solved for at once in the chord */
+  /* the chord solves for a batch of s at once */
   const int capacity = a->r > a->s ? a->r : a->s;
   DVI_TRY(dvi__evaluator_create(a->system, capacity, DVI__GRADIENTS, counters, &a->evaluator));
-  if (!allocate_batches(a))
+  if (!action_allocate_batches(a))
     return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d nodes in %d dimensions", a->r, a->n);
-  if (a->shaped) return DVI_OK;
-  DVI_TRY(dvi__action_prepare_sweep(a));
-  return allocate_chord(a, counters);
+  if (a->by_user) return DVI_OK;
+  DVI_TRY(dvi__action_prepare_fixed_point(a));
+  return action_allocate_chord(a, counters);
 }
 
-static dvi_status create(const dvi_system *system, const dvi__action_space *space, int shaped,
-                         dvi_counters *counters, dvi__action **action)
+static dvi_status action_create(const dvi_system *system, const dvi__action_space *space,
+                                int by_user, dvi_counters *counters, dvi__action **action)
 {
   *action = NULL;
   dvi__action *a = DVI_NEW(dvi__action, 1);
@@ -60,8 +60,8 @@ static dvi_status create(const dvi_system *system, const dvi__action_space *spac
   a->n = system->n;
   a->s = space->degree;
   a->r = space->nodes;
-  a->shaped = shaped;
-  const dvi_status status = fill(a, counters);
+  a->by_user = by_user;
+  const dvi_status status = action_allocate(a, counters);
   if (status != DVI_OK) dvi__action_destroy(&a);
   *action = a;
   return status;
@@ -70,14 +70,14 @@ static dvi_status create(const dvi_system *system, const dvi__action_space *spac
 dvi_status dvi__action_create(const dvi_system *system, const dvi__action_space *space,
                               dvi_counters *counters, dvi__action **action)
 {
-  return create(system, space, 0, counters, action);
+  return action_create(system, space, 0, counters, action);
 }
 
 dvi_status dvi__action_create_by_user(const dvi_system *system, int functions, int points,
                                       dvi_counters *counters, dvi__action **action)
 {
-  return create(system, &(dvi__action_space){.degree = functions, .nodes = points}, 1, counters,
-                action);
+  return action_create(system, &(dvi__action_space){.degree = functions, .nodes = points}, 1,
+                       counters, action);
 }
 
 void dvi__action_destroy(dvi__action **action)
@@ -113,16 +113,16 @@ void dvi__action_destroy(dvi__action **action)
                            a->moved,
                            a->middle[0],
                            a->middle[1],
-                           a->sweep_matrix,
-                           a->sweep_node,
-                           a->sweep_slant,
-                           a->sweep_path,
-                           a->sweep_start,
-                           a->sweep_low,
-                           a->sweep_factor,
-                           a->sweep_weight,
+                           a->fixed_point.matrix,
+                           a->fixed_point.node,
+                           a->fixed_point.slant,
+                           a->fixed_point.path,
+                           a->fixed_point.start,
+                           a->fixed_point.low,
+                           a->fixed_point.factor,
+                           a->fixed_point.weight,
                            a->Z,
-                           a->sweep_shift.table};
+                           a->fixed_point.shift.table};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) dvi__release(owned[i]);
   dvi__action_clear_two_point(a);
   dvi__action_clear_energy(a);

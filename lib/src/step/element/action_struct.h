@@ -6,14 +6,14 @@
 #include "step/joint.h"
 #include "space/basis.h"
 
-/* Tables that continue what the last step found into the next: one for each ratio of their lengths.
- * A composition of 17 substeps asks for as many ratios in turn. */
+/* Number of tables that continue the results of the last step into the next, one for each ratio of
+ * their lengths. A composition of 17 substeps has as many ratios in turn. */
 enum { DVI__SHIFTS = 20 };
 
 typedef struct dvi__shifts {
   double *table;             /* [DVI__SHIFTS * size of one] */
-  double ratio[DVI__SHIFTS]; /* the ratio that each was made for; 0: none */
-  int oldest;                /* the one to be replaced next */
+  double ratio[DVI__SHIFTS]; /* ratio of each table, 0 if there is none */
+  int oldest;                /* table to be replaced next */
 } dvi__shifts;
 
 struct dvi__action {
@@ -21,9 +21,9 @@ struct dvi__action {
   dvi__evaluator *evaluator;
   dvi__action_space space;
   int n, s, r; /* coordinates, degree, quadrature nodes */
-  /* s functions and r points of any kind: the tables are filled by shaped.c; what needs a basis is
-   * not there */
-  int shaped;
+  /* s functions and r points of the user, for which user_element.c fills the tables; members that
+   * need a basis are absent */
+  int by_user;
   dvi__space trial; /* the basis, ready for evaluation anywhere */
   /* Length of a row over the nodes and over the functions, padded for products in lanes
    * (num/simd/lanes.h). */
@@ -34,70 +34,75 @@ struct dvi__action {
   double *end;                           /* [s] psi_k(1) */
   double *stiffness, *stiffness_inverse; /* [s*s] K_kl = sum_j b_j psi_k' psi_l' */
   double *fit_point, *fit, *straight;    /* [s], [s*s] rows, [s] */
-  dvi__shifts shift;                     /* of paths: [s*path_lanes], by columns */
+  dvi__shifts shift;                     /* continuation of paths, [s*path_lanes] by columns */
   double *shift_rows;                    /* [s*s] work */
   /* The element's place. */
   double t0, h;
   const double *q0, *p0;
   /* Batches over the nodes, [n*r]. */
-  double *t, *Q, *V, *L_q, *L_v; /* the gradients times the weights b_j */
-  double *line;                  /* [2 s + 2 r] one coordinate's worth of anything */
+  double *t, *Q, *V, *L_q, *L_v; /* gradients times the weights b_j */
+  double *line;                  /* [2 s + 2 r] work for one coordinate */
   double *rows;                  /* [n*s] work */
-  /* The tables transposed, for the rows: [j*path_lanes + k]. */
+  /* The tables transposed, for the rows, [j*path_lanes + k]. */
   double *bar_row, *slope_row; /* psi_k(c_j) - psi_k(1), psi_k'(c_j) */
   double *stiffness_row;       /* [s*path_lanes] K^{-1} */
-  /* Sweeps (sweep.h); NULL if the mass couples coordinates. */
-  /* [r*lanes] c_i - P_ij by columns, [lanes] c, [r] 1/2 - c */
-  double *sweep_matrix, *sweep_node, *sweep_slant;
-  double *sweep_path;                             /* paths from forces */
-  double *sweep_start, *sweep_low, *sweep_factor; /* [n] h/m p0 and what it is rounded by, h/m */
-  double sweep_h;                                 /* the h of sweep_factor and sweep_weight */
-  double *sweep_weight;                           /* [r] -h b_j */
-  double *Z;                                      /* [n*lanes] offsets of the nodes from q0 */
-  /* from the last step's forces to offsets: [r*lanes], by columns */
-  dvi__shifts sweep_shift;
-  int swept; /* the forces are a sweep's */
+  /* Fixed-point iteration (fixed_point.h). NULL if the mass couples coordinates. */
+  struct {
+    double *matrix;      /* [r*lanes] c_i - P_ij by columns */
+    double *node;        /* [lanes] c */
+    double *slant;       /* [r] 1/2 - c */
+    double *path;        /* [r*path_lanes] from forces to paths, by columns */
+    double *start, *low; /* [n] h/m p0 and its rounding error */
+    double *factor;      /* [n] h/m */
+    double *weight;      /* [r] -h b_j */
+    double h;            /* the h of factor and weight */
+    dvi__shifts shift;   /* from the last step's forces to offsets, [r*lanes] by columns */
+  } fixed_point;
+  double *Z;    /* [n*lanes] offsets of the nodes from q0 */
+  int iterated; /* the forces are those of a fixed-point iteration */
   /* Chord. */
-  double scaled_h;       /* the h of the last row scales */
+  double scaled_h;       /* h of the last row scales */
   double *middle_vv;     /* L_vv at one point (general Lagrangians) */
   double *middle[2];     /* q, v at that point */
   dvi__linear *chord;    /* factors middle_vv */
-  double *chord_inverse; /* [n*n] by columns; NULL: n is too large for it to pay */
-  /* Jacobian; NULL until prepared. */
-  dvi__pattern joint;         /* n x n: union of qq, qv, vq, vv */
-  dvi__pattern pattern;       /* ns x ns */
-  dvi__block *block;          /* [entries of joint] */
+  double *chord_inverse; /* [n*n] by columns, NULL if n is too large for it to pay */
+  /* Jacobian. NULL until prepared. */
+  dvi__pattern joint;         /* [n x n] union of qq, qv, vq, vv */
+  dvi__pattern pattern;       /* [n s x n s] */
+  dvi__joint_entry *block;    /* [entries of joint] */
   double *H_qq, *H_qv, *H_vv; /* [entries*r] */
-  double *moved;              /* [4 n*r] work of products; NULL until prepared */
+  double *moved;              /* [4 n*r] work of products, NULL until prepared */
   dvi__row_terms terms;
-  struct dvi__centred_paths *centred; /* charts centred at the start; NULL: there are none */
-  /* Between two ends (between.h); NULL until prepared. */
-  double *bubble;                    /* [(s-1)*s] beta_m in the functions psi_k */
-  double *chi, *dchi;                /* [(s+1)*lanes] tables over the nodes */
-  double *between_rows, *between_dp; /* [n*s], [n] work */
-  /* Energies; NULL until prepared. */
+  struct dvi__centred_paths *centred; /* charts centred at the start, or NULL */
+  /* Paths between two points (two_point.h). NULL until prepared. */
+  struct {
+    double *bubble;     /* [(s-1)*s] beta_m in the functions psi_k */
+    double *chi, *dchi; /* [(s+1)*lanes] tables over the nodes */
+    double *rows, *dp;  /* [n*s], [n] work */
+  } two_point;
+  /* Energies. NULL until prepared. */
   double *value, *rate; /* [r] L, L_t */
-  /* [n*r] what L_v V - L changes by with q and with the path's derivative in tau */
+  /* [n*r] derivatives of L_v V - L by q and by the path's derivative in tau */
   double *by_q, *by_v;
-  /* [n*r], [n*r], [r] L_tq, L_tv, L_tt; NULL: the system is autonomous */
+  /* [n*r], [n*r], [r] L_tq, L_tv, L_tt, NULL for an autonomous system */
   double *rate_q, *rate_v, *rate_t;
-  double *moved_t, *moved_rate; /* [r] work of their differences, */
-  double *moved_q, *moved_v;    /* [n*r] and more of it */
+  double *moved_t, *moved_rate; /* [r] work of their differences */
+  double *moved_q, *moved_v;    /* [n*r] work of their differences */
 };
 
-/* Up to so many coordinates the chord's inverse is cheaper than solving for each of the s
- * functions. */
+/* Largest number of coordinates for which the chord's inverse is cheaper than solving for each of
+ * the s functions. */
 enum { DVI__CHORD_INVERSE = 8 };
 
-/* The table from the last step's forces to the sums of forces in a step `ratio` times as long:
- * [r*lanes], by columns. */
-const double *dvi__action_sweep_shift(dvi__action *action, double ratio);
+/* Give the table from the last step's forces to the sums of forces in a step `ratio` times as long,
+ * [r*lanes] by columns. */
+const double *dvi__action_fixed_point_shift(dvi__action *action, double ratio);
 
 typedef struct dvi__centred_paths dvi__centred_paths;
 
-/* The row terms' parts: of the joint pattern, and the Jacobian's with their own unknowns; of a
- * path, which is announced before L's derivatives are asked for; of the rows, their magnitudes, the
- * derivatives and the scales. */
+/* Add the row terms' parts to the joint pattern and, with their own unknowns, to the Jacobian's.
+ * Announce a path to them before L's derivatives are evaluated. Add their parts to the rows, to the
+ * magnitudes, the derivatives and the scales. */
 dvi_status dvi__action_join_terms(const dvi__action *action, dvi__pattern *joint);
 dvi_status dvi__action_wide_pattern(const dvi__action *action, dvi__pattern *pattern);
 void dvi__action_place_terms(dvi__action *action, const double *Y);
@@ -106,38 +111,42 @@ void dvi__action_add_term_magnitudes(const dvi__action *action, double *magnitud
 dvi_status dvi__action_add_term_derivatives(dvi__action *action, const double *Y, double *values);
 void dvi__action_scale_terms(const dvi__action *action, double *scale);
 
-/* Free what dvi__action_centre made. */
+/* Free the memory of dvi__action_centre. */
 void dvi__action_clear_charts(dvi__action *action);
 
-/* Free what dvi__action_prepare_energy has made. */
+/* Free the memory of dvi__action_prepare_energy. */
 void dvi__action_clear_energy(dvi__action *action);
 
-/* An element whose tables shaped.c fills, at every new length: of it there are place, residual,
+/* Create an element whose tables user_element.c fills at every new length. It has place, residual,
  * Hessians and ends. */
 dvi_status dvi__action_create_by_user(const dvi_system *system, int functions, int points,
                                       dvi_counters *counters, dvi__action **action);
 
-/* Row scales by the velocity Hessian in the order of vv; NULL: the constant mass. */
+/* Scale rows by the velocity Hessian in the order of vv. NULL stands for the constant mass. */
 void dvi__action_scale_by(const dvi__action *action, const double *L_vv, double *scale);
 
-/* What sweeps need that depends on h alone. */
+/* Set the numbers of the fixed-point iteration that depend on h alone. */
 void dvi__action_set_step(dvi__action *action);
 
-/* Free what was prepared for Hessians and the Jacobian, which may be prepared again. */
+/* Free the memory for Hessians and the Jacobian, which may be prepared again. */
 void dvi__action_clear_jacobian(dvi__action *action);
 
-/* Column l of a block, its first `rows` rows: sum_j b_j [ (psi_k - psi_k(1)) (h L_qq psi_l + L_qv
- * psi_l') + psi_k' (L_vq psi_l + L_vv psi_l'/h) ]. */
-void dvi__action_block_column(const dvi__action *action, const dvi__block *block, int l, int rows,
-                              double *column);
+/* Write column l of a block, its first `rows` rows, which are
+ *
+ *     sum_j b_j [ (psi_k - psi_k(1)) (h L_qq psi_l + L_qv psi_l')
+ *                 + psi_k' (L_vq psi_l + L_vv psi_l'/h) ]. */
+void dvi__action_block_column(const dvi__action *action, const dvi__joint_entry *block, int l,
+                              int rows, double *column);
 
-/* in_q and in_v [r], which may stand in `line`: b_j (h L_qq f + L_qv f') and b_j (L_vq f + L_vv
- * f'/h) for one entry of the joint pattern and a function f of which f and f' [r] are given at the
- * nodes. */
-void dvi__action_weigh_hessian(const dvi__action *action, const dvi__block *block, const double *f,
-                               const double *df, double *in_q, double *in_v);
+/* Write in_q and in_v [r], which may stand in `line`,
+ *
+ *     b_j (h L_qq f + L_qv f')   and   b_j (L_vq f + L_vv f'/h),
+ *
+ * for one entry of the joint pattern and a function with the values f and f' [r] at the nodes. */
+void dvi__action_weigh_hessian(const dvi__action *action, const dvi__joint_entry *block,
+                               const double *f, const double *df, double *in_q, double *in_v);
 
-/* Free what dvi__action_prepare_two_point made. */
+/* Free the memory of dvi__action_prepare_two_point. */
 void dvi__action_clear_two_point(const dvi__action *action);
 
 /* Fill the batches Q and V with the path's points at the nodes. */

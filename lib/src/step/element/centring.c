@@ -1,5 +1,5 @@
-/* The first row term: paths in a chart that is centred at their start (system/chart/centring.h).
- * With p1 = p0 + dp + C the rows are
+/* The first row term, for paths in a chart that is centred at their start
+ * (system/chart/centring.h). With p1 = p0 + dp + C the rows are
  *
  *     R_k = sum_j b_j ( h (psi_k - psi_k(1)) L_q + psi_k' L_v )_j - psi_k(1) (p0 + C) */
 #include <math.h>
@@ -14,14 +14,14 @@ struct dvi__centred_paths {
   double *correction; /* [n] C */
 };
 
-static void place_chart(void *of, const dvi__row_path *path)
+static void centring_place(void *of, const dvi__row_path *path)
 {
   const dvi__centring *centring = &((const dvi__centred_paths *)of)->centring;
   centring->place(centring->of, path->q0, path->q1);
 }
 
-static dvi_status add_correction(void *of, const dvi__row_path *p, const double *own, double *R,
-                                 double *dp, double *own_R)
+static dvi_status centring_rows(void *of, const dvi__row_path *p, const double *own, double *R,
+                                double *dp, double *own_R)
 {
   const dvi__centred_paths *x = of;
   (void)own, (void)own_R;
@@ -33,8 +33,8 @@ static dvi_status add_correction(void *of, const dvi__row_path *p, const double 
   return DVI_OK;
 }
 
-static void mix_magnitudes(const void *of, const dvi__row_path *p, double *magnitude,
-                           double *own_magnitude)
+static void centring_magnitudes(const void *of, const dvi__row_path *p, double *magnitude,
+                                double *own_magnitude)
 {
   const dvi__centred_paths *x = of;
   (void)own_magnitude;
@@ -43,8 +43,8 @@ static void mix_magnitudes(const void *of, const dvi__row_path *p, double *magni
   x->centring.mix(x->centring.of, p->s, magnitude);
 }
 
-/* dC/dY_l for one entry of the joint pattern. */
-static double change_of_correction(const dvi__row_path *p, const dvi__block *block, int l,
+/* Give dC/dY_l for one entry of the joint pattern. */
+static double change_of_correction(const dvi__row_path *p, const dvi__joint_entry *block, int l,
                                    const double *C_q1, const double *C_qq, const double *C_qv)
 {
   double sum = block->qq >= 0 ? C_q1[block->qq] * p->end[l] : 0;
@@ -57,8 +57,8 @@ static double change_of_correction(const dvi__row_path *p, const dvi__block *blo
 }
 
 /* Subtract psi_k(1) dC. */
-static dvi_status add_derivatives(void *of, const dvi__row_path *p, const double *own,
-                                  const dvi__row_jacobian *J)
+static dvi_status centring_derivatives(void *of, const dvi__row_path *p, const double *own,
+                                       const dvi__row_jacobian *J)
 {
   const dvi__centred_paths *x = of;
   const dvi__pattern *joint = dvi__row_joint(J);
@@ -83,10 +83,10 @@ dvi_status dvi__action_centre(dvi__action *a, const dvi__centring *centring)
   if (x->correction == NULL) return dvi__fail(DVI_NO_MEMORY, "action: no memory for charts");
   return dvi__action_add_term(a, &(dvi__row_term){.name = "charts",
                                                   .of = x,
-                                                  .place = place_chart,
-                                                  .rows = add_correction,
-                                                  .magnitudes = mix_magnitudes,
-                                                  .derivatives = add_derivatives});
+                                                  .place = centring_place,
+                                                  .rows = centring_rows,
+                                                  .magnitudes = centring_magnitudes,
+                                                  .derivatives = centring_derivatives});
 }
 
 void dvi__action_clear_charts(dvi__action *a)

@@ -1,4 +1,4 @@
-/* A first guess: what the last step found, continued beyond its end. */
+/* The first guess, which continues the last step beyond its end. */
 #include <math.h>
 
 #include "step/element/action_struct.h"
@@ -7,11 +7,11 @@
 #include "space/legendre.h"
 #include "space/trial.h"
 
-/* Continuing a polynomial of degree d one step further multiplies rounding errors by about 6^d and
- * gains little beyond this degree. */
+/* Largest degree that is continued. Continuing a polynomial of degree d one step further multiplies
+ * rounding errors by about 6^d and gains little beyond this degree. */
 enum { CONTINUED_DEGREE = 10 };
 
-/* The table for this ratio; if it is not kept, the oldest one is to be filled. */
+/* Find the table for this ratio. If it is not known, the oldest one is to be filled. */
 static double *table_for(dvi__shifts *shifts, size_t size, double ratio, int *known)
 {
   for (size_t k = 0; k < DVI__SHIFTS; k++)
@@ -28,7 +28,7 @@ static double *table_for(dvi__shifts *shifts, size_t size, double ratio, int *kn
 
 /* ---- paths ---- */
 
-static void fill_path(const dvi__action *a, double ratio, double *shift)
+static void fill_path_shift(const dvi__action *a, double ratio, double *shift)
 {
   const size_t s = (size_t)a->s, lanes = (size_t)a->path_lanes;
   dvi__trial_shift(a->space.basis, a->s, a->s < CONTINUED_DEGREE ? a->s : CONTINUED_DEGREE, ratio,
@@ -41,7 +41,7 @@ void dvi__action_continue(dvi__action *a, double ratio, const double *last, doub
 {
   int known;
   double *shift = table_for(&a->shift, (size_t)a->s * (size_t)a->path_lanes, ratio, &known);
-  if (!known) fill_path(a, ratio, shift);
+  if (!known) fill_path_shift(a, ratio, shift);
   const size_t of_path = (size_t)a->n * (size_t)a->s;
   dvi__lanes_product(a->n, a->s, a->path_lanes, a->s, shift, last, Y);
   for (size_t k = 0; k < (size_t)a->terms.unknowns; k++) Y[of_path + k] = last[of_path + k];
@@ -50,15 +50,17 @@ void dvi__action_continue(dvi__action *a, double ratio, const double *last, doub
 /* ---- forces ---- */
 
 /* A polynomial in the Legendre basis fitted to values at the nodes, evaluated at the nodes of the
- * next step: value_j = sum_k b_k U_j.W_k value_k with W_k = C^{-1} P(c_k), U_j = C^{-1} P(1 + ratio
- * c_j), C C^T = sum_k b_k P(c_k) P(c_k)^T. */
+ * next step,
+ *
+ *     value_j = sum_k b_k U_j.W_k value_k,    W_k = C^{-1} P(c_k),   U_j = C^{-1} P(1 + ratio c_j),
+ *     C C^T = sum_k b_k P(c_k) P(c_k)^T. */
 typedef struct fit {
   int terms;
   long double U[DVI_QUADRATURE_MAX][CONTINUED_DEGREE], W[DVI_QUADRATURE_MAX][CONTINUED_DEGREE];
   long double C[CONTINUED_DEGREE * CONTINUED_DEGREE];
 } fit;
 
-static void fill_fit(const dvi__action *a, double ratio, fit *f)
+static void fit_forces(const dvi__action *a, double ratio, fit *f)
 {
   long double difference[CONTINUED_DEGREE];
   const int terms = f->terms = a->r < CONTINUED_DEGREE ? a->r : CONTINUED_DEGREE;
@@ -77,17 +79,17 @@ static void fill_fit(const dvi__action *a, double ratio, fit *f)
   }
 }
 
-/* From g of the last step to sum_j (c_i - P_ij) g_j of this one: with g_j = h b_j L_q_j the weights
- * b_k of the fit cancel. */
-static void fill_forces(const dvi__action *a, double ratio, double *shift)
+/* Make the table from g of the last step to sum_j (c_i - P_ij) g_j of this one. With g_j = h b_j
+ * L_q_j the weights b_k of the fit cancel. */
+static void fill_force_shift(const dvi__action *a, double ratio, double *shift)
 {
   fit f;
-  fill_fit(a, ratio, &f);
+  fit_forces(a, ratio, &f);
   for (int i = 0; i < a->r; i++) {
     long double row[CONTINUED_DEGREE] = {0};
     for (int j = 0; j < a->r; j++)
       for (int m = 0; m < f.terms; m++)
-        row[m] += a->sweep_matrix[j * a->lanes + i] * ratio * a->weight[j] * f.U[j][m];
+        row[m] += a->fixed_point.matrix[j * a->lanes + i] * ratio * a->weight[j] * f.U[j][m];
     for (int k = 0; k < a->r; k++) {
       long double sum = 0;
       for (int m = 0; m < f.terms; m++) sum += row[m] * f.W[k][m];
@@ -96,10 +98,10 @@ static void fill_forces(const dvi__action *a, double ratio, double *shift)
   }
 }
 
-const double *dvi__action_sweep_shift(dvi__action *a, double ratio)
+const double *dvi__action_fixed_point_shift(dvi__action *a, double ratio)
 {
   int known;
-  double *shift = table_for(&a->sweep_shift, (size_t)a->r * (size_t)a->lanes, ratio, &known);
-  if (!known) fill_forces(a, ratio, shift);
+  double *shift = table_for(&a->fixed_point.shift, (size_t)a->r * (size_t)a->lanes, ratio, &known);
+  if (!known) fill_force_shift(a, ratio, shift);
   return shift;
 }

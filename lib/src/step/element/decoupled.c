@@ -8,11 +8,11 @@
 #include "num/eigen.h"
 #include "num/simd/lanes.h"
 
-/* One real eigenvalue, or a pair of complex ones. */
+/* A real eigenvalue, or a pair of complex ones. */
 typedef struct mode {
-  int place, parts;    /* its first coefficient, and how many it has: 1 or 2 */
+  int place, parts;    /* first coefficient, and number of coefficients, 1 or 2 */
   double U[2], T[2];   /* real and imaginary part */
-  dvi__linear *linear; /* NULL: not prepared */
+  dvi__linear *linear; /* NULL if not prepared */
 } mode;
 
 struct dvi__decoupled {
@@ -20,15 +20,15 @@ struct dvi__decoupled {
   dvi_counters *counters;
   int modes;
   mode mode[DVI_DEGREE_MAX];
-  double *in, *out;                 /* [s*lanes] by columns: X^{-1} K^{-1} and X */
-  double *values, *b, *coefficient; /* [2 entries], [2 n], [n*s]; NULL: not prepared */
-  double h, *point;                 /* what is frozen: the step (0: nothing), and t, q, v */
+  double *in, *out;                 /* [s*lanes] by columns, X^{-1} K^{-1} and X */
+  double *values, *b, *coefficient; /* [2 entries], [2 n], [n*s], NULL if not prepared */
+  double h, *point;                 /* step of the frozen Jacobian (0 if none), and its t, q, v */
 };
 
 /* ---- tables ---- */
 
-/* sum_j b_j left_k right_l by columns. */
-static void gram(const dvi__action *a, const double *left, const double *right, double *sum)
+/* Sum b_j left_k right_l over j, by columns. */
+static void gram_matrix(const dvi__action *a, const double *left, const double *right, double *sum)
 {
   for (int l = 0; l < a->s; l++)
     for (int k = 0; k < a->s; k++) {
@@ -38,8 +38,8 @@ static void gram(const dvi__action *a, const double *left, const double *right, 
     }
 }
 
-/* product = A B, all by columns; K^{-1} is symmetric, so that its rows are its columns. */
-static void multiply(int s, const double *A, const double *B, double *product)
+/* Multiply A B, all by columns. K^{-1} is symmetric, so that its rows are its columns. */
+static void multiply_by_columns(int s, const double *A, const double *B, double *product)
 {
   for (int l = 0; l < s; l++)
     for (int k = 0; k < s; k++) {
@@ -48,15 +48,15 @@ static void multiply(int s, const double *A, const double *B, double *product)
     }
 }
 
-static void pad(int s, const double *columns, double *padded)
+static void pad_columns(int s, const double *columns, double *padded)
 {
   const int lanes = dvi__lanes_for(s);
   for (int l = 0; l < s; l++)
     for (int k = 0; k < s; k++) padded[l * lanes + k] = columns[l * s + k];
 }
 
-/* Of a pair's two columns the first and second coefficients alpha, beta stand for alpha - i beta: D
- * then multiplies it by a + ib. */
+/* List the eigenvalues. The first and second coefficients alpha, beta of a pair's two columns stand
+ * for alpha - i beta, which D then multiplies by a + ib. */
 static void list_modes(dvi__decoupled *d, int mixed, const double *real_part,
                        const double *imaginary_part)
 {
@@ -72,28 +72,28 @@ static void list_modes(dvi__decoupled *d, int mixed, const double *real_part,
   }
 }
 
-/* What the tables are made from; s x s each. */
+/* Memory for making the tables, s x s each. */
 typedef struct workspace {
   double matrix[DVI_DEGREE_MAX * DVI_DEGREE_MAX], X[DVI_DEGREE_MAX * DVI_DEGREE_MAX],
       inverse[DVI_DEGREE_MAX * DVI_DEGREE_MAX], product[DVI_DEGREE_MAX * DVI_DEGREE_MAX],
       real_part[DVI_DEGREE_MAX], imaginary_part[DVI_DEGREE_MAX];
 } workspace;
 
-static dvi_status fill(dvi__decoupled *d, workspace *w)
+static dvi_status decoupled_fill_tables(dvi__decoupled *d, workspace *w)
 {
   dvi__action *a = d->action;
   const int mixed = dvi__pattern_entries(&a->system->qv) > 0;
-  gram(a, mixed ? a->dpsi : a->bar, a->psi, w->product);
-  multiply(a->s, a->stiffness_inverse, w->product, w->matrix);
+  gram_matrix(a, mixed ? a->dpsi : a->bar, a->psi, w->product);
+  multiply_by_columns(a->s, a->stiffness_inverse, w->product, w->matrix);
   DVI_TRY(dvi__eigen(a->s, w->matrix, w->real_part, w->imaginary_part, w->X, w->inverse));
-  multiply(a->s, w->inverse, a->stiffness_inverse, w->product);
-  pad(a->s, w->product, d->in);
-  pad(a->s, w->X, d->out);
+  multiply_by_columns(a->s, w->inverse, a->stiffness_inverse, w->product);
+  pad_columns(a->s, w->product, d->in);
+  pad_columns(a->s, w->X, d->out);
   list_modes(d, mixed, w->real_part, w->imaginary_part);
   return DVI_OK;
 }
 
-static dvi_status allocate_tables(dvi__decoupled *d)
+static dvi_status decoupled_allocate_tables(dvi__decoupled *d)
 {
   const dvi__action *a = d->action;
   const size_t s = (size_t)a->s, lanes = (size_t)dvi__lanes_for(a->s);
@@ -116,9 +116,9 @@ dvi_status dvi__decoupled_create(dvi__action *action, dvi_counters *counters,
   if (status == DVI_OK) {
     d->action = action;
     d->counters = counters;
-    status = allocate_tables(d);
+    status = decoupled_allocate_tables(d);
   }
-  if (status == DVI_OK) status = fill(d, w);
+  if (status == DVI_OK) status = decoupled_fill_tables(d, w);
   dvi__release(w);
   if (status != DVI_OK && d != NULL) dvi__decoupled_destroy(&d);
   *decoupled = d;
@@ -129,7 +129,7 @@ void dvi__decoupled_destroy(dvi__decoupled **decoupled)
 {
   dvi__decoupled *d = *decoupled;
   if (d == NULL) return;
-  /* the first one lends its analysis */
+  /* the first one shares its analysis and goes last */
   for (int m = d->modes - 1; m >= 0; m--) dvi__linear_destroy(&d->mode[m].linear);
   dvi__release(d->in);
   dvi__release(d->out);
@@ -141,9 +141,9 @@ void dvi__decoupled_destroy(dvi__decoupled **decoupled)
   *decoupled = NULL;
 }
 
-/* ---- what a factor needs ---- */
+/* ---- prepare ---- */
 
-static dvi_status create_linear(dvi__decoupled *d, mode *m)
+static dvi_status mode_create_linear(dvi__decoupled *d, mode *m)
 {
   const dvi__linear_kind kind = m->parts == 2 ? DVI__LINEAR_COMPLEX : DVI__LINEAR_SPARSE;
   if (m->linear != NULL) return DVI_OK;
@@ -151,13 +151,13 @@ static dvi_status create_linear(dvi__decoupled *d, mode *m)
   return dvi__linear_create_like(d->mode[0].linear, kind, d->counters, &m->linear);
 }
 
-/* What a failure leaves is taken up by the next call. */
+/* Prepare the systems. The next call completes what a failure has left. */
 static dvi_status prepare_modes(dvi__decoupled *d)
 {
   const dvi__action *a = d->action;
   const size_t n = (size_t)a->n;
   DVI_TRY(dvi__action_prepare_hessians(d->action));
-  for (int m = 0; m < d->modes; m++) DVI_TRY(create_linear(d, &d->mode[m]));
+  for (int m = 0; m < d->modes; m++) DVI_TRY(mode_create_linear(d, &d->mode[m]));
   if (d->values == NULL) d->values = DVI_NEW(double, 2 * (size_t)dvi__pattern_entries(&a->joint));
   if (d->b == NULL) d->b = DVI_NEW(double, 2 * n);
   if (d->coefficient == NULL) d->coefficient = DVI_NEW(double, n *(size_t)a->s);
@@ -169,7 +169,7 @@ static dvi_status prepare_modes(dvi__decoupled *d)
 dvi_status dvi__decoupled_analyse(dvi__decoupled *d, dvi__linear_cost *cost)
 {
   DVI_TRY(dvi__action_prepare_hessians(d->action));
-  DVI_TRY(create_linear(d, &d->mode[0]));
+  DVI_TRY(mode_create_linear(d, &d->mode[0]));
   DVI_TRY(dvi__linear_analyse(d->mode[0].linear));
   const dvi__linear_cost first = dvi__linear_cost_of(d->mode[0].linear);
   const int is_complex = d->mode[0].parts == 2;
@@ -191,21 +191,21 @@ double dvi__decoupled_weight(const dvi__decoupled *d)
 
 /* ---- factors ---- */
 
-static double entry(const double *H, int place)
+static double entry_or_zero(const double *H, int place)
 {
   return place >= 0 ? H[place] : 0.0;
 }
 
-/* h U L_qq + T (L_vq - L_qv) + L_vv/h on the joint pattern. */
-static void assemble(const dvi__action *a, const mode *m, double *values)
+/* Assemble h U L_qq + T (L_vq - L_qv) + L_vv/h on the joint pattern. */
+static void mode_assemble(const dvi__action *a, const mode *m, double *values)
 {
   for (int e = 0, at = 0; e < dvi__pattern_entries(&a->joint); e++) {
-    const dvi__block *block = &a->block[e];
-    const double qq = a->h * entry(a->H_qq, block->qq),
-                 mixed = entry(a->H_qv, block->vq) - entry(a->H_qv, block->qv);
+    const dvi__joint_entry *block = &a->block[e];
+    const double qq = a->h * entry_or_zero(a->H_qq, block->qq),
+                 mixed = entry_or_zero(a->H_qv, block->vq) - entry_or_zero(a->H_qv, block->qv);
     for (int part = 0; part < m->parts; part++, at++)
       values[at] = m->U[part] * qq + m->T[part] * mixed +
-                   (part == 0 ? entry(a->H_vv, block->vv) / a->h : 0.0);
+                   (part == 0 ? entry_or_zero(a->H_vv, block->vv) / a->h : 0.0);
   }
 }
 
@@ -223,7 +223,7 @@ void dvi__decoupled_point(const dvi__decoupled *d, const double *Y, double *poin
   for (int i = 0; i < a->n; i++) q[i] += a->q0[i];
 }
 
-static dvi_status factor(dvi__decoupled *d)
+static dvi_status decoupled_factor(dvi__decoupled *d)
 {
   dvi__action *a = d->action;
   const double *q = d->point + 1, *v = q + a->n;
@@ -231,7 +231,7 @@ static dvi_status factor(dvi__decoupled *d)
   d->counters->jacobians++;
   DVI_TRY(dvi__lagrangian_hessian(a->evaluator, 1, d->point, q, v, a->H_qq, a->H_qv, a->H_vv));
   for (int m = 0; m < d->modes; m++) {
-    assemble(a, &d->mode[m], d->values);
+    mode_assemble(a, &d->mode[m], d->values);
     DVI_TRY(dvi__linear_factor(d->mode[m].linear, d->values));
   }
   return DVI_OK;
@@ -242,7 +242,7 @@ dvi_status dvi__decoupled_freeze(dvi__decoupled *d, const double *point)
   const size_t bytes = (size_t)dvi__decoupled_point_size(d) * sizeof(double);
   if (d->h == d->action->h && memcmp(d->point, point, bytes) == 0) return DVI_OK;
   memcpy(d->point, point, bytes);
-  const dvi_status status = factor(d);
+  const dvi_status status = decoupled_factor(d);
   d->h = status == DVI_OK ? d->action->h : 0;
   return status;
 }
@@ -262,7 +262,7 @@ int dvi__decoupled_is_definite(const dvi__decoupled *d, int sign)
   return 1;
 }
 
-/* ---- solving ---- */
+/* ---- solve ---- */
 
 static void solve_mode(dvi__decoupled *d, const mode *m)
 {

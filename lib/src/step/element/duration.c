@@ -1,5 +1,8 @@
-/* Physical time over an element of a time-transformed system: the same quadrature as the action's,
- * t1 - t0 = h sum_j b_j g(Q_j), which is the derivative of the discrete action in E0. */
+/* Physical time over an element of a time-transformed system, by the action's quadrature
+ *
+ *     t1 - t0 = h sum_j b_j g(Q_j),
+ *
+ * which is the derivative of the discrete action by E0. */
 #include "step/element/action_struct.h"
 #include "core/status.h"
 #include "system/rescale/transformed.h"

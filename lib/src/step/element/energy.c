@@ -10,9 +10,9 @@
 
 /* ---- memory ---- */
 
-/* Of systems that are not autonomous: two gradients at moved times, L_tq and L_tv, and over the
- * nodes times and rates. */
-static int allocate_rates(dvi__action *a)
+/* Allocate memory for systems that are not autonomous. There are two gradients at moved times, L_tq
+ * and L_tv, and times and rates over the nodes. */
+static int energy_allocate_rates(dvi__action *a)
 {
   const size_t batch = (size_t)a->n * (size_t)a->r;
   a->moved_q = DVI_NEW(double, batch);
@@ -34,7 +34,8 @@ dvi_status dvi__action_prepare_energy(dvi__action *a)
   a->rate = DVI_NEW(double, a->r);
   a->by_q = DVI_NEW(double, batch);
   a->by_v = DVI_NEW(double, batch);
-  if (a->value && a->rate && a->by_q && a->by_v && (a->system->autonomous || allocate_rates(a)))
+  if (a->value && a->rate && a->by_q && a->by_v &&
+      (a->system->autonomous || energy_allocate_rates(a)))
     return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "action: no memory for the energies of %d coordinates", a->n);
 }
@@ -66,9 +67,9 @@ dvi_status dvi__action_energies(dvi__action *a, dvi__energies *E)
   return DVI_OK;
 }
 
-/* ---- their gradients ---- */
+/* ---- gradients ---- */
 
-/* y += factor * H x for a batch, H in the order of the pattern. */
+/* Add factor * H x to y for a batch, with H in the order of the pattern. */
 static void add_product(const dvi__pattern *pattern, size_t points, const double *H,
                         const double *x, double factor, double *y)
 {
@@ -79,8 +80,8 @@ static void add_product(const dvi__pattern *pattern, size_t points, const double
                                                    x[column * points + j];
 }
 
-/* What L_v V - L at the nodes changes by: by_q . dQ + by_v . dQ' with the derivative Q' = h V in
- * tau; by_q = L_qv V - L_q, by_v = L_vv V / h. */
+/* Find the change by_q . dQ + by_v . dQ' of L_v V - L at the nodes, with the derivative Q' = h V in
+ * tau. by_q = L_qv V - L_q, by_v = L_vv V / h. */
 static dvi_status weigh_directions(dvi__action *a)
 {
   const size_t r = (size_t)a->r, batch = (size_t)a->n * r;
@@ -92,15 +93,16 @@ static dvi_status weigh_directions(dvi__action *a)
   return DVI_OK;
 }
 
-/* Differences over steps of 1/64 and 1/32 of h are of order 4: they err by 1e-9 of the derivative
- * where h is a radian of what drives the system. */
+/* Give the step of differences in time. Differences over steps of 1/64 and 1/32 of h are of order
+ * 4. They err by 1e-9 of the derivative where h is a radian of the driving motion. */
 static double rate_step(const dvi__action *a, int j)
 {
   return fmax(fabs(a->h) / 64, 64 * DBL_EPSILON * fabs(a->t[j]));
 }
 
-/* Add what one moved time, m steps away, has to say: f' = sum over m of w_m ( f(t + m step) - f(t -
- * m step) ) / (their distance). */
+/* Add the part of one moved time, m steps away, to the derivative
+ *
+ *     f' = sum over m of w_m ( f(t + m step) - f(t - m step) ) / (their distance). */
 static dvi_status add_moved_rates(dvi__action *a, int m)
 {
   const double weight = m == 1 || m == -1 ? 4.0 / 3 : -1.0 / 3;
@@ -123,7 +125,7 @@ static dvi_status add_moved_rates(dvi__action *a, int m)
   return DVI_OK;
 }
 
-/* L_t, L_tq, L_tv and L_tt at the nodes. */
+/* Evaluate L_t, L_tq, L_tv and L_tt at the nodes. */
 static dvi_status difference_rates(dvi__action *a)
 {
   const size_t r = (size_t)a->r, bytes = (size_t)a->n * r * sizeof(double);
@@ -136,14 +138,14 @@ static dvi_status difference_rates(dvi__action *a)
   return DVI_OK;
 }
 
-/* The time of L_t in an energy, from the node: E- looks back from its own end, E+ from the other
- * one. */
-static double lever(const dvi__action *a, int at_start, int j)
+/* Give the time of L_t in an energy, from the node. E- looks back from its own end, E+ from the
+ * other one. */
+static double rate_lever(const dvi__action *a, int at_start, int j)
 {
   return at_start - a->node[j];
 }
 
-/* One coordinate of by_q and by_v with the rates' part, times the weights, into a->line. */
+/* Write one coordinate of by_q and by_v with the rates' part, times the weights, into a->line. */
 static void weigh_line(const dvi__action *a, int at_start, size_t i)
 {
   double *in_q = a->line, *in_v = a->line + a->r;
@@ -152,15 +154,15 @@ static void weigh_line(const dvi__action *a, int at_start, size_t i)
     in_q[j] = a->by_q[at];
     in_v[j] = a->by_v[at];
     if (!a->system->autonomous) {
-      in_q[j] += lever(a, at_start, j) * a->h * a->rate_q[at];
-      in_v[j] += lever(a, at_start, j) * a->rate_v[at];
+      in_q[j] += rate_lever(a, at_start, j) * a->h * a->rate_q[at];
+      in_v[j] += rate_lever(a, at_start, j) * a->rate_v[at];
     }
     in_q[j] *= a->weight[j];
     in_v[j] *= a->weight[j];
   }
 }
 
-/* sum_i x_i V_i at node j. */
+/* Give sum_i x_i V_i at node j. */
 static double along_velocity(const dvi__action *a, int j, const double *x)
 {
   double sum = 0;
@@ -169,7 +171,7 @@ static double along_velocity(const dvi__action *a, int j, const double *x)
   return sum;
 }
 
-/* dE/dh with Y fixed, where V shrinks as 1/h and the nodes move by c_j:
+/* Give dE/dh with Y fixed, where V shrinks as 1/h and the nodes move by c_j.
  *     sum_j b_j ( -V.L_vv V/h + (c - l) L_tv V + (l - c) L_t + c l h L_tt )_j,   l the lever. */
 static double derivative_in_h(const dvi__action *a, int at_start)
 {
@@ -177,7 +179,7 @@ static double derivative_in_h(const dvi__action *a, int at_start)
   for (int j = 0; j < a->r; j++) {
     double term = -along_velocity(a, j, a->by_v);
     if (!a->system->autonomous) {
-      const double c = a->node[j], l = lever(a, at_start, j);
+      const double c = a->node[j], l = rate_lever(a, at_start, j);
       term += (c - l) * (along_velocity(a, j, a->rate_v) - a->rate[j]) +
               c * l * a->h * a->rate_t[j];
     }
@@ -186,14 +188,14 @@ static double derivative_in_h(const dvi__action *a, int at_start)
   return sum;
 }
 
-static double dot(int count, const double *x, const double *y)
+static double line_dot(int count, const double *x, const double *y)
 {
   double sum = 0;
   for (int j = 0; j < count; j++) sum += x[j] * y[j];
   return sum;
 }
 
-static void collect(dvi__action *a, int at_start, dvi__energy_gradient *gradient)
+static void collect_gradient(dvi__action *a, int at_start, dvi__energy_gradient *gradient)
 {
   const double *in_q = a->line, *in_v = a->line + a->r;
   for (size_t i = 0; i < (size_t)a->n; i++) {
@@ -201,8 +203,8 @@ static void collect(dvi__action *a, int at_start, dvi__energy_gradient *gradient
     gradient->q0[i] = 0;
     for (int j = 0; j < a->r; j++) gradient->q0[i] += in_q[j];
     for (int k = 0; k < a->s; k++)
-      gradient->Y[i * (size_t)a->s + (size_t)k] = dot(a->r, a->psi + k * a->lanes, in_q) +
-                                                  dot(a->r, a->dpsi + k * a->lanes, in_v);
+      gradient->Y[i * (size_t)a->s + (size_t)k] = line_dot(a->r, a->psi + k * a->lanes, in_q) +
+                                                  line_dot(a->r, a->dpsi + k * a->lanes, in_v);
   }
   gradient->h = derivative_in_h(a, at_start);
 }
@@ -212,8 +214,8 @@ dvi_status dvi__action_energy_gradients(dvi__action *a, dvi__energy_gradient *st
 {
   DVI_TRY(weigh_directions(a));
   if (!a->system->autonomous) DVI_TRY(difference_rates(a));
-  collect(a, 1, start);
-  collect(a, 0, end);
+  collect_gradient(a, 1, start);
+  collect_gradient(a, 0, end);
   return DVI_OK;
 }
 

@@ -1,4 +1,4 @@
-/* The Jacobian of the stationarity rows: one s x s block for each entry of the Hessian's joint
+/* The Jacobian of the stationarity rows, with one s x s block for each entry of the Hessian's joint
  * pattern. */
 #include <string.h>
 
@@ -62,28 +62,28 @@ dvi_status dvi__action_prepare_jacobian(dvi__action *a)
   return dvi__action_wide_pattern(a, &a->pattern);
 }
 
-/* x[j] += factor * H[j] * table[j], where the Hessian has this entry. */
-static void accumulate(int r, const double *H, int entry, double factor, const double *table,
-                       double *x)
+/* Add factor * H[j] * table[j] to x[j], where the Hessian has this entry. */
+static void add_weighted_entry(int r, const double *H, int entry, double factor,
+                               const double *table, double *x)
 {
   if (entry < 0) return;
   H += (size_t)entry * (size_t)r;
   for (int j = 0; j < r; j++) x[j] += factor * H[j] * table[j];
 }
 
-void dvi__action_weigh_hessian(const dvi__action *a, const dvi__block *block, const double *f,
+void dvi__action_weigh_hessian(const dvi__action *a, const dvi__joint_entry *block, const double *f,
                                const double *df, double *in_q, double *in_v)
 {
   const int r = a->r;
   for (int j = 0; j < r; j++) in_q[j] = in_v[j] = 0;
-  accumulate(r, a->H_qq, block->qq, a->h, f, in_q);
-  accumulate(r, a->H_qv, block->qv, 1.0, df, in_q);
-  accumulate(r, a->H_qv, block->vq, 1.0, f, in_v);
-  accumulate(r, a->H_vv, block->vv, 1.0 / a->h, df, in_v);
+  add_weighted_entry(r, a->H_qq, block->qq, a->h, f, in_q);
+  add_weighted_entry(r, a->H_qv, block->qv, 1.0, df, in_q);
+  add_weighted_entry(r, a->H_qv, block->vq, 1.0, f, in_v);
+  add_weighted_entry(r, a->H_vv, block->vv, 1.0 / a->h, df, in_v);
   for (int j = 0; j < r; j++) in_q[j] *= a->weight[j], in_v[j] *= a->weight[j];
 }
 
-void dvi__action_block_column(const dvi__action *a, const dvi__block *block, int l, int rows,
+void dvi__action_block_column(const dvi__action *a, const dvi__joint_entry *block, int l, int rows,
                               double *column)
 {
   const int r = a->r;
@@ -145,7 +145,7 @@ dvi_status dvi__action_prepare_product(dvi__action *a)
                          a->n);
 }
 
-/* y += factor H x over the nodes, where the Hessian has this entry. */
+/* Add factor H x to y over the nodes, where the Hessian has this entry. */
 static void add_moved(int r, const double *H, int entry, double factor, const double *x, double *y)
 {
   if (entry < 0) return;
@@ -165,7 +165,7 @@ void dvi__action_times_jacobian(dvi__action *a, const double *x, double *y)
   memset(hL_q, 0, 2 * batch * sizeof(double));
   for (size_t j = 0; j < (size_t)a->n; j++)
     for (int e = a->joint.start[j]; e < a->joint.start[j + 1]; e++) {
-      const dvi__block *block = &a->block[e];
+      const dvi__joint_entry *block = &a->block[e];
       const size_t to = (size_t)a->joint.row[e] * r;
       add_moved(a->r, a->H_qq, block->qq, 1, hQ + j * r, hL_q + to);
       add_moved(a->r, a->H_qv, block->qv, a->h, V + j * r, hL_q + to);

@@ -7,7 +7,7 @@
 #include "core/status.h"
 #include "num/simd/members.h"
 
-static int allocate(dvi__action_members *m, size_t capacity)
+static int members_allocate(dvi__action_members *m, size_t capacity)
 {
   const size_t n = (size_t)m->action->n, r = (size_t)m->action->r;
   double **const rows[] = {&m->packed_start, &m->packed_low, &m->packed_origin, &m->all_start,
@@ -33,10 +33,10 @@ dvi_status dvi__action_members_create(dvi__action *action, int capacity,
                                       dvi__action_members *members)
 {
   *members = (dvi__action_members){.action = action};
-  /* Counted by who knows what a member took. */
+  /* Without counters, because the caller knows the cost of a member. */
   DVI_TRY(dvi__evaluator_create(action->system, capacity * action->r, DVI__GRADIENTS, NULL,
                                 &members->evaluator));
-  if (allocate(members, (size_t)capacity)) return DVI_OK;
+  if (members_allocate(members, (size_t)capacity)) return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d members", capacity);
 }
 
@@ -52,42 +52,42 @@ void dvi__action_members_clear(dvi__action_members *m)
   *m = (dvi__action_members){0};
 }
 
-static size_t row(const dvi__action_members *m, size_t number)
+static size_t members_row(const dvi__action_members *m, size_t number)
 {
   return number * (size_t)m->width;
 }
 
-static dvi__members_sweep sweep_of(const dvi__action_members *m)
+static dvi__members_fixed_point members_fixed_point(const dvi__action_members *m)
 {
   const dvi__action *a = m->action;
-  return (dvi__members_sweep){.n = a->n,
-                              .stages = a->r,
-                              .width = m->width,
-                              .lanes = a->lanes,
-                              .matrix = a->sweep_matrix,
-                              .node = a->sweep_node,
-                              .weight = a->sweep_weight,
-                              .factor = a->sweep_factor,
-                              .start = m->start,
-                              .low = m->low,
-                              .origin = m->origin,
-                              .force = m->force,
-                              .Z = m->Z,
-                              .Q = m->Q,
-                              .change = m->change,
-                              .largest = m->largest};
+  return (dvi__members_fixed_point){.n = a->n,
+                                    .stages = a->r,
+                                    .width = m->width,
+                                    .lanes = a->lanes,
+                                    .matrix = a->fixed_point.matrix,
+                                    .node = a->fixed_point.node,
+                                    .weight = a->fixed_point.weight,
+                                    .factor = a->fixed_point.factor,
+                                    .start = m->start,
+                                    .low = m->low,
+                                    .origin = m->origin,
+                                    .force = m->force,
+                                    .Z = m->Z,
+                                    .Q = m->Q,
+                                    .change = m->change,
+                                    .largest = m->largest};
 }
 
-/* As dvi__action_sweep_continue. */
-static void put_nodes(dvi__action_members *m, double ratio)
+/* Put the nodes as dvi__action_fixed_point_continue. */
+static void members_put_nodes(dvi__action_members *m, double ratio)
 {
   dvi__action *a = m->action;
   dvi__action_set_step(a);
-  dvi__members_split(a->n, m->width, a->sweep_factor, m->p, m->all_start, m->all_low);
-  dvi__members_product(a->n, a->r, a->lanes, a->r, dvi__action_sweep_shift(a, ratio), m->width,
-                       m->forces, m->Z);
-  const dvi__members_sweep sweep = sweep_of(m);
-  dvi__members_begin(&sweep);
+  dvi__members_split(a->n, m->width, a->fixed_point.factor, m->p, m->all_start, m->all_low);
+  dvi__members_product(a->n, a->r, a->lanes, a->r, dvi__action_fixed_point_shift(a, ratio),
+                       m->width, m->forces, m->Z);
+  const dvi__members_fixed_point iteration = members_fixed_point(m);
+  dvi__members_begin(&iteration);
 }
 
 void dvi__action_members_place(dvi__action_members *m, int count, double h, double last_h,
@@ -102,9 +102,9 @@ void dvi__action_members_place(dvi__action_members *m, int count, double h, doub
   m->forces = forces;
   for (int k = 0; k < count; k++) m->member[k] = k;
   for (size_t j = 0; j < (size_t)a->r; j++)
-    for (size_t k = 0; k < (size_t)count; k++) m->t[row(m, j) + k] = t[k] + a->node[j] * h;
+    for (size_t k = 0; k < (size_t)count; k++) m->t[members_row(m, j) + k] = t[k] + a->node[j] * h;
   a->h = h;
-  put_nodes(m, h / last_h);
+  members_put_nodes(m, h / last_h);
 }
 
 void dvi__action_members_pack(const dvi__action_members *m, int rows, int before, const double *x,
@@ -112,7 +112,7 @@ void dvi__action_members_pack(const dvi__action_members *m, int rows, int before
 {
   for (size_t i = 0; i < (size_t)rows; i++) {
     const double *from = x + i * (size_t)before;
-    double *to = packed + row(m, i);
+    double *to = packed + members_row(m, i);
     for (int k = 0; k < m->width; k++) to[k] = from[m->going[k]];
   }
 }
@@ -139,11 +139,11 @@ void dvi__action_members_close_up(dvi__action_members *m, const char *marked)
   m->origin = m->packed_origin;
 }
 
-dvi_status dvi__action_members_sweep(dvi__action_members *m)
+dvi_status dvi__action_members_iterate(dvi__action_members *m)
 {
   DVI_TRY(dvi__potentials_gradient(m->evaluator, m->action->r * m->width, m->t, m->Q, m->force));
-  const dvi__members_sweep sweep = sweep_of(m);
-  dvi__members_sweep_once(&sweep);
+  const dvi__members_fixed_point iteration = members_fixed_point(m);
+  dvi__members_iterate(&iteration);
   return DVI_OK;
 }
 
@@ -151,26 +151,28 @@ void dvi__action_members_keep(dvi__action_members *m, int lane)
 {
   const size_t rows = (size_t)m->action->n * (size_t)m->action->r, count = (size_t)m->count;
   double *kept = m->forces + m->member[lane];
-  for (size_t i = 0; i < rows; i++) kept[i * count] = m->force[row(m, i) + (size_t)lane];
+  for (size_t i = 0; i < rows; i++) kept[i * count] = m->force[members_row(m, i) + (size_t)lane];
 }
 
-/* As dvi__action_sweep_to and dvi__action_sweep_ends. */
+/* Find the path and the ends as dvi__action_fixed_point_path and dvi__action_fixed_point_ends. */
 void dvi__action_members_ends(dvi__action_members *m, double *Y)
 {
   const dvi__action *a = m->action;
   const size_t n = (size_t)a->n, s = (size_t)a->s, count = (size_t)m->count;
-  dvi__members_product(a->n, a->r, a->path_lanes, a->s, a->sweep_path, m->count, m->forces, Y);
+  dvi__members_product(a->n, a->r, a->path_lanes, a->s, a->fixed_point.path, m->count, m->forces,
+                       Y);
   for (size_t i = 0; i < n * s; i++) {
     const double *start = m->all_start + i / s * count;
     for (size_t k = 0; k < count; k++)
-      Y[i * count + k] = start[k] * a->straight[i % s] + a->sweep_factor[i / s] * Y[i * count + k];
+      Y[i * count + k] = start[k] * a->straight[i % s] +
+                         a->fixed_point.factor[i / s] * Y[i * count + k];
   }
   dvi__members_ends_of(&(dvi__members_ends){.n = a->n,
                                             .stages = a->r,
                                             .width = m->count,
                                             .g = m->forces,
-                                            .slant = a->sweep_slant,
-                                            .factor = a->sweep_factor,
+                                            .slant = a->fixed_point.slant,
+                                            .factor = a->fixed_point.factor,
                                             .p0 = m->p,
                                             .moved = m->dq,
                                             .low = m->dq_low,

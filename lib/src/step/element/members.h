@@ -1,8 +1,9 @@
-/* Fixed point iteration (sweep.h) on the elements of several members of an ensemble side by side.
+/* Fixed-point iteration (fixed_point.h) on the elements of several members of an ensemble side by
+ * side.
  *
- * Members differ in where their element begins; the step is the same. Each lane holds one member
- * that still iterates; lanes whose members are done are closed up. Every member sees the operations
- * of sweep.h in their order: its digits are those of an element alone. */
+ * Members differ in the start of their element. The step is the same. Each lane holds one member
+ * that still iterates, and lanes whose members are done are closed up. Every member sees the
+ * operations of fixed_point.h in their order, and its digits are those of an element alone. */
 #ifndef DVI_ACTION_MEMBERS_H
 #define DVI_ACTION_MEMBERS_H
 #include "step/element/action.h"
@@ -10,51 +11,53 @@
 typedef struct dvi__action_members {
   dvi__action *action;
   dvi__evaluator *evaluator;
-  int count;                /* members */
-  int width;                /* lanes */
-  int *member;              /* [width] of a lane */
-  int *going;               /* [width] lanes that go on */
-  double *change, *largest; /* [width] of the last sweep: as dvi__action_sweep gives them */
-  /* What belongs to the lanes: times, offsets, places and forces of the nodes, and where the
-   * element begins. */
-  double *t, *Z, *Q, *force;                         /* [r*width], [n*r*width] */
-  const double *start, *low, *origin;                /* [n*width] */
-  double *packed_start, *packed_low, *packed_origin; /* where they stand once lanes are closed up */
-  /* Of all members. */
+  int count;   /* number of members */
+  int width;   /* number of lanes */
+  int *member; /* [width] member of a lane */
+  int *going;  /* [width] lanes that go on */
+  /* [width] results of the last iteration, as dvi__action_iterate gives them */
+  double *change, *largest;
+  /* Numbers of the lanes, which are times, offsets, places and forces of the nodes, and the start
+   * of the element. */
+  double *t, *Z, *Q, *force;          /* [r*width], [n*r*width] */
+  const double *start, *low, *origin; /* [n*width] */
+  /* [n*width] copies of these once lanes are closed up */
+  double *packed_start, *packed_low, *packed_origin;
+  /* Numbers of all members. */
   double *all_start, *all_low; /* [n*count] */
-  const double *p;             /* [n*count] at the step's start */
-  /* [n*r*count] of the last step; then those that ended a member's iteration */
+  const double *p;             /* [n*count] momenta at the step's start */
+  /* [n*r*count] forces of the last step, then those of each member's last iteration */
   double *forces;
   double *dq, *dq_low, *dp; /* [n*count] */
 } dvi__action_members;
 
-/* For an element that can sweep, and up to so many members. */
+/* Create the lanes of up to `capacity` members, for an element with a fixed-point iteration. */
 dvi_status dvi__action_members_create(dvi__action *action, int capacity,
                                       dvi__action_members *members);
 void dvi__action_members_clear(dvi__action_members *members);
 
-/* Put every member's element at t [count], q, p [n*count], with step h, and the nodes where the
- * forces [n*r*count] of the last step, last_h long, continued, make them. q and p must stay as they
- * are until the ends are asked for; the forces of a member are replaced by `keep`. */
+/* Put every member's element at t [count], q, p [n*count], with step h. The nodes are those that
+ * the continued forces [n*r*count] of the last step, last_h long, make. q and p must stay as they
+ * are until the ends are read. `keep` replaces the forces of a member. */
 void dvi__action_members_place(dvi__action_members *members, int count, double h, double last_h,
                                const double *t, const double *q, const double *p, double *forces);
 
-/* Go on with the lanes that are marked, whose numbers are then in members->going. */
+/* Go on with the marked lanes, whose numbers are then in members->going. */
 void dvi__action_members_close_up(dvi__action_members *members, const char *marked);
 
-/* Rows of numbers that lanes had before they were closed up: those of the lanes that went on. In
- * place if both are the same. */
+/* Pack rows of numbers of the lanes before close_up to those of the lanes that go on. In place if
+ * both arrays are the same. */
 void dvi__action_members_pack(const dvi__action_members *members, int rows, int before,
                               const double *x, double *packed);
 
-/* One iteration of every lane. */
-dvi_status dvi__action_members_sweep(dvi__action_members *members);
+/* Make one iteration of every lane. */
+dvi_status dvi__action_members_iterate(dvi__action_members *members);
 
-/* The member in this lane is done with its last iteration's forces. */
+/* Keep the forces of the last iteration of the member in this lane, which is done. */
 void dvi__action_members_keep(dvi__action_members *members, int lane);
 
-/* From the forces kept: the unknowns Y [n*s*count] and the increments dq + dq_low, dp of all
- * members; of those that kept none they mean nothing. */
+/* Give the unknowns Y [n*s*count] and the increments dq + dq_low, dp of all members from the forces
+ * kept. The numbers of members without kept forces mean nothing. */
 void dvi__action_members_ends(dvi__action_members *members, double *Y);
 
 #endif

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "step/element/action_struct.h"
-#include "step/element/sweep.h"
+#include "step/element/fixed_point.h"
 #include "core/status.h"
 #include "num/simd/lanes.h"
 #include "space/trial.h"
@@ -21,7 +21,7 @@ void dvi__action_stages(const dvi__action *a, const double *Y)
     }
 }
 
-static double dot(int count, const double *x, const double *y)
+static double rows_dot(int count, const double *x, const double *y)
 {
   double sum = 0;
   for (int j = 0; j < count; j++) sum += x[j] * y[j];
@@ -30,11 +30,11 @@ static double dot(int count, const double *x, const double *y)
 
 dvi_status dvi__action_residual(dvi__action *a, const double *Y, double *R)
 {
-  a->swept = 0;
+  a->iterated = 0;
   dvi__action_stages(a, Y);
   dvi__action_place_terms(a, Y);
   DVI_TRY(dvi__lagrangian_gradient(a->evaluator, a->r, a->t, a->Q, a->V, a->L_q, a->L_v));
-  /* The forces enter every row, and p1, with the same rounded product b_j L_q: that keeps the rows
+  /* The forces enter every row, and p1, with the same rounded product b_j L_q. That keeps the rows
    * consistent to the last bit. */
   dvi__lanes_weigh(a->n, a->r, a->weight, a->L_q);
   dvi__lanes_weigh(a->n, a->r, a->weight, a->L_v);
@@ -60,7 +60,7 @@ void dvi__action_magnitudes(const dvi__action *a, double *magnitude)
   dvi__action_add_term_magnitudes(a, magnitude);
 }
 
-static double sum(int count, const double *x)
+static double sum_of_line(int count, const double *x)
 {
   double total = 0;
   for (int j = 0; j < count; j++) total += x[j];
@@ -71,21 +71,22 @@ static void ends_by_rows(const dvi__action *a, const double *Y, double *dq, doub
                          double *dp)
 {
   for (size_t i = 0; i < (size_t)a->n; i++) {
-    dq[i] = dot(a->s, a->end, Y + i * (size_t)a->s);
+    dq[i] = rows_dot(a->s, a->end, Y + i * (size_t)a->s);
     dq_low[i] = 0;
-    dp[i] = a->h * sum(a->r, a->L_q + i * (size_t)a->r) + (a->terms.count > 0 ? a->terms.dp[i] : 0);
+    dp[i] = a->h * sum_of_line(a->r, a->L_q + i * (size_t)a->r) +
+            (a->terms.count > 0 ? a->terms.dp[i] : 0);
   }
 }
 
 void dvi__action_ends(const dvi__action *a, const double *Y, double *dq, double *dq_low, double *dp)
 {
-  if (a->swept)
-    dvi__action_sweep_ends(a, dq, dq_low, dp);
+  if (a->iterated)
+    dvi__action_fixed_point_ends(a, dq, dq_low, dp);
   else
     ends_by_rows(a, Y, dq, dq_low, dp);
 }
 
-/* ---- chord: the kinetic part of the Jacobian ---- */
+/* ---- chord, the kinetic part of the Jacobian ---- */
 
 static void invert_chord(dvi__action *a)
 {
@@ -110,7 +111,7 @@ dvi_status dvi__action_prepare_chord(dvi__action *a, const double *Y)
   return DVI_OK;
 }
 
-/* R <- L_vv^{-1} R by the inverse, row by row. */
+/* Replace R by L_vv^{-1} R by the inverse, row by row. */
 static void multiply_by_inverse(dvi__action *a, double *R)
 {
   const size_t s = (size_t)a->s, n = (size_t)a->n;
@@ -185,8 +186,8 @@ void dvi__action_path(const dvi__action *a, const double *Y, double h, double ta
   double *psi = a->line, *dpsi = a->line + a->s;
   dvi__trial_in(&a->trial, tau, psi, NULL, dpsi);
   for (size_t i = 0, s = (size_t)a->s; i < (size_t)a->n; i++) {
-    if (offset != NULL) offset[i] = dot(a->s, psi, Y + i * s);
-    if (v != NULL) v[i] = dot(a->s, dpsi, Y + i * s) / h;
+    if (offset != NULL) offset[i] = rows_dot(a->s, psi, Y + i * s);
+    if (v != NULL) v[i] = rows_dot(a->s, dpsi, Y + i * s) / h;
   }
 }
 
@@ -207,6 +208,6 @@ void dvi__action_fit(const dvi__action *a, const double *offset, double *Y)
   const size_t s = (size_t)a->s;
   for (size_t i = 0; i < (size_t)a->n; i++) {
     memcpy(a->line, offset + i * s, s * sizeof(double));
-    for (size_t k = 0; k < s; k++) Y[i * s + k] = dot(a->s, a->fit + k * s, a->line);
+    for (size_t k = 0; k < s; k++) Y[i * s + k] = rows_dot(a->s, a->fit + k * s, a->line);
   }
 }

@@ -1,49 +1,54 @@
-/* Terms of an element's rows beside its action: charts that move with their start, forces,
+/* Terms of an element's rows beside its action, such as charts that move with their start, forces,
  * multipliers, controls, noise.
  *
- * The rows of the action are R_k = sum_j b_j ( h (psi_k - psi_k(1)) L_q + psi_k' L_v )_j - psi_k(1)
- * p0, and p1 = p0 + h sum_j b_j L_q_j (action.h). A term may add to the rows and to p1 - p0, add to
- * their derivatives and to the magnitudes by which roundings are measured, and bring unknowns and
- * rows of its own, which stand behind the path's: Y [n*s], then those of each term. */
+ * The rows of the action are
+ *
+ *     R_k = sum_j b_j ( h (psi_k - psi_k(1)) L_q + psi_k' L_v )_j - psi_k(1) p0,
+ *     p1 = p0 + h sum_j b_j L_q_j      (action.h).
+ *
+ * A term may add to the rows and to p1 - p0, add to their derivatives and to the magnitudes by
+ * which roundings are measured, and bring unknowns and rows of its own, which stand behind the
+ * path's. The order is Y [n*s], then the unknowns of each term. */
 #ifndef DVI_STEP_ELEMENT_ROW_TERM_H
 #define DVI_STEP_ELEMENT_ROW_TERM_H
 #include "num/pattern.h"
 
-/* The path at which rows are asked for. Over the nodes: coordinate i of node j is [i*r + j]. */
+/* The path at which rows are evaluated. Number [i*r + j] over the nodes is that of coordinate i at
+ * node j. */
 typedef struct dvi__row_path {
   int n, s, r; /* coordinates, degree, quadrature nodes */
   double t0, h;
   const double *q0, *p0;          /* [n] */
   const double *q1;               /* [n] q at the path's end */
-  const double *dp;               /* [n] h sum_j b_j L_q_j; not yet known to `place` */
+  const double *dp;               /* [n] h sum_j b_j L_q_j, not yet known to `place` */
   const double *t, *Q, *V;        /* [r], [n*r], [n*r] */
   const double *weight, *end;     /* [r] b_j, [s] psi_k(1) */
   int lanes;                      /* length of a row of the tables */
   const double *psi, *bar, *dpsi; /* [s*lanes] psi_k(c_j), psi_k(c_j) - psi_k(1), psi_k'(c_j) */
 } dvi__row_path;
 
-/* Where derivatives are added. */
+/* The places to which derivatives are added. */
 typedef struct dvi__row_jacobian dvi__row_jacobian;
 
 typedef struct dvi__row_term {
   const char *name; /* in sentences */
-  void *of;         /* the first argument of the functions, which may be NULL but for `rows` */
+  void *of;         /* first argument of the functions, which may be NULL but for `rows` */
 
-  /* Coordinates that meet in its derivatives, [n x n], beside those that meet in L's. NULL:
-   * none. */
+  /* Pattern [n x n] of the coordinates that meet in the term's derivatives, beside those that meet
+   * in L's. Default none. */
   const dvi__pattern *pattern;
 
-  int unknowns;               /* of its own, and rows of its own */
-  const dvi__pattern *acting; /* [n x 1] the coordinates whose rows and columns they meet */
+  int unknowns;               /* number of own unknowns and own rows */
+  const dvi__pattern *acting; /* [n x 1] coordinates whose rows and columns the own unknowns meet */
 
-  /* The path, before L's derivatives are asked for. */
+  /* Take the path, before L's derivatives are evaluated. */
   void (*place)(void *of, const dvi__row_path *path);
 
-  /* Add to R [n*s] and to dp [n], the change of the momentum; write own_R [unknowns]. */
+  /* Add to R [n*s] and to dp [n], the change of the momentum. Write own_R [unknowns]. */
   dvi_status (*rows)(void *of, const dvi__row_path *path, const double *own, double *R, double *dp,
                      double *own_R);
 
-  /* Add |what was summed| to [n*s] and to [unknowns], after `rows`. */
+  /* Add the magnitudes of the summands to [n*s] and to [unknowns], after `rows`. */
   void (*magnitudes)(const void *of, const dvi__row_path *path, double *magnitude,
                      double *own_magnitude);
 
@@ -51,30 +56,31 @@ typedef struct dvi__row_term {
   dvi_status (*derivatives)(void *of, const dvi__row_path *path, const double *own,
                             const dvi__row_jacobian *J);
 
-  /* Typical sizes [unknowns] of its own rows per unit of an unknown. */
+  /* Give the typical sizes [unknowns] of the own rows per unit of an unknown. */
   void (*scale)(const void *of, double h, double *scale);
 } dvi__row_term;
 
-/* dR/dY, at a coordinate's function: the s rows of coordinate `row` that meet Y_l of coordinate
- * `column`; NULL if the pattern has no such entry. */
+/* Give the place in dR/dY of the s rows of coordinate `row` that meet Y_l of coordinate `column`.
+ * NULL if the pattern has no such entry. */
 double *dvi__row_block(const dvi__row_jacobian *J, int row, int column, int l);
 
-/* The same by the number of the entry in the joint pattern (dvi__row_joint), for loops over all. */
+/* Give the same place by the number of the entry in the joint pattern (dvi__row_joint), for loops
+ * over all entries. */
 const dvi__pattern *dvi__row_joint(const dvi__row_jacobian *J);
 double *dvi__row_entry(const dvi__row_jacobian *J, int entry, int column, int l);
 
-/* The term's own rows [unknowns] that meet Y_l of a coordinate; the s rows of a coordinate that
- * meet one of its unknowns; its own rows [unknowns] that meet that. */
+/* Give the place of the term's own rows [unknowns] that meet Y_l of a coordinate, of the s rows of
+ * a coordinate that meet an own unknown, and of the own rows [unknowns] that meet it. */
 double *dvi__row_own_rows(const dvi__row_jacobian *J, int column, int l);
 double *dvi__row_own_column(const dvi__row_jacobian *J, int unknown, int row);
 double *dvi__row_own_block(const dvi__row_jacobian *J, int unknown);
 
-/* Forces F [n*r] at the nodes, by the principle of Lagrange and d'Alembert: they stand beside L_q.
- * Source: Marsden and West 2001, sec. 3.2. */
+/* Add forces F [n*r] at the nodes by the principle of Lagrange and d'Alembert, beside L_q. Source:
+ * Marsden and West 2001, sec. 3.2. */
 void dvi__row_add_forces(const dvi__row_path *path, const double *F, double *R, double *dp);
 void dvi__row_add_force_magnitudes(const dvi__row_path *path, const double *F, double *magnitude);
 
-/* Their derivatives F_q and F_v, [entries*r] in the order of a pattern, entry-major. */
+/* Add the derivatives F_q and F_v of forces, [entries*r] in the order of a pattern, entry-major. */
 void dvi__row_add_force_derivatives(const dvi__row_path *path, const dvi__pattern *pattern,
                                     const double *F_q, const double *F_v,
                                     const dvi__row_jacobian *J);

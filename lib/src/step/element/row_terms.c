@@ -1,4 +1,4 @@
-/* The list of row terms of an element, and what forces add to the rows. */
+/* The list of row terms of an element, and the forces in the rows. */
 #include <math.h>
 #include <string.h>
 
@@ -9,11 +9,11 @@
 struct dvi__row_jacobian {
   const dvi__action *a;
   const dvi__row_term *term;
-  int first; /* column and row of its unknowns */
+  int first; /* column and row of the term's unknowns */
   double *values;
 };
 
-/* ---- adding a term ---- */
+/* ---- add a term ---- */
 
 static dvi_status allocate_terms(dvi__action *a)
 {
@@ -65,7 +65,7 @@ int dvi__action_has_terms(const dvi__action *a)
   return a->terms.count > 0;
 }
 
-/* ---- the pattern ---- */
+/* ---- pattern ---- */
 
 dvi_status dvi__action_join_terms(const dvi__action *a, dvi__pattern *joint)
 {
@@ -80,8 +80,9 @@ dvi_status dvi__action_join_terms(const dvi__action *a, dvi__pattern *joint)
   return DVI_OK;
 }
 
-/* Whether coordinate i, or the unknowns of a term, numbered from n on, meet those of column j. */
-static int meet(const dvi__action *a, int i, int j)
+/* Tell whether coordinate i, or the unknowns of a term, numbered from n on, meet those of column
+ * j. */
+static int coordinates_meet(const dvi__action *a, int i, int j)
 {
   const int n = a->n;
   if (i < n && j < n) return dvi__pattern_find(&a->joint, i, j) >= 0;
@@ -89,7 +90,7 @@ static int meet(const dvi__action *a, int i, int j)
   return dvi__pattern_find(a->terms.term[(i > j ? i : j) - n].acting, i > j ? j : i, 0) >= 0;
 }
 
-/* The joint pattern with one more row and column for each term with unknowns. */
+/* Make the joint pattern with one more row and column for each term with unknowns. */
 static dvi_status widen_joint(const dvi__action *a, dvi__pattern *wide)
 {
   const int size = a->n + a->terms.count;
@@ -103,7 +104,7 @@ static dvi_status widen_joint(const dvi__action *a, dvi__pattern *wide)
     wide->start[j] = entries;
     for (int i = 0; i < size; i++)
       if ((i < a->n || a->terms.term[i - a->n].unknowns > 0) &&
-          (j < a->n || a->terms.term[j - a->n].unknowns > 0) && meet(a, i, j))
+          (j < a->n || a->terms.term[j - a->n].unknowns > 0) && coordinates_meet(a, i, j))
         wide->row[entries++] = i;
   }
   wide->start[size] = entries;
@@ -146,7 +147,7 @@ void dvi__action_place_terms(dvi__action *a, const double *Y)
     if (terms->term[k].place != NULL) terms->term[k].place(terms->term[k].of, &terms->path);
 }
 
-/* L_q holds the weights here. */
+/* Add the rows of all terms. L_q holds the weights here. */
 dvi_status dvi__action_add_term_rows(dvi__action *a, const double *Y, double *R)
 {
   dvi__row_terms *terms = &a->terms;

@@ -6,13 +6,14 @@
 
 enum { DVI__ROW_TERMS_MOST = 8 };
 
-/* What an action keeps of its terms. */
+/* The terms of an action. */
 typedef struct dvi__row_terms {
   int count, unknowns;
   dvi__row_term term[DVI__ROW_TERMS_MOST];
-  int first[DVI__ROW_TERMS_MOST]; /* unknown of each term, behind the path's */
+  int first[DVI__ROW_TERMS_MOST]; /* first unknown of each term, behind the path's */
   dvi__row_path path;
-  double *numbers, *q1, *in_p, *dp; /* [n] each: the end, h sum b L_q, what terms add to it */
+  /* [n] each, all numbers, the end, h sum b L_q, and what terms add to that */
+  double *numbers, *q1, *in_p, *dp;
 } dvi__row_terms;
 
 #endif

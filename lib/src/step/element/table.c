@@ -10,7 +10,7 @@
 #include "space/quadrature.h"
 #include "space/trial.h"
 
-static int allocate(dvi__action *a)
+static int tables_allocate(dvi__action *a)
 {
   a->lanes = dvi__lanes_for(a->r);
   a->path_lanes = dvi__lanes_for(a->s);
@@ -37,22 +37,23 @@ static int allocate(dvi__action *a)
          a->shift_rows && a->bar_row && a->slope_row && a->stiffness_row;
 }
 
-static double largest(int count, const double *x, double size)
+static double largest_with(int count, const double *x, double size)
 {
   for (int i = 0; i < count; i++) size = fmax(size, fabs(x[i]));
   return size;
 }
 
 /* Round psi and psi(1) to one grid on which their difference is exact. The rows of the stationarity
- * conditions are then the derivatives of one discrete action to the last bit, whatever the rounding
- * of the tables; else momenta and energy drift by a part of an epsilon in every step (measured on
- * outer-solar: angular momentum by 2e-18 of itself a step). */
+ * conditions are then the derivatives of one discrete action to the last bit, however the tables
+ * are rounded. Else momenta and energy drift by a part of an epsilon in every step (measured on
+ * outer-solar, angular momentum by 2e-18 of itself a step). */
 static void make_differences_exact(dvi__action *a)
 {
   const int last = a->s * a->lanes;
   const double grid = ldexp(
-      1.0, ilogb(largest(a->s, a->end, largest(last, a->bar, largest(last, a->psi, 1.0)))) + 1 -
-               DBL_MANT_DIG);
+      1.0, ilogb(largest_with(a->s, a->end,
+                              largest_with(last, a->bar, largest_with(last, a->psi, 1.0)))) +
+               1 - DBL_MANT_DIG);
   for (int k = 0; k < a->s; k++) a->end[k] = grid * nearbyint(a->end[k] / grid);
   for (int k = 0; k < a->s; k++)
     for (int j = k * a->lanes; j < k * a->lanes + a->r; j++) {
@@ -81,9 +82,9 @@ static dvi_status fill_nodes(dvi__action *a)
   return DVI_OK;
 }
 
-/* Invert the positive definite stiffness by Gauss-Jordan elimination; an iteration's matrix needs
+/* Invert the positive definite stiffness by Gauss-Jordan elimination. An iteration's matrix needs
  * no pivoting and no last digit. */
-static void invert(int s, const double *matrix, double *inverse)
+static void invert_stiffness(int s, const double *matrix, double *inverse)
 {
   double m[DVI_DEGREE_MAX][DVI_DEGREE_MAX];
   for (int k = 0; k < s; k++)
@@ -107,11 +108,11 @@ static void fill_stiffness(dvi__action *a)
       for (int j = 0; j < a->r; j++)
         a->stiffness[k * a->s + l] += a->weight[j] * a->dpsi[k * a->lanes + j] *
                                       a->dpsi[l * a->lanes + j];
-  invert(a->s, a->stiffness, a->stiffness_inverse);
+  invert_stiffness(a->s, a->stiffness, a->stiffness_inverse);
 }
 
-/* Paths are fitted at the right Radau nodes: well spread, and the end is one of them. */
-static dvi_status fill_fit(dvi__action *a)
+/* Fit paths at the right Radau nodes, which are well spread and include the end. */
+static dvi_status fill_fit_table(dvi__action *a)
 {
   double weight[DVI_QUADRATURE_MAX];
   DVI_TRY(dvi_quadrature(DVI_RADAU_RIGHT, a->s, a->fit_point, weight));
@@ -135,12 +136,12 @@ static void fill_rows(dvi__action *a)
 
 dvi_status dvi__action_fill_tables(dvi__action *a)
 {
-  if (!allocate(a))
+  if (!tables_allocate(a))
     return dvi__fail(DVI_NO_MEMORY, "action: no memory for tables of degree %d", a->s);
-  if (a->shaped) return DVI_OK;
+  if (a->by_user) return DVI_OK;
   dvi__space_init(&a->trial, a->space.basis, a->s);
   DVI_TRY(fill_nodes(a));
   fill_stiffness(a);
   fill_rows(a);
-  return fill_fit(a);
+  return fill_fit_table(a);
 }

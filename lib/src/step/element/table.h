@@ -1,5 +1,5 @@
-/* The tables of an action element: trial functions at the quadrature nodes and what follows from
- * them. */
+/* The tables of an action element, which are the trial functions at the quadrature nodes and their
+ * products. */
 #ifndef DVI_ACTION_TABLE_H
 #define DVI_ACTION_TABLE_H
 #include "step/element/action.h"

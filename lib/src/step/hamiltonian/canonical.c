@@ -26,7 +26,7 @@ struct dvi__canonical {
       shift_p[POINTS][POINTS];
   double c[POINTS], b[POINTS];
   dvi__pattern joint, pattern; /* joint is the pattern of one block, pattern that of the Jacobian */
-  dvi__block *block;           /* [entries of joint] */
+  dvi__joint_entry *block;     /* [entries of joint] */
   /* The current step. */
   double t0, h;
   const double *q0, *p0, *unit;
@@ -202,7 +202,8 @@ static double canonical_at(const dvi__canonical *c, const double *values, int wh
   return where >= 0 ? c->h * values[where * c->r + j] : 0;
 }
 
-static void canonical_gather_entry(const dvi__canonical *c, const dvi__block *where, entry *out)
+static void canonical_gather_entry(const dvi__canonical *c, const dvi__joint_entry *where,
+                                   entry *out)
 {
   for (int j = 0; j < c->r; j++) {
     out->qq[j] = canonical_at(c, c->H_qq, where->qq, j);

@@ -128,7 +128,7 @@ static void blocking_kick_drift(const part *own, int k, range r)
   const dvi__blocking *w = own->pass->blocking;
   const dvi__blocking_step *s = &own->pass->step;
   const double *gradient = k == 0 && s->gradient != NULL ? s->gradient : s->gradient_to;
-  const dvi__moser_veselov kick_drift = {
+  const dvi__kick_drift kick_drift = {
       .count = (size_t)(r.last - r.first),
       .kicks = k == 0 ? 1 : 2,
       .kick = {k == 0 ? -0.5 * s->h[0] : -0.5 * s->h[k - 1], -0.5 * s->h[k]},

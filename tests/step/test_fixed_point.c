@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "step/element/action_struct.h"
-#include "step/element/sweep.h"
+#include "step/element/fixed_point.h"
 #include "support/suite.h"
 #include "support/systems/systems.h"
 
@@ -41,10 +41,10 @@ START_TEST(the_coefficients_are_symplectic_to_the_last_bit)
   dvi_system *system = made_system();
   dvi__action *a = made_action(system, DVI_LAGRANGE_LOBATTO, degree, rules[rule], nodes);
   for (int i = 0; i < nodes; i++) {
-    ck_assert_double_eq(a->sweep_slant[i], 0.5 - a->sweep_node[i]);
+    ck_assert_double_eq(a->fixed_point.slant[i], 0.5 - a->fixed_point.node[i]);
     for (int j = 0; j < i; j++)
-      ck_assert_double_eq(a->sweep_node[i] - a->sweep_matrix[j * a->lanes + i],
-                          a->sweep_node[j] - a->sweep_matrix[i * a->lanes + j]);
+      ck_assert_double_eq(a->fixed_point.node[i] - a->fixed_point.matrix[j * a->lanes + i],
+                          a->fixed_point.node[j] - a->fixed_point.matrix[i * a->lanes + j]);
   }
   dvi__action_destroy(&a);
   dvi_system_destroy(&system);
@@ -75,10 +75,10 @@ START_TEST(the_fixed_point_solves_the_rows)
   dvi__action *a = made_action(system, spaces[_i].basis, spaces[_i].degree, spaces[_i].rule,
                                spaces[_i].nodes);
   dvi__action_place(a, 0.3, h, generic_q, generic_v);
-  dvi__action_sweep_from(a, Y);
-  for (int k = 0; k < 30; k++) ck_assert_int_eq(dvi__action_sweep(a, &change, &largest), DVI_OK);
+  dvi__action_fixed_point_begin(a, Y);
+  for (int k = 0; k < 30; k++) ck_assert_int_eq(dvi__action_iterate(a, &change, &largest), DVI_OK);
   ck_assert_double_le(change, 4 * DBL_EPSILON * largest);
-  dvi__action_sweep_to(a, Y);
+  dvi__action_fixed_point_path(a, Y);
   dvi__action_ends(a, Y, dq, low, dp);
   ck_assert_int_eq(dvi__action_residual(a, Y, R), DVI_OK);
   for (int k = 0; k < SITES * spaces[_i].degree; k++) ck_assert_double_eq_tol(R[k], 0, 2e-13);
@@ -99,14 +99,14 @@ START_TEST(a_mass_that_couples_is_left_to_the_rows)
   const dvi_lagrangian l = rotors(&quiet, BATCH);
   dvi_system *system = make_system(&(dvi_system_terms){.dimension = SITES, .lagrangian = &l});
   dvi__action *a = made_action(system, DVI_LEGENDRE, 2, DVI_GAUSS, 2);
-  ck_assert_int_eq(dvi__action_can_sweep(a), 0);
-  ck_assert_ptr_null(a->sweep_matrix);
+  ck_assert_int_eq(dvi__action_has_fixed_point(a), 0);
+  ck_assert_ptr_null(a->fixed_point.matrix);
   dvi__action_destroy(&a);
   dvi_system_destroy(&system);
 }
 END_TEST
 
-SUITE(sweep)
+SUITE(fixed_point)
 {
   tcase_add_loop_test(tests, the_coefficients_are_symplectic_to_the_last_bit, 0,
                       4 * DVI_DEGREE_MAX);

@@ -1,0 +1,47 @@
+/* Fixed-point iteration on the positions at the nodes, for a constant mass without coupling
+ * (scalar, diagonal). The rows of action.h are then linear but for the forces, and have the
+ * solution
+ *
+ *     q(c_i) = q0 + h/m [ c_i p0 + sum_j (c_i - P_ij) g_j ],   g_j = h b_j L_q(q(c_j)),
+ *     q1 = q0 + h/m [ (p0 + p1)/2 + sum_j (1/2 - c_j) g_j ],   p1 = p0 + sum_j g_j,
+ *
+ * with P_ij = psi(c_i)^T K^{-1} psi(c_j). One iteration is one product with an r x r matrix. The
+ * step is symplectic because P is symmetric (Suris 1989; Hairer, Lubich and Wanner 2006, sec.
+ * VI.4.2). It is symplectic to the last bit of c, P and h/m, however h b_j is rounded. With the
+ * factors h^2/m and h in these places, each rounded on its own, energy drifts by 1e-18 of itself a
+ * step. */
+#ifndef DVI_ACTION_FIXED_POINT_H
+#define DVI_ACTION_FIXED_POINT_H
+#include "step/element/action.h"
+
+/* Prepare tables and memory if the system is of this kind. Does nothing for others. */
+dvi_status dvi__action_prepare_fixed_point(dvi__action *action);
+
+int dvi__action_has_fixed_point(const dvi__action *action);
+
+/* Put the nodes on the path Y. */
+void dvi__action_fixed_point_begin(dvi__action *action, const double *Y);
+
+/* Give the forces of the last iteration or residual, g [n*r]. Their number is 0 for a system of
+ * another kind, and nothing is done. */
+int dvi__action_forces_count(const dvi__action *action);
+void dvi__action_forces(const dvi__action *action, double *g);
+
+/* Put the nodes where the continued forces of the last step make them, with ratio = h / h of that
+ * step. The error is of the order of one more iteration than that of the continued path
+ * (continuation.c). */
+void dvi__action_fixed_point_continue(dvi__action *action, double ratio, const double *g);
+
+/* Make one iteration. Gives the largest change of a node's offset from q0, and the largest
+ * offset. */
+dvi_status dvi__action_iterate(dvi__action *action, double *change, double *largest);
+
+/* Give the path Y that the last iteration's forces make. dvi__action_ends then gives the ends by
+ * these forces. */
+void dvi__action_fixed_point_path(dvi__action *action, double *Y);
+
+/* Give the increments of dvi__action_ends by these forces. */
+void dvi__action_fixed_point_ends(const dvi__action *action, double *dq, double *dq_low,
+                                  double *dp);
+
+#endif
