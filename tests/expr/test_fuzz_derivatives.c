@@ -50,7 +50,7 @@ static dvi__op op_of(char letter)
 }
 
 /* Take a letter; returns how many nodes are open. */
-static int take(char letter, char next, dvi__node *open, int count)
+static int take_operation(char letter, char next, dvi__node *open, int count)
 {
   static const double constants[] = {0, 1, 2, 0.5, -1, 3, -2.5, 1e-3, 1e150, 1e-310};
   static const double exponents[] = {-2, 1.5, -0.5, -1.5, 3, 7, -3, 0.3, 33, 2.5};
@@ -81,7 +81,7 @@ static dvi__node read_expression(const char *text, size_t size)
   dvi__node open[OPEN_MAX + 2] = {0};
   int count = 0;
   for (size_t k = 0; k < size && k < LETTERS_MAX; k++) {
-    count = take(text[k], k + 1 < size ? text[k + 1] : '0', open, count);
+    count = take_operation(text[k], k + 1 < size ? text[k + 1] : '0', open, count);
     if (count > OPEN_MAX) count = OPEN_MAX;
   }
   dvi__node sum = dvi__constant(&graph, 0);
@@ -146,7 +146,7 @@ static int differences(const quad *x, int i, quad step, quad *result)
   return jumps;
 }
 
-static void judge(const quad *x, verdict *v)
+static void judge_derivatives(const quad *x, verdict *v)
 {
   const quad step = (quad)1e-11;
   quad_evaluate(&graph, graph.count, x, value, finer, (quad)1e-33);
@@ -273,7 +273,7 @@ static unsigned kinds(void)
   return seen;
 }
 
-static unsigned one(const char *text, size_t size)
+static unsigned try_derivatives(const char *text, size_t size)
 {
   static verdict v[JUDGED];
   graph = (dvi__graph){.limit = NODES_MAX};
@@ -288,7 +288,7 @@ static unsigned one(const char *text, size_t size)
   }
   for (int p = 0; p < JUDGED; p++) {
     const quad x[INPUTS] = {(quad)point[p][0], (quad)point[p][1], (quad)point[p][2]};
-    judge(x, &v[p]);
+    judge_derivatives(x, &v[p]);
     check_derivatives(&v[p]);
     check_pattern(&v[p]);
   }
@@ -298,7 +298,7 @@ static unsigned one(const char *text, size_t size)
 
 START_TEST(derivatives_are_those_of_differences)
 {
-  ck_assert_int_gt(fuzz(&(fuzz_target){"derivatives", corpus, tokens, one}), 0);
+  ck_assert_int_gt(fuzz(&(fuzz_target){"derivatives", corpus, tokens, try_derivatives}), 0);
 }
 END_TEST
 #endif

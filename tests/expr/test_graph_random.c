@@ -132,7 +132,7 @@ static void draw_expression(uint64_t *seed, expression *e)
     }
 }
 
-static dvi__node build(dvi__graph *graph, const expression *e)
+static dvi__node build_expression(dvi__graph *graph, const expression *e)
 {
   dvi__node node[PARTS_MAX] = {0};
   for (int i = 0; i < e->count; i++) {
@@ -168,7 +168,7 @@ static quad value_at(const expression *e, const quad *x)
 /* With this step central differences of moderate functions are right to 1e-18 at least. */
 static const quad STEP = (quad)1e-10;
 
-static quad difference(const expression *e, int i)
+static quad first_difference(const expression *e, int i)
 {
   quad x[INPUTS];
   for (int k = 0; k < INPUTS; k++) x[k] = e->x[k];
@@ -225,7 +225,7 @@ START_TEST(simplified_values_are_those_of_what_was_written)
     expression e;
     draw_expression(&state, &e);
     dvi__graph graph = {0};
-    const dvi__node root = build(&graph, &e);
+    const dvi__node root = build_expression(&graph, &e);
     double x[INPUTS], value;
     for (int i = 0; i < INPUTS; i++) x[i] = (double)e.x[i];
     dvi__node not_finite;
@@ -268,10 +268,10 @@ START_TEST(derivatives_are_those_of_differences)
     expression e;
     draw_expression(&state, &e);
     dvi__graph graph = {0};
-    const dvi__node root = build(&graph, &e);
+    const dvi__node root = build_expression(&graph, &e);
     quad first[INPUTS], second[INPUTS * INPUTS], judge[INPUTS * INPUTS];
     differentiate(&graph, &e, root, first, second);
-    for (int i = 0; i < INPUTS; i++) judge[i] = difference(&e, i);
+    for (int i = 0; i < INPUTS; i++) judge[i] = first_difference(&e, i);
     check_close(INPUTS, first, judge, seed);
     for (int i = 0; i < INPUTS * INPUTS; i++)
       judge[i] = second_difference(&e, i % INPUTS, i / INPUTS);
@@ -288,7 +288,7 @@ START_TEST(patterns_hold_all_second_derivatives_but_zeros)
     expression e;
     draw_expression(&state, &e);
     dvi__graph graph = {0};
-    const dvi__node root = build(&graph, &e);
+    const dvi__node root = build_expression(&graph, &e);
     int(*pair)[2], count, inside[INPUTS][INPUTS] = {{0}};
     ck_assert_int_eq(dvi__second_pattern(&graph, root, INPUTS, &pair, &count), DVI_OK);
     for (int k = 0; k < count; k++)

@@ -165,7 +165,7 @@ static unsigned try_scene(const dvi_scene *scene)
   return kind_of(scene) + (unsigned)(code + 1) + 3U * (unsigned)status;
 }
 
-static unsigned one(const char *text, size_t size)
+static unsigned try_scene_text(const char *text, size_t size)
 {
   dvi_scene *scene = NULL;
   const dvi_status status = dvi_scene_parse("s.yaml", text, size, 0, NULL, &scene, message,
@@ -200,7 +200,7 @@ START_TEST(any_text_is_a_scene_or_a_sentence)
   ck_assert_int_eq(glob(DVI_SCENES "/*.yaml", 0, NULL, &found), 0);
   ck_assert_uint_le(found.gl_pathc, SCENES_MAX);
   for (size_t k = 0; k < found.gl_pathc; k++) corpus[k] = read_text(found.gl_pathv[k]);
-  const fuzz_target target = {"scene", (const char *const *)corpus, tokens, one};
+  const fuzz_target target = {"scene", (const char *const *)corpus, tokens, try_scene_text};
   ck_assert_int_gt(fuzz(&target), 0);
   for (size_t k = 0; k < found.gl_pathc; k++) free(corpus[k]);
   globfree(&found);

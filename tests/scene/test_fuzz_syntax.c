@@ -112,7 +112,7 @@ static void check_again(const dvi__expression *e, int levels)
   for (int k = 0; levels > 0 && k < e->count; k++) check_again(e->part[k], levels - 1);
 }
 
-static unsigned one(const char *text, size_t size)
+static unsigned try_syntax(const char *text, size_t size)
 {
   open_text(&scene, text, size);
   const dvi__expression *e = NULL;
@@ -132,7 +132,7 @@ static unsigned one(const char *text, size_t size)
 
 START_TEST(any_text_makes_an_expression_or_a_sentence)
 {
-  ck_assert_int_gt(fuzz(&(fuzz_target){"syntax", corpus, tokens, one}), 0);
+  ck_assert_int_gt(fuzz(&(fuzz_target){"syntax", corpus, tokens, try_syntax}), 0);
 }
 END_TEST
 

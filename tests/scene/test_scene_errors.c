@@ -430,7 +430,7 @@ typedef struct paper {
   long written, left;
 } paper;
 
-static int take(const char *text, size_t size, void *user)
+static int append_text(const char *text, size_t size, void *user)
 {
   paper *own = user;
   (void)text;
@@ -442,11 +442,11 @@ START_TEST(c_is_written_under_a_name_and_to_its_end)
 {
   paper whole = {0, -1}, cut = {0, 3};
   ck_assert_int_eq(parse(X "lagrangian: x'^2 - x^4\n" RUN, 0, NULL), DVI_OK);
-  ck_assert_int_eq(dvi_scene_emit_c(scene, "no name", take, &whole), DVI_BAD_ARGUMENT);
-  ck_assert_int_eq(dvi_scene_emit_c(scene, "", take, &whole), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_scene_emit_c(scene, "no name", append_text, &whole), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_scene_emit_c(scene, "", append_text, &whole), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(whole.written, 0);
-  ck_assert_int_eq(dvi_scene_emit_c(scene, "quartic", take, &cut), DVI_IO_ERROR);
-  ck_assert_int_eq(dvi_scene_emit_c(scene, "quartic", take, &whole), DVI_OK);
+  ck_assert_int_eq(dvi_scene_emit_c(scene, "quartic", append_text, &cut), DVI_IO_ERROR);
+  ck_assert_int_eq(dvi_scene_emit_c(scene, "quartic", append_text, &whole), DVI_OK);
   ck_assert_int_gt(whole.written, cut.written);
 }
 END_TEST
