@@ -1,4 +1,4 @@
-/* Programs on truncated power series: the sum of the series is what the expression has at the
+/* Programs on truncated power series. The sum of the series is the value of the expression at the
  * point. */
 #include <dvi/taylor.h>
 #include <float.h>
@@ -10,8 +10,8 @@
 
 enum { DEGREE = 14, LENGTH = DEGREE + 1, ROWS = 64, INPUTS = 2 };
 
-/* x(s) = 0.6 + .., y(s) = 1.7 + ..: inside of the domains of all operations but acosh, which gets
- * y. */
+/* x(s) = 0.6 + .., y(s) = 1.7 + .. are inside of the domains of all operations but acosh, which
+ * gets y. */
 static const double curve[INPUTS][LENGTH] = {{0.6, 0.4, -0.3, 0.2}, {1.7, -0.5, 0.25, 0.1}};
 
 static double sum_of(const double *series, double s)
@@ -21,7 +21,7 @@ static double sum_of(const double *series, double s)
   return sum;
 }
 
-/* Radii of convergence are 0.3 and more: what is left out is below 1e-15 of numbers of size 1. */
+/* Radii of convergence are 0.3 and more, so the remainder is below 1e-15 of numbers of size 1. */
 static void compare_series(dvi__graph *graph, dvi__node root, const double curves[INPUTS][LENGTH])
 {
   const double s = 0.025;
@@ -75,7 +75,7 @@ START_TEST(every_operation_of_two_numbers_is_known)
 }
 END_TEST
 
-/* What jumps, or turns, at 0 has no series there, unless its argument stays. */
+/* A function with a jump or a kink at 0 has no series there, unless its argument is constant. */
 START_TEST(at_a_kink_there_is_a_series_of_what_stays_alone)
 {
   static const dvi__op ops[] = {DVI__OP_ABS, DVI__OP_SIGN, DVI__OP_FLOOR, DVI__OP_POSITIVE};

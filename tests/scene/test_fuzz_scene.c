@@ -1,6 +1,6 @@
 /* labels: invariant */
-/* Any text is a scene whose callbacks give finite numbers or say what is not finite, and which can
- * be written as C; or a sentence that can be printed. Texts are made of the scenes of the
+/* Any text is a scene or gives a sentence that can be printed. The callbacks of a scene give
+ * finite numbers or a sentence, and it can be written as C. Texts are made of the scenes of the
  * catalogue. */
 #define _POSIX_C_SOURCE 200809L /* glob */
 #include <dvi/scene.h>
@@ -139,7 +139,7 @@ static int count_bytes(const char *text, size_t size, void *user)
   return 0;
 }
 
-/* What was made, as a number: its form, and what was derived. */
+/* Gives a number for the scene, from its form and from its derivatives. */
 static unsigned kind_of(const dvi_scene *scene)
 {
   dvi_scene_facts facts;

@@ -46,7 +46,7 @@ static void check_name(const char *name)
                 strlen(name));
 }
 
-/* What every node of a form has. */
+/* Checks the facts that hold for every node of a form. */
 static void check_form(const dvi__expression *e)
 {
   static const struct {
@@ -72,8 +72,8 @@ static void check_form(const dvi__expression *e)
   if (e->name2 != NULL) check_name(e->name2);
 }
 
-/* Parts stand inside of what they are part of. Returns which forms there are, a bit for each.
- * Chains lean to the left: only they are long. */
+/* Checks that parts stand inside of their wholes, and returns the forms that occur, a bit for each.
+ * Chains lean to the left, and only they are long. */
 static unsigned check_parts(const dvi__expression *e, int level)
 {
   fuzz_requires(level <= 5 * 64);

@@ -69,7 +69,7 @@ static const char *const tokens[] = {"\n",
 
 static scene_text scene;
 
-/* The next character that is no blank, and the text behind it; 0 at the end. */
+/* Gives the next character that is no blank, with the text behind it, or 0 at the end. */
 static unsigned next_seen(const char **at, const char *end)
 {
   while (*at < end) {

@@ -1,5 +1,5 @@
-/* A scene's gradient in quadruple precision: against its callbacks and against what the derivatives
- * are on paper. */
+/* A scene's gradient in quadruple precision, against its callbacks and against derivatives on
+ * paper. */
 #include <check.h>
 #include <dvi/scene.h>
 #include <math.h>
@@ -60,7 +60,7 @@ START_TEST(the_gradient_is_that_of_the_callbacks)
 }
 END_TEST
 
-/* L_q = -x^3 at x = 1/3 to 32 digits: 1/3 is the pair of 0x1.5555555555555p-2 and a 2^-54 of it. */
+/* L_q = -x^3 at x = 1/3 to 32 digits. 1/3 is the pair of 0x1.5555555555555p-2 and a 2^-54 of it. */
 START_TEST(digits_beyond_a_double_are_there)
 {
   dvi_scene *scene = read_scene("coordinates: {x: scalar}\nlagrangian: x'^2/2 - x^4/4\n"

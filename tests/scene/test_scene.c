@@ -1,5 +1,5 @@
-/* Scenes give the systems of the catalogue, which were written by hand: the same Lagrangians and
- * momenta, and the same trajectories to rounding. */
+/* Scenes give the systems of the catalogue, which were written by hand, with the same Lagrangians
+ * and momenta, and the same trajectories up to rounding. */
 #include <dvi/dvi.h>
 #include <dvi/scene.h>
 #include <math.h>
@@ -89,7 +89,7 @@ static dvi_integrator *start_integrator(const dvi_system *system, const char *me
   return integrator;
 }
 
-/* Both take each step from the same point: what differs is the step alone. */
+/* Both take each step from the same point, so only the step differs. */
 static void step_agrees(dvi_integrator *mine, dvi_integrator *theirs, double t, double h, double *q,
                         double *p)
 {
@@ -253,7 +253,8 @@ START_TEST(fpu_is_that_of_the_catalogue)
 }
 END_TEST
 
-/* 0/0 for the first member, which is given by itself; the others have their own values. */
+/* The term is 0/0 for the first member, which is given by itself. The others have their own
+ * values. */
 START_TEST(one_member_may_stand_beside_a_formula_that_is_no_number_there)
 {
   const double *q, *v, *p, expected[] = {5, 1, 1, 2, 3, 4.5};
@@ -298,7 +299,7 @@ START_TEST(potentials_are_fast_as_they_are_tagged)
 }
 END_TEST
 
-/* What only splitting methods tell apart is one potential to all others. */
+/* Terms that only splitting methods distinguish are one potential for all other methods. */
 START_TEST(tags_do_not_change_what_other_methods_do)
 {
   static const char *const text[] = {CHAIN "  fast: {bond: 50*(x - y)^2}\n  slow: {well: x^4}\n",
@@ -345,7 +346,7 @@ START_TEST(imex_factorises_a_quadratic_fast_potential_once_a_run)
 }
 END_TEST
 
-/* Derivatives that are right are not called wrong: of terms that cancel, and of a power that bends
+/* Right derivatives are not called wrong, those of terms that cancel, and of a power that bends
  * within the differences' steps. */
 START_TEST(right_derivatives_are_found_right)
 {

@@ -1,4 +1,4 @@
-/* What is wrong with a scene is told with its place and in words that help. */
+/* The sentence on a wrong scene names the place and helps to mend it. */
 #include <dvi/dvi.h>
 #include <dvi/scene.h>
 #include <math.h>
@@ -45,7 +45,7 @@ static void refused(const char *text, const char *place, const char *words)
 #define X "coordinates: {x: scalar}\n"
 #define RUN "initial: {x: 1}\nstep: 0.1\nuntil: 1\n"
 
-/* A Lagrangian in line 2 of a scene with the coordinates x, u in R^3 and y_1 .. y_3; it begins in
+/* A Lagrangian in line 2 of a scene with the coordinates x, u in R^3 and y_1 .. y_3. It begins in
  * column 13. */
 static void lagrangian_refused(const char *L, int column, const char *words)
 {
@@ -97,7 +97,7 @@ START_TEST(unknown_names_are_told_with_the_nearest)
 }
 END_TEST
 
-/* Of two columns with one name none could be asked for. */
+/* Two columns with one name could not be selected. */
 START_TEST(columns_have_one_name_each)
 {
   static const char *const taken[] = {"x", "t", "energy", "p_x"}, *const free_name[] = {
@@ -373,8 +373,8 @@ START_TEST(what_is_not_finite_is_told_with_its_place)
 }
 END_TEST
 
-/* Where there are two derivatives, but no series; there is one of the last, but it is as large as
- * no number. */
+/* Two derivatives exist, but no series. The last one has a series, but with coefficients larger
+ * than any double. */
 START_TEST(what_has_no_series_is_told_with_its_place)
 {
   static const char *const texts[] = {

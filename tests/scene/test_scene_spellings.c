@@ -1,5 +1,5 @@
-/* What can be said in two ways is the same: sums and the terms that they stand for, vectors and
- * their numbers, definitions and what they say. */
+/* Two spellings of one thing give the same scene: sums and the terms that they stand for, vectors
+ * and their numbers, definitions and their texts. */
 #include <dvi/dvi.h>
 #include <dvi/scene.h>
 #include <math.h>
@@ -18,7 +18,7 @@ static void release(void)
   for (int k = 0; k < 2; k++) dvi_scene_destroy(&scene[k]);
 }
 
-/* Coordinates x, y, the vector u of 3 and the family z_1 .. z_3; a mass for all, so that every
+/* Coordinates x, y, the vector u of 3 and the family z_1 .. z_3, with a mass for all, so that every
  * spelling moves. */
 static void open_spelling(int k, const char *definitions, const char *L)
 {
