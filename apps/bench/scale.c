@@ -22,8 +22,8 @@ enum { STEPS_DEFAULT = 32, TITLE_SIZE = 160 };
 typedef struct cell {
   int n;
   double h;
-  double step[ROUNDS_MAX]; /* seconds of one, in each round */
-  spread seconds;          /* of all rounds; set when they are over */
+  double step[ROUNDS_MAX];                      /* seconds of one, in each round */
+  spread seconds;                               /* of all rounds; set when they are over */
   double create[ROUNDS_MAX], first[ROUNDS_MAX]; /* seconds of creation and start; of the first
                                                    step, with all that is prepared in it */
   spread creation, first_step;

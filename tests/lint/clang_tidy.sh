@@ -1,10 +1,11 @@
 #!/bin/sh
 # Runs clang-tidy over the library, the command, the problems and the examples, with the checks of
-# .clang-tidy. Its static analyzer takes nearly all of the time. It looks at a source again when the
-# source, a header of ours that it includes or the checks have changed, either since the source last
-# passed in this build folder, or since the branch left main. On main itself, and where there is no
-# history, it looks at every source that has not passed. With DVI_ANALYZE=all it looks at
-# every source.
+# .clang-tidy. Its static analyzer takes nearly all of the time. It looks at a source if the source,
+# a header of ours that it includes or the checks have changed since the commit that the file
+# `analyzed` beside this script names, and if they have not passed in this build folder since. With
+# DVI_ANALYZE=all it looks at every source and, if all pass, writes the commit into that file, to be
+# committed (`sh cmake/bootstrap.sh long` does that). Without history, or without that commit in it,
+# the analyzer looks at every source, too.
 # Usage: clang_tidy.sh TOP BUILD CLANG_TIDY C_COMPILER
 set -u
 
@@ -68,10 +69,10 @@ xargs "$compiler" -MM -MG -I lib/include -I lib/src -I apps -I apps/problems <"$
   exit 1
 }
 
-# $work/changed lists the files that changed since the branch left main. It does not exist on main,
-# or without history.
-base=$(git merge-base HEAD main 2>/dev/null || git merge-base HEAD origin/main 2>/dev/null) || base=
-[ "$base" != "$(git rev-parse HEAD 2>/dev/null)" ] || base=
+# $work/changed lists the files that changed since the analyzer last passed on all. It does not
+# exist without history.
+base=$(cat tests/lint/analyzed)
+git merge-base --is-ancestor "$base" HEAD 2>/dev/null || base=
 case ${DVI_ANALYZE:-} in
   all) base=; rm -f "$build"/analyzed/* ;;
 esac
@@ -100,4 +101,8 @@ done <"$work/parts" >"$work/todo"
 
 echo "the analyzer looks at $(wc -l <"$work/todo") of $(wc -l <"$work/sources") sources"
 xargs -n 2 -P "$cores" sh "$0" --one analyze "$top" "$build" "$tool" <"$work/todo" || rc=1
+if [ "${DVI_ANALYZE:-}" = all ] && [ $rc -eq 0 ] && git diff --quiet HEAD -- lib apps; then
+  git rev-parse HEAD >tests/lint/analyzed
+  echo "tests/lint/analyzed names this commit now; please commit it"
+fi
 exit $rc

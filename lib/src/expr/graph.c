@@ -39,8 +39,8 @@ static uint64_t bits_of(double x)
   return bits;
 }
 
-/* Where the search for an equal node begins. */
-static unsigned slot_of(const dvi__graph_node *node, int table_size)
+/* Return the slot where the search for an equal node begins. */
+static unsigned node_slot(const dvi__graph_node *node, int table_size)
 {
   uint64_t hash = bits_of(node->value) * UINT64_C(0x9e3779b97f4a7c15) + (uint64_t)node->op;
   hash = (hash ^ (hash >> 29)) * UINT64_C(0xbf58476d1ce4e5b9) + (uint64_t)node->a;
@@ -49,22 +49,22 @@ static unsigned slot_of(const dvi__graph_node *node, int table_size)
   return (unsigned)(hash >> 32) & (unsigned)(table_size - 1);
 }
 
-static bool equal(const dvi__graph_node *x, const dvi__graph_node *y)
+static bool nodes_equal(const dvi__graph_node *x, const dvi__graph_node *y)
 {
   return x->op == y->op && x->a == y->a && x->b == y->b && bits_of(x->value) == bits_of(y->value);
 }
 
-/* The slot of an equal node, or the free one where it belongs. Slots hold numbers from 1. */
-static int *find(const dvi__graph *graph, const dvi__graph_node *wanted)
+/* Find the slot of an equal node, or the free one where it belongs. Slots hold numbers from 1. */
+static int *find_slot(const dvi__graph *graph, const dvi__graph_node *wanted)
 {
-  unsigned at = slot_of(wanted, graph->table_size);
-  while (graph->table[at] != 0 && !equal(&graph->node[graph->table[at] - 1], wanted))
+  unsigned at = node_slot(wanted, graph->table_size);
+  while (graph->table[at] != 0 && !nodes_equal(&graph->node[graph->table[at] - 1], wanted))
     at = (at + 1) & (unsigned)(graph->table_size - 1);
   return graph->table + at;
 }
 
-/* Twice the room; the table stays at most half full. */
-static dvi_status grow(dvi__graph *graph)
+/* Double the room. The table stays at most half full. */
+static dvi_status graph_grow(dvi__graph *graph)
 {
   const int room = graph->count == 0 ? 1 : 2 * graph->count;
   dvi__graph_node *node = dvi__heap_grow(graph->node, (size_t)graph->count, sizeof *node);
@@ -75,11 +75,11 @@ static dvi_status grow(dvi__graph *graph)
   dvi__heap_free(graph->table);
   graph->table = table;
   graph->table_size = 2 * room;
-  for (int n = 0; n < graph->count; n++) *find(graph, graph->node + n) = n + 1;
+  for (int n = 0; n < graph->count; n++) *find_slot(graph, graph->node + n) = n + 1;
   return DVI_OK;
 }
 
-/* Whether a value is never below zero: it may be a root's argument, or NaN. */
+/* Return 1 if a value is never below zero. It may be a root's argument, or NaN. */
 static int never_negative(const dvi__graph *graph, const dvi__graph_node *node)
 {
   switch (node->op) {
@@ -104,30 +104,30 @@ static int never_negative(const dvi__graph *graph, const dvi__graph_node *node)
   }
 }
 
-/* An equal node or -1. */
-static dvi__node known(const dvi__graph *graph, const dvi__graph_node *wanted)
+/* Return an equal node or -1. */
+static dvi__node find_node(const dvi__graph *graph, const dvi__graph_node *wanted)
 {
-  return graph->table_size == 0 ? -1 : *find(graph, wanted) - 1;
+  return graph->table_size == 0 ? -1 : *find_slot(graph, wanted) - 1;
 }
 
-/* Room for one more node. */
-static dvi_status make_room(dvi__graph *graph)
+/* Make room for one more node. */
+static dvi_status graph_make_room(dvi__graph *graph)
 {
   if (graph->count >= (graph->limit == 0 ? LIMIT : graph->limit)) return DVI_BAD_SIZE;
-  return 2 * graph->count < graph->table_size ? DVI_OK : grow(graph);
+  return 2 * graph->count < graph->table_size ? DVI_OK : graph_grow(graph);
 }
 
 dvi__node dvi__make(dvi__graph *graph, dvi__op op, dvi__node a, dvi__node b, double value)
 {
   if (graph->failed != DVI_OK) return 0;
   dvi__graph_node wanted = {.op = op, .a = a, .b = b, .value = value, .span = graph->here};
-  const dvi__node same = known(graph, &wanted);
+  const dvi__node same = find_node(graph, &wanted);
   if (same >= 0) return same;
-  graph->failed = make_room(graph);
+  graph->failed = graph_make_room(graph);
   if (graph->failed != DVI_OK) return 0;
   wanted.never_negative = never_negative(graph, &wanted);
   graph->node[graph->count] = wanted;
-  *find(graph, &wanted) = graph->count + 1;
+  *find_slot(graph, &wanted) = graph->count + 1;
   return graph->count++;
 }
 

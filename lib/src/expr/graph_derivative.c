@@ -1,40 +1,40 @@
 /* Derivatives, by the reverse mode (of one number by everything) and by the forward mode (of
- * everything by one number). Both take a node's derivatives by its operands from one table; parts
- * that do not depend on what is asked for are not visited. */
+ * everything by one number). Both take a node's derivatives by its operands from one table. They do
+ * not visit parts that do not depend on the inputs. */
 #include <stdlib.h>
 
 #include "expr/graph_make.h"
 #include "text/heap.h"
 
-enum { NONE = -1 }; /* no node: a derivative that is zero */
+enum { NONE = -1 }; /* no node, a derivative that is zero */
 
-/* 1 + n^2. */
+/* Return 1 + n^2. */
 static dvi__node one_and_square(dvi__graph *graph, dvi__node n)
 {
   return dvi__add(graph, dvi__constant(graph, 1), dvi__square(graph, n));
 }
 
-/* (n - 1)(n + 1), which is exact near 1. */
+/* Return (n - 1)(n + 1), which is exact near 1. */
 static dvi__node square_less_one(dvi__graph *graph, dvi__node n)
 {
   const dvi__node one = dvi__constant(graph, 1);
   return dvi__multiply(graph, dvi__subtract(graph, n, one), dvi__add(graph, n, one));
 }
 
-/* (1 - n^2)^(-1/2). */
+/* Return (1 - n^2)^(-1/2). */
 static dvi__node inverse_root(dvi__graph *graph, dvi__node n)
 {
   return dvi__power(graph, dvi__negate(graph, square_less_one(graph, n)), -0.5);
 }
 
-/* 1/n where n is positive, and no number where it is not: a function that ends at 0 shall not go on
+/* Return 1/n where n is positive, and no number elsewhere. A function that ends at 0 must not go on
  * in its derivative. */
-static dvi__node inside(dvi__graph *graph, dvi__node n)
+static dvi__node inverse_inside(dvi__graph *graph, dvi__node n)
 {
   return dvi__power(graph, dvi__power(graph, n, -0.5), 2);
 }
 
-/* ((n - 1)(n + 1))^(-1/2) for n > 1 alone. */
+/* Return ((n - 1)(n + 1))^(-1/2) for n > 1 alone. */
 static dvi__node inverse_roots(dvi__graph *graph, dvi__node n)
 {
   const dvi__node one = dvi__constant(graph, 1);
@@ -42,8 +42,8 @@ static dvi__node inverse_roots(dvi__graph *graph, dvi__node n)
                        dvi__power(graph, dvi__add(graph, n, one), -0.5));
 }
 
-/* The derivative of node n, a function of one operand, by it. */
-static dvi__node slope(dvi__graph *graph, dvi__node n)
+/* Derive node n of one operand by that operand. */
+static dvi__node slope_of_unary(dvi__graph *graph, dvi__node n)
 {
   const dvi__graph_node node = graph->node[n];
   const dvi__node a = node.a;
@@ -53,7 +53,7 @@ static dvi__node slope(dvi__graph *graph, dvi__node n)
   case DVI__OP_SQRT: return dvi__scale(graph, 0.5, dvi__power(graph, a, -0.5));
   case DVI__OP_POWER: return dvi__scale(graph, node.value, dvi__power(graph, a, node.value - 1));
   case DVI__OP_EXP: return n;
-  case DVI__OP_LOG: return inside(graph, a);
+  case DVI__OP_LOG: return inverse_inside(graph, a);
   case DVI__OP_SIN: return dvi__apply(graph, DVI__OP_COS, a, 0);
   case DVI__OP_COS: return dvi__negate(graph, dvi__apply(graph, DVI__OP_SIN, a, 0));
   case DVI__OP_TAN: return one_and_square(graph, n);
@@ -65,13 +65,13 @@ static dvi__node slope(dvi__graph *graph, dvi__node n)
   case DVI__OP_TANH: return dvi__power(graph, dvi__apply(graph, DVI__OP_COSH, a, 0), -2);
   case DVI__OP_ASINH: return dvi__power(graph, one_and_square(graph, a), -0.5);
   case DVI__OP_ACOSH: return inverse_roots(graph, a);
-  case DVI__OP_ATANH: return inside(graph, dvi__negate(graph, square_less_one(graph, a)));
+  case DVI__OP_ATANH: return inverse_inside(graph, dvi__negate(graph, square_less_one(graph, a)));
   case DVI__OP_ABS: return dvi__apply(graph, DVI__OP_SIGN, a, 0);
   default: return dvi__constant(graph, 0); /* of SIGN, FLOOR, POSITIVE */
   }
 }
 
-/* The derivative of node n, of two operands, by the first of them. */
+/* Derive node n of two operands by the first of them. */
 static dvi__node slope_by_first(dvi__graph *graph, dvi__node n)
 {
   const dvi__graph_node node = graph->node[n];
@@ -107,17 +107,16 @@ static dvi__node slope_by_second(dvi__graph *graph, dvi__node n)
   }
 }
 
-/* A quotient of two parts that both vary, or of a varying one by a parameter: its modes divide
- * once. */
+/* Return 1 for a quotient whose numerator is not a constant. Both modes divide once for it. */
 static int is_quotient(const dvi__graph *graph, dvi__node n)
 {
   return graph->node[n].op == DVI__OP_DIVIDE &&
          graph->node[graph->node[n].a].op != DVI__OP_CONSTANT;
 }
 
-/* Whether a node depends on inputs below `count` (or on input `only`, if that is not NONE), when it
- * is known of its operands. */
-static int depends(const dvi__graph *graph, int count, int only, const char *part, dvi__node n)
+/* Return 1 if a node depends on inputs below `count`, or on input `only` if that is not NONE. It
+ * must be known of its operands. */
+static int node_depends(const dvi__graph *graph, int count, int only, const char *part, dvi__node n)
 {
   const dvi__graph_node *node = graph->node + n;
   const int operands = dvi__operands(node->op);
@@ -125,12 +124,12 @@ static int depends(const dvi__graph *graph, int count, int only, const char *par
   return (operands > 0 && part[node->a] != 0) || (operands > 1 && part[node->b] != 0);
 }
 
-static void fail(dvi__graph *graph)
+static void fail_without_memory(dvi__graph *graph)
 {
   if (graph->failed == DVI_OK) graph->failed = DVI_NO_MEMORY;
 }
 
-/* [size] nodes, none yet. */
+/* Take [size] nodes, filled with NONE. */
 static dvi__node *new_derivatives(int size)
 {
   dvi__node *derivative = dvi__heap_take((size_t)size + 1, sizeof *derivative);
@@ -138,20 +137,20 @@ static dvi__node *new_derivatives(int size)
   return derivative;
 }
 
-static int is_zero(const dvi__graph *graph, dvi__node n)
+static int derivative_is_zero(const dvi__graph *graph, dvi__node n)
 {
   double value;
   return n == NONE || (dvi__is_constant(graph, n, &value) && value == 0);
 }
 
-/* Whether a condition guards a part of which there are slopes below. */
+/* Return true if a condition guards a derivative. */
 static bool is_guarded(const dvi__graph *graph, dvi__node n)
 {
   return graph->failed == DVI_OK && graph->node[n].op == DVI__OP_WHERE;
 }
 
-/* The sum of two shares in the derivative by a node. Where no condition takes the node its
- * slopes need not exist: what all shares are guarded by guards their sum. */
+/* Add two shares in the derivative by a node. The node's derivatives need not exist where no
+ * condition takes it. Guards that all shares have guard their sum. */
 static dvi__node add_shares(dvi__graph *graph, dvi__node to, dvi__node a, dvi__node b)
 {
   const dvi__node sum = dvi__add(graph, a, b);
@@ -162,9 +161,9 @@ static dvi__node add_shares(dvi__graph *graph, dvi__node to, dvi__node a, dvi__n
   return dvi__where(graph, dvi__choice(graph, c, always, d), sum);
 }
 
-/* Add to the derivative of the root by a node. */
-static void give(dvi__graph *graph, const char *part, dvi__node *adjoint, dvi__node to,
-                 dvi__node share)
+/* Add a share to the derivative of the root by a node. */
+static void give_share(dvi__graph *graph, const char *part, dvi__node *adjoint, dvi__node to,
+                       dvi__node share)
 {
   if (part[to])
     adjoint[to] = adjoint[to] == NONE ? share : add_shares(graph, to, adjoint[to], share);
@@ -177,18 +176,21 @@ static void pull_back(dvi__graph *graph, const char *part, dvi__node *adjoint, d
   const int operands = dvi__operands(node.op);
   if (is_quotient(graph, n)) {
     const dvi__node share = dvi__divide(graph, adjoint[n], node.b);
-    give(graph, part, adjoint, node.a, share);
+    give_share(graph, part, adjoint, node.a, share);
     if (part[node.b])
-      give(graph, part, adjoint, node.b, dvi__negate(graph, dvi__multiply(graph, share, n)));
+      give_share(graph, part, adjoint, node.b, dvi__negate(graph, dvi__multiply(graph, share, n)));
     return;
   }
   if (operands == 1)
-    give(graph, part, adjoint, node.a, dvi__multiply(graph, adjoint[n], slope(graph, n)));
+    give_share(graph, part, adjoint, node.a,
+               dvi__multiply(graph, adjoint[n], slope_of_unary(graph, n)));
   if (operands < 2) return;
   if (part[node.a])
-    give(graph, part, adjoint, node.a, dvi__multiply(graph, adjoint[n], slope_by_first(graph, n)));
+    give_share(graph, part, adjoint, node.a,
+               dvi__multiply(graph, adjoint[n], slope_by_first(graph, n)));
   if (part[node.b])
-    give(graph, part, adjoint, node.b, dvi__multiply(graph, adjoint[n], slope_by_second(graph, n)));
+    give_share(graph, part, adjoint, node.b,
+               dvi__multiply(graph, adjoint[n], slope_by_second(graph, n)));
 }
 
 static void pull_back_all(dvi__graph *graph, dvi__node root, int count, const char *part,
@@ -197,7 +199,7 @@ static void pull_back_all(dvi__graph *graph, dvi__node root, int count, const ch
   const dvi__span here = graph->here;
   adjoint[root] = dvi__constant(graph, 1);
   for (int n = root; n >= 0 && graph->failed == DVI_OK; n--) {
-    if (!part[n] || is_zero(graph, adjoint[n])) continue;
+    if (!part[n] || derivative_is_zero(graph, adjoint[n])) continue;
     graph->here = graph->node[n].span;
     if (graph->node[n].op != DVI__OP_INPUT)
       pull_back(graph, part, adjoint, n);
@@ -216,24 +218,24 @@ void dvi__gradient(dvi__graph *graph, dvi__node root, int count, dvi__node *grad
   char *part = dvi__parts(graph, 1, &root, &size);
   dvi__node *adjoint = new_derivatives(size);
   if (part == NULL || adjoint == NULL) {
-    fail(graph);
+    fail_without_memory(graph);
   } else {
-    for (int n = 0; n < size; n++) part[n] = part[n] && depends(graph, count, NONE, part, n);
+    for (int n = 0; n < size; n++) part[n] = part[n] && node_depends(graph, count, NONE, part, n);
     pull_back_all(graph, root, count, part, adjoint, gradient);
   }
   dvi__heap_free(part);
   dvi__heap_free(adjoint);
 }
 
-/* The derivative of node n, when those of its operands are known. */
+/* Derive node n, whose operands are derived. */
 static dvi__node push_forward(dvi__graph *graph, const dvi__node *tangent, dvi__node n)
 {
   const dvi__graph_node node = graph->node[n];
   const int operands = dvi__operands(node.op);
   const dvi__node zero = dvi__constant(graph, 0);
-  const dvi__node a = is_zero(graph, tangent[node.a]) ? zero : tangent[node.a];
-  if (operands == 1) return dvi__multiply(graph, slope(graph, n), a);
-  const dvi__node b = is_zero(graph, tangent[node.b]) ? zero : tangent[node.b];
+  const dvi__node a = derivative_is_zero(graph, tangent[node.a]) ? zero : tangent[node.a];
+  if (operands == 1) return dvi__multiply(graph, slope_of_unary(graph, n), a);
+  const dvi__node b = derivative_is_zero(graph, tangent[node.b]) ? zero : tangent[node.b];
   if (is_quotient(graph, n))
     return dvi__divide(graph, dvi__subtract(graph, a, dvi__multiply(graph, n, b)), node.b);
   const dvi__node first = a == zero ? zero : dvi__multiply(graph, slope_by_first(graph, n), a);
@@ -241,8 +243,8 @@ static dvi__node push_forward(dvi__graph *graph, const dvi__node *tangent, dvi__
                    : dvi__add(graph, first, dvi__multiply(graph, slope_by_second(graph, n), b));
 }
 
-/* All parts' derivatives, from those of the inputs; to parts that do not depend on these NONE is
- * given. */
+/* Derive all parts from the derivatives of the inputs. Parts that do not depend on these get
+ * NONE. */
 static void push_forward_all(dvi__graph *graph, int count, const dvi__node *rate)
 {
   const dvi__span here = graph->here;
@@ -260,8 +262,8 @@ static void push_forward_all(dvi__graph *graph, int count, const dvi__node *rate
 
 /* ---- the parts of some nodes ---- */
 
-/* Room for all nodes there are. */
-static bool make_room(dvi__graph *graph, int size)
+/* Make room for all nodes of the graph. */
+static bool tangents_make_room(dvi__graph *graph, int size)
 {
   dvi__tangent_room *room = &graph->room;
   if (size <= room->size) return true;
@@ -274,35 +276,35 @@ static bool make_room(dvi__graph *graph, int size)
   return true;
 }
 
-static void reach(const dvi__tangent_room *room, dvi__node n, int *count)
+static void reach_node(const dvi__tangent_room *room, dvi__node n, int *count)
 {
   if (room->part[n]) return;
   room->part[n] = 1;
   room->list[(*count)++] = n;
 }
 
-static int by_number(const void *a, const void *b)
+static int compare_nodes(const void *a, const void *b)
 {
   return *(const dvi__node *)a - *(const dvi__node *)b;
 }
 
-/* List and mark what the roots are made of, operands before what is made of them. Where the roots
- * are a small part of the graph, all of it is not passed over: of a long sum there are as many
- * roots as there are inputs. */
+/* List and mark the parts of the roots, operands first. If the roots are a small part of the graph,
+ * the list is sorted instead of passing over the whole graph. A long sum has as many roots as
+ * inputs. */
 static int list_parts(const dvi__graph *graph, int root_count, const dvi__node *root, int size)
 {
   enum { SMALL = 32 };
   const dvi__tangent_room *room = &graph->room;
   int count = 0, listed = 0;
-  for (int k = 0; k < root_count; k++) reach(room, root[k], &count);
+  for (int k = 0; k < root_count; k++) reach_node(room, root[k], &count);
   for (int k = 0; k < count; k++) {
     const dvi__graph_node *node = graph->node + room->list[k];
     const int operands = dvi__operands(node->op);
-    if (operands > 0) reach(room, node->a, &count);
-    if (operands > 1) reach(room, node->b, &count);
+    if (operands > 0) reach_node(room, node->a, &count);
+    if (operands > 1) reach_node(room, node->b, &count);
   }
   if (count < size / SMALL) {
-    qsort(room->list, (size_t)count, sizeof *room->list, by_number);
+    qsort(room->list, (size_t)count, sizeof *room->list, compare_nodes);
     return count;
   }
   for (int n = 0; n < size; n++)
@@ -310,26 +312,26 @@ static int list_parts(const dvi__graph *graph, int root_count, const dvi__node *
   return count;
 }
 
-/* The derivatives of nodes by the one input, or along the rates of inputs 0 .. count-1. */
-static void forward(dvi__graph *graph, int only, int count, const dvi__node *rate, int root_count,
-                    const dvi__node *root, dvi__node *result)
+/* Derive nodes by one input, or along the rates of inputs 0 .. count-1. */
+static void derive_forward(dvi__graph *graph, int only, int count, const dvi__node *rate,
+                           int root_count, const dvi__node *root, dvi__node *result)
 {
   const dvi__node zero = dvi__constant(graph, 0);
   int size = 0;
   for (int k = 0; k < root_count; k++) result[k] = zero;
   for (int k = 0; k < root_count; k++) size = root[k] < size ? size : root[k] + 1;
   if (graph->failed != DVI_OK) return;
-  if (!make_room(graph, size)) {
-    fail(graph);
+  if (!tangents_make_room(graph, size)) {
+    fail_without_memory(graph);
     return;
   }
   const dvi__tangent_room *room = &graph->room;
   const int parts = list_parts(graph, root_count, root, size);
   for (int k = 0; k < parts; k++)
-    room->part[room->list[k]] = (char)depends(graph, count, only, room->part, room->list[k]);
+    room->part[room->list[k]] = (char)node_depends(graph, count, only, room->part, room->list[k]);
   push_forward_all(graph, parts, rate);
   for (int k = 0; k < root_count; k++)
-    result[k] = is_zero(graph, room->tangent[root[k]]) ? zero : room->tangent[root[k]];
+    result[k] = derivative_is_zero(graph, room->tangent[root[k]]) ? zero : room->tangent[root[k]];
   for (int k = 0; k < parts; k++) {
     room->part[room->list[k]] = 0;
     room->tangent[room->list[k]] = NONE;
@@ -338,11 +340,11 @@ static void forward(dvi__graph *graph, int only, int count, const dvi__node *rat
 
 void dvi__tangents(dvi__graph *graph, int input, int count, const dvi__node *of, dvi__node *tangent)
 {
-  forward(graph, input, 0, NULL, count, of, tangent);
+  derive_forward(graph, input, 0, NULL, count, of, tangent);
 }
 
 void dvi__rates(dvi__graph *graph, int root_count, const dvi__node *root, int count,
                 const dvi__node *rate, dvi__node *result)
 {
-  forward(graph, NONE, count, rate, root_count, root, result);
+  derive_forward(graph, NONE, count, rate, root_count, root, result);
 }

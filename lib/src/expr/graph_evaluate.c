@@ -1,12 +1,12 @@
-/* Values of nodes, one operation after the other: for constants, and to find what went wrong
- * where. */
+/* Values of nodes, one operation after the other. They serve constants and the location of
+ * faults. */
 #include <math.h>
 #include <string.h>
 
 #include "expr/graph_make.h"
 #include "text/heap.h"
 
-static double sign(double x)
+static double sign_of_number(double x)
 {
   return (double)((x > 0) - (x < 0));
 }
@@ -35,7 +35,7 @@ double dvi__operate(dvi__op op, double value, double a, double b)
   case DVI__OP_ACOSH: return acosh(a);
   case DVI__OP_ATANH: return atanh(a);
   case DVI__OP_ABS: return fabs(a);
-  case DVI__OP_SIGN: return sign(a);
+  case DVI__OP_SIGN: return sign_of_number(a);
   case DVI__OP_ADD: return a + b;
   case DVI__OP_SUBTRACT: return a - b;
   case DVI__OP_MULTIPLY: return a * b;
@@ -72,14 +72,15 @@ void dvi__inputs_used(const dvi__graph *graph, int root_count, const dvi__node *
 {
   int size = 0;
   char *part = graph->failed == DVI_OK ? dvi__parts(graph, root_count, root, &size) : NULL;
-  for (int i = 0; i < count; i++) used[i] = part == NULL; /* without memory: all may be used */
+  /* all may be used if there is no memory */
+  for (int i = 0; i < count; i++) used[i] = part == NULL;
   for (int n = 0; n < size && part != NULL; n++)
     if (part[n] && graph->node[n].op == DVI__OP_INPUT && graph->node[n].a < count)
       used[graph->node[n].a] = 1;
   dvi__heap_free(part);
 }
 
-/* The value of a node whose operands have theirs. */
+/* Return the value of a node whose operands have values. */
 static double value_of(const dvi__graph_node *node, const double *x, const double *at)
 {
   if (node->op == DVI__OP_INPUT) return x[node->a];

@@ -1,34 +1,34 @@
-/* What the files of the graph share. */
+/* Functions shared by the files of the graph. */
 #ifndef DVI_EXPR_GRAPH_MAKE_H
 #define DVI_EXPR_GRAPH_MAKE_H
 #include "expr/graph.h"
 
-/* The node that is exactly this, found or made; nothing is simplified. */
+/* Find or make exactly this node. Nothing is simplified. */
 dvi__node dvi__make(dvi__graph *graph, dvi__op op, dvi__node a, dvi__node b, double value);
 
-/* c * n, simplified. */
+/* Return c * n, simplified. */
 dvi__node dvi__scale(dvi__graph *graph, double c, dvi__node n);
 
-/* Whether an operation is constant between its jumps. */
+/* Return true if an operation is constant between its jumps. */
 static inline bool dvi__is_step(dvi__op op)
 {
   return op == DVI__OP_SIGN || op == DVI__OP_FLOOR || op == DVI__OP_POSITIVE;
 }
 
-/* How many operands an operation has. */
+/* Return how many operands an operation has. */
 int dvi__operands(dvi__op op);
 
-/* The value of an operation on numbers, by libm; `value` is the exponent of a power. */
+/* Apply an operation to numbers, by libm. `value` is the exponent of a power. */
 double dvi__operate(dvi__op op, double value, double a, double b);
 
 void dvi__tangent_room_free(dvi__tangent_room *room);
 
-/* Mark, 1, what the roots are made of: [*size], up to the last root; owned by the caller. NULL: no
- * memory. */
+/* Mark by 1 all parts of the roots, [*size], up to the last root. The caller owns the marks. NULL
+ * if there is no memory. */
 char *dvi__parts(const dvi__graph *graph, int root_count, const dvi__node *root, int *size);
 
-/* Mark, 1, those of the first `size` nodes that the roots are made of where nodes have the
- * values `at`: not what a condition turns off. */
+/* Mark by 1 the parts of the roots among the first `size` nodes at the values `at`. A part that a
+ * condition turns off is not marked. */
 void dvi__mark_taken(const dvi__graph *graph, const double *at, int root_count,
                      const dvi__node *root, int size, char *part);
 

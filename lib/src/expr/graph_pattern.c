@@ -1,10 +1,10 @@
-/* Which second derivatives can differ from zero.
+/* Patterns of second derivatives that can differ from zero.
  *
- * A node f(a, b) adds to the second derivatives of the root what f_aa, f_ab and f_bb are factors
- * of: the pairs of inputs on which a and a, a and b, b and b depend. So the pattern is the union,
- * over all nodes that are not linear, of products of the sets of inputs of their operands (Walther
- * 2008). Sets are sorted lists, equal ones mostly shared, made only for what stands below a node
- * that is not linear. */
+ * A node f(a, b) adds to the second derivatives of the root products with f_aa, f_ab and f_bb.
+ * Their pairs of inputs are those on which a and a, a and b, b and b depend. So the pattern is the
+ * union, over all nodes that are not linear, of products of the sets of inputs of their operands
+ * (Walther 2008). Sets are sorted lists, equal ones mostly shared. They are made only below nodes
+ * that are not linear. */
 #include <stdint.h>
 #include <string.h>
 
@@ -14,10 +14,10 @@
 
 typedef struct set {
   int count;
-  const int *input; /* [count], ascending; owned by the arena */
+  const int *input; /* [count], ascending, owned by the arena */
 } set;
 
-/* Pairs (i,j), i >= j, as keys j << 32 | i, in a table at most half full; a free slot is FREE. */
+/* Pairs (i,j), i >= j, as keys j << 32 | i, in a table at most half full. A free slot is FREE. */
 typedef struct pairs {
   uint64_t *key;
   size_t room, count;
@@ -29,8 +29,8 @@ static const size_t PAIRS_MAX = 20000000;
 enum { CURVED_AA = 1, CURVED_AB = 2, CURVED_BB = 4 };
 enum { REACHED = 1, SET_NEEDED = 2 };
 
-/* Which second derivatives of an operation by its operands differ from zero. */
-static int curvature(const dvi__graph *graph, const dvi__graph_node *node)
+/* Return flags of the second derivatives of an operation by its operands that differ from zero. */
+static int node_curvature(const dvi__graph *graph, const dvi__graph_node *node)
 {
   switch (node->op) {
   case DVI__OP_CONSTANT:
@@ -56,23 +56,22 @@ static int curvature(const dvi__graph *graph, const dvi__graph_node *node)
   }
 }
 
-/* Mark what has a derivative that reaches the root, and what stands below a node that is not
- * linear. */
+/* Mark nodes with a derivative that reaches the root, and nodes below one that is not linear. */
 static void mark_parts(const dvi__graph *graph, dvi__node root, char *mark)
 {
   mark[root] = REACHED;
   for (int n = root; n >= 0; n--) {
     const dvi__graph_node *node = graph->node + n;
     if (!mark[n] || dvi__is_step(node->op)) continue;
-    const char below = (char)(mark[n] | (curvature(graph, node) ? SET_NEEDED : 0));
+    const char below = (char)(mark[n] | (node_curvature(graph, node) ? SET_NEEDED : 0));
     const int operands = dvi__operands(node->op);
     if (operands > 0 && node->op != DVI__OP_WHERE) mark[node->a] |= below;
     if (operands > 1) mark[node->b] |= below;
   }
 }
 
-/* Both sets' inputs, ascending, in `both`, which has room for all. */
-static int merge(set a, set b, int *both)
+/* Merge the inputs of two sets, ascending, into `both`, which has room for all. */
+static int merge_inputs(set a, set b, int *both)
 {
   int count = 0, i = 0, j = 0;
   while (i < a.count && j < b.count) {
@@ -86,12 +85,12 @@ static int merge(set a, set b, int *both)
   return count;
 }
 
-/* One of the two if it holds the other. */
-static set join(dvi__arena *arena, set a, set b, int *work)
+/* Join two sets. If one holds the other, it is returned. */
+static set join_sets(dvi__arena *arena, set a, set b, int *work)
 {
   if (a.input == b.input || b.count == 0) return a;
   if (a.count == 0) return b;
-  const int count = merge(a, b, work);
+  const int count = merge_inputs(a, b, work);
   if (count == a.count) return a;
   if (count == b.count) return b;
   int *input = dvi__arena_take(arena, (size_t)count, sizeof *input);
@@ -100,7 +99,7 @@ static set join(dvi__arena *arena, set a, set b, int *work)
   return (set){count, input};
 }
 
-/* What a node depends on, by its derivatives. */
+/* Return the set of inputs on which a node depends by its derivatives. */
 static set set_of(const dvi__graph_node *node, int count, const set *sets, dvi__arena *arena,
                   int *work)
 {
@@ -112,10 +111,10 @@ static set set_of(const dvi__graph_node *node, int count, const set *sets, dvi__
   }
   if (operands == 0 || dvi__is_step(node->op)) return (set){0};
   if (node->op == DVI__OP_WHERE) return sets[node->b];
-  return operands == 1 ? sets[node->a] : join(arena, sets[node->a], sets[node->b], work);
+  return operands == 1 ? sets[node->a] : join_sets(arena, sets[node->a], sets[node->b], work);
 }
 
-static size_t slot_of(const pairs *p, uint64_t key)
+static size_t pair_slot(const pairs *p, uint64_t key)
 {
   const uint64_t hash = (key ^ (key >> 32)) * UINT64_C(0x9e3779b97f4a7c15);
   size_t at = (size_t)(hash >> 20) & (p->room - 1);
@@ -123,8 +122,8 @@ static size_t slot_of(const pairs *p, uint64_t key)
   return at;
 }
 
-/* Room for `more` pairs. */
-static dvi_status make_room(pairs *p, size_t more)
+/* Make room for `more` pairs. */
+static dvi_status pairs_make_room(pairs *p, size_t more)
 {
   size_t room = p->room == 0 ? 64 : p->room;
   if (p->count > PAIRS_MAX) return DVI_BAD_SIZE;
@@ -134,53 +133,61 @@ static dvi_status make_room(pairs *p, size_t more)
   if (grown.key == NULL) return DVI_NO_MEMORY;
   for (size_t k = 0; k < room; k++) grown.key[k] = FREE;
   for (size_t k = 0; k < p->room; k++)
-    if (p->key[k] != FREE) grown.key[slot_of(&grown, p->key[k])] = p->key[k];
+    if (p->key[k] != FREE) grown.key[pair_slot(&grown, p->key[k])] = p->key[k];
   dvi__heap_free(p->key);
   *p = grown;
   return DVI_OK;
 }
 
-static void put(pairs *p, int i, int j)
+static void put_pair(pairs *p, int i, int j)
 {
   const uint64_t key = i > j ? (uint64_t)j << 32 | (uint64_t)i : (uint64_t)i << 32 | (uint64_t)j;
-  const size_t at = slot_of(p, key);
+  const size_t at = pair_slot(p, key);
   if (p->key[at] == key) return;
   p->key[at] = key;
   p->count++;
 }
 
-/* All pairs of an input of one set and one of the other. */
-static dvi_status put_all(pairs *p, set a, set b)
+/* Put all pairs of an input of one set and one of the other. */
+static dvi_status put_pairs(pairs *p, set a, set b)
 {
   dvi_status status = DVI_OK;
   for (int i = 0; i < a.count && status == DVI_OK; i++) {
-    status = make_room(p, (size_t)b.count);
-    for (int j = 0; j < b.count && status == DVI_OK; j++) put(p, a.input[i], b.input[j]);
+    status = pairs_make_room(p, (size_t)b.count);
+    for (int j = 0; j < b.count && status == DVI_OK; j++) put_pair(p, a.input[i], b.input[j]);
   }
   return status;
 }
 
-/* The pairs of all parts, in `found`. */
+/* Put the pairs that a node adds by its second derivatives. */
+static dvi_status put_node(const dvi__graph *graph, const dvi__graph_node *node, const set *sets,
+                           pairs *found)
+{
+  const int curved = node_curvature(graph, node);
+  dvi_status status = DVI_OK;
+  if (curved & CURVED_AA) status = put_pairs(found, sets[node->a], sets[node->a]);
+  if (status != DVI_OK) return status;
+  if (curved & CURVED_AB) status = put_pairs(found, sets[node->a], sets[node->b]);
+  if (status != DVI_OK) return status;
+  return curved & CURVED_BB ? put_pairs(found, sets[node->b], sets[node->b]) : DVI_OK;
+}
+
+/* Find the pairs of all parts. */
 static dvi_status find_pairs(const dvi__graph *graph, dvi__node root, int count, const char *mark,
                              set *sets, dvi__arena *arena, int *work, pairs *found)
 {
-  dvi_status status = DVI_OK;
-  for (int n = 0; n <= root && status == DVI_OK; n++) {
+  for (int n = 0; n <= root; n++) {
     const dvi__graph_node *node = graph->node + n;
     if (!mark[n]) continue;
     if (mark[n] & SET_NEEDED) sets[n] = set_of(node, count, sets, arena, work);
-    const int curved = curvature(graph, node);
-    if (curved & CURVED_AA) status = put_all(found, sets[node->a], sets[node->a]);
-    if ((curved & CURVED_AB) && status == DVI_OK)
-      status = put_all(found, sets[node->a], sets[node->b]);
-    if ((curved & CURVED_BB) && status == DVI_OK)
-      status = put_all(found, sets[node->b], sets[node->b]);
+    const dvi_status status = put_node(graph, node, sets, found);
+    if (status != DVI_OK) return status;
   }
-  return status == DVI_OK && arena->failed ? DVI_NO_MEMORY : status;
+  return arena->failed ? DVI_NO_MEMORY : DVI_OK;
 }
 
-/* Sort keys by the 32 bits from `shift` on, which are below `count`, keeping the order of equal
- * ones; start [count + 1]. */
+/* Sort keys by the 32 bits from `shift` on, which are below `count`. Equal ones keep their order.
+ * start [count + 1]. */
 static void sort_by(int shift, int count, size_t size, const uint64_t *key, uint64_t *sorted,
                     size_t *start)
 {
@@ -190,7 +197,7 @@ static void sort_by(int shift, int count, size_t size, const uint64_t *key, uint
   for (size_t k = 0; k < size; k++) sorted[start[(uint32_t)(key[k] >> shift)]++] = key[k];
 }
 
-/* The pairs in their order. */
+/* List the pairs in their order. */
 static dvi_status list_pairs(pairs *found, int count, int (**list)[2])
 {
   const size_t size = found->count;

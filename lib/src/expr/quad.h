@@ -1,5 +1,5 @@
 /* The operations of expressions on numbers of 113 bits, for errors that lie below the rounding of a
- * double. Of the processor's library nothing is needed but doubles to begin with. */
+ * double. Only the doubles to begin with come from the C library. */
 #ifndef DVI_EXPR_QUAD_H
 #define DVI_EXPR_QUAD_H
 #include <float.h>
@@ -15,11 +15,11 @@ typedef __float128 dvi__quad;
 #endif
 
 #ifdef DVI__QUAD
-/* The value of an operation; `number` is the value of a constant, or the exponent of a power. */
+/* Apply an operation. `number` is the value of a constant, or the exponent of a power. */
 dvi__quad dvi__quad_operate(dvi__op op, double number, dvi__quad a, dvi__quad b);
 
-/* Its derivatives by the operands, slope[2]; value is what it gives. Those that the operation does
- * not have stay as they are. */
+/* Derive an operation by its operands, slope[2]. value is its result. Derivatives by operands that
+ * it does not have stay unchanged. */
 void dvi__quad_slopes(dvi__op op, double number, dvi__quad value, dvi__quad a, dvi__quad b,
                       dvi__quad *slope);
 #endif

@@ -1,10 +1,10 @@
-/* Kinks: where an expression is put together of two sides, as max(x, 0) is, and which of its
- * derivatives jumps there.
+/* Kinks. An expression may consist of two sides, as max(x, 0) does, and one of its derivatives then
+ * jumps between them.
  *
- * The place is looked for along lines from the start on, by the sign of what decides. There the
- * Taylor series of the whole kernel along the line are compared, those from just before and from
- * just behind: whatever the sides are made of, their first coefficient that differs is that of
- * the derivative that jumps. */
+ * The kink is searched for along lines from the start on, by the sign of the node that decides.
+ * There the Taylor series of the whole kernel along the line are compared, one from just before and
+ * one from just behind. For any two sides, the first coefficient that differs is that of the
+ * derivative that jumps. */
 #include <dvi/taylor.h>
 #include <math.h>
 #include <stdint.h>
@@ -16,7 +16,7 @@
 #include "scene/elaborate/model.h"
 #include "expr/compile/program.h"
 
-/* Nodes of all trials, which take less than a second. */
+/* Limit the nodes of all trials, which then take less than a second. */
 static const double WORK_MAX = 3e7;
 enum {
   LINES = 4,
@@ -28,20 +28,20 @@ enum {
   SMOOTH = JUMPS + 1
 };
 
-/* Half the distance of the two points; and what is too small to be no rounding, of numbers and
- * of the place. */
+/* `apart` is half the distance of the two points. The others are the largest roundings, of numbers
+ * and of the place. */
 static const double apart = 1e-3, alike = 1e-8, rounding = 1e-13, displaced = 1e-14;
 
-/* A kernel at one of its elements, along a line: input i is base[i] + s direction[i]. */
+/* A kernel at one of its elements, along a line. Input i is base[i] + s direction[i]. */
 typedef struct line {
   const dvi__kernel *kernel;
-  dvi__node decides; /* ABS, SIGN, FLOOR or POSITIVE */
+  dvi__node decides; /* a node ABS, SIGN, FLOOR or POSITIVE */
   double *base, *direction, *value;
-  double *work; /* nodes evaluated so far, of all lines */
+  double *work; /* nodes evaluated so far, on all lines */
 } line;
 
-/* Numbers from -1 to 1 that look random and are always the same. */
-static double draw(uint64_t key)
+/* Return a number from -1 to 1 that looks random and is always the same. */
+static double draw_number(uint64_t key)
 {
   key = (key + 1) * UINT64_C(0x9e3779b97f4a7c15);
   key = (key ^ (key >> 29)) * UINT64_C(0xbf58476d1ce4e5b9);
@@ -63,12 +63,13 @@ static void place_line(const dvi_scene *scene, line *l, int element, int which)
     l->base[i] = input->is_data ? input->data[element] : start_of(scene, input->block, number);
     l->direction[i] = input->is_data
                           ? 0
-                          : draw(((uint64_t)number * DVI__BLOCKS + (uint64_t)input->block) * LINES +
-                                 (uint64_t)which);
+                          : draw_number(((uint64_t)number * DVI__BLOCKS + (uint64_t)input->block) *
+                                            LINES +
+                                        (uint64_t)which);
   }
 }
 
-/* On which side of the kink a point of the line is; NaN where there is no value. */
+/* Return on which side of the kink a point of the line is, or NaN where there is no value. */
 static double side_at(const line *l, double s)
 {
   const dvi__graph_node *node = &l->kernel->graph->node[l->decides];
@@ -82,23 +83,23 @@ static double side_at(const line *l, double s)
   return node->op == DVI__OP_FLOOR ? floor(x) : (double)(x > 0);
 }
 
-static int differ(double a, double b)
+static int numbers_differ(double a, double b)
 {
   return a < b || a > b;
 }
 
-/* A place on the line where the side changes, at s > 0 or s < 0 by `sign`. */
+/* Find a place on the line where the side changes, at s > 0 or s < 0 by `sign`. */
 static bool find_change(const line *l, double sign, double *s)
 {
   double before = 0, behind = 0, side = side_at(l, 0);
-  for (int k = 0; k < MARKS && !differ(side_at(l, behind), side); k++) {
+  for (int k = 0; k < MARKS && !numbers_differ(side_at(l, behind), side); k++) {
     before = behind;
     behind = sign * 1e-3 * pow(1.3, k);
   }
-  if (!differ(side_at(l, behind), side)) return false;
+  if (!numbers_differ(side_at(l, behind), side)) return false;
   for (int k = 0; k < HALVINGS; k++) {
     const double middle = (before + behind) / 2;
-    if (differ(side_at(l, middle), side))
+    if (numbers_differ(side_at(l, middle), side))
       behind = middle;
     else
       before = middle;
@@ -107,8 +108,9 @@ static bool find_change(const line *l, double sign, double *s)
   return true;
 }
 
-/* The kernel's program, and its inputs by number: node[input_count]. */
-static bool compile(const dvi__kernel *kernel, int *count, int *number, dvi__program *program)
+/* Compile the kernel's program, and list its inputs by number, node[input_count]. */
+static bool compile_kernel(const dvi__kernel *kernel, int *count, int *number,
+                           dvi__program *program)
 {
   dvi__node *input = dvi__heap_take((size_t)kernel->input_count + 1, sizeof *input);
   *count = 0;
@@ -124,7 +126,7 @@ static bool compile(const dvi__kernel *kernel, int *count, int *number, dvi__pro
   return status == DVI_OK;
 }
 
-/* The series at s, moved to s + way: c [DEGREE + 1]. Returns how large its terms are. */
+/* Compute the series at s, moved to s + way, c [DEGREE + 1]. Returns how large its terms are. */
 static double series_at(const line *l, const dvi__program *program, int count, const int *number,
                         double *rows, double s, double way, double *c)
 {
@@ -144,9 +146,9 @@ static double series_at(const line *l, const dvi__program *program, int count, c
   return size;
 }
 
-/* The first derivative that jumps at s, from 0 on; SMOOTH: none that is looked at. What series
- * leave out shrinks with the distance, and a jump does not; roundings are those of the terms,
- * and of s. */
+/* Return the first derivative that jumps at s, from 0 on, or SMOOTH if none of those compared does.
+ * The remainder of a series shrinks with the distance, and a jump does not. Roundings are those of
+ * the terms, and of s. */
 static int first_jump(const line *l, const dvi__program *program, int count, const int *number,
                       double *rows, double s)
 {
@@ -185,9 +187,9 @@ static int try_lines(const dvi_scene *scene, line *l, const dvi__program *progra
   return least;
 }
 
-/* Of all that decides, what makes the lowest derivative jump. What time alone decides has no
- * force by itself: forces are as smooth there as what they are derivatives of, and `order`,
- * which methods keep, is one more than the derivative that jumps. */
+/* The node that makes the lowest derivative jump. A node that time alone decides exerts no force by
+ * itself. Forces are as smooth there as the functions that they are derivatives of. `order`, which
+ * methods keep, is then one more than the derivative that jumps. */
 typedef struct found {
   int jump, order, tried;
   double work;
@@ -195,13 +197,13 @@ typedef struct found {
   dvi__node node;
 } found;
 
-static int decides(const dvi__graph *graph, const char *part, const char *moves, dvi__node n)
+static int node_decides(const dvi__graph *graph, const char *part, const char *moves, dvi__node n)
 {
   const dvi__graph_node *node = &graph->node[n];
   return part[n] && (node->op == DVI__OP_ABS || dvi__is_step(node->op)) && moves[node->a];
 }
 
-/* Whether time alone decides. */
+/* Return 1 if time alone decides. */
 static int by_time(const dvi__kernel *kernel, dvi__node n)
 {
   char *used = dvi__heap_take((size_t)kernel->input_count + 1, 1);
@@ -221,16 +223,21 @@ static void try_deciders(const dvi_scene *scene, line *l, const char *part, cons
   dvi__program program = {0};
   int count = 0, *number = dvi__heap_take((size_t)kernel->input_count + 1, sizeof *number);
   double *rows = NULL;
-  if (number != NULL && compile(kernel, &count, number, &program))
+  if (number != NULL && compile_kernel(kernel, &count, number, &program))
     rows = dvi__heap_take((size_t)(count + program.row_count) * (DEGREE + 1), sizeof *rows);
   for (int n = 0; n <= kernel->root && rows != NULL && worst->tried < DECIDERS_MAX; n++) {
-    if (!decides(kernel->graph, part, moves, n)) continue;
+    if (!node_decides(kernel->graph, part, moves, n)) continue;
     worst->tried++;
     l->decides = n;
     const int jump = try_lines(scene, l, &program, count, number, rows),
               order = jump + by_time(kernel, n);
     if (jump < SMOOTH && order < worst->order)
-      *worst = (found){jump, order, worst->tried, worst->work, kernel, n};
+      *worst = (found){.jump = jump,
+                       .order = order,
+                       .tried = worst->tried,
+                       .work = worst->work,
+                       .kernel = kernel,
+                       .node = n};
   }
   dvi__program_free(&program);
   dvi__heap_free(number);
@@ -246,13 +253,13 @@ static void try_kernel(const dvi_scene *scene, const dvi__kernel *kernel, found 
   if (part != NULL && moves != NULL && inputs != NULL) {
     int any = 0;
     dvi__mark_moving(kernel, count, moves);
-    for (int n = 0; n < count && !any; n++) any = decides(kernel->graph, part, moves, n);
-    line l = {kernel,
-              -1,
-              inputs,
-              inputs + kernel->input_count,
-              inputs + (ptrdiff_t)2 * kernel->input_count,
-              &worst->work};
+    for (int n = 0; n < count && !any; n++) any = node_decides(kernel->graph, part, moves, n);
+    line l = {.kernel = kernel,
+              .decides = -1,
+              .base = inputs,
+              .direction = inputs + kernel->input_count,
+              .value = inputs + (ptrdiff_t)2 * kernel->input_count,
+              .work = &worst->work};
     if (any) try_deciders(scene, &l, part, moves, worst);
   }
   dvi__heap_free(part);
@@ -260,7 +267,7 @@ static void try_kernel(const dvi_scene *scene, const dvi__kernel *kernel, found 
   dvi__heap_free(inputs);
 }
 
-static void say(const dvi_scene *scene, const found *worst, char *text, size_t size)
+static void write_kink(const dvi_scene *scene, const found *worst, char *text, size_t size)
 {
   static const char *const ordinal[] = {"", "first", "second", "third", "fourth"};
   const dvi__span span = worst->kernel->graph->node[worst->node].span;
@@ -297,11 +304,11 @@ int dvi_scene_kink(const dvi_scene *scene, char *text, size_t size)
   if (scene == NULL || text == NULL) return -1;
   found worst = {.order = SMOOTH + 1};
   for (const dvi__scene_term *term = scene->functions; term != NULL; term = term->next)
-    for (int k = 0; (term->role == DVI__MOVES || term == scene->kinetic) &&
+    for (int k = 0; (term->role == DVI__ROLE_MOTION || term == scene->kinetic) &&
                     k < dvi__function_kernel_count(term->function);
          k++)
       try_kernel(scene, dvi__function_kernel(term->function, k), &worst);
   if (worst.kernel == NULL) return -1;
-  say(scene, &worst, text, size);
+  write_kink(scene, &worst, text, size);
   return worst.order;
 }

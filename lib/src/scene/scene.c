@@ -1,4 +1,4 @@
-/* The public API of scenes: reading, what was found, names, and the end. */
+/* The public functions of scenes, for reading, questions, names, and the end. */
 #include <errno.h>
 #include <limits.h>
 #include <math.h>
@@ -15,8 +15,8 @@ enum { SIZE_MAX_OF_FILE = 1 << 20 };
 
 /* ---- reading ---- */
 
-/* Whether the time occurs in a function. */
-static int has_time(const dvi__scene_term *term)
+/* Return 1 if the time occurs in a function. */
+static int term_has_time(const dvi__scene_term *term)
 {
   for (int k = 0; k < dvi__function_kernel_count(term->function); k++) {
     const dvi__kernel *kernel = dvi__function_kernel(term->function, k);
@@ -26,12 +26,12 @@ static int has_time(const dvi__scene_term *term)
   return 0;
 }
 
-/* An autonomous system has no rates. */
+/* Find if any function has the time. An autonomous system has no rates. */
 static void find_time(dvi_scene *scene)
 {
   int timed = 0;
   for (const dvi__scene_term *term = scene->functions; term != NULL; term = term->next)
-    timed = timed || (term->role != DVI__STANDS_BESIDE && has_time(term));
+    timed = timed || (term->role != DVI__ROLE_AUXILIARY && term_has_time(term));
   scene->terms.autonomous = !timed;
   if (timed) return;
   scene->lagrangian.rate_batch = NULL;
@@ -39,7 +39,7 @@ static void find_time(dvi_scene *scene)
     ((dvi_potential *)scene->terms.potentials)[k].rate_batch = NULL;
 }
 
-static bool make_system(dvi_scene *scene)
+static bool scene_make_system(dvi_scene *scene)
 {
   find_time(scene);
   scene->terms.dimension = dvi__has_factors(scene) ? 0 : scene->n;
@@ -49,8 +49,9 @@ static bool make_system(dvi_scene *scene)
   const dvi_status status = dvi_system_create(&scene->terms, &scene->system);
   if (status == DVI_BAD_ARGUMENT && dvi__has_factors(scene) && !dvi__inertias_are_of_bodies(scene))
     return false;
-  return status == DVI_OK || dvi__complain(scene->complaint, status, dvi__what_moves(scene)->span,
-                                           "%s", dvi_last_error());
+  return status == DVI_OK ||
+         dvi__complain(scene->complaint, status, dvi__motion_section(scene)->span, "%s",
+                       dvi_last_error());
 }
 
 static bool show_parameters(dvi_scene *scene)
@@ -63,7 +64,7 @@ static bool show_parameters(dvi_scene *scene)
     scene->shown[i] = (dvi_scene_parameter){.name = p->name,
                                             .value = p->settable ? p->value[0] : (double)NAN,
                                             .settable = p->settable,
-                                            .start_only = p->stands == DVI__IN_START};
+                                            .start_only = p->used_in == DVI__IN_START};
   }
   return true;
 }
@@ -74,10 +75,10 @@ static bool list_unused(dvi_scene *scene)
   scene->unused = dvi__arena_take(&scene->arena, most + 1, sizeof *scene->unused);
   if (scene->unused == NULL) return dvi__scene_no_memory(scene);
   for (int i = 0; i < scene->parameter_count; i++)
-    if (scene->parameter[i].stands == 0)
+    if (scene->parameter[i].used_in == 0)
       scene->unused[scene->unused_count++] = scene->parameter[i].name;
   for (int i = 0; i < scene->definition_count; i++)
-    if (!scene->definition[i].stands)
+    if (!scene->definition[i].used)
       scene->unused[scene->unused_count++] = scene->definition[i].name;
   return true;
 }
@@ -93,13 +94,14 @@ static void find_bodies(dvi_scene *scene)
 static bool read_scene(dvi_scene *scene)
 {
   if (!dvi__tree_read(&scene->source, &scene->arena, scene->complaint, &scene->tree)) return false;
-  if (!dvi__scene_read_tree(scene) || !make_system(scene) || !dvi__scene_complete_start(scene))
+  if (!dvi__scene_read_tree(scene) || !scene_make_system(scene) ||
+      !dvi__scene_complete_start(scene))
     return false;
   find_bodies(scene);
   return show_parameters(scene) && list_unused(scene);
 }
 
-/* Fill in a scene; its texts are copied. */
+/* Fill in a scene. Its texts are copied. */
 static dvi_status scene_fill(dvi_scene *scene, const char *name, const char *text, size_t length,
                              dvi__scene_settings *settings, dvi__complaint *complaint)
 {
@@ -123,7 +125,7 @@ static dvi_status scene_fill(dvi_scene *scene, const char *name, const char *tex
   return read ? DVI_OK : status != DVI_OK ? status : DVI_NO_MEMORY;
 }
 
-static dvi_status tell(char *message, size_t size, dvi_status status, const char *name)
+static dvi_status write_failure(char *message, size_t size, dvi_status status, const char *name)
 {
   if (message != NULL && size > 0)
     (void)snprintf(message, size, "%s: %s", name, dvi_status_meaning(status));
@@ -146,27 +148,29 @@ dvi_status dvi_scene_parse(const char *name, const char *text, size_t length, in
   *scene = NULL;
   if (message != NULL && size > 0) message[0] = '\0';
   if (name == NULL || text == NULL || !are_there(setting_count, settings))
-    return tell(message, size, DVI_BAD_ARGUMENT, "scene");
+    return write_failure(message, size, DVI_BAD_ARGUMENT, "scene");
   dvi_scene *made = dvi__heap_take(1, sizeof *made);
   if (made == NULL || pthread_mutex_init(&made->labels_mutex, NULL) != 0) {
     dvi__heap_free(made);
-    return tell(message, size, DVI_NO_MEMORY, name);
+    return write_failure(message, size, DVI_NO_MEMORY, name);
   }
-  dvi__scene_settings given = {.count = setting_count, .text = settings};
+  dvi__scene_settings outer = {.count = setting_count, .text = settings};
   dvi__complaint complaint = {.message = message, .size = message != NULL ? size : 0};
   dvi__ledger *const other = dvi__heap_charge(&made->ledger);
-  const dvi_status status = scene_fill(made, name, text, length, &given, &complaint);
+  const dvi_status status = scene_fill(made, name, text, length, &outer, &complaint);
   (void)dvi__heap_charge(other);
   if (status == DVI_OK) {
     *scene = made;
     return DVI_OK;
   }
   dvi_scene_destroy(&made);
-  if (message != NULL && size > 0 && message[0] == '\0') return tell(message, size, status, name);
+  if (message != NULL && size > 0 && message[0] == '\0')
+    return write_failure(message, size, status, name);
   return status;
 }
 
-/* The text of a file, one character more than is allowed if it is longer; to be freed. */
+/* Read the text of a file, and one character more than is allowed if it is longer. The caller frees
+ * the text. */
 static dvi_status read_file(const char *path, char **text, size_t *length)
 {
   errno = 0;
@@ -186,14 +190,14 @@ dvi_status dvi_scene_read(const char *path, int setting_count, const char *const
   size_t length = 0;
   if (scene == NULL) return DVI_BAD_ARGUMENT;
   *scene = NULL;
-  if (path == NULL) return tell(message, size, DVI_BAD_ARGUMENT, "scene");
+  if (path == NULL) return write_failure(message, size, DVI_BAD_ARGUMENT, "scene");
   dvi_status status = read_file(path, &text, &length);
   if (status == DVI_OK)
     status = dvi_scene_parse(path, text, length, setting_count, settings, scene, message, size);
   else if (status == DVI_IO_ERROR && message != NULL && size > 0)
     (void)snprintf(message, size, "cannot read '%s': %s", path, strerror(errno));
   else
-    (void)tell(message, size, status, path);
+    (void)write_failure(message, size, status, path);
   dvi__heap_free(text);
   return status;
 }
@@ -212,7 +216,7 @@ void dvi_scene_destroy(dvi_scene **scene)
   dvi__heap_free(own);
 }
 
-/* ---- what there is ---- */
+/* ---- questions ---- */
 
 const dvi_system *dvi_scene_system(const dvi_scene *scene)
 {
@@ -271,7 +275,7 @@ const dvi_scene_range *dvi_scene_range_at(const dvi_scene *scene, int i)
   return scene == NULL || i < 0 || i >= scene->range_count ? NULL : &scene->range[i];
 }
 
-/* -1: never derived. */
+/* Add operations, of which -1 was never derived. */
 static void add_operations(int operations, int *all)
 {
   if (operations >= 0) *all = operations + (*all > 0 ? *all : 0);
@@ -304,7 +308,7 @@ void dvi_scene_facts_of(const dvi_scene *scene, dvi_scene_facts *facts)
   facts->form = scene->form;
   facts->mass = scene->mass;
   for (const dvi__scene_term *term = scene->functions; term != NULL; term = term->next)
-    if (term->role == DVI__MOVES) add_facts(term, facts);
+    if (term->role == DVI__ROLE_MOTION) add_facts(term, facts);
   for (int k = 0; k < scene->terms.potential_count; k++)
     facts->quadratic_potentials += scene->terms.potentials[k].quadratic;
 }

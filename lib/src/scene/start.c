@@ -4,7 +4,7 @@
 #include "scene/terms/fault.h"
 #include "text/heap.h"
 
-/* Whether each rotation has a mass: (R[1,1]')^2 has rates of all its numbers, but not of all its
+/* Check that each rotation has a mass. (R[1,1]')^2 has rates of all its numbers, but not of all its
  * velocities. */
 static dvi_status try_mass(dvi_scene *scene)
 {
@@ -32,7 +32,7 @@ bool dvi__scene_complete_start(dvi_scene *scene)
   dvi__span span;
   if (status == DVI_CALLBACK_RETRY && dvi__fault_place(&span, &words))
     return dvi__complain(scene->complaint, status, span, "at the start: %s", words);
-  const dvi__tree *cause = status == DVI_SINGULAR ? dvi__what_moves(scene)
+  const dvi__tree *cause = status == DVI_SINGULAR ? dvi__motion_section(scene)
                                                   : dvi__tree_find(scene->tree, "initial");
   return dvi__complain(scene->complaint, status, cause->span, "at the start: %s%s%s",
                        dvi_last_error(), dvi_scene_fault()[0] != '\0' ? "; " : "",

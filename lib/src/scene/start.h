@@ -1,4 +1,4 @@
-/* What follows from a start once there is a system: momenta of velocities, or velocities of
+/* The rest of a start, once there is a system. It computes momenta of velocities, or velocities of
  * momenta. */
 #ifndef DVI_SCENE_START_H
 #define DVI_SCENE_START_H

@@ -125,6 +125,9 @@ expect 3 'a kink' order kink.yaml
 says out 'single steps have the order 8.0.*is the Lagrangian smooth all along' \
   'why single steps do not decide it'
 
+# What follows repeats what is above with other words: not where memory is watched.
+[ -z "${DVI_TEST_FEWER:-}" ] || { finish; exit; }
+
 # Remedies, followed.
 expect 3 'a slope that looks settled' order form.yaml --method vprk:nodes=4
 says out 'no single steps in quadruple precision: they are there for galerkin' \

@@ -1,5 +1,5 @@
 /* Loops over lanes, compiled for several instruction sets. libdvi chooses one for the whole program
- * (num/simd/lanes.h). All give the same bits: no sums are reordered, and -ffp-contract=off keeps
+ * (num/simd/lanes.h). All give the same bits. No sums are reordered, and -ffp-contract=off keeps
  * products and sums apart. */
 #ifndef DVI_EXPR_LANES_H
 #define DVI_EXPR_LANES_H
@@ -35,15 +35,15 @@
   }
 #endif
 
-/* Before a loop of which no step writes what another one reads: restrict inside of functions does
- * not convince gcc. */
+/* Mark a loop of which no step writes what another one reads. gcc does not believe restrict inside
+ * of functions. */
 #if defined(__GNUC__) && !defined(__clang__)
 #define DVI__EXPR_INDEPENDENT _Pragma("GCC ivdep")
 #else
 #define DVI__EXPR_INDEPENDENT
 #endif
 
-/* Compiled into its callers, once for each of their instruction sets. */
+/* Compile a function into its callers, once for each of their instruction sets. */
 #define DVI__EXPR_INLINE static inline __attribute__((always_inline))
 
 #endif

@@ -1,5 +1,5 @@
-/* The operations that programs have beside those of graphs: with a constant for an operand, or two
- * operations in one. */
+/* The operations that programs have beside those of graphs. They have a constant for an operand, or
+ * do two operations in one. */
 #ifndef DVI_EXPR_PROGRAM_CODES_H
 #define DVI_EXPR_PROGRAM_CODES_H
 #include "expr/graph.h"

@@ -1,5 +1,5 @@
-/* Running: one switch, each case a loop over whole blocks of lanes. Functions of the C library are
- * called for the lanes in use alone. */
+/* Execution. Each case of one switch is a loop over whole blocks of lanes. Functions of the C
+ * library are called for the lanes in use alone. */
 #include <float.h>
 #include <math.h>
 #include <stddef.h>
@@ -10,16 +10,16 @@
 #include "expr/compile/program.h"
 #include "expr/compile/program_codes.h"
 
-/* Numbers of which inverse_powers finds the root: not near the ends of the range, and not those
- * that have none. */
+/* Return 1 if inverse_powers can find the root of x. Such an x has a root and is not near the ends
+ * of the range. */
 DVI__EXPR_INLINE int is_plain(double x)
 {
   return (x >= DBL_MIN) & (x <= 1e300);
 }
 
-/* x^-(1/2 + factors) of plain numbers, right to two roundings for each root in it. A square root
- * and a division take longer: the exponent's bits halved and negated are right to 3.5 % (Lomont
- * 2003), then e = 1 - x y^2 shrinks by the series of (1 - e)^(-1/2). */
+/* Compute x^-(1/2 + factors) of plain numbers, right to two roundings for each root in it. A square
+ * root and a division take longer. The exponent's bits, halved and negated, give y right to 3.5 %
+ * (Lomont 2003). The series of (1 - e)^(-1/2) then shrinks e = 1 - x y^2. */
 DVI__EXPR_INLINE void inverse_powers(int width, const int factors, const double *restrict x,
                                      double *restrict to)
 {
@@ -39,9 +39,9 @@ DVI__EXPR_INLINE void inverse_powers(int width, const int factors, const double 
   }
 }
 
-/* x^n, n = 1, 2, .. or x^-n. */
-DVI__EXPR_INLINE void powers(int width, const int exponent, const double *restrict x,
-                             double *restrict to)
+/* Compute x^n, n = 1, 2, .. or x^-n. */
+DVI__EXPR_INLINE void signed_powers(int width, const int exponent, const double *restrict x,
+                                    double *restrict to)
 {
   const unsigned power = exponent < 0 ? 0U - (unsigned)exponent : (unsigned)exponent;
   for (int at = 0; at < width; at += DVI__LANES) {
@@ -57,20 +57,20 @@ DVI__EXPR_INLINE void powers(int width, const int exponent, const double *restri
   }
 }
 
-/* The compiler makes vectors of the powers that it knows. */
+/* Compute x^exponent. The compiler makes vectors of the powers that it knows. */
 DVI__EXPR_INLINE void whole_powers(int width, double exponent, const double *restrict x,
                                    double *restrict to)
 {
   switch ((int)exponent) {
-  case 3: powers(width, 3, x, to); break;
-  case 4: powers(width, 4, x, to); break;
-  case -2: powers(width, -2, x, to); break;
-  case -3: powers(width, -3, x, to); break;
-  default: powers(width, (int)exponent, x, to);
+  case 3: signed_powers(width, 3, x, to); break;
+  case 4: signed_powers(width, 4, x, to); break;
+  case -2: signed_powers(width, -2, x, to); break;
+  case -3: signed_powers(width, -3, x, to); break;
+  default: signed_powers(width, (int)exponent, x, to);
   }
 }
 
-/* x^(n + 1/2), n = 1, 2, .. */
+/* Compute x^(n + 1/2), n = 1, 2, .. */
 DVI__EXPR_INLINE void root_powers(int width, double exponent, const double *restrict x,
                                   double *restrict to)
 {
@@ -84,7 +84,7 @@ DVI__EXPR_INLINE void root_powers(int width, double exponent, const double *rest
   }
 }
 
-/* x^-(n + 1/2), n = 0, 1, .. */
+/* Compute x^-(n + 1/2), n = 0, 1, .. */
 DVI__EXPR_INLINE void inverse_root_powers(int width, double exponent, const double *restrict x,
                                           double *restrict to)
 {
@@ -105,7 +105,7 @@ DVI__EXPR_INLINE void inverse_root_powers(int width, double exponent, const doub
   }
 }
 
-/* Idle lanes of results of the C library hold what the last lane holds. */
+/* Fill the idle lanes of a result of the C library with the last lane. */
 DVI__EXPR_INLINE void fill_up(int lanes, int width, double *to)
 {
   for (int k = lanes; k < width; k++) to[k] = to[lanes - 1];
@@ -122,15 +122,15 @@ static void sines_and_cosines(int lanes, int width, const double *restrict angle
   fill_up(lanes, width, cosine);
 }
 
-/* x where a condition holds. Its operands are read before anything is decided: where gcc 12
- * makes vectors of four for AVX2 of c[k] > 0.0 ? x[k] : .., which reads x[k] for some lanes
- * alone, it takes the wrong lanes. */
-DVI__EXPR_INLINE double taken(double condition, double x)
+/* Return x where a condition holds. Its operands are read before anything is decided. gcc 12 takes
+ * the wrong lanes where it makes vectors of four for AVX2 of c[k] > 0.0 ? x[k] : .., which reads
+ * x[k] for some lanes alone. */
+DVI__EXPR_INLINE double value_if(double condition, double x)
 {
   return condition > 0.0 ? x : condition <= 0.0 ? 0.0 : condition;
 }
 
-/* Operations that are loops over whole blocks: X(name, code, result of lane k). */
+/* List the operations that are loops over whole blocks as X(name, code, result of lane k). */
 #define LOOPS(X)                                                             \
   X(copy, DVI__CODE_COPY, a[k])                                              \
   X(fill, DVI__CODE_FILL, value)                                             \
@@ -153,7 +153,7 @@ DVI__EXPR_INLINE double taken(double condition, double x)
   X(sign, DVI__OP_SIGN, a[k] > 0.0 ? 1.0 : a[k] < 0.0 ? -1.0 : a[k])         \
   X(whole, DVI__OP_FLOOR, floor(a[k]))                                       \
   X(positive, DVI__OP_POSITIVE, a[k] > 0.0 ? 1.0 : a[k] <= 0.0 ? 0.0 : a[k]) \
-  X(where, DVI__OP_WHERE, taken(a[k], b[k]))
+  X(where, DVI__OP_WHERE, value_if(a[k], b[k]))
 
 #define LOOP(name, code, expression)                                                               \
   DVI__EXPR_INLINE void name##_rows(int width, double value, const double *restrict a,             \
@@ -167,7 +167,7 @@ DVI__EXPR_INLINE double taken(double condition, double x)
 LOOPS(LOOP)
 #undef LOOP
 
-/* Operations that the C library does. */
+/* Call the C library for an operation. */
 #define CALL(code, expression)                            \
   case code:                                              \
     for (int k = 0; k < lanes; k++) to[k] = (expression); \
@@ -197,9 +197,9 @@ static void call_library(int op, int lanes, int width, const double *restrict a,
   fill_up(lanes, width, to);
 }
 
-/* `below`: rows of inputs stand below the registers. */
-DVI__EXPR_INLINE void run_rows(const int below, const dvi__program *program, int lanes, int width,
-                               const double *const *input, double *registers)
+/* Run all instructions. `below` is 1 if the rows of inputs stand below the registers. */
+DVI__EXPR_INLINE void run_instructions(const int below, const dvi__program *program, int lanes,
+                                       int width, const double *const *input, double *registers)
 {
   const dvi__instruction *const end = program->instruction + program->instruction_count;
 #define ROW(i) (below || (i) >= 0 ? registers + (ptrdiff_t)(i)*width : input[~(i)])
@@ -228,7 +228,7 @@ DVI__EXPR_INLINE void run_rows(const int below, const dvi__program *program, int
 DVI__EXPR_INLINE void run_body(const dvi__program *program, int lanes, const double *const *input,
                                double *registers)
 {
-  run_rows(0, program, lanes, dvi__row_width(lanes), input, registers);
+  run_instructions(0, program, lanes, dvi__row_width(lanes), input, registers);
 }
 
 DVI__EXPR_VERSIONS(run,
@@ -238,13 +238,13 @@ DVI__EXPR_VERSIONS(run,
 
 DVI__EXPR_INLINE void run_block_body(const dvi__program *program, int lanes, double *registers)
 {
-  run_rows(1, program, lanes, DVI__LANES, NULL, registers);
+  run_instructions(1, program, lanes, DVI__LANES, NULL, registers);
 }
 
 DVI__EXPR_VERSIONS(run_block, (const dvi__program *program, int lanes, double *registers),
                    (program, lanes, registers))
 
-/* clang does not export a function that is compiled more than once. */
+/* A function of its own, since clang does not export a function that is compiled more than once. */
 void dvi__program_run(const dvi__program *program, int lanes, const double *const *input,
                       double *registers)
 {

@@ -1,4 +1,4 @@
-/* Functions as their users see them: made, evaluated, counted. */
+/* The functions of function.h that create, evaluate and count. */
 #include "expr/function/function.h"
 
 #include <limits.h>
@@ -9,7 +9,7 @@
 #include "expr/function/function_parts.h"
 #include "text/heap.h"
 
-/* --- Creation. --- */
+/* ---- creation ---- */
 
 const int *dvi__strides(dvi__arena *arena, int elements, const int *list)
 {
@@ -25,7 +25,7 @@ const int *dvi__strides(dvi__arena *arena, int elements, const int *list)
   return stride_of;
 }
 
-/* Lists are shared by inputs that follow each other. */
+/* Find the places of kernel k's variables. Inputs that follow each other share lists. */
 static dvi_status find_places(dvi__function *function, int k)
 {
   const dvi__kernel *kernel = &function->kernel[k];
@@ -41,9 +41,11 @@ static dvi_status find_places(dvi__function *function, int k)
       stride_of = dvi__strides(&function->arena, kernel->elements, list);
       if (stride_of == NULL) return DVI_NO_MEMORY;
     }
-    place[i] = input->number != NULL
-                   ? (dvi__element_places){input->number, stride_of, input->offset, 0}
-                   : (dvi__element_places){NULL, NULL, input->base + input->offset, input->stride};
+    place[i] = input->number != NULL ? (dvi__element_places){.list = input->number,
+                                                             .stride_of = stride_of,
+                                                             .start = input->offset}
+                                     : (dvi__element_places){.start = input->base + input->offset,
+                                                             .stride = input->stride};
   }
   function->derivatives[k] = (dvi__derivatives){.place = place, .pair_count = -1};
   return DVI_OK;
@@ -78,7 +80,7 @@ static dvi_status function_take_kernels(dvi__function *function, int kernel_coun
   return status;
 }
 
-/* The ledger that is charged now. */
+/* Return the ledger that is charged now. */
 static dvi__ledger *current_ledger(void)
 {
   dvi__ledger *ledger = dvi__heap_charge(NULL);
@@ -121,7 +123,7 @@ void dvi__function_destroy(dvi__function **function)
   dvi__heap_free(own);
 }
 
-/* --- Sums. --- */
+/* ---- sums ---- */
 
 void dvi__function_enter(dvi__function *function)
 {
@@ -140,7 +142,7 @@ dvi_status dvi__function_leave(dvi__function *function, dvi_status status)
   return status;
 }
 
-/* What is asked for: the arrays that are not NULL, or those that have a flag. */
+/* A request for arrays. It names the arrays that are not NULL, or those that have a flag. */
 typedef struct request {
   dvi__derived derived;
   double *const *array;
@@ -152,7 +154,7 @@ static inline int request_wants(const request *r, int a)
   return r->array != NULL ? r->array[a] != NULL : r->flag[a] != 0;
 }
 
-/* The sum that is ready for just this; NULL: none. */
+/* Return the sum that is ready for exactly this request, or NULL. */
 static dvi__function_sum *request_find(const dvi__function *function, const request *r)
 {
   dvi__function_sum *sum = atomic_load_explicit(&function->ready[r->derived], memory_order_acquire);
@@ -188,7 +190,7 @@ static dvi_status request_derive(dvi__function *function, const request *r,
   return DVI_OK;
 }
 
-/* The sum for a request, derived now if it is not ready. */
+/* Return the sum for a request. It is derived now if it is not ready. */
 static dvi_status request_sum(dvi__function *function, const request *r,
                               const dvi__function_sum **sum)
 {
@@ -214,10 +216,10 @@ dvi_status dvi__function_prepare(dvi__function *function, int value, const char 
 const dvi__function_sum *dvi__function_sum_of(const dvi__function *function, dvi__derived derived,
                                               const char *wanted)
 {
-  return request_find(function, &(request){derived, NULL, wanted});
+  return request_find(function, &(request){.derived = derived, .flag = wanted});
 }
 
-/* --- Evaluation. --- */
+/* ---- evaluation ---- */
 
 DVI__EXPR_INLINE void look_for_infinity_body(size_t size, const double *restrict x, int *beyond)
 {
@@ -227,29 +229,31 @@ DVI__EXPR_INLINE void look_for_infinity_body(size_t size, const double *restrict
 DVI__EXPR_VERSIONS(look_for_infinity, (size_t size, const double *restrict x, int *beyond),
                    (size, x, beyond))
 
-static int all_finite(size_t size, const double *x)
+static int array_is_finite(size_t size, const double *x)
 {
   int beyond = 0;
   look_for_infinity(size, x, &beyond);
   return !beyond;
 }
 
-static int are_finite(const dvi__function_sum *sum, int count, double *const *result)
+static int sum_is_finite(const dvi__function_sum *sum, int count, double *const *result)
 {
   int finite = 1;
   for (int i = 0; i < sum->result_count && finite; i++) {
     const int a = sum->result[i];
-    finite = all_finite((size_t)sum->size[a] * (size_t)count, result[a]);
+    finite = array_is_finite((size_t)sum->size[a] * (size_t)count, result[a]);
   }
   return finite;
 }
 
-/* Evaluate at points what is wanted of a kind; of nothing nothing is derived. */
+/* Evaluate one kind of result at points, where its arrays are wanted. If none is wanted, nothing is
+ * derived. */
 static int function_evaluate(dvi__function *function, dvi__derived derived, int count,
                              const double *const *x, double *const *result)
 {
   const dvi__function_sum *sum;
-  const dvi_status status = request_sum(function, &(request){derived, result, NULL}, &sum);
+  const dvi_status status = request_sum(function, &(request){.derived = derived, .array = result},
+                                        &sum);
   if (status != DVI_OK) return (int)status;
   atomic_fetch_add_explicit(&function->points[derived], count, memory_order_relaxed);
   for (int i = 0; i < sum->result_count; i++) {
@@ -258,7 +262,7 @@ static int function_evaluate(dvi__function *function, dvi__derived derived, int 
       memset(result[a], 0, (size_t)sum->size[a] * (size_t)count * sizeof **result);
   }
   dvi__sum_add(sum, count, x, result);
-  return !are_finite(sum, count, result);
+  return !sum_is_finite(sum, count, result);
 }
 
 int dvi__function_value(dvi__function *function, int count, const double *const *x, double *value)
@@ -278,25 +282,25 @@ int dvi__function_second(dvi__function *function, int count, const double *const
   return function_evaluate(function, DVI__SECOND, count, x, values);
 }
 
-/* --- Along a curve. --- */
+/* ---- Taylor series ---- */
 
-/* The same for so many Taylor coefficients. */
+/* Compute `count` Taylor coefficients of one kind of result. */
 static int function_expand(dvi__function *function, dvi__derived derived, int count,
                            const double *const *x, double *const *result)
 {
   const dvi__function_sum *sum;
-  dvi_status status = request_sum(function, &(request){derived, result, NULL}, &sum);
+  dvi_status status = request_sum(function, &(request){.derived = derived, .array = result}, &sum);
   if (status != DVI_OK) return (int)status;
   atomic_fetch_add_explicit(&function->points[derived], count, memory_order_relaxed);
   for (int a = 0; a < sum->array_count; a++)
     if (sum->size[a] > 0)
       memset(result[a], 0, (size_t)sum->size[a] * (size_t)count * sizeof **result);
   status = dvi__sum_add_series(sum, count, function->blocks.width, x, result);
-  const int finite = are_finite(sum, count, result);
+  const int finite = sum_is_finite(sum, count, result);
   return status != DVI_OK ? (int)status : !finite;
 }
 
-static int any_wanted(int count, double *const *array)
+static int request_wants_any(int count, double *const *array)
 {
   int a = 0;
   while (a < count && array[a] == NULL) a++;
@@ -309,12 +313,13 @@ int dvi__function_series(dvi__function *function, int degree, const double *cons
   double *const *const result[DVI__DERIVED] = {&value, gradient, values};
   int returned = 0;
   for (int k = 0; k < DVI__DERIVED && returned == 0; k++)
-    if (result[k] != NULL && any_wanted(function_array_count(function, (dvi__derived)k), result[k]))
+    if (result[k] != NULL &&
+        request_wants_any(function_array_count(function, (dvi__derived)k), result[k]))
       returned = function_expand(function, (dvi__derived)k, degree + 1, x, result[k]);
   return returned;
 }
 
-/* --- Questions. --- */
+/* ---- patterns and counters ---- */
 
 dvi_status dvi__function_pattern(dvi__function *function, int pair, dvi_pattern *pattern, int *full)
 {

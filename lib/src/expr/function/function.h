@@ -1,17 +1,17 @@
 /* Functions f(x_0, .., x_m) of blocks of variables that are sums of kernels. A kernel is one
  * expression, summed over elements (one, or the pairs of bodies, or the springs of a chain) that
- * read different variables and data:
+ * read different variables and data.
  *
  *     f(x) = sum over kernels, sum over elements e:
  *            g(x[variable_1(e)], .., x[variable_m(e)], data_1(e), ..)
  *
- * Variables come in blocks, each of some width, and a block is named by its number: for a
+ * Variables come in blocks, each of some width, and a block is named by its number. For a
  * Lagrangian these are time, coordinates and velocities, for the density of a field u, u_t, u_x and
  * so on. Second derivatives come in pairs of blocks, which are named by their numbers, too.
  *
  * Derivatives are those of the expression g, added up as finite elements are. Blocks are stored in
- * the shape of a batch: variable i of point k is x[i*count + k]. The order of every sum is fixed
- * when a function is made. Digits depend neither on the number of points nor on threads.
+ * the shape of a batch, in which variable i of point k is x[i*count + k]. The order of every sum is
+ * fixed when a function is made. Digits depend neither on the number of points nor on threads.
  * Evaluations allocate nothing and may run on several threads at a time. */
 #ifndef DVI_EXPR_FUNCTION_H
 #define DVI_EXPR_FUNCTION_H
@@ -32,9 +32,9 @@ typedef struct dvi__blocks {
   const dvi__block_pair *pair; /* [pair_count], all different */
 } dvi__blocks;
 
-/* Where an input of a kernel comes from. For element e it is variable number[e] + offset of the
- * block, or base + stride * e + offset if number is NULL. If is_data it is data[e]; constants are
- * folded by whoever made the kernel. */
+/* The source of an input of a kernel. For element e it is variable number[e] + offset of the block,
+ * or base + stride * e + offset if number is NULL. If is_data it is data[e]. Constants are folded
+ * before a kernel is made. */
 typedef struct dvi__kernel_input {
   int is_data;
   int block;
@@ -43,7 +43,7 @@ typedef struct dvi__kernel_input {
   const double *data; /* [elements] */
 } dvi__kernel_input;
 
-/* The variable that an input is for element e. */
+/* Return the variable that an input is for element e. */
 static inline int dvi__input_number(const dvi__kernel_input *input, int e)
 {
   return input->offset +
@@ -51,7 +51,7 @@ static inline int dvi__input_number(const dvi__kernel_input *input, int e)
 }
 
 typedef struct dvi__kernel {
-  dvi__graph *graph; /* its inputs 0 .. input_count-1 are `input` */
+  dvi__graph *graph; /* `input` describes its inputs 0 .. input_count-1 */
   dvi__node root;
   int elements, input_count;
   const dvi__kernel_input *input;
@@ -59,91 +59,93 @@ typedef struct dvi__kernel {
 
 typedef struct dvi__function dvi__function;
 
-/* What the evaluations of a function have cost so far, and what was made for them. */
+/* The cost of a function's evaluations so far, and the size of its programs. */
 typedef struct dvi__function_counters {
-  long value_points, gradient_points, second_points;            /* points evaluated */
-  int value_operations, gradient_operations, second_operations; /* a point; -1: not derived */
+  long value_points, gradient_points, second_points; /* points evaluated */
+  /* operations at a point, -1 if not derived */
+  int value_operations, gradient_operations, second_operations;
   int second_entries;
 } dvi__function_counters;
 
-/* Make a function of its kernels (none: zero). They are moved into it, even if it fails: graphs are
- * freed with it, short ones at once; index lists and data stay with their owner and must outlive
- * it. Blocks are copied. Nothing is derived yet.
- * DVI_NO_MEMORY. */
+/* Make a function of its kernels. Without kernels it is zero. Kernels are moved into it, even if it
+ * fails. Graphs are freed with it, short ones at once. Index lists and data stay with their owner
+ * and must outlive it. Blocks are copied. Nothing is derived yet. DVI_NO_MEMORY. */
 dvi_status dvi__function_create(int kernel_count, const dvi__kernel *kernels,
                                 const dvi__blocks *blocks, dvi__function **function);
 void dvi__function_destroy(dvi__function **function);
 
-/* Evaluate at `count` points. x[b] are the variables of block b, [width[b] * count]; blocks that do
- * not occur may be NULL. All return 0; 1 if a result is not finite (dvi__function_fault tells
- * where); or a status below zero if the program could not be made, as dvi__function_prepare says.
- * What is wanted for the first time is derived in that call. */
+/* Evaluate at `count` points. x[b] are the variables of block b, [width[b] * count]. Blocks that do
+ * not occur may be NULL. All evaluations return 0, or 1 if a result is not finite
+ * (dvi__function_fault tells where). If the program could not be made, they return a status below
+ * zero, as dvi__function_prepare does. A result that is wanted for the first time is derived in
+ * that call. */
 int dvi__function_value(dvi__function *function, int count, const double *const *x, double *value);
 
-/* The derivatives by all variables of the blocks b for which gradient[b] is not NULL,
+/* Compute the derivatives by all variables of the blocks b for which gradient[b] is not NULL,
  * [width[b] * count]. */
 int dvi__function_gradient(dvi__function *function, int count, const double *const *x,
                            double *const *gradient);
 
-/* The second derivatives of the pairs for which values[pair] is not NULL, in the order of the
- * patterns. */
+/* Compute the second derivatives of the pairs for which values[pair] is not NULL, in the order of
+ * the patterns. */
 int dvi__function_second(dvi__function *function, int count, const double *const *x,
                          double *const *values);
 
-/* The same along a curve: Taylor coefficients 0 to `degree`, at most DVI_TAYLOR_MAX, of what is
- * NULL in none of value, gradient[] and values[]; the latter two may be NULL themselves.
- * Coefficient k of variable i of a block is x[block][k*width + i], and results are stored likewise.
- * DVI_BAD_SIZE: too large for that. */
+/* Compute Taylor coefficients 0 to `degree`, at most DVI_TAYLOR_MAX, along a curve. Results are
+ * those of value, gradient[] and values[] that are not NULL. gradient and values may be NULL
+ * themselves. Coefficient k of variable i of a block is x[block][k*width + i], and results are
+ * stored likewise. DVI_BAD_SIZE if the rows of a program are too many. */
 int dvi__function_series(dvi__function *function, int degree, const double *const *x, double *value,
                          double *const *gradient, double *const *values);
 
-/* The pattern of a pair: sorted columns, and both triangles if rows and columns are of one block.
- * *full = 1 and no pattern if it would hold more than half of all entries. Found without deriving;
- * owned by the function. DVI_BAD_SIZE if an int cannot count the entries. */
+/* Find the pattern of a pair, without deriving. Its columns are sorted, and it has both
+ * triangles if rows and columns are of one block. If it would hold more than half of all
+ * entries, *full = 1 and there is no pattern. The function owns it. DVI_BAD_SIZE if an int
+ * cannot count the entries. */
 dvi_status dvi__function_pattern(dvi__function *function, int pair, dvi_pattern *pattern,
                                  int *full);
 
-/* Derive now what else would be derived at a first call (thread-safe either way): the value's
- * program if `value`; the gradient by the blocks b with blocks[b], and the second derivatives of
- * the pairs with pairs[pair], each together as one call would ask for them; NULL: none.
- * DVI_BAD_SIZE: more intermediate results, or entries, than there is room for; DVI_NO_MEMORY. */
+/* Derive now what a first call would derive, which is thread-safe, too. `value` asks for the value,
+ * blocks[b] for the gradient by block b, and pairs[pair] for the second derivatives of a pair.
+ * Blocks, and pairs, are derived together, as for one call. NULL asks for none. DVI_BAD_SIZE if
+ * there is no room for so many intermediate results or entries, DVI_NO_MEMORY. */
 dvi_status dvi__function_prepare(dvi__function *function, int value, const char *blocks,
                                  const char *pairs);
 
-/* 1 if all second derivatives of a pair are constants, which no variable changes (also if there are
- * none); 0; or -1 if they could not be derived. */
+/* Return 1 if all second derivatives of a pair are constants, or if there are none, else 0. Return
+ * -1 if they could not be derived. */
 int dvi__function_second_constant(dvi__function *function, int pair);
 
-/* Where a part stands, and the variables that it depends on, those that its sentence shows left
- * out. */
+/* The place of a fault in the source, and variables that the faulty part depends on. Variables that
+ * the sentence shows are not listed. */
 enum { DVI__FAULT_VARIABLES = 4 };
 typedef struct dvi__fault {
   dvi__span span;
-  int count; /* of variables, the first ones alone */
+  int count; /* variables in the list */
   struct {
     int block, number;
     double value;
   } variable[DVI__FAULT_VARIABLES];
 } dvi__fault;
 
-/* Locate the first part that is not finite at point k of x, or, `of_series`, has no series: writes
- * "log(x - 1), x - 1 = -0.2 is not finite" to text [size]; "" if there is none. Allocates; for
- * messages. */
+/* Locate the first part that is not finite at point k of x, or with `of_series` has no Taylor
+ * series. Writes "log(x - 1), x - 1 = -0.2 is not finite" to text [size], or "" if there is none.
+ * Allocates, since it serves messages alone. */
 void dvi__function_fault(dvi__function *function, const dvi__source *source, int count,
                          const double *const *x, int k, int of_series, char *text, size_t size,
                          dvi__fault *fault);
 
-/* A part of the source on one line, cut if it is long; "" if it is nowhere. text
- * [DVI__PART_SIZE] */
+/* Copy a part of the source as one line to text [DVI__PART_SIZE]. A long part is cut. A part
+ * without a place gives "". */
 enum { DVI__PART_SIZE = 64 };
 void dvi__copy_part(const dvi__source *source, dvi__span span, char *text);
 
-/* Mark, 1, which of the first `count` nodes of a kernel depend on a variable. */
+/* Mark by 1 which of the first `count` nodes of a kernel depend on a variable. */
 void dvi__mark_moving(const dvi__kernel *kernel, int count, char *moves);
 
 void dvi__function_count(dvi__function *function, dvi__function_counters *counters);
 
-/* What kernels have in common, for whoever looks for structure. */
+/* Return the kernels, for searches for structure. */
 int dvi__function_kernel_count(const dvi__function *function);
 const dvi__kernel *dvi__function_kernel(const dvi__function *function, int k);
 

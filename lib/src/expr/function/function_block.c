@@ -1,5 +1,5 @@
-/* Evaluation of kernels of one element at a few points: each row is a block of lanes. The number of
- * points is a constant to what follows: loops of known length need no preparation, which would cost
+/* Evaluation of kernels of one element at a few points. Each row is a block of lanes. The number of
+ * points is a constant in the loops. Loops of known length need no preparation, which would cost
  * more than their work. */
 #include <string.h>
 
@@ -25,8 +25,9 @@ DVI__EXPR_INLINE void block_gather(const int points, const dvi__part *part, cons
   }
 }
 
-/* Results pass through memory of their own: the compiler need not ask what else they might
- * overwrite. What is stored is added to zero: bits are those of tiles. */
+/* Store results, or add them. They pass through memory of their own, so that the compiler need not
+ * ask what else they might overwrite. A stored result is added to zero, which gives the bits of
+ * tiles. */
 DVI__EXPR_INLINE void block_put(const int points, int sets, double sign, const double *row,
                                 double *to)
 {

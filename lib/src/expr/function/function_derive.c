@@ -1,10 +1,10 @@
-/* Derivatives of kernels, and where they are added. */
+/* Derivatives of kernels, and the targets to which they are added. */
 #include <limits.h>
 
 #include "expr/function/function_parts.h"
 #include "text/heap.h"
 
-static int is_zero(const dvi__graph *graph, dvi__node n)
+static int root_is_zero(const dvi__graph *graph, dvi__node n)
 {
   double value = 1.0;
   return dvi__is_constant(graph, n, &value) && value == 0.0;
@@ -17,7 +17,7 @@ typedef struct roots {
   dvi__destination *target;
 } roots;
 
-/* Take room for so many roots; the nodes are to be freed. */
+/* Take room for so many roots. The caller frees the nodes. */
 static dvi_status roots_allocate(dvi__function *function, size_t most, roots *own)
 {
   own->count = 0;
@@ -32,10 +32,11 @@ static void roots_add(roots *own, dvi__node node, const dvi__destination *target
   own->node[own->count++] = node;
 }
 
-/* Most roots of a part: the second derivatives of a large expression do not all fit into one. */
+/* Limit the roots of a part. The second derivatives of a large expression do not all fit into
+ * one. */
 enum { SLICE = 1024 };
 
-/* Find what kernel k gives to a sum. */
+/* Find the roots that kernel k adds to a sum. */
 typedef dvi_status roots_finder(dvi__function *function, int k, const dvi__function_sum *sum,
                                 roots *own);
 
@@ -54,7 +55,7 @@ static dvi_status sum_fill(dvi__function *function, roots_finder *find, dvi__fun
   return status == DVI_OK ? dvi__sum_finish(sum) : status;
 }
 
-/* --- The value. --- */
+/* ---- the value ---- */
 
 static dvi_status value_roots(dvi__function *function, int k, const dvi__function_sum *sum,
                               roots *own)
@@ -62,14 +63,14 @@ static dvi_status value_roots(dvi__function *function, int k, const dvi__functio
   const dvi__kernel *kernel = &function->kernel[k];
   (void)sum;
   const dvi_status status = roots_allocate(function, 1, own);
-  if (status == DVI_OK && !is_zero(kernel->graph, kernel->root))
+  if (status == DVI_OK && !root_is_zero(kernel->graph, kernel->root))
     roots_add(own, kernel->root, &(dvi__destination){0});
   return status;
 }
 
-/* --- The gradient. --- */
+/* ---- the gradient ---- */
 
-/* The gradient of kernel k as nodes. */
+/* Derive the gradient of kernel k as nodes. */
 static dvi_status derive_first(dvi__function *function, int k)
 {
   const dvi__kernel *kernel = &function->kernel[k];
@@ -89,20 +90,23 @@ static dvi_status gradient_roots(dvi__function *function, int k, const dvi__func
   const dvi__kernel *kernel = &function->kernel[k];
   const dvi__derivatives *known = &function->derivatives[k];
   dvi_status status = derive_first(function, k);
-  if (status == DVI_OK) status = roots_allocate(function, (size_t)kernel->input_count, own);
-  for (int i = 0; i < kernel->input_count && status == DVI_OK; i++) {
+  if (status != DVI_OK) return status;
+  status = roots_allocate(function, (size_t)kernel->input_count, own);
+  if (status != DVI_OK) return status;
+  for (int i = 0; i < kernel->input_count; i++) {
     const dvi__kernel_input *input = &kernel->input[i];
-    if (input->is_data || !sum->wanted[input->block] || is_zero(kernel->graph, known->gradient[i]))
+    if (input->is_data || !sum->wanted[input->block] ||
+        root_is_zero(kernel->graph, known->gradient[i]))
       continue;
     roots_add(own, known->gradient[i],
               &(dvi__destination){.array = input->block, .entry = {.minor = known->place[i]}});
   }
-  return status;
+  return DVI_OK;
 }
 
-/* --- Second derivatives. --- */
+/* ---- second derivatives ---- */
 
-/* Whether the second derivative by inputs i and j of a kernel belongs to a pair of blocks. */
+/* Return 1 if the second derivative by inputs i and j of a kernel belongs to a pair of blocks. */
 static int pair_has_inputs(dvi__block_pair pair, const dvi__kernel *kernel, const int *input)
 {
   const dvi__kernel_input *first = &kernel->input[input[0]], *second = &kernel->input[input[1]];
@@ -119,7 +123,7 @@ static int count_wanted(const dvi__function *function, const dvi__kernel *kernel
   return count;
 }
 
-/* Derive in one column of the local pairs, first to last - 1, what is wanted and not there. */
+/* Derive what is wanted and missing in one column of the local pairs, first to last - 1. */
 static dvi_status derive_column(const dvi__function *function, int k, const char *wanted, int first,
                                 int last)
 {
@@ -150,7 +154,8 @@ dvi_status dvi__derive_pairs(dvi__function *function, int k, const char *wanted)
 {
   dvi__derivatives *own = &function->derivatives[k];
   dvi_status status = derive_first(function, k);
-  if (status == DVI_OK) status = dvi__find_pairs(function, k);
+  if (status != DVI_OK) return status;
+  status = dvi__find_pairs(function, k);
   if (status != DVI_OK) return status;
   if (own->second == NULL) {
     own->second = dvi__arena_take(&function->arena, (size_t)own->pair_count, sizeof *own->second);
@@ -165,7 +170,7 @@ dvi_status dvi__derive_pairs(dvi__function *function, int k, const char *wanted)
   return status;
 }
 
-/* For every element the entry of (row, column) in a pattern. */
+/* Find for every element the entry of (row, column) in a pattern. */
 static dvi_status map_entries(dvi__function *function, const dvi_pattern *pattern, int elements,
                               const dvi__element_places *row, const dvi__element_places *column,
                               dvi__element_places *entries)
@@ -179,7 +184,7 @@ static dvi_status map_entries(dvi__function *function, const dvi_pattern *patter
   return entries->stride_of != NULL ? DVI_OK : DVI_NO_MEMORY;
 }
 
-/* Find where a pair's derivative by two inputs of kernel k is added: the row is that of the input
+/* Find the target of a pair's derivative by two inputs of kernel k. The row is that of the input
  * which is of the pair's first block. */
 static dvi_status find_target(dvi__function *function, int k, int pair, const int *input,
                               dvi__destination *target)
@@ -213,14 +218,15 @@ static dvi_status second_roots(dvi__function *function, int k, const dvi__functi
   const dvi__derivatives *known = &function->derivatives[k];
   dvi_status status = dvi__derive_pairs(function, k, sum->wanted);
   size_t most = 0;
-  for (int e = 0; e < known->pair_count && status == DVI_OK; e++)
+  if (status != DVI_OK) return status;
+  for (int e = 0; e < known->pair_count; e++)
     most += (size_t)count_wanted(function, kernel, known->pair[e], sum->wanted);
-  if (status == DVI_OK) status = roots_allocate(function, most, own);
+  status = roots_allocate(function, most, own);
   for (int e = 0; e < known->pair_count && status == DVI_OK; e++)
     for (int p = 0; p < sum->array_count && status == DVI_OK; p++) {
       dvi__destination target;
       if (!sum->wanted[p] || !pair_has_inputs(function->blocks.pair[p], kernel, known->pair[e]) ||
-          is_zero(kernel->graph, known->second[e]))
+          root_is_zero(kernel->graph, known->second[e]))
         continue;
       status = find_target(function, k, p, known->pair[e], &target);
       roots_add(own, known->second[e], &target);
@@ -228,9 +234,9 @@ static dvi_status second_roots(dvi__function *function, int k, const dvi__functi
   return status;
 }
 
-/* --- All three. --- */
+/* ---- all three ---- */
 
-/* Operations a point. */
+/* Return the operations of a sum at a point. */
 static int operations_of(const dvi__function_sum *sum)
 {
   long long all = 0;
@@ -245,7 +251,7 @@ static void raise_to(int *most, int value)
   if (value > *most) *most = value;
 }
 
-/* Find how many numbers of a point each array has that is wanted. */
+/* Find the size of each wanted array at one point. */
 static dvi_status find_sizes(dvi__function *function, dvi__derived derived, dvi__function_sum *sum)
 {
   dvi_status status = DVI_OK;
@@ -274,14 +280,15 @@ dvi_status dvi__derive(dvi__function *function, dvi__derived derived, dvi__funct
   int *const operations[DVI__DERIVED] = {
       &counters->value_operations, &counters->gradient_operations, &counters->second_operations};
   dvi_status status = find_sizes(function, derived, sum);
-  if (status == DVI_OK) status = sum_fill(function, find[derived], sum);
+  if (status != DVI_OK) return status;
+  status = sum_fill(function, find[derived], sum);
   if (status != DVI_OK) return status;
   raise_to(operations[derived], operations_of(sum));
   if (derived == DVI__SECOND) raise_to(&counters->second_entries, count_entries(sum));
   return DVI_OK;
 }
 
-/* Whether all second derivatives of kernel k in a pair, which are derived, are constants. */
+/* Return 1 if all second derivatives of kernel k in a pair are constants. They must be derived. */
 static int are_constants(const dvi__function *function, int k, int pair)
 {
   const dvi__kernel *kernel = &function->kernel[k];

@@ -1,4 +1,4 @@
-/* Fault location: which part of an expression is not finite, or has no series. */
+/* Fault location. It finds the part of an expression that is not finite or has no series. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -7,15 +7,15 @@
 #include "expr/graph_make.h"
 #include "text/heap.h"
 
-/* What a node lacks: a value, a derivative, or, where it has both, a series. */
+/* The first thing that a node lacks among a value, a derivative and a series. */
 typedef enum lack { VALUE, DERIVATIVE, SERIES } lack;
 
 /* A node of a kernel at one of its elements. */
 typedef struct location {
   const dvi__kernel *kernel;
-  dvi__node node; /* -1: none */
+  dvi__node node; /* -1 if there is none */
   int element;
-  double *input; /* [input_count], to be freed */
+  double *input; /* [input_count], freed by the caller */
   lack of;
 } location;
 
@@ -28,7 +28,7 @@ static void read_inputs(const dvi__kernel *kernel, const dvi__element_places *pl
                    : x[kernel->input[i].block][(ptrdiff_t)dvi__place_at(&place[i], e) * count + k];
 }
 
-/* The first node that is not finite below roots of which one is not; -1: all are. */
+/* Return the first node below the roots that is not finite, or -1 if all roots are finite. */
 static dvi__node first_below(const dvi__kernel *kernel, const double *input, int root_count,
                              const dvi__node *root)
 {
@@ -45,8 +45,8 @@ static dvi__node first_below(const dvi__kernel *kernel, const double *input, int
   return finite ? -1 : node;
 }
 
-/* The derivatives of kernel k that are known, by variables; their number. Freed by the caller;
- * NULL: no memory. */
+/* List the known derivatives of kernel k by variables and set their number. The caller frees the
+ * list. NULL if there is no memory. */
 static dvi__node *known_derivatives(const dvi__function *function, int k, int *count)
 {
   const dvi__kernel *kernel = &function->kernel[k];
@@ -62,7 +62,7 @@ static dvi__node *known_derivatives(const dvi__function *function, int k, int *c
   return root;
 }
 
-/* Whether an operation that has a value has a series, too. */
+/* Return 1 if an operation that has a value has a series, too. */
 static int has_series(const dvi__graph_node *node, double a, double b)
 {
   const int is_zero = !(a > 0.0) && !(a < 0.0), whole = node->value - floor(node->value) < 0.25;
@@ -93,8 +93,7 @@ void dvi__mark_moving(const dvi__kernel *kernel, int count, char *moves)
   }
 }
 
-/* The first operation that the root is made of at this point, and that moves without a series; -1:
- * all have one. */
+/* Return the first operation below the root at this point that varies without a series, or -1. */
 static dvi__node first_without_series(const dvi__kernel *kernel, const double *input)
 {
   const dvi__graph *graph = kernel->graph;
@@ -123,7 +122,7 @@ static dvi__node first_without_series(const dvi__kernel *kernel, const double *i
   return found;
 }
 
-/* Look at kernel k, element by element. */
+/* Search kernel k, element by element. */
 static void search_kernel(const dvi__function *function, int k, int count, const double *const *x,
                           int point, location *found)
 {
@@ -147,7 +146,7 @@ static void search_kernel(const dvi__function *function, int k, int count, const
     dvi__heap_free(input);
 }
 
-/* --- The words. --- */
+/* ---- words ---- */
 
 void dvi__copy_part(const dvi__source *source, dvi__span span, char *text)
 {
@@ -167,14 +166,15 @@ void dvi__copy_part(const dvi__source *source, dvi__span span, char *text)
   text[length] = '\0';
 }
 
-/* The operand that a sentence shows: what is divided by, else the first; -1: none. */
+/* Return the operand that a sentence shows, the divisor of a quotient or else the first one. -1 if
+ * there is none. */
 static dvi__node operand_of(const dvi__graph_node *node)
 {
   if (node->op == DVI__OP_CONSTANT || node->op == DVI__OP_INPUT) return -1;
   return node->op == DVI__OP_DIVIDE ? node->b : node->a;
 }
 
-/* The variables that the node depends on, but for its operand, which is shown if it is one. */
+/* List the variables that the node depends on. The operand is shown already and left out. */
 static void list_variables(const location *found, dvi__node operand, dvi__fault *fault)
 {
   const dvi__kernel *kernel = found->kernel;

@@ -1,15 +1,15 @@
-/* What a sum stores and what it adds to: the first thing added to an entry is stored there, if it
- * is alone in its kernel, and arrays that are stored in full need not be zero before. */
+/* Stores and additions of a sum. The first thing added to an entry is stored there, if it is alone
+ * in its kernel. Arrays that are stored in full need not be zero before. */
 #include "expr/function/function_parts.h"
 #include "text/heap.h"
 
 /* An array of a result. */
 typedef struct array {
-  int number, left;       /* left: entries that nothing is added to yet */
-  unsigned char *touched; /* [size] 1: something is added to the entry already */
+  int number, left;       /* `left` counts the entries that nothing is added to yet */
+  unsigned char *touched; /* [size] 1 if something is added to the entry already */
 } array;
 
-/* The target stores if nothing is there yet. */
+/* Let the target store if nothing is there yet. */
 static void array_touch(array *own, dvi__destination *target)
 {
   const ptrdiff_t entry = target->single, mirror = target->mirrored ? target->single_mirror : entry;
@@ -20,7 +20,7 @@ static void array_touch(array *own, dvi__destination *target)
   own->touched[mirror] = 1;
 }
 
-/* Whether only kernels of one element add to an array. */
+/* Return 1 if only kernels of one element add to an array. */
 static int has_singles_alone(const dvi__function_sum *sum, int number)
 {
   for (int k = 0; k < sum->part_count; k++) {
@@ -55,7 +55,8 @@ dvi_status dvi__sum_finish(dvi__function_sum *sum)
     if (!sum->wanted[a]) continue;
     sum->clear[a] = 1;
     if (!has_singles_alone(sum, a)) continue;
-    array own = {a, sum->size[a], dvi__heap_take((size_t)sum->size[a], 1)};
+    array own = {
+        .number = a, .left = sum->size[a], .touched = dvi__heap_take((size_t)sum->size[a], 1)};
     if (own.touched == NULL) return DVI_NO_MEMORY;
     touch_all(sum, &own);
     if (own.left == 0) sum->clear[a] = 0;

@@ -1,12 +1,13 @@
-/* Parts of sums: the program of a kernel's roots, what it reads, and columns of what depends on no
- * variable, computed once for every element. */
+/* Parts of sums. A part has the program of a kernel's roots, the places of the variables that it
+ * reads, and columns. A column holds a node that depends on no variable, computed once for every
+ * element. */
 #include <limits.h>
 #include <string.h>
 
 #include "expr/function/function_parts.h"
 #include "text/heap.h"
 
-/* What the nodes of a kernel are to the roots of a part. */
+/* Marks of a kernel's nodes for the roots of a part. */
 enum { NEEDED = 1, VARIES = 2 };
 
 typedef struct maker {
@@ -14,31 +15,31 @@ typedef struct maker {
   const dvi__kernel *kernel;
   dvi__derivatives *derivatives;
   dvi__part *part;
-  int count;           /* nodes up to the last root */
-  unsigned char *mark; /* [count] */
-  dvi__node *given;    /* [count] what the program reads: variables, then columns */
+  int count;             /* nodes up to the last root */
+  unsigned char *mark;   /* [count] */
+  dvi__node *input_node; /* [count] nodes that the program reads, variables before columns */
 } maker;
 
-static const dvi__graph_node *node_of(const maker *m, dvi__node n)
+static const dvi__graph_node *maker_node(const maker *m, dvi__node n)
 {
   return &m->kernel->graph->node[n];
 }
 
-static int operands(dvi__op op)
+static int operand_count_of(dvi__op op)
 {
   return op <= DVI__OP_INPUT ? 0 : op < DVI__OP_ADD ? 1 : 2;
 }
 
-static int is_constant(const maker *m, dvi__node n)
+static int maker_is_constant(const maker *m, dvi__node n)
 {
-  return node_of(m, n)->op == DVI__OP_CONSTANT;
+  return maker_node(m, n)->op == DVI__OP_CONSTANT;
 }
 
 static void mark_varying(maker *m)
 {
   for (dvi__node n = 0; n < m->count; n++) {
-    const dvi__graph_node *node = node_of(m, n);
-    const int count = operands(node->op);
+    const dvi__graph_node *node = maker_node(m, n);
+    const int count = operand_count_of(node->op);
     int varies = node->op == DVI__OP_INPUT && !m->kernel->input[node->a].is_data;
     varies |= count > 0 && (m->mark[node->a] & VARIES) != 0;
     varies |= count > 1 && (m->mark[node->b] & VARIES) != 0;
@@ -46,58 +47,59 @@ static void mark_varying(maker *m)
   }
 }
 
-/* What takes one operation on a column is done each time: reading another column would take
- * longer. */
+/* Return 1 if a node takes one operation on a column. It is computed each time, since reading
+ * another column would take longer. */
 static int is_cheap(const maker *m, const dvi__graph_node *node)
 {
   if (node->op == DVI__OP_NEGATE || node->op == DVI__OP_SQUARE) return 1;
   if (node->op != DVI__OP_ADD && node->op != DVI__OP_SUBTRACT && node->op != DVI__OP_MULTIPLY)
     return 0;
-  return is_constant(m, node->a) || is_constant(m, node->b);
+  return maker_is_constant(m, node->a) || maker_is_constant(m, node->b);
 }
 
-/* A node that is read from a column. */
+/* Return 1 if a node is read from a column. */
 static int is_column(const maker *m, dvi__node n)
 {
-  const dvi__graph_node *node = node_of(m, n);
+  const dvi__graph_node *node = maker_node(m, n);
   return (m->mark[n] & VARIES) == 0 && node->op != DVI__OP_CONSTANT && !is_cheap(m, node);
 }
 
-/* Collect what the program reads: first variables, then columns. */
+/* Collect the nodes that the program reads, first variables, then columns. */
 static void maker_collect(maker *m, int root_count, const dvi__node *root)
 {
   int columns = 0, at = m->count;
   for (int k = 0; k < root_count; k++) m->mark[root[k]] |= NEEDED;
   for (dvi__node n = m->count - 1; n >= 0; n--) {
     if ((m->mark[n] & NEEDED) == 0) continue;
-    const dvi__graph_node *node = node_of(m, n);
-    const int count = operands(node->op);
+    const dvi__graph_node *node = maker_node(m, n);
+    const int count = operand_count_of(node->op);
     if (is_column(m, n)) {
-      m->given[--at] = n;
+      m->input_node[--at] = n;
       columns++;
     } else if (node->op == DVI__OP_INPUT) {
-      m->given[m->part->variable_count++] = n;
+      m->input_node[m->part->variable_count++] = n;
     } else {
       if (count > 0) m->mark[node->a] |= NEEDED;
       if (count > 1) m->mark[node->b] |= NEEDED;
     }
   }
-  memmove(m->given + m->part->variable_count, m->given + at, (size_t)columns * sizeof *m->given);
+  memmove(m->input_node + m->part->variable_count, m->input_node + at,
+          (size_t)columns * sizeof *m->input_node);
   m->part->column_count = columns;
 }
 
-/* --- Columns. --- */
+/* ---- columns ---- */
 
-static const double *column_of(const maker *m, dvi__node n)
+static const double *known_column(const maker *m, dvi__node n)
 {
-  const dvi__graph_node *node = node_of(m, n);
+  const dvi__graph_node *node = maker_node(m, n);
   if (node->op == DVI__OP_INPUT) return m->kernel->input[node->a].data;
   for (const dvi__column *column = m->derivatives->column; column != NULL; column = column->before)
     if (column->node == n) return column->value;
   return NULL;
 }
 
-/* Run a program of data inputs (nodes `data`) for all elements, a few at a time; its outputs go to
+/* Run a program of data inputs (nodes `data`) for all elements, a few at a time. Its outputs go to
  * columns. */
 static dvi_status run_columns(const maker *m, const dvi__program *program, const dvi__node *data,
                               int count, double *const *column)
@@ -118,7 +120,7 @@ static dvi_status run_columns(const maker *m, const dvi__program *program, const
     const int left = m->kernel->elements - first;
     for (int i = 0; i < inputs; i++)
       for (int k = 0; k < width; k++)
-        rows[i * width + k] = m->kernel->input[node_of(m, data[i])->a]
+        rows[i * width + k] = m->kernel->input[maker_node(m, data[i])->a]
                                   .data[k < left ? first + k : m->kernel->elements - 1];
     dvi__program_run(program, width, input, registers);
     for (int c = 0; c < count; c++)
@@ -130,7 +132,7 @@ static dvi_status run_columns(const maker *m, const dvi__program *program, const
   return DVI_OK;
 }
 
-/* Keep the columns of nodes. */
+/* Register columns for nodes. */
 static dvi_status keep_columns(maker *m, int count, const dvi__node *node, double **value)
 {
   for (int c = 0; c < count; c++) {
@@ -143,12 +145,12 @@ static dvi_status keep_columns(maker *m, int count, const dvi__node *node, doubl
   return DVI_OK;
 }
 
-/* The nodes of all data inputs up to the last root; returns how many. */
+/* List the nodes of all data inputs up to the last root. Returns how many there are. */
 static int data_nodes(const maker *m, dvi__node *data)
 {
   int count = 0;
   for (dvi__node n = 0; n < m->count; n++)
-    if (node_of(m, n)->op == DVI__OP_INPUT && m->kernel->input[node_of(m, n)->a].is_data)
+    if (maker_node(m, n)->op == DVI__OP_INPUT && m->kernel->input[maker_node(m, n)->a].is_data)
       data[count++] = n;
   return count;
 }
@@ -171,22 +173,22 @@ static dvi_status compute_columns(maker *m, int count, const dvi__node *node)
   return status;
 }
 
-/* Compute the columns that are not there yet. */
+/* Compute the columns that are missing. */
 static dvi_status make_columns(maker *m)
 {
   const int count = m->part->column_count;
-  const dvi__node *given = m->given + m->part->variable_count;
+  const dvi__node *input_node = m->input_node + m->part->variable_count;
   dvi__node *missing = dvi__heap_take((size_t)count + 1, sizeof *missing);
   if (missing == NULL) return DVI_NO_MEMORY;
   int absent = 0;
   for (int c = 0; c < count; c++)
-    if (column_of(m, given[c]) == NULL) missing[absent++] = given[c];
+    if (known_column(m, input_node[c]) == NULL) missing[absent++] = input_node[c];
   const dvi_status status = absent > 0 ? compute_columns(m, absent, missing) : DVI_OK;
   dvi__heap_free(missing);
   return status;
 }
 
-/* --- Parts. --- */
+/* ---- parts ---- */
 
 static dvi_status point_at_rows(maker *m)
 {
@@ -199,12 +201,12 @@ static dvi_status point_at_rows(maker *m)
                                  sizeof *part->column);
   if (part->block == NULL || part->variable == NULL || part->column == NULL) return DVI_NO_MEMORY;
   for (int i = 0; i < part->variable_count; i++) {
-    const int input = node_of(m, m->given[i])->a;
+    const int input = maker_node(m, m->input_node[i])->a;
     part->block[i] = m->kernel->input[input].block;
     part->variable[i] = m->derivatives->place[input];
   }
   for (int c = 0; c < part->column_count; c++)
-    part->column[c] = column_of(m, m->given[part->variable_count + c]);
+    part->column[c] = known_column(m, m->input_node[part->variable_count + c]);
   return DVI_OK;
 }
 
@@ -213,10 +215,11 @@ static dvi_status maker_compile(maker *m, int root_count, const dvi__node *root)
   mark_varying(m);
   maker_collect(m, root_count, root);
   dvi_status status = make_columns(m);
-  if (status == DVI_OK) status = point_at_rows(m);
+  if (status != DVI_OK) return status;
+  status = point_at_rows(m);
   if (status != DVI_OK) return status;
   status = dvi__program_make(m->kernel->graph, m->part->variable_count + m->part->column_count,
-                             m->given, root_count, root, &m->part->program);
+                             m->input_node, root_count, root, &m->part->program);
   return status == DVI_OK ? dvi__part_plan(m->part) : status;
 }
 
@@ -240,15 +243,16 @@ dvi__function_sum *dvi__sum_new(dvi__function *function, int array_count)
 /* Drop the sign of a root. */
 static dvi__node without_sign(const maker *m, dvi__node root, int *negative)
 {
-  *negative = node_of(m, root)->op == DVI__OP_NEGATE;
-  return *negative ? node_of(m, root)->a : root;
+  *negative = maker_node(m, root)->op == DVI__OP_NEGATE;
+  return *negative ? maker_node(m, root)->a : root;
 }
 
-/* Point targets at outputs; equal roots share one. Leaves the different ones, signs left out, in
- * `root`. */
+/* Point targets at outputs. Equal roots share one output. Leaves the different roots, without their
+ * signs, in `root`. */
 static dvi_status find_outputs(const maker *m, dvi__node *root, int *output_count)
 {
-  int *output = dvi__heap_take((size_t)m->count + 1, sizeof *output); /* of a node, plus 1 */
+  /* output of each node, plus 1 */
+  int *output = dvi__heap_take((size_t)m->count + 1, sizeof *output);
   *output_count = 0;
   if (output == NULL) return DVI_NO_MEMORY;
   for (int k = 0; k < m->part->target_count; k++) {
@@ -264,7 +268,7 @@ static dvi_status find_outputs(const maker *m, dvi__node *root, int *output_coun
   return DVI_OK;
 }
 
-/* Whether the target after this one is always added beside it. */
+/* Return 1 if the next target is always added beside this one. */
 static int is_beside(const dvi__destination *target)
 {
   const dvi__element_places *own = &target[0].entry.minor, *next = &target[1].entry.minor;
@@ -285,7 +289,7 @@ static void find_groups(const dvi__part *part)
   }
 }
 
-/* A place for another part; NULL: no memory. */
+/* Take room for another part. NULL if there is no memory. */
 static dvi__part *next_part(dvi__function *function, dvi__function_sum *sum)
 {
   dvi__part *part = dvi__arena_grow(&function->arena, sum->part, (size_t)sum->part_count,
@@ -310,8 +314,8 @@ dvi_status dvi__sum_extend(dvi__function *function, dvi__function_sum *sum, int 
   for (int i = 0; i < root_count; i++)
     if (root[i] >= m.count) m.count = root[i] + 1;
   m.mark = dvi__heap_take((size_t)m.count + 1, sizeof *m.mark);
-  m.given = dvi__heap_take((size_t)m.count + 1, sizeof *m.given);
-  dvi_status status = m.mark != NULL && m.given != NULL ? DVI_OK : DVI_NO_MEMORY;
+  m.input_node = dvi__heap_take((size_t)m.count + 1, sizeof *m.input_node);
+  dvi_status status = m.mark != NULL && m.input_node != NULL ? DVI_OK : DVI_NO_MEMORY;
   int output_count = 0;
   if (status == DVI_OK) status = find_outputs(&m, root, &output_count);
   if (status == DVI_OK) {
@@ -319,6 +323,6 @@ dvi_status dvi__sum_extend(dvi__function *function, dvi__function_sum *sum, int 
     status = maker_compile(&m, output_count, root);
   }
   dvi__heap_free(m.mark);
-  dvi__heap_free(m.given);
+  dvi__heap_free(m.input_node);
   return status;
 }

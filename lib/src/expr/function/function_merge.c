@@ -1,15 +1,15 @@
-/* Short kernels written out: those of one element, and those of a few elements that have few nodes,
- * become one kernel of one element. To run a kernel takes as long as some ten of its operations;
- * and what these have in common is computed once, what they add to the same entry is added before
- * it is stored. */
+/* Short kernels written out. Kernels of one element, and those of a few elements that have few
+ * nodes, become one kernel of one element. Running a kernel takes as long as some ten of its
+ * operations. What these kernels have in common is computed once, and what they add to the same
+ * entry is added before it is stored. */
 #include "expr/function/function_parts.h"
 #include "expr/graph_make.h"
 #include "text/heap.h"
 
 enum {
-  FEW = 4,          /* elements that are written out */
-  NODES_MAX = 64,   /* of these elements */
-  MERGED_MAX = 1024 /* nodes that become one kernel */
+  FEW = 4,          /* most elements that are written out */
+  NODES_MAX = 64,   /* most nodes of these elements */
+  MERGED_MAX = 1024 /* most nodes that become one kernel */
 };
 
 typedef struct merger {
@@ -20,13 +20,13 @@ typedef struct merger {
   dvi__node root;
 } merger;
 
-static int is_short(const dvi__kernel *kernel)
+static int kernel_is_short(const dvi__kernel *kernel)
 {
   return kernel->elements >= 1 && kernel->elements <= FEW &&
          kernel->root < NODES_MAX / kernel->elements;
 }
 
-/* The input that reads this variable, found or made. */
+/* Find or make the input that reads this variable. */
 static dvi__node merger_variable(merger *m, int block, int place)
 {
   for (int i = 0; i < m->input_count; i++)
@@ -65,15 +65,15 @@ static void add_element(merger *m, const dvi__kernel *kernel, int e)
   if (m->graph->failed == DVI_OK) m->root = dvi__add(m->graph, m->root, copied[kernel->root]);
 }
 
-/* Write out short kernels until there is enough; merged[k]: which. Returns how many elements these
- * have. */
+/* Write out short kernels until there is enough. merged[k] marks them. Returns how many elements
+ * they have. */
 static int merger_write_out(merger *m, int kernel_count, const dvi__kernel *kernels, char *merged)
 {
   int elements = 0;
   m->root = dvi__constant(m->graph, 0.0);
   for (int k = 0; k < kernel_count && m->graph->failed == DVI_OK && m->graph->count < MERGED_MAX;
        k++) {
-    if (!is_short(&kernels[k])) continue;
+    if (!kernel_is_short(&kernels[k])) continue;
     for (int e = 0; e < kernels[k].elements; e++) add_element(m, &kernels[k], e);
     elements += kernels[k].elements;
     merged[k] = 1;
@@ -81,8 +81,7 @@ static int merger_write_out(merger *m, int kernel_count, const dvi__kernel *kern
   return elements;
 }
 
-/* Put the merged kernel in the place of those that it is made of, whose graphs are not needed any
- * longer. */
+/* Put the merged kernel in the place of its sources, and free their graphs. */
 static void merger_replace(const merger *m, const char *merged, int *kernel_count,
                            dvi__kernel *kernels)
 {
@@ -92,7 +91,11 @@ static void merger_replace(const merger *m, const char *merged, int *kernel_coun
       dvi__graph_free(kernels[k].graph);
     else
       kernels[left++] = kernels[k];
-  kernels[left++] = (dvi__kernel){m->graph, m->root, 1, m->input_count, m->input};
+  kernels[left++] = (dvi__kernel){.graph = m->graph,
+                                  .root = m->root,
+                                  .elements = 1,
+                                  .input_count = m->input_count,
+                                  .input = m->input};
   *kernel_count = left;
 }
 

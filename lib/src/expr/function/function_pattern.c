@@ -1,5 +1,5 @@
-/* Which second derivatives there are: of a kernel, and of all its elements together, as a matrix by
- * compressed columns. */
+/* Patterns of second derivatives. They are found for a kernel, and for all its elements together as
+ * a matrix by compressed columns. */
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,9 +24,9 @@ dvi_status dvi__find_pairs(dvi__function *function, int k)
   return status;
 }
 
-/* --- All entries of a pair of blocks, once for every element that adds to them. --- */
+/* ---- all entries of a pair of blocks, once for every element that adds to them ---- */
 
-/* Returns whether more are wanted. */
+/* Visit an entry. Returns 1 if more are wanted. */
 typedef bool visitor(void *user, int row, int column);
 
 static inline bool visit_elements(int elements, const dvi__element_places *row,
@@ -58,11 +58,11 @@ static inline bool visit_all(const dvi__function *function, dvi__block_pair pair
   return true;
 }
 
-/* --- By bits, for matrices that are not much larger than what is added to them. --- */
+/* ---- by bits, for matrices that are not much larger than what is added to them ---- */
 
 typedef struct bits {
   size_t rows;
-  size_t count, enough; /* bits that are set; a pattern with more than enough of them is full */
+  size_t count, enough; /* bits that are set, and the number above which a pattern is full */
   unsigned char *bit;   /* [rows * columns / 8] column by column */
 } bits;
 
@@ -86,14 +86,14 @@ static void read_bits(const bits *all, int columns, int *start, int *row)
   }
 }
 
-/* Room for a pattern, in the arena; or none if it is nearly full. */
-static dvi_status take_pattern(dvi__function *function, size_t cells, size_t entries, int columns,
-                               int **start, int **row, dvi__pair_pattern *known)
+/* Take room in the arena for a pattern, or none if it is nearly full. */
+static dvi_status take_pattern(dvi__function *function, size_t full_size, size_t entries,
+                               int columns, int **start, int **row, dvi__pair_pattern *known)
 {
   *start = NULL;
   *row = NULL;
-  known->full = entries > cells - entries;
-  if (known->full) entries = cells;
+  known->full = entries > full_size - entries;
+  if (known->full) entries = full_size;
   if (entries > INT_MAX) return DVI_BAD_SIZE;
   known->entries = (int)entries;
   if (known->full) return DVI_OK;
@@ -103,8 +103,8 @@ static dvi_status take_pattern(dvi__function *function, size_t cells, size_t ent
   return *start != NULL && *row != NULL ? DVI_OK : DVI_NO_MEMORY;
 }
 
-/* How many entries a full matrix of the pair has. */
-static size_t cells_of(const dvi__function *function, dvi__block_pair pair)
+/* Return how many entries a full matrix of the pair has. */
+static size_t full_size_of(const dvi__function *function, dvi__block_pair pair)
 {
   return (size_t)function->blocks.width[pair.rows] * (size_t)function->blocks.width[pair.columns];
 }
@@ -112,19 +112,21 @@ static size_t cells_of(const dvi__function *function, dvi__block_pair pair)
 static dvi_status pattern_by_bits(dvi__function *function, dvi__block_pair pair,
                                   dvi__pair_pattern *known)
 {
-  const size_t rows = (size_t)function->blocks.width[pair.rows], cells = cells_of(function, pair);
+  const size_t rows = (size_t)function->blocks.width[pair.rows],
+               full_size = full_size_of(function, pair);
   const int columns = function->blocks.width[pair.columns];
-  bits all = {rows, 0, cells / 2, dvi__heap_take(cells / 8 + 1, 1)};
+  bits all = {.rows = rows, .enough = full_size / 2, .bit = dvi__heap_take(full_size / 8 + 1, 1)};
   int *start, *row;
   if (all.bit == NULL) return DVI_NO_MEMORY;
   (void)visit_all(function, pair, set_bit, &all);
-  const dvi_status status = take_pattern(function, cells, all.count, columns, &start, &row, known);
+  const dvi_status status = take_pattern(function, full_size, all.count, columns, &start, &row,
+                                         known);
   if (status == DVI_OK && start != NULL) read_bits(&all, columns, start, row);
   dvi__heap_free(all.bit);
   return status;
 }
 
-/* --- By lists, for large ones. --- */
+/* ---- by lists, for large matrices ---- */
 
 typedef struct lists {
   int *start; /* [columns + 2] */
@@ -146,19 +148,19 @@ static bool append_entry(void *user, int row, int column)
   return true;
 }
 
-static int by_number(const void *a, const void *b)
+static int compare_rows(const void *a, const void *b)
 {
   const int first = *(const int *)a, second = *(const int *)b;
   return (first > second) - (first < second);
 }
 
-/* Sort the rows of each column and drop what is there twice. Returns how many entries are left. */
+/* Sort the rows of each column and drop doubles. Returns how many entries are left. */
 static int sort_columns(const lists *all, int columns)
 {
   int entries = 0;
   for (int j = 0, first = 0; j < columns; j++) {
     const int last = all->start[j + 1];
-    qsort(all->row + first, (size_t)(last - first), sizeof *all->row, by_number);
+    qsort(all->row + first, (size_t)(last - first), sizeof *all->row, compare_rows);
     all->start[j] = entries;
     for (int e = first; e < last; e++)
       if (e == first || all->row[e] != all->row[e - 1]) all->row[entries++] = all->row[e];
@@ -172,8 +174,8 @@ static dvi_status pattern_by_lists(dvi__function *function, dvi__block_pair pair
                                    dvi__pair_pattern *known)
 {
   const int columns = function->blocks.width[pair.columns];
-  lists all = {dvi__heap_take((size_t)columns + 2, sizeof *all.start),
-               dvi__heap_take(visits + 1, sizeof *all.row)};
+  lists all = {.start = dvi__heap_take((size_t)columns + 2, sizeof *all.start),
+               .row = dvi__heap_take(visits + 1, sizeof *all.row)};
   dvi_status status = all.start != NULL && all.row != NULL ? DVI_OK : DVI_NO_MEMORY;
   int *start = NULL, *row = NULL;
   if (status == DVI_OK) {
@@ -181,7 +183,7 @@ static dvi_status pattern_by_lists(dvi__function *function, dvi__block_pair pair
     for (int j = 0; j < columns; j++) all.start[j + 2] += all.start[j + 1];
     (void)visit_all(function, pair, append_entry, &all);
     const int entries = sort_columns(&all, columns);
-    status = take_pattern(function, cells_of(function, pair), (size_t)entries, columns, &start,
+    status = take_pattern(function, full_size_of(function, pair), (size_t)entries, columns, &start,
                           &row, known);
   }
   if (status == DVI_OK && start != NULL) {
@@ -193,12 +195,12 @@ static dvi_status pattern_by_lists(dvi__function *function, dvi__block_pair pair
   return status;
 }
 
-/* --- Either. --- */
+/* ---- either ---- */
 
-/* More entries than this are refused while they are collected, doubles among them. */
+/* Limit the entries that are collected, doubles among them. */
 static const size_t VISITS_MAX = (size_t)1 << 28, BITS_MAX = (size_t)1 << 33;
 
-/* How often visit_all would visit. */
+/* Return how many entries visit_all would visit. */
 static size_t count_visits(const dvi__function *function, dvi__block_pair pair)
 {
   size_t visits = 0;
@@ -226,14 +228,15 @@ dvi_status dvi__find_pattern(dvi__function *function, int pair)
   for (int k = 0; k < function->kernel_count && status == DVI_OK; k++)
     status = dvi__find_pairs(function, k);
   if (status != DVI_OK) return status;
-  const size_t visits = count_visits(function, blocks), cells = cells_of(function, blocks);
-  if (cells <= 32 * visits && cells <= BITS_MAX)
+  const size_t visits = count_visits(function, blocks), full_size = full_size_of(function, blocks);
+  if (full_size <= 32 * visits && full_size <= BITS_MAX)
     status = pattern_by_bits(function, blocks, &found);
   else
     status = visits <= VISITS_MAX ? pattern_by_lists(function, blocks, visits, &found)
                                   : DVI_BAD_SIZE;
-  if (status == DVI_OK) *known = found;
-  return status;
+  if (status != DVI_OK) return status;
+  *known = found;
+  return DVI_OK;
 }
 
 int dvi__pattern_entry(const dvi_pattern *pattern, int row, int column)

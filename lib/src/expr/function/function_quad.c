@@ -28,8 +28,8 @@ static void kernel_values(const dvi__kernel *kernel, int e, quad *const *x, quad
   }
 }
 
-/* Hand the root's derivative by each node on to its operands, from the root down. What the root
- * does not depend on has none: nothing is evaluated for it, for it may have no value. */
+/* Hand the root's derivative by each node on to its operands, from the root down. Nodes that the
+ * root does not depend on are not evaluated, since they may have no value. */
 static void kernel_pull_back(const dvi__kernel *kernel, int e, const quad *value, quad sign,
                              quad *adjoint, quad *const *gradient)
 {

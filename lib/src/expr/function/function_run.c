@@ -1,4 +1,4 @@
-/* Evaluation: tiles of elements and points are gathered into rows, go through the kernel's program,
+/* Evaluation. Tiles of elements and points are gathered into rows, go through the kernel's program,
  * and are added up. */
 #include <string.h>
 
@@ -6,24 +6,24 @@
 #include "expr/compile/lanes.h"
 
 enum {
-  SMALL = DVI__BLOCK_ROWS * DVI__LANES, /* numbers that stay in the nearest cache */
-  MIDDLE = 32768,                       /* that stay in the next one */
+  SMALL = DVI__BLOCK_ROWS * DVI__LANES, /* numbers that fit into the nearest cache */
+  MIDDLE = 32768,                       /* numbers that fit into the next one */
   LARGE = DVI__ROWS_MAX * DVI__LANES
 };
 
-/* Elements first .. first + elements - 1 at points point .. point + points - 1 of count; so many
- * elements a unit has. */
+/* Elements first .. first + elements - 1 at points point .. point + points - 1 of count. A unit has
+ * `elements` elements at most. */
 typedef struct tile {
   int first, elements, point, points, count;
 } tile;
 
-/* Up to a block of points their number is a constant to what follows: loops of known length need no
+/* Make the number of points a constant, up to a block of them. Loops of known length need no
  * preparation, which would cost more than their work. */
 #define FEW_POINTS(X) X(1) X(2) X(3) X(4) X(5) X(6) X(7) X(8)
 
-/* --- Gather. --- */
+/* ---- gather ---- */
 
-/* More than a block of points end with a block that overlaps the one before. */
+/* Copy points. More than a block of points end with a block that overlaps the one before. */
 DVI__EXPR_INLINE void copy_points(const int points, const double *restrict from,
                                   double *restrict to)
 {
@@ -32,8 +32,8 @@ DVI__EXPR_INLINE void copy_points(const int points, const double *restrict from,
   memcpy(to + last, from + last, (size_t)size * sizeof *to);
 }
 
-/* Numbers of one point that follow each other by `step`. The compiler makes vectors of the steps
- * that it knows. */
+/* Copy numbers of one point that follow each other by `step`. The compiler makes vectors of the
+ * steps that it knows. */
 DVI__EXPR_INLINE void copy_strided(int elements, ptrdiff_t step, const double *restrict from,
                                    double *restrict to)
 {
@@ -52,7 +52,7 @@ DVI__EXPR_INLINE void gather_strided(int elements, ptrdiff_t step, const double 
   }
 }
 
-/* The numbers of one unit; x is at the tile's first point. */
+/* Gather the numbers of one unit. x is at the tile's first point. */
 DVI__EXPR_INLINE void gather_unit(const int points, dvi__track track, int elements, ptrdiff_t count,
                                   const double *restrict x, double *restrict row)
 {
@@ -85,8 +85,9 @@ DVI__EXPR_INLINE void gather_column(const int points, const double *restrict col
     for (int p = 0; p < points; p++) row[e * points + p] = column[e];
 }
 
-/* Where the tile's numbers of a variable stand in a row already, or NULL. */
-static const double *standing(const dvi__element_places *places, const tile *at, const double *x)
+/* Return the tile's numbers of a variable if they stand in a row already, or NULL. */
+static const double *find_standing_row(const dvi__element_places *places, const tile *at,
+                                       const double *x)
 {
   if (places->list != NULL && at->elements > DVI__UNIT) return NULL;
   const dvi__track track = dvi__track_of(places, at->first);
@@ -95,9 +96,9 @@ static const double *standing(const dvi__element_places *places, const tile *at,
   return x + (ptrdiff_t)track.start * at->count;
 }
 
-/* Point input[] at the rows that the program reads. What does not stand ready as whole blocks is
- * put below the registers, the last one first: the idle lanes of each are filled by one block too
- * many. */
+/* Point input[] at the rows that the program reads. Rows that do not stand ready as whole blocks
+ * are put below the registers, the last one first. One block too many fills the idle lanes of
+ * each. */
 DVI__EXPR_INLINE void gather_points(const int points, const dvi__part *part, const tile *at,
                                     const double *const *x, const double **input, double *registers)
 {
@@ -111,7 +112,7 @@ DVI__EXPR_INLINE void gather_points(const int points, const dvi__part *part, con
       if (input[i] == NULL) gather_column(points, part->column[c] + at->first, at->elements, row);
     } else {
       const double *from = x[part->block[i]] + at->point;
-      input[i] = whole ? standing(&part->variable[i], at, from) : NULL;
+      input[i] = whole ? find_standing_row(&part->variable[i], at, from) : NULL;
       if (input[i] == NULL) gather_variable(points, &part->variable[i], at, from, row);
     }
     if (input[i] != NULL) continue;
@@ -138,7 +139,7 @@ DVI__EXPR_VERSIONS(tile_gather,
                     const double **input, double *registers),
                    (part, at, x, input, registers))
 
-/* --- Scatter: `sign` is 1 or -1. --- */
+/* ---- scatter, with a `sign` of 1 or -1 ---- */
 
 DVI__EXPR_INLINE void add_points(const int points, double sign, const double *restrict row,
                                  double *restrict to)
@@ -151,7 +152,7 @@ DVI__EXPR_INLINE void add_points(const int points, double sign, const double *re
   memcpy(to + last, end, (size_t)size * sizeof *to);
 }
 
-/* Eight at a time: the ends of longer loops are foreseen more often. */
+/* Add eight at a time. The ends of longer loops are foreseen more often. */
 DVI__EXPR_INLINE void add_strided(int elements, double sign, ptrdiff_t step,
                                   const double *restrict row, double *restrict to)
 {
@@ -161,8 +162,8 @@ DVI__EXPR_INLINE void add_strided(int elements, double sign, ptrdiff_t step,
   for (; e < elements; e++, to += step) *to += sign * row[e];
 }
 
-/* An entry that follows itself in the list, as that of the first body of pairs does, waits in a
- * register. */
+/* Add by a list. An entry that follows itself in the list, as that of the first body of pairs does,
+ * waits in a register. */
 DVI__EXPR_INLINE void add_listed(int elements, double sign, const int *restrict list,
                                  ptrdiff_t count, const double *restrict row, double *to)
 {
@@ -198,7 +199,7 @@ DVI__EXPR_INLINE void add_unit(const int points, dvi__track track, int elements,
       add_points(points, sign, row + (ptrdiff_t)e * points, to + e * step);
 }
 
-/* The sum of all elements' numbers, by halves; `sum` [DVI__LANES_MAX] has room for half of them. */
+/* Sum the numbers of all elements by halves. `sum` [DVI__LANES_MAX] has room for half of them. */
 DVI__EXPR_INLINE void fold_row(int elements, int points, const double *restrict row, double *sum)
 {
   int left = (elements + 1) / 2, others = (elements - left) * points;
@@ -215,7 +216,7 @@ DVI__EXPR_INLINE void fold_row(int elements, int points, const double *restrict 
   }
 }
 
-/* A unit of points of two or three coordinates, which stand side by side; rows are `pitch`
+/* Add a unit of points of two or three coordinates, which stand side by side. Rows are `pitch`
  * apart. */
 DVI__EXPR_INLINE void add_coordinates(const int group, double sign, ptrdiff_t pitch,
                                       const double *row, double *restrict to)
@@ -234,8 +235,8 @@ static int place_in(const dvi__track *track, int e)
   return track->start + (track->list != NULL ? track->list[e] : track->stride * e);
 }
 
-/* The track of entries minor + scale * major; `list` [DVI__UNIT] is for those that have no
- * stride. */
+/* Make the track of entries minor + scale * major. Entries without a stride are listed in `list`
+ * [DVI__UNIT]. */
 DVI__EXPR_INLINE dvi__track entry_track(const dvi__entries *entries, int first, int elements,
                                         int *list)
 {
@@ -243,12 +244,12 @@ DVI__EXPR_INLINE dvi__track entry_track(const dvi__entries *entries, int first, 
   if (entries->scale == 0) return minor;
   const dvi__track major = dvi__track_of(&entries->major, first);
   if (minor.list == NULL && major.list == NULL)
-    return (dvi__track){NULL, minor.start + entries->scale * major.start,
-                        minor.stride + entries->scale * major.stride};
+    return (dvi__track){.start = minor.start + entries->scale * major.start,
+                        .stride = minor.stride + entries->scale * major.stride};
   int e = 0;
   do list[e] = place_in(&minor, e) + entries->scale * place_in(&major, e);
   while (++e < elements);
-  return (dvi__track){list, 0, 0};
+  return (dvi__track){.list = list};
 }
 
 /* Add a unit's row to its entries. */
@@ -270,8 +271,8 @@ DVI__EXPR_INLINE void scatter_unit(const int points, const dvi__entries *entries
   add_unit(points, track, elements, count, sign, row, result);
 }
 
-/* Add a full unit of a group of targets at one point, if they lie so. Returns how many targets that
- * were. */
+/* Add a full unit of a group of targets at one point, if they are adjacent. Returns how many
+ * targets that were. */
 DVI__EXPR_INLINE int scatter_group(const dvi__destination *target, int first, ptrdiff_t pitch,
                                    double sign, const double *row, double *result)
 {
@@ -325,10 +326,10 @@ DVI__EXPR_VERSIONS(tile_scatter,
                     double *const *result),
                    (part, at, outputs, result))
 
-/* --- Tiles. --- */
+/* ---- tiles ---- */
 
-/* The shape of tiles at so many points: as many points as fit beside a unit, then as many units as
- * fit. */
+/* Choose the shape of tiles for so many points. As many points as possible stand beside a unit,
+ * then as many units as possible. */
 static tile shape_of(const dvi__part *part, int count)
 {
   const int unit = part->unit;
@@ -376,8 +377,8 @@ static void run_tiles(const dvi__part *part, const tile *shape, const double *co
   }
 }
 
-/* Aligned to pages: the processor compares addresses within a page first, and times would depend on
- * where the stack happens to begin. */
+/* Run tiles in small memory, aligned to pages. The processor compares addresses within a page
+ * first, and times would depend on the start of the stack. */
 static void run_small(const dvi__part *part, const tile *shape, const double *const *x,
                       double *const *result)
 {
@@ -394,7 +395,7 @@ static void run_large(const dvi__part *part, const tile *shape, const double *co
   run_tiles(part, shape, x, result, input, memory);
 }
 
-/* Lanes of a tile of which so many numbers are wanted at most. */
+/* Return the lanes of a tile that has at most so many numbers. */
 static int lanes_for(const dvi__part *part, int numbers)
 {
   const int lanes = numbers / (part->program.row_count + part->program.input_count) / DVI__LANES *
@@ -415,7 +416,8 @@ dvi_status dvi__part_plan(dvi__part *part)
   return least <= large ? DVI_OK : DVI_BAD_SIZE;
 }
 
-/* Tiles are added: what is to be stored is added to zero. */
+/* Clear the entries that a part stores. Tiles are added, so that stored results are added to
+ * zero. */
 static void part_clear(const dvi__part *part, int count, double *const *result)
 {
   for (const dvi__destination *target = part->target; target < part->target + part->target_count;

@@ -1,12 +1,13 @@
-/* Evaluation of Taylor coefficients along a curve: element after element, each row a series. */
+/* Evaluation of Taylor coefficients along a curve. It goes element by element, and each row is a
+ * series. */
 #include <string.h>
 
 #include "expr/function/function_parts.h"
 
 enum { NUMBERS = DVI__ROWS_MAX * DVI__LANES };
 
-/* Row i stands `i + 1` rows below the registers. What depends on no variable is a series of one
- * coefficient. */
+/* Gather the inputs of element e. Row i stands `i + 1` rows below the registers. A column is a
+ * series of one coefficient. */
 static void series_gather(const dvi__part *part, int e, int count, const int *width,
                           const double *const *x, double *registers)
 {

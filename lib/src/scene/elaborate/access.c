@@ -1,4 +1,4 @@
-/* Names, and the elements of what they stand for. */
+/* Elaboration of names and of their elements. */
 #include <stdio.h>
 #include <string.h>
 
@@ -15,9 +15,9 @@ static bool is_function(const char *name)
   return k < dvi__word_count();
 }
 
-/* Complain of a name that is not known, or not yet: what is made of parameters is read before there
- * are coordinates and definitions. */
-static dvi__value unknown(dvi__context *c, const dvi__expression *e)
+/* Complain of a name that is unknown, or not known yet. Expressions of parameters alone are read
+ * before there are coordinates and definitions. */
+static dvi__value refuse_unknown_name(dvi__context *c, const dvi__expression *e)
 {
   static const char *const section[] = {"parameters", "coordinates", "definitions"};
   const bool there[] = {true, c->scene->coordinate != NULL, c->scene->definition != NULL};
@@ -60,17 +60,18 @@ static dvi__value parameter_value(dvi__context *c, dvi__parameter *p)
   return value;
 }
 
-/* An index for every element, between 1 and `count`. */
-static bool index_of(const dvi__context *c, const dvi__expression *e, int count, int **each,
-                     int *all);
+/* Compute an index for every element, between 1 and `count`. */
+static bool element_index(const dvi__context *c, const dvi__expression *e, int count, int **each,
+                          int *all);
 
-/* The member, from 1, that two indices say for every element: *each, to be freed, or *all. */
+/* Find the member, from 1, that two indices name. Sets *each, freed by the caller, if it differs
+ * from element to element, or else *all. */
 static bool member_of_two(const dvi__context *c, const dvi__coordinate *x,
                           const dvi__subscripts *index, int **each, int *all)
 {
   int *row = NULL, *column = NULL, all_row = 1, all_column = 1;
-  bool good = index_of(c, index->of[0], dvi__extent(x, 0), &row, &all_row) &&
-              index_of(c, index->of[1], dvi__extent(x, 1), &column, &all_column);
+  bool good = element_index(c, index->of[0], dvi__extent(x, 0), &row, &all_row) &&
+              element_index(c, index->of[1], dvi__extent(x, 1), &column, &all_column);
   *all = (all_row - 1) * x->columns + all_column;
   *each = NULL;
   if (good && (row != NULL || column != NULL)) {
@@ -90,7 +91,7 @@ bool dvi__member_numbering(dvi__context *c, const dvi__coordinate *x, const dvi_
 {
   int *each = NULL, all = 1;
   const bool good = index->count == 0   ? true
-                    : index->count == 1 ? index_of(c, index->of[0], x->size, &each, &all)
+                    : index->count == 1 ? element_index(c, index->of[0], x->size, &each, &all)
                                         : member_of_two(c, x, index, &each, &all);
   const bool made = good && dvi__numbering_of(c, each, all, places->first - places->stride,
                                               places->stride, numbering);
@@ -102,7 +103,7 @@ dvi__value dvi__coordinate_value(dvi__context *c, const dvi__coordinate *x,
                                  const dvi__subscripts *index, dvi__span span)
 {
   dvi__numbering numbering;
-  if (!dvi__may_stand(c, DVI__SAYS_Q, index->count > 0 ? index->of[0]->span : span))
+  if (!dvi__check_mention(c, DVI__MENTIONS_Q, index->count > 0 ? index->of[0]->span : span))
     return DVI__NO_VALUE;
   if (x->kind == DVI__MOTION)
     return dvi__refused(
@@ -118,7 +119,8 @@ dvi__value dvi__coordinate_value(dvi__context *c, const dvi__coordinate *x,
   return value;
 }
 
-/* A definition is elaborated once in a context, without the indices around its use. */
+/* Return the value of a definition. It is elaborated once in a context, without the indices around
+ * its use. */
 static dvi__value definition_value(dvi__context *c, int number)
 {
   if (c->definition[number].shape.rank >= 0) return c->definition[number];
@@ -137,26 +139,27 @@ dvi__value dvi__name_value(dvi__context *c, const dvi__expression *e)
   if (strcmp(e->name, "pi") == 0)
     return dvi__number_value(dvi__constant(c->graph, 3.14159265358979323846));
   if (strcmp(e->name, "t") == 0) {
-    if (!dvi__may_stand(c, DVI__SAYS_T, e->span)) return DVI__NO_VALUE;
+    if (!dvi__check_mention(c, DVI__MENTIONS_T, e->span)) return DVI__NO_VALUE;
     return dvi__number_value(dvi__variable_node(c, DVI__TIME, (dvi__numbering){0}, 0));
   }
   const dvi__name *name = dvi__names_find(&c->scene->names, e->name);
-  if (name == NULL) return unknown(c, e);
+  if (name == NULL) return refuse_unknown_name(c, e);
   if (name->sort == DVI__PARAMETER) return parameter_value(c, &c->scene->parameter[name->number]);
   if (name->sort == DVI__DEFINITION) {
-    c->scene->definition[name->number].stands = 1;
+    c->scene->definition[name->number].used = 1;
     return definition_value(c, name->number);
   }
   const dvi__coordinate *x = &c->scene->coordinate[name->number];
-  if (!dvi__may_stand(c, DVI__SAYS_Q, e->span)) return DVI__NO_VALUE;
+  if (!dvi__check_mention(c, DVI__MENTIONS_Q, e->span)) return DVI__NO_VALUE;
   if (x->family > 0) return dvi__refused(dvi__refuse_family(c, x, "", e->span));
   return dvi__coordinate_value(c, x, &(dvi__subscripts){0}, e->span);
 }
 
 /* ---- indices ---- */
 
-/* The values of the indices around an element, as ", where i = 3, j = 4". */
-static const char *circumstances(const dvi__context *c, int element_number, char *text, size_t size)
+/* Write the values of the indices around an element, as ", where i = 3, j = 4". */
+static const char *write_index_values(const dvi__context *c, int element_number, char *text,
+                                      size_t size)
 {
   size_t used = 0;
   text[0] = '\0';
@@ -169,8 +172,8 @@ static const char *circumstances(const dvi__context *c, int element_number, char
   return text;
 }
 
-static bool index_of(const dvi__context *c, const dvi__expression *e, int count, int **each,
-                     int *all)
+static bool element_index(const dvi__context *c, const dvi__expression *e, int count, int **each,
+                          int *all)
 {
   char text[120];
   const dvi__index *index = e->form == DVI__FORM_NAME ? dvi__index_find(c, e->name) : NULL;
@@ -189,13 +192,13 @@ static bool index_of(const dvi__context *c, const dvi__expression *e, int count,
     dvi__heap_free(*each);
     *each = NULL;
     return dvi__refuse(c, e->span, "the index %d is not between 1 and %d%s", i, count,
-                       circumstances(c, k, text, sizeof text));
+                       write_index_values(c, k, text, sizeof text));
   }
   return true;
 }
 
-/* One number of a list for every element: value[position + shift]. */
-static dvi__node listed(dvi__context *c, const double *value, const int *position, int shift)
+/* Return one number of a list for every element, value[position + shift]. */
+static dvi__node list_number(dvi__context *c, const double *value, const int *position, int shift)
 {
   double *row = dvi__heap_take((size_t)c->elements, sizeof *row);
   if (row == NULL) {
@@ -212,14 +215,14 @@ static dvi__node listed(dvi__context *c, const double *value, const int *positio
   return node;
 }
 
-/* The positions, for every element, that indices say: those of a matrix row by row; of a row its
- * begin. */
-static bool positions(const dvi__context *c, const dvi__parameter *p, int count,
-                      const dvi__expression *const *index, int *position)
+/* Compute the positions in a parameter for every element. A matrix is numbered row by row, and a
+ * row has the position of its first number. */
+static bool find_positions(const dvi__context *c, const dvi__parameter *p, int count,
+                           const dvi__expression *const *index, int *position)
 {
   for (int k = 0; k < count; k++) {
     int *each = NULL, all = 0;
-    if (!index_of(c, index[k], k == 0 ? p->shape.rows : p->shape.columns, &each, &all))
+    if (!element_index(c, index[k], k == 0 ? p->shape.rows : p->shape.columns, &each, &all))
       return false;
     const int stride = k == 0 && p->shape.rank == 2 ? p->shape.columns : 1;
     for (int e = 0; e < c->elements; e++)
@@ -229,7 +232,7 @@ static bool positions(const dvi__context *c, const dvi__parameter *p, int count,
   return true;
 }
 
-/* A number of a list, or a row of a matrix. */
+/* Return a number of a list, or a row of a matrix. */
 static dvi__value parameter_element(dvi__context *c, dvi__parameter *p, int count,
                                     const dvi__expression *const *index, dvi__span span)
 {
@@ -240,17 +243,17 @@ static dvi__value parameter_element(dvi__context *c, dvi__parameter *p, int coun
                                     p->shape.rank == 1 ? "ex" : "ices", count));
   int *position = dvi__heap_take((size_t)c->elements, sizeof *position);
   if (position == NULL) return dvi__refused(dvi__scene_no_memory(c->scene));
-  dvi__value value = positions(c, p, count, index, position)
+  dvi__value value = find_positions(c, p, count, index, position)
                          ? dvi__value_make(c, rest, rest == 0 ? 1 : p->shape.columns, 1)
                          : DVI__NO_VALUE;
-  if (!dvi__failed(value) && rest == 0) value.one = listed(c, p->value, position, 0);
+  if (!dvi__failed(value) && rest == 0) value.one = list_number(c, p->value, position, 0);
   for (int k = 0; value.node != NULL && k < value.shape.rows; k++)
-    value.node[k] = listed(c, p->value, position, k);
+    value.node[k] = list_number(c, p->value, position, k);
   dvi__heap_free(position);
   return value;
 }
 
-/* Elements of a value; the indices must be the same for all elements. */
+/* Return elements of a value. The indices must be the same for all elements. */
 static dvi__value part_of_value(dvi__context *c, dvi__value value, int count,
                                 const dvi__expression *const *index, dvi__span span)
 {
@@ -260,7 +263,7 @@ static dvi__value part_of_value(dvi__context *c, dvi__value value, int count,
     if (value.shape.rank == 0)
       return dvi__refused(dvi__refuse(c, span, "%s has no elements",
                                       dvi__shape_text(value.shape, shape, sizeof shape)));
-    if (!index_of(c, index[k], value.shape.rows, &each, &i)) return DVI__NO_VALUE;
+    if (!element_index(c, index[k], value.shape.rows, &each, &i)) return DVI__NO_VALUE;
     if (each != NULL) {
       dvi__heap_free(each);
       c->uneven = 1;
@@ -277,7 +280,7 @@ static dvi__value part_of_value(dvi__context *c, dvi__value value, int count,
 
 enum { INDICES_OF_ONE = 4 };
 
-/* A member of a family, or an element of it: the family's indices come first. */
+/* Return a member of a family, or an element of a member. The family's indices come first. */
 static dvi__value family_element(dvi__context *c, const dvi__coordinate *x, int count,
                                  const dvi__expression *const *index, dvi__span span)
 {

@@ -1,12 +1,12 @@
-/* The blocks of the functions that a scene is made of. */
+/* The blocks of the functions of a scene. */
 #ifndef DVI_SCENE_BLOCKS_H
 #define DVI_SCENE_BLOCKS_H
 #include "expr/function/function.h"
 
-/* Velocities stand for momenta, too, where a function is of these. */
+/* The blocks. Functions of momenta have these in the block of velocities. */
 enum { DVI__TIME, DVI__COORDINATES, DVI__VELOCITIES, DVI__MULTIPLIERS, DVI__BLOCKS };
 
-/* The pairs whose second derivatives methods want; the first letter is that of the rows. */
+/* The pairs whose second derivatives methods want. The first letter is that of the rows. */
 enum {
   DVI__PAIR_QQ,
   DVI__PAIR_QV,

@@ -1,5 +1,5 @@
-/* From syntax to graphs: operators, calls, lists and sums. Names are in access.c, rates in rates.c,
- * arithmetic in shape.c. */
+/* Elaboration from syntax to graphs, for operators, calls, lists and sums. Names are in access.c,
+ * rates in rates.c, arithmetic in shape.c. */
 #include "scene/elaborate/elaborate.h"
 
 #include <dvi/number.h>
@@ -23,18 +23,18 @@ bool(dvi__refuse)(const dvi__context *c, dvi__span span, const char *format, ...
   return dvi__complain(c->scene->complaint, DVI_BAD_FILE, span, "%s", text);
 }
 
-bool dvi__may_stand(const dvi__context *c, unsigned says, dvi__span span)
+bool dvi__check_mention(const dvi__context *c, unsigned mentions, dvi__span span)
 {
-  const char *what = says == DVI__SAYS_Q   ? "coordinates"
-                     : says == DVI__SAYS_V ? "velocities"
-                     : says == DVI__SAYS_P ? "momenta"
-                                           : "the time";
-  return (c->may & says) != 0 || dvi__refuse(c, span, "%s cannot stand in %s", what, c->where);
+  const char *what = mentions == DVI__MENTIONS_Q   ? "coordinates"
+                     : mentions == DVI__MENTIONS_V ? "velocities"
+                     : mentions == DVI__MENTIONS_P ? "momenta"
+                                                   : "the time";
+  return (c->may & mentions) != 0 || dvi__refuse(c, span, "%s cannot stand in %s", what, c->where);
 }
 
 /* ---- calls, lists, sums ---- */
 
-/* omega(R), rate(u) */
+/* Return 1 for omega(R) and rate(u). */
 static int is_velocity(const dvi__expression *call)
 {
   return strcmp(call->name, "omega") == 0 || strcmp(call->name, "rate") == 0;
@@ -87,7 +87,7 @@ static bool add_body(dvi__context *c, const dvi__expression *e, int first, int s
   return !dvi__failed(*total);
 }
 
-/* A sum inside of something, term for term. */
+/* Elaborate a sum inside of something, term for term. */
 static dvi__value sum_value(dvi__context *c, const dvi__expression *e)
 {
   dvi__bounds bounds;
@@ -143,7 +143,8 @@ const dvi__expression **dvi__spine(dvi_scene *scene, const dvi__expression *e, i
   return spine;
 }
 
-static dvi__value combine(dvi__context *c, const dvi__expression *e, dvi__value a, dvi__value b)
+static dvi__value apply_operator(dvi__context *c, const dvi__expression *e, dvi__value a,
+                                 dvi__value b)
 {
   c->graph->here = e->span;
   switch (e->form) {
@@ -155,7 +156,8 @@ static dvi__value combine(dvi__context *c, const dvi__expression *e, dvi__value 
   }
 }
 
-/* Chains are long but not deep: the first operand, then one operator after the other. */
+/* Elaborate a chain. It may be long but is not deep, so a loop takes the first operand and then one
+ * operator after the other. */
 static dvi__value chain_value(dvi__context *c, const dvi__expression *e)
 {
   int count = 0;
@@ -163,7 +165,7 @@ static dvi__value chain_value(dvi__context *c, const dvi__expression *e)
   dvi__value value = count > 0 ? dvi__elaborate(c, spine[0]->part[0]) : DVI__NO_VALUE;
   for (int k = 0; k < count && !dvi__failed(value); k++) {
     const dvi__value next = dvi__elaborate(c, spine[k]->part[1]);
-    value = dvi__failed(next) ? next : combine(c, spine[k], value, next);
+    value = dvi__failed(next) ? next : apply_operator(c, spine[k], value, next);
   }
   return value;
 }
@@ -172,7 +174,7 @@ static dvi__value power_value(dvi__context *c, const dvi__expression *e)
 {
   const dvi__value a = dvi__elaborate(c, e->part[0]);
   const dvi__value b = dvi__failed(a) ? a : dvi__elaborate(c, e->part[1]);
-  return dvi__failed(b) ? b : combine(c, e, a, b);
+  return dvi__failed(b) ? b : apply_operator(c, e, a, b);
 }
 
 static dvi__value negative_value(dvi__context *c, const dvi__expression *e)
@@ -182,7 +184,7 @@ static dvi__value negative_value(dvi__context *c, const dvi__expression *e)
   return dvi__failed(a) ? a : dvi__value_negate(c, a);
 }
 
-static dvi__value element(dvi__context *c, const dvi__expression *e)
+static dvi__value expression_value(dvi__context *c, const dvi__expression *e)
 {
   switch (e->form) {
   case DVI__FORM_NUMBER: return dvi__number_value(dvi__constant(c->graph, e->number));
@@ -206,8 +208,8 @@ static dvi__value element(dvi__context *c, const dvi__expression *e)
   }
 }
 
-/* Whether the graph took all nodes so far. */
-static bool has_room(const dvi__context *c, dvi__span span)
+/* Return true if the graph took all nodes so far. */
+static bool graph_has_room(const dvi__context *c, dvi__span span)
 {
   if (c->graph->failed == DVI_OK) return true;
   if (c->graph->failed == DVI_NO_MEMORY) return dvi__scene_no_memory(c->scene);
@@ -227,9 +229,9 @@ dvi__value dvi__elaborate(dvi__context *c, const dvi__expression *e)
     return dvi__refused(dvi__refuse(
         c, c->whole, "definitions of definitions, more than %d levels deep", DEPTH_MAX));
   c->graph->here = e->span;
-  const dvi__value value = element(c, e);
+  const dvi__value value = expression_value(c, e);
   c->depth--;
-  return has_room(c, e->span) ? value : DVI__NO_VALUE;
+  return graph_has_room(c, e->span) ? value : DVI__NO_VALUE;
 }
 
 bool dvi__elaborate_number(dvi__context *c, const dvi__expression *e, dvi__node *node)
@@ -256,26 +258,26 @@ bool dvi__constants_of(dvi__context *c, const dvi__expression *e, dvi__value val
   return true;
 }
 
-/* ---- what is said ---- */
+/* ---- mentions ---- */
 
-static unsigned says_name(const dvi_scene *scene, const char *text)
+static unsigned name_mentions(const dvi_scene *scene, const char *text)
 {
-  if (strcmp(text, "t") == 0) return DVI__SAYS_T;
+  if (strcmp(text, "t") == 0) return DVI__MENTIONS_T;
   const dvi__name *name = dvi__names_find(&scene->names, text);
   if (name == NULL || name->sort == DVI__PARAMETER) return 0;
-  return name->sort == DVI__COORDINATE ? DVI__SAYS_Q : scene->definition[name->number].says;
+  return name->sort == DVI__COORDINATE ? DVI__MENTIONS_Q : scene->definition[name->number].mentions;
 }
 
-unsigned dvi__says(const dvi_scene *scene, const dvi__expression *e)
+unsigned dvi__mentions(const dvi_scene *scene, const dvi__expression *e)
 {
-  unsigned says = 0;
+  unsigned mentions = 0;
   for (; e != NULL; e = e->count > 0 ? e->part[0] : NULL) {
-    if (e->form == DVI__FORM_NAME) says |= says_name(scene, e->name);
+    if (e->form == DVI__FORM_NAME) mentions |= name_mentions(scene, e->name);
     if (e->form == DVI__FORM_RATE || (e->form == DVI__FORM_CALL && is_velocity(e)))
-      says |= DVI__SAYS_V;
-    if (e->form == DVI__FORM_SUM) says |= DVI__SAYS_SUM;
-    if (e->form == DVI__FORM_CALL && strcmp(e->name, "p") == 0) says |= DVI__SAYS_P;
-    for (int k = 1; k < e->count; k++) says |= dvi__says(scene, e->part[k]);
+      mentions |= DVI__MENTIONS_V;
+    if (e->form == DVI__FORM_SUM) mentions |= DVI__MENTIONS_SUM;
+    if (e->form == DVI__FORM_CALL && strcmp(e->name, "p") == 0) mentions |= DVI__MENTIONS_P;
+    for (int k = 1; k < e->count; k++) mentions |= dvi__mentions(scene, e->part[k]);
   }
-  return says;
+  return mentions;
 }

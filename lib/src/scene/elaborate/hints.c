@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* A word of elsewhere, and what it is called here. */
+/* A word that is common elsewhere, and its name here. */
 typedef struct synonym {
   const char *elsewhere, *here;
 } synonym;
@@ -23,7 +23,7 @@ static const synonym functions[] = {
     {"artanh", "atanh(x)"},
 };
 
-/* How the rate or the momentum of a coordinate is called where there are no primes. */
+/* Prefixes and suffixes of rates and momenta where there are no primes. */
 static const struct {
   const char *before, *after, *open, *close;
 } rates[] = {
@@ -33,7 +33,7 @@ static const struct {
 
 enum { NAME_SIZE = 48 };
 
-/* The coordinate in a name of the form before..after; 0: none. */
+/* Return the coordinate in a name of the form before..after, or 0. */
 static int coordinate_in(const dvi__names *names, const char *name, const char *before,
                          const char *after, char *coordinate)
 {

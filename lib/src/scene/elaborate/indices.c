@@ -1,4 +1,4 @@
-/* Indices of sums: where they run, and expressions of them. */
+/* Indices of sums, their ranges, and expressions of them. */
 #include <limits.h>
 #include <math.h>
 #include <string.h>
@@ -34,15 +34,15 @@ bool dvi__index_bind(dvi__context *c, dvi__span span, const char *name)
 
 /* ---- numbers for every element ---- */
 
-/* A row of data from an element on, with idle lanes behind its end. */
+/* Copy a row of data from an element on. Idle lanes at its end are filled. */
 static void copy_row(const dvi__kernel_input *input, int first, int lanes, double *row)
 {
   for (int k = 0; k < dvi__row_width(lanes); k++)
     row[k] = input->data[first + (k < lanes ? k : lanes - 1)];
 }
 
-/* Run a program over all elements; its inputs are rows of data. */
-static bool run_rows(const dvi__context *c, const dvi__program *program, double *each)
+/* Run a program over all elements. Its inputs are rows of data. */
+static bool run_index_program(const dvi__context *c, const dvi__program *program, double *each)
 {
   const size_t rows = (size_t)c->input_count + (size_t)program->row_count;
   const double **row = dvi__heap_take((size_t)c->input_count + 1, sizeof *row);
@@ -65,7 +65,7 @@ static bool run_rows(const dvi__context *c, const dvi__program *program, double 
   return made || dvi__scene_no_memory(c->scene);
 }
 
-/* The node of every element, by a program; *each is to be freed. */
+/* Compute the node of every element by a program. The caller frees *each. */
 static bool all_rows(const dvi__context *c, dvi__node node, double **each)
 {
   dvi__program program = {0};
@@ -74,7 +74,7 @@ static bool all_rows(const dvi__context *c, dvi__node node, double **each)
   bool made = *each != NULL && input != NULL;
   for (int i = 0; made && i < c->input_count; i++) input[i] = dvi__input(c->graph, i);
   made = made && dvi__program_make(c->graph, c->input_count, input, 1, &node, &program) == DVI_OK;
-  made = made ? run_rows(c, &program, *each) : dvi__scene_no_memory(c->scene);
+  made = made ? run_index_program(c, &program, *each) : dvi__scene_no_memory(c->scene);
   dvi__program_free(&program);
   dvi__heap_free(input);
   if (made) return true;
@@ -83,8 +83,8 @@ static bool all_rows(const dvi__context *c, dvi__node node, double **each)
   return false;
 }
 
-/* One number if all are the same; one that is none is not the same as any. */
-static void join(const dvi__context *c, double **each, double *all)
+/* Join numbers of elements to one number if all are the same. A NaN differs from any number. */
+static void join_elements(const dvi__context *c, double **each, double *all)
 {
   for (int e = 1; e < c->elements; e++)
     if (!((*each)[e] >= (*each)[0] && (*each)[e] <= (*each)[0])) return;
@@ -93,8 +93,8 @@ static void join(const dvi__context *c, double **each, double *all)
   *each = NULL;
 }
 
-/* The same elements and indices, but nothing that moves. */
-static bool still(const dvi__context *c, dvi__context *inside)
+/* Make a context with the same elements and indices, but without variables. */
+static bool make_still_context(const dvi__context *c, dvi__context *inside)
 {
   if (!dvi__context_make(inside, c->scene, 0, "an index or a bound")) return false;
   inside->elements = c->elements;
@@ -111,7 +111,7 @@ bool dvi__node_numbers(dvi__context *c, const dvi__expression *e, dvi__node node
   if (dvi__is_constant(c->graph, node, all) && isfinite(*all)) return true;
   if (c->input_count == 0) return dvi__constants_of(c, e, dvi__number_value(node), all);
   if (!all_rows(c, node, each)) return false;
-  join(c, each, all);
+  join_elements(c, each, all);
   return true;
 }
 
@@ -120,7 +120,7 @@ bool dvi__numbers_of(const dvi__context *c, const dvi__expression *e, double **e
   dvi__context inside;
   dvi__node node;
   *each = NULL;
-  if (!still(c, &inside)) return false;
+  if (!make_still_context(c, &inside)) return false;
   bool made = dvi__elaborate_number(&inside, e, &node);
   if (made)
     made = dvi__node_numbers(&inside, e, node, each, all);
@@ -130,8 +130,8 @@ bool dvi__numbers_of(const dvi__context *c, const dvi__expression *e, double **e
   return made;
 }
 
-static bool whole(const dvi__context *c, const dvi__expression *e, const char *what, double x,
-                  int *number)
+static bool read_whole_number(const dvi__context *c, const dvi__expression *e, const char *what,
+                              double x, int *number)
 {
   if (floor(x) < x)
     return dvi__refuse(c, e->span, "%s must be a whole number, and is %.17g", what, x);
@@ -148,10 +148,11 @@ bool dvi__whole_numbers_of(const dvi__context *c, const dvi__expression *e, cons
   *each = NULL;
   *all = 0;
   if (!dvi__numbers_of(c, e, &number, &same)) return false;
-  if (number == NULL) return whole(c, e, what, same, all);
+  if (number == NULL) return read_whole_number(c, e, what, same, all);
   *each = dvi__heap_take((size_t)c->elements, sizeof **each);
   bool made = *each != NULL || dvi__scene_no_memory(c->scene);
-  for (int k = 0; k < c->elements && made; k++) made = whole(c, e, what, number[k], *each + k);
+  for (int k = 0; k < c->elements && made; k++)
+    made = read_whole_number(c, e, what, number[k], *each + k);
   dvi__heap_free(number);
   if (made) return true;
   dvi__heap_free(*each);
@@ -161,16 +162,16 @@ bool dvi__whole_numbers_of(const dvi__context *c, const dvi__expression *e, cons
 
 /* ---- bounds ---- */
 
-/* What limits an index that runs over all: the first family or list that it indexes alone, and its
- * size. */
+/* The limit of an index that runs over all its values. It is the size of the first family or list
+ * that the index alone indexes. */
 typedef struct limit {
   int size;
   const char *name;
   dvi__span span;
 } limit;
 
-/* How many places the k-th index of something by a name has; 0: unknown. */
-static int places(const dvi_scene *scene, const char *text, int k)
+/* Return how many values the k-th index of a named thing has, or 0 if that is unknown. */
+static int index_extent(const dvi_scene *scene, const char *text, int k)
 {
   const dvi__name *name = dvi__names_find(&scene->names, text);
   if (name == NULL) return 0;
@@ -187,8 +188,8 @@ static int places(const dvi_scene *scene, const char *text, int k)
   return k == 0 ? shape.rows : shape.columns;
 }
 
-/* Whether two limits agree. */
-static bool meet(const dvi__context *c, const char *index, limit *found, limit next)
+/* Return true if two limits agree. */
+static bool limits_agree(const dvi__context *c, const char *index, limit *found, limit next)
 {
   if (next.size == 0 || next.size == found->size) return true;
   if (found->size != 0)
@@ -205,7 +206,7 @@ static bool find_limit(const dvi__context *c, const char *index, const dvi__expr
                        limit *found)
 {
   for (; e != NULL; e = e->count > 0 ? e->part[0] : NULL) {
-    int before = 0; /* indices that stand further inside: a[i][j] */
+    int before = 0; /* indices that stand further inside, as [i] of a[i][j] */
     const dvi__expression *base = e;
     if (e->form == DVI__FORM_INDEX) {
       for (base = e->part[0]; base->form == DVI__FORM_INDEX; base = base->part[0])
@@ -217,8 +218,9 @@ static bool find_limit(const dvi__context *c, const char *index, const dvi__expr
       const int alone = e->form == DVI__FORM_INDEX && part->form == DVI__FORM_NAME &&
                         strcmp(part->name, index) == 0;
       if (alone && base->form == DVI__FORM_NAME &&
-          !meet(c, index, found,
-                (limit){places(c->scene, base->name, before + k - 1), base->name, e->span}))
+          !limits_agree(
+              c, index, found,
+              (limit){index_extent(c->scene, base->name, before + k - 1), base->name, e->span}))
         return false;
       if (!find_limit(c, index, part, found)) return false;
     }

@@ -1,4 +1,4 @@
-/* Inputs of kernels: variables by their numbers, and rows of data. Each is there once. */
+/* Inputs of kernels. They are variables by their numbers, and rows of data. Each is there once. */
 #include <string.h>
 
 #include "scene/elaborate/context.h"
@@ -36,7 +36,7 @@ void dvi__context_free(dvi__context *c)
   *c = (dvi__context){0};
 }
 
-/* The node of a new input. */
+/* Return the node of a new input. */
 static dvi__node add_input(dvi__context *c, const dvi__kernel_input *input)
 {
   dvi__kernel_input *list = dvi__heap_grow(c->input, (size_t)c->input_count, sizeof *list);
@@ -49,8 +49,8 @@ static dvi__node add_input(dvi__context *c, const dvi__kernel_input *input)
   return dvi__input(c->graph, c->input_count++);
 }
 
-/* A variable that is the same for all elements: found by a table, for there may be as many as
- * coordinates. */
+/* Return a variable that is the same for all elements. It is found by a table, since there may be
+ * as many as coordinates. */
 static dvi__node fixed_variable(dvi__context *c, int block, int number)
 {
   if (c->of_number[block] == NULL)
@@ -108,8 +108,8 @@ dvi__node dvi__data_node(dvi__context *c, const double *row)
 
 /* ---- numberings ---- */
 
-/* A list of numbers is kept once; numbers in even steps need none. */
-static bool keep(dvi__context *c, const int *number, dvi__numbering *numbering)
+/* Keep a list of numbers, once. Numbers in even steps need no list. */
+static bool keep_list(dvi__context *c, const int *number, dvi__numbering *numbering)
 {
   const size_t bytes = (size_t)c->elements * sizeof *number;
   for (int i = 0; i < c->numbering_count; i++)
@@ -138,7 +138,7 @@ bool dvi__numbering_of(dvi__context *c, const int *each, int all, int shift, int
   int even = 1;
   for (int e = 1; e < c->elements && even; e++) even = number[e] - number[e - 1] == stride;
   *numbering = (dvi__numbering){.base = number[0], .stride = stride};
-  const bool kept = even || keep(c, number, numbering);
+  const bool kept = even || keep_list(c, number, numbering);
   dvi__heap_free(number);
   return kept;
 }

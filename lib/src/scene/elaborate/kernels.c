@@ -1,8 +1,8 @@
-/* Where an expression is taken apart into sums: through + and -, definitions, and products by what
- * has no coordinates.
+/* Kernels of an expression. It is taken apart into sums, through + and -, definitions, and products
+ * by factors without coordinates.
  *
- * What is found are leaves, each in the group of the sums around it. A group becomes one kernel:
- * its elements are the values that the indices of these sums take. */
+ * This gives leaves, each in the group of the sums around it. A group becomes one kernel, whose
+ * elements are the values that the indices of these sums take. */
 #include "scene/elaborate/kernels.h"
 
 #include <string.h>
@@ -12,8 +12,8 @@
 enum { LEAVES_MAX = 100000, LEVELS_MAX = 512 };
 static const long elements_max = 200000000;
 
-/* Something that a leaf is multiplied or divided by, with so many indices in sight; then the next
- * one further out. */
+/* A factor or divisor of a leaf, with so many indices in sight. `next` is the next one further
+ * out. */
 typedef struct factor {
   const dvi__expression *is;
   int divides, indices;
@@ -28,8 +28,8 @@ typedef struct leaf {
 } leaf;
 
 typedef struct group {
-  struct group *around;       /* the sum outside; NULL: none */
-  const dvi__expression *sum; /* NULL: no sum */
+  struct group *around;       /* the sum outside, or NULL */
+  const dvi__expression *sum; /* NULL if there is no sum */
   int indices;
   leaf *first, *last;
   struct group *next;
@@ -47,9 +47,9 @@ typedef struct place {
   const factor *factor;
 } place;
 
-static bool gather(walk *w, const dvi__expression *e, place at);
+static bool gather_leaves(walk *w, const dvi__expression *e, place at);
 
-/* ---- taking apart ---- */
+/* ---- decomposition ---- */
 
 static group *group_of(walk *w, group *around, const dvi__expression *sum)
 {
@@ -91,24 +91,25 @@ static bool gather_sum(walk *w, const dvi__expression *e, place at)
 {
   int count = 0;
   const dvi__expression **spine = dvi__spine(w->scene, e, &count);
-  bool good = count > 0 && gather(w, spine[0]->part[0], at);
+  bool good = count > 0 && gather_leaves(w, spine[0]->part[0], at);
   for (int k = 0; k < count && good; k++) {
     place next = at;
     if (spine[k]->form == DVI__FORM_SUBTRACT) next.negative = !at.negative;
-    good = gather(w, spine[k]->part[1], next);
+    good = gather_leaves(w, spine[k]->part[1], next);
   }
   return good;
 }
 
-/* Operand k of a chain of products, and whether it divides. */
-static const dvi__expression *operand(const dvi__expression *const *spine, int k, int *divides)
+/* Return operand k of a chain of products, and set whether it divides. */
+static const dvi__expression *chain_operand(const dvi__expression *const *spine, int k,
+                                            int *divides)
 {
   *divides = k > 0 && spine[k - 1]->form == DVI__FORM_DIVIDE;
   return k == 0 ? spine[0]->part[0] : spine[k - 1]->part[1];
 }
 
-/* A product of one sum and of factors without coordinates: the sum, with these factors. Others are
- * leaves. */
+/* Take apart a product of one sum and of factors without coordinates. Any other product is a
+ * leaf. */
 static bool gather_product(walk *w, const dvi__expression *e, place at)
 {
   int count = 0, sums = 0, fits = 1, divides;
@@ -116,15 +117,15 @@ static bool gather_product(walk *w, const dvi__expression *e, place at)
   if (count == 0) return false;
   const factor *outside = at.factor, *last = NULL;
   for (int k = count; k >= 0; k--) {
-    const dvi__expression *is = operand(spine, k, &divides);
-    const unsigned says = dvi__says(w->scene, is);
-    if ((says & DVI__SAYS_SUM) != 0) {
+    const dvi__expression *is = chain_operand(spine, k, &divides);
+    const unsigned mentions = dvi__mentions(w->scene, is);
+    if ((mentions & DVI__MENTIONS_SUM) != 0) {
       sums++;
       sum = is;
       fits = fits && !divides;
       continue;
     }
-    fits = fits && (says & (DVI__SAYS_Q | DVI__SAYS_V | DVI__SAYS_P)) == 0;
+    fits = fits && (mentions & (DVI__MENTIONS_Q | DVI__MENTIONS_V | DVI__MENTIONS_P)) == 0;
     factor *made = dvi__arena_take(&w->scene->arena, 1, sizeof *made);
     if (made == NULL) return dvi__scene_no_memory(w->scene);
     *made = (factor){is, divides, at.group->indices, last != NULL ? last : outside};
@@ -132,7 +133,7 @@ static bool gather_product(walk *w, const dvi__expression *e, place at)
   }
   if (!fits || sums != 1) return add_leaf(w, e, at);
   if (last != NULL) at.factor = last;
-  return gather(w, sum, at);
+  return gather_leaves(w, sum, at);
 }
 
 static bool gather_form(walk *w, const dvi__expression *e, place at)
@@ -141,24 +142,24 @@ static bool gather_form(walk *w, const dvi__expression *e, place at)
   if (e->form == DVI__FORM_MULTIPLY || e->form == DVI__FORM_DIVIDE) return gather_product(w, e, at);
   if (e->form == DVI__FORM_NEGATIVE) {
     at.negative = !at.negative;
-    return gather(w, e->part[0], at);
+    return gather_leaves(w, e->part[0], at);
   }
   if (e->form == DVI__FORM_SUM) {
     at.group = group_of(w, at.group, e);
-    return at.group != NULL && gather(w, e->part[0], at);
+    return at.group != NULL && gather_leaves(w, e->part[0], at);
   }
   const dvi__name *name = e->form == DVI__FORM_NAME ? dvi__names_find(&w->scene->names, e->name)
                                                     : NULL;
   if (name != NULL && name->sort == DVI__DEFINITION && at.group->sum == NULL) {
-    w->scene->definition[name->number].stands = 1;
-    return gather(w, w->scene->definition[name->number].is, at);
+    w->scene->definition[name->number].used = 1;
+    return gather_leaves(w, w->scene->definition[name->number].is, at);
   }
   return add_leaf(w, e, at);
 }
 
-static bool gather(walk *w, const dvi__expression *e, place at)
+static bool gather_leaves(walk *w, const dvi__expression *e, place at)
 {
-  if ((dvi__says(w->scene, e) & DVI__SAYS_SUM) == 0 || w->level == LEVELS_MAX)
+  if ((dvi__mentions(w->scene, e) & DVI__MENTIONS_SUM) == 0 || w->level == LEVELS_MAX)
     return add_leaf(w, e, at);
   w->level++;
   const bool good = gather_form(w, e, at);
@@ -175,15 +176,16 @@ static long run_length(const dvi__bounds *bounds, int e)
   return last < first ? 0 : (long)last - first + 1;
 }
 
-static long choices(const dvi__bounds *bounds, int pairs, int e)
+static long count_choices(const dvi__bounds *bounds, int pairs, int e)
 {
   const long length = run_length(bounds, e);
   if (pairs && length > 100000) return elements_max + 1;
   return pairs ? length * (length - 1) / 2 : length;
 }
 
-/* The values of the new index, or of two. */
-static void fill_new(const dvi__bounds *bounds, int elements, int *first_index, int *second_index)
+/* Fill in the values of the new index, or of two. */
+static void fill_new_index(const dvi__bounds *bounds, int elements, int *first_index,
+                           int *second_index)
 {
   for (int e = 0, k = 0; e < elements; e++) {
     const int first = bounds->first != NULL ? bounds->first[e] : bounds->all_first;
@@ -206,17 +208,18 @@ static bool widen_index(dvi__context *c, dvi__index *index, const dvi__bounds *b
   if (wide == NULL) return dvi__scene_no_memory(c->scene);
   long k = 0;
   for (int e = 0; e < c->elements; e++)
-    for (long m = choices(bounds, pairs, e); m > 0; m--) wide[k++] = index->each[e];
+    for (long m = count_choices(bounds, pairs, e); m > 0; m--) wide[k++] = index->each[e];
   index->each = wide;
   return true;
 }
 
-/* Each element becomes as many as the sum has terms there. */
-static bool widen(dvi__context *c, const dvi__expression *sum, const dvi__bounds *bounds)
+/* Make each element into as many as the sum has terms there. */
+static bool widen_elements(dvi__context *c, const dvi__expression *sum, const dvi__bounds *bounds)
 {
   const int pairs = sum->name2 != NULL, before = c->index_count;
   long total = 0;
-  for (int e = 0; e < c->elements && total <= elements_max; e++) total += choices(bounds, pairs, e);
+  for (int e = 0; e < c->elements && total <= elements_max; e++)
+    total += count_choices(bounds, pairs, e);
   if (total > elements_max)
     return dvi__complain(c->scene->complaint, DVI_BAD_SIZE, sum->span,
                          "a sum of more than %ld terms", elements_max);
@@ -228,7 +231,7 @@ static bool widen(dvi__context *c, const dvi__expression *sum, const dvi__bounds
   int *first = dvi__arena_take(&c->scene->arena, (size_t)total, sizeof *first);
   int *second = pairs ? dvi__arena_take(&c->scene->arena, (size_t)total, sizeof *second) : NULL;
   if (first == NULL || (pairs && second == NULL)) return dvi__scene_no_memory(c->scene);
-  fill_new(bounds, c->elements, first, second);
+  fill_new_index(bounds, c->elements, first, second);
   c->index[before].each = first;
   if (pairs) c->index[before + 1].each = second;
   c->elements = (int)total;
@@ -236,7 +239,7 @@ static bool widen(dvi__context *c, const dvi__expression *sum, const dvi__bounds
 }
 
 /* Bind the indices of a group's sums, from the outer ones on. */
-static bool enter(dvi__context *c, const group *g)
+static bool bind_group(dvi__context *c, const group *g)
 {
   const group *chain[DVI__INDICES_MAX];
   int depth = 0;
@@ -249,7 +252,7 @@ static bool enter(dvi__context *c, const group *g)
   while (depth > 0 && good && c->elements > 0) {
     dvi__bounds bounds;
     const dvi__expression *sum = chain[--depth]->sum;
-    good = dvi__sum_bounds(c, sum, &bounds) && widen(c, sum, &bounds);
+    good = dvi__sum_bounds(c, sum, &bounds) && widen_elements(c, sum, &bounds);
     dvi__heap_free(bounds.first);
     dvi__heap_free(bounds.last);
   }
@@ -262,7 +265,7 @@ static bool enter(dvi__context *c, const group *g)
 
 /* ---- kernels ---- */
 
-/* A leaf with its factors. */
+/* Elaborate a leaf with its factors. */
 static bool leaf_node(dvi__context *c, const leaf *l, dvi__node *node)
 {
   const int indices = c->index_count;
@@ -293,7 +296,7 @@ static bool add_leaves(dvi__context *c, const group *g, int negative, dvi__node 
   return true;
 }
 
-/* A kernel of one element, of all elements of a sum written out. */
+/* Add a kernel of one element that holds all elements of a sum, written out. */
 static bool write_out(const dvi__context *of, const group *g, int negative, const char *where,
                       dvi__kernels *list)
 {
@@ -321,7 +324,7 @@ static bool add_group(dvi_scene *scene, unsigned may, const char *where, const g
   dvi__context c;
   if (g->first == NULL) return true;
   if (!dvi__context_make(&c, scene, may, where)) return false;
-  bool good = enter(&c, g);
+  bool good = bind_group(&c, g);
   if (good && c.elements > 0) {
     dvi__node total = dvi__constant(c.graph, 0);
     good = add_leaves(&c, g, negative, &total);
@@ -339,7 +342,7 @@ bool dvi__kernels_add(dvi_scene *scene, unsigned may, const char *where, const d
 {
   walk w = {.scene = scene};
   group *outside = group_of(&w, NULL, NULL);
-  bool good = outside != NULL && gather(&w, e, (place){.group = outside});
+  bool good = outside != NULL && gather_leaves(&w, e, (place){.group = outside});
   for (const group *g = w.first; g != NULL && good; g = g->next)
     good = add_group(scene, may, where, g, negative, list);
   return good;

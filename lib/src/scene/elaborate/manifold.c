@@ -1,15 +1,16 @@
-/* Manifold coordinates: which one an expression names, and its velocity and momentum.
+/* Manifold coordinates. An expression names one, or its velocity or momentum.
  *
- * In a Lagrangian velocities are of two sorts, for the mass is constant in both: the rates of what
- * is stored (x', and R' of a matrix R, entry by entry), numbers 0 .. n-1 of their block, and after
- * them the velocities of the state, omega(R) and rate(u). Elsewhere there are those of the state
- * alone, and a rate is made of them: R' = R hat(omega), (cos, sin)' = (-sin, cos) rate. */
+ * A Lagrangian has velocities of two sorts, since the mass is constant in both. Numbers 0 .. n-1 of
+ * their block are the rates of the stored numbers (x', and R' of a matrix R, entry by entry). After
+ * them stand the velocities of the state, omega(R) and rate(u). Elsewhere there are the velocities
+ * of the state alone, and rates are made of them by R' = R hat(omega), (cos, sin)' = (-sin, cos)
+ * rate. */
 #include <string.h>
 
 #include "scene/elaborate/elaborate.h"
 #include "text/heap.h"
 
-/* ---- what is named ---- */
+/* ---- named coordinates ---- */
 
 static const dvi__coordinate *coordinate_named(const dvi_scene *scene, const dvi__expression *e)
 {
@@ -93,13 +94,13 @@ int dvi__coordinate_at(const dvi_scene *scene, int number, int of_v)
 
 /* ---- velocities and momenta of a state ---- */
 
-/* What an input is: number k of members of a coordinate, one for each element or `all`. */
+/* An input as number k of members of a coordinate, one for each element or `all`. */
 typedef struct member_number {
   const dvi__coordinate *x;
   int k, *each, all;
 } member_number;
 
-/* The coordinate, or the part of a motion, that a stored number belongs to. */
+/* Return the coordinate, or the part of a motion, to which a stored number belongs. */
 static const dvi__coordinate *part_at(const dvi_scene *scene, int number)
 {
   const dvi__coordinate *x = &scene->coordinate[dvi__coordinate_at(scene, number, 0)];
@@ -128,27 +129,28 @@ static bool first_numbers(dvi__context *c, const member_number *w, const dvi__sl
   return dvi__numbering_of(c, w->each, w->all, places->first, places->stride, numbering);
 }
 
-static dvi__node times(const dvi__context *c, dvi__node a, dvi__node b)
+static dvi__node multiply_nodes(const dvi__context *c, dvi__node a, dvi__node b)
 {
   return dvi__apply(c->graph, DVI__OP_MULTIPLY, a, b);
 }
 
-/* The rate of number k of a member whose numbers are q and whose velocities are v. */
+/* Return the rate of number k of a member with numbers q and velocities v. */
 static dvi__node rate_of(dvi__context *c, const member_number *w, dvi__numbering q,
                          dvi__numbering v)
 {
   const int k = w->k;
   if (w->x->kind == DVI__ANGLE) {
     const dvi__node rate = dvi__variable_node(c, DVI__VELOCITIES, v, 0);
-    const dvi__node moved = times(c, dvi__variable_node(c, DVI__COORDINATES, q, 1 - k), rate);
+    const dvi__node moved = multiply_nodes(c, dvi__variable_node(c, DVI__COORDINATES, q, 1 - k),
+                                           rate);
     return k == 0 ? dvi__apply(c->graph, DVI__OP_NEGATE, moved, 0) : moved;
   }
   if (w->x->kind != DVI__ROTATION) return dvi__variable_node(c, DVI__VELOCITIES, v, k);
   const int row = k - k % 3, next = (k + 1) % 3, last = (k + 2) % 3;
-  const dvi__node ahead = times(c, dvi__variable_node(c, DVI__COORDINATES, q, row + next),
-                                dvi__variable_node(c, DVI__VELOCITIES, v, last)),
-                  behind = times(c, dvi__variable_node(c, DVI__COORDINATES, q, row + last),
-                                 dvi__variable_node(c, DVI__VELOCITIES, v, next));
+  const dvi__node ahead = multiply_nodes(c, dvi__variable_node(c, DVI__COORDINATES, q, row + next),
+                                         dvi__variable_node(c, DVI__VELOCITIES, v, last)),
+                  behind = multiply_nodes(c, dvi__variable_node(c, DVI__COORDINATES, q, row + last),
+                                          dvi__variable_node(c, DVI__VELOCITIES, v, next));
   return dvi__apply(c->graph, DVI__OP_SUBTRACT, ahead, behind);
 }
 
@@ -175,8 +177,8 @@ bool dvi__input_momentum(dvi__context *c, int input, dvi__node *momentum)
   return good;
 }
 
-/* The velocities or momenta of a coordinate, or of a member of a family; `before` stand in front of
- * the state's. */
+/* Return the velocities or momenta of a coordinate, or of a member of a family. `before` numbers
+ * stand in front of the state's. */
 static dvi__value state_value(dvi__context *c, const dvi__coordinate *x,
                               const dvi__subscripts *index, int before)
 {
@@ -204,7 +206,7 @@ dvi__value dvi__velocity_value(dvi__context *c, const dvi__expression *e)
 {
   dvi__subscripts index;
   const int omega = strcmp(e->name, "omega") == 0;
-  if (!dvi__may_stand(c, DVI__SAYS_V, e->span)) return DVI__NO_VALUE;
+  if (!dvi__check_mention(c, DVI__MENTIONS_V, e->span)) return DVI__NO_VALUE;
   const dvi__coordinate *x = argument_of(c, e, &index);
   if (c->scene->complaint->status != DVI_OK) return DVI__NO_VALUE;
   if (x != NULL && x->kind == DVI__MOTION) x = &x->part[0];
@@ -213,7 +215,7 @@ dvi__value dvi__velocity_value(dvi__context *c, const dvi__expression *e)
         dvi__refuse(c, e->part[0]->span,
                     omega ? "omega is taken of a rotation, or of a rigid motion"
                           : "rate is taken of an angle; of numbers and vectors it is x'"));
-  if ((c->may & DVI__SAYS_P) != 0 && !c->sample)
+  if ((c->may & DVI__MENTIONS_P) != 0 && !c->sample)
     return dvi__refused(dvi__refuse(
         c, e->span,
         "velocities of rotations and angles cannot stand in %s; say it by momenta, p(%s)", c->where,

@@ -1,5 +1,4 @@
-/* A scene while it is read, and afterwards: one object that the parts of the reader fill in
- * turn. */
+/* A scene, from the start of its reading on. The parts of the reader fill in one object in turn. */
 #ifndef DVI_SCENE_MODEL_H
 #define DVI_SCENE_MODEL_H
 #include <dvi/scene.h>
@@ -10,11 +9,11 @@
 #include "scene/text/tree.h"
 #include "text/heap.h"
 
-/* What a function is for: the motion; symmetries and invariants; events and constant masses, which
- * the system does not evaluate. */
-typedef enum dvi__role { DVI__MOVES, DVI__WATCHES, DVI__STANDS_BESIDE } dvi__role;
+/* The role of a function. It may belong to the motion, or be watched, as symmetries and invariants
+ * are. Events and constant masses stand beside, where the system does not evaluate them. */
+typedef enum dvi__role { DVI__ROLE_MOTION, DVI__ROLE_WATCHED, DVI__ROLE_AUXILIARY } dvi__role;
 
-/* Settings "name=value" from outside. */
+/* Settings "name=value" from outside the scene. */
 typedef struct dvi__scene_settings {
   int count;
   const char *const *text;
@@ -25,9 +24,9 @@ typedef struct dvi__scene_settings {
 typedef struct dvi__scene_term {
   dvi__function *function;
   const dvi_scene *scene;
-  int n, count;       /* coordinates; multipliers */
-  const double *none; /* zeros, as many as the longest block has */
-  dvi_pattern qw, vw; /* of constraints: d phi/dq and d phi/dp, of which the gradients are made */
+  int n, count;       /* numbers of coordinates and multipliers */
+  const double *none; /* as many zeros as the longest block has */
+  dvi_pattern qw, vw; /* patterns of d phi/dq and d phi/dp, of which the gradients are made */
   dvi__role role;
   struct dvi__scene_term *next;
 } dvi__scene_term;
@@ -38,26 +37,25 @@ struct dvi_scene {
   dvi__source source; /* a copy, for messages of callbacks */
   dvi__complaint *complaint;
   const dvi__tree *tree;
-  const dvi__scene_settings *settings; /* while it is read */
+  const dvi__scene_settings *settings; /* settings while the scene is read */
   dvi__names names;
   dvi__parameter *parameter;
   dvi__coordinate *coordinate;
   dvi__definition *definition;
   int parameter_count, coordinate_count, definition_count;
-  unsigned reads; /* where parameters that are met stand */
-  int n, nv;      /* numbers of q; of v and p */
-  int velocities; /* in the block of velocities: n, or with factors n rates of q and nv velocities
-                     after them */
-  long work;      /* parts of expressions that were elaborated */
+  unsigned reads; /* place where parameters are being read */
+  int n, nv;      /* numbers of q, and of v and p */
+  int velocities; /* numbers in their block, n, or with factors n + nv (rates of q first) */
+  long work;      /* parts of expressions elaborated so far */
 
-  const double *mass_diagonal; /* [n] or NULL: divides momenta in invariants */
+  const double *mass_diagonal; /* [n] divisors of momenta in invariants, or NULL */
   dvi_system_terms terms;
   dvi_lagrangian lagrangian;
   dvi_one_form one_form;
   dvi_hamiltonian hamiltonian;
   dvi_constraint constraint;
   dvi__scene_term *functions;
-  const dvi__scene_term *kinetic; /* what a constant mass was read from; NULL */
+  const dvi__scene_term *kinetic; /* the term from which a constant mass was read, or NULL */
   dvi_system *system;
   double *q, *v, *p;
   double *zeros; /* [2 n] */
@@ -71,20 +69,20 @@ struct dvi_scene {
   int event_count, range_count, unused_count, bodies;
   const char *form, *mass;
   pthread_mutex_t labels_mutex;
-  char **label[3]; /* of q, v, p; made when first asked for */
+  char **label[3]; /* labels of q, v, p, made when first asked for */
   dvi__arena label_arena;
 };
 
-/* Whether a coordinate is neither a number nor a vector. */
+/* Return true if a coordinate is neither a number nor a vector. */
 static inline bool dvi__has_factors(const dvi_scene *scene)
 {
   return scene->velocities > scene->n;
 }
 
-/* The number of the coordinate to which a number of q, or of v, belongs. */
+/* Return the coordinate to which a number of q, or of v, belongs. */
 int dvi__coordinate_at(const dvi_scene *scene, int number, int of_v);
 
-/* Refuse something with a place, or for which there is no memory; false. */
+/* Refuse the scene with a place, or for want of memory. Returns false. */
 bool dvi__scene_refuse(dvi_scene *scene, dvi__span span, const char *format, ...)
     DVI__TEXT_PRINTF(3, 4);
 bool dvi__scene_no_memory(dvi_scene *scene);

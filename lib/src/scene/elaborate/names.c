@@ -1,4 +1,4 @@
-/* Names by a hash table: a scene of 1 MiB may hold 100000 of them. */
+/* Names in a hash table, since a scene of 1 MiB may hold 100000 of them. */
 #include "scene/elaborate/names.h"
 
 #include <stdint.h>
@@ -15,8 +15,8 @@ static uint32_t hash_of(const char *text)
   return hash;
 }
 
-/* Where a text is in the table, or would be. */
-static int slot_of(const dvi__names *names, const char *text)
+/* Return the place of a text in the table, or the free place for it. */
+static int name_slot(const dvi__names *names, const char *text)
 {
   const int mask = names->table_size - 1;
   int slot = (int)(hash_of(text) & (uint32_t)mask);
@@ -28,12 +28,12 @@ static int slot_of(const dvi__names *names, const char *text)
 const dvi__name *dvi__names_find(const dvi__names *names, const char *text)
 {
   if (names->count == 0) return NULL;
-  const int place = names->table[slot_of(names, text)];
+  const int place = names->table[name_slot(names, text)];
   return place == 0 ? NULL : &names->name[place - 1];
 }
 
-/* Room for one more, and a table that is at most half full. */
-static bool grow(dvi__names *names, dvi__arena *arena)
+/* Make room for one more. The table is at most half full. */
+static bool names_grow(dvi__names *names, dvi__arena *arena)
 {
   if (names->name != NULL && 2 * names->count < names->table_size) return true;
   const int room = names->count == 0 ? 1 : 2 * names->count;
@@ -43,7 +43,7 @@ static bool grow(dvi__names *names, dvi__arena *arena)
   names->name = moved;
   names->table = table;
   names->table_size = 2 * room;
-  for (int i = 0; i < names->count; i++) table[slot_of(names, moved[i].text)] = i + 1;
+  for (int i = 0; i < names->count; i++) table[name_slot(names, moved[i].text)] = i + 1;
   return true;
 }
 
@@ -66,9 +66,9 @@ bool dvi__names_add(dvi__names *names, dvi__arena *arena, dvi__complaint *compla
   if (other != NULL)
     return dvi__complain(complaint, DVI_BAD_FILE, span, "there is a %s '%s' already",
                          dvi__sort_name(other->sort), text);
-  if (!grow(names, arena)) return dvi__complain_of_memory(complaint);
+  if (!names_grow(names, arena)) return dvi__complain_of_memory(complaint);
   names->name[names->count] = (dvi__name){text, sort, number};
-  names->table[slot_of(names, text)] = ++names->count;
+  names->table[name_slot(names, text)] = ++names->count;
   return true;
 }
 

@@ -1,19 +1,20 @@
-/* The names of a scene: parameters, coordinates and definitions, and what each of them is. */
+/* The names of a scene. A name is a parameter, a coordinate or a definition. */
 #ifndef DVI_SCENE_NAMES_H
 #define DVI_SCENE_NAMES_H
 #include "text/arena.h"
 #include "text/complaint.h"
 #include "scene/text/syntax.h"
 
-/* rank 0: a number; 1: a vector of `rows`; 2: a matrix. rank -1: none, an error was told. */
+/* The shape of a value. Rank 0 is a number, 1 a vector of `rows`, 2 a matrix. Rank -1 is none,
+ * after a complaint. */
 typedef struct dvi__shape {
   int rank, rows, columns;
 } dvi__shape;
 
-/* Where a parameter stands: in an initial value, or in any other section but `parameters`. */
+/* The place of a parameter, in an initial value or in any other section but `parameters`. */
 enum { DVI__IN_PARAMETERS = 0, DVI__IN_START = 1, DVI__ELSEWHERE = 2 };
 
-/* The parameters that another one is made of. */
+/* The parameters of which another one is made. */
 typedef struct dvi__source_of {
   struct dvi__parameter *parameter;
   const struct dvi__source_of *next;
@@ -25,9 +26,9 @@ typedef struct dvi__parameter {
   dvi__shape shape;
   double *value; /* [rows * columns], row by row */
   int settable;
-  unsigned stands;              /* DVI__IN_START, DVI__ELSEWHERE: complete when the scene is read */
-  const dvi__source_of *source; /* what it is made of */
-  int last_made;                /* the number + 1 of the last parameter that is made of it */
+  unsigned used_in;             /* flags DVI__IN_START, DVI__ELSEWHERE after reading */
+  const dvi__source_of *source; /* the parameters of which it is made */
+  int last_made;                /* number + 1 of the last parameter that is made of it */
 } dvi__parameter;
 
 typedef enum dvi__kind {
@@ -38,7 +39,7 @@ typedef enum dvi__kind {
   DVI__ANGLE
 } dvi__kind;
 
-/* The numbers of a coordinate in q, or in v and p: member m has `components` from first + m *
+/* The numbers of a coordinate in q, or in v and p. Member m has `components` from first + m *
  * stride on. */
 typedef struct dvi__slots {
   int first, stride, components;
@@ -48,32 +49,38 @@ typedef struct dvi__coordinate {
   const char *name;
   dvi__span span;
   dvi__kind kind;
-  int family;  /* how many indices it has, at most 2 */
-  int size;    /* members of the family; 1 */
-  int columns; /* values of the last one of two indices, which members are counted by first; 1 */
-  dvi__shape shape; /* of a member */
+  int family;  /* number of indices, at most 2 */
+  int size;    /* members of the family, or 1 */
+  int columns; /* values of the last of two indices, by which members are counted first, or 1 */
+  dvi__shape shape; /* shape of a member */
   dvi__slots q, v;
-  const struct dvi__coordinate *part; /* of a motion: [2], its rotation and its place */
-  char part_name;                     /* of such a part: R or x; else 0 */
+  const struct dvi__coordinate *part; /* [2] rotation and place of a motion */
+  char part_name;                     /* R or x for such a part, else 0 */
 } dvi__coordinate;
 
-/* Values of index k, from 0, of a family. */
+/* Return the number of values of index k, from 0, of a family. */
 static inline int dvi__extent(const dvi__coordinate *x, int k)
 {
   return k == 0 ? x->size / x->columns : x->columns;
 }
 
-/* The indices of a member of a family, none of what is no family. */
+/* The indices of a member of a family. A coordinate without a family has none. */
 typedef struct dvi__subscripts {
   int count;
   const dvi__expression *of[2];
 } dvi__subscripts;
 
-/* What an expression mentions, definitions seen through. */
-enum { DVI__SAYS_Q = 1, DVI__SAYS_V = 2, DVI__SAYS_P = 4, DVI__SAYS_T = 8, DVI__SAYS_SUM = 16 };
+/* The sorts of variables that an expression mentions, definitions included. */
+enum {
+  DVI__MENTIONS_Q = 1,
+  DVI__MENTIONS_V = 2,
+  DVI__MENTIONS_P = 4,
+  DVI__MENTIONS_T = 8,
+  DVI__MENTIONS_SUM = 16
+};
 
-/* Beside what may stand somewhere: velocities there are those of a state, v, and not the rates of
- * what is stored. */
+/* A flag beside these. Velocities are then those of a state, v, and not the rates of stored
+ * numbers. */
 enum { DVI__OF_STATE = 32 };
 
 typedef struct dvi__definition {
@@ -81,8 +88,8 @@ typedef struct dvi__definition {
   dvi__span span;
   const dvi__expression *is;
   dvi__shape shape;
-  unsigned says;
-  int stands; /* 1: something mentions it */
+  unsigned mentions;
+  int used; /* 1 if something mentions it */
 } dvi__definition;
 
 typedef enum dvi__sort { DVI__PARAMETER, DVI__COORDINATE, DVI__DEFINITION } dvi__sort;
@@ -90,10 +97,10 @@ typedef enum dvi__sort { DVI__PARAMETER, DVI__COORDINATE, DVI__DEFINITION } dvi_
 typedef struct dvi__name {
   const char *text;
   dvi__sort sort;
-  int number; /* in the list of its sort */
+  int number; /* number in the list of its sort */
 } dvi__name;
 
-/* Zero: empty. Its memory is the arena's. */
+/* The names of a scene. Zero is empty. The arena owns the memory. */
 typedef struct dvi__names {
   dvi__name *name;
   int count;
@@ -101,24 +108,24 @@ typedef struct dvi__names {
   int table_size;
 } dvi__names;
 
-/* The name of this text, or NULL. */
+/* Return the name of this text, or NULL. */
 const dvi__name *dvi__names_find(const dvi__names *names, const char *text);
 
-/* Add a name; refused if it is no identifier, a word of the language, or there already. */
+/* Add a name. Refuses a text that is no identifier, a word of the language, or taken. */
 bool dvi__names_add(dvi__names *names, dvi__arena *arena, dvi__complaint *complaint,
                     const char *text, dvi__span span, dvi__sort sort, int number);
 
-/* Letters, digits and _, a letter first. */
+/* Return true for letters, digits and _, with a letter first. */
 bool dvi__is_identifier(const char *text);
 
 /* Complain of an unknown name, with the nearest known one. */
 bool dvi__names_unknown(const dvi__names *names, dvi__arena *arena, dvi__complaint *complaint,
                         const char *text, dvi__span span);
 
-/* "parameter", "coordinate" or "definition". */
+/* Return "parameter", "coordinate" or "definition". */
 const char *dvi__sort_name(dvi__sort sort);
 
-/* "a number", "a vector of 3" or "a 3 x 3 matrix", into text [size], which is returned. */
+/* Write "a number", "a vector of 3" or "a 3 x 3 matrix" to text [size], and return it. */
 const char *dvi__shape_text(dvi__shape shape, char *text, size_t size);
 
 #endif

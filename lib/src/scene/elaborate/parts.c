@@ -1,8 +1,8 @@
-/* Copies of kernels: of what their root needs, and of their parts by degree in a block of
+/* Copies of kernels. They hold the nodes that the root needs, or the parts by degree in a block of
  * variables.
  *
- * A node f is split into Z, where the block's variables are zero, and P = f - Z, by f's own rule:
- * (Z_a + P_a)(Z_b + P_b) has P = P_a Z_b + Z_a P_b + P_a P_b. */
+ * A node f is split into Z, where the block's variables are zero, and P = f - Z, by f's own rule.
+ * For a product (Z_a + P_a)(Z_b + P_b) this gives P = P_a Z_b + Z_a P_b + P_a P_b. */
 #include <string.h>
 
 #include "expr/graph_make.h"
@@ -12,30 +12,30 @@
 typedef struct copy {
   const dvi__kernel *from;
   dvi__graph *graph;
-  dvi__kernel_input *input; /* [as many as `from` has] */
+  dvi__kernel_input *input; /* [input_count of `from`] */
   int input_count;
   int *of_input;            /* new number + 1 of an old input */
-  dvi__node *rest, *moving; /* Z and P of old nodes; moving NULL: only Z is wanted */
-  int block, as;            /* block DVI__BLOCKS: nothing moves */
+  dvi__node *rest, *moving; /* Z and P of old nodes. `moving` is NULL if only Z is wanted. */
+  int block, as;            /* with block DVI__BLOCKS nothing moves */
 } copy;
 
-static dvi__node apply(copy *c, dvi__op op, dvi__node a, dvi__node b)
+static dvi__node copy_apply(copy *c, dvi__op op, dvi__node a, dvi__node b)
 {
   return dvi__apply(c->graph, op, a, b);
 }
 
-static dvi__node zero(copy *c)
+static dvi__node copy_zero(copy *c)
 {
   return dvi__constant(c->graph, 0);
 }
 
-static int is_zero(const copy *c, dvi__node node)
+static int copy_is_zero(const copy *c, dvi__node node)
 {
   double value;
   return dvi__is_constant(c->graph, node, &value) && !(value < 0) && !(value > 0);
 }
 
-/* An input, from the block `as` if it moves. */
+/* Copy an input, from the block `as` if it moves. */
 static dvi__node copy_input(copy *c, int number, int moves)
 {
   if (c->of_input[number] == 0) {
@@ -54,20 +54,21 @@ static void copy_rest(copy *c, int i)
   } else if (node->op == DVI__OP_INPUT) {
     const dvi__kernel_input *input = &c->from->input[node->a];
     const int moves = !input->is_data && input->block == c->block;
-    c->rest[i] = moves ? zero(c) : copy_input(c, node->a, 0);
+    c->rest[i] = moves ? copy_zero(c) : copy_input(c, node->a, 0);
   } else if (node->op == DVI__OP_POWER) {
     c->rest[i] = dvi__power(c->graph, c->rest[node->a], node->value);
   } else
-    c->rest[i] = apply(c, node->op, c->rest[node->a], c->rest[node->b]);
+    c->rest[i] = copy_apply(c, node->op, c->rest[node->a], c->rest[node->b]);
 }
 
-/* P of a product, (Z_a + P_a)(Z_b + P_b). */
+/* Return P of a product, (Z_a + P_a)(Z_b + P_b). */
 static dvi__node moving_product(copy *c, int a, int b)
 {
-  const dvi__node mixed = apply(c, DVI__OP_ADD,
-                                apply(c, DVI__OP_MULTIPLY, c->moving[a], c->rest[b]),
-                                apply(c, DVI__OP_MULTIPLY, c->rest[a], c->moving[b]));
-  return apply(c, DVI__OP_ADD, mixed, apply(c, DVI__OP_MULTIPLY, c->moving[a], c->moving[b]));
+  const dvi__node mixed = copy_apply(c, DVI__OP_ADD,
+                                     copy_apply(c, DVI__OP_MULTIPLY, c->moving[a], c->rest[b]),
+                                     copy_apply(c, DVI__OP_MULTIPLY, c->rest[a], c->moving[b]));
+  return copy_apply(c, DVI__OP_ADD, mixed,
+                    copy_apply(c, DVI__OP_MULTIPLY, c->moving[a], c->moving[b]));
 }
 
 static void copy_moving(copy *c, int i)
@@ -77,26 +78,27 @@ static void copy_moving(copy *c, int i)
   switch (node->op) {
   case DVI__OP_INPUT: {
     const dvi__kernel_input *input = &c->from->input[a];
-    c->moving[i] = !input->is_data && input->block == c->block ? copy_input(c, a, 1) : zero(c);
+    c->moving[i] = !input->is_data && input->block == c->block ? copy_input(c, a, 1) : copy_zero(c);
     break;
   }
-  case DVI__OP_NEGATE: c->moving[i] = apply(c, DVI__OP_NEGATE, c->moving[a], 0); break;
+  case DVI__OP_NEGATE: c->moving[i] = copy_apply(c, DVI__OP_NEGATE, c->moving[a], 0); break;
   case DVI__OP_ADD:
-  case DVI__OP_SUBTRACT: c->moving[i] = apply(c, node->op, c->moving[a], c->moving[b]); break;
-  case DVI__OP_DIVIDE: c->moving[i] = apply(c, DVI__OP_DIVIDE, c->moving[a], c->rest[b]); break;
-  case DVI__OP_WHERE: c->moving[i] = apply(c, DVI__OP_WHERE, c->rest[a], c->moving[b]); break;
+  case DVI__OP_SUBTRACT: c->moving[i] = copy_apply(c, node->op, c->moving[a], c->moving[b]); break;
+  case DVI__OP_DIVIDE:
+    c->moving[i] = copy_apply(c, DVI__OP_DIVIDE, c->moving[a], c->rest[b]);
+    break;
+  case DVI__OP_WHERE: c->moving[i] = copy_apply(c, DVI__OP_WHERE, c->rest[a], c->moving[b]); break;
   case DVI__OP_MULTIPLY: c->moving[i] = moving_product(c, a, b); break;
   case DVI__OP_SQUARE:
-    c->moving[i] = is_zero(c, c->rest[a]) ? apply(c, DVI__OP_SQUARE, c->moving[a], 0)
-                                          : moving_product(c, a, a);
+    c->moving[i] = copy_is_zero(c, c->rest[a]) ? copy_apply(c, DVI__OP_SQUARE, c->moving[a], 0)
+                                               : moving_product(c, a, a);
     break;
-  default:
-    c->moving[i] = zero(c); /* of degree 0, or no polynomial of degree 2: those are not split */
+  default: c->moving[i] = copy_zero(c); /* of degree 0, or not split */
   }
 }
 
-/* Which nodes a root needs. */
-static void mark(const dvi__graph *graph, dvi__node root, char *needed)
+/* Mark the nodes that a root needs. */
+static void mark_needed(const dvi__graph *graph, dvi__node root, char *needed)
 {
   needed[root] = 1;
   for (int i = root; i >= 0; i--) {
@@ -124,7 +126,8 @@ static void free_work(copy *c, char *needed)
   dvi__heap_free(needed);
 }
 
-/* Z of a kernel, or P, into a kernel of its own, in the arena but for the nodes of its graph. */
+/* Copy Z of a kernel, or P, into a kernel of its own. The arena owns it, but for the nodes of its
+ * graph. */
 static bool copy_part(dvi_scene *scene, const dvi__kernel *from, int block, int as, int moving,
                       dvi__kernel *to)
 {
@@ -139,7 +142,7 @@ static bool copy_part(dvi_scene *scene, const dvi__kernel *from, int block, int 
   const int made = needed != NULL && c.graph != NULL && c.input != NULL && c.of_input != NULL &&
                    c.rest != NULL && (!moving || c.moving != NULL);
   if (made) {
-    mark(from->graph, from->root, needed);
+    mark_needed(from->graph, from->root, needed);
     copy_nodes(&c, needed);
     *to = (dvi__kernel){.graph = c.graph,
                         .root = moving ? c.moving[from->root] : c.rest[from->root],
@@ -160,8 +163,8 @@ void dvi__kernels_free(dvi__kernels *list)
   *list = (dvi__kernels){0};
 }
 
-/* Put a kernel, which is taken over, at the end of a list. A kernel that is zero is dropped. */
-static bool append(dvi_scene *scene, dvi__kernels *list, const dvi__kernel *kernel)
+/* Put a kernel at the end of a list, which takes it over. A kernel that is zero is dropped. */
+static bool append_kernel(dvi_scene *scene, dvi__kernels *list, const dvi__kernel *kernel)
 {
   double value;
   if (dvi__is_constant(kernel->graph, kernel->root, &value) && !(value < 0) && !(value > 0)) {
@@ -178,12 +181,12 @@ static bool append(dvi_scene *scene, dvi__kernels *list, const dvi__kernel *kern
   return true;
 }
 
-/* Append a copy of what a kernel's root needs. */
+/* Append a copy of the nodes that a kernel's root needs. */
 static bool append_needed(dvi_scene *scene, dvi__kernels *list, const dvi__kernel *kernel)
 {
   dvi__kernel needed;
   if (!copy_part(scene, kernel, DVI__BLOCKS, DVI__BLOCKS, 0, &needed)) return false;
-  return append(scene, list, &needed);
+  return append_kernel(scene, list, &needed);
 }
 
 bool dvi__kernels_add_node(dvi__context *c, dvi__node root, dvi__kernels *list)
@@ -230,7 +233,7 @@ bool dvi__kernels_moving(dvi_scene *scene, const dvi__kernels *of, int block, in
 
 /* ---- degrees ---- */
 
-static dvi__degree of_product(dvi__degree a, dvi__degree b)
+static dvi__degree degree_of_product(dvi__degree a, dvi__degree b)
 {
   const int degree = a.degree + b.degree;
   const int pure = (a.degree == 0 || (a.pure && !b.moves)) &&
@@ -238,28 +241,30 @@ static dvi__degree of_product(dvi__degree a, dvi__degree b)
   return (dvi__degree){degree > 3 ? 3 : degree, pure, a.moves || b.moves};
 }
 
-static dvi__degree of_input(const dvi__kernel_input *input, int block)
+static dvi__degree degree_of_input(const dvi__kernel_input *input, int block)
 {
-  if (input->is_data) return (dvi__degree){0, 1, 0};
-  return input->block == block ? (dvi__degree){1, 1, 0} : (dvi__degree){0, 1, 1};
+  if (input->is_data) return (dvi__degree){.pure = 1};
+  return input->block == block ? (dvi__degree){.degree = 1, .pure = 1}
+                               : (dvi__degree){.pure = 1, .moves = 1};
 }
 
-static dvi__degree of_other(dvi__degree a, dvi__degree b)
+static dvi__degree degree_of_other(dvi__degree a, dvi__degree b)
 {
-  if (a.degree > 0 || b.degree > 0) return (dvi__degree){3, 0, 1};
-  return (dvi__degree){0, 1, a.moves || b.moves};
+  if (a.degree > 0 || b.degree > 0) return (dvi__degree){.degree = 3, .moves = 1};
+  return (dvi__degree){.pure = 1, .moves = a.moves || b.moves};
 }
 
-static dvi__degree of_node(const dvi__kernel *kernel, int block, const dvi__degree *known, int i)
+static dvi__degree degree_of_node(const dvi__kernel *kernel, int block, const dvi__degree *known,
+                                  int i)
 {
-  static const dvi__degree none = {0, 1, 0};
+  static const dvi__degree none = {.pure = 1};
   const dvi__graph_node *node = &kernel->graph->node[i];
   switch (node->op) {
   case DVI__OP_CONSTANT: return none;
-  case DVI__OP_INPUT: return of_input(&kernel->input[node->a], block);
+  case DVI__OP_INPUT: return degree_of_input(&kernel->input[node->a], block);
   case DVI__OP_NEGATE: return known[node->a];
-  case DVI__OP_SQUARE: return of_product(known[node->a], known[node->a]);
-  case DVI__OP_MULTIPLY: return of_product(known[node->a], known[node->b]);
+  case DVI__OP_SQUARE: return degree_of_product(known[node->a], known[node->a]);
+  case DVI__OP_MULTIPLY: return degree_of_product(known[node->a], known[node->b]);
   case DVI__OP_ADD:
   case DVI__OP_SUBTRACT: {
     const dvi__degree a = known[node->a], b = known[node->b];
@@ -267,14 +272,14 @@ static dvi__degree of_node(const dvi__kernel *kernel, int block, const dvi__degr
                          a.moves || b.moves};
   }
   case DVI__OP_DIVIDE:
-    return known[node->b].degree > 0 ? of_other(known[node->a], known[node->b])
-                                     : of_product(known[node->a], known[node->b]);
+    return known[node->b].degree > 0 ? degree_of_other(known[node->a], known[node->b])
+                                     : degree_of_product(known[node->a], known[node->b]);
   case DVI__OP_WHERE:
-    return known[node->a].degree > 0 ? of_other(known[node->a], known[node->b])
-                                     : of_product(known[node->a], known[node->b]);
+    return known[node->a].degree > 0 ? degree_of_other(known[node->a], known[node->b])
+                                     : degree_of_product(known[node->a], known[node->b]);
   case DVI__OP_RAISE:
-  case DVI__OP_ATAN2: return of_other(known[node->a], known[node->b]);
-  default: return of_other(known[node->a], none);
+  case DVI__OP_ATAN2: return degree_of_other(known[node->a], known[node->b]);
+  default: return degree_of_other(known[node->a], none);
   }
 }
 
@@ -283,12 +288,13 @@ static int is_sum(dvi__op op)
   return op == DVI__OP_ADD || op == DVI__OP_SUBTRACT;
 }
 
-/* fits[i]: whether a node, of a sum all of its terms, is of degree 0, or of degree 2 and pure. */
+/* Set fits[i] to 1 if a node is of degree 0, or of degree 2 and pure. All terms of a sum must
+ * be. */
 static void find_fits(const dvi__kernel *kernel, int block, dvi__degree *known, char *fits)
 {
   for (int i = 0; i <= kernel->root; i++) {
     const dvi__graph_node *node = &kernel->graph->node[i];
-    known[i] = of_node(kernel, block, known, i);
+    known[i] = degree_of_node(kernel, block, known, i);
     fits[i] = is_sum(node->op) ? fits[node->a] && fits[node->b]
                                : known[i].degree == 0 || (known[i].degree == 2 && known[i].pure);
   }
@@ -307,7 +313,8 @@ bool dvi__kernel_other_term(dvi_scene *scene, const dvi__kernel *kernel, int blo
     *found = !fits[at];
     for (; is_sum(node[at].op); at = fits[node[at].a] ? node[at].b : node[at].a) sum = at;
     *span =
-        node[node[at].op == DVI__OP_INPUT ? sum : at].span; /* inputs are where they stand first */
+        /* an input has the span of its first use */
+        node[node[at].op == DVI__OP_INPUT ? sum : at].span;
   }
   dvi__heap_free(known);
   dvi__heap_free(fits);
@@ -318,7 +325,7 @@ bool dvi__kernel_degree(dvi_scene *scene, const dvi__kernel *kernel, int block, 
 {
   dvi__degree *known = dvi__heap_take((size_t)kernel->root + 1, sizeof *known);
   if (known == NULL) return dvi__scene_no_memory(scene);
-  for (int i = 0; i <= kernel->root; i++) known[i] = of_node(kernel, block, known, i);
+  for (int i = 0; i <= kernel->root; i++) known[i] = degree_of_node(kernel, block, known, i);
   *degree = known[kernel->root];
   dvi__heap_free(known);
   return true;
@@ -326,7 +333,7 @@ bool dvi__kernel_degree(dvi_scene *scene, const dvi__kernel *kernel, int block, 
 
 bool dvi__kernels_degree(dvi_scene *scene, const dvi__kernels *list, int block, dvi__degree *whole)
 {
-  *whole = (dvi__degree){0, 1, 0};
+  *whole = (dvi__degree){.pure = 1};
   for (int k = 0; k < list->count; k++) {
     dvi__degree one = {0};
     if (!dvi__kernel_degree(scene, &list->kernel[k], block, &one)) return false;

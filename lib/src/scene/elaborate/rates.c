@@ -5,7 +5,8 @@
 
 /* ---- rates and momenta ---- */
 
-/* A velocity where momenta are given: p/m, if the mass is a number for each coordinate. */
+/* Return a velocity where the state has momenta. It is p/m, if the mass is a number for each
+ * coordinate. */
 static dvi__node from_momentum(dvi__context *c, int input, dvi__span span)
 {
   const dvi__kernel_input of = c->input[input];
@@ -37,7 +38,7 @@ static dvi__node from_momentum(dvi__context *c, int input, dvi__span span)
   return dvi__apply(c->graph, DVI__OP_DIVIDE, p, m);
 }
 
-/* The rate of an input: of a coordinate its velocity, of the time 1, of data 0. */
+/* Find the rate of an input. That of a coordinate is its velocity, of the time 1, of data 0. */
 static bool input_rate(dvi__context *c, int input, dvi__span span, dvi__node *rate)
 {
   const dvi__kernel_input *of = &c->input[input];
@@ -47,7 +48,7 @@ static bool input_rate(dvi__context *c, int input, dvi__span span, dvi__node *ra
     *rate = dvi__constant(c->graph, 1);
   else if (of->block == DVI__VELOCITIES)
     return dvi__refuse(c, span, "the rate of a rate: there are no accelerations here");
-  else if ((c->may & DVI__SAYS_P) != 0)
+  else if ((c->may & DVI__MENTIONS_P) != 0)
     *rate = from_momentum(c, input, span);
   else if ((c->may & DVI__OF_STATE) != 0 && dvi__has_factors(c->scene))
     return dvi__input_velocity(c, input, rate);
@@ -56,7 +57,7 @@ static bool input_rate(dvi__context *c, int input, dvi__span span, dvi__node *ra
   return true;
 }
 
-/* The rates of all inputs that occur in a value; others 0. */
+/* Find the rates of all inputs that occur in a value. Others are 0. */
 static bool input_rates(dvi__context *c, dvi__value value, dvi__span span, int count, char *used,
                         dvi__node *rate)
 {
@@ -92,12 +93,13 @@ static dvi__value chain_rule(dvi__context *c, dvi__value value, dvi__span span)
   return result;
 }
 
-/* The momentum, or in Lagrangians the rate, of every number of a value; false if one is no
- * coordinate, or has none of its own. */
-static bool siblings(dvi__context *c, dvi__value value, dvi__value *result)
+/* Find the momentum, or in Lagrangians the rate, of every number of a value. Returns false if one
+ * is no coordinate, or has none of its own. */
+static bool find_siblings(dvi__context *c, dvi__value value, dvi__value *result)
 {
   const int size = dvi__value_size(value),
-            of_state = (c->may & (DVI__SAYS_P | DVI__OF_STATE)) != 0 && dvi__has_factors(c->scene);
+            of_state = (c->may & (DVI__MENTIONS_P | DVI__OF_STATE)) != 0 &&
+                       dvi__has_factors(c->scene);
   *result = dvi__value_make(c, value.shape.rank, value.shape.rows, value.shape.columns);
   for (int i = 0; i < size && !dvi__failed(*result); i++) {
     const dvi__graph_node *node = &c->graph->node[dvi__value_at(value, i)];
@@ -118,21 +120,21 @@ dvi__value dvi__rate_value(dvi__context *c, const dvi__expression *e)
   if (e->part[0]->form == DVI__FORM_RATE)
     return dvi__refused(
         dvi__refuse(c, e->span, "the rate of a rate: there are no accelerations here"));
-  if (!dvi__may_stand(c, DVI__SAYS_V, e->span)) return DVI__NO_VALUE;
+  if (!dvi__check_mention(c, DVI__MENTIONS_V, e->span)) return DVI__NO_VALUE;
   const dvi__value value = dvi__elaborate(c, e->part[0]);
   if (dvi__failed(value)) return DVI__NO_VALUE;
-  if ((c->may & DVI__SAYS_P) == 0 && siblings(c, value, &result)) return result;
+  if ((c->may & DVI__MENTIONS_P) == 0 && find_siblings(c, value, &result)) return result;
   return chain_rule(c, value, e->span);
 }
 
 dvi__value dvi__momentum_value(dvi__context *c, const dvi__expression *e)
 {
   dvi__value result;
-  if (!dvi__may_stand(c, DVI__SAYS_P, e->span)) return DVI__NO_VALUE;
+  if (!dvi__check_mention(c, DVI__MENTIONS_P, e->span)) return DVI__NO_VALUE;
   result = dvi__whole_momentum(c, e);
   if (!dvi__failed(result) || c->scene->complaint->status != DVI_OK) return result;
   const dvi__value value = dvi__elaborate(c, e->part[0]);
   if (dvi__failed(value)) return DVI__NO_VALUE;
-  if (siblings(c, value, &result)) return result;
+  if (find_siblings(c, value, &result)) return result;
   return dvi__refused(dvi__refuse(c, e->part[0]->span, "p is taken of a coordinate"));
 }

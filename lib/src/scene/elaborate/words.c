@@ -16,7 +16,7 @@ static const char *const others[] = {"t",         "pi",  "p",    "dot",   "cross
                                      "transpose", "sum", "turn", "omega", "rate",  "min",
                                      "max",       "if",  "and",  "or",    "not"};
 
-/* Words that may be names, too: of a frequency, say, or of a bound. */
+/* Words that may be names, too, of a frequency, say, or of a bound. */
 static const char *const free_words[] = {"turn", "omega", "rate",  "min",
                                          "max",  "sign",  "floor", "ceil"};
 

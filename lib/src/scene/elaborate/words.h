@@ -1,4 +1,4 @@
-/* The words of the language of expressions: functions and constants. */
+/* The words of the language of expressions, functions and constants. */
 #ifndef DVI_SCENE_WORDS_H
 #define DVI_SCENE_WORDS_H
 #include "expr/graph.h"
@@ -10,10 +10,10 @@ typedef struct dvi__function_word {
   int arguments;
 } dvi__function_word;
 
-/* The function of this name, or NULL. */
+/* Return the function of this name, or NULL. */
 const dvi__function_word *dvi__function_word_of(const char *name);
 
-/* All words, for messages; and whether a text is one that no name may be. */
+/* List all words, for messages. dvi__is_word tells a text that no name may be. */
 int dvi__word_count(void);
 const char *dvi__word(int i);
 bool dvi__is_word(const char *text);

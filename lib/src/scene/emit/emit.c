@@ -1,4 +1,4 @@
-/* Text, numbers and arrays of emitted files, and what they begin with. */
+/* Text, numbers and arrays of emitted files, and the beginning of these files. */
 #include "scene/emit/emit.h"
 
 #include <dvi/number.h>
@@ -18,7 +18,7 @@ struct dvi__emitted_array {
   const void *address;
 };
 
-static void put(dvi__emitter *out, const char *text, size_t size)
+static void write_text(dvi__emitter *out, const char *text, size_t size)
 {
   if (out->failed == DVI_OK && out->write(text, size, out->user) != 0) out->failed = DVI_IO_ERROR;
 }
@@ -30,10 +30,10 @@ void dvi__emit(dvi__emitter *out, const char *format, ...)
   va_start(arguments, format);
   const int length = dvi_number_vprint(text, sizeof text, format, arguments);
   va_end(arguments);
-  if (length > 0) put(out, text, length < TEXT_MAX ? (size_t)length : TEXT_MAX);
+  if (length > 0) write_text(out, text, length < TEXT_MAX ? (size_t)length : TEXT_MAX);
 }
 
-/* The fewest digits that give the same number; a point or an exponent makes it a double. */
+/* Write the fewest digits that give the same number. A point or an exponent makes it a double. */
 void dvi__emit_number(dvi__emitter *out, double value)
 {
   char text[DVI_NUMBER_SIZE];
@@ -45,7 +45,7 @@ void dvi__emit_number(dvi__emitter *out, double value)
   dvi__emit(out, "%s%s", text, strpbrk(text, ".e") == NULL ? ".0" : "");
 }
 
-/* The number of an array that was written before, or -1. */
+/* Return the number of an array that was written before, or -1. */
 static int find_array(const dvi__emitter *out, const void *address)
 {
   for (int i = 0; i < out->array_count; i++)
@@ -53,7 +53,7 @@ static int find_array(const dvi__emitter *out, const void *address)
   return -1;
 }
 
-/* A number for a new array. */
+/* Return a number for a new array. */
 static int new_array(dvi__emitter *out, const void *address)
 {
   struct dvi__emitted_array *array = dvi__heap_grow(out->array, (size_t)out->array_count,
@@ -67,7 +67,7 @@ static int new_array(dvi__emitter *out, const void *address)
   return out->array_count++;
 }
 
-static int emit_list(dvi__emitter *out, const void *key, int count, const int *value)
+static int emit_new_list(dvi__emitter *out, const void *key, int count, const int *value)
 {
   const int number = new_array(out, key);
   dvi__emit(out, "static const int dvi_list_%d[] = {", number);
@@ -80,13 +80,13 @@ static int emit_list(dvi__emitter *out, const void *key, int count, const int *v
 int dvi__emit_ints_of(dvi__emitter *out, const void *key, int count, const int *value)
 {
   const int known = key != NULL ? find_array(out, key) : -1;
-  return known >= 0 ? known : emit_list(out, key, count, value);
+  return known >= 0 ? known : emit_new_list(out, key, count, value);
 }
 
 int dvi__emit_ints(dvi__emitter *out, int count, const int *value)
 {
   const int known = find_array(out, value);
-  return known >= 0 ? known : emit_list(out, value, count, value);
+  return known >= 0 ? known : emit_new_list(out, value, count, value);
 }
 
 int dvi__emit_lists(dvi__emitter *out, int count, const int *list)
@@ -121,11 +121,11 @@ dvi_status dvi__emit_end(dvi__emitter *out)
   return out->failed;
 }
 
-/* Results shall not depend on the machine, hence no contraction of products and sums; loops with
- * roots become vectors only if roots leave errno alone, and with gcc 12 at -O2 if they are asked
- * to. Clang shall not take several vectors at once, which is more than the few points there are.
- * DVI_LANES may be defined, as nothing, for a program that is compiled sooner and runs on one
- * instruction set. */
+/* The beginning of every file. Results must not depend on the machine, hence no contraction of
+ * products and sums. Loops with roots become vectors only if roots leave errno alone, and with gcc
+ * 12 at -O2 only if they are asked to. Clang must not take several vectors at once, which is more
+ * than the few points there are. DVI_LANES may be defined, as nothing, for a program that is
+ * compiled sooner and runs on one instruction set. */
 static const char *const beginning[] = {
     "#include <float.h>\n"
     "#include <math.h>\n"
@@ -198,5 +198,5 @@ static const char *const beginning[] = {
 void dvi__emit_begin(dvi__emitter *out)
 {
   for (size_t i = 0; i < sizeof beginning / sizeof *beginning; i++)
-    put(out, beginning[i], strlen(beginning[i]));
+    write_text(out, beginning[i], strlen(beginning[i]));
 }

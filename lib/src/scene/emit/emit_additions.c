@@ -1,5 +1,5 @@
-/* How the rows of a unit are added to the entries of an array: one loop over all additions, whose
- * numbers are tables, since compilers take more than their share of time for a function of very
+/* Additions of the rows of a unit to the entries of an array. One loop runs over all additions,
+ * whose numbers are tables. Compilers take more than their share of time for a function of very
  * many loops. */
 #include "scene/emit/emit_parts.h"
 #include "text/heap.h"
@@ -10,7 +10,7 @@ typedef struct addition {
   int row, sign;
 } addition;
 
-/* --- Which units add all their elements to one entry. --- */
+/* ---- units that add all their elements to one entry ---- */
 
 int dvi__is_one_entry(const dvi__entries *entries, int first)
 {
@@ -21,8 +21,7 @@ int dvi__is_one_entry(const dvi__entries *entries, int first)
          minor.stride + entries->scale * major.stride == 0;
 }
 
-/* Choose how rows are folded; where this is a matter of the unit, flags [count][units] are
- * written. */
+/* Choose how rows are folded. If that depends on the unit, flags [count][units] are written. */
 static dvi_status declare_folds(dvi__emitter *out, int elements, int count, const addition *list,
                                 dvi__additions *all)
 {
@@ -38,16 +37,16 @@ static dvi_status declare_folds(dvi__emitter *out, int elements, int count, cons
   return DVI_OK;
 }
 
-/* --- Tables. --- */
+/* ---- tables ---- */
 
 static int emit_new(dvi__emitter *out, int count, const int *value)
 {
   return dvi__emit_ints_of(out, NULL, count, value);
 }
 
-/* Numbers of all additions; those that differ are written. */
-static dvi__numbers declare(dvi__emitter *out, int count, const int *value,
-                            int (*write)(dvi__emitter *out, int count, const int *value))
+/* Declare a number for every addition. A table is written if they differ. */
+static dvi__numbers declare_numbers(dvi__emitter *out, int count, const int *value,
+                                    int (*write)(dvi__emitter *out, int count, const int *value))
 {
   for (int a = 1; a < count; a++)
     if (value[a] != value[0]) return (dvi__numbers){write(out, count, value), 0};
@@ -59,7 +58,7 @@ static int is_listed(const dvi__entries *entries)
   return entries->minor.list != NULL || (entries->scale != 0 && entries->major.list != NULL);
 }
 
-/* The list of an addition's entries, less `start`. */
+/* Declare the list of an addition's entries, less `start`. */
 static dvi_status declare_list(dvi__emitter *out, int elements, const dvi__entries *entries,
                                int *list, int *start)
 {
@@ -77,9 +76,9 @@ static dvi_status declare_list(dvi__emitter *out, int elements, const dvi__entri
   return DVI_OK;
 }
 
-/* Entries are start + stride * e for all additions, or start + list[e] for all. */
-static dvi_status declare_places(dvi__emitter *out, int elements, int count, const addition *list,
-                                 int *value, dvi__additions *all)
+/* Declare entries, which are start + stride * e for all additions, or start + list[e] for all. */
+static dvi_status declare_entry_places(dvi__emitter *out, int elements, int count,
+                                       const addition *list, int *value, dvi__additions *all)
 {
   int *start = value, *step = value + count;
   for (int a = 0; a < count; a++) all->listed |= is_listed(list[a].entries);
@@ -92,8 +91,8 @@ static dvi_status declare_places(dvi__emitter *out, int elements, int count, con
                                   : DVI_OK;
     if (status != DVI_OK) return status;
   }
-  all->start = declare(out, count, start, emit_new);
-  all->step = declare(out, count, step, all->listed ? dvi__emit_lists : emit_new);
+  all->start = declare_numbers(out, count, start, emit_new);
+  all->step = declare_numbers(out, count, step, all->listed ? dvi__emit_lists : emit_new);
   return DVI_OK;
 }
 
@@ -106,15 +105,15 @@ static dvi_status declare_tables(dvi__emitter *out, int elements, int count, con
     value[a] = list[a].row;
     value[count + a] = list[a].sign;
   }
-  all->row = declare(out, count, value, emit_new);
-  all->sign = declare(out, count, value + count, emit_new);
-  const dvi_status status = declare_places(out, elements, count, list, value, all);
+  all->row = declare_numbers(out, count, value, emit_new);
+  all->sign = declare_numbers(out, count, value + count, emit_new);
+  const dvi_status status = declare_entry_places(out, elements, count, list, value, all);
   dvi__heap_free(value);
   return status != DVI_OK ? status : declare_folds(out, elements, count, list, all);
 }
 
-/* The part's additions to an array, in their order. */
-static int collect(const dvi__part *part, int array, addition *list)
+/* Collect the part's additions to an array, in their order. */
+static int collect_additions(const dvi__part *part, int array, addition *list)
 {
   int count = 0;
   for (int k = 0; k < part->target_count; k++) {
@@ -132,7 +131,7 @@ dvi_status dvi__additions_declare(dvi__emitter *out, const dvi__part *part, int 
 {
   addition *list = dvi__heap_take(2 * (size_t)part->target_count + 1, sizeof *list);
   if (list == NULL) return DVI_NO_MEMORY;
-  *all = (dvi__additions){.count = collect(part, array, list)};
+  *all = (dvi__additions){.count = collect_additions(part, array, list)};
   const dvi_status status = all->count > 0
                                 ? declare_tables(out, part->kernel->elements, all->count, list, all)
                                 : DVI_OK;
@@ -140,7 +139,7 @@ dvi_status dvi__additions_declare(dvi__emitter *out, const dvi__part *part, int 
   return status;
 }
 
-/* --- The loop. --- */
+/* ---- the loop ---- */
 
 static void emit_number_of(dvi__emitter *out, dvi__numbers numbers)
 {
@@ -150,7 +149,7 @@ static void emit_number_of(dvi__emitter *out, dvi__numbers numbers)
     dvi__emit(out, "dvi_list_%d[a]", numbers.list);
 }
 
-/* The entry of element first + e. */
+/* Write the entry of element first + e. */
 static void emit_entry(dvi__emitter *out, const dvi__additions *all)
 {
   emit_number_of(out, all->start);
@@ -166,7 +165,7 @@ static void emit_entry(dvi__emitter *out, const dvi__additions *all)
   }
 }
 
-/* `row` and `left`: what is added, and of how many elements it has numbers. */
+/* Write `row` and `left`, the numbers that are added and how many elements they have. */
 static void emit_row(dvi__emitter *out, const dvi__additions *all, int elements)
 {
   dvi__emit(out, "    const double *row = y[");

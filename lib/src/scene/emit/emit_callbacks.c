@@ -1,4 +1,4 @@
-/* A term as C: its functions by emit.h, the callbacks around them, and the object that points to
+/* A term as C. It has functions by emit.h, callbacks around them, and the object that points to
  * them. */
 #include <stdio.h>
 #include <string.h>
@@ -6,7 +6,7 @@
 #include "scene/emit/emit_scene.h"
 #include "text/heap.h"
 
-enum { ENTRIES_MAX = 65536 }; /* of the gradients of constraints, which wait on the stack */
+enum { ENTRIES_MAX = 65536 }; /* entries of the gradients of constraints, which wait on the stack */
 
 void dvi__emit_text(dvi__emitter *out, const char *text)
 {
@@ -18,8 +18,8 @@ void dvi__emit_text(dvi__emitter *out, const char *text)
 
 /* ---- callbacks ---- */
 
-/* Where the entries of d phi/dq, then those of d phi/dp, stand when they are gradients, column by
- * column. */
+/* Write the positions of the entries of d phi/dq, then those of d phi/dp, when they are gradients,
+ * column by column. */
 static dvi_status emit_order(dvi__emitter *out, const dvi__scene_term *term, int *list)
 {
   const int count = term->count, *q_start = term->qw.start, *p_start = term->vw.start;
@@ -35,7 +35,7 @@ static dvi_status emit_order(dvi__emitter *out, const dvi__scene_term *term, int
   return DVI_OK;
 }
 
-/* The call for gradients of constraints: d phi/dq and d phi/dp together. */
+/* Write the call for gradients of constraints, d phi/dq and d phi/dp together. */
 static void emit_joined_call(dvi__emitter *out, const dvi__scene_term *term, const char *function,
                              const char *arguments, int list)
 {
@@ -44,8 +44,8 @@ static void emit_joined_call(dvi__emitter *out, const dvi__scene_term *term, con
   dvi__emit(out, "  for (int e = 0; e < %d; e++) phi_z[e] = z[dvi_list_%d[e]];\n", all, list);
 }
 
-static dvi_status emit_function(dvi__emitter *out, const dvi__scene_term *term,
-                                const dvi__callback *c, const char *name, int *list)
+static dvi_status emit_callback_function(dvi__emitter *out, const dvi__scene_term *term,
+                                         const dvi__callback *c, const char *name, int *list)
 {
   const int lanes = strstr(c->name, "batch") != NULL;
   switch (c->asks) {
@@ -59,14 +59,14 @@ static dvi_status emit_function(dvi__emitter *out, const dvi__scene_term *term,
   return status != DVI_OK ? status : emit_order(out, term, list);
 }
 
-/* The function of a callback, and the callback that calls it. */
+/* Write the function of a callback, and the callback that calls it. */
 static dvi_status emit_callback(dvi__emitter *out, const dvi__emitted_term *term,
                                 const dvi__callback *c)
 {
   char function[64];
   int list = 0;
   (void)snprintf(function, sizeof function, "%s_%s_of", term->name, c->name);
-  const dvi_status status = emit_function(out, term->term, c, function, &list);
+  const dvi_status status = emit_callback_function(out, term->term, c, function, &list);
   if (status != DVI_OK) return status;
   dvi__emit(out, "static int %s_%s(%s, void *user)\n{\n", term->name, c->name, c->parameters);
   dvi__emit(out, "  (void)user;\n");
@@ -108,8 +108,8 @@ static void emit_pattern(dvi__emitter *out, const char *field, const int number[
     dvi__emit(out, "dvi_list_%d}", number[1]);
 }
 
-/* The gradients of constraints are columns for them, all other patterns have one for a
- * coordinate. */
+/* Return the columns of a pattern. The gradients of constraints are columns for them. All other
+ * patterns have one for a coordinate. */
 static int columns_of(const dvi__emitted_term *term, int k)
 {
   return k < 3 ? term->columns : term->term->count;

@@ -1,10 +1,10 @@
-/* What is added to each entry of a result, in its order. */
+/* The contributions to each entry of a result, in their order. */
 #include <stdlib.h>
 
 #include "scene/emit/emit_parts.h"
 #include "text/heap.h"
 
-static int by_entry(const void *first, const void *second)
+static int compare_contributions(const void *first, const void *second)
 {
   const dvi__contribution *a = first, *b = second;
   if (a->array != b->array) return a->array < b->array ? -1 : 1;
@@ -12,26 +12,27 @@ static int by_entry(const void *first, const void *second)
   return (a->order > b->order) - (a->order < b->order);
 }
 
-static int entry_of(const dvi__entries *entries, int e)
+static int contribution_entry(const dvi__entries *entries, int e)
 {
   return dvi__place_at(&entries->minor, e) +
          (entries->scale != 0 ? entries->scale * dvi__place_at(&entries->major, e) : 0);
 }
 
-static void append(dvi__contributions *all, const dvi__part *part, const dvi__destination *target,
-                   const dvi__entries *entries)
+static void append_contribution(dvi__contributions *all, const dvi__part *part,
+                                const dvi__destination *target, const dvi__entries *entries)
 {
   const int output = all->output_count + target->output;
   for (int e = 0; e < part->kernel->elements; e++, all->count++)
     all->list[all->count] = (dvi__contribution){
-        target->array, entry_of(entries, e), all->count, output, e, target->negative};
+        target->array, contribution_entry(entries, e), all->count, output, e, target->negative};
 }
 
-static void collect(const dvi__part *part, dvi__contributions *all)
+static void collect_contributions(const dvi__part *part, dvi__contributions *all)
 {
   for (int i = 0; i < part->target_count; i++) {
-    append(all, part, &part->target[i], &part->target[i].entry);
-    if (part->target[i].mirrored) append(all, part, &part->target[i], &part->target[i].mirror);
+    append_contribution(all, part, &part->target[i], &part->target[i].entry);
+    if (part->target[i].mirrored)
+      append_contribution(all, part, &part->target[i], &part->target[i].mirror);
   }
   all->output_count += part->program.output_count;
 }
@@ -43,8 +44,8 @@ dvi_status dvi__contributions_find(int part_count, const dvi__part *part, dvi__c
     most += 2 * (size_t)part[k].target_count * (size_t)part[k].kernel->elements;
   *all = (dvi__contributions){.list = dvi__heap_take(most, sizeof *all->list)};
   if (all->list == NULL) return DVI_NO_MEMORY;
-  for (int k = 0; k < part_count; k++) collect(&part[k], all);
-  qsort(all->list, (size_t)all->count, sizeof *all->list, by_entry);
+  for (int k = 0; k < part_count; k++) collect_contributions(&part[k], all);
+  qsort(all->list, (size_t)all->count, sizeof *all->list, compare_contributions);
   return DVI_OK;
 }
 

@@ -1,7 +1,7 @@
-/* Sums with kernels of many elements: for each of them a function of one unit of elements, whose
+/* Sums with kernels of many elements. Each kernel gets a function of one unit of elements. Its
  * results are kept until the unit is done and then added output by output, as the byte code does.
- * It is compiled for eight, four, two and one point, and for the flat rows of a chain: neighbours
- * in a row, whose points follow each other. */
+ * It is compiled for eight, four, two and one point, and for the flat rows of a chain, which are
+ * neighbours in a row whose points follow each other. */
 #include <stdio.h>
 
 #include "scene/emit/emit_parts.h"
@@ -9,9 +9,9 @@
 
 enum { ROOM = 8192, ROOM_MAX = 131072, TERMS_MAX = 1024 };
 
-/* --- Sums that are written out. --- */
+/* ---- sums that are written out ---- */
 
-/* How many terms the sums of a short part have. */
+/* Return how many terms the sums of a short part have. */
 static int terms_of(const dvi__part *part)
 {
   int additions = 0;
@@ -19,8 +19,8 @@ static int terms_of(const dvi__part *part)
   return additions * part->kernel->elements;
 }
 
-/* Whether all elements are one unit, of which every entry's sum is written out. */
-static int is_short(const dvi__part *part)
+/* Return 1 if all elements are one unit, of which every entry's sum is written out. */
+static int part_is_short(const dvi__part *part)
 {
   const int elements = part->kernel->elements;
   int few = elements <= DVI__UNIT && terms_of(part) <= TERMS_MAX;
@@ -32,9 +32,10 @@ static int is_short(const dvi__part *part)
   return few;
 }
 
-/* --- Arrays, before the functions. --- */
+/* ---- arrays, before the functions ---- */
 
-static void declare_places(dvi__emitter *out, const dvi__element_places *places, int elements)
+static void declare_element_places(dvi__emitter *out, const dvi__element_places *places,
+                                   int elements)
 {
   if (places->list != NULL) (void)dvi__emit_ints(out, elements, places->list);
 }
@@ -44,17 +45,18 @@ static dvi_status declare_arrays(dvi__emitter *out, const dvi__emitted_sum *own,
 {
   const int elements = part->kernel->elements;
   dvi_status status = DVI_OK;
-  for (int i = 0; i < part->variable_count; i++) declare_places(out, &part->variable[i], elements);
+  for (int i = 0; i < part->variable_count; i++)
+    declare_element_places(out, &part->variable[i], elements);
   for (int c = 0; c < part->column_count; c++)
     (void)dvi__emit_doubles(out, elements, part->column[c]);
-  for (int a = 0; a < own->sum->array_count && status == DVI_OK && !is_short(part); a++)
+  for (int a = 0; a < own->sum->array_count && status == DVI_OK && !part_is_short(part); a++)
     status = dvi__additions_declare(out, part, a, &additions[a]);
   return status;
 }
 
-/* --- A unit. --- */
+/* ---- a unit ---- */
 
-/* The place of element first + e. */
+/* Write the place of element first + e. */
 static void emit_place(dvi__emitter *out, const dvi__element_places *places, int elements)
 {
   if (places->list != NULL)
@@ -66,7 +68,7 @@ static void emit_place(dvi__emitter *out, const dvi__element_places *places, int
     dvi__emit(out, "(%d + %d * (first + e))", places->start, places->stride);
 }
 
-static void emit_inputs(dvi__emitter *out, const dvi__part *part, const int *name)
+static void emit_unit_inputs(dvi__emitter *out, const dvi__part *part, const int *name)
 {
   const int elements = part->kernel->elements;
   for (int i = 0; i < part->variable_count; i++) {
@@ -79,10 +81,10 @@ static void emit_inputs(dvi__emitter *out, const dvi__part *part, const int *nam
               name[part->variable_count + c], dvi__emit_doubles(out, elements, part->column[c]));
 }
 
-/* All entries of a short part, each with the sum of what is added to it, or to zero in arrays that
- * the part stores. */
-static dvi_status emit_entries(dvi__emitter *out, const dvi__emitted_sum *sum,
-                               const dvi__part *part, unsigned stored)
+/* Write all entries of a short part. Each is the sum of its contributions, added to zero in arrays
+ * that the part stores. */
+static dvi_status emit_short_entries(dvi__emitter *out, const dvi__emitted_sum *sum,
+                                     const dvi__part *part, unsigned stored)
 {
   dvi__contributions all;
   const dvi_status status = dvi__contributions_find(1, part, &all);
@@ -105,9 +107,9 @@ static dvi_status emit_entries(dvi__emitter *out, const dvi__emitted_sum *sum,
   return status;
 }
 
-/* Elements of a unit, and how many points are taken at once: all results of a unit stay in a near
- * cache, and what is written out is soon compiled. */
-static int unit_of(const dvi__part *part)
+/* Return the elements of a unit and choose how many points are taken at once. All results of a unit
+ * stay in a near cache, and the code is soon compiled. */
+static int choose_unit(const dvi__part *part)
 {
   return part->kernel->elements < DVI__UNIT ? part->kernel->elements : DVI__UNIT;
 }
@@ -115,8 +117,8 @@ static int unit_of(const dvi__part *part)
 static int points_of(const dvi__emitted_sum *own, const dvi__part *part)
 {
   int points = own->points;
-  while (points > 1 && part->program.output_count * unit_of(part) * points > ROOM) points /= 2;
-  while (points > 1 && is_short(part) && terms_of(part) * points > TERMS_MAX) points /= 2;
+  while (points > 1 && part->program.output_count * choose_unit(part) * points > ROOM) points /= 2;
+  while (points > 1 && part_is_short(part) && terms_of(part) * points > TERMS_MAX) points /= 2;
   return points;
 }
 
@@ -134,14 +136,14 @@ static dvi_status emit_unit(dvi__emitter *out, const dvi__emitted_sum *own, int 
   dvi__emit(out, "    const ptrdiff_t n, ptrdiff_t k");
   dvi__emit_parameters(out, own);
   dvi__emit(out, ")\n{\n");
-  const int lanes = unit_of(part) * points_of(own, part);
+  const int lanes = choose_unit(part) * points_of(own, part);
   dvi__emit(out, "  double y[%d][%d], sum[%d];\n", program->output_count, lanes, lanes);
   dvi__emit(out, "  int64_t unusual = 0;\n  (void)careful, (void)first, (void)sum");
   dvi__emit_mentions(out, own);
   dvi__emit_shifts(out, own, part);
   dvi__emit(out, "  DVI_INDEPENDENT\n  for (int e = 0; e < elements; e++) {\n    DVI_INDEPENDENT\n "
                  "   for (int p = 0; p < points; p++) {\n");
-  emit_inputs(out, part, name + program->row_count);
+  emit_unit_inputs(out, part, name + program->row_count);
   dvi__emit_program(out, program, "      ", name, &next);
   for (int i = 0; i < program->output_count; i++)
     dvi__emit(out, "      y[%d][e * points + p] = r%d;\n", i,
@@ -149,24 +151,24 @@ static dvi_status emit_unit(dvi__emitter *out, const dvi__emitted_sum *own, int 
   dvi__emit(out, "    }\n  }\n");
   dvi__heap_free(name);
   dvi_status status = DVI_OK;
-  if (is_short(part)) status = emit_entries(out, own, part, k == 0 ? stored : 0);
-  for (int a = 0; a < own->sum->array_count && !is_short(part); a++)
+  if (part_is_short(part)) status = emit_short_entries(out, own, part, k == 0 ? stored : 0);
+  for (int a = 0; a < own->sum->array_count && !part_is_short(part); a++)
     dvi__additions_emit(out, &additions[a], own->array[a], part->kernel->elements);
   dvi__emit(out, "  return unusual;\n}\n");
   return status;
 }
 
-/* --- All units, at all points. --- */
+/* ---- all units, at all points ---- */
 
 static int is_row(const dvi__element_places *places)
 {
   return places->list == NULL && places->stride == 1;
 }
 
-/* Whether elements are neighbours in all that they read and write. */
+/* Return 1 if elements are neighbours in all that they read and write. */
 static int is_flat(const dvi__part *part)
 {
-  int flat = part->column_count == 0 && !is_short(part);
+  int flat = part->column_count == 0 && !part_is_short(part);
   for (int i = 0; i < part->variable_count; i++) flat &= is_row(&part->variable[i]);
   for (int k = 0; k < part->target_count; k++) {
     const dvi__destination *target = &part->target[k];
@@ -176,8 +178,8 @@ static int is_flat(const dvi__part *part)
   return flat;
 }
 
-static void emit_call(dvi__emitter *out, const dvi__emitted_sum *own, int k,
-                      const char *first_arguments)
+static void emit_unit_call(dvi__emitter *out, const dvi__emitted_sum *own, int k,
+                           const char *first_arguments)
 {
   dvi__emit(out, "unusual |= %s_%d(careful, %s", own->name, k, first_arguments);
   dvi__emit_arguments(out, own);
@@ -197,26 +199,26 @@ static void emit_calls(dvi__emitter *out, const dvi__emitted_sum *own, int k)
   dvi__emit(out, "    ptrdiff_t k = 0;\n");
   if (is_flat(part)) {
     dvi__emit(out, "    if (n <= %d) {\n      ", most);
-    emit_call(out, own, k, "elements * (int)n, first, 1, n, 0");
+    emit_unit_call(out, own, k, "elements * (int)n, first, 1, n, 0");
     dvi__emit(out, "      continue;\n    }\n");
   }
   for (int points = most; points > 1; points /= 2) {
     char arguments[40];
     (void)snprintf(arguments, sizeof arguments, "%d, first, elements, n, k", points);
     dvi__emit(out, "    for (; !careful && k + %d <= n; k += %d) ", points, points);
-    emit_call(out, own, k, arguments);
+    emit_unit_call(out, own, k, arguments);
   }
   dvi__emit(out, "    for (; k < n; k++) ");
-  emit_call(out, own, k, "1, first, elements, n, k");
+  emit_unit_call(out, own, k, "1, first, elements, n, k");
   dvi__emit(out, "  }\n");
 }
 
-/* The arrays that the first part stores, so that they need not be zero before. */
+/* Find the arrays that the first part stores, so that they need not be zero before. */
 static dvi_status find_stored(const dvi__emitted_sum *own, unsigned *stored)
 {
   dvi__contributions all;
   *stored = 0;
-  if (own->sum->part_count == 0 || !is_short(own->sum->part)) return DVI_OK;
+  if (own->sum->part_count == 0 || !part_is_short(own->sum->part)) return DVI_OK;
   const dvi_status status = dvi__contributions_find(1, own->sum->part, &all);
   for (int a = 0; a < own->sum->array_count && status == DVI_OK; a++)
     if (own->sum->wanted[a] && dvi__entries_written(&all, a) == own->sum->size[a])
@@ -227,21 +229,22 @@ static dvi_status find_stored(const dvi__emitted_sum *own, unsigned *stored)
 
 static int is_too_large(const dvi__part *part)
 {
-  return (long)part->program.output_count * unit_of(part) > ROOM_MAX;
+  return (long)part->program.output_count * choose_unit(part) > ROOM_MAX;
 }
 
 dvi_status dvi__emit_elements(dvi__emitter *out, const dvi__emitted_sum *own)
 {
   unsigned stored;
   dvi_status status = find_stored(own, &stored);
-  for (int k = 0; k < own->sum->part_count && status == DVI_OK; k++) {
-    dvi__additions additions[DVI__PAIRS];
-    status = is_too_large(&own->sum->part[k])
-                 ? DVI_BAD_SIZE
-                 : declare_arrays(out, own, &own->sum->part[k], additions);
-    if (status == DVI_OK) status = emit_unit(out, own, k, additions, stored);
-  }
   if (status != DVI_OK) return status;
+  for (int k = 0; k < own->sum->part_count; k++) {
+    dvi__additions additions[DVI__PAIRS];
+    if (is_too_large(&own->sum->part[k])) return DVI_BAD_SIZE;
+    status = declare_arrays(out, own, &own->sum->part[k], additions);
+    if (status != DVI_OK) return status;
+    status = emit_unit(out, own, k, additions, stored);
+    if (status != DVI_OK) return status;
+  }
   dvi__emit(out, "DVI_INLINE int %s_at(const int careful, const ptrdiff_t n", own->name);
   dvi__emit_parameters(out, own);
   dvi__emit(out, ")\n{\n  int64_t unusual = 0;\n");

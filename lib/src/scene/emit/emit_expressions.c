@@ -1,9 +1,9 @@
-/* Sums whose kernels have one element each: one straight line, in a loop over points. */
+/* Sums whose kernels have one element each. They are one straight line, in a loop over points. */
 
 #include "scene/emit/emit_parts.h"
 #include "text/heap.h"
 
-static void emit_inputs(dvi__emitter *out, const dvi__part *part, const int *name)
+static void emit_point_inputs(dvi__emitter *out, const dvi__part *part, const int *name)
 {
   for (int i = 0; i < part->variable_count; i++)
     dvi__emit(out, "    const double r%d = %s[%d * n + k];\n", name[i],
@@ -15,13 +15,13 @@ static void emit_inputs(dvi__emitter *out, const dvi__part *part, const int *nam
   }
 }
 
-/* The lines of one part; the names of its results are `made`. */
+/* Write the lines of one part. `made` are the names of its results. */
 static dvi_status emit_part(dvi__emitter *out, const dvi__part *part, int *next, int *made)
 {
   const dvi__program *program = &part->program;
   int *name = dvi__name_rows(part, next);
   if (name == NULL) return DVI_NO_MEMORY;
-  emit_inputs(out, part, name + program->row_count);
+  emit_point_inputs(out, part, name + program->row_count);
   dvi__emit_program(out, program, "    ", name, next);
   for (int i = 0; i < program->output_count; i++)
     made[i] = name[program->row_count - program->output_count + i];
@@ -29,9 +29,9 @@ static dvi_status emit_part(dvi__emitter *out, const dvi__part *part, int *next,
   return DVI_OK;
 }
 
-/* The entries, each the sum of what is added to it; `name` are the outputs'. */
-static void emit_entries(dvi__emitter *out, const dvi__emitted_sum *sum,
-                         const dvi__contributions *all, const int *name)
+/* Write the entries, each as the sum of its contributions. `name` are the names of outputs. */
+static void emit_point_entries(dvi__emitter *out, const dvi__emitted_sum *sum,
+                               const dvi__contributions *all, const int *name)
 {
   for (int i = 0; i < all->count; i++) {
     const dvi__contribution *own = &all->list[i];
@@ -44,7 +44,7 @@ static void emit_entries(dvi__emitter *out, const dvi__emitted_sum *sum,
   if (all->count > 0) dvi__emit(out, ";\n");
 }
 
-/* Arrays that are not written in full are zero elsewhere. */
+/* Write zeros to arrays that are not written in full. */
 static void emit_zeros(dvi__emitter *out, const dvi__emitted_sum *own,
                        const dvi__contributions *all)
 {
@@ -68,7 +68,7 @@ static dvi_status emit_body(dvi__emitter *out, const dvi__emitted_sum *own,
   for (int k = 0; k < sum->part_count && status == DVI_OK;
        made += sum->part[k++].program.output_count)
     status = emit_part(out, &sum->part[k], &next, made);
-  emit_entries(out, own, all, name);
+  emit_point_entries(out, own, all, name);
   dvi__emit(out, "  }\n  return unusual != 0;\n}\n");
   return status;
 }

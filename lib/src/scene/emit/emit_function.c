@@ -18,9 +18,9 @@ int *dvi__name_rows(const dvi__part *part, int *next)
   return name;
 }
 
-/* --- Parameters. --- */
+/* ---- parameters ---- */
 
-/* Blocks and arrays, with something in front of each. */
+/* Write blocks and arrays, with something in front of each. */
 static void emit_names(dvi__emitter *out, const dvi__emitted_sum *own, const char *before)
 {
   for (int b = 0; b < DVI__BLOCKS; b++) dvi__emit(out, "%s%s", before, dvi__block_name[b]);
@@ -66,7 +66,7 @@ void dvi__emit_zeros(dvi__emitter *out, const dvi__emitted_sum *own, int array)
             own->array[array], own->sum->size[array]);
 }
 
-/* --- Functions. --- */
+/* ---- functions ---- */
 
 static int has_one_element(const dvi__function_sum *sum)
 {
@@ -82,15 +82,15 @@ static int has_inverse_roots(const dvi__function_sum *sum)
   return 0;
 }
 
-static void emit_head(dvi__emitter *out, const dvi__emitted_sum *own, const char *kind,
-                      const char *ending)
+static void emit_function_head(dvi__emitter *out, const dvi__emitted_sum *own, const char *kind,
+                               const char *ending)
 {
   dvi__emit(out, "%sstatic void %s%s(int count", kind, own->name, ending);
   dvi__emit_parameters(out, own);
   dvi__emit(out, ")\n{\n");
 }
 
-static void emit_call(dvi__emitter *out, const dvi__emitted_sum *own, const char *function)
+static void emit_function_call(dvi__emitter *out, const dvi__emitted_sum *own, const char *function)
 {
   dvi__emit(out, "%s%s", own->name, function);
   dvi__emit_arguments(out, own);
@@ -104,23 +104,23 @@ static dvi_status emit_sum(dvi__emitter *out, const dvi__emitted_sum *own)
                                                       : dvi__emit_elements(out, own);
   if (status != DVI_OK) return status;
   if (may_be_unusual) {
-    emit_head(out, own, "DVI_SELDOM ", "_careful");
+    emit_function_head(out, own, "DVI_SELDOM ", "_careful");
     dvi__emit(out, "  ");
-    emit_call(out, own, "_at(1, count");
+    emit_function_call(out, own, "_at(1, count");
     dvi__emit(out, ";\n}\n");
   }
-  emit_head(out, own, own->points > 1 ? "DVI_LANES " : "", "");
+  emit_function_head(out, own, own->points > 1 ? "DVI_LANES " : "", "");
   dvi__emit(out, may_be_unusual ? "  if (" : "  ");
-  emit_call(out, own, "_at(0, count");
+  emit_function_call(out, own, "_at(0, count");
   if (may_be_unusual) {
     dvi__emit(out, ") ");
-    emit_call(out, own, "_careful(count");
+    emit_function_call(out, own, "_careful(count");
   }
   dvi__emit(out, ";\n}\n\n");
   return out->failed;
 }
 
-/* The sum is derived if need be; names are those of its arrays. */
+/* Write a kind of result, deriving the sum if need be. `names` are those of its arrays. */
 static dvi_status emit_derived(dvi__emitter *out, dvi__function *function, dvi__derived derived,
                                const char *wanted, const dvi__emitted_sum *named)
 {

@@ -1,4 +1,4 @@
-/* Programs as C: each instruction is a line or a few, each result a new name. */
+/* Programs as C. Each instruction is a line or a few, and each result a new name. */
 #include <math.h>
 #include <stddef.h>
 
@@ -11,13 +11,13 @@ typedef struct emission {
   int *name, *next, rows; /* name [rows] of registers, then of inputs */
 } emission;
 
-static int name_of(const emission *e, int row)
+static int name_of_row(const emission *e, int row)
 {
   return row >= 0 ? e->name[row] : e->name[e->rows + ~row];
 }
 
-/* What an operation is in C: a, b and c are its operands, v its value. NULL: a function, or more
- * than a line. */
+/* Return an operation in C, with operands a, b and c and the value v. NULL for a function, or for
+ * more than a line. */
 static const char *formula_of(int op)
 {
   switch (op) {
@@ -52,7 +52,7 @@ static const char *function_of(int op)
 }
 
 /* Begin a line that defines a new name. */
-static int define(const emission *e)
+static int begin_definition(const emission *e)
 {
   dvi__emit(e->out, "%sconst double r%d = ", e->indent, *e->next);
   return (*e->next)++;
@@ -60,58 +60,58 @@ static int define(const emission *e)
 
 static int emit_formula(const emission *e, const dvi__instruction *at, const char *formula)
 {
-  const int made = define(e);
+  const int made = begin_definition(e);
   for (const char *c = formula; *c != '\0'; c++)
     if (*c == 'v')
       dvi__emit_number(e->out, at->value);
     else if (*c == 'a')
-      dvi__emit(e->out, "r%d", name_of(e, at->a));
+      dvi__emit(e->out, "r%d", name_of_row(e, at->a));
     else if (*c == 'b')
-      dvi__emit(e->out, "r%d", name_of(e, at->b));
+      dvi__emit(e->out, "r%d", name_of_row(e, at->b));
     else if (*c == 'c')
-      dvi__emit(e->out, "r%d", name_of(e, at->c));
+      dvi__emit(e->out, "r%d", name_of_row(e, at->c));
     else
       dvi__emit(e->out, "%c", *c);
   dvi__emit(e->out, ";\n");
   return made;
 }
 
-static int emit_function(const emission *e, const dvi__instruction *at)
+static int emit_math_function(const emission *e, const dvi__instruction *at)
 {
   const int two = at->op == DVI__OP_RAISE || at->op == DVI__OP_ATAN2;
-  const int made = define(e);
-  dvi__emit(e->out, "%s(r%d", function_of(at->op), name_of(e, at->a));
-  if (two) dvi__emit(e->out, ", r%d", name_of(e, at->b));
+  const int made = begin_definition(e);
+  dvi__emit(e->out, "%s(r%d", function_of(at->op), name_of_row(e, at->a));
+  if (two) dvi__emit(e->out, ", r%d", name_of_row(e, at->b));
   dvi__emit(e->out, ");\n");
   return made;
 }
 
 static int emit_product(const emission *e, int a, int b)
 {
-  const int made = define(e);
+  const int made = begin_definition(e);
   dvi__emit(e->out, "r%d * r%d;\n", a, b);
   return made;
 }
 
-/* a^n by squares of squares, from the lowest bit of n on. */
+/* Write a^n by squares of squares, from the lowest bit of n on. */
 static int emit_whole_power(const emission *e, const dvi__instruction *at)
 {
-  int base = name_of(e, at->a), product = -1;
+  int base = name_of_row(e, at->a), product = -1;
   for (unsigned left = (unsigned)fabs(at->value); left != 0; left /= 2) {
     if (left % 2 != 0) product = product < 0 ? base : emit_product(e, product, base);
     if (left > 1) base = emit_product(e, base, base);
   }
   if (at->value > 0) return product;
-  const int made = define(e);
+  const int made = begin_definition(e);
   dvi__emit(e->out, "1.0 / r%d;\n", product);
   return made;
 }
 
-/* The root of a, or one over it, times whole powers. */
+/* Write the root of a, or one over it, times whole powers. */
 static int emit_half_power(const emission *e, const dvi__instruction *at)
 {
-  const int a = name_of(e, at->a), inverse = at->op == DVI__CODE_INVERSE_ROOT_POWER;
-  int product = define(e), factor = a;
+  const int a = name_of_row(e, at->a), inverse = at->op == DVI__CODE_INVERSE_ROOT_POWER;
+  int product = begin_definition(e), factor = a;
   if (inverse)
     dvi__emit(e->out, "dvi_inverse_root(careful, r%d, &unusual);\n", a);
   else
@@ -124,10 +124,10 @@ static int emit_half_power(const emission *e, const dvi__instruction *at)
 
 static void emit_sine_and_cosine(const emission *e, const dvi__instruction *at)
 {
-  const int angle = name_of(e, at->a);
-  e->name[at->to] = define(e);
+  const int angle = name_of_row(e, at->a);
+  e->name[at->to] = begin_definition(e);
   dvi__emit(e->out, "sin(r%d);\n", angle);
-  e->name[at->b] = define(e);
+  e->name[at->b] = begin_definition(e);
   dvi__emit(e->out, "cos(r%d);\n", angle);
 }
 
@@ -136,11 +136,11 @@ static int emit_instruction(const emission *e, const dvi__instruction *at)
   const char *formula = formula_of(at->op);
   if (formula != NULL) return emit_formula(e, at, formula);
   switch (at->op) {
-  case DVI__CODE_COPY: return name_of(e, at->a);
+  case DVI__CODE_COPY: return name_of_row(e, at->a);
   case DVI__CODE_WHOLE_POWER: return emit_whole_power(e, at);
   case DVI__CODE_ROOT_POWER:
   case DVI__CODE_INVERSE_ROOT_POWER: return emit_half_power(e, at);
-  default: return emit_function(e, at);
+  default: return emit_math_function(e, at);
   }
 }
 

@@ -1,5 +1,5 @@
-/* A scene as a C file: what a program declares of it, its terms, a function that makes the system,
- * its start and its plan, and a program that runs it. */
+/* A scene as a C file. The file has declarations for programs, the terms, a function that makes the
+ * system, its start and its plan, and a program that runs it. */
 #include <dvi/integrator.h>
 #include <string.h>
 
@@ -7,7 +7,7 @@
 #include "text/heap.h"
 #include "scene/elaborate/names.h"
 
-enum { IDENTIFIER_MAX = 63 }; /* as many letters of a name are sure to count in C */
+enum { IDENTIFIER_MAX = 63 }; /* letters of a name that surely count in C */
 
 /* ---- terms ---- */
 
@@ -18,9 +18,9 @@ static dvi_status emit_motion(dvi__emitter *out, const dvi_scene *scene)
   dvi_status status = DVI_OK;
   if (terms->lagrangian != NULL)
     term = dvi__lagrangian_term(scene), status = dvi__emit_term(out, &term);
-  if (terms->one_form != NULL)
+  if (terms->one_form != NULL && status == DVI_OK)
     term = dvi__one_form_term(scene), status = dvi__emit_term(out, &term);
-  if (terms->hamiltonian != NULL)
+  if (terms->hamiltonian != NULL && status == DVI_OK)
     term = dvi__hamiltonian_term(scene), status = dvi__emit_term(out, &term);
   if (terms->constraint != NULL && status == DVI_OK)
     term = dvi__constraint_term(scene), status = dvi__emit_term(out, &term);
@@ -44,7 +44,7 @@ static dvi_status emit_watched(dvi__emitter *out, const dvi_scene *scene)
 
 /* ---- the system ---- */
 
-/* The constant mass as statements. */
+/* Write the constant mass as statements. */
 static void emit_mass(dvi__emitter *out, const dvi_mass *mass, const int pattern[2], int row)
 {
   if (mass->diagonal != NULL) {
@@ -61,9 +61,9 @@ static void emit_mass(dvi__emitter *out, const dvi_mass *mass, const int pattern
   }
 }
 
-/* The list of a kind of terms, if there are any. */
-static void emit_list(dvi__emitter *out, const char *type, const char *term, const char *list,
-                      int length)
+/* Write the list of a kind of terms, if there are any. */
+static void emit_term_list(dvi__emitter *out, const char *type, const char *term, const char *list,
+                           int length)
 {
   if (length == 0) return;
   dvi__emit(out, "  const %s %s[] = {", type, list);
@@ -71,7 +71,7 @@ static void emit_list(dvi__emitter *out, const char *type, const char *term, con
   dvi__emit(out, "};\n  terms.%s = %s;\n  terms.%s_count = %d;\n", list, list, term, length);
 }
 
-/* The arrays of factors, before the function. */
+/* Write the arrays of factors, before the function. */
 static void emit_inertias(dvi__emitter *out, const dvi_system_terms *terms)
 {
   for (int k = 0; k < terms->factor_count; k++) {
@@ -124,9 +124,9 @@ static void emit_create(dvi__emitter *out, const dvi_scene *scene, const char *n
             "= %d, .autonomous = %d};\n",
             name, terms->dimension, terms->autonomous);
   emit_factors(out, terms);
-  emit_list(out, "dvi_potential", "potential", "potentials", terms->potential_count);
-  emit_list(out, "dvi_symmetry", "symmetry", "symmetries", terms->symmetry_count);
-  emit_list(out, "dvi_invariant", "invariant", "invariants", terms->invariant_count);
+  emit_term_list(out, "dvi_potential", "potential", "potentials", terms->potential_count);
+  emit_term_list(out, "dvi_symmetry", "symmetry", "symmetries", terms->symmetry_count);
+  emit_term_list(out, "dvi_invariant", "invariant", "invariants", terms->invariant_count);
   if (terms->lagrangian != NULL) dvi__emit(out, "  terms.lagrangian = &lagrangian;\n");
   if (terms->one_form != NULL) dvi__emit(out, "  terms.one_form = &one_form;\n");
   if (terms->hamiltonian != NULL) dvi__emit(out, "  terms.hamiltonian = &hamiltonian;\n");
@@ -135,7 +135,7 @@ static void emit_create(dvi__emitter *out, const dvi_scene *scene, const char *n
   dvi__emit(out, "  return dvi_system_create(&terms, system);\n}\n");
 }
 
-/* ---- how it is run ---- */
+/* ---- start and plan ---- */
 
 static void emit_start(dvi__emitter *out, const char *name, const char *letter, int n,
                        const double *x)
@@ -218,8 +218,9 @@ static void emit_main(dvi__emitter *out, const dvi_scene *scene, const char *nam
   dvi__emit(out, "%s", run[2]);
 }
 
-/* What a caller declares, and the zeros at which functions that are linear in w are asked. */
-static void emit_head(dvi__emitter *out, const dvi_scene *scene, const char *name)
+/* Write the declarations for a caller, and the zeros at which functions that are linear in w are
+ * evaluated. */
+static void emit_header(dvi__emitter *out, const dvi_scene *scene, const char *name)
 {
   const dvi_system_terms *terms = &scene->terms;
   dvi__emit_begin(out);
@@ -237,8 +238,8 @@ static void emit_head(dvi__emitter *out, const dvi_scene *scene, const char *nam
     dvi__emit(out, "static const double dvi_zeros[%d] = {0};\n\n", 2 * scene->n);
 }
 
-/* DVI_UNSUPPORTED if the method runs the scene, but not a system without Taylor coefficients, as
- * the file's is. */
+/* Return DVI_UNSUPPORTED if the method runs the scene, but not a system without Taylor
+ * coefficients, as the file's is. */
 static dvi_status check_method(const dvi_scene *scene)
 {
   dvi_system_terms terms = scene->terms;
@@ -274,7 +275,7 @@ dvi_status dvi_scene_emit_c(const dvi_scene *scene, const char *name,
   dvi_status status = scene->plan.method != NULL ? check_method(scene) : DVI_OK;
   if (status != DVI_OK) return status;
   dvi__emitter out = {.write = write, .user = user};
-  emit_head(&out, scene, name);
+  emit_header(&out, scene, name);
   status = emit_motion(&out, scene);
   if (status == DVI_OK) status = emit_watched(&out, scene);
   if (status == DVI_OK) {

@@ -1,4 +1,4 @@
-/* The kinds of terms: what their callbacks and patterns are called. */
+/* The kinds of terms, with the names of their callbacks and patterns. */
 #include <stdio.h>
 
 #include "scene/emit/emit_scene.h"
@@ -146,9 +146,9 @@ dvi__emitted_term dvi__potential_term(const dvi_scene *scene, int k)
   return term;
 }
 
-/* One that has a callback and a name. */
-static dvi__emitted_term watched(const char *type, const char *kind, int k, const char *shown,
-                                 const dvi__scene_term *of, const dvi__callback *callback)
+/* Describe a term that has one callback and a name. */
+static dvi__emitted_term watched_term(const char *type, const char *kind, int k, const char *shown,
+                                      const dvi__scene_term *of, const dvi__callback *callback)
 {
   dvi__emitted_term term = {
       .type = type, .shown = shown, .term = of, .callback_count = 1, .callback = callback};
@@ -159,18 +159,19 @@ static dvi__emitted_term watched(const char *type, const char *kind, int k, cons
 dvi__emitted_term dvi__symmetry_term(const dvi_scene *scene, int k)
 {
   const dvi_symmetry *symmetry = &scene->terms.symmetries[k];
-  return watched("dvi_symmetry", "symmetry", k, symmetry->name, symmetry->user, &symmetry_callback);
+  return watched_term("dvi_symmetry", "symmetry", k, symmetry->name, symmetry->user,
+                      &symmetry_callback);
 }
 
 dvi__emitted_term dvi__invariant_term(const dvi_scene *scene, int k)
 {
   const dvi_invariant *invariant = &scene->terms.invariants[k];
-  return watched("dvi_invariant", "invariant", k, invariant->name, invariant->user,
-                 &invariant_callback);
+  return watched_term("dvi_invariant", "invariant", k, invariant->name, invariant->user,
+                      &invariant_callback);
 }
 
 dvi__emitted_term dvi__event_term(const dvi_scene *scene, int k)
 {
   const dvi_scene_event *event = &scene->event[k];
-  return watched("dvi_event", "event", k, event->name, event->user, &event_callback);
+  return watched_term("dvi_event", "event", k, event->name, event->user, &event_callback);
 }

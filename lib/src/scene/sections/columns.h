@@ -7,7 +7,7 @@
 bool dvi__column_is_new(dvi_scene *scene, const char *text, dvi__span span,
                         const dvi__coordinate *of);
 
-/* Refuse coordinates whose columns are called alike. */
+/* Refuse coordinates whose columns have the same name. */
 bool dvi__labels_differ(dvi_scene *scene);
 
 #endif

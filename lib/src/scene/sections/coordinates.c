@@ -7,8 +7,8 @@
 
 enum { COORDINATES_MAX = 100000000 };
 
-/* What is declared of a coordinate: its kind, what a member is as a value, and how many numbers it
- * has in q and in v. */
+/* The declaration of a coordinate, with its kind, the shape of a member as a value, and its numbers
+ * in q and in v. */
 typedef struct declared {
   dvi__kind kind;
   dvi__shape shape;
@@ -28,9 +28,13 @@ static bool read_kind(dvi_scene *scene, const dvi__tree *tree, declared *as)
   static const char *const known[] = {"scalar",    "rotation", "motion",
                                       "direction", "angle",    "vector"};
   static const declared meaning[] = {
-      {DVI__LINES, {0, 1, 1}, 1, 1},   {DVI__ROTATION, {2, 3, 3}, 9, 3},
-      {DVI__MOTION, {0, 1, 1}, 12, 6}, {DVI__DIRECTION, {1, 3, 1}, 3, 3},
-      {DVI__ANGLE, {1, 2, 1}, 2, 1},   {DVI__LINES, {1, 0, 1}, 0, 0}};
+      {.kind = DVI__LINES, .shape = {0, 1, 1}, .stored = 1, .velocities = 1},
+      {.kind = DVI__ROTATION, .shape = {2, 3, 3}, .stored = 9, .velocities = 3},
+      {.kind = DVI__MOTION, .shape = {0, 1, 1}, .stored = 12, .velocities = 6},
+      {.kind = DVI__DIRECTION, .shape = {1, 3, 1}, .stored = 3, .velocities = 3},
+      {.kind = DVI__ANGLE, .shape = {1, 2, 1}, .stored = 2, .velocities = 1},
+      {.kind = DVI__LINES, .shape = {1, 0, 1}, .stored = 0, .velocities = 0},
+  };
   enum { KINDS = sizeof known / sizeof *known, VECTOR = KINDS - 1 };
   const dvi__expression *e;
   char hint[96];
@@ -49,7 +53,7 @@ static bool read_kind(dvi_scene *scene, const dvi__tree *tree, declared *as)
                            dvi__nearest(name, KINDS, known, hint, sizeof hint));
 }
 
-/* The rotation and the place of a motion. */
+/* Make the rotation and the place of a motion. */
 static bool make_parts(dvi_scene *scene, dvi__coordinate *x)
 {
   dvi__coordinate *part = dvi__arena_take(&scene->arena, 2, sizeof *part);
@@ -57,19 +61,19 @@ static bool make_parts(dvi_scene *scene, dvi__coordinate *x)
   part[0] = part[1] = *x;
   part[0].kind = DVI__ROTATION;
   part[0].part_name = 'R';
-  part[0].shape = (dvi__shape){2, 3, 3};
+  part[0].shape = (dvi__shape){.rank = 2, .rows = 3, .columns = 3};
   part[0].q.components = 9;
   part[0].v.components = 3;
   part[1].kind = DVI__LINES;
   part[1].part_name = 'x';
-  part[1].shape = (dvi__shape){1, 3, 1};
+  part[1].shape = (dvi__shape){.rank = 1, .rows = 3, .columns = 1};
   part[1].q = (dvi__slots){x->q.first + 9, x->q.stride, 3};
   part[1].v = (dvi__slots){x->v.first + 3, x->v.stride, 3};
   x->part = part;
   return true;
 }
 
-/* A family has `rows` members for one index, rows * columns for two. */
+/* Add a coordinate. A family has `rows` members for one index, rows * columns for two. */
 static bool add_coordinate(dvi_scene *scene, const char *name, dvi__span span, int family, int rows,
                            int columns, const declared *as)
 {
@@ -97,8 +101,8 @@ static bool add_coordinate(dvi_scene *scene, const char *name, dvi__span span, i
                         number);
 }
 
-/* x, x[N] or x[N,M]. */
-static bool declare(dvi_scene *scene, const dvi__expression *key, const declared *as)
+/* Declare x, x[N] or x[N,M]. */
+static bool declare_coordinate(dvi_scene *scene, const dvi__expression *key, const declared *as)
 {
   int extent[2] = {1, 1};
   dvi__subscripts sizes;
@@ -133,9 +137,9 @@ bool dvi__read_coordinates(dvi_scene *scene, const dvi__tree *section)
     declared as;
     if (!read_kind(scene, section->child[i], &as)) return false;
     on_manifold = on_manifold || as.kind != DVI__LINES;
-    if (key[i]->form != DVI__FORM_LIST && !declare(scene, key[i], &as)) return false;
+    if (key[i]->form != DVI__FORM_LIST && !declare_coordinate(scene, key[i], &as)) return false;
     for (int k = 0; key[i]->form == DVI__FORM_LIST && k < key[i]->count; k++)
-      if (!declare(scene, key[i]->part[k], &as)) return false;
+      if (!declare_coordinate(scene, key[i]->part[k], &as)) return false;
   }
   if (scene->n == 0) return dvi__scene_refuse(scene, section->span, "there are no coordinates");
   scene->velocities = on_manifold ? scene->n + scene->nv : scene->n;

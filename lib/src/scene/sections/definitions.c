@@ -2,17 +2,18 @@
 #include "scene/elaborate/shape.h"
 #include "scene/sections/sections.h"
 
-/* Its shape, and the first error in it; sums are tried at their ends. */
+/* Find the shape of a definition, and the first error in it. Sums are tried at their ends. */
 static bool try_definition(dvi_scene *scene, dvi__definition *d)
 {
   dvi__context c;
-  if (!dvi__context_make(&c, scene, DVI__SAYS_Q | DVI__SAYS_V | DVI__SAYS_P | DVI__SAYS_T,
+  if (!dvi__context_make(&c, scene,
+                         DVI__MENTIONS_Q | DVI__MENTIONS_V | DVI__MENTIONS_P | DVI__MENTIONS_T,
                          "a definition"))
     return false;
   c.sample = 1;
   const dvi__value value = dvi__elaborate(&c, d->is);
   d->shape = value.shape;
-  d->says = dvi__says(scene, d->is);
+  d->mentions = dvi__mentions(scene, d->is);
   dvi__context_free(&c);
   return !dvi__failed(value);
 }

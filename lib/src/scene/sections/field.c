@@ -1,4 +1,4 @@
-/* Vector fields and one-forms that are given by coordinate. */
+/* Vector fields and one-forms, written by coordinate. */
 #include "scene/elaborate/shape.h"
 #include "scene/sections/motion.h"
 #include "scene/sections/sections.h"
@@ -14,14 +14,16 @@ void dvi__add_product(dvi__context *c, dvi__value value, const dvi__target *targ
   }
 }
 
-/* A field is given by coordinate; of rotations and angles by omega(R) and rate(u). */
+/* Return true for a key of a vector field. Keys are coordinates, and for rotations and angles
+ * omega(R) and rate(u). */
 static bool is_of_field(dvi_scene *scene, const dvi__tree *key, const char *where,
                         dvi__target *target)
 {
   const dvi__kind kind = target->x->kind;
   const int by_velocity = kind == DVI__ROTATION || kind == DVI__ANGLE;
   target->places = &target->x->v;
-  if (by_velocity ? target->says == DVI__SAYS_V : target->says == DVI__SAYS_Q) return true;
+  if (by_velocity ? target->mentions == DVI__MENTIONS_V : target->mentions == DVI__MENTIONS_Q)
+    return true;
   if (by_velocity)
     return dvi__scene_refuse(scene, key->span,
                              "%s of a rotation or an angle is given by its velocity, %s(%s)", where,
@@ -39,7 +41,7 @@ static bool add_component(dvi_scene *scene, const dvi__tree *key, const dvi__tre
   dvi__numbering numbering;
   const dvi__expression *e;
   if (!dvi__read_target(scene, key, &target) || !is_of_field(scene, key, where, &target) ||
-      !dvi__context_make(&c, scene, DVI__SAYS_Q, where))
+      !dvi__context_make(&c, scene, DVI__MENTIONS_Q, where))
     return false;
   bool good = dvi__target_value(&c, &target, tree, &value, &numbering, &e);
   if (good) {

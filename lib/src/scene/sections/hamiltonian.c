@@ -3,12 +3,13 @@
 #include "scene/sections/sections.h"
 #include "scene/terms/callbacks.h"
 
-/* The function phi.w. */
+/* Make the function phi.w. */
 static bool constraints_function(dvi_scene *scene, const dvi__tree *section, dvi__scene_term **term)
 {
   dvi__context c;
   dvi__kernels list = {0};
-  if (!dvi__context_make(&c, scene, DVI__SAYS_Q | DVI__SAYS_P, "a constraint")) return false;
+  if (!dvi__context_make(&c, scene, DVI__MENTIONS_Q | DVI__MENTIONS_P, "a constraint"))
+    return false;
   dvi__node total = dvi__constant(c.graph, 0);
   bool good = true;
   for (int a = 0; a < section->count && good; a++) {
@@ -31,7 +32,7 @@ static bool hamiltonian_read(dvi_scene *scene, const dvi__tree *tree)
   dvi__kernels H = {0};
   dvi__scene_term *term;
   const bool good = dvi__tree_expression(scene, tree, &e) &&
-                    dvi__kernels_add(scene, DVI__SAYS_Q | DVI__SAYS_P | DVI__SAYS_T,
+                    dvi__kernels_add(scene, DVI__MENTIONS_Q | DVI__MENTIONS_P | DVI__MENTIONS_T,
                                      "a Hamiltonian", e, 0, &H) &&
                     dvi__kernels_function(scene, &H, 0, &term) &&
                     dvi__make_hamiltonian(scene, term, &scene->hamiltonian);
@@ -42,7 +43,7 @@ static bool hamiltonian_read(dvi_scene *scene, const dvi__tree *tree)
 
 bool dvi__read_hamiltonian(dvi_scene *scene, const dvi__tree *section)
 {
-  if (dvi__what_moves(scene) != section) return true;
+  if (dvi__motion_section(scene) != section) return true;
   scene->form = "Hamiltonian";
   return dvi__refuse_factors(scene, section, "hamiltonian") && hamiltonian_read(scene, section);
 }

@@ -1,4 +1,4 @@
-/* The section initial: initial values by coordinate. */
+/* The section initial, initial values by coordinate. */
 #include <dvi/group.h>
 #include <math.h>
 #include <string.h>
@@ -8,16 +8,16 @@
 #include "scene/sections/target.h"
 #include "text/heap.h"
 
-/* What was given of q, v and p: a mark for every number. */
-typedef struct given {
+/* The numbers of q, v and p that have a value, as a mark for every number. */
+typedef struct start_marks {
   char *q, *v, *p;
   int velocities, momenta;
-} given;
+} start_marks;
 
-/* A mark is 1 for a number that was given by a formula or a list, and 1 more for every index
- * that was a number: what says more of a member comes before what says less. */
-static bool put(dvi_scene *scene, const dvi__target *target, int number, double value, double *to,
-                char *mark)
+/* Put a number. Its mark is 1 for a formula or a list, and 1 more for every index that was a
+ * number. A more specific value of a member has priority. */
+static bool put_number(dvi_scene *scene, const dvi__target *target, int number, double value,
+                       double *to, char *mark)
 {
   const char how = (char)(1 + target->fixed);
   if (mark[number] == how)
@@ -28,13 +28,13 @@ static bool put(dvi_scene *scene, const dvi__target *target, int number, double 
   return true;
 }
 
-static int first_of(dvi__numbering numbering, int element)
+static int first_number(dvi__numbering numbering, int element)
 {
   return numbering.number != NULL ? numbering.number[element]
                                   : numbering.base + numbering.stride * element;
 }
 
-/* Number k of what is stored of the value, for every element. */
+/* Put stored number k of the value, for every element. */
 static bool put_component(dvi__context *c, const dvi__target *target, const dvi__expression *e,
                           dvi__node node, dvi__numbering numbering, int k, double *to, char *mark)
 {
@@ -42,19 +42,19 @@ static bool put_component(dvi__context *c, const dvi__target *target, const dvi_
   if (!dvi__node_numbers(c, e, node, &each, &all)) return false;
   bool good = true;
   for (int i = 0; i < c->elements && good; i++) {
-    const int number = first_of(numbering, i);
-    good = put(c->scene, target, number + dvi__target_place(target, k),
-               each != NULL ? each[i] : all, to, mark);
+    const int number = first_number(numbering, i);
+    good = put_number(c->scene, target, number + dvi__target_place(target, k),
+                      each != NULL ? each[i] : all, to, mark);
   }
   dvi__heap_free(each);
   return good;
 }
 
-/* What is stored of a value: its numbers; of angles, which are given as numbers, cosine and
+/* Find the stored numbers of a value. Angles, which are given as numbers, are stored as cosine and
  * sine. */
 static bool stored_value(dvi__context *c, const dvi__target *target, dvi__value *value)
 {
-  if (target->x->kind != DVI__ANGLE || target->says != DVI__SAYS_Q) return true;
+  if (target->x->kind != DVI__ANGLE || target->mentions != DVI__MENTIONS_Q) return true;
   const int count = dvi__value_size(*value);
   dvi__value stored = dvi__value_make(c, 1, 2 * count, 1);
   for (int i = 0; !dvi__failed(stored) && i < 2 * count; i++)
@@ -64,15 +64,15 @@ static bool stored_value(dvi__context *c, const dvi__target *target, dvi__value 
   return !dvi__failed(stored);
 }
 
-/* Rounding of numbers that somebody else has computed. */
+/* Rounding of numbers that another program has computed. */
 static const double near_enough = 1e-12;
 
-/* A member that was put: rotations and directions are what they are called. */
+/* Check a member that was put. Rotations must be rotations, and directions of length 1. */
 static bool is_right(dvi_scene *scene, const dvi__target *target, const dvi__expression *e,
                      const double *q)
 {
   const dvi__coordinate *x = target->x;
-  if (target->says != DVI__SAYS_Q) return true;
+  if (target->mentions != DVI__MENTIONS_Q) return true;
   if (x->kind == DVI__ROTATION) {
     const double distance = dvi_so3_distance(q);
     return distance <= near_enough ||
@@ -89,7 +89,7 @@ static bool is_right(dvi_scene *scene, const dvi__target *target, const dvi__exp
              x->name, length);
 }
 
-/* All members that a value gave. */
+/* Check all members that a value has set. */
 static bool are_right(const dvi__context *c, const dvi__target *target, const dvi__expression *e,
                       dvi__numbering numbering, int size, const double *q)
 {
@@ -97,11 +97,12 @@ static bool are_right(const dvi__context *c, const dvi__target *target, const dv
   for (int i = 0; i < c->elements; i++)
     for (int k = 0; k < size && good; k += target->places->components)
       good = is_right(c->scene, target, e,
-                      q + first_of(numbering, i) + dvi__target_place(target, k));
+                      q + first_number(numbering, i) + dvi__target_place(target, k));
   return good;
 }
 
-static bool read_entry(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree, given *g)
+static bool read_entry(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree,
+                       start_marks *g)
 {
   dvi__context c;
   dvi__target target;
@@ -110,12 +111,14 @@ static bool read_entry(dvi_scene *scene, const dvi__tree *key, const dvi__tree *
   const dvi__expression *e;
   if (!dvi__read_target(scene, key, &target) || !dvi__context_make(&c, scene, 0, "a start"))
     return false;
-  double *to = target.says == DVI__SAYS_Q   ? scene->q
-               : target.says == DVI__SAYS_V ? scene->v
-                                            : scene->p;
-  char *mark = target.says == DVI__SAYS_Q ? g->q : target.says == DVI__SAYS_V ? g->v : g->p;
-  g->velocities |= target.says == DVI__SAYS_V;
-  g->momenta |= target.says == DVI__SAYS_P;
+  double *to = target.mentions == DVI__MENTIONS_Q   ? scene->q
+               : target.mentions == DVI__MENTIONS_V ? scene->v
+                                                    : scene->p;
+  char *mark = target.mentions == DVI__MENTIONS_Q   ? g->q
+               : target.mentions == DVI__MENTIONS_V ? g->v
+                                                    : g->p;
+  g->velocities |= target.mentions == DVI__MENTIONS_V;
+  g->momenta |= target.mentions == DVI__MENTIONS_P;
   bool good = dvi__target_value(&c, &target, tree, &value, &numbering, &e) &&
               stored_value(&c, &target, &value);
   for (int k = 0; good && k < dvi__value_size(value); k++)
@@ -125,9 +128,9 @@ static bool read_entry(dvi_scene *scene, const dvi__tree *key, const dvi__tree *
   return good;
 }
 
-/* A number of a coordinate that was not given. */
-static const dvi__coordinate *missing(const dvi__coordinate *x, const dvi__slots *places,
-                                      const char *mark)
+/* Return a coordinate with a number that has no value, or NULL. */
+static const dvi__coordinate *find_missing(const dvi__coordinate *x, const dvi__slots *places,
+                                           const char *mark)
 {
   for (int i = 0; i < x->size; i++)
     for (int k = 0; k < places->components; k++)
@@ -135,27 +138,29 @@ static const dvi__coordinate *missing(const dvi__coordinate *x, const dvi__slots
   return NULL;
 }
 
-/* The first coordinate of which not all was given. */
-static bool all_given(dvi_scene *scene, const dvi__tree *section, unsigned says, const char *mark)
+/* Refuse the first coordinate of which a number has no value. */
+static bool all_numbers_set(dvi_scene *scene, const dvi__tree *section, unsigned mentions,
+                            const char *mark)
 {
   for (int k = 0; k < scene->coordinate_count; k++) {
     const dvi__coordinate *x = &scene->coordinate[k], *found = NULL;
     for (int i = 0; i < (x->kind == DVI__MOTION ? 2 : 1) && found == NULL; i++) {
       const dvi__coordinate *part = x->kind == DVI__MOTION ? &x->part[i] : x;
-      found = missing(part, says == DVI__SAYS_Q ? &part->q : &part->v, mark);
+      found = find_missing(part, mentions == DVI__MENTIONS_Q ? &part->q : &part->v, mark);
     }
     if (found == NULL) continue;
     const char dot[3] = {found->part_name != 0 ? '.' : '\0', found->part_name, '\0'};
     return dvi__scene_refuse(scene, section->span,
-                             says == DVI__SAYS_Q ? "the start of %s%s is not given"
-                                                 : "the momentum p(%s%s) is not given",
+                             mentions == DVI__MENTIONS_Q ? "the start of %s%s is not given"
+                                                         : "the momentum p(%s%s) is not given",
                              x->name, dot);
   }
   return true;
 }
 
-/* Velocities and momenta of directions are across them. */
-static bool are_across(dvi_scene *scene, const dvi__tree *section, const double *second)
+/* Check that velocities and momenta of directions are orthogonal to them. */
+static bool directions_are_orthogonal(dvi_scene *scene, const dvi__tree *section,
+                                      const double *second)
 {
   for (int k = 0; k < scene->coordinate_count; k++) {
     const dvi__coordinate *x = &scene->coordinate[k];
@@ -175,9 +180,9 @@ static bool are_across(dvi_scene *scene, const dvi__tree *section, const double 
   return true;
 }
 
-/* Formulas may have no value for a member that is given by itself, so numbers are looked at when
- * all are there. */
-static bool all_finite(dvi_scene *scene, const dvi__tree *section)
+/* Check that all numbers are finite. Formulas may have no value for a member that has a value of
+ * its own, so this waits until all values are there. */
+static bool start_is_finite(dvi_scene *scene, const dvi__tree *section)
 {
   for (int i = 0; i < scene->n + 2 * scene->nv; i++) {
     if (isfinite(scene->q[i])) continue;
@@ -188,10 +193,10 @@ static bool all_finite(dvi_scene *scene, const dvi__tree *section)
   return true;
 }
 
-/* What must be given, and what may not. */
-static bool complete(dvi_scene *scene, const dvi__tree *section, const given *g)
+/* Check that the necessary values are there, and no others. */
+static bool start_is_complete(dvi_scene *scene, const dvi__tree *section, const start_marks *g)
 {
-  if (!all_given(scene, section, DVI__SAYS_Q, g->q)) return false;
+  if (!all_numbers_set(scene, section, DVI__MENTIONS_Q, g->q)) return false;
   if (scene->terms.one_form != NULL && (g->velocities || g->momenta))
     return dvi__scene_refuse(
         scene, section->span,
@@ -202,9 +207,9 @@ static bool complete(dvi_scene *scene, const dvi__tree *section, const given *g)
   if (g->velocities && g->momenta)
     return dvi__scene_refuse(scene, section->span, "give velocities or momenta, not both");
   scene->momenta_given = g->momenta || scene->terms.hamiltonian != NULL;
-  if (scene->momenta_given && !all_given(scene, section, DVI__SAYS_P, g->p)) return false;
-  return all_finite(scene, section) &&
-         are_across(scene, section, scene->momenta_given ? scene->p : scene->v);
+  if (scene->momenta_given && !all_numbers_set(scene, section, DVI__MENTIONS_P, g->p)) return false;
+  return start_is_finite(scene, section) &&
+         directions_are_orthogonal(scene, section, scene->momenta_given ? scene->p : scene->v);
 }
 
 bool dvi__read_initial(dvi_scene *scene, const dvi__tree *section)
@@ -219,11 +224,11 @@ bool dvi__read_initial(dvi_scene *scene, const dvi__tree *section)
   scene->p = numbers + n + nv;
   char *marks = dvi__heap_take(n + 2 * nv, 1);
   if (marks == NULL) return dvi__scene_no_memory(scene);
-  given g = {.q = marks, .v = marks + n, .p = marks + n + nv};
+  start_marks g = {.q = marks, .v = marks + n, .p = marks + n + nv};
   bool good = true;
   for (int i = 0; i < section->count && good; i++)
     good = read_entry(scene, section->key[i], section->child[i], &g);
-  good = good && complete(scene, section, &g);
+  good = good && start_is_complete(scene, section, &g);
   dvi__heap_free(marks);
   return good;
 }

@@ -1,6 +1,6 @@
-/* Names for columns: x, theta_1, q_2_x, R_11, u_cos, B_2_x_y; v_, omega_ or rate_ and p_ in front
- * for velocities and momenta. Made when the first one is asked for: a long chain that is only run
- * needs none. */
+/* Names of columns, x, theta_1, q_2_x, R_11, u_cos, B_2_x_y. Velocities and momenta have v_, omega_
+ * or rate_ and p_ in front. Labels are made when the first one is asked for, since a long chain
+ * that is only run needs none. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,7 +8,7 @@
 #include "scene/sections/columns.h"
 #include "scene/sections/sections.h"
 
-enum { ROOM = 40 }; /* beside the name itself */
+enum { ROOM = 40 }; /* characters beside the name itself */
 
 typedef enum which { OF_Q, OF_V, OF_P } which;
 
@@ -18,7 +18,7 @@ static const char *prefix_of(const dvi__coordinate *x, which of)
   return x->kind == DVI__ROTATION ? "omega_" : x->kind == DVI__ANGLE ? "rate_" : "v_";
 }
 
-/* The end of a label for number k of a member. */
+/* Write the end of a label for number k of a member. */
 static void write_component(const dvi__coordinate *x, which of, int k, char *text, size_t size)
 {
   const int components = of == OF_Q ? x->q.components : x->v.components;
@@ -33,13 +33,13 @@ static void write_component(const dvi__coordinate *x, which of, int k, char *tex
     (void)snprintf(text, size, "_%d", k + 1);
 }
 
-/* What follows the name in the label of number k of member i; at most ROOM characters. */
+/* Write what follows the name in the label of number k of member i, at most ROOM characters. */
 static void write_ending(const dvi__coordinate *x, which of, int i, int k, char *text)
 {
   char member[24] = "", component[ROOM / 3];
-  const int says_part = x->part_name != 0 &&
-                        (of != OF_V || x->kind != DVI__ROTATION); /* omega(B), p(B.R) */
-  const char part[3] = {says_part ? '_' : '\0', x->part_name, '\0'};
+  /* omega(B) has no R, p(B.R) has one */
+  const int names_part = x->part_name != 0 && (of != OF_V || x->kind != DVI__ROTATION);
+  const char part[3] = {names_part ? '_' : '\0', x->part_name, '\0'};
   if (x->family == 1) (void)snprintf(member, sizeof member, "_%d", i + 1);
   if (x->family > 1)
     (void)snprintf(member, sizeof member, "_%d_%d", i / x->columns + 1, i % x->columns + 1);
@@ -72,7 +72,7 @@ static bool label_coordinate(dvi_scene *scene, const dvi__coordinate *x, which o
   return true;
 }
 
-/* Labels of q, v or p; NULL if there is no memory for them. */
+/* Make the labels of q, v or p. NULL if there is no memory for them. */
 static char **labels_of(dvi_scene *scene, which of)
 {
   pthread_mutex_lock(&scene->labels_mutex);
@@ -112,34 +112,34 @@ const char *dvi_scene_momentum(const dvi_scene *scene, int i)
   return label_at(scene, OF_P, i);
 }
 
-/* ---- whether columns differ ---- */
+/* ---- differences between columns ---- */
 
-/* The number after a bar, less 1; -1 without one. */
-static long counted(const char *bar)
+/* Return the number after a bar, less 1, or -1 without one. */
+static long number_after_bar(const char *bar)
 {
   return bar != NULL && *bar == '_' ? strtol(bar + 1, NULL, 10) - 1 : -1;
 }
 
-/* The member that an ending says, from 0; -1: none. */
-static long member_said(const dvi__coordinate *x, const char *ending)
+/* Return the member, from 0, that an ending names, or -1. */
+static long member_of_ending(const dvi__coordinate *x, const char *ending)
 {
-  const long first = x->family > 0 ? counted(ending) : 0;
+  const long first = x->family > 0 ? number_after_bar(ending) : 0;
   if (x->family < 2) return first;
-  const long second = ending[0] != '\0' ? counted(strchr(ending + 1, '_')) : -1;
+  const long second = ending[0] != '\0' ? number_after_bar(strchr(ending + 1, '_')) : -1;
   const bool inside = first >= 0 && first < dvi__extent(x, 0) && second >= 0 &&
                       second < dvi__extent(x, 1);
   return inside ? first * x->columns + second : -1;
 }
 
-/* Whether a label of x ends so behind its name: the ending says of which member, and of long
- * vectors which component. */
+/* Return true if a label of x ends so behind its name. The ending names the member, and of long
+ * vectors the component. */
 static bool has_ending(const dvi__coordinate *x, which of, const char *ending)
 {
   if (x->kind == DVI__MOTION)
     return has_ending(&x->part[0], of, ending) || has_ending(&x->part[1], of, ending);
   const int components = of == OF_Q ? x->q.components : x->v.components;
-  const long i = member_said(x, ending),
-             only = components > 12 ? counted(strrchr(ending, '_')) : -1;
+  const long i = member_of_ending(x, ending),
+             only = components > 12 ? number_after_bar(strrchr(ending, '_')) : -1;
   char own[ROOM];
   if (i < 0 || i >= x->size) return false;
   for (int k = 0; k < components; k++) {
@@ -150,8 +150,8 @@ static bool has_ending(const dvi__coordinate *x, which of, const char *ending)
   return false;
 }
 
-/* Whether a label is made of this prefix and text: the name of a coordinate other than `but` is all
- * of the text, or what stands before some bar in it. `name` has room for the text. */
+/* Return true if a label consists of this prefix and text. The text is, up to its end or to some
+ * bar, the name of a coordinate other than `but`. `name` has room for the text. */
 static bool is_label(const dvi_scene *scene, const char *prefix, const char *text,
                      const dvi__coordinate *but, char *name)
 {
@@ -172,7 +172,7 @@ static bool is_label(const dvi_scene *scene, const char *prefix, const char *tex
   return false;
 }
 
-/* Columns that have no coordinate. */
+/* Return true for columns that have no coordinate. */
 static bool is_reserved(const dvi_scene *scene, const char *text)
 {
   return strcmp(text, "t") == 0 || strcmp(text, "energy") == 0 ||
@@ -199,7 +199,8 @@ bool dvi__column_is_new(dvi_scene *scene, const char *text, dvi__span span,
                                      "there is a column '%s' already; choose another name", text);
 }
 
-/* If two coordinates share a label, the first one of one of them is among the other's. */
+/* Check the first label alone. If two coordinates share a label, the first one of one of them is
+ * among the other's. */
 static bool first_label_is_new(dvi_scene *scene, const dvi__coordinate *x,
                                const dvi__coordinate *part)
 {

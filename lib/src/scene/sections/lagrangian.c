@@ -1,10 +1,10 @@
-/* The sections lagrangian and kinetic. What a Lagrangian is: a constant mass and potentials, a
+/* The sections lagrangian and kinetic. A Lagrangian is a constant mass and potentials, or a
  * one-form and a Hamiltonian, or neither.
  *
  * Each kernel's degree in the velocities is found by one pass over its graph. If all are
  * polynomials of degree 2 whose velocities have constant coefficients, the mass is their second
- * derivatives; what is left at rest is minus the potential. If all are of degree 1, they are
- * alpha(q).v. */
+ * derivatives, and the rest at zero velocity is minus the potential. If all are of degree 1, they
+ * are alpha(q).v. */
 #include <string.h>
 
 #include "scene/elaborate/shape.h"
@@ -17,7 +17,7 @@
 
 /* ---- the constant mass ---- */
 
-/* The second derivatives by velocities, which are the same everywhere. */
+/* Find the second derivatives by velocities, which are the same everywhere. */
 static bool mass_values(dvi_scene *scene, dvi__scene_term *T, dvi_pattern *pattern, double **values)
 {
   int full;
@@ -31,12 +31,12 @@ static bool mass_values(dvi_scene *scene, dvi__scene_term *T, dvi_pattern *patte
          dvi__scene_refuse(scene, DVI__NOWHERE, "the mass is not finite");
 }
 
-static int row_of(const dvi_pattern *pattern, int n, int entry)
+static int entry_row(const dvi_pattern *pattern, int n, int entry)
 {
   return pattern->start == NULL ? entry % n : pattern->row[entry];
 }
 
-/* The diagonal; false if there is anything beside it. */
+/* Find the diagonal. Returns false if there is anything beside it. */
 static int diagonal_of(int n, const dvi_pattern *pattern, const double *values, double *diagonal)
 {
   int alone = 1;
@@ -44,7 +44,7 @@ static int diagonal_of(int n, const dvi_pattern *pattern, const double *values, 
     const int first = pattern->start == NULL ? j * n : pattern->start[j],
               end = pattern->start == NULL ? first + n : pattern->start[j + 1];
     for (int e = first; e < end; e++) {
-      if (row_of(pattern, n, e) == j)
+      if (entry_row(pattern, n, e) == j)
         diagonal[j] = values[e];
       else if (values[e] < 0 || values[e] > 0)
         alone = 0;
@@ -53,7 +53,7 @@ static int diagonal_of(int n, const dvi_pattern *pattern, const double *values, 
   return alone;
 }
 
-/* The mass in the plainest form that it has. */
+/* Set the mass in the plainest form that it has. */
 static bool set_mass(dvi_scene *scene, const dvi_pattern *pattern, const double *values)
 {
   double *diagonal = dvi__arena_take(&scene->arena, (size_t)scene->n, sizeof *diagonal);
@@ -80,7 +80,7 @@ static bool set_mass(dvi_scene *scene, const dvi_pattern *pattern, const double 
   return true;
 }
 
-/* Derive what the mass is read from. */
+/* Derive the second derivatives that give the mass. */
 static bool derive_mass(dvi_scene *scene, dvi__scene_term *T)
 {
   const dvi_status status = dvi__function_prepare(T->function, 0,
@@ -89,8 +89,8 @@ static bool derive_mass(dvi_scene *scene, dvi__scene_term *T)
   return status == DVI_OK || dvi__scene_too_large(scene, "the mass", status);
 }
 
-/* Whether no velocity stands alone: the momenta at rest are zero. */
-static bool rests(dvi_scene *scene, dvi__scene_term *T, int *at_rest)
+/* Find if no velocity stands alone, so that the momenta at rest are zero. */
+static bool find_momentum_at_rest(dvi_scene *scene, dvi__scene_term *T, int *at_rest)
 {
   const double *x[DVI__BLOCKS] = {scene->zeros, scene->zeros, scene->zeros, scene->zeros};
   double *momentum = dvi__heap_take((size_t)scene->velocities, sizeof *momentum);
@@ -105,8 +105,8 @@ static bool rests(dvi_scene *scene, dvi__scene_term *T, int *at_rest)
 
 /* ---- the three forms ---- */
 
-/* With rotations, directions or angles the mass is constant: name the first term that is of another
- * form. */
+/* Refuse a Lagrangian without a constant mass beside rotations, directions or angles. Names the
+ * first term of another form. */
 static bool refuse_moving(dvi_scene *scene, const dvi__kernels *L)
 {
   for (int k = 0; k < L->count; k++) {
@@ -148,9 +148,9 @@ static bool make_separable(dvi_scene *scene, dvi__kernels *L, const char *rest)
   int at_rest = 0;
   bool good = dvi__kernels_moving(scene, L, DVI__VELOCITIES, DVI__VELOCITIES, &moving) &&
               dvi__kernels_function(scene, &moving, 0, &T) && derive_mass(scene, T) &&
-              rests(scene, T, &at_rest);
+              find_momentum_at_rest(scene, T, &at_rest);
   dvi__kernels_free(&moving);
-  if (T != NULL) T->role = DVI__STANDS_BESIDE;
+  if (T != NULL) T->role = DVI__ROLE_AUXILIARY;
   if (good && !at_rest) return make_general(scene, L);
   scene->kinetic = T;
   good = good && mass_values(scene, T, &pattern, &values) &&
@@ -163,7 +163,7 @@ static bool make_separable(dvi_scene *scene, dvi__kernels *L, const char *rest)
   return good;
 }
 
-static int has_time(const dvi__kernels *list)
+static int kernels_have_time(const dvi__kernels *list)
 {
   for (int k = 0; k < list->count; k++)
     for (int i = 0; i < list->kernel[k].input_count; i++) {
@@ -173,14 +173,14 @@ static int has_time(const dvi__kernels *list)
   return 0;
 }
 
-/* alpha(q).w, and H. */
+/* Make the terms alpha(q).w and H. */
 static bool make_degenerate(dvi_scene *scene, const dvi__expression *e, dvi__kernels *L,
                             const char *rest)
 {
   dvi__kernels alpha = {0}, H = {0};
   dvi__scene_term *term = NULL;
   bool good = dvi__kernels_moving(scene, L, DVI__VELOCITIES, DVI__MULTIPLIERS, &alpha);
-  if (good && has_time(&alpha))
+  if (good && kernels_have_time(&alpha))
     good = dvi__scene_refuse(scene, e->span,
                              "of first degree in the velocities this is a one-form, alpha(q).q' - "
                              "H(t,q); beside the velocities the "
@@ -214,8 +214,8 @@ static bool read_moving(dvi_scene *scene, const dvi__tree *section, const char *
   const dvi__expression *e;
   dvi__kernels L = {0};
   const bool good = dvi__tree_expression(scene, section, &e) &&
-                    dvi__kernels_add(scene, DVI__SAYS_Q | DVI__SAYS_V | DVI__SAYS_T, where, e, 0,
-                                     &L) &&
+                    dvi__kernels_add(scene, DVI__MENTIONS_Q | DVI__MENTIONS_V | DVI__MENTIONS_T,
+                                     where, e, 0, &L) &&
                     make_form(scene, e, &L, rest);
   dvi__kernels_free(&L);
   return good;

@@ -1,4 +1,4 @@
-/* Which section says what moves. */
+/* The choice of the section that declares the motion. */
 #include "scene/sections/motion.h"
 
 #include "scene/sections/sections.h"
@@ -6,10 +6,10 @@
 static const char *const ways_to_move[] = {"lagrangian", "kinetic", "one_form", "constraints",
                                            "hamiltonian"};
 
-/* The last one stands with the two before it, too. */
+/* The last way may stand with the two before it. */
 enum { WAYS = sizeof ways_to_move / sizeof *ways_to_move, HAMILTONIAN = WAYS - 1 };
 
-const dvi__tree *dvi__what_moves(const dvi_scene *scene)
+const dvi__tree *dvi__motion_section(const dvi_scene *scene)
 {
   const dvi__tree *found = NULL;
   for (int k = 0; k < WAYS && found == NULL; k++)
@@ -17,7 +17,7 @@ const dvi__tree *dvi__what_moves(const dvi_scene *scene)
   return found;
 }
 
-bool dvi__says_what_moves(dvi_scene *scene)
+bool dvi__check_motion_section(dvi_scene *scene)
 {
   static const char *const ways = "one of these: lagrangian; kinetic and potentials; one_form and "
                                   "hamiltonian; hamiltonian, alone or with constraints";

@@ -1,11 +1,11 @@
-/* What the sections that say what moves share. */
+/* Functions shared by the sections that declare the motion. */
 #ifndef DVI_SCENE_MOTION_H
 #define DVI_SCENE_MOTION_H
 #include "scene/elaborate/kernels.h"
 #include "scene/sections/target.h"
 
-/* Whether the scene says what moves, in one of the ways that there are; told if not. */
-bool dvi__says_what_moves(dvi_scene *scene);
+/* Return true if the scene declares the motion, in one of the possible ways. Complains if not. */
+bool dvi__check_motion_section(dvi_scene *scene);
 
 /* Refuse section `name` beside rotations, directions and angles, which need a kinetic energy. */
 bool dvi__refuse_factors(dvi_scene *scene, const dvi__tree *section, const char *name);
@@ -13,16 +13,16 @@ bool dvi__refuse_factors(dvi_scene *scene, const dvi__tree *section, const char 
 /* Take room for so many potentials, and one more. */
 bool dvi__potentials_reserve(dvi_scene *scene, int count);
 
-/* Add a potential of these kernels; none if there are none. */
+/* Add a potential of these kernels, or none if there are none. */
 bool dvi__potential_add(dvi_scene *scene, const char *name, int fast, dvi__kernels *list);
 bool dvi__potential_read(dvi_scene *scene, const dvi__tree *tree, const char *name, int fast);
 
-/* Read a vector field xi(q) that is given by coordinate, as the function xi(q).w; `where` for
+/* Read a vector field xi(q), written by coordinate, as the function xi(q).w. `where` is for
  * messages. */
 bool dvi__field_read(dvi_scene *scene, const dvi__tree *field, const char *where,
                      dvi__scene_term **term);
 
-/* Add value.w, with w the multipliers at the numbers of a target, or at one number, to a total. */
+/* Add value.w to a total, with w the multipliers at the numbers of a target, or at one number. */
 void dvi__add_product(dvi__context *c, dvi__value value, const dvi__target *target,
                       dvi__numbering numbering, dvi__node *total);
 

@@ -6,7 +6,7 @@
 #include "scene/elaborate/shape.h"
 #include "scene/sections/sections.h"
 
-/* The number of the setting of a parameter; -1: none. */
+/* Return the number of the setting of a parameter, or -1. */
 static int setting_of(dvi_scene *scene, const char *name)
 {
   const dvi__scene_settings *settings = scene->settings;
@@ -22,7 +22,7 @@ static int setting_of(dvi_scene *scene, const char *name)
   return found;
 }
 
-/* The value that a setting gives to a number. */
+/* Apply the value that a setting gives to a number. */
 static bool apply_setting(dvi_scene *scene, dvi__parameter *p, const char *text)
 {
   const char *number = text + strlen(p->name) + 1;
@@ -71,7 +71,7 @@ static bool parameter_read(dvi_scene *scene, const dvi__tree *key, const dvi__tr
                         DVI__PARAMETER, scene->parameter_count++);
 }
 
-/* A setting that no parameter took. */
+/* Refuse a setting that no parameter took. */
 static bool refuse_setting(dvi_scene *scene, const char *text)
 {
   char hint[96] = "";
@@ -110,10 +110,10 @@ bool dvi__read_parameters(dvi_scene *scene, const dvi__tree *section)
   return true;
 }
 
-/* The parameter that is being read is the one behind those that were. */
+/* Note a use. The parameter that is being read is the one behind those that were. */
 bool dvi__note_parameter(dvi_scene *scene, dvi__parameter *parameter)
 {
-  parameter->stands |= scene->reads;
+  parameter->used_in |= scene->reads;
   if (scene->reads != DVI__IN_PARAMETERS || parameter->last_made == scene->parameter_count + 1)
     return true;
   dvi__source_of *source = dvi__arena_take(&scene->arena, 1, sizeof *source);
@@ -125,15 +125,15 @@ bool dvi__note_parameter(dvi_scene *scene, dvi__parameter *parameter)
   return true;
 }
 
-/* Parameters are made of those above them: from the last one on, all that mention one are known
- * when it is met. */
+/* Tell parameters their uses. Parameters are made of those above them. From the last one on, all
+ * uses of a parameter are known when it is met. */
 bool dvi__read_uses(dvi_scene *scene)
 {
   for (int i = scene->parameter_count - 1; i >= 0; i--) {
     const dvi__parameter *p = &scene->parameter[i];
     for (const dvi__source_of *source = p->source; source != NULL; source = source->next)
-      source->parameter->stands |= p->stands;
-    if (p->stands == 0 && setting_of(scene, p->name) >= 0)
+      source->parameter->used_in |= p->used_in;
+    if (p->used_in == 0 && setting_of(scene, p->name) >= 0)
       return dvi__complain(scene->complaint, DVI_BAD_OPTION, p->span,
                            "'%s' is set, but nothing in the scene mentions it", p->name);
   }

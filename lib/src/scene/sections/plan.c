@@ -1,4 +1,4 @@
-/* The sections title, method, step and until: how the scene wants to be run. */
+/* The sections title, method, step and until, the plan of the scene's run. */
 #include "scene/sections/sections.h"
 
 bool dvi__read_title(dvi_scene *scene, const dvi__tree *section)
@@ -27,7 +27,7 @@ bool dvi__read_step(dvi_scene *scene, const dvi__tree *section)
   return plan_number(scene, section, "step", &scene->plan.h);
 }
 
-/* With more steps than a double can count the time would stand still. */
+/* Read the end of a run. With more steps than a double can count the time would stand still. */
 bool dvi__read_until(dvi_scene *scene, const dvi__tree *section)
 {
   static const double steps_max = 9007199254740992.0; /* 2^53 */

@@ -5,8 +5,8 @@
 #include "scene/sections/sections.h"
 #include "scene/terms/callbacks.h"
 
-/* Whether the Hessian is constant: that shows in the degree, or, beside terms that move a linear
- * part in time, in its formulas. */
+/* Return 1 if the Hessian is constant. The degree shows it, or the formulas of the Hessian do if
+ * time moves a linear part. */
 static int is_quadratic(const dvi__degree *degree, const dvi__scene_term *term)
 {
   return degree->degree <= 2 &&
@@ -41,14 +41,14 @@ bool dvi__potential_read(dvi_scene *scene, const dvi__tree *tree, const char *na
   const dvi__expression *e;
   dvi__kernels V = {0};
   const bool good = dvi__tree_expression(scene, tree, &e) &&
-                    dvi__kernels_add(scene, DVI__SAYS_Q | DVI__SAYS_T, "a potential", e, 0, &V) &&
+                    dvi__kernels_add(scene, DVI__MENTIONS_Q | DVI__MENTIONS_T, "a potential", e, 0,
+                                     &V) &&
                     dvi__potential_add(scene, name, fast, &V);
   dvi__kernels_free(&V);
   return good;
 }
 
-/* What stands under slow or fast may be a potential itself, or some by name; all others are
- * slow. */
+/* Read a potential, or those under slow or fast by name. Potentials are slow by default. */
 static bool read_speed(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree)
 {
   const int fast = strcmp(key->text, "fast") == 0;

@@ -1,4 +1,4 @@
-/* What readers of sections share. */
+/* Functions shared by the readers of sections. */
 #include <limits.h>
 #include <string.h>
 
@@ -38,7 +38,7 @@ bool dvi__want_keys(dvi_scene *scene, const dvi__tree *mapping, const char *what
   return true;
 }
 
-/* A list in block style, or with comments in it: item by item. */
+/* Read a list in block style, or with comments in it, item by item. */
 static bool list_expression(dvi_scene *scene, const dvi__tree *tree, const dvi__expression **e)
 {
   const dvi__expression **part = dvi__arena_take(&scene->arena, (size_t)tree->count + 1,
@@ -55,9 +55,9 @@ static bool list_expression(dvi_scene *scene, const dvi__tree *tree, const dvi__
   return true;
 }
 
-/* Whether a list can be read as an expression as it stands: commas inside of parentheses are then
- * no ends of items. */
-static bool stands_as_expression(const dvi_scene *scene, const dvi__tree *tree)
+/* Return true if a list can be read as an expression as it stands. Commas inside of parentheses
+ * then do not end items. */
+static bool is_expression_as_it_stands(const dvi_scene *scene, const dvi__tree *tree)
 {
   const char *text = scene->source.text + tree->span.first;
   return tree->span.size > 0 && text[0] == '[' && memchr(text, '#', tree->span.size) == NULL;
@@ -67,7 +67,7 @@ bool dvi__tree_expression(dvi_scene *scene, const dvi__tree *tree, const dvi__ex
 {
   if (tree->kind == DVI__MAPPING)
     return dvi__scene_refuse(scene, tree->span, "an expression belongs here");
-  if (tree->kind == DVI__SEQUENCE && !stands_as_expression(scene, tree))
+  if (tree->kind == DVI__SEQUENCE && !is_expression_as_it_stands(scene, tree))
     return list_expression(scene, tree, e);
   return dvi__expression_parse(&scene->source, tree->span, &scene->arena, scene->complaint, e);
 }

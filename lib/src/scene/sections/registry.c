@@ -1,4 +1,4 @@
-/* The registry of sections: which are known, which must be there, and who reads them. */
+/* The registry of sections, with the known ones, the required ones, and their readers. */
 #include <string.h>
 
 #include "scene/elaborate/hints.h"
@@ -10,8 +10,8 @@ typedef enum presence { OPTIONAL, REQUIRED, DEFAULTED, REFUSED } presence;
 typedef struct section {
   const char *name;
   presence presence;
-  const char *example; /* of what is required */
-  const char *reason;  /* why it is refused */
+  const char *example; /* an example for required sections */
+  const char *reason;  /* reason for refused sections */
   bool (*read)(dvi_scene *scene, const dvi__tree *section);
 } section;
 
@@ -38,8 +38,8 @@ static bool registry_refuse_other_names(dvi_scene *scene)
   return true;
 }
 
-/* What is no mapping, or a mapping of several keys of which none is known, was meant for
- * something else. */
+/* Refuse a file that is no mapping, or a mapping of several keys of which none is known. It was
+ * meant for something else. */
 static bool registry_knows_any(dvi_scene *scene, const char *const *known)
 {
   const dvi__tree *tree = scene->tree;
@@ -77,7 +77,7 @@ static bool registry_check(dvi_scene *scene)
 bool dvi__scene_read_tree(dvi_scene *scene)
 {
   static const dvi__tree empty = {.kind = DVI__MAPPING};
-  if (!registry_check(scene) || !dvi__says_what_moves(scene)) return false;
+  if (!registry_check(scene) || !dvi__check_motion_section(scene)) return false;
   for (int k = 0; k < SECTIONS; k++) {
     const dvi__tree *found = dvi__tree_find(scene->tree, sections[k].name);
     if (found == NULL && sections[k].presence == DEFAULTED) found = &empty;

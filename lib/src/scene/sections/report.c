@@ -3,11 +3,11 @@
 
 #include "scene/sections/sections.h"
 
-/* Each is sought among all that there are. */
+/* Limit the columns, since each is searched for among all that there are. */
 enum { COLUMNS_MAX = 1000 };
 
-/* All that dvi run may show of the scene, if `known` is not NULL; how many they are. The last of
- * them some methods alone have. */
+/* List all columns that dvi run may show of the scene, if `known` is not NULL. Returns how many
+ * they are. Only some methods have the last of them. */
 static int list_columns(const dvi_scene *scene, const char **known)
 {
   static const char *const others[] = {"t", "energy", "constraint", "distance", "h", "jump"};

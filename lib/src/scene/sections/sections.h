@@ -1,13 +1,14 @@
-/* The sections of a scene: their readers, and what these share. docs/CONTRIBUTING.md tells how to
- * add one. */
+/* The sections of a scene, their readers, and functions shared by these. docs/CONTRIBUTING.md tells
+ * how to add one. */
 #ifndef DVI_SCENE_SECTIONS_H
 #define DVI_SCENE_SECTIONS_H
 #include "scene/elaborate/context.h"
 
-/* Read the whole scene from its tree: names, terms, start, plan. Its system is made later. */
+/* Read the whole scene from its tree, that is names, terms, start and plan. Its system is made
+ * later. */
 bool dvi__scene_read_tree(dvi_scene *scene);
 
-/* Readers: dvi__read_<name> reads the section of this name. */
+/* Declare the readers. dvi__read_<name> reads the section of this name. */
 #define SECTION(name, presence, example, line) \
   bool dvi__read_##name(dvi_scene *scene, const dvi__tree *section);
 #define REFUSED_SECTION(name, line)
@@ -15,37 +16,37 @@ bool dvi__scene_read_tree(dvi_scene *scene);
 #undef SECTION
 #undef REFUSED_SECTION
 
-/* ---- what readers share: each refuses with a place, and returns false then ---- */
+/* ---- functions shared by readers, which refuse with a place and then return false ---- */
 
-/* A section must be a mapping, or a text. */
+/* Refuse a section that is no mapping, or no text. */
 bool dvi__want_mapping(dvi_scene *scene, const dvi__tree *tree, const char *what);
 bool dvi__want_text(dvi_scene *scene, const dvi__tree *tree, const char *what);
 
-/* Names of columns, potentials and events are identifiers. */
+/* Refuse a name of a column, potential or event that is no identifier. */
 bool dvi__want_name(dvi_scene *scene, const char *text, dvi__span span);
 
-/* Keys of a mapping are among known[count]; the nearest one is named if one is not. */
+/* Refuse keys of a mapping that are not among known[count], and name the nearest one. */
 bool dvi__want_keys(dvi_scene *scene, const dvi__tree *mapping, const char *what, int count,
                     const char *const *known);
 
-/* The expression that a part of the file holds: a scalar, or a list. */
+/* Read the expression that a part of the file holds, a scalar or a list. */
 bool dvi__tree_expression(dvi_scene *scene, const dvi__tree *tree, const dvi__expression **e);
 
-/* A number, or a whole one of at least `least`, made of parameters. */
+/* Read a number, or a whole number of at least `least`, made of parameters. */
 bool dvi__tree_number(dvi_scene *scene, const dvi__tree *tree, const char *what, double *number);
 bool dvi__tree_whole(dvi_scene *scene, const dvi__tree *tree, const char *what, int least,
                      int *number);
 
-/* The file that a method's specification names must lie in the scene's folder or below. The
- * specification then has the way to it from here. */
+/* Refuse a file in a method's specification that is not in the scene's folder or below. The
+ * specification then has the way to the file from here. */
 bool dvi__scene_place_file(dvi_scene *scene, dvi__span span, const char **method);
 
-/* The section that says what moves: lagrangian, kinetic, one_form, constraints or hamiltonian; NULL
- * if none does. */
-const dvi__tree *dvi__what_moves(const dvi_scene *scene);
+/* Return the section that declares the motion, lagrangian, kinetic, one_form, constraints or
+ * hamiltonian. NULL if none does. */
+const dvi__tree *dvi__motion_section(const dvi_scene *scene);
 
-/* After all sections: tell parameters where what is made of them stands. Settings of those that
- * stand nowhere are refused. */
+/* Tell parameters, after all sections, where the expressions made of them stand. Refuses settings
+ * of those that stand nowhere. */
 bool dvi__read_uses(dvi_scene *scene);
 
 #endif

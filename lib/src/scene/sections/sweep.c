@@ -18,7 +18,7 @@ static bool read_values(dvi_scene *scene, const dvi__tree *list, dvi_scene_range
   return true;
 }
 
-/* from, to and count: values in even steps, both ends included. */
+/* Read from, to and count, values in even steps with both ends included. */
 static bool read_steps(dvi_scene *scene, const dvi__tree *steps, dvi_scene_range *range)
 {
   static const char *const known[] = {"from", "to", "count"};
@@ -48,8 +48,8 @@ static bool read_steps(dvi_scene *scene, const dvi__tree *steps, dvi_scene_range
   return true;
 }
 
-static bool read_range(dvi_scene *scene, const dvi__tree *key, const dvi__tree *values,
-                       dvi_scene_range *range)
+static bool read_sweep_range(dvi_scene *scene, const dvi__tree *key, const dvi__tree *values,
+                             dvi_scene_range *range)
 {
   const dvi__name *name = dvi__names_find(&scene->names, key->text);
   if (name == NULL && !dvi__is_word(key->text))
@@ -70,6 +70,7 @@ bool dvi__read_sweep(dvi_scene *scene, const dvi__tree *section)
   if (scene->range == NULL) return dvi__scene_no_memory(scene);
   scene->range_count = section->count;
   for (int i = 0; i < section->count; i++)
-    if (!read_range(scene, section->key[i], section->child[i], &scene->range[i])) return false;
+    if (!read_sweep_range(scene, section->key[i], section->child[i], &scene->range[i]))
+      return false;
   return true;
 }

@@ -1,4 +1,4 @@
-/* Coordinates as keys: x, x[3], x[i], B.R, x', omega(R), rate(u), p(x). */
+/* Coordinates as keys, x, x[3], x[i], B.R, x', omega(R), rate(u), p(x). */
 #include <stdio.h>
 #include <string.h>
 
@@ -9,23 +9,23 @@
 #include "scene/elaborate/words.h"
 
 /* Take x', omega(R), rate(u) or p(x) apart. */
-static const dvi__expression *bare(const dvi__expression *e, dvi__target *target)
+static const dvi__expression *strip_key(const dvi__expression *e, dvi__target *target)
 {
-  target->says = DVI__SAYS_Q;
+  target->mentions = DVI__MENTIONS_Q;
   if (e->form == DVI__FORM_RATE) {
-    target->says = DVI__SAYS_V;
+    target->mentions = DVI__MENTIONS_V;
     return e->part[0];
   }
   if (e->form != DVI__FORM_CALL || e->count != 1) return e;
   const int momentum = strcmp(e->name, "p") == 0,
             velocity = strcmp(e->name, "omega") == 0 || strcmp(e->name, "rate") == 0;
   if (!momentum && !velocity) return e;
-  target->says = momentum ? DVI__SAYS_P : DVI__SAYS_V;
+  target->mentions = momentum ? DVI__MENTIONS_P : DVI__MENTIONS_V;
   if (velocity) target->call = e->name;
   return e->part[0];
 }
 
-/* The coordinate, or the part of a motion, and the index that stands with it. */
+/* Find the coordinate, or the part of a motion, and the index that stands with it. */
 static bool find_coordinate(dvi_scene *scene, const dvi__tree *key, const dvi__expression *e,
                             dvi__target *target)
 {
@@ -57,7 +57,8 @@ static bool find_coordinate(dvi_scene *scene, const dvi__tree *key, const dvi__e
                            name->name, e->name);
 }
 
-/* Whether the key is the right one for the kind: x', omega(R), rate(u); of a motion its parts. */
+/* Check that the key is the right one for the kind, x', omega(R) or rate(u), and for a motion its
+ * parts. */
 static bool right_key(dvi_scene *scene, dvi__span span, dvi__target *target)
 {
   const char *name = target->x->name;
@@ -68,7 +69,7 @@ static bool right_key(dvi_scene *scene, dvi__span span, dvi__target *target)
           name, name, name, name);
     target->x = &target->x->part[0];
   }
-  if (target->says != DVI__SAYS_V) return true;
+  if (target->mentions != DVI__MENTIONS_V) return true;
   const dvi__kind kind = target->x->kind;
   const char *wanted = kind == DVI__ROTATION ? "omega" : kind == DVI__ANGLE ? "rate" : NULL;
   if (wanted == NULL)
@@ -83,9 +84,10 @@ bool dvi__read_target(dvi_scene *scene, const dvi__tree *key, dvi__target *targe
   const dvi__expression *e;
   if (!dvi__tree_expression(scene, key, &e)) return false;
   *target = (dvi__target){.span = key->span};
-  if (!find_coordinate(scene, key, bare(e, target), target) || !right_key(scene, key->span, target))
+  if (!find_coordinate(scene, key, strip_key(e, target), target) ||
+      !right_key(scene, key->span, target))
     return false;
-  target->places = target->says == DVI__SAYS_Q ? &target->x->q : &target->x->v;
+  target->places = target->mentions == DVI__MENTIONS_Q ? &target->x->q : &target->x->v;
   for (int k = 0; k < target->index.count; k++) {
     const dvi__expression *index = target->index.of[k];
     const bool runs = index->form == DVI__FORM_NAME &&
@@ -101,7 +103,8 @@ int dvi__target_place(const dvi__target *target, int k)
   return k / target->places->components * target->places->stride + k % target->places->components;
 }
 
-/* Bind an index of a formula: of `elements`, its value changes with every `run`. */
+/* Bind an index of a formula. It has values for `elements`, and its value changes with every
+ * `run`. */
 static bool bind_each(dvi__context *c, const dvi__target *target, int k, int run)
 {
   int *each = dvi__arena_take(&c->scene->arena, (size_t)c->elements, sizeof *each);
@@ -115,7 +118,7 @@ static bool bind_each(dvi__context *c, const dvi__target *target, int k, int run
   return true;
 }
 
-/* Bind those that run over all their values, the last one first. */
+/* Bind the indices that run over all their values, the last one first. */
 static bool bind_all(dvi__context *c, const dvi__target *target)
 {
   int run[2] = {1, 1};
@@ -128,14 +131,15 @@ static bool bind_all(dvi__context *c, const dvi__target *target)
   return true;
 }
 
-/* The shape that belongs there: of a member, or of the family as a list. An angle is given by its
- * number. */
+/* Return the shape of a target's value, of a member or of the family as a list. An angle has the
+ * shape of its number. */
 static dvi__shape wanted_shape(const dvi__target *target)
 {
   const dvi__coordinate *x = target->x;
   dvi__shape one = x->shape;
-  if (x->kind == DVI__ANGLE) one = (dvi__shape){0, 1, 1};
-  if (x->kind == DVI__ROTATION && target->places == &x->v) one = (dvi__shape){1, 3, 1};
+  if (x->kind == DVI__ANGLE) one = (dvi__shape){.rank = 0, .rows = 1, .columns = 1};
+  if (x->kind == DVI__ROTATION && target->places == &x->v)
+    one = (dvi__shape){.rank = 1, .rows = 3, .columns = 1};
   if (x->family == 0 || target->index.count > 0) return one;
   if (x->family > 1) return (dvi__shape){one.rank + 2, dvi__extent(x, 0), dvi__extent(x, 1)};
   return (dvi__shape){one.rank + 1, x->size, one.rows};

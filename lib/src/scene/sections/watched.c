@@ -1,4 +1,4 @@
-/* What is watched along a run: symmetries, invariants and events. */
+/* Functions that are watched along a run, that is symmetries, invariants and events. */
 #include <string.h>
 
 #include "scene/terms/callbacks.h"
@@ -16,7 +16,7 @@ bool dvi__read_symmetries(dvi_scene *scene, const dvi__tree *section)
     if (!dvi__column_is_new(scene, section->key[i]->text, section->key[i]->span, NULL))
       return false;
     if (!dvi__field_read(scene, section->child[i], "a symmetry", &term)) return false;
-    term->role = DVI__WATCHES;
+    term->role = DVI__ROLE_WATCHED;
     list[i] = (dvi_symmetry){
         .name = section->key[i]->text, .generator = dvi__term_generator, .user = term};
   }
@@ -25,7 +25,7 @@ bool dvi__read_symmetries(dvi_scene *scene, const dvi__tree *section)
   return true;
 }
 
-/* A function of t, q and what `may` says beside them. */
+/* Read a function of t, q and the variables in `may`. */
 static bool read_function(dvi_scene *scene, const dvi__tree *tree, unsigned may, const char *where,
                           dvi__scene_term **term)
 {
@@ -35,11 +35,11 @@ static bool read_function(dvi_scene *scene, const dvi__tree *tree, unsigned may,
                     dvi__kernels_add(scene, may, where, e, 0, &list) &&
                     dvi__kernels_function(scene, &list, 0, term);
   dvi__kernels_free(&list);
-  if (good) (*term)->role = DVI__WATCHES;
+  if (good) (*term)->role = DVI__ROLE_WATCHED;
   return good;
 }
 
-/* Symmetries have columns, too. */
+/* Check that an invariant's name is no symmetry's, since symmetries have columns, too. */
 static bool invariant_is_new(dvi_scene *scene, const dvi__tree *key)
 {
   const dvi__tree *symmetries = dvi__tree_find(scene->tree, "symmetries");
@@ -51,8 +51,8 @@ static bool invariant_is_new(dvi_scene *scene, const dvi__tree *key)
 
 bool dvi__read_invariants(dvi_scene *scene, const dvi__tree *section)
 {
-  const unsigned may = DVI__SAYS_Q | DVI__SAYS_P | DVI__SAYS_T |
-                       (scene->terms.hamiltonian == NULL ? DVI__SAYS_V : 0U);
+  const unsigned may = DVI__MENTIONS_Q | DVI__MENTIONS_P | DVI__MENTIONS_T |
+                       (scene->terms.hamiltonian == NULL ? DVI__MENTIONS_V : 0U);
   if (!dvi__want_mapping(scene, section, "invariants")) return false;
   dvi_invariant *list = dvi__arena_take(&scene->arena, (size_t)section->count + 1, sizeof *list);
   if (list == NULL) return dvi__scene_no_memory(scene);
@@ -68,7 +68,7 @@ bool dvi__read_invariants(dvi_scene *scene, const dvi__tree *section)
   return true;
 }
 
-/* One of some words. */
+/* Read one of some words. */
 static bool read_word(dvi_scene *scene, const dvi__tree *tree, const char *what, int count,
                       const char *const *word, int *which)
 {
@@ -100,10 +100,11 @@ static bool read_event(dvi_scene *scene, const char *name, const dvi__tree *tree
   if (falls != NULL && !read_word(scene, falls, "direction", 3, direction_word, &direction))
     return false;
   if (stops != NULL && !read_word(scene, stops, "stop", 2, stop_word, &stop)) return false;
-  if (!read_function(scene, zero, DVI__SAYS_Q | DVI__SAYS_V | DVI__SAYS_T | DVI__OF_STATE,
+  if (!read_function(scene, zero,
+                     DVI__MENTIONS_Q | DVI__MENTIONS_V | DVI__MENTIONS_T | DVI__OF_STATE,
                      "an event", &term))
     return false;
-  term->role = DVI__STANDS_BESIDE;
+  term->role = DVI__ROLE_AUXILIARY;
   *event = (dvi_scene_event){.name = name,
                              .value = dvi__term_value,
                              .user = term,

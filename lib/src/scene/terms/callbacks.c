@@ -36,36 +36,38 @@ int dvi__term_value(double t, const double *q, const double *velocity_or_momentu
 
 /* ---- potentials ---- */
 
-static int potential_value(int count, const double *t, const double *q, double *V, void *user)
+static int term_potential_value(int count, const double *t, const double *q, double *V, void *user)
 {
   const double *x[DVI__BLOCKS] = {t, q, NULL, NULL};
   return value_at(user, count, x, V);
 }
 
-static int potential_gradient(int count, const double *t, const double *q, double *V_q, void *user)
+static int term_potential_gradient(int count, const double *t, const double *q, double *V_q,
+                                   void *user)
 {
   const double *x[DVI__BLOCKS] = {t, q, NULL, NULL};
   double *gradient[DVI__BLOCKS] = {[DVI__COORDINATES] = V_q};
   return gradient_at(user, count, x, gradient);
 }
 
-static int potential_hessian(int count, const double *t, const double *q, double *V_qq, void *user)
+static int term_potential_hessian(int count, const double *t, const double *q, double *V_qq,
+                                  void *user)
 {
   const double *x[DVI__BLOCKS] = {t, q, NULL, NULL};
   double *values[DVI__PAIRS] = {[DVI__PAIR_QQ] = V_qq};
   return second_at(user, count, x, values);
 }
 
-static int potential_rate(int count, const double *t, const double *q, double *V_t, void *user)
+static int term_potential_rate(int count, const double *t, const double *q, double *V_t, void *user)
 {
   const double *x[DVI__BLOCKS] = {t, q, NULL, NULL};
   double *gradient[DVI__BLOCKS] = {[DVI__TIME] = V_t};
   return gradient_at(user, count, x, gradient);
 }
 
-/* Of the curve's coefficients the first ones are its point. */
-static int potential_taylor(int degree, const double *t, const double *q, double *V, double *V_q,
-                            double *V_qq, void *user)
+/* Compute Taylor coefficients. The first coefficients of the curve are its point. */
+static int term_potential_taylor(int degree, const double *t, const double *q, double *V,
+                                 double *V_q, double *V_qq, void *user)
 {
   const dvi__scene_term *term = user;
   const double *x[DVI__BLOCKS] = {t, q, NULL, NULL};
@@ -90,11 +92,11 @@ static const char of_coordinates[DVI__BLOCKS] = {[DVI__COORDINATES] = 1};
 static const char of_motion[DVI__BLOCKS] = {[DVI__COORDINATES] = 1, [DVI__VELOCITIES] = 1};
 static const char of_multipliers[DVI__BLOCKS] = {[DVI__MULTIPLIERS] = 1};
 
-/* Programs of large expressions are made now, for they may be refused: the value's, and the
- * gradient's by these blocks. */
+/* Make the programs of large expressions now, since they may be refused. They are the value's, and
+ * the gradient's by these blocks. */
 static bool prepare_large(dvi_scene *scene, const dvi__scene_term *term, const char *blocks)
 {
-  enum { ALWAYS_FIT = DVI__ROWS_MAX / 32 }; /* parts, whatever is derived of them */
+  enum { ALWAYS_FIT = DVI__ROWS_MAX / 32 }; /* nodes of a kernel, whose programs then fit */
   const dvi__kernel *largest = NULL;
   for (int k = 0; k < dvi__function_kernel_count(term->function); k++) {
     const dvi__kernel *kernel = dvi__function_kernel(term->function, k);
@@ -113,11 +115,11 @@ bool dvi__make_potential(dvi_scene *scene, const char *name, dvi__scene_term *te
 {
   int full;
   *potential = (dvi_potential){.name = name,
-                               .value_batch = potential_value,
-                               .gradient_batch = potential_gradient,
-                               .hessian_batch = potential_hessian,
-                               .rate_batch = potential_rate,
-                               .taylor = potential_taylor,
+                               .value_batch = term_potential_value,
+                               .gradient_batch = term_potential_gradient,
+                               .hessian_batch = term_potential_hessian,
+                               .rate_batch = term_potential_rate,
+                               .taylor = term_potential_taylor,
                                .user = term};
   return prepare_large(scene, term, of_coordinates) &&
          dvi__term_pattern(scene, term, DVI__PAIR_QQ, &potential->qq, &full);
@@ -125,23 +127,23 @@ bool dvi__make_potential(dvi_scene *scene, const char *name, dvi__scene_term *te
 
 /* ---- Lagrangians ---- */
 
-static int lagrangian_value(int count, const double *t, const double *q, const double *v, double *L,
-                            void *user)
+static int term_lagrangian_value(int count, const double *t, const double *q, const double *v,
+                                 double *L, void *user)
 {
   const double *x[DVI__BLOCKS] = {t, q, v, NULL};
   return value_at(user, count, x, L);
 }
 
-static int lagrangian_gradient(int count, const double *t, const double *q, const double *v,
-                               double *L_q, double *L_v, void *user)
+static int term_lagrangian_gradient(int count, const double *t, const double *q, const double *v,
+                                    double *L_q, double *L_v, void *user)
 {
   const double *x[DVI__BLOCKS] = {t, q, v, NULL};
   double *gradient[DVI__BLOCKS] = {[DVI__COORDINATES] = L_q, [DVI__VELOCITIES] = L_v};
   return gradient_at(user, count, x, gradient);
 }
 
-static int lagrangian_hessian(int count, const double *t, const double *q, const double *v,
-                              double *L_qq, double *L_qv, double *L_vv, void *user)
+static int term_lagrangian_hessian(int count, const double *t, const double *q, const double *v,
+                                   double *L_qq, double *L_qv, double *L_vv, void *user)
 {
   const double *x[DVI__BLOCKS] = {t, q, v, NULL};
   double *values[DVI__PAIRS] = {
@@ -149,17 +151,17 @@ static int lagrangian_hessian(int count, const double *t, const double *q, const
   return second_at(user, count, x, values);
 }
 
-static int lagrangian_rate(int count, const double *t, const double *q, const double *v,
-                           double *L_t, void *user)
+static int term_lagrangian_rate(int count, const double *t, const double *q, const double *v,
+                                double *L_t, void *user)
 {
   const double *x[DVI__BLOCKS] = {t, q, v, NULL};
   double *gradient[DVI__BLOCKS] = {[DVI__TIME] = L_t};
   return gradient_at(user, count, x, gradient);
 }
 
-static int lagrangian_taylor(int degree, const double *t, const double *q, const double *v,
-                             double *L, double *L_q, double *L_v, double *L_qq, double *L_qv,
-                             double *L_vv, void *user)
+static int term_lagrangian_taylor(int degree, const double *t, const double *q, const double *v,
+                                  double *L, double *L_q, double *L_v, double *L_qq, double *L_qv,
+                                  double *L_vv, void *user)
 {
   const dvi__scene_term *term = user;
   const double *x[DVI__BLOCKS] = {t, q, v, NULL};
@@ -173,11 +175,11 @@ static int lagrangian_taylor(int degree, const double *t, const double *q, const
 bool dvi__make_lagrangian(dvi_scene *scene, dvi__scene_term *term, dvi_lagrangian *lagrangian)
 {
   int full;
-  *lagrangian = (dvi_lagrangian){.value_batch = lagrangian_value,
-                                 .gradient_batch = lagrangian_gradient,
-                                 .hessian_batch = lagrangian_hessian,
-                                 .rate_batch = lagrangian_rate,
-                                 .taylor = lagrangian_taylor,
+  *lagrangian = (dvi_lagrangian){.value_batch = term_lagrangian_value,
+                                 .gradient_batch = term_lagrangian_gradient,
+                                 .hessian_batch = term_lagrangian_hessian,
+                                 .rate_batch = term_lagrangian_rate,
+                                 .taylor = term_lagrangian_taylor,
                                  .user = term};
   return prepare_large(scene, term, of_motion) &&
          dvi__term_pattern(scene, term, DVI__PAIR_QQ, &lagrangian->qq, &full) &&
@@ -187,7 +189,7 @@ bool dvi__make_lagrangian(dvi_scene *scene, dvi__scene_term *term, dvi_lagrangia
 
 /* ---- one-forms: alpha is the gradient of alpha(q).w by w ---- */
 
-static int multiplied(const double *q, const double *p, double *gradient_w, void *user)
+static int term_form_components(const double *q, const double *p, double *gradient_w, void *user)
 {
   dvi__scene_term *term = user;
   const double *x[DVI__BLOCKS] = {NULL, q, p, term->none};
@@ -197,10 +199,10 @@ static int multiplied(const double *q, const double *p, double *gradient_w, void
 
 int dvi__term_generator(const double *q, double *xi, void *user)
 {
-  return multiplied(q, NULL, xi, user);
+  return term_form_components(q, NULL, xi, user);
 }
 
-static int form_gradient(const double *q, double *alpha_q, void *user)
+static int term_form_gradient(const double *q, double *alpha_q, void *user)
 {
   dvi__scene_term *term = user;
   const double *x[DVI__BLOCKS] = {NULL, q, NULL, term->none};
@@ -208,7 +210,7 @@ static int form_gradient(const double *q, double *alpha_q, void *user)
   return second_at(term, 1, x, values);
 }
 
-static int form_hessian(const double *q, const double *w, double *alpha_w_qq, void *user)
+static int term_form_hessian(const double *q, const double *w, double *alpha_w_qq, void *user)
 {
   const double *x[DVI__BLOCKS] = {NULL, q, NULL, w};
   double *values[DVI__PAIRS] = {[DVI__PAIR_QQ] = alpha_w_qq};
@@ -219,8 +221,8 @@ bool dvi__make_one_form(dvi_scene *scene, dvi__scene_term *term, dvi_one_form *f
 {
   int full;
   *form = (dvi_one_form){.value = dvi__term_generator,
-                         .gradient = form_gradient,
-                         .hessian = form_hessian,
+                         .gradient = term_form_gradient,
+                         .hessian = term_form_hessian,
                          .user = term};
   return prepare_large(scene, term, of_multipliers) &&
          dvi__term_pattern(scene, term, DVI__PAIR_QW, &form->gradients, &full) &&
@@ -229,16 +231,16 @@ bool dvi__make_one_form(dvi_scene *scene, dvi__scene_term *term, dvi_one_form *f
 
 /* ---- Hamiltonians with constraints ---- */
 
-static int hamiltonian_gradient(double t, const double *q, const double *p, double *H_q,
-                                double *H_p, void *user)
+static int term_hamiltonian_gradient(double t, const double *q, const double *p, double *H_q,
+                                     double *H_p, void *user)
 {
   const double *x[DVI__BLOCKS] = {&t, q, p, NULL};
   double *gradient[DVI__BLOCKS] = {[DVI__COORDINATES] = H_q, [DVI__VELOCITIES] = H_p};
   return gradient_at(user, 1, x, gradient);
 }
 
-static int hamiltonian_hessian(double t, const double *q, const double *p, double *H_qq,
-                               double *H_qp, double *H_pp, void *user)
+static int term_hamiltonian_hessian(double t, const double *q, const double *p, double *H_qq,
+                                    double *H_qp, double *H_pp, void *user)
 {
   const double *x[DVI__BLOCKS] = {&t, q, p, NULL};
   double *values[DVI__PAIRS] = {
@@ -250,8 +252,8 @@ bool dvi__make_hamiltonian(dvi_scene *scene, dvi__scene_term *term, dvi_hamilton
 {
   int full;
   *hamiltonian = (dvi_hamiltonian){.value = dvi__term_value,
-                                   .gradient = hamiltonian_gradient,
-                                   .hessian = hamiltonian_hessian,
+                                   .gradient = term_hamiltonian_gradient,
+                                   .hessian = term_hamiltonian_hessian,
                                    .user = term};
   return prepare_large(scene, term, of_motion) &&
          dvi__term_pattern(scene, term, DVI__PAIR_QQ, &hamiltonian->qq, &full) &&
@@ -259,7 +261,7 @@ bool dvi__make_hamiltonian(dvi_scene *scene, dvi__scene_term *term, dvi_hamilton
          dvi__term_pattern(scene, term, DVI__PAIR_VV, &hamiltonian->pp, &full);
 }
 
-static void turn_round(double *first, double *end)
+static void reverse_entries(double *first, double *end)
 {
   for (; first < end; first++) {
     const double kept = *--end;
@@ -268,8 +270,8 @@ static void turn_round(double *first, double *end)
   }
 }
 
-/* Columns of d phi/dq, then those of d phi/dp, to columns of both: each column of the latter moves
- * in front of what is left of the former. There is no memory but the result's. */
+/* Join the columns of d phi/dq and d phi/dp to columns of both. Each column of the latter moves in
+ * front of the rest of the former. There is no memory but the result's. */
 static void join_columns(int count, const int *q_start, const int *p_start, double *phi_z)
 {
   double *to = phi_z;
@@ -277,14 +279,14 @@ static void join_columns(int count, const int *q_start, const int *p_start, doub
     to += q_start[a + 1] - q_start[a];
     double *from = to + (q_start[count] - q_start[a + 1]),
            *end = from + (p_start[a + 1] - p_start[a]);
-    turn_round(to, from);
-    turn_round(from, end);
-    turn_round(to, end);
+    reverse_entries(to, from);
+    reverse_entries(from, end);
+    reverse_entries(to, end);
     to += p_start[a + 1] - p_start[a];
   }
 }
 
-static int constraint_gradient(const double *q, const double *p, double *phi_z, void *user)
+static int term_constraint_gradient(const double *q, const double *p, double *phi_z, void *user)
 {
   dvi__scene_term *term = user;
   const double *x[DVI__BLOCKS] = {NULL, q, p, term->none};
@@ -295,15 +297,15 @@ static int constraint_gradient(const double *q, const double *p, double *phi_z, 
   return returned;
 }
 
-static int constraint_hessian(const double *q, const double *p, const double *w, double *qq,
-                              double *qp, double *pp, void *user)
+static int term_constraint_hessian(const double *q, const double *p, const double *w, double *qq,
+                                   double *qp, double *pp, void *user)
 {
   const double *x[DVI__BLOCKS] = {NULL, q, p, w};
   double *values[DVI__PAIRS] = {[DVI__PAIR_QQ] = qq, [DVI__PAIR_QV] = qp, [DVI__PAIR_VV] = pp};
   return second_at(user, 1, x, values);
 }
 
-/* A pattern with its entries, even if it is full. */
+/* Find a pattern with its entries, even if it is full. */
 static bool explicit_pattern(dvi_scene *scene, dvi__scene_term *term, int pair,
                              dvi_pattern *pattern)
 {
@@ -320,7 +322,7 @@ static bool explicit_pattern(dvi_scene *scene, dvi__scene_term *term, int pair,
   return true;
 }
 
-/* The gradients' pattern: in each column the rows of q, then those of p. */
+/* Join the gradients' patterns. Each column has the rows of q, then those of p. */
 static bool join_patterns(dvi_scene *scene, const dvi__scene_term *term, dvi_pattern *joined)
 {
   const int count = term->count, *q_start = term->qw.start, *p_start = term->vw.start;
@@ -343,9 +345,9 @@ bool dvi__make_constraint(dvi_scene *scene, dvi__scene_term *term, dvi_constrain
 {
   int full;
   *constraint = (dvi_constraint){.count = term->count,
-                                 .value = multiplied,
-                                 .gradient = constraint_gradient,
-                                 .hessian = constraint_hessian,
+                                 .value = term_form_components,
+                                 .gradient = term_constraint_gradient,
+                                 .hessian = term_constraint_hessian,
                                  .user = term};
   return prepare_large(scene, term, of_multipliers) &&
          explicit_pattern(scene, term, DVI__PAIR_QW, &term->qw) &&

@@ -1,25 +1,25 @@
-/* The callbacks of a system's terms, on functions of a scene; `user` is a dvi__scene_term. */
+/* The callbacks of a system's terms, on functions of a scene. `user` is a dvi__scene_term. */
 #ifndef DVI_SCENE_CALLBACKS_H
 #define DVI_SCENE_CALLBACKS_H
 #include "scene/elaborate/kernels.h"
 
-/* Fill in a term: its callbacks, patterns and user pointer; rates only if the system depends on
- * time. */
+/* Fill in a term with its callbacks, patterns and user pointer. Rates are there only if the system
+ * depends on time. */
 bool dvi__make_potential(dvi_scene *scene, const char *name, dvi__scene_term *term,
                          dvi_potential *potential);
 bool dvi__make_lagrangian(dvi_scene *scene, dvi__scene_term *term, dvi_lagrangian *lagrangian);
-/* Of the function alpha(q).w. */
+/* Fill in a one-form with the function alpha(q).w. */
 bool dvi__make_one_form(dvi_scene *scene, dvi__scene_term *term, dvi_one_form *form);
 bool dvi__make_hamiltonian(dvi_scene *scene, dvi__scene_term *term, dvi_hamiltonian *hamiltonian);
-/* Of the function phi(q,p).w, w [term->count]. */
+/* Fill in constraints with the function phi(q,p).w, w [term->count]. */
 bool dvi__make_constraint(dvi_scene *scene, dvi__scene_term *term, dvi_constraint *constraint);
 
-/* Of xi(q).w; and of one number. */
+/* Evaluate a generator with the function xi(q).w. dvi__term_value evaluates one number. */
 int dvi__term_generator(const double *q, double *xi, void *user);
 int dvi__term_value(double t, const double *q, const double *velocity_or_momentum, double *value,
                     void *user);
 
-/* A pattern of a function; told if there is none. */
+/* Find a pattern of a function. Complains if there is none. */
 bool dvi__term_pattern(dvi_scene *scene, dvi__scene_term *term, int pair, dvi_pattern *pattern,
                        int *full);
 

@@ -2,14 +2,14 @@
 
 #include "scene/elaborate/model.h"
 
-/* ---- which factors there are ---- */
+/* ---- factors ---- */
 
 static int is_line(const dvi__coordinate *x)
 {
   return x->kind == DVI__LINES;
 }
 
-/* Neighbouring numbers and vectors are one factor, R^n. */
+/* Add a factor R^n of neighbouring numbers and vectors. */
 static void add_lines(dvi_scene *scene, dvi_factor *factors, const dvi__coordinate *x)
 {
   const int joins = x > scene->coordinate && is_line(x - 1);
@@ -27,7 +27,7 @@ static size_t most_factors(const dvi_scene *scene)
   return most;
 }
 
-/* The factors, without masses; of[k]: the first one of coordinate k. */
+/* Make the factors, without masses. of[k] is the first one of coordinate k. */
 static dvi_factor *lay_out(dvi_scene *scene, int *of)
 {
   static const dvi_factor_kind kind[] = {DVI_RN, DVI_SO3, DVI_SE3, DVI_S2, DVI_U1};
@@ -43,10 +43,10 @@ static dvi_factor *lay_out(dvi_scene *scene, int *of)
   return factors;
 }
 
-/* ---- velocities of the state: inertias ---- */
+/* ---- velocities of the state and their inertias ---- */
 
-/* omega(R)[1]*x' has no constant mass: what is constant in omega(R) is not so in the rates of R,
- * and the other way round. */
+/* Refuse a product as omega(R)[1]*x', which has no constant mass. A coefficient that is constant in
+ * omega(R) is not so in the rates of R, nor the other way round. */
 static bool refuse_coupling(dvi_scene *scene, int state, int other)
 {
   const int n = scene->n;
@@ -61,7 +61,7 @@ static bool refuse_coupling(dvi_scene *scene, int state, int other)
                            a->kind == DVI__ANGLE ? "rate" : "omega", a->name, b->name);
 }
 
-/* An entry of an inertia: numbers `row` and `column` of v. */
+/* Add an entry of an inertia, by the numbers `row` and `column` of v. */
 static bool add_inertia(dvi_scene *scene, dvi_factor *factors, const int *of, int row, int column,
                         double value)
 {
@@ -87,15 +87,15 @@ static bool add_inertia(dvi_scene *scene, dvi_factor *factors, const int *of, in
 
 /* ---- the form, entry by entry ---- */
 
-/* Where an entry of the mass goes. */
+/* The destinations of the entries of the mass. */
 typedef struct parts {
   dvi_factor *factors;
-  int *of, *start, *row, count; /* of what is stored: columns */
+  int *of, *start, *row, count; /* columns of the mass by stored numbers */
   double *value;
-  char *heavy; /* [n + nv] columns that are not zero */
+  char *heavy; /* [n + nv] 1 for columns that are not zero */
 } parts;
 
-static bool add_entry(dvi_scene *scene, parts *to, int row, int column, double value)
+static bool add_mass_entry(dvi_scene *scene, parts *to, int row, int column, double value)
 {
   const int n = scene->n;
   if (!(value < 0) && !(value > 0)) return true;
@@ -118,21 +118,22 @@ static bool add_columns(dvi_scene *scene, parts *to, const dvi_pattern *pattern,
     const int first = full ? j * all : pattern->start[j],
               end = full ? first + all : pattern->start[j + 1];
     for (int e = first; e < end && good; e++)
-      good = add_entry(scene, to, full ? e - first : pattern->row[e], j, values[e]);
+      good = add_mass_entry(scene, to, full ? e - first : pattern->row[e], j, values[e]);
     if (j < scene->n) to->start[j + 1] = to->count;
   }
   return good;
 }
 
-/* Whether any of some columns is heavy. */
-static int any(const char *heavy, int count)
+/* Return 1 if any of some columns is heavy. */
+static int any_is_heavy(const char *heavy, int count)
 {
   int found = 0;
   for (int i = 0; i < count && !found; i++) found = heavy[i] != 0;
   return found;
 }
 
-/* Numbers have masses one by one; a manifold coordinate has some mass at all. */
+/* Return true if all masses are there. Numbers have masses one by one, and a manifold coordinate
+ * needs some mass at all. */
 static bool is_heavy(const dvi_scene *scene, const dvi__coordinate *x, const char *heavy)
 {
   const int numbers = is_line(x) ? 1 : x->q.components;
@@ -140,7 +141,8 @@ static bool is_heavy(const dvi_scene *scene, const dvi__coordinate *x, const cha
     for (int k = 0; k < x->q.components; k += numbers) {
       const char *q = heavy + x->q.first + (ptrdiff_t)m * x->q.stride + k;
       const char *v = heavy + scene->n + x->v.first + (ptrdiff_t)m * x->v.stride;
-      if (!any(q, numbers) && (is_line(x) || !any(v, x->v.components))) return false;
+      if (!any_is_heavy(q, numbers) && (is_line(x) || !any_is_heavy(v, x->v.components)))
+        return false;
     }
   return true;
 }
@@ -182,7 +184,7 @@ bool dvi__make_factors(dvi_scene *scene, const dvi_pattern *pattern, const doubl
 
 /* ---- inertias ---- */
 
-/* Whether a body could be of this inertia: if a system could be made of it alone. */
+/* Return 1 if a body could have this inertia, so that a system could be made of it alone. */
 static int is_of_body(const dvi_factor *factor)
 {
   dvi_system *alone;

@@ -9,7 +9,7 @@ enum { FAULT_SIZE = 512 };
 static _Thread_local char fault_text[FAULT_SIZE];
 static _Thread_local dvi_status fault_status;
 static _Thread_local dvi__span fault_span;
-static _Thread_local size_t fault_words; /* where they begin, behind the place; 0: it names none */
+static _Thread_local size_t fault_words; /* start of the words behind a place, or 0 */
 
 void dvi__fault_clear(void)
 {
@@ -35,7 +35,7 @@ const char *dvi_scene_fault(void)
   return fault_text;
 }
 
-/* Add to what is said. */
+/* Add to the sentence. */
 static void fault_add(const char *format, ...) DVI__TEXT_PRINTF(1, 2);
 static void fault_add(const char *format, ...)
 {
@@ -61,7 +61,7 @@ static void fault_add_point(const dvi__scene_term *term, const double *t, const 
   }
 }
 
-/* Keep which part was not finite, or has no series, at the first of the points where one is. */
+/* Keep the part that was not finite, or has no series, at the first of the points where one is. */
 static void fault_keep(const dvi__scene_term *term, int count, const double *const *x,
                        int of_series)
 {

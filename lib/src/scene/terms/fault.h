@@ -1,24 +1,24 @@
-/* What dvi_scene_fault says of the callbacks of this thread. */
+/* The text of dvi_scene_fault for the callbacks of this thread. */
 #ifndef DVI_SCENE_FAULT_H
 #define DVI_SCENE_FAULT_H
 #include "scene/elaborate/model.h"
 
-/* Pass on what an evaluation of the term's function at points x returned, and keep where the fault
- * is if it is not 0. `of_series`: Taylor coefficients were asked for. */
+/* Return the result of an evaluation of the term's function at points x, and keep the place of the
+ * fault if that is not 0. `of_series` is 1 for Taylor coefficients. */
 int dvi__fault_check(const dvi__scene_term *term, int count, const double *const *x, int of_series,
                      int returned);
 
-/* Forget the fault; and its status, DVI_OK after that. */
+/* Forget the fault. dvi__fault_status returns its status, DVI_OK after that. */
 void dvi__fault_clear(void);
 dvi_status dvi__fault_status(void);
 
-/* The place that it names, and its words behind the place; false if it names none. */
+/* Return the place of the fault, and the words behind it. Returns false if there is no place. */
 bool dvi__fault_place(dvi__span *span, const char **words);
 
-/* Why there is no program, or no pattern: a sentence for that status. */
+/* Return a sentence that explains why there is no program, or no pattern, for this status. */
 const char *dvi__too_large(dvi_status status);
 
-/* Refuse what there is no program or pattern for, for that status; false. */
+/* Refuse an expression without a program or pattern, for this status. Returns false. */
 bool dvi__scene_too_large(dvi_scene *scene, const char *what, dvi_status status);
 
 #endif

@@ -1,5 +1,5 @@
-/* Words of expressions, and remedies for characters that mean something elsewhere: in other
- * languages, or on paper. */
+/* Words of expressions, and remedies for characters that mean something elsewhere, in other
+ * languages or on paper. */
 #include "scene/text/lexer.h"
 #include "text/utf8.h"
 
@@ -15,41 +15,41 @@ static bool is_letter(char c)
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
 }
 
-/* A part of the source from which characters are read; behind its end there are NULs. */
+/* A part of the source from which characters are read. Behind its end there are NULs. */
 typedef struct text {
   const char *at;
   size_t end;
 } text;
 
-static char at(const text *t, size_t offset)
+static char letter_at(const text *t, size_t offset)
 {
   return offset < t->end ? t->at[offset] : '\0';
 }
 
 static size_t skip_digits(const text *t, size_t k)
 {
-  while (is_digit(at(t, k))) k++;
+  while (is_digit(letter_at(t, k))) k++;
   return k;
 }
 
-/* Where the number ends that begins at k. The two points of 1..N are none of it, and an e without
- * digits begins a name. */
+/* Return the end of the number that begins at k. It stops before the two points of 1..N, and an e
+ * without digits begins a name. */
 static size_t number_end(const text *t, size_t k)
 {
   k = skip_digits(t, k);
-  if (at(t, k) == '.' && at(t, k + 1) != '.') k = skip_digits(t, k + 1);
-  if (at(t, k) != 'e' && at(t, k) != 'E') return k;
-  const size_t digits = k + (at(t, k + 1) == '+' || at(t, k + 1) == '-' ? 2 : 1);
-  return is_digit(at(t, digits)) ? skip_digits(t, digits) : k;
+  if (letter_at(t, k) == '.' && letter_at(t, k + 1) != '.') k = skip_digits(t, k + 1);
+  if (letter_at(t, k) != 'e' && letter_at(t, k) != 'E') return k;
+  const size_t digits = k + (letter_at(t, k + 1) == '+' || letter_at(t, k + 1) == '-' ? 2 : 1);
+  return is_digit(letter_at(t, digits)) ? skip_digits(t, digits) : k;
 }
 
 static size_t name_end(const text *t, size_t k)
 {
-  while (is_letter(at(t, k)) || is_digit(at(t, k))) k++;
+  while (is_letter(letter_at(t, k)) || is_digit(letter_at(t, k))) k++;
   return k;
 }
 
-/* A comment begins behind a blank, as in YAML, to which x#y is one text. */
+/* Return true at a comment. It begins behind a blank, as in YAML, to which x#y is one text. */
 static bool begins_comment(const text *t, size_t k)
 {
   return t->at[k] == '#' && (k == 0 || dvi__is_blank(t->at[k - 1]));
@@ -66,8 +66,8 @@ static size_t skip_blanks(const text *t, size_t k)
   return k;
 }
 
-/* What to write for a character of paper; NULL: nothing comes close. */
-static const char *spelling(unsigned code)
+/* Return the remedy for a character of paper, or NULL if nothing comes close. */
+static const char *remedy_for(unsigned code)
 {
   static const char *const greek[] = {
       "alpha", "beta",   "gamma",   "delta", "epsilon", "zeta",    "eta",  "theta", "iota",
@@ -95,7 +95,7 @@ static bool refuse_letter(const text *t, size_t k, dvi__complaint *complaint)
   unsigned code = 0;
   const size_t width = dvi__utf8(t->at + k, t->end - k, &code);
   const dvi__span where = {k, width == 0 ? 1 : width};
-  const char *write = width == 0 ? NULL : spelling(code);
+  const char *write = width == 0 ? NULL : remedy_for(code);
   if (write != NULL)
     return dvi__complain(complaint, DVI_BAD_FILE, where,
                          "'%.*s' has no meaning in expressions; write %s", (int)where.size,
@@ -106,7 +106,7 @@ static bool refuse_letter(const text *t, size_t k, dvi__complaint *complaint)
                        (int)where.size, t->at + k);
 }
 
-static bool refuse(const text *t, size_t k, dvi__complaint *complaint)
+static bool refuse_character(const text *t, size_t k, dvi__complaint *complaint)
 {
   static const struct {
     char mark;
@@ -133,7 +133,7 @@ static bool refuse(const text *t, size_t k, dvi__complaint *complaint)
                        "'%c' has no meaning in expressions%s", c, remedy);
 }
 
-/* The kind of a mark of two characters; 0: this is none. */
+/* Return the kind of a mark of two characters, or 0 if this is none. */
 static int mark_of_two(char first, char second)
 {
   static const struct {
@@ -154,26 +154,26 @@ bool dvi__token_read(const dvi__source *source, size_t offset, size_t end,
 {
   const text t = {source->text, end};
   const size_t first = skip_blanks(&t, offset);
-  const char c = at(&t, first);
+  const char c = letter_at(&t, first);
   size_t last = first + 1;
   int kind = (unsigned char)c;
   if (first >= end) {
     kind = DVI__TOKEN_END;
     last = first;
-  } else if (is_digit(c) || (c == '.' && is_digit(at(&t, first + 1)))) {
+  } else if (is_digit(c) || (c == '.' && is_digit(letter_at(&t, first + 1)))) {
     kind = DVI__TOKEN_NUMBER;
     last = number_end(&t, first);
   } else if (is_letter(c)) {
     kind = DVI__TOKEN_NAME;
     last = name_end(&t, first);
-  } else if (mark_of_two(c, at(&t, last)) != 0) {
-    kind = mark_of_two(c, at(&t, last));
+  } else if (mark_of_two(c, letter_at(&t, last)) != 0) {
+    kind = mark_of_two(c, letter_at(&t, last));
     last = first + 2;
-  } else if (c == '*' && at(&t, last) == '*') {
+  } else if (c == '*' && letter_at(&t, last) == '*') {
     return dvi__complain(complaint, DVI_BAD_FILE, (dvi__span){first, 2},
                          "powers are written x^2, not x**2");
   } else if (c == '\0' || strchr("+-*/^()[],.'<>=", c) == NULL) {
-    return refuse(&t, first, complaint);
+    return refuse_character(&t, first, complaint);
   }
   *token = (dvi__token){kind, {first, last - first}};
   return true;

@@ -3,10 +3,10 @@
 #define DVI_SCENE_LEXER_H
 #include "text/complaint.h"
 
-/* Marks of one character are tokens of that character's code. */
+/* Kinds of tokens. A mark of one character has that character's code as its kind. */
 typedef enum dvi__token_kind {
   DVI__TOKEN_END = 0,
-  DVI__TOKEN_NUMBER = 256, /* not read yet: digits, point, exponent */
+  DVI__TOKEN_NUMBER = 256, /* digits, point and exponent, not read yet */
   DVI__TOKEN_NAME,
   DVI__TOKEN_RANGE,    /* .. */
   DVI__TOKEN_AT_MOST,  /* <= */
@@ -20,8 +20,8 @@ typedef struct dvi__token {
   dvi__span span;
 } dvi__token;
 
-/* The token at `offset` or behind blanks and comments (# to the end of the line), before `end`;
- * false, with a complaint, if something else stands there. */
+/* Read the token at `offset` or behind blanks and comments (# to the end of the line), before
+ * `end`. Returns false, with a complaint, if something else stands there. */
 bool dvi__token_read(const dvi__source *source, size_t offset, size_t end,
                      dvi__complaint *complaint, dvi__token *token);
 

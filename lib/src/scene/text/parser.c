@@ -1,4 +1,4 @@
-/* What the functions of the grammar share. */
+/* Functions shared by the functions of the grammar. */
 #include "scene/text/parser.h"
 
 #include <string.h>
@@ -7,7 +7,7 @@
 
 enum { LEVELS_MAX = 64 };
 
-static bool no_memory(const dvi__parser *p)
+static bool parser_no_memory(const dvi__parser *p)
 {
   return dvi__complain_of_memory(p->complaint);
 }
@@ -37,7 +37,7 @@ bool dvi__parser_is_at(const dvi__parser *p, const char *word)
          strncmp(p->source->text + p->token.span.first, word, p->token.span.size) == 0;
 }
 
-/* Whether YAML ended the text at a comma, as it does in {..} and [..]. */
+/* Return true if YAML ended the text at a comma, as it does in {..} and [..]. */
 static bool ends_at_comma(const dvi__parser *p)
 {
   size_t at = p->end;
@@ -61,7 +61,7 @@ bool dvi__parser_node(const dvi__parser *p, dvi__form form, size_t first, const 
                       dvi__expression **result)
 {
   *result = dvi__arena_take(p->arena, 1, sizeof **result);
-  if (*result == NULL) return no_memory(p);
+  if (*result == NULL) return parser_no_memory(p);
   **result = (dvi__expression){.form = form, .span = {first, p->last - first}};
   if (parts == NULL) return true;
   (*result)->count = (int)parts->count;
@@ -73,7 +73,7 @@ bool dvi__row_add(const dvi__parser *p, dvi__row *parts, dvi__expression *part)
 {
   dvi__expression **grown = dvi__arena_grow(p->arena, parts->part, parts->count,
                                             sizeof(dvi__expression *));
-  if (grown == NULL) return no_memory(p);
+  if (grown == NULL) return parser_no_memory(p);
   grown[parts->count++] = part;
   parts->part = grown;
   return true;
@@ -92,7 +92,7 @@ const char *dvi__parser_copy(const dvi__parser *p)
 {
   const char *copy = dvi__arena_text(p->arena, p->source->text + p->token.span.first,
                                      p->token.span.size);
-  if (copy == NULL) (void)no_memory(p);
+  if (copy == NULL) (void)parser_no_memory(p);
   return copy;
 }
 

@@ -1,5 +1,5 @@
-/* The parser of expressions below its grammar: the words of the text one after the other, and the
- * nodes that are made of them. Functions that return bool return false after a complaint. */
+/* The parser of expressions below its grammar. It gives the words of the text one after the other,
+ * and makes nodes of them. Functions that return bool return false after a complaint. */
 #ifndef DVI_SCENE_PARSER_H
 #define DVI_SCENE_PARSER_H
 #include "scene/text/lexer.h"
@@ -9,10 +9,10 @@ typedef struct dvi__parser {
   const dvi__source *source;
   dvi__arena *arena;
   dvi__complaint *complaint;
-  size_t end;       /* of the part that is parsed */
-  dvi__token token; /* the one that comes next */
-  size_t last;      /* the end of the one before it */
-  int depth;        /* 0: what does not stand in anything */
+  size_t end;       /* end of the part that is parsed */
+  dvi__token token; /* the next token */
+  size_t last;      /* the end of the token before */
+  int depth;        /* levels of nesting, 0 outside of all brackets */
 } dvi__parser;
 
 /* Parts of a node, a list that grows. */
@@ -21,7 +21,7 @@ typedef struct dvi__row {
   size_t count;
 } dvi__row;
 
-/* "found ')'" in words that fit into a sentence: at most 40 letters of what is there. */
+/* Format words as "found ')'" for a sentence, with at most 40 letters of the text. */
 #define DVI__FOUND_FORMAT "%s%.*s%s"
 #define DVI__FOUND(p)                                               \
   (p)->token.kind == DVI__TOKEN_END ? "the end" : "'",              \
@@ -31,7 +31,7 @@ typedef struct dvi__row {
 /* Read the next token. */
 bool dvi__parser_next(dvi__parser *p);
 
-/* Count one more level of nesting; the caller takes it back. */
+/* Count one more level of nesting. The caller takes it back. */
 bool dvi__parser_enter(dvi__parser *p);
 
 /* Read one token of this kind. `open` is the bracket that it closes, or nowhere. */
@@ -40,10 +40,10 @@ bool dvi__parser_expect(dvi__parser *p, int kind, const char *spelling, dvi__spa
 /* Read a name. */
 bool dvi__parser_name(dvi__parser *p, const char **name);
 
-/* Whether the next token is this word. */
+/* Return true if the next token is this word. */
 bool dvi__parser_is_at(const dvi__parser *p, const char *word);
 
-/* The text of the next token, ended by NUL; NULL after a complaint. */
+/* Return the text of the next token, ended by NUL, or NULL after a complaint. */
 const char *dvi__parser_copy(const dvi__parser *p);
 
 /* Make a node that ends with the last token. */

@@ -1,4 +1,4 @@
-/* A dvi__parser by recursive descent, one function for each line of the grammar:
+/* A parser by recursive descent, one function for each line of the grammar.
  *
  *     sum_of   = product { (+|-) product }
  *     product  = signed { (*|/) signed }
@@ -12,11 +12,11 @@
  *     all_of   = denial { and denial }
  *     denial   = not denial | sum_of { (<|<=|>|>=|==|!=) sum_of }
  *
- * A number may stand wherever a condition may, and the other way round within parentheses:
- * elaboration tells them apart.
+ * A number may stand in place of a condition, and a condition within parentheses in place of a
+ * number. Elaboration tells them apart.
  *
- * Chains of + and *, however long, are loops; what nests is counted, so that neither this nor what
- * reads the tree can be driven deep. */
+ * Chains of + and *, however long, are loops. Levels of nesting are counted, so that neither this
+ * file nor the readers of the tree can be driven deep. */
 #include "scene/text/syntax.h"
 
 #include <dvi/number.h>
@@ -27,10 +27,10 @@
 
 typedef dvi__expression node;
 
-static bool sum_of(dvi__parser *p, node **result);
-static bool any_of(dvi__parser *p, node **result);
+static bool parse_sum_of(dvi__parser *p, node **result);
+static bool parse_any_of(dvi__parser *p, node **result);
 
-/* Two operands stand beside each other. `left` is the one before. */
+/* Refuse two operands beside each other. `left` is the one before. */
 static bool refuse_neighbours(const dvi__parser *p, const node *left)
 {
   const dvi__span l = left->span;
@@ -51,7 +51,7 @@ static bool refuse_neighbours(const dvi__parser *p, const node *left)
                        text + l.first, (int)r.size, text + r.first, open ? "..)" : "");
 }
 
-/* Words of conditions are no operands. */
+/* Return true at a word of conditions, which is no operand. */
 static bool joins_conditions(const dvi__parser *p)
 {
   return dvi__parser_is_at(p, "and") || dvi__parser_is_at(p, "or") || dvi__parser_is_at(p, "not");
@@ -64,19 +64,19 @@ static bool begins_operand(const dvi__parser *p)
          p->token.kind == '(';
 }
 
-/* sum_of {, sum_of} and the bracket that closes. */
-static bool parts_up_to(dvi__parser *p, int kind, const char *spelling, dvi__span open,
+/* Read sum_of {, sum_of} and the bracket that closes. */
+static bool parse_parts(dvi__parser *p, int kind, const char *spelling, dvi__span open,
                         dvi__row *parts)
 {
   for (;;) {
     node *part = NULL;
-    if (!sum_of(p, &part) || !dvi__row_add(p, parts, part)) return false;
+    if (!parse_sum_of(p, &part) || !dvi__row_add(p, parts, part)) return false;
     if (p->token.kind != ',') return dvi__parser_expect(p, kind, spelling, open);
     if (!dvi__parser_next(p)) return false;
   }
 }
 
-static bool number(dvi__parser *p, node **result)
+static bool parse_number_atom(dvi__parser *p, node **result)
 {
   const dvi__span where = p->token.span;
   const char *digits = dvi__parser_copy(p);
@@ -92,8 +92,8 @@ static bool number(dvi__parser *p, node **result)
   return true;
 }
 
-/* What stands behind "sum(": a range, and what is summed. */
-static bool sum_over(dvi__parser *p, size_t first, dvi__span open, node **result)
+/* Read what stands behind "sum(", a range and the terms. */
+static bool parse_sum_over(dvi__parser *p, size_t first, dvi__span open, node **result)
 {
   const char *name = NULL;
   const char *name2 = NULL;
@@ -110,12 +110,12 @@ static bool sum_over(dvi__parser *p, size_t first, dvi__span open, node **result
                            "the two indices of a pair need two names");
   }
   if (p->token.kind == '=') {
-    if (!dvi__parser_next(p) || !sum_of(p, &from) ||
-        !dvi__parser_expect(p, DVI__TOKEN_RANGE, "'..'", open) || !sum_of(p, &to))
+    if (!dvi__parser_next(p) || !parse_sum_of(p, &from) ||
+        !dvi__parser_expect(p, DVI__TOKEN_RANGE, "'..'", open) || !parse_sum_of(p, &to))
       return false;
   }
   const char *expected = from != NULL ? "','" : name2 != NULL ? "',' or '='" : "',', '=' or '<'";
-  if (!dvi__parser_expect(p, ',', expected, open) || !sum_of(p, &summand) ||
+  if (!dvi__parser_expect(p, ',', expected, open) || !parse_sum_of(p, &summand) ||
       !dvi__parser_expect(p, ')', "')'", open))
     return false;
   dvi__row parts = {0};
@@ -128,13 +128,14 @@ static bool sum_over(dvi__parser *p, size_t first, dvi__span open, node **result
   return true;
 }
 
-/* What stands behind "if(": a condition, and two alternatives. */
-static bool choice(dvi__parser *p, size_t first, dvi__span open, node **result)
+/* Read what stands behind "if(", a condition and two alternatives. */
+static bool parse_if(dvi__parser *p, size_t first, dvi__span open, node **result)
 {
   dvi__row parts = {0};
   for (int k = 0; k < 3; k++) {
     node *part = NULL;
-    if (!(k == 0 ? any_of(p, &part) : sum_of(p, &part)) || !dvi__row_add(p, &parts, part))
+    if (!(k == 0 ? parse_any_of(p, &part) : parse_sum_of(p, &part)) ||
+        !dvi__row_add(p, &parts, part))
       return false;
     if (p->token.kind == '=')
       return dvi__complain(p->complaint, DVI_BAD_FILE, p->token.span, "equality is written ==");
@@ -143,8 +144,8 @@ static bool choice(dvi__parser *p, size_t first, dvi__span open, node **result)
   return dvi__parser_node(p, DVI__FORM_IF, first, &parts, result);
 }
 
-/* A name, or a call. */
-static bool named(dvi__parser *p, node **result)
+/* Read a name, or a call. */
+static bool parse_name(dvi__parser *p, node **result)
 {
   const size_t first = p->token.span.first;
   const char *name = NULL;
@@ -156,41 +157,41 @@ static bool named(dvi__parser *p, node **result)
     return true;
   }
   if (!dvi__parser_next(p)) return false;
-  if (strcmp(name, "sum") == 0) return sum_over(p, first, open, result);
-  if (strcmp(name, "if") == 0) return choice(p, first, open, result);
+  if (strcmp(name, "sum") == 0) return parse_sum_over(p, first, open, result);
+  if (strcmp(name, "if") == 0) return parse_if(p, first, open, result);
   dvi__row parts = {0};
-  if (!parts_up_to(p, ')', "',' or ')'", open, &parts) ||
+  if (!parse_parts(p, ')', "',' or ')'", open, &parts) ||
       !dvi__parser_node(p, DVI__FORM_CALL, first, &parts, result))
     return false;
   (*result)->name = name;
   return true;
 }
 
-static bool parenthesis(dvi__parser *p, node **result)
+static bool parse_parenthesis(dvi__parser *p, node **result)
 {
   const dvi__span open = p->token.span;
-  if (!dvi__parser_next(p) || !any_of(p, result) ||
+  if (!dvi__parser_next(p) || !parse_any_of(p, result) ||
       !dvi__parser_expect(p, ')', "')' or an operator", open))
     return false;
   (*result)->span = (dvi__span){open.first, p->last - open.first};
   return true;
 }
 
-static bool list(dvi__parser *p, node **result)
+static bool parse_list_atom(dvi__parser *p, node **result)
 {
   const dvi__span open = p->token.span;
   dvi__row parts = {0};
-  if (!dvi__parser_next(p) || !parts_up_to(p, ']', "',' or ']'", open, &parts)) return false;
+  if (!dvi__parser_next(p) || !parse_parts(p, ']', "',' or ']'", open, &parts)) return false;
   return dvi__parser_node(p, DVI__FORM_LIST, open.first, &parts, result);
 }
 
-static bool atom(dvi__parser *p, node **result)
+static bool parse_atom(dvi__parser *p, node **result)
 {
   switch (joins_conditions(p) ? DVI__TOKEN_END : p->token.kind) {
-  case DVI__TOKEN_NUMBER: return number(p, result);
-  case DVI__TOKEN_NAME: return named(p, result);
-  case '(': return parenthesis(p, result);
-  case '[': return list(p, result);
+  case DVI__TOKEN_NUMBER: return parse_number_atom(p, result);
+  case DVI__TOKEN_NAME: return parse_name(p, result);
+  case '(': return parse_parenthesis(p, result);
+  case '[': return parse_list_atom(p, result);
   default:
     return dvi__complain(p->complaint, DVI_BAD_FILE, p->token.span,
                          "found " DVI__FOUND_FORMAT
@@ -199,7 +200,7 @@ static bool atom(dvi__parser *p, node **result)
   }
 }
 
-static bool rate(dvi__parser *p, node **result)
+static bool parse_rate(dvi__parser *p, node **result)
 {
   if ((*result)->form == DVI__FORM_RATE)
     return dvi__complain(
@@ -208,18 +209,18 @@ static bool rate(dvi__parser *p, node **result)
   return dvi__parser_next(p) && dvi__parser_join(p, DVI__FORM_RATE, *result, NULL, result);
 }
 
-static bool indexed(dvi__parser *p, node **result)
+static bool parse_index(dvi__parser *p, node **result)
 {
   const dvi__span open = p->token.span;
   const size_t first = (*result)->span.first;
   dvi__row parts = {0};
   if (!dvi__parser_next(p) || !dvi__row_add(p, &parts, *result) ||
-      !parts_up_to(p, ']', "',' or ']'", open, &parts))
+      !parse_parts(p, ']', "',' or ']'", open, &parts))
     return false;
   return dvi__parser_node(p, DVI__FORM_INDEX, first, &parts, result);
 }
 
-static bool member(dvi__parser *p, node **result)
+static bool parse_member(dvi__parser *p, node **result)
 {
   const char *name = NULL;
   if (!dvi__parser_next(p) || !dvi__parser_name(p, &name) ||
@@ -229,22 +230,22 @@ static bool member(dvi__parser *p, node **result)
   return true;
 }
 
-static bool postfix(dvi__parser *p, node **result)
+static bool parse_postfix(dvi__parser *p, node **result)
 {
   const int depth = p->depth;
-  bool fine = atom(p, result);
+  bool fine = parse_atom(p, result);
   while (fine && (p->token.kind == '\'' || p->token.kind == '[' || p->token.kind == '.')) {
-    fine = p->token.kind == '\''  ? rate(p, result)
-           : p->token.kind == '[' ? indexed(p, result)
-                                  : member(p, result);
+    fine = p->token.kind == '\''  ? parse_rate(p, result)
+           : p->token.kind == '[' ? parse_index(p, result)
+                                  : parse_member(p, result);
     fine = fine && dvi__parser_enter(p);
   }
   p->depth = depth;
   return fine && (!begins_operand(p) || refuse_neighbours(p, *result));
 }
 
-/* Signs are levels too. */
-static bool with_sign(dvi__parser *p, node **result)
+/* Read signs, which are levels, too. */
+static bool parse_signed(dvi__parser *p, node **result)
 {
   node *left = NULL;
   node *right = NULL;
@@ -252,14 +253,14 @@ static bool with_sign(dvi__parser *p, node **result)
   const size_t first = p->token.span.first;
   if (!dvi__parser_enter(p)) return false;
   if (kind == '+' || kind == '-') {
-    if (!dvi__parser_next(p) || !with_sign(p, &left)) return false;
+    if (!dvi__parser_next(p) || !parse_signed(p, &left)) return false;
     *result = left;
     if (kind == '-' && !dvi__parser_join(p, DVI__FORM_NEGATIVE, left, NULL, result)) return false;
     (*result)->span = (dvi__span){first, p->last - first};
   } else {
-    if (!postfix(p, &left)) return false;
+    if (!parse_postfix(p, &left)) return false;
     *result = left;
-    if (p->token.kind == '^' && !(dvi__parser_next(p) && with_sign(p, &right) &&
+    if (p->token.kind == '^' && !(dvi__parser_next(p) && parse_signed(p, &right) &&
                                   dvi__parser_join(p, DVI__FORM_POWER, left, right, result)))
       return false;
   }
@@ -267,26 +268,26 @@ static bool with_sign(dvi__parser *p, node **result)
   return true;
 }
 
-static bool product(dvi__parser *p, node **result)
+static bool parse_product(dvi__parser *p, node **result)
 {
-  if (!with_sign(p, result)) return false;
+  if (!parse_signed(p, result)) return false;
   while (p->token.kind == '*' || p->token.kind == '/') {
     const dvi__form form = p->token.kind == '*' ? DVI__FORM_MULTIPLY : DVI__FORM_DIVIDE;
     node *right = NULL;
-    if (!dvi__parser_next(p) || !with_sign(p, &right) ||
+    if (!dvi__parser_next(p) || !parse_signed(p, &right) ||
         !dvi__parser_join(p, form, *result, right, result))
       return false;
   }
   return true;
 }
 
-static bool sum_of(dvi__parser *p, node **result)
+static bool parse_sum_of(dvi__parser *p, node **result)
 {
-  if (!product(p, result)) return false;
+  if (!parse_product(p, result)) return false;
   while (p->token.kind == '+' || p->token.kind == '-') {
     const dvi__form form = p->token.kind == '+' ? DVI__FORM_ADD : DVI__FORM_SUBTRACT;
     node *right = NULL;
-    if (!dvi__parser_next(p) || !product(p, &right) ||
+    if (!dvi__parser_next(p) || !parse_product(p, &right) ||
         !dvi__parser_join(p, form, *result, right, result))
       return false;
   }
@@ -295,7 +296,7 @@ static bool sum_of(dvi__parser *p, node **result)
 
 /* ---- conditions ---- */
 
-static const char *comparison(const dvi__parser *p)
+static const char *comparison_word(const dvi__parser *p)
 {
   switch (p->token.kind) {
   case '<': return "<";
@@ -308,73 +309,74 @@ static const char *comparison(const dvi__parser *p)
   }
 }
 
-/* The parts of a dvi__row as one node of a form, or the only part itself. */
-static bool make_row(const dvi__parser *p, dvi__form form, const dvi__row *parts, node **result)
+/* Make the parts of a dvi__row one node of a form. A single part stays as it is. */
+static bool make_chain_node(const dvi__parser *p, dvi__form form, const dvi__row *parts,
+                            node **result)
 {
   *result = parts->part[0];
   return parts->count == 1 || dvi__parser_node(p, form, parts->part[0]->span.first, parts, result);
 }
 
-/* a < b < c is a < b and b < c. */
-static bool compared(dvi__parser *p, node **result)
+/* Read a < b < c as a < b and b < c. */
+static bool parse_comparison(dvi__parser *p, node **result)
 {
   dvi__row parts = {0};
   node *left = NULL, *right = NULL, *made = NULL;
-  if (!sum_of(p, &left)) return false;
+  if (!parse_sum_of(p, &left)) return false;
   *result = left;
-  for (const char *name; (name = comparison(p)) != NULL; left = right) {
-    if (!dvi__parser_next(p) || !sum_of(p, &right) ||
+  for (const char *name; (name = comparison_word(p)) != NULL; left = right) {
+    if (!dvi__parser_next(p) || !parse_sum_of(p, &right) ||
         !dvi__parser_join(p, DVI__FORM_COMPARE, left, right, &made) ||
         !dvi__row_add(p, &parts, made))
       return false;
     made->name = name;
   }
-  return parts.count == 0 || make_row(p, DVI__FORM_AND, &parts, result);
+  return parts.count == 0 || make_chain_node(p, DVI__FORM_AND, &parts, result);
 }
 
-static bool denial(dvi__parser *p, node **result)
+static bool parse_denial(dvi__parser *p, node **result)
 {
   const size_t first = p->token.span.first;
   node *part = NULL;
   dvi__row parts = {0};
-  if (!dvi__parser_is_at(p, "not")) return compared(p, result);
-  if (!dvi__parser_enter(p) || !dvi__parser_next(p) || !denial(p, &part) ||
+  if (!dvi__parser_is_at(p, "not")) return parse_comparison(p, result);
+  if (!dvi__parser_enter(p) || !dvi__parser_next(p) || !parse_denial(p, &part) ||
       !dvi__row_add(p, &parts, part))
     return false;
   p->depth--;
   return dvi__parser_node(p, DVI__FORM_NOT, first, &parts, result);
 }
 
-/* Conditions joined by a word. */
-static bool joined(dvi__parser *p, const char *word, dvi__form form,
-                   bool (*one)(dvi__parser *, node **), node **result)
+/* Read conditions joined by a word. */
+static bool parse_joined(dvi__parser *p, const char *word, dvi__form form,
+                         bool (*one)(dvi__parser *, node **), node **result)
 {
   dvi__row parts = {0};
   for (;;) {
     node *part = NULL;
     if (!one(p, &part) || !dvi__row_add(p, &parts, part)) return false;
-    if (!dvi__parser_is_at(p, word)) return make_row(p, form, &parts, result);
+    if (!dvi__parser_is_at(p, word)) return make_chain_node(p, form, &parts, result);
     if (!dvi__parser_next(p)) return false;
   }
 }
 
-static bool all_of(dvi__parser *p, node **result)
+static bool parse_all_of(dvi__parser *p, node **result)
 {
-  return joined(p, "and", DVI__FORM_AND, denial, result);
+  return parse_joined(p, "and", DVI__FORM_AND, parse_denial, result);
 }
 
-static bool any_of(dvi__parser *p, node **result)
+static bool parse_any_of(dvi__parser *p, node **result)
 {
-  return joined(p, "or", DVI__FORM_OR, all_of, result);
+  return parse_joined(p, "or", DVI__FORM_OR, parse_all_of, result);
 }
 
-static bool whole(dvi__parser *p, node **result)
+static bool parse_whole(dvi__parser *p, node **result)
 {
   const bool empty = p->token.kind == DVI__TOKEN_END;
   if (empty)
     return dvi__complain(p->complaint, DVI_BAD_FILE, p->token.span,
                          "an expression is missing here");
-  if (!any_of(p, result)) return false;
+  if (!parse_any_of(p, result)) return false;
   if (p->token.kind == ')' || p->token.kind == ']')
     return dvi__complain(p->complaint, DVI_BAD_FILE, p->token.span, "this '%c' closes nothing",
                          p->source->text[p->token.span.first]);
@@ -393,7 +395,7 @@ bool dvi__expression_parse(const dvi__source *source, dvi__span span, dvi__arena
                    .token = {.span = {span.first, 0}}};
   if (!dvi__parser_next(&p)) return false;
   node *result = NULL;
-  const bool fine = whole(&p, &result);
+  const bool fine = parse_whole(&p, &result);
   *expression = fine ? result : NULL;
   return fine;
 }

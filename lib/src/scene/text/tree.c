@@ -1,8 +1,8 @@
-/* The tree is built from libyaml's events. What YAML has beyond scalars, sequences and mappings is
- * refused: it would make a scene mean what does not stand in it.
+/* The tree is built from libyaml's events. Anything in YAML beyond scalars, sequences and mappings
+ * is refused, since it would make a scene mean what does not stand in it.
  *
- * libyaml counts characters, and spans count bytes: a place is carried along the text. The text is
- * looked through before libyaml sees it, so that what it complains of is YAML and not letters. */
+ * libyaml counts characters, and spans count bytes. So a place is kept along the text. The text is
+ * checked before libyaml sees it, so that libyaml complains of YAML and not of letters. */
 #include "scene/text/tree.h"
 #include "text/utf8.h"
 
@@ -23,39 +23,40 @@ typedef struct reader {
   const dvi__source *source;
   dvi__arena *arena;
   dvi__complaint *complaint;
-  size_t index, offset; /* a place: in characters, in bytes */
-  size_t last;          /* the end of what was read last, with its quotes or brackets */
+  size_t index, offset; /* a place in characters, and in bytes */
+  size_t last;          /* the end of the last item, with its quotes or brackets */
   dvi__tree *root;
   size_t depth;
   level open[LEVELS_MAX];
 } reader;
 
-static bool no_memory(const reader *r)
+static bool tree_no_memory(const reader *r)
 {
   return dvi__complain_of_memory(r->complaint);
 }
 
-static bool complain(const reader *r, dvi__span where, const char *sentence)
+static bool tree_complain(const reader *r, dvi__span where, const char *sentence)
 {
   return dvi__complain(r->complaint, DVI_BAD_FILE, where, "%s", sentence);
 }
 
-static bool continues(const reader *r, size_t offset)
+static bool continues_character(const reader *r, size_t offset)
 {
   return offset < r->source->size && ((unsigned char)r->source->text[offset] & 0xC0) == 0x80;
 }
 
-/* The place of a mark. Marks come almost in their order, so the way from the last one is short. */
-static size_t place(reader *r, const yaml_mark_t *mark)
+/* Return the place of a mark. Marks come almost in their order, so the way from the last one is
+ * short. */
+static size_t place_of_mark(reader *r, const yaml_mark_t *mark)
 {
   while (r->index < mark->index && r->offset < r->source->size) {
     do r->offset++;
-    while (continues(r, r->offset));
+    while (continues_character(r, r->offset));
     r->index++;
   }
   while (r->index > mark->index && r->offset > 0) {
     do r->offset--;
-    while (continues(r, r->offset));
+    while (continues_character(r, r->offset));
     r->index--;
   }
   return r->offset;
@@ -63,12 +64,12 @@ static size_t place(reader *r, const yaml_mark_t *mark)
 
 static dvi__span span_of(reader *r, const yaml_event_t *event)
 {
-  const size_t first = place(r, &event->start_mark);
-  const size_t end = place(r, &event->end_mark);
+  const size_t first = place_of_mark(r, &event->start_mark);
+  const size_t end = place_of_mark(r, &event->end_mark);
   return (dvi__span){first, end - first};
 }
 
-/* The text in a block, after the line of its header. */
+/* Return the text in a block, after the line of its header. */
 static dvi__span inside_block(const dvi__source *source, dvi__span span)
 {
   size_t first = span.first;
@@ -78,8 +79,8 @@ static dvi__span inside_block(const dvi__source *source, dvi__span span)
   return (dvi__span){first, end - first};
 }
 
-/* Where the value of a scalar stands: its characters there are its value but for breaks of lines
- * and indentation. */
+/* Find the value of a scalar in the source. Its characters there are its value but for breaks of
+ * lines and indentation. */
 static bool inside_scalar(const reader *r, yaml_scalar_style_t style, dvi__span span,
                           dvi__span *inside)
 {
@@ -93,15 +94,15 @@ static bool inside_scalar(const reader *r, yaml_scalar_style_t style, dvi__span 
   const char *found = memchr(r->source->text + inside->first, escape, inside->size);
   if (found == NULL) return true;
   const dvi__span where = {(size_t)(found - r->source->text), escape == '\\' ? 1 : 2};
-  return complain(
+  return tree_complain(
       r, where,
       escape == '\\'
           ? "a backslash in double quotes makes text that does not stand here; write it without"
           : "'' in single quotes stands for one '; write double quotes around the text");
 }
 
-/* Put a new node into its parent; at a place for a key it becomes the key. */
-static bool attach(reader *r, dvi__tree *node, bool *is_key)
+/* Put a new node into its parent. At a place for a key it becomes the key. */
+static bool attach_node(reader *r, dvi__tree *node, bool *is_key)
 {
   *is_key = false;
   if (r->depth == 0) {
@@ -113,21 +114,22 @@ static bool attach(reader *r, dvi__tree *node, bool *is_key)
   dvi__tree ***row = *is_key ? &parent->key : &parent->child;
   size_t *count = *is_key ? &parent->key_count : &parent->child_count;
   dvi__tree **grown = dvi__arena_grow(r->arena, *row, *count, sizeof(dvi__tree *));
-  if (grown == NULL) return no_memory(r);
+  if (grown == NULL) return tree_no_memory(r);
   grown[(*count)++] = node;
   *row = grown;
   return true;
 }
 
-/* An anchor or a tag stands at the head of its node. */
+/* Refuse an anchor or a tag, which stands at the head of its node. */
 static bool refuse_properties(const reader *r, const unsigned char *anchor, dvi__span span)
 {
   const dvi__span where = {span.first, 1};
   if (anchor != NULL)
-    return complain(r, where, "anchors (&) are not for scenes; write the value where it is needed");
+    return tree_complain(r, where,
+                         "anchors (&) are not for scenes; write the value where it is needed");
   if (span.size > 0 && r->source->text[span.first] == '!')
-    return complain(r, where,
-                    "tags (!) are not for scenes; leave it out, or put quotes around the text");
+    return tree_complain(
+        r, where, "tags (!) are not for scenes; leave it out, or put quotes around the text");
   return true;
 }
 
@@ -142,12 +144,12 @@ static bool add_scalar(reader *r, const yaml_event_t *event)
   dvi__tree *node = dvi__arena_take(r->arena, 1, sizeof *node);
   const char *text = dvi__arena_text(r->arena, (const char *)event->data.scalar.value,
                                      event->data.scalar.length);
-  if (node == NULL || text == NULL) return no_memory(r);
+  if (node == NULL || text == NULL) return tree_no_memory(r);
   const int plain = event->data.scalar.style == YAML_PLAIN_SCALAR_STYLE;
   *node = (dvi__tree){.kind = DVI__SCALAR, .span = inside, .text = text, .plain = plain};
   r->last = span.first + span.size;
   bool is_key = false;
-  return attach(r, node, &is_key);
+  return attach_node(r, node, &is_key);
 }
 
 static bool open_collection(reader *r, dvi__tree_kind kind, const yaml_event_t *event, bool list)
@@ -161,17 +163,18 @@ static bool open_collection(reader *r, dvi__tree_kind kind, const yaml_event_t *
     return dvi__complain(r->complaint, DVI_BAD_SIZE, where, "more than %d levels of nesting",
                          LEVELS_MAX);
   dvi__tree *node = dvi__arena_take(r->arena, 1, sizeof *node);
-  if (node == NULL) return no_memory(r);
+  if (node == NULL) return tree_no_memory(r);
   *node = (dvi__tree){.kind = kind, .span = span};
   bool is_key = false;
-  if (!attach(r, node, &is_key)) return false;
+  if (!attach_node(r, node, &is_key)) return false;
   if (is_key && !list)
-    return complain(r, where, "a key is a name, or a list of names, and no mapping or sequence");
+    return tree_complain(r, where,
+                         "a key is a name, or a list of names, and no mapping or sequence");
   r->open[r->depth++] = (level){.tree = node, .is_key = is_key};
   return true;
 }
 
-static int by_text(const void *a, const void *b)
+static int compare_texts(const void *a, const void *b)
 {
   const dvi__tree *left = *(dvi__tree *const *)a;
   const dvi__tree *right = *(dvi__tree *const *)b;
@@ -182,9 +185,9 @@ static int by_text(const void *a, const void *b)
 static bool keys_differ(const reader *r, dvi__tree *const *key, size_t count)
 {
   const dvi__tree **sorted = dvi__arena_take(r->arena, count, sizeof *sorted);
-  if (sorted == NULL) return no_memory(r);
+  if (sorted == NULL) return tree_no_memory(r);
   for (size_t k = 0; k < count; k++) sorted[k] = key[k];
-  qsort(sorted, count, sizeof *sorted, by_text);
+  qsort(sorted, count, sizeof *sorted, compare_texts);
   for (size_t k = 1; k < count; k++) {
     if (strcmp(sorted[k - 1]->text, sorted[k]->text) != 0) continue;
     int line = 0;
@@ -196,7 +199,7 @@ static bool keys_differ(const reader *r, dvi__tree *const *key, size_t count)
   return true;
 }
 
-/* {g=9.81} and {g:9.81} are keys without values to YAML. */
+/* Refuse keys that are assignments. To YAML {g=9.81} and {g:9.81} are keys without values. */
 static bool none_assigned(const reader *r, const dvi__tree *mapping)
 {
   for (int k = 0; k < mapping->count; k++) {
@@ -216,11 +219,11 @@ static bool none_assigned(const reader *r, const dvi__tree *mapping)
   return true;
 }
 
-/* A list that is a key becomes a scalar with its own source as text. */
+/* Turn a list that is a key into a scalar with its own source as text. */
 static bool turn_to_scalar(const reader *r, dvi__tree *node)
 {
   const char *text = dvi__arena_text(r->arena, r->source->text + node->span.first, node->span.size);
-  if (text == NULL) return no_memory(r);
+  if (text == NULL) return tree_no_memory(r);
   *node = (dvi__tree){.kind = DVI__SCALAR, .span = node->span, .text = text, .plain = 1};
   return true;
 }
@@ -231,7 +234,7 @@ static bool close_collection(reader *r, const yaml_event_t *event)
   dvi__tree *node = closed->tree;
   const dvi__span bracket = span_of(r, event);
   if (bracket.size > 0)
-    r->last = bracket.first + bracket.size; /* else it ends with what it holds */
+    r->last = bracket.first + bracket.size; /* otherwise it ends with its last item */
   node->span.size = r->last - node->span.first;
   node->count = (int)closed->child_count;
   node->key = closed->key;
@@ -244,12 +247,13 @@ static bool close_collection(reader *r, const yaml_event_t *event)
 
 static bool start_document(reader *r, const yaml_event_t *event)
 {
-  const dvi__span where = {place(r, &event->start_mark), 1};
+  const dvi__span where = {place_of_mark(r, &event->start_mark), 1};
   if (event->data.document_start.version_directive != NULL ||
       event->data.document_start.tag_directives.start !=
           event->data.document_start.tag_directives.end)
-    return complain(r, where, "directives (%) are not for scenes; leave the line out");
-  if (r->root != NULL) return complain(r, where, "a second document begins here; a scene is one");
+    return tree_complain(r, where, "directives (%) are not for scenes; leave the line out");
+  if (r->root != NULL)
+    return tree_complain(r, where, "a second document begins here; a scene is one");
   return true;
 }
 
@@ -258,7 +262,7 @@ static bool take_event(reader *r, const yaml_event_t *event)
   switch (event->type) {
   case YAML_DOCUMENT_START_EVENT: return start_document(r, event);
   case YAML_ALIAS_EVENT:
-    return complain(
+    return tree_complain(
         r, span_of(r, event),
         "aliases (*) are not for scenes; write the value, or put quotes around the text");
   case YAML_SCALAR_EVENT: return add_scalar(r, event);
@@ -274,7 +278,7 @@ static bool take_event(reader *r, const yaml_event_t *event)
   }
 }
 
-/* Behind the last word: what a file lacks at its end is shown in its last line. */
+/* Return the end of the last word. Anything missing at a file's end is shown in its last line. */
 static size_t end_of_text(const dvi__source *source)
 {
   size_t end = source->size;
@@ -282,7 +286,7 @@ static size_t end_of_text(const dvi__source *source)
   return end;
 }
 
-/* libyaml's sentence, with what helps against the usual slips. */
+/* Complain with libyaml's sentence, and with remedies for the usual mistakes. */
 static bool refuse_syntax(reader *r, const yaml_parser_t *parser)
 {
   static const char *const remedy[][2] = {
@@ -296,17 +300,17 @@ static bool refuse_syntax(reader *r, const yaml_parser_t *parser)
       {"did not find expected key", "; is the line indented as those above?"},
       {"could not find expected ':'", "; a key is followed by a colon and a blank"},
   };
-  if (parser->error == YAML_MEMORY_ERROR) return no_memory(r);
+  if (parser->error == YAML_MEMORY_ERROR) return tree_no_memory(r);
   const char *problem = parser->problem != NULL ? parser->problem : "something is wrong";
   const char *context = parser->context != NULL ? parser->context : "";
   const char *help = "";
   for (size_t k = 0; k < sizeof remedy / sizeof *remedy && help[0] == '\0'; k++)
     if (strstr(problem, remedy[k][0]) != NULL) help = remedy[k][1];
-  dvi__span where = {place(r, &parser->problem_mark), 1};
+  dvi__span where = {place_of_mark(r, &parser->problem_mark), 1};
   const bool begins_before = where.first == r->source->size ||
                              strstr(problem, "expected ':'") != NULL;
   if (begins_before && parser->context != NULL)
-    where.first = place(r, &parser->context_mark); /* where it begins says more */
+    where.first = place_of_mark(r, &parser->context_mark); /* the beginning says more */
   if (where.first == r->source->size) where.first = end_of_text(r->source);
   return dvi__complain(r->complaint, DVI_BAD_FILE, where, "this is no YAML: %s%s%s%s", problem,
                        context[0] != '\0' ? " " : "", context, help);
@@ -325,30 +329,31 @@ static bool read_events(reader *r, yaml_parser_t *parser)
   return fine;
 }
 
-/* Texts have no NULs; a single one is a slip, which is told with its place. */
+/* Return true for binary files. Texts have no NULs. A single NUL is a mistake and is reported with
+ * its place. */
 static bool is_binary(const dvi__source *source)
 {
   const char *end = source->text + source->size, *first = memchr(source->text, '\0', source->size);
   return first != NULL && memchr(first + 1, '\0', (size_t)(end - first - 1)) != NULL;
 }
 
-/* No other encoding, and no character that cannot be seen. */
+/* Refuse other encodings, and characters that cannot be seen. */
 static bool check_characters(const reader *r)
 {
   const dvi__source *source = r->source;
   if (source->size >= 2 &&
       (memcmp(source->text, "\xFF\xFE", 2) == 0 || memcmp(source->text, "\xFE\xFF", 2) == 0))
-    return complain(r, DVI__NOWHERE, "the file is UTF-16; save it as UTF-8");
+    return tree_complain(r, DVI__NOWHERE, "the file is UTF-16; save it as UTF-8");
   if (is_binary(source))
     return dvi__complain_of_file(r->complaint, DVI__NOWHERE, "this is a binary file");
   if (source->size >= 3 && memcmp(source->text, "\xEF\xBB\xBF", 3) == 0)
-    return complain(r, DVI__NOWHERE,
-                    "the file begins with a byte order mark; save it as UTF-8 without one");
+    return tree_complain(r, DVI__NOWHERE,
+                         "the file begins with a byte order mark; save it as UTF-8 without one");
   unsigned code = 0;
   for (size_t k = 0, width = 0; k < source->size; k += width) {
     width = dvi__utf8(source->text + k, source->size - k, &code);
     const dvi__span where = {k, 1};
-    if (width == 0) return complain(r, where, "this byte is no UTF-8; save the file as UTF-8");
+    if (width == 0) return tree_complain(r, where, "this byte is no UTF-8; save the file as UTF-8");
     if (!dvi__utf8_printable(code))
       return dvi__complain(r->complaint, DVI_BAD_FILE, where,
                            "the character U+%04X cannot stand in a scene", code);
@@ -365,7 +370,7 @@ bool dvi__tree_read(const dvi__source *source, dvi__arena *arena, dvi__complaint
     return dvi__complain(complaint, DVI_BAD_SIZE, DVI__NOWHERE, "the file has more than 1 MiB");
   if (!check_characters(&r)) return false;
   yaml_parser_t parser;
-  if (!yaml_parser_initialize(&parser)) return no_memory(&r);
+  if (!yaml_parser_initialize(&parser)) return tree_no_memory(&r);
   yaml_parser_set_encoding(&parser, YAML_UTF8_ENCODING);
   yaml_parser_set_input_string(&parser, (const unsigned char *)source->text, source->size);
   const bool fine = read_events(&r, &parser);
