@@ -15,8 +15,8 @@ typedef struct between {
 
 static const between arc = {{1, 0}, {-0.5, 1}}, swing = {{2.8, 1.5}, {-1, -1.5}};
 
-static dvi_path *made(const problem *model, const char *method, int steps, double span,
-                      const between *ends)
+static dvi_path *create_path(const problem *model, const char *method, int steps, double span,
+                             const between *ends)
 {
   const dvi_path_options options = {.ends = DVI_ENDS_FIXED,
                                     .steps = steps,
@@ -30,7 +30,7 @@ static dvi_path *made(const problem *model, const char *method, int steps, doubl
   return path;
 }
 
-static dvi_path_report solved(dvi_path *path)
+static dvi_path_report solve_path(dvi_path *path)
 {
   dvi_path_report report;
   ck_assert_msg(dvi_path_solve(path, &report) == DVI_OK, "%s", dvi_last_error());
@@ -57,8 +57,8 @@ START_TEST(the_spread_is_that_of_the_energies_at_the_nodes)
 {
   enum { STEPS = 12 };
   problem *model = create_problem("kepler", NULL);
-  dvi_path *path = made(model, "midpoint", STEPS, 3, &arc);
-  const dvi_path_report report = solved(path);
+  dvi_path *path = create_path(model, "midpoint", STEPS, 3, &arc);
+  const dvi_path_report report = solve_path(path);
   double least = HUGE_VAL, most = -HUGE_VAL, kinetic = 0, jump = 0;
   int step = -1;
   for (int k = 0; k <= STEPS; k++) {
@@ -89,8 +89,8 @@ START_TEST(the_spread_falls_with_the_order_of_the_method)
   double spread[2];
   for (int s = 1; s <= 3; s++) {
     for (int k = 0; k < 2; k++) {
-      dvi_path *path = made(model, method_spec("galerkin:degree=%d", s), 10 << k, 3, &arc);
-      spread[k] = solved(path).energy_spread;
+      dvi_path *path = create_path(model, method_spec("galerkin:degree=%d", s), 10 << k, 3, &arc);
+      spread[k] = solve_path(path).energy_spread;
       dvi_path_destroy(&path);
     }
     const double order = log2(spread[0] / spread[1]);
@@ -106,7 +106,7 @@ START_TEST(a_path_that_follows_no_motion_is_not_solved)
 {
   enum { STEPS = 4 };
   problem *model = create_problem("double-pendulum", NULL);
-  dvi_path *path = made(model, "galerkin:degree=2", STEPS, 2, &swing);
+  dvi_path *path = create_path(model, "galerkin:degree=2", STEPS, 2, &swing);
   dvi_path_report report = {0};
   ck_assert_int_eq(dvi_path_solve(path, &report), DVI_STEP_TOO_LARGE);
   const char *said = dvi_last_error(), *advice = strstr(said, "; try about ");
@@ -121,8 +121,8 @@ START_TEST(a_path_that_follows_no_motion_is_not_solved)
   ck_assert_double_eq_tol(change, report.energy_jump * report.kinetic, 1e-9 * report.kinetic);
   dvi_path_destroy(&path);
   ck_assert_int_ge(steps, 2 * STEPS);
-  path = made(model, "galerkin:degree=2", steps, 2, &swing);
-  ck_assert_double_lt(solved(path).energy_jump, 0.1);
+  path = create_path(model, "galerkin:degree=2", steps, 2, &swing);
+  ck_assert_double_lt(solve_path(path).energy_jump, 0.1);
   dvi_path_destroy(&path);
   problem_destroy(&model);
 }
@@ -132,8 +132,8 @@ END_TEST
 START_TEST(a_refused_path_may_be_gone_on_from)
 {
   problem *model = create_problem("double-pendulum", NULL);
-  dvi_path *path = made(model, "galerkin:degree=2", 4, 2, &swing);
-  dvi_path *next = made(model, "galerkin:degree=2", 4, 2, &swing);
+  dvi_path *path = create_path(model, "galerkin:degree=2", 4, 2, &swing);
+  dvi_path *next = create_path(model, "galerkin:degree=2", 4, 2, &swing);
   ck_assert_int_eq(dvi_path_solve(path, NULL), DVI_STEP_TOO_LARGE);
   ck_assert_int_eq(dvi_path_guess_along(next, path, NULL, 1), DVI_OK);
   for (int k = 0; k <= 4; k++) {
@@ -151,8 +151,8 @@ START_TEST(a_motion_below_the_roundings_of_its_energy_is_not_refused)
 {
   const between ends = {{1e-8, 0}, {0, 1e-8}};
   problem *model = create_problem("double-pendulum", NULL);
-  dvi_path *path = made(model, "galerkin:degree=3", 20, 1, &ends);
-  const dvi_path_report report = solved(path);
+  dvi_path *path = create_path(model, "galerkin:degree=3", 20, 1, &ends);
+  const dvi_path_report report = solve_path(path);
   ck_assert_double_lt(report.kinetic, 1e-13);
   ck_assert_double_eq(report.energy_spread, 0);
   ck_assert_double_eq(report.energy_jump, 0);
@@ -165,8 +165,8 @@ START_TEST(what_depends_on_time_keeps_no_energy)
 {
   const between ends = {{0}, {3}};
   problem *model = create_problem("driven-pendulum", NULL);
-  dvi_path *path = made(model, "midpoint", 3, 4, &ends);
-  const dvi_path_report report = solved(path);
+  dvi_path *path = create_path(model, "midpoint", 3, 4, &ends);
+  const dvi_path_report report = solve_path(path);
   ck_assert(isnan(report.energy_spread) && isnan(report.kinetic) && isnan(report.energy_jump));
   dvi_path_destroy(&path);
   problem_destroy(&model);

@@ -28,8 +28,8 @@ static void keep(run *r, int k, const dvi_integrator *integrator)
          (size_t)r->n * sizeof(double));
 }
 
-static void record(const dvi_system *system, const double *q, const double *p, const char *method,
-                   double span, int steps, run *r)
+static void record_run(const dvi_system *system, const double *q, const double *p,
+                       const char *method, double span, int steps, run *r)
 {
   *r = (run){.n = dvi_system_nq(system), .steps = steps, .span = span};
   ck_assert((steps + 1) * r->n <= ROOM);
@@ -43,15 +43,15 @@ static void record(const dvi_system *system, const double *q, const double *p, c
   dvi_integrator_destroy(&stepped);
 }
 
-static dvi_path *made_path(const dvi_system *system, const char *method,
-                           const dvi_path_options *options)
+static dvi_path *create_path(const dvi_system *system, const char *method,
+                             const dvi_path_options *options)
 {
   dvi_path *path = NULL;
   ck_assert_msg(dvi_path_create(system, method, options, &path) == DVI_OK, "%s", dvi_last_error());
   return path;
 }
 
-static dvi_path_report solved(dvi_path *path)
+static dvi_path_report solve_path(dvi_path *path)
 {
   dvi_path_report report;
   ck_assert_msg(dvi_path_solve(path, &report) == DVI_OK, "%s", dvi_last_error());
@@ -60,7 +60,7 @@ static dvi_path_report solved(dvi_path *path)
 }
 
 /* The largest differences in q and p, relative to the largest of each. */
-static double difference(const dvi_path *path, const run *r)
+static double distance_from_run(const dvi_path *path, const run *r)
 {
   double worst = 0;
   const int all = (r->steps + 1) * r->n;
@@ -100,7 +100,8 @@ static void check_place(int index, dvi_ends ends)
   static run r;
   problem *model = create_problem(places[index].problem, places[index].setting);
   const int steps = places[index].steps, n = model->nq;
-  record(model->system, model->q, model->p, places[index].method, places[index].span, steps, &r);
+  record_run(model->system, model->q, model->p, places[index].method, places[index].span, steps,
+             &r);
   const dvi_path_options options = {.ends = ends,
                                     .steps = steps,
                                     .span = places[index].span,
@@ -108,16 +109,16 @@ static void check_place(int index, dvi_ends ends)
                                     .q0 = r.q,
                                     .q1 = ends == DVI_ENDS_FIXED ? r.q + steps * n : NULL,
                                     .p0 = ends == DVI_ENDS_INITIAL ? r.p : NULL};
-  dvi_path *path = made_path(model->system, places[index].method, &options);
+  dvi_path *path = create_path(model->system, places[index].method, &options);
   if (!places[index].rough || ends == DVI_ENDS_INITIAL) {
     static double moved[ROOM];
     for (int i = 0; i < (steps + 1) * n; i++) moved[i] = r.q[i] * (1 + 0.01 * sin(3 * i));
     ck_assert_int_eq(dvi_path_guess(path, steps + 1, n, r.t, moved), DVI_OK);
   }
-  const dvi_path_report report = solved(path);
+  const dvi_path_report report = solve_path(path);
   /* Two-point problems and steps agree as far as both are at roundoff, which these spans multiply
    * by less than 1e3. */
-  const double worst = difference(path, &r);
+  const double worst = distance_from_run(path, &r);
   ck_assert_msg(worst < 1e-12, "%s %s: %g", places[index].problem, places[index].method, worst);
   ck_assert_int_eq(report.negative < 0, ends == DVI_ENDS_INITIAL);
   ck_assert(dvi_path_time(path, steps) == places[index].span ||
@@ -165,9 +166,9 @@ START_TEST(time_dependent_systems_have_paths)
                                     .dimension = SITES,
                                     .q0 = r.q,
                                     .q1 = r.q + r.steps * SITES};
-  dvi_path *path = made_path(system, "galerkin:degree=3", &options);
-  const dvi_path_report report = solved(path);
-  ck_assert_double_lt(difference(path, &r), 1e-12);
+  dvi_path *path = create_path(system, "galerkin:degree=3", &options);
+  const dvi_path_report report = solve_path(path);
+  ck_assert_double_lt(distance_from_run(path, &r), 1e-12);
   ck_assert(isnan(report.energy));
   dvi_path_destroy(&path);
   dvi_integrator_destroy(&stepped);
@@ -191,9 +192,9 @@ START_TEST(the_index_counts_conjugate_points)
                                         .dimension = 1,
                                         .q0 = q0,
                                         .q1 = q1};
-      dvi_path *path = made_path(model->system, method_spec("galerkin:degree=%d", degree),
-                                 &options);
-      const dvi_path_report report = solved(path);
+      dvi_path *path = create_path(model->system, method_spec("galerkin:degree=%d", degree),
+                                   &options);
+      const dvi_path_report report = solve_path(path);
       ck_assert_msg(report.negative == conjugate[k] && report.zero == 0,
                     "degree %d, span %g: %ld negative, %ld zero", degree, spans[k], report.negative,
                     report.zero);
@@ -219,14 +220,14 @@ START_TEST(paths_of_one_problem_are_told_apart_by_their_guess)
   problem *model = create_problem("kepler", NULL);
   const dvi_path_options options = {
       .ends = DVI_ENDS_FIXED, .steps = 40, .span = 1.5 * pi, .dimension = 2, .q0 = q0, .q1 = q1};
-  dvi_path *path = made_path(model->system, "galerkin:degree=4", &options);
+  dvi_path *path = create_path(model->system, "galerkin:degree=4", &options);
   ck_assert_int_eq(dvi_path_guess(path, POINTS, 2, t, round), DVI_OK);
-  dvi_path_report report = solved(path);
+  dvi_path_report report = solve_path(path);
   ck_assert_double_eq_tol(report.action, 2.25 * pi, 1e-11);
   ck_assert_double_lt(dvi_path_q(path, 20)[0], 0);
   ck_assert_int_eq(report.negative, 0);
   ck_assert_int_eq(dvi_path_guess(path, 3, 2, t, there), DVI_OK);
-  report = solved(path);
+  report = solve_path(path);
   ck_assert_double_gt(dvi_path_q(path, 20)[0], 1);
   ck_assert_int_eq(report.negative, 0);
   dvi_path_destroy(&path);
@@ -258,8 +259,8 @@ static void check_closes(const problem *model, const char *method, const dvi_pat
   static run r;
   const int n = model->nq, steps = dvi_path_steps(path);
   double q[8] = {0}, p[8] = {0};
-  record(model->system, dvi_path_q(path, 0), dvi_path_p(path, 0), method,
-         dvi_path_time(path, steps) - dvi_path_time(path, 0), steps, &r);
+  record_run(model->system, dvi_path_q(path, 0), dvi_path_p(path, 0), method,
+             dvi_path_time(path, steps) - dvi_path_time(path, 0), steps, &r);
   for (int i = 0; i < n; i++)
     for (int j = 0; j < n; j++) {
       const double entry = turn != NULL ? turn[j * n + i] : i == j;
@@ -279,9 +280,9 @@ START_TEST(the_figure_eight_comes_from_three_points)
                                     .span = eight_period / 3,
                                     .dimension = 6,
                                     .symmetry = exchange};
-  dvi_path *path = made_path(model->system, method, &options);
+  dvi_path *path = create_path(model->system, method, &options);
   ck_assert_int_eq(dvi_path_guess(path, 3, 6, sketch_t, sketch), DVI_OK);
-  const dvi_path_report report = solved(path);
+  const dvi_path_report report = solve_path(path);
   ck_assert_double_lt(report.gradient, 2e-14);
   ck_assert_double_eq_tol(3 * report.action, eight_action, 1e-11);
   ck_assert_double_eq_tol(report.energy, eight_energy, 1e-11);
@@ -306,15 +307,15 @@ START_TEST(an_energy_has_its_period)
                                     .symmetry = exchange,
                                     .free_span = 1,
                                     .energy = eight_energy};
-  dvi_path *path = made_path(model->system, "galerkin:degree=8", &options);
+  dvi_path *path = create_path(model->system, "galerkin:degree=8", &options);
   ck_assert_int_eq(dvi_path_guess(path, 3, 6, sketch_t, sketch), DVI_OK);
-  const dvi_path_report report = solved(path);
+  const dvi_path_report report = solve_path(path);
   ck_assert_double_eq_tol(3 * report.span, eight_period, 1e-11);
   ck_assert_double_eq_tol(report.energy, eight_energy, 1e-14);
   ck_assert(dvi_path_time(path, 10) == report.span);
   /* From itself it goes nowhere. */
   const double before = dvi_path_q(path, 3)[0];
-  const dvi_path_report again = solved(path);
+  const dvi_path_report again = solve_path(path);
   ck_assert_double_eq_tol(dvi_path_q(path, 3)[0], before, 1e-14);
   ck_assert_double_eq_tol(again.span, report.span, 1e-14);
   dvi_path_destroy(&path);
@@ -328,11 +329,11 @@ START_TEST(a_nearly_periodic_run_closes_to_roundoff)
   static run r;
   const char *method = "galerkin:degree=8";
   problem *model = create_problem("figure-eight", NULL);
-  record(model->system, model->q, model->p, method, eight_period, 24, &r);
+  record_run(model->system, model->q, model->p, method, eight_period, 24, &r);
   const dvi_path_options options = {.ends = DVI_ENDS_PERIODIC, .steps = 24, .span = eight_period};
-  dvi_path *path = made_path(model->system, method, &options);
+  dvi_path *path = create_path(model->system, method, &options);
   ck_assert_int_eq(dvi_path_guess(path, 25, 6, r.t, r.q), DVI_OK);
-  const dvi_path_report report = solved(path);
+  const dvi_path_report report = solve_path(path);
   ck_assert_double_lt(report.gradient, 2e-14);
   ck_assert_double_eq_tol(report.action, eight_action, 1e-12);
   ck_assert_double_eq_tol(report.energy, eight_energy, 1e-13);
@@ -350,12 +351,12 @@ START_TEST(long_steps_choose_their_time)
   static run r;
   const char *method = "galerkin:degree=4";
   problem *model = create_problem("figure-eight", NULL);
-  record(model->system, model->q, model->p, method, eight_period, 12, &r);
-  dvi_path *path = made_path(
+  record_run(model->system, model->q, model->p, method, eight_period, 12, &r);
+  dvi_path *path = create_path(
       model->system, method,
       &(dvi_path_options){.ends = DVI_ENDS_PERIODIC, .steps = 12, .span = eight_period});
   ck_assert_int_eq(dvi_path_guess(path, 13, 6, r.t, r.q), DVI_OK);
-  ck_assert_double_lt(solved(path).gradient, 1e-13);
+  ck_assert_double_lt(solve_path(path).gradient, 1e-13);
   dvi_path_destroy(&path);
   problem_destroy(&model);
 }
@@ -368,12 +369,12 @@ START_TEST(steps_that_do_not_resolve_a_symmetry_have_no_index)
   const int steps[] = {8, 30};
   problem *model = create_problem("pendulum", NULL);
   for (int k = 0; k < 2; k++) {
-    record(model->system, model->q, model->p, "midpoint", 7, steps[k], &r);
-    dvi_path *path = made_path(
+    record_run(model->system, model->q, model->p, "midpoint", 7, steps[k], &r);
+    dvi_path *path = create_path(
         model->system, "midpoint",
         &(dvi_path_options){.ends = DVI_ENDS_PERIODIC, .steps = steps[k], .span = 7});
     ck_assert_int_eq(dvi_path_guess(path, steps[k] + 1, 1, r.t, r.q), DVI_OK);
-    const dvi_path_report report = solved(path);
+    const dvi_path_report report = solve_path(path);
     ck_assert_int_eq(report.symmetries, 1);
     ck_assert_int_eq(report.zero, k);
     ck_assert_int_eq(report.negative, k == 0 ? -1 : 1);
@@ -402,9 +403,9 @@ START_TEST(a_pendulum_that_turns_over_is_periodic_up_to_a_shift)
                                     .shift = shift,
                                     .free_span = 1,
                                     .energy = 2};
-  dvi_path *path = made_path(model->system, "galerkin:degree=8", &options);
+  dvi_path *path = create_path(model->system, "galerkin:degree=8", &options);
   ck_assert_int_eq(dvi_path_guess(path, 2, 1, t, line), DVI_OK);
-  const dvi_path_report report = solved(path);
+  const dvi_path_report report = solve_path(path);
   ck_assert_double_eq_tol(report.span, 2 * pi / a, 1e-11);
   ck_assert_double_eq_tol(dvi_path_q(path, 20)[0] - dvi_path_q(path, 0)[0], 2 * pi, 1e-15);
   dvi_path_destroy(&path);
@@ -420,9 +421,9 @@ START_TEST(a_circle_is_relatively_periodic)
   problem *model = create_problem("kepler", "e=0");
   const dvi_path_options options = {
       .ends = DVI_ENDS_PERIODIC, .steps = 5, .span = 1, .dimension = 2, .symmetry = turn};
-  dvi_path *path = made_path(model->system, "galerkin:degree=6", &options);
+  dvi_path *path = create_path(model->system, "galerkin:degree=6", &options);
   ck_assert_int_eq(dvi_path_guess(path, 3, 2, t, q), DVI_OK);
-  const dvi_path_report report = solved(path);
+  const dvi_path_report report = solve_path(path);
   ck_assert_double_eq_tol(report.action, 1.5, 1e-12);
   ck_assert_double_eq_tol(report.energy, -0.5, 1e-11);
   for (int k = 0; k <= 5; k++)
@@ -456,13 +457,13 @@ START_TEST(a_driven_oscillator_follows_its_drive)
       .dimension = 1, .mass.scalar = 1, .potentials = &potential, .potential_count = 1});
   const dvi_path_options options = {
       .ends = DVI_ENDS_PERIODIC, .steps = 12, .start = 0.4, .span = pi};
-  dvi_path *path = made_path(system, "galerkin:degree=6", &options);
-  const dvi_path_report report = solved(path);
+  dvi_path *path = create_path(system, "galerkin:degree=6", &options);
+  const dvi_path_report report = solve_path(path);
   for (int k = 0; k <= 12; k++)
     ck_assert_double_eq_tol(dvi_path_q(path, k)[0], -cos(2 * dvi_path_time(path, k)) / 3, 1e-11);
   dvi_path_destroy(&path);
-  path = made_path(system, "galerkin:degree=6",
-                   &(dvi_path_options){.ends = DVI_ENDS_PERIODIC, .steps = 12, .span = 3});
+  path = create_path(system, "galerkin:degree=6",
+                     &(dvi_path_options){.ends = DVI_ENDS_PERIODIC, .steps = 12, .span = 3});
   ck_assert_int_eq(dvi_path_guess(path, 2, 1, (const double[]){0, 1}, (const double[]){0.3, 0.3}),
                    DVI_OK);
   ck_assert_int_eq(dvi_path_solve(path, NULL), DVI_BAD_ARGUMENT);
@@ -479,7 +480,7 @@ END_TEST
 
 /* ---- continuation ---- */
 
-static double apart(const dvi_path *a, const dvi_path *b)
+static double path_distance(const dvi_path *a, const dvi_path *b)
 {
   double worst = 0;
   for (int k = 0; k <= dvi_path_steps(a); k++)
@@ -500,25 +501,25 @@ START_TEST(a_guess_along_two_paths_is_better_than_the_last_one)
                                       .dimension = 2,
                                       .q0 = model[k]->q,
                                       .p0 = model[k]->p};
-    path[k] = made_path(model[k]->system, "galerkin:degree=3", &options);
+    path[k] = create_path(model[k]->system, "galerkin:degree=3", &options);
     if (k > 0)
       ck_assert_int_eq(dvi_path_guess_along(path[k], path[k - 1], k > 1 ? path[k - 2] : NULL, 1),
                        DVI_OK);
-    if (k < 2) (void)solved(path[k]);
+    if (k < 2) (void)solve_path(path[k]);
   }
-  dvi_path *last = made_path(model[2]->system, "galerkin:degree=3",
-                             &(dvi_path_options){.ends = DVI_ENDS_INITIAL,
-                                                 .steps = 20,
-                                                 .span = 2,
-                                                 .dimension = 2,
-                                                 .q0 = model[2]->q,
-                                                 .p0 = model[2]->p});
+  dvi_path *last = create_path(model[2]->system, "galerkin:degree=3",
+                               &(dvi_path_options){.ends = DVI_ENDS_INITIAL,
+                                                   .steps = 20,
+                                                   .span = 2,
+                                                   .dimension = 2,
+                                                   .q0 = model[2]->q,
+                                                   .p0 = model[2]->p});
   ck_assert_int_eq(dvi_path_guess_along(last, path[1], NULL, 1), DVI_OK);
-  (void)solved(last);
-  ck_assert_double_gt(apart(path[1], last), 0.01);
-  ck_assert_double_lt(apart(path[2], last), 0.1 * apart(path[1], last));
-  (void)solved(path[2]);
-  ck_assert_double_lt(apart(path[2], last), 1e-13);
+  (void)solve_path(last);
+  ck_assert_double_gt(path_distance(path[1], last), 0.01);
+  ck_assert_double_lt(path_distance(path[2], last), 0.1 * path_distance(path[1], last));
+  (void)solve_path(path[2]);
+  ck_assert_double_lt(path_distance(path[2], last), 1e-13);
   dvi_path_destroy(&last);
   for (int k = 0; k < 3; k++) {
     dvi_path_destroy(&path[k]);

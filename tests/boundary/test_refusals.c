@@ -34,7 +34,7 @@ static void refused(dvi_path_options options, const char *method, dvi_status exp
   check_words(words);
 }
 
-static dvi_path *made(dvi_path_options options)
+static dvi_path *create_path(dvi_path_options options)
 {
   dvi_path *path = NULL;
   ck_assert_msg(dvi_path_create(kepler->system, "galerkin:degree=8", &options, &path) == DVI_OK,
@@ -87,7 +87,7 @@ START_TEST(one_step_of_degree_two_has_something_to_vary)
 {
   dvi_path_options options = good;
   options.steps = 1;
-  dvi_path *path = made(options);
+  dvi_path *path = create_path(options);
   ck_assert_int_eq(dvi_path_solve(path, NULL), DVI_OK);
   dvi_path_destroy(&path);
 }
@@ -189,7 +189,7 @@ END_TEST
 
 START_TEST(nodes_are_numbered_from_0_to_N)
 {
-  dvi_path *path = made(good);
+  dvi_path *path = create_path(good);
   ck_assert_int_eq(dvi_path_steps(path), 10);
   ck_assert_ptr_null(dvi_path_q(path, -1));
   ck_assert_ptr_null(dvi_path_q(path, 11));
@@ -207,7 +207,7 @@ START_TEST(guesses_are_points_in_the_order_of_time)
 {
   const double t[] = {0, 1, 1}, late[] = {0, 1, NAN}, q[] = {1, 0, 0.7, 0.7, 0, 1},
                hole[] = {1, 0, 0.7, INFINITY, 0, 1};
-  dvi_path *path = made(good), *longer;
+  dvi_path *path = create_path(good), *longer;
   dvi_path_options options = good;
   ck_assert_int_eq(dvi_path_guess(path, 3, 2, t, q), DVI_BAD_ARGUMENT);
   check_words("not ascending (1 after 1)");
@@ -221,7 +221,7 @@ START_TEST(guesses_are_points_in_the_order_of_time)
   check_words("the guess has 3 coordinates, the system 2");
   ck_assert_int_eq(dvi_path_guess(path, 2, 2, NULL, q), DVI_BAD_ARGUMENT);
   options.steps = 11;
-  longer = made(options);
+  longer = create_path(options);
   ck_assert_int_eq(dvi_path_guess_along(path, longer, NULL, 1), DVI_BAD_SIZE);
   ck_assert_int_eq(dvi_path_guess_along(path, path, longer, 1), DVI_BAD_SIZE);
   check_words("another dimension, degree, number of steps or kind of ends");
@@ -334,7 +334,7 @@ START_TEST(what_the_lagrangian_does_not_have_is_no_symmetry)
                q[] = {1, 0, 0, 1, -1, 0};
   dvi_path_options options = {
       .ends = DVI_ENDS_PERIODIC, .steps = 20, .span = 6, .dimension = 2, .symmetry = stretch};
-  dvi_path *path = made(options);
+  dvi_path *path = create_path(options);
   ck_assert_int_eq(dvi_path_guess(path, 3, 2, t, q), DVI_OK);
   ck_assert_int_eq(dvi_path_solve(path, NULL), DVI_BAD_ARGUMENT);
   check_words("the symmetry is none of the Lagrangian's");
@@ -428,7 +428,8 @@ END_TEST
 /* At rest in the centre. */
 START_TEST(a_guess_where_the_lagrangian_is_infinite_fails)
 {
-  dvi_path *path = made((dvi_path_options){.ends = DVI_ENDS_PERIODIC, .steps = 20, .span = 6});
+  dvi_path *path = create_path(
+      (dvi_path_options){.ends = DVI_ENDS_PERIODIC, .steps = 20, .span = 6});
   const dvi_status status = dvi_path_solve(path, NULL);
   ck_assert_msg(status == DVI_NOT_FINITE, "%s: %s", dvi_status_name(status), dvi_last_error());
   check_words("the path is unchanged");

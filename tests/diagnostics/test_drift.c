@@ -7,15 +7,15 @@
 static const double two_pi = 6.283185307179586;
 
 /* Uniform on [-1,1), from a generator that is the same everywhere. */
-static double noise(unsigned *state)
+static double draw_noise(unsigned *state)
 {
   *state = *state * 1664525u + 1013904223u;
   return (double)(*state >> 8) / 8388608.0 - 1;
 }
 
 /* The record of value(t) at count times 10, 10 + dt, 10 + 2 dt, ... */
-static dvi_drift_fit record(long count, double dt,
-                            double (*value)(double t, double T, unsigned *state), unsigned seed)
+static dvi_drift_fit fit_record(long count, double dt,
+                                double (*value)(double t, double T, unsigned *state), unsigned seed)
 {
   dvi_drift drift;
   dvi_drift_fit fit;
@@ -61,12 +61,12 @@ static double drifting_oscillation(double t, double T, unsigned *state)
 static double white_noise(double t, double T, unsigned *state)
 {
   (void)t, (void)T;
-  return noise(state);
+  return draw_noise(state);
 }
 
 START_TEST(a_constant_has_no_drift_and_no_nan)
 {
-  const dvi_drift_fit fit = record(1000, 0.1, constant, 1);
+  const dvi_drift_fit fit = fit_record(1000, 0.1, constant, 1);
   ck_assert(fit.largest == 0 && fit.slope == 0 && fit.change == 0 && fit.deviation == 0 &&
             fit.significance == 0);
 }
@@ -76,7 +76,7 @@ START_TEST(a_line_gives_its_slope_whatever_the_number_of_samples)
 {
   static const long counts[] = {2, 3, 8, 63, 64, 65, 127, 128, 129, 1000, 12345, 100000};
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
-    const dvi_drift_fit fit = record(counts[i], 0.1, line, 1);
+    const dvi_drift_fit fit = fit_record(counts[i], 0.1, line, 1);
     /* values near 2 are rounded to 2e-16, times go up to 1e4, and errors are sums of up to 2e3
      * samples */
     ck_assert_double_eq_tol(fit.slope, -3e-7, 1e-14 / (0.1 * (double)counts[i]));
@@ -93,7 +93,7 @@ START_TEST(change_is_the_slope_times_the_time_between_the_first_and_the_last_sam
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
     for (int backward = 0; backward < 2; backward++) {
       const double dt = backward ? -0.1 : 0.1;
-      const dvi_drift_fit fit = record(counts[i], dt, line, 1);
+      const dvi_drift_fit fit = fit_record(counts[i], dt, line, 1);
       /* as the slope's tolerance above */
       ck_assert_double_eq_tol(fit.change, -3e-7 * dt * (double)(counts[i] - 1), 1e-13);
     }
@@ -102,21 +102,21 @@ END_TEST
 
 START_TEST(an_oscillation_is_no_drift)
 {
-  ck_assert_double_lt(record(100000, 0.1, fast_oscillation, 1).significance, 3);
-  ck_assert_double_lt(record(1000, 0.1, fast_oscillation, 1).significance, 3);
+  ck_assert_double_lt(fit_record(100000, 0.1, fast_oscillation, 1).significance, 3);
+  ck_assert_double_lt(fit_record(1000, 0.1, fast_oscillation, 1).significance, 3);
 }
 END_TEST
 
 START_TEST(one_slow_period_over_the_record_is_no_drift)
 {
-  ck_assert_double_lt(record(6400, 0.1, slow_oscillation, 1).significance, 3);
+  ck_assert_double_lt(fit_record(6400, 0.1, slow_oscillation, 1).significance, 3);
 }
 END_TEST
 
 START_TEST(a_drift_below_the_oscillation_is_found)
 {
   /* change 1e-3 under an amplitude of 3e-3 */
-  const dvi_drift_fit fit = record(100000, 0.1, drifting_oscillation, 1);
+  const dvi_drift_fit fit = fit_record(100000, 0.1, drifting_oscillation, 1);
   ck_assert_double_gt(fit.significance, 10);
   ck_assert_double_eq_tol(fit.slope, 1e-7, 4 * fit.deviation);
   ck_assert_double_eq_tol(fit.slope, 1e-7, 1e-9);
@@ -127,7 +127,7 @@ START_TEST(white_noise_is_rarely_called_a_drift)
 {
   int called = 0;
   for (unsigned seed = 1; seed <= 200; seed++)
-    called += record(1000, 0.1, white_noise, 7919 * seed).significance > 3;
+    called += fit_record(1000, 0.1, white_noise, 7919 * seed).significance > 3;
   /* a normal variable exceeds 3 in one of 370, the measured rate is at most one of 100 */
   ck_assert_int_le(called, 4);
 }
@@ -142,7 +142,7 @@ START_TEST(a_random_walk_is_seldom_called_a_drift)
     unsigned state = 104729 * seed;
     double walk = 0;
     dvi_drift_init(&drift);
-    for (int i = 0; i < 1000; i++) dvi_drift_add(&drift, i, walk += noise(&state));
+    for (int i = 0; i < 1000; i++) dvi_drift_add(&drift, i, walk += draw_noise(&state));
     dvi_drift_result(&drift, &fit);
     called += fit.significance > 3;
   }
@@ -155,7 +155,7 @@ START_TEST(the_slope_of_white_noise_scatters_as_its_deviation_says)
 {
   double squares = 0, variance = 0;
   for (unsigned seed = 1; seed <= 300; seed++) {
-    const dvi_drift_fit fit = record(4096, 1, white_noise, 7919 * seed);
+    const dvi_drift_fit fit = fit_record(4096, 1, white_noise, 7919 * seed);
     squares += fit.slope * fit.slope;
     variance += fit.deviation * fit.deviation;
   }
@@ -168,9 +168,9 @@ END_TEST
 
 START_TEST(fewer_than_8_blocks_have_no_significance)
 {
-  ck_assert(isnan(record(7, 0.1, line, 1).significance));
-  ck_assert(!isnan(record(8, 0.1, line, 1).significance));
-  const dvi_drift_fit none = record(0, 0.1, line, 1), one = record(1, 0.1, line, 1);
+  ck_assert(isnan(fit_record(7, 0.1, line, 1).significance));
+  ck_assert(!isnan(fit_record(8, 0.1, line, 1).significance));
+  const dvi_drift_fit none = fit_record(0, 0.1, line, 1), one = fit_record(1, 0.1, line, 1);
   ck_assert(none.largest == 0 && none.slope == 0 && none.change == 0 && none.deviation == 0 &&
             isnan(none.significance));
   ck_assert(one.largest == 0 && one.slope == 0 && one.change == 0 && one.deviation == 0 &&
@@ -180,7 +180,7 @@ END_TEST
 
 START_TEST(samples_at_one_time_have_no_slope)
 {
-  const dvi_drift_fit fit = record(100, 0, white_noise, 5);
+  const dvi_drift_fit fit = fit_record(100, 0, white_noise, 5);
   ck_assert(fit.slope == 0 && fit.deviation == 0 && fit.significance == 0);
   ck_assert_double_gt(fit.largest, 0.5);
 }

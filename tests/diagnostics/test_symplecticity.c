@@ -58,7 +58,8 @@ END_TEST
 
 /* Creates an integrator of a system with this Lagrangian of n coordinates alone. released() frees
  * both. */
-static dvi_integrator *made(const dvi_lagrangian *lagrangian, int n, const char *method)
+static dvi_integrator *create_lagrangian_integrator(const dvi_lagrangian *lagrangian, int n,
+                                                    const char *method)
 {
   dvi_system *system = NULL;
   const dvi_system_terms terms = {.dimension = n, .lagrangian = lagrangian};
@@ -66,8 +67,8 @@ static dvi_integrator *made(const dvi_lagrangian *lagrangian, int n, const char 
   return create_integrator(system, method);
 }
 
-static dvi_integrator *made_with_potential(const dvi_potential *potential, int n,
-                                           const char *method)
+static dvi_integrator *create_potential_integrator(const dvi_potential *potential, int n,
+                                                   const char *method)
 {
   dvi_system *system = NULL;
   const dvi_system_terms terms = {
@@ -110,7 +111,7 @@ START_TEST(a_kinetic_energy_that_is_not_quadratic_shows_no_defect)
   static const char *const methods[] = {"midpoint", "galerkin:degree=4"};
   const dvi_lagrangian lagrangian = {.value = quartic, .gradient = quartic_gradient};
   for (int k = 0; k < 8; k++) {
-    dvi_integrator *integrator = made(&lagrangian, 1, methods[k / 4]);
+    dvi_integrator *integrator = create_lagrangian_integrator(&lagrangian, 1, methods[k / 4]);
     const double q = 1;
     double defect = -1;
     const dvi_status status = dvi_symplecticity(integrator, 0, &q, &momenta[k % 4], lengths[_i],
@@ -151,7 +152,7 @@ static dvi_status relativistic_defect(int beyond, const char *method, double spe
 {
   const dvi_lagrangian lagrangian = {
       .value = relativistic, .gradient = relativistic_gradient, .user = &beyond};
-  dvi_integrator *integrator = made(&lagrangian, 2, method);
+  dvi_integrator *integrator = create_lagrangian_integrator(&lagrangian, 2, method);
   const double q[] = {1, 0.3}, v[] = {speed, 0.2};
   double p[2];
   ck_assert_int_eq(dvi_system_momentum(dvi_integrator_system(integrator), 0, q, v, p), DVI_OK);
@@ -176,7 +177,7 @@ START_TEST(an_edge_of_the_domain_of_velocities_shows_no_defect)
 END_TEST
 
 /* V = -log(1 - q). Beyond its wall it gives NaN, or returns the failure in `user`. */
-static int wall(double t, const double *q, double *V, void *user)
+static int wall_value(double t, const double *q, double *V, void *user)
 {
   (void)t, (void)user;
   *V = -log(1 - q[0]);
@@ -192,8 +193,8 @@ static int wall_gradient(double t, const double *q, double *V_q, void *user)
 
 static dvi_status defect_at_wall(int *beyond, double *defect)
 {
-  const dvi_potential potential = {.value = wall, .gradient = wall_gradient, .user = beyond};
-  dvi_integrator *integrator = made_with_potential(&potential, 1, "verlet");
+  const dvi_potential potential = {.value = wall_value, .gradient = wall_gradient, .user = beyond};
+  dvi_integrator *integrator = create_potential_integrator(&potential, 1, "verlet");
   const double q = 1 - 1e-4, p = 0;
   const dvi_status status = dvi_symplecticity(integrator, 0, &q, &p, 1e-5, defect);
   released(integrator);
@@ -246,7 +247,7 @@ START_TEST(an_angle_of_many_turns_shows_no_defect)
   const dvi_potential potential = {.value = cosine, .gradient = sine};
   static const char *const methods[] = {"verlet", "galerkin:degree=4"};
   for (int k = 0; k < 2; k++) {
-    dvi_integrator *integrator = made_with_potential(&potential, 1, methods[k]);
+    dvi_integrator *integrator = create_potential_integrator(&potential, 1, methods[k]);
     const double p = 0.5;
     double defect = -1;
     ck_assert_msg(dvi_symplecticity(integrator, 0, &angles[_i], &p, 0.1, &defect) == DVI_OK, "%s",
@@ -270,7 +271,7 @@ static int one_point(double t, const double *q, double *V_q, void *user)
 START_TEST(if_no_length_works_the_last_status_is_returned_and_nothing_is_written)
 {
   const dvi_potential potential = {.value = cosine, .gradient = one_point};
-  dvi_integrator *integrator = made_with_potential(&potential, 1, "verlet");
+  dvi_integrator *integrator = create_potential_integrator(&potential, 1, "verlet");
   const double q = 1, p = 0.3;
   double defect = 7;
   ck_assert_int_eq(dvi_symplecticity(integrator, 0, &q, &p, 0.1, &defect), DVI_CALLBACK_RETRY);
@@ -290,7 +291,7 @@ static int hole(double t, const double *q, double *V_q, void *user)
 START_TEST(a_step_that_fails_has_no_defect_even_if_all_around_it_succeed)
 {
   const dvi_potential potential = {.value = cosine, .gradient = hole};
-  dvi_integrator *integrator = made_with_potential(&potential, 1, "verlet");
+  dvi_integrator *integrator = create_potential_integrator(&potential, 1, "verlet");
   const double q = 1, p = 0.5;
   double defect = 7;
   ck_assert_int_eq(dvi_symplecticity(integrator, 0, &q, &p, 0.5, &defect), DVI_CALLBACK_RETRY);
@@ -326,7 +327,7 @@ START_TEST(a_force_with_curl_is_found_in_its_size)
   static const double curls[] = {0.1, 1e-4, 1e-8, 1e-10};
   double curl = curls[_i], defect = 0;
   const dvi_potential potential = {.value = no_value, .gradient = turning_force, .user = &curl};
-  dvi_integrator *integrator = made_with_potential(&potential, 2, "verlet");
+  dvi_integrator *integrator = create_potential_integrator(&potential, 2, "verlet");
   const double q[] = {1, -1}, p[] = {0.3, 0.2};
   ck_assert_int_eq(dvi_symplecticity(integrator, 0, q, p, 1, &defect), DVI_OK);
   /* roundoff of a linear map's differences */
@@ -360,7 +361,7 @@ START_TEST(a_curl_is_found_under_a_kinetic_energy_that_is_not_quadratic)
   double curl = 1e-3;
   const dvi_lagrangian lagrangian = {
       .value = turning_quartic, .gradient = turning_quartic_gradient, .user = &curl};
-  dvi_integrator *integrator = made(&lagrangian, 2, "midpoint");
+  dvi_integrator *integrator = create_lagrangian_integrator(&lagrangian, 2, "midpoint");
   const double q[] = {1, -1}, p[] = {0.3, 0.2}, h = 0.05;
   double defect = 0;
   ck_assert_msg(dvi_symplecticity(integrator, 0, q, p, h, &defect) == DVI_OK, "%s",

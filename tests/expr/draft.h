@@ -7,7 +7,7 @@
 
 #include "expr/function/function.h"
 
-/* A function that is being put together: kernels of at most INPUTS inputs. */
+/* A function under construction, with kernels of at most INPUTS inputs. */
 enum { INPUTS = 8, KERNELS = 4 };
 
 /* The blocks and the pairs of a Lagrangian. */
@@ -147,14 +147,15 @@ static inline dvi__function *toda(draft *own, int n)
   return made(own);
 }
 
-/* d^4/4 of d = right - left end; inputs: x0, x1 of the left spring, x0, x1 of the right one. */
+/* d^4/4 of d = right - left end. The inputs are x0, x1 of the left spring, then x0, x1 of the right
+ * one. */
 static inline dvi__node quartic(draft *own, dvi__node left, dvi__node right)
 {
   const dvi__node d = apply(own, DVI__OP_SUBTRACT, right, left);
   return times(own, 0.25, dvi__power(graph_of(own), d, 4.0));
 }
 
-/* The soft springs of Fermi, Pasta and Ulam's chain: inside, and at both ends. */
+/* The soft springs of Fermi, Pasta and Ulam's chain, inside and at both ends. */
 static inline dvi__function *fpu(draft *own, int ell)
 {
   reset(own, 2 * ell);

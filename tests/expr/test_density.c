@@ -43,8 +43,8 @@ static quad density(const quad *z)
   return L - kappa * w * (u[0] * u[0] + u[1] * u[1]) * quad_sin(x[0] + 2 * x[1]) - quad_exp(-w * w);
 }
 
-/* The derivative of density, or of its derivative by variable `of` (-1: of itself), by variable i:
- * differences of order 4, whose own error is 1e-20 and less at this step. */
+/* Gives the derivative by variable i of the density, or of its derivative by variable `of` (-1 for
+ * the density itself), by differences of order 4. Their own error is at most 1e-20 at this step. */
 static quad derivative(const quad *at, int of, int i)
 {
   static const int place[4] = {-2, -1, 1, 2};
@@ -134,7 +134,8 @@ static dvi__node draw_rest(drawing *d)
   return dvi__apply(graph, DVI__OP_SUBTRACT, L, well);
 }
 
-/* With second derivatives of all ordered pairs; pair BLOCKS*b + c has the rows of block b. */
+/* Makes a density with second derivatives of all ordered pairs. Pair BLOCKS*b + c has the rows of
+ * block b. */
 static dvi__function *draw(drawing *d)
 {
   static const double weight[2] = {1.0, 3.0};
@@ -202,7 +203,7 @@ START_TEST(the_value_and_the_gradient_have_the_digits_of_a_double)
 }
 END_TEST
 
-/* Entry (row, column) of a pair at point k; 0 where there is none. */
+/* Gives entry (row, column) of a pair at point k, or 0 where there is none. */
 static double entry_at(const dvi_pattern *pattern, int full, const double *values, int rows,
                        int row, int column, int k)
 {
@@ -212,7 +213,7 @@ static double entry_at(const dvi_pattern *pattern, int full, const double *value
   return 0;
 }
 
-/* Whether the density has second derivatives by variables i and j. */
+/* Returns 1 if the density has second derivatives by variables i and j. */
 static int depends(int i, int j)
 {
   quad most = 0;
@@ -346,7 +347,7 @@ START_TEST(series_of_all_blocks_begin_with_the_value_and_the_slope)
 }
 END_TEST
 
-/* More blocks and pairs than a word has bits: the sum over b of (b + 1) x_b x_(b+1). */
+/* More blocks and pairs than a word has bits, in the sum over b of (b + 1) x_b x_(b+1). */
 enum { MANY = 70 };
 
 static dvi__function *chain_of_blocks(dvi__graph *graph, dvi__kernel_input *input)

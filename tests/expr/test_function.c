@@ -125,7 +125,7 @@ START_TEST(short_kernels_are_written_out)
   check_potential(function, "figure-eight", NULL, 300);
   drop(&own, function);
   function = fpu(&own, 50);
-  ck_assert_int_eq(dvi__function_kernel_count(function), 2); /* the inner springs; both ends */
+  ck_assert_int_eq(dvi__function_kernel_count(function), 2); /* the inner springs, and both ends */
   drop(&own, function);
 }
 END_TEST
@@ -165,7 +165,7 @@ END_TEST
 
 /* --- What else is promised. --- */
 
-/* 90 bodies: 4005 pairs, in many tiles. */
+/* 90 bodies have 4005 pairs, in many tiles. */
 static dvi__function *many(draft *own)
 {
   double mass[90];
@@ -316,7 +316,7 @@ START_TEST(counters_count_points_and_what_was_derived)
 }
 END_TEST
 
-/* x^2 t + 3 x v: rates of momenta, and which second derivatives are constants. */
+/* x^2 t + 3 x v tests rates of momenta, and which second derivatives are constants. */
 START_TEST(time_is_a_block_and_constants_are_known)
 {
   draft own;
@@ -352,7 +352,7 @@ START_TEST(time_is_a_block_and_constants_are_known)
 }
 END_TEST
 
-/* x_i x_j summed over all i and j, i = j among them: (sum x)^2, of which all second derivatives
+/* x_i x_j summed over all i and j, i = j among them, is (sum x)^2, of which all second derivatives
  * are 2. */
 START_TEST(an_element_may_read_a_variable_twice)
 {
@@ -396,7 +396,7 @@ START_TEST(a_function_without_kernels_is_zero)
 }
 END_TEST
 
-/* A chain of a million links: 3e6 entries, found at once. */
+/* A chain of a million links has 3e6 entries, which are found at once. */
 START_TEST(the_pattern_of_a_long_chain_is_found)
 {
   enum { N = 1000000 };

@@ -29,12 +29,12 @@ static const char *const tokens[] = {
     "i", "o", "t", "k", "H",  "n",     "I",   "O",  "N",    "a",  "g", "+", "-", "*", "/", "^",
     "@", "h", "d", "~", "f",  "?",     ":",   "x?", "xy-?", "0",  "1", "2", "3", "8", "9", NULL};
 
-/* At the last point only the end is watched: numbers there are zero, or at the end of their
+/* At the last point only the end is checked, because numbers there are zero, or at the end of their
  * range. */
 static const double point[POINTS][INPUTS] = {
     {0.7, -1.3, 0.4}, {2.25, 0.31, -0.6}, {0, 1e-200, 1e200}};
 
-/* An expression with its derivatives, as nodes: value, gradient, Hessian by columns. */
+/* An expression with its derivatives as nodes: value, gradient, Hessian by columns. */
 enum { ROOTS = 1 + INPUTS + INPUTS * INPUTS, GRADIENT = 1, HESSIAN = 1 + INPUTS };
 static dvi__graph graph;
 static dvi__node root[ROOTS];
@@ -49,8 +49,8 @@ static dvi__op op_of(char letter)
   return found == NULL ? DVI__OP_COUNT : (dvi__op)(found - letters);
 }
 
-/* Take a letter; returns how many nodes are open. */
-static int take(char letter, char next, dvi__node *open, int count)
+/* Takes a letter, and returns the number of open nodes. */
+static int take_operation(char letter, char next, dvi__node *open, int count)
 {
   static const double constants[] = {0, 1, 2, 0.5, -1, 3, -2.5, 1e-3, 1e150, 1e-310};
   static const double exponents[] = {-2, 1.5, -0.5, -1.5, 3, 7, -3, 0.3, 33, 2.5};
@@ -75,13 +75,13 @@ static int take(char letter, char next, dvi__node *open, int count)
   return count;
 }
 
-/* What is left open is added. */
+/* Open nodes are added. */
 static dvi__node read_expression(const char *text, size_t size)
 {
   dvi__node open[OPEN_MAX + 2] = {0};
   int count = 0;
   for (size_t k = 0; k < size && k < LETTERS_MAX; k++) {
-    count = take(text[k], k + 1 < size ? text[k + 1] : '0', open, count);
+    count = take_operation(text[k], k + 1 < size ? text[k + 1] : '0', open, count);
     if (count > OPEN_MAX) count = OPEN_MAX;
   }
   dvi__node sum = dvi__constant(&graph, 0);
@@ -93,17 +93,17 @@ static dvi__node read_expression(const char *text, size_t size)
 
 static quad value[NODES_MAX], error[NODES_MAX], finer[NODES_MAX];
 
-/* What the judge knows of the roots at a point: values, the roundings of double and of quadruple
- * precision, and the derivatives by each input of value and gradient with what their two
- * differences disagree by. Nodes that are at the end of the range of double are not judged:
- * infinite errors. */
+/* The judge's results for the roots at a point: values, the roundings of double and of quadruple
+ * precision, and the derivatives by each input of value and gradient, with the disagreement of
+ * their two differences. Nodes at the end of the range of double get infinite errors, and are not
+ * judged. */
 typedef struct verdict {
   quad value[ROOTS], error[ROOTS], finer[ROOTS];
   quad difference[INPUTS][HESSIAN], doubt[INPUTS][HESSIAN];
 } verdict;
 
-/* Whether a node, or one below it, leaves the range of double, or is more rounding than number:
- * bounds are those of small errors. */
+/* Returns 1 if a node, or one below it, leaves the range of double, or is more rounding than
+ * number. Bounds are those of small errors. */
 static void mark_unusual(void)
 {
   for (int n = 0; n < graph.count; n++) {
@@ -131,7 +131,7 @@ static void shifted(const quad *x, int i, quad step, quad *result)
   for (int r = 0; r < HESSIAN; r++) result[r] = value[root[r]];
 }
 
-/* Returns whether something jumps on the way: then these differences are none of derivatives. */
+/* Returns 1 if something jumps on the way. These differences are then no derivatives. */
 static int differences(const quad *x, int i, quad step, quad *result)
 {
   static quad above[NODES_MAX];
@@ -146,7 +146,7 @@ static int differences(const quad *x, int i, quad step, quad *result)
   return jumps;
 }
 
-static void judge(const quad *x, verdict *v)
+static void judge_derivatives(const quad *x, verdict *v)
 {
   const quad step = (quad)1e-11;
   quad_evaluate(&graph, graph.count, x, value, finer, (quad)1e-33);
@@ -265,7 +265,7 @@ static unsigned run(const verdict *v)
   return codes;
 }
 
-/* What derivatives there are: what a text with another such number is kept for. */
+/* Gives a number for the set of derivatives. A text with a new number joins the corpus. */
 static unsigned kinds(void)
 {
   unsigned seen = 0;
@@ -273,7 +273,7 @@ static unsigned kinds(void)
   return seen;
 }
 
-static unsigned one(const char *text, size_t size)
+static unsigned try_derivatives(const char *text, size_t size)
 {
   static verdict v[JUDGED];
   graph = (dvi__graph){.limit = NODES_MAX};
@@ -288,7 +288,7 @@ static unsigned one(const char *text, size_t size)
   }
   for (int p = 0; p < JUDGED; p++) {
     const quad x[INPUTS] = {(quad)point[p][0], (quad)point[p][1], (quad)point[p][2]};
-    judge(x, &v[p]);
+    judge_derivatives(x, &v[p]);
     check_derivatives(&v[p]);
     check_pattern(&v[p]);
   }
@@ -298,7 +298,7 @@ static unsigned one(const char *text, size_t size)
 
 START_TEST(derivatives_are_those_of_differences)
 {
-  ck_assert_int_gt(fuzz(&(fuzz_target){"derivatives", corpus, tokens, one}), 0);
+  ck_assert_int_gt(fuzz(&(fuzz_target){"derivatives", corpus, tokens, try_derivatives}), 0);
 }
 END_TEST
 #endif

@@ -141,8 +141,8 @@ START_TEST(constants_are_folded_and_gathered)
 }
 END_TEST
 
-/* What is not finite is left to happen where it happens; products of constants that would overflow
- * are not made. */
+/* A result that is not finite is left to run time, and products of constants that would overflow
+ * are not formed. */
 START_TEST(folding_makes_no_infinities)
 {
   const dvi__node x = input(0);
@@ -193,8 +193,8 @@ START_TEST(powers_of_one_base_are_one_power)
 }
 END_TEST
 
-/* The root of x does not exist for x < 0, nor 1/x for 0; what would extend the domain is kept as it
- * stands. */
+/* The root of x does not exist for x < 0, nor 1/x for 0. A rule that would extend the domain is not
+ * applied. */
 START_TEST(domains_are_kept)
 {
   const dvi__node x = input(0);
@@ -214,8 +214,8 @@ static dvi__node gravity(void)
   return divide(negate(multiply(input(6), input(7))), apply(DVI__OP_SQRT, r2, 0));
 }
 
-/* One power -3/2; the products w_0 w_1, times it, and three components of the pull, which are
- * negated for the other body. */
+/* There are one power -3/2, the products w_0 w_1, times it, and three components of the pull, which
+ * are negated for the other body. */
 START_TEST(the_pull_of_two_bodies_costs_one_power)
 {
   const dvi__node root = gravity();
@@ -238,7 +238,8 @@ START_TEST(second_derivatives_of_two_bodies_share_their_parts)
 }
 END_TEST
 
-/* Links of a chain of pendulums in the plane: angles are inputs 0 .., their rates follow. */
+/* The links of a chain of pendulums in the plane. Angles are inputs 0 .., and their rates
+ * follow. */
 static dvi__node pendulum(int links)
 {
   dvi__node rate[INPUTS_MAX], x = constant(0), y = x, lagrangian = x;
@@ -278,7 +279,7 @@ START_TEST(gradients_cost_at_most_four_values)
 }
 END_TEST
 
-/* sum_i w_i/(sum_j w_j), of 40 quotients: no rule divides more than once. */
+/* sum_i w_i/(sum_j w_j) has 40 quotients, and no rule divides more than once. */
 START_TEST(quotients_are_divided_once)
 {
   dvi__node sum = constant(0), root = sum;
@@ -344,7 +345,7 @@ START_TEST(patterns_are_exact)
 }
 END_TEST
 
-/* A long chain, whose sets stay small: only its bonds interact. */
+/* A long chain, whose sets stay small because only its bonds interact. */
 START_TEST(the_pattern_of_a_chain_is_a_band)
 {
   enum { LONG = 3000 };
@@ -360,7 +361,7 @@ START_TEST(the_pattern_of_a_chain_is_a_band)
 }
 END_TEST
 
-/* Nodes are visited in loops: no depth ends the stack. */
+/* Nodes are visited in loops, so no depth overflows the stack. */
 START_TEST(expressions_may_be_a_hundred_thousand_levels_deep)
 {
   dvi__node root = input(0), gradient, rate = constant(1);
@@ -393,7 +394,7 @@ START_TEST(the_first_part_that_is_not_finite_is_told)
 }
 END_TEST
 
-/* Each takes as long as its own parts: if each went through all of the graph, they would take
+/* Each takes as long as its own parts. If each went through all of the graph, they would take
  * minutes. */
 START_TEST(second_derivatives_of_a_long_sum_are_found_one_by_one)
 {

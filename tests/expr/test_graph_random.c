@@ -1,6 +1,6 @@
 /* labels: jacobian slow */
-/* Random expressions against an independent judge: the expression as it was drawn, evaluated in
- * quadruple precision without any simplification, and its central differences. */
+/* Random expressions against an independent judge, which evaluates the expression as it was drawn
+ * in quadruple precision without any simplification, and its central differences. */
 #include <check.h>
 #include <float.h>
 #include <math.h>
@@ -21,7 +21,7 @@ enum { EXPRESSIONS = 10000, INPUTS = 3, DEPTH = 6, PARTS_MAX = 128 };
 /* Values stay between these in size, so that no expression is ill conditioned by itself. */
 static const double SMALLEST = 0.05, LARGEST = 50;
 
-/* A part as it was drawn; `error` bounds what rounding to double does to its value. */
+/* A part as it was drawn. `error` bounds the effect of rounding to double on its value. */
 typedef struct part {
   dvi__op op;
   int a, b;
@@ -49,7 +49,7 @@ static int random_below(uint64_t *seed, int count)
   return (int)(random_bits(seed) % (uint64_t)count);
 }
 
-/* Whether an operation is smooth at its operands, with room around them. */
+/* Returns 1 if an operation is smooth at its operands, with room around them. */
 static int is_inside(dvi__op op, double number, quad a, quad b)
 {
   switch (op) {
@@ -73,7 +73,7 @@ static int is_inside(dvi__op op, double number, quad a, quad b)
   }
 }
 
-/* What the errors of the operands make of the value, with room for libm. */
+/* Bounds the effect of the operands' errors on the value, with room for libm. */
 static quad error_of(const part *all, const part *own)
 {
   const part *a = all + own->a, *b = all + own->b;
@@ -82,8 +82,8 @@ static quad error_of(const part *all, const part *own)
                                                   b->value, b->error, 2 * (quad)DBL_EPSILON);
 }
 
-/* Draw an operation for these operands until one is inside of its domain and its value of a
- * moderate size; sums and sines always are. */
+/* Draws an operation for these operands until one is inside of its domain with a value of a
+ * moderate size. Sums and sines always are. */
 static part draw(uint64_t *seed, const expression *e, int a, int b)
 {
   static const double exponents[] = {-3, -2.5, -2, -1.5, -1, -0.5, 0.5, 1.5, 2, 2.5, 3, 4, 5, 7};
@@ -102,7 +102,8 @@ static part draw(uint64_t *seed, const expression *e, int a, int b)
   return (part){.op = DVI__OP_SIN, .a = a, .b = a, .value = sinq(e->part[a].value)};
 }
 
-/* A leaf, an input mostly; small whole numbers are common so that rules for them are used. */
+/* Draws a leaf, mostly an input. Small whole numbers are common, so that rules for them are
+ * used. */
 static part draw_leaf(uint64_t *seed, const expression *e)
 {
   const int kind = random_below(seed, 6), number = random_below(seed, INPUTS);
@@ -111,7 +112,7 @@ static part draw_leaf(uint64_t *seed, const expression *e)
   return (part){.op = DVI__OP_CONSTANT, .number = value, .value = (quad)value};
 }
 
-/* Fill a random tree: parts are joined from the leaves on; now and then one is used twice. */
+/* Fills a random tree. Parts are joined from the leaves on, and now and then one is used twice. */
 static void draw_expression(uint64_t *seed, expression *e)
 {
   const int depth = random_below(seed, DEPTH + 1);
@@ -132,7 +133,7 @@ static void draw_expression(uint64_t *seed, expression *e)
     }
 }
 
-static dvi__node build(dvi__graph *graph, const expression *e)
+static dvi__node build_expression(dvi__graph *graph, const expression *e)
 {
   dvi__node node[PARTS_MAX] = {0};
   for (int i = 0; i < e->count; i++) {
@@ -168,7 +169,7 @@ static quad value_at(const expression *e, const quad *x)
 /* With this step central differences of moderate functions are right to 1e-18 at least. */
 static const quad STEP = (quad)1e-10;
 
-static quad difference(const expression *e, int i)
+static quad first_difference(const expression *e, int i)
 {
   quad x[INPUTS];
   for (int k = 0; k < INPUTS; k++) x[k] = e->x[k];
@@ -191,8 +192,9 @@ static quad second_difference_of(const expression *e, int i, int j, quad h)
   return sum / (4 * h * h);
 }
 
-/* Of the second order, from values: with a longer step, for the difference is divided by its
- * square; extrapolated, for the step is long for functions of large derivatives. */
+/* Takes a second difference from values. The step is longer, because the difference is divided by
+ * its square, and the result is extrapolated, because the step is long for functions of large
+ * derivatives. */
 static quad second_difference(const expression *e, int i, int j)
 {
   const quad h = (quad)1e-9;
@@ -225,7 +227,7 @@ START_TEST(simplified_values_are_those_of_what_was_written)
     expression e;
     draw_expression(&state, &e);
     dvi__graph graph = {0};
-    const dvi__node root = build(&graph, &e);
+    const dvi__node root = build_expression(&graph, &e);
     double x[INPUTS], value;
     for (int i = 0; i < INPUTS; i++) x[i] = (double)e.x[i];
     dvi__node not_finite;
@@ -268,10 +270,10 @@ START_TEST(derivatives_are_those_of_differences)
     expression e;
     draw_expression(&state, &e);
     dvi__graph graph = {0};
-    const dvi__node root = build(&graph, &e);
+    const dvi__node root = build_expression(&graph, &e);
     quad first[INPUTS], second[INPUTS * INPUTS], judge[INPUTS * INPUTS];
     differentiate(&graph, &e, root, first, second);
-    for (int i = 0; i < INPUTS; i++) judge[i] = difference(&e, i);
+    for (int i = 0; i < INPUTS; i++) judge[i] = first_difference(&e, i);
     check_close(INPUTS, first, judge, seed);
     for (int i = 0; i < INPUTS * INPUTS; i++)
       judge[i] = second_difference(&e, i % INPUTS, i / INPUTS);
@@ -288,7 +290,7 @@ START_TEST(patterns_hold_all_second_derivatives_but_zeros)
     expression e;
     draw_expression(&state, &e);
     dvi__graph graph = {0};
-    const dvi__node root = build(&graph, &e);
+    const dvi__node root = build_expression(&graph, &e);
     int(*pair)[2], count, inside[INPUTS][INPUTS] = {{0}};
     ck_assert_int_eq(dvi__second_pattern(&graph, root, INPUTS, &pair, &count), DVI_OK);
     for (int k = 0; k < count; k++)

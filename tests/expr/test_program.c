@@ -19,7 +19,7 @@ static dvi__program compiled(const dvi__graph *graph, dvi__node root)
   return program;
 }
 
-/* The program's output on lanes of a row and b row; rows are full width. */
+/* Compares the program's output on lanes of a row and b row. Rows are full width. */
 static void run(const dvi__program *program, int lanes, const double *const *input, double *result)
 {
   double *registers = calloc((size_t)program->row_count * DVI__LANES_MAX, sizeof *registers);
@@ -60,7 +60,8 @@ static void check_against_graph(const dvi__graph *graph, dvi__node root, double 
   dvi__program_free(&program);
 }
 
-/* Functions of the C library and single roundings: the same call, so the same number. */
+/* Functions of the C library and single roundings give the same number, because the call is the
+ * same. */
 START_TEST(every_operation_does_what_the_graph_says)
 {
   for (int op = DVI__OP_NEGATE; op < DVI__OP_COUNT; op++) {
@@ -74,8 +75,8 @@ START_TEST(every_operation_does_what_the_graph_says)
 }
 END_TEST
 
-/* On both sides of a jump, and at it; what is off may be no number, and a condition that is none
- * makes none. */
+/* Evaluates on both sides of a jump, and at it. The branch that is not taken may be no number, and
+ * a condition that is no number gives none. */
 START_TEST(conditions_take_a_side_in_every_lane)
 {
   dvi__graph graph = {0};
@@ -155,7 +156,8 @@ START_TEST(a_sine_and_a_cosine_of_one_angle_are_those_of_the_library)
 }
 END_TEST
 
-/* Two roundings for each root in the product, at most; long double has 11 bits more. */
+/* There are at most two roundings for each root in the product, and long double has 11 bits
+ * more. */
 START_TEST(powers_are_right_to_two_roundings_for_each_root)
 {
   for (double exponent = -16.5; exponent <= 16.5; exponent += 0.5) {

@@ -1,4 +1,4 @@
-/* Programs on truncated power series: the sum of the series is what the expression has at the
+/* Programs on truncated power series. The sum of the series is the value of the expression at the
  * point. */
 #include <dvi/taylor.h>
 #include <float.h>
@@ -10,8 +10,8 @@
 
 enum { DEGREE = 14, LENGTH = DEGREE + 1, ROWS = 64, INPUTS = 2 };
 
-/* x(s) = 0.6 + .., y(s) = 1.7 + ..: inside of the domains of all operations but acosh, which gets
- * y. */
+/* x(s) = 0.6 + .., y(s) = 1.7 + .. are inside of the domains of all operations but acosh, which
+ * gets y. */
 static const double curve[INPUTS][LENGTH] = {{0.6, 0.4, -0.3, 0.2}, {1.7, -0.5, 0.25, 0.1}};
 
 static double sum_of(const double *series, double s)
@@ -21,8 +21,8 @@ static double sum_of(const double *series, double s)
   return sum;
 }
 
-/* Radii of convergence are 0.3 and more: what is left out is below 1e-15 of numbers of size 1. */
-static void compare(dvi__graph *graph, dvi__node root, const double curves[INPUTS][LENGTH])
+/* Radii of convergence are 0.3 and more, so the remainder is below 1e-15 of numbers of size 1. */
+static void compare_series(dvi__graph *graph, dvi__node root, const double curves[INPUTS][LENGTH])
 {
   const double s = 0.025;
   const dvi__node inputs[INPUTS] = {dvi__input(graph, 0), dvi__input(graph, 1)};
@@ -48,11 +48,11 @@ START_TEST(every_operation_of_one_number_is_known)
   const dvi__node x = dvi__input(&graph, 0), y = dvi__input(&graph, 1);
   for (dvi__op op = DVI__OP_NEGATE; op <= DVI__OP_SIGN; op++) {
     if (op == DVI__OP_POWER) continue;
-    compare(&graph, dvi__apply(&graph, op, op == DVI__OP_ACOSH ? y : x, x), curve);
+    compare_series(&graph, dvi__apply(&graph, op, op == DVI__OP_ACOSH ? y : x, x), curve);
   }
-  compare(&graph, dvi__apply(&graph, DVI__OP_FLOOR, dvi__scale(&graph, 5, y), x), curve);
-  compare(&graph, dvi__apply(&graph, DVI__OP_POSITIVE, x, x), curve);
-  compare(&graph, dvi__apply(&graph, DVI__OP_POSITIVE, dvi__negate(&graph, x), x), curve);
+  compare_series(&graph, dvi__apply(&graph, DVI__OP_FLOOR, dvi__scale(&graph, 5, y), x), curve);
+  compare_series(&graph, dvi__apply(&graph, DVI__OP_POSITIVE, x, x), curve);
+  compare_series(&graph, dvi__apply(&graph, DVI__OP_POSITIVE, dvi__negate(&graph, x), x), curve);
   dvi__graph_free(&graph);
 }
 END_TEST
@@ -63,19 +63,19 @@ START_TEST(every_operation_of_two_numbers_is_known)
   const dvi__node x = dvi__input(&graph, 0), y = dvi__input(&graph, 1),
                   two = dvi__constant(&graph, 2.5);
   for (dvi__op op = DVI__OP_ADD; op <= DVI__OP_ATAN2; op++) {
-    compare(&graph, dvi__apply(&graph, op, x, y), curve);
-    compare(&graph, dvi__apply(&graph, op, x, two), curve);
-    compare(&graph, dvi__apply(&graph, op, two, y), curve);
+    compare_series(&graph, dvi__apply(&graph, op, x, y), curve);
+    compare_series(&graph, dvi__apply(&graph, op, x, two), curve);
+    compare_series(&graph, dvi__apply(&graph, op, two, y), curve);
   }
   const dvi__node yes = dvi__greater(&graph, x, dvi__constant(&graph, -9)),
                   log = dvi__apply(&graph, DVI__OP_LOG, dvi__negate(&graph, y), y);
-  compare(&graph, dvi__choice(&graph, yes, y, log),
-          curve); /* the series of the logarithm is none */
+  compare_series(&graph, dvi__choice(&graph, yes, y, log),
+                 curve); /* the series of the logarithm is none */
   dvi__graph_free(&graph);
 }
 END_TEST
 
-/* What jumps, or turns, at 0 has no series there, unless its argument stays. */
+/* A function with a jump or a kink at 0 has no series there, unless its argument is constant. */
 START_TEST(at_a_kink_there_is_a_series_of_what_stays_alone)
 {
   static const dvi__op ops[] = {DVI__OP_ABS, DVI__OP_SIGN, DVI__OP_FLOOR, DVI__OP_POSITIVE};
@@ -103,14 +103,14 @@ START_TEST(powers_and_operations_in_one_are_known)
   const dvi__node x = dvi__input(&graph, 0), y = dvi__input(&graph, 1),
                   product = dvi__apply(&graph, DVI__OP_MULTIPLY, x, y);
   for (size_t i = 0; i < sizeof exponents / sizeof *exponents; i++)
-    compare(&graph, dvi__power(&graph, x, exponents[i]), curve);
-  compare(&graph, dvi__apply(&graph, DVI__OP_ADD, product, x), curve);
-  compare(&graph, dvi__apply(&graph, DVI__OP_SUBTRACT, product, y), curve);
-  compare(&graph, dvi__apply(&graph, DVI__OP_SUBTRACT, y, product), curve);
+    compare_series(&graph, dvi__power(&graph, x, exponents[i]), curve);
+  compare_series(&graph, dvi__apply(&graph, DVI__OP_ADD, product, x), curve);
+  compare_series(&graph, dvi__apply(&graph, DVI__OP_SUBTRACT, product, y), curve);
+  compare_series(&graph, dvi__apply(&graph, DVI__OP_SUBTRACT, y, product), curve);
   const dvi__node sine = dvi__apply(&graph, DVI__OP_SIN, x, x),
                   cosine = dvi__apply(&graph, DVI__OP_COS, x, x);
-  compare(&graph, dvi__apply(&graph, DVI__OP_DIVIDE, sine, cosine), curve);
-  compare(&graph, dvi__constant(&graph, 3.25), curve);
+  compare_series(&graph, dvi__apply(&graph, DVI__OP_DIVIDE, sine, cosine), curve);
+  compare_series(&graph, dvi__constant(&graph, 3.25), curve);
   dvi__graph_free(&graph);
 }
 END_TEST
@@ -121,11 +121,11 @@ START_TEST(polynomials_have_series_at_zero)
   static const double zero[INPUTS][LENGTH] = {{0.0, 1.0, 0.5}, {-1.7, 1.0}};
   dvi__graph graph = {0};
   const dvi__node x = dvi__input(&graph, 0), y = dvi__input(&graph, 1);
-  compare(&graph, dvi__power(&graph, x, 3), zero);
-  compare(&graph, dvi__apply(&graph, DVI__OP_MULTIPLY, x, dvi__power(&graph, x, 5)), zero);
-  compare(&graph, dvi__power(&graph, y, -3), zero);
-  compare(&graph, dvi__apply(&graph, DVI__OP_ABS, y, y), zero);
-  compare(&graph, dvi__apply(&graph, DVI__OP_ATAN2, x, y), zero);
+  compare_series(&graph, dvi__power(&graph, x, 3), zero);
+  compare_series(&graph, dvi__apply(&graph, DVI__OP_MULTIPLY, x, dvi__power(&graph, x, 5)), zero);
+  compare_series(&graph, dvi__power(&graph, y, -3), zero);
+  compare_series(&graph, dvi__apply(&graph, DVI__OP_ABS, y, y), zero);
+  compare_series(&graph, dvi__apply(&graph, DVI__OP_ATAN2, x, y), zero);
   dvi__graph_free(&graph);
 }
 END_TEST

@@ -28,7 +28,7 @@ static double argument(dvi__op op, int i)
 }
 enum { ARGUMENTS = 9 };
 
-/* Two dozen roundings of numbers of 113 bits, relative: to the result, to the argument (angles), or
+/* Two dozen roundings of numbers of 113 bits, relative to the result, to the argument (angles), or
  * to the logarithm of the result (powers). */
 static const double some_roundings = 24 * 1e-34;
 
@@ -60,7 +60,7 @@ START_TEST(every_operation_is_right_to_its_last_digits)
 }
 END_TEST
 
-/* Central differences of order 2 with a step of 1e-8: the error is some 1e-16 of the third
+/* Takes central differences of order 2 with a step of 1e-8. The error is some 1e-16 of the third
  * derivative. */
 START_TEST(slopes_are_those_of_the_values)
 {

@@ -20,7 +20,7 @@ typedef struct scene {
   double xi[3], rate[3], a[9], b[9];
 } scene;
 
-static scene set(int index)
+static scene set_scene(int index)
 {
   const dvi__chart_kind kind = (dvi__chart_kind)(index / LENGTHS);
   const double turn[] = {0.4, -1.2, 0.8}, toward[] = {0.48, -0.6, 0.64},
@@ -43,7 +43,8 @@ typedef void vector_of(const scene *s, const double *xi, const double *rate, dou
 
 enum { IN_XI, IN_RATE, VALUES_MOST = 9 };
 
-static void difference(vector_of *f, const scene *s, int in, int j, int count, double *derivative)
+static void difference_column(vector_of *f, const scene *s, int in, int j, int count,
+                              double *derivative)
 {
   static const double weight[] = {-1.0 / 60, 9.0 / 60, -45.0 / 60, 45.0 / 60, -9.0 / 60, 1.0 / 60},
                       place[] = {-3, -2, -1, 1, 2, 3}, length = 1.0 / 128;
@@ -72,7 +73,7 @@ static void check_derivative(vector_of *f, const scene *s, int in, int count,
 {
   for (int j = 0; j < s->size; j++) {
     double expected[VALUES_MOST];
-    difference(f, s, in, j, count, expected);
+    difference_column(f, s, in, j, count, expected);
     for (int i = 0; i < count; i++)
       ck_assert_msg(fabs(derivative[i * s->size + j] - expected[i]) < 1e-11,
                     "%s of kind %d at |xi| = %g: (%d,%d) is %.15g, not %.15g", what,
@@ -134,7 +135,7 @@ static void spin_in_xi_of(const scene *s, const double *xi, const double *rate, 
 
 START_TEST(derivatives_are_those_of_points)
 {
-  const scene s = set(_i);
+  const scene s = set_scene(_i);
   double T[27], S[27], in_xi[9], in_rate[9], mixed[9];
   dvi__chart_tangents(&s.chart, functions_at(&s, s.xi), s.xi, s.rate, T, S);
   check_derivative(point_of, &s, IN_XI, s.stored, T, "T");
@@ -154,7 +155,7 @@ END_TEST
 /* The velocity is the derivative along the rate, and a stored velocity leads back to it. */
 START_TEST(velocities_are_those_of_points)
 {
-  const scene s = set(_i);
+  const scene s = set_scene(_i);
   double y[9], v[9], T[27], S[27], along[9] = {0}, stored[3];
   dvi__chart_point(&s.chart, functions_at(&s, s.xi), s.xi, s.rate, y, v);
   dvi__chart_tangents(&s.chart, functions_at(&s, s.xi), s.xi, s.rate, T, S);
@@ -180,7 +181,7 @@ END_TEST
 /* p.rate, the power of the momentum, is that of the angular momentum, and so is its derivative. */
 START_TEST(momenta_are_those_of_turns)
 {
-  const scene s = set(_i);
+  const scene s = set_scene(_i);
   double p[3], derivative[9];
   dvi__chart_momentum(&s.chart, s.xi, s.a, p);
   dvi__chart_momentum_derivative(&s.chart, s.xi, s.a, derivative);
@@ -196,7 +197,7 @@ END_TEST
 
 START_TEST(spins_have_their_derivatives)
 {
-  const scene s = set(DVI__ROTATION * LENGTHS + _i);
+  const scene s = set_scene(DVI__ROTATION * LENGTHS + _i);
   double in_xi[9], in_rate[9], mixed[9];
   dvi__chart_turning_gradient(functions_at(&s, s.xi), s.xi, s.rate, s.a, in_xi, in_rate);
   check_derivative(spin_of, &s, IN_XI, 1, in_xi, "the spin's gradient in xi");
@@ -211,7 +212,7 @@ END_TEST
  * digits of its angle around it. */
 START_TEST(points_are_found_again)
 {
-  scene s = set(_i * LENGTHS);
+  scene s = set_scene(_i * LENGTHS);
   static const double far[] = {1e-9, 0.5, 3.0, 3.14159265258979};
   for (int k = 0; k < 4; k++) {
     double y[9], found[3];
@@ -230,7 +231,7 @@ END_TEST
 START_TEST(turns_are_those_of_space)
 {
   const dvi__chart_kind kind = _i == 0 ? DVI__SPHERE : DVI__ROTATION;
-  const scene s = set((int)kind * LENGTHS);
+  const scene s = set_scene((int)kind * LENGTHS);
   const double w[] = {3e-4, -1e-4, 2e-4};
   double E[9], rows[27], moved[9], moment[3] = {0}, by_moment = 0, by_rows = 0;
   const int columns = s.stored / 3;

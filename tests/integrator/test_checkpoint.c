@@ -182,7 +182,7 @@ typedef struct scene {
   bytes past;
 } scene;
 
-static scene made_scene(void)
+static scene create_scene(void)
 {
   scene s = {.model = create_problem("kepler", NULL)};
   s.integrator = start_integrator(s.model, "galerkin:degree=2");
@@ -209,7 +209,7 @@ static void refused(const scene *s, size_t count)
 
 START_TEST(a_checkpoint_cut_anywhere_is_refused)
 {
-  scene s = made_scene();
+  scene s = create_scene();
   const bytes before = read_state(s.integrator);
   for (size_t count = 0; count < s.past.count; count++) {
     refused(&s, count);
@@ -222,7 +222,7 @@ END_TEST
 
 START_TEST(a_checkpoint_that_is_too_long_is_refused)
 {
-  scene s = made_scene();
+  scene s = create_scene();
   const bytes before = read_state(s.integrator);
   s.past.at = realloc(s.past.at, s.past.count + 1);
   ck_assert_ptr_nonnull(s.past.at);
@@ -237,7 +237,7 @@ END_TEST
 START_TEST(a_checkpoint_damaged_at_any_byte_is_refused)
 {
   const unsigned char damages[] = {0x01, 0x80, 0xff};
-  scene s = made_scene();
+  scene s = create_scene();
   const bytes before = read_state(s.integrator);
   for (size_t at = 0; at < s.past.count; at++) {
     s.past.at[at] ^= damages[at % 3];
@@ -254,7 +254,7 @@ END_TEST
 START_TEST(a_checkpoint_of_another_format_is_refused_with_a_sentence)
 {
   const uint32_t old = 5; /* of libdvi before its checkpoints had sections */
-  scene s = made_scene();
+  scene s = create_scene();
   memcpy(s.past.at + 12, &old, sizeof old);
   refused(&s, s.past.count);
   check_words("written in format 5 by another version of libdvi; this one reads format 6");
@@ -274,7 +274,7 @@ static void check_still(const dvi_integrator *integrator, bytes expected)
 
 START_TEST(a_state_in_memory_is_that_of_a_file)
 {
-  scene s = made_scene();
+  scene s = create_scene();
   size_t size = 0;
   const bytes now = read_state(s.integrator);
   ck_assert_int_eq(dvi_integrator_save_memory(s.integrator, NULL, 0, &size), DVI_OK);
@@ -319,7 +319,7 @@ static void refused_by(const char *name, const char *setting, const char *method
 
 START_TEST(a_checkpoint_of_another_method_or_dimension_is_refused)
 {
-  scene s = made_scene();
+  scene s = create_scene();
   ck_assert_int_eq(dvi_integrator_save(s.integrator, path_in_folder("other")), DVI_OK);
   refused_by("kepler", NULL, "verlet", "written by galerkin:degree=2");
   refused_by("kepler", NULL, "galerkin:degree=3", "not by galerkin:degree=3");
@@ -335,7 +335,7 @@ END_TEST
  * another value or other forces. */
 START_TEST(a_checkpoint_of_another_system_or_other_parameters_is_refused)
 {
-  scene s = made_scene();
+  scene s = create_scene();
   ck_assert_int_eq(dvi_integrator_save(s.integrator, path_in_folder("other")), DVI_OK);
   refused_by("henon-heiles", NULL, "galerkin:degree=2",
              "of a system that declares other names or speeds of potentials");
@@ -378,7 +378,7 @@ END_TEST
 
 START_TEST(a_file_that_is_none_or_a_folder_cannot_be_read)
 {
-  scene s = made_scene();
+  scene s = create_scene();
   const bytes before = read_state(s.integrator);
   ck_assert_int_eq(dvi_integrator_restore(s.integrator, path_in_folder("missing")), DVI_IO_ERROR);
   check_words("No such file");
@@ -404,7 +404,7 @@ START_TEST(a_place_that_cannot_be_written_is_reported)
 {
   enum { TOO_LONG = 10000 };
   static char endless[TOO_LONG];
-  scene s = made_scene();
+  scene s = create_scene();
   const char *full = path_in_folder("full");
   memset(endless, 'x', TOO_LONG - 1);
   not_written(s.integrator, path_in_folder("missing/file"), "No such file");
@@ -425,7 +425,7 @@ END_TEST
 
 START_TEST(a_link_is_followed_and_stays)
 {
-  scene s = made_scene();
+  scene s = create_scene();
   struct stat about;
   write_bytes(path_in_folder("target"), s.past.at, 1);
   ck_assert_int_eq(symlink("target", path_in_folder("link")), 0);
@@ -439,7 +439,7 @@ END_TEST
 
 START_TEST(a_pipe_is_no_place_for_a_checkpoint)
 {
-  scene s = made_scene();
+  scene s = create_scene();
   struct stat about;
   ck_assert_int_eq(mkfifo(path_in_folder("pipe"), 0600), 0);
   not_written(s.integrator, path_in_folder("pipe"), "not a regular file");
@@ -451,7 +451,7 @@ END_TEST
 
 START_TEST(neither_neighbours_nor_the_file_s_rights_change)
 {
-  scene s = made_scene();
+  scene s = create_scene();
   struct stat about;
   write_bytes(path_in_folder("w.part"), s.past.at, 3);
   write_bytes(path_in_folder("w"), s.past.at, 3);
@@ -469,7 +469,7 @@ END_TEST
 /* A limit on the size of files stands for the full disk, so writing stops in mid-file. */
 START_TEST(a_full_disk_leaves_the_old_checkpoint)
 {
-  scene s = made_scene();
+  scene s = create_scene();
   const char *file = path_in_folder("checkpoint"); /* few other paths are asked for below */
   struct rlimit unlimited, limited;
   write_bytes(file, s.past.at, s.past.count);

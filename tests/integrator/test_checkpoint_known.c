@@ -221,7 +221,7 @@ static int springs_gradient(double t, const double *q, double *V_q, void *user)
   return 0;
 }
 
-static dvi_system *made_springs(springs *s)
+static dvi_system *create_springs(springs *s)
 {
   const dvi_potential potential = {
       .name = "springs", .value = springs_value, .gradient = springs_gradient, .user = s};
@@ -240,7 +240,7 @@ static void check_springs(const springs *changed, const char *words)
 {
   const double q[SPRINGS] = {1, 1, 1, 1, 1, 1, 1, 1, 1}, p[SPRINGS] = {0};
   springs one = nine, other = *changed;
-  dvi_system *first = made_springs(&one), *second = made_springs(&other);
+  dvi_system *first = create_springs(&one), *second = create_springs(&other);
   dvi_integrator *saved = create_integrator(first, "verlet"),
                  *taker = create_integrator(second, "verlet");
   ck_assert_int_eq(dvi_integrator_start(saved, 0, q, p), DVI_OK);

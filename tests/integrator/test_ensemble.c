@@ -16,7 +16,7 @@
 
 enum { N_MOST = 64, MEMBERS_MOST = 100, INVARIANTS_MOST = 16 };
 
-static void best_again(void)
+static void use_best_level(void)
 {
   dvi__lanes_choose(-1);
 }
@@ -26,7 +26,7 @@ static void best_again(void)
 /* Makes initial states near the problem's own, no two alike, component-major. */
 static double first_q[N_MOST * MEMBERS_MOST], first_p[N_MOST * MEMBERS_MOST];
 
-static void take(int n, int members, int k, const double *all, double *one)
+static void copy_member(int n, int members, int k, const double *all, double *one)
 {
   for (int i = 0; i < n; i++) one[i] = all[i * members + k];
 }
@@ -35,7 +35,7 @@ static void take(int n, int members, int k, const double *all, double *one)
 static void constrain(const problem *model, int members, int k)
 {
   double q[N_MOST], p[N_MOST];
-  take(model->nq, members, k, first_q, q);
+  copy_member(model->nq, members, k, first_q, q);
   ck_assert_int_eq(dvi_system_momentum(model->system, 0, q, model->v, p), DVI_OK);
   for (int i = 0; i < model->nq; i++) first_p[i * members + k] = p[i];
 }
@@ -67,8 +67,8 @@ static void spread_start(const problem *model, int members, double spread)
   for (int k = 0; k < members && model->terms->one_form != NULL; k++) constrain(model, members, k);
 }
 
-static dvi_ensemble *made_ensemble(const dvi_system *system, const char *method,
-                                   dvi_ensemble_options options)
+static dvi_ensemble *create_ensemble(const dvi_system *system, const char *method,
+                                     dvi_ensemble_options options)
 {
   dvi_ensemble *made = NULL;
   ck_assert_msg(dvi_ensemble_create(system, method, &options, &made) == DVI_OK, "%s",
@@ -82,12 +82,13 @@ static void start_all(dvi_ensemble *e)
 }
 
 /* An integrator that runs member k alone. */
-static dvi_integrator *twin(const dvi_system *system, const char *method, int members, int k)
+static dvi_integrator *create_member_twin(const dvi_system *system, const char *method, int members,
+                                          int k)
 {
   double q[N_MOST], p[N_MOST];
   dvi_integrator *made = create_integrator(system, method);
-  take(dvi_system_nq(system), members, k, first_q, q);
-  take(dvi_system_nv(system), members, k, first_p, p);
+  copy_member(dvi_system_nq(system), members, k, first_q, q);
+  copy_member(dvi_system_nv(system), members, k, first_p, p);
   ck_assert_msg(dvi_integrator_start(made, 0.25, q, p) == DVI_OK, "%s", dvi_last_error());
   return made;
 }
@@ -103,7 +104,7 @@ static void same_member(dvi_ensemble *e, int k, dvi_integrator *single)
             members = dvi_ensemble_members(e), invariants = dvi_system_invariant_count(system);
   ck_assert_int_le(invariants, INVARIANTS_MOST);
   ck_assert_int_eq(dvi_ensemble_state(e, t, q, p), DVI_OK);
-  take(n, members, k, q, q_k), take(nv, members, k, p, p_k);
+  copy_member(n, members, k, q, q_k), copy_member(nv, members, k, p, p_k);
   ck_assert_mem_eq(&t[k], &t_single, sizeof(double));
   ck_assert_mem_eq(q_k, dvi_integrator_q(single), (size_t)n * sizeof(double));
   ck_assert_mem_eq(p_k, dvi_integrator_p(single), (size_t)nv * sizeof(double));
@@ -239,11 +240,11 @@ END_TEST
 
 /* One way to run an ensemble beside the twins, which take the same steps. Some members may fail, on
  * both sides. */
-static void compare(const problem *model, const char *method, double h,
-                    dvi_ensemble_options options)
+static void compare_with_twins(const problem *model, const char *method, double h,
+                               dvi_ensemble_options options)
 {
   dvi_counters wanted = {0}, got, creation, single;
-  dvi_ensemble *e = made_ensemble(model->system, method, options);
+  dvi_ensemble *e = create_ensemble(model->system, method, options);
   dvi_integrator *probe = create_integrator(model->system, method);
   dvi_integrator_counters(probe, &creation);
   dvi_integrator_destroy(&probe);
@@ -253,7 +254,7 @@ static void compare(const problem *model, const char *method, double h,
   if (worst == DVI_OK) worst = dvi_ensemble_advance(e, -0.7 * h, 2);
   dvi_ensemble_counters(e, &got);
   for (int k = 0; k < options.members; k++) {
-    dvi_integrator *alone = twin(model->system, method, options.members, k);
+    dvi_integrator *alone = create_member_twin(model->system, method, options.members, k);
     dvi_status status = DVI_OK;
     for (int i = 0; i < (worst == DVI_OK ? STEPS : STEPS - 3) && status == DVI_OK; i++)
       status = dvi_integrator_step(alone, i < STEPS - 2 ? h : -0.7 * h);
@@ -290,8 +291,8 @@ START_TEST(every_member_has_the_bits_of_a_run_alone)
   const place *at = &places[pairs.which[sampled_case(_i)] / METHODS];
   problem *model = create_problem(at->problem, at->setting);
   spread_start(model, 21, at->spread);
-  compare(model, methods[pairs.which[sampled_case(_i)] % METHODS], at->h,
-          (dvi_ensemble_options){.members = 21});
+  compare_with_twins(model, methods[pairs.which[sampled_case(_i)] % METHODS], at->h,
+                     (dvi_ensemble_options){.members = 21});
   problem_destroy(&model);
 }
 END_TEST
@@ -312,10 +313,10 @@ START_TEST(levels_threads_and_groupings_change_no_bit)
   for (int m = 0; m < 5; m++) {
     dvi__lanes_choose(level);
     spread_start(model, ways[way].members, 0.1);
-    compare(model, some[m], 0.05,
-            (dvi_ensemble_options){.members = ways[way].members,
-                                   .threads = ways[way].threads,
-                                   .block = ways[way].block});
+    compare_with_twins(model, some[m], 0.05,
+                       (dvi_ensemble_options){.members = ways[way].members,
+                                              .threads = ways[way].threads,
+                                              .block = ways[way].block});
   }
   problem_destroy(&model);
 }
@@ -330,8 +331,8 @@ START_TEST(levels_agree_with_each_other)
   spread_start(model, 33, 0.01);
   for (int level = 0; level < dvi__lanes_levels(); level++) {
     dvi__lanes_choose(level);
-    dvi_ensemble *e = made_ensemble(model->system, methods[_i],
-                                    (dvi_ensemble_options){.members = 33});
+    dvi_ensemble *e = create_ensemble(model->system, methods[_i],
+                                      (dvi_ensemble_options){.members = 33});
     start_all(e);
     ck_assert_msg(dvi_ensemble_advance(e, 50, 20) == DVI_OK, "%s", dvi_last_error());
     ck_assert_int_eq(dvi_ensemble_state(e, NULL, level == 0 ? base_q : q, NULL), DVI_OK);
@@ -347,14 +348,14 @@ START_TEST(a_start_in_velocities_is_one_in_their_momenta)
   problem *model = create_problem("double-pendulum", NULL);
   double v[N_MOST], momentum[N_MOST], p[N_MOST * 5];
   spread_start(model, 5, 0.2);
-  dvi_ensemble *e = made_ensemble(model->system, "galerkin",
-                                  (dvi_ensemble_options){.members = 5, .threads = 2});
+  dvi_ensemble *e = create_ensemble(model->system, "galerkin",
+                                    (dvi_ensemble_options){.members = 5, .threads = 2});
   /* any numbers will do */
   ck_assert_int_eq(dvi_ensemble_start_velocity(e, 0, first_q, first_p), DVI_OK);
   ck_assert_int_eq(dvi_ensemble_state(e, NULL, NULL, p), DVI_OK);
   for (int k = 0; k < 5; k++) {
     double q[N_MOST];
-    take(model->nq, 5, k, first_q, q), take(model->nq, 5, k, first_p, v);
+    copy_member(model->nq, 5, k, first_q, q), copy_member(model->nq, 5, k, first_p, v);
     ck_assert_int_eq(dvi_system_momentum(model->system, 0, q, v, momentum), DVI_OK);
     for (int i = 0; i < model->nq; i++) ck_assert_double_eq(p[i * 5 + k], momentum[i]);
   }
@@ -371,7 +372,7 @@ START_TEST(verlet_evaluates_once_a_step)
   problem *model = create_problem("kepler", NULL);
   dvi_counters before, after;
   spread_start(model, 64, 0.1);
-  dvi_ensemble *e = made_ensemble(model->system, "verlet", (dvi_ensemble_options){.members = 64});
+  dvi_ensemble *e = create_ensemble(model->system, "verlet", (dvi_ensemble_options){.members = 64});
   start_all(e);
   dvi_ensemble_counters(e, &before);
   ck_assert_int_eq(dvi_ensemble_advance(e, 0.01, 50), DVI_OK);
@@ -393,13 +394,13 @@ START_TEST(a_frozen_jacobian_serves_several_steps)
   dvi_counters got, single;
   long alone = 0;
   spread_start(model, ALL, 0.01);
-  dvi_ensemble *e = made_ensemble(model->system, "galerkin",
-                                  (dvi_ensemble_options){.members = ALL});
+  dvi_ensemble *e = create_ensemble(model->system, "galerkin",
+                                    (dvi_ensemble_options){.members = ALL});
   start_all(e);
   ck_assert_int_eq(dvi_ensemble_advance(e, 0.1, SPAN), DVI_OK);
   dvi_ensemble_counters(e, &got);
   for (int k = 0; k < ALL; k++) {
-    dvi_integrator *one = twin(model->system, "galerkin", ALL, k);
+    dvi_integrator *one = create_member_twin(model->system, "galerkin", ALL, k);
     advance(one, 0.1, SPAN);
     dvi_integrator_counters(one, &single);
     alone += single.jacobians;
@@ -420,8 +421,8 @@ START_TEST(no_step_allocates)
   problem *model = create_problem(at->problem, at->setting);
   dvi_counters before, after;
   spread_start(model, 21, 0.05);
-  dvi_ensemble *e = made_ensemble(model->system, method,
-                                  (dvi_ensemble_options){.members = 21, .threads = 2, .block = 4});
+  dvi_ensemble *e = create_ensemble(
+      model->system, method, (dvi_ensemble_options){.members = 21, .threads = 2, .block = 4});
   start_all(e);
   dvi_ensemble_counters(e, &before);
   ck_assert_int_gt(before.allocations, 0);
@@ -447,8 +448,8 @@ START_TEST(explain_says_how_members_are_grouped)
 {
   char text[2048], little[20];
   problem *model = create_problem("kepler", NULL);
-  dvi_ensemble *e = made_ensemble(model->system, "verlet",
-                                  (dvi_ensemble_options){.members = 64, .block = 16});
+  dvi_ensemble *e = create_ensemble(model->system, "verlet",
+                                    (dvi_ensemble_options){.members = 64, .block = 16});
   const size_t length = dvi_ensemble_explain(e, text, sizeof text);
   ck_assert_uint_eq(length, strlen(text));
   ck_assert_ptr_nonnull(
@@ -458,8 +459,8 @@ START_TEST(explain_says_how_members_are_grouped)
   ck_assert_uint_eq(dvi_ensemble_explain(e, NULL, 0), length);
   ck_assert_str_eq(dvi_ensemble_method(e), "verlet:blocking=auto,threads=1");
   dvi_ensemble_destroy(&e);
-  e = made_ensemble(model->system, "galerkin:degree=16",
-                    (dvi_ensemble_options){.members = 64, .threads = 2});
+  e = create_ensemble(model->system, "galerkin:degree=16",
+                      (dvi_ensemble_options){.members = 64, .threads = 2});
   (void)dvi_ensemble_explain(e, text, sizeof text);
   ck_assert_ptr_nonnull(strstr(text, "64 members in 64 blocks, one after the other, 2 threads\n"));
   dvi_ensemble_destroy(&e);
@@ -471,7 +472,7 @@ static void explained(const char *method, const char *setting, const char *words
 {
   char text[2048];
   problem *model = create_problem("chain", setting);
-  dvi_ensemble *e = made_ensemble(model->system, method, (dvi_ensemble_options){.members = 16});
+  dvi_ensemble *e = create_ensemble(model->system, method, (dvi_ensemble_options){.members = 16});
   (void)dvi_ensemble_explain(e, text, sizeof text);
   ck_assert_msg(strstr(text, words) != NULL, "%s", text);
   dvi_ensemble_destroy(&e);
@@ -493,7 +494,7 @@ END_TEST
 SUITE(ensemble)
 {
   tcase_set_timeout(tests, 120);
-  tcase_add_checked_fixture(tests, NULL, best_again);
+  tcase_add_checked_fixture(tests, NULL, use_best_level);
   tcase_add_test(tests, every_method_has_its_place);
   find_accepted_cases(PLACES * METHODS, pair_is_accepted, &pairs);
   tcase_add_test(tests, every_place_is_taken_by_the_methods_for_it);

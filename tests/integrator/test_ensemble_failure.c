@@ -182,7 +182,7 @@ typedef struct ground {
   double retry_below, fail_below, nan_below;
 } ground;
 
-static int fall(int count, const double *t, const double *x, double *V, void *user)
+static int fall_value(int count, const double *t, const double *x, double *V, void *user)
 {
   (void)t, (void)user;
   for (int k = 0; k < count; k++) V[k] = 0 * x[k];
@@ -203,11 +203,11 @@ static int fall_gradient(int count, const double *t, const double *x, double *V_
   return answer;
 }
 
-static dvi_system *made_fall(ground *g)
+static dvi_system *create_fall(ground *g)
 {
   dvi_system *made = NULL;
   const dvi_potential potential = {
-      .name = "ground", .value_batch = fall, .gradient_batch = fall_gradient, .user = g};
+      .name = "ground", .value_batch = fall_value, .gradient_batch = fall_gradient, .user = g};
   const dvi_system_terms terms = {
       .dimension = 2, .mass.scalar = 1, .potentials = &potential, .potential_count = 1};
   ck_assert_int_eq(dvi_system_create(&terms, &made), DVI_OK);
@@ -219,7 +219,7 @@ static const char *const falling_methods[] = {
 
 /* Member 4 falls from x = 1 with velocity -1 through the floor at x = 0.05, member 8 falls from 2,
  * and all others rise. */
-static void drop(double *x, double *momentum)
+static void drop_member(double *x, double *momentum)
 {
   for (int k = 0; k < MEMBERS; k++) {
     x[k] = k == 8 ? 2 : 1;
@@ -234,11 +234,11 @@ START_TEST(a_member_that_fails_stays_and_the_others_go_on)
   const int threads = 1 + _i / 4 % 2, kind = _i / 8;
   static const dvi_status statuses[] = {DVI_CALLBACK_RETRY, DVI_CALLBACK_FAILED, DVI_NOT_FINITE};
   ground g = {kind == 0 ? 0.05 : -100, kind == 1 ? 0.05 : -100, kind == 2 ? 0.05 : -100};
-  dvi_system *system = made_fall(&g);
+  dvi_system *system = create_fall(&g);
   dvi_ensemble *e = NULL;
   double x[2 * MEMBERS], momentum[2 * MEMBERS], t[MEMBERS];
   dvi_counters counters;
-  drop(x, momentum);
+  drop_member(x, momentum);
   ck_assert_int_eq(dvi_ensemble_create(
                        system, method,
                        &(dvi_ensemble_options){.members = MEMBERS, .threads = threads, .block = 6},
@@ -281,10 +281,10 @@ START_TEST(a_fatal_failure_is_worse_than_an_earlier_member)
 {
   for (int threads = 1; threads <= 3; threads++) {
     ground g = {0.05, -0.5, -100};
-    dvi_system *system = made_fall(&g);
+    dvi_system *system = create_fall(&g);
     dvi_ensemble *e = NULL;
     double x[2 * MEMBERS], momentum[2 * MEMBERS];
-    drop(x, momentum);
+    drop_member(x, momentum);
     momentum[8] = -16; /* lands at x = -14 from x = 2, in one step of 1 */
     momentum[4] = -1;
     ck_assert_int_eq(
@@ -314,7 +314,7 @@ static int huge_gradient(int count, const double *t, const double *x, double *V_
 
 START_TEST(a_state_that_is_not_finite_is_not_taken)
 {
-  const dvi_potential potential = {.value_batch = fall, .gradient_batch = huge_gradient};
+  const dvi_potential potential = {.value_batch = fall_value, .gradient_batch = huge_gradient};
   const dvi_system_terms terms = {
       .dimension = 1, .mass.scalar = 1e306, .potentials = &potential, .potential_count = 1};
   double x[MEMBERS], momentum[MEMBERS] = {0}, x_now[MEMBERS], p_now[MEMBERS];

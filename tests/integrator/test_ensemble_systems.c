@@ -405,7 +405,7 @@ END_TEST
 /* ---- a parameter as a coordinate ---- */
 
 /* V = x[1] x[0]^2 / 2, without a force on x[1], which rests and differs between members. */
-static int sprung(int count, const double *t, const double *x, double *V, void *user)
+static int sprung_value(int count, const double *t, const double *x, double *V, void *user)
 {
   (void)t, (void)user;
   for (int k = 0; k < count; k++) V[k] = 0.5 * x[count + k] * x[k] * x[k];
@@ -423,7 +423,7 @@ static int sprung_gradient(int count, const double *t, const double *x, double *
 START_TEST(a_parameter_that_rests_is_one_to_the_last_bit)
 {
   enum { BLOCK = 8, STEPS = 50 };
-  const dvi_potential potential = {.value_batch = sprung, .gradient_batch = sprung_gradient};
+  const dvi_potential potential = {.value_batch = sprung_value, .gradient_batch = sprung_gradient};
   const dvi_system_terms terms = {
       .dimension = 2, .mass.scalar = 1, .potentials = &potential, .potential_count = 1};
   double x[2 * MEMBERS], momentum[2 * MEMBERS] = {0}, end[2 * MEMBERS];

@@ -109,8 +109,8 @@ static void check_same_path(dvi_integrator *a, dvi_integrator *b, double t)
 /* Three good steps, one of another length (so that nothing can be kept) that the trap spoils, and
  * three good ones again: the state after the failure, and after each later step, is that of an
  * integrator that never failed, bit for bit. */
-static void survives(dvi_system *(*make)(trap *), const char *method, int hessian_only,
-                     ailment with, const char *culprit)
+static void check_survives(dvi_system *(*make)(trap *), const char *method, int hessian_only,
+                           ailment with, const char *culprit)
 {
   trap set = {HUGE_VAL, with, hessian_only};
   dvi_system *system = make(&set);
@@ -154,22 +154,22 @@ enum { METHODS = sizeof methods / sizeof *methods, GENERAL_METHODS = METHODS - 2
 
 START_TEST(gradients_that_fail_in_mid_run_leave_the_state_alone)
 {
-  survives(well, methods[_i / AILMENTS], 0, (ailment)(_i % AILMENTS), ": pit: the ");
+  check_survives(well, methods[_i / AILMENTS], 0, (ailment)(_i % AILMENTS), ": pit: the ");
 }
 END_TEST
 
 START_TEST(lagrangians_that_fail_in_mid_run_leave_the_state_alone)
 {
-  survives(bend, methods[_i / AILMENTS], 0, (ailment)(_i % AILMENTS),
-           ": Lagrangian: the gradient callback ");
+  check_survives(bend, methods[_i / AILMENTS], 0, (ailment)(_i % AILMENTS),
+                 ": Lagrangian: the gradient callback ");
 }
 END_TEST
 
 START_TEST(hessians_that_fail_in_mid_run_leave_the_state_alone)
 {
-  survives(well, "galerkin:degree=3,solver=newton", 1, (ailment)_i, ": pit: the ");
-  survives(well, "midpoint:solver=kinsol", 1, (ailment)_i, ": pit: the ");
-  survives(well, "midpoint:solver=simplified", 1, (ailment)_i, ": pit: the ");
+  check_survives(well, "galerkin:degree=3,solver=newton", 1, (ailment)_i, ": pit: the ");
+  check_survives(well, "midpoint:solver=kinsol", 1, (ailment)_i, ": pit: the ");
+  check_survives(well, "midpoint:solver=simplified", 1, (ailment)_i, ": pit: the ");
 }
 END_TEST
 

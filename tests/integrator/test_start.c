@@ -42,7 +42,7 @@ static int hessian(double t, const double *q, const double *v, double *L_qq, dou
   return fabs(v[0]) >= k->limit;
 }
 
-static dvi_system *system_of(kinetic *k)
+static dvi_system *create_kinetic_system(kinetic *k)
 {
   const dvi_lagrangian l = {.value = value, .gradient = gradient, .hessian = hessian, .user = k};
   return make_system(&(dvi_system_terms){.dimension = 1, .lagrangian = &l});
@@ -108,7 +108,7 @@ static kinetic exponential_term = {exponential, exponential, exponential, HUGE_V
 static double energy_after_start(kinetic *term, double p)
 {
   double energy;
-  dvi_system *system = system_of(term);
+  dvi_system *system = create_kinetic_system(term);
   dvi_integrator *integrator = create_integrator(system, "galerkin");
   ck_assert_msg(dvi_integrator_start(integrator, 0, &(double){0}, &p) == DVI_OK, "%s",
                 dvi_last_error());
@@ -141,7 +141,8 @@ END_TEST
 
 START_TEST(a_momentum_that_none_has_or_that_is_degenerate_is_refused)
 {
-  dvi_system *falling = system_of(&exponential_term), *flat = system_of(&quartic_term);
+  dvi_system *falling = create_kinetic_system(&exponential_term),
+             *flat = create_kinetic_system(&quartic_term);
   dvi_integrator *one = create_integrator(falling, "midpoint"),
                  *two = create_integrator(flat, "midpoint");
   ck_assert_int_eq(dvi_integrator_start(one, 0, &(double){0}, &(double){-1}), DVI_NOT_CONVERGED);
@@ -165,7 +166,7 @@ START_TEST(a_start_velocity_chooses_among_those_of_one_momentum)
                                         "composition:order=4,base=trapezoidal",
                                         "galerkin:degree=2,solver=kinsol"};
   const double velocities[] = {-0.9, 0.2, 1.1}, v = velocities[_i % 3], h = 1e-3;
-  dvi_system *system = system_of(&wells_term);
+  dvi_system *system = create_kinetic_system(&wells_term);
   dvi_integrator *integrator = create_integrator(system, methods[_i / 3]);
   double energy, later;
   ck_assert_int_eq(dvi_integrator_start_velocity(integrator, 0, &(double){0.1}, &v), DVI_OK);

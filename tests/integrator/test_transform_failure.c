@@ -146,7 +146,7 @@ END_TEST
 
 /* ---- what is declared ---- */
 
-static int one(double t, const double *q, double *g, void *user)
+static int constant_one(double t, const double *q, double *g, void *user)
 {
   (void)t, (void)q, (void)user;
   *g = 1;
@@ -168,9 +168,10 @@ static const struct {
     {{.kind = DVI_MONITOR_ACCELERATION, .power = HUGE_VAL}, "power inf"},
     {{.kind = DVI_MONITOR_ACCELERATION, .bodies = 2}, "belong to distance alone"},
     {{.kind = DVI_MONITOR_ARCLENGTH, .power = 1}, "belongs to distance or acceleration"},
-    {{.function = {.value = one}, .power = 1}, "belongs to distance or acceleration"},
-    {{.kind = DVI_MONITOR_ARCLENGTH, .function = {.value = one}}, "beside a built-in monitor"},
-    {{.function = {.value = one, .qq = {two_columns, two_columns}}}, "a pattern is given"},
+    {{.function = {.value = constant_one}, .power = 1}, "belongs to distance or acceleration"},
+    {{.kind = DVI_MONITOR_ARCLENGTH, .function = {.value = constant_one}},
+     "beside a built-in monitor"},
+    {{.function = {.value = constant_one, .qq = {two_columns, two_columns}}}, "a pattern is given"},
 };
 enum { WRONG = sizeof wrong / sizeof *wrong };
 
@@ -374,8 +375,8 @@ END_TEST
 
 /* ---- memory ---- */
 
-static void survives(const problem *model, paced_create create, const char *monitor,
-                     const char *method)
+static void check_survives(const problem *model, paced_create create, const char *monitor,
+                           const char *method)
 {
   const dvi_monitor chosen = read_monitor(monitor);
   /* the first one completes the system */
@@ -400,9 +401,9 @@ static void survives(const problem *model, paced_create create, const char *moni
 START_TEST(creation_survives_every_failure_of_memory)
 {
   problem *kepler = create_problem("kepler", NULL);
-  survives(kepler, create_transformed, "distance", "galerkin");
-  survives(kepler, create_transformed, "arclength", "composition:base=midpoint");
-  survives(kepler, create_controlled, "acceleration", "verlet");
+  check_survives(kepler, create_transformed, "distance", "galerkin");
+  check_survives(kepler, create_transformed, "arclength", "composition:base=midpoint");
+  check_survives(kepler, create_controlled, "acceleration", "verlet");
   problem_destroy(&kepler);
 }
 END_TEST

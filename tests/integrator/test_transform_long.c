@@ -99,7 +99,7 @@ typedef struct encounter {
   double *closest, *at;
 } encounter;
 
-static double way(const encounter *e, const double *x, int i)
+static double coordinate_of_path(const encounter *e, const double *x, int i)
 {
   return x[2 * e->a + i] - x[2 * e->b + i];
 }
@@ -109,14 +109,15 @@ static int leaves(double t, const double *q, const double *v, double *rate, void
 {
   const encounter *e = user;
   (void)t;
-  *rate = way(e, q, 0) * way(e, v, 0) + way(e, q, 1) * way(e, v, 1);
+  *rate = coordinate_of_path(e, q, 0) * coordinate_of_path(e, v, 0) +
+          coordinate_of_path(e, q, 1) * coordinate_of_path(e, v, 1);
   return 0;
 }
 
 static int nearest(double t, const double *q, const double *v, void *user)
 {
   const encounter *e = user;
-  const double apart = hypot(way(e, q, 0), way(e, q, 1));
+  const double apart = hypot(coordinate_of_path(e, q, 0), coordinate_of_path(e, q, 1));
   (void)v;
   if (apart < *e->closest) *e->closest = apart, *e->at = t;
   return 0;

@@ -13,8 +13,8 @@
 
 enum { LEVELS = 5, MOST = 8 };
 
-static dvi_integrator *transformed(const problem *model, const dvi_monitor *monitor,
-                                   const char *method)
+static dvi_integrator *create_transformed_integrator(const problem *model,
+                                                     const dvi_monitor *monitor, const char *method)
 {
   dvi_integrator *made = NULL;
   ck_assert_msg(create_transformed(model->system, monitor, method, &made) == DVI_OK, "%s",
@@ -70,7 +70,7 @@ static void check_on_kepler(const char *method, int order, int first, double tau
   problem *kepler = create_problem("kepler", "e=0.3");
   const dvi_monitor monitor = {.kind = DVI_MONITOR_DISTANCE, .power = 1};
   for (int k = 0; k < LEVELS; k++) {
-    dvi_integrator *integrator = transformed(kepler, &monitor, method);
+    dvi_integrator *integrator = create_transformed_integrator(kepler, &monitor, method);
     ck_assert_int_eq(dvi_integrator_order(integrator), order);
     advance(integrator, tau / steps_at(first, k), steps_at(first, k));
     error[0][k] = distance(2, dvi_integrator_q(integrator), q);
@@ -166,7 +166,7 @@ START_TEST(a_method_of_higher_derivatives_says_why_not)
 END_TEST
 
 /* A monitor without meaning for the motion. The order does not depend on the monitor. */
-static int wave(double t, const double *q, double *g, void *user)
+static int wave_monitor(double t, const double *q, double *g, void *user)
 {
   (void)t, (void)user;
   *g = 1.5 + sin(q[0]) * cos(2 * q[1]);
@@ -192,7 +192,7 @@ static void check_runs(const char *name, const dvi_monitor *monitor, const char 
   for (int i = 0; i < model->nq; i++) q[i] = model->q[i], p[i] = model->p[i];
   ck_assert_double_lt(quad_solve(name, 0, NULL, t_end, q, p), 1e-15);
   for (int k = 0; k < LEVELS; k++) {
-    dvi_integrator *integrator = transformed(model, monitor, method);
+    dvi_integrator *integrator = create_transformed_integrator(model, monitor, method);
     ck_assert_msg(dvi_run(integrator,
                           &(dvi_run_options){.h = t_end / steps_at(first, k), .t_end = t_end},
                           NULL) == DVI_OK,
@@ -208,7 +208,7 @@ static void check_runs(const char *name, const dvi_monitor *monitor, const char 
 
 START_TEST(a_mass_that_depends_on_the_coordinates_may_be_transformed)
 {
-  const dvi_monitor monitor = {.function = {.value = wave, .gradient = wave_gradient}};
+  const dvi_monitor monitor = {.function = {.value = wave_monitor, .gradient = wave_gradient}};
   check_runs("double-pendulum", &monitor, "midpoint", 2, 60);
   check_runs("double-pendulum", &monitor, "galerkin:degree=2", 4, 60);
   check_runs("double-pendulum", &monitor, "galerkin:degree=3", 6, 40);

@@ -19,7 +19,7 @@ typedef struct clocks {
 
 static const double period[CLOCKS] = {1, 1.4142135623730951, 3.141592653589793};
 
-static clocks made_clocks(void)
+static clocks create_clocks(void)
 {
   return (clocks){.due = {1, 1.4142135623730951, 3.141592653589793}, .fails_at = -1};
 }
@@ -120,7 +120,7 @@ static const dvi__marcher marcher = {time_of,        time_left, ticks_of, advanc
 
 START_TEST(clocks_that_tick_when_they_are_due_run_to_the_end)
 {
-  clocks c = made_clocks();
+  clocks c = create_clocks();
   dvi_run_report report = {0};
   const dvi__march_options options = {
       .h = 1, .t_end = 10, .chooses_steps = 1, .checkpoint = "there", .checkpoint_every = 5};
@@ -136,7 +136,7 @@ END_TEST
 
 START_TEST(events_are_located_between_ticks_and_end_the_run_at_their_time)
 {
-  clocks c = made_clocks();
+  clocks c = create_clocks();
   dvi_run_report report = {0};
   const dvi__march_options options = {.h = 1, .t_end = 10, .chooses_steps = 1, .event_count = 2};
   ck_assert_int_eq(dvi__march(&c, &marcher, &options, &report), DVI_OK);
@@ -151,7 +151,7 @@ END_TEST
 
 START_TEST(a_step_whose_event_fails_is_rejected)
 {
-  clocks c = made_clocks();
+  clocks c = create_clocks();
   dvi_run_report report = {0};
   const dvi__march_options options = {.h = 1, .t_end = 10, .chooses_steps = 1, .event_count = 2};
   c.fails_at = 4;

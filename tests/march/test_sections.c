@@ -10,7 +10,7 @@
 
 static const double numbers[3] = {1, 2, 3};
 
-static dvi__sections_writer written(void)
+static dvi__sections_writer write_sections(void)
 {
   dvi__sections_writer w;
   dvi__sections_start(&w, 1);
@@ -26,7 +26,7 @@ static dvi__sections_writer written(void)
 
 START_TEST(sections_are_found_by_name_version_and_size)
 {
-  dvi__sections_writer w = written();
+  dvi__sections_writer w = write_sections();
   dvi__sections s = {0};
   dvi__section found;
   ck_assert_int_eq(dvi__sections_check(&s, "state", w.bytes, w.size), DVI_OK);
@@ -48,7 +48,7 @@ END_TEST
 
 START_TEST(every_cut_and_every_flipped_bit_is_refused)
 {
-  dvi__sections_writer w = written();
+  dvi__sections_writer w = write_sections();
   dvi__sections s = {0};
   for (size_t size = 0; size < w.size; size++)
     ck_assert_int_eq(dvi__sections_check(&s, "state", w.bytes, size), DVI_BAD_FILE);

@@ -8,7 +8,7 @@
 
 enum { MOST = 6 };
 
-static double at(int n, const double *A, int i, int j)
+static double entry_at(int n, const double *A, int i, int j)
 {
   return A[j * n + i];
 }
@@ -19,10 +19,10 @@ static double rebuilt(int n, const double *a, const double *b, const double *X,
 {
   double sum = 0;
   for (int k = 0; k < n; k++) {
-    double row = a[k] * at(n, inverse, k, j);
-    if (b[k] > 0) row += b[k] * at(n, inverse, k + 1, j);
-    if (b[k] < 0) row += b[k] * at(n, inverse, k - 1, j);
-    sum += at(n, X, i, k) * row;
+    double row = a[k] * entry_at(n, inverse, k, j);
+    if (b[k] > 0) row += b[k] * entry_at(n, inverse, k + 1, j);
+    if (b[k] < 0) row += b[k] * entry_at(n, inverse, k - 1, j);
+    sum += entry_at(n, X, i, k) * row;
   }
   return sum;
 }
@@ -37,7 +37,7 @@ START_TEST(a_matrix_is_made_again_from_its_eigen_structure)
   ck_assert_int_eq(dvi__eigen(n, T, a, b, X, inverse), DVI_OK);
   for (int i = 0; i < n; i++)
     for (int j = 0; j < n; j++)
-      ck_assert_double_eq_tol(rebuilt(n, a, b, X, inverse, i, j), at(n, T, i, j), 1e-13);
+      ck_assert_double_eq_tol(rebuilt(n, a, b, X, inverse, i, j), entry_at(n, T, i, j), 1e-13);
 }
 END_TEST
 

@@ -22,7 +22,7 @@ static void make(int n, matrix *m)
   ck_assert_int_eq(dvi__pattern_copy(&(dvi_pattern){0}, n, "matrix", &m->pattern), DVI_OK);
 }
 
-static void set(matrix *m, int i, int j, double value)
+static void set_entry(matrix *m, int i, int j, double value)
 {
   m->value[i * m->n + j] = m->value[j * m->n + i] = value;
 }
@@ -45,8 +45,8 @@ START_TEST(a_chain_has_its_cosines)
       matrix m;
       long expected = 0;
       make(n, &m);
-      for (int i = 0; i < n; i++) set(&m, i, i, 2 - shift[s]);
-      for (int i = 1; i < n; i++) set(&m, i - 1, i, -1);
+      for (int i = 0; i < n; i++) set_entry(&m, i, i, 2 - shift[s]);
+      for (int i = 1; i < n; i++) set_entry(&m, i - 1, i, -1);
       for (int k = 1; k <= n; k++)
         expected += 2 - 2 * cos(k * 3.14159265358979324 / (n + 1)) < shift[s];
       for (int block = 1; block <= n; block++) ck_assert_int_eq(negatives(&m, n, block), expected);
@@ -64,8 +64,8 @@ START_TEST(a_ring_has_its_cosines)
       matrix m;
       long expected = 0;
       make(n, &m);
-      for (int i = 0; i < n; i++) set(&m, i, i, 2 - shift[s]);
-      for (int i = 0; i < n; i++) set(&m, i, (i + 1) % n, -1);
+      for (int i = 0; i < n; i++) set_entry(&m, i, i, 2 - shift[s]);
+      for (int i = 0; i < n; i++) set_entry(&m, i, (i + 1) % n, -1);
       for (int k = 0; k < n; k++)
         expected += 2 - 2 * cos(2 * k * 3.14159265358979324 / n) < shift[s];
       for (int block = 1; block <= n; block++) ck_assert_int_eq(negatives(&m, n, block), expected);
@@ -80,7 +80,7 @@ START_TEST(zero_diagonals_are_no_trouble)
 {
   matrix m;
   make(12, &m);
-  for (int i = 0; i < 12; i += 2) set(&m, i, i + 1, 1);
+  for (int i = 0; i < 12; i += 2) set_entry(&m, i, i + 1, 1);
   ck_assert_int_eq(negatives(&m, 12, 4), 6);
   dvi__pattern_clear(&m.pattern);
 }
@@ -91,8 +91,8 @@ START_TEST(a_border_is_left_out)
 {
   matrix m;
   make(9, &m);
-  for (int i = 0; i < 9; i++) set(&m, i, i, i < 8 ? 1 : -5);
-  for (int i = 0; i < 8; i++) set(&m, i, 8, 3);
+  for (int i = 0; i < 9; i++) set_entry(&m, i, i, i < 8 ? 1 : -5);
+  for (int i = 0; i < 8; i++) set_entry(&m, i, 8, 3);
   ck_assert_int_eq(negatives(&m, 8, 3), 0);
   dvi__pattern_clear(&m.pattern);
 }

@@ -24,7 +24,7 @@ static problem *create(const char *name, int setting_count, const char *const *s
 }
 
 /* A reproducible number in [-1, 1]. */
-static double noise(unsigned *state)
+static double draw_noise(unsigned *state)
 {
   *state = *state * 1664525u + 1013904223u;
   return (double)(*state >> 8) / 8388608.0 - 1.0;
@@ -45,9 +45,9 @@ static void check_near_start(const problem *made, double distance, unsigned seed
   ck_assert(q && v);
   unsigned state = seed;
   for (int i = 0; i < made->nq; i++)
-    q[i] = made->q[i] + distance * size_of(made->nq, made->q) * noise(&state);
+    q[i] = made->q[i] + distance * size_of(made->nq, made->q) * draw_noise(&state);
   for (int i = 0; i < made->nv; i++)
-    v[i] = made->v[i] + distance * size_of(made->nv, made->v) * noise(&state);
+    v[i] = made->v[i] + distance * size_of(made->nv, made->v) * draw_noise(&state);
   dvi_derivative_check found;
   const dvi_status status = dvi_system_check(made->system, 0.7, q, v, TOLERANCE, &found);
   ck_assert_msg(status == DVI_OK, "%s: %s (gradient %g, hessian %g, outside %g)", made->name,
@@ -128,9 +128,9 @@ static void check_batches(const char *name, int setting_count, const char *const
   double *q1 = blocks + 3 * most * POINTS, *v1 = q1 + n, *rows1 = v1 + n, *blocks1 = rows1 + 2 * n;
   unsigned state = 7;
   for (int j = 0; j < n * POINTS; j++) {
-    q[j] = made->q[j / POINTS] + 0.2 * size_of(n, made->q) * noise(&state);
+    q[j] = made->q[j / POINTS] + 0.2 * size_of(n, made->q) * draw_noise(&state);
     v[j] = (n == made->nv ? made->v[j / POINTS] : 0) +
-           0.2 * size_of(made->nv, made->v) * noise(&state);
+           0.2 * size_of(made->nv, made->v) * draw_noise(&state);
   }
   dvi__evaluator *e = NULL;
   ck_assert_int_eq(dvi__evaluator_create(made->system, POINTS, DVI__HESSIANS, NULL, &e), DVI_OK);

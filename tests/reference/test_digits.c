@@ -22,7 +22,7 @@ typedef struct result {
   text q[QUAD_N_MAX], p[QUAD_N_MAX];
 } result;
 
-static result judge(const char *name, double t)
+static result run_judge(const char *name, double t)
 {
   result r;
   r.error = quad_digits(name, 0, NULL, t, &r.n, r.q, r.p);
@@ -46,7 +46,7 @@ START_TEST(stored_digits_are_those_of_the_judge)
   char message[256];
   ck_assert_int_eq(problem_create(problem_name(_i), 0, NULL, &made, message, sizeof message),
                    DVI_OK);
-  const result r = judge(made->name, made->order_t_end);
+  const result r = run_judge(made->name, made->order_t_end);
   ck_assert_int_eq(r.n, made->nq);
   check_stored(made->name, made->digits_q, r.n, (const text *)r.q);
   check_stored(made->name, made->digits_p, made->nv, (const text *)r.p);
@@ -103,7 +103,7 @@ START_TEST(printed_digits_are_right_to_the_last_one)
       {"toda", 10.0, {"0.418897027547266404"}, {NULL}},
       {"stiff-pendulum", 1.0, {"0.04488223267139529", "-0.9807016161913268"}, {NULL}},
   };
-  const result r = judge(cases[_i].name, cases[_i].t);
+  const result r = run_judge(cases[_i].name, cases[_i].t);
   for (int i = 0; i < 2; i++) {
     if (cases[_i].q[i]) check_printed(cases[_i].name, quad_parse(r.q[i], NULL), cases[_i].q[i]);
     if (cases[_i].p[i]) check_printed(cases[_i].name, quad_parse(r.p[i], NULL), cases[_i].p[i]);
@@ -114,7 +114,7 @@ END_TEST
 START_TEST(fpu_has_the_printed_stiff_energies_at_50)
 {
   static const char *const printed[3] = {".5585378601", ".3672150824", ".0697391044"};
-  const result r = judge("fpu", 50.0);
+  const result r = run_judge("fpu", 50.0);
   for (int i = 0; i < 3; i++) {
     const quad x = quad_parse(r.q[3 + i], NULL), y = quad_parse(r.p[3 + i], NULL);
     check_printed("fpu", (y * y + 2500 * x * x) / 2, printed[i]);
@@ -124,7 +124,7 @@ END_TEST
 
 START_TEST(the_judge_meets_an_exact_solution)
 {
-  const result r = judge("oscillators", 1.0);
+  const result r = run_judge("oscillators", 1.0);
   const quad w = quad_sqrt(2501);
   ck_assert((double)quad_abs(quad_parse(r.q[0], NULL) - quad_cos(w)) < 1e-25);
   ck_assert((double)quad_abs(quad_parse(r.p[0], NULL) + w * quad_sin(w)) < 1e-24);

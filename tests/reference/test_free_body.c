@@ -13,7 +13,7 @@
 
 enum { SETTINGS = 6 };
 
-static problem *made_with(const char *const *settings)
+static problem *create_free_body(const char *const *settings)
 {
   problem *made = NULL;
   char message[256] = "";
@@ -27,7 +27,7 @@ static problem *made_with(const char *const *settings)
  * grow. */
 static void check_at(const char *const *settings, double t, double tolerance)
 {
-  problem *model = made_with(settings);
+  problem *model = create_free_body(settings);
   double q[9], p[3], exact_q[9], exact_p[3];
   start(model, q, p);
   ck_assert_double_lt(quad_solve("free-body", SETTINGS, settings, t, q, p), 1e-20);
@@ -88,7 +88,7 @@ START_TEST(on_the_separatrix_there_is_none)
 {
   static const char *const settings[SETTINGS] = {"J1=9",     "J2=8",       "J3=4",
                                                  "Omega1=4", "Omega2=0.5", "Omega3=3"};
-  problem *model = made_with(settings);
+  problem *model = create_free_body(settings);
   double q[9], p[3];
   ck_assert_int_ne(model->exact(model, 1, q, p), 0);
   problem_destroy(&model);

@@ -1,6 +1,6 @@
 /* labels: unit slow */
-/* Functions as C against their byte code: the text is compiled by the compiler of the build, with a
- * main function that prints all results, which must be the same numbers to the last bit. */
+/* Functions as C against their byte code. The compiler of the build compiles the text, with a main
+ * function that prints all results, which must be the same numbers to the last bit. */
 #include <check.h>
 #include <math.h>
 #include <stdio.h>
@@ -90,12 +90,12 @@ static const char PAIRS[DVI__PAIRS] = {[DVI__PAIR_QQ] = 1, [DVI__PAIR_QV] = 1, [
 
 enum { KINDS = 3 }; /* value, gradient, second derivatives */
 
-/* So many points at a time: one alone, some that are no whole row, a row and more. */
+/* Numbers of points at a time: one alone, some that are no whole row, a row and more. */
 static const int counts[] = {1, 6, 13};
 enum { COUNTS = sizeof counts / sizeof *counts };
 
 typedef struct results {
-  int count, size[KINDS][DVI__PAIRS]; /* entries of each array; 0: it is not asked for */
+  int count, size[KINDS][DVI__PAIRS]; /* entries of each array (default 0, it is not wanted) */
   double number[RESULTS_MAX];
 } results;
 
@@ -210,7 +210,7 @@ static void check_output(const results *all)
   (void)fclose(file);
 }
 
-/* At points of this scale; the function is destroyed. */
+/* Compares at points of this scale. The function is destroyed. */
 static void check_emitted(dvi__function *function, double scale)
 {
   static double q[N * POINTS_MAX], v[N * POINTS_MAX];
@@ -257,7 +257,7 @@ START_TEST(straight_lines_have_the_digits_of_the_byte_code)
 }
 END_TEST
 
-/* Bodies in the plane, `count` of them; w / distance. */
+/* `count` bodies in the plane, with w / distance. */
 static dvi__function *attraction(int count)
 {
   int pairs = 0;
@@ -274,8 +274,8 @@ static dvi__function *attraction(int count)
   return make_function(1);
 }
 
-/* 6 pairs are written out, 45 go by lists: of entries of a pattern, or of rows and columns of a
- * full matrix. */
+/* 6 pairs are written out. 45 go by lists of entries of a pattern, or of rows and columns of a full
+ * matrix. */
 START_TEST(pairs_have_the_digits_of_the_byte_code)
 {
   check_emitted(attraction(4), 1);
@@ -314,7 +314,7 @@ START_TEST(chains_have_the_digits_of_the_byte_code)
 }
 END_TEST
 
-/* One entry takes what all elements give: of the first kernel always, of the second in some
+/* All elements add to one entry, always in the first kernel, and in the second one in some
  * units. */
 START_TEST(sums_into_one_entry_have_the_digits_of_the_byte_code)
 {

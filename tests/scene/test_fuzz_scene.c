@@ -1,6 +1,6 @@
 /* labels: invariant */
-/* Any text is a scene whose callbacks give finite numbers or say what is not finite, and which can
- * be written as C; or a sentence that can be printed. Texts are made of the scenes of the
+/* Any text is a scene or gives a sentence that can be printed. The callbacks of a scene give
+ * finite numbers or a sentence, and it can be written as C. Texts are made of the scenes of the
  * catalogue. */
 #define _POSIX_C_SOURCE 200809L /* glob */
 #include <dvi/scene.h>
@@ -139,7 +139,7 @@ static int count_bytes(const char *text, size_t size, void *user)
   return 0;
 }
 
-/* What was made, as a number: its form, and what was derived. */
+/* Gives a number for the scene, from its form and from its derivatives. */
 static unsigned kind_of(const dvi_scene *scene)
 {
   dvi_scene_facts facts;
@@ -165,7 +165,7 @@ static unsigned try_scene(const dvi_scene *scene)
   return kind_of(scene) + (unsigned)(code + 1) + 3U * (unsigned)status;
 }
 
-static unsigned one(const char *text, size_t size)
+static unsigned try_scene_text(const char *text, size_t size)
 {
   dvi_scene *scene = NULL;
   const dvi_status status = dvi_scene_parse("s.yaml", text, size, 0, NULL, &scene, message,
@@ -200,7 +200,7 @@ START_TEST(any_text_is_a_scene_or_a_sentence)
   ck_assert_int_eq(glob(DVI_SCENES "/*.yaml", 0, NULL, &found), 0);
   ck_assert_uint_le(found.gl_pathc, SCENES_MAX);
   for (size_t k = 0; k < found.gl_pathc; k++) corpus[k] = read_text(found.gl_pathv[k]);
-  const fuzz_target target = {"scene", (const char *const *)corpus, tokens, one};
+  const fuzz_target target = {"scene", (const char *const *)corpus, tokens, try_scene_text};
   ck_assert_int_gt(fuzz(&target), 0);
   for (size_t k = 0; k < found.gl_pathc; k++) free(corpus[k]);
   globfree(&found);

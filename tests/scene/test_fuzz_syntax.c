@@ -46,7 +46,7 @@ static void check_name(const char *name)
                 strlen(name));
 }
 
-/* What every node of a form has. */
+/* Checks the facts that hold for every node of a form. */
 static void check_form(const dvi__expression *e)
 {
   static const struct {
@@ -72,8 +72,8 @@ static void check_form(const dvi__expression *e)
   if (e->name2 != NULL) check_name(e->name2);
 }
 
-/* Parts stand inside of what they are part of. Returns which forms there are, a bit for each.
- * Chains lean to the left: only they are long. */
+/* Checks that parts stand inside of their wholes, and returns the forms that occur, a bit for each.
+ * Chains lean to the left, and only they are long. */
 static unsigned check_parts(const dvi__expression *e, int level)
 {
   fuzz_requires(level <= 5 * 64);
@@ -112,7 +112,7 @@ static void check_again(const dvi__expression *e, int levels)
   for (int k = 0; levels > 0 && k < e->count; k++) check_again(e->part[k], levels - 1);
 }
 
-static unsigned one(const char *text, size_t size)
+static unsigned try_syntax(const char *text, size_t size)
 {
   open_text(&scene, text, size);
   const dvi__expression *e = NULL;
@@ -132,7 +132,7 @@ static unsigned one(const char *text, size_t size)
 
 START_TEST(any_text_makes_an_expression_or_a_sentence)
 {
-  ck_assert_int_gt(fuzz(&(fuzz_target){"syntax", corpus, tokens, one}), 0);
+  ck_assert_int_gt(fuzz(&(fuzz_target){"syntax", corpus, tokens, try_syntax}), 0);
 }
 END_TEST
 

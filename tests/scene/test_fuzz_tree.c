@@ -69,7 +69,7 @@ static const char *const tokens[] = {"\n",
 
 static scene_text scene;
 
-/* The next character that is no blank, and the text behind it; 0 at the end. */
+/* Gives the next character that is no blank, with the text behind it, or 0 at the end. */
 static unsigned next_seen(const char **at, const char *end)
 {
   while (*at < end) {
@@ -129,7 +129,7 @@ static int check_node(const dvi__tree *node, size_t before, size_t end, int leve
   return nodes;
 }
 
-static unsigned one(const char *text, size_t size)
+static unsigned try_tree(const char *text, size_t size)
 {
   open_text(&scene, text, size);
   const dvi__tree *root = NULL;
@@ -146,7 +146,7 @@ static unsigned one(const char *text, size_t size)
 
 START_TEST(any_text_makes_a_tree_or_a_sentence)
 {
-  ck_assert_int_gt(fuzz(&(fuzz_target){"tree", corpus, tokens, one}), 0);
+  ck_assert_int_gt(fuzz(&(fuzz_target){"tree", corpus, tokens, try_tree}), 0);
 }
 END_TEST
 

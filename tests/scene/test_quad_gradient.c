@@ -1,5 +1,5 @@
-/* A scene's gradient in quadruple precision: against its callbacks and against what the derivatives
- * are on paper. */
+/* A scene's gradient in quadruple precision, against its callbacks and against derivatives on
+ * paper. */
 #include <check.h>
 #include <dvi/scene.h>
 #include <math.h>
@@ -8,7 +8,7 @@
 #include "expr/quad.h"
 #include "support/suite.h"
 
-static dvi_scene *made(const char *text)
+static dvi_scene *read_scene(const char *text)
 {
   char message[1024] = "";
   dvi_scene *scene = NULL;
@@ -33,7 +33,7 @@ enum { N_MAX = 3 };
 /* The sum of both parts is the callbacks' number to some roundings of a double. */
 START_TEST(the_gradient_is_that_of_the_callbacks)
 {
-  dvi_scene *scene = made(_i == 0 ? chain : general);
+  dvi_scene *scene = read_scene(_i == 0 ? chain : general);
   const dvi_system_terms *terms = dvi_scene_terms(scene);
   const double *q, *v, *p, t = 0.3;
   double L_q[N_MAX] = {0}, L_v[N_MAX], V_q[N_MAX];
@@ -60,11 +60,11 @@ START_TEST(the_gradient_is_that_of_the_callbacks)
 }
 END_TEST
 
-/* L_q = -x^3 at x = 1/3 to 32 digits: 1/3 is the pair of 0x1.5555555555555p-2 and a 2^-54 of it. */
+/* L_q = -x^3 at x = 1/3 to 32 digits. 1/3 is the pair of 0x1.5555555555555p-2 and a 2^-54 of it. */
 START_TEST(digits_beyond_a_double_are_there)
 {
-  dvi_scene *scene = made("coordinates: {x: scalar}\nlagrangian: x'^2/2 - x^4/4\n"
-                          "initial: {x: 1}\nmethod: galerkin\nstep: 0.1\nuntil: 1\n");
+  dvi_scene *scene = read_scene("coordinates: {x: scalar}\nlagrangian: x'^2/2 - x^4/4\n"
+                                "initial: {x: 1}\nmethod: galerkin\nstep: 0.1\nuntil: 1\n");
   const dvi_pair third = {1.0 / 3, 0x1.5555555555555p-56};
   dvi_pair L_q, L_v;
   ck_assert_int_eq(dvi_scene_quad_gradient(scene, third, &third, &third, &L_q, &L_v), DVI_OK);
@@ -77,8 +77,8 @@ END_TEST
 
 START_TEST(a_point_without_a_gradient_is_told)
 {
-  dvi_scene *scene = made("coordinates: {x: scalar}\nlagrangian: x'^2/2 - log(x)\n"
-                          "initial: {x: 1}\nmethod: galerkin\nstep: 0.1\nuntil: 1\n");
+  dvi_scene *scene = read_scene("coordinates: {x: scalar}\nlagrangian: x'^2/2 - log(x)\n"
+                                "initial: {x: 1}\nmethod: galerkin\nstep: 0.1\nuntil: 1\n");
   const dvi_pair zero = {0, 0};
   dvi_pair L_q, L_v;
   ck_assert_int_eq(dvi_scene_quad_gradient(scene, zero, &zero, &zero, &L_q, &L_v), DVI_NOT_FINITE);
@@ -97,7 +97,7 @@ START_TEST(what_is_no_lagrangian_of_numbers_is_refused)
       "method: hamiltonian\nstep: 0.1\nuntil: 1\n",
       "coordinates: {R: rotation}\nlagrangian: dot(omega(R), omega(R))/2\n"
       "initial: {R: 'turn([0, 0, 1], 0)'}\nmethod: lie-verlet\nstep: 0.1\nuntil: 1\n"};
-  dvi_scene *scene = made(others[_i]);
+  dvi_scene *scene = read_scene(others[_i]);
   dvi_pair x[18] = {{0, 0}}, L_q[18], L_v[18];
   ck_assert_int_eq(dvi_scene_quad_gradient(scene, x[0], x, x, L_q, L_v), DVI_UNSUPPORTED);
   dvi_scene_destroy(&scene);

@@ -1,5 +1,5 @@
-/* Scenes give the systems of the catalogue, which were written by hand: the same Lagrangians and
- * momenta, and the same trajectories to rounding. */
+/* Scenes give the systems of the catalogue, which were written by hand, with the same Lagrangians
+ * and momenta, and the same trajectories up to rounding. */
 #include <dvi/dvi.h>
 #include <dvi/scene.h>
 #include <math.h>
@@ -47,7 +47,8 @@ static void general_point(double *q, double *v)
 }
 
 /* Ten roundings of the larger one. */
-static void same(int count, const double *a, const double *b, double roundings, const char *what)
+static void check_same_numbers(int count, const double *a, const double *b, double roundings,
+                               const char *what)
 {
   for (int i = 0; i < count; i++)
     ck_assert_msg(fabs(a[i] - b[i]) <= roundings * 2.3e-16 * fmax(1, fabs(b[i])),
@@ -58,9 +59,9 @@ static void starts_agree(void)
 {
   const double *q, *v, *p;
   dvi_scene_start(scene, &q, &v, &p);
-  same(hand->nq, q, hand->q, 10, "q");
-  same(hand->nv, v, hand->v, 10, "v");
-  same(hand->nv, p, hand->p, 10, "p");
+  check_same_numbers(hand->nq, q, hand->q, 10, "q");
+  check_same_numbers(hand->nv, v, hand->v, 10, "v");
+  check_same_numbers(hand->nv, p, hand->p, 10, "p");
 }
 
 static void systems_agree(void)
@@ -72,10 +73,10 @@ static void systems_agree(void)
   ck_assert_int_eq(dvi_system_check(dvi_scene_system(scene), 0.3, q, v, 0, NULL), DVI_OK);
   ck_assert_int_eq(dvi_system_lagrangian(dvi_scene_system(scene), 0.3, q, v, &L[0]), DVI_OK);
   ck_assert_int_eq(dvi_system_lagrangian(hand->system, 0.3, q, v, &L[1]), DVI_OK);
-  same(1, &L[0], &L[1], 100, "L");
+  check_same_numbers(1, &L[0], &L[1], 100, "L");
   ck_assert_int_eq(dvi_system_momentum(dvi_scene_system(scene), 0.3, q, v, p[0]), DVI_OK);
   ck_assert_int_eq(dvi_system_momentum(hand->system, 0.3, q, v, p[1]), DVI_OK);
-  same(hand->nv, p[0], p[1], 100, "p");
+  check_same_numbers(hand->nv, p[0], p[1], 100, "p");
 }
 
 static dvi_integrator *start_integrator(const dvi_system *system, const char *method)
@@ -88,7 +89,7 @@ static dvi_integrator *start_integrator(const dvi_system *system, const char *me
   return integrator;
 }
 
-/* Both take each step from the same point: what differs is the step alone. */
+/* Both take each step from the same point, so only the step differs. */
 static void step_agrees(dvi_integrator *mine, dvi_integrator *theirs, double t, double h, double *q,
                         double *p)
 {
@@ -98,8 +99,8 @@ static void step_agrees(dvi_integrator *mine, dvi_integrator *theirs, double t, 
   ck_assert_msg(dvi_integrator_step(theirs, h) == DVI_OK, "%s", dvi_last_error());
   memcpy(q, dvi_integrator_q(theirs), (size_t)hand->nq * sizeof *q);
   memcpy(p, dvi_integrator_p(theirs), (size_t)hand->nv * sizeof *p);
-  same(hand->nq, dvi_integrator_q(mine), q, 450, "q after a step"); /* 1e-13 */
-  same(hand->nv, dvi_integrator_p(mine), p, 450, "p after a step");
+  check_same_numbers(hand->nq, dvi_integrator_q(mine), q, 450, "q after a step"); /* 1e-13 */
+  check_same_numbers(hand->nv, dvi_integrator_p(mine), p, 450, "p after a step");
 }
 
 static void steps_agree(const char *method, double h)
@@ -155,7 +156,7 @@ START_TEST(invariants_are_those_of_the_catalogue)
                      dvi_system_invariant_name(hand->system, i));
   ck_assert_int_eq(dvi_system_invariants(dvi_scene_system(scene), 0, q, p, mine), DVI_OK);
   ck_assert_int_eq(dvi_system_invariants(hand->system, 0, q, p, theirs), DVI_OK);
-  same(4, mine, theirs, 10, "invariant");
+  check_same_numbers(4, mine, theirs, 10, "invariant");
 }
 END_TEST
 
@@ -252,7 +253,8 @@ START_TEST(fpu_is_that_of_the_catalogue)
 }
 END_TEST
 
-/* 0/0 for the first member, which is given by itself; the others have their own values. */
+/* The term is 0/0 for the first member, which is given by itself. The others have their own
+ * values. */
 START_TEST(one_member_may_stand_beside_a_formula_that_is_no_number_there)
 {
   const double *q, *v, *p, expected[] = {5, 1, 1, 2, 3, 4.5};
@@ -260,8 +262,8 @@ START_TEST(one_member_may_stand_beside_a_formula_that_is_no_number_there)
              "initial: {\"x[1]\": 5, \"x[i]\": \"(i - 1)/(i - 1)\", \"x[1]'\": 2, \"x[i]'\": "
              "\"3/2*i*(i - 1)/(i - 1)\"}\n" RUN);
   dvi_scene_start(scene, &q, &v, &p);
-  same(3, q, expected, 1, "q");
-  same(3, v, expected + 3, 1, "v");
+  check_same_numbers(3, q, expected, 1, "q");
+  check_same_numbers(3, v, expected + 3, 1, "v");
 }
 END_TEST
 
@@ -297,7 +299,7 @@ START_TEST(potentials_are_fast_as_they_are_tagged)
 }
 END_TEST
 
-/* What only splitting methods tell apart is one potential to all others. */
+/* Terms that only splitting methods distinguish are one potential for all other methods. */
 START_TEST(tags_do_not_change_what_other_methods_do)
 {
   static const char *const text[] = {CHAIN "  fast: {bond: 50*(x - y)^2}\n  slow: {well: x^4}\n",
@@ -344,7 +346,7 @@ START_TEST(imex_factorises_a_quadratic_fast_potential_once_a_run)
 }
 END_TEST
 
-/* Derivatives that are right are not called wrong: of terms that cancel, and of a power that bends
+/* Right derivatives are not called wrong, those of terms that cancel, and of a power that bends
  * within the differences' steps. */
 START_TEST(right_derivatives_are_found_right)
 {

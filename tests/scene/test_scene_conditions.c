@@ -31,7 +31,7 @@ static dvi_status parse(const char *expression)
   return dvi_scene_parse("test.yaml", text, strlen(text), 0, NULL, &scene, message, sizeof message);
 }
 
-/* V, its gradient and its Hessian, row by row, at q; the Hessian's pattern is full. */
+/* Evaluates V, its gradient and its Hessian, row by row, at q. The Hessian's pattern is full. */
 static void evaluate(const char *expression, const double *q, double *V, double *V_q, double *V_qq)
 {
   const double t = 0, v[N] = {0};
@@ -99,8 +99,8 @@ START_TEST(values_and_derivatives_are_those_of_the_side)
 }
 END_TEST
 
-/* docs/scenes.md: of equal arguments max and min take the last, a condition with < or > is
- * false, and abs and sign have the slope 0. */
+/* By docs/scenes.md max and min take the last of equal arguments, a condition with < or > is false,
+ * and abs and sign have the slope 0. */
 START_TEST(at_a_kink_the_derivative_is_that_of_the_side_that_is_documented)
 {
   check("max(x, 0)", 0, 0, 0, 0, 0, 0);
@@ -114,8 +114,8 @@ START_TEST(at_a_kink_the_derivative_is_that_of_the_side_that_is_documented)
 }
 END_TEST
 
-/* The root of a negative number, a division by zero: neither value nor derivatives see what is
- * off. */
+/* The root of a negative number, or a division by zero, in a branch that is not taken does not show
+ * in values or derivatives. */
 START_TEST(what_is_off_need_not_exist)
 {
   check("if(x > 0, sqrt(x), y)", -1, 2, 2, 0, 1, 0);
@@ -128,7 +128,7 @@ START_TEST(what_is_off_need_not_exist)
   check("sqrt(max(x, 0))", -1, 0, 0, 0, 0, 0);
   check("max(x, 0)^1.5", -1, 0, 0, 0, 0, 0);
   check("if(n > 1, 1/(n - 1), x)", 3, 0, 3, 1, 0, 0);
-  /* known when the scene is read: not even looked at */
+  /* known when the scene is read, and not even evaluated */
   check("if(n > 1, [x, y][n + 2], x)", 3, 0, 3, 1, 0, 0);
 }
 END_TEST
@@ -178,8 +178,8 @@ START_TEST(what_is_no_condition_is_told)
 }
 END_TEST
 
-/* What order is left: of the first derivative that jumps; 1 more where time alone decides; -1
- * where nothing jumps. Orders that are measured are in test_scene_kinks.c. */
+/* The remaining order, that of the first derivative that jumps, 1 more where time alone decides, -1
+ * where nothing jumps. test_scene_kinks.c measures orders. */
 START_TEST(kinks_are_found_with_the_order_that_they_leave)
 {
   static const struct {
@@ -234,7 +234,8 @@ START_TEST(what_has_a_kink_is_no_quadratic_potential)
 }
 END_TEST
 
-/* At a kink there is no Taylor series, and a method that needs one says so; beside it there is. */
+/* At a kink there is no Taylor series, and a method that needs one says so. Beside the kink there
+ * is one. */
 START_TEST(series_are_refused_at_a_kink_alone)
 {
   for (int k = 0; k < 2; k++) {

@@ -1,4 +1,4 @@
-/* What is wrong with a scene is told with its place and in words that help. */
+/* The sentence on a wrong scene names the place and helps to mend it. */
 #include <dvi/dvi.h>
 #include <dvi/scene.h>
 #include <math.h>
@@ -45,7 +45,7 @@ static void refused(const char *text, const char *place, const char *words)
 #define X "coordinates: {x: scalar}\n"
 #define RUN "initial: {x: 1}\nstep: 0.1\nuntil: 1\n"
 
-/* A Lagrangian in line 2 of a scene with the coordinates x, u in R^3 and y_1 .. y_3; it begins in
+/* A Lagrangian in line 2 of a scene with the coordinates x, u in R^3 and y_1 .. y_3. It begins in
  * column 13. */
 static void lagrangian_refused(const char *L, int column, const char *words)
 {
@@ -97,7 +97,7 @@ START_TEST(unknown_names_are_told_with_the_nearest)
 }
 END_TEST
 
-/* Of two columns with one name none could be asked for. */
+/* Two columns with one name could not be selected. */
 START_TEST(columns_have_one_name_each)
 {
   static const char *const taken[] = {"x", "t", "energy", "p_x"}, *const free_name[] = {
@@ -373,8 +373,8 @@ START_TEST(what_is_not_finite_is_told_with_its_place)
 }
 END_TEST
 
-/* Where there are two derivatives, but no series; there is one of the last, but it is as large as
- * no number. */
+/* Two derivatives exist, but no series. The last one has a series, but with coefficients larger
+ * than any double. */
 START_TEST(what_has_no_series_is_told_with_its_place)
 {
   static const char *const texts[] = {
@@ -430,7 +430,7 @@ typedef struct paper {
   long written, left;
 } paper;
 
-static int take(const char *text, size_t size, void *user)
+static int append_text(const char *text, size_t size, void *user)
 {
   paper *own = user;
   (void)text;
@@ -442,11 +442,11 @@ START_TEST(c_is_written_under_a_name_and_to_its_end)
 {
   paper whole = {0, -1}, cut = {0, 3};
   ck_assert_int_eq(parse(X "lagrangian: x'^2 - x^4\n" RUN, 0, NULL), DVI_OK);
-  ck_assert_int_eq(dvi_scene_emit_c(scene, "no name", take, &whole), DVI_BAD_ARGUMENT);
-  ck_assert_int_eq(dvi_scene_emit_c(scene, "", take, &whole), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_scene_emit_c(scene, "no name", append_text, &whole), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_scene_emit_c(scene, "", append_text, &whole), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(whole.written, 0);
-  ck_assert_int_eq(dvi_scene_emit_c(scene, "quartic", take, &cut), DVI_IO_ERROR);
-  ck_assert_int_eq(dvi_scene_emit_c(scene, "quartic", take, &whole), DVI_OK);
+  ck_assert_int_eq(dvi_scene_emit_c(scene, "quartic", append_text, &cut), DVI_IO_ERROR);
+  ck_assert_int_eq(dvi_scene_emit_c(scene, "quartic", append_text, &whole), DVI_OK);
   ck_assert_int_gt(whole.written, cut.written);
 }
 END_TEST

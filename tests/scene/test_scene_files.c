@@ -133,7 +133,7 @@ START_TEST(a_folder_with_a_comma_is_refused)
 }
 END_TEST
 
-/* Of a text the name says in which folder it is. */
+/* The name of a text sets its folder. */
 START_TEST(a_text_has_the_folder_of_its_name)
 {
   static const char text[] =

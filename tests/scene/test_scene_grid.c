@@ -159,7 +159,7 @@ START_TEST(neighbours_on_a_torus_are_those_of_loops)
 }
 END_TEST
 
-/* The state at t = 10; the largest energy error on the way. */
+/* Gives the state at t = 10, and the largest energy error on the way. */
 static double follow(const char *method, double h, double *q)
 {
   dvi_integrator *integrator = NULL;

@@ -51,7 +51,7 @@ static const struct {
 };
 enum { KNOWN = sizeof known / sizeof *known, SIZE = 512 };
 
-static dvi_scene *made(const char *text)
+static dvi_scene *read_scene(const char *text)
 {
   char message[SIZE];
   dvi_scene *scene;
@@ -64,7 +64,7 @@ static dvi_scene *made(const char *text)
 START_TEST(what_leaves_the_lagrangian_as_it_is_is_found)
 {
   char found[SIZE], part[8];
-  dvi_scene *scene = made(known[_i].text);
+  dvi_scene *scene = read_scene(known[_i].text);
   const int count = dvi_scene_invariance(scene, found, SIZE);
   ck_assert_str_eq(found, known[_i].found);
   ck_assert_int_eq(dvi_scene_invariance(scene, part, sizeof part), count);
@@ -76,9 +76,9 @@ END_TEST
 START_TEST(what_turns_is_not_looked_at)
 {
   char found[SIZE];
-  dvi_scene *turns = made("coordinates: {R: rotation}\nlagrangian: dot(omega(R), "
-                          "omega(R))/2\ninitial: {R: 'turn([0, 0, 1], 0)'}\n"
-                          "method: lie-verlet\nstep: 0.1\nuntil: 1\n");
+  dvi_scene *turns = read_scene("coordinates: {R: rotation}\nlagrangian: dot(omega(R), "
+                                "omega(R))/2\ninitial: {R: 'turn([0, 0, 1], 0)'}\n"
+                                "method: lie-verlet\nstep: 0.1\nuntil: 1\n");
   ck_assert_int_eq(dvi_scene_invariance(turns, found, SIZE), -1);
   ck_assert_int_eq(dvi_scene_invariance(turns, NULL, 0), -1);
   ck_assert_int_eq(dvi_scene_invariance(NULL, found, SIZE), -1);

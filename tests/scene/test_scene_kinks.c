@@ -37,8 +37,8 @@ static void follow(const char *potential, int steps, double *end)
   dvi_scene_destroy(&scene);
 }
 
-/* The largest error of some runs with about as many steps: where in a step the kink is differs
- * from run to run. */
+/* Gives the largest error of some runs with about as many steps, because the place of the kink in a
+ * step differs from run to run. */
 static double largest_error(const char *potential, int steps, const double *exact)
 {
   double largest = 0;
@@ -50,8 +50,8 @@ static double largest_error(const char *potential, int steps, const double *exac
   return largest;
 }
 
-/* Which of so many roundings of phase errors have is seen in single slopes: hence 0.4 of the
- * mean of three. */
+/* Single slopes scatter with the phase of the kink in a step, hence the tolerance 0.4 for the mean
+ * of three. */
 static void check_order(const char *potential, const double *exact, double order)
 {
   const double first = largest_error(potential, 100, exact),

@@ -12,7 +12,7 @@ enum { MESSAGE_SIZE = 1024, TEXT_SIZE = 2048 };
 
 static char message[MESSAGE_SIZE];
 
-/* What a scene of one family q[N] is made of; NULL: as usual. */
+/* The texts of a scene of one family q[N] (default NULL, the usual ones). */
 typedef struct parts {
   const char *size, *potential, *parameter, *coordinates, *step, *until;
 } parts;

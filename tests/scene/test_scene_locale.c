@@ -1,4 +1,4 @@
-/* A host program with a decimal comma: scenes are read, told of and written as C the same. */
+/* In a host program with a decimal comma scenes are read, described and written as C as usual. */
 #include <dvi/dvi.h>
 #include <dvi/scene.h>
 #include <locale.h>

@@ -31,7 +31,7 @@ static const dvi_system *open_scene(const char *text)
   return dvi_scene_system(scene);
 }
 
-static void near(double found, double wanted)
+static void check_near(double found, double wanted)
 {
   ck_assert_msg(fabs(found - wanted) <= 1e-14 * fmax(1, fabs(wanted)), "%.17g instead of %.17g",
                 found, wanted);
@@ -79,10 +79,10 @@ START_TEST(an_angle_is_the_coordinate_of_the_same_pendulum)
   system = open_scene(with_angle);
   dvi_scene_start(scene, &q, &v, &p);
   ck_assert_int_eq(dvi_system_lagrangian(system, 0, q, v, &L[1]), DVI_OK);
-  near(q[1], cos(0.7));
-  near(q[2], sin(0.7));
-  near(L[1], L[0]);
-  for (int i = 0; i < 2; i++) near(p[i], momentum[i]);
+  check_near(q[1], cos(0.7));
+  check_near(q[2], sin(0.7));
+  check_near(L[1], L[0]);
+  for (int i = 0; i < 2; i++) check_near(p[i], momentum[i]);
 }
 END_TEST
 
@@ -104,12 +104,12 @@ START_TEST(a_point_of_a_body_moves_as_its_velocity_says)
   for (int i = 0; i < 3; i++) speed[i] += x_t[i];
   dvi_scene_start(scene, &q, &v, &p);
   ck_assert_int_eq(dvi_system_lagrangian(system, 0, q, v, &L), DVI_OK);
-  near(L, 2 * dot(speed, speed) + 0.5 * dot(w, Jw) - R[6]);
+  check_near(L, 2 * dot(speed, speed) + 0.5 * dot(w, Jw) - R[6]);
   for (int j = 0; j < 3; j++)
     body[j] = 4 * (R[j] * speed[0] + R[3 + j] * speed[1] + R[6 + j] * speed[2]);
   cross(c, body, pull);
-  for (int i = 0; i < 3; i++) near(p[i], Jw[i] + pull[i]);
-  for (int i = 0; i < 3; i++) near(p[3 + i], 4 * speed[i]);
+  for (int i = 0; i < 3; i++) check_near(p[i], Jw[i] + pull[i]);
+  for (int i = 0; i < 3; i++) check_near(p[3 + i], 4 * speed[i]);
   ck_assert_int_eq(dvi_system_nq(system), 12);
   ck_assert_int_eq(dvi_system_nv(system), 6);
 }
@@ -158,22 +158,22 @@ START_TEST(events_see_the_velocities_of_the_state)
   static const double c[] = {1, 2, 3};
   (void)open_scene(ZOO);
   dvi_scene_start(scene, &q, &v, &p);
-  near(q[W_2], cos(0.2));
-  near(v[V_B_2 + 3], 0.4);
+  check_near(q[W_2], cos(0.2));
+  check_near(v[V_B_2 + 3], 0.4);
   double held_q[MOST], held_v[NV];
   memcpy(held_q, q, 43 * sizeof *q);
   memcpy(held_v, v, sizeof held_v);
-  near(event_of("rate(u) + 10*x' + 100*rate(w[2])"), 0.3 + 7 + 60);
-  near(event_of("u[1]' + 3*u[2]'"), -0.3 * sin(0.5) + 0.9 * cos(0.5));
-  near(event_of("sum(i, w[i][1]')"), -0.4 * sin(0.1) - 0.6 * sin(0.2));
-  near(event_of("dot(d', [1, 10, 100])"),
-       held_v[V_D] + 10 * held_v[V_D + 1] + 100 * held_v[V_D + 2]);
-  near(event_of("B[2].x[3]' + omega(B[2])[1]"), 0.6 + 0.3);
+  check_near(event_of("rate(u) + 10*x' + 100*rate(w[2])"), 0.3 + 7 + 60);
+  check_near(event_of("u[1]' + 3*u[2]'"), -0.3 * sin(0.5) + 0.9 * cos(0.5));
+  check_near(event_of("sum(i, w[i][1]')"), -0.4 * sin(0.1) - 0.6 * sin(0.2));
+  check_near(event_of("dot(d', [1, 10, 100])"),
+             held_v[V_D] + 10 * held_v[V_D + 1] + 100 * held_v[V_D + 2]);
+  check_near(event_of("B[2].x[3]' + omega(B[2])[1]"), 0.6 + 0.3);
   cross(held_v + V_B_2, c, turned);
-  near(event_of("(B[2].R*[1, 2, 3])[2]'"), dot(held_q + B_2 + 3, turned));
-  near(event_of("sum(i, (B[i].R*[1, 2, 3])[2]')"), dot(held_q + B_2 + 3, turned));
+  check_near(event_of("(B[2].R*[1, 2, 3])[2]'"), dot(held_q + B_2 + 3, turned));
+  check_near(event_of("sum(i, (B[i].R*[1, 2, 3])[2]')"), dot(held_q + B_2 + 3, turned));
   cross(held_v + V_TURN, c, turned);
-  near(event_of("dot((R*[1, 2, 3])', (R*[1, 2, 3])')"), dot(turned, turned));
+  check_near(event_of("dot((R*[1, 2, 3])', (R*[1, 2, 3])')"), dot(turned, turned));
 }
 END_TEST
 
@@ -191,10 +191,10 @@ START_TEST(symmetries_and_invariants_go_by_the_velocities_of_the_state)
   ck_assert_int_eq(dvi_system_invariants(system, 0, q, p, I), DVI_OK);
   double a = 2 * p[V_U] + dot(q + TURN + 6, p + V_TURN) - q[D + 1] * p[V_D] + q[D] * p[V_D + 1];
   a += dot(q + B_2 - 3, p + V_B_2 - 3) + 2 * dot(q + B_2 + 9, p + V_B_2 + 3);
-  near(I[1], a);
-  near(I[2], p[V_B_2 - 5] + 2 * p[V_B_2 + 1] + p[V_W_2 - 1] + 2 * p[V_W_2]);
-  near(I[3], p[V_U] + 10 * p[V_W_2] + p[V_D] + p[V_D + 1] + p[V_X] + p[V_TURN] + 2 * p[V_TURN + 1] +
-                 3 * p[V_TURN + 2] + p[V_B_2] + p[V_B_2 + 5]);
+  check_near(I[1], a);
+  check_near(I[2], p[V_B_2 - 5] + 2 * p[V_B_2 + 1] + p[V_W_2 - 1] + 2 * p[V_W_2]);
+  check_near(I[3], p[V_U] + 10 * p[V_W_2] + p[V_D] + p[V_D + 1] + p[V_X] + p[V_TURN] +
+                       2 * p[V_TURN + 1] + 3 * p[V_TURN + 2] + p[V_B_2] + p[V_B_2 + 5]);
 }
 END_TEST
 
@@ -230,7 +230,7 @@ START_TEST(momenta_give_the_start_as_velocities_do)
       "p(u): 8}\n" RUN);
   dvi_scene_start(scene, &q, &v, &p);
   static const double wanted[] = {0.5, 1, 3, 2, 3, 0, 2};
-  for (int i = 0; i < 7; i++) near(v[i], wanted[i]);
+  for (int i = 0; i < 7; i++) check_near(v[i], wanted[i]);
 }
 END_TEST
 

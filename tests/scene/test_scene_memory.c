@@ -105,7 +105,7 @@ START_TEST(reading_says_that_others_have_no_memory)
 }
 END_TEST
 
-/* First calls of all callbacks: each derives something. */
+/* Makes the first calls of all callbacks, each of which derives something. */
 START_TEST(deriving_says_that_memory_ran_out)
 {
   const long before = heap_bytes();

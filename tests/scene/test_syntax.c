@@ -131,7 +131,7 @@ END_TEST
 START_TEST(numbers_are_right_to_the_last_bit)
 {
   ck_assert(expression_of("0.1")->number == 0x1.999999999999ap-4);
-  ck_assert(expression_of("9007199254740993")->number == 0x1p53); /* a tie: to even */
+  ck_assert(expression_of("9007199254740993")->number == 0x1p53); /* a tie rounds to even */
   ck_assert(expression_of("9007199254740993.00000000000000000000001")->number ==
             0x1.0000000000001p53);
   ck_assert(expression_of("2.2250738585072011e-308")->number == 0x0.fffffffffffffp-1022);

@@ -282,8 +282,7 @@ START_TEST(files_end_at_one_mebibyte)
 }
 END_TEST
 
-/* A mapping of 1 MiB: neither duplicates nor places are looked for in quadratic time, which would
- * take minutes. */
+/* A mapping of 1 MiB. Neither duplicates nor places take quadratic time, which would be minutes. */
 START_TEST(many_keys_take_no_longer_each)
 {
   enum { KEYS = 90000, ROOM = 16 };

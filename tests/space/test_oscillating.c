@@ -11,7 +11,7 @@ enum { FUNCTIONS = DVI__OSCILLATING_FUNCTIONS };
 static const double lengths[] = {1e-9, 1e-3, 0.1, 1, 9.9, 10.1, 29.9, 30.1, 300, -12};
 
 /* Creates a space of frequency 1, so that h is h omega. */
-static dvi__oscillating *made(int harmonics, double h)
+static dvi__oscillating *create_space(int harmonics, double h)
 {
   dvi__oscillating *space = dvi__oscillating_create(3, 1, harmonics, 1);
   ck_assert_ptr_nonnull(space);
@@ -33,7 +33,7 @@ static void check_start_and_first_function(const dvi__shapes *shapes)
 
 START_TEST(all_functions_vanish_at_the_start_and_the_first_one_is_the_straight_line)
 {
-  dvi__oscillating *space = made(1 + _i % 2, lengths[_i / 2]);
+  dvi__oscillating *space = create_space(1 + _i % 2, lengths[_i / 2]);
   const dvi__shapes shapes = dvi__oscillating_shapes(space);
   check_start_and_first_function(&shapes);
   dvi__oscillating_destroy(&space);
@@ -87,7 +87,7 @@ static void product_errors(const dvi__shapes *shapes, double error[FUNCTIONS][FU
 START_TEST(the_quadrature_is_exact_for_products_of_two_functions)
 {
   double error[FUNCTIONS][FUNCTIONS] = {{0}};
-  dvi__oscillating *space = made(1 + _i % 2, lengths[_i / 2]);
+  dvi__oscillating *space = create_space(1 + _i % 2, lengths[_i / 2]);
   const dvi__shapes shapes = dvi__oscillating_shapes(space);
   product_errors(&shapes, error);
   for (int k = 0; k < shapes.functions; k++)
@@ -99,7 +99,7 @@ END_TEST
 
 START_TEST(where_steps_are_far_below_the_period_polynomials_are_left)
 {
-  dvi__oscillating *space = made(1, 1e-9);
+  dvi__oscillating *space = create_space(1, 1e-9);
   const dvi__shapes shapes = dvi__oscillating_shapes(space);
   for (int k = 0; k < shapes.functions; k++) ck_assert_int_eq(shapes.present(shapes.of, k), k < 3);
   shapes.set(shapes.of, 2);
@@ -111,7 +111,7 @@ END_TEST
 /* sum_k psi_k(tau) Y'_k = path(1 + tau) - path(1) */
 START_TEST(a_path_is_continued_into_the_next_step)
 {
-  dvi__oscillating *space = made(1 + _i, 20);
+  dvi__oscillating *space = create_space(1 + _i, 20);
   const dvi__shapes shapes = dvi__oscillating_shapes(space);
   double last[FUNCTIONS], Y[FUNCTIONS], here[FUNCTIONS], beyond[FUNCTIONS], end[FUNCTIONS];
   for (int k = 0; k < shapes.functions; k++) last[k] = 1.0 / (k + 2);

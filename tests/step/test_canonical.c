@@ -29,7 +29,7 @@ static const dvi__action_space spaces[] = {{DVI_LAGRANGE_LOBATTO, 1, DVI_GAUSS, 
 /* the first ones serve a degenerate H */
 enum { SPACES = sizeof spaces / sizeof *spaces, SERVE = 4 };
 
-static dvi__canonical *made_step(const problem *model, const dvi__action_space *space)
+static dvi__canonical *create_step(const problem *model, const dvi__action_space *space)
 {
   dvi__canonical *step;
   ck_assert_int_eq(dvi__canonical_create(model->system, space, NULL, &step), DVI_OK);
@@ -42,7 +42,7 @@ static dvi__canonical *made_step(const problem *model, const dvi__action_space *
 START_TEST(the_jacobian_is_the_derivative_of_the_rows)
 {
   problem *model = create_problem("elastica", NULL);
-  dvi__canonical *step = made_step(model, &spaces[_i]);
+  dvi__canonical *step = create_step(model, &spaces[_i]);
   const dvi__pattern *pattern = dvi__canonical_pattern(step);
   double x[MOST], plus[MOST], minus[MOST], values[ENTRIES_MOST];
   ck_assert_int_le(dvi__pattern_entries(pattern), ENTRIES_MOST);
@@ -113,14 +113,14 @@ static double action_of(const problem *model, const dvi__action_space *space, co
 }
 
 /* From the start moved by e in component `along` of (q0,p0). */
-static taken take(const problem *model, const dvi__action_space *space, int along, double e)
+static taken take_step(const problem *model, const dvi__action_space *space, int along, double e)
 {
   taken step;
   double x[MOST] = {0}, dq[N], dp[N];
   memcpy(step.q0, q0, sizeof q0);
   memcpy(step.p0, p0, sizeof p0);
   *(along < N ? &step.q0[along] : &step.p0[along - N]) += e;
-  dvi__canonical *made = made_step(model, space);
+  dvi__canonical *made = create_step(model, space);
   dvi__canonical_place(made, 0, h, step.q0, step.p0, unit);
   solve(made, x);
   dvi__canonical_ends(made, x, dq, dp);
@@ -153,8 +153,9 @@ START_TEST(the_right_and_the_left_discrete_hamiltonian_generate_the_step)
   problem *model = create_problem("elastica", NULL);
   const double e = 1e-4;
   for (int along = 0; along < 2 * N; along++) {
-    const taken at = take(model, &spaces[_i], along, 0), plus = take(model, &spaces[_i], along, e),
-                minus = take(model, &spaces[_i], along, -e);
+    const taken at = take_step(model, &spaces[_i], along, 0),
+                plus = take_step(model, &spaces[_i], along, e),
+                minus = take_step(model, &spaces[_i], along, -e);
     const double right =
         (product(plus.p1, plus.q1) - plus.S - product(minus.p1, minus.q1) + minus.S) / (2 * e);
     const double left =

@@ -30,7 +30,7 @@ enum {
 
 /* The dense kinds leave Hessian and pattern out, so every entry may be nonzero, and the library
  * takes differences. */
-static dvi_system *system_of(int kind)
+static dvi_system *create_system(int kind)
 {
   static const double diagonal[SITES] = {1, 2, 0.5, 3, 1.5, 0.7};
   dvi_lagrangian lagrangian = rotors(&quiet, BATCH);
@@ -86,7 +86,7 @@ typedef struct element {
 
 static void make_element(int kind, dvi__action_space space, element *e)
 {
-  *e = (element){.system = system_of(kind), .space = space};
+  *e = (element){.system = create_system(kind), .space = space};
   ck_assert_msg(dvi__action_create(e->system, &space, &e->counters, &e->action) == DVI_OK, "%s",
                 dvi_last_error());
   ck_assert_int_eq(dvi__action_unknowns(e->action), SITES * space.degree);
@@ -105,17 +105,17 @@ static void free_element(element *e)
 }
 
 /* Requires DVI_OK. Check's assertions write a record each, and these calls come by the million. */
-static void must(dvi_status status)
+static void require_ok(dvi_status status)
 {
   if (status != DVI_OK) ck_abort_msg("%s", dvi_last_error());
 }
 
 /* psi_k = phi_k - phi_k(0) and its derivative, k = 1..degree. */
-static void trial(const dvi__action_space *space, double tau, double *psi, double *dpsi)
+static void evaluate_trial(const dvi__action_space *space, double tau, double *psi, double *dpsi)
 {
   double start[DEGREE_MOST + 1], value[DEGREE_MOST + 1], derivative[DEGREE_MOST + 1];
-  must(dvi_basis_evaluate(space->basis, space->degree, 0, start, NULL));
-  must(dvi_basis_evaluate(space->basis, space->degree, tau, value, derivative));
+  require_ok(dvi_basis_evaluate(space->basis, space->degree, 0, start, NULL));
+  require_ok(dvi_basis_evaluate(space->basis, space->degree, tau, value, derivative));
   for (int k = 0; k < space->degree; k++) {
     psi[k] = value[k + 1] - start[k + 1];
     dpsi[k] = derivative[k + 1];
@@ -126,7 +126,7 @@ static void path(const element *e, const double *q0, const double *Y, double tau
                  double *v)
 {
   double psi[DEGREE_MOST], dpsi[DEGREE_MOST];
-  trial(&e->space, tau, psi, dpsi);
+  evaluate_trial(&e->space, tau, psi, dpsi);
   for (int i = 0; i < SITES; i++) {
     q[i] = q0[i];
     v[i] = 0;
@@ -141,10 +141,10 @@ static void path(const element *e, const double *q0, const double *Y, double tau
 static double discrete_action(const element *e, const double *q0, const double *Y)
 {
   double node[NODES_MOST], weight[NODES_MOST], q[SITES], v[SITES], L, sum = 0;
-  must(dvi_quadrature(e->space.rule, e->space.nodes, node, weight));
+  require_ok(dvi_quadrature(e->space.rule, e->space.nodes, node, weight));
   for (int j = 0; j < e->space.nodes; j++) {
     path(e, q0, Y, node[j], q, v);
-    must(dvi_system_lagrangian(e->system, t0 + node[j] * h, q, v, &L));
+    require_ok(dvi_system_lagrangian(e->system, t0 + node[j] * h, q, v, &L));
     sum += h * weight[j] * L;
   }
   return sum;
@@ -174,7 +174,7 @@ static void check_residual(int kind, dvi__action_space space)
   double R[UNKNOWNS_MOST], psi[DEGREE_MOST], dpsi[DEGREE_MOST];
   make_element(kind, space, &e);
   ck_assert_msg(dvi__action_residual(e.action, e.Y, R) == DVI_OK, "%s", dvi_last_error());
-  trial(&e.space, 1, psi, dpsi);
+  evaluate_trial(&e.space, 1, psi, dpsi);
   for (int i = 0; i < SITES; i++) {
     const double p1 = e.p0[i] + slope(&e, &e.q0[i], e.q0, e.Y);
     for (int k = 0; k < e.space.degree; k++) {
@@ -196,7 +196,7 @@ static void check_ends(int kind, dvi__action_space space)
   element e;
   double R[UNKNOWNS_MOST], dq[SITES], low[SITES], dp[SITES], q1[SITES], v[SITES];
   make_element(kind, space, &e);
-  must(dvi__action_residual(e.action, e.Y, R));
+  require_ok(dvi__action_residual(e.action, e.Y, R));
   dvi__action_ends(e.action, e.Y, dq, low, dp);
   path(&e, e.q0, e.Y, 1, q1, v);
   for (int i = 0; i < SITES; i++) {
@@ -222,9 +222,9 @@ static double check_column(element *e, int x, const double *values)
   const double at = e->Y[x];
   for (int m = 0; m < 3; m++) {
     e->Y[x] = at + moved[m];
-    must(dvi__action_residual(e->action, e->Y, plus));
+    require_ok(dvi__action_residual(e->action, e->Y, plus));
     e->Y[x] = at - moved[m];
-    must(dvi__action_residual(e->action, e->Y, minus));
+    require_ok(dvi__action_residual(e->action, e->Y, minus));
     for (int i = 0; i < count; i++) column[i] += share[m] * (plus[i] - minus[i]) / (2 * moved[m]);
   }
   e->Y[x] = at;
@@ -265,9 +265,9 @@ static void check_product(int kind, dvi__action_space space)
   double values[UNKNOWNS_MOST * UNKNOWNS_MOST], x[UNKNOWNS_MOST], y[UNKNOWNS_MOST],
       size[UNKNOWNS_MOST] = {0};
   make_element(kind, space, &e);
-  must(dvi__action_prepare_jacobian(e.action));
-  must(dvi__action_prepare_product(e.action));
-  must(dvi__action_jacobian(e.action, e.Y, values));
+  require_ok(dvi__action_prepare_jacobian(e.action));
+  require_ok(dvi__action_prepare_product(e.action));
+  require_ok(dvi__action_jacobian(e.action, e.Y, values));
   const dvi__pattern *pattern = dvi__action_pattern(e.action);
   for (int i = 0; i < pattern->columns; i++) x[i] = cos(3 * i);
   dvi__action_times_jacobian(e.action, x, y);
@@ -305,7 +305,7 @@ START_TEST(tables_are_consistent_to_the_last_bit)
 {
   static const int sizes[][2] = {{1, 1}, {2, 2}, {3, 5}, {7, 8}, {16, 17}, {40, 40}};
   const int *size = sizes[_i / BASES];
-  dvi_system *system = system_of(SCALAR_MASS);
+  dvi_system *system = create_system(SCALAR_MASS);
   dvi__action *a;
   ck_assert_int_eq(
       dvi__action_create(system,
@@ -332,7 +332,7 @@ static void check_tables(int kind, dvi__action_space space)
   const int r = e.space.nodes;
   ck_assert_int_eq(dvi_quadrature(e.space.rule, r, node, weight), DVI_OK);
   for (int j = 0; j < r; j++) {
-    trial(&e.space, node[j], psi, dpsi);
+    evaluate_trial(&e.space, node[j], psi, dpsi);
     ck_assert_double_eq(a->weight[j], weight[j]);
     for (int k = 0; k < e.space.degree; k++) {
       /* functions up to 2, and their slopes, at rounded nodes */
@@ -340,7 +340,7 @@ static void check_tables(int kind, dvi__action_space space)
       ck_assert_double_eq_tol(a->dpsi[k * a->lanes + j], dpsi[k], 1e-14 * 200);
     }
   }
-  trial(&e.space, 1, psi, dpsi);
+  evaluate_trial(&e.space, 1, psi, dpsi);
   for (int k = 0; k < e.space.degree; k++) ck_assert_double_eq_tol(a->end[k], psi[k], 1e-14);
   free_element(&e);
 }
@@ -460,18 +460,18 @@ static void velocity_hessian_column(const element *e, int j, double *column)
 {
   double q[SITES], v[SITES], p[SITES];
   path(e, e->q0, e->Y, 0.5, q, v);
-  must(dvi_system_momentum(e->system, t0 + 0.5 * h, q, v, p));
+  require_ok(dvi_system_momentum(e->system, t0 + 0.5 * h, q, v, p));
   v[j] += 1;
-  must(dvi_system_momentum(e->system, t0 + 0.5 * h, q, v, column));
+  require_ok(dvi_system_momentum(e->system, t0 + 0.5 * h, q, v, column));
   for (int i = 0; i < SITES; i++) column[i] -= p[i];
 }
 
 static double stiffness(const dvi__action_space *space, int k, int l)
 {
   double node[NODES_MOST], weight[NODES_MOST], psi[DEGREE_MOST], dpsi[DEGREE_MOST], sum = 0;
-  must(dvi_quadrature(space->rule, space->nodes, node, weight));
+  require_ok(dvi_quadrature(space->rule, space->nodes, node, weight));
   for (int j = 0; j < space->nodes; j++) {
-    trial(space, node[j], psi, dpsi);
+    evaluate_trial(space, node[j], psi, dpsi);
     sum += weight[j] * dpsi[k] * dpsi[l];
   }
   return sum;
@@ -512,7 +512,7 @@ START_TEST(rows_are_scaled_by_the_velocity_hessian_over_the_step)
   make_element(_i, (dvi__action_space){DVI_LEGENDRE, 2, DVI_GAUSS, 2}, &e);
   /* backward, where scales stay positive, and L_vv depends on q alone */
   dvi__action_place(e.action, t0 + h, -h, e.q0, e.p0);
-  must(dvi__action_prepare_chord(e.action, e.Y));
+  require_ok(dvi__action_prepare_chord(e.action, e.Y));
   ck_assert_int_eq(dvi__action_row_scale(e.action, scale), 1);
   for (int i = 0; i < SITES; i++) {
     double largest = 0;

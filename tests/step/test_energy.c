@@ -41,7 +41,7 @@ static int wave_gradient(double t, const double *q, double *V_q, void *user)
   return 0;
 }
 
-static dvi_system *system_of(int kind)
+static dvi_system *create_system(int kind)
 {
   const dvi_lagrangian lagrangian = rotors(&quiet, BATCH);
   dvi_potential potentials[3] = {
@@ -75,7 +75,7 @@ typedef struct element {
   double q0[SITES], p0[SITES], Y[UNKNOWNS_MOST];
 } element;
 
-static void must(dvi_status status)
+static void require_ok(dvi_status status)
 {
   if (status != DVI_OK) ck_abort_msg("%s", dvi_last_error());
 }
@@ -83,10 +83,10 @@ static void must(dvi_status status)
 static void make_element(int index, element *e)
 {
   const dvi__action_space *space = &spaces[index % SPACES];
-  *e = (element){.system = system_of(index / SPACES), .unknowns = SITES * space->degree};
-  must(dvi__action_create(e->system, space, &e->counters, &e->action));
-  must(dvi__action_prepare_jacobian(e->action));
-  must(dvi__action_prepare_energy(e->action));
+  *e = (element){.system = create_system(index / SPACES), .unknowns = SITES * space->degree};
+  require_ok(dvi__action_create(e->system, space, &e->counters, &e->action));
+  require_ok(dvi__action_prepare_jacobian(e->action));
+  require_ok(dvi__action_prepare_energy(e->action));
   memcpy(e->q0, generic_q, sizeof e->q0);
   memcpy(e->p0, generic_v, sizeof e->p0);
   for (int i = 0; i < e->unknowns; i++) e->Y[i] = 0.3 * cos(1 + 2 * i);
@@ -102,12 +102,12 @@ static void free_element(element *e)
 static double action_at(const element *e, const dvi__action_space *space, double start, double h)
 {
   double node[8], weight[8], q[SITES], v[SITES], L, sum = 0;
-  must(dvi_quadrature(space->rule, space->nodes, node, weight));
+  require_ok(dvi_quadrature(space->rule, space->nodes, node, weight));
   for (int j = 0; j < space->nodes; j++) {
     dvi__action_place(e->action, start, h, e->q0, e->p0);
     dvi__action_path(e->action, e->Y, h, node[j], q, v);
     for (int i = 0; i < SITES; i++) q[i] += e->q0[i];
-    must(dvi_system_lagrangian(e->system, start + node[j] * h, q, v, &L));
+    require_ok(dvi_system_lagrangian(e->system, start + node[j] * h, q, v, &L));
     sum += h * weight[j] * L;
   }
   return sum;
@@ -130,8 +130,8 @@ START_TEST(the_energies_are_the_derivatives_of_the_action_in_the_times_of_the_en
     by_start += factor * (action_at(&e, space, t0 + d, h0) - action_at(&e, space, t0 - d, h0));
   }
   dvi__action_place(e.action, t0, h0, e.q0, e.p0);
-  must(dvi__action_residual(e.action, e.Y, R));
-  must(dvi__action_energies(e.action, &E));
+  require_ok(dvi__action_residual(e.action, e.Y, R));
+  require_ok(dvi__action_energies(e.action, &E));
   ck_assert_double_eq_tol(E.end, -by_length, 1e-9 * (1 + fabs(by_length)));
   ck_assert_double_eq_tol(E.start, by_start - by_length, 1e-9 * (1 + fabs(by_length)));
   if (_i / SPACES == AUTONOMOUS) ck_assert(E.start == E.end);
@@ -148,8 +148,8 @@ static void rows_at(const element *e, double d, const double *direction, const d
   for (int i = 0; i < e->unknowns; i++) Y[i] = e->Y[i] + d * direction[i];
   for (int i = 0; i < SITES; i++) q0[i] = e->q0[i] + d * start[i];
   dvi__action_place(e->action, t0, h0 + d * length, q0, e->p0);
-  must(dvi__action_residual(e->action, Y, R));
-  must(dvi__action_energies(e->action, E));
+  require_ok(dvi__action_residual(e->action, Y, R));
+  require_ok(dvi__action_energies(e->action, E));
 }
 
 /* Derivatives along a direction. */
@@ -174,8 +174,8 @@ static void gradients_of(element *e, dvi__energy_gradient *start, dvi__energy_gr
 {
   static double values[UNKNOWNS_MOST * UNKNOWNS_MOST];
   dvi__action_place(e->action, t0, h0, e->q0, e->p0);
-  must(dvi__action_jacobian(e->action, e->Y, values));
-  must(dvi__action_energy_gradients(e->action, start, end));
+  require_ok(dvi__action_jacobian(e->action, e->Y, values));
+  require_ok(dvi__action_energy_gradients(e->action, start, end));
 }
 
 static const double still[UNKNOWNS_MOST];
@@ -236,8 +236,8 @@ START_TEST(a_system_without_rates_has_no_energies)
   dvi__action *action = NULL;
   dvi_system *system = make_system(&(dvi_system_terms){
       .dimension = SITES, .mass.scalar = 1, .potentials = &p, .potential_count = 1});
-  must(dvi__action_create(system, &spaces[0], &counters, &action));
-  must(dvi__action_prepare_jacobian(action));
+  require_ok(dvi__action_create(system, &spaces[0], &counters, &action));
+  require_ok(dvi__action_prepare_jacobian(action));
   ck_assert_int_eq(dvi__action_prepare_energy(action), DVI_UNSUPPORTED);
   check_words("wells has no rate callback");
   dvi__action_destroy(&action);

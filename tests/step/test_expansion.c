@@ -19,7 +19,7 @@ static long double sinc(long double s)
   return x < 1e-5L ? 1 - s / 6 : s < 0 ? sinhl(x) / x : sinl(x) / x;
 }
 
-static long double fall(long double s)
+static long double fall_of_series(long double s)
 {
   return 1 - cosine(s);
 }
@@ -74,7 +74,7 @@ typedef struct function {
 
 static const function functions[] = {{{1, 1, 0}, 0, cosine},
                                      {{1, 1, 0}, 0, sinc},
-                                     {{1, 2, 0}, 0, fall},
+                                     {{1, 2, 0}, 0, fall_of_series},
                                      {{2, 1, 0}, 0, square},
                                      {{2, 4.0 / 3, 0}, 0, hochbruck_lubich},
                                      {{1, 1, 1}, 0, gautschi},

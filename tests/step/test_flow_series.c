@@ -9,7 +9,7 @@
 
 enum { DEGREE = 16, MOST = 20 };
 
-static dvi__flow_series *made_series(const problem *model, int degree)
+static dvi__flow_series *create_series(const problem *model, int degree)
 {
   dvi__flow_series *series = NULL;
   ck_assert_msg(dvi__flow_series_create(model->system, degree, DVI__HESSIANS, NULL, &series) ==
@@ -28,7 +28,7 @@ static double sum_of(int degree, size_t stride, const double *series, double s)
 START_TEST(an_oscillator_has_the_series_of_the_cosine)
 {
   problem *model = create_problem("oscillator", "k=4");
-  dvi__flow_series *series = made_series(model, DEGREE);
+  dvi__flow_series *series = create_series(model, DEGREE);
   const double q0 = 0.3, v0 = 0.5;
   ck_assert_int_eq(dvi__flow_series_expand(series, 0, &q0, &v0), DVI_OK);
   ck_assert_int_eq(dvi__flow_series_vary(series), DVI_OK);
@@ -65,7 +65,7 @@ static void start_near(const problem *model, double *q, double *v)
 START_TEST(the_sum_is_where_an_integrator_arrives)
 {
   problem *model = create_problem(places[_i], NULL);
-  dvi__flow_series *series = made_series(model, DEGREE);
+  dvi__flow_series *series = create_series(model, DEGREE);
   const double h = 0.02;
   double q[MOST], v[MOST];
   start_near(model, q, v);
@@ -123,7 +123,7 @@ START_TEST(derivatives_agree_with_differences)
 {
   problem *model = create_problem(places[_i], strcmp(places[_i], "toda") == 0 ? "N=4" : NULL);
   const int n = model->nq;
-  dvi__flow_series *series = made_series(model, LOW);
+  dvi__flow_series *series = create_series(model, LOW);
   double q[MOST], v[MOST], L[LOW], L_start[2][LOW * MOST], dq[(LOW + 1) * 2 * 16], column[COLUMN];
   start_near(model, q, v);
   ck_assert_int_eq(dvi__flow_series_expand(series, 0.3, q, v), DVI_OK);
@@ -148,7 +148,7 @@ START_TEST(the_derivative_is_symplectic_order_by_order)
 {
   problem *model = create_problem("kepler", NULL);
   enum { D = 12 };
-  dvi__flow_series *series = made_series(model, D);
+  dvi__flow_series *series = create_series(model, D);
   ck_assert_int_eq(dvi__flow_series_expand(series, 0, model->q, model->v), DVI_OK);
   ck_assert_int_eq(dvi__flow_series_vary(series), DVI_OK);
   const double *dq = dvi__flow_series_dq(series), *dv = dvi__flow_series_dv(series);
@@ -174,7 +174,7 @@ END_TEST
 START_TEST(nothing_is_allocated_after_the_first_use)
 {
   problem *model = create_problem("double-pendulum", NULL);
-  dvi__flow_series *series = made_series(model, 8);
+  dvi__flow_series *series = create_series(model, 8);
   double L[8], L_q0[16], L_v0[16];
   long before = 0;
   for (int i = 0; i < 3; i++) {
@@ -192,7 +192,7 @@ END_TEST
 START_TEST(failures_are_said)
 {
   problem *model = create_problem("kepler", NULL);
-  dvi__flow_series *series = made_series(model, 4);
+  dvi__flow_series *series = create_series(model, 4);
   const double centre[2] = {0, 0};
   ck_assert_int_eq(dvi__flow_series_expand(series, 0, centre, model->v), DVI_NOT_FINITE);
   check_words("gravity: the taylor callback gave");

@@ -21,8 +21,8 @@ typedef struct run {
   double numbers[8];
 } run;
 
-static void start(run *r, const dvi_system_terms *terms, const char *method,
-                  const dvi__row_term *term, const double *q, const double *p)
+static void start_run(run *r, const dvi_system_terms *terms, const char *method,
+                      const dvi__row_term *term, const double *q, const double *p)
 {
   *r = (run){.system = NULL};
   ck_assert_int_eq(dvi_system_create(terms, &r->system), DVI_OK);
@@ -47,7 +47,7 @@ static void take_steps(run *r, double h, int steps)
                   dvi_last_error());
 }
 
-static void finish(run *r)
+static void finish_run(run *r)
 {
   free(r->stepper.memory);
   dvi__stepper_destroy(&r->stepper);
@@ -129,12 +129,12 @@ static double damping_error(const char *method, int steps)
                               .magnitudes = add_damping_magnitudes,
                               .derivatives = add_damping_derivatives};
   run made;
-  start(&made, &terms, method, &term, &one, &zero);
+  start_run(&made, &terms, method, &term, &one, &zero);
   take_steps(&made, t / steps, steps);
   const double q = exp(-a * t) * (cos(w * t) + a / w * sin(w * t)),
                p = -exp(-a * t) / w * sin(w * t);
   const double error = hypot(made.state.q[0] - q, made.state.p[0] - p);
-  finish(&made);
+  finish_run(&made);
   dvi__pattern_clear(&r.pattern);
   return error;
 }
@@ -231,13 +231,13 @@ static double rod_angle(int degree, int steps, double *off)
                               .derivatives = add_rod_derivatives,
                               .scale = scale_rod};
   run made;
-  start(&made, &terms,
-        method_spec("galerkin:degree=%d,quadrature=lobatto,nodes=%d", degree, degree + 1), &term, q,
-        rest);
+  start_run(&made, &terms,
+            method_spec("galerkin:degree=%d,quadrature=lobatto,nodes=%d", degree, degree + 1),
+            &term, q, rest);
   take_steps(&made, 2.0 / steps, steps);
   *off = fabs(hypot(made.state.q[0], made.state.q[1]) - 1);
   const double angle = atan2(made.state.q[0], -made.state.q[1]);
-  finish(&made);
+  finish_run(&made);
   dvi__pattern_clear(&both);
   return angle;
 }
@@ -268,12 +268,12 @@ START_TEST(too_many_terms_are_refused)
   const dvi__row_term term = {
       .name = "damping", .of = &r, .pattern = &r.pattern, .rows = add_damping};
   run made;
-  start(&made, &(dvi_system_terms){.dimension = 1, .mass = {.scalar = 1}}, "galerkin", &term, &one,
-        &zero);
+  start_run(&made, &(dvi_system_terms){.dimension = 1, .mass = {.scalar = 1}}, "galerkin", &term,
+            &one, &zero);
   for (int k = 1; k < 8; k++) ck_assert_int_eq(dvi__element_add_term(&made.stepper, &term), DVI_OK);
   ck_assert_int_eq(dvi__element_add_term(&made.stepper, &term), DVI_BAD_SIZE);
   check_words("damping is one term of the rows too many; 8 are possible");
-  finish(&made);
+  finish_run(&made);
   dvi__pattern_clear(&r.pattern);
 }
 END_TEST

@@ -92,7 +92,7 @@ typedef struct pair {
   dvi_integrator *wave, *plain;
 } pair;
 
-static double place(int i)
+static double place_of_site(int i)
 {
   return 0.4 * sin(1.0 + 7 * i);
 }
@@ -109,7 +109,7 @@ static void start_alike(pair *p)
   const int n = p->lattice.n;
   double *q = calloc(2 * (size_t)n, sizeof *q), *momenta = q + n;
   ck_assert_ptr_nonnull(q);
-  for (int i = 0; i < n; i++) q[i] = place(i), momenta[i] = place(i + 1000);
+  for (int i = 0; i < n; i++) q[i] = place_of_site(i), momenta[i] = place_of_site(i + 1000);
   ck_assert_int_eq(dvi_integrator_start(p->wave, 0.25, q, momenta), DVI_OK);
   ck_assert_int_eq(dvi_integrator_start(p->plain, 0.25, q, momenta), DVI_OK);
   free(q);
@@ -173,7 +173,7 @@ static const char *const methods[] = {"verlet:", "composition:order=4,", "compos
 static const int substeps[] = {1, 5, 9, 17};
 enum { METHODS = 4 };
 
-static void best_again(void)
+static void use_best_level(void)
 {
   dvi__lanes_choose(-1);
   dvi__blocking_choose_block(0);
@@ -489,7 +489,7 @@ END_TEST
 SUITE(temporal_blocking)
 {
   tcase_add_checked_fixture(tests, make_folder, remove_folder);
-  tcase_add_checked_fixture(tests, NULL, best_again);
+  tcase_add_checked_fixture(tests, NULL, use_best_level);
   tcase_set_timeout(tests, 120);
   tcase_add_loop_test(tests, any_length_reach_and_block_has_the_bits_of_the_plain_sweep, 0,
                       METHODS);

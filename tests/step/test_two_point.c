@@ -32,7 +32,7 @@ typedef struct element {
 } element;
 
 /* A general Lagrangian that depends on time, or a potential with a mass that couples neighbours. */
-static dvi_system *system_of(int general)
+static dvi_system *create_system(int general)
 {
   const dvi_lagrangian lagrangian = rotors(&quiet, BATCH);
   const dvi_potential potentials[2] = {springs(&quiet, ONE_POINT), wells(&quiet, BATCH)};
@@ -47,7 +47,7 @@ static dvi_system *system_of(int general)
 static void make_element(int index, element *e)
 {
   const dvi__action_space *space = &spaces[index % SPACES];
-  *e = (element){.system = system_of(index / SPACES), .s = space->degree};
+  *e = (element){.system = create_system(index / SPACES), .s = space->degree};
   ck_assert_int_eq(dvi__action_create(e->system, space, NULL, &e->action), DVI_OK);
   ck_assert_int_eq(dvi__action_prepare_jacobian(e->action), DVI_OK);
   ck_assert_int_eq(dvi__action_prepare_two_point(e->action), DVI_OK);
@@ -64,7 +64,7 @@ static void free_element(element *e)
   dvi_system_destroy(&e->system);
 }
 
-static void place(element *e)
+static void place_ends(element *e)
 {
   dvi__action_place(e->action, t0, h, e->X, e->rest);
   dvi__action_two_point(e->action, e->X + SITES, e->X + 2 * SITES, e->Y);
@@ -73,14 +73,14 @@ static void place(element *e)
 static double value(element *e)
 {
   double S, seen;
-  place(e);
+  place_ends(e);
   ck_assert_int_eq(dvi__action_value(e->action, e->Y, &S, &seen), DVI_OK);
   return S;
 }
 
 static void gradient(element *e, double *G)
 {
-  place(e);
+  place_ends(e);
   ck_assert_int_eq(dvi__action_two_point_gradient(e->action, e->Y, G, G + SITES, G + 2 * SITES),
                    DVI_OK);
 }
@@ -92,7 +92,7 @@ START_TEST(the_path_leads_from_one_end_to_the_other)
   element e;
   double offset[SITES];
   make_element(_i, &e);
-  place(&e);
+  place_ends(&e);
   dvi__action_path(e.action, e.Y, h, 0, offset, NULL);
   for (int i = 0; i < SITES; i++) ck_assert_double_eq_tol(offset[i], 0, 1e-15);
   dvi__action_path(e.action, e.Y, h, 1, offset, NULL);
@@ -139,7 +139,7 @@ START_TEST(the_hessian_is_that_of_the_action)
   static double values[SITES * SITES * (DEGREE_MOST + 1) * (DEGREE_MOST + 1)];
   make_element(_i, &e);
   const int size = e.s + 1;
-  place(&e);
+  place_ends(&e);
   ck_assert_int_eq(dvi__action_two_point_hessian(e.action, e.Y, values), DVI_OK);
   for (int y = 0; y < SITES * size; y++) {
     const double at = e.X[y];

@@ -28,7 +28,7 @@ typedef struct scene {
 
 enum { SPARSE_MASS, GENERAL, SCALAR_MASS, KINDS };
 
-static void build(scene *c, int kind)
+static void build_scene(scene *c, int kind)
 {
   c->lagrangian = rotors(&quiet, BATCH);
   c->lagrangian.hessian_batch = NULL;
@@ -61,7 +61,7 @@ static void out_of_memory(dvi_status status, const void *made)
 START_TEST(a_system_survives_every_failure)
 {
   scene c;
-  build(&c, _i);
+  build_scene(&c, _i);
   const long before = dvi__allocation_count();
   dvi_system *s = make_system(&c.terms);
   const long needed = dvi__allocation_count() - before;
@@ -79,7 +79,7 @@ END_TEST
 START_TEST(completing_a_system_survives_every_failure)
 {
   scene c;
-  build(&c, _i);
+  build_scene(&c, _i);
   dvi_system *s = make_system(&c.terms);
   int failures = 0;
   for (long successes = 0; s->qq.start == NULL; successes++) {
@@ -98,7 +98,7 @@ END_TEST
 START_TEST(an_evaluator_survives_every_failure)
 {
   scene c;
-  build(&c, _i);
+  build_scene(&c, _i);
   dvi_system *s = make_system(&c.terms);
   dvi__evaluator *e;
   ck_assert_int_eq(dvi__system_prepare_hessian(s), DVI_OK);
@@ -192,7 +192,7 @@ START_TEST(every_call_at_one_point_survives_every_failure)
   const one_point_call calls[] = {call_lagrangian, call_momentum, call_velocity, call_invariants,
                                   call_check};
   scene c;
-  build(&c, _i % KINDS);
+  build_scene(&c, _i % KINDS);
   dvi_system *s = make_system(&c.terms);
   ck_assert_int_eq(dvi__system_prepare_hessian(s), DVI_OK);
   const long before = dvi__allocation_count();

@@ -32,7 +32,7 @@ static int is_reduced(int kind)
   return kind >= REDUCED;
 }
 
-static void take(int kind)
+static void make_charts(int kind)
 {
   make_body(kind == REDUCED       ? FREE_BODY
             : kind == REDUCED + 1 ? FREE_MOTION
@@ -43,7 +43,7 @@ static void take(int kind)
   dvi__charted_centre(charts, model.q);
 }
 
-static void give_back(void)
+static void free_charts(void)
 {
   dvi__charted_destroy(&charts);
   destroy_body(&model);
@@ -63,7 +63,7 @@ static const dvi_system *local(void)
 START_TEST(derivatives_are_those_of_the_value)
 {
   double xi[BODY_V], rate[BODY_V];
-  take(_i);
+  make_charts(_i);
   scatter(dvi_system_nq(local()), 0.6, xi);
   scatter(dvi_system_nq(local()), -1.3, rate);
   ck_assert_msg(dvi_system_check(local(), 0, xi, rate, 1e-8, NULL) == DVI_OK, "%s: %s", model.name,
@@ -75,7 +75,7 @@ END_TEST
 START_TEST(the_value_is_the_systems_own)
 {
   double xi[BODY_V], rate[BODY_V], q[BODY_Q], v[BODY_V], in_charts, in_space;
-  take(_i);
+  make_charts(_i);
   scatter(dvi_system_nq(local()), 0.6, xi);
   scatter(dvi_system_nq(local()), -1.3, rate);
   dvi__charted_point(charts, xi, rate, q, v);
@@ -90,7 +90,7 @@ START_TEST(the_mass_at_the_centre_is_that_of_velocities)
 {
   double zero[BODY_V] = {0}, rate[BODY_V], momentum[BODY_V], by_mass[BODY_V] = {0},
          mass[ENTRIES_MOST];
-  take(_i);
+  make_charts(_i);
   const dvi__pattern *vv = &local()->vv;
   scatter(dvi_system_nq(local()), 0.7, rate);
   ck_assert_int_eq(dvi_system_momentum(local(), 0, zero, rate, momentum), DVI_OK);
@@ -105,7 +105,7 @@ END_TEST
 START_TEST(points_are_found_again)
 {
   double xi[BODY_V], q[BODY_Q], found[BODY_V];
-  take(_i);
+  make_charts(_i);
   scatter(dvi_system_nq(local()), 1.4, xi);
   dvi__charted_point(charts, xi, NULL, q, NULL);
   dvi__charted_inverse(charts, q, found);
@@ -128,7 +128,7 @@ static dvi__action *centred_action(void)
 }
 
 /* Takes central differences of order 4, with an error of 1e-12 beside roundoff over the length. */
-static void difference(dvi__action *action, const double *Y, int column, double *in_column)
+static void difference_column(dvi__action *action, const double *Y, int column, double *in_column)
 {
   static const double weight[] = {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12},
                       place[] = {-2, -1, 1, 2}, length = 1e-3;
@@ -147,7 +147,7 @@ START_TEST(the_centred_jacobian_is_that_of_the_rows)
 {
   double zero[BODY_V] = {0}, p[BODY_V], Y[UNKNOWNS_MOST], column[UNKNOWNS_MOST], size = 0,
          error = 0;
-  take(_i);
+  make_charts(_i);
   dvi__action *action = centred_action();
   const dvi__pattern *pattern = dvi__action_pattern(action);
   double *values = calloc((size_t)dvi__pattern_entries(pattern), sizeof *values);
@@ -157,7 +157,7 @@ START_TEST(the_centred_jacobian_is_that_of_the_rows)
   dvi__action_place(action, 0, 0.4, zero, p);
   ck_assert_msg(dvi__action_jacobian(action, Y, values) == DVI_OK, "%s", dvi_last_error());
   for (int j = 0; j < pattern->columns; j++) {
-    difference(action, Y, j, column);
+    difference_column(action, Y, j, column);
     for (int i = 0; i < pattern->rows; i++) {
       const int e = dvi__pattern_find(pattern, i, j);
       size = fmax(size, fabs(column[i]));
@@ -174,7 +174,7 @@ END_TEST
 
 START_TEST(charts_survive_every_failure)
 {
-  take(_i);
+  make_charts(_i);
   const long before = dvi__allocation_count();
   dvi__charted *made;
   ck_assert_int_eq(dvi__charted_create(model.system, is_reduced(_i), &counters, &made), DVI_OK);
@@ -196,7 +196,7 @@ END_TEST
 START_TEST(beyond_half_a_turn_there_is_no_chart)
 {
   double xi[BODY_V] = {0}, rate[BODY_V] = {0}, L;
-  take(FREE_BODY);
+  make_charts(FREE_BODY);
   xi[1] = 3.2;
   ck_assert_int_gt(dvi_system_lagrangian(local(), 0, xi, rate, &L), 0);
   ck_assert_int_eq(dvi__charted_explain(charts, DVI_CALLBACK_RETRY), DVI_STEP_TOO_LARGE);
@@ -223,7 +223,7 @@ END_TEST
 
 SUITE(charted)
 {
-  tcase_add_checked_fixture(tests, NULL, give_back);
+  tcase_add_checked_fixture(tests, NULL, free_charts);
   tcase_add_loop_test(tests, derivatives_are_those_of_the_value, 0, KINDS);
   tcase_add_loop_test(tests, the_value_is_the_systems_own, 0, KINDS);
   tcase_add_loop_test(tests, the_mass_at_the_centre_is_that_of_velocities, 0, KINDS);

@@ -12,7 +12,7 @@ typedef struct scene {
   dvi_derivative_check found;
 } scene;
 
-static void build(scene *c)
+static void build_scene(scene *c)
 {
   *c = (scene){.rotors = {0}};
   c->lagrangian = rotors(&c->rotors, ONE_POINT);
@@ -36,7 +36,7 @@ static dvi_status check_scene(scene *c)
   return check_at(c, generic_q, generic_v);
 }
 
-static void says(const char *text, const char *words)
+static void check_contains(const char *text, const char *words)
 {
   ck_assert_msg(strstr(text, words) != NULL, "\"%s\" is not in \"%s\"", words, text);
 }
@@ -44,7 +44,7 @@ static void says(const char *text, const char *words)
 START_TEST(right_derivatives_pass)
 {
   scene c;
-  build(&c);
+  build_scene(&c);
   ck_assert_msg(check_scene(&c) == DVI_OK, "%s", dvi_last_error());
   /* 6th order differences over lengths of 1 lose about three digits. */
   ck_assert_double_le(c.found.gradient_error, 1e-11);
@@ -57,12 +57,12 @@ END_TEST
 START_TEST(a_wrong_gradient_entry_of_a_potential_is_named_with_both_numbers)
 {
   scene c;
-  build(&c);
+  build_scene(&c);
   c.springs.gradient_lie = 1e-4;
   c.springs.at = 3;
   ck_assert_int_eq(check_scene(&c), DVI_BAD_ARGUMENT);
-  says(dvi_last_error(), "system check: potential 'springs': dV/dq (3) is ");
-  says(dvi_last_error(), "from the callback, ");
+  check_contains(dvi_last_error(), "system check: potential 'springs': dV/dq (3) is ");
+  check_contains(dvi_last_error(), "from the callback, ");
   ck_assert_str_eq(c.found.where, "potential 'springs': dV/dq (3) is wrong");
   double V_q[SITES];
   c.springs.gradient_lie = 0;
@@ -79,21 +79,21 @@ START_TEST(a_wrong_gradient_entry_of_the_lagrangian_is_named)
 {
   const char *const words[] = {"Lagrangian: dL/dq (2) is ", "Lagrangian: dL/dv (2) is "};
   scene c;
-  build(&c);
+  build_scene(&c);
   c.rotors = (behaviour){.gradient_lie = -1e-3, .at = 2, .block = _i};
   ck_assert_int_eq(check_scene(&c), DVI_BAD_ARGUMENT);
-  says(dvi_last_error(), words[_i]);
+  check_contains(dvi_last_error(), words[_i]);
 }
 END_TEST
 
 START_TEST(a_wrong_hessian_entry_of_a_potential_is_named)
 {
   scene c;
-  build(&c);
+  build_scene(&c);
   c.springs.hessian_lie = 1e-3;
   c.springs.at = 6; /* row 2, column 2 */
   ck_assert_int_eq(check_scene(&c), DVI_BAD_ARGUMENT);
-  says(dvi_last_error(), "system check: potential 'springs': d2V/dq2 (2,2) is ");
+  check_contains(dvi_last_error(), "system check: potential 'springs': d2V/dq2 (2,2) is ");
   ck_assert_int_eq(c.found.row, 2);
   ck_assert_int_eq(c.found.column, 2);
   ck_assert_double_gt(c.found.hessian_error, 1e-5);
@@ -106,10 +106,10 @@ START_TEST(a_wrong_hessian_entry_of_each_block_of_the_lagrangian_is_named)
   const char *const words[] = {"Lagrangian: d2L/dq2 (5,5) is ", "Lagrangian: d2L/dqdv (2,3) is ",
                                "Lagrangian: d2L/dv2 (1,2) is "};
   scene c;
-  build(&c);
+  build_scene(&c);
   c.rotors = (behaviour){.hessian_lie = 1e-3, .at = 5, .block = _i};
   ck_assert_int_eq(check_scene(&c), DVI_BAD_ARGUMENT);
-  says(dvi_last_error(), words[_i]);
+  check_contains(dvi_last_error(), words[_i]);
 }
 END_TEST
 
@@ -118,12 +118,13 @@ START_TEST(an_entry_that_a_pattern_misses_is_named)
   /* tridiagonal without (3,2) and (2,3) */
   const int start[] = {0, 2, 5, 7, 9, 12, 14}, row[] = {0, 1, 0, 1, 2, 1, 2, 3, 4, 3, 4, 5, 4, 5};
   scene c;
-  build(&c);
+  build_scene(&c);
   c.potentials[0].qq = (dvi_pattern){start, row};
   c.potentials[0].hessian_batch = NULL; /* a missing callback is not checked, but its pattern is */
   ck_assert_int_eq(check_scene(&c), DVI_BAD_ARGUMENT);
-  says(dvi_last_error(),
-       "potential 'springs': d2V/dq2 (3,2) is not in the pattern, but differences give -");
+  check_contains(
+      dvi_last_error(),
+      "potential 'springs': d2V/dq2 (3,2) is not in the pattern, but differences give -");
   ck_assert_str_eq(c.found.where, "potential 'springs': d2V/dq2 (3,2) is not in the pattern");
   ck_assert(c.found.row == 3 && c.found.column == 2);
   ck_assert_double_gt(c.found.outside, 0.01);
@@ -136,20 +137,20 @@ START_TEST(an_entry_that_a_pattern_of_the_lagrangian_misses_is_named)
   const char *const words[] = {"Lagrangian: d2L/dq2 (", "Lagrangian: d2L/dqdv (",
                                "Lagrangian: d2L/dv2 ("};
   scene c;
-  build(&c);
+  build_scene(&c);
   dvi_pattern *const patterns[] = {&c.lagrangian.qq, &c.lagrangian.qv, &c.lagrangian.vv};
   *patterns[_i] = (dvi_pattern){none, NULL};
   c.lagrangian.hessian = NULL;
   ck_assert_int_eq(check_scene(&c), DVI_BAD_ARGUMENT);
-  says(dvi_last_error(), words[_i]);
-  says(dvi_last_error(), "is not in the pattern");
+  check_contains(dvi_last_error(), words[_i]);
+  check_contains(dvi_last_error(), "is not in the pattern");
 }
 END_TEST
 
 START_TEST(missing_callbacks_are_not_checked)
 {
   scene c;
-  build(&c);
+  build_scene(&c);
   c.springs.gradient_lie = c.springs.hessian_lie = 1;
   c.potentials[0].gradient_batch = NULL;
   c.potentials[0].hessian_batch = NULL;
@@ -160,23 +161,23 @@ END_TEST
 START_TEST(a_hessian_without_a_gradient_is_checked_against_the_values)
 {
   scene c;
-  build(&c);
+  build_scene(&c);
   c.potentials[0].gradient_batch = NULL;
   ck_assert_msg(check_scene(&c) == DVI_OK, "%s", dvi_last_error());
   c.springs.hessian_lie = 1e-3;
   ck_assert_int_eq(check_scene(&c), DVI_BAD_ARGUMENT);
-  says(dvi_last_error(), "potential 'springs': d2V/dq2 (0,0) is ");
+  check_contains(dvi_last_error(), "potential 'springs': d2V/dq2 (0,0) is ");
 }
 END_TEST
 
 START_TEST(a_wrong_gradient_is_blamed_before_the_hessian_that_disagrees_with_it)
 {
   scene c;
-  build(&c);
+  build_scene(&c);
   c.wells.gradient_lie = 1e-3;
   c.springs.hessian_lie = 1;
   ck_assert_int_eq(check_scene(&c), DVI_BAD_ARGUMENT);
-  says(dvi_last_error(), "potential 'wells': dV/dq (0)");
+  check_contains(dvi_last_error(), "potential 'wells': dV/dq (0)");
 }
 END_TEST
 
@@ -186,7 +187,7 @@ START_TEST(roundoff_in_vanishing_derivatives_is_no_error)
 {
   const double zero[SITES] = {0}, tiny[SITES] = {1e-9, -2e-9, 3e-9, 1e-20, 0, 1e-9};
   scene c;
-  build(&c);
+  build_scene(&c);
   ck_assert_msg(check_at(&c, zero, zero) == DVI_OK, "%s", dvi_last_error());
   ck_assert_msg(check_at(&c, tiny, tiny) == DVI_OK, "%s", dvi_last_error());
 }
@@ -197,7 +198,7 @@ END_TEST
 START_TEST(roundoff_of_a_large_constant_is_no_error)
 {
   scene c;
-  build(&c);
+  build_scene(&c);
   c.springs.value_lie = 1e9;
   ck_assert_msg(check_scene(&c) == DVI_OK, "%s", dvi_last_error());
 }
@@ -238,7 +239,7 @@ END_TEST
 START_TEST(a_callback_that_fails_ends_the_check_with_its_status)
 {
   scene c;
-  build(&c);
+  build_scene(&c);
   c.wells.answer = 1;
   ck_assert_int_eq(check_scene(&c), DVI_CALLBACK_RETRY);
   c.wells.answer = -1;
@@ -252,7 +253,7 @@ END_TEST
 START_TEST(the_tolerance_decides)
 {
   scene c;
-  build(&c);
+  build_scene(&c);
   c.springs.gradient_lie = 1e-4;
   dvi_system *s = make_system(&(dvi_system_terms){.dimension = SITES,
                                                   .lagrangian = &c.lagrangian,

@@ -6,7 +6,7 @@
 #include "support/runs.h"
 #include "support/suite.h"
 
-static dvi_system *made_system(const dvi_system_terms *terms)
+static dvi_system *create_system(const dvi_system_terms *terms)
 {
   dvi_system *system = NULL;
   ck_assert_msg(dvi_system_create(terms, &system) == DVI_OK, "%s", dvi_last_error());
@@ -114,7 +114,7 @@ static int wrong_phi_qq(const double *q, const double *p, const double *w, doubl
 
 static void check_offender(const dvi_system_terms *terms, const char *words)
 {
-  dvi_system *system = made_system(terms);
+  dvi_system *system = create_system(terms);
   dvi_derivative_check found;
   ck_assert_int_eq(dvi_system_check(system, 0, somewhere_q, somewhere_p, 0, &found),
                    DVI_BAD_ARGUMENT);
@@ -164,7 +164,7 @@ START_TEST(differenced_hessians_give_the_same_steps)
   phi.gradients = model->terms->constraint->gradients;
   terms.hamiltonian = &H;
   terms.constraint = &phi;
-  dvi_system *system = made_system(&terms);
+  dvi_system *system = create_system(&terms);
   dvi_integrator *given = start_integrator(model, "dg-phase:degree=3"),
                  *differenced = create_integrator(system, "dg-phase:degree=3");
   ck_assert_int_eq(dvi_integrator_start(differenced, 0, model->q, model->p), DVI_OK);

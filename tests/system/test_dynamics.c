@@ -48,7 +48,7 @@ static dvi_status energy_of_particle(dvi__evaluator *e, double t, const double *
 }
 
 /* A particle as a general Lagrangian, then as a kind of its own. */
-static dvi_system *made_particle(dvi__dynamics *kind)
+static dvi_system *create_particle(dvi__dynamics *kind)
 {
   const dvi_lagrangian lagrangian = {.value = value, .gradient = gradient};
   dvi_system *system = NULL;
@@ -82,7 +82,7 @@ static double end_of_run(const dvi_system *system, double *energy)
 START_TEST(the_driver_asks_the_kind_for_velocities_and_energies)
 {
   dvi__dynamics kind;
-  dvi_system *general = made_particle(NULL), *particle = made_particle(&kind);
+  dvi_system *general = create_particle(NULL), *particle = create_particle(&kind);
   double searched, told;
   const double end = end_of_run(general, &searched);
   calls = 0;
@@ -98,7 +98,7 @@ START_TEST(the_judges_ask_it_too)
 {
   const dvi_reference_code codes[] = {DVI_IDA, DVI_CVODE_ADAMS, DVI_ARKODE};
   dvi__dynamics kind;
-  dvi_system *general = made_particle(NULL), *particle = made_particle(&kind);
+  dvi_system *general = create_particle(NULL), *particle = create_particle(&kind);
   for (int k = 0; k < 3; k++) {
     const dvi_reference_options options = {.code = codes[k]};
     double q[2] = {1, 1}, p[2] = {0.5, 0.5};

@@ -15,7 +15,7 @@ typedef struct evaluation {
   double L_qq[QQ * POINTS], L_qv[QV * POINTS], L_vv[VV * POINTS];
 } evaluation;
 
-static void place(evaluation *x)
+static void allocate_evaluation(evaluation *x)
 {
   for (int k = 0; k < POINTS; k++) {
     x->t[k] = 0.1 * k;
@@ -37,7 +37,7 @@ static dvi__evaluator *make(const dvi_system *s, dvi_counters *counters)
 static void evaluate(const dvi_system *s, evaluation *x)
 {
   dvi__evaluator *e = make(s, NULL);
-  place(x);
+  allocate_evaluation(x);
   ck_assert_msg(dvi__lagrangian_value(e, POINTS, x->t, x->q, x->v, x->L) == DVI_OK, "%s",
                 dvi_last_error());
   ck_assert_msg(dvi__lagrangian_gradient(e, POINTS, x->t, x->q, x->v, x->L_q, x->L_v) == DVI_OK,
@@ -328,7 +328,7 @@ START_TEST(points_are_counted_and_nothing_is_allocated_after_create)
   dvi__evaluator *e = make(s, &counters);
   const long before = dvi__allocation_count();
   double momentum[SITES] = {1}, v[SITES] = {0};
-  place(&x);
+  allocate_evaluation(&x);
   ck_assert_int_eq(dvi__lagrangian_value(e, POINTS, x.t, x.q, x.v, x.L), DVI_OK);
   ck_assert_int_eq(dvi__lagrangian_gradient(e, POINTS, x.t, x.q, x.v, x.L_q, NULL), DVI_OK);
   ck_assert_int_eq(dvi__lagrangian_hessian(e, POINTS, x.t, x.q, x.v, x.L_qq, x.L_qv, x.L_vv),
@@ -360,7 +360,7 @@ START_TEST(only_what_is_asked_is_evaluated)
   dvi_system *s = make_system(&(dvi_system_terms){
       .dimension = SITES, .mass.scalar = 1, .potentials = &p, .potential_count = 1});
   dvi__evaluator *e = make(s, NULL);
-  place(&x);
+  allocate_evaluation(&x);
   ck_assert_int_eq(dvi__lagrangian_gradient(e, POINTS, x.t, x.q, x.v, NULL, x.L_v), DVI_OK);
   ck_assert_int_eq(b.gradients, 0);
   ck_assert_mem_eq(x.L_v, x.v, sizeof x.v);
@@ -381,7 +381,7 @@ START_TEST(the_mass_is_solved_in_place_for_a_batch)
       {.scalar = 3}, {.diagonal = diagonal}, {.values = tridiagonal_mass, .pattern = tridiagonal}};
   dvi_system *s = make_system(&(dvi_system_terms){.dimension = SITES, .mass = masses[_i]});
   dvi__evaluator *e = make(s, NULL);
-  place(&x);
+  allocate_evaluation(&x);
   ck_assert_int_eq(dvi__lagrangian_gradient(e, POINTS, x.t, x.q, x.v, NULL, x.L_v), DVI_OK);
   dvi__mass_solve(e, POINTS, x.L_v, x.L_v);
   ck_assert_double_le(distance(SITES * POINTS, x.L_v, x.v), 1e-15);
@@ -403,7 +403,7 @@ static const fault faults[] = {{0, (double)NAN, DVI_NOT_FINITE},
                                {3, 0, DVI_CALLBACK_RETRY},
                                {-3, 0, DVI_CALLBACK_FAILED}};
 
-static void says(dvi_status found, dvi_status expected, const char *words)
+static void check_sentence(dvi_status found, dvi_status expected, const char *words)
 {
   ck_assert_msg(found == expected, "%s, not %s", dvi_status_name(found), dvi_status_name(expected));
   check_words(words);
@@ -419,14 +419,14 @@ START_TEST(a_potential_that_misbehaves_is_named)
   dvi_system *s = make_system(&(dvi_system_terms){
       .dimension = SITES, .mass.scalar = 1, .potentials = &p, .potential_count = 1});
   dvi__evaluator *e = make(s, NULL);
-  place(&x);
-  says(dvi__lagrangian_value(e, POINTS, x.t, x.q, x.v, x.L), f.status,
-       "springs: the value callback");
-  says(dvi__lagrangian_gradient(e, POINTS, x.t, x.q, x.v, x.L_q, NULL), f.status,
-       "springs: the gradient callback");
-  if (f.answer == 0) says(DVI_OK, DVI_OK, "(entry 2, point 0 of 5)");
-  says(dvi__lagrangian_hessian(e, POINTS, x.t, x.q, x.v, x.L_qq, NULL, NULL), f.status,
-       "springs: the Hessian callback");
+  allocate_evaluation(&x);
+  check_sentence(dvi__lagrangian_value(e, POINTS, x.t, x.q, x.v, x.L), f.status,
+                 "springs: the value callback");
+  check_sentence(dvi__lagrangian_gradient(e, POINTS, x.t, x.q, x.v, x.L_q, NULL), f.status,
+                 "springs: the gradient callback");
+  if (f.answer == 0) check_sentence(DVI_OK, DVI_OK, "(entry 2, point 0 of 5)");
+  check_sentence(dvi__lagrangian_hessian(e, POINTS, x.t, x.q, x.v, x.L_qq, NULL, NULL), f.status,
+                 "springs: the Hessian callback");
   dvi__evaluator_destroy(&e);
   dvi_system_destroy(&s);
 }
@@ -444,18 +444,18 @@ START_TEST(a_lagrangian_that_misbehaves_is_named)
   const dvi_lagrangian l = rotors(&b, _i < 4 ? ONE_POINT : BATCH);
   dvi_system *s = make_system(&(dvi_system_terms){.dimension = SITES, .lagrangian = &l});
   dvi__evaluator *e = make(s, NULL);
-  place(&x);
-  says(dvi__lagrangian_value(e, POINTS, x.t, x.q, x.v, x.L), f.status,
-       "Lagrangian: the value callback");
+  allocate_evaluation(&x);
+  check_sentence(dvi__lagrangian_value(e, POINTS, x.t, x.q, x.v, x.L), f.status,
+                 "Lagrangian: the value callback");
   for (b.block = 0; b.block < 3; b.block++) {
     if (b.block < 2) {
-      says(dvi__lagrangian_gradient(e, POINTS, x.t, x.q, x.v, x.L_q, x.L_v), f.status,
-           "Lagrangian: the gradient callback");
-      if (f.answer == 0) says(DVI_OK, DVI_OK, gradients[b.block]);
+      check_sentence(dvi__lagrangian_gradient(e, POINTS, x.t, x.q, x.v, x.L_q, x.L_v), f.status,
+                     "Lagrangian: the gradient callback");
+      if (f.answer == 0) check_sentence(DVI_OK, DVI_OK, gradients[b.block]);
     }
-    says(dvi__lagrangian_hessian(e, POINTS, x.t, x.q, x.v, x.L_qq, x.L_qv, x.L_vv), f.status,
-         "Lagrangian: the Hessian callback");
-    if (f.answer == 0) says(DVI_OK, DVI_OK, hessians[b.block]);
+    check_sentence(dvi__lagrangian_hessian(e, POINTS, x.t, x.q, x.v, x.L_qq, x.L_qv, x.L_vv),
+                   f.status, "Lagrangian: the Hessian callback");
+    if (f.answer == 0) check_sentence(DVI_OK, DVI_OK, hessians[b.block]);
   }
   dvi__evaluator_destroy(&e);
   dvi_system_destroy(&s);
@@ -473,11 +473,11 @@ START_TEST(faults_show_through_differences)
   dvi_system *s = make_system(&(dvi_system_terms){
       .dimension = SITES, .mass.scalar = 1, .potentials = &p, .potential_count = 1});
   dvi__evaluator *e = make(s, NULL);
-  place(&x);
-  says(dvi__lagrangian_gradient(e, POINTS, x.t, x.q, x.v, x.L_q, NULL), f.status,
-       "springs: the value callback");
-  says(dvi__lagrangian_hessian(e, POINTS, x.t, x.q, x.v, x.L_qq, NULL, NULL), f.status,
-       "springs: the value callback");
+  allocate_evaluation(&x);
+  check_sentence(dvi__lagrangian_gradient(e, POINTS, x.t, x.q, x.v, x.L_q, NULL), f.status,
+                 "springs: the value callback");
+  check_sentence(dvi__lagrangian_hessian(e, POINTS, x.t, x.q, x.v, x.L_qq, NULL, NULL), f.status,
+                 "springs: the value callback");
   dvi__evaluator_destroy(&e);
   dvi_system_destroy(&s);
 }

@@ -41,7 +41,7 @@ static int hessian(const double *q, double *f_qq, void *user)
   return 0;
 }
 
-static int third(const double *q, const double *w, double *f_w_qq, void *user)
+static int form_third_derivative(const double *q, const double *w, double *f_w_qq, void *user)
 {
   const product *f = user;
   for (int k = 0; k < f->pairs; k++, f_w_qq += 4) {
@@ -70,12 +70,12 @@ static const place places[] = {
 };
 enum { PLACES = sizeof places / sizeof *places, IN_CLASS = 4 };
 
-static dvi_gauge declared(const place *at, int n, product *own)
+static dvi_gauge declare_gauge(const place *at, int n, product *own)
 {
   *own = at->f;
   return (dvi_gauge){.gradient = gradient,
                      .hessian = hessian,
-                     .third = third,
+                     .third = form_third_derivative,
                      .qq = {n == 2 || own->pairs == 2 ? start_of_pairs : start_of_one, row},
                      .user = own};
 }
@@ -107,7 +107,7 @@ START_TEST(the_two_form_stays_and_the_momenta_move_by_the_gradient)
   product own;
   const place *at = &places[_i];
   problem *model = create_problem(at->problem, at->setting);
-  const dvi_gauge f = declared(at, model->nq, &own);
+  const dvi_gauge f = declare_gauge(at, model->nq, &own);
   dvi_system *system = gauged(model, &f);
   double before[16], after[16], p[4], moved[4], f_q[4];
   ck_assert_int_eq(dvi_system_two_form(model->system, q, before, NULL), DVI_OK);
@@ -157,7 +157,7 @@ START_TEST(in_another_gauge_the_trajectory_is_the_same_to_the_methods_order)
   problem *model = create_problem(at->problem,
                                   NULL); /* its digits, because the motion is that of every gauge */
   problem *in_gauge = create_problem(at->problem, at->setting);
-  const dvi_gauge f = declared(at, model->nq, &own);
+  const dvi_gauge f = declare_gauge(at, model->nq, &own);
   dvi_system *system = gauged(in_gauge, &f);
   check_order(model, system, "vprk", step_of(model), 4);
   dvi_system_destroy(&system);
@@ -175,7 +175,7 @@ START_TEST(a_gauge_brings_systems_into_the_class_of_one_step_methods)
   product own;
   const place *at = &places[_i];
   problem *model = create_problem(at->problem, at->setting);
-  const dvi_gauge f = declared(at, model->nq, &own);
+  const dvi_gauge f = declare_gauge(at, model->nq, &own);
   dvi_system *system = gauged(model, &f);
   dvi_integrator *none = NULL;
   ck_assert_int_eq(dvi_integrator_create(model->system, "dvrk", &none), DVI_UNSUPPORTED);
@@ -194,7 +194,7 @@ START_TEST(a_gauge_is_the_one_form_that_it_gives)
   const place *at = &places[4];
   problem *singular = create_problem(at->problem, at->setting),
           *standard = create_problem(at->problem, NULL);
-  dvi_gauge f = declared(at, 2, &own);
+  dvi_gauge f = declare_gauge(at, 2, &own);
   if (_i == 1) f.third = NULL;
   dvi_system *system = gauged(singular, &f);
   dvi_integrator *a = create_integrator(system, "vprk:nodes=3"),
@@ -222,7 +222,7 @@ static int wrong_hessian(const double *at, double *f_qq, void *user)
 
 static int wrong_third(const double *at, const double *w, double *f_w_qq, void *user)
 {
-  const int returned = third(at, w, f_w_qq, user);
+  const int returned = form_third_derivative(at, w, f_w_qq, user);
   f_w_qq[0] += 1e-3;
   return returned;
 }
@@ -233,7 +233,7 @@ START_TEST(bad_gauges_are_refused_and_wrong_ones_found)
   product own;
   problem *model = create_problem("massless-particle", NULL),
           *regular = create_problem("kepler", NULL);
-  const dvi_gauge good = declared(&places[2], 2, &own);
+  const dvi_gauge good = declare_gauge(&places[2], 2, &own);
   dvi_gauge bad = good;
   dvi_system *system = NULL;
   dvi_system_terms terms = *model->terms;
@@ -270,7 +270,7 @@ START_TEST(a_system_in_another_gauge_survives_every_failure_of_memory)
 {
   product own;
   problem *model = create_problem("vortices", NULL);
-  const dvi_gauge f = declared(&places[0], 4, &own);
+  const dvi_gauge f = declare_gauge(&places[0], 4, &own);
   const long before = dvi__allocation_count();
   dvi_system *system = gauged(model, &f);
   const long needed = dvi__allocation_count() - before;

@@ -36,7 +36,8 @@ static int infinite(double t, const double *q, const double *p, double *I, void 
   return 0;
 }
 
-static dvi_system *watched(const dvi_lagrangian *l, int *answer, const dvi_invariant *last)
+static dvi_system *create_watched_system(const dvi_lagrangian *l, int *answer,
+                                         const dvi_invariant *last)
 {
   const dvi_potential p = springs(&quiet, BATCH);
   const dvi_symmetry symmetries[] = {{"momentum", translation, answer}, {NULL, turn, NULL}};
@@ -57,7 +58,7 @@ static const dvi_invariant again = {"again", action, NULL};
 START_TEST(energy_momenta_and_declared_invariants_come_in_this_order)
 {
   int answer = 0;
-  dvi_system *s = watched(NULL, &answer, &again);
+  dvi_system *s = create_watched_system(NULL, &answer, &again);
   const char *const names[] = {"energy", "momentum", "unnamed", "action", "again"};
   ck_assert_int_eq(dvi_system_invariant_count(s), 5);
   for (int i = 0; i < 5; i++) ck_assert_str_eq(dvi_system_invariant_name(s, i), names[i]);
@@ -70,7 +71,7 @@ END_TEST
 START_TEST(the_values_are_those_of_their_definitions)
 {
   int answer = 0;
-  dvi_system *s = watched(NULL, &answer, &again);
+  dvi_system *s = create_watched_system(NULL, &answer, &again);
   const double *q = generic_q, *p = generic_v, t = 0.5;
   const dvi_potential potential = springs(&quiet, ONE_POINT);
   double value[5], energy, momentum = 0;
@@ -96,7 +97,7 @@ START_TEST(the_energy_of_a_general_lagrangian_uses_the_inverse_legendre_map)
   int answer = 0;
   const dvi_lagrangian l = rotors(&quiet, BATCH);
   const dvi_potential springs_alone = springs(&quiet, ONE_POINT);
-  dvi_system *s = watched(&l, &answer, &again);
+  dvi_system *s = create_watched_system(&l, &answer, &again);
   const double *q = generic_q, *v = generic_v, t = 0.5;
   double p[SITES], value[5], energy;
   springs_alone.value(t, q, &energy, &quiet);
@@ -114,7 +115,7 @@ START_TEST(a_generator_that_fails_is_named)
 {
   const int answers[] = {4, -4};
   int answer = answers[_i];
-  dvi_system *s = watched(NULL, &answer, &again);
+  dvi_system *s = create_watched_system(NULL, &answer, &again);
   double value[5];
   ck_assert_int_eq(dvi_system_invariants(s, 0, generic_q, generic_v, value),
                    _i == 0 ? DVI_CALLBACK_RETRY : DVI_CALLBACK_FAILED);
@@ -126,7 +127,8 @@ END_TEST
 START_TEST(an_invariant_that_is_not_finite_is_named)
 {
   int answer = 0;
-  dvi_system *s = watched(NULL, &answer, &(dvi_invariant){"helicity", infinite, NULL});
+  dvi_system *s = create_watched_system(NULL, &answer,
+                                        &(dvi_invariant){"helicity", infinite, NULL});
   double value[5];
   ck_assert_int_eq(dvi_system_invariants(s, 0, generic_q, generic_v, value), DVI_NOT_FINITE);
   check_words("invariant 'helicity' is inf at t = 0");
@@ -137,7 +139,7 @@ END_TEST
 START_TEST(missing_arguments_are_refused)
 {
   int answer = 0;
-  dvi_system *s = watched(NULL, &answer, &again);
+  dvi_system *s = create_watched_system(NULL, &answer, &again);
   double value[5];
   ck_assert_int_eq(dvi_system_invariants(NULL, 0, generic_q, generic_v, value), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_system_invariants(s, 0, NULL, generic_v, value), DVI_BAD_ARGUMENT);

@@ -45,16 +45,16 @@ static int H(double t, const double *q, double *V, void *user)
 
 static const dvi_potential hamiltonian = {.name = "H", .value = H};
 
-static dvi_one_form declared(form *user)
+static dvi_one_form declare_one_form(form *user)
 {
   return (dvi_one_form){
       .value = value, .gradient = gradient, .gradients = {start, row}, .user = user};
 }
 
-static dvi_system *made(form *user)
+static dvi_system *create_form_system(form *user)
 {
   dvi_system *system = NULL;
-  const dvi_one_form one_form = declared(user);
+  const dvi_one_form one_form = declare_one_form(user);
   const dvi_system_terms terms = {.dimension = 4,
                                   .one_form = &one_form,
                                   .potentials = &hamiltonian,
@@ -69,7 +69,7 @@ static const double q[] = {0.3, -0.8, 0.5, 1.1}, v[] = {0.7, 0.2, -0.4, 0.9};
 START_TEST(values_momenta_and_two_form_are_those_of_the_definition)
 {
   form right = {0};
-  dvi_system *system = made(&right);
+  dvi_system *system = create_form_system(&right);
   double L, p[4], alpha[4], Omega[16], condition;
   (void)value(q, alpha, &right);
   ck_assert_int_eq(dvi_system_lagrangian(system, 0, q, v, &L), DVI_OK);
@@ -95,7 +95,7 @@ END_TEST
 START_TEST(the_velocity_solves_the_equations_of_motion)
 {
   form right = {0};
-  dvi_system *system = made(&right);
+  dvi_system *system = create_form_system(&right);
   double Omega[16], found[4], energy;
   ck_assert_int_eq(dvi_system_two_form(system, q, Omega, NULL), DVI_OK);
   ck_assert_msg(dvi_system_velocity(system, 0, q, q, found) == DVI_OK, "%s", dvi_last_error());
@@ -114,7 +114,7 @@ END_TEST
 START_TEST(a_wrong_gradient_is_found)
 {
   form right = {0}, wrong = {.lie = 1e-3};
-  dvi_system *good = made(&right), *bad = made(&wrong);
+  dvi_system *good = create_form_system(&right), *bad = create_form_system(&wrong);
   ck_assert_msg(dvi_system_check(good, 0, q, v, 0, NULL) == DVI_OK, "%s", dvi_last_error());
   ck_assert_int_eq(dvi_system_check(bad, 0, q, v, 0, NULL), DVI_BAD_ARGUMENT);
   check_words("one-form: d alpha_j/dq_i at (i,j) = (1,0) is");
@@ -127,7 +127,7 @@ END_TEST
 START_TEST(gradients_are_taken_as_they_are_given_where_the_hessian_is_differenced)
 {
   form right = {0};
-  dvi_system *system = made(&right);
+  dvi_system *system = create_form_system(&right);
   dvi__evaluator *evaluator = NULL;
   double qq[16], qv[6], given[6], all_qq[32], all_qv[12], none[1], twice_q[8], twice_v[8];
   const double t[2] = {0, 0};
@@ -154,7 +154,7 @@ START_TEST(a_gradient_outside_of_its_pattern_is_found)
 {
   static const int fewer_start[] = {0, 1, 4, 5, 5}, fewer_row[] = {0, 0, 1, 2, 3};
   form right = {0};
-  dvi_one_form one_form = declared(&right);
+  dvi_one_form one_form = declare_one_form(&right);
   dvi_system *system = NULL;
   one_form.gradients = (dvi_pattern){fewer_start, fewer_row};
   const dvi_system_terms terms = {
@@ -169,7 +169,7 @@ END_TEST
 START_TEST(a_singular_two_form_is_named)
 {
   form flat = {.flat = 1};
-  dvi_system *system = made(&flat);
+  dvi_system *system = create_form_system(&flat);
   double found[4] = {1, 2, 3, 4}, condition, Omega[16];
   ck_assert_int_eq(dvi_system_velocity(system, 0, q, q, found), DVI_SINGULAR);
   check_words("two-form");
@@ -191,7 +191,7 @@ static void refused(const dvi_system_terms *terms, dvi_status expected, const ch
 START_TEST(bad_declarations_are_refused)
 {
   form right = {0};
-  const dvi_one_form good = declared(&right);
+  const dvi_one_form good = declare_one_form(&right);
   dvi_one_form bad = good;
   refused(&(dvi_system_terms){.dimension = 3, .one_form = &good}, DVI_BAD_SIZE, "even");
   refused(&(dvi_system_terms){.dimension = 4, .one_form = &good, .mass.scalar = 1},

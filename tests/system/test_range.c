@@ -87,7 +87,7 @@ static dvi_status create(const dvi_potential *potential, dvi_system **system)
       system);
 }
 
-static double place(int i)
+static double place_of_site(int i)
 {
   return sin(1.0 + 3 * i);
 }
@@ -122,7 +122,7 @@ START_TEST(a_range_alone_serves_every_method)
                                         "verlet", "composition:order=4"};
   line own = {0};
   double q[LENGTH], p[LENGTH], end[3][LENGTH];
-  for (int i = 0; i < LENGTH; i++) q[i] = place(i), p[i] = place(i + 100);
+  for (int i = 0; i < LENGTH; i++) q[i] = place_of_site(i), p[i] = place_of_site(i + 100);
   for (int shape = 0; shape < 3; shape++) {
     dvi_potential potential = line_potential(&own);
     if (shape > 0) potential.gradient_range = NULL, potential.reach = 0;
@@ -179,7 +179,7 @@ static dvi_status checked(const dvi_potential *potential, dvi_derivative_check *
 {
   double q[LENGTH], v[LENGTH] = {0};
   dvi_system *system = NULL;
-  for (int i = 0; i < LENGTH; i++) q[i] = place(i);
+  for (int i = 0; i < LENGTH; i++) q[i] = place_of_site(i);
   ck_assert_msg(create(potential, &system) == DVI_OK, "%s", dvi_last_error());
   const dvi_status status = dvi_system_check(system, 0, q, v, 0, found);
   dvi_system_destroy(&system);

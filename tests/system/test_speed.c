@@ -28,7 +28,7 @@ static int gradient(double t, const double *q, double *V_q, void *user)
   return 0;
 }
 
-static dvi_potential declared(bowl *own, int with_gradient)
+static dvi_potential declare_potential(bowl *own, int with_gradient)
 {
   return (dvi_potential){.name = "bowl",
                          .value = value,
@@ -41,7 +41,8 @@ static dvi_potential declared(bowl *own, int with_gradient)
 static dvi_status check(bowl own, int with_gradient, dvi_derivative_check *found)
 {
   behaviour calm = {0};
-  const dvi_potential potentials[] = {springs(&calm, BATCH), declared(&own, with_gradient)};
+  const dvi_potential potentials[] = {springs(&calm, BATCH),
+                                      declare_potential(&own, with_gradient)};
   dvi_system *system = make_system(&(dvi_system_terms){
       .dimension = SITES, .mass.scalar = 1, .potentials = potentials, .potential_count = 2});
   const dvi_status status = dvi_system_check(system, 0.3, generic_q, generic_v, 0, found);
@@ -68,7 +69,7 @@ START_TEST(a_potential_that_is_not_quadratic_although_it_is_declared_so_is_named
 END_TEST
 
 /* Gives the gradient of a part's potentials at the point. */
-static void ask(const dvi_system *part, double *V_q)
+static void evaluate_part(const dvi_system *part, double *V_q)
 {
   const double t = 0.3;
   dvi__evaluator *e;
@@ -82,7 +83,7 @@ START_TEST(the_parts_of_a_system_add_up_to_it)
   bowl own = {.stiffness = 2500};
   behaviour calm = {0};
   double of_slow[SITES], of_fast[SITES], of_whole[SITES];
-  const dvi_potential potentials[] = {declared(&own, 1), springs(&calm, BATCH)};
+  const dvi_potential potentials[] = {declare_potential(&own, 1), springs(&calm, BATCH)};
   dvi_system *slow, *fast,
       *whole = make_system(
           &(dvi_system_terms){.dimension = SITES,
@@ -93,9 +94,9 @@ START_TEST(the_parts_of_a_system_add_up_to_it)
   ck_assert_int_eq(dvi__system_fast_part(whole, &fast), DVI_OK);
   ck_assert(dvi__system_fast_is_quadratic(whole));
   ck_assert_mem_eq(fast->mass_values, whole->mass_values, sizeof tridiagonal_mass);
-  ask(slow, of_slow);
-  ask(fast, of_fast);
-  ask(whole, of_whole);
+  evaluate_part(slow, of_slow);
+  evaluate_part(fast, of_fast);
+  evaluate_part(whole, of_whole);
   for (int i = 0; i < SITES; i++) ck_assert_double_eq(of_slow[i] + of_fast[i], of_whole[i]);
   dvi_system_destroy(&slow);
   dvi_system_destroy(&fast);
@@ -107,7 +108,7 @@ START_TEST(a_part_without_potentials_is_free)
 {
   bowl own = {.stiffness = 2500};
   double of_slow[SITES];
-  const dvi_potential potential = declared(&own, 1);
+  const dvi_potential potential = declare_potential(&own, 1);
   const double mass[SITES] = {1, 2, 3, 4, 5, 6};
   dvi_system *slow, *fast,
       *whole = make_system(&(dvi_system_terms){.dimension = SITES,
@@ -116,7 +117,7 @@ START_TEST(a_part_without_potentials_is_free)
                                                .potential_count = 1});
   ck_assert_int_eq(dvi__system_slow_part(whole, &slow), DVI_OK);
   ck_assert_int_eq(dvi__system_fast_part(whole, &fast), DVI_OK);
-  ask(slow, of_slow);
+  evaluate_part(slow, of_slow);
   for (int i = 0; i < SITES; i++) ck_assert_double_eq(of_slow[i], 0);
   ck_assert_mem_eq(fast->mass_diagonal, mass, sizeof mass);
   dvi_system_destroy(&slow);

@@ -18,7 +18,7 @@ static const double general[LENGTH] = {0.7,   -0.4,  0.3,   0.25,  -0.2,  0.1,  
                                        -0.01, 0.005, 0.003, 0.002, 0.001, 0.0,  0.0005};
 
 /* Rounding in sums of 20 products of numbers that are not larger than `size`. */
-static void near(const double *found, const double *expected, double size)
+static void check_near(const double *found, const double *expected, double size)
 {
   for (int k = 0; k < LENGTH; k++)
     ck_assert_double_eq_tol(found[k], expected[k], 100 * DBL_EPSILON * size);
@@ -66,21 +66,21 @@ START_TEST(operations_undo_each_other)
   double there[LENGTH], back[LENGTH], other[LENGTH], one[LENGTH] = {1}, sum[LENGTH] = {0};
   dvi_taylor_exp(DEGREE, general, there);
   dvi_taylor_log(DEGREE, there, back);
-  near(back, general, 10);
+  check_near(back, general, 10);
   dvi_taylor_divide(DEGREE, one, general, there);
   dvi_taylor_multiply(DEGREE, there, general, back);
-  near(back, one, 1e3); /* the quotient's coefficients grow to some hundreds */
+  check_near(back, one, 1e3); /* the quotient's coefficients grow to some hundreds */
   dvi_taylor_square_root(DEGREE, general, there);
   dvi_taylor_multiply(DEGREE, there, there, back);
-  near(back, general, 1e3);
+  check_near(back, general, 1e3);
   dvi_taylor_sin_cos(DEGREE, general, there, other);
   dvi_taylor_add_product(DEGREE, there, there, sum);
   dvi_taylor_add_product(DEGREE, other, other, sum);
-  near(sum, one, 10);
+  check_near(sum, one, 10);
   dvi_taylor_power(DEGREE, general, 3, there);
   dvi_taylor_multiply(DEGREE, general, general, other);
   dvi_taylor_multiply(DEGREE, other, general, back);
-  near(back, there, 10);
+  check_near(back, there, 10);
 }
 END_TEST
 
@@ -95,7 +95,7 @@ START_TEST(the_integral_of_a_quotient_is_the_arc_tangent)
   dvi_taylor_integrate_quotient(DEGREE, slope, square, atan(general[0]), angle);
   dvi_taylor_sin_cos(DEGREE, angle, sine, cosine);
   dvi_taylor_divide(DEGREE, sine, cosine, tangent);
-  near(tangent, general, 100);
+  check_near(tangent, general, 100);
 }
 END_TEST
 

@@ -13,7 +13,7 @@ typedef struct scene {
   dvi_potential potentials[2];
 } scene;
 
-static dvi_system_terms build(scene *c, callback_shape shape)
+static dvi_system_terms build_terms(scene *c, callback_shape shape)
 {
   *c = (scene){.rotors = {0}};
   c->lagrangian = rotors(&c->rotors, shape);
@@ -33,7 +33,7 @@ static dvi_status check_terms(const dvi_system_terms *terms, dvi_derivative_chec
   return status;
 }
 
-static void says(const char *text, const char *words)
+static void check_contains(const char *text, const char *words)
 {
   ck_assert_msg(strstr(text, words) != NULL, "\"%s\" is not in \"%s\"", words, text);
 }
@@ -42,7 +42,7 @@ START_TEST(right_rates_pass)
 {
   scene c;
   dvi_derivative_check found;
-  const dvi_system_terms terms = build(&c, (callback_shape)_i);
+  const dvi_system_terms terms = build_terms(&c, (callback_shape)_i);
   ck_assert_msg(check_terms(&terms, &found) == DVI_OK, "%s", dvi_last_error());
   ck_assert_double_le(found.rate_error,
                       1e-11); /* the terms are linear in t, so only roundoff is left */
@@ -57,12 +57,12 @@ START_TEST(a_wrong_rate_is_named_with_both_numbers)
                                    "system check: potential 'wells': dV/dt is "};
   scene c;
   dvi_derivative_check found;
-  const dvi_system_terms terms = build(&c, ONE_POINT);
+  const dvi_system_terms terms = build_terms(&c, ONE_POINT);
   behaviour *const owner[] = {&c.rotors, &c.springs, &c.wells};
   owner[_i]->rate_lie = 1e-3;
   ck_assert_int_eq(check_terms(&terms, &found), DVI_BAD_ARGUMENT);
-  says(dvi_last_error(), sentences[_i]);
-  says(found.where, _i == 0 ? "Lagrangian: dL/dt is wrong" : "dV/dt is wrong");
+  check_contains(dvi_last_error(), sentences[_i]);
+  check_contains(found.where, _i == 0 ? "Lagrangian: dL/dt is wrong" : "dV/dt is wrong");
   ck_assert_double_gt(found.rate_error, 1e-4);
 }
 END_TEST
@@ -70,7 +70,7 @@ END_TEST
 /* Without rates, so that nothing but the callbacks' results can tell. */
 static dvi_system_terms declared_autonomous(scene *c)
 {
-  dvi_system_terms terms = build(c, BATCH);
+  dvi_system_terms terms = build_terms(c, BATCH);
   c->lagrangian.rate_batch = NULL;
   c->potentials[0].rate_batch = c->potentials[1].rate_batch = NULL;
   terms.autonomous = 1;
@@ -83,14 +83,14 @@ START_TEST(a_term_that_changes_with_time_although_the_system_is_declared_autonom
   dvi_derivative_check found;
   dvi_system_terms terms = declared_autonomous(&c);
   ck_assert_int_eq(check_terms(&terms, &found), DVI_BAD_ARGUMENT);
-  says(dvi_last_error(), "system check: Lagrangian: its value has ");
-  says(dvi_last_error(), "but the system is declared autonomous");
+  check_contains(dvi_last_error(), "system check: Lagrangian: its value has ");
+  check_contains(dvi_last_error(), "but the system is declared autonomous");
   ck_assert_str_eq(found.where, "Lagrangian: its value depends on t");
   ck_assert_int_eq(found.depends_on_time, 1);
   terms.lagrangian = NULL;
   terms.mass.scalar = 1;
   ck_assert_int_eq(check_terms(&terms, &found), DVI_BAD_ARGUMENT);
-  says(dvi_last_error(), "system check: potential 'wells': its value has ");
+  check_contains(dvi_last_error(), "system check: potential 'wells': its value has ");
   terms.potential_count = 1;
   ck_assert_msg(check_terms(&terms, &found) == DVI_OK, "%s", dvi_last_error());
   ck_assert_int_eq(found.depends_on_time, 0);
@@ -115,7 +115,7 @@ START_TEST(a_periodic_dependence_on_time_is_seen)
                                   .potential_count = 1,
                                   .autonomous = 1};
   ck_assert_int_eq(check_terms(&terms, NULL), DVI_BAD_ARGUMENT);
-  says(dvi_last_error(), "potential 'drive': its value has ");
+  check_contains(dvi_last_error(), "potential 'drive': its value has ");
 }
 END_TEST
 
@@ -123,13 +123,14 @@ START_TEST(a_rate_of_an_autonomous_system_is_refused)
 {
   scene c;
   dvi_system *system = NULL;
-  dvi_system_terms terms = build(&c, ONE_POINT);
+  dvi_system_terms terms = build_terms(&c, ONE_POINT);
   terms.autonomous = 1;
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_BAD_ARGUMENT);
-  says(dvi_last_error(), "the Lagrangian has a rate, but the system is declared autonomous");
+  check_contains(dvi_last_error(),
+                 "the Lagrangian has a rate, but the system is declared autonomous");
   c.lagrangian.rate = NULL;
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_BAD_ARGUMENT);
-  says(dvi_last_error(), "springs has a rate, but the system is declared autonomous");
+  check_contains(dvi_last_error(), "springs has a rate, but the system is declared autonomous");
   ck_assert_ptr_null(system);
 }
 END_TEST
@@ -138,10 +139,10 @@ START_TEST(a_rate_in_two_shapes_is_refused)
 {
   scene c;
   dvi_system *system = NULL;
-  dvi_system_terms terms = build(&c, ONE_POINT);
+  dvi_system_terms terms = build_terms(&c, ONE_POINT);
   c.potentials[1].rate_batch = wells(&c.wells, BATCH).rate_batch;
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_BAD_ARGUMENT);
-  says(dvi_last_error(), "wells has its rate callback in two shapes");
+  check_contains(dvi_last_error(), "wells has its rate callback in two shapes");
 }
 END_TEST
 
@@ -157,7 +158,7 @@ START_TEST(the_evaluator_adds_up_the_rates_of_all_terms)
     }
   for (int shape = ONE_POINT; shape <= BATCH; shape++) {
     scene c;
-    const dvi_system_terms terms = build(&c, (callback_shape)shape);
+    const dvi_system_terms terms = build_terms(&c, (callback_shape)shape);
     dvi_system *system = make_system(&terms);
     dvi__evaluator *e = NULL;
     ck_assert_int_eq(dvi_system_autonomous(system), 0);
@@ -194,14 +195,14 @@ START_TEST(a_term_without_its_rate_is_named)
   const char *const names[] = {"the Lagrangian has no rate", "springs has no rate",
                                "wells has no rate"};
   scene c;
-  const dvi_system_terms terms = build(&c, ONE_POINT);
+  const dvi_system_terms terms = build_terms(&c, ONE_POINT);
   if (_i == 0)
     c.lagrangian.rate = NULL;
   else
     c.potentials[_i - 1].rate = NULL;
   dvi_system *system = make_system(&terms);
   ck_assert_int_eq(dvi__system_has_rates(system), DVI_UNSUPPORTED);
-  says(dvi_last_error(), names[_i]);
+  check_contains(dvi_last_error(), names[_i]);
   dvi_system_destroy(&system);
 }
 END_TEST

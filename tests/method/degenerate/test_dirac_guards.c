@@ -17,7 +17,8 @@ typedef struct world {
 
 static const world whole = {.radius = 1, .shift = 0, .calls_left = -1, .returned = 0};
 
-static dvi_system *made(int n, const dvi_hamiltonian *H, const dvi_constraint *phi)
+static dvi_system *create_constrained_system(int n, const dvi_hamiltonian *H,
+                                             const dvi_constraint *phi)
 {
   const dvi_system_terms terms = {
       .dimension = n, .autonomous = 1, .hamiltonian = H, .constraint = phi};
@@ -26,8 +27,8 @@ static dvi_system *made(int n, const dvi_hamiltonian *H, const dvi_constraint *p
   return system;
 }
 
-static dvi_integrator *started_at(const dvi_system *system, const char *method, const double *q,
-                                  const double *p)
+static dvi_integrator *start_integrator_at(const dvi_system *system, const char *method,
+                                           const double *q, const double *p)
 {
   dvi_integrator *integrator = create_integrator(system, method);
   ck_assert_msg(dvi_integrator_start(integrator, 0, q, p) == DVI_OK, "%s", dvi_last_error());
@@ -69,10 +70,11 @@ static int table_phi_gradient(const double *q, const double *p, double *phi_z, v
   return 0;
 }
 
-static dvi_system *made_table(void)
+static dvi_system *create_table(void)
 {
-  return made(3, &(dvi_hamiltonian){.value = table_H, .gradient = table_H_gradient},
-              &(dvi_constraint){.count = 2, .value = table_phi, .gradient = table_phi_gradient});
+  return create_constrained_system(
+      3, &(dvi_hamiltonian){.value = table_H, .gradient = table_H_gradient},
+      &(dvi_constraint){.count = 2, .value = table_phi, .gradient = table_phi_gradient});
 }
 
 /* ---- a pendulum: H = |p|^2/2 + y, phi = ((|q|^2 - radius^2)/2, q.p) ---- */
@@ -113,11 +115,12 @@ static int circle_phi_gradient(const double *q, const double *p, double *phi_z, 
   return setup->returned;
 }
 
-static dvi_system *made_circle(world *setup)
+static dvi_system *create_circle(world *setup)
 {
-  return made(2, &(dvi_hamiltonian){.value = circle_H, .gradient = circle_H_gradient},
-              &(dvi_constraint){
-                  .count = 2, .value = circle_phi, .gradient = circle_phi_gradient, .user = setup});
+  return create_constrained_system(
+      2, &(dvi_hamiltonian){.value = circle_H, .gradient = circle_H_gradient},
+      &(dvi_constraint){
+          .count = 2, .value = circle_phi, .gradient = circle_phi_gradient, .user = setup});
 }
 
 /* ---- the alarm ---- */
@@ -129,7 +132,7 @@ enum { METHODS = sizeof methods / sizeof *methods };
 static void check_quiet(const dvi_system *system, const char *method, const double *q,
                         const double *p)
 {
-  dvi_integrator *integrator = started_at(system, method, q, p);
+  dvi_integrator *integrator = start_integrator_at(system, method, q, p);
   advance(integrator, 0.1, 1000);
   dvi_integrator_destroy(&integrator);
 }
@@ -140,7 +143,7 @@ START_TEST(a_force_without_motion_rings_no_alarm)
   static const double origin[3] = {0, 0, 0}, along[3] = {1, 0, 0}, bottom[2] = {0, -1},
                       slow[2] = {1e-3, 0}, swing[2] = {0.1, 0};
   world setup = whole;
-  dvi_system *table = made_table(), *circle = made_circle(&setup);
+  dvi_system *table = create_table(), *circle = create_circle(&setup);
   check_quiet(table, methods[_i], origin, along);
   check_quiet(table, methods[_i], origin, origin);
   check_quiet(circle, methods[_i], bottom, origin);
@@ -215,18 +218,18 @@ static int free_H_gradient(double t, const double *q, const double *p, double *H
 START_TEST(no_step_leads_over_a_singular_bracket_matrix)
 {
   const double h = 0.0937;
-  dvi_system *system = made(
+  dvi_system *system = create_constrained_system(
       3, &(dvi_hamiltonian){.value = free_H, .gradient = free_H_gradient},
       &(dvi_constraint){.count = 2, .value = fold_phi, .gradient = fold_phi_gradient});
-  dvi_integrator *here = started_at(system, methods[_i], (double[]){0, 0, 0},
-                                    (double[]){0, 0.1, 2});
+  dvi_integrator *here = start_integrator_at(system, methods[_i], (double[]){0, 0, 0},
+                                             (double[]){0, 0.1, 2});
   advance(here, h, 5);
   ck_assert_int_eq(dvi_integrator_step(here, h), DVI_NOT_CONVERGED);
   check_words("the constraints' bracket matrix is singular");
   ck_assert_double_lt(dvi_integrator_q(here)[2], 1);
   advance(here, -h, 5);
-  dvi_integrator *there = started_at(system, methods[_i], (double[]){0, 0, 1.5},
-                                     (double[]){0, 0.1, 2});
+  dvi_integrator *there = start_integrator_at(system, methods[_i], (double[]){0, 0, 1.5},
+                                              (double[]){0, 0.1, 2});
   advance(there, h, 5);
   dvi_integrator_destroy(&here);
   dvi_integrator_destroy(&there);
@@ -241,10 +244,10 @@ START_TEST(a_gradient_that_fails_from_some_call_on_says_so)
 {
   static const double q[2] = {0.6, -0.8}, p[2] = {0.4, 0.3};
   world setup = whole;
-  dvi_system *system = made_circle(&setup);
+  dvi_system *system = create_circle(&setup);
   for (int calls = 1; calls <= 4; calls++)
     for (int returned = 0; returned <= 1; returned++) {
-      dvi_integrator *integrator = started_at(system, methods[_i], q, p);
+      dvi_integrator *integrator = start_integrator_at(system, methods[_i], q, p);
       advance(integrator, 0.1, 1);
       setup.calls_left = calls;
       setup.returned = returned;
@@ -292,7 +295,7 @@ static int bowl_gradient(double t, const double *q, double *H_q, void *user)
   return 0;
 }
 
-static dvi_system *made_form(world *setup)
+static dvi_system *create_form(world *setup)
 {
   const dvi_one_form alpha = {.value = form, .gradient = form_gradient, .user = setup};
   const dvi_potential H = {.value = bowl, .gradient = bowl_gradient};
@@ -306,7 +309,7 @@ static dvi_system *made_form(world *setup)
 static void check_known_again(const dvi_system *system, const char *method, const double *q,
                               const double *p, double *parameter)
 {
-  dvi_integrator *first = started_at(system, method, q, p),
+  dvi_integrator *first = start_integrator_at(system, method, q, p),
                  *second = create_integrator(system, method);
   advance(first, 0.1, 3);
   ck_assert_int_eq(dvi_integrator_save(first, path_in_folder("state")), DVI_OK);
@@ -324,7 +327,7 @@ START_TEST(a_checkpoint_of_another_constraint_is_refused)
 {
   static const double q[2] = {0.6, -0.8}, p[2] = {0.4, 0.3};
   world setup = whole;
-  dvi_system *system = made_circle(&setup);
+  dvi_system *system = create_circle(&setup);
   check_known_again(system, methods[_i], q, p, &setup.radius);
   dvi_system_destroy(&system);
 }
@@ -336,7 +339,7 @@ START_TEST(a_checkpoint_of_another_one_form_is_refused)
                                          "hp:type=2,quadrature=gauss"};
   static const double origin[2] = {0, 0};
   world setup = whole;
-  dvi_system *system = made_form(&setup);
+  dvi_system *system = create_form(&setup);
   check_known_again(system, of_forms[_i], origin, origin, &setup.shift);
   dvi_system_destroy(&system);
 }

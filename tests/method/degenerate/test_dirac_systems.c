@@ -122,7 +122,7 @@ static void place_beads(const beads *string, double t, double *q, double *p)
   }
 }
 
-static dvi_system *made_beads(beads *string, int count)
+static dvi_system *create_beads(beads *string, int count)
 {
   *string = (beads){.count = count};
   fill_patterns(string);
@@ -160,7 +160,7 @@ START_TEST(beads_turn_at_their_rates)
 {
   beads string;
   double q[N], p[N];
-  dvi_system *system = made_beads(&string, _i);
+  dvi_system *system = create_beads(&string, _i);
   dvi_integrator *integrator = create_integrator(system, "dg-phase:degree=4");
   ck_assert_msg(dvi_integrator_start(integrator, 0, string.q, string.p) == DVI_OK, "%s",
                 dvi_last_error());
@@ -181,7 +181,7 @@ START_TEST(the_jacobian_is_as_sparse_as_the_system)
   for (int k = 0; k < 2; k++) {
     beads string;
     char text[1024];
-    dvi_system *system = made_beads(&string, counts[k]);
+    dvi_system *system = create_beads(&string, counts[k]);
     dvi_integrator *integrator = create_integrator(system, "dg-phase:degree=2");
     ck_assert_uint_lt(dvi_integrator_explain(integrator, text, sizeof text), sizeof text);
     const char *at = strstr(text, "Jacobian with ");

@@ -68,7 +68,7 @@ START_TEST(type_4_with_gauss_points_is_gauss_collocation)
 END_TEST
 
 /* p = p + length times the well's force at x, of the Henon-Heiles system. */
-static void kick(const problem *model, double length, const double *x, double *p)
+static void kick_momentum(const problem *model, double length, const double *x, double *p)
 {
   double slope[N_MOST];
   const dvi_potential *well = model->terms->potentials;
@@ -86,7 +86,7 @@ static void explicit_step(const problem *model, int type, double *x, double *p)
 {
   if (type == 4) drift(h / 2, p, x);
   if (type == 3) drift(h, p, x);
-  kick(model, h, x, p);
+  kick_momentum(model, h, x, p);
   if (type == 2) drift(h, p, x);
   if (type == 4) drift(h / 2, p, x);
 }

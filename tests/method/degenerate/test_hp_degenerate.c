@@ -94,7 +94,7 @@ static int hessian(const double *q, double *f_qq, void *user)
   return 0;
 }
 
-static int third(const double *q, const double *w, double *f_w_qq, void *user)
+static int form_third_derivative(const double *q, const double *w, double *f_w_qq, void *user)
 {
   const problem *model = user;
   (void)q, (void)w;
@@ -106,8 +106,11 @@ static int third(const double *q, const double *w, double *f_w_qq, void *user)
 static dvi_system *lifted(problem *model)
 {
   static const int start[] = {0, 1, 2, 3, 4}, row[] = {0, 1, 2, 3};
-  const dvi_gauge f = {
-      .gradient = gradient, .hessian = hessian, .third = third, .qq = {start, row}, .user = model};
+  const dvi_gauge f = {.gradient = gradient,
+                       .hessian = hessian,
+                       .third = form_third_derivative,
+                       .qq = {start, row},
+                       .user = model};
   dvi_system_terms terms = *model->terms;
   dvi_system *system = NULL;
   terms.gauge = &f;
@@ -115,8 +118,8 @@ static dvi_system *lifted(problem *model)
   return system;
 }
 
-static dvi_integrator *started_in(const dvi_system *system, const problem *model,
-                                  const char *method)
+static dvi_integrator *start_integrator_in(const dvi_system *system, const problem *model,
+                                           const char *method)
 {
   dvi_integrator *integrator = create_integrator(system, method);
   ck_assert_msg(dvi_integrator_start_velocity(integrator, 0, model->q, model->v) == DVI_OK, "%s",
@@ -128,7 +131,7 @@ static dvi_integrator *started_in(const dvi_system *system, const problem *model
 static void run_off(const dvi_system *system, const problem *model, const char *method, double h,
                     double *off, double *error)
 {
-  dvi_integrator *integrator = started_in(system, model, method);
+  dvi_integrator *integrator = start_integrator_in(system, model, method);
   double now;
   *off = 0;
   for (long k = lround(model->order_t_end / h); k > 0; k--) {
@@ -175,7 +178,7 @@ START_TEST(the_lowest_degrees_take_alpha_at_one_end)
 {
   problem *model = create_problem("massless-particle", NULL);
   dvi_system *system = lifted(model);
-  dvi_integrator *integrator = started_in(system, model, method_spec("hp:type=%d", _i));
+  dvi_integrator *integrator = start_integrator_in(system, model, method_spec("hp:type=%d", _i));
   double before[2][2], alpha[2];
   for (int step = 0; step < 20; step++) {
     memcpy(before[0], dvi_integrator_q(integrator), sizeof before[0]);

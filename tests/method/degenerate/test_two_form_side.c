@@ -81,7 +81,7 @@ static int fold_force(double t, const double *q, double *H_q, void *user)
   return 0;
 }
 
-static dvi_system *made(const dvi_one_form *form, const dvi_potential *H)
+static dvi_system *create_form_system(const dvi_one_form *form, const dvi_potential *H)
 {
   const dvi_system_terms terms = {
       .dimension = 2, .one_form = form, .potentials = H, .potential_count = 1, .autonomous = 1};
@@ -90,16 +90,16 @@ static dvi_system *made(const dvi_one_form *form, const dvi_potential *H)
   return system;
 }
 
-static dvi_system *made_bend(void)
+static dvi_system *create_bend(void)
 {
-  return made(&(dvi_one_form){.value = bend, .gradient = bend_gradient},
-              &(dvi_potential){.value = bend_energy, .gradient = bend_force});
+  return create_form_system(&(dvi_one_form){.value = bend, .gradient = bend_gradient},
+                            &(dvi_potential){.value = bend_energy, .gradient = bend_force});
 }
 
-static dvi_system *made_fold(void)
+static dvi_system *create_fold(void)
 {
-  return made(&(dvi_one_form){.value = fold, .gradient = fold_gradient},
-              &(dvi_potential){.value = fold_energy, .gradient = fold_force});
+  return create_form_system(&(dvi_one_form){.value = fold, .gradient = fold_gradient},
+                            &(dvi_potential){.value = fold_energy, .gradient = fold_force});
 }
 
 /* Takes steps until one fails, at most so many. The state is then the one before that step. */
@@ -129,7 +129,7 @@ static const char *const one_step[] = {"dvrk:nodes=1", "dvrk",         "dvrk:nod
 START_TEST(no_step_leads_over_a_singular_two_form)
 {
   static const double start[2] = {199.9, 1};
-  dvi_system *system = made_bend();
+  dvi_system *system = create_bend();
   for (double h = 0.4; h > 0.005; h /= is_short_run() ? 1.728 : 1.2) {
     dvi_integrator *integrator = create_integrator(system, general[_i]);
     const dvi_status status = run(integrator, start, h, 200);
@@ -146,7 +146,7 @@ END_TEST
 START_TEST(nor_does_one_of_a_one_step_method)
 {
   static const double start[2] = {0.3, -0.1};
-  dvi_system *system = made_fold();
+  dvi_system *system = create_fold();
   for (double h = 0.4; h > 0.005; h /= is_short_run() ? 1.728 : 1.2) {
     dvi_integrator *integrator = create_integrator(system, one_step[_i]);
     const dvi_status status = run(integrator, start, h, 200);
@@ -164,7 +164,7 @@ END_TEST
 START_TEST(both_sides_can_be_started_on)
 {
   static const double here[2] = {199.9, 1}, there[2] = {201, 1};
-  dvi_system *system = made_bend();
+  dvi_system *system = create_bend();
   dvi_integrator *integrator = create_integrator(system, "dg");
   ck_assert_int_eq(run(integrator, here, 0.03, 3), DVI_OK);
   ck_assert_int_eq(run(integrator, there, -0.03, 3), DVI_OK);

@@ -105,7 +105,7 @@ static int vortices_slope(double t, const double *q, double *H_q, void *user)
   return 0;
 }
 
-static dvi_system *made_links(void)
+static dvi_system *create_links(void)
 {
   const dvi_lagrangian lagrangian = {.value = links_value, .gradient = links_gradient};
   dvi_system *made;
@@ -117,7 +117,7 @@ static dvi_system *made_links(void)
   return made;
 }
 
-static dvi_system *made_vortices(void)
+static dvi_system *create_vortices(void)
 {
   const dvi_one_form form = {.value = vortices_form, .gradient = vortices_gradients};
   const dvi_potential H = {.name = "H", .value = vortices_energy, .gradient = vortices_slope};
@@ -147,11 +147,11 @@ static const struct {
              {"stiff-pendulum", 0.0628, NULL, NULL},
              {"outer-solar", 4332, NULL, NULL},
              {"henon-heiles", 6.283, NULL, NULL},
-             {"five-links", 1.2, made_links, links_start},
+             {"five-links", 1.2, create_links, links_start},
              {"driven-pendulum", 3.14, NULL, NULL},
              {"lotka-volterra", 5.0, NULL, NULL},
              {"vortices", 6.0, NULL, NULL},
-             {"four-vortices", 20, made_vortices, vortices_start},
+             {"four-vortices", 20, create_vortices, vortices_start},
              {"circle-dirac", 6.0, NULL, NULL},
              {"elastica", 6.0, NULL, NULL}};
 enum { CASES = sizeof cases / sizeof *cases };
@@ -214,7 +214,7 @@ static dvi_status judged_step(const dvi_integrator *run, const dvi__state *state
   return status;
 }
 
-static double apart(size_t n, const double *a, const double *b, const double *start)
+static double relative_distance(size_t n, const double *a, const double *b, const double *start)
 {
   double largest = 0, moved = 1e-300;
   for (size_t i = 0; i < n; i++) {
@@ -227,8 +227,8 @@ static double apart(size_t n, const double *a, const double *b, const double *st
 static int is_right(const dvi_integrator *run, const dvi_integrator *judge)
 {
   const size_t n = (size_t)run->system->n;
-  return apart(n, run->now.q, judge->next.q, run->last.q) < 1e-5 &&
-         apart(n, run->now.p, judge->next.p, run->last.p) < 1e-5;
+  return relative_distance(n, run->now.q, judge->next.q, run->last.q) < 1e-5 &&
+         relative_distance(n, run->now.p, judge->next.p, run->last.p) < 1e-5;
 }
 
 static void trace(const char *what, const dvi_integrator *run, const dvi_integrator *judge,
@@ -242,8 +242,9 @@ static void trace(const char *what, const dvi_integrator *run, const dvi_integra
          c->simplified, c->newtons, c->followed, (int)run->stepper.doubt, dvi_last_error());
   const size_t n = (size_t)run->system->n;
   if (judged == DVI_OK)
-    printf("    off by %.2g in q, %.2g in p\n", apart(n, run->now.q, judge->next.q, run->last.q),
-           apart(n, run->now.p, judge->next.p, run->last.p));
+    printf("    off by %.2g in q, %.2g in p\n",
+           relative_distance(n, run->now.q, judge->next.q, run->last.q),
+           relative_distance(n, run->now.p, judge->next.p, run->last.p));
 }
 
 /* 0 when the run has ended. */

@@ -11,7 +11,7 @@
 #include "support/suite.h"
 
 /* The catalogue's net of side^dim masses, k = 1. */
-static problem *made_net(int dim, int side)
+static problem *create_net(int dim, int side)
 {
   char dim_setting[16], side_setting[16], message[256] = "";
   const char *const settings[] = {dim_setting, side_setting};
@@ -40,7 +40,7 @@ static dvi_system *system_without_hessian(const problem *net)
  * factors 2e7. */
 START_TEST(fixed_point_iteration_takes_no_jacobian)
 {
-  problem *net = made_net(2, 50);
+  problem *net = create_net(2, 50);
   dvi_system *without = _i == 0 ? system_without_hessian(net) : NULL;
   const long before = heap_bytes();
   dvi_integrator *integrator = create_integrator(_i == 0 ? without : net->system,
@@ -61,7 +61,7 @@ END_TEST
 START_TEST(a_stiff_step_takes_little_memory)
 {
   static const char *const methods[] = {"galerkin:degree=6", "galerkin:degree=6,solver=newton"};
-  problem *net = made_net(2, 50);
+  problem *net = create_net(2, 50);
   const long before = heap_bytes();
   dvi_integrator *integrator = start_integrator(net, methods[_i]);
   advance(integrator, 5, 2);
@@ -91,7 +91,7 @@ static void check_same_step(const problem *net, const char *one, const char *oth
 /* Preconditioned by decoupled systems. */
 START_TEST(newton_by_products_finds_what_the_ladder_finds)
 {
-  problem *net = made_net(2, 40);
+  problem *net = create_net(2, 40);
   check_same_step(net, "galerkin:degree=6", "galerkin:degree=6,solver=newton", 4);
   check_same_step(net, "galerkin:degree=6", "galerkin:degree=6,solver=kinsol", 4);
   problem_destroy(&net);
@@ -102,7 +102,7 @@ END_TEST
  * preconditioner. */
 START_TEST(newton_by_products_needs_no_factor)
 {
-  problem *net = made_net(3, 18);
+  problem *net = create_net(3, 18);
   check_same_step(net, "galerkin:degree=2,solver=fixed-point", "galerkin:degree=2,solver=newton",
                   0.5);
   dvi_integrator *ladder = start_integrator(net, "galerkin:degree=2");
@@ -118,7 +118,7 @@ END_TEST
  * preconditioner is made from that step alone. */
 START_TEST(a_step_by_products_depends_on_its_state_alone)
 {
-  problem *net = made_net(2, 40);
+  problem *net = create_net(2, 40);
   dvi_integrator *whole = start_integrator(net, "galerkin:degree=6,solver=newton");
   dvi_integrator *other = start_integrator(net, "galerkin:degree=6,solver=newton");
   advance(other, 3, 1); /* at other places, and lengths */
@@ -145,13 +145,13 @@ static void check_explained(const problem *net, const char *method, const char *
 
 START_TEST(explain_says_which_solver_it_would_be)
 {
-  problem *net = made_net(2, 50);
+  problem *net = create_net(2, 50);
   check_explained(net, "midpoint", "linear solver: sparse LU (KLU) in the order of AMD, ");
   check_explained(
       net, "galerkin:degree=6",
       "linear solver: GMRES with products of the Jacobian, preconditioned by decoupled systems");
   problem_destroy(&net);
-  net = made_net(3, 18);
+  net = create_net(3, 18);
   check_explained(net, "galerkin:degree=2",
                   "simplified Newton's method (not for systems of this size)");
   check_explained(net, "galerkin:degree=2", "preconditioned by its kinetic part");

@@ -63,7 +63,7 @@ static void run(const place *at, const quad_field *field, const quad_galerkin *m
 }
 
 /* Gives the judge's result. Its own error must be far below all measured errors. */
-static void judge(const place *at, const quad_field *field, quad *y)
+static void advance_by_judge(const place *at, const quad_field *field, quad *y)
 {
   const int n = field->system.n;
   memcpy(y, field->system.q, (size_t)n * sizeof *y);
@@ -114,7 +114,7 @@ static void check_order(const place *at, const variant *chosen, int degree)
   state z;
   make_field(at, &field);
   quad_galerkin_prepare(&method, degree, chosen->lobatto, degree + chosen->more_nodes);
-  judge(at, &field, exact);
+  advance_by_judge(at, &field, exact);
   for (; count < LEVELS; count++) {
     steps[count] = count == 0 ? at->steps : ceil(1.25 * steps[count - 1]);
     run(at, &field, &method, (int)steps[count], &z);

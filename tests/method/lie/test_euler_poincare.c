@@ -35,8 +35,8 @@ static const double product_q[PRODUCT_Q] = {0, -1, 0, 1, 0, 0, 0, 0,  1,   .6, .
                     product_v[12] = {1, .3, -.4, .9, -.2, .8, 1.1, .4, -.3, .6, .5, -.7};
 
 /* Both take 200 steps, and roundoff of the states adds up. */
-static void compare(const dvi_system *system, const double *q, const double *v, const char *keys,
-                    double h)
+static void compare_steps(const dvi_system *system, const double *q, const double *v,
+                          const char *keys, double h)
 {
   dvi_integrator *whole = create_integrator(system, method_spec("lie-galerkin:%s", keys)),
                  *reduced = create_integrator(system, method_spec("euler-poincare:%s", keys));
@@ -67,11 +67,11 @@ START_TEST(it_takes_the_steps_of_lie_galerkin)
   body model;
   for (int k = 0; k < 2; k++) {
     make_body(kinds[k], &model);
-    compare(model.system, model.q, model.v, keys[_i], 0.1);
+    compare_steps(model.system, model.q, model.v, keys[_i], 0.1);
     destroy_body(&model);
   }
   make_product(.2, 0, &model);
-  compare(model.system, product_q, product_v, keys[_i], 0.1);
+  compare_steps(model.system, product_q, product_v, keys[_i], 0.1);
   destroy_body(&model);
 }
 END_TEST

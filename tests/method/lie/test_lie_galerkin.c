@@ -41,7 +41,7 @@ typedef struct state {
 
 /* Judges by galerkin of degree 8, with the Lagrangian in one chart as an ordinary one. The chart
  * stays where it is. */
-static void judge(state *end)
+static void advance_by_judge(state *end)
 {
   dvi_counters counters = {0};
   dvi__charted *charts;
@@ -73,7 +73,7 @@ static void run(const char *method, double h, long steps, state *end)
   dvi_integrator_destroy(&made);
 }
 
-static double apart(const state *a, const state *b)
+static double state_distance(const state *a, const state *b)
 {
   return fmax(distance(model.nq, a->q, b->q),
               distance(model.nv, a->p, b->p) / magnitude(model.nv, b->p));
@@ -87,11 +87,11 @@ static void check_order_of(const char *method, int order)
   double h[COUNT], error[COUNT];
   state exact, end;
   dvi_order_fit fit;
-  judge(&exact);
+  advance_by_judge(&exact);
   for (int k = 0; k < COUNT; k++) {
     h[k] = span / steps[k];
     run(method, h[k], steps[k], &end);
-    error[k] = apart(&end, &exact);
+    error[k] = state_distance(&end, &exact);
     if (getenv("DVI_SHOW_ORDERS") != NULL)
       printf("%s, %s: h = %.4g, error %.2e\n", model.name, method, h[k], error[k]);
   }
@@ -138,13 +138,13 @@ START_TEST(all_bases_and_solvers_agree)
   run("lie-galerkin:degree=4", span / 10, 10, &first);
   for (size_t k = 0; k < sizeof basis / sizeof *basis; k++) {
     run(method_spec("lie-galerkin:degree=4,basis=%s", basis[k]), span / 10, 10, &other);
-    ck_assert_msg(apart(&first, &other) < 1e-12, "%s, %s: %.1e", model.name, basis[k],
-                  apart(&first, &other));
+    ck_assert_msg(state_distance(&first, &other) < 1e-12, "%s, %s: %.1e", model.name, basis[k],
+                  state_distance(&first, &other));
   }
   for (size_t k = 0; k < sizeof solver / sizeof *solver; k++) {
     run(method_spec("lie-galerkin:degree=4,solver=%s", solver[k]), span / 10, 10, &other);
-    ck_assert_msg(apart(&first, &other) < 1e-12, "%s, %s: %.1e", model.name, solver[k],
-                  apart(&first, &other));
+    ck_assert_msg(state_distance(&first, &other) < 1e-12, "%s, %s: %.1e", model.name, solver[k],
+                  state_distance(&first, &other));
   }
 }
 END_TEST
@@ -189,7 +189,8 @@ START_TEST(turned_starts_have_turned_trajectories)
   turn_state(A, model.q, model.v);
   run("lie-galerkin:degree=3", span / 5, 5, &turned);
   turn_state(A, end.q, end.p);
-  ck_assert_msg(apart(&end, &turned) < 1e-13, "%s: %.1e", model.name, apart(&end, &turned));
+  ck_assert_msg(state_distance(&end, &turned) < 1e-13, "%s: %.1e", model.name,
+                state_distance(&end, &turned));
 }
 END_TEST
 

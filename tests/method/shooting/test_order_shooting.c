@@ -64,7 +64,7 @@ typedef struct ladder {
   double ratio;
 } ladder;
 
-static ladder usual(int place, int order)
+static ladder usual_ladder(int place, int order)
 {
   return (ladder){places[place].first[order], ratio_of(order)};
 }
@@ -117,7 +117,7 @@ static void check_slope_on(int place, const char *method, int order, double most
 
 static void check_slope(int place, const char *method, int order, double most)
 {
-  check_slope_on(place, method, order, most, usual(place, order));
+  check_slope_on(place, method, order, most, usual_ladder(place, order));
 }
 
 START_TEST(the_order_is_the_lower_of_both)

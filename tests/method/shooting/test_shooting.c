@@ -293,7 +293,7 @@ START_TEST(what_needs_taylor_coefficients_says_who_lacks_them)
 }
 END_TEST
 
-static int wall(double t, const double *q, double *V, void *user)
+static int wall_value(double t, const double *q, double *V, void *user)
 {
   (void)t, (void)user;
   *V = q[0] < 1 ? -log(1 - q[0]) : 0;
@@ -341,7 +341,7 @@ END_TEST
 
 START_TEST(a_one_step_method_that_fails_inside_a_step_leaves_the_state)
 {
-  const dvi_potential potential = {.name = "wall", .value = wall, .gradient = wall_gradient};
+  const dvi_potential potential = {.name = "wall", .value = wall_value, .gradient = wall_gradient};
   const dvi_system_terms terms = {
       .dimension = 1, .mass = {.scalar = 1}, .potentials = &potential, .potential_count = 1};
   const double q = 0, p = 4;

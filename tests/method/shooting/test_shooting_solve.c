@@ -22,7 +22,7 @@ static const char *const solved[] = {"rk4", "gauss", "sdirk,stages=3",
                                      "cooper-verner,quadrature=clenshaw-curtis"};
 enum { SOLVED = sizeof solved / sizeof *solved };
 
-static double apart(int n, const double *a, const double *b, const double *start)
+static double relative_distance(int n, const double *a, const double *b, const double *start)
 {
   return distance(n, a, b) / fmax(magnitude(n, a), magnitude(n, start));
 }
@@ -39,8 +39,8 @@ START_TEST(all_stages_at_once_give_the_same_steps)
     advance(shot, places[place].h, STEPS);
     advance(stages, places[place].h, STEPS);
     const double difference = fmax(
-        apart(model->nq, dvi_integrator_q(shot), dvi_integrator_q(stages), model->q),
-        apart(model->nq, dvi_integrator_p(shot), dvi_integrator_p(stages), model->p));
+        relative_distance(model->nq, dvi_integrator_q(shot), dvi_integrator_q(stages), model->q),
+        relative_distance(model->nq, dvi_integrator_p(shot), dvi_integrator_p(stages), model->p));
     ck_assert_msg(difference <= 2e-13, "%s %s: apart by %g", model->name, solved[_i], difference);
     dvi_integrator_destroy(&shot);
     dvi_integrator_destroy(&stages);

@@ -149,7 +149,7 @@ static int flat(double t, const double *q, double *V, void *user)
   return 0;
 }
 
-static int sprung(double t, const double *q, double *V_q, void *user)
+static int sprung_gradient(double t, const double *q, double *V_q, void *user)
 {
   const trap *set = user;
   for (int i = 0; i < SITES; i++) V_q[i] = 1e-3 * q[i];
@@ -175,7 +175,7 @@ START_TEST(a_slow_force_that_fails_in_mid_run_leaves_the_state_alone)
 {
   trap set = {HUGE_VAL, 7};
   const dvi_potential potentials[] = {
-      {.name = "slow", .value = flat, .gradient = sprung, .user = &set},
+      {.name = "slow", .value = flat, .gradient = sprung_gradient, .user = &set},
       {.name = "stiff", .value = stiff, .gradient = stiff_gradient, .fast = 1, .quadratic = 1}};
   dvi_system *system = make_system(
       &(dvi_system_terms){.dimension = SITES,
