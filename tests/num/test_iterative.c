@@ -110,8 +110,35 @@ START_TEST(an_operator_says_what_is_not_known)
 }
 END_TEST
 
+/* 1, 2, 3, .. GRID times the unknowns. */
+static void ramp_times(void *user, const double *x, double *y)
+{
+  ++*(long *)user;
+  for (int k = 0; k < GRID; k++) y[k] = (k + 1) * x[k];
+}
+
+/* Eigenvalues that are spread evenly need more directions than are kept. */
+START_TEST(a_solve_goes_on_from_the_best_solution)
+{
+  long products = 0;
+  const dvi__operator A = {.size = GRID, .of = &products, .times = ramp_times};
+  double x[GRID];
+  dvi__linear *linear;
+  ck_assert_int_eq(dvi__linear_create_iterative(&A, NULL, &linear), DVI_OK);
+  ck_assert_int_eq(dvi__linear_factor(linear, NULL), DVI_OK);
+  for (int k = 0; k < GRID; k++) x[k] = 1;
+  dvi__linear_solve(linear, x);
+  double square = 0;
+  for (int k = 0; k < GRID; k++) square += ((k + 1) * x[k] - 1) * ((k + 1) * x[k] - 1);
+  ck_assert_double_le(sqrt(square), 2e-5 * sqrt(GRID));
+  ck_assert_int_gt(products, 41);
+  dvi__linear_destroy(&linear);
+}
+END_TEST
+
 SUITE(iterative)
 {
   tcase_add_loop_test(tests, an_operator_is_solved_by_its_products, 0, 2);
+  tcase_add_test(tests, a_solve_goes_on_from_the_best_solution);
   tcase_add_test(tests, an_operator_says_what_is_not_known);
 }
