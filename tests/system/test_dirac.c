@@ -201,7 +201,7 @@ START_TEST(terms_that_do_not_go_together_are_refused)
   terms.mass.scalar = 1;
   check_terms(&terms, DVI_BAD_ARGUMENT, "constraints without a Hamiltonian");
   terms.hamiltonian = declared.hamiltonian;
-  check_terms(&terms, DVI_BAD_ARGUMENT, "more than one of a mass");
+  check_terms(&terms, DVI_BAD_ARGUMENT, "both a constant mass and a Hamiltonian");
   terms = declared;
   terms.potentials = well->terms->potentials;
   terms.potential_count = 1;

@@ -195,7 +195,7 @@ START_TEST(bad_declarations_are_refused)
   dvi_one_form bad = good;
   refused(&(dvi_system_terms){.dimension = 3, .one_form = &good}, DVI_BAD_SIZE, "even");
   refused(&(dvi_system_terms){.dimension = 4, .one_form = &good, .mass.scalar = 1},
-          DVI_BAD_ARGUMENT, "more than one of");
+          DVI_BAD_ARGUMENT, "both a constant mass and a one-form");
   bad.value = NULL;
   refused(&(dvi_system_terms){.dimension = 4, .one_form = &bad}, DVI_BAD_ARGUMENT,
           "no value callback");

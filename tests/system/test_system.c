@@ -110,7 +110,7 @@ START_TEST(a_mass_beside_a_lagrangian_is_refused)
 {
   const dvi_lagrangian l = rotors(&quiet, ONE_POINT);
   refused(&(dvi_system_terms){.dimension = SITES, .mass.scalar = 1, .lagrangian = &l},
-          DVI_BAD_ARGUMENT, "more than one of a mass");
+          DVI_BAD_ARGUMENT, "both a constant mass and a general Lagrangian");
 }
 END_TEST
 

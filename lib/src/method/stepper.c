@@ -46,24 +46,22 @@ static void name_others(const dvi_system *system, dvi__text *names)
   }
 }
 
-/* Write the kinds of motion that the method takes. */
-static void name_motions(const dvi__method *method, dvi__text *names)
+/* Write the kinds of dynamics that the method takes. */
+static void name_dynamics(const dvi__method *method, dvi__text *names)
 {
-  static const unsigned motions[] = {DVI__CONSTANT_MASS, DVI__LAGRANGIAN, DVI__ONE_FORM,
-                                     DVI__CONSTRAINED_HAMILTONIAN, DVI__FACTORS};
-  for (int i = 0; i < 5; i++)
-    if (method->uses & motions[i])
-      dvi__text_add(names, "%s%s", names->length > 0 ? " or " : "", term_name(motions[i]));
+  for (unsigned term = 1; term <= DVI__LAST_TERM; term <<= 1)
+    if (method->uses & term & DVI__DYNAMICS)
+      dvi__text_add(names, "%s%s", names->length > 0 ? " or " : "", term_name(term));
 }
 
 static dvi_status refuse_canonical(const dvi__method *method, const char *others)
 {
-  char motions[DVI__SENTENCE_SIZE] = "";
-  name_motions(method, &(dvi__text){motions, sizeof motions, 0});
+  char dynamics[DVI__SENTENCE_SIZE] = "";
+  name_dynamics(method, &(dvi__text){dynamics, sizeof dynamics, 0});
   return dvi__fail(
       DVI_UNSUPPORTED,
       "%s: the system declares %s, and this method needs %s; methods for this system: %s",
-      method->name, term_name(DVI__HAMILTONIAN), motions, others);
+      method->name, term_name(DVI__HAMILTONIAN), dynamics, others);
 }
 
 static dvi_status stepper_check_terms(const dvi__method *method, const dvi_system *system)

@@ -22,6 +22,8 @@ typedef enum dvi__term {
   DVI__FAST = 256,        /* among the potentials */
   DVI__HAMILTONIAN = 512, /* without constraints */
   DVI__PHASE_SPACE = DVI__CONSTRAINED_HAMILTONIAN | DVI__HAMILTONIAN,
+  DVI__DYNAMICS = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__ONE_FORM | DVI__FACTORS |
+                  DVI__PHASE_SPACE, /* one of these is declared */
   DVI__KINDS = DVI__ROTATIONS | DVI__DIRECTIONS | DVI__FAST,
   DVI__LAST_TERM = DVI__HAMILTONIAN
 } dvi__term;

@@ -191,11 +191,34 @@ static dvi_status check_hamiltonian(const dvi_system_terms *terms)
   return DVI_OK;
 }
 
+static const dvi__dynamics *const kinds[] = {
+#define DYNAMICS(name) &dvi__dynamics_##name,
+#include "system/declare/dynamics.def"
+#undef DYNAMICS
+};
+enum { KINDS = sizeof kinds / sizeof *kinds };
+
+/* Find the one kind of dynamics that the terms declare. */
+static dvi_status check_kind(const dvi_system_terms *terms)
+{
+  const dvi__dynamics *declared = NULL;
+  for (int k = 0; k < KINDS; k++) {
+    if (!kinds[k]->is_declared(terms)) continue;
+    if (declared != NULL)
+      return dvi__fail(DVI_BAD_ARGUMENT, "system: both a %s and a %s are declared; one is possible",
+                       declared->name, kinds[k]->name);
+    declared = kinds[k];
+  }
+  if (declared == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "system: neither a mass (other than 0) nor a general "
+                                       "Lagrangian nor another kind of dynamics is declared");
+  return DVI_OK;
+}
+
 static dvi_status check_declared_terms(const dvi_system_terms *terms)
 {
   const dvi_mass *mass = &terms->mass;
   const int has_pattern = mass->pattern.start != NULL || mass->pattern.row != NULL;
-  const int has_mass = mass->scalar != 0 || mass->diagonal != NULL || mass->values != NULL;
   DVI_TRY(check_list("factors", terms->factor_count, terms->factors));
   if (terms->factors == NULL && terms->dimension < 1)
     return dvi__fail(DVI_BAD_SIZE, "system: dimension %d; at least 1 is needed", terms->dimension);
@@ -211,15 +234,7 @@ static dvi_status check_declared_terms(const dvi_system_terms *terms)
   DVI_TRY(check_list("potentials", terms->potential_count, terms->potentials));
   DVI_TRY(check_list("symmetries", terms->symmetry_count, terms->symmetries));
   DVI_TRY(check_list("invariants", terms->invariant_count, terms->invariants));
-  const int kinds = has_mass + (terms->lagrangian != NULL) + (terms->one_form != NULL) +
-                    (terms->hamiltonian != NULL);
-  if (kinds > 1)
-    return dvi__fail(DVI_BAD_ARGUMENT, "system: more than one of a mass, a general Lagrangian, a "
-                                       "one-form and a Hamiltonian are declared; one of them is "
-                                       "possible");
-  if (kinds == 0 && terms->factors == NULL)
-    return dvi__fail(DVI_BAD_ARGUMENT, "system: neither a mass (other than 0) nor a general "
-                                       "Lagrangian nor a one-form nor a Hamiltonian is declared");
+  DVI_TRY(check_kind(terms));
   DVI_TRY(check_hamiltonian(terms));
   if (terms->gauge != NULL && terms->one_form == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT,
@@ -229,17 +244,10 @@ static dvi_status check_declared_terms(const dvi_system_terms *terms)
   return check_watched(terms);
 }
 
-/* Factors come before the mass that belongs to them. */
-static const dvi__dynamics *const all_kinds[] = {
-#define DYNAMICS(name) &dvi__dynamics_##name,
-#include "system/declare/dynamics.def"
-#undef DYNAMICS
-};
-
 static dvi_status declare_dynamics(dvi_system *s, const dvi_system_terms *terms)
 {
-  for (size_t k = 0; k < sizeof all_kinds / sizeof *all_kinds && s->dynamics == NULL; k++)
-    if (all_kinds[k]->is_declared(terms)) s->dynamics = all_kinds[k];
+  for (int k = 0; k < KINDS; k++)
+    if (kinds[k]->is_declared(terms)) s->dynamics = kinds[k];
   return s->dynamics->declare(terms, s);
 }
 

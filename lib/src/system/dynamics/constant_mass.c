@@ -7,9 +7,12 @@
 #include "system/evaluate/evaluator_struct.h"
 #include "system/mass.h"
 
+/* A mass beside factors belongs to the charts. */
 static int mass_is_declared(const dvi_system_terms *terms)
 {
-  return terms->mass.scalar != 0 || terms->mass.diagonal != NULL || terms->mass.values != NULL;
+  const dvi_mass *mass = &terms->mass;
+  return terms->factors == NULL &&
+         (mass->scalar != 0 || mass->diagonal != NULL || mass->values != NULL);
 }
 
 static dvi_status prepare_mass(dvi__evaluator *e, dvi__derivatives most)
