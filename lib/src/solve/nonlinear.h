@@ -1,5 +1,5 @@
 /* Systems of nonlinear equations R(x) = 0, and several solvers behind one interface. Nothing here
- * knows mechanics. Each solver is a rung, and the caller's ladder says which rungs follow each other
+ * knows mechanics. Each solver is a rung. The caller's ladder says which rung follows which
  * (method/element/element_step.c).
  *
  * The rungs, from cheap to robust:
