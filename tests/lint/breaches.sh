@@ -23,6 +23,7 @@ clean() {
   printf '/* .cite = "Euler1744" */\n' >>lib/src/method/element/leap.c
   printf '#include <dvi/one.h>\n' >apps/main.c
   touch tests/method/element/test_leap.c docs/methods/leap.md CMakeLists.txt
+  printf '[leap](leap.md)\n' >docs/methods/README.md
   printf '@book{Euler1744,\n}\n' >docs/references.bib
   printf 'int main(void)\n{\n  return 0;\n}\n' >apps/examples/pendulum.c
   printf 'int main(void)\n{\n  return 0;\n}\n' >apps/examples/shapes.c
@@ -161,7 +162,7 @@ for text in "| $long |" '```console\n'"$long"'\n```' "- [$long](docs/guide.md)."
 done
 
 for file in lib/src/method/element/leap.c tests/method/element/test_leap.c docs/methods/leap.md \
-  docs/references.bib; do
+  docs/methods/README.md docs/references.bib; do
   clean
   rm $file
   if methods >log 2>&1; then echo "methods does not see that $file is missing"; rc=1; fi

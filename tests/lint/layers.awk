@@ -105,12 +105,13 @@ function check_library(quoted, header,   target) {
   breach(room "/ may not include " target "/: move the code, or allow it in tests/lint/layers.awk")
 }
 
-# Tells if the file's room may include the target room, or the hall that the target is a part of.
+# Tells if the file's room may include the target room, or the whole top-level room of which the
+# target is a part.
 function is_seen(target,   whole) {
   whole = target
   sub(/\/.*/, "", whole)
   if (index(" " sees[room] " ", " " target " ") > 0) return 1
-  return whole != hall && index(" " sees[room] " ", " " whole " ") > 0
+  return whole != top && index(" " sees[room] " ", " " whole " ") > 0
 }
 
 function check_public(quoted, header) {
@@ -137,8 +138,8 @@ FNR == 1 {
   if (sub(/^lib\/src\//, "", room)) {
     zone = "library"
     sub(/\/[^\/]*$/, "", room)
-    hall = room
-    sub(/\/.*/, "", hall)
+    top = room
+    sub(/\/.*/, "", top)
     if (!(room in sees)) breach("unknown room " room ": add it to tests/lint/layers.awk")
   }
   else if (FILENAME ~ /^lib\/include\//) zone = "public"

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Each method has a source, a test, a page and an entry of the bibliography, and each page of a
-# method has its line in methods.def.
+# Each method has a source, a test, a page, a link to the page in docs/methods/README.md and an
+# entry of the bibliography, and each page of a method has its line in methods.def.
 # Usage: methods.sh TOP NAME...
 set -u
 cd "$1" || exit 1
@@ -20,6 +20,8 @@ for name; do
   folder=$(dirname "${source#lib/src/}")
   need "tests/$folder/test_$name.c"
   need "docs/methods/$name.md"
+  grep -q "]($name\.md)" docs/methods/README.md 2>/dev/null ||
+    { echo "docs/methods/README.md: no link to $name.md"; rc=1; }
   cite=$(sed -n 's/.*\.cite = "\([^"]*\)".*/\1/p' "$source")
   if [ -z "$cite" ]; then
     echo "$source: no .cite"; rc=1

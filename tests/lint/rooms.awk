@@ -1,6 +1,6 @@
-# Draws the rooms of a tree by floors, from the includes of its files.
+# Draws the rooms of a tree by levels, from the includes of its files.
 # Usage: awk -v root=lib/src/ -f rooms.awk FILE...
-# A room is a folder below root. It stands one floor above the highest room that it includes. Beside
+# A room is a folder below root. It stands one level above the highest room that it includes. Beside
 # it stand the rooms that it includes, without those that it includes by way of others.
 # Exits with 1 and names the rooms if they include each other in a circle.
 
@@ -33,9 +33,9 @@ function find_arrows(   pair, end, target) {
   }
 }
 
-# Gives the room's floor. The rooms on the way to it are marked, so that a circle shows.
-function floor_of(from, way,   to, below, highest) {
-  if (from in floor) return floor[from]
+# Gives the room's level. The rooms on the way to it are marked, so that a circle shows.
+function level_of(from, way,   to, below, highest) {
+  if (from in level) return level[from]
   if (from in open) {
     print "rooms include each other in a circle:" way " " from \
       ": move the header that closes it into a room below both"
@@ -46,11 +46,11 @@ function floor_of(from, way,   to, below, highest) {
   highest = -1
   for (to in is_room)
     if ((from, to) in sees) {
-      below = floor_of(to, way " " from " ->")
+      below = level_of(to, way " " from " ->")
       if (below > highest) highest = below
     }
   delete open[from]
-  return floor[from] = highest + 1
+  return level[from] = highest + 1
 }
 
 function is_seen_farther(from, to,   over) {
@@ -78,11 +78,11 @@ function sort_rooms(   room, i, j, t) {
     }
 }
 
-function draw_floor(level,   i, first, line) {
+function draw_level(at,   i, first, line) {
   first = 1
   for (i = 1; i <= count; i++)
-    if (floor[name[i]] == level) {
-      line = sprintf("%5s  %-*s  %s", first ? level : "", widest, name[i], list_seen(name[i]))
+    if (level[name[i]] == at) {
+      line = sprintf("%5s  %-*s  %s", first ? at : "", widest, name[i], list_seen(name[i]))
       sub(/ *$/, "", line)
       print line
       first = 0
@@ -93,10 +93,10 @@ END {
   find_arrows()
   sort_rooms()
   for (i = 1; i <= count; i++) {
-    if (floor_of(name[i], "") > top) top = floor[name[i]]
+    if (level_of(name[i], "") > top) top = level[name[i]]
     if (length(name[i]) > widest) widest = length(name[i])
   }
   if (circle) exit 1
-  printf "floor  %-*s  includes\n", widest, "room"
-  for (level = top; level >= 0; level--) { print ""; draw_floor(level) }
+  printf "level  %-*s  includes\n", widest, "room"
+  for (i = top; i >= 0; i--) { print ""; draw_level(i) }
 }

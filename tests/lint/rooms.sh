@@ -16,8 +16,8 @@ draw() { find "$1" -name '*.[ch]' -exec awk -v root="$1" -f "$lint/rooms.awk" {}
 
 for tree in lib/src/ apps/; do
   printf '%s\n\n' "$tree"
-  if ! draw $tree >"$work/floors"; then grep circle "$work/floors" >&2; exit 1; fi
-  sed 's/^/    /; s/ *$//' "$work/floors"
+  if ! draw $tree >"$work/levels"; then grep circle "$work/levels" >&2; exit 1; fi
+  sed 's/^/    /; s/ *$//' "$work/levels"
   echo
 done >"$work/drawing" || exit 1
 

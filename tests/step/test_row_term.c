@@ -1,6 +1,6 @@
 /* labels: order */
-/* Row terms from outside of the library's files, as CONTRIBUTING's recipe "a new term" says. A
- * force of Rayleigh's kind and a multiplier are each added to the step of galerkin. */
+/* Row terms from outside of the library's files, as CONTRIBUTING's recipe "Adding a term inside a
+ * method" says. A force of Rayleigh's kind and a multiplier are each added to galerkin's step. */
 #include "step/element/row_term.h"
 
 #include <math.h>

@@ -1,4 +1,5 @@
-/** libdvi: discrete variational mechanics. This header includes all the others. */
+/** libdvi: discrete variational mechanics. This header includes all the others except
+ * dvi/scene.h, which belongs to the library of scenes. */
 #ifndef DVI_DVI_H
 #define DVI_DVI_H
 #include <dvi/basis.h>

@@ -1,5 +1,6 @@
-/* A run of any object that advances in time: an integrator now, fields with asynchronous steps or
- * ensembles later. The loop knows times, events, observers and checkpoints, but no coordinates. */
+/* A run of an object that advances in time. The integrator is the only one so far
+ * (integrator/run.c), and ensembles have a loop of their own. The loop knows times, events,
+ * observers and checkpoints, but no coordinates. */
 #ifndef DVI_MARCH_MARCH_H
 #define DVI_MARCH_MARCH_H
 #include <dvi/run.h>

@@ -15,7 +15,8 @@
  * and of real ones 0.13 s by KLU beside 0.08 s by CHOLMOD's supernodes on the first net, 9.5 s
  * beside 1.0 s on the last. UMFPACK and CHOLMOD take memory from the heap in every factorisation,
  * which a step may not. Both are under the GPL (CHOLMOD in its supernodal part), which the library
- * is not. Where KLU takes long, large systems go without a factor (step/element/newton_form.h). */
+ * is not. Where KLU takes long, large systems go without a factor
+ * (method/element/element_newton.c). */
 #include <klu.h>
 #include <stdint.h>
 #include <string.h>

@@ -1,5 +1,6 @@
-/* Systems of nonlinear equations R(x) = 0, and the ladder of solvers behind one interface. Nothing
- * here knows mechanics.
+/* Systems of nonlinear equations R(x) = 0, and several solvers behind one interface. Nothing here
+ * knows mechanics. Each solver is a rung. The caller's ladder says which rung follows which
+ * (method/element/element_step.c).
  *
  * The rungs, from cheap to robust:
  *   fixed point  x <- x - C^{-1} R(x) with a constant matrix C that the equations supply (the

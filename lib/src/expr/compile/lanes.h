@@ -1,8 +1,8 @@
 /* Loops over lanes, compiled for several instruction sets. libdvi chooses one for the whole program
  * (num/simd/lanes.h). All give the same bits. No sums are reordered, and -ffp-contract=off keeps
  * products and sums apart. */
-#ifndef DVI_EXPR_LANES_H
-#define DVI_EXPR_LANES_H
+#ifndef DVI_EXPR_COMPILE_LANES_H
+#define DVI_EXPR_COMPILE_LANES_H
 
 #include "num/simd/lanes.h"
 

@@ -3,8 +3,8 @@
  * Lanes are points, or elements of a sum, or both. Every operation is one loop over lanes, which
  * the compiler makes vectors of. The bits of a lane do not depend on how many lanes there are, nor
  * on the instruction set. Rows of numbers that are no longer needed are used again. */
-#ifndef DVI_EXPR_PROGRAM_H
-#define DVI_EXPR_PROGRAM_H
+#ifndef DVI_EXPR_COMPILE_PROGRAM_H
+#define DVI_EXPR_COMPILE_PROGRAM_H
 #include "expr/graph.h"
 
 enum {

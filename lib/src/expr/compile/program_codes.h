@@ -1,7 +1,7 @@
 /* The operations that programs have beside those of graphs. They have a constant for an operand, or
  * do two operations in one. */
-#ifndef DVI_EXPR_PROGRAM_CODES_H
-#define DVI_EXPR_PROGRAM_CODES_H
+#ifndef DVI_EXPR_COMPILE_PROGRAM_CODES_H
+#define DVI_EXPR_COMPILE_PROGRAM_CODES_H
 #include "expr/graph.h"
 
 typedef enum dvi__code {

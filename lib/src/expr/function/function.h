@@ -13,8 +13,8 @@
  * the shape of a batch, in which variable i of point k is x[i*count + k]. The order of every sum is
  * fixed when a function is made. Digits depend neither on the number of points nor on threads.
  * Evaluations allocate nothing and may run on several threads at a time. */
-#ifndef DVI_EXPR_FUNCTION_H
-#define DVI_EXPR_FUNCTION_H
+#ifndef DVI_EXPR_FUNCTION_FUNCTION_H
+#define DVI_EXPR_FUNCTION_FUNCTION_H
 #include <dvi/system.h>
 
 #include "expr/graph.h"

@@ -4,8 +4,8 @@
  * points, with the points of an element side by side. Results are added up unit by unit, and in a
  * unit output by output. An output is added by the elements' order, or by halves where all elements
  * of a unit add to one entry. The order is a matter of the elements alone. */
-#ifndef DVI_EXPR_FUNCTION_PARTS_H
-#define DVI_EXPR_FUNCTION_PARTS_H
+#ifndef DVI_EXPR_FUNCTION_FUNCTION_PARTS_H
+#define DVI_EXPR_FUNCTION_FUNCTION_PARTS_H
 #include <pthread.h>
 #include <stdatomic.h>
 

@@ -1,7 +1,7 @@
 /* Functions in quadruple precision. They are slow, and serve errors below the rounding of a
  * double. */
-#ifndef DVI_EXPR_FUNCTION_QUAD_H
-#define DVI_EXPR_FUNCTION_QUAD_H
+#ifndef DVI_EXPR_FUNCTION_FUNCTION_QUAD_H
+#define DVI_EXPR_FUNCTION_FUNCTION_QUAD_H
 #include "expr/function/function.h"
 #include "expr/quad.h"
 

@@ -1,7 +1,7 @@
 /* This step is one element of the action (step/element/action.h) for a degenerate Lagrangian. The
  * momentum p is carried from step to step, so that p = alpha(q) holds only approximately. */
-#ifndef DVI_METHOD_CARRIED_STEP_H
-#define DVI_METHOD_CARRIED_STEP_H
+#ifndef DVI_METHOD_DEGENERATE_CARRIED_STEP_H
+#define DVI_METHOD_DEGENERATE_CARRIED_STEP_H
 #include "step/element/action.h"
 #include "method/one_step.h"
 

@@ -1,6 +1,6 @@
 /* The one-step methods for degenerate Lagrangians share this step of step/degenerate/darboux.h. */
-#ifndef DVI_METHOD_DARBOUX_STEP_H
-#define DVI_METHOD_DARBOUX_STEP_H
+#ifndef DVI_METHOD_DEGENERATE_DARBOUX_STEP_H
+#define DVI_METHOD_DEGENERATE_DARBOUX_STEP_H
 #include "step/degenerate/darboux.h"
 #include "method/one_step.h"
 

@@ -1,6 +1,6 @@
 /* The methods dg and dg-phase share this step of discontinuous Galerkin elements. */
-#ifndef DVI_METHOD_DG_STEP_H
-#define DVI_METHOD_DG_STEP_H
+#ifndef DVI_METHOD_DEGENERATE_DG_STEP_H
+#define DVI_METHOD_DEGENERATE_DG_STEP_H
 #include "step/degenerate/discontinuous.h"
 #include "method/one_step.h"
 

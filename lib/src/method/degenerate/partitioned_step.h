@@ -1,6 +1,6 @@
 /* Methods with a step of step/degenerate/partitioned.h share these functions. */
-#ifndef DVI_METHOD_PARTITIONED_STEP_H
-#define DVI_METHOD_PARTITIONED_STEP_H
+#ifndef DVI_METHOD_DEGENERATE_PARTITIONED_STEP_H
+#define DVI_METHOD_DEGENERATE_PARTITIONED_STEP_H
 #include "step/degenerate/partitioned.h"
 #include "method/one_step.h"
 

@@ -9,8 +9,8 @@
  *
  * Along the solutions Y(h) of the rows alone the mismatch is D(h) = E-(Y(h), h) - E+. Its slope is
  * the Schur complement dD/dh = dE-/dh - dE-/dY (dR/dY)^{-1} dR/dh. */
-#ifndef DVI_METHOD_BORDERED_H
-#define DVI_METHOD_BORDERED_H
+#ifndef DVI_METHOD_ELEMENT_BORDERED_H
+#define DVI_METHOD_ELEMENT_BORDERED_H
 #include "step/element/energy.h"
 #include "method/element/element_step.h"
 #include "solve/nonlinear.h"

@@ -1,7 +1,7 @@
 /* A step by the stationarity of one element of the discrete action, which galerkin, midpoint and
  * trapezoidal share. */
-#ifndef DVI_METHOD_ELEMENT_STEP_H
-#define DVI_METHOD_ELEMENT_STEP_H
+#ifndef DVI_METHOD_ELEMENT_ELEMENT_STEP_H
+#define DVI_METHOD_ELEMENT_ELEMENT_STEP_H
 #include "step/element/action.h"
 #include "method/method.h"
 #include "solve/nonlinear.h"

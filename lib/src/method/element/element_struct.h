@@ -1,6 +1,6 @@
 /* The inside of a step by one element, for element_step.c and element_branch.c. */
-#ifndef DVI_METHOD_ELEMENT_STRUCT_H
-#define DVI_METHOD_ELEMENT_STRUCT_H
+#ifndef DVI_METHOD_ELEMENT_ELEMENT_STRUCT_H
+#define DVI_METHOD_ELEMENT_ELEMENT_STRUCT_H
 #include "step/element/decoupled.h"
 #include "method/element/element_step.h"
 #include "solve/branch.h"

@@ -6,8 +6,8 @@
  * turns towards zero between them. Where its slope says so, the turning point is found, and the
  * sign there decides. The root nearest to the last length counts. If there is none, the length with
  * the least D^2 is taken, which is a turning point or a bound. */
-#ifndef DVI_METHOD_ENERGY_SEARCH_H
-#define DVI_METHOD_ENERGY_SEARCH_H
+#ifndef DVI_METHOD_ELEMENT_ENERGY_SEARCH_H
+#define DVI_METHOD_ELEMENT_ENERGY_SEARCH_H
 #include "method/element/bordered.h"
 
 typedef struct dvi__energy_search {

@@ -1,6 +1,6 @@
 /* This step of step/hamiltonian/phase_element.h is that of dg-phase for a Hamiltonian. */
-#ifndef DVI_METHOD_PHASE_STEP_H
-#define DVI_METHOD_PHASE_STEP_H
+#ifndef DVI_METHOD_HAMILTONIAN_PHASE_STEP_H
+#define DVI_METHOD_HAMILTONIAN_PHASE_STEP_H
 #include "method/one_step.h"
 
 /* Set symmetric, memory and own of a stepper. The caller sets the order. The argument `alarm` is

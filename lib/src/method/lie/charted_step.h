@@ -1,6 +1,6 @@
 /* The methods on groups and spheres share this galerkin step in the charts at its start. */
-#ifndef DVI_METHOD_CHARTED_STEP_H
-#define DVI_METHOD_CHARTED_STEP_H
+#ifndef DVI_METHOD_LIE_CHARTED_STEP_H
+#define DVI_METHOD_LIE_CHARTED_STEP_H
 #include "method/method.h"
 
 /* Set order, symmetric, memory_count, settings.rest and own of a stepper. The step uses the

@@ -151,7 +151,7 @@ static dvi_status explicit_midpoint(dvi__stepper *self, dvi__state *state, doubl
 /* Return 1 if a vector of a rotation, direction or angle has grown beyond 2. The midpoint of two
  * vectors of length 1 is no longer than 1. Where the iteration contracts, half a step rotates by
  * less than 1, and the guesses are no longer than sqrt(2). */
-static int is_astray(const dvi_system *system, const double *q)
+static int has_diverged(const dvi_system *system, const double *q)
 {
   for (int c = 0; c < system->slot_count; c++) {
     const dvi__factor_slot *slot = &system->slots[c];
@@ -172,7 +172,7 @@ static dvi_status implicit_midpoint(dvi__stepper *self, dvi__state *state, doubl
     const double scale = fmax(dvi__largest((size_t)self->system->n, state->q),
                               dvi__largest((size_t)self->system->nv, state->p));
     self->counters->residuals++;
-    if (!isfinite(moved) || !isfinite(scale) || is_astray(self->system, state->q)) break;
+    if (!isfinite(moved) || !isfinite(scale) || has_diverged(self->system, state->q)) break;
     if (moved <= 64 * DBL_EPSILON * scale && (moved == 0 || moved >= last)) {
       (void)move_plainly(self, state, h);
       return DVI_OK;

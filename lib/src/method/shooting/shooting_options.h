@@ -1,7 +1,7 @@
 /* The options of shooting are the one-step method, the quadrature and the type. They determine the
  * course of the shot. */
-#ifndef DVI_METHOD_SHOOTING_OPTIONS_H
-#define DVI_METHOD_SHOOTING_OPTIONS_H
+#ifndef DVI_METHOD_SHOOTING_SHOOTING_OPTIONS_H
+#define DVI_METHOD_SHOOTING_SHOOTING_OPTIONS_H
 #include "step/onestep/shot.h"
 #include "method/method.h"
 

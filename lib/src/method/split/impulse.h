@@ -4,8 +4,8 @@
  *     p <- p - h/2 V_slow'(t0, q),   (q, p) <- fast motion over h,   p <- p - h/2 V_slow'(t1, q)
  * The discrete Lagrangian is that of the fast motion with the trapezoid for the slow potentials.
  * The forces of the last kick are those of the next first kick. */
-#ifndef DVI_METHOD_IMPULSE_H
-#define DVI_METHOD_IMPULSE_H
+#ifndef DVI_METHOD_SPLIT_IMPULSE_H
+#define DVI_METHOD_SPLIT_IMPULSE_H
 #include "method/method.h"
 #include "num/simd/lanes.h"
 

@@ -7,8 +7,8 @@
  *
  * Phi and Psi_1 are functions of x = h omega of each mode. The method is symplectic where they are
  * equal. */
-#ifndef DVI_METHOD_OSCILLATION_H
-#define DVI_METHOD_OSCILLATION_H
+#ifndef DVI_METHOD_SPLIT_OSCILLATION_H
+#define DVI_METHOD_SPLIT_OSCILLATION_H
 #include "step/split/modes.h"
 #include "step/split/polynomials.h"
 #include "method/split/impulse.h"

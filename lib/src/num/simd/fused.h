@@ -2,8 +2,8 @@
  * instruction, because elsewhere each is a call. The bits are the same. FUSED is for static
  * functions. The processor chooses when the program starts. gcc's thread sanitizer cannot watch
  * that yet. */
-#ifndef DVI_NUM_FUSED_H
-#define DVI_NUM_FUSED_H
+#ifndef DVI_NUM_SIMD_FUSED_H
+#define DVI_NUM_SIMD_FUSED_H
 
 #if defined(__x86_64__) && defined(__gnu_linux__) && \
     (!defined(__clang__) || __clang_major__ >= 14) && !defined(__SANITIZE_THREAD__)

@@ -5,8 +5,8 @@
  * 1, 2, 4 or a multiple of 8. The loops are compiled for several instruction sets and chosen when
  * they are first used. Each gives the same bits, because every lane sees the same operations in the
  * same order, and none of them is a fused one. */
-#ifndef DVI_NUM_LANES_H
-#define DVI_NUM_LANES_H
+#ifndef DVI_NUM_SIMD_LANES_H
+#define DVI_NUM_SIMD_LANES_H
 #include <stddef.h>
 
 /* Give the least row length for so many stages. */

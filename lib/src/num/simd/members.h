@@ -4,8 +4,8 @@
  * [rows*width] by rows. The loops are compiled for the levels of num/simd/lanes.h. Each gives the
  * bits that its loop gives for one member alone, because every lane sees the same operations in the
  * same order. */
-#ifndef DVI_NUM_MEMBERS_H
-#define DVI_NUM_MEMBERS_H
+#ifndef DVI_NUM_SIMD_MEMBERS_H
+#define DVI_NUM_SIMD_MEMBERS_H
 #include <stddef.h>
 
 /* A dvi__fixed_point for every member. Numbers that differ between members have rows of `width`,

@@ -1,6 +1,6 @@
 /* The blocks of the functions of a scene. */
-#ifndef DVI_SCENE_BLOCKS_H
-#define DVI_SCENE_BLOCKS_H
+#ifndef DVI_SCENE_ELABORATE_BLOCKS_H
+#define DVI_SCENE_ELABORATE_BLOCKS_H
 #include "expr/function/function.h"
 
 /* The blocks. Functions of momenta have these in the block of velocities. */

@@ -4,8 +4,8 @@
  * A context has one element, or those of a sum. An index is a number for every element. An
  * expression without coordinates is one number for every element, too. It becomes a constant if
  * they are all the same, else a row of data. */
-#ifndef DVI_SCENE_CONTEXT_H
-#define DVI_SCENE_CONTEXT_H
+#ifndef DVI_SCENE_ELABORATE_CONTEXT_H
+#define DVI_SCENE_ELABORATE_CONTEXT_H
 #include "expr/function/function.h"
 #include "scene/elaborate/model.h"
 

@@ -1,6 +1,6 @@
 /* The functions of elaborate.c and of the files beside it that they share. */
-#ifndef DVI_SCENE_ELABORATE_H
-#define DVI_SCENE_ELABORATE_H
+#ifndef DVI_SCENE_ELABORATE_ELABORATE_H
+#define DVI_SCENE_ELABORATE_ELABORATE_H
 #include "scene/elaborate/context.h"
 #include "scene/elaborate/shape.h"
 

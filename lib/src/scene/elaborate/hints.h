@@ -1,6 +1,6 @@
 /* Hints for words that mean something elsewhere, on paper, in other languages or programs. */
-#ifndef DVI_SCENE_HINTS_H
-#define DVI_SCENE_HINTS_H
+#ifndef DVI_SCENE_ELABORATE_HINTS_H
+#define DVI_SCENE_ELABORATE_HINTS_H
 #include "scene/elaborate/names.h"
 
 /* Write "; write X" if an unknown name in an expression means X elsewhere, as ln, arctan, or xdot

@@ -1,7 +1,7 @@
 /* Kernels of an expression. Each sum that is added to the whole is one kernel, and the rest is one
  * more. */
-#ifndef DVI_SCENE_KERNELS_H
-#define DVI_SCENE_KERNELS_H
+#ifndef DVI_SCENE_ELABORATE_KERNELS_H
+#define DVI_SCENE_ELABORATE_KERNELS_H
 #include "scene/elaborate/context.h"
 
 /* A list of kernels that owns the nodes of their graphs, which dvi__kernels_free frees. The arena

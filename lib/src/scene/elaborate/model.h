@@ -1,6 +1,6 @@
 /* A scene, from the start of its reading on. The parts of the reader fill in one object in turn. */
-#ifndef DVI_SCENE_MODEL_H
-#define DVI_SCENE_MODEL_H
+#ifndef DVI_SCENE_ELABORATE_MODEL_H
+#define DVI_SCENE_ELABORATE_MODEL_H
 #include <dvi/scene.h>
 #include <pthread.h>
 

@@ -1,6 +1,6 @@
 /* The names of a scene. A name is a parameter, a coordinate or a definition. */
-#ifndef DVI_SCENE_NAMES_H
-#define DVI_SCENE_NAMES_H
+#ifndef DVI_SCENE_ELABORATE_NAMES_H
+#define DVI_SCENE_ELABORATE_NAMES_H
 #include "text/arena.h"
 #include "text/complaint.h"
 #include "scene/text/syntax.h"

@@ -1,6 +1,6 @@
 /* Arithmetic of numbers, vectors and matrices of nodes. */
-#ifndef DVI_SCENE_SHAPE_H
-#define DVI_SCENE_SHAPE_H
+#ifndef DVI_SCENE_ELABORATE_SHAPE_H
+#define DVI_SCENE_ELABORATE_SHAPE_H
 #include "scene/elaborate/context.h"
 
 #define DVI__NO_VALUE ((dvi__value){.shape = {-1, 0, 0}})

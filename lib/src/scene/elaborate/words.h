@@ -1,6 +1,6 @@
 /* The words of the language of expressions, functions and constants. */
-#ifndef DVI_SCENE_WORDS_H
-#define DVI_SCENE_WORDS_H
+#ifndef DVI_SCENE_ELABORATE_WORDS_H
+#define DVI_SCENE_ELABORATE_WORDS_H
 #include "expr/graph.h"
 
 /* A function of one or two numbers. */

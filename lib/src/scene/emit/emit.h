@@ -1,8 +1,8 @@
 /* Functions as C. The programs of their kernels are written as loops that a compiler sees through,
  * in the order of the byte code's sums, so that digits are the same. The text is C11 with no word
  * in it but ours. */
-#ifndef DVI_SCENE_EMIT_H
-#define DVI_SCENE_EMIT_H
+#ifndef DVI_SCENE_EMIT_EMIT_H
+#define DVI_SCENE_EMIT_EMIT_H
 #include "scene/elaborate/blocks.h"
 
 /* The destination of text. Fill in write and user. The rest starts at zero. After write returned

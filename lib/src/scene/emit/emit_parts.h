@@ -1,6 +1,6 @@
 /* Functions and types shared by the files of emit. */
-#ifndef DVI_SCENE_EMIT_PARTS_H
-#define DVI_SCENE_EMIT_PARTS_H
+#ifndef DVI_SCENE_EMIT_EMIT_PARTS_H
+#define DVI_SCENE_EMIT_EMIT_PARTS_H
 #include "scene/emit/emit.h"
 #include "expr/function/function_parts.h"
 

@@ -1,6 +1,6 @@
 /* Terms of a scene as C, for the scene's file. */
-#ifndef DVI_SCENE_EMIT_SCENE_H
-#define DVI_SCENE_EMIT_SCENE_H
+#ifndef DVI_SCENE_EMIT_EMIT_SCENE_H
+#define DVI_SCENE_EMIT_EMIT_SCENE_H
 #include "scene/emit/emit.h"
 #include "scene/elaborate/model.h"
 

@@ -1,6 +1,6 @@
 /* Names of columns. */
-#ifndef DVI_SCENE_COLUMNS_H
-#define DVI_SCENE_COLUMNS_H
+#ifndef DVI_SCENE_SECTIONS_COLUMNS_H
+#define DVI_SCENE_SECTIONS_COLUMNS_H
 #include "scene/elaborate/model.h"
 
 /* Refuse a name that dvi run has as a column already, but for those of a coordinate (or NULL). */

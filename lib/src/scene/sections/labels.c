@@ -114,18 +114,18 @@ const char *dvi_scene_momentum(const dvi_scene *scene, int i)
 
 /* ---- differences between columns ---- */
 
-/* Return the number after a bar, less 1, or -1 without one. */
-static long number_after_bar(const char *bar)
+/* Return the number after an underscore, less 1, or -1 without one. */
+static long number_after_underscore(const char *underscore)
 {
-  return bar != NULL && *bar == '_' ? strtol(bar + 1, NULL, 10) - 1 : -1;
+  return underscore != NULL && *underscore == '_' ? strtol(underscore + 1, NULL, 10) - 1 : -1;
 }
 
 /* Return the member, from 0, that an ending names, or -1. */
 static long member_of_ending(const dvi__coordinate *x, const char *ending)
 {
-  const long first = x->family > 0 ? number_after_bar(ending) : 0;
+  const long first = x->family > 0 ? number_after_underscore(ending) : 0;
   if (x->family < 2) return first;
-  const long second = ending[0] != '\0' ? number_after_bar(strchr(ending + 1, '_')) : -1;
+  const long second = ending[0] != '\0' ? number_after_underscore(strchr(ending + 1, '_')) : -1;
   const bool inside = first >= 0 && first < dvi__extent(x, 0) && second >= 0 &&
                       second < dvi__extent(x, 1);
   return inside ? first * x->columns + second : -1;
@@ -139,7 +139,7 @@ static bool has_ending(const dvi__coordinate *x, which of, const char *ending)
     return has_ending(&x->part[0], of, ending) || has_ending(&x->part[1], of, ending);
   const int components = of == OF_Q ? x->q.components : x->v.components;
   const long i = member_of_ending(x, ending),
-             only = components > 12 ? number_after_bar(strrchr(ending, '_')) : -1;
+             only = components > 12 ? number_after_underscore(strrchr(ending, '_')) : -1;
   char own[ROOM];
   if (i < 0 || i >= x->size) return false;
   for (int k = 0; k < components; k++) {
@@ -151,7 +151,7 @@ static bool has_ending(const dvi__coordinate *x, which of, const char *ending)
 }
 
 /* Return true if a label consists of this prefix and text. The text is, up to its end or to some
- * bar, the name of a coordinate other than `but`. `name` has room for the text. */
+ * underscore, the name of a coordinate other than `but`. `name` has room for the text. */
 static bool is_label(const dvi_scene *scene, const char *prefix, const char *text,
                      const dvi__coordinate *but, char *name)
 {

@@ -1,6 +1,6 @@
 /* Functions shared by the sections that declare the motion. */
-#ifndef DVI_SCENE_MOTION_H
-#define DVI_SCENE_MOTION_H
+#ifndef DVI_SCENE_SECTIONS_MOTION_H
+#define DVI_SCENE_SECTIONS_MOTION_H
 #include "scene/elaborate/kernels.h"
 #include "scene/sections/target.h"
 

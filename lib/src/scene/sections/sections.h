@@ -1,7 +1,7 @@
 /* The sections of a scene, their readers, and functions shared by these. docs/CONTRIBUTING.md tells
  * how to add one. */
-#ifndef DVI_SCENE_SECTIONS_H
-#define DVI_SCENE_SECTIONS_H
+#ifndef DVI_SCENE_SECTIONS_SECTIONS_H
+#define DVI_SCENE_SECTIONS_SECTIONS_H
 #include "scene/elaborate/context.h"
 
 /* Read the whole scene from its tree, that is names, terms, start and plan. Its system is made

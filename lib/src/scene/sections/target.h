@@ -1,6 +1,6 @@
 /* Coordinates as keys of mappings. */
-#ifndef DVI_SCENE_TARGET_H
-#define DVI_SCENE_TARGET_H
+#ifndef DVI_SCENE_SECTIONS_TARGET_H
+#define DVI_SCENE_SECTIONS_TARGET_H
 #include "scene/elaborate/context.h"
 
 /* A target x, x[3] or x[i], u[i,3], or B.R or B.x of a motion. It may stand for its numbers, for

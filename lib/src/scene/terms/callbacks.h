@@ -1,6 +1,6 @@
 /* The callbacks of a system's terms, on functions of a scene. `user` is a dvi__scene_term. */
-#ifndef DVI_SCENE_CALLBACKS_H
-#define DVI_SCENE_CALLBACKS_H
+#ifndef DVI_SCENE_TERMS_CALLBACKS_H
+#define DVI_SCENE_TERMS_CALLBACKS_H
 #include "scene/elaborate/kernels.h"
 
 /* Fill in a term with its callbacks, patterns and user pointer. Rates are there only if the system

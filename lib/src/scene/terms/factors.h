@@ -1,7 +1,7 @@
 /* Scenes with manifold coordinates. This declares the factors of the configuration space and the
  * constant mass. */
-#ifndef DVI_SCENE_FACTORS_H
-#define DVI_SCENE_FACTORS_H
+#ifndef DVI_SCENE_TERMS_FACTORS_H
+#define DVI_SCENE_TERMS_FACTORS_H
 #include "scene/elaborate/model.h"
 
 /* Declare the factors and the mass of a quadratic form. It has second derivatives by the rates of

@@ -1,6 +1,6 @@
 /* The text of dvi_scene_fault for the callbacks of this thread. */
-#ifndef DVI_SCENE_FAULT_H
-#define DVI_SCENE_FAULT_H
+#ifndef DVI_SCENE_TERMS_FAULT_H
+#define DVI_SCENE_TERMS_FAULT_H
 #include "scene/elaborate/model.h"
 
 /* Return the result of an evaluation of the term's function at points x, and keep the place of the

@@ -1,6 +1,6 @@
 /* The words of expressions. */
-#ifndef DVI_SCENE_LEXER_H
-#define DVI_SCENE_LEXER_H
+#ifndef DVI_SCENE_TEXT_LEXER_H
+#define DVI_SCENE_TEXT_LEXER_H
 #include "text/complaint.h"
 
 /* Kinds of tokens. A mark of one character has that character's code as its kind. */

@@ -1,7 +1,7 @@
 /* The parser of expressions below its grammar. It gives the words of the text one after the other,
  * and makes nodes of them. Functions that return bool return false after a complaint. */
-#ifndef DVI_SCENE_PARSER_H
-#define DVI_SCENE_PARSER_H
+#ifndef DVI_SCENE_TEXT_PARSER_H
+#define DVI_SCENE_TEXT_PARSER_H
 #include "scene/text/lexer.h"
 #include "scene/text/syntax.h"
 

@@ -1,7 +1,7 @@
 /* Expressions as they are written, as a tree of their parts, each with its place. docs/scenes.md
  * has the grammar. */
-#ifndef DVI_SCENE_SYNTAX_H
-#define DVI_SCENE_SYNTAX_H
+#ifndef DVI_SCENE_TEXT_SYNTAX_H
+#define DVI_SCENE_TEXT_SYNTAX_H
 #include "text/arena.h"
 #include "text/complaint.h"
 

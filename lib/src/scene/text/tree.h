@@ -1,6 +1,6 @@
 /* A YAML document as a tree of scalars, sequences and mappings, read by libyaml's events. */
-#ifndef DVI_SCENE_TREE_H
-#define DVI_SCENE_TREE_H
+#ifndef DVI_SCENE_TEXT_TREE_H
+#define DVI_SCENE_TEXT_TREE_H
 #include "text/arena.h"
 #include "text/complaint.h"
 

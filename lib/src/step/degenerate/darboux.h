@@ -16,8 +16,8 @@
  *
  * Unknowns and rows are stored component by component. Number k of component i is x[i*m + k], with
  * m stages and the end as the last. The unknowns are W for x and the increments Y_k - y0 for y. */
-#ifndef DVI_STEP_DARBOUX_H
-#define DVI_STEP_DARBOUX_H
+#ifndef DVI_STEP_DEGENERATE_DARBOUX_H
+#define DVI_STEP_DEGENERATE_DARBOUX_H
 #include "system/evaluate/evaluator.h"
 
 typedef struct dvi__darboux dvi__darboux;

@@ -23,8 +23,8 @@
  *
  * Unknowns and rows are stored component by component. x[i*S + k-1] is component i of X_k - q*, and
  * x[i*S + S-1] that of the jump at the end. */
-#ifndef DVI_STEP_DISCONTINUOUS_H
-#define DVI_STEP_DISCONTINUOUS_H
+#ifndef DVI_STEP_DEGENERATE_DISCONTINUOUS_H
+#define DVI_STEP_DEGENERATE_DISCONTINUOUS_H
 #include "system/evaluate/evaluator.h"
 
 typedef struct dvi__discontinuous dvi__discontinuous;

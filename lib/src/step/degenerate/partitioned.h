@@ -16,8 +16,8 @@
  *
  * Unknowns and rows are stored component by component. Number k of component i is x[i*m + k], with
  * m = s without a multiplier, and m = s + 1 with the multiplier as the last. */
-#ifndef DVI_STEP_PARTITIONED_H
-#define DVI_STEP_PARTITIONED_H
+#ifndef DVI_STEP_DEGENERATE_PARTITIONED_H
+#define DVI_STEP_DEGENERATE_PARTITIONED_H
 #include "system/evaluate/evaluator.h"
 
 typedef struct dvi__partitioned dvi__partitioned;

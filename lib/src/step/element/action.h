@@ -16,8 +16,8 @@
  * round better than positions.
  *
  * Unknowns and rows are stored component by component. Y_k of coordinate i is Y[i*s + k]. */
-#ifndef DVI_ACTION_ACTION_H
-#define DVI_ACTION_ACTION_H
+#ifndef DVI_STEP_ELEMENT_ACTION_H
+#define DVI_STEP_ELEMENT_ACTION_H
 #include <dvi/basis.h>
 #include <dvi/quadrature.h>
 

@@ -1,6 +1,6 @@
 /* The inside of an action element, for the files of this room. */
-#ifndef DVI_ACTION_ACTION_STRUCT_H
-#define DVI_ACTION_ACTION_STRUCT_H
+#ifndef DVI_STEP_ELEMENT_ACTION_STRUCT_H
+#define DVI_STEP_ELEMENT_ACTION_STRUCT_H
 #include "step/element/action.h"
 #include "step/element/row_terms.h"
 #include "step/joint.h"

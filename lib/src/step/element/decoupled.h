@@ -10,8 +10,8 @@
  * for quadratures that integrate psi_k' psi_l exactly. Without a mixed part U alone is
  * diagonalised. With one T is diagonalised, and U = -T^2. Gauss quadrature with as many nodes as
  * degrees has that exactly and others nearly, which is enough for an iteration's matrix. */
-#ifndef DVI_ACTION_DECOUPLED_H
-#define DVI_ACTION_DECOUPLED_H
+#ifndef DVI_STEP_ELEMENT_DECOUPLED_H
+#define DVI_STEP_ELEMENT_DECOUPLED_H
 #include "step/element/action.h"
 
 typedef struct dvi__decoupled dvi__decoupled;

@@ -8,8 +8,8 @@
  * E- of the next. E+ = E- for an autonomous system. Second derivatives of S commute. Therefore the
  * derivatives of E+ by Y and q0 are those of the rows dS/dY and dS/dq0 by h, but for the sign.
  * Source: Kane, Marsden and Ortiz 1999; Leok 2004, sec. 5.2. */
-#ifndef DVI_ACTION_ENERGY_H
-#define DVI_ACTION_ENERGY_H
+#ifndef DVI_STEP_ELEMENT_ENERGY_H
+#define DVI_STEP_ELEMENT_ENERGY_H
 #include "step/element/action.h"
 
 typedef struct dvi__energies {

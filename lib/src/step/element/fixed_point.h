@@ -10,8 +10,8 @@
  * VI.4.2). It is symplectic to the last bit of c, P and h/m, however h b_j is rounded. With the
  * factors h^2/m and h in these places, each rounded on its own, energy drifts by 1e-18 of itself a
  * step. */
-#ifndef DVI_ACTION_FIXED_POINT_H
-#define DVI_ACTION_FIXED_POINT_H
+#ifndef DVI_STEP_ELEMENT_FIXED_POINT_H
+#define DVI_STEP_ELEMENT_FIXED_POINT_H
 #include "step/element/action.h"
 
 /* Prepare tables and memory if the system is of this kind. Does nothing for others. */

@@ -4,8 +4,8 @@
  * Members differ in the start of their element. The step is the same. Each lane holds one member
  * that still iterates, and lanes whose members are done are closed up. Every member sees the
  * operations of fixed_point.h in their order, and its digits are those of an element alone. */
-#ifndef DVI_ACTION_MEMBERS_H
-#define DVI_ACTION_MEMBERS_H
+#ifndef DVI_STEP_ELEMENT_MEMBERS_H
+#define DVI_STEP_ELEMENT_MEMBERS_H
 #include "step/element/action.h"
 
 typedef struct dvi__action_members {

@@ -1,7 +1,7 @@
 /* The tables of an action element, which are the trial functions at the quadrature nodes and their
  * products. */
-#ifndef DVI_ACTION_TABLE_H
-#define DVI_ACTION_TABLE_H
+#ifndef DVI_STEP_ELEMENT_TABLE_H
+#define DVI_STEP_ELEMENT_TABLE_H
 #include "step/element/action.h"
 
 /* Allocate and fill all tables of a->space. */

@@ -12,8 +12,8 @@
  * functions of the finite element method.
  *
  * Bubbles are stored component by component. Z_m of coordinate i is Z[i*(s-1) + m-1]. */
-#ifndef DVI_ACTION_TWO_POINT_H
-#define DVI_ACTION_TWO_POINT_H
+#ifndef DVI_STEP_ELEMENT_TWO_POINT_H
+#define DVI_STEP_ELEMENT_TWO_POINT_H
 #include "step/element/action.h"
 
 /* Prepare the functions below, once, after dvi__action_prepare_jacobian. */

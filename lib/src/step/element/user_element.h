@@ -4,8 +4,8 @@
  * A coordinate may have the first functions alone, as slow ones have the polynomials. The unknowns
  * are those of its own functions, coordinate by coordinate. Unknowns of functions that are not
  * present at this h stay 0, by rows of their own. */
-#ifndef DVI_ACTION_USER_ELEMENT_H
-#define DVI_ACTION_USER_ELEMENT_H
+#ifndef DVI_STEP_ELEMENT_USER_ELEMENT_H
+#define DVI_STEP_ELEMENT_USER_ELEMENT_H
 #include "step/element/action.h"
 #include "space/shapes.h"
 

@@ -22,8 +22,8 @@
  * then Pi_j in the units of p_i. The rows are the first s of the first equations, the second
  * equations, and the rest of the first equations. With this order no row has a 0 on the diagonal
  * for small h. */
-#ifndef DVI_STEP_CANONICAL_H
-#define DVI_STEP_CANONICAL_H
+#ifndef DVI_STEP_HAMILTONIAN_CANONICAL_H
+#define DVI_STEP_HAMILTONIAN_CANONICAL_H
 #include "step/element/action.h"
 
 /* The largest degree, and the most points, of such a step. */

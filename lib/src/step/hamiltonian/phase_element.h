@@ -19,8 +19,8 @@
  * Unknowns and rows are stored component by component of z, then constraint by constraint.
  * x[c*(d+1) + i] is component c of W_i, or for i = d that of {z'} - {z}. Behind them stand 1+k
  * numbers for each constraint, h lambda' and the Legendre coefficients of h Lambda. */
-#ifndef DVI_STEP_PHASE_ELEMENT_H
-#define DVI_STEP_PHASE_ELEMENT_H
+#ifndef DVI_STEP_HAMILTONIAN_PHASE_ELEMENT_H
+#define DVI_STEP_HAMILTONIAN_PHASE_ELEMENT_H
 #include "system/evaluate/evaluator.h"
 
 enum { DVI__PHASE_DEGREE_MOST = 8 };

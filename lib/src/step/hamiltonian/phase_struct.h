@@ -1,6 +1,6 @@
 /* The struct of an element on phase space, for phase_element.c and phase_pattern.c. */
-#ifndef DVI_STEP_PHASE_STRUCT_H
-#define DVI_STEP_PHASE_STRUCT_H
+#ifndef DVI_STEP_HAMILTONIAN_PHASE_STRUCT_H
+#define DVI_STEP_HAMILTONIAN_PHASE_STRUCT_H
 #include "step/onestep/collocation.h"
 #include "step/hamiltonian/phase_element.h"
 #include "system/dynamics/constrained_hamiltonian.h"

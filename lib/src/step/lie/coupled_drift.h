@@ -1,7 +1,7 @@
 /* Lie-Verlet drifts (lie_drift.h) of slots that the mass couples, by Newton's method in the natural
  * charts at q0. */
-#ifndef DVI_STEP_COUPLED_DRIFT_H
-#define DVI_STEP_COUPLED_DRIFT_H
+#ifndef DVI_STEP_LIE_COUPLED_DRIFT_H
+#define DVI_STEP_LIE_COUPLED_DRIFT_H
 #include "step/split/temporal_blocking.h"
 #include "system/evaluate/evaluator.h"
 

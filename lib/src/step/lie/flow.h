@@ -1,7 +1,7 @@
 /* The equations of motion on a configuration space with factors, as those of a group that acts on
  * the space. Each slot moves by its own group. */
-#ifndef DVI_STEP_FLOW_H
-#define DVI_STEP_FLOW_H
+#ifndef DVI_STEP_LIE_FLOW_H
+#define DVI_STEP_LIE_FLOW_H
 #include "num/simd/lanes.h"
 #include "system/evaluate/evaluator.h"
 

@@ -10,8 +10,8 @@
  *
  * The momentum is rotated with the slot, so that its size changes by the rounding of single steps
  * only, without a drift. */
-#ifndef DVI_STEP_LIE_DRIFT_H
-#define DVI_STEP_LIE_DRIFT_H
+#ifndef DVI_STEP_LIE_LIE_DRIFT_H
+#define DVI_STEP_LIE_LIE_DRIFT_H
 #include "step/split/temporal_blocking.h"
 #include "group/moser_veselov.h"
 #include "system/evaluate/evaluator.h"

@@ -1,7 +1,7 @@
 /* The mass of a configuration space splits into blocks that are treated alone, and coupled
  * slots. */
-#ifndef DVI_STEP_MASS_BLOCKS_H
-#define DVI_STEP_MASS_BLOCKS_H
+#ifndef DVI_STEP_LIE_MASS_BLOCKS_H
+#define DVI_STEP_LIE_MASS_BLOCKS_H
 #include "group/moser_veselov.h"
 #include "system/system.h"
 

@@ -1,6 +1,6 @@
 /* Collocation coefficients, from which tableaux of stages are made. */
-#ifndef DVI_STEP_COLLOCATION_H
-#define DVI_STEP_COLLOCATION_H
+#ifndef DVI_STEP_ONESTEP_COLLOCATION_H
+#define DVI_STEP_ONESTEP_COLLOCATION_H
 #include <dvi/status.h>
 
 enum { DVI__STAGES_MOST = 8 };

@@ -2,8 +2,8 @@
  * coefficients L_j of the Lagrangian along the motion through a point these are
  *
  *     h sum_{j >= 1} w_j h^j L_j  at the start,     h sum_{j >= 1} w_j (-h)^j L_j  at the end. */
-#ifndef DVI_STEP_END_TERMS_H
-#define DVI_STEP_END_TERMS_H
+#ifndef DVI_STEP_ONESTEP_END_TERMS_H
+#define DVI_STEP_ONESTEP_END_TERMS_H
 #include "step/onestep/vector_field.h"
 
 typedef struct dvi__end_terms dvi__end_terms;

@@ -11,8 +11,8 @@
  * exactly, with the coefficients of the Hessians along the motion. Source: Leok and Shingel 2012
  * (the prolongation of the Euler-Lagrange equations); Griewank and Walther 2008, sec. 13.4 (the
  * recurrences). */
-#ifndef DVI_STEP_FLOW_SERIES_H
-#define DVI_STEP_FLOW_SERIES_H
+#ifndef DVI_STEP_ONESTEP_FLOW_SERIES_H
+#define DVI_STEP_ONESTEP_FLOW_SERIES_H
 #include "system/evaluate/jet.h"
 
 typedef struct dvi__flow_series dvi__flow_series;

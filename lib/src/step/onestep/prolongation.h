@@ -25,8 +25,8 @@
  *
  * The unknowns of coordinate i are q1 - q0, h v0 and h v1, at x[3 i], x[3 i + 1] and x[3 i + 2].
  * The rows are R_0, R_1 and h (p0 + D1 Ld). */
-#ifndef DVI_STEP_PROLONGATION_H
-#define DVI_STEP_PROLONGATION_H
+#ifndef DVI_STEP_ONESTEP_PROLONGATION_H
+#define DVI_STEP_ONESTEP_PROLONGATION_H
 #include "system/evaluate/evaluator.h"
 
 typedef struct dvi__prolongation dvi__prolongation;

@@ -2,8 +2,8 @@
  *
  *     Z_i = z0 + h sum_j a_ij f(t0 + c_i h, Z_j),                   i = 1..s
  *     z1  = z0 + h sum_i b_i f(t0 + c_i h, Z_i) */
-#ifndef DVI_STEP_RUNGE_KUTTA_H
-#define DVI_STEP_RUNGE_KUTTA_H
+#ifndef DVI_STEP_ONESTEP_RUNGE_KUTTA_H
+#define DVI_STEP_ONESTEP_RUNGE_KUTTA_H
 #include <dvi/status.h>
 #include <stdint.h>
 

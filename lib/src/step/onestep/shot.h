@@ -12,8 +12,8 @@
  * constant mass this is the shot in (q,v).
  *
  * Source: Leok and Shingel 2012, sec. 3; Hager 2000 (the costates of a Runge-Kutta method). */
-#ifndef DVI_STEP_SHOT_H
-#define DVI_STEP_SHOT_H
+#ifndef DVI_STEP_ONESTEP_SHOT_H
+#define DVI_STEP_ONESTEP_SHOT_H
 #include <dvi/taylor.h>
 
 #include "step/onestep/vector_field.h"

@@ -20,8 +20,8 @@
  *
  * The unknowns are in units of q. Type 1 has pi0, then p1. Type 2 has pi0, then mu. Type 3 has
  * k0 - q0, then p1. The rows are G_pi, then G_q + p0. */
-#ifndef DVI_STEP_SHOT_STEP_H
-#define DVI_STEP_SHOT_STEP_H
+#ifndef DVI_STEP_ONESTEP_SHOT_STEP_H
+#define DVI_STEP_ONESTEP_SHOT_STEP_H
 #include "step/onestep/shot.h"
 
 typedef struct dvi__shot_step dvi__shot_step;

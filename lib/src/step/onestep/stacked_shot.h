@@ -10,8 +10,8 @@
  *     (lambda_0)_q = -p0,   (lambda_0)_p = 0
  * The Jacobian omits third derivatives of L, because those of f_z with the costates and of L_z
  * nearly cancel. */
-#ifndef DVI_STEP_STACKED_SHOT_H
-#define DVI_STEP_STACKED_SHOT_H
+#ifndef DVI_STEP_ONESTEP_STACKED_SHOT_H
+#define DVI_STEP_ONESTEP_STACKED_SHOT_H
 #include "step/onestep/shot.h"
 
 typedef struct dvi__stacked_shot dvi__stacked_shot;

@@ -1,6 +1,6 @@
 /* The struct of a stacked shot, for stacked_shot.c and stacked_pattern.c. */
-#ifndef DVI_STEP_STACKED_STRUCT_H
-#define DVI_STEP_STACKED_STRUCT_H
+#ifndef DVI_STEP_ONESTEP_STACKED_STRUCT_H
+#define DVI_STEP_ONESTEP_STACKED_STRUCT_H
 #include "step/onestep/stacked_shot.h"
 
 /* A block of the Jacobian is 1, or h times f_z, f_z^T or the second derivatives of L(t,q,v(q,p)) at

@@ -1,7 +1,7 @@
 /* The stages of an implicit one-step method are coupled. W_j = h f(Z_j) with Z_j = z + sum_k a_jk
  * W_k is one dense system of 2 n s unknowns. */
-#ifndef DVI_STEP_STAGES_H
-#define DVI_STEP_STAGES_H
+#ifndef DVI_STEP_ONESTEP_STAGES_H
+#define DVI_STEP_ONESTEP_STAGES_H
 #include "step/onestep/vector_field.h"
 #include "step/onestep/runge_kutta.h"
 

@@ -5,8 +5,8 @@
  *     v(q,p) from p = L_v at the start, p1 = L_v at the end.
  *
  * Its derivative is that of the series (step/onestep/flow_series.h), and its order is `degree`. */
-#ifndef DVI_STEP_TAYLOR_H
-#define DVI_STEP_TAYLOR_H
+#ifndef DVI_STEP_ONESTEP_TAYLOR_H
+#define DVI_STEP_ONESTEP_TAYLOR_H
 #include "step/onestep/vector_field.h"
 
 typedef struct dvi__taylor dvi__taylor;

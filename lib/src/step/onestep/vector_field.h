@@ -7,8 +7,8 @@
  * w = L_vv^-1 (b - L_vq a), and
  *     H_qq a + H_qp b = -(L_qq a + L_qv w),     H_pq a + H_pp b = w.
  * A Hamiltonian gives its own derivatives. */
-#ifndef DVI_STEP_VECTOR_FIELD_H
-#define DVI_STEP_VECTOR_FIELD_H
+#ifndef DVI_STEP_ONESTEP_VECTOR_FIELD_H
+#define DVI_STEP_ONESTEP_VECTOR_FIELD_H
 #include "system/evaluate/evaluator.h"
 
 typedef struct dvi__vector_field dvi__vector_field;

@@ -5,8 +5,8 @@
  * Then the coefficients are at most 2 M rho^-k. The coefficients behind degree m, and the error of
  * interpolation in m + 1 points, are at most 4 M rho^-m/(rho - 1), for every rho > 1. Source:
  * Trefethen 2013, th. 8.1 and 8.2. */
-#ifndef DVI_STEP_EXPANSION_H
-#define DVI_STEP_EXPANSION_H
+#ifndef DVI_STEP_SPLIT_EXPANSION_H
+#define DVI_STEP_SPLIT_EXPANSION_H
 
 /* The growth of an even function of x, as a function of s = x^2, is bounded by
  *

@@ -2,8 +2,8 @@
  * held. This is the largest lambda = omega^2 of K x = lambda M x, with K = -L_qq and M = L_vv
  * there. The coupling by velocities (L_qv) is neglected, because it changes lambda by squares of
  * slow rates. */
-#ifndef DVI_STEP_FASTEST_H
-#define DVI_STEP_FASTEST_H
+#ifndef DVI_STEP_SPLIT_FASTEST_H
+#define DVI_STEP_SPLIT_FASTEST_H
 #include "system/evaluate/evaluator.h"
 
 typedef struct dvi__fastest dvi__fastest;

@@ -5,8 +5,8 @@
  *
  * Coordinates that neither M nor K couples form blocks with modes of their own, which are computed
  * once, block by block. */
-#ifndef DVI_STEP_MODES_H
-#define DVI_STEP_MODES_H
+#ifndef DVI_STEP_SPLIT_MODES_H
+#define DVI_STEP_SPLIT_MODES_H
 #include "num/simd/lanes.h"
 #include "system/evaluate/evaluator.h"
 

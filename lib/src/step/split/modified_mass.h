@@ -1,7 +1,7 @@
 /* The mass M + h^2/4 K. With this mass Verlet's method takes steps of the implicit midpoint rule,
  * for potentials q.Kq/2 + b.q (Stern 2009, prop. 2.2.1). */
-#ifndef DVI_STEP_MODIFIED_MASS_H
-#define DVI_STEP_MODIFIED_MASS_H
+#ifndef DVI_STEP_SPLIT_MODIFIED_MASS_H
+#define DVI_STEP_SPLIT_MODIFIED_MASS_H
 #include "system/evaluate/evaluator.h"
 
 typedef struct dvi__modified_mass dvi__modified_mass;

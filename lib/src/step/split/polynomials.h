@@ -7,8 +7,8 @@
  * wide. Degrees are such that the truncation error is below a rounding (step/split/expansion.h).
  * Each step sums the same products in the same order. Therefore the motion is symmetric, symplectic
  * to rounding, and conserves the momenta of the symmetries of K. */
-#ifndef DVI_STEP_POLYNOMIALS_H
-#define DVI_STEP_POLYNOMIALS_H
+#ifndef DVI_STEP_SPLIT_POLYNOMIALS_H
+#define DVI_STEP_SPLIT_POLYNOMIALS_H
 #include "step/split/expansion.h"
 #include "num/simd/lanes.h"
 #include "system/evaluate/evaluator.h"

@@ -1,6 +1,6 @@
 /* M and K of a system with quadratic potentials, V = q.Kq/2 + b(t).q, on one pattern. */
-#ifndef DVI_STEP_QUADRATIC_H
-#define DVI_STEP_QUADRATIC_H
+#ifndef DVI_STEP_SPLIT_QUADRATIC_H
+#define DVI_STEP_SPLIT_QUADRATIC_H
 #include "system/evaluate/evaluator.h"
 
 typedef struct dvi__quadratic {

@@ -25,8 +25,8 @@
  * operation number l at l r to the right of the cut. There the thread leaves a staircase of
  * coordinates at the times that the left neighbour needs. The left neighbour continues over the cut
  * by as much when its own part is done. */
-#ifndef DVI_STEP_TEMPORAL_BLOCKING_H
-#define DVI_STEP_TEMPORAL_BLOCKING_H
+#ifndef DVI_STEP_SPLIT_TEMPORAL_BLOCKING_H
+#define DVI_STEP_SPLIT_TEMPORAL_BLOCKING_H
 #include "num/simd/lanes.h"
 #include "system/system.h"
 

@@ -6,8 +6,8 @@
  * with a C that depends on the path's end and on the nodes. For paths that start elsewhere in the
  * chart C is 0. The charted system provides C (system/chart/charted.h), and the action uses C
  * (step/element/action.h). */
-#ifndef DVI_SYSTEM_CENTRING_H
-#define DVI_SYSTEM_CENTRING_H
+#ifndef DVI_SYSTEM_CHART_CENTRING_H
+#define DVI_SYSTEM_CHART_CENTRING_H
 
 typedef struct dvi__centring {
   void *of;

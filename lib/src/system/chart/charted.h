@@ -5,8 +5,8 @@
  *
  * for all code that knows R^n alone. A charted system belongs to one user, who moves its centre. It
  * has work memory, so it is not shared. */
-#ifndef DVI_SYSTEM_CHARTED_H
-#define DVI_SYSTEM_CHARTED_H
+#ifndef DVI_SYSTEM_CHART_CHARTED_H
+#define DVI_SYSTEM_CHART_CHARTED_H
 #include "num/simd/lanes.h"
 #include "system/chart/centring.h"
 #include "system/evaluate/evaluator.h"

@@ -1,7 +1,7 @@
 /* The inside of a charted system, shared by charted.c, charted_pattern.c, charted_lagrangian.c,
  * charted_hessian.c, charted_path.c and charted_reduced.c. */
-#ifndef DVI_SYSTEM_CHARTED_STRUCT_H
-#define DVI_SYSTEM_CHARTED_STRUCT_H
+#ifndef DVI_SYSTEM_CHART_CHARTED_STRUCT_H
+#define DVI_SYSTEM_CHART_CHARTED_STRUCT_H
 #include "core/status.h"
 #include "system/chart/charted.h"
 #include "system/chart/reduced.h"

@@ -4,8 +4,8 @@
  *     L = Omega.J Omega/2 + x'.R (Omega x m rho) + m |x'|^2/2
  *
  * and of constant masses of angles and coordinates. */
-#ifndef DVI_SYSTEM_REDUCED_H
-#define DVI_SYSTEM_REDUCED_H
+#ifndef DVI_SYSTEM_CHART_REDUCED_H
+#define DVI_SYSTEM_CHART_REDUCED_H
 #include "system/chart/charted.h"
 #include "system/system.h"
 

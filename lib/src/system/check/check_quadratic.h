@@ -1,6 +1,6 @@
 /* Check of potentials that are declared quadratic. */
-#ifndef DVI_SYSTEM_CHECK_QUADRATIC_H
-#define DVI_SYSTEM_CHECK_QUADRATIC_H
+#ifndef DVI_SYSTEM_CHECK_CHECK_QUADRATIC_H
+#define DVI_SYSTEM_CHECK_CHECK_QUADRATIC_H
 #include "system/term/term.h"
 
 /* Check that the gradient of a potential declared quadratic is linear in q far from the point, too,

@@ -1,6 +1,6 @@
 /* The state of the derivative check, for check.c, check_ranges.c and check_report.c. */
-#ifndef DVI_SYSTEM_CHECK_STRUCT_H
-#define DVI_SYSTEM_CHECK_STRUCT_H
+#ifndef DVI_SYSTEM_CHECK_CHECK_STRUCT_H
+#define DVI_SYSTEM_CHECK_CHECK_STRUCT_H
 #include "system/term/difference.h"
 
 /* One entry at which callback and difference disagree. */

@@ -1,6 +1,6 @@
 /* Check of Taylor coefficients. */
-#ifndef DVI_SYSTEM_CHECK_TAYLOR_H
-#define DVI_SYSTEM_CHECK_TAYLOR_H
+#ifndef DVI_SYSTEM_CHECK_CHECK_TAYLOR_H
+#define DVI_SYSTEM_CHECK_CHECK_TAYLOR_H
 #include "system/term/term.h"
 
 /* Check every term with a taylor callback along a curve through the point. Coefficient 0 is

@@ -1,6 +1,6 @@
 /* Check of declarations about time. */
-#ifndef DVI_SYSTEM_CHECK_TIME_H
-#define DVI_SYSTEM_CHECK_TIME_H
+#ifndef DVI_SYSTEM_CHECK_CHECK_TIME_H
+#define DVI_SYSTEM_CHECK_CHECK_TIME_H
 #include "system/term/term.h"
 
 /* Check that no term of an autonomous system depends on time. For other systems compare every rate

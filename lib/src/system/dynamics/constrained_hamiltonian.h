@@ -1,7 +1,7 @@
 /* Parts of the constraints phi(q,p) = 0 of a Hamiltonian at one point, for elements on phase
  * space. */
-#ifndef DVI_SYSTEM_CONSTRAINED_HAMILTONIAN_H
-#define DVI_SYSTEM_CONSTRAINED_HAMILTONIAN_H
+#ifndef DVI_SYSTEM_DYNAMICS_CONSTRAINED_HAMILTONIAN_H
+#define DVI_SYSTEM_DYNAMICS_CONSTRAINED_HAMILTONIAN_H
 #include "system/evaluate/evaluator.h"
 #include "system/term/constraint.h"
 

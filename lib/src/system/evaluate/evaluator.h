@@ -3,8 +3,8 @@
  * A system is shared and constant. An evaluator belongs to one user, owns the scratch memory and
  * counts. Nothing here allocates after create, but for the first factor of a velocity Hessian
  * (num/linear.h). Batches are component-major. Coordinate i of point k is q[i*count + k]. */
-#ifndef DVI_SYSTEM_EVALUATOR_H
-#define DVI_SYSTEM_EVALUATOR_H
+#ifndef DVI_SYSTEM_EVALUATE_EVALUATOR_H
+#define DVI_SYSTEM_EVALUATE_EVALUATOR_H
 #include <dvi/integrator.h>
 
 #include "system/system.h"

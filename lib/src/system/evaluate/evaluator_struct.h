@@ -1,6 +1,6 @@
 /* The inside of an evaluator, for its own files and the kinds of dynamics. */
-#ifndef DVI_SYSTEM_EVALUATOR_STRUCT_H
-#define DVI_SYSTEM_EVALUATOR_STRUCT_H
+#ifndef DVI_SYSTEM_EVALUATE_EVALUATOR_STRUCT_H
+#define DVI_SYSTEM_EVALUATE_EVALUATOR_STRUCT_H
 #include "system/evaluate/evaluator.h"
 #include "system/term/term.h"
 

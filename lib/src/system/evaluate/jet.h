@@ -3,8 +3,8 @@
  *
  * A curve is t(s), q(s) and v(s), of which coefficient k stands at t[k], q[k*n + i] and v[k*n + i].
  * v need not be the rate of q. Coefficient k of a Hessian's entry e stands at [k*entries + e]. */
-#ifndef DVI_SYSTEM_JET_H
-#define DVI_SYSTEM_JET_H
+#ifndef DVI_SYSTEM_EVALUATE_JET_H
+#define DVI_SYSTEM_EVALUATE_JET_H
 #include <dvi/taylor.h>
 
 #include "system/evaluate/evaluator.h"

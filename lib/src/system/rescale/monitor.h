@@ -1,7 +1,7 @@
 /* A monitor g(q) > 0, evaluated as the potential of a system of its own. So batches, differences
  * and checks of callbacks are shared. */
-#ifndef DVI_SYSTEM_MONITOR_H
-#define DVI_SYSTEM_MONITOR_H
+#ifndef DVI_SYSTEM_RESCALE_MONITOR_H
+#define DVI_SYSTEM_RESCALE_MONITOR_H
 #include <dvi/transform.h>
 
 #include "system/evaluate/evaluator.h"

@@ -4,8 +4,8 @@
  *
  * A transformed system belongs to one integrator, whose start chooses E0. It has work memory, so it
  * is not shared. */
-#ifndef DVI_SYSTEM_TRANSFORMED_H
-#define DVI_SYSTEM_TRANSFORMED_H
+#ifndef DVI_SYSTEM_RESCALE_TRANSFORMED_H
+#define DVI_SYSTEM_RESCALE_TRANSFORMED_H
 #include "system/rescale/monitor.h"
 
 typedef struct dvi__transformed dvi__transformed;

@@ -1,6 +1,6 @@
 /* Systems whose one-form has constant components. */
-#ifndef DVI_SYSTEM_CONSTANT_COMPONENTS_H
-#define DVI_SYSTEM_CONSTANT_COMPONENTS_H
+#ifndef DVI_SYSTEM_TERM_CONSTANT_COMPONENTS_H
+#define DVI_SYSTEM_TERM_CONSTANT_COMPONENTS_H
 #include "system/system.h"
 
 /* Set is_x [n] to 0 for the constant components of the one-form and to 1 for the others, if just

@@ -1,6 +1,6 @@
 /* Derivatives by central differences, for a batch of points at once. */
-#ifndef DVI_SYSTEM_DIFFERENCE_H
-#define DVI_SYSTEM_DIFFERENCE_H
+#ifndef DVI_SYSTEM_TERM_DIFFERENCE_H
+#define DVI_SYSTEM_TERM_DIFFERENCE_H
 #include "system/term/term.h"
 
 /* A scalar function at a batch of points, and a gradient at a batch of points (second may be NULL

@@ -2,8 +2,8 @@
  * missing.
  *
  * The evaluator and the derivative check alone use this. */
-#ifndef DVI_SYSTEM_TERM_H
-#define DVI_SYSTEM_TERM_H
+#ifndef DVI_SYSTEM_TERM_TERM_H
+#define DVI_SYSTEM_TERM_TERM_H
 #include "system/system.h"
 
 /* Memory of one level of differencing, for moved points and the function on both sides. Each array
