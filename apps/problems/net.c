@@ -45,9 +45,9 @@ PROBLEM_INLINE void net_measure(const net *own, const net_spring *spring, size_t
   for (int c = 0; c < dim; c++) {
     const double apart = c == spring->axis ? spring->step : 0.0;
     const double *from = q + (size_t)(spring->from * dim + c) * count;
-    const double *to = spring->to >= 0 ? q + (size_t)(spring->to * dim + c) * count : NULL;
+    const double *to = spring->to >= 0 ? q + (size_t)(spring->to * dim + c) * count : from;
     double *d = out->d[c];
-    if (to != NULL)
+    if (spring->to >= 0)
       for (int k = 0; k < tile; k++) d[k] = apart + (to[k] - from[k]);
     else
       for (int k = 0; k < tile; k++) d[k] = apart - from[k];

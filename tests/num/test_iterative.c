@@ -136,9 +136,56 @@ START_TEST(a_solve_goes_on_from_the_best_solution)
 }
 END_TEST
 
+/* Unknowns times 1, and the first ones times `first`. */
+static void two_values_times(void *user, const double *x, double *y)
+{
+  const double *first = user;
+  for (int k = 0; k < GRID; k++) y[k] = (k < 3 ? *first : 1) * x[k];
+}
+
+static int positive_sign(void *user)
+{
+  (void)user;
+  return 1;
+}
+
+static int positive_definite(void *user, int sign)
+{
+  (void)user;
+  return sign == 1;
+}
+
+/* The preconditioner is definite. What is known of the matrix comes from the solution. */
+START_TEST(solutions_tell_negative_eigenvalues)
+{
+  static const struct {
+    double first;
+    dvi_status status;
+    int sign, definite;
+  } cases[] = {{2, DVI_OK, 1, 1}, {-2, DVI_OK, -1, 0}, {0, DVI_NOT_CONVERGED, 0, 0}};
+  double first = cases[_i].first, x[GRID];
+  const dvi__operator A = {.size = GRID,
+                           .of = &first,
+                           .times = two_values_times,
+                           .sign = positive_sign,
+                           .is_definite = positive_definite};
+  dvi__linear *linear;
+  ck_assert_int_eq(dvi__linear_create_iterative(&A, NULL, &linear), DVI_OK);
+  ck_assert_int_eq(dvi__linear_factor(linear, NULL), DVI_OK);
+  for (int k = 0; k < GRID; k++) x[k] = 1;
+  ck_assert_int_eq(dvi__linear_solve(linear, x), cases[_i].status);
+  if (cases[_i].status == DVI_OK) {
+    ck_assert_int_eq(dvi__linear_sign(linear), cases[_i].sign);
+    ck_assert_int_eq(dvi__linear_is_definite(linear, 1), cases[_i].definite);
+  }
+  dvi__linear_destroy(&linear);
+}
+END_TEST
+
 SUITE(iterative)
 {
   tcase_add_loop_test(tests, an_operator_is_solved_by_its_products, 0, 2);
+  tcase_add_loop_test(tests, solutions_tell_negative_eigenvalues, 0, 3);
   tcase_add_test(tests, a_solve_goes_on_from_the_best_solution);
   tcase_add_test(tests, an_operator_says_what_is_not_known);
 }

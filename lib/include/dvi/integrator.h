@@ -206,7 +206,8 @@ dvi_status dvi_integrator_start_velocity(dvi_integrator *integrator, double t, c
  *                              down to h = 0 (docs/theory.md), or a rotation goes beyond its chart.
  *                              The error sentence names step, time, the largest h with a solution,
  *                              and iterations
- *  @retval DVI_NOT_CONVERGED   not even a short step could be solved. The error sentence names
+ *  @retval DVI_NOT_CONVERGED   not even a short step could be solved, or the iterative solver of
+ *                              a large system does not find a correction. The error sentence names
  *                              step, time and iterations. Also, for a one-form in up to 16
  *                              dimensions or up to 16 constraints, the step leads over a point
  *                              where the two-form, or the bracket matrix, is singular. No

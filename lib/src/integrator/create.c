@@ -95,12 +95,13 @@ static dvi_status make_monitored_integrator(const dvi_system *system,
   return status;
 }
 
-/* Copy the options. The caller's struct may be that of an older header, without the last
- * fields. */
+/* Copy the options. The caller's struct may be that of an older header, without the last fields.
+ * Every field, and so every such size, takes a multiple of a pointer's size. */
 static dvi_status read_options(const dvi_integrator_options *given, dvi_integrator_options *o)
 {
   *o = (dvi_integrator_options){0};
-  if (given->size < sizeof given->size || given->size > sizeof *o)
+  if (given->size < sizeof given->size || given->size > sizeof *o ||
+      given->size % sizeof(void *) != 0)
     return dvi__fail(
         DVI_BAD_ARGUMENT,
         "integrator: the options' size is %zu; set it to sizeof(dvi_integrator_options), %zu",

@@ -107,9 +107,9 @@ static dvi_status end_at_event(march *m)
   if (next_step(m, t_end) == 0) return DVI_OK;
   m->marcher->take_back(m->of);
   const double h = next_step(m, t_end);
-  if (h != 0) return march_advance(m, h, t_end);
-  m->report->steps--;
-  return DVI_OK;
+  const dvi_status status = h != 0 ? march_advance(m, h, t_end) : DVI_OK;
+  if (h == 0 || status != DVI_OK) m->report->steps--;
+  return status;
 }
 
 static dvi_status find_events(march *m, double from)

@@ -70,7 +70,7 @@ static dvi_status stationary_follow(const dvi__stationary *s, const dvi__station
                               .room = s->room};
   dvi__branch_failure failure;
   dvi__branch_end end;
-  dvi__branch_note(whole, &failure);
+  dvi__branch_note(whole, s->solver, &failure);
   step->stepper->counters->followed++;
   step->stepper->counters->newtons += !step->stepper->follow;
   const dvi_status status = dvi__branch_follow(&branch, s->solver, s->x, &end);

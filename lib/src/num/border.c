@@ -148,7 +148,7 @@ static dvi_status bordered_refactor(void *factor, const dvi__pattern *pattern, c
   return dvi__sparse_factor.refactor(s->factor, &s->pattern, s->values);
 }
 
-static void bordered_solve(void *factor, const dvi__pattern *pattern, double *b)
+static dvi_status bordered_solve(void *factor, const dvi__pattern *pattern, double *b)
 {
   bordered *s = factor;
   const size_t size = (size_t)pattern->columns, all = (size_t)s->pattern.columns;
@@ -156,6 +156,7 @@ static void bordered_solve(void *factor, const dvi__pattern *pattern, double *b)
   memset(s->b + size, 0, (all - size) * sizeof *b);
   dvi__sparse_factor.solve(s->factor, &s->pattern, s->b);
   memcpy(b, s->b, size * sizeof *b);
+  return DVI_OK;
 }
 
 static dvi__linear_cost bordered_cost(const void *factor, const dvi__pattern *pattern)

@@ -79,12 +79,13 @@ static dvi_status dense_refactor(void *factor, const dvi__pattern *pattern, cons
       n, n, reciprocal_condition);
 }
 
-static void dense_solve(void *factor, const dvi__pattern *pattern, double *b)
+static dvi_status dense_solve(void *factor, const dvi__pattern *pattern, double *b)
 {
   const dense *d = factor;
   const int n = pattern->rows, one = 1;
   int status;
   dgetrs_("N", &n, &one, d->lu, &n, d->pivot, b, &n, &status, 1);
+  return DVI_OK;
 }
 
 static int dense_sign(const void *factor, const dvi__pattern *pattern)

@@ -1,5 +1,6 @@
 #include "num/eigen.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "core/memory.h"
@@ -81,6 +82,19 @@ dvi_status dvi__eigen_symmetric(int n, const double *K, const double *M, double 
   dvi__release(copy);
   dvi__release(work);
   return status;
+}
+
+int dvi__negative_ritz_values(int n, double *H, int lead, double next, double *work)
+{
+  const int one = 1, length = 4 * n;
+  double *real = work, *imaginary = real + n, *vector = imaginary + n, *rest = vector + n * n;
+  int info, count = 0;
+  dgeev_("N", "V", &n, H, &lead, real, imaginary, NULL, &one, vector, &n, rest, &length, &info, 1,
+         1);
+  for (int k = 0; k < n && info == 0; k++)
+    count += imaginary[k] == 0 && real[k] < 0 &&
+             fabs(next * vector[k * n + n - 1]) <= 0.1 * fabs(real[k]);
+  return count;
 }
 
 int dvi__is_positive_definite(int n, double *A)

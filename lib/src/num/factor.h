@@ -26,7 +26,8 @@ typedef struct dvi__factor_kind {
   void (*destroy)(void *factor);
   /* Factor. DVI_SINGULAR with a sentence if the reciprocal condition is below DVI__LEAST_RCOND. */
   dvi_status (*refactor)(void *factor, const dvi__pattern *pattern, const double *values);
-  void (*solve)(void *factor, const dvi__pattern *pattern, double *b);
+  /* DVI_NOT_CONVERGED with a sentence if an iteration leaves too much. */
+  dvi_status (*solve)(void *factor, const dvi__pattern *pattern, double *b);
   /* dvi__linear_sign and dvi__linear_is_definite, or NULL if not known. */
   int (*sign)(const void *factor, const dvi__pattern *pattern);
   int (*is_definite)(const void *factor, const dvi__pattern *pattern, int sign);

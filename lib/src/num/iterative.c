@@ -6,13 +6,18 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "num/eigen.h"
 #include "num/factor.h"
 
 /* Number of directions that are kept, and of restarts from the best solution. */
-enum { DIRECTIONS = 40, RESTARTS = 5 };
+enum { DIRECTIONS = 40, RESTARTS = 25 };
 
-/* Part of P^-1 b that may be left. Newton's method, which uses the solution, corrects the rest. */
-static const double enough = 1e-5;
+/* Part of P^-1 b that is left at most, if all goes well, and in the end. Newton's method, which uses
+ * the solution, corrects the rest. */
+static const double enough = 1e-7, acceptable = 1e-5;
+
+/* A search that leaves more than this part of the residual is the last one. */
+static const double stagnant = 0.95;
 
 typedef struct iterative {
   const dvi__operator *A;
@@ -21,6 +26,9 @@ typedef struct iterative {
   double *x, *r;                        /* [size] solution, and P^-1 b or its remaining part */
   double H[DIRECTIONS + 1][DIRECTIONS]; /* A in these directions, as rotations make it triangular */
   double cosine[DIRECTIONS], sine[DIRECTIONS], left[DIRECTIONS + 1];
+  double column[DIRECTIONS][DIRECTIONS + 1]; /* A in these directions, by columns */
+  double work[DIRECTIONS * (DIRECTIONS + 6)];
+  int has_solved, negatives; /* negative eigenvalues of P^-1 A that the last solution has met */
 } iterative;
 
 static void iterative_destroy(void *factor)
@@ -99,6 +107,7 @@ static void extend_basis(iterative *s, int k)
   }
   const double length = s->H[k + 1][k] = sqrt(gmres_dot(s->size, next, next));
   for (size_t i = 0; i < s->size && length > 0; i++) next[i] /= length;
+  for (int j = 0; j <= k + 1; j++) s->column[k][j] = s->H[j][k];
 }
 
 /* Apply the rotations before, and one that removes the entry below the diagonal. */
@@ -127,9 +136,9 @@ static void add_combination(iterative *s, int count)
   for (int k = 0; k < count; k++) gmres_add(s->size, s->left[k], gmres_direction(s, k), s->x);
 }
 
-/* Search from the residual r of length `length`. Gives the length that remains by the
- * recurrence. */
-static double gmres_search(iterative *s, double length, double most)
+/* Search from the residual r of length `length`. Return the number of directions. A direction that
+ * A maps into those before is of no use, because A is singular there. */
+static int gmres_search(iterative *s, double length, double most)
 {
   double *first = gmres_direction(s, 0);
   int k = 0;
@@ -138,11 +147,11 @@ static double gmres_search(iterative *s, double length, double most)
   while (k < DIRECTIONS && fabs(s->left[k]) > most) {
     extend_basis(s, k);
     rotate_column(s, k);
+    if (!(s->H[k][k] > 0)) break;
     k++;
   }
-  const double left = fabs(s->left[k]);
   add_combination(s, k);
-  return left;
+  return k;
 }
 
 /* Set r = P^-1 (b - A x). */
@@ -155,35 +164,63 @@ static double gmres_residual(iterative *s, const double *b)
   return sqrt(gmres_dot(s->size, s->r, s->r));
 }
 
+static void count_negatives(iterative *s, int directions)
+{
+  s->negatives = directions == 0
+                     ? 0
+                     : dvi__negative_ritz_values(directions, s->column[0], DIRECTIONS + 1,
+                                                 s->column[directions - 1][directions], s->work);
+  s->has_solved = 1;
+}
+
+/* Return the length of what the residual is compared with. Where A is stiff P^-1 b is much longer
+ * than the solution, and a small part of it would be a large part of the solution. */
+static double gmres_scale(const iterative *s, double whole)
+{
+  const double length = sqrt(gmres_dot(s->size, s->x, s->x));
+  return length < whole ? length : whole;
+}
+
 /* Solve. A right side that is not finite has no better solution than itself. */
-static void iterative_solve(void *factor, const dvi__pattern *pattern, double *b)
+static dvi_status iterative_solve(void *factor, const dvi__pattern *pattern, double *b)
 {
   iterative *s = factor;
   (void)pattern;
   memset(s->x, 0, s->size * sizeof(double));
   memcpy(s->r, b, s->size * sizeof(double));
   gmres_precondition(s, s->r);
-  double length = sqrt(gmres_dot(s->size, s->r, s->r));
-  const double most = enough * length;
-  for (int i = 0; i < RESTARTS && length > most && isfinite(length); i++) {
-    if (gmres_search(s, length, most) <= most) break;
+  const double whole = sqrt(gmres_dot(s->size, s->r, s->r));
+  double length = whole, scale = whole, before = HUGE_VAL;
+  for (int i = 0; i < RESTARTS && length > enough * scale && length <= stagnant * before; i++) {
+    const int directions = gmres_search(s, length, enough * scale);
+    if (i == 0) count_negatives(s, directions);
+    before = length;
     length = gmres_residual(s, b);
+    scale = gmres_scale(s, whole);
   }
-  if (isfinite(length)) memcpy(b, s->x, s->size * sizeof(double));
+  if (!isfinite(length)) return dvi__fail(DVI_NOT_CONVERGED, "GMRES meets numbers too large");
+  memcpy(b, s->x, s->size * sizeof(double));
+  if (length <= acceptable * scale) return DVI_OK;
+  return dvi__fail(DVI_NOT_CONVERGED,
+                   "GMRES leaves %.1e of the solution; the matrix is singular, or its "
+                   "preconditioner far from it",
+                   length / scale);
 }
 
+/* The determinant of A is that of P times the eigenvalues of P^-1 A. */
 static int iterative_sign(const void *factor, const dvi__pattern *pattern)
 {
-  const dvi__operator *A = ((const iterative *)factor)->A;
+  const iterative *s = factor;
   (void)pattern;
-  return A->sign != NULL ? A->sign(A->of) : 0;
+  if (s->A->sign == NULL || !s->has_solved) return 0;
+  return s->negatives % 2 == 0 ? s->A->sign(s->A->of) : -s->A->sign(s->A->of);
 }
 
 static int iterative_is_definite(const void *factor, const dvi__pattern *pattern, int sign)
 {
-  const dvi__operator *A = ((const iterative *)factor)->A;
+  const iterative *s = factor;
   (void)pattern;
-  return A->is_definite != NULL && A->is_definite(A->of, sign);
+  return s->negatives == 0 && s->A->is_definite != NULL && s->A->is_definite(s->A->of, sign);
 }
 
 const dvi__factor_kind dvi__iterative_factor = {.name = "GMRES",

@@ -207,10 +207,11 @@ static dvi_status klu_factor_again(void *factor, const dvi__pattern *pattern, co
                    pattern->rows, pattern->columns);
 }
 
-static void klu_solve_one(void *factor, const dvi__pattern *pattern, double *b)
+static dvi_status klu_solve_one(void *factor, const dvi__pattern *pattern, double *b)
 {
   sparse *s = factor;
   s->of->solve(s->symbolic, s->current, pattern->rows, 1, b, &s->common);
+  return DVI_OK;
 }
 
 /* Tell whether the permutation takes an odd number of exchanges. A cycle takes one less than its

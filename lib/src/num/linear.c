@@ -280,11 +280,12 @@ static void scale_vector(int n, int parts, const double *by, double *b)
   for (int i = 0; i < n; i++) scale_entry(parts, by[i], b + (ptrdiff_t)parts * i);
 }
 
-void dvi__linear_solve(dvi__linear *linear, double *b)
+dvi_status dvi__linear_solve(dvi__linear *linear, double *b)
 {
   const dvi__pattern *pattern = linear->form.pattern;
   if (linear->counters != NULL) linear->counters->solves++;
   if (pattern != NULL) scale_vector(pattern->columns, linear->parts, linear->row_scale, b);
-  linear->kind->solve(linear->factor, pattern, b);
+  const dvi_status status = linear->kind->solve(linear->factor, pattern, b);
   if (pattern != NULL) scale_vector(pattern->columns, linear->parts, linear->column_scale, b);
+  return status;
 }

@@ -94,8 +94,9 @@ int dvi__linear_sign(const dvi__linear *linear);
 int dvi__linear_is_definite(const dvi__linear *linear, int sign);
 int dvi__linear_tells_definite(const dvi__linear *linear);
 
-/* Overwrite b [rows, or pairs of them] by the solution. Needs a factor. An iterative solver may
- * stop before convergence where P is far from A, and b is the best solution found then. */
-void dvi__linear_solve(dvi__linear *linear, double *b);
+/* Overwrite b [rows, or pairs of them] by the solution. Needs a factor. DVI_OK for matrices.
+ * DVI_NOT_CONVERGED if an iterative solver stops early, as it does where A is singular or P is far
+ * from A. b is the best solution found then. */
+dvi_status dvi__linear_solve(dvi__linear *linear, double *b);
 
 #endif

@@ -175,9 +175,10 @@ int dvi__branch_is_straight(const dvi__solve_report *report)
   return report->bend <= 1e-3;
 }
 
-void dvi__branch_note(dvi_status status, dvi__branch_failure *failure)
+void dvi__branch_note(dvi_status status, const dvi__solver *solver, dvi__branch_failure *failure)
 {
   failure->status = status;
+  failure->unsolved = status != DVI_OK && solver->unsolved;
   (void)snprintf(failure->sentence, sizeof failure->sentence, "%s",
                  status == DVI_OK ? "" : dvi_last_error());
 }
@@ -202,6 +203,10 @@ dvi_status dvi__branch_tell(const dvi__branch_end *end, double h, const dvi__bra
         DVI_NOT_CONVERGED,
         "not solved, not even for a step of h = %.3g (%d iterations, residual %.1e)",
         least_part * h, end->report.iterations, end->report.row);
+  if (whole->unsolved)
+    return dvi__fail(DVI_NOT_CONVERGED,
+                     "%s; solutions that continue those of shorter steps are found up to h = %.4g",
+                     whole->sentence, reached);
   return dvi__fail(
       DVI_STEP_TOO_LARGE,
       "a step too large: the solution that continues those of shorter steps ends at h = %.4g; "

@@ -68,11 +68,12 @@ int dvi__branch_is_straight(const dvi__solve_report *report);
 /* The failure of the whole step, before its branch was followed. */
 typedef struct dvi__branch_failure {
   dvi_status status; /* DVI_OK if nothing failed */
+  int unsolved;      /* 1 if an iterative solver did not find a correction */
   char sentence[DVI__BRANCH_SENTENCE];
 } dvi__branch_failure;
 
-/* Keep a status and the thread's error sentence. */
-void dvi__branch_note(dvi_status status, dvi__branch_failure *failure);
+/* Keep a status of the solver and the thread's error sentence. */
+void dvi__branch_note(dvi_status status, const dvi__solver *solver, dvi__branch_failure *failure);
 
 /* Fail with DVI_STEP_TOO_LARGE and a sentence on how far the solutions of a step of length h reach.
  * A callback's failure takes precedence: that of the whole step, else that beyond the end. */

@@ -75,7 +75,9 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
     if (!fresh) DVI_TRY(dvi__solver_factor(s, x));
     DVI_TRY(dvi__solver_residual(s, x, s->residual));
     report->row = dvi__largest((size_t)s->equations.unknowns, s->residual);
-    dvi__linear_solve(s->linear, s->residual);
+    const dvi_status solved = dvi__linear_solve(s->linear, s->residual);
+    s->unsolved = solved != DVI_OK;
+    DVI_TRY(solved);
     dvi__correct(s->equations.unknowns, s->residual, x, &report->correction, &whole);
     dvi__solver_note(s, x, report);
     const dvi__progress progress = dvi__test_correction(report->correction, &history, &criteria,

@@ -14,6 +14,7 @@ struct dvi__solver {
   double *magnitude;   /* [unknowns] magnitudes of what is summed in the rows, NULL if not known */
   double *values;      /* values of the Jacobian, NULL if not prepared, or an operator */
   int factored;        /* values are factored */
+  int unsolved;        /* the last correction was not found by an iterative solver */
   int in_use;          /* the current iteration uses them */
   dvi__linear *linear; /* NULL if not prepared */
   dvi__kinsol *kinsol; /* NULL if not prepared */

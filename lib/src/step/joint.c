@@ -28,22 +28,6 @@ static dvi_status joint_join(const dvi_system *system, const dvi__pattern *more,
   return status;
 }
 
-/* Entries that the Hessian has at least; a pattern that was left out is full, and is not made
- * here. */
-static size_t least_entries(const dvi_system *system)
-{
-  const size_t n = (size_t)system->n;
-  size_t least = (size_t)dvi__pattern_entries(&system->vv);
-  for (int k = 0; k <= system->potential_count; k++) {
-    const int is_own = k == system->potential_count;
-    if (is_own && system->lagrangian == NULL) continue;
-    const dvi__pattern *qq = is_own ? &system->lagrangian->qq : &system->potentials[k].qq;
-    const size_t entries = qq->start != NULL ? (size_t)dvi__pattern_entries(qq) : n * n;
-    if (entries > least) least = entries;
-  }
-  return least;
-}
-
 dvi_status dvi__joint_check(const dvi_system *system, int size, int most)
 {
   const size_t n = (size_t)system->n, each = (size_t)(most > size ? most : size);
@@ -52,7 +36,7 @@ dvi_status dvi__joint_check(const dvi_system *system, int size, int most)
                      "action: %d coordinates with %zu numbers each make %zu, more than an int can "
                      "count; take a lower degree, or fewer nodes or stages",
                      system->n, each, n * each);
-  const size_t least = least_entries(system) * (size_t)size * (size_t)size;
+  const size_t least = dvi__system_least_entries(system) * (size_t)size * (size_t)size;
   if (least < INT_MAX) return DVI_OK;
   return dvi__fail(
       DVI_BAD_SIZE,

@@ -136,6 +136,9 @@ struct dvi_system {
   dvi__pattern qv, vv, qq;
 };
 
+/* Give a lower bound of the entries of L_qq. A pattern that was not declared counts as full. */
+size_t dvi__system_least_entries(const dvi_system *system);
+
 /* Complete the patterns of L_qq, once. Patterns that were not declared become full, with n^2
  * entries that only a method with Hessians should pay for. Integrators on several threads may call
  * this at one time. Return DVI_BAD_SIZE if an int cannot count the entries. */

@@ -3,6 +3,7 @@
  * systems". */
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "support/heap.h"
@@ -159,6 +160,92 @@ START_TEST(explain_says_which_solver_it_would_be)
 }
 END_TEST
 
+/* V = -q^2/2 for every coordinate, with many Hessian entries that stay 0. */
+enum { UNSTABLE = 3000 };
+
+static int unstable_value(double t, const double *q, double *V, void *user)
+{
+  (void)t, (void)user;
+  *V = 0;
+  for (int i = 0; i < UNSTABLE; i++) *V -= 0.5 * q[i] * q[i];
+  return 0;
+}
+
+static int unstable_gradient(double t, const double *q, double *V_q, void *user)
+{
+  (void)t, (void)user;
+  for (int i = 0; i < UNSTABLE; i++) V_q[i] = -q[i];
+  return 0;
+}
+
+static int unstable_hessian(double t, const double *q, double *V_qq, void *user)
+{
+  const int *start = user, *row = start + UNSTABLE + 1;
+  (void)t, (void)q;
+  for (int j = 0; j < UNSTABLE; j++)
+    for (int e = start[j]; e < start[j + 1]; e++) V_qq[e] = row[e] == j ? -1 : 0;
+  return 0;
+}
+
+/* The pattern's start [UNSTABLE+1] and rows, freed by the caller: a graph without small separators,
+ * whose factors fill. */
+static int *create_tangle(void)
+{
+  static const int factor[] = {1, 17, 101, 577}, shift[] = {1, 5, 7, 11};
+  static char meets[UNSTABLE][UNSTABLE];
+  int *start = calloc(UNSTABLE + 1 + 9 * UNSTABLE, sizeof *start), entries = 0;
+  ck_assert_ptr_nonnull(start);
+  for (int i = 0; i < UNSTABLE; i++)
+    for (int k = 0; k < 4; k++) {
+      const int j = (i * factor[k] + shift[k]) % UNSTABLE;
+      meets[i][i] = meets[i][j] = meets[j][i] = 1;
+    }
+  for (int j = 0; j < UNSTABLE; j++) {
+    for (int i = 0; i < UNSTABLE; i++)
+      if (meets[j][i]) start[UNSTABLE + 1 + entries++] = i;
+    start[j + 1] = entries;
+  }
+  return start;
+}
+
+/* The midpoint rule q1 - q0 = h (p0 + p1)/2, p1 - p0 = h (q0 + q1)/2 has a pole at h = 2, and beyond
+ * it other solutions. */
+START_TEST(products_do_not_lead_beyond_a_pole)
+{
+  static const struct {
+    double h;
+    dvi_status status;
+    const char *words;
+  } cases[] = {{1.9, DVI_OK, ""},
+               {2, DVI_NOT_CONVERGED, "the matrix is singular"},
+               {2.2, DVI_STEP_TOO_LARGE, "ends at h = 1.99"},
+               {5, DVI_STEP_TOO_LARGE, "ends at h = 1.99"}};
+  static double q[UNSTABLE], p[UNSTABLE];
+  int *start = create_tangle();
+  dvi_system *system;
+  const dvi_potential potential = {.value = unstable_value,
+                                   .gradient = unstable_gradient,
+                                   .hessian = unstable_hessian,
+                                   .qq = {start, start + UNSTABLE + 1},
+                                   .user = start};
+  const dvi_system_terms terms = {.dimension = UNSTABLE,
+                                  .mass.scalar = 1,
+                                  .potentials = &potential,
+                                  .potential_count = 1,
+                                  .autonomous = 1};
+  ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
+  for (int i = 0; i < UNSTABLE; i++) q[i] = 1 + 0.001 * i, p[i] = 0.5;
+  dvi_integrator *integrator = create_integrator(system, "midpoint");
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, q, p), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_step(integrator, cases[_i].h), cases[_i].status);
+  if (cases[_i].status != DVI_OK) check_words(cases[_i].words);
+  ck_assert_int_gt(read_counters(integrator).products, 0);
+  dvi_integrator_destroy(&integrator);
+  dvi_system_destroy(&system);
+  free(start);
+}
+END_TEST
+
 SUITE(net)
 {
   tcase_set_timeout(tests, 300);
@@ -167,6 +254,7 @@ SUITE(net)
   tcase_add_test(tests, newton_by_products_finds_what_the_ladder_finds);
   tcase_add_test(tests, a_step_by_products_depends_on_its_state_alone);
   if (is_short_run()) return;
+  tcase_add_loop_test(tests, products_do_not_lead_beyond_a_pole, 0, 4);
   tcase_add_test(tests, newton_by_products_needs_no_factor);
   tcase_add_test(tests, explain_says_which_solver_it_would_be);
 }

@@ -127,7 +127,7 @@ dvi_status dvi__element_follow(dvi__stepper *self, const dvi__element_place *at,
   dvi__element *own = self->own;
   followed_step of = {self, at};
   dvi__branch_failure failure;
-  dvi__branch_note(whole, &failure);
+  dvi__branch_note(whole, own->solver, &failure);
   DVI_TRY(element_prepare_branch(own));
   const dvi__branch branch = {.of = &of,
                               .place = followed_place,
@@ -178,6 +178,13 @@ static int element_is_folded(const dvi__stepper *self, const dvi__element_place 
   return dvi__mass_sign(evaluator) > 0;
 }
 
+/* Newton's method takes a few iterations from a guess near the solution. Solutions by GMRES are
+ * right to a part only, and the iterations that correct them say nothing of the branch. */
+static int most_sure_iterations(const dvi__element *own)
+{
+  return own->newton.is_operator ? 7 : 4;
+}
+
 /* Judge the branch by the solution alone. Its energy and motion decide the rest. */
 dvi__doubt dvi__element_doubt(const dvi__stepper *self, const dvi__element_place *at,
                               const dvi__solve_report *report)
@@ -186,7 +193,7 @@ dvi__doubt dvi__element_doubt(const dvi__stepper *self, const dvi__element_place
   if (own->rung == DVI__FIXED_POINT) return DVI__SURE;
   if (element_is_folded(self, at)) return DVI__ASTRAY;
   if (own->rung == DVI__KINSOL) return DVI__DOUBTED; /* KINSOL reports nothing of its way */
-  if (own->rung == DVI__NEWTON && report->iterations <= 4) return DVI__SURE;
+  if (own->rung == DVI__NEWTON && report->iterations <= most_sure_iterations(own)) return DVI__SURE;
   if (dvi__branch_is_near(report)) return DVI__SURE;
   return dvi__branch_is_straight(report) ? DVI__LINEAR : DVI__DOUBTED;
 }

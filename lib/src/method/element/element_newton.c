@@ -119,27 +119,30 @@ static void newton_precondition(void *of, double *R)
     dvi__action_chord(own->action, R);
 }
 
+/* The kinetic part of a positive mass is definite, and its sign is that of h. */
 static int newton_sign(void *of)
 {
-  return dvi__decoupled_sign(((const dvi__element *)of)->newton.systems);
+  const dvi__decoupled *systems = ((const dvi__element *)of)->newton.systems;
+  return systems != NULL ? dvi__decoupled_sign(systems) : 1;
 }
 
 static int newton_is_definite(void *of, int sign)
 {
-  return dvi__decoupled_is_definite(((const dvi__element *)of)->newton.systems, sign);
+  const dvi__decoupled *systems = ((const dvi__element *)of)->newton.systems;
+  return systems == NULL || dvi__decoupled_is_definite(systems, sign);
 }
 
 static dvi_status newton_prepare_operator(dvi__element *own)
 {
   dvi__newton_form *newton = &own->newton;
-  const int has_systems = newton->systems != NULL;
+  const int has_systems = newton->systems != NULL, is_known = has_systems || own->definite;
   DVI_TRY(dvi__action_prepare_product(own->action));
   newton->A = (dvi__operator){.size = dvi__action_unknowns(own->action),
                               .of = own,
                               .times = newton_times,
                               .precondition = newton_precondition,
-                              .sign = has_systems ? newton_sign : NULL,
-                              .is_definite = has_systems ? newton_is_definite : NULL};
+                              .sign = is_known ? newton_sign : NULL,
+                              .is_definite = is_known ? newton_is_definite : NULL};
   if (!has_systems || newton->point != NULL) return DVI_OK;
   newton->point = DVI_NEW(double, dvi__decoupled_point_size(newton->systems));
   return newton->point != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "action: no memory for a point");

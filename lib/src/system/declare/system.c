@@ -114,12 +114,36 @@ static dvi_status join_term_patterns(dvi_system *s, dvi__pattern *qq)
 
 /* The user sees no change of the system, so it is const. The lock serves users on other threads. On
  * failure the remains are replaced by the next call, or freed with the system. */
+/* Patterns that were not declared are made late, when several threads may share the system. */
+static pthread_mutex_t hessian_lock = PTHREAD_MUTEX_INITIALIZER;
+
+static size_t count_least_entries(const dvi_system *system)
+{
+  const size_t n = (size_t)system->n;
+  size_t least = (size_t)dvi__pattern_entries(&system->vv);
+  for (int k = 0; k <= system->potential_count; k++) {
+    const int is_own = k == system->potential_count;
+    if (is_own && system->lagrangian == NULL) continue;
+    const dvi__pattern *qq = is_own ? &system->lagrangian->qq : &system->potentials[k].qq;
+    const size_t entries = qq->start != NULL ? (size_t)dvi__pattern_entries(qq) : n * n;
+    if (entries > least) least = entries;
+  }
+  return least;
+}
+
+size_t dvi__system_least_entries(const dvi_system *system)
+{
+  (void)pthread_mutex_lock(&hessian_lock);
+  const size_t least = count_least_entries(system);
+  (void)pthread_mutex_unlock(&hessian_lock);
+  return least;
+}
+
 dvi_status dvi__system_prepare_hessian(const dvi_system *system)
 {
-  static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
   dvi_system *s = (dvi_system *)(uintptr_t)system;
   dvi_status status = DVI_OK;
-  (void)pthread_mutex_lock(&lock);
+  (void)pthread_mutex_lock(&hessian_lock);
   if (s->qq.start == NULL) {
     dvi__pattern qq = {0};
     status = join_term_patterns(s, &qq);
@@ -128,7 +152,7 @@ dvi_status dvi__system_prepare_hessian(const dvi_system *system)
     else
       dvi__pattern_clear(&qq);
   }
-  (void)pthread_mutex_unlock(&lock);
+  (void)pthread_mutex_unlock(&hessian_lock);
   return status;
 }
 
