@@ -16,10 +16,10 @@ dvi_status dvi__eigen(int n, const double *T, double *real_part, double *imagina
  * DVI_NO_MEMORY. */
 dvi_status dvi__eigen_symmetric(int n, const double *K, const double *M, double *lambda, double *X);
 
-/* Count the negative eigenvalues of a full matrix H, column j at H + j*lead, that is a projection of
- * a larger one onto n orthonormal vectors: those that are settled to a tenth of their size. `next`
- * is the length of the part of H's last column beyond the n vectors (Saad 2011, prop. 6.8). H is
- * overwritten. work [n*(n+6)]. */
+/* Count the negative eigenvalues of a full matrix H, column j at H + j*lead. H is the projection of
+ * a larger matrix onto n orthonormal vectors. Only eigenvalues that are settled to a tenth of their
+ * size count. `next` is the length of the part of H's last column beyond the n vectors (Saad 2011,
+ * prop. 6.8). H is overwritten. work [n*(n+6)]. */
 int dvi__negative_ritz_values(int n, double *H, int lead, double next, double *work);
 
 /* Tell whether a symmetric A [n*n], whose lower triangle is overwritten, is positive definite. */

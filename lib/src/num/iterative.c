@@ -12,8 +12,8 @@
 /* Number of directions that are kept, and of restarts from the best solution. */
 enum { DIRECTIONS = 40, RESTARTS = 25 };
 
-/* Part of P^-1 b that is left at most, if all goes well, and in the end. Newton's method, which uses
- * the solution, corrects the rest. */
+/* Parts of the solution that may be left: in a search, and in the end. Newton's method corrects the
+ * rest. */
 static const double enough = 1e-7, acceptable = 1e-5;
 
 /* A search that leaves more than this part of the residual is the last one. */

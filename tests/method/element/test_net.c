@@ -208,8 +208,8 @@ static int *create_tangle(void)
   return start;
 }
 
-/* The midpoint rule q1 - q0 = h (p0 + p1)/2, p1 - p0 = h (q0 + q1)/2 has a pole at h = 2, and beyond
- * it other solutions. */
+/* The midpoint rule q1 - q0 = h (p0 + p1)/2, p1 - p0 = h (q0 + q1)/2 has a pole at h = 2, and other
+ * solutions beyond. */
 START_TEST(products_do_not_lead_beyond_a_pole)
 {
   static const struct {
