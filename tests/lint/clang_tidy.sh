@@ -100,7 +100,9 @@ while read -r parts; do
 done <"$work/parts" >"$work/todo"
 
 echo "the analyzer looks at $(wc -l <"$work/todo") of $(wc -l <"$work/sources") sources"
-xargs -n 2 -P "$cores" sh "$0" --one analyze "$top" "$build" "$tool" <"$work/todo" || rc=1
+if [ -s "$work/todo" ]; then
+  xargs -n 2 -P "$cores" sh "$0" --one analyze "$top" "$build" "$tool" <"$work/todo" || rc=1
+fi
 if [ "${DVI_ANALYZE:-}" = all ] && [ $rc -eq 0 ] && git diff --quiet HEAD -- lib apps; then
   git rev-parse HEAD >tests/lint/analyzed
   echo "tests/lint/analyzed names this commit now; please commit it"
