@@ -28,7 +28,7 @@ typedef struct iterative {
   double cosine[DIRECTIONS], sine[DIRECTIONS], left[DIRECTIONS + 1];
   double column[DIRECTIONS][DIRECTIONS + 1]; /* A in these directions, by columns */
   double work[DIRECTIONS * (DIRECTIONS + 6)];
-  int has_solved, negatives; /* negative eigenvalues of P^-1 A that the last solution has met */
+  int has_solved, negatives; /* negative eigenvalues of P^-1 A that the solutions have met */
 } iterative;
 
 static void iterative_destroy(void *factor)
@@ -59,8 +59,9 @@ static dvi_status iterative_create(const dvi__factor_form *form, void **factor)
 
 static dvi_status iterative_renew(void *factor, const dvi__pattern *pattern, const double *values)
 {
-  const iterative *s = factor;
+  iterative *s = factor;
   (void)pattern, (void)values;
+  s->has_solved = s->negatives = 0;
   return s->A->renew != NULL ? s->A->renew(s->A->of) : DVI_OK;
 }
 
@@ -164,12 +165,15 @@ static double gmres_residual(iterative *s, const double *b)
   return sqrt(gmres_dot(s->size, s->r, s->r));
 }
 
-static void count_negatives(iterative *s, int directions)
+/* Note the negative eigenvalues that these directions show. Another right side may not have shown
+ * them all. */
+static void note_negatives(iterative *s, int directions)
 {
-  s->negatives = directions == 0
-                     ? 0
-                     : dvi__negative_ritz_values(directions, s->column[0], DIRECTIONS + 1,
-                                                 s->column[directions - 1][directions], s->work);
+  const int found = directions == 0
+                        ? 0
+                        : dvi__negative_ritz_values(directions, s->column[0], DIRECTIONS + 1,
+                                                    s->column[directions - 1][directions], s->work);
+  if (found > s->negatives) s->negatives = found;
   s->has_solved = 1;
 }
 
@@ -193,9 +197,9 @@ static dvi_status iterative_solve(void *factor, const dvi__pattern *pattern, dou
   double length = whole, scale = whole, before = HUGE_VAL;
   for (int i = 0; i < RESTARTS && length > enough * scale && length <= stagnant * before; i++) {
     const int directions = gmres_search(s, length, enough * scale);
-    if (i == 0) count_negatives(s, directions);
     before = length;
     length = gmres_residual(s, b);
+    if (i == 0 && isfinite(length)) note_negatives(s, directions);
     scale = gmres_scale(s, whole);
   }
   if (!isfinite(length)) return dvi__fail(DVI_NOT_CONVERGED, "GMRES meets numbers too large");
