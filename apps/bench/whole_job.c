@@ -11,17 +11,9 @@
 
 enum { ENERGY, EVALUATIONS = 0 };
 
-static const table_column further[] = {{"energy_error", "%.3e"}, {NULL, NULL}},
-                          counted[] = {{"evaluations", "%.0f"}, {NULL, NULL}};
+static const table_column counted[] = {{"evaluations", "%.0f"}, {NULL, NULL}};
 
-const study_words whole_job_words = {.subject = "integrator",
-                                     .problem = "problem",
-                                     .length = "h",
-                                     .parts = "steps",
-                                     .preparation = "create_seconds",
-                                     .further = further,
-                                     .counted = counted,
-                                     .say = motion_say};
+const study_words whole_job_words = MOTION_WORDS("integrator", counted);
 
 /* ---- methods ---- */
 

@@ -44,9 +44,10 @@ const char *motion_say(study_phrase phrase, double t_end, char *text, size_t siz
   }
 }
 
+const table_column motion_further[] = {{"energy_error", "%.3e"}, {NULL, NULL}};
+
 const study_words *motion_words(const problem *scene)
 {
-  static const table_column further[] = {{"energy_error", "%.3e"}, {NULL, NULL}};
   static const table_column with_manifold[] = {{"residuals", "%.0f"},
                                                {"jacobians", "%.0f"},
                                                {"factorizations", "%.0f"},
@@ -54,22 +55,8 @@ const study_words *motion_words(const problem *scene)
                                                {NULL, NULL}};
   static const table_column plain[] = {
       {"residuals", "%.0f"}, {"jacobians", "%.0f"}, {"factorizations", "%.0f"}, {NULL, NULL}};
-  static const study_words on_lines = {.subject = "method",
-                                       .problem = "problem",
-                                       .length = "h",
-                                       .parts = "steps",
-                                       .preparation = "create_seconds",
-                                       .further = further,
-                                       .counted = plain,
-                                       .say = motion_say};
-  static const study_words with_distance = {.subject = "method",
-                                            .problem = "problem",
-                                            .length = "h",
-                                            .parts = "steps",
-                                            .preparation = "create_seconds",
-                                            .further = further,
-                                            .counted = with_manifold,
-                                            .say = motion_say};
+  static const study_words on_lines = MOTION_WORDS("method", plain);
+  static const study_words with_distance = MOTION_WORDS("method", with_manifold);
   return scene->velocity != NULL ? &with_distance : &on_lines;
 }
 

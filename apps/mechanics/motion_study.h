@@ -31,6 +31,17 @@ const study_words *motion_words(const problem *scene);
 /** Return the words of a motion in a sentence, see study_words. */
 const char *motion_say(study_phrase phrase, double t_end, char *text, size_t size);
 
+/** The further error of a motion, energy_error. */
+extern const table_column motion_further[];
+
+/** Initialise study_words of motions, with the title of the column of subjects and with counts. */
+#define MOTION_WORDS(title, counts)                                                  \
+  {                                                                                  \
+    .subject = (title), .problem = "problem", .length = "h", .parts = "steps",       \
+    .preparation = "create_seconds", .further = motion_further, .counted = (counts), \
+    .say = motion_say                                                                \
+  }
+
 /** Begin a study of a method, whose steps may follow a monitor. Its name in tables is `name`.
  * Returns DONE, or complains and returns the exit code. The study must not be moved. */
 int motion_study_init(motion_study *study, const judged_motion *motion, const char *method,

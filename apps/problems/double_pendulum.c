@@ -193,11 +193,7 @@ static const problem_parameter parameters[] = {
      .help = "the length of the lower rod, positive"},
     {.name = "m1", .value = 1.0, .least = 1e-50, .most = 1e50, .help = "the upper mass, positive"},
     {.name = "m2", .value = 2.0, .least = 1e-50, .most = 1e50, .help = "the lower mass, positive"},
-    {.name = "g",
-     .value = 9.80665,
-     .least = -1e50,
-     .most = 1e50,
-     .help = "the acceleration of gravity, any number"},
+    PROBLEM_GRAVITY(9.80665),
     {.name = NULL},
 };
 

@@ -50,6 +50,17 @@ PROBLEM_INLINE void problem_inverse_cubes(const int count, double *restrict x)
 /* Memory for one number's name. */
 #define PROBLEM_LABEL_SIZE 24
 
+/* Parameters that several problems have, by their default. */
+#define PROBLEM_MASS(number)                                                                   \
+  {                                                                                            \
+    .name = "m", .value = (number), .least = 1e-50, .most = 1e50, .help = "the mass, positive" \
+  }
+#define PROBLEM_GRAVITY(number)                                   \
+  {                                                               \
+    .name = "g", .value = (number), .least = -1e50, .most = 1e50, \
+    .help = "the acceleration of gravity, any number"             \
+  }
+
 /* One problem of the catalogue. */
 typedef struct problem_entry {
   const char *name, *summary;
@@ -90,6 +101,12 @@ dvi_status problem_factors(problem *made, int count, const dvi_factor *factors,
 /* Make the system from these terms, and keep them with the problem. Except for the arrays of terms,
  * all that they point to (parameters, patterns, masses) must live as long as the problem. */
 dvi_status problem_system(problem *made, const dvi_system_terms *terms);
+
+/* Do the same for a one-form and a Hamiltonian of the coordinates, with so many symmetries. Nothing
+ * depends on time. */
+dvi_status problem_one_form_system(problem *made, const dvi_one_form *form,
+                                   const dvi_potential *hamiltonian, int symmetry_count,
+                                   const dvi_symmetry *symmetries);
 
 /* Name coordinate i, and its momentum after it. */
 #if defined(__GNUC__)

@@ -88,12 +88,8 @@ static const problem_parameter parameters[] = {
      .least = 1e-50,
      .most = 1e50,
      .help = "the length of the spring at rest, positive"},
-    {.name = "m", .value = 1.0, .least = 1e-50, .most = 1e50, .help = "the mass, positive"},
-    {.name = "g",
-     .value = 9.81,
-     .least = -1e50,
-     .most = 1e50,
-     .help = "the acceleration of gravity, any number"},
+    PROBLEM_MASS(1.0),
+    PROBLEM_GRAVITY(9.81),
     {.name = NULL},
 };
 

@@ -45,6 +45,20 @@ dvi_status problem_system(problem *made, const dvi_system_terms *terms)
   return made->terms ? dvi_system_create(made->terms, &made->system) : DVI_NO_MEMORY;
 }
 
+dvi_status problem_one_form_system(problem *made, const dvi_one_form *form,
+                                   const dvi_potential *hamiltonian, int symmetry_count,
+                                   const dvi_symmetry *symmetries)
+{
+  const dvi_system_terms terms = {.dimension = made->nq,
+                                  .one_form = form,
+                                  .potentials = hamiltonian,
+                                  .potential_count = 1,
+                                  .symmetries = symmetries,
+                                  .symmetry_count = symmetry_count,
+                                  .autonomous = 1};
+  return problem_system(made, &terms);
+}
+
 /* One-point callbacks, whose `user` is the declared term, and which hand it their point as a batch
  * of one. Ranges are of one point anyway. */
 

@@ -185,11 +185,7 @@ static dvi_status spherical_make_chain(const double *setting, problem *made)
 static const problem_parameter double_parameters[] = {
     {.name = "m", .value = 0.1, .least = 1e-50, .most = 1e50, .help = "each mass, positive"},
     {.name = "l", .value = 0.1, .least = 1e-50, .most = 1e50, .help = "each length, positive"},
-    {.name = "g",
-     .value = 9.81,
-     .least = -1e50,
-     .most = 1e50,
-     .help = "the acceleration of gravity, any number"},
+    PROBLEM_GRAVITY(9.81),
     {.name = NULL},
 };
 
@@ -205,11 +201,7 @@ static const problem_parameter chain_parameters[] = {
      .least = 0.0,
      .most = 1e50,
      .help = "the springs' stiffness, from 0"},
-    {.name = "g",
-     .value = 1.0,
-     .least = -1e50,
-     .most = 1e50,
-     .help = "the acceleration of gravity, any number"},
+    PROBLEM_GRAVITY(1.0),
     {.name = "a",
      .value = 0.5,
      .least = -3.2,

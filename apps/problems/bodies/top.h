@@ -23,6 +23,11 @@ void top_inertia(top *body, const double *J);
  * is. */
 dvi_status top_system(problem *made, const dvi_invariant *invariant);
 
+#define TOP_ARM(number)                                            \
+  {                                                                \
+    .name = "l", .value = (number), .least = 0.0, .most = 1e50,    \
+    .help = "how far the centre of mass is from the pivot, from 0" \
+  }
 #define TOP_START(title, number)                                                     \
   {                                                                                  \
     .name = (title), .value = (number), .least = -1e6, .most = 1e6, .start_only = 1, \

@@ -57,17 +57,10 @@ static dvi_status make_kovalevskaya(const double *setting, problem *made)
 }
 
 static const problem_parameter pendulum_parameters[] = {
-    {.name = "m", .value = 1.0, .least = 1e-50, .most = 1e50, .help = "the mass, positive"},
-    {.name = "l",
-     .value = 0.3,
-     .least = 0.0,
-     .most = 1e50,
-     .help = "how far the centre of mass is from the pivot, from 0"},
-    {.name = "g",
-     .value = 9.81,
-     .least = -1e50,
-     .most = 1e50,
-     .help = "the acceleration of gravity, any number"},
+    PROBLEM_MASS(1.0),
+    TOP_ARM(0.3),
+    PROBLEM_GRAVITY(9.81),
+    /* about the pivot */
     TOP_INERTIA("J1", 0.13),
     TOP_INERTIA("J2", 0.28),
     TOP_INERTIA("J3", 0.17),
@@ -78,17 +71,9 @@ static const problem_parameter pendulum_parameters[] = {
 };
 
 static const problem_parameter top_parameters[] = {
-    {.name = "m", .value = 15.0, .least = 1e-50, .most = 1e50, .help = "the mass, positive"},
-    {.name = "l",
-     .value = 1.0,
-     .least = 0.0,
-     .most = 1e50,
-     .help = "how far the centre of mass is from the pivot, from 0"},
-    {.name = "g",
-     .value = 9.81,
-     .least = -1e50,
-     .most = 1e50,
-     .help = "the acceleration of gravity, any number"},
+    PROBLEM_MASS(15.0),
+    TOP_ARM(1.0),
+    PROBLEM_GRAVITY(9.81),
     TOP_START("Omega1", 0.0),
     TOP_START("Omega2", 150.0),
     TOP_START("Omega3", -4.61538),

@@ -128,14 +128,7 @@ static dvi_status guiding_centre_make(const double *setting, problem *made)
   const dvi_symmetry symmetries[] = {
       {.name = "angular_momentum", .generator = guiding_centre_rotation},
       {.name = "axial_momentum", .generator = guiding_centre_shift}};
-  const dvi_system_terms terms = {.dimension = 4,
-                                  .one_form = &form,
-                                  .potentials = &hamiltonian,
-                                  .potential_count = 1,
-                                  .symmetries = symmetries,
-                                  .symmetry_count = 2,
-                                  .autonomous = 1};
-  return problem_system(made, &terms);
+  return problem_one_form_system(made, &form, &hamiltonian, 2, symmetries);
 }
 
 /* Quadruple-precision results, recomputed by tests/reference/test_digits. */

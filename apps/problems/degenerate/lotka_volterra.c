@@ -93,12 +93,7 @@ static dvi_status lotka_volterra_make(const double *setting, problem *made)
                                      .gradient = lotka_volterra_gradient,
                                      .hessian = lotka_volterra_hessian,
                                      .qq = {diagonal_start, diagonal_row}};
-  const dvi_system_terms terms = {.dimension = 2,
-                                  .one_form = &form,
-                                  .potentials = &hamiltonian,
-                                  .potential_count = 1,
-                                  .autonomous = 1};
-  return problem_system(made, &terms);
+  return problem_one_form_system(made, &form, &hamiltonian, 0, NULL);
 }
 
 static const problem_parameter parameters[] = {

@@ -99,12 +99,7 @@ static dvi_status lotka_volterra_4d_make(const double *setting, problem *made)
                                      .gradient = lotka_volterra_4d_gradient,
                                      .hessian = lotka_volterra_4d_hessian,
                                      .qq = {diagonal_start, diagonal_row}};
-  const dvi_system_terms terms = {.dimension = N,
-                                  .one_form = &form,
-                                  .potentials = &hamiltonian,
-                                  .potential_count = 1,
-                                  .autonomous = 1};
-  return problem_system(made, &terms);
+  return problem_one_form_system(made, &form, &hamiltonian, 0, NULL);
 }
 
 /* Quadruple-precision results, recomputed by tests/reference/test_digits. */

@@ -155,14 +155,7 @@ static dvi_status tokamak_make(const double *setting, problem *made)
                                      .hessian = tokamak_hessian,
                                      .qq = {H_start, H_row}};
   const dvi_symmetry symmetry = {.name = "toroidal_momentum", .generator = tokamak_rotation};
-  const dvi_system_terms terms = {.dimension = 4,
-                                  .one_form = &form,
-                                  .potentials = &hamiltonian,
-                                  .potential_count = 1,
-                                  .symmetries = &symmetry,
-                                  .symmetry_count = 1,
-                                  .autonomous = 1};
-  return problem_system(made, &terms);
+  return problem_one_form_system(made, &form, &hamiltonian, 1, &symmetry);
 }
 
 /* Quadruple-precision results, recomputed by tests/reference/test_digits. */

@@ -171,14 +171,7 @@ static dvi_status vortices_make(pair own, const double *start, problem *made)
                                      .hessian = vortices_hessian,
                                      .user = made->parameters};
   const dvi_symmetry symmetry = {.name = "angular_momentum", .generator = vortices_rotation};
-  const dvi_system_terms terms = {.dimension = 4,
-                                  .one_form = &form,
-                                  .potentials = &hamiltonian,
-                                  .potential_count = 1,
-                                  .symmetries = &symmetry,
-                                  .symmetry_count = 1,
-                                  .autonomous = 1};
-  return problem_system(made, &terms);
+  return problem_one_form_system(made, &form, &hamiltonian, 1, &symmetry);
 }
 
 static dvi_status vortices_make_linear(const double *setting, problem *made)
