@@ -7,31 +7,22 @@
 #include <string.h>
 
 #include "problem.h"
+#include "support/scene/parsed.h"
 #include "support/suite.h"
 
-enum { MESSAGE_SIZE = 1024, STEPS = 50, SIZE_MAX_OF_STATE = 64 };
+enum { STEPS = 50, SIZE_MAX_OF_STATE = 64 };
 
-static char message[MESSAGE_SIZE];
-static dvi_scene *scene;
 static problem *hand;
 
 static void release(void)
 {
-  dvi_scene_destroy(&scene);
+  release_scene();
   problem_destroy(&hand);
-}
-
-static void open_scene(const char *text)
-{
-  dvi_scene_destroy(&scene);
-  const dvi_status status = dvi_scene_parse("test.yaml", text, strlen(text), 0, NULL, &scene,
-                                            message, sizeof message);
-  ck_assert_msg(status == DVI_OK, "%s", message);
 }
 
 static void open_both(const char *text, const char *name)
 {
-  open_scene(text);
+  (void)open_scene(text);
   ck_assert_msg(problem_create(name, 0, NULL, &hand, message, sizeof message) == DVI_OK, "%s",
                 message);
   ck_assert_int_eq(dvi_system_nq(dvi_scene_system(scene)), hand->nq);
@@ -258,9 +249,9 @@ END_TEST
 START_TEST(one_member_may_stand_beside_a_formula_that_is_no_number_there)
 {
   const double *q, *v, *p, expected[] = {5, 1, 1, 2, 3, 4.5};
-  open_scene("coordinates: {\"x[3]\": scalar}\nlagrangian: sum(i, x[i]'^2/2)\n"
-             "initial: {\"x[1]\": 5, \"x[i]\": \"(i - 1)/(i - 1)\", \"x[1]'\": 2, \"x[i]'\": "
-             "\"3/2*i*(i - 1)/(i - 1)\"}\n" RUN);
+  (void)open_scene("coordinates: {\"x[3]\": scalar}\nlagrangian: sum(i, x[i]'^2/2)\n"
+                   "initial: {\"x[1]\": 5, \"x[i]\": \"(i - 1)/(i - 1)\", \"x[1]'\": 2, \"x[i]'\": "
+                   "\"3/2*i*(i - 1)/(i - 1)\"}\n" RUN);
   dvi_scene_start(scene, &q, &v, &p);
   check_same_numbers(3, q, expected, 1, "q");
   check_same_numbers(3, v, expected + 3, 1, "v");
@@ -274,7 +265,7 @@ END_TEST
 /* Which are fast, and which have constant second derivatives, in the order of the file. */
 static void check_speeds(const char *text, int count, const int *fast, const int *quadratic)
 {
-  open_scene(text);
+  (void)open_scene(text);
   const dvi_system_terms *terms = dvi_scene_terms(scene);
   ck_assert_int_eq(terms->potential_count, count);
   for (int k = 0; k < count; k++) {
@@ -331,7 +322,7 @@ START_TEST(imex_factorises_a_quadratic_fast_potential_once_a_run)
   const double momenta[2] = {0};
   dvi_counters counters;
   dvi_integrator *integrator;
-  open_scene(CHAIN "  fast: {bond: 50*(x - y)^2}\n  slow: {well: x^4/4}\n");
+  (void)open_scene(CHAIN "  fast: {bond: 50*(x - y)^2}\n  slow: {well: x^4/4}\n");
   ck_assert_msg(dvi_integrator_create(dvi_scene_system(scene), "imex", &integrator) == DVI_OK, "%s",
                 dvi_last_error());
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, state, momenta), DVI_OK);

@@ -6,17 +6,10 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "support/scene/parsed.h"
 #include "support/suite.h"
 
-enum { MESSAGE_SIZE = 1024, TEXT_SIZE = 1024, N = 2 };
-
-static char message[MESSAGE_SIZE];
-static dvi_scene *scene;
-
-static void release(void)
-{
-  dvi_scene_destroy(&scene);
-}
+enum { TEXT_SIZE = 1024, N = 2 };
 
 /* A scene whose potential is the expression. */
 static dvi_status parse(const char *expression)
@@ -27,8 +20,7 @@ static dvi_status parse(const char *expression)
                  "x'^2 + y'^2 - (%s)\n"
                  "initial: {x: 0.5, y: 0.25, x': 1}\nstep: 0.1\nuntil: 1\n",
                  expression);
-  dvi_scene_destroy(&scene);
-  return dvi_scene_parse("test.yaml", text, strlen(text), 0, NULL, &scene, message, sizeof message);
+  return parse_scene(text);
 }
 
 /* Evaluates V, its gradient and its Hessian, row by row, at q. The Hessian's pattern is full. */
@@ -259,7 +251,7 @@ END_TEST
 
 SUITE(scene_conditions)
 {
-  tcase_add_checked_fixture(tests, NULL, release);
+  tcase_add_checked_fixture(tests, NULL, release_scene);
   tcase_add_test(tests, values_and_derivatives_are_those_of_the_side);
   tcase_add_test(tests, at_a_kink_the_derivative_is_that_of_the_side_that_is_documented);
   tcase_add_test(tests, what_is_off_need_not_exist);

@@ -5,41 +5,14 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "support/scene/parsed.h"
 #include "support/suite.h"
 
-enum { MESSAGE_SIZE = 1024, TEXT_SIZE = 1024 };
-
-static char message[MESSAGE_SIZE];
-static dvi_scene *scene;
-
-static void release(void)
-{
-  dvi_scene_destroy(&scene);
-}
-
-static dvi_status parse(const char *text, int setting_count, const char *const *settings)
-{
-  dvi_scene_destroy(&scene);
-  return dvi_scene_parse("test.yaml", text, strlen(text), setting_count, settings, &scene, message,
-                         sizeof message);
-}
-
-/* The message names the place and has these words. */
-static void refused_as(const char *text, dvi_status status, const char *place, const char *words)
-{
-  const dvi_status found = parse(text, 0, NULL);
-  ck_assert_msg(found == status, "status %d instead of %d for\n%s\n%s", found, status, text,
-                message);
-  ck_assert_ptr_null(scene);
-  ck_assert_msg(strncmp(message, "test.yaml", 9) == 0 &&
-                    strncmp(message + 9, place, strlen(place)) == 0,
-                "not at %s: %s", place, message);
-  ck_assert_msg(strstr(message, words) != NULL, "\"%s\" is not in \"%s\"", words, message);
-}
+enum { TEXT_SIZE = 1024 };
 
 static void refused(const char *text, const char *place, const char *words)
 {
-  refused_as(text, DVI_BAD_FILE, place, words);
+  check_refused(text, DVI_BAD_FILE, place, words);
 }
 
 #define X "coordinates: {x: scalar}\n"
@@ -71,13 +44,13 @@ START_TEST(what_nothing_mentions_is_known)
 {
   static const int start_only[] = {0, 0, 0, 1, 1, 0, 0};
   static const char *const unused[] = {"a", "b", "c", "rest", "twice_V"}, *const idle[] = {"a=2"};
-  ck_assert_msg(parse(PARAMETERS X USES, 0, NULL) == DVI_OK, "%s", message);
+  ck_assert_msg(parse_scene(PARAMETERS X USES) == DVI_OK, "%s", message);
   for (int i = 0; i < 7; i++)
     ck_assert_int_eq(dvi_scene_parameter_at(scene, i)->start_only, start_only[i]);
   for (int i = 0; i < 5; i++) ck_assert_str_eq(dvi_scene_unused(scene, i), unused[i]);
   ck_assert_ptr_null(dvi_scene_unused(scene, 5));
   ck_assert_ptr_null(dvi_scene_unused(scene, -1));
-  ck_assert_int_eq(parse(PARAMETERS X USES, 1, idle), DVI_BAD_OPTION);
+  ck_assert_int_eq(parse_with(PARAMETERS X USES, 1, idle), DVI_BAD_OPTION);
   ck_assert_ptr_nonnull(strstr(message, "'a' is set, but nothing in the scene mentions it"));
 }
 END_TEST
@@ -117,7 +90,7 @@ START_TEST(columns_have_one_name_each)
     refused(text, ":1:14:", "already; choose another name");
     (void)snprintf(text, sizeof text, "invariants: {%s: 1}\n" X "lagrangian: x'^2\n" RUN,
                    free_name[k]);
-    ck_assert_msg(parse(text, 0, NULL) == DVI_OK, "%s", message);
+    ck_assert_msg(parse_scene(text) == DVI_OK, "%s", message);
   }
   for (size_t k = 0; k < sizeof twice / sizeof *twice; k++) {
     (void)snprintf(text, sizeof text, "coordinates: {%s}\nlagrangian: 1\n" RUN, twice[k]);
@@ -290,17 +263,18 @@ START_TEST(what_no_system_can_be_made_of_has_its_place)
   char text[TEXT_SIZE];
   (void)snprintf(text, sizeof text,
                  "%slagrangian: (x' + y')^2/2\ninitial: {x: 1, y: 1}\nstep: 1\nuntil: 1\n", two);
-  refused_as(text, DVI_SINGULAR, ":2:13:", "singular");
+  check_refused(text, DVI_SINGULAR, ":2:13:", "singular");
   (void)snprintf(
       text, sizeof text,
       "%sone_form: {x: y, z: x}\nhamiltonian: x\ninitial: {x: 1, y: 1, z: 1}\nstep: 1\nuntil: 1\n",
       three);
-  refused_as(text, DVI_BAD_SIZE, ":2:11:", "even");
-  refused_as(X "lagrangian: x'^2*log(x)\ninitial: {x: 0}\nstep: 1\nuntil: 1\n", DVI_CALLBACK_RETRY,
-             ":2:18:", "at the start: log(x), x = 0 is not finite");
-  refused_as("coordinates: {R: rotation}\nlagrangian: R[1,1]'^2\nstep: 1\nuntil: 1\ninitial: {R: "
-             "\"turn([1, 0, 0], 1)\"}\n",
-             DVI_SINGULAR, ":2:13:", "the Lagrangian is degenerate");
+  check_refused(text, DVI_BAD_SIZE, ":2:11:", "even");
+  check_refused(X "lagrangian: x'^2*log(x)\ninitial: {x: 0}\nstep: 1\nuntil: 1\n",
+                DVI_CALLBACK_RETRY, ":2:18:", "at the start: log(x), x = 0 is not finite");
+  check_refused(
+      "coordinates: {R: rotation}\nlagrangian: R[1,1]'^2\nstep: 1\nuntil: 1\ninitial: {R: "
+      "\"turn([1, 0, 0], 1)\"}\n",
+      DVI_SINGULAR, ":2:13:", "the Lagrangian is degenerate");
 }
 END_TEST
 
@@ -330,11 +304,12 @@ START_TEST(settings_replace_numbers_and_nothing_else)
       "'0x10' is no finite number"};
   const double *q, *v, *p;
   for (int k = 0; k < 7; k++) {
-    ck_assert_int_eq(parse(text, 1, &wrong[k]), DVI_BAD_OPTION);
+    ck_assert_int_eq(parse_with(text, 1, &wrong[k]), DVI_BAD_OPTION);
     ck_assert_msg(strstr(message, words[k]) != NULL, "%s", message);
   }
-  ck_assert_int_eq(parse(text, 2, (const char *const[]){"speed=1", "speed=2"}), DVI_BAD_OPTION);
-  ck_assert_int_eq(parse(text, 1, &(const char *){"speed=3"}), DVI_OK);
+  ck_assert_int_eq(parse_with(text, 2, (const char *const[]){"speed=1", "speed=2"}),
+                   DVI_BAD_OPTION);
+  ck_assert_int_eq(parse_with(text, 1, &(const char *){"speed=3"}), DVI_OK);
   dvi_scene_start(scene, &q, &v, &p);
   ck_assert(fabs(q[0] - 6) < 1e-15);
   ck_assert(dvi_scene_parameter_at(scene, 0)->settable &&
@@ -351,19 +326,19 @@ START_TEST(limits_are_told)
     (void)snprintf(chain + used, sizeof chain - used, "  a%d: a%d + 1\n", k, k - 1);
   }
   refused(chain, ":263:9:", "definitions of definitions, more than 512 levels deep");
-  refused_as("coordinates:\n  x[100000001]: scalar\n" RUN "lagrangian: 1\n", DVI_BAD_SIZE,
-             ":2:3:", "more than 100000000 coordinates");
-  refused_as("parameters: {N: 100000}\n" X "lagrangian: x'^2 + sum(i<j=1..N, i*j*x)\n" RUN,
-             DVI_BAD_SIZE, ":3:20:", "a sum of more than");
-  refused_as(X "lagrangian: x'^2 + sqrt(sum(i=1..100000000, sin(i*x)))\n" RUN, DVI_BAD_SIZE,
-             ":2:", "2000000 parts");
+  check_refused("coordinates:\n  x[100000001]: scalar\n" RUN "lagrangian: 1\n", DVI_BAD_SIZE,
+                ":2:3:", "more than 100000000 coordinates");
+  check_refused("parameters: {N: 100000}\n" X "lagrangian: x'^2 + sum(i<j=1..N, i*j*x)\n" RUN,
+                DVI_BAD_SIZE, ":3:20:", "a sum of more than");
+  check_refused(X "lagrangian: x'^2 + sqrt(sum(i=1..100000000, sin(i*x)))\n" RUN, DVI_BAD_SIZE,
+                ":2:", "2000000 parts");
 }
 END_TEST
 
 START_TEST(what_is_not_finite_is_told_with_its_place)
 {
   double L;
-  ck_assert_int_eq(parse(X "lagrangian: x'^2 - log(x - 1)\n" RUN, 0, NULL), DVI_OK);
+  ck_assert_int_eq(parse_scene(X "lagrangian: x'^2 - log(x - 1)\n" RUN), DVI_OK);
   ck_assert_int_ne(
       dvi_system_lagrangian(dvi_scene_system(scene), 2.5, &(double){0.75}, &(double){0}, &L),
       DVI_OK);
@@ -393,7 +368,7 @@ START_TEST(what_has_no_series_is_told_with_its_place)
   };
   for (size_t k = 0; k < sizeof words / sizeof *words; k++) {
     dvi_integrator *integrator = NULL;
-    ck_assert_int_eq(parse(texts[k], 0, NULL), DVI_OK);
+    ck_assert_int_eq(parse_scene(texts[k]), DVI_OK);
     ck_assert_int_eq(dvi_integrator_create(dvi_scene_system(scene),
                                            "prolongation-collocation:derivatives=6", &integrator),
                      DVI_OK);
@@ -413,7 +388,8 @@ START_TEST(null_is_no_scene_and_no_setting)
   ck_assert(q == NULL && v == NULL && p == NULL);
   dvi_scene_facts_of(NULL, &facts);
   ck_assert(facts.form == NULL && facts.kernels == 0);
-  ck_assert_int_eq(parse(X "lagrangian: x'^2\n" RUN, 1, &(const char *){NULL}), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(parse_with(X "lagrangian: x'^2\n" RUN, 1, &(const char *){NULL}),
+                   DVI_BAD_ARGUMENT);
 }
 END_TEST
 
@@ -441,7 +417,7 @@ static int append_text(const char *text, size_t size, void *user)
 START_TEST(c_is_written_under_a_name_and_to_its_end)
 {
   paper whole = {0, -1}, cut = {0, 3};
-  ck_assert_int_eq(parse(X "lagrangian: x'^2 - x^4\n" RUN, 0, NULL), DVI_OK);
+  ck_assert_int_eq(parse_scene(X "lagrangian: x'^2 - x^4\n" RUN), DVI_OK);
   ck_assert_int_eq(dvi_scene_emit_c(scene, "no name", append_text, &whole), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_scene_emit_c(scene, "", append_text, &whole), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(whole.written, 0);
@@ -453,7 +429,7 @@ END_TEST
 
 SUITE(scene_errors)
 {
-  tcase_add_checked_fixture(tests, NULL, release);
+  tcase_add_checked_fixture(tests, NULL, release_scene);
   tcase_add_test(tests, what_nothing_mentions_is_known);
   tcase_add_test(tests, unknown_names_are_told_with_the_nearest);
   tcase_add_test(tests, columns_have_one_name_each);

@@ -7,23 +7,10 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "support/scene/parsed.h"
 #include "support/suite.h"
 
-enum { MESSAGE_SIZE = 1024, N = 8 };
-
-static char message[MESSAGE_SIZE];
-static dvi_scene *scene;
-
-static void release(void)
-{
-  dvi_scene_destroy(&scene);
-}
-
-static dvi_status parse(const char *text)
-{
-  dvi_scene_destroy(&scene);
-  return dvi_scene_parse("g.yaml", text, strlen(text), 0, NULL, &scene, message, sizeof message);
-}
+enum { N = 8 };
 
 #define RUN "step: 0.1\nuntil: 1\n"
 #define GRID                                                                                \
@@ -34,10 +21,10 @@ START_TEST(the_last_index_runs_first)
 {
   static const char *const name[] = {"u_1_1", "u_1_2", "u_2_1", "u_2_2", "u_3_1", "u_3_2"};
   const double *q, *v, *p;
-  ck_assert_msg(parse(GRID "initial: {\"u[i,j]\": 10*i + j, \"u'[i,j]\": j}\n") != DVI_OK,
+  ck_assert_msg(parse_scene(GRID "initial: {\"u[i,j]\": 10*i + j, \"u'[i,j]\": j}\n") != DVI_OK,
                 "u' has its index before the dash");
-  ck_assert_msg(parse(GRID "initial: {\"u[i,j]\": 10*i + j, \"u[i,j]'\": j - i}\n") == DVI_OK, "%s",
-                message);
+  ck_assert_msg(parse_scene(GRID "initial: {\"u[i,j]\": 10*i + j, \"u[i,j]'\": j - i}\n") == DVI_OK,
+                "%s", message);
   dvi_scene_start(scene, &q, &v, &p);
   for (int k = 0; k < 6; k++) {
     const int i = k / 2 + 1, j = k % 2 + 1;
@@ -57,13 +44,15 @@ START_TEST(what_says_more_of_a_member_comes_first)
 {
   const double *q, *v, *p;
   ck_assert_msg(
-      parse(GRID "initial: {\"u[2,2]\": 7, \"u[i,j]\": 1, \"u[2,j]\": j + 1, \"u[i,1]'\": i}\n") ==
+      parse_scene(GRID
+                  "initial: {\"u[2,2]\": 7, \"u[i,j]\": 1, \"u[2,j]\": j + 1, \"u[i,1]'\": i}\n") ==
           DVI_OK,
       "%s", message);
   dvi_scene_start(scene, &q, &v, &p);
   ck_assert_mem_eq(q, ((double[]){1, 1, 2, 7, 1, 1}), 6 * sizeof *q);
   ck_assert_mem_eq(v, ((double[]){1, 0, 2, 0, 3, 0}), 6 * sizeof *v);
-  ck_assert_msg(parse(GRID "initial: {u: [[1, 2], [3, 4], [5, 6]]}\n") == DVI_OK, "%s", message);
+  ck_assert_msg(parse_scene(GRID "initial: {u: [[1, 2], [3, 4], [5, 6]]}\n") == DVI_OK, "%s",
+                message);
   dvi_scene_start(scene, &q, &v, &p);
   ck_assert_mem_eq(q, ((double[]){1, 2, 3, 4, 5, 6}), 6 * sizeof *q);
 }
@@ -75,7 +64,7 @@ START_TEST(vectors_and_momenta_may_stand_on_a_grid)
   static const char text[] = "coordinates: {\"r[2,2]\": vector(2)}\nhamiltonian: sum(i, sum(j, "
                              "dot(p(r[i,j]), p(r[i,j]))/2 + i*r[i,j][2]))\n"
                              "initial: {\"r[i,j]\": \"[i, j]\", \"p(r[i,j])\": \"[i*j, 0]\"}\n" RUN;
-  ck_assert_msg(parse(text) == DVI_OK, "%s", message);
+  ck_assert_msg(parse_scene(text) == DVI_OK, "%s", message);
   dvi_scene_start(scene, &q, &v, &p);
   ck_assert_mem_eq(q, ((double[]){1, 1, 1, 2, 2, 1, 2, 2}), 8 * sizeof *q);
   ck_assert_mem_eq(p, ((double[]){1, 0, 2, 0, 2, 0, 4, 0}), 8 * sizeof *p);
@@ -109,7 +98,7 @@ START_TEST(slips_with_two_indices_are_told)
        "there is a column 'u_1_2' already"},
   };
   for (size_t k = 0; k < sizeof texts / sizeof *texts; k++) {
-    ck_assert_int_ne(parse(texts[k][0]), DVI_OK);
+    ck_assert_int_ne(parse_scene(texts[k][0]), DVI_OK);
     ck_assert_msg(strstr(message, texts[k][1]) != NULL, "\"%s\" is not in \"%s\"", texts[k][1],
                   message);
   }
@@ -142,7 +131,7 @@ START_TEST(neighbours_on_a_torus_are_those_of_loops)
 {
   double V_q[N * N] = {0}, own[N * N], expected[N * N], q[N * N];
   const double t = 0;
-  ck_assert_msg(parse(lattice) == DVI_OK, "%s", message);
+  ck_assert_msg(parse_scene(lattice) == DVI_OK, "%s", message);
   for (int k = 0; k < N * N; k++) q[k] = sin(0.7 * k * k);
   const dvi_system_terms *terms = dvi_scene_terms(scene);
   for (int k = 0; k < terms->potential_count; k++) {
@@ -190,7 +179,7 @@ static double distance(const double *a, const double *b)
 START_TEST(a_lattice_is_followed_in_the_order_of_the_method)
 {
   double fine[N * N], coarse[N * N], half[N * N];
-  ck_assert_msg(parse(lattice) == DVI_OK, "%s", message);
+  ck_assert_msg(parse_scene(lattice) == DVI_OK, "%s", message);
   (void)follow("galerkin:degree=4", 0.05, fine);
   const double energy = follow("galerkin:degree=2", 0.1, coarse),
                energy_half = follow("galerkin:degree=2", 0.05, half);
@@ -203,7 +192,7 @@ END_TEST
 
 SUITE(scene_grid)
 {
-  tcase_add_checked_fixture(tests, NULL, release);
+  tcase_add_checked_fixture(tests, NULL, release_scene);
   tcase_add_test(tests, the_last_index_runs_first);
   tcase_add_test(tests, what_says_more_of_a_member_comes_first);
   tcase_add_test(tests, vectors_and_momenta_may_stand_on_a_grid);

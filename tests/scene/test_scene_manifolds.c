@@ -7,29 +7,10 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "support/scene/parsed.h"
 #include "support/suite.h"
 
-enum { MESSAGE_SIZE = 1024, TEXT_SIZE = 1024, MOST = 64 };
-
-static char message[MESSAGE_SIZE];
-static dvi_scene *scene;
-
-static void release(void)
-{
-  dvi_scene_destroy(&scene);
-}
-
-static dvi_status parse(const char *text)
-{
-  dvi_scene_destroy(&scene);
-  return dvi_scene_parse("test.yaml", text, strlen(text), 0, NULL, &scene, message, sizeof message);
-}
-
-static const dvi_system *open_scene(const char *text)
-{
-  ck_assert_msg(parse(text) == DVI_OK, "%s", message);
-  return dvi_scene_system(scene);
-}
+enum { TEXT_SIZE = 1024, MOST = 64 };
 
 static void check_near(double found, double wanted)
 {
@@ -238,12 +219,7 @@ END_TEST
 
 static void refused(const char *text, const char *place, const char *words)
 {
-  const dvi_status found = parse(text);
-  ck_assert_msg(found == DVI_BAD_FILE, "status %d for\n%s\n%s", found, text, message);
-  ck_assert_msg(strncmp(message, "test.yaml", 9) == 0 &&
-                    strncmp(message + 9, place, strlen(place)) == 0,
-                "not at %s: %s", place, message);
-  ck_assert_msg(strstr(message, words) != NULL, "\"%s\" is not in \"%s\"", words, message);
+  check_refused(text, DVI_BAD_FILE, place, words);
 }
 
 #define KINDS "coordinates: {R: rotation, B: motion, d: direction, u: angle, x: scalar}\n"
@@ -388,7 +364,7 @@ END_TEST
 
 SUITE(scene_manifolds)
 {
-  tcase_add_checked_fixture(tests, NULL, release);
+  tcase_add_checked_fixture(tests, NULL, release_scene);
   tcase_add_test(tests, an_angle_is_the_coordinate_of_the_same_pendulum);
   tcase_add_test(tests, a_point_of_a_body_moves_as_its_velocity_says);
   tcase_add_test(tests, events_see_the_velocities_of_the_state);
