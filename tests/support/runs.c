@@ -43,6 +43,15 @@ dvi_integrator *start_integrator(const problem *model, const char *method)
   return made;
 }
 
+dvi_ensemble *create_ensemble(const dvi_system *system, const char *method,
+                              dvi_ensemble_options options)
+{
+  dvi_ensemble *made = NULL;
+  ck_assert_msg(dvi_ensemble_create(system, method, &options, &made) == DVI_OK, "%s",
+                dvi_last_error());
+  return made;
+}
+
 void advance(dvi_integrator *integrator, double h, long steps)
 {
   for (long i = 0; i < steps; i++)

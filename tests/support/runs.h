@@ -9,9 +9,12 @@ const char *method_spec(const char *format, ...) __attribute__((format(printf, 1
 /* Creates a problem of the catalogue with at most one setting "name=value" (default NULL, none). */
 problem *create_problem(const char *name, const char *setting);
 
-/* Create an integrator. start_integrator() also starts it at the problem's start. */
+/* Create an integrator or an ensemble. start_integrator() also starts it at the problem's start. */
 dvi_integrator *create_integrator(const dvi_system *system, const char *method);
 dvi_integrator *start_integrator(const problem *model, const char *method);
+
+dvi_ensemble *create_ensemble(const dvi_system *system, const char *method,
+                              dvi_ensemble_options options);
 
 /* Takes steps. */
 void advance(dvi_integrator *integrator, double h, long steps);

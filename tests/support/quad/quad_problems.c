@@ -18,11 +18,6 @@ quad quad_number(const char *text)
   return next_number(&text);
 }
 
-static quad cube(quad x)
-{
-  return x * x * x;
-}
-
 /* q'' = -k q. */
 static void oscillator_prepare(quad_system *system)
 {
@@ -74,7 +69,7 @@ static void kepler_prepare(quad_system *system)
 
 static void kepler_acceleration(const quad_system *system, const quad *q, const quad *v, quad *a)
 {
-  const quad r3 = cube(quad_sqrt(q[0] * q[0] + q[1] * q[1]));
+  const quad r3 = quad_cube(quad_sqrt(q[0] * q[0] + q[1] * q[1]));
   (void)system, (void)v;
   a[0] = -q[0] / r3;
   a[1] = -q[1] / r3;
@@ -212,146 +207,6 @@ static void stiff_pendulum_velocity(const quad_system *system, const quad *q, co
   const quad length = system->value[1] + q[0], m = system->value[2];
   v[0] = p[0] / m;
   v[1] = p[1] / (m * length * length);
-}
-
-/* V = omega^2/2 sum x1_i^2 + 1/4 [ (x0_1-x1_1)^4 + sum (x0_{i+1}-x1_{i+1}-x0_i-x1_i)^4 +
- * (x0_ell+x1_ell)^4 ]. */
-static void fpu_prepare(quad_system *system)
-{
-  const int ell = (int)system->value[0];
-  if (ell < 1 || 2 * ell > QUAD_N_MAX) return;
-  system->n = 2 * ell;
-  system->q[0] = system->v[0] = system->v[ell] = 1;
-  system->q[ell] = 1 / system->value[1];
-}
-
-static void fpu_acceleration(const quad_system *system, const quad *q, const quad *v, quad *a)
-{
-  const int ell = system->n / 2;
-  const quad square = system->value[1] * system->value[1];
-  const quad *x0 = q, *x1 = q + ell;
-  quad *a0 = a, *a1 = a + ell;
-  (void)v;
-  for (int i = 0; i < ell; i++) {
-    a0[i] = 0;
-    a1[i] = -square * x1[i];
-  }
-  const quad first = cube(x0[0] - x1[0]), last = cube(x0[ell - 1] + x1[ell - 1]);
-  a0[0] -= first;
-  a1[0] += first;
-  a0[ell - 1] -= last;
-  a1[ell - 1] -= last;
-  for (int i = 0; i + 1 < ell; i++) {
-    const quad force = cube(x0[i + 1] - x1[i + 1] - x0[i] - x1[i]);
-    a0[i] += force;
-    a1[i] += force;
-    a0[i + 1] -= force;
-    a1[i + 1] += force;
-  }
-}
-
-/* V = 0.64 sum exp(q_i - q_{i+1}), periodic. */
-static void toda_prepare(quad_system *system)
-{
-  const int N = (int)system->value[0];
-  if (N < 2 || N > QUAD_N_MAX) return;
-  system->n = N;
-  for (int i = 0; i < system->n; i++) {
-    const quad xi = quad_number("-0.5") + (quad)i / (N - 1);
-    const quad s = 6 * quad_abs(xi + quad_number("0.15"));
-    if (s <= 1)
-      system->q[i] = 1 - 3 * s * s / 2 + 3 * cube(s) / 4;
-    else if (s <= 2)
-      system->q[i] = cube(2 - s) / 4;
-  }
-}
-
-static void toda_acceleration(const quad_system *system, const quad *q, const quad *v, quad *a)
-{
-  const quad strength = (quad)64 / 100;
-  (void)v;
-  for (int i = 0; i < system->n; i++) a[i] = 0;
-  for (int i = 0; i < system->n; i++) {
-    const int next = i + 1 < system->n ? i + 1 : 0;
-    const quad force = strength * quad_exp(q[i] - q[next]);
-    a[i] -= force;
-    a[next] += force;
-  }
-}
-
-/* V = sum_{i=0}^{n} d_i^2/2 + beta d_i^4/4, d_i = q_{i+1} - q_i between walls at q_0 = q_{n+1} = 0,
- * with the start sin(pi k i/(n+1)). */
-static void chain_prepare(quad_system *system)
-{
-  const int n = (int)system->value[0];
-  if (n < 1 || n > QUAD_N_MAX) return;
-  system->n = n;
-  for (int i = 0; i < n; i++)
-    system->q[i] = quad_sin(quad_acos(-1) * ((i + 1) * ((n + 7) / 8)) / (n + 1));
-}
-
-static void chain_acceleration(const quad_system *system, const quad *q, const quad *v, quad *a)
-{
-  const int n = system->n;
-  (void)v;
-  for (int i = 0; i < n; i++) a[i] = 0;
-  for (int i = 0; i <= n; i++) {
-    const quad d = (i < n ? q[i] : 0) - (i > 0 ? q[i - 1] : 0),
-               force = d + system->value[1] * cube(d);
-    if (i < n) a[i] -= force;
-    if (i > 0) a[i - 1] += force;
-  }
-}
-
-/* V = k/2 sum (|d| - 0.8)^2 over the springs of a net of side^dim masses, and those to its walls. q
- * are displacements from a grid of spacing 1. A mass has 2 dim springs, each judged from its own
- * end. */
-static int net_masses(const quad_system *system)
-{
-  const int side = (int)system->value[1];
-  return (int)system->value[0] == 2 ? side * side : side * side * side;
-}
-
-static void net_prepare(quad_system *system)
-{
-  const int dim = (int)system->value[0], side = (int)system->value[1];
-  if (dim < 2 || dim > 3 || side < 1 || side > 5 || net_masses(system) * dim > QUAD_N_MAX) return;
-  system->n = net_masses(system) * dim;
-  for (int i = 0; i < system->n; i++) {
-    quad bulge = quad_number(i % dim == 0 ? "0.1" : "0.05");
-    for (int axis = 0, place = i / dim; axis < dim; axis++, place /= side)
-      bulge *= quad_sin(quad_acos(-1) * (1 + place % side) / (side + 1));
-    system->q[i] = bulge;
-  }
-}
-
-/* The force on the mass whose coordinates begin at `at`, by the spring along an axis to `other`,
- * NULL for the wall. */
-static void net_pull(int dim, quad k, const quad *at, const quad *other, int axis, int step,
-                     quad *a)
-{
-  quad d[3], square = 0;
-  for (int c = 0; c < dim; c++) {
-    d[c] = (c == axis ? step : 0) + (other != NULL ? other[c] : 0) - at[c];
-    square += d[c] * d[c];
-  }
-  const quad factor = k * (1 - quad_number("0.8") / quad_sqrt(square));
-  for (int c = 0; c < dim; c++) a[c] += factor * d[c];
-}
-
-static void net_acceleration(const quad_system *system, const quad *q, const quad *v, quad *a)
-{
-  const int dim = (int)system->value[0], side = (int)system->value[1];
-  (void)v;
-  for (int i = 0; i < system->n; i++) a[i] = 0;
-  for (int mass = 0; mass < system->n / dim; mass++)
-    for (int axis = 0, stride = 1; axis < dim; axis++, stride *= side)
-      for (int step = -1; step <= 1; step += 2) {
-        const int place = mass / stride % side + step;
-        const quad *at = q + mass * dim;
-        const quad *other = place >= 0 && place < side ? at + step * stride * dim : NULL;
-        net_pull(dim, system->value[2], at, other, axis, step, a + mass * dim);
-      }
 }
 
 /* Newton's gravity between point masses. q holds body after body. */
@@ -496,22 +351,6 @@ static const quad_problem problems[] = {
      stiff_pendulum_velocity,
      NULL,
      NULL},
-    {"fpu", {"ell", "omega"}, {"3", "50"}, fpu_prepare, fpu_acceleration, NULL, NULL, NULL, NULL},
-    {"toda", {"N"}, {"20"}, toda_prepare, toda_acceleration, NULL, NULL, NULL, NULL},
-    {"chain",
-     {"n", "beta"},
-     {"32", "1"},
-     chain_prepare,
-     chain_acceleration,
-     NULL,
-     NULL,
-     NULL,
-     NULL},
-    {.name = "net",
-     .parameter = {"dim", "side", "k"},
-     .standard = {"2", "4", "1"},
-     .prepare = net_prepare,
-     .acceleration = net_acceleration},
     {.name = "outer-solar", .prepare = outer_solar_prepare, GRAVITY},
     {.name = "figure-eight", .prepare = figure_eight_prepare, GRAVITY},
     {.name = "pythagorean", .prepare = pythagorean_prepare, GRAVITY},
@@ -521,6 +360,8 @@ const quad_problem *quad_problem_find(const char *name)
 {
   for (size_t i = 0; i < sizeof problems / sizeof *problems; i++)
     if (strcmp(problems[i].name, name) == 0) return &problems[i];
+  for (const quad_problem *p = quad_chains; p->name; p++)
+    if (strcmp(p->name, name) == 0) return p;
   for (const quad_problem *p = quad_degenerate; p->name; p++)
     if (strcmp(p->name, name) == 0) return p;
   for (const quad_problem *p = quad_factors; p->name; p++)

@@ -45,7 +45,10 @@ typedef struct quad_problem {
   void (*rate)(const quad_system *system, const quad *q, quad *qdot);
 } quad_problem;
 
-/* The degenerate ones (quad_degenerate.c), ended by one without a name. */
+/* Chains and nets of springs (quad_chains.c), ended by one without a name. */
+extern const quad_problem quad_chains[];
+
+/* The degenerate ones (quad_degenerate.c), likewise. */
 extern const quad_problem quad_degenerate[];
 
 /* Those with rotations and directions (quad_factors.c), likewise. */
@@ -74,5 +77,10 @@ void quad_momentum(const quad_field *field, const quad *y, quad *p);
 
 /* Reads a decimal number or a quotient of two, such as "1/1.3e8". */
 quad quad_number(const char *text);
+
+static inline quad quad_cube(quad x)
+{
+  return x * x * x;
+}
 
 #endif
