@@ -1,5 +1,6 @@
 /* labels: jacobian */
-/* The paths of one element, fitted, continued and straight, and the kinetic part of its Jacobian. */
+/* The paths of one element, fitted, continued and straight, and the chord, the kinetic part of its
+ * Jacobian. */
 #include <math.h>
 
 #include "step/element/action.h"
