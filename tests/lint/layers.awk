@@ -56,10 +56,11 @@ BEGIN {
   uses["load"] = "cli"
   uses["plot"] = "cli csv"
   uses["sweep"] = "cli csv load"
+  uses["boundary"] = "cli csv load"
   uses["study"] = "cli csv plot"
   uses["mechanics"] = uses["study"] " study load"
   uses["watch"] = uses["bench"] = uses["mechanics"] " mechanics"
-  uses["cmd"] = uses["watch"] " watch bench sweep"
+  uses["cmd"] = uses["watch"] " watch bench sweep boundary"
   uses["main.c"] = "cli bench"
   # Single headers of other rooms that a room may include.
   also["reference solve/sundials_compat.h"] = 1
