@@ -146,13 +146,13 @@ sees symbols lib/src/core/one.c 'int dvi_two;'
 sees symbols lib/src/core/one.c 'int stray;'
 sees symbols lib/include/dvi/one.h 'int dvi_promised(int a);'
 
-# A line of 101 columns is seen in prose, in a formula, in C and in YAML, and allowed in a table, in
-# output, and for a single link.
+# A line of 101 columns is seen in prose, in a formula, in C, in YAML and in commands, and allowed in
+# a table, in output, and for a single link.
 clean
 passes markdown
 long=$(awk 'BEGIN { while (i++ < 50) printf "a "; print "b" }')
 for text in "$long" "    $long" "- $long" '```c\n'"$long"'\n```' '```yaml\n'"$long"'\n```' \
-  '```console\na\n```\n'"$long"; do
+  '```sh\n'"$long"'\n```' '```console\na\n```\n'"$long"; do
   for page in README.md docs/methods/leap.md; do sees markdown $page "$text"; done
 done
 for text in "| $long |" '```console\n'"$long"'\n```' "- [$long](docs/guide.md)."; do
