@@ -8,29 +8,28 @@
 
 enum { SENTENCE_SIZE = 2048 };
 
-static void print_sentence(const char *sentence)
+/* Print a sentence. One that is too long for its memory is cut. */
+static void print_sentence(const char *format, va_list arguments)
 {
+  char sentence[SENTENCE_SIZE];
+  (void)vsnprintf(sentence, sizeof sentence, format, arguments);
   (void)fprintf(stderr, "dvi: %s\n", sentence);
 }
 
 void complain(const char *format, ...)
 {
-  char sentence[SENTENCE_SIZE];
   va_list arguments;
   va_start(arguments, format);
-  (void)vsnprintf(sentence, sizeof sentence, format, arguments);
+  print_sentence(format, arguments);
   va_end(arguments);
-  print_sentence(sentence);
 }
 
 int usage_error(const char *format, ...)
 {
-  char sentence[SENTENCE_SIZE];
   va_list arguments;
   va_start(arguments, format);
-  (void)vsnprintf(sentence, sizeof sentence, format, arguments);
+  print_sentence(format, arguments);
   va_end(arguments);
-  print_sentence(sentence);
   return USAGE;
 }
 

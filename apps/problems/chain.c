@@ -145,12 +145,7 @@ static dvi_status chain_make(const double *setting, problem *made)
                                    .user = own,
                                    .gradient_range = chain_gradient_range,
                                    .reach = 1};
-  const dvi_system_terms terms = {.dimension = n,
-                                  .mass = {.scalar = 1.0},
-                                  .potentials = &potential,
-                                  .potential_count = 1,
-                                  .autonomous = 1};
-  return problem_system(made, &terms);
+  return problem_potential_system(made, 1, &potential);
 }
 
 static const problem_parameter parameters[] = {

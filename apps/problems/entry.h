@@ -102,6 +102,9 @@ dvi_status problem_factors(problem *made, int count, const dvi_factor *factors,
  * all that they point to (parameters, patterns, masses) must live as long as the problem. */
 dvi_status problem_system(problem *made, const dvi_system_terms *terms);
 
+/* Do the same for unit masses and so many potentials. Nothing depends on time. */
+dvi_status problem_potential_system(problem *made, int count, const dvi_potential *potentials);
+
 /* Do the same for a one-form and a Hamiltonian of the coordinates, with so many symmetries. Nothing
  * depends on time. */
 dvi_status problem_one_form_system(problem *made, const dvi_one_form *form,

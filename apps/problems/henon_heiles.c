@@ -94,12 +94,7 @@ static dvi_status henon_heiles_make(const double *setting, problem *made)
                               .hessian_batch = henon_heiles_hessian,
                               .user = lambda,
                               .taylor = henon_heiles_taylor};
-  const dvi_system_terms terms = {.dimension = 2,
-                                  .mass = {.scalar = 1.0},
-                                  .potentials = &well,
-                                  .potential_count = 1,
-                                  .autonomous = 1};
-  return problem_system(made, &terms);
+  return problem_potential_system(made, 1, &well);
 }
 
 static const problem_parameter parameters[] = {

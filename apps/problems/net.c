@@ -281,12 +281,7 @@ static dvi_status net_create(const double *setting, problem *made)
                                  .hessian_batch = net_hessian,
                                  .qq = {own->start, own->row},
                                  .user = own};
-  const dvi_system_terms terms = {.dimension = made->nq,
-                                  .mass = {.scalar = 1.0},
-                                  .potentials = &springs,
-                                  .potential_count = 1,
-                                  .autonomous = 1};
-  return problem_system(made, &terms);
+  return problem_potential_system(made, 1, &springs);
 }
 
 static const problem_parameter parameters[] = {

@@ -62,12 +62,7 @@ static dvi_status oscillator_make(const double *setting, problem *made)
                                 .hessian = oscillator_hessian,
                                 .user = k,
                                 .taylor = oscillator_taylor};
-  const dvi_system_terms terms = {.dimension = 1,
-                                  .mass = {.scalar = 1.0},
-                                  .potentials = &spring,
-                                  .potential_count = 1,
-                                  .autonomous = 1};
-  return problem_system(made, &terms);
+  return problem_potential_system(made, 1, &spring);
 }
 
 static const problem_parameter parameters[] = {

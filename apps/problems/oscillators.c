@@ -83,12 +83,7 @@ static dvi_status oscillators_make(const double *setting, problem *made)
        .quadratic = 1,
        .taylor = oscillators_taylor},
   };
-  const dvi_system_terms terms = {.dimension = 1,
-                                  .mass = {.scalar = 1.0},
-                                  .potentials = springs,
-                                  .potential_count = 2,
-                                  .autonomous = 1};
-  return problem_system(made, &terms);
+  return problem_potential_system(made, 2, springs);
 }
 
 static const problem_parameter parameters[] = {

@@ -52,12 +52,7 @@ static dvi_status pendulum_make(const double *setting, problem *made)
                                  .gradient_batch = pendulum_gradient,
                                  .hessian_batch = pendulum_hessian,
                                  .taylor = pendulum_taylor};
-  const dvi_system_terms terms = {.dimension = 1,
-                                  .mass = {.scalar = 1.0},
-                                  .potentials = &gravity,
-                                  .potential_count = 1,
-                                  .autonomous = 1};
-  return problem_system(made, &terms);
+  return problem_potential_system(made, 1, &gravity);
 }
 
 static const problem_parameter parameters[] = {

@@ -45,6 +45,16 @@ dvi_status problem_system(problem *made, const dvi_system_terms *terms)
   return made->terms ? dvi_system_create(made->terms, &made->system) : DVI_NO_MEMORY;
 }
 
+dvi_status problem_potential_system(problem *made, int count, const dvi_potential *potentials)
+{
+  const dvi_system_terms terms = {.dimension = made->nq,
+                                  .mass = {.scalar = 1.0},
+                                  .potentials = potentials,
+                                  .potential_count = count,
+                                  .autonomous = 1};
+  return problem_system(made, &terms);
+}
+
 dvi_status problem_one_form_system(problem *made, const dvi_one_form *form,
                                    const dvi_potential *hamiltonian, int symmetry_count,
                                    const dvi_symmetry *symmetries)

@@ -146,8 +146,8 @@ sees symbols lib/src/core/one.c 'int dvi_two;'
 sees symbols lib/src/core/one.c 'int stray;'
 sees symbols lib/include/dvi/one.h 'int dvi_promised(int a);'
 
-# A line of 101 columns is seen in prose, in a formula, in C, in YAML and in commands, and allowed in
-# a table, in output, and for a single link.
+# A line of 101 columns is seen in prose, in a formula, in C, in YAML and in commands. It is allowed
+# in a table, in output, and for a single link.
 clean
 passes markdown
 long=$(awk 'BEGIN { while (i++ < 50) printf "a "; print "b" }')
