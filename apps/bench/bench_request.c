@@ -180,111 +180,92 @@ static const char *const details[] = {
     NULL,
 };
 
-/* Add the options for the measured quantities. */
-static int add_measured(bench_request *r, option *options)
-{
-  const option list[] = {
-      {.name = "method",
-       .words = &r->methods,
-       .value = "SPEC",
-       .help = "a method; may be repeated; default: the scene's, else a selection"},
-      {.name = "time-transform",
-       .words = &r->transforms,
-       .value = "MONITOR",
-       .help = "every method in this time (see dvi run --help), or in none; may be repeated; "
-               "default: none"},
-      {.name = "against",
-       .words = &r->against,
-       .value = "CODES",
-       .help = "codes beside them: of cvode,cvode-bdf,arkode,ida,gsl"},
-      {.name = "judge",
-       .word = &r->judged_by,
-       .value = "WHO",
-       .help = "auto, exact, stored, ida or runs; default: auto"},
-      {.name = "one-point",
-       .flag = &r->one_point,
-       .help = "give the problem's callbacks one point a call, not a batch"},
-      {.name = "at",
-       .word = &r->at,
-       .value = "ERRORS",
-       .help = "compare at these errors, for example 1e-6,1e-9"},
-      {.name = "at-csv",
-       .word = &r->outputs.at_csv,
-       .value = "-|FILE",
-       .help = "write that comparison as CSV"},
-      {.name = "scale",
-       .word = &r->scale,
-       .value = "NAME=V,V...",
-       .help =
-           "measure steps instead, as a parameter, the degree, the threads or an ensemble grow"},
-      {.name = "h",
-       .number = &r->h,
-       .value = "H",
-       .help = "the step of --scale; default: the problem's"},
-      {.name = "steps",
-       .count = &r->steps,
-       .value = "N",
-       .help = "how many steps --scale times at once; default: 32, 64 of members"},
-      {.name = "levels",
-       .count = &r->levels,
-       .value = "N",
-       .help = "how many step sizes of each method; default: 6, or more for --at"},
-      {.name = "rounds",
-       .count = &r->rounds,
-       .value = "N",
-       .help = "how often everything is measured; default: 5"},
-  };
-  memcpy(options, list, sizeof list);
-  return (int)(sizeof list / sizeof *list);
-}
+static const option options[] = {
+    {.name = "method",
+     OPTION_AT(bench_request, methods),
+     .value = "SPEC",
+     .help = "a method; may be repeated; default: the scene's, else a selection"},
+    {.name = "time-transform",
+     OPTION_AT(bench_request, transforms),
+     .value = "MONITOR",
+     .help = "every method in this time (see dvi run --help), or in none; may be repeated; "
+             "default: none"},
+    {.name = "against",
+     OPTION_AT(bench_request, against),
+     .value = "CODES",
+     .help = "codes beside them: of cvode,cvode-bdf,arkode,ida,gsl"},
+    {.name = "judge",
+     OPTION_AT(bench_request, judged_by),
+     .value = "WHO",
+     .help = "auto, exact, stored, ida or runs; default: auto"},
+    {.name = "one-point",
+     OPTION_AT(bench_request, one_point),
+     .help = "give the problem's callbacks one point a call, not a batch"},
+    {.name = "at",
+     OPTION_AT(bench_request, at),
+     .value = "ERRORS",
+     .help = "compare at these errors, for example 1e-6,1e-9"},
+    {.name = "at-csv",
+     OPTION_AT(bench_request, outputs.at_csv),
+     .value = "-|FILE",
+     .help = "write that comparison as CSV"},
+    {.name = "scale",
+     OPTION_AT(bench_request, scale),
+     .value = "NAME=V,V...",
+     .help = "measure steps instead, as a parameter, the degree, the threads or an ensemble grow"},
+    {.name = "h",
+     OPTION_AT(bench_request, h),
+     .value = "H",
+     .help = "the step of --scale; default: the problem's"},
+    {.name = "steps",
+     OPTION_AT(bench_request, steps),
+     .value = "N",
+     .help = "how many steps --scale times at once; default: 32, 64 of members"},
+    {.name = "levels",
+     OPTION_AT(bench_request, levels),
+     .value = "N",
+     .help = "how many step sizes of each method; default: 6, or more for --at"},
+    {.name = "rounds",
+     OPTION_AT(bench_request, rounds),
+     .value = "N",
+     .help = "how often everything is measured; default: 5"},
+    {.name = "t-end",
+     OPTION_AT(bench_request, t_end),
+     .value = "T",
+     .help = "the end; default: the problem's for order studies"},
+    {.name = "set",
+     OPTION_AT(bench_request, settings),
+     .value = "NAME=VALUE",
+     .help = "set a parameter of the problem; may be repeated"},
+    {.name = "csv",
+     OPTION_AT(bench_request, outputs.csv),
+     .value = "-|FILE",
+     .help = "write the table as CSV; -: to standard output, words to stderr"},
+    {.name = "plot",
+     OPTION_AT(bench_request, outputs.plot),
+     .value = "FILE.svg",
+     .help = "draw CPU time against error, or against what is varied"},
+    {.name = "axes",
+     OPTION_AT(bench_request, axes),
+     .value = "X:Y",
+     .help = "draw these columns of the table instead; may be repeated"},
+    {.name = NULL},
+};
 
-/* Add the options for the span, the problem, and the destinations of the results. */
-static int add_outputs(bench_request *r, option *options)
-{
-  const option list[] = {
-      {.name = "t-end",
-       .number = &r->t_end,
-       .value = "T",
-       .help = "the end; default: the problem's for order studies"},
-      {.name = "set",
-       .words = &r->settings,
-       .value = "NAME=VALUE",
-       .help = "set a parameter of the problem; may be repeated"},
-      {.name = "csv",
-       .word = &r->outputs.csv,
-       .value = "-|FILE",
-       .help = "write the table as CSV; -: to standard output, words to stderr"},
-      {.name = "plot",
-       .word = &r->outputs.plot,
-       .value = "FILE.svg",
-       .help = "draw CPU time against error, or against what is varied"},
-      {.name = "axes",
-       .words = &r->axes,
-       .value = "X:Y",
-       .help = "draw these columns of the table instead; may be repeated"},
-  };
-  memcpy(options, list, sizeof list);
-  return (int)(sizeof list / sizeof *list);
-}
+static const command_line command = {
+    .name = "bench",
+    .synopsis = "PROBLEM|SCENE.yaml [--method SPEC ...] [--against cvode,arkode,ida,gsl] [OPTIONS]",
+    .operand = "PROBLEM",
+    .summary = "Measure speed against error, of methods and of other codes, all in one run; or "
+               "the cost of a step against size.\n",
+    .options = options,
+    .details = details,
+};
 
 bool bench_request_read(int argc, char **argv, bench_request *r, int *exit_code)
 {
-  enum { OPTIONS_MAX = 24 };
-  option options[OPTIONS_MAX] = {{.name = NULL}};
   *r = (bench_request){.t_end = (double)NAN, .h = (double)NAN, .rounds = ROUNDS_DEFAULT};
-  const int count = add_measured(r, options);
-  (void)add_outputs(r, options + count);
-  const command_line command = {
-      .name = "bench",
-      .synopsis =
-          "PROBLEM|SCENE.yaml [--method SPEC ...] [--against cvode,arkode,ida,gsl] [OPTIONS]",
-      .operand = "PROBLEM",
-      .summary = "Measure speed against error, of methods and of other codes, all in one run; or "
-                 "the cost of a step against size.\n",
-      .options = options,
-      .details = details,
-  };
-  if (!options_parse(&command, argc, argv, &r->name, exit_code)) return false;
+  if (!options_parse(&command, argc, argv, r, &r->name, exit_code)) return false;
   *exit_code = bench_check_request(r);
   return *exit_code == DONE;
 }

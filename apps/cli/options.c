@@ -92,43 +92,65 @@ static int missing_value(const command_line *command, const option *o)
   return usage_error("%s: --%s needs a value: --%s %s", command->name, o->name, o->name, o->value);
 }
 
-static int store_value(const command_line *command, const option *o, const char *text)
+static int store_words(const command_line *command, const option *o, const char *text,
+                       words *stored)
 {
-  if (o->number != NULL && !parse_number(text, o->number))
-    return usage_error("%s: --%s wants a finite number, not '%s'", command->name, o->name, text);
-  if (o->count != NULL && !option_parse_count(text, o->count))
-    return usage_error("%s: --%s wants a whole number from 1, in plain digits, not '%s'",
-                       command->name, o->name, text);
-  if ((o->word != NULL || o->words != NULL) && text[0] == '\0') return missing_value(command, o);
-  if (o->word != NULL) *o->word = text;
-  if (o->words != NULL) {
-    if (o->words->count == WORDS_MAX)
-      return usage_error("%s: --%s is given more than %d times", command->name, o->name,
-                         (int)WORDS_MAX);
-    o->words->word[o->words->count++] = text;
-  }
+  if (stored->count == WORDS_MAX)
+    return usage_error("%s: --%s is given more than %d times", command->name, o->name,
+                       (int)WORDS_MAX);
+  stored->word[stored->count++] = text;
   return DONE;
 }
 
-/* Take the option at argv[*i], and its value from there or from the next argument. */
-static int take_option(const command_line *command, int argc, char **argv, int *i, bool *given)
+static int store_value(const command_line *command, const option *o, const char *text, void *value)
 {
-  const char *name = argv[*i] + 2;
+  if ((o->kind == OPTION_WORD || o->kind == OPTION_WORDS) && text[0] == '\0')
+    return missing_value(command, o);
+  switch (o->kind) {
+  case OPTION_NUMBER:
+    if (parse_number(text, value)) return DONE;
+    return usage_error("%s: --%s wants a finite number, not '%s'", command->name, o->name, text);
+  case OPTION_COUNT:
+    if (option_parse_count(text, value)) return DONE;
+    return usage_error("%s: --%s wants a whole number from 1, in plain digits, not '%s'",
+                       command->name, o->name, text);
+  case OPTION_WORDS: return store_words(command, o, text, value);
+  case OPTION_WORD: *(const char **)value = text; return DONE;
+  default: return usage_error("%s: --%s takes no value", command->name, o->name);
+  }
+}
+
+/* A command line while it is read. */
+typedef struct reading {
+  const command_line *command;
+  int argc;
+  char **argv;
+  int at; /* index of the argument being read */
+  bool given[OPTIONS_MAX];
+  void *request;
+} reading;
+
+/* Take the option at argv[at], and its value from there or from the next argument. */
+static int take_option(reading *r)
+{
+  const command_line *command = r->command;
+  const char *name = r->argv[r->at] + 2;
   const size_t length = strcspn(name, "=");
   const int k = find_option(command, name, length);
   if (k < 0) return unknown_option(command, name, length);
   const option *o = &command->options[k];
-  if (given[k] && o->words == NULL)
+  void *value = (char *)r->request + o->place;
+  if (r->given[k] && o->kind != OPTION_WORDS)
     return usage_error("%s: --%s is given twice", command->name, o->name);
-  given[k] = true;
-  if (o->flag != NULL) {
-    *o->flag = true;
-    return name[length] == '=' ? usage_error("%s: --%s takes no value", command->name, o->name)
-                               : DONE;
+  r->given[k] = true;
+  if (name[length] == '=') return store_value(command, o, name + length + 1, value);
+  if (o->kind == OPTION_FLAG) {
+    *(bool *)value = true;
+    return DONE;
   }
-  if (name[length] == '=') return store_value(command, o, name + length + 1);
-  if (*i + 1 == argc || strncmp(argv[*i + 1], "--", 2) == 0) return missing_value(command, o);
-  return store_value(command, o, argv[++*i]);
+  if (r->at + 1 == r->argc || strncmp(r->argv[r->at + 1], "--", 2) == 0)
+    return missing_value(command, o);
+  return store_value(command, o, r->argv[++r->at], value);
 }
 
 static int take_operand(const command_line *command, const char *text, const char **operand)
@@ -148,19 +170,20 @@ static int take_operand(const command_line *command, const char *text, const cha
   return DONE;
 }
 
-bool options_parse(const command_line *command, int argc, char **argv, const char **operand,
-                   int *exit_code)
+bool options_parse(const command_line *command, int argc, char **argv, void *request,
+                   const char **operand, int *exit_code)
 {
-  bool given[OPTIONS_MAX] = {false};
+  reading r = {.command = command, .argc = argc, .argv = argv, .request = request};
   *operand = NULL;
-  for (int i = 0; i < argc; i++) {
-    if (strcmp(argv[i], "--help") == 0) {
+  for (; r.at < argc; r.at++) {
+    const char *text = argv[r.at];
+    if (strcmp(text, "--help") == 0) {
       print_help(command);
       *exit_code = DONE;
       return false;
     }
-    *exit_code = strncmp(argv[i], "--", 2) == 0 ? take_option(command, argc, argv, &i, given)
-                                                : take_operand(command, argv[i], operand);
+    *exit_code = strncmp(text, "--", 2) == 0 ? take_option(&r)
+                                             : take_operand(command, text, operand);
     if (*exit_code != DONE) return false;
   }
   if (*operand == NULL) {

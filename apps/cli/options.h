@@ -3,6 +3,7 @@
 #ifndef OPTIONS_H
 #define OPTIONS_H
 #include <stdbool.h>
+#include <stddef.h>
 
 enum { WORDS_MAX = 64 };
 
@@ -12,18 +13,33 @@ typedef struct words {
   const char *word[WORDS_MAX];
 } words;
 
-/** One option. Exactly one of the pointers is set. It gives the kind of the value and the place
- * where the value is stored. */
+/** Kinds of values. */
+typedef enum option_kind {
+  OPTION_FLAG,   /**< bool, set by an option without value */
+  OPTION_NUMBER, /**< double, any finite number */
+  OPTION_COUNT,  /**< long, a whole number from 1 */
+  OPTION_WORD,   /**< const char *, any text */
+  OPTION_WORDS   /**< words, any text, may be repeated */
+} option_kind;
+
+/** One option. */
 typedef struct option {
-  const char *name;  /**< name without the dashes */
-  bool *flag;        /**< set by an option without value */
-  double *number;    /**< any finite number */
-  long *count;       /**< whole number from 1 */
-  const char **word; /**< any text */
-  words *words;      /**< any text, may be repeated */
+  const char *name; /**< name without the dashes */
+  option_kind kind;
+  size_t place;      /**< offset of the value in the command's request, in bytes */
   const char *value; /**< spelling of the value in the help text, such as "H" */
   const char *help;
 } option;
+
+/** The kind and the place of an option whose value is this member of a request of this type. */
+#define OPTION_AT(type, member) \
+  .kind = _Generic(((type *)NULL)->member,    \
+                   bool: OPTION_FLAG,         \
+                   double: OPTION_NUMBER,     \
+                   long: OPTION_COUNT,        \
+                   const char *: OPTION_WORD, \
+                   words: OPTION_WORDS),      \
+  .place = offsetof(type, member)
 
 /** One subcommand, as its --help describes it. */
 typedef struct command_line {
@@ -39,12 +55,13 @@ typedef struct command_line {
 
 /** Parse the arguments after the subcommand's name.
  *
+ *  @param[in,out] request the request that the places of the options refer to, with its defaults
  *  @param[out] operand    the operand
  *  @param[out] exit_code  set if the command is to end now, because --help was asked for or the
  *                         line makes no sense
  *  @return true to go on */
-bool options_parse(const command_line *command, int argc, char **argv, const char **operand,
-                   int *exit_code);
+bool options_parse(const command_line *command, int argc, char **argv, void *request,
+                   const char **operand, int *exit_code);
 
 /** Refuse equal values of --name, because rows of a table could not be told apart. Returns DONE, or
  * complains and returns USAGE. */

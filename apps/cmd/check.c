@@ -147,41 +147,49 @@ static const char *const details[] = {
     NULL,
 };
 
+/* The options. */
+typedef struct check_request {
+  const char *method; /* NULL for the scene's, or none */
+  words settings;
+} check_request;
+
+static const option options[] = {
+    {.name = "method",
+     OPTION_AT(check_request, method),
+     .value = "SPEC",
+     .help = "take a step with this method; default: the scene's, or none"},
+    {.name = "set",
+     OPTION_AT(check_request, settings),
+     .value = "NAME=VALUE",
+     .help = "set a parameter of the problem; may be repeated"},
+    {.name = NULL},
+};
+
+static const command_line command = {
+    .name = "check",
+    .synopsis = "PROBLEM|SCENE.yaml [OPTIONS]",
+    .operand = "PROBLEM",
+    .summary = "Read a problem, compare all its derivatives with differences of its values, "
+               "evaluate what is watched, and take "
+               "one step.\n",
+    .options = options,
+    .details = details,
+};
+
 int check_command(int argc, char **argv)
 {
-  const char *method = NULL, *name;
-  words settings = {0};
-  int code;
+  check_request r = {.method = NULL};
+  const char *name;
   problem *scene;
-  const option options[] = {
-      {.name = "method",
-       .word = &method,
-       .value = "SPEC",
-       .help = "take a step with this method; default: the scene's, or none"},
-      {.name = "set",
-       .words = &settings,
-       .value = "NAME=VALUE",
-       .help = "set a parameter of the problem; may be repeated"},
-      {.name = NULL},
-  };
-  const command_line command = {
-      .name = "check",
-      .synopsis = "PROBLEM|SCENE.yaml [OPTIONS]",
-      .operand = "PROBLEM",
-      .summary = "Read a problem, compare all its derivatives with differences of its values, "
-                 "evaluate what is watched, and take "
-                 "one step.\n",
-      .options = options,
-      .details = details,
-  };
-  if (!options_parse(&command, argc, argv, &name, &code)) return code;
-  code = open_problem(name, &settings, &scene);
+  int code;
+  if (!options_parse(&command, argc, argv, &r, &name, &code)) return code;
+  code = open_problem(name, &r.settings, &scene);
   if (code != DONE) return code;
-  if (method == NULL) method = scene->method;
+  if (r.method == NULL) r.method = scene->method;
   (void)printf("%s: %s\n", scene->name, scene->summary);
   code = check_all_derivatives(scene);
   if (code == DONE) code = check_invariants(scene);
-  if (code == DONE && method != NULL) code = check_one_step(scene, method);
+  if (code == DONE && r.method != NULL) code = check_one_step(scene, r.method);
   if (code == DONE) scene_tell(scene);
   warn_unused(scene);
   problem_destroy(&scene);

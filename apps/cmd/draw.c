@@ -87,39 +87,41 @@ static const char *const details[] = {
     NULL,
 };
 
+static const option options[] = {
+    {.name = "axes",
+     OPTION_AT(plot_request, axes),
+     .value = "X:Y[,X:Y..]",
+     .help = "the columns to draw; may be repeated"},
+    {.name = "out", OPTION_AT(plot_request, out), .value = "FILE.svg", .help = "the picture"},
+    {.name = "title",
+     OPTION_AT(plot_request, title),
+     .value = "TEXT",
+     .help = "what stands above it; default: the file's name"},
+    {.name = "dots", OPTION_AT(plot_request, dots), .help = "a dot for each row instead of lines"},
+    {.name = "equal",
+     OPTION_AT(plot_request, equal),
+     .help = "the same scale on both axes, but for those over time"},
+    {.name = "log",
+     OPTION_AT(plot_request, logarithmic),
+     .help = "logarithmic axes; rows with numbers that are not positive are left out"},
+    {.name = NULL},
+};
+
+static const command_line command = {
+    .name = "plot",
+    .synopsis = "FILE.csv --axes X:Y[,X:Y..] --out FILE.svg [OPTIONS]",
+    .operand = "FILE",
+    .summary = "Draw columns of a CSV file that dvi has written against each other; - is "
+               "standard input.\n",
+    .options = options,
+    .details = details,
+};
+
 int plot_command(int argc, char **argv)
 {
   plot_request r = {0};
-  const option options[] = {
-      {.name = "axes",
-       .words = &r.axes,
-       .value = "X:Y[,X:Y..]",
-       .help = "the columns to draw; may be repeated"},
-      {.name = "out", .word = &r.out, .value = "FILE.svg", .help = "the picture"},
-      {.name = "title",
-       .word = &r.title,
-       .value = "TEXT",
-       .help = "what stands above it; default: the file's name"},
-      {.name = "dots", .flag = &r.dots, .help = "a dot for each row instead of lines"},
-      {.name = "equal",
-       .flag = &r.equal,
-       .help = "the same scale on both axes, but for those over time"},
-      {.name = "log",
-       .flag = &r.logarithmic,
-       .help = "logarithmic axes; rows with numbers that are not positive are left out"},
-      {.name = NULL},
-  };
-  const command_line command = {
-      .name = "plot",
-      .synopsis = "FILE.csv --axes X:Y[,X:Y..] --out FILE.svg [OPTIONS]",
-      .operand = "FILE",
-      .summary = "Draw columns of a CSV file that dvi has written against each other; - is "
-                 "standard input.\n",
-      .options = options,
-      .details = details,
-  };
   const char *path;
   int code;
-  if (!options_parse(&command, argc, argv, &path, &code)) return code;
+  if (!options_parse(&command, argc, argv, &r, &path, &code)) return code;
   return plot_file(&r, path);
 }

@@ -64,45 +64,48 @@ static int emit_c(const emit_request *request, const char *path)
   return code;
 }
 
+static const char *const details[] = {
+    "The file needs <dvi/dvi.h> and libdvi alone. Parameters are numbers in it, as they are set "
+    "here. Compiled with\n"
+    "-DDVI_MAIN it is a program that runs the scene.\n",
+    "Examples:\n"
+    "  dvi init cart.yaml\n"
+    "  dvi emit-c cart.yaml --out cart.c\n",
+    NULL,
+};
+
+static const option options[] = {
+    {.name = "out",
+     OPTION_AT(emit_request, out),
+     .value = "FILE.c",
+     .help = "where the C file goes; -: standard output"},
+    {.name = "name",
+     OPTION_AT(emit_request, name),
+     .value = "NAME",
+     .help = "of the functions, NAME_create and so on; default: the "
+             "scene's, with _ for -"},
+    {.name = "set",
+     OPTION_AT(emit_request, settings),
+     .value = "NAME=VALUE",
+     .help = "set a parameter of the scene; may be repeated"},
+    {.name = NULL},
+};
+
+static const command_line command = {
+    .name = "emit-c",
+    .synopsis = "SCENE.yaml --out FILE.c [OPTIONS]",
+    .operand = "SCENE",
+    .summary = "Write a C file that declares the same system by callbacks, with its start.\n",
+    .options = options,
+    .details = details,
+};
+
 int emit_c_command(int argc, char **argv)
 {
   emit_request r = {.out = NULL};
-  const option options[] = {
-      {.name = "out",
-       .word = &r.out,
-       .value = "FILE.c",
-       .help = "where the C file goes; -: standard output"},
-      {.name = "name",
-       .word = &r.name,
-       .value = "NAME",
-       .help = "of the functions, NAME_create and so on; default: the "
-               "scene's, with _ for -"},
-      {.name = "set",
-       .words = &r.settings,
-       .value = "NAME=VALUE",
-       .help = "set a parameter of the scene; may be repeated"},
-      {.name = NULL},
-  };
-  static const char *const details[] = {
-      "The file needs <dvi/dvi.h> and libdvi alone. Parameters are numbers in it, as they are set "
-      "here. Compiled with\n"
-      "-DDVI_MAIN it is a program that runs the scene.\n",
-      "Examples:\n"
-      "  dvi init cart.yaml\n"
-      "  dvi emit-c cart.yaml --out cart.c\n",
-      NULL,
-  };
-  const command_line command = {
-      .name = "emit-c",
-      .synopsis = "SCENE.yaml --out FILE.c [OPTIONS]",
-      .operand = "SCENE",
-      .summary = "Write a C file that declares the same system by callbacks, with its start.\n",
-      .options = options,
-      .details = details,
-  };
   const char *path;
   int code;
-  if (!options_parse(&command, argc, argv, &path, &code)) return code;
+  if (!options_parse(&command, argc, argv, &r, &path, &code)) return code;
   if (r.out == NULL)
     return usage_error("emit-c: --out is missing: where the C file goes, or - for standard output");
   if (!scene_is_path(path))

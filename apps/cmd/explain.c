@@ -121,56 +121,63 @@ static const char *const details[] = {
     NULL,
 };
 
+/* The options. */
+typedef struct explain_request {
+  const char *method; /* NULL for the scene's */
+  words settings;
+  pacing how;
+  double h; /* NaN if not given */
+} explain_request;
+
+static const option options[] = {
+    {.name = "method",
+     OPTION_AT(explain_request, method),
+     .value = "SPEC",
+     .help = "the method: name[:key=value,...], see dvi list methods; default: the scene's"},
+    {.name = "time-transform",
+     OPTION_AT(explain_request, how.transform),
+     .value = "MONITOR",
+     .help = "steps of equal length in another time: distance[:power=P], arclength or "
+             "acceleration[:power=P]"},
+    {.name = "step-control",
+     OPTION_AT(explain_request, how.control),
+     .value = "MONITOR",
+     .help = "steps that follow a monitor reversibly: cheaper, symmetric, not symplectic"},
+    {.name = "h",
+     OPTION_AT(explain_request, h),
+     .value = "H",
+     .help = "say what steps of this length do to fast frequencies, too"},
+    {.name = "set",
+     OPTION_AT(explain_request, settings),
+     .value = "NAME=VALUE",
+     .help = "set a parameter of the problem; may be repeated"},
+    {.name = NULL},
+};
+
+static const command_line command = {
+    .name = "explain",
+    .synopsis = "PROBLEM|SCENE.yaml --method SPEC [OPTIONS]",
+    .operand = "PROBLEM",
+    .summary = "Say which terms a problem has, and which kernel, solver and sparsity a method "
+               "chooses for it, and why.\n",
+    .options = options,
+    .details = details,
+};
+
 int explain_command(int argc, char **argv)
 {
-  const char *method = NULL;
-  words settings = {0};
-  pacing how = {0};
-  double h = NAN;
-  const option options[] = {
-      {.name = "method",
-       .word = &method,
-       .value = "SPEC",
-       .help = "the method: name[:key=value,...], see dvi list methods; default: the scene's"},
-      {.name = "time-transform",
-       .word = &how.transform,
-       .value = "MONITOR",
-       .help = "steps of equal length in another time: distance[:power=P], arclength or "
-               "acceleration[:power=P]"},
-      {.name = "step-control",
-       .word = &how.control,
-       .value = "MONITOR",
-       .help = "steps that follow a monitor reversibly: cheaper, symmetric, not symplectic"},
-      {.name = "h",
-       .number = &h,
-       .value = "H",
-       .help = "say what steps of this length do to fast frequencies, too"},
-      {.name = "set",
-       .words = &settings,
-       .value = "NAME=VALUE",
-       .help = "set a parameter of the problem; may be repeated"},
-      {.name = NULL},
-  };
-  const command_line command = {
-      .name = "explain",
-      .synopsis = "PROBLEM|SCENE.yaml --method SPEC [OPTIONS]",
-      .operand = "PROBLEM",
-      .summary = "Say which terms a problem has, and which kernel, solver and sparsity a method "
-                 "chooses for it, and why.\n",
-      .options = options,
-      .details = details,
-  };
+  explain_request r = {.h = (double)NAN};
   const char *name;
   int code;
-  if (!options_parse(&command, argc, argv, &name, &code)) return code;
-  code = pacing_check("explain", &how);
+  if (!options_parse(&command, argc, argv, &r, &name, &code)) return code;
+  code = pacing_check("explain", &r.how);
   if (code != DONE) return code;
   problem *scene;
-  code = open_problem(name, &settings, &scene);
+  code = open_problem(name, &r.settings, &scene);
   if (code != DONE) return code;
-  code = open_wish("explain", scene, &method);
-  if (code == DONE) explain_problem(scene, &settings);
-  if (code == DONE) code = explain_all(scene, method, &how, h);
+  code = open_wish("explain", scene, &r.method);
+  if (code == DONE) explain_problem(scene, &r.settings);
+  if (code == DONE) code = explain_all(scene, r.method, &r.how, r.h);
   problem_destroy(&scene);
   return code;
 }

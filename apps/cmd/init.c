@@ -72,29 +72,32 @@ static int write_example(const char *path)
   return file_keep(&file) ? DONE : FAILED;
 }
 
+static const char *const details[] = {
+    "The example is a pendulum on a cart; docs/scenes.md explains all that a scene may hold.\n",
+    "Examples:\n"
+    "  dvi init cart.yaml\n"
+    "  dvi run cart.yaml --final\n",
+    NULL,
+};
+
+static const option options[] = {{.name = NULL}};
+
+static const command_line command = {
+    .name = "init",
+    .synopsis = "FILE.yaml",
+    .operand = "FILE",
+    .summary = "Write an example of a scene, with comments, to be changed into one's own; - is "
+               "standard output. A file that is\n"
+               "there is not overwritten.\n",
+    .options = options,
+    .details = details,
+};
+
 int init_command(int argc, char **argv)
 {
-  static const option options[] = {{.name = NULL}};
-  static const char *const details[] = {
-      "The example is a pendulum on a cart; docs/scenes.md explains all that a scene may hold.\n",
-      "Examples:\n"
-      "  dvi init cart.yaml\n"
-      "  dvi run cart.yaml --final\n",
-      NULL,
-  };
-  const command_line command = {
-      .name = "init",
-      .synopsis = "FILE.yaml",
-      .operand = "FILE",
-      .summary = "Write an example of a scene, with comments, to be changed into one's own; - is "
-                 "standard output. A file that is\n"
-                 "there is not overwritten.\n",
-      .options = options,
-      .details = details,
-  };
   const char *path;
   int code;
-  if (!options_parse(&command, argc, argv, &path, &code)) return code;
+  if (!options_parse(&command, argc, argv, NULL, &path, &code)) return code;
   if (strcmp(path, "-") == 0) return write_example(path);
   if (!scene_is_path(path))
     return usage_error("init: '%s' is no name of a scene: those end in .yaml or .yml", path);

@@ -129,39 +129,47 @@ static const char *const details[] = {
     NULL,
 };
 
+typedef struct list_request {
+  const char *csv;
+} list_request;
+
+static const option options[] = {{.name = "csv",
+                                  OPTION_AT(list_request, csv),
+                                  .value = "-|FILE",
+                                  .help = "write the list as CSV"},
+                                 {.name = NULL}};
+
+static const command_line command = {
+    .name = "list",
+    .synopsis = "methods|problems|NAME [--csv -|FILE]",
+    .operand = "word (methods, problems, or the name of one)",
+    .summary =
+        "List the methods with the keys of their specifications, or the problems with their\n"
+        "parameters; or the one of that name.\n",
+    .options = options,
+    .details = details,
+};
+
 int list_command(int argc, char **argv)
 {
-  const char *csv = NULL;
-  const option options[] = {
-      {.name = "csv", .word = &csv, .value = "-|FILE", .help = "write the list as CSV"},
-      {.name = NULL}};
-  const command_line command = {
-      .name = "list",
-      .synopsis = "methods|problems|NAME [--csv -|FILE]",
-      .operand = "word (methods, problems, or the name of one)",
-      .summary =
-          "List the methods with the keys of their specifications, or the problems with their\n"
-          "parameters; or the one of that name.\n",
-      .options = options,
-      .details = details,
-  };
+  list_request r = {.csv = NULL};
   const char *what;
   int code;
-  if (!options_parse(&command, argc, argv, &what, &code)) return code;
+  if (!options_parse(&command, argc, argv, &r, &what, &code)) return code;
   const bool methods = strcmp(what, "methods") == 0;
   const bool all = methods || strcmp(what, "problems") == 0;
-  if (!all && csv == NULL && list_named(what)) return DONE;
+  if (!all && r.csv == NULL && list_named(what)) return DONE;
   if (!all) {
     char hint[HINT_SIZE];
     return usage_error("list: there are methods, problems and the name of one to list, not '%s'%s",
                        what, suggestion(what, problem_list_at, NULL, hint, sizeof hint));
   }
-  if (csv == NULL) {
+  if (r.csv == NULL) {
     (methods ? list_methods : list_problems)();
     return DONE;
   }
   result_table *t = methods ? methods_table() : problems_table();
-  code = list_write_csv(t, csv);
+  code = list_write_csv(t, r.csv);
   table_destroy(&t);
   return code;
 }

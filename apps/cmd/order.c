@@ -314,73 +314,75 @@ static const char *const details[] = {
     NULL,
 };
 
+static const option options[] = {
+    {.name = "method",
+     OPTION_AT(order_request, methods),
+     .value = "SPEC",
+     .help = "a method: name[:key=value,...]; may be repeated; default: the scene's"},
+    {.name = "h",
+     OPTION_AT(order_request, h),
+     .value = "H",
+     .help = "first step (T/H is rounded to whole steps); default: searched"},
+    {.name = "levels",
+     OPTION_AT(order_request, levels),
+     .value = "N",
+     .help = "how many step sizes; default: 6, or 12 from order 8"},
+    {.name = "ratio",
+     OPTION_AT(order_request, ratio),
+     .value = "R",
+     .help = "of neighbouring steps; default: 2, or less for high orders"},
+    {.name = "t-end",
+     OPTION_AT(order_request, t_end),
+     .value = "T",
+     .help = "the end; default: the problem's for order studies"},
+    {.name = "time-transform",
+     OPTION_AT(order_request, how.transform),
+     .value = "MONITOR",
+     .help = "steps of equal length in another time: distance[:power=P], arclength or "
+             "acceleration[:power=P]"},
+    {.name = "step-control",
+     OPTION_AT(order_request, how.control),
+     .value = "MONITOR",
+     .help = "steps that follow a monitor reversibly: cheaper, symmetric, not symplectic"},
+    {.name = "judge",
+     OPTION_AT(order_request, judged_by),
+     .value = "WHO",
+     .help = "auto, exact, stored, ida or runs; default: auto"},
+    {.name = "set",
+     OPTION_AT(order_request, settings),
+     .value = "NAME=VALUE",
+     .help = "set a parameter of the problem; may be repeated"},
+    {.name = "csv",
+     OPTION_AT(order_request, csv),
+     .value = "-|FILE",
+     .help = "write the table as CSV; -: to standard output, words to stderr"},
+    {.name = "plot",
+     OPTION_AT(order_request, plot),
+     .value = "FILE.svg",
+     .help = "draw error against step, with the claimed slopes"},
+    {.name = "axes",
+     OPTION_AT(order_request, asked),
+     .value = "X:Y",
+     .help = "draw these columns of the table instead; may be repeated"},
+    {.name = NULL},
+};
+
+static const command_line command = {
+    .name = "order",
+    .synopsis = "PROBLEM|SCENE.yaml [--method SPEC ...] [OPTIONS]",
+    .operand = "PROBLEM",
+    .summary = "Measure the order of methods: the error at the end for a sequence of steps, and "
+               "the slope fitted to it.\n",
+    .options = options,
+    .details = details,
+};
+
 int order_command(int argc, char **argv)
 {
   order_request r = {.h = (double)NAN, .t_end = (double)NAN, .ratio = (double)NAN};
-  const option options[] = {
-      {.name = "method",
-       .words = &r.methods,
-       .value = "SPEC",
-       .help = "a method: name[:key=value,...]; may be repeated; default: the scene's"},
-      {.name = "h",
-       .number = &r.h,
-       .value = "H",
-       .help = "first step (T/H is rounded to whole steps); default: searched"},
-      {.name = "levels",
-       .count = &r.levels,
-       .value = "N",
-       .help = "how many step sizes; default: 6, or 12 from order 8"},
-      {.name = "ratio",
-       .number = &r.ratio,
-       .value = "R",
-       .help = "of neighbouring steps; default: 2, or less for high orders"},
-      {.name = "t-end",
-       .number = &r.t_end,
-       .value = "T",
-       .help = "the end; default: the problem's for order studies"},
-      {.name = "time-transform",
-       .word = &r.how.transform,
-       .value = "MONITOR",
-       .help = "steps of equal length in another time: distance[:power=P], arclength or "
-               "acceleration[:power=P]"},
-      {.name = "step-control",
-       .word = &r.how.control,
-       .value = "MONITOR",
-       .help = "steps that follow a monitor reversibly: cheaper, symmetric, not symplectic"},
-      {.name = "judge",
-       .word = &r.judged_by,
-       .value = "WHO",
-       .help = "auto, exact, stored, ida or runs; default: auto"},
-      {.name = "set",
-       .words = &r.settings,
-       .value = "NAME=VALUE",
-       .help = "set a parameter of the problem; may be repeated"},
-      {.name = "csv",
-       .word = &r.csv,
-       .value = "-|FILE",
-       .help = "write the table as CSV; -: to standard output, words to stderr"},
-      {.name = "plot",
-       .word = &r.plot,
-       .value = "FILE.svg",
-       .help = "draw error against step, with the claimed slopes"},
-      {.name = "axes",
-       .words = &r.asked,
-       .value = "X:Y",
-       .help = "draw these columns of the table instead; may be repeated"},
-      {.name = NULL},
-  };
-  const command_line command = {
-      .name = "order",
-      .synopsis = "PROBLEM|SCENE.yaml [--method SPEC ...] [OPTIONS]",
-      .operand = "PROBLEM",
-      .summary = "Measure the order of methods: the error at the end for a sequence of steps, and "
-                 "the slope fitted to it.\n",
-      .options = options,
-      .details = details,
-  };
   const char *name;
   int code;
-  if (!options_parse(&command, argc, argv, &name, &code)) return code;
+  if (!options_parse(&command, argc, argv, &r, &name, &code)) return code;
   code = order_check_request(&r, name);
   if (code != DONE) return code;
   problem *scene;

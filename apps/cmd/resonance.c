@@ -397,74 +397,88 @@ static const char *const details[] = {
     NULL,
 };
 
+/* The options. */
+typedef struct resonance_line {
+  resonance_task task;
+  resonance_request request;
+} resonance_line;
+
+static const option options[] = {
+    {.name = "sweep",
+     OPTION_AT(resonance_line, request.varied),
+     .value = "NAME=FROM:TO",
+     .help = "the parameter that varies, or h: the step"},
+    {.name = "method",
+     OPTION_AT(resonance_line, task.method),
+     .value = "SPEC",
+     .help = "the method; default: the scene's"},
+    {.name = "h",
+     OPTION_AT(resonance_line, task.h),
+     .value = "H",
+     .help = "the step; default: the problem's"},
+    {.name = "t-end",
+     OPTION_AT(resonance_line, task.t_end),
+     .value = "T",
+     .help = "the end, from t = 0; default: the problem's"},
+    {.name = "set",
+     OPTION_AT(resonance_line, task.settings),
+     .value = "NAME=VALUE",
+     .help = "set another parameter; may be repeated"},
+    {.name = "watch",
+     OPTION_AT(resonance_line, request.watched),
+     .value = "NAME",
+     .help = "the invariant whose change counts; default: energy"},
+    {.name = "grid",
+     OPTION_AT(resonance_line, request.grid),
+     .value = "N",
+     .help = "how many points to begin with; default: 65"},
+    {.name = "width",
+     OPTION_AT(resonance_line, request.width),
+     .value = "W",
+     .help = "to find peaks to; default: 1e-5 of the range"},
+    {.name = "points",
+     OPTION_AT(resonance_line, request.points),
+     .value = "N",
+     .help = "how many points at most; default: 2000"},
+    {.name = "bound",
+     OPTION_AT(resonance_line, request.bound),
+     .value = "B",
+     .help = "check that no error is larger"},
+    {.name = "threads",
+     OPTION_AT(resonance_line, request.threads),
+     .value = "N",
+     .help = "runs at a time; default: as many as there are cores"},
+    {.name = "csv",
+     OPTION_AT(resonance_line, request.csv),
+     .value = "-|FILE",
+     .help = "write all points as CSV; -: to standard output, words to stderr"},
+    {.name = "plot",
+     OPTION_AT(resonance_line, request.plot),
+     .value = "FILE.svg",
+     .help = "draw the errors against the parameter"},
+    {.name = NULL},
+};
+
+static const command_line command = {
+    .name = "resonance",
+    .synopsis = "PROBLEM --sweep NAME=FROM:TO [OPTIONS]",
+    .operand = "PROBLEM",
+    .summary = "Find the values of a parameter at which a method lets an invariant grow: many "
+               "runs on all cores, ever closer to "
+               "each peak\n"
+               "of the error.\n",
+    .options = options,
+    .details = details,
+};
+
 int resonance_command(int argc, char **argv)
 {
-  resonance_task task = {.h = (double)NAN, .t_end = (double)NAN};
-  resonance_request r = {.width = (double)NAN, .bound = (double)NAN};
-  const option options[] = {
-      {.name = "sweep",
-       .word = &r.varied,
-       .value = "NAME=FROM:TO",
-       .help = "the parameter that varies, or h: the step"},
-      {.name = "method",
-       .word = &task.method,
-       .value = "SPEC",
-       .help = "the method; default: the scene's"},
-      {.name = "h", .number = &task.h, .value = "H", .help = "the step; default: the problem's"},
-      {.name = "t-end",
-       .number = &task.t_end,
-       .value = "T",
-       .help = "the end, from t = 0; default: the problem's"},
-      {.name = "set",
-       .words = &task.settings,
-       .value = "NAME=VALUE",
-       .help = "set another parameter; may be repeated"},
-      {.name = "watch",
-       .word = &r.watched,
-       .value = "NAME",
-       .help = "the invariant whose change counts; default: energy"},
-      {.name = "grid",
-       .count = &r.grid,
-       .value = "N",
-       .help = "how many points to begin with; default: 65"},
-      {.name = "width",
-       .number = &r.width,
-       .value = "W",
-       .help = "to find peaks to; default: 1e-5 of the range"},
-      {.name = "points",
-       .count = &r.points,
-       .value = "N",
-       .help = "how many points at most; default: 2000"},
-      {.name = "bound", .number = &r.bound, .value = "B", .help = "check that no error is larger"},
-      {.name = "threads",
-       .count = &r.threads,
-       .value = "N",
-       .help = "runs at a time; default: as many as there are cores"},
-      {.name = "csv",
-       .word = &r.csv,
-       .value = "-|FILE",
-       .help = "write all points as CSV; -: to standard output, words to stderr"},
-      {.name = "plot",
-       .word = &r.plot,
-       .value = "FILE.svg",
-       .help = "draw the errors against the parameter"},
-      {.name = NULL},
-  };
-  const command_line command = {
-      .name = "resonance",
-      .synopsis = "PROBLEM --sweep NAME=FROM:TO [OPTIONS]",
-      .operand = "PROBLEM",
-      .summary = "Find the values of a parameter at which a method lets an invariant grow: many "
-                 "runs on all cores, ever closer to "
-                 "each peak\n"
-                 "of the error.\n",
-      .options = options,
-      .details = details,
-  };
+  resonance_line r = {.task = {.h = (double)NAN, .t_end = (double)NAN},
+                      .request = {.width = (double)NAN, .bound = (double)NAN}};
   int code;
-  if (!options_parse(&command, argc, argv, &task.operand, &code)) return code;
-  code = resonance_check_request(&r, &task);
+  if (!options_parse(&command, argc, argv, &r, &r.task.operand, &code)) return code;
+  code = resonance_check_request(&r.request, &r.task);
   if (code != DONE) return code;
   signals_end(true, ended);
-  return resonance_run_request(&r, &task);
+  return resonance_run_request(&r.request, &r.task);
 }

@@ -210,46 +210,59 @@ static const char *const details[] = {
     NULL,
 };
 
+/* The options. */
+typedef struct sweep_line {
+  sweep_task task;
+  sweep_request request;
+} sweep_line;
+
+static const option options[] = {
+    {.name = "set",
+     OPTION_AT(sweep_line, request.settings),
+     .value = "NAME=VALUES",
+     .help = "a parameter's values: V1,V2,.. or FROM:TO:COUNT, or a single one; may be repeated"},
+    {.name = "method",
+     OPTION_AT(sweep_line, task.method),
+     .value = "SPEC",
+     .help = "the method; default: the scene's"},
+    {.name = "h",
+     OPTION_AT(sweep_line, task.h),
+     .value = "H",
+     .help = "the step; default: the problem's"},
+    {.name = "t-end",
+     OPTION_AT(sweep_line, task.t_end),
+     .value = "T",
+     .help = "the end, from t = 0; default: the problem's"},
+    {.name = "threads",
+     OPTION_AT(sweep_line, request.threads),
+     .value = "N",
+     .help = "runs at a time; default: as many as there are cores"},
+    {.name = "out",
+     OPTION_AT(sweep_line, request.out),
+     .value = "FILE.csv",
+     .help = "where the rows go"},
+    {.name = NULL},
+};
+
+static const command_line command = {
+    .name = "sweep",
+    .synopsis = "PROBLEM --out FILE.csv [--set NAME=VALUES ...] [OPTIONS]",
+    .operand = "PROBLEM",
+    .summary = "Run a problem at each point of a grid of parameters, on all cores, and write the "
+               "ends as CSV.\n",
+    .options = options,
+    .details = details,
+};
+
 int sweep_command(int argc, char **argv)
 {
-  sweep_task task = {.h = (double)NAN, .t_end = (double)NAN};
-  sweep_request r = {.out = NULL};
-  const option options[] = {
-      {.name = "set",
-       .words = &r.settings,
-       .value = "NAME=VALUES",
-       .help = "a parameter's values: V1,V2,.. or FROM:TO:COUNT, or a single one; may be repeated"},
-      {.name = "method",
-       .word = &task.method,
-       .value = "SPEC",
-       .help = "the method; default: the scene's"},
-      {.name = "h", .number = &task.h, .value = "H", .help = "the step; default: the problem's"},
-      {.name = "t-end",
-       .number = &task.t_end,
-       .value = "T",
-       .help = "the end, from t = 0; default: the problem's"},
-      {.name = "threads",
-       .count = &r.threads,
-       .value = "N",
-       .help = "runs at a time; default: as many as there are cores"},
-      {.name = "out", .word = &r.out, .value = "FILE.csv", .help = "where the rows go"},
-      {.name = NULL},
-  };
-  const command_line command = {
-      .name = "sweep",
-      .synopsis = "PROBLEM --out FILE.csv [--set NAME=VALUES ...] [OPTIONS]",
-      .operand = "PROBLEM",
-      .summary = "Run a problem at each point of a grid of parameters, on all cores, and write the "
-                 "ends as CSV.\n",
-      .options = options,
-      .details = details,
-  };
+  sweep_line r = {.task = {.h = (double)NAN, .t_end = (double)NAN}};
   int code;
-  if (!options_parse(&command, argc, argv, &task.operand, &code)) return code;
-  code = sweep_check_request(&r);
-  const named_file out = {.option = "out", .path = r.out};
-  if (code == DONE) code = scene_spared("sweep", task.operand, 1, &out);
+  if (!options_parse(&command, argc, argv, &r, &r.task.operand, &code)) return code;
+  code = sweep_check_request(&r.request);
+  const named_file out = {.option = "out", .path = r.request.out};
+  if (code == DONE) code = scene_spared("sweep", r.task.operand, 1, &out);
   if (code != DONE) return code;
   signals_end(true, ended);
-  return sweep_run_request(&r, &task);
+  return sweep_run_request(&r.request, &r.task);
 }

@@ -2,7 +2,8 @@
 # one.
 # Usage: awk -f text.awk FILE...
 # In C a function's body stands between a brace in the first column and the next closing one in the
-# first column. Lines that hold only text in quotes, or a member of an initialiser, are not counted.
+# first column. A file's lines are counted without those that hold only text in quotes, or a member
+# of an initialiser.
 
 function breach(line, why) { printf "%s:%d: %s\n", file, line, why; failed = 1 }
 
@@ -18,9 +19,9 @@ length($0) > 100 {
   breach(FNR, "line of " length($0) " columns, 100 at most: break it where a person would")
 }
 
-c && /^\{/ { inside = lines }
+c && /^\{/ { inside = FNR }
 c && /^\}/ && inside {
-  count = lines - inside + 1
+  count = FNR - inside - 1
   if (count > 60)
     breach(FNR, "function of " count " lines, 60 at most: move a part into a function with a name")
   inside = 0

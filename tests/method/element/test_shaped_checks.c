@@ -59,74 +59,77 @@ static void check_refused(const dvi_shapes *shapes, const char *method, dvi_stat
   problem_destroy(&model);
 }
 
+static fault no_fault;
+static const int twice[] = {1, 1}, beyond[] = {0, 2};
+
+static const struct {
+  dvi_shapes shapes;
+  dvi_status status;
+  const char *words;
+} wrong_shapes[] = {
+    {{.functions = 1, .evaluate = evaluate}, DVI_BAD_ARGUMENT, "the name is NULL"},
+    {{.name = "", .functions = 1, .evaluate = evaluate},
+     DVI_BAD_ARGUMENT,
+     "the name '' is not of 1 to 40 letters"},
+    {{.name = "a,b", .functions = 1, .evaluate = evaluate},
+     DVI_BAD_ARGUMENT,
+     "the name 'a,b' is not of"},
+    {{.name = "long-long-long-long-long-long-long-long-x", .functions = 1, .evaluate = evaluate},
+     DVI_BAD_ARGUMENT,
+     "is not of 1 to 40"},
+    {{.name = "s", .functions = 1}, DVI_BAD_ARGUMENT, "the callback evaluate is NULL"},
+    {{.name = "s", .functions = 0, .evaluate = evaluate},
+     DVI_BAD_SIZE,
+     "0 functions; 1 to 40 are possible"},
+    {{.name = "s", .functions = 41, .evaluate = evaluate}, DVI_BAD_SIZE, "41 functions"},
+    {{.name = "s", .functions = 1, .evaluate = evaluate, .h = (double)NAN},
+     DVI_BAD_ARGUMENT,
+     "h = nan is no length"},
+    {{.name = "s", .functions = 1, .evaluate = evaluate, .h = 1e-310},
+     DVI_BAD_ARGUMENT,
+     "is no length of a step"},
+    {{.name = "s", .functions = 1, .evaluate = evaluate, .points = 3},
+     DVI_BAD_ARGUMENT,
+     "there are 3 points, and the callback for them is NULL"},
+    {{.name = "s", .functions = 1, .evaluate = evaluate, .point = point},
+     DVI_BAD_ARGUMENT,
+     "there are 0 points, and the callback for them is given"},
+    {{.name = "s", .functions = 1, .evaluate = evaluate, .point = point, .points = 1001},
+     DVI_BAD_SIZE,
+     "1001 points; 1 to 1000"},
+    {{.name = "s", .functions = 1, .evaluate = evaluate, .order = -1},
+     DVI_BAD_ARGUMENT,
+     "the order -1 is claimed"},
+    {{.name = "s", .functions = 1, .evaluate = evaluate, .coordinate_count = 1},
+     DVI_BAD_ARGUMENT,
+     "coordinate_count is 1, and the list"},
+    {{.name = "s", .functions = 1, .evaluate = evaluate, .coordinates = twice},
+     DVI_BAD_ARGUMENT,
+     "coordinate_count is 0, and the list"},
+    {{.name = "s",
+      .functions = 1,
+      .evaluate = evaluate,
+      .coordinates = twice,
+      .coordinate_count = 2,
+      .user = &no_fault},
+     DVI_BAD_ARGUMENT,
+     "coordinate 1 is listed twice"},
+    {{.name = "s",
+      .functions = 1,
+      .evaluate = evaluate,
+      .coordinates = beyond,
+      .coordinate_count = 2,
+      .user = &no_fault},
+     DVI_BAD_ARGUMENT,
+     "there is no coordinate 2; they are counted from 0 to 1"},
+};
+
 START_TEST(what_is_missing_or_out_of_range_is_named)
 {
-  static fault none;
-  static const int twice[] = {1, 1}, beyond[] = {0, 2};
-  const dvi_shapes good = {.name = "good", .functions = 1, .evaluate = evaluate, .user = &none};
-  const struct {
-    dvi_shapes shapes;
-    dvi_status status;
-    const char *words;
-  } wrong[] = {
-      {{.functions = 1, .evaluate = evaluate}, DVI_BAD_ARGUMENT, "the name is NULL"},
-      {{.name = "", .functions = 1, .evaluate = evaluate},
-       DVI_BAD_ARGUMENT,
-       "the name '' is not of 1 to 40 letters"},
-      {{.name = "a,b", .functions = 1, .evaluate = evaluate},
-       DVI_BAD_ARGUMENT,
-       "the name 'a,b' is not of"},
-      {{.name = "long-long-long-long-long-long-long-long-x", .functions = 1, .evaluate = evaluate},
-       DVI_BAD_ARGUMENT,
-       "is not of 1 to 40"},
-      {{.name = "s", .functions = 1}, DVI_BAD_ARGUMENT, "the callback evaluate is NULL"},
-      {{.name = "s", .functions = 0, .evaluate = evaluate},
-       DVI_BAD_SIZE,
-       "0 functions; 1 to 40 are possible"},
-      {{.name = "s", .functions = 41, .evaluate = evaluate}, DVI_BAD_SIZE, "41 functions"},
-      {{.name = "s", .functions = 1, .evaluate = evaluate, .h = (double)NAN},
-       DVI_BAD_ARGUMENT,
-       "h = nan is no length"},
-      {{.name = "s", .functions = 1, .evaluate = evaluate, .h = 1e-310},
-       DVI_BAD_ARGUMENT,
-       "is no length of a step"},
-      {{.name = "s", .functions = 1, .evaluate = evaluate, .points = 3},
-       DVI_BAD_ARGUMENT,
-       "there are 3 points, and the callback for them is NULL"},
-      {{.name = "s", .functions = 1, .evaluate = evaluate, .point = point},
-       DVI_BAD_ARGUMENT,
-       "there are 0 points, and the callback for them is given"},
-      {{.name = "s", .functions = 1, .evaluate = evaluate, .point = point, .points = 1001},
-       DVI_BAD_SIZE,
-       "1001 points; 1 to 1000"},
-      {{.name = "s", .functions = 1, .evaluate = evaluate, .order = -1},
-       DVI_BAD_ARGUMENT,
-       "the order -1 is claimed"},
-      {{.name = "s", .functions = 1, .evaluate = evaluate, .coordinate_count = 1},
-       DVI_BAD_ARGUMENT,
-       "coordinate_count is 1, and the list"},
-      {{.name = "s", .functions = 1, .evaluate = evaluate, .coordinates = twice},
-       DVI_BAD_ARGUMENT,
-       "coordinate_count is 0, and the list"},
-      {{.name = "s",
-        .functions = 1,
-        .evaluate = evaluate,
-        .coordinates = twice,
-        .coordinate_count = 2,
-        .user = &none},
-       DVI_BAD_ARGUMENT,
-       "coordinate 1 is listed twice"},
-      {{.name = "s",
-        .functions = 1,
-        .evaluate = evaluate,
-        .coordinates = beyond,
-        .coordinate_count = 2,
-        .user = &none},
-       DVI_BAD_ARGUMENT,
-       "there is no coordinate 2; they are counted from 0 to 1"},
-  };
-  for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++)
-    check_refused(&wrong[k].shapes, "shaped-galerkin", wrong[k].status, wrong[k].words);
+  const dvi_shapes good = {.name = "good", .functions = 1, .evaluate = evaluate, .user = &no_fault};
+  for (size_t k = 0; k < sizeof wrong_shapes / sizeof *wrong_shapes; k++)
+    check_refused(&wrong_shapes[k].shapes, "shaped-galerkin", wrong_shapes[k].status,
+                  wrong_shapes[k].words);
   check_refused(NULL, "shaped-galerkin", DVI_BAD_OPTION, "there are no shapes");
   check_refused(&good, NULL, DVI_BAD_ARGUMENT, "the method is NULL");
   ck_assert_int_eq(create_with_shapes(NULL, &good, "shaped-galerkin", NULL), DVI_BAD_ARGUMENT);
