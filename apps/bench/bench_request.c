@@ -180,7 +180,7 @@ static const char *const details[] = {
     NULL,
 };
 
-static const option options[] = {
+static const option command_options[] = {
     {.name = "method",
      OPTION_AT(bench_request, methods),
      .value = "SPEC",
@@ -258,7 +258,7 @@ static const command_line command = {
     .operand = "PROBLEM",
     .summary = "Measure speed against error, of methods and of other codes, all in one run; or "
                "the cost of a step against size.\n",
-    .options = options,
+    .options = command_options,
     .details = details,
 };
 

@@ -153,7 +153,7 @@ typedef struct check_request {
   words settings;
 } check_request;
 
-static const option options[] = {
+static const option command_options[] = {
     {.name = "method",
      OPTION_AT(check_request, method),
      .value = "SPEC",
@@ -172,7 +172,7 @@ static const command_line command = {
     .summary = "Read a problem, compare all its derivatives with differences of its values, "
                "evaluate what is watched, and take "
                "one step.\n",
-    .options = options,
+    .options = command_options,
     .details = details,
 };
 

@@ -87,7 +87,7 @@ static const char *const details[] = {
     NULL,
 };
 
-static const option options[] = {
+static const option command_options[] = {
     {.name = "axes",
      OPTION_AT(plot_request, axes),
      .value = "X:Y[,X:Y..]",
@@ -113,7 +113,7 @@ static const command_line command = {
     .operand = "FILE",
     .summary = "Draw columns of a CSV file that dvi has written against each other; - is "
                "standard input.\n",
-    .options = options,
+    .options = command_options,
     .details = details,
 };
 

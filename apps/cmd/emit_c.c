@@ -74,7 +74,7 @@ static const char *const details[] = {
     NULL,
 };
 
-static const option options[] = {
+static const option command_options[] = {
     {.name = "out",
      OPTION_AT(emit_request, out),
      .value = "FILE.c",
@@ -96,7 +96,7 @@ static const command_line command = {
     .synopsis = "SCENE.yaml --out FILE.c [OPTIONS]",
     .operand = "SCENE",
     .summary = "Write a C file that declares the same system by callbacks, with its start.\n",
-    .options = options,
+    .options = command_options,
     .details = details,
 };
 

@@ -129,7 +129,7 @@ typedef struct explain_request {
   double h; /* NaN if not given */
 } explain_request;
 
-static const option options[] = {
+static const option command_options[] = {
     {.name = "method",
      OPTION_AT(explain_request, method),
      .value = "SPEC",
@@ -160,7 +160,7 @@ static const command_line command = {
     .operand = "PROBLEM",
     .summary = "Say which terms a problem has, and which kernel, solver and sparsity a method "
                "chooses for it, and why.\n",
-    .options = options,
+    .options = command_options,
     .details = details,
 };
 

@@ -80,7 +80,7 @@ static const char *const details[] = {
     NULL,
 };
 
-static const option options[] = {{.name = NULL}};
+static const option command_options[] = {{.name = NULL}};
 
 static const command_line command = {
     .name = "init",
@@ -89,7 +89,7 @@ static const command_line command = {
     .summary = "Write an example of a scene, with comments, to be changed into one's own; - is "
                "standard output. A file that is\n"
                "there is not overwritten.\n",
-    .options = options,
+    .options = command_options,
     .details = details,
 };
 

@@ -133,11 +133,11 @@ typedef struct list_request {
   const char *csv;
 } list_request;
 
-static const option options[] = {{.name = "csv",
-                                  OPTION_AT(list_request, csv),
-                                  .value = "-|FILE",
-                                  .help = "write the list as CSV"},
-                                 {.name = NULL}};
+static const option command_options[] = {{.name = "csv",
+                                          OPTION_AT(list_request, csv),
+                                          .value = "-|FILE",
+                                          .help = "write the list as CSV"},
+                                         {.name = NULL}};
 
 static const command_line command = {
     .name = "list",
@@ -146,7 +146,7 @@ static const command_line command = {
     .summary =
         "List the methods with the keys of their specifications, or the problems with their\n"
         "parameters; or the one of that name.\n",
-    .options = options,
+    .options = command_options,
     .details = details,
 };
 

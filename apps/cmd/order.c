@@ -314,7 +314,7 @@ static const char *const details[] = {
     NULL,
 };
 
-static const option options[] = {
+static const option command_options[] = {
     {.name = "method",
      OPTION_AT(order_request, methods),
      .value = "SPEC",
@@ -373,7 +373,7 @@ static const command_line command = {
     .operand = "PROBLEM",
     .summary = "Measure the order of methods: the error at the end for a sequence of steps, and "
                "the slope fitted to it.\n",
-    .options = options,
+    .options = command_options,
     .details = details,
 };
 

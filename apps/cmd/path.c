@@ -108,7 +108,7 @@ static int path_run(const char *name, const path_request *request)
   return code;
 }
 
-static const option options[] = {
+static const option command_options[] = {
     {.name = "method",
      OPTION_AT(path_request, method),
      .value = "SPEC",
@@ -178,7 +178,7 @@ static const command_line command = {
     .operand = "PROBLEM",
     .summary = "Make the action of a whole path stationary: boundary value problems and periodic "
                "orbits.\n",
-    .options = options,
+    .options = command_options,
     .details = details,
 };
 

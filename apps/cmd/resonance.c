@@ -403,7 +403,7 @@ typedef struct resonance_line {
   resonance_request request;
 } resonance_line;
 
-static const option options[] = {
+static const option command_options[] = {
     {.name = "sweep",
      OPTION_AT(resonance_line, request.varied),
      .value = "NAME=FROM:TO",
@@ -467,7 +467,7 @@ static const command_line command = {
                "runs on all cores, ever closer to "
                "each peak\n"
                "of the error.\n",
-    .options = options,
+    .options = command_options,
     .details = details,
 };
 

@@ -305,7 +305,7 @@ static const char *const details[] = {
     NULL,
 };
 
-static const option options[] = {
+static const option command_options[] = {
     {.name = "method",
      OPTION_AT(run_request, method),
      .value = "SPEC",
@@ -399,7 +399,7 @@ static const command_line command = {
     .synopsis = "PROBLEM|SCENE.yaml --method SPEC [--h H] [--t-end T] [OPTIONS]",
     .operand = "PROBLEM",
     .summary = summary,
-    .options = options,
+    .options = command_options,
     .details = details,
 };
 

@@ -216,7 +216,7 @@ typedef struct sweep_line {
   sweep_request request;
 } sweep_line;
 
-static const option options[] = {
+static const option command_options[] = {
     {.name = "set",
      OPTION_AT(sweep_line, request.settings),
      .value = "NAME=VALUES",
@@ -250,7 +250,7 @@ static const command_line command = {
     .operand = "PROBLEM",
     .summary = "Run a problem at each point of a grid of parameters, on all cores, and write the "
                "ends as CSV.\n",
-    .options = options,
+    .options = command_options,
     .details = details,
 };
 

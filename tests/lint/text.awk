@@ -21,7 +21,7 @@ length($0) > 100 {
 
 c && /^\{/ { inside = FNR }
 c && /^\}/ && inside {
-  count = FNR - inside - 1
+  count = FNR - inside + 1
   if (count > 60)
     breach(FNR, "function of " count " lines, 60 at most: move a part into a function with a name")
   inside = 0
