@@ -108,6 +108,9 @@ typedef struct dvi_integrator_options {
   dvi_pacing pacing; /**< default: steps of time */
   /** The monitor of another pacing (dvi/transform.h). Copied, but for the data at `user` */
   const struct dvi_monitor *monitor;
+  /** not 0 to add up what forces supply (dvi_integrator_supplied), which costs an evaluation of the
+   *  forces a step */
+  int balances;
 } dvi_integrator_options;
 
 /** Make an integrator.
@@ -247,6 +250,26 @@ double dvi_integrator_last_step(const dvi_integrator *integrator);
 /** Return 1 if the steps have other lengths than asked for, else 0. This is so if the method
  *  chooses them, or if they are steps in another time (dvi/transform.h). */
 int dvi_integrator_chooses_steps(const dvi_integrator *integrator);
+
+/** Return what the forces without a potential have supplied to an invariant since the start. With
+ *  the option `balances` they are 0, the energy, and the momenta of the symmetries.
+ *
+ *  The supplies of a step are those of the discrete principle of Lagrange and d'Alembert, by the
+ *  quadrature of the method: h sum_j b_j F_j.v_j to the energy, and h sum_j b_j F_j.xi(q_j) to a
+ *  momentum (Marsden and West 2001, sec. 3.1.4). NaN without the option, before the start, and for
+ *  other invariants. */
+double dvi_integrator_supplied(const dvi_integrator *integrator, int invariant);
+
+/** Compute the defect of a balance, the change of an invariant since the start less what forces
+ *  have supplied.
+ *
+ *  It is rounding for momenta of symmetries that are affine in q, and for the energy with Gauss
+ *  quadrature if the energy is quadratic. Other energies have a defect of the method's order, which
+ *  grows in proportion to time at most.
+ *  @retval DVI_BAD_STATE     the integrator keeps no balances, or has no state yet
+ *  @retval DVI_BAD_ARGUMENT  a pointer is NULL, or the invariant has no balance
+ *  @retval (others)          as dvi_integrator_invariant */
+dvi_status dvi_integrator_balance(dvi_integrator *integrator, int invariant, double *defect);
 
 /** Report the discrete energy since the start.
  *

@@ -4,6 +4,9 @@
  *      L(t,q,v) = K(t,q,v) - sum_k V_k(t,q),     q, v in R^n,
  *      K = v.M v/2  or  a general Lagrangian  or  alpha(q).v with a one-form alpha.
  *
+ *  Forces F(t,q,v) without a potential may act beside a mass or a general Lagrangian. By the
+ *  principle of Lagrange and d'Alembert the equations of motion are then d/dt L_v = L_q + F.
+ *
  *  With a one-form the Lagrangian is degenerate. It is linear in v, the potentials' sum is the
  *  Hamiltonian H(t,q), and the momenta are p = alpha(q). The equations of motion are of first
  *  order, Omega(q) v = dH/dq with the two-form Omega_ij = d alpha_j/dq_i - d alpha_i/dq_j.
@@ -46,7 +49,8 @@ typedef struct dvi_pattern {
   const int *row;   /**< [start[columns]] */
 } dvi_pattern;
 
-/** A general Lagrangian L(t,q,v): the kinetic part, and any force that has no potential V(t,q). */
+/** A general Lagrangian L(t,q,v): the kinetic part, and any force that follows from a function of q
+ *  and v, as that of a magnetic field. Friction and other forces are dvi_force. */
 typedef struct dvi_lagrangian {
   /** The value L. Required (or value_batch). */
   int (*value)(double t, const double *q, const double *v, double *L, void *user);
@@ -201,6 +205,27 @@ typedef struct dvi_potential {
                 void *user);
 } dvi_potential;
 
+/** A force F(t,q,v) without a potential, such as friction, a drive, or a control (Marsden and West
+ *  2001, sec. 3.1.1). It does work, so that energy and momenta are no longer conserved, but
+ *  balanced (dvi_integrator_balance). */
+typedef struct dvi_force {
+  const char *name; /**< copied. Used in messages */
+  /** The force F [n]. Required (or value_batch). */
+  int (*value)(double t, const double *q, const double *v, double *F, void *user);
+  int (*value_batch)(int count, const double *t, const double *q, const double *v, double *F,
+                     void *user);
+  /** The derivatives dF_i/dq_j and dF_i/dv_j in the order of the patterns by_q and by_v (row i,
+   *  column j). Default: differences of the force. */
+  int (*jacobian)(double t, const double *q, const double *v, double *F_q, double *F_v, void *user);
+  int (*jacobian_batch)(int count, const double *t, const double *q, const double *v, double *F_q,
+                        double *F_v, void *user);
+  dvi_pattern by_q, by_v;
+  /** not 0 if the force is a function of t and q alone. Its callbacks get v = NULL then, and F_v =
+   *  NULL. by_v is left out */
+  int without_velocity;
+  void *user;
+} dvi_force;
+
 /** A constant mass matrix in exactly one of the three forms. The matrix must be regular. It may be
  *  indefinite, since a Lagrangian with -M and -V has the motion of that with M and V. */
 typedef struct dvi_mass {
@@ -271,7 +296,8 @@ typedef struct dvi_invariant {
  *
  *  Exactly one kind of dynamics is declared: a constant mass (by `mass`, by `factors`, or by both,
  *  which are added), or `lagrangian`, or `one_form`, or `hamiltonian`. Potentials may stand beside
- *  all kinds but a Hamiltonian. */
+ *  all kinds but a Hamiltonian. Forces may stand beside a mass without factors, and beside a
+ *  general Lagrangian. */
 typedef struct dvi_system_terms {
   /** number of coordinates n, at least 1, even with a one-form. 0 with factors, which determine
    *  n */
@@ -293,6 +319,8 @@ typedef struct dvi_system_terms {
   const dvi_constraint *constraint;   /**< constraints of the Hamiltonian (default none) */
   const dvi_factor *factors;          /**< factors of the configuration space (default: R^n) */
   int factor_count;
+  const dvi_force *forces; /**< forces without a potential (default none) */
+  int force_count;
 } dvi_system_terms;
 
 /** A system. It never changes after its creation, so integrators on several threads may share
@@ -317,7 +345,8 @@ extern "C" {
  *                            has potentials beside it
  *  @retval DVI_SINGULAR      the constant mass is singular or not finite. With factors the mass is
  *                            not finite, or there is none at all at a factor's coordinates
- *  @retval DVI_UNSUPPORTED   factors beside a general Lagrangian, a one-form or a Hamiltonian
+ *  @retval DVI_UNSUPPORTED   factors beside a general Lagrangian, a one-form or a Hamiltonian. Or
+ *                            forces beside factors, a one-form or a Hamiltonian
  *  @retval DVI_NO_MEMORY     memory could not be allocated */
 dvi_status dvi_system_create(const dvi_system_terms *terms, dvi_system **system);
 
@@ -454,7 +483,7 @@ typedef struct dvi_derivative_check {
 } dvi_derivative_check;
 
 /** Compare every gradient, Hessian, pattern and rate of the system with differences of the values
- *  at one point.
+ *  at one point. Jacobians of forces count as Hessians.
  *
  *  Every gradient_range is compared, bit for bit, with the whole gradient, over short and long
  *  ranges, with NaN outside its reach. In an autonomous system every callback must give the same

@@ -57,6 +57,10 @@ static dvi_status path_check(const dvi_system *system, const dvi_path_options *o
   if (system->terms & DVI__FACTORS)
     return dvi__fail(DVI_UNSUPPORTED, "path: the system has factors, and paths are found between "
                                       "ends in R^n; an integrator goes forward from a start");
+  if (system->force_count > 0)
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "path: the system declares forces without a potential, and the "
+                     "action alone determines paths");
   if (o->steps < 1)
     return dvi__fail(DVI_BAD_SIZE, "path: %d steps; at least 1 is needed", o->steps);
   if (!isfinite(o->start))

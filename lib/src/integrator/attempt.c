@@ -71,9 +71,9 @@ dvi_status dvi__attempt_allocate(dvi_integrator *I)
   if (!I->stepper.follows) return DVI_OK;
   I->first = DVI_NEW(struct dvi__attempt, 1);
   if (I->first == NULL) return dvi__fail(DVI_NO_MEMORY, "integrator: no memory");
-  double *at = I->first->numbers = DVI_NEW(double, 6 * n + memory);
+  double *at = I->first->numbers = DVI_NEW(double, dvi__state_numbers(I) + 2 * n + memory);
   if (at == NULL) return dvi__fail(DVI_NO_MEMORY, "integrator: no memory for %zu coordinates", n);
-  dvi__state_lay_out(&I->first->state, &at, n);
+  dvi__state_lay_out(I, &I->first->state, &at);
   I->first->forces = at;
   I->first->memory = at + 2 * n;
   return DVI_OK;
@@ -123,7 +123,7 @@ static int is_doubted(dvi_integrator *I)
 
 static dvi_status attempt_step(dvi_integrator *I, double length, double density)
 {
-  dvi__state_copy((size_t)I->system->n, &I->now, &I->next);
+  dvi__state_copy(I, &I->now, &I->next);
   memcpy(I->stepper.memory, I->memory_before, I->stepper.memory_count * sizeof(double));
   I->next.density = density;
   I->stepper.doubt = DVI__SURE;
@@ -133,13 +133,13 @@ static dvi_status attempt_step(dvi_integrator *I, double length, double density)
 
 static void keep_first(dvi_integrator *I)
 {
-  dvi__state_copy((size_t)I->system->n, &I->next, &I->first->state);
+  dvi__state_copy(I, &I->next, &I->first->state);
   memcpy(I->first->memory, I->stepper.memory, I->stepper.memory_count * sizeof(double));
 }
 
 static void restore_first(dvi_integrator *I)
 {
-  dvi__state_copy((size_t)I->system->n, &I->first->state, &I->next);
+  dvi__state_copy(I, &I->first->state, &I->next);
   memcpy(I->stepper.memory, I->first->memory, I->stepper.memory_count * sizeof(double));
 }
 

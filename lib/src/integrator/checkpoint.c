@@ -10,7 +10,8 @@
  *     clock        times with their compensations, last step, number of steps
  *     pacing       kind of steps in another time, density, energy of the start, monitor
  *     state        q, p and their compensations, now and before the last step
- *     memory       the method's numbers from step to step */
+ *     memory       the method's numbers from step to step
+ *     balances     invariants at the start and what forces supplied, if balances are kept */
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -25,7 +26,8 @@
 #include "march/whole_file.h"
 #include "num/finite.h"
 
-enum { SECTION_VERSION = 1 };
+/* The system's hashes got those of forces with version 2. */
+enum { SECTION_VERSION = 1, SYSTEM_VERSION = 2 };
 
 typedef struct method_section {
   uint64_t steps, fingerprint; /* as in dvi__stepper */
@@ -58,6 +60,7 @@ typedef struct checkpoint {
   pacing_section pacing;
   const double *numbers; /* q, p and compensations of `now`, then of `last` */
   const double *memory;
+  const double *balances; /* invariants at the start, supplies of `now`, then of `last`, or NULL */
 } checkpoint;
 
 static int64_t pacing_of(const dvi_integrator *I)
@@ -86,7 +89,7 @@ static void put_system(const dvi_integrator *I, dvi__sections_writer *w)
   const dvi__moment now = {I->now.t, I->last_h, I->now.q, I->now.p, I->last.q, I->last.p};
   system_section system = {.n = I->system->n, .declared = I->system->declared};
   (void)dvi__fingerprint_take(I, &now, &system.fingerprint);
-  dvi__section_open(w, "system", SECTION_VERSION);
+  dvi__section_open(w, "system", SYSTEM_VERSION);
   dvi__section_put(w, &system, sizeof system);
 }
 
@@ -126,6 +129,12 @@ static dvi_status checkpoint_pack(const dvi_integrator *I, dvi__sections_writer 
   dvi__section_put(w, I->last.q, state_size(I));
   dvi__section_open(w, "memory", SECTION_VERSION);
   dvi__section_put(w, I->stepper.memory, memory);
+  if (I->balances > 0) {
+    dvi__section_open(w, "balances", SECTION_VERSION);
+    dvi__section_put(w, I->at_start, I->balances * sizeof(double));
+    dvi__section_put(w, I->now.supplied, 2 * I->balances * sizeof(double));
+    dvi__section_put(w, I->last.supplied, 2 * I->balances * sizeof(double));
+  }
   return dvi__sections_finish(w);
 }
 
@@ -269,11 +278,11 @@ static dvi_status check_space(const dvi_integrator *I, const checkpoint *c)
 
 /* ---- restore: sections ---- */
 
-static dvi_status find_fixed(const dvi__sections *sections, const char *name, void *content,
-                             size_t size)
+static dvi_status find_fixed(const dvi__sections *sections, const char *name, uint32_t version,
+                             void *content, size_t size)
 {
   dvi__section found;
-  DVI_TRY(dvi__section_find(sections, name, SECTION_VERSION, size, &found));
+  DVI_TRY(dvi__section_find(sections, name, version, size, &found));
   memcpy(content, found.content, size);
   return DVI_OK;
 }
@@ -303,20 +312,30 @@ static dvi_status find_numbers(const checkpoint *c, const char *name, size_t cou
  * count of the other sections' numbers. */
 static dvi_status open_checkpoint(const dvi_integrator *I, checkpoint *c)
 {
-  const size_t numbers = 8 * (size_t)I->system->n;
+  const size_t numbers = 8 * (size_t)I->system->n, balances = 5 * I->balances;
   DVI_TRY(find_method(c));
   DVI_TRY(check_saved_method(I, c));
-  DVI_TRY(find_fixed(&c->sections, "system", &c->system, sizeof c->system));
+  DVI_TRY(find_fixed(&c->sections, "system", SYSTEM_VERSION, &c->system, sizeof c->system));
   DVI_TRY(check_declared(I, c));
-  DVI_TRY(find_fixed(&c->sections, "pacing", &c->pacing, sizeof c->pacing));
+  DVI_TRY(find_fixed(&c->sections, "pacing", SECTION_VERSION, &c->pacing, sizeof c->pacing));
   DVI_TRY(check_time(I, c));
-  DVI_TRY(find_fixed(&c->sections, "clock", &c->clock, sizeof c->clock));
+  DVI_TRY(find_fixed(&c->sections, "clock", SECTION_VERSION, &c->clock, sizeof c->clock));
   DVI_TRY(find_numbers(c, "state", numbers, &c->numbers));
   DVI_TRY(find_numbers(c, "memory", I->stepper.memory_count, &c->memory));
-  if (!isfinite(c->clock.t) || dvi__first_not_finite(numbers, c->numbers) >= 0)
+  if (balances > 0) DVI_TRY(find_numbers(c, "balances", balances, &c->balances));
+  if (!isfinite(c->clock.t) || dvi__first_not_finite(numbers, c->numbers) >= 0 ||
+      (balances > 0 && dvi__first_not_finite(balances, c->balances) >= 0))
     return dvi__fail(DVI_BAD_FILE, "%s: damaged, its state is not finite", c->sections.name);
   DVI_TRY(check_system(I, c));
   return check_space(I, c);
+}
+
+static void take_balances(dvi_integrator *I, const double *balances)
+{
+  const size_t size = I->balances * sizeof(double);
+  memcpy(I->at_start, balances, size);
+  memcpy(I->now.supplied, balances + I->balances, 2 * size);
+  memcpy(I->last.supplied, balances + 3 * I->balances, 2 * size);
 }
 
 static void checkpoint_take_over(dvi_integrator *I, const checkpoint *c)
@@ -333,6 +352,7 @@ static void checkpoint_take_over(dvi_integrator *I, const checkpoint *c)
   I->counters.steps = (long)clock->steps;
   memcpy(I->now.q, c->numbers, state_size(I));
   memcpy(I->last.q, c->numbers + 4 * (size_t)I->system->n, state_size(I));
+  if (c->balances != NULL) take_balances(I, c->balances);
   memcpy(I->stepper.memory, c->memory, I->stepper.memory_count * sizeof(double));
   I->started = 1;
 }

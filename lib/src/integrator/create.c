@@ -13,16 +13,17 @@ static dvi_status allocate_integrator(dvi_integrator *I)
 {
   const size_t n = (size_t)I->system->n;
   dvi__attempt_extend(I);
-  double *at = I->numbers = DVI_NEW(double, 14 * n);
+  double *at = I->numbers = DVI_NEW(double, 3 * dvi__state_numbers(I) + 2 * n + I->balances);
   I->stepper.memory = DVI_NEW(double, I->stepper.memory_count);
   I->memory_before = DVI_NEW(double, I->stepper.memory_count);
   if (I->numbers == NULL || I->stepper.memory == NULL || I->memory_before == NULL)
     return dvi__fail(DVI_NO_MEMORY, "integrator: no memory for %zu coordinates", n);
-  dvi__state_lay_out(&I->now, &at, n);
-  dvi__state_lay_out(&I->last, &at, n);
-  dvi__state_lay_out(&I->next, &at, n);
+  dvi__state_lay_out(I, &I->now, &at);
+  dvi__state_lay_out(I, &I->last, &at);
+  dvi__state_lay_out(I, &I->next, &at);
   I->v = at;
   I->last_v = at + n;
+  I->at_start = at + 2 * n;
   DVI_TRY(dvi__attempt_allocate(I));
   return dvi__evaluator_create(I->system, 1, DVI__STATES, &I->counters, &I->evaluator);
 }
@@ -70,6 +71,7 @@ static dvi_status make_integrator(const dvi_system *system, const dvi_integrator
   dvi_integrator *I = DVI_NEW(dvi_integrator, 1);
   if (I == NULL) return dvi__fail(DVI_NO_MEMORY, "integrator: no memory");
   I->system = system;
+  I->balances = o->balances ? 1 + (size_t)system->symmetry_count : 0;
   dvi_status status = make_stepper(I, o);
   I->counters.allocations = dvi__allocation_count() - before;
   if (status == DVI_OK && I->monitored != NULL) status = check_monitored_method(I);
@@ -150,6 +152,7 @@ dvi_status dvi_integrator_create_like(const dvi_integrator *I, dvi_integrator **
       .size = sizeof options,
       .method = I->stepper.specification,
       .shapes = I->shapes,
+      .balances = I->balances > 0,
       .pacing = I->monitored != NULL ? I->monitored->pacing : DVI_STEPS_OF_TIME,
       .monitor = I->monitored != NULL ? &I->monitored->given : NULL};
   DVI_TRY(dvi_integrator_create_with(I->system, &options, integrator));

@@ -65,6 +65,7 @@ void dvi__worker_bind(dvi__worker *w, const dvi__block *block)
   if (block->integrator != NULL) w->integrator = block->integrator;
   if (w->scene == NULL) return;
   w->scene->potentials = system->potentials;
+  w->scene->forces = system->forces;
   w->scene->lagrangian = system->lagrangian;
   w->scene->constraint = system->constraint;
   w->scene->symmetries = system->symmetries;

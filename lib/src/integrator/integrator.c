@@ -11,10 +11,20 @@
 #include "space/user_basis.h"
 #include "system/evaluate/dynamics.h"
 
-void dvi__state_lay_out(dvi__state *state, double **at, size_t n)
+void dvi__state_lay_out(const dvi_integrator *I, dvi__state *state, double **at)
 {
+  const size_t n = (size_t)I->system->n;
   double **const part[] = {&state->q, &state->p, &state->q_compensation, &state->p_compensation};
   for (int i = 0; i < 4; i++, *at += n) *part[i] = *at;
+  if (I->balances == 0) return;
+  state->supplied = *at;
+  state->supplied_compensation = *at + I->balances;
+  *at += 2 * I->balances;
+}
+
+size_t dvi__state_numbers(const dvi_integrator *I)
+{
+  return 4 * (size_t)I->system->n + 2 * I->balances;
 }
 
 /* ---- start ---- */
@@ -44,6 +54,12 @@ static dvi_status start_from_state(dvi_integrator *I, double t, const double *q,
   DVI_TRY(I->system->dynamics->value(I->evaluator, t, q, second, &L));
   DVI_TRY(I->system->dynamics->forces(I->evaluator, t, q, second, I->next.p_compensation));
   if (I->monitored != NULL) DVI_TRY(dvi__monitored_time_start(I, t, q, v, p, I->last_v, &density));
+  for (size_t i = 0; i < I->balances; i++)
+    DVI_TRY(dvi__invariant(I->evaluator, t, q, v, p, (int)i, &I->next.supplied[i]));
+  for (size_t i = 0; i < I->balances; i++) {
+    I->at_start[i] = I->next.supplied[i];
+    I->now.supplied[i] = I->now.supplied_compensation[i] = 0;
+  }
   memmove(I->now.q, q, bytes);
   memmove(I->now.p, p, v_bytes);
   memset(I->now.q_compensation, 0, bytes);
@@ -130,13 +146,13 @@ dvi_status dvi_integrator_start_velocity(dvi_integrator *I, double t, const doub
 
 /* ---- step ---- */
 
-void dvi__state_copy(size_t n, const dvi__state *from, dvi__state *to)
+void dvi__state_copy(const dvi_integrator *I, const dvi__state *from, dvi__state *to)
 {
   to->t = from->t;
   to->t_compensation = from->t_compensation;
   to->density = from->density;
   to->side = from->side;
-  memcpy(to->q, from->q, 4 * n * sizeof(double)); /* q, p and both compensations are contiguous */
+  memcpy(to->q, from->q, dvi__state_numbers(I) * sizeof(double)); /* all arrays are contiguous */
 }
 
 static dvi_status check_state(const dvi_integrator *I)
@@ -419,6 +435,30 @@ dvi_status dvi_integrator_constraint(dvi_integrator *I, double *distance)
         DVI_BAD_STATE,
         "constraint: the integrator has no state yet; call dvi_integrator_start first");
   return constraint->distance(I->evaluator, I->now.q, I->now.p, distance);
+}
+
+double dvi_integrator_supplied(const dvi_integrator *I, int i)
+{
+  return I != NULL && I->started && i >= 0 && (size_t)i < I->balances ? I->now.supplied[i]
+                                                                      : (double)NAN;
+}
+
+dvi_status dvi_integrator_balance(dvi_integrator *I, int i, double *defect)
+{
+  double now;
+  if (I == NULL || defect == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "balance: an argument is NULL");
+  if (I->balances == 0)
+    return dvi__fail(DVI_BAD_STATE,
+                     "balance: the integrator keeps none; create it with the option balances");
+  if (i < 0 || (size_t)i >= I->balances)
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "balance: there is none of index %d; there are %zu, of the energy and of the "
+                     "momenta of symmetries",
+                     i, I->balances);
+  DVI_TRY(dvi_integrator_invariant(I, i, &now));
+  *defect = (now - I->at_start[i]) - I->now.supplied[i] + I->now.supplied_compensation[i];
+  return DVI_OK;
 }
 
 const double *dvi_integrator_multiplier(const dvi_integrator *I)

@@ -15,6 +15,9 @@ struct dvi_integrator {
    * fails changes only `next`. Before the first step `last.p` holds the start's velocity. */
   dvi__state now, last, next;
   double *numbers; /* storage of all three states */
+  /* the number of balances that are kept, 0 or 1 + symmetries, and the invariants at the start */
+  size_t balances;
+  double *at_start;
   /* the stepper's memory before the last step. Both memories change places with every step */
   double *memory_before;
   double *v, *last_v;         /* [n] */
@@ -26,8 +29,11 @@ struct dvi_integrator {
 };
 
 /* Place the arrays of a state at *at, and move *at behind them. Copy a state with its arrays. */
-void dvi__state_lay_out(dvi__state *state, double **at, size_t n);
-void dvi__state_copy(size_t n, const dvi__state *from, dvi__state *to);
+void dvi__state_lay_out(const dvi_integrator *integrator, dvi__state *state, double **at);
+void dvi__state_copy(const dvi_integrator *integrator, const dvi__state *from, dvi__state *to);
+
+/* Count the numbers of a state's arrays, which are contiguous. */
+size_t dvi__state_numbers(const dvi_integrator *integrator);
 
 /* Guess the velocity of a general Lagrangian by the last step's mean velocity, or the start's. The
  * guess depends only on numbers that a checkpoint holds, so that a restored run gives the same

@@ -18,6 +18,9 @@ typedef struct dvi__state {
   /* dvi__two_form_side or dvi__dirac_side of a degenerate system (default 0, not known) */
   int side;
   double *q, *p, *q_compensation, *p_compensation; /* [n] */
+  /* what forces supplied to the energy and to the momenta of the symmetries since the start, NULL
+   * unless that is asked for (dvi_integrator_supplied) */
+  double *supplied, *supplied_compensation; /* [1 + symmetries] */
 } dvi__state;
 
 /* Several members of an ensemble side by side. Each is a state with the method's memory, and number

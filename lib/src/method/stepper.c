@@ -20,6 +20,8 @@ static const char *term_name(unsigned term)
   case DVI__ROTATIONS: return "rotations";
   case DVI__DIRECTIONS: return "directions (S^2)";
   case DVI__HAMILTONIAN: return "a Hamiltonian without constraints";
+  case DVI__FORCE:
+  case DVI__FRICTION: return "forces without a potential";
   case DVI__FAST: return "a fast potential (one that is declared `fast`)";
   default: return "potentials";
   }

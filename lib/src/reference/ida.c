@@ -7,6 +7,8 @@
  *     [  c I     -I      0  ]
  *     [ -L_qq   -L_qv   c I ]
  *     [ -L_vq   -L_vv    I  ]
+ * Forces F(t,q,v) are part of L_q, with L_qq + F_q and L_qv + F_v in the Jacobian.
+ *
  * For index 2 the multiplier v is left out of the error test. With a one-form DVI_IDA takes the
  * reduced equations of motion in y = q,
  *     F(t, y, ydot) = Omega(q) qdot - H_q(t,q) = 0,
@@ -53,11 +55,37 @@ static int lagrange_residual(double t, N_Vector y, N_Vector ydot, N_Vector F, vo
   return dvi__reference_callback(run, status);
 }
 
-static void write_block(dvi__columns *columns, const dvi__pattern *pattern, int column,
-                        int first_row, const double *values)
+/* One of the matrices whose sum is a block. */
+typedef struct summand {
+  const dvi__pattern *pattern;
+  const double *values;
+} summand;
+
+static void write_block(dvi__columns *columns, const summand *a, int column, int first_row)
 {
-  for (int e = pattern->start[column]; e < pattern->start[column + 1]; e++)
-    dvi__columns_put(columns, first_row + pattern->row[e], -values[e]);
+  for (int e = a->pattern->start[column]; e < a->pattern->start[column + 1]; e++)
+    dvi__columns_put(columns, first_row + a->pattern->row[e], -a->values[e]);
+}
+
+/* Write a column of the sum of two matrices, the first of which alone exists without forces. */
+static void write_sum(dvi__columns *columns, const summand *a, const summand *b, int column,
+                      int first_row)
+{
+  if (b->values == NULL) {
+    write_block(columns, a, column, first_row);
+    return;
+  }
+  int i = a->pattern->start[column], j = b->pattern->start[column];
+  const int i_end = a->pattern->start[column + 1], j_end = b->pattern->start[column + 1];
+  while (i < i_end || j < j_end) {
+    const int in_a = i < i_end && (j == j_end || a->pattern->row[i] <= b->pattern->row[j]),
+              in_b = j < j_end && (i == i_end || b->pattern->row[j] <= a->pattern->row[i]),
+              row = in_a ? a->pattern->row[i] : b->pattern->row[j];
+    double value = 0;
+    if (in_a) value += a->values[i++];
+    if (in_b) value += b->values[j++];
+    dvi__columns_put(columns, first_row + row, -value);
+  }
 }
 
 static void lagrange_write_jacobian(const lagrange_ida *self, double c, SUNMatrix matrix)
@@ -65,20 +93,23 @@ static void lagrange_write_jacobian(const lagrange_ida *self, double c, SUNMatri
   const dvi__reference_run *run = self->run;
   const dvi_system *system = run->system;
   const int n = run->n;
+  const summand qq = {&system->qq, run->L_qq}, qv = {&system->qv, run->L_qv},
+                vv = {&system->vv, run->L_vv}, by_q = {&system->by_q, run->F_q},
+                by_v = {&system->by_v, run->F_v};
   dvi__columns columns;
   dvi__columns_start(&columns, matrix);
   for (int j = 0; j < n; j++) {
     dvi__columns_next(&columns);
     dvi__columns_put(&columns, j, c);
-    write_block(&columns, &system->qq, j, n, run->L_qq);
+    write_sum(&columns, &qq, &by_q, j, n);
     for (int e = self->vq.start[j]; e < self->vq.start[j + 1]; e++)
       dvi__columns_put(&columns, 2 * n + self->vq.row[e], -run->L_qv[self->in_qv[e]]);
   }
   for (int j = 0; j < n; j++) {
     dvi__columns_next(&columns);
     dvi__columns_put(&columns, j, -1.0);
-    write_block(&columns, &system->qv, j, n, run->L_qv);
-    write_block(&columns, &system->vv, j, 2 * n, run->L_vv);
+    write_sum(&columns, &qv, &by_v, j, n);
+    write_block(&columns, &vv, j, 2 * n);
   }
   for (int j = 0; j < n; j++) {
     dvi__columns_next(&columns);
@@ -95,8 +126,10 @@ static int lagrange_jacobian(double t, double c, N_Vector y, N_Vector ydot, N_Ve
   const lagrange_ida *self = user;
   dvi__reference_run *run = self->run;
   const double *q = N_VGetArrayPointer(y);
-  const dvi_status status = dvi__lagrangian_hessian(run->evaluator, 1, &t, q, q + run->n, run->L_qq,
-                                                    run->L_qv, run->L_vv);
+  dvi_status status = dvi__lagrangian_hessian(run->evaluator, 1, &t, q, q + run->n, run->L_qq,
+                                              run->L_qv, run->L_vv);
+  if (status == DVI_OK && run->F_q != NULL)
+    status = dvi__forces_jacobian(run->evaluator, 1, &t, q, q + run->n, run->F_q, run->F_v);
   if (status == DVI_OK) lagrange_write_jacobian(self, c, matrix);
   return dvi__reference_callback(run, status);
 }
@@ -194,10 +227,13 @@ static dvi_status lagrange_reserve(lagrange_ida *self)
   const int n = run->n, size = self->reduced ? n : 3 * n,
             qq = dvi__pattern_entries(&run->system->qq),
             qv = dvi__pattern_entries(&run->system->qv),
-            vv = dvi__pattern_entries(&run->system->vv);
+            vv = dvi__pattern_entries(&run->system->vv),
+            forces = dvi__pattern_entries(&run->system->by_q) +
+                     dvi__pattern_entries(&run->system->by_v);
   DVI_TRY(lagrange_transpose_qv(self));
-  SUNMatrix matrix = self->reduced ? SUNDenseMatrix(n, n, run->context)
-                                   : dvi__reference_matrix(run, size, 4 * n + qq + 2 * qv + vv);
+  SUNMatrix matrix = self->reduced
+                         ? SUNDenseMatrix(n, n, run->context)
+                         : dvi__reference_matrix(run, size, 4 * n + qq + 2 * qv + vv + forces);
   return dvi__ida_run_create(run, size, matrix, &self->ida);
 }
 

@@ -71,11 +71,12 @@ static CVRhsFn ode_right_side_of(const dvi__reference_run *run)
   return has_factors(run) ? ode_lifted_right_side : ode_right_side;
 }
 
-/* Test for a diagonal mass. Only then M^-1 is as sparse as M, and the Jacobian has a simple
- * form. */
-static int mass_is_diagonal(const dvi_system *system)
+/* Test for a diagonal mass without forces. Only then M^-1 is as sparse as M, and the Jacobian has a
+ * simple form. */
+static int jacobian_is_simple(const dvi_system *system)
 {
-  return system->mass_diagonal != NULL && !system->dynamics->on_manifold;
+  return system->mass_diagonal != NULL && !system->dynamics->on_manifold &&
+         system->force_count == 0;
 }
 
 /* Write d(qdot, pdot)/d(q, p) = [ 0, M^-1; L_qq, 0 ] with its diagonal, to which CVODE adds the
@@ -160,7 +161,7 @@ static dvi_status ode_make_linear(ode_run *self)
 {
   const dvi__reference_run *run = self->run;
   const int n = run->n, entries = dvi__pattern_entries(&run->system->qq),
-            known = mass_is_diagonal(run->system);
+            known = jacobian_is_simple(run->system);
   const int size = ode_size(self);
   if (known || dvi__reference_is_dense(size)) {
     self->matrix = dvi__reference_matrix(run, size, entries + 3 * n);
@@ -191,7 +192,7 @@ static int configure_cvode(ode_run *self)
     return -1;
   if (self->fixed_point != NULL) return CVodeSetNonlinearSolver(cvode, self->fixed_point);
   if (CVodeSetLinearSolver(cvode, self->linear, self->matrix)) return -1;
-  return mass_is_diagonal(run->system) ? CVodeSetJacFn(cvode, ode_jacobian) : 0;
+  return jacobian_is_simple(run->system) ? CVodeSetJacFn(cvode, ode_jacobian) : 0;
 }
 
 static dvi_status integrate_cvode(ode_run *self)

@@ -20,6 +20,7 @@ typedef struct dvi__reference_run {
   double *force;              /* [n] L_q at the start, or p' of a Hamiltonian. Not with factors */
   double *multiplier;         /* [m] multiplier of a Hamiltonian's constraints at the start */
   double *L_qq, *L_qv, *L_vv; /* Hessian in the order of the system's patterns */
+  double *F_q, *F_v;          /* derivatives of forces likewise, NULL without forces */
   dvi__evaluator *evaluator;
   dvi_counters counters;
   SUNContext context;

@@ -156,6 +156,14 @@ static dvi_status reference_check_start(const dvi_system *system, double t, doub
   return DVI_OK;
 }
 
+static dvi_status reserve_forces(dvi__reference_run *run)
+{
+  if (run->system->force_count == 0) return DVI_OK;
+  run->F_q = DVI_NEW(double, dvi__pattern_entries(&run->system->by_q));
+  run->F_v = DVI_NEW(double, dvi__pattern_entries(&run->system->by_v));
+  return run->F_q != NULL && run->F_v != NULL ? DVI_OK : dvi__reference_no_setup(run);
+}
+
 static dvi_status reference_reserve(dvi__reference_run *run, const double *q, const double *p)
 {
   const size_t n = (size_t)run->n;
@@ -171,7 +179,7 @@ static dvi_status reference_reserve(dvi__reference_run *run, const double *q, co
       run->multiplier == NULL || run->L_qq == NULL || run->L_qv == NULL || run->L_vv == NULL ||
       dvi__sundials_context(&run->context) != 0)
     return dvi__reference_no_setup(run);
-  return DVI_OK;
+  return reserve_forces(run);
 }
 
 dvi_status dvi__reference_form_momentum(dvi__reference_run *run)
@@ -198,6 +206,8 @@ static void reference_clear(dvi__reference_run *run)
 {
   dvi__evaluator_destroy(&run->evaluator);
   if (run->context != NULL) (void)SUNContext_Free(&run->context);
+  dvi__release(run->F_q);
+  dvi__release(run->F_v);
   dvi__release(run->L_vv);
   dvi__release(run->L_qv);
   dvi__release(run->L_qq);

@@ -26,11 +26,24 @@ static dvi_status add_term(const dvi__scene_term *term, quad sign, quad *const *
   return dvi__function_quad_add(term->function, sign, x, NULL, gradient);
 }
 
+/* Add a force to L_q. It is the derivative of its function by the multipliers, or by v. */
+static dvi_status add_force(const dvi_force *force, quad *const *x, quad *const *gradient)
+{
+  const dvi__scene_term *term = force->user;
+  quad *to[DVI__BLOCKS] = {NULL};
+  to[term->count > 0 ? DVI__MULTIPLIERS : DVI__VELOCITIES] = gradient[DVI__COORDINATES];
+  return add_term(term, 1, x, to);
+}
+
 static dvi_status add_terms(const dvi_scene *scene, quad *const *x, quad *const *gradient)
 {
+  dvi_status status = DVI_OK;
+  for (int k = 0; k < scene->terms.force_count && status == DVI_OK; k++)
+    status = add_force(&scene->force[k], x, gradient);
+  if (status != DVI_OK) return status;
   if (scene->terms.lagrangian != NULL)
     return add_term(scene->terms.lagrangian->user, 1, x, gradient);
-  dvi_status status = add_term(scene->kinetic, 1, x, gradient);
+  status = add_term(scene->kinetic, 1, x, gradient);
   for (int k = 0; k < scene->terms.potential_count && status == DVI_OK; k++)
     status = add_term(scene->terms.potentials[k].user, -1, x, gradient);
   return status;
@@ -44,9 +57,9 @@ dvi_status dvi_scene_quad_gradient(const dvi_scene *scene, dvi_pair t, const dvi
   if (dvi__has_factors(scene) || (scene->terms.lagrangian == NULL && scene->kinetic == NULL))
     return DVI_UNSUPPORTED;
   const size_t n = (size_t)scene->n;
-  quad *room = dvi__heap_take(4 * n + 1, sizeof *room);
+  quad *room = dvi__heap_take(5 * n + 1, sizeof *room);
   if (room == NULL) return DVI_NO_MEMORY;
-  quad *const x[DVI__BLOCKS] = {room + 4 * n, room, room + n};
+  quad *const x[DVI__BLOCKS] = {room + 4 * n, room, room + n, room + 4 * n + 1};
   quad *const gradient[DVI__BLOCKS] = {NULL, room + 2 * n, room + 3 * n};
   *x[DVI__TIME] = pair_joined(t);
   for (size_t i = 0; i < n; i++) {

@@ -8,7 +8,8 @@
 static dvi_status joint_join(const dvi_system *system, const dvi__pattern *more,
                              dvi__pattern *joint)
 {
-  dvi__pattern vq = {0}, mixed = {0}, own = {0}, second = {0}, diagonal = {0}, whole = {0};
+  dvi__pattern vq = {0}, mixed = {0}, own = {0}, second = {0}, diagonal = {0};
+  dvi__pattern lagrangian = {0}, forces = {0}, whole = {0};
   dvi_status status = dvi__pattern_transpose(&system->qv, &vq);
   if (status == DVI_OK) status = dvi__pattern_union(&system->qv, &vq, &mixed);
   if (status == DVI_OK)
@@ -17,13 +18,17 @@ static dvi_status joint_join(const dvi_system *system, const dvi__pattern *more,
                  : dvi__pattern_empty(system->n, &own);
   if (status == DVI_OK) status = dvi__pattern_union(&system->vv, &own, &second);
   if (status == DVI_OK) status = dvi__pattern_union(&system->qq, &second, &diagonal);
-  if (status == DVI_OK) status = dvi__pattern_union(&mixed, &diagonal, &whole);
+  if (status == DVI_OK) status = dvi__pattern_union(&mixed, &diagonal, &lagrangian);
+  if (status == DVI_OK) status = dvi__pattern_union(&system->by_q, &system->by_v, &forces);
+  if (status == DVI_OK) status = dvi__pattern_union(&lagrangian, &forces, &whole);
   if (status == DVI_OK) status = dvi__pattern_union(&whole, more != NULL ? more : &whole, joint);
   dvi__pattern_clear(&vq);
   dvi__pattern_clear(&mixed);
   dvi__pattern_clear(&own);
   dvi__pattern_clear(&second);
   dvi__pattern_clear(&diagonal);
+  dvi__pattern_clear(&lagrangian);
+  dvi__pattern_clear(&forces);
   dvi__pattern_clear(&whole);
   return status;
 }
@@ -55,8 +60,9 @@ dvi_status dvi__joint_create(const dvi_system *system, const dvi__pattern *more,
     for (int e = joint->start[j]; e < joint->start[j + 1]; e++) {
       const int i = joint->row[e];
       (*block)[e] = (dvi__joint_entry){
-          dvi__pattern_find(&system->qq, i, j), dvi__pattern_find(&system->qv, i, j),
-          dvi__pattern_find(&system->qv, j, i), dvi__pattern_find(&system->vv, i, j)};
+          dvi__pattern_find(&system->qq, i, j),   dvi__pattern_find(&system->qv, i, j),
+          dvi__pattern_find(&system->qv, j, i),   dvi__pattern_find(&system->vv, i, j),
+          dvi__pattern_find(&system->by_q, i, j), dvi__pattern_find(&system->by_v, i, j)};
     }
   return DVI_OK;
 }

@@ -1,12 +1,14 @@
 /* The joint pattern of a Lagrangian's Hessian tells which coordinates are coupled by L_qq, L_qv,
- * L_vq or L_vv. The patterns of a one-form, and of a Hamiltonian, include the diagonal. */
+ * L_vq or L_vv, or by the derivatives F_q or F_v of forces. The patterns of a one-form, and of a
+ * Hamiltonian, include the diagonal. */
 #ifndef DVI_STEP_JOINT_H
 #define DVI_STEP_JOINT_H
 #include "system/system.h"
 
-/* The indices of an entry (i,j) of the joint pattern in the Hessian's blocks, or -1. */
+/* The indices of an entry (i,j) of the joint pattern in the Hessian's blocks, and in those of the
+ * forces, or -1. */
 typedef struct dvi__joint_entry {
-  int qq, qv, vq, vv;
+  int qq, qv, vq, vv, by_q, by_v;
 } dvi__joint_entry;
 
 /* Check sizes before memory is allocated. DVI_BAD_SIZE unless an int can count `most` numbers for

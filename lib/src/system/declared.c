@@ -3,6 +3,7 @@
 
 #include "core/hash.h"
 #include "system/system.h"
+#include "system/term/force.h"
 
 static uint64_t hash_pattern(uint64_t hash, const dvi__pattern *pattern)
 {
@@ -55,6 +56,19 @@ static uint64_t hash_potentials(const dvi_system *s)
   return hash;
 }
 
+/* Forces of the same patterns may stand for one another. */
+static uint64_t hash_forces(const dvi_system *s)
+{
+  uint64_t hash = DVI__HASH_START;
+  for (int k = 0; k < s->force_count; k++) {
+    const dvi__force_term *term = &s->forces[k];
+    const int kind[] = {term->callbacks.without_velocity != 0, dvi__force_has_jacobian(term)};
+    hash = dvi__hash(hash_text(hash, term->name), sizeof kind, kind);
+    hash = hash_pattern(hash_pattern(hash, &term->by_q), &term->by_v);
+  }
+  return hash;
+}
+
 static uint64_t hash_invariants(const dvi_system *s)
 {
   uint64_t hash = DVI__HASH_START;
@@ -66,14 +80,18 @@ static uint64_t hash_invariants(const dvi_system *s)
 void dvi__system_declared(const dvi_system *system, dvi__declared *declared)
 {
   *declared = (dvi__declared){{hash_terms(system), hash_masses(system), hash_patterns(system),
-                               hash_potentials(system), hash_invariants(system)}};
+                               hash_potentials(system), hash_invariants(system),
+                               hash_forces(system)}};
 }
 
 const char *dvi__declared_difference(const dvi__declared *one, const dvi__declared *other)
 {
-  static const char *const name[DVI__DECLARED_PARTS] = {
-      "terms", "masses or inertias", "patterns of derivatives", "names or speeds of potentials",
-      "names of invariants"};
+  static const char *const name[DVI__DECLARED_PARTS] = {"terms",
+                                                        "masses or inertias",
+                                                        "patterns of derivatives",
+                                                        "names or speeds of potentials",
+                                                        "names of invariants",
+                                                        "forces"};
   for (int part = 0; part < DVI__DECLARED_PARTS; part++)
     if (one->hash[part] != other->hash[part]) return name[part];
   return NULL;

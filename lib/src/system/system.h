@@ -21,11 +21,14 @@ typedef enum dvi__term {
   DVI__DIRECTIONS = 128,
   DVI__FAST = 256,        /* among the potentials */
   DVI__HAMILTONIAN = 512, /* without constraints */
+  DVI__FORCE = 1024,      /* forces F(t,q) without a potential */
+  DVI__FRICTION = 2048,   /* forces F(t,q,v) */
+  DVI__FORCES = DVI__FORCE | DVI__FRICTION,
   DVI__PHASE_SPACE = DVI__CONSTRAINED_HAMILTONIAN | DVI__HAMILTONIAN,
   DVI__DYNAMICS = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__ONE_FORM | DVI__FACTORS |
                   DVI__PHASE_SPACE, /* one of these is declared */
   DVI__KINDS = DVI__ROTATIONS | DVI__DIRECTIONS | DVI__FAST,
-  DVI__LAST_TERM = DVI__HAMILTONIAN
+  DVI__LAST_TERM = DVI__FRICTION
 } dvi__term;
 
 /* Groups of columns that are moved together when a missing Hessian block is differenced. */
@@ -41,6 +44,14 @@ typedef struct dvi__potential_term {
   int *in_qq;      /* places [entries of qq] in the system's qq */
   dvi__groups groups;
 } dvi__potential_term;
+
+typedef struct dvi__force_term {
+  dvi_force callbacks;
+  char *name;
+  dvi__pattern by_q, by_v; /* empty until dvi__system_prepare_hessian if not declared */
+  int *in_by_q, *in_by_v;  /* places in the system's by_q and by_v */
+  dvi__groups q_groups, v_groups;
+} dvi__force_term;
 
 /* The gradient of a function beside a one-form alpha, and the places of the entries of both in the
  * sum. */
@@ -99,8 +110,8 @@ typedef struct dvi__constraint_term {
 enum { DVI__DIMENSION_MOST = INT_MAX / 4 };
 
 /* Hashes of all that is declared, without the results of callbacks. The parts are terms, masses,
- * patterns, potentials, invariants. */
-enum { DVI__DECLARED_PARTS = 5 };
+ * patterns, potentials, invariants, forces. */
+enum { DVI__DECLARED_PARTS = 6 };
 typedef struct dvi__declared {
   uint64_t hash[DVI__DECLARED_PARTS];
 } dvi__declared;
@@ -125,6 +136,8 @@ struct dvi_system {
   dvi__constraint_term *constraint; /* constraints of a Hamiltonian, or NULL */
   dvi__potential_term *potentials;
   int potential_count;
+  dvi__force_term *forces;
+  int force_count;
   dvi_symmetry *symmetries;
   int symmetry_count;
   dvi_invariant *invariants;
@@ -132,16 +145,17 @@ struct dvi_system {
   char **invariant_names; /* names of energy, symmetries, invariants */
   /* Patterns of L's Hessian. vv is diagonal for scalar and diagonal masses, empty for a one-form.
    * With a Hamiltonian qv and vv are those of H_qp and H_pp. qq is the union over the terms, empty
-   * until dvi__system_prepare_hessian. */
-  dvi__pattern qv, vv, qq;
+   * until dvi__system_prepare_hessian. by_q and by_v are those of F_q and F_v of all forces (row i
+   * for component i), made with qq. */
+  dvi__pattern qv, vv, qq, by_q, by_v;
 };
 
 /* Give a lower bound of the entries of L_qq. A pattern that was not declared counts as full. */
 size_t dvi__system_least_entries(const dvi_system *system);
 
-/* Complete the patterns of L_qq, once. Patterns that were not declared become full, with n^2
- * entries that only a method with Hessians should pay for. Integrators on several threads may call
- * this at one time. Return DVI_BAD_SIZE if an int cannot count the entries. */
+/* Complete the patterns of L_qq and of the forces, once. Patterns that were not declared become
+ * full, with n^2 entries that only a method with Hessians should pay for. Integrators on several
+ * threads may call this at one time. Return DVI_BAD_SIZE if an int cannot count the entries. */
 dvi_status dvi__system_prepare_hessian(const dvi_system *system);
 
 /* Return 1 if all potentials give their gradient, so that no force is differenced. */

@@ -202,8 +202,8 @@ typedef struct tally {
 static dvi_status judged_step(const dvi_integrator *run, const dvi__state *state,
                               const double *memory, dvi_integrator *judge, double h)
 {
-  const size_t n = (size_t)run->system->n, bytes = judge->stepper.memory_count * sizeof(double);
-  dvi__state_copy(n, state, &judge->next);
+  const size_t bytes = judge->stepper.memory_count * sizeof(double);
+  dvi__state_copy(run, state, &judge->next);
   if (run->stepper.method->chooses_steps)
     memset(judge->stepper.memory, 0, bytes);
   else

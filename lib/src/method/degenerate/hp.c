@@ -136,6 +136,9 @@ static dvi_status hp_create(dvi__stepper *self)
   if (*chosen == DVI__LEFT_OUT) *chosen = (int)by_type[type - 1];
   const dvi_rule rule = (dvi_rule)*chosen;
   if (degenerate && (type == 1 || type == 4)) return refuse_form(type);
+  if (type == 4 && self->system->force_count > 0)
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "hp: type=4 cannot use forces without a potential; type=1, 2 and 3 can");
   if (type == 4) return create_momentum_centred(self, degree, rule);
   const dvi__action_space space = {.basis = DVI_LAGRANGE_LOBATTO,
                                    .degree = degree,

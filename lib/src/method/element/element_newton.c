@@ -135,7 +135,8 @@ static int newton_is_definite(void *of, int sign)
 static dvi_status newton_prepare_operator(dvi__element *own)
 {
   dvi__newton_form *newton = &own->newton;
-  const int has_systems = newton->systems != NULL, is_known = has_systems || own->definite;
+  const int has_systems = newton->systems != NULL,
+            is_known = own->definite || (has_systems && !own->has_forces);
   DVI_TRY(dvi__action_prepare_product(own->action));
   newton->A = (dvi__operator){.size = dvi__action_unknowns(own->action),
                               .of = own,

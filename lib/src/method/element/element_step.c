@@ -88,12 +88,13 @@ static int element_allocate(dvi__stepper *self, dvi__element *own)
 {
   const size_t n = (size_t)self->system->n, unknowns = (size_t)dvi__action_unknowns(own->action);
   element_count_memory(self, own);
-  own->Y = DVI_NEW(double, 2 * unknowns + 3 * n);
+  own->Y = DVI_NEW(double, 2 * unknowns + 3 * n + 1 + (size_t)self->system->symmetry_count);
   if (own->Y == NULL) return 0;
   own->guess = own->Y + unknowns;
   own->dq = own->guess + unknowns;
   own->dq_low = own->dq + n;
   own->dp = own->dq_low + n;
+  own->supply = own->dp + n;
   return 1;
 }
 
@@ -140,6 +141,7 @@ dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *spac
   own->choice = solver;
   own->counters = self->counters;
   DVI_TRY(dvi__action_create(self->system, space, self->counters, &own->action));
+  own->has_forces = self->system->force_count > 0;
   own->definite = dvi__element_is_definite(self->system, dvi__action_evaluator(own->action));
   DVI_TRY(element_decouple(self, own));
   if (!element_allocate(self, own))
@@ -332,6 +334,9 @@ static dvi_status element_advance(dvi__stepper *self, dvi__state *state, double 
   dvi__add_compensated_all(n, state->q, state->q_compensation, own->dq_low);
   dvi__add_compensated_all(n, state->p, state->p_compensation, own->dp);
   dvi__add_compensated(&state->t, &state->t_compensation, duration);
+  if (state->supplied != NULL)
+    dvi__add_compensated_all(1 + self->system->symmetry_count, state->supplied,
+                             state->supplied_compensation, own->supply);
   self->memory[DVI__LAST_H] = h;
   memcpy(self->memory + DVI__LAST_Y, own->Y,
          (size_t)dvi__action_unknowns(own->action) * sizeof(double));
@@ -388,6 +393,7 @@ dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
   dvi__action_ends(own->action, own->Y, own->dq, own->dq_low, own->dp);
   dvi__action_forces(own->action, self->memory + dvi__element_forces(self));
   if (own->choice == DVI__SOLVER_CERTIFIED) DVI_TRY(element_certify(self, &at, own->Y, &report));
+  if (state->supplied != NULL) DVI_TRY(dvi__action_supplies(own->action, own->Y, own->supply));
   return element_advance(self, state, h);
 }
 

@@ -42,6 +42,7 @@ typedef struct dvi__element {
   /* symmetric Jacobians, and real parts of them, are definite for short steps, because the mass is
    * constant and positive */
   int definite;
+  int has_forces; /* forces without a potential make Jacobians that are not symmetric */
   dvi__solver *solver;
   dvi__newton_form newton;
   int choice;     /* choice of the solver */
@@ -52,6 +53,7 @@ typedef struct dvi__element {
   /* the place whose iteration starts from the last step's forces, NULL if it starts from Y */
   const dvi__element_place *forces_of;
   double *dq, *dq_low, *dp;
+  double *supply; /* [1 + symmetries] what forces supply in the step */
   double *guess;  /* [unknowns] guess of the iteration, in charts */
   double *branch; /* [DVI__BRANCH_ROOM * unknowns] work to follow a branch, NULL until needed */
 } dvi__element;

@@ -5,12 +5,16 @@
  * For L = v.Mv/2 - V(q) the stationarity conditions p0 = -D1 Ld, p1 = D2 Ld are explicit.
  *     p_half = p0 - h/2 dV(q0),   q1 = q0 + h M^-1 p_half,   p1 = p_half - h/2 dV(q1).
  * The order is 2, and the method is symmetric and symplectic. Source: Marsden and West 2001, sec.
- * 2.3.1; Hairer, Lubich and Wanner 2003. */
+ * 2.3.1; Hairer, Lubich and Wanner 2003.
+ *
+ * Forces F(t,q) join -dV in both kicks. Forces F(t,q,v) make the first kick implicit
+ * (friction.h). */
 #include <string.h>
 
 #include "step/split/temporal_blocking.h"
 #include "core/memory.h"
 #include "core/status.h"
+#include "method/split/friction.h"
 #include "method/split/verlet_lanes.h"
 #include "num/compensated.h"
 
@@ -38,8 +42,10 @@ static const dvi__key keys[] = {
  * next, and then a flag. */
 typedef struct verlet {
   dvi__evaluator *evaluator;
-  double *change;          /* [n] */
+  double *change;          /* [2 n] a change, and forces */
+  double *supply;          /* [1 + symmetries] */
   dvi__blocking *blocking; /* NULL without temporal blocking */
+  dvi__friction *friction; /* NULL without forces that depend on the velocity */
 } verlet;
 
 static double *verlet_gradient_known(const dvi__stepper *self, double *memory)
@@ -70,9 +76,13 @@ static dvi_status verlet_create(dvi__stepper *self)
   self->symmetric = 1;
   self->memory_count = (size_t)self->system->n + 1;
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "verlet: no memory");
-  own->change = DVI_NEW(double, self->system->n);
-  if (own->change == NULL) return dvi__fail(DVI_NO_MEMORY, "verlet: no memory");
+  own->change = DVI_NEW(double, 2 * (size_t)self->system->n);
+  own->supply = DVI_NEW(double, 1 + (size_t)self->system->symmetry_count);
+  if (own->change == NULL || own->supply == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "verlet: no memory");
   DVI_TRY(create_blocking(self, own));
+  if (self->system->terms & DVI__FRICTION)
+    DVI_TRY(dvi__friction_create(self->system, self->counters, &own->friction));
   return dvi__evaluator_create(self->system, 1, DVI__GRADIENTS, self->counters, &own->evaluator);
 }
 
@@ -81,8 +91,10 @@ static void verlet_destroy(dvi__stepper *self)
   verlet *own = self->own;
   if (own == NULL) return;
   dvi__blocking_destroy(&own->blocking);
+  dvi__friction_destroy(&own->friction);
   dvi__evaluator_destroy(&own->evaluator);
   dvi__release(own->change);
+  dvi__release(own->supply);
   dvi__release(own);
 }
 
@@ -109,9 +121,65 @@ static void verlet_drift(const dvi__stepper *self, dvi__state *state, double h)
   dvi__add_compensated(&state->t, &state->t_compensation, h);
 }
 
+/* Add what the forces at one end of the straight line supply. The momentum is that of the line. */
+static dvi_status verlet_supply(const dvi__stepper *self, dvi__state *state, double h)
+{
+  const verlet *own = self->own;
+  const double *v = own->change, half = 0.5 * h;
+  double *F = own->change + self->system->n;
+  if (state->supplied == NULL) return DVI_OK;
+  if (own->friction != NULL)
+    v = dvi__friction_velocity(own->friction);
+  else
+    dvi__mass_solve(own->evaluator, 1, state->p, own->change);
+  DVI_TRY(dvi__forces(own->evaluator, DVI__FORCES, 1, &state->t, state->q, v, F));
+  DVI_TRY(dvi__supply(own->evaluator, 1, &half, F, state->q, v, own->supply));
+  dvi__add_compensated_all(1 + self->system->symmetry_count, state->supplied,
+                           state->supplied_compensation, own->supply);
+  return DVI_OK;
+}
+
+static void add_friction(const dvi__stepper *self, dvi__state *state, double h, const double *F)
+{
+  dvi__lanes_add_scaled((size_t)self->system->n, h, F, state->p, state->p_compensation);
+}
+
+static dvi_status verlet_begin(dvi__stepper *self, dvi__state *state, double h)
+{
+  const verlet *own = self->own;
+  const double *F;
+  if (own->friction != NULL)
+    DVI_TRY(dvi__friction_solve(own->friction, state, h, self->memory, &F));
+  verlet_kick(self, state, 0.5 * h);
+  if (own->friction != NULL) add_friction(self, state, 0.5 * h, F);
+  return DVI_OK;
+}
+
+static dvi_status verlet_end(dvi__stepper *self, dvi__state *state, double h)
+{
+  const verlet *own = self->own;
+  const double *F;
+  DVI_TRY(verlet_gradient(self, state));
+  verlet_kick(self, state, 0.5 * h);
+  if (own->friction == NULL) return DVI_OK;
+  DVI_TRY(dvi__friction_end(own->friction, state, &F));
+  add_friction(self, state, 0.5 * h, F);
+  return DVI_OK;
+}
+
+static dvi_status verlet_forced_step(dvi__stepper *self, dvi__state *state, double h)
+{
+  DVI_TRY(verlet_begin(self, state, h));
+  DVI_TRY(verlet_supply(self, state, h));
+  verlet_drift(self, state, h);
+  DVI_TRY(verlet_supply(self, state, h));
+  return verlet_end(self, state, h);
+}
+
 static dvi_status verlet_step(dvi__stepper *self, dvi__state *state, double h)
 {
   if (*verlet_gradient_known(self, self->memory) == 0) DVI_TRY(verlet_gradient(self, state));
+  if (self->system->force_count > 0) return verlet_forced_step(self, state, h);
   verlet_kick(self, state, 0.5 * h);
   verlet_drift(self, state, h);
   DVI_TRY(verlet_gradient(self, state));
@@ -172,13 +240,22 @@ static dvi_status verlet_prepare_lanes(dvi__stepper *self, int capacity)
   const verlet *own = self->own;
   const int asked = self->settings.value[BLOCKING] == BLOCKING_TEMPORAL ||
                     self->settings.value[THREADS] > 1;
-  const int pays = own->blocking == NULL || (!asked && self->system->n <= FEW_COORDINATES);
+  const int pays = own->friction == NULL &&
+                   (own->blocking == NULL || (!asked && self->system->n <= FEW_COORDINATES));
   return pays ? dvi__verlet_prepare_lanes(self, capacity) : DVI_OK;
 }
 
 static void verlet_explain(const dvi__stepper *self, dvi__text *text)
 {
   const verlet *own = self->own;
+  if (own->friction != NULL) {
+    dvi__text_add(text,
+                  "kernel: implicit in the first kick, for forces depend on the velocity; one "
+                  "gradient a step, and the forces\n"
+                  "solver: Newton's method for the n velocities of the first kick, with the "
+                  "Jacobian M - h/2 dF/dv\n");
+    return;
+  }
   dvi__text_add(
       text,
       "kernel: explicit; one gradient a step (the last one of a step is the first of the next)\n");
@@ -203,7 +280,7 @@ const dvi__method dvi__verlet = {
     .cite = "MarsdenWest2001",
     .keys = keys,
     .needs = DVI__CONSTANT_MASS,
-    .uses = DVI__CONSTANT_MASS | DVI__POTENTIAL,
+    .uses = DVI__CONSTANT_MASS | DVI__POTENTIAL | DVI__FORCES,
     .create = verlet_create,
     .destroy = verlet_destroy,
     .step = verlet_step,

@@ -15,6 +15,9 @@ enum {
   DVI__PAIR_VW,
   DVI__PAIR_TQ,
   DVI__PAIR_TV,
+  DVI__PAIR_VQ,
+  DVI__PAIR_WQ,
+  DVI__PAIR_WV,
   DVI__PAIRS
 };
 extern const dvi__block_pair dvi__scene_pairs[DVI__PAIRS];

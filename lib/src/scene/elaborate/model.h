@@ -54,6 +54,7 @@ struct dvi_scene {
   dvi_one_form one_form;
   dvi_hamiltonian hamiltonian;
   dvi_constraint constraint;
+  dvi_force force[2]; /* of the sections forces and dissipation */
   dvi__scene_term *functions;
   const dvi__scene_term *kinetic; /* the term from which a constant mass was read, or NULL */
   dvi_system *system;

@@ -140,6 +140,7 @@ dvi_status dvi__emit_term(dvi__emitter *out, const dvi__emitted_term *term)
   if (patterns == 4) dvi__emit(out, ",\n    .count = %d", term->term->count);
   if (term->fast) dvi__emit(out, ",\n    .fast = 1");
   if (term->quadratic) dvi__emit(out, ",\n    .quadratic = 1");
+  if (term->without_velocity) dvi__emit(out, ",\n    .without_velocity = 1");
   dvi__emit(out, ",\n};\n\n");
   return status;
 }

@@ -26,6 +26,8 @@ static dvi_status emit_motion(dvi__emitter *out, const dvi_scene *scene)
     term = dvi__constraint_term(scene), status = dvi__emit_term(out, &term);
   for (int k = 0; k < terms->potential_count && status == DVI_OK; k++)
     term = dvi__potential_term(scene, k), status = dvi__emit_term(out, &term);
+  for (int k = 0; k < terms->force_count && status == DVI_OK; k++)
+    term = dvi__force_term_of(scene, k), status = dvi__emit_term(out, &term);
   return status;
 }
 
@@ -125,6 +127,7 @@ static void emit_create(dvi__emitter *out, const dvi_scene *scene, const char *n
             name, terms->dimension, terms->autonomous);
   emit_factors(out, terms);
   emit_term_list(out, "dvi_potential", "potential", "potentials", terms->potential_count);
+  emit_term_list(out, "dvi_force", "force", "forces", terms->force_count);
   emit_term_list(out, "dvi_symmetry", "symmetry", "symmetries", terms->symmetry_count);
   emit_term_list(out, "dvi_invariant", "invariant", "invariants", terms->invariant_count);
   if (terms->lagrangian != NULL) dvi__emit(out, "  terms.lagrangian = &lagrangian;\n");
@@ -218,6 +221,14 @@ static void emit_main(dvi__emitter *out, const dvi_scene *scene, const char *nam
   dvi__emit(out, "%s", run[2]);
 }
 
+/* Test for forces that are given by coordinate, and not by a dissipation. */
+static int has_force_of_coordinates(const dvi_system_terms *terms)
+{
+  for (int k = 0; k < terms->force_count; k++)
+    if (terms->forces[k].value != NULL) return 1;
+  return 0;
+}
+
 /* Write the declarations for a caller, and the zeros at which functions that are linear in w are
  * evaluated. */
 static void emit_header(dvi__emitter *out, const dvi_scene *scene, const char *name)
@@ -234,7 +245,8 @@ static void emit_header(dvi__emitter *out, const dvi_scene *scene, const char *n
   if (scene->event_count > 0)
     dvi__emit(out, "extern const dvi_event %s_events[%d];\n", name, scene->event_count);
   dvi__emit(out, "\n");
-  if (terms->one_form != NULL || terms->symmetry_count > 0 || terms->constraint != NULL)
+  if (terms->one_form != NULL || terms->symmetry_count > 0 || terms->constraint != NULL ||
+      has_force_of_coordinates(terms))
     dvi__emit(out, "static const double dvi_zeros[%d] = {0};\n\n", 2 * scene->n);
 }
 

@@ -25,6 +25,7 @@ typedef struct dvi__emitted_term {
   const char *pattern_name[4];
   const dvi_pattern *pattern[4]; /* patterns up to the first NULL */
   int fast, quadratic;           /* for potentials */
+  int without_velocity;          /* for forces */
 } dvi__emitted_term;
 
 /* Describe the terms. */
@@ -33,6 +34,7 @@ dvi__emitted_term dvi__one_form_term(const dvi_scene *scene);
 dvi__emitted_term dvi__hamiltonian_term(const dvi_scene *scene);
 dvi__emitted_term dvi__constraint_term(const dvi_scene *scene);
 dvi__emitted_term dvi__potential_term(const dvi_scene *scene, int k);
+dvi__emitted_term dvi__force_term_of(const dvi_scene *scene, int k);
 dvi__emitted_term dvi__symmetry_term(const dvi_scene *scene, int k);
 dvi__emitted_term dvi__invariant_term(const dvi_scene *scene, int k);
 dvi__emitted_term dvi__event_term(const dvi_scene *scene, int k);

@@ -69,6 +69,26 @@ static const dvi__callback constraint_callbacks[] = {
      "1, NULL, q, p, w, qq, qp, pp", 's', SECOND},
 };
 
+static const dvi__callback force_callbacks[] = {
+    {"value", POINT ", const double *v, double *F", "1, &t, q, v, dvi_zeros, F", 'g',
+     ONLY(DVI__MULTIPLIERS)},
+    {"jacobian",
+     POINT ", const double *v, double *F_q, double *F_v",
+     "1, &t, q, v, dvi_zeros, F_q, F_v",
+     's',
+     {[DVI__PAIR_WQ] = 1, [DVI__PAIR_WV] = 1}},
+};
+
+static const dvi__callback dissipation_callbacks[] = {
+    {"value_batch", BATCH ", const double *v, double *F", "count, t, q, v, NULL, F", 'g',
+     ONLY(DVI__VELOCITIES)},
+    {"jacobian_batch",
+     BATCH ", const double *v, double *F_q, double *F_v",
+     "count, t, q, v, NULL, F_v, F_q",
+     's',
+     {[DVI__PAIR_VQ] = 1, [DVI__PAIR_VV] = 1}},
+};
+
 static const dvi__callback symmetry_callback = {"generator", "const double *q, double *xi",
                                                 "1, NULL, q, NULL, dvi_zeros, xi", 'g',
                                                 ONLY(DVI__MULTIPLIERS)};
@@ -143,6 +163,23 @@ dvi__emitted_term dvi__potential_term(const dvi_scene *scene, int k)
                             .fast = V->fast,
                             .quadratic = V->quadratic};
   (void)snprintf(term.name, sizeof term.name, "potential_%d", k);
+  return term;
+}
+
+dvi__emitted_term dvi__force_term_of(const dvi_scene *scene, int k)
+{
+  const dvi_force *F = &scene->force[k];
+  const int of_dissipation = F->value_batch != NULL;
+  dvi__emitted_term term = {.type = "dvi_force",
+                            .shown = F->name,
+                            .term = F->user,
+                            .callback_count = 2,
+                            .callback = of_dissipation ? dissipation_callbacks : force_callbacks,
+                            .columns = scene->n,
+                            .pattern_name = {"by_q", "by_v"},
+                            .pattern = {&F->by_q, F->without_velocity ? NULL : &F->by_v},
+                            .without_velocity = F->without_velocity};
+  (void)snprintf(term.name, sizeof term.name, "force_%d", k);
   return term;
 }
 

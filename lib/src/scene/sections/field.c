@@ -33,7 +33,7 @@ static bool is_of_field(dvi_scene *scene, const dvi__tree *key, const char *wher
 }
 
 static bool add_component(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree,
-                          const char *where, dvi__kernels *list)
+                          unsigned may, const char *where, dvi__kernels *list)
 {
   dvi__context c;
   dvi__target target;
@@ -41,7 +41,7 @@ static bool add_component(dvi_scene *scene, const dvi__tree *key, const dvi__tre
   dvi__numbering numbering;
   const dvi__expression *e;
   if (!dvi__read_target(scene, key, &target) || !is_of_field(scene, key, where, &target) ||
-      !dvi__context_make(&c, scene, DVI__MENTIONS_Q, where))
+      !dvi__context_make(&c, scene, DVI__MENTIONS_Q | may, where))
     return false;
   bool good = dvi__target_value(&c, &target, tree, &value, &numbering, &e);
   if (good) {
@@ -53,13 +53,13 @@ static bool add_component(dvi_scene *scene, const dvi__tree *key, const dvi__tre
   return good;
 }
 
-bool dvi__field_read(dvi_scene *scene, const dvi__tree *field, const char *where,
+bool dvi__field_read(dvi_scene *scene, const dvi__tree *field, unsigned may, const char *where,
                      dvi__scene_term **term)
 {
   dvi__kernels list = {0};
   bool good = dvi__want_mapping(scene, field, where);
   for (int i = 0; good && i < field->count; i++)
-    good = add_component(scene, field->key[i], field->child[i], where, &list);
+    good = add_component(scene, field->key[i], field->child[i], may, where, &list);
   good = good && dvi__kernels_function(scene, &list, scene->nv, term);
   dvi__kernels_free(&list);
   return good;

@@ -17,9 +17,9 @@ bool dvi__potentials_reserve(dvi_scene *scene, int count);
 bool dvi__potential_add(dvi_scene *scene, const char *name, int fast, dvi__kernels *list);
 bool dvi__potential_read(dvi_scene *scene, const dvi__tree *tree, const char *name, int fast);
 
-/* Read a vector field xi(q), written by coordinate, as the function xi(q).w. `where` is for
- * messages. */
-bool dvi__field_read(dvi_scene *scene, const dvi__tree *field, const char *where,
+/* Read a vector field xi, written by coordinate, as the function xi.w. It is one of q, and of what
+ * else `may` (DVI__MENTIONS_..) allows. `where` is for messages. */
+bool dvi__field_read(dvi_scene *scene, const dvi__tree *field, unsigned may, const char *where,
                      dvi__scene_term **term);
 
 /* Add value.w to a total, with w the multipliers at the numbers of a target, or at one number. */

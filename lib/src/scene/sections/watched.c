@@ -15,7 +15,7 @@ bool dvi__read_symmetries(dvi_scene *scene, const dvi__tree *section)
     dvi__scene_term *term;
     if (!dvi__column_is_new(scene, section->key[i]->text, section->key[i]->span, NULL))
       return false;
-    if (!dvi__field_read(scene, section->child[i], "a symmetry", &term)) return false;
+    if (!dvi__field_read(scene, section->child[i], 0, "a symmetry", &term)) return false;
     term->role = DVI__ROLE_WATCHED;
     list[i] = (dvi_symmetry){
         .name = section->key[i]->text, .generator = dvi__term_generator, .user = term};

@@ -90,6 +90,7 @@ bool dvi__term_pattern(dvi_scene *scene, dvi__scene_term *term, int pair, dvi_pa
 /* Blocks by which gradients are derived. */
 static const char of_coordinates[DVI__BLOCKS] = {[DVI__COORDINATES] = 1};
 static const char of_motion[DVI__BLOCKS] = {[DVI__COORDINATES] = 1, [DVI__VELOCITIES] = 1};
+static const char of_velocities[DVI__BLOCKS] = {[DVI__VELOCITIES] = 1};
 static const char of_multipliers[DVI__BLOCKS] = {[DVI__MULTIPLIERS] = 1};
 
 /* Make the programs of large expressions now, since they may be refused. They are the value's, and
@@ -227,6 +228,78 @@ bool dvi__make_one_form(dvi_scene *scene, dvi__scene_term *term, dvi_one_form *f
   return prepare_large(scene, term, of_multipliers) &&
          dvi__term_pattern(scene, term, DVI__PAIR_QW, &form->gradients, &full) &&
          dvi__term_pattern(scene, term, DVI__PAIR_QQ, &form->qq, &full);
+}
+
+/* ---- forces: F is the gradient of F(t,q,v).w by w, or that of -R by v ---- */
+
+static int term_force_value(double t, const double *q, const double *v, double *F, void *user)
+{
+  dvi__scene_term *term = user;
+  const double *x[DVI__BLOCKS] = {&t, q, v, term->none};
+  double *gradient[DVI__BLOCKS] = {[DVI__MULTIPLIERS] = F};
+  return gradient_at(term, 1, x, gradient);
+}
+
+static int term_force_jacobian(double t, const double *q, const double *v, double *F_q, double *F_v,
+                               void *user)
+{
+  dvi__scene_term *term = user;
+  const double *x[DVI__BLOCKS] = {&t, q, v, term->none};
+  double *values[DVI__PAIRS] = {[DVI__PAIR_WQ] = F_q, [DVI__PAIR_WV] = F_v};
+  return second_at(term, 1, x, values);
+}
+
+/* Return 1 if no velocity occurs in a function. */
+static int is_without_velocity(const dvi__scene_term *term)
+{
+  for (int k = 0; k < dvi__function_kernel_count(term->function); k++) {
+    const dvi__kernel *kernel = dvi__function_kernel(term->function, k);
+    for (int i = 0; i < kernel->input_count; i++)
+      if (!kernel->input[i].is_data && kernel->input[i].block == DVI__VELOCITIES) return 0;
+  }
+  return 1;
+}
+
+bool dvi__make_force(dvi_scene *scene, dvi__scene_term *term, dvi_force *force)
+{
+  int full;
+  *force = (dvi_force){.name = "forces",
+                       .value = term_force_value,
+                       .jacobian = term_force_jacobian,
+                       .without_velocity = is_without_velocity(term),
+                       .user = term};
+  return prepare_large(scene, term, of_multipliers) &&
+         dvi__term_pattern(scene, term, DVI__PAIR_WQ, &force->by_q, &full) &&
+         (force->without_velocity ||
+          dvi__term_pattern(scene, term, DVI__PAIR_WV, &force->by_v, &full));
+}
+
+static int term_dissipation_value(int count, const double *t, const double *q, const double *v,
+                                  double *F, void *user)
+{
+  const double *x[DVI__BLOCKS] = {t, q, v, NULL};
+  double *gradient[DVI__BLOCKS] = {[DVI__VELOCITIES] = F};
+  return gradient_at(user, count, x, gradient);
+}
+
+static int term_dissipation_jacobian(int count, const double *t, const double *q, const double *v,
+                                     double *F_q, double *F_v, void *user)
+{
+  const double *x[DVI__BLOCKS] = {t, q, v, NULL};
+  double *values[DVI__PAIRS] = {[DVI__PAIR_VQ] = F_q, [DVI__PAIR_VV] = F_v};
+  return second_at(user, count, x, values);
+}
+
+bool dvi__make_dissipation(dvi_scene *scene, dvi__scene_term *term, dvi_force *force)
+{
+  int full;
+  *force = (dvi_force){.name = "dissipation",
+                       .value_batch = term_dissipation_value,
+                       .jacobian_batch = term_dissipation_jacobian,
+                       .user = term};
+  return prepare_large(scene, term, of_velocities) &&
+         dvi__term_pattern(scene, term, DVI__PAIR_VQ, &force->by_q, &full) &&
+         dvi__term_pattern(scene, term, DVI__PAIR_VV, &force->by_v, &full);
 }
 
 /* ---- Hamiltonians with constraints ---- */

@@ -14,6 +14,11 @@ bool dvi__make_hamiltonian(dvi_scene *scene, dvi__scene_term *term, dvi_hamilton
 /* Fill in constraints with the function phi(q,p).w, w [term->count]. */
 bool dvi__make_constraint(dvi_scene *scene, dvi__scene_term *term, dvi_constraint *constraint);
 
+/* Fill in a force with the function F(t,q,v).w, or with minus the function R, of which the force is
+ * the derivative by v. */
+bool dvi__make_force(dvi_scene *scene, dvi__scene_term *term, dvi_force *force);
+bool dvi__make_dissipation(dvi_scene *scene, dvi__scene_term *term, dvi_force *force);
+
 /* Evaluate a generator with the function xi(q).w. dvi__term_value evaluates one number. */
 int dvi__term_generator(const double *q, double *xi, void *user);
 int dvi__term_value(double t, const double *q, const double *velocity_or_momentum, double *value,

@@ -118,6 +118,10 @@ void dvi__action_ends(const dvi__action *action, const double *Y, double *dq, do
  * the last Jacobian, and the batches as work. */
 void dvi__action_move_ends(dvi__action *action, const double *dY, double *dp);
 
+/* Compute what forces supply to the energy and the momenta of symmetries over the element with the
+ * path Y, [1 + symmetries]. L_v of the last residual is lost. */
+dvi_status dvi__action_supplies(dvi__action *action, const double *Y, double *supply);
+
 /* Give the time that passes over the element with the path Y. It is h, and h sum_j b_j g(Q_j) for a
  * time-transformed system. */
 dvi_status dvi__action_duration(dvi__action *action, const double *Y, double *duration);

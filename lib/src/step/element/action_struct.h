@@ -71,6 +71,7 @@ struct dvi__action {
   dvi__pattern pattern;       /* [n s x n s] */
   dvi__joint_entry *block;    /* [entries of joint] */
   double *H_qq, *H_qv, *H_vv; /* [entries*r] */
+  double *F_q, *F_v;          /* [entries*r] of the forces, NULL without forces */
   double *moved;              /* [4 n*r] work of products, NULL until prepared */
   dvi__row_terms terms;
   struct dvi__centred_paths *centred; /* charts centred at the start, or NULL */
@@ -128,19 +129,25 @@ void dvi__action_scale_by(const dvi__action *action, const double *L_vv, double 
 /* Set the numbers of the fixed-point iteration that depend on h alone. */
 void dvi__action_set_step(dvi__action *action);
 
+/* Evaluate the Hessians, and the derivatives of forces, at `count` points. */
+dvi_status dvi__action_evaluate_hessians(dvi__action *action, int count, const double *t,
+                                         const double *q, const double *v);
+
 /* Free the memory for Hessians and the Jacobian, which may be prepared again. */
 void dvi__action_clear_jacobian(dvi__action *action);
 
 /* Write column l of a block, its first `rows` rows, which are
  *
  *     sum_j b_j [ (psi_k - psi_k(1)) (h L_qq psi_l + L_qv psi_l')
- *                 + psi_k' (L_vq psi_l + L_vv psi_l'/h) ]. */
+ *                 + psi_k' (L_vq psi_l + L_vv psi_l'/h) ],
+ *
+ * with L_qq + F_q and L_qv + F_v beside psi_k - psi_k(1) if there are forces F. */
 void dvi__action_block_column(const dvi__action *action, const dvi__joint_entry *block, int l,
                               int rows, double *column);
 
 /* Write in_q and in_v [r], which may stand in `line`,
  *
- *     b_j (h L_qq f + L_qv f')   and   b_j (L_vq f + L_vv f'/h),
+ *     b_j (h (L_qq + F_q) f + (L_qv + F_v) f')   and   b_j (L_vq f + L_vv f'/h),
  *
  * for one entry of the joint pattern and a function with the values f and f' [r] at the nodes. */
 void dvi__action_weigh_hessian(const dvi__action *action, const dvi__joint_entry *block,

@@ -82,7 +82,8 @@ typedef struct workspace {
 static dvi_status decoupled_fill_tables(dvi__decoupled *d, workspace *w)
 {
   dvi__action *a = d->action;
-  const int mixed = dvi__pattern_entries(&a->system->qv) > 0;
+  const int mixed = dvi__pattern_entries(&a->system->qv) > 0 ||
+                    (a->system->terms & DVI__FRICTION) != 0;
   gram_matrix(a, mixed ? a->dpsi : a->bar, a->psi, w->product);
   multiply_by_columns(a->s, a->stiffness_inverse, w->product, w->matrix);
   DVI_TRY(dvi__eigen(a->s, w->matrix, w->real_part, w->imaginary_part, w->X, w->inverse));
@@ -196,13 +197,15 @@ static double entry_or_zero(const double *H, int place)
   return place >= 0 ? H[place] : 0.0;
 }
 
-/* Assemble h U L_qq + T (L_vq - L_qv) + L_vv/h on the joint pattern. */
+/* Assemble h U (L_qq + F_q) + T (L_vq - L_qv - F_v) + L_vv/h on the joint pattern. */
 static void mode_assemble(const dvi__action *a, const mode *m, double *values)
 {
   for (int e = 0, at = 0; e < dvi__pattern_entries(&a->joint); e++) {
     const dvi__joint_entry *block = &a->block[e];
-    const double qq = a->h * entry_or_zero(a->H_qq, block->qq),
-                 mixed = entry_or_zero(a->H_qv, block->vq) - entry_or_zero(a->H_qv, block->qv);
+    const double qq = a->h *
+                      (entry_or_zero(a->H_qq, block->qq) + entry_or_zero(a->F_q, block->by_q)),
+                 mixed = entry_or_zero(a->H_qv, block->vq) - entry_or_zero(a->H_qv, block->qv) -
+                         entry_or_zero(a->F_v, block->by_v);
     for (int part = 0; part < m->parts; part++, at++)
       values[at] = m->U[part] * qq + m->T[part] * mixed +
                    (part == 0 ? entry_or_zero(a->H_vv, block->vv) / a->h : 0.0);
@@ -229,7 +232,7 @@ static dvi_status decoupled_factor(dvi__decoupled *d)
   const double *q = d->point + 1, *v = q + a->n;
   DVI_TRY(prepare_modes(d));
   d->counters->jacobians++;
-  DVI_TRY(dvi__lagrangian_hessian(a->evaluator, 1, d->point, q, v, a->H_qq, a->H_qv, a->H_vv));
+  DVI_TRY(dvi__action_evaluate_hessians(a, 1, d->point, q, v));
   for (int m = 0; m < d->modes; m++) {
     mode_assemble(a, &d->mode[m], d->values);
     DVI_TRY(dvi__linear_factor(d->mode[m].linear, d->values));

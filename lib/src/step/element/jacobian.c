@@ -25,8 +25,10 @@ void dvi__action_clear_jacobian(dvi__action *a)
   dvi__release(a->H_qq);
   dvi__release(a->H_qv);
   dvi__release(a->H_vv);
+  dvi__release(a->F_q);
+  dvi__release(a->F_v);
   a->block = NULL;
-  a->H_qq = a->H_qv = a->H_vv = NULL;
+  a->H_qq = a->H_qv = a->H_vv = a->F_q = a->F_v = NULL;
 }
 
 static dvi_status allocate_hessians(dvi__action *a)
@@ -42,7 +44,12 @@ static dvi_status allocate_hessians(dvi__action *a)
   a->H_qq = DVI_NEW(double, (size_t)dvi__pattern_entries(&system->qq) * r);
   a->H_qv = DVI_NEW(double, (size_t)dvi__pattern_entries(&system->qv) * r);
   a->H_vv = DVI_NEW(double, (size_t)dvi__pattern_entries(&system->vv) * r);
-  if (a->H_qq && a->H_qv && a->H_vv) return DVI_OK;
+  if (system->force_count > 0) {
+    a->F_q = DVI_NEW(double, (size_t)dvi__pattern_entries(&system->by_q) * r);
+    a->F_v = DVI_NEW(double, (size_t)dvi__pattern_entries(&system->by_v) * r);
+  }
+  if (a->H_qq && a->H_qv && a->H_vv && (system->force_count == 0 || (a->F_q && a->F_v)))
+    return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "action: no memory for Hessians at %d nodes", a->r);
 }
 
@@ -78,6 +85,8 @@ void dvi__action_weigh_hessian(const dvi__action *a, const dvi__joint_entry *blo
   for (int j = 0; j < r; j++) in_q[j] = in_v[j] = 0;
   add_weighted_entry(r, a->H_qq, block->qq, a->h, f, in_q);
   add_weighted_entry(r, a->H_qv, block->qv, 1.0, df, in_q);
+  add_weighted_entry(r, a->F_q, block->by_q, a->h, f, in_q);
+  add_weighted_entry(r, a->F_v, block->by_v, 1.0, df, in_q);
   add_weighted_entry(r, a->H_qv, block->vq, 1.0, f, in_v);
   add_weighted_entry(r, a->H_vv, block->vv, 1.0 / a->h, df, in_v);
   for (int j = 0; j < r; j++) in_q[j] *= a->weight[j], in_v[j] *= a->weight[j];
@@ -97,11 +106,19 @@ void dvi__action_block_column(const dvi__action *a, const dvi__joint_entry *bloc
   }
 }
 
+dvi_status dvi__action_evaluate_hessians(dvi__action *a, int count, const double *t,
+                                         const double *q, const double *v)
+{
+  DVI_TRY(dvi__lagrangian_hessian(a->evaluator, count, t, q, v, a->H_qq, a->H_qv, a->H_vv));
+  return a->F_q != NULL ? dvi__forces_jacobian(a->evaluator, count, t, q, v, a->F_q, a->F_v)
+                        : DVI_OK;
+}
+
 dvi_status dvi__action_hessians(dvi__action *a, const double *Y)
 {
   dvi__action_stages(a, Y);
   dvi__action_place_terms(a, Y);
-  return dvi__lagrangian_hessian(a->evaluator, a->r, a->t, a->Q, a->V, a->H_qq, a->H_qv, a->H_vv);
+  return dvi__action_evaluate_hessians(a, a->r, a->t, a->Q, a->V);
 }
 
 dvi_status dvi__action_jacobian(dvi__action *a, const double *Y, double *values)
@@ -171,6 +188,8 @@ void dvi__action_times_jacobian(dvi__action *a, const double *x, double *y)
       add_moved(a->r, a->H_qv, block->qv, a->h, V + j * r, hL_q + to);
       add_moved(a->r, a->H_qv, block->vq, 1 / a->h, hQ + j * r, L_v + to);
       add_moved(a->r, a->H_vv, block->vv, 1, V + j * r, L_v + to);
+      add_moved(a->r, a->F_q, block->by_q, 1, hQ + j * r, hL_q + to);
+      add_moved(a->r, a->F_v, block->by_v, a->h, V + j * r, hL_q + to);
     }
   dvi__lanes_weigh(a->n, a->r, a->weight, hL_q);
   dvi__lanes_weigh(a->n, a->r, a->weight, L_v);

@@ -13,11 +13,14 @@
 #include "system/check/check_time.h"
 #include "system/evaluate/dynamics.h"
 #include "system/term/constraint.h"
+#include "system/term/force.h"
 
 /* One block of one term while it is compared. */
 typedef struct block {
-  /* term is the name of a potential or NULL, owner a part of the kinetic term or NULL for all. */
+  /* term is the name of a potential, or of a force, or NULL, owner a part of the kinetic term or
+   * NULL for all. */
   const char *term, *owner, *name;
+  int is_force;
   const dvi__pattern *pattern; /* NULL for a gradient */
   const double *given;         /* NULL without a callback, where only the pattern is checked */
   double largest;              /* largest magnitude of its entries, given or differenced */
@@ -43,6 +46,7 @@ static void keep_worst(const dvi__check *c, const block *b, const dvi__disagreem
                          .term = b->term,
                          .owner = b->owner,
                          .block = b->name,
+                         .is_force = b->is_force,
                          .constraint = c->constraint};
   kept->worst.error = error;
 }
@@ -289,6 +293,32 @@ static dvi_status check_constraint_functions(dvi__check *c, const dvi_system *sy
   return status;
 }
 
+/* Check one Jacobian of a force, by q or by v, against differences of the force. */
+static dvi_status check_force_block(dvi__check *c, dvi__batch_gradient force,
+                                    const dvi__force_at *at, const double *x, const char *name,
+                                    const dvi__pattern *pattern, const double *given)
+{
+  block b = {
+      .term = at->term->name, .name = name, .is_force = 1, .pattern = pattern, .given = given};
+  return check_blocks(c, force, at, x, &b, NULL);
+}
+
+static dvi_status check_force(dvi__check *c, const dvi__force_term *f)
+{
+  const dvi__force_at at = {.term = f, .scratch = &c->scratch, .t = &c->t, .q = c->q, .v = c->v};
+  const double *given[2] = {NULL, NULL};
+  c->gradient_noise = 0;
+  if (dvi__force_has_jacobian(f)) {
+    DVI_TRY(
+        dvi__force_jacobian(f, &c->scratch, 1, &c->t, c->q, c->v, c->hessian[0], c->hessian[1]));
+    given[0] = c->hessian[0];
+    given[1] = c->hessian[1];
+  }
+  DVI_TRY(check_force_block(c, dvi__force_of_q, &at, c->q, "dF/dq", &f->by_q, given[0]));
+  if (f->callbacks.without_velocity) return DVI_OK;
+  return check_force_block(c, dvi__force_of_v, &at, c->v, "dF/dv", &f->by_v, given[1]);
+}
+
 static dvi_status check_all_terms(dvi__check *c, const dvi_system *system)
 {
   const names *name = system->dynamics->by_momentum ? &of_hamiltonian : &of_lagrangian;
@@ -298,6 +328,7 @@ static dvi_status check_all_terms(dvi__check *c, const dvi_system *system)
   if (system->constraint != NULL) DVI_TRY(check_constraint_functions(c, system));
   for (int k = 0; k < system->potential_count; k++)
     DVI_TRY(check_potential(c, &system->potentials[k]));
+  for (int k = 0; k < system->force_count; k++) DVI_TRY(check_force(c, &system->forces[k]));
   return DVI_OK;
 }
 

@@ -10,11 +10,13 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "system/term/difference.h"
+#include "system/term/force.h"
 
-/* One of potential and lagrangian, and the point at which it is evaluated. */
+/* One of potential, lagrangian and force, and the point at which it is evaluated. */
 typedef struct subject {
   const dvi__potential_term *potential;
   const dvi__lagrangian_term *lagrangian;
+  const dvi__force_term *force;
   dvi__scratch *scratch;
   const double *q, *v;
 } subject;
@@ -23,6 +25,8 @@ static void name_subject(const subject *s, size_t size, char *text)
 {
   if (s->potential != NULL)
     (void)snprintf(text, size, "potential '%.24s'", s->potential->name);
+  else if (s->force != NULL)
+    (void)snprintf(text, size, "force '%.24s'", s->force->name);
   else
     (void)snprintf(text, size, "%s", s->lagrangian != NULL ? s->lagrangian->name : "");
 }
@@ -65,12 +69,21 @@ static dvi_status check_rate(const subject *s, dvi__differences *d, double t, do
 
 /* ---- autonomous systems ---- */
 
+/* Collect a force at one time in the place of a gradient, and its Jacobians in that of Hessians. */
+static dvi_status collect_force(const subject *s, double t, size_t longest, double *numbers)
+{
+  double *F_q = numbers + 1 + 2 * (size_t)s->scratch->n;
+  DVI_TRY(dvi__force_value(s->force, s->scratch, 1, &t, s->q, s->v, numbers + 1));
+  return dvi__force_jacobian(s->force, s->scratch, 1, &t, s->q, s->v, F_q, F_q + longest);
+}
+
 /* Collect all numbers of the term at one time, its value, its gradient (2 n numbers) and its
  * Hessian (3 times `longest`). */
 static dvi_status collect_numbers(const subject *s, double t, size_t longest, double *numbers)
 {
   const size_t n = (size_t)s->scratch->n;
   double *gradient = numbers + 1, *hessian = gradient + 2 * n;
+  if (s->force != NULL) return collect_force(s, t, longest, numbers);
   if (s->potential != NULL) {
     DVI_TRY(dvi__potential_value(s->potential, s->scratch, 1, &t, s->q, numbers));
     DVI_TRY(dvi__potential_gradient(s->potential, s->scratch, 1, &t, s->q, gradient));
@@ -86,9 +99,11 @@ static dvi_status collect_numbers(const subject *s, double t, size_t longest, do
 static dvi_status report_change(const subject *s, size_t at, double t, double other, double here,
                                 double there, dvi_derivative_check *result)
 {
-  const char *what = at == 0                              ? "value"
-                     : at < 1 + 2 * (size_t)s->scratch->n ? "gradient"
-                                                          : "Hessian";
+  const int is_first = at < 1 + 2 * (size_t)s->scratch->n;
+  const char *what = s->force != NULL ? (is_first ? "value" : "Jacobian")
+                     : at == 0        ? "value"
+                     : is_first       ? "gradient"
+                                      : "Hessian";
   char owner[48];
   name_subject(s, sizeof owner, owner);
   result->depends_on_time = 1;
@@ -131,6 +146,12 @@ static dvi_status each_term(const dvi_system *system, subject s, dvi__difference
     s.lagrangian = k >= 0 ? NULL : system->lagrangian;
     DVI_TRY(numbers != NULL ? check_autonomous(&s, t, longest, numbers, result)
                             : check_rate(&s, d, t, tolerance, result));
+  }
+  s.potential = NULL;
+  s.lagrangian = NULL;
+  for (int k = 0; numbers != NULL && k < system->force_count; k++) {
+    s.force = &system->forces[k];
+    DVI_TRY(check_autonomous(&s, t, longest, numbers, result));
   }
   return DVI_OK;
 }

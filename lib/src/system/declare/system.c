@@ -2,7 +2,6 @@
  * the whole Lagrangian. */
 #include "system/system.h"
 
-#include <pthread.h>
 #include <string.h>
 
 #include "core/memory.h"
@@ -13,6 +12,7 @@
 #include "system/mass.h"
 #include "system/term/constraint.h"
 #include "system/term/declare.h"
+#include "system/term/force.h"
 #include "system/term/term.h"
 
 static char *copy_text(const char *text)
@@ -71,90 +71,6 @@ static dvi_status copy_potentials(dvi_system *s, const dvi_system_terms *terms)
 }
 
 /* ---- the whole ---- */
-
-static dvi_status widen_pattern(dvi__pattern *whole, const dvi__pattern *part)
-{
-  dvi__pattern sum;
-  DVI_TRY(dvi__pattern_union(whole, part, &sum));
-  dvi__pattern_clear(whole);
-  *whole = sum;
-  return DVI_OK;
-}
-
-static dvi_status embed_pattern(const dvi__pattern *part, const dvi__pattern *whole, int **where)
-{
-  dvi__release(*where);
-  *where = DVI_NEW(int, dvi__pattern_entries(part));
-  if (*where == NULL) return refuse_memory_of_system();
-  dvi__pattern_embed(part, whole, *where);
-  return DVI_OK;
-}
-
-static dvi_status complete_potential(const dvi_system *s, dvi__potential_term *term)
-{
-  const int differenced = term->callbacks.hessian == NULL && term->callbacks.hessian_batch == NULL;
-  const dvi_status status = term->qq.start == NULL
-                                ? dvi__pattern_copy(&(dvi_pattern){0}, s->n, term->name, &term->qq)
-                                : DVI_OK;
-  if (status != DVI_OK) return dvi__fail_in(status, "the Hessian of '%s'", term->name);
-  return differenced ? dvi__group_columns(&term->qq, &term->groups) : DVI_OK;
-}
-
-static dvi_status join_term_patterns(dvi_system *s, dvi__pattern *qq)
-{
-  for (int k = 0; k < s->potential_count; k++) DVI_TRY(complete_potential(s, &s->potentials[k]));
-  DVI_TRY(dvi__pattern_empty(s->n, qq));
-  if (s->lagrangian != NULL) DVI_TRY(widen_pattern(qq, &s->lagrangian->qq));
-  for (int k = 0; k < s->potential_count; k++) DVI_TRY(widen_pattern(qq, &s->potentials[k].qq));
-  if (s->lagrangian != NULL) DVI_TRY(embed_pattern(&s->lagrangian->qq, qq, &s->lagrangian->in_qq));
-  for (int k = 0; k < s->potential_count; k++)
-    DVI_TRY(embed_pattern(&s->potentials[k].qq, qq, &s->potentials[k].in_qq));
-  return DVI_OK;
-}
-
-/* The user sees no change of the system, so it is const. The lock serves users on other threads. On
- * failure the remains are replaced by the next call, or freed with the system. */
-/* Patterns that were not declared are made late, when several threads may share the system. */
-static pthread_mutex_t hessian_lock = PTHREAD_MUTEX_INITIALIZER;
-
-static size_t count_least_entries(const dvi_system *system)
-{
-  const size_t n = (size_t)system->n;
-  size_t least = (size_t)dvi__pattern_entries(&system->vv);
-  for (int k = 0; k <= system->potential_count; k++) {
-    const int is_own = k == system->potential_count;
-    if (is_own && system->lagrangian == NULL) continue;
-    const dvi__pattern *qq = is_own ? &system->lagrangian->qq : &system->potentials[k].qq;
-    const size_t entries = qq->start != NULL ? (size_t)dvi__pattern_entries(qq) : n * n;
-    if (entries > least) least = entries;
-  }
-  return least;
-}
-
-size_t dvi__system_least_entries(const dvi_system *system)
-{
-  (void)pthread_mutex_lock(&hessian_lock);
-  const size_t least = count_least_entries(system);
-  (void)pthread_mutex_unlock(&hessian_lock);
-  return least;
-}
-
-dvi_status dvi__system_prepare_hessian(const dvi_system *system)
-{
-  dvi_system *s = (dvi_system *)(uintptr_t)system;
-  dvi_status status = DVI_OK;
-  (void)pthread_mutex_lock(&hessian_lock);
-  if (s->qq.start == NULL) {
-    dvi__pattern qq = {0};
-    status = join_term_patterns(s, &qq);
-    if (status == DVI_OK)
-      s->qq = qq;
-    else
-      dvi__pattern_clear(&qq);
-  }
-  (void)pthread_mutex_unlock(&hessian_lock);
-  return status;
-}
 
 static dvi_status copy_invariants(dvi_system *s, const dvi_system_terms *terms)
 {
@@ -215,6 +131,21 @@ static dvi_status check_hamiltonian(const dvi_system_terms *terms)
   return DVI_OK;
 }
 
+static dvi_status check_forces(const dvi_system_terms *terms)
+{
+  DVI_TRY(check_list("forces", terms->force_count, terms->forces));
+  if (terms->force_count == 0 ||
+      (terms->factors == NULL && terms->one_form == NULL && terms->hamiltonian == NULL))
+    return DVI_OK;
+  return dvi__fail(
+      DVI_UNSUPPORTED,
+      "system: forces go with a mass of coordinates, or with a general Lagrangian, not "
+      "with %s",
+      terms->factors != NULL    ? "factors"
+      : terms->one_form != NULL ? "a one-form"
+                                : "a Hamiltonian");
+}
+
 static const dvi__dynamics *const kinds[] = {
 #define DYNAMICS(name) &dvi__dynamics_##name,
 #include "system/declare/dynamics.def"
@@ -260,6 +191,7 @@ static dvi_status check_declared_terms(const dvi_system_terms *terms)
   DVI_TRY(check_list("invariants", terms->invariant_count, terms->invariants));
   DVI_TRY(check_kind(terms));
   DVI_TRY(check_hamiltonian(terms));
+  DVI_TRY(check_forces(terms));
   if (terms->gauge != NULL && terms->one_form == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "system: a gauge without a one-form; it changes nothing else");
@@ -281,6 +213,7 @@ static dvi_status system_fill(dvi_system *s, const dvi_system_terms *terms)
   s->autonomous = terms->autonomous != 0;
   DVI_TRY(declare_dynamics(s, terms));
   DVI_TRY(copy_potentials(s, terms));
+  DVI_TRY(dvi__forces_copy(s, terms));
   DVI_TRY(copy_invariants(s, terms));
   dvi__system_declared(s, &s->declared);
   return DVI_OK;
@@ -325,6 +258,7 @@ void dvi_system_destroy(dvi_system **system)
   if (system == NULL || *system == NULL) return;
   dvi_system *s = *system;
   for (int k = 0; k < s->potential_count; k++) clear_potential(&s->potentials[k]);
+  for (int k = 0; k < s->force_count; k++) dvi__force_clear(&s->forces[k]);
   for (int i = 0; s->invariant_names != NULL && i < dvi_system_invariant_count(s); i++)
     dvi__release(s->invariant_names[i]);
   if (s->lagrangian != NULL) dvi__general_clear(s->lagrangian);
@@ -333,10 +267,13 @@ void dvi_system_destroy(dvi_system **system)
   dvi__pattern_clear(&s->qq);
   dvi__pattern_clear(&s->qv);
   dvi__pattern_clear(&s->vv);
+  dvi__pattern_clear(&s->by_q);
+  dvi__pattern_clear(&s->by_v);
   dvi__release(s->slots);
   dvi__release(s->mass_diagonal);
   dvi__release(s->mass_values);
   dvi__release(s->potentials);
+  dvi__release(s->forces);
   dvi__release(s->symmetries);
   dvi__release(s->invariants);
   dvi__release(s->invariant_names);

@@ -5,6 +5,7 @@
 #include "num/finite.h"
 #include "system/evaluate/dynamics.h"
 #include "system/evaluate/evaluator_struct.h"
+#include "system/term/force.h"
 
 static size_t count_numbers(const dvi__evaluator *e, int count)
 {
@@ -30,16 +31,22 @@ static dvi_status evaluator_allocate_scratch(dvi__evaluator *e, int hessians)
   const size_t longest = (size_t)dvi__longest_hessian(system, hessians);
   dvi__scratch scratch;
   DVI_TRY(dvi__scratch_create(system, e->capacity, hessians, &scratch));
-  double *term = DVI_NEW(double, longest *(size_t)e->capacity);
-  if (term == NULL) {
+  double *term = DVI_NEW(double, longest *(size_t)e->capacity), *by_v = NULL;
+  const int has_by_v = hessians && system->force_count > 0;
+  if (has_by_v) by_v = DVI_NEW(double, longest *(size_t)e->capacity);
+  if (term == NULL || (has_by_v && by_v == NULL)) {
     dvi__scratch_clear(&scratch);
+    dvi__release(term);
+    dvi__release(by_v);
     return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory for %d points in %d dimensions",
                      e->capacity, system->n);
   }
   dvi__scratch_clear(&e->scratch);
   dvi__release(e->term);
+  dvi__release(e->force_by_v);
   e->scratch = scratch;
   e->term = term;
+  e->force_by_v = by_v;
   e->has_hessians = hessians;
   return DVI_OK;
 }
@@ -87,6 +94,7 @@ void dvi__evaluator_destroy(dvi__evaluator **evaluator)
   if (e->system->dynamics->release != NULL) e->system->dynamics->release(e);
   dvi__scratch_clear(&e->scratch);
   dvi__release(e->term);
+  dvi__release(e->force_by_v);
   for (int i = 0; i < 3; i++) dvi__release(e->point[i]);
   dvi__release(e->unwanted);
   dvi__release(e->velocity_search);
@@ -216,11 +224,33 @@ static dvi_status sum_gradients(dvi__evaluator *e, int count, const double *t, c
   return DVI_OK;
 }
 
+/* Add the forces of these kinds, times a sign, to the sum of the others. */
+static dvi_status add_forces(dvi__evaluator *e, unsigned kinds, int count, double sign,
+                             const double *t, const double *q, const double *v, double *sum)
+{
+  const dvi_system *s = e->system;
+  for (int k = 0; k < s->force_count; k++) {
+    if (!(kinds & dvi__force_kind(&s->forces[k]))) continue;
+    DVI_TRY(dvi__force_value(&s->forces[k], &e->scratch, count, t, q, v, e->term));
+    for (size_t i = 0; i < count_numbers(e, count); i++) sum[i] += sign * e->term[i];
+  }
+  return DVI_OK;
+}
+
+dvi_status dvi__forces(dvi__evaluator *e, unsigned kinds, int count, const double *t,
+                       const double *q, const double *v, double *F)
+{
+  e->counters->gradients += count;
+  memset(F, 0, count_numbers(e, count) * sizeof(double));
+  return add_forces(e, kinds, count, 1, t, q, v, F);
+}
+
 dvi_status dvi__potentials_gradient(dvi__evaluator *e, int count, const double *t, const double *q,
                                     double *V_q)
 {
   e->counters->gradients += count;
-  const dvi_status status = sum_gradients(e, count, t, q, V_q);
+  dvi_status status = sum_gradients(e, count, t, q, V_q);
+  if (status == DVI_OK) status = add_forces(e, DVI__FORCE, count, -1, t, q, NULL, V_q);
   dvi__count_differences(e);
   return status;
 }
@@ -252,10 +282,11 @@ dvi_status dvi__lagrangian_gradient(dvi__evaluator *e, int count, const double *
   if (s->lagrangian == NULL && L_v != NULL) mass_times(s, count, v, L_v);
   if (s->lagrangian == NULL && L_q == NULL) return DVI_OK;
   e->counters->gradients += count;
-  const dvi_status status = s->lagrangian == NULL
-                                ? potential_forces(e, count, t, q, L_q)
-                                : general_gradient(e, count, t, q, v, L_q ? L_q : e->unwanted,
-                                                   L_v ? L_v : e->unwanted);
+  dvi_status status = s->lagrangian == NULL
+                          ? potential_forces(e, count, t, q, L_q)
+                          : general_gradient(e, count, t, q, v, L_q ? L_q : e->unwanted,
+                                             L_v ? L_v : e->unwanted);
+  if (status == DVI_OK && L_q != NULL) status = add_forces(e, DVI__FORCES, count, 1, t, q, v, L_q);
   dvi__count_differences(e);
   return status;
 }
@@ -326,6 +357,24 @@ dvi_status dvi__lagrangian_hessian(dvi__evaluator *e, int count, const double *t
   const dvi_status status = sum_hessians(e, count, t, q, v, L_qq, L_qv, L_vv);
   dvi__count_differences(e);
   return status;
+}
+
+dvi_status dvi__forces_jacobian(dvi__evaluator *e, int count, const double *t, const double *q,
+                                const double *v, double *F_q, double *F_v)
+{
+  const dvi_system *s = e->system;
+  const size_t points = (size_t)count;
+  double *by_v = e->force_by_v;
+  memset(F_q, 0, (size_t)dvi__pattern_entries(&s->by_q) * points * sizeof(double));
+  memset(F_v, 0, (size_t)dvi__pattern_entries(&s->by_v) * points * sizeof(double));
+  for (int k = 0; k < s->force_count; k++) {
+    const dvi__force_term *f = &s->forces[k];
+    DVI_TRY(dvi__force_jacobian(f, &e->scratch, count, t, q, v, e->term, by_v));
+    add_embedded(&f->by_q, f->in_by_q, points, 1, e->term, F_q);
+    add_embedded(&f->by_v, f->in_by_v, points, 1, by_v, F_v);
+  }
+  dvi__count_differences(e);
+  return DVI_OK;
 }
 
 dvi_status dvi__form_gradient(dvi__evaluator *e, const double *q, const double *w,

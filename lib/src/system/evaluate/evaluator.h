@@ -35,11 +35,12 @@ dvi_status dvi__lagrangian_value(dvi__evaluator *e, int count, const double *t, 
                                  const double *v, double *L);
 
 /* Compute L_q and L_v [n*count]. Either may be NULL. For a constant mass L_v is M v and costs no
- * callback. */
+ * callback. L_q is the sum of all forces, those without a potential included. */
 dvi_status dvi__lagrangian_gradient(dvi__evaluator *e, int count, const double *t, const double *q,
                                     const double *v, double *L_q, double *L_v);
 
-/* Compute V_q [n*count], the sum of the potentials' gradients. For a constant mass this is -L_q. */
+/* Compute V_q [n*count], the sum of the potentials' gradients, less the forces F(t,q) without
+ * velocity. For a constant mass this is -L_q unless forces depend on the velocity. */
 dvi_status dvi__potentials_gradient(dvi__evaluator *e, int count, const double *t, const double *q,
                                     double *V_q);
 
@@ -52,6 +53,20 @@ dvi_status dvi__lagrangian_rate(dvi__evaluator *e, int count, const double *t, c
  * needs DVI__HESSIANS. For a constant mass L_qv is empty, and L_qv and L_vv may be NULL. */
 dvi_status dvi__lagrangian_hessian(dvi__evaluator *e, int count, const double *t, const double *q,
                                    const double *v, double *L_qq, double *L_qv, double *L_vv);
+
+/* Compute the sum F [n*count] of the forces of these kinds, DVI__FORCE or DVI__FRICTION or both,
+ * and the derivatives F_q and F_v [entries*count] of all, in the order of the system's by_q and
+ * by_v. The latter need DVI__HESSIANS. */
+dvi_status dvi__forces(dvi__evaluator *e, unsigned kinds, int count, const double *t,
+                       const double *q, const double *v, double *F);
+dvi_status dvi__forces_jacobian(dvi__evaluator *e, int count, const double *t, const double *q,
+                                const double *v, double *F_q, double *F_v);
+
+/* Compute what forces F [n*count] at a batch of points supply to the energy and to the momenta of
+ * the symmetries, [1 + symmetry_count], per unit of time: the sum over the points of the weight
+ * times F.v, and times F.xi(q). */
+dvi_status dvi__supply(dvi__evaluator *e, int count, const double *weight, const double *F,
+                       const double *q, const double *v, double *supply);
 
 /* Compute L_vv of a general Lagrangian at one point. *L_vv is owned by the evaluator and valid
  * until its next call. Potentials do not change it. */

@@ -10,9 +10,10 @@ struct dvi__evaluator {
   dvi_counters *counters;
   dvi_counters own_counters; /* used if the caller passes none */
   dvi__scratch scratch;
-  double *term;     /* one term's gradient or Hessian, before addition to the others */
-  int has_hessians; /* scratch and term have room for potentials' Hessians */
-  double *point[3]; /* work [n] at one point */
+  double *term;       /* one term's gradient or Hessian, before addition to the others */
+  double *force_by_v; /* F_v of one force, or NULL */
+  int has_hessians;   /* scratch and term have room for potentials' Hessians */
+  double *point[3];   /* work [n] at one point */
   /* Factors the matrix by which the kind of dynamics finds velocities, or NULL. */
   dvi__linear *velocity;
   /* Receives the half of a general Lagrangian's gradient that nobody needs. */

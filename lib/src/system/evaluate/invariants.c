@@ -51,6 +51,30 @@ dvi_status dvi__invariants(dvi__evaluator *e, double t, const double *q, const d
   return DVI_OK;
 }
 
+dvi_status dvi__supply(dvi__evaluator *e, int count, const double *weight, const double *F,
+                       const double *q, const double *v, double *supply)
+{
+  const dvi_system *s = e->system;
+  const size_t points = (size_t)count;
+  double *at_q = e->point[0], *at_F = e->point[1];
+  for (int i = 0; i <= s->symmetry_count; i++) supply[i] = 0;
+  for (size_t k = 0; k < points; k++) {
+    double power = 0;
+    for (size_t i = 0; i < (size_t)s->n; i++) {
+      at_q[i] = q[i * points + k];
+      at_F[i] = F[i * points + k];
+      power += at_F[i] * v[i * points + k];
+    }
+    supply[0] += weight[k] * power;
+    for (int i = 0; i < s->symmetry_count; i++) {
+      double torque;
+      DVI_TRY(momentum_map(e, &s->symmetries[i], at_q, at_F, &torque));
+      supply[1 + i] += weight[k] * torque;
+    }
+  }
+  return DVI_OK;
+}
+
 /* ---- over a step ---- */
 
 /* A difference of energies is known up to a rounding of its summands. */
@@ -68,14 +92,28 @@ static dvi_status kinetic_size(dvi__evaluator *e, const dvi__instant *at, double
   return DVI_OK;
 }
 
+/* Compute the power F.v of the forces without a potential. */
+static dvi_status power_of_forces(dvi__evaluator *e, const dvi__instant *at, double *power)
+{
+  double *F = e->point[2];
+  *power = 0;
+  if (e->system->force_count == 0) return DVI_OK;
+  DVI_TRY(dvi__forces(e, DVI__FORCES, 1, &at->t, at->q, at->v, F));
+  for (int i = 0; i < e->system->n; i++) *power += F[i] * at->v[i];
+  return DVI_OK;
+}
+
 static dvi_status change_of_lagrangian(dvi__evaluator *e, const dvi__instant *before,
                                        const dvi__instant *after, double *change, double *exchanged)
 {
-  double E0, E1, T0, T1, size0, size1;
+  double E0, E1, T0, T1, size0, size1, power0, power1;
   DVI_TRY(kinetic_size(e, before, &E0, &T0, &size0));
   DVI_TRY(kinetic_size(e, after, &E1, &T1, &size1));
-  *change = fmax(fabs(E1 - E0) - rounding * fmax(size0, size1), 0);
-  *exchanged = fmax(T0, T1);
+  DVI_TRY(power_of_forces(e, before, &power0));
+  DVI_TRY(power_of_forces(e, after, &power1));
+  const double work = 0.5 * (after->t - before->t) * (power0 + power1);
+  *change = fmax(fabs(E1 - E0 - work) - rounding * fmax(size0, size1), 0);
+  *exchanged = fmax(fmax(T0, T1), fabs(work));
   return DVI_OK;
 }
 

@@ -294,6 +294,10 @@ static dvi_status transformed_fill(dvi__transformed *x, const dvi_system *system
         DVI_UNSUPPORTED,
         "the system declares a %s: its Lagrangian has no mass that could be divided by the monitor",
         system->lagrangian->name);
+  if (system->force_count > 0)
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "the system declares forces without a potential, which change "
+                     "the energy that the transform conserves");
   DVI_TRY(dvi__system_prepare_hessian(system));
   DVI_TRY(transformed_reserve(x, 1));
   return make_transformed_system(x);

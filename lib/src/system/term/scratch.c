@@ -2,6 +2,7 @@
  * need it. */
 #include "core/memory.h"
 #include "core/status.h"
+#include "system/term/force.h"
 #include "system/term/term.h"
 
 static int larger_count(int a, int b)
@@ -21,6 +22,9 @@ int dvi__longest_hessian(const dvi_system *system, int hessians)
   int longest = system->n;
   for (int k = 0; k < system->potential_count && hessians; k++)
     longest = larger_count(longest, dvi__pattern_entries(&system->potentials[k].qq));
+  for (int k = 0; k < system->force_count && hessians; k++)
+    longest = larger_count(longest, larger_count(dvi__pattern_entries(&system->forces[k].by_q),
+                                                 dvi__pattern_entries(&system->forces[k].by_v)));
   if (system->lagrangian == NULL) return longest;
   if (system->constraint != NULL)
     longest = larger_count(longest, longest_of(&system->constraint->weighted));
@@ -42,6 +46,8 @@ static int lacks_hessian(const dvi_system *system, int hessians)
   lacks |= system->constraint != NULL && system->constraint->callbacks.hessian == NULL;
   for (int k = 0; k < system->potential_count && hessians; k++)
     lacks |= !dvi__potential_has_hessian(&system->potentials[k]);
+  for (int k = 0; k < system->force_count && hessians; k++)
+    lacks |= !dvi__force_has_jacobian(&system->forces[k]);
   return lacks;
 }
 

@@ -20,12 +20,12 @@ dvi_status dvi__verdict(int returned, int entries, int count, const double *resu
                    name, what, result[bad], in, bad / count, bad % count, count);
 }
 
-static void gather_point(int n, int count, int k, const double *batch, double *point)
+void dvi__gather_point(int n, int count, int k, const double *batch, double *point)
 {
   for (size_t i = 0; i < (size_t)n; i++) point[i] = batch[i * (size_t)count + (size_t)k];
 }
 
-static void scatter_result(int entries, int count, int k, const double *point, double *batch)
+void dvi__scatter_result(int entries, int count, int k, const double *point, double *batch)
 {
   for (size_t e = 0; e < (size_t)entries; e++) batch[e * (size_t)count + (size_t)k] = point[e];
 }
@@ -50,7 +50,7 @@ dvi_status dvi__potential_value(const dvi__potential_term *p, dvi__scratch *s, i
   int returned = 0;
   if (c->value_batch != NULL) returned = c->value_batch(count, t, q, V, c->user);
   for (int k = 0; c->value_batch == NULL && k < count && returned == 0; k++) {
-    gather_point(s->n, count, k, q, s->point_q);
+    dvi__gather_point(s->n, count, k, q, s->point_q);
     returned = c->value(t[k], s->point_q, V + k, c->user);
   }
   return dvi__verdict(returned, 1, count, V, p->name, "value", "");
@@ -93,9 +93,9 @@ dvi_status dvi__potential_gradient(const dvi__potential_term *p, dvi__scratch *s
     returned = ask_potential_gradient(c, s->n, t[0], q, V_q);
   else
     for (int k = 0; k < count && returned == 0; k++) {
-      gather_point(s->n, count, k, q, s->point_q);
+      dvi__gather_point(s->n, count, k, q, s->point_q);
       returned = ask_potential_gradient(c, s->n, t[k], s->point_q, s->result[0]);
-      scatter_result(s->n, count, k, s->result[0], V_q);
+      dvi__scatter_result(s->n, count, k, s->result[0], V_q);
     }
   return dvi__verdict(returned, s->n, count, V_q, p->name, "gradient", "");
 }
@@ -113,9 +113,9 @@ dvi_status dvi__potential_hessian(const dvi__potential_term *p, dvi__scratch *s,
                                    count, q, &p->qq, V_qq, NULL, NULL);
   if (c->hessian_batch != NULL) returned = c->hessian_batch(count, t, q, V_qq, c->user);
   for (int k = 0; c->hessian_batch == NULL && k < count && returned == 0; k++) {
-    gather_point(s->n, count, k, q, s->point_q);
+    dvi__gather_point(s->n, count, k, q, s->point_q);
     returned = c->hessian(t[k], s->point_q, s->result[0], c->user);
-    scatter_result(entries, count, k, s->result[0], V_qq);
+    dvi__scatter_result(entries, count, k, s->result[0], V_qq);
   }
   return dvi__verdict(returned, entries, count, V_qq, p->name, "Hessian", "");
 }
@@ -132,7 +132,7 @@ dvi_status dvi__potential_rate(const dvi__potential_term *p, dvi__scratch *s, in
   int returned = 0;
   if (c->rate_batch != NULL) returned = c->rate_batch(count, t, q, V_t, c->user);
   for (int k = 0; c->rate_batch == NULL && k < count && returned == 0; k++) {
-    gather_point(s->n, count, k, q, s->point_q);
+    dvi__gather_point(s->n, count, k, q, s->point_q);
     returned = c->rate(t[k], s->point_q, V_t + k, c->user);
   }
   return dvi__verdict(returned, 1, count, V_t, p->name, "rate", "");
@@ -220,8 +220,8 @@ static dvi_status whole_hessian(const dvi__lagrangian_term *l, const double *q, 
 static dvi_status form_value(const dvi__lagrangian_term *l, dvi__scratch *s, int count, int k,
                              const double *q, const double *v)
 {
-  gather_point(s->n, count, k, q, s->point_q);
-  gather_point(s->n, count, k, v, s->point_v);
+  dvi__gather_point(s->n, count, k, q, s->point_q);
+  dvi__gather_point(s->n, count, k, v, s->point_v);
   return dvi__form_value(l, s->point_q, s->result[0], s->result[2]);
 }
 
@@ -242,13 +242,13 @@ static dvi_status one_form_gradient(const dvi__lagrangian_term *l, dvi__scratch 
 {
   for (int k = 0; k < count; k++) {
     DVI_TRY(form_value(l, s, count, k, q, v));
-    scatter_result(s->n, count, k, s->result[0], L_v);
+    dvi__scatter_result(s->n, count, k, s->result[0], L_v);
     DVI_TRY(dvi__form_gradients(l, s->point_q, s->result[1], s->result[2]));
     for (int i = 0; i < s->n; i++) s->result[0][i] = 0;
     for (int j = 0; j < s->n; j++)
       for (int e = l->qv.start[j]; e < l->qv.start[j + 1]; e++)
         s->result[0][l->qv.row[e]] += s->point_v[j] * s->result[1][e];
-    scatter_result(s->n, count, k, s->result[0], L_q);
+    dvi__scatter_result(s->n, count, k, s->result[0], L_q);
   }
   return DVI_OK;
 }
@@ -262,10 +262,10 @@ static dvi_status form_curvature(const dvi__general_at *at, int count, double *L
     return dvi__difference_hessian(dvi__general_gradient_of_q, at, &s->of_gradient, &l->q_groups, 0,
                                    count, at->q, &l->qq, L_qq, NULL, NULL);
   for (int k = 0; k < count; k++) {
-    gather_point(s->n, count, k, at->q, s->point_q);
-    gather_point(s->n, count, k, at->v, s->point_v);
+    dvi__gather_point(s->n, count, k, at->q, s->point_q);
+    dvi__gather_point(s->n, count, k, at->v, s->point_v);
     DVI_TRY(whole_hessian(l, s->point_q, s->point_v, s->result[0], s->result[2]));
-    scatter_result(dvi__pattern_entries(&l->qq), count, k, s->result[0], L_qq);
+    dvi__scatter_result(dvi__pattern_entries(&l->qq), count, k, s->result[0], L_qq);
   }
   return DVI_OK;
 }
@@ -277,9 +277,9 @@ static dvi_status one_form_hessian(const dvi__general_at *at, int count, double 
   dvi__scratch *s = at->scratch;
   DVI_TRY(form_curvature(at, count, L_qq));
   for (int k = 0; k < count; k++) {
-    gather_point(s->n, count, k, at->q, s->point_q);
+    dvi__gather_point(s->n, count, k, at->q, s->point_q);
     DVI_TRY(dvi__form_gradients(l, s->point_q, s->result[0], s->result[2]));
-    scatter_result(dvi__pattern_entries(&l->qv), count, k, s->result[0], L_qv);
+    dvi__scatter_result(dvi__pattern_entries(&l->qv), count, k, s->result[0], L_qv);
   }
   return DVI_OK;
 }
@@ -313,8 +313,8 @@ dvi_status dvi__general_value(const dvi__lagrangian_term *l, dvi__scratch *s, in
   if (is_form(l)) return form_lagrangian(l, s, count, q, v, L);
   if (c->value_batch != NULL) returned = c->value_batch(count, t, q, v, L, c->user);
   for (int k = 0; c->value_batch == NULL && k < count && returned == 0; k++) {
-    gather_point(s->n, count, k, q, s->point_q);
-    gather_point(s->n, count, k, v, s->point_v);
+    dvi__gather_point(s->n, count, k, q, s->point_q);
+    dvi__gather_point(s->n, count, k, v, s->point_v);
     returned = c->value(t[k], s->point_q, s->point_v, L + k, c->user);
   }
   return dvi__verdict(returned, 1, count, L, l->name, "value", "");
@@ -363,11 +363,11 @@ dvi_status dvi__general_gradient(const dvi__lagrangian_term *l, dvi__scratch *s,
   }
   if (c->gradient_batch != NULL) returned = c->gradient_batch(count, t, q, v, L_q, L_v, c->user);
   for (int k = 0; c->gradient_batch == NULL && k < count && returned == 0; k++) {
-    gather_point(s->n, count, k, q, s->point_q);
-    gather_point(s->n, count, k, v, s->point_v);
+    dvi__gather_point(s->n, count, k, q, s->point_q);
+    dvi__gather_point(s->n, count, k, v, s->point_v);
     returned = c->gradient(t[k], s->point_q, s->point_v, s->result[0], s->result[1], c->user);
-    scatter_result(s->n, count, k, s->result[0], L_q);
-    scatter_result(s->n, count, k, s->result[1], L_v);
+    dvi__scatter_result(s->n, count, k, s->result[0], L_q);
+    dvi__scatter_result(s->n, count, k, s->result[1], L_v);
   }
   DVI_TRY(dvi__verdict(returned, s->n, count, L_q, l->name, "gradient", " in L_q"));
   return dvi__verdict(returned, s->n, count, L_v, l->name, "gradient", " in L_v");
@@ -404,13 +404,13 @@ dvi_status dvi__general_hessian(const dvi__lagrangian_term *l, dvi__scratch *s, 
   if (c->hessian_batch != NULL)
     returned = c->hessian_batch(count, t, q, v, L_qq, L_qv, L_vv, c->user);
   for (int k = 0; c->hessian_batch == NULL && k < count && returned == 0; k++) {
-    gather_point(s->n, count, k, q, s->point_q);
-    gather_point(s->n, count, k, v, s->point_v);
+    dvi__gather_point(s->n, count, k, q, s->point_q);
+    dvi__gather_point(s->n, count, k, v, s->point_v);
     returned = c->hessian(t[k], s->point_q, s->point_v, s->result[0], s->result[1], s->result[2],
                           c->user);
-    scatter_result(qq, count, k, s->result[0], L_qq);
-    scatter_result(qv, count, k, s->result[1], L_qv);
-    scatter_result(vv, count, k, s->result[2], L_vv);
+    dvi__scatter_result(qq, count, k, s->result[0], L_qq);
+    dvi__scatter_result(qv, count, k, s->result[1], L_qv);
+    dvi__scatter_result(vv, count, k, s->result[2], L_vv);
   }
   DVI_TRY(dvi__verdict(returned, qq, count, L_qq, l->name, "Hessian", " in L_qq"));
   DVI_TRY(dvi__verdict(returned, qv, count, L_qv, l->name, "Hessian", " in L_qv"));
@@ -431,8 +431,8 @@ dvi_status dvi__general_rate(const dvi__lagrangian_term *l, dvi__scratch *s, int
   if (is_form(l)) return DVI_OK;
   if (c->rate_batch != NULL) returned = c->rate_batch(count, t, q, v, L_t, c->user);
   for (int k = 0; c->rate_batch == NULL && k < count && returned == 0; k++) {
-    gather_point(s->n, count, k, q, s->point_q);
-    gather_point(s->n, count, k, v, s->point_v);
+    dvi__gather_point(s->n, count, k, q, s->point_q);
+    dvi__gather_point(s->n, count, k, v, s->point_v);
     returned = c->rate(t[k], s->point_q, s->point_v, L_t + k, c->user);
   }
   return dvi__verdict(returned, 1, count, L_t, l->name, "rate", "");

@@ -38,6 +38,10 @@ void dvi__scratch_clear(dvi__scratch *scratch);
 dvi_status dvi__verdict(int returned, int entries, int count, const double *result,
                         const char *name, const char *what, const char *in);
 
+/* Copy point k of a batch of n numbers each, and the results at one point into a batch. */
+void dvi__gather_point(int n, int count, int k, const double *batch, double *point);
+void dvi__scatter_result(int entries, int count, int k, const double *point, double *batch);
+
 /* Group the columns of a Lagrangian's patterns, or of a function's in its place, for differences.
  * The second function frees the memory of the term. */
 dvi_status dvi__general_group(dvi__lagrangian_term *term);
