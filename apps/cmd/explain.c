@@ -39,7 +39,10 @@ static void explain_problem(const problem *scene, const words *settings)
   else
     (void)printf("  coordinates  %d:", scene->nq);
   for (int i = 0; i < scene->nq && i < NAMES_SHOWN; i++) (void)printf(" %s", scene->coordinate[i]);
-  (void)printf("%s\n  watched      ", scene->nq > NAMES_SHOWN ? " ..." : "");
+  (void)printf("%s", scene->nq > NAMES_SHOWN ? " ..." : "");
+  for (int i = 0; i < scene->terms->force_count; i++)
+    (void)printf("%s%s", i == 0 ? "\n  forces       " : ", ", scene->terms->forces[i].name);
+  (void)printf("\n  watched      ");
   for (int i = 0; i < dvi_system_invariant_count(scene->system); i++)
     (void)printf("%s%s", i > 0 ? ", " : "", dvi_system_invariant_name(scene->system, i));
   if (events_count(scene) > 0) (void)printf("\n  events       ");

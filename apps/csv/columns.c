@@ -7,6 +7,7 @@
 
 #include "cli/command.h"
 #include "cli/spelling.h"
+#include "csv/balance.h"
 #include "csv/table.h"
 #include "csv/velocity.h"
 
@@ -30,8 +31,13 @@ static void columns_list(run_columns *c, const dvi_integrator *integrator)
   columns_add_all(c, scene->nq, scene->coordinate, COLUMN_COORDINATE);
   if (scene->velocity != NULL) columns_add_all(c, scene->nv, scene->velocity, COLUMN_VELOCITY);
   columns_add_all(c, scene->nv, scene->momentum, COLUMN_MOMENTUM);
-  for (int i = 0; i < dvi_system_invariant_count(scene->system); i++)
-    columns_add(c, dvi_system_invariant_name(scene->system, i), COLUMN_INVARIANT, i);
+  for (int i = 0; i < dvi_system_invariant_count(scene->system); i++) {
+    const char *name = dvi_system_invariant_name(scene->system, i);
+    columns_add(c, name, COLUMN_INVARIANT, i);
+    if (!has_balances(scene) || i > scene->terms->symmetry_count) continue;
+    (void)snprintf(c->balance_name[i], BALANCE_NAME_SIZE, "%s_balance", name);
+    columns_add(c, c->balance_name[i], COLUMN_BALANCE, i);
+  }
   if (dvi_integrator_chooses_steps(integrator)) columns_add(c, "h", COLUMN_STEP, 0);
   if (scene->velocity != NULL) columns_add(c, "distance", COLUMN_DISTANCE, 0);
   if (scene->terms->one_form != NULL || scene->terms->constraint != NULL)
@@ -125,15 +131,17 @@ static bool columns_allocate(run_columns *c)
 {
   const size_t nq = (size_t)c->scene->nq, nv = (size_t)c->scene->nv;
   const size_t invariants = (size_t)dvi_system_invariant_count(c->scene->system),
-               most = nq + 2 * nv + invariants + COLUMN_KINDS;
+               most = nq + 2 * nv + 2 * invariants + COLUMN_KINDS;
   c->all = calloc(most, sizeof *c->all);
   c->column = calloc(most, sizeof *c->column);
   c->shown = calloc(most, sizeof *c->shown);
   c->invariant = calloc(invariants, sizeof *c->invariant);
+  c->balance = calloc(invariants, sizeof *c->balance);
+  c->balance_name = calloc(invariants, sizeof *c->balance_name);
   c->velocity = calloc(nv, sizeof *c->velocity);
   c->room = calloc(nq + nv, sizeof *c->room);
   return c->all != NULL && c->column != NULL && c->shown != NULL && c->invariant != NULL &&
-         c->velocity != NULL && c->room != NULL;
+         c->balance != NULL && c->balance_name != NULL && c->velocity != NULL && c->room != NULL;
 }
 
 int columns_choose(run_columns *c, const problem *scene, const dvi_integrator *integrator,
@@ -156,6 +164,8 @@ void columns_clear(run_columns *c)
   free(c->column);
   free(c->shown);
   free(c->invariant);
+  free(c->balance);
+  free(c->balance_name);
   free(c->velocity);
   free(c->room);
   *c = (run_columns){.count = 0};
@@ -178,10 +188,12 @@ static dvi_status columns_evaluate(run_columns *c, dvi_integrator *integrator)
   const double t = dvi_integrator_time(integrator), *q = dvi_integrator_q(integrator),
                *p = dvi_integrator_p(integrator);
   dvi_status status = DVI_OK;
-  for (int k = 0; k < c->count && status == DVI_OK && c->shows[COLUMN_INVARIANT]; k++) {
-    const shown_column *column = &c->column[k];
-    if (column->kind == COLUMN_INVARIANT)
-      status = dvi_integrator_invariant(integrator, column->index, &c->invariant[column->index]);
+  for (int k = 0; k < c->count && status == DVI_OK; k++) {
+    const int i = c->column[k].index;
+    if (c->column[k].kind == COLUMN_INVARIANT)
+      status = dvi_integrator_invariant(integrator, i, &c->invariant[i]);
+    if (c->column[k].kind == COLUMN_BALANCE)
+      status = dvi_integrator_balance(integrator, i, &c->balance[i]);
   }
   if (status == DVI_OK && c->shows[COLUMN_VELOCITY])
     status = velocity_near(c->scene, t, q, p, c->room, c->velocity);
@@ -211,6 +223,7 @@ double columns_number(const run_columns *c, const dvi_integrator *integrator, in
   case COLUMN_VELOCITY: return c->velocity[column->index];
   case COLUMN_MOMENTUM: return dvi_integrator_p(integrator)[column->index];
   case COLUMN_INVARIANT: return c->invariant[column->index];
+  case COLUMN_BALANCE: return c->balance[column->index];
   case COLUMN_STEP: return dvi_integrator_last_step(integrator);
   case COLUMN_DISTANCE: return dvi_system_distance(c->scene->system, dvi_integrator_q(integrator));
   case COLUMN_CONSTRAINT: return c->constraint;

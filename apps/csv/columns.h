@@ -7,12 +7,15 @@
 
 #include "problem.h"
 
+enum { BALANCE_NAME_SIZE = 128 };
+
 /** The quantity that a column shows. */
 typedef enum column_kind {
   COLUMN_COORDINATE,
   COLUMN_VELOCITY, /**< only with factors */
   COLUMN_MOMENTUM,
   COLUMN_INVARIANT,
+  COLUMN_BALANCE,    /**< defect of an invariant's balance, with forces */
   COLUMN_STEP,       /**< length of the last step, of methods that choose it */
   COLUMN_DISTANCE,   /**< distance from the manifold, with factors */
   COLUMN_CONSTRAINT, /**< |p - alpha(q)| with a one-form, |phi(q,p)| of a constrained Hamiltonian */
@@ -23,7 +26,7 @@ typedef enum column_kind {
 typedef struct shown_column {
   const char *name;
   column_kind kind;
-  int index; /**< index in q, v, p or the invariants */
+  int index; /**< index in q, v, p, the invariants or the balances */
 } shown_column;
 
 typedef struct run_columns {
@@ -32,8 +35,10 @@ typedef struct run_columns {
   shown_column *all, *column;
   bool *shown;       /**< [there] */
   double *invariant; /**< [invariants] the shown invariants, set by columns_measure */
-  double *velocity;  /**< [nv] with factors */
-  double *room;      /**< [nq + nv] with factors */
+  double *balance;   /**< [invariants] the shown defects of balances, set likewise */
+  char (*balance_name)[BALANCE_NAME_SIZE]; /**< [invariants] */
+  double *velocity;                        /**< [nv] with factors */
+  double *room;                            /**< [nq + nv] with factors */
   double constraint;
   bool shows[COLUMN_KINDS];
 } run_columns;

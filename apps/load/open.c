@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "csv/balance.h"
 #include "cli/command.h"
 #include "cli/spelling.h"
 
@@ -231,7 +232,7 @@ static int open_exit_code(dvi_status status, const problem *scene, const char *m
 
 int open_integrator(const problem *scene, const char *method, dvi_integrator **integrator)
 {
-  return open_exit_code(dvi_integrator_create(scene->system, method, integrator), scene, method);
+  return open_exit_code(create_balanced(scene, method, integrator), scene, method);
 }
 
 int open_monitor(const problem *scene, const pacing *how, dvi_monitor *monitor)
@@ -245,7 +246,8 @@ int open_monitor(const problem *scene, const pacing *how, dvi_monitor *monitor)
 dvi_status create_paced(const problem *scene, const char *method, const pacing *how,
                         const dvi_monitor *monitor, dvi_integrator **integrator)
 {
-  dvi_integrator_options options = {.size = sizeof options, .method = method};
+  dvi_integrator_options options = {
+      .size = sizeof options, .method = method, .balances = has_balances(scene)};
   if (how->transform != NULL) options.pacing = DVI_TIME_TRANSFORM;
   if (how->transform == NULL && how->control != NULL) options.pacing = DVI_STEP_CONTROL;
   if (options.pacing != DVI_STEPS_OF_TIME) options.monitor = monitor;

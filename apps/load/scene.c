@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 
 #include "cli/command.h"
+#include "csv/balance.h"
 #include "entry.h"
 #include "cli/file.h"
 
@@ -241,6 +242,6 @@ void scene_tell(const problem *scene)
   (void)printf("\n");
   char kept[KINK_SIZE];
   if (dvi_scene_kink(scene->scene, kept, sizeof kept) >= 0) (void)printf("kink: %s\n", kept);
-  if (dvi_scene_invariance(scene->scene, kept, sizeof kept) > 0)
+  if (!has_balances(scene) && dvi_scene_invariance(scene->scene, kept, sizeof kept) > 0)
     (void)printf("invariant under %s\n", kept);
 }

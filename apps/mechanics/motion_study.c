@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "csv/balance.h"
 #include "cli/command.h"
 #include "mechanics/march.h"
 #include "study/norms.h"
@@ -106,8 +107,9 @@ static int motion_observe(dvi_integrator *integrator, void *user)
 {
   watched *w = user;
   if (dvi_integrator_invariants(integrator, w->value) != DVI_OK) return -1;
-  if (isnan(w->first)) w->first = w->value[0];
-  w->energy_error = fmax(w->energy_error, fabs(w->value[0] - w->first));
+  const double energy = balanced_value(integrator, 0, w->value[0]);
+  if (isnan(w->first)) w->first = energy;
+  w->energy_error = fmax(w->energy_error, fabs(energy - w->first));
   w->distance = fmax(w->distance, dvi_system_distance(w->system, dvi_integrator_q(integrator)));
   return 0;
 }

@@ -58,13 +58,22 @@ static void choose_motion(run_trace *trace)
       panel_add_column(&trace->panel[MOTION], k, USUAL_CURVES);
 }
 
+/* Test whether the balance of an invariant is shown, which is drawn in its place. */
+static bool shows_balance(const run_columns *c, int invariant)
+{
+  for (int k = 0; k < c->count; k++)
+    if (c->column[k].kind == COLUMN_BALANCE && c->column[k].index == invariant) return true;
+  return false;
+}
+
 static void choose_curves(run_trace *trace, bool chosen)
 {
   const run_columns *c = trace->columns;
   if (!chosen) choose_motion(trace);
   for (int k = 0; k < c->count; k++) {
     const shown_column *column = &c->column[k];
-    if (column->kind == COLUMN_INVARIANT)
+    if (column->kind == COLUMN_INVARIANT && shows_balance(c, column->index)) continue;
+    if (column->kind == COLUMN_INVARIANT || column->kind == COLUMN_BALANCE)
       panel_add_column(&trace->panel[column->index == 0 ? ENERGY : INVARIANTS], k, TRACE_CURVES);
     else if (chosen)
       panel_add_column(&trace->panel[MOTION], k, TRACE_CURVES);
@@ -183,6 +192,7 @@ static void fill_panel(const run_trace *trace, int i, plot_curve *curve, plot_pa
   static const char *const titles[] = {[ENERGY] = "energy - energy at the start",
                                        [INVARIANTS] = "invariants: change since the start"};
   const trace_panel *panel = &trace->panel[i];
+  const bool balanced = trace->columns->column[panel->column[0]].kind == COLUMN_BALANCE;
   if (i != MOTION) subtract_start(trace, panel);
   for (int k = 0; k < panel->curves; k++)
     curve[k] = (plot_curve){.label = i == ENERGY ? NULL : curve_name(trace, i, k),
@@ -190,7 +200,9 @@ static void fill_panel(const run_trace *trace, int i, plot_curve *curve, plot_pa
                             .x = trace->t,
                             .y = panel->y[k]};
   const bool coordinates = trace->columns->column[panel->column[0]].kind == COLUMN_COORDINATE;
-  *made = (plot_panel){.title = i == MOTION ? trace->columns->scene->name : titles[i],
+  *made = (plot_panel){.title = i == MOTION               ? trace->columns->scene->name
+                                : i == ENERGY && balanced ? "energy - its start - the forces' work"
+                                                          : titles[i],
                        .x_label = "t",
                        .y_label = i != MOTION   ? "error"
                                   : coordinates ? "coordinates"

@@ -30,6 +30,7 @@ static dvi_system_terms *keep_terms(problem *made, const dvi_system_terms *terms
                                 sizeof *terms->constraint, &lost);
   kept->potentials = keep_array(made, terms->potentials, terms->potential_count,
                                 sizeof *terms->potentials, &lost);
+  kept->forces = keep_array(made, terms->forces, terms->force_count, sizeof *terms->forces, &lost);
   kept->symmetries = keep_array(made, terms->symmetries, terms->symmetry_count,
                                 sizeof *terms->symmetries, &lost);
   kept->factors = keep_array(made, terms->factors, terms->factor_count, sizeof *terms->factors,
@@ -154,6 +155,33 @@ static int one_point_lagrangian_taylor(int degree, const double *t, const double
   return own->taylor(degree, t, q, v, L, L_q, L_v, L_qq, L_qv, L_vv, own->user);
 }
 
+static int one_point_force(double t, const double *q, const double *v, double *F, void *user)
+{
+  const dvi_force *own = user;
+  return own->value_batch ? own->value_batch(1, &t, q, v, F, own->user)
+                          : own->value(t, q, v, F, own->user);
+}
+
+static int one_point_jacobian(double t, const double *q, const double *v, double *F_q, double *F_v,
+                              void *user)
+{
+  const dvi_force *own = user;
+  return own->jacobian_batch ? own->jacobian_batch(1, &t, q, v, F_q, F_v, own->user)
+                             : own->jacobian(t, q, v, F_q, F_v, own->user);
+}
+
+static dvi_force one_point_force_of(const dvi_force *declared)
+{
+  return (dvi_force){.name = declared->name,
+                     .value = one_point_force,
+                     .jacobian = declared->jacobian || declared->jacobian_batch ? one_point_jacobian
+                                                                                : NULL,
+                     .by_q = declared->by_q,
+                     .by_v = declared->by_v,
+                     .without_velocity = declared->without_velocity,
+                     .user = (void *)declared};
+}
+
 static dvi_potential one_point_potential(const dvi_potential *declared)
 {
   return (dvi_potential){
@@ -192,10 +220,14 @@ dvi_status problem_one_point(problem *made)
   dvi_system_terms terms = *made->terms;
   dvi_potential *potentials = keep_array(made, terms.potentials, terms.potential_count,
                                          sizeof *potentials, &lost);
+  dvi_force *forces = keep_array(made, terms.forces, terms.force_count, sizeof *forces, &lost);
   if (lost) return DVI_NO_MEMORY;
   for (int k = 0; k < terms.potential_count; k++)
     potentials[k] = one_point_potential(&made->terms->potentials[k]);
+  for (int k = 0; k < terms.force_count; k++)
+    forces[k] = one_point_force_of(&made->terms->forces[k]);
   terms.potentials = potentials;
+  terms.forces = forces;
   dvi_lagrangian lagrangian;
   if (terms.lagrangian) {
     lagrangian = one_point_lagrangian(terms.lagrangian);

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "csv/balance.h"
 #include "cli/command.h"
 #include "load/open.h"
 
@@ -37,6 +38,7 @@ static int resonance_observe(dvi_integrator *integrator, void *user)
   double value = (double)NAN;
   w->status = dvi_integrator_invariant(integrator, w->watched, &value);
   if (w->status != DVI_OK) return -1;
+  value = balanced_value(integrator, w->watched, value);
   if (w->steps < 0) w->first = value;
   w->steps++;
   const double scale = fabs(w->first) > 0.0 ? fabs(w->first) : 1.0;
@@ -83,7 +85,7 @@ static void resonance_run_problem(const resonance_task *task, const problem *sce
                                   resonance_point *point)
 {
   dvi_integrator *integrator = NULL;
-  dvi_status status = dvi_integrator_create(scene->system, task->method, &integrator);
+  dvi_status status = create_balanced(scene, task->method, &integrator);
   point->status = dvi_status_name(DVI_OK);
   if (status == DVI_OK) status = resonance_advance(task, scene, integrator, point);
   point->failed = status != DVI_OK;

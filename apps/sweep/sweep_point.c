@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "csv/balance.h"
 #include "cli/command.h"
 #include "csv/events.h"
 #include "load/open.h"
@@ -116,9 +117,10 @@ static int sweep_observe(dvi_integrator *integrator, void *user)
   w->status = dvi_integrator_invariants(integrator, w->invariant);
   if (w->status == DVI_OK && !isfinite(w->invariant[0])) w->status = DVI_NOT_FINITE;
   if (w->status != DVI_OK) return -1;
-  if (!w->begun) w->first = w->invariant[0];
+  const double energy = balanced_value(integrator, 0, w->invariant[0]);
+  if (!w->begun) w->first = energy;
   w->begun = true;
-  w->largest = fmax(w->largest, fabs(w->invariant[0] - w->first));
+  w->largest = fmax(w->largest, fabs(energy - w->first));
   return 0;
 }
 
@@ -154,8 +156,8 @@ static void sweep_run_problem(const sweep_task *task, const problem *scene, cons
   event_list events;
   dvi_status status = events_list(&events, scene, NULL, NULL) ? DVI_OK : DVI_NO_MEMORY;
   if (status == DVI_OK)
-    status = dvi_integrator_create(scene->system,
-                                   task->method != NULL ? task->method : scene->method, integrator);
+    status = create_balanced(scene, task->method != NULL ? task->method : scene->method,
+                             integrator);
   if (status == DVI_OK) status = dvi_integrator_start(*integrator, 0.0, scene->q, scene->p);
   (void)snprintf(end->word, sizeof end->word, "%s", dvi_status_name(DVI_OK));
   if (status == DVI_OK) status = sweep_advance(task, scene, &events, *integrator, w, end);

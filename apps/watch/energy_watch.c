@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "csv/balance.h"
 #include "cli/command.h"
 
 /* A prime number of steps, so that a motion whose period is a whole number of steps is seen at all
@@ -122,7 +123,9 @@ static void energy_watch_look(energy_watch *w)
   w->t = t;
   if (w->looks == ENERGY_LOOKS_MAX) energy_watch_halve(w);
   w->look[w->looks++] = (energy_look){
-      .t = t, .error = fabs(energy - w->first), .local = kinetic ? T : 0.0};
+      .t = t,
+      .error = fabs(balanced_value(w->integrator, 0, energy) - w->first),
+      .local = kinetic ? T : 0.0};
   if (isnan(w->passed) && look_ratio(&w->look[w->looks - 1], mean_scale(w)) > w->bound)
     w->passed = t;
 }

@@ -53,7 +53,7 @@ BEGIN {
   # The command includes public headers and those of the problems, too.
   uses["cli"] = ""
   uses["csv"] = "cli"
-  uses["load"] = "cli"
+  uses["load"] = "cli csv"
   uses["plot"] = "cli csv"
   uses["sweep"] = "cli csv load"
   uses["boundary"] = "cli csv load"

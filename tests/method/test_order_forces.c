@@ -165,8 +165,8 @@ END_TEST
 /* The defect has the method's order. Over ten times as long it grows by no more than ten times. */
 START_TEST(other_energies_have_a_defect_of_the_methods_order)
 {
-  static const claim of[] = {{"verlet", 2, 0}, {"galerkin:degree=2", 4, 0},
-                             {"verlet", 2, 0}, {"galerkin:degree=3", 6, 0}};
+  static const claim of[] = {
+      {"verlet", 2, 0}, {"galerkin:degree=2", 4, 0}, {"verlet", 2, 0}, {"galerkin:degree=3", 6, 0}};
   forced model;
   make_forced(DRAGGED_PENDULUM, FORCED_POINT, &model);
   for (size_t m = 0; m < sizeof of / sizeof *of; m++) {

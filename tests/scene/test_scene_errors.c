@@ -247,10 +247,31 @@ START_TEST(sections_that_are_missing_or_do_not_go_together_are_told)
   refused(X "hamiltonian: p(x)^2\n" RUN, ":3:10:", "the momentum p(x) is not given");
   refused(X "hamiltonian: p(x)^2\npotentials: {a: x}\n" RUN, ":3:13:", "not beside hamiltonian");
   refused(X "hamiltonian: x\nconstraints: {a: x}\n" RUN, ":3:14:", "an even number is needed");
-  refused(X "lagrangian: x'^2\nforces: {x: 1}\n" RUN, ":3:9:", "no method here takes forces");
+  refused(X "lagrangian: x'^2\ncontacts: {x: 1}\n" RUN, ":3:11:", "no method here takes contacts");
   refused("coordinates: {x: skalar}\nlagrangian: 1\n" RUN, ":1:18:", "did you mean scalar?");
   refused("coordinates: {x: vector}\nlagrangian: 1\n" RUN,
           ":1:18:", "a vector has its size, as in vector(3)");
+}
+END_TEST
+
+START_TEST(forces_that_do_not_go_are_told)
+{
+  refused(X "lagrangian: x'^2\nforces: {y: 1}\n" RUN, ":3:10:", "there is no 'y'");
+  refused(X "lagrangian: x'^2\nforces: {x': 1}\n" RUN,
+          ":3:10:", "a force is given by coordinate, neither by rate nor by momentum");
+  refused(X "lagrangian: x'^2\nforces: {x: p(x)}\n" RUN,
+          ":3:13:", "momenta cannot stand in a force");
+  refused(X "lagrangian: x'^2\nforces: {x: [1, 2]}\n" RUN, ":3:13:", "a vector of 2 for x");
+  refused(X "lagrangian: x'^2\nforces: 1\n" RUN, ":3:9:", "a force is a mapping");
+  refused(X "lagrangian: x'^2\ndissipation: x\n" RUN, ":3:14:", "there is no velocity in it");
+  refused(X "hamiltonian: p(x)^2\nforces: {x: 1}\n" RUN,
+          ":3:9:", "beside a Hamiltonian there is no forces");
+  refused("coordinates: {x: scalar, y: scalar}\none_form: {x: y}\nhamiltonian: x\n"
+          "dissipation: x'^2\ninitial: {x: 1, y: 1}\nstep: 1\nuntil: 1\n",
+          ":4:14:", "beside a one-form there is no dissipation");
+  refused("coordinates: {u: angle}\nlagrangian: rate(u)^2\nforces: {rate(u): 1}\n"
+          "initial: {u: 1}\nstep: 1\nuntil: 1\n",
+          ":3:9:", "beside forces there are no rotations");
 }
 END_TEST
 
@@ -440,6 +461,7 @@ SUITE(scene_errors)
   tcase_add_test(tests, velocities_and_momenta_stand_where_they_make_sense);
   tcase_add_test(tests, names_are_declared_once_and_before_their_use);
   tcase_add_test(tests, sections_that_are_missing_or_do_not_go_together_are_told);
+  tcase_add_test(tests, forces_that_do_not_go_are_told);
   tcase_add_test(tests, what_no_system_can_be_made_of_has_its_place);
   tcase_add_test(tests, starts_are_complete_and_fit);
   tcase_add_test(tests, settings_replace_numbers_and_nothing_else);

@@ -10,6 +10,7 @@
 #include "method/element/element_step.h"
 #include "support/runs.h"
 #include "support/suite.h"
+#include "support/systems/forced.h"
 
 /* ---- a stepper with a term ---- */
 
@@ -91,34 +92,11 @@ static dvi_status add_damping_derivatives(void *user, const dvi__row_path *path,
   return DVI_OK;
 }
 
-static int spring_value(double t, const double *q, double *V, void *user)
-{
-  (void)t, (void)user;
-  *V = 0.5 * q[0] * q[0];
-  return 0;
-}
-
-static int spring_gradient(double t, const double *q, double *V_q, void *user)
-{
-  (void)t, (void)user;
-  V_q[0] = q[0];
-  return 0;
-}
-
-static int spring_hessian(double t, const double *q, double *V_qq, void *user)
-{
-  (void)t, (void)q, (void)user;
-  V_qq[0] = 1;
-  return 0;
-}
-
 /* |q - exact| after the time 4 of q'' + c q' + q = 0, q(0) = 1, q'(0) = 0. */
 static double damping_error(const char *method, int steps)
 {
-  const dvi_potential spring = {
-      .value = spring_value, .gradient = spring_gradient, .hessian = spring_hessian};
   const dvi_system_terms terms = {
-      .dimension = 1, .mass = {.scalar = 1}, .potentials = &spring, .potential_count = 1};
+      .dimension = 1, .mass = {.scalar = 1}, .potentials = &unit_spring, .potential_count = 1};
   const double one = 1, zero = 0, a = damping / 2, w = sqrt(1 - a * a), t = 4;
   rayleigh r = {.F = {0}};
   ck_assert_int_eq(dvi__pattern_diagonal(1, &r.pattern), DVI_OK);

@@ -3,7 +3,6 @@
 
 #include "core/hash.h"
 #include "system/system.h"
-#include "system/term/force.h"
 
 static uint64_t hash_pattern(uint64_t hash, const dvi__pattern *pattern)
 {
@@ -62,7 +61,9 @@ static uint64_t hash_forces(const dvi_system *s)
   uint64_t hash = DVI__HASH_START;
   for (int k = 0; k < s->force_count; k++) {
     const dvi__force_term *term = &s->forces[k];
-    const int kind[] = {term->callbacks.without_velocity != 0, dvi__force_has_jacobian(term)};
+    const int is_differenced = term->callbacks.jacobian == NULL &&
+                               term->callbacks.jacobian_batch == NULL;
+    const int kind[] = {term->callbacks.without_velocity != 0, is_differenced};
     hash = dvi__hash(hash_text(hash, term->name), sizeof kind, kind);
     hash = hash_pattern(hash_pattern(hash, &term->by_q), &term->by_v);
   }

@@ -188,7 +188,7 @@ done
 [ $refused -eq 171 ] || fail "$refused of 232 pairs are refused, not 171"
 
 # Sections that no scene may have, or not beside others.
-for pair in 'forces: {x: 1}|takes forces' 'lagrangian: x'"'"'^2|one of these' \
+for pair in 'contacts: {x: 1}|takes contacts' 'lagrangian: x'"'"'^2|one of these' \
   'hamiltonian: x|no hamiltonian' 'one_form: {x: y}|one of these' \
   'constraints: {a: x, b: y}|one of these' 'friction: 1|has no .friction.'; do
   { cat separable.yaml; echo "${pair%%|*}"; } >odd.yaml

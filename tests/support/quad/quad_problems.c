@@ -176,6 +176,20 @@ static void driven_pendulum_velocity(const quad_system *system, const quad *q, c
   v[0] = p[0] - system->value[0] * system->value[1] * quad_cos(q[0]);
 }
 
+/* q'' = -q - c q' + f sin(omega t). The time stands behind the velocity. */
+static void damped_driven_prepare(quad_system *system)
+{
+  system->n = 1;
+  system->q[0] = 1;
+}
+
+static void damped_driven_acceleration(const quad_system *system, const quad *q, const quad *v,
+                                       quad *a)
+{
+  const quad *c = system->value;
+  a[0] = -q[0] - c[0] * v[0] + c[1] * quad_sin(c[2] * v[1]);
+}
+
 /* L = m/2 (a'^2 + (l+a)^2 th'^2) + m g (l+a) cos th - k a^2/2. */
 static void stiff_pendulum_prepare(quad_system *system)
 {
@@ -340,6 +354,15 @@ static const quad_problem problems[] = {
      driven_pendulum_acceleration,
      driven_pendulum_momentum,
      driven_pendulum_velocity,
+     NULL,
+     NULL},
+    {"damped-driven",
+     {"c", "f", "omega"},
+     {"0.2", "0.5", "2"},
+     damped_driven_prepare,
+     damped_driven_acceleration,
+     NULL,
+     NULL,
      NULL,
      NULL},
     {"stiff-pendulum",

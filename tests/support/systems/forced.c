@@ -75,10 +75,10 @@ static int round_hessian(double t, const double *q, double *V_qq, void *user)
   return 0;
 }
 
-static const dvi_potential spring = {.value = spring_value,
-                                     .gradient = spring_gradient,
-                                     .hessian = spring_hessian},
-                           pendulum = {.value = pendulum_value,
+const dvi_potential unit_spring = {
+    .value = spring_value, .gradient = spring_gradient, .hessian = spring_hessian};
+
+static const dvi_potential pendulum = {.value = pendulum_value,
                                        .gradient = pendulum_gradient,
                                        .hessian = pendulum_hessian},
                            round_spring = {.value = round_value,
@@ -123,8 +123,8 @@ static int oscillator_force(double t, const double *q, const double *v, double *
   return 0;
 }
 
-static int oscillator_jacobian(double t, const double *q, const double *v, double *F_q,
-                               double *F_v, void *user)
+static int oscillator_jacobian(double t, const double *q, const double *v, double *F_q, double *F_v,
+                               void *user)
 {
   (void)t, (void)q, (void)v, (void)user;
   F_q[0] = 0;
@@ -227,7 +227,7 @@ typedef struct declared {
 static const declared table[FORCED_KINDS] = {
     {.name = "driven oscillator",
      .n = 1,
-     .potential = &spring,
+     .potential = &unit_spring,
      .force = {.value = oscillator_force, .jacobian = oscillator_jacobian},
      .q = {1},
      .span = 10},
@@ -258,7 +258,7 @@ static const declared table[FORCED_KINDS] = {
      .autonomous = 1},
     {.name = "pushed spring",
      .n = 1,
-     .potential = &spring,
+     .potential = &unit_spring,
      .force = {.value = push_force, .jacobian = push_jacobian, .without_velocity = 1},
      .q = {0.5},
      .v = {-0.2},
@@ -287,8 +287,8 @@ static int value_batch(int count, const double *t, const double *q, const double
   return returned;
 }
 
-static int jacobian_batch(int count, const double *t, const double *q, const double *v,
-                          double *F_q, double *F_v, void *user)
+static int jacobian_batch(int count, const double *t, const double *q, const double *v, double *F_q,
+                          double *F_v, void *user)
 {
   const declared *of = user;
   double q1[FORCED_N], v1[FORCED_N], by_q[NUMBERS_MOST], by_v[NUMBERS_MOST];
@@ -349,8 +349,8 @@ void destroy_forced(forced *made)
 /* x = A cos 2t + B sin 2t + e^(-at) (C cos wt + D sin wt) with a = 1/10, w^2 = 1 - a^2. */
 static void solve_oscillator(double t, double *q, double *v)
 {
-  const double c = 0.2, f = 0.5, a = 0.5 * c, w = sqrt(1 - a * a),
-               scale = f / (9 + 4 * c * c), A = -2 * c * scale, B = -3 * scale;
+  const double c = 0.2, f = 0.5, a = 0.5 * c, w = sqrt(1 - a * a), scale = f / (9 + 4 * c * c),
+               A = -2 * c * scale, B = -3 * scale;
   const double C = 1 - A, D = (a * C - 2 * B) / w, e = exp(-a * t), cw = cos(w * t),
                sw = sin(w * t);
   *q = A * cos(2 * t) + B * sin(2 * t) + e * (C * cw + D * sw);
@@ -368,8 +368,7 @@ int forced_exact(forced_kind kind, double *q, double *v)
 dvi_integrator *forced_integrator(const forced *model, const char *method)
 {
   dvi_integrator *integrator;
-  const dvi_integrator_options options = {
-      .size = sizeof options, .method = method, .balances = 1};
+  const dvi_integrator_options options = {.size = sizeof options, .method = method, .balances = 1};
   ck_assert_msg(dvi_integrator_create_with(model->system, &options, &integrator) == DVI_OK,
                 "%s: %s", model->name, dvi_last_error());
   ck_assert_msg(dvi_integrator_start_velocity(integrator, 0, model->q, model->v) == DVI_OK,

@@ -5,8 +5,16 @@
 
 enum { FORCED_N = 2 };
 
+/* V = q^2/2 of one coordinate. */
+extern const dvi_potential unit_spring;
+
 /* The forms in which the derivatives of the force are declared. */
-typedef enum forced_form { FORCED_POINT, FORCED_BATCH, FORCED_DIFFERENCED, FORCED_FORMS } forced_form;
+typedef enum forced_form {
+  FORCED_POINT,
+  FORCED_BATCH,
+  FORCED_DIFFERENCED,
+  FORCED_FORMS
+} forced_form;
 
 typedef enum forced_kind {
   DRIVEN_OSCILLATOR, /* x'' = -x - x'/5 + sin(2t)/2, with an exact solution */

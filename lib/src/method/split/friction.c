@@ -11,6 +11,10 @@
 
 enum { MOST_ITERATIONS = 50 };
 
+/* A matrix is kept if the last correction was this part of the one before. The first correction
+ * counts as fast. */
+static const double fast_change = 0.1;
+
 struct dvi__friction {
   const dvi_system *system;
   dvi__evaluator *evaluator;
@@ -97,8 +101,9 @@ static dvi_status factor_matrix(dvi__friction *f, const dvi__state *state, doubl
   return dvi__linear_factor(f->matrix, f->values);
 }
 
-/* Correct v by one iteration of Newton's method. *change becomes the largest change. */
-static dvi_status correct_velocity(dvi__friction *f, const dvi__state *state, double h,
+/* Correct v by one iteration, with a new matrix or the last one. *change becomes the largest
+ * change. */
+static dvi_status correct_velocity(dvi__friction *f, const dvi__state *state, double h, int renew,
                                    double *change)
 {
   const int n = f->system->n;
@@ -106,7 +111,7 @@ static dvi_status correct_velocity(dvi__friction *f, const dvi__state *state, do
   DVI_TRY(dvi__lagrangian_gradient(f->evaluator, 1, &state->t, state->q, f->v, NULL, f->residual));
   DVI_TRY(dvi__forces(f->evaluator, DVI__FRICTION, 1, &state->t, state->q, f->v, f->force));
   for (int i = 0; i < n; i++) f->residual[i] = f->given[i] + 0.5 * h * f->force[i] - f->residual[i];
-  DVI_TRY(factor_matrix(f, state, h));
+  if (renew) DVI_TRY(factor_matrix(f, state, h));
   DVI_TRY(dvi__linear_solve(f->matrix, f->residual));
   if (dvi__first_not_finite((size_t)n, f->residual) >= 0)
     return dvi__fail(DVI_NOT_FINITE, "the velocity of the step is not finite");
@@ -116,15 +121,17 @@ static dvi_status correct_velocity(dvi__friction *f, const dvi__state *state, do
 }
 
 /* Newton's method goes on until its corrections are roundings, or as small as roundings and no
- * longer smaller than the last. */
+ * longer smaller than the last. The matrix is kept while they shrink fast. */
 static dvi_status find_velocity(dvi__friction *f, const dvi__state *state, double h)
 {
   const size_t n = (size_t)f->system->n;
-  double change = HUGE_VAL;
+  double change = HUGE_VAL, before = HUGE_VAL;
   f->counters->newtons++;
   for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
     const double last = change;
-    DVI_TRY(correct_velocity(f, state, h, &change));
+    const int renew = iteration == 0 || !(last <= fast_change * before);
+    DVI_TRY(correct_velocity(f, state, h, renew, &change));
+    before = last;
     const double size = dvi__largest(n, f->v);
     if (change <= 4 * DBL_EPSILON * size || (change <= 1e-10 * size && change >= 0.5 * last))
       return DVI_OK;

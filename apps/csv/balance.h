@@ -1,0 +1,17 @@
+/** Invariants of systems with forces, which are balanced instead of conserved. */
+#ifndef BALANCE_H
+#define BALANCE_H
+#include <stdbool.h>
+
+#include "problem.h"
+
+/** Return whether forces without a potential act in a problem. */
+bool has_balances(const problem *scene);
+
+/** Create an integrator of steps of time that keeps balances if forces act. */
+dvi_status create_balanced(const problem *scene, const char *method, dvi_integrator **integrator);
+
+/** Return an invariant's value less what forces have supplied since the start, if the integrator
+ * keeps balances, else the value. It is constant but for the method's error. */
+double balanced_value(const dvi_integrator *integrator, int invariant, double value);
+#endif
