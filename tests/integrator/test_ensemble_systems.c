@@ -20,8 +20,9 @@ static const struct {
               {"henon-heiles", {NULL, NULL, NULL, NULL}},
               {"double-pendulum", {"m1=1", "m1=2", "m1=3", "m1=4"}},
               {"chain", {"beta=0.1", "beta=0.2", "beta=0.3", "beta=0"}},
-              {"oscillators", {"omega=10", "omega=20", "omega=40", "omega=5"}}};
-enum { OSCILLATOR, FPU, HENON_HEILES, DOUBLE_PENDULUM, CHAIN, OSCILLATORS, SWEEPS };
+              {"oscillators", {"omega=10", "omega=20", "omega=40", "omega=5"}},
+              {"damped-driven", {"c=0.1", "c=1", "f=2", "omega=1"}}};
+enum { OSCILLATOR, FPU, HENON_HEILES, DOUBLE_PENDULUM, CHAIN, OSCILLATORS, DAMPED_DRIVEN, SWEEPS };
 
 static const char *const methods[] = {"verlet", "galerkin", "galerkin:degree=8",
                                       "galerkin:degree=3,solver=newton",

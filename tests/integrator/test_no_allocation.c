@@ -151,6 +151,9 @@ static const struct {
     {"double-pendulum", NULL, "shooting:onestep=gauss", 0.05},
     {"toda", "N=5", "shooting:solve=stages", 0.1},
     {"double-pendulum", NULL, "shooting:onestep=taylor,quadrature=euler-maclaurin", 0.01},
+    {"damped-driven", NULL, "verlet", 0.1},
+    {"damped-driven", NULL, "galerkin:degree=3", 0.5},
+    {"damped-driven", NULL, "composition:order=4", 0.1},
 };
 
 START_TEST(steps_of_chosen_lengths_do_not_allocate)
