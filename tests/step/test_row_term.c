@@ -180,7 +180,7 @@ static dvi_status add_rod_derivatives(void *user, const dvi__row_path *p, const 
   for (int i = 0; i < 2; i++) {
     double *column = dvi__row_own_column(J, 0, i);
     for (int k = 0; k < p->s; k++) column[k] -= p->end[k] * 2 * p->q0[i];
-    for (int l = 0; l < p->s; l++) dvi__row_own_rows(J, i, l)[0] += 2 * p->q1[i] * p->end[l];
+    for (int l = 0; l < p->s; l++) dvi__row_own_rows(J, 0, i, l)[0] += 2 * p->q1[i] * p->end[l];
   }
   return DVI_OK;
 }

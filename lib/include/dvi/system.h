@@ -7,6 +7,11 @@
  *  Forces F(t,q,v) without a potential may act beside a mass or a general Lagrangian. By the
  *  principle of Lagrange and d'Alembert the equations of motion are then d/dt L_v = L_q + F.
  *
+ *  A mass or a general Lagrangian may have holonomic constraints phi(t,q) = 0, as rods and joints
+ *  are. With G = d phi/dq the equations of motion are then
+ *
+ *      d/dt L_v = L_q + F - G^T lambda,     phi(t,q) = 0.
+ *
  *  With a one-form the Lagrangian is degenerate. It is linear in v, the potentials' sum is the
  *  Hamiltonian H(t,q), and the momenta are p = alpha(q). The equations of motion are of first
  *  order, Omega(q) v = dH/dq with the two-form Omega_ij = d alpha_j/dq_i - d alpha_i/dq_j.
@@ -226,6 +231,27 @@ typedef struct dvi_force {
   void *user;
 } dvi_force;
 
+/** Holonomic constraints phi(t,q) = 0 of some rows, such as a rod, a rail or a joint.
+ *
+ *  Their gradients must be independent where the system moves, together with those of all others.
+ *  The callbacks have the one-point shape alone. */
+typedef struct dvi_holonomic {
+  const char *name; /**< copied. Used in messages */
+  int count;        /**< number of rows, at least 1 */
+  /** phi [count]. Required. */
+  int (*value)(double t, const double *q, double *phi, void *user);
+  /** The gradients in the order of the pattern `gradients`, which has n rows and `count` columns.
+   *  Column a holds d phi_a/dq. Required. */
+  int (*gradient)(double t, const double *q, double *phi_q, void *user);
+  /** The Hessian of the function phi.w, w [count] fixed, in the order of the pattern `qq`.
+   *  Default: differences of the gradients. */
+  int (*hessian)(double t, const double *q, const double *w, double *phi_w_qq, void *user);
+  /** The rates d phi/dt [count] at fixed q. Default: the constraints do not depend on time. */
+  int (*rate)(double t, const double *q, double *phi_t, void *user);
+  dvi_pattern gradients, qq;
+  void *user;
+} dvi_holonomic;
+
 /** A constant mass matrix in exactly one of the three forms. The matrix must be regular. It may be
  *  indefinite, since a Lagrangian with -M and -V has the motion of that with M and V. */
 typedef struct dvi_mass {
@@ -296,8 +322,8 @@ typedef struct dvi_invariant {
  *
  *  Exactly one kind of dynamics is declared: a constant mass (by `mass`, by `factors`, or by both,
  *  which are added), or `lagrangian`, or `one_form`, or `hamiltonian`. Potentials may stand beside
- *  all kinds but a Hamiltonian. Forces may stand beside a mass without factors, and beside a
- *  general Lagrangian. */
+ *  all kinds but a Hamiltonian. Forces and holonomic constraints may stand beside a
+ *  mass without factors, and beside a general Lagrangian. */
 typedef struct dvi_system_terms {
   /** number of coordinates n, at least 1, even with a one-form. 0 with factors, which determine
    *  n */
@@ -321,6 +347,8 @@ typedef struct dvi_system_terms {
   int factor_count;
   const dvi_force *forces; /**< forces without a potential (default none) */
   int force_count;
+  const dvi_holonomic *holonomics; /**< holonomic constraints (default none) */
+  int holonomic_count;
 } dvi_system_terms;
 
 /** A system. It never changes after its creation, so integrators on several threads may share
@@ -346,7 +374,8 @@ extern "C" {
  *  @retval DVI_SINGULAR      the constant mass is singular or not finite. With factors the mass is
  *                            not finite, or there is none at all at a factor's coordinates
  *  @retval DVI_UNSUPPORTED   factors beside a general Lagrangian, a one-form or a Hamiltonian. Or
- *                            forces beside factors, a one-form or a Hamiltonian
+ *                            forces or holonomic constraints beside factors, a one-form or a
+ *                            Hamiltonian
  *  @retval DVI_NO_MEMORY     memory could not be allocated */
 dvi_status dvi_system_create(const dvi_system_terms *terms, dvi_system **system);
 
@@ -363,8 +392,8 @@ int dvi_system_nv(const dvi_system *system);
 /** Return 1 if the system was declared autonomous, else 0. 0 for NULL. */
 int dvi_system_autonomous(const dvi_system *system);
 
-/** Return the number of constraints phi(q,p) = 0 of a Hamiltonian. 0 for other systems, and for
- *  NULL. */
+/** Return the number of constraints phi(q,p) = 0 of a Hamiltonian, or of rows of holonomic
+ *  constraints phi(t,q) = 0. 0 for other systems, and for NULL. */
 int dvi_system_constraint_count(const dvi_system *system);
 
 /** Evaluate the Lagrangian at (t, q [nq], v [nv]). The call allocates.

@@ -22,13 +22,13 @@ static dvi__sum weighted_sum(int count, const double *numbers)
   return sum;
 }
 
-static dvi_status fingerprint_constraint(const dvi_integrator *I, const double *q, const double *p,
-                                         dvi__sum *distance)
+static dvi_status fingerprint_constraint(const dvi_integrator *I, double t, const double *q,
+                                         const double *p, dvi__sum *distance)
 {
   const dvi__state_constraint *of_states = I->system->dynamics->constraint;
   if (of_states == NULL) return DVI_OK;
-  DVI_TRY(of_states->size(I->evaluator, q, p, &distance->size));
-  return of_states->distance(I->evaluator, q, p, &distance->value);
+  DVI_TRY(of_states->size(I->evaluator, t, q, p, &distance->size));
+  return of_states->distance(I->evaluator, t, q, p, &distance->value);
 }
 
 static dvi_status fingerprint_monitor(const dvi_integrator *I, const double *q, dvi__fingerprint *f)
@@ -55,7 +55,7 @@ static dvi_status fingerprint_evaluate(const dvi_integrator *I, const dvi__momen
   f->lagrangian.size = fabs(f->lagrangian.value);
   for (int i = 0; i < n; i++) f->lagrangian.size += fabs(at->p[i] * v[i]);
   f->forces = weighted_sum(n, forces);
-  DVI_TRY(fingerprint_constraint(I, at->q, at->p, &f->distance));
+  DVI_TRY(fingerprint_constraint(I, at->t, at->q, at->p, &f->distance));
   return fingerprint_monitor(I, at->q, f);
 }
 

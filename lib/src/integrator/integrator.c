@@ -91,7 +91,7 @@ static dvi_status constrain_start(dvi_integrator *I, double t, int project, cons
   const dvi__state_constraint *constraint = I->system->dynamics->constraint;
   const size_t bytes = (size_t)I->system->n * sizeof(double);
   if (constraint == NULL) return DVI_OK;
-  if (!project) return constraint->check(I->evaluator, *q, *p);
+  if (!project) return constraint->check(I->evaluator, t, *q, *p);
   memmove(I->next.p, *p, bytes);
   memmove(I->next.q, *q, bytes);
   *q = I->next.q;
@@ -434,7 +434,7 @@ dvi_status dvi_integrator_constraint(dvi_integrator *I, double *distance)
     return dvi__fail(
         DVI_BAD_STATE,
         "constraint: the integrator has no state yet; call dvi_integrator_start first");
-  return constraint->distance(I->evaluator, I->now.q, I->now.p, distance);
+  return constraint->distance(I->evaluator, I->now.t, I->now.q, I->now.p, distance);
 }
 
 double dvi_integrator_supplied(const dvi_integrator *I, int i)

@@ -22,6 +22,7 @@ static const char *term_name(unsigned term)
   case DVI__HAMILTONIAN: return "a Hamiltonian without constraints";
   case DVI__FORCE:
   case DVI__FRICTION: return "forces without a potential";
+  case DVI__HOLONOMIC: return "holonomic constraints phi(t,q) = 0";
   case DVI__FAST: return "a fast potential (one that is declared `fast`)";
   default: return "potentials";
   }

@@ -70,6 +70,18 @@ static uint64_t hash_forces(const dvi_system *s)
   return hash;
 }
 
+static uint64_t hash_holonomics(const dvi_system *s)
+{
+  uint64_t hash = dvi__hash(DVI__HASH_START, sizeof s->row_count, &s->row_count);
+  for (int k = 0; k < s->holonomic_count; k++) {
+    const dvi__holonomic_term *term = &s->holonomics[k];
+    const int kind[] = {term->callbacks.count, term->callbacks.hessian != NULL,
+                        term->callbacks.rate != NULL};
+    hash = dvi__hash(hash_text(hash, term->name), sizeof kind, kind);
+  }
+  return hash_pattern(hash_pattern(hash, &s->rows_q), &s->rows_qq);
+}
+
 static uint64_t hash_invariants(const dvi_system *s)
 {
   uint64_t hash = DVI__HASH_START;
@@ -82,7 +94,7 @@ void dvi__system_declared(const dvi_system *system, dvi__declared *declared)
 {
   *declared = (dvi__declared){{hash_terms(system), hash_masses(system), hash_patterns(system),
                                hash_potentials(system), hash_invariants(system),
-                               hash_forces(system)}};
+                               hash_forces(system), hash_holonomics(system)}};
 }
 
 const char *dvi__declared_difference(const dvi__declared *one, const dvi__declared *other)
@@ -92,7 +104,8 @@ const char *dvi__declared_difference(const dvi__declared *one, const dvi__declar
                                                         "patterns of derivatives",
                                                         "names or speeds of potentials",
                                                         "names of invariants",
-                                                        "forces"};
+                                                        "forces",
+                                                        "holonomic constraints"};
   for (int part = 0; part < DVI__DECLARED_PARTS; part++)
     if (one->hash[part] != other->hash[part]) return name[part];
   return NULL;

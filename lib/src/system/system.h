@@ -24,11 +24,12 @@ typedef enum dvi__term {
   DVI__FORCE = 1024,      /* forces F(t,q) without a potential */
   DVI__FRICTION = 2048,   /* forces F(t,q,v) */
   DVI__FORCES = DVI__FORCE | DVI__FRICTION,
+  DVI__HOLONOMIC = 4096, /* constraints phi(t,q) = 0 */
   DVI__PHASE_SPACE = DVI__CONSTRAINED_HAMILTONIAN | DVI__HAMILTONIAN,
   DVI__DYNAMICS = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__ONE_FORM | DVI__FACTORS |
                   DVI__PHASE_SPACE, /* one of these is declared */
   DVI__KINDS = DVI__ROTATIONS | DVI__DIRECTIONS | DVI__FAST,
-  DVI__LAST_TERM = DVI__FRICTION
+  DVI__LAST_TERM = DVI__HOLONOMIC
 } dvi__term;
 
 /* Groups of columns that are moved together when a missing Hessian block is differenced. */
@@ -52,6 +53,17 @@ typedef struct dvi__force_term {
   int *in_by_q, *in_by_v;  /* places in the system's by_q and by_v */
   dvi__groups q_groups, v_groups;
 } dvi__force_term;
+
+/* Some rows of holonomic constraints. */
+typedef struct dvi__holonomic_term {
+  dvi_holonomic callbacks;
+  char *name;
+  int first;              /* its first row among all */
+  dvi__pattern gradients; /* n rows, a column for each row of phi */
+  dvi__pattern qq;
+  int *in_qq; /* places in the system's rows_qq */
+  dvi__groups groups;
+} dvi__holonomic_term;
 
 /* The gradient of a function beside a one-form alpha, and the places of the entries of both in the
  * sum. */
@@ -110,8 +122,8 @@ typedef struct dvi__constraint_term {
 enum { DVI__DIMENSION_MOST = INT_MAX / 4 };
 
 /* Hashes of all that is declared, without the results of callbacks. The parts are terms, masses,
- * patterns, potentials, invariants, forces. */
-enum { DVI__DECLARED_PARTS = 6 };
+ * patterns, potentials, invariants, forces, holonomic constraints. */
+enum { DVI__DECLARED_PARTS = 7 };
 typedef struct dvi__declared {
   uint64_t hash[DVI__DECLARED_PARTS];
 } dvi__declared;
@@ -138,6 +150,10 @@ struct dvi_system {
   int potential_count;
   dvi__force_term *forces;
   int force_count;
+  dvi__holonomic_term *holonomics;
+  int holonomic_count;
+  int row_count;                 /* of all holonomic constraints */
+  dvi__pattern rows_q, rows_qq; /* d phi/dq by columns [n x row_count], and the Hessian of phi.w */
   dvi_symmetry *symmetries;
   int symmetry_count;
   dvi_invariant *invariants;

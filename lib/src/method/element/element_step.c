@@ -130,38 +130,6 @@ static dvi_status element_create_solver(dvi__stepper *self, dvi__element *own)
   return dvi__solver_create(&equations, self->counters, &own->solver);
 }
 
-dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *space, int solver)
-{
-  dvi__element *own = self->own = DVI_NEW(dvi__element, 1);
-  if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
-  self->order = dvi__element_order(space);
-  self->symmetric = dvi__symmetric_rule(space->rule);
-  self->follows = 1;
-  self->late_hessians = 1;
-  own->choice = solver;
-  own->counters = self->counters;
-  DVI_TRY(dvi__action_create(self->system, space, self->counters, &own->action));
-  own->has_forces = self->system->force_count > 0;
-  own->definite = dvi__element_is_definite(self->system, dvi__action_evaluator(own->action));
-  DVI_TRY(element_decouple(self, own));
-  if (!element_allocate(self, own))
-    return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
-  return element_create_solver(self, own);
-}
-
-void dvi__element_destroy(dvi__stepper *self)
-{
-  dvi__element *own = self->own;
-  if (own == NULL) return;
-  dvi__solver_destroy(&own->solver);
-  dvi__element_clear_newton(own);
-  dvi__decoupled_destroy(&own->decoupled);
-  dvi__action_destroy(&own->action);
-  dvi__release(own->branch);
-  dvi__release(own->Y);
-  dvi__release(own);
-}
-
 /* Take account of a new term. The ladder begins with the whole Jacobian, and ends with the rounding
  * of rows, because roundings would err to one side otherwise. Unknowns of a term are for Newton's
  * method. */
@@ -184,6 +152,42 @@ static dvi_status element_renew_solver(dvi__stepper *self)
   if (!element_allocate(self, own))
     return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
   return element_create_solver(self, own);
+}
+
+dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *space, int solver)
+{
+  dvi__element *own = self->own = DVI_NEW(dvi__element, 1);
+  if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
+  self->order = dvi__element_order(space);
+  self->symmetric = dvi__symmetric_rule(space->rule);
+  self->follows = 1;
+  self->late_hessians = 1;
+  own->choice = solver;
+  own->counters = self->counters;
+  DVI_TRY(dvi__action_create(self->system, space, self->counters, &own->action));
+  own->has_forces = self->system->force_count > 0;
+  own->definite = dvi__element_is_definite(self->system, dvi__action_evaluator(own->action));
+  if (self->system->row_count > 0) {
+    DVI_TRY(dvi__action_constrain(own->action));
+    return element_renew_solver(self);
+  }
+  DVI_TRY(element_decouple(self, own));
+  if (!element_allocate(self, own))
+    return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
+  return element_create_solver(self, own);
+}
+
+void dvi__element_destroy(dvi__stepper *self)
+{
+  dvi__element *own = self->own;
+  if (own == NULL) return;
+  dvi__solver_destroy(&own->solver);
+  dvi__element_clear_newton(own);
+  dvi__decoupled_destroy(&own->decoupled);
+  dvi__action_destroy(&own->action);
+  dvi__release(own->branch);
+  dvi__release(own->Y);
+  dvi__release(own);
 }
 
 dvi_status dvi__element_centre(dvi__stepper *self, const dvi__centring *centring)
@@ -343,6 +347,12 @@ static dvi_status element_advance(dvi__stepper *self, dvi__state *state, double 
   return DVI_OK;
 }
 
+static dvi_status element_ends(dvi__element *own, const double *Y)
+{
+  dvi__action_ends(own->action, Y, own->dq, own->dq_low, own->dp);
+  return dvi__action_constrain_end(own->action, Y, own->dp);
+}
+
 /* Let KINSOL test the solution. The step keeps the solution of the iteration. KINSOL itself solves
  * those that do not pass. */
 static dvi_status element_certify(dvi__stepper *self, const dvi__element_place *at, double *Y,
@@ -353,8 +363,7 @@ static dvi_status element_certify(dvi__stepper *self, const dvi__element_place *
   const dvi_status status = dvi__certify(own->solver, size, Y, report);
   if (status != DVI_NOT_CONVERGED) return status;
   DVI_TRY(dvi__solve(own->solver, DVI__KINSOL, size, 0, 0, Y, report));
-  dvi__action_ends(own->action, Y, own->dq, own->dq_low, own->dp);
-  return DVI_OK;
+  return element_ends(own, Y);
 }
 
 static dvi__element_place element_place(const dvi__stepper *self, const dvi__state *state, double h)
@@ -390,7 +399,7 @@ dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
   dvi__solve_report report = {0};
   const dvi__element_place at = element_place(self, state, h);
   DVI_TRY(element_find_path(self, &at, &report));
-  dvi__action_ends(own->action, own->Y, own->dq, own->dq_low, own->dp);
+  DVI_TRY(element_ends(own, own->Y));
   dvi__action_forces(own->action, self->memory + dvi__element_forces(self));
   if (own->choice == DVI__SOLVER_CERTIFIED) DVI_TRY(element_certify(self, &at, own->Y, &report));
   if (state->supplied != NULL) DVI_TRY(dvi__action_supplies(own->action, own->Y, own->supply));

@@ -28,7 +28,7 @@ static const dvi__key keys[] = {
     {"base", base_name, 0, 0, DVI__LEFT_OUT,
      "the symmetric method that is composed: verlet, midpoint, trapezoidal, galerkin, imex, "
      "lie-verlet, or a program's shaped-galerkin; all other keys are its own; default: verlet, on "
-     "groups lie-verlet"},
+     "groups lie-verlet, with holonomic constraints trapezoidal"},
     {0},
 };
 
@@ -40,7 +40,10 @@ static const dvi__scheme *scheme_of(const dvi__stepper *self)
 static dvi_status composition_create(dvi__stepper *self)
 {
   int *chosen = &self->settings.value[BASE];
-  if (*chosen == DVI__LEFT_OUT) *chosen = self->system->terms & DVI__FACTORS ? LIE_VERLET : VERLET;
+  if (*chosen == DVI__LEFT_OUT)
+    *chosen = self->system->terms & DVI__FACTORS     ? LIE_VERLET
+              : self->system->terms & DVI__HOLONOMIC ? TRAPEZOIDAL
+                                                     : VERLET;
   dvi__stepper *base = self->own = DVI_NEW(dvi__stepper, 1);
   if (base == NULL) return dvi__fail(DVI_NO_MEMORY, "composition: no memory");
   dvi_status status = dvi__stepper_create_inner(self, base_name(*chosen), self->system,
@@ -180,7 +183,8 @@ const dvi__method dvi__composition = {
     .keys = keys,
     .takes_rest = 1,
     .takes_shapes = 1,
-    .uses = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL | DVI__FACTORS | DVI__FORCES,
+    .uses = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL | DVI__FACTORS | DVI__FORCES |
+            DVI__HOLONOMIC,
     .create = composition_create,
     .destroy = composition_destroy,
     .start = composition_start,

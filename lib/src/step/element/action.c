@@ -127,6 +127,7 @@ void dvi__action_destroy(dvi__action **action)
   dvi__action_clear_two_point(a);
   dvi__action_clear_energy(a);
   dvi__action_clear_charts(a);
+  dvi__action_clear_constraints(a);
   dvi__linear_destroy(&a->chord);
   dvi__evaluator_destroy(&a->evaluator);
   dvi__action_clear_jacobian(a);

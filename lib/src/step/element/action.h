@@ -51,6 +51,13 @@ int dvi__action_has_terms(const dvi__action *action);
 /* Let the paths be those of a chart centred at their start. The struct is copied. Call it once. */
 dvi_status dvi__action_centre(dvi__action *action, const dvi__centring *centring);
 
+/* Let the paths fulfil the system's holonomic constraints, if it has any. Call it once. */
+dvi_status dvi__action_constrain(dvi__action *action);
+
+/* Change dp [n], the change of the momentum over the path Y, so that the velocity at its end stays
+ * on the holonomic constraints, if there are any. */
+dvi_status dvi__action_constrain_end(dvi__action *action, const double *Y, double *dp);
+
 /* Give the space that the action was made with. */
 dvi__action_space dvi__action_space_of(const dvi__action *action);
 

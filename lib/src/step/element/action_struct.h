@@ -74,7 +74,8 @@ struct dvi__action {
   double *F_q, *F_v;          /* [entries*r] of the forces, NULL without forces */
   double *moved;              /* [4 n*r] work of products, NULL until prepared */
   dvi__row_terms terms;
-  struct dvi__centred_paths *centred; /* charts centred at the start, or NULL */
+  struct dvi__centred_paths *centred;        /* charts centred at the start, or NULL */
+  struct dvi__constrained_rows *constrained; /* holonomic constraints, or NULL */
   /* Paths between two points (two_point.h). NULL until prepared. */
   struct {
     double *bubble;     /* [(s-1)*s] beta_m in the functions psi_k */
@@ -100,6 +101,7 @@ enum { DVI__CHORD_INVERSE = 8 };
 const double *dvi__action_fixed_point_shift(dvi__action *action, double ratio);
 
 typedef struct dvi__centred_paths dvi__centred_paths;
+typedef struct dvi__constrained_rows dvi__constrained_rows;
 
 /* Add the row terms' parts to the joint pattern and, with their own unknowns, to the Jacobian's.
  * Announce a path to them before L's derivatives are evaluated. Add their parts to the rows, to the
@@ -112,8 +114,9 @@ void dvi__action_add_term_magnitudes(const dvi__action *action, double *magnitud
 dvi_status dvi__action_add_term_derivatives(dvi__action *action, const double *Y, double *values);
 void dvi__action_scale_terms(const dvi__action *action, double *scale);
 
-/* Free the memory of dvi__action_centre. */
+/* Free the memory of dvi__action_centre, and of dvi__action_constrain. */
 void dvi__action_clear_charts(dvi__action *action);
+void dvi__action_clear_constraints(dvi__action *action);
 
 /* Free the memory of dvi__action_prepare_energy. */
 void dvi__action_clear_energy(dvi__action *action);

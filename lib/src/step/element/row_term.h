@@ -20,6 +20,7 @@ typedef struct dvi__row_path {
   double t0, h;
   const double *q0, *p0;          /* [n] */
   const double *q1;               /* [n] q at the path's end */
+  const double *Y;                /* [n*s] coefficients */
   const double *dp;               /* [n] h sum_j b_j L_q_j, not yet known to `place` */
   const double *t, *Q, *V;        /* [r], [n*r], [n*r] */
   const double *weight, *end;     /* [r] b_j, [s] psi_k(1) */
@@ -38,17 +39,20 @@ typedef struct dvi__row_term {
    * in L's. Default none. */
   const dvi__pattern *pattern;
 
-  int unknowns;               /* number of own unknowns and own rows */
-  const dvi__pattern *acting; /* [n x 1] coordinates whose rows and columns the own unknowns meet */
+  /* Own unknowns and own rows come in groups of this size, which do not meet each other. Default
+   * none. Unknown k of group a is own[a*unknowns + k]. */
+  int unknowns;
+  /* [n x groups] coordinates whose rows and columns the unknowns of each group meet */
+  const dvi__pattern *acting;
 
   /* Take the path, before L's derivatives are evaluated. */
   void (*place)(void *of, const dvi__row_path *path);
 
-  /* Add to R [n*s] and to dp [n], the change of the momentum. Write own_R [unknowns]. */
+  /* Add to R [n*s] and to dp [n], the change of the momentum. Write own_R [own unknowns]. */
   dvi_status (*rows)(void *of, const dvi__row_path *path, const double *own, double *R, double *dp,
                      double *own_R);
 
-  /* Add the magnitudes of the summands to [n*s] and to [unknowns], after `rows`. */
+  /* Add the magnitudes of the summands to [n*s] and to [own unknowns], after `rows`. */
   void (*magnitudes)(const void *of, const dvi__row_path *path, double *magnitude,
                      double *own_magnitude);
 
@@ -56,7 +60,7 @@ typedef struct dvi__row_term {
   dvi_status (*derivatives)(void *of, const dvi__row_path *path, const double *own,
                             const dvi__row_jacobian *J);
 
-  /* Give the typical sizes [unknowns] of the own rows per unit of an unknown. */
+  /* Give the typical sizes [own unknowns] of the own rows per unit of an unknown. */
   void (*scale)(const void *of, double h, double *scale);
 } dvi__row_term;
 
@@ -69,11 +73,10 @@ double *dvi__row_block(const dvi__row_jacobian *J, int row, int column, int l);
 const dvi__pattern *dvi__row_joint(const dvi__row_jacobian *J);
 double *dvi__row_entry(const dvi__row_jacobian *J, int entry, int column, int l);
 
-/* Give the place of the term's own rows [unknowns] that meet Y_l of a coordinate, of the s rows of
- * a coordinate that meet an own unknown, and of the own rows [unknowns] that meet it. */
-double *dvi__row_own_rows(const dvi__row_jacobian *J, int column, int l);
+/* Give the place of the own rows [unknowns] of a group that meet Y_l of a coordinate, and of the s
+ * rows of a coordinate that meet an own unknown, counted over all groups. */
+double *dvi__row_own_rows(const dvi__row_jacobian *J, int group, int column, int l);
 double *dvi__row_own_column(const dvi__row_jacobian *J, int unknown, int row);
-double *dvi__row_own_block(const dvi__row_jacobian *J, int unknown);
 
 /* Add forces F [n*r] at the nodes by the principle of Lagrange and d'Alembert, beside L_q. Source:
  * Marsden and West 2001, sec. 3.2. */

@@ -15,6 +15,12 @@ struct dvi__row_jacobian {
 
 /* ---- add a term ---- */
 
+/* Count the groups of own unknowns. */
+static int group_count(const dvi__row_term *term)
+{
+  return term->unknowns > 0 ? term->acting->columns : 0;
+}
+
 static dvi_status allocate_terms(dvi__action *a)
 {
   dvi__row_terms *terms = &a->terms;
@@ -53,7 +59,7 @@ dvi_status dvi__action_add_term(dvi__action *a, const dvi__row_term *term)
   terms->term[terms->count] = *term;
   terms->first[terms->count] = a->n * a->s + terms->unknowns;
   terms->count++;
-  terms->unknowns += term->unknowns;
+  terms->unknowns += group_count(term) * term->unknowns;
   if (term->pattern == NULL && term->unknowns == 0) return DVI_OK;
   if (a->block == NULL) return DVI_OK;
   dvi__action_clear_jacobian(a);
@@ -80,50 +86,96 @@ dvi_status dvi__action_join_terms(const dvi__action *a, dvi__pattern *joint)
   return DVI_OK;
 }
 
-/* Tell whether coordinate i, or the unknowns of a term, numbered from n on, meet those of column
- * j. */
-static int coordinates_meet(const dvi__action *a, int i, int j)
+/* Count the groups of all terms, and bound the entries that they add to the joint pattern. */
+static int count_groups(const dvi__action *a, size_t *entries)
 {
-  const int n = a->n;
-  if (i < n && j < n) return dvi__pattern_find(&a->joint, i, j) >= 0;
-  if (i >= n && j >= n) return i == j;
-  return dvi__pattern_find(a->terms.term[(i > j ? i : j) - n].acting, i > j ? j : i, 0) >= 0;
+  int groups = 0;
+  for (int k = 0; k < a->terms.count; k++) {
+    const dvi__row_term *term = &a->terms.term[k];
+    if (term->unknowns == 0) continue;
+    groups += group_count(term);
+    *entries += 2 * (size_t)dvi__pattern_entries(term->acting) + (size_t)group_count(term);
+  }
+  return groups;
 }
 
-/* Make the joint pattern with one more row and column for each term with unknowns. */
+/* Append the rows of the groups that coordinate j meets. */
+static int append_groups(const dvi__action *a, dvi__pattern *const *meeting, int j, int *row)
+{
+  int count = 0, first = a->n;
+  for (int k = 0; k < a->terms.count; k++) {
+    const dvi__pattern *met = meeting[k];
+    if (a->terms.term[k].unknowns == 0) continue;
+    for (int e = met->start[j]; e < met->start[j + 1]; e++) row[count++] = first + met->row[e];
+    first += group_count(&a->terms.term[k]);
+  }
+  return count;
+}
+
+/* Fill the joint pattern with one more row and column for each group. `meeting` are the transposes
+ * of `acting`. */
+static void fill_wide(const dvi__action *a, dvi__pattern *const *meeting, dvi__pattern *wide)
+{
+  int at = 0, column = a->n;
+  for (int j = 0; j < a->n; j++) {
+    wide->start[j] = at;
+    for (int e = a->joint.start[j]; e < a->joint.start[j + 1]; e++)
+      wide->row[at++] = a->joint.row[e];
+    at += append_groups(a, meeting, j, wide->row + at);
+  }
+  for (int k = 0; k < a->terms.count; k++) {
+    const dvi__pattern *acting = a->terms.term[k].acting;
+    for (int b = 0; b < group_count(&a->terms.term[k]); b++, column++) {
+      wide->start[column] = at;
+      for (int e = acting->start[b]; e < acting->start[b + 1]; e++)
+        wide->row[at++] = acting->row[e];
+      wide->row[at++] = column;
+    }
+  }
+  wide->start[column] = at;
+}
+
 static dvi_status widen_joint(const dvi__action *a, dvi__pattern *wide)
 {
-  const int size = a->n + a->terms.count;
-  const size_t most = (size_t)dvi__pattern_entries(&a->joint) +
-                      (size_t)a->terms.count * (2 * (size_t)a->n + 1);
+  dvi__pattern transposes[DVI__ROW_TERMS_MOST] = {{0}}, *meeting[DVI__ROW_TERMS_MOST];
+  size_t most = (size_t)dvi__pattern_entries(&a->joint);
+  const int size = a->n + count_groups(a, &most);
   *wide = (dvi__pattern){size, size, DVI_NEW(int, (size_t)size + 1), DVI_NEW(int, most)};
-  if (wide->start == NULL || wide->row == NULL)
-    return dvi__fail(DVI_NO_MEMORY, "action: no memory for the Jacobian");
-  int entries = 0;
-  for (int j = 0; j < size; j++) {
-    wide->start[j] = entries;
-    for (int i = 0; i < size; i++)
-      if ((i < a->n || a->terms.term[i - a->n].unknowns > 0) &&
-          (j < a->n || a->terms.term[j - a->n].unknowns > 0) && coordinates_meet(a, i, j))
-        wide->row[entries++] = i;
+  dvi_status status = wide->start != NULL && wide->row != NULL
+                          ? DVI_OK
+                          : dvi__fail(DVI_NO_MEMORY, "action: no memory for the Jacobian");
+  for (int k = 0; k < a->terms.count; k++) {
+    meeting[k] = &transposes[k];
+    if (status == DVI_OK && a->terms.term[k].unknowns > 0)
+      status = dvi__pattern_transpose(a->terms.term[k].acting, meeting[k]);
   }
-  wide->start[size] = entries;
-  return DVI_OK;
+  if (status == DVI_OK) fill_wide(a, meeting, wide);
+  for (int k = 0; k < a->terms.count; k++) dvi__pattern_clear(meeting[k]);
+  return status;
+}
+
+/* List where the unknowns of each coordinate and of each group begin, and end. */
+static void list_first(const dvi__action *a, int *first)
+{
+  int at = a->n;
+  for (int j = 0; j <= a->n; j++) first[j] = j * a->s;
+  for (int k = 0; k < a->terms.count; k++)
+    for (int b = 0; b < group_count(&a->terms.term[k]); b++, at++)
+      first[at + 1] = first[at] + a->terms.term[k].unknowns;
 }
 
 dvi_status dvi__action_wide_pattern(const dvi__action *a, dvi__pattern *pattern)
 {
   dvi__pattern wide = {0};
-  const int n = a->n;
   if (a->terms.unknowns == 0) return dvi__pattern_blocks(&a->joint, a->s, pattern);
-  int *first = DVI_NEW(int, (size_t)n + (size_t)a->terms.count + 1);
-  dvi_status status = first != NULL
-                          ? widen_joint(a, &wide)
-                          : dvi__fail(DVI_NO_MEMORY, "action: no memory for the Jacobian");
-  for (int j = 0; status == DVI_OK && j <= n; j++) first[j] = j * a->s;
-  for (int k = 0; status == DVI_OK && k < a->terms.count; k++)
-    first[n + k + 1] = first[n + k] + a->terms.term[k].unknowns;
-  if (status == DVI_OK) status = dvi__pattern_uneven_blocks(&wide, first, pattern);
+  dvi_status status = widen_joint(a, &wide);
+  int *first = status == DVI_OK ? DVI_NEW(int, (size_t)wide.columns + 1) : NULL;
+  if (status == DVI_OK && first == NULL)
+    status = dvi__fail(DVI_NO_MEMORY, "action: no memory for the Jacobian");
+  if (status == DVI_OK) {
+    list_first(a, first);
+    status = dvi__pattern_uneven_blocks(&wide, first, pattern);
+  }
   dvi__pattern_clear(&wide);
   dvi__release(first);
   return status;
@@ -139,6 +191,7 @@ void dvi__action_place_terms(dvi__action *a, const double *Y)
   terms->path.h = a->h;
   terms->path.q0 = a->q0;
   terms->path.p0 = a->p0;
+  terms->path.Y = Y;
   for (int i = 0; i < a->n; i++) {
     terms->q1[i] = a->q0[i];
     for (int k = 0; k < a->s; k++) terms->q1[i] += a->end[k] * Y[i * a->s + k];
@@ -220,19 +273,14 @@ static double *find_value(const dvi__row_jacobian *J, int row, int column)
   return entry >= 0 ? J->values + entry : NULL;
 }
 
-double *dvi__row_own_rows(const dvi__row_jacobian *J, int column, int l)
+double *dvi__row_own_rows(const dvi__row_jacobian *J, int group, int column, int l)
 {
-  return find_value(J, J->first, column * J->a->s + l);
+  return find_value(J, J->first + group * J->term->unknowns, column * J->a->s + l);
 }
 
 double *dvi__row_own_column(const dvi__row_jacobian *J, int unknown, int row)
 {
   return find_value(J, row * J->a->s, J->first + unknown);
-}
-
-double *dvi__row_own_block(const dvi__row_jacobian *J, int unknown)
-{
-  return find_value(J, J->first, J->first + unknown);
 }
 
 /* ---- forces at the nodes ---- */

@@ -13,6 +13,7 @@
 #include "system/term/constraint.h"
 #include "system/term/declare.h"
 #include "system/term/force.h"
+#include "system/term/holonomic.h"
 #include "system/term/term.h"
 
 static char *copy_text(const char *text)
@@ -131,16 +132,17 @@ static dvi_status check_hamiltonian(const dvi_system_terms *terms)
   return DVI_OK;
 }
 
-static dvi_status check_forces(const dvi_system_terms *terms)
+static dvi_status check_forces_and_joints(const dvi_system_terms *terms)
 {
   DVI_TRY(check_list("forces", terms->force_count, terms->forces));
-  if (terms->force_count == 0 ||
+  DVI_TRY(check_list("holonomic constraints", terms->holonomic_count, terms->holonomics));
+  if ((terms->force_count == 0 && terms->holonomic_count == 0) ||
       (terms->factors == NULL && terms->one_form == NULL && terms->hamiltonian == NULL))
     return DVI_OK;
   return dvi__fail(
       DVI_UNSUPPORTED,
-      "system: forces go with a mass of coordinates, or with a general Lagrangian, not "
-      "with %s",
+      "system: %s go with a mass of coordinates, or with a general Lagrangian, not with %s",
+      terms->force_count > 0 ? "forces" : "holonomic constraints",
       terms->factors != NULL    ? "factors"
       : terms->one_form != NULL ? "a one-form"
                                 : "a Hamiltonian");
@@ -191,7 +193,7 @@ static dvi_status check_declared_terms(const dvi_system_terms *terms)
   DVI_TRY(check_list("invariants", terms->invariant_count, terms->invariants));
   DVI_TRY(check_kind(terms));
   DVI_TRY(check_hamiltonian(terms));
-  DVI_TRY(check_forces(terms));
+  DVI_TRY(check_forces_and_joints(terms));
   if (terms->gauge != NULL && terms->one_form == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "system: a gauge without a one-form; it changes nothing else");
@@ -214,6 +216,7 @@ static dvi_status system_fill(dvi_system *s, const dvi_system_terms *terms)
   DVI_TRY(declare_dynamics(s, terms));
   DVI_TRY(copy_potentials(s, terms));
   DVI_TRY(dvi__forces_copy(s, terms));
+  DVI_TRY(dvi__holonomics_copy(s, terms));
   DVI_TRY(copy_invariants(s, terms));
   dvi__system_declared(s, &s->declared);
   return DVI_OK;
@@ -259,6 +262,7 @@ void dvi_system_destroy(dvi_system **system)
   dvi_system *s = *system;
   for (int k = 0; k < s->potential_count; k++) clear_potential(&s->potentials[k]);
   for (int k = 0; k < s->force_count; k++) dvi__force_clear(&s->forces[k]);
+  for (int k = 0; k < s->holonomic_count; k++) dvi__holonomic_clear(&s->holonomics[k]);
   for (int i = 0; s->invariant_names != NULL && i < dvi_system_invariant_count(s); i++)
     dvi__release(s->invariant_names[i]);
   if (s->lagrangian != NULL) dvi__general_clear(s->lagrangian);
@@ -269,11 +273,14 @@ void dvi_system_destroy(dvi_system **system)
   dvi__pattern_clear(&s->vv);
   dvi__pattern_clear(&s->by_q);
   dvi__pattern_clear(&s->by_v);
+  dvi__pattern_clear(&s->rows_q);
+  dvi__pattern_clear(&s->rows_qq);
   dvi__release(s->slots);
   dvi__release(s->mass_diagonal);
   dvi__release(s->mass_values);
   dvi__release(s->potentials);
   dvi__release(s->forces);
+  dvi__release(s->holonomics);
   dvi__release(s->symmetries);
   dvi__release(s->invariants);
   dvi__release(s->invariant_names);

@@ -181,9 +181,10 @@ static dvi_status constrained_motion(dvi__evaluator *e, double t, const double *
 
 /* ---- the constraint ---- */
 
-static dvi_status constraint_distance(dvi__evaluator *e, const double *q, const double *p,
+static dvi_status constraint_distance(dvi__evaluator *e, double t, const double *q, const double *p,
                                       double *distance)
 {
+  (void)t;
   double *phi = memory_of(e)->weighted.phi;
   DVI_TRY(dvi__constraint_value(e, q, p, phi));
   *distance = dvi__largest((size_t)e->system->constraint->callbacks.count, phi);
@@ -206,8 +207,10 @@ static double size_of_gradient(const dvi__constraint_term *c, const double *phi_
   return size;
 }
 
-static dvi_status constraint_size(dvi__evaluator *e, const double *q, const double *p, double *size)
+static dvi_status constraint_size(dvi__evaluator *e, double t, const double *q, const double *p,
+                                  double *size)
 {
+  (void)t;
   const dvi__constraint_term *c = e->system->constraint;
   double *phi_z = memory_of(e)->weighted.phi_z;
   *size = 0;
@@ -217,8 +220,9 @@ static dvi_status constraint_size(dvi__evaluator *e, const double *q, const doub
   return DVI_OK;
 }
 
-static dvi_status check_on_constraint(dvi__evaluator *e, const double *q, const double *p)
+static dvi_status check_on_constraint(dvi__evaluator *e, double t, const double *q, const double *p)
 {
+  (void)t;
   const dvi__constraint_term *c = e->system->constraint;
   const dvi__weighted *at = &memory_of(e)->weighted;
   DVI_TRY(dvi__constraint_value(e, q, p, at->phi));
@@ -242,8 +246,7 @@ static dvi_status project_on_constraint(dvi__evaluator *e, double t, double *q, 
   const constraint_memory *d = memory_of(e);
   const size_t n = (size_t)e->system->n;
   double size = HUGE_VAL, next;
-  (void)t;
-  DVI_TRY(constraint_distance(e, q, p, &next));
+  DVI_TRY(constraint_distance(e, t, q, p, &next));
   for (int iteration = 0; iteration < MOST_ITERATIONS && next > 0 && next < size; iteration++) {
     size = next;
     DVI_TRY(factor_bracket(e, q, p));
@@ -254,12 +257,12 @@ static dvi_status project_on_constraint(dvi__evaluator *e, double t, double *q, 
     dvi__constraint_push(c, d->weighted.phi_z, d->multiplier, 1, d->pushed);
     if (dvi__first_not_finite(2 * n, d->pushed) >= 0)
       return dvi__fail(DVI_NOT_CONVERGED, "no point of the constraint was found");
-    DVI_TRY(constraint_distance(e, d->pushed, d->pushed + n, &next));
+    DVI_TRY(constraint_distance(e, t, d->pushed, d->pushed + n, &next));
     if (next >= size) continue;
     memcpy(q, d->pushed, n * sizeof *q);
     memcpy(p, d->pushed + n, n * sizeof *p);
   }
-  if (check_on_constraint(e, q, p) == DVI_OK) return DVI_OK;
+  if (check_on_constraint(e, t, q, p) == DVI_OK) return DVI_OK;
   return dvi__fail_in(DVI_NOT_CONVERGED, "no point of the constraint was found by Newton's method");
 }
 
@@ -325,7 +328,8 @@ dvi_status dvi_system_bracket(const dvi_system *system, const double *q, const d
 
 int dvi_system_constraint_count(const dvi_system *system)
 {
-  return system != NULL && system->constraint != NULL ? system->constraint->callbacks.count : 0;
+  if (system == NULL) return 0;
+  return system->constraint != NULL ? system->constraint->callbacks.count : system->row_count;
 }
 
 /* ---- the kind ---- */

@@ -233,10 +233,11 @@ dvi_status dvi__form_definite(dvi__evaluator *e, const double *q, int sign, doub
   return good < 2 * n ? refuse_near_one(sign, size) : DVI_OK;
 }
 
-static dvi_status form_distance(dvi__evaluator *e, const double *q, const double *p,
+static dvi_status form_distance(dvi__evaluator *e, double t, const double *q, const double *p,
                                 double *distance)
 {
   double *alpha = e->point[2], largest = 0;
+  (void)t;
   DVI_TRY(dvi__form_value(e->system->lagrangian, q, alpha, e->scratch.result[0]));
   for (int i = 0; i < e->system->n; i++) largest = fmax(largest, fabs(p[i] - alpha[i]));
   *distance = largest;
@@ -263,18 +264,20 @@ static dvi_status size_of_form(dvi__evaluator *e, const double *q, const double 
   return DVI_OK;
 }
 
-static dvi_status form_size(dvi__evaluator *e, const double *q, const double *p, double *size)
+static dvi_status form_size(dvi__evaluator *e, double t, const double *q, const double *p,
+                            double *size)
 {
   double *alpha = e->point[2];
-  (void)p;
+  (void)t, (void)p;
   *size = 0;
   DVI_TRY(dvi__form_value(e->system->lagrangian, q, alpha, e->scratch.result[0]));
   return size_of_form(e, q, alpha, size);
 }
 
-static dvi_status check_on_form(dvi__evaluator *e, const double *q, const double *p)
+static dvi_status check_on_form(dvi__evaluator *e, double t, const double *q, const double *p)
 {
   double *alpha = e->point[2], size = 0;
+  (void)t;
   DVI_TRY(dvi__form_value(e->system->lagrangian, q, alpha, e->scratch.result[0]));
   DVI_TRY(size_of_form(e, q, alpha, &size));
   for (int i = 0; i < e->system->n; i++)

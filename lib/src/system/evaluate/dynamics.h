@@ -11,23 +11,27 @@
 typedef enum dvi__motion_form {
   DVI__EULER_LAGRANGE, /* q' = v, p' = L_q, p = L_v */
   DVI__FIRST_ORDER,    /* Omega(q) q' = H_q, without momenta of their own */
-  DVI__HAMILTON,       /* q' = H_p, p' = -H_q, and the forces of constraints phi(q,p) = 0 */
-  DVI__LIFTED          /* on rotations and directions, lifted to coordinates of R^n */
+  /* q' = v, p' = L_q - G^T lambda, p = L_v, phi(t,q) = 0 */
+  DVI__CONSTRAINED_LAGRANGE,
+  DVI__HAMILTON, /* q' = H_p, p' = -H_q, and the forces of constraints phi(q,p) = 0 */
+  DVI__LIFTED    /* on rotations and directions, lifted to coordinates of R^n */
 } dvi__motion_form;
 
-/* A constraint that every state of the system fulfils, p = alpha(q) or phi(q,p) = 0. */
+/* A constraint that every state of the system fulfils, p = alpha(q), or phi(q,p) = 0, or phi(t,q) =
+ * 0 and its rate. */
 typedef struct dvi__state_constraint {
   const char *matrix; /* name of the matrix at whose singular points trajectories end */
 
   /* Return DVI_BAD_ARGUMENT unless the state fulfils the constraint up to rounding. */
-  dvi_status (*check)(dvi__evaluator *e, const double *q, const double *p);
+  dvi_status (*check)(dvi__evaluator *e, double t, const double *q, const double *p);
 
   /* Move q and p [n] onto the constraint. */
   dvi_status (*project)(dvi__evaluator *e, double t, double *q, double *p);
 
   /* Compute the largest violation, and the size by which it is measured. */
-  dvi_status (*distance)(dvi__evaluator *e, const double *q, const double *p, double *distance);
-  dvi_status (*size)(dvi__evaluator *e, const double *q, const double *p, double *size);
+  dvi_status (*distance)(dvi__evaluator *e, double t, const double *q, const double *p,
+                         double *distance);
+  dvi_status (*size)(dvi__evaluator *e, double t, const double *q, const double *p, double *size);
 
   /* Find the side of the singular points on which the state lies. This is the sign of the matrix's
    * Pfaffian, 0 at such a point. Beyond DVI__SIDES_MOST rows the side is always 1, because the sign
@@ -85,7 +89,8 @@ struct dvi__dynamics {
 /* The kinds (system/declare/dynamics.def). The last two describe systems that the library
  * creates. */
 extern const dvi__dynamics dvi__dynamics_charts, dvi__dynamics_constant_mass,
-    dvi__dynamics_general_lagrangian, dvi__dynamics_one_form, dvi__dynamics_hamiltonian,
+    dvi__dynamics_general_lagrangian, dvi__dynamics_constrained_mass,
+    dvi__dynamics_constrained_lagrangian, dvi__dynamics_one_form, dvi__dynamics_hamiltonian,
     dvi__dynamics_constrained_hamiltonian, dvi__dynamics_time_transformed;
 
 /* Return the argument of the system's functions beside q, which is p or v. */

@@ -1,0 +1,256 @@
+/* Holonomic constraints phi(t,q) = 0 in the rows of an element.
+ *
+ * The discrete action gets the constraints at the s + 1 Lobatto points chi_k, with the weights
+ * beta_k of Lobatto's rule, whatever the quadrature of L is,
+ *
+ *     S - h sum_k beta_k lambda_k.phi(t0 + chi_k h, q(chi_k)).
+ *
+ * At the nodes k = 0..s-1 this is a force -G^T lambda_k in the rows. The unknowns lambda_k make the
+ * nodes k = 1..s fulfil phi = 0. The force of the node k = s changes only the momentum at the end,
+ * and is found last, so that the velocity there stays on the constraint. The rows are divided by h,
+ * and the unknowns are h^2 lambda_k, which keeps the condition of the equations independent of h.
+ * For s = 1 this is RATTLE.
+ *
+ * Source: Leyendecker, Marsden and Ortiz 2008 (constraints in the discrete action); Wenger, Ober-
+ * Bloebaum and Leyendecker 2017 (Galerkin variational integrators with constraints). */
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "space/quadrature.h"
+#include "space/trial.h"
+#include "step/element/action_struct.h"
+#include "system/dynamics/holonomic.h"
+
+struct dvi__constrained_rows {
+  dvi__action *action;
+  int rows, entries;  /* of phi, and of its gradients */
+  double *chi, *beta; /* [s + 1] */
+  double *psi, *bar;  /* [(s + 1)*s] psi_l(chi_k) and psi_l(chi_k) - psi_l(1), at k*s + l */
+  double *q0;         /* [n] the start of the path whose gradients are known */
+  double t0;
+  double *X;            /* [(s + 1)*n] the nodes */
+  double *phi, *phi_q;  /* [rows], [(s + 1)*entries] */
+  double *w, *phi_w_qq; /* [rows], [entries of rows_qq] */
+  double *v;            /* [n] */
+  double *numbers;
+};
+
+typedef dvi__constrained_rows rows_term;
+
+/* ---- create ---- */
+
+static dvi_status rows_allocate(rows_term *x)
+{
+  const dvi__action *a = x->action;
+  const size_t n = (size_t)a->n, s = (size_t)a->s, nodes = s + 1, rows = (size_t)x->rows,
+               entries = (size_t)x->entries,
+               curvature = (size_t)dvi__pattern_entries(&a->system->rows_qq);
+  double *at = x->numbers = DVI_NEW(double, nodes *(2 + 2 * s + n + entries) + 2 * rows + 2 * n +
+                                                curvature);
+  if (at == NULL) return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d constraints", x->rows);
+  x->chi = at;
+  x->beta = x->chi + nodes;
+  x->psi = x->beta + nodes;
+  x->bar = x->psi + nodes * s;
+  x->X = x->bar + nodes * s;
+  x->phi_q = x->X + nodes * n;
+  x->phi = x->phi_q + nodes * entries;
+  x->w = x->phi + rows;
+  x->phi_w_qq = x->w + rows;
+  x->q0 = x->phi_w_qq + curvature;
+  x->v = x->q0 + n;
+  return DVI_OK;
+}
+
+static dvi_status rows_fill_tables(rows_term *x)
+{
+  const dvi__action *a = x->action;
+  const size_t s = (size_t)a->s;
+  DVI_TRY(dvi_quadrature(DVI_LOBATTO, a->s + 1, x->chi, x->beta));
+  for (size_t k = 0; k <= s; k++) {
+    dvi__trial_in(&a->trial, x->chi[k], x->psi + k * s, NULL, a->line);
+    for (size_t l = 0; l < s; l++) x->bar[k * s + l] = x->psi[k * s + l] - a->end[l];
+  }
+  /* to the last bit at the ends */
+  for (size_t l = 0; l < s; l++) {
+    x->psi[l] = x->bar[s * s + l] = 0;
+    x->psi[s * s + l] = a->end[l];
+    x->bar[l] = -a->end[l];
+  }
+  return DVI_OK;
+}
+
+/* ---- the path ---- */
+
+static void rows_place(void *of, const dvi__row_path *p)
+{
+  const rows_term *x = of;
+  for (int k = 0; k <= p->s; k++)
+    for (int i = 0; i < p->n; i++) {
+      double sum = 0;
+      for (int l = 0; l < p->s; l++) sum += x->psi[k * p->s + l] * p->Y[i * p->s + l];
+      x->X[k * p->n + i] = p->q0[i] + sum;
+    }
+}
+
+static double node_time(const rows_term *x, const dvi__row_path *p, int k)
+{
+  return p->t0 + x->chi[k] * p->h;
+}
+
+/* Evaluate the gradients at all nodes. Those at the start are known from the first residual of a
+ * step. */
+static dvi_status rows_gradients(rows_term *x, const dvi__row_path *p)
+{
+  const size_t bytes = (size_t)p->n * sizeof(double);
+  const int known = x->t0 == p->t0 && memcmp(x->q0, p->q0, bytes) == 0;
+  for (int k = known; k <= p->s; k++)
+    DVI_TRY(dvi__rows_gradients(x->action->evaluator, node_time(x, p, k), x->X + k * p->n,
+                                x->phi_q + k * x->entries));
+  memcpy(x->q0, p->q0, bytes);
+  x->t0 = p->t0;
+  return DVI_OK;
+}
+
+/* Give h^2 lambda of row a at node k. */
+static double multiplier_of(const dvi__row_path *p, const double *own, int a, int k)
+{
+  return own[a * p->s + k];
+}
+
+static dvi_status rows_add(void *of, const dvi__row_path *p, const double *own, double *R,
+                           double *dp, double *own_R)
+{
+  rows_term *x = of;
+  const dvi__pattern *G = &x->action->system->rows_q;
+  DVI_TRY(rows_gradients(x, p));
+  for (int k = 0; k < p->s; k++)
+    for (int a = 0; a < x->rows; a++)
+      for (int e = G->start[a]; e < G->start[a + 1]; e++) {
+        const double impulse = -x->beta[k] / p->h * multiplier_of(p, own, a, k) *
+                               x->phi_q[k * x->entries + e];
+        double *row = R + G->row[e] * p->s;
+        for (int j = 0; j < p->s; j++) row[j] += x->bar[k * p->s + j] * impulse;
+        dp[G->row[e]] += impulse;
+      }
+  for (int k = 1; k <= p->s; k++) {
+    DVI_TRY(dvi__rows_value(x->action->evaluator, node_time(x, p, k), x->X + k * p->n, x->phi));
+    for (int a = 0; a < x->rows; a++) own_R[a * p->s + k - 1] = x->phi[a] / p->h;
+  }
+  return DVI_OK;
+}
+
+static void rows_magnitudes(const void *of, const dvi__row_path *p, double *magnitude,
+                            double *own_magnitude)
+{
+  const rows_term *x = of;
+  const dvi__pattern *G = &x->action->system->rows_q;
+  (void)magnitude;
+  for (int k = 1; k <= p->s; k++)
+    for (int a = 0; a < x->rows; a++)
+      for (int e = G->start[a]; e < G->start[a + 1]; e++)
+        own_magnitude[a * p->s + k - 1] += fabs(x->phi_q[k * x->entries + e] *
+                                                x->X[k * p->n + G->row[e]] / p->h);
+}
+
+/* ---- derivatives ---- */
+
+/* Add the derivatives of the forces by the place of node k. */
+static dvi_status add_curvature(rows_term *x, const dvi__row_path *p, const double *own, int k,
+                                const dvi__row_jacobian *J)
+{
+  const dvi__pattern *qq = &x->action->system->rows_qq;
+  for (int a = 0; a < x->rows; a++) x->w[a] = multiplier_of(p, own, a, k);
+  DVI_TRY(dvi__rows_hessian(x->action->evaluator, node_time(x, p, k), x->X + k * p->n, x->w,
+                            x->phi_w_qq));
+  for (int column = 0; column < p->n; column++)
+    for (int e = qq->start[column]; e < qq->start[column + 1]; e++)
+      for (int l = 0; l < p->s; l++) {
+        double *rows = dvi__row_block(J, qq->row[e], column, l);
+        const double by = -x->beta[k] / p->h * x->phi_w_qq[e] * x->psi[k * p->s + l];
+        for (int j = 0; j < p->s; j++) rows[j] += x->bar[k * p->s + j] * by;
+      }
+  return DVI_OK;
+}
+
+static dvi_status rows_derivatives(void *of, const dvi__row_path *p, const double *own,
+                                   const dvi__row_jacobian *J)
+{
+  rows_term *x = of;
+  const dvi__pattern *G = &x->action->system->rows_q;
+  DVI_TRY(rows_gradients(x, p));
+  for (int k = 1; k < p->s; k++) DVI_TRY(add_curvature(x, p, own, k, J));
+  for (int a = 0; a < x->rows; a++)
+    for (int e = G->start[a]; e < G->start[a + 1]; e++) {
+      for (int k = 0; k < p->s; k++) {
+        double *column = dvi__row_own_column(J, a * p->s + k, G->row[e]);
+        const double by = -x->beta[k] / p->h * x->phi_q[k * x->entries + e];
+        for (int j = 0; j < p->s; j++) column[j] += x->bar[k * p->s + j] * by;
+      }
+      for (int l = 0; l < p->s; l++) {
+        double *rows = dvi__row_own_rows(J, a, G->row[e], l);
+        for (int k = 1; k <= p->s; k++)
+          rows[k - 1] += x->phi_q[k * x->entries + e] * x->psi[k * p->s + l] / p->h;
+      }
+    }
+  return DVI_OK;
+}
+
+static void rows_scale(const void *of, double h, double *scale)
+{
+  const rows_term *x = of;
+  const dvi__pattern *G = &x->action->system->rows_q;
+  const int s = x->action->s;
+  for (int a = 0; a < x->rows; a++) {
+    double size = 0;
+    for (int e = G->start[a]; e < G->start[a + 1]; e++) size = fmax(size, fabs(x->phi_q[e]));
+    for (int k = 0; k < s; k++) scale[a * s + k] = (size > 0 ? size : 1) / fabs(h);
+  }
+}
+
+/* ---- the action ---- */
+
+dvi_status dvi__action_constrain(dvi__action *a)
+{
+  const dvi_system *system = a->system;
+  if (system->row_count == 0) return DVI_OK;
+  rows_term *x = a->constrained = DVI_NEW(rows_term, 1);
+  if (x == NULL) return dvi__fail(DVI_NO_MEMORY, "action: no memory for constraints");
+  *x = (rows_term){.action = a,
+                   .rows = system->row_count,
+                   .entries = dvi__pattern_entries(&system->rows_q),
+                   .t0 = (double)NAN};
+  DVI_TRY(rows_allocate(x));
+  DVI_TRY(rows_fill_tables(x));
+  return dvi__action_add_term(a, &(dvi__row_term){.name = "holonomic constraints",
+                                                  .of = x,
+                                                  .pattern = &system->rows_qq,
+                                                  .unknowns = a->s,
+                                                  .acting = &system->rows_q,
+                                                  .place = rows_place,
+                                                  .rows = rows_add,
+                                                  .magnitudes = rows_magnitudes,
+                                                  .derivatives = rows_derivatives,
+                                                  .scale = rows_scale});
+}
+
+void dvi__action_clear_constraints(dvi__action *a)
+{
+  if (a->constrained != NULL) dvi__release(a->constrained->numbers);
+  dvi__release(a->constrained);
+}
+
+dvi_status dvi__action_constrain_end(dvi__action *a, const double *Y, double *dp)
+{
+  rows_term *x = a->constrained;
+  if (x == NULL) return DVI_OK;
+  const size_t n = (size_t)a->n;
+  double *p = x->X;
+  dvi__action_path(a, Y, a->h, 1.0, NULL, x->v);
+  for (size_t i = 0; i < n; i++) p[i] = a->p0[i] + dp[i];
+  DVI_TRY(dvi__rows_project_momentum(a->evaluator, a->t0 + a->h, a->terms.q1, p, x->v));
+  for (size_t i = 0; i < n; i++) dp[i] = p[i] - a->p0[i];
+  return DVI_OK;
+}

@@ -1,0 +1,31 @@
+/* Holonomic constraints phi(t,q) = 0 beside a mass or a general Lagrangian.
+ *
+ *     d/dt L_v = L_q + F - G^T lambda,   phi(t,q) = 0,   G = d phi/dq.
+ *
+ * Functions of all rows of an evaluator's system at one point. */
+#ifndef DVI_SYSTEM_DYNAMICS_HOLONOMIC_H
+#define DVI_SYSTEM_DYNAMICS_HOLONOMIC_H
+#include "system/evaluate/evaluator.h"
+
+/* Compute phi [m], d phi/dq in the order of the system's rows_q, d phi/dt [m], and the Hessian of
+ * phi.w in the order of rows_qq. */
+dvi_status dvi__rows_value(dvi__evaluator *e, double t, const double *q, double *phi);
+dvi_status dvi__rows_gradients(dvi__evaluator *e, double t, const double *q, double *phi_q);
+dvi_status dvi__rows_rate(dvi__evaluator *e, double t, const double *q, double *phi_t);
+dvi_status dvi__rows_hessian(dvi__evaluator *e, double t, const double *q, const double *w,
+                             double *phi_w_qq);
+
+/* Add factor G^T w to x [n]. */
+void dvi__rows_pull(const dvi_system *system, const double *phi_q, const double *w, double factor,
+                    double *x);
+
+/* Move p [n] along the gradients until the velocity stays on the constraint, G v + phi_t = 0.
+ * *v [n] is a guess for general Lagrangians, and becomes the velocity. */
+dvi_status dvi__rows_project_momentum(dvi__evaluator *e, double t, const double *q, double *p,
+                                      double *v);
+
+/* Compute the acceleration a [n] and the multipliers lambda [m] of a state whose velocity is v. */
+dvi_status dvi__rows_acceleration(dvi__evaluator *e, double t, const double *q, const double *v,
+                                  double *a, double *lambda);
+
+#endif

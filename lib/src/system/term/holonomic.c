@@ -1,0 +1,162 @@
+#include "system/term/holonomic.h"
+
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "system/term/declare.h"
+#include "system/term/difference.h"
+
+/* ---- declaration ---- */
+
+static dvi_status refuse_memory_of_rows(void)
+{
+  return dvi__fail(DVI_NO_MEMORY, "system: no memory for its holonomic constraints");
+}
+
+static dvi_status copy_holonomic(dvi_system *s, const dvi_holonomic *given,
+                                 dvi__holonomic_term *term)
+{
+  const char *name = given->name != NULL ? given->name : "constraint";
+  if (given->value == NULL || given->gradient == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "system: constraint '%s' has no %s callback", name,
+                     given->value == NULL ? "value" : "gradient");
+  if (given->count < 1 || given->count > s->n - s->row_count)
+    return dvi__fail(DVI_BAD_SIZE,
+                     "system: constraint '%s' has %d rows; 1 to %d are possible beside the others, "
+                     "because there are %d coordinates",
+                     name, given->count, s->n - s->row_count, s->n);
+  DVI_TRY(dvi__check_rate(s, name, given->rate != NULL));
+  term->callbacks = *given;
+  term->first = s->row_count;
+  s->row_count += given->count;
+  term->name = dvi__duplicate(name, strlen(name) + 1, 1);
+  if (term->name == NULL) return refuse_memory_of_rows();
+  term->callbacks.name = term->name;
+  DVI_TRY(
+      dvi__pattern_copy_rectangular(&given->gradients, s->n, given->count, name, &term->gradients));
+  DVI_TRY(dvi__pattern_copy_symmetric(&given->qq, s->n, name, &term->qq));
+  return given->hessian != NULL ? DVI_OK : dvi__group_columns(&term->qq, &term->groups);
+}
+
+/* Join the gradients of all terms, column after column. */
+static dvi_status join_gradients(dvi_system *s)
+{
+  size_t entries = 0;
+  for (int k = 0; k < s->holonomic_count; k++)
+    entries += (size_t)dvi__pattern_entries(&s->holonomics[k].gradients);
+  s->rows_q = (dvi__pattern){s->n, s->row_count, DVI_NEW(int, (size_t)s->row_count + 1),
+                             DVI_NEW(int, entries)};
+  if (s->rows_q.start == NULL || s->rows_q.row == NULL) return refuse_memory_of_rows();
+  int at = 0;
+  for (int k = 0; k < s->holonomic_count; k++) {
+    const dvi__holonomic_term *term = &s->holonomics[k];
+    for (int a = 0; a < term->callbacks.count; a++) {
+      s->rows_q.start[term->first + a] = at;
+      for (int e = term->gradients.start[a]; e < term->gradients.start[a + 1]; e++)
+        s->rows_q.row[at++] = term->gradients.row[e];
+    }
+  }
+  s->rows_q.start[s->row_count] = at;
+  return DVI_OK;
+}
+
+static dvi_status join_curvatures(dvi_system *s)
+{
+  DVI_TRY(dvi__pattern_empty(s->n, &s->rows_qq));
+  for (int k = 0; k < s->holonomic_count; k++) {
+    dvi__pattern sum;
+    DVI_TRY(dvi__pattern_union(&s->rows_qq, &s->holonomics[k].qq, &sum));
+    dvi__pattern_clear(&s->rows_qq);
+    s->rows_qq = sum;
+  }
+  for (int k = 0; k < s->holonomic_count; k++) {
+    dvi__holonomic_term *term = &s->holonomics[k];
+    term->in_qq = DVI_NEW(int, dvi__pattern_entries(&term->qq));
+    if (term->in_qq == NULL) return refuse_memory_of_rows();
+    dvi__pattern_embed(&term->qq, &s->rows_qq, term->in_qq);
+  }
+  return DVI_OK;
+}
+
+dvi_status dvi__holonomics_copy(dvi_system *s, const dvi_system_terms *terms)
+{
+  if (terms->holonomic_count == 0) return DVI_OK;
+  s->terms |= DVI__HOLONOMIC;
+  s->holonomics = DVI_NEW(dvi__holonomic_term, terms->holonomic_count);
+  if (s->holonomics == NULL) return refuse_memory_of_rows();
+  for (int k = 0; k < terms->holonomic_count; k++) {
+    s->holonomic_count = k + 1;
+    DVI_TRY(copy_holonomic(s, &terms->holonomics[k], &s->holonomics[k]));
+  }
+  DVI_TRY(join_gradients(s));
+  return join_curvatures(s);
+}
+
+void dvi__holonomic_clear(dvi__holonomic_term *term)
+{
+  dvi__pattern_clear(&term->gradients);
+  dvi__pattern_clear(&term->qq);
+  dvi__release(term->name);
+  dvi__release(term->in_qq);
+  dvi__release(term->groups.of_column);
+}
+
+/* ---- evaluation ---- */
+
+dvi_status dvi__holonomic_value(const dvi__holonomic_term *term, double t, const double *q,
+                                double *phi)
+{
+  const dvi_holonomic *c = &term->callbacks;
+  return dvi__verdict(c->value(t, q, phi, c->user), c->count, 1, phi, term->name, "value", "");
+}
+
+dvi_status dvi__holonomic_gradient(const dvi__holonomic_term *term, double t, const double *q,
+                                   double *phi_q)
+{
+  const dvi_holonomic *c = &term->callbacks;
+  return dvi__verdict(c->gradient(t, q, phi_q, c->user), dvi__pattern_entries(&term->gradients), 1,
+                      phi_q, term->name, "gradient", "");
+}
+
+dvi_status dvi__holonomic_rate(const dvi__holonomic_term *term, double t, const double *q,
+                               double *phi_t)
+{
+  const dvi_holonomic *c = &term->callbacks;
+  if (c->rate == NULL) {
+    memset(phi_t, 0, (size_t)c->count * sizeof *phi_t);
+    return DVI_OK;
+  }
+  return dvi__verdict(c->rate(t, q, phi_t, c->user), c->count, 1, phi_t, term->name, "rate", "");
+}
+
+dvi_status dvi__holonomic_gradient_of_q(const void *function, int count, const double *q,
+                                        double *first, double *none)
+{
+  const dvi__holonomic_at *at = function;
+  const dvi__pattern *G = &at->term->gradients;
+  const int n = G->rows;
+  (void)none;
+  for (int k = 0; k < count; k++) {
+    dvi__gather_point(n, count, k, q, at->point);
+    DVI_TRY(dvi__holonomic_gradient(at->term, at->t, at->point, at->phi_q));
+    memset(at->sum, 0, (size_t)n * sizeof(double));
+    for (int a = 0; a < G->columns; a++)
+      for (int e = G->start[a]; e < G->start[a + 1]; e++)
+        at->sum[G->row[e]] += at->w[a] * at->phi_q[e];
+    dvi__scatter_result(n, count, k, at->sum, first);
+  }
+  return DVI_OK;
+}
+
+dvi_status dvi__holonomic_hessian(const dvi__holonomic_at *at, dvi__scratch *scratch,
+                                  const double *q, double *phi_w_qq)
+{
+  const dvi__holonomic_term *term = at->term;
+  const dvi_holonomic *c = &term->callbacks;
+  if (c->hessian == NULL)
+    return dvi__difference_hessian(dvi__holonomic_gradient_of_q, at, &scratch->of_gradient,
+                                   &term->groups, 0, 1, q, &term->qq, phi_w_qq, NULL, NULL);
+  return dvi__verdict(c->hessian(at->t, q, at->w, phi_w_qq, c->user),
+                      dvi__pattern_entries(&term->qq), 1, phi_w_qq, term->name, "Hessian", "");
+}

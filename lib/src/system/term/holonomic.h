@@ -1,0 +1,35 @@
+/* Holonomic constraints phi(t,q) = 0. */
+#ifndef DVI_SYSTEM_TERM_HOLONOMIC_H
+#define DVI_SYSTEM_TERM_HOLONOMIC_H
+#include "system/term/term.h"
+
+/* Check and copy the constraints, and join their patterns. */
+dvi_status dvi__holonomics_copy(dvi_system *system, const dvi_system_terms *terms);
+void dvi__holonomic_clear(dvi__holonomic_term *term);
+
+/* Compute phi [count], its gradients in the order of the term's pattern, and its rates [count], of
+ * one term at one point. */
+dvi_status dvi__holonomic_value(const dvi__holonomic_term *term, double t, const double *q,
+                                double *phi);
+dvi_status dvi__holonomic_gradient(const dvi__holonomic_term *term, double t, const double *q,
+                                   double *phi_q);
+dvi_status dvi__holonomic_rate(const dvi__holonomic_term *term, double t, const double *q,
+                               double *phi_t);
+
+/* The function phi.w of q, whose gradient is differenced, in the shape of
+ * system/term/difference.h. `function` is a dvi__holonomic_at with room for one point. */
+typedef struct dvi__holonomic_at {
+  const dvi__holonomic_term *term;
+  double t;
+  const double *w;
+  double *point, *phi_q, *sum; /* [n], [entries], [n] */
+} dvi__holonomic_at;
+
+dvi_status dvi__holonomic_gradient_of_q(const void *function, int count, const double *q,
+                                        double *first, double *none);
+
+/* Compute the Hessian of phi.w in the order of the term's qq. */
+dvi_status dvi__holonomic_hessian(const dvi__holonomic_at *at, dvi__scratch *scratch,
+                                  const double *q, double *phi_w_qq);
+
+#endif
