@@ -325,6 +325,16 @@ dvi_status dvi_integrator_invariant(dvi_integrator *integrator, int i, double *v
  *  @retval (others)         as the callback of the one-form or the constraint fails */
 dvi_status dvi_integrator_constraint(dvi_integrator *integrator, double *distance);
 
+/** Compute the multipliers lambda [dvi_system_constraint_count] of the holonomic constraints at the
+ *  present state, of the forces -G^T lambda, from the equations of motion there. They have the
+ *  order of the method.
+ *
+ *  @retval DVI_UNSUPPORTED  the system has no holonomic constraints
+ *  @retval DVI_BAD_STATE    before dvi_integrator_start
+ *  @retval DVI_SINGULAR     the constraints are dependent there
+ *  @retval (others)         as the callbacks fail */
+dvi_status dvi_integrator_reactions(dvi_integrator *integrator, double *lambda);
+
 /** Return the multiplier [nv], or [dvi_system_constraint_count], of the last step's constraint.
  *  Owned by the integrator, valid until its next call. NULL if the method has none, or before the
  *  first step.

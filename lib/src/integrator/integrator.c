@@ -9,6 +9,7 @@
 #include "integrator/attempt.h"
 #include "num/finite.h"
 #include "space/user_basis.h"
+#include "system/dynamics/holonomic.h"
 #include "system/evaluate/dynamics.h"
 
 void dvi__state_lay_out(const dvi_integrator *I, dvi__state *state, double **at)
@@ -459,6 +460,20 @@ dvi_status dvi_integrator_balance(dvi_integrator *I, int i, double *defect)
   DVI_TRY(dvi_integrator_invariant(I, i, &now));
   *defect = (now - I->at_start[i]) - I->now.supplied[i] + I->now.supplied_compensation[i];
   return DVI_OK;
+}
+
+dvi_status dvi_integrator_reactions(dvi_integrator *I, double *lambda)
+{
+  if (I == NULL || lambda == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "reactions: an argument is NULL");
+  if (I->system->row_count == 0)
+    return dvi__fail(DVI_UNSUPPORTED, "reactions: the system has no holonomic constraints");
+  if (!I->started)
+    return dvi__fail(
+        DVI_BAD_STATE,
+        "reactions: the integrator has no state yet; call dvi_integrator_start first");
+  DVI_TRY(state_velocity(I, &I->now, I->v));
+  return dvi__rows_acceleration(I->evaluator, I->now.t, I->now.q, I->v, NULL, lambda);
 }
 
 const double *dvi_integrator_multiplier(const dvi_integrator *I)

@@ -258,6 +258,7 @@ dvi_status dvi__reference_ida(dvi__reference_run *run)
   if (dynamics->constraint == NULL && run->options.code == DVI_IDA_INDEX_2)
     return dvi__fail(DVI_UNSUPPORTED, "ida-index-2: the system declares neither a one-form nor a "
                                       "Hamiltonian with constraints; its equations are of index 1");
+  if (dynamics->equations == DVI__CONSTRAINED_LAGRANGE) return dvi__reference_holonomic(run);
   if (dynamics->equations == DVI__HAMILTON) return dvi__reference_hamilton(run);
   if (dynamics->equations == DVI__LIFTED) return dvi__reference_ida_lift(run);
   lagrange_ida self = {.run = run,

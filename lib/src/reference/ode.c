@@ -76,7 +76,7 @@ static CVRhsFn ode_right_side_of(const dvi__reference_run *run)
 static int jacobian_is_simple(const dvi_system *system)
 {
   return system->mass_diagonal != NULL && !system->dynamics->on_manifold &&
-         system->force_count == 0;
+         system->force_count == 0 && system->row_count == 0;
 }
 
 /* Write d(qdot, pdot)/d(q, p) = [ 0, M^-1; L_qq, 0 ] with its diagonal, to which CVODE adds the

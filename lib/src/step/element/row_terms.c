@@ -220,6 +220,7 @@ dvi_status dvi__action_add_term_rows(dvi__action *a, const double *Y, double *R)
 void dvi__action_add_term_magnitudes(const dvi__action *a, double *magnitude)
 {
   const dvi__row_terms *terms = &a->terms;
+  for (int k = 0; k < terms->unknowns; k++) magnitude[a->n * a->s + k] = 0;
   for (int k = 0; k < terms->count; k++) {
     const dvi__row_term *term = &terms->term[k];
     if (term->magnitudes != NULL)

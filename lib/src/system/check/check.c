@@ -3,6 +3,7 @@
  * by ranges is compared with the whole gradient. Declarations about time follow. */
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
@@ -14,13 +15,14 @@
 #include "system/evaluate/dynamics.h"
 #include "system/term/constraint.h"
 #include "system/term/force.h"
+#include "system/term/holonomic.h"
 
 /* One block of one term while it is compared. */
 typedef struct block {
   /* term is the name of a potential, or of a force, or NULL, owner a part of the kinetic term or
    * NULL for all. */
   const char *term, *owner, *name;
-  int is_force;
+  const char *kind;            /* of a named term */
   const dvi__pattern *pattern; /* NULL for a gradient */
   const double *given;         /* NULL without a callback, where only the pattern is checked */
   double largest;              /* largest magnitude of its entries, given or differenced */
@@ -46,7 +48,7 @@ static void keep_worst(const dvi__check *c, const block *b, const dvi__disagreem
                          .term = b->term,
                          .owner = b->owner,
                          .block = b->name,
-                         .is_force = b->is_force,
+                         .kind = b->kind,
                          .constraint = c->constraint};
   kept->worst.error = error;
 }
@@ -78,7 +80,7 @@ static dvi_status check_gradient(dvi__check *c, dvi__batch_value value, const vo
                                  const double *x, const double *given, const char *term,
                                  const char *name)
 {
-  block b = {.term = term, .name = name};
+  block b = {.term = term, .kind = "potential", .name = name};
   const dvi__differences *d = &c->differences;
   DVI_TRY(dvi__difference_gradient(value, function, &c->differences, c->n, 1, x, c->column[0]));
   const double magnitude = fmax(fabs(d->plus[0]), fabs(d->minus[0]));
@@ -151,6 +153,7 @@ static dvi_status check_potential(dvi__check *c, const dvi__potential_term *p)
   const int has_gradient = dvi__potential_has_gradient(p),
             has_hessian = dvi__potential_has_hessian(p);
   block qq = {.term = p->name,
+              .kind = "potential",
               .name = "d2V/dq2",
               .pattern = &p->qq,
               .given = has_hessian ? c->hessian[0] : NULL};
@@ -299,7 +302,7 @@ static dvi_status check_force_block(dvi__check *c, dvi__batch_gradient force,
                                     const dvi__pattern *pattern, const double *given)
 {
   block b = {
-      .term = at->term->name, .name = name, .is_force = 1, .pattern = pattern, .given = given};
+      .term = at->term->name, .name = name, .kind = "force", .pattern = pattern, .given = given};
   return check_blocks(c, force, at, x, &b, NULL);
 }
 
@@ -319,6 +322,75 @@ static dvi_status check_force(dvi__check *c, const dvi__force_term *f)
   return check_force_block(c, dvi__force_of_v, &at, c->v, "dF/dv", &f->by_v, given[1]);
 }
 
+/* A constraint's values as a function with n results, for differences of all of them at once. */
+static dvi_status padded_rows(const void *function, int count, const double *q, double *phi,
+                              double *none)
+{
+  const dvi__holonomic_at *at = function;
+  (void)count, (void)none;
+  memset(phi, 0, (size_t)at->term->gradients.rows * sizeof *phi);
+  return dvi__holonomic_value(at->term, at->t, q, phi);
+}
+
+/* Compare the derivatives of all rows in q_i with row i of the gradients. */
+static dvi_status check_row_gradients(dvi__check *c, const dvi__holonomic_at *at)
+{
+  const dvi__holonomic_term *term = at->term;
+  const dvi__differences *d = &c->differences;
+  block b = {.term = term->name,
+             .kind = "constraint",
+             .name = "d phi_j/dq_i at (i,j) =",
+             .pattern = &term->gradients,
+             .given = c->hessian[1]};
+  DVI_TRY(dvi__holonomic_gradient(term, c->t, c->q, c->hessian[1]));
+  for (int i = 0; i < c->n; i++) {
+    DVI_TRY(dvi__difference_column(padded_rows, at, &c->differences, c->n, i, c->q, c->column[0],
+                                   c->column[1]));
+    compare_row(&b, term->callbacks.count, i, c->column[0],
+                noise_of(largest_component(c->n, d->plus), d->step[i]));
+  }
+  keep_worst(c, &b, &b.on_pattern, &c->of_gradient);
+  keep_worst(c, &b, &b.outside, &c->of_pattern);
+  return DVI_OK;
+}
+
+/* Compare the Hessian of each row alone with differences of its gradient. */
+static dvi_status check_row_hessians(dvi__check *c, const dvi__holonomic_at *at, double *w)
+{
+  const dvi__holonomic_term *term = at->term;
+  const int given = term->callbacks.hessian != NULL;
+  for (int a = 0; a < term->callbacks.count; a++) {
+    block b = {.term = term->name,
+               .kind = "constraint",
+               .name = "d2(phi.w)/dq2",
+               .pattern = &term->qq,
+               .given = given ? c->hessian[0] : NULL};
+    w[a] = 1;
+    if (given) DVI_TRY(dvi__holonomic_hessian(at, &c->scratch, c->q, c->hessian[0]));
+    DVI_TRY(check_blocks(c, dvi__holonomic_gradient_of_q, at, c->q, &b, NULL));
+    w[a] = 0;
+  }
+  return DVI_OK;
+}
+
+static dvi_status check_holonomic(dvi__check *c, const dvi__holonomic_term *term)
+{
+  const size_t n = (size_t)c->n, entries = (size_t)dvi__pattern_entries(&term->gradients);
+  double *room = DVI_NEW(double, 3 * n + entries);
+  if (room == NULL) return dvi__fail(DVI_NO_MEMORY, "system check: no memory for constraints");
+  const dvi__holonomic_at at = {.term = term,
+                                .t = c->t,
+                                .w = room,
+                                .point = room + n,
+                                .sum = room + 2 * n,
+                                .phi_q = room + 3 * n};
+  c->gradient_noise = 0;
+  dvi_status status = check_row_gradients(c, &at);
+  if (status == DVI_OK) status = check_row_hessians(c, &at, room);
+  dvi__release(room);
+  return status;
+}
+
 static dvi_status check_all_terms(dvi__check *c, const dvi_system *system)
 {
   const names *name = system->dynamics->by_momentum ? &of_hamiltonian : &of_lagrangian;
@@ -329,6 +401,8 @@ static dvi_status check_all_terms(dvi__check *c, const dvi_system *system)
   for (int k = 0; k < system->potential_count; k++)
     DVI_TRY(check_potential(c, &system->potentials[k]));
   for (int k = 0; k < system->force_count; k++) DVI_TRY(check_force(c, &system->forces[k]));
+  for (int k = 0; k < system->holonomic_count; k++)
+    DVI_TRY(check_holonomic(c, &system->holonomics[k]));
   return DVI_OK;
 }
 
@@ -359,9 +433,13 @@ static int longest_pattern(const dvi_system *system)
 {
   const int vv = dvi__pattern_entries(&system->vv), qv = dvi__pattern_entries(&system->qv),
             qq = dvi__pattern_entries(&system->qq);
+  const int has_rows = system->row_count > 0,
+            rows = has_rows ? dvi__pattern_entries(&system->rows_q) : 0,
+            curvature = has_rows ? dvi__pattern_entries(&system->rows_qq) : 0;
   const int longest = vv > qv ? vv : qv, terms = dvi__longest_hessian(system, 1),
-            most = longest > terms ? longest : terms;
-  return qq > most ? qq : most;
+            most = longest > terms ? longest : terms, of_rows = rows > curvature ? rows : curvature,
+            all = most > of_rows ? most : of_rows;
+  return qq > all ? qq : all;
 }
 
 static dvi_status check_allocate(dvi__check *c, const dvi_system *system)

@@ -8,8 +8,7 @@ static void name_entry(const dvi__finding *f, const char *kinetic, size_t size, 
 {
   char place[32], owner[48];
   (void)snprintf(owner, sizeof owner, "%s", f->owner != NULL ? f->owner : kinetic);
-  if (f->term != NULL)
-    (void)snprintf(owner, sizeof owner, "%s '%.24s'", f->is_force ? "force" : "potential", f->term);
+  if (f->term != NULL) (void)snprintf(owner, sizeof owner, "%s '%.24s'", f->kind, f->term);
   if (f->constraint > 0) (void)snprintf(owner, sizeof owner, "constraint %d", f->constraint - 1);
   if (f->worst.column < 0)
     (void)snprintf(place, sizeof place, "(%d)", f->worst.row);

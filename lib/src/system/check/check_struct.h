@@ -16,7 +16,7 @@ typedef struct dvi__disagreement {
 typedef struct dvi__finding {
   dvi__disagreement worst;
   const char *term, *owner, *block;
-  int is_force;
+  const char *kind; /* of a named term, such as "potential" */
   int constraint;
 } dvi__finding;
 

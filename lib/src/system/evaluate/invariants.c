@@ -92,14 +92,29 @@ static dvi_status kinetic_size(dvi__evaluator *e, const dvi__instant *at, double
   return DVI_OK;
 }
 
-/* Compute the power F.v of the forces without a potential. */
+static double along(int n, const double *x, const double *v)
+{
+  double sum = 0;
+  for (int i = 0; i < n; i++) sum += x[i] * v[i];
+  return sum;
+}
+
+/* Compute the power F.v of the forces without a potential, and of holonomic constraints that move
+ * with time, which is that of all forces less that of the Lagrangian's own. */
 static dvi_status power_of_forces(dvi__evaluator *e, const dvi__instant *at, double *power)
 {
+  const dvi_system *s = e->system;
   double *F = e->point[2];
   *power = 0;
-  if (e->system->force_count == 0) return DVI_OK;
-  DVI_TRY(dvi__forces(e, DVI__FORCES, 1, &at->t, at->q, at->v, F));
-  for (int i = 0; i < e->system->n; i++) *power += F[i] * at->v[i];
+  if (s->force_count > 0) {
+    DVI_TRY(dvi__forces(e, DVI__FORCES, 1, &at->t, at->q, at->v, F));
+    *power += along(s->n, F, at->v);
+  }
+  if (s->row_count == 0 || s->autonomous) return DVI_OK;
+  DVI_TRY(s->dynamics->forces(e, at->t, at->q, at->v, F));
+  *power += along(s->n, F, at->v);
+  DVI_TRY(dvi__lagrangian_gradient(e, 1, &at->t, at->q, at->v, F, NULL));
+  *power -= along(s->n, F, at->v);
   return DVI_OK;
 }
 
