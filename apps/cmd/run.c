@@ -25,7 +25,8 @@ static const char ended_before[] =
 
 static bool has_constraint(const problem *scene)
 {
-  return scene->terms->one_form != NULL || scene->terms->constraint != NULL;
+  return scene->terms->one_form != NULL || scene->terms->constraint != NULL ||
+         scene->terms->holonomic_count > 0;
 }
 
 /* Read the start's momenta, "P1,P2,...". */
@@ -42,8 +43,8 @@ static bool parse_momenta(const char *text, int n, double *p)
 static int place_momenta(const run_request *request, problem *scene)
 {
   if (request->project && !has_constraint(scene))
-    return usage_error("run: --project is for problems with a constraint, p = alpha(q) or phi(q,p) "
-                       "= 0; %s has none",
+    return usage_error("run: --project is for problems with a constraint, p = alpha(q), phi(q,p) = "
+                       "0 or phi(t,q) = 0; %s has none",
                        scene->name);
   if (request->momenta == NULL || parse_momenta(request->momenta, scene->nv, scene->p)) return DONE;
   return usage_error("run: --momenta wants %d finite numbers with commas between them, not '%s'",

@@ -15,11 +15,12 @@ typedef enum column_kind {
   COLUMN_VELOCITY, /**< only with factors */
   COLUMN_MOMENTUM,
   COLUMN_INVARIANT,
-  COLUMN_BALANCE,    /**< defect of an invariant's balance, with forces */
-  COLUMN_STEP,       /**< length of the last step, of methods that choose it */
-  COLUMN_DISTANCE,   /**< distance from the manifold, with factors */
-  COLUMN_CONSTRAINT, /**< |p - alpha(q)| with a one-form, |phi(q,p)| of a constrained Hamiltonian */
-  COLUMN_JUMP,       /**< jump, of methods whose trajectories jump */
+  COLUMN_BALANCE,  /**< defect of an invariant's balance, with forces */
+  COLUMN_STEP,     /**< length of the last step, of methods that choose it */
+  COLUMN_DISTANCE, /**< distance from the manifold, with factors */
+  /** |p - alpha(q)| with a one-form, |phi(q,p)| of a constrained Hamiltonian, |phi(t,q)| */
+  COLUMN_CONSTRAINT,
+  COLUMN_JUMP, /**< jump, of methods whose trajectories jump */
   COLUMN_KINDS
 } column_kind;
 

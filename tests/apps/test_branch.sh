@@ -29,8 +29,8 @@ expect 0 'degree 12' run double-pendulum --method galerkin:degree=12 --h 0.078 -
   --final --columns energy
 near -40.2181791758673 1e-9 'degree 12'
 
-# The motion is chaotic, so that last digits of a machine decide the end and its energy error. Over 32
-# runs whose g differs in the 12th digit, the largest errors are 0.038, of sem 0.65.
+# The motion is chaotic, so that last digits of a machine decide the end and its energy error. Over
+# 32 runs whose g differs in the 12th digit, the largest errors are 0.038, of sem 0.65.
 for h in $(some 0.063 0.078 0.0934 0.11 0.127 0.14 0.155 0.17 0.183 0.199); do
   for method in galerkin:degree=8 hamiltonian:degree=8; do
     right -40.2181791758673 0.1 double-pendulum --method $method --h $h --t-end 40

@@ -275,6 +275,19 @@ START_TEST(forces_that_do_not_go_are_told)
 }
 END_TEST
 
+START_TEST(constraints_that_do_not_go_are_told)
+{
+  refused(X "lagrangian: x'^2\nconstraints: {}\n" RUN, ":3:14:", "there are 0 constraints");
+  refused(X "lagrangian: x'^2\nconstraints: {a: x, b: x^2}\n" RUN,
+          ":3:14:", "there are 2 constraints; at least 1 is needed");
+  refused(X "lagrangian: x'^2\nconstraints: {a: x'}\n" RUN,
+          ":3:18:", "velocities cannot stand in a constraint");
+  refused("coordinates: {x: scalar, y: scalar}\nlagrangian: x'*y - y\nconstraints: {a: x - y}\n"
+          "initial: {x: 1, y: 1}\nstep: 1\nuntil: 1\n",
+          ":3:14:", "beside a one-form there are no constraints");
+}
+END_TEST
+
 #define MOVES "lagrangian: x'^2\nstep: 1\nuntil: 1\n" X
 
 START_TEST(what_no_system_can_be_made_of_has_its_place)
@@ -462,6 +475,7 @@ SUITE(scene_errors)
   tcase_add_test(tests, names_are_declared_once_and_before_their_use);
   tcase_add_test(tests, sections_that_are_missing_or_do_not_go_together_are_told);
   tcase_add_test(tests, forces_that_do_not_go_are_told);
+  tcase_add_test(tests, constraints_that_do_not_go_are_told);
   tcase_add_test(tests, what_no_system_can_be_made_of_has_its_place);
   tcase_add_test(tests, starts_are_complete_and_fit);
   tcase_add_test(tests, settings_replace_numbers_and_nothing_else);

@@ -469,9 +469,8 @@ dvi_status dvi_integrator_reactions(dvi_integrator *I, double *lambda)
   if (I->system->row_count == 0)
     return dvi__fail(DVI_UNSUPPORTED, "reactions: the system has no holonomic constraints");
   if (!I->started)
-    return dvi__fail(
-        DVI_BAD_STATE,
-        "reactions: the integrator has no state yet; call dvi_integrator_start first");
+    return dvi__fail(DVI_BAD_STATE,
+                     "reactions: the integrator has no state yet; call dvi_integrator_start first");
   DVI_TRY(state_velocity(I, &I->now, I->v));
   return dvi__rows_acceleration(I->evaluator, I->now.t, I->now.q, I->v, NULL, lambda);
 }

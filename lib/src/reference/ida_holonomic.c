@@ -3,10 +3,11 @@
  *
  * The unknowns are y = (q, v, p, lambda, mu), and the equations have index 2,
  *     F = ( qdot - v + G^T mu,  pdot - L_q + G^T lambda,  p - L_v,  G v + phi_t,  phi ) = 0,
- * with L_q including forces. The multipliers mu, which vanish, keep both phi and its rate at 0. lambda
- * and mu are in neither the error test nor the test of the iteration's convergence. The Jacobian
- * dF/dy + c dF/dydot is written here, but for the derivatives of phi_t by q, which are differenced.
- * Sources: Gear, Leimkuhler and Gupta 1985; Hindmarsh et al. 2005, ACM TOMS 31:363, sec. 2.3. */
+ * with L_q including forces. The multipliers mu, which vanish, keep both phi and its rate at 0.
+ * lambda and mu are in neither the error test nor the test of the iteration's convergence. The
+ * Jacobian dF/dy + c dF/dydot is written here, but for the derivatives of phi_t by q, which are
+ * differenced. Sources: Gear, Leimkuhler and Gupta 1985; Hindmarsh et al. 2005, ACM TOMS 31:363,
+ * sec. 2.3. */
 #include <float.h>
 #include <math.h>
 #include <string.h>

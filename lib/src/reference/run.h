@@ -32,9 +32,9 @@ typedef struct dvi__reference_run {
 
 /* Integrate by one code. The end is in run->q and run->p. run->reached and run->steps are set. */
 dvi_status dvi__reference_ida(dvi__reference_run *run);
-dvi_status dvi__reference_hamilton(dvi__reference_run *run); /* IDA with a Hamiltonian */
+dvi_status dvi__reference_hamilton(dvi__reference_run *run);  /* IDA with a Hamiltonian */
 dvi_status dvi__reference_holonomic(dvi__reference_run *run); /* IDA with phi(t,q) = 0 */
-dvi_status dvi__reference_ida_lift(dvi__reference_run *run); /* IDA with factors */
+dvi_status dvi__reference_ida_lift(dvi__reference_run *run);  /* IDA with factors */
 dvi_status dvi__reference_cvode(dvi__reference_run *run);
 dvi_status dvi__reference_arkode(dvi__reference_run *run);
 

@@ -152,7 +152,7 @@ struct dvi_system {
   int force_count;
   dvi__holonomic_term *holonomics;
   int holonomic_count;
-  int row_count;                 /* of all holonomic constraints */
+  int row_count;                /* of all holonomic constraints */
   dvi__pattern rows_q, rows_qq; /* d phi/dq by columns [n x row_count], and the Hessian of phi.w */
   dvi_symmetry *symmetries;
   int symmetry_count;

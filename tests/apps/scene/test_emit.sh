@@ -36,6 +36,28 @@ step: 0.1
 until: 3
 END
 
+cat >air.yaml <<'END'
+coordinates: {x: scalar, y: scalar}
+lagrangian: (x'^2 + y'^2)/2 - x^2*y^2
+forces: {x: 0.1*sin(t) - y}
+dissipation: 0.1*x'^4 + 0.2*x^2*y'^2
+initial: {x: 1, y: 0.3, x': 0.2}
+method: galerkin:degree=2
+step: 0.1
+until: 3
+END
+
+cat >rod.yaml <<'END'
+coordinates: {x: scalar, y: scalar, z: scalar}
+lagrangian: (x'^2 + y'^2 + z'^2)/2 - 9.81*y
+forces: {x: -0.1*x'}
+constraints: {rod: "((x - 0.3*sin(2*t))^2 + y^2 - 1)/2", slope: z - x}
+initial: {x: 0.6, y: -0.8, z: 0.6, x': 0.6, z': 0.6}
+method: galerkin:degree=2
+step: 0.02
+until: 2
+END
+
 # The warnings that users turn on. One instruction set alone compiles sooner.
 compiler=${CC:-cc}
 flags='-std=c11 -O2 -Wall -Wextra -Wconversion -Wpedantic -Werror -DDVI_LANES='
@@ -64,8 +86,8 @@ in_turn='NR == 1 { count = split($0, number) }
 if command -v "$compiler" >/dev/null &&
   ! grep -q '__[at]san_init\|__ubsan_handle' "$libraries/libdvi.so"; then
   cp "$top"/apps/scenes/*.yaml "$top"/apps/scenes/*/*.yaml .
-  for each in drop pits kepler oscillator driven-pendulum double-pendulum guiding-centre \
-    circle-dirac magnetic-pair elastica fpu vortices \
+  for each in drop pits air rod damped-driven kepler oscillator driven-pendulum double-pendulum \
+    guiding-centre circle-dirac magnetic-pair elastica fpu vortices \
     free-body spherical-double-pendulum satellite; do
     compiles $each.yaml
     expect 0 "$each" run $each.yaml --final

@@ -190,7 +190,7 @@ done
 # Sections that no scene may have, or not beside others.
 for pair in 'contacts: {x: 1}|takes contacts' 'lagrangian: x'"'"'^2|one of these' \
   'hamiltonian: x|no hamiltonian' 'one_form: {x: y}|one of these' \
-  'constraints: {a: x, b: y}|one of these' 'friction: 1|has no .friction.'; do
+  'constraints: {a: x, b: y}|holonomic constraints' 'friction: 1|has no .friction.'; do
   { cat separable.yaml; echo "${pair%%|*}"; } >odd.yaml
   expect 2 "${pair%%|*}" run odd.yaml --method verlet
   says err "${pair#*|}" "why not ${pair%%|*}"

@@ -26,8 +26,8 @@ typedef struct constrained {
 void make_constrained(constrained_kind kind, int differenced, constrained *made);
 void destroy_constrained(constrained *made);
 
-/* Gives some coordinates at the end of the span, to 14 digits. The others are NaN. Returns 0 if none
- * is known. */
+/* Gives some coordinates at the end of the span, to 14 digits. The others are NaN. Returns 0 if
+ * none is known. */
 int constrained_digits(constrained_kind kind, double *q);
 
 dvi_integrator *constrained_integrator(const constrained *model, const char *method);

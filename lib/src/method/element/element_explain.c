@@ -51,11 +51,19 @@ static void explain_simplified(dvi__element *own, dvi__text *text)
   dvi__text_add(text, "), ");
 }
 
+static int has_multipliers(const dvi__element *own)
+{
+  const dvi__action_space space = dvi__action_space_of(own->action);
+  return dvi__action_unknowns(own->action) >
+         space.degree * dvi__action_coupling(own->action)->columns;
+}
+
 static void explain_ladder(dvi__element *own, dvi__text *text)
 {
   const char *name = dvi__solver_choice(own->choice), *last = "a path followed from shorter steps";
   if (!dvi__element_is_ladder(own)) {
-    dvi__text_add(text, "solver: %s, as asked; what it cannot solve goes on to %s\n", name, last);
+    const char *why = has_multipliers(own) ? "for multipliers are unknowns" : "as asked";
+    dvi__text_add(text, "solver: %s, %s; what it cannot solve goes on to %s\n", name, why, last);
     return;
   }
   dvi__text_add(text, "solver: %s: %s", name,

@@ -11,4 +11,5 @@ const dvi__block_pair dvi__scene_pairs[DVI__PAIRS] = {
     [DVI__PAIR_VQ] = {DVI__VELOCITIES, DVI__COORDINATES},
     [DVI__PAIR_WQ] = {DVI__MULTIPLIERS, DVI__COORDINATES},
     [DVI__PAIR_WV] = {DVI__MULTIPLIERS, DVI__VELOCITIES},
+    [DVI__PAIR_TW] = {DVI__TIME, DVI__MULTIPLIERS},
 };

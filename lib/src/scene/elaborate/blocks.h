@@ -18,6 +18,7 @@ enum {
   DVI__PAIR_VQ,
   DVI__PAIR_WQ,
   DVI__PAIR_WV,
+  DVI__PAIR_TW,
   DVI__PAIRS
 };
 extern const dvi__block_pair dvi__scene_pairs[DVI__PAIRS];

@@ -27,6 +27,7 @@ typedef struct dvi__scene_term {
   int n, count;       /* numbers of coordinates and multipliers */
   const double *none; /* as many zeros as the longest block has */
   dvi_pattern qw, vw; /* patterns of d phi/dq and d phi/dp, of which the gradients are made */
+  dvi_pattern tw;     /* of d phi/dt, for holonomic constraints */
   dvi__role role;
   struct dvi__scene_term *next;
 } dvi__scene_term;
@@ -54,7 +55,8 @@ struct dvi_scene {
   dvi_one_form one_form;
   dvi_hamiltonian hamiltonian;
   dvi_constraint constraint;
-  dvi_force force[2]; /* of the sections forces and dissipation */
+  dvi_force force[2];        /* of the sections forces and dissipation */
+  dvi_holonomic *holonomics; /* [terms.holonomic_count] */
   dvi__scene_term *functions;
   const dvi__scene_term *kinetic; /* the term from which a constant mass was read, or NULL */
   dvi_system *system;

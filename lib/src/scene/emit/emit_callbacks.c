@@ -44,12 +44,22 @@ static void emit_joined_call(dvi__emitter *out, const dvi__scene_term *term, con
   dvi__emit(out, "  for (int e = 0; e < %d; e++) phi_z[e] = z[dvi_list_%d[e]];\n", all, list);
 }
 
+/* Write a call for each row of constraints, with its unit vector. */
+static void emit_calls_by_row(dvi__emitter *out, const dvi__scene_term *term, const char *function,
+                              const char *arguments)
+{
+  dvi__emit(out, "  double w[%d] = {0};\n  for (int a = 0; a < %d; a++) {\n    w[a] = 1;\n",
+            term->count, term->count);
+  dvi__emit(out, "    %s(%s);\n    w[a] = 0;\n  }\n", function, arguments);
+}
+
 static dvi_status emit_callback_function(dvi__emitter *out, const dvi__scene_term *term,
                                          const dvi__callback *c, const char *name, int *list)
 {
   const int lanes = strstr(c->name, "batch") != NULL;
   switch (c->asks) {
   case 'v': return dvi__emit_value(out, term->function, name);
+  case 't':
   case 'g': return dvi__emit_gradient(out, term->function, c->wanted, lanes, name);
   case 's': return dvi__emit_second(out, term->function, c->wanted, lanes, name);
   default: break;
@@ -72,6 +82,8 @@ static dvi_status emit_callback(dvi__emitter *out, const dvi__emitted_term *term
   dvi__emit(out, "  (void)user;\n");
   if (c->asks == 'c')
     emit_joined_call(out, term->term, function, c->arguments, list);
+  else if (c->asks == 't')
+    emit_calls_by_row(out, term->term, function, c->arguments);
   else
     dvi__emit(out, "  %s(%s);\n", function, c->arguments);
   dvi__emit(out, "  return 0;\n}\n\n");

@@ -6,7 +6,8 @@
 
 /* A callback with its name, its parameters but `user`, and the arguments of its function. `asks` is
  * 'v' for the value, 'g' for the gradient by the wanted blocks, or 's' for the second derivatives
- * of the wanted pairs. 'c' asks for gradients of constraints, which have two of these. */
+ * of the wanted pairs. 'c' asks for gradients of constraints, which have two of these, and 't' for
+ * the gradient by time of each row of constraints. */
 typedef struct dvi__callback {
   const char *name, *parameters, *arguments;
   char asks;
@@ -34,6 +35,7 @@ dvi__emitted_term dvi__one_form_term(const dvi_scene *scene);
 dvi__emitted_term dvi__hamiltonian_term(const dvi_scene *scene);
 dvi__emitted_term dvi__constraint_term(const dvi_scene *scene);
 dvi__emitted_term dvi__potential_term(const dvi_scene *scene, int k);
+dvi__emitted_term dvi__holonomic_term_of(const dvi_scene *scene, int k);
 dvi__emitted_term dvi__force_term_of(const dvi_scene *scene, int k);
 dvi__emitted_term dvi__symmetry_term(const dvi_scene *scene, int k);
 dvi__emitted_term dvi__invariant_term(const dvi_scene *scene, int k);

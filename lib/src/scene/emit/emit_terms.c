@@ -18,6 +18,8 @@
     [DVI__COORDINATES] = 1, [DVI__VELOCITIES] = 1 \
   }
 
+static const dvi_pattern none; /* of a term that lacks one */
+
 enum { RATE = 3 }; /* the callback that only systems with time have */
 
 static const dvi__callback potential_callbacks[] = {
@@ -67,6 +69,15 @@ static const dvi__callback constraint_callbacks[] = {
     {"hessian",
      "const double *q, const double *p, const double *w, double *qq, double *qp, double *pp",
      "1, NULL, q, p, w, qq, qp, pp", 's', SECOND},
+};
+
+static const dvi__callback holonomic_callbacks[] = {
+    {"value", POINT ", double *phi", "1, &t, q, NULL, dvi_zeros, phi", 'g', ONLY(DVI__MULTIPLIERS)},
+    {"gradient", POINT ", double *phi_q", "1, &t, q, NULL, dvi_zeros, phi_q", 's',
+     ONLY(DVI__PAIR_QW)},
+    {"hessian", POINT ", const double *w, double *phi_w_qq", "1, &t, q, NULL, w, phi_w_qq", 's',
+     ONLY(DVI__PAIR_QQ)},
+    {"rate", POINT ", double *phi_t", "1, &t, q, NULL, w, phi_t + a", 't', ONLY(DVI__TIME)},
 };
 
 static const dvi__callback force_callbacks[] = {
@@ -163,6 +174,21 @@ dvi__emitted_term dvi__potential_term(const dvi_scene *scene, int k)
                             .fast = V->fast,
                             .quadratic = V->quadratic};
   (void)snprintf(term.name, sizeof term.name, "potential_%d", k);
+  return term;
+}
+
+dvi__emitted_term dvi__holonomic_term_of(const dvi_scene *scene, int k)
+{
+  const dvi_holonomic *phi = &scene->holonomics[k];
+  dvi__emitted_term term = {.type = "dvi_holonomic",
+                            .shown = phi->name,
+                            .term = phi->user,
+                            .callback_count = 3 + (phi->rate != NULL),
+                            .callback = holonomic_callbacks,
+                            .columns = scene->n,
+                            .pattern_name = {"qq", "", "", "gradients"},
+                            .pattern = {&phi->qq, &none, &none, &phi->gradients}};
+  (void)snprintf(term.name, sizeof term.name, "holonomic_%d", k);
   return term;
 }
 

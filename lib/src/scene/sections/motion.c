@@ -6,8 +6,9 @@
 static const char *const ways_to_move[] = {"lagrangian", "kinetic", "one_form", "constraints",
                                            "hamiltonian"};
 
-/* The last way may stand with the two before it. */
-enum { WAYS = sizeof ways_to_move / sizeof *ways_to_move, HAMILTONIAN = WAYS - 1 };
+/* The last way may stand with the two before it. Constraints beside the first two are
+ * holonomic. */
+enum { WAYS = sizeof ways_to_move / sizeof *ways_to_move, CONSTRAINTS = 3, HAMILTONIAN = WAYS - 1 };
 
 const dvi__tree *dvi__motion_section(const dvi_scene *scene)
 {
@@ -25,7 +26,7 @@ bool dvi__check_motion_section(dvi_scene *scene)
   int count = 0, which = HAMILTONIAN;
   for (int k = 0; k < HAMILTONIAN; k++) {
     const dvi__tree *tree = dvi__tree_find(scene->tree, ways_to_move[k]);
-    if (tree == NULL) continue;
+    if (tree == NULL || (k == CONSTRAINTS && count > 0 && which < 2)) continue;
     found = tree;
     which = k;
     count++;

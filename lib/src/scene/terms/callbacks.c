@@ -302,6 +302,44 @@ bool dvi__make_dissipation(dvi_scene *scene, dvi__scene_term *term, dvi_force *f
          dvi__term_pattern(scene, term, DVI__PAIR_VV, &force->by_v, &full);
 }
 
+/* ---- holonomic constraints: phi is the gradient of phi(t,q).w by w ---- */
+
+static int term_holonomic_value(double t, const double *q, double *phi, void *user)
+{
+  dvi__scene_term *term = user;
+  const double *x[DVI__BLOCKS] = {&t, q, NULL, term->none};
+  double *gradient[DVI__BLOCKS] = {[DVI__MULTIPLIERS] = phi};
+  return gradient_at(term, 1, x, gradient);
+}
+
+static int term_holonomic_gradient(double t, const double *q, double *phi_q, void *user)
+{
+  dvi__scene_term *term = user;
+  const double *x[DVI__BLOCKS] = {&t, q, NULL, term->none};
+  double *values[DVI__PAIRS] = {[DVI__PAIR_QW] = phi_q};
+  return second_at(term, 1, x, values);
+}
+
+static int term_holonomic_hessian(double t, const double *q, const double *w, double *phi_w_qq,
+                                  void *user)
+{
+  const double *x[DVI__BLOCKS] = {&t, q, NULL, w};
+  double *values[DVI__PAIRS] = {[DVI__PAIR_QQ] = phi_w_qq};
+  return second_at(user, 1, x, values);
+}
+
+/* The entries of d phi/dt stand at the front, and move to their rows from the back. */
+static int term_holonomic_rate(double t, const double *q, double *phi_t, void *user)
+{
+  dvi__scene_term *term = user;
+  const double *x[DVI__BLOCKS] = {&t, q, NULL, term->none};
+  double *values[DVI__PAIRS] = {[DVI__PAIR_TW] = phi_t};
+  const int returned = second_at(term, 1, x, values);
+  for (int a = term->count - 1; a >= 0; a--)
+    phi_t[a] = term->tw.start[a] < term->tw.start[a + 1] ? phi_t[term->tw.start[a]] : 0;
+  return returned;
+}
+
 /* ---- Hamiltonians with constraints ---- */
 
 static int term_hamiltonian_gradient(double t, const double *q, const double *p, double *H_q,
@@ -378,20 +416,39 @@ static int term_constraint_hessian(const double *q, const double *p, const doubl
   return second_at(user, 1, x, values);
 }
 
-/* Find a pattern with its entries, even if it is full. */
-static bool explicit_pattern(dvi_scene *scene, dvi__scene_term *term, int pair,
+/* Find a pattern of `rows` rows with its entries, even if it is full. */
+static bool explicit_pattern(dvi_scene *scene, dvi__scene_term *term, int pair, int rows,
                              dvi_pattern *pattern)
 {
   int full;
   if (!dvi__term_pattern(scene, term, pair, pattern, &full)) return false;
   if (!full) return true;
-  const size_t n = (size_t)term->n, columns = (size_t)term->count;
+  const size_t n = (size_t)rows, columns = (size_t)term->count;
   int *start = dvi__arena_take(&scene->arena, columns + 1, sizeof *start),
       *row = dvi__arena_take(&scene->arena, n * columns, sizeof *row);
   if (start == NULL || row == NULL) return dvi__scene_no_memory(scene);
   for (size_t j = 0; j <= columns; j++) start[j] = (int)(j * n);
   for (size_t e = 0; e < n * columns; e++) row[e] = (int)(e % n);
   *pattern = (dvi_pattern){start, row};
+  return true;
+}
+
+bool dvi__make_holonomic(dvi_scene *scene, const char *name, dvi__scene_term *term,
+                         dvi_holonomic *holonomic)
+{
+  int full;
+  *holonomic = (dvi_holonomic){.name = name,
+                               .count = term->count,
+                               .value = term_holonomic_value,
+                               .gradient = term_holonomic_gradient,
+                               .hessian = term_holonomic_hessian,
+                               .user = term};
+  if (!prepare_large(scene, term, of_multipliers) ||
+      !dvi__term_pattern(scene, term, DVI__PAIR_QW, &holonomic->gradients, &full) ||
+      !dvi__term_pattern(scene, term, DVI__PAIR_QQ, &holonomic->qq, &full) ||
+      !explicit_pattern(scene, term, DVI__PAIR_TW, 1, &term->tw))
+    return false;
+  if (term->tw.start[term->count] > 0) holonomic->rate = term_holonomic_rate;
   return true;
 }
 
@@ -423,8 +480,8 @@ bool dvi__make_constraint(dvi_scene *scene, dvi__scene_term *term, dvi_constrain
                                  .hessian = term_constraint_hessian,
                                  .user = term};
   return prepare_large(scene, term, of_multipliers) &&
-         explicit_pattern(scene, term, DVI__PAIR_QW, &term->qw) &&
-         explicit_pattern(scene, term, DVI__PAIR_VW, &term->vw) &&
+         explicit_pattern(scene, term, DVI__PAIR_QW, term->n, &term->qw) &&
+         explicit_pattern(scene, term, DVI__PAIR_VW, term->n, &term->vw) &&
          join_patterns(scene, term, &constraint->gradients) &&
          dvi__term_pattern(scene, term, DVI__PAIR_QQ, &constraint->qq, &full) &&
          dvi__term_pattern(scene, term, DVI__PAIR_QV, &constraint->qp, &full) &&

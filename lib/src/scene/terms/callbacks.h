@@ -14,6 +14,11 @@ bool dvi__make_hamiltonian(dvi_scene *scene, dvi__scene_term *term, dvi_hamilton
 /* Fill in constraints with the function phi(q,p).w, w [term->count]. */
 bool dvi__make_constraint(dvi_scene *scene, dvi__scene_term *term, dvi_constraint *constraint);
 
+/* Fill in holonomic constraints with the function phi(t,q).w, w [term->count]. Rates are there only
+ * if phi depends on time. */
+bool dvi__make_holonomic(dvi_scene *scene, const char *name, dvi__scene_term *term,
+                         dvi_holonomic *holonomic);
+
 /* Fill in a force with the function F(t,q,v).w, or with minus the function R, of which the force is
  * the derivative by v. */
 bool dvi__make_force(dvi_scene *scene, dvi__scene_term *term, dvi_force *force);

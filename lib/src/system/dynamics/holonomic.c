@@ -12,6 +12,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "core/memory.h"
@@ -362,10 +363,12 @@ static dvi_status rows_size(dvi__evaluator *e, double t, const double *q, const 
 static dvi_status refuse_row(const dvi_system *s, int a, double t, const char *what, double value)
 {
   const dvi__holonomic_term *term = term_of_row(s, a);
+  char row[32] = "";
+  if (term->callbacks.count > 1) (void)snprintf(row, sizeof row, " (row %d)", a - term->first);
   return dvi__fail(DVI_BAD_ARGUMENT,
-                   "constraint '%s' (row %d)%s is %.17g at t = %.6g, not 0; start on the "
-                   "constraint, or let the start be projected (dvi_start_options)",
-                   term->name, a - term->first, what, value, t);
+                   "constraint '%s'%s%s is %.17g at t = %.6g, not 0; start on the constraint, or "
+                   "let the start be projected (dvi_start_options)",
+                   term->name, row, what, value, t);
 }
 
 static dvi_status check_rows(dvi__evaluator *e, double t, const double *q, const double *p)
