@@ -9,6 +9,7 @@
 #include "core/status.h"
 #include "num/finite.h"
 #include "system/check/check_quadratic.h"
+#include "system/check/check_rows.h"
 #include "system/check/check_struct.h"
 #include "system/check/check_taylor.h"
 #include "system/check/check_time.h"
@@ -481,6 +482,7 @@ static dvi_status check_system(dvi__check *c, const dvi_system *system, double t
   DVI_TRY(dvi__check_quadratic(system, &c->scratch, c->t, c->q, tolerance, result));
   DVI_TRY(
       dvi__check_time(system, &c->scratch, &c->differences, c->t, c->q, c->v, tolerance, result));
+  DVI_TRY(dvi__check_rows_in_time(system, c->t, c->q, tolerance, result));
   return dvi__check_taylor(system, &c->scratch, c->t, c->q, c->v, tolerance, result);
 }
 
