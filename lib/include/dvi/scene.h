@@ -166,7 +166,8 @@ int dvi_scene_invariance(const dvi_scene *scene, char *text, size_t size);
  *  @param      t, q, v   the point, q and v [n]
  *  @param[out] L_q, L_v  [n] right to about 1e-31, L_q with the forces. Undefined on failure
  *  @retval DVI_UNSUPPORTED   no Lagrangian of R^n (a one-form, a Hamiltonian, rotations, directions
- *                            or angles), or holonomic constraints, or no arithmetic of 113 bits on this machine
+ *                            or angles), or holonomic constraints, or no arithmetic of 113 bits on
+ *                            this machine
  *  @retval DVI_BAD_ARGUMENT  a pointer is NULL
  *  @retval DVI_NOT_FINITE    a derivative is not finite at the point
  *  @retval DVI_NO_MEMORY     memory could not be allocated */
