@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "support/paced.h"
 #include "support/runs.h"
 #include "support/suite.h"
 #include "support/systems/constrained.h"
@@ -143,6 +144,25 @@ START_TEST(methods_that_take_no_constraints_say_so)
 }
 END_TEST
 
+START_TEST(a_transform_of_time_and_a_path_take_no_constraints)
+{
+  static const double q1[] = {0, 0, -1};
+  constrained model;
+  dvi_integrator *integrator;
+  dvi_path *path;
+  make_constrained(SPHERICAL_PENDULUM, 0, &model);
+  const dvi_monitor monitor = read_monitor("arclength");
+  ck_assert_int_eq(create_transformed(model.system, &monitor, "galerkin", &integrator),
+                   DVI_UNSUPPORTED);
+  check_words("the system declares holonomic constraints, which the transform does not carry over");
+  const dvi_path_options options = {
+      .ends = DVI_ENDS_FIXED, .steps = 5, .span = 1, .dimension = 3, .q0 = model.q, .q1 = q1};
+  ck_assert_int_eq(dvi_path_create(model.system, "midpoint", &options, &path), DVI_UNSUPPORTED);
+  check_words("path: the system declares holonomic constraints");
+  destroy_constrained(&model);
+}
+END_TEST
+
 /* ---- the check ---- */
 
 static void check_says(dvi_holonomic rows, double speed, dvi_status status, const char *words)
@@ -276,6 +296,7 @@ SUITE(holonomic)
   tcase_add_test(tests, constraints_that_are_not_well_declared_are_refused);
   tcase_add_test(tests, constraints_are_refused_beside_other_kinds_of_dynamics);
   tcase_add_test(tests, methods_that_take_no_constraints_say_so);
+  tcase_add_test(tests, a_transform_of_time_and_a_path_take_no_constraints);
   tcase_add_test(tests, the_check_compares_gradients_and_hessians);
   tcase_add_test(tests, dependent_rows_are_refused_with_a_sentence);
   tcase_add_test(tests, a_restored_run_has_the_same_bits);

@@ -317,10 +317,11 @@ dvi_status dvi_integrator_invariants(dvi_integrator *integrator, double *value);
 dvi_status dvi_integrator_invariant(dvi_integrator *integrator, int i, double *value);
 
 /** Measure how far the state is from the constraint, without an allocation. With a one-form this is
- *  the largest |p_i - alpha_i(q)|, with a Hamiltonian the largest |phi_a(q,p)|.
+ *  the largest |p_i - alpha_i(q)|, with a Hamiltonian the largest |phi_a(q,p)|, and with holonomic
+ *  constraints the largest |phi_a(t,q)|.
  *
  *  @param[out] distance  the distance. Not written on failure
- *  @retval DVI_UNSUPPORTED  the system has neither a one-form nor a Hamiltonian
+ *  @retval DVI_UNSUPPORTED  the system has no one-form, no Hamiltonian and no holonomic constraint
  *  @retval DVI_BAD_STATE    before dvi_integrator_start
  *  @retval (others)         as the callback of the one-form or the constraint fails */
 dvi_status dvi_integrator_constraint(dvi_integrator *integrator, double *distance);

@@ -121,6 +121,8 @@ static dvi_status start_by_velocity(dvi_integrator *I, double t, const double *q
   if (dvi__first_not_finite((size_t)I->system->nv, p) >= 0)
     return dvi__fail(DVI_NOT_FINITE, "the momentum is not finite");
   DVI_TRY(dvi__legendre_regular(I->evaluator, t, q, v));
+  const double *momentum = p;
+  DVI_TRY(constrain_start(I, t, 0, &q, &momentum));
   return start_from_state(I, t, q, v, p);
 }
 
@@ -430,7 +432,8 @@ dvi_status dvi_integrator_constraint(dvi_integrator *I, double *distance)
   if (constraint == NULL)
     return dvi__fail(
         DVI_UNSUPPORTED,
-        "constraint: the system declares neither a one-form nor a Hamiltonian with constraints");
+        "constraint: the system declares no one-form, no Hamiltonian with constraints, and no "
+        "holonomic constraints");
   if (!I->started)
     return dvi__fail(
         DVI_BAD_STATE,

@@ -161,5 +161,6 @@ void dvi__action_place(dvi__action *action, double t0, double h, const double *q
   action->h = h;
   action->q0 = q0;
   action->p0 = p0;
+  dvi__action_forget_start(action);
   for (int j = 0; j < action->r; j++) action->t[j] = t0 + action->node[j] * h;
 }

@@ -118,6 +118,9 @@ void dvi__action_scale_terms(const dvi__action *action, double *scale);
 void dvi__action_clear_charts(dvi__action *action);
 void dvi__action_clear_constraints(dvi__action *action);
 
+/* Drop what constraints know of the start of the element, when another one is placed. */
+void dvi__action_forget_start(dvi__action *action);
+
 /* Free the memory of dvi__action_prepare_energy. */
 void dvi__action_clear_energy(dvi__action *action);
 

@@ -13,6 +13,7 @@
  *
  * Source: Leyendecker, Marsden and Ortiz 2008 (constraints in the discrete action); Wenger, Ober-
  * Bloebaum and Leyendecker 2017 (Galerkin variational integrators with constraints). */
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -25,11 +26,10 @@
 
 struct dvi__constrained_rows {
   dvi__action *action;
-  int rows, entries;  /* of phi, and of its gradients */
-  double *chi, *beta; /* [s + 1] */
-  double *psi, *bar;  /* [(s + 1)*s] psi_l(chi_k) and psi_l(chi_k) - psi_l(1), at k*s + l */
-  double *q0;         /* [n] the start of the path whose gradients are known */
-  double t0;
+  int rows, entries;    /* of phi, and of its gradients */
+  double *chi, *beta;   /* [s + 1] */
+  double *psi, *bar;    /* [(s + 1)*s] psi_l(chi_k) and psi_l(chi_k) - psi_l(1), at k*s + l */
+  int knows_start;      /* phi_q has the gradients at the start of the element */
   double *X;            /* [(s + 1)*n] the nodes */
   double *phi, *phi_q;  /* [rows], [(s + 1)*entries] */
   double *w, *phi_w_qq; /* [rows], [entries of rows_qq] */
@@ -47,8 +47,8 @@ static dvi_status rows_allocate(rows_term *x)
   const size_t n = (size_t)a->n, s = (size_t)a->s, nodes = s + 1, rows = (size_t)x->rows,
                entries = (size_t)x->entries,
                curvature = (size_t)dvi__pattern_entries(&a->system->rows_qq);
-  double *at = x->numbers = DVI_NEW(double, nodes *(2 + 2 * s + n + entries) + 2 * rows + 2 * n +
-                                                curvature);
+  double *at = x->numbers = DVI_NEW(double,
+                                    nodes *(2 + 2 * s + n + entries) + 2 * rows + n + curvature);
   if (at == NULL) return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d constraints", x->rows);
   x->chi = at;
   x->beta = x->chi + nodes;
@@ -59,8 +59,7 @@ static dvi_status rows_allocate(rows_term *x)
   x->phi = x->phi_q + nodes * entries;
   x->w = x->phi + rows;
   x->phi_w_qq = x->w + rows;
-  x->q0 = x->phi_w_qq + curvature;
-  x->v = x->q0 + n;
+  x->v = x->phi_w_qq + curvature;
   return DVI_OK;
 }
 
@@ -100,17 +99,15 @@ static double node_time(const rows_term *x, const dvi__row_path *p, int k)
   return p->t0 + x->chi[k] * p->h;
 }
 
-/* Evaluate the gradients at all nodes. Those at the start are known from the first residual of a
- * step. */
+/* Evaluate the gradients at all nodes. Those at the start are known from the first residual of an
+ * element. */
 static dvi_status rows_gradients(rows_term *x, const dvi__row_path *p)
 {
-  const size_t bytes = (size_t)p->n * sizeof(double);
-  const int known = x->t0 == p->t0 && memcmp(x->q0, p->q0, bytes) == 0;
-  for (int k = known; k <= p->s; k++)
+  for (int k = x->knows_start; k <= p->s; k++) {
     DVI_TRY(dvi__rows_gradients(x->action->evaluator, node_time(x, p, k), x->X + k * p->n,
                                 x->phi_q + k * x->entries));
-  memcpy(x->q0, p->q0, bytes);
-  x->t0 = p->t0;
+    x->knows_start = 1;
+  }
   return DVI_OK;
 }
 
@@ -142,17 +139,22 @@ static dvi_status rows_add(void *of, const dvi__row_path *p, const double *own, 
   return DVI_OK;
 }
 
+/* The roundings of phi itself count beside those of its arguments. */
 static void rows_magnitudes(const void *of, const dvi__row_path *p, double *magnitude,
                             double *own_magnitude)
 {
   const rows_term *x = of;
   const dvi__pattern *G = &x->action->system->rows_q;
   (void)magnitude;
-  for (int k = 1; k <= p->s; k++)
-    for (int a = 0; a < x->rows; a++)
+  for (int k = 1; k <= p->s; k++) {
+    dvi__rows_noise(x->action->evaluator, node_time(x, p, k), x->X + k * p->n, x->phi);
+    for (int a = 0; a < x->rows; a++) {
+      own_magnitude[a * p->s + k - 1] += fabs(x->phi[a] / p->h) / DBL_EPSILON;
       for (int e = G->start[a]; e < G->start[a + 1]; e++)
         own_magnitude[a * p->s + k - 1] += fabs(x->phi_q[k * x->entries + e] *
                                                 x->X[k * p->n + G->row[e]] / p->h);
+    }
+  }
 }
 
 /* ---- derivatives ---- */
@@ -218,10 +220,8 @@ dvi_status dvi__action_constrain(dvi__action *a)
   if (system->row_count == 0) return DVI_OK;
   rows_term *x = a->constrained = DVI_NEW(rows_term, 1);
   if (x == NULL) return dvi__fail(DVI_NO_MEMORY, "action: no memory for constraints");
-  *x = (rows_term){.action = a,
-                   .rows = system->row_count,
-                   .entries = dvi__pattern_entries(&system->rows_q),
-                   .t0 = (double)NAN};
+  *x = (rows_term){
+      .action = a, .rows = system->row_count, .entries = dvi__pattern_entries(&system->rows_q)};
   DVI_TRY(rows_allocate(x));
   DVI_TRY(rows_fill_tables(x));
   return dvi__action_add_term(a, &(dvi__row_term){.name = "holonomic constraints",
@@ -234,6 +234,11 @@ dvi_status dvi__action_constrain(dvi__action *a)
                                                   .magnitudes = rows_magnitudes,
                                                   .derivatives = rows_derivatives,
                                                   .scale = rows_scale});
+}
+
+void dvi__action_forget_start(dvi__action *a)
+{
+  if (a->constrained != NULL) a->constrained->knows_start = 0;
 }
 
 void dvi__action_clear_constraints(dvi__action *a)
@@ -250,7 +255,11 @@ dvi_status dvi__action_constrain_end(dvi__action *a, const double *Y, double *dp
   double *p = x->X;
   dvi__action_path(a, Y, a->h, 1.0, NULL, x->v);
   for (size_t i = 0; i < n; i++) p[i] = a->p0[i] + dp[i];
-  DVI_TRY(dvi__rows_project_momentum(a->evaluator, a->t0 + a->h, a->terms.q1, p, x->v));
+  const dvi_status found = dvi__rows_project_momentum(a->evaluator, a->t0 + a->h, a->terms.q1, p,
+                                                      x->v);
+  /* a smaller step may end elsewhere */
+  if (found != DVI_OK)
+    return dvi__fail_in(found == DVI_SINGULAR ? DVI_NOT_CONVERGED : found, "the end of the step");
   for (size_t i = 0; i < n; i++) dp[i] = p[i] - a->p0[i];
   return DVI_OK;
 }

@@ -105,7 +105,7 @@ static int append_groups(const dvi__action *a, dvi__pattern *const *meeting, int
   int count = 0, first = a->n;
   for (int k = 0; k < a->terms.count; k++) {
     const dvi__pattern *met = meeting[k];
-    if (a->terms.term[k].unknowns == 0) continue;
+    if (met->start == NULL) continue; /* a term without unknowns */
     for (int e = met->start[j]; e < met->start[j + 1]; e++) row[count++] = first + met->row[e];
     first += group_count(&a->terms.term[k]);
   }

@@ -5,9 +5,8 @@
  *     [ L_vv  G^T ] [ a      ]   [ L_q + F - c ]
  *     [ G     0   ] [ lambda ] = [ -gamma      ],
  *
- * where c and gamma are the derivatives of L_v and of G v + phi_t along (1, v, 0). A momentum is
- * moved onto the constraint by the same matrix. Source: Brenan, Campbell and Petzold 1996, sec. 2.2
- * (reduction of the index). */
+ * where c and gamma are the derivatives of L_v and of G v + phi_t along (1, v, 0). Source: Brenan,
+ * Campbell and Petzold 1996, sec. 2.2 (reduction of the index). */
 #include "system/dynamics/holonomic.h"
 
 #include <float.h>
@@ -18,6 +17,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/finite.h"
+#include "system/dynamics/holonomic_rows.h"
 #include "system/evaluate/dynamics.h"
 #include "system/evaluate/evaluator_struct.h"
 #include "system/mass.h"
@@ -25,24 +25,13 @@
 
 /* ---- an evaluator's part ---- */
 
-typedef struct rows_memory {
-  dvi__pattern matrix;                        /* of [L_vv G^T; G 0] */
-  int *mass_place, *column_place, *row_place; /* places of L_vv, of G^T and of G */
-  dvi__linear *linear;
-  double *values, *x;          /* [entries], [n + m] */
-  double *phi, *phi_t, *phi_q; /* [m], [m], [entries of rows_q] */
-  double *point, *along[2];    /* [n] a moved point, [n + m] derivatives along the motion */
-  double *hessian, *sum;       /* [entries of rows_qq], [n] */
-  double *numbers;
-} rows_memory;
-
-static rows_memory *rows_of(const dvi__evaluator *e)
+dvi__rows_memory *dvi__rows_memory_of(const dvi__evaluator *e)
 {
   return e->own;
 }
 
 /* Make the pattern of the matrix, with the places of its parts. */
-static dvi_status lay_out_matrix(const dvi_system *s, rows_memory *r)
+static dvi_status lay_out_matrix(const dvi_system *s, dvi__rows_memory *r)
 {
   const int n = s->n, m = s->row_count;
   const size_t mass = (size_t)dvi__pattern_entries(&s->vv),
@@ -85,12 +74,12 @@ static dvi_status prepare_rows(dvi__evaluator *e)
   const dvi_system *s = e->system;
   const size_t n = (size_t)s->n, m = (size_t)s->row_count,
                rows = (size_t)dvi__pattern_entries(&s->rows_q);
-  rows_memory *r = e->own = DVI_NEW(rows_memory, 1);
+  dvi__rows_memory *r = e->own = DVI_NEW(dvi__rows_memory, 1);
   if (r == NULL) return dvi__fail(DVI_NO_MEMORY, "constraints: no memory");
   DVI_TRY(lay_out_matrix(s, r));
   r->values = DVI_NEW(double, dvi__pattern_entries(&r->matrix));
   r->hessian = DVI_NEW(double, dvi__pattern_entries(&s->rows_qq));
-  double *at = r->numbers = DVI_NEW(double, 5 * n + 5 * m + rows);
+  double *at = r->numbers = DVI_NEW(double, 8 * n + (8 + DVI__NOISE_SAMPLES) * m + rows);
   if (r->values == NULL || r->hessian == NULL || at == NULL)
     return dvi__fail(DVI_NO_MEMORY, "constraints: no memory for %zu rows", m);
   r->x = at;
@@ -98,7 +87,11 @@ static dvi_status prepare_rows(dvi__evaluator *e)
   r->along[1] = r->along[0] + n + m;
   r->point = r->along[1] + n + m;
   r->sum = r->point + n;
-  r->phi = r->sum + n;
+  r->derivative = r->sum + n;
+  r->before = r->derivative + n + m;
+  r->defect = r->before + n + m;
+  r->samples = r->defect + n + m;
+  r->phi = r->samples + DVI__NOISE_SAMPLES * m;
   r->phi_t = r->phi + m;
   r->phi_q = r->phi_t + m;
   return dvi__linear_create(&r->matrix, dvi__linear_for_exchanges(&r->matrix), e->counters,
@@ -107,7 +100,7 @@ static dvi_status prepare_rows(dvi__evaluator *e)
 
 static void release_rows(dvi__evaluator *e)
 {
-  rows_memory *r = e->own;
+  dvi__rows_memory *r = e->own;
   if (r == NULL) return;
   dvi__linear_destroy(&r->linear);
   dvi__pattern_clear(&r->matrix);
@@ -153,7 +146,7 @@ dvi_status dvi__rows_hessian(dvi__evaluator *e, double t, const double *q, const
                              double *phi_w_qq)
 {
   const dvi_system *s = e->system;
-  const rows_memory *r = rows_of(e);
+  const dvi__rows_memory *r = dvi__rows_memory_of(e);
   e->counters->hessians++;
   memset(phi_w_qq, 0, (size_t)dvi__pattern_entries(&s->rows_qq) * sizeof(double));
   for (int k = 0; k < s->holonomic_count; k++) {
@@ -180,9 +173,8 @@ void dvi__rows_pull(const dvi_system *s, const double *phi_q, const double *w, d
       x[s->rows_q.row[k]] += factor * w[a] * phi_q[k];
 }
 
-/* Compute G x + phi_t. */
-static void push_rows(const dvi_system *s, const double *phi_q, const double *x,
-                      const double *phi_t, double *sum)
+void dvi__rows_push(const dvi_system *s, const double *phi_q, const double *x, const double *phi_t,
+                    double *sum)
 {
   for (int a = 0; a < s->row_count; a++) {
     sum[a] = phi_t[a];
@@ -202,11 +194,10 @@ static dvi_status velocity_matrix(dvi__evaluator *e, double t, const double *q, 
   return s->lagrangian != NULL ? dvi__velocity_hessian(e, t, q, v, L_vv) : DVI_OK;
 }
 
-/* Factor the matrix at a point, whose gradients stay in phi_q. */
-static dvi_status factor_matrix(dvi__evaluator *e, double t, const double *q, const double *v)
+dvi_status dvi__rows_factor(dvi__evaluator *e, double t, const double *q, const double *v)
 {
   const dvi_system *s = e->system;
-  rows_memory *r = rows_of(e);
+  dvi__rows_memory *r = dvi__rows_memory_of(e);
   const double *L_vv;
   DVI_TRY(velocity_matrix(e, t, q, v, &L_vv));
   DVI_TRY(dvi__rows_gradients(e, t, q, r->phi_q));
@@ -222,8 +213,7 @@ static dvi_status factor_matrix(dvi__evaluator *e, double t, const double *q, co
                          t);
 }
 
-/* Solve for r->x in place. */
-static dvi_status solve_matrix(const rows_memory *r, int size, double t)
+dvi_status dvi__rows_solve(const dvi__rows_memory *r, int size, double t)
 {
   DVI_TRY(dvi__linear_solve(r->linear, r->x));
   if (dvi__first_not_finite((size_t)size, r->x) < 0) return DVI_OK;
@@ -237,18 +227,17 @@ static dvi_status moved_along(dvi__evaluator *e, double t, double tau, const dou
                               const double *v, double *sum)
 {
   const dvi_system *s = e->system;
-  rows_memory *r = rows_of(e);
+  dvi__rows_memory *r = dvi__rows_memory_of(e);
   const double moved = t + tau;
   for (int i = 0; i < s->n; i++) r->point[i] = q[i] + tau * v[i];
   DVI_TRY(dvi__lagrangian_gradient(e, 1, &moved, r->point, v, NULL, sum));
   DVI_TRY(dvi__rows_gradients(e, moved, r->point, r->phi_q));
   DVI_TRY(dvi__rows_rate(e, moved, r->point, r->phi_t));
-  push_rows(s, r->phi_q, v, r->phi_t, sum + s->n);
+  dvi__rows_push(s, r->phi_q, v, r->phi_t, sum + s->n);
   return DVI_OK;
 }
 
-/* Choose the step of differences along the motion, as system/term/difference.c does for
- * coordinates. */
+/* Choose the longest step of differences along the motion. */
 static double step_along(const dvi_system *s, double t, const double *q, const double *v)
 {
   const double size = fmax(dvi__largest((size_t)s->n, q), 1e-2),
@@ -258,35 +247,79 @@ static double step_along(const dvi_system *s, double t, const double *q, const d
   return ldexp(1.0, ilogb(relative * (isfinite(span) ? span : 1.0)));
 }
 
-/* Write the derivatives of (L_v, G v + phi_t) along the motion, by differences of order 6, into
- * r->x. */
-static dvi_status differentiate_along(dvi__evaluator *e, double t, const double *q, const double *v)
+/* Write differences of order 6 of (L_v, G v + phi_t) along the motion into r->derivative. */
+static dvi_status difference_along(dvi__evaluator *e, double t, double step, const double *q,
+                                   const double *v)
 {
   static const double weight[3] = {45.0 / 60.0, -9.0 / 60.0, 1.0 / 60.0};
-  rows_memory *r = rows_of(e);
+  dvi__rows_memory *r = dvi__rows_memory_of(e);
   const int size = e->system->n + e->system->row_count;
-  const double step = step_along(e->system, t, q, v);
-  memset(r->x, 0, (size_t)size * sizeof(double));
+  memset(r->derivative, 0, (size_t)size * sizeof(double));
   for (int m = 1; m <= 3; m++) {
     DVI_TRY(moved_along(e, t, m * step, q, v, r->along[0]));
     DVI_TRY(moved_along(e, t, -m * step, q, v, r->along[1]));
     for (int i = 0; i < size; i++)
-      r->x[i] += weight[m - 1] / step * (r->along[0][i] - r->along[1][i]);
+      r->derivative[i] += weight[m - 1] / step * (r->along[0][i] - r->along[1][i]);
   }
   return DVI_OK;
+}
+
+/* Keep the components of r->derivative that differ least from those of a longer step. Return
+ * whether all agree to rounding. */
+static int keep_best(dvi__rows_memory *r, int size)
+{
+  int settled = 1;
+  for (int i = 0; i < size; i++) {
+    const double change = fabs(r->derivative[i] - r->before[i]);
+    if (change < r->defect[i]) {
+      r->defect[i] = change;
+      r->x[i] = r->derivative[i];
+    }
+    r->before[i] = r->derivative[i];
+    settled &= r->defect[i] <= 0x1p-44 * fabs(r->x[i]);
+  }
+  return settled;
+}
+
+/* Write the derivatives of (L_v, G v + phi_t) along the motion into r->x. Neither t nor q tells how
+ * fast the constraint changes, so that the step is shortened until the differences agree. A
+ * constraint may be undefined farther away. */
+static dvi_status differentiate_along(dvi__evaluator *e, double t, const double *q, const double *v)
+{
+  enum { STEPS = 12 };
+  dvi__rows_memory *r = dvi__rows_memory_of(e);
+  const int size = e->system->n + e->system->row_count;
+  double step = step_along(e->system, t, q, v);
+  int known = 0;
+  dvi_status status = DVI_OK;
+  for (int k = 0; k < STEPS; k++, step /= 4) {
+    const dvi_status one = difference_along(e, t, step, q, v);
+    if (one != DVI_OK) {
+      status = one;
+      continue;
+    }
+    if (known++ == 0)
+      for (int i = 0; i < size; i++) {
+        r->x[i] = r->before[i] = r->derivative[i];
+        r->defect[i] = HUGE_VAL;
+      }
+    else if (keep_best(r, size))
+      break;
+  }
+  return known > 0 ? DVI_OK : status;
 }
 
 dvi_status dvi__rows_acceleration(dvi__evaluator *e, double t, const double *q, const double *v,
                                   double *a, double *lambda)
 {
   const dvi_system *s = e->system;
-  rows_memory *r = rows_of(e);
+  dvi__rows_memory *r = dvi__rows_memory_of(e);
   const int size = s->n + s->row_count;
   DVI_TRY(differentiate_along(e, t, q, v));
   DVI_TRY(dvi__lagrangian_gradient(e, 1, &t, q, v, r->along[0], NULL));
   for (int i = 0; i < size; i++) r->x[i] = (i < s->n ? r->along[0][i] : 0) - r->x[i];
-  DVI_TRY(factor_matrix(e, t, q, v));
-  DVI_TRY(solve_matrix(r, size, t));
+  DVI_TRY(dvi__rows_factor(e, t, q, v));
+  DVI_TRY(dvi__rows_solve(r, size, t));
   if (a != NULL) memcpy(a, r->x, (size_t)s->n * sizeof(double));
   memcpy(lambda, r->x + s->n, (size_t)s->row_count * sizeof(double));
   return DVI_OK;
@@ -296,7 +329,7 @@ dvi_status dvi__rows_acceleration(dvi__evaluator *e, double t, const double *q, 
 static dvi_status constrained_forces(dvi__evaluator *e, double t, const double *q, const double *v,
                                      double *forces)
 {
-  const rows_memory *r = rows_of(e);
+  const dvi__rows_memory *r = dvi__rows_memory_of(e);
   double *lambda = r->phi;
   DVI_TRY(dvi__rows_acceleration(e, t, q, v, NULL, lambda));
   DVI_TRY(dvi__lagrangian_gradient(e, 1, &t, q, v, forces, NULL));
@@ -307,7 +340,7 @@ static dvi_status constrained_forces(dvi__evaluator *e, double t, const double *
 static dvi_status constrained_motion(dvi__evaluator *e, double t, const double *q, const double *p,
                                      double *v, double *pdot, double *multiplier)
 {
-  const rows_memory *r = rows_of(e);
+  const dvi__rows_memory *r = dvi__rows_memory_of(e);
   DVI_TRY(dvi__legendre_inverse(e, t, q, p, v));
   if (pdot == NULL) return DVI_OK;
   DVI_TRY(constrained_forces(e, t, q, v, pdot));
@@ -315,156 +348,6 @@ static dvi_status constrained_motion(dvi__evaluator *e, double t, const double *
     memcpy(multiplier, r->phi, (size_t)e->system->row_count * sizeof *multiplier);
   return DVI_OK;
 }
-
-/* ---- the constraint of states ---- */
-
-/* A start computed in another way differs by its roundings. A larger violation is refused. */
-static const double on_constraint = 1e-11;
-
-/* Find the term of a row. */
-static const dvi__holonomic_term *term_of_row(const dvi_system *s, int a)
-{
-  int k = s->holonomic_count - 1;
-  while (s->holonomics[k].first > a) k--;
-  return &s->holonomics[k];
-}
-
-/* Sum the magnitudes of a row of G x. */
-static double row_size(const dvi_system *s, const double *phi_q, int a, const double *x)
-{
-  double size = 0;
-  for (int k = s->rows_q.start[a]; k < s->rows_q.start[a + 1]; k++)
-    size += fabs(phi_q[k] * x[s->rows_q.row[k]]);
-  return size;
-}
-
-static dvi_status rows_distance(dvi__evaluator *e, double t, const double *q, const double *p,
-                                double *distance)
-{
-  const rows_memory *r = rows_of(e);
-  (void)p;
-  DVI_TRY(dvi__rows_value(e, t, q, r->phi));
-  *distance = dvi__largest((size_t)e->system->row_count, r->phi);
-  return DVI_OK;
-}
-
-static dvi_status rows_size(dvi__evaluator *e, double t, const double *q, const double *p,
-                            double *size)
-{
-  const rows_memory *r = rows_of(e);
-  (void)p;
-  *size = 0;
-  DVI_TRY(dvi__rows_gradients(e, t, q, r->phi_q));
-  for (int a = 0; a < e->system->row_count; a++)
-    *size = fmax(*size, row_size(e->system, r->phi_q, a, q));
-  return DVI_OK;
-}
-
-static dvi_status refuse_row(const dvi_system *s, int a, double t, const char *what, double value)
-{
-  const dvi__holonomic_term *term = term_of_row(s, a);
-  char row[32] = "";
-  if (term->callbacks.count > 1) (void)snprintf(row, sizeof row, " (row %d)", a - term->first);
-  return dvi__fail(DVI_BAD_ARGUMENT,
-                   "constraint '%s'%s%s is %.17g at t = %.6g, not 0; start on the constraint, or "
-                   "let the start be projected (dvi_start_options)",
-                   term->name, row, what, value, t);
-}
-
-static dvi_status check_rows(dvi__evaluator *e, double t, const double *q, const double *p)
-{
-  const dvi_system *s = e->system;
-  const rows_memory *r = rows_of(e);
-  double *v = r->along[0], *rate = r->along[1];
-  DVI_TRY(dvi__rows_value(e, t, q, r->phi));
-  DVI_TRY(dvi__rows_gradients(e, t, q, r->phi_q));
-  for (int a = 0; a < s->row_count; a++)
-    if (!(fabs(r->phi[a]) <= on_constraint * row_size(s, r->phi_q, a, q)))
-      return refuse_row(s, a, t, "", r->phi[a]);
-  memset(v, 0, (size_t)s->n * sizeof(double));
-  DVI_TRY(dvi__legendre_inverse(e, t, q, p, v));
-  DVI_TRY(dvi__rows_rate(e, t, q, r->phi_t));
-  push_rows(s, r->phi_q, v, r->phi_t, rate);
-  for (int a = 0; a < s->row_count; a++)
-    if (!(fabs(rate[a]) <= on_constraint * (row_size(s, r->phi_q, a, v) + fabs(r->phi_t[a]))))
-      return refuse_row(s, a, t, ", its rate along the velocity,", rate[a]);
-  return DVI_OK;
-}
-
-/* Solve L_v(v) + G^T mu = p, G v + phi_t = 0 by Newton's method. One iteration is exact for a
- * constant mass, and a second one rounds its residual off. */
-dvi_status dvi__rows_project_momentum(dvi__evaluator *e, double t, const double *q, double *p,
-                                      double *v)
-{
-  enum { MOST_ITERATIONS = 50 };
-  const dvi_system *s = e->system;
-  rows_memory *r = rows_of(e);
-  const int n = s->n, m = s->row_count, linear = s->lagrangian == NULL;
-  double *mu = r->along[1], size = HUGE_VAL;
-  memset(mu, 0, (size_t)m * sizeof(double));
-  if (linear) memset(v, 0, (size_t)n * sizeof(double));
-  DVI_TRY(dvi__rows_rate(e, t, q, r->phi_t));
-  for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
-    DVI_TRY(dvi__lagrangian_gradient(e, 1, &t, q, v, NULL, r->along[0]));
-    if (iteration == 0 || !linear) DVI_TRY(factor_matrix(e, t, q, v));
-    dvi__rows_pull(s, r->phi_q, mu, 1, r->along[0]);
-    for (int i = 0; i < n; i++) r->x[i] = p[i] - r->along[0][i];
-    push_rows(s, r->phi_q, v, r->phi_t, r->x + n);
-    for (int a = 0; a < m; a++) r->x[n + a] = -r->x[n + a];
-    DVI_TRY(solve_matrix(r, n + m, t));
-    for (int i = 0; i < n; i++) v[i] += r->x[i];
-    for (int a = 0; a < m; a++) mu[a] += r->x[n + a];
-    const double change = dvi__largest((size_t)n, r->x), speed = dvi__largest((size_t)n, v);
-    if (change <= 4 * DBL_EPSILON * speed || (change <= 1e-10 * speed && change >= 0.5 * size)) {
-      dvi__rows_pull(s, r->phi_q, mu, -1, p);
-      return DVI_OK;
-    }
-    size = change;
-  }
-  return dvi__fail(DVI_NOT_CONVERGED, "no velocity on the constraints was found at t = %.6g", t);
-}
-
-/* Move q along M^-1 G^T onto the constraint, then the momentum. */
-static dvi_status project_on_rows(dvi__evaluator *e, double t, double *q, double *p)
-{
-  enum { MOST_ITERATIONS = 50 };
-  const dvi_system *s = e->system;
-  rows_memory *r = rows_of(e);
-  const size_t n = (size_t)s->n;
-  double *v = e->point[0], size = HUGE_VAL, next;
-  memset(v, 0, n * sizeof(double));
-  if (s->lagrangian != NULL) DVI_TRY(dvi__legendre_inverse(e, t, q, p, v));
-  DVI_TRY(rows_distance(e, t, q, p, &next));
-  for (int iteration = 0; iteration < MOST_ITERATIONS && next > 0 && next < size; iteration++) {
-    size = next;
-    DVI_TRY(factor_matrix(e, t, q, v));
-    memset(r->x, 0, n * sizeof(double));
-    for (int a = 0; a < s->row_count; a++) r->x[s->n + a] = -r->phi[a];
-    DVI_TRY(solve_matrix(r, s->n + s->row_count, t));
-    for (size_t i = 0; i < n; i++) r->point[i] = q[i] + r->x[i];
-    DVI_TRY(rows_distance(e, t, r->point, p, &next));
-    if (next < size) memcpy(q, r->point, n * sizeof *q);
-  }
-  DVI_TRY(dvi__rows_project_momentum(e, t, q, p, v));
-  if (check_rows(e, t, q, p) == DVI_OK) return DVI_OK;
-  return dvi__fail_in(DVI_NOT_CONVERGED, "no point of the constraints was found");
-}
-
-static dvi_status rows_side(dvi__evaluator *e, const double *q, const double *p, int *side)
-{
-  (void)e, (void)q, (void)p;
-  *side = 1;
-  return DVI_OK;
-}
-
-static const dvi__state_constraint on_rows = {
-    .matrix = "matrix of the constraints",
-    .check = check_rows,
-    .project = project_on_rows,
-    .distance = rows_distance,
-    .size = rows_size,
-    .side = rows_side,
-};
 
 /* ---- the kinds ---- */
 
@@ -517,7 +400,7 @@ const dvi__dynamics dvi__dynamics_constrained_mass = {
     .value = dvi__value_of_point,
     .forces = constrained_forces,
     .momentum = dvi__momentum_of_point,
-    .constraint = &on_rows,
+    .constraint = &dvi__on_rows,
 };
 
 const dvi__dynamics dvi__dynamics_constrained_lagrangian = {
@@ -537,5 +420,5 @@ const dvi__dynamics dvi__dynamics_constrained_lagrangian = {
     .value = dvi__value_of_point,
     .forces = constrained_forces,
     .momentum = dvi__momentum_of_point,
-    .constraint = &on_rows,
+    .constraint = &dvi__on_rows,
 };

@@ -15,6 +15,9 @@ dvi_status dvi__rows_rate(dvi__evaluator *e, double t, const double *q, double *
 dvi_status dvi__rows_hessian(dvi__evaluator *e, double t, const double *q, const double *w,
                              double *phi_w_qq);
 
+/* Estimate the roundings of phi [m] near a point. 0 stands for a row in which none are seen. */
+void dvi__rows_noise(dvi__evaluator *e, double t, const double *q, double *noise);
+
 /* Add factor G^T w to x [n]. */
 void dvi__rows_pull(const dvi_system *system, const double *phi_q, const double *w, double factor,
                     double *x);

@@ -298,6 +298,9 @@ static dvi_status transformed_fill(dvi__transformed *x, const dvi_system *system
     return dvi__fail(DVI_UNSUPPORTED,
                      "the system declares forces without a potential, which change "
                      "the energy that the transform conserves");
+  if (system->row_count > 0)
+    return dvi__fail(DVI_UNSUPPORTED, "the system declares holonomic constraints, which the "
+                                      "transform does not carry over");
   DVI_TRY(dvi__system_prepare_hessian(system));
   DVI_TRY(transformed_reserve(x, 1));
   return make_transformed_system(x);

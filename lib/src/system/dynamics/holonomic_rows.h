@@ -1,0 +1,36 @@
+/* What an evaluator keeps for holonomic constraints, and the matrix of index 1 (holonomic.c). */
+#ifndef DVI_SYSTEM_DYNAMICS_HOLONOMIC_ROWS_H
+#define DVI_SYSTEM_DYNAMICS_HOLONOMIC_ROWS_H
+#include "num/linear.h"
+#include "system/evaluate/dynamics.h"
+
+enum { DVI__NOISE_SAMPLES = 7 };
+
+typedef struct dvi__rows_memory {
+  dvi__pattern matrix;                        /* of [L_vv G^T; G 0] */
+  int *mass_place, *column_place, *row_place; /* places of L_vv, of G^T and of G */
+  dvi__linear *linear;
+  double *values, *x;          /* [entries], [n + m] */
+  double *phi, *phi_t, *phi_q; /* [m], [m], [entries of rows_q] */
+  double *point, *along[2];    /* [n] a moved point, [n + m] derivatives along the motion */
+  double *hessian, *sum;       /* [entries of rows_qq], [n] */
+  double *derivative, *before; /* [n + m] differences along the motion of two lengths */
+  double *defect;              /* [n + m] by which they differ */
+  double *samples;             /* [DVI__NOISE_SAMPLES*m] of phi near a point */
+  double *numbers;
+} dvi__rows_memory;
+
+dvi__rows_memory *dvi__rows_memory_of(const dvi__evaluator *e);
+
+/* Compute G x + phi_t. */
+void dvi__rows_push(const dvi_system *system, const double *phi_q, const double *x,
+                    const double *phi_t, double *sum);
+
+/* Factor the matrix at a point, whose gradients stay in phi_q, and solve for x in place. */
+dvi_status dvi__rows_factor(dvi__evaluator *e, double t, const double *q, const double *v);
+dvi_status dvi__rows_solve(const dvi__rows_memory *r, int size, double t);
+
+/* The states on the constraints. */
+extern const dvi__state_constraint dvi__on_rows;
+
+#endif

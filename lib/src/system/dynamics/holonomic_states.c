@@ -1,0 +1,243 @@
+/* States on holonomic constraints: their check, their roundings, and the projection of a state.
+ *
+ * A momentum is moved along G^T until its velocity fulfils G v + phi_t = 0, and a place along
+ * M^-1 G^T until phi = 0, both by the matrix of the equations of motion (holonomic.c). */
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "core/status.h"
+#include "num/finite.h"
+#include "system/dynamics/holonomic.h"
+#include "system/dynamics/holonomic_rows.h"
+#include "system/evaluate/evaluator_struct.h"
+#include "system/term/holonomic.h"
+
+/* A start computed in another way differs by its roundings. A larger violation is refused. */
+static const double on_constraint = 1e-11;
+
+/* Return the largest fourth difference among samples of one row. */
+static double largest_fourth_difference(const double *f, int stride)
+{
+  double largest = 0;
+  for (int k = 0; k + 4 < DVI__NOISE_SAMPLES; k++, f += stride)
+    largest = fmax(largest, fabs(f[0] - 4 * f[stride] + 6 * f[2 * stride] - 4 * f[3 * stride] +
+                                 f[4 * stride]));
+  return largest;
+}
+
+/* Sample phi along a line through q. */
+static dvi_status sample_rows(dvi__evaluator *e, double t, const double *q, double distance)
+{
+  const dvi_system *s = e->system;
+  const dvi__rows_memory *r = dvi__rows_memory_of(e);
+  for (int k = 0; k < DVI__NOISE_SAMPLES; k++) {
+    const double along = (k - DVI__NOISE_SAMPLES / 2) * distance; /* the middle is q */
+    for (int i = 0; i < s->n; i++) r->point[i] = q[i] + (i % 2 ? -0.75 : 1) * along;
+    DVI_TRY(dvi__rows_value(e, t, r->point, r->samples + k * s->row_count));
+  }
+  return DVI_OK;
+}
+
+/* The summands of phi are not known, and may be larger than its gradient and q tell. Fourth
+ * differences over a short distance show nothing but roundings, also those of the arguments of
+ * functions in phi. The distance grows until all rows show some.
+ * Source: More and Wild 2011, "Estimating computational noise". */
+void dvi__rows_noise(dvi__evaluator *e, double t, const double *q, double *noise)
+{
+  const dvi__rows_memory *r = dvi__rows_memory_of(e);
+  const int m = e->system->row_count;
+  const double size = fmax(dvi__largest((size_t)e->system->n, q), 0x1p-100), near = 0x1p-24 * size,
+               most = 0x1p-20 * fmax(size, 1);
+  int missing = m;
+  memset(noise, 0, (size_t)m * sizeof *noise);
+  for (double d = 0x1p-40 * size; d <= near || (d <= most && missing > 0); d *= 256) {
+    if (sample_rows(e, t, q, d) != DVI_OK) return;
+    for (int a = 0; a < m; a++) {
+      if (noise[a] > 0 && d > near) continue;
+      missing -= noise[a] == 0;
+      noise[a] = fmax(noise[a], largest_fourth_difference(r->samples + a, m));
+      missing += noise[a] == 0;
+    }
+  }
+}
+
+/* Find the term of a row. */
+static const dvi__holonomic_term *term_of_row(const dvi_system *s, int a)
+{
+  int k = s->holonomic_count - 1;
+  while (s->holonomics[k].first > a) k--;
+  return &s->holonomics[k];
+}
+
+/* Sum the magnitudes of a row of G x. */
+static double row_size(const dvi_system *s, const double *phi_q, int a, const double *x)
+{
+  double size = 0;
+  for (int k = s->rows_q.start[a]; k < s->rows_q.start[a + 1]; k++)
+    size += fabs(phi_q[k] * x[s->rows_q.row[k]]);
+  return size;
+}
+
+static dvi_status rows_distance(dvi__evaluator *e, double t, const double *q, const double *p,
+                                double *distance)
+{
+  const dvi__rows_memory *r = dvi__rows_memory_of(e);
+  (void)p;
+  DVI_TRY(dvi__rows_value(e, t, q, r->phi));
+  *distance = dvi__largest((size_t)e->system->row_count, r->phi);
+  return DVI_OK;
+}
+
+static dvi_status rows_size(dvi__evaluator *e, double t, const double *q, const double *p,
+                            double *size)
+{
+  const dvi__rows_memory *r = dvi__rows_memory_of(e);
+  (void)p;
+  *size = 0;
+  DVI_TRY(dvi__rows_gradients(e, t, q, r->phi_q));
+  for (int a = 0; a < e->system->row_count; a++)
+    *size = fmax(*size, row_size(e->system, r->phi_q, a, q));
+  return DVI_OK;
+}
+
+static dvi_status refuse_row(const dvi_system *s, int a, double t, const char *what, double value)
+{
+  const dvi__holonomic_term *term = term_of_row(s, a);
+  char row[32] = "";
+  if (term->callbacks.count > 1) (void)snprintf(row, sizeof row, " (row %d)", a - term->first);
+  return dvi__fail(DVI_BAD_ARGUMENT,
+                   "constraint '%s'%s%s is %.17g at t = %.6g, not 0; start on the constraint, or "
+                   "let the start be projected (dvi_start_options)",
+                   term->name, row, what, value, t);
+}
+
+/* Check phi = 0, with its roundings where q alone does not explain the rest. */
+static dvi_status check_place(dvi__evaluator *e, double t, const double *q)
+{
+  const dvi_system *s = e->system;
+  const dvi__rows_memory *r = dvi__rows_memory_of(e);
+  double *noise = r->along[1];
+  int known = 0;
+  DVI_TRY(dvi__rows_value(e, t, q, r->phi));
+  DVI_TRY(dvi__rows_gradients(e, t, q, r->phi_q));
+  for (int a = 0; a < s->row_count; a++) {
+    const double size = fabs(r->phi[a]);
+    if (size <= on_constraint * row_size(s, r->phi_q, a, q)) continue;
+    if (!known++) dvi__rows_noise(e, t, q, noise);
+    if (!(size <= noise[a])) return refuse_row(s, a, t, "", r->phi[a]);
+  }
+  return DVI_OK;
+}
+
+static dvi_status check_rows(dvi__evaluator *e, double t, const double *q, const double *p)
+{
+  const dvi_system *s = e->system;
+  const dvi__rows_memory *r = dvi__rows_memory_of(e);
+  double *v = r->along[0], *rate = r->along[1];
+  DVI_TRY(check_place(e, t, q));
+  memset(v, 0, (size_t)s->n * sizeof(double));
+  DVI_TRY(dvi__legendre_inverse(e, t, q, p, v));
+  DVI_TRY(dvi__rows_rate(e, t, q, r->phi_t));
+  dvi__rows_push(s, r->phi_q, v, r->phi_t, rate);
+  for (int a = 0; a < s->row_count; a++)
+    if (!(fabs(rate[a]) <= on_constraint * (row_size(s, r->phi_q, a, v) + fabs(r->phi_t[a]))))
+      return refuse_row(s, a, t, ", its rate along the velocity,", rate[a]);
+  return DVI_OK;
+}
+
+/* Tell whether the momentum that is left in r->x is a rounding of its summands p, L_v in r->sum,
+ * and G^T mu. */
+static int momentum_is_rounding(const dvi_system *s, const dvi__rows_memory *r, const double *p,
+                                const double *mu)
+{
+  for (int i = 0; i < s->n; i++) r->sum[i] = fabs(r->sum[i]) + fabs(p[i]);
+  for (int a = 0; a < s->row_count; a++)
+    for (int k = s->rows_q.start[a]; k < s->rows_q.start[a + 1]; k++)
+      r->sum[s->rows_q.row[k]] += fabs(mu[a] * r->phi_q[k]);
+  for (int i = 0; i < s->n; i++)
+    if (!(fabs(r->x[i]) <= 4 * DBL_EPSILON * r->sum[i])) return 0;
+  return 1;
+}
+
+/* Solve L_v(v) + G^T mu = p, G v + phi_t = 0 by Newton's method. One iteration is exact for a
+ * constant mass, and a second one rounds its residual off. A velocity that is 0 has no size of its
+ * own, so that then the momentum tells what a rounding is. */
+dvi_status dvi__rows_project_momentum(dvi__evaluator *e, double t, const double *q, double *p,
+                                      double *v)
+{
+  enum { MOST_ITERATIONS = 50 };
+  const dvi_system *s = e->system;
+  dvi__rows_memory *r = dvi__rows_memory_of(e);
+  const int n = s->n, m = s->row_count, linear = s->lagrangian == NULL;
+  double *mu = r->along[1], size = HUGE_VAL;
+  memset(mu, 0, (size_t)m * sizeof(double));
+  if (linear) memset(v, 0, (size_t)n * sizeof(double));
+  DVI_TRY(dvi__rows_rate(e, t, q, r->phi_t));
+  for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
+    DVI_TRY(dvi__lagrangian_gradient(e, 1, &t, q, v, NULL, r->along[0]));
+    memcpy(r->sum, r->along[0], (size_t)n * sizeof(double));
+    if (iteration == 0 || !linear) DVI_TRY(dvi__rows_factor(e, t, q, v));
+    dvi__rows_pull(s, r->phi_q, mu, 1, r->along[0]);
+    for (int i = 0; i < n; i++) r->x[i] = p[i] - r->along[0][i];
+    if (iteration >= 2 && momentum_is_rounding(s, r, p, mu)) {
+      dvi__rows_pull(s, r->phi_q, mu, -1, p);
+      return DVI_OK;
+    }
+    dvi__rows_push(s, r->phi_q, v, r->phi_t, r->x + n);
+    for (int a = 0; a < m; a++) r->x[n + a] = -r->x[n + a];
+    DVI_TRY(dvi__rows_solve(r, n + m, t));
+    for (int i = 0; i < n; i++) v[i] += r->x[i];
+    for (int a = 0; a < m; a++) mu[a] += r->x[n + a];
+    const double change = dvi__largest((size_t)n, r->x), speed = dvi__largest((size_t)n, v);
+    if (change <= 4 * DBL_EPSILON * speed || (change <= 1e-10 * speed && change >= 0.5 * size)) {
+      dvi__rows_pull(s, r->phi_q, mu, -1, p);
+      return DVI_OK;
+    }
+    size = change;
+  }
+  return dvi__fail(DVI_NOT_CONVERGED, "no velocity on the constraints was found at t = %.6g", t);
+}
+
+/* Move q along M^-1 G^T onto the constraint, then the momentum. */
+static dvi_status project_on_rows(dvi__evaluator *e, double t, double *q, double *p)
+{
+  enum { MOST_ITERATIONS = 50 };
+  const dvi_system *s = e->system;
+  dvi__rows_memory *r = dvi__rows_memory_of(e);
+  const size_t n = (size_t)s->n;
+  double *v = e->point[0], size = HUGE_VAL, next;
+  memset(v, 0, n * sizeof(double));
+  if (s->lagrangian != NULL) DVI_TRY(dvi__legendre_inverse(e, t, q, p, v));
+  DVI_TRY(rows_distance(e, t, q, p, &next));
+  for (int iteration = 0; iteration < MOST_ITERATIONS && next > 0 && next < size; iteration++) {
+    size = next;
+    DVI_TRY(dvi__rows_factor(e, t, q, v));
+    memset(r->x, 0, n * sizeof(double));
+    for (int a = 0; a < s->row_count; a++) r->x[s->n + a] = -r->phi[a];
+    DVI_TRY(dvi__rows_solve(r, s->n + s->row_count, t));
+    for (size_t i = 0; i < n; i++) r->point[i] = q[i] + r->x[i];
+    DVI_TRY(rows_distance(e, t, r->point, p, &next));
+    if (next < size) memcpy(q, r->point, n * sizeof *q);
+  }
+  DVI_TRY(dvi__rows_project_momentum(e, t, q, p, v));
+  if (check_place(e, t, q) == DVI_OK) return DVI_OK;
+  return dvi__fail_in(DVI_NOT_CONVERGED, "no point of the constraints was found");
+}
+
+static dvi_status rows_side(dvi__evaluator *e, const double *q, const double *p, int *side)
+{
+  (void)e, (void)q, (void)p;
+  *side = 1;
+  return DVI_OK;
+}
+
+const dvi__state_constraint dvi__on_rows = {
+    .matrix = "matrix of the constraints",
+    .check = check_rows,
+    .project = project_on_rows,
+    .distance = rows_distance,
+    .size = rows_size,
+    .side = rows_side,
+};
