@@ -33,7 +33,8 @@ static dvi_status sample_rows(dvi__evaluator *e, double t, const double *q, doub
   const dvi_system *s = e->system;
   const dvi__rows_memory *r = dvi__rows_memory_of(e);
   for (int k = 0; k < DVI__NOISE_SAMPLES; k++) {
-    const double along = (k - DVI__NOISE_SAMPLES / 2) * distance; /* the middle is q */
+    const int from_middle = k - DVI__NOISE_SAMPLES / 2;
+    const double along = from_middle * distance;
     for (int i = 0; i < s->n; i++) r->point[i] = q[i] + (i % 2 ? -0.75 : 1) * along;
     DVI_TRY(dvi__rows_value(e, t, r->point, r->samples + k * s->row_count));
   }
