@@ -30,6 +30,7 @@ struct dvi__constrained_rows {
   double *chi, *beta;   /* [s + 1] */
   double *psi, *bar;    /* [(s + 1)*s] psi_l(chi_k) and psi_l(chi_k) - psi_l(1), at k*s + l */
   int knows_start;      /* phi_q has the gradients at the start of the element */
+  int knows_path;       /* and at all other nodes, of the path in X */
   double *X;            /* [(s + 1)*n] the nodes */
   double *phi, *phi_q;  /* [rows], [(s + 1)*entries] */
   double *w, *phi_w_qq; /* [rows], [entries of rows_qq] */
@@ -85,12 +86,14 @@ static dvi_status rows_fill_tables(rows_term *x)
 
 static void rows_place(void *of, const dvi__row_path *p)
 {
-  const rows_term *x = of;
+  rows_term *x = of;
   for (int k = 0; k <= p->s; k++)
     for (int i = 0; i < p->n; i++) {
       double sum = 0;
       for (int l = 0; l < p->s; l++) sum += x->psi[k * p->s + l] * p->Y[i * p->s + l];
-      x->X[k * p->n + i] = p->q0[i] + sum;
+      const double place = p->q0[i] + sum;
+      x->knows_path &= x->X[k * p->n + i] == place;
+      x->X[k * p->n + i] = place;
     }
 }
 
@@ -99,15 +102,17 @@ static double node_time(const rows_term *x, const dvi__row_path *p, int k)
   return p->t0 + x->chi[k] * p->h;
 }
 
-/* Evaluate the gradients at all nodes. Those at the start are known from the first residual of an
- * element. */
+/* Evaluate the gradients at all nodes that are not known. Those at the start are known from the
+ * first residual of an element, and all where the Jacobian is that of the last residual's path. */
 static dvi_status rows_gradients(rows_term *x, const dvi__row_path *p)
 {
+  if (x->knows_path) return DVI_OK;
   for (int k = x->knows_start; k <= p->s; k++) {
     DVI_TRY(dvi__rows_gradients(x->action->evaluator, node_time(x, p, k), x->X + k * p->n,
                                 x->phi_q + k * x->entries));
     x->knows_start = 1;
   }
+  x->knows_path = 1;
   return DVI_OK;
 }
 
@@ -238,7 +243,7 @@ dvi_status dvi__action_constrain(dvi__action *a)
 
 void dvi__action_forget_start(dvi__action *a)
 {
-  if (a->constrained != NULL) a->constrained->knows_start = 0;
+  if (a->constrained != NULL) a->constrained->knows_start = a->constrained->knows_path = 0;
 }
 
 void dvi__action_clear_constraints(dvi__action *a)
@@ -253,6 +258,7 @@ dvi_status dvi__action_constrain_end(dvi__action *a, const double *Y, double *dp
   if (x == NULL) return DVI_OK;
   const size_t n = (size_t)a->n;
   double *p = x->X;
+  x->knows_path = 0; /* its places make room for p */
   dvi__action_path(a, Y, a->h, 1.0, NULL, x->v);
   for (size_t i = 0; i < n; i++) p[i] = a->p0[i] + dp[i];
   const dvi_status found = dvi__rows_project_momentum(a->evaluator, a->t0 + a->h, a->terms.q1, p,
