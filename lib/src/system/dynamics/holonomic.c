@@ -281,10 +281,9 @@ static int keep_best(dvi__rows_memory *r, int size)
   return settled;
 }
 
-/* Write the derivatives of (L_v, G v + phi_t) along the motion into r->x. Neither t nor q tells how
- * fast the constraint changes, so that the step is shortened until the differences agree. A
- * constraint may be undefined farther away. */
-static dvi_status differentiate_along(dvi__evaluator *e, double t, const double *q, const double *v)
+/* Write the derivatives into r->x. Neither t nor q tells how fast the constraint changes, so that
+ * the step is shortened until the differences agree. A constraint may be undefined farther away. */
+static dvi_status search_derivatives(dvi__evaluator *e, double t, const double *q, const double *v)
 {
   enum { STEPS = 12 };
   dvi__rows_memory *r = dvi__rows_memory_of(e);
@@ -307,6 +306,17 @@ static dvi_status differentiate_along(dvi__evaluator *e, double t, const double 
       break;
   }
   return known > 0 ? DVI_OK : status;
+}
+
+/* Write the derivatives of (L_v, G v + phi_t) along the motion into r->x. */
+static dvi_status differentiate_along(dvi__evaluator *e, double t, const double *q, const double *v)
+{
+  const dvi__rows_memory *r = dvi__rows_memory_of(e);
+  const int size = e->system->n + e->system->row_count;
+  if (e->span == 0) return search_derivatives(e, t, q, v);
+  DVI_TRY(difference_along(e, t, ldexp(1.0, ilogb(e->span) - 5), q, v));
+  memcpy(r->x, r->derivative, (size_t)size * sizeof(double));
+  return DVI_OK;
 }
 
 dvi_status dvi__rows_acceleration(dvi__evaluator *e, double t, const double *q, const double *v,

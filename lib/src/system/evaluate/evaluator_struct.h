@@ -22,6 +22,9 @@ struct dvi__evaluator {
   double *hessian[3];
   double *velocity_search; /* work [6 n] of general Lagrangians */
   void *own;               /* memory of the kind of dynamics */
+  /* A time in which the motion bends little, or 0 if none is known. Derivatives along the motion
+   * are then differences over a part of it. */
+  double span;
 };
 
 /* Add the points at which differences evaluated a function to the counters. */

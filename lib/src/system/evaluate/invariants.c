@@ -172,8 +172,12 @@ static dvi_status change_of_hamiltonian(dvi__evaluator *e, const dvi__instant *b
 dvi_status dvi__energy_change(dvi__evaluator *e, const dvi__instant *before,
                               const dvi__instant *after, double *change, double *exchanged)
 {
-  return (e->system->dynamics->has_kinetic_energy ? change_of_lagrangian : change_of_hamiltonian)(
-      e, before, after, change, exchanged);
+  e->span = fabs(after->t - before->t);
+  const dvi_status status = (e->system->dynamics->has_kinetic_energy
+                                 ? change_of_lagrangian
+                                 : change_of_hamiltonian)(e, before, after, change, exchanged);
+  e->span = 0;
+  return status;
 }
 
 /* Compute the defect of rates r and their variables x, of one kind. A rate that is a rounding of
@@ -206,8 +210,12 @@ dvi_status dvi__motion_defect(dvi__evaluator *e, const dvi__instant *before,
   }
   *defect = defect_of(n, h, 0, before->q, after->q, before->v, after->v);
   if (!has_forces) return DVI_OK;
-  DVI_TRY(e->system->dynamics->forces(e, before->t, before->q, before->v, f0));
-  DVI_TRY(e->system->dynamics->forces(e, after->t, after->q, after->v, f1));
+  e->span = fabs(h);
+  dvi_status status = e->system->dynamics->forces(e, before->t, before->q, before->v, f0);
+  if (status == DVI_OK)
+    status = e->system->dynamics->forces(e, after->t, after->q, after->v, f1);
+  e->span = 0;
+  DVI_TRY(status);
   *defect = fmax(*defect, defect_of(n, h, 1, before->p, after->p, f0, f1));
   return DVI_OK;
 }
