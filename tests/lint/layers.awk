@@ -16,7 +16,7 @@ BEGIN {
   sees["system/term"] = "core num system"
   sees["system/evaluate"] = "core num system system/term"
   sees["system/dynamics"] = "core num system system/term system/evaluate"
-  sees["system/chart"] = "core num group system system/evaluate"
+  sees["system/chart"] = "core num group system system/term system/evaluate system/dynamics"
   sees["system/rescale"] = "core num system system/evaluate system/term"
   sees["system/check"] = "core num system system/evaluate system/term"
   sees["system/declare"] = sees["system/chart"] " system/term system/chart system/rescale"

@@ -128,6 +128,18 @@ void dvi__chart_transport(const dvi__chart *chart, const double *xi, const doubl
 /* Compute W [size*3], which maps a moment in space to the chart's momentum at xi. */
 void dvi__chart_moments(const dvi__chart *chart, const double *xi, double *W);
 
+/* Compute the angular momentum [3] of the chart's momentum p at xi, of a rotation in the centre's
+ * frame, of a direction in space. */
+void dvi__chart_angular_momentum_at(const dvi__chart *chart, const double *xi, const double *p,
+                                    double *angular);
+
+/* Carry a momentum f from xi to `end`, where it keeps its angular momentum, carried = E f. The
+ * second function computes its derivatives [size*size] in f, which is E, in xi, and in `end`. */
+void dvi__chart_carry(const dvi__chart *chart, const double *xi, const double *end, const double *f,
+                      double *carried);
+void dvi__chart_carry_derivatives(const dvi__chart *chart, const double *xi, const double *end,
+                                  const double *f, double *in_f, double *in_xi, double *in_end);
+
 /* Compute xi of a point y that is nearer than half a turn. */
 void dvi__chart_inverse(const dvi__chart *chart, const double *y, double *xi);
 

@@ -475,7 +475,7 @@ dvi_status dvi_integrator_reactions(dvi_integrator *I, double *lambda)
     return dvi__fail(DVI_BAD_STATE,
                      "reactions: the integrator has no state yet; call dvi_integrator_start first");
   DVI_TRY(state_velocity(I, &I->now, I->v));
-  return dvi__rows_acceleration(I->evaluator, I->now.t, I->now.q, I->v, NULL, lambda);
+  return I->system->dynamics->reactions(I->evaluator, I->now.t, I->now.q, I->v, lambda);
 }
 
 const double *dvi_integrator_multiplier(const dvi_integrator *I)

@@ -20,9 +20,15 @@ typedef struct charted_step {
   double *offset;    /* [unknowns] */
 } charted_step;
 
+/* Give the count of a path's numbers and those of row terms, and the degree. */
 static size_t unknowns_of(const charted_step *own)
 {
   return (size_t)dvi__action_unknowns(dvi__element_action(&own->inner));
+}
+
+static size_t degree_of(const charted_step *own)
+{
+  return (size_t)dvi__action_space_of(dvi__element_action(&own->inner)).degree;
 }
 
 /* ---- create ---- */
@@ -31,7 +37,7 @@ static dvi_status charted_step_allocate(dvi__stepper *self, charted_step *own)
 {
   const size_t nx = (size_t)self->system->nx, n = (size_t)self->system->n,
                unknowns = unknowns_of(own);
-  const size_t seen = n * (unknowns / nx + 1);
+  const size_t seen = n * (degree_of(own) + 1);
   self->memory_count = own->inner.memory_count + unknowns;
   own->local = DVI_NEW(double, 6 * nx + seen + unknowns);
   if (own->local == NULL) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
@@ -95,7 +101,7 @@ static void look_back(const charted_step *own, size_t n, const double *path)
 {
   const dvi__action *action = dvi__element_action(&own->inner);
   const double *tau = dvi__action_fit_points(action);
-  const size_t nx = (size_t)dvi__charted_system(own->charted)->n, s = unknowns_of(own) / nx;
+  const size_t s = degree_of(own);
   for (size_t m = 0; m < s; m++) {
     dvi__action_path(action, path, 1.0, tau[m], own->xi, NULL);
     dvi__charted_point(own->charted, own->xi, NULL, own->seen + m * n, NULL);
@@ -105,7 +111,7 @@ static void look_back(const charted_step *own, size_t n, const double *path)
 /* Express the same path in the chart at its end, where the next guess continues it. */
 static void turn_path(const charted_step *own, size_t n, double *path)
 {
-  const size_t nx = (size_t)dvi__charted_system(own->charted)->n, s = unknowns_of(own) / nx;
+  const size_t nx = (size_t)dvi__charted_system(own->charted)->n, s = degree_of(own);
   dvi__charted_inverse(own->charted, own->seen + s * n, own->rate);
   for (size_t m = 0; m < s; m++) {
     dvi__charted_inverse(own->charted, own->seen + m * n, own->xi);
@@ -145,7 +151,7 @@ dvi_status dvi__charted_step(dvi__stepper *self, dvi__state *state, double h)
   dvi__state local;
   DVI_TRY(charted_step_solve(self, state, h, &local));
   memcpy(own_path, path, unknowns * sizeof(double));
-  memcpy(own->seen + n * (unknowns / (size_t)self->system->nx), state->q, n * sizeof(double));
+  memcpy(own->seen + n * degree_of(own), state->q, n * sizeof(double));
   look_back(own, n, own_path);
   dvi__charted_arrive(own->charted,
                       &(dvi__phase){.q = local.q,

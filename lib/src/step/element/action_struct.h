@@ -118,6 +118,33 @@ void dvi__action_scale_terms(const dvi__action *action, double *scale);
 void dvi__action_clear_charts(dvi__action *action);
 void dvi__action_clear_constraints(dvi__action *action);
 
+/* In charts, change the rows and dp for a momentum f [n] that is added at the point xi [n] of the
+ * path. Without charts nothing changes. */
+void dvi__action_carry(dvi__action *action, const double *xi, const double *f, double *R,
+                       double *dp);
+
+/* Count a momentum [n] that is added at the end of the path. */
+void dvi__action_arrive(const dvi__action *action, const double *added);
+
+/* How rows change in charts with the momenta that are added on the way, each array NULL without
+ * charts (system/chart/centring.h). */
+typedef struct dvi__carried {
+  const double *by_f, *by_xi, *by_end; /* [3 n] */
+  const int *first, *width;            /* [n] */
+} dvi__carried;
+
+/* Prepare for the momentum f at xi. */
+dvi__carried dvi__action_carried(dvi__action *action, const double *xi, const double *f);
+
+/* Give the change of `more` in row `row` with a column of whole blocks, of which entry e is in that
+ * row. */
+double dvi__carried_entry(const dvi__carried *carried, int row, const double *column, int e);
+
+/* Subtract end_k dmore for the movements of xi and of the path's end. psi [s] are the functions at
+ * xi. */
+void dvi__action_carry_movements(const dvi__action *action, const dvi__carried *carried,
+                                 const double *psi, const dvi__row_jacobian *J);
+
 /* Drop what constraints know of the start of the element, when another one is placed. */
 void dvi__action_forget_start(dvi__action *action);
 

@@ -11,7 +11,8 @@
 struct dvi__centred_paths {
   dvi__centring centring;
   dvi__action *action;
-  double *correction; /* [n] C */
+  double *correction; /* [n] C, or what carried momenta change */
+  double *by_f, *by_xi, *by_end; /* [3 n] derivatives of carried momenta */
 };
 
 static void centring_place(void *of, const dvi__row_path *path)
@@ -79,8 +80,12 @@ dvi_status dvi__action_centre(dvi__action *a, const dvi__centring *centring)
 {
   dvi__centred_paths *x = a->centred = DVI_NEW(dvi__centred_paths, 1);
   if (x == NULL) return dvi__fail(DVI_NO_MEMORY, "action: no memory for charts");
-  *x = (dvi__centred_paths){*centring, a, DVI_NEW(double, a->n)};
+  *x = (dvi__centred_paths){.centring = *centring, .action = a};
+  x->correction = DVI_NEW(double, 10 * (size_t)a->n);
   if (x->correction == NULL) return dvi__fail(DVI_NO_MEMORY, "action: no memory for charts");
+  x->by_f = x->correction + a->n;
+  x->by_xi = x->by_f + 3 * (size_t)a->n;
+  x->by_end = x->by_xi + 3 * (size_t)a->n;
   return dvi__action_add_term(a, &(dvi__row_term){.name = "charts",
                                                   .of = x,
                                                   .place = centring_place,
@@ -93,6 +98,54 @@ void dvi__action_clear_charts(dvi__action *a)
 {
   if (a->centred != NULL) dvi__release(a->centred->correction);
   dvi__release(a->centred);
+}
+
+/* ---- momenta that other terms add on the way ---- */
+
+void dvi__action_carry(dvi__action *a, const double *xi, const double *f, double *R, double *dp)
+{
+  const dvi__centred_paths *x = a->centred;
+  if (x == NULL) return;
+  x->centring.carry(x->centring.of, xi, f, x->correction);
+  for (int i = 0; i < a->n; i++) {
+    for (int k = 0; k < a->s; k++) R[i * a->s + k] -= a->end[k] * x->correction[i];
+    dp[i] += x->correction[i];
+  }
+}
+
+void dvi__action_arrive(const dvi__action *a, const double *added)
+{
+  const dvi__centred_paths *x = a->centred;
+  if (x != NULL) x->centring.carry(x->centring.of, a->terms.q1, added, x->correction);
+}
+
+dvi__carried dvi__action_carried(dvi__action *a, const double *xi, const double *f)
+{
+  const dvi__centred_paths *x = a->centred;
+  if (x == NULL) return (dvi__carried){0};
+  x->centring.carry_derivatives(x->centring.of, xi, f, x->by_f, x->by_xi, x->by_end);
+  return (dvi__carried){x->by_f, x->by_xi, x->by_end, x->centring.first, x->centring.width};
+}
+
+double dvi__carried_entry(const dvi__carried *c, int row, const double *column, int e)
+{
+  double sum = 0;
+  if (c->by_f == NULL) return 0;
+  for (int b = 0; b < c->width[row]; b++)
+    sum += c->by_f[3 * row + b] * column[e - (row - c->first[row]) + b];
+  return sum;
+}
+
+void dvi__action_carry_movements(const dvi__action *a, const dvi__carried *c, const double *psi,
+                                 const dvi__row_jacobian *J)
+{
+  for (int i = 0; c->by_f != NULL && i < a->n; i++)
+    for (int b = 0; b < c->width[i]; b++)
+      for (int l = 0; l < a->s; l++) {
+        double *rows = dvi__row_block(J, i, c->first[i] + b, l);
+        const double by = c->by_xi[3 * i + b] * psi[l] + c->by_end[3 * i + b] * a->end[l];
+        for (int k = 0; k < a->s; k++) rows[k] -= a->end[k] * by;
+      }
 }
 
 double dvi__action_turn(const dvi__action *a, const double *from, const double *Y)

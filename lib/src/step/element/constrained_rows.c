@@ -34,7 +34,7 @@ struct dvi__constrained_rows {
   double *X;            /* [(s + 1)*n] the nodes */
   double *phi, *phi_q;  /* [rows], [(s + 1)*entries] */
   double *w, *phi_w_qq; /* [rows], [entries of rows_qq] */
-  double *v;            /* [n] */
+  double *v, *impulse;  /* [n] */
   double *numbers;
 };
 
@@ -49,7 +49,7 @@ static dvi_status rows_allocate(rows_term *x)
                entries = (size_t)x->entries,
                curvature = (size_t)dvi__pattern_entries(&a->system->rows_qq);
   double *at = x->numbers = DVI_NEW(double,
-                                    nodes *(2 + 2 * s + n + entries) + 2 * rows + n + curvature);
+                                    nodes *(2 + 2 * s + n + entries) + 2 * rows + 2 * n + curvature);
   if (at == NULL) return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d constraints", x->rows);
   x->chi = at;
   x->beta = x->chi + nodes;
@@ -61,6 +61,7 @@ static dvi_status rows_allocate(rows_term *x)
   x->w = x->phi + rows;
   x->phi_w_qq = x->w + rows;
   x->v = x->phi_w_qq + curvature;
+  x->impulse = x->v + n;
   return DVI_OK;
 }
 
@@ -122,21 +123,28 @@ static double multiplier_of(const dvi__row_path *p, const double *own, int a, in
   return own[a * p->s + k];
 }
 
+/* Compute the momentum [n] that the constraints add at node k. */
+static void impulse_of_node(rows_term *x, const dvi__row_path *p, const double *own, int k)
+{
+  for (int a = 0; a < x->rows; a++) x->w[a] = multiplier_of(p, own, a, k);
+  memset(x->impulse, 0, (size_t)p->n * sizeof(double));
+  dvi__rows_pull(x->action->system, x->phi_q + k * x->entries, x->w, -x->beta[k] / p->h,
+                 x->impulse);
+}
+
 static dvi_status rows_add(void *of, const dvi__row_path *p, const double *own, double *R,
                            double *dp, double *own_R)
 {
   rows_term *x = of;
-  const dvi__pattern *G = &x->action->system->rows_q;
   DVI_TRY(rows_gradients(x, p));
-  for (int k = 0; k < p->s; k++)
-    for (int a = 0; a < x->rows; a++)
-      for (int e = G->start[a]; e < G->start[a + 1]; e++) {
-        const double impulse = -x->beta[k] / p->h * multiplier_of(p, own, a, k) *
-                               x->phi_q[k * x->entries + e];
-        double *row = R + G->row[e] * p->s;
-        for (int j = 0; j < p->s; j++) row[j] += x->bar[k * p->s + j] * impulse;
-        dp[G->row[e]] += impulse;
-      }
+  for (int k = 0; k < p->s; k++) {
+    impulse_of_node(x, p, own, k);
+    for (int i = 0; i < p->n; i++) {
+      for (int j = 0; j < p->s; j++) R[i * p->s + j] += x->bar[k * p->s + j] * x->impulse[i];
+      dp[i] += x->impulse[i];
+    }
+    dvi__action_carry(x->action, x->X + k * p->n, x->impulse, R, dp);
+  }
   for (int k = 1; k <= p->s; k++) {
     DVI_TRY(dvi__rows_value(x->action->evaluator, node_time(x, p, k), x->X + k * p->n, x->phi));
     for (int a = 0; a < x->rows; a++) own_R[a * p->s + k - 1] = x->phi[a] / p->h;
@@ -164,22 +172,41 @@ static void rows_magnitudes(const void *of, const dvi__row_path *p, double *magn
 
 /* ---- derivatives ---- */
 
-/* Add the derivatives of the forces by the place of node k. */
-static dvi_status add_curvature(rows_term *x, const dvi__row_path *p, const double *own, int k,
-                                const dvi__row_jacobian *J)
+/* Add the derivatives by the place of node k of the momentum that is added there. x->w has the
+ * multipliers. */
+static dvi_status add_curvature(rows_term *x, const dvi__row_path *p, const dvi__carried *carried,
+                                int k, const dvi__row_jacobian *J)
 {
   const dvi__pattern *qq = &x->action->system->rows_qq;
-  for (int a = 0; a < x->rows; a++) x->w[a] = multiplier_of(p, own, a, k);
+  const double *end = x->action->end;
   DVI_TRY(dvi__rows_hessian(x->action->evaluator, node_time(x, p, k), x->X + k * p->n, x->w,
                             x->phi_w_qq));
   for (int column = 0; column < p->n; column++)
-    for (int e = qq->start[column]; e < qq->start[column + 1]; e++)
+    for (int e = qq->start[column]; e < qq->start[column + 1]; e++) {
+      const double more = dvi__carried_entry(carried, qq->row[e], x->phi_w_qq, e);
       for (int l = 0; l < p->s; l++) {
         double *rows = dvi__row_block(J, qq->row[e], column, l);
-        const double by = -x->beta[k] / p->h * x->phi_w_qq[e] * x->psi[k * p->s + l];
-        for (int j = 0; j < p->s; j++) rows[j] += x->bar[k * p->s + j] * by;
+        const double by = -x->beta[k] / p->h * x->psi[k * p->s + l];
+        for (int j = 0; j < p->s; j++)
+          rows[j] += by * (x->bar[k * p->s + j] * x->phi_w_qq[e] - end[j] * more);
       }
+    }
   return DVI_OK;
+}
+
+/* Add the derivatives by the multipliers of node k. */
+static void add_gradients(const rows_term *x, const dvi__row_path *p, const dvi__carried *carried,
+                          int k, const dvi__row_jacobian *J)
+{
+  const dvi__pattern *G = &x->action->system->rows_q;
+  const double *phi_q = x->phi_q + k * x->entries, *end = x->action->end;
+  for (int a = 0; a < x->rows; a++)
+    for (int e = G->start[a]; e < G->start[a + 1]; e++) {
+      double *column = dvi__row_own_column(J, a * p->s + k, G->row[e]);
+      const double by = -x->beta[k] / p->h, more = dvi__carried_entry(carried, G->row[e], phi_q, e);
+      for (int j = 0; j < p->s; j++)
+        column[j] += by * (x->bar[k * p->s + j] * phi_q[e] - end[j] * more);
+    }
 }
 
 static dvi_status rows_derivatives(void *of, const dvi__row_path *p, const double *own,
@@ -188,20 +215,20 @@ static dvi_status rows_derivatives(void *of, const dvi__row_path *p, const doubl
   rows_term *x = of;
   const dvi__pattern *G = &x->action->system->rows_q;
   DVI_TRY(rows_gradients(x, p));
-  for (int k = 1; k < p->s; k++) DVI_TRY(add_curvature(x, p, own, k, J));
+  for (int k = 0; k < p->s; k++) {
+    impulse_of_node(x, p, own, k);
+    const dvi__carried carried = dvi__action_carried(x->action, x->X + k * p->n, x->impulse);
+    add_gradients(x, p, &carried, k, J);
+    dvi__action_carry_movements(x->action, &carried, x->psi + k * p->s, J);
+    if (k > 0) DVI_TRY(add_curvature(x, p, &carried, k, J));
+  }
   for (int a = 0; a < x->rows; a++)
-    for (int e = G->start[a]; e < G->start[a + 1]; e++) {
-      for (int k = 0; k < p->s; k++) {
-        double *column = dvi__row_own_column(J, a * p->s + k, G->row[e]);
-        const double by = -x->beta[k] / p->h * x->phi_q[k * x->entries + e];
-        for (int j = 0; j < p->s; j++) column[j] += x->bar[k * p->s + j] * by;
-      }
+    for (int e = G->start[a]; e < G->start[a + 1]; e++)
       for (int l = 0; l < p->s; l++) {
         double *rows = dvi__row_own_rows(J, a, G->row[e], l);
         for (int k = 1; k <= p->s; k++)
           rows[k - 1] += x->phi_q[k * x->entries + e] * x->psi[k * p->s + l] / p->h;
       }
-    }
   return DVI_OK;
 }
 
@@ -266,6 +293,10 @@ dvi_status dvi__action_constrain_end(dvi__action *a, const double *Y, double *dp
   /* a smaller step may end elsewhere */
   if (found != DVI_OK)
     return dvi__fail_in(found == DVI_SINGULAR ? DVI_NOT_CONVERGED : found, "the end of the step");
-  for (size_t i = 0; i < n; i++) dp[i] = p[i] - a->p0[i];
+  for (size_t i = 0; i < n; i++) {
+    x->impulse[i] = p[i] - (a->p0[i] + dp[i]);
+    dp[i] = p[i] - a->p0[i];
+  }
+  dvi__action_arrive(a, x->impulse);
   return DVI_OK;
 }

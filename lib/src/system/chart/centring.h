@@ -30,6 +30,14 @@ typedef struct dvi__centring {
    * dC = dq1 + sum_j b_j (h C_qq dq + C_qv dv). */
   void (*derive)(void *of, int nodes, double h, const double *weight, const double *p0,
                  const double **C_q1, const double **C_qq, const double **C_qv);
+  /* A momentum f [n] that other forces add at the point xi [n] of the path is f + more at its end.
+   * `carry` computes more [n], and counts its angular momentum, which the state gets on arrival. */
+  void (*carry)(void *of, const double *xi, const double *f, double *more);
+  /* Compute the derivatives of `more` by f, by xi and by the path's end, in blocks of coordinates,
+   * [3 n]. Number 3 i + b is that of coordinate i by coordinate first[i] + b, for b < width[i]. */
+  void (*carry_derivatives)(void *of, const double *xi, const double *f, double *by_f,
+                            double *by_xi, double *by_end);
+  const int *first, *width;
 } dvi__centring;
 
 #endif

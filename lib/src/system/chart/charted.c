@@ -9,7 +9,7 @@
 
 /* ---- create, destroy ---- */
 
-static dvi_status make_charted_system(dvi__charted *x)
+static dvi_status make_charted_system(dvi__charted *x, dvi_holonomic *rows)
 {
   const int reduced = x->reduced.bodies != NULL;
   const dvi_lagrangian lagrangian = {
@@ -20,8 +20,24 @@ static dvi_status make_charted_system(dvi__charted *x)
       .qv = {x->qv.start, x->qv.row},
       .vv = {x->vv.start, x->vv.row},
       .user = x};
-  return dvi_system_create(&(dvi_system_terms){.dimension = x->base->nx, .lagrangian = &lagrangian},
+  DVI_TRY(dvi__charted_make_rows(x, rows));
+  return dvi_system_create(&(dvi_system_terms){.dimension = x->base->nx,
+                                               .lagrangian = &lagrangian,
+                                               .holonomics = rows,
+                                               .holonomic_count = x->base->holonomic_count},
                            &x->system);
+}
+
+/* Constraints in the charts are declared by a list that is not kept. */
+static dvi_status declare_charted_system(dvi__charted *x)
+{
+  const int count = x->base->holonomic_count;
+  dvi_holonomic *rows = count > 0 ? DVI_NEW(dvi_holonomic, count) : NULL;
+  if (count > 0 && rows == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "charts: no memory for %d constraints", count);
+  const dvi_status status = make_charted_system(x, rows);
+  dvi__release(rows);
+  return status;
 }
 
 static dvi_status charted_allocate(dvi__charted *x)
@@ -56,7 +72,7 @@ static dvi_status charted_fill(dvi__charted *x, const dvi_system *system, int re
   if (reduced) DVI_TRY(dvi__reduced_create(system, &x->reduced));
   DVI_TRY(dvi__charted_make_patterns(x));
   if (reduced) DVI_TRY(dvi__reduced_place(x));
-  return make_charted_system(x);
+  return declare_charted_system(x);
 }
 
 dvi_status dvi__charted_create(const dvi_system *system, int reduced, dvi_counters *counters,
@@ -79,13 +95,14 @@ void dvi__charted_destroy(dvi__charted **charted)
   dvi__pattern_clear(&x->qv);
   dvi__pattern_clear(&x->vv);
   dvi__reduced_clear(&x->reduced);
+  dvi__charted_clear_rows(x);
   void *const own[] = {x->functions,  x->chart,      x->slot,       x->slot_of_x, x->t,
                        x->y,          x->rate,       x->L_y,        x->w,         x->L_yy,
                        x->T,          x->S,          x->curved,     x->mixed,     x->in_qq,
                        x->mass_in_qq, x->mass_in_qv, x->mass_in_vv, x->own_in_qq, x->own_in_qv,
                        x->own_in_vv,  x->coupled_in, x->W,          x->end,       x->moment,
                        x->impulse,    x->turned_T,   x->turned_S,   x->C_q1,      x->C_qq,
-                       x->C_qv};
+                       x->C_qv,       x->kick,       x->first,      x->width};
   for (size_t i = 0; i < sizeof own / sizeof *own; i++) dvi__release(own[i]);
   dvi__release(x);
   *charted = NULL;
@@ -124,7 +141,9 @@ void dvi__charted_arrive(const dvi__charted *x, const dvi__phase *local, const d
     double *y = state->q + at->q, *y_compensation = state->q_compensation + at->q,
            *p = state->p + at->v, *p_compensation = state->p_compensation + at->v;
     if (dvi__turns(at)) {
-      dvi__chart_transport(&x->chart[c], local->q + at->x, x->impulse + 3 * c, y, y_compensation, p,
+      double added[3];
+      for (int i = 0; i < 3; i++) added[i] = x->impulse[3 * c + i] + x->kick[3 * c + i];
+      dvi__chart_transport(&x->chart[c], local->q + at->x, added, y, y_compensation, p,
                            p_compensation);
     } else {
       dvi__chart_move(&x->chart[c], local->q + at->x, y, y_compensation);

@@ -26,17 +26,9 @@ static void bend_charts(dvi__charted *x, int count, int first, int group, int k,
   }
 }
 
-/* Return the tangents of stored coordinate i. */
-static const double *tangents_of(const dvi__factor_slot *slot, const double *tangents, int i)
-{
-  return tangents + 3 * (size_t)slot->q +
-         (size_t)(i - slot->q) * (size_t)dvi__chart_size(slot->kind);
-}
-
-/* Add left^T (entry) right to the block of an entry (i,j), for point k of `count`. */
-static void add_entry_product(const dvi__place *at, int rows, int columns, double entry,
-                              const double *left, const double *right, size_t count, size_t k,
-                              double *values)
+void dvi__charted_add_entry(const dvi__place *at, int rows, int columns, double entry,
+                            const double *left, const double *right, size_t count, size_t k,
+                            double *values)
 {
   for (int b = 0; b < columns; b++)
     for (int a = 0; a < rows; a++)
@@ -57,9 +49,9 @@ static void add_slot_product(const dvi__charted *x, const dvi__factor_slot *slot
     for (int e = vv->start[j]; e < vv->start[j + 1]; e++) {
       const int i = vv->row[e];
       const dvi__factor_slot *row = &x->base->slots[x->slot[i]];
-      const double *from = tangents_of(row, left, i), *to = tangents_of(slot, right, j);
+      const double *from = dvi__charted_tangents_of(row, left, i), *to = dvi__charted_tangents_of(slot, right, j);
       if (row != slot) {
-        add_entry_product(&in[e], dvi__chart_size(row->kind), size, x->base->mass_values[e], from,
+        dvi__charted_add_entry(&in[e], dvi__chart_size(row->kind), size, x->base->mass_values[e], from,
                           to, count, k, values);
         continue;
       }
@@ -87,9 +79,9 @@ void dvi__charted_add_potentials(const dvi__charted *x, int group, int in_group,
     for (int e = qq->start[j]; e < qq->start[j + 1]; e++) {
       const dvi__factor_slot *row = &x->base->slots[x->slot[qq->row[e]]],
                              *column = &x->base->slots[x->slot[j]];
-      add_entry_product(&x->in_qq[e], dvi__chart_size(row->kind), dvi__chart_size(column->kind),
-                        x->L_yy[e * group + in_group], tangents_of(row, left, qq->row[e]),
-                        tangents_of(column, x->T, j), count, k, L_qq);
+      dvi__charted_add_entry(&x->in_qq[e], dvi__chart_size(row->kind), dvi__chart_size(column->kind),
+                        x->L_yy[e * group + in_group], dvi__charted_tangents_of(row, left, qq->row[e]),
+                        dvi__charted_tangents_of(column, x->T, j), count, k, L_qq);
     }
 }
 

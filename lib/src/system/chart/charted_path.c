@@ -121,6 +121,7 @@ static void place_path(void *of, const double *q0, const double *q1)
   x->from_centre = 1;
   for (int i = 0; i < x->base->nx; i++) x->from_centre &= q0[i] == 0;
   memcpy(x->end, q1, (size_t)x->base->nx * sizeof *q1);
+  memset(x->kick, 0, 3 * (size_t)x->base->slot_count * sizeof *x->kick);
 }
 
 /* Compute mu1 - mu0 = h sum_j b_j N_j of slot c. */
@@ -261,6 +262,65 @@ static void derive_reduced(void *of, int nodes, double h, const double *weight, 
   }
 }
 
+/* ---- momenta that other forces add on the way ---- */
+
+static void carry_on_path(void *of, const double *xi, const double *f, double *more)
+{
+  dvi__charted *x = of;
+  memset(more, 0, (size_t)x->base->nx * sizeof *more);
+  for (int c = 0; c < x->base->slot_count && x->from_centre; c++) {
+    const dvi__factor_slot *slot = &x->base->slots[c];
+    double mu[3], carried[DVI__CHART_SIZE];
+    if (!dvi__turns(slot)) continue;
+    dvi__chart_angular_momentum_at(&x->chart[c], xi + slot->x, f + slot->x, mu);
+    dvi__chart_momentum(&x->chart[c], x->end + slot->x, mu, carried);
+    for (int i = 0; i < 3; i++) x->kick[3 * c + i] += mu[i];
+    for (int i = 0; i < dvi__chart_size(slot->kind); i++)
+      more[slot->x + i] = carried[i] - f[slot->x + i];
+  }
+}
+
+/* Copy a matrix [size*size] into the rows of a slot. */
+static void put_rows(const dvi__factor_slot *slot, const double *matrix, double *rows)
+{
+  const int size = dvi__chart_size(slot->kind);
+  for (int i = 0; i < size; i++)
+    memcpy(rows + 3 * (slot->x + i), matrix + size * i, (size_t)size * sizeof *rows);
+}
+
+static void derive_carried(void *of, const double *xi, const double *f, double *by_f, double *by_xi,
+                           double *by_end)
+{
+  const dvi__charted *x = of;
+  const size_t bytes = 3 * (size_t)x->base->nx * sizeof(double);
+  memset(by_f, 0, bytes);
+  memset(by_xi, 0, bytes);
+  memset(by_end, 0, bytes);
+  for (int c = 0; c < x->base->slot_count && x->from_centre; c++) {
+    const dvi__factor_slot *slot = &x->base->slots[c];
+    double in_f[9], in_xi[9], in_end[9];
+    if (!dvi__turns(slot)) continue;
+    dvi__chart_carry_derivatives(&x->chart[c], xi + slot->x, x->end + slot->x, f + slot->x, in_f,
+                                 in_xi, in_end);
+    for (int i = 0; i < dvi__chart_size(slot->kind); i++)
+      in_f[i * (dvi__chart_size(slot->kind) + 1)] -= 1;
+    put_rows(slot, in_f, by_f);
+    put_rows(slot, in_xi, by_xi);
+    put_rows(slot, in_end, by_end);
+  }
+}
+
+static void list_blocks(dvi__charted *x)
+{
+  for (int c = 0; c < x->base->slot_count; c++) {
+    const dvi__factor_slot *slot = &x->base->slots[c];
+    for (int i = 0; i < dvi__chart_size(slot->kind); i++) {
+      x->first[slot->x + i] = slot->x;
+      x->width[slot->x + i] = dvi__turns(slot) ? dvi__chart_size(slot->kind) : 0;
+    }
+  }
+}
+
 static dvi_status charted_reserve(dvi__charted *x, int nodes)
 {
   const size_t slots = (size_t)x->base->slot_count, n = (size_t)x->base->n,
@@ -269,13 +329,16 @@ static dvi_status charted_reserve(dvi__charted *x, int nodes)
   x->W = DVI_NEW(double, 9 * slots);
   x->end = DVI_NEW(double, x->base->nx);
   x->impulse = DVI_NEW(double, 3 * slots);
+  x->kick = DVI_NEW(double, 3 * slots);
+  x->first = DVI_NEW(int, x->base->nx);
+  x->width = DVI_NEW(int, x->base->nx);
   x->moment = DVI_NEW(double, 3 * slots * (size_t)nodes);
   x->turned_T = DVI_NEW(double, 3 * n);
   x->turned_S = DVI_NEW(double, 3 * n);
   x->C_q1 = DVI_NEW(double, qq);
   x->C_qq = DVI_NEW(double, qq *(size_t)nodes);
   x->C_qv = DVI_NEW(double, (size_t)dvi__pattern_entries(&x->qv) * (size_t)nodes);
-  if (x->W && x->end && x->impulse && x->moment && x->turned_T && x->turned_S && x->C_q1 &&
+  if (x->W && x->end && x->impulse && x->kick && x->first && x->width && x->moment && x->turned_T && x->turned_S && x->C_q1 &&
       x->C_qq && x->C_qv)
     return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "charts: no memory for %d nodes", nodes);
@@ -292,6 +355,12 @@ dvi_status dvi__charted_centring(dvi__charted *x, int nodes, dvi__centring *cent
                               .correct = reduced ? correct_reduced : correct_path,
                               .mix = mix_turn_magnitudes,
                               .turn = largest_turn,
-                              .derive = reduced ? derive_reduced : derive_path};
-  return charted_reserve(x, nodes);
+                              .derive = reduced ? derive_reduced : derive_path,
+                              .carry = carry_on_path,
+                              .carry_derivatives = derive_carried};
+  DVI_TRY(charted_reserve(x, nodes));
+  list_blocks(x);
+  centring->first = x->first;
+  centring->width = x->width;
+  return DVI_OK;
 }

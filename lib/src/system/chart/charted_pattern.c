@@ -113,9 +113,8 @@ static dvi_status expand_slots(const dvi_system *base, const dvi__pattern *slots
   return DVI_OK;
 }
 
-/* Compute full blocks where slots meet in a or b. With `own` all diagonal blocks are added. */
-static dvi_status make_slot_pattern(const dvi__charted *x, const dvi__pattern *a,
-                                    const dvi__pattern *b, int own, dvi__pattern *made)
+dvi_status dvi__charted_slot_pattern(const dvi__charted *x, const dvi__pattern *a,
+                                     const dvi__pattern *b, int own, dvi__pattern *made)
 {
   const dvi_system *base = x->base;
   meetings m = {.base = base,
@@ -142,9 +141,8 @@ dvi__place dvi__charted_place(const dvi__charted *x, const dvi__pattern *made, i
                       .column = made->start[column + 1] - made->start[column]};
 }
 
-/* Find the block in `made` of every entry of `part`. */
-static dvi_status place_entries(const dvi__charted *x, const dvi__pattern *part,
-                                const dvi__pattern *made, dvi__place **places)
+dvi_status dvi__charted_place_entries(const dvi__charted *x, const dvi__pattern *part,
+                                      const dvi__pattern *made, dvi__place **places)
 {
   *places = DVI_NEW(dvi__place, dvi__pattern_entries(part));
   if (*places == NULL) return refuse_memory_of_charts();
@@ -154,7 +152,8 @@ static dvi_status place_entries(const dvi__charted *x, const dvi__pattern *part,
   return DVI_OK;
 }
 
-static dvi_status place_own(const dvi__charted *x, const dvi__pattern *made, dvi__place **places)
+dvi_status dvi__charted_place_own(const dvi__charted *x, const dvi__pattern *made,
+                                  dvi__place **places)
 {
   *places = DVI_NEW(dvi__place, x->base->slot_count);
   if (*places == NULL) return refuse_memory_of_charts();
@@ -166,13 +165,13 @@ dvi_status dvi__charted_make_patterns(dvi__charted *x)
 {
   const dvi__pattern *qq = &x->base->qq, *vv = &x->base->vv;
   DVI_TRY(find_slots(x));
-  DVI_TRY(make_slot_pattern(x, qq, vv, 0, &x->qq));
-  DVI_TRY(make_slot_pattern(x, vv, NULL, 0, &x->qv));
-  DVI_TRY(make_slot_pattern(x, vv, NULL, 1, &x->vv));
-  DVI_TRY(place_entries(x, qq, &x->qq, &x->in_qq));
-  DVI_TRY(place_entries(x, vv, &x->qq, &x->mass_in_qq));
-  DVI_TRY(place_entries(x, vv, &x->qv, &x->mass_in_qv));
-  DVI_TRY(place_entries(x, vv, &x->vv, &x->mass_in_vv));
-  DVI_TRY(place_own(x, &x->qq, &x->own_in_qq));
-  return place_own(x, &x->qv, &x->own_in_qv);
+  DVI_TRY(dvi__charted_slot_pattern(x, qq, vv, 0, &x->qq));
+  DVI_TRY(dvi__charted_slot_pattern(x, vv, NULL, 0, &x->qv));
+  DVI_TRY(dvi__charted_slot_pattern(x, vv, NULL, 1, &x->vv));
+  DVI_TRY(dvi__charted_place_entries(x, qq, &x->qq, &x->in_qq));
+  DVI_TRY(dvi__charted_place_entries(x, vv, &x->qq, &x->mass_in_qq));
+  DVI_TRY(dvi__charted_place_entries(x, vv, &x->qv, &x->mass_in_qv));
+  DVI_TRY(dvi__charted_place_entries(x, vv, &x->vv, &x->mass_in_vv));
+  DVI_TRY(dvi__charted_place_own(x, &x->qq, &x->own_in_qq));
+  return dvi__charted_place_own(x, &x->qv, &x->own_in_qv);
 }

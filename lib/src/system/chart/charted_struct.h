@@ -21,6 +21,17 @@ typedef struct dvi__coupling {
   dvi__place qq[3], qv[3], vv[3], vv_back[3];
 } dvi__coupling;
 
+/* Holonomic constraints of one term in the charts (charted_rows.c). */
+typedef struct dvi__charted_rows {
+  dvi__charted *of;
+  const dvi__holonomic_term *term; /* of the base */
+  int *slot, slot_count;           /* slots that the rows touch */
+  dvi__pattern gradients, qq;      /* in the charts */
+  /* block of every entry of the base's gradients, by its first entry, and of its Hessian */
+  int *in_gradients;
+  dvi__place *in_qq, *own_in_qq;
+} dvi__charted_rows;
+
 struct dvi__charted {
   const dvi_system *base;
   dvi_system *system;
@@ -46,14 +57,20 @@ struct dvi__charted {
   /* Parts of a Lagrangian without potentials that the group leaves invariant (charted_reduced.c).
    * reduced.bodies is NULL for other Lagrangians. */
   dvi__reduced reduced;
+  /* Constraints [base's count], and work at one point: y, dy/dxi, gradients, Hessian, gradient of
+   * phi.w, numbers of dvi__holonomic_at. */
+  dvi__charted_rows *rows;
+  double *rows_y, *rows_T, *rows_phi_y, *rows_phi_yy, *rows_covector, *rows_moved;
   dvi__place *own_in_vv;     /* diagonal blocks [slots] */
   dvi__coupling *coupled_in; /* coupling blocks [bodies] */
   /* Paths from the centre (dvi__charted_centring), for which from_centre is not 0. N is moment
    * [slots*3*capacity], at node j of a batch [(3 c + a)*capacity + j]. */
   int from_centre, capacity;
   double *W, *end, *moment; /* W [slots*9], xi1 [nx], and N */
-  /* Impulses mu1 - mu0 [slots*3] of the last path. A rotation has them in the centre's frame. */
-  double *impulse;
+  /* Impulses mu1 - mu0 [slots*3] of the last path by the Lagrangian, and by other forces on the
+   * way. A rotation has them in the centre's frame. */
+  double *impulse, *kick;
+  int *first, *width; /* first coordinate [nx] of every coordinate's block, and its size */
   double *turned_T, *turned_S; /* y x and y' x, times W, [nq*3] of one point */
   double *C_q1, *C_qq, *C_qv;  /* derivatives [entries], [entries*capacity] */
 };
@@ -64,11 +81,36 @@ static inline int dvi__turns(const dvi__factor_slot *slot)
   return slot->kind == DVI__ROTATION || slot->kind == DVI__SPHERE;
 }
 
+/* Return the tangents of stored coordinate i of a slot, among those of all. */
+static inline const double *dvi__charted_tangents_of(const dvi__factor_slot *slot,
+                                                     const double *tangents, int i)
+{
+  return tangents + 3 * (size_t)slot->q +
+         (size_t)(i - slot->q) * (size_t)dvi__chart_size(slot->kind);
+}
+
 /* Return the functions of slot c at point k of a group. */
 static inline dvi__functions *dvi__charted_functions(const dvi__charted *x, int c, int k)
 {
   return &x->functions[(size_t)c * DVI__GROUP + (size_t)k];
 }
+
+/* Make the charts' constraints, and declare them. `list` [base's count] is for the terms of the new
+ * system. */
+dvi_status dvi__charted_make_rows(dvi__charted *charted, dvi_holonomic *list);
+void dvi__charted_clear_rows(dvi__charted *charted);
+
+/* Compute the pattern of full blocks where slots meet in a or b, which may be NULL. With `own` all
+ * diagonal blocks are added, without it those of slots that are no lines. */
+dvi_status dvi__charted_slot_pattern(const dvi__charted *charted, const dvi__pattern *a,
+                                     const dvi__pattern *b, int own, dvi__pattern *made);
+
+/* Find the block in `made` of every entry of `part`, a matrix of stored coordinates, and of every
+ * slot. */
+dvi_status dvi__charted_place_entries(const dvi__charted *charted, const dvi__pattern *part,
+                                      const dvi__pattern *made, dvi__place **places);
+dvi_status dvi__charted_place_own(const dvi__charted *charted, const dvi__pattern *made,
+                                  dvi__place **places);
 
 /* Find the first entry of the block of two slots in a pattern of the new system. */
 dvi__place dvi__charted_place(const dvi__charted *charted, const dvi__pattern *pattern,
@@ -113,6 +155,11 @@ int dvi__charted_verdict(dvi__charted *charted, dvi_status status);
 
 /* Fail for a coordinate that is beyond its chart by this angle. */
 dvi_status dvi__charted_too_large(double turned);
+
+/* Add left^T (entry) right to the block of an entry (i,j), for point k of `count`. */
+void dvi__charted_add_entry(const dvi__place *at, int rows, int columns, double entry,
+                            const double *left, const double *right, size_t count, size_t k,
+                            double *values);
 
 /* Copy xi or rate of point k of a batch of `count`, for a slot. */
 void dvi__charted_gather(const dvi__factor_slot *slot, int count, int k, const double *batch,

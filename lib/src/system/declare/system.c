@@ -136,8 +136,9 @@ static dvi_status check_forces_and_joints(const dvi_system_terms *terms)
 {
   DVI_TRY(check_list("forces", terms->force_count, terms->forces));
   DVI_TRY(check_list("holonomic constraints", terms->holonomic_count, terms->holonomics));
-  if ((terms->force_count == 0 && terms->holonomic_count == 0) ||
-      (terms->factors == NULL && terms->one_form == NULL && terms->hamiltonian == NULL))
+  const int has_coordinates = terms->one_form == NULL && terms->hamiltonian == NULL;
+  if ((terms->force_count == 0 || (has_coordinates && terms->factors == NULL)) &&
+      (terms->holonomic_count == 0 || has_coordinates))
     return DVI_OK;
   return dvi__fail(
       DVI_UNSUPPORTED,

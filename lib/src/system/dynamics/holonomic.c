@@ -27,7 +27,7 @@
 
 dvi__rows_memory *dvi__rows_memory_of(const dvi__evaluator *e)
 {
-  return e->own;
+  return e->rows;
 }
 
 /* Make the pattern of the matrix, with the places of its parts. */
@@ -69,18 +69,27 @@ static dvi_status lay_out_matrix(const dvi_system *s, dvi__rows_memory *r)
   return DVI_OK;
 }
 
-static dvi_status prepare_rows(dvi__evaluator *e)
+static dvi_status create_matrix(dvi__evaluator *e)
+{
+  dvi__rows_memory *r = e->rows;
+  DVI_TRY(lay_out_matrix(e->system, r));
+  r->values = DVI_NEW(double, dvi__pattern_entries(&r->matrix));
+  if (r->values == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "constraints: no memory for %d rows", e->system->row_count);
+  return dvi__linear_create(&r->matrix, dvi__linear_for_exchanges(&r->matrix), e->counters,
+                            &r->linear);
+}
+
+dvi_status dvi__rows_prepare(dvi__evaluator *e)
 {
   const dvi_system *s = e->system;
   const size_t n = (size_t)s->n, m = (size_t)s->row_count,
                rows = (size_t)dvi__pattern_entries(&s->rows_q);
-  dvi__rows_memory *r = e->own = DVI_NEW(dvi__rows_memory, 1);
+  dvi__rows_memory *r = e->rows = DVI_NEW(dvi__rows_memory, 1);
   if (r == NULL) return dvi__fail(DVI_NO_MEMORY, "constraints: no memory");
-  DVI_TRY(lay_out_matrix(s, r));
-  r->values = DVI_NEW(double, dvi__pattern_entries(&r->matrix));
   r->hessian = DVI_NEW(double, dvi__pattern_entries(&s->rows_qq));
   double *at = r->numbers = DVI_NEW(double, 8 * n + (8 + DVI__NOISE_SAMPLES) * m + rows);
-  if (r->values == NULL || r->hessian == NULL || at == NULL)
+  if (r->hessian == NULL || at == NULL)
     return dvi__fail(DVI_NO_MEMORY, "constraints: no memory for %zu rows", m);
   r->x = at;
   r->along[0] = r->x + n + m;
@@ -94,13 +103,12 @@ static dvi_status prepare_rows(dvi__evaluator *e)
   r->phi = r->samples + DVI__NOISE_SAMPLES * m;
   r->phi_t = r->phi + m;
   r->phi_q = r->phi_t + m;
-  return dvi__linear_create(&r->matrix, dvi__linear_for_exchanges(&r->matrix), e->counters,
-                            &r->linear);
+  return s->dynamics->on_manifold ? DVI_OK : create_matrix(e);
 }
 
-static void release_rows(dvi__evaluator *e)
+void dvi__rows_release(dvi__evaluator *e)
 {
-  dvi__rows_memory *r = e->own;
+  dvi__rows_memory *r = e->rows;
   if (r == NULL) return;
   dvi__linear_destroy(&r->linear);
   dvi__pattern_clear(&r->matrix);
@@ -380,13 +388,19 @@ static dvi_status declare_lagrangian(const dvi_system_terms *terms, dvi_system *
 static dvi_status prepare_constrained_mass(dvi__evaluator *e, dvi__derivatives most)
 {
   DVI_TRY(dvi__dynamics_constant_mass.prepare(e, most));
-  return prepare_rows(e);
+  return dvi__rows_prepare(e);
 }
 
 static dvi_status prepare_constrained_lagrangian(dvi__evaluator *e, dvi__derivatives most)
 {
   DVI_TRY(dvi__prepare_velocity_hessian(e, most));
-  return prepare_rows(e);
+  return dvi__rows_prepare(e);
+}
+
+static dvi_status reactions_of_state(dvi__evaluator *e, double t, const double *q, const double *v,
+                                     double *lambda)
+{
+  return dvi__rows_acceleration(e, t, q, v, NULL, lambda);
 }
 
 static dvi_status velocity_by_mass(dvi__evaluator *e, double t, const double *q, const double *p,
@@ -403,7 +417,7 @@ const dvi__dynamics dvi__dynamics_constrained_mass = {
     .is_declared = constrained_mass_is_declared,
     .declare = dvi__mass_copy,
     .prepare = prepare_constrained_mass,
-    .release = release_rows,
+    .release = dvi__rows_release,
     .velocity = velocity_by_mass,
     .motion = constrained_motion,
     .energy = dvi__energy_of_lagrangian,
@@ -411,6 +425,7 @@ const dvi__dynamics dvi__dynamics_constrained_mass = {
     .forces = constrained_forces,
     .momentum = dvi__momentum_of_point,
     .constraint = &dvi__on_rows,
+    .reactions = reactions_of_state,
 };
 
 const dvi__dynamics dvi__dynamics_constrained_lagrangian = {
@@ -422,7 +437,7 @@ const dvi__dynamics dvi__dynamics_constrained_lagrangian = {
     .is_declared = constrained_lagrangian_is_declared,
     .declare = declare_lagrangian,
     .prepare = prepare_constrained_lagrangian,
-    .release = release_rows,
+    .release = dvi__rows_release,
     .velocity = dvi__search_velocity,
     .regular = dvi__velocity_hessian_is_regular,
     .motion = constrained_motion,
@@ -431,4 +446,5 @@ const dvi__dynamics dvi__dynamics_constrained_lagrangian = {
     .forces = constrained_forces,
     .momentum = dvi__momentum_of_point,
     .constraint = &dvi__on_rows,
+    .reactions = reactions_of_state,
 };

@@ -20,6 +20,10 @@ typedef struct dvi__rows_memory {
   double *numbers;
 } dvi__rows_memory;
 
+/* Create the memory of an evaluator, and free it. On a manifold there is no matrix. */
+dvi_status dvi__rows_prepare(dvi__evaluator *e);
+void dvi__rows_release(dvi__evaluator *e);
+
 dvi__rows_memory *dvi__rows_memory_of(const dvi__evaluator *e);
 
 /* Compute G x + phi_t. */
@@ -30,7 +34,14 @@ void dvi__rows_push(const dvi_system *system, const double *phi_q, const double 
 dvi_status dvi__rows_factor(dvi__evaluator *e, double t, const double *q, const double *v);
 dvi_status dvi__rows_solve(const dvi__rows_memory *r, int size, double t);
 
-/* The states on the constraints. */
+/* The functions of the states on the constraints (dvi__state_constraint), and all of them. */
+dvi_status dvi__rows_check(dvi__evaluator *e, double t, const double *q, const double *p);
+dvi_status dvi__rows_project(dvi__evaluator *e, double t, double *q, double *p);
+dvi_status dvi__rows_distance(dvi__evaluator *e, double t, const double *q, const double *p,
+                              double *distance);
+dvi_status dvi__rows_size(dvi__evaluator *e, double t, const double *q, const double *p,
+                          double *size);
+dvi_status dvi__rows_side(dvi__evaluator *e, const double *q, const double *p, int *side);
 extern const dvi__state_constraint dvi__on_rows;
 
 #endif

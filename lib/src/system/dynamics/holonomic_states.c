@@ -12,6 +12,7 @@
 #include "system/dynamics/holonomic.h"
 #include "system/dynamics/holonomic_rows.h"
 #include "system/evaluate/evaluator_struct.h"
+#include "system/factor.h"
 #include "system/term/holonomic.h"
 
 /* A start computed in another way differs by its roundings. A larger violation is refused. */
@@ -81,8 +82,8 @@ static double row_size(const dvi_system *s, const double *phi_q, int a, const do
   return size;
 }
 
-static dvi_status rows_distance(dvi__evaluator *e, double t, const double *q, const double *p,
-                                double *distance)
+dvi_status dvi__rows_distance(dvi__evaluator *e, double t, const double *q, const double *p,
+                              double *distance)
 {
   const dvi__rows_memory *r = dvi__rows_memory_of(e);
   (void)p;
@@ -91,8 +92,8 @@ static dvi_status rows_distance(dvi__evaluator *e, double t, const double *q, co
   return DVI_OK;
 }
 
-static dvi_status rows_size(dvi__evaluator *e, double t, const double *q, const double *p,
-                            double *size)
+dvi_status dvi__rows_size(dvi__evaluator *e, double t, const double *q, const double *p,
+                          double *size)
 {
   const dvi__rows_memory *r = dvi__rows_memory_of(e);
   (void)p;
@@ -132,7 +133,7 @@ static dvi_status check_place(dvi__evaluator *e, double t, const double *q)
   return DVI_OK;
 }
 
-static dvi_status check_rows(dvi__evaluator *e, double t, const double *q, const double *p)
+dvi_status dvi__rows_check(dvi__evaluator *e, double t, const double *q, const double *p)
 {
   const dvi_system *s = e->system;
   const dvi__rows_memory *r = dvi__rows_memory_of(e);
@@ -141,6 +142,10 @@ static dvi_status check_rows(dvi__evaluator *e, double t, const double *q, const
   memset(v, 0, (size_t)s->n * sizeof(double));
   DVI_TRY(dvi__legendre_inverse(e, t, q, p, v));
   DVI_TRY(dvi__rows_rate(e, t, q, r->phi_t));
+  if (s->dynamics->on_manifold) {
+    dvi__factors_rate(s, q, v, r->sum);
+    v = r->sum;
+  }
   dvi__rows_push(s, r->phi_q, v, r->phi_t, rate);
   for (int a = 0; a < s->row_count; a++)
     if (!(fabs(rate[a]) <= on_constraint * (row_size(s, r->phi_q, a, v) + fabs(r->phi_t[a]))))
@@ -202,7 +207,7 @@ dvi_status dvi__rows_project_momentum(dvi__evaluator *e, double t, const double 
 }
 
 /* Move q along M^-1 G^T onto the constraint, then the momentum. */
-static dvi_status project_on_rows(dvi__evaluator *e, double t, double *q, double *p)
+dvi_status dvi__rows_project(dvi__evaluator *e, double t, double *q, double *p)
 {
   enum { MOST_ITERATIONS = 50 };
   const dvi_system *s = e->system;
@@ -211,7 +216,7 @@ static dvi_status project_on_rows(dvi__evaluator *e, double t, double *q, double
   double *v = e->point[0], size = HUGE_VAL, next;
   memset(v, 0, n * sizeof(double));
   if (s->lagrangian != NULL) DVI_TRY(dvi__legendre_inverse(e, t, q, p, v));
-  DVI_TRY(rows_distance(e, t, q, p, &next));
+  DVI_TRY(dvi__rows_distance(e, t, q, p, &next));
   for (int iteration = 0; iteration < MOST_ITERATIONS && next > 0 && next < size; iteration++) {
     size = next;
     DVI_TRY(dvi__rows_factor(e, t, q, v));
@@ -219,7 +224,7 @@ static dvi_status project_on_rows(dvi__evaluator *e, double t, double *q, double
     for (int a = 0; a < s->row_count; a++) r->x[s->n + a] = -r->phi[a];
     DVI_TRY(dvi__rows_solve(r, s->n + s->row_count, t));
     for (size_t i = 0; i < n; i++) r->point[i] = q[i] + r->x[i];
-    DVI_TRY(rows_distance(e, t, r->point, p, &next));
+    DVI_TRY(dvi__rows_distance(e, t, r->point, p, &next));
     if (next < size) memcpy(q, r->point, n * sizeof *q);
   }
   DVI_TRY(dvi__rows_project_momentum(e, t, q, p, v));
@@ -227,7 +232,7 @@ static dvi_status project_on_rows(dvi__evaluator *e, double t, double *q, double
   return dvi__fail_in(DVI_NOT_CONVERGED, "no point of the constraints was found");
 }
 
-static dvi_status rows_side(dvi__evaluator *e, const double *q, const double *p, int *side)
+dvi_status dvi__rows_side(dvi__evaluator *e, const double *q, const double *p, int *side)
 {
   (void)e, (void)q, (void)p;
   *side = 1;
@@ -236,9 +241,9 @@ static dvi_status rows_side(dvi__evaluator *e, const double *q, const double *p,
 
 const dvi__state_constraint dvi__on_rows = {
     .matrix = "matrix of the constraints",
-    .check = check_rows,
-    .project = project_on_rows,
-    .distance = rows_distance,
-    .size = rows_size,
-    .side = rows_side,
+    .check = dvi__rows_check,
+    .project = dvi__rows_project,
+    .distance = dvi__rows_distance,
+    .size = dvi__rows_size,
+    .side = dvi__rows_side,
 };

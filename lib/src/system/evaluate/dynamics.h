@@ -84,13 +84,17 @@ struct dvi__dynamics {
   dvi_status (*momentum)(dvi__evaluator *e, double t, const double *q, const double *v, double *p);
 
   const dvi__state_constraint *constraint; /* NULL if every (q,p) is a state */
+
+  /* Compute the multipliers of holonomic constraints at one state. NULL if there are none. */
+  dvi_status (*reactions)(dvi__evaluator *e, double t, const double *q, const double *v,
+                          double *lambda);
 };
 
 /* The kinds (system/declare/dynamics.def). The last two describe systems that the library
  * creates. */
 extern const dvi__dynamics dvi__dynamics_charts, dvi__dynamics_constant_mass,
     dvi__dynamics_general_lagrangian, dvi__dynamics_constrained_mass,
-    dvi__dynamics_constrained_lagrangian, dvi__dynamics_one_form, dvi__dynamics_hamiltonian,
+    dvi__dynamics_constrained_lagrangian, dvi__dynamics_constrained_charts, dvi__dynamics_one_form, dvi__dynamics_hamiltonian,
     dvi__dynamics_constrained_hamiltonian, dvi__dynamics_time_transformed;
 
 /* Return the argument of the system's functions beside q, which is p or v. */

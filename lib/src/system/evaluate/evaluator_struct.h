@@ -22,6 +22,7 @@ struct dvi__evaluator {
   double *hessian[3];
   double *velocity_search; /* work [6 n] of general Lagrangians */
   void *own;               /* memory of the kind of dynamics */
+  void *rows;              /* memory of holonomic constraints, or NULL */
   /* A time in which the motion bends little, or 0 if none is known. Derivatives along the motion
    * are then differences over a part of it. */
   double span;

@@ -21,11 +21,11 @@ static dvi_status copy_holonomic(dvi_system *s, const dvi_holonomic *given,
   if (given->value == NULL || given->gradient == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "system: constraint '%s' has no %s callback", name,
                      given->value == NULL ? "value" : "gradient");
-  if (given->count < 1 || given->count > s->n - s->row_count)
+  if (given->count < 1 || given->count > s->nx - s->row_count)
     return dvi__fail(DVI_BAD_SIZE,
                      "system: constraint '%s' has %d rows; 1 to %d are possible beside the others, "
-                     "because there are %d coordinates",
-                     name, given->count, s->n - s->row_count, s->n);
+                     "because there are %d degrees of freedom",
+                     name, given->count, s->nx - s->row_count, s->nx);
   DVI_TRY(dvi__check_rate(s, name, given->rate != NULL));
   term->callbacks = *given;
   term->first = s->row_count;
