@@ -220,6 +220,28 @@ dvi_status dvi__lift_equations(dvi__lift *lift, double t, const double *kappa, c
   return DVI_OK;
 }
 
+void dvi__lift_pull(const dvi__lift *lift, const double *a, double *w)
+{
+  static const double rest[3] = {0};
+  for (int c = 0; c < lift->system->slot_count; c++) {
+    const dvi__factor_slot *slot = &lift->system->slots[c];
+    momentum_of(slot->kind, lift->y + slot->q, rest, a + slot->q, w + slot->v);
+  }
+}
+
+void dvi__lift_slow(const dvi__lift *lift, const double *kappa, const double *w,
+                    double *kappa_rate)
+{
+  for (int c = 0; c < lift->system->slot_count; c++) {
+    const dvi__factor_slot *slot = &lift->system->slots[c];
+    double rate[4];
+    lifted_rate(slot->kind, kappa, w + slot->v, rate);
+    for (int i = 0; i < lifted_size(slot->kind); i++) kappa_rate[i] -= rate[i];
+    kappa += lifted_size(slot->kind);
+    kappa_rate += lifted_size(slot->kind);
+  }
+}
+
 void dvi__lift_tangent(const dvi__lift *lift, const double *q, double *p)
 {
   for (int c = 0; c < lift->system->slot_count; c++) {

@@ -41,6 +41,12 @@ void dvi__lift_down(const dvi__lift *lift, const double *kappa, double *q);
 dvi_status dvi__lift_equations(dvi__lift *lift, double t, const double *kappa, const double *v,
                                double *kappa_rate, double *p_rate, double *p_of_v);
 
+/* Compute w = T^t a [nv], tangential to directions, of a covector a [nq] at the point of the last
+ * equations, and subtract from kappa's rate the part of a velocity w [nv], which is linear. */
+void dvi__lift_pull(const dvi__lift *lift, const double *a, double *w);
+void dvi__lift_slow(const dvi__lift *lift, const double *kappa, const double *w,
+                    double *kappa_rate);
+
 /* Remove the part of p [nv] along directions, which comes from errors. */
 void dvi__lift_tangent(const dvi__lift *lift, const double *q, double *p);
 

@@ -118,6 +118,9 @@ static dvi_status ode_start(ode_run *self)
 {
   dvi__reference_run *run = self->run;
   const size_t n = (size_t)run->n;
+  if (has_factors(run) && run->system->row_count > 0)
+    return dvi__fail(DVI_UNSUPPORTED, "CVODE and ARKODE do not take holonomic constraints on "
+                                      "rotations, directions and angles; IDA does");
   if (has_factors(run)) DVI_TRY(dvi__lift_create(run, &self->lift));
   self->positions = has_factors(run) ? self->lift.size : run->n;
   self->y = N_VNew_Serial(ode_size(self), run->context);
