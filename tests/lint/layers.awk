@@ -20,6 +20,7 @@ BEGIN {
   sees["system/rescale"] = "core num system system/evaluate system/term"
   sees["system/check"] = "core num system system/evaluate system/term"
   sees["system/declare"] = sees["system/chart"] " system/term system/chart system/rescale"
+  sees["joint"] = "core num"
   sees["step"] = "core num system"
   sees["step/element"] = "core num group space system step"
   sees["step/onestep"] = "core num space system step"

@@ -7,6 +7,7 @@
 #include <dvi/ensemble.h>
 #include <dvi/group.h>
 #include <dvi/integrator.h>
+#include <dvi/joint.h>
 #include <dvi/method.h>
 #include <dvi/number.h>
 #include <dvi/path.h>

@@ -250,6 +250,8 @@ typedef struct dvi_holonomic {
   int (*rate)(double t, const double *q, double *phi_t, void *user);
   dvi_pattern gradients, qq;
   void *user;
+  /** [count] names of the rows in messages. Copied. Default: the name, with a row's number */
+  const char *const *row_names;
 } dvi_holonomic;
 
 /** A constant mass matrix in exactly one of the three forms. The matrix must be regular. It may be

@@ -57,7 +57,7 @@ typedef struct dvi__force_term {
 /* Some rows of holonomic constraints. */
 typedef struct dvi__holonomic_term {
   dvi_holonomic callbacks;
-  char *name;
+  char *name, **row_names; /* the names of rows may be NULL */
   int first;              /* its first row among all */
   dvi__pattern gradients; /* n rows, a column for each row of phi */
   dvi__pattern qq;

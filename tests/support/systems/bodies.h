@@ -4,7 +4,7 @@
 #define TESTS_SUPPORT_BODIES_H
 #include <dvi/integrator.h>
 
-enum { BODY_Q = 20, BODY_V = 13 };
+enum { BODY_Q = 24, BODY_V = 13 };
 
 typedef enum body_kind {
   FREE_BODY,   /* J = (3, 2, 1.5), no potential */

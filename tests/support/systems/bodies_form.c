@@ -34,8 +34,8 @@ static int coordinate_count(const dvi_factor *factor)
 {
   return factor->kind == DVI_SO3   ? 9
          : factor->kind == DVI_SE3 ? 12
-         : factor->kind == DVI_S2  ? 3
-                                   : 2;
+         : factor->kind == DVI_U1  ? 2
+                                   : 3;
 }
 
 static int velocity_count(const dvi_factor *factor)
@@ -52,6 +52,8 @@ static void move_factor(const dvi_factor *factor, int k, double by, double *q, d
     p[k - nv] += by;
   else if (has_rotation(factor) && k >= 3)
     q[6 + k] += by;
+  else if (factor->kind == DVI_RN)
+    q[k] += by;
   e[k % nv] = by;
   if (has_rotation(factor) && k < 3) {
     dvi_so3_exp(e, E);
@@ -142,16 +144,25 @@ static double symplectic_form(const body *model, const body_state *at, const tan
   return sum;
 }
 
-static void take_step(const body *model, const char *method, double h, const body_state *from,
+static void read_body_state(const body *model, const dvi_integrator *made, body_state *state)
+{
+  memcpy(state->q, dvi_integrator_q(made), (size_t)model->nq * sizeof *state->q);
+  memcpy(state->p, dvi_integrator_p(made), (size_t)model->nv * sizeof *state->p);
+}
+
+/* Takes a step. `from` is moved onto the constraints, if there are any. */
+static void take_step(const body *model, const char *method, double h, body_state *from,
                       body_state *to)
 {
+  const dvi_start_options project = {.project = 1};
   dvi_integrator *made = NULL;
   ck_assert_msg(dvi_integrator_create(model->system, method, &made) == DVI_OK &&
-                    dvi_integrator_start(made, 0, from->q, from->p) == DVI_OK &&
-                    dvi_integrator_step(made, h) == DVI_OK,
+                    dvi_integrator_start_with(made, 0, from->q, from->p, &project) == DVI_OK,
                 "%s, %s: %s", model->name, method, dvi_last_error());
-  memcpy(to->q, dvi_integrator_q(made), (size_t)model->nq * sizeof *to->q);
-  memcpy(to->p, dvi_integrator_p(made), (size_t)model->nv * sizeof *to->p);
+  read_body_state(model, made, from);
+  ck_assert_msg(dvi_integrator_step(made, h) == DVI_OK, "%s, %s: %s", model->name, method,
+                dvi_last_error());
+  read_body_state(model, made, to);
   dvi_integrator_destroy(&made);
 }
 

@@ -254,6 +254,7 @@ dvi_status dvi__charted_make_rows(dvi__charted *x, dvi_holonomic *list)
                               .rate = term->callbacks.rate != NULL ? rows_rate : NULL,
                               .gradients = {rows->gradients.start, rows->gradients.row},
                               .qq = {rows->qq.start, rows->qq.row},
+                              .row_names = term->callbacks.row_names,
                               .user = rows};
   }
   return DVI_OK;

@@ -137,11 +137,11 @@ static dvi_status project_in_charts(dvi__evaluator *e, double t, double *q, doub
     dvi__charted_centre(own->charted, q);
     dvi__charted_enter(own->charted, p, own->local);
     DVI_TRY(dvi__charted_explain(
-        own->charted, dvi__rows_project(own->inner, t, own->xi, own->local)));
+        own->charted, dvi__rows_approach(own->inner, t, own->xi, own->local)));
     dvi__charted_point(own->charted, own->xi, NULL, q, NULL);
   }
   dvi__charted_store(own->charted, own->local, p);
-  return DVI_OK;
+  return dvi__rows_found(e, t, q);
 }
 
 static dvi_status reactions_in_charts(dvi__evaluator *e, double t, const double *q, const double *v,

@@ -88,7 +88,7 @@ dvi_status dvi__rows_prepare(dvi__evaluator *e)
   dvi__rows_memory *r = e->rows = DVI_NEW(dvi__rows_memory, 1);
   if (r == NULL) return dvi__fail(DVI_NO_MEMORY, "constraints: no memory");
   r->hessian = DVI_NEW(double, dvi__pattern_entries(&s->rows_qq));
-  double *at = r->numbers = DVI_NEW(double, 8 * n + (8 + DVI__NOISE_SAMPLES) * m + rows);
+  double *at = r->numbers = DVI_NEW(double, 9 * n + (8 + DVI__NOISE_SAMPLES) * m + rows);
   if (r->hessian == NULL || at == NULL)
     return dvi__fail(DVI_NO_MEMORY, "constraints: no memory for %zu rows", m);
   r->x = at;
@@ -103,6 +103,10 @@ dvi_status dvi__rows_prepare(dvi__evaluator *e)
   r->phi = r->samples + DVI__NOISE_SAMPLES * m;
   r->phi_t = r->phi + m;
   r->phi_q = r->phi_t + m;
+  r->unit = r->phi_q + rows;
+  for (int c = 0; c < s->slot_count; c++)
+    for (int i = 0; s->slots[c].kind != DVI__LINE && i < dvi__chart_stored(s->slots[c].kind); i++)
+      r->unit[s->slots[c].q + i] = 1;
   return s->dynamics->on_manifold ? DVI_OK : create_matrix(e);
 }
 

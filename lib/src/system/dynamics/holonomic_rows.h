@@ -17,6 +17,8 @@ typedef struct dvi__rows_memory {
   double *derivative, *before; /* [n + m] differences along the motion of two lengths */
   double *defect;              /* [n + m] by which they differ */
   double *samples;             /* [DVI__NOISE_SAMPLES*m] of phi near a point */
+  /* [n] 1 for numbers of rotations, directions and angles, which are rounded as 1 is, else 0 */
+  double *unit;
   double *numbers;
 } dvi__rows_memory;
 
@@ -36,12 +38,19 @@ dvi_status dvi__rows_solve(const dvi__rows_memory *r, int size, double t);
 
 /* The functions of the states on the constraints (dvi__state_constraint), and all of them. */
 dvi_status dvi__rows_check(dvi__evaluator *e, double t, const double *q, const double *p);
-dvi_status dvi__rows_project(dvi__evaluator *e, double t, double *q, double *p);
 dvi_status dvi__rows_distance(dvi__evaluator *e, double t, const double *q, const double *p,
                               double *distance);
 dvi_status dvi__rows_size(dvi__evaluator *e, double t, const double *q, const double *p,
                           double *size);
 dvi_status dvi__rows_side(dvi__evaluator *e, const double *q, const double *p, int *side);
 extern const dvi__state_constraint dvi__on_rows;
+
+/* Check phi = 0, with its roundings where q alone does not explain the rest. The second function
+ * says that a projection has found no such place. */
+dvi_status dvi__rows_check_place(dvi__evaluator *e, double t, const double *q);
+dvi_status dvi__rows_found(dvi__evaluator *e, double t, const double *q);
+
+/* Move q along M^-1 G^T towards the constraint as far as rounding permits, then the momentum. */
+dvi_status dvi__rows_approach(dvi__evaluator *e, double t, double *q, double *p);
 
 #endif

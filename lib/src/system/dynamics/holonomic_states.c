@@ -18,6 +18,10 @@
 /* A start computed in another way differs by its roundings. A larger violation is refused. */
 static const double on_constraint = 1e-11;
 
+/* A velocity is found from all momenta together, and a component that is 0 has roundings of the
+ * largest. */
+static const double of_velocity = 0x1p-48;
+
 /* Return the largest fourth difference among samples of one row. */
 static double largest_fourth_difference(const double *f, int stride)
 {
@@ -82,6 +86,24 @@ static double row_size(const dvi_system *s, const double *phi_q, int a, const do
   return size;
 }
 
+/* Sum the magnitudes of a row of G q, of which some numbers count as 1. */
+static double place_size(const dvi_system *s, const dvi__rows_memory *r, int a, const double *q)
+{
+  double size = 0;
+  for (int k = s->rows_q.start[a]; k < s->rows_q.start[a + 1]; k++) {
+    const int i = s->rows_q.row[k];
+    size += fabs(r->phi_q[k]) * fmax(fabs(q[i]), r->unit[i]);
+  }
+  return size;
+}
+
+static double gradient_size(const dvi_system *s, const double *phi_q, int a)
+{
+  double size = 0;
+  for (int k = s->rows_q.start[a]; k < s->rows_q.start[a + 1]; k++) size += fabs(phi_q[k]);
+  return size;
+}
+
 dvi_status dvi__rows_distance(dvi__evaluator *e, double t, const double *q, const double *p,
                               double *distance)
 {
@@ -100,23 +122,24 @@ dvi_status dvi__rows_size(dvi__evaluator *e, double t, const double *q, const do
   *size = 0;
   DVI_TRY(dvi__rows_gradients(e, t, q, r->phi_q));
   for (int a = 0; a < e->system->row_count; a++)
-    *size = fmax(*size, row_size(e->system, r->phi_q, a, q));
+    *size = fmax(*size, place_size(e->system, r, a, q));
   return DVI_OK;
 }
 
 static dvi_status refuse_row(const dvi_system *s, int a, double t, const char *what, double value)
 {
   const dvi__holonomic_term *term = term_of_row(s, a);
+  const char *name = term->row_names != NULL ? term->row_names[a - term->first] : term->name;
   char row[32] = "";
-  if (term->callbacks.count > 1) (void)snprintf(row, sizeof row, " (row %d)", a - term->first);
+  if (term->callbacks.count > 1 && term->row_names == NULL)
+    (void)snprintf(row, sizeof row, " (row %d)", a - term->first);
   return dvi__fail(DVI_BAD_ARGUMENT,
                    "constraint '%s'%s%s is %.17g at t = %.6g, not 0; start on the constraint, or "
                    "let the start be projected (dvi_start_options)",
-                   term->name, row, what, value, t);
+                   name, row, what, value, t);
 }
 
-/* Check phi = 0, with its roundings where q alone does not explain the rest. */
-static dvi_status check_place(dvi__evaluator *e, double t, const double *q)
+dvi_status dvi__rows_check_place(dvi__evaluator *e, double t, const double *q)
 {
   const dvi_system *s = e->system;
   const dvi__rows_memory *r = dvi__rows_memory_of(e);
@@ -126,7 +149,7 @@ static dvi_status check_place(dvi__evaluator *e, double t, const double *q)
   DVI_TRY(dvi__rows_gradients(e, t, q, r->phi_q));
   for (int a = 0; a < s->row_count; a++) {
     const double size = fabs(r->phi[a]);
-    if (size <= on_constraint * row_size(s, r->phi_q, a, q)) continue;
+    if (size <= on_constraint * place_size(s, r, a, q)) continue;
     if (!known++) dvi__rows_noise(e, t, q, noise);
     if (!(size <= noise[a])) return refuse_row(s, a, t, "", r->phi[a]);
   }
@@ -138,7 +161,7 @@ dvi_status dvi__rows_check(dvi__evaluator *e, double t, const double *q, const d
   const dvi_system *s = e->system;
   const dvi__rows_memory *r = dvi__rows_memory_of(e);
   double *v = r->along[0], *rate = r->along[1];
-  DVI_TRY(check_place(e, t, q));
+  DVI_TRY(dvi__rows_check_place(e, t, q));
   memset(v, 0, (size_t)s->n * sizeof(double));
   DVI_TRY(dvi__legendre_inverse(e, t, q, p, v));
   DVI_TRY(dvi__rows_rate(e, t, q, r->phi_t));
@@ -147,9 +170,13 @@ dvi_status dvi__rows_check(dvi__evaluator *e, double t, const double *q, const d
     v = r->sum;
   }
   dvi__rows_push(s, r->phi_q, v, r->phi_t, rate);
-  for (int a = 0; a < s->row_count; a++)
-    if (!(fabs(rate[a]) <= on_constraint * (row_size(s, r->phi_q, a, v) + fabs(r->phi_t[a]))))
+  const double speed = dvi__largest((size_t)s->n, v);
+  for (int a = 0; a < s->row_count; a++) {
+    const double size = row_size(s, r->phi_q, a, v) + fabs(r->phi_t[a]),
+                 rounding = of_velocity * speed * gradient_size(s, r->phi_q, a);
+    if (!(fabs(rate[a]) <= fmax(on_constraint * size, rounding)))
       return refuse_row(s, a, t, ", its rate along the velocity,", rate[a]);
+  }
   return DVI_OK;
 }
 
@@ -206,8 +233,7 @@ dvi_status dvi__rows_project_momentum(dvi__evaluator *e, double t, const double 
   return dvi__fail(DVI_NOT_CONVERGED, "no velocity on the constraints was found at t = %.6g", t);
 }
 
-/* Move q along M^-1 G^T onto the constraint, then the momentum. */
-dvi_status dvi__rows_project(dvi__evaluator *e, double t, double *q, double *p)
+dvi_status dvi__rows_approach(dvi__evaluator *e, double t, double *q, double *p)
 {
   enum { MOST_ITERATIONS = 50 };
   const dvi_system *s = e->system;
@@ -227,9 +253,19 @@ dvi_status dvi__rows_project(dvi__evaluator *e, double t, double *q, double *p)
     DVI_TRY(dvi__rows_distance(e, t, r->point, p, &next));
     if (next < size) memcpy(q, r->point, n * sizeof *q);
   }
-  DVI_TRY(dvi__rows_project_momentum(e, t, q, p, v));
-  if (check_place(e, t, q) == DVI_OK) return DVI_OK;
+  return dvi__rows_project_momentum(e, t, q, p, v);
+}
+
+dvi_status dvi__rows_found(dvi__evaluator *e, double t, const double *q)
+{
+  if (dvi__rows_check_place(e, t, q) == DVI_OK) return DVI_OK;
   return dvi__fail_in(DVI_NOT_CONVERGED, "no point of the constraints was found");
+}
+
+static dvi_status project_on_rows(dvi__evaluator *e, double t, double *q, double *p)
+{
+  DVI_TRY(dvi__rows_approach(e, t, q, p));
+  return dvi__rows_found(e, t, q);
 }
 
 dvi_status dvi__rows_side(dvi__evaluator *e, const double *q, const double *p, int *side)
@@ -242,7 +278,7 @@ dvi_status dvi__rows_side(dvi__evaluator *e, const double *q, const double *p, i
 const dvi__state_constraint dvi__on_rows = {
     .matrix = "matrix of the constraints",
     .check = dvi__rows_check,
-    .project = dvi__rows_project,
+    .project = project_on_rows,
     .distance = dvi__rows_distance,
     .size = dvi__rows_size,
     .side = dvi__rows_side,

@@ -14,6 +14,22 @@ static dvi_status refuse_memory_of_rows(void)
   return dvi__fail(DVI_NO_MEMORY, "system: no memory for its holonomic constraints");
 }
 
+static dvi_status copy_row_names(const dvi_holonomic *given, dvi__holonomic_term *term)
+{
+  if (given->row_names == NULL) return DVI_OK;
+  term->row_names = DVI_NEW(char *, given->count);
+  if (term->row_names == NULL) return refuse_memory_of_rows();
+  term->callbacks.row_names = (const char *const *)term->row_names;
+  for (int a = 0; a < given->count; a++) {
+    if (given->row_names[a] == NULL)
+      return dvi__fail(DVI_BAD_ARGUMENT, "system: constraint '%s' has no name of row %d",
+                       term->name, a);
+    term->row_names[a] = dvi__duplicate(given->row_names[a], strlen(given->row_names[a]) + 1, 1);
+    if (term->row_names[a] == NULL) return refuse_memory_of_rows();
+  }
+  return DVI_OK;
+}
+
 static dvi_status copy_holonomic(dvi_system *s, const dvi_holonomic *given,
                                  dvi__holonomic_term *term)
 {
@@ -33,6 +49,7 @@ static dvi_status copy_holonomic(dvi_system *s, const dvi_holonomic *given,
   term->name = dvi__duplicate(name, strlen(name) + 1, 1);
   if (term->name == NULL) return refuse_memory_of_rows();
   term->callbacks.name = term->name;
+  DVI_TRY(copy_row_names(given, term));
   DVI_TRY(
       dvi__pattern_copy_rectangular(&given->gradients, s->n, given->count, name, &term->gradients));
   DVI_TRY(dvi__pattern_copy_symmetric(&given->qq, s->n, name, &term->qq));
@@ -97,6 +114,9 @@ void dvi__holonomic_clear(dvi__holonomic_term *term)
 {
   dvi__pattern_clear(&term->gradients);
   dvi__pattern_clear(&term->qq);
+  for (int a = 0; term->row_names != NULL && a < term->callbacks.count; a++)
+    dvi__release(term->row_names[a]);
+  dvi__release(term->row_names);
   dvi__release(term->name);
   dvi__release(term->in_qq);
   dvi__release(term->groups.of_column);
