@@ -195,6 +195,34 @@ START_TEST(momenta_are_those_of_turns)
 }
 END_TEST
 
+/* s.a is the momentum, s.rate the point to which it is carried. */
+static void carried_of(const scene *s, const double *xi, const double *rate, double *value)
+{
+  dvi__chart_carry(&s->chart, xi, rate, s->a, value);
+}
+
+START_TEST(carried_momenta_keep_the_angular_momentum)
+{
+  const scene s = set_scene(_i);
+  double in_f[9], in_xi[9], in_end[9], angular[3], there[3], carried[3], linear[3] = {0};
+  /* opposite to the centre momenta are infinite, and differences say nothing */
+  if (s.chart.kind == DVI__SPHERE && _i % LENGTHS == LENGTHS - 1) return;
+  dvi__chart_carry_derivatives(&s.chart, s.xi, s.rate, s.a, in_f, in_xi, in_end);
+  check_derivative(carried_of, &s, IN_XI, s.size, in_xi, "carried, in xi");
+  check_derivative(carried_of, &s, IN_RATE, s.size, in_end, "carried, in the end");
+  dvi__chart_carry(&s.chart, s.xi, s.rate, s.a, carried);
+  for (int i = 0; i < s.size; i++)
+    for (int j = 0; j < s.size; j++) linear[i] += in_f[s.size * i + j] * s.a[j];
+  ck_assert_double_le(distance(s.size, linear, carried), 1e-13 * magnitude(s.size, carried));
+  dvi__chart_carry(&s.chart, s.xi, s.xi, s.a, carried);
+  ck_assert_double_le(distance(s.size, carried, s.a), 1e-13);
+  if (s.chart.kind != DVI__SPHERE && s.chart.kind != DVI__ROTATION) return;
+  dvi__chart_angular_momentum_at(&s.chart, s.xi, s.a, angular);
+  dvi__chart_momentum(&s.chart, s.xi, angular, there);
+  ck_assert_double_le(distance(s.size, there, s.a), 1e-13);
+}
+END_TEST
+
 START_TEST(spins_have_their_derivatives)
 {
   const scene s = set_scene(DVI__ROTATION * LENGTHS + _i);
@@ -256,6 +284,7 @@ END_TEST
 
 SUITE(chart)
 {
+  tcase_add_loop_test(tests, carried_momenta_keep_the_angular_momentum, 0, KINDS * LENGTHS);
   tcase_add_loop_test(tests, derivatives_are_those_of_points, 0, KINDS * LENGTHS);
   tcase_add_loop_test(tests, velocities_are_those_of_points, 0, KINDS * LENGTHS);
   tcase_add_loop_test(tests, momenta_are_those_of_turns, DVI__SPHERE * LENGTHS, KINDS * LENGTHS);

@@ -125,7 +125,6 @@ START_TEST(constraints_are_refused_beside_other_kinds_of_dynamics)
 {
   refused_beside("guiding-centre", "holonomic constraints go with");
   refused_beside("elastica", "not with a Hamiltonian");
-  refused_beside("pendulum-3d", "not with factors");
 }
 END_TEST
 

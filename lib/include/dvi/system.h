@@ -231,10 +231,11 @@ typedef struct dvi_force {
   void *user;
 } dvi_force;
 
-/** Holonomic constraints phi(t,q) = 0 of some rows, such as a rod, a rail or a joint.
+/** Holonomic constraints phi(t,q) = 0 of some rows, such as a rod, a rail or a joint (dvi/joint.h).
  *
- *  Their gradients must be independent where the system moves, together with those of all others.
- *  The callbacks have the one-point shape alone. */
+ *  With factors phi is a function of all stored coordinates, of any smooth continuation off the
+ *  manifold, as potentials are. The gradients must be independent where the system moves, together
+ *  with those of all others. The callbacks have the one-point shape alone. */
 typedef struct dvi_holonomic {
   const char *name; /**< copied. Used in messages */
   int count;        /**< number of rows, at least 1 */
@@ -324,8 +325,9 @@ typedef struct dvi_invariant {
  *
  *  Exactly one kind of dynamics is declared: a constant mass (by `mass`, by `factors`, or by both,
  *  which are added), or `lagrangian`, or `one_form`, or `hamiltonian`. Potentials may stand beside
- *  all kinds but a Hamiltonian. Forces and holonomic constraints may stand beside a
- *  mass without factors, and beside a general Lagrangian. */
+ *  all kinds but a Hamiltonian. Forces may stand beside a mass without factors, and beside a general
+ *  Lagrangian. Holonomic constraints may stand beside a mass, with factors or without, and beside a
+ *  general Lagrangian. */
 typedef struct dvi_system_terms {
   /** number of coordinates n, at least 1, even with a one-form. 0 with factors, which determine
    *  n */

@@ -24,7 +24,7 @@ dvi_status dvi__stationary_create(dvi__stepper *self, dvi__equations *equations,
   stationary->room = DVI_NEW(double, (DVI__BRANCH_ROOM * unknowns));
   if (stationary->x == NULL || stationary->room == NULL)
     return dvi__fail(DVI_NO_MEMORY, "%s: no memory for %zu unknowns", self->method->name, unknowns);
-  equations->linear = dvi__linear_for_exchanges(equations->pattern);
+  equations->linear = dvi__linear_for_exchanges(equations->unknowns);
   /* KINSOL needs this function; only fixed-point iteration uses the chord */
   equations->prepare_chord = no_chord;
   return dvi__solver_create(equations, self->counters, &stationary->solver);

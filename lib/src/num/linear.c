@@ -37,9 +37,9 @@ struct dvi__linear {
 
 /* ---- create ---- */
 
-dvi__linear_kind dvi__linear_for_exchanges(const dvi__pattern *pattern)
+dvi__linear_kind dvi__linear_for_exchanges(int columns)
 {
-  return pattern->columns <= MOST_EXCHANGED ? DVI__LINEAR_DENSE : DVI__LINEAR_AUTO;
+  return columns <= MOST_EXCHANGED ? DVI__LINEAR_DENSE : DVI__LINEAR_AUTO;
 }
 
 static int dense_is_better(const dvi__pattern *pattern)

@@ -58,7 +58,7 @@ dvi_status dvi__linear_create_iterative(const dvi__operator *A, dvi_counters *co
 /* Give the kind for a matrix that may have zeros on its diagonal. KLU settles on an order of the
  * pivots once, which would fail for this matrix. Each factorisation would search for another one,
  * on the heap. The kind is dense, with LAPACK's row exchanges, as long as that is no slower. */
-dvi__linear_kind dvi__linear_for_exchanges(const dvi__pattern *pattern);
+dvi__linear_kind dvi__linear_for_exchanges(int columns);
 
 void dvi__linear_destroy(dvi__linear **linear);
 

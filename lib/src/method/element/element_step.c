@@ -127,8 +127,8 @@ static dvi_status element_create_solver(dvi__stepper *self, dvi__element *own)
       .fixed_point_end = has_fixed_point ? element_fixed_point_end : NULL,
       .magnitudes = dvi__action_has_terms(own->action) ? element_magnitudes : NULL};
   /* unknowns of terms, such as multipliers, have no pivots of their own */
-  if (equations.pattern != NULL && equations.unknowns > self->system->n * equations.group)
-    equations.linear = dvi__linear_for_exchanges(equations.pattern);
+  if (equations.unknowns > self->system->n * equations.group)
+    equations.linear = dvi__linear_for_exchanges(equations.unknowns);
   dvi__element_set_newton(&equations);
   return dvi__solver_create(&equations, self->counters, &own->solver);
 }

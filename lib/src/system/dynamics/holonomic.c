@@ -76,7 +76,7 @@ static dvi_status create_matrix(dvi__evaluator *e)
   r->values = DVI_NEW(double, dvi__pattern_entries(&r->matrix));
   if (r->values == NULL)
     return dvi__fail(DVI_NO_MEMORY, "constraints: no memory for %d rows", e->system->row_count);
-  return dvi__linear_create(&r->matrix, dvi__linear_for_exchanges(&r->matrix), e->counters,
+  return dvi__linear_create(&r->matrix, dvi__linear_for_exchanges(r->matrix.columns), e->counters,
                             &r->linear);
 }
 
