@@ -1,4 +1,4 @@
-/* An arm of two bodies, with a hinge at the shoulder and one at the elbow, swings under its weight. */
+/* An arm of two bodies swings under its weight, on hinges at the shoulder and at the elbow. */
 #include <dvi/dvi.h>
 #include <math.h>
 #include <stdio.h>

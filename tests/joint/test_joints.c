@@ -15,8 +15,8 @@ static const dvi_factor factors[] = {{.kind = DVI_SE3, .mass = 2, .inertia = ine
                                      {.kind = DVI_RN, .size = 3, .mass = 1}};
 enum { FACTORS = 3, NQ = 24, ROWS_MOST = 6 };
 
-static const double assembled[NQ] = {.8, -.6, 0,  .6, .8,  0,   0,   0, 1, .3, -.2, .5,
-                                     1,  0,   0,  0,  .6, -.8, 0, .8, .6, .1, .2, .3};
+static const double assembled[NQ] = {.8, -.6, 0, .6, .8, 0,   0, 0,  1,  .3, -.2, .5,
+                                     1,  0,   0, 0,  .6, -.8, 0, .8, .6, .1, .2,  .3};
 
 static dvi_joint example(dvi_joint_kind kind)
 {
@@ -59,8 +59,8 @@ END_TEST
 /* Joints of a point have balls and distances, and either body may be first. */
 START_TEST(derivatives_agree_with_differences)
 {
-  static const int pairs[][2] = {{0, 1}, {1, 0}, {DVI_GROUND, 0}, {0, DVI_GROUND},
-                                 {1, DVI_GROUND}, {2, 0}, {0, 2}, {1, 2}};
+  static const int pairs[][2] = {{0, 1},          {1, 0}, {DVI_GROUND, 0}, {0, DVI_GROUND},
+                                 {1, DVI_GROUND}, {2, 0}, {0, 2},          {1, 2}};
   double q[NQ], v[NQ];
   for (int i = 0; i < NQ; i++) q[i] = assembled[i] + 0.1 * sin(i + 1.0), v[i] = cos(2.0 * i);
   for (size_t k = 0; k < sizeof pairs / sizeof *pairs; k++) {

@@ -78,8 +78,9 @@ static void solve(dvi__canonical *step, double *x)
   const dvi__pattern *pattern = dvi__canonical_pattern(step);
   double R[MOST], values[ENTRIES_MOST];
   dvi__linear *linear;
-  ck_assert_int_eq(dvi__linear_create(pattern, dvi__linear_for_exchanges(pattern->columns), NULL, &linear),
-                   DVI_OK);
+  ck_assert_int_eq(
+      dvi__linear_create(pattern, dvi__linear_for_exchanges(pattern->columns), NULL, &linear),
+      DVI_OK);
   for (int k = 0; k < 12; k++) {
     ck_assert_int_eq(dvi__canonical_residual(step, x, R), DVI_OK);
     ck_assert_int_eq(dvi__canonical_jacobian(step, x, values), DVI_OK);

@@ -54,7 +54,8 @@ typedef struct dvi_joint {
   /** axis of the hinge, the slider, or the first body's axis of DVI_UNIVERSAL. The normal of
    *  DVI_PLANAR. Of any length but 0 */
   double axis[3];
-  double second_axis[3]; /**< of DVI_UNIVERSAL alone: the second body's axis, orthogonal to `axis` */
+  double
+      second_axis[3]; /**< of DVI_UNIVERSAL alone: the second body's axis, orthogonal to `axis` */
 } dvi_joint;
 
 /** Constraints of some joints. */

@@ -325,9 +325,9 @@ typedef struct dvi_invariant {
  *
  *  Exactly one kind of dynamics is declared: a constant mass (by `mass`, by `factors`, or by both,
  *  which are added), or `lagrangian`, or `one_form`, or `hamiltonian`. Potentials may stand beside
- *  all kinds but a Hamiltonian. Forces may stand beside a mass without factors, and beside a general
- *  Lagrangian. Holonomic constraints may stand beside a mass, with factors or without, and beside a
- *  general Lagrangian. */
+ *  all kinds but a Hamiltonian. Forces may stand beside a mass without factors, and beside a
+ *  general Lagrangian. Holonomic constraints may stand beside a mass, with factors or without, and
+ *  beside a general Lagrangian. */
 typedef struct dvi_system_terms {
   /** number of coordinates n, at least 1, even with a one-form. 0 with factors, which determine
    *  n */

@@ -243,8 +243,8 @@ dvi_status dvi__joint_make(const dvi_factor *factors, int count, const char *nam
   assembly x = {given, q, joint, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   DVI_TRY(check_joint(name, given));
   for (int k = 0; k < 2; k++)
-    DVI_TRY(find_body(name, factors, count, given->body[k], needs_axes(given->kind),
-                      &joint->body[k]));
+    DVI_TRY(
+        find_body(name, factors, count, given->body[k], needs_axes(given->kind), &joint->body[k]));
   if (needs_axes(given->kind) && given->kind != DVI_WELD) make_frame(given->axis, x.frame);
   add_rows(&x);
   return DVI_OK;

@@ -1,5 +1,5 @@
-/* A row phi = a.b - value of a joint. Each of a and b is a sum of vectors that are affine in q, such
- * as a body's point x + R r, its direction R u, and constants.
+/* A row phi = a.b - value of a joint. Each of a and b is a sum of vectors that are affine in q,
+ * such as a body's point x + R r, its direction R u, and constants.
  *
  * The row's numbers are those of two bodies, at most twelve each, in the order in which they are
  * stored. */

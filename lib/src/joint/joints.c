@@ -141,12 +141,12 @@ static dvi_status list_bends(dvi__joint *joint)
     if (meets) joint->bend[joint->bend_count++] = m;
   }
   joint->in_qq = DVI_NEW(int, (size_t)most + 1);
-  joint->curvature = DVI_NEW(double, (size_t)joint->row_count * (size_t)most + 1);
+  joint->curvature = DVI_NEW(double, (size_t)joint->row_count *(size_t)most + 1);
   if (joint->in_qq == NULL || joint->curvature == NULL) return refuse_memory_of_joints();
   for (int k = 0; k < joint->row_count; k++)
     for (int e = 0; e < most; e++)
-      joint->curvature[k * most + e] = of[k][joint->bend[e] / DVI__JOINT_NUMBERS]
-                                         [joint->bend[e] % DVI__JOINT_NUMBERS];
+      joint->curvature[k * most + e] =
+          of[k][joint->bend[e] / DVI__JOINT_NUMBERS][joint->bend[e] % DVI__JOINT_NUMBERS];
   return DVI_OK;
 }
 

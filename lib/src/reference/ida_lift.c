@@ -5,7 +5,8 @@
  *
  * With holonomic constraints phi(t,q) = 0 there are also lambda and mu, which vanishes, with
  * w(x) = T^t phi_q^t x (Gear, Gupta and Leimkuhler 1985),
- *     F = ( kappa' - K(kappa, v - w(mu)),  p' - f + w(lambda),  p - T^t C,  phi_q y' + phi_t,  phi )
+ *     F = ( kappa' - K(kappa, v - w(mu)),  p' - f + w(lambda),  p - T^t C,  phi_q y' + phi_t,
+ *           phi ) = 0
  * of index 2. IDA tests neither of them for errors. Source: Hindmarsh et al. 2005, ACM TOMS 31:363,
  * sec. 2.3. */
 #include <float.h>
@@ -27,9 +28,9 @@ typedef struct lifted_ida {
   dvi__reference_run *run;
   dvi__lift lift;
   dvi__ida_run ida;
-  int rows;                    /* of constraints */
+  int rows;                     /* of constraints */
   double *phi_q, *covector, *w; /* [entries], [nq], [nv] */
-  N_Vector moved, moved_F;     /* for differences of the Jacobian */
+  N_Vector moved, moved_F;      /* for differences of the Jacobian */
 } lifted_ida;
 
 /* Compute w = T^t phi_q^t x at the point of the last equations, whose gradients are known. */

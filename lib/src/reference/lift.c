@@ -229,8 +229,7 @@ void dvi__lift_pull(const dvi__lift *lift, const double *a, double *w)
   }
 }
 
-void dvi__lift_slow(const dvi__lift *lift, const double *kappa, const double *w,
-                    double *kappa_rate)
+void dvi__lift_slow(const dvi__lift *lift, const double *kappa, const double *w, double *kappa_rate)
 {
   for (int c = 0; c < lift->system->slot_count; c++) {
     const dvi__factor_slot *slot = &lift->system->slots[c];

@@ -58,8 +58,8 @@ typedef struct dvi__force_term {
 typedef struct dvi__holonomic_term {
   dvi_holonomic callbacks;
   char *name, **row_names; /* the names of rows may be NULL */
-  int first;              /* its first row among all */
-  dvi__pattern gradients; /* n rows, a column for each row of phi */
+  int first;               /* its first row among all */
+  dvi__pattern gradients;  /* n rows, a column for each row of phi */
   dvi__pattern qq;
   int *in_qq; /* places in the system's rows_qq */
   dvi__groups groups;

@@ -139,8 +139,8 @@ START_TEST(ida_ends_where_steps_do)
   take_machine(_i);
   run("lie-galerkin:degree=4", model.span, 64, &exact);
   memcpy(by_ida.q, model.body.q, sizeof by_ida.q);
-  ck_assert_int_eq(
-      dvi_system_momentum(model.body.system, 0, by_ida.q, model.body.v, by_ida.p), DVI_OK);
+  ck_assert_int_eq(dvi_system_momentum(model.body.system, 0, by_ida.q, model.body.v, by_ida.p),
+                   DVI_OK);
   ck_assert_msg(dvi_reference_solve(model.body.system, 0, model.span, by_ida.q, by_ida.p, &tight,
                                     NULL) == DVI_OK,
                 "%s: %s", model.body.name, dvi_last_error());
@@ -269,8 +269,9 @@ END_TEST
 
 START_TEST(other_methods_refuse_joints)
 {
-  static const char *const methods[] = {"lie-verlet", "euler-poincare", "lie-rk",
-                                        "composition:base=lie-verlet", "verlet", "galerkin"};
+  static const char *const methods[] = {"lie-verlet", "euler-poincare",
+                                        "lie-rk",     "composition:base=lie-verlet",
+                                        "verlet",     "galerkin"};
   take_machine(BALL_PENDULUM);
   for (size_t k = 0; k < sizeof methods / sizeof *methods; k++) {
     dvi_integrator *made;

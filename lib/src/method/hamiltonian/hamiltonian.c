@@ -191,8 +191,8 @@ static dvi_status watch_regular(dvi__stepper *self, const dvi__action_space *spa
   for (int j = 0; j < pp->columns; j++)
     if (pp->start[j] == pp->start[j + 1])
       return dvi__fail_in(hamiltonian_refuse(self, DVI_UNSUPPORTED), "hamiltonian");
-  const dvi_status status = dvi__linear_create(pp, dvi__linear_for_exchanges(pp->columns), self->counters,
-                                               &own->second);
+  const dvi_status status = dvi__linear_create(pp, dvi__linear_for_exchanges(pp->columns),
+                                               self->counters, &own->second);
   return status == DVI_SINGULAR
              ? dvi__fail_in(hamiltonian_refuse(self, DVI_UNSUPPORTED), "hamiltonian")
              : status;

@@ -11,7 +11,7 @@
 struct dvi__centred_paths {
   dvi__centring centring;
   dvi__action *action;
-  double *correction; /* [n] C, or what carried momenta change */
+  double *correction;            /* [n] C, or what carried momenta change */
   double *by_f, *by_xi, *by_end; /* [3 n] derivatives of carried momenta */
 };
 

@@ -48,8 +48,8 @@ static dvi_status rows_allocate(rows_term *x)
   const size_t n = (size_t)a->n, s = (size_t)a->s, nodes = s + 1, rows = (size_t)x->rows,
                entries = (size_t)x->entries,
                curvature = (size_t)dvi__pattern_entries(&a->system->rows_qq);
-  double *at = x->numbers = DVI_NEW(double,
-                                    nodes *(2 + 2 * s + n + entries) + 2 * rows + 2 * n + curvature);
+  double *at = x->numbers = DVI_NEW(double, nodes *(2 + 2 * s + n + entries) + 2 * rows + 2 * n +
+                                                curvature);
   if (at == NULL) return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d constraints", x->rows);
   x->chi = at;
   x->beta = x->chi + nodes;

@@ -49,10 +49,11 @@ static void add_slot_product(const dvi__charted *x, const dvi__factor_slot *slot
     for (int e = vv->start[j]; e < vv->start[j + 1]; e++) {
       const int i = vv->row[e];
       const dvi__factor_slot *row = &x->base->slots[x->slot[i]];
-      const double *from = dvi__charted_tangents_of(row, left, i), *to = dvi__charted_tangents_of(slot, right, j);
+      const double *from = dvi__charted_tangents_of(row, left, i),
+                   *to = dvi__charted_tangents_of(slot, right, j);
       if (row != slot) {
-        dvi__charted_add_entry(&in[e], dvi__chart_size(row->kind), size, x->base->mass_values[e], from,
-                          to, count, k, values);
+        dvi__charted_add_entry(&in[e], dvi__chart_size(row->kind), size, x->base->mass_values[e],
+                               from, to, count, k, values);
         continue;
       }
       own = &in[e];
@@ -79,9 +80,10 @@ void dvi__charted_add_potentials(const dvi__charted *x, int group, int in_group,
     for (int e = qq->start[j]; e < qq->start[j + 1]; e++) {
       const dvi__factor_slot *row = &x->base->slots[x->slot[qq->row[e]]],
                              *column = &x->base->slots[x->slot[j]];
-      dvi__charted_add_entry(&x->in_qq[e], dvi__chart_size(row->kind), dvi__chart_size(column->kind),
-                        x->L_yy[e * group + in_group], dvi__charted_tangents_of(row, left, qq->row[e]),
-                        dvi__charted_tangents_of(column, x->T, j), count, k, L_qq);
+      dvi__charted_add_entry(&x->in_qq[e], dvi__chart_size(row->kind),
+                             dvi__chart_size(column->kind), x->L_yy[e * group + in_group],
+                             dvi__charted_tangents_of(row, left, qq->row[e]),
+                             dvi__charted_tangents_of(column, x->T, j), count, k, L_qq);
     }
 }
 

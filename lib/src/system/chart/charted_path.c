@@ -338,8 +338,8 @@ static dvi_status charted_reserve(dvi__charted *x, int nodes)
   x->C_q1 = DVI_NEW(double, qq);
   x->C_qq = DVI_NEW(double, qq *(size_t)nodes);
   x->C_qv = DVI_NEW(double, (size_t)dvi__pattern_entries(&x->qv) * (size_t)nodes);
-  if (x->W && x->end && x->impulse && x->kick && x->first && x->width && x->moment && x->turned_T && x->turned_S && x->C_q1 &&
-      x->C_qq && x->C_qv)
+  if (x->W && x->end && x->impulse && x->kick && x->first && x->width && x->moment && x->turned_T &&
+      x->turned_S && x->C_q1 && x->C_qq && x->C_qv)
     return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "charts: no memory for %d nodes", nodes);
 }

@@ -30,8 +30,8 @@ static dvi_status make_gradients(dvi__charted_rows *rows)
   const dvi__pattern *G = &rows->term->gradients;
   const size_t most = 3 * (size_t)dvi__pattern_entries(G);
   int at = 0;
-  rows->gradients = (dvi__pattern){x->base->nx, G->columns,
-                                   DVI_NEW(int, (size_t)G->columns + 1), DVI_NEW(int, most)};
+  rows->gradients = (dvi__pattern){x->base->nx, G->columns, DVI_NEW(int, (size_t)G->columns + 1),
+                                   DVI_NEW(int, most)};
   rows->in_gradients = DVI_NEW(int, dvi__pattern_entries(G));
   if (!rows->gradients.start || !rows->gradients.row || !rows->in_gradients)
     return refuse_memory_of_rows();

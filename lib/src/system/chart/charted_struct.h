@@ -70,7 +70,7 @@ struct dvi__charted {
   /* Impulses mu1 - mu0 [slots*3] of the last path by the Lagrangian, and by other forces on the
    * way. A rotation has them in the centre's frame. */
   double *impulse, *kick;
-  int *first, *width; /* first coordinate [nx] of every coordinate's block, and its size */
+  int *first, *width;          /* first coordinate [nx] of every coordinate's block, and its size */
   double *turned_T, *turned_S; /* y x and y' x, times W, [nq*3] of one point */
   double *C_q1, *C_qq, *C_qv;  /* derivatives [entries], [entries*capacity] */
 };

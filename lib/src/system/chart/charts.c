@@ -136,8 +136,8 @@ static dvi_status project_in_charts(dvi__evaluator *e, double t, double *q, doub
     memset(own->xi, 0, (size_t)e->system->nx * sizeof(double));
     dvi__charted_centre(own->charted, q);
     dvi__charted_enter(own->charted, p, own->local);
-    DVI_TRY(dvi__charted_explain(
-        own->charted, dvi__rows_approach(own->inner, t, own->xi, own->local)));
+    DVI_TRY(
+        dvi__charted_explain(own->charted, dvi__rows_approach(own->inner, t, own->xi, own->local)));
     dvi__charted_point(own->charted, own->xi, NULL, q, NULL);
   }
   dvi__charted_store(own->charted, own->local, p);
@@ -152,8 +152,7 @@ static dvi_status reactions_in_charts(dvi__evaluator *e, double t, const double 
   dvi__charted_centre(own->charted, q);
   dvi__charted_enter(own->charted, v, own->local);
   return dvi__charted_explain(
-      own->charted,
-      dvi__rows_acceleration(own->inner, t, own->xi, own->local, NULL, lambda));
+      own->charted, dvi__rows_acceleration(own->inner, t, own->xi, own->local, NULL, lambda));
 }
 
 static const dvi__state_constraint on_rows_in_charts = {

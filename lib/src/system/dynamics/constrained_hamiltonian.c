@@ -49,7 +49,8 @@ static dvi_status prepare_constraints(dvi__evaluator *e, dvi__derivatives most)
   if (d->bracket == NULL || d->multiplier == NULL || d->field == NULL || d->pushed == NULL)
     return refuse_memory_of_constraints();
   DVI_TRY(dvi__weighted_open(system, &d->weighted));
-  return dvi__linear_create(bracket, dvi__linear_for_exchanges(bracket->columns), e->counters, &e->velocity);
+  return dvi__linear_create(bracket, dvi__linear_for_exchanges(bracket->columns), e->counters,
+                            &e->velocity);
 }
 
 static void release_constraints(dvi__evaluator *e)

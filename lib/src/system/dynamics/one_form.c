@@ -415,7 +415,8 @@ static dvi_status prepare_two_form(dvi__evaluator *e, dvi__derivatives most)
   (void)most;
   e->own = DVI_NEW(double, dvi__pattern_entries(omega));
   if (e->own == NULL) return dvi__fail(DVI_NO_MEMORY, "evaluator: no memory for the two-form");
-  return dvi__linear_create(omega, dvi__linear_for_exchanges(omega->columns), e->counters, &e->velocity);
+  return dvi__linear_create(omega, dvi__linear_for_exchanges(omega->columns), e->counters,
+                            &e->velocity);
 }
 
 static void release_two_form(dvi__evaluator *e)

@@ -94,8 +94,9 @@ struct dvi__dynamics {
  * creates. */
 extern const dvi__dynamics dvi__dynamics_charts, dvi__dynamics_constant_mass,
     dvi__dynamics_general_lagrangian, dvi__dynamics_constrained_mass,
-    dvi__dynamics_constrained_lagrangian, dvi__dynamics_constrained_charts, dvi__dynamics_one_form, dvi__dynamics_hamiltonian,
-    dvi__dynamics_constrained_hamiltonian, dvi__dynamics_time_transformed;
+    dvi__dynamics_constrained_lagrangian, dvi__dynamics_constrained_charts, dvi__dynamics_one_form,
+    dvi__dynamics_hamiltonian, dvi__dynamics_constrained_hamiltonian,
+    dvi__dynamics_time_transformed;
 
 /* Return the argument of the system's functions beside q, which is p or v. */
 static inline const double *dvi__second(const dvi_system *system, const double *v, const double *p)

@@ -212,8 +212,7 @@ dvi_status dvi__motion_defect(dvi__evaluator *e, const dvi__instant *before,
   if (!has_forces) return DVI_OK;
   e->span = fabs(h);
   dvi_status status = e->system->dynamics->forces(e, before->t, before->q, before->v, f0);
-  if (status == DVI_OK)
-    status = e->system->dynamics->forces(e, after->t, after->q, after->v, f1);
+  if (status == DVI_OK) status = e->system->dynamics->forces(e, after->t, after->q, after->v, f1);
   e->span = 0;
   DVI_TRY(status);
   *defect = fmax(*defect, defect_of(n, h, 1, before->p, after->p, f0, f1));
