@@ -58,13 +58,13 @@ int main(void)
   dvi_joints *joints = NULL;
   dvi_system *system = NULL;
   dvi_status status = dvi_joints_create(bodies, BODIES, hinges, BODIES, q, &joints);
-  const dvi_system_terms terms = {.factors = bodies,
-                                  .factor_count = BODIES,
-                                  .potentials = &gravity,
+  const dvi_system_terms terms = {.potentials = &gravity,
                                   .potential_count = 1,
+                                  .autonomous = 1,
+                                  .factors = bodies,
+                                  .factor_count = BODIES,
                                   .holonomics = dvi_joints_constraints(joints),
-                                  .holonomic_count = 1,
-                                  .autonomous = 1};
+                                  .holonomic_count = 1};
   int good = 0;
   if (status == DVI_OK) status = dvi_system_create(&terms, &system);
   if (status == DVI_OK)
