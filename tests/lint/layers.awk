@@ -38,6 +38,7 @@ BEGIN {
   sees["march"] = "core"
   sees["integrator"] = "core march num space solve system method"
   sees["boundary"] = "core num solve system step/element method/element"
+  sees["sensitivity"] = "core num system step/element method/element"
   sees["diagnostics"] = "core num system"
   sees["reference"] = "core num system"
   # The library of scenes includes libdvi's public headers, too.

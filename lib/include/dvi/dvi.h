@@ -14,6 +14,7 @@
 #include <dvi/quadrature.h>
 #include <dvi/reference.h>
 #include <dvi/run.h>
+#include <dvi/sensitivity.h>
 #include <dvi/shapes.h>
 #include <dvi/status.h>
 #include <dvi/system.h>

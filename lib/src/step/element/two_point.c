@@ -116,6 +116,28 @@ dvi_status dvi__action_two_point_gradient(dvi__action *a, const double *Y, doubl
   return DVI_OK;
 }
 
+void dvi__action_two_point_rows(const dvi__action *a, const double *f, const double *g,
+                                double *rows)
+{
+  const size_t r = (size_t)a->r, n = (size_t)a->n;
+  for (size_t c = 0; c <= (size_t)a->s; c++) {
+    const double *chi = a->two_point.chi + c * (size_t)a->lanes,
+                 *dchi = a->two_point.dchi + c * (size_t)a->lanes;
+    for (size_t i = 0; i < n; i++) {
+      double sum = 0;
+      for (size_t j = 0; j < r; j++)
+        sum += a->weight[j] * (a->h * chi[j] * f[i * r + j] + dchi[j] * g[i * r + j]);
+      rows[c * n + i] = sum;
+    }
+  }
+}
+
+dvi__path_points dvi__action_two_point_points(const dvi__action *a, const double *Y)
+{
+  dvi__action_stages(a, Y);
+  return (dvi__path_points){a->r, a->t, a->Q, a->V, a->weight};
+}
+
 /* Set column[c] to
  *
  *     sum_j b_j [ chi_c (h L_qq chi_b + L_qv chi_b') + chi_c' (L_vq chi_b + L_vv chi_b'/h) ] */
@@ -137,8 +159,7 @@ static void two_point_block_column(const dvi__action *a, const dvi__joint_entry 
 
 dvi_status dvi__action_two_point_hessian(dvi__action *a, const double *Y, double *values)
 {
-  dvi__action_stages(a, Y);
-  DVI_TRY(dvi__lagrangian_hessian(a->evaluator, a->r, a->t, a->Q, a->V, a->H_qq, a->H_qv, a->H_vv));
+  DVI_TRY(dvi__action_hessians(a, Y));
   const int size = a->s + 1;
   for (int e = 0; e < dvi__pattern_entries(&a->joint); e++)
     for (int b = 0; b < size; b++)

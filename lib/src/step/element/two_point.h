@@ -33,7 +33,24 @@ dvi_status dvi__action_two_point_gradient(dvi__action *action, const double *Y, 
 void dvi__action_two_point_ends(const dvi__action *action, const double *by_Y, const double *by_q0,
                                 double *in_q0, double *in_q1, double *in_Z);
 
-/* Evaluate the second derivatives of S. Each entry e = (i,j) of dvi__action_coupling has a block of
+/* Give the rows of any function whose derivatives by q and v at the nodes are f and g [n*r], in
+ * batches,
+ *
+ *     rows[a*n + i] = sum_j b_j ( h chi_a f_i + chi_a' g_i )_j,     a = 0..s.
+ *
+ * With f = L_q and g = L_v they are dS/dX_a. */
+void dvi__action_two_point_rows(const dvi__action *action, const double *f, const double *g,
+                                double *rows);
+
+/* The nodes of the quadrature on the path Y, valid until the next call. Q and V are batches. */
+typedef struct dvi__path_points {
+  int count;
+  const double *t, *Q, *V, *weight;
+} dvi__path_points;
+dvi__path_points dvi__action_two_point_points(const dvi__action *action, const double *Y);
+
+/* Evaluate the second derivatives of S, or with forces the derivatives of the rows with L_q + F in
+ * the place of L_q. Each entry e = (i,j) of dvi__action_coupling has a block of
  * (s+1)^2 numbers. That of X_a of coordinate i and X_b of coordinate j is
  * values[(e*(s+1) + b)*(s+1) + a]. */
 dvi_status dvi__action_two_point_hessian(dvi__action *action, const double *Y, double *values);
