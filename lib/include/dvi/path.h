@@ -20,7 +20,10 @@ typedef enum dvi_ends {
   DVI_ENDS_FIXED = 1, /**< q_0 and q_N are given, as in Hamilton's principle */
   DVI_ENDS_INITIAL,   /**< q_0 and p_0 are given. This is N steps forward, as one system */
   /** q_N = A q_0 + a. The path closes, or closes up to a symmetry, and p_0 = A^T p_N follows */
-  DVI_ENDS_PERIODIC
+  DVI_ENDS_PERIODIC,
+  /** each coordinate of q_0 and of q_N is given, or free with its momentum given. These are the
+   *  natural boundary conditions of the calculus of variations */
+  DVI_ENDS_MIXED
 } dvi_ends;
 
 /** Options of a path. All of them are copied. */
@@ -32,9 +35,13 @@ typedef struct dvi_path_options {
   double span;
   /** length of each of the arrays below, nq. May be 0 if all of them are NULL */
   int dimension;
-  const double *q0; /**< first node, for fixed and initial ends */
-  const double *q1; /**< last node, for fixed ends */
-  const double *p0; /**< first momentum, for initial ends */
+  const double *q0; /**< first node, for fixed, initial and mixed ends (guesses where free) */
+  const double *q1; /**< last node, for fixed and mixed ends (guesses where free) */
+  const double *p0; /**< first momentum, for initial and mixed ends */
+  const double *p1; /**< last momentum, for mixed ends */
+  /** not 0 for the coordinates of q_0, and of q_N, that are free. Their momenta are those of p0 and
+   *  p1. For mixed ends. NULL: none is free */
+  const char *free0, *free1;
   /** A [nq x nq] by columns, or on a pattern, for periodic ends (default the identity). A must be a
    *  symmetry of the Lagrangian. A symmetry that exchanges bodies makes them follow each other on
    *  one curve (a choreography of which this path is one part). A rotation makes the path

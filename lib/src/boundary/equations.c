@@ -55,13 +55,27 @@ static dvi_status element_gradient(dvi_path *path, const double *x, int k)
                                         path->in_Z);
 }
 
-/* Add the given momentum, since -dS/dq0 of the first step is p_0. */
-static void add_given_momentum(const dvi_path *path, double *rows)
+/* Add the given momenta, since -dS/dq0 of the first step is p_0, and dS/dq1 of the last one p_N.
+ * Their rows are free of momenta where mixed ends give the coordinate. */
+static void add_given_momenta(const dvi_path *path, double *rows)
 {
   dvi__places places;
   for (int i = 0; path->p0 != NULL && i < path->n; i++) {
     dvi__path_places(path, 0, 0, i, 1, &places);
-    rows[places.single] += path->p0[i];
+    if (places.count > 0 || path->ends == DVI_ENDS_INITIAL) rows[places.single] += path->p0[i];
+  }
+  for (int i = 0; path->p1 != NULL && i < path->n; i++) {
+    dvi__path_places(path, path->steps - 1, 1, i, 1, &places);
+    if (places.count > 0) rows[places.single] -= path->p1[i];
+  }
+}
+
+/* Set the rows of the coordinates that mixed ends give. */
+static void set_given_rows(const dvi_path *path, const double *x, double *rows)
+{
+  for (int i = 0; i < 2 * path->n; i++) {
+    const int at = dvi__path_given(path, i % 2, i / 2);
+    if (at >= 0) rows[at] = x[at] - (i % 2 == 0 ? path->q0 : path->q1)[i / 2];
   }
 }
 
@@ -85,7 +99,8 @@ static dvi_status path_gradient_rows(dvi_path *path, const double *x, double *ro
     memcpy(p + (size_t)(k + 1) * n, path->in_ends[1], bytes);
     for (size_t i = 0; i < n && k == 0; i++) p[i] = -path->in_ends[0][i];
   }
-  add_given_momentum(path, rows);
+  add_given_momenta(path, rows);
+  set_given_rows(path, x, rows);
   return DVI_OK;
 }
 
@@ -228,6 +243,10 @@ dvi_status dvi__path_jacobian(dvi_path *path, const double *x, double *values)
     if (path->free_span) DVI_TRY(at_step(path, x, k, assembly_add_span(&to, path, k)));
   }
   dvi__path_each_gauge(path, assembly_add_gauge, &to);
+  for (int i = 0; i < 2 * path->n; i++) {
+    const int given = dvi__path_given(path, i % 2, i / 2);
+    if (given >= 0) assembly_add(&to, given, given, 1);
+  }
   /* Multipliers that are not in use are unknowns of their own. */
   for (int c = path->unknowns - path->gauges + path->in_use; c < path->unknowns; c++)
     assembly_add(&to, c, c, 1);
@@ -270,6 +289,10 @@ static dvi_status path_row_scale(void *of, double *scale, int *unchanged)
         if (places.count == 1) scale[places.at[0]] = path->row_scale[i * path->s];
       }
   for (int c = path->core; c < path->unknowns; c++) scale[c] = kinetic > 0 ? kinetic : 1;
+  for (int i = 0; i < 2 * path->n; i++) {
+    const int given = dvi__path_given(path, i % 2, i / 2);
+    if (given >= 0) scale[given] = 1;
+  }
   return DVI_OK;
 }
 

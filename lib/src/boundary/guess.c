@@ -50,6 +50,15 @@ static void interpolate_guess(const dvi_path *path, const double *t, const doubl
   for (int i = 0; i < path->n; i++) node[i] = (1 - part) * left[i] + part * right[i];
 }
 
+/* Put the coordinates that mixed ends give into place. */
+static void set_given(dvi_path *path)
+{
+  for (int i = 0; i < 2 * path->n; i++) {
+    const int given = dvi__path_given(path, i % 2, i / 2);
+    if (given >= 0) path->x[given] = (i % 2 == 0 ? path->q0 : path->q1)[i / 2];
+  }
+}
+
 dvi_status dvi_path_guess(dvi_path *path, int points, int dimension, const double *t,
                           const double *q)
 {
@@ -62,6 +71,7 @@ dvi_status dvi_path_guess(dvi_path *path, int points, int dimension, const doubl
     if (dvi__path_node(path, k) >= 0)
       interpolate_guess(path, t, q, m, time, path->x + dvi__path_node(path, k));
   }
+  set_given(path);
   if (path->free_span) path->x[path->core] = 1;
   show_guess(path);
   return DVI_OK;
@@ -88,6 +98,7 @@ dvi_status dvi_path_guess_along(dvi_path *path, const dvi_path *last, const dvi_
   for (int c = 0; c < path->core; c++)
     path->x[c] = last->x[c] + (before != NULL ? ratio * (last->x[c] - before->x[c]) : 0);
   for (int c = path->core; c < path->unknowns; c++) path->x[c] = 0;
+  set_given(path);
   if (path->free_span) {
     const double span = dvi__path_span(last, last->x),
                  earlier = before != NULL ? dvi__path_span(before, before->x) : span;

@@ -13,13 +13,20 @@ static const double one = 1.0;
  * one. */
 static int node_position(const dvi_path *path, int k)
 {
-  return k * path->n * path->s - (path->ends == DVI_ENDS_PERIODIC ? 0 : path->n);
+  const int all = path->ends == DVI_ENDS_PERIODIC || path->ends == DVI_ENDS_MIXED;
+  return k * path->n * path->s - (all ? 0 : path->n);
 }
 
 int dvi__path_node(const dvi_path *path, int k)
 {
   const int at = node_position(path, k);
   return at >= 0 && at < path->core ? at : -1;
+}
+
+int dvi__path_given(const dvi_path *path, int end, int i)
+{
+  if (path->ends != DVI_ENDS_MIXED || path->free[end][i]) return -1;
+  return node_position(path, end == 0 ? 0 : path->steps) + i;
 }
 
 int dvi__path_bubbles(const dvi_path *path, int k)
@@ -45,8 +52,9 @@ void dvi__path_places(const dvi_path *path, int k, int a, int i, int row, dvi__p
   /* A step forward gives the next node. */
   if (a < 2 && row && path->ends == DVI_ENDS_INITIAL) at += path->n * path->s;
   at += a < 2 ? i : i * (path->s - 1) + a - 2;
+  const int given = a < 2 && (at == dvi__path_given(path, 0, i) || at == dvi__path_given(path, 1, i));
   *places = (dvi__places){
-      .count = at >= 0 && at < path->core, .at = NULL, .factor = &one, .single = at};
+      .count = at >= 0 && at < path->core && !given, .at = NULL, .factor = &one, .single = at};
   places->at = &places->single;
   if (turned) turned_places(path, i, places);
 }
@@ -168,6 +176,10 @@ static void draft_add_all(const dvi_path *path, pattern_draft *d)
   dvi__path_each_gauge(path, draft_add_gauge, d);
   /* The span's row and column are full. */
   for (int c = 0; path->free_span && c < path->core; c++) draft_add_gauge(d, c, path->core, 0);
+  for (int i = 0; i < 2 * path->n; i++) {
+    const int given = dvi__path_given(path, i % 2, i / 2);
+    if (given >= 0) draft_add(d, given, given);
+  }
   /* The span's own entry, and those of multipliers that are not in use. */
   for (int c = path->core; c < path->unknowns; c++) draft_add(d, c, c);
 }
@@ -232,7 +244,8 @@ dvi_status dvi__path_lay_out(dvi_path *path)
   const double blocks = (path->s + 1.0) * (path->s + 1.0) *
                         dvi__pattern_entries(dvi__action_coupling(path->action));
   const double core = (double)path->steps * path->n * path->s -
-                      (path->ends == DVI_ENDS_FIXED ? path->n : 0);
+                      (path->ends == DVI_ENDS_FIXED ? path->n : 0) +
+                      (path->ends == DVI_ENDS_MIXED ? path->n : 0);
   /* The limit counts the places of the last node, beyond the last unknown, too. */
   if (core + 2.0 * path->n * path->s > INT_MAX) return too_many(path, core, "unknowns");
   if (path->steps * blocks > INT_MAX)

@@ -29,14 +29,17 @@ static dvi_status check_array(const dvi_path_options *options, const double *arr
 
 static dvi_status check_arrays(const dvi_system *system, const dvi_path_options *o)
 {
-  const int periodic = o->ends == DVI_ENDS_PERIODIC;
-  if ((o->q0 || o->q1 || o->p0 || o->symmetry || o->shift || o->dimension != 0) &&
+  const int periodic = o->ends == DVI_ENDS_PERIODIC, mixed = o->ends == DVI_ENDS_MIXED;
+  if ((o->q0 || o->q1 || o->p0 || o->p1 || o->symmetry || o->shift || o->dimension != 0) &&
       o->dimension != system->n)
     return dvi__fail(DVI_BAD_SIZE, "path: the ends have %d coordinates, the system %d",
                      o->dimension, system->n);
   DVI_TRY(check_array(o, o->q0, "the first node q0", !periodic));
-  DVI_TRY(check_array(o, o->q1, "the last node q1", o->ends == DVI_ENDS_FIXED));
-  DVI_TRY(check_array(o, o->p0, "the first momentum p0", o->ends == DVI_ENDS_INITIAL));
+  DVI_TRY(check_array(o, o->q1, "the last node q1", o->ends == DVI_ENDS_FIXED || mixed));
+  DVI_TRY(check_array(o, o->p0, "the first momentum p0", o->ends == DVI_ENDS_INITIAL || mixed));
+  DVI_TRY(check_array(o, o->p1, "the last momentum p1", mixed));
+  if (!mixed && (o->free0 != NULL || o->free1 != NULL))
+    return dvi__fail(DVI_BAD_ARGUMENT, "path: coordinates are free, but these ends give all");
   if (o->shift != NULL) DVI_TRY(check_array(o, o->shift, "the shift", periodic));
   if (o->symmetry == NULL && (o->symmetry_pattern.start != NULL || o->symmetry_pattern.row != NULL))
     return dvi__fail(DVI_BAD_ARGUMENT, "path: a pattern of the symmetry is given, but no symmetry");
@@ -47,7 +50,7 @@ static dvi_status check_arrays(const dvi_system *system, const dvi_path_options 
 
 static dvi_status path_check(const dvi_system *system, const dvi_path_options *o)
 {
-  if (o->ends < DVI_ENDS_FIXED || o->ends > DVI_ENDS_PERIODIC)
+  if (o->ends < DVI_ENDS_FIXED || o->ends > DVI_ENDS_MIXED)
     return dvi__fail(DVI_BAD_ARGUMENT, "path: unknown ends %d", (int)o->ends);
   if (system->terms & (DVI__ONE_FORM | DVI__PHASE_SPACE))
     return dvi__fail(DVI_UNSUPPORTED,
@@ -117,9 +120,18 @@ static int copy_array(const dvi_path *path, const double *given, double **copy)
   return given == NULL || *copy != NULL;
 }
 
+/* Copy which coordinates of an end are free. */
+static int copy_free(const dvi_path *path, const char *given, char **copy)
+{
+  if (path->ends != DVI_ENDS_MIXED) return 1;
+  *copy = given != NULL ? dvi__duplicate(given, (size_t)path->n, 1) : DVI_NEW(char, path->n);
+  return *copy != NULL;
+}
+
 static int copy_arrays(dvi_path *path, const dvi_path_options *o)
 {
-  return copy_array(path, o->q0, &path->q0) && copy_array(path, o->q1, &path->q1) &&
+  return copy_free(path, o->free0, &path->free[0]) && copy_free(path, o->free1, &path->free[1]) &&
+         copy_array(path, o->p1, &path->p1) && copy_array(path, o->q0, &path->q0) && copy_array(path, o->q1, &path->q1) &&
          copy_array(path, o->p0, &path->p0) && copy_array(path, o->shift, &path->shift);
 }
 
@@ -206,8 +218,8 @@ static dvi_status path_assemble(dvi_path *path, const char *method, const dvi_pa
                      : 0;
   DVI_TRY(path_make_action(path, method));
   DVI_TRY(copy_turn(path, o));
-  DVI_TRY(dvi__path_lay_out(path));
   if (!copy_arrays(path, o)) return dvi__fail(DVI_NO_MEMORY, "path: no memory for the ends");
+  DVI_TRY(dvi__path_lay_out(path));
   DVI_TRY(path_allocate(path));
   DVI_TRY(dvi__path_make_solver(path));
   return first_guess(path);
@@ -249,6 +261,8 @@ void dvi_path_destroy(dvi_path **path)
   dvi__pattern_clear(&own->pattern);
   for (size_t k = 0; k < sizeof owned / sizeof *owned; k++) dvi__release(owned[k]);
   dvi__release(own->broken);
+  dvi__release(own->p1);
+  for (int end = 0; end < 2; end++) dvi__release(own->free[end]);
   dvi__release(own);
   *path = NULL;
 }

@@ -4,7 +4,8 @@
  * step k (step/element/two_point.h) and given nodes are left out. Then comes the span, if it is
  * free, and a multiplier for each direction along which the path may be moved (gauge.c). Rows have
  * the same order, so that the Jacobian is the symmetric Hessian of the action. With initial ends
- * the row of node k stands with the unknown q_(k+1) that it determines. */
+ * the row of node k stands with the unknown q_(k+1) that it determines. With mixed ends all numbers
+ * of the first and the last node are unknowns, and those that are given have rows x = given. */
 #ifndef DVI_BOUNDARY_PATH_STRUCT_H
 #define DVI_BOUNDARY_PATH_STRUCT_H
 #include <dvi/path.h>
@@ -23,7 +24,8 @@ struct dvi_path {
   double start, span; /* a free span's unknown is its ratio to this span */
   double energy;      /* energy of a path with a free span */
   int free_span;
-  double *q0, *q1, *p0, *shift; /* [n], NULL where not given */
+  double *q0, *q1, *p0, *p1, *shift; /* [n], NULL where not given */
+  char *free[2];                     /* [n] of mixed ends, else NULL */
   dvi__pattern turn;            /* transpose of the symmetry A. Empty for the identity */
   double *turn_values;          /* entries of A, column i of the pattern is row i of A */
   dvi__action *action;
@@ -76,6 +78,10 @@ void dvi__path_places(const dvi_path *path, int k, int a, int i, int row, dvi__p
 
 /* Return the first unknown of node k, or -1 if the node is given. */
 int dvi__path_node(const dvi_path *path, int k);
+
+/* Return the place of coordinate i of the first node (end 0) or the last one (1) if it is an unknown
+ * that is given by mixed ends, else -1. */
+int dvi__path_given(const dvi_path *path, int end, int i);
 
 /* Return the first bubble of step k. */
 int dvi__path_bubbles(const dvi_path *path, int k);

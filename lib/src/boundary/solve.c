@@ -26,6 +26,7 @@ static dvi_status not_found(dvi_path *path, dvi_status status, const dvi__solve_
   const char *const advice[] = {
       [DVI_ENDS_FIXED] = "a better guess, more steps or a longer span, or come by continuation; "
                          "conjugate ends may have no path",
+      [DVI_ENDS_MIXED] = "a better guess, more steps, other ends, or come by continuation",
       [DVI_ENDS_INITIAL] = "a guess from steps with dvi_run, or a shorter span",
       [DVI_ENDS_PERIODIC] = "a better guess, more steps, another period, or come by continuation",
   };
@@ -95,7 +96,7 @@ static dvi_status check_isolated(const dvi_path *path, const dvi_path_report *re
                    "%s; the path is unchanged; try another span",
                    report->zero, report->zero == 1 ? "" : "s", report->symmetries,
                    report->zero_below,
-                   path->ends == DVI_ENDS_FIXED
+                   path->ends != DVI_ENDS_PERIODIC
                        ? "its ends are conjugate, so that there are many such paths or none"
                        : "it is not isolated");
 }
