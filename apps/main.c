@@ -21,6 +21,7 @@ static const subcommand subcommands[] = {
     {"order", order_command},
     {"bench", bench_command},
     {"path", path_command},
+    {"control", control_command},
     {"check", check_command},
     {"init", init_command},
     {"sweep", sweep_command},
@@ -52,6 +53,7 @@ static const char help[] =
     "  emit-c SCENE.yaml ...   write a C file that declares a scene's system by callbacks\n"
     "  path PROBLEM ...        find a path between given ends, or a periodic one, all its steps at "
     "once\n"
+    "  control SCENE.yaml ...  find the controls that lead to an end at the least cost\n"
     "  order PROBLEM ...       measure the order of methods against an independent judge\n"
     "  bench PROBLEM ...       measure speed against error, also beside SUNDIALS' integrators\n"
     "\n"

@@ -40,6 +40,9 @@ static int write_code(const problem *scene, const char *name, const char *path)
   int code = DONE;
   if (status == DVI_BAD_ARGUMENT)
     code = usage_error("emit-c: '%s' is no name in C; give one by --name", name);
+  else if (status == DVI_UNSUPPORTED && dvi_scene_control(scene->scene, 0) != NULL)
+    code = usage_error("emit-c: the scene has controls, which C files do not have; declare them by "
+                       "dvi_controls (dvi/control.h)");
   else if (status == DVI_UNSUPPORTED)
     code = usage_error("emit-c: the scene's method needs Taylor coefficients, and C files have "
                        "none; take another method, or `dvi run` the scene");

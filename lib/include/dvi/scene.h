@@ -4,6 +4,7 @@
  *  libdvi. */
 #ifndef DVI_SCENE_H
 #define DVI_SCENE_H
+#include <dvi/control.h>
 #include <dvi/system.h>
 #include <stddef.h>
 
@@ -45,6 +46,13 @@ typedef struct dvi_scene_range {
   int count;
   const double *value; /**< [count] */
 } dvi_scene_range;
+
+/** The end of a scene's control problem. free_q and free_p are not 0 for the numbers that are free,
+ *  as in dvi_control_options. */
+typedef struct dvi_scene_end {
+  const double *q, *p;
+  const char *free_q, *free_p;
+} dvi_scene_end;
 
 /** Facts about a scene, for people and for tests. */
 typedef struct dvi_scene_facts {
@@ -140,6 +148,16 @@ const dvi_scene_event *dvi_scene_event_at(const dvi_scene *scene, int i);
 /** Return the range of parameter i in section `sweep`. NULL if i is out of range. Owned by the
  *  scene. */
 const dvi_scene_range *dvi_scene_range_at(const dvi_scene *scene, int i);
+
+/** Return the controls of the scene. They serve one thread at a time. NULL if the scene has none, or
+ *  if none of them stands in `forces`. In the scene's system all controls are 0. */
+const dvi_controls *dvi_scene_controls(const dvi_scene *scene);
+
+/** Return the name of control i. NULL if i is out of range. Owned by the scene. */
+const char *dvi_scene_control(const dvi_scene *scene, int i);
+
+/** Give the end of the scene's control problem, owned by the scene. Returns 0 if there is none. */
+int dvi_scene_end_of(const dvi_scene *scene, dvi_scene_end *end);
 
 /** Collect the facts about a scene and its evaluations so far. Zeros for NULL. */
 void dvi_scene_facts_of(const dvi_scene *scene, dvi_scene_facts *facts);

@@ -172,7 +172,8 @@ static dvi_status choice_move(const choice *c, double value, const double *du, d
   for (int k = 0; k < HALVINGS; k++, part /= 2) {
     for (int a = 0; a < m; a++) u[a] = from[a] + part * du[a];
     DVI_TRY(choice_value(c, u, &next, slope));
-    if (next + barrier(d, u) <= value || size < 1e-6) return DVI_OK;
+    if (next + barrier(d, u) <= value + 64 * DBL_EPSILON * fabs(value) || size < 1e-6)
+      return DVI_OK;
   }
   return DVI_OK;
 }

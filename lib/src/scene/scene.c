@@ -276,6 +276,23 @@ const dvi_scene_range *dvi_scene_range_at(const dvi_scene *scene, int i)
   return scene == NULL || i < 0 || i >= scene->range_count ? NULL : &scene->range[i];
 }
 
+const dvi_controls *dvi_scene_controls(const dvi_scene *scene)
+{
+  return scene == NULL || scene->controls.force == NULL ? NULL : &scene->controls;
+}
+
+const char *dvi_scene_control(const dvi_scene *scene, int i)
+{
+  return scene == NULL || i < 0 || i >= scene->control_count ? NULL : scene->control_name[i];
+}
+
+int dvi_scene_end_of(const dvi_scene *scene, dvi_scene_end *end)
+{
+  if (scene == NULL || scene->final_q == NULL) return 0;
+  *end = (dvi_scene_end){scene->final_q, scene->final_p, scene->free_q, scene->free_p};
+  return 1;
+}
+
 /* Add operations, of which -1 was never derived. */
 static void add_operations(int operations, int *all)
 {

@@ -15,6 +15,16 @@ static dvi_status try_mass(dvi_scene *scene)
   return status == DVI_SINGULAR ? status : DVI_OK;
 }
 
+/* Make momenta of the velocities of the end, where these are given. */
+static dvi_status complete_final(dvi_scene *scene)
+{
+  int given = 0;
+  for (int i = 0; i < scene->n; i++) given = given || scene->final_has_v[i];
+  if (!given) return DVI_OK;
+  return dvi_system_momentum(scene->system, scene->plan.t_end, scene->final_q, scene->final_v,
+                             scene->final_p);
+}
+
 bool dvi__scene_complete_start(dvi_scene *scene)
 {
   dvi_status status = DVI_OK;
@@ -25,6 +35,7 @@ bool dvi__scene_complete_start(dvi_scene *scene)
     status = dvi_system_momentum(scene->system, 0.0, scene->q, scene->v, scene->p);
   if (status == DVI_OK && !scene->momenta_given && dvi__has_factors(scene))
     status = try_mass(scene);
+  if (status == DVI_OK && scene->final_q != NULL) status = complete_final(scene);
   if (status == DVI_OK) return true;
   if (status == DVI_NO_MEMORY) return dvi__scene_no_memory(scene);
   if (status == DVI_CALLBACK_FAILED) status = dvi__fault_status();

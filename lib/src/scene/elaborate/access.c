@@ -49,8 +49,19 @@ static dvi__value index_number(dvi__context *c, const dvi__index *index)
   return value;
 }
 
+/* Return a parameter as a variable, or as the expression of the parameters that it is made of. */
+static dvi__value varied_parameter(dvi__context *c, const dvi__parameter *p)
+{
+  if (p->source != NULL && p->is != NULL) return dvi__elaborate(c, p->is);
+  const int number = c->scene->control_count + (int)(p - c->scene->parameter);
+  return dvi__number_value(
+      dvi__variable_node(c, DVI__INPUTS, (dvi__numbering){.base = number}, 0));
+}
+
 static dvi__value parameter_value(dvi__context *c, dvi__parameter *p)
 {
+  const int varies = p->shape.rank == 0 || (p->source != NULL && p->is != NULL);
+  if ((c->may & DVI__OF_PARAMETERS) != 0 && varies) return varied_parameter(c, p);
   if (!dvi__note_parameter(c->scene, p)) return DVI__NO_VALUE;
   dvi__value value = dvi__value_make(c, p->shape.rank, p->shape.rows, p->shape.columns);
   if (dvi__failed(value)) return value;
@@ -148,6 +159,11 @@ dvi__value dvi__name_value(dvi__context *c, const dvi__expression *e)
   if (name->sort == DVI__DEFINITION) {
     c->scene->definition[name->number].used = 1;
     return definition_value(c, name->number);
+  }
+  if (name->sort == DVI__CONTROL) {
+    if (!dvi__check_mention(c, DVI__MENTIONS_U, e->span)) return DVI__NO_VALUE;
+    return dvi__number_value(
+        dvi__variable_node(c, DVI__INPUTS, (dvi__numbering){.base = name->number}, 0));
   }
   const dvi__coordinate *x = &c->scene->coordinate[name->number];
   if (!dvi__check_mention(c, DVI__MENTIONS_Q, e->span)) return DVI__NO_VALUE;

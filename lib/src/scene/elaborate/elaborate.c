@@ -28,6 +28,7 @@ bool dvi__check_mention(const dvi__context *c, unsigned mentions, dvi__span span
   const char *what = mentions == DVI__MENTIONS_Q   ? "coordinates"
                      : mentions == DVI__MENTIONS_V ? "velocities"
                      : mentions == DVI__MENTIONS_P ? "momenta"
+                     : mentions == DVI__MENTIONS_U ? "controls"
                                                    : "the time";
   return (c->may & mentions) != 0 || dvi__refuse(c, span, "%s cannot stand in %s", what, c->where);
 }
@@ -265,6 +266,7 @@ static unsigned name_mentions(const dvi_scene *scene, const char *text)
   if (strcmp(text, "t") == 0) return DVI__MENTIONS_T;
   const dvi__name *name = dvi__names_find(&scene->names, text);
   if (name == NULL || name->sort == DVI__PARAMETER) return 0;
+  if (name->sort == DVI__CONTROL) return DVI__MENTIONS_U;
   return name->sort == DVI__COORDINATE ? DVI__MENTIONS_Q : scene->definition[name->number].mentions;
 }
 

@@ -7,6 +7,7 @@
 static int block_size(const dvi_scene *scene, int block)
 {
   if (block == DVI__TIME) return 1;
+  if (block == DVI__INPUTS) return scene->control_count + scene->parameter_count;
   return block == DVI__MULTIPLIERS  ? 2 * scene->n
          : block == DVI__VELOCITIES ? scene->velocities
                                     : scene->n; /* at most 2 n constraints */

@@ -125,7 +125,8 @@ static bool gather_product(walk *w, const dvi__expression *e, place at)
       fits = fits && !divides;
       continue;
     }
-    fits = fits && (mentions & (DVI__MENTIONS_Q | DVI__MENTIONS_V | DVI__MENTIONS_P)) == 0;
+    fits = fits && (mentions & (DVI__MENTIONS_Q | DVI__MENTIONS_V | DVI__MENTIONS_P | DVI__MENTIONS_U)) ==
+                       0;
     factor *made = dvi__arena_take(&w->scene->arena, 1, sizeof *made);
     if (made == NULL) return dvi__scene_no_memory(w->scene);
     *made = (factor){is, divides, at.group->indices, last != NULL ? last : outside};
@@ -350,7 +351,8 @@ bool dvi__kernels_add(dvi_scene *scene, unsigned may, const char *where, const d
 
 bool dvi__kernels_function(dvi_scene *scene, dvi__kernels *list, int count, dvi__scene_term **term)
 {
-  const int width[DVI__BLOCKS] = {1, scene->n, scene->velocities, count};
+  const int inputs = scene->control_count + scene->parameter_count;
+  const int width[DVI__BLOCKS] = {1, scene->n, scene->velocities, count, inputs};
   const dvi__blocks blocks = {DVI__BLOCKS, width, DVI__PAIRS, dvi__scene_pairs};
   dvi__scene_term *made = dvi__arena_take(&scene->arena, 1, sizeof *made);
   *term = made;

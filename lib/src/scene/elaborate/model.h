@@ -49,6 +49,16 @@ struct dvi_scene {
   int velocities; /* numbers in their block, n, or with factors n + nv (rates of q first) */
   long work;      /* parts of expressions elaborated so far */
 
+  /* The controls, their cost, and the force in which they stand, or NULL. `inputs` [controls and
+   * parameters] has zeros for controls, and the parameters' values. */
+  int control_count;
+  const char **control_name;
+  double *control_least, *control_most;
+  dvi_controls controls;
+  dvi__scene_term *cost, *control_force;
+  double *inputs;
+  double *room; /* work of the callbacks of controls, which serve one thread at a time */
+
   const double *mass_diagonal; /* [n] divisors of momenta in invariants, or NULL */
   dvi_system_terms terms;
   dvi_lagrangian lagrangian;
@@ -61,6 +71,9 @@ struct dvi_scene {
   const dvi__scene_term *kinetic; /* the term from which a constant mass was read, or NULL */
   dvi_system *system;
   double *q, *v, *p;
+  double *final_q, *final_v, *final_p; /* the end of a control problem, or NULL */
+  char *free_q, *free_p;               /* 1 for its numbers that are not given */
+  char *final_has_v;                   /* 1 for its velocities that are given */
   double *zeros; /* [2 n] */
   int depends_on_time, momenta_given;
 

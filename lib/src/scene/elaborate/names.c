@@ -88,7 +88,7 @@ bool(dvi__names_unknown)(const dvi__names *names, dvi__arena *arena, dvi__compla
 
 const char *dvi__sort_name(dvi__sort sort)
 {
-  static const char *const name[] = {"parameter", "coordinate", "definition"};
+  static const char *const name[] = {"parameter", "coordinate", "definition", "control"};
   return name[sort];
 }
 

@@ -1,4 +1,4 @@
-/* The names of a scene. A name is a parameter, a coordinate or a definition. */
+/* The names of a scene. A name is a parameter, a coordinate, a definition or a control. */
 #ifndef DVI_SCENE_ELABORATE_NAMES_H
 #define DVI_SCENE_ELABORATE_NAMES_H
 #include "text/arena.h"
@@ -26,6 +26,7 @@ typedef struct dvi__parameter {
   dvi__shape shape;
   double *value; /* [rows * columns], row by row */
   int settable;
+  const dvi__expression *is; /* NULL if a setting replaces it */
   unsigned used_in;             /* flags DVI__IN_START, DVI__ELSEWHERE after reading */
   const dvi__source_of *source; /* the parameters of which it is made */
   int last_made;                /* number + 1 of the last parameter that is made of it */
@@ -76,12 +77,13 @@ enum {
   DVI__MENTIONS_V = 2,
   DVI__MENTIONS_P = 4,
   DVI__MENTIONS_T = 8,
-  DVI__MENTIONS_SUM = 16
+  DVI__MENTIONS_SUM = 16,
+  DVI__MENTIONS_U = 64
 };
 
-/* A flag beside these. Velocities are then those of a state, v, and not the rates of stored
- * numbers. */
-enum { DVI__OF_STATE = 32 };
+/* Flags beside these. Velocities are then those of a state, v, and not the rates of stored numbers.
+ * Parameters that are numbers are then variables. */
+enum { DVI__OF_STATE = 32, DVI__OF_PARAMETERS = 128 };
 
 typedef struct dvi__definition {
   const char *name;
@@ -92,7 +94,12 @@ typedef struct dvi__definition {
   int used; /* 1 if something mentions it */
 } dvi__definition;
 
-typedef enum dvi__sort { DVI__PARAMETER, DVI__COORDINATE, DVI__DEFINITION } dvi__sort;
+typedef enum dvi__sort {
+  DVI__PARAMETER,
+  DVI__COORDINATE,
+  DVI__DEFINITION,
+  DVI__CONTROL
+} dvi__sort;
 
 typedef struct dvi__name {
   const char *text;
@@ -122,7 +129,7 @@ bool dvi__is_identifier(const char *text);
 bool dvi__names_unknown(const dvi__names *names, dvi__arena *arena, dvi__complaint *complaint,
                         const char *text, dvi__span span);
 
-/* Return "parameter", "coordinate" or "definition". */
+/* Return "parameter", "coordinate", "definition" or "control". */
 const char *dvi__sort_name(dvi__sort sort);
 
 /* Write "a number", "a vector of 3" or "a 3 x 3 matrix" to text [size], and return it. */

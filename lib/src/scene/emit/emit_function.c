@@ -2,10 +2,11 @@
 #include "scene/emit/emit_parts.h"
 #include "text/heap.h"
 
-const char *const dvi__block_name[DVI__BLOCKS] = {"t", "q", "v", "w"};
+/* A C file has neither controls nor variable parameters, so that the block of inputs is left out. */
+const char *const dvi__block_name[DVI__INPUTS] = {"t", "q", "v", "w"};
 static const char *const value_name[] = {"f"},
-                         *const gradient_name[DVI__BLOCKS] = {"f_t", "f_q", "f_v", "f_w"},
-                         *const second_name[DVI__PAIRS] = {"f_qq", "f_qv", "f_vv", "f_qw",
+                         *const gradient_name[DVI__INPUTS] = {"f_t", "f_q", "f_v", "f_w"},
+                         *const second_name[DVI__PAIR_QU] = {"f_qq", "f_qv", "f_vv", "f_qw",
                                                            "f_vw", "f_tq", "f_tv", "f_vq",
                                                            "f_wq", "f_wv", "f_tw"};
 
@@ -24,7 +25,7 @@ int *dvi__name_rows(const dvi__part *part, int *next)
 /* Write blocks and arrays, with something in front of each. */
 static void emit_names(dvi__emitter *out, const dvi__emitted_sum *own, const char *before)
 {
-  for (int b = 0; b < DVI__BLOCKS; b++) dvi__emit(out, "%s%s", before, dvi__block_name[b]);
+  for (int b = 0; b < DVI__INPUTS; b++) dvi__emit(out, "%s%s", before, dvi__block_name[b]);
   for (int a = 0; a < own->sum->array_count; a++)
     if (own->sum->wanted[a]) dvi__emit(out, "%s%s", before, own->array[a]);
 }
@@ -32,7 +33,7 @@ static void emit_names(dvi__emitter *out, const dvi__emitted_sum *own, const cha
 void dvi__emit_parameters(dvi__emitter *out, const dvi__emitted_sum *own)
 {
   dvi__emit(out, ",\n    ");
-  for (int b = 0; b < DVI__BLOCKS; b++)
+  for (int b = 0; b < DVI__INPUTS; b++)
     dvi__emit(out, "const double *restrict %s, ", dvi__block_name[b]);
   for (int a = 0, more = 0; a < own->sum->array_count; a++)
     if (own->sum->wanted[a])
@@ -55,7 +56,7 @@ void dvi__emit_shifts(dvi__emitter *out, const dvi__emitted_sum *own, const dvi_
   unsigned blocks = 0, arrays = 0;
   for (int i = 0; i < part->variable_count; i++) blocks |= 1U << part->block[i];
   for (int i = 0; i < part->target_count; i++) arrays |= 1U << part->target[i].array;
-  for (int b = 0; b < DVI__BLOCKS; b++)
+  for (int b = 0; b < DVI__INPUTS; b++)
     if ((blocks >> b & 1U) != 0) dvi__emit(out, "  %s += k;\n", dvi__block_name[b]);
   for (int a = 0; arrays >> a != 0; a++)
     if ((arrays >> a & 1U) != 0) dvi__emit(out, "  %s += k;\n", own->array[a]);

@@ -68,7 +68,7 @@ dvi_status dvi__emit_expressions(dvi__emitter *out, const dvi__emitted_sum *own)
 dvi_status dvi__emit_elements(dvi__emitter *out, const dvi__emitted_sum *own);
 
 /* The names of the blocks. */
-extern const char *const dvi__block_name[DVI__BLOCKS];
+extern const char *const dvi__block_name[DVI__INPUTS];
 
 /* Write the function's last parameters, the blocks and the arrays. The other functions write them
  * as arguments, mention unused ones, and write statements that shift those which a part uses. */

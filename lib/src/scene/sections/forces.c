@@ -24,8 +24,10 @@ bool dvi__read_forces(dvi_scene *scene, const dvi__tree *section)
 {
   dvi__scene_term *term;
   if (!refuse_other_motions(scene, section, "forces")) return false;
-  if (!dvi__field_read(scene, section, DVI__MENTIONS_V | DVI__MENTIONS_T, "a force", &term))
+  if (!dvi__field_read(scene, section, DVI__MENTIONS_V | DVI__MENTIONS_T | DVI__MENTIONS_U,
+                       "a force", &term))
     return false;
+  if (scene->control_count > 0 && !dvi__make_control_force(scene, term)) return false;
   return dvi__make_force(scene, term, next_force(scene));
 }
 

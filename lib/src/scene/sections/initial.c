@@ -1,4 +1,4 @@
-/* The section initial, initial values by coordinate. */
+/* The sections initial and final, values by coordinate. */
 #include <dvi/group.h>
 #include <math.h>
 #include <string.h>
@@ -8,8 +8,9 @@
 #include "scene/sections/target.h"
 #include "text/heap.h"
 
-/* The numbers of q, v and p that have a value, as a mark for every number. */
+/* The numbers of q, v and p that are read, and a mark for every number that has a value. */
 typedef struct start_marks {
+  double *to_q, *to_v, *to_p;
   char *q, *v, *p;
   int velocities, momenta;
 } start_marks;
@@ -111,9 +112,9 @@ static bool read_entry(dvi_scene *scene, const dvi__tree *key, const dvi__tree *
   const dvi__expression *e;
   if (!dvi__read_target(scene, key, &target) || !dvi__context_make(&c, scene, 0, "a start"))
     return false;
-  double *to = target.mentions == DVI__MENTIONS_Q   ? scene->q
-               : target.mentions == DVI__MENTIONS_V ? scene->v
-                                                    : scene->p;
+  double *to = target.mentions == DVI__MENTIONS_Q   ? g->to_q
+               : target.mentions == DVI__MENTIONS_V ? g->to_v
+                                                    : g->to_p;
   char *mark = target.mentions == DVI__MENTIONS_Q   ? g->q
                : target.mentions == DVI__MENTIONS_V ? g->v
                                                     : g->p;
@@ -224,11 +225,56 @@ bool dvi__read_initial(dvi_scene *scene, const dvi__tree *section)
   scene->p = numbers + n + nv;
   char *marks = dvi__heap_take(n + 2 * nv, 1);
   if (marks == NULL) return dvi__scene_no_memory(scene);
-  start_marks g = {.q = marks, .v = marks + n, .p = marks + n + nv};
+  start_marks g = {scene->q, scene->v, scene->p, marks, marks + n, marks + n + nv, 0, 0};
   bool good = true;
   for (int i = 0; i < section->count && good; i++)
     good = read_entry(scene, section->key[i], section->child[i], &g);
   good = good && start_is_complete(scene, section, &g);
   dvi__heap_free(marks);
   return good;
+}
+
+/* ---- the end of a control problem ---- */
+
+/* Check that momenta can be made of the velocities that are given. */
+static bool final_is_complete(dvi_scene *scene, const dvi__tree *section, const start_marks *g)
+{
+  if (g->velocities && g->momenta)
+    return dvi__scene_refuse(scene, section->span, "give velocities or momenta, not both");
+  const int single = scene->mass_diagonal != NULL && scene->terms.mass.values == NULL;
+  for (int i = 0; i < scene->n && g->velocities && !single; i++)
+    if (!g->v[i] || (scene->terms.lagrangian != NULL && !g->q[i]))
+      return dvi__scene_refuse(scene, section->span,
+                               "velocities that the mass couples must all be given, and the "
+                               "coordinates on which the mass depends; or give momenta, p(x)");
+  return true;
+}
+
+bool dvi__read_final(dvi_scene *scene, const dvi__tree *section)
+{
+  const size_t n = (size_t)scene->n;
+  if (!dvi__want_mapping(scene, section, "final")) return false;
+  if (scene->control_count == 0)
+    return dvi__scene_refuse(scene, section->span,
+                             "an end is for controls, and the scene has no section controls");
+  double *numbers = dvi__arena_take(&scene->arena, 3 * n, sizeof *numbers);
+  char *marks = dvi__arena_take(&scene->arena, 3 * n, 1);
+  if (numbers == NULL || marks == NULL) return dvi__scene_no_memory(scene);
+  memcpy(numbers, scene->q, n * sizeof *numbers);
+  start_marks g = {numbers, numbers + n, numbers + 2 * n, marks, marks + n, marks + 2 * n, 0, 0};
+  for (int i = 0; i < section->count; i++)
+    if (!read_entry(scene, section->key[i], section->child[i], &g)) return false;
+  if (!final_is_complete(scene, section, &g)) return false;
+  for (size_t i = 0; i < n; i++) {
+    g.p[i] = g.p[i] || g.v[i];
+    g.q[i] = !g.q[i];
+    g.p[i] = !g.p[i];
+  }
+  scene->final_q = g.to_q;
+  scene->final_v = g.to_v;
+  scene->final_p = g.to_p;
+  scene->free_q = g.q;
+  scene->final_has_v = g.v;
+  scene->free_p = g.p;
+  return true;
 }

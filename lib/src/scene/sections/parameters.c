@@ -62,6 +62,7 @@ static bool parameter_read(dvi_scene *scene, const dvi__tree *key, const dvi__tr
   *p = (dvi__parameter){.name = key->text, .span = key->span};
   if (!dvi__tree_expression(scene, tree, &e) || !parameter_evaluate(scene, e, p)) return false;
   const int set = setting_of(scene, p->name);
+  p->is = set < 0 ? e : NULL;
   if (scene->complaint->status != DVI_OK) return false;
   if (set >= 0) {
     scene->settings->used[set] = 1;

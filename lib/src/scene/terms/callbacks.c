@@ -235,7 +235,7 @@ bool dvi__make_one_form(dvi_scene *scene, dvi__scene_term *term, dvi_one_form *f
 static int term_force_value(double t, const double *q, const double *v, double *F, void *user)
 {
   dvi__scene_term *term = user;
-  const double *x[DVI__BLOCKS] = {&t, q, v, term->none};
+  const double *x[DVI__BLOCKS] = {&t, q, v, term->none, term->scene->inputs};
   double *gradient[DVI__BLOCKS] = {[DVI__MULTIPLIERS] = F};
   return gradient_at(term, 1, x, gradient);
 }
@@ -244,7 +244,7 @@ static int term_force_jacobian(double t, const double *q, const double *v, doubl
                                void *user)
 {
   dvi__scene_term *term = user;
-  const double *x[DVI__BLOCKS] = {&t, q, v, term->none};
+  const double *x[DVI__BLOCKS] = {&t, q, v, term->none, term->scene->inputs};
   double *values[DVI__PAIRS] = {[DVI__PAIR_WQ] = F_q, [DVI__PAIR_WV] = F_v};
   return second_at(term, 1, x, values);
 }

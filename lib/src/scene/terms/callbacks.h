@@ -14,6 +14,11 @@ bool dvi__make_hamiltonian(dvi_scene *scene, dvi__scene_term *term, dvi_hamilton
 /* Fill in constraints with the function phi(q,p).w, w [term->count]. */
 bool dvi__make_constraint(dvi_scene *scene, dvi__scene_term *term, dvi_constraint *constraint);
 
+/* Let the controls of the scene act by the function F(t,q,v,u).w (controls.c). */
+bool dvi__make_control_force(dvi_scene *scene, dvi__scene_term *term);
+/* Let the controls cost what the function C(t,q,v,u) says. */
+bool dvi__make_control_cost(dvi_scene *scene, dvi__scene_term *term);
+
 /* Fill in holonomic constraints with the function phi(t,q).w, w [term->count]. Rates are there only
  * if phi depends on time. */
 bool dvi__make_holonomic(dvi_scene *scene, const char *name, dvi__scene_term *term,
