@@ -19,8 +19,7 @@ void control_print(const controlled *c, FILE *stream)
   if (r->is_minimum < 0)
     (void)fprintf(stream, "second variation  not found\n");
   else
-    (void)fprintf(stream,
-                  "second variation  %s: %ld negative for %ld multipliers, %ld zero\n",
+    (void)fprintf(stream, "second variation  %s: %ld negative for %ld multipliers, %ld zero\n",
                   r->is_minimum ? "minimum" : "saddle", r->negative, r->multipliers, r->zero);
   (void)fprintf(stream, "gradient          %.1e of the largest momentum\n", r->gradient);
   (void)fprintf(stream, "solver            %d iterations\n", r->iterations);

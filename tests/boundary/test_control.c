@@ -60,10 +60,8 @@ static int plant_force(double t, const double *q, const double *v, const double 
 static dvi_system *make_plant(plant *p)
 {
   dvi_system *system = NULL;
-  const dvi_potential V = {.value = plant_value,
-                           .gradient = plant_gradient,
-                           .hessian = plant_hessian,
-                           .user = p};
+  const dvi_potential V = {
+      .value = plant_value, .gradient = plant_gradient, .hessian = plant_hessian, .user = p};
   const dvi_system_terms terms = {
       .dimension = 1, .mass = {.scalar = 1}, .potentials = &V, .potential_count = 1};
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
@@ -143,8 +141,9 @@ static void check_order(const char *what, const char *method, const double *erro
 {
   for (int k = 0; k < 3; k++) {
     const double fitted = log2(fabs(error[k]) / fabs(error[k + 1]));
-    ck_assert_msg(fabs(fitted - order) < 0.35, "%s of %s: order %.2f at level %d, errors %.2e, %.2e",
-                  what, method, fitted, k, error[k], error[k + 1]);
+    ck_assert_msg(fabs(fitted - order) < 0.35,
+                  "%s of %s: order %.2f at level %d, errors %.2e, %.2e", what, method, fitted, k,
+                  error[k], error[k + 1]);
   }
 }
 

@@ -36,11 +36,11 @@ typedef struct dvi_controls {
 
 /** Options of a control problem. All of them are copied. */
 typedef struct dvi_control_options {
-  int steps;            /**< N, at least 2 */
-  double start, span;   /**< the time at the start, and the time to the end, > 0 */
-  int dimension;        /**< n, the length of each of the arrays */
-  const double *q0, *p0; /**< the state at the start */
-  const double *q1, *p1; /**< the state at the end. Numbers that are free are guesses */
+  int steps;                     /**< N, at least 2 */
+  double start, span;            /**< the time at the start, and the time to the end, > 0 */
+  int dimension;                 /**< n, the length of each of the arrays */
+  const double *q0, *p0;         /**< the state at the start */
+  const double *q1, *p1;         /**< the state at the end. Numbers that are free are guesses */
   const char *free_q1, *free_p1; /**< not 0 where the end's number is free. NULL: none is free */
 } dvi_control_options;
 

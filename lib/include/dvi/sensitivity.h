@@ -38,7 +38,7 @@ typedef struct dvi_objective {
 /** A run of equal steps. */
 typedef struct dvi_run_plan {
   double t, h;
-  long steps;         /**< at least 1 */
+  long steps;          /**< at least 1 */
   const double *q, *p; /**< the start [n] */
 } dvi_run_plan;
 

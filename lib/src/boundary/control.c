@@ -48,8 +48,7 @@ static dvi_status check_arguments(const dvi_system *system, const char *method,
   const double *const ends[] = {o->q0, o->p0, o->q1, o->p1};
   static const char *const names[] = {"q0", "p0", "q1", "p1"};
   for (int k = 0; k < 4; k++) {
-    if (ends[k] == NULL)
-      return dvi__fail(DVI_BAD_ARGUMENT, "control: %s is missing", names[k]);
+    if (ends[k] == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "control: %s is missing", names[k]);
     const ptrdiff_t bad = dvi__first_not_finite((size_t)o->dimension, ends[k]);
     if (bad >= 0)
       return dvi__fail(DVI_BAD_ARGUMENT, "control: number %td of %s is %g", bad, names[k],
@@ -143,7 +142,7 @@ dvi_status dvi_control_guess(dvi_control *own, int points, int dimension, const 
     return dvi__fail(DVI_BAD_SIZE, "control: a guess of %d points in %d coordinates", points,
                      dimension);
   const size_t n = (size_t)own->n;
-  double *both = DVI_NEW(double, 2 * n *(size_t)points);
+  double *both = DVI_NEW(double, 2 * n * (size_t)points);
   if (both == NULL) return dvi__fail(DVI_NO_MEMORY, "control: no memory for %d points", points);
   for (size_t k = 0; k < (size_t)points; k++)
     memcpy(both + 2 * n * k, q + n * k, n * sizeof(double));
@@ -179,8 +178,7 @@ static dvi_status measure_cost(dvi_control *own, double *cost)
     for (int j = 0; j < r; j++) {
       double t, C, u[DVI__CONTROLS_MOST];
       DVI_TRY(point_controls(own, k, j, &t, u));
-      const double weight =
-          dvi__action_two_point_points(own->path->action, own->path->Y).weight[j];
+      const double weight = dvi__action_two_point_points(own->path->action, own->path->Y).weight[j];
       DVI_TRY(dvi__doubled_cost(own->doubled, t, own->point, own->point + 2 * own->n, u, &C));
       *cost += h * weight * C;
     }

@@ -219,14 +219,16 @@ dvi_status dvi__doubled_minimise(dvi__doubled *d, double t, const double *q, con
 static void add_transposed(const dvi__pattern *pattern, const double *H, const double *x, double *y)
 {
   for (int j = 0; j < pattern->columns; j++)
-    for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++) y[j] += H[e] * x[pattern->row[e]];
+    for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++)
+      y[j] += H[e] * x[pattern->row[e]];
 }
 
 /* Add H x to y. */
 static void add_product(const dvi__pattern *pattern, const double *H, const double *x, double *y)
 {
   for (int j = 0; j < pattern->columns; j++)
-    for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++) y[pattern->row[e]] += H[e] * x[j];
+    for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++)
+      y[pattern->row[e]] += H[e] * x[j];
 }
 
 /* Tell a callback's caller about a failure: it may go on from another point, or not. */
@@ -328,8 +330,7 @@ static dvi_status assemble(dvi__doubled *d)
   const dvi_lagrangian G = {.value = doubled_value, .gradient = doubled_gradient, .user = d};
   const dvi_system_terms terms = {.dimension = 2 * d->of->n, .lagrangian = &G};
   DVI_TRY(dvi__evaluator_create(d->of, 1, DVI__HESSIANS, &d->counters, &d->evaluator));
-  if (!allocate(d))
-    return dvi__fail(DVI_NO_MEMORY, "no memory for %d coordinates", d->of->n);
+  if (!allocate(d)) return dvi__fail(DVI_NO_MEMORY, "no memory for %d coordinates", d->of->n);
   return dvi_system_create(&terms, &d->system);
 }
 

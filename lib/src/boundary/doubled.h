@@ -23,10 +23,10 @@ typedef struct dvi__doubled {
   double unit, mu; /* unit of the cost, and factor of the barrier in that unit */
   dvi__evaluator *evaluator;
   dvi_counters counters;
-  double *numbers;                     /* storage of the arrays below */
-  double *L_q, *L_v, *F, *C_q, *C_v;   /* [n] */
-  double *F_q, *F_v, *F_u;             /* [n*n], [n*n], [n*count] of the controls */
-  double *qq, *qv, *vv, *by_q, *by_v;  /* Hessians of L and derivatives of F, by their patterns */
+  double *numbers;                    /* storage of the arrays below */
+  double *L_q, *L_v, *F, *C_q, *C_v;  /* [n] */
+  double *F_q, *F_v, *F_u;            /* [n*n], [n*n], [n*count] of the controls */
+  double *qq, *qv, *vv, *by_q, *by_v; /* Hessians of L and derivatives of F, by their patterns */
   double C_u[DVI__CONTROLS_MOST];
   char trouble[DVI__TROUBLE_SIZE]; /* why u was not found, or "" */
 } dvi__doubled;

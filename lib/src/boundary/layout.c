@@ -52,7 +52,8 @@ void dvi__path_places(const dvi_path *path, int k, int a, int i, int row, dvi__p
   /* A step forward gives the next node. */
   if (a < 2 && row && path->ends == DVI_ENDS_INITIAL) at += path->n * path->s;
   at += a < 2 ? i : i * (path->s - 1) + a - 2;
-  const int given = a < 2 && (at == dvi__path_given(path, 0, i) || at == dvi__path_given(path, 1, i));
+  const int given = a < 2 &&
+                    (at == dvi__path_given(path, 0, i) || at == dvi__path_given(path, 1, i));
   *places = (dvi__places){
       .count = at >= 0 && at < path->core && !given, .at = NULL, .factor = &one, .single = at};
   places->at = &places->single;

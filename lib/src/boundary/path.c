@@ -131,8 +131,9 @@ static int copy_free(const dvi_path *path, const char *given, char **copy)
 static int copy_arrays(dvi_path *path, const dvi_path_options *o)
 {
   return copy_free(path, o->free0, &path->free[0]) && copy_free(path, o->free1, &path->free[1]) &&
-         copy_array(path, o->p1, &path->p1) && copy_array(path, o->q0, &path->q0) && copy_array(path, o->q1, &path->q1) &&
-         copy_array(path, o->p0, &path->p0) && copy_array(path, o->shift, &path->shift);
+         copy_array(path, o->p1, &path->p1) && copy_array(path, o->q0, &path->q0) &&
+         copy_array(path, o->q1, &path->q1) && copy_array(path, o->p0, &path->p0) &&
+         copy_array(path, o->shift, &path->shift);
 }
 
 static dvi_status path_allocate(dvi_path *path)

@@ -26,8 +26,8 @@ struct dvi_path {
   int free_span;
   double *q0, *q1, *p0, *p1, *shift; /* [n], NULL where not given */
   char *free[2];                     /* [n] of mixed ends, else NULL */
-  dvi__pattern turn;            /* transpose of the symmetry A. Empty for the identity */
-  double *turn_values;          /* entries of A, column i of the pattern is row i of A */
+  dvi__pattern turn;                 /* transpose of the symmetry A. Empty for the identity */
+  double *turn_values;               /* entries of A, column i of the pattern is row i of A */
   dvi__action *action;
   dvi__evaluator *energies; /* evaluator of energies at nodes. NULL unless autonomous */
   dvi__solver *solver;

@@ -61,8 +61,7 @@ dvi_status dvi_scene_quad_gradient(const dvi_scene *scene, dvi_pair t, const dvi
   const size_t inputs = (size_t)(scene->control_count + scene->parameter_count);
   quad *room = dvi__heap_take(5 * n + 1 + inputs, sizeof *room);
   if (room == NULL) return DVI_NO_MEMORY;
-  quad *const x[DVI__BLOCKS] = {room + 4 * n, room, room + n, room + 4 * n + 1,
-                                room + 5 * n + 1};
+  quad *const x[DVI__BLOCKS] = {room + 4 * n, room, room + n, room + 4 * n + 1, room + 5 * n + 1};
   quad *const gradient[DVI__BLOCKS] = {NULL, room + 2 * n, room + 3 * n};
   *x[DVI__TIME] = pair_joined(t);
   for (size_t i = 0; i < n; i++) {

@@ -14,10 +14,10 @@ typedef struct backward {
   dvi_sensitivity *of;
   const dvi_run_plan *plan;
   const dvi_objective *objective;
-  long part;           /* steps of a part */
-  size_t bytes;        /* of a saved state */
-  char *saved;         /* [parts * bytes] */
-  double *numbers;     /* [part * (n + n s)] the paths of a part */
+  long part;            /* steps of a part */
+  size_t bytes;         /* of a saved state */
+  char *saved;          /* [parts * bytes] */
+  double *numbers;      /* [part * (n + n s)] the paths of a part */
   dvi__step_path *path; /* [part] */
   double value;
   double *by_q, *by_p, *by_theta;   /* [n], [n], [count] */
@@ -40,9 +40,8 @@ static dvi_status check_plan(const dvi_sensitivity *own, const dvi_run_plan *pla
 static dvi_status allocate(backward *b)
 {
   const dvi_sensitivity *own = b->of;
-  const size_t n = (size_t)own->n, s = (size_t)own->s, r = (size_t)own->r,
-               part = (size_t)b->part, count = (size_t)own->parameters,
-               parts = ((size_t)b->plan->steps + part - 1) / part;
+  const size_t n = (size_t)own->n, s = (size_t)own->s, r = (size_t)own->r, part = (size_t)b->part,
+               count = (size_t)own->parameters, parts = ((size_t)b->plan->steps + part - 1) / part;
   DVI_TRY(dvi_integrator_start(own->integrator, b->plan->t, b->plan->q, b->plan->p));
   const dvi_status sized = dvi_integrator_save_memory(own->integrator, NULL, 0, &b->bytes);
   if (sized != DVI_OK && sized != DVI_BAD_SIZE) return sized;
@@ -108,9 +107,8 @@ static dvi_status go_forward(backward *b)
   for (long k = 0; k < b->plan->steps; k++) {
     size_t size;
     if (k % b->part == 0)
-      DVI_TRY(dvi_integrator_save_memory(b->of->integrator, b->saved + (size_t)(k / b->part) *
-                                                                           b->bytes,
-                                         b->bytes, &size));
+      DVI_TRY(dvi_integrator_save_memory(
+          b->of->integrator, b->saved + (size_t)(k / b->part) * b->bytes, b->bytes, &size));
     DVI_TRY(dvi__sensitivity_advance(b->of, b->plan->h, b->numbers, &b->path[0]));
     if (b->objective->rate != NULL) DVI_TRY(add_rate(b, &b->path[0], 0));
   }
@@ -133,8 +131,8 @@ static dvi_status run_part_again(backward *b, long part, int count)
   DVI_TRY(dvi_integrator_restore_memory(b->of->integrator, b->saved + (size_t)part * b->bytes,
                                         b->bytes));
   for (int k = 0; k < count; k++)
-    DVI_TRY(dvi__sensitivity_advance(b->of, b->plan->h, b->numbers + (size_t)k * numbers,
-                                     &b->path[k]));
+    DVI_TRY(
+        dvi__sensitivity_advance(b->of, b->plan->h, b->numbers + (size_t)k * numbers, &b->path[k]));
   return DVI_OK;
 }
 
@@ -166,8 +164,7 @@ static dvi_status compute(backward *b)
   const int finite = isfinite(b->value) &&
                      dvi__first_not_finite(2 * (size_t)b->of->n, b->by_q) < 0 &&
                      dvi__first_not_finite((size_t)b->of->parameters, b->by_theta) < 0;
-  return finite ? DVI_OK
-                : dvi__fail(DVI_NOT_FINITE, "the objective or a derivative is not finite");
+  return finite ? DVI_OK : dvi__fail(DVI_NOT_FINITE, "the objective or a derivative is not finite");
 }
 
 static void give(size_t count, const double *from, double *to)

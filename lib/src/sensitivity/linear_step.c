@@ -11,16 +11,16 @@ struct dvi__linear_step {
   dvi_dependence dependence;
   dvi__action *action;
   int n, s, r;
-  double *K;                        /* [entries of the coupling * (s+1)^2] */
-  dvi__pattern pattern[2];          /* of B and of its transpose, [n s x n s] */
-  int *place[2];                    /* [entries of pattern[0]] of each entry of B in both */
-  double *values;                   /* [entries of pattern[0]] */
-  dvi__linear *factor[2];           /* of B and of its transpose */
-  int transposed;                   /* which of the two is factored */
-  double *rest;                     /* [n] zeros, the p0 of the element */
-  double *x, *y, *U;                /* [(s+1) n], [(s+1) n], [n s] work */
-  double *at_point, *in_q, *in_v;   /* [2 n + 2 n count], [n r count] each, of the dependence */
-  double *by_theta;                 /* [(s+1) n count] rho_theta */
+  double *K;                      /* [entries of the coupling * (s+1)^2] */
+  dvi__pattern pattern[2];        /* of B and of its transpose, [n s x n s] */
+  int *place[2];                  /* [entries of pattern[0]] of each entry of B in both */
+  double *values;                 /* [entries of pattern[0]] */
+  dvi__linear *factor[2];         /* of B and of its transpose */
+  int transposed;                 /* which of the two is factored */
+  double *rest;                   /* [n] zeros, the p0 of the element */
+  double *x, *y, *U;              /* [(s+1) n], [(s+1) n], [n s] work */
+  double *at_point, *in_q, *in_v; /* [2 n + 2 n count], [n r count] each, of the dependence */
+  double *by_theta;               /* [(s+1) n count] rho_theta */
 };
 
 /* ---- create ---- */
@@ -123,8 +123,7 @@ void dvi__linear_step_place(dvi__linear_step *step, const dvi__step_path *path)
 /* Evaluate the derivatives by the parameters at node j, and move them into the batches. */
 static dvi_status depend_at_node(dvi__linear_step *step, const dvi__path_points *points, int j)
 {
-  const size_t n = (size_t)step->n, r = (size_t)step->r,
-               all = n * (size_t)step->dependence.count;
+  const size_t n = (size_t)step->n, r = (size_t)step->r, all = n * (size_t)step->dependence.count;
   double *q = step->at_point, *v = q + n, *in_q = v + n, *in_v = in_q + all;
   for (size_t i = 0; i < n; i++) {
     q[i] = points->Q[i * r + (size_t)j];
@@ -171,9 +170,8 @@ static void extract(dvi__linear_step *step, const int *place)
         for (int k = 0; k < s; k++) {
           const int a = k == 0 ? 0 : k + 1, b = l + 1;
           const int entry = step->pattern[0].start[j * s + l] + (e - first) * s + k;
-          step->values[place[entry]] = step->K[((size_t)e * (size_t)size + (size_t)b) *
-                                                   (size_t)size +
-                                               (size_t)a];
+          step->values[place[entry]] =
+              step->K[((size_t)e * (size_t)size + (size_t)b) * (size_t)size + (size_t)a];
         }
   }
 }

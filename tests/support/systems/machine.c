@@ -7,7 +7,8 @@
 
 enum { N = MACHINE_N, P = MACHINE_PARAMETERS, ROWS_MOST = 8 };
 
-const machine bent_machine = {{1.3, 0.4, 1.7, 0.2}, 1}, straight_machine = {{1.3, 0.4, 1.7, 0.2}, 0};
+const machine bent_machine = {{1.3, 0.4, 1.7, 0.2}, 1},
+              straight_machine = {{1.3, 0.4, 1.7, 0.2}, 0};
 
 static void forces_of(const double complex *theta, double complex t, const double complex *q,
                       const double complex *v, double complex *F)
@@ -206,9 +207,8 @@ static void step_rows(const step *x, const double complex *Y, double complex *ro
     for (int i = 0; i < N; i++) {
       end[N + i] += x->h * x->b[j] * (G[i] + F[i]);
       for (int k = 1; k <= x->s; k++)
-        rows[i * x->s + k - 1] += x->b[j] *
-                                  (x->h * (pow(x->c[j], k) - 1) * (G[i] + F[i]) +
-                                   k * pow(x->c[j], k - 1) * L_v[i]);
+        rows[i * x->s + k - 1] += x->b[j] * (x->h * (pow(x->c[j], k) - 1) * (G[i] + F[i]) +
+                                             k * pow(x->c[j], k - 1) * L_v[i]);
     }
   }
 }

@@ -54,8 +54,7 @@ static dvi__value varied_parameter(dvi__context *c, const dvi__parameter *p)
 {
   if (p->source != NULL && p->is != NULL) return dvi__elaborate(c, p->is);
   const int number = c->scene->control_count + (int)(p - c->scene->parameter);
-  return dvi__number_value(
-      dvi__variable_node(c, DVI__INPUTS, (dvi__numbering){.base = number}, 0));
+  return dvi__number_value(dvi__variable_node(c, DVI__INPUTS, (dvi__numbering){.base = number}, 0));
 }
 
 static dvi__value parameter_value(dvi__context *c, dvi__parameter *p)

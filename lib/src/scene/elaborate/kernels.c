@@ -125,8 +125,8 @@ static bool gather_product(walk *w, const dvi__expression *e, place at)
       fits = fits && !divides;
       continue;
     }
-    fits = fits && (mentions & (DVI__MENTIONS_Q | DVI__MENTIONS_V | DVI__MENTIONS_P | DVI__MENTIONS_U)) ==
-                       0;
+    fits = fits && (mentions &
+                    (DVI__MENTIONS_Q | DVI__MENTIONS_V | DVI__MENTIONS_P | DVI__MENTIONS_U)) == 0;
     factor *made = dvi__arena_take(&w->scene->arena, 1, sizeof *made);
     if (made == NULL) return dvi__scene_no_memory(w->scene);
     *made = (factor){is, divides, at.group->indices, last != NULL ? last : outside};

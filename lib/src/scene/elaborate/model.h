@@ -74,7 +74,7 @@ struct dvi_scene {
   double *final_q, *final_v, *final_p; /* the end of a control problem, or NULL */
   char *free_q, *free_p;               /* 1 for its numbers that are not given */
   char *final_has_v;                   /* 1 for its velocities that are given */
-  double *zeros; /* [2 n] */
+  double *zeros;                       /* [2 n] */
   int depends_on_time, momenta_given;
 
   dvi_scene_plan plan;

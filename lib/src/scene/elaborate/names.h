@@ -26,7 +26,7 @@ typedef struct dvi__parameter {
   dvi__shape shape;
   double *value; /* [rows * columns], row by row */
   int settable;
-  const dvi__expression *is; /* NULL if a setting replaces it */
+  const dvi__expression *is;    /* NULL if a setting replaces it */
   unsigned used_in;             /* flags DVI__IN_START, DVI__ELSEWHERE after reading */
   const dvi__source_of *source; /* the parameters of which it is made */
   int last_made;                /* number + 1 of the last parameter that is made of it */
@@ -94,12 +94,7 @@ typedef struct dvi__definition {
   int used; /* 1 if something mentions it */
 } dvi__definition;
 
-typedef enum dvi__sort {
-  DVI__PARAMETER,
-  DVI__COORDINATE,
-  DVI__DEFINITION,
-  DVI__CONTROL
-} dvi__sort;
+typedef enum dvi__sort { DVI__PARAMETER, DVI__COORDINATE, DVI__DEFINITION, DVI__CONTROL } dvi__sort;
 
 typedef struct dvi__name {
   const char *text;

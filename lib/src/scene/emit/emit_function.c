@@ -7,8 +7,8 @@ const char *const dvi__block_name[DVI__INPUTS] = {"t", "q", "v", "w"};
 static const char *const value_name[] = {"f"},
                          *const gradient_name[DVI__INPUTS] = {"f_t", "f_q", "f_v", "f_w"},
                          *const second_name[DVI__PAIR_QU] = {"f_qq", "f_qv", "f_vv", "f_qw",
-                                                           "f_vw", "f_tq", "f_tv", "f_vq",
-                                                           "f_wq", "f_wv", "f_tw"};
+                                                             "f_vw", "f_tq", "f_tv", "f_vq",
+                                                             "f_wq", "f_wv", "f_tw"};
 
 int *dvi__name_rows(const dvi__part *part, int *next)
 {

@@ -29,7 +29,8 @@ static bool read_bounds(dvi_scene *scene, const dvi__tree *tree, double *least, 
   return good;
 }
 
-static bool register_control(dvi_scene *scene, const dvi__tree *key, const dvi__tree *control, int a)
+static bool register_control(dvi_scene *scene, const dvi__tree *key, const dvi__tree *control,
+                             int a)
 {
   static const char *const known[] = {"cost", "within"};
   scene->control_name[a] = key->text;
@@ -53,9 +54,9 @@ static bool add_cost(dvi_scene *scene, const dvi__tree *control, dvi__kernels *c
 {
   const dvi__expression *e;
   return dvi__tree_expression(scene, dvi__tree_find(control, "cost"), &e) &&
-         dvi__kernels_add(
-             scene, DVI__MENTIONS_Q | DVI__MENTIONS_V | DVI__MENTIONS_T | DVI__MENTIONS_U, "a cost",
-             e, 0, cost);
+         dvi__kernels_add(scene,
+                          DVI__MENTIONS_Q | DVI__MENTIONS_V | DVI__MENTIONS_T | DVI__MENTIONS_U,
+                          "a cost", e, 0, cost);
 }
 
 static bool read_costs(dvi_scene *scene, const dvi__tree *section)
@@ -63,8 +64,7 @@ static bool read_costs(dvi_scene *scene, const dvi__tree *section)
   dvi__kernels cost = {0};
   dvi__scene_term *term;
   bool good = true;
-  for (int a = 0; a < section->count && good; a++)
-    good = add_cost(scene, section->child[a], &cost);
+  for (int a = 0; a < section->count && good; a++) good = add_cost(scene, section->child[a], &cost);
   good = good && dvi__kernels_function(scene, &cost, 0, &term) &&
          dvi__make_control_cost(scene, term);
   dvi__kernels_free(&cost);

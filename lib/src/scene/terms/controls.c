@@ -70,8 +70,7 @@ static int control_force(double t, const double *q, const double *v, const doubl
   if (returned == 0) returned = add_matrix(scene, DVI__PAIR_WQ, without, -1, scene->n, F_q);
   if (returned == 0) returned = add_matrix(scene, DVI__PAIR_WV, with, 1, scene->n, F_v);
   if (returned == 0) returned = add_matrix(scene, DVI__PAIR_WV, without, -1, scene->n, F_v);
-  if (returned == 0)
-    returned = add_matrix(scene, DVI__PAIR_WU, with, 1, scene->control_count, F_u);
+  if (returned == 0) returned = add_matrix(scene, DVI__PAIR_WU, with, 1, scene->control_count, F_u);
   return dvi__fault_check(term, 1, with, 0, returned);
 }
 
