@@ -72,8 +72,8 @@ extern "C" {
 /** Make a control problem. Its first guess is the straight line between the ends with multipliers
  *  0.
  *
- *  @param      system    a constant mass or a general Lagrangian in R^n, with potentials and forces.
- *                        Must outlive the problem
+ *  @param      system    a constant mass or a general Lagrangian in R^n, with potentials and
+ *                        forces. Must outlive the problem
  *  @param      method    as for dvi_path_create
  *  @param      controls  read at creation; the data at `user` must outlive the problem
  *  @param[out] control   owned by the caller. NULL on failure
@@ -110,8 +110,8 @@ dvi_status dvi_control_solve(dvi_control *control, dvi_control_report *report);
 int dvi_control_steps(const dvi_control *control);
 double dvi_control_time(const dvi_control *control, int k);
 
-/** Return coordinates and momenta [n] of node k. NULL if k is out of range, or before a solve. Owned
- *  by the problem, valid until its next call. */
+/** Return coordinates and momenta [n] of node k. NULL if k is out of range, or before a solve.
+ *  Owned by the problem, valid until its next call. */
 const double *dvi_control_q(const dvi_control *control, int k);
 const double *dvi_control_p(const dvi_control *control, int k);
 

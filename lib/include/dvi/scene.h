@@ -149,8 +149,8 @@ const dvi_scene_event *dvi_scene_event_at(const dvi_scene *scene, int i);
  *  scene. */
 const dvi_scene_range *dvi_scene_range_at(const dvi_scene *scene, int i);
 
-/** Return the controls of the scene. They serve one thread at a time. NULL if the scene has none, or
- *  if none of them stands in `forces`. In the scene's system all controls are 0. */
+/** Return the controls of the scene. They serve one thread at a time. NULL if the scene has none,
+ *  or if none of them stands in `forces`. In the scene's system all controls are 0. */
 const dvi_controls *dvi_scene_controls(const dvi_scene *scene);
 
 /** Return the name of control i. NULL if i is out of range. Owned by the scene. */

@@ -1,6 +1,6 @@
-/* Optimal control as a path of the doubled Lagrangian (doubled.h). At the start q is given, and w is
- * free with the momentum p_0. At the end q is given, or free with the momentum 0. w is free with the
- * momentum p_N where that is given, else w is 0. These are the rows of the first and last node. */
+/* Optimal control as a path of the doubled Lagrangian (doubled.h). At the start q is given, and w
+ * is free with the momentum p_0. At the end q is given, or free with the momentum 0. w is free with
+ * the momentum p_N where that is given, else w is 0. These are the rows of the two end nodes. */
 #include <math.h>
 #include <string.h>
 

@@ -79,8 +79,8 @@ void dvi__path_places(const dvi_path *path, int k, int a, int i, int row, dvi__p
 /* Return the first unknown of node k, or -1 if the node is given. */
 int dvi__path_node(const dvi_path *path, int k);
 
-/* Return the place of coordinate i of the first node (end 0) or the last one (1) if it is an unknown
- * that is given by mixed ends, else -1. */
+/* Return the place of coordinate i of the first node (end 0) or the last one (1) if mixed ends give
+ * it, else -1. */
 int dvi__path_given(const dvi_path *path, int end, int i);
 
 /* Return the first bubble of step k. */

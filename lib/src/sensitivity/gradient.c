@@ -69,8 +69,8 @@ static dvi_status check_returned(int returned, double t)
                    "the objective failed (%d) at t = %g", returned, t);
 }
 
-/* Evaluate the rate at the nodes of a step, and add to the value, or backwards to the derivatives by
- * the parameters. rows become the derivatives by X_a. */
+/* Evaluate the rate at the nodes of a step, and add to the value, or backwards to the derivatives
+ * by the parameters. rows become the derivatives by X_a. */
 static dvi_status add_rate(backward *b, const dvi__step_path *path, int backwards)
 {
   const size_t n = (size_t)b->of->n, r = (size_t)b->of->r, count = (size_t)b->of->parameters;

@@ -2,7 +2,7 @@
 #include "scene/emit/emit_parts.h"
 #include "text/heap.h"
 
-/* A C file has neither controls nor variable parameters, so that the block of inputs is left out. */
+/* A C file has neither controls nor variable parameters. The block of inputs is left out. */
 const char *const dvi__block_name[DVI__INPUTS] = {"t", "q", "v", "w"};
 static const char *const value_name[] = {"f"},
                          *const gradient_name[DVI__INPUTS] = {"f_t", "f_q", "f_v", "f_w"},
