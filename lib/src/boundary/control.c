@@ -8,6 +8,7 @@
 #include "boundary/path_struct.h"
 #include "core/memory.h"
 #include "core/status.h"
+#include "method/element/element_step.h"
 #include "num/finite.h"
 
 struct dvi_control {
@@ -55,6 +56,15 @@ static dvi_status check_arguments(const dvi_system *system, const char *method,
                        ends[k][bad]);
   }
   return DVI_OK;
+}
+
+/* Refuse a method by its own system, which the user knows, and not by the doubled one. */
+static dvi_status check_method(const dvi_system *system, const char *method)
+{
+  dvi__action_space space;
+  char spelled[DVI__PATH_METHOD_SIZE];
+  return dvi__element_space(system, method, "control", &space,
+                            &(dvi__text){spelled, sizeof spelled, 0});
 }
 
 /* Fill the ends of the path on (q,w). */
@@ -112,6 +122,7 @@ dvi_status dvi_control_create(const dvi_system *system, const char *method,
   if (control == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "control: no place for the result");
   *control = NULL;
   DVI_TRY(check_arguments(system, method, controls, options));
+  DVI_TRY(check_method(system, method));
   dvi_control *made = DVI_NEW(dvi_control, 1);
   if (made == NULL) return dvi__fail(DVI_NO_MEMORY, "control: no memory");
   made->n = system->n;
@@ -284,7 +295,7 @@ dvi_status dvi_control_costate(const dvi_control *own, int k, double *by_q, doub
   return DVI_OK;
 }
 
-/* The velocity is that of the momentum. Its guess is the mean velocity of a step beside the node. */
+/* The velocity is that of the momentum. Its guess is the mean of a step beside the node. */
 dvi_status dvi_control_u(dvi_control *own, int k, double *u)
 {
   if (!has_node(own, k))
