@@ -1,6 +1,7 @@
 /* A scene, from the start of its reading on. The parts of the reader fill in one object in turn. */
 #ifndef DVI_SCENE_ELABORATE_MODEL_H
 #define DVI_SCENE_ELABORATE_MODEL_H
+#include <dvi/joint.h>
 #include <dvi/scene.h>
 #include <pthread.h>
 
@@ -66,7 +67,11 @@ struct dvi_scene {
   dvi_hamiltonian hamiltonian;
   dvi_constraint constraint;
   dvi_force force[2];        /* of the sections forces and dissipation */
-  dvi_holonomic *holonomics; /* [terms.holonomic_count] */
+  dvi_holonomic *holonomics; /* [terms.holonomic_count], those of joints last */
+  dvi_joints *joints;        /* NULL without joints */
+  dvi_joint *joint;          /* [joint_count] as declared */
+  dvi_factor *body;          /* [body_count] members of all coordinates, for the joints */
+  int joint_count, body_count;
   dvi__scene_term *functions;
   const dvi__scene_term *kinetic; /* the term from which a constant mass was read, or NULL */
   dvi_system *system;

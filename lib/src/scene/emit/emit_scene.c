@@ -11,6 +11,12 @@ enum { IDENTIFIER_MAX = 63 }; /* letters of a name that surely count in C */
 
 /* ---- terms ---- */
 
+/* Count the constraints that are functions of the scene, which those of joints are not. */
+static int holonomic_functions(const dvi_scene *scene)
+{
+  return scene->terms.holonomic_count - (scene->joint_count > 0);
+}
+
 static dvi_status emit_motion(dvi__emitter *out, const dvi_scene *scene)
 {
   const dvi_system_terms *terms = &scene->terms;
@@ -28,7 +34,7 @@ static dvi_status emit_motion(dvi__emitter *out, const dvi_scene *scene)
     term = dvi__potential_term(scene, k), status = dvi__emit_term(out, &term);
   for (int k = 0; k < terms->force_count && status == DVI_OK; k++)
     term = dvi__force_term_of(scene, k), status = dvi__emit_term(out, &term);
-  for (int k = 0; k < terms->holonomic_count && status == DVI_OK; k++)
+  for (int k = 0; k < holonomic_functions(scene) && status == DVI_OK; k++)
     term = dvi__holonomic_term_of(scene, k), status = dvi__emit_term(out, &term);
   return status;
 }
@@ -87,12 +93,8 @@ static void emit_inertias(dvi__emitter *out, const dvi_system_terms *terms)
 
 static void emit_factor(dvi__emitter *out, const dvi_factor *factor)
 {
-  static const char *const kind[] = {[DVI_RN] = "DVI_RN",
-                                     [DVI_SO3] = "DVI_SO3",
-                                     [DVI_SE3] = "DVI_SE3",
-                                     [DVI_S2] = "DVI_S2",
-                                     [DVI_U1] = "DVI_U1"};
-  dvi__emit(out, "      {.kind = %s, .size = %d, .mass = ", kind[factor->kind], factor->size);
+  dvi__emit(out, "      {.kind = %s, .size = %d, .mass = ", dvi__factor_kind_name(factor->kind),
+            factor->size);
   dvi__emit_number(out, factor->mass);
   if (factor->inertia != NULL)
     dvi__emit(out, ", .inertia = dvi_row_%d", dvi__emit_doubles(out, 9, factor->inertia));
@@ -108,6 +110,28 @@ static void emit_factors(dvi__emitter *out, const dvi_system_terms *terms)
   for (int k = 0; k < terms->factor_count; k++) emit_factor(out, &terms->factors[k]);
   dvi__emit(out, "  };\n  terms.factors = factors;\n  terms.factor_count = %d;\n",
             terms->factor_count);
+}
+
+/* Write the joints of bodies, which are made once and serve every system. */
+static void emit_joints(dvi__emitter *out, const dvi_scene *scene, const char *name)
+{
+  const int functions = holonomic_functions(scene);
+  if (scene->joint_count == 0) {
+    emit_term_list(out, "dvi_holonomic", "holonomic", "holonomics", functions);
+    return;
+  }
+  dvi__emit_joint_lists(out, scene);
+  dvi__emit(out,
+            "  static dvi_joints *joints = NULL; /* made once, for every system */\n"
+            "  const dvi_status made = joints != NULL ? DVI_OK : dvi_joints_create(bodies, %d, "
+            "joint, %d, %s_q, &joints);\n"
+            "  if (made != DVI_OK) return made;\n  const dvi_holonomic holonomics[] = {",
+            scene->body_count, scene->joint_count, name);
+  for (int k = 0; k < functions; k++) dvi__emit(out, "holonomic_%d, ", k);
+  dvi__emit(out,
+            "*dvi_joints_constraints(joints)};\n  terms.holonomics = holonomics;\n"
+            "  terms.holonomic_count = %d;\n",
+            functions + 1);
 }
 
 static void emit_create(dvi__emitter *out, const dvi_scene *scene, const char *name)
@@ -130,7 +154,7 @@ static void emit_create(dvi__emitter *out, const dvi_scene *scene, const char *n
   emit_factors(out, terms);
   emit_term_list(out, "dvi_potential", "potential", "potentials", terms->potential_count);
   emit_term_list(out, "dvi_force", "force", "forces", terms->force_count);
-  emit_term_list(out, "dvi_holonomic", "holonomic", "holonomics", terms->holonomic_count);
+  emit_joints(out, scene, name);
   emit_term_list(out, "dvi_symmetry", "symmetry", "symmetries", terms->symmetry_count);
   emit_term_list(out, "dvi_invariant", "invariant", "invariants", terms->invariant_count);
   if (terms->lagrangian != NULL) dvi__emit(out, "  terms.lagrangian = &lagrangian;\n");
@@ -249,7 +273,7 @@ static void emit_header(dvi__emitter *out, const dvi_scene *scene, const char *n
     dvi__emit(out, "extern const dvi_event %s_events[%d];\n", name, scene->event_count);
   dvi__emit(out, "\n");
   if (terms->one_form != NULL || terms->symmetry_count > 0 || terms->constraint != NULL ||
-      terms->holonomic_count > 0 || has_force_of_coordinates(terms))
+      holonomic_functions(scene) > 0 || has_force_of_coordinates(terms))
     dvi__emit(out, "static const double dvi_zeros[%d] = {0};\n\n", 2 * scene->n);
 }
 

@@ -35,6 +35,12 @@ dvi__emitted_term dvi__one_form_term(const dvi_scene *scene);
 dvi__emitted_term dvi__hamiltonian_term(const dvi_scene *scene);
 dvi__emitted_term dvi__constraint_term(const dvi_scene *scene);
 dvi__emitted_term dvi__potential_term(const dvi_scene *scene, int k);
+/* Return the name of a kind of factors in C. */
+const char *dvi__factor_kind_name(dvi_factor_kind kind);
+
+/* Write the bodies and the joints between them, as lists of the create function. */
+void dvi__emit_joint_lists(dvi__emitter *out, const dvi_scene *scene);
+
 dvi__emitted_term dvi__holonomic_term_of(const dvi_scene *scene, int k);
 dvi__emitted_term dvi__force_term_of(const dvi_scene *scene, int k);
 dvi__emitted_term dvi__symmetry_term(const dvi_scene *scene, int k);

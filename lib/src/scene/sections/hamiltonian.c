@@ -83,10 +83,9 @@ static bool read_holonomic(dvi_scene *scene, const dvi__tree *section)
 bool dvi__read_constraints(dvi_scene *scene, const dvi__tree *section)
 {
   dvi__scene_term *term;
-  if (!dvi__want_mapping(scene, section, "constraints") ||
-      !dvi__refuse_factors(scene, section, "constraints"))
-    return false;
+  if (!dvi__want_mapping(scene, section, "constraints")) return false;
   if (dvi__tree_find(scene->tree, "hamiltonian") == NULL) return read_holonomic(scene, section);
+  if (!dvi__refuse_factors(scene, section, "constraints")) return false;
   if (section->count == 0 || section->count % 2 != 0 || section->count > 2 * scene->n)
     return dvi__scene_refuse(
         scene, section->span,
