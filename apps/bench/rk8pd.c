@@ -134,7 +134,8 @@ static int right_side(double t, const double y[], double ydot[], void *user)
 
 static bool rk8pd_provides_for(const dvi_system_terms *terms)
 {
-  if (terms->factors != NULL) return false;
+  if (terms->factors != NULL || terms->vector_potential != NULL || terms->force_count > 0)
+    return false;
   for (int k = 0; k < terms->potential_count; k++)
     if (terms->potentials[k].gradient == NULL && terms->potentials[k].gradient_batch == NULL)
       return false;
@@ -223,7 +224,7 @@ dvi_status rk8pd_solve(const problem *scene, double t_end, double tolerance, dou
   if (!rk8pd_provides_for(f.terms)) {
     (void)snprintf(reason, size,
                    "gsl-rk8pd: it is provided for scalar and diagonal masses on R^n and for "
-                   "general Lagrangians with Hessians");
+                   "general Lagrangians with Hessians, without forces and vector potentials");
     return DVI_UNSUPPORTED;
   }
   /* GSL's own handler ends the program */

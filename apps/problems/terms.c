@@ -22,6 +22,9 @@ static dvi_system_terms *keep_terms(problem *made, const dvi_system_terms *terms
   if (!kept) return NULL;
   kept->lagrangian = keep_array(made, terms->lagrangian, terms->lagrangian != NULL,
                                 sizeof *terms->lagrangian, &lost);
+  kept->vector_potential = keep_array(made, terms->vector_potential,
+                                      terms->vector_potential != NULL,
+                                      sizeof *terms->vector_potential, &lost);
   kept->one_form = keep_array(made, terms->one_form, terms->one_form != NULL,
                               sizeof *terms->one_form, &lost);
   kept->hamiltonian = keep_array(made, terms->hamiltonian, terms->hamiltonian != NULL,

@@ -95,7 +95,7 @@ static int case_is_accepted(int which)
                                 methods[which % METHODS]);
 }
 
-/* verlet wants a constant mass, which the double pendulum has not. */
+/* verlet wants a constant mass, which the double pendulum has not, and no vector potential. */
 START_TEST(one_method_refuses_one_system)
 {
   ck_assert_int_eq(cases.count, 2 * (SWEEPS * METHODS - 1));

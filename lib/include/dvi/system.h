@@ -4,6 +4,9 @@
  *      L(t,q,v) = K(t,q,v) - sum_k V_k(t,q),     q, v in R^n,
  *      K = v.M v/2  or  a general Lagrangian  or  alpha(q).v with a one-form alpha.
  *
+ *  A vector potential A(t,q) adds A(t,q).v to the Lagrangian of a constant mass, as a magnetic field
+ *  does for a charge. The momenta are then p = M v + A.
+ *
  *  Forces F(t,q,v) without a potential may act beside a mass or a general Lagrangian. By the
  *  principle of Lagrange and d'Alembert the equations of motion are then d/dt L_v = L_q + F.
  *
@@ -55,7 +58,8 @@ typedef struct dvi_pattern {
 } dvi_pattern;
 
 /** A general Lagrangian L(t,q,v): the kinetic part, and any force that follows from a function of q
- *  and v, as that of a magnetic field. Friction and other forces are dvi_force. */
+ *  and v. That of a magnetic field beside a constant mass is a dvi_vector_potential. Friction and
+ *  other forces are dvi_force. */
 typedef struct dvi_lagrangian {
   /** The value L. Required (or value_batch). */
   int (*value)(double t, const double *q, const double *v, double *L, void *user);
@@ -210,6 +214,34 @@ typedef struct dvi_potential {
                 void *user);
 } dvi_potential;
 
+/** A vector potential A(t,q), which adds A(t,q).v to the Lagrangian of a constant mass. A charge e in
+ *  a magnetic field has e times the field's vector potential.
+ *
+ *  The momenta are p = M v + A. The equations of motion are, with the field
+ *  B_ij = dA_j/dq_i - dA_i/dq_j, M v' = -V_q + B(t,q) v - A_t. For n = 3 this is Lorentz's force,
+ *  B v = v x curl A. A gauge A + grad f(q) has the same motion and other momenta. The energy is
+ *  v.M v/2 + V (Landau and Lifshitz 1975, sec. 16). */
+typedef struct dvi_vector_potential {
+  /** A [n]. Required (or value_batch). */
+  int (*value)(double t, const double *q, double *A, void *user);
+  int (*value_batch)(int count, const double *t, const double *q, double *A, void *user);
+  /** The gradients of A's components in the order of the pattern `gradients`. Column j holds
+   *  dA_j/dq. Required (or gradient_batch). */
+  int (*gradient)(double t, const double *q, double *A_q, void *user);
+  int (*gradient_batch)(int count, const double *t, const double *q, double *A_q, void *user);
+  /** The Hessian of the function A(t,q).w, w [n] fixed, in the order of the pattern `qq`. Default:
+   *  differences of the gradients. */
+  int (*hessian)(double t, const double *q, const double *w, double *A_w_qq, void *user);
+  int (*hessian_batch)(int count, const double *t, const double *q, const double *w, double *A_w_qq,
+                       void *user);
+  dvi_pattern gradients, qq;
+  /** The rate A_t [n], the derivative in time alone. Required by `boris`, and by methods for which
+   *  time is an unknown, unless the system is autonomous. */
+  int (*rate)(double t, const double *q, double *A_t, void *user);
+  int (*rate_batch)(int count, const double *t, const double *q, double *A_t, void *user);
+  void *user;
+} dvi_vector_potential;
+
 /** A force F(t,q,v) without a potential, such as friction, a drive, or a control (Marsden and West
  *  2001, sec. 3.1.1). It does work, so that energy and momenta are no longer conserved, but
  *  balanced (dvi_integrator_balance). */
@@ -353,6 +385,8 @@ typedef struct dvi_system_terms {
   int force_count;
   const dvi_holonomic *holonomics; /**< holonomic constraints (default none) */
   int holonomic_count;
+  /** vector potential beside a constant mass without factors and constraints (default none) */
+  const dvi_vector_potential *vector_potential;
 } dvi_system_terms;
 
 /** A system. It never changes after its creation, so integrators on several threads may share
@@ -379,7 +413,8 @@ extern "C" {
  *                            not finite, or there is none at all at a factor's coordinates
  *  @retval DVI_UNSUPPORTED   factors beside a general Lagrangian, a one-form or a Hamiltonian. Or
  *                            forces or holonomic constraints beside factors, a one-form or a
- *                            Hamiltonian
+ *                            Hamiltonian. Or a vector potential beside anything but a constant mass
+ *                            without factors and holonomic constraints
  *  @retval DVI_NO_MEMORY     memory could not be allocated */
 dvi_status dvi_system_create(const dvi_system_terms *terms, dvi_system **system);
 

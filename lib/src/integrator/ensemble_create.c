@@ -66,6 +66,7 @@ void dvi__worker_bind(dvi__worker *w, const dvi__block *block)
   if (w->scene == NULL) return;
   w->scene->potentials = system->potentials;
   w->scene->forces = system->forces;
+  w->scene->vector = system->vector;
   w->scene->holonomics = system->holonomics;
   w->scene->lagrangian = system->lagrangian;
   w->scene->constraint = system->constraint;

@@ -139,7 +139,7 @@ static int lagrange_jacobian(double t, double c, N_Vector y, N_Vector ydot, N_Ve
 static dvi_status lagrange_acceleration(dvi__reference_run *run, double *vdot)
 {
   const int n = run->n;
-  if (run->system->lagrangian == NULL) {
+  if (run->system->lagrangian == NULL && run->system->vector == NULL) {
     dvi__mass_solve(run->evaluator, 1, run->force, vdot);
     return DVI_OK;
   }

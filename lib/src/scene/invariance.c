@@ -177,9 +177,11 @@ static uint64_t slope_of(const motion *m, unsigned turning, const dvi__kernel *k
 
 /* ---- a scene ---- */
 
-/* Return 1 if a function is a part of L, or a constraint. */
+/* Return 1 if a function is a part of L, or a constraint. The kinetic term has the velocities of a
+ * vector potential, too. */
 static int term_counts(const dvi_scene *scene, const dvi__scene_term *term)
 {
+  if (term == scene->vector_potential.user) return 0;
   return term->role == DVI__ROLE_MOTION || term == scene->kinetic;
 }
 

@@ -35,6 +35,7 @@ static void find_time(dvi_scene *scene)
   scene->terms.autonomous = !timed;
   if (timed) return;
   scene->lagrangian.rate_batch = NULL;
+  scene->vector_potential.rate = NULL;
   for (int k = 0; k < scene->terms.holonomic_count; k++) scene->holonomics[k].rate = NULL;
   for (int k = 0; k < scene->terms.potential_count; k++)
     ((dvi_potential *)scene->terms.potentials)[k].rate_batch = NULL;

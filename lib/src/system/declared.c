@@ -41,6 +41,7 @@ static uint64_t hash_patterns(const dvi_system *s)
   if (s->lagrangian != NULL) hash = hash_pattern(hash, &s->lagrangian->qq);
   if (s->constraint != NULL) hash = hash_pattern(hash, &s->constraint->gradients);
   for (int k = 0; k < s->potential_count; k++) hash = hash_pattern(hash, &s->potentials[k].qq);
+  if (s->vector != NULL) hash = hash_pattern(hash, &s->vector->qq);
   return hash;
 }
 

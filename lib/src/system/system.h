@@ -25,11 +25,12 @@ typedef enum dvi__term {
   DVI__FRICTION = 2048,   /* forces F(t,q,v) */
   DVI__FORCES = DVI__FORCE | DVI__FRICTION,
   DVI__HOLONOMIC = 4096, /* constraints phi(t,q) = 0 */
+  DVI__VECTOR_POTENTIAL = 8192,
   DVI__PHASE_SPACE = DVI__CONSTRAINED_HAMILTONIAN | DVI__HAMILTONIAN,
   DVI__DYNAMICS = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__ONE_FORM | DVI__FACTORS |
                   DVI__PHASE_SPACE, /* one of these is declared */
   DVI__KINDS = DVI__ROTATIONS | DVI__DIRECTIONS | DVI__FAST,
-  DVI__LAST_TERM = DVI__HOLONOMIC
+  DVI__LAST_TERM = DVI__VECTOR_POTENTIAL
 } dvi__term;
 
 /* Groups of columns that are moved together when a missing Hessian block is differenced. */
@@ -64,6 +65,14 @@ typedef struct dvi__holonomic_term {
   int *in_qq; /* places in the system's rows_qq */
   dvi__groups groups;
 } dvi__holonomic_term;
+
+typedef struct dvi__vector_term {
+  dvi_vector_potential callbacks;
+  dvi__pattern gradients; /* column j holds dA_j/dq, as L_qv does */
+  dvi__pattern qq;        /* of A.w, empty until dvi__system_prepare_hessian if not declared */
+  int *in_qq;             /* places in the system's qq */
+  dvi__groups groups;
+} dvi__vector_term;
 
 /* The gradient of a function beside a one-form alpha, and the places of the entries of both in the
  * sum. */
@@ -150,6 +159,7 @@ struct dvi_system {
   int potential_count;
   dvi__force_term *forces;
   int force_count;
+  dvi__vector_term *vector; /* the vector potential, or NULL */
   dvi__holonomic_term *holonomics;
   int holonomic_count;
   int row_count;                /* of all holonomic constraints */
@@ -160,6 +170,7 @@ struct dvi_system {
   int invariant_count;
   char **invariant_names; /* names of energy, symmetries, invariants */
   /* Patterns of L's Hessian. vv is diagonal for scalar and diagonal masses, empty for a one-form.
+   * Beside a constant mass qv is that of a vector potential's gradients, or empty.
    * With a Hamiltonian qv and vv are those of H_qp and H_pp. qq is the union over the terms, empty
    * until dvi__system_prepare_hessian. by_q and by_v are those of F_q and F_v of all forces (row i
    * for component i), made with qq. */
@@ -184,6 +195,9 @@ double dvi__hessian_noise(const dvi_system *system);
 /* Return DVI_OK if L_t is known, because the system is autonomous, or all terms give their rates.
  * Else the sentence names the term without a rate. */
 dvi_status dvi__system_has_rates(const dvi_system *system);
+
+/* Return DVI_OK if A_t of the vector potential is known. Else the sentence says what to give. */
+dvi_status dvi__system_has_field(const dvi_system *system);
 
 /* Return DVI_OK if all terms give the Taylor coefficients of L. Else the sentence names the term
  * without them. */

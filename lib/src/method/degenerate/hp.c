@@ -139,6 +139,9 @@ static dvi_status hp_create(dvi__stepper *self)
   if (type == 4 && self->system->force_count > 0)
     return dvi__fail(DVI_UNSUPPORTED,
                      "hp: type=4 cannot use forces without a potential; type=1, 2 and 3 can");
+  if (type == 4 && self->system->vector != NULL)
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "hp: type=4 cannot use a vector potential A(t,q).v; type=1, 2 and 3 can");
   if (type == 4) return create_momentum_centred(self, degree, rule);
   const dvi__action_space space = {.basis = DVI_LAGRANGE_LOBATTO,
                                    .degree = degree,

@@ -98,7 +98,10 @@ void dvi__element_clear_lanes(dvi__stepper *self);
 void dvi__element_step_lanes(dvi__stepper *self, dvi__members *members, double h);
 
 /* The terms that these methods can use. */
-enum { DVI__ELEMENT_TERMS = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL | DVI__FORCES };
+enum {
+  DVI__ELEMENT_TERMS = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL | DVI__FORCES |
+                       DVI__VECTOR_POTENTIAL
+};
 
 #define DVI__ELEMENT_OPERATIONS                                                            \
   .destroy = dvi__element_destroy, .start = dvi__element_start, .step = dvi__element_step, \

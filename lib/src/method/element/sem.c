@@ -363,7 +363,7 @@ const dvi__method dvi__sem = {
                "conserved; order 2 degree; any Lagrangian",
     .cite = "KaneMarsdenOrtiz1999",
     .keys = sem_keys,
-    .uses = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL,
+    .uses = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL | DVI__VECTOR_POTENTIAL,
     .chooses_steps = 1,
     .create = sem_create,
     .destroy = sem_destroy,

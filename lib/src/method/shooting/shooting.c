@@ -295,7 +295,8 @@ const dvi__method dvi__shooting = {
         "any one-step method and a quadrature with both ends; order that of the lower of both",
     .cite = "LeokShingel2012",
     .keys = dvi__shooting_keys,
-    .uses = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL | DVI__HAMILTONIAN,
+    .uses = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL | DVI__HAMILTONIAN |
+            DVI__VECTOR_POTENTIAL,
     .create = shooting_create,
     .destroy = shooting_destroy,
     .start = shooting_start,

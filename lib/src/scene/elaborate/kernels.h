@@ -31,6 +31,7 @@ bool dvi__kernels_function(dvi_scene *scene, dvi__kernels *list, int count, dvi_
  * all coefficients but that of degree 0 are without variables. */
 typedef struct dvi__degree {
   int degree, pure, moves; /* `moves` is 1 if the part of degree 0 has other variables */
+  int squares;             /* the coefficients of degree 2 are without variables */
 } dvi__degree;
 
 bool dvi__kernel_degree(dvi_scene *scene, const dvi__kernel *kernel, int block,
@@ -50,6 +51,10 @@ bool dvi__kernel_other_term(dvi_scene *scene, const dvi__kernel *kernel, int blo
 bool dvi__kernels_at_rest(dvi_scene *scene, const dvi__kernels *of, int block, int negative,
                           dvi__kernels *list);
 bool dvi__kernels_moving(dvi_scene *scene, const dvi__kernels *of, int block, int as,
+                         dvi__kernels *list);
+
+/* Add the part of degree 1 of each kernel likewise. */
+bool dvi__kernels_linear(dvi_scene *scene, const dvi__kernels *of, int block, int as,
                          dvi__kernels *list);
 
 #endif

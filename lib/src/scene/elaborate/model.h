@@ -66,6 +66,7 @@ struct dvi_scene {
   dvi_one_form one_form;
   dvi_hamiltonian hamiltonian;
   dvi_constraint constraint;
+  dvi_vector_potential vector_potential;
   dvi_force force[2];        /* of the sections forces and dissipation */
   dvi_holonomic *holonomics; /* [terms.holonomic_count], those of joints last */
   dvi_joints *joints;        /* NULL without joints */
@@ -73,7 +74,8 @@ struct dvi_scene {
   dvi_factor *body;          /* [body_count] members of all coordinates, for the joints */
   int joint_count, body_count;
   dvi__scene_term *functions;
-  const dvi__scene_term *kinetic; /* the term from which a constant mass was read, or NULL */
+  /* the term from which a constant mass was read, with A(t,q).q' of a vector potential, or NULL */
+  const dvi__scene_term *kinetic;
   dvi_system *system;
   double *q, *v, *p;
   double *final_q, *final_v, *final_p; /* the end of a control problem, or NULL */

@@ -2,7 +2,8 @@
  * variables.
  *
  * A node f is split into Z, where the block's variables are zero, and P = f - Z, by f's own rule.
- * For a product (Z_a + P_a)(Z_b + P_b) this gives P = P_a Z_b + Z_a P_b + P_a P_b. */
+ * For a product (Z_a + P_a)(Z_b + P_b) this gives P = P_a Z_b + Z_a P_b + P_a P_b. Without the last
+ * product, P is the part of degree 1. */
 #include <string.h>
 
 #include "expr/graph_make.h"
@@ -17,6 +18,7 @@ typedef struct copy {
   int *of_input;            /* new number + 1 of an old input */
   dvi__node *rest, *moving; /* Z and P of old nodes. `moving` is NULL if only Z is wanted. */
   int block, as;            /* with block DVI__BLOCKS nothing moves */
+  int linear;               /* P is the part of degree 1 alone */
 } copy;
 
 static dvi__node copy_apply(copy *c, dvi__op op, dvi__node a, dvi__node b)
@@ -67,6 +69,7 @@ static dvi__node moving_product(copy *c, int a, int b)
   const dvi__node mixed = copy_apply(c, DVI__OP_ADD,
                                      copy_apply(c, DVI__OP_MULTIPLY, c->moving[a], c->rest[b]),
                                      copy_apply(c, DVI__OP_MULTIPLY, c->rest[a], c->moving[b]));
+  if (c->linear) return mixed;
   return copy_apply(c, DVI__OP_ADD, mixed,
                     copy_apply(c, DVI__OP_MULTIPLY, c->moving[a], c->moving[b]));
 }
@@ -90,7 +93,7 @@ static void copy_moving(copy *c, int i)
   case DVI__OP_WHERE: c->moving[i] = copy_apply(c, DVI__OP_WHERE, c->rest[a], c->moving[b]); break;
   case DVI__OP_MULTIPLY: c->moving[i] = moving_product(c, a, b); break;
   case DVI__OP_SQUARE:
-    c->moving[i] = copy_is_zero(c, c->rest[a]) ? copy_apply(c, DVI__OP_SQUARE, c->moving[a], 0)
+    c->moving[i] = !c->linear && copy_is_zero(c, c->rest[a]) ? copy_apply(c, DVI__OP_SQUARE, c->moving[a], 0)
                                                : moving_product(c, a, a);
     break;
   default: c->moving[i] = copy_zero(c); /* of degree 0, or not split */
@@ -126,14 +129,17 @@ static void free_work(copy *c, char *needed)
   dvi__heap_free(needed);
 }
 
-/* Copy Z of a kernel, or P, into a kernel of its own. The arena owns it, but for the nodes of its
- * graph. */
-static bool copy_part(dvi_scene *scene, const dvi__kernel *from, int block, int as, int moving,
+typedef enum part { AT_REST, MOVING, LINEAR } part;
+
+/* Copy Z of a kernel, or P, or the linear part of P, into a kernel of its own. The arena owns it,
+ * but for the nodes of its graph. */
+static bool copy_part(dvi_scene *scene, const dvi__kernel *from, int block, int as, part which,
                       dvi__kernel *to)
 {
   const size_t nodes = (size_t)from->root + 1, inputs = (size_t)from->input_count + 1;
+  const int moving = which != AT_REST;
   char *needed = dvi__heap_take(nodes, 1);
-  copy c = {.from = from, .block = block, .as = as};
+  copy c = {.from = from, .block = block, .as = as, .linear = which == LINEAR};
   c.graph = dvi__arena_take(&scene->arena, 1, sizeof *c.graph);
   c.input = dvi__arena_take(&scene->arena, inputs, sizeof *c.input);
   c.of_input = dvi__heap_take(inputs, sizeof *c.of_input);
@@ -185,7 +191,7 @@ static bool append_kernel(dvi_scene *scene, dvi__kernels *list, const dvi__kerne
 static bool append_needed(dvi_scene *scene, dvi__kernels *list, const dvi__kernel *kernel)
 {
   dvi__kernel needed;
-  if (!copy_part(scene, kernel, DVI__BLOCKS, DVI__BLOCKS, 0, &needed)) return false;
+  if (!copy_part(scene, kernel, DVI__BLOCKS, DVI__BLOCKS, AT_REST, &needed)) return false;
   return append_kernel(scene, list, &needed);
 }
 
@@ -208,11 +214,24 @@ bool dvi__kernels_at_rest(dvi_scene *scene, const dvi__kernels *of, int block, i
                           dvi__kernels *list)
 {
   for (int k = 0; k < of->count; k++) {
-    dvi__kernel part;
-    if (!copy_part(scene, &of->kernel[k], block, block, 0, &part)) return false;
-    if (negative) part.root = dvi__apply(part.graph, DVI__OP_NEGATE, part.root, 0);
-    const bool added = append_needed(scene, list, &part);
-    dvi__graph_free(part.graph);
+    dvi__kernel one;
+    if (!copy_part(scene, &of->kernel[k], block, block, AT_REST, &one)) return false;
+    if (negative) one.root = dvi__apply(one.graph, DVI__OP_NEGATE, one.root, 0);
+    const bool added = append_needed(scene, list, &one);
+    dvi__graph_free(one.graph);
+    if (!added) return false;
+  }
+  return true;
+}
+
+static bool append_parts(dvi_scene *scene, const dvi__kernels *of, int block, int as, part which,
+                         dvi__kernels *list)
+{
+  for (int k = 0; k < of->count; k++) {
+    dvi__kernel one;
+    if (!copy_part(scene, &of->kernel[k], block, as, which, &one)) return false;
+    const bool added = append_needed(scene, list, &one);
+    dvi__graph_free(one.graph);
     if (!added) return false;
   }
   return true;
@@ -221,14 +240,13 @@ bool dvi__kernels_at_rest(dvi_scene *scene, const dvi__kernels *of, int block, i
 bool dvi__kernels_moving(dvi_scene *scene, const dvi__kernels *of, int block, int as,
                          dvi__kernels *list)
 {
-  for (int k = 0; k < of->count; k++) {
-    dvi__kernel part;
-    if (!copy_part(scene, &of->kernel[k], block, as, 1, &part)) return false;
-    const bool added = append_needed(scene, list, &part);
-    dvi__graph_free(part.graph);
-    if (!added) return false;
-  }
-  return true;
+  return append_parts(scene, of, block, as, MOVING, list);
+}
+
+bool dvi__kernels_linear(dvi_scene *scene, const dvi__kernels *of, int block, int as,
+                         dvi__kernels *list)
+{
+  return append_parts(scene, of, block, as, LINEAR, list);
 }
 
 /* ---- degrees ---- */
@@ -238,26 +256,29 @@ static dvi__degree degree_of_product(dvi__degree a, dvi__degree b)
   const int degree = a.degree + b.degree;
   const int pure = (a.degree == 0 || (a.pure && !b.moves)) &&
                    (b.degree == 0 || (b.pure && !a.moves));
-  return (dvi__degree){degree > 3 ? 3 : degree, pure, a.moves || b.moves};
+  const int squares = (a.degree < 2 || (a.squares && !b.moves)) &&
+                      (b.degree < 2 || (b.squares && !a.moves)) &&
+                      (a.degree == 0 || b.degree == 0 || (a.pure && b.pure));
+  return (dvi__degree){degree > 3 ? 3 : degree, pure, a.moves || b.moves, squares};
 }
 
 static dvi__degree degree_of_input(const dvi__kernel_input *input, int block)
 {
-  if (input->is_data) return (dvi__degree){.pure = 1};
-  return input->block == block ? (dvi__degree){.degree = 1, .pure = 1}
-                               : (dvi__degree){.pure = 1, .moves = 1};
+  if (input->is_data) return (dvi__degree){.pure = 1, .squares = 1};
+  return input->block == block ? (dvi__degree){.degree = 1, .pure = 1, .squares = 1}
+                               : (dvi__degree){.pure = 1, .moves = 1, .squares = 1};
 }
 
 static dvi__degree degree_of_other(dvi__degree a, dvi__degree b)
 {
   if (a.degree > 0 || b.degree > 0) return (dvi__degree){.degree = 3, .moves = 1};
-  return (dvi__degree){.pure = 1, .moves = a.moves || b.moves};
+  return (dvi__degree){.pure = 1, .moves = a.moves || b.moves, .squares = 1};
 }
 
 static dvi__degree degree_of_node(const dvi__kernel *kernel, int block, const dvi__degree *known,
                                   int i)
 {
-  static const dvi__degree none = {.pure = 1};
+  static const dvi__degree none = {.pure = 1, .squares = 1};
   const dvi__graph_node *node = &kernel->graph->node[i];
   switch (node->op) {
   case DVI__OP_CONSTANT: return none;
@@ -269,7 +290,7 @@ static dvi__degree degree_of_node(const dvi__kernel *kernel, int block, const dv
   case DVI__OP_SUBTRACT: {
     const dvi__degree a = known[node->a], b = known[node->b];
     return (dvi__degree){a.degree > b.degree ? a.degree : b.degree, a.pure && b.pure,
-                         a.moves || b.moves};
+                         a.moves || b.moves, a.squares && b.squares};
   }
   case DVI__OP_DIVIDE:
     return known[node->b].degree > 0 ? degree_of_other(known[node->a], known[node->b])
@@ -333,12 +354,13 @@ bool dvi__kernel_degree(dvi_scene *scene, const dvi__kernel *kernel, int block, 
 
 bool dvi__kernels_degree(dvi_scene *scene, const dvi__kernels *list, int block, dvi__degree *whole)
 {
-  *whole = (dvi__degree){.pure = 1};
+  *whole = (dvi__degree){.pure = 1, .squares = 1};
   for (int k = 0; k < list->count; k++) {
     dvi__degree one = {0};
     if (!dvi__kernel_degree(scene, &list->kernel[k], block, &one)) return false;
     if (one.degree > whole->degree) whole->degree = one.degree;
     whole->pure = whole->pure && one.pure;
+    whole->squares = whole->squares && one.squares;
   }
   return true;
 }

@@ -26,6 +26,8 @@ static dvi_status emit_motion(dvi__emitter *out, const dvi_scene *scene)
     term = dvi__lagrangian_term(scene), status = dvi__emit_term(out, &term);
   if (terms->one_form != NULL && status == DVI_OK)
     term = dvi__one_form_term(scene), status = dvi__emit_term(out, &term);
+  if (terms->vector_potential != NULL && status == DVI_OK)
+    term = dvi__vector_term_of(scene), status = dvi__emit_term(out, &term);
   if (terms->hamiltonian != NULL && status == DVI_OK)
     term = dvi__hamiltonian_term(scene), status = dvi__emit_term(out, &term);
   if (terms->constraint != NULL && status == DVI_OK)
@@ -159,6 +161,8 @@ static void emit_create(dvi__emitter *out, const dvi_scene *scene, const char *n
   emit_term_list(out, "dvi_invariant", "invariant", "invariants", terms->invariant_count);
   if (terms->lagrangian != NULL) dvi__emit(out, "  terms.lagrangian = &lagrangian;\n");
   if (terms->one_form != NULL) dvi__emit(out, "  terms.one_form = &one_form;\n");
+  if (terms->vector_potential != NULL)
+    dvi__emit(out, "  terms.vector_potential = &vector_potential;\n");
   if (terms->hamiltonian != NULL) dvi__emit(out, "  terms.hamiltonian = &hamiltonian;\n");
   if (terms->constraint != NULL) dvi__emit(out, "  terms.constraint = &constraint;\n");
   emit_mass(out, mass, pattern, row);

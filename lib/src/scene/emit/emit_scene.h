@@ -32,6 +32,7 @@ typedef struct dvi__emitted_term {
 /* Describe the terms. */
 dvi__emitted_term dvi__lagrangian_term(const dvi_scene *scene);
 dvi__emitted_term dvi__one_form_term(const dvi_scene *scene);
+dvi__emitted_term dvi__vector_term_of(const dvi_scene *scene);
 dvi__emitted_term dvi__hamiltonian_term(const dvi_scene *scene);
 dvi__emitted_term dvi__constraint_term(const dvi_scene *scene);
 dvi__emitted_term dvi__potential_term(const dvi_scene *scene, int k);

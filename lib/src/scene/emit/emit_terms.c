@@ -50,6 +50,15 @@ static const dvi__callback form_callbacks[] = {
      "1, NULL, q, NULL, w, alpha_w_qq", 's', ONLY(DVI__PAIR_QQ)},
 };
 
+/* The derivatives by w do not depend on w, which is q here. */
+static const dvi__callback vector_callbacks[] = {
+    {"value_batch", BATCH ", double *A", "count, t, q, NULL, q, A", 'g', ONLY(DVI__MULTIPLIERS)},
+    {"gradient_batch", BATCH ", double *A_q", "count, t, q, NULL, q, A_q", 's', ONLY(DVI__PAIR_QW)},
+    {"hessian_batch", BATCH ", const double *w, double *A_w_qq", "count, t, q, NULL, w, A_w_qq",
+     's', ONLY(DVI__PAIR_QQ)},
+    {"rate", POINT ", double *A_t", "1, &t, q, NULL, w, A_t + a", 't', ONLY(DVI__TIME)},
+};
+
 static const dvi__callback hamiltonian_callbacks[] = {
     {"value", POINT ", const double *p, double *H", "1, &t, q, p, NULL, H", 'v', {0}},
     {"gradient", POINT ", const double *p, double *H_q, double *H_p", "1, &t, q, p, NULL, H_q, H_p",
@@ -132,6 +141,19 @@ dvi__emitted_term dvi__one_form_term(const dvi_scene *scene)
                              .columns = scene->n,
                              .pattern_name = {"gradients", "qq"},
                              .pattern = {&form->gradients, &form->qq}};
+}
+
+dvi__emitted_term dvi__vector_term_of(const dvi_scene *scene)
+{
+  const dvi_vector_potential *A = &scene->vector_potential;
+  return (dvi__emitted_term){.type = "dvi_vector_potential",
+                             .name = "vector_potential",
+                             .term = A->user,
+                             .callback_count = RATE + !scene->terms.autonomous,
+                             .callback = vector_callbacks,
+                             .columns = scene->n,
+                             .pattern_name = {"gradients", "qq"},
+                             .pattern = {&A->gradients, &A->qq}};
 }
 
 dvi__emitted_term dvi__hamiltonian_term(const dvi_scene *scene)

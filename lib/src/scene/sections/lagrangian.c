@@ -1,10 +1,11 @@
-/* The sections lagrangian and kinetic. A Lagrangian is a constant mass and potentials, or a
- * one-form and a Hamiltonian, or neither.
+/* The sections lagrangian and kinetic. A Lagrangian is a constant mass and potentials, perhaps with
+ * a vector potential, or a one-form and a Hamiltonian, or neither.
  *
  * Each kernel's degree in the velocities is found by one pass over its graph. If all are
  * polynomials of degree 2 whose velocities have constant coefficients, the mass is their second
- * derivatives, and the rest at zero velocity is minus the potential. If all are of degree 1, they
- * are alpha(q).v. */
+ * derivatives, and the rest at zero velocity is minus the potential. If only those of degree 2 have
+ * constant coefficients, the part of degree 1 is A(t,q).v of a vector potential. If all are of
+ * degree 1, they are alpha(q).v. */
 #include <string.h>
 
 #include "scene/elaborate/shape.h"
@@ -103,7 +104,7 @@ static bool find_momentum_at_rest(dvi_scene *scene, dvi__scene_term *T, int *at_
   return true;
 }
 
-/* ---- the three forms ---- */
+/* ---- the forms ---- */
 
 /* Refuse a Lagrangian without a constant mass beside rotations, directions or angles. Names the
  * first term of another form. */
@@ -139,28 +140,68 @@ static bool make_general(dvi_scene *scene, dvi__kernels *L)
   return true;
 }
 
-static bool make_separable(dvi_scene *scene, dvi__kernels *L, const char *rest)
+/* Test if each coordinate has a mass of its own. */
+static int has_masses(int n, const dvi_pattern *pattern, const double *values)
 {
-  dvi__kernels moving = {0}, V = {0};
+  int count = 0;
+  for (int j = 0; j < n; j++) {
+    const int first = pattern->start == NULL ? j * n : pattern->start[j],
+              end = pattern->start == NULL ? first + n : pattern->start[j + 1];
+    for (int e = first; e < end; e++)
+      count += entry_row(pattern, n, e) == j && (values[e] < 0 || values[e] > 0);
+  }
+  return count == n;
+}
+
+/* Make the term A(t,q).w. Velocities are not p/m then, so that no invariant may have them. */
+static bool make_vector_potential(dvi_scene *scene, const dvi__kernels *L)
+{
+  dvi__kernels A = {0};
+  dvi__scene_term *term = NULL;
+  const bool good = dvi__kernels_linear(scene, L, DVI__VELOCITIES, DVI__MULTIPLIERS, &A) &&
+                    dvi__kernels_function(scene, &A, scene->n, &term) &&
+                    dvi__make_vector_potential(scene, term, &scene->vector_potential);
+  dvi__kernels_free(&A);
+  scene->terms.vector_potential = &scene->vector_potential;
+  scene->mass_diagonal = NULL;
+  scene->form = "separable with a vector potential";
+  return good;
+}
+
+/* Make the mass and the potential, of a Lagrangian with a vector potential unless it is `plain`. */
+static bool make_parts(dvi_scene *scene, dvi__kernels *L, const char *rest, int plain,
+                       const dvi_pattern *pattern, const double *values)
+{
+  dvi__kernels V = {0};
+  const bool good = (dvi__has_factors(scene) ? dvi__make_factors(scene, pattern, values)
+                                             : set_mass(scene, pattern, values)) &&
+                    dvi__kernels_at_rest(scene, L, DVI__VELOCITIES, 1, &V) &&
+                    dvi__potential_add(scene, rest, 0, &V);
+  dvi__kernels_free(&V);
+  scene->form = "separable";
+  return good && (plain || make_vector_potential(scene, L));
+}
+
+/* Take a Lagrangian apart whose squares of velocities have constant coefficients. `pure` says that
+ * those of single velocities are constant, too, as in a drift that cancels. */
+static bool make_separable(dvi_scene *scene, dvi__kernels *L, const char *rest, int pure)
+{
+  dvi__kernels moving = {0};
   dvi__scene_term *T = NULL;
   dvi_pattern pattern;
   double *values;
-  int at_rest = 0;
-  bool good = dvi__kernels_moving(scene, L, DVI__VELOCITIES, DVI__VELOCITIES, &moving) &&
-              dvi__kernels_function(scene, &moving, 0, &T) && derive_mass(scene, T) &&
-              find_momentum_at_rest(scene, T, &at_rest);
+  int plain = 0;
+  const bool good = dvi__kernels_moving(scene, L, DVI__VELOCITIES, DVI__VELOCITIES, &moving) &&
+                    dvi__kernels_function(scene, &moving, 0, &T) && derive_mass(scene, T) &&
+                    (!pure || find_momentum_at_rest(scene, T, &plain)) &&
+                    mass_values(scene, T, &pattern, &values);
   dvi__kernels_free(&moving);
   if (T != NULL) T->role = DVI__ROLE_AUXILIARY;
-  if (good && !at_rest) return make_general(scene, L);
+  if (!good) return false;
+  if (!plain && (dvi__has_factors(scene) || !has_masses(scene->n, &pattern, values)))
+    return make_general(scene, L);
   scene->kinetic = T;
-  good = good && mass_values(scene, T, &pattern, &values) &&
-         (dvi__has_factors(scene) ? dvi__make_factors(scene, &pattern, values)
-                                  : set_mass(scene, &pattern, values)) &&
-         dvi__kernels_at_rest(scene, L, DVI__VELOCITIES, 1, &V) &&
-         dvi__potential_add(scene, rest, 0, &V);
-  dvi__kernels_free(&V);
-  scene->form = "separable";
-  return good;
+  return make_parts(scene, L, rest, plain, &pattern, values);
 }
 
 static int kernels_have_time(const dvi__kernels *list)
@@ -204,8 +245,8 @@ static bool make_form(dvi_scene *scene, const dvi__expression *e, dvi__kernels *
     return dvi__scene_refuse(scene, e->span, "there is no velocity in it, so nothing would move");
   if (degree.degree == 1 && dvi__has_factors(scene)) return refuse_moving(scene, L);
   if (degree.degree == 1) return make_degenerate(scene, e, L, rest);
-  return degree.degree == 2 && degree.pure ? make_separable(scene, L, rest)
-                                           : make_general(scene, L);
+  return degree.degree == 2 && degree.squares ? make_separable(scene, L, rest, degree.pure)
+                                              : make_general(scene, L);
 }
 
 static bool read_moving(dvi_scene *scene, const dvi__tree *section, const char *where,

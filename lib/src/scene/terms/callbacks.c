@@ -328,15 +328,15 @@ static int term_holonomic_hessian(double t, const double *q, const double *w, do
   return second_at(user, 1, x, values);
 }
 
-/* The entries of d phi/dt stand at the front, and move to their rows from the back. */
-static int term_holonomic_rate(double t, const double *q, double *phi_t, void *user)
+/* The entries of the rate stand at the front, and move to their rows from the back. */
+static int term_rate_of_rows(double t, const double *q, double *rows_t, void *user)
 {
   dvi__scene_term *term = user;
   const double *x[DVI__BLOCKS] = {&t, q, NULL, term->none};
-  double *values[DVI__PAIRS] = {[DVI__PAIR_TW] = phi_t};
+  double *values[DVI__PAIRS] = {[DVI__PAIR_TW] = rows_t};
   const int returned = second_at(term, 1, x, values);
   for (int a = term->count - 1; a >= 0; a--)
-    phi_t[a] = term->tw.start[a] < term->tw.start[a + 1] ? phi_t[term->tw.start[a]] : 0;
+    rows_t[a] = term->tw.start[a] < term->tw.start[a + 1] ? rows_t[term->tw.start[a]] : 0;
   return returned;
 }
 
@@ -448,8 +448,47 @@ bool dvi__make_holonomic(dvi_scene *scene, const char *name, dvi__scene_term *te
       !dvi__term_pattern(scene, term, DVI__PAIR_QQ, &holonomic->qq, &full) ||
       !explicit_pattern(scene, term, DVI__PAIR_TW, 1, &term->tw))
     return false;
-  if (term->tw.start[term->count] > 0) holonomic->rate = term_holonomic_rate;
+  if (term->tw.start[term->count] > 0) holonomic->rate = term_rate_of_rows;
   return true;
+}
+
+/* ---- vector potentials: A is the gradient of A(t,q).w by w, which w does not change ---- */
+
+static int term_vector_value(int count, const double *t, const double *q, double *A, void *user)
+{
+  const double *x[DVI__BLOCKS] = {t, q, NULL, q};
+  double *gradient[DVI__BLOCKS] = {[DVI__MULTIPLIERS] = A};
+  return gradient_at(user, count, x, gradient);
+}
+
+static int term_vector_gradient(int count, const double *t, const double *q, double *A_q,
+                                void *user)
+{
+  const double *x[DVI__BLOCKS] = {t, q, NULL, q};
+  double *values[DVI__PAIRS] = {[DVI__PAIR_QW] = A_q};
+  return second_at(user, count, x, values);
+}
+
+static int term_vector_hessian(int count, const double *t, const double *q, const double *w,
+                               double *A_w_qq, void *user)
+{
+  const double *x[DVI__BLOCKS] = {t, q, NULL, w};
+  double *values[DVI__PAIRS] = {[DVI__PAIR_QQ] = A_w_qq};
+  return second_at(user, count, x, values);
+}
+
+bool dvi__make_vector_potential(dvi_scene *scene, dvi__scene_term *term, dvi_vector_potential *A)
+{
+  int full;
+  *A = (dvi_vector_potential){.value_batch = term_vector_value,
+                              .gradient_batch = term_vector_gradient,
+                              .hessian_batch = term_vector_hessian,
+                              .rate = term_rate_of_rows,
+                              .user = term};
+  return prepare_large(scene, term, of_multipliers) &&
+         dvi__term_pattern(scene, term, DVI__PAIR_QW, &A->gradients, &full) &&
+         dvi__term_pattern(scene, term, DVI__PAIR_QQ, &A->qq, &full) &&
+         explicit_pattern(scene, term, DVI__PAIR_TW, 1, &term->tw);
 }
 
 /* Join the gradients' patterns. Each column has the rows of q, then those of p. */

@@ -10,6 +10,8 @@ bool dvi__make_potential(dvi_scene *scene, const char *name, dvi__scene_term *te
 bool dvi__make_lagrangian(dvi_scene *scene, dvi__scene_term *term, dvi_lagrangian *lagrangian);
 /* Fill in a one-form with the function alpha(q).w. */
 bool dvi__make_one_form(dvi_scene *scene, dvi__scene_term *term, dvi_one_form *form);
+/* Fill in a vector potential with the function A(t,q).w. */
+bool dvi__make_vector_potential(dvi_scene *scene, dvi__scene_term *term, dvi_vector_potential *A);
 bool dvi__make_hamiltonian(dvi_scene *scene, dvi__scene_term *term, dvi_hamiltonian *hamiltonian);
 /* Fill in constraints with the function phi(q,p).w, w [term->count]. */
 bool dvi__make_constraint(dvi_scene *scene, dvi__scene_term *term, dvi_constraint *constraint);

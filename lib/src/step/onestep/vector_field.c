@@ -44,7 +44,7 @@ static dvi_status vector_field_initialise(dvi__vector_field *f, dvi_counters *co
 {
   DVI_TRY(dvi__evaluator_create(f->system, 1, DVI__HESSIANS, counters, &f->evaluator));
   DVI_TRY(vector_field_allocate(f));
-  return f->system->lagrangian != NULL && !f->is_H
+  return (f->system->lagrangian != NULL || f->system->vector != NULL) && !f->is_H
              ? dvi__linear_create(&f->system->vv, DVI__LINEAR_AUTO, counters, &f->linear)
              : DVI_OK;
 }
@@ -268,7 +268,8 @@ void dvi__vector_field_lower(dvi__vector_field *f, int k, const double *covector
 static dvi_status vector_field_mass_at(dvi__vector_field *f, double t, const double *q,
                                        const double *v, const double **values)
 {
-  if (f->linear != NULL) return dvi__velocity_hessian(f->evaluator, t, q, v, values);
+  if (f->system->lagrangian != NULL)
+    return dvi__velocity_hessian(f->evaluator, t, q, v, values);
   *values = constant_mass(f);
   return DVI_OK;
 }

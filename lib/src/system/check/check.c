@@ -17,6 +17,7 @@
 #include "system/term/constraint.h"
 #include "system/term/force.h"
 #include "system/term/holonomic.h"
+#include "system/term/vector.h"
 
 /* One block of one term while it is compared. */
 typedef struct block {
@@ -269,6 +270,40 @@ static dvi_status check_one_form(dvi__check *c, const dvi__lagrangian_term *l)
   return check_form_derivatives(c, &part, "gauge", "d2f/dq2", "d2(grad f.v)/dq2");
 }
 
+/* Compare the gradients of the components of A with differences of A, and the Hessian of A.v with
+ * differences of its gradient. */
+static dvi_status check_vector(dvi__check *c, const dvi__vector_term *term)
+{
+  const dvi__vector_at at = {.term = term, .scratch = &c->scratch, .t = &c->t, .w = c->v};
+  const dvi__differences *d = &c->differences;
+  const int has_hessian = dvi__vector_has_hessian(term);
+  const char *const owner = "vector potential";
+  block qv = {.owner = owner,
+              .name = "dA_j/dq_i at (i,j) =",
+              .pattern = &term->gradients,
+              .given = c->hessian[1]};
+  block qq = {.owner = owner,
+              .name = "d2(A.v)/dq2",
+              .pattern = &term->qq,
+              .given = has_hessian ? c->hessian[0] : NULL};
+  DVI_TRY(dvi__vector_gradients(term, &c->scratch, 1, &c->t, c->q, c->hessian[1]));
+  if (has_hessian)
+    DVI_TRY(dvi__vector_hessian(term, &c->scratch, 1, &c->t, c->q, c->v, c->hessian[0]));
+  for (int i = 0; i < c->n; i++) {
+    DVI_TRY(dvi__difference_column(dvi__vector_of_q, &at, &c->differences, c->n, i, c->q,
+                                   c->column[0], c->column[1]));
+    compare_column(&qq, c->n, i, c->column[0],
+                   noise_of(largest_component(c->n, d->plus), d->step[i]));
+    compare_row(&qv, c->n, i, c->column[1],
+                noise_of(largest_component(c->n, d->plus_v), d->step[i]));
+  }
+  keep_worst(c, &qv, &qv.on_pattern, &c->of_hessian);
+  keep_worst(c, &qv, &qv.outside, &c->of_pattern);
+  keep_worst(c, &qq, &qq.on_pattern, &c->of_hessian);
+  keep_worst(c, &qq, &qq.outside, &c->of_pattern);
+  return DVI_OK;
+}
+
 /* An entry outside of the gradients' pattern is a wrong 0 of the gradient. */
 static dvi_status check_weighted(dvi__check *c, dvi__weighted *weighted, double *w, int count)
 {
@@ -402,6 +437,7 @@ static dvi_status check_all_terms(dvi__check *c, const dvi_system *system)
   for (int k = 0; k < system->potential_count; k++)
     DVI_TRY(check_potential(c, &system->potentials[k]));
   for (int k = 0; k < system->force_count; k++) DVI_TRY(check_force(c, &system->forces[k]));
+  if (system->vector != NULL) DVI_TRY(check_vector(c, system->vector));
   for (int k = 0; k < system->holonomic_count; k++)
     DVI_TRY(check_holonomic(c, &system->holonomics[k]));
   return DVI_OK;

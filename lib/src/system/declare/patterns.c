@@ -7,6 +7,7 @@
 #include "system/system.h"
 #include "system/term/declare.h"
 #include "system/term/force.h"
+#include "system/term/vector.h"
 
 static dvi_status widen_pattern(dvi__pattern *whole, const dvi__pattern *part)
 {
@@ -42,6 +43,11 @@ static dvi_status join_hessians(dvi_system *s, dvi__pattern *qq)
   DVI_TRY(dvi__pattern_empty(s->n, qq));
   if (s->lagrangian != NULL) DVI_TRY(widen_pattern(qq, &s->lagrangian->qq));
   for (int k = 0; k < s->potential_count; k++) DVI_TRY(widen_pattern(qq, &s->potentials[k].qq));
+  if (s->vector != NULL) {
+    DVI_TRY(dvi__vector_complete(s->vector, s->n));
+    DVI_TRY(widen_pattern(qq, &s->vector->qq));
+    DVI_TRY(embed_pattern(&s->vector->qq, qq, &s->vector->in_qq));
+  }
   if (s->lagrangian != NULL) DVI_TRY(embed_pattern(&s->lagrangian->qq, qq, &s->lagrangian->in_qq));
   for (int k = 0; k < s->potential_count; k++)
     DVI_TRY(embed_pattern(&s->potentials[k].qq, qq, &s->potentials[k].in_qq));
@@ -99,6 +105,7 @@ static size_t count_least_entries(const dvi_system *system)
   if (system->lagrangian != NULL) least = more_entries(least, n, &system->lagrangian->qq);
   for (int k = 0; k < system->potential_count; k++)
     least = more_entries(least, n, &system->potentials[k].qq);
+  if (system->vector != NULL) least = more_entries(least, n, &system->vector->qq);
   for (int k = 0; k < system->force_count; k++)
     least = more_entries(more_entries(least, n, &system->forces[k].by_q), n,
                          &system->forces[k].by_v);

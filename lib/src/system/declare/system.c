@@ -15,6 +15,7 @@
 #include "system/term/force.h"
 #include "system/term/holonomic.h"
 #include "system/term/term.h"
+#include "system/term/vector.h"
 
 static char *copy_text(const char *text)
 {
@@ -149,6 +150,22 @@ static dvi_status check_forces_and_joints(const dvi_system_terms *terms)
                                 : "a Hamiltonian");
 }
 
+static dvi_status check_vector_potential(const dvi_system_terms *terms)
+{
+  const char *beside = terms->factors != NULL        ? "factors"
+                       : terms->lagrangian != NULL   ? "a general Lagrangian; add it to this one"
+                       : terms->one_form != NULL     ? "a one-form; add it to this one"
+                       : terms->hamiltonian != NULL  ? "a Hamiltonian"
+                       : terms->holonomic_count > 0  ? "holonomic constraints; declare a general "
+                                                       "Lagrangian with both the mass and it"
+                                                     : NULL;
+  if (terms->vector_potential == NULL || beside == NULL) return DVI_OK;
+  return dvi__fail(DVI_UNSUPPORTED,
+                   "system: a vector potential goes with a constant mass of coordinates, not with "
+                   "%s",
+                   beside);
+}
+
 static const dvi__dynamics *const kinds[] = {
 #define DYNAMICS(name) &dvi__dynamics_##name,
 #include "system/declare/dynamics.def"
@@ -195,6 +212,7 @@ static dvi_status check_declared_terms(const dvi_system_terms *terms)
   DVI_TRY(check_kind(terms));
   DVI_TRY(check_hamiltonian(terms));
   DVI_TRY(check_forces_and_joints(terms));
+  DVI_TRY(check_vector_potential(terms));
   if (terms->gauge != NULL && terms->one_form == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "system: a gauge without a one-form; it changes nothing else");
@@ -217,6 +235,7 @@ static dvi_status system_fill(dvi_system *s, const dvi_system_terms *terms)
   DVI_TRY(declare_dynamics(s, terms));
   DVI_TRY(copy_potentials(s, terms));
   DVI_TRY(dvi__forces_copy(s, terms));
+  DVI_TRY(dvi__vector_copy(s, terms));
   DVI_TRY(dvi__holonomics_copy(s, terms));
   DVI_TRY(copy_invariants(s, terms));
   dvi__system_declared(s, &s->declared);
@@ -263,6 +282,7 @@ void dvi_system_destroy(dvi_system **system)
   dvi_system *s = *system;
   for (int k = 0; k < s->potential_count; k++) clear_potential(&s->potentials[k]);
   for (int k = 0; k < s->force_count; k++) dvi__force_clear(&s->forces[k]);
+  dvi__vector_clear(&s->vector);
   for (int k = 0; k < s->holonomic_count; k++) dvi__holonomic_clear(&s->holonomics[k]);
   for (int i = 0; s->invariant_names != NULL && i < dvi_system_invariant_count(s); i++)
     dvi__release(s->invariant_names[i]);

@@ -1,4 +1,5 @@
-/* A constant mass M and potentials have L = v.Mv/2 - V(t,q), so that v = M^-1 p. */
+/* A constant mass M and potentials have L = v.Mv/2 - V(t,q), so that v = M^-1 p. With a vector
+ * potential L = v.Mv/2 + A(t,q).v - V(t,q), so that v = M^-1 (p - A). */
 #include <string.h>
 
 #include "core/status.h"
@@ -28,12 +29,24 @@ static dvi_status velocity_by_mass(dvi__evaluator *e, double t, const double *q,
 {
   const size_t n = (size_t)e->system->n;
   double *found = e->point[1];
-  (void)q;
-  dvi__mass_solve(e, 1, p, found);
+  memcpy(found, p, n * sizeof *found);
+  if (e->system->vector != NULL) {
+    DVI_TRY(dvi__vector_potential(e, 1, &t, q, e->point[2]));
+    for (size_t i = 0; i < n; i++) found[i] -= e->point[2][i];
+  }
+  dvi__mass_solve(e, 1, found, found);
   if (dvi__first_not_finite(n, found) >= 0)
     return dvi__fail(DVI_NOT_FINITE, "the velocity M^-1 p at t = %.6g is not finite", t);
   memcpy(v, found, n * sizeof *v);
   return DVI_OK;
+}
+
+/* p.v - L would lose the digits of A.v, which cancels. */
+static dvi_status energy_by_mass(dvi__evaluator *e, double t, const double *q, const double *v,
+                                 const double *p, double *E)
+{
+  return e->system->vector != NULL ? dvi__mass_energy(e, t, q, v, E)
+                                   : dvi__energy_of_lagrangian(e, t, q, v, p, E);
 }
 
 const dvi__dynamics dvi__dynamics_constant_mass = {
@@ -46,7 +59,7 @@ const dvi__dynamics dvi__dynamics_constant_mass = {
     .prepare = prepare_mass,
     .velocity = velocity_by_mass,
     .motion = dvi__motion_of_lagrangian,
-    .energy = dvi__energy_of_lagrangian,
+    .energy = energy_by_mass,
     .value = dvi__value_of_point,
     .forces = dvi__forces_of_point,
     .momentum = dvi__momentum_of_point,

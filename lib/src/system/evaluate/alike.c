@@ -3,6 +3,7 @@
 #include "system/evaluate/dynamics.h"
 #include "system/evaluate/jet.h"
 #include "system/term/term.h"
+#include "system/term/vector.h"
 
 int dvi__system_has_gradients(const dvi_system *system)
 {
@@ -11,18 +12,30 @@ int dvi__system_has_gradients(const dvi_system *system)
   return 1;
 }
 
+static dvi_status refuse_without_rate(const char *without)
+{
+  return dvi__fail(DVI_UNSUPPORTED,
+                   "%s has no rate callback, and the system is not declared autonomous; give the "
+                   "rate, or declare it if no callback "
+                   "depends on t",
+                   without);
+}
+
+dvi_status dvi__system_has_field(const dvi_system *system)
+{
+  if (system->autonomous || dvi__vector_has_rate(system->vector)) return DVI_OK;
+  return refuse_without_rate("the vector potential");
+}
+
 dvi_status dvi__system_has_rates(const dvi_system *system)
 {
   const dvi__lagrangian_term *l = system->lagrangian;
   const char *without = l != NULL && !dvi__general_has_rate(l) ? "the Lagrangian" : NULL;
   for (int p = 0; p < system->potential_count && without == NULL; p++)
     if (!dvi__potential_has_rate(&system->potentials[p])) without = system->potentials[p].name;
-  if (system->autonomous || without == NULL) return DVI_OK;
-  return dvi__fail(DVI_UNSUPPORTED,
-                   "%s has no rate callback, and the system is not declared autonomous; give the "
-                   "rate, or declare it if no callback "
-                   "depends on t",
-                   without);
+  if (system->vector != NULL && !dvi__vector_has_rate(system->vector) && without == NULL)
+    without = "the vector potential";
+  return system->autonomous || without == NULL ? DVI_OK : refuse_without_rate(without);
 }
 
 dvi_status dvi__system_has_taylor(const dvi_system *system)
@@ -31,6 +44,10 @@ dvi_status dvi__system_has_taylor(const dvi_system *system)
   const char *without = l != NULL && !dvi__general_has_taylor(l) ? l->name : NULL;
   for (int p = 0; p < system->potential_count && without == NULL; p++)
     if (!dvi__potential_has_taylor(&system->potentials[p])) without = system->potentials[p].name;
+  if (system->vector != NULL)
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "a vector potential A(t,q).v has no Taylor coefficients, and derivatives "
+                     "beyond the second are needed; declare a general Lagrangian with them");
   if (without == NULL) return DVI_OK;
   if (system->dynamics->no_taylor != NULL)
     return dvi__fail(DVI_UNSUPPORTED, "%s", system->dynamics->no_taylor);
@@ -62,6 +79,9 @@ static int same_derivatives(const dvi_system *a, const dvi_system *b)
         dvi__potential_has_taylor(&a->potentials[p]) !=
             dvi__potential_has_taylor(&b->potentials[p]))
       return 0;
+  if (a->vector != NULL && (dvi__vector_has_hessian(a->vector) != dvi__vector_has_hessian(b->vector) ||
+                            dvi__vector_has_rate(a->vector) != dvi__vector_has_rate(b->vector)))
+    return 0;
   if (a->constraint != NULL &&
       (a->constraint->callbacks.hessian != NULL) != (b->constraint->callbacks.hessian != NULL))
     return 0;

@@ -6,6 +6,7 @@
 #include "system/evaluate/dynamics.h"
 #include "system/evaluate/evaluator_struct.h"
 #include "system/term/force.h"
+#include "system/term/vector.h"
 
 static size_t count_numbers(const dvi__evaluator *e, int count)
 {
@@ -173,6 +174,30 @@ static void constant_mass_energy(dvi__evaluator *e, int count, const double *v, 
     for (size_t k = 0; k < points; k++) T[k] += 0.5 * v[i * points + k] * e->term[i * points + k];
 }
 
+/* Add x.v to a sum [count], with x in e->term. */
+static void add_along(dvi__evaluator *e, int count, const double *v, double *sum)
+{
+  const size_t points = (size_t)count;
+  for (size_t i = 0; i < (size_t)e->system->n; i++)
+    for (size_t k = 0; k < points; k++) sum[k] += e->term[i * points + k] * v[i * points + k];
+}
+
+dvi_status dvi__mass_energy(dvi__evaluator *e, double t, const double *q, const double *v,
+                            double *E)
+{
+  const dvi_system *s = e->system;
+  double V;
+  e->counters->values++;
+  constant_mass_energy(e, 1, v, E);
+  for (int p = 0; p < s->potential_count; p++) {
+    DVI_TRY(dvi__potential_value(&s->potentials[p], &e->scratch, 1, &t, q, &V));
+    *E += V;
+  }
+  if (dvi__first_not_finite(1, E) >= 0)
+    return dvi__fail(DVI_NOT_FINITE, "the energy at t = %.6g is not finite", t);
+  return DVI_OK;
+}
+
 dvi_status dvi__lagrangian_value(dvi__evaluator *e, int count, const double *t, const double *q,
                                  const double *v, double *L)
 {
@@ -185,6 +210,10 @@ dvi_status dvi__lagrangian_value(dvi__evaluator *e, int count, const double *t, 
   for (int p = 0; p < s->potential_count; p++) {
     DVI_TRY(dvi__potential_value(&s->potentials[p], &e->scratch, count, t, q, e->term));
     for (int k = 0; k < count; k++) L[k] -= e->term[k];
+  }
+  if (s->vector != NULL) {
+    DVI_TRY(dvi__vector_value(s->vector, &e->scratch, count, t, q, e->term));
+    add_along(e, count, v, L);
   }
   if (dvi__first_not_finite((size_t)count, L) >= 0)
     return dvi__fail(DVI_NOT_FINITE, "the %s's value is not finite", s->dynamics->function);
@@ -204,6 +233,9 @@ dvi_status dvi__lagrangian_rate(dvi__evaluator *e, int count, const double *t, c
     DVI_TRY(dvi__potential_rate(&s->potentials[p], &e->scratch, count, t, q, e->term));
     for (int k = 0; k < count; k++) L_t[k] -= e->term[k];
   }
+  if (s->vector == NULL) return DVI_OK;
+  DVI_TRY(dvi__vector_rate(s->vector, &e->scratch, count, t, q, e->term));
+  add_along(e, count, v, L_t);
   return DVI_OK;
 }
 
@@ -275,17 +307,51 @@ static dvi_status general_gradient(dvi__evaluator *e, int count, const double *t
   return DVI_OK;
 }
 
+dvi_status dvi__vector_potential(dvi__evaluator *e, int count, const double *t, const double *q,
+                                 double *A)
+{
+  e->counters->gradients += count;
+  return dvi__vector_value(e->system->vector, &e->scratch, count, t, q, A);
+}
+
+dvi_status dvi__magnetic_field(dvi__evaluator *e, int count, const double *t, const double *q,
+                             double *A_q, double *A_t)
+{
+  const dvi_system *s = e->system;
+  DVI_TRY(dvi__vector_gradients(s->vector, &e->scratch, count, t, q, A_q));
+  if (s->autonomous) memset(A_t, 0, count_numbers(e, count) * sizeof(double));
+  return s->autonomous ? DVI_OK : dvi__vector_rate(s->vector, &e->scratch, count, t, q, A_t);
+}
+
+/* Add the part of a vector potential, (A.v)_q to L_q and A to L_v. Either may be NULL. */
+static dvi_status add_vector_gradient(dvi__evaluator *e, int count, const double *t,
+                                      const double *q, const double *v, double *L_q, double *L_v)
+{
+  const dvi_system *s = e->system;
+  if (L_q != NULL) {
+    DVI_TRY(dvi__vector_forces(s->vector, &e->scratch, count, t, q, v, e->term));
+    for (size_t i = 0; i < count_numbers(e, count); i++) L_q[i] += e->term[i];
+  }
+  if (L_v == NULL) return DVI_OK;
+  DVI_TRY(dvi__vector_value(s->vector, &e->scratch, count, t, q, e->term));
+  for (size_t i = 0; i < count_numbers(e, count); i++) L_v[i] += e->term[i];
+  return DVI_OK;
+}
+
 dvi_status dvi__lagrangian_gradient(dvi__evaluator *e, int count, const double *t, const double *q,
                                     const double *v, double *L_q, double *L_v)
 {
   const dvi_system *s = e->system;
   if (s->lagrangian == NULL && L_v != NULL) mass_times(s, count, v, L_v);
-  if (s->lagrangian == NULL && L_q == NULL) return DVI_OK;
+  if (s->lagrangian == NULL && s->vector == NULL && L_q == NULL) return DVI_OK;
   e->counters->gradients += count;
-  dvi_status status = s->lagrangian == NULL
-                          ? potential_forces(e, count, t, q, L_q)
-                          : general_gradient(e, count, t, q, v, L_q ? L_q : e->unwanted,
-                                             L_v ? L_v : e->unwanted);
+  dvi_status status = DVI_OK;
+  if (s->lagrangian != NULL)
+    status = general_gradient(e, count, t, q, v, L_q ? L_q : e->unwanted, L_v ? L_v : e->unwanted);
+  else if (L_q != NULL)
+    status = potential_forces(e, count, t, q, L_q);
+  if (status == DVI_OK && s->vector != NULL)
+    status = add_vector_gradient(e, count, t, q, v, L_q, L_v);
   if (status == DVI_OK && L_q != NULL) status = add_forces(e, DVI__FORCES, count, 1, t, q, v, L_q);
   dvi__count_differences(e);
   return status;
@@ -345,8 +411,14 @@ static dvi_status sum_hessians(dvi__evaluator *e, int count, const double *t, co
     return potential_hessians(e, count, t, q, L_qq);
   }
   if (L_vv != NULL) copy_mass_hessian(s, count, L_vv);
+  if (s->vector != NULL && L_qv != NULL)
+    DVI_TRY(dvi__vector_gradients(s->vector, &e->scratch, count, t, q, L_qv));
   if (L_qq == NULL) return DVI_OK;
   memset(L_qq, 0, (size_t)dvi__pattern_entries(&s->qq) * points * sizeof(double));
+  if (s->vector != NULL) {
+    DVI_TRY(dvi__vector_hessian(s->vector, &e->scratch, count, t, q, v, e->term));
+    add_embedded(&s->vector->qq, s->vector->in_qq, points, 1, e->term, L_qq);
+  }
   return potential_hessians(e, count, t, q, L_qq);
 }
 

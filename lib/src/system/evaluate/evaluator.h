@@ -35,14 +35,29 @@ dvi_status dvi__lagrangian_value(dvi__evaluator *e, int count, const double *t, 
                                  const double *v, double *L);
 
 /* Compute L_q and L_v [n*count]. Either may be NULL. For a constant mass L_v is M v and costs no
- * callback. L_q is the sum of all forces, those without a potential included. */
+ * callback, but for A of a vector potential. L_q is the sum of all forces, those without a potential included. */
 dvi_status dvi__lagrangian_gradient(dvi__evaluator *e, int count, const double *t, const double *q,
                                     const double *v, double *L_q, double *L_v);
 
 /* Compute V_q [n*count], the sum of the potentials' gradients, less the forces F(t,q) without
- * velocity. For a constant mass this is -L_q unless forces depend on the velocity. */
+ * velocity. For a constant mass this is -L_q unless forces depend on the velocity, or there is a
+ * vector potential. */
 dvi_status dvi__potentials_gradient(dvi__evaluator *e, int count, const double *t, const double *q,
                                     double *V_q);
+
+/* Compute the vector potential A [n*count], which counts as a gradient, of a system that has one. */
+dvi_status dvi__vector_potential(dvi__evaluator *e, int count, const double *t, const double *q,
+                                 double *A);
+
+/* Compute the gradients of A [entries*count] in the order of the system's qv, and the rate A_t
+ * [n*count], which is 0 for an autonomous system. The call belongs to dvi__potentials_gradient at
+ * the same points, which counts. */
+dvi_status dvi__magnetic_field(dvi__evaluator *e, int count, const double *t, const double *q,
+                             double *A_q, double *A_t);
+
+/* Compute v.Mv/2 + V of one state. The system must have DVI__CONSTANT_MASS. */
+dvi_status dvi__mass_energy(dvi__evaluator *e, double t, const double *q, const double *v,
+                            double *E);
 
 /* Compute L_t [count] for a system with dvi__system_has_rates. An autonomous system has 0. Calls
  * count as values. */
@@ -50,7 +65,8 @@ dvi_status dvi__lagrangian_rate(dvi__evaluator *e, int count, const double *t, c
                                 const double *v, double *L_t);
 
 /* Compute L_qq, L_qv, L_vv [entries*count] in the order of the system's patterns, entry-major. This
- * needs DVI__HESSIANS. For a constant mass L_qv is empty, and L_qv and L_vv may be NULL. */
+ * needs DVI__HESSIANS. For a constant mass L_qv is empty, or has the gradients of a vector
+ * potential, and L_qv and L_vv may be NULL. */
 dvi_status dvi__lagrangian_hessian(dvi__evaluator *e, int count, const double *t, const double *q,
                                    const double *v, double *L_qq, double *L_qv, double *L_vv);
 

@@ -87,8 +87,12 @@ static dvi_status kinetic_size(dvi__evaluator *e, const dvi__instant *at, double
   DVI_TRY(dvi__legendre_inverse(e, at->t, at->q, at->p, at->v));
   DVI_TRY(e->system->dynamics->energy(e, at->t, at->q, at->v, at->p, E));
   for (int i = 0; i < e->system->n; i++) pv += at->p[i] * at->v[i];
-  *T = 0.5 * fabs(pv);
   *size = fabs(pv) + fabs(*E);
+  if (e->system->vector != NULL) {
+    DVI_TRY(dvi__vector_potential(e, 1, &at->t, at->q, e->point[2]));
+    for (int i = 0; i < e->system->n; i++) pv -= e->point[2][i] * at->v[i];
+  }
+  *T = 0.5 * fabs(pv);
   return DVI_OK;
 }
 

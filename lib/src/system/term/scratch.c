@@ -4,6 +4,7 @@
 #include "core/status.h"
 #include "system/term/force.h"
 #include "system/term/term.h"
+#include "system/term/vector.h"
 
 static int larger_count(int a, int b)
 {
@@ -25,6 +26,11 @@ int dvi__longest_hessian(const dvi_system *system, int hessians)
   for (int k = 0; k < system->force_count && hessians; k++)
     longest = larger_count(longest, larger_count(dvi__pattern_entries(&system->forces[k].by_q),
                                                  dvi__pattern_entries(&system->forces[k].by_v)));
+  if (system->vector != NULL) {
+    const int second = hessians ? dvi__pattern_entries(&system->vector->qq) : 0;
+    longest = larger_count(longest, dvi__pattern_entries(&system->vector->gradients));
+    longest = larger_count(longest, second);
+  }
   if (system->lagrangian == NULL) return longest;
   if (system->constraint != NULL)
     longest = larger_count(longest, longest_of(&system->constraint->weighted));
@@ -50,6 +56,7 @@ static int lacks_hessian(const dvi_system *system, int hessians)
     lacks |= !dvi__potential_has_hessian(&system->potentials[k]);
   for (int k = 0; k < system->force_count && hessians; k++)
     lacks |= !dvi__force_has_jacobian(&system->forces[k]);
+  if (system->vector != NULL && hessians) lacks |= !dvi__vector_has_hessian(system->vector);
   return lacks;
 }
 
@@ -90,6 +97,11 @@ static int scratch_allocate(const dvi_system *system, int capacity, int hessians
   for (int k = 0; k < 3; k++)
     s->result[k] = DVI_NEW(double, dvi__longest_hessian(system, hessians));
   if (!s->point_q || !s->point_v || !s->result[0] || !s->result[1] || !s->result[2]) return 0;
+  if (system->vector != NULL) {
+    const size_t entries = (size_t)dvi__pattern_entries(&system->vector->gradients);
+    s->vector_q = DVI_NEW(double, entries *(size_t)capacity);
+    if (s->vector_q == NULL) return 0;
+  }
   if (dvi__lacks_gradient(system) && !dvi__differences_allocate(numbers, &s->of_value)) return 0;
   return !lacks_hessian(system, hessians) || dvi__differences_allocate(numbers, &s->of_gradient);
 }
@@ -111,6 +123,7 @@ void dvi__scratch_clear(dvi__scratch *scratch)
   dvi__release(scratch->point_q);
   dvi__release(scratch->point_v);
   for (int k = 0; k < 3; k++) dvi__release(scratch->result[k]);
+  dvi__release(scratch->vector_q);
   dvi__differences_clear(&scratch->of_value);
   dvi__differences_clear(&scratch->of_gradient);
   *scratch = (dvi__scratch){0};

@@ -18,6 +18,7 @@ typedef struct dvi__scratch {
   int n, capacity;
   double *point_q, *point_v; /* one point [n], for one-point callbacks */
   double *result[3];         /* results at that point, each as long as the longest Hessian */
+  double *vector_q;          /* gradients of a vector potential at all points, or NULL */
   /* Two levels. A missing gradient under a missing Hessian uses both. */
   dvi__differences of_value, of_gradient;
 } dvi__scratch;
