@@ -57,6 +57,8 @@ static const struct {
     {"double-pendulum", NULL, "hp:type=2,degree=2", 0.02, 30},
     {"double-pendulum", NULL, "hp:type=4,degree=2", 0.02, 30},
     {"damped-driven", NULL, "verlet", 0.1, 30},
+    {"magnetic-bottle", NULL, "boris", 0.1, 30},
+    {"magnetic-bottle", NULL, "galerkin:degree=3", 0.1, 30},
     {"damped-driven", NULL, "galerkin:degree=3", 0.1, 30},
     {"lotka-volterra", NULL, "hp:type=2,degree=2,quadrature=gauss", 0.1, 30},
 };

@@ -156,6 +156,7 @@ static const place places[] = {{"kepler", NULL, 0.05, 0.1},
                                {"henon-heiles", NULL, 0.2, 0.1},
                                {"chain", "n=8", 0.1, 0.1},
                                {"chain", "n=40", 0.1, 0.1},
+                               {"magnetic-bottle", NULL, 0.1, 0.1},
                                {"vortices", NULL, 0.05, 0.01},
                                {"massless-particle", "gauge=singular", 0.1, 0.01},
                                {"elastica", NULL, 0.1, 0.01},
@@ -197,6 +198,8 @@ static const char *const methods[] = {
     "sphere-galerkin:degree=1",
     "lie-verlet",
     "lie-rk",
+    "boris",
+    "composition:base=boris",
     "imex",
     "imex:solver=newton",
     "multiscale:fast=0,omega=5",
@@ -272,7 +275,7 @@ static int pair_is_accepted(int which)
  * few places have. */
 START_TEST(every_place_is_taken_by_the_methods_for_it)
 {
-  check_accepted_cases(&pairs, 226, METHODS, methods);
+  check_accepted_cases(&pairs, 244, METHODS, methods);
 }
 END_TEST
 

@@ -152,6 +152,8 @@ static const struct {
     {"toda", "N=5", "shooting:solve=stages", 0.1},
     {"double-pendulum", NULL, "shooting:onestep=taylor,quadrature=euler-maclaurin", 0.01},
     {"damped-driven", NULL, "verlet", 0.1},
+    {"magnetic-bottle", NULL, "boris", 0.1},
+    {"magnetic-bottle", NULL, "galerkin:degree=3", 0.5},
     {"damped-driven", NULL, "galerkin:degree=3", 0.5},
     {"damped-driven", NULL, "composition:order=4", 0.1},
 };

@@ -70,10 +70,8 @@ static const int diagonal_start[] = {0, 1, 2}, crossed_row[] = {1, 0};
 static dvi_status create_with(dvi_vector_potential A, int autonomous, dvi_system **system)
 {
   A.user = numbers;
-  const dvi_system_terms terms = {.dimension = 2,
-                                  .mass = {.scalar = 1},
-                                  .vector_potential = &A,
-                                  .autonomous = autonomous};
+  const dvi_system_terms terms = {
+      .dimension = 2, .mass = {.scalar = 1}, .vector_potential = &A, .autonomous = autonomous};
   return dvi_system_create(&terms, system);
 }
 
@@ -125,9 +123,9 @@ END_TEST
 
 START_TEST(methods_that_cannot_use_them_name_them)
 {
-  static const char *const methods[] = {"verlet", "composition:order=4,base=verlet",
-                                        "prolongation-collocation", "lie-galerkin",
-                                        "multiscale:fast=0:1,omega=5", "hp:type=4"};
+  static const char *const methods[] = {
+      "verlet",       "composition:order=4,base=verlet", "prolongation-collocation",
+      "lie-galerkin", "multiscale:fast=0:1,omega=5",     "hp:type=4"};
   magnetic m;
   make_magnetic(BOTTLE, &m);
   for (size_t k = 0; k < sizeof methods / sizeof *methods; k++) {
@@ -197,9 +195,9 @@ START_TEST(a_callback_that_fails_leaves_the_state)
   static const char *const methods[] = {"boris", "galerkin:degree=2"};
   dvi_system *system;
   const double p[2] = {0.1, 0.2};
-  ck_assert_int_eq(create_with((dvi_vector_potential){.value = value, .gradient = gradient}, 1,
-                               &system),
-                   DVI_OK);
+  ck_assert_int_eq(
+      create_with((dvi_vector_potential){.value = value, .gradient = gradient}, 1, &system),
+      DVI_OK);
   for (int k = 0; k < 2; k++) {
     dvi_integrator *integrator = create_integrator(system, methods[k]);
     ck_assert_int_eq(dvi_integrator_start(integrator, 0, q, p), DVI_OK);

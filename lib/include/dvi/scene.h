@@ -56,8 +56,8 @@ typedef struct dvi_scene_end {
 
 /** Facts about a scene, for people and for tests. */
 typedef struct dvi_scene_facts {
-  /** "separable", "separable with a vector potential", "general Lagrangian", "one-form", "Hamiltonian", "Hamiltonian with
-   *  constraints" */
+  /** "separable", "separable with a vector potential", "general Lagrangian", "one-form",
+   *  "Hamiltonian", "Hamiltonian with constraints" */
   const char *form;
   /** "identity", "scalar", "diagonal", "sparse", "inertias" (of rotations and angles, and no more).
    *  NULL without a constant mass */

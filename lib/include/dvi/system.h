@@ -4,8 +4,8 @@
  *      L(t,q,v) = K(t,q,v) - sum_k V_k(t,q),     q, v in R^n,
  *      K = v.M v/2  or  a general Lagrangian  or  alpha(q).v with a one-form alpha.
  *
- *  A vector potential A(t,q) adds A(t,q).v to the Lagrangian of a constant mass, as a magnetic field
- *  does for a charge. The momenta are then p = M v + A.
+ *  A vector potential A(t,q) adds A(t,q).v to the Lagrangian of a constant mass, as that of a
+ *  charge in a magnetic field does. The momenta are then p = M v + A.
  *
  *  Forces F(t,q,v) without a potential may act beside a mass or a general Lagrangian. By the
  *  principle of Lagrange and d'Alembert the equations of motion are then d/dt L_v = L_q + F.
@@ -214,8 +214,8 @@ typedef struct dvi_potential {
                 void *user);
 } dvi_potential;
 
-/** A vector potential A(t,q), which adds A(t,q).v to the Lagrangian of a constant mass. A charge e in
- *  a magnetic field has e times the field's vector potential.
+/** A vector potential A(t,q), which adds A(t,q).v to the Lagrangian of a constant mass. A charge e
+ *  in a magnetic field has e times the field's vector potential.
  *
  *  The momenta are p = M v + A. The equations of motion are, with the field
  *  B_ij = dA_j/dq_i - dA_i/dq_j, M v' = -V_q + B(t,q) v - A_t. For n = 3 this is Lorentz's force,

@@ -41,8 +41,7 @@ static double determinant(int n, double *A)
     }
     product *= pivot == k ? A[k * n + k] : -A[k * n + k];
     for (int i = k + 1; i < n; i++)
-      for (int j = n - 1; j >= k; j--)
-        A[i * n + j] -= A[i * n + k] / A[k * n + k] * A[k * n + j];
+      for (int j = n - 1; j >= k; j--) A[i * n + j] -= A[i * n + k] / A[k * n + k] * A[k * n + j];
   }
   return product;
 }
@@ -108,9 +107,9 @@ START_TEST(a_step_back_undoes_a_step_of_boris)
     dvi_integrator *integrator = started(&m, "boris");
     advance(integrator, 0.3, 5);
     advance(integrator, -0.3, 5);
-    ck_assert_double_lt(distance_from(&m, 0, dvi_integrator_q(integrator),
-                                      dvi_integrator_p(integrator), m.q, m.v),
-                        1e-14);
+    ck_assert_double_lt(
+        distance_from(&m, 0, dvi_integrator_q(integrator), dvi_integrator_p(integrator), m.q, m.v),
+        1e-14);
     dvi_integrator_destroy(&integrator);
     destroy_magnetic(&m);
   }

@@ -190,6 +190,49 @@ static void damped_driven_acceleration(const quad_system *system, const quad *q,
   a[0] = -q[0] - c[0] * v[0] + c[1] * quad_sin(c[2] * v[1]);
 }
 
+/* q'' = q' x (-x B'/2, -y B'/2, B(z)) with B(z) = B (1 + z^2/l^2), p = q' + B(z)/2 (-y, x, 0). */
+static quad bottle_field(const quad_system *system, quad z)
+{
+  return system->value[0] * (1 + z * z / (system->value[1] * system->value[1]));
+}
+
+static void magnetic_bottle_prepare(quad_system *system)
+{
+  system->n = 3;
+  system->q[0] = 1;
+  system->v[1] = quad_number("0.9");
+  system->v[2] = quad_number("0.5");
+}
+
+static void magnetic_bottle_acceleration(const quad_system *system, const quad *q, const quad *v,
+                                         quad *a)
+{
+  const quad half = system->value[0] * q[2] / (system->value[1] * system->value[1]),
+             B[3] = {-half * q[0], -half * q[1], bottle_field(system, q[2])};
+  for (int i = 0; i < 3; i++) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    a[i] = v[j] * B[k] - v[k] * B[j];
+  }
+}
+
+static void magnetic_bottle_momentum(const quad_system *system, const quad *q, const quad *v,
+                                     quad *p)
+{
+  const quad half = bottle_field(system, q[2]) / 2;
+  p[0] = v[0] - half * q[1];
+  p[1] = v[1] + half * q[0];
+  p[2] = v[2];
+}
+
+static void magnetic_bottle_velocity(const quad_system *system, const quad *q, const quad *p,
+                                     quad *v)
+{
+  const quad half = bottle_field(system, q[2]) / 2;
+  v[0] = p[0] + half * q[1];
+  v[1] = p[1] - half * q[0];
+  v[2] = p[2];
+}
+
 /* L = m/2 (a'^2 + (l+a)^2 th'^2) + m g (l+a) cos th - k a^2/2. */
 static void stiff_pendulum_prepare(quad_system *system)
 {
@@ -363,6 +406,15 @@ static const quad_problem problems[] = {
      damped_driven_acceleration,
      NULL,
      NULL,
+     NULL,
+     NULL},
+    {"magnetic-bottle",
+     {"B", "l"},
+     {"1", "2"},
+     magnetic_bottle_prepare,
+     magnetic_bottle_acceleration,
+     magnetic_bottle_momentum,
+     magnetic_bottle_velocity,
      NULL,
      NULL},
     {"stiff-pendulum",

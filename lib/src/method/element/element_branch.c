@@ -152,8 +152,7 @@ dvi_status dvi__element_follow(dvi__stepper *self, const dvi__element_place *at,
 int dvi__element_is_definite(const dvi_system *system, const dvi__evaluator *evaluator)
 {
   return system->lagrangian == NULL && system->slots == NULL && system->force_count == 0 &&
-         system->vector == NULL &&
-         dvi__mass_is_positive(evaluator);
+         system->vector == NULL && dvi__mass_is_positive(evaluator);
 }
 
 /* Tell whether the solution lies beyond a fold. As h goes to 0 the Jacobian is L_vv times a

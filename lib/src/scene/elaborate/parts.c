@@ -93,8 +93,9 @@ static void copy_moving(copy *c, int i)
   case DVI__OP_WHERE: c->moving[i] = copy_apply(c, DVI__OP_WHERE, c->rest[a], c->moving[b]); break;
   case DVI__OP_MULTIPLY: c->moving[i] = moving_product(c, a, b); break;
   case DVI__OP_SQUARE:
-    c->moving[i] = !c->linear && copy_is_zero(c, c->rest[a]) ? copy_apply(c, DVI__OP_SQUARE, c->moving[a], 0)
-                                               : moving_product(c, a, a);
+    c->moving[i] = !c->linear && copy_is_zero(c, c->rest[a])
+                       ? copy_apply(c, DVI__OP_SQUARE, c->moving[a], 0)
+                       : moving_product(c, a, a);
     break;
   default: c->moving[i] = copy_zero(c); /* of degree 0, or not split */
   }

@@ -268,8 +268,7 @@ void dvi__vector_field_lower(dvi__vector_field *f, int k, const double *covector
 static dvi_status vector_field_mass_at(dvi__vector_field *f, double t, const double *q,
                                        const double *v, const double **values)
 {
-  if (f->system->lagrangian != NULL)
-    return dvi__velocity_hessian(f->evaluator, t, q, v, values);
+  if (f->system->lagrangian != NULL) return dvi__velocity_hessian(f->evaluator, t, q, v, values);
   *values = constant_mass(f);
   return DVI_OK;
 }

@@ -224,8 +224,9 @@ static void solve_group(const group *g, size_t points, double h, const double *A
     for (int a = 0; a < MOST; a++) {
       r[a] = a < g->size ? d[(size_t)g->at[a] * points + k] : 0.0;
       for (int b = 0; b < MOST; b++)
-        D[a][b] = g->mass[a][b] - 0.5 * h * (entry_at(A_q, g->entry[a][b], points, k) -
-                                             entry_at(A_q, g->entry[b][a], points, k));
+        D[a][b] = g->mass[a][b] - 0.5 * h *
+                                      (entry_at(A_q, g->entry[a][b], points, k) -
+                                       entry_at(A_q, g->entry[b][a], points, k));
     }
     solve_by_cofactors(D, r, x);
     for (int a = 0; a < g->size; a++) d[(size_t)g->at[a] * points + k] = x[a];
@@ -247,7 +248,6 @@ static dvi_status solve_matrix(dvi__gyration *g, int count, int k, double h, con
 dvi_status dvi__gyration_solve(dvi__gyration *g, int count, double h, const double *A_q, double *d)
 {
   for (int i = 0; i < g->count; i++) solve_group(&g->groups[i], (size_t)count, h, A_q, d);
-  for (int k = 0; g->count == 0 && k < count; k++)
-    DVI_TRY(solve_matrix(g, count, k, h, A_q, d));
+  for (int k = 0; g->count == 0 && k < count; k++) DVI_TRY(solve_matrix(g, count, k, h, A_q, d));
   return DVI_OK;
 }

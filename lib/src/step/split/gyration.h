@@ -22,8 +22,8 @@ void dvi__gyration_destroy(dvi__gyration **gyration);
 int dvi__gyration_groups(const dvi__gyration *gyration);
 
 /* Compute y [n*count] = factor B w of a batch, from the gradients A_q [entries*count] of A. */
-void dvi__gyration_times(const dvi__gyration *gyration, int count, double factor,
-                         const double *A_q, const double *w, double *y);
+void dvi__gyration_times(const dvi__gyration *gyration, int count, double factor, const double *A_q,
+                         const double *w, double *y);
 
 /* Replace d [n*count] by (M - h/2 B)^-1 d. DVI_SINGULAR with an indefinite mass. */
 dvi_status dvi__gyration_solve(dvi__gyration *gyration, int count, double h, const double *A_q,

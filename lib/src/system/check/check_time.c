@@ -13,7 +13,8 @@
 #include "system/term/force.h"
 #include "system/term/vector.h"
 
-/* One of potential, lagrangian, vector potential and force, and the point at which it is evaluated. */
+/* One of potential, lagrangian, vector potential and force, and the point at which it is
+ * evaluated. */
 typedef struct subject {
   const dvi__potential_term *potential;
   const dvi__lagrangian_term *lagrangian;

@@ -152,13 +152,13 @@ static dvi_status check_forces_and_joints(const dvi_system_terms *terms)
 
 static dvi_status check_vector_potential(const dvi_system_terms *terms)
 {
-  const char *beside = terms->factors != NULL        ? "factors"
-                       : terms->lagrangian != NULL   ? "a general Lagrangian; add it to this one"
-                       : terms->one_form != NULL     ? "a one-form; add it to this one"
-                       : terms->hamiltonian != NULL  ? "a Hamiltonian"
-                       : terms->holonomic_count > 0  ? "holonomic constraints; declare a general "
-                                                       "Lagrangian with both the mass and it"
-                                                     : NULL;
+  const char *beside = terms->factors != NULL       ? "factors"
+                       : terms->lagrangian != NULL  ? "a general Lagrangian; add it to this one"
+                       : terms->one_form != NULL    ? "a one-form; add it to this one"
+                       : terms->hamiltonian != NULL ? "a Hamiltonian"
+                       : terms->holonomic_count > 0 ? "holonomic constraints; declare a general "
+                                                      "Lagrangian with both the mass and it"
+                                                    : NULL;
   if (terms->vector_potential == NULL || beside == NULL) return DVI_OK;
   return dvi__fail(DVI_UNSUPPORTED,
                    "system: a vector potential goes with a constant mass of coordinates, not with "

@@ -79,8 +79,9 @@ static int same_derivatives(const dvi_system *a, const dvi_system *b)
         dvi__potential_has_taylor(&a->potentials[p]) !=
             dvi__potential_has_taylor(&b->potentials[p]))
       return 0;
-  if (a->vector != NULL && (dvi__vector_has_hessian(a->vector) != dvi__vector_has_hessian(b->vector) ||
-                            dvi__vector_has_rate(a->vector) != dvi__vector_has_rate(b->vector)))
+  if (a->vector != NULL &&
+      (dvi__vector_has_hessian(a->vector) != dvi__vector_has_hessian(b->vector) ||
+       dvi__vector_has_rate(a->vector) != dvi__vector_has_rate(b->vector)))
     return 0;
   if (a->constraint != NULL &&
       (a->constraint->callbacks.hessian != NULL) != (b->constraint->callbacks.hessian != NULL))

@@ -315,7 +315,7 @@ dvi_status dvi__vector_potential(dvi__evaluator *e, int count, const double *t, 
 }
 
 dvi_status dvi__magnetic_field(dvi__evaluator *e, int count, const double *t, const double *q,
-                             double *A_q, double *A_t)
+                               double *A_q, double *A_t)
 {
   const dvi_system *s = e->system;
   DVI_TRY(dvi__vector_gradients(s->vector, &e->scratch, count, t, q, A_q));

@@ -35,7 +35,8 @@ dvi_status dvi__lagrangian_value(dvi__evaluator *e, int count, const double *t, 
                                  const double *v, double *L);
 
 /* Compute L_q and L_v [n*count]. Either may be NULL. For a constant mass L_v is M v and costs no
- * callback, but for A of a vector potential. L_q is the sum of all forces, those without a potential included. */
+ * callback, but for A of a vector potential. L_q is the sum of all forces, those without a
+ * potential included. */
 dvi_status dvi__lagrangian_gradient(dvi__evaluator *e, int count, const double *t, const double *q,
                                     const double *v, double *L_q, double *L_v);
 
@@ -45,7 +46,7 @@ dvi_status dvi__lagrangian_gradient(dvi__evaluator *e, int count, const double *
 dvi_status dvi__potentials_gradient(dvi__evaluator *e, int count, const double *t, const double *q,
                                     double *V_q);
 
-/* Compute the vector potential A [n*count], which counts as a gradient, of a system that has one. */
+/* Compute the vector potential A [n*count] of a system that has one. It counts as a gradient. */
 dvi_status dvi__vector_potential(dvi__evaluator *e, int count, const double *t, const double *q,
                                  double *A);
 
@@ -53,7 +54,7 @@ dvi_status dvi__vector_potential(dvi__evaluator *e, int count, const double *t, 
  * [n*count], which is 0 for an autonomous system. The call belongs to dvi__potentials_gradient at
  * the same points, which counts. */
 dvi_status dvi__magnetic_field(dvi__evaluator *e, int count, const double *t, const double *q,
-                             double *A_q, double *A_t);
+                               double *A_q, double *A_t);
 
 /* Compute v.Mv/2 + V of one state. The system must have DVI__CONSTANT_MASS. */
 dvi_status dvi__mass_energy(dvi__evaluator *e, double t, const double *q, const double *v,

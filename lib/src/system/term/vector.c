@@ -17,10 +17,10 @@ static dvi_status check_vector(const dvi_system *s, const dvi_vector_potential *
     return dvi__fail(DVI_BAD_ARGUMENT, "system: the %s has no value callback", name);
   if (given->gradient == NULL && given->gradient_batch == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "system: the %s has no gradient callback", name);
-  DVI_TRY(dvi__check_shapes(
-      "the vector potential", given->value && given->value_batch,
-      given->gradient && given->gradient_batch, given->hessian && given->hessian_batch,
-      given->rate && given->rate_batch));
+  DVI_TRY(dvi__check_shapes("the vector potential", given->value && given->value_batch,
+                            given->gradient && given->gradient_batch,
+                            given->hessian && given->hessian_batch,
+                            given->rate && given->rate_batch));
   return dvi__check_rate(s, "the vector potential", given->rate || given->rate_batch);
 }
 
@@ -156,8 +156,8 @@ dvi_status dvi__vector_hessian(const dvi__vector_term *term, dvi__scratch *s, in
   int returned = 0;
   if (!dvi__vector_has_hessian(term))
     return dvi__difference_hessian(
-        forces_of_q, &(dvi__vector_at){.term = term, .scratch = s, .t = t, .w = w},
-        &s->of_gradient, &term->groups, 0, count, q, &term->qq, A_w_qq, NULL, NULL);
+        forces_of_q, &(dvi__vector_at){.term = term, .scratch = s, .t = t, .w = w}, &s->of_gradient,
+        &term->groups, 0, count, q, &term->qq, A_w_qq, NULL, NULL);
   if (c->hessian_batch != NULL) returned = c->hessian_batch(count, t, q, w, A_w_qq, c->user);
   for (int k = 0; c->hessian_batch == NULL && k < count && returned == 0; k++) {
     dvi__gather_point(s->n, count, k, q, s->point_q);
