@@ -22,6 +22,7 @@ static const subcommand subcommands[] = {
     {"bench", bench_command},
     {"path", path_command},
     {"control", control_command},
+    {"gradient", gradient_command},
     {"check", check_command},
     {"init", init_command},
     {"sweep", sweep_command},
@@ -54,6 +55,7 @@ static const char help[] =
     "  path PROBLEM ...        find a path between given ends, or a periodic one, all its steps at "
     "once\n"
     "  control SCENE.yaml ...  find the controls that lead to an end at the least cost\n"
+    "  gradient SCENE.yaml ... differentiate a run by its start and its parameters\n"
     "  order PROBLEM ...       measure the order of methods against an independent judge\n"
     "  bench PROBLEM ...       measure speed against error, also beside SUNDIALS' integrators\n"
     "\n"

@@ -19,6 +19,7 @@ int order_command(int argc, char **argv);
 int bench_command(int argc, char **argv);
 int path_command(int argc, char **argv);
 int control_command(int argc, char **argv);
+int gradient_command(int argc, char **argv);
 int check_command(int argc, char **argv);
 int init_command(int argc, char **argv);
 int sweep_command(int argc, char **argv);

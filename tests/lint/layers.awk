@@ -59,10 +59,11 @@ BEGIN {
   uses["plot"] = "cli csv"
   uses["sweep"] = "cli csv load"
   uses["boundary"] = "cli csv load"
+  uses["varied"] = "cli csv load"
   uses["study"] = "cli csv plot"
   uses["mechanics"] = uses["study"] " study load"
   uses["watch"] = uses["bench"] = uses["mechanics"] " mechanics"
-  uses["cmd"] = uses["watch"] " watch bench sweep boundary"
+  uses["cmd"] = uses["watch"] " watch bench sweep boundary varied"
   uses["main.c"] = "cli bench"
   # Single headers of other rooms that a room may include.
   also["reference solve/sundials_compat.h"] = 1

@@ -5,6 +5,7 @@
 #ifndef DVI_SCENE_H
 #define DVI_SCENE_H
 #include <dvi/control.h>
+#include <dvi/sensitivity.h>
 #include <dvi/system.h>
 #include <stddef.h>
 
@@ -19,6 +20,8 @@ typedef struct dvi_scene_parameter {
   int settable; /**< 1 if the parameter is a number that a setting may replace */
   /** 1 if of all sections `initial` alone uses the parameter and the definitions made of it */
   int start_only;
+  /** 1 if the parameter is made of other ones, through which it changes */
+  int is_made;
 } dvi_scene_parameter;
 
 /** The plan of a scene's run. Strings are NULL and numbers 0 where the scene does not set them. */
@@ -158,6 +161,30 @@ const char *dvi_scene_control(const dvi_scene *scene, int i);
 
 /** Give the end of the scene's control problem, owned by the scene. Returns 0 if there is none. */
 int dvi_scene_end_of(const dvi_scene *scene, dvi_scene_end *end);
+
+/** Derive the scene by its parameters, for dvi_sensitivity_create. Parameter k is that of
+ *  dvi_scene_parameter_at(scene, k). Those that are not one number, or are made of others, have
+ *  derivatives 0. The expressions are elaborated once more, with the parameters as variables.
+ *  Indices and bounds stay as they are. Like the scene's controls the dependence serves one thread
+ *  at a time.
+ *
+ *  @param[out] dependence  its callback and data belong to the scene
+ *  @param[out] message     [size] as in dvi_scene_read
+ *  @retval DVI_UNSUPPORTED  the scene has no Lagrangian of R^n
+ *  @retval DVI_BAD_FILE, DVI_BAD_SIZE, DVI_NO_MEMORY  as in dvi_scene_read */
+dvi_status dvi_scene_depend(dvi_scene *scene, dvi_dependence *dependence, char *message,
+                            size_t size);
+
+/** Compute how the start depends on the parameters, after dvi_scene_depend. by_q and by_p are [n *
+ *  parameters], with the derivatives of q and of p by parameter k at k*n.
+ *
+ *  @retval DVI_BAD_STATE   before dvi_scene_depend
+ *  @retval DVI_NOT_FINITE  a derivative is not finite */
+dvi_status dvi_scene_start_tangent(const dvi_scene *scene, double *by_q, double *by_p);
+
+/** Return the objective of the scene, with the derivatives by its parameters. It serves one thread
+ *  at a time. NULL if there is none. */
+const dvi_objective *dvi_scene_objective(const dvi_scene *scene);
 
 /** Collect the facts about a scene and its evaluations so far. Zeros for NULL. */
 void dvi_scene_facts_of(const dvi_scene *scene, dvi_scene_facts *facts);

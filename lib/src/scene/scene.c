@@ -66,7 +66,8 @@ static bool show_parameters(dvi_scene *scene)
     scene->shown[i] = (dvi_scene_parameter){.name = p->name,
                                             .value = p->settable ? p->value[0] : (double)NAN,
                                             .settable = p->settable,
-                                            .start_only = p->used_in == DVI__IN_START};
+                                            .start_only = p->used_in == DVI__IN_START,
+                                            .is_made = p->source != NULL && p->is != NULL};
   }
   return true;
 }

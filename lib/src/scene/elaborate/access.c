@@ -50,8 +50,9 @@ static dvi__value index_number(dvi__context *c, const dvi__index *index)
 }
 
 /* Return a parameter as a variable, or as the expression of the parameters that it is made of. */
-static dvi__value varied_parameter(dvi__context *c, const dvi__parameter *p)
+static dvi__value varied_parameter(dvi__context *c, dvi__parameter *p)
 {
+  if (!dvi__note_parameter(c->scene, p)) return DVI__NO_VALUE;
   if (p->source != NULL && p->is != NULL) return dvi__elaborate(c, p->is);
   const int number = c->scene->control_count + (int)(p - c->scene->parameter);
   return dvi__number_value(dvi__variable_node(c, DVI__INPUTS, (dvi__numbering){.base = number}, 0));

@@ -58,6 +58,12 @@ struct dvi_scene {
   dvi_controls controls;
   dvi__scene_term *cost, *control_force;
   double *inputs;
+  /* L(t,q,v), F(t,q,v).w, minus the dissipation, and the start q.w and v.w or p.w, as functions of
+   * the parameters. NULL until derived, or where there is none. */
+  dvi__scene_term *varied_L, *varied_F, *varied_R, *varied_q, *varied_second;
+  dvi__scene_term *objective_end, *objective_rate;
+  dvi_objective objective;
+  int start_overlaps; /* numbers of the start are given by a formula and one by one */
   double *room; /* work of the callbacks of controls, which serve one thread at a time */
 
   const double *mass_diagonal; /* [n] divisors of momenta in invariants, or NULL */

@@ -32,25 +32,30 @@ static bool is_of_field(dvi_scene *scene, const dvi__tree *key, const char *wher
                            "%s is given by coordinate, neither by rate nor by momentum", where);
 }
 
-static bool add_component(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree,
-                          unsigned may, const char *where, dvi__kernels *list)
+bool dvi__add_target(dvi_scene *scene, const dvi__target *target, const dvi__tree *tree,
+                     unsigned may, const char *where, dvi__kernels *list)
 {
   dvi__context c;
-  dvi__target target;
   dvi__value value;
   dvi__numbering numbering;
   const dvi__expression *e;
-  if (!dvi__read_target(scene, key, &target) || !is_of_field(scene, key, where, &target) ||
-      !dvi__context_make(&c, scene, DVI__MENTIONS_Q | may, where))
-    return false;
-  bool good = dvi__target_value(&c, &target, tree, &value, &numbering, &e);
+  if (!dvi__context_make(&c, scene, may, where)) return false;
+  bool good = dvi__target_value(&c, target, tree, &value, &numbering, &e);
   if (good) {
     dvi__node total = dvi__constant(c.graph, 0);
-    dvi__add_product(&c, value, &target, numbering, &total);
+    dvi__add_product(&c, value, target, numbering, &total);
     good = dvi__kernels_add_node(&c, total, list);
   }
   dvi__context_free(&c);
   return good;
+}
+
+static bool add_component(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree,
+                          unsigned may, const char *where, dvi__kernels *list)
+{
+  dvi__target target;
+  return dvi__read_target(scene, key, &target) && is_of_field(scene, key, where, &target) &&
+         dvi__add_target(scene, &target, tree, DVI__MENTIONS_Q | may, where, list);
 }
 
 bool dvi__field_read(dvi_scene *scene, const dvi__tree *field, unsigned may, const char *where,

@@ -23,6 +23,7 @@ static bool put_number(dvi_scene *scene, const dvi__target *target, int number, 
   const char how = (char)(1 + target->fixed);
   if (mark[number] == how)
     return dvi__scene_refuse(scene, target->span, "a number of %s is given twice", target->x->name);
+  scene->start_overlaps |= mark[number] != 0;
   if (mark[number] > how) return true;
   mark[number] = how;
   to[number] = value;

@@ -22,6 +22,10 @@ bool dvi__potential_read(dvi_scene *scene, const dvi__tree *tree, const char *na
 bool dvi__field_read(dvi_scene *scene, const dvi__tree *field, unsigned may, const char *where,
                      dvi__scene_term **term);
 
+/* Add the value of a target times w at its numbers to a list. */
+bool dvi__add_target(dvi_scene *scene, const dvi__target *target, const dvi__tree *tree,
+                     unsigned may, const char *where, dvi__kernels *list);
+
 /* Add value.w to a total, with w the multipliers at the numbers of a target, or at one number. */
 void dvi__add_product(dvi__context *c, dvi__value value, const dvi__target *target,
                       dvi__numbering numbering, dvi__node *total);

@@ -45,6 +45,9 @@ bool dvi__scene_place_file(dvi_scene *scene, dvi__span span, const char **method
  * hamiltonian. NULL if none does. */
 const dvi__tree *dvi__motion_section(const dvi_scene *scene);
 
+/* Read the motion and the start once more as functions of the parameters (dependence.c). */
+bool dvi__read_dependence(dvi_scene *scene);
+
 /* Tell parameters, after all sections, where the expressions made of them stand. Refuses settings
  * of those that stand nowhere. */
 bool dvi__read_uses(dvi_scene *scene);

@@ -16,6 +16,23 @@ bool dvi__make_hamiltonian(dvi_scene *scene, dvi__scene_term *term, dvi_hamilton
 /* Fill in constraints with the function phi(q,p).w, w [term->count]. */
 bool dvi__make_constraint(dvi_scene *scene, dvi__scene_term *term, dvi_constraint *constraint);
 
+/* Make the values of the block of inputs, and room for callbacks that work on them. */
+bool dvi__make_inputs(dvi_scene *scene);
+
+/* Add factor times the second derivatives of a pair, `columns` columns from `first` on, to a matrix
+ * with as many rows as there are coordinates, by columns. Returns as callbacks do. Call
+ * dvi__make_inputs before. */
+int dvi__term_add_matrix(dvi__scene_term *term, int pair, const double *const *x, double factor,
+                         int first, int columns, double *to);
+
+/* Give the derivatives by parameters of a scene that was read by dvi__read_dependence, and those of
+ * its start, [n * parameters] each. matrix [n*n] and by_v [n * parameters] are work. Make the
+ * callbacks of its objective (dependence.c). */
+dvi_dependence dvi__scene_dependence(dvi_scene *scene);
+int dvi__scene_start_tangent(const dvi_scene *scene, double *by_q, double *by_p, double *matrix,
+                             double *by_v);
+bool dvi__make_objective(dvi_scene *scene);
+
 /* Let the controls of the scene act by the function F(t,q,v,u).w (controls.c). */
 bool dvi__make_control_force(dvi_scene *scene, dvi__scene_term *term);
 /* Let the controls cost what the function C(t,q,v,u) says. */

@@ -38,24 +38,30 @@ static int component_difference(const dvi_scene *scene, const double *const *wit
   return returned;
 }
 
-/* Add factor times a matrix on the pattern of a pair to one that is stored by columns. */
-static int add_matrix(const dvi_scene *scene, int pair, const double *const *x, double factor,
-                      int columns, double *to)
+int dvi__term_add_matrix(dvi__scene_term *term, int pair, const double *const *x, double factor,
+                         int first, int columns, double *to)
 {
-  dvi__scene_term *term = scene->control_force;
+  const int n = term->n;
+  double *room = term->scene->room;
   dvi_pattern pattern;
   int full;
   double *values[DVI__PAIRS] = {[0] = NULL};
-  values[pair] = scene->room;
+  values[pair] = room;
   int returned = dvi__function_pattern(term->function, pair, &pattern, &full);
   if (returned == 0) returned = dvi__function_second(term->function, 1, x, values);
   for (int j = 0; j < columns && returned == 0; j++) {
-    const int first = full ? j * scene->n : pattern.start[j],
-              end = full ? first + scene->n : pattern.start[j + 1];
-    for (int e = first; e < end; e++)
-      to[j * scene->n + (full ? e - first : pattern.row[e])] += factor * scene->room[e];
+    const int c = first + j, begin = full ? c * n : pattern.start[c],
+              end = full ? begin + n : pattern.start[c + 1];
+    for (int e = begin; e < end; e++)
+      to[j * n + (full ? e - begin : pattern.row[e])] += factor * room[e];
   }
   return returned;
+}
+
+static int add_matrix(const dvi_scene *scene, int pair, const double *const *x, double factor,
+                      int columns, double *to)
+{
+  return dvi__term_add_matrix(scene->control_force, pair, x, factor, 0, columns, to);
 }
 
 static int control_force(double t, const double *q, const double *v, const double *u, double *F,
@@ -76,15 +82,25 @@ static int control_force(double t, const double *q, const double *v, const doubl
 
 /* ---- making them ---- */
 
-bool dvi__make_control_cost(dvi_scene *scene, dvi__scene_term *term)
+bool dvi__make_inputs(dvi_scene *scene)
 {
   const size_t inputs = (size_t)scene->control_count + (size_t)scene->parameter_count,
                n = (size_t)scene->n;
-  scene->cost = term;
-  term->role = DVI__ROLE_AUXILIARY;
-  scene->inputs = dvi__arena_take(&scene->arena, inputs, sizeof *scene->inputs);
+  if (scene->inputs != NULL) return true;
+  scene->inputs = dvi__arena_take(&scene->arena, inputs + 1, sizeof *scene->inputs);
   scene->room = dvi__arena_take(&scene->arena, n * (n + inputs) + inputs, sizeof *scene->room);
   if (scene->inputs == NULL || scene->room == NULL) return dvi__scene_no_memory(scene);
+  for (int k = 0; k < scene->parameter_count; k++)
+    if (scene->parameter[k].settable)
+      scene->inputs[scene->control_count + k] = scene->parameter[k].value[0];
+  return true;
+}
+
+bool dvi__make_control_cost(dvi_scene *scene, dvi__scene_term *term)
+{
+  scene->cost = term;
+  term->role = DVI__ROLE_AUXILIARY;
+  if (!dvi__make_inputs(scene)) return false;
   scene->controls = (dvi_controls){.count = scene->control_count,
                                    .cost = control_cost,
                                    .least = scene->control_least,
