@@ -23,6 +23,7 @@ static const subcommand subcommands[] = {
     {"path", path_command},
     {"control", control_command},
     {"gradient", gradient_command},
+    {"fit", fit_command},
     {"check", check_command},
     {"init", init_command},
     {"sweep", sweep_command},
@@ -56,6 +57,7 @@ static const char help[] =
     "once\n"
     "  control SCENE.yaml ...  find the controls that lead to an end at the least cost\n"
     "  gradient SCENE.yaml ... differentiate a run by its start and its parameters\n"
+    "  fit SCENE.yaml ...      fit parameters and the start of a run to measurements\n"
     "  order PROBLEM ...       measure the order of methods against an independent judge\n"
     "  bench PROBLEM ...       measure speed against error, also beside SUNDIALS' integrators\n"
     "\n"

@@ -20,6 +20,7 @@ int bench_command(int argc, char **argv);
 int path_command(int argc, char **argv);
 int control_command(int argc, char **argv);
 int gradient_command(int argc, char **argv);
+int fit_command(int argc, char **argv);
 int check_command(int argc, char **argv);
 int init_command(int argc, char **argv);
 int sweep_command(int argc, char **argv);

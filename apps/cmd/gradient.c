@@ -19,13 +19,11 @@ typedef struct gradient_request {
 /* The run as it is asked for, in equal steps that end at the end. */
 static int plan_run(const gradient_request *r, const problem *scene, dvi_run_plan *plan)
 {
-  const double h = isnan(r->h) ? scene->h : r->h,
-               t_end = isnan(r->t_end) ? scene->t_end : r->t_end;
+  const double h = isnan(r->h) ? scene->h : r->h, t_end = isnan(r->t_end) ? scene->t_end : r->t_end;
   const double steps = round(t_end / h);
   if (!(h > 0) || !(steps >= 1 && steps < 1e9))
     return usage_error("gradient: steps of %g to t = %g are no run", h, t_end);
-  *plan = (dvi_run_plan){
-      .h = t_end / steps, .steps = (long)steps, .q = scene->q, .p = scene->p};
+  *plan = (dvi_run_plan){.h = t_end / steps, .steps = (long)steps, .q = scene->q, .p = scene->p};
   return DONE;
 }
 

@@ -90,7 +90,7 @@ void varied_tangent(const varied *own, int k, double *change)
 {
   const int rows = 2 * own->n;
   const double *tangent = dvi_sensitivity_tangent(own->run);
-  for (int i = 0; i < rows; i++) change[i] = tangent[k * rows + i];
+  for (int i = 0; i < rows; i++) change[i] = tangent[k * rows + i] + 0.0; /* no -0 */
   for (int j = 0; j < own->n && k >= rows; j++) {
     const double of_q = own->by_q[(k - rows) * own->n + j],
                  of_p = own->by_p[(k - rows) * own->n + j];

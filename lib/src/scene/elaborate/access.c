@@ -58,10 +58,16 @@ static dvi__value varied_parameter(dvi__context *c, dvi__parameter *p)
   return dvi__number_value(dvi__variable_node(c, DVI__INPUTS, (dvi__numbering){.base = number}, 0));
 }
 
+/* Tell whether a parameter is a variable here, a number or made of others. */
+static bool is_varied(const dvi__context *c, const dvi__parameter *p)
+{
+  return (c->may & DVI__OF_PARAMETERS) != 0 &&
+         (p->shape.rank == 0 || (p->source != NULL && p->is != NULL));
+}
+
 static dvi__value parameter_value(dvi__context *c, dvi__parameter *p)
 {
-  const int varies = p->shape.rank == 0 || (p->source != NULL && p->is != NULL);
-  if ((c->may & DVI__OF_PARAMETERS) != 0 && varies) return varied_parameter(c, p);
+  if (is_varied(c, p)) return varied_parameter(c, p);
   if (!dvi__note_parameter(c->scene, p)) return DVI__NO_VALUE;
   dvi__value value = dvi__value_make(c, p->shape.rank, p->shape.rows, p->shape.columns);
   if (dvi__failed(value)) return value;
@@ -321,8 +327,10 @@ dvi__value dvi__index_value(dvi__context *c, const dvi__expression *e)
   const dvi__name *name = base->form == DVI__FORM_NAME
                               ? dvi__names_find(&c->scene->names, base->name)
                               : NULL;
-  if (name != NULL && name->sort == DVI__PARAMETER)
-    return parameter_element(c, &c->scene->parameter[name->number], count, index, e->span);
+  dvi__parameter *list = name != NULL && name->sort == DVI__PARAMETER
+                             ? &c->scene->parameter[name->number]
+                             : NULL;
+  if (list != NULL && !is_varied(c, list)) return parameter_element(c, list, count, index, e->span);
   if (name != NULL && name->sort == DVI__COORDINATE &&
       c->scene->coordinate[name->number].family > 0)
     return family_element(c, &c->scene->coordinate[name->number], count, index, e->span);

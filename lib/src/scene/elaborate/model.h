@@ -64,7 +64,7 @@ struct dvi_scene {
   dvi__scene_term *objective_end, *objective_rate;
   dvi_objective objective;
   int start_overlaps; /* numbers of the start are given by a formula and one by one */
-  double *room; /* work of the callbacks of controls, which serve one thread at a time */
+  double *room;       /* work of the callbacks of controls, which serve one thread at a time */
 
   const double *mass_diagonal; /* [n] divisors of momenta in invariants, or NULL */
   dvi_system_terms terms;

@@ -100,8 +100,8 @@ static bool read_objective(dvi_scene *scene, const dvi__tree *tree, unsigned may
                            dvi__scene_term **term)
 {
   dvi__kernels list = {0};
-  return tree == NULL || finish(scene, add_expression(scene, tree, may, where, 0, &list), &list, 0,
-                                term);
+  return tree == NULL ||
+         finish(scene, add_expression(scene, tree, may, where, 0, &list), &list, 0, term);
 }
 
 bool dvi__read_objective(dvi_scene *scene, const dvi__tree *section)

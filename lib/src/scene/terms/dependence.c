@@ -18,11 +18,11 @@ static int depend(double t, const double *q, const double *v, double *in_q, doub
   if (returned == 0) returned = dvi__term_add_matrix(L, DVI__PAIR_VU, x, 1, first, count, in_v);
   returned = dvi__fault_check(L, 1, x, 0, returned);
   if (returned == 0 && F != NULL)
-    returned = dvi__fault_check(
-        F, 1, x, 0, dvi__term_add_matrix(F, DVI__PAIR_WU, x, 1, first, count, in_q));
+    returned = dvi__fault_check(F, 1, x, 0,
+                                dvi__term_add_matrix(F, DVI__PAIR_WU, x, 1, first, count, in_q));
   if (returned == 0 && R != NULL)
-    returned = dvi__fault_check(
-        R, 1, x, 0, dvi__term_add_matrix(R, DVI__PAIR_VU, x, 1, first, count, in_q));
+    returned = dvi__fault_check(R, 1, x, 0,
+                                dvi__term_add_matrix(R, DVI__PAIR_VU, x, 1, first, count, in_q));
   return returned;
 }
 
@@ -76,11 +76,9 @@ static int objective(const dvi_scene *scene, dvi__scene_term *term, double t, co
                      double *by_theta)
 {
   const double *x[DVI__BLOCKS] = {&t, q, second, NULL, scene->inputs};
-  double *gradient[DVI__BLOCKS] = {[DVI__COORDINATES] = by_q,
-                                   [DVI__VELOCITIES] = by_second,
-                                   [DVI__INPUTS] = scene->room};
-  int returned = dvi__fault_check(term, 1, x, 0,
-                                  dvi__function_value(term->function, 1, x, value));
+  double *gradient[DVI__BLOCKS] = {
+      [DVI__COORDINATES] = by_q, [DVI__VELOCITIES] = by_second, [DVI__INPUTS] = scene->room};
+  int returned = dvi__fault_check(term, 1, x, 0, dvi__function_value(term->function, 1, x, value));
   if (returned == 0)
     returned = dvi__fault_check(term, 1, x, 0,
                                 dvi__function_gradient(term->function, 1, x, gradient));
