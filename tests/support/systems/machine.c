@@ -152,7 +152,7 @@ dvi_dependence machine_dependence(machine *m)
   return (dvi_dependence){P, depend, m};
 }
 
-dvi_system *machine_system(machine *m)
+dvi_system *machine_system_with(machine *m, const dvi_force *more)
 {
   dvi_system *system = NULL;
   const dvi_lagrangian L = {
@@ -161,16 +161,23 @@ dvi_system *machine_system(machine *m)
                            .gradient = potential_gradient,
                            .hessian = potential_hessian,
                            .user = m};
-  const dvi_force F = {
-      .name = "forces", .value = force_value, .jacobian = force_jacobian, .user = m};
+  dvi_force forces[2] = {
+      {.name = "forces", .value = force_value, .jacobian = force_jacobian, .user = m}};
   const double mass[N] = {2 * m->theta[0], 1};
-  dvi_system_terms terms = {.dimension = N, .forces = &F, .force_count = 1};
+  if (more != NULL) forces[1] = *more;
+  dvi_system_terms terms = {
+      .dimension = N, .forces = forces, .force_count = more != NULL ? 2 : 1};
   if (m->bend > 0)
     terms.lagrangian = &L;
   else
     terms.mass.diagonal = mass, terms.potentials = &V, terms.potential_count = 1;
   ck_assert_msg(dvi_system_create(&terms, &system) == DVI_OK, "%s", dvi_last_error());
   return system;
+}
+
+dvi_system *machine_system(machine *m)
+{
+  return machine_system_with(m, NULL);
 }
 
 /* ---- the discrete map: q(tau) = q0 + sum_k Y_k tau^k ---- */

@@ -22,7 +22,10 @@ typedef struct machine {
 
 extern const machine bent_machine, straight_machine;
 
+/* Make the system, perhaps with one more force. */
 dvi_system *machine_system(machine *m);
+dvi_system *machine_system_with(machine *m, const dvi_force *more);
+
 dvi_dependence machine_dependence(machine *m);
 
 /* Computes (q, p) after some steps of a method of degree s with Gauss or Lobatto points. z [4] is
