@@ -117,22 +117,20 @@ START_TEST(a_run_under_the_controls_reaches_the_end)
                                        .q1 = q1,
                                        .p1 = p1,
                                        .free_p1 = (const char[]){1, 0}};
-  ck_assert_msg(dvi_control_create(system, "galerkin:degree=2", &free_controls, &options,
-                                   &control) == DVI_OK,
-                "%s", dvi_last_error());
+  ck_assert_msg(
+      dvi_control_create(system, "galerkin:degree=2", &free_controls, &options, &control) == DVI_OK,
+      "%s", dvi_last_error());
   ck_assert_msg(dvi_control_solve(control, &report) == DVI_OK, "%s", dvi_last_error());
   ck_assert_int_eq(report.is_minimum, 1);
   replay r = {control, 20, dvi_control_points(control), 0.05};
-  driven = machine_system_with(&m, &(dvi_force){.name = "controls",
-                                                .value = replayed_force,
-                                                .user = &r});
+  driven = machine_system_with(
+      &m, &(dvi_force){.name = "controls", .value = replayed_force, .user = &r});
   ck_assert_int_eq(dvi_integrator_create(driven, "galerkin:degree=2,solver=newton", &integrator),
                    DVI_OK);
   ck_assert_int_eq(dvi_integrator_start(integrator, 0, q0, p0), DVI_OK);
   for (int k = 0; k < 20; k++)
     ck_assert_msg(dvi_integrator_step(integrator, 0.05) == DVI_OK, "%s", dvi_last_error());
-  for (int i = 0; i < N; i++)
-    ck_assert_double_eq_tol(dvi_integrator_q(integrator)[i], q1[i], 1e-9);
+  for (int i = 0; i < N; i++) ck_assert_double_eq_tol(dvi_integrator_q(integrator)[i], q1[i], 1e-9);
   ck_assert_double_eq_tol(dvi_integrator_p(integrator)[1], p1[1], 1e-9);
   double by_q[N], by_p[N];
   ck_assert_int_eq(dvi_control_costate(control, 20, by_q, by_p), DVI_OK);
@@ -154,9 +152,8 @@ static double cost_from(const double *q0, const double *p0, double *by_q, double
   const double q1[] = {0.2, 0.5}, p1[] = {0, 0.3};
   const dvi_control_options options = {
       .steps = 8, .span = 1, .dimension = N, .q0 = q0, .p0 = p0, .q1 = q1, .p1 = p1};
-  ck_assert_int_eq(dvi_control_create(system, "galerkin:degree=3", &free_controls, &options,
-                                      &control),
-                   DVI_OK);
+  ck_assert_int_eq(
+      dvi_control_create(system, "galerkin:degree=3", &free_controls, &options, &control), DVI_OK);
   ck_assert_msg(dvi_control_solve(control, &report) == DVI_OK, "%s", dvi_last_error());
   ck_assert_int_eq(dvi_control_costate(control, 0, by_q, by_p), DVI_OK);
   dvi_control_destroy(&control);

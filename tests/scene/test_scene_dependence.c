@@ -34,6 +34,12 @@ static const char *const scenes[] = {
     "dissipation: c*x'^2/2\n"
     "initial: {x: a, y: 0.5, p(x): m^2, p(y): k}\n"
     "objective: {integral: x*y + a*x'^2}\nstep: 0.1\nuntil: 1\n",
+    /* with a vector potential */
+    "parameters: {m: 1.3, k: 0.7, c: 0.2, f: 0.4, a: 0.3}\n"
+    "coordinates: {x: scalar, y: scalar}\n"
+    "lagrangian: m*(x'^2 + y'^2)/2 + k*x^2*y' - f*y*x' - a*x^4 - c*y^2\n"
+    "initial: {x: a, y: 0.5, x': k, y': 1}\n"
+    "objective: {end: x*p(y), integral: y*x'}\nstep: 0.1\nuntil: 1\n",
 };
 enum { SCENES = sizeof scenes / sizeof *scenes };
 

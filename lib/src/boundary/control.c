@@ -38,7 +38,7 @@ static dvi_status check_arguments(const dvi_system *system, const char *method,
     return dvi__fail(DVI_BAD_ARGUMENT, "control: the controls have no %s",
                      controls->cost == NULL ? "cost" : "force");
   const unsigned taken = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL | DVI__FORCES |
-                         DVI__FAST;
+                         DVI__FAST | DVI__VECTOR_POTENTIAL;
   if ((system->terms & ~taken) != 0)
     return dvi__fail(DVI_UNSUPPORTED,
                      "control: control is of constant masses and general Lagrangians in R^n with "

@@ -13,7 +13,7 @@
 static dvi_status check_system(const dvi_system *system)
 {
   const unsigned taken = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL | DVI__FORCES |
-                         DVI__FAST;
+                         DVI__FAST | DVI__VECTOR_POTENTIAL;
   if ((system->terms & ~taken) == 0) return DVI_OK;
   return dvi__fail(DVI_UNSUPPORTED,
                    "sensitivity: derivatives of a run are for constant masses and general "

@@ -165,8 +165,7 @@ dvi_system *machine_system_with(machine *m, const dvi_force *more)
       {.name = "forces", .value = force_value, .jacobian = force_jacobian, .user = m}};
   const double mass[N] = {2 * m->theta[0], 1};
   if (more != NULL) forces[1] = *more;
-  dvi_system_terms terms = {
-      .dimension = N, .forces = forces, .force_count = more != NULL ? 2 : 1};
+  dvi_system_terms terms = {.dimension = N, .forces = forces, .force_count = more != NULL ? 2 : 1};
   if (m->bend > 0)
     terms.lagrangian = &L;
   else

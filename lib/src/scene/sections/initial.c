@@ -242,9 +242,10 @@ static bool final_is_complete(dvi_scene *scene, const dvi__tree *section, const 
 {
   if (g->velocities && g->momenta)
     return dvi__scene_refuse(scene, section->span, "give velocities or momenta, not both");
-  const int single = scene->mass_diagonal != NULL && scene->terms.mass.values == NULL;
+  const int moves = scene->terms.lagrangian != NULL || scene->terms.vector_potential != NULL,
+            single = scene->mass_diagonal != NULL && scene->terms.mass.values == NULL && !moves;
   for (int i = 0; i < scene->n && g->velocities && !single; i++)
-    if (!g->v[i] || (scene->terms.lagrangian != NULL && !g->q[i]))
+    if (!g->v[i] || (moves && !g->q[i]))
       return dvi__scene_refuse(scene, section->span,
                                "velocities that the mass couples must all be given, and the "
                                "coordinates on which the mass depends; or give momenta, p(x)");
