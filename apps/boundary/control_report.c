@@ -13,6 +13,7 @@ void control_print(const controlled *c, FILE *stream)
   (void)fprintf(stream, "%s, %d steps of %s\n", c->scene->name, dvi_control_steps(c->control),
                 dvi_control_method(c->control));
   (void)fprintf(stream, "cost              %.15g\n", r->cost);
+  (void)fprintf(stream, "span              %.15g\n", r->span);
   if (r->barrier > 0)
     (void)fprintf(stream, "barrier           %.1e of the bounds, in units of the cost\n",
                   r->barrier);

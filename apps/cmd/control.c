@@ -15,6 +15,7 @@
 typedef struct control_request {
   const char *method, *guess, *out;
   long steps; /**< 0 if not given */
+  bool free_time;
   words settings;
 } control_request;
 
@@ -45,7 +46,8 @@ static int create_problem(const control_request *request, controlled *c)
                                        .q1 = end.q,
                                        .p1 = end.p,
                                        .free_q1 = end.free_q,
-                                       .free_p1 = end.free_p};
+                                       .free_p1 = end.free_p,
+                                       .free_span = request->free_time};
   c->count = controls->count;
   const dvi_status status = dvi_control_create(scene->system, method, controls, &options,
                                                &c->control);
@@ -122,6 +124,9 @@ static const option command_options[] = {
      OPTION_AT(control_request, steps),
      .value = "N",
      .help = "how many steps the motion has; default: by the scene's step"},
+    {.name = "free-time",
+     OPTION_AT(control_request, free_time),
+     .help = "find the time to the end with the least cost, too; `until` is its guess"},
     {.name = "guess",
      OPTION_AT(control_request, guess),
      .value = "FILE",

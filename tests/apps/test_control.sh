@@ -32,6 +32,12 @@ says out '^barrier ' 'the barrier'
 awk -F, 'NR > 1 && ($4 >= 0.85 || $4 <= -0.85) { exit 1 }' b.csv || fail 'controls within bounds'
 awk -F, 'NR > 1 && $4 > 0.8499 { found = 1 } END { exit !found }' b.csv || fail 'bounds are met'
 
+# A free time: the pendulum swings up in the time that costs least.
+sed 's/u^2\/2/u^2\/2 + 0.2/' free.yaml >priced.yaml
+expect 0 'a free time' control priced.yaml --free-time
+says out '^span  *4.84271156112' 'the time'
+says out '^cost  *2.20975498330' 'its cost'
+
 # An end that is free costs less, and its costate is 0.
 sed "s/, a': 0}$/}/; s/initial: {a: 0}/initial: {a: 0, a': 0}/" free.yaml >loose.yaml
 expect 0 'a free velocity' control loose.yaml --out loose.csv

@@ -12,6 +12,7 @@ typedef struct plant {
   double stiffness;
   int pendulum;
   double factor; /* of the cost u^2/2 */
+  double price;  /* of time */
 } plant;
 
 static int plant_value(double t, const double *q, double *V, void *user)
@@ -43,7 +44,7 @@ static int plant_cost(double t, const double *q, const double *v, const double *
 {
   const plant *p = user;
   (void)t, (void)q, (void)v, (void)C_q, (void)C_v;
-  *C = p->factor * u[0] * u[0] / 2;
+  *C = p->factor * u[0] * u[0] / 2 + p->price;
   C_u[0] = p->factor * u[0];
   return 0;
 }
@@ -62,8 +63,11 @@ static dvi_system *make_plant(plant *p)
   dvi_system *system = NULL;
   const dvi_potential V = {
       .value = plant_value, .gradient = plant_gradient, .hessian = plant_hessian, .user = p};
-  const dvi_system_terms terms = {
-      .dimension = 1, .mass = {.scalar = 1}, .potentials = &V, .potential_count = 1};
+  const dvi_system_terms terms = {.dimension = 1,
+                                  .mass = {.scalar = 1},
+                                  .potentials = &V,
+                                  .potential_count = 1,
+                                  .autonomous = p->price > 0};
   ck_assert_int_eq(dvi_system_create(&terms, &system), DVI_OK);
   return system;
 }
@@ -73,8 +77,8 @@ typedef struct task {
   double q0, q1, span;
 } task;
 
-static const task carriage = {{0, 0, 1}, 0, 1, 1}, oscillator = {{1, 0, 1}, 1, 0, 3},
-                  swing_up = {{0, 1, 1}, 0, 3.14159265358979323846, 5};
+static const task carriage = {{0, 0, 1, 0}, 0, 1, 1}, oscillator = {{1, 0, 1, 0}, 1, 0, 3},
+                  swing_up = {{0, 1, 1, 0}, 0, 3.14159265358979323846, 5};
 
 /* Solves a task from rest to rest. u0 is the first control, and by_p0 the first costate. */
 static dvi_control_report solve_task(task of, const char *method, int steps, const double *bounds,
@@ -92,6 +96,7 @@ static dvi_control_report solve_task(task of, const char *method, int steps, con
                                  .user = &of.plant};
   const dvi_control_options options = {.steps = steps,
                                        .span = of.span,
+                                       .free_span = of.plant.price > 0,
                                        .dimension = 1,
                                        .q0 = &of.q0,
                                        .p0 = rest,
@@ -189,6 +194,26 @@ START_TEST(a_cost_in_other_units_has_the_same_control)
     ck_assert_double_eq_tol(report.cost / factor, swing_up_cost, 1e-12);
     ck_assert_double_eq_tol(u0, swing_up_u0, 1e-11);
     ck_assert_int_eq(report.is_minimum, 1);
+  }
+}
+END_TEST
+
+/* ---- free spans ---- */
+
+/* With u^2/2 + price the carriage costs price T + 6/(T^3 (1 - 1/N^2)), least where T^4 is 18/(price
+ * (1 - 1/N^2)). */
+START_TEST(a_free_span_is_that_of_the_least_cost)
+{
+  static const double guesses[] = {0.3, 1, 2, 9};
+  for (int k = 0; k < 4; k++) {
+    task of = carriage;
+    double u0, by_p0;
+    const double N = 20, price = 0.5, six = 6 / (1 - 1 / (N * N)), T = pow(3 * six / price, 0.25);
+    of.plant.price = price;
+    of.span = guesses[k];
+    const dvi_control_report report = solve_task(of, "midpoint", (int)N, NULL, &u0, &by_p0);
+    ck_assert_double_eq_tol(report.span, T, 1e-13 * T);
+    ck_assert_double_eq_tol(report.cost, price * T + six / pow(T, 3), 1e-13);
   }
 }
 END_TEST
@@ -291,6 +316,14 @@ START_TEST(options_that_make_no_sense_are_refused)
   options = plain;
   options.span = -1;
   ck_assert_int_eq(try_task(carriage, NULL, options, one_control), DVI_BAD_ARGUMENT);
+  options = plain;
+  options.free_span = 1;
+  ck_assert_int_eq(try_task(carriage, NULL, options, one_control), DVI_UNSUPPORTED);
+  check_words("declared autonomous");
+  task slower = carriage;
+  slower.plant.price = 1e-30; /* autonomous, and slower is cheaper */
+  ck_assert_int_eq(try_task(slower, NULL, options, one_control), DVI_NOT_CONVERGED);
+  check_words("the cost must count the time");
   controls.count = 0;
   ck_assert_int_eq(try_task(carriage, NULL, plain, controls), DVI_BAD_SIZE);
   controls = one_control;
@@ -308,6 +341,7 @@ SUITE(control)
   tcase_add_loop_test(tests, cost_and_control_have_the_order_of_the_method, 0, ORDERS);
   tcase_add_test(tests, digits_are_those_of_pontryagins_equations);
   tcase_add_test(tests, a_cost_in_other_units_has_the_same_control);
+  tcase_add_test(tests, a_free_span_is_that_of_the_least_cost);
   tcase_add_test(tests, bounds_hold_and_cost_what_they_must);
   tcase_add_test(tests, ends_beyond_the_bounds_have_no_solution);
   tcase_add_test(tests, problems_without_a_solution_are_refused);

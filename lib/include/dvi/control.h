@@ -42,11 +42,15 @@ typedef struct dvi_control_options {
   const double *q0, *p0;         /**< the state at the start */
   const double *q1, *p1;         /**< the state at the end. Numbers that are free are guesses */
   const char *free_q1, *free_p1; /**< not 0 where the end's number is free. NULL: none is free */
+  /** not 0 if the span is free, too. It is a guess then. For autonomous systems whose costs and
+   *  forces of controls do not depend on time either */
+  int free_span;
 } dvi_control_options;
 
 /** Results of a solve. */
 typedef struct dvi_control_report {
   double cost; /**< the cost h sum_j b_j C_j, without the barrier of the bounds */
+  double span; /**< the time from the start to the end */
   /** the log barrier's factor at the end, in units of the cost per unit of time. 0 without bounds.
    *  The barrier raises the cost by less than this factor times the span and the number of
    *  bounds */
@@ -77,10 +81,11 @@ extern "C" {
  *  @param      method    as for dvi_path_create
  *  @param      controls  read at creation; the data at `user` must outlive the problem
  *  @param[out] control   owned by the caller. NULL on failure
- *  @retval DVI_UNSUPPORTED   the system declares other terms
  *  @retval DVI_BAD_ARGUMENT  a pointer is NULL, a number is not finite, or a bound is not below its
  *                            other bound
  *  @retval DVI_BAD_SIZE      the number of controls, or the dimension, is out of range
+ *  @retval DVI_UNSUPPORTED   the system declares other terms, or the span is free and the system
+ *                            is not declared autonomous
  *  @retval (others)          as dvi_path_create */
 dvi_status dvi_control_create(const dvi_system *system, const char *method,
                               const dvi_controls *controls, const dvi_control_options *options,
@@ -99,7 +104,8 @@ dvi_status dvi_control_guess(dvi_control *control, int points, int dimension, co
  *
  *  @param[out] report  may be NULL
  *  @retval DVI_NOT_CONVERGED  no stationary motion was found from the guess, or there is none. Or
- *                             the cost has no minimum in the controls on the way
+ *                             the cost has no minimum in the controls on the way. Or no span
+ *                             has the least cost, as where slower is always cheaper
  *  @retval DVI_SINGULAR       the solution is not isolated: the controls do not reach the end, or
  *                             many motions cost the same
  *  @retval (others)           as dvi_path_solve */

@@ -1,6 +1,7 @@
 /* Optimal control as a path of the doubled Lagrangian (doubled.h). At the start q is given, and w
  * is free with the momentum p_0. At the end q is given, or free with the momentum 0. w is free with
  * the momentum p_N where that is given, else w is 0. These are the rows of the two end nodes. */
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -16,13 +17,18 @@ struct dvi_control {
   dvi_path *path;
   dvi__evaluator *states; /* for velocities at nodes */
   dvi_counters counters;
-  int n, m, solved;
-  double *point, *v; /* [4 n], [n] work */
+  int n, m, solved, free_span;
+  double *point, *v; /* [8 n], [n] work */
 };
 
 /* Factors of the log barrier, over the size of the cost: the first one, the ratio from each to the
  * next, and the last one. */
 static const double first_barrier = 0.1, next_barrier = 0.2, last_barrier = 1e-10;
+
+/* The search of a free span: the first change, the change below which roundings may end it, and the
+ * largest ratio to the guess, as parts of the span. */
+static const double first_change = 0.01, last_change = 1e-6, largest_span = 1e3;
+enum { MOST_SPANS = 60 };
 
 /* ---- create ---- */
 
@@ -43,6 +49,9 @@ static dvi_status check_arguments(const dvi_system *system, const char *method,
     return dvi__fail(DVI_UNSUPPORTED,
                      "control: control is of constant masses and general Lagrangians in R^n with "
                      "potentials and forces; the system declares another term");
+  if (o->free_span && !system->autonomous)
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "control: a free span needs a system that is declared autonomous");
   if (o->dimension != system->n)
     return dvi__fail(DVI_BAD_SIZE, "control: the ends have %d coordinates, the system %d",
                      o->dimension, system->n);
@@ -109,9 +118,9 @@ static dvi_status assemble(dvi_control *own, const dvi_system *system, const cha
   DVI_TRY(dvi__doubled_create(system, controls, &own->doubled));
   DVI_TRY(make_path(own, method, o));
   DVI_TRY(dvi__evaluator_create(system, 1, DVI__STATES, &own->counters, &own->states));
-  own->point = DVI_NEW(double, 5 * own->n);
+  own->point = DVI_NEW(double, 9 * own->n);
   if (own->point == NULL) return dvi__fail(DVI_NO_MEMORY, "no memory");
-  own->v = own->point + 4 * own->n;
+  own->v = own->point + 8 * own->n;
   return DVI_OK;
 }
 
@@ -127,6 +136,7 @@ dvi_status dvi_control_create(const dvi_system *system, const char *method,
   if (made == NULL) return dvi__fail(DVI_NO_MEMORY, "control: no memory");
   made->n = system->n;
   made->m = controls->count;
+  made->free_span = options->free_span != 0;
   const dvi_status status = assemble(made, system, method, controls, options);
   if (status != DVI_OK) dvi_control_destroy(&made);
   *control = made;
@@ -223,6 +233,68 @@ static dvi_status solve_all(dvi_control *own, dvi_path_report *found, dvi_contro
   return DVI_OK;
 }
 
+/* ---- a free span ---- */
+
+/* Compute the derivative of the cost by the span, in the cost's unit. With the path's numbers fixed
+ * the action h sum_j b_j G(Q_j, V_j) changes by its h and by V = X'/h, by
+ *
+ *     sum_j b_j (G - V.G_v)_j / N     over all steps. */
+static dvi_status slope_by_span(dvi_control *own, double *slope)
+{
+  dvi_path *path = own->path;
+  dvi__evaluator *e = dvi__action_evaluator(path->action);
+  const size_t n2 = 2 * (size_t)own->n;
+  *slope = 0;
+  for (int k = 0; k < path->steps; k++) {
+    dvi__path_place(path, path->x, k);
+    const dvi__path_points points = dvi__action_two_point_points(path->action, path->Y);
+    const size_t r = (size_t)points.count;
+    for (size_t j = 0; j < r; j++) {
+      double G, *q = own->point, *v = q + n2, *G_q = v + n2, *G_v = G_q + n2;
+      for (size_t i = 0; i < n2; i++) q[i] = points.Q[i * r + j], v[i] = points.V[i * r + j];
+      DVI_TRY(dvi__lagrangian_value(e, 1, &points.t[j], q, v, &G));
+      DVI_TRY(dvi__lagrangian_gradient(e, 1, &points.t[j], q, v, G_q, G_v));
+      for (size_t i = 0; i < n2; i++) G -= v[i] * G_v[i];
+      *slope += points.weight[j] * G / path->steps;
+    }
+  }
+  return DVI_OK;
+}
+
+static dvi_status solve_over(dvi_control *own, double span, dvi_path_report *found, int *iterations,
+                             double *slope)
+{
+  own->path->span = span;
+  DVI_TRY(solve_once(own, found, iterations));
+  return slope_by_span(own, slope);
+}
+
+/* Find the span at which the slope is 0, by the secant method with steps of at most half the span,
+ * to the rounding of the slope. */
+static dvi_status search_span(dvi_control *own, dvi_path_report *found, int *iterations)
+{
+  const double guess = own->path->span;
+  double before = guess, span = guess * (1 + first_change), slope_before, slope;
+  DVI_TRY(slope_by_span(own, &slope_before));
+  for (int k = 0; k < MOST_SPANS; k++) {
+    DVI_TRY(solve_over(own, span, found, iterations, &slope));
+    double change = -slope * (span - before) / (slope - slope_before);
+    if (!isfinite(change)) change = 0;
+    if (fabs(change) <= 4 * DBL_EPSILON * span ||
+        (fabs(span - before) < last_change * span && fabs(slope) >= 0.5 * fabs(slope_before)))
+      return DVI_OK;
+    before = span;
+    slope_before = slope;
+    span += fmax(fmin(change, 0.5 * span), -0.5 * span);
+    if (!(span < largest_span * guess) || !(span * largest_span > guess)) break;
+  }
+  return dvi__fail(DVI_NOT_CONVERGED,
+                   "no span near %g has the least cost: at %g the cost changes by %.2g per unit of "
+                   "time; where slower is always cheaper the cost must count the time, as in u^2/2 "
+                   "+ 1",
+                   guess, before, slope_before * own->doubled->unit);
+}
+
 static int count_multipliers(const dvi_control *own)
 {
   int given = 0;
@@ -234,6 +306,8 @@ static dvi_status solve_and_measure(dvi_control *own, dvi_control_report *report
 {
   dvi_path_report found = {0};
   DVI_TRY(solve_all(own, &found, report));
+  if (own->free_span) DVI_TRY(search_span(own, &found, &report->iterations));
+  report->span = own->path->span;
   DVI_TRY(measure_cost(own, &report->cost));
   report->gradient = found.gradient;
   report->negative = found.negative;
@@ -249,7 +323,9 @@ dvi_status dvi_control_solve(dvi_control *own, dvi_control_report *report)
 {
   if (own == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "control: no problem to solve");
   dvi_control_report found = {0};
+  const double span = own->path->span;
   const dvi_status status = solve_and_measure(own, &found);
+  if (status != DVI_OK) own->path->span = span;
   own->solved = status == DVI_OK;
   if (status != DVI_OK) return dvi__fail_in(status, "control");
   if (report != NULL) *report = found;
