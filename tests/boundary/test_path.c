@@ -22,6 +22,43 @@ static double distance_from_run(const dvi_path *path, const run *r)
   return worst;
 }
 
+/* ---- mixed ends ---- */
+
+/* x begins at its place and ends with its momentum, y begins with its momentum and ends at its
+ * place, as in the run from which these numbers are. */
+START_TEST(mixed_ends_give_the_run)
+{
+  static const char *const methods[] = {"midpoint", "galerkin:degree=3"};
+  static run r;
+  problem *model = create_problem("kepler", "e=0.3");
+  const char free0[] = {0, 1}, free1[] = {1, 0};
+  const int steps = 30;
+  record_run(model->system, model->q, model->p, methods[_i], 1.5, steps, &r);
+  const dvi_path_options options = {.ends = DVI_ENDS_MIXED,
+                                    .steps = steps,
+                                    .span = 1.5,
+                                    .dimension = 2,
+                                    .q0 = r.q,
+                                    .p0 = r.p,
+                                    .q1 = r.q + 2 * steps,
+                                    .p1 = r.p + 2 * steps,
+                                    .free0 = free0,
+                                    .free1 = free1};
+  dvi_path *path = NULL;
+  dvi_path_report report;
+  ck_assert_msg(dvi_path_create(model->system, methods[_i], &options, &path) == DVI_OK, "%s",
+                dvi_last_error());
+  static double moved[ROOM];
+  for (int i = 0; i < 2 * (steps + 1); i++) moved[i] = r.q[i] * (1 + 0.01 * sin(3 * i));
+  ck_assert_int_eq(dvi_path_guess(path, steps + 1, 2, r.t, moved), DVI_OK);
+  ck_assert_msg(dvi_path_solve(path, &report) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_double_lt(distance_from_run(path, &r), 1e-12);
+  ck_assert_int_eq(report.zero, 0);
+  dvi_path_destroy(&path);
+  problem_destroy(&model);
+}
+END_TEST
+
 /* ---- fixed and initial ends ---- */
 
 static const struct {
@@ -236,6 +273,7 @@ END_TEST
 
 SUITE(path)
 {
+  tcase_add_loop_test(tests, mixed_ends_give_the_run, 0, 2);
   tcase_add_loop_test(tests, a_two_point_problem_finds_the_run_between_its_ends, 0, PLACES);
   tcase_add_loop_test(tests, an_initial_value_problem_as_one_system_is_the_run, 0, PLACES);
   tcase_add_test(tests, time_dependent_systems_have_paths);

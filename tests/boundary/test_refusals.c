@@ -60,6 +60,19 @@ START_TEST(spans_are_positive_times)
 }
 END_TEST
 
+START_TEST(mixed_ends_need_all_numbers)
+{
+  dvi_path_options options = good;
+  options.free1 = "\1";
+  refused(options, "midpoint", DVI_BAD_ARGUMENT, "coordinates are free");
+  options.free1 = NULL;
+  options.p1 = last;
+  refused(options, "midpoint", DVI_BAD_ARGUMENT, "the last momentum p1 is given");
+  options.ends = DVI_ENDS_MIXED;
+  refused(options, "midpoint", DVI_BAD_ARGUMENT, "the first momentum p0 is missing");
+}
+END_TEST
+
 START_TEST(steps_can_be_counted)
 {
   dvi_path_options options = good;
@@ -470,6 +483,7 @@ SUITE(refusals)
 {
   tcase_add_checked_fixture(tests, set_up, tear_down);
   tcase_add_test(tests, spans_are_positive_times);
+  tcase_add_test(tests, mixed_ends_need_all_numbers);
   tcase_add_test(tests, steps_can_be_counted);
   tcase_add_test(tests, entries_can_be_counted);
   tcase_add_test(tests, one_step_of_degree_two_has_something_to_vary);
