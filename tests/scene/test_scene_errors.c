@@ -269,9 +269,12 @@ START_TEST(forces_that_do_not_go_are_told)
   refused("coordinates: {x: scalar, y: scalar}\none_form: {x: y}\nhamiltonian: x\n"
           "dissipation: x'^2\ninitial: {x: 1, y: 1}\nstep: 1\nuntil: 1\n",
           ":4:14:", "beside a one-form there is no dissipation");
-  refused("coordinates: {u: angle}\nlagrangian: rate(u)^2\nforces: {rate(u): 1}\n"
+  refused("coordinates: {u: angle}\nlagrangian: rate(u)^2\nforces: {u: 1}\n"
           "initial: {u: 1}\nstep: 1\nuntil: 1\n",
-          ":3:9:", "beside forces there are no rotations");
+          ":3:10:", "a force of a rotation or an angle is given by its velocity, rate(u)");
+  refused("coordinates: {u: angle}\nlagrangian: rate(u)^2\ndissipation: rate(u)^2\n"
+          "initial: {u: 1}\nstep: 1\nuntil: 1\n",
+          ":3:14:", "beside dissipation there are no rotations");
 }
 END_TEST
 

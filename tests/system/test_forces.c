@@ -109,7 +109,6 @@ START_TEST(forces_are_refused_beside_other_kinds_of_dynamics)
 {
   refused_beside("vortices", "not with a one-form");
   refused_beside("elastica", "not with a Hamiltonian");
-  refused_beside("pendulum-3d", "not with factors");
 }
 END_TEST
 

@@ -244,7 +244,10 @@ typedef struct dvi_vector_potential {
 
 /** A force F(t,q,v) without a potential, such as friction, a drive, or a control (Marsden and West
  *  2001, sec. 3.1.1). It does work, so that energy and momenta are no longer conserved, but
- *  balanced (dvi_integrator_balance). */
+ *  balanced (dvi_integrator_balance).
+ *
+ *  With factors F has a number for each number of the stored velocity, [nv] for q [nq] and v [nv],
+ *  and acts on it: torques in the body's frame, forces in the frame of space. */
 typedef struct dvi_force {
   const char *name; /**< copied. Used in messages */
   /** The force F [n]. Required (or value_batch). */
@@ -252,7 +255,7 @@ typedef struct dvi_force {
   int (*value_batch)(int count, const double *t, const double *q, const double *v, double *F,
                      void *user);
   /** The derivatives dF_i/dq_j and dF_i/dv_j in the order of the patterns by_q and by_v (row i,
-   *  column j). Default: differences of the force. */
+   *  column j). Default: differences of the force. With factors they are refused */
   int (*jacobian)(double t, const double *q, const double *v, double *F_q, double *F_v, void *user);
   int (*jacobian_batch)(int count, const double *t, const double *q, const double *v, double *F_q,
                         double *F_v, void *user);
@@ -357,9 +360,8 @@ typedef struct dvi_invariant {
  *
  *  Exactly one kind of dynamics is declared: a constant mass (by `mass`, by `factors`, or by both,
  *  which are added), or `lagrangian`, or `one_form`, or `hamiltonian`. Potentials may stand beside
- *  all kinds but a Hamiltonian. Forces may stand beside a mass without factors, and beside a
- *  general Lagrangian. Holonomic constraints may stand beside a mass, with factors or without, and
- *  beside a general Lagrangian. */
+ *  all kinds but a Hamiltonian. Forces and holonomic constraints may stand beside a mass, with
+ *  factors or without, and beside a general Lagrangian. */
 typedef struct dvi_system_terms {
   /** number of coordinates n, at least 1, even with a one-form. 0 with factors, which determine
    *  n */

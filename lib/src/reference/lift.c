@@ -196,6 +196,17 @@ void dvi__lift_down(const dvi__lift *lift, const double *kappa, double *q)
   }
 }
 
+/* Add the forces, tangential to directions. */
+static dvi_status add_lifted_forces(const dvi__lift *lift, double t, const double *v,
+                                    double *p_rate)
+{
+  double *F = lift->L_y; /* not needed any more */
+  DVI_TRY(dvi__forces(lift->evaluator, DVI__FORCES, 1, &t, lift->y, v, F));
+  dvi__lift_tangent(lift, lift->y, F);
+  for (int i = 0; i < lift->system->nv; i++) p_rate[i] += F[i];
+  return DVI_OK;
+}
+
 dvi_status dvi__lift_equations(dvi__lift *lift, double t, const double *kappa, const double *v,
                                double *kappa_rate, double *p_rate, double *p_of_v)
 {
@@ -217,7 +228,7 @@ dvi_status dvi__lift_equations(dvi__lift *lift, double t, const double *kappa, c
     lifted_momentum_rate(slot->kind, y, lift->rate + slot->q, lift->L_y + slot->q, C,
                          p_rate + slot->v);
   }
-  return DVI_OK;
+  return system->force_count > 0 ? add_lifted_forces(lift, t, v, p_rate) : DVI_OK;
 }
 
 void dvi__lift_pull(const dvi__lift *lift, const double *a, double *w)

@@ -198,6 +198,7 @@ dvi_status dvi__element_centre(dvi__stepper *self, const dvi__centring *centring
   dvi__element *own = self->own;
   own->centred = 1;
   DVI_TRY(dvi__action_centre(own->action, centring));
+  DVI_TRY(dvi__action_carry_forces(own->action));
   return element_renew_solver(self);
 }
 

@@ -18,6 +18,7 @@ typedef struct charted_step {
   double *xi, *rate; /* [nx] */
   double *seen;      /* [nq*(s+1)] points of the path, the start last */
   double *offset;    /* [unknowns] */
+  double *supply;    /* [1 + symmetries] */
 } charted_step;
 
 /* Give the count of a path's numbers and those of row terms, and the degree. */
@@ -39,12 +40,13 @@ static dvi_status charted_step_allocate(dvi__stepper *self, charted_step *own)
                unknowns = unknowns_of(own);
   const size_t seen = n * (degree_of(own) + 1);
   self->memory_count = own->inner.memory_count + unknowns;
-  own->local = DVI_NEW(double, 6 * nx + seen + unknowns);
+  own->local = DVI_NEW(double, 6 * nx + seen + unknowns + 1 + (size_t)self->system->symmetry_count);
   if (own->local == NULL) return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);
   own->xi = own->local + 4 * nx;
   own->rate = own->xi + nx;
   own->seen = own->rate + nx;
   own->offset = own->seen + seen;
+  own->supply = own->offset + unknowns;
   return DVI_OK;
 }
 
@@ -143,6 +145,25 @@ static dvi_status charted_step_solve(dvi__stepper *self, const dvi__state *state
                           : dvi__charted_explain(own->charted, status);
 }
 
+/* Add what the forces supply over the path to the state's sums. */
+static dvi_status add_supplies(const dvi__stepper *self, const double *path, double h,
+                               const dvi__state *state)
+{
+  const charted_step *own = self->own;
+  const dvi__action *action = dvi__element_action(&own->inner);
+  const int count = 1 + self->system->symmetry_count;
+  memset(own->supply, 0, (size_t)count * sizeof(double));
+  for (int j = 0; self->system->force_count > 0 && j < dvi__action_nodes(action); j++) {
+    double tau, weight;
+    dvi__action_node(action, j, &tau, &weight);
+    dvi__action_path(action, path, h, tau, own->xi, own->rate);
+    DVI_TRY(dvi__charted_supply(own->charted, state->t + tau * h, own->xi, own->rate, h * weight,
+                                own->supply));
+  }
+  dvi__add_compensated_all(count, state->supplied, state->supplied_compensation, own->supply);
+  return DVI_OK;
+}
+
 dvi_status dvi__charted_step(dvi__stepper *self, dvi__state *state, double h)
 {
   const charted_step *own = self->own;
@@ -153,6 +174,7 @@ dvi_status dvi__charted_step(dvi__stepper *self, dvi__state *state, double h)
   memcpy(own_path, path, unknowns * sizeof(double));
   memcpy(own->seen + n * degree_of(own), state->q, n * sizeof(double));
   look_back(own, n, own_path);
+  if (state->supplied != NULL) DVI_TRY(add_supplies(self, own_path, h, state));
   dvi__charted_arrive(own->charted,
                       &(dvi__phase){.q = local.q,
                                     .p = local.p,

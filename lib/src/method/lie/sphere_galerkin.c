@@ -22,7 +22,7 @@ const dvi__method dvi__sphere_galerkin = {
     .summary = "galerkin on products of spheres by horizontal lifts: directions, with angles and "
                "R^n beside them; the keys of galerkin",
     .cite = "LeokShingel2012",
-    .uses = DVI__CONSTANT_MASS | DVI__POTENTIAL | DVI__FACTORS | DVI__HOLONOMIC,
+    .uses = DVI__CONSTANT_MASS | DVI__POTENTIAL | DVI__FACTORS | DVI__HOLONOMIC | DVI__FORCES,
     .refuses = DVI__ROTATIONS,
     .create = sphere_galerkin_create,
     DVI__CHARTED_OPERATIONS,

@@ -221,7 +221,7 @@ dvi__emitted_term dvi__force_term_of(const dvi_scene *scene, int k)
   dvi__emitted_term term = {.type = "dvi_force",
                             .shown = F->name,
                             .term = F->user,
-                            .callback_count = 2,
+                            .callback_count = 1 + (of_dissipation || F->jacobian != NULL),
                             .callback = of_dissipation ? dissipation_callbacks : force_callbacks,
                             .columns = scene->n,
                             .pattern_name = {"by_q", "by_v"},

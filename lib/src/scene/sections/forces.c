@@ -5,7 +5,6 @@
 
 static bool refuse_other_motions(dvi_scene *scene, const dvi__tree *section, const char *name)
 {
-  if (!dvi__refuse_factors(scene, section, name)) return false;
   if (scene->terms.one_form == NULL && scene->terms.hamiltonian == NULL) return true;
   return dvi__scene_refuse(scene, section->span,
                            "beside a %s there is no %s; forces go with lagrangian, or kinetic and "
@@ -24,7 +23,8 @@ bool dvi__read_forces(dvi_scene *scene, const dvi__tree *section)
 {
   dvi__scene_term *term;
   if (!refuse_other_motions(scene, section, "forces")) return false;
-  if (!dvi__field_read(scene, section, DVI__MENTIONS_V | DVI__MENTIONS_T | DVI__MENTIONS_U,
+  if (!dvi__field_read(scene, section,
+                       DVI__MENTIONS_V | DVI__MENTIONS_T | DVI__MENTIONS_U | DVI__OF_STATE,
                        "a force", &term))
     return false;
   if (scene->control_count > 0 && !dvi__make_control_force(scene, term)) return false;
@@ -37,7 +37,9 @@ bool dvi__read_dissipation(dvi_scene *scene, const dvi__tree *section)
   dvi__scene_term *term;
   dvi__kernels R = {0};
   dvi__degree degree = {.degree = 0};
-  if (!refuse_other_motions(scene, section, "dissipation")) return false;
+  if (!dvi__refuse_factors(scene, section, "dissipation") ||
+      !refuse_other_motions(scene, section, "dissipation"))
+    return false;
   bool good = dvi__tree_expression(scene, section, &e) &&
               dvi__kernels_add(scene, DVI__MENTIONS_Q | DVI__MENTIONS_V | DVI__MENTIONS_T,
                                "a dissipation", e, 1, &R) &&

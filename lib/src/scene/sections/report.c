@@ -10,7 +10,8 @@ enum { COLUMNS_MAX = 1000 };
  * they are. Only some methods have the last of them. */
 static int list_columns(const dvi_scene *scene, const char **known)
 {
-  static const char *const others[] = {"t", "energy", "constraint", "distance", "h", "jump"};
+  static const char *const others[] = {"t", "energy", "energy_balance", "constraint", "distance",
+                                       "h", "jump"};
   enum { OTHERS = sizeof others / sizeof *others };
   const char *(*const label[])(const dvi_scene *, int) = {dvi_scene_coordinate, dvi_scene_velocity,
                                                           dvi_scene_momentum};
@@ -29,6 +30,19 @@ static int list_columns(const dvi_scene *scene, const char **known)
   return count;
 }
 
+/* Return true for the balance of a symmetry's momentum, where forces act. */
+static bool is_balance(const dvi_scene *scene, const char *text)
+{
+  static const char suffix[] = "_balance";
+  const size_t length = strlen(text), end = sizeof suffix - 1;
+  if (length <= end || strcmp(text + length - end, suffix) != 0) return false;
+  for (int i = 0; i < scene->terms.symmetry_count && scene->terms.force_count > 0; i++)
+    if (strlen(scene->terms.symmetries[i].name) == length - end &&
+        strncmp(text, scene->terms.symmetries[i].name, length - end) == 0)
+      return true;
+  return false;
+}
+
 static bool all_columns(dvi_scene *scene, const dvi__tree *columns)
 {
   char hint[96];
@@ -43,7 +57,7 @@ static bool all_columns(dvi_scene *scene, const dvi__tree *columns)
     const char *name = columns->child[i]->text;
     int k = 0;
     while (k < count && strcmp(known[k], name) != 0) k++;
-    if (k == count)
+    if (k == count && !is_balance(scene, name))
       return dvi__scene_refuse(scene, columns->child[i]->span, "there is no column '%s'%s", name,
                                dvi__nearest(name, count, known, hint, sizeof hint));
     for (k = 0; k < i; k++)

@@ -265,7 +265,8 @@ bool dvi__make_force(dvi_scene *scene, dvi__scene_term *term, dvi_force *force)
   int full;
   *force = (dvi_force){.name = "forces",
                        .value = term_force_value,
-                       .jacobian = term_force_jacobian,
+                       /* with factors forces are differenced in the charts */
+                       .jacobian = dvi__has_factors(scene) ? NULL : term_force_jacobian,
                        .without_velocity = is_without_velocity(term),
                        .user = term};
   return prepare_large(scene, term, of_multipliers) &&

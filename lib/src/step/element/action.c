@@ -128,6 +128,7 @@ void dvi__action_destroy(dvi__action **action)
   dvi__action_clear_energy(a);
   dvi__action_clear_charts(a);
   dvi__action_clear_constraints(a);
+  dvi__action_clear_carried_forces(a);
   dvi__linear_destroy(&a->chord);
   dvi__evaluator_destroy(&a->evaluator);
   dvi__action_clear_jacobian(a);
@@ -148,6 +149,12 @@ int dvi__action_unknowns(const dvi__action *action)
 int dvi__action_nodes(const dvi__action *action)
 {
   return action->r;
+}
+
+void dvi__action_node(const dvi__action *action, int j, double *tau, double *weight)
+{
+  *tau = action->node[j];
+  *weight = action->weight[j];
 }
 
 dvi__evaluator *dvi__action_evaluator(const dvi__action *action)

@@ -51,6 +51,9 @@ int dvi__action_has_terms(const dvi__action *action);
 /* Let the paths be those of a chart centred at their start. The struct is copied. Call it once. */
 dvi_status dvi__action_centre(dvi__action *action, const dvi__centring *centring);
 
+/* Let forces act on paths in charts, if the system has any. Call it after dvi__action_centre. */
+dvi_status dvi__action_carry_forces(dvi__action *action);
+
 /* Let the paths fulfil the system's holonomic constraints, if it has any. Call it once. */
 dvi_status dvi__action_constrain(dvi__action *action);
 
@@ -65,6 +68,8 @@ dvi__action_space dvi__action_space_of(const dvi__action *action);
  * Jacobian's pattern (after prepare). */
 int dvi__action_unknowns(const dvi__action *action);
 int dvi__action_nodes(const dvi__action *action);
+/* Give node j, a part of the step, and its weight. */
+void dvi__action_node(const dvi__action *action, int j, double *tau, double *weight);
 const dvi__pattern *dvi__action_pattern(const dvi__action *action);
 dvi__evaluator *dvi__action_evaluator(const dvi__action *action);
 

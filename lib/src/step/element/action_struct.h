@@ -74,8 +74,9 @@ struct dvi__action {
   double *F_q, *F_v;          /* [entries*r] of the forces, NULL without forces */
   double *moved;              /* [4 n*r] work of products, NULL until prepared */
   dvi__row_terms terms;
-  struct dvi__centred_paths *centred;        /* charts centred at the start, or NULL */
-  struct dvi__constrained_rows *constrained; /* holonomic constraints, or NULL */
+  struct dvi__centred_paths *centred;         /* charts centred at the start, or NULL */
+  struct dvi__constrained_rows *constrained;  /* holonomic constraints, or NULL */
+  struct dvi__carried_forces *carried_forces; /* forces in charts, or NULL */
   /* Paths between two points (two_point.h). NULL until prepared. */
   struct {
     double *bubble;     /* [(s-1)*s] beta_m in the functions psi_k */
@@ -102,6 +103,7 @@ const double *dvi__action_fixed_point_shift(dvi__action *action, double ratio);
 
 typedef struct dvi__centred_paths dvi__centred_paths;
 typedef struct dvi__constrained_rows dvi__constrained_rows;
+typedef struct dvi__carried_forces dvi__carried_forces;
 
 /* Add the row terms' parts to the joint pattern and, with their own unknowns, to the Jacobian's.
  * Announce a path to them before L's derivatives are evaluated. Add their parts to the rows, to the
@@ -117,11 +119,17 @@ void dvi__action_scale_terms(const dvi__action *action, double *scale);
 /* Free the memory of dvi__action_centre, and of dvi__action_constrain. */
 void dvi__action_clear_charts(dvi__action *action);
 void dvi__action_clear_constraints(dvi__action *action);
+void dvi__action_clear_carried_forces(dvi__action *action);
 
 /* In charts, change the rows and dp for a momentum f [n] that is added at the point xi [n] of the
  * path. Without charts nothing changes. */
 void dvi__action_carry(dvi__action *action, const double *xi, const double *f, double *R,
                        double *dp);
+
+/* Do so for a momentum of a force that h sum_j b_j L_q_j has already. The correction C replaces
+ * that sum by the Lagrangian's own moments wherever something turns. */
+void dvi__action_carry_force(dvi__action *action, const double *xi, const double *f, double *R,
+                             double *dp);
 
 /* Count a momentum [n] that is added at the end of the path. */
 void dvi__action_arrive(const dvi__action *action, const double *added);

@@ -102,15 +102,30 @@ void dvi__action_clear_charts(dvi__action *a)
 
 /* ---- momenta that other terms add on the way ---- */
 
+static void add_carried(const dvi__action *a, const double *more, double *R, double *dp)
+{
+  for (int i = 0; i < a->n; i++) {
+    for (int k = 0; k < a->s; k++) R[i * a->s + k] -= a->end[k] * more[i];
+    dp[i] += more[i];
+  }
+}
+
 void dvi__action_carry(dvi__action *a, const double *xi, const double *f, double *R, double *dp)
 {
   const dvi__centred_paths *x = a->centred;
   if (x == NULL) return;
   x->centring.carry(x->centring.of, xi, f, x->correction);
-  for (int i = 0; i < a->n; i++) {
-    for (int k = 0; k < a->s; k++) R[i * a->s + k] -= a->end[k] * x->correction[i];
-    dp[i] += x->correction[i];
-  }
+  add_carried(a, x->correction, R, dp);
+}
+
+void dvi__action_carry_force(dvi__action *a, const double *xi, const double *f, double *R,
+                             double *dp)
+{
+  const dvi__centred_paths *x = a->centred;
+  x->centring.carry(x->centring.of, xi, f, x->correction);
+  for (int i = 0; i < a->n; i++)
+    if (x->centring.width[i] > 0) x->correction[i] += f[i];
+  add_carried(a, x->correction, R, dp);
 }
 
 void dvi__action_arrive(const dvi__action *a, const double *added)

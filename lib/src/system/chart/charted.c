@@ -20,9 +20,13 @@ static dvi_status make_charted_system(dvi__charted *x, dvi_holonomic *rows)
       .qv = {x->qv.start, x->qv.row},
       .vv = {x->vv.start, x->vv.row},
       .user = x};
+  dvi_force force = {0};
   DVI_TRY(dvi__charted_make_rows(x, rows));
+  DVI_TRY(dvi__charted_make_force(x, &force));
   return dvi_system_create(&(dvi_system_terms){.dimension = x->base->nx,
                                                .lagrangian = &lagrangian,
+                                               .forces = x->base->force_count > 0 ? &force : NULL,
+                                               .force_count = x->base->force_count > 0,
                                                .holonomics = rows,
                                                .holonomic_count = x->base->holonomic_count},
                            &x->system);
@@ -96,6 +100,7 @@ void dvi__charted_destroy(dvi__charted **charted)
   dvi__pattern_clear(&x->vv);
   dvi__reduced_clear(&x->reduced);
   dvi__charted_clear_rows(x);
+  dvi__charted_clear_force(x);
   void *const own[] = {x->functions,  x->chart,      x->slot,       x->slot_of_x, x->t,
                        x->y,          x->rate,       x->L_y,        x->w,         x->L_yy,
                        x->T,          x->S,          x->curved,     x->mixed,     x->in_qq,

@@ -56,6 +56,11 @@ void dvi__charted_arrive(const dvi__charted *charted, const dvi__phase *local,
 void dvi__charted_point(const dvi__charted *charted, const double *xi, const double *rate,
                         double *q, double *v);
 
+/* Add what forces supply at a point of a path, times a weight, to the energy and to the momenta of
+ * the symmetries, [1 + symmetries]. */
+dvi_status dvi__charted_supply(dvi__charted *charted, double t, const double *xi,
+                               const double *rate, double weight, double *supply);
+
 /* Compute xi [nx] of a point q [nq]. */
 void dvi__charted_inverse(const dvi__charted *charted, const double *q, double *xi);
 

@@ -61,6 +61,9 @@ struct dvi__charted {
    * phi.w, numbers of dvi__holonomic_at. */
   dvi__charted_rows *rows;
   double *rows_y, *rows_T, *rows_phi_y, *rows_phi_yy, *rows_covector, *rows_moved;
+  /* Forces at one point: the stored velocity and F, [nv] each. Patterns of the charts' forces. */
+  double *force_v, *force;
+  dvi__pattern force_q, force_rate;
   dvi__place *own_in_vv;     /* diagonal blocks [slots] */
   dvi__coupling *coupled_in; /* coupling blocks [bodies] */
   /* Paths from the centre (dvi__charted_centring), for which from_centre is not 0. N is moment
@@ -99,6 +102,10 @@ static inline dvi__functions *dvi__charted_functions(const dvi__charted *x, int 
  * system. */
 dvi_status dvi__charted_make_rows(dvi__charted *charted, dvi_holonomic *list);
 void dvi__charted_clear_rows(dvi__charted *charted);
+
+/* Make the charts' force, and declare it, if the base has forces. */
+dvi_status dvi__charted_make_force(dvi__charted *charted, dvi_force *force);
+void dvi__charted_clear_force(dvi__charted *charted);
 
 /* Compute the pattern of full blocks where slots meet in a or b, which may be NULL. With `own` all
  * diagonal blocks are added, without it those of slots that are no lines. */

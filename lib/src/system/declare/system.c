@@ -137,17 +137,14 @@ static dvi_status check_forces_and_joints(const dvi_system_terms *terms)
 {
   DVI_TRY(check_list("forces", terms->force_count, terms->forces));
   DVI_TRY(check_list("holonomic constraints", terms->holonomic_count, terms->holonomics));
-  const int has_coordinates = terms->one_form == NULL && terms->hamiltonian == NULL;
-  if ((terms->force_count == 0 || (has_coordinates && terms->factors == NULL)) &&
-      (terms->holonomic_count == 0 || has_coordinates))
+  if ((terms->force_count == 0 && terms->holonomic_count == 0) ||
+      (terms->one_form == NULL && terms->hamiltonian == NULL))
     return DVI_OK;
   return dvi__fail(
       DVI_UNSUPPORTED,
       "system: %s go with a mass of coordinates, or with a general Lagrangian, not with %s",
       terms->force_count > 0 ? "forces" : "holonomic constraints",
-      terms->factors != NULL    ? "factors"
-      : terms->one_form != NULL ? "a one-form"
-                                : "a Hamiltonian");
+      terms->one_form != NULL ? "a one-form" : "a Hamiltonian");
 }
 
 static dvi_status check_vector_potential(const dvi_system_terms *terms)

@@ -256,7 +256,7 @@ static dvi_status sum_gradients(dvi__evaluator *e, int count, const double *t, c
   return DVI_OK;
 }
 
-/* Add the forces of these kinds, times a sign, to the sum of the others. */
+/* Add the forces of these kinds, times a sign, to the sum of the others, [nv*count]. */
 static dvi_status add_forces(dvi__evaluator *e, unsigned kinds, int count, double sign,
                              const double *t, const double *q, const double *v, double *sum)
 {
@@ -264,7 +264,7 @@ static dvi_status add_forces(dvi__evaluator *e, unsigned kinds, int count, doubl
   for (int k = 0; k < s->force_count; k++) {
     if (!(kinds & dvi__force_kind(&s->forces[k]))) continue;
     DVI_TRY(dvi__force_value(&s->forces[k], &e->scratch, count, t, q, v, e->term));
-    for (size_t i = 0; i < count_numbers(e, count); i++) sum[i] += sign * e->term[i];
+    for (size_t i = 0; i < (size_t)s->nv * (size_t)count; i++) sum[i] += sign * e->term[i];
   }
   return DVI_OK;
 }
@@ -273,7 +273,7 @@ dvi_status dvi__forces(dvi__evaluator *e, unsigned kinds, int count, const doubl
                        const double *q, const double *v, double *F)
 {
   e->counters->gradients += count;
-  memset(F, 0, count_numbers(e, count) * sizeof(double));
+  memset(F, 0, (size_t)e->system->nv * (size_t)count * sizeof(double));
   return add_forces(e, kinds, count, 1, t, q, v, F);
 }
 
@@ -352,7 +352,9 @@ dvi_status dvi__lagrangian_gradient(dvi__evaluator *e, int count, const double *
     status = potential_forces(e, count, t, q, L_q);
   if (status == DVI_OK && s->vector != NULL)
     status = add_vector_gradient(e, count, t, q, v, L_q, L_v);
-  if (status == DVI_OK && L_q != NULL) status = add_forces(e, DVI__FORCES, count, 1, t, q, v, L_q);
+  /* with factors forces have other numbers than L_q */
+  if (status == DVI_OK && L_q != NULL && s->slot_count == 0)
+    status = add_forces(e, DVI__FORCES, count, 1, t, q, v, L_q);
   dvi__count_differences(e);
   return status;
 }

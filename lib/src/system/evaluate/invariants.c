@@ -60,8 +60,8 @@ dvi_status dvi__supply(dvi__evaluator *e, int count, const double *weight, const
   for (int i = 0; i <= s->symmetry_count; i++) supply[i] = 0;
   for (size_t k = 0; k < points; k++) {
     double power = 0;
-    for (size_t i = 0; i < (size_t)s->n; i++) {
-      at_q[i] = q[i * points + k];
+    for (size_t i = 0; i < (size_t)s->n; i++) at_q[i] = q[i * points + k];
+    for (size_t i = 0; i < (size_t)s->nv; i++) {
       at_F[i] = F[i * points + k];
       power += at_F[i] * v[i * points + k];
     }

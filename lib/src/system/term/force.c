@@ -37,19 +37,26 @@ static dvi_status check_force(const dvi_force *given, const char *name)
   return DVI_OK;
 }
 
+/* Rows of the patterns are components of F, columns those of q, or of v. */
 static dvi_status copy_force(dvi_system *s, const dvi_force *given, dvi__force_term *term)
 {
   const char *name = given->name != NULL ? given->name : "force";
   DVI_TRY(check_force(given, name));
+  if (s->slot_count > 0 && (given->jacobian != NULL || given->jacobian_batch != NULL))
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "system: force '%s' has a Jacobian, but with factors forces are differenced "
+                     "in the charts; leave it out",
+                     name);
   term->callbacks = *given;
   s->terms |= dvi__force_kind(term);
   term->name = dvi__duplicate(name, strlen(name) + 1, 1);
   if (term->name == NULL) return refuse_memory_of_forces();
   term->callbacks.name = term->name;
-  if (!is_left_out(&given->by_q)) DVI_TRY(dvi__pattern_copy(&given->by_q, s->n, name, &term->by_q));
-  if (given->without_velocity) return dvi__pattern_empty(s->n, &term->by_v);
+  if (!is_left_out(&given->by_q))
+    DVI_TRY(dvi__pattern_copy_rectangular(&given->by_q, s->nv, s->n, name, &term->by_q));
+  if (given->without_velocity) return dvi__pattern_empty(s->nv, &term->by_v);
   return is_left_out(&given->by_v) ? DVI_OK
-                                   : dvi__pattern_copy(&given->by_v, s->n, name, &term->by_v);
+                                   : dvi__pattern_copy(&given->by_v, s->nv, name, &term->by_v);
 }
 
 dvi_status dvi__forces_copy(dvi_system *s, const dvi_system_terms *terms)
@@ -113,11 +120,11 @@ dvi_status dvi__force_value(const dvi__force_term *f, dvi__scratch *s, int count
   if (c->value_batch != NULL) returned = c->value_batch(count, t, q, v, F, c->user);
   for (int k = 0; c->value_batch == NULL && k < count && returned == 0; k++) {
     dvi__gather_point(s->n, count, k, q, s->point_q);
-    if (v != NULL) dvi__gather_point(s->n, count, k, v, s->point_v);
+    if (v != NULL) dvi__gather_point(s->nv, count, k, v, s->point_v);
     returned = c->value(t[k], s->point_q, v != NULL ? s->point_v : NULL, s->result[0], c->user);
-    dvi__scatter_result(s->n, count, k, s->result[0], F);
+    dvi__scatter_result(s->nv, count, k, s->result[0], F);
   }
-  return dvi__verdict(returned, s->n, count, F, f->name, "value", "");
+  return dvi__verdict(returned, s->nv, count, F, f->name, "value", "");
 }
 
 dvi_status dvi__force_of_q(const void *function, int count, const double *q, double *F,

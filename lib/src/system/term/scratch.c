@@ -23,7 +23,7 @@ int dvi__longest_hessian(const dvi_system *system, int hessians)
   int longest = system->n;
   for (int k = 0; k < system->potential_count && hessians; k++)
     longest = larger_count(longest, dvi__pattern_entries(&system->potentials[k].qq));
-  for (int k = 0; k < system->force_count && hessians; k++)
+  for (int k = 0; k < system->force_count && hessians && system->slot_count == 0; k++)
     longest = larger_count(longest, larger_count(dvi__pattern_entries(&system->forces[k].by_q),
                                                  dvi__pattern_entries(&system->forces[k].by_v)));
   if (system->vector != NULL) {
@@ -54,7 +54,7 @@ static int lacks_hessian(const dvi_system *system, int hessians)
     lacks |= system->holonomics[k].callbacks.hessian == NULL;
   for (int k = 0; k < system->potential_count && hessians; k++)
     lacks |= !dvi__potential_has_hessian(&system->potentials[k]);
-  for (int k = 0; k < system->force_count && hessians; k++)
+  for (int k = 0; k < system->force_count && hessians && system->slot_count == 0; k++)
     lacks |= !dvi__force_has_jacobian(&system->forces[k]);
   if (system->vector != NULL && hessians) lacks |= !dvi__vector_has_hessian(system->vector);
   return lacks;
@@ -109,7 +109,7 @@ static int scratch_allocate(const dvi_system *system, int capacity, int hessians
 dvi_status dvi__scratch_create(const dvi_system *system, int capacity, int hessians,
                                dvi__scratch *scratch)
 {
-  *scratch = (dvi__scratch){.n = system->n, .capacity = capacity};
+  *scratch = (dvi__scratch){.n = system->n, .nv = system->nv, .capacity = capacity};
   const dvi__lagrangian_term *term = system->lagrangian;
   if (term != NULL && term->computed != NULL) DVI_TRY(term->computed->reserve(term->of, capacity));
   if (scratch_allocate(system, capacity, hessians, scratch)) return DVI_OK;

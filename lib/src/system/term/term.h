@@ -15,7 +15,7 @@ typedef struct dvi__differences {
 } dvi__differences;
 
 typedef struct dvi__scratch {
-  int n, capacity;
+  int n, nv, capacity;
   double *point_q, *point_v; /* one point [n], for one-point callbacks */
   double *result[3];         /* results at that point, each as long as the longest Hessian */
   double *vector_q;          /* gradients of a vector potential at all points, or NULL */
