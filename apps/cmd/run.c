@@ -26,7 +26,7 @@ static const char ended_before[] =
 static bool has_constraint(const problem *scene)
 {
   return scene->terms->one_form != NULL || scene->terms->constraint != NULL ||
-         scene->terms->holonomic_count > 0;
+         scene->terms->holonomic_count > 0 || scene->terms->nonholonomic_count > 0;
 }
 
 /* Read the start's momenta, "P1,P2,...". */

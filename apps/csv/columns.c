@@ -41,7 +41,7 @@ static void columns_list(run_columns *c, const dvi_integrator *integrator)
   if (dvi_integrator_chooses_steps(integrator)) columns_add(c, "h", COLUMN_STEP, 0);
   if (scene->velocity != NULL) columns_add(c, "distance", COLUMN_DISTANCE, 0);
   if (scene->terms->one_form != NULL || scene->terms->constraint != NULL ||
-      scene->terms->holonomic_count > 0)
+      scene->terms->holonomic_count > 0 || scene->terms->nonholonomic_count > 0)
     columns_add(c, "constraint", COLUMN_CONSTRAINT, 0);
   if (!isnan(dvi_integrator_jump(integrator, NULL))) columns_add(c, "jump", COLUMN_JUMP, 0);
 }

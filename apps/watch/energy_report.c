@@ -33,6 +33,7 @@ const char *energy_better_method(const dvi_system_terms *terms)
   if (terms->hamiltonian != NULL)
     return terms->constraint != NULL ? "dg-phase:degree=4" : "hamiltonian:type=2,degree=4";
   if (terms->factors != NULL) return "lie-galerkin:degree=4";
+  if (terms->nonholonomic_count > 0) return "composition:order=4";
   return terms->one_form != NULL ? "vprk:nodes=4" : "galerkin:degree=4";
 }
 

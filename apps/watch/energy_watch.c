@@ -135,6 +135,14 @@ bool energy_look_due(long steps)
   return steps <= EVERY_STEP || steps % STRIDE == 0;
 }
 
+/* Affine rows do work, as those of a disk that turns, in systems that do not depend on time. */
+static bool has_affine_rows(const dvi_system_terms *terms)
+{
+  for (int k = 0; k < terms->nonholonomic_count; k++)
+    if (terms->nonholonomics[k].affine != NULL) return true;
+  return false;
+}
+
 bool energy_watch_start(energy_watch *w, const problem *scene, dvi_integrator *integrator,
                         double bound)
 {
@@ -144,7 +152,7 @@ bool energy_watch_start(energy_watch *w, const problem *scene, dvi_integrator *i
                       .bound = bound,
                       .passed = (double)NAN,
                       .blind = true};
-  if (!dvi_system_autonomous(scene->system)) return true;
+  if (!dvi_system_autonomous(scene->system) || has_affine_rows(scene->terms)) return true;
   w->room = calloc(2 * (nq + nv), sizeof *w->room);
   if (w->room == NULL) return library_error(DVI_NO_MEMORY) == DONE;
   double *start = w->room + nq + nv;

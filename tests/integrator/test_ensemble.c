@@ -39,7 +39,8 @@ static void constrain(const problem *model, int members, int k)
   for (int i = 0; i < model->nq; i++) first_p[i * members + k] = p[i];
 }
 
-/* With factors the places stay on their manifold, and the momenta in its tangent spaces. */
+/* With factors the places stay on their manifold, and the momenta in its tangent spaces. With
+ * nonholonomic constraints, too, the momenta fulfil these. */
 static void spread_momenta(const problem *model, int members, double spread)
 {
   for (int k = 0; k < members; k++) {
@@ -53,7 +54,7 @@ static void spread_start(const problem *model, int members, double spread)
 {
   ck_assert_int_le(model->nq, N_MOST);
   ck_assert_int_le(members, MEMBERS_MOST);
-  if (model->terms->factors != NULL) {
+  if (model->terms->factors != NULL || model->terms->nonholonomic_count > 0) {
     spread_momenta(model, members, spread);
     return;
   }
@@ -157,6 +158,7 @@ static const place places[] = {{"kepler", NULL, 0.05, 0.1},
                                {"chain", "n=8", 0.1, 0.1},
                                {"chain", "n=40", 0.1, 0.1},
                                {"magnetic-bottle", NULL, 0.1, 0.1},
+                               {"sleigh", NULL, 0.05, 0.1},
                                {"vortices", NULL, 0.05, 0.01},
                                {"massless-particle", "gauge=singular", 0.1, 0.01},
                                {"elastica", NULL, 0.1, 0.01},
@@ -209,6 +211,7 @@ static const char *const methods[] = {
     "mollified:filter=projection",
     "trig:filter=gautschi",
     "prolongation-collocation:derivatives=3",
+    "nonholonomic",
 };
 enum {
   PLACES = sizeof places / sizeof *places,
@@ -275,7 +278,7 @@ static int pair_is_accepted(int which)
  * few places have. */
 START_TEST(every_place_is_taken_by_the_methods_for_it)
 {
-  check_accepted_cases(&pairs, 244, METHODS, methods);
+  check_accepted_cases(&pairs, 247, METHODS, methods);
 }
 END_TEST
 

@@ -19,9 +19,13 @@ for name; do
   }
   folder=$(dirname "${source#lib/src/}")
   need "tests/$folder/test_$name.c"
-  need "docs/methods/$name.md"
-  grep -q "]($name\.md)" docs/methods/README.md 2>/dev/null ||
-    { echo "docs/methods/README.md: no link to $name.md"; rc=1; }
+  # a page may stand in a folder, as its source does
+  page=$name.md
+  [ -e "docs/methods/$page" ] || page=${folder#method/}/$name.md
+  [ -e "docs/methods/$page" ] || page=$name.md
+  need "docs/methods/$page"
+  grep -q "]($page)" docs/methods/README.md 2>/dev/null ||
+    { echo "docs/methods/README.md: no link to $page"; rc=1; }
   cite=$(sed -n 's/.*\.cite = "\([^"]*\)".*/\1/p' "$source")
   if [ -z "$cite" ]; then
     echo "$source: no .cite"; rc=1
@@ -29,7 +33,7 @@ for name; do
     echo "docs/references.bib: no entry $cite (cited by $name)"; rc=1
   fi
 done
-for page in docs/methods/*.md; do
+for page in docs/methods/*.md docs/methods/*/*.md; do
   page=$(basename "$page" .md)
   case " README index * $* " in
     *" $page "*) ;;

@@ -23,6 +23,7 @@ static const char *good_method(const problem *model)
   if (terms->hamiltonian != NULL)
     return terms->constraint != NULL ? "dg-phase:degree=6" : "hamiltonian:degree=6";
   if (terms->factors != NULL) return "lie-galerkin:degree=8";
+  if (terms->nonholonomic_count > 0) return "composition:order=8";
   return terms->one_form != NULL ? "vprk:nodes=6" : "galerkin:degree=8";
 }
 

@@ -415,8 +415,16 @@ START_TEST(symmetries_and_invariants_have_their_names)
 }
 END_TEST
 
-/* Every invariant but the stiff energies of fpu, and the energy of systems that depend on time, has
- * the same value at the start and at the stored digits. */
+/* Affine rows do work. */
+static int has_affine_rows(const problem *made)
+{
+  for (int k = 0; k < made->terms->nonholonomic_count; k++)
+    if (made->terms->nonholonomics[k].affine != NULL) return 1;
+  return 0;
+}
+
+/* Every invariant but the stiff energies of fpu, and the energy of systems that depend on time or
+ * have affine rows, has the same value at the start and at the stored digits. */
 START_TEST(invariants_hold_between_start_and_digits)
 {
   problem *made = create(problem_name(_i), 0, NULL);
@@ -431,7 +439,8 @@ START_TEST(invariants_hold_between_start_and_digits)
     const char *name = dvi_system_invariant_name(made->system, i);
     /* roundoff of the digits times the largest force or speed, 1e3 in stiff-pendulum, q p ~ 1e-4 in
      * outer-solar */
-    if (name[0] != 'I' && (i > 0 || dvi_system_autonomous(made->system)))
+    if (name[0] != 'I' &&
+        (i > 0 || (dvi_system_autonomous(made->system) && !has_affine_rows(made))))
       ck_assert_msg(fabs(end[i] - start[i]) <= 4e-15 * fmax(size_of(count, start), 1e-7),
                     "%s: %s changes by %g of %g", made->name, name, end[i] - start[i], start[i]);
   }

@@ -285,6 +285,20 @@ START_TEST(constraints_that_do_not_go_are_told)
           ":3:14:", "there are 2 constraints; at least 1 is needed");
   refused(X "lagrangian: x'^2\nconstraints: {a: x'}\n" RUN,
           ":3:18:", "velocities cannot stand in a constraint");
+  refused(X "lagrangian: x'^2\nnonholonomic: {}\n" RUN,
+          ":3:15:", "there are 0 nonholonomic constraints");
+  refused(X "lagrangian: x'^2\nnonholonomic: {a: x}\n" RUN,
+          ":3:19:", "there is no velocity in it; a constraint phi(t,q) = 0 stands under");
+  refused(X "lagrangian: x'^2\nnonholonomic: {a: x'^2}\n" RUN,
+          ":3:19:", "it is not linear in the velocities");
+  refused(X "lagrangian: x'^2\nnonholonomic: {a: sin(x')}\n" RUN,
+          ":3:19:", "it is not linear in the velocities");
+  refused(X "lagrangian: x'^2\nnonholonomic: {a: p(x)}\n" RUN, ":3:19:", "p(x)");
+  refused(X "hamiltonian: p(x)^2\nnonholonomic: {a: x'}\n" RUN,
+          ":3:15:", "beside a Hamiltonian there are no nonholonomic constraints");
+  refused("coordinates: {R: rotation}\nlagrangian: dot(omega(R), omega(R))/2\nnonholonomic: {a: "
+          "1}\n" RUN,
+          ":3:", "beside nonholonomic there are no rotations");
   refused("coordinates: {x: scalar, y: scalar}\nlagrangian: x'*y - y\nconstraints: {a: x - y}\n"
           "initial: {x: 1, y: 1}\nstep: 1\nuntil: 1\n",
           ":3:14:", "beside a one-form there are no constraints");

@@ -167,11 +167,14 @@ void dvi_integrator_destroy(dvi_integrator **integrator);
  *  a one-form p must be alpha(q) up to rounding, and with constraints phi(q,p) must be 0.
  *  dvi_integrator_start_with can project another start. On any failure the old state stays.
  *  @retval DVI_BAD_ARGUMENT   a pointer is NULL, or the state is off the constraint, p = alpha(q)
- *                             of a one-form or phi(q,p) = 0 of a Hamiltonian
+ *                             of a one-form or phi(q,p) = 0 of a Hamiltonian, phi(t,q) = 0 or A v +
+ *                             a = 0 with their velocities, or nonholonomic constraints are
+ *                             integrable (of systems with up to 64 coordinates, at the first start)
  *  @retval DVI_NOT_FINITE     an argument, the energy or the forces are not finite there
  *  @retval DVI_SINGULAR       the velocity Hessian is singular at every guess (a degenerate
  *                             Lagrangian), or the two-form of a one-form or the bracket matrix of a
- *                             Hamiltonian's constraints is singular
+ *                             Hamiltonian's constraints is singular, or a nonholonomic constraint
+ *                             depends on the others
  *  @retval DVI_NOT_CONVERGED  no velocity was found for p
  *  @retval DVI_CALLBACK_RETRY, DVI_CALLBACK_FAILED  a callback failed there
  *  @retval DVI_NO_MEMORY      KLU could not allocate memory */
@@ -317,20 +320,21 @@ dvi_status dvi_integrator_invariants(dvi_integrator *integrator, double *value);
 dvi_status dvi_integrator_invariant(dvi_integrator *integrator, int i, double *value);
 
 /** Measure how far the state is from the constraint, without an allocation. With a one-form this is
- *  the largest |p_i - alpha_i(q)|, with a Hamiltonian the largest |phi_a(q,p)|, and with holonomic
- *  constraints the largest |phi_a(t,q)|.
+ *  the largest |p_i - alpha_i(q)|, with a Hamiltonian the largest |phi_a(q,p)|, with holonomic
+ *  constraints the largest |phi_a(t,q)|, and with nonholonomic ones the largest |A v + a|.
  *
  *  @param[out] distance  the distance. Not written on failure
- *  @retval DVI_UNSUPPORTED  the system has no one-form, no Hamiltonian and no holonomic constraint
+ *  @retval DVI_UNSUPPORTED  the system has no one-form, no Hamiltonian and no holonomic or
+ *                           nonholonomic constraint
  *  @retval DVI_BAD_STATE    before dvi_integrator_start
  *  @retval (others)         as the callback of the one-form or the constraint fails */
 dvi_status dvi_integrator_constraint(dvi_integrator *integrator, double *distance);
 
 /** Compute the multipliers lambda [dvi_system_constraint_count] of the holonomic constraints at the
- *  present state, of the forces -G^T lambda, from the equations of motion there. They have the
- *  order of the method.
+ *  present state, of the forces -G^T lambda, and behind them those of the nonholonomic ones, of the
+ *  forces -A^T lambda, from the equations of motion there. They have the order of the method.
  *
- *  @retval DVI_UNSUPPORTED  the system has no holonomic constraints
+ *  @retval DVI_UNSUPPORTED  the system has neither holonomic nor nonholonomic constraints
  *  @retval DVI_BAD_STATE    before dvi_integrator_start
  *  @retval DVI_SINGULAR     the constraints are dependent there
  *  @retval (others)         as the callbacks fail */

@@ -13,7 +13,9 @@
  *  A mass or a general Lagrangian may have holonomic constraints phi(t,q) = 0, as rods and joints
  *  are. With G = d phi/dq the equations of motion are then
  *
- *      d/dt L_v = L_q + F - G^T lambda,     phi(t,q) = 0.
+ *      d/dt L_v = L_q + F - G^T lambda,     phi(t,q) = 0,
+ *
+ *  and with nonholonomic ones, A(t,q) v + a(t,q) = 0, A stands for G (Bloch 2003, sec. 1.3).
  *
  *  With a one-form the Lagrangian is degenerate. It is linear in v, the potentials' sum is the
  *  Hamiltonian H(t,q), and the momenta are p = alpha(q). The equations of motion are of first
@@ -290,6 +292,20 @@ typedef struct dvi_holonomic {
   const char *const *row_names;
 } dvi_holonomic;
 
+/** Nonholonomic constraints A(t,q) v + a(t,q) = 0, of wheels and blades. A start refuses dependent
+ *  rows, and those of functions phi(t,q). The callbacks have the one-point shape alone. */
+typedef struct dvi_nonholonomic {
+  const char *name; /**< copied. Used in messages */
+  int count;        /**< number of rows, at least 1 */
+  /** A in the order of `transposed` [n x count], whose column a holds row a of A. Required. */
+  int (*value)(double t, const double *q, double *A, void *user);
+  int (*affine)(double t, const double *q, double *a, void *user); /**< a [count] (default 0) */
+  /** d(A v + a)/dq in the order of `by_q` [count x n]. Default: differences. */
+  int (*derivative)(double t, const double *q, const double *v, double *Av_q, void *user);
+  dvi_pattern transposed, by_q;
+  void *user;
+} dvi_nonholonomic;
+
 /** A constant mass matrix in exactly one of the three forms. The matrix must be regular. It may be
  *  indefinite, since a Lagrangian with -M and -V has the motion of that with M and V. */
 typedef struct dvi_mass {
@@ -360,8 +376,8 @@ typedef struct dvi_invariant {
  *
  *  Exactly one kind of dynamics is declared: a constant mass (by `mass`, by `factors`, or by both,
  *  which are added), or `lagrangian`, or `one_form`, or `hamiltonian`. Potentials may stand beside
- *  all kinds but a Hamiltonian. Forces and holonomic constraints may stand beside a mass, with
- *  factors or without, and beside a general Lagrangian. */
+ *  all kinds but a Hamiltonian. Forces and constraints may stand beside a mass and beside a general
+ *  Lagrangian, but beside factors no nonholonomic constraints. */
 typedef struct dvi_system_terms {
   /** number of coordinates n, at least 1, even with a one-form. 0 with factors, which determine
    *  n */
@@ -389,6 +405,8 @@ typedef struct dvi_system_terms {
   int holonomic_count;
   /** vector potential beside a constant mass without factors and constraints (default none) */
   const dvi_vector_potential *vector_potential;
+  const dvi_nonholonomic *nonholonomics; /**< nonholonomic constraints (default none) */
+  int nonholonomic_count;
 } dvi_system_terms;
 
 /** A system. It never changes after its creation, so integrators on several threads may share
@@ -414,9 +432,8 @@ extern "C" {
  *  @retval DVI_SINGULAR      the constant mass is singular or not finite. With factors the mass is
  *                            not finite, or there is none at all at a factor's coordinates
  *  @retval DVI_UNSUPPORTED   factors beside a general Lagrangian, a one-form or a Hamiltonian. Or
- *                            forces or holonomic constraints beside factors, a one-form or a
- *                            Hamiltonian. Or a vector potential beside anything but a constant mass
- *                            without factors and holonomic constraints
+ *                            forces or rows of constraints beside the latter two, or nonholonomic
+ *                            ones beside factors. Or a vector potential beside other than a mass
  *  @retval DVI_NO_MEMORY     memory could not be allocated */
 dvi_status dvi_system_create(const dvi_system_terms *terms, dvi_system **system);
 
@@ -434,7 +451,7 @@ int dvi_system_nv(const dvi_system *system);
 int dvi_system_autonomous(const dvi_system *system);
 
 /** Return the number of constraints phi(q,p) = 0 of a Hamiltonian, or of rows of holonomic
- *  constraints phi(t,q) = 0. 0 for other systems, and for NULL. */
+ *  constraints and of nonholonomic ones behind them. 0 for other systems, and for NULL. */
 int dvi_system_constraint_count(const dvi_system *system);
 
 /** Evaluate the Lagrangian at (t, q [nq], v [nv]). The call allocates.
@@ -553,7 +570,7 @@ typedef struct dvi_derivative_check {
 } dvi_derivative_check;
 
 /** Compare every gradient, Hessian, pattern and rate of the system with differences of the values
- *  at one point. Jacobians of forces count as Hessians.
+ *  at one point. Derivatives of forces and of rows A count as Hessians. A may not be integrable.
  *
  *  Every gradient_range is compared, bit for bit, with the whole gradient, over short and long
  *  ranges, with NaN outside its reach. In an autonomous system every callback must give the same

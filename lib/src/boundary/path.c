@@ -65,8 +65,11 @@ static dvi_status path_check(const dvi_system *system, const dvi_path_options *o
                      "path: the system declares forces without a potential, and the "
                      "action alone determines paths");
   if (system->row_count > 0)
-    return dvi__fail(DVI_UNSUPPORTED, "path: the system declares holonomic constraints, and paths "
-                                      "are found in all of R^n");
+    return dvi__fail(
+        DVI_UNSUPPORTED,
+        "path: the system declares %sholonomic constraints, and paths are found in all "
+        "of R^n",
+        system->place_rows > 0 ? "" : "non");
   if (o->steps < 1)
     return dvi__fail(DVI_BAD_SIZE, "path: %d steps; at least 1 is needed", o->steps);
   if (!isfinite(o->start))

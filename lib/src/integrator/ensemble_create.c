@@ -68,6 +68,7 @@ void dvi__worker_bind(dvi__worker *w, const dvi__block *block)
   w->scene->forces = system->forces;
   w->scene->vector = system->vector;
   w->scene->holonomics = system->holonomics;
+  w->scene->nonholonomics = system->nonholonomics;
   w->scene->lagrangian = system->lagrangian;
   w->scene->constraint = system->constraint;
   w->scene->symmetries = system->symmetries;

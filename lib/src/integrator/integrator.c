@@ -92,6 +92,8 @@ static dvi_status constrain_start(dvi_integrator *I, double t, int project, cons
   const dvi__state_constraint *constraint = I->system->dynamics->constraint;
   const size_t bytes = (size_t)I->system->n * sizeof(double);
   if (constraint == NULL) return DVI_OK;
+  if (!I->admitted && constraint->admit != NULL) DVI_TRY(constraint->admit(I->evaluator, t, *q));
+  I->admitted = 1;
   if (!project) return constraint->check(I->evaluator, t, *q, *p);
   memmove(I->next.p, *p, bytes);
   memmove(I->next.q, *q, bytes);
@@ -433,7 +435,7 @@ dvi_status dvi_integrator_constraint(dvi_integrator *I, double *distance)
     return dvi__fail(
         DVI_UNSUPPORTED,
         "constraint: the system declares no one-form, no Hamiltonian with constraints, and no "
-        "holonomic constraints");
+        "holonomic or nonholonomic constraints");
   if (!I->started)
     return dvi__fail(
         DVI_BAD_STATE,
@@ -470,7 +472,9 @@ dvi_status dvi_integrator_reactions(dvi_integrator *I, double *lambda)
   if (I == NULL || lambda == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "reactions: an argument is NULL");
   if (I->system->row_count == 0)
-    return dvi__fail(DVI_UNSUPPORTED, "reactions: the system has no holonomic constraints");
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "reactions: the system has neither holonomic nor nonholonomic "
+                     "constraints");
   if (!I->started)
     return dvi__fail(DVI_BAD_STATE,
                      "reactions: the integrator has no state yet; call dvi_integrator_start first");

@@ -24,6 +24,7 @@ struct dvi_integrator {
   size_t learned;             /* offset of the numbers of dvi__attempt in the stepper's memory */
   struct dvi__attempt *first; /* first attempt of a step that is taken again, or NULL (attempt.h) */
   int started;
+  int admitted;         /* the constraints have been found to be of their kind */
   double last_h;        /* length of the last step in time. 0 before the first step */
   double last_h_before; /* last_h before the last step */
 };

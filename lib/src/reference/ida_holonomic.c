@@ -1,13 +1,13 @@
-/* IDA on the equations of motion with holonomic constraints, in the form of Gear, Gupta and
- * Leimkuhler.
+/* IDA on the equations of motion with constraints, in the form of Gear, Gupta and Leimkuhler.
  *
  * The unknowns are y = (q, v, p, lambda, mu), and the equations have index 2,
- *     F = ( qdot - v + G^T mu,  pdot - L_q + G^T lambda,  p - L_v,  G v + phi_t,  phi ) = 0,
- * with L_q including forces. The multipliers mu, which vanish, keep both phi and its rate at 0.
- * lambda and mu are in neither the error test nor the test of the iteration's convergence. The
- * Jacobian dF/dy + c dF/dydot is written here, but for the derivatives of phi_t by q, which are
- * differenced. Sources: Gear, Leimkuhler and Gupta 1985; Hindmarsh et al. 2005, ACM TOMS 31:363,
- * sec. 2.3. */
+ *     F = ( qdot - v + G^T mu,  pdot - L_q + G^T lambda,  p - L_v,  G v + g,  phi ) = 0,
+ * with L_q including forces, and the rows d phi/dq v + d phi/dt and A v + a in G v + g. The
+ * multipliers mu, which vanish, keep both phi and its rate at 0. Nonholonomic constraints have mu =
+ * 0 in the place of phi = 0. lambda and mu are in neither the error test nor the test of the
+ * iteration's convergence. The Jacobian dF/dy + c dF/dydot is written here, but for the derivatives
+ * of g and of A by q, which are differenced. Sources: Gear, Leimkuhler and Gupta 1985; Hindmarsh et
+ * al. 2005, ACM TOMS 31:363, sec. 2.3. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -45,6 +45,7 @@ static dvi_status holonomic_value(const holonomic_ida *self, double t, const dou
     Fp[i] = ydot[2 * n + i] - Fp[i];
     Fv[i] = p[i] - Fv[i];
   }
+  for (int a = s->place_rows; a < m; a++) F_phi[a] = mu[a];
   dvi__rows_pull(s, self->phi_q, mu, 1, Fq);
   dvi__rows_pull(s, self->phi_q, lambda, 1, Fp);
   for (int a = 0; a < m; a++)
@@ -101,21 +102,43 @@ static dvi_status add_curvatures(const holonomic_ida *self, double t, const doub
   return DVI_OK;
 }
 
-/* Add the derivatives of phi_t by q, by differences. They serve the iteration alone. */
-static dvi_status add_rate_slopes(const holonomic_ida *self, double t, const double *q,
-                                  SUNMatrix matrix)
+/* Add factor times g, A v and A^T lambda at a moved point to a column of the matrix. The rows of
+ * holonomic constraints count in g alone. */
+static dvi_status add_moved_rows(const holonomic_ida *self, double t, const double *y, int column,
+                                 double factor, SUNMatrix matrix)
 {
-  dvi__evaluator *e = self->run->evaluator;
-  const int n = self->n, m = self->m;
-  if (self->run->system->autonomous) return DVI_OK;
+  const dvi_system *s = self->run->system;
+  const dvi__pattern *G = &s->rows_q;
+  const int n = self->n;
+  const double *v = y + n, *lambda = v + 2 * n;
+  DVI_TRY(dvi__rows_rate(self->run->evaluator, t, self->moved, self->rate));
+  for (int a = 0; a < self->m; a++)
+    SM_ELEMENT_D(matrix, 3 * n + a, column) += factor * self->rate[a];
+  if (s->nonholonomic_count == 0) return DVI_OK;
+  DVI_TRY(dvi__rows_gradients(self->run->evaluator, t, self->moved, self->phi_q));
+  for (int a = s->place_rows; a < self->m; a++)
+    for (int k = G->start[a]; k < G->start[a + 1]; k++) {
+      SM_ELEMENT_D(matrix, 3 * n + a, column) += factor * self->phi_q[k] * v[G->row[k]];
+      SM_ELEMENT_D(matrix, n + G->row[k], column) += factor * self->phi_q[k] * lambda[a];
+    }
+  return DVI_OK;
+}
+
+/* Add the derivatives of g, A v and A^T lambda by q, by differences. They serve the iteration
+ * alone. */
+static dvi_status add_row_slopes(const holonomic_ida *self, double t, const double *y,
+                                 SUNMatrix matrix)
+{
+  const dvi_system *s = self->run->system;
+  const double *q = y;
+  const int n = self->n;
+  if (s->autonomous && s->nonholonomic_count == 0) return DVI_OK;
   memcpy(self->moved, q, (size_t)n * sizeof(double));
   for (int j = 0; j < n; j++) {
     const double step = sqrt(DBL_EPSILON) * fmax(fabs(q[j]), 1e-2);
     for (int side = -1; side <= 1; side += 2) {
       self->moved[j] = q[j] + side * step;
-      DVI_TRY(dvi__rows_rate(e, t, self->moved, self->rate));
-      for (int a = 0; a < m; a++)
-        SM_ELEMENT_D(matrix, 3 * n + a, j) += side * self->rate[a] / (2 * step);
+      DVI_TRY(add_moved_rows(self, t, y, j, side / (2 * step), matrix));
     }
     self->moved[j] = q[j];
   }
@@ -130,6 +153,7 @@ static dvi_status holonomic_write_jacobian(const holonomic_ida *self, double t, 
   const dvi_system *s = run->system;
   const int n = self->n, m = self->m;
   const double *q = y, *v = q + n;
+  const dvi__pattern places = {n, s->place_rows, s->rows_q.start, s->rows_q.row};
   DVI_TRY(dvi__lagrangian_hessian(e, 1, &t, q, v, run->L_qq, run->L_qv, run->L_vv));
   for (int i = 0; i < n; i++) {
     SM_ELEMENT_D(matrix, i, i) = c;
@@ -147,12 +171,13 @@ static dvi_status holonomic_write_jacobian(const holonomic_ida *self, double t, 
     add_block(matrix, n, n, &s->by_v, run->F_v, -1);
   }
   DVI_TRY(add_curvatures(self, t, y, matrix));
-  DVI_TRY(add_rate_slopes(self, t, q, matrix));
+  DVI_TRY(add_row_slopes(self, t, y, matrix));
   DVI_TRY(dvi__rows_gradients(e, t, q, self->phi_q));
   add_block(matrix, n, 3 * n, &s->rows_q, self->phi_q, 1);
   add_block(matrix, 0, 3 * n + m, &s->rows_q, self->phi_q, 1);
   add_transposed(matrix, 3 * n, n, &s->rows_q, self->phi_q, 1);
-  add_transposed(matrix, 3 * n + m, 0, &s->rows_q, self->phi_q, 1);
+  add_transposed(matrix, 3 * n + m, 0, &places, self->phi_q, 1);
+  for (int a = s->place_rows; a < m; a++) SM_ELEMENT_D(matrix, 3 * n + m + a, 3 * n + m + a) = 1;
   return DVI_OK;
 }
 

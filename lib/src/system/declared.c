@@ -83,6 +83,20 @@ static uint64_t hash_holonomics(const dvi_system *s)
   return hash_pattern(hash_pattern(hash, &s->rows_q), &s->rows_qq);
 }
 
+/* The joined patterns are those of hash_holonomics. */
+static uint64_t hash_nonholonomics(const dvi_system *s)
+{
+  uint64_t hash = DVI__HASH_START;
+  for (int k = 0; k < s->nonholonomic_count; k++) {
+    const dvi__nonholonomic_term *term = &s->nonholonomics[k];
+    const int kind[] = {term->callbacks.count, term->callbacks.affine != NULL,
+                        term->callbacks.derivative != NULL};
+    hash = dvi__hash(hash_text(hash, term->name), sizeof kind, kind);
+    hash = hash_pattern(hash, &term->by_q);
+  }
+  return hash;
+}
+
 static uint64_t hash_invariants(const dvi_system *s)
 {
   uint64_t hash = DVI__HASH_START;
@@ -95,7 +109,8 @@ void dvi__system_declared(const dvi_system *system, dvi__declared *declared)
 {
   *declared = (dvi__declared){{hash_terms(system), hash_masses(system), hash_patterns(system),
                                hash_potentials(system), hash_invariants(system),
-                               hash_forces(system), hash_holonomics(system)}};
+                               hash_forces(system), hash_holonomics(system),
+                               hash_nonholonomics(system)}};
 }
 
 const char *dvi__declared_difference(const dvi__declared *one, const dvi__declared *other)
@@ -106,7 +121,8 @@ const char *dvi__declared_difference(const dvi__declared *one, const dvi__declar
                                                         "names or speeds of potentials",
                                                         "names of invariants",
                                                         "forces",
-                                                        "holonomic constraints"};
+                                                        "holonomic constraints",
+                                                        "nonholonomic constraints"};
   for (int part = 0; part < DVI__DECLARED_PARTS; part++)
     if (one->hash[part] != other->hash[part]) return name[part];
   return NULL;

@@ -26,11 +26,12 @@ typedef enum dvi__term {
   DVI__FORCES = DVI__FORCE | DVI__FRICTION,
   DVI__HOLONOMIC = 4096, /* constraints phi(t,q) = 0 */
   DVI__VECTOR_POTENTIAL = 8192,
+  DVI__NONHOLONOMIC = 16384, /* constraints A(t,q) v + a(t,q) = 0 */
   DVI__PHASE_SPACE = DVI__CONSTRAINED_HAMILTONIAN | DVI__HAMILTONIAN,
   DVI__DYNAMICS = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__ONE_FORM | DVI__FACTORS |
                   DVI__PHASE_SPACE, /* one of these is declared */
   DVI__KINDS = DVI__ROTATIONS | DVI__DIRECTIONS | DVI__FAST,
-  DVI__LAST_TERM = DVI__VECTOR_POTENTIAL
+  DVI__LAST_TERM = DVI__NONHOLONOMIC
 } dvi__term;
 
 /* Groups of columns that are moved together when a missing Hessian block is differenced. */
@@ -73,6 +74,16 @@ typedef struct dvi__vector_term {
   int *in_qq;             /* places in the system's qq */
   dvi__groups groups;
 } dvi__vector_term;
+
+/* Some rows of nonholonomic constraints. */
+typedef struct dvi__nonholonomic_term {
+  dvi_nonholonomic callbacks;
+  char *name;
+  int first;               /* its first row among all */
+  dvi__pattern transposed; /* n rows, a column for each row of A */
+  dvi__pattern by_q;       /* of d(A v + a)/dq, a row for each row of A, n columns */
+  dvi__groups groups;
+} dvi__nonholonomic_term;
 
 /* The gradient of a function beside a one-form alpha, and the places of the entries of both in the
  * sum. */
@@ -131,8 +142,8 @@ typedef struct dvi__constraint_term {
 enum { DVI__DIMENSION_MOST = INT_MAX / 4 };
 
 /* Hashes of all that is declared, without the results of callbacks. The parts are terms, masses,
- * patterns, potentials, invariants, forces, holonomic constraints. */
-enum { DVI__DECLARED_PARTS = 7 };
+ * patterns, potentials, invariants, forces, holonomic and nonholonomic constraints. */
+enum { DVI__DECLARED_PARTS = 8 };
 typedef struct dvi__declared {
   uint64_t hash[DVI__DECLARED_PARTS];
 } dvi__declared;
@@ -162,8 +173,13 @@ struct dvi_system {
   dvi__vector_term *vector; /* the vector potential, or NULL */
   dvi__holonomic_term *holonomics;
   int holonomic_count;
-  int row_count;                /* of all holonomic constraints */
-  dvi__pattern rows_q, rows_qq; /* d phi/dq by columns [n x row_count], and the Hessian of phi.w */
+  dvi__nonholonomic_term *nonholonomics;
+  int nonholonomic_count;
+  /* The rows of holonomic constraints, followed by those of nonholonomic ones, and how many there
+   * are of the former. Patterns [n x row_count] of d phi/dq and A^T by columns, and of the Hessian
+   * of phi.w. */
+  int row_count, place_rows;
+  dvi__pattern rows_q, rows_qq;
   dvi_symmetry *symmetries;
   int symmetry_count;
   dvi_invariant *invariants;

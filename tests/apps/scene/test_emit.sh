@@ -58,6 +58,17 @@ step: 0.02
 until: 2
 END
 
+cat >plate.yaml <<'END'
+coordinates: {x: scalar, y: scalar, a: scalar}
+lagrangian: (x'^2 + y'^2)/2 + a'^2/4
+forces: {x: -0.1*x'}
+nonholonomic: {blade: sin(a)*(x' - 0.3*cos(2*t)) - cos(a)*y'}
+initial: {x: 0, y: 0, a: 0, x': 1, a': 1.5}
+method: nonholonomic
+step: 0.02
+until: 2
+END
+
 # The warnings that users turn on. One instruction set alone compiles sooner.
 compiler=${CC:-cc}
 flags='-std=c11 -O2 -Wall -Wextra -Wconversion -Wpedantic -Werror -DDVI_LANES='
@@ -86,9 +97,9 @@ in_turn='NR == 1 { count = split($0, number) }
 if command -v "$compiler" >/dev/null &&
   ! grep -q '__[at]san_init\|__ubsan_handle' "$libraries/libdvi.so"; then
   cp "$top"/apps/scenes/*.yaml "$top"/apps/scenes/*/*.yaml .
-  for each in drop pits air rod damped-driven kepler oscillator driven-pendulum double-pendulum \
-    guiding-centre circle-dirac magnetic-pair elastica fpu vortices \
-    free-body spherical-double-pendulum satellite; do
+  for each in drop pits air rod plate snakeboard damped-driven kepler oscillator \
+    driven-pendulum double-pendulum guiding-centre circle-dirac magnetic-pair elastica fpu \
+    vortices free-body spherical-double-pendulum satellite; do
     compiles $each.yaml
     expect 0 "$each" run $each.yaml --final
     awk -F, "$in_turn" compiled out ||

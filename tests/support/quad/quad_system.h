@@ -54,6 +54,9 @@ extern const quad_problem quad_degenerate[];
 /* Those with rotations and directions (quad_factors.c), likewise. */
 extern const quad_problem quad_factors[];
 
+/* The nonholonomic ones (quad_rolling.c), likewise. */
+extern const quad_problem quad_rolling[];
+
 /* A problem with its parameters set. */
 typedef struct quad_field {
   const quad_problem *problem;

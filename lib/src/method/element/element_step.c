@@ -170,7 +170,7 @@ dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *spac
   DVI_TRY(dvi__action_create(self->system, space, self->counters, &own->action));
   own->has_forces = self->system->force_count > 0;
   own->definite = dvi__element_is_definite(self->system, dvi__action_evaluator(own->action));
-  if (self->system->row_count > 0) {
+  if (self->system->place_rows > 0) {
     DVI_TRY(dvi__action_constrain(own->action));
     return element_renew_solver(self);
   }
@@ -199,6 +199,14 @@ dvi_status dvi__element_centre(dvi__stepper *self, const dvi__centring *centring
   own->centred = 1;
   DVI_TRY(dvi__action_centre(own->action, centring));
   DVI_TRY(dvi__action_carry_forces(own->action));
+  return element_renew_solver(self);
+}
+
+dvi_status dvi__element_constrain_velocities(dvi__stepper *self, dvi__velocity_rule rule)
+{
+  dvi__element *own = self->own;
+  own->definite = 0;
+  DVI_TRY(dvi__action_constrain_velocities(own->action, rule));
   return element_renew_solver(self);
 }
 

@@ -33,6 +33,9 @@ dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *spac
  * ladder begins with the whole Jacobian, kept over steps. */
 dvi_status dvi__element_centre(dvi__stepper *self, const dvi__centring *centring);
 
+/* Let the velocities fulfil the system's nonholonomic constraints, after create with degree 1. */
+dvi_status dvi__element_constrain_velocities(dvi__stepper *self, dvi__velocity_rule rule);
+
 /* Add a term to the rows (step/element/row_term.h), after create, before the driver reads the
  * memory's count. */
 dvi_status dvi__element_add_term(dvi__stepper *self, const dvi__row_term *term);

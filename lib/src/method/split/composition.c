@@ -14,12 +14,24 @@
 
 enum { ORDER, BASE };
 
-enum { VERLET, BORIS, MIDPOINT, TRAPEZOIDAL, GALERKIN, IMEX, LIE_VERLET, SHAPED_GALERKIN, BASES };
+enum {
+  VERLET,
+  BORIS,
+  MIDPOINT,
+  TRAPEZOIDAL,
+  GALERKIN,
+  IMEX,
+  LIE_VERLET,
+  SHAPED_GALERKIN,
+  NONHOLONOMIC,
+  BASES
+};
 
 static const char *base_name(int index)
 {
-  static const char *const name[] = {"verlet",   "boris", "midpoint",   "trapezoidal",
-                                     "galerkin", "imex",  "lie-verlet", "shaped-galerkin"};
+  static const char *const name[] = {"verlet",      "boris",           "midpoint",
+                                     "trapezoidal", "galerkin",        "imex",
+                                     "lie-verlet",  "shaped-galerkin", "nonholonomic"};
   return index >= 0 && index < BASES ? name[index] : NULL;
 }
 
@@ -27,8 +39,9 @@ static const dvi__key keys[] = {
     {"order", dvi__scheme_name, 0, 0, 0, "4, 6 or 8; default: 4"},
     {"base", base_name, 0, 0, DVI__LEFT_OUT,
      "the symmetric method that is composed: verlet, boris, midpoint, trapezoidal, galerkin, imex, "
-     "lie-verlet, or a program's shaped-galerkin; all other keys are its own; default: verlet, on "
-     "groups lie-verlet, with holonomic constraints trapezoidal, with a vector potential boris"},
+     "lie-verlet, nonholonomic, or a program's shaped-galerkin; all other keys are its own; "
+     "default: verlet, on groups lie-verlet, with holonomic constraints trapezoidal, with "
+     "nonholonomic ones nonholonomic, with a vector potential boris"},
     {0},
 };
 
@@ -42,6 +55,7 @@ static dvi_status composition_create(dvi__stepper *self)
   int *chosen = &self->settings.value[BASE];
   if (*chosen == DVI__LEFT_OUT)
     *chosen = self->system->terms & DVI__FACTORS            ? LIE_VERLET
+              : self->system->terms & DVI__NONHOLONOMIC     ? NONHOLONOMIC
               : self->system->terms & DVI__HOLONOMIC        ? TRAPEZOIDAL
               : self->system->terms & DVI__VECTOR_POTENTIAL ? BORIS
                                                             : VERLET;
@@ -185,7 +199,7 @@ const dvi__method dvi__composition = {
     .takes_rest = 1,
     .takes_shapes = 1,
     .uses = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL | DVI__FACTORS | DVI__FORCES |
-            DVI__HOLONOMIC | DVI__VECTOR_POTENTIAL,
+            DVI__HOLONOMIC | DVI__NONHOLONOMIC | DVI__VECTOR_POTENTIAL,
     .create = composition_create,
     .destroy = composition_destroy,
     .start = composition_start,

@@ -75,9 +75,10 @@ struct dvi_scene {
   dvi_vector_potential vector_potential;
   dvi_force force[2];        /* of the sections forces and dissipation */
   dvi_holonomic *holonomics; /* [terms.holonomic_count], those of joints last */
-  dvi_joints *joints;        /* NULL without joints */
-  dvi_joint *joint;          /* [joint_count] as declared */
-  dvi_factor *body;          /* [body_count] members of all coordinates, for the joints */
+  dvi_nonholonomic *nonholonomics;
+  dvi_joints *joints; /* NULL without joints */
+  dvi_joint *joint;   /* [joint_count] as declared */
+  dvi_factor *body;   /* [body_count] members of all coordinates, for the joints */
   int joint_count, body_count;
   dvi__scene_term *functions;
   /* the term from which a constant mass was read, with A(t,q).q' of a vector potential, or NULL */

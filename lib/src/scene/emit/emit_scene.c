@@ -38,6 +38,8 @@ static dvi_status emit_motion(dvi__emitter *out, const dvi_scene *scene)
     term = dvi__force_term_of(scene, k), status = dvi__emit_term(out, &term);
   for (int k = 0; k < holonomic_functions(scene) && status == DVI_OK; k++)
     term = dvi__holonomic_term_of(scene, k), status = dvi__emit_term(out, &term);
+  for (int k = 0; k < terms->nonholonomic_count && status == DVI_OK; k++)
+    term = dvi__nonholonomic_term_of(scene, k), status = dvi__emit_term(out, &term);
   return status;
 }
 
@@ -157,6 +159,8 @@ static void emit_create(dvi__emitter *out, const dvi_scene *scene, const char *n
   emit_term_list(out, "dvi_potential", "potential", "potentials", terms->potential_count);
   emit_term_list(out, "dvi_force", "force", "forces", terms->force_count);
   emit_joints(out, scene, name);
+  emit_term_list(out, "dvi_nonholonomic", "nonholonomic", "nonholonomics",
+                 terms->nonholonomic_count);
   emit_term_list(out, "dvi_symmetry", "symmetry", "symmetries", terms->symmetry_count);
   emit_term_list(out, "dvi_invariant", "invariant", "invariants", terms->invariant_count);
   if (terms->lagrangian != NULL) dvi__emit(out, "  terms.lagrangian = &lagrangian;\n");
@@ -277,7 +281,8 @@ static void emit_header(dvi__emitter *out, const dvi_scene *scene, const char *n
     dvi__emit(out, "extern const dvi_event %s_events[%d];\n", name, scene->event_count);
   dvi__emit(out, "\n");
   if (terms->one_form != NULL || terms->symmetry_count > 0 || terms->constraint != NULL ||
-      holonomic_functions(scene) > 0 || has_force_of_coordinates(terms))
+      holonomic_functions(scene) > 0 || terms->nonholonomic_count > 0 ||
+      has_force_of_coordinates(terms))
     dvi__emit(out, "static const double dvi_zeros[%d] = {0};\n\n", 2 * scene->n);
 }
 

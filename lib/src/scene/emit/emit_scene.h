@@ -43,6 +43,7 @@ const char *dvi__factor_kind_name(dvi_factor_kind kind);
 void dvi__emit_joint_lists(dvi__emitter *out, const dvi_scene *scene);
 
 dvi__emitted_term dvi__holonomic_term_of(const dvi_scene *scene, int k);
+dvi__emitted_term dvi__nonholonomic_term_of(const dvi_scene *scene, int k);
 dvi__emitted_term dvi__force_term_of(const dvi_scene *scene, int k);
 dvi__emitted_term dvi__symmetry_term(const dvi_scene *scene, int k);
 dvi__emitted_term dvi__invariant_term(const dvi_scene *scene, int k);

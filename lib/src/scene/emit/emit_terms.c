@@ -89,6 +89,14 @@ static const dvi__callback holonomic_callbacks[] = {
     {"rate", POINT ", double *phi_t", "1, &t, q, NULL, w, phi_t + a", 't', ONLY(DVI__TIME)},
 };
 
+static const dvi__callback nonholonomic_callbacks[] = {
+    {"value", POINT ", double *A", "1, &t, q, dvi_zeros, dvi_zeros, A", 's', ONLY(DVI__PAIR_VW)},
+    {"derivative", POINT ", const double *v, double *Av_q", "1, &t, q, v, dvi_zeros, Av_q", 's',
+     ONLY(DVI__PAIR_WQ)},
+    {"affine", POINT ", double *a", "1, &t, q, dvi_zeros, dvi_zeros, a", 'g',
+     ONLY(DVI__MULTIPLIERS)},
+};
+
 static const dvi__callback force_callbacks[] = {
     {"value", POINT ", const double *v, double *F", "1, &t, q, v, dvi_zeros, F", 'g',
      ONLY(DVI__MULTIPLIERS)},
@@ -211,6 +219,21 @@ dvi__emitted_term dvi__holonomic_term_of(const dvi_scene *scene, int k)
                             .pattern_name = {"qq", "", "", "gradients"},
                             .pattern = {&phi->qq, &none, &none, &phi->gradients}};
   (void)snprintf(term.name, sizeof term.name, "holonomic_%d", k);
+  return term;
+}
+
+dvi__emitted_term dvi__nonholonomic_term_of(const dvi_scene *scene, int k)
+{
+  const dvi_nonholonomic *A = &scene->nonholonomics[k];
+  dvi__emitted_term term = {.type = "dvi_nonholonomic",
+                            .shown = A->name,
+                            .term = A->user,
+                            .callback_count = 2 + (A->affine != NULL),
+                            .callback = nonholonomic_callbacks,
+                            .columns = scene->n,
+                            .pattern_name = {"by_q", "", "", "transposed"},
+                            .pattern = {&A->by_q, &none, &none, &A->transposed}};
+  (void)snprintf(term.name, sizeof term.name, "nonholonomic_%d", k);
   return term;
 }
 

@@ -14,9 +14,8 @@ static bool add_constraint(dvi__context *c, const dvi__tree *tree, int number, d
   return true;
 }
 
-/* Make the function phi.w of `count` constraints from `first` on. */
-static bool constraints_function(dvi_scene *scene, const dvi__tree *section, int first, int count,
-                                 unsigned may, dvi__scene_term **term)
+bool dvi__constraints_function(dvi_scene *scene, const dvi__tree *section, int first, int count,
+                               unsigned may, dvi__scene_term **term)
 {
   dvi__context c;
   dvi__kernels list = {0};
@@ -71,7 +70,7 @@ static bool read_holonomic(dvi_scene *scene, const dvi__tree *section)
   for (int a = 0; a < section->count; a++) {
     dvi__scene_term *term;
     if (!dvi__want_name(scene, section->key[a]->text, section->key[a]->span) ||
-        !constraints_function(scene, section, a, 1, DVI__MENTIONS_T, &term) ||
+        !dvi__constraints_function(scene, section, a, 1, DVI__MENTIONS_T, &term) ||
         !dvi__make_holonomic(scene, section->key[a]->text, term, &list[a]))
       return false;
   }
@@ -91,7 +90,7 @@ bool dvi__read_constraints(dvi_scene *scene, const dvi__tree *section)
         scene, section->span,
         "there are %d constraints; an even number is needed, at most 2 for each coordinate",
         section->count);
-  if (!constraints_function(scene, section, 0, section->count, DVI__MENTIONS_P, &term) ||
+  if (!dvi__constraints_function(scene, section, 0, section->count, DVI__MENTIONS_P, &term) ||
       !dvi__make_constraint(scene, term, &scene->constraint))
     return false;
   scene->terms.constraint = &scene->constraint;

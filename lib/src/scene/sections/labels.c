@@ -179,6 +179,7 @@ static bool is_reserved(const dvi_scene *scene, const char *text)
          (strcmp(text, "distance") == 0 && dvi__has_factors(scene)) ||
          (strcmp(text, "constraint") == 0 && (dvi__tree_find(scene->tree, "constraints") != NULL ||
                                               dvi__tree_find(scene->tree, "joints") != NULL ||
+                                              dvi__tree_find(scene->tree, "nonholonomic") != NULL ||
                                               dvi__tree_find(scene->tree, "one_form") != NULL));
 }
 

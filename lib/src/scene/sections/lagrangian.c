@@ -182,6 +182,13 @@ static bool make_parts(dvi_scene *scene, dvi__kernels *L, const char *rest, int 
   return good && (plain || make_vector_potential(scene, L));
 }
 
+/* Vector potentials do not stand beside constraints, but general Lagrangians do. */
+static bool has_constraints(const dvi_scene *scene)
+{
+  return dvi__tree_find(scene->tree, "constraints") != NULL ||
+         dvi__tree_find(scene->tree, "nonholonomic") != NULL;
+}
+
 /* Take a Lagrangian apart whose squares of velocities have constant coefficients. `pure` says that
  * those of single velocities are constant, too, as in a drift that cancels. */
 static bool make_separable(dvi_scene *scene, dvi__kernels *L, const char *rest, int pure)
@@ -198,7 +205,8 @@ static bool make_separable(dvi_scene *scene, dvi__kernels *L, const char *rest, 
   dvi__kernels_free(&moving);
   if (T != NULL) T->role = DVI__ROLE_AUXILIARY;
   if (!good) return false;
-  if (!plain && (dvi__has_factors(scene) || !has_masses(scene->n, &pattern, values)))
+  if (!plain && (dvi__has_factors(scene) || has_constraints(scene) ||
+                 !has_masses(scene->n, &pattern, values)))
     return make_general(scene, L);
   scene->kinetic = T;
   return make_parts(scene, L, rest, plain, &pattern, values);

@@ -26,6 +26,11 @@ bool dvi__field_read(dvi_scene *scene, const dvi__tree *field, unsigned may, con
 bool dvi__add_target(dvi_scene *scene, const dvi__target *target, const dvi__tree *tree,
                      unsigned may, const char *where, dvi__kernels *list);
 
+/* Make the function phi.w of `count` constraints from `first` on, of q and of what else `may`
+ * allows. */
+bool dvi__constraints_function(dvi_scene *scene, const dvi__tree *section, int first, int count,
+                               unsigned may, dvi__scene_term **term);
+
 /* Add value.w to a total, with w the multipliers at the numbers of a target, or at one number. */
 void dvi__add_product(dvi__context *c, dvi__value value, const dvi__target *target,
                       dvi__numbering numbering, dvi__node *total);

@@ -341,6 +341,48 @@ static int term_rate_of_rows(double t, const double *q, double *rows_t, void *us
   return returned;
 }
 
+/* ---- nonholonomic constraints: A v + a is the gradient of (A v + a).w by w ---- */
+
+static int term_nonholonomic_value(double t, const double *q, double *A, void *user)
+{
+  dvi__scene_term *term = user;
+  const double *x[DVI__BLOCKS] = {&t, q, term->none, term->none};
+  double *values[DVI__PAIRS] = {[DVI__PAIR_VW] = A};
+  return second_at(term, 1, x, values);
+}
+
+static int term_nonholonomic_affine(double t, const double *q, double *a, void *user)
+{
+  dvi__scene_term *term = user;
+  const double *x[DVI__BLOCKS] = {&t, q, term->none, term->none};
+  double *gradient[DVI__BLOCKS] = {[DVI__MULTIPLIERS] = a};
+  return gradient_at(term, 1, x, gradient);
+}
+
+static int term_nonholonomic_derivative(double t, const double *q, const double *v, double *Av_q,
+                                        void *user)
+{
+  dvi__scene_term *term = user;
+  const double *x[DVI__BLOCKS] = {&t, q, v, term->none};
+  double *values[DVI__PAIRS] = {[DVI__PAIR_WQ] = Av_q};
+  return second_at(term, 1, x, values);
+}
+
+bool dvi__make_nonholonomic(dvi_scene *scene, const char *name, dvi__scene_term *term, bool affine,
+                            dvi_nonholonomic *nonholonomic)
+{
+  int full;
+  *nonholonomic = (dvi_nonholonomic){.name = name,
+                                     .count = term->count,
+                                     .value = term_nonholonomic_value,
+                                     .affine = affine ? term_nonholonomic_affine : NULL,
+                                     .derivative = term_nonholonomic_derivative,
+                                     .user = term};
+  return prepare_large(scene, term, of_multipliers) &&
+         dvi__term_pattern(scene, term, DVI__PAIR_VW, &nonholonomic->transposed, &full) &&
+         dvi__term_pattern(scene, term, DVI__PAIR_WQ, &nonholonomic->by_q, &full);
+}
+
 /* ---- Hamiltonians with constraints ---- */
 
 static int term_hamiltonian_gradient(double t, const double *q, const double *p, double *H_q,

@@ -40,6 +40,8 @@ bool dvi__make_control_cost(dvi_scene *scene, dvi__scene_term *term);
 
 /* Fill in holonomic constraints with the function phi(t,q).w, w [term->count]. Rates are there only
  * if phi depends on time. */
+bool dvi__make_nonholonomic(dvi_scene *scene, const char *name, dvi__scene_term *term, bool affine,
+                            dvi_nonholonomic *nonholonomic);
 bool dvi__make_holonomic(dvi_scene *scene, const char *name, dvi__scene_term *term,
                          dvi_holonomic *holonomic);
 

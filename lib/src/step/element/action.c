@@ -129,6 +129,7 @@ void dvi__action_destroy(dvi__action **action)
   dvi__action_clear_charts(a);
   dvi__action_clear_constraints(a);
   dvi__action_clear_carried_forces(a);
+  dvi__action_clear_rolling(a);
   dvi__linear_destroy(&a->chord);
   dvi__evaluator_destroy(&a->evaluator);
   dvi__action_clear_jacobian(a);
@@ -169,5 +170,6 @@ void dvi__action_place(dvi__action *action, double t0, double h, const double *q
   action->q0 = q0;
   action->p0 = p0;
   dvi__action_forget_start(action);
+  dvi__action_forget_rolling(action);
   for (int j = 0; j < action->r; j++) action->t[j] = t0 + action->node[j] * h;
 }

@@ -57,8 +57,15 @@ dvi_status dvi__action_carry_forces(dvi__action *action);
 /* Let the paths fulfil the system's holonomic constraints, if it has any. Call it once. */
 dvi_status dvi__action_constrain(dvi__action *action);
 
-/* Change dp [n], the change of the momentum over the path Y, so that the velocity at its end stays
- * on the holonomic constraints, if there are any. */
+/* Where a step of degree 1 takes the rows A of nonholonomic constraints, at the middle of its path,
+ * or as the mean of both ends. */
+typedef enum dvi__velocity_rule { DVI__MIDDLE_ROWS, DVI__MEAN_ROWS } dvi__velocity_rule;
+
+/* Let the velocities fulfil the system's nonholonomic constraints. Call it once. */
+dvi_status dvi__action_constrain_velocities(dvi__action *action, dvi__velocity_rule rule);
+
+/* Change dp [n], the change of the momentum over the path Y, so that the velocity at its end
+ * fulfils the constraints, if there are any. */
 dvi_status dvi__action_constrain_end(dvi__action *action, const double *Y, double *dp);
 
 /* Give the space that the action was made with. */

@@ -77,6 +77,7 @@ struct dvi__action {
   struct dvi__centred_paths *centred;         /* charts centred at the start, or NULL */
   struct dvi__constrained_rows *constrained;  /* holonomic constraints, or NULL */
   struct dvi__carried_forces *carried_forces; /* forces in charts, or NULL */
+  struct dvi__nonholonomic_rows *nonholonomic;
   /* Paths between two points (two_point.h). NULL until prepared. */
   struct {
     double *bubble;     /* [(s-1)*s] beta_m in the functions psi_k */
@@ -104,6 +105,7 @@ const double *dvi__action_fixed_point_shift(dvi__action *action, double ratio);
 typedef struct dvi__centred_paths dvi__centred_paths;
 typedef struct dvi__constrained_rows dvi__constrained_rows;
 typedef struct dvi__carried_forces dvi__carried_forces;
+typedef struct dvi__nonholonomic_rows dvi__nonholonomic_rows;
 
 /* Add the row terms' parts to the joint pattern and, with their own unknowns, to the Jacobian's.
  * Announce a path to them before L's derivatives are evaluated. Add their parts to the rows, to the
@@ -155,6 +157,16 @@ void dvi__action_carry_movements(const dvi__action *action, const dvi__carried *
 
 /* Drop what constraints know of the start of the element, when another one is placed. */
 void dvi__action_forget_start(dvi__action *action);
+
+/* The same functions of nonholonomic constraints, and dvi__action_constrain_end without holonomic
+ * ones. */
+void dvi__action_clear_rolling(dvi__action *action);
+void dvi__action_forget_rolling(dvi__action *action);
+dvi_status dvi__action_end_rolling(dvi__action *action, const double *Y, double *dp);
+
+/* Move dp until the velocity at the end of the path fulfils all constraints. p, v [n] are work. */
+dvi_status dvi__action_end_on_rows(dvi__action *action, const double *Y, double *p, double *v,
+                                   double *dp);
 
 /* Free the memory of dvi__action_prepare_energy. */
 void dvi__action_clear_energy(dvi__action *action);

@@ -26,14 +26,15 @@
 
 struct dvi__constrained_rows {
   dvi__action *action;
-  int rows, entries;    /* of phi, and of its gradients */
+  int rows, entries;    /* of phi, and of the gradients of all rows */
+  dvi__pattern acting;  /* [n x rows], the first columns of rows_q */
   double *chi, *beta;   /* [s + 1] */
   double *psi, *bar;    /* [(s + 1)*s] psi_l(chi_k) and psi_l(chi_k) - psi_l(1), at k*s + l */
   int knows_start;      /* phi_q has the gradients at the start of the element */
   int knows_path;       /* and at all other nodes, of the path in X */
   double *X;            /* [(s + 1)*n] the nodes */
-  double *phi, *phi_q;  /* [rows], [(s + 1)*entries] */
-  double *w, *phi_w_qq; /* [rows], [entries of rows_qq] */
+  double *phi, *phi_q;  /* [all rows], [(s + 1)*entries] */
+  double *w, *phi_w_qq; /* [all rows], [entries of rows_qq] */
   double *v, *impulse;  /* [n] */
   double *numbers;
 };
@@ -45,8 +46,8 @@ typedef dvi__constrained_rows rows_term;
 static dvi_status rows_allocate(rows_term *x)
 {
   const dvi__action *a = x->action;
-  const size_t n = (size_t)a->n, s = (size_t)a->s, nodes = s + 1, rows = (size_t)x->rows,
-               entries = (size_t)x->entries,
+  const size_t n = (size_t)a->n, s = (size_t)a->s, nodes = s + 1,
+               rows = (size_t)a->system->row_count, entries = (size_t)x->entries,
                curvature = (size_t)dvi__pattern_entries(&a->system->rows_qq);
   double *at = x->numbers = DVI_NEW(double, nodes *(2 + 2 * s + n + entries) + 2 * rows + 2 * n +
                                                 curvature);
@@ -249,18 +250,21 @@ static void rows_scale(const void *of, double h, double *scale)
 dvi_status dvi__action_constrain(dvi__action *a)
 {
   const dvi_system *system = a->system;
-  if (system->row_count == 0) return DVI_OK;
+  if (system->place_rows == 0) return DVI_OK;
   rows_term *x = a->constrained = DVI_NEW(rows_term, 1);
   if (x == NULL) return dvi__fail(DVI_NO_MEMORY, "action: no memory for constraints");
-  *x = (rows_term){
-      .action = a, .rows = system->row_count, .entries = dvi__pattern_entries(&system->rows_q)};
+  const dvi__pattern *G = &system->rows_q;
+  *x = (rows_term){.action = a,
+                   .rows = system->place_rows,
+                   .entries = dvi__pattern_entries(G),
+                   .acting = {system->n, system->place_rows, G->start, G->row}};
   DVI_TRY(rows_allocate(x));
   DVI_TRY(rows_fill_tables(x));
   return dvi__action_add_term(a, &(dvi__row_term){.name = "holonomic constraints",
                                                   .of = x,
                                                   .pattern = &system->rows_qq,
                                                   .unknowns = a->s,
-                                                  .acting = &system->rows_q,
+                                                  .acting = &x->acting,
                                                   .place = rows_place,
                                                   .rows = rows_add,
                                                   .magnitudes = rows_magnitudes,
@@ -279,24 +283,30 @@ void dvi__action_clear_constraints(dvi__action *a)
   dvi__release(a->constrained);
 }
 
-dvi_status dvi__action_constrain_end(dvi__action *a, const double *Y, double *dp)
+dvi_status dvi__action_end_on_rows(dvi__action *a, const double *Y, double *p, double *v,
+                                   double *dp)
 {
-  rows_term *x = a->constrained;
-  if (x == NULL) return DVI_OK;
   const size_t n = (size_t)a->n;
-  double *p = x->X;
-  x->knows_path = 0; /* its places make room for p */
-  dvi__action_path(a, Y, a->h, 1.0, NULL, x->v);
+  dvi__action_path(a, Y, a->h, 1.0, NULL, v);
   for (size_t i = 0; i < n; i++) p[i] = a->p0[i] + dp[i];
   const dvi_status found = dvi__rows_project_momentum(a->evaluator, a->t0 + a->h, a->terms.q1, p,
-                                                      x->v);
+                                                      v);
   /* a smaller step may end elsewhere */
   if (found != DVI_OK)
     return dvi__fail_in(found == DVI_SINGULAR ? DVI_NOT_CONVERGED : found, "the end of the step");
   for (size_t i = 0; i < n; i++) {
-    x->impulse[i] = p[i] - (a->p0[i] + dp[i]);
+    const double added = p[i] - (a->p0[i] + dp[i]);
     dp[i] = p[i] - a->p0[i];
+    p[i] = added;
   }
-  dvi__action_arrive(a, x->impulse);
+  dvi__action_arrive(a, p);
   return DVI_OK;
+}
+
+dvi_status dvi__action_constrain_end(dvi__action *a, const double *Y, double *dp)
+{
+  rows_term *x = a->constrained;
+  if (x == NULL) return dvi__action_end_rolling(a, Y, dp);
+  x->knows_path = 0; /* its places make room for p */
+  return dvi__action_end_on_rows(a, Y, x->X, x->v, dp);
 }

@@ -17,6 +17,7 @@
 #include "system/term/constraint.h"
 #include "system/term/force.h"
 #include "system/term/holonomic.h"
+#include "system/term/nonholonomic.h"
 #include "system/term/vector.h"
 
 /* One block of one term while it is compared. */
@@ -427,6 +428,20 @@ static dvi_status check_holonomic(dvi__check *c, const dvi__holonomic_term *term
   return status;
 }
 
+/* Without a callback the pattern is compared. */
+static dvi_status check_nonholonomic(dvi__check *c, const dvi__nonholonomic_term *term)
+{
+  block b = {.term = term->name,
+             .kind = "constraint",
+             .name = "d(A v + a)_i/dq_j at (i,j) =",
+             .pattern = &term->by_q,
+             .given = c->hessian[0]};
+  const dvi__nonholonomic_at at = {.term = term, .t = c->t, .v = c->v, .A = c->hessian[1]};
+  c->gradient_noise = 0;
+  DVI_TRY(dvi__nonholonomic_derivative(&at, &c->scratch, c->q, c->hessian[0]));
+  return check_blocks(c, dvi__nonholonomic_of_q, &at, c->q, &b, NULL);
+}
+
 static dvi_status check_all_terms(dvi__check *c, const dvi_system *system)
 {
   const names *name = system->dynamics->by_momentum ? &of_hamiltonian : &of_lagrangian;
@@ -440,6 +455,8 @@ static dvi_status check_all_terms(dvi__check *c, const dvi_system *system)
   if (system->vector != NULL) DVI_TRY(check_vector(c, system->vector));
   for (int k = 0; k < system->holonomic_count; k++)
     DVI_TRY(check_holonomic(c, &system->holonomics[k]));
+  for (int k = 0; k < system->nonholonomic_count; k++)
+    DVI_TRY(check_nonholonomic(c, &system->nonholonomics[k]));
   return DVI_OK;
 }
 
@@ -476,7 +493,12 @@ static int longest_pattern(const dvi_system *system)
   const int longest = vv > qv ? vv : qv, terms = dvi__longest_hessian(system, 1),
             most = longest > terms ? longest : terms, of_rows = rows > curvature ? rows : curvature,
             all = most > of_rows ? most : of_rows;
-  return qq > all ? qq : all;
+  int longest_of_all = qq > all ? qq : all;
+  for (int k = 0; k < system->nonholonomic_count; k++) {
+    const int by_q = dvi__pattern_entries(&system->nonholonomics[k].by_q);
+    if (by_q > longest_of_all) longest_of_all = by_q;
+  }
+  return longest_of_all;
 }
 
 static dvi_status check_allocate(dvi__check *c, const dvi_system *system)
@@ -509,6 +531,18 @@ static void check_clear(dvi__check *c)
   for (int i = 0; i < 3; i++) dvi__release(c->hessian[i]);
 }
 
+/* Refuse what the kind of dynamics does not admit, as nonholonomic constraints that are not. */
+static dvi_status check_kind(const dvi_system *system, double t, const double *q)
+{
+  const dvi__state_constraint *constraint = system->dynamics->constraint;
+  dvi__evaluator *e = NULL;
+  if (constraint == NULL || constraint->admit == NULL) return DVI_OK;
+  dvi_status status = dvi__evaluator_create(system, 1, DVI__GRADIENTS, NULL, &e);
+  if (status == DVI_OK) status = constraint->admit(e, t, q);
+  dvi__evaluator_destroy(&e);
+  return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "system check");
+}
+
 static dvi_status check_system(dvi__check *c, const dvi_system *system, double tolerance,
                                dvi_derivative_check *result)
 {
@@ -519,6 +553,7 @@ static dvi_status check_system(dvi__check *c, const dvi_system *system, double t
   DVI_TRY(
       dvi__check_time(system, &c->scratch, &c->differences, c->t, c->q, c->v, tolerance, result));
   DVI_TRY(dvi__check_rows_in_time(system, c->t, c->q, tolerance, result));
+  DVI_TRY(check_kind(system, c->t, c->q));
   return dvi__check_taylor(system, &c->scratch, c->t, c->q, c->v, tolerance, result);
 }
 

@@ -6,30 +6,66 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "system/term/nonholonomic.h"
+
+/* Rows of holonomic constraints, or of nonholonomic ones. */
+typedef struct timed_rows {
+  const dvi__holonomic_term *places;
+  const dvi__nonholonomic_term *velocities;
+  const char *name, *first, *second; /* of the constraint, and of its numbers */
+  int rows, count;                   /* its rows, and all its numbers */
+} timed_rows;
+
+static timed_rows rows_of_places(const dvi__holonomic_term *term)
+{
+  const int rows = term->callbacks.count;
+  return (timed_rows){.places = term,
+                      .name = term->name,
+                      .first = "value",
+                      .second = "gradient",
+                      .rows = rows,
+                      .count = rows + dvi__pattern_entries(&term->gradients)};
+}
+
+static timed_rows rows_of_velocities(const dvi__nonholonomic_term *term)
+{
+  const int rows = term->callbacks.count;
+  return (timed_rows){.velocities = term,
+                      .name = term->name,
+                      .first = "affine part",
+                      .second = "matrix A",
+                      .rows = rows,
+                      .count = rows + dvi__pattern_entries(&term->transposed)};
+}
+
+static dvi_status collect_rows(const timed_rows *r, double t, const double *q, double *numbers)
+{
+  DVI_TRY(r->places != NULL ? dvi__holonomic_value(r->places, t, q, numbers)
+                            : dvi__nonholonomic_affine(r->velocities, t, q, numbers));
+  return r->places != NULL ? dvi__holonomic_gradient(r->places, t, q, numbers + r->rows)
+                           : dvi__nonholonomic_value(r->velocities, t, q, numbers + r->rows);
+}
 
 /* Compare values and gradients at two other times, which are no multiples of each other. */
-static dvi_status check_same(const dvi__holonomic_term *term, double t, const double *q,
-                             double *numbers, dvi_derivative_check *result)
+static dvi_status check_same(timed_rows r, double t, const double *q, double *numbers,
+                             dvi_derivative_check *result)
 {
   static const double apart[] = {0.618033988749895, -3.302775637731995};
-  const int rows = term->callbacks.count, count = rows + dvi__pattern_entries(&term->gradients);
-  double *moved = numbers + count;
-  DVI_TRY(dvi__holonomic_value(term, t, q, numbers));
-  DVI_TRY(dvi__holonomic_gradient(term, t, q, numbers + rows));
+  double *moved = numbers + r.count;
+  DVI_TRY(collect_rows(&r, t, q, numbers));
   for (int k = 0; k < 2; k++) {
     const double other = t + apart[k] * fmax(1, fabs(t));
-    DVI_TRY(dvi__holonomic_value(term, other, q, moved));
-    DVI_TRY(dvi__holonomic_gradient(term, other, q, moved + rows));
-    for (int i = 0; i < count; i++) {
+    DVI_TRY(collect_rows(&r, other, q, moved));
+    for (int i = 0; i < r.count; i++) {
       if (numbers[i] == moved[i]) continue;
-      const char *what = i < rows ? "value" : "gradient";
+      const char *what = i < r.rows ? r.first : r.second;
       result->depends_on_time = 1;
       (void)snprintf(result->where, sizeof result->where, "constraint '%.24s': its %s depends on t",
-                     term->name, what);
+                     r.name, what);
       return dvi__fail(DVI_BAD_ARGUMENT,
                        "system check: constraint '%s': its %s has %.17g at t = %.6g and %.17g at t "
                        "= %.6g, but the system is declared autonomous",
-                       term->name, what, numbers[i], t, moved[i], other);
+                       r.name, what, numbers[i], t, moved[i], other);
     }
   }
   return DVI_OK;
@@ -87,8 +123,10 @@ dvi_status dvi__check_rows_in_time(const dvi_system *system, double t, const dou
   if (numbers == NULL) return dvi__fail(DVI_NO_MEMORY, "system check: no memory for constraints");
   for (int k = 0; k < system->holonomic_count && status == DVI_OK; k++)
     status = system->autonomous
-                 ? check_same(&system->holonomics[k], t, q, numbers, result)
+                 ? check_same(rows_of_places(&system->holonomics[k]), t, q, numbers, result)
                  : check_rates(&system->holonomics[k], t, q, tolerance, numbers, result);
+  for (int k = 0; k < system->nonholonomic_count && status == DVI_OK && system->autonomous; k++)
+    status = check_same(rows_of_velocities(&system->nonholonomics[k]), t, q, numbers, result);
   dvi__release(numbers);
   return status;
 }

@@ -14,6 +14,7 @@
 #include "system/term/declare.h"
 #include "system/term/force.h"
 #include "system/term/holonomic.h"
+#include "system/term/nonholonomic.h"
 #include "system/term/term.h"
 #include "system/term/vector.h"
 
@@ -137,14 +138,22 @@ static dvi_status check_forces_and_joints(const dvi_system_terms *terms)
 {
   DVI_TRY(check_list("forces", terms->force_count, terms->forces));
   DVI_TRY(check_list("holonomic constraints", terms->holonomic_count, terms->holonomics));
-  if ((terms->force_count == 0 && terms->holonomic_count == 0) ||
-      (terms->one_form == NULL && terms->hamiltonian == NULL))
+  DVI_TRY(check_list("nonholonomic constraints", terms->nonholonomic_count, terms->nonholonomics));
+  const int none = terms->force_count == 0 && terms->holonomic_count == 0 &&
+                   terms->nonholonomic_count == 0,
+            rolls_on_groups = terms->factors != NULL && terms->nonholonomic_count > 0;
+  if (none || (terms->one_form == NULL && terms->hamiltonian == NULL && !rolls_on_groups))
     return DVI_OK;
   return dvi__fail(
       DVI_UNSUPPORTED,
       "system: %s go with a mass of coordinates, or with a general Lagrangian, not with %s",
-      terms->force_count > 0 ? "forces" : "holonomic constraints",
-      terms->one_form != NULL ? "a one-form" : "a Hamiltonian");
+      rolls_on_groups || (terms->force_count == 0 && terms->holonomic_count == 0)
+          ? "nonholonomic constraints"
+      : terms->force_count > 0 ? "forces"
+                               : "holonomic constraints",
+      rolls_on_groups           ? "factors"
+      : terms->one_form != NULL ? "a one-form"
+                                : "a Hamiltonian");
 }
 
 static dvi_status check_vector_potential(const dvi_system_terms *terms)
@@ -155,7 +164,10 @@ static dvi_status check_vector_potential(const dvi_system_terms *terms)
                        : terms->hamiltonian != NULL ? "a Hamiltonian"
                        : terms->holonomic_count > 0 ? "holonomic constraints; declare a general "
                                                       "Lagrangian with both the mass and it"
-                                                    : NULL;
+                       : terms->nonholonomic_count > 0
+                           ? "nonholonomic constraints; declare a general Lagrangian with both the "
+                             "mass and it"
+                           : NULL;
   if (terms->vector_potential == NULL || beside == NULL) return DVI_OK;
   return dvi__fail(DVI_UNSUPPORTED,
                    "system: a vector potential goes with a constant mass of coordinates, not with "
@@ -234,6 +246,8 @@ static dvi_status system_fill(dvi_system *s, const dvi_system_terms *terms)
   DVI_TRY(dvi__forces_copy(s, terms));
   DVI_TRY(dvi__vector_copy(s, terms));
   DVI_TRY(dvi__holonomics_copy(s, terms));
+  DVI_TRY(dvi__nonholonomics_copy(s, terms));
+  DVI_TRY(dvi__rows_join(s));
   DVI_TRY(copy_invariants(s, terms));
   dvi__system_declared(s, &s->declared);
   return DVI_OK;
@@ -281,6 +295,7 @@ void dvi_system_destroy(dvi_system **system)
   for (int k = 0; k < s->force_count; k++) dvi__force_clear(&s->forces[k]);
   dvi__vector_clear(&s->vector);
   for (int k = 0; k < s->holonomic_count; k++) dvi__holonomic_clear(&s->holonomics[k]);
+  for (int k = 0; k < s->nonholonomic_count; k++) dvi__nonholonomic_clear(&s->nonholonomics[k]);
   for (int i = 0; s->invariant_names != NULL && i < dvi_system_invariant_count(s); i++)
     dvi__release(s->invariant_names[i]);
   if (s->lagrangian != NULL) dvi__general_clear(s->lagrangian);
@@ -299,6 +314,7 @@ void dvi_system_destroy(dvi_system **system)
   dvi__release(s->potentials);
   dvi__release(s->forces);
   dvi__release(s->holonomics);
+  dvi__release(s->nonholonomics);
   dvi__release(s->symmetries);
   dvi__release(s->invariants);
   dvi__release(s->invariant_names);

@@ -12,7 +12,7 @@
 static int mass_is_declared(const dvi_system_terms *terms)
 {
   const dvi_mass *mass = &terms->mass;
-  return terms->factors == NULL && terms->holonomic_count == 0 &&
+  return terms->factors == NULL && terms->holonomic_count == 0 && terms->nonholonomic_count == 0 &&
          (mass->scalar != 0 || mass->diagonal != NULL || mass->values != NULL);
 }
 

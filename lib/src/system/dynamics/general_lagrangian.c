@@ -157,7 +157,7 @@ dvi_status dvi__prepare_velocity_hessian(dvi__evaluator *e, dvi__derivatives mos
 
 static int lagrangian_is_declared(const dvi_system_terms *terms)
 {
-  return terms->lagrangian != NULL && terms->holonomic_count == 0;
+  return terms->lagrangian != NULL && terms->holonomic_count == 0 && terms->nonholonomic_count == 0;
 }
 
 static dvi_status declare_lagrangian(const dvi_system_terms *terms, dvi_system *s)

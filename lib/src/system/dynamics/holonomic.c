@@ -1,12 +1,14 @@
-/* Holonomic constraints beside a constant mass or a general Lagrangian.
+/* Holonomic and nonholonomic constraints beside a constant mass or a general Lagrangian.
  *
- * The acceleration a and the multipliers solve the equations of motion of index 1,
+ * Every state fulfils G v + g = 0, where the rows of G and g are d phi/dq and d phi/dt, followed by
+ * A and a. The acceleration a and the multipliers solve the equations of motion of index 1,
  *
  *     [ L_vv  G^T ] [ a      ]   [ L_q + F - c ]
  *     [ G     0   ] [ lambda ] = [ -gamma      ],
  *
- * where c and gamma are the derivatives of L_v and of G v + phi_t along (1, v, 0). Source: Brenan,
- * Campbell and Petzold 1996, sec. 2.2 (reduction of the index). */
+ * where c and gamma are the derivatives of L_v and of G v + g along (1, v, 0). Sources: Brenan,
+ * Campbell and Petzold 1996, sec. 2.2 (reduction of the index); Bloch 2003, sec. 5.2 (nonholonomic
+ * constraints). */
 #include "system/dynamics/holonomic.h"
 
 #include <float.h>
@@ -22,6 +24,7 @@
 #include "system/evaluate/evaluator_struct.h"
 #include "system/mass.h"
 #include "system/term/holonomic.h"
+#include "system/term/nonholonomic.h"
 
 /* ---- an evaluator's part ---- */
 
@@ -88,7 +91,7 @@ dvi_status dvi__rows_prepare(dvi__evaluator *e)
   dvi__rows_memory *r = e->rows = DVI_NEW(dvi__rows_memory, 1);
   if (r == NULL) return dvi__fail(DVI_NO_MEMORY, "constraints: no memory");
   r->hessian = DVI_NEW(double, dvi__pattern_entries(&s->rows_qq));
-  double *at = r->numbers = DVI_NEW(double, 9 * n + (8 + DVI__NOISE_SAMPLES) * m + rows);
+  double *at = r->numbers = DVI_NEW(double, 9 * n + (8 + DVI__NOISE_SAMPLES) * m + 2 * rows);
   if (r->hessian == NULL || at == NULL)
     return dvi__fail(DVI_NO_MEMORY, "constraints: no memory for %zu rows", m);
   r->x = at;
@@ -104,6 +107,7 @@ dvi_status dvi__rows_prepare(dvi__evaluator *e)
   r->phi_t = r->phi + m;
   r->phi_q = r->phi_t + m;
   r->unit = r->phi_q + rows;
+  r->moved_A = r->unit + n;
   for (int c = 0; c < s->slot_count; c++)
     for (int i = 0; s->slots[c].kind != DVI__LINE && i < dvi__chart_stored(s->slots[c].kind); i++)
       r->unit[s->slots[c].q + i] = 1;
@@ -133,6 +137,7 @@ dvi_status dvi__rows_value(dvi__evaluator *e, double t, const double *q, double 
   e->counters->values++;
   for (int k = 0; k < s->holonomic_count; k++)
     DVI_TRY(dvi__holonomic_value(&s->holonomics[k], t, q, phi + s->holonomics[k].first));
+  for (int a = s->place_rows; a < s->row_count; a++) phi[a] = 0;
   return DVI_OK;
 }
 
@@ -143,6 +148,9 @@ dvi_status dvi__rows_gradients(dvi__evaluator *e, double t, const double *q, dou
   for (int k = 0; k < s->holonomic_count; k++)
     DVI_TRY(dvi__holonomic_gradient(&s->holonomics[k], t, q,
                                     phi_q + s->rows_q.start[s->holonomics[k].first]));
+  for (int k = 0; k < s->nonholonomic_count; k++)
+    DVI_TRY(dvi__nonholonomic_value(&s->nonholonomics[k], t, q,
+                                    phi_q + s->rows_q.start[s->nonholonomics[k].first]));
   return DVI_OK;
 }
 
@@ -151,6 +159,25 @@ dvi_status dvi__rows_rate(dvi__evaluator *e, double t, const double *q, double *
   const dvi_system *s = e->system;
   for (int k = 0; k < s->holonomic_count; k++)
     DVI_TRY(dvi__holonomic_rate(&s->holonomics[k], t, q, phi_t + s->holonomics[k].first));
+  for (int k = 0; k < s->nonholonomic_count; k++)
+    DVI_TRY(
+        dvi__nonholonomic_affine(&s->nonholonomics[k], t, q, phi_t + s->nonholonomics[k].first));
+  return DVI_OK;
+}
+
+dvi_status dvi__rows_derivatives(dvi__evaluator *e, double t, const double *q, const double *v,
+                                 double *Av_q)
+{
+  const dvi_system *s = e->system;
+  const dvi__rows_memory *r = dvi__rows_memory_of(e);
+  e->counters->hessians++;
+  for (int k = 0; k < s->nonholonomic_count; k++) {
+    const dvi__nonholonomic_term *term = &s->nonholonomics[k];
+    const dvi__nonholonomic_at at = {.term = term, .t = t, .v = v, .A = r->moved_A};
+    DVI_TRY(dvi__nonholonomic_derivative(&at, &e->scratch, q, Av_q));
+    Av_q += dvi__pattern_entries(&term->by_q);
+  }
+  dvi__count_differences(e);
   return DVI_OK;
 }
 
@@ -220,8 +247,11 @@ dvi_status dvi__rows_factor(dvi__evaluator *e, double t, const double *q, const 
   return status != DVI_SINGULAR
              ? status
              : dvi__fail(status,
-                         "the holonomic constraints are dependent at t = %.6g, or the mass is "
-                         "singular along them",
+                         "the %sconstraints are dependent at t = %.6g, or the mass is singular "
+                         "along them",
+                         s->nonholonomic_count == 0 ? "holonomic "
+                         : s->place_rows == 0       ? "nonholonomic "
+                                                    : "",
                          t);
 }
 
@@ -234,7 +264,7 @@ dvi_status dvi__rows_solve(const dvi__rows_memory *r, int size, double t)
 
 /* ---- the motion ---- */
 
-/* Evaluate (L_v, G v + phi_t) at the point moved by tau along the motion, with the same v. */
+/* Evaluate (L_v, G v + g) at the point moved by tau along the motion, with the same v. */
 static dvi_status moved_along(dvi__evaluator *e, double t, double tau, const double *q,
                               const double *v, double *sum)
 {
@@ -259,7 +289,7 @@ static double step_along(const dvi_system *s, double t, const double *q, const d
   return ldexp(1.0, ilogb(relative * (isfinite(span) ? span : 1.0)));
 }
 
-/* Write differences of order 6 of (L_v, G v + phi_t) along the motion into r->derivative. */
+/* Write differences of order 6 of (L_v, G v + g) along the motion into r->derivative. */
 static dvi_status difference_along(dvi__evaluator *e, double t, double step, const double *q,
                                    const double *v)
 {
@@ -320,7 +350,7 @@ static dvi_status search_derivatives(dvi__evaluator *e, double t, const double *
   return known > 0 ? DVI_OK : status;
 }
 
-/* Write the derivatives of (L_v, G v + phi_t) along the motion into r->x. */
+/* Write the derivatives of (L_v, G v + g) along the motion into r->x. */
 static dvi_status differentiate_along(dvi__evaluator *e, double t, const double *q, const double *v)
 {
   const dvi__rows_memory *r = dvi__rows_memory_of(e);
@@ -373,15 +403,20 @@ static dvi_status constrained_motion(dvi__evaluator *e, double t, const double *
 
 /* ---- the kinds ---- */
 
+static int has_rows(const dvi_system_terms *terms)
+{
+  return terms->holonomic_count > 0 || terms->nonholonomic_count > 0;
+}
+
 static int constrained_mass_is_declared(const dvi_system_terms *terms)
 {
-  return terms->holonomic_count > 0 && terms->lagrangian == NULL && terms->one_form == NULL &&
+  return has_rows(terms) && terms->lagrangian == NULL && terms->one_form == NULL &&
          terms->hamiltonian == NULL && terms->factors == NULL;
 }
 
 static int constrained_lagrangian_is_declared(const dvi_system_terms *terms)
 {
-  return terms->holonomic_count > 0 && terms->lagrangian != NULL;
+  return has_rows(terms) && terms->lagrangian != NULL;
 }
 
 static dvi_status declare_lagrangian(const dvi_system_terms *terms, dvi_system *system)
@@ -414,7 +449,7 @@ static dvi_status velocity_by_mass(dvi__evaluator *e, double t, const double *q,
 }
 
 const dvi__dynamics dvi__dynamics_constrained_mass = {
-    .name = "constant mass with holonomic constraints",
+    .name = "constant mass with constraints",
     .function = "Lagrangian",
     .equations = DVI__CONSTRAINED_LAGRANGE,
     .has_kinetic_energy = 1,
@@ -433,7 +468,7 @@ const dvi__dynamics dvi__dynamics_constrained_mass = {
 };
 
 const dvi__dynamics dvi__dynamics_constrained_lagrangian = {
-    .name = "general Lagrangian with holonomic constraints",
+    .name = "general Lagrangian with constraints",
     .function = "Lagrangian",
     .equations = DVI__CONSTRAINED_LAGRANGE,
     .searches_velocity = 1,

@@ -1,19 +1,26 @@
-/* Holonomic constraints phi(t,q) = 0 beside a mass or a general Lagrangian.
+/* Holonomic constraints phi(t,q) = 0, and nonholonomic ones A v + a = 0, beside a mass or a general
+ * Lagrangian.
  *
- *     d/dt L_v = L_q + F - G^T lambda,   phi(t,q) = 0,   G = d phi/dq.
+ *     d/dt L_v = L_q + F - G^T lambda,   phi(t,q) = 0,   G v + g = 0.
  *
- * Functions of all rows of an evaluator's system at one point. */
+ * The rows of G and g are d phi/dq and d phi/dt, followed by A and a. Functions of all rows of an
+ * evaluator's system at one point. */
 #ifndef DVI_SYSTEM_DYNAMICS_HOLONOMIC_H
 #define DVI_SYSTEM_DYNAMICS_HOLONOMIC_H
 #include "system/evaluate/evaluator.h"
 
-/* Compute phi [m], d phi/dq in the order of the system's rows_q, d phi/dt [m], and the Hessian of
- * phi.w in the order of rows_qq. */
+/* Compute phi [m], which is 0 for nonholonomic constraints, G in the order of the system's rows_q,
+ * g [m], and the Hessian of phi.w in the order of rows_qq. */
 dvi_status dvi__rows_value(dvi__evaluator *e, double t, const double *q, double *phi);
 dvi_status dvi__rows_gradients(dvi__evaluator *e, double t, const double *q, double *phi_q);
 dvi_status dvi__rows_rate(dvi__evaluator *e, double t, const double *q, double *phi_t);
 dvi_status dvi__rows_hessian(dvi__evaluator *e, double t, const double *q, const double *w,
                              double *phi_w_qq);
+
+/* Compute d(A v + a)/dq of the nonholonomic constraints, one after the other, in the order of their
+ * by_q. */
+dvi_status dvi__rows_derivatives(dvi__evaluator *e, double t, const double *q, const double *v,
+                                 double *Av_q);
 
 /* Estimate the roundings of phi [m] near a point. 0 stands for a row in which none are seen. */
 void dvi__rows_noise(dvi__evaluator *e, double t, const double *q, double *noise);
@@ -22,7 +29,7 @@ void dvi__rows_noise(dvi__evaluator *e, double t, const double *q, double *noise
 void dvi__rows_pull(const dvi_system *system, const double *phi_q, const double *w, double factor,
                     double *x);
 
-/* Move p [n] along the gradients until the velocity stays on the constraint, G v + phi_t = 0.
+/* Move p [n] along the gradients until the velocity fulfils the constraints, G v + g = 0.
  * *v [n] is a guess for general Lagrangians, and becomes the velocity. */
 dvi_status dvi__rows_project_momentum(dvi__evaluator *e, double t, const double *q, double *p,
                                       double *v);

@@ -1,4 +1,4 @@
-/* What an evaluator keeps for holonomic constraints, and the matrix of index 1 (holonomic.c). */
+/* What an evaluator keeps for constraints, and the matrix of index 1 (holonomic.c). */
 #ifndef DVI_SYSTEM_DYNAMICS_HOLONOMIC_ROWS_H
 #define DVI_SYSTEM_DYNAMICS_HOLONOMIC_ROWS_H
 #include "num/linear.h"
@@ -14,6 +14,7 @@ typedef struct dvi__rows_memory {
   double *phi, *phi_t, *phi_q; /* [m], [m], [entries of rows_q] */
   double *point, *along[2];    /* [n] a moved point, [n + m] derivatives along the motion */
   double *hessian, *sum;       /* [entries of rows_qq], [n] */
+  double *moved_A;             /* [entries of rows_q] A at another point */
   double *derivative, *before; /* [n + m] differences along the motion of two lengths */
   double *defect;              /* [n + m] by which they differ */
   double *samples;             /* [DVI__NOISE_SAMPLES*m] of phi near a point */
@@ -28,13 +29,16 @@ void dvi__rows_release(dvi__evaluator *e);
 
 dvi__rows_memory *dvi__rows_memory_of(const dvi__evaluator *e);
 
-/* Compute G x + phi_t. */
+/* Compute G x + g, where phi_q has G and phi_t has g. */
 void dvi__rows_push(const dvi_system *system, const double *phi_q, const double *x,
                     const double *phi_t, double *sum);
 
 /* Factor the matrix at a point, whose gradients stay in phi_q, and solve for x in place. */
 dvi_status dvi__rows_factor(dvi__evaluator *e, double t, const double *q, const double *v);
 dvi_status dvi__rows_solve(const dvi__rows_memory *r, int size, double t);
+
+/* Refuse nonholonomic constraints that are dependent, or integrable, near a point. */
+dvi_status dvi__rows_are_nonholonomic(dvi__evaluator *e, double t, const double *q);
 
 /* The functions of the states on the constraints (dvi__state_constraint), and all of them. */
 dvi_status dvi__rows_check(dvi__evaluator *e, double t, const double *q, const double *p);

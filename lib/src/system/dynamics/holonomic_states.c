@@ -1,7 +1,8 @@
-/* States on holonomic constraints: their check, their roundings, and the projection of a state.
+/* States on constraints: their check, their roundings, and the projection of a state.
  *
- * A momentum is moved along G^T until its velocity fulfils G v + phi_t = 0, and a place along
- * M^-1 G^T until phi = 0, both by the matrix of the equations of motion (holonomic.c). */
+ * A momentum is moved along G^T until its velocity fulfils G v + g = 0, and a place along M^-1 G^T
+ * until phi = 0, without crossing nonholonomic constraints, A dq = 0. Both use the matrix of the
+ * equations of motion (holonomic.c). */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -56,11 +57,11 @@ void dvi__rows_noise(dvi__evaluator *e, double t, const double *q, double *noise
   const int m = e->system->row_count;
   const double size = fmax(dvi__largest((size_t)e->system->n, q), 0x1p-100), near = 0x1p-24 * size,
                most = 0x1p-20 * fmax(size, 1);
-  int missing = m;
+  int missing = e->system->place_rows;
   memset(noise, 0, (size_t)m * sizeof *noise);
   for (double d = 0x1p-40 * size; d <= near || (d <= most && missing > 0); d *= 256) {
     if (sample_rows(e, t, q, d) != DVI_OK) return;
-    for (int a = 0; a < m; a++) {
+    for (int a = 0; a < e->system->place_rows; a++) {
       if (noise[a] > 0 && d > near) continue;
       missing -= noise[a] == 0;
       noise[a] = fmax(noise[a], largest_fourth_difference(r->samples + a, m));
@@ -69,12 +70,21 @@ void dvi__rows_noise(dvi__evaluator *e, double t, const double *q, double *noise
   }
 }
 
-/* Find the term of a row. */
-static const dvi__holonomic_term *term_of_row(const dvi_system *s, int a)
+/* Find the name of the constraint to which a row belongs, its first row, their count, and their
+ * names or NULL. */
+static const char *name_of_row(const dvi_system *s, int a, int *first, int *count,
+                               const char *const **names)
 {
-  int k = s->holonomic_count - 1;
-  while (s->holonomics[k].first > a) k--;
-  return &s->holonomics[k];
+  const int velocities = a >= s->place_rows;
+  int k = (velocities ? s->nonholonomic_count : s->holonomic_count) - 1;
+  if (velocities)
+    while (s->nonholonomics[k].first > a) k--;
+  else
+    while (s->holonomics[k].first > a) k--;
+  *names = velocities ? NULL : (const char *const *)s->holonomics[k].row_names;
+  *first = velocities ? s->nonholonomics[k].first : s->holonomics[k].first;
+  *count = velocities ? s->nonholonomics[k].callbacks.count : s->holonomics[k].callbacks.count;
+  return velocities ? s->nonholonomics[k].name : s->holonomics[k].name;
 }
 
 /* Sum the magnitudes of a row of G x. */
@@ -104,35 +114,66 @@ static double gradient_size(const dvi_system *s, const double *phi_q, int a)
   return size;
 }
 
+/* Compute the rate v [n] of a state's q, and G v + g of all rows. */
+static dvi_status velocity_rows(dvi__evaluator *e, double t, const double *q, const double *p,
+                                double *v, double *rate)
+{
+  const dvi__rows_memory *r = dvi__rows_memory_of(e);
+  double *found = e->system->dynamics->on_manifold ? r->sum : v;
+  memset(found, 0, (size_t)e->system->n * sizeof(double));
+  DVI_TRY(dvi__legendre_inverse(e, t, q, p, found));
+  if (found != v) dvi__factors_rate(e->system, q, found, v);
+  DVI_TRY(dvi__rows_gradients(e, t, q, r->phi_q));
+  DVI_TRY(dvi__rows_rate(e, t, q, r->phi_t));
+  dvi__rows_push(e->system, r->phi_q, v, r->phi_t, rate);
+  return DVI_OK;
+}
+
+static dvi_status place_distance(dvi__evaluator *e, double t, const double *q, double *distance)
+{
+  const dvi__rows_memory *r = dvi__rows_memory_of(e);
+  DVI_TRY(dvi__rows_value(e, t, q, r->phi));
+  *distance = dvi__largest((size_t)e->system->row_count, r->phi);
+  return DVI_OK;
+}
+
+/* phi counts, and A v + a. The rates of holonomic constraints do not. */
 dvi_status dvi__rows_distance(dvi__evaluator *e, double t, const double *q, const double *p,
                               double *distance)
 {
+  const dvi_system *s = e->system;
   const dvi__rows_memory *r = dvi__rows_memory_of(e);
-  (void)p;
-  DVI_TRY(dvi__rows_value(e, t, q, r->phi));
-  *distance = dvi__largest((size_t)e->system->row_count, r->phi);
+  double *v = r->along[0], *rate = r->along[1];
+  DVI_TRY(place_distance(e, t, q, distance));
+  if (s->nonholonomic_count == 0) return DVI_OK;
+  DVI_TRY(velocity_rows(e, t, q, p, v, rate));
+  for (int a = s->place_rows; a < s->row_count; a++) *distance = fmax(*distance, fabs(rate[a]));
   return DVI_OK;
 }
 
 dvi_status dvi__rows_size(dvi__evaluator *e, double t, const double *q, const double *p,
                           double *size)
 {
+  const dvi_system *s = e->system;
   const dvi__rows_memory *r = dvi__rows_memory_of(e);
-  (void)p;
+  double *v = r->along[0];
   *size = 0;
-  DVI_TRY(dvi__rows_gradients(e, t, q, r->phi_q));
-  for (int a = 0; a < e->system->row_count; a++)
-    *size = fmax(*size, place_size(e->system, r, a, q));
+  DVI_TRY(s->nonholonomic_count > 0 ? velocity_rows(e, t, q, p, v, r->along[1])
+                                    : dvi__rows_gradients(e, t, q, r->phi_q));
+  for (int a = 0; a < s->row_count; a++)
+    *size = fmax(*size, a < s->place_rows ? place_size(s, r, a, q)
+                                          : row_size(s, r->phi_q, a, v) + fabs(r->phi_t[a]));
   return DVI_OK;
 }
 
 static dvi_status refuse_row(const dvi_system *s, int a, double t, const char *what, double value)
 {
-  const dvi__holonomic_term *term = term_of_row(s, a);
-  const char *name = term->row_names != NULL ? term->row_names[a - term->first] : term->name;
+  int first, count;
+  const char *const *names;
+  const char *name = name_of_row(s, a, &first, &count, &names);
   char row[32] = "";
-  if (term->callbacks.count > 1 && term->row_names == NULL)
-    (void)snprintf(row, sizeof row, " (row %d)", a - term->first);
+  if (names != NULL) name = names[a - first];
+  if (count > 1 && names == NULL) (void)snprintf(row, sizeof row, " (row %d)", a - first);
   return dvi__fail(DVI_BAD_ARGUMENT,
                    "constraint '%s'%s%s is %.17g at t = %.6g, not 0; start on the constraint, or "
                    "let the start be projected (dvi_start_options)",
@@ -162,20 +203,14 @@ dvi_status dvi__rows_check(dvi__evaluator *e, double t, const double *q, const d
   const dvi__rows_memory *r = dvi__rows_memory_of(e);
   double *v = r->along[0], *rate = r->along[1];
   DVI_TRY(dvi__rows_check_place(e, t, q));
-  memset(v, 0, (size_t)s->n * sizeof(double));
-  DVI_TRY(dvi__legendre_inverse(e, t, q, p, v));
-  DVI_TRY(dvi__rows_rate(e, t, q, r->phi_t));
-  if (s->dynamics->on_manifold) {
-    dvi__factors_rate(s, q, v, r->sum);
-    v = r->sum;
-  }
-  dvi__rows_push(s, r->phi_q, v, r->phi_t, rate);
+  DVI_TRY(velocity_rows(e, t, q, p, v, rate));
   const double speed = dvi__largest((size_t)s->n, v);
   for (int a = 0; a < s->row_count; a++) {
     const double size = row_size(s, r->phi_q, a, v) + fabs(r->phi_t[a]),
                  rounding = of_velocity * speed * gradient_size(s, r->phi_q, a);
     if (!(fabs(rate[a]) <= fmax(on_constraint * size, rounding)))
-      return refuse_row(s, a, t, ", its rate along the velocity,", rate[a]);
+      return refuse_row(
+          s, a, t, a < s->place_rows ? ", its rate along the velocity," : ", A v + a,", rate[a]);
   }
   return DVI_OK;
 }
@@ -194,7 +229,7 @@ static int momentum_is_rounding(const dvi_system *s, const dvi__rows_memory *r, 
   return 1;
 }
 
-/* Solve L_v(v) + G^T mu = p, G v + phi_t = 0 by Newton's method. One iteration is exact for a
+/* Solve L_v(v) + G^T mu = p, G v + g = 0 by Newton's method. One iteration is exact for a
  * constant mass, and a second one rounds its residual off. A velocity that is 0 has no size of its
  * own, so that then the momentum tells what a rounding is. */
 dvi_status dvi__rows_project_momentum(dvi__evaluator *e, double t, const double *q, double *p,
@@ -242,7 +277,7 @@ dvi_status dvi__rows_approach(dvi__evaluator *e, double t, double *q, double *p)
   double *v = e->point[0], size = HUGE_VAL, next;
   memset(v, 0, n * sizeof(double));
   if (s->lagrangian != NULL) DVI_TRY(dvi__legendre_inverse(e, t, q, p, v));
-  DVI_TRY(dvi__rows_distance(e, t, q, p, &next));
+  DVI_TRY(place_distance(e, t, q, &next));
   for (int iteration = 0; iteration < MOST_ITERATIONS && next > 0 && next < size; iteration++) {
     size = next;
     DVI_TRY(dvi__rows_factor(e, t, q, v));
@@ -250,7 +285,7 @@ dvi_status dvi__rows_approach(dvi__evaluator *e, double t, double *q, double *p)
     for (int a = 0; a < s->row_count; a++) r->x[s->n + a] = -r->phi[a];
     DVI_TRY(dvi__rows_solve(r, s->n + s->row_count, t));
     for (size_t i = 0; i < n; i++) r->point[i] = q[i] + r->x[i];
-    DVI_TRY(dvi__rows_distance(e, t, r->point, p, &next));
+    DVI_TRY(place_distance(e, t, r->point, &next));
     if (next < size) memcpy(q, r->point, n * sizeof *q);
   }
   return dvi__rows_project_momentum(e, t, q, p, v);
@@ -278,6 +313,7 @@ dvi_status dvi__rows_side(dvi__evaluator *e, const double *q, const double *p, i
 const dvi__state_constraint dvi__on_rows = {
     .matrix = "matrix of the constraints",
     .check = dvi__rows_check,
+    .admit = dvi__rows_are_nonholonomic,
     .project = project_on_rows,
     .distance = dvi__rows_distance,
     .size = dvi__rows_size,

@@ -11,19 +11,22 @@
 typedef enum dvi__motion_form {
   DVI__EULER_LAGRANGE, /* q' = v, p' = L_q, p = L_v */
   DVI__FIRST_ORDER,    /* Omega(q) q' = H_q, without momenta of their own */
-  /* q' = v, p' = L_q - G^T lambda, p = L_v, phi(t,q) = 0 */
+  /* q' = v, p' = L_q - G^T lambda, p = L_v, phi(t,q) = 0, A v + a = 0 */
   DVI__CONSTRAINED_LAGRANGE,
   DVI__HAMILTON, /* q' = H_p, p' = -H_q, and the forces of constraints phi(q,p) = 0 */
   DVI__LIFTED    /* on rotations and directions, lifted to coordinates of R^n */
 } dvi__motion_form;
 
 /* A constraint that every state of the system fulfils, p = alpha(q), or phi(q,p) = 0, or phi(t,q) =
- * 0 and its rate. */
+ * 0 and its rate, or A v + a = 0. */
 typedef struct dvi__state_constraint {
   const char *matrix; /* name of the matrix at whose singular points trajectories end */
 
   /* Return DVI_BAD_ARGUMENT unless the state fulfils the constraint up to rounding. */
   dvi_status (*check)(dvi__evaluator *e, double t, const double *q, const double *p);
+
+  /* Refuse a declaration that cannot be of its kind near a point. NULL if there is none. */
+  dvi_status (*admit)(dvi__evaluator *e, double t, const double *q);
 
   /* Move q and p [n] onto the constraint. */
   dvi_status (*project)(dvi__evaluator *e, double t, double *q, double *p);

@@ -103,8 +103,8 @@ static double along(int n, const double *x, const double *v)
   return sum;
 }
 
-/* Compute the power F.v of the forces without a potential, and of holonomic constraints that move
- * with time, which is that of all forces less that of the Lagrangian's own. */
+/* Compute the power F.v of the forces without a potential, and of constraints that move with time,
+ * or are affine, which is that of all forces less that of the Lagrangian's own. */
 static dvi_status power_of_forces(dvi__evaluator *e, const dvi__instant *at, double *power)
 {
   const dvi_system *s = e->system;
@@ -114,7 +114,7 @@ static dvi_status power_of_forces(dvi__evaluator *e, const dvi__instant *at, dou
     DVI_TRY(dvi__forces(e, DVI__FORCES, 1, &at->t, at->q, at->v, F));
     *power += along(s->n, F, at->v);
   }
-  if (s->row_count == 0 || s->autonomous) return DVI_OK;
+  if (s->row_count == 0 || (s->autonomous && s->nonholonomic_count == 0)) return DVI_OK;
   DVI_TRY(s->dynamics->forces(e, at->t, at->q, at->v, F));
   *power += along(s->n, F, at->v);
   DVI_TRY(dvi__lagrangian_gradient(e, 1, &at->t, at->q, at->v, F, NULL));

@@ -56,25 +56,33 @@ static dvi_status copy_holonomic(dvi_system *s, const dvi_holonomic *given,
   return given->hessian != NULL ? DVI_OK : dvi__group_columns(&term->qq, &term->groups);
 }
 
-/* Join the gradients of all terms, column after column. */
+/* Write the columns of a term from column `first` on, whose entries begin at start[first]. */
+static void append_columns(const dvi__pattern *columns, int first, dvi__pattern *all)
+{
+  int at = all->start[first];
+  for (int a = 0; a < columns->columns; a++) {
+    for (int e = columns->start[a]; e < columns->start[a + 1]; e++)
+      all->row[at++] = columns->row[e];
+    all->start[first + a + 1] = at;
+  }
+}
+
+/* Join the gradients of all terms, column after column, and the rows of A. */
 static dvi_status join_gradients(dvi_system *s)
 {
   size_t entries = 0;
   for (int k = 0; k < s->holonomic_count; k++)
     entries += (size_t)dvi__pattern_entries(&s->holonomics[k].gradients);
+  for (int k = 0; k < s->nonholonomic_count; k++)
+    entries += (size_t)dvi__pattern_entries(&s->nonholonomics[k].transposed);
   s->rows_q = (dvi__pattern){s->n, s->row_count, DVI_NEW(int, (size_t)s->row_count + 1),
                              DVI_NEW(int, entries)};
   if (s->rows_q.start == NULL || s->rows_q.row == NULL) return refuse_memory_of_rows();
-  int at = 0;
-  for (int k = 0; k < s->holonomic_count; k++) {
-    const dvi__holonomic_term *term = &s->holonomics[k];
-    for (int a = 0; a < term->callbacks.count; a++) {
-      s->rows_q.start[term->first + a] = at;
-      for (int e = term->gradients.start[a]; e < term->gradients.start[a + 1]; e++)
-        s->rows_q.row[at++] = term->gradients.row[e];
-    }
-  }
-  s->rows_q.start[s->row_count] = at;
+  s->rows_q.start[0] = 0;
+  for (int k = 0; k < s->holonomic_count; k++)
+    append_columns(&s->holonomics[k].gradients, s->holonomics[k].first, &s->rows_q);
+  for (int k = 0; k < s->nonholonomic_count; k++)
+    append_columns(&s->nonholonomics[k].transposed, s->nonholonomics[k].first, &s->rows_q);
   return DVI_OK;
 }
 
@@ -106,6 +114,13 @@ dvi_status dvi__holonomics_copy(dvi_system *s, const dvi_system_terms *terms)
     s->holonomic_count = k + 1;
     DVI_TRY(copy_holonomic(s, &terms->holonomics[k], &s->holonomics[k]));
   }
+  s->place_rows = s->row_count;
+  return DVI_OK;
+}
+
+dvi_status dvi__rows_join(dvi_system *s)
+{
+  if (s->row_count == 0) return DVI_OK;
   DVI_TRY(join_gradients(s));
   return join_curvatures(s);
 }

@@ -3,8 +3,11 @@
 #define DVI_SYSTEM_TERM_HOLONOMIC_H
 #include "system/term/term.h"
 
-/* Check and copy the constraints, and join their patterns. */
+/* Check and copy the constraints. */
 dvi_status dvi__holonomics_copy(dvi_system *system, const dvi_system_terms *terms);
+
+/* Join the patterns of all rows, those of nonholonomic constraints included. */
+dvi_status dvi__rows_join(dvi_system *system);
 void dvi__holonomic_clear(dvi__holonomic_term *term);
 
 /* Compute phi [count], its gradients in the order of the term's pattern, and its rates [count], of

@@ -52,6 +52,8 @@ static int lacks_hessian(const dvi_system *system, int hessians)
   lacks |= system->constraint != NULL && system->constraint->callbacks.hessian == NULL;
   for (int k = 0; k < system->holonomic_count; k++)
     lacks |= system->holonomics[k].callbacks.hessian == NULL;
+  for (int k = 0; k < system->nonholonomic_count; k++)
+    lacks |= system->nonholonomics[k].callbacks.derivative == NULL;
   for (int k = 0; k < system->potential_count && hessians; k++)
     lacks |= !dvi__potential_has_hessian(&system->potentials[k]);
   for (int k = 0; k < system->force_count && hessians && system->slot_count == 0; k++)
