@@ -44,6 +44,9 @@ static void columns_list(run_columns *c, const dvi_integrator *integrator)
       scene->terms->holonomic_count > 0 || scene->terms->nonholonomic_count > 0)
     columns_add(c, "constraint", COLUMN_CONSTRAINT, 0);
   if (!isnan(dvi_integrator_jump(integrator, NULL))) columns_add(c, "jump", COLUMN_JUMP, 0);
+  reaction_names(scene, c->reaction_name);
+  for (int i = 0; i < reaction_count(scene); i++)
+    columns_add(c, c->reaction_name[i], COLUMN_REACTION, i);
 }
 
 /* Refuse a method's own column with the name of one of the problem's. */
@@ -132,7 +135,8 @@ static bool columns_allocate(run_columns *c)
 {
   const size_t nq = (size_t)c->scene->nq, nv = (size_t)c->scene->nv;
   const size_t invariants = (size_t)dvi_system_invariant_count(c->scene->system),
-               most = nq + 2 * nv + 2 * invariants + COLUMN_KINDS;
+               rows = (size_t)reaction_count(c->scene),
+               most = nq + 2 * nv + 2 * invariants + rows + COLUMN_KINDS;
   c->all = calloc(most, sizeof *c->all);
   c->column = calloc(most, sizeof *c->column);
   c->shown = calloc(most, sizeof *c->shown);
@@ -141,8 +145,11 @@ static bool columns_allocate(run_columns *c)
   c->balance_name = calloc(invariants, sizeof *c->balance_name);
   c->velocity = calloc(nv, sizeof *c->velocity);
   c->room = calloc(nq + nv, sizeof *c->room);
-  return c->all != NULL && c->column != NULL && c->shown != NULL && c->invariant != NULL &&
-         c->balance != NULL && c->balance_name != NULL && c->velocity != NULL && c->room != NULL;
+  c->reaction = calloc(rows + 1, sizeof *c->reaction);
+  c->reaction_name = calloc(rows + 1, sizeof *c->reaction_name);
+  return c->reaction != NULL && c->reaction_name != NULL && c->all != NULL && c->column != NULL &&
+         c->shown != NULL && c->invariant != NULL && c->balance != NULL &&
+         c->balance_name != NULL && c->velocity != NULL && c->room != NULL;
 }
 
 int columns_choose(run_columns *c, const problem *scene, const dvi_integrator *integrator,
@@ -155,7 +162,8 @@ int columns_choose(run_columns *c, const problem *scene, const dvi_integrator *i
   if (code != DONE) return code;
   if (asked != NULL) return columns_show_asked(c, dvi_integrator_method(integrator), asked);
   if (scene->column != NULL) return columns_show_wanted(c, dvi_integrator_method(integrator));
-  for (int k = 0; k < c->there; k++) columns_show(c, k);
+  for (int k = 0; k < c->there; k++)
+    if (c->all[k].kind != COLUMN_REACTION) columns_show(c, k);
   return DONE;
 }
 
@@ -169,6 +177,8 @@ void columns_clear(run_columns *c)
   free(c->balance_name);
   free(c->velocity);
   free(c->room);
+  free(c->reaction);
+  free(c->reaction_name);
   *c = (run_columns){.count = 0};
 }
 
@@ -200,6 +210,8 @@ static dvi_status columns_evaluate(run_columns *c, dvi_integrator *integrator)
     status = velocity_near(c->scene, t, q, p, c->room, c->velocity);
   if (status == DVI_OK && c->shows[COLUMN_CONSTRAINT])
     status = dvi_integrator_constraint(integrator, &c->constraint);
+  if (status == DVI_OK && c->shows[COLUMN_REACTION])
+    status = dvi_integrator_reactions(integrator, c->reaction);
   return status;
 }
 
@@ -228,6 +240,7 @@ double columns_number(const run_columns *c, const dvi_integrator *integrator, in
   case COLUMN_STEP: return dvi_integrator_last_step(integrator);
   case COLUMN_DISTANCE: return dvi_system_distance(c->scene->system, dvi_integrator_q(integrator));
   case COLUMN_CONSTRAINT: return c->constraint;
+  case COLUMN_REACTION: return c->reaction[column->index];
   default: return dvi_integrator_jump(integrator, NULL);
   }
 }

@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
+#include "csv/reactions.h"
 #include "problem.h"
 
 enum { BALANCE_NAME_SIZE = 128 };
@@ -20,7 +21,8 @@ typedef enum column_kind {
   COLUMN_DISTANCE, /**< distance from the manifold, with factors */
   /** |p - alpha(q)| with a one-form, |phi(q,p)| of a constrained Hamiltonian, |phi(t,q)| */
   COLUMN_CONSTRAINT,
-  COLUMN_JUMP, /**< jump, of methods whose trajectories jump */
+  COLUMN_JUMP,     /**< jump, of methods whose trajectories jump */
+  COLUMN_REACTION, /**< multiplier of a holonomic constraint, shown only if it is asked for */
   COLUMN_KINDS
 } column_kind;
 
@@ -41,6 +43,8 @@ typedef struct run_columns {
   double *velocity;                        /**< [nv] with factors */
   double *room;                            /**< [nq + nv] with factors */
   double constraint;
+  double *reaction; /**< [rows] multipliers, set likewise, and the names of their columns */
+  char (*reaction_name)[REACTION_NAME_SIZE];
   bool shows[COLUMN_KINDS];
 } run_columns;
 

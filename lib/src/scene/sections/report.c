@@ -43,6 +43,26 @@ static bool is_balance(const dvi_scene *scene, const char *text)
   return false;
 }
 
+/* Return true for lambda_NAME of a constraint, or lambda_NAME_k of row k of a joint. */
+static bool is_multiplier(const dvi_scene *scene, const char *text)
+{
+  static const char prefix[] = "lambda_";
+  if (strncmp(text, prefix, sizeof prefix - 1) != 0) return false;
+  text += sizeof prefix - 1;
+  const dvi__tree *constraints = dvi__tree_find(scene->tree, "constraints");
+  if (scene->terms.holonomic_count > 0 && constraints != NULL &&
+      dvi__tree_find(constraints, text) != NULL)
+    return true;
+  for (int k = 0; k < scene->joint_count; k++) {
+    const size_t length = strlen(scene->joint[k].name);
+    if (strncmp(text, scene->joint[k].name, length) != 0) continue;
+    const char *rest = text + length;
+    if (*rest == '\0' || (rest[0] == '_' && rest[1] >= '1' && rest[1] <= '6' && rest[2] == '\0'))
+      return true;
+  }
+  return false;
+}
+
 static bool all_columns(dvi_scene *scene, const dvi__tree *columns)
 {
   char hint[96];
@@ -57,7 +77,7 @@ static bool all_columns(dvi_scene *scene, const dvi__tree *columns)
     const char *name = columns->child[i]->text;
     int k = 0;
     while (k < count && strcmp(known[k], name) != 0) k++;
-    if (k == count && !is_balance(scene, name))
+    if (k == count && !is_balance(scene, name) && !is_multiplier(scene, name))
       return dvi__scene_refuse(scene, columns->child[i]->span, "there is no column '%s'%s", name,
                                dvi__nearest(name, count, known, hint, sizeof hint));
     for (k = 0; k < i; k++)

@@ -1,0 +1,13 @@
+/** Names of the columns of multipliers, lambda_NAME of holonomic constraints. */
+#ifndef REACTIONS_H
+#define REACTIONS_H
+#include "problem.h"
+
+enum { REACTION_NAME_SIZE = 128 };
+
+/** Return the number of rows of all holonomic constraints. */
+int reaction_count(const problem *scene);
+
+/** Write the name of each row's column. Several rows of one name are numbered from 1. */
+void reaction_names(const problem *scene, char (*name)[REACTION_NAME_SIZE]);
+#endif

@@ -1,0 +1,55 @@
+#!/bin/sh
+# Scenes with joints and forces on bodies: each part of them shows in a run, and multipliers are
+# columns that can be asked for.
+# Usage: test_scene_joints.sh DVI
+. "$(dirname "$0")/../check.sh"
+
+cat >arm.yaml <<'END'
+coordinates: {upper: motion, lower: motion}
+kinetic: >-
+  dot(upper.x', upper.x')/2 + dot(lower.x', lower.x')/2
+  + 0.1*dot(omega(upper), omega(upper)) + 0.1*dot(omega(lower), omega(lower))
+potentials: {weight: "9.81*(upper.x[3] + lower.x[3])"}
+forces:
+  omega(lower): -0.05*omega(lower)
+joints:
+  shoulder: {hinge: [ground, upper], at: [0, 0, 0], axis: [0, 1, 0]}
+  elbow: {ball: [upper, lower], at: [1, 0, 0]}
+initial:
+  upper.R: turn([0, 1, 0], 0)
+  upper.x: [0.5, 0, 0]
+  lower.R: turn([0, 1, 0], 0)
+  lower.x: [1.5, 0, 0]
+method: lie-galerkin:degree=2
+step: 0.05
+until: 0.5
+END
+expect 0 'an arm' run arm.yaml
+cp out base
+for change in 's/-0.05/-0.06/' 's/omega(lower): -/lower.x: -/;s/\*omega(lower)$/*lower.x'"'"'/' \
+  's/at: \[1, 0, 0\]/at: [1, 0, 0.1]/' 's/axis: \[0, 1, 0\]/axis: [0, 0, 1]/' 's/hinge/slider/'; do
+  sed "$change" arm.yaml >other.yaml
+  cmp -s arm.yaml other.yaml && fail "'$change' changes nothing"
+  expect 0 "$change" run other.yaml
+  cmp -s out base && fail "the change '$change' does not show"
+done
+
+# At rest a chain that hangs straight down pulls by its weight.
+sed '/^forces/,+1d;s/at: \[1, 0, 0\]/at: [0, 0, -1]/;s/upper.x: .*/upper.x: [0, 0, -0.5]/
+s/lower.x: .*/lower.x: [0, 0, -1.5]/' arm.yaml >hang.yaml
+expect 0 'multipliers' run hang.yaml --columns lambda_shoulder_3,lambda_elbow_3 --t-end 0.05
+tail -1 out | awk -F, '{ exit !($2^2 - 19.62^2 < 1e-6 && $3^2 - 9.81^2 < 1e-6 && $3^2 > 96) }' ||
+  fail "the weight is not in the multipliers: $(tail -1 out)"
+says base '^t,[^l]*' 'the header'
+grep -q lambda base && fail 'multipliers stand in a row unasked'
+{ cat arm.yaml; echo 'report: {columns: [lambda_elbow_1, energy_balance]}'; } >report.yaml
+expect 0 'columns of a report' run report.yaml
+says out '^t,lambda_elbow_1,energy_balance$' 'columns of a report'
+sed 's/elbow_1/elbow_4/' report.yaml >odd.yaml
+expect 2 'a row that is not there' run odd.yaml
+says err "has no column 'lambda_elbow_4'" 'a row that is not there'
+
+for method in verlet lie-verlet euler-poincare galerkin; do
+  expect 2 "$method takes no joints" run arm.yaml --method $method
+done
+finish
