@@ -137,6 +137,35 @@ START_TEST(the_term_has_the_steps_of_the_whole_lagrangian)
 }
 END_TEST
 
+/* Iterations need no Jacobian, and about as many of them as h B/m asks for. */
+START_TEST(steps_that_resolve_the_turns_need_no_jacobian)
+{
+  static const struct {
+    const char *method;
+    double h;
+    int most; /* iterations a step */
+  } runs[] = {{"galerkin:degree=1", 0.02, 12},
+              {"galerkin:degree=2", 0.05, 12},
+              {"galerkin:degree=4", 0.2, 14},
+              {"galerkin:degree=6,quadrature=lobatto", 0.3, 14}};
+  for (size_t k = 0; k < sizeof runs / sizeof *runs; k++) {
+    magnetic m;
+    dvi_counters counters;
+    make_magnetic(BOTTLE, &m);
+    dvi_integrator *integrator = started(&m, runs[k].method);
+    advance(integrator, runs[k].h, 100);
+    dvi_integrator_counters(integrator, &counters);
+    ck_assert_int_eq(counters.jacobians, 0);
+    ck_assert_int_eq(counters.hessians, 0);
+    ck_assert_int_eq(counters.fixed_points, 100);
+    ck_assert_msg(counters.residuals <= 100L * runs[k].most, "%s: %ld iterations", runs[k].method,
+                  counters.residuals);
+    dvi_integrator_destroy(&integrator);
+    destroy_magnetic(&m);
+  }
+}
+END_TEST
+
 /* ---- gauges ---- */
 
 /* f = c q0^2 q1 + q0 q1: the bottle's A + grad f. A cubic f changes galerkin's steps. */
@@ -228,6 +257,7 @@ SUITE(order_magnetic)
   tcase_add_loop_test(tests, methods_keep_their_order_in_a_magnetic_field, 0, CLAIMS);
   tcase_add_test(tests, judges_integrate_vector_potentials);
   tcase_add_loop_test(tests, the_term_has_the_steps_of_the_whole_lagrangian, 0, 5);
+  tcase_add_test(tests, steps_that_resolve_the_turns_need_no_jacobian);
   tcase_add_test(tests, steps_depend_on_the_gauge_only_by_the_quadrature);
   tcase_add_test(tests, galerkin_is_symplectic_and_keeps_the_angular_momentum);
 }

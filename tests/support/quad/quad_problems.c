@@ -200,7 +200,7 @@ static void magnetic_bottle_prepare(quad_system *system)
 {
   system->n = 3;
   system->q[0] = 1;
-  system->v[1] = quad_number("0.9");
+  system->v[1] = quad_number("0.6");
   system->v[2] = quad_number("0.5");
 }
 
@@ -410,7 +410,7 @@ static const quad_problem problems[] = {
      NULL},
     {"magnetic-bottle",
      {"B", "l"},
-     {"1", "2"},
+     {"4", "2"},
      magnetic_bottle_prepare,
      magnetic_bottle_acceleration,
      magnetic_bottle_momentum,

@@ -122,7 +122,10 @@ void dvi__action_destroy(dvi__action **action)
                            a->fixed_point.factor,
                            a->fixed_point.weight,
                            a->Z,
-                           a->fixed_point.shift.table};
+                           a->fixed_point.shift.table,
+                           a->fixed_point.kinetic,
+                           a->system->vector != NULL ? a->fixed_point.force : NULL,
+                           a->system->vector != NULL ? a->fixed_point.Q : NULL};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) dvi__release(owned[i]);
   dvi__action_clear_two_point(a);
   dvi__action_clear_energy(a);

@@ -48,17 +48,21 @@ struct dvi__action {
   double *stiffness_row;       /* [s*path_lanes] K^{-1} */
   /* Fixed-point iteration (fixed_point.h). NULL if the mass couples coordinates. */
   struct {
-    double *matrix;      /* [r*lanes] c_i - P_ij by columns */
+    int stages, lanes;   /* r, or 2 r with a vector potential, and the length of their rows */
+    double *matrix;      /* [stages*lanes] c_i - P_ij by columns */
     double *node;        /* [lanes] c */
     double *slant;       /* [r] 1/2 - c */
-    double *path;        /* [r*path_lanes] from forces to paths, by columns */
+    double *path;        /* [stages*path_lanes] from forces to paths, by columns */
     double *start, *low; /* [n] h/m p0 and its rounding error */
     double *factor;      /* [n] h/m */
-    double *weight;      /* [r] -h b_j */
+    double *weight;      /* [stages] -h b_j, and b_j of a vector potential */
     double h;            /* the h of factor and weight */
-    dvi__shifts shift;   /* from the last step's forces to offsets, [r*lanes] by columns */
+    dvi__shifts shift;   /* from the last step's forces to offsets, [stages*lanes] by columns */
+    /* With a vector potential, numbers of both kinds of stages [n*stages], and p0 - sum_j a_j [n].
+     * Else the first two are L_q and Q. */
+    double *force, *Q, *kinetic;
   } fixed_point;
-  double *Z;    /* [n*lanes] offsets of the nodes from q0 */
+  double *Z;    /* [n*fixed_point.lanes] offsets of the nodes from q0, and h v */
   int iterated; /* the forces are those of a fixed-point iteration */
   /* Chord. */
   double scaled_h;       /* h of the last row scales */

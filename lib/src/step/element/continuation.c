@@ -80,28 +80,39 @@ static void fit_forces(const dvi__action *a, double ratio, fit *f)
 }
 
 /* Make the table from g of the last step to sum_j (c_i - P_ij) g_j of this one. With g_j = h b_j
- * L_q_j the weights b_k of the fit cancel. */
-static void fill_force_shift(const dvi__action *a, double ratio, double *shift)
+ * L_q_j the weights b_k of the fit cancel. Those of a vector potential, which have no h, are the
+ * second half of the columns. */
+static void fill_force_shift(const dvi__action *a, const fit *f, int first, double ratio,
+                             double *shift)
+{
+  const int lanes = a->fixed_point.lanes;
+  for (int i = 0; i < a->fixed_point.stages; i++) {
+    long double row[CONTINUED_DEGREE] = {0};
+    for (int j = 0; j < a->r; j++)
+      for (int m = 0; m < f->terms; m++)
+        row[m] += a->fixed_point.matrix[(first + j) * lanes + i] * ratio * a->weight[j] *
+                  f->U[j][m];
+    for (int k = 0; k < a->r; k++) {
+      long double sum = 0;
+      for (int m = 0; m < f->terms; m++) sum += row[m] * f->W[k][m];
+      shift[(first + k) * lanes + i] = (double)sum;
+    }
+  }
+}
+
+static void fill_force_shifts(const dvi__action *a, double ratio, double *shift)
 {
   fit f;
   fit_forces(a, ratio, &f);
-  for (int i = 0; i < a->r; i++) {
-    long double row[CONTINUED_DEGREE] = {0};
-    for (int j = 0; j < a->r; j++)
-      for (int m = 0; m < f.terms; m++)
-        row[m] += a->fixed_point.matrix[j * a->lanes + i] * ratio * a->weight[j] * f.U[j][m];
-    for (int k = 0; k < a->r; k++) {
-      long double sum = 0;
-      for (int m = 0; m < f.terms; m++) sum += row[m] * f.W[k][m];
-      shift[k * a->lanes + i] = (double)sum;
-    }
-  }
+  fill_force_shift(a, &f, 0, ratio, shift);
+  if (a->fixed_point.stages > a->r) fill_force_shift(a, &f, a->r, 1.0, shift);
 }
 
 const double *dvi__action_fixed_point_shift(dvi__action *a, double ratio)
 {
   int known;
-  double *shift = table_for(&a->fixed_point.shift, (size_t)a->r * (size_t)a->lanes, ratio, &known);
-  if (!known) fill_force_shift(a, ratio, shift);
+  const size_t size = (size_t)a->fixed_point.stages * (size_t)a->fixed_point.lanes;
+  double *shift = table_for(&a->fixed_point.shift, size, ratio, &known);
+  if (!known) fill_force_shifts(a, ratio, shift);
   return shift;
 }

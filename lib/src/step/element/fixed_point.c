@@ -1,6 +1,7 @@
 #include "step/element/fixed_point.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "step/element/action_struct.h"
 #include "core/memory.h"
@@ -25,21 +26,25 @@ static void legendre_trial(int s, long double tau, long double *psi, long double
 }
 
 typedef struct tables {
-  long double psi[DVI_QUADRATURE_MAX][DVI_DEGREE_MAX]; /* psi at node j, then C^{-1} psi */
-  long double K[DVI_DEGREE_MAX * DVI_DEGREE_MAX];      /* [s*s] stiffness, then its factor C */
+  /* psi and psi' at node j, then C^{-1} times these */
+  long double psi[DVI_QUADRATURE_MAX][DVI_DEGREE_MAX], slope[DVI_QUADRATURE_MAX][DVI_DEGREE_MAX];
+  long double K[DVI_DEGREE_MAX * DVI_DEGREE_MAX]; /* [s*s] stiffness, then its factor C */
 } tables;
 
 static void fixed_point_fill(int s, int r, const long double *node, const long double *weight,
                              tables *t)
 {
-  long double dpsi[DVI_DEGREE_MAX];
   for (int j = 0; j < r; j++) {
+    long double *dpsi = t->slope[j];
     legendre_trial(s, node[j], t->psi[j], dpsi);
     for (int k = 0; k < s; k++)
       for (int l = 0; l <= k; l++) t->K[k * s + l] += weight[j] * dpsi[k] * dpsi[l];
   }
   dvi__cholesky(s, t->K);
-  for (int j = 0; j < r; j++) dvi__cholesky_half(s, t->K, t->psi[j]);
+  for (int j = 0; j < r; j++) {
+    dvi__cholesky_half(s, t->K, t->psi[j]);
+    dvi__cholesky_half(s, t->K, t->slope[j]);
+  }
 }
 
 /* Round to multiples of 2^-53, on which differences of numbers up to 1 are exact. */
@@ -48,51 +53,89 @@ static double to_grid(long double x)
   return (double)ldexpl(nearbyintl(ldexpl(x, 53)), -53);
 }
 
+/* x^T K^{-1} y of two functions at nodes, from C^{-1} x and C^{-1} y. */
+static double inner_product(int s, const long double *x, const long double *y)
+{
+  long double sum = 0;
+  for (int k = 0; k < s; k++) sum += x[k] * y[k];
+  return to_grid(sum);
+}
+
 /* Store c_i - P_ij by columns, c, and 1/2 - c. P_ij = (C^{-1} psi_i) . (C^{-1} psi_j) is symmetric
  * by its form. */
 static void fixed_point_store(dvi__action *a, const long double *node, const tables *t)
 {
-  const int lanes = a->lanes;
+  const int lanes = a->fixed_point.lanes;
   for (int i = 0; i < a->r; i++) {
     a->fixed_point.node[i] = to_grid(node[i]);
     a->fixed_point.slant[i] = 0.5 - a->fixed_point.node[i];
   }
   for (int i = 0; i < a->r; i++)
-    for (int j = 0; j < a->r; j++) {
-      long double P = 0;
-      for (int k = 0; k < a->s; k++) P += t->psi[i][k] * t->psi[j][k];
-      a->fixed_point.matrix[j * lanes + i] = a->fixed_point.node[i] - to_grid(P);
-    }
+    for (int j = 0; j < a->r; j++)
+      a->fixed_point.matrix[j * lanes + i] = a->fixed_point.node[i] -
+                                             inner_product(a->s, t->psi[i], t->psi[j]);
 }
 
-/* Store the last factor of the path by the forces, Y = h/m (p0 straight - K^{-1} bar g), by
- * columns, in the space's own basis. */
-static void fixed_point_store_path(dvi__action *a)
+/* Store the rows of h v and the columns of a, 1 - W_ji, -W_ij and -U_ij. */
+static void fixed_point_store_velocities(dvi__action *a, const tables *t)
+{
+  const int lanes = a->fixed_point.lanes, r = a->r;
+  for (int i = 0; i < r; i++) {
+    a->fixed_point.node[r + i] = 1;
+    for (int j = 0; j < r; j++) {
+      const double W = inner_product(a->s, t->psi[i], t->slope[j]);
+      a->fixed_point.matrix[i * lanes + r + j] = 1 - W;
+      a->fixed_point.matrix[(r + j) * lanes + i] = -W;
+      a->fixed_point.matrix[(r + j) * lanes + r + i] = -inner_product(a->s, t->slope[i],
+                                                                      t->slope[j]);
+    }
+  }
+}
+
+/* Store the last factor of the path by the forces, Y = h/m (p0 straight - K^{-1} (bar g + psi' a)),
+ * by columns, in the space's own basis. `table` holds bar or psi', for the columns from `first`. */
+static void fixed_point_store_path(dvi__action *a, const double *table, int first)
 {
   const int s = a->s, r = a->r;
   for (int j = 0; j < r; j++)
     for (int k = 0; k < s; k++) {
       double sum = 0;
-      for (int l = 0; l < s; l++) sum += a->stiffness_inverse[k * s + l] * a->bar[l * a->lanes + j];
-      a->fixed_point.path[j * a->path_lanes + k] = -sum;
+      for (int l = 0; l < s; l++) sum += a->stiffness_inverse[k * s + l] * table[l * a->lanes + j];
+      a->fixed_point.path[(first + j) * a->path_lanes + k] = -sum;
     }
+}
+
+/* With a vector potential stages have numbers of their own. */
+static int allocate_stages(dvi__action *a)
+{
+  const size_t numbers = (size_t)a->n * (size_t)a->fixed_point.stages;
+  a->fixed_point.force = a->L_q;
+  a->fixed_point.Q = a->Q;
+  if (a->system->vector == NULL) return 1;
+  a->fixed_point.force = DVI_NEW(double, numbers);
+  a->fixed_point.Q = DVI_NEW(double, numbers);
+  a->fixed_point.kinetic = DVI_NEW(double, a->n);
+  return a->fixed_point.force && a->fixed_point.Q && a->fixed_point.kinetic;
 }
 
 static dvi_status fixed_point_allocate(dvi__action *a)
 {
-  const size_t n = (size_t)a->n, r = (size_t)a->r, lanes = (size_t)a->lanes;
-  a->fixed_point.matrix = DVI_NEW(double, r *lanes);
+  a->fixed_point.stages = a->system->vector != NULL ? 2 * a->r : a->r;
+  a->fixed_point.lanes = dvi__lanes_for(a->fixed_point.stages);
+  const size_t n = (size_t)a->n, stages = (size_t)a->fixed_point.stages,
+               lanes = (size_t)a->fixed_point.lanes;
+  a->fixed_point.matrix = DVI_NEW(double, stages *lanes);
   a->fixed_point.node = DVI_NEW(double, lanes);
-  a->fixed_point.slant = DVI_NEW(double, r);
-  a->fixed_point.path = DVI_NEW(double, r *(size_t)a->path_lanes);
+  a->fixed_point.slant = DVI_NEW(double, a->r);
+  a->fixed_point.path = DVI_NEW(double, stages *(size_t)a->path_lanes);
   a->fixed_point.start = DVI_NEW(double, n);
   a->fixed_point.low = DVI_NEW(double, n);
   a->fixed_point.factor = DVI_NEW(double, n);
-  a->fixed_point.weight = DVI_NEW(double, r);
+  a->fixed_point.weight = DVI_NEW(double, stages);
   a->Z = DVI_NEW(double, n *lanes);
-  a->fixed_point.shift.table = DVI_NEW(double, DVI__SHIFTS *r *lanes);
-  if (a->fixed_point.matrix && a->fixed_point.node && a->fixed_point.slant && a->fixed_point.path &&
-      a->fixed_point.start && a->fixed_point.low && a->fixed_point.factor &&
+  a->fixed_point.shift.table = DVI_NEW(double, DVI__SHIFTS *stages *lanes);
+  if (allocate_stages(a) && a->fixed_point.matrix && a->fixed_point.node && a->fixed_point.slant &&
+      a->fixed_point.path && a->fixed_point.start && a->fixed_point.low && a->fixed_point.factor &&
       a->fixed_point.weight && a->Z && a->fixed_point.shift.table)
     return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d nodes in %d dimensions", a->r, a->n);
@@ -100,8 +143,8 @@ static dvi_status fixed_point_allocate(dvi__action *a)
 
 int dvi__action_has_fixed_point(const dvi__action *a)
 {
-  return a->system->mass_diagonal != NULL &&
-         (a->system->terms & (DVI__FRICTION | DVI__VECTOR_POTENTIAL)) == 0 && a->terms.count == 0;
+  return a->system->mass_diagonal != NULL && (a->system->terms & DVI__FRICTION) == 0 &&
+         a->terms.count == 0;
 }
 
 dvi_status dvi__action_prepare_fixed_point(dvi__action *a)
@@ -114,7 +157,11 @@ dvi_status dvi__action_prepare_fixed_point(dvi__action *a)
   if (t == NULL) return dvi__fail(DVI_NO_MEMORY, "action: no memory for tables of degree %d", a->s);
   fixed_point_fill(a->s, a->r, node, weight, t);
   fixed_point_store(a, node, t);
-  fixed_point_store_path(a);
+  fixed_point_store_path(a, a->bar, 0);
+  if (a->system->vector != NULL) {
+    fixed_point_store_velocities(a, t);
+    fixed_point_store_path(a, a->dpsi, a->r);
+  }
   dvi__release(t);
   return DVI_OK;
 }
@@ -127,14 +174,15 @@ void dvi__action_set_step(dvi__action *a)
   a->fixed_point.h = a->h;
   /* the forces are V_q, with the other sign */
   for (int j = 0; j < a->r; j++) a->fixed_point.weight[j] = -a->h * a->weight[j];
+  for (int j = a->r; j < a->fixed_point.stages; j++) a->fixed_point.weight[j] = a->weight[j - a->r];
   for (int i = 0; i < a->n; i++) a->fixed_point.factor[i] = a->h / a->system->mass_diagonal[i];
 }
 
 static dvi__fixed_point fixed_point_of(const dvi__action *a)
 {
   return (dvi__fixed_point){.n = a->n,
-                            .stages = a->r,
-                            .lanes = a->lanes,
+                            .stages = a->fixed_point.stages,
+                            .lanes = a->fixed_point.lanes,
                             .matrix = a->fixed_point.matrix,
                             .node = a->fixed_point.node,
                             .weight = a->fixed_point.weight,
@@ -143,20 +191,32 @@ static dvi__fixed_point fixed_point_of(const dvi__action *a)
                             .start = a->fixed_point.start,
                             .low = a->fixed_point.low,
                             .origin = a->q0,
-                            .force = a->L_q,
+                            .force = a->fixed_point.force,
                             .Z = a->Z,
-                            .Q = a->Q};
+                            .Q = a->fixed_point.Q};
+}
+
+/* Put offsets from the rows of a batch [n*r] into Z, from stage `first` on. */
+static void put_offsets(dvi__action *a, const double *batch, int first)
+{
+  const size_t r = (size_t)a->r, lanes = (size_t)a->fixed_point.lanes;
+  for (size_t i = 0; i < (size_t)a->n; i++)
+    for (size_t j = 0; j < r; j++) a->Z[i * lanes + (size_t)first + j] = batch[i * r + j];
 }
 
 void dvi__action_fixed_point_begin(dvi__action *a, const double *Y)
 {
-  const size_t r = (size_t)a->r, lanes = (size_t)a->lanes;
+  const size_t r = (size_t)a->r, stages = (size_t)a->fixed_point.stages;
   dvi__action_set_step(a);
   const dvi__fixed_point iteration = fixed_point_of(a);
   dvi__lanes_split(&iteration);
-  dvi__lanes_product(a->n, a->s, a->lanes, a->lanes, a->psi, Y, a->Z);
+  dvi__lanes_product(a->n, a->s, a->lanes, a->r, a->psi, Y, a->L_v);
+  put_offsets(a, a->L_v, 0);
   for (size_t i = 0; i < (size_t)a->n; i++)
-    for (size_t j = 0; j < r; j++) a->Q[i * r + j] = a->q0[i] + a->Z[i * lanes + j];
+    for (size_t j = 0; j < r; j++) a->fixed_point.Q[i * stages + j] = a->q0[i] + a->L_v[i * r + j];
+  if (stages == r) return;
+  dvi__lanes_product(a->n, a->s, a->lanes, a->r, a->dpsi, Y, a->L_v);
+  put_offsets(a, a->L_v, a->r);
 }
 
 void dvi__action_fixed_point_continue(dvi__action *a, double ratio, const double *g)
@@ -164,14 +224,35 @@ void dvi__action_fixed_point_continue(dvi__action *a, double ratio, const double
   dvi__action_set_step(a);
   const dvi__fixed_point iteration = fixed_point_of(a);
   dvi__lanes_split(&iteration);
-  dvi__lanes_product(a->n, a->r, a->lanes, a->lanes, dvi__action_fixed_point_shift(a, ratio), g,
-                     a->Z);
+  dvi__lanes_product(a->n, a->fixed_point.stages, a->fixed_point.lanes, a->fixed_point.lanes,
+                     dvi__action_fixed_point_shift(a, ratio), g, a->Z);
   dvi__lanes_begin(&iteration);
+}
+
+/* Evaluate forces and A at the nodes, from the places and velocities of the stages. */
+static dvi_status evaluate_stages(dvi__action *a)
+{
+  const size_t r = (size_t)a->r, stages = (size_t)a->fixed_point.stages,
+               lanes = (size_t)a->fixed_point.lanes;
+  const double inverse_h = 1.0 / a->h;
+  for (size_t i = 0; i < (size_t)a->n; i++)
+    for (size_t j = 0; j < r; j++) {
+      a->Q[i * r + j] = a->fixed_point.Q[i * stages + j];
+      a->V[i * r + j] = inverse_h * a->Z[i * lanes + r + j];
+    }
+  DVI_TRY(dvi__magnetic_gradient(a->evaluator, a->r, a->t, a->Q, a->V, a->L_q, a->L_v));
+  for (size_t i = 0; i < (size_t)a->n; i++) {
+    memcpy(a->fixed_point.force + i * stages, a->L_q + i * r, r * sizeof(double));
+    memcpy(a->fixed_point.force + i * stages + r, a->L_v + i * r, r * sizeof(double));
+  }
+  return DVI_OK;
 }
 
 dvi_status dvi__action_iterate(dvi__action *a, double *change, double *largest)
 {
-  DVI_TRY(dvi__potentials_gradient(a->evaluator, a->r, a->t, a->Q, a->L_q));
+  DVI_TRY(a->fixed_point.stages > a->r
+              ? evaluate_stages(a)
+              : dvi__potentials_gradient(a->evaluator, a->r, a->t, a->Q, a->L_q));
   dvi__fixed_point iteration = fixed_point_of(a);
   dvi__lanes_iterate(&iteration);
   a->iterated = 1;
@@ -183,21 +264,39 @@ dvi_status dvi__action_iterate(dvi__action *a, double *change, double *largest)
 void dvi__action_fixed_point_path(dvi__action *a, double *Y)
 {
   const size_t s = (size_t)a->s;
-  dvi__lanes_product(a->n, a->r, a->path_lanes, a->s, a->fixed_point.path, a->L_q, Y);
+  dvi__lanes_product(a->n, a->fixed_point.stages, a->path_lanes, a->s, a->fixed_point.path,
+                     a->fixed_point.force, Y);
   for (size_t i = 0; i < (size_t)a->n; i++)
     for (size_t k = 0; k < s; k++)
       Y[i * s + k] = a->fixed_point.start[i] * a->straight[k] +
                      a->fixed_point.factor[i] * Y[i * s + k];
 }
 
+/* Take g and a of the stages apart, with p0 - sum_j a_j. */
+static void part_stages(const dvi__action *a)
+{
+  const size_t r = (size_t)a->r, stages = (size_t)a->fixed_point.stages;
+  for (size_t i = 0; i < (size_t)a->n; i++) {
+    const double *row = a->fixed_point.force + i * stages;
+    double sum = 0;
+    for (size_t j = 0; j < r; j++) {
+      a->L_q[i * r + j] = row[j];
+      sum += row[r + j];
+    }
+    a->fixed_point.kinetic[i] = a->p0[i] - sum;
+  }
+}
+
 void dvi__action_fixed_point_ends(const dvi__action *a, double *dq, double *dq_low, double *dp)
 {
+  const int has_velocities = a->fixed_point.stages > a->r;
+  if (has_velocities) part_stages(a);
   dvi__lanes_ends(&(dvi__ends){.n = a->n,
                                .stages = a->r,
                                .g = a->L_q,
                                .slant = a->fixed_point.slant,
                                .factor = a->fixed_point.factor,
-                               .p0 = a->p0,
+                               .p0 = has_velocities ? a->fixed_point.kinetic : a->p0,
                                .moved = dq,
                                .low = dq_low,
                                .sum = dp});
@@ -205,11 +304,22 @@ void dvi__action_fixed_point_ends(const dvi__action *a, double *dq, double *dq_l
 
 int dvi__action_forces_count(const dvi__action *a)
 {
-  return dvi__action_has_fixed_point(a) ? a->n * a->r : 0;
+  return dvi__action_has_fixed_point(a) ? a->n * a->fixed_point.stages : 0;
 }
 
 void dvi__action_forces(const dvi__action *a, double *g)
 {
-  const double scale = a->iterated ? 1.0 : a->h;
-  for (int k = 0; k < dvi__action_forces_count(a); k++) g[k] = scale * a->L_q[k];
+  const size_t r = (size_t)a->r, stages = (size_t)a->fixed_point.stages;
+  if (dvi__action_forces_count(a) == 0) return;
+  if (a->iterated) {
+    memcpy(g, a->fixed_point.force, (size_t)a->n * stages * sizeof(double));
+    return;
+  }
+  for (size_t i = 0; i < (size_t)a->n; i++)
+    for (size_t j = 0; j < r; j++) {
+      const size_t at = i * r + j;
+      g[i * stages + j] = a->h * a->L_q[at];
+      if (stages > r)
+        g[i * stages + r + j] = a->L_v[at] - a->weight[j] * a->system->mass_diagonal[i] * a->V[at];
+    }
 }

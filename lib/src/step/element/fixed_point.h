@@ -9,7 +9,19 @@
  * step is symplectic because P is symmetric (Suris 1989; Hairer, Lubich and Wanner 2006, sec.
  * VI.4.2). It is symplectic to the last bit of c, P and h/m, however h b_j is rounded. With the
  * factors h^2/m and h in these places, each rounded on its own, energy drifts by 1e-18 of itself a
- * step. */
+ * step.
+ *
+ * With a vector potential the rows have psi_k' A beside the forces, which depend on v. Offsets and
+ * velocities at the nodes are iterated together, as h v(c_i) beside q(c_i) - q0. With
+ * a_j = b_j A(q(c_j)),
+ *
+ *     q(c_i) = q0 + h/m [ c_i p0 + sum_j (c_i - P_ij) g_j - sum_j W_ij a_j ],
+ *     h v(c_i) = h/m [ p0 + sum_j (1 - W_ji) g_j - sum_j U_ij a_j ],
+ *     q1 = q0 + h/m [ (p0 + p1)/2 + sum_j (1/2 - c_j) g_j - sum_j a_j ],
+ *
+ * with W_ij = psi(c_i)^T K^{-1} psi'(c_j) and U_ij = psi'(c_i)^T K^{-1} psi'(c_j). To the loops
+ * these are 2 r stages. The iteration contracts with h B/m, where that of forces alone does with
+ * h^2 V_qq/m. */
 #ifndef DVI_STEP_ELEMENT_FIXED_POINT_H
 #define DVI_STEP_ELEMENT_FIXED_POINT_H
 #include "step/element/action.h"
@@ -22,8 +34,8 @@ int dvi__action_has_fixed_point(const dvi__action *action);
 /* Put the nodes on the path Y. */
 void dvi__action_fixed_point_begin(dvi__action *action, const double *Y);
 
-/* Give the forces of the last iteration or residual, g [n*r]. Their number is 0 for a system of
- * another kind, and nothing is done. */
+/* Give the forces of the last iteration or residual, g [n*r], with a vector potential g and a
+ * [n*2r]. Their number is 0 for a system of another kind, and nothing is done. */
 int dvi__action_forces_count(const dvi__action *action);
 void dvi__action_forces(const dvi__action *action, double *g);
 

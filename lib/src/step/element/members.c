@@ -9,7 +9,8 @@
 
 static int members_allocate(dvi__action_members *m, size_t capacity)
 {
-  const size_t n = (size_t)m->action->n, r = (size_t)m->action->r;
+  const size_t n = (size_t)m->action->n, r = (size_t)m->action->r,
+               stages = (size_t)m->action->fixed_point.stages;
   double **const rows[] = {&m->packed_start, &m->packed_low, &m->packed_origin, &m->all_start,
                            &m->all_low,      &m->dq,         &m->dq_low,        &m->dp};
   int complete = 1;
@@ -18,9 +19,17 @@ static int members_allocate(dvi__action_members *m, size_t capacity)
   m->change = DVI_NEW(double, capacity);
   m->largest = DVI_NEW(double, capacity);
   m->t = DVI_NEW(double, r *capacity);
-  m->Z = DVI_NEW(double, n *r *capacity);
-  m->Q = DVI_NEW(double, n *r *capacity);
-  m->force = DVI_NEW(double, n *r *capacity);
+  m->Z = DVI_NEW(double, n *stages *capacity);
+  m->Q = DVI_NEW(double, n *stages *capacity);
+  m->force = DVI_NEW(double, n *stages *capacity);
+  if (stages > r) {
+    m->kinetic = DVI_NEW(double, n *capacity);
+    for (int k = 0; k < 4; k++) {
+      m->batch[k] = DVI_NEW(double, n *r *capacity);
+      complete = complete && m->batch[k] != NULL;
+    }
+    complete = complete && m->kinetic != NULL;
+  }
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     *rows[i] = DVI_NEW(double, n *capacity);
     complete = complete && *rows[i] != NULL;
@@ -42,9 +51,25 @@ dvi_status dvi__action_members_create(dvi__action *action, int capacity,
 
 void dvi__action_members_clear(dvi__action_members *m)
 {
-  double *const owned[] = {
-      m->change,     m->largest,       m->t,         m->Z,       m->Q,  m->force,  m->packed_start,
-      m->packed_low, m->packed_origin, m->all_start, m->all_low, m->dq, m->dq_low, m->dp};
+  double *const owned[] = {m->change,
+                           m->largest,
+                           m->t,
+                           m->Z,
+                           m->Q,
+                           m->force,
+                           m->packed_start,
+                           m->packed_low,
+                           m->packed_origin,
+                           m->all_start,
+                           m->all_low,
+                           m->dq,
+                           m->dq_low,
+                           m->dp,
+                           m->kinetic,
+                           m->batch[0],
+                           m->batch[1],
+                           m->batch[2],
+                           m->batch[3]};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) dvi__release(owned[i]);
   dvi__release(m->member);
   dvi__release(m->going);
@@ -61,9 +86,9 @@ static dvi__members_fixed_point members_fixed_point(const dvi__action_members *m
 {
   const dvi__action *a = m->action;
   return (dvi__members_fixed_point){.n = a->n,
-                                    .stages = a->r,
+                                    .stages = a->fixed_point.stages,
                                     .width = m->width,
-                                    .lanes = a->lanes,
+                                    .lanes = a->fixed_point.lanes,
                                     .matrix = a->fixed_point.matrix,
                                     .node = a->fixed_point.node,
                                     .weight = a->fixed_point.weight,
@@ -84,8 +109,8 @@ static void members_put_nodes(dvi__action_members *m, double ratio)
   dvi__action *a = m->action;
   dvi__action_set_step(a);
   dvi__members_split(a->n, m->width, a->fixed_point.factor, m->p, m->all_start, m->all_low);
-  dvi__members_product(a->n, a->r, a->lanes, a->r, dvi__action_fixed_point_shift(a, ratio),
-                       m->width, m->forces, m->Z);
+  dvi__members_product(a->n, a->fixed_point.stages, a->fixed_point.lanes, a->fixed_point.stages,
+                       dvi__action_fixed_point_shift(a, ratio), m->width, m->forces, m->Z);
   const dvi__members_fixed_point iteration = members_fixed_point(m);
   dvi__members_begin(&iteration);
 }
@@ -119,7 +144,8 @@ void dvi__action_members_pack(const dvi__action_members *m, int rows, int before
 
 void dvi__action_members_close_up(dvi__action_members *m, const char *marked)
 {
-  const int n = m->action->n, r = m->action->r, before = m->width;
+  const int n = m->action->n, r = m->action->r, stages = m->action->fixed_point.stages,
+            before = m->width;
   int lanes = 0;
   for (int k = 0; k < before; k++) {
     m->member[lanes] = m->member[k];
@@ -129,8 +155,8 @@ void dvi__action_members_close_up(dvi__action_members *m, const char *marked)
   if (lanes == before) return;
   m->width = lanes;
   dvi__action_members_pack(m, r, before, m->t, m->t);
-  dvi__action_members_pack(m, n * r, before, m->Z, m->Z);
-  dvi__action_members_pack(m, n * r, before, m->Q, m->Q);
+  dvi__action_members_pack(m, n * stages, before, m->Z, m->Z);
+  dvi__action_members_pack(m, n * stages, before, m->Q, m->Q);
   dvi__action_members_pack(m, n, before, m->start, m->packed_start);
   dvi__action_members_pack(m, n, before, m->low, m->packed_low);
   dvi__action_members_pack(m, n, before, m->origin, m->packed_origin);
@@ -139,9 +165,32 @@ void dvi__action_members_close_up(dvi__action_members *m, const char *marked)
   m->origin = m->packed_origin;
 }
 
+/* Evaluate forces and A as evaluate_stages of fixed_point.c. */
+static dvi_status members_evaluate_stages(dvi__action_members *m)
+{
+  const dvi__action *a = m->action;
+  const size_t rows = members_row(m, (size_t)a->r),
+               of_stages = members_row(m, (size_t)a->fixed_point.stages);
+  const double inverse_h = 1.0 / a->h;
+  double *const Q = m->batch[0], *const V = m->batch[1], *const V_q = m->batch[2],
+                *const A = m->batch[3];
+  for (size_t i = 0; i < (size_t)a->n; i++) {
+    memcpy(Q + i * rows, m->Q + i * of_stages, rows * sizeof(double));
+    for (size_t k = 0; k < rows; k++) V[i * rows + k] = inverse_h * m->Z[i * of_stages + rows + k];
+  }
+  DVI_TRY(dvi__magnetic_gradient(m->evaluator, a->r * m->width, m->t, Q, V, V_q, A));
+  for (size_t i = 0; i < (size_t)a->n; i++) {
+    memcpy(m->force + i * of_stages, V_q + i * rows, rows * sizeof(double));
+    memcpy(m->force + i * of_stages + rows, A + i * rows, rows * sizeof(double));
+  }
+  return DVI_OK;
+}
+
 dvi_status dvi__action_members_iterate(dvi__action_members *m)
 {
-  DVI_TRY(dvi__potentials_gradient(m->evaluator, m->action->r * m->width, m->t, m->Q, m->force));
+  DVI_TRY(m->kinetic != NULL ? members_evaluate_stages(m)
+                             : dvi__potentials_gradient(m->evaluator, m->action->r * m->width, m->t,
+                                                        m->Q, m->force));
   const dvi__members_fixed_point iteration = members_fixed_point(m);
   dvi__members_iterate(&iteration);
   return DVI_OK;
@@ -149,9 +198,26 @@ dvi_status dvi__action_members_iterate(dvi__action_members *m)
 
 void dvi__action_members_keep(dvi__action_members *m, int lane)
 {
-  const size_t rows = (size_t)m->action->n * (size_t)m->action->r, count = (size_t)m->count;
+  const size_t rows = (size_t)m->action->n * (size_t)m->action->fixed_point.stages,
+               count = (size_t)m->count;
   double *kept = m->forces + m->member[lane];
   for (size_t i = 0; i < rows; i++) kept[i * count] = m->force[members_row(m, i) + (size_t)lane];
+}
+
+/* Take g and a of all members apart, with p0 - sum_j a_j. */
+static void members_part_stages(dvi__action_members *m)
+{
+  const size_t r = (size_t)m->action->r, stages = (size_t)m->action->fixed_point.stages,
+               count = (size_t)m->count;
+  for (size_t i = 0; i < (size_t)m->action->n; i++) {
+    const double *row = m->forces + i * stages * count;
+    double *sum = m->kinetic + i * count;
+    memcpy(m->batch[0] + i * r * count, row, r * count * sizeof(double));
+    memset(sum, 0, count * sizeof(double));
+    for (size_t j = r; j < stages; j++)
+      for (size_t k = 0; k < count; k++) sum[k] += row[j * count + k];
+    for (size_t k = 0; k < count; k++) sum[k] = m->p[i * count + k] - sum[k];
+  }
 }
 
 /* Find the path and the ends as dvi__action_fixed_point_path and dvi__action_fixed_point_ends. */
@@ -159,21 +225,23 @@ void dvi__action_members_ends(dvi__action_members *m, double *Y)
 {
   const dvi__action *a = m->action;
   const size_t n = (size_t)a->n, s = (size_t)a->s, count = (size_t)m->count;
-  dvi__members_product(a->n, a->r, a->path_lanes, a->s, a->fixed_point.path, m->count, m->forces,
-                       Y);
+  const int has_velocities = m->kinetic != NULL;
+  dvi__members_product(a->n, a->fixed_point.stages, a->path_lanes, a->s, a->fixed_point.path,
+                       m->count, m->forces, Y);
   for (size_t i = 0; i < n * s; i++) {
     const double *start = m->all_start + i / s * count;
     for (size_t k = 0; k < count; k++)
       Y[i * count + k] = start[k] * a->straight[i % s] +
                          a->fixed_point.factor[i / s] * Y[i * count + k];
   }
+  if (has_velocities) members_part_stages(m);
   dvi__members_ends_of(&(dvi__members_ends){.n = a->n,
                                             .stages = a->r,
                                             .width = m->count,
-                                            .g = m->forces,
+                                            .g = has_velocities ? m->batch[0] : m->forces,
                                             .slant = a->fixed_point.slant,
                                             .factor = a->fixed_point.factor,
-                                            .p0 = m->p,
+                                            .p0 = has_velocities ? m->kinetic : m->p,
                                             .moved = m->dq,
                                             .low = m->dq_low,
                                             .sum = m->dp});

@@ -19,16 +19,19 @@ typedef struct dvi__action_members {
   double *change, *largest;
   /* Numbers of the lanes, which are times, offsets, places and forces of the nodes, and the start
    * of the element. */
-  double *t, *Z, *Q, *force;          /* [r*width], [n*r*width] */
+  double *t, *Z, *Q, *force;          /* [r*width], [n*stages*width], fixed_point.h */
   const double *start, *low, *origin; /* [n*width] */
   /* [n*width] copies of these once lanes are closed up */
   double *packed_start, *packed_low, *packed_origin;
   /* Numbers of all members. */
   double *all_start, *all_low; /* [n*count] */
   const double *p;             /* [n*count] momenta at the step's start */
-  /* [n*r*count] forces of the last step, then those of each member's last iteration */
+  /* [n*stages*count] forces of the last step, then those of each member's last iteration */
   double *forces;
   double *dq, *dq_low, *dp; /* [n*count] */
+  /* With a vector potential, batches of places, velocities, V_q and A [n*r*width], and p0 - sum_j
+   * a_j [n*count], else NULL. */
+  double *batch[4], *kinetic;
 } dvi__action_members;
 
 /* Create the lanes of up to `capacity` members, for an element with a fixed-point iteration. */
@@ -37,8 +40,8 @@ dvi_status dvi__action_members_create(dvi__action *action, int capacity,
 void dvi__action_members_clear(dvi__action_members *members);
 
 /* Put every member's element at t [count], q, p [n*count], with step h. The nodes are those that
- * the continued forces [n*r*count] of the last step, last_h long, make. q and p must stay as they
- * are until the ends are read. `keep` replaces the forces of a member. */
+ * the continued forces [n*stages*count] of the last step, last_h long, make. q and p must stay as
+ * they are until the ends are read. `keep` replaces the forces of a member. */
 void dvi__action_members_place(dvi__action_members *members, int count, double h, double last_h,
                                const double *t, const double *q, const double *p, double *forces);
 

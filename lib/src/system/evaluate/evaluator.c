@@ -359,6 +359,16 @@ dvi_status dvi__lagrangian_gradient(dvi__evaluator *e, int count, const double *
   return status;
 }
 
+dvi_status dvi__magnetic_gradient(dvi__evaluator *e, int count, const double *t, const double *q,
+                                  const double *v, double *V_q, double *A)
+{
+  const dvi_system *s = e->system;
+  DVI_TRY(dvi__potentials_gradient(e, count, t, q, V_q));
+  DVI_TRY(dvi__vector_forces(s->vector, &e->scratch, count, t, q, v, e->term));
+  for (size_t i = 0; i < count_numbers(e, count); i++) V_q[i] -= e->term[i];
+  return dvi__vector_value(s->vector, &e->scratch, count, t, q, A);
+}
+
 /* ---- Hessian ---- */
 
 static void copy_mass_hessian(const dvi_system *s, int count, double *L_vv)

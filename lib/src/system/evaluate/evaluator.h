@@ -56,6 +56,11 @@ dvi_status dvi__vector_potential(dvi__evaluator *e, int count, const double *t, 
 dvi_status dvi__magnetic_field(dvi__evaluator *e, int count, const double *t, const double *q,
                                double *A_q, double *A_t);
 
+/* Compute -L_q [n*count], without forces that depend on the velocity, and A [n*count] of a system
+ * with a vector potential. */
+dvi_status dvi__magnetic_gradient(dvi__evaluator *e, int count, const double *t, const double *q,
+                                  const double *v, double *V_q, double *A);
+
 /* Compute v.Mv/2 + V of one state. The system must have DVI__CONSTANT_MASS. */
 dvi_status dvi__mass_energy(dvi__evaluator *e, double t, const double *q, const double *v,
                             double *E);
