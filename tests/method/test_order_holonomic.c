@@ -31,6 +31,10 @@ static const claim claims[] = {
     {"composition:order=4", 4, 40},
     {"composition:order=6", 6, 20},
     {"composition:order=6,base=midpoint", 6, 20},
+    {"verlet", 2, 40},
+    {"composition:order=4,base=verlet", 4, 40},
+    {"composition:order=6,base=verlet", 6, 20},
+    {"composition:order=8,base=verlet", 8, 12},
 };
 enum { CLAIMS = sizeof claims / sizeof *claims, LEVELS = 5 };
 
@@ -100,10 +104,17 @@ static void check_claim(constrained_kind kind, const claim *c)
   destroy_constrained(&model);
 }
 
+/* Verlet's method needs a constant mass, and beside constraints no force of the velocity. */
+static int takes(const char *method, constrained_kind kind)
+{
+  return strstr(method, "verlet") == NULL || (kind != DAMPED_PENDULUM && kind != CURVED_PENDULUM);
+}
+
 START_TEST(methods_have_their_order_with_constraints)
 {
   for (int kind = 0; kind < CONSTRAINED_KINDS; kind++)
-    check_claim((constrained_kind)kind, &claims[_i]);
+    if (takes(claims[_i].method, (constrained_kind)kind))
+      check_claim((constrained_kind)kind, &claims[_i]);
 }
 END_TEST
 
@@ -129,12 +140,17 @@ END_TEST
 
 START_TEST(constraints_hold_to_rounding_and_the_energy_is_bounded)
 {
-  static const char *const methods[] = {"trapezoidal", "galerkin:degree=2", "galerkin:degree=4",
-                                        "composition:order=4"};
-  static const double h[] = {0.01, 0.05, 0.1, 0.02}, bound[] = {1e-2, 1e-3, 1e-4, 1e-3};
+  static const char *const methods[] = {"trapezoidal",
+                                        "galerkin:degree=2",
+                                        "galerkin:degree=4",
+                                        "composition:order=4",
+                                        "verlet",
+                                        "composition:order=6,base=verlet"};
+  static const double h[] = {0.01, 0.05, 0.1, 0.02, 0.01, 0.02},
+                      bound[] = {1e-2, 1e-3, 1e-4, 1e-3, 1e-2, 1e-4};
   constrained model;
   make_constrained(SPHERICAL_PENDULUM, 0, &model);
-  for (int m = 0; m < 4; m++) {
+  for (int m = 0; m < 6; m++) {
     dvi_integrator *integrator = constrained_integrator(&model, methods[m]);
     double first, energy, worst = 0, off = 0, turn = 0;
     const double *q = dvi_integrator_q(integrator), *p = dvi_integrator_p(integrator);
@@ -194,6 +210,78 @@ START_TEST(differenced_hessians_give_nearly_the_same_steps)
 }
 END_TEST
 
+/* The trapezoid in L, and the straight line, make both the same method. */
+START_TEST(verlet_takes_the_steps_of_trapezoidal)
+{
+  static const constrained_kind kinds[] = {SPHERICAL_PENDULUM, SWUNG_PENDULUM, SLIDER_CRANK};
+  for (int k = 0; k < 3; k++) {
+    constrained model;
+    make_constrained(kinds[k], 0, &model);
+    dvi_integrator *one = constrained_integrator(&model, "verlet"),
+                   *other = constrained_integrator(&model, "trapezoidal");
+    advance(one, 0.01, 50);
+    advance(other, 0.01, 50);
+    ck_assert_double_lt(distance(model.n, dvi_integrator_q(one), dvi_integrator_q(other)), 1e-12);
+    ck_assert_double_lt(distance(model.n, dvi_integrator_p(one), dvi_integrator_p(other)), 1e-12);
+    advance(one, -0.01, 50);
+    ck_assert_double_lt(distance(model.n, dvi_integrator_q(one), model.q), 1e-12);
+    dvi_integrator_destroy(&one);
+    dvi_integrator_destroy(&other);
+    destroy_constrained(&model);
+  }
+}
+END_TEST
+
+/* One gradient and one matrix of 6 x 6 a step, and a few values of phi. */
+START_TEST(a_step_of_verlet_with_constraints_factors_one_matrix)
+{
+  enum { STEPS = 100 };
+  constrained model;
+  dvi_counters before, after;
+  make_constrained(SLIDER_CRANK, 0, &model);
+  dvi_integrator *integrator = constrained_integrator(&model, "verlet");
+  advance(integrator, 1e-3, 1);
+  dvi_integrator_counters(integrator, &before);
+  advance(integrator, 1e-3, STEPS);
+  dvi_integrator_counters(integrator, &after);
+  ck_assert_int_eq(after.factorizations - before.factorizations, STEPS);
+  ck_assert_int_eq(after.simplified - before.simplified, STEPS);
+  ck_assert_int_eq(after.hessians - before.hessians, 0);
+  ck_assert_int_eq(after.allocations - before.allocations, 0);
+  ck_assert_int_le(after.residuals - before.residuals, 6 * STEPS);
+  dvi_integrator_destroy(&integrator);
+  destroy_constrained(&model);
+}
+END_TEST
+
+/* A place that no multiplier reaches: the bob is thrown farther than the rod is long. */
+START_TEST(a_step_of_verlet_beyond_the_constraint_leaves_the_state)
+{
+  constrained model;
+  make_constrained(SPHERICAL_PENDULUM, 0, &model);
+  dvi_integrator *integrator = constrained_integrator(&model, "verlet");
+  ck_assert_int_gt(dvi_integrator_step(integrator, 5), 0);
+  check_words("multipliers of the step do not settle");
+  ck_assert_double_lt(distance(3, dvi_integrator_q(integrator), model.q), 0x1p-1000);
+  ck_assert_double_eq(dvi_integrator_time(integrator), 0);
+  advance(integrator, 0.01, 10);
+  dvi_integrator_destroy(&integrator);
+  destroy_constrained(&model);
+}
+END_TEST
+
+START_TEST(verlet_refuses_friction_beside_constraints)
+{
+  constrained model;
+  dvi_integrator *integrator = NULL;
+  make_constrained(DAMPED_PENDULUM, 0, &model);
+  ck_assert_int_eq(dvi_integrator_create(model.system, "verlet", &integrator), DVI_UNSUPPORTED);
+  check_words("verlet: forces that depend on the velocity are not taken beside holonomic");
+  ck_assert_ptr_null(integrator);
+  destroy_constrained(&model);
+}
+END_TEST
+
 /* ---- multipliers ---- */
 
 /* The digits are those of two codes in quadruple precision, for phi = (|q|^2 - 1)/2. */
@@ -244,6 +332,10 @@ SUITE(order_holonomic)
   tcase_add_test(tests, ida_ends_where_the_digits_are);
   tcase_add_test(tests, constraints_hold_to_rounding_and_the_energy_is_bounded);
   tcase_add_test(tests, steps_back_undo_steps);
+  tcase_add_test(tests, verlet_takes_the_steps_of_trapezoidal);
+  tcase_add_test(tests, a_step_of_verlet_with_constraints_factors_one_matrix);
+  tcase_add_test(tests, a_step_of_verlet_beyond_the_constraint_leaves_the_state);
+  tcase_add_test(tests, verlet_refuses_friction_beside_constraints);
   tcase_add_test(tests, differenced_hessians_give_nearly_the_same_steps);
   tcase_add_test(tests, multipliers_are_those_of_the_equations_of_motion);
   tcase_add_test(tests, starts_off_the_constraint_are_refused_or_projected);

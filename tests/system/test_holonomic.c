@@ -130,8 +130,9 @@ END_TEST
 
 START_TEST(methods_that_take_no_constraints_say_so)
 {
-  static const char *const methods[] = {"verlet", "sem",         "shooting",
-                                        "hp",     "hamiltonian", "composition:base=verlet"};
+  static const char *const methods[] = {"respa",    "imex",        "sem",
+                                        "shooting", "trig",        "boris",
+                                        "hp",       "hamiltonian", "composition:base=boris"};
   constrained model;
   make_constrained(SPHERICAL_PENDULUM, 0, &model);
   for (size_t m = 0; m < sizeof methods / sizeof *methods; m++) {

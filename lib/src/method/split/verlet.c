@@ -8,13 +8,14 @@
  * 2.3.1; Hairer, Lubich and Wanner 2003.
  *
  * Forces F(t,q) join -dV in both kicks. Forces F(t,q,v) make the first kick implicit
- * (friction.h). */
+ * (friction.h). Holonomic constraints add their forces to both kicks (rattle.h). */
 #include <string.h>
 
 #include "step/split/temporal_blocking.h"
 #include "core/memory.h"
 #include "core/status.h"
 #include "method/split/friction.h"
+#include "method/split/rattle.h"
 #include "method/split/verlet_lanes.h"
 #include "num/compensated.h"
 
@@ -39,13 +40,15 @@ static const dvi__key keys[] = {
 };
 
 /* The memory holds the gradient at the end of the last step, which is that at the start of the
- * next, and then a flag. */
+ * next, and then a flag, and then the multipliers of holonomic constraints, from which those of the
+ * next step are sought. */
 typedef struct verlet {
   dvi__evaluator *evaluator;
   double *change;          /* [2 n] a change, and forces */
   double *supply;          /* [1 + symmetries] */
   dvi__blocking *blocking; /* NULL without temporal blocking */
   dvi__friction *friction; /* NULL without forces that depend on the velocity */
+  dvi__rattle *rattle;     /* NULL without holonomic constraints */
 } verlet;
 
 static double *verlet_gradient_known(const dvi__stepper *self, double *memory)
@@ -53,13 +56,24 @@ static double *verlet_gradient_known(const dvi__stepper *self, double *memory)
   return memory + self->system->n;
 }
 
+static double *verlet_multipliers(const dvi__stepper *self)
+{
+  return self->memory + self->system->n + 1;
+}
+
 /* ---- create, destroy ---- */
+
+static const char *verlet_obstacle(const dvi_system *system)
+{
+  return system->row_count > 0 ? "the system has holonomic constraints"
+                               : dvi__blocking_obstacle(system);
+}
 
 static dvi_status create_blocking(dvi__stepper *self, verlet *own)
 {
   const int asked = self->settings.value[BLOCKING], threads = self->settings.value[THREADS];
   const char *obstacle = asked == BLOCKING_NONE ? "blocking=none is asked for"
-                                                : dvi__blocking_obstacle(self->system);
+                                                : verlet_obstacle(self->system);
   if (obstacle == NULL) return dvi__blocking_create(self->system, threads, &own->blocking);
   if (asked == BLOCKING_TEMPORAL)
     return dvi__fail(DVI_UNSUPPORTED, "verlet: blocking=temporal is not possible: %s", obstacle);
@@ -69,21 +83,32 @@ static dvi_status create_blocking(dvi__stepper *self, verlet *own)
   return DVI_OK;
 }
 
+static dvi_status create_terms(const dvi__stepper *self, verlet *own)
+{
+  const dvi_system *s = self->system;
+  if (s->row_count > 0 && (s->terms & DVI__FRICTION))
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "verlet: forces that depend on the velocity are not taken beside holonomic "
+                     "constraints phi(t,q) = 0; trapezoidal takes both");
+  DVI_TRY(dvi__evaluator_create(s, 1, DVI__GRADIENTS, self->counters, &own->evaluator));
+  if (s->row_count > 0) return dvi__rattle_create(s, own->evaluator, self->counters, &own->rattle);
+  if (s->terms & DVI__FRICTION) return dvi__friction_create(s, self->counters, &own->friction);
+  return DVI_OK;
+}
+
 static dvi_status verlet_create(dvi__stepper *self)
 {
   verlet *own = self->own = DVI_NEW(verlet, 1);
   self->order = 2;
   self->symmetric = 1;
-  self->memory_count = (size_t)self->system->n + 1;
+  self->memory_count = (size_t)self->system->n + 1 + (size_t)self->system->row_count;
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "verlet: no memory");
   own->change = DVI_NEW(double, 2 * (size_t)self->system->n);
   own->supply = DVI_NEW(double, 1 + (size_t)self->system->symmetry_count);
   if (own->change == NULL || own->supply == NULL)
     return dvi__fail(DVI_NO_MEMORY, "verlet: no memory");
   DVI_TRY(create_blocking(self, own));
-  if (self->system->terms & DVI__FRICTION)
-    DVI_TRY(dvi__friction_create(self->system, self->counters, &own->friction));
-  return dvi__evaluator_create(self->system, 1, DVI__GRADIENTS, self->counters, &own->evaluator);
+  return create_terms(self, own);
 }
 
 static void verlet_destroy(dvi__stepper *self)
@@ -92,6 +117,7 @@ static void verlet_destroy(dvi__stepper *self)
   if (own == NULL) return;
   dvi__blocking_destroy(&own->blocking);
   dvi__friction_destroy(&own->friction);
+  dvi__rattle_destroy(&own->rattle);
   dvi__evaluator_destroy(&own->evaluator);
   dvi__release(own->change);
   dvi__release(own->supply);
@@ -152,7 +178,8 @@ static dvi_status verlet_begin(dvi__stepper *self, dvi__state *state, double h)
     DVI_TRY(dvi__friction_solve(own->friction, state, h, self->memory, &F));
   verlet_kick(self, state, 0.5 * h);
   if (own->friction != NULL) add_friction(self, state, 0.5 * h, F);
-  return DVI_OK;
+  if (own->rattle == NULL) return DVI_OK;
+  return dvi__rattle_begin(own->rattle, state, h, verlet_multipliers(self));
 }
 
 static dvi_status verlet_end(dvi__stepper *self, dvi__state *state, double h)
@@ -161,12 +188,14 @@ static dvi_status verlet_end(dvi__stepper *self, dvi__state *state, double h)
   const double *F;
   DVI_TRY(verlet_gradient(self, state));
   verlet_kick(self, state, 0.5 * h);
+  if (own->rattle != NULL) return dvi__rattle_end(own->rattle, state);
   if (own->friction == NULL) return DVI_OK;
   DVI_TRY(dvi__friction_end(own->friction, state, &F));
   add_friction(self, state, 0.5 * h, F);
   return DVI_OK;
 }
 
+/* A step with forces, constraints, or both. */
 static dvi_status verlet_forced_step(dvi__stepper *self, dvi__state *state, double h)
 {
   DVI_TRY(verlet_begin(self, state, h));
@@ -179,7 +208,8 @@ static dvi_status verlet_forced_step(dvi__stepper *self, dvi__state *state, doub
 static dvi_status verlet_step(dvi__stepper *self, dvi__state *state, double h)
 {
   if (*verlet_gradient_known(self, self->memory) == 0) DVI_TRY(verlet_gradient(self, state));
-  if (self->system->force_count > 0) return verlet_forced_step(self, state, h);
+  if (self->system->force_count > 0 || self->system->row_count > 0)
+    return verlet_forced_step(self, state, h);
   verlet_kick(self, state, 0.5 * h);
   verlet_drift(self, state, h);
   DVI_TRY(verlet_gradient(self, state));
@@ -240,7 +270,7 @@ static dvi_status verlet_prepare_lanes(dvi__stepper *self, int capacity)
   const verlet *own = self->own;
   const int asked = self->settings.value[BLOCKING] == BLOCKING_TEMPORAL ||
                     self->settings.value[THREADS] > 1;
-  const int pays = own->friction == NULL &&
+  const int pays = own->friction == NULL && own->rattle == NULL &&
                    (own->blocking == NULL || (!asked && self->system->n <= FEW_COORDINATES));
   return pays ? dvi__verlet_prepare_lanes(self, capacity) : DVI_OK;
 }
@@ -256,6 +286,16 @@ static void verlet_explain(const dvi__stepper *self, dvi__text *text)
                   "Jacobian M - h/2 dF/dv\n");
     return;
   }
+  if (own->rattle != NULL) {
+    dvi__text_add(text,
+                  "kernel: explicit, but for the multipliers; one gradient a step (the last one of "
+                  "a step is the first of the next)\n"
+                  "solver: simplified Newton's method for the %d multipliers at the start, with "
+                  "the matrix G M^-1 G^T, which is factored once a step and also gives those at "
+                  "the end\n",
+                  self->system->row_count);
+    return;
+  }
   dvi__text_add(
       text,
       "kernel: explicit; one gradient a step (the last one of a step is the first of the next)\n");
@@ -269,9 +309,8 @@ static void verlet_explain(const dvi__stepper *self, dvi__text *text)
         self->settings.value[THREADS]);
   else
     dvi__text_add(text, "blocking: none; %s\n",
-                  self->settings.value[BLOCKING] == BLOCKING_NONE
-                      ? "it is asked for"
-                      : dvi__blocking_obstacle(self->system));
+                  self->settings.value[BLOCKING] == BLOCKING_NONE ? "it is asked for"
+                                                                  : verlet_obstacle(self->system));
 }
 
 const dvi__method dvi__verlet = {
@@ -280,7 +319,7 @@ const dvi__method dvi__verlet = {
     .cite = "MarsdenWest2001",
     .keys = keys,
     .needs = DVI__CONSTANT_MASS,
-    .uses = DVI__CONSTANT_MASS | DVI__POTENTIAL | DVI__FORCES,
+    .uses = DVI__CONSTANT_MASS | DVI__POTENTIAL | DVI__FORCES | DVI__HOLONOMIC,
     .create = verlet_create,
     .destroy = verlet_destroy,
     .step = verlet_step,

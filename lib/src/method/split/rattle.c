@@ -1,0 +1,382 @@
+#include "method/split/rattle.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "num/compensated.h"
+#include "num/finite.h"
+#include "num/linear.h"
+#include "system/dynamics/holonomic.h"
+
+enum { MOST_ITERATIONS = 50 };
+
+/* A matrix is kept while corrections shrink at least by this factor. */
+static const double fast_change = 0.25;
+
+struct dvi__rattle {
+  const dvi_system *system;
+  dvi__evaluator *evaluator;
+  dvi_counters *counters;
+  dvi__pattern pattern; /* of G M^-1 G^T */
+  dvi__linear *matrix;
+  double *values; /* [entries] */
+  /* For masses on the diagonal, entry e of the matrix is the sum of the products of the entries
+   * `left` and `right` of G, pairs first[e] to first[e+1]-1. */
+  int *first, *left, *right;
+  int knows_start; /* the matrix and the gradients are those of t_start and q_start */
+  double t_start;
+  double *numbers;         /* storage of all that follows */
+  double *q_start;         /* [n] */
+  double *phi_q, *next_q;  /* [entries of rows_q] gradients at the start, and on the way */
+  double *phi, *phi_t, *w; /* [rows]; w is a correction of the multipliers */
+  double *x, *change, *v;  /* [n]; change is q1 - q0 */
+};
+
+/* ---- create ---- */
+
+static int masses_are_diagonal(const dvi_system *s)
+{
+  return s->mass_values == NULL;
+}
+
+/* Count the coordinates that two rows share, and note the pairs of their entries from `at` on, if
+ * there is room for them. */
+static int pair_rows(const dvi__rattle *r, int a, int b, int at)
+{
+  const dvi__pattern *G = &r->system->rows_q;
+  int i = G->start[a], j = G->start[b], count = 0;
+  while (i < G->start[a + 1] && j < G->start[b + 1])
+    if (G->row[i] < G->row[j])
+      i++;
+    else if (G->row[i] > G->row[j])
+      j++;
+    else {
+      if (r->left != NULL) {
+        r->left[at + count] = i;
+        r->right[at + count] = j;
+      }
+      count++, i++, j++;
+    }
+  return count;
+}
+
+/* Make the pattern of the rows that share a coordinate. `rows_of` has the rows of each
+ * coordinate. `seen` [rows] is work. */
+static int lay_out_columns(dvi__rattle *r, const dvi__pattern *rows_of, int *seen)
+{
+  const dvi__pattern *G = &r->system->rows_q;
+  const int m = r->system->row_count;
+  int count = 0;
+  for (int a = 0; a < m; a++) seen[a] = -1;
+  for (int b = 0; b < m; b++) {
+    const int begin = count;
+    for (int k = G->start[b]; k < G->start[b + 1]; k++)
+      for (int l = rows_of->start[G->row[k]]; l < rows_of->start[G->row[k] + 1]; l++) {
+        const int a = rows_of->row[l];
+        if (seen[a] == b) continue;
+        seen[a] = b;
+        int at = count++;
+        if (r->pattern.row == NULL) continue;
+        for (; at > begin && r->pattern.row[at - 1] > a; at--)
+          r->pattern.row[at] = r->pattern.row[at - 1];
+        r->pattern.row[at] = a;
+      }
+    r->pattern.start[b + 1] = count;
+  }
+  return count;
+}
+
+static dvi_status lay_out_shared(dvi__rattle *r, const dvi__pattern *rows_of)
+{
+  const int m = r->system->row_count;
+  int *seen = DVI_NEW(int, m);
+  r->pattern = (dvi__pattern){m, m, DVI_NEW(int, (size_t)m + 1), NULL};
+  if (seen != NULL && r->pattern.start != NULL) {
+    r->pattern.row = DVI_NEW(int, lay_out_columns(r, rows_of, seen));
+    if (r->pattern.row != NULL) (void)lay_out_columns(r, rows_of, seen);
+  }
+  dvi__release(seen);
+  return r->pattern.row != NULL
+             ? DVI_OK
+             : dvi__fail(DVI_NO_MEMORY, "verlet: no memory for %d constraints", m);
+}
+
+static int pair_entries(dvi__rattle *r)
+{
+  int count = 0;
+  for (int b = 0; b < r->pattern.columns; b++)
+    for (int e = r->pattern.start[b]; e < r->pattern.start[b + 1]; e++) {
+      r->first[e] = count;
+      count += pair_rows(r, r->pattern.row[e], b, count);
+    }
+  r->first[dvi__pattern_entries(&r->pattern)] = count;
+  return count;
+}
+
+static dvi_status prepare_pairs(dvi__rattle *r)
+{
+  dvi__pattern rows_of = {0};
+  DVI_TRY(dvi__pattern_transpose(&r->system->rows_q, &rows_of));
+  const dvi_status status = lay_out_shared(r, &rows_of);
+  dvi__pattern_clear(&rows_of);
+  DVI_TRY(status);
+  r->first = DVI_NEW(int, (size_t)dvi__pattern_entries(&r->pattern) + 1);
+  if (r->first == NULL) return dvi__fail(DVI_NO_MEMORY, "verlet: no memory for constraints");
+  const int pairs = pair_entries(r);
+  r->left = DVI_NEW(int, pairs);
+  r->right = DVI_NEW(int, pairs);
+  if (r->left == NULL || r->right == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "verlet: no memory for constraints");
+  (void)pair_entries(r);
+  return DVI_OK;
+}
+
+static dvi_status rattle_allocate(dvi__rattle *r)
+{
+  const size_t n = (size_t)r->system->n, m = (size_t)r->system->row_count,
+               entries = (size_t)dvi__pattern_entries(&r->system->rows_q);
+  double *at = r->numbers = DVI_NEW(double, 4 * n + 3 * m + 2 * entries);
+  r->values = DVI_NEW(double, dvi__pattern_entries(&r->pattern));
+  if (at == NULL || r->values == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "verlet: no memory for %zu constraints", m);
+  r->q_start = at;
+  r->x = r->q_start + n;
+  r->change = r->x + n;
+  r->v = r->change + n;
+  r->phi = r->v + n;
+  r->phi_t = r->phi + m;
+  r->w = r->phi_t + m;
+  r->phi_q = r->w + m;
+  r->next_q = r->phi_q + entries;
+  return DVI_OK;
+}
+
+static dvi_status rattle_prepare(dvi__rattle *r)
+{
+  const int m = r->system->row_count;
+  if (masses_are_diagonal(r->system))
+    DVI_TRY(prepare_pairs(r));
+  else
+    DVI_TRY(dvi__pattern_copy_rectangular(&(dvi_pattern){0}, m, m, "constraints", &r->pattern));
+  DVI_TRY(rattle_allocate(r));
+  return dvi__linear_create(&r->pattern, DVI__LINEAR_AUTO, r->counters, &r->matrix);
+}
+
+dvi_status dvi__rattle_create(const dvi_system *system, dvi__evaluator *evaluator,
+                              dvi_counters *counters, dvi__rattle **rattle)
+{
+  dvi__rattle *r = *rattle = DVI_NEW(dvi__rattle, 1);
+  if (r == NULL) return dvi__fail(DVI_NO_MEMORY, "verlet: no memory");
+  r->system = system;
+  r->evaluator = evaluator;
+  r->counters = counters;
+  const dvi_status status = rattle_prepare(r);
+  if (status != DVI_OK) dvi__rattle_destroy(rattle);
+  return status;
+}
+
+void dvi__rattle_destroy(dvi__rattle **rattle)
+{
+  dvi__rattle *r = *rattle;
+  if (r == NULL) return;
+  dvi__linear_destroy(&r->matrix);
+  dvi__pattern_clear(&r->pattern);
+  dvi__release(r->first);
+  dvi__release(r->left);
+  dvi__release(r->right);
+  dvi__release(r->values);
+  dvi__release(r->numbers);
+  dvi__release(r);
+  *rattle = NULL;
+}
+
+/* ---- the matrix ---- */
+
+static void multiply_by_pairs(dvi__rattle *r, const double *rows, const double *columns)
+{
+  const dvi_system *s = r->system;
+  for (int e = 0; e < dvi__pattern_entries(&r->pattern); e++) {
+    double sum = 0;
+    for (int k = r->first[e]; k < r->first[e + 1]; k++) {
+      const double mass = s->mass_diagonal != NULL ? s->mass_diagonal[s->rows_q.row[r->left[k]]]
+                                                   : s->mass_scalar;
+      sum += rows[r->left[k]] * columns[r->right[k]] / mass;
+    }
+    r->values[e] = sum;
+  }
+}
+
+/* Set x to M^-1 G^T w. */
+static void move_by(dvi__rattle *r, const double *phi_q, const double *w, double *x)
+{
+  memset(x, 0, (size_t)r->system->n * sizeof *x);
+  dvi__rows_pull(r->system, phi_q, w, 1, x);
+  dvi__mass_solve(r->evaluator, 1, x, x);
+}
+
+static void multiply_by_columns(dvi__rattle *r, const double *rows, const double *columns)
+{
+  const dvi_system *s = r->system;
+  const int m = s->row_count;
+  for (int b = 0; b < m; b++) {
+    memset(r->x, 0, (size_t)s->n * sizeof(double));
+    for (int k = s->rows_q.start[b]; k < s->rows_q.start[b + 1]; k++)
+      r->x[s->rows_q.row[k]] = columns[k];
+    dvi__mass_solve(r->evaluator, 1, r->x, r->x);
+    for (int a = 0; a < m; a++) {
+      double sum = 0;
+      for (int k = s->rows_q.start[a]; k < s->rows_q.start[a + 1]; k++)
+        sum += rows[k] * r->x[s->rows_q.row[k]];
+      r->values[b * m + a] = sum;
+    }
+  }
+}
+
+/* Factor rows M^-1 columns^T, of two sets of gradients. */
+static dvi_status factor_matrix(dvi__rattle *r, double t, const double *rows, const double *columns)
+{
+  r->counters->jacobians++;
+  if (masses_are_diagonal(r->system))
+    multiply_by_pairs(r, rows, columns);
+  else
+    multiply_by_columns(r, rows, columns);
+  const dvi_status status = dvi__linear_factor(r->matrix, r->values);
+  return status != DVI_SINGULAR
+             ? status
+             : dvi__fail(status, "the holonomic constraints are dependent at t = %.6g", t);
+}
+
+/* Factor the matrix at a point, unless it is known. */
+static dvi_status factor_at(dvi__rattle *r, double t, const double *q)
+{
+  const size_t size = (size_t)r->system->n * sizeof *q;
+  if (r->knows_start && r->t_start == t && memcmp(r->q_start, q, size) == 0) return DVI_OK;
+  r->knows_start = 0;
+  DVI_TRY(dvi__rows_gradients(r->evaluator, t, q, r->phi_q));
+  DVI_TRY(factor_matrix(r, t, r->phi_q, r->phi_q));
+  r->t_start = t;
+  memcpy(r->q_start, q, size);
+  r->knows_start = 1;
+  return DVI_OK;
+}
+
+/* ---- the start of a step ---- */
+
+/* Compute phi at q0 plus the change. */
+static dvi_status value_at_end(dvi__rattle *r, const dvi__state *state, double h)
+{
+  r->counters->residuals++;
+  for (int i = 0; i < r->system->n; i++)
+    r->x[i] = state->q[i] + (r->change[i] - state->q_compensation[i]);
+  DVI_TRY(dvi__rows_value(r->evaluator, state->t + h, r->x, r->phi));
+  if (dvi__first_not_finite((size_t)r->system->row_count, r->phi) < 0) return DVI_OK;
+  return dvi__fail(DVI_NOT_FINITE, "the constraints at the end of the step are not finite");
+}
+
+/* Take the matrix of Newton's method at the present end, x. */
+static dvi_status renew_matrix(dvi__rattle *r, const dvi__state *state, double h)
+{
+  r->knows_start = 0;
+  DVI_TRY(dvi__rows_gradients(r->evaluator, state->t + h, r->x, r->next_q));
+  const dvi_status status = factor_matrix(r, state->t + h, r->next_q, r->phi_q);
+  return status == DVI_SINGULAR ? DVI_NOT_CONVERGED : status; /* a smaller step ends elsewhere */
+}
+
+/* Correct the multipliers w = h^2 lambda/2 by one iteration. *moved becomes the largest change of
+ * a coordinate. */
+static dvi_status correct(dvi__rattle *r, double h, double *lambda, double *moved)
+{
+  const int n = r->system->n, m = r->system->row_count;
+  memcpy(r->w, r->phi, (size_t)m * sizeof(double));
+  DVI_TRY(dvi__linear_solve(r->matrix, r->w));
+  if (dvi__first_not_finite((size_t)m, r->w) >= 0)
+    return dvi__fail(DVI_NOT_FINITE, "the multipliers of the step are not finite");
+  move_by(r, r->phi_q, r->w, r->x);
+  for (int i = 0; i < n; i++) r->change[i] -= r->x[i];
+  for (int a = 0; a < m; a++) lambda[a] += 2 * r->w[a] / (h * h);
+  *moved = dvi__largest((size_t)n, r->x);
+  return DVI_OK;
+}
+
+/* Tell whether corrections are roundings, or will be after this one, or no longer shrink. The first
+ * correction has none before it. */
+static int is_settled(double moved, double last, double size)
+{
+  const double rounding = DBL_EPSILON * size, shrunk = last < HUGE_VAL ? moved / last : 1;
+  return moved <= rounding || (shrunk < fast_change && moved * shrunk <= fast_change * rounding) ||
+         (moved <= 1e-10 * size && shrunk >= 0.5);
+}
+
+static dvi_status find_multipliers(dvi__rattle *r, const dvi__state *state, double h,
+                                   double *lambda)
+{
+  const size_t n = (size_t)r->system->n;
+  const double size = fmax(dvi__largest(n, state->q), dvi__largest(n, r->change));
+  double moved = HUGE_VAL, last = HUGE_VAL;
+  int renewed = 0;
+  for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
+    DVI_TRY(value_at_end(r, state, h));
+    if (iteration > 1 && !(moved <= fast_change * last)) {
+      DVI_TRY(renew_matrix(r, state, h));
+      renewed = 1;
+    }
+    last = moved;
+    DVI_TRY(correct(r, h, lambda, &moved));
+    if (!is_settled(moved, last, size)) continue;
+    *(renewed ? &r->counters->newtons : &r->counters->simplified) += 1;
+    return DVI_OK;
+  }
+  return dvi__fail(DVI_NOT_CONVERGED,
+                   "the multipliers of the step do not settle in %d iterations (change %.1e)",
+                   (int)MOST_ITERATIONS, moved);
+}
+
+dvi_status dvi__rattle_begin(dvi__rattle *r, dvi__state *state, double h, double *lambda)
+{
+  const int n = r->system->n, m = r->system->row_count;
+  DVI_TRY(factor_at(r, state->t, state->q));
+  dvi__mass_solve(r->evaluator, 1, state->p, r->change);
+  for (int a = 0; a < m; a++) r->w[a] = 0.5 * h * h * lambda[a];
+  move_by(r, r->phi_q, r->w, r->x);
+  for (int i = 0; i < n; i++) r->change[i] = h * r->change[i] - r->x[i];
+  DVI_TRY(find_multipliers(r, state, h, lambda));
+  memset(r->x, 0, (size_t)n * sizeof(double));
+  dvi__rows_pull(r->system, r->phi_q, lambda, -0.5 * h, r->x);
+  dvi__add_compensated_all(n, state->p, state->p_compensation, r->x);
+  return DVI_OK;
+}
+
+/* ---- the end of a step ---- */
+
+static dvi_status project_once(dvi__rattle *r, dvi__state *state)
+{
+  const dvi_system *s = r->system;
+  dvi__mass_solve(r->evaluator, 1, state->p, r->v);
+  for (int a = 0; a < s->row_count; a++) {
+    r->w[a] = r->phi_t[a];
+    for (int k = s->rows_q.start[a]; k < s->rows_q.start[a + 1]; k++)
+      r->w[a] += r->phi_q[k] * r->v[s->rows_q.row[k]];
+  }
+  DVI_TRY(dvi__linear_solve(r->matrix, r->w));
+  if (dvi__first_not_finite((size_t)s->row_count, r->w) >= 0)
+    return dvi__fail(DVI_NOT_FINITE, "the multipliers at the end of the step are not finite");
+  memset(r->x, 0, (size_t)s->n * sizeof(double));
+  dvi__rows_pull(s, r->phi_q, r->w, -1, r->x);
+  dvi__add_compensated_all(s->n, state->p, state->p_compensation, r->x);
+  return DVI_OK;
+}
+
+/* The second projection rounds off what the first one leaves. */
+dvi_status dvi__rattle_end(dvi__rattle *r, dvi__state *state)
+{
+  const dvi_status status = factor_at(r, state->t, state->q);
+  /* a smaller step may end elsewhere */
+  if (status != DVI_OK)
+    return dvi__fail_in(status == DVI_SINGULAR ? DVI_NOT_CONVERGED : status, "the end of the step");
+  DVI_TRY(dvi__rows_rate(r->evaluator, state->t, state->q, r->phi_t));
+  DVI_TRY(project_once(r, state));
+  return project_once(r, state);
+}
