@@ -84,8 +84,8 @@ static dvi_system *make_rods(dvi_mass mass, int terms)
   return system;
 }
 
-/* Starts with both rods at the angles pi/4 and pi/2 from straight down. The momenta are those of the
- * masses m1 and m2 if the lower rod turns at pi/8, or 0. */
+/* Starts with both rods at the angles pi/4 and pi/2 from straight down. The momenta are those of
+ * the masses m1 and m2 if the lower rod turns at pi/8, or 0. */
 static dvi_integrator *start_rods(const dvi_system *system, const char *method, int turns)
 {
   const double pi = acos(-1), x = l1 * sin(pi / 4), y = -l1 * cos(pi / 4);
