@@ -1,11 +1,12 @@
-/** Names of the columns of multipliers, lambda_NAME of holonomic constraints. */
+/** Names of the columns of multipliers, lambda_NAME of holonomic constraints, and of nonholonomic
+ *  ones behind them. */
 #ifndef REACTIONS_H
 #define REACTIONS_H
 #include "problem.h"
 
 enum { REACTION_NAME_SIZE = 128 };
 
-/** Return the number of rows of all holonomic constraints. */
+/** Return the number of rows of all these constraints, dvi_system_constraint_count. */
 int reaction_count(const problem *scene);
 
 /** Write the name of each row's column. Several rows of one name are numbered from 1. */

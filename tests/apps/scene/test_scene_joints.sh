@@ -49,6 +49,27 @@ sed 's/elbow_1/elbow_4/' report.yaml >odd.yaml
 expect 2 'a row that is not there' run odd.yaml
 says err "has no column 'lambda_elbow_4'" 'a row that is not there'
 
+# Nonholonomic rows have theirs, behind those of holonomic constraints. In a circle the ground holds
+# a disk by m R spin turn.
+expect 0 'multipliers of rows' run rolling-disk --method nonholonomic --t-end 0.05 \
+  --columns lambda_rolling_1,lambda_rolling_2
+sed -n 2p out | awk -F, '{ exit !($2^2 < 1e-12 && ($3 + 1.05)^2 < 1e-12) }' ||
+  fail "the force of the ground is not in the multipliers: $(sed -n 2p out)"
+cat >mixed.yaml <<'END'
+coordinates: {x: scalar, y: scalar, z: scalar, c: scalar, s: scalar, th: scalar}
+lagrangian: (x'^2 + y'^2 + z'^2 + c'^2 + s'^2 + th'^2)/2 - z
+constraints: {table: z, circle: (c^2 + s^2 - 1)/2}
+nonholonomic: {rolls: x' - c*th', slips: y' - s*th'}
+initial: {x: 0, y: 0, z: 0, c: 1, s: 0, th: 0, x': 1, s': 1, th': 1}
+method: nonholonomic
+step: 0.05
+until: 0.5
+report: {columns: [lambda_table, lambda_circle, lambda_rolls, lambda_slips]}
+END
+expect 0 'multipliers of both' run mixed.yaml
+tail -1 out | awk -F, '{ exit !(NF == 5 && ($2 + 1)^2 < 1e-9) }' ||
+  fail "the weight is not in the multipliers: $(tail -1 out)"
+
 for method in verlet lie-verlet euler-poincare galerkin; do
   expect 2 "$method takes no joints" run arm.yaml --method $method
 done

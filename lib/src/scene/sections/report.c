@@ -53,6 +53,8 @@ static bool is_multiplier(const dvi_scene *scene, const char *text)
   if (scene->terms.holonomic_count > 0 && constraints != NULL &&
       dvi__tree_find(constraints, text) != NULL)
     return true;
+  const dvi__tree *nonholonomic = dvi__tree_find(scene->tree, "nonholonomic");
+  if (nonholonomic != NULL && dvi__tree_find(nonholonomic, text) != NULL) return true;
   for (int k = 0; k < scene->joint_count; k++) {
     const size_t length = strlen(scene->joint[k].name);
     if (strncmp(text, scene->joint[k].name, length) != 0) continue;
