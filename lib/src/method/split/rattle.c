@@ -302,11 +302,13 @@ static dvi_status correct(dvi__rattle *r, double h, double *lambda, double *move
 }
 
 /* Tell whether corrections are roundings, or will be after this one, or no longer shrink. The first
- * correction has none before it. */
+ * correction has none before it, and is settled only if it is a rounding. */
 static int is_settled(double moved, double last, double size)
 {
-  const double rounding = DBL_EPSILON * size, shrunk = last < HUGE_VAL ? moved / last : 1;
-  return moved <= rounding || (shrunk < fast_change && moved * shrunk <= fast_change * rounding) ||
+  const double rounding = DBL_EPSILON * size, shrunk = moved / last;
+  if (moved <= rounding) return 1;
+  if (last == HUGE_VAL) return 0;
+  return (shrunk < fast_change && moved * shrunk <= fast_change * rounding) ||
          (moved <= 1e-10 * size && shrunk >= 0.5);
 }
 
