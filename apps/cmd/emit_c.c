@@ -43,6 +43,9 @@ static int write_code(const problem *scene, const char *name, const char *path)
   else if (status == DVI_UNSUPPORTED && dvi_scene_control(scene->scene, 0) != NULL)
     code = usage_error("emit-c: the scene has controls, which C files do not have; declare them by "
                        "dvi_controls (dvi/control.h)");
+  else if (status == DVI_UNSUPPORTED && scene->terms->contact_count > 0)
+    code = usage_error("emit-c: the scene has contacts, which C files do not have yet; declare "
+                       "them in a program (dvi_contact), or `dvi run` the scene");
   else if (status == DVI_UNSUPPORTED)
     code = usage_error("emit-c: the scene's method needs Taylor coefficients, and C files have "
                        "none; take another method, or `dvi run` the scene");

@@ -44,6 +44,8 @@ static void explain_problem(const problem *scene, const words *settings)
     (void)printf("%s%s", i == 0 ? "\n  forces       " : ", ", scene->terms->forces[i].name);
   if (scene->terms->vector_potential != NULL)
     (void)printf("\n  terms        a constant mass with a vector potential A(t,q).q'");
+  for (int i = 0; i < scene->terms->contact_count; i++)
+    (void)printf("%s%s", i == 0 ? "\n  contacts     " : ", ", scene->terms->contacts[i].name);
   (void)printf("\n  watched      ");
   for (int i = 0; i < dvi_system_invariant_count(scene->system); i++)
     (void)printf("%s%s", i > 0 ? ", " : "", dvi_system_invariant_name(scene->system, i));

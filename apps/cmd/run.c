@@ -53,8 +53,10 @@ static int place_momenta(const run_request *request, problem *scene)
 
 static int check_events(const run_request *request, const problem *scene)
 {
-  if (request->events == NULL || events_count(scene) > 0) return DONE;
-  return usage_error("run: --events: %s has none; a scene declares them in its section events",
+  if (request->events == NULL || events_count(scene) > 0 || scene->terms->contact_count > 0)
+    return DONE;
+  return usage_error("run: --events: %s has none; a scene declares them in its sections events and "
+                     "contacts",
                      scene->name);
 }
 
@@ -265,7 +267,9 @@ static const char *const details[] = {
     "time: the last row is the state\n"
     "there, and the exit code 0. The columns of --events are event, its name, t, the coordinates "
     "and their velocities (v_), on\n"
-    "the step's path; how often each was found is told at the end.\n",
+    "the step's path; how often each was found is told at the end. Hits of contacts are listed "
+    "there, too, by the contact's name,\n"
+    "with the velocities before them.\n",
     "An alarm changes nothing in the run: standard error says at the end when the invariant's size "
     "first passed the bound,\n"
     "and how large it was at most; the exit code is 0.\n",

@@ -5,7 +5,7 @@
 
 #include "problem.h"
 
-/** Return whether forces without a potential act in a problem. */
+/** Return whether forces without a potential, or contacts, act in a problem. */
 bool has_balances(const problem *scene);
 
 /** Create an integrator of steps of time that keeps balances if forces act. */

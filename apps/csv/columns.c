@@ -43,6 +43,7 @@ static void columns_list(run_columns *c, const dvi_integrator *integrator)
   if (scene->terms->one_form != NULL || scene->terms->constraint != NULL ||
       scene->terms->holonomic_count > 0 || scene->terms->nonholonomic_count > 0)
     columns_add(c, "constraint", COLUMN_CONSTRAINT, 0);
+  if (scene->terms->contact_count > 0) columns_add(c, "gap", COLUMN_GAP, 0);
   if (!isnan(dvi_integrator_jump(integrator, NULL))) columns_add(c, "jump", COLUMN_JUMP, 0);
   reaction_names(scene, c->reaction_name);
   for (int i = 0; i < reaction_count(scene); i++)
@@ -212,6 +213,8 @@ static dvi_status columns_evaluate(run_columns *c, dvi_integrator *integrator)
     status = dvi_integrator_constraint(integrator, &c->constraint);
   if (status == DVI_OK && c->shows[COLUMN_REACTION])
     status = dvi_integrator_reactions(integrator, c->reaction);
+  if (status == DVI_OK && c->shows[COLUMN_GAP])
+    status = dvi_integrator_gap(integrator, &c->gap, NULL);
   return status;
 }
 
@@ -241,6 +244,7 @@ double columns_number(const run_columns *c, const dvi_integrator *integrator, in
   case COLUMN_DISTANCE: return dvi_system_distance(c->scene->system, dvi_integrator_q(integrator));
   case COLUMN_CONSTRAINT: return c->constraint;
   case COLUMN_REACTION: return c->reaction[column->index];
+  case COLUMN_GAP: return c->gap;
   default: return dvi_integrator_jump(integrator, NULL);
   }
 }

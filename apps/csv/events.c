@@ -83,10 +83,10 @@ void events_header(const problem *scene, FILE *stream)
   (void)fputc('\n', stream);
 }
 
-void events_row(const problem *scene, int index, double t, const double *q, const double *v,
+void events_row(const problem *scene, const char *name, double t, const double *q, const double *v,
                 FILE *stream)
 {
-  csv_text(stream, dvi_scene_event_at(scene->scene, index)->name);
+  csv_text(stream, name);
   (void)fprintf(stream, ",%.17g", t);
   for (int i = 0; i < scene->nq; i++) (void)fprintf(stream, ",%.17g", q[i]);
   for (int i = 0; i < scene->nv; i++) (void)fprintf(stream, ",%.17g", v[i]);

@@ -29,8 +29,8 @@ void events_tell(const event_list *list, const char *command, const dvi_run_repo
 /** Write the names of a table's columns, which are event, t, the coordinates and the velocities. */
 void events_header(const problem *scene, FILE *stream);
 
-/** Write one row of this table. */
-void events_row(const problem *scene, int index, double t, const double *q, const double *v,
+/** Write one row of this table. Hits have the name of their contact. */
+void events_row(const problem *scene, const char *name, double t, const double *q, const double *v,
                 FILE *stream);
 
 void events_clear(event_list *list);

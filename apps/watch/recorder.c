@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "watch/alarms.h"
@@ -23,6 +24,7 @@ typedef struct recorder {
   whole_file out, events_out;
   run_columns columns;
   event_list events;
+  long hits;
   alarm_list alarms;
   run_trace trace;
   progress_line progress;
@@ -60,9 +62,32 @@ static int recorder_write_event(int index, double t, const double *q, const doub
 {
   recorder *r = user;
   if (r->events_out.stream == NULL) return 0;
-  events_row(r->scene, index, t, q, v, r->events_out.stream);
+  events_row(r->scene, r->events.event[index].name, t, q, v, r->events_out.stream);
   r->stop_silently = !stream_is_good(&r->events_out);
   return r->stop_silently ? -1 : 0;
+}
+
+/* Write the hits of the last step, with the velocities before them. */
+static bool recorder_write_hits(recorder *r, dvi_integrator *integrator)
+{
+  const int count = dvi_integrator_hit_count(integrator);
+  r->hits += count;
+  if (count == 0 || r->events_out.stream == NULL) return true;
+  double *q = calloc(2 * (size_t)r->scene->nq, sizeof *q), *v = q + r->scene->nq;
+  bool good = q != NULL;
+  for (int i = 0; i < count && good; i++) {
+    const dvi_hit hit = dvi_integrator_hit(integrator, i);
+    good = dvi_integrator_interpolate(integrator, hit.t, q, v) == DVI_OK;
+    const char *name = dvi_system_contact_name(r->scene->system, hit.contact);
+    if (good) events_row(r->scene, name, hit.t, q, v, r->events_out.stream);
+  }
+  free(q);
+  return good && stream_is_good(&r->events_out);
+}
+
+static void tell_hits(const recorder *r)
+{
+  if (r->hits > 0) complain("run: contacts: %ld hit%s", r->hits, r->hits == 1 ? "" : "s");
 }
 
 static bool row_is_due(const recorder *r)
@@ -95,12 +120,13 @@ static int recorder_observe(dvi_integrator *integrator, void *user)
   r->t = t;
   r->step += r->begun;
   if (r->begun) energy_watch_step(&r->watch);
+  if (r->begun && !recorder_write_hits(r, integrator)) r->stop_silently = true;
   if (r->chooses && r->begun) note_step(r, integrator);
   r->row_written = false;
   const bool row = row_is_due(r);
   r->begun = true;
-  bool good = true;
-  if (row || r->trace.t != NULL) good = columns_measure(&r->columns, integrator);
+  bool good = !r->stop_silently;
+  if (good && (row || r->trace.t != NULL)) good = columns_measure(&r->columns, integrator);
   if (good && row) good = recorder_write_row(r, integrator);
   if (good) good = alarms_look(&r->alarms, integrator);
   if (good && r->trace.t != NULL) trace_add(&r->trace, integrator);
@@ -182,6 +208,7 @@ static int recorder_advance(recorder *r, dvi_integrator *integrator)
   const int code = status == DVI_OK ? DONE : r->stop_silently ? FAILED : library_error(status);
   report_steps(r, integrator);
   events_tell(&r->events, "run", &report);
+  tell_hits(r);
   alarms_tell(&r->alarms);
   energy_tell(&r->watch, r->request);
   if (r->stop_silently) return FAILED;

@@ -86,9 +86,11 @@ static void out_of_memory(dvi_status status)
   check_words("no memory");
 }
 
+/* But moreau-jean, which needs contacts (test_contacts.c). */
 START_TEST(every_method_has_its_place)
 {
   for (int i = 0; i < dvi_method_count(); i++) {
+    if (strcmp(dvi_method_name(i), "moreau-jean") == 0) continue;
     const size_t length = strlen(dvi_method_name(i));
     int found = 0;
     for (int k = 0; k < PLACES; k++)

@@ -1,6 +1,7 @@
 #!/bin/sh
-# Each method has a source, a test, a page, a link to the page in docs/methods/README.md and an
-# entry of the bibliography, and each page of a method has its line in methods.def.
+# Each method has a source, a test, a page in docs/methods or in a folder there, a link to the page
+# in docs/methods/README.md and an entry of the bibliography, and each page of a method has its line
+# in methods.def.
 # Usage: methods.sh TOP NAME...
 set -u
 cd "$1" || exit 1

@@ -247,7 +247,29 @@ START_TEST(sections_that_are_missing_or_do_not_go_together_are_told)
   refused(X "hamiltonian: p(x)^2\n" RUN, ":3:10:", "the momentum p(x) is not given");
   refused(X "hamiltonian: p(x)^2\npotentials: {a: x}\n" RUN, ":3:13:", "not beside hamiltonian");
   refused(X "hamiltonian: x\nconstraints: {a: x}\n" RUN, ":3:14:", "an even number is needed");
-  refused(X "lagrangian: x'^2\ncontacts: {x: 1}\n" RUN, ":3:11:", "no method here takes contacts");
+  refused(X "lagrangian: x'^2\ncontacts: {x: 1}\n" RUN, ":3:15:", "a contact");
+  refused(X "lagrangian: x'^2\ncontacts: {f: {restitution: 1}}\n" RUN, ":3:15:", "needs 'gap'");
+  refused(X "lagrangian: x'^2\ncontacts: {f: {gap: x}}\n" RUN, ":3:15:", "needs 'restitution'");
+  refused(X "lagrangian: x'^2\ncontacts: {f: {gap: x, restitution: -1}}\n" RUN,
+          ":3:37:", "the restitution is -1; it is a number from 0 to 1");
+  refused(X "lagrangian: x'^2\ncontacts: {f: {gap: x, restitution: 2}}\n" RUN,
+          ":3:37:", "the restitution is 2");
+  refused(X "lagrangian: x'^2\ncontacts: {f: {gap: x, restitution: 1, friction: -1}}\n" RUN,
+          ":3:50:", "the friction is -1");
+  refused(X "lagrangian: x'^2\ncontacts: {f: {gap: x, restitution: 1, friction: 1}}\n" RUN,
+          ":3:50:", "friction needs 'tangent'");
+  refused(X "lagrangian: x'^2\n"
+            "contacts: {f: {gap: x, restitution: 1, friction: 1, tangent: x}}\n" RUN,
+          ":3:62:", "a tangent is linear in the velocities");
+  refused(X "lagrangian: x'^2\n"
+            "contacts: {f: {gap: x, restitution: 1, tangent: [x', x', x']}}\n" RUN,
+          ":3:49:", "a tangent has 3 numbers");
+  refused(X "lagrangian: x'^2\ncontacts: {f: {gap: x', restitution: 1}}\n" RUN, ":3:21:", "a gap");
+  refused(X "lagrangian: x'^2\nconstraints: {a: x}\n"
+            "contacts: {f: {gap: x, restitution: 1}}\n" RUN,
+          ":4:11:", "beside constraints there are no contacts");
+  refused(X "hamiltonian: p(x)^2\ncontacts: {f: {gap: x, restitution: 1}}\n" RUN, ":",
+          "there are no contacts");
   refused("coordinates: {x: skalar}\nlagrangian: 1\n" RUN, ":1:18:", "did you mean scalar?");
   refused("coordinates: {x: vector}\nlagrangian: 1\n" RUN,
           ":1:18:", "a vector has its size, as in vector(3)");

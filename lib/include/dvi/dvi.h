@@ -3,6 +3,7 @@
 #ifndef DVI_DVI_H
 #define DVI_DVI_H
 #include <dvi/basis.h>
+#include <dvi/contact.h>
 #include <dvi/control.h>
 #include <dvi/diagnostics.h>
 #include <dvi/ensemble.h>

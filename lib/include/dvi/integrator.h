@@ -48,6 +48,9 @@ typedef struct dvi_counters {
    *  branch. Each is made ready when it is first needed, and never again. If memory is lacking
    *  then, the step fails with DVI_NO_MEMORY, the state stays, and the next step tries again */
   long preparations;
+  long hits; /**< hits of contacts, where each is met at its time */
+  /** sweeps of projected Gauss-Seidel iteration for the impulses of contacts (moreau-jean) */
+  long sweeps;
 } dvi_counters;
 
 /** The energy of a run by a method whose discrete energy is conserved (sem). But for jumps E+
@@ -226,6 +229,9 @@ dvi_status dvi_integrator_start_velocity(dvi_integrator *integrator, double t, c
  *  @retval DVI_SINGULAR        dg, dg-phase: the two-form is singular at the step's end
  *  @retval DVI_UNSUPPORTED     dvrk and its kin: a component of the one-form that seemed constant
  *                              at create is not
+ *  @retval DVI_UNSUPPORTED     hits of a contact accumulate, or a contact stays closed, or two
+ *                              contacts close at one time and push against each other
+ *                              (docs/mechanics/contacts.md). The sentence names them and the time
  *  @retval DVI_NO_MEMORY       KLU could not allocate memory
  *  @retval DVI_SOLVER_FAILED   KINSOL refuses the equations */
 dvi_status dvi_integrator_step(dvi_integrator *integrator, double h);

@@ -377,7 +377,7 @@ typedef struct dvi_invariant {
  *  Exactly one kind of dynamics is declared: a constant mass (by `mass`, by `factors`, or by both,
  *  which are added), or `lagrangian`, or `one_form`, or `hamiltonian`. Potentials may stand beside
  *  all kinds but a Hamiltonian. Forces and constraints may stand beside a mass and beside a general
- *  Lagrangian, but beside factors no nonholonomic constraints. */
+ *  Lagrangian, but beside factors no nonholonomic constraints. Contacts: dvi/contact.h. */
 typedef struct dvi_system_terms {
   /** number of coordinates n, at least 1, even with a one-form. 0 with factors, which determine
    *  n */
@@ -407,6 +407,8 @@ typedef struct dvi_system_terms {
   const dvi_vector_potential *vector_potential;
   const dvi_nonholonomic *nonholonomics; /**< nonholonomic constraints (default none) */
   int nonholonomic_count;
+  const struct dvi_contact *contacts; /**< contacts phi(t,q) >= 0 (dvi/contact.h; default none) */
+  int contact_count;
 } dvi_system_terms;
 
 /** A system. It never changes after its creation, so integrators on several threads may share
@@ -560,10 +562,8 @@ typedef struct dvi_derivative_check {
   int range_row;
   /** largest difference of given and differenced rate, relative to the rate */
   double rate_error;
-  /** 1 if the system is declared autonomous, but a callback's results change with t */
-  int depends_on_time;
-  /** 1 if a potential is declared quadratic, but its Hessian changes with q or t */
-  int not_quadratic;
+  int depends_on_time; /**< 1 if declared autonomous, but a callback's results change with t */
+  int not_quadratic;   /**< 1 if a Hessian of a potential declared quadratic changes with q or t */
   /** largest difference of a Taylor coefficient and the one-point callbacks, or differences of the
    *  coefficient below it, relative */
   double taylor_error;

@@ -70,6 +70,10 @@ static dvi_status path_check(const dvi_system *system, const dvi_path_options *o
         "path: the system declares %sholonomic constraints, and paths are found in all "
         "of R^n",
         system->place_rows > 0 ? "" : "non");
+  if (system->contact_count > 0)
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "path: the system declares contacts, at which paths bend, and "
+                     "the action of a path is smooth here");
   if (o->steps < 1)
     return dvi__fail(DVI_BAD_SIZE, "path: %d steps; at least 1 is needed", o->steps);
   if (!isfinite(o->start))

@@ -4,6 +4,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "integrator/attempt.h"
+#include "integrator/hits.h"
 #include "space/user_basis.h"
 #include "system/evaluate/dynamics.h"
 
@@ -25,6 +26,7 @@ static dvi_status allocate_integrator(dvi_integrator *I)
   I->last_v = at + n;
   I->at_start = at + 2 * n;
   DVI_TRY(dvi__attempt_allocate(I));
+  DVI_TRY(dvi__hits_create(I));
   return dvi__evaluator_create(I->system, 1, DVI__STATES, &I->counters, &I->evaluator);
 }
 
@@ -51,6 +53,9 @@ static dvi_status make_stepper(dvi_integrator *I, const dvi_integrator_options *
 static dvi_status check_monitored_method(const dvi_integrator *I)
 {
   const char *symmetric = I->system->dynamics->symmetric;
+  if (I->system->contact_count > 0)
+    return dvi__fail(DVI_UNSUPPORTED, "the system declares contacts, whose hits divide a step of "
+                                      "time; take steps of equal length");
   if (I->stepper.method->chooses_steps)
     return dvi__fail(DVI_UNSUPPORTED, "%s chooses the lengths of its steps itself",
                      I->stepper.method->name);
@@ -175,6 +180,7 @@ void dvi_integrator_destroy(dvi_integrator **integrator)
   dvi__release(I->numbers);
   dvi__release(I->memory_before);
   dvi__attempt_clear(I);
+  dvi__hits_destroy(I);
   dvi__release(I->shapes);
   dvi__release(I);
   *integrator = NULL;

@@ -84,6 +84,10 @@ static dvi_status add_integrator(dvi_ensemble *e, const dvi_system *system, cons
       .size = sizeof options, .method = method, .shapes = shapes};
   DVI_TRY(dvi_integrator_create_with(system, &options, place));
   e->integrator_count++;
+  if (system->contact_count > 0)
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "ensemble: the system declares contacts, whose hits no two members have at "
+                     "one time; use single integrators");
   if (dvi_integrator_chooses_steps(*place))
     return dvi__fail(DVI_UNSUPPORTED,
                      "ensemble: %s chooses its steps, so that members would part in time; use "

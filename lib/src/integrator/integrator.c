@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "integrator/attempt.h"
+#include "integrator/hits.h"
 #include "num/finite.h"
 #include "space/user_basis.h"
 #include "system/dynamics/holonomic.h"
@@ -61,6 +62,7 @@ static dvi_status start_from_state(dvi_integrator *I, double t, const double *q,
     I->at_start[i] = I->next.supplied[i];
     I->now.supplied[i] = I->now.supplied_compensation[i] = 0;
   }
+  DVI_TRY(dvi__hits_start(I, t, q, v));
   memmove(I->now.q, q, bytes);
   memmove(I->now.p, p, v_bytes);
   memset(I->now.q_compensation, 0, bytes);
@@ -70,11 +72,16 @@ static dvi_status start_from_state(dvi_integrator *I, double t, const double *q,
   I->now.t_compensation = 0;
   I->now.density = density;
   I->now.side = 0;
-  I->last_h = 0;
   I->started = 1;
-  memset(I->stepper.memory, 0, I->stepper.memory_count * sizeof(double));
-  dvi__stepper_start(&I->stepper, w);
+  dvi__integrator_begin(I, w);
   return DVI_OK;
+}
+
+void dvi__integrator_begin(dvi_integrator *I, const double *v)
+{
+  I->last_h = 0;
+  memset(I->stepper.memory, 0, I->stepper.memory_count * sizeof(double));
+  dvi__stepper_start(&I->stepper, v);
 }
 
 static dvi_status start_verdict(const dvi_integrator *I, double t, dvi_status status)
@@ -226,8 +233,16 @@ static void exchange_memory(dvi_integrator *I)
   I->memory_before = memory;
 }
 
-/* `next` still holds the former `last`. */
 void dvi__integrator_take_back(dvi_integrator *I)
+{
+  if (dvi_integrator_hit_count(I) > 0)
+    dvi__hits_take_back(I);
+  else
+    dvi__integrator_smooth_back(I);
+}
+
+/* `next` still holds the former `last`. */
+void dvi__integrator_smooth_back(dvi_integrator *I)
 {
   const dvi__state oldest = I->next;
   I->next = I->now;
@@ -294,6 +309,11 @@ dvi_status dvi_integrator_step(dvi_integrator *I, double h)
     return dvi__fail(DVI_BAD_STATE,
                      "step: the integrator has no state yet; call dvi_integrator_start first");
   DVI_TRY(dvi__check_step(I->monitored != NULL ? 0 : I->now.t, h));
+  return dvi__hits_divide(I) ? dvi__hits_step(I, h) : dvi__integrator_smooth_step(I, h);
+}
+
+dvi_status dvi__integrator_smooth_step(dvi_integrator *I, double h)
+{
   exchange_memory(I);
   const long before = dvi__allocation_count();
   const dvi_status status = advance_state(I, h);
@@ -355,6 +375,7 @@ double dvi_integrator_traffic(const dvi_integrator *integrator)
 
 double dvi_integrator_last_step(const dvi_integrator *integrator)
 {
+  if (dvi_integrator_hit_count(integrator) > 0) return dvi__hits_length(integrator);
   return integrator != NULL ? integrator->last_h : 0;
 }
 
@@ -398,6 +419,11 @@ static dvi_status state_velocity(dvi_integrator *I, const dvi__state *state, dou
   if (I->system->dynamics->searches_velocity)
     dvi__guess_velocity(I->system->n, I->now.q, I->last.q, I->last.p, I->last_h, v);
   return dvi__legendre_inverse(I->evaluator, state->t, state->q, state->p, v);
+}
+
+dvi_status dvi__integrator_velocity(dvi_integrator *I, double *v)
+{
+  return state_velocity(I, &I->now, v);
 }
 
 dvi_status dvi_integrator_invariants(dvi_integrator *I, double *value)
@@ -502,46 +528,62 @@ size_t dvi_integrator_explain(const dvi_integrator *integrator, char *text, size
 
 /* ---- dense output ---- */
 
+void dvi__cubic_point(int n, const dvi__cubic *c, double tau, double *q, double *v)
+{
+  const double h = c->h, a = (1 + 2 * tau) * (1 - tau) * (1 - tau), b = tau * (1 - tau) * (1 - tau);
+  const double e = tau * tau * (3 - 2 * tau), d = tau * tau * (tau - 1);
+  const double a1 = h != 0 ? 6 * tau * (tau - 1) / h : 0, b1 = (1 - tau) * (1 - 3 * tau),
+               d1 = tau * (3 * tau - 2);
+  for (int i = 0; i < n; i++) {
+    const double q0 = c->q0[i], q1 = c->q1[i], v0 = c->v0[i], v1 = c->v1[i];
+    if (q != NULL) q[i] = a * q0 + h * b * v0 + e * q1 + h * d * v1;
+    if (v != NULL) v[i] = a1 * (q0 - q1) + b1 * v0 + d1 * v1;
+  }
+}
+
 /* Evaluate Hermite's cubic through both ends of the last step. */
 static dvi_status hermite_cubic(dvi_integrator *I, double tau, double *q, double *v)
 {
-  const double h = I->last_h, a = (1 + 2 * tau) * (1 - tau) * (1 - tau),
-               b = tau * (1 - tau) * (1 - tau);
-  const double c = tau * tau * (3 - 2 * tau), d = tau * tau * (tau - 1);
-  const double a1 = 6 * tau * (tau - 1), b1 = (1 - tau) * (1 - 3 * tau), d1 = tau * (3 * tau - 2);
   DVI_TRY(state_velocity(I, &I->last, I->last_v));
   DVI_TRY(state_velocity(I, &I->now, I->v));
-  for (int i = 0; i < I->system->n; i++) {
-    const double q0 = I->last.q[i], q1 = I->now.q[i], v0 = I->last_v[i], v1 = I->v[i];
-    if (q != NULL) q[i] = a * q0 + h * b * v0 + c * q1 + h * d * v1;
-    if (v != NULL) v[i] = a1 * (q0 - q1) / h + b1 * v0 + d1 * v1;
-  }
+  const dvi__cubic cubic = {I->last_h, I->last.q, I->last_v, I->now.q, I->v};
+  dvi__cubic_point(I->system->n, &cubic, tau, q, v);
   return DVI_OK;
+}
+
+dvi_status dvi__integrator_path(dvi_integrator *I, double tau, double *q, double *v)
+{
+  if (I->stepper.method->path == NULL) return hermite_cubic(I, tau, q, v);
+  I->stepper.method->path(&I->stepper, I->last.q, I->last_h, tau, q, v);
+  const size_t n = (size_t)I->system->n, nv = (size_t)I->system->nv;
+  if ((q == NULL || dvi__first_not_finite(n, q) < 0) &&
+      (v == NULL || dvi__first_not_finite(nv, v) < 0))
+    return DVI_OK;
+  return dvi__fail(DVI_NOT_FINITE, "interpolate: the path is not finite at %.17g of the step", tau);
 }
 
 dvi_status dvi_integrator_interpolate(dvi_integrator *I, double t, double *q, double *v)
 {
   if (I == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "interpolate: the integrator is NULL");
-  if (I->last_h == 0) return dvi__fail(DVI_BAD_STATE, "interpolate: no step was taken yet");
+  if (dvi_integrator_last_step(I) == 0)
+    return dvi__fail(DVI_BAD_STATE, "interpolate: no step was taken yet");
+  const double first = dvi_integrator_hit_count(I) > 0 ? dvi__hits_first_time(I) : I->last.t;
   /* Use the rounded ends, because late in a run t0 + h is rounded by a large part of h. */
-  const double tau = (t - I->last.t) / (I->now.t - I->last.t), rounding = 1e-12;
-  if (!(tau >= -rounding && tau <= 1 + rounding))
+  const double whole = (t - first) / (I->now.t - first), rounding = 1e-12;
+  if (!(whole >= -rounding && whole <= 1 + rounding))
     return dvi__fail(DVI_BAD_ARGUMENT,
-                     "interpolate: t = %.17g is outside of the last step, %.17g to %.17g", t,
-                     I->last.t, I->now.t);
+                     "interpolate: t = %.17g is outside of the last step, %.17g to %.17g", t, first,
+                     I->now.t);
+  if (dvi__hits_before(I, t)) return dvi__hits_path(I, t, q, v);
+  const double tau = (t - I->last.t) / (I->now.t - I->last.t);
   if (I->stepper.method->path == NULL && I->system->dynamics->on_manifold)
     return dvi__fail(
         DVI_UNSUPPORTED,
         "interpolate: %s has no path between its steps, and a cubic would leave the rotations; "
         "lie-verlet and lie-galerkin have one",
         I->stepper.method->name);
-  if (I->stepper.method->path == NULL) return hermite_cubic(I, tau, q, v);
-  if (I->monitored != NULL && I->monitored->pacing == DVI_TIME_TRANSFORM)
+  if (I->stepper.method->path != NULL && I->monitored != NULL &&
+      I->monitored->pacing == DVI_TIME_TRANSFORM)
     return dvi__monitored_time_path(I, tau, q, v);
-  I->stepper.method->path(&I->stepper, I->last.q, I->last_h, tau, q, v);
-  const size_t n = (size_t)I->system->n, nv = (size_t)I->system->nv;
-  if ((q == NULL || dvi__first_not_finite(n, q) < 0) &&
-      (v == NULL || dvi__first_not_finite(nv, v) < 0))
-    return DVI_OK;
-  return dvi__fail(DVI_NOT_FINITE, "interpolate: the path is not finite at t = %.17g", t);
+  return dvi__integrator_path(I, tau, q, v);
 }

@@ -23,6 +23,7 @@ struct dvi_integrator {
   double *v, *last_v;         /* [n] */
   size_t learned;             /* offset of the numbers of dvi__attempt in the stepper's memory */
   struct dvi__attempt *first; /* first attempt of a step that is taken again, or NULL (attempt.h) */
+  struct dvi__hits *hits;     /* for contacts that are met at their times, or NULL (hits.h) */
   int started;
   int admitted;         /* the constraints have been found to be of their kind */
   double last_h;        /* length of the last step in time. 0 before the first step */
@@ -44,6 +45,28 @@ void dvi__guess_velocity(int n, const double *q, const double *last_q, const dou
 
 /* Check a step. DVI_BAD_ARGUMENT unless h moves the time from t. */
 dvi_status dvi__check_step(double t, double h);
+
+/* Take one step of the method, without a look at contacts, and take it back. */
+dvi_status dvi__integrator_smooth_step(dvi_integrator *integrator, double h);
+void dvi__integrator_smooth_back(dvi_integrator *integrator);
+
+/* Evaluate q [nq] and v [nv] at tau in [0,1] of the last smooth step. Either may be NULL. */
+dvi_status dvi__integrator_path(dvi_integrator *integrator, double tau, double *q, double *v);
+
+/* Hermite's cubic through q0 and q1 with the velocities v0 and v1, over a time h that may be 0. */
+typedef struct dvi__cubic {
+  double h;
+  const double *q0, *v0, *q1, *v1; /* [n] */
+} dvi__cubic;
+
+/* Evaluate q and v [n] at tau in [0,1]. Either may be NULL. */
+void dvi__cubic_point(int n, const dvi__cubic *cubic, double tau, double *q, double *v);
+
+/* Evaluate the velocity [nv] of the present state. */
+dvi_status dvi__integrator_velocity(dvi_integrator *integrator, double *v);
+
+/* Begin anew at the present state, with its velocity v [nv], as at a start. */
+void dvi__integrator_begin(dvi_integrator *integrator, const double *v);
 
 /* Take a step of exactly h, the rest of a run, also by methods that choose their steps. */
 dvi_status dvi__integrator_step_exactly(dvi_integrator *integrator, double h);

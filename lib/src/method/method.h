@@ -148,6 +148,9 @@ struct dvi__method {
   unsigned refuses; /* kinds of factors that the method refuses */
   /* `step` may take another length than h, of the same sign, and sets `taken` */
   int chooses_steps;
+  /* `step` treats the contacts itself. The driver divides the steps of all other methods at the
+   * hits (integrator/hits.h) */
+  int takes_contacts;
   /* Set order, symmetric, memory_count and own. On failure the caller calls destroy. */
   dvi_status (*create)(dvi__stepper *self);
   void (*destroy)(dvi__stepper *self);

@@ -25,6 +25,8 @@ static const char *term_name(unsigned term)
   case DVI__HOLONOMIC: return "holonomic constraints phi(t,q) = 0";
   case DVI__VECTOR_POTENTIAL: return "a vector potential A(t,q).v";
   case DVI__NONHOLONOMIC: return "nonholonomic constraints A v + a = 0";
+  case DVI__CONTACT: return "contacts phi(t,q) >= 0";
+  case DVI__RUBBING: return "contacts with friction";
   case DVI__FAST: return "a fast potential (one that is declared `fast`)";
   default: return "potentials";
   }

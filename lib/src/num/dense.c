@@ -4,10 +4,13 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "num/dense.h"
 #include "num/factor.h"
 
 /* LAPACK's Fortran interface. Character arguments carry a hidden length that gfortran passes
  * last. */
+extern void dgesv_(const int *n, const int *sides, double *a, const int *lda, int *pivot, double *b,
+                   const int *ldb, int *info);
 extern void dgetrf_(const int *m, const int *n, double *a, const int *lda, int *ipiv, int *info);
 extern void dgetrs_(const char *trans, const int *n, const int *nrhs, const double *a,
                     const int *lda, const int *ipiv, double *b, const int *ldb, int *info,
@@ -112,3 +115,11 @@ const dvi__factor_kind dvi__dense_factor = {.name = "dense LU (LAPACK)",
                                             .solve = dense_solve,
                                             .sign = dense_sign,
                                             .cost = dense_cost};
+
+int dvi__dense_solve(int n, double *A, int *pivot, double *b)
+{
+  const int one = 1;
+  int info;
+  dgesv_(&n, &one, A, &n, pivot, b, &n, &info);
+  return info == 0;
+}

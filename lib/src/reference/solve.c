@@ -122,6 +122,9 @@ dvi_status dvi__reference_complete(const dvi_system *system, const dvi_reference
   *options = given != NULL ? *given : (dvi_reference_options){.code = DVI_IDA};
   if (dvi_reference_name(options->code) == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "reference: there is no code number %d", (int)options->code);
+  if (system->contact_count > 0)
+    return dvi__fail(DVI_UNSUPPORTED, "reference: the system declares contacts, and the codes "
+                                      "integrate smooth motions alone");
   if (!(options->relative_tolerance >= 0) || !(options->relative_tolerance < 1))
     return dvi__fail(DVI_BAD_ARGUMENT, "reference: relative_tolerance is %g, must be in [0,1)",
                      options->relative_tolerance);

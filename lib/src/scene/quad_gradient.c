@@ -55,7 +55,7 @@ dvi_status dvi_scene_quad_gradient(const dvi_scene *scene, dvi_pair t, const dvi
   if (scene == NULL || q == NULL || v == NULL || L_q == NULL || L_v == NULL)
     return DVI_BAD_ARGUMENT;
   if (dvi__has_factors(scene) || scene->terms.holonomic_count > 0 ||
-      scene->terms.nonholonomic_count > 0 ||
+      scene->terms.nonholonomic_count > 0 || scene->terms.contact_count > 0 ||
       (scene->terms.lagrangian == NULL && scene->kinetic == NULL))
     return DVI_UNSUPPORTED;
   const size_t n = (size_t)scene->n;

@@ -37,6 +37,7 @@ static void find_time(dvi_scene *scene)
   scene->lagrangian.rate_batch = NULL;
   scene->vector_potential.rate = NULL;
   for (int k = 0; k < scene->terms.holonomic_count; k++) scene->holonomics[k].rate = NULL;
+  for (int k = 0; k < scene->terms.contact_count; k++) scene->contacts[k].rate = NULL;
   for (int k = 0; k < scene->terms.potential_count; k++)
     ((dvi_potential *)scene->terms.potentials)[k].rate_batch = NULL;
 }

@@ -97,6 +97,20 @@ static uint64_t hash_nonholonomics(const dvi_system *s)
   return hash;
 }
 
+static uint64_t hash_contacts(const dvi_system *s)
+{
+  uint64_t hash = DVI__HASH_START;
+  for (int k = 0; k < s->contact_count; k++) {
+    const dvi__contact_term *term = &s->contacts[k];
+    const double law[] = {term->callbacks.restitution, term->callbacks.friction};
+    const int kind[] = {term->callbacks.rate != NULL, term->callbacks.tangent_count};
+    hash = dvi__hash(hash_text(hash, term->gap.name), sizeof law, law);
+    hash = hash_pattern(dvi__hash(hash, sizeof kind, kind), &term->gap.gradients);
+    hash = hash_pattern(hash, &term->tangents);
+  }
+  return hash;
+}
+
 static uint64_t hash_invariants(const dvi_system *s)
 {
   uint64_t hash = DVI__HASH_START;
@@ -110,7 +124,7 @@ void dvi__system_declared(const dvi_system *system, dvi__declared *declared)
   *declared = (dvi__declared){{hash_terms(system), hash_masses(system), hash_patterns(system),
                                hash_potentials(system), hash_invariants(system),
                                hash_forces(system), hash_holonomics(system),
-                               hash_nonholonomics(system)}};
+                               hash_nonholonomics(system), hash_contacts(system)}};
 }
 
 const char *dvi__declared_difference(const dvi__declared *one, const dvi__declared *other)
@@ -122,7 +136,8 @@ const char *dvi__declared_difference(const dvi__declared *one, const dvi__declar
                                                         "names of invariants",
                                                         "forces",
                                                         "holonomic constraints",
-                                                        "nonholonomic constraints"};
+                                                        "nonholonomic constraints",
+                                                        "contacts"};
   for (int part = 0; part < DVI__DECLARED_PARTS; part++)
     if (one->hash[part] != other->hash[part]) return name[part];
   return NULL;

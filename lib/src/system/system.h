@@ -1,7 +1,7 @@
 /* The inside of a system, with its terms, copied, and the unions of their patterns. */
 #ifndef DVI_SYSTEM_SYSTEM_H
 #define DVI_SYSTEM_SYSTEM_H
-#include <dvi/system.h>
+#include <dvi/contact.h>
 #include <limits.h>
 #include <stdint.h>
 
@@ -27,11 +27,13 @@ typedef enum dvi__term {
   DVI__HOLONOMIC = 4096, /* constraints phi(t,q) = 0 */
   DVI__VECTOR_POTENTIAL = 8192,
   DVI__NONHOLONOMIC = 16384, /* constraints A(t,q) v + a(t,q) = 0 */
+  DVI__CONTACT = 32768,      /* gaps phi(t,q) >= 0 */
+  DVI__RUBBING = 65536,      /* contacts with friction */
   DVI__PHASE_SPACE = DVI__CONSTRAINED_HAMILTONIAN | DVI__HAMILTONIAN,
   DVI__DYNAMICS = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__ONE_FORM | DVI__FACTORS |
                   DVI__PHASE_SPACE, /* one of these is declared */
   DVI__KINDS = DVI__ROTATIONS | DVI__DIRECTIONS | DVI__FAST,
-  DVI__LAST_TERM = DVI__NONHOLONOMIC
+  DVI__LAST_TERM = DVI__RUBBING
 } dvi__term;
 
 /* Groups of columns that are moved together when a missing Hessian block is differenced. */
@@ -84,6 +86,13 @@ typedef struct dvi__nonholonomic_term {
   dvi__pattern by_q;       /* of d(A v + a)/dq, a row for each row of A, n columns */
   dvi__groups groups;
 } dvi__nonholonomic_term;
+
+/* A contact. Its gap is a function as that of a holonomic constraint of one row. */
+typedef struct dvi__contact_term {
+  dvi_contact callbacks;
+  dvi__holonomic_term gap; /* its callbacks, name and gradients alone */
+  dvi__pattern tangents;   /* n rows, tangent_count columns */
+} dvi__contact_term;
 
 /* The gradient of a function beside a one-form alpha, and the places of the entries of both in the
  * sum. */
@@ -142,8 +151,8 @@ typedef struct dvi__constraint_term {
 enum { DVI__DIMENSION_MOST = INT_MAX / 4 };
 
 /* Hashes of all that is declared, without the results of callbacks. The parts are terms, masses,
- * patterns, potentials, invariants, forces, holonomic and nonholonomic constraints. */
-enum { DVI__DECLARED_PARTS = 8 };
+ * patterns, potentials, invariants, forces, holonomic and nonholonomic constraints, contacts. */
+enum { DVI__DECLARED_PARTS = 9 };
 typedef struct dvi__declared {
   uint64_t hash[DVI__DECLARED_PARTS];
 } dvi__declared;
@@ -180,6 +189,8 @@ struct dvi_system {
    * of phi.w. */
   int row_count, place_rows;
   dvi__pattern rows_q, rows_qq;
+  dvi__contact_term *contacts;
+  int contact_count;
   dvi_symmetry *symmetries;
   int symmetry_count;
   dvi_invariant *invariants;

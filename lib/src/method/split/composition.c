@@ -199,7 +199,7 @@ const dvi__method dvi__composition = {
     .takes_rest = 1,
     .takes_shapes = 1,
     .uses = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL | DVI__FACTORS | DVI__FORCES |
-            DVI__HOLONOMIC | DVI__NONHOLONOMIC | DVI__VECTOR_POTENTIAL,
+            DVI__HOLONOMIC | DVI__NONHOLONOMIC | DVI__VECTOR_POTENTIAL | DVI__CONTACT,
     .create = composition_create,
     .destroy = composition_destroy,
     .start = composition_start,

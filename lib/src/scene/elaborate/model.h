@@ -2,6 +2,7 @@
 #ifndef DVI_SCENE_ELABORATE_MODEL_H
 #define DVI_SCENE_ELABORATE_MODEL_H
 #include <dvi/joint.h>
+#include <dvi/contact.h>
 #include <dvi/scene.h>
 #include <pthread.h>
 
@@ -29,6 +30,7 @@ typedef struct dvi__scene_term {
   const double *none; /* as many zeros as the longest block has */
   dvi_pattern qw, vw; /* patterns of d phi/dq and d phi/dp, of which the gradients are made */
   dvi_pattern tw;     /* of d phi/dt, for holonomic constraints */
+  struct dvi__scene_term *beside; /* the tangent beside a contact's gap, or NULL */
   dvi__role role;
   struct dvi__scene_term *next;
 } dvi__scene_term;
@@ -80,6 +82,7 @@ struct dvi_scene {
   dvi_joint *joint;   /* [joint_count] as declared */
   dvi_factor *body;   /* [body_count] members of all coordinates, for the joints */
   int joint_count, body_count;
+  dvi_contact *contacts; /* [terms.contact_count] */
   dvi__scene_term *functions;
   /* the term from which a constant mass was read, with A(t,q).q' of a vector potential, or NULL */
   const dvi__scene_term *kinetic;

@@ -177,6 +177,7 @@ static bool is_reserved(const dvi_scene *scene, const char *text)
 {
   return strcmp(text, "t") == 0 || strcmp(text, "energy") == 0 ||
          (strcmp(text, "distance") == 0 && dvi__has_factors(scene)) ||
+         (strcmp(text, "gap") == 0 && dvi__tree_find(scene->tree, "contacts") != NULL) ||
          (strcmp(text, "constraint") == 0 && (dvi__tree_find(scene->tree, "constraints") != NULL ||
                                               dvi__tree_find(scene->tree, "joints") != NULL ||
                                               dvi__tree_find(scene->tree, "nonholonomic") != NULL ||

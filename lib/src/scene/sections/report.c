@@ -10,8 +10,8 @@ enum { COLUMNS_MAX = 1000 };
  * they are. Only some methods have the last of them. */
 static int list_columns(const dvi_scene *scene, const char **known)
 {
-  static const char *const others[] = {"t", "energy", "energy_balance", "constraint", "distance",
-                                       "h", "jump"};
+  static const char *const others[] = {
+      "t", "energy", "energy_balance", "constraint", "distance", "gap", "h", "jump"};
   enum { OTHERS = sizeof others / sizeof *others };
   const char *(*const label[])(const dvi_scene *, int) = {dvi_scene_coordinate, dvi_scene_velocity,
                                                           dvi_scene_momentum};

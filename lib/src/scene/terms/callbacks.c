@@ -534,6 +534,35 @@ bool dvi__make_vector_potential(dvi_scene *scene, dvi__scene_term *term, dvi_vec
          explicit_pattern(scene, term, DVI__PAIR_TW, 1, &term->tw);
 }
 
+/* ---- contacts ---- */
+
+static int term_tangent(double t, const double *q, double *T, void *user)
+{
+  dvi__scene_term *const term = ((dvi__scene_term *)user)->beside;
+  const double *x[DVI__BLOCKS] = {&t, q, term->none, term->none};
+  double *values[DVI__PAIRS] = {[DVI__PAIR_VW] = T};
+  return second_at(term, 1, x, values);
+}
+
+bool dvi__make_contact(dvi_scene *scene, dvi__scene_term *gap, dvi__scene_term *tangent,
+                       dvi_contact *contact)
+{
+  dvi_holonomic phi;
+  int full;
+  if (!dvi__make_holonomic(scene, contact->name, gap, &phi)) return false;
+  contact->gap = phi.value;
+  contact->gradient = phi.gradient;
+  contact->rate = phi.rate;
+  contact->gradients = phi.gradients;
+  contact->user = gap;
+  gap->beside = tangent;
+  if (tangent == NULL) return true;
+  contact->tangent = term_tangent;
+  contact->tangent_count = tangent->count;
+  return prepare_large(scene, tangent, of_multipliers) &&
+         dvi__term_pattern(scene, tangent, DVI__PAIR_VW, &contact->tangents, &full);
+}
+
 /* Join the gradients' patterns. Each column has the rows of q, then those of p. */
 static bool join_patterns(dvi_scene *scene, const dvi__scene_term *term, dvi_pattern *joined)
 {

@@ -45,6 +45,11 @@ bool dvi__make_nonholonomic(dvi_scene *scene, const char *name, dvi__scene_term 
 bool dvi__make_holonomic(dvi_scene *scene, const char *name, dvi__scene_term *term,
                          dvi_holonomic *holonomic);
 
+/* Fill in the callbacks of a contact with the gap as such a function phi(t,q).w of one row, and the
+ * slip T(t,q,v).w, which is linear in v. The latter may be NULL. */
+bool dvi__make_contact(dvi_scene *scene, dvi__scene_term *gap, dvi__scene_term *tangent,
+                       dvi_contact *contact);
+
 /* Fill in a force with the function F(t,q,v).w, or with minus the function R, of which the force is
  * the derivative by v. */
 bool dvi__make_force(dvi_scene *scene, dvi__scene_term *term, dvi_force *force);

@@ -370,12 +370,12 @@ static dvi_status padded_rows(const void *function, int count, const double *q, 
 }
 
 /* Compare the derivatives of all rows in q_i with row i of the gradients. */
-static dvi_status check_row_gradients(dvi__check *c, const dvi__holonomic_at *at)
+static dvi_status check_row_gradients(dvi__check *c, const dvi__holonomic_at *at, const char *kind)
 {
   const dvi__holonomic_term *term = at->term;
   const dvi__differences *d = &c->differences;
   block b = {.term = term->name,
-             .kind = "constraint",
+             .kind = kind,
              .name = "d phi_j/dq_i at (i,j) =",
              .pattern = &term->gradients,
              .given = c->hessian[1]};
@@ -422,7 +422,7 @@ static dvi_status check_holonomic(dvi__check *c, const dvi__holonomic_term *term
                                 .sum = room + 2 * n,
                                 .phi_q = room + 3 * n};
   c->gradient_noise = 0;
-  dvi_status status = check_row_gradients(c, &at);
+  dvi_status status = check_row_gradients(c, &at, "constraint");
   if (status == DVI_OK) status = check_row_hessians(c, &at, room);
   dvi__release(room);
   return status;
@@ -457,6 +457,10 @@ static dvi_status check_all_terms(dvi__check *c, const dvi_system *system)
     DVI_TRY(check_holonomic(c, &system->holonomics[k]));
   for (int k = 0; k < system->nonholonomic_count; k++)
     DVI_TRY(check_nonholonomic(c, &system->nonholonomics[k]));
+  for (int k = 0; k < system->contact_count; k++) {
+    const dvi__holonomic_at at = {.term = &system->contacts[k].gap, .t = c->t};
+    DVI_TRY(check_row_gradients(c, &at, "contact"));
+  }
   return DVI_OK;
 }
 

@@ -1,4 +1,4 @@
-/* Checks of what holonomic and nonholonomic constraints declare about time. */
+/* Checks of what holonomic and nonholonomic constraints, and contacts, declare about time. */
 #ifndef DVI_SYSTEM_CHECK_CHECK_ROWS_H
 #define DVI_SYSTEM_CHECK_CHECK_ROWS_H
 #include "system/term/holonomic.h"

@@ -11,6 +11,7 @@
 #include "system/gauge.h"
 #include "system/mass.h"
 #include "system/term/constraint.h"
+#include "system/term/contact.h"
 #include "system/term/declare.h"
 #include "system/term/force.h"
 #include "system/term/holonomic.h"
@@ -134,10 +135,30 @@ static dvi_status check_hamiltonian(const dvi_system_terms *terms)
   return DVI_OK;
 }
 
+static dvi_status check_contacts(const dvi_system_terms *terms)
+{
+  const char *beside = terms->factors != NULL       ? "factors"
+                       : terms->one_form != NULL    ? "a one-form"
+                       : terms->hamiltonian != NULL ? "a Hamiltonian"
+                                                    : NULL;
+  DVI_TRY(check_list("contacts", terms->contact_count, terms->contacts));
+  if (terms->contact_count > 0 && (terms->holonomic_count > 0 || terms->nonholonomic_count > 0))
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "system: contacts beside %sholonomic constraints; write the constraints as "
+                     "springs, or choose coordinates without them",
+                     terms->holonomic_count > 0 ? "" : "non");
+  if (terms->contact_count == 0 || beside == NULL) return DVI_OK;
+  return dvi__fail(
+      DVI_UNSUPPORTED,
+      "system: contacts go with a mass of coordinates, or with a general Lagrangian, not with %s",
+      beside);
+}
+
 static dvi_status check_forces_and_joints(const dvi_system_terms *terms)
 {
   DVI_TRY(check_list("forces", terms->force_count, terms->forces));
   DVI_TRY(check_list("holonomic constraints", terms->holonomic_count, terms->holonomics));
+  DVI_TRY(check_contacts(terms));
   DVI_TRY(check_list("nonholonomic constraints", terms->nonholonomic_count, terms->nonholonomics));
   const int none = terms->force_count == 0 && terms->holonomic_count == 0 &&
                    terms->nonholonomic_count == 0,
@@ -248,6 +269,7 @@ static dvi_status system_fill(dvi_system *s, const dvi_system_terms *terms)
   DVI_TRY(dvi__holonomics_copy(s, terms));
   DVI_TRY(dvi__nonholonomics_copy(s, terms));
   DVI_TRY(dvi__rows_join(s));
+  DVI_TRY(dvi__contacts_copy(s, terms));
   DVI_TRY(copy_invariants(s, terms));
   dvi__system_declared(s, &s->declared);
   return DVI_OK;
@@ -296,6 +318,7 @@ void dvi_system_destroy(dvi_system **system)
   dvi__vector_clear(&s->vector);
   for (int k = 0; k < s->holonomic_count; k++) dvi__holonomic_clear(&s->holonomics[k]);
   for (int k = 0; k < s->nonholonomic_count; k++) dvi__nonholonomic_clear(&s->nonholonomics[k]);
+  for (int k = 0; k < s->contact_count; k++) dvi__contact_clear(&s->contacts[k]);
   for (int i = 0; s->invariant_names != NULL && i < dvi_system_invariant_count(s); i++)
     dvi__release(s->invariant_names[i]);
   if (s->lagrangian != NULL) dvi__general_clear(s->lagrangian);
@@ -315,6 +338,7 @@ void dvi_system_destroy(dvi_system **system)
   dvi__release(s->forces);
   dvi__release(s->holonomics);
   dvi__release(s->nonholonomics);
+  dvi__release(s->contacts);
   dvi__release(s->symmetries);
   dvi__release(s->invariants);
   dvi__release(s->invariant_names);
@@ -335,6 +359,16 @@ int dvi_system_nv(const dvi_system *system)
 int dvi_system_autonomous(const dvi_system *system)
 {
   return system != NULL && system->autonomous;
+}
+
+int dvi_system_contact_count(const dvi_system *system)
+{
+  return system != NULL ? system->contact_count : 0;
+}
+
+const char *dvi_system_contact_name(const dvi_system *system, int k)
+{
+  return k >= 0 && k < dvi_system_contact_count(system) ? system->contacts[k].gap.name : NULL;
 }
 
 int dvi_system_invariant_count(const dvi_system *system)

@@ -303,6 +303,9 @@ static dvi_status transformed_fill(dvi__transformed *x, const dvi_system *system
                      "the system declares %sholonomic constraints, which the transform does not "
                      "carry over",
                      system->place_rows > 0 ? "" : "non");
+  if (system->contact_count > 0)
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "the system declares contacts, whose hits the transform does not carry over");
   DVI_TRY(dvi__system_prepare_hessian(system));
   DVI_TRY(transformed_reserve(x, 1));
   return make_transformed_system(x);
