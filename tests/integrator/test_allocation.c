@@ -76,6 +76,7 @@ static const struct {
     {"two-body", NULL, "lie-verlet:solve=cayley"},
     {"satellite", NULL, "lie-verlet"},
     {"spherical-double-pendulum", NULL, "lie-rk:scheme=implicit-midpoint"},
+    {"sleigh", NULL, "nonholonomic"},
 };
 enum { PLACES = sizeof places / sizeof *places };
 

@@ -192,7 +192,7 @@ for pair in 'contacts: {x: 1}|a contact is' 'lagrangian: x'"'"'^2|one of these' 
   'hamiltonian: x|no hamiltonian' 'one_form: {x: y}|one of these' \
   'constraints: {a: x, b: y}|holonomic constraints' 'friction: 1|has no .friction.'; do
   { cat separable.yaml; echo "${pair%%|*}"; } >odd.yaml
-  expect 2 "${pair%%|*}" run odd.yaml --method verlet
+  expect 2 "${pair%%|*}" run odd.yaml --method sem
   says err "${pair#*|}" "why not ${pair%%|*}"
 done
 no_trace 'sections'
