@@ -91,7 +91,7 @@ static int write_tangents(const varied *v, const dvi_run_plan *plan, double *roo
 static int write_table(const gradient_request *request, const varied *v)
 {
   whole_file file = {0};
-  dvi_run_plan plan;
+  dvi_run_plan plan = {0};
   double *room = calloc(2 * (size_t)v->n, sizeof *room);
   int code = plan_run(request, v->scene, &plan);
   if (code == DONE && (room == NULL || !file_open(&file, request->out))) code = FAILED;

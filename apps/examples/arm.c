@@ -25,7 +25,7 @@ static int gradient(double t, const double *q, double *V_q, void *user)
 static int follow(const dvi_system *system, const double *q, const double *p)
 {
   dvi_integrator *arm = NULL;
-  double first = 0, last = 1, off = 1, lambda[ROWS];
+  double first = 0, last = 1, off = 1;
   const dvi_run_options options = {.h = 0.02, .t_end = 100};
   dvi_status status = dvi_integrator_create(system, "lie-galerkin:degree=3", &arm);
   if (status == DVI_OK) status = dvi_integrator_start(arm, 0, q, p);
@@ -33,10 +33,13 @@ static int follow(const dvi_system *system, const double *q, const double *p)
   if (status == DVI_OK) status = dvi_run(arm, &options, NULL);
   if (status == DVI_OK) status = dvi_integrator_invariant(arm, 0, &last);
   if (status == DVI_OK) status = dvi_integrator_constraint(arm, &off);
+  double lambda[ROWS] = {0};
   if (status == DVI_OK) status = dvi_integrator_reactions(arm, lambda);
   if (status == DVI_OK)
-    printf("t = %g: joints hold to 1e-14: %s, energy to 1e-4: %s\n", dvi_integrator_time(arm),
-           off < 1e-14 ? "yes" : "no", fabs(last - first) < 1e-4 ? "yes" : "no");
+    printf("t = %g: joints hold to 1e-14: %s, energy to 1e-4: %s; the shoulder pulls with %.4f N\n",
+           dvi_integrator_time(arm), off < 1e-14 ? "yes" : "no",
+           fabs(last - first) < 1e-4 ? "yes" : "no",
+           sqrt(lambda[0] * lambda[0] + lambda[1] * lambda[1] + lambda[2] * lambda[2]));
   else
     fprintf(stderr, "%s: %s\n", dvi_status_name(status), dvi_last_error());
   dvi_integrator_destroy(&arm);

@@ -250,24 +250,32 @@ static int find_errors(fit *f, normal *a)
   return DONE;
 }
 
-static bool allocate(const fit *f, normal *a)
+static size_t numbers_of(const fit *f)
 {
   const size_t n = (size_t)f->count, m = (size_t)fit_differences(f);
-  a->difference = calloc(m + m * n + 2 * n * n + 3 * n, sizeof(double));
-  if (a->difference == NULL) return complain("out of memory"), false;
+  return m + m * n + 2 * n * n + 3 * n;
+}
+
+static void lay_out(const fit *f, double *room, normal *a)
+{
+  const size_t n = (size_t)f->count, m = (size_t)fit_differences(f);
+  a->difference = room;
   a->jacobian = a->difference + m;
   a->matrix = a->jacobian + m * n;
   a->factor = a->matrix + n * n;
   a->slope = a->factor + n * n;
   a->trial = a->slope + n;
   a->step = a->trial + n;
-  return true;
 }
 
 int fit_solve(fit *f)
 {
-  normal current = {0}, next = {0};
-  int code = allocate(f, &current) && allocate(f, &next) ? DONE : FAILED;
+  normal current, next;
+  double *room = calloc(2 * numbers_of(f), sizeof *room);
+  int code = DONE;
+  if (room == NULL) return complain("out of memory"), FAILED;
+  lay_out(f, room, &current);
+  lay_out(f, room + numbers_of(f), &next);
   for (int i = 0; i < f->count && code == DONE; i++) current.trial[i] = f->quantity[i].value;
   if (code == DONE) code = evaluate(f, current.trial, &current, &f->squares);
   if (code == DONE && !isfinite(f->squares)) {
@@ -276,7 +284,6 @@ int fit_solve(fit *f)
   }
   if (code == DONE) code = descend(f, &current, &next);
   if (code == DONE) code = find_errors(f, &current);
-  free(current.difference);
-  free(next.difference);
+  free(room);
   return code;
 }

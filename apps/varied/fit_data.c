@@ -116,7 +116,8 @@ static int grow(fit_data *read)
   const int capacity = read->capacity > 0 ? 2 * read->capacity : 64;
   double *t = realloc(read->t, (size_t)capacity * sizeof *t);
   if (t != NULL) read->t = t;
-  double *value = realloc(read->value, (size_t)capacity * (size_t)read->columns * sizeof *value);
+  const size_t columns = read->columns > 0 ? (size_t)read->columns : 1;
+  double *value = realloc(read->value, (size_t)capacity * columns * sizeof *value);
   if (value != NULL) read->value = value;
   if (t == NULL || value == NULL) return complain("out of memory"), FAILED;
   read->capacity = capacity;

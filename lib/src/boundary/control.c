@@ -71,7 +71,7 @@ static dvi_status check_arguments(const dvi_system *system, const char *method,
 static dvi_status check_method(const dvi_system *system, const char *method)
 {
   dvi__action_space space;
-  char spelled[DVI__PATH_METHOD_SIZE];
+  char spelled[DVI__PATH_METHOD_SIZE] = "";
   return dvi__element_space(system, method, "control", &space,
                             &(dvi__text){spelled, sizeof spelled, 0});
 }

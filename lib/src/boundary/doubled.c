@@ -95,7 +95,7 @@ static dvi_status choice_hessian(const choice *c, double *u, double *H)
 {
   const dvi__doubled *d = c->of;
   const int m = d->controls.count;
-  double value, more[DVI__CONTROLS_MOST], less[DVI__CONTROLS_MOST];
+  double value, more[DVI__CONTROLS_MOST] = {0}, less[DVI__CONTROLS_MOST] = {0};
   for (int b = 0; b < m; b++) {
     const double at = u[b], delta = fmin(1e-4 * fmax(1, fabs(at)), 0.5 * room_of(d, u, b));
     u[b] = at + delta;
@@ -196,7 +196,7 @@ dvi_status dvi__doubled_minimise(dvi__doubled *d, double t, const double *q, con
                                  const double *w, double *u)
 {
   const choice c = {d, t, q, v, w};
-  double value, du[DVI__CONTROLS_MOST], last = HUGE_VAL;
+  double value, du[DVI__CONTROLS_MOST] = {0}, last = HUGE_VAL;
   d->trouble[0] = '\0';
   start_choice(d, u);
   for (int k = 0; k < ITERATIONS; k++) {

@@ -23,9 +23,10 @@ static const double equal = 1e-6, alike = 0.5;
 
 static dvi_status not_found(dvi_path *path, dvi_status status, const dvi__solve_report *solved)
 {
+  static const char fixed[] = "a better guess, more steps or a longer span, or come by "
+                              "continuation; conjugate ends may have no path";
   const char *const advice[] = {
-      [DVI_ENDS_FIXED] = "a better guess, more steps or a longer span, or come by continuation; "
-                         "conjugate ends may have no path",
+      [DVI_ENDS_FIXED] = fixed,
       [DVI_ENDS_MIXED] = "a better guess, more steps, other ends, or come by continuation",
       [DVI_ENDS_INITIAL] = "a guess from steps with dvi_run, or a shorter span",
       [DVI_ENDS_PERIODIC] = "a better guess, more steps, another period, or come by continuation",

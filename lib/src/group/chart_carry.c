@@ -40,7 +40,7 @@ static void solve_small(int size, const double *A, const double *b, double *x)
 /* Compute M^+ f. */
 static void least_solution(int size, const double *M, const double *f, double *mu)
 {
-  double square[9], weight[3];
+  double square[9] = {0}, weight[3] = {0};
   for (int i = 0; i < size; i++)
     for (int j = 0; j < size; j++) square[size * i + j] = dvi__dot(M + 3 * i, M + 3 * j);
   solve_small(size, square, f, weight);
@@ -59,7 +59,7 @@ void dvi__chart_angular_momentum_at(const dvi__chart *chart, const double *xi, c
                                     double *angular)
 {
   const int size = dvi__chart_size(chart->kind);
-  double M[9];
+  double M[9] = {0};
   momentum_matrix(chart, xi, M);
   if (chart->kind == DVI__ROTATION)
     solve_small(size, M, p, angular);
@@ -110,7 +110,7 @@ void dvi__chart_carry_derivatives(const dvi__chart *chart, const double *xi, con
                                   const double *f, double *in_f, double *in_xi, double *in_end)
 {
   const int size = dvi__chart_size(chart->kind);
-  double M[9], mu[3], dM[9], by_f[3][3], by_xi[3][3];
+  double M[9] = {0}, mu[3], dM[9], by_f[3][3] = {{0}}, by_xi[3][3] = {{0}};
   memset(in_xi, 0, (size_t)(size * size) * sizeof *in_xi);
   memset(in_end, 0, (size_t)(size * size) * sizeof *in_end);
   memset(in_f, 0, (size_t)(size * size) * sizeof *in_f);

@@ -559,7 +559,8 @@ dvi_status dvi__integrator_path(dvi_integrator *I, double tau, double *q, double
   if ((q == NULL || dvi__first_not_finite(n, q) < 0) &&
       (v == NULL || dvi__first_not_finite(nv, v) < 0))
     return DVI_OK;
-  return dvi__fail(DVI_NOT_FINITE, "interpolate: the path is not finite at %.17g of the step", tau);
+  return dvi__fail(DVI_NOT_FINITE, "interpolate: the path is not finite at t = %.17g",
+                   I->last.t + tau * I->last_h);
 }
 
 dvi_status dvi_integrator_interpolate(dvi_integrator *I, double t, double *q, double *v)

@@ -59,7 +59,7 @@ dvi_status dvi_scene_quad_gradient(const dvi_scene *scene, dvi_pair t, const dvi
       (scene->terms.lagrangian == NULL && scene->kinetic == NULL))
     return DVI_UNSUPPORTED;
   const size_t n = (size_t)scene->n;
-  const size_t inputs = (size_t)(scene->control_count + scene->parameter_count);
+  const size_t inputs = (size_t)scene->control_count + (size_t)scene->parameter_count;
   quad *room = dvi__heap_take(5 * n + 1 + inputs, sizeof *room);
   if (room == NULL) return DVI_NO_MEMORY;
   quad *const x[DVI__BLOCKS] = {room + 4 * n, room, room + n, room + 4 * n + 1, room + 5 * n + 1};

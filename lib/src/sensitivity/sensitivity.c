@@ -28,7 +28,7 @@ static dvi_status find_space(dvi_sensitivity *own, const char *method, dvi__acti
   dvi__text spelled = {own->method, sizeof own->method, 0};
   if (name != strlen("verlet") || strncmp(method, "verlet", name) != 0)
     return dvi__element_space(own->system, method, "sensitivity", space, &spelled);
-  char trapezoidal[DVI__SENSITIVITY_METHOD_SIZE];
+  char trapezoidal[DVI__SENSITIVITY_METHOD_SIZE] = "";
   dvi__text_add(&spelled, "%s", method);
   return dvi__element_space(own->system, "trapezoidal", "sensitivity", space,
                             &(dvi__text){trapezoidal, sizeof trapezoidal, 0});

@@ -43,9 +43,9 @@ static bool read_lagrangian(dvi_scene *scene)
   dvi__kernels L = {0};
   const dvi__tree *lagrangian = dvi__tree_find(scene->tree, "lagrangian"),
                   *kinetic = dvi__tree_find(scene->tree, "kinetic"),
-                  *potentials = dvi__tree_find(scene->tree, "potentials");
-  bool good = add_expression(scene, lagrangian != NULL ? lagrangian : kinetic, of_motion,
-                             "a Lagrangian", 0, &L);
+                  *potentials = dvi__tree_find(scene->tree, "potentials"),
+                  *whole = lagrangian != NULL ? lagrangian : kinetic;
+  bool good = whole != NULL && add_expression(scene, whole, of_motion, "a Lagrangian", 0, &L);
   if (good && kinetic != NULL && potentials != NULL)
     good = subtract_potentials(scene, potentials, &L);
   return finish(scene, good, &L, 0, &scene->varied_L);

@@ -14,12 +14,13 @@ static int control_cost(double t, const double *q, const double *v, const double
   const dvi_scene *scene = user;
   dvi__scene_term *term = scene->cost;
   const double *x[DVI__BLOCKS] = {&t, q, v, NULL, u};
-  double *gradient[DVI__BLOCKS] = {
-      [DVI__COORDINATES] = C_q, [DVI__VELOCITIES] = C_v, [DVI__INPUTS] = scene->room};
   int returned = dvi__fault_check(term, 1, x, 0, dvi__function_value(term->function, 1, x, C));
-  if (returned == 0)
+  if (returned == 0) {
+    double *gradient[DVI__BLOCKS] = {
+        [DVI__COORDINATES] = C_q, [DVI__VELOCITIES] = C_v, [DVI__INPUTS] = scene->room};
     returned = dvi__fault_check(term, 1, x, 0,
                                 dvi__function_gradient(term->function, 1, x, gradient));
+  }
   memcpy(C_u, scene->room, (size_t)scene->control_count * sizeof *C_u);
   return returned;
 }
@@ -30,10 +31,12 @@ static int component_difference(const dvi_scene *scene, const double *const *wit
                                 const double *const *without, double *F)
 {
   dvi__scene_term *term = scene->control_force;
-  double *gradient[DVI__BLOCKS] = {[DVI__MULTIPLIERS] = F},
-         *rest[DVI__BLOCKS] = {[DVI__MULTIPLIERS] = scene->room};
+  double *gradient[DVI__BLOCKS] = {[DVI__MULTIPLIERS] = F};
   int returned = dvi__function_gradient(term->function, 1, with, gradient);
-  if (returned == 0) returned = dvi__function_gradient(term->function, 1, without, rest);
+  if (returned == 0) {
+    double *rest[DVI__BLOCKS] = {[DVI__MULTIPLIERS] = scene->room};
+    returned = dvi__function_gradient(term->function, 1, without, rest);
+  }
   for (int i = 0; i < scene->n; i++) F[i] -= scene->room[i];
   return returned;
 }

@@ -76,12 +76,13 @@ static int objective(const dvi_scene *scene, dvi__scene_term *term, double t, co
                      double *by_theta)
 {
   const double *x[DVI__BLOCKS] = {&t, q, second, NULL, scene->inputs};
-  double *gradient[DVI__BLOCKS] = {
-      [DVI__COORDINATES] = by_q, [DVI__VELOCITIES] = by_second, [DVI__INPUTS] = scene->room};
   int returned = dvi__fault_check(term, 1, x, 0, dvi__function_value(term->function, 1, x, value));
-  if (returned == 0)
+  if (returned == 0) {
+    double *gradient[DVI__BLOCKS] = {
+        [DVI__COORDINATES] = by_q, [DVI__VELOCITIES] = by_second, [DVI__INPUTS] = scene->room};
     returned = dvi__fault_check(term, 1, x, 0,
                                 dvi__function_gradient(term->function, 1, x, gradient));
+  }
   memcpy(by_theta, scene->room + scene->control_count,
          (size_t)scene->parameter_count * sizeof *by_theta);
   return returned;

@@ -11,8 +11,8 @@ static void pull_force(const dvi__factor_slot *slot, const dvi__functions *funct
                        const double *T, const double *xi, const double *rate, const double *F,
                        double *local)
 {
-  double in_xi[3];
   if (slot->kind == DVI__ROTATION) {
+    double in_xi[3];
     dvi__chart_turning_gradient(functions, xi, rate, F, in_xi, local);
     return;
   }

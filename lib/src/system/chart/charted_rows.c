@@ -55,11 +55,11 @@ static dvi_status make_gradients(dvi__charted_rows *rows)
 static dvi_status list_slots(dvi__charted_rows *rows)
 {
   const dvi__charted *x = rows->of;
-  const dvi__pattern *part[] = {&rows->term->gradients, &rows->term->qq};
   const int slots = x->base->slot_count;
   int *touched = DVI_NEW(int, slots);
   rows->slot = DVI_NEW(int, slots);
   if (touched != NULL && rows->slot != NULL) {
+    const dvi__pattern *part[] = {&rows->term->gradients, &rows->term->qq};
     for (int k = 0; k < 2; k++)
       for (int e = 0; e < dvi__pattern_entries(part[k]); e++) touched[x->slot[part[k]->row[e]]] = 1;
     for (int c = 0; c < slots; c++)
