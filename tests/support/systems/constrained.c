@@ -341,7 +341,7 @@ void destroy_constrained(constrained *made)
  * coordinates and on the sphere. Those of the crank are of its equation of motion in a1 alone. */
 int constrained_digits(constrained_kind kind, double *q)
 {
-  static const double pendulum[] = {0.316069401579278, 0.689354717407124, -0.651836027674032};
+  static const double pendulum[] = {0.3160694015792743, 0.6893547174071988, -0.6518360276739546};
   for (int i = 0; i < CONSTRAINED_N; i++) q[i] = (double)NAN;
   if (kind == SPHERICAL_PENDULUM) memcpy(q, pendulum, sizeof pendulum);
   if (kind == SLIDER_CRANK) {
