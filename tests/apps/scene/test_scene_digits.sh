@@ -1,6 +1,6 @@
 #!/bin/sh
 # Machines in scenes against digits on which two independent codes agree (closed forms, or quadruple
-# precision). The coordinates are not those in which the digits were computed where there is a choice.
+# precision). Where there is a choice, the digits were computed in other coordinates.
 # Usage: test_scene_digits.sh DVI
 . "$(dirname "$0")/../check.sh"
 
@@ -8,7 +8,7 @@
 # $options stands behind the scene.
 options=
 digits() {
-  scene=$1 tolerance=$2 columns= numbers=
+  scene=$1 tolerance=$2 columns='' numbers=''
   shift 2
   for pair; do columns=$columns,${pair%%=*} numbers=$numbers,${pair#*=}; done
   # The options are meant to be split into words.
