@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include <dvi/diagnostics.h>
+
 #include "support/runs.h"
 #include "support/suite.h"
 #include "support/systems/constrained.h"
@@ -175,6 +177,44 @@ START_TEST(constraints_hold_to_rounding_and_the_energy_is_bounded)
 }
 END_TEST
 
+/* The form on T*{phi = 0}. Forces change areas. */
+START_TEST(steps_are_symplectic_on_the_constraint)
+{
+  const char *method = claims[_i].method;
+  for (int kind = 0; kind < CONSTRAINED_KINDS; kind++) {
+    constrained model;
+    double defect, p[CONSTRAINED_N];
+    if (kind == DAMPED_PENDULUM || !takes(method, (constrained_kind)kind)) continue;
+    make_constrained((constrained_kind)kind, 0, &model);
+    dvi_integrator *integrator = constrained_integrator(&model, method);
+    ck_assert_int_eq(dvi_system_momentum(model.system, 0, model.q, model.v, p), DVI_OK);
+    ck_assert_msg(dvi_symplecticity(integrator, 0, model.q, p, 0.05, &defect) == DVI_OK, "%s",
+                  dvi_last_error());
+    ck_assert_msg(defect < 1e-10, "%s of %s: %.1e", method, model.name, defect);
+    dvi_integrator_destroy(&integrator);
+    destroy_constrained(&model);
+  }
+}
+END_TEST
+
+START_TEST(friction_is_not_symplectic_on_the_constraint)
+{
+  constrained model;
+  double defect, p[CONSTRAINED_N];
+  make_constrained(DAMPED_PENDULUM, 0, &model);
+  dvi_integrator *integrator = constrained_integrator(&model, "galerkin:degree=3");
+  ck_assert_int_eq(dvi_system_momentum(model.system, 0, model.q, model.v, p), DVI_OK);
+  ck_assert_int_eq(dvi_symplecticity(integrator, 0, model.q, p, 0.05, &defect), DVI_OK);
+  ck_assert_double_ge(defect, 5e-3); /* areas shrink by exp(-0.2 h) */
+  defect = 7;
+  model.q[0] += 0.1;
+  ck_assert_int_eq(dvi_symplecticity(integrator, 0, model.q, p, 0.05, &defect), DVI_BAD_ARGUMENT);
+  ck_assert(defect == 7);
+  dvi_integrator_destroy(&integrator);
+  destroy_constrained(&model);
+}
+END_TEST
+
 START_TEST(steps_back_undo_steps)
 {
   for (int kind = 0; kind < CONSTRAINED_KINDS; kind++) {
@@ -331,6 +371,8 @@ SUITE(order_holonomic)
   tcase_add_loop_test(tests, methods_have_their_order_with_constraints, 0, CLAIMS);
   tcase_add_test(tests, ida_ends_where_the_digits_are);
   tcase_add_test(tests, constraints_hold_to_rounding_and_the_energy_is_bounded);
+  tcase_add_loop_test(tests, steps_are_symplectic_on_the_constraint, 0, CLAIMS);
+  tcase_add_test(tests, friction_is_not_symplectic_on_the_constraint);
   tcase_add_test(tests, steps_back_undo_steps);
   tcase_add_test(tests, verlet_takes_the_steps_of_trapezoidal);
   tcase_add_test(tests, a_step_of_verlet_with_constraints_factors_one_matrix);

@@ -74,6 +74,10 @@ dvi_status dvi_order(int count, const double *h, const double *error, double flo
 /** Measure how far the map of one step is from symplectic: |M^T J M - J| for its differenced
  *  derivative M, in the maximum norm, in coordinates scaled to unit size.
  *
+ *  With holonomic constraints the map is one of the states that fulfil phi = 0 and G v + phi_t = 0.
+ *  Shifted states are projected onto them, and the defect is |M^T J M - D^T J D| with the derivative
+ *  D of the projected starts. Nonholonomic constraints keep no two-form, and have a defect.
+ *
  *  Each column of M is extrapolated from central differences over descending lengths until rounding
  *  ends the gain. The choice looks at the column alone, never at the defect. Differences cannot
  *  resolve 1e-14 to 1e-11, which is the floor of this measure. The floor grows with the number of
@@ -86,7 +90,7 @@ dvi_status dvi_order(int count, const double *h, const double *error, double flo
  *  sem, whose later steps conserve dq ^ dp - dt ^ dE and not dq ^ dp at a fixed h.
  *
  *  A second integrator of the same method takes the steps: 16 to 27 n of them where the map is
- *  smooth over lengths near unit size, at most 250 n. The memory is (2n)^2 numbers.
+ *  smooth over lengths near unit size, at most 250 n. The memory is 8 n^2 numbers.
  *  @param      integrator  gives the method and the system, and the E0 of its start if it is
  *                          time-transformed (dvi/transform.h). Its state is left alone
  *  @param      t, q, p     the state. q and p may be the integrator's own

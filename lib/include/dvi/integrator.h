@@ -84,8 +84,9 @@ typedef struct dvi_start_options {
    *  With a one-form q stays and p becomes alpha(q), the simplest projection onto p = alpha(q). The
    *  motion is then that of q, whatever p was. With constraints phi(q,p) = 0 the state moves along
    *  the constraints' own Hamiltonian vector fields (phi_p, -phi_q), by Newton's method with the
-   *  bracket matrix, which needs no measure of distance. In other systems each p is a state, and
-   *  nothing changes. */
+   *  bracket matrix, which needs no measure of distance. With holonomic constraints phi(t,q) = 0 q
+   *  moves along M^-1 G^T, and then p along G^T. In other systems each p is a state, and nothing
+   *  changes. */
   int project;
 } dvi_start_options;
 

@@ -1,4 +1,7 @@
-/* The symplecticity defect |M^T J M - J| of the map of one step, from its differenced derivative M.
+/* The symplecticity defect |M^T J M - D^T J D| of the map of one step. M is the differenced
+ * derivative of a step's end, and D that of its start, both by the shift of a state that is then
+ * projected onto the constraints. With holonomic constraints this is the two-form on T*{phi = 0}.
+ * Without constraints D is the unit matrix.
  *
  * Units. A mass of 1 beside one of 1e-8 makes momenta differ as much. Each coordinate therefore has
  * a length a_i of its own, and each momentum a size b_i = m_i w_i. Here m_i is the slope of the
@@ -49,19 +52,25 @@ static const double ratio = 0.59, longest = 0x1p-3, shortest = 1e-14;
 static const double rounding = 10 * DBL_EPSILON;
 
 /* The map of a step. Coordinates and momenta stand in one array z [2n] = (q, p). M is stored by
- * columns, and column j is the derivative by z_j. */
+ * columns, and column j is the derivative by a shift of z_j. */
 typedef struct step_map {
   dvi_integrator *probe;
   int n;
   double t, h;
   const double *start; /* [2n] */
-  double *z;           /* [2n] a point to start from */
+  double *z;           /* [2n] a point to start from, then its distance from `start` */
   double *scale;       /* [2n] a and b */
-  /* [(ORDERS + 1) * 2n] last row T_k of the current column in the scaled coordinates, then the next
-   * T_k0 */
+  /* [(ORDERS + 1) * 4n] last row T_k of the current columns in the scaled coordinates, then the
+   * next T_k0 */
   double *row;
-  double *M; /* [2n * 2n] in the scaled coordinates */
+  double *M; /* [2n][4n] columns of M and of D below them, in the scaled coordinates */
 } step_map;
+
+/* Return the length of a column of M and D. */
+static size_t column_length(const step_map *map)
+{
+  return 4 * (size_t)map->n;
+}
 
 /* Set a_i = |q_i|, but at least a sixteenth of the largest, because a coordinate that happens to be
  * 0 is no smaller than its neighbours. */
@@ -141,23 +150,26 @@ static dvi_status choose_scales(const step_map *map)
   return status;
 }
 
-/* Take one step from start + shift e_j. `shift` becomes the shift after rounding. */
+/* Return the probe's state less the start. The start cancels in a difference, and rounding is less
+ * without it. */
+static double state_change(const step_map *map, int i)
+{
+  const int n = map->n;
+  return (i < n ? dvi_integrator_q(map->probe)[i] : dvi_integrator_p(map->probe)[i - n]) -
+         map->start[i];
+}
+
+/* Take one step from start + shift e_j, projected onto the constraints if there are any. `shift`
+ * becomes the shift after rounding, and z the distance of the projected point. */
 static dvi_status step_from(const step_map *map, int j, double *shift)
 {
   for (int i = 0; i < 2 * map->n; i++) map->z[i] = map->start[i];
   map->z[j] += *shift;
   *shift = map->z[j] - map->start[j];
-  DVI_TRY(dvi_integrator_start(map->probe, map->t, map->z, map->z + map->n));
+  const dvi_start_options options = {.project = *shift != 0};
+  DVI_TRY(dvi_integrator_start_with(map->probe, map->t, map->z, map->z + map->n, &options));
+  for (int i = 0; i < 2 * map->n; i++) map->z[i] = state_change(map, i);
   return dvi_integrator_step(map->probe, map->h);
-}
-
-/* Return the step's end less the start. The start cancels in a difference, and rounding is less
- * without it. */
-static double step_change(const step_map *map, int i)
-{
-  const int n = map->n;
-  return (i < n ? dvi_integrator_q(map->probe)[i] : dvi_integrator_p(map->probe)[i - n]) -
-         map->start[i];
 }
 
 /* Return the factor of z_i in scaled coordinates. */
@@ -170,13 +182,19 @@ static double scaled_unit(const step_map *map, int i)
 /* Compute T_k0 of column j for the length d, the mean slope between the two rounded points. */
 static dvi_status difference_slope(const step_map *map, int j, double d, double *slope)
 {
-  double ahead = d * map->scale[j], behind = -ahead;
+  const int size = 2 * map->n;
+  double ahead = d * map->scale[j], behind = -ahead, *started = slope + size;
   DVI_TRY(step_from(map, j, &ahead));
-  for (int i = 0; i < 2 * map->n; i++) slope[i] = step_change(map, i);
+  for (int i = 0; i < size; i++) {
+    slope[i] = state_change(map, i);
+    started[i] = map->z[i];
+  }
   DVI_TRY(step_from(map, j, &behind));
-  for (int i = 0; i < 2 * map->n; i++)
-    slope[i] = (slope[i] - step_change(map, i)) / (ahead - behind) * scaled_unit(map, i) /
-               scaled_unit(map, j);
+  for (int i = 0; i < size; i++) {
+    const double unit = scaled_unit(map, i) / scaled_unit(map, j);
+    slope[i] = (slope[i] - state_change(map, i)) / (ahead - behind) * unit;
+    started[i] = (started[i] - map->z[i]) / (ahead - behind) * unit;
+  }
   return DVI_OK;
 }
 
@@ -193,7 +211,7 @@ static double column_size(size_t size, const double *x)
 static const double *extrapolate_row(const step_map *map, const double *slope, int rows,
                                      double *error)
 {
-  const size_t size = 2 * (size_t)map->n;
+  const size_t size = column_length(map);
   const int entries = rows < ORDERS ? rows : ORDERS;
   double estimated[ORDERS] = {(double)INFINITY}; /* estimated errors. Entry 0 has no estimate */
   int best = 0;
@@ -237,7 +255,7 @@ static double rounding_of(const step_map *map, int j)
  * failure. The loop ends when shorter lengths could not give a smaller error. */
 static dvi_status difference_column(const step_map *map, int j)
 {
-  const size_t size = 2 * (size_t)map->n;
+  const size_t size = column_length(map);
   const double rounded = rounding_of(map, j),
                last = fmax(shortest, 4 * DBL_EPSILON * fabs(map->start[j]) / map->scale[j]);
   double *column = map->M + (size_t)j * size, *slope = map->row + ORDERS * size,
@@ -260,19 +278,26 @@ static dvi_status difference_column(const step_map *map, int j)
                    j);
 }
 
-/* Return the largest entry of M^T J M - J, which is antisymmetric. */
+/* Return x^T J y for x, y [2n]. */
+static long double two_form(int n, const double *x, const double *y)
+{
+  long double form = 0;
+  for (int k = 0; k < n; k++)
+    form += (long double)x[k] * (long double)y[n + k] - (long double)x[n + k] * (long double)y[k];
+  return form;
+}
+
+/* Return the largest entry of M^T J M - D^T J D, which is antisymmetric. */
 static double largest_defect(const step_map *map)
 {
   const int n = map->n;
   double largest = 0;
   for (int i = 0; i < 2 * n; i++)
     for (int j = i + 1; j < 2 * n; j++) {
-      const double *x = map->M + (size_t)i * 2 * (size_t)n, *y = map->M + (size_t)j * 2 * (size_t)n;
-      long double form = j == i + n ? -1 : 0;
-      for (int k = 0; k < n; k++)
-        form += (long double)x[k] * (long double)y[n + k] -
-                (long double)x[n + k] * (long double)y[k];
-      if (!(fabs((double)form) <= largest)) largest = fabs((double)form); /* a NaN stays */
+      const double *x = map->M + (size_t)i * column_length(map),
+                   *y = map->M + (size_t)j * column_length(map);
+      const double defect = (double)(two_form(n, x, y) - two_form(n, x + 2 * n, y + 2 * n));
+      if (!(fabs(defect) <= largest)) largest = fabs(defect); /* a NaN stays */
     }
   return largest;
 }
@@ -311,7 +336,8 @@ static dvi_status symplecticity_check(const dvi_integrator *integrator, const do
                      "symplecticity: the %d coordinates of a system with factors, and its momenta, "
                      "are no canonical coordinates",
                      dvi_system_nq(system));
-  if (system->dynamics->constraint != NULL)
+  if (system->dynamics->constraint != NULL &&
+      (system->terms & (DVI__HOLONOMIC | DVI__NONHOLONOMIC)) == 0)
     return dvi__fail(DVI_UNSUPPORTED, "symplecticity: the system is degenerate, and no step starts "
                                       "off its constraint, where the map would be "
                                       "differenced; use dvi_loop_integral over a loop of starts");
@@ -331,8 +357,8 @@ dvi_status dvi_symplecticity(dvi_integrator *integrator, double t, const double 
                   .start = start,
                   .z = DVI_NEW(double, size),
                   .scale = DVI_NEW(double, size)};
-  map.row = DVI_NEW(double, (ORDERS + 1) * size);
-  map.M = (double *)dvi__allocate(size, size * sizeof *map.M);
+  map.row = DVI_NEW(double, (ORDERS + 1) * column_length(&map));
+  map.M = (double *)dvi__allocate(size, column_length(&map) * sizeof *map.M);
   dvi_status status = dvi_integrator_create_like(integrator, &map.probe);
   if (status == DVI_OK && (!start || !map.z || !map.scale || !map.row || !map.M))
     status = dvi__fail(DVI_NO_MEMORY, "symplecticity: no memory for a derivative of %zu by %zu",
