@@ -75,8 +75,9 @@ dvi_status dvi_order(int count, const double *h, const double *error, double flo
  *  derivative M, in the maximum norm, in coordinates scaled to unit size.
  *
  *  With holonomic constraints the map is one of the states that fulfil phi = 0 and G v + phi_t = 0.
- *  Shifted states are projected onto them, and the defect is |M^T J M - D^T J D| with the derivative
- *  D of the projected starts. Nonholonomic constraints keep no two-form, and have a defect.
+ *  Shifted states are projected onto them, and the defect is |M^T J M - D^T J D| with the
+ *  derivative D of the projected starts. Nonholonomic constraints keep no two-form, and have a
+ *  defect.
  *
  *  Each column of M is extrapolated from central differences over descending lengths until rounding
  *  ends the gain. The choice looks at the column alone, never at the defect. Differences cannot
