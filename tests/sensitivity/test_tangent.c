@@ -30,8 +30,9 @@ static void exact_column(int index, int moved, double h, int steps, double *colu
   const double tiny = 1e-100;
   const machine *m = maps[index].bent ? &bent_machine : &straight_machine;
   double complex z[ROWS], theta[P];
-  for (int i = 0; i < ROWS; i++) z[i] = start[i] + (i == moved ? tiny * I : 0);
-  for (int k = 0; k < P; k++) theta[k] = m->theta[k] + (ROWS + k == moved ? tiny * I : 0);
+  for (int i = 0; i < ROWS; i++) z[i] = start[i] + (i == moved ? tiny * (double complex)I : 0);
+  for (int k = 0; k < P; k++)
+    theta[k] = m->theta[k] + (ROWS + k == moved ? tiny * (double complex)I : 0);
   machine_run(theta, m->bend, maps[index].rule, maps[index].s, maps[index].r, h, steps, z);
   for (int i = 0; i < ROWS; i++) column[i] = cimag(z[i]) / tiny;
 }

@@ -41,11 +41,11 @@ static void evaluate(const machine *m, double t, const double *q, const double *
   for (int k = 0; k < P; k++) x->theta[k] = m->theta[k];
   for (int i = 0; i < N; i++) x->q[i] = q[i], x->v[i] = v[i];
   if (moved >= 2 * N)
-    x->theta[moved - 2 * N] += tiny * I;
+    x->theta[moved - 2 * N] += tiny * (double complex)I;
   else if (moved >= N)
-    x->v[moved - N] += tiny * I;
+    x->v[moved - N] += tiny * (double complex)I;
   else if (moved >= 0)
-    x->q[moved] += tiny * I;
+    x->q[moved] += tiny * (double complex)I;
   gradient_of(x->theta, m->bend, x->q, x->v, x->G, x->L_v);
   forces_of(x->theta, t, x->q, x->v, x->F);
 }
