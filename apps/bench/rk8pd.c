@@ -134,7 +134,8 @@ static int right_side(double t, const double y[], double ydot[], void *user)
 
 static bool rk8pd_provides_for(const dvi_system_terms *terms)
 {
-  if (terms->factors != NULL || terms->vector_potential != NULL || terms->force_count > 0)
+  if (terms->factors != NULL || terms->vector_potential != NULL || terms->force_count > 0 ||
+      terms->damping > 0)
     return false;
   for (int k = 0; k < terms->potential_count; k++)
     if (terms->potentials[k].gradient == NULL && terms->potentials[k].gradient_batch == NULL)

@@ -42,6 +42,8 @@ static void explain_problem(const problem *scene, const words *settings)
   (void)printf("%s", scene->nq > NAMES_SHOWN ? " ..." : "");
   for (int i = 0; i < scene->terms->force_count; i++)
     (void)printf("%s%s", i == 0 ? "\n  forces       " : ", ", scene->terms->forces[i].name);
+  if (scene->terms->damping > 0)
+    (void)printf("\n  damping      -gamma p with gamma = %g", scene->terms->damping);
   if (scene->terms->vector_potential != NULL)
     (void)printf("\n  terms        a constant mass with a vector potential A(t,q).q'");
   for (int i = 0; i < scene->terms->contact_count; i++)

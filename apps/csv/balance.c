@@ -4,7 +4,8 @@
 
 bool has_balances(const problem *scene)
 {
-  return scene->terms->force_count > 0 || scene->terms->contact_count > 0;
+  return scene->terms->force_count > 0 || scene->terms->damping > 0 ||
+         scene->terms->contact_count > 0;
 }
 
 dvi_status create_balanced(const problem *scene, const char *method, dvi_integrator **integrator)

@@ -291,6 +291,11 @@ START_TEST(forces_that_do_not_go_are_told)
   refused("coordinates: {x: scalar, y: scalar}\none_form: {x: y}\nhamiltonian: x\n"
           "dissipation: x'^2\ninitial: {x: 1, y: 1}\nstep: 1\nuntil: 1\n",
           ":4:14:", "beside a one-form there is no dissipation");
+  refused(X "lagrangian: x'^2\ndamping: -1\n" RUN,
+          ":3:10:", "damping must not be negative, and is -1");
+  refused("coordinates: {x: scalar, y: scalar}\none_form: {x: y}\nhamiltonian: x^2 + y^2\n"
+          "damping: 1\ninitial: {x: 1, y: 1}\nstep: 1\nuntil: 1\n",
+          ":4:10:", "beside a one-form there is no damping");
   refused("coordinates: {u: angle}\nlagrangian: rate(u)^2\nforces: {u: 1}\n"
           "initial: {u: 1}\nstep: 1\nuntil: 1\n",
           ":3:10:", "a force of a rotation or an angle is given by its velocity, rate(u)");

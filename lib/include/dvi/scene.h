@@ -209,7 +209,7 @@ int dvi_scene_invariance(const dvi_scene *scene, char *text, size_t size);
  *  lie below the rounding of a double. The call is slow, and allocates.
  *
  *  @param      t, q, v   the point, q and v [n]
- *  @param[out] L_q, L_v  [n] right to about 1e-31, L_q with the forces. Undefined on failure
+ *  @param[out] L_q, L_v  [n] right to about 1e-31, L_q with all forces. Undefined on failure
  *  @retval DVI_UNSUPPORTED   no Lagrangian of R^n (a one-form, a Hamiltonian, rotations, directions
  *                            or angles), or holonomic constraints, or no arithmetic of 113 bits on
  *                            this machine

@@ -64,6 +64,9 @@ static dvi_status path_check(const dvi_system *system, const dvi_path_options *o
     return dvi__fail(DVI_UNSUPPORTED,
                      "path: the system declares forces without a potential, and the "
                      "action alone determines paths");
+  if (system->damping > 0)
+    return dvi__fail(DVI_UNSUPPORTED, "path: the system declares damping, and the action alone "
+                                      "determines paths");
   if (system->row_count > 0)
     return dvi__fail(
         DVI_UNSUPPORTED,

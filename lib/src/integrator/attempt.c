@@ -16,6 +16,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "method/damping.h"
 #include "num/finite.h"
 #include "solve/branch.h"
 
@@ -128,7 +129,7 @@ static dvi_status attempt_step(dvi_integrator *I, double length, double density)
   I->next.density = density;
   I->stepper.doubt = DVI__SURE;
   I->stepper.bend = 0;
-  return I->stepper.method->step(&I->stepper, &I->next, length);
+  return dvi__take_step(&I->stepper, &I->next, length);
 }
 
 static void keep_first(dvi_integrator *I)

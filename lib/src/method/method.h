@@ -118,6 +118,9 @@ typedef struct dvi__stepper {
   /* curvature of the equations, the worst of dvi__solve_report; set and reset as `doubt` */
   double bend;
   void *own; /* the method's struct */
+  /* create sets it if `step` counts what damping takes from the energy (dvi_integrator_supplied) */
+  int weighs_damping;
+  struct dvi__damping *damping; /* the halves of damping around steps, or NULL (damping.h) */
   /* the method's struct for members side by side; NULL if each member steps on its own */
   void *lanes;
 } dvi__stepper;
@@ -151,6 +154,8 @@ struct dvi__method {
   /* `step` treats the contacts itself. The driver divides the steps of all other methods at the
    * hits (integrator/hits.h) */
   int takes_contacts;
+  /* steps are those of an inner stepper, by dvi__inner_step, and each of them is damped */
+  int composes;
   /* Set order, symmetric, memory_count and own. On failure the caller calls destroy. */
   dvi_status (*create)(dvi__stepper *self);
   void (*destroy)(dvi__stepper *self);
@@ -217,7 +222,7 @@ dvi_status dvi__stepper_create_inner(dvi__stepper *self, const char *method,
                                      dvi__stepper *inner);
 
 /* Let a stepper serve up to `capacity` members side by side. `lanes` stays NULL if the method
- * cannot do this. Called once. */
+ * cannot do this, or the system is damped. Called once. */
 dvi_status dvi__stepper_prepare_lanes(dvi__stepper *stepper, int capacity);
 
 /* Parse a specification (settings.c). The caller clears the settings, whatever the status. */

@@ -7,7 +7,7 @@
 #include "core/hash.h"
 #include "core/memory.h"
 #include "core/status.h"
-#include "method/method.h"
+#include "method/damping.h"
 
 static const char *term_name(unsigned term)
 {
@@ -26,6 +26,7 @@ static const char *term_name(unsigned term)
   case DVI__VECTOR_POTENTIAL: return "a vector potential A(t,q).v";
   case DVI__NONHOLONOMIC: return "nonholonomic constraints A v + a = 0";
   case DVI__CONTACT: return "contacts phi(t,q) >= 0";
+  case DVI__DAMPING: return "damping, uniform friction -gamma p";
   case DVI__RUBBING: return "contacts with friction";
   case DVI__FAST: return "a fast potential (one that is declared `fast`)";
   default: return "potentials";
@@ -123,6 +124,7 @@ static dvi_status stepper_choose_method(dvi__stepper *stepper, const char *speci
 static dvi_status stepper_create_method(dvi__stepper *stepper)
 {
   DVI_TRY(stepper->method->create(stepper));
+  DVI_TRY(dvi__damping_create(stepper));
   return spell_out(stepper);
 }
 
@@ -173,7 +175,7 @@ dvi_status dvi__inner_step(dvi__stepper *self, dvi__stepper *inner, dvi__state *
   inner->follow = self->follow;
   inner->doubt = DVI__SURE;
   inner->bend = 0;
-  const dvi_status status = inner->method->step(inner, state, h);
+  const dvi_status status = dvi__take_step(inner, state, h);
   if (inner->doubt > self->doubt) self->doubt = inner->doubt;
   self->bend = fmax(self->bend, inner->bend);
   return status;
@@ -181,14 +183,15 @@ dvi_status dvi__inner_step(dvi__stepper *self, dvi__stepper *inner, dvi__state *
 
 dvi_status dvi__stepper_prepare_lanes(dvi__stepper *stepper, int capacity)
 {
-  return stepper->method->prepare_lanes != NULL ? stepper->method->prepare_lanes(stepper, capacity)
-                                                : DVI_OK;
+  if (stepper->method->prepare_lanes == NULL || stepper->system->damping > 0) return DVI_OK;
+  return stepper->method->prepare_lanes(stepper, capacity);
 }
 
 void dvi__stepper_destroy(dvi__stepper *stepper)
 {
   if (stepper->method != NULL && stepper->lanes != NULL) stepper->method->clear_lanes(stepper);
   if (stepper->method != NULL) stepper->method->destroy(stepper);
+  dvi__damping_destroy(stepper);
   dvi__settings_clear(&stepper->settings);
   dvi__release(stepper->specification);
   *stepper = (dvi__stepper){0};

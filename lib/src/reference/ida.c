@@ -7,7 +7,8 @@
  *     [  c I     -I      0  ]
  *     [ -L_qq   -L_qv   c I ]
  *     [ -L_vq   -L_vv    I  ]
- * Forces F(t,q,v) are part of L_q, with L_qq + F_q and L_qv + F_v in the Jacobian.
+ * Forces F(t,q,v) are part of L_q, with L_qq + F_q and L_qv + F_v in the Jacobian. Damping adds
+ * gamma p to the second row, and gamma to its c.
  *
  * For index 2 the multiplier v is left out of the error test. With a one-form DVI_IDA takes the
  * reduced equations of motion in y = q,
@@ -49,7 +50,7 @@ static int lagrange_residual(double t, N_Vector y, N_Vector ydot, N_Vector F, vo
   const dvi_status status = dvi__lagrangian_gradient(run->evaluator, 1, &t, q, v, Fp, Fv);
   for (ptrdiff_t i = 0; status == DVI_OK && i < n; i++) {
     Fq[i] = qdot[i] - v[i];
-    Fp[i] = pdot[i] - Fp[i];
+    Fp[i] = pdot[i] - Fp[i] + run->system->damping * p[i];
     Fv[i] = p[i] - Fv[i];
   }
   return dvi__reference_callback(run, status);
@@ -113,7 +114,7 @@ static void lagrange_write_jacobian(const lagrange_ida *self, double c, SUNMatri
   }
   for (int j = 0; j < n; j++) {
     dvi__columns_next(&columns);
-    dvi__columns_put(&columns, n + j, c);
+    dvi__columns_put(&columns, n + j, c + system->damping);
     dvi__columns_put(&columns, 2 * n + j, 1.0);
   }
 }

@@ -228,6 +228,7 @@ dvi_status dvi__lift_equations(dvi__lift *lift, double t, const double *kappa, c
     lifted_momentum_rate(slot->kind, y, lift->rate + slot->q, lift->L_y + slot->q, C,
                          p_rate + slot->v);
   }
+  for (int i = 0; i < system->nv; i++) p_rate[i] -= system->damping * p_of_v[i];
   return system->force_count > 0 ? add_lifted_forces(lift, t, v, p_rate) : DVI_OK;
 }
 

@@ -71,12 +71,13 @@ static CVRhsFn ode_right_side_of(const dvi__reference_run *run)
   return has_factors(run) ? ode_lifted_right_side : ode_right_side;
 }
 
-/* Test for a diagonal mass without forces and vector potential. Only then M^-1 is as sparse as M,
+/* Test for a diagonal mass without forces, damping and vector potential. Only then M^-1 is as sparse as M,
  * and the Jacobian has a simple form. */
 static int jacobian_is_simple(const dvi_system *system)
 {
   return system->mass_diagonal != NULL && !system->dynamics->on_manifold &&
-         system->force_count == 0 && system->row_count == 0 && system->vector == NULL;
+         system->force_count == 0 && system->damping == 0 && system->row_count == 0 &&
+         system->vector == NULL;
 }
 
 /* Write d(qdot, pdot)/d(q, p) = [ 0, M^-1; L_qq, 0 ] with its diagonal, to which CVODE adds the

@@ -71,6 +71,7 @@ dvi_status dvi_scene_quad_gradient(const dvi_scene *scene, dvi_pair t, const dvi
   }
   dvi_status status = add_terms(scene, x, gradient);
   for (size_t i = 0; i < n && status == DVI_OK; i++) {
+    gradient[DVI__COORDINATES][i] -= scene->terms.damping * gradient[DVI__VELOCITIES][i];
     L_q[i] = pair_parted(gradient[DVI__COORDINATES][i]);
     L_v[i] = pair_parted(gradient[DVI__VELOCITIES][i]);
     if (!isfinite(L_q[i].high) || !isfinite(L_v[i].high)) status = DVI_NOT_FINITE;

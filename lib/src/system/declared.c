@@ -35,6 +35,11 @@ static uint64_t hash_masses(const dvi_system *s)
   return hash;
 }
 
+static uint64_t hash_damping(const dvi_system *s)
+{
+  return dvi__hash(DVI__HASH_START, sizeof s->damping, &s->damping);
+}
+
 static uint64_t hash_patterns(const dvi_system *s)
 {
   uint64_t hash = hash_pattern(hash_pattern(DVI__HASH_START, &s->qv), &s->vv);
@@ -121,10 +126,10 @@ static uint64_t hash_invariants(const dvi_system *s)
 
 void dvi__system_declared(const dvi_system *system, dvi__declared *declared)
 {
-  *declared = (dvi__declared){{hash_terms(system), hash_masses(system), hash_patterns(system),
-                               hash_potentials(system), hash_invariants(system),
-                               hash_forces(system), hash_holonomics(system),
-                               hash_nonholonomics(system), hash_contacts(system)}};
+  *declared = (dvi__declared){
+      {hash_terms(system), hash_masses(system), hash_patterns(system), hash_potentials(system),
+       hash_invariants(system), hash_forces(system), hash_holonomics(system),
+       hash_nonholonomics(system), hash_contacts(system), hash_damping(system)}};
 }
 
 const char *dvi__declared_difference(const dvi__declared *one, const dvi__declared *other)
@@ -137,7 +142,8 @@ const char *dvi__declared_difference(const dvi__declared *one, const dvi__declar
                                                         "forces",
                                                         "holonomic constraints",
                                                         "nonholonomic constraints",
-                                                        "contacts"};
+                                                        "contacts",
+                                                        "damping"};
   for (int part = 0; part < DVI__DECLARED_PARTS; part++)
     if (one->hash[part] != other->hash[part]) return name[part];
   return NULL;

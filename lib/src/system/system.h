@@ -29,11 +29,12 @@ typedef enum dvi__term {
   DVI__NONHOLONOMIC = 16384, /* constraints A(t,q) v + a(t,q) = 0 */
   DVI__CONTACT = 32768,      /* gaps phi(t,q) >= 0 */
   DVI__RUBBING = 65536,      /* contacts with friction */
+  DVI__DAMPING = 131072,     /* uniform friction -gamma p */
   DVI__PHASE_SPACE = DVI__CONSTRAINED_HAMILTONIAN | DVI__HAMILTONIAN,
   DVI__DYNAMICS = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__ONE_FORM | DVI__FACTORS |
                   DVI__PHASE_SPACE, /* one of these is declared */
   DVI__KINDS = DVI__ROTATIONS | DVI__DIRECTIONS | DVI__FAST,
-  DVI__LAST_TERM = DVI__RUBBING
+  DVI__LAST_TERM = DVI__DAMPING
 } dvi__term;
 
 /* Groups of columns that are moved together when a missing Hessian block is differenced. */
@@ -151,8 +152,8 @@ typedef struct dvi__constraint_term {
 enum { DVI__DIMENSION_MOST = INT_MAX / 4 };
 
 /* Hashes of all that is declared, without the results of callbacks. The parts are terms, masses,
- * patterns, potentials, invariants, forces, holonomic and nonholonomic constraints, contacts. */
-enum { DVI__DECLARED_PARTS = 9 };
+ * patterns, potentials, invariants, forces, holonomic and nonholonomic constraints, contacts, damping. */
+enum { DVI__DECLARED_PARTS = 10 };
 typedef struct dvi__declared {
   uint64_t hash[DVI__DECLARED_PARTS];
 } dvi__declared;
@@ -170,6 +171,7 @@ struct dvi_system {
   int autonomous; /* declared autonomous */
   dvi__declared declared;
   unsigned terms; /* dvi__term bits */
+  double damping; /* gamma of DVI__DAMPING, else 0 */
   double mass_scalar;
   double *mass_diagonal;
   double *mass_values;              /* in the order of vv */

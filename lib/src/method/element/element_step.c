@@ -125,7 +125,9 @@ static dvi_status element_create_solver(dvi__stepper *self, dvi__element *own)
       .fixed_point_begin = has_fixed_point ? element_fixed_point_begin : NULL,
       .fixed_point_iterate = has_fixed_point ? element_fixed_point_iterate : NULL,
       .fixed_point_end = has_fixed_point ? element_fixed_point_end : NULL,
-      .magnitudes = dvi__action_has_terms(own->action) ? element_magnitudes : NULL};
+      .magnitudes = dvi__action_has_terms(own->action) || self->system->damping > 0
+                        ? element_magnitudes
+                        : NULL};
   /* unknowns of terms, such as multipliers, have no pivots of their own */
   if (equations.unknowns > self->system->n * equations.group)
     equations.linear = dvi__linear_for_exchanges(equations.unknowns);
@@ -133,7 +135,7 @@ static dvi_status element_create_solver(dvi__stepper *self, dvi__element *own)
   return dvi__solver_create(&equations, self->counters, &own->solver);
 }
 
-/* Take account of a new term. The ladder begins with the whole Jacobian, and ends with the rounding
+/* Take account of a new term, or of weights that depend on h. The ladder begins with the whole Jacobian, and ends with the rounding
  * of rows, because roundings would err to one side otherwise. Unknowns of a term are for Newton's
  * method. */
 static dvi_status element_renew_solver(dvi__stepper *self)
@@ -170,10 +172,9 @@ dvi_status dvi__element_create(dvi__stepper *self, const dvi__action_space *spac
   DVI_TRY(dvi__action_create(self->system, space, self->counters, &own->action));
   own->has_forces = self->system->force_count > 0;
   own->definite = dvi__element_is_definite(self->system, dvi__action_evaluator(own->action));
-  if (self->system->place_rows > 0) {
-    DVI_TRY(dvi__action_constrain(own->action));
-    return element_renew_solver(self);
-  }
+  self->weighs_damping = self->system->damping > 0;
+  if (self->system->place_rows > 0) DVI_TRY(dvi__action_constrain(own->action));
+  if (self->system->place_rows > 0 || self->weighs_damping) return element_renew_solver(self);
   DVI_TRY(element_decouple(self, own));
   if (!element_allocate(self, own))
     return dvi__fail(DVI_NO_MEMORY, "%s: no memory", self->method->name);

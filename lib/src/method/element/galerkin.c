@@ -88,7 +88,7 @@ const dvi__method dvi__galerkin = {
                "2s or more",
     .cite = "LeokShingel2012",
     .keys = galerkin_keys,
-    .uses = DVI__ELEMENT_TERMS | DVI__HOLONOMIC | DVI__CONTACT,
+    .uses = DVI__ELEMENT_TERMS | DVI__HOLONOMIC | DVI__CONTACT | DVI__DAMPING,
     .create = galerkin_create,
     DVI__ELEMENT_OPERATIONS,
 };

@@ -22,7 +22,7 @@ const dvi__method dvi__midpoint = {
     .summary = "implicit midpoint rule: straight line, midpoint; order 2; any Lagrangian",
     .cite = "MarsdenWest2001",
     .keys = midpoint_keys,
-    .uses = DVI__ELEMENT_TERMS | DVI__HOLONOMIC | DVI__CONTACT,
+    .uses = DVI__ELEMENT_TERMS | DVI__HOLONOMIC | DVI__CONTACT | DVI__DAMPING,
     .create = midpoint_create,
     DVI__ELEMENT_OPERATIONS,
 };

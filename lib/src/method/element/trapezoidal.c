@@ -22,7 +22,7 @@ const dvi__method dvi__trapezoidal = {
     .summary = "Stoermer-Verlet for any Lagrangian: straight line, trapezoid; order 2; implicit",
     .cite = "MarsdenWest2001",
     .keys = trapezoidal_keys,
-    .uses = DVI__ELEMENT_TERMS | DVI__HOLONOMIC | DVI__CONTACT,
+    .uses = DVI__ELEMENT_TERMS | DVI__HOLONOMIC | DVI__CONTACT | DVI__DAMPING,
     .create = trapezoidal_create,
     DVI__ELEMENT_OPERATIONS,
 };

@@ -19,6 +19,7 @@ typedef struct charted_step {
   double *seen;      /* [nq*(s+1)] points of the path, the start last */
   double *offset;    /* [unknowns] */
   double *supply;    /* [1 + symmetries] */
+  double power[2];   /* what damping and forces supply to the energy, and its compensation */
 } charted_step;
 
 /* Give the count of a path's numbers and those of row terms, and the degree. */
@@ -80,6 +81,7 @@ dvi_status dvi__charted_step_create(dvi__stepper *self, int reduced)
   if (status != DVI_OK)
     return dvi__fail_in(status, "%s, by the keys of galerkin", self->method->name);
   self->order = own->inner.order;
+  self->weighs_damping = own->inner.weighs_damping;
   self->symmetric = own->inner.symmetric && has_two_ends(self->system, &own->inner);
   DVI_TRY(centre_paths(own));
   return charted_step_allocate(self, own);
@@ -137,6 +139,11 @@ static dvi_status charted_step_solve(dvi__stepper *self, const dvi__state *state
                         .p = own->local + nx,
                         .q_compensation = own->local + 2 * nx,
                         .p_compensation = own->local + 3 * nx};
+  if (state->supplied != NULL && self->system->damping > 0) {
+    own->power[0] = own->power[1] = 0;
+    local->supplied = &own->power[0];
+    local->supplied_compensation = &own->power[1];
+  }
   dvi__charted_enter(own->charted, state->p, local->p);
   dvi__charted_enter(own->charted, state->p_compensation, local->p_compensation);
   own->inner.memory = self->memory;
@@ -145,7 +152,8 @@ static dvi_status charted_step_solve(dvi__stepper *self, const dvi__state *state
                           : dvi__charted_explain(own->charted, status);
 }
 
-/* Add what the forces supply over the path to the state's sums. */
+/* Add what the forces supply over the path to the state's sums. The power of a damped system is that
+ * in the charts, which have no symmetries. */
 static dvi_status add_supplies(const dvi__stepper *self, const double *path, double h,
                                const dvi__state *state)
 {
@@ -157,9 +165,10 @@ static dvi_status add_supplies(const dvi__stepper *self, const double *path, dou
     double tau, weight;
     dvi__action_node(action, j, &tau, &weight);
     dvi__action_path(action, path, h, tau, own->xi, own->rate);
-    DVI_TRY(dvi__charted_supply(own->charted, state->t + tau * h, own->xi, own->rate, h * weight,
-                                own->supply));
+    DVI_TRY(dvi__charted_supply(own->charted, state->t + tau * h, own->xi, own->rate,
+                                h * dvi__action_weight(action, j), own->supply));
   }
+  if (self->system->damping > 0) own->supply[0] = own->power[0] - own->power[1];
   dvi__add_compensated_all(count, state->supplied, state->supplied_compensation, own->supply);
   return DVI_OK;
 }

@@ -22,7 +22,8 @@ const dvi__method dvi__lie_galerkin = {
     .summary = "galerkin in natural charts: rotations, rigid motions, directions, angles and "
                "products; order 2s; the keys of galerkin",
     .cite = "LeokShingel2012",
-    .uses = DVI__CONSTANT_MASS | DVI__POTENTIAL | DVI__FACTORS | DVI__HOLONOMIC | DVI__FORCES,
+    .uses = DVI__CONSTANT_MASS | DVI__POTENTIAL | DVI__FACTORS | DVI__HOLONOMIC | DVI__FORCES |
+            DVI__DAMPING,
     .create = lie_galerkin_create,
     DVI__CHARTED_OPERATIONS,
 };

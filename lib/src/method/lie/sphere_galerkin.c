@@ -22,7 +22,8 @@ const dvi__method dvi__sphere_galerkin = {
     .summary = "galerkin on products of spheres by horizontal lifts: directions, with angles and "
                "R^n beside them; the keys of galerkin",
     .cite = "LeokShingel2012",
-    .uses = DVI__CONSTANT_MASS | DVI__POTENTIAL | DVI__FACTORS | DVI__HOLONOMIC | DVI__FORCES,
+    .uses = DVI__CONSTANT_MASS | DVI__POTENTIAL | DVI__FACTORS | DVI__HOLONOMIC | DVI__FORCES |
+            DVI__DAMPING,
     .refuses = DVI__ROTATIONS,
     .create = sphere_galerkin_create,
     DVI__CHARTED_OPERATIONS,

@@ -199,7 +199,9 @@ const dvi__method dvi__composition = {
     .takes_rest = 1,
     .takes_shapes = 1,
     .uses = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__POTENTIAL | DVI__FACTORS | DVI__FORCES |
-            DVI__HOLONOMIC | DVI__NONHOLONOMIC | DVI__VECTOR_POTENTIAL | DVI__CONTACT,
+            DVI__HOLONOMIC | DVI__NONHOLONOMIC | DVI__VECTOR_POTENTIAL | DVI__CONTACT |
+            DVI__DAMPING,
+    .composes = 1,
     .create = composition_create,
     .destroy = composition_destroy,
     .start = composition_start,

@@ -319,7 +319,8 @@ const dvi__method dvi__verlet = {
     .cite = "MarsdenWest2001",
     .keys = keys,
     .needs = DVI__CONSTANT_MASS,
-    .uses = DVI__CONSTANT_MASS | DVI__POTENTIAL | DVI__FORCES | DVI__HOLONOMIC | DVI__CONTACT,
+    .uses = DVI__CONSTANT_MASS | DVI__POTENTIAL | DVI__FORCES | DVI__HOLONOMIC | DVI__CONTACT |
+            DVI__DAMPING,
     .create = verlet_create,
     .destroy = verlet_destroy,
     .step = verlet_step,

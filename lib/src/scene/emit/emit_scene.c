@@ -169,6 +169,11 @@ static void emit_create(dvi__emitter *out, const dvi_scene *scene, const char *n
     dvi__emit(out, "  terms.vector_potential = &vector_potential;\n");
   if (terms->hamiltonian != NULL) dvi__emit(out, "  terms.hamiltonian = &hamiltonian;\n");
   if (terms->constraint != NULL) dvi__emit(out, "  terms.constraint = &constraint;\n");
+  if (terms->damping > 0) {
+    dvi__emit(out, "  terms.damping = ");
+    dvi__emit_number(out, terms->damping);
+    dvi__emit(out, ";\n");
+  }
   emit_mass(out, mass, pattern, row);
   dvi__emit(out, "  return dvi_system_create(&terms, system);\n}\n");
 }

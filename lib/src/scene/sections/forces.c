@@ -1,4 +1,4 @@
-/* The sections forces and dissipation. */
+/* The sections forces, dissipation and damping. */
 #include "scene/sections/motion.h"
 #include "scene/sections/sections.h"
 #include "scene/terms/callbacks.h"
@@ -50,4 +50,14 @@ bool dvi__read_dissipation(dvi_scene *scene, const dvi__tree *section)
          dvi__make_dissipation(scene, term, next_force(scene));
   dvi__kernels_free(&R);
   return good;
+}
+
+bool dvi__read_damping(dvi_scene *scene, const dvi__tree *section)
+{
+  double *gamma = &scene->terms.damping;
+  if (!refuse_other_motions(scene, section, "damping") ||
+      !dvi__tree_number(scene, section, "damping", gamma))
+    return false;
+  return *gamma >= 0 || dvi__scene_refuse(scene, section->span,
+                                          "damping must not be negative, and is %.17g", *gamma);
 }

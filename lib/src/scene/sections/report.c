@@ -36,7 +36,8 @@ static bool is_balance(const dvi_scene *scene, const char *text)
   static const char suffix[] = "_balance";
   const size_t length = strlen(text), end = sizeof suffix - 1;
   if (length <= end || strcmp(text + length - end, suffix) != 0) return false;
-  for (int i = 0; i < scene->terms.symmetry_count && scene->terms.force_count > 0; i++)
+  const bool acts = scene->terms.force_count > 0 || scene->terms.damping > 0;
+  for (int i = 0; i < scene->terms.symmetry_count && acts; i++)
     if (strlen(scene->terms.symmetries[i].name) == length - end &&
         strncmp(text, scene->terms.symmetries[i].name, length - end) == 0)
       return true;

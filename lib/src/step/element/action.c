@@ -90,6 +90,7 @@ void dvi__action_destroy(dvi__action **action)
                            a->bar,
                            a->node,
                            a->weight,
+                           a->undamped,
                            a->end,
                            a->stiffness,
                            a->stiffness_inverse,
@@ -158,7 +159,12 @@ int dvi__action_nodes(const dvi__action *action)
 void dvi__action_node(const dvi__action *action, int j, double *tau, double *weight)
 {
   *tau = action->node[j];
-  *weight = action->weight[j];
+  *weight = action->undamped != NULL ? action->undamped[j] : action->weight[j];
+}
+
+double dvi__action_weight(const dvi__action *action, int j)
+{
+  return action->weight[j];
 }
 
 dvi__evaluator *dvi__action_evaluator(const dvi__action *action)
@@ -174,5 +180,6 @@ void dvi__action_place(dvi__action *action, double t0, double h, const double *q
   action->p0 = p0;
   dvi__action_forget_start(action);
   dvi__action_forget_rolling(action);
+  dvi__action_damp(action, h);
   for (int j = 0; j < action->r; j++) action->t[j] = t0 + action->node[j] * h;
 }

@@ -11,6 +11,10 @@
  *
  *     R_k = sum_j b_j ( h (psi_k - psi_k(1)) L_q + psi_k' L_v )_j - psi_k(1) p0 = 0.
  *
+ * With damping, a force -gamma L_v, the action is that of e^{gamma (t - t0 - h/2)} L, whose momenta
+ * at the ends are e^{-gamma h/2} p0 and e^{gamma h/2} p1 (method/damping.h). Then e^{gamma (c_j -
+ * 1/2) h} b_j takes the place of b_j (Kanai 1948).
+ *
  * Source: Marsden and West 2001, sec. 2.2.6; Leok 2004, sec. 5.2. The elimination is our own. It
  * keeps the unknowns free of the constraint at q0 in every basis, and leaves increments, which
  * round better than positions.
@@ -75,8 +79,10 @@ dvi__action_space dvi__action_space_of(const dvi__action *action);
  * Jacobian's pattern (after prepare). */
 int dvi__action_unknowns(const dvi__action *action);
 int dvi__action_nodes(const dvi__action *action);
-/* Give node j, a part of the step, and its weight. */
+/* Give node j, a part of the step, and its weight b_j. */
 void dvi__action_node(const dvi__action *action, int j, double *tau, double *weight);
+/* Give its weight in the action, which is another one with damping. */
+double dvi__action_weight(const dvi__action *action, int j);
 const dvi__pattern *dvi__action_pattern(const dvi__action *action);
 dvi__evaluator *dvi__action_evaluator(const dvi__action *action);
 
@@ -138,7 +144,7 @@ void dvi__action_ends(const dvi__action *action, const double *Y, double *dq, do
 void dvi__action_move_ends(dvi__action *action, const double *dY, double *dp);
 
 /* Compute what forces supply to the energy and the momenta of symmetries over the element with the
- * path Y, [1 + symmetries]. L_v of the last residual is lost. */
+ * path Y, [1 + symmetries]. The gradients of the last residual are lost. */
 dvi_status dvi__action_supplies(dvi__action *action, const double *Y, double *supply);
 
 /* Give the time that passes over the element with the path Y. It is h, and h sum_j b_j g(Q_j) for a

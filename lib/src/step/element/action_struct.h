@@ -29,8 +29,11 @@ struct dvi__action {
    * (num/simd/lanes.h). */
   int lanes, path_lanes;
   /* Tables over (k, j), stored [k*lanes + j]. */
-  double *psi, *bar, *dpsi;              /* psi_k(c_j), psi_k(c_j) - psi_k(1), psi_k'(c_j) */
-  double *node, *weight;                 /* [r] */
+  double *psi, *bar, *dpsi; /* psi_k(c_j), psi_k(c_j) - psi_k(1), psi_k'(c_j) */
+  double *node, *weight;    /* [r] */
+  /* With damping `weight` holds b_j e^{gamma (c_j - 1/2) h}, and these are b_j [r] and that h. Else
+   * NULL, and 0. */
+  double *undamped, damped_h;
   double *end;                           /* [s] psi_k(1) */
   double *stiffness, *stiffness_inverse; /* [s*s] K_kl = sum_j b_j psi_k' psi_l' */
   double *fit_point, *fit, *straight;    /* [s], [s*s] rows, [s] */
@@ -171,6 +174,9 @@ dvi_status dvi__action_end_rolling(dvi__action *action, const double *Y, double 
 /* Move dp until the velocity at the end of the path fulfils all constraints. p, v [n] are work. */
 dvi_status dvi__action_end_on_rows(dvi__action *action, const double *Y, double *p, double *v,
                                    double *dp);
+
+/* Set the weights of a damped action for the length h. */
+void dvi__action_damp(dvi__action *action, double h);
 
 /* Free the memory of dvi__action_prepare_energy. */
 void dvi__action_clear_energy(dvi__action *action);

@@ -143,8 +143,8 @@ static dvi_status fixed_point_allocate(dvi__action *a)
 
 int dvi__action_has_fixed_point(const dvi__action *a)
 {
-  return a->system->mass_diagonal != NULL && (a->system->terms & DVI__FRICTION) == 0 &&
-         a->terms.count == 0;
+  return a->system->mass_diagonal != NULL &&
+         (a->system->terms & (DVI__FRICTION | DVI__DAMPING)) == 0 && a->terms.count == 0;
 }
 
 dvi_status dvi__action_prepare_fixed_point(dvi__action *a)

@@ -2,6 +2,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 #include "step/element/action_struct.h"
 #include "core/memory.h"
@@ -21,6 +22,7 @@ static int tables_allocate(dvi__action *a)
   a->bar = DVI_NEW(double, s *lanes);
   a->node = DVI_NEW(double, r);
   a->weight = DVI_NEW(double, r);
+  if (a->system->damping > 0) a->undamped = DVI_NEW(double, r);
   a->end = DVI_NEW(double, s);
   a->stiffness = DVI_NEW(double, s *s);
   a->stiffness_inverse = DVI_NEW(double, s *s);
@@ -32,9 +34,10 @@ static int tables_allocate(dvi__action *a)
   a->bar_row = DVI_NEW(double, r *path_lanes);
   a->slope_row = DVI_NEW(double, r *path_lanes);
   a->stiffness_row = DVI_NEW(double, s *path_lanes);
-  return a->psi && a->dpsi && a->bar && a->node && a->weight && a->end && a->stiffness &&
-         a->stiffness_inverse && a->fit_point && a->fit && a->straight && a->shift.table &&
-         a->shift_rows && a->bar_row && a->slope_row && a->stiffness_row;
+  return a->psi && a->dpsi && a->bar && a->node && a->weight && a->end &&
+         (a->undamped || a->system->damping == 0) && a->stiffness && a->stiffness_inverse &&
+         a->fit_point && a->fit && a->straight && a->shift.table && a->shift_rows && a->bar_row &&
+         a->slope_row && a->stiffness_row;
 }
 
 static double largest_with(int count, const double *x, double size)
@@ -77,6 +80,7 @@ static dvi_status fill_nodes(dvi__action *a)
       a->dpsi[k * a->lanes + j] = dpsi[k];
     }
   }
+  if (a->undamped != NULL) memcpy(a->undamped, a->weight, (size_t)a->r * sizeof(double));
   dvi__trial_in(&a->trial, 1.0L, a->end, NULL, NULL);
   make_differences_exact(a);
   return DVI_OK;
@@ -144,4 +148,12 @@ dvi_status dvi__action_fill_tables(dvi__action *a)
   fill_stiffness(a);
   fill_rows(a);
   return fill_fit_table(a);
+}
+
+void dvi__action_damp(dvi__action *a, double h)
+{
+  const double rate = a->system->damping * h;
+  if (a->undamped == NULL || a->damped_h == h) return;
+  for (int j = 0; j < a->r; j++) a->weight[j] = a->undamped[j] * exp(rate * (a->node[j] - 0.5));
+  a->damped_h = h;
 }

@@ -43,6 +43,7 @@ const char *dvi__blocking_obstacle(const dvi_system *system)
   if (system->mass_diagonal == NULL) return "the mass is not diagonal";
   if (system->potential_count == 0) return "there is no potential";
   if (system->force_count > 0) return "there are forces without a potential";
+  if (system->damping > 0) return "the system is damped";
   for (int k = 0; k < system->potential_count; k++)
     if (system->potentials[k].callbacks.gradient_range == NULL)
       return "a potential has no gradient_range";

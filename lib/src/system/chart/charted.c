@@ -27,6 +27,7 @@ static dvi_status make_charted_system(dvi__charted *x, dvi_holonomic *rows)
                                                .lagrangian = &lagrangian,
                                                .forces = x->base->force_count > 0 ? &force : NULL,
                                                .force_count = x->base->force_count > 0,
+                                               .damping = x->base->damping,
                                                .holonomics = rows,
                                                .holonomic_count = x->base->holonomic_count},
                            &x->system);

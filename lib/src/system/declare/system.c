@@ -2,6 +2,7 @@
  * the whole Lagrangian. */
 #include "system/system.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "core/memory.h"
@@ -196,6 +197,28 @@ static dvi_status check_vector_potential(const dvi_system_terms *terms)
                    beside);
 }
 
+/* Uniform friction scales all momenta, which leaves Legendre's map of a vector potential, and what
+ * holds at the ends of steps with constraints and hits, out of account. */
+static dvi_status check_damping(const dvi_system_terms *terms)
+{
+  const char *beside = terms->one_form != NULL           ? "a one-form"
+                       : terms->hamiltonian != NULL      ? "a Hamiltonian"
+                       : terms->vector_potential != NULL ? "a vector potential"
+                       : terms->holonomic_count > 0      ? "holonomic constraints"
+                       : terms->nonholonomic_count > 0   ? "nonholonomic constraints"
+                       : terms->contact_count > 0        ? "contacts"
+                                                         : NULL;
+  if (!(terms->damping >= 0) || isinf(terms->damping))
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "system: the damping is %g; a finite rate, 0 or more, is needed",
+                     terms->damping);
+  if (terms->damping == 0 || beside == NULL) return DVI_OK;
+  return dvi__fail(DVI_UNSUPPORTED, "system: damping does not stand beside %s; declare%s", beside,
+                   terms->one_form != NULL || terms->hamiltonian != NULL
+                       ? " a Lagrangian with a mass"
+                       : " friction as a force");
+}
+
 static const dvi__dynamics *const kinds[] = {
 #define DYNAMICS(name) &dvi__dynamics_##name,
 #include "system/declare/dynamics.def"
@@ -243,6 +266,7 @@ static dvi_status check_declared_terms(const dvi_system_terms *terms)
   DVI_TRY(check_hamiltonian(terms));
   DVI_TRY(check_forces_and_joints(terms));
   DVI_TRY(check_vector_potential(terms));
+  DVI_TRY(check_damping(terms));
   if (terms->gauge != NULL && terms->one_form == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "system: a gauge without a one-form; it changes nothing else");
@@ -271,6 +295,8 @@ static dvi_status system_fill(dvi_system *s, const dvi_system_terms *terms)
   DVI_TRY(dvi__rows_join(s));
   DVI_TRY(dvi__contacts_copy(s, terms));
   DVI_TRY(copy_invariants(s, terms));
+  s->damping = terms->damping;
+  if (s->damping > 0) s->terms |= DVI__DAMPING;
   dvi__system_declared(s, &s->declared);
   return DVI_OK;
 }

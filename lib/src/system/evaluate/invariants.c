@@ -114,6 +114,7 @@ static dvi_status power_of_forces(dvi__evaluator *e, const dvi__instant *at, dou
     DVI_TRY(dvi__forces(e, DVI__FORCES, 1, &at->t, at->q, at->v, F));
     *power += along(s->n, F, at->v);
   }
+  if (s->damping > 0) *power -= s->damping * along(s->n, at->p, at->v);
   if (s->row_count == 0 || (s->autonomous && s->nonholonomic_count == 0)) return DVI_OK;
   DVI_TRY(s->dynamics->forces(e, at->t, at->q, at->v, F));
   *power += along(s->n, F, at->v);

@@ -13,7 +13,11 @@ dvi_status dvi__value_of_point(dvi__evaluator *e, double t, const double *q, con
 dvi_status dvi__forces_of_point(dvi__evaluator *e, double t, const double *q, const double *v,
                                 double *L_q)
 {
-  return dvi__lagrangian_gradient(e, 1, &t, q, v, L_q, NULL);
+  const double gamma = e->system->damping;
+  double *p = e->point[2];
+  DVI_TRY(dvi__lagrangian_gradient(e, 1, &t, q, v, L_q, gamma > 0 ? p : NULL));
+  for (int i = 0; i < e->system->n && gamma > 0; i++) L_q[i] -= gamma * p[i];
+  return DVI_OK;
 }
 
 dvi_status dvi__momentum_of_point(dvi__evaluator *e, double t, const double *q, const double *v,
@@ -38,7 +42,11 @@ dvi_status dvi__motion_of_lagrangian(dvi__evaluator *e, double t, const double *
 {
   (void)multiplier;
   DVI_TRY(dvi__legendre_inverse(e, t, q, p, v));
-  return pdot != NULL ? dvi__lagrangian_gradient(e, 1, &t, q, v, pdot, NULL) : DVI_OK;
+  if (pdot == NULL) return DVI_OK;
+  DVI_TRY(dvi__lagrangian_gradient(e, 1, &t, q, v, pdot, NULL));
+  for (int i = 0; i < e->system->n && e->system->damping > 0; i++)
+    pdot[i] -= e->system->damping * p[i];
+  return DVI_OK;
 }
 
 dvi_status dvi__lagrangian_is_degenerate(double t)

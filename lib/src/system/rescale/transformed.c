@@ -298,6 +298,9 @@ static dvi_status transformed_fill(dvi__transformed *x, const dvi_system *system
     return dvi__fail(DVI_UNSUPPORTED,
                      "the system declares forces without a potential, which change "
                      "the energy that the transform conserves");
+  if (system->damping > 0)
+    return dvi__fail(DVI_UNSUPPORTED, "the system declares damping, which takes the energy that "
+                                      "the transform conserves");
   if (system->row_count > 0)
     return dvi__fail(DVI_UNSUPPORTED,
                      "the system declares %sholonomic constraints, which the transform does not "
