@@ -377,8 +377,7 @@ typedef struct dvi_invariant {
  *  Exactly one kind of dynamics is declared: a constant mass (by `mass`, by `factors`, or by both,
  *  which are added), or `lagrangian`, or `one_form`, or `hamiltonian`. Potentials may stand beside
  *  all kinds but a Hamiltonian. Forces and constraints may stand beside a mass and beside a general
- *  Lagrangian, but beside factors no nonholonomic constraints. Damping may stand beside potentials,
- *  factors and forces. Contacts: dvi/contact.h. */
+ *  Lagrangian, but beside factors no nonholonomic constraints. Contacts: dvi/contact.h. */
 typedef struct dvi_system_terms {
   /** number of coordinates n, at least 1, even with a one-form. 0 with factors, which determine
    *  n */
@@ -386,16 +385,14 @@ typedef struct dvi_system_terms {
   dvi_mass mass;                    /**< a constant mass */
   const dvi_lagrangian *lagrangian; /**< a general Lagrangian */
   const dvi_one_form *one_form;     /**< a one-form alpha */
-  /** gauge of a one-form, which makes the system that of alpha + grad f. May be NULL */
-  const dvi_gauge *gauge;
+  const dvi_gauge *gauge; /**< makes a one-form alpha that of alpha + grad f. May be NULL */
   const dvi_potential *potentials;
   int potential_count;
   const dvi_symmetry *symmetries;
   int symmetry_count;
   const dvi_invariant *invariants;
   int invariant_count;
-  /** not 0 if no callback depends on t (dvi_system_check tests this). No rates are given then */
-  int autonomous;
+  int autonomous; /**< not 0 if no callback depends on t (dvi_system_check); without rates then */
   const dvi_hamiltonian *hamiltonian; /**< a Hamiltonian, without potentials */
   const dvi_constraint *constraint;   /**< constraints of the Hamiltonian (default none) */
   const dvi_factor *factors;          /**< factors of the configuration space (default: R^n) */
@@ -410,9 +407,7 @@ typedef struct dvi_system_terms {
   int nonholonomic_count;
   const struct dvi_contact *contacts; /**< contacts phi(t,q) >= 0 (dvi/contact.h; default none) */
   int contact_count;
-  /** rate gamma >= 0 of uniform friction f = -gamma p with p = L_v (default 0, none). Methods then
-   *  contract the symplectic form by e^{-gamma h} a step, exactly */
-  double damping;
+  double damping; /**< rate gamma >= 0 of uniform friction -gamma p, p = L_v (docs/forces.md) */
 } dvi_system_terms;
 
 /** A system. It never changes after its creation, so integrators on several threads may share
@@ -433,14 +428,14 @@ extern "C" {
  *                            reach has no gradient_range, a pattern is not sorted, an autonomous
  *                            system has a rate, or a gauge has no one-form. Or an inertia is that
  *                            of no body (its principal moments must be positive, none above the sum
- *                            of the others). Or the damping is negative or not finite. Or a constraint has no Hamiltonian, or a Hamiltonian
- *                            has potentials beside it
+ *                            of the others). Or a constraint has no Hamiltonian, or a Hamiltonian
+ *                            has potentials beside it. Or the damping is negative or not finite
  *  @retval DVI_SINGULAR      the constant mass is singular or not finite. With factors the mass is
  *                            not finite, or there is none at all at a factor's coordinates
  *  @retval DVI_UNSUPPORTED   factors beside a general Lagrangian, a one-form or a Hamiltonian. Or
- *                            forces or rows of constraints beside the latter two, or nonholonomic
- *                            ones beside factors. Or a vector potential beside other than a mass.
- *                            Or damping beside what dvi_system_terms does not name
+ *                            forces, damping or constraints beside the latter two. Or nonholonomic
+ *                            ones beside factors, a vector potential beside other than a mass, or
+ *                            damping beside it, constraints or contacts
  *  @retval DVI_NO_MEMORY     memory could not be allocated */
 dvi_status dvi_system_create(const dvi_system_terms *terms, dvi_system **system);
 

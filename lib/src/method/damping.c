@@ -2,8 +2,9 @@
  *
  *     p <- e^{-gamma h/2} p,   a step of the method,   p <- e^{-gamma h/2} p.
  *
- * The halves contract the symplectic form by e^{-gamma h}, and a symplectic step between them leaves
- * it alone. Momenta of symmetries shrink by the same factor. If the step is symmetric, all is.
+ * The halves contract the symplectic form by e^{-gamma h}, and a symplectic step between them
+ * leaves it alone. Momenta of symmetries shrink by the same factor. If the step is symmetric, all
+ * is.
  *
  * Around a step of the system without friction this has order 2, which is what verlet and
  * lie-verlet do. An element of the discrete action weighs its nodes instead
@@ -53,8 +54,8 @@ void dvi__damping_destroy(dvi__stepper *self)
   self->damping = NULL;
 }
 
-/* Evaluate what friction changes. An element counts for itself what it takes from the energy, by the
- * quadrature of its action. */
+/* Evaluate what friction changes. An element counts for itself what it takes from the energy, by
+ * the quadrature of its action. */
 static dvi_status damped_invariant(const dvi__stepper *self, const dvi__state *state, int i,
                                    double *value)
 {

@@ -71,8 +71,8 @@ static CVRhsFn ode_right_side_of(const dvi__reference_run *run)
   return has_factors(run) ? ode_lifted_right_side : ode_right_side;
 }
 
-/* Test for a diagonal mass without forces, damping and vector potential. Only then M^-1 is as sparse as M,
- * and the Jacobian has a simple form. */
+/* Test for a diagonal mass without forces, damping and vector potential. Only then M^-1 is as
+ * sparse as M, and the Jacobian has a simple form. */
 static int jacobian_is_simple(const dvi_system *system)
 {
   return system->mass_diagonal != NULL && !system->dynamics->on_manifold &&

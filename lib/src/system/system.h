@@ -152,7 +152,8 @@ typedef struct dvi__constraint_term {
 enum { DVI__DIMENSION_MOST = INT_MAX / 4 };
 
 /* Hashes of all that is declared, without the results of callbacks. The parts are terms, masses,
- * patterns, potentials, invariants, forces, holonomic and nonholonomic constraints, contacts, damping. */
+ * patterns, potentials, invariants, forces, holonomic and nonholonomic constraints, contacts,
+ * damping. */
 enum { DVI__DECLARED_PARTS = 10 };
 typedef struct dvi__declared {
   uint64_t hash[DVI__DECLARED_PARTS];

@@ -135,9 +135,9 @@ static dvi_status element_create_solver(dvi__stepper *self, dvi__element *own)
   return dvi__solver_create(&equations, self->counters, &own->solver);
 }
 
-/* Take account of a new term, or of weights that depend on h. The ladder begins with the whole Jacobian, and ends with the rounding
- * of rows, because roundings would err to one side otherwise. Unknowns of a term are for Newton's
- * method. */
+/* Take account of a new term, or of weights that depend on h. The ladder begins with the whole
+ * Jacobian, and ends with the rounding of rows, because roundings would err to one side otherwise.
+ * Unknowns of a term are for Newton's method. */
 static dvi_status element_renew_solver(dvi__stepper *self)
 {
   dvi__element *own = self->own;

@@ -152,8 +152,8 @@ static dvi_status charted_step_solve(dvi__stepper *self, const dvi__state *state
                           : dvi__charted_explain(own->charted, status);
 }
 
-/* Add what the forces supply over the path to the state's sums. The power of a damped system is that
- * in the charts, which have no symmetries. */
+/* Add what the forces supply over the path to the state's sums. The power of a damped system is
+ * that in the charts, which have no symmetries. */
 static dvi_status add_supplies(const dvi__stepper *self, const double *path, double h,
                                const dvi__state *state)
 {
