@@ -238,7 +238,8 @@ int bench_command(int argc, char **argv)
   if (request.scale != NULL) return scale_problem(&request);
   code = open_shaped(request.name, &request.settings, request.one_point, &scene);
   if (code != DONE) return code;
-  code = bench_problem(&request, scene);
+  code = refuse_noise("bench", scene);
+  if (code == DONE) code = bench_problem(&request, scene);
   problem_destroy(&scene);
   return code;
 }

@@ -48,17 +48,21 @@ static void explain_problem(const problem *scene, const words *settings)
     (void)printf("\n  terms        a constant mass with a vector potential A(t,q).q'");
   for (int i = 0; i < scene->terms->contact_count; i++)
     (void)printf("%s%s", i == 0 ? "\n  contacts     " : ", ", scene->terms->contacts[i].name);
+  if (scene->terms->noise != NULL)
+    (void)printf("\n  noise        kT = %g, friction %g", scene->terms->noise->temperature,
+                 scene->terms->noise->friction);
   (void)printf("\n  watched      ");
   for (int i = 0; i < dvi_system_invariant_count(scene->system); i++)
     (void)printf("%s%s", i > 0 ? ", " : "", dvi_system_invariant_name(scene->system, i));
   if (events_count(scene) > 0) (void)printf("\n  events       ");
   events_print(scene);
   (void)printf("\n  first run    --h %g --t-end %g\n", scene->h, scene->t_end);
-  (void)printf("  judged by    %s\n",
-               scene->exact != NULL ? "its exact solution"
-               : scene->digits_q != NULL
-                   ? "its stored quadruple-precision result, or IDA or two runs"
-                   : "IDA or two runs");
+  (void)printf(
+      "  judged by    %s\n",
+      scene->terms->noise != NULL ? "no other path; averages over long runs can be compared"
+      : scene->exact != NULL      ? "its exact solution"
+      : scene->digits_q != NULL   ? "its stored quadruple-precision result, or IDA or two runs"
+                                  : "IDA or two runs");
 }
 
 static int explain_method(const dvi_integrator *integrator)

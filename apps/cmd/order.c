@@ -390,6 +390,7 @@ int order_command(int argc, char **argv)
   if (code != DONE) return code;
   order_columns(motion_words(scene), r.columns);
   code = axes_read("order", &r.asked, r.plot, "h:error", r.columns, &r.axes);
+  if (code == DONE) code = refuse_noise("order", scene);
   if (code == DONE) code = wish_method(&r, scene);
   if (code == DONE) code = order_check_step(&r, scene);
   if (code == DONE) code = order_check_methods(&r, scene);

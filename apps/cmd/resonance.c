@@ -320,6 +320,7 @@ static int complete_task(const resonance_request *request, const problem *model,
   dvi_integrator *integrator = NULL;
   int code = find_varied(model, task);
   if (code == DONE) code = find_watched(model, request->watched, task);
+  if (code == DONE) code = refuse_noise("resonance", model);
   if (code == DONE) code = open_wish("resonance", model, &task->method);
   if (code == DONE) code = open_integrator(model, task->method, &integrator);
   dvi_integrator_destroy(&integrator);

@@ -205,7 +205,8 @@ static int run_problem(run_request *request, const char *name)
   int code = open_problem(name, &request->settings, &scene);
   if (code != DONE) return code;
   scene_warn("run", scene);
-  code = open_wish("run", scene, &request->method);
+  if (request->verify) code = refuse_noise("run: --verify", scene);
+  if (code == DONE) code = open_wish("run", scene, &request->method);
   if (code == DONE) code = place_momenta(request, scene);
   if (code == DONE) code = check_events(request, scene);
   if (code == DONE) code = run_check_settings(request, scene);

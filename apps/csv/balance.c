@@ -4,8 +4,9 @@
 
 bool has_balances(const problem *scene)
 {
-  return scene->terms->force_count > 0 || scene->terms->damping > 0 ||
-         scene->terms->contact_count > 0;
+  const dvi_system_terms *terms = scene->terms;
+  return terms->force_count > 0 || terms->damping > 0 || terms->contact_count > 0 ||
+         terms->noise != NULL;
 }
 
 dvi_status create_balanced(const problem *scene, const char *method, dvi_integrator **integrator)

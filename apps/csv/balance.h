@@ -1,14 +1,14 @@
-/** Invariants of systems with forces, which are balanced instead of conserved. */
+/** Invariants of systems with forces or noise, which are balanced instead of conserved. */
 #ifndef BALANCE_H
 #define BALANCE_H
 #include <stdbool.h>
 
 #include "problem.h"
 
-/** Return whether forces without a potential, or contacts, act in a problem. */
+/** Return whether forces without a potential, contacts, or a heat bath act in a problem. */
 bool has_balances(const problem *scene);
 
-/** Create an integrator of steps of time that keeps balances if forces act. */
+/** Create an integrator of steps of time that keeps balances if there are any. */
 dvi_status create_balanced(const problem *scene, const char *method, dvi_integrator **integrator);
 
 /** Return an invariant's value less what forces have supplied since the start, if the integrator

@@ -44,6 +44,7 @@ static void columns_list(run_columns *c, const dvi_integrator *integrator)
       scene->terms->holonomic_count > 0 || scene->terms->nonholonomic_count > 0)
     columns_add(c, "constraint", COLUMN_CONSTRAINT, 0);
   if (scene->terms->contact_count > 0) columns_add(c, "gap", COLUMN_GAP, 0);
+  if (scene->terms->noise != NULL) columns_add(c, "temperature", COLUMN_TEMPERATURE, 0);
   if (!isnan(dvi_integrator_jump(integrator, NULL))) columns_add(c, "jump", COLUMN_JUMP, 0);
   reaction_names(scene, c->reaction_name);
   for (int i = 0; i < reaction_count(scene); i++)
@@ -215,6 +216,8 @@ static dvi_status columns_evaluate(run_columns *c, dvi_integrator *integrator)
     status = dvi_integrator_reactions(integrator, c->reaction);
   if (status == DVI_OK && c->shows[COLUMN_GAP])
     status = dvi_integrator_gap(integrator, &c->gap, NULL);
+  if (status == DVI_OK && c->shows[COLUMN_TEMPERATURE])
+    status = dvi_integrator_temperature(integrator, &c->temperature);
   return status;
 }
 
@@ -245,6 +248,7 @@ double columns_number(const run_columns *c, const dvi_integrator *integrator, in
   case COLUMN_CONSTRAINT: return c->constraint;
   case COLUMN_REACTION: return c->reaction[column->index];
   case COLUMN_GAP: return c->gap;
+  case COLUMN_TEMPERATURE: return c->temperature;
   default: return dvi_integrator_jump(integrator, NULL);
   }
 }

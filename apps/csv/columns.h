@@ -21,9 +21,10 @@ typedef enum column_kind {
   COLUMN_DISTANCE, /**< distance from the manifold, with factors */
   /** |p - alpha(q)| with a one-form, |phi(q,p)| of a constrained Hamiltonian, |phi(t,q)| */
   COLUMN_CONSTRAINT,
-  COLUMN_GAP,      /**< smallest gap of all contacts */
-  COLUMN_JUMP,     /**< jump, of methods whose trajectories jump */
-  COLUMN_REACTION, /**< multiplier of a holonomic constraint, shown only if it is asked for */
+  COLUMN_GAP,         /**< smallest gap of all contacts */
+  COLUMN_TEMPERATURE, /**< kinetic temperature, with noise */
+  COLUMN_JUMP,        /**< jump, of methods whose trajectories jump */
+  COLUMN_REACTION,    /**< multiplier of a holonomic constraint, shown only if it is asked for */
   COLUMN_KINDS
 } column_kind;
 
@@ -43,7 +44,7 @@ typedef struct run_columns {
   char (*balance_name)[BALANCE_NAME_SIZE]; /**< [invariants] */
   double *velocity;                        /**< [nv] with factors */
   double *room;                            /**< [nq + nv] with factors */
-  double constraint, gap;
+  double constraint, gap, temperature;
   double *reaction; /**< [rows] multipliers, set likewise, and the names of their columns */
   char (*reaction_name)[REACTION_NAME_SIZE];
   bool shows[COLUMN_KINDS];

@@ -148,6 +148,15 @@ int open_wish(const char *command, const problem *scene, const char **method)
       command);
 }
 
+int refuse_noise(const char *command, const problem *scene)
+{
+  return scene->terms->noise == NULL
+             ? DONE
+             : usage_error("%s: %s has noise, and its path no error that could be measured; leave "
+                           "out its noise, or compare averages of runs with several steps",
+                           command, scene->name);
+}
+
 const char *start_setting(const problem *scene, const words *settings)
 {
   for (int i = 0; i < settings->count; i++)

@@ -22,6 +22,9 @@ int open_shaped(const char *name, const words *settings, bool one_point, problem
  * needs a method. */
 int open_wish(const char *command, const problem *scene, const char **method);
 
+/** Refuse a problem with noise, for a command that measures errors. Returns DONE without noise. */
+int refuse_noise(const char *command, const problem *scene);
+
 /** Return the first setting of a parameter that affects only the start, or NULL. */
 const char *start_setting(const problem *scene, const words *settings);
 

@@ -45,8 +45,8 @@ typedef struct problem {
   double h, t_end;    /**< step and span for a first run */
   double order_h;     /**< first step of an order study of a method of order 2 to 4 */
   double order_t_end; /**< span of an order study, and time of the digits */
-  /** [nq], [nv] quadruple-precision result at order_t_end, or NULL unless all parameters are the
-   * defaults */
+  /** [nq], [nv] quadruple-precision result at order_t_end, without noise, or NULL unless all
+   * parameters are the defaults */
   const double *digits_q, *digits_p;
   /** end of a long span with digits, 0 without far_q */
   double far_t_end;

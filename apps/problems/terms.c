@@ -36,6 +36,7 @@ static dvi_system_terms *keep_terms(problem *made, const dvi_system_terms *terms
   kept->forces = keep_array(made, terms->forces, terms->force_count, sizeof *terms->forces, &lost);
   kept->nonholonomics = keep_array(made, terms->nonholonomics, terms->nonholonomic_count,
                                    sizeof *terms->nonholonomics, &lost);
+  kept->noise = keep_array(made, terms->noise, terms->noise != NULL, sizeof *terms->noise, &lost);
   kept->symmetries = keep_array(made, terms->symmetries, terms->symmetry_count,
                                 sizeof *terms->symmetries, &lost);
   kept->factors = keep_array(made, terms->factors, terms->factor_count, sizeof *terms->factors,

@@ -152,7 +152,11 @@ bool energy_watch_start(energy_watch *w, const problem *scene, dvi_integrator *i
                       .bound = bound,
                       .passed = (double)NAN,
                       .blind = true};
-  if (!dvi_system_autonomous(scene->system) || has_affine_rows(scene->terms)) return true;
+  /* what noise exchanges with the bath is no measure of the errors of steps, which add up at
+   * random */
+  if (!dvi_system_autonomous(scene->system) || has_affine_rows(scene->terms) ||
+      scene->terms->noise != NULL)
+    return true;
   w->room = calloc(2 * (nq + nv), sizeof *w->room);
   if (w->room == NULL) return library_error(DVI_NO_MEMORY) == DONE;
   double *start = w->room + nq + nv;

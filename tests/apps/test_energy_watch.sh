@@ -59,7 +59,7 @@ while read -r problem; do
   ran=0
   for method in galerkin:degree=2 galerkin:degree=4 lie-galerkin:degree=2 lie-galerkin:degree=4 \
     vprk:nodes=2 dg-phase:degree=2 \
-    hamiltonian:type=2,degree=2 composition:order=4,base=nonholonomic; do
+    hamiltonian:type=2,degree=2 composition:order=4,base=nonholonomic langevin; do
     "$dvi" run "$problem" --method "$method" --final >out 2>err || continue
     ran=$((ran + 1))
     grep -q 'energy error' err && fail "$problem by $method: warns" && cat err

@@ -26,6 +26,8 @@ static const struct {
     {"kepler", NULL, "galerkin:degree=5,basis=legendre,quadrature=clenshaw-curtis"},
     {"kepler", NULL, "composition"},
     {"kepler", NULL, "composition:order=8,base=galerkin,degree=2"},
+    {"langevin-dimer", NULL, "langevin"},
+    {"langevin-dimer", NULL, "langevin:scheme=ovio,degree=2"},
     {"magnetic-bottle", NULL, "boris"},
     {"magnetic-bottle", NULL, "galerkin:degree=3"},
     {"magnetic-bottle", NULL, "composition"},

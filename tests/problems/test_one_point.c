@@ -14,6 +14,7 @@ static const char *method_for(const problem *model)
   if (terms->hamiltonian != NULL)
     return terms->constraint != NULL ? "dg-phase:degree=3" : "hamiltonian:degree=3";
   if (terms->factors != NULL) return "lie-galerkin:degree=5";
+  if (terms->noise != NULL) return "langevin:scheme=ovio,degree=3";
   if (terms->nonholonomic_count > 0) return "composition:order=4";
   return terms->one_form != NULL ? "vprk:nodes=3" : "galerkin:degree=5";
 }

@@ -11,6 +11,7 @@
 #include <dvi/integrator.h>
 #include <dvi/joint.h>
 #include <dvi/method.h>
+#include <dvi/noise.h>
 #include <dvi/number.h>
 #include <dvi/path.h>
 #include <dvi/quadrature.h>

@@ -261,13 +261,14 @@ double dvi_integrator_last_step(const dvi_integrator *integrator);
  *  chooses them, or if they are steps in another time (dvi/transform.h). */
 int dvi_integrator_chooses_steps(const dvi_integrator *integrator);
 
-/** Return what the forces without a potential have supplied to an invariant since the start. With
- *  the option `balances` they are 0, the energy, and the momenta of the symmetries.
+/** Return what the forces without a potential and a heat bath have supplied to an invariant since
+ *  the start. With the option `balances` they are 0, the energy, and the momenta of the symmetries.
  *
  *  The supplies of a step are those of the discrete principle of Lagrange and d'Alembert, by the
  *  quadrature of the method: h sum_j b_j F_j.v_j to the energy, and h sum_j b_j F_j.xi(q_j) to a
- *  momentum (Marsden and West 2001, sec. 3.1.4). NaN without the option, before the start, and for
- *  other invariants. */
+ *  momentum (Marsden and West 2001, sec. 3.1.4). A heat bath supplies the change of the kinetic
+ *  energy and of the momenta by its noise and friction, the heat. NaN without the option, before
+ *  the start, and for other invariants. */
 double dvi_integrator_supplied(const dvi_integrator *integrator, int invariant);
 
 /** Compute the defect of a balance, the change of an invariant since the start less what forces

@@ -371,13 +371,12 @@ typedef struct dvi_invariant {
   void *user;
 } dvi_invariant;
 
-/** The terms of a system. Only declared terms exist. All terms are copied (but for the data at
- *  `user`).
+/** The terms of a system. Only declared terms exist. All are copied, but not the data at `user`.
  *
  *  Exactly one kind of dynamics is declared: a constant mass (by `mass`, by `factors`, or by both,
  *  which are added), or `lagrangian`, or `one_form`, or `hamiltonian`. Potentials may stand beside
  *  all kinds but a Hamiltonian. Forces and constraints may stand beside a mass and beside a general
- *  Lagrangian, but beside factors no nonholonomic constraints. Contacts: dvi/contact.h. */
+ *  Lagrangian, but beside factors no nonholonomic ones. Contacts, noise: dvi/contact.h, noise.h. */
 typedef struct dvi_system_terms {
   /** number of coordinates n, at least 1, even with a one-form. 0 with factors, which determine
    *  n */
@@ -408,6 +407,7 @@ typedef struct dvi_system_terms {
   const struct dvi_contact *contacts; /**< contacts phi(t,q) >= 0 (dvi/contact.h; default none) */
   int contact_count;
   double damping; /**< rate gamma >= 0 of uniform friction -gamma p, p = L_v (docs/forces.md) */
+  const struct dvi_noise *noise; /**< a heat bath (dvi/noise.h; default none) */
 } dvi_system_terms;
 
 /** A system. It never changes after its creation, so integrators on several threads may share

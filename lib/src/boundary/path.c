@@ -77,6 +77,9 @@ static dvi_status path_check(const dvi_system *system, const dvi_path_options *o
     return dvi__fail(DVI_UNSUPPORTED,
                      "path: the system declares contacts, at which paths bend, and "
                      "the action of a path is smooth here");
+  if (system->terms & DVI__NOISE)
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "path: the system declares noise, and a path between two ends has none");
   if (o->steps < 1)
     return dvi__fail(DVI_BAD_SIZE, "path: %d steps; at least 1 is needed", o->steps);
   if (!isfinite(o->start))

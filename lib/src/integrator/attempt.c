@@ -102,8 +102,9 @@ static int is_spared(const dvi_integrator *I)
 static int state_jumps(dvi_integrator *I)
 {
   double change, exchanged, defect;
-  const dvi__instant before = {I->now.t, I->now.q, I->now.p, I->last_v},
-                     after = {I->next.t, I->next.q, I->next.p, I->v};
+  const double *const *free = I->stepper.free_p;
+  const dvi__instant before = {I->now.t, I->now.q, free[0] != NULL ? free[0] : I->now.p, I->last_v},
+                     after = {I->next.t, I->next.q, free[1] != NULL ? free[1] : I->next.p, I->v};
   dvi__guess_velocity(I->system->n, I->now.q, I->last.q, I->last.p, I->last_h, I->last_v);
   dvi__guess_velocity(I->system->n, I->next.q, I->now.q, I->last_v, I->next.t - I->now.t, I->v);
   if (dvi__energy_change(I->evaluator, &before, &after, &change, &exchanged) != DVI_OK) return 1;

@@ -127,6 +127,7 @@ static void start_block(void *of, int thread, int item)
     load_rows(n, from->q + member, members, w->point[0]);
     load_rows(nv, from->second + member, members, w->point[1]);
     w->integrator->counters.steps = 0;
+    w->integrator->stepper.member = (uint32_t)member;
     const dvi_status status =
         from->by_velocity
             ? dvi_integrator_start_velocity(w->integrator, from->t, w->point[0], w->point[1])
@@ -218,10 +219,11 @@ long dvi_ensemble_steps(const dvi_ensemble *e, int member)
   return (long)dvi__driver_row(e, block, DVI__MEMBER_STEPS)[member - block->first];
 }
 
-dvi_status dvi_ensemble_invariants(dvi_ensemble *e, int member, double *value)
+/* Load a member of which `what` is asked into the first worker's integrator. */
+static dvi_status load_asked(dvi_ensemble *e, int member, const double *value, const char *what)
 {
   if (e == NULL || value == NULL)
-    return dvi__fail(DVI_BAD_ARGUMENT, "ensemble: invariants: an argument is NULL");
+    return dvi__fail(DVI_BAD_ARGUMENT, "ensemble: %s: an argument is NULL", what);
   if (!has_member(e, member))
     return dvi__fail(DVI_BAD_ARGUMENT, "ensemble: there is no member %d, the last one is %d",
                      member, e->members - 1);
@@ -229,10 +231,22 @@ dvi_status dvi_ensemble_invariants(dvi_ensemble *e, int member, double *value)
     return dvi__fail(DVI_BAD_STATE,
                      "ensemble: its members have no state yet; call dvi_ensemble_start first");
   const dvi__block *block = block_of(e, member);
-  dvi__worker *w = &e->workers[0];
-  dvi__worker_bind(w, block);
-  dvi__member_load(e, w, block, member - block->first);
-  const dvi_status status = dvi_integrator_invariants(w->integrator, value);
+  dvi__worker_bind(&e->workers[0], block);
+  dvi__member_load(e, &e->workers[0], block, member - block->first);
+  return DVI_OK;
+}
+
+dvi_status dvi_ensemble_invariants(dvi_ensemble *e, int member, double *value)
+{
+  DVI_TRY(load_asked(e, member, value, "invariants"));
+  const dvi_status status = dvi_integrator_invariants(e->workers[0].integrator, value);
+  return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "ensemble: member %d", member);
+}
+
+dvi_status dvi_ensemble_temperature(dvi_ensemble *e, int member, double *temperature)
+{
+  DVI_TRY(load_asked(e, member, temperature, "temperature"));
+  const dvi_status status = dvi_integrator_temperature(e->workers[0].integrator, temperature);
   return status == DVI_OK ? DVI_OK : dvi__fail_in(status, "ensemble: member %d", member);
 }
 

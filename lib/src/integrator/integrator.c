@@ -493,6 +493,19 @@ dvi_status dvi_integrator_balance(dvi_integrator *I, int i, double *defect)
   return DVI_OK;
 }
 
+dvi_status dvi_integrator_temperature(dvi_integrator *I, double *temperature)
+{
+  if (I == NULL || temperature == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "temperature: an argument is NULL");
+  if (I->stepper.method->temperature == NULL)
+    return dvi__fail(DVI_UNSUPPORTED, "temperature: the system declares no noise");
+  if (!I->started)
+    return dvi__fail(
+        DVI_BAD_STATE,
+        "temperature: the integrator has no state yet; call dvi_integrator_start first");
+  return I->stepper.method->temperature(&I->stepper, &I->now, temperature);
+}
+
 dvi_status dvi_integrator_reactions(dvi_integrator *I, double *lambda)
 {
   if (I == NULL || lambda == NULL)

@@ -114,7 +114,11 @@ typedef struct dvi__stepper {
   int follows;       /* the step solves equations and can follow their branch from h = 0 */
   /* set by the driver: follow the branch in at least this many parts (default 0, no following) */
   int follow;
+  uint32_t member;  /* set by the driver: number of the member of an ensemble that starts */
   dvi__doubt doubt; /* set by `step`, reset by the driver */
+  /* set by `step`: the momenta [n] between which it conserves the energy, for the test of its
+   * branch. NULL (default) for those of the states before and after it */
+  const double *free_p[2];
   /* curvature of the equations, the worst of dvi__solve_report; set and reset as `doubt` */
   double bend;
   void *own; /* the method's struct */
@@ -193,6 +197,9 @@ struct dvi__method {
   /* Report the balance of the energy that the method conserves. NULL if the method conserves no
    * energy. */
   void (*balance)(const dvi__stepper *self, dvi_energy_balance *balance);
+  /* Compute the kinetic temperature 2K/n where in the last step its mean is the most accurate. NULL
+   * without noise. */
+  dvi_status (*temperature)(dvi__stepper *self, const dvi__state *state, double *temperature);
   /* Step members as lanes. All three functions are NULL if the method has no lanes. prepare_lanes
    * allocates `lanes` for up to `capacity` members, if the system allows lanes and they are faster.
    * step_lanes advances all members that are not `left`, each with the bits and the counts of

@@ -28,6 +28,7 @@ static const char *term_name(unsigned term)
   case DVI__CONTACT: return "contacts phi(t,q) >= 0";
   case DVI__DAMPING: return "damping, uniform friction -gamma p";
   case DVI__RUBBING: return "contacts with friction";
+  case DVI__NOISE: return "noise";
   case DVI__FAST: return "a fast potential (one that is declared `fast`)";
   default: return "potentials";
   }

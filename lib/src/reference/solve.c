@@ -193,6 +193,9 @@ dvi_status dvi__reference_form_momentum(dvi__reference_run *run)
 static dvi_status reference_prepare(dvi__reference_run *run, const double *q, const double *p)
 {
   const dvi__dynamics *dynamics = run->system->dynamics;
+  if (run->system->terms & DVI__NOISE)
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "the system declares noise, and this code solves equations without");
   const int lifted = dynamics->equations == DVI__LIFTED;
   DVI_TRY(dvi__evaluator_create(run->system, 1, lifted ? DVI__STATES : DVI__HESSIANS,
                                 &run->counters, &run->evaluator));

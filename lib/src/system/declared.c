@@ -116,6 +116,14 @@ static uint64_t hash_contacts(const dvi_system *s)
   return hash;
 }
 
+static uint64_t hash_noise(const dvi_system *s)
+{
+  uint64_t hash = dvi__hash(DVI__HASH_START, sizeof s->noise.temperature, &s->noise.temperature);
+  hash = dvi__hash(hash, sizeof s->noise.friction, &s->noise.friction);
+  hash = dvi__hash(hash, sizeof s->noise.seed, &s->noise.seed);
+  return dvi__hash(hash, sizeof s->noise.stream, &s->noise.stream);
+}
+
 static uint64_t hash_invariants(const dvi_system *s)
 {
   uint64_t hash = DVI__HASH_START;
@@ -126,10 +134,11 @@ static uint64_t hash_invariants(const dvi_system *s)
 
 void dvi__system_declared(const dvi_system *system, dvi__declared *declared)
 {
-  *declared = (dvi__declared){
-      {hash_terms(system), hash_masses(system), hash_patterns(system), hash_potentials(system),
-       hash_invariants(system), hash_forces(system), hash_holonomics(system),
-       hash_nonholonomics(system), hash_contacts(system), hash_damping(system)}};
+  *declared = (dvi__declared){{hash_terms(system), hash_masses(system), hash_patterns(system),
+                               hash_potentials(system), hash_invariants(system),
+                               hash_forces(system), hash_holonomics(system),
+                               hash_nonholonomics(system), hash_contacts(system),
+                               hash_damping(system), hash_noise(system)}};
 }
 
 const char *dvi__declared_difference(const dvi__declared *one, const dvi__declared *other)
@@ -143,7 +152,8 @@ const char *dvi__declared_difference(const dvi__declared *one, const dvi__declar
                                                         "holonomic constraints",
                                                         "nonholonomic constraints",
                                                         "contacts",
-                                                        "damping"};
+                                                        "damping",
+                                                        "numbers of the noise"};
   for (int part = 0; part < DVI__DECLARED_PARTS; part++)
     if (one->hash[part] != other->hash[part]) return name[part];
   return NULL;

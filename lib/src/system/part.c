@@ -35,6 +35,43 @@ static dvi_status make_part(const dvi_system *whole, int fast, dvi_mass mass, dv
   return status;
 }
 
+static dvi_force declared_force(const dvi__force_term *term)
+{
+  dvi_force force = term->callbacks;
+  if (force.by_q.start != NULL) force.by_q = (dvi_pattern){term->by_q.start, term->by_q.row};
+  if (force.by_v.start != NULL) force.by_v = (dvi_pattern){term->by_v.start, term->by_v.row};
+  return force;
+}
+
+dvi_status dvi__system_without_noise(const dvi_system *whole, dvi_system **part)
+{
+  const int potentials = whole->potential_count, forces = whole->force_count;
+  dvi_potential *potential = DVI_NEW(dvi_potential, potentials);
+  dvi_force *force = DVI_NEW(dvi_force, forces);
+  dvi_status status = DVI_NO_MEMORY;
+  *part = NULL;
+  if (potential != NULL && force != NULL) {
+    for (int k = 0; k < potentials; k++) potential[k] = declared_potential(&whole->potentials[k]);
+    for (int k = 0; k < forces; k++) force[k] = declared_force(&whole->forces[k]);
+    status = dvi_system_create(
+        &(dvi_system_terms){.dimension = whole->n,
+                            .mass = mass_of_system(whole),
+                            .autonomous = whole->autonomous,
+                            .potentials = potentials > 0 ? potential : NULL,
+                            .potential_count = potentials,
+                            .forces = forces > 0 ? force : NULL,
+                            .force_count = forces,
+                            .symmetries = whole->symmetry_count > 0 ? whole->symmetries : NULL,
+                            .symmetry_count = whole->symmetry_count},
+        part);
+  } else {
+    (void)dvi__fail(status, "system: no memory for its parts");
+  }
+  dvi__release(potential);
+  dvi__release(force);
+  return status;
+}
+
 dvi_status dvi__system_slow_part(const dvi_system *whole, dvi_system **part)
 {
   return make_part(whole, 0, (dvi_mass){.scalar = 1}, part);

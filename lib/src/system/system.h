@@ -2,6 +2,7 @@
 #ifndef DVI_SYSTEM_SYSTEM_H
 #define DVI_SYSTEM_SYSTEM_H
 #include <dvi/contact.h>
+#include <dvi/noise.h>
 #include <limits.h>
 #include <stdint.h>
 
@@ -30,11 +31,12 @@ typedef enum dvi__term {
   DVI__CONTACT = 32768,      /* gaps phi(t,q) >= 0 */
   DVI__RUBBING = 65536,      /* contacts with friction */
   DVI__DAMPING = 131072,     /* uniform friction -gamma p */
+  DVI__NOISE = 262144,
   DVI__PHASE_SPACE = DVI__CONSTRAINED_HAMILTONIAN | DVI__HAMILTONIAN,
   DVI__DYNAMICS = DVI__CONSTANT_MASS | DVI__LAGRANGIAN | DVI__ONE_FORM | DVI__FACTORS |
                   DVI__PHASE_SPACE, /* one of these is declared */
   DVI__KINDS = DVI__ROTATIONS | DVI__DIRECTIONS | DVI__FAST,
-  DVI__LAST_TERM = DVI__DAMPING
+  DVI__LAST_TERM = DVI__NOISE
 } dvi__term;
 
 /* Groups of columns that are moved together when a missing Hessian block is differenced. */
@@ -153,8 +155,8 @@ enum { DVI__DIMENSION_MOST = INT_MAX / 4 };
 
 /* Hashes of all that is declared, without the results of callbacks. The parts are terms, masses,
  * patterns, potentials, invariants, forces, holonomic and nonholonomic constraints, contacts,
- * damping. */
-enum { DVI__DECLARED_PARTS = 10 };
+ * damping, noise. */
+enum { DVI__DECLARED_NOISE = 10, DVI__DECLARED_PARTS };
 typedef struct dvi__declared {
   uint64_t hash[DVI__DECLARED_PARTS];
 } dvi__declared;
@@ -194,6 +196,7 @@ struct dvi_system {
   dvi__pattern rows_q, rows_qq;
   dvi__contact_term *contacts;
   int contact_count;
+  dvi_noise noise; /* zero without DVI__NOISE */
   dvi_symmetry *symmetries;
   int symmetry_count;
   dvi_invariant *invariants;

@@ -92,6 +92,30 @@ static void henon_heiles_acceleration(const quad_system *system, const quad *q, 
   a[1] = -y - lambda * (x * x - y * y);
 }
 
+/* V = b (1 - s^2)^2 with s = (r - 3/2)/w, without the bath. */
+static void dimer_prepare(quad_system *system)
+{
+  static const char *const q[] = {"-0.6", "0.1", "0.5", "0"}, *const v[] = {"0.1", "0.3", "-0.2",
+                                                                            "-0.4"};
+  system->n = 4;
+  for (int i = 0; i < 4; i++) {
+    system->q[i] = quad_number(q[i]);
+    system->v[i] = quad_number(v[i]);
+  }
+}
+
+static void dimer_acceleration(const quad_system *system, const quad *q, const quad *v, quad *a)
+{
+  const quad b = system->value[0], w = system->value[1], x = q[2] - q[0], y = q[3] - q[1],
+             r = quad_sqrt(x * x + y * y), s = (r - quad_number("1.5")) / w,
+             pull = 4 * b * s * (1 - s * s) / (w * r);
+  (void)v;
+  a[2] = pull * x;
+  a[3] = pull * y;
+  a[0] = -a[2];
+  a[1] = -a[3];
+}
+
 /* Two point masses m1, m2. The first is at (l1 sin t1, -l1 cos t1), the second is (l2 sin t2, -l2
  * cos t2) away from it, and M(theta) omega = p. */
 typedef struct mass_matrix {
@@ -417,6 +441,11 @@ static const quad_problem problems[] = {
      magnetic_bottle_velocity,
      NULL,
      NULL},
+    {.name = "langevin-dimer",
+     .parameter = {"b", "w"},
+     .standard = {"1", "0.5"},
+     .prepare = dimer_prepare,
+     .acceleration = dimer_acceleration},
     {"stiff-pendulum",
      {"k", "l", "m", "g"},
      {"1e4", "1", "1", "9.81"},

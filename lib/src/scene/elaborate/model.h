@@ -1,8 +1,9 @@
 /* A scene, from the start of its reading on. The parts of the reader fill in one object in turn. */
 #ifndef DVI_SCENE_ELABORATE_MODEL_H
 #define DVI_SCENE_ELABORATE_MODEL_H
-#include <dvi/joint.h>
 #include <dvi/contact.h>
+#include <dvi/joint.h>
+#include <dvi/noise.h>
 #include <dvi/scene.h>
 #include <pthread.h>
 
@@ -83,6 +84,7 @@ struct dvi_scene {
   dvi_factor *body;   /* [body_count] members of all coordinates, for the joints */
   int joint_count, body_count;
   dvi_contact *contacts; /* [terms.contact_count] */
+  dvi_noise noise;
   dvi__scene_term *functions;
   /* the term from which a constant mass was read, with A(t,q).q' of a vector potential, or NULL */
   const dvi__scene_term *kinetic;

@@ -138,6 +138,16 @@ static void emit_joints(dvi__emitter *out, const dvi_scene *scene, const char *n
             functions + 1);
 }
 
+static void emit_noise(dvi__emitter *out, const dvi_noise *noise)
+{
+  dvi__emit(out, "  const dvi_noise noise = {.temperature = ");
+  dvi__emit_number(out, noise->temperature);
+  dvi__emit(out, ", .friction = ");
+  dvi__emit_number(out, noise->friction);
+  dvi__emit(out, ", .seed = %lluu, .stream = %uu};\n  terms.noise = &noise;\n", noise->seed,
+            noise->stream);
+}
+
 static void emit_create(dvi__emitter *out, const dvi_scene *scene, const char *name)
 {
   const dvi_system_terms *terms = &scene->terms;
@@ -174,6 +184,7 @@ static void emit_create(dvi__emitter *out, const dvi_scene *scene, const char *n
     dvi__emit_number(out, terms->damping);
     dvi__emit(out, ";\n");
   }
+  if (terms->noise != NULL) emit_noise(out, terms->noise);
   emit_mass(out, mass, pattern, row);
   dvi__emit(out, "  return dvi_system_create(&terms, system);\n}\n");
 }

@@ -1,4 +1,4 @@
-/* The sections forces, dissipation and damping. */
+/* The sections forces, dissipation, damping and noise. */
 #include "scene/sections/motion.h"
 #include "scene/sections/sections.h"
 #include "scene/terms/callbacks.h"
@@ -60,4 +60,59 @@ bool dvi__read_damping(dvi_scene *scene, const dvi__tree *section)
     return false;
   return *gamma >= 0 || dvi__scene_refuse(scene, section->span,
                                           "damping must not be negative, and is %.17g", *gamma);
+}
+
+/* ---- noise ---- */
+
+static bool refuse_other_masses(dvi_scene *scene, const dvi__tree *section)
+{
+  const dvi_system_terms *terms = &scene->terms;
+  if (!dvi__refuse_factors(scene, section, "noise")) return false;
+  if (terms->holonomic_count + terms->nonholonomic_count + terms->contact_count > 0 ||
+      terms->damping > 0)
+    return dvi__scene_refuse(scene, section->span,
+                             "beside constraints, contacts and damping there is no noise");
+  return (terms->lagrangian == NULL && terms->one_form == NULL && terms->hamiltonian == NULL) ||
+         dvi__scene_refuse(scene, section->span,
+                           "noise needs a constant mass, and that of this scene is none");
+}
+
+/* Read a number that may not be negative. */
+static bool read_strength(dvi_scene *scene, const dvi__tree *section, const char *name,
+                          double *number)
+{
+  const dvi__tree *tree = dvi__tree_find(section, name);
+  if (tree == NULL)
+    return dvi__scene_refuse(
+        scene, section->span,
+        "noise needs a temperature and a friction, as in {temperature: 1, friction: 0.5, seed: 7}");
+  if (!dvi__tree_number(scene, tree, name, number)) return false;
+  return *number >= 0 ||
+         dvi__scene_refuse(scene, tree->span, "a %s cannot be negative, and this one is %.17g",
+                           name, *number);
+}
+
+/* Read a whole number, 0 if it is left out. */
+static bool read_label(dvi_scene *scene, const dvi__tree *section, const char *name, int *number)
+{
+  const dvi__tree *tree = dvi__tree_find(section, name);
+  *number = 0;
+  return tree == NULL || dvi__tree_whole(scene, tree, name, 0, number);
+}
+
+bool dvi__read_noise(dvi_scene *scene, const dvi__tree *section)
+{
+  static const char *const known[] = {"temperature", "friction", "seed", "stream"};
+  dvi_noise *noise = &scene->noise;
+  int seed, stream;
+  if (!dvi__want_mapping(scene, section, "noise") ||
+      !dvi__want_keys(scene, section, "noise", 4, known) || !refuse_other_masses(scene, section) ||
+      !read_strength(scene, section, "temperature", &noise->temperature) ||
+      !read_strength(scene, section, "friction", &noise->friction) ||
+      !read_label(scene, section, "seed", &seed) || !read_label(scene, section, "stream", &stream))
+    return false;
+  noise->seed = (unsigned long long)seed;
+  noise->stream = (unsigned)stream;
+  scene->terms.noise = noise;
+  return true;
 }

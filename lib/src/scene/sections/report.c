@@ -11,7 +11,7 @@ enum { COLUMNS_MAX = 1000 };
 static int list_columns(const dvi_scene *scene, const char **known)
 {
   static const char *const others[] = {
-      "t", "energy", "energy_balance", "constraint", "distance", "gap", "h", "jump"};
+      "t", "energy", "energy_balance", "constraint", "distance", "gap", "temperature", "h", "jump"};
   enum { OTHERS = sizeof others / sizeof *others };
   const char *(*const label[])(const dvi_scene *, int) = {dvi_scene_coordinate, dvi_scene_velocity,
                                                           dvi_scene_momentum};

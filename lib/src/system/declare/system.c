@@ -219,6 +219,34 @@ static dvi_status check_damping(const dvi_system_terms *terms)
                        : " friction as a force");
 }
 
+static dvi_status check_noise(const dvi_system_terms *terms)
+{
+  const dvi_noise *noise = terms->noise;
+  if (noise == NULL) return DVI_OK;
+  const char *beside = terms->factors != NULL            ? "factors"
+                       : terms->lagrangian != NULL       ? "a general Lagrangian"
+                       : terms->one_form != NULL         ? "a one-form"
+                       : terms->hamiltonian != NULL      ? "a Hamiltonian"
+                       : terms->holonomic_count > 0      ? "holonomic constraints"
+                       : terms->nonholonomic_count > 0   ? "nonholonomic constraints"
+                       : terms->contact_count > 0        ? "contacts"
+                       : terms->vector_potential != NULL ? "a vector potential"
+                       : terms->damping > 0 ? "damping; the bath has a friction of its own"
+                                            : NULL;
+  if (beside != NULL)
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "system: noise goes with a constant mass of coordinates, not with %s", beside);
+  if (!(noise->temperature >= 0) || !isfinite(noise->temperature))
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "system: the temperature of the noise is %g; 0 or more is possible",
+                     noise->temperature);
+  if (!(noise->friction >= 0) || !isfinite(noise->friction))
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "system: the friction of the noise is %g; 0 or more is possible",
+                     noise->friction);
+  return DVI_OK;
+}
+
 static const dvi__dynamics *const kinds[] = {
 #define DYNAMICS(name) &dvi__dynamics_##name,
 #include "system/declare/dynamics.def"
@@ -267,6 +295,7 @@ static dvi_status check_declared_terms(const dvi_system_terms *terms)
   DVI_TRY(check_forces_and_joints(terms));
   DVI_TRY(check_vector_potential(terms));
   DVI_TRY(check_damping(terms));
+  DVI_TRY(check_noise(terms));
   if (terms->gauge != NULL && terms->one_form == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "system: a gauge without a one-form; it changes nothing else");
@@ -297,6 +326,10 @@ static dvi_status system_fill(dvi_system *s, const dvi_system_terms *terms)
   DVI_TRY(copy_invariants(s, terms));
   s->damping = terms->damping;
   if (s->damping > 0) s->terms |= DVI__DAMPING;
+  if (terms->noise != NULL) {
+    s->terms |= DVI__NOISE;
+    s->noise = *terms->noise;
+  }
   dvi__system_declared(s, &s->declared);
   return DVI_OK;
 }

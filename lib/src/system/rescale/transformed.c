@@ -309,6 +309,9 @@ static dvi_status transformed_fill(dvi__transformed *x, const dvi_system *system
   if (system->contact_count > 0)
     return dvi__fail(DVI_UNSUPPORTED,
                      "the system declares contacts, whose hits the transform does not carry over");
+  if (system->terms & DVI__NOISE)
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "the system declares noise, which is that of equal steps of time");
   DVI_TRY(dvi__system_prepare_hessian(system));
   DVI_TRY(transformed_reserve(x, 1));
   return make_transformed_system(x);

@@ -1,0 +1,49 @@
+/** Noise and friction of a heat bath beside a constant mass (docs/mechanics/noise.md). */
+#ifndef DVI_NOISE_H
+#define DVI_NOISE_H
+#include <dvi/ensemble.h>
+
+/** A heat bath: friction and noise that keep the momenta at a temperature. The equations of motion
+ *  are those of Langevin (Leimkuhler and Matthews 2013, eq. 1),
+ *
+ *      dq = M^-1 p dt,     dp = (F - V_q) dt - gamma p dt + sqrt(2 gamma kT) M^(1/2) dW.
+ *
+ *  The states are then distributed as exp(-H/kT), if there are no other forces and all potentials
+ *  are autonomous. The noise is a function of the seed, the stream, the number of the step and the
+ *  coordinate alone. The same seed and stream give the same path on any machine and with any number
+ *  of threads. Each stream has its own path.
+ *
+ *  Noise stands beside a positive constant mass. dvi_system_create refuses it beside factors,
+ *  constraints, contacts, a vector potential, a general Lagrangian, a one-form or a Hamiltonian
+ *  (DVI_UNSUPPORTED), and numbers out of their range (DVI_BAD_ARGUMENT). */
+typedef struct dvi_noise {
+  double temperature; /**< kT, an energy, 0 or more */
+  double friction;    /**< gamma, 1/time, 0 or more */
+  unsigned long long seed;
+  unsigned stream; /**< member k of an ensemble has stream + k (modulo 2^32) */
+} dvi_noise;
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Compute the kinetic temperature 2K/n of a system with noise, in the unit of dvi_noise's, an
+ *  energy.
+ *
+ *  K is that of the momenta after the last O of the step, which for BAOAB stands in its middle. The
+ *  mean of that one is kT for a harmonic oscillator with steps of any length, while the mean at the
+ *  ends of steps falls short by a part h^2 omega^2/4 (Leimkuhler and Matthews 2013). Before the
+ *  first step K is that of the state.
+ *  @retval DVI_UNSUPPORTED   the system declares no noise
+ *  @retval DVI_BAD_STATE     the integrator has no state yet
+ *  @retval DVI_BAD_ARGUMENT  a pointer is NULL */
+dvi_status dvi_integrator_temperature(dvi_integrator *integrator, double *temperature);
+
+/** Compute the kinetic temperature of one member, as dvi_integrator_temperature. Each member of a
+ *  system with noise has a stream of its own (dvi_noise). */
+dvi_status dvi_ensemble_temperature(dvi_ensemble *ensemble, int member, double *temperature);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
