@@ -20,8 +20,8 @@ static const char *term_name(unsigned term)
   case DVI__ROTATIONS: return "rotations";
   case DVI__DIRECTIONS: return "directions (S^2)";
   case DVI__HAMILTONIAN: return "a Hamiltonian without constraints";
-  case DVI__FORCE:
-  case DVI__FRICTION: return "forces without a potential";
+  case DVI__FORCE: return "forces without a potential";
+  case DVI__FRICTION: return "forces without a potential that depend on the velocity";
   case DVI__HOLONOMIC: return "holonomic constraints phi(t,q) = 0";
   case DVI__VECTOR_POTENTIAL: return "a vector potential A(t,q).v";
   case DVI__NONHOLONOMIC: return "nonholonomic constraints A v + a = 0";

@@ -266,6 +266,54 @@ START_TEST(a_hinge_with_friction_is_a_damped_pendulum)
 }
 END_TEST
 
+/* ---- Verlet's method takes forces of time and place ---- */
+
+static int stir(double t, const double *q, const double *v, double *F, void *user)
+{
+  (void)v, (void)user;
+  for (int i = 0; i < 3; i++) {
+    F[i] = 0.2 * sin(t) * q[3 * i + 1];
+    F[3 + i] = 0.1 * q[i] - 0.3 * q[9 + i];
+    F[6 + i] = 0.3 * q[i] * cos(t) + 0.1 * q[9 + i];
+  }
+  return 0;
+}
+
+static void stir_instead(void)
+{
+  forget_dragged();
+  dragged = create_dragged(&(dvi_force){.name = "stir", .value = stir, .without_velocity = 1});
+}
+
+START_TEST(verlet_has_order_2_with_forces_of_place_and_composes)
+{
+  stir_instead();
+  judge_dragged(DVI_IDA);
+  check_order_of("lie-verlet", 2);
+  check_order_of("composition:order=4,base=lie-verlet", 4);
+}
+END_TEST
+
+START_TEST(verlet_balances_momenta_and_energy)
+{
+  double defect[2][2] = {{0}}, now;
+  stir_instead();
+  for (int level = 0; level < 2; level++) {
+    dvi_integrator *made = start_balanced("lie-verlet");
+    for (int k = 0; k < 200 << level; k++) {
+      advance(made, ldexp(0.01, -level), 1);
+      for (int i = 0; i < 2; i++) {
+        ck_assert_int_eq(dvi_integrator_balance(made, i, &now), DVI_OK);
+        defect[level][i] = fmax(defect[level][i], fabs(now));
+      }
+    }
+    dvi_integrator_destroy(&made);
+    ck_assert_double_le(defect[level][1], 1e-13);
+  }
+  ck_assert_double_eq_tol(log2(defect[0][0] / defect[1][0]), 2, 0.2);
+}
+END_TEST
+
 /* ---- declarations and refusals ---- */
 
 static int no_jacobian(double t, const double *q, const double *v, double *F_q, double *F_v,
@@ -317,6 +365,7 @@ START_TEST(jacobians_and_other_methods_are_refused)
   for (size_t k = 0; k < sizeof methods / sizeof *methods; k++) {
     dvi_integrator *made;
     ck_assert_int_eq(dvi_integrator_create(dragged, methods[k], &made), DVI_UNSUPPORTED);
+    if (k == 0) check_words("forces without a potential that depend on the velocity");
   }
 }
 END_TEST
@@ -328,6 +377,8 @@ SUITE(lie_galerkin_forces)
   tcase_add_test(tests, all_judges_agree);
   tcase_add_test(tests, supplies_balance_momenta_and_energy);
   tcase_add_test(tests, a_hinge_with_friction_is_a_damped_pendulum);
+  tcase_add_test(tests, verlet_has_order_2_with_forces_of_place_and_composes);
+  tcase_add_test(tests, verlet_balances_momenta_and_energy);
   tcase_add_test(tests, patterns_change_nothing);
   tcase_add_test(tests, jacobians_and_other_methods_are_refused);
 }

@@ -10,6 +10,8 @@
  *     F Jd - Jd F^T = (h p_half)^ gives q1 and rotates p_half,
  *     p1 = p_half - h/2 dV(q1).
  *
+ * Forces F(t,q) join -dV in both kicks, and holonomic constraints add their forces (lie_rattle.h).
+ *
  * The equation for q1 does not contain the potential (step/lie/lie_drift.h), so that a step has one
  * gradient and is explicit in the forces. The order is 2. The method is symmetric and symplectic,
  * and conserves momenta of symmetries to roundoff. A free body keeps its energy, too (Hairer and
@@ -19,6 +21,7 @@
 #include "step/lie/lie_drift.h"
 #include "core/memory.h"
 #include "core/status.h"
+#include "method/lie/lie_rattle.h"
 #include "method/method.h"
 #include "num/compensated.h"
 
@@ -38,10 +41,14 @@ static const dvi__key keys[] = {
 };
 
 /* The memory holds the gradient at the end of the last step, which is that at the start of the
- * next, then a flag, then the displacement of each slot in the step. */
+ * next, then a flag, then the displacement of each slot in the step, then the forces F(t,q) beside
+ * the gradient, and the multipliers of constraints. */
 typedef struct lie_verlet {
   dvi__evaluator *evaluator;
   dvi__lie_drift *drift;
+  dvi__lie_rattle *rattle; /* NULL without holonomic constraints */
+  dvi__evaluator *states;  /* for what forces supply, NULL without forces */
+  double *v, *supply;      /* [nv], [1 + symmetries] */
 } lie_verlet;
 
 static double *lie_verlet_gradient_known(const dvi__stepper *self)
@@ -54,39 +61,98 @@ static double *displacement_of(const dvi__stepper *self)
   return self->memory + self->system->n + 1;
 }
 
+static double *lie_verlet_forces(const dvi__stepper *self)
+{
+  return displacement_of(self) + self->system->nv;
+}
+
+static double *lie_verlet_multipliers(const dvi__stepper *self)
+{
+  return lie_verlet_forces(self) + self->system->nv;
+}
+
+static dvi_status create_terms(const dvi__stepper *self, lie_verlet *own)
+{
+  const dvi_system *s = self->system;
+  const size_t nv = (size_t)s->nv;
+  if (s->row_count > 0)
+    DVI_TRY(dvi__lie_rattle_create(s, own->drift, self->counters, &own->rattle));
+  if (s->force_count == 0) return DVI_OK;
+  own->v = DVI_NEW(double, nv + 1 + (size_t)s->symmetry_count);
+  if (own->v == NULL) return dvi__fail(DVI_NO_MEMORY, "lie-verlet: no memory");
+  own->supply = own->v + nv;
+  return dvi__evaluator_create(s, 1, DVI__STATES, self->counters, &own->states);
+}
+
 static dvi_status lie_verlet_create(dvi__stepper *self)
 {
   lie_verlet *own = self->own = DVI_NEW(lie_verlet, 1);
   self->order = 2;
   self->symmetric = 1;
-  self->memory_count = (size_t)self->system->n + 1 + (size_t)self->system->nv;
+  self->memory_count = (size_t)self->system->n + 1 + 2 * (size_t)self->system->nv +
+                       (size_t)self->system->row_count;
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "lie-verlet: no memory");
   DVI_TRY(dvi__lie_drift_create(self->system, (dvi__moser_veselov_map)self->settings.value[SOLVE],
                                 self->counters, &own->drift));
-  return dvi__evaluator_create(self->system, 1, DVI__GRADIENTS, self->counters, &own->evaluator);
+  DVI_TRY(dvi__evaluator_create(self->system, 1, DVI__GRADIENTS, self->counters, &own->evaluator));
+  return create_terms(self, own);
 }
 
 static void lie_verlet_destroy(dvi__stepper *self)
 {
   lie_verlet *own = self->own;
   if (own == NULL) return;
+  dvi__lie_rattle_destroy(&own->rattle);
   dvi__lie_drift_destroy(&own->drift);
+  dvi__evaluator_destroy(&own->states);
   dvi__evaluator_destroy(&own->evaluator);
+  dvi__release(own->v);
   dvi__release(own);
 }
 
 static dvi_status lie_verlet_gradient(const dvi__stepper *self, const dvi__state *state)
 {
   const lie_verlet *own = self->own;
-  if (self->system->potential_count == 0) return DVI_OK;
-  *lie_verlet_gradient_known(self) = 1;
-  return dvi__potentials_gradient(own->evaluator, 1, &state->t, state->q, self->memory);
+  const dvi_system *s = self->system;
+  if (s->force_count > 0)
+    DVI_TRY(dvi__forces(own->evaluator, DVI__FORCE, 1, &state->t, state->q, NULL,
+                        lie_verlet_forces(self)));
+  if (s->potential_count > 0)
+    DVI_TRY(dvi__potentials_gradient(own->evaluator, 1, &state->t, state->q, self->memory));
+  if (s->force_count + s->potential_count > 0) *lie_verlet_gradient_known(self) = 1;
+  return DVI_OK;
 }
 
 static void lie_verlet_kick(const dvi__stepper *self, const dvi__phase *phase, double h)
 {
   const lie_verlet *own = self->own;
   if (self->system->potential_count > 0) dvi__lie_drift_kick(own->drift, h, self->memory, phase);
+  if (self->system->force_count > 0)
+    dvi__lie_drift_push(own->drift, h, lie_verlet_forces(self), phase);
+}
+
+/* Add what the forces at one end of the path supply, with the velocity of its momentum there. */
+static dvi_status lie_verlet_supply(const dvi__stepper *self, dvi__state *state, double h)
+{
+  const lie_verlet *own = self->own;
+  const double half = 0.5 * h;
+  if (state->supplied == NULL || own->states == NULL) return DVI_OK;
+  DVI_TRY(dvi__legendre_inverse(own->states, state->t, state->q, state->p, own->v));
+  DVI_TRY(
+      dvi__supply(own->states, 1, &half, lie_verlet_forces(self), state->q, own->v, own->supply));
+  dvi__add_compensated_all(1 + self->system->symmetry_count, state->supplied,
+                           state->supplied_compensation, own->supply);
+  return DVI_OK;
+}
+
+static dvi_status lie_verlet_drift(const dvi__stepper *self, const dvi__state *state,
+                                   const dvi__phase *phase, double h)
+{
+  const lie_verlet *own = self->own;
+  if (own->rattle != NULL)
+    return dvi__lie_rattle_drift(own->rattle, state->t, h, phase, lie_verlet_multipliers(self),
+                                 displacement_of(self));
+  return dvi__lie_drift_drift(own->drift, h, phase, displacement_of(self));
 }
 
 static dvi_status lie_verlet_step(dvi__stepper *self, dvi__state *state, double h)
@@ -98,11 +164,13 @@ static dvi_status lie_verlet_step(dvi__stepper *self, dvi__state *state, double 
                             .p_compensation = state->p_compensation};
   if (*lie_verlet_gradient_known(self) == 0) DVI_TRY(lie_verlet_gradient(self, state));
   lie_verlet_kick(self, &phase, 0.5 * h);
-  DVI_TRY(dvi__lie_drift_drift(own->drift, h, &phase, displacement_of(self)));
+  DVI_TRY(lie_verlet_supply(self, state, h));
+  DVI_TRY(lie_verlet_drift(self, state, &phase, h));
   dvi__add_compensated(&state->t, &state->t_compensation, h);
   DVI_TRY(lie_verlet_gradient(self, state));
+  DVI_TRY(lie_verlet_supply(self, state, h));
   lie_verlet_kick(self, &phase, 0.5 * h);
-  return DVI_OK;
+  return own->rattle != NULL ? dvi__lie_rattle_end(own->rattle, state->t, &phase) : DVI_OK;
 }
 
 static void lie_verlet_path(const dvi__stepper *self, const double *q0, double h, double tau,
@@ -133,7 +201,8 @@ const dvi__method dvi__lie_verlet = {
     .cite = "LeokShingel2012",
     .keys = keys,
     .needs = DVI__FACTORS,
-    .uses = DVI__CONSTANT_MASS | DVI__POTENTIAL | DVI__FACTORS | DVI__DAMPING,
+    .uses = DVI__CONSTANT_MASS | DVI__POTENTIAL | DVI__FACTORS | DVI__FORCE | DVI__HOLONOMIC |
+            DVI__DAMPING,
     .create = lie_verlet_create,
     .destroy = lie_verlet_destroy,
     .step = lie_verlet_step,

@@ -82,6 +82,20 @@ void dvi__lie_drift_kick(const dvi__lie_drift *l, double h, const double *V_q,
   }
 }
 
+void dvi__lie_drift_push(const dvi__lie_drift *l, double h, const double *F,
+                         const dvi__phase *state)
+{
+  for (int c = 0; c < l->blocks.system->slot_count; c++) {
+    const dvi__factor_slot *slot = &l->blocks.system->slots[c];
+    double *p = state->p + slot->v, *compensation = state->p_compensation + slot->v;
+    if (slot->kind == DVI__SPHERE)
+      kick_direction(-h, F + slot->v, state->q + slot->q, p, compensation);
+    else
+      for (int i = 0; i < dvi__chart_velocities(slot->kind); i++)
+        dvi__add_compensated(p + i, compensation + i, h * F[slot->v + i]);
+  }
+}
+
 /* ---- drifts of one slot ---- */
 
 static dvi_status lie_drift_too_large(const dvi__mass_block *own, double impulse, double most)

@@ -27,6 +27,10 @@ void dvi__lie_drift_destroy(dvi__lie_drift **drift);
 void dvi__lie_drift_kick(const dvi__lie_drift *drift, double h, const double *V_q,
                          const dvi__phase *state);
 
+/* Set p += h F for forces F [nv] on the stored velocities, as projected for momenta at q. */
+void dvi__lie_drift_push(const dvi__lie_drift *drift, double h, const double *F,
+                         const dvi__phase *state);
+
 /* Take the drift. displacement [nv] is the motion of each slot, for dvi__lie_drift_path.
  * DVI_STEP_TOO_LARGE if no q1 lies on the branch of shorter steps. */
 dvi_status dvi__lie_drift_drift(dvi__lie_drift *drift, double h, const dvi__phase *state,

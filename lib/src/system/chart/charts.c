@@ -155,6 +155,29 @@ static dvi_status reactions_in_charts(dvi__evaluator *e, double t, const double 
       own->charted, dvi__rows_acceleration(own->inner, t, own->xi, own->local, NULL, lambda));
 }
 
+dvi_status dvi__charts_factor_rows(dvi__evaluator *e, double t, const double *q)
+{
+  const chart_memory *own = e->own;
+  const size_t size = (size_t)e->system->nx * sizeof(double);
+  memset(own->xi, 0, size);
+  memset(own->local, 0, size);
+  dvi__charted_centre(own->charted, q);
+  return dvi__charted_explain(own->charted, dvi__rows_factor(own->inner, t, own->xi, own->local));
+}
+
+dvi_status dvi__charts_solve_rows(const dvi__evaluator *e, double t, double *lambda, double *moved)
+{
+  const chart_memory *own = e->own;
+  const dvi__rows_memory *r = dvi__rows_memory_of(own->inner);
+  const int nx = e->system->nx, rows = e->system->row_count;
+  memset(r->x, 0, (size_t)nx * sizeof(double));
+  memcpy(r->x + nx, lambda, (size_t)rows * sizeof(double));
+  DVI_TRY(dvi__rows_solve(r, nx + rows, t));
+  for (int a = 0; a < rows; a++) lambda[a] = -r->x[nx + a];
+  *moved = dvi__largest((size_t)nx, r->x);
+  return DVI_OK;
+}
+
 static const dvi__state_constraint on_rows_in_charts = {
     .matrix = "matrix of the constraints",
     .check = dvi__rows_check,

@@ -282,7 +282,9 @@ dvi_status dvi__potentials_gradient(dvi__evaluator *e, int count, const double *
 {
   e->counters->gradients += count;
   dvi_status status = sum_gradients(e, count, t, q, V_q);
-  if (status == DVI_OK) status = add_forces(e, DVI__FORCE, count, -1, t, q, NULL, V_q);
+  /* with factors forces have other numbers than V_q */
+  if (status == DVI_OK && e->system->slot_count == 0)
+    status = add_forces(e, DVI__FORCE, count, -1, t, q, NULL, V_q);
   dvi__count_differences(e);
   return status;
 }
