@@ -192,6 +192,11 @@ static void lie_verlet_explain(const dvi__stepper *self, dvi__text *text)
                 "bodies by Newton's method, %s)\n",
                 alone, lie_verlet_solve_name(self->settings.value[SOLVE]));
   dvi__text_add(text, "solver: slots coupled by the mass, in one Newton iteration: %d\n", coupled);
+  if (own->rattle != NULL)
+    dvi__text_add(text,
+                  "solver: simplified Newton's method for the %d multipliers at the start, each "
+                  "iteration a drift, with a matrix that is factored once a step\n",
+                  self->system->row_count);
 }
 
 const dvi__method dvi__lie_verlet = {

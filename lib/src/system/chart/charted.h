@@ -64,9 +64,9 @@ dvi_status dvi__charted_supply(dvi__charted *charted, double t, const double *xi
 /* Compute xi [nx] of a point q [nq]. */
 void dvi__charted_inverse(const dvi__charted *charted, const double *q, double *xi);
 
-/* Factor the matrix of index 1 of holonomic constraints, with the mass and phi_xi at a point, for an
- * evaluator of states. Then solve G M^-1 G^T lambda = r in place, lambda [rows]. *moved is the
- * largest coordinate of M^-1 G^T lambda in the charts. */
+/* Factor the matrix of index 1 of holonomic constraints, with the mass and phi_xi at a point,
+ * for an evaluator of states. Then solve G M^-1 G^T lambda = r in place, lambda [rows]. *moved
+ * is the largest coordinate of M^-1 G^T lambda in the charts. */
 dvi_status dvi__charts_factor_rows(dvi__evaluator *e, double t, const double *q);
 dvi_status dvi__charts_solve_rows(const dvi__evaluator *e, double t, double *lambda, double *moved);
 

@@ -41,8 +41,8 @@ dvi_status dvi__lagrangian_gradient(dvi__evaluator *e, int count, const double *
                                     const double *v, double *L_q, double *L_v);
 
 /* Compute V_q [n*count], the sum of the potentials' gradients, less the forces F(t,q) without
- * velocity, but with factors without any forces. For a constant mass this is -L_q unless forces depend on the velocity, or there is a
- * vector potential. */
+ * velocity, but with factors without any forces. For a constant mass this is -L_q unless forces
+ * depend on the velocity, or there is a vector potential. */
 dvi_status dvi__potentials_gradient(dvi__evaluator *e, int count, const double *t, const double *q,
                                     double *V_q);
 
