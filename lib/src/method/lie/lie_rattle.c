@@ -148,11 +148,11 @@ dvi_status dvi__lie_rattle_drift(dvi__lie_rattle *r, double t, double h, const d
                                  double *lambda, double *displacement)
 {
   const double size = dvi__largest((size_t)r->system->n, state->q);
-  double moved = HUGE_VAL, last;
+  double moved = HUGE_VAL;
   DVI_TRY(factor_at(r, t, state->q));
   keep(r, state);
   for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
-    last = moved;
+    const double last = moved;
     DVI_TRY(try_multipliers(r, t, h, state, lambda, displacement, &moved));
     if (is_settled(moved, last, size)) {
       r->counters->simplified++;
