@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "cli/command.h"
 #include "csv/balance.h"
@@ -192,10 +193,15 @@ int scene_load(const char *path, scene_text *text)
 
 int scene_spared(const char *command, const char *path, int count, const named_file *files)
 {
-  for (int i = 0; i < count && scene_is_path(path); i++)
-    if (files[i].path != NULL && strcmp(files[i].path, "-") != 0 && file_same(path, files[i].path))
-      return usage_error("%s: --%s %s would write over the scene", command, files[i].option,
-                         files[i].path);
+  for (int i = 0; i < count && scene_is_path(path); i++) {
+    const char *out = files[i].path;
+    if (out == NULL || strcmp(out, "-") == 0) continue;
+    if (file_same(path, out))
+      return usage_error("%s: --%s %s would write over the scene", command, files[i].option, out);
+    if (scene_is_path(out) && access(out, F_OK) == 0)
+      return usage_error("%s: --%s %s would write over another scene", command, files[i].option,
+                         out);
+  }
   return DONE;
 }
 

@@ -1,6 +1,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "sweep/sweep_part.h"
 
+#include <dvi/scene.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>
@@ -38,11 +39,21 @@ static uint64_t add_values(uint64_t sum, const grid_axis *axis)
              : add_bytes(sum, axis->value, (size_t)axis->count * sizeof *axis->value);
 }
 
+/* Add the files of the components that a scene includes. */
+static uint64_t add_components(uint64_t sum, const dvi_scene *scene)
+{
+  dvi_scene_file file;
+  for (int i = 1; dvi_scene_file_of(scene, i, &file); i++)
+    sum = add_bytes(add_text(sum, file.name), file.text, file.size);
+  return sum;
+}
+
 uint64_t sweep_key(const sweep_task *task)
 {
   uint64_t sum = add_text(UINT64_C(0xcbf29ce484222325), dvi_version());
   sum = task->text.text != NULL ? add_bytes(sum, task->text.text, task->text.length)
                                 : add_text(sum, task->operand);
+  sum = add_components(sum, task->model->scene);
   sum = add_text(sum, task->method != NULL ? task->method : "");
   sum = add_bytes(sum, &task->h, sizeof task->h);
   sum = add_bytes(sum, &task->t_end, sizeof task->t_end);

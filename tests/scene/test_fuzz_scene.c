@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "text/utf8.h"
+#include "support/files.h"
 #include "support/scene/fuzz.h"
 #include "support/scene/scene_calls.h"
 #include "support/suite.h"
@@ -22,6 +23,8 @@ static const char *const tokens[] = {"coordinates:",
                                      "one_form:",
                                      "constraints:",
                                      "definitions:",
+                                     "include: {a: part.yaml, b: part.yaml}",
+                                     "a_x",
                                      "parameters: {",
                                      "initial:",
                                      "symmetries:",
@@ -168,8 +171,8 @@ static unsigned try_scene(const dvi_scene *scene)
 static unsigned try_scene_text(const char *text, size_t size)
 {
   dvi_scene *scene = NULL;
-  const dvi_status status = dvi_scene_parse("s.yaml", text, size, 0, NULL, &scene, message,
-                                            sizeof message);
+  const dvi_status status = dvi_scene_parse(path_in_folder("s.yaml"), text, size, 0, NULL, &scene,
+                                            message, sizeof message);
   fuzz_requires((status == DVI_OK) == (scene != NULL));
   if (status == DVI_OK) {
     const unsigned kind = try_scene(scene);
@@ -178,6 +181,14 @@ static unsigned try_scene_text(const char *text, size_t size)
   }
   check_message();
   return 0; /* what is no scene leads to no other scene */
+}
+
+/* Try a text as a component that is included twice. */
+static unsigned try_component(const char *text, size_t size)
+{
+  static const char outer[] = "include: {a: part.yaml, b: part.yaml}\nstep: 0.1\nuntil: 1\n";
+  write_bytes(path_in_folder("part.yaml"), (const unsigned char *)text, size);
+  return try_scene_text(outer, sizeof outer - 1);
 }
 
 static char *read_text(const char *path)
@@ -192,23 +203,39 @@ static char *read_text(const char *path)
   return text;
 }
 
-START_TEST(any_text_is_a_scene_or_a_sentence)
+static void fuzz_with(const char *name, unsigned (*try)(const char *, size_t))
 {
   enum { SCENES_MAX = 64 };
+  static const char part[] = "coordinates: {x: scalar}\nlagrangian: x'^2 - x^2\n"
+                             "initial: {x: 1}\nparameters: {k: 2}\n";
   char *corpus[SCENES_MAX + 1] = {NULL};
   glob_t found;
+  write_bytes(path_in_folder("part.yaml"), (const unsigned char *)part, sizeof part - 1);
   ck_assert_int_eq(glob(DVI_SCENES "/*.yaml", 0, NULL, &found), 0);
   ck_assert_uint_le(found.gl_pathc, SCENES_MAX);
   for (size_t k = 0; k < found.gl_pathc; k++) corpus[k] = read_text(found.gl_pathv[k]);
-  const fuzz_target target = {"scene", (const char *const *)corpus, tokens, try_scene_text};
+  const fuzz_target target = {name, (const char *const *)corpus, tokens, try};
   ck_assert_int_gt(fuzz(&target), 0);
   for (size_t k = 0; k < found.gl_pathc; k++) free(corpus[k]);
   globfree(&found);
+}
+
+START_TEST(any_text_is_a_scene_or_a_sentence)
+{
+  fuzz_with("scene", try_scene_text);
+}
+END_TEST
+
+START_TEST(any_component_is_merged_or_a_sentence)
+{
+  fuzz_with("component", try_component);
 }
 END_TEST
 
 SUITE(fuzz_scene)
 {
   tcase_set_timeout(tests, fuzz_timeout());
+  tcase_add_checked_fixture(tests, make_folder, remove_folder);
   tcase_add_test(tests, any_text_is_a_scene_or_a_sentence);
+  tcase_add_test(tests, any_component_is_merged_or_a_sentence);
 }

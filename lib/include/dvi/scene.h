@@ -57,6 +57,12 @@ typedef struct dvi_scene_end {
   const char *free_q, *free_p;
 } dvi_scene_end;
 
+/** A file of a scene. `text` has `size` characters, and perhaps no NUL behind them. */
+typedef struct dvi_scene_file {
+  const char *name, *text;
+  size_t size;
+} dvi_scene_file;
+
 /** Facts about a scene, for people and for tests. */
 typedef struct dvi_scene_facts {
   /** "separable", "separable with a vector potential", "general Lagrangian", "one-form",
@@ -86,8 +92,9 @@ extern "C" {
 
 /** Read a scene from a file.
  *
- *  The call opens at most one other file, the tableau that the scene's method may name, in the
- *  scene's folder or below. The plan's method then names the path of the tableau.
+ *  The call opens the files of the components that the scene includes, and perhaps the tableau that
+ *  its method names. All of them lie in the scene's folder or below. The plan's method then names
+ *  the path of the tableau.
  *  @param      settings  [setting_count] texts "name=value" that replace parameters
  *  @param[out] scene     owned by the caller. NULL on failure
  *  @param[out] message   [size] on failure file, line, column, the error, the line itself and a
@@ -137,6 +144,10 @@ int dvi_scene_bodies(const dvi_scene *scene);
 
 /** Return the plan of the scene's run. Owned by the scene. */
 const dvi_scene_plan *dvi_scene_plan_of(const dvi_scene *scene);
+
+/** Give file i of the scene, owned by the scene. 0 is its own file, and the others are those of its
+ *  components, in the order in which they are included. Returns 0 if i is out of range. */
+int dvi_scene_file_of(const dvi_scene *scene, int i, dvi_scene_file *file);
 
 /** Return parameter i, in the order of the file. NULL if i is out of range. Owned by the scene. */
 const dvi_scene_parameter *dvi_scene_parameter_at(const dvi_scene *scene, int i);

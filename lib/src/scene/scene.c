@@ -112,8 +112,9 @@ static dvi_status scene_fill(dvi_scene *scene, const char *name, const char *tex
   const char *name_copy = dvi__arena_text(&scene->arena, name, strlen(name)),
              *copy = dvi__arena_text(&scene->arena, text, length);
   scene->complaint = complaint;
-  scene->source = (dvi__source){name_copy != NULL ? name_copy : name, copy != NULL ? copy : text,
-                                length};
+  scene->source = (dvi__source){.name = name_copy != NULL ? name_copy : name,
+                                .text = copy != NULL ? copy : text,
+                                .size = length};
   complaint->source = &scene->source;
   settings->used = dvi__arena_take(&scene->arena, (size_t)settings->count + 1, 1);
   if (name_copy == NULL || copy == NULL || settings->used == NULL) {
@@ -248,6 +249,17 @@ int dvi_scene_bodies(const dvi_scene *scene)
 const dvi_scene_plan *dvi_scene_plan_of(const dvi_scene *scene)
 {
   return scene == NULL ? NULL : &scene->plan;
+}
+
+int dvi_scene_file_of(const dvi_scene *scene, int i, dvi_scene_file *file)
+{
+  const int parts = scene != NULL ? scene->source.part_count : 0;
+  if (scene == NULL || i < 0 || i >= (parts > 0 ? parts : 1)) return 0;
+  const dvi__source *source = &scene->source;
+  const dvi__source_part whole = {.name = source->name, .size = source->size},
+                         *part = parts > 0 ? &source->part[i] : &whole;
+  *file = (dvi_scene_file){part->name, source->text + part->first, part->size};
+  return 1;
 }
 
 const dvi_scene_parameter *dvi_scene_parameter_at(const dvi_scene *scene, int i)

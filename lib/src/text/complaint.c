@@ -74,6 +74,29 @@ static void put_sentence(writer *w, const char *text)
   for (size_t k = 0; k < length;) k += put_shown(w, text + k, length - k);
 }
 
+const dvi__source_part *dvi__source_part_at(const dvi__source *source, size_t offset)
+{
+  if (source->part_count == 0) return NULL;
+  int k = source->part_count - 1;
+  while (k > 0 && source->part[k].first > offset) k--;
+  return &source->part[k];
+}
+
+const char *dvi__source_name(const dvi__source *source, size_t offset)
+{
+  const dvi__source_part *part = dvi__source_part_at(source, offset);
+  return part == NULL || offset > source->size ? source->name : part->name;
+}
+
+/* Return the file of a place as a source of its own, and turn the place to one of it. */
+static dvi__source file_of(const dvi__source *source, size_t *offset)
+{
+  const dvi__source_part *part = dvi__source_part_at(source, *offset);
+  if (part == NULL || *offset > source->size) return *source;
+  *offset -= part->first;
+  return (dvi__source){.name = part->name, .text = source->text + part->first, .size = part->size};
+}
+
 static size_t line_start(const dvi__source *source, size_t offset)
 {
   while (offset > 0 && source->text[offset - 1] != '\n' && source->text[offset - 1] != '\r')
@@ -106,15 +129,16 @@ static size_t characters_ahead(const dvi__source *source, size_t from, size_t co
 
 void dvi__source_place(const dvi__source *source, size_t offset, int *line, int *column)
 {
-  if (offset > source->size) offset = source->size;
+  const dvi__source file = file_of(source, &offset);
+  if (offset > file.size) offset = file.size;
   *line = 1;
   for (size_t k = 0; k < offset; k++) {
-    const char c = source->text[k];
-    const int pair = c == '\r' && k + 1 < source->size &&
-                     source->text[k + 1] == '\n'; /* the second half of CR LF is counted */
+    const char c = file.text[k];
+    const int pair = c == '\r' && k + 1 < file.size &&
+                     file.text[k + 1] == '\n'; /* the second half of CR LF is counted */
     *line += (c == '\n' || c == '\r') && !pair;
   }
-  *column = 1 + (int)count_characters(source, line_start(source, offset), offset);
+  *column = 1 + (int)count_characters(&file, line_start(&file, offset), offset);
 }
 
 /* Put the line with the span's head, cut to a length that can be shown, and a caret under it. */
@@ -147,7 +171,7 @@ bool(dvi__complain)(dvi__complaint *complaint, dvi_status status, dvi__span wher
   const dvi__source *source = complaint->source;
   writer w = {.text = complaint->message, .size = complaint->size};
   w.text[0] = '\0';
-  put_sentence(&w, source->name);
+  put_sentence(&w, dvi__source_name(source, where.first));
   if (where.first <= source->size) {
     int line = 0;
     int column = 0;
@@ -163,7 +187,9 @@ bool(dvi__complain)(dvi__complaint *complaint, dvi_status status, dvi__span wher
   (void)dvi_number_vprint(sentence, sizeof sentence, format, arguments);
   va_end(arguments);
   put_sentence(&w, sentence);
-  if (where.first <= source->size) put_excerpt(&w, source, where);
+  if (where.first > source->size) return false;
+  const dvi__source file = file_of(source, &where.first);
+  put_excerpt(&w, &file, where);
   return false;
 }
 

@@ -12,10 +12,21 @@
 #define DVI__TEXT_PRINTF(text, first)
 #endif
 
-/* A file's name and its text, which need not end with NUL. The caller owns both. */
+/* A file within a source. Its names get a prefix in front, but for those that `keeps` holds. */
+typedef struct dvi__source_part {
+  const char *name;
+  size_t first, size;
+  const char *prefix;
+  bool (*keeps)(const char *name);
+} dvi__source_part;
+
+/* A file's name and its text, which need not end with NUL. The caller owns both. Where a text
+ * consists of several files, with one letter between them, `part` [part_count] tells them apart. */
 typedef struct dvi__source {
   const char *name, *text;
   size_t size;
+  const dvi__source_part *part;
+  int part_count;
 } dvi__source;
 
 /* A part of a source. It is nowhere if first > size of the source. */
@@ -52,7 +63,14 @@ int dvi__print(char *text, size_t size, const char *format, ...) DVI__TEXT_PRINT
  * what a scene is. Returns false. */
 bool dvi__complain_of_file(dvi__complaint *complaint, dvi__span where, const char *is);
 
-/* Give the line and the column of a place, from 1. Columns count characters of UTF-8. */
+/* Return the part of a source in which a place is, or NULL if it has no parts. */
+const dvi__source_part *dvi__source_part_at(const dvi__source *source, size_t offset);
+
+/* Return the name of the file in which a place is. */
+const char *dvi__source_name(const dvi__source *source, size_t offset);
+
+/* Give the line and the column of a place in its file, from 1. Columns count characters of
+ * UTF-8. */
 void dvi__source_place(const dvi__source *source, size_t offset, int *line, int *column);
 
 /* Write "; did you mean X?" to `hint` for the nearest of the candidates [count] if one is near,

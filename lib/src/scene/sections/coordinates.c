@@ -40,7 +40,7 @@ static bool read_kind(dvi_scene *scene, const dvi__tree *tree, declared *as)
   char hint[96];
   if (!dvi__tree_expression(scene, tree, &e)) return false;
   const int called = e->form == DVI__FORM_CALL && e->count == 1;
-  const char *name = called || e->form == DVI__FORM_NAME ? e->name : "";
+  const char *name = called || e->form == DVI__FORM_NAME ? dvi__word_of(scene, e) : "";
   for (int k = 0; k < KINDS; k++) {
     if (strcmp(name, known[k]) != 0 || called != (k == VECTOR)) continue;
     *as = meaning[k];

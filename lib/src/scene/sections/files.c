@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "scene/sections/sections.h"
 
@@ -25,10 +26,11 @@ static bool lies_below(const char *folder, const char *file)
   return strncmp(folder, file, size) == 0 && file[size] == '/';
 }
 
-static bool check_place(dvi_scene *scene, dvi__span span, const char *named_file, const char *path)
+static bool check_place(dvi_scene *scene, dvi__span span, const char *named_file, const char *path,
+                        const char *remedy)
 {
   char real_folder[PATH_MAX], real_file[PATH_MAX];
-  const char *folder = dvi__arena_text(&scene->arena, path,
+  const char *folder = dvi__arena_text(&scene->arena, scene->source.name,
                                        (size_t)folder_size(scene->source.name));
   if (folder == NULL) return dvi__scene_no_memory(scene);
   if (realpath(folder[0] != '\0' ? folder : ".", real_folder) == NULL ||
@@ -36,10 +38,17 @@ static bool check_place(dvi_scene *scene, dvi__span span, const char *named_file
     return dvi__scene_refuse(scene, span, "the file '%s' cannot be read: %s", path,
                              strerror(errno));
   if (lies_below(real_folder, real_file)) return true;
-  return dvi__scene_refuse(
-      scene, span,
-      "the file '%s' is not in the scene's folder or below; put it there, or give --method",
-      named_file);
+  return dvi__scene_refuse(scene, span,
+                           "the file '%s' is not in the scene's folder or below; put it there%s",
+                           named_file, remedy);
+}
+
+static bool refuse_root(dvi_scene *scene, dvi__span span, const char *named_file)
+{
+  return named_file[0] != '/' ||
+         dvi__scene_refuse(
+             scene, span, "the file '%s' is named from the root; name it from the scene's folder",
+             named_file);
 }
 
 bool dvi__scene_place_file(dvi_scene *scene, dvi__span span, const char **method)
@@ -53,10 +62,7 @@ bool dvi__scene_place_file(dvi_scene *scene, dvi__span span, const char **method
   char *path = dvi__arena_take(&scene->arena, room, 1),
        *placed = dvi__arena_take(&scene->arena, room, 1);
   if (named_file == NULL || path == NULL || placed == NULL) return dvi__scene_no_memory(scene);
-  if (named_file[0] == '/')
-    return dvi__scene_refuse(
-        scene, span, "the file '%s' is named from the root; name it from the scene's folder",
-        named_file);
+  if (!refuse_root(scene, span, named_file)) return false;
   if (memchr(name, ',', (size_t)folder) != NULL)
     return dvi__scene_refuse(
         scene, span, "no method takes the file '%s' from a folder with a comma; rename the folder",
@@ -64,5 +70,51 @@ bool dvi__scene_place_file(dvi_scene *scene, dvi__span span, const char **method
   (void)snprintf(path, room, "%.*s%s", folder, name, named_file);
   (void)snprintf(placed, room, "%.*s%s%s", head, *method, path, named + length);
   *method = placed;
-  return check_place(scene, span, named_file, path);
+  return check_place(scene, span, named_file, path, ", or give --method");
+}
+
+/* ---- components ---- */
+
+static bool is_named_as_scene(const char *name)
+{
+  const char *dot = strrchr(name, '.');
+  return dot != NULL && (strcmp(dot, ".yaml") == 0 || strcmp(dot, ".yml") == 0);
+}
+
+/* Return true if a name leads upwards, by a part that is two points. */
+static bool leads_up(const char *name)
+{
+  for (const char *at = strstr(name, ".."); at != NULL; at = strstr(at + 1, ".."))
+    if ((at == name || at[-1] == '/') && (at[2] == '/' || at[2] == '\0')) return true;
+  return false;
+}
+
+static bool is_plain_file(const char *path)
+{
+  struct stat there;
+  return stat(path, &there) == 0 && S_ISREG(there.st_mode);
+}
+
+bool dvi__scene_place_component(dvi_scene *scene, dvi__span span, const char *named_file,
+                                const char **path)
+{
+  const char *includes = dvi__source_name(&scene->source, span.first);
+  const int folder = folder_size(includes);
+  const size_t room = strlen(named_file) + (size_t)folder + 1;
+  char *placed = dvi__arena_take(&scene->arena, room, 1);
+  if (placed == NULL) return dvi__scene_no_memory(scene);
+  (void)snprintf(placed, room, "%.*s%s", folder, includes, named_file);
+  *path = placed;
+  if (!refuse_root(scene, span, named_file)) return false;
+  if (leads_up(named_file))
+    return dvi__scene_refuse(scene, span,
+                             "the file '%s' is named by way of '..'; components lie in the folder "
+                             "of the scene or below",
+                             named_file);
+  if (!is_named_as_scene(named_file))
+    return dvi__scene_refuse(scene, span, "'%s' is no scene: its name ends in .yaml or .yml",
+                             named_file);
+  if (!check_place(scene, span, named_file, placed, "")) return false;
+  return is_plain_file(placed) ||
+         dvi__scene_refuse(scene, span, "'%s' is no file that can be read", named_file);
 }

@@ -53,7 +53,7 @@ static bool body_read(dvi_scene *scene, const dvi__expression *e, int *body)
   dvi__subscripts index;
   int member;
   *body = DVI_GROUND;
-  if (e->form == DVI__FORM_NAME && strcmp(e->name, "ground") == 0) return true;
+  if (e->form == DVI__FORM_NAME && strcmp(dvi__word_of(scene, e), "ground") == 0) return true;
   const dvi__coordinate *x = e->form == DVI__FORM_MEMBER ? NULL
                                                          : dvi__member_named(scene, e, &index);
   if (x == NULL)

@@ -63,13 +63,41 @@ static bool is_expression_as_it_stands(const dvi_scene *scene, const dvi__tree *
   return tree->span.size > 0 && text[0] == '[' && memchr(text, '#', tree->span.size) == NULL;
 }
 
+/* Read the sum of the expressions that several files hold, as a chain that is nested to the
+ * left. */
+static bool sum_expression(dvi_scene *scene, const dvi__tree *tree, const dvi__expression **e)
+{
+  if (!dvi__tree_expression(scene, tree->child[0], e)) return false;
+  for (int i = 1; i < tree->count; i++) {
+    const dvi__expression **part = dvi__arena_take(&scene->arena, 2, sizeof(*part));
+    dvi__expression *sum = dvi__arena_take(&scene->arena, 1, sizeof *sum);
+    if (part == NULL || sum == NULL) return dvi__scene_no_memory(scene);
+    part[0] = *e;
+    if (!dvi__tree_expression(scene, tree->child[i], &part[1])) return false;
+    *sum = (dvi__expression){.form = DVI__FORM_ADD,
+                             .span = part[1]->span,
+                             .count = 2,
+                             .part = (dvi__expression *const *)part};
+    *e = sum;
+  }
+  return true;
+}
+
 bool dvi__tree_expression(dvi_scene *scene, const dvi__tree *tree, const dvi__expression **e)
 {
   if (tree->kind == DVI__MAPPING)
     return dvi__scene_refuse(scene, tree->span, "an expression belongs here");
+  if (tree->kind == DVI__SUM) return sum_expression(scene, tree, e);
   if (tree->kind == DVI__SEQUENCE && !is_expression_as_it_stands(scene, tree))
     return list_expression(scene, tree, e);
   return dvi__expression_parse(&scene->source, tree->span, &scene->arena, scene->complaint, e);
+}
+
+const char *dvi__word_of(const dvi_scene *scene, const dvi__expression *e)
+{
+  const dvi__source_part *part = dvi__source_part_at(&scene->source, e->span.first);
+  const size_t size = part != NULL && e->form == DVI__FORM_NAME ? strlen(part->prefix) : 0;
+  return size > 0 && strncmp(e->name, part->prefix, size) == 0 ? e->name + size : e->name;
 }
 
 bool dvi__tree_number(dvi_scene *scene, const dvi__tree *tree, const char *what, double *number)

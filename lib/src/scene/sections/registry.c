@@ -5,7 +5,7 @@
 #include "scene/sections/motion.h"
 #include "scene/sections/sections.h"
 
-typedef enum presence { OPTIONAL, REQUIRED, DEFAULTED, REFUSED } presence;
+typedef enum presence { FIRST, OPTIONAL, REQUIRED, DEFAULTED, REFUSED } presence;
 
 typedef struct section {
   const char *name;
@@ -26,10 +26,10 @@ static const section sections[] = {
 enum { SECTIONS = sizeof sections / sizeof *sections };
 
 /* Refuse a section by the name that it has elsewhere. Keys below sections have no such names. */
-static bool registry_refuse_other_names(dvi_scene *scene)
+static bool registry_refuse_other_names(dvi_scene *scene, const dvi__tree *tree)
 {
-  for (int i = 0; i < scene->tree->count; i++) {
-    const dvi__tree *key = scene->tree->key[i];
+  for (int i = 0; i < tree->count; i++) {
+    const dvi__tree *key = tree->key[i];
     const char *here = dvi__hint_of_section(key->text);
     if (here != NULL)
       return dvi__scene_refuse(scene, key->span, "a scene has no '%s'; the section is %s",
@@ -40,9 +40,8 @@ static bool registry_refuse_other_names(dvi_scene *scene)
 
 /* Refuse a file that is no mapping, or a mapping of several keys of which none is known. It was
  * meant for something else. */
-static bool registry_knows_any(dvi_scene *scene, const char *const *known)
+static bool registry_knows_any(dvi_scene *scene, const dvi__tree *tree, const char *const *known)
 {
-  const dvi__tree *tree = scene->tree;
   char hint[96];
   bool near = tree->count == 1;
   for (int i = 0; tree->kind == DVI__MAPPING && i < tree->count && !near; i++)
@@ -56,13 +55,27 @@ static bool registry_knows_any(dvi_scene *scene, const char *const *known)
                                                              : "this is a text");
 }
 
-static bool registry_check(dvi_scene *scene)
+bool dvi__check_section_names(dvi_scene *scene, const dvi__tree *tree)
 {
   const char *known[SECTIONS];
   for (int k = 0; k < SECTIONS; k++) known[k] = sections[k].name;
-  if (!registry_knows_any(scene, known) || !registry_refuse_other_names(scene) ||
-      !dvi__want_keys(scene, scene->tree, "a scene", SECTIONS, known))
-    return false;
+  return registry_knows_any(scene, tree, known) && registry_refuse_other_names(scene, tree) &&
+         dvi__want_keys(scene, tree, "a scene", SECTIONS, known);
+}
+
+/* Read the section that brings others. */
+static bool registry_read_first(dvi_scene *scene)
+{
+  for (int k = 0; k < SECTIONS; k++) {
+    const dvi__tree *found = dvi__tree_find(scene->tree, sections[k].name);
+    if (sections[k].presence == FIRST && found != NULL && !sections[k].read(scene, found))
+      return false;
+  }
+  return true;
+}
+
+static bool registry_check_presence(dvi_scene *scene)
+{
   for (int k = 0; k < SECTIONS; k++) {
     const dvi__tree *found = dvi__tree_find(scene->tree, sections[k].name);
     if (found != NULL && sections[k].presence == REFUSED)
@@ -77,12 +90,15 @@ static bool registry_check(dvi_scene *scene)
 bool dvi__scene_read_tree(dvi_scene *scene)
 {
   static const dvi__tree empty = {.kind = DVI__MAPPING};
-  if (!registry_check(scene) || !dvi__check_motion_section(scene)) return false;
+  if (!dvi__check_section_names(scene, scene->tree) || !registry_read_first(scene) ||
+      !registry_check_presence(scene) || !dvi__check_motion_section(scene))
+    return false;
   for (int k = 0; k < SECTIONS; k++) {
     const dvi__tree *found = dvi__tree_find(scene->tree, sections[k].name);
     if (found == NULL && sections[k].presence == DEFAULTED) found = &empty;
     scene->reads = DVI__ELSEWHERE;
-    if (found != NULL && !sections[k].read(scene, found)) return false;
+    if (found != NULL && sections[k].presence != FIRST && !sections[k].read(scene, found))
+      return false;
   }
   return dvi__read_uses(scene);
 }

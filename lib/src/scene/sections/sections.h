@@ -8,6 +8,9 @@
  * later. */
 bool dvi__scene_read_tree(dvi_scene *scene);
 
+/* Refuse a document that is no scene, and sections that no scene has. */
+bool dvi__check_section_names(dvi_scene *scene, const dvi__tree *tree);
+
 /* Declare the readers. dvi__read_<name> reads the section of this name. */
 #define SECTION(name, presence, example, line) \
   bool dvi__read_##name(dvi_scene *scene, const dvi__tree *section);
@@ -32,6 +35,10 @@ bool dvi__want_keys(dvi_scene *scene, const dvi__tree *mapping, const char *what
 /* Read the expression that a part of the file holds, a scalar or a list. */
 bool dvi__tree_expression(dvi_scene *scene, const dvi__tree *tree, const dvi__expression **e);
 
+/* Return the name in an expression without the prefix of its file. For words such as scalar and
+ * ground, which are words in few places and names elsewhere. */
+const char *dvi__word_of(const dvi_scene *scene, const dvi__expression *e);
+
 /* Read a number, or a whole number of at least `least`, made of parameters. */
 bool dvi__tree_number(dvi_scene *scene, const dvi__tree *tree, const char *what, double *number);
 bool dvi__tree_whole(dvi_scene *scene, const dvi__tree *tree, const char *what, int least,
@@ -40,6 +47,11 @@ bool dvi__tree_whole(dvi_scene *scene, const dvi__tree *tree, const char *what, 
 /* Refuse a file in a method's specification that is not in the scene's folder or below. The
  * specification then has the way to the file from here. */
 bool dvi__scene_place_file(dvi_scene *scene, dvi__span span, const char **method);
+
+/* Find the file of a component, named from the folder of the file in which the name stands. Refuses
+ * a place that is not in the scene's folder or below. */
+bool dvi__scene_place_component(dvi_scene *scene, dvi__span span, const char *named_file,
+                                const char **path);
 
 /* Return the section that declares the motion, lagrangian, kinetic, one_form, constraints or
  * hamiltonian. NULL if none does. */

@@ -80,7 +80,7 @@ static void fault_keep(const dvi__scene_term *term, int count, const double *con
     return;
   }
   dvi__source_place(source, fault.span.first, &line, &column);
-  fault_add("%s:%d:%d: ", source->name, line, column);
+  fault_add("%s:%d:%d: ", dvi__source_name(source, fault.span.first), line, column);
   fault_span = fault.span;
   fault_words = strlen(fault_text);
   fault_add("%s", part);

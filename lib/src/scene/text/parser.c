@@ -96,6 +96,18 @@ const char *dvi__parser_copy(const dvi__parser *p)
   return copy;
 }
 
+const char *dvi__prefixed_name(const dvi__source *source, dvi__arena *arena, size_t place,
+                               const char *name)
+{
+  const dvi__source_part *part = dvi__source_part_at(source, place);
+  if (part == NULL || part->prefix[0] == '\0' || part->keeps(name)) return name;
+  const size_t head = strlen(part->prefix), size = strlen(name);
+  char *text = dvi__arena_take(arena, head + size + 1, 1);
+  if (text == NULL) return NULL;
+  memcpy(text, part->prefix, head);
+  return memcpy(text + head, name, size) != NULL ? text : NULL;
+}
+
 bool dvi__parser_name(dvi__parser *p, const char **name)
 {
   if (p->token.kind != DVI__TOKEN_NAME)

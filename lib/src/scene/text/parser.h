@@ -40,6 +40,11 @@ bool dvi__parser_expect(dvi__parser *p, int kind, const char *spelling, dvi__spa
 /* Read a name. */
 bool dvi__parser_name(dvi__parser *p, const char **name);
 
+/* Put the prefix of the file in which a place is in front of a name. Names that are kept stay as
+ * they are. Returns NULL if there is no memory. */
+const char *dvi__prefixed_name(const dvi__source *source, dvi__arena *arena, size_t place,
+                               const char *name);
+
 /* Return true if the next token is this word. */
 bool dvi__parser_is_at(const dvi__parser *p, const char *word);
 

@@ -92,6 +92,15 @@ static bool parse_number_atom(dvi__parser *p, node **result)
   return true;
 }
 
+/* Read a name that the scene gives, with the prefix of its file. */
+static bool parse_own_name(dvi__parser *p, const char **name)
+{
+  const size_t first = p->token.span.first;
+  if (!dvi__parser_name(p, name)) return false;
+  *name = dvi__prefixed_name(p->source, p->arena, first, *name);
+  return *name != NULL || dvi__complain_of_memory(p->complaint);
+}
+
 /* Read what stands behind "sum(", a range and the terms. */
 static bool parse_sum_over(dvi__parser *p, size_t first, dvi__span open, node **result)
 {
@@ -100,11 +109,11 @@ static bool parse_sum_over(dvi__parser *p, size_t first, dvi__span open, node **
   node *from = NULL;
   node *to = NULL;
   node *summand = NULL;
-  if (!dvi__parser_name(p, &name)) return false;
+  if (!parse_own_name(p, &name)) return false;
   if (p->token.kind == '<') {
     if (!dvi__parser_next(p)) return false;
     const dvi__span second = p->token.span;
-    if (!dvi__parser_name(p, &name2)) return false;
+    if (!parse_own_name(p, &name2)) return false;
     if (strcmp(name, name2) == 0)
       return dvi__complain(p->complaint, DVI_BAD_FILE, second,
                            "the two indices of a pair need two names");
@@ -153,8 +162,8 @@ static bool parse_name(dvi__parser *p, node **result)
   const dvi__span open = p->token.span;
   if (p->token.kind != '(') {
     if (!dvi__parser_node(p, DVI__FORM_NAME, first, NULL, result)) return false;
-    (*result)->name = name;
-    return true;
+    (*result)->name = dvi__prefixed_name(p->source, p->arena, first, name);
+    return (*result)->name != NULL || dvi__complain_of_memory(p->complaint);
   }
   if (!dvi__parser_next(p)) return false;
   if (strcmp(name, "sum") == 0) return parse_sum_over(p, first, open, result);
