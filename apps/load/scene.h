@@ -24,8 +24,8 @@ int scene_load(const char *path, scene_text *text);
 /** Read a scene from such a text, as scene_open does. */
 int scene_parse(const char *path, const scene_text *text, const words *settings, problem **scene);
 
-/** Refuse to write any of the files over the scene itself, or over a scene that it may include. Returns DONE, or complains and returns
- * USAGE. */
+/** Refuse to write any of the files over the scene itself, or over a scene that it may include.
+ * Returns DONE, or complains and returns USAGE. */
 int scene_spared(const char *command, const char *path, int count, const named_file *files);
 
 /** Warn on standard error where a scene has a kink, and which order any method keeps there. */

@@ -97,6 +97,28 @@ for signal in 15 9; do
   rm cut.csv
 done
 
+# The files of components belong to the scene.
+cp cart.yaml part.yaml
+cat >outer.yaml <<'END'
+include: {a: part.yaml}
+method: galerkin:degree=2
+step: 0.02
+until: 20
+END
+outer="sweep outer.yaml --set a_l=0.5 --set a_g=9:10:30 --t-end $end --out outer.csv"
+# shellcheck disable=SC2086
+"$dvi" $outer --threads 2 2>err &
+for _ in $(seq 200); do
+  [ "$(cat outer.csv.part 2>/dev/null | wc -l)" -ge 2 ] && break
+  sleep 0.02
+done
+kill -15 $!
+ends 143 'a sweep over a component'
+sed -i 's/theta: 1$/theta: 1.5/' part.yaml
+expect 1 'another component' $outer
+says err 'was begun with another scene or other settings' 'the reason'
+rm -f outer.csv.part
+
 # A file that is no sweep's stays.
 echo 'my notes' >notes.csv.part
 expect 1 'a foreign file' $cart --out notes.csv

@@ -1,5 +1,5 @@
-/* Scenes of components: names with prefixes, what is merged and what is left out, multipliers as the
- * efforts of ports, and places that are refused. */
+/* Scenes of components: names with prefixes, what is merged and what is left out, multipliers as
+ * the efforts of ports, and places that are refused. */
 #define _XOPEN_SOURCE 700 /* symlink */
 #include <dvi/dvi.h>
 #include <dvi/scene.h>
@@ -181,10 +181,10 @@ START_TEST(a_component_may_have_families_and_joints)
              "forces:\n  u[i]: -u[i]'*i\n"
              "initial:\n  B.x: [0.5, 0, 0]\n  u[i]: sin(i)\n  u[2]: 7\n"
              "  B.R: turn([0, 0, 1], 0)\n  omega(B): [0, 1, 0]\n  B.x': [0, 0, -0.5]\n");
-  dvi_scene *scene = open_main("include: {a: arm.yaml, b: arm.yaml}\n"
-                               "initial:\n  b_B.x: [-0.5, 0, 0]\n  b_B.x': [0, 0, 0.5]\n  b_u[3]: 8\n"
-                               "joints: {both: {distance: [a_B, b_B], at: [0.5, 0, 0.1], to: [-0.5, "
-                               "0, 0.2]}}\n");
+  dvi_scene *scene = open_main(
+      "include: {a: arm.yaml, b: arm.yaml}\n"
+      "initial:\n  b_B.x: [-0.5, 0, 0]\n  b_B.x': [0, 0, 0.5]\n  b_u[3]: 8\n"
+      "joints: {both: {distance: [a_B, b_B], at: [0.5, 0, 0.1], to: [-0.5, 0, 0.2]}}\n");
   ck_assert_str_eq(dvi_scene_coordinate(scene, 0), "a_B_R_11");
   ck_assert_int_eq(dvi_system_constraint_count(dvi_scene_system(scene)), 7);
   const double *q, *v, *p;
@@ -219,9 +219,8 @@ START_TEST(sections_of_all_files_are_added)
   double F[2], sum[2] = {0, 0};
   for (int k = 0; k < terms->force_count; k++) {
     const dvi_force *force = &terms->forces[k];
-    ck_assert_int_eq(force->value_batch != NULL
-                         ? force->value_batch(1, &t, q, v, F, force->user)
-                         : force->value(t, q, v, F, force->user),
+    ck_assert_int_eq(force->value_batch != NULL ? force->value_batch(1, &t, q, v, F, force->user)
+                                                : force->value(t, q, v, F, force->user),
                      0);
     for (int i = 0; i < 2; i++) sum[i] += F[i];
   }
@@ -304,9 +303,13 @@ static const struct {
      "main.yaml:2:15: the name 'a_stretch' stands in '"},
     {"include: {a: oscillator.yaml}\ndefinitions: [a_stretch]\n", DVI_BAD_FILE,
      "main.yaml:2:14: definitions is a mapping"},
-    {"include: {a: oscillator.yaml}\nkinetic: a_x'^2\n", DVI_BAD_FILE, "there must be one of these"},
+    {"include: {a: oscillator.yaml}\nkinetic: a_x'^2\n", DVI_BAD_FILE,
+     "there must be one of these"},
     {"include: {a: oscillator.yaml}\nconstraints: {port: x}\n", DVI_BAD_FILE,
      "main.yaml:2:21: there is no 'x'\n"},
+    {"include: {a: damped.yaml}\n", DVI_BAD_FILE,
+     "/scenes/damped.yaml:1:1: a component has no 'damping'; it stands in the scene that includes "
+     "the component\n"},
     {"include: {a: bad.yaml}\n", DVI_BAD_FILE,
      "/scenes/bad.yaml:3:20: there is no 'a_y'; did you mean a_x?\n  lagrangian: x'^2 - y\n"},
 };
@@ -317,6 +320,7 @@ START_TEST(a_refusal_names_the_file_and_the_place)
   dvi_scene *scene;
   write_file("scenes/bad.yaml", "# a comment\ncoordinates: {x: scalar}\n"
                                 "lagrangian: x'^2 - y\ninitial: {x: 1}\n");
+  write_file("scenes/damped.yaml", "damping: 0.1\ncoordinates: {x: scalar}\n");
   const dvi_status status = read_main(bad[_i].text, &scene);
   ck_assert_msg(status == bad[_i].status, "%s: %s", dvi_status_name(status), message);
   ck_assert_ptr_null(scene);

@@ -277,8 +277,8 @@ static void write_kink(const dvi_scene *scene, const found *worst, char *text, s
   dvi__source_place(&scene->source, span.first, &row, &column);
   dvi__copy_part(&scene->source, span, part);
   (void)snprintf(place, sizeof place, ":%d:%d: ", row, column);
-  const int used = snprintf(text, size, "%s%s%s",
-                            dvi__source_name(&scene->source, span.first), place, part);
+  const int used = snprintf(text, size, "%s%s%s", dvi__source_name(&scene->source, span.first),
+                            place, part);
   if (used < 0 || (size_t)used >= size) return;
   text += used;
   size -= (size_t)used;

@@ -248,6 +248,10 @@ for line in 'run ball.yaml --out ./ball.yaml' 'run ball.yaml --events ball.yaml'
   expect 2 "over the scene: $line" $line
   says err 'would write over the scene' "$line"
 done
+echo mine >other.yaml
+expect 2 'over a scene that it may include' run ball.yaml --out other.yaml
+says err 'would write over another scene' 'the reason'
+[ "$(cat other.yaml)" = mine ] || fail 'another scene was overwritten'
 expect 1 'an example over the scene' init ball.yaml
 same ball.yaml kept.yaml 'the scene stays'
 no_trace 'scenes'

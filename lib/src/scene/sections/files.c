@@ -46,9 +46,9 @@ static bool check_place(dvi_scene *scene, dvi__span span, const char *named_file
 static bool refuse_root(dvi_scene *scene, dvi__span span, const char *named_file)
 {
   return named_file[0] != '/' ||
-         dvi__scene_refuse(
-             scene, span, "the file '%s' is named from the root; name it from the scene's folder",
-             named_file);
+         dvi__scene_refuse(scene, span,
+                           "the file '%s' is named from the root; name it from the scene's folder",
+                           named_file);
 }
 
 bool dvi__scene_place_file(dvi_scene *scene, dvi__span span, const char **method)

@@ -20,7 +20,7 @@ enum { COMPONENTS_MAX = 256, DEPTH_MAX = 8, FILE_MAX = 1 << 20, TEXT_MAX = 1 << 
 
 /* What becomes of a component's section. */
 typedef enum taking {
-  LEFT_OUT, /* it belongs to the component's own run */
+  LEFT_OUT,  /* it belongs to the component's own run */
   INHERITED, /* an entry of the scene that includes replaces the component's */
   NAMED,     /* entries by name, each with its own one */
   SUMMED,    /* entries of one coordinate are added, since readers add them */
@@ -31,15 +31,15 @@ static const struct {
   const char *section;
   taking taking;
 } takings[] = {
-    {"title", LEFT_OUT},      {"method", LEFT_OUT},     {"step", LEFT_OUT},
-    {"until", LEFT_OUT},      {"symmetries", LEFT_OUT}, {"invariants", LEFT_OUT},
-    {"final", LEFT_OUT},      {"objective", LEFT_OUT},  {"report", LEFT_OUT},
-    {"sweep", LEFT_OUT},      {"include", LEFT_OUT},    {"parameters", INHERITED},
-    {"initial", INHERITED},   {"coordinates", NAMED},   {"definitions", NAMED},
-    {"controls", NAMED},      {"potentials", NAMED},    {"constraints", NAMED},
-    {"nonholonomic", NAMED},  {"contacts", NAMED},      {"events", NAMED},
-    {"joints", NAMED},        {"forces", SUMMED},       {"one_form", SUMMED},
-    {"lagrangian", ADDED},    {"kinetic", ADDED},       {"hamiltonian", ADDED},
+    {"title", LEFT_OUT},     {"method", LEFT_OUT},     {"step", LEFT_OUT},
+    {"until", LEFT_OUT},     {"symmetries", LEFT_OUT}, {"invariants", LEFT_OUT},
+    {"final", LEFT_OUT},     {"objective", LEFT_OUT},  {"report", LEFT_OUT},
+    {"sweep", LEFT_OUT},     {"include", LEFT_OUT},    {"parameters", INHERITED},
+    {"initial", INHERITED},  {"coordinates", NAMED},   {"definitions", NAMED},
+    {"controls", NAMED},     {"potentials", NAMED},    {"constraints", NAMED},
+    {"nonholonomic", NAMED}, {"contacts", NAMED},      {"events", NAMED},
+    {"joints", NAMED},       {"forces", SUMMED},       {"one_form", SUMMED},
+    {"lagrangian", ADDED},   {"kinetic", ADDED},       {"hamiltonian", ADDED},
     {"dissipation", ADDED},
 };
 
@@ -129,8 +129,8 @@ static bool open_component(dvi_scene *scene, joined *all, const dvi__tree *file,
   dvi__source_part part = {.prefix = prefix, .keeps = dvi__is_word};
   if (!dvi__scene_place_component(scene, file->span, file->text, &path)) return false;
   bool good = read_text(scene, file->span, path, &text, &part.size);
-  if (good && (scene->source.part_count > COMPONENTS_MAX ||
-               scene->source.size + part.size > TEXT_MAX))
+  if (good &&
+      (scene->source.part_count > COMPONENTS_MAX || scene->source.size + part.size > TEXT_MAX))
     good = dvi__complain(scene->complaint, DVI_BAD_SIZE, file->span,
                          "more than %d components, or more than 4 MiB of them", COMPONENTS_MAX);
   part.name = path;
@@ -164,9 +164,9 @@ static bool key_text(dvi_scene *scene, const dvi__tree *key, const char **text)
     if (word != NULL && token.kind == DVI__TOKEN_NAME && before != '.' &&
         !is_called(source, token.span.first + token.span.size, end))
       word = dvi__prefixed_name(source, &scene->arena, token.span.first, word);
-    char *longer = word == NULL ? NULL
-                                : dvi__arena_take(&scene->arena, strlen(written) + strlen(word) + 1,
-                                                  1);
+    char *longer = word == NULL
+                       ? NULL
+                       : dvi__arena_take(&scene->arena, strlen(written) + strlen(word) + 1, 1);
     if (longer == NULL) return dvi__scene_no_memory(scene);
     (void)sprintf(longer, "%s%s", written, word);
     written = longer;
@@ -360,9 +360,8 @@ static bool read_component(dvi_scene *scene, joined *all, const dvi__tree *key,
   if (depth > DEPTH_MAX)
     return dvi__complain(scene->complaint, DVI_BAD_SIZE, file->span,
                          "more than %d levels of components; does one include itself?", DEPTH_MAX);
-  return open_component(scene, all, file, prefix, tree) &&
-         dvi__check_section_names(scene, *tree) && rename_sections(scene, *tree) &&
-         include_all(scene, all, tree, prefix, depth);
+  return open_component(scene, all, file, prefix, tree) && dvi__check_section_names(scene, *tree) &&
+         rename_sections(scene, *tree) && include_all(scene, all, tree, prefix, depth);
 }
 
 /* Merge a tree with its components. Parameters and starts of the tree come first, and replace those
@@ -408,8 +407,8 @@ bool dvi__read_include(dvi_scene *scene, const dvi__tree *section)
   const dvi__source whole = scene->source;
   (void)section;
   scene->source.size = 0;
-  const dvi__source_part own = {.name = whole.name, .size = whole.size, .prefix = "",
-                                .keeps = dvi__is_word};
+  const dvi__source_part own = {
+      .name = whole.name, .size = whole.size, .prefix = "", .keeps = dvi__is_word};
   return append_file(scene, &all, whole.text, own) && check_sections(scene) &&
          include_all(scene, &all, &scene->tree, "", 0);
 }

@@ -5,12 +5,7 @@
 #include "text/complaint.h"
 
 /* A sum is made of the expressions of several files. No document has one. */
-typedef enum dvi__tree_kind {
-  DVI__SCALAR,
-  DVI__SEQUENCE,
-  DVI__MAPPING,
-  DVI__SUM
-} dvi__tree_kind;
+typedef enum dvi__tree_kind { DVI__SCALAR, DVI__SEQUENCE, DVI__MAPPING, DVI__SUM } dvi__tree_kind;
 
 typedef struct dvi__tree {
   dvi__tree_kind kind;
