@@ -45,14 +45,34 @@ static int can_use(const dvi__method *method, const dvi_system *system)
   return surplus(method, system) == 0 && (method->needs & ~system->terms) == 0;
 }
 
-/* Write the names of the methods for such a system. */
-static void name_others(const dvi_system *system, dvi__text *names)
+/* Test if a method can be made for the system. Some methods take terms one by one that they refuse
+ * together. A method that needs keys passes. */
+static int fits(const char *name, const dvi_system *system)
 {
+  dvi_counters counters = {0};
+  dvi__stepper tried;
+  if (!can_use(dvi__find_method(name, strlen(name)), system)) return 0;
+  const dvi_status status = dvi__stepper_create(system, name, NULL, &counters, &tried);
+  if (status == DVI_OK) dvi__stepper_destroy(&tried);
+  return status == DVI_OK || status == DVI_BAD_OPTION;
+}
+
+/* Write which methods take the system, or that none does. Steppers that are made for this, and
+ * those inside of them, do not try others in turn. */
+static void name_others(const dvi_system *system, dvi__text *words)
+{
+  static _Thread_local int trying;
+  const char *before = "methods for this system: ";
+  if (trying) return;
+  trying = 1;
   for (int i = 0; i < dvi_method_count(); i++) {
     const char *name = dvi_method_name(i);
-    if (can_use(dvi__find_method(name, strlen(name)), system))
-      dvi__text_add(names, "%s%s", names->length > 0 ? ", " : "", name);
+    if (!fits(name, system)) continue;
+    dvi__text_add(words, "%s%s", before, name);
+    before = ", ";
   }
+  trying = 0;
+  if (words->length == 0) dvi__text_add(words, "no method takes all that it declares");
 }
 
 /* Write the kinds of dynamics that the method takes. */
@@ -67,10 +87,8 @@ static dvi_status refuse_canonical(const dvi__method *method, const char *others
 {
   char dynamics[DVI__SENTENCE_SIZE] = "";
   name_dynamics(method, &(dvi__text){dynamics, sizeof dynamics, 0});
-  return dvi__fail(
-      DVI_UNSUPPORTED,
-      "%s: the system declares %s, and this method needs %s; methods for this system: %s",
-      method->name, term_name(DVI__HAMILTONIAN), dynamics, others);
+  return dvi__fail(DVI_UNSUPPORTED, "%s: the system declares %s, and this method needs %s; %s",
+                   method->name, term_name(DVI__HAMILTONIAN), dynamics, others);
 }
 
 static dvi_status stepper_check_terms(const dvi__method *method, const dvi_system *system)
@@ -81,16 +99,14 @@ static dvi_status stepper_check_terms(const dvi__method *method, const dvi_syste
   if (surplus(method, system) & DVI__HAMILTONIAN) return refuse_canonical(method, names);
   for (unsigned term = 1; term <= DVI__LAST_TERM; term <<= 1)
     if (surplus(method, system) & term)
-      return dvi__fail(
-          DVI_UNSUPPORTED,
-          "%s: the system declares %s, which this method cannot use; methods for this system: %s",
-          method->name, term_name(term), names);
+      return dvi__fail(DVI_UNSUPPORTED,
+                       "%s: the system declares %s, which this method cannot use; %s", method->name,
+                       term_name(term), names);
   for (unsigned term = 1; term <= DVI__LAST_TERM; term <<= 1)
     if (method->needs & term & ~system->terms)
-      return dvi__fail(
-          DVI_UNSUPPORTED,
-          "%s: the method needs %s, which the system does not declare; methods for this system: %s",
-          method->name, term_name(term), names);
+      return dvi__fail(DVI_UNSUPPORTED,
+                       "%s: the method needs %s, which the system does not declare; %s",
+                       method->name, term_name(term), names);
   return DVI_OK;
 }
 
