@@ -132,6 +132,45 @@ static double event_of(const char *zero)
   return event_at(q, v);
 }
 
+/* Runs a scene of all kinds of coordinates with this section, whose system passes the check, and
+ * gives q at the end. */
+static void end_with(const char *section, double *end)
+{
+  char text[TEXT_SIZE];
+  const double *q, *v, *p;
+  dvi_derivative_check found;
+  dvi_integrator *integrator;
+  (void)snprintf(text, sizeof text,
+                 "coordinates: {B: motion, u: angle, d: direction, x: scalar}\n"
+                 "lagrangian: dot(B.x', B.x')/2 + dot(omega(B), omega(B))/2 + 0.1*omega(B)[2]^2 + "
+                 "rate(u)^2 + dot(d', d') + x'^2 - 9.81*B.x[3] - d[3] - x*B.x[1]\n%s\n"
+                 "initial: {B.R: \"turn([1, 0, 0], 2)\", omega(B): \"[1, 2, 3]\", B.x: \"[0, 1, "
+                 "2]\", B.x': \"[1, 2, 1]\", u: 0.2, rate(u): 1, d: \"[0, 0, 1]\", d': \"[1, 0, "
+                 "0]\", x: 1, x': 0.5}\n" RUN,
+                 section);
+  const dvi_system *system = open_scene(text);
+  dvi_scene_start(scene, &q, &v, &p);
+  ck_assert_msg(dvi_system_check(system, 0.3, q, v, 0, &found) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_int_eq(dvi_integrator_create(system, "lie-galerkin:degree=2", &integrator), DVI_OK);
+  ck_assert_int_eq(dvi_integrator_start(integrator, 0, q, p), DVI_OK);
+  for (int k = 0; k < 10; k++) ck_assert_int_eq(dvi_integrator_step(integrator, 0.1), DVI_OK);
+  memcpy(end, dvi_integrator_q(integrator), (size_t)dvi_system_nq(system) * sizeof *end);
+  dvi_integrator_destroy(&integrator);
+}
+
+START_TEST(a_dissipation_is_the_force_that_follows_from_it)
+{
+  double by_function[MOST], by_force[MOST];
+  end_with("dissipation: 0.05*dot(omega(B), omega(B)) + 0.1*B.x'[3]^4 + 0.1*rate(u)^2 + "
+           "0.15*dot(d', d') + 0.15*x'^2*(1 + x^2)",
+           by_function);
+  end_with("forces: {omega(B): -0.1*omega(B), B.x: \"[0, 0, -0.4*B.x'[3]^3]\", rate(u): "
+           "-0.2*rate(u), d: -0.3*d', x: -0.3*x'*(1 + x^2)}",
+           by_force);
+  for (int i = 0; i < 18; i++) ck_assert_double_eq_tol(by_function[i], by_force[i], 1e-12);
+}
+END_TEST
+
 START_TEST(events_see_the_velocities_of_the_state)
 {
   const double *q, *v, *p;
@@ -367,6 +406,7 @@ SUITE(scene_manifolds)
   tcase_add_checked_fixture(tests, NULL, release_scene);
   tcase_add_test(tests, an_angle_is_the_coordinate_of_the_same_pendulum);
   tcase_add_test(tests, a_point_of_a_body_moves_as_its_velocity_says);
+  tcase_add_test(tests, a_dissipation_is_the_force_that_follows_from_it);
   tcase_add_test(tests, events_see_the_velocities_of_the_state);
   tcase_add_test(tests, symmetries_and_invariants_go_by_the_velocities_of_the_state);
   tcase_add_test(tests, all_numbers_have_names);

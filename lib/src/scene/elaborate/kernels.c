@@ -344,6 +344,7 @@ bool dvi__kernels_add(dvi_scene *scene, unsigned may, const char *where, const d
   walk w = {.scene = scene};
   group *outside = group_of(&w, NULL, NULL);
   bool good = outside != NULL && gather_leaves(&w, e, (place){.group = outside});
+  if (may & DVI__OF_STATE) list->of_state = 1;
   for (const group *g = w.first; g != NULL && good; g = g->next)
     good = add_group(scene, may, where, g, negative, list);
   return good;
@@ -352,7 +353,8 @@ bool dvi__kernels_add(dvi_scene *scene, unsigned may, const char *where, const d
 bool dvi__kernels_function(dvi_scene *scene, dvi__kernels *list, int count, dvi__scene_term **term)
 {
   const int inputs = scene->control_count + scene->parameter_count;
-  const int width[DVI__BLOCKS] = {1, scene->n, scene->velocities, count, inputs};
+  const int velocities = list->of_state ? scene->nv : scene->velocities;
+  const int width[DVI__BLOCKS] = {1, scene->n, velocities, count, inputs};
   const dvi__blocks blocks = {DVI__BLOCKS, width, DVI__PAIRS, dvi__scene_pairs};
   dvi__scene_term *made = dvi__arena_take(&scene->arena, 1, sizeof *made);
   *term = made;

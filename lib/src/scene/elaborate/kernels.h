@@ -9,6 +9,7 @@
 typedef struct dvi__kernels {
   dvi__kernel *kernel;
   int count;
+  int of_state; /* velocities are those of a state [nv] */
 } dvi__kernels;
 
 void dvi__kernels_free(dvi__kernels *list);

@@ -124,6 +124,7 @@ static void emit_pattern(dvi__emitter *out, const char *field, const int number[
  * patterns have one for a coordinate. */
 static int columns_of(const dvi__emitted_term *term, int k)
 {
+  if (k == 1 && term->velocity_columns > 0) return term->velocity_columns;
   return k < 3 ? term->columns : term->term->count;
 }
 

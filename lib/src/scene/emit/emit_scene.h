@@ -22,7 +22,8 @@ typedef struct dvi__emitted_term {
   const dvi__scene_term *term;
   int callback_count;
   const dvi__callback *callback;
-  int columns; /* columns of patterns */
+  int columns;          /* columns of patterns */
+  int velocity_columns; /* those of the second one, if they are others (default 0) */
   const char *pattern_name[4];
   const dvi_pattern *pattern[4]; /* patterns up to the first NULL */
   int fast, quadratic;           /* for potentials */

@@ -244,9 +244,11 @@ dvi__emitted_term dvi__force_term_of(const dvi_scene *scene, int k)
   dvi__emitted_term term = {.type = "dvi_force",
                             .shown = F->name,
                             .term = F->user,
-                            .callback_count = 1 + (of_dissipation || F->jacobian != NULL),
+                            .callback_count = 1 +
+                                              (F->jacobian_batch != NULL || F->jacobian != NULL),
                             .callback = of_dissipation ? dissipation_callbacks : force_callbacks,
                             .columns = scene->n,
+                            .velocity_columns = scene->nv,
                             .pattern_name = {"by_q", "by_v"},
                             .pattern = {&F->by_q, F->without_velocity ? NULL : &F->by_v},
                             .without_velocity = F->without_velocity};

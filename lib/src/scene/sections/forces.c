@@ -37,11 +37,10 @@ bool dvi__read_dissipation(dvi_scene *scene, const dvi__tree *section)
   dvi__scene_term *term;
   dvi__kernels R = {0};
   dvi__degree degree = {.degree = 0};
-  if (!dvi__refuse_factors(scene, section, "dissipation") ||
-      !refuse_other_motions(scene, section, "dissipation"))
-    return false;
+  if (!refuse_other_motions(scene, section, "dissipation")) return false;
   bool good = dvi__tree_expression(scene, section, &e) &&
-              dvi__kernels_add(scene, DVI__MENTIONS_Q | DVI__MENTIONS_V | DVI__MENTIONS_T,
+              dvi__kernels_add(scene,
+                               DVI__MENTIONS_Q | DVI__MENTIONS_V | DVI__MENTIONS_T | DVI__OF_STATE,
                                "a dissipation", e, 1, &R) &&
               dvi__kernels_degree(scene, &R, DVI__VELOCITIES, &degree);
   if (good && degree.degree == 0)

@@ -296,7 +296,8 @@ bool dvi__make_dissipation(dvi_scene *scene, dvi__scene_term *term, dvi_force *f
   int full;
   *force = (dvi_force){.name = "dissipation",
                        .value_batch = term_dissipation_value,
-                       .jacobian_batch = term_dissipation_jacobian,
+                       /* with factors forces are differenced in the charts */
+                       .jacobian_batch = dvi__has_factors(scene) ? NULL : term_dissipation_jacobian,
                        .user = term};
   return prepare_large(scene, term, of_velocities) &&
          dvi__term_pattern(scene, term, DVI__PAIR_VQ, &force->by_q, &full) &&

@@ -333,14 +333,30 @@ static dvi_status check_constraint_functions(dvi__check *c, const dvi_system *sy
   return status;
 }
 
-/* Check one Jacobian of a force, by q or by v, against differences of the force. */
-static dvi_status check_force_block(dvi__check *c, dvi__batch_gradient force,
-                                    const dvi__force_at *at, const double *x, const char *name,
-                                    const dvi__pattern *pattern, const double *given)
+/* A force as a function of q with n results, of which with factors only nv are its own. */
+static dvi_status padded_force_of_q(const void *function, int count, const double *q, double *F,
+                                    double *none)
 {
-  block b = {
-      .term = at->term->name, .name = name, .kind = "force", .pattern = pattern, .given = given};
-  return check_blocks(c, force, at, x, &b, NULL);
+  const dvi__force_at *at = function;
+  memset(F, 0, (size_t)at->scratch->n * sizeof *F);
+  return dvi__force_of_q(function, count, q, F, none);
+}
+
+/* Check one Jacobian of a force, by q [n] or by v [nv], against differences of the force [nv]. */
+static dvi_status check_force_block(dvi__check *c, dvi__batch_gradient force,
+                                    const dvi__force_at *at, int size, const double *x,
+                                    block *jacobian)
+{
+  const dvi__differences *d = &c->differences;
+  for (int j = 0; j < size; j++) {
+    DVI_TRY(
+        dvi__difference_column(force, at, &c->differences, size, j, x, c->column[0], c->column[1]));
+    compare_column(jacobian, c->nv, j, c->column[0],
+                   noise_of(largest_component(c->nv, d->plus), 1) / d->step[j]);
+  }
+  keep_worst(c, jacobian, &jacobian->on_pattern, &c->of_hessian);
+  keep_worst(c, jacobian, &jacobian->outside, &c->of_pattern);
+  return DVI_OK;
 }
 
 static dvi_status check_force(dvi__check *c, const dvi__force_term *f)
@@ -354,9 +370,13 @@ static dvi_status check_force(dvi__check *c, const dvi__force_term *f)
     given[0] = c->hessian[0];
     given[1] = c->hessian[1];
   }
-  DVI_TRY(check_force_block(c, dvi__force_of_q, &at, c->q, "dF/dq", &f->by_q, given[0]));
+  block by_q = {
+      .term = f->name, .name = "dF/dq", .kind = "force", .pattern = &f->by_q, .given = given[0]};
+  block by_v = {
+      .term = f->name, .name = "dF/dv", .kind = "force", .pattern = &f->by_v, .given = given[1]};
+  DVI_TRY(check_force_block(c, padded_force_of_q, &at, c->n, c->q, &by_q));
   if (f->callbacks.without_velocity) return DVI_OK;
-  return check_force_block(c, dvi__force_of_v, &at, c->v, "dF/dv", &f->by_v, given[1]);
+  return check_force_block(c, dvi__force_of_v, &at, c->nv, c->v, &by_v);
 }
 
 /* A constraint's values as a function with n results, for differences of all of them at once. */
@@ -577,6 +597,7 @@ dvi_status dvi_system_check(const dvi_system *system, double t, const double *q,
   const double accepted = tolerance > 0 ? tolerance : 1e-6;
   dvi__check c = {.kinetic = system->lagrangian != NULL ? system->lagrangian->name : "Lagrangian",
                   .n = system->n,
+                  .nv = system->nv,
                   .t = t,
                   .q = q,
                   .v = v,

@@ -35,7 +35,7 @@ typedef struct dvi__check {
   int constraint;      /* number of the constraint that is compared, counted from 1, or 0 */
   dvi__scratch scratch;
   dvi__differences differences;
-  int n;
+  int n, nv;
   double t;
   const double *q, *v;
   double *gradient[2], *column[2]; /* work [n] */
