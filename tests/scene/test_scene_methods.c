@@ -43,6 +43,7 @@ static const char *const sections[] = {
     "forces: {omega(R): -0.1*omega(R)}\n",
     "forces: {u: -0.1*u'}\n",
     "dissipation: (x'^2 + y'^2)/10\n",
+    "dissipation: dot(omega(R), omega(R))/10\n",
     "damping: 0.1\n",
     "constraints: {circle: x^2 + b^2 - 1}\n",
     "constraints: {tilt: 'R[1,3]'}\n",

@@ -107,8 +107,8 @@ static dvi_status check_rate(const subject *s, dvi__differences *d, double t, do
 
 /* ---- autonomous systems ---- */
 
-/* Collect a force at one time in the place of a gradient, and the Jacobians that it gives in that of
- * Hessians. */
+/* Collect a force at one time in the place of a gradient, and the Jacobians that it gives in that
+ * of Hessians. */
 static dvi_status collect_force(const subject *s, double t, size_t longest, double *numbers)
 {
   double *F_q = numbers + 1 + 2 * (size_t)s->scratch->n;
