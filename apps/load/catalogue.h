@@ -9,6 +9,7 @@ typedef struct catalogue_text {
   size_t length;
 } catalogue_text;
 
-/** Ends with an element without a name. */
-extern const catalogue_text catalogue_texts[];
+/** The problems of the catalogue, and the templates of dvi init (apps/templates). Both end with an
+ * element without a name. */
+extern const catalogue_text catalogue_texts[], template_texts[];
 #endif

@@ -105,7 +105,8 @@ const char *dvi__prefixed_name(const dvi__source *source, dvi__arena *arena, siz
   char *text = dvi__arena_take(arena, head + size + 1, 1);
   if (text == NULL) return NULL;
   memcpy(text, part->prefix, head);
-  return memcpy(text + head, name, size) != NULL ? text : NULL;
+  memcpy(text + head, name, size + 1);
+  return text;
 }
 
 bool dvi__parser_name(dvi__parser *p, const char **name)
