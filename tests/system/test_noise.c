@@ -32,20 +32,6 @@ START_TEST(noise_that_is_none_is_refused)
 }
 END_TEST
 
-static int rod_value(double t, const double *q, double *phi, void *user)
-{
-  (void)t, (void)user;
-  *phi = q[0];
-  return 0;
-}
-
-static int rod_gradient(double t, const double *q, double *phi_q, void *user)
-{
-  (void)t, (void)q, (void)user;
-  phi_q[0] = phi_q[1] = 1;
-  return 0;
-}
-
 START_TEST(noise_beside_other_than_a_constant_mass_is_refused)
 {
   static const char *const problems[] = {"double-pendulum", "lotka-volterra", "free-body",
@@ -57,11 +43,6 @@ START_TEST(noise_beside_other_than_a_constant_mass_is_refused)
     refused(*made->terms, bath, DVI_UNSUPPORTED, words[i]);
     problem_destroy(&made);
   }
-  const dvi_holonomic rod = {.count = 1, .value = rod_value, .gradient = rod_gradient};
-  refused(
-      (dvi_system_terms){
-          .dimension = 2, .mass.scalar = 1, .holonomics = &rod, .holonomic_count = 1},
-      bath, DVI_UNSUPPORTED, "holonomic constraints");
   refused((dvi_system_terms){.dimension = 2, .mass.scalar = 1, .damping = 0.1}, bath,
           DVI_UNSUPPORTED, "damping");
 }

@@ -43,16 +43,30 @@ static dvi_force declared_force(const dvi__force_term *term)
   return force;
 }
 
+static dvi_holonomic declared_holonomic(const dvi__holonomic_term *term)
+{
+  dvi_holonomic rows = term->callbacks;
+  rows.name = term->name;
+  rows.row_names = (const char *const *)term->row_names;
+  if (rows.gradients.start != NULL)
+    rows.gradients = (dvi_pattern){term->gradients.start, term->gradients.row};
+  if (rows.qq.start != NULL) rows.qq = (dvi_pattern){term->qq.start, term->qq.row};
+  return rows;
+}
+
 dvi_status dvi__system_without_noise(const dvi_system *whole, dvi_system **part)
 {
-  const int potentials = whole->potential_count, forces = whole->force_count;
+  const int potentials = whole->potential_count, forces = whole->force_count,
+            holonomics = whole->holonomic_count;
   dvi_potential *potential = DVI_NEW(dvi_potential, potentials);
   dvi_force *force = DVI_NEW(dvi_force, forces);
+  dvi_holonomic *holonomic = DVI_NEW(dvi_holonomic, holonomics);
   dvi_status status = DVI_NO_MEMORY;
   *part = NULL;
-  if (potential != NULL && force != NULL) {
+  if (potential != NULL && force != NULL && holonomic != NULL) {
     for (int k = 0; k < potentials; k++) potential[k] = declared_potential(&whole->potentials[k]);
     for (int k = 0; k < forces; k++) force[k] = declared_force(&whole->forces[k]);
+    for (int k = 0; k < holonomics; k++) holonomic[k] = declared_holonomic(&whole->holonomics[k]);
     status = dvi_system_create(
         &(dvi_system_terms){.dimension = whole->n,
                             .mass = mass_of_system(whole),
@@ -61,6 +75,8 @@ dvi_status dvi__system_without_noise(const dvi_system *whole, dvi_system **part)
                             .potential_count = potentials,
                             .forces = forces > 0 ? force : NULL,
                             .force_count = forces,
+                            .holonomics = holonomics > 0 ? holonomic : NULL,
+                            .holonomic_count = holonomics,
                             .symmetries = whole->symmetry_count > 0 ? whole->symmetries : NULL,
                             .symmetry_count = whole->symmetry_count},
         part);
@@ -69,6 +85,7 @@ dvi_status dvi__system_without_noise(const dvi_system *whole, dvi_system **part)
   }
   dvi__release(potential);
   dvi__release(force);
+  dvi__release(holonomic);
   return status;
 }
 

@@ -13,6 +13,10 @@
  * Leimkuhler and Matthews 2013, eqs. 9 to 11 (baoab); Bussi and Parrinello 2007 (obabo); Bou-Rabee
  * and Owhadi 2010, sec. 2 (ovio).
  *
+ * With holonomic constraints each O ends with the projection of p onto G M^-1 p + phi_t = 0, which
+ * keeps exp(-H/kT) on phi = 0, and each A is a step of RATTLE without forces (rattle.h; Leimkuhler
+ * and Matthews 2016, sec. 2). What a kick or a bath adds along G^T the next A takes away.
+ *
  * Members of an ensemble side by side and a single state, which counts as one member, share the
  * code of a step, and have the same bits for this reason. */
 #include <string.h>
@@ -20,6 +24,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "method/split/bath.h"
+#include "method/split/rattle.h"
 #include "num/compensated.h"
 #include "num/simd/lanes.h"
 #include "system/part.h"
@@ -52,15 +57,17 @@ typedef struct langevin {
   double *p[2];        /* [n] momenta before and after the step without noise */
   double *v, *F;       /* [n] */
   double *supply;      /* [1 + symmetries] */
+  dvi__rattle *rattle; /* NULL without constraints */
   dvi_system *free;    /* the system without noise, of ovio */
   dvi__stepper *inner; /* galerkin on it, or NULL */
 } langevin;
 
 /* Behind the numbers of the bath the memory of explicit schemes holds the gradient [n] at the
  * state, whether it is known, and the velocities [n] of both halves of the drift. That of ovio
- * holds the inner method's. */
+ * holds the inner method's. With constraints explicit schemes hold the velocity [n] after the bath
+ * and the multipliers, too. */
 typedef struct rows {
-  double *gradient, *known, *first_v, *last_v, *inner;
+  double *gradient, *known, *first_v, *last_v, *bath_v, *lambda, *inner;
 } rows;
 
 static rows rows_of(const dvi__stepper *self, int count, double *memory)
@@ -71,6 +78,8 @@ static rows rows_of(const dvi__stepper *self, int count, double *memory)
                 .known = at + n * members,
                 .first_v = at + (n + 1) * members,
                 .last_v = at + (2 * n + 1) * members,
+                .bath_v = at + (3 * n + 1) * members,
+                .lambda = at + (4 * n + 1) * members,
                 .inner = at};
 }
 
@@ -93,8 +102,12 @@ static dvi_status create_explicit(dvi__stepper *self, langevin *own)
     return dvi__fail(DVI_UNSUPPORTED,
                      "langevin: forces that depend on the velocity make the kicks implicit; choose "
                      "scheme=ovio");
+  if (self->system->row_count > 0 && self->system->force_count > 0)
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "langevin: forces beside constraints are taken by scheme=ovio alone");
   self->order = 2;
-  self->memory_count = DVI__BATH_MEMORY + 3 * (size_t)self->system->n + 1;
+  const size_t n = (size_t)self->system->n, m = (size_t)self->system->row_count;
+  self->memory_count = DVI__BATH_MEMORY + 3 * n + 1 + (m > 0 ? n + m : 0);
   return dvi__evaluator_create(self->system, 1, DVI__GRADIENTS, self->counters, &own->evaluator);
 }
 
@@ -128,7 +141,10 @@ static dvi_status langevin_create(dvi__stepper *self)
   own->supply = at + 4 * n;
   const dvi_status status = dvi__bath_create(self->system, 1, &own->bath);
   if (status != DVI_OK) return dvi__fail_in(status, "langevin");
-  return scheme_of(self) == OVIO ? create_inner(self, own) : create_explicit(self, own);
+  DVI_TRY(scheme_of(self) == OVIO ? create_inner(self, own) : create_explicit(self, own));
+  if (self->system->row_count == 0) return DVI_OK;
+  return dvi__rattle_create(own->free != NULL ? own->free : self->system, own->evaluator,
+                            self->counters, &own->rattle);
 }
 
 static void langevin_destroy(dvi__stepper *self)
@@ -139,6 +155,7 @@ static void langevin_destroy(dvi__stepper *self)
   dvi__release(own->inner);
   dvi__evaluator_destroy(&own->evaluator);
   dvi__bath_destroy(&own->bath);
+  dvi__rattle_destroy(&own->rattle);
   dvi_system_destroy(&own->free);
   dvi__release(own->numbers);
   dvi__release(own);
@@ -167,6 +184,7 @@ typedef struct move {
   dvi__bath *bath;
   dvi__evaluator *evaluator;
   dvi__members *members;
+  dvi__state *state;    /* the only one, or NULL */
   dvi__state *balanced; /* NULL without balances */
   rows rows;
 } move;
@@ -205,6 +223,7 @@ static dvi_status meet_bath(const move *m, double tau)
   if (m->balanced != NULL) memcpy(own->p[1], s->p, numbers_of(m) * sizeof(double));
   dvi__bath_move(m->bath, tau, 1 << m->self->settings.value[REFINEMENT], s->count, s->memory, s->p,
                  s->p_compensation);
+  if (own->rattle != NULL) DVI_TRY(dvi__rattle_end(own->rattle, m->state));
   return m->balanced != NULL ? add_heat(m, own->p[1]) : DVI_OK;
 }
 
@@ -282,6 +301,45 @@ static dvi_status explicit_step(const move *m, double h)
   return at_ends ? meet_bath(m, 0.5 * h) : DVI_OK;
 }
 
+/* A drift on the constraints. */
+static dvi_status constrained_drift(const move *m, double h, double *v)
+{
+  const langevin *own = m->self->own;
+  DVI_TRY(dvi__rattle_begin(own->rattle, m->state, h, m->rows.lambda));
+  find_velocity(m, v);
+  drift(m, h, v);
+  advance_clocks(m, h);
+  return dvi__rattle_end(own->rattle, m->state);
+}
+
+/* A(h/2) O(h) A(h/2), or A(h). */
+static dvi_status constrained_middle(const move *m, double h)
+{
+  const size_t bytes = numbers_of(m) * sizeof(double);
+  if (scheme_of(m->self) == OBABO) {
+    DVI_TRY(constrained_drift(m, h, m->rows.first_v));
+    memcpy(m->rows.last_v, m->rows.first_v, bytes);
+    return DVI_OK;
+  }
+  DVI_TRY(constrained_drift(m, 0.5 * h, m->rows.first_v));
+  DVI_TRY(meet_bath(m, h));
+  find_velocity(m, m->rows.bath_v);
+  return constrained_drift(m, 0.5 * h, m->rows.last_v);
+}
+
+static dvi_status constrained_step(const move *m, double h)
+{
+  const langevin *own = m->self->own;
+  const int at_ends = scheme_of(m->self) == OBABO;
+  if (at_ends) DVI_TRY(meet_bath(m, 0.5 * h));
+  kick(m, 0.5 * h);
+  DVI_TRY(constrained_middle(m, h));
+  DVI_TRY(renew_gradient(m));
+  kick(m, 0.5 * h);
+  DVI_TRY(dvi__rattle_end(own->rattle, m->state));
+  return at_ends ? meet_bath(m, 0.5 * h) : DVI_OK;
+}
+
 static dvi_status inner_step(const move *m, dvi__state *state, double h)
 {
   const langevin *own = m->self->own;
@@ -311,6 +369,7 @@ static dvi_status langevin_step(dvi__stepper *self, dvi__state *state, double h)
                   .bath = own->bath,
                   .evaluator = own->evaluator,
                   .members = &one,
+                  .state = state,
                   .balanced = state->supplied != NULL ? state : NULL,
                   .rows = rows_of(self, 1, self->memory)};
   if (own->inner != NULL) {
@@ -318,7 +377,7 @@ static dvi_status langevin_step(dvi__stepper *self, dvi__state *state, double h)
     return meet_bath(&m, 0.5 * h);
   }
   if (*m.rows.known == 0) DVI_TRY(renew_gradient(&m));
-  return explicit_step(&m, h);
+  return own->rattle != NULL ? constrained_step(&m, h) : explicit_step(&m, h);
 }
 
 /* ---- the path and the temperature ---- */
@@ -341,8 +400,8 @@ static void langevin_path(const dvi__stepper *self, const double *q0, double h, 
   }
 }
 
-/* After the O of baoab the velocity is that of the last half of the drift. The other schemes end
- * with an O. */
+/* There are n - m degrees of freedom. After the O of baoab the velocity is that of the last half of
+ * the drift. The other schemes end with an O. */
 static dvi_status langevin_temperature(dvi__stepper *self, const dvi__state *state,
                                        double *temperature)
 {
@@ -350,7 +409,8 @@ static dvi_status langevin_temperature(dvi__stepper *self, const dvi__state *sta
   const int in_middle = scheme_of(self) == BAOAB && self->memory[DVI__BATH_DRAWS] > 0;
   const double *p = state->p, *v = own->v;
   if (in_middle) {
-    v = rows_of(self, 1, self->memory).last_v;
+    const rows r = rows_of(self, 1, self->memory);
+    v = own->rattle != NULL ? r.bath_v : r.last_v;
     DVI_TRY(dvi__lagrangian_gradient(own->evaluator, 1, &state->t, state->q, v, NULL, own->F));
     p = own->F;
   } else {
@@ -358,7 +418,7 @@ static dvi_status langevin_temperature(dvi__stepper *self, const dvi__state *sta
   }
   double twice = 0;
   for (int i = 0; i < self->system->n; i++) twice += p[i] * v[i];
-  *temperature = twice / self->system->n;
+  *temperature = twice / (self->system->n - self->system->row_count);
   return DVI_OK;
 }
 
@@ -373,7 +433,8 @@ typedef struct lanes {
 static dvi_status langevin_prepare_lanes(dvi__stepper *self, int capacity)
 {
   const langevin *own = self->own;
-  if (self->system->mass_diagonal == NULL || !dvi__system_has_gradients(self->system))
+  if (self->system->mass_diagonal == NULL || own->rattle != NULL ||
+      !dvi__system_has_gradients(self->system))
     return DVI_OK;
   if (own->inner != NULL) {
     DVI_TRY(dvi__stepper_prepare_lanes(own->inner, capacity));
@@ -468,7 +529,7 @@ const dvi__method dvi__langevin = {
     .keys = keys,
     .takes_rest = 1,
     .needs = DVI__CONSTANT_MASS | DVI__NOISE,
-    .uses = DVI__CONSTANT_MASS | DVI__POTENTIAL | DVI__FORCES | DVI__NOISE,
+    .uses = DVI__CONSTANT_MASS | DVI__POTENTIAL | DVI__FORCES | DVI__HOLONOMIC | DVI__NOISE,
     .create = langevin_create,
     .destroy = langevin_destroy,
     .start = langevin_start,

@@ -67,10 +67,10 @@ static bool refuse_other_masses(dvi_scene *scene, const dvi__tree *section)
 {
   const dvi_system_terms *terms = &scene->terms;
   if (!dvi__refuse_factors(scene, section, "noise")) return false;
-  if (terms->holonomic_count + terms->nonholonomic_count + terms->contact_count > 0 ||
-      terms->damping > 0)
-    return dvi__scene_refuse(scene, section->span,
-                             "beside constraints, contacts and damping there is no noise");
+  if (terms->nonholonomic_count + terms->contact_count > 0 || terms->damping > 0)
+    return dvi__scene_refuse(
+        scene, section->span,
+        "beside nonholonomic constraints, contacts and damping there is no noise");
   return (terms->lagrangian == NULL && terms->one_form == NULL && terms->hamiltonian == NULL) ||
          dvi__scene_refuse(scene, section->span,
                            "noise needs a constant mass, and that of this scene is none");

@@ -227,7 +227,6 @@ static dvi_status check_noise(const dvi_system_terms *terms)
                        : terms->lagrangian != NULL       ? "a general Lagrangian"
                        : terms->one_form != NULL         ? "a one-form"
                        : terms->hamiltonian != NULL      ? "a Hamiltonian"
-                       : terms->holonomic_count > 0      ? "holonomic constraints"
                        : terms->nonholonomic_count > 0   ? "nonholonomic constraints"
                        : terms->contact_count > 0        ? "contacts"
                        : terms->vector_potential != NULL ? "a vector potential"
