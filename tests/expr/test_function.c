@@ -416,7 +416,7 @@ END_TEST
 /* log(x - 1) at x = 0.8 in the source "log(x - 1)". */
 START_TEST(what_is_not_finite_is_located)
 {
-  static const dvi__source source = {"scene", "log(x - 1)", 10};
+  static const dvi__source source = {.name = "scene", .text = "log(x - 1)", .size = 10};
   draft own;
   char text[100];
   dvi__fault fault;
