@@ -165,6 +165,7 @@ bool energy_watch_start(energy_watch *w, const problem *scene, dvi_integrator *i
   w->start = start;
   w->t = w->t_start = dvi_integrator_time(integrator);
   w->blind = dvi_integrator_invariant(integrator, 0, &w->first) != DVI_OK;
+  w->first = balanced_value(integrator, 0, w->first); /* a checkpoint may hold supplies */
   return true;
 }
 

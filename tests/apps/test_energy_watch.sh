@@ -27,6 +27,19 @@ lines=3 warned 'in another time' run kepler --method midpoint --time-transform d
   --t-end 60 --final
 lines=5 warned 'chosen steps' run kepler --method sem --h 0.05 --t-end 100 --final
 
+# What friction took before a checkpoint is no error behind it.
+cat >slowing.yaml <<END
+coordinates: {x: scalar}
+lagrangian: x'^2/2 + cos(x)
+damping: 0.3
+initial: {x: 1.5, x': 0.3}
+method: galerkin:degree=3
+step: 0.1
+until: 10
+END
+silent 'friction' run slowing.yaml --t-end 5 --checkpoint slowing.state --final
+silent 'friction, resumed' run slowing.yaml --resume slowing.state --final
+
 # The advice helps: the step or the method that it names does not warn.
 for run in 'kepler --method verlet' 'kepler --method midpoint --h 30 --t-end 60' \
   'henon-heiles --method verlet --h 0.9' \
