@@ -48,6 +48,7 @@ static const char *const sections[] = {
     "constraints: {circle: x^2 + b^2 - 1}\n",
     "constraints: {tilt: 'R[1,3]'}\n",
     "constraints: {level: 'u[3]'}\n",
+    "noise: {temperature: 0.5, friction: 1}\n",
     "nonholonomic: {blade: sin(a)*x' - cos(a)*y'}\n",
     "contacts: {wall: {gap: 5 - x, restitution: 1}}\n",
     "contacts: {wall: {gap: 5 - x, friction: 0.3, tangent: y}}\n",

@@ -69,6 +69,15 @@ step: 0.02
 until: 2
 END
 
+cat >welded.yaml <<'END'
+include: {a: drop.yaml, b: air.yaml}
+constraints: {port: a_x - b_y - 0.7}
+initial: {a_x: 1, a_x': 0}
+method: galerkin:degree=2
+step: 0.02
+until: 2
+END
+
 # The warnings that users turn on. One instruction set alone compiles sooner.
 compiler=${CC:-cc}
 flags='-std=c11 -O2 -Wall -Wextra -Wconversion -Wpedantic -Werror -DDVI_LANES='
@@ -97,7 +106,7 @@ in_turn='NR == 1 { count = split($0, number) }
 if command -v "$compiler" >/dev/null &&
   ! grep -q '__[at]san_init\|__ubsan_handle' "$libraries/libdvi.so"; then
   cp "$top"/apps/scenes/*.yaml "$top"/apps/scenes/*/*.yaml .
-  for each in drop pits air rod plate snakeboard damped-driven kepler oscillator \
+  for each in drop pits air rod plate welded snakeboard damped-driven kepler oscillator \
     driven-pendulum double-pendulum guiding-centre circle-dirac magnetic-pair elastica fpu \
     vortices free-body spherical-double-pendulum satellite; do
     compiles $each.yaml
