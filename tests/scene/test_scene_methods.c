@@ -98,7 +98,7 @@ static int check_methods(const dvi_scene *scene, const char *text)
 {
   static const char before[] = "methods for this system:", none[] = "no method takes all";
   char suggested[MESSAGE_SIZE] = "";
-  int takes[METHODS_MAX], taken = 0, refused = 0;
+  int takes[METHODS_MAX] = {0}, taken = 0, refused = 0;
   for (int i = 0; i < dvi_method_count(); i++) {
     const dvi_status status = try_method(scene, dvi_method_name(i));
     takes[i] = status == DVI_OK;

@@ -377,7 +377,8 @@ static bool include_all(dvi_scene *scene, joined *all, const dvi__tree **tree, c
   *merged = (dvi__tree){.kind = DVI__MAPPING, .span = (*tree)->span};
   bool good = merge(scene, merged, *tree, true, false);
   for (int i = 0; i < section->count && good; i++) {
-    const dvi__tree *component = NULL;
+    static const dvi__tree empty = {.kind = DVI__MAPPING};
+    const dvi__tree *component = &empty;
     good = read_component(scene, all, section->key[i], section->child[i], prefix, depth + 1,
                           &component) &&
            merge(scene, merged, component, true, true) &&
