@@ -25,6 +25,7 @@
 #include "march/sections.h"
 #include "march/whole_file.h"
 #include "num/finite.h"
+#include "system/evaluate/dynamics.h"
 
 /* The system's hashes got those of forces with version 2. */
 enum { SECTION_VERSION = 1, SYSTEM_VERSION = 2 };
@@ -357,6 +358,14 @@ static void checkpoint_take_over(dvi_integrator *I, const checkpoint *c)
   I->started = 1;
 }
 
+/* The rank of constraints is found again, for multipliers that are asked for before a step. */
+static dvi_status take_over(dvi_integrator *I, const checkpoint *c)
+{
+  checkpoint_take_over(I, c);
+  const dvi__state_constraint *constraint = I->system->dynamics->constraint;
+  return constraint != NULL && constraint->has_rank ? dvi__integrator_find_side(I) : DVI_OK;
+}
+
 dvi_status dvi_integrator_restore(dvi_integrator *I, const char *path)
 {
   checkpoint c = {.specification = NULL};
@@ -367,7 +376,7 @@ dvi_status dvi_integrator_restore(dvi_integrator *I, const char *path)
   c.sections.name = name;
   dvi_status status = dvi__sections_read(path, &c.sections);
   if (status == DVI_OK) status = open_checkpoint(I, &c);
-  if (status == DVI_OK) checkpoint_take_over(I, &c);
+  if (status == DVI_OK) status = take_over(I, &c);
   dvi__sections_clear(&c.sections);
   return status;
 }
@@ -385,7 +394,7 @@ dvi_status dvi_integrator_restore_memory(dvi_integrator *I, const void *bytes, s
   dvi_status status = dvi__sections_check(&c.sections, "checkpoint in memory", c.sections.own,
                                           size);
   if (status == DVI_OK) status = open_checkpoint(I, &c);
-  if (status == DVI_OK) checkpoint_take_over(I, &c);
+  if (status == DVI_OK) status = take_over(I, &c);
   dvi__sections_clear(&c.sections);
   return status;
 }

@@ -71,7 +71,7 @@ static dvi_status start_from_state(dvi_integrator *I, double t, const double *q,
   I->now.t = t;
   I->now.t_compensation = 0;
   I->now.density = density;
-  I->now.side = 0;
+  I->now.side = I->next.side;
   I->started = 1;
   dvi__integrator_begin(I, w);
   return DVI_OK;
@@ -98,15 +98,21 @@ static dvi_status constrain_start(dvi_integrator *I, double t, int project, cons
 {
   const dvi__state_constraint *constraint = I->system->dynamics->constraint;
   const size_t bytes = (size_t)I->system->n * sizeof(double);
+  I->next.side = 0;
   if (constraint == NULL) return DVI_OK;
   if (!I->admitted && constraint->admit != NULL) DVI_TRY(constraint->admit(I->evaluator, t, *q));
   I->admitted = 1;
-  if (!project) return constraint->check(I->evaluator, t, *q, *p);
-  memmove(I->next.p, *p, bytes);
-  memmove(I->next.q, *q, bytes);
-  *q = I->next.q;
-  *p = I->next.p;
-  return constraint->project(I->evaluator, t, I->next.q, I->next.p);
+  if (!project) {
+    DVI_TRY(constraint->check(I->evaluator, t, *q, *p));
+  } else {
+    memmove(I->next.p, *p, bytes);
+    memmove(I->next.q, *q, bytes);
+    *q = I->next.q;
+    *p = I->next.p;
+    DVI_TRY(constraint->project(I->evaluator, t, I->next.q, I->next.p));
+  }
+  if (!constraint->has_rank) return DVI_OK;
+  return constraint->side(I->evaluator, t, *q, *p, 0, &I->next.side);
 }
 
 static dvi_status start_by_momentum(dvi_integrator *I, double t, const double *q, const double *p,
@@ -178,14 +184,21 @@ static dvi_status check_state(const dvi_integrator *I)
   return dvi__fail(DVI_NOT_FINITE, "the new state is not finite");
 }
 
+dvi_status dvi__integrator_find_side(dvi_integrator *I)
+{
+  const dvi__state_constraint *constraint = I->system->dynamics->constraint;
+  if (constraint == NULL || I->now.side != 0) return DVI_OK;
+  return constraint->side(I->evaluator, I->now.t, I->now.q, I->now.p, 0, &I->now.side);
+}
+
 /* Check that the step stays on one side of the points where the constraint's matrix is singular. No
  * trajectory goes through such a point, but a step can, and then follows no trajectory. */
 static dvi_status check_side(dvi_integrator *I)
 {
   const dvi__state_constraint *constraint = I->system->dynamics->constraint;
   if (constraint == NULL) return DVI_OK;
-  if (I->now.side == 0) DVI_TRY(constraint->side(I->evaluator, I->now.q, I->now.p, &I->now.side));
-  DVI_TRY(constraint->side(I->evaluator, I->next.q, I->next.p, &I->next.side));
+  DVI_TRY(constraint->side(I->evaluator, I->next.t, I->next.q, I->next.p, I->now.side,
+                           &I->next.side));
   if (I->next.side == I->now.side) return DVI_OK;
   return dvi__fail(
       DVI_NOT_CONVERGED,
@@ -289,6 +302,7 @@ static dvi_status advance_state(dvi_integrator *I, double h)
 {
   const dvi__method *method = I->stepper.method;
   double length;
+  DVI_TRY(dvi__integrator_find_side(I));
   DVI_TRY(dvi__control_begin(I, h, &length));
   const double density = I->next.density;
   if (method->pass != NULL &&
@@ -527,6 +541,20 @@ const double *dvi_integrator_multiplier(const dvi_integrator *I)
   return I->stepper.method->multiplier(&I->stepper);
 }
 
+/* Rows are known to be dependent after a start. */
+static void explain_dependent_rows(const dvi_integrator *I, dvi__text *out)
+{
+  char rows[1024];
+  const int count = I->system->place_rows > 0
+                        ? dvi__rows_dependent(I->evaluator, rows, sizeof rows)
+                        : 0;
+  if (count > 0)
+    dvi__text_add(out,
+                  "constraints: %d rows of rank %d; %s: from the others, consistent with them; of "
+                  "the multipliers lambda only G^T lambda is determined\n",
+                  I->system->row_count, I->system->row_count - count, rows);
+}
+
 size_t dvi_integrator_explain(const dvi_integrator *integrator, char *text, size_t size)
 {
   dvi__text out = {text, size, 0};
@@ -536,6 +564,7 @@ size_t dvi_integrator_explain(const dvi_integrator *integrator, char *text, size
                 integrator->stepper.order, integrator->stepper.symmetric ? ", symmetric" : "");
   if (integrator->monitored != NULL) dvi__monitored_time_explain(integrator->monitored, &out);
   integrator->stepper.method->explain(&integrator->stepper, &out);
+  explain_dependent_rows(integrator, &out);
   return out.length;
 }
 

@@ -32,6 +32,9 @@ struct dvi_integrator {
 
 /* Place the arrays of a state at *at, and move *at behind them. Copy a state with its arrays. */
 void dvi__state_lay_out(const dvi_integrator *integrator, dvi__state *state, double **at);
+/* Find the side of the present state, unless it is known. */
+dvi_status dvi__integrator_find_side(dvi_integrator *integrator);
+
 void dvi__state_copy(const dvi_integrator *integrator, const dvi__state *from, dvi__state *to);
 
 /* Count the numbers of a state's arrays, which are contiguous. */

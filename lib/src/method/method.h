@@ -15,7 +15,8 @@
 typedef struct dvi__state {
   double t, t_compensation;
   double density; /* z of step control (integrator/control.c) */
-  /* dvi__two_form_side or dvi__dirac_side of a degenerate system (default 0, not known) */
+  /* the side of singular points (dvi__state_constraint), 0 if not known; more than 1 where rows of
+   * holonomic constraints depend on others */
   int side;
   double *q, *p, *q_compensation, *p_compensation; /* [n] */
   /* what forces supplied to the energy and to the momenta of the symmetries since the start, NULL

@@ -5,7 +5,8 @@
  * with L_q including forces, and the rows d phi/dq v + d phi/dt and A v + a in G v + g. The
  * multipliers mu, which vanish, keep both phi and its rate at 0. Nonholonomic constraints have mu =
  * 0 in the place of phi = 0. lambda and mu are in neither the error test nor the test of the
- * iteration's convergence. The Jacobian dF/dy + c dF/dydot is written here, but for the derivatives
+ * iteration's convergence. Rows that depend on others at the start have lambda = mu = 0 in the
+ * place of their equations. The Jacobian dF/dy + c dF/dydot is written here, but for the derivatives
  * of g and of A by q, which are differenced. Sources: Gear, Leimkuhler and Gupta 1985; Hindmarsh et
  * al. 2005, ACM TOMS 31:363, sec. 2.3. */
 #include <float.h>
@@ -22,6 +23,7 @@ typedef struct holonomic_ida {
   dvi__reference_run *run;
   int n, m;
   double *phi_q, *phi_qq, *rate, *moved; /* [entries], [entries], [m], [n] */
+  char *keep;                            /* [m] independent rows */
   dvi__ida_run ida;
 } holonomic_ida;
 
@@ -50,6 +52,11 @@ static dvi_status holonomic_value(const holonomic_ida *self, double t, const dou
   dvi__rows_pull(s, self->phi_q, lambda, 1, Fp);
   for (int a = 0; a < m; a++)
     for (int k = G->start[a]; k < G->start[a + 1]; k++) F_rate[a] += self->phi_q[k] * v[G->row[k]];
+  for (int a = 0; a < m; a++) {
+    if (self->keep[a]) continue;
+    F_rate[a] = lambda[a];
+    F_phi[a] = mu[a];
+  }
   return DVI_OK;
 }
 
@@ -145,6 +152,19 @@ static dvi_status add_row_slopes(const holonomic_ida *self, double t, const doub
   return DVI_OK;
 }
 
+/* Replace the rows of equations that are left out. */
+static void leave_out_rows(const holonomic_ida *self, SUNMatrix matrix)
+{
+  const int n = self->n, m = self->m, size = 3 * n + 2 * m;
+  for (int a = 0; a < m; a++) {
+    if (self->keep[a]) continue;
+    for (int column = 0; column < size; column++)
+      SM_ELEMENT_D(matrix, 3 * n + a, column) = SM_ELEMENT_D(matrix, 3 * n + m + a, column) = 0;
+    SM_ELEMENT_D(matrix, 3 * n + a, 3 * n + a) = 1;
+    SM_ELEMENT_D(matrix, 3 * n + m + a, 3 * n + m + a) = 1;
+  }
+}
+
 static dvi_status holonomic_write_jacobian(const holonomic_ida *self, double t, double c,
                                            const double *y, SUNMatrix matrix)
 {
@@ -178,6 +198,7 @@ static dvi_status holonomic_write_jacobian(const holonomic_ida *self, double t, 
   add_transposed(matrix, 3 * n, n, &s->rows_q, self->phi_q, 1);
   add_transposed(matrix, 3 * n + m, 0, &places, self->phi_q, 1);
   for (int a = s->place_rows; a < m; a++) SM_ELEMENT_D(matrix, 3 * n + m + a, 3 * n + m + a) = 1;
+  leave_out_rows(self, matrix);
   return DVI_OK;
 }
 
@@ -207,7 +228,9 @@ static dvi_status holonomic_start(const holonomic_ida *self)
   memcpy(y + 2 * n, run->p, bytes);
   memcpy(ydot, run->v, bytes);
   memcpy(ydot + 2 * n, run->force, bytes);
-  return dvi__rows_acceleration(run->evaluator, run->t, run->q, run->v, ydot + n, y + 3 * n);
+  DVI_TRY(dvi__rows_acceleration(run->evaluator, run->t, run->q, run->v, ydot + n, y + 3 * n));
+  for (int a = 0; a < self->m; a++) y[3 * (int)n + a] *= self->keep[a];
+  return DVI_OK;
 }
 
 static dvi_status holonomic_reserve(holonomic_ida *self)
@@ -218,8 +241,10 @@ static dvi_status holonomic_reserve(holonomic_ida *self)
   self->phi_qq = DVI_NEW(double, dvi__pattern_entries(&s->rows_qq));
   self->rate = DVI_NEW(double, self->m);
   self->moved = DVI_NEW(double, self->n);
-  if (!self->phi_q || !self->phi_qq || !self->rate || !self->moved)
+  self->keep = DVI_NEW(char, self->m);
+  if (!self->keep || !self->phi_q || !self->phi_qq || !self->rate || !self->moved)
     return dvi__reference_no_setup(self->run);
+  dvi__rows_choose(self->run->evaluator, self->keep);
   return dvi__ida_run_create(self->run, size, SUNDenseMatrix(size, size, self->run->context),
                              &self->ida);
 }
@@ -231,6 +256,7 @@ static void holonomic_clear(holonomic_ida *self)
   dvi__release(self->phi_qq);
   dvi__release(self->rate);
   dvi__release(self->moved);
+  dvi__release(self->keep);
 }
 
 static dvi_status holonomic_run(holonomic_ida *self)

@@ -203,6 +203,10 @@ static dvi_status reference_prepare(dvi__reference_run *run, const double *q, co
   DVI_TRY(dvi__state_check(run->evaluator, run->q, run->p));
   if (dynamics->constraint != NULL)
     DVI_TRY(dynamics->constraint->check(run->evaluator, run->t, run->q, run->p));
+  if (dynamics->constraint != NULL && dynamics->constraint->has_rank) {
+    int side;
+    DVI_TRY(dynamics->constraint->side(run->evaluator, run->t, run->q, run->p, 0, &side));
+  }
   return lifted ? dynamics->velocity(run->evaluator, run->t, run->q, run->p, run->v)
                 : dynamics->motion(run->evaluator, run->t, run->q, run->p, run->v, run->force,
                                    run->multiplier);

@@ -253,6 +253,7 @@ static dvi_status element_guess(dvi__stepper *self, const dvi__element_place *at
   dvi__element *own = self->own;
   if (at->last_h == 0) return dvi__element_straight(self, at, Y);
   dvi__action_continue(own->action, at->h / at->last_h, at->last_Y, Y);
+  dvi__action_begin_multipliers(own->action, Y);
   return DVI_OK;
 }
 
@@ -411,6 +412,7 @@ dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
   dvi__element *own = self->own;
   dvi__solve_report report = {0};
   const dvi__element_place at = element_place(self, state, h);
+  dvi__action_soften(own->action, state->side > 1);
   DVI_TRY(element_find_path(self, &at, &report));
   DVI_TRY(element_ends(own, own->Y));
   dvi__action_forces(own->action, self->memory + dvi__element_forces(self));

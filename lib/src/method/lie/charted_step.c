@@ -135,6 +135,7 @@ static dvi_status charted_step_solve(dvi__stepper *self, const dvi__state *state
   *local = (dvi__state){.t = state->t,
                         .t_compensation = state->t_compensation,
                         .density = state->density,
+                        .side = state->side,
                         .q = own->local,
                         .p = own->local + nx,
                         .q_compensation = own->local + 2 * nx,

@@ -27,11 +27,14 @@ struct dvi__rattle {
    * `left` and `right` of G, pairs first[e] to first[e+1]-1. */
   int *first, *left, *right;
   int knows_start; /* the matrix and the gradients are those of t_start and q_start */
+  int dependent, start_dependent; /* rows depend on others, now, and in the matrix of the start */
+  double softness;                /* of the matrix of dependent rows */
   double t_start;
   double *numbers;         /* storage of all that follows */
   double *q_start;         /* [n] */
   double *phi_q, *next_q;  /* [entries of rows_q] gradients at the start, and on the way */
   double *phi, *phi_t, *w; /* [rows]; w is a correction of the multipliers */
+  double *scale;           /* [rows] powers of two near the sizes of M^-1/2 G^T, inverted */
   double *x, *change, *v;  /* [n]; change is q1 - q0 */
 };
 
@@ -138,7 +141,7 @@ static dvi_status rattle_allocate(dvi__rattle *r)
 {
   const size_t n = (size_t)r->system->n, m = (size_t)r->system->row_count,
                entries = (size_t)dvi__pattern_entries(&r->system->rows_q);
-  double *at = r->numbers = DVI_NEW(double, 4 * n + 3 * m + 2 * entries);
+  double *at = r->numbers = DVI_NEW(double, 4 * n + 4 * m + 2 * entries);
   r->values = DVI_NEW(double, dvi__pattern_entries(&r->pattern));
   if (at == NULL || r->values == NULL)
     return dvi__fail(DVI_NO_MEMORY, "verlet: no memory for %zu constraints", m);
@@ -149,7 +152,8 @@ static dvi_status rattle_allocate(dvi__rattle *r)
   r->phi = r->v + n;
   r->phi_t = r->phi + m;
   r->w = r->phi_t + m;
-  r->phi_q = r->w + m;
+  r->scale = r->w + m;
+  r->phi_q = r->scale + m;
   r->next_q = r->phi_q + entries;
   return DVI_OK;
 }
@@ -235,6 +239,32 @@ static void multiply_by_columns(dvi__rattle *r, const double *rows, const double
   }
 }
 
+/* Scale the rows and columns by the diagonal, and add a part of it where rows depend on others
+ * (dvi__rows_soften). */
+static void scale_matrix(dvi__rattle *r)
+{
+  const dvi__pattern *P = &r->pattern;
+  for (int a = 0; a < P->columns; a++) {
+    const double square = fabs(r->values[dvi__pattern_find(P, a, a)]);
+    r->scale[a] = square > 0 && isfinite(square) ? ldexp(1.0, -(ilogb(square) / 2)) : 1;
+  }
+  for (int b = 0; b < P->columns; b++)
+    for (int e = P->start[b]; e < P->start[b + 1]; e++) {
+      r->values[e] *= r->scale[P->row[e]] * r->scale[b];
+      if (P->row[e] == b && r->dependent) r->values[e] *= 1 + r->softness;
+    }
+}
+
+/* Replace w by the multipliers whose momenta change the rows by w. */
+static dvi_status solve_matrix(dvi__rattle *r)
+{
+  const int m = r->system->row_count;
+  for (int a = 0; a < m; a++) r->w[a] *= r->scale[a];
+  DVI_TRY(dvi__linear_solve(r->matrix, r->w));
+  for (int a = 0; a < m; a++) r->w[a] *= r->scale[a];
+  return DVI_OK;
+}
+
 /* Factor rows M^-1 columns^T, of two sets of gradients. */
 static dvi_status factor_matrix(dvi__rattle *r, double t, const double *rows, const double *columns)
 {
@@ -243,6 +273,7 @@ static dvi_status factor_matrix(dvi__rattle *r, double t, const double *rows, co
     multiply_by_pairs(r, rows, columns);
   else
     multiply_by_columns(r, rows, columns);
+  scale_matrix(r);
   const dvi_status status = dvi__linear_factor(r->matrix, r->values);
   return status != DVI_SINGULAR
              ? status
@@ -253,13 +284,17 @@ static dvi_status factor_matrix(dvi__rattle *r, double t, const double *rows, co
 static dvi_status factor_at(dvi__rattle *r, double t, const double *q)
 {
   const size_t size = (size_t)r->system->n * sizeof *q;
-  if (r->knows_start && r->t_start == t && memcmp(r->q_start, q, size) == 0) return DVI_OK;
+  if (r->knows_start && r->t_start == t && r->start_dependent == r->dependent &&
+      memcmp(r->q_start, q, size) == 0)
+    return DVI_OK;
   r->knows_start = 0;
+  r->softness = DVI__SOFTNESS;
   DVI_TRY(dvi__rows_gradients(r->evaluator, t, q, r->phi_q));
   DVI_TRY(factor_matrix(r, t, r->phi_q, r->phi_q));
   r->t_start = t;
   memcpy(r->q_start, q, size);
   r->knows_start = 1;
+  r->start_dependent = r->dependent;
   return DVI_OK;
 }
 
@@ -291,7 +326,7 @@ static dvi_status correct(dvi__rattle *r, double h, double *lambda, double *move
 {
   const int n = r->system->n, m = r->system->row_count;
   memcpy(r->w, r->phi, (size_t)m * sizeof(double));
-  DVI_TRY(dvi__linear_solve(r->matrix, r->w));
+  DVI_TRY(solve_matrix(r));
   if (dvi__first_not_finite((size_t)m, r->w) >= 0)
     return dvi__fail(DVI_NOT_FINITE, "the multipliers of the step are not finite");
   move_by(r, r->phi_q, r->w, r->x);
@@ -312,6 +347,10 @@ static int is_settled(double moved, double last, double size)
          (moved <= 1e-10 * size && shrunk >= 0.5);
 }
 
+/* A kept matrix serves independent rows. The residual of dependent ones is consistent with the
+ * gradients at its own place, but for the square of its distance from the constraints. A softness
+ * in proportion to that distance keeps the multipliers small, and Newton's method quadratic
+ * (Levenberg and Marquardt's; Yamashita and Fukushima 2001). */
 static dvi_status find_multipliers(dvi__rattle *r, const dvi__state *state, double h,
                                    double *lambda)
 {
@@ -321,7 +360,8 @@ static dvi_status find_multipliers(dvi__rattle *r, const dvi__state *state, doub
   int renewed = 0;
   for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
     DVI_TRY(value_at_end(r, state, h));
-    if (iteration > 1 && !(moved <= fast_change * last)) {
+    r->softness = fmax(fmin(moved / size, 1e-2), DVI__SOFTNESS);
+    if (r->dependent || (iteration > 1 && !(moved <= fast_change * last))) {
       DVI_TRY(renew_matrix(r, state, h));
       renewed = 1;
     }
@@ -339,7 +379,10 @@ static dvi_status find_multipliers(dvi__rattle *r, const dvi__state *state, doub
 dvi_status dvi__rattle_begin(dvi__rattle *r, dvi__state *state, double h, double *lambda)
 {
   const int n = r->system->n, m = r->system->row_count;
+  r->dependent = state->side > 1;
   DVI_TRY(factor_at(r, state->t, state->q));
+  /* what has no effect at one state may have some at the next one */
+  if (r->dependent) memset(lambda, 0, (size_t)m * sizeof *lambda);
   dvi__mass_solve(r->evaluator, 1, state->p, r->change);
   for (int a = 0; a < m; a++) r->w[a] = 0.5 * h * h * lambda[a];
   move_by(r, r->phi_q, r->w, r->x);
@@ -362,7 +405,7 @@ static dvi_status project_once(dvi__rattle *r, dvi__state *state)
     for (int k = s->rows_q.start[a]; k < s->rows_q.start[a + 1]; k++)
       r->w[a] += r->phi_q[k] * r->v[s->rows_q.row[k]];
   }
-  DVI_TRY(dvi__linear_solve(r->matrix, r->w));
+  DVI_TRY(solve_matrix(r));
   if (dvi__first_not_finite((size_t)s->row_count, r->w) >= 0)
     return dvi__fail(DVI_NOT_FINITE, "the multipliers at the end of the step are not finite");
   memset(r->x, 0, (size_t)s->n * sizeof(double));

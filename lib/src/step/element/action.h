@@ -61,6 +61,13 @@ dvi_status dvi__action_carry_forces(dvi__action *action);
 /* Let the paths fulfil the system's holonomic constraints, if it has any. Call it once. */
 dvi_status dvi__action_constrain(dvi__action *action);
 
+/* Say whether rows of the constraints depend on others (dvi__rows_soften). */
+void dvi__action_soften(dvi__action *action, int dependent);
+
+/* Set a guess of multipliers to 0 if rows depend on others, because what has no effect at one state
+ * may have some at the next one. */
+void dvi__action_begin_multipliers(const dvi__action *action, double *Y);
+
 /* Where a step of degree 1 takes the rows A of nonholonomic constraints, at the middle of its path,
  * or as the mean of both ends. */
 typedef enum dvi__velocity_rule { DVI__MIDDLE_ROWS, DVI__MEAN_ROWS } dvi__velocity_rule;

@@ -9,7 +9,11 @@
  * nodes k = 1..s fulfil phi = 0. The force of the node k = s changes only the momentum at the end,
  * and is found last, so that the velocity there stays on the constraint. The rows are divided by h,
  * and the unknowns are h^2 lambda_k, which keeps the condition of the equations independent of h.
- * For s = 1 this is RATTLE.
+ * For s = 1 this is RATTLE. Each row of phi is scaled by its gradient at the start of the step, to
+ * which the multipliers are inverse.
+ *
+ * If rows depend on others, the Jacobian alone gets a small number on the diagonal of each row and
+ * its multiplier. The rows stay exact, and so do q and p, which depend on G^T lambda alone.
  *
  * Source: Leyendecker, Marsden and Ortiz 2008 (constraints in the discrete action); Wenger, Ober-
  * Bloebaum and Leyendecker 2017 (Galerkin variational integrators with constraints). */
@@ -19,6 +23,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "num/finite.h"
 #include "space/quadrature.h"
 #include "space/trial.h"
 #include "step/element/action_struct.h"
@@ -32,8 +37,10 @@ struct dvi__constrained_rows {
   double *psi, *bar;    /* [(s + 1)*s] psi_l(chi_k) and psi_l(chi_k) - psi_l(1), at k*s + l */
   int knows_start;      /* phi_q has the gradients at the start of the element */
   int knows_path;       /* and at all other nodes, of the path in X */
+  int dependent;        /* rows depend on others */
   double *X;            /* [(s + 1)*n] the nodes */
   double *phi, *phi_q;  /* [all rows], [(s + 1)*entries] */
+  double *size;         /* [rows] powers of two near the gradients at the start, inverted */
   double *w, *phi_w_qq; /* [all rows], [entries of rows_qq] */
   double *v, *impulse;  /* [n] */
   double *numbers;
@@ -49,7 +56,7 @@ static dvi_status rows_allocate(rows_term *x)
   const size_t n = (size_t)a->n, s = (size_t)a->s, nodes = s + 1,
                rows = (size_t)a->system->row_count, entries = (size_t)x->entries,
                curvature = (size_t)dvi__pattern_entries(&a->system->rows_qq);
-  double *at = x->numbers = DVI_NEW(double, nodes *(2 + 2 * s + n + entries) + 2 * rows + 2 * n +
+  double *at = x->numbers = DVI_NEW(double, nodes *(2 + 2 * s + n + entries) + 3 * rows + 2 * n +
                                                 curvature);
   if (at == NULL) return dvi__fail(DVI_NO_MEMORY, "action: no memory for %d constraints", x->rows);
   x->chi = at;
@@ -63,6 +70,7 @@ static dvi_status rows_allocate(rows_term *x)
   x->phi_w_qq = x->w + rows;
   x->v = x->phi_w_qq + curvature;
   x->impulse = x->v + n;
+  x->size = x->impulse + n;
   return DVI_OK;
 }
 
@@ -104,6 +112,16 @@ static double node_time(const rows_term *x, const dvi__row_path *p, int k)
   return p->t0 + x->chi[k] * p->h;
 }
 
+static void measure_rows(rows_term *x)
+{
+  const dvi__pattern *G = &x->action->system->rows_q;
+  for (int a = 0; a < x->rows; a++) {
+    const double size = dvi__largest((size_t)(G->start[a + 1] - G->start[a]),
+                                     x->phi_q + G->start[a]);
+    x->size[a] = size > 0 && isfinite(size) ? ldexp(1.0, -ilogb(size)) : 1;
+  }
+}
+
 /* Evaluate the gradients at all nodes that are not known. Those at the start are known from the
  * first residual of an element, and all where the Jacobian is that of the last residual's path. */
 static dvi_status rows_gradients(rows_term *x, const dvi__row_path *p)
@@ -112,6 +130,7 @@ static dvi_status rows_gradients(rows_term *x, const dvi__row_path *p)
   for (int k = x->knows_start; k <= p->s; k++) {
     DVI_TRY(dvi__rows_gradients(x->action->evaluator, node_time(x, p, k), x->X + k * p->n,
                                 x->phi_q + k * x->entries));
+    if (k == 0) measure_rows(x);
     x->knows_start = 1;
   }
   x->knows_path = 1;
@@ -119,15 +138,15 @@ static dvi_status rows_gradients(rows_term *x, const dvi__row_path *p)
 }
 
 /* Give h^2 lambda of row a at node k. */
-static double multiplier_of(const dvi__row_path *p, const double *own, int a, int k)
+static double multiplier_of(const rows_term *x, const double *own, int a, int k)
 {
-  return own[a * p->s + k];
+  return x->size[a] * own[a * x->action->s + k];
 }
 
 /* Compute the momentum [n] that the constraints add at node k. */
 static void impulse_of_node(rows_term *x, const dvi__row_path *p, const double *own, int k)
 {
-  for (int a = 0; a < x->rows; a++) x->w[a] = multiplier_of(p, own, a, k);
+  for (int a = 0; a < x->rows; a++) x->w[a] = multiplier_of(x, own, a, k);
   memset(x->impulse, 0, (size_t)p->n * sizeof(double));
   dvi__rows_pull(x->action->system, x->phi_q + k * x->entries, x->w, -x->beta[k] / p->h,
                  x->impulse);
@@ -148,7 +167,7 @@ static dvi_status rows_add(void *of, const dvi__row_path *p, const double *own, 
   }
   for (int k = 1; k <= p->s; k++) {
     DVI_TRY(dvi__rows_value(x->action->evaluator, node_time(x, p, k), x->X + k * p->n, x->phi));
-    for (int a = 0; a < x->rows; a++) own_R[a * p->s + k - 1] = x->phi[a] / p->h;
+    for (int a = 0; a < x->rows; a++) own_R[a * p->s + k - 1] = x->size[a] * x->phi[a] / p->h;
   }
   return DVI_OK;
 }
@@ -163,10 +182,11 @@ static void rows_magnitudes(const void *of, const dvi__row_path *p, double *magn
   for (int k = 1; k <= p->s; k++) {
     dvi__rows_noise(x->action->evaluator, node_time(x, p, k), x->X + k * p->n, x->phi);
     for (int a = 0; a < x->rows; a++) {
-      own_magnitude[a * p->s + k - 1] += fabs(x->phi[a] / p->h) / DBL_EPSILON;
+      const double by = x->size[a] / fabs(p->h);
+      own_magnitude[a * p->s + k - 1] += by * fabs(x->phi[a]) / DBL_EPSILON;
       for (int e = G->start[a]; e < G->start[a + 1]; e++)
-        own_magnitude[a * p->s + k - 1] += fabs(x->phi_q[k * x->entries + e] *
-                                                x->X[k * p->n + G->row[e]] / p->h);
+        own_magnitude[a * p->s + k - 1] += by * fabs(x->phi_q[k * x->entries + e] *
+                                                     x->X[k * p->n + G->row[e]]);
     }
   }
 }
@@ -204,10 +224,28 @@ static void add_gradients(const rows_term *x, const dvi__row_path *p, const dvi_
   for (int a = 0; a < x->rows; a++)
     for (int e = G->start[a]; e < G->start[a + 1]; e++) {
       double *column = dvi__row_own_column(J, a * p->s + k, G->row[e]);
-      const double by = -x->beta[k] / p->h, more = dvi__carried_entry(carried, G->row[e], phi_q, e);
+      const double by = -x->beta[k] / p->h * x->size[a],
+                   more = dvi__carried_entry(carried, G->row[e], phi_q, e);
       for (int j = 0; j < p->s; j++)
         column[j] += by * (x->bar[k * p->s + j] * phi_q[e] - end[j] * more);
     }
+}
+
+/* Make the Jacobian of dependent rows regular. G M^-1 G^T, as far as the diagonal M/h of the path's
+ * own rows tells it, is the size of the rows' Schur complement. */
+static void soften_rows(const rows_term *x, const dvi__row_path *p, const dvi__row_jacobian *J)
+{
+  const dvi__pattern *G = &x->action->system->rows_q;
+  for (int a = 0; a < x->rows; a++) {
+    double sum = 0;
+    for (int e = G->start[a]; e < G->start[a + 1]; e++) {
+      const double of_path = *dvi__row_block(J, G->row[e], G->row[e], 0), g = x->size[a] *
+                                                                            x->phi_q[e];
+      sum += of_path != 0 ? g * g / of_path : 0;
+    }
+    for (int k = 0; k < p->s; k++)
+      *dvi__row_own_diagonal(J, a * p->s + k) -= DVI__SOFTNESS * x->beta[k] / (p->h * p->h) * sum;
+  }
 }
 
 static dvi_status rows_derivatives(void *of, const dvi__row_path *p, const double *own,
@@ -228,8 +266,9 @@ static dvi_status rows_derivatives(void *of, const dvi__row_path *p, const doubl
       for (int l = 0; l < p->s; l++) {
         double *rows = dvi__row_own_rows(J, a, G->row[e], l);
         for (int k = 1; k <= p->s; k++)
-          rows[k - 1] += x->phi_q[k * x->entries + e] * x->psi[k * p->s + l] / p->h;
+          rows[k - 1] += x->size[a] * x->phi_q[k * x->entries + e] * x->psi[k * p->s + l] / p->h;
       }
+  if (x->dependent) soften_rows(x, p, J);
   return DVI_OK;
 }
 
@@ -241,7 +280,7 @@ static void rows_scale(const void *of, double h, double *scale)
   for (int a = 0; a < x->rows; a++) {
     double size = 0;
     for (int e = G->start[a]; e < G->start[a + 1]; e++) size = fmax(size, fabs(x->phi_q[e]));
-    for (int k = 0; k < s; k++) scale[a * s + k] = (size > 0 ? size : 1) / fabs(h);
+    for (int k = 0; k < s; k++) scale[a * s + k] = (size > 0 ? x->size[a] * size : 1) / fabs(h);
   }
 }
 
@@ -275,6 +314,19 @@ dvi_status dvi__action_constrain(dvi__action *a)
 void dvi__action_forget_start(dvi__action *a)
 {
   if (a->constrained != NULL) a->constrained->knows_start = a->constrained->knows_path = 0;
+}
+
+void dvi__action_soften(dvi__action *a, int dependent)
+{
+  if (a->constrained == NULL) return;
+  a->constrained->dependent = dependent;
+  dvi__rows_soften(a->evaluator, dependent);
+}
+
+void dvi__action_begin_multipliers(const dvi__action *a, double *Y)
+{
+  if (a->constrained != NULL && a->constrained->dependent)
+    memset(Y + a->n * a->s, 0, (size_t)a->constrained->rows * (size_t)a->s * sizeof *Y);
 }
 
 void dvi__action_clear_constraints(dvi__action *a)

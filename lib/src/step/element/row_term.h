@@ -78,6 +78,9 @@ double *dvi__row_entry(const dvi__row_jacobian *J, int entry, int column, int l)
 double *dvi__row_own_rows(const dvi__row_jacobian *J, int group, int column, int l);
 double *dvi__row_own_column(const dvi__row_jacobian *J, int unknown, int row);
 
+/* Give the place in the derivatives of an own row by the own unknown of the same number. */
+double *dvi__row_own_diagonal(const dvi__row_jacobian *J, int unknown);
+
 /* Add forces F [n*r] at the nodes by the principle of Lagrange and d'Alembert, beside L_q. Source:
  * Marsden and West 2001, sec. 3.2. */
 void dvi__row_add_forces(const dvi__row_path *path, const double *F, double *R, double *dp);

@@ -284,6 +284,11 @@ double *dvi__row_own_column(const dvi__row_jacobian *J, int unknown, int row)
   return find_value(J, row * J->a->s, J->first + unknown);
 }
 
+double *dvi__row_own_diagonal(const dvi__row_jacobian *J, int unknown)
+{
+  return find_value(J, J->first + unknown, J->first + unknown);
+}
+
 /* ---- forces at the nodes ---- */
 
 void dvi__row_add_forces(const dvi__row_path *p, const double *F, double *R, double *dp)

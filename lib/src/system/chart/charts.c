@@ -178,13 +178,31 @@ dvi_status dvi__charts_solve_rows(const dvi__evaluator *e, double t, double *lam
   return DVI_OK;
 }
 
+/* The matrix is that of the charted system. What is known of its rows is noted here, too. */
+static dvi_status side_in_charts(dvi__evaluator *e, double t, const double *q, const double *p,
+                                 int before, int *side)
+{
+  const chart_memory *own = e->own;
+  dvi__rows_memory *rows = dvi__rows_memory_of(e);
+  const dvi__rows_memory *inner = dvi__rows_memory_of(own->inner);
+  memset(own->xi, 0, (size_t)e->system->nx * sizeof(double));
+  dvi__charted_centre(own->charted, q);
+  dvi__charted_enter(own->charted, p, own->local);
+  DVI_TRY(dvi__charted_explain(own->charted, dvi__rows_side(own->inner, t, own->xi, own->local,
+                                                            before, side)));
+  rows->dependent_count = inner->dependent_count;
+  memcpy(rows->dependent, inner->dependent, (size_t)e->system->row_count);
+  return DVI_OK;
+}
+
 static const dvi__state_constraint on_rows_in_charts = {
     .matrix = "matrix of the constraints",
     .check = dvi__rows_check,
     .project = project_in_charts,
     .distance = dvi__rows_distance,
     .size = dvi__rows_size,
-    .side = dvi__rows_side,
+    .has_rank = 1,
+    .side = side_in_charts,
 };
 
 const dvi__dynamics dvi__dynamics_constrained_charts = {

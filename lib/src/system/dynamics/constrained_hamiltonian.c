@@ -149,8 +149,10 @@ static dvi_status factor_bracket(dvi__evaluator *e, const double *q, const doubl
                            "point: they are dependent, or not all of second class");
 }
 
-static dvi_status bracket_side(dvi__evaluator *e, const double *q, const double *p, int *side)
+static dvi_status bracket_side(dvi__evaluator *e, double t, const double *q, const double *p,
+                               int before, int *side)
 {
+  (void)t, (void)before;
   const int m = e->system->constraint->callbacks.count;
   *side = 1;
   if (m > DVI__SIDES_MOST) return DVI_OK;

@@ -42,11 +42,14 @@ static dvi_status lay_out_matrix(const dvi_system *s, dvi__rows_memory *r)
   dvi__pattern by_row = {0};
   int at = 0;
   r->matrix = (dvi__pattern){n + m, n + m, DVI_NEW(int, (size_t)n + (size_t)m + 1),
-                             DVI_NEW(int, mass + 2 * rows)};
+                             DVI_NEW(int, mass + 2 * rows + (size_t)m)};
   r->mass_place = DVI_NEW(int, mass);
   r->column_place = DVI_NEW(int, rows);
   r->row_place = DVI_NEW(int, rows);
-  if (!r->matrix.start || !r->matrix.row || !r->mass_place || !r->column_place || !r->row_place)
+  r->own_place = DVI_NEW(int, m);
+  r->diagonal = DVI_NEW(int, n);
+  if (!r->matrix.start || !r->matrix.row || !r->mass_place || !r->column_place || !r->row_place ||
+      !r->own_place || !r->diagonal)
     return dvi__fail(DVI_NO_MEMORY, "constraints: no memory for %d rows", m);
   DVI_TRY(dvi__pattern_transpose(&s->rows_q, &by_row));
   for (int j = 0; j < n; j++) {
@@ -66,8 +69,11 @@ static dvi_status lay_out_matrix(const dvi_system *s, dvi__rows_memory *r)
       r->column_place[k] = at;
       r->matrix.row[at++] = s->rows_q.row[k];
     }
+    r->own_place[a] = at;
+    r->matrix.row[at++] = n + a;
   }
   r->matrix.start[n + m] = at;
+  for (int i = 0; i < n; i++) r->diagonal[i] = dvi__pattern_find(&s->vv, i, i);
   dvi__pattern_clear(&by_row);
   return DVI_OK;
 }
@@ -90,9 +96,11 @@ dvi_status dvi__rows_prepare(dvi__evaluator *e)
                rows = (size_t)dvi__pattern_entries(&s->rows_q);
   dvi__rows_memory *r = e->rows = DVI_NEW(dvi__rows_memory, 1);
   if (r == NULL) return dvi__fail(DVI_NO_MEMORY, "constraints: no memory");
+  r->row_count = s->row_count;
   r->hessian = DVI_NEW(double, dvi__pattern_entries(&s->rows_qq));
-  double *at = r->numbers = DVI_NEW(double, 9 * n + (8 + DVI__NOISE_SAMPLES) * m + 2 * rows);
-  if (r->hessian == NULL || at == NULL)
+  r->dependent = DVI_NEW(char, m);
+  double *at = r->numbers = DVI_NEW(double, 9 * n + (9 + DVI__NOISE_SAMPLES) * m + 2 * rows);
+  if (r->hessian == NULL || r->dependent == NULL || at == NULL)
     return dvi__fail(DVI_NO_MEMORY, "constraints: no memory for %zu rows", m);
   r->x = at;
   r->along[0] = r->x + n + m;
@@ -108,6 +116,7 @@ dvi_status dvi__rows_prepare(dvi__evaluator *e)
   r->phi_q = r->phi_t + m;
   r->unit = r->phi_q + rows;
   r->moved_A = r->unit + n;
+  r->scale = r->moved_A + rows;
   for (int c = 0; c < s->slot_count; c++)
     for (int i = 0; s->slots[c].kind != DVI__LINE && i < dvi__chart_stored(s->slots[c].kind); i++)
       r->unit[s->slots[c].q + i] = 1;
@@ -123,6 +132,9 @@ void dvi__rows_release(dvi__evaluator *e)
   dvi__release(r->mass_place);
   dvi__release(r->column_place);
   dvi__release(r->row_place);
+  dvi__release(r->own_place);
+  dvi__release(r->diagonal);
+  dvi__release(r->dependent);
   dvi__release(r->values);
   dvi__release(r->hessian);
   dvi__release(r->numbers);
@@ -233,6 +245,31 @@ static dvi_status velocity_matrix(dvi__evaluator *e, double t, const double *q, 
   return s->lagrangian != NULL ? dvi__velocity_hessian(e, t, q, v, L_vv) : DVI_OK;
 }
 
+/* Return the square of a row's size in the metric of the inverse mass, by its diagonal. */
+static double row_square(const dvi_system *s, const dvi__rows_memory *r, int a, const double *L_vv)
+{
+  double sum = 0;
+  for (int k = s->rows_q.start[a]; k < s->rows_q.start[a + 1]; k++) {
+    const int on_diagonal = r->diagonal[s->rows_q.row[k]];
+    const double mass = on_diagonal >= 0 ? fabs(L_vv[on_diagonal]) : 0;
+    sum += r->phi_q[k] * (r->phi_q[k] / (mass > 0 ? mass : 1));
+  }
+  return sum;
+}
+
+/* Fill in the rows, each scaled by a power of two, because their size means nothing. */
+static void fill_rows(const dvi_system *s, dvi__rows_memory *r, const double *L_vv)
+{
+  for (int a = 0; a < s->row_count; a++) {
+    const double square = row_square(s, r, a, L_vv);
+    const int known = square > 0 && isfinite(square);
+    r->scale[a] = known ? ldexp(1.0, -(ilogb(square) / 2)) : 1;
+    for (int k = s->rows_q.start[a]; k < s->rows_q.start[a + 1]; k++)
+      r->values[r->column_place[k]] = r->values[r->row_place[k]] = r->scale[a] * r->phi_q[k];
+    r->values[r->own_place[a]] = -r->softness * (known ? square * r->scale[a] * r->scale[a] : 1);
+  }
+}
+
 dvi_status dvi__rows_factor(dvi__evaluator *e, double t, const double *q, const double *v)
 {
   const dvi_system *s = e->system;
@@ -241,8 +278,7 @@ dvi_status dvi__rows_factor(dvi__evaluator *e, double t, const double *q, const 
   DVI_TRY(velocity_matrix(e, t, q, v, &L_vv));
   DVI_TRY(dvi__rows_gradients(e, t, q, r->phi_q));
   for (int k = 0; k < dvi__pattern_entries(&s->vv); k++) r->values[r->mass_place[k]] = L_vv[k];
-  for (int k = 0; k < dvi__pattern_entries(&s->rows_q); k++)
-    r->values[r->column_place[k]] = r->values[r->row_place[k]] = r->phi_q[k];
+  fill_rows(s, r, L_vv);
   const dvi_status status = dvi__linear_factor(r->linear, r->values);
   return status != DVI_SINGULAR
              ? status
@@ -257,7 +293,10 @@ dvi_status dvi__rows_factor(dvi__evaluator *e, double t, const double *q, const 
 
 dvi_status dvi__rows_solve(const dvi__rows_memory *r, int size, double t)
 {
+  const int n = size - r->row_count;
+  for (int i = n; i < size; i++) r->x[i] *= r->scale[i - n];
   DVI_TRY(dvi__linear_solve(r->linear, r->x));
+  for (int i = n; i < size; i++) r->x[i] *= r->scale[i - n];
   if (dvi__first_not_finite((size_t)size, r->x) < 0) return DVI_OK;
   return dvi__fail(DVI_NOT_FINITE, "the multipliers at t = %.6g are not finite", t);
 }
@@ -348,6 +387,11 @@ static dvi_status search_derivatives(dvi__evaluator *e, double t, const double *
       break;
   }
   return known > 0 ? DVI_OK : status;
+}
+
+dvi_status dvi__rows_slopes(dvi__evaluator *e, double t, const double *q, const double *v)
+{
+  return search_derivatives(e, t, q, v);
 }
 
 /* Write the derivatives of (L_v, G v + g) along the motion into r->x. */

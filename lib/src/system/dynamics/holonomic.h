@@ -25,6 +25,18 @@ dvi_status dvi__rows_derivatives(dvi__evaluator *e, double t, const double *q, c
 /* Estimate the roundings of phi [m] near a point. 0 stands for a row in which none are seen. */
 void dvi__rows_noise(dvi__evaluator *e, double t, const double *q, double *noise);
 
+/* Take the matrices of an evaluator for dependent rows, or for independent ones. The Jacobian of a
+ * step has -DVI__SOFTNESS times the size of its Schur complement on the diagonal of the rows and
+ * their multipliers. The residuals stay exact, and multipliers that have no effect stay small. */
+#define DVI__SOFTNESS 1e-7
+void dvi__rows_soften(dvi__evaluator *e, int dependent);
+
+/* Say which rows depend on others at the last start, in words. 0 if there are none. */
+int dvi__rows_dependent(const dvi__evaluator *e, char *words, size_t size);
+
+/* Choose independent rows. keep [m] becomes 0 for those that depend on others. */
+void dvi__rows_choose(const dvi__evaluator *e, char *keep);
+
 /* Add factor G^T w to x [n]. */
 void dvi__rows_pull(const dvi_system *system, const double *phi_q, const double *w, double factor,
                     double *x);

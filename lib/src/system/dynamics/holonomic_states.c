@@ -166,18 +166,25 @@ dvi_status dvi__rows_size(dvi__evaluator *e, double t, const double *q, const do
   return DVI_OK;
 }
 
-static dvi_status refuse_row(const dvi_system *s, int a, double t, const char *what, double value)
+const char *dvi__rows_label(const dvi_system *s, int a, char label[DVI__ROW_LABEL])
 {
   int first, count;
   const char *const *names;
   const char *name = name_of_row(s, a, &first, &count, &names);
-  char row[32] = "";
   if (names != NULL) name = names[a - first];
-  if (count > 1 && names == NULL) (void)snprintf(row, sizeof row, " (row %d)", a - first);
+  const int length = snprintf(label, DVI__ROW_LABEL, "'%.60s'", name);
+  if (count > 1 && names == NULL)
+    (void)snprintf(label + length, DVI__ROW_LABEL - (size_t)length, " (row %d)", a - first);
+  return label;
+}
+
+static dvi_status refuse_row(const dvi_system *s, int a, double t, const char *what, double value)
+{
+  char label[DVI__ROW_LABEL];
   return dvi__fail(DVI_BAD_ARGUMENT,
-                   "constraint '%s'%s%s is %.17g at t = %.6g, not 0; start on the constraint, or "
+                   "constraint %s%s is %.17g at t = %.6g, not 0; start on the constraint, or "
                    "let the start be projected (dvi_start_options)",
-                   name, row, what, value, t);
+                   dvi__rows_label(s, a, label), what, value, t);
 }
 
 dvi_status dvi__rows_check_place(dvi__evaluator *e, double t, const double *q)
@@ -303,15 +310,9 @@ static dvi_status project_on_rows(dvi__evaluator *e, double t, double *q, double
   return dvi__rows_found(e, t, q);
 }
 
-dvi_status dvi__rows_side(dvi__evaluator *e, const double *q, const double *p, int *side)
-{
-  (void)e, (void)q, (void)p;
-  *side = 1;
-  return DVI_OK;
-}
-
 const dvi__state_constraint dvi__on_rows = {
     .matrix = "matrix of the constraints",
+    .has_rank = 1,
     .check = dvi__rows_check,
     .admit = dvi__rows_are_nonholonomic,
     .project = project_on_rows,

@@ -72,10 +72,11 @@ static void fill_dense(const dvi__evaluator *e, double *Omega)
       Omega[j * n + (size_t)omega->row[k]] = two_form_entries(e)[k];
 }
 
-static dvi_status two_form_side(dvi__evaluator *e, const double *q, const double *p, int *side)
+static dvi_status two_form_side(dvi__evaluator *e, double t, const double *q, const double *p,
+                                int before, int *side)
 {
   double Omega[DVI__SIDES_MOST * DVI__SIDES_MOST];
-  (void)p;
+  (void)t, (void)p, (void)before;
   *side = 1;
   if (e->system->n > DVI__SIDES_MOST) return DVI_OK;
   DVI_TRY(two_form_evaluate(e, q));
@@ -341,12 +342,12 @@ static int two_form_ends(dvi__evaluator *e, double t, const double *q, double h,
   int here, there;
   double condition;
   if (measure_form_violation(e, q, NULL, &condition) != DVI_OK ||
-      two_form_side(e, q, NULL, &here) != DVI_OK)
+      two_form_side(e, 0, q, NULL, 0, &here) != DVI_OK)
     return 0;
   if (condition > large_condition) return 1;
   if (two_form_velocity(e, t, q, v) != DVI_OK) return 0;
   for (int i = 0; i < e->system->n; i++) ahead[i] = q[i] + straight * h * v[i];
-  return two_form_side(e, ahead, NULL, &there) == DVI_OK && there != here;
+  return two_form_side(e, 0, ahead, NULL, 0, &there) == DVI_OK && there != here;
 }
 
 dvi_status dvi_system_two_form(const dvi_system *system, const double *q, double *Omega,
