@@ -22,7 +22,7 @@ static const claim claims[] = {
     {"galerkin:degree=1", 2, 40},
     {"galerkin:degree=2", 4, 20},
     {"galerkin:degree=3", 6, 16},
-    {"galerkin:degree=4", 8, 6},
+    {"galerkin:degree=4", 8, 7},
     {"galerkin:degree=2,quadrature=lobatto", 4, 20},
     {"galerkin:degree=3,quadrature=lobatto", 6, 16},
     {"galerkin:degree=2,basis=legendre", 4, 20},

@@ -407,6 +407,14 @@ static dvi_status element_find_path(dvi__stepper *self, const dvi__element_place
   return DVI_OK;
 }
 
+/* Give the sign of the determinant of the Jacobian with which the step was solved, 0 if not known. */
+static int element_sign(const dvi__stepper *self)
+{
+  const dvi__element *own = self->own;
+  const int by_newton = !self->follow && own->choice == DVI__SOLVER_NEWTON;
+  return by_newton ? dvi__linear_sign(dvi__solver_linear(own->solver)) : 0;
+}
+
 dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
 {
   dvi__element *own = self->own;
@@ -415,6 +423,7 @@ dvi_status dvi__element_step(dvi__stepper *self, dvi__state *state, double h)
   dvi__action_soften(own->action, state->side > 1);
   DVI_TRY(element_find_path(self, &at, &report));
   DVI_TRY(element_ends(own, own->Y));
+  DVI_TRY(dvi__action_stays_regular(own->action, element_sign(self)));
   dvi__action_forces(own->action, self->memory + dvi__element_forces(self));
   if (own->choice == DVI__SOLVER_CERTIFIED) DVI_TRY(element_certify(self, &at, own->Y, &report));
   if (state->supplied != NULL) DVI_TRY(dvi__action_supplies(own->action, own->Y, own->supply));

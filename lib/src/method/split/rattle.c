@@ -368,6 +368,13 @@ static dvi_status find_multipliers(dvi__rattle *r, const dvi__state *state, doub
     last = moved;
     DVI_TRY(correct(r, h, lambda, &moved));
     if (!is_settled(moved, last, size)) continue;
+    /* the sign of det(G1 M^-1 G0^T) */
+    if (renewed && dvi__linear_sign(r->matrix) < 0) {
+      const double t[] = {state->t, state->t + h}, *const q[] = {state->q, r->x};
+      DVI_TRY(value_at_end(r, state, h));
+      dvi__rows_soften(r->evaluator, r->dependent);
+      return dvi__rows_stay_regular(r->evaluator, t, q, r->v);
+    }
     *(renewed ? &r->counters->newtons : &r->counters->simplified) += 1;
     return DVI_OK;
   }

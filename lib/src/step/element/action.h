@@ -64,6 +64,10 @@ dvi_status dvi__action_constrain(dvi__action *action);
 /* Say whether rows of the constraints depend on others (dvi__rows_soften). */
 void dvi__action_soften(dvi__action *action, int dependent);
 
+/* Return DVI_SINGULAR if the rank of the constraints drops between the ends of the solved step. The
+ * sign of the determinant of its Jacobian, 0 if not known, tells most steps that need no look. */
+dvi_status dvi__action_stays_regular(dvi__action *action, int sign);
+
 /* Set a guess of multipliers to 0 if rows depend on others, because what has no effect at one state
  * may have some at the next one. */
 void dvi__action_begin_multipliers(const dvi__action *action, double *Y);

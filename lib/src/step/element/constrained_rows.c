@@ -24,6 +24,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "num/finite.h"
+#include "num/linear.h"
 #include "space/quadrature.h"
 #include "space/trial.h"
 #include "step/element/action_struct.h"
@@ -38,6 +39,7 @@ struct dvi__constrained_rows {
   int knows_start;      /* phi_q has the gradients at the start of the element */
   int knows_path;       /* and at all other nodes, of the path in X */
   int dependent;        /* rows depend on others */
+  int sign;             /* of the determinant of one coordinate's Jacobian with one row */
   double *X;            /* [(s + 1)*n] the nodes */
   double *phi, *phi_q;  /* [all rows], [(s + 1)*entries] */
   double *size;         /* [rows] powers of two near the gradients at the start, inverted */
@@ -74,6 +76,43 @@ static dvi_status rows_allocate(rows_term *x)
   return DVI_OK;
 }
 
+/* Write the Jacobian of a free unit mass with the constraint q = 0, by columns. */
+static void fill_model(const rows_term *x, double *J)
+{
+  const dvi__action *a = x->action;
+  const int s = a->s, size = 2 * s;
+  for (int k = 0; k < s; k++)
+    for (int l = 0; l < s; l++) {
+      for (int j = 0; j < a->r; j++)
+        J[l * size + k] += a->weight[j] * a->dpsi[k * a->lanes + j] * a->dpsi[l * a->lanes + j];
+      J[(s + l) * size + k] = -x->beta[l] * x->bar[l * s + k];
+      J[l * size + s + k] = x->psi[(k + 1) * s + l];
+    }
+}
+
+/* Find the sign of that Jacobian's determinant. If the rank of the rows drops within a step, the
+ * sign of the step's own one changes. */
+static dvi_status find_sign(rows_term *x)
+{
+  const int size = 2 * x->action->s;
+  dvi__pattern full = {0};
+  dvi__linear *linear = NULL;
+  double *J = DVI_NEW(double, (size_t)size *(size_t)size);
+  dvi_status status = J != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "action: no memory");
+  if (status == DVI_OK)
+    status = dvi__pattern_copy_rectangular(&(dvi_pattern){0}, size, size, "constraints", &full);
+  if (status == DVI_OK) status = dvi__linear_create(&full, DVI__LINEAR_DENSE, NULL, &linear);
+  if (status == DVI_OK) {
+    fill_model(x, J);
+    status = dvi__linear_factor(linear, J);
+  }
+  if (status == DVI_OK) x->sign = dvi__linear_sign(linear);
+  dvi__linear_destroy(&linear);
+  dvi__pattern_clear(&full);
+  dvi__release(J);
+  return status;
+}
+
 static dvi_status rows_fill_tables(rows_term *x)
 {
   const dvi__action *a = x->action;
@@ -89,7 +128,7 @@ static dvi_status rows_fill_tables(rows_term *x)
     x->psi[s * s + l] = a->end[l];
     x->bar[l] = -a->end[l];
   }
-  return DVI_OK;
+  return find_sign(x);
 }
 
 /* ---- the path ---- */
@@ -361,4 +400,15 @@ dvi_status dvi__action_constrain_end(dvi__action *a, const double *Y, double *dp
   if (x == NULL) return dvi__action_end_rolling(a, Y, dp);
   x->knows_path = 0; /* its places make room for p */
   return dvi__action_end_on_rows(a, Y, x->X, x->v, dp);
+}
+
+dvi_status dvi__action_stays_regular(dvi__action *a, int sign)
+{
+  const rows_term *x = a->constrained;
+  if (x == NULL) return DVI_OK;
+  const int odd = (a->n + x->rows) * a->s % 2, expected = (x->rows % 2 ? x->sign : 1) *
+                                                          (a->h < 0 && odd ? -1 : 1);
+  if (sign == expected) return DVI_OK;
+  const double t[] = {a->t0, a->t0 + a->h}, *const q[] = {a->q0, a->terms.q1};
+  return dvi__rows_stay_regular(a->evaluator, t, q, x->v);
 }

@@ -31,6 +31,11 @@ void dvi__rows_noise(dvi__evaluator *e, double t, const double *q, double *noise
 #define DVI__SOFTNESS 1e-7
 void dvi__rows_soften(dvi__evaluator *e, int dependent);
 
+/* Return DVI_SINGULAR, with the name of a row, if the rank of the rows drops between two places
+ * that one step connects. With G0 and G1 there, det(G1 M^-1 G0^T) is negative, then. */
+dvi_status dvi__rows_stay_regular(dvi__evaluator *e, const double t[2], const double *const q[2],
+                                  const double *v);
+
 /* Say which rows depend on others at the last start, in words. 0 if there are none. */
 int dvi__rows_dependent(const dvi__evaluator *e, char *words, size_t size);
 

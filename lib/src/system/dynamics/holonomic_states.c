@@ -282,12 +282,18 @@ dvi_status dvi__rows_approach(dvi__evaluator *e, double t, double *q, double *p)
   dvi__rows_memory *r = dvi__rows_memory_of(e);
   const size_t n = (size_t)s->n;
   double *v = e->point[0], size = HUGE_VAL, next;
+  r->softness = 0;
   memset(v, 0, n * sizeof(double));
   if (s->lagrangian != NULL) DVI_TRY(dvi__legendre_inverse(e, t, q, p, v));
   DVI_TRY(place_distance(e, t, q, &next));
   for (int iteration = 0; iteration < MOST_ITERATIONS && next > 0 && next < size; iteration++) {
     size = next;
-    DVI_TRY(dvi__rows_factor(e, t, q, v));
+    dvi_status factored = dvi__rows_factor(e, t, q, v);
+    if (factored == DVI_SINGULAR && r->softness == 0) {
+      r->softness = DVI__SOFTNESS;
+      factored = dvi__rows_factor(e, t, q, v);
+    }
+    DVI_TRY(factored);
     memset(r->x, 0, n * sizeof(double));
     for (int a = 0; a < s->row_count; a++) r->x[s->n + a] = -r->phi[a];
     DVI_TRY(dvi__rows_solve(r, s->n + s->row_count, t));

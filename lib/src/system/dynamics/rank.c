@@ -281,20 +281,69 @@ static dvi_status find_rank(dvi__evaluator *e, double t, const double *q, const 
   return mu < tested ? note_relations(e, t, q, v) : DVI_OK;
 }
 
-/* The rank stays the same along a motion whose rows were independent at its start, because a step
- * ends where their matrix is regular. */
+/* Steps keep the rank (dvi__rows_stay_regular), and find no solution where dependent rows part. */
 dvi_status dvi__rows_side(dvi__evaluator *e, double t, const double *q, const double *p, int before,
                           int *side)
 {
   dvi__rows_memory *r = dvi__rows_memory_of(e);
   *side = 1;
-  if (e->system->place_rows == 0 || before == 1) return DVI_OK;
+  if (before > 0) *side = before;
+  if (e->system->place_rows == 0 || before > 0) return DVI_OK;
   const dvi_counters counters = *e->counters;
   const dvi_status status = find_rank(e, t, q, p);
   *e->counters = counters;
   r->softness = r->dependent_count > 0 ? DVI__SOFTNESS : 0;
   *side = 1 + r->dependent_count;
   return status;
+}
+
+/* ---- a change of the rank ---- */
+
+/* Factor the matrix with the rows of another place, and compare the signs of both determinants. */
+static dvi_status compare_signs(dvi__evaluator *e, double t, const double *q, int *same)
+{
+  const dvi_system *s = e->system;
+  dvi__rows_memory *r = dvi__rows_memory_of(e);
+  const int sign = dvi__linear_sign(r->linear);
+  DVI_TRY(dvi__rows_gradients(e, t, q, r->phi_q));
+  for (int a = 0; a < s->row_count; a++)
+    for (int k = s->rows_q.start[a]; k < s->rows_q.start[a + 1]; k++)
+      r->values[r->row_place[k]] = r->scale[a] * r->phi_q[k];
+  const dvi_status status = dvi__linear_factor(r->linear, r->values);
+  *same = status == DVI_OK && dvi__linear_sign(r->linear) == sign;
+  return status == DVI_SINGULAR ? DVI_OK : status;
+}
+
+/* Name the row that adds least to the others. */
+static dvi_status refuse_passage(dvi__evaluator *e, double t, const double *q, const double *v)
+{
+  const dvi_system *s = e->system;
+  dvi__rows_memory *r = dvi__rows_memory_of(e);
+  char label[DVI__ROW_LABEL] = "";
+  relations x = {0};
+  const double softness = r->softness;
+  double mu;
+  r->softness = tested;
+  dvi_status status = dvi__rows_factor(e, t, q, v);
+  if (status == DVI_OK) status = smallest_mu(s, r, t, &mu);
+  if (status == DVI_OK) status = find_relations(s, r, &x);
+  if (status == DVI_OK)
+    (void)dvi__rows_label(s, x.pivot[x.W != NULL && x.rank > 0 ? x.rank - 1 : x.m - 1], label);
+  clear_relations(&x);
+  r->softness = softness;
+  return dvi__fail(DVI_SINGULAR,
+                   "the step passes a point where constraint %s depends on the others, as at a "
+                   "dead centre; from there the motion is not determined",
+                   label);
+}
+
+dvi_status dvi__rows_stay_regular(dvi__evaluator *e, const double t[2], const double *const q[2],
+                                  const double *v)
+{
+  int same;
+  DVI_TRY(dvi__rows_factor(e, t[0], q[0], v));
+  DVI_TRY(compare_signs(e, t[1], q[1], &same));
+  return same ? DVI_OK : refuse_passage(e, t[1], q[1], v);
 }
 
 void dvi__rows_soften(dvi__evaluator *e, int dependent)
