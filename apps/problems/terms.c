@@ -34,6 +34,8 @@ static dvi_system_terms *keep_terms(problem *made, const dvi_system_terms *terms
   kept->potentials = keep_array(made, terms->potentials, terms->potential_count,
                                 sizeof *terms->potentials, &lost);
   kept->forces = keep_array(made, terms->forces, terms->force_count, sizeof *terms->forces, &lost);
+  kept->holonomics = keep_array(made, terms->holonomics, terms->holonomic_count,
+                                sizeof *terms->holonomics, &lost);
   kept->nonholonomics = keep_array(made, terms->nonholonomics, terms->nonholonomic_count,
                                    sizeof *terms->nonholonomics, &lost);
   kept->noise = keep_array(made, terms->noise, terms->noise != NULL, sizeof *terms->noise, &lost);

@@ -131,7 +131,7 @@ function check_user(quoted, header,   target) {
   target = header
   sub(/\/.*/, "", target)
   if (target == room || index(" " uses[room] " ", " " target " ") > 0) return
-  if (room == "problems" && target ~ /^(bodies|degenerate|rolling)$/) return
+  if (room == "problems" && target ~ /^(bodies|constrained|degenerate|rolling)$/) return
   breach("apps/" room " may not include apps/" target \
     ": move the code, or allow it in tests/lint/layers.awk")
 }

@@ -227,7 +227,8 @@ dvi_status dvi_integrator_start_velocity(dvi_integrator *integrator, double t, c
  *                              `alarm`)
  *  @retval DVI_CALLBACK_RETRY  a callback returned a positive number
  *  @retval DVI_CALLBACK_FAILED a callback returned a negative number
- *  @retval DVI_SINGULAR        dg, dg-phase: the two-form is singular at the step's end
+ *  @retval DVI_SINGULAR        dg, dg-phase: the two-form is singular at the step's end; or the
+ *                              rank of holonomic constraints drops within the step
  *  @retval DVI_UNSUPPORTED     dvrk and its kin: a component of the one-form that seemed constant
  *                              at create is not
  *  @retval DVI_UNSUPPORTED     hits of a contact accumulate, or a contact stays closed, or two
@@ -344,7 +345,7 @@ dvi_status dvi_integrator_constraint(dvi_integrator *integrator, double *distanc
  *
  *  @retval DVI_UNSUPPORTED  the system has neither holonomic nor nonholonomic constraints
  *  @retval DVI_BAD_STATE    before dvi_integrator_start
- *  @retval DVI_SINGULAR     the constraints are dependent there
+ *  @retval DVI_SINGULAR     the constraints are dependent there, and were not so at the start
  *  @retval (others)         as the callbacks fail */
 dvi_status dvi_integrator_reactions(dvi_integrator *integrator, double *lambda);
 

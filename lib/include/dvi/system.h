@@ -271,8 +271,8 @@ typedef struct dvi_force {
 /** Holonomic constraints phi(t,q) = 0 of some rows, such as a rod, a rail or a joint (dvi/joint.h).
  *
  *  With factors phi is a function of all stored coordinates, of any smooth continuation off the
- *  manifold, as potentials are. The gradients must be independent where the system moves, together
- *  with those of all others. The callbacks have the one-point shape alone. */
+ *  manifold, as potentials are. Rows may depend on others, if they do so all along the motion
+ *  (docs/constraints.md). The callbacks have the one-point shape alone. */
 typedef struct dvi_holonomic {
   const char *name; /**< copied. Used in messages */
   int count;        /**< number of rows, at least 1 */

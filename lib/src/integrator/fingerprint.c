@@ -41,6 +41,15 @@ static dvi_status fingerprint_monitor(const dvi_integrator *I, const double *q, 
   return DVI_OK;
 }
 
+/* Forces of constraints need the rank of their rows. */
+static dvi_status find_rank(const dvi_integrator *I, const dvi__moment *at)
+{
+  const dvi__state_constraint *of_states = I->system->dynamics->constraint;
+  int side;
+  if (of_states == NULL || !of_states->has_rank) return DVI_OK;
+  return of_states->side(I->evaluator, at->t, at->q, at->p, 0, &side);
+}
+
 static dvi_status fingerprint_evaluate(const dvi_integrator *I, const dvi__moment *at,
                                        dvi__fingerprint *f)
 {
@@ -49,6 +58,7 @@ static dvi_status fingerprint_evaluate(const dvi_integrator *I, const dvi__momen
   const double *second = dvi__second(I->system, v, at->p);
   if (I->system->dynamics->searches_velocity)
     dvi__guess_velocity(n, at->q, at->last_q, at->last_p, at->last_h, v);
+  DVI_TRY(find_rank(I, at));
   DVI_TRY(dvi__legendre_inverse(I->evaluator, at->t, at->q, at->p, v));
   DVI_TRY(I->system->dynamics->value(I->evaluator, at->t, at->q, second, &f->lagrangian.value));
   DVI_TRY(I->system->dynamics->forces(I->evaluator, at->t, at->q, second, forces));

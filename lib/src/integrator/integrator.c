@@ -550,8 +550,8 @@ static void explain_dependent_rows(const dvi_integrator *I, dvi__text *out)
                         : 0;
   if (count > 0)
     dvi__text_add(out,
-                  "constraints: %d rows of rank %d; %s: from the others, consistent with them; of "
-                  "the multipliers lambda only G^T lambda is determined\n",
+                  "constraints: %d rows of rank %d; %s: redundant, in agreement with the others; "
+                  "of the multipliers lambda only G^T lambda is determined\n",
                   I->system->row_count, I->system->row_count - count, rows);
 }
 

@@ -23,6 +23,7 @@ typedef struct dense {
   double *lu;   /* [n*n] by columns */
   double *work; /* [4 n] */
   int *pivot, *iwork;
+  double reciprocal_condition;
 } dense;
 
 static void dense_destroy(void *factor)
@@ -41,7 +42,10 @@ static dvi_status dense_create(const dvi__factor_form *form, void **factor)
   const size_t n = (size_t)form->pattern->columns;
   dense *d = *factor = DVI_NEW(dense, 1);
   if (d == NULL) return dvi__fail(DVI_NO_MEMORY, "dense LU: no memory");
-  *d = (dense){DVI_NEW(double, n *n), DVI_NEW(double, 4 * n), DVI_NEW(int, n), DVI_NEW(int, n)};
+  d->lu = DVI_NEW(double, n *n);
+  d->work = DVI_NEW(double, 4 * n);
+  d->pivot = DVI_NEW(int, n);
+  d->iwork = DVI_NEW(int, n);
   if (d->lu != NULL && d->work != NULL && d->pivot != NULL && d->iwork != NULL) return DVI_OK;
   dense_destroy(d);
   *factor = NULL;
@@ -75,6 +79,7 @@ static dvi_status dense_refactor(void *factor, const dvi__pattern *pattern, cons
   dgetrf_(&n, &n, d->lu, &n, d->pivot, &status);
   if (status == 0)
     dgecon_("1", &n, d->lu, &n, &norm, &reciprocal_condition, d->work, d->iwork, &status, 1);
+  d->reciprocal_condition = reciprocal_condition;
   if (status == 0 && reciprocal_condition >= DVI__LEAST_RCOND) return DVI_OK;
   return dvi__fail(
       DVI_SINGULAR,
@@ -89,6 +94,11 @@ static dvi_status dense_solve(void *factor, const dvi__pattern *pattern, double 
   int status;
   dgetrs_("N", &n, &one, d->lu, &n, d->pivot, b, &n, &status, 1);
   return DVI_OK;
+}
+
+static double dense_condition(const void *factor)
+{
+  return ((const dense *)factor)->reciprocal_condition;
 }
 
 static int dense_sign(const void *factor, const dvi__pattern *pattern)
@@ -114,6 +124,7 @@ const dvi__factor_kind dvi__dense_factor = {.name = "dense LU (LAPACK)",
                                             .refactor = dense_refactor,
                                             .solve = dense_solve,
                                             .sign = dense_sign,
+                                            .condition = dense_condition,
                                             .cost = dense_cost};
 
 int dvi__dense_solve(int n, double *A, int *pivot, double *b)

@@ -31,6 +31,8 @@ typedef struct dvi__factor_kind {
   /* dvi__linear_sign and dvi__linear_is_definite, or NULL if not known. */
   int (*sign)(const void *factor, const dvi__pattern *pattern);
   int (*is_definite)(const void *factor, const dvi__pattern *pattern, int sign);
+  /* dvi__linear_condition, or NULL if not known */
+  double (*condition)(const void *factor);
   /* NULL if not known. */
   dvi__linear_cost (*cost)(const void *factor, const dvi__pattern *pattern);
 } dvi__factor_kind;

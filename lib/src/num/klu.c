@@ -238,6 +238,12 @@ static int klu_sign(const void *factor, const dvi__pattern *pattern)
   return negative ? -1 : 1;
 }
 
+/* That of the last factorisation, which has asked for it. */
+static double klu_condition(const void *factor)
+{
+  return ((const sparse *)factor)->common.rcond;
+}
+
 /* Pivots on the diagonal are those of A = L D L^T. A definite matrix keeps them there, because none
  * of them is small beside its column. */
 static int klu_is_definite(const void *factor, const dvi__pattern *pattern, int sign)
@@ -265,6 +271,7 @@ const dvi__factor_kind dvi__sparse_factor = {.name = "sparse LU (KLU)",
                                              .solve = klu_solve_one,
                                              .sign = klu_sign,
                                              .is_definite = klu_is_definite,
+                                             .condition = klu_condition,
                                              .cost = klu_cost};
 
 /* A multiplication of complex numbers takes four of real ones. */

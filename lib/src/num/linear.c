@@ -261,6 +261,11 @@ int dvi__linear_sign(const dvi__linear *linear)
   return linear->kind->sign(linear->factor, linear->form.pattern);
 }
 
+double dvi__linear_condition(const dvi__linear *linear)
+{
+  return linear->kind->condition != NULL ? linear->kind->condition(linear->factor) : 1;
+}
+
 int dvi__linear_is_definite(const dvi__linear *linear, int sign)
 {
   return linear->kind->is_definite != NULL &&

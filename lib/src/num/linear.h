@@ -88,6 +88,10 @@ dvi_status dvi__linear_factor(dvi__linear *linear, const double *values);
  * real. 0 if not known, as for a matrix with a border and for operators without a sign. */
 int dvi__linear_sign(const dvi__linear *linear);
 
+/* Give an estimate of the reciprocal condition of the equilibrated matrix that was factored last, 1
+ * if none is known. That of a sparse one is the ratio of its smallest and largest pivot. */
+double dvi__linear_condition(const dvi__linear *linear);
+
 /* Tell whether the matrix that was factored last, a symmetric one, is positive (sign 1) or negative
  * (-1) definite. 0 also where that is not known. It is known for SPARSE ones without a border, and
  * for operators with that function. num/eigen.h tests full ones. */

@@ -7,8 +7,7 @@
  * w(x) = T^t phi_q^t x (Gear, Gupta and Leimkuhler 1985),
  *     F = ( kappa' - K(kappa, v - w(mu)),  p' - f + w(lambda),  p - T^t C,  phi_q y' + phi_t,
  *           phi ) = 0
- * of index 2. Rows that depend on others at the start have lambda = mu = 0 in the place of their
- * equations. IDA tests neither of them for errors. Source: Hindmarsh et al. 2005, ACM TOMS 31:363,
+ * of index 2. IDA tests neither of them for errors. Source: Hindmarsh et al. 2005, ACM TOMS 31:363,
  * sec. 2.3. */
 #include <float.h>
 #include <math.h>
@@ -31,7 +30,6 @@ typedef struct lifted_ida {
   dvi__ida_run ida;
   int rows;                     /* of constraints */
   double *phi_q, *covector, *w; /* [entries], [nq], [nv] */
-  char *keep;                   /* [rows] independent rows */
   N_Vector moved, moved_F;      /* for differences of the Jacobian */
 } lifted_ida;
 
@@ -59,11 +57,6 @@ static dvi_status lifted_rows(const lifted_ida *self, double t, const double *y,
   for (int a = 0; a < self->rows; a++)
     for (int k = G->start[a]; k < G->start[a + 1]; k++)
       F_rate[a] += self->phi_q[k] * self->lift.rate[G->row[k]];
-  for (int a = 0; a < self->rows; a++) {
-    if (self->keep[a]) continue;
-    F_rate[a] = lambda[a];
-    F_rate[self->rows + a] = mu[a];
-  }
   pull_rows(self, mu);
   dvi__lift_slow(&self->lift, y, self->w, kappa_rate);
   pull_rows(self, lambda);
@@ -140,9 +133,7 @@ static dvi_status lifted_multipliers(const lifted_ida *self, double *multipliers
   const dvi__reference_run *run = self->run;
   memset(multipliers, 0, 2 * (size_t)self->rows * sizeof *multipliers);
   if (self->rows == 0) return DVI_OK;
-  DVI_TRY(run->system->dynamics->reactions(run->evaluator, run->t, run->q, run->v, multipliers));
-  for (int a = 0; a < self->rows; a++) multipliers[a] *= self->keep[a];
-  return DVI_OK;
+  return run->system->dynamics->reactions(run->evaluator, run->t, run->q, run->v, multipliers);
 }
 
 static dvi_status lifted_start(lifted_ida *self)
@@ -183,18 +174,29 @@ static dvi_status lifted_reserve_rows(lifted_ida *self)
   self->phi_q = DVI_NEW(double, dvi__pattern_entries(&run->system->rows_q));
   self->covector = DVI_NEW(double, run->system->n);
   self->w = DVI_NEW(double, run->n);
-  self->keep = DVI_NEW(char, self->rows);
   self->moved = N_VClone(self->ida.y);
   self->moved_F = N_VClone(self->ida.y);
-  if (!self->phi_q || !self->covector || !self->w || !self->keep || !self->moved || !self->moved_F)
-    return dvi__reference_no_setup(run);
-  dvi__rows_choose(run->evaluator, self->keep);
-  return DVI_OK;
+  return self->phi_q && self->covector && self->w && self->moved && self->moved_F
+             ? DVI_OK
+             : dvi__reference_no_setup(run);
+}
+
+/* Rows that are independent at the start may not be so later, where IDA's steps would end. */
+static dvi_status refuse_dependent_rows(const dvi__reference_run *run)
+{
+  char rows[512];
+  if (run->system->row_count == 0 || dvi__rows_dependent(run->evaluator, rows, sizeof rows) == 0)
+    return DVI_OK;
+  return dvi__fail(DVI_UNSUPPORTED,
+                   "ida: constraint %s depends on others; on rotations and directions IDA takes "
+                   "independent rows alone",
+                   rows);
 }
 
 static dvi_status lifted_reserve(lifted_ida *self)
 {
   dvi__reference_run *run = self->run;
+  DVI_TRY(refuse_dependent_rows(run));
   DVI_TRY(dvi__lift_create(run, &self->lift));
   const int size = self->lift.size + 2 * run->n + 2 * self->rows;
   if (size > UNKNOWNS_MAX)
@@ -213,7 +215,6 @@ static void lifted_clear(lifted_ida *self)
   dvi__release(self->phi_q);
   dvi__release(self->covector);
   dvi__release(self->w);
-  dvi__release(self->keep);
   if (self->moved != NULL) N_VDestroy(self->moved);
   if (self->moved_F != NULL) N_VDestroy(self->moved_F);
 }

@@ -107,4 +107,12 @@ digits snakeboard 5e-13 x=.302254052893502 a=-.0751500218104086
 options='--method composition:order=8 --h 0.02 --t-end 7'
 # The disk goes round a circle of radius R spin/turn.
 digits rolling-disk 5e-13 x=-2.10525559848071 y=1.74318777980877
+
+# ---- holonomic constraints ----
+
+options='--method galerkin:degree=6 --h 0.01 --t-end 3'
+digits three-cranks 2e-14 a=-.086440107700034 c=-.086440107700034
+options='--method galerkin:degree=6 --h 0.01 --t-end 2'
+digits spherical-constrained 5e-15 x=.316069401579274 y=.689354717407199 \
+  z=-.651836027673955
 finish

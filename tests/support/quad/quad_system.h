@@ -57,6 +57,9 @@ extern const quad_problem quad_factors[];
 /* The nonholonomic ones (quad_rolling.c), likewise. */
 extern const quad_problem quad_rolling[];
 
+/* Those with holonomic constraints (quad_constrained.c), likewise. */
+extern const quad_problem quad_constrained[];
+
 /* A problem with its parameters set. */
 typedef struct quad_field {
   const quad_problem *problem;

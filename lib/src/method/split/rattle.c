@@ -347,6 +347,23 @@ static int is_settled(double moved, double last, double size)
          (moved <= 1e-10 * size && shrunk >= 0.5);
 }
 
+/* Look for a point within the step where the rank drops, which changes the sign of
+ * det(G1 M^-1 G0^T). A kept matrix is tested only if it is nearly singular, and small. */
+static dvi_status check_passage(dvi__rattle *r, const dvi__state *state, double h, int renewed)
+{
+  enum { ROWS_MOST = 64 };
+  const double suspicious = 1e-2;
+  const int look = r->system->row_count <= ROWS_MOST &&
+                   dvi__linear_condition(r->matrix) < suspicious;
+  if (!renewed && !look) return DVI_OK;
+  DVI_TRY(value_at_end(r, state, h));
+  if (!renewed) DVI_TRY(renew_matrix(r, state, h));
+  if (dvi__linear_sign(r->matrix) > 0) return DVI_OK;
+  const double t[] = {state->t, state->t + h}, *const q[] = {state->q, r->x};
+  dvi__rows_soften(r->evaluator, r->dependent);
+  return dvi__rows_stay_regular(r->evaluator, t, q, r->v);
+}
+
 /* A kept matrix serves independent rows. The residual of dependent ones is consistent with the
  * gradients at its own place, but for the square of its distance from the constraints. A softness
  * in proportion to that distance keeps the multipliers small, and Newton's method quadratic
@@ -368,13 +385,7 @@ static dvi_status find_multipliers(dvi__rattle *r, const dvi__state *state, doub
     last = moved;
     DVI_TRY(correct(r, h, lambda, &moved));
     if (!is_settled(moved, last, size)) continue;
-    /* the sign of det(G1 M^-1 G0^T) */
-    if (renewed && dvi__linear_sign(r->matrix) < 0) {
-      const double t[] = {state->t, state->t + h}, *const q[] = {state->q, r->x};
-      DVI_TRY(value_at_end(r, state, h));
-      dvi__rows_soften(r->evaluator, r->dependent);
-      return dvi__rows_stay_regular(r->evaluator, t, q, r->v);
-    }
+    DVI_TRY(check_passage(r, state, h, renewed));
     *(renewed ? &r->counters->newtons : &r->counters->simplified) += 1;
     return DVI_OK;
   }

@@ -405,6 +405,30 @@ static dvi_status differentiate_along(dvi__evaluator *e, double t, const double 
   return DVI_OK;
 }
 
+/* gamma is a difference, whose error is divided by the softness in multipliers without effect. */
+static const double acceleration_softness = 1e-4;
+
+/* Solve for x in place. If the matrix is soft, the solution leaves -softness D lambda in the rows,
+ * which further solutions remove. */
+static dvi_status solve_refined(dvi__rows_memory *r, int n, double t)
+{
+  enum { REFINEMENTS = 4 };
+  const int m = r->row_count;
+  double *sum = r->along[1];
+  DVI_TRY(dvi__rows_solve(r, n + m, t));
+  if (r->softness == 0) return DVI_OK;
+  memcpy(sum, r->x, (size_t)(n + m) * sizeof *sum);
+  for (int k = 0; k < REFINEMENTS; k++) {
+    memset(r->x, 0, (size_t)n * sizeof(double));
+    for (int a = 0; a < m; a++)
+      r->x[n + a] *= r->values[r->own_place[a]] / (r->scale[a] * r->scale[a]);
+    DVI_TRY(dvi__rows_solve(r, n + m, t));
+    for (int i = 0; i < n + m; i++) sum[i] += r->x[i];
+  }
+  memcpy(r->x, sum, (size_t)(n + m) * sizeof *sum);
+  return DVI_OK;
+}
+
 dvi_status dvi__rows_acceleration(dvi__evaluator *e, double t, const double *q, const double *v,
                                   double *a, double *lambda)
 {
@@ -414,8 +438,12 @@ dvi_status dvi__rows_acceleration(dvi__evaluator *e, double t, const double *q, 
   DVI_TRY(differentiate_along(e, t, q, v));
   DVI_TRY(dvi__lagrangian_gradient(e, 1, &t, q, v, r->along[0], NULL));
   for (int i = 0; i < size; i++) r->x[i] = (i < s->n ? r->along[0][i] : 0) - r->x[i];
-  DVI_TRY(dvi__rows_factor(e, t, q, v));
-  DVI_TRY(dvi__rows_solve(r, size, t));
+  const double softness = r->softness;
+  r->softness = softness > 0 ? acceleration_softness : 0;
+  dvi_status status = dvi__rows_factor(e, t, q, v);
+  if (status == DVI_OK) status = solve_refined(r, s->n, t);
+  r->softness = softness;
+  DVI_TRY(status);
   if (a != NULL) memcpy(a, r->x, (size_t)s->n * sizeof(double));
   memcpy(lambda, r->x + s->n, (size_t)s->row_count * sizeof(double));
   return DVI_OK;

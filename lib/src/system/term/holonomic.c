@@ -37,11 +37,12 @@ static dvi_status copy_holonomic(dvi_system *s, const dvi_holonomic *given,
   if (given->value == NULL || given->gradient == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "system: constraint '%s' has no %s callback", name,
                      given->value == NULL ? "value" : "gradient");
-  if (given->count < 1 || given->count > s->nx - s->row_count)
+  const int most = 4 * s->nx - s->row_count;
+  if (given->count < 1 || given->count > most)
     return dvi__fail(DVI_BAD_SIZE,
                      "system: constraint '%s' has %d rows; 1 to %d are possible beside the others, "
-                     "because there are %d degrees of freedom",
-                     name, given->count, s->nx - s->row_count, s->nx);
+                     "four for each of %d degrees of freedom, of which some follow from others",
+                     name, given->count, most, s->nx);
   DVI_TRY(dvi__check_rate(s, name, given->rate != NULL));
   term->callbacks = *given;
   term->first = s->row_count;
