@@ -197,7 +197,7 @@ END_TEST
 
 /* ---- failures ---- */
 
-/* Rows phi = (x, c0 x + c1 y + c2 y^2 + c3), of which the second may contradict the first one, or be
+/* Rows phi = (x, c0 x + c1 y + c2 y^2 + c3), of which the second may contradict the first, or be
  * no constraint. */
 static int pair_value(double t, const double *q, double *phi, void *user)
 {

@@ -105,11 +105,8 @@ static dvi_status three_cranks_make(const double *setting, problem *made)
   const dvi_status status = problem_room(made, N, sizeof(cranks));
   if (status != DVI_OK) return status;
   cranks *own = made->parameters;
-  *own = (cranks){.m = setting[0],
-                  .l = setting[1],
-                  .d = setting[2],
-                  .M = setting[3],
-                  .g = setting[4]};
+  *own = (cranks){
+      .m = setting[0], .l = setting[1], .d = setting[2], .M = setting[3], .g = setting[4]};
   for (int i = 0; i < 3; i++) {
     own->mass[i] = own->m * own->l * own->l / 3;
     made->q[i] = setting[5];

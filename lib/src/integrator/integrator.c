@@ -184,45 +184,6 @@ static dvi_status check_state(const dvi_integrator *I)
   return dvi__fail(DVI_NOT_FINITE, "the new state is not finite");
 }
 
-dvi_status dvi__integrator_find_side(dvi_integrator *I)
-{
-  const dvi__state_constraint *constraint = I->system->dynamics->constraint;
-  if (constraint == NULL || I->now.side != 0) return DVI_OK;
-  return constraint->side(I->evaluator, I->now.t, I->now.q, I->now.p, 0, &I->now.side);
-}
-
-/* Check that the step stays on one side of the points where the constraint's matrix is singular. No
- * trajectory goes through such a point, but a step can, and then follows no trajectory. */
-static dvi_status check_side(dvi_integrator *I)
-{
-  const dvi__state_constraint *constraint = I->system->dynamics->constraint;
-  if (constraint == NULL) return DVI_OK;
-  DVI_TRY(constraint->side(I->evaluator, I->next.t, I->next.q, I->next.p, I->now.side,
-                           &I->next.side));
-  if (I->next.side == I->now.side) return DVI_OK;
-  return dvi__fail(
-      DVI_NOT_CONVERGED,
-      "the step leads over a point where the %s is singular, beyond which no trajectory goes on",
-      constraint->matrix);
-}
-
-/* Name the reason of a failed step if the trajectory ends within the step. `next` is undefined
- * already. */
-static dvi_status name_trajectory_end(const dvi_integrator *I, double h, dvi_status status)
-{
-  char sentence[1024];
-  const dvi__state_constraint *constraint = I->system->dynamics->constraint;
-  if (constraint == NULL || constraint->ends == NULL || I->monitored != NULL ||
-      (status < 0 && status != DVI_SINGULAR))
-    return status;
-  (void)snprintf(sentence, sizeof sentence, "%s", dvi_last_error());
-  if (!constraint->ends(I->evaluator, I->now.t, I->now.q, h, I->next.p, I->next.q))
-    return dvi__fail(status, "%s", sentence);
-  return dvi__fail(
-      status, "%s; the %s becomes singular within this step, and no trajectory goes on from there",
-      sentence, constraint->matrix);
-}
-
 static void accept_step(dvi_integrator *I, double h)
 {
   const dvi__state oldest = I->last;
@@ -310,9 +271,9 @@ static dvi_status advance_state(dvi_integrator *I, double h)
       isfinite(I->next.t))
     return dvi__control_end(I, h);
   const dvi_status status = dvi__attempt(I, length, density);
-  if (status != DVI_OK) return name_trajectory_end(I, length, status);
+  if (status != DVI_OK) return dvi__name_trajectory_end(I, length, status);
   DVI_TRY(check_state(I));
-  DVI_TRY(check_side(I));
+  DVI_TRY(dvi__check_side(I));
   return dvi__control_end(I, h);
 }
 
@@ -541,20 +502,6 @@ const double *dvi_integrator_multiplier(const dvi_integrator *I)
   return I->stepper.method->multiplier(&I->stepper);
 }
 
-/* Rows are known to be dependent after a start. */
-static void explain_dependent_rows(const dvi_integrator *I, dvi__text *out)
-{
-  char rows[1024];
-  const int count = I->system->place_rows > 0
-                        ? dvi__rows_dependent(I->evaluator, rows, sizeof rows)
-                        : 0;
-  if (count > 0)
-    dvi__text_add(out,
-                  "constraints: %d rows of rank %d; %s: redundant, in agreement with the others; "
-                  "of the multipliers lambda only G^T lambda is determined\n",
-                  I->system->row_count, I->system->row_count - count, rows);
-}
-
 size_t dvi_integrator_explain(const dvi_integrator *integrator, char *text, size_t size)
 {
   dvi__text out = {text, size, 0};
@@ -564,7 +511,7 @@ size_t dvi_integrator_explain(const dvi_integrator *integrator, char *text, size
                 integrator->stepper.order, integrator->stepper.symmetric ? ", symmetric" : "");
   if (integrator->monitored != NULL) dvi__monitored_time_explain(integrator->monitored, &out);
   integrator->stepper.method->explain(&integrator->stepper, &out);
-  explain_dependent_rows(integrator, &out);
+  dvi__explain_dependent_rows(integrator, &out);
   return out.length;
 }
 

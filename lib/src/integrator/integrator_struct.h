@@ -35,6 +35,17 @@ void dvi__state_lay_out(const dvi_integrator *integrator, dvi__state *state, dou
 /* Find the side of the present state, unless it is known. */
 dvi_status dvi__integrator_find_side(dvi_integrator *integrator);
 
+/* Check that the step stays on one side of the points where the constraint's matrix is singular. No
+ * trajectory goes through such a point, but a step can, and then follows no trajectory. */
+dvi_status dvi__check_side(dvi_integrator *integrator);
+
+/* Name the reason of a failed step if the trajectory ends within the step. `next` is undefined
+ * already. */
+dvi_status dvi__name_trajectory_end(const dvi_integrator *integrator, double h, dvi_status status);
+
+/* Say which rows of constraints were redundant at the last start, if any. */
+void dvi__explain_dependent_rows(const dvi_integrator *integrator, dvi__text *text);
+
 void dvi__state_copy(const dvi_integrator *integrator, const dvi__state *from, dvi__state *to);
 
 /* Count the numbers of a state's arrays, which are contiguous. */

@@ -6,9 +6,9 @@
  * multipliers mu, which vanish, keep both phi and its rate at 0. Nonholonomic constraints have mu =
  * 0 in the place of phi = 0. lambda and mu are in neither the error test nor the test of the
  * iteration's convergence. Rows that depend on others at the start have lambda = mu = 0 in the
- * place of their equations. The Jacobian dF/dy + c dF/dydot is written here, but for the derivatives
- * of g and of A by q, which are differenced. Sources: Gear, Leimkuhler and Gupta 1985; Hindmarsh et
- * al. 2005, ACM TOMS 31:363, sec. 2.3. */
+ * place of their equations. The Jacobian dF/dy + c dF/dydot is written here, but for the
+ * derivatives of g and of A by q, which are differenced. Sources: Gear, Leimkuhler and Gupta 1985;
+ * Hindmarsh et al. 2005, ACM TOMS 31:363, sec. 2.3. */
 #include <float.h>
 #include <math.h>
 #include <string.h>

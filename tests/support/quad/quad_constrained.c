@@ -15,8 +15,8 @@ static void cranks_prepare(quad_system *system)
 
 static void cranks_acceleration(const quad_system *system, const quad *q, const quad *v, quad *a)
 {
-  const quad m = system->value[0], l = system->value[1], M = system->value[3],
-             g = system->value[4], s = quad_sin(q[0]), c = quad_cos(q[0]);
+  const quad m = system->value[0], l = system->value[1], M = system->value[3], g = system->value[4],
+             s = quad_sin(q[0]), c = quad_cos(q[0]);
   const quad turn = -(3 * m / 2 + M) / (m + M) * g / l * s;
   for (int i = 0; i < 3; i++) a[i] = turn;
   a[3] = l * (c * turn - s * v[0] * v[0]);
@@ -59,8 +59,7 @@ static void bob_prepare(quad_system *system)
 /* q.q'' = -|q'|^2 */
 static void bob_acceleration(const quad_system *system, const quad *q, const quad *v, quad *a)
 {
-  const quad g = system->value[1],
-             square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2],
+  const quad g = system->value[1], square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2],
              pull = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2] - g * q[2]) / square;
   for (int i = 0; i < 3; i++) a[i] = -pull * q[i] - (i == 2 ? g : 0);
 }

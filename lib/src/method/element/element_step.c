@@ -407,7 +407,7 @@ static dvi_status element_find_path(dvi__stepper *self, const dvi__element_place
   return DVI_OK;
 }
 
-/* Give the sign of the determinant of the Jacobian with which the step was solved, 0 if not known. */
+/* Give the sign of the determinant of the Jacobian that solved the step, 0 if not known. */
 static int element_sign(const dvi__stepper *self)
 {
   const dvi__element *own = self->own;

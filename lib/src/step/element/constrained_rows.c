@@ -278,8 +278,8 @@ static void soften_rows(const rows_term *x, const dvi__row_path *p, const dvi__r
   for (int a = 0; a < x->rows; a++) {
     double sum = 0;
     for (int e = G->start[a]; e < G->start[a + 1]; e++) {
-      const double of_path = *dvi__row_block(J, G->row[e], G->row[e], 0), g = x->size[a] *
-                                                                            x->phi_q[e];
+      const double of_path = *dvi__row_block(J, G->row[e], G->row[e], 0),
+                   g = x->size[a] * x->phi_q[e];
       sum += of_path != 0 ? g * g / of_path : 0;
     }
     for (int k = 0; k < p->s; k++)
@@ -406,8 +406,8 @@ dvi_status dvi__action_stays_regular(dvi__action *a, int sign)
 {
   const rows_term *x = a->constrained;
   if (x == NULL) return DVI_OK;
-  const int odd = (a->n + x->rows) * a->s % 2, expected = (x->rows % 2 ? x->sign : 1) *
-                                                          (a->h < 0 && odd ? -1 : 1);
+  const int odd = (a->n + x->rows) * a->s % 2,
+            expected = (x->rows % 2 ? x->sign : 1) * (a->h < 0 && odd ? -1 : 1);
   if (sign == expected) return DVI_OK;
   const double t[] = {a->t0, a->t0 + a->h}, *const q[] = {a->q0, a->terms.q1};
   return dvi__rows_stay_regular(a->evaluator, t, q, x->v);

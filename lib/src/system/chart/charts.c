@@ -188,8 +188,8 @@ static dvi_status side_in_charts(dvi__evaluator *e, double t, const double *q, c
   memset(own->xi, 0, (size_t)e->system->nx * sizeof(double));
   dvi__charted_centre(own->charted, q);
   dvi__charted_enter(own->charted, p, own->local);
-  DVI_TRY(dvi__charted_explain(own->charted, dvi__rows_side(own->inner, t, own->xi, own->local,
-                                                            before, side)));
+  DVI_TRY(dvi__charted_explain(own->charted,
+                               dvi__rows_side(own->inner, t, own->xi, own->local, before, side)));
   rows->dependent_count = inner->dependent_count;
   memcpy(rows->dependent, inner->dependent, (size_t)e->system->row_count);
   return DVI_OK;

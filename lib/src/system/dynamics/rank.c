@@ -76,7 +76,7 @@ static dvi_status smallest_mu(const dvi_system *s, dvi__rows_memory *r, double t
 /* A set of dependent rows with their coefficients. */
 typedef struct relations {
   int m, rank;
-  int *pivot;   /* [m] rows, independent ones first */
+  int *pivot;    /* [m] rows, independent ones first */
   double *c, *W; /* [m], [n*m] */
   double *work;
 } relations;

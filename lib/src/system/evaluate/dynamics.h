@@ -38,8 +38,8 @@ typedef struct dvi__state_constraint {
 
   /* Find the side of the singular points on which the state lies. This is the sign of the matrix's
    * Pfaffian, 0 at such a point. Beyond DVI__SIDES_MOST rows the side is always 1, because the sign
-   * would cost as much as a step. If `has_rank` it is 1 + the number of dependent rows, and is asked
-   * for at a start, too. `before` is the side of the step's start, or 0 if none is known. */
+   * would cost as much as a step. If `has_rank` it is 1 + the number of dependent rows, and is
+   * asked for at a start, too. `before` is the side of the step's start, or 0 if none is known. */
   dvi_status (*side)(dvi__evaluator *e, double t, const double *q, const double *p, int before,
                      int *side);
   int has_rank;
