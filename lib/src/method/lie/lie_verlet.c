@@ -162,6 +162,11 @@ static dvi_status lie_verlet_step(dvi__stepper *self, dvi__state *state, double 
                             .p = state->p,
                             .q_compensation = state->q_compensation,
                             .p_compensation = state->p_compensation};
+  if (state->side > 1)
+    return dvi__fail(
+        DVI_UNSUPPORTED,
+        "lie-verlet takes independent constraints, and some depend on the others here; "
+        "lie-galerkin takes them");
   if (*lie_verlet_gradient_known(self) == 0) DVI_TRY(lie_verlet_gradient(self, state));
   lie_verlet_kick(self, &phase, 0.5 * h);
   DVI_TRY(lie_verlet_supply(self, state, h));

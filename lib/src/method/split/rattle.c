@@ -435,6 +435,7 @@ static dvi_status project_once(dvi__rattle *r, dvi__state *state)
 /* The second projection rounds off what the first one leaves. */
 dvi_status dvi__rattle_end(dvi__rattle *r, dvi__state *state)
 {
+  r->dependent = state->side > 1;
   const dvi_status status = factor_at(r, state->t, state->q);
   /* a smaller step may end elsewhere */
   if (status != DVI_OK)
