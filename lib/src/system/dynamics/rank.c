@@ -230,15 +230,16 @@ static dvi_status refuse_no_gradient(const dvi__evaluator *e, double t)
 {
   const dvi_system *s = e->system;
   const dvi__rows_memory *r = dvi__rows_memory_of(e);
-  char label[DVI__ROW_LABEL];
   for (int a = 0; a < s->row_count; a++) {
     double size = 0;
     for (int k = s->rows_q.start[a]; k < s->rows_q.start[a + 1]; k++)
       size = fmax(size, fabs(r->phi_q[k]));
-    if (size == 0)
+    if (size == 0) {
+      char label[DVI__ROW_LABEL];
       return dvi__fail(DVI_SINGULAR,
                        "constraint %s has the gradient 0 at t = %.6g, where it constrains nothing",
                        dvi__rows_label(s, a, label), t);
+    }
   }
   return DVI_OK;
 }
@@ -247,17 +248,18 @@ static dvi_status note_relations(dvi__evaluator *e, double t, const double *q, c
 {
   const dvi_system *s = e->system;
   dvi__rows_memory *r = dvi__rows_memory_of(e);
-  char label[DVI__ROW_LABEL];
   relations x = {0};
   dvi_status status = find_relations(s, r, &x);
   for (int place = x.rank; status == DVI_OK && place < x.m; place++)
     r->dependent[x.pivot[place]] = 1;
   r->dependent_count = status == DVI_OK ? x.m - x.rank : 0;
-  if (status == DVI_OK && r->dependent_count > 0 && s->nonholonomic_count > 0)
+  if (status == DVI_OK && r->dependent_count > 0 && s->nonholonomic_count > 0) {
+    char label[DVI__ROW_LABEL];
     status = dvi__fail(DVI_SINGULAR,
                        "constraint %s depends on the others at t = %.6g; beside nonholonomic "
                        "constraints leave out the rows that follow from others",
                        dvi__rows_label(s, x.pivot[x.rank], label), t);
+  }
   r->softness = DVI__SOFTNESS;
   if (status == DVI_OK && r->dependent_count > 0) status = dvi__rows_factor(e, t, q, v);
   if (status == DVI_OK && r->dependent_count > 0) status = test_relations(e, t, q, &x);
@@ -354,10 +356,10 @@ void dvi__rows_soften(dvi__evaluator *e, int dependent)
 int dvi__rows_dependent(const dvi__evaluator *e, char *words, size_t size)
 {
   const dvi__rows_memory *r = dvi__rows_memory_of(e);
-  char label[DVI__ROW_LABEL];
   size_t length = 0;
   words[0] = 0;
   for (int a = 0; r != NULL && a < r->row_count; a++) {
+    char label[DVI__ROW_LABEL];
     if (!r->dependent[a] || length + DVI__ROW_LABEL + 8 > size) continue;
     length += (size_t)snprintf(words + length, size - length, "%s%s", length > 0 ? ", " : "",
                                dvi__rows_label(e->system, a, label));
