@@ -91,7 +91,7 @@ static dvi_status spherical_constrained_make(const double *setting, problem *mad
                               .hessian = rod_hessian,
                               .qq = {own_start, own_row},
                               .user = own};
-  const dvi_symmetry symmetry = {.name = "angular_momentum", .generator = vertical};
+  const dvi_symmetry symmetry = {.name = "angular momentum", .generator = vertical};
   const dvi_system_terms terms = {.dimension = 3,
                                   .mass = {.scalar = own->m},
                                   .potentials = &potential,

@@ -31,8 +31,9 @@ typedef enum dvi_reference_code {
 /** Options. Zero means default. */
 typedef struct dvi_reference_options {
   dvi_reference_code code;
-  /** Relative tolerance. Default 1e-12, at index 2 1e-9, and 1e-9 for a general Lagrangian without
-   *  a gradient, whose differences are noise below 1e-11 */
+  /** Relative tolerance. Default 1e-12, at index 2 1e-9, for IDA with holonomic constraints 1e-11,
+   *  and 1e-9 for a general Lagrangian without a gradient, whose differences are noise below
+   *  1e-11 */
   double relative_tolerance;
   double absolute_tolerance; /**< in units of q and p alike (default: the relative one) */
   long max_steps;            /**< largest number of steps (default 50 million) */

@@ -472,6 +472,8 @@ const quad_problem *quad_problem_find(const char *name)
     if (strcmp(p->name, name) == 0) return p;
   for (const quad_problem *p = quad_constrained; p->name; p++)
     if (strcmp(p->name, name) == 0) return p;
+  for (const quad_problem *p = quad_mechanisms; p->name; p++)
+    if (strcmp(p->name, name) == 0) return p;
   for (const quad_problem *p = quad_rolling; p->name; p++)
     if (strcmp(p->name, name) == 0) return p;
   return NULL;

@@ -54,6 +54,9 @@ extern const quad_problem quad_degenerate[];
 /* Those with rotations and directions (quad_factors.c), likewise. */
 extern const quad_problem quad_factors[];
 
+/* Mechanisms with holonomic constraints (quad_mechanisms.c), likewise. */
+extern const quad_problem quad_mechanisms[];
+
 /* The nonholonomic ones (quad_rolling.c), likewise. */
 extern const quad_problem quad_rolling[];
 
