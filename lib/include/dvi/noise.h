@@ -13,9 +13,10 @@
  *  coordinate alone. The same seed and stream give the same path on any machine and with any number
  *  of threads. Each stream has its own path.
  *
- *  Noise stands beside a positive constant mass. dvi_system_create refuses it beside factors,
- *  constraints, contacts, a vector potential, a general Lagrangian, a one-form or a Hamiltonian
- *  (DVI_UNSUPPORTED), and numbers out of their range (DVI_BAD_ARGUMENT). */
+ *  Noise stands beside a positive constant mass, and perhaps holonomic constraints.
+ *  dvi_system_create refuses it beside factors, nonholonomic constraints, contacts, a vector
+ *  potential, damping, a general Lagrangian, a one-form or a Hamiltonian (DVI_UNSUPPORTED), and
+ *  numbers out of their range (DVI_BAD_ARGUMENT). */
 typedef struct dvi_noise {
   double temperature; /**< kT, an energy, 0 or more */
   double friction;    /**< gamma, 1/time, 0 or more */
@@ -27,14 +28,14 @@ typedef struct dvi_noise {
 extern "C" {
 #endif
 
-/** Compute the kinetic temperature 2K/n of a system with noise, in the unit of dvi_noise's, an
- *  energy.
+/** Compute the kinetic temperature 2K/(n - m) of a system with noise, with constraints of rank m, in
+ *  the unit of dvi_noise's, an energy.
  *
  *  K is that of the momenta after the last O of the step, which for BAOAB stands in its middle. The
  *  mean of that one is kT for a harmonic oscillator with steps of any length, while the mean at the
  *  ends of steps falls short by a part h^2 omega^2/4 (Leimkuhler and Matthews 2013). Before the
  *  first step K is that of the state.
- *  @retval DVI_UNSUPPORTED   the system declares no noise
+ *  @retval DVI_UNSUPPORTED   the system declares no noise, or its constraints leave no freedom
  *  @retval DVI_BAD_STATE     the integrator has no state yet
  *  @retval DVI_BAD_ARGUMENT  a pointer is NULL */
 dvi_status dvi_integrator_temperature(dvi_integrator *integrator, double *temperature);

@@ -47,14 +47,27 @@ static int weight_gradient(double t, const double *q, double *V_q, void *user)
   return 0;
 }
 
-static dvi_system *make_bobs(const dvi_noise *noise)
+/* The rods, and the first of them again. */
+static int more_rods(double t, const double *q, double *phi, void *user)
 {
-  static const int start[] = {0, 2, 4}, row[] = {0, 1, 2, 3};
+  phi[2] = (q[0] * q[0] + q[1] * q[1] - 1) / 2;
+  return rods(t, q, phi, user);
+}
+
+static int more_gradients(double t, const double *q, double *phi_q, void *user)
+{
+  memcpy(phi_q + N, q, 2 * sizeof *q);
+  return rods_gradient(t, q, phi_q, user);
+}
+
+static dvi_system *make_bobs(const dvi_noise *noise, int again)
+{
+  static const int start[] = {0, 2, 4, 6}, row[] = {0, 1, 2, 3, 0, 1};
   const dvi_potential fall = {.name = "weight", .value = weight, .gradient = weight_gradient};
   const dvi_holonomic two = {.name = "rods",
-                             .count = ROWS,
-                             .value = rods,
-                             .gradient = rods_gradient,
+                             .count = again ? ROWS + 1 : ROWS,
+                             .value = again ? more_rods : rods,
+                             .gradient = again ? more_gradients : rods_gradient,
                              .gradients = {start, row}};
   const dvi_system_terms terms = {.dimension = N,
                                   .mass.diagonal = masses,
@@ -92,7 +105,7 @@ static double distance_of(const dvi_integrator *made)
 
 START_TEST(states_stay_on_the_constraints)
 {
-  dvi_system *system = make_bobs(&bath);
+  dvi_system *system = make_bobs(&bath, 0);
   dvi_integrator *made = start_bobs(system, schemes[_i]);
   for (int k = 0; k < repeats(2000); k++) {
     advance(made, 0.05, 1);
@@ -109,7 +122,7 @@ START_TEST(averages_are_those_on_the_constraints)
 {
   enum { COPIES = 32, STEPS = 2000 };
   static const double bessel[ROWS] = {0.82812183, 0.92000789}; /* I1/I0 of m g/kT */
-  dvi_system *system = make_bobs(&bath);
+  dvi_system *system = make_bobs(&bath, 0);
   double mean[3] = {0}, spread[3] = {0}, of[3][COPIES] = {{0}};
   dvi_ensemble *e = create_ensemble(system, schemes[_i],
                                     (dvi_ensemble_options){.members = COPIES, .threads = 1});
@@ -142,11 +155,32 @@ START_TEST(averages_are_those_on_the_constraints)
 }
 END_TEST
 
+/* A row that is there twice takes one degree of freedom, not two. */
+START_TEST(redundant_rows_take_no_freedom)
+{
+  dvi_system *system = make_bobs(&bath, 0), *redundant = make_bobs(&bath, 1);
+  dvi_integrator *one = start_bobs(system, schemes[_i]),
+                 *other = start_bobs(redundant, schemes[_i]);
+  for (int k = 0; k < 10; k++) {
+    double here, there;
+    ck_assert_int_eq(dvi_integrator_temperature(one, &here), DVI_OK);
+    ck_assert_int_eq(dvi_integrator_temperature(other, &there), DVI_OK);
+    ck_assert_double_eq_tol(here, there, 1e-11 * here);
+    advance(one, 0.05, 1);
+    advance(other, 0.05, 1);
+  }
+  dvi_integrator_destroy(&one);
+  dvi_integrator_destroy(&other);
+  dvi_system_destroy(&system);
+  dvi_system_destroy(&redundant);
+}
+END_TEST
+
 START_TEST(without_friction_steps_are_those_of_verlet_and_galerkin)
 {
   static const char *const other[] = {NULL, "verlet", "galerkin:degree=1", "galerkin:degree=2"};
   const dvi_noise none = {.temperature = kT};
-  dvi_system *system = make_bobs(&none), *quiet = make_bobs(NULL);
+  dvi_system *system = make_bobs(&none, 0), *quiet = make_bobs(NULL, 0);
   dvi_integrator *noisy = start_bobs(system, schemes[_i]), *still = start_bobs(quiet, other[_i]);
   advance(noisy, 0.05, 40);
   advance(still, 0.05, 40);
@@ -162,5 +196,6 @@ SUITE(langevin_constrained)
 {
   tcase_add_loop_test(tests, states_stay_on_the_constraints, 0, SCHEMES);
   tcase_add_loop_test(tests, averages_are_those_on_the_constraints, 0, SCHEMES);
+  tcase_add_loop_test(tests, redundant_rows_take_no_freedom, 0, SCHEMES);
   tcase_add_loop_test(tests, without_friction_steps_are_those_of_verlet_and_galerkin, 1, SCHEMES);
 }

@@ -400,13 +400,23 @@ static void langevin_path(const dvi__stepper *self, const double *q0, double h, 
   }
 }
 
-/* There are n - m degrees of freedom. After the O of baoab the velocity is that of the last half of
- * the drift. The other schemes end with an O. */
+/* Return n less the rank of the constraints. The side tells how many rows depend on others. */
+static int freedom_of(const dvi__stepper *self, const dvi__state *state)
+{
+  const int dependent = state->side > 1 ? state->side - 1 : 0;
+  return self->system->n - (self->system->row_count - dependent);
+}
+
+/* After the O of baoab the velocity is that of the last half of the drift. The other schemes end
+ * with an O. */
 static dvi_status langevin_temperature(dvi__stepper *self, const dvi__state *state,
                                        double *temperature)
 {
   const langevin *own = self->own;
-  const int in_middle = scheme_of(self) == BAOAB && self->memory[DVI__BATH_DRAWS] > 0;
+  const int in_middle = scheme_of(self) == BAOAB && self->memory[DVI__BATH_DRAWS] > 0,
+            freedom = freedom_of(self, state);
+  if (freedom < 1)
+    return dvi__fail(DVI_UNSUPPORTED, "temperature: the constraints leave no degree of freedom");
   const double *p = state->p, *v = own->v;
   if (in_middle) {
     const rows r = rows_of(self, 1, self->memory);
@@ -418,7 +428,7 @@ static dvi_status langevin_temperature(dvi__stepper *self, const dvi__state *sta
   }
   double twice = 0;
   for (int i = 0; i < self->system->n; i++) twice += p[i] * v[i];
-  *temperature = twice / (self->system->n - self->system->row_count);
+  *temperature = twice / freedom;
   return DVI_OK;
 }
 
