@@ -28,7 +28,7 @@ typedef struct dvi_noise {
 extern "C" {
 #endif
 
-/** Compute the kinetic temperature 2K/(n - m) of a system with noise, with constraints of rank m, in
+/** Compute the kinetic temperature 2K/(n - m) of a system with noise and constraints of rank m, in
  *  the unit of dvi_noise's, an energy.
  *
  *  K is that of the momenta after the last O of the step, which for BAOAB stands in its middle. The
