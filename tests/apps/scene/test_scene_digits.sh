@@ -38,6 +38,17 @@ END
 digits rod.yaml 2e-14 q_x=.3160694015792743 q_y=.6893547174071988 q_z=-.6518360276739546
 digits rod.yaml 1e-9 lambda_rod=12.83280305331
 
+# The same in directions, whose null space is known.
+cat >direction.yaml <<'END'
+coordinates: {q: direction}
+lagrangian: dot(q', q')/2 - 9.81*q[3]
+initial: {q: "[sin(1), 0, -cos(1)]", q': "[cos(1)/2, 2, sin(1)/2]"}
+method: sphere-galerkin:degree=4
+step: 0.02
+until: 2
+END
+digits direction.yaml 5e-14 q_x=.3160694015792743 q_y=.6893547174071988 q_z=-.6518360276739546
+
 # The problem double-pendulum by positions of its masses, with its digits in angles.
 cat >double.yaml <<'END'
 coordinates: {u: vector(2), w: vector(2)}
