@@ -20,9 +20,12 @@ expect 0 'a method of the claimed order' order mechanism-here.yaml
 expect 0 'another parameter' run mechanism-here.yaml --set torque=0 --set a0=1 --final
 expect 0 'C' emit-c mechanism-here.yaml --out mechanism.c
 expect 2 'controls in C' emit-c crane-here.yaml --out crane.c
-expect 0 'control' control crane-here.yaml --out crane.csv
-says out 'minimum: 242 negative for 242 multipliers, 0 zero' 'a minimum'
-says crane.csv '^3,2,' 'the end'
+# With sanitizers this takes minutes.
+if [ -z "${DVI_TEST_FEWER:-}" ]; then
+  expect 0 'control' control crane-here.yaml --out crane.csv
+  says out 'minimum: 242 negative for 242 multipliers, 0 zero' 'a minimum'
+  says crane.csv '^3,2,' 'the end'
+fi
 expect 0 'sensitivities' gradient crane-here.yaml
 says out '^objective,-[0-9.]*,$' 'the objective'
 expect 2 'no template' init new.yaml --template boat
