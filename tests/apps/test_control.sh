@@ -27,10 +27,16 @@ same out u.csv 'standard output has what the file has'
 says err '^gradient ' 'then the report is on standard error'
 expect 0 'a guess' control free.yaml --guess u.csv --method midpoint --steps 100
 says out '100 steps of midpoint' 'steps and method'
-expect 0 'bounds' control swing-up.yaml --method midpoint --set most=0.85 --out b.csv
-says out '^barrier ' 'the barrier'
-awk -F, 'NR > 1 && ($4 >= 0.85 || $4 <= -0.85) { exit 1 }' b.csv || fail 'controls within bounds'
-awk -F, 'NR > 1 && $4 > 0.8499 { found = 1 } END { exit !found }' b.csv || fail 'bounds are met'
+# With sanitizers problems with bounds take minutes.
+if [ -z "${DVI_TEST_FEWER:-}" ]; then
+  expect 0 'bounds' control swing-up.yaml --method midpoint --set most=0.85 --out b.csv
+  says out '^barrier ' 'the barrier'
+  awk -F, 'NR > 1 && ($4 >= 0.85 || $4 <= -0.85) { exit 1 }' b.csv || fail 'controls within bounds'
+  awk -F, 'NR > 1 && $4 > 0.8499 { found = 1 } END { exit !found }' b.csv || fail 'bounds are met'
+  expect 1 'bounds that are too narrow' control swing-up.yaml --method midpoint --set most=0.1
+  says err 'no stationary path' 'no solution'
+  [ ! -s out ] || fail 'nothing is reported'
+fi
 
 # A free time: the pendulum swings up in the time that costs least.
 sed 's/u^2\/2/u^2\/2 + 0.2/' free.yaml >priced.yaml
@@ -43,10 +49,7 @@ sed "s/, a': 0}$/}/; s/initial: {a: 0}/initial: {a: 0, a': 0}/" free.yaml >loose
 expect 0 'a free velocity' control loose.yaml --out loose.csv
 tail -n 1 loose.csv | awk -F, '{ exit !($6 < 1e-12 && $6 > -1e-12) }' || fail 'its costate'
 
-# Without an end, without a control that acts, beyond the bounds.
-expect 1 'bounds that are too narrow' control swing-up.yaml --method midpoint --set most=0.1
-says err 'no stationary path' 'no solution'
-[ ! -s out ] || fail 'nothing is reported'
+# Without an end, without a control that acts.
 grep -v final free.yaml >endless.yaml
 expect 2 'no end' control endless.yaml
 says err 'no section final' 'what is missing'

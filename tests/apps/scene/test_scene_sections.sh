@@ -137,6 +137,9 @@ sed -i "/^initial/s/, omega.*/}/" joined.yaml turned.yaml
 # Each line holds a form, a section, and a change of the section by sed. Flat forms have coordinates
 # x and y.
 machines='rod driven damped blade walled sliding noisy magnetic joined turned'
+# A short run takes a part of the forms, and no controls with bounds, which take minutes.
+short=${DVI_TEST_FEWER:+yes}
+[ -z "$short" ] || machines=
 forms="separable fast general oneform dirac rotation body direction $machines"
 cat >changes <<'END'
 all parameters s/k: 2/k: 3/
@@ -286,7 +289,7 @@ for scene in $forms; do
   *:' ') fail "no method takes $scene" ;;
   esac
 done
-[ $refused -eq 489 ] || fail "$refused of 594 pairs are refused, not 489"
+[ -n "$short" ] || [ $refused -eq 489 ] || fail "$refused of 594 pairs are refused, not 489"
 
 # Controls, their ends and objectives are those of dvi control and dvi gradient.
 { plan; cat <<'END'
@@ -300,10 +303,12 @@ objective: {end: x, integral: y^2}
 method: midpoint
 END
 } >controlled.yaml
+[ -z "$short" ] || sed -i 's/, within: .*/}}/' controlled.yaml
 for change in 'control s/u^2.2/u^2/' 'control s/-40, 40/-22, 22/' \
   'control s/final: {x: 0/final: {x: 0.2/' \
   "control s/, x': 0}/}/" 'control s/u - 0.1/u - 0.2/' 'control s/u - /2*u - /' \
   'gradient s/end: x/end: y/' 'gradient s/integral: y/integral: x/'; do
+  case $short$change in yes*-40*) continue ;; esac
   sed "${change#* }" controlled.yaml >changed.yaml
   cmp -s controlled.yaml changed.yaml && fail "'$change' changes nothing"
   expect 0 "$change: before" "${change%% *}" controlled.yaml
