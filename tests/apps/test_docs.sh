@@ -91,8 +91,8 @@ machines="docs/control.md docs/sensitivities.md docs/forces.md docs/constraints.
 commands=0
 for page in README.md docs/command.md docs/limits.md docs/guide.md docs/theory.md docs/problems.md \
   docs/trust.md docs/adaptive.md docs/oscillations.md docs/shooting-studies.md docs/paths.md \
-  docs/scenes.md docs/cookbook.md docs/scene-errors.md \
-  $(cd "$top" && find docs/methods -name '*.md' | sort) $machines; do
+  docs/scenes.md $machines docs/cookbook.md docs/scene-errors.md \
+  $(cd "$top" && find docs/methods -name '*.md' | sort); do
   split "$top/$page"
   n=1
   whole=1
