@@ -97,7 +97,6 @@ static dvi_status constrain_start(dvi_integrator *I, double t, int project, cons
                                   const double **p)
 {
   const dvi__state_constraint *constraint = I->system->dynamics->constraint;
-  const size_t bytes = (size_t)I->system->n * sizeof(double);
   I->next.side = 0;
   if (constraint == NULL) return DVI_OK;
   if (!I->admitted && constraint->admit != NULL) DVI_TRY(constraint->admit(I->evaluator, t, *q));
@@ -105,8 +104,8 @@ static dvi_status constrain_start(dvi_integrator *I, double t, int project, cons
   if (!project) {
     DVI_TRY(constraint->check(I->evaluator, t, *q, *p));
   } else {
-    memmove(I->next.p, *p, bytes);
-    memmove(I->next.q, *q, bytes);
+    memmove(I->next.p, *p, (size_t)I->system->nv * sizeof **p);
+    memmove(I->next.q, *q, (size_t)I->system->n * sizeof **q);
     *q = I->next.q;
     *p = I->next.p;
     DVI_TRY(constraint->project(I->evaluator, t, I->next.q, I->next.p));
