@@ -4,11 +4,12 @@
 
 /* A C file has neither controls nor variable parameters. The block of inputs is left out. */
 const char *const dvi__block_name[DVI__INPUTS] = {"t", "q", "v", "w"};
+/* Sums have arrays of all blocks and pairs. Those of inputs are never wanted, and have no name. */
 static const char *const value_name[] = {"f"},
-                         *const gradient_name[DVI__INPUTS] = {"f_t", "f_q", "f_v", "f_w"},
-                         *const second_name[DVI__PAIR_QU] = {"f_qq", "f_qv", "f_vv", "f_qw",
-                                                             "f_vw", "f_tq", "f_tv", "f_vq",
-                                                             "f_wq", "f_wv", "f_tw"};
+                         *const gradient_name[DVI__BLOCKS] = {"f_t", "f_q", "f_v", "f_w"},
+                         *const second_name[DVI__PAIRS] = {"f_qq", "f_qv", "f_vv", "f_qw",
+                                                           "f_vw", "f_tq", "f_tv", "f_vq",
+                                                           "f_wq", "f_wv", "f_tw"};
 
 int *dvi__name_rows(const dvi__part *part, int *next)
 {
