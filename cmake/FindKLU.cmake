@@ -1,11 +1,11 @@
-# Finds KLU of SuiteSparse by its header and libraries: SuiteSparse has a CMake package only from
-# version 7 on.
+# Finds KLU and LDL of SuiteSparse by their headers and libraries: SuiteSparse has a CMake package
+# only from version 7 on.
 # Gives KLU::KLU, and KLU_FOUND.
 
 find_path(KLU_INCLUDE_DIR klu.h PATH_SUFFIXES suitesparse)
 set(klu_required KLU_INCLUDE_DIR)
 set(KLU_LIBRARIES "")
-foreach(part klu amd colamd btf suitesparseconfig)
+foreach(part klu ldl amd colamd btf suitesparseconfig)
   string(TOUPPER ${part} upper)
   find_library(KLU_${upper}_LIBRARY ${part})
   list(APPEND klu_required KLU_${upper}_LIBRARY)

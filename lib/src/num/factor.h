@@ -1,5 +1,5 @@
 /* Kinds of solvers behind num/linear.h, one const struct and one file each. Those of matrices see
- * finite, equilibrated values. */
+ * finite values, equilibrated unless they are free of scales. */
 #ifndef DVI_NUM_FACTOR_H
 #define DVI_NUM_FACTOR_H
 #include <float.h>
@@ -21,6 +21,7 @@ typedef struct dvi__factor_form {
 
 typedef struct dvi__factor_kind {
   const char *name;
+  int scale_free; /* rows and columns need no equilibration */
   /* Analyse the matrix. Memory for numbers may wait for the first `refactor`. */
   dvi_status (*create)(const dvi__factor_form *form, void **factor);
   void (*destroy)(void *factor);
@@ -40,6 +41,7 @@ typedef struct dvi__factor_kind {
 extern const dvi__factor_kind dvi__dense_factor;     /* dense.c */
 extern const dvi__factor_kind dvi__sparse_factor;    /* klu.c */
 extern const dvi__factor_kind dvi__complex_factor;   /* klu.c; values and b in pairs of numbers */
+extern const dvi__factor_kind dvi__definite_factor;  /* ldl.c */
 extern const dvi__factor_kind dvi__bordered_factor;  /* border.c */
 extern const dvi__factor_kind dvi__iterative_factor; /* iterative.c */
 

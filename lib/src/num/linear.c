@@ -51,6 +51,7 @@ static int dense_is_better(const dvi__pattern *pattern)
 static const dvi__factor_kind *factor_kind_for(const dvi__pattern *pattern, dvi__linear_kind kind)
 {
   if (kind == DVI__LINEAR_COMPLEX) return &dvi__complex_factor;
+  if (kind == DVI__LINEAR_DEFINITE) return &dvi__definite_factor;
   const int dense = kind == DVI__LINEAR_DENSE ||
                     (kind == DVI__LINEAR_AUTO && dense_is_better(pattern));
   return dense ? &dvi__dense_factor : &dvi__sparse_factor;
@@ -130,6 +131,7 @@ dvi__linear_kind dvi__linear_kind_of(const dvi__linear *linear)
 {
   if (linear->parts == 2) return DVI__LINEAR_COMPLEX;
   if (linear->kind == &dvi__iterative_factor) return DVI__LINEAR_ITERATIVE;
+  if (linear->kind == &dvi__definite_factor) return DVI__LINEAR_DEFINITE;
   return linear->kind == &dvi__dense_factor ? DVI__LINEAR_DENSE : DVI__LINEAR_SPARSE;
 }
 
@@ -173,14 +175,20 @@ static dvi_status linear_allocate_scales(dvi__linear *linear)
   linear->scaled = NULL;
   return dvi__fail(DVI_NO_MEMORY, "linear solver: no memory for %zu entries", entries);
 }
+
+static int has_scales(const dvi__linear *linear)
+{
+  return linear->form.pattern != NULL && !linear->kind->scale_free;
+}
+
 /* Prepare, and count the preparation, because it allocates memory. The next call completes what a
  * failure has left. */
 static dvi_status linear_prepare(dvi__linear *linear)
 {
-  const int is_matrix = linear->form.pattern != NULL;
-  if (linear->factor != NULL && (!is_matrix || linear->scaled != NULL)) return DVI_OK;
+  const int is_scaled = has_scales(linear);
+  if (linear->factor != NULL && (!is_scaled || linear->scaled != NULL)) return DVI_OK;
   DVI_TRY(dvi__linear_analyse(linear));
-  if (is_matrix) DVI_TRY(linear_allocate_scales(linear));
+  if (is_scaled) DVI_TRY(linear_allocate_scales(linear));
   if (linear->counters != NULL) linear->counters->preparations++;
   return DVI_OK;
 }
@@ -250,8 +258,12 @@ dvi_status dvi__linear_factor(dvi__linear *linear, const double *values)
   if (is_matrix) DVI_TRY(linear_check_finite(linear, values));
   DVI_TRY(linear_prepare(linear));
   if (linear->counters != NULL && is_matrix) linear->counters->factorizations++;
-  if (is_matrix) linear_equilibrate(linear, values);
-  return linear->kind->refactor(linear->factor, linear->form.pattern, linear->scaled);
+  const double *factored = values;
+  if (has_scales(linear)) {
+    linear_equilibrate(linear, values);
+    factored = linear->scaled;
+  }
+  return linear->kind->refactor(linear->factor, linear->form.pattern, factored);
 }
 
 /* The scales are positive and keep the sign. */
@@ -288,9 +300,10 @@ static void scale_vector(int n, int parts, const double *by, double *b)
 dvi_status dvi__linear_solve(dvi__linear *linear, double *b)
 {
   const dvi__pattern *pattern = linear->form.pattern;
+  const int is_scaled = has_scales(linear);
   if (linear->counters != NULL) linear->counters->solves++;
-  if (pattern != NULL) scale_vector(pattern->columns, linear->parts, linear->row_scale, b);
+  if (is_scaled) scale_vector(pattern->columns, linear->parts, linear->row_scale, b);
   const dvi_status status = linear->kind->solve(linear->factor, pattern, b);
-  if (pattern != NULL) scale_vector(pattern->columns, linear->parts, linear->column_scale, b);
+  if (is_scaled) scale_vector(pattern->columns, linear->parts, linear->column_scale, b);
   return status;
 }

@@ -17,6 +17,7 @@ typedef enum dvi__linear_kind {
   DVI__LINEAR_SPARSE, /* LU by KLU */
   /* LU by KLU of entries that are pairs of numbers, real part and imaginary part */
   DVI__LINEAR_COMPLEX,
+  DVI__LINEAR_DEFINITE,  /* LDL^T by LDL of symmetric positive definite matrices */
   DVI__LINEAR_ITERATIVE, /* GMRES with an operator */
 } dvi__linear_kind;
 
@@ -80,7 +81,8 @@ const char *dvi__linear_name(const dvi__linear *linear);
 dvi__linear_cost dvi__linear_cost_of(const dvi__linear *linear);
 
 /* Factor the matrix with these values, in the order of the pattern. Rows and columns are
- * equilibrated first. DVI_SINGULAR if it is singular to working precision, DVI_NOT_FINITE,
+ * equilibrated first. DVI_SINGULAR if it is singular to working precision, or a DEFINITE one is not
+ * positive definite, DVI_NOT_FINITE,
  * DVI_NO_MEMORY (the first time, later KLU's own), DVI_BAD_SIZE. A failure loses the old factor. */
 dvi_status dvi__linear_factor(dvi__linear *linear, const double *values);
 
@@ -89,7 +91,8 @@ dvi_status dvi__linear_factor(dvi__linear *linear, const double *values);
 int dvi__linear_sign(const dvi__linear *linear);
 
 /* Give an estimate of the reciprocal condition of the equilibrated matrix that was factored last, 1
- * if none is known. That of a sparse one is the ratio of its smallest and largest pivot. */
+ * if none is known. That of a sparse one is the ratio of its smallest and largest pivot, that of a
+ * DEFINITE one the smallest ratio of a pivot and its entry of the diagonal. */
 double dvi__linear_condition(const dvi__linear *linear);
 
 /* Tell whether the matrix that was factored last, a symmetric one, is positive (sign 1) or negative

@@ -67,7 +67,7 @@ typedef struct langevin {
  * holds the inner method's. With constraints explicit schemes hold the velocity [n] after the bath
  * and the multipliers, too. */
 typedef struct rows {
-  double *gradient, *known, *first_v, *last_v, *bath_v, *lambda, *inner;
+  double *gradient, *known, *first_v, *last_v, *bath_v, *multipliers, *inner;
 } rows;
 
 static rows rows_of(const dvi__stepper *self, int count, double *memory)
@@ -79,7 +79,7 @@ static rows rows_of(const dvi__stepper *self, int count, double *memory)
                 .first_v = at + (n + 1) * members,
                 .last_v = at + (2 * n + 1) * members,
                 .bath_v = at + (3 * n + 1) * members,
-                .lambda = at + (4 * n + 1) * members,
+                .multipliers = at + (4 * n + 1) * members,
                 .inner = at};
 }
 
@@ -107,7 +107,7 @@ static dvi_status create_explicit(dvi__stepper *self, langevin *own)
                      "langevin: forces beside constraints are taken by scheme=ovio alone");
   self->order = 2;
   const size_t n = (size_t)self->system->n, m = (size_t)self->system->row_count;
-  self->memory_count = DVI__BATH_MEMORY + 3 * n + 1 + (m > 0 ? n + m : 0);
+  self->memory_count = DVI__BATH_MEMORY + 3 * n + 1 + (m > 0 ? n + DVI__RATTLE_MEMORY * m : 0);
   return dvi__evaluator_create(self->system, 1, DVI__GRADIENTS, self->counters, &own->evaluator);
 }
 
@@ -223,7 +223,7 @@ static dvi_status meet_bath(const move *m, double tau)
   if (m->balanced != NULL) memcpy(own->p[1], s->p, numbers_of(m) * sizeof(double));
   dvi__bath_move(m->bath, tau, 1 << m->self->settings.value[REFINEMENT], s->count, s->memory, s->p,
                  s->p_compensation);
-  if (own->rattle != NULL) DVI_TRY(dvi__rattle_end(own->rattle, m->state));
+  if (own->rattle != NULL) DVI_TRY(dvi__rattle_project(own->rattle, m->state));
   return m->balanced != NULL ? add_heat(m, own->p[1]) : DVI_OK;
 }
 
@@ -305,11 +305,11 @@ static dvi_status explicit_step(const move *m, double h)
 static dvi_status constrained_drift(const move *m, double h, double *v)
 {
   const langevin *own = m->self->own;
-  DVI_TRY(dvi__rattle_begin(own->rattle, m->state, h, m->rows.lambda));
+  DVI_TRY(dvi__rattle_begin(own->rattle, m->state, h, m->rows.multipliers));
   find_velocity(m, v);
   drift(m, h, v);
   advance_clocks(m, h);
-  return dvi__rattle_end(own->rattle, m->state);
+  return dvi__rattle_end(own->rattle, m->state, h, m->rows.multipliers);
 }
 
 /* A(h/2) O(h) A(h/2), or A(h). */
@@ -336,7 +336,7 @@ static dvi_status constrained_step(const move *m, double h)
   DVI_TRY(constrained_middle(m, h));
   DVI_TRY(renew_gradient(m));
   kick(m, 0.5 * h);
-  DVI_TRY(dvi__rattle_end(own->rattle, m->state));
+  DVI_TRY(dvi__rattle_project(own->rattle, m->state));
   return at_ends ? meet_bath(m, 0.5 * h) : DVI_OK;
 }
 

@@ -10,6 +10,7 @@
 #include "num/finite.h"
 #include "num/linear.h"
 #include "system/dynamics/holonomic.h"
+#include "system/dynamics/holonomic_rows.h"
 
 enum { MOST_ITERATIONS = 50 };
 
@@ -20,20 +21,24 @@ struct dvi__rattle {
   const dvi_system *system;
   dvi__evaluator *evaluator;
   dvi_counters *counters;
-  dvi__pattern pattern; /* of G M^-1 G^T */
-  dvi__linear *matrix;
-  double *values; /* [entries] */
+  dvi__pattern pattern;  /* of G M^-1 G^T */
+  dvi__linear *definite; /* takes this matrix for positive masses on the diagonal, else NULL */
+  dvi__linear *general;  /* takes dependent rows and gradients at two places */
+  dvi__linear *matrix;   /* the one of these with the last factor */
+  double *values;        /* [entries] */
   /* For masses on the diagonal, entry e of the matrix is the sum of the products of the entries
    * `left` and `right` of G, pairs first[e] to first[e+1]-1. */
   int *first, *left, *right;
-  int knows_start; /* the matrix and the gradients are those of t_start and q_start */
+  int knows_start;      /* the matrix and the gradients are those of t_start and q_start */
   int dependent, start_dependent; /* rows depend on others, now, and in the matrix of the start */
   double softness;                /* of the matrix of dependent rows */
   double t_start;
   double *numbers;         /* storage of all that follows */
   double *q_start;         /* [n] */
   double *phi_q, *next_q;  /* [entries of rows_q] gradients at the start, and on the way */
+  double *moved_q;         /* [entries of rows_q] M^-1 phi_q for masses on the diagonal */
   double *phi, *phi_t, *w; /* [rows]; w is a correction of the multipliers */
+  double *mu;              /* [rows] multipliers at the end */
   double *scale;           /* [rows] powers of two near the sizes of M^-1/2 G^T, inverted */
   double *x, *change, *v;  /* [n]; change is q1 - q0 */
 };
@@ -141,7 +146,7 @@ static dvi_status rattle_allocate(dvi__rattle *r)
 {
   const size_t n = (size_t)r->system->n, m = (size_t)r->system->row_count,
                entries = (size_t)dvi__pattern_entries(&r->system->rows_q);
-  double *at = r->numbers = DVI_NEW(double, 4 * n + 4 * m + 2 * entries);
+  double *at = r->numbers = DVI_NEW(double, 4 * n + 5 * m + 3 * entries);
   r->values = DVI_NEW(double, dvi__pattern_entries(&r->pattern));
   if (at == NULL || r->values == NULL)
     return dvi__fail(DVI_NO_MEMORY, "verlet: no memory for %zu constraints", m);
@@ -152,9 +157,11 @@ static dvi_status rattle_allocate(dvi__rattle *r)
   r->phi = r->v + n;
   r->phi_t = r->phi + m;
   r->w = r->phi_t + m;
-  r->scale = r->w + m;
+  r->mu = r->w + m;
+  r->scale = r->mu + m;
   r->phi_q = r->scale + m;
   r->next_q = r->phi_q + entries;
+  r->moved_q = r->next_q + entries;
   return DVI_OK;
 }
 
@@ -166,7 +173,9 @@ static dvi_status rattle_prepare(dvi__rattle *r)
   else
     DVI_TRY(dvi__pattern_copy_rectangular(&(dvi_pattern){0}, m, m, "constraints", &r->pattern));
   DVI_TRY(rattle_allocate(r));
-  return dvi__linear_create(&r->pattern, DVI__LINEAR_AUTO, r->counters, &r->matrix);
+  if (masses_are_diagonal(r->system) && dvi__mass_is_positive(r->evaluator))
+    DVI_TRY(dvi__linear_create(&r->pattern, DVI__LINEAR_DEFINITE, r->counters, &r->definite));
+  return dvi__linear_create(&r->pattern, DVI__LINEAR_AUTO, r->counters, &r->general);
 }
 
 dvi_status dvi__rattle_create(const dvi_system *system, dvi__evaluator *evaluator,
@@ -186,7 +195,8 @@ void dvi__rattle_destroy(dvi__rattle **rattle)
 {
   dvi__rattle *r = *rattle;
   if (r == NULL) return;
-  dvi__linear_destroy(&r->matrix);
+  dvi__linear_destroy(&r->definite);
+  dvi__linear_destroy(&r->general);
   dvi__pattern_clear(&r->pattern);
   dvi__release(r->first);
   dvi__release(r->left);
@@ -199,36 +209,35 @@ void dvi__rattle_destroy(dvi__rattle **rattle)
 
 /* ---- the matrix ---- */
 
-static void multiply_by_pairs(dvi__rattle *r, const double *rows, const double *columns)
+/* Compute rows M^-1 G^T with G at the start. */
+static void multiply_by_pairs(dvi__rattle *r, const double *rows)
 {
-  const dvi_system *s = r->system;
-  for (int e = 0; e < dvi__pattern_entries(&r->pattern); e++) {
+  const int entries = dvi__pattern_entries(&r->pattern);
+  for (int e = 0; e < entries; e++) {
     double sum = 0;
-    for (int k = r->first[e]; k < r->first[e + 1]; k++) {
-      const double mass = s->mass_diagonal != NULL ? s->mass_diagonal[s->rows_q.row[r->left[k]]]
-                                                   : s->mass_scalar;
-      sum += rows[r->left[k]] * columns[r->right[k]] / mass;
-    }
+    for (int k = r->first[e]; k < r->first[e + 1]; k++)
+      sum += rows[r->left[k]] * r->moved_q[r->right[k]];
     r->values[e] = sum;
   }
 }
 
 /* Set x to M^-1 G^T w. */
-static void move_by(dvi__rattle *r, const double *phi_q, const double *w, double *x)
+static void move_by(dvi__rattle *r, const double *w, double *x)
 {
+  const int is_diagonal = masses_are_diagonal(r->system);
   memset(x, 0, (size_t)r->system->n * sizeof *x);
-  dvi__rows_pull(r->system, phi_q, w, 1, x);
-  dvi__mass_solve(r->evaluator, 1, x, x);
+  dvi__rows_pull(r->system, is_diagonal ? r->moved_q : r->phi_q, w, 1, x);
+  if (!is_diagonal) dvi__mass_solve(r->evaluator, 1, x, x);
 }
 
-static void multiply_by_columns(dvi__rattle *r, const double *rows, const double *columns)
+static void multiply_by_columns(dvi__rattle *r, const double *rows)
 {
   const dvi_system *s = r->system;
   const int m = s->row_count;
   for (int b = 0; b < m; b++) {
     memset(r->x, 0, (size_t)s->n * sizeof(double));
     for (int k = s->rows_q.start[b]; k < s->rows_q.start[b + 1]; k++)
-      r->x[s->rows_q.row[k]] = columns[k];
+      r->x[s->rows_q.row[k]] = r->phi_q[k];
     dvi__mass_solve(r->evaluator, 1, r->x, r->x);
     for (int a = 0; a < m; a++) {
       double sum = 0;
@@ -259,21 +268,24 @@ static void scale_matrix(dvi__rattle *r)
 static dvi_status solve_matrix(dvi__rattle *r)
 {
   const int m = r->system->row_count;
+  if (r->matrix == r->definite) return dvi__linear_solve(r->matrix, r->w);
   for (int a = 0; a < m; a++) r->w[a] *= r->scale[a];
   DVI_TRY(dvi__linear_solve(r->matrix, r->w));
   for (int a = 0; a < m; a++) r->w[a] *= r->scale[a];
   return DVI_OK;
 }
 
-/* Factor rows M^-1 columns^T, of two sets of gradients. */
-static dvi_status factor_matrix(dvi__rattle *r, double t, const double *rows, const double *columns)
+/* Factor rows M^-1 G^T of gradients here and of those at the start, which may be the same. */
+static dvi_status factor_matrix(dvi__rattle *r, double t, const double *rows)
 {
+  const int is_definite = rows == r->phi_q && r->definite != NULL && !r->dependent;
   r->counters->jacobians++;
   if (masses_are_diagonal(r->system))
-    multiply_by_pairs(r, rows, columns);
+    multiply_by_pairs(r, rows);
   else
-    multiply_by_columns(r, rows, columns);
-  scale_matrix(r);
+    multiply_by_columns(r, rows);
+  if (!is_definite) scale_matrix(r);
+  r->matrix = is_definite ? r->definite : r->general;
   const dvi_status status = dvi__linear_factor(r->matrix, r->values);
   return status != DVI_SINGULAR
              ? status
@@ -290,7 +302,10 @@ static dvi_status factor_at(dvi__rattle *r, double t, const double *q)
   r->knows_start = 0;
   r->softness = DVI__SOFTNESS;
   DVI_TRY(dvi__rows_gradients(r->evaluator, t, q, r->phi_q));
-  DVI_TRY(factor_matrix(r, t, r->phi_q, r->phi_q));
+  const double *mass = r->system->mass_diagonal;
+  for (int k = 0; mass != NULL && k < dvi__pattern_entries(&r->system->rows_q); k++)
+    r->moved_q[k] = r->phi_q[k] / mass[r->system->rows_q.row[k]];
+  DVI_TRY(factor_matrix(r, t, r->phi_q));
   r->t_start = t;
   memcpy(r->q_start, q, size);
   r->knows_start = 1;
@@ -316,7 +331,7 @@ static dvi_status renew_matrix(dvi__rattle *r, const dvi__state *state, double h
 {
   r->knows_start = 0;
   DVI_TRY(dvi__rows_gradients(r->evaluator, state->t + h, r->x, r->next_q));
-  const dvi_status status = factor_matrix(r, state->t + h, r->next_q, r->phi_q);
+  const dvi_status status = factor_matrix(r, state->t + h, r->next_q);
   return status == DVI_SINGULAR ? DVI_NOT_CONVERGED : status; /* a smaller step ends elsewhere */
 }
 
@@ -329,9 +344,10 @@ static dvi_status correct(dvi__rattle *r, double h, double *lambda, double *move
   DVI_TRY(solve_matrix(r));
   if (dvi__first_not_finite((size_t)m, r->w) >= 0)
     return dvi__fail(DVI_NOT_FINITE, "the multipliers of the step are not finite");
-  move_by(r, r->phi_q, r->w, r->x);
+  const double per_step = 2 / (h * h);
+  move_by(r, r->w, r->x);
   for (int i = 0; i < n; i++) r->change[i] -= r->x[i];
-  for (int a = 0; a < m; a++) lambda[a] += 2 * r->w[a] / (h * h);
+  for (int a = 0; a < m; a++) lambda[a] += per_step * r->w[a];
   *moved = dvi__largest((size_t)n, r->x);
   return DVI_OK;
 }
@@ -394,18 +410,42 @@ static dvi_status find_multipliers(dvi__rattle *r, const dvi__state *state, doub
                    (int)MOST_ITERATIONS, moved);
 }
 
-dvi_status dvi__rattle_begin(dvi__rattle *r, dvi__state *state, double h, double *lambda)
+/* The multipliers of a step's start differ from those at its end, and these from those of the next
+ * start, by differences that hardly change from step to step (rattle.h). */
+static void guess_start(dvi__rattle *r, double h, double *multipliers)
+{
+  const int m = r->system->row_count;
+  double *lambda = multipliers;
+  const double *jump = multipliers + m;
+  /* what has no effect at one state may have some at the next one */
+  if (r->dependent) memset(multipliers, 0, DVI__RATTLE_MEMORY * (size_t)m * sizeof *multipliers);
+  for (int a = 0; a < m; a++) r->mu[a] = lambda[a];
+  for (int a = 0; a < m; a++) lambda[a] += h * jump[a];
+}
+
+/* A row without a multiplier before, as at the start of a run, has no difference. */
+static void note_start(const dvi__rattle *r, double h, double *multipliers)
+{
+  const int m = r->system->row_count;
+  const double *lambda = multipliers;
+  double *jump = multipliers + m;
+  for (int a = 0; a < m; a++)
+    if (r->mu[a] != 0) jump[a] = (lambda[a] - r->mu[a]) / h;
+}
+
+dvi_status dvi__rattle_begin(dvi__rattle *r, dvi__state *state, double h, double *multipliers)
 {
   const int n = r->system->n, m = r->system->row_count;
+  double *lambda = multipliers;
   r->dependent = state->side > 1;
   DVI_TRY(factor_at(r, state->t, state->q));
-  /* what has no effect at one state may have some at the next one */
-  if (r->dependent) memset(lambda, 0, (size_t)m * sizeof *lambda);
+  guess_start(r, h, multipliers);
   dvi__mass_solve(r->evaluator, 1, state->p, r->change);
   for (int a = 0; a < m; a++) r->w[a] = 0.5 * h * h * lambda[a];
-  move_by(r, r->phi_q, r->w, r->x);
+  move_by(r, r->w, r->x);
   for (int i = 0; i < n; i++) r->change[i] = h * r->change[i] - r->x[i];
   DVI_TRY(find_multipliers(r, state, h, lambda));
+  note_start(r, h, multipliers);
   memset(r->x, 0, (size_t)n * sizeof(double));
   dvi__rows_pull(r->system, r->phi_q, lambda, -0.5 * h, r->x);
   dvi__add_compensated_all(n, state->p, state->p_compensation, r->x);
@@ -414,33 +454,73 @@ dvi_status dvi__rattle_begin(dvi__rattle *r, dvi__state *state, double h, double
 
 /* ---- the end of a step ---- */
 
-static dvi_status project_once(dvi__rattle *r, dvi__state *state)
+/* Solve G M^-1 (p - G^T (mu + w)) + phi_t = 0 for w, and add it to mu. *changed becomes its size
+ * beside that of mu. */
+static dvi_status correct_end(dvi__rattle *r, const dvi__state *state, double *changed)
 {
   const dvi_system *s = r->system;
-  dvi__mass_solve(r->evaluator, 1, state->p, r->v);
-  for (int a = 0; a < s->row_count; a++) {
-    r->w[a] = r->phi_t[a];
-    for (int k = s->rows_q.start[a]; k < s->rows_q.start[a + 1]; k++)
-      r->w[a] += r->phi_q[k] * r->v[s->rows_q.row[k]];
-  }
+  const size_t n = (size_t)s->n, m = (size_t)s->row_count;
+  memset(r->x, 0, n * sizeof(double));
+  dvi__rows_pull(s, r->phi_q, r->mu, -1, r->x);
+  for (size_t i = 0; i < n; i++) r->v[i] = state->p[i] + (r->x[i] - state->p_compensation[i]);
+  dvi__mass_solve(r->evaluator, 1, r->v, r->v);
+  dvi__rows_push(s, r->phi_q, r->v, r->phi_t, r->w);
   DVI_TRY(solve_matrix(r));
-  if (dvi__first_not_finite((size_t)s->row_count, r->w) >= 0)
+  if (dvi__first_not_finite(m, r->w) >= 0)
     return dvi__fail(DVI_NOT_FINITE, "the multipliers at the end of the step are not finite");
-  memset(r->x, 0, (size_t)s->n * sizeof(double));
-  dvi__rows_pull(s, r->phi_q, r->w, -1, r->x);
-  dvi__add_compensated_all(s->n, state->p, state->p_compensation, r->x);
+  for (size_t a = 0; a < m; a++) r->mu[a] += r->w[a];
+  *changed = dvi__largest(m, r->w) / dvi__largest(m, r->mu);
   return DVI_OK;
 }
 
-/* The second projection rounds off what the first one leaves. */
-dvi_status dvi__rattle_end(dvi__rattle *r, dvi__state *state)
+static void guess_end(dvi__rattle *r, double h, const double *multipliers)
 {
+  const int m = r->system->row_count;
+  const double *lambda = multipliers, *change = multipliers + 2 * m;
+  for (int a = 0; a < m; a++) r->mu[a] = 0.5 * h * (lambda[a] + h * change[a]);
+}
+
+static void note_end(const dvi__rattle *r, double h, double *multipliers)
+{
+  const int m = r->system->row_count;
+  double *lambda = multipliers, *change = multipliers + 2 * m;
+  for (int a = 0; a < m; a++) {
+    const double at_end = 2 * r->mu[a] / h;
+    change[a] = (at_end - lambda[a]) / h;
+    lambda[a] = at_end;
+  }
+}
+
+/* Find mu [rows] from its guess. What a correction leaves is of the size of its own roundings,
+ * unless the matrix is that of dependent rows. A large one is corrected once more. */
+static dvi_status find_end(dvi__rattle *r, dvi__state *state)
+{
+  const double small_change = 1e-3;
+  double changed;
   r->dependent = state->side > 1;
   const dvi_status status = factor_at(r, state->t, state->q);
   /* a smaller step may end elsewhere */
   if (status != DVI_OK)
     return dvi__fail_in(status == DVI_SINGULAR ? DVI_NOT_CONVERGED : status, "the end of the step");
   DVI_TRY(dvi__rows_rate(r->evaluator, state->t, state->q, r->phi_t));
-  DVI_TRY(project_once(r, state));
-  return project_once(r, state);
+  DVI_TRY(correct_end(r, state, &changed));
+  if (changed > small_change || r->dependent) DVI_TRY(correct_end(r, state, &changed));
+  memset(r->x, 0, (size_t)r->system->n * sizeof(double));
+  dvi__rows_pull(r->system, r->phi_q, r->mu, -1, r->x);
+  dvi__add_compensated_all(r->system->n, state->p, state->p_compensation, r->x);
+  return DVI_OK;
+}
+
+dvi_status dvi__rattle_end(dvi__rattle *r, dvi__state *state, double h, double *multipliers)
+{
+  guess_end(r, h, multipliers);
+  DVI_TRY(find_end(r, state));
+  note_end(r, h, multipliers);
+  return DVI_OK;
+}
+
+dvi_status dvi__rattle_project(dvi__rattle *r, dvi__state *state)
+{
+  memset(r->mu, 0, (size_t)r->system->row_count * sizeof(double));
+  return find_end(r, state);
 }

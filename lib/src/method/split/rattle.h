@@ -7,7 +7,9 @@
  *
  * Only lambda is implicit. Simplified Newton's method for h^2 lambda/2 keeps G M^-1 G^T of the
  * start of the step, which is the matrix of mu of the step before. A step therefore factors one
- * matrix of the size of phi. Source: Andersen 1983 (RATTLE); Hairer, Lubich and Wanner 2006, sec.
+ * matrix of the size of phi. With l(t) the multipliers of the motion and s a smooth function,
+ * lambda = l(t0) + h s and 2 mu/h = l(t1) - h s up to h^2, so both are guessed by their differences
+ * in the step before. Source: Andersen 1983 (RATTLE); Hairer, Lubich and Wanner 2006, sec.
  * VII.1.4. */
 #ifndef DVI_METHOD_SPLIT_RATTLE_H
 #define DVI_METHOD_SPLIT_RATTLE_H
@@ -15,16 +17,23 @@
 
 typedef struct dvi__rattle dvi__rattle;
 
+/* Multipliers take three numbers a row in a method's memory: the last one, the difference from the
+ * end of a step to the next start, and from a start to its end, both divided by h. */
+enum { DVI__RATTLE_MEMORY = 3 };
+
 dvi_status dvi__rattle_create(const dvi_system *system, dvi__evaluator *evaluator,
                               dvi_counters *counters, dvi__rattle **rattle);
 void dvi__rattle_destroy(dvi__rattle **rattle);
 
-/* Add - h/2 G^T lambda to the momentum of a state at (t0, q0), after its first kick. lambda [rows]
- * is a guess, and becomes the solution. DVI_NOT_CONVERGED, DVI_SINGULAR, DVI_NOT_FINITE, and those
- * of callbacks. */
-dvi_status dvi__rattle_begin(dvi__rattle *rattle, dvi__state *state, double h, double *lambda);
+/* Add - h/2 G^T lambda to the momentum of a state at (t0, q0), after its first kick. multipliers
+ * [DVI__RATTLE_MEMORY rows]. DVI_NOT_CONVERGED, DVI_SINGULAR, DVI_NOT_FINITE, and those of
+ * callbacks. */
+dvi_status dvi__rattle_begin(dvi__rattle *rattle, dvi__state *state, double h, double *multipliers);
 
 /* Subtract G^T mu from the momentum of a state at (t1, q1), after its last kick. */
-dvi_status dvi__rattle_end(dvi__rattle *rattle, dvi__state *state);
+dvi_status dvi__rattle_end(dvi__rattle *rattle, dvi__state *state, double h, double *multipliers);
+
+/* Do the same to a momentum that another move has changed. */
+dvi_status dvi__rattle_project(dvi__rattle *rattle, dvi__state *state);
 
 #endif

@@ -101,7 +101,8 @@ static dvi_status verlet_create(dvi__stepper *self)
   verlet *own = self->own = DVI_NEW(verlet, 1);
   self->order = 2;
   self->symmetric = 1;
-  self->memory_count = (size_t)self->system->n + 1 + (size_t)self->system->row_count;
+  self->memory_count = (size_t)self->system->n + 1 +
+                       DVI__RATTLE_MEMORY * (size_t)self->system->row_count;
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "verlet: no memory");
   own->change = DVI_NEW(double, 2 * (size_t)self->system->n);
   own->supply = DVI_NEW(double, 1 + (size_t)self->system->symmetry_count);
@@ -188,7 +189,7 @@ static dvi_status verlet_end(dvi__stepper *self, dvi__state *state, double h)
   const double *F;
   DVI_TRY(verlet_gradient(self, state));
   verlet_kick(self, state, 0.5 * h);
-  if (own->rattle != NULL) return dvi__rattle_end(own->rattle, state);
+  if (own->rattle != NULL) return dvi__rattle_end(own->rattle, state, h, verlet_multipliers(self));
   if (own->friction == NULL) return DVI_OK;
   DVI_TRY(dvi__friction_end(own->friction, state, &F));
   add_friction(self, state, 0.5 * h, F);
