@@ -29,7 +29,7 @@ struct dvi__rattle {
   /* For masses on the diagonal, entry e of the matrix is the sum of the products of the entries
    * `left` and `right` of G, pairs first[e] to first[e+1]-1. */
   int *first, *left, *right;
-  int knows_start;      /* the matrix and the gradients are those of t_start and q_start */
+  int knows_start; /* the matrix and the gradients are those of t_start and q_start */
   int dependent, start_dependent; /* rows depend on others, now, and in the matrix of the start */
   double softness;                /* of the matrix of dependent rows */
   double t_start;
