@@ -301,10 +301,12 @@ static dvi_status explicit_step(const move *m, double h)
   return at_ends ? meet_bath(m, 0.5 * h) : DVI_OK;
 }
 
-/* A drift on the constraints. */
+/* A drift on the constraints. The bath breaks the trend of the multipliers. */
 static dvi_status constrained_drift(const move *m, double h, double *v)
 {
   const langevin *own = m->self->own;
+  const size_t count = (size_t)m->self->system->row_count;
+  memset(m->rows.multipliers + count, 0, (DVI__RATTLE_MEMORY - 1) * count * sizeof(double));
   DVI_TRY(dvi__rattle_begin(own->rattle, m->state, h, m->rows.multipliers));
   find_velocity(m, v);
   drift(m, h, v);
