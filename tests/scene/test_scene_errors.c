@@ -305,6 +305,22 @@ START_TEST(forces_that_do_not_go_are_told)
 }
 END_TEST
 
+START_TEST(noise_that_does_not_go_is_told)
+{
+  refused(X "lagrangian: x'^2\nnoise: {seed: 1}\n" RUN,
+          ":3:8:", "noise needs a temperature and a friction");
+  refused(X "lagrangian: x'^2\nnoise: {temperature: -1, friction: 0}\n" RUN,
+          ":3:22:", "a temperature cannot be negative");
+  refused(X "lagrangian: x'^2\nnoise: {functions: 3}\n" RUN, ":3:20:", "functions is a mapping");
+  refused(X "lagrangian: x'^2\nnoise: {functions: {f: 0.3}}\n" RUN,
+          ":3:24:", "a noise function of no coordinate has no force");
+  refused(X "lagrangian: x'^2\nnoise: {functions: {f: t*x}}\n" RUN,
+          ":3:24:", "the time cannot stand in a noise function");
+  refused(X "lagrangian: x'^2\nnoise: {functions: {f: x'}}\n" RUN,
+          ":3:24:", "velocities cannot stand in a noise function");
+}
+END_TEST
+
 START_TEST(constraints_that_do_not_go_are_told)
 {
   refused(X "lagrangian: x'^2\nconstraints: {}\n" RUN, ":3:14:", "there are 0 constraints");
@@ -519,6 +535,7 @@ SUITE(scene_errors)
   tcase_add_test(tests, names_are_declared_once_and_before_their_use);
   tcase_add_test(tests, sections_that_are_missing_or_do_not_go_together_are_told);
   tcase_add_test(tests, forces_that_do_not_go_are_told);
+  tcase_add_test(tests, noise_that_does_not_go_is_told);
   tcase_add_test(tests, constraints_that_do_not_go_are_told);
   tcase_add_test(tests, what_no_system_can_be_made_of_has_its_place);
   tcase_add_test(tests, starts_are_complete_and_fit);

@@ -3,15 +3,19 @@
 #define DVI_NOISE_H
 #include <dvi/ensemble.h>
 
-/** A heat bath: friction and noise that keep the momenta at a temperature. The equations of motion
- *  are those of Langevin (Leimkuhler and Matthews 2013, eq. 1),
+/** Noise. A heat bath has friction and noise that keep the momenta at a temperature. Noise
+ *  functions h_k(q) shake the system by the forces -h_k'(q), each by a Wiener process of its own.
+ *  The equations of motion are those of Langevin (Leimkuhler and Matthews 2013, eq. 1) and of
+ *  Bou-Rabee and Owhadi (2009, eq. 1.1), in the sense of Stratonovich,
  *
- *      dq = M^-1 p dt,     dp = (F - V_q) dt - gamma p dt + sqrt(2 gamma kT) M^(1/2) dW.
+ *      dq = M^-1 p dt,
+ *      dp = (F - V_q) dt - gamma p dt + sqrt(2 gamma kT) M^(1/2) dW - sum_k h_k'(q) o dW_k.
  *
- *  The states are then distributed as exp(-H/kT), if there are no other forces and all potentials
- *  are autonomous. The noise is a function of the seed, the stream, the number of the step and the
- *  coordinate alone. The same seed and stream give the same path on any machine and with any number
- *  of threads. Each stream has its own path.
+ *  Without noise functions the states are distributed as exp(-H/kT), if there are no other forces
+ *  and all potentials are autonomous. Without friction the motion of each path is symplectic. The
+ *  noise is a function of the seed, the stream, the number of the step and the coordinate alone.
+ *  The same seed and stream give the same path on any machine and with any number of threads. Each
+ *  stream has its own path.
  *
  *  Noise stands beside a positive constant mass, and perhaps holonomic constraints.
  *  dvi_system_create refuses it beside factors, nonholonomic constraints, contacts, a vector
@@ -22,6 +26,11 @@ typedef struct dvi_noise {
   double friction;    /**< gamma, 1/time, 0 or more */
   unsigned long long seed;
   unsigned stream; /**< member k of an ensemble has stream + k (modulo 2^32) */
+  /** Noise functions h_k(q), whose value and gradient are required. Their unit is that of an
+   *  action over the root of a time. A rate, `fast` and `quadratic` have no meaning. Names and
+   *  patterns are copied. Default: none */
+  const dvi_potential *functions;
+  int function_count;
 } dvi_noise;
 
 #ifdef __cplusplus

@@ -331,7 +331,7 @@ static dvi_status symplecticity_check(const dvi_integrator *integrator, const do
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "symplecticity: h = %g, a finite step other than 0 is needed", h);
   const dvi_system *system = dvi_integrator_system(integrator);
-  if (system->terms & DVI__NOISE)
+  if (system->noise.friction > 0)
     return dvi__fail(DVI_UNSUPPORTED,
                      "symplecticity: the system declares noise, and friction shrinks the two-form");
   if (system->dynamics->on_manifold)

@@ -121,7 +121,10 @@ static uint64_t hash_noise(const dvi_system *s)
   uint64_t hash = dvi__hash(DVI__HASH_START, sizeof s->noise.temperature, &s->noise.temperature);
   hash = dvi__hash(hash, sizeof s->noise.friction, &s->noise.friction);
   hash = dvi__hash(hash, sizeof s->noise.seed, &s->noise.seed);
-  return dvi__hash(hash, sizeof s->noise.stream, &s->noise.stream);
+  hash = dvi__hash(hash, sizeof s->noise.stream, &s->noise.stream);
+  for (int k = 0; k < s->noise.function_count; k++)
+    hash = hash_text(hash, s->noise_functions[k].name);
+  return hash;
 }
 
 static uint64_t hash_invariants(const dvi_system *s)
@@ -153,7 +156,7 @@ const char *dvi__declared_difference(const dvi__declared *one, const dvi__declar
                                                         "nonholonomic constraints",
                                                         "contacts",
                                                         "damping",
-                                                        "numbers of the noise"};
+                                                        "noise"};
   for (int part = 0; part < DVI__DECLARED_PARTS; part++)
     if (one->hash[part] != other->hash[part]) return name[part];
   return NULL;

@@ -54,9 +54,10 @@ static dvi_holonomic declared_holonomic(const dvi__holonomic_term *term)
   return rows;
 }
 
-dvi_status dvi__system_without_noise(const dvi_system *whole, dvi_system **part)
+dvi_status dvi__system_without_noise(const dvi_system *whole, int more, const dvi_force *shaking,
+                                     dvi_system **part)
 {
-  const int potentials = whole->potential_count, forces = whole->force_count,
+  const int potentials = whole->potential_count, forces = whole->force_count + more,
             holonomics = whole->holonomic_count;
   dvi_potential *potential = DVI_NEW(dvi_potential, potentials);
   dvi_force *force = DVI_NEW(dvi_force, forces);
@@ -65,7 +66,8 @@ dvi_status dvi__system_without_noise(const dvi_system *whole, dvi_system **part)
   *part = NULL;
   if (potential != NULL && force != NULL && holonomic != NULL) {
     for (int k = 0; k < potentials; k++) potential[k] = declared_potential(&whole->potentials[k]);
-    for (int k = 0; k < forces; k++) force[k] = declared_force(&whole->forces[k]);
+    for (int k = 0; k < whole->force_count; k++) force[k] = declared_force(&whole->forces[k]);
+    for (int k = 0; k < more; k++) force[whole->force_count + k] = shaking[k];
     for (int k = 0; k < holonomics; k++) holonomic[k] = declared_holonomic(&whole->holonomics[k]);
     status = dvi_system_create(
         &(dvi_system_terms){.dimension = whole->n,

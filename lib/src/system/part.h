@@ -10,9 +10,10 @@
 dvi_status dvi__system_slow_part(const dvi_system *whole, dvi_system **part);
 dvi_status dvi__system_fast_part(const dvi_system *whole, dvi_system **part);
 
-/* Create the system that has all terms but the noise and the watched invariants. The caller owns
- * it. */
-dvi_status dvi__system_without_noise(const dvi_system *whole, dvi_system **part);
+/* Create the system that has all terms but the noise and the watched invariants, and more forces.
+ * The caller owns it. */
+dvi_status dvi__system_without_noise(const dvi_system *whole, int more, const dvi_force *shaking,
+                                     dvi_system **part);
 
 /* Return 1 if all potentials that are declared fast are declared quadratic, too. The second
  * function returns the name of the first one that is not, or NULL. */

@@ -196,7 +196,8 @@ struct dvi_system {
   dvi__pattern rows_q, rows_qq;
   dvi__contact_term *contacts;
   int contact_count;
-  dvi_noise noise; /* zero without DVI__NOISE */
+  dvi_noise noise;                      /* zero without DVI__NOISE */
+  dvi__potential_term *noise_functions; /* [noise.function_count] */
   dvi_symmetry *symmetries;
   int symmetry_count;
   dvi_invariant *invariants;

@@ -69,6 +69,17 @@ step: 0.02
 until: 2
 END
 
+cat >shaken.yaml <<'END'
+coordinates: {x: scalar}
+kinetic: x'^2/2
+potentials: {spring: x^2/2}
+noise: {temperature: 1, friction: 0.2, functions: {spring: 0.3*cos(x), push: 0.2*x}, seed: 7}
+initial: {x: 1}
+method: langevin:scheme=ovio,degree=2
+step: 0.1
+until: 2
+END
+
 cat >welded.yaml <<'END'
 include: {a: drop.yaml, b: air.yaml}
 constraints: {port: a_x - b_y - 0.7}
@@ -106,7 +117,7 @@ in_turn='NR == 1 { count = split($0, number) }
 if command -v "$compiler" >/dev/null &&
   ! grep -q '__[at]san_init\|__ubsan_handle' "$libraries/libdvi.so"; then
   cp "$top"/apps/scenes/*.yaml "$top"/apps/scenes/*/*.yaml .
-  for each in drop pits air rod plate welded snakeboard damped-driven kepler oscillator \
+  for each in drop pits air rod plate shaken welded snakeboard damped-driven kepler oscillator \
     driven-pendulum double-pendulum guiding-centre circle-dirac magnetic-pair elastica fpu \
     vortices free-body spherical-double-pendulum satellite; do
     compiles $each.yaml

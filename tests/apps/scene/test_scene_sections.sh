@@ -202,6 +202,7 @@ noisy noise s/temperature: 0.5/temperature: 0.4/
 noisy noise s/friction: 1/friction: 2/
 noisy noise s/seed: 7/seed: 8/
 noisy noise s/seed: 7/seed: 7, stream: 3/
+noisy noise s/seed: 7/seed: 7, functions: {shake: x}/
 magnetic lagrangian s/x\*y'/2*x*y'/
 joined joints s/ball: \(.*\)}}/distance: \1, to: [0.5, 0, 0]}}/
 joined joints s/at: \[0, 0, 0\]/at: [0.1, 0, 0]/

@@ -117,9 +117,9 @@ void dvi__bath_move(dvi__bath *b, double tau, int parts, int count, double *memo
   const double x = noise->friction * tau / parts, keep = 1 + dvi__decay(-x),
                spread = sqrt(noise->temperature * -dvi__decay(-2 * x));
   for (int part = 0; part < parts; part++) {
-    if (b->factor != NULL)
+    if (noise->friction > 0 && b->factor != NULL)
       move_mixed(b, keep, spread, memory, p, p_compensation);
-    else
+    else if (noise->friction > 0)
       move_rows(b, keep, spread, count, memory, p, p_compensation);
     for (int k = 0; k < count; k++) memory[DVI__BATH_DRAWS * count + k]++;
   }

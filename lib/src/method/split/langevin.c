@@ -7,6 +7,8 @@
  *     obabo   O(h/2) B(h/2) A(h) B(h/2) O(h/2)        Verlet's method between two O
  *     ovio    O(h/2) VI(h) O(h/2)
  *
+ * Noise functions (shaking.h) join the action of VI.
+ *
  * Averages of the stationary state have an error of order 2 with the first two, and of the order of
  * the integrator with ovio. That of positions by baoab vanishes for the harmonic oscillator, and is
  * of order 4 at large friction. Without friction baoab and obabo are Verlet's method. Sources:
@@ -25,6 +27,7 @@
 #include "core/status.h"
 #include "method/split/bath.h"
 #include "method/split/rattle.h"
+#include "method/split/shaking.h"
 #include "num/compensated.h"
 #include "num/simd/lanes.h"
 #include "system/part.h"
@@ -53,13 +56,14 @@ static const dvi__key keys[] = {
 typedef struct langevin {
   dvi__bath *bath;
   dvi__evaluator *evaluator;
-  double *numbers;     /* storage of the next arrays */
-  double *p[2];        /* [n] momenta before and after the step without noise */
-  double *v, *F;       /* [n] */
-  double *supply;      /* [1 + symmetries] */
-  dvi__rattle *rattle; /* NULL without constraints */
-  dvi_system *free;    /* the system without noise, of ovio */
-  dvi__stepper *inner; /* galerkin on it, or NULL */
+  double *numbers;       /* storage of the next arrays */
+  double *p[2];          /* [n] momenta before and after the step without noise */
+  double *v, *F;         /* [n] */
+  double *supply;        /* [1 + symmetries] */
+  dvi__rattle *rattle;   /* NULL without constraints */
+  dvi_system *free;      /* the system without noise, of ovio */
+  dvi__stepper *inner;   /* galerkin on it, or NULL */
+  dvi__shaking *shaking; /* forces of the noise functions on it, or NULL */
 } langevin;
 
 /* Behind the numbers of the bath the memory of explicit schemes holds the gradient [n] at the
@@ -105,6 +109,9 @@ static dvi_status create_explicit(dvi__stepper *self, langevin *own)
   if (self->system->row_count > 0 && self->system->force_count > 0)
     return dvi__fail(DVI_UNSUPPORTED,
                      "langevin: forces beside constraints are taken by scheme=ovio alone");
+  if (self->system->noise.function_count > 0)
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "langevin: noise functions are taken by scheme=ovio alone; choose it");
   self->order = 2;
   const size_t n = (size_t)self->system->n, m = (size_t)self->system->row_count;
   self->memory_count = DVI__BATH_MEMORY + 3 * n + 1 + (m > 0 ? n + DVI__RATTLE_MEMORY * m : 0);
@@ -113,7 +120,11 @@ static dvi_status create_explicit(dvi__stepper *self, langevin *own)
 
 static dvi_status create_inner(dvi__stepper *self, langevin *own)
 {
-  DVI_TRY(dvi__system_without_noise(self->system, &own->free));
+  const int functions = self->system->noise.function_count;
+  if (functions > 0) DVI_TRY(dvi__shaking_create(self->system, &own->shaking));
+  DVI_TRY(dvi__system_without_noise(self->system, functions,
+                                    functions > 0 ? dvi__shaking_forces(own->shaking) : NULL,
+                                    &own->free));
   dvi__stepper *inner = own->inner = DVI_NEW(dvi__stepper, 1);
   if (inner == NULL) return dvi__fail(DVI_NO_MEMORY, "langevin: no memory");
   const dvi_status status = dvi__stepper_create_inner(self, "galerkin", own->free, NULL, inner);
@@ -157,6 +168,7 @@ static void langevin_destroy(dvi__stepper *self)
   dvi__bath_destroy(&own->bath);
   dvi__rattle_destroy(&own->rattle);
   dvi_system_destroy(&own->free);
+  dvi__shaking_destroy(&own->shaking);
   dvi__release(own->numbers);
   dvi__release(own);
 }
@@ -346,6 +358,8 @@ static dvi_status inner_step(const move *m, dvi__state *state, double h)
 {
   const langevin *own = m->self->own;
   const size_t bytes = numbers_of(m) * sizeof(double);
+  if (own->shaking != NULL)
+    dvi__shaking_draw(own->shaking, h, 2 << m->self->settings.value[REFINEMENT], m->self->memory);
   DVI_TRY(meet_bath(m, 0.5 * h));
   memcpy(own->p[0], state->p, bytes);
   DVI_TRY(dvi__inner_step(m->self, inner_of(m->self), state, h));
@@ -445,7 +459,7 @@ typedef struct lanes {
 static dvi_status langevin_prepare_lanes(dvi__stepper *self, int capacity)
 {
   const langevin *own = self->own;
-  if (self->system->mass_diagonal == NULL || own->rattle != NULL ||
+  if (self->system->mass_diagonal == NULL || own->rattle != NULL || own->shaking != NULL ||
       !dvi__system_has_gradients(self->system))
     return DVI_OK;
   if (own->inner != NULL) {
@@ -523,6 +537,9 @@ static void langevin_explain(const dvi__stepper *self, dvi__text *text)
                 "averages\n",
                 parts[scheme_of(self)], noise->temperature, noise->friction, noise->seed,
                 noise->stream);
+  if (own->shaking != NULL)
+    dvi__text_add(text, "noise functions: %d; their paths converge with order 1\n",
+                  noise->function_count);
   if (own->inner != NULL) {
     dvi__text_add(text, "inner: %s\n", own->inner->specification);
     own->inner->method->explain(own->inner, text);

@@ -34,6 +34,8 @@ static dvi_status emit_motion(dvi__emitter *out, const dvi_scene *scene)
     term = dvi__constraint_term(scene), status = dvi__emit_term(out, &term);
   for (int k = 0; k < terms->potential_count && status == DVI_OK; k++)
     term = dvi__potential_term(scene, k), status = dvi__emit_term(out, &term);
+  for (int k = 0; k < scene->noise.function_count && status == DVI_OK; k++)
+    term = dvi__noise_function_term(scene, k), status = dvi__emit_term(out, &term);
   for (int k = 0; k < terms->force_count && status == DVI_OK; k++)
     term = dvi__force_term_of(scene, k), status = dvi__emit_term(out, &term);
   for (int k = 0; k < holonomic_functions(scene) && status == DVI_OK; k++)
@@ -140,12 +142,20 @@ static void emit_joints(dvi__emitter *out, const dvi_scene *scene, const char *n
 
 static void emit_noise(dvi__emitter *out, const dvi_noise *noise)
 {
+  if (noise->function_count > 0) {
+    dvi__emit(out, "  const dvi_potential noise_functions[] = {");
+    for (int k = 0; k < noise->function_count; k++)
+      dvi__emit(out, "%snoise_function_%d", k == 0 ? "" : ", ", k);
+    dvi__emit(out, "};\n");
+  }
   dvi__emit(out, "  const dvi_noise noise = {.temperature = ");
   dvi__emit_number(out, noise->temperature);
   dvi__emit(out, ", .friction = ");
   dvi__emit_number(out, noise->friction);
-  dvi__emit(out, ", .seed = %lluu, .stream = %uu};\n  terms.noise = &noise;\n", noise->seed,
-            noise->stream);
+  dvi__emit(out, ", .seed = %lluu, .stream = %uu", noise->seed, noise->stream);
+  if (noise->function_count > 0)
+    dvi__emit(out, ", .functions = noise_functions, .function_count = %d", noise->function_count);
+  dvi__emit(out, "};\n  terms.noise = &noise;\n");
 }
 
 static void emit_create(dvi__emitter *out, const dvi_scene *scene, const char *name)

@@ -37,6 +37,7 @@ dvi__emitted_term dvi__vector_term_of(const dvi_scene *scene);
 dvi__emitted_term dvi__hamiltonian_term(const dvi_scene *scene);
 dvi__emitted_term dvi__constraint_term(const dvi_scene *scene);
 dvi__emitted_term dvi__potential_term(const dvi_scene *scene, int k);
+dvi__emitted_term dvi__noise_function_term(const dvi_scene *scene, int k);
 /* Return the name of a kind of factors in C. */
 const char *dvi__factor_kind_name(dvi_factor_kind kind);
 

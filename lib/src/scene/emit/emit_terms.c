@@ -190,21 +190,31 @@ dvi__emitted_term dvi__constraint_term(const dvi_scene *scene)
                              .pattern = {&phi->qq, &phi->qp, &phi->pp, &phi->gradients}};
 }
 
-dvi__emitted_term dvi__potential_term(const dvi_scene *scene, int k)
+static dvi__emitted_term potential_term_of(const dvi_scene *scene, const dvi_potential *V,
+                                           const char *name, int k)
 {
-  const dvi_potential *V = &scene->terms.potentials[k];
   dvi__emitted_term term = {.type = "dvi_potential",
                             .shown = V->name,
                             .term = V->user,
-                            .callback_count = RATE + !scene->terms.autonomous,
+                            .callback_count = RATE + (V->rate_batch != NULL),
                             .callback = potential_callbacks,
                             .columns = scene->n,
                             .pattern_name = {"qq"},
                             .pattern = {&V->qq},
                             .fast = V->fast,
                             .quadratic = V->quadratic};
-  (void)snprintf(term.name, sizeof term.name, "potential_%d", k);
+  (void)snprintf(term.name, sizeof term.name, "%s_%d", name, k);
   return term;
+}
+
+dvi__emitted_term dvi__potential_term(const dvi_scene *scene, int k)
+{
+  return potential_term_of(scene, &scene->terms.potentials[k], "potential", k);
+}
+
+dvi__emitted_term dvi__noise_function_term(const dvi_scene *scene, int k)
+{
+  return potential_term_of(scene, &scene->noise.functions[k], "noise_function", k);
 }
 
 dvi__emitted_term dvi__holonomic_term_of(const dvi_scene *scene, int k)

@@ -76,11 +76,13 @@ static bool refuse_other_masses(dvi_scene *scene, const dvi__tree *section)
                            "noise needs a constant mass, and that of this scene is none");
 }
 
-/* Read a number that may not be negative. */
+/* Read a number that may not be negative. Noise functions alone need no bath. */
 static bool read_strength(dvi_scene *scene, const dvi__tree *section, const char *name,
                           double *number)
 {
   const dvi__tree *tree = dvi__tree_find(section, name);
+  *number = 0;
+  if (tree == NULL && dvi__tree_find(section, "functions") != NULL) return true;
   if (tree == NULL)
     return dvi__scene_refuse(
         scene, section->span,
@@ -99,16 +101,53 @@ static bool read_label(dvi_scene *scene, const dvi__tree *section, const char *n
   return tree == NULL || dvi__tree_whole(scene, tree, name, 0, number);
 }
 
+static bool read_noise_function(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree,
+                                dvi_potential *function)
+{
+  const dvi__expression *e;
+  dvi__scene_term *term;
+  dvi__kernels h = {0};
+  dvi__degree degree = {.degree = 0};
+  bool good = dvi__want_name(scene, key->text, key->span) &&
+              dvi__tree_expression(scene, tree, &e) &&
+              dvi__kernels_add(scene, DVI__MENTIONS_Q, "a noise function", e, 0, &h) &&
+              dvi__kernels_degree(scene, &h, DVI__COORDINATES, &degree);
+  if (good && degree.degree == 0)
+    good = dvi__scene_refuse(scene, e->span, "a noise function of no coordinate has no force");
+  good = good && dvi__kernels_function(scene, &h, 0, &term) &&
+         dvi__make_potential(scene, key->text, term, function);
+  function->rate_batch = NULL;
+  dvi__kernels_free(&h);
+  return good;
+}
+
+static bool read_noise_functions(dvi_scene *scene, const dvi__tree *section)
+{
+  const dvi__tree *list = dvi__tree_find(section, "functions");
+  dvi_noise *noise = &scene->noise;
+  if (list == NULL) return true;
+  if (!dvi__want_mapping(scene, list, "functions")) return false;
+  dvi_potential *functions = dvi__arena_take(&scene->arena, (size_t)list->count + 1,
+                                             sizeof *functions);
+  if (functions == NULL) return dvi__scene_no_memory(scene);
+  for (int k = 0; k < list->count; k++)
+    if (!read_noise_function(scene, list->key[k], list->child[k], &functions[k])) return false;
+  noise->function_count = list->count;
+  if (list->count > 0) noise->functions = functions;
+  return true;
+}
+
 bool dvi__read_noise(dvi_scene *scene, const dvi__tree *section)
 {
-  static const char *const known[] = {"temperature", "friction", "seed", "stream"};
+  static const char *const known[] = {"temperature", "friction", "seed", "stream", "functions"};
   dvi_noise *noise = &scene->noise;
   int seed, stream;
   if (!dvi__want_mapping(scene, section, "noise") ||
-      !dvi__want_keys(scene, section, "noise", 4, known) || !refuse_other_masses(scene, section) ||
+      !dvi__want_keys(scene, section, "noise", 5, known) || !refuse_other_masses(scene, section) ||
       !read_strength(scene, section, "temperature", &noise->temperature) ||
       !read_strength(scene, section, "friction", &noise->friction) ||
-      !read_label(scene, section, "seed", &seed) || !read_label(scene, section, "stream", &stream))
+      !read_label(scene, section, "seed", &seed) ||
+      !read_label(scene, section, "stream", &stream) || !read_noise_functions(scene, section))
     return false;
   noise->seed = (unsigned long long)seed;
   noise->stream = (unsigned)stream;

@@ -471,6 +471,8 @@ static dvi_status check_all_terms(dvi__check *c, const dvi_system *system)
   if (system->constraint != NULL) DVI_TRY(check_constraint_functions(c, system));
   for (int k = 0; k < system->potential_count; k++)
     DVI_TRY(check_potential(c, &system->potentials[k]));
+  for (int k = 0; k < system->noise.function_count; k++)
+    DVI_TRY(check_potential(c, &system->noise_functions[k]));
   for (int k = 0; k < system->force_count; k++) DVI_TRY(check_force(c, &system->forces[k]));
   if (system->vector != NULL) DVI_TRY(check_vector(c, system->vector));
   for (int k = 0; k < system->holonomic_count; k++)

@@ -40,6 +40,8 @@ static dvi_status complete_potential(const dvi_system *s, dvi__potential_term *t
 static dvi_status join_hessians(dvi_system *s, dvi__pattern *qq)
 {
   for (int k = 0; k < s->potential_count; k++) DVI_TRY(complete_potential(s, &s->potentials[k]));
+  for (int k = 0; k < s->noise.function_count; k++)
+    DVI_TRY(complete_potential(s, &s->noise_functions[k]));
   DVI_TRY(dvi__pattern_empty(s->n, qq));
   if (s->lagrangian != NULL) DVI_TRY(widen_pattern(qq, &s->lagrangian->qq));
   for (int k = 0; k < s->potential_count; k++) DVI_TRY(widen_pattern(qq, &s->potentials[k].qq));

@@ -54,13 +54,34 @@ static dvi_status copy_potential(dvi_system *s, const dvi_potential *given,
       given->hessian && given->hessian_batch, given->rate && given->rate_batch));
   DVI_TRY(dvi__check_rate(s, name, given->rate || given->rate_batch));
   DVI_TRY(check_range(given, name));
-  if (given->fast) s->terms |= DVI__FAST;
   term->callbacks = *given;
   term->name = copy_text(name);
   if (term->name == NULL) return refuse_memory_of_system();
   term->callbacks.name = term->name;
   const int left_out = given->qq.start == NULL && given->qq.row == NULL;
   return left_out ? DVI_OK : dvi__pattern_copy_symmetric(&given->qq, s->n, name, &term->qq);
+}
+
+/* Noise functions are read as potentials. Their place in dvi_noise is the user's. */
+static dvi_status copy_noise(dvi_system *s, const dvi_noise *noise)
+{
+  if (noise == NULL) return DVI_OK;
+  s->terms |= DVI__NOISE;
+  s->noise = *noise;
+  s->noise.functions = NULL;
+  s->noise.function_count = 0;
+  if (noise->function_count == 0) return DVI_OK;
+  s->noise_functions = DVI_NEW(dvi__potential_term, noise->function_count);
+  if (s->noise_functions == NULL) return refuse_memory_of_system();
+  for (int k = 0; k < noise->function_count; k++) {
+    const dvi_potential *given = &noise->functions[k];
+    if (given->gradient == NULL && given->gradient_batch == NULL)
+      return dvi__fail(DVI_BAD_ARGUMENT, "system: noise function '%s' has no gradient callback",
+                       given->name != NULL ? given->name : "potential");
+    s->noise.function_count = k + 1;
+    DVI_TRY(copy_potential(s, given, &s->noise_functions[k]));
+  }
+  return DVI_OK;
 }
 
 static dvi_status copy_potentials(dvi_system *s, const dvi_system_terms *terms)
@@ -71,6 +92,7 @@ static dvi_status copy_potentials(dvi_system *s, const dvi_system_terms *terms)
   for (int k = 0; k < terms->potential_count; k++) {
     s->potential_count = k + 1;
     DVI_TRY(copy_potential(s, &terms->potentials[k], &s->potentials[k]));
+    if (terms->potentials[k].fast) s->terms |= DVI__FAST;
   }
   return DVI_OK;
 }
@@ -243,7 +265,7 @@ static dvi_status check_noise(const dvi_system_terms *terms)
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "system: the friction of the noise is %g; 0 or more is possible",
                      noise->friction);
-  return DVI_OK;
+  return check_list("noise functions", noise->function_count, noise->functions);
 }
 
 static const dvi__dynamics *const kinds[] = {
@@ -325,10 +347,7 @@ static dvi_status system_fill(dvi_system *s, const dvi_system_terms *terms)
   DVI_TRY(copy_invariants(s, terms));
   s->damping = terms->damping;
   if (s->damping > 0) s->terms |= DVI__DAMPING;
-  if (terms->noise != NULL) {
-    s->terms |= DVI__NOISE;
-    s->noise = *terms->noise;
-  }
+  DVI_TRY(copy_noise(s, terms->noise));
   dvi__system_declared(s, &s->declared);
   return DVI_OK;
 }
@@ -372,6 +391,7 @@ void dvi_system_destroy(dvi_system **system)
   if (system == NULL || *system == NULL) return;
   dvi_system *s = *system;
   for (int k = 0; k < s->potential_count; k++) clear_potential(&s->potentials[k]);
+  for (int k = 0; k < s->noise.function_count; k++) clear_potential(&s->noise_functions[k]);
   for (int k = 0; k < s->force_count; k++) dvi__force_clear(&s->forces[k]);
   dvi__vector_clear(&s->vector);
   for (int k = 0; k < s->holonomic_count; k++) dvi__holonomic_clear(&s->holonomics[k]);
@@ -393,6 +413,7 @@ void dvi_system_destroy(dvi_system **system)
   dvi__release(s->mass_diagonal);
   dvi__release(s->mass_values);
   dvi__release(s->potentials);
+  dvi__release(s->noise_functions);
   dvi__release(s->forces);
   dvi__release(s->holonomics);
   dvi__release(s->nonholonomics);
