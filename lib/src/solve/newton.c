@@ -88,7 +88,8 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
       return DVI_OK;
     int at_floor = 0;
     if (progress != DVI__CONVERGED && report->correction >= criteria.stagnant * history.before)
-      DVI_TRY(dvi__solver_at_floor(s, x, &at_floor));
+      DVI_TRY(dvi__solver_at_floor(s, x, history.before > 0 ? report->correction / whole : 1,
+                                   &at_floor));
     if (at_floor) return DVI_OK;
     converged |= progress == DVI__CONVERGED;
     if (converged && small_ones_settled(s, x, &last_relative)) return DVI_OK;

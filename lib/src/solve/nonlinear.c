@@ -126,19 +126,35 @@ void dvi__solver_note(const dvi__solver *solver, const double *x, dvi__solve_rep
 /* Each term of a row is itself the result of a few products and sums. */
 static const double floor_of_row = 4 * DBL_EPSILON;
 
-dvi_status dvi__solver_at_floor(dvi__solver *solver, const double *x, int *at_floor)
+/* Small corrections that no longer shrink answer the roundings of some rows. Other rows, of which
+ * they solve all but this part of what they move, are done. What is left there are squares of the
+ * corrections, which may be above the row's own roundings. */
+static const double small_correction = 1e-4, settled_part = 1e-4;
+
+/* Add |J||x| to sum. */
+static void add_moved(const dvi__solver *solver, const double *x, double *sum)
 {
   const dvi__pattern *pattern = solver->equations.pattern;
-  *at_floor = 0;
-  if (solver->magnitude == NULL || !solver->in_use) return DVI_OK;
-  DVI_TRY(dvi__solver_residual(solver, x, solver->residual));
-  solver->equations.magnitudes(solver->equations.of, solver->magnitude);
   for (int j = 0; j < pattern->columns; j++)
     for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++)
-      solver->magnitude[pattern->row[e]] += fabs(solver->values[e] * x[j]);
+      sum[pattern->row[e]] += fabs(solver->values[e] * x[j]);
+}
+
+dvi_status dvi__solver_at_floor(dvi__solver *solver, const double *x, double relative,
+                                int *at_floor)
+{
+  const size_t unknowns = (size_t)solver->equations.unknowns;
+  *at_floor = 0;
+  if (solver->magnitude == NULL || !solver->in_use) return DVI_OK;
+  memset(solver->moved, 0, unknowns * sizeof(double));
+  if (relative <= small_correction) add_moved(solver, solver->residual, solver->moved);
+  DVI_TRY(dvi__solver_residual(solver, x, solver->residual));
+  solver->equations.magnitudes(solver->equations.of, solver->magnitude);
+  add_moved(solver, x, solver->magnitude);
   *at_floor = 1;
-  for (int i = 0; i < solver->equations.unknowns; i++)
-    *at_floor &= fabs(solver->residual[i]) <= floor_of_row * solver->magnitude[i];
+  for (size_t i = 0; i < unknowns; i++)
+    *at_floor &= fabs(solver->residual[i]) <=
+                 fmax(floor_of_row * solver->magnitude[i], settled_part * solver->moved[i]);
   return DVI_OK;
 }
 
@@ -151,7 +167,10 @@ static dvi_status solver_allocate(dvi__solver *solver)
   if (solver->equations.group == 0) solver->equations.group = 1;
   solver->residual = DVI_NEW(double, unknowns);
   solver->before = DVI_NEW(double, unknowns);
-  if (has_magnitudes) solver->magnitude = DVI_NEW(double, unknowns);
+  if (has_magnitudes) {
+    solver->magnitude = DVI_NEW(double, 2 * unknowns);
+    solver->moved = solver->magnitude != NULL ? solver->magnitude + unknowns : NULL;
+  }
   if (solver->residual && solver->before && (!has_magnitudes || solver->magnitude)) return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "solver: no memory for %zu unknowns", unknowns);
 }
@@ -294,7 +313,7 @@ static dvi_status solve_by_simplified_newton(dvi__solver *s, double size, int wa
     const dvi__progress progress = dvi__test_correction(report->correction, &history,
                                                         &frozen_criteria, whole, size);
     int converged = progress == DVI__CONVERGED;
-    if (progress == DVI__STALLED) DVI_TRY(dvi__solver_at_floor(s, x, &converged));
+    if (progress == DVI__STALLED) DVI_TRY(dvi__solver_at_floor(s, x, 1, &converged));
     if (converged) return DVI_OK;
     if (progress == DVI__STALLED ||
         (wary && report->iterations == 2 && dvi__misleading(&history, whole)))

@@ -12,6 +12,7 @@ struct dvi__solver {
   double *residual;    /* [unknowns] residual, then the correction */
   double *before;      /* [unknowns] first correction */
   double *magnitude;   /* [unknowns] magnitudes of what is summed in the rows, NULL if not known */
+  double *moved;       /* [unknowns] what a correction moves in the rows, in the same memory */
   double *values;      /* values of the Jacobian, NULL if not prepared, or an operator */
   int factored;        /* values are factored */
   int unsolved;        /* the last correction was not found by an iterative solver */
@@ -27,8 +28,10 @@ dvi_status dvi__solver_residual(dvi__solver *solver, const double *x, double *r)
 dvi_status dvi__solver_factor(dvi__solver *solver, const double *x);
 
 /* Find whether every row at x is 0 to a rounding of what is summed in it and of the unknowns, as
- * the Jacobian in use sees them. */
-dvi_status dvi__solver_at_floor(dvi__solver *solver, const double *x, int *at_floor);
+ * the Jacobian in use sees them. solver->residual holds the last correction, of this size relative
+ * to the unknowns, 1 for the first one. It is lost. */
+dvi_status dvi__solver_at_floor(dvi__solver *solver, const double *x, double relative,
+                                int *at_floor);
 
 /* Give the least part of the largest unknown beside which groups of unknowns are measured. Smaller
  * groups may be noise. */
