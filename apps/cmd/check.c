@@ -48,7 +48,7 @@ static void print_derivatives(double worst, int at_kink)
     (void)printf("derivatives: within %.1e of differences at %d points near the start", worst,
                  (int)POINTS);
   else
-    (void)printf("derivatives: differences at %d points near the start tell nothing against them",
+    (void)printf("derivatives: as right as differences at %d points near the start can tell",
                  (int)POINTS);
   if (at_kink > 0) (void)printf("; left out: %d at a kink, which differences go across", at_kink);
   (void)putchar('\n');

@@ -44,11 +44,11 @@ static int place_momenta(const run_request *request, problem *scene)
 {
   if (request->project && !has_constraint(scene))
     return usage_error("run: --project is for problems with a constraint, p = alpha(q), phi(q,p) = "
-                       "0 or phi(t,q) = 0; %s has none",
+                       "0, phi(t,q) = 0 or A v + a = 0; %s has none",
                        scene->name);
   if (request->momenta == NULL || parse_momenta(request->momenta, scene->nv, scene->p)) return DONE;
-  return usage_error("run: --momenta wants %d finite numbers with commas between them, not '%s'",
-                     scene->nv, request->momenta);
+  return usage_error("run: --momenta wants %d finite number%s, not '%s'", scene->nv,
+                     scene->nv == 1 ? "" : "s with commas between them", request->momenta);
 }
 
 static int check_events(const run_request *request, const problem *scene)
@@ -58,6 +58,15 @@ static int check_events(const run_request *request, const problem *scene)
   return usage_error("run: --events: %s has none; a scene declares them in its sections events and "
                      "contacts",
                      scene->name);
+}
+
+/* Hint at --project after a start was refused, if the projected one is not. */
+static void hint_at_projection(const problem *scene, dvi_integrator *integrator)
+{
+  const dvi_start_options options = {.project = 1};
+  if (has_constraint(scene) &&
+      dvi_integrator_start_with(integrator, 0.0, scene->q, scene->p, &options) == DVI_OK)
+    complain("run: --project moves the start onto the constraints");
 }
 
 static bool place_start(const run_request *request, const problem *scene,
@@ -70,6 +79,7 @@ static bool place_start(const run_request *request, const problem *scene,
                                                             &options);
   if (status == DVI_OK) return true;
   (void)library_error(status);
+  if (request->resume == NULL && !request->project) hint_at_projection(scene, integrator);
   return false;
 }
 
@@ -237,6 +247,12 @@ static const char *const details[] = {
     "back as it was. The first row is the start (with --resume: the checkpoint), the last one is "
     "the end, wherever\n"
     "--every puts the rows between.\n",
+    "Of scenes a rotation R has columns R_11 .. R_33, omega_R_x and p_R_x. Forces add "
+    "energy_balance, constraints the largest of\n"
+    "them, constraint, contacts the smallest gap, gap, and a heat bath its temperature. The force "
+    "of a constraint, lambda_NAME,\n"
+    "is shown if --columns or the scene names it; that of a joint has a number for each row, "
+    "lambda_NAME_1.\n",
     "What no column shows is not evaluated for the rows. The energy of a system that does not "
     "depend on time is looked at all the\n"
     "same, in the first 32 steps, in every 61st later on, and at the end; an error above 1 % of "
@@ -270,7 +286,7 @@ static const char *const details[] = {
     "and their velocities (v_), on\n"
     "the step's path; how often each was found is told at the end. Hits of contacts are listed "
     "there, too, by the contact's name,\n"
-    "with the velocities before them.\n",
+    "with the velocities before them; moreau-jean finds no hits, and lists none.\n",
     "An alarm changes nothing in the run: standard error says at the end when the invariant's size "
     "first passed the bound,\n"
     "and how large it was at most; the exit code is 0.\n",

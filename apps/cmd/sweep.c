@@ -191,12 +191,12 @@ static const char *const details[] = {
     "Columns: the parameters; status, DVI_OK, 'event NAME' where an event of the scene ended the "
     "run, why it failed, or refused\n"
     "where the problem cannot be made; steps; t, the coordinates, the momenta and the invariants "
-    "at the end, or where the run "
-    "ended; energy_error, the largest change\n"
-    "of the energy since the start. 17 digits; cells without a number are empty. Rows stand in the "
-    "order of the points and\n"
-    "do not depend on the number of threads. If points failed, all others are there, and the exit "
-    "code is 1.\n",
+    "at the end, or where the run\n"
+    "ended; energy_error, the largest change of the energy since the start. 17 digits; cells "
+    "without a number are empty. Rows\n"
+    "stand in the order of the points and do not depend on the number of threads. If points "
+    "failed, all others are there, and\n"
+    "the exit code is 1.\n",
     "Rows are kept in FILE.csv.part as they are found. A sweep that was interrupted, however it "
     "was, goes on from there when\n"
     "the same command is given again; with another scene, method, step, end or values it is "

@@ -43,6 +43,7 @@ typedef struct verifier {
   double refinement;        /* refinement of the current level */
   long steps;
   bool by_event; /* an event ended a run */
+  bool refused;  /* the witness does not take the system */
   int code;      /* exit code of the level that failed */
 } verifier;
 
@@ -166,6 +167,7 @@ static dvi_status witness_run(void *user, double refinement, study_level *level)
   memcpy(p, dvi_integrator_p(v->integrator), (size_t)nv * sizeof *p);
   dvi_status status = dvi_reference_solve(v->scene->system, 0.0, v->request->t_end, q, p, &options,
                                           &report);
+  v->refused = status == DVI_UNSUPPORTED;
   if (status != DVI_OK) return status;
   if (!(v->witness_tolerance > 0.0)) v->witness_tolerance = report.relative_tolerance;
   status = dvi_integrator_start_with(v->integrator, v->request->t_end, q, p,
@@ -189,8 +191,10 @@ static int verify_examine(verifier *v)
   trust_estimate(&v->trust);
   const bool too_large = v->scene->nq > WITNESS_COORDINATES;
   if (!v->by_event && !too_large) trust_hear(&v->trust, &witness);
-  const verify_verdict verdict = {
-      .trust = v->trust.verdict, .by_event = v->by_event, .too_large = too_large};
+  const verify_verdict verdict = {.trust = v->trust.verdict,
+                                  .by_event = v->by_event,
+                                  .too_large = too_large,
+                                  .refused = v->refused};
   const trust_numbers numbers = {.count = v->trust.count,
                                  .value = v->trust.number[0],
                                  .size = v->trust.size,

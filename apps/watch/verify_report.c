@@ -73,6 +73,8 @@ static void print_witness(const run_request *request, const verify_verdict *verd
     (void)printf(
         "no second method: IDA is asked for %d coordinates at most, and may take long for more\n",
         WITNESS_COORDINATES);
+  else if (verdict->refused)
+    (void)printf("no second method: IDA does not take such a system\n");
   else if (!verdict->trust.witness)
     (void)printf("no second method: IDA did not come to t = %g in the time that it is given\n",
                  request->t_end);

@@ -19,6 +19,7 @@ typedef struct verify_verdict {
   trust_verdict trust; /**< the witness is the other method */
   bool by_event;       /**< an event ended a run */
   bool too_large;      /**< the system is too large for the other method */
+  bool refused;        /**< the other method does not take the system */
 } verify_verdict;
 
 /** Print the table, or write it as CSV, and the verdict. Returns DONE, CHECK_FAILED for fewer

@@ -34,6 +34,7 @@ expect 0 'momenta' run kepler --method verlet --momenta 0,1 --t-end 0
 says out '^0,.*,.*,0,1,' 'the momenta are the start'
 expect 1 'off the constraint' run lotka-volterra --method vprk --momenta 1,2 --t-end 1
 says err 'p\[1\] is 2, but the one-form has alpha = 1 there, 1 away' 'the distance is said'
+says err '^dvi: run: --project moves the start onto the constraints$' 'the remedy is named'
 expect 0 'on the constraint' run lotka-volterra --method vprk --t-end 1
 cp out constrained.csv
 expect 0 'projected' run lotka-volterra --method vprk --momenta 1,2 --project --t-end 1

@@ -187,6 +187,19 @@ expect 0 'a large system' run fpu --set ell=1000 --method verlet --h 0.001 --t-e
   --columns energy
 says out '^no second method: IDA is asked for 500 coordinates at most' 'IDA is left out'
 
+# IDA does not take contacts.
+cat >ball.yaml <<'END'
+coordinates: {y: scalar}
+lagrangian: y'^2/2 - 9.81*y
+contacts: {floor: {gap: y, restitution: 0.8}}
+initial: {y: 1}
+method: verlet
+step: 0.01
+until: 1
+END
+expect 0 'contacts' run ball.yaml --verify
+says out '^no second method: IDA does not take such a system$' 'IDA refuses contacts'
+
 # A step of 1e-7 is no advice; the method that is advised has the digits.
 expect 3 'far too few digits' run kepler --method verlet --h 0.01 --t-end 1 --verify --digits 12
 small='--h [0-9.]*e-0[78] would do, at [0-9]* times the cost'

@@ -105,7 +105,7 @@ START_TEST(bodies_that_are_none_are_refused)
   joint.body[1] = 0;
   check_refused(&joint, DVI_BAD_ARGUMENT, "joins body 0 to itself");
   joint.body[0] = joint.body[1] = DVI_GROUND;
-  check_refused(&joint, DVI_BAD_ARGUMENT, "to itself");
+  check_refused(&joint, DVI_BAD_ARGUMENT, "joins the ground to itself");
   joint = example(DVI_HINGE);
   joint.body[1] = 2;
   check_refused(&joint, DVI_BAD_ARGUMENT, "a point, which has no axes");

@@ -287,7 +287,7 @@ START_TEST(forces_that_do_not_go_are_told)
   refused(X "lagrangian: x'^2\nforces: 1\n" RUN, ":3:9:", "a force is a mapping");
   refused(X "lagrangian: x'^2\ndissipation: x\n" RUN, ":3:14:", "there is no velocity in it");
   refused(X "hamiltonian: p(x)^2\nforces: {x: 1}\n" RUN,
-          ":3:9:", "beside a Hamiltonian there is no forces");
+          ":3:9:", "beside a Hamiltonian there is no force;");
   refused("coordinates: {x: scalar, y: scalar}\none_form: {x: y}\nhamiltonian: x\n"
           "dissipation: x'^2\ninitial: {x: 1, y: 1}\nstep: 1\nuntil: 1\n",
           ":4:14:", "beside a one-form there is no dissipation");

@@ -222,6 +222,8 @@ static dvi_status check_joint(const char *name, const dvi_joint *given)
   for (int k = 0; k < 4; k++)
     if (dvi__first_not_finite(3, numbers[k]) >= 0)
       return dvi__fail(DVI_NOT_FINITE, "joint '%s': a point or an axis is not finite", name);
+  if (given->body[0] == DVI_GROUND && given->body[1] == DVI_GROUND)
+    return dvi__fail(DVI_BAD_ARGUMENT, "joint '%s' joins the ground to itself", name);
   if (given->body[0] == given->body[1])
     return dvi__fail(DVI_BAD_ARGUMENT, "joint '%s' joins body %d to itself", name, given->body[0]);
   double way = 0;

@@ -22,7 +22,7 @@ static dvi_force *next_force(dvi_scene *scene)
 bool dvi__read_forces(dvi_scene *scene, const dvi__tree *section)
 {
   dvi__scene_term *term;
-  if (!refuse_other_motions(scene, section, "forces")) return false;
+  if (!refuse_other_motions(scene, section, "force")) return false;
   if (!dvi__field_read(scene, section,
                        DVI__MENTIONS_V | DVI__MENTIONS_T | DVI__MENTIONS_U | DVI__OF_STATE,
                        "a force", &term))

@@ -50,7 +50,7 @@ bool dvi__refuse_factors(dvi_scene *scene, const dvi__tree *section, const char 
 {
   return !dvi__has_factors(scene) ||
          dvi__scene_refuse(scene, section->span,
-                           "beside %s there are no rotations, motions, directions and angles; they "
-                           "go with lagrangian, or kinetic and potentials",
+                           "beside %s there are no rotations, motions, directions and angles; "
+                           "choose numbers and vectors",
                            name);
 }
