@@ -293,6 +293,8 @@ START_TEST(forces_that_do_not_go_are_told)
           ":4:14:", "beside a one-form there is no dissipation");
   refused(X "lagrangian: x'^2\ndamping: -1\n" RUN,
           ":3:10:", "damping must not be negative, and is -1");
+  check_refused(X "lagrangian: x'^2\ndamping: 1\nconstraints: {a: x}\n" RUN, DVI_UNSUPPORTED,
+                ":3:10:", "damping does not stand beside holonomic constraints");
   refused("coordinates: {x: scalar, y: scalar}\none_form: {x: y}\nhamiltonian: x^2 + y^2\n"
           "damping: 1\ninitial: {x: 1, y: 1}\nstep: 1\nuntil: 1\n",
           ":4:10:", "beside a one-form there is no damping");

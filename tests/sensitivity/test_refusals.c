@@ -44,11 +44,13 @@ END_TEST
 START_TEST(other_terms_are_refused)
 {
   static const struct {
-    const char *problem, *method;
-  } others[] = {{"lotka-volterra", "vprk"}, {"free-body", "lie-galerkin"}};
-  for (int k = 0; k < 2; k++) {
+    const char *problem, *method, *term;
+  } others[] = {{"lotka-volterra", "vprk", "declares a one-form"},
+                {"free-body", "lie-galerkin", "declares bodies, rotations, directions or angles"},
+                {"slider-crank", "galerkin", "declares holonomic constraints"}};
+  for (int k = 0; k < 3; k++) {
     problem *model = create_problem(others[k].problem, NULL);
-    refused(model->system, others[k].method, NULL, DVI_UNSUPPORTED, "another term");
+    refused(model->system, others[k].method, NULL, DVI_UNSUPPORTED, others[k].term);
     problem_destroy(&model);
   }
 }

@@ -11,6 +11,7 @@
 #include "core/status.h"
 #include "method/element/element_step.h"
 #include "num/finite.h"
+#include "system/term_name.h"
 
 struct dvi_control {
   dvi__doubled *doubled;
@@ -48,7 +49,8 @@ static dvi_status check_arguments(const dvi_system *system, const char *method,
   if ((system->terms & ~taken) != 0)
     return dvi__fail(DVI_UNSUPPORTED,
                      "control: control is of constant masses and general Lagrangians in R^n with "
-                     "potentials and forces; the system declares another term");
+                     "potentials and forces; the system declares %s",
+                     dvi__term_name(system->terms & ~taken));
   if (o->free_span && !system->autonomous)
     return dvi__fail(DVI_UNSUPPORTED,
                      "control: a free span needs a system that is declared autonomous");

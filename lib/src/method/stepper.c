@@ -8,31 +8,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "method/damping.h"
-
-static const char *term_name(unsigned term)
-{
-  switch (term) {
-  case DVI__CONSTANT_MASS: return "a constant mass";
-  case DVI__LAGRANGIAN: return "a general Lagrangian";
-  case DVI__ONE_FORM: return "a one-form";
-  case DVI__FACTORS: return "factors of its configuration space";
-  case DVI__CONSTRAINED_HAMILTONIAN: return "a Hamiltonian with constraints";
-  case DVI__ROTATIONS: return "rotations";
-  case DVI__DIRECTIONS: return "directions (S^2)";
-  case DVI__HAMILTONIAN: return "a Hamiltonian without constraints";
-  case DVI__FORCE: return "forces without a potential";
-  case DVI__FRICTION: return "forces without a potential that depend on the velocity";
-  case DVI__HOLONOMIC: return "holonomic constraints phi(t,q) = 0";
-  case DVI__VECTOR_POTENTIAL: return "a vector potential A(t,q).v";
-  case DVI__NONHOLONOMIC: return "nonholonomic constraints A v + a = 0";
-  case DVI__CONTACT: return "contacts phi(t,q) >= 0";
-  case DVI__DAMPING: return "damping, uniform friction -gamma p";
-  case DVI__RUBBING: return "contacts with friction";
-  case DVI__NOISE: return "noise";
-  case DVI__FAST: return "a fast potential (one that is declared `fast`)";
-  default: return "potentials";
-  }
-}
+#include "system/term_name.h"
 
 /* Return the terms that the system declares and the method cannot use. */
 static unsigned surplus(const dvi__method *method, const dvi_system *system)
@@ -80,7 +56,7 @@ static void name_dynamics(const dvi__method *method, dvi__text *names)
 {
   for (unsigned term = 1; term <= DVI__LAST_TERM; term <<= 1)
     if (method->uses & term & DVI__DYNAMICS)
-      dvi__text_add(names, "%s%s", names->length > 0 ? " or " : "", term_name(term));
+      dvi__text_add(names, "%s%s", names->length > 0 ? " or " : "", dvi__term_name(term));
 }
 
 static dvi_status refuse_canonical(const dvi__method *method, const char *others)
@@ -88,7 +64,7 @@ static dvi_status refuse_canonical(const dvi__method *method, const char *others
   char dynamics[DVI__SENTENCE_SIZE] = "";
   name_dynamics(method, &(dvi__text){dynamics, sizeof dynamics, 0});
   return dvi__fail(DVI_UNSUPPORTED, "%s: the system declares %s, and this method needs %s; %s",
-                   method->name, term_name(DVI__HAMILTONIAN), dynamics, others);
+                   method->name, dvi__term_name(DVI__HAMILTONIAN), dynamics, others);
 }
 
 static dvi_status stepper_check_terms(const dvi__method *method, const dvi_system *system)
@@ -101,12 +77,12 @@ static dvi_status stepper_check_terms(const dvi__method *method, const dvi_syste
     if (surplus(method, system) & term)
       return dvi__fail(DVI_UNSUPPORTED,
                        "%s: the system declares %s, which this method cannot use; %s", method->name,
-                       term_name(term), names);
+                       dvi__term_name(term), names);
   for (unsigned term = 1; term <= DVI__LAST_TERM; term <<= 1)
     if (method->needs & term & ~system->terms)
       return dvi__fail(DVI_UNSUPPORTED,
                        "%s: the method needs %s, which the system does not declare; %s",
-                       method->name, term_name(term), names);
+                       method->name, dvi__term_name(term), names);
   return DVI_OK;
 }
 

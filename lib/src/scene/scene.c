@@ -42,6 +42,15 @@ static void find_time(dvi_scene *scene)
     ((dvi_potential *)scene->terms.potentials)[k].rate_batch = NULL;
 }
 
+/* Return the section that a system is refused for. Of all terms only damping may be declared where
+ * its own section does not refuse it. */
+static const dvi__tree *section_to_blame(const dvi_scene *scene, dvi_status status)
+{
+  return status == DVI_UNSUPPORTED && scene->terms.damping > 0
+             ? dvi__tree_find(scene->tree, "damping")
+             : dvi__motion_section(scene);
+}
+
 static bool scene_make_system(dvi_scene *scene)
 {
   find_time(scene);
@@ -53,7 +62,7 @@ static bool scene_make_system(dvi_scene *scene)
   if (status == DVI_BAD_ARGUMENT && dvi__has_factors(scene) && !dvi__inertias_are_of_bodies(scene))
     return false;
   return status == DVI_OK ||
-         dvi__complain(scene->complaint, status, dvi__motion_section(scene)->span, "%s",
+         dvi__complain(scene->complaint, status, section_to_blame(scene, status)->span, "%s",
                        dvi_last_error());
 }
 

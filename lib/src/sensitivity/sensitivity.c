@@ -7,6 +7,7 @@
 #include "method/element/element_step.h"
 #include "num/finite.h"
 #include "sensitivity/sensitivity_struct.h"
+#include "system/term_name.h"
 
 /* ---- create ---- */
 
@@ -17,8 +18,8 @@ static dvi_status check_system(const dvi_system *system)
   if ((system->terms & ~taken) == 0) return DVI_OK;
   return dvi__fail(DVI_UNSUPPORTED,
                    "sensitivity: derivatives of a run are for constant masses and general "
-                   "Lagrangians in R^n with potentials and forces; the system declares another "
-                   "term");
+                   "Lagrangians in R^n with potentials and forces; the system declares %s",
+                   dvi__term_name(system->terms & ~taken));
 }
 
 /* Give the element whose map is that of the method. A step of verlet is one of trapezoidal. */

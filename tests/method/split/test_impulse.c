@@ -118,7 +118,7 @@ static const struct {
     {"magnetic-pair",
      "the system declares a Hamiltonian with constraints, which this method cannot use"},
     {"pendulum-3d",
-     "the system declares factors of its configuration space, which this method cannot use"},
+     "factors of its configuration space, which this method cannot use"},
 };
 enum { REFUSED = sizeof refused / sizeof *refused };
 
