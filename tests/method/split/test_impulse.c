@@ -117,8 +117,7 @@ static const struct {
     {"vortices", "the system declares a one-form, which this method cannot use"},
     {"magnetic-pair",
      "the system declares a Hamiltonian with constraints, which this method cannot use"},
-    {"pendulum-3d",
-     "factors of its configuration space, which this method cannot use"},
+    {"pendulum-3d", "factors of its configuration space, which this method cannot use"},
 };
 enum { REFUSED = sizeof refused / sizeof *refused };
 
