@@ -49,6 +49,11 @@ static void columns_list(run_columns *c, const dvi_integrator *integrator)
   reaction_names(scene, c->reaction_name);
   for (int i = 0; i < reaction_count(scene); i++)
     columns_add(c, c->reaction_name[i], COLUMN_REACTION, i);
+  for (int k = 0; k < scene->terms->contact_count; k++) {
+    if (!dvi_integrator_may_hold(integrator, k)) continue;
+    force_name(scene, k, c->force_name[k]);
+    columns_add(c, c->force_name[k], COLUMN_FORCE, k);
+  }
 }
 
 /* Refuse a method's own column with the name of one of the problem's. */
@@ -138,7 +143,8 @@ static bool columns_allocate(run_columns *c)
   const size_t nq = (size_t)c->scene->nq, nv = (size_t)c->scene->nv;
   const size_t invariants = (size_t)dvi_system_invariant_count(c->scene->system),
                rows = (size_t)reaction_count(c->scene),
-               most = nq + 2 * nv + 2 * invariants + rows + COLUMN_KINDS;
+               contacts = (size_t)c->scene->terms->contact_count,
+               most = nq + 2 * nv + 2 * invariants + rows + contacts + COLUMN_KINDS;
   c->all = calloc(most, sizeof *c->all);
   c->column = calloc(most, sizeof *c->column);
   c->shown = calloc(most, sizeof *c->shown);
@@ -149,9 +155,12 @@ static bool columns_allocate(run_columns *c)
   c->room = calloc(nq + nv, sizeof *c->room);
   c->reaction = calloc(rows + 1, sizeof *c->reaction);
   c->reaction_name = calloc(rows + 1, sizeof *c->reaction_name);
-  return c->reaction != NULL && c->reaction_name != NULL && c->all != NULL && c->column != NULL &&
-         c->shown != NULL && c->invariant != NULL && c->balance != NULL &&
-         c->balance_name != NULL && c->velocity != NULL && c->room != NULL;
+  c->force = calloc(contacts + 1, sizeof *c->force);
+  c->force_name = calloc(contacts + 1, sizeof *c->force_name);
+  return c->force != NULL && c->force_name != NULL && c->reaction != NULL &&
+         c->reaction_name != NULL && c->all != NULL && c->column != NULL && c->shown != NULL &&
+         c->invariant != NULL && c->balance != NULL && c->balance_name != NULL &&
+         c->velocity != NULL && c->room != NULL;
 }
 
 int columns_choose(run_columns *c, const problem *scene, const dvi_integrator *integrator,
@@ -165,7 +174,7 @@ int columns_choose(run_columns *c, const problem *scene, const dvi_integrator *i
   if (asked != NULL) return columns_show_asked(c, dvi_integrator_method(integrator), asked);
   if (scene->column != NULL) return columns_show_wanted(c, dvi_integrator_method(integrator));
   for (int k = 0; k < c->there; k++)
-    if (c->all[k].kind != COLUMN_REACTION) columns_show(c, k);
+    if (c->all[k].kind != COLUMN_REACTION && c->all[k].kind != COLUMN_FORCE) columns_show(c, k);
   return DONE;
 }
 
@@ -181,6 +190,8 @@ void columns_clear(run_columns *c)
   free(c->room);
   free(c->reaction);
   free(c->reaction_name);
+  free(c->force);
+  free(c->force_name);
   *c = (run_columns){.count = 0};
 }
 
@@ -207,6 +218,8 @@ static dvi_status columns_evaluate(run_columns *c, dvi_integrator *integrator)
       status = dvi_integrator_invariant(integrator, i, &c->invariant[i]);
     if (c->column[k].kind == COLUMN_BALANCE)
       status = dvi_integrator_balance(integrator, i, &c->balance[i]);
+    if (c->column[k].kind == COLUMN_FORCE)
+      status = dvi_integrator_contact_force(integrator, i, &c->force[i]);
   }
   if (status == DVI_OK && c->shows[COLUMN_VELOCITY])
     status = velocity_near(c->scene, t, q, p, c->room, c->velocity);
@@ -247,6 +260,7 @@ double columns_number(const run_columns *c, const dvi_integrator *integrator, in
   case COLUMN_DISTANCE: return dvi_system_distance(c->scene->system, dvi_integrator_q(integrator));
   case COLUMN_CONSTRAINT: return c->constraint;
   case COLUMN_REACTION: return c->reaction[column->index];
+  case COLUMN_FORCE: return c->force[column->index];
   case COLUMN_GAP: return c->gap;
   case COLUMN_TEMPERATURE: return c->temperature;
   default: return dvi_integrator_jump(integrator, NULL);

@@ -25,13 +25,14 @@ typedef enum column_kind {
   COLUMN_TEMPERATURE, /**< kinetic temperature, with noise */
   COLUMN_JUMP,        /**< jump, of methods whose trajectories jump */
   COLUMN_REACTION,    /**< multiplier of a holonomic constraint, shown only if it is asked for */
+  COLUMN_FORCE,       /**< force of a contact that may be held, likewise */
   COLUMN_KINDS
 } column_kind;
 
 typedef struct shown_column {
   const char *name;
   column_kind kind;
-  int index; /**< index in q, v, p, the invariants or the balances */
+  int index; /**< index in q, v, p, the invariants, the balances or the contacts */
 } shown_column;
 
 typedef struct run_columns {
@@ -47,6 +48,8 @@ typedef struct run_columns {
   double constraint, gap, temperature;
   double *reaction; /**< [rows] multipliers, set likewise, and the names of their columns */
   char (*reaction_name)[REACTION_NAME_SIZE];
+  double *force; /**< [contacts] likewise */
+  char (*force_name)[REACTION_NAME_SIZE];
   bool shows[COLUMN_KINDS];
 } run_columns;
 

@@ -44,6 +44,12 @@ static void name_rows(const named_rows *rows, char (*name)[REACTION_NAME_SIZE])
   }
 }
 
+void force_name(const problem *scene, int contact, char name[REACTION_NAME_SIZE])
+{
+  (void)snprintf(name, REACTION_NAME_SIZE, "force_%s",
+                 dvi_system_contact_name(scene->system, contact));
+}
+
 void reaction_names(const problem *scene, char (*name)[REACTION_NAME_SIZE])
 {
   for (int k = 0; k < scene->terms->holonomic_count; k++) {

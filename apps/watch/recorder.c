@@ -17,6 +17,8 @@
 #include "cli/signals.h"
 #include "plot/trace.h"
 
+enum { NAME_SIZE = 256 };
+
 /* The state of a run. */
 typedef struct recorder {
   const run_request *request;
@@ -24,7 +26,7 @@ typedef struct recorder {
   whole_file out, events_out;
   run_columns columns;
   event_list events;
-  long hits;
+  long hits[3]; /* hits, holds and releases of contacts */
   alarm_list alarms;
   run_trace trace;
   progress_line progress;
@@ -70,15 +72,18 @@ static int recorder_write_event(int index, double t, const double *q, const doub
 /* Write the hits of the last step, with the velocities before them. */
 static bool recorder_write_hits(recorder *r, dvi_integrator *integrator)
 {
+  static const char *const suffix[] = {"", "_held", "_released"};
   const int count = dvi_integrator_hit_count(integrator);
-  r->hits += count;
+  for (int i = 0; i < count; i++) r->hits[dvi_integrator_hit(integrator, i).kind]++;
   if (count == 0 || r->events_out.stream == NULL) return true;
   double *q = calloc(2 * (size_t)r->scene->nq, sizeof *q), *v = q + r->scene->nq;
   bool good = q != NULL;
   for (int i = 0; i < count && good; i++) {
     const dvi_hit hit = dvi_integrator_hit(integrator, i);
     good = dvi_integrator_interpolate(integrator, hit.t, q, v) == DVI_OK;
-    const char *name = dvi_system_contact_name(r->scene->system, hit.contact);
+    char name[NAME_SIZE];
+    (void)snprintf(name, sizeof name, "%s%s",
+                   dvi_system_contact_name(r->scene->system, hit.contact), suffix[hit.kind]);
     if (good) events_row(r->scene, name, hit.t, q, v, r->events_out.stream);
   }
   free(q);
@@ -87,7 +92,12 @@ static bool recorder_write_hits(recorder *r, dvi_integrator *integrator)
 
 static void tell_hits(const recorder *r)
 {
-  if (r->hits > 0) complain("run: contacts: %ld hit%s", r->hits, r->hits == 1 ? "" : "s");
+  const long *n = r->hits;
+  if (n[DVI_HOLD] > 0)
+    complain("run: contacts: %ld hit%s, %ld hold%s, %ld release%s", n[0], n[0] == 1 ? "" : "s",
+             n[1], n[1] == 1 ? "" : "s", n[2], n[2] == 1 ? "" : "s");
+  else if (n[DVI_HIT] > 0)
+    complain("run: contacts: %ld hit%s", n[0], n[0] == 1 ? "" : "s");
 }
 
 static bool row_is_due(const recorder *r)

@@ -258,6 +258,11 @@ START_TEST(sections_that_are_missing_or_do_not_go_together_are_told)
           ":3:50:", "the friction is -1");
   refused(X "lagrangian: x'^2\ncontacts: {f: {gap: x, restitution: 1, friction: 1}}\n" RUN,
           ":3:50:", "friction needs 'tangent'");
+  refused(X "lagrangian: x'^2\ncontacts: {f: {gap: x, restitution: 1, hold: 1}}\n" RUN,
+          ":3:46:", "hold is no or yes");
+  refused(X "lagrangian: x'^2\ncontacts: {f: {gap: x, restitution: 1, hold: no}}\n" RUN
+            "report: {columns: [force_f]}\n",
+          ":", "there is no column 'force_f'");
   refused(X "lagrangian: x'^2\n"
             "contacts: {f: {gap: x, restitution: 1, friction: 1, tangent: x}}\n" RUN,
           ":3:62:", "a tangent is linear in the velocities");

@@ -51,6 +51,7 @@ static const char *const sections[] = {
     "noise: {temperature: 0.5, friction: 1}\n",
     "nonholonomic: {blade: sin(a)*x' - cos(a)*y'}\n",
     "contacts: {wall: {gap: 5 - x, restitution: 1}}\n",
+    "contacts: {wall: {gap: 5 - x, restitution: 0.5, hold: yes}}\n",
     "contacts: {wall: {gap: 5 - x, friction: 0.3, tangent: y}}\n",
 };
 enum { SECTIONS = sizeof sections / sizeof *sections };

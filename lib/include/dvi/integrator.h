@@ -231,9 +231,10 @@ dvi_status dvi_integrator_start_velocity(dvi_integrator *integrator, double t, c
  *                              rank of holonomic constraints drops within the step
  *  @retval DVI_UNSUPPORTED     dvrk and its kin: a component of the one-form that seemed constant
  *                              at create is not
- *  @retval DVI_UNSUPPORTED     hits of a contact accumulate, or a contact stays closed, or two
- *                              contacts close at one time and push against each other
- *                              (docs/mechanics/contacts.md). The sentence names them and the time
+ *  @retval DVI_UNSUPPORTED     hits of a contact accumulate, or a contact stays closed, without
+ *                              `hold`; or two contacts close at one time and push against each
+ *                              other (docs/mechanics/contacts.md). The sentence names them and the
+ *                              time
  *  @retval DVI_NO_MEMORY       KLU could not allocate memory
  *  @retval DVI_SOLVER_FAILED   KINSOL refuses the equations */
 dvi_status dvi_integrator_step(dvi_integrator *integrator, double h);

@@ -11,8 +11,10 @@
  *     pacing       kind of steps in another time, density, energy of the start, monitor
  *     state        q, p and their compensations, now and before the last step
  *     memory       the method's numbers from step to step
- *     balances     invariants at the start and what forces supplied, if balances are kept */
+ *     balances     invariants at the start and what forces supplied, if balances are kept
+ *     held         contact that is held closed, or -1, if any may be */
 #include <inttypes.h>
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -21,7 +23,8 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "integrator/fingerprint.h"
-#include "integrator/integrator_struct.h"
+#include "integrator/held.h"
+#include "integrator/hits.h"
 #include "march/sections.h"
 #include "march/whole_file.h"
 #include "num/finite.h"
@@ -135,6 +138,11 @@ static dvi_status checkpoint_pack(const dvi_integrator *I, dvi__sections_writer 
     dvi__section_put(w, I->at_start, I->balances * sizeof(double));
     dvi__section_put(w, I->now.supplied, 2 * I->balances * sizeof(double));
     dvi__section_put(w, I->last.supplied, 2 * I->balances * sizeof(double));
+  }
+  if (dvi__bodies_may_hold(I)) {
+    const int64_t held = dvi__bodies_held(I);
+    dvi__section_open(w, "held", SECTION_VERSION);
+    dvi__section_put(w, &held, sizeof held);
   }
   return dvi__sections_finish(w);
 }
@@ -309,15 +317,29 @@ static dvi_status find_numbers(const checkpoint *c, const char *name, size_t cou
   return DVI_OK;
 }
 
+/* Take the equations with the contact that the checkpoint holds. */
+static dvi_status choose_held(dvi_integrator *I, const checkpoint *c)
+{
+  int64_t held;
+  if (!dvi__bodies_may_hold(I)) return DVI_OK;
+  DVI_TRY(find_fixed(&c->sections, "held", SECTION_VERSION, &held, sizeof held));
+  if (held < -1 || held > INT_MAX || (held >= 0 && !dvi_integrator_may_hold(I, (int)held)))
+    return dvi__fail(DVI_BAD_FILE, "%s: damaged, it holds contact %" PRId64, c->sections.name,
+                     held);
+  dvi__bodies_choose(I, (int)held);
+  return DVI_OK;
+}
+
 /* Read and check all sections. Method and system are compared first, because they determine the
- * count of the other sections' numbers. */
-static dvi_status open_checkpoint(const dvi_integrator *I, checkpoint *c)
+ * count of the other sections' numbers, with the contact that is held. */
+static dvi_status open_checkpoint(dvi_integrator *I, checkpoint *c)
 {
   const size_t numbers = 8 * (size_t)I->system->n, balances = 5 * I->balances;
   DVI_TRY(find_method(c));
   DVI_TRY(check_saved_method(I, c));
   DVI_TRY(find_fixed(&c->sections, "system", SYSTEM_VERSION, &c->system, sizeof c->system));
   DVI_TRY(check_declared(I, c));
+  DVI_TRY(choose_held(I, c));
   DVI_TRY(find_fixed(&c->sections, "pacing", SECTION_VERSION, &c->pacing, sizeof c->pacing));
   DVI_TRY(check_time(I, c));
   DVI_TRY(find_fixed(&c->sections, "clock", SECTION_VERSION, &c->clock, sizeof c->clock));
@@ -362,8 +384,20 @@ static void checkpoint_take_over(dvi_integrator *I, const checkpoint *c)
 static dvi_status take_over(dvi_integrator *I, const checkpoint *c)
 {
   checkpoint_take_over(I, c);
+  dvi__hits_forget(I);
   const dvi__state_constraint *constraint = I->system->dynamics->constraint;
   return constraint != NULL && constraint->has_rank ? dvi__integrator_find_side(I) : DVI_OK;
+}
+
+/* Restore from sections whose reading has this status. */
+static dvi_status restore_checkpoint(dvi_integrator *I, checkpoint *c, dvi_status status)
+{
+  const int held = dvi__bodies_held(I);
+  if (status == DVI_OK) status = open_checkpoint(I, c);
+  if (status != DVI_OK) dvi__bodies_choose(I, held);
+  if (status == DVI_OK) status = take_over(I, c);
+  dvi__sections_clear(&c->sections);
+  return status;
 }
 
 dvi_status dvi_integrator_restore(dvi_integrator *I, const char *path)
@@ -374,11 +408,8 @@ dvi_status dvi_integrator_restore(dvi_integrator *I, const char *path)
     return dvi__fail(DVI_BAD_ARGUMENT, "checkpoint: an argument is NULL");
   (void)snprintf(name, sizeof name, "checkpoint %s", path);
   c.sections.name = name;
-  dvi_status status = dvi__sections_read(path, &c.sections);
-  if (status == DVI_OK) status = open_checkpoint(I, &c);
-  if (status == DVI_OK) status = take_over(I, &c);
-  dvi__sections_clear(&c.sections);
-  return status;
+  const dvi_status status = dvi__sections_read(path, &c.sections);
+  return restore_checkpoint(I, &c, status);
 }
 
 /* Restore from a copy, which is aligned as numbers must be. The caller's bytes may have any
@@ -391,10 +422,6 @@ dvi_status dvi_integrator_restore_memory(dvi_integrator *I, const void *bytes, s
   c.sections.own = dvi__duplicate(bytes, size, 1);
   if (c.sections.own == NULL)
     return dvi__fail(DVI_NO_MEMORY, "checkpoint: no memory for %zu bytes", size);
-  dvi_status status = dvi__sections_check(&c.sections, "checkpoint in memory", c.sections.own,
-                                          size);
-  if (status == DVI_OK) status = open_checkpoint(I, &c);
-  if (status == DVI_OK) status = take_over(I, &c);
-  dvi__sections_clear(&c.sections);
-  return status;
+  return restore_checkpoint(
+      I, &c, dvi__sections_check(&c.sections, "checkpoint in memory", c.sections.own, size));
 }

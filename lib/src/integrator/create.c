@@ -10,24 +10,35 @@
 
 /* ---- create ---- */
 
+static dvi_status refuse_memory(size_t n)
+{
+  return dvi__fail(DVI_NO_MEMORY, "integrator: no memory for %zu coordinates", n);
+}
+
+dvi_status dvi__integrator_equip(dvi_integrator *I)
+{
+  dvi__attempt_extend(I);
+  I->stepper.memory = DVI_NEW(double, I->stepper.memory_count);
+  I->memory_before = DVI_NEW(double, I->stepper.memory_count);
+  if (I->stepper.memory == NULL || I->memory_before == NULL)
+    return refuse_memory((size_t)I->system->n);
+  DVI_TRY(dvi__attempt_allocate(I));
+  return dvi__evaluator_create(I->system, 1, DVI__STATES, &I->counters, &I->evaluator);
+}
+
 static dvi_status allocate_integrator(dvi_integrator *I)
 {
   const size_t n = (size_t)I->system->n;
-  dvi__attempt_extend(I);
   double *at = I->numbers = DVI_NEW(double, 3 * dvi__state_numbers(I) + 2 * n + I->balances);
-  I->stepper.memory = DVI_NEW(double, I->stepper.memory_count);
-  I->memory_before = DVI_NEW(double, I->stepper.memory_count);
-  if (I->numbers == NULL || I->stepper.memory == NULL || I->memory_before == NULL)
-    return dvi__fail(DVI_NO_MEMORY, "integrator: no memory for %zu coordinates", n);
+  if (I->numbers == NULL) return refuse_memory(n);
   dvi__state_lay_out(I, &I->now, &at);
   dvi__state_lay_out(I, &I->last, &at);
   dvi__state_lay_out(I, &I->next, &at);
   I->v = at;
   I->last_v = at + n;
   I->at_start = at + 2 * n;
-  DVI_TRY(dvi__attempt_allocate(I));
-  DVI_TRY(dvi__hits_create(I));
-  return dvi__evaluator_create(I->system, 1, DVI__STATES, &I->counters, &I->evaluator);
+  DVI_TRY(dvi__integrator_equip(I));
+  return dvi__hits_create(I);
 }
 
 static dvi_status copy_shapes(dvi_integrator *I, const dvi_shapes *shapes)
@@ -160,7 +171,7 @@ dvi_status dvi_integrator_create_like(const dvi_integrator *I, dvi_integrator **
       .balances = I->balances > 0,
       .pacing = I->monitored != NULL ? I->monitored->pacing : DVI_STEPS_OF_TIME,
       .monitor = I->monitored != NULL ? &I->monitored->given : NULL};
-  DVI_TRY(dvi_integrator_create_with(I->system, &options, integrator));
+  DVI_TRY(dvi_integrator_create_with(dvi__declared_system(I), &options, integrator));
   if (I->monitored == NULL) return DVI_OK;
   (*integrator)->monitored->holds = I->monitored->holds || I->started;
   dvi__monitored_time_set_energy((*integrator)->monitored, I->monitored->energy);
@@ -169,18 +180,23 @@ dvi_status dvi_integrator_create_like(const dvi_integrator *I, dvi_integrator **
 
 /* ---- destroy ---- */
 
+void dvi__integrator_strip(dvi_integrator *I)
+{
+  dvi__release(I->stepper.memory);
+  dvi__stepper_destroy(&I->stepper);
+  dvi__evaluator_destroy(&I->evaluator);
+  dvi__release(I->memory_before);
+  dvi__attempt_clear(I);
+}
+
 void dvi_integrator_destroy(dvi_integrator **integrator)
 {
   if (integrator == NULL || *integrator == NULL) return;
   dvi_integrator *I = *integrator;
-  dvi__release(I->stepper.memory);
-  dvi__stepper_destroy(&I->stepper);
-  dvi__monitored_time_destroy(&I->monitored);
-  dvi__evaluator_destroy(&I->evaluator);
-  dvi__release(I->numbers);
-  dvi__release(I->memory_before);
-  dvi__attempt_clear(I);
   dvi__hits_destroy(I);
+  dvi__integrator_strip(I);
+  dvi__monitored_time_destroy(&I->monitored);
+  dvi__release(I->numbers);
   dvi__release(I->shapes);
   dvi__release(I);
   *integrator = NULL;

@@ -18,6 +18,7 @@ void dvi__hits_destroy(dvi_integrator *integrator);
 
 /* Refuse a start inside a contact, and forget the last step's hits. */
 dvi_status dvi__hits_start(dvi_integrator *integrator, double t, const double *q, const double *v);
+void dvi__hits_forget(dvi_integrator *integrator);
 
 /* Return 1 if the driver divides the integrator's steps at hits. */
 int dvi__hits_divide(const dvi_integrator *integrator);

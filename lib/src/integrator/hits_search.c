@@ -45,7 +45,7 @@ dvi_status dvi__touches(dvi_integrator *I, double t, const double *q, const doub
 
 /* Evaluate the path of the last smooth step. Hermite's cubic is closer than the paths of methods of
  * order 4 or less. */
-static dvi_status path_point(dvi_integrator *I, double tau, double *q, double *v)
+dvi_status dvi__searched_path(dvi_integrator *I, double tau, double *q, double *v)
 {
   const struct dvi__hits *s = I->hits;
   if (I->stepper.order > 4) return dvi__integrator_path(I, tau, q, v);
@@ -58,7 +58,7 @@ static dvi_status path_point(dvi_integrator *I, double tau, double *q, double *v
 static dvi_status touch_on_path(dvi_integrator *I, int k, double tau, dvi__touch *touch)
 {
   struct dvi__hits *s = I->hits;
-  DVI_TRY(path_point(I, tau, s->q, s->moved));
+  DVI_TRY(dvi__searched_path(I, tau, s->q, s->moved));
   DVI_TRY(dvi__contact_touch(&I->system->contacts[k], I->last.t + tau * I->last_h, s->q, s->moved,
                              s->G, touch));
   touch->gap -= s->offset[k];
@@ -98,14 +98,6 @@ static dvi_status bisect_path(dvi_integrator *I, int k, double a, double b, dvi_
   return DVI_OK;
 }
 
-static dvi_status refuse_closed(const dvi_integrator *I, int k)
-{
-  return dvi__fail(DVI_UNSUPPORTED,
-                   "contact '%s' stays closed from t = %.12g, pressed by forces; moreau-jean takes "
-                   "contacts that stay closed",
-                   dvi_system_contact_name(I->system, k), I->last.t);
-}
-
 /* Search contact k between a and b, where it was evaluated. */
 static dvi_status search_part(dvi_integrator *I, int k, double a, double b, dvi__found *found)
 {
@@ -113,9 +105,10 @@ static dvi_status search_part(dvi_integrator *I, int k, double a, double b, dvi_
   const dvi__touch *here = &s->touch_before[k], *there = &s->touch[k];
   dvi__touch touch;
   double least;
+  if (s->opens[k] == DVI__IS_HELD) return DVI_OK;
   if (s->opens[k] == 0) { /* neither open nor closed so far */
     const double h = I->last_h, part = roundings(there, h) + dvi__grazing * there->speed * fabs(h);
-    if (there->gap < -part) return refuse_closed(I, k);
+    if (there->gap < -part) return dvi__refuse_closed(I, k, I->last.t);
     if (there->gap > part) s->opens[k] = -1;
     return DVI_OK;
   }
@@ -139,7 +132,7 @@ dvi_status dvi__find_hit(dvi_integrator *I, dvi__found *found)
     dvi__touch *before = s->touch_before;
     s->touch_before = s->touch;
     s->touch = before;
-    DVI_TRY(path_point(I, b, s->q, s->moved));
+    DVI_TRY(dvi__searched_path(I, b, s->q, s->moved));
     DVI_TRY(dvi__touches(I, I->last.t + b * I->last_h, s->q, s->moved, s->touch));
     for (int k = 0; k < I->system->contact_count; k++) {
       s->touch[k].gap -= s->offset[k];
@@ -198,6 +191,6 @@ dvi_status dvi__locate_hit(dvi_integrator *I, const dvi__found *found, double *l
     return dvi__fail(DVI_NOT_CONVERGED, "the time of a hit of contact '%s' was not found",
                      dvi_system_contact_name(I->system, found->contact));
   if (!*hits && touch.gap < 0 && !dvi__touch_is_closed(&touch, whole))
-    return refuse_closed(I, found->contact);
+    return dvi__refuse_closed(I, found->contact, I->last.t);
   return DVI_OK;
 }

@@ -6,8 +6,10 @@
 #include "core/status.h"
 #include "integrator/hits_struct.h"
 
-/* Hits of a contact that follow each other within this part of a step accumulate. */
-static const double accumulation = 1e-8;
+const double dvi__accumulation = 1e-8;
+
+/* Flights that are lower than this number of roundings of the gap accumulate, too. */
+static const double lowest = 1e5;
 
 enum { MOST_ITERATIONS = 50 };
 
@@ -111,48 +113,64 @@ static dvi_status find_impulse(dvi_integrator *I, const dvi__contact_term *term,
 
 /* ---- what is refused ---- */
 
-/* Return the time at which the hits of a contact accumulate, by the ratio of the last two gaps. */
-static double accumulation_time(const dvi__hit_step *made, const double elapsed[3])
-{
-  const double before = elapsed[1] - elapsed[2], last = elapsed[0] - elapsed[1],
-               ratio = before != 0 ? last / before : 0;
-  return made->now.t + elapsed[0] + (ratio > 0 && ratio < 1 ? last * ratio / (1 - ratio) : 0);
-}
+/* The flights from hit to hit of a contact. */
+typedef struct flights {
+  int soon;    /* they are too short, or too low, to be told from rest */
+  double last; /* the time of the last one */
+} flights;
 
-/* Refuse a hit that follows the same contact's last one too soon, or has no room. */
-static dvi_status check_rate_of_hits(const dvi_integrator *I, int k)
+/* Look if a hit follows the same contact's last one so soon that its hits accumulate. A flight of
+ * the time tau, which ends at the rate phi', is |phi'| tau/4 high. Times of hits are wrong by
+ * 1/(4 K) of a flight whose height is K roundings of the gap. */
+static flights flights_to(const dvi_integrator *I, int k, const dvi__touch *touch)
 {
   const struct dvi__hits *s = I->hits;
   const dvi__hit_step *made = &s->made;
-  double elapsed[3] = {s->elapsed};
-  int found = 1;
-  for (int i = made->count - 1; i >= 0 && found < 3; i--)
-    if (made->hit[i].contact == k) elapsed[found++] = made->elapsed[i];
-  const int soon = found > 1 && fabs(elapsed[0] - elapsed[1]) < accumulation * fabs(made->h);
-  if (!soon && made->count < DVI__HITS_MOST) return DVI_OK;
-  if (found < 3) elapsed[2] = elapsed[1] = elapsed[0];
-  return dvi__fail(
-      DVI_UNSUPPORTED,
-      "the hits of contact '%s' accumulate (%d in the step) at about t = %.15g, and it "
-      "stays closed from there; end before, or take moreau-jean",
-      dvi_system_contact_name(I->system, k), made->count, accumulation_time(made, elapsed));
+  int i = made->count - 1;
+  while (i >= 0 && (made->hit[i].contact != k || made->hit[i].kind != DVI_HIT)) i--;
+  if (i < 0) return (flights){.soon = 0};
+  const double last = fabs(s->elapsed - made->elapsed[i]), height = fabs(touch->rate) * last / 4;
+  const int low = dvi_integrator_may_hold(I, k) &&
+                  I->system->contacts[k].callbacks.restitution < 1 &&
+                  height < lowest * DBL_EPSILON * touch->size;
+  return (flights){.soon = low || last < dvi__accumulation * fabs(made->h), .last = last};
+}
+
+/* Hold a contact whose hits accumulate, or refuse it, or a hit without room. Flights shrink by e,
+ * so that their times are a geometric series. */
+static dvi_status settle_or_refuse(dvi_integrator *I, int k, const flights *of)
+{
+  const dvi__hit_step *made = &I->hits->made;
+  const double e = I->system->contacts[k].callbacks.restitution,
+               t = I->now.t + (e < 1 && made->h > 0 ? of->last * e / (1 - e) : 0);
+  int holds = 0;
+  if (of->soon) DVI_TRY(dvi__hold(I, k, fmin(t, made->now.t + made->h), &holds));
+  if (holds) return DVI_OK;
+  return dvi__fail(DVI_UNSUPPORTED,
+                   "the hits of contact '%s' accumulate (%d in the step) at about t = %.15g, and "
+                   "it stays closed from there; %s",
+                   dvi_system_contact_name(I->system, k), made->count, t, dvi__closed_remedy(I, k));
 }
 
 /* Refuse another closed contact that closes, too, and whose rate the impulse changes. Which of the
- * two hits comes first would decide about the motion. */
-static dvi_status check_corner(dvi_integrator *I, int k)
+ * two hits comes first would decide about the motion. The impulse may open a contact that is held,
+ * but not press it. */
+static dvi_status check_corner(dvi_integrator *I, int k, int *opens)
 {
   struct dvi__hits *s = I->hits;
   for (int j = 0; j < I->system->contact_count; j++) {
     dvi__touch before, after;
     if (j == k) continue;
     DVI_TRY(dvi__contact_touch(&I->system->contacts[j], I->now.t, I->now.q, s->v, s->G, &before));
-    if (!dvi__touch_is_closed(&before, s->made.h) || dvi__touch_is_grazing(&before) ||
-        before.rate * s->made.h > 0)
+    if (j != s->bodies.held && (!dvi__touch_is_closed(&before, s->made.h) ||
+                                dvi__touch_is_grazing(&before) || before.rate * s->made.h > 0))
       continue;
     DVI_TRY(
         dvi__contact_touch(&I->system->contacts[j], I->now.t, I->now.q, s->moved, s->G, &after));
-    if (fabs(after.rate - before.rate) <= 1e-9 * before.speed) continue;
+    const double change = after.rate - before.rate;
+    if (fabs(change) <= 1e-9 * fmax(before.speed, after.speed)) continue;
+    *opens = j == s->bodies.held && change > 0;
+    if (*opens) continue;
     return dvi__fail(DVI_UNSUPPORTED,
                      "contacts '%s' and '%s' close together at t = %.12g, in a corner where the "
                      "order of hits decides; round the corner, or take moreau-jean",
@@ -164,31 +182,34 @@ static dvi_status check_corner(dvi_integrator *I, int k)
 
 /* ---- a hit ---- */
 
-/* Add what the impulse supplies to the energy and to the momenta of symmetries. */
-static dvi_status supply_impact(dvi_integrator *I)
+dvi_status dvi__supply_jump(dvi_integrator *I, const double *q, const double *v, const double *p)
 {
-  const struct dvi__hits *s = I->hits;
   for (size_t i = 0; i < I->balances; i++) {
     double before, after;
-    DVI_TRY(dvi__invariant(I->evaluator, I->now.t, I->now.q, s->v, I->now.p, (int)i, &before));
-    DVI_TRY(dvi__invariant(I->evaluator, I->now.t, I->now.q, s->moved, s->p, (int)i, &after));
+    DVI_TRY(dvi__invariant(I->evaluator, I->now.t, q, v, p, (int)i, &before));
+    DVI_TRY(
+        dvi__invariant(I->evaluator, I->now.t, I->now.q, I->hits->moved, I->now.p, (int)i, &after));
     I->now.supplied[i] += after - before;
   }
   return DVI_OK;
 }
 
-static void record_hit(dvi_integrator *I, int k, double rate, const impulse *x)
+dvi_status dvi__record(dvi_integrator *I, const dvi_hit *hit, const double *q, const double *v,
+                       const double *after)
 {
-  struct dvi__hits *s = I->hits;
-  dvi__hit_step *made = &s->made;
+  dvi__hit_step *made = &I->hits->made;
   const size_t n = (size_t)I->system->n, at = (size_t)made->count * n, bytes = n * sizeof(double);
-  made->hit[made->count] = (dvi_hit){
-      .contact = k, .t = I->now.t, .before = rate, .after = x->rate, .impulse = x->lambda};
-  made->elapsed[made->count] = s->elapsed;
-  memcpy(made->q + at, I->now.q, bytes);
-  memcpy(made->v + at, s->v, bytes);
-  memcpy(made->after + at, s->moved, bytes);
+  if (made->count == I->hits->most)
+    return dvi__fail(DVI_UNSUPPORTED, "contacts close and open more than %d times in the step",
+                     I->hits->most);
+  made->hit[made->count] = *hit;
+  made->elapsed[made->count] = I->hits->elapsed;
+  made->t[made->count] = I->now.t;
+  memcpy(made->q + at, q, bytes);
+  memcpy(made->v + at, v, bytes);
+  memcpy(made->after + at, after, bytes);
   made->count++;
+  return DVI_OK;
 }
 
 dvi_status dvi__impact(dvi_integrator *I, int k)
@@ -199,23 +220,29 @@ dvi_status dvi__impact(dvi_integrator *I, int k)
   const size_t bytes = (size_t)I->system->n * sizeof(double);
   dvi__touch touch;
   impulse x;
+  int opens = 0, holds;
   if (s->made.h < 0 && term->callbacks.restitution < 1)
     return dvi__fail(DVI_UNSUPPORTED,
                      "contact '%s' has the restitution %g, and its hits cannot be undone by steps "
                      "back in time; only hits with 1 can",
                      term->gap.name, term->callbacks.restitution);
-  DVI_TRY(check_rate_of_hits(I, k));
   DVI_TRY(dvi__integrator_velocity(I, s->v));
   DVI_TRY(dvi__contact_touch(term, I->now.t, I->now.q, s->v, s->G, &touch));
+  const flights of = flights_to(I, k, &touch);
+  if (of.soon || s->made.count == s->most) return settle_or_refuse(I, k, &of);
   memset(s->full, 0, bytes);
   for (int e = 0; e < pattern->start[1]; e++) s->full[pattern->row[e]] = s->G[e];
   DVI_TRY(find_impulse(I, term, touch.rate, &x));
-  DVI_TRY(check_corner(I, k));
-  DVI_TRY(supply_impact(I));
-  record_hit(I, k, touch.rate, &x);
+  DVI_TRY(check_corner(I, k, &opens));
+  const dvi_hit hit = {
+      .contact = k, .t = I->now.t, .before = touch.rate, .after = x.rate, .impulse = x.lambda};
+  DVI_TRY(dvi__record(I, &hit, I->now.q, s->v, s->moved));
+  memcpy(s->full, I->now.p, bytes);
   memcpy(I->now.p, s->p, bytes);
-  memset(I->now.p_compensation, 0, bytes);
-  memcpy(I->last.p, s->moved, bytes);
-  dvi__integrator_begin(I, s->moved);
-  return DVI_OK;
+  DVI_TRY(dvi__supply_jump(I, I->now.q, s->v, s->full));
+  I->counters.hits++;
+  dvi__integrator_begin_anew(I, s->moved);
+  if (opens) DVI_TRY(dvi__let_go(I));
+  /* a rate of 0 has roundings of its own, by which the contact would seem to open */
+  return term->callbacks.restitution == 0 ? dvi__hold(I, k, I->now.t, &holds) : DVI_OK;
 }

@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "integrator/attempt.h"
+#include "integrator/held.h"
 #include "integrator/hits.h"
 #include "num/finite.h"
 #include "space/user_basis.h"
@@ -84,11 +85,28 @@ void dvi__integrator_begin(dvi_integrator *I, const double *v)
   dvi__stepper_start(&I->stepper, v);
 }
 
-static dvi_status start_verdict(const dvi_integrator *I, double t, dvi_status status)
+void dvi__integrator_begin_anew(dvi_integrator *I, const double *v)
 {
-  return status == DVI_OK
-             ? DVI_OK
-             : dvi__fail_in(status, "%s: cannot start at t = %.6g", I->stepper.method->name, t);
+  const size_t bytes = (size_t)I->system->n * sizeof(double);
+  memset(I->now.p_compensation, 0, bytes);
+  I->now.side = 0;
+  memcpy(I->last.p, v, bytes);
+  dvi__integrator_begin(I, v);
+}
+
+/* Start without a contact that is held, or leave the integrator as it was. */
+static dvi_status start_verdict(dvi_integrator *I, double t, int held, dvi_status status)
+{
+  if (status == DVI_OK) return DVI_OK;
+  dvi__bodies_choose(I, held);
+  return dvi__fail_in(status, "%s: cannot start at t = %.6g", I->stepper.method->name, t);
+}
+
+static int free_contacts(dvi_integrator *I)
+{
+  const int held = dvi__bodies_held(I);
+  dvi__bodies_choose(I, -1);
+  return held;
 }
 
 /* Project a start onto the constraint of all states, in the integrator's own memory, or only check
@@ -145,7 +163,8 @@ dvi_status dvi_integrator_start_with(dvi_integrator *I, double t, const double *
 {
   if (I == NULL || q == NULL || p == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "start: an argument is NULL");
-  return start_verdict(I, t, start_by_momentum(I, t, q, p, options != NULL && options->project));
+  const int held = free_contacts(I), project = options != NULL && options->project;
+  return start_verdict(I, t, held, start_by_momentum(I, t, q, p, project));
 }
 
 dvi_status dvi_integrator_start(dvi_integrator *I, double t, const double *q, const double *p)
@@ -158,7 +177,8 @@ dvi_status dvi_integrator_start_velocity(dvi_integrator *I, double t, const doub
 {
   if (I == NULL || q == NULL || v == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "start: an argument is NULL");
-  return start_verdict(I, t, start_by_velocity(I, t, q, v));
+  const int held = free_contacts(I);
+  return start_verdict(I, t, held, start_by_velocity(I, t, q, v));
 }
 
 /* ---- step ---- */
@@ -324,7 +344,7 @@ const double *dvi_integrator_p(const dvi_integrator *integrator)
 
 const dvi_system *dvi_integrator_system(const dvi_integrator *integrator)
 {
-  return integrator != NULL ? integrator->system : NULL;
+  return integrator != NULL ? dvi__declared_system(integrator) : NULL;
 }
 
 int dvi_integrator_order(const dvi_integrator *integrator)
@@ -430,7 +450,7 @@ dvi_status dvi_integrator_constraint(dvi_integrator *I, double *distance)
 {
   if (I == NULL || distance == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "constraint: an argument is NULL");
-  const dvi__state_constraint *constraint = I->system->dynamics->constraint;
+  const dvi__state_constraint *constraint = dvi__declared_system(I)->dynamics->constraint;
   if (constraint == NULL)
     return dvi__fail(
         DVI_UNSUPPORTED,
@@ -484,7 +504,7 @@ dvi_status dvi_integrator_reactions(dvi_integrator *I, double *lambda)
 {
   if (I == NULL || lambda == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "reactions: an argument is NULL");
-  if (I->system->row_count == 0)
+  if (dvi__declared_system(I)->row_count == 0)
     return dvi__fail(DVI_UNSUPPORTED,
                      "reactions: the system has neither holonomic nor nonholonomic "
                      "constraints");

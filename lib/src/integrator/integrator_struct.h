@@ -5,6 +5,8 @@
 #include "integrator/monitored_time.h"
 
 struct dvi_integrator {
+  /* The system of the steps. While a contact is held, this, the stepper and all that belongs to
+   * them are those of its constraint (held.h). */
   const dvi_system *system;
   dvi_shapes *shapes;             /* copy of the program's shapes, or NULL */
   dvi__monitored_time *monitored; /* NULL for steps of time */
@@ -79,8 +81,19 @@ void dvi__cubic_point(int n, const dvi__cubic *cubic, double tau, double *q, dou
 /* Evaluate the velocity [nv] of the present state. */
 dvi_status dvi__integrator_velocity(dvi_integrator *integrator, double *v);
 
-/* Begin anew at the present state, with its velocity v [nv], as at a start. */
+/* Begin anew at the present state, with its velocity v [nv], as at a start. The second function
+ * does so after a change of the state on the way, or of its equations. */
 void dvi__integrator_begin(dvi_integrator *integrator, const double *v);
+void dvi__integrator_begin_anew(dvi_integrator *integrator, const double *v);
+
+/* Make what belongs to a stepper: its memories, and an evaluator of the system. */
+dvi_status dvi__integrator_equip(dvi_integrator *integrator);
+
+/* Free the stepper, and what belongs to it. */
+void dvi__integrator_strip(dvi_integrator *integrator);
+
+/* Return the system that the program declared, also while a contact is held. */
+const dvi_system *dvi__declared_system(const dvi_integrator *integrator);
 
 /* Take a step of exactly h, the rest of a run, also by methods that choose their steps. */
 dvi_status dvi__integrator_step_exactly(dvi_integrator *integrator, double h);

@@ -8,6 +8,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "method/damping.h"
+#include "system/declare/held.h"
 #include "system/term_name.h"
 
 /* Return the terms that the system declares and the method cannot use. */
@@ -21,6 +22,23 @@ static int can_use(const dvi__method *method, const dvi_system *system)
   return surplus(method, system) == 0 && (method->needs & ~system->terms) == 0;
 }
 
+/* Test if a stepper's method can hold contacts that may be held, of which one stands for all. */
+static int can_hold(const dvi__stepper *stepper)
+{
+  const dvi_system *system = stepper->system, *held;
+  dvi_counters counters = {0};
+  dvi__stepper tried;
+  int k = 0;
+  while (k < system->contact_count && !system->contacts[k].callbacks.hold) k++;
+  if (k == system->contact_count || stepper->method->takes_contacts) return 1;
+  if (dvi__held_create(system, k, &held) != DVI_OK) return 0;
+  const dvi_status status = dvi__stepper_create(held, stepper->specification, NULL, &counters,
+                                                &tried);
+  if (status == DVI_OK) dvi__stepper_destroy(&tried);
+  dvi__held_destroy(&held);
+  return status == DVI_OK;
+}
+
 /* Test if a method can be made for the system. Some methods take terms one by one that they refuse
  * together. A method that needs keys passes. */
 static int fits(const char *name, const dvi_system *system)
@@ -29,8 +47,10 @@ static int fits(const char *name, const dvi_system *system)
   dvi__stepper tried;
   if (!can_use(dvi__find_method(name, strlen(name)), system)) return 0;
   const dvi_status status = dvi__stepper_create(system, name, NULL, &counters, &tried);
-  if (status == DVI_OK) dvi__stepper_destroy(&tried);
-  return status == DVI_OK || status == DVI_BAD_OPTION;
+  if (status != DVI_OK) return status == DVI_BAD_OPTION;
+  const int good = can_hold(&tried);
+  dvi__stepper_destroy(&tried);
+  return good;
 }
 
 /* Write which methods take the system, or that none does. Steppers that are made for this, and
@@ -43,7 +63,7 @@ static void name_others(const dvi_system *system, dvi__text *words)
   trying = 1;
   for (int i = 0; i < dvi_method_count(); i++) {
     const char *name = dvi_method_name(i);
-    if (!fits(name, system)) continue;
+    if (!fits(name, system->held_of != NULL ? system->held_of : system)) continue;
     dvi__text_add(words, "%s%s", before, name);
     before = ", ";
   }

@@ -108,7 +108,8 @@ static uint64_t hash_contacts(const dvi_system *s)
   for (int k = 0; k < s->contact_count; k++) {
     const dvi__contact_term *term = &s->contacts[k];
     const double law[] = {term->callbacks.restitution, term->callbacks.friction};
-    const int kind[] = {term->callbacks.rate != NULL, term->callbacks.tangent_count};
+    const int kind[] = {term->callbacks.rate != NULL, term->callbacks.tangent_count,
+                        term->callbacks.hold};
     hash = dvi__hash(hash_text(hash, term->gap.name), sizeof law, law);
     hash = hash_pattern(dvi__hash(hash, sizeof kind, kind), &term->gap.gradients);
     hash = hash_pattern(hash, &term->tangents);

@@ -196,6 +196,7 @@ struct dvi_system {
   dvi__pattern rows_q, rows_qq;
   dvi__contact_term *contacts;
   int contact_count;
+  const dvi_system *held_of;            /* the system of which this one holds a contact, or NULL */
   dvi_noise noise;                      /* zero without DVI__NOISE */
   dvi__potential_term *noise_functions; /* [noise.function_count] */
   dvi_symmetry *symmetries;

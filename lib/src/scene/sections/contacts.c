@@ -69,20 +69,25 @@ static bool check_law(dvi_scene *scene, const dvi__tree *tree, const dvi_contact
 static bool read_contact(dvi_scene *scene, const char *name, const dvi__tree *tree,
                          dvi_contact *contact)
 {
-  static const char *const known[] = {"gap", "restitution", "friction", "tangent"};
+  static const char *const known[] = {"gap", "restitution", "friction", "tangent", "hold"},
+                           *const hold_word[] = {"no", "yes"};
   dvi__scene_term *gap, *tangent = NULL;
   double restitution, friction;
+  int hold = 0;
   if (!dvi__want_mapping(scene, tree, "a contact") ||
-      !dvi__want_keys(scene, tree, "a contact", 4, known))
+      !dvi__want_keys(scene, tree, "a contact", 5, known))
     return false;
-  const dvi__tree *phi = dvi__tree_find(tree, "gap"), *slip = dvi__tree_find(tree, "tangent");
+  const dvi__tree *phi = dvi__tree_find(tree, "gap"), *slip = dvi__tree_find(tree, "tangent"),
+                  *holds = dvi__tree_find(tree, "hold");
   if (phi == NULL)
     return dvi__scene_refuse(scene, tree->span,
                              "a contact needs 'gap', the distance that stays 0 or more");
   if (!number_of(scene, tree, "restitution", &restitution) ||
-      !number_of(scene, tree, "friction", &friction))
+      !number_of(scene, tree, "friction", &friction) ||
+      (holds != NULL && !dvi__tree_word(scene, holds, "hold", 2, hold_word, &hold)))
     return false;
-  *contact = (dvi_contact){.name = name, .restitution = restitution, .friction = friction};
+  *contact = (dvi_contact){
+      .name = name, .restitution = restitution, .friction = friction, .hold = hold};
   return check_law(scene, tree, contact) && contact_function(scene, phi, 0, 1, "a gap", &gap) &&
          (slip == NULL ||
           contact_function(scene, slip, DVI__MENTIONS_V, TANGENTS_MOST, "a tangent", &tangent)) &&

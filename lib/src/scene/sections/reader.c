@@ -124,3 +124,14 @@ bool dvi__tree_whole(dvi_scene *scene, const dvi__tree *tree, const char *what, 
   *number = (int)x;
   return true;
 }
+
+bool dvi__tree_word(dvi_scene *scene, const dvi__tree *tree, const char *what, int count,
+                    const char *const *word, int *which)
+{
+  if (!dvi__want_text(scene, tree, what)) return false;
+  for (*which = 0; *which < count; ++*which)
+    if (strcmp(tree->text, word[*which]) == 0) return true;
+  return dvi__scene_refuse(scene, tree->span, "%s is %s%s%s%s%s", what, word[0],
+                           count == 3 ? ", " : "", count == 3 ? word[1] : "", " or ",
+                           word[count - 1]);
+}

@@ -66,6 +66,17 @@ static bool is_multiplier(const dvi_scene *scene, const char *text)
   return false;
 }
 
+/* Return true for force_NAME of a contact that may be held. */
+static bool is_force(const dvi_scene *scene, const char *text)
+{
+  static const char prefix[] = "force_";
+  if (strncmp(text, prefix, sizeof prefix - 1) != 0) return false;
+  for (int k = 0; k < scene->terms.contact_count; k++)
+    if (strcmp(text + sizeof prefix - 1, scene->contacts[k].name) == 0)
+      return scene->contacts[k].hold;
+  return false;
+}
+
 static bool all_columns(dvi_scene *scene, const dvi__tree *columns)
 {
   char hint[96];
@@ -80,7 +91,8 @@ static bool all_columns(dvi_scene *scene, const dvi__tree *columns)
     const char *name = columns->child[i]->text;
     int k = 0;
     while (k < count && strcmp(known[k], name) != 0) k++;
-    if (k == count && !is_balance(scene, name) && !is_multiplier(scene, name))
+    if (k == count && !is_balance(scene, name) && !is_multiplier(scene, name) &&
+        !is_force(scene, name))
       return dvi__scene_refuse(scene, columns->child[i]->span, "there is no column '%s'%s", name,
                                dvi__nearest(name, count, known, hint, sizeof hint));
     for (k = 0; k < i; k++)

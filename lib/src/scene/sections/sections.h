@@ -44,6 +44,10 @@ bool dvi__tree_number(dvi_scene *scene, const dvi__tree *tree, const char *what,
 bool dvi__tree_whole(dvi_scene *scene, const dvi__tree *tree, const char *what, int least,
                      int *number);
 
+/* Read one of two or three words. */
+bool dvi__tree_word(dvi_scene *scene, const dvi__tree *tree, const char *what, int count,
+                    const char *const *word, int *which);
+
 /* Refuse a file in a method's specification that is not in the scene's folder or below. The
  * specification then has the way to the file from here. */
 bool dvi__scene_place_file(dvi_scene *scene, dvi__span span, const char **method);

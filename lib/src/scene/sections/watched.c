@@ -68,18 +68,6 @@ bool dvi__read_invariants(dvi_scene *scene, const dvi__tree *section)
   return true;
 }
 
-/* Read one of some words. */
-static bool read_word(dvi_scene *scene, const dvi__tree *tree, const char *what, int count,
-                      const char *const *word, int *which)
-{
-  if (!dvi__want_text(scene, tree, what)) return false;
-  for (*which = 0; *which < count; ++*which)
-    if (strcmp(tree->text, word[*which]) == 0) return true;
-  return dvi__scene_refuse(scene, tree->span, "%s is %s%s%s%s%s", what, word[0],
-                           count == 3 ? ", " : "", count == 3 ? word[1] : "", " or ",
-                           word[count - 1]);
-}
-
 static bool read_event(dvi_scene *scene, const char *name, const dvi__tree *tree,
                        dvi_scene_event *event)
 {
@@ -97,9 +85,9 @@ static bool read_event(dvi_scene *scene, const char *name, const dvi__tree *tree
   if (zero == NULL)
     return dvi__scene_refuse(scene, tree->span,
                              "an event needs 'zero', the expression that changes its sign");
-  if (falls != NULL && !read_word(scene, falls, "direction", 3, direction_word, &direction))
+  if (falls != NULL && !dvi__tree_word(scene, falls, "direction", 3, direction_word, &direction))
     return false;
-  if (stops != NULL && !read_word(scene, stops, "stop", 2, stop_word, &stop)) return false;
+  if (stops != NULL && !dvi__tree_word(scene, stops, "stop", 2, stop_word, &stop)) return false;
   if (!read_function(scene, zero,
                      DVI__MENTIONS_Q | DVI__MENTIONS_V | DVI__MENTIONS_T | DVI__OF_STATE,
                      "an event", &term))

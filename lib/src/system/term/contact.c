@@ -20,6 +20,9 @@ static dvi_status check_law(const dvi_contact *given, const char *name)
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "system: contact '%s' has the friction %g; a number of 0 or more is needed",
                      name, given->friction);
+  if (given->hold != 0 && given->hold != 1)
+    return dvi__fail(DVI_BAD_ARGUMENT, "system: contact '%s' has hold = %d; 0 or 1 is possible",
+                     name, given->hold);
   if (given->friction > 0 && given->tangent == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "system: contact '%s' has friction, but no tangent callback, which tells in "
