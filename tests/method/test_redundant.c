@@ -302,6 +302,22 @@ START_TEST(steps_past_cranks_in_line_are_refused_and_change_nothing)
 }
 END_TEST
 
+/* A crank that turns by half a right angle between nodes, and by more than a right angle in a step,
+ * passes no such point. */
+START_TEST(long_steps_of_a_crank_that_turns_are_taken)
+{
+  static const char *const high[] = {"galerkin:degree=4", "galerkin:degree=6", "galerkin:degree=8"};
+  static const double error[] = {0.2, 2e-2, 1e-3};
+  problem *model = create_problem("slider-crank", NULL);
+  dvi_integrator *integrator = start_integrator(model, high[_i]);
+  advance(integrator, 0.08, 25);
+  const double off = distance(model->nq, dvi_integrator_q(integrator), model->digits_q);
+  ck_assert_double_lt(off, error[_i]);
+  dvi_integrator_destroy(&integrator);
+  problem_destroy(&model);
+}
+END_TEST
+
 /* ---- checkpoints, members, long runs ---- */
 
 START_TEST(a_restored_run_has_the_same_bits)
@@ -373,6 +389,7 @@ SUITE(redundant)
   tcase_add_test(tests, reactions_have_the_forces_of_independent_rows);
   tcase_add_loop_test(tests, cranks_in_line_are_refused_at_a_start, 0, METHODS);
   tcase_add_loop_test(tests, steps_past_cranks_in_line_are_refused_and_change_nothing, 0, METHODS);
+  tcase_add_loop_test(tests, long_steps_of_a_crank_that_turns_are_taken, 0, 3);
   tcase_add_loop_test(tests, a_restored_run_has_the_same_bits, 0, METHODS);
   tcase_add_loop_test(tests, energy_is_bounded_and_rows_hold_to_rounding, 0, MACHINES);
 }

@@ -409,6 +409,12 @@ dvi_status dvi__action_stays_regular(dvi__action *a, int sign)
   const int odd = (a->n + x->rows) * a->s % 2,
             expected = (x->rows % 2 ? x->sign : 1) * (a->h < 0 && odd ? -1 : 1);
   if (sign == expected) return DVI_OK;
-  const double t[] = {a->t0, a->t0 + a->h}, *const q[] = {a->q0, a->terms.q1};
-  return dvi__rows_stay_regular(a->evaluator, t, q, x->v);
+  /* from node to node, since gradients at the ends of a long step may be turned by a right angle.
+   * p has taken the place of node 0 */
+  for (int k = 0; k < a->s; k++) {
+    const double t[] = {a->t0 + x->chi[k] * a->h, a->t0 + x->chi[k + 1] * a->h};
+    const double *const q[] = {k == 0 ? a->q0 : x->X + k * a->n, x->X + (k + 1) * a->n};
+    DVI_TRY(dvi__rows_stay_regular(a->evaluator, t, q, x->v));
+  }
+  return DVI_OK;
 }
