@@ -204,18 +204,39 @@ dvi_status dvi__rows_check_place(dvi__evaluator *e, double t, const double *q)
   return DVI_OK;
 }
 
+/* Find how far roundings of q move the rates. Far from the origin they are larger than the row
+ * itself tells. */
+static dvi_status rates_noise(dvi__evaluator *e, double t, const double *q, const double *p,
+                              const double *rate, double *noise)
+{
+  const dvi_system *s = e->system;
+  const dvi__rows_memory *r = dvi__rows_memory_of(e);
+  double *v = r->derivative, *moved = r->before;
+  memset(noise, 0, (size_t)s->row_count * sizeof *noise);
+  for (int alike = 0; alike < 2; alike++) {
+    for (int i = 0; i < s->n; i++)
+      r->point[i] = q[i] * (1 + (alike || i % 2 ? 4 : -4) * DBL_EPSILON);
+    DVI_TRY(velocity_rows(e, t, r->point, p, v, moved));
+    for (int a = 0; a < s->row_count; a++) noise[a] = fmax(noise[a], fabs(moved[a] - rate[a]));
+  }
+  return DVI_OK;
+}
+
 dvi_status dvi__rows_check(dvi__evaluator *e, double t, const double *q, const double *p)
 {
   const dvi_system *s = e->system;
   const dvi__rows_memory *r = dvi__rows_memory_of(e);
-  double *v = r->along[0], *rate = r->along[1];
+  double *v = r->along[0], *rate = r->along[1], *noise = r->defect;
+  int known = 0;
   DVI_TRY(dvi__rows_check_place(e, t, q));
   DVI_TRY(velocity_rows(e, t, q, p, v, rate));
   const double speed = dvi__largest((size_t)s->n, v);
   for (int a = 0; a < s->row_count; a++) {
     const double size = row_size(s, r->phi_q, a, v) + fabs(r->phi_t[a]),
                  rounding = of_velocity * speed * gradient_size(s, r->phi_q, a);
-    if (!(fabs(rate[a]) <= fmax(on_constraint * size, rounding)))
+    if (fabs(rate[a]) <= fmax(on_constraint * size, rounding)) continue;
+    if (!known++) DVI_TRY(rates_noise(e, t, q, p, rate, noise));
+    if (!(fabs(rate[a]) <= noise[a]))
       return refuse_row(
           s, a, t, a < s->place_rows ? ", its rate along the velocity," : ", A v + a,", rate[a]);
   }

@@ -335,7 +335,8 @@ static dvi_status refuse_passage(dvi__evaluator *e, double t, const double *q, c
   r->softness = softness;
   return dvi__fail(DVI_SINGULAR,
                    "the step passes a point where constraint %s depends on the others, as at a "
-                   "dead centre; from there the motion is not determined",
+                   "dead centre, from where the motion is not determined; or the step turns it by "
+                   "more than a right angle, and a smaller one helps",
                    label);
 }
 
