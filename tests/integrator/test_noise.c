@@ -160,7 +160,7 @@ START_TEST(a_restored_run_goes_on_with_the_same_noise)
   advance(part, 0.1, 10);
   check_same_state(whole, part);
   ck_assert_int_eq(dvi_integrator_restore_memory(wrong, saved, size), DVI_BAD_FILE);
-  check_words("numbers of the noise");
+  check_words("declares other noise");
   dvi_integrator_destroy(&whole);
   dvi_integrator_destroy(&part);
   dvi_integrator_destroy(&wrong);
