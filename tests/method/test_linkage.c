@@ -62,7 +62,8 @@ START_TEST(memory_is_linear_and_iterations_do_not_grow)
   const int links = repeats(1000);
   const cost small = measure(cases[_i].form, 33, cases[_i].method),
              large = measure(cases[_i].form, links, cases[_i].method);
-  ck_assert_double_le(log(large.bytes / small.bytes) / log(links / 33.0), 1.1);
+  if (small.bytes > 0) /* valgrind counts no bytes of its own */
+    ck_assert_double_le(log(large.bytes / small.bytes) / log(links / 33.0), 1.1);
   ck_assert_double_le(small.residuals, cases[_i].residuals);
   ck_assert_double_le(large.residuals, cases[_i].residuals);
   ck_assert_double_le(small.factorizations, cases[_i].factorizations);
@@ -79,7 +80,8 @@ START_TEST(a_long_chain_starts_at_every_degree)
   dvi_integrator *integrator = start_integrator(model, methods[_i]);
   double before, after;
   ck_assert_int_eq(dvi_integrator_invariant(integrator, 0, &before), DVI_OK);
-  advance(integrator, 0.02, 3);
+  advance(integrator, 0.01, 3);
+  ck_assert_int_eq(read_counters(integrator).followed, 0);
   ck_assert_int_eq(dvi_integrator_invariant(integrator, 0, &after), DVI_OK);
   ck_assert_double_eq_tol(after, before, 1e-8 * fabs(before));
   dvi_integrator_destroy(&integrator);

@@ -17,6 +17,9 @@ static const double keep_below = 0.05;
  * Jacobian, dominates. One correction that doubles is a bad sign, and two end the iteration. */
 static const dvi__criteria roundoff = {.stagnant = 0.5, .noise = 1e4 * DBL_EPSILON, .slowest = 2.0};
 
+/* Part of the unknowns below which corrections that no longer shrink are roundings. */
+static const double rounding_part = 1e-6;
+
 /* Corrections of noisy residuals may be noise from larger ones on. */
 static dvi__criteria newton_criteria(const dvi__solver *s)
 {
@@ -71,6 +74,7 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
   dvi__history history = {0};
   double whole, last_relative = HUGE_VAL;
   int fresh = 0, growing = 0, converged = 0;
+  report->idle = 0;
   for (report->iterations = 1; report->iterations <= MOST_ITERATIONS; report->iterations++) {
     if (!fresh) DVI_TRY(dvi__solver_factor(s, x));
     DVI_TRY(dvi__solver_residual(s, x, s->residual));
@@ -86,8 +90,10 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
                  next = fresh ? ratio : ratio * ratio;
     if (progress != DVI__STALLED && !converged && is_unseen(s, next, report->correction, whole, x))
       return DVI_OK;
+    const int no_better = report->correction >= criteria.stagnant * history.before;
+    report->idle = no_better && report->correction <= rounding_part * whole ? report->idle + 1 : 0;
     int at_floor = 0;
-    if (progress != DVI__CONVERGED && report->correction >= criteria.stagnant * history.before)
+    if (progress != DVI__CONVERGED && no_better)
       DVI_TRY(dvi__solver_at_floor(s, x, history.before > 0 ? report->correction / whole : 1,
                                    &at_floor));
     if (at_floor) return DVI_OK;

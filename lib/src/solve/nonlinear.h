@@ -71,6 +71,7 @@ typedef enum dvi__rung { DVI__FIXED_POINT, DVI__SIMPLIFIED, DVI__NEWTON, DVI__KI
 /* How a solve went, for the sentence on failure. */
 typedef struct dvi__solve_report {
   int iterations;
+  int idle; /* those at the end of Newton's method whose corrections were roundings */
   /* largest change of an unknown in the first iteration of Newton's methods */
   double largest_first;
   /* first correction of Newton's methods relative to the unknowns, largest of all groups */

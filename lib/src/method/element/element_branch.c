@@ -194,7 +194,8 @@ dvi__doubt dvi__element_doubt(const dvi__stepper *self, const dvi__element_place
   if (own->rung == DVI__FIXED_POINT) return DVI__SURE;
   if (element_is_folded(self, at)) return DVI__ASTRAY;
   if (own->rung == DVI__KINSOL) return DVI__DOUBTED; /* KINSOL reports nothing of its way */
-  if (own->rung == DVI__NEWTON && report->iterations <= most_sure_iterations(own)) return DVI__SURE;
+  if (own->rung == DVI__NEWTON && report->iterations - report->idle <= most_sure_iterations(own))
+    return DVI__SURE;
   if (dvi__branch_is_near(report)) return DVI__SURE;
   return dvi__branch_is_straight(report) ? DVI__LINEAR : DVI__DOUBTED;
 }
