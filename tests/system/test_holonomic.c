@@ -254,6 +254,48 @@ START_TEST(rows_that_contradict_each_other_or_are_none_are_refused_by_name)
 }
 END_TEST
 
+/* Rows phi = (a, a + b, 2 a + b) with a = x - 1 and b = y/128 - 1, of rank 2, which differ
+ * little. */
+static int triple_value(double t, const double *q, double *phi, void *user)
+{
+  (void)t, (void)user;
+  phi[0] = q[0] - 1;
+  phi[1] = q[0] - 1 + (q[1] / 128 - 1);
+  phi[2] = 2 * (q[0] - 1) + (q[1] / 128 - 1);
+  return 0;
+}
+
+static int triple_gradient(double t, const double *q, double *phi_q, void *user)
+{
+  const double entries[] = {1, 0, 0, 1, 1.0 / 128, 0, 2, 1.0 / 128, 0};
+  (void)t, (void)q, (void)user;
+  memcpy(phi_q, entries, sizeof entries);
+  return 0;
+}
+
+/* Places are on the rows, and off them. */
+START_TEST(starts_are_projected_onto_rows_that_depend_on_others)
+{
+  static const char *const methods[] = {"galerkin", "verlet", "trapezoidal", "composition"};
+  const dvi_holonomic rows = {
+      .name = "triple", .count = 3, .value = triple_value, .gradient = triple_gradient};
+  const dvi_start_options options = {.project = 1};
+  dvi_system *system;
+  ck_assert_int_eq(create_with(rows, 1, &system), DVI_OK);
+  for (int off = 0; off < 2; off++) {
+    const double q[] = {1 + 0.01 * off, 128, -2}, p[] = {1, 3, 4};
+    dvi_integrator *integrator = create_integrator(system, methods[_i]);
+    ck_assert_msg(dvi_integrator_start_with(integrator, 0, q, p, &options) == DVI_OK, "%s",
+                  dvi_last_error());
+    ck_assert_double_eq_tol(dvi_integrator_p(integrator)[0], 0, 1e-11);
+    ck_assert_double_eq_tol(dvi_integrator_p(integrator)[1], 0, 1e-9);
+    ck_assert_double_eq_tol(dvi_integrator_p(integrator)[2], 4, 1e-15);
+    dvi_integrator_destroy(&integrator);
+  }
+  dvi_system_destroy(&system);
+}
+END_TEST
+
 START_TEST(reactions_need_a_start)
 {
   double lambda[2];
@@ -334,6 +376,7 @@ SUITE(holonomic)
   tcase_add_test(tests, a_transform_of_time_and_a_path_take_no_constraints);
   tcase_add_test(tests, the_check_compares_gradients_and_hessians);
   tcase_add_test(tests, rows_that_contradict_each_other_or_are_none_are_refused_by_name);
+  tcase_add_loop_test(tests, starts_are_projected_onto_rows_that_depend_on_others, 0, 4);
   tcase_add_test(tests, reactions_need_a_start);
   tcase_add_test(tests, a_restored_run_has_the_same_bits);
   tcase_add_test(tests, members_of_ensembles_have_the_bits_of_runs_alone);

@@ -126,10 +126,10 @@ void dvi__solver_note(const dvi__solver *solver, const double *x, dvi__solve_rep
 /* Each term of a row is itself the result of a few products and sums. */
 static const double floor_of_row = 4 * DBL_EPSILON;
 
-/* Small corrections that no longer shrink answer the roundings of some rows. Other rows, of which
- * they solve all but this part of what they move, are done. What is left there are squares of the
+/* Where corrections have settled, they answer the roundings of some rows. Other rows, of which they
+ * solve all but this part of what they move, are done. What is left there are squares of the
  * corrections, which may be above the row's own roundings. */
-static const double small_correction = 1e-4, settled_part = 1e-4;
+static const double settled_part = 1e-4;
 
 /* Add |J||x| to sum. */
 static void add_moved(const dvi__solver *solver, const double *x, double *sum)
@@ -140,14 +140,13 @@ static void add_moved(const dvi__solver *solver, const double *x, double *sum)
       sum[pattern->row[e]] += fabs(solver->values[e] * x[j]);
 }
 
-dvi_status dvi__solver_at_floor(dvi__solver *solver, const double *x, double relative,
-                                int *at_floor)
+dvi_status dvi__solver_at_floor(dvi__solver *solver, const double *x, int settled, int *at_floor)
 {
   const size_t unknowns = (size_t)solver->equations.unknowns;
   *at_floor = 0;
   if (solver->magnitude == NULL || !solver->in_use) return DVI_OK;
   memset(solver->moved, 0, unknowns * sizeof(double));
-  if (relative <= small_correction) add_moved(solver, solver->residual, solver->moved);
+  if (settled) add_moved(solver, solver->residual, solver->moved);
   DVI_TRY(dvi__solver_residual(solver, x, solver->residual));
   solver->equations.magnitudes(solver->equations.of, solver->magnitude);
   add_moved(solver, x, solver->magnitude);
@@ -313,7 +312,7 @@ static dvi_status solve_by_simplified_newton(dvi__solver *s, double size, int wa
     const dvi__progress progress = dvi__test_correction(report->correction, &history,
                                                         &frozen_criteria, whole, size);
     int converged = progress == DVI__CONVERGED;
-    if (progress == DVI__STALLED) DVI_TRY(dvi__solver_at_floor(s, x, 1, &converged));
+    if (progress == DVI__STALLED) DVI_TRY(dvi__solver_at_floor(s, x, 0, &converged));
     if (converged) return DVI_OK;
     if (progress == DVI__STALLED ||
         (wary && report->iterations == 2 && dvi__misleading(&history, whole)))

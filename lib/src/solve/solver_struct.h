@@ -28,10 +28,9 @@ dvi_status dvi__solver_residual(dvi__solver *solver, const double *x, double *r)
 dvi_status dvi__solver_factor(dvi__solver *solver, const double *x);
 
 /* Find whether every row at x is 0 to a rounding of what is summed in it and of the unknowns, as
- * the Jacobian in use sees them. solver->residual holds the last correction, of this size relative
- * to the unknowns, 1 for the first one. It is lost. */
-dvi_status dvi__solver_at_floor(dvi__solver *solver, const double *x, double relative,
-                                int *at_floor);
+ * the Jacobian in use sees them. With `settled` small corrections have not shrunk any more, and
+ * rows may be left with their squares. solver->residual holds the last correction, which is lost. */
+dvi_status dvi__solver_at_floor(dvi__solver *solver, const double *x, int settled, int *at_floor);
 
 /* Give the least part of the largest unknown beside which groups of unknowns are measured. Smaller
  * groups may be noise. */

@@ -244,7 +244,7 @@ dvi_status dvi__rows_check(dvi__evaluator *e, double t, const double *q, const d
 }
 
 /* Tell whether the momentum that is left in r->x is a rounding of its summands p, L_v in r->sum,
- * and G^T mu. */
+ * and G^T mu, and the rates behind it are no more than such roundings make of them. */
 static int momentum_is_rounding(const dvi_system *s, const dvi__rows_memory *r, const double *p,
                                 const double *mu)
 {
@@ -252,14 +252,19 @@ static int momentum_is_rounding(const dvi_system *s, const dvi__rows_memory *r, 
   for (int a = 0; a < s->row_count; a++)
     for (int k = s->rows_q.start[a]; k < s->rows_q.start[a + 1]; k++)
       r->sum[s->rows_q.row[k]] += fabs(mu[a] * r->phi_q[k]);
-  for (int i = 0; i < s->n; i++)
+  for (int i = 0; i < s->n; i++) {
     if (!(fabs(r->x[i]) <= 4 * DBL_EPSILON * r->sum[i])) return 0;
+    const double mass = r->diagonal[i] >= 0 ? fabs(r->values[r->mass_place[r->diagonal[i]]]) : 1;
+    r->sum[i] /= mass > 0 ? mass : 1;
+  }
+  for (int a = 0; a < s->row_count; a++)
+    if (!(fabs(r->x[s->n + a]) <= 16 * DBL_EPSILON * row_size(s, r->phi_q, a, r->sum))) return 0;
   return 1;
 }
 
 /* Solve L_v(v) + G^T mu = p, G v + g = 0 by Newton's method. One iteration is exact for a
- * constant mass, and a second one rounds its residual off. A velocity that is 0 has no size of its
- * own, so that then the momentum tells what a rounding is. */
+ * constant mass and independent rows, and a second one rounds its residual off. A velocity that is
+ * 0 has no size of its own, so that then the momentum tells what a rounding is. */
 dvi_status dvi__rows_project_momentum(dvi__evaluator *e, double t, const double *q, double *p,
                                       double *v)
 {
@@ -277,11 +282,11 @@ dvi_status dvi__rows_project_momentum(dvi__evaluator *e, double t, const double 
     if (iteration == 0 || !linear) DVI_TRY(dvi__rows_factor(e, t, q, v));
     dvi__rows_pull(s, r->phi_q, mu, 1, r->along[0]);
     for (int i = 0; i < n; i++) r->x[i] = p[i] - r->along[0][i];
+    dvi__rows_push(s, r->phi_q, v, r->phi_t, r->x + n);
     if (iteration >= 2 && momentum_is_rounding(s, r, p, mu)) {
       dvi__rows_pull(s, r->phi_q, mu, -1, p);
       return DVI_OK;
     }
-    dvi__rows_push(s, r->phi_q, v, r->phi_t, r->x + n);
     for (int a = 0; a < m; a++) r->x[n + a] = -r->x[n + a];
     DVI_TRY(dvi__rows_solve(r, n + m, t));
     for (int i = 0; i < n; i++) v[i] += r->x[i];
@@ -294,6 +299,16 @@ dvi_status dvi__rows_project_momentum(dvi__evaluator *e, double t, const double 
     size = change;
   }
   return dvi__fail(DVI_NOT_CONVERGED, "no velocity on the constraints was found at t = %.6g", t);
+}
+
+/* Factor the matrix, with a softness from where rows depend on others. */
+static dvi_status factor_softly(dvi__evaluator *e, double t, const double *q, const double *v)
+{
+  dvi__rows_memory *r = dvi__rows_memory_of(e);
+  const dvi_status factored = dvi__rows_factor(e, t, q, v);
+  if (factored != DVI_SINGULAR || r->softness > 0) return factored;
+  r->softness = DVI__SOFTNESS;
+  return dvi__rows_factor(e, t, q, v);
 }
 
 dvi_status dvi__rows_approach(dvi__evaluator *e, double t, double *q, double *p)
@@ -309,12 +324,7 @@ dvi_status dvi__rows_approach(dvi__evaluator *e, double t, double *q, double *p)
   DVI_TRY(place_distance(e, t, q, &next));
   for (int iteration = 0; iteration < MOST_ITERATIONS && next > 0 && next < size; iteration++) {
     size = next;
-    dvi_status factored = dvi__rows_factor(e, t, q, v);
-    if (factored == DVI_SINGULAR && r->softness == 0) {
-      r->softness = DVI__SOFTNESS;
-      factored = dvi__rows_factor(e, t, q, v);
-    }
-    DVI_TRY(factored);
+    DVI_TRY(factor_softly(e, t, q, v));
     memset(r->x, 0, n * sizeof(double));
     for (int a = 0; a < s->row_count; a++) r->x[s->n + a] = -r->phi[a];
     DVI_TRY(dvi__rows_solve(r, s->n + s->row_count, t));
@@ -322,6 +332,7 @@ dvi_status dvi__rows_approach(dvi__evaluator *e, double t, double *q, double *p)
     DVI_TRY(place_distance(e, t, r->point, &next));
     if (next < size) memcpy(q, r->point, n * sizeof *q);
   }
+  DVI_TRY(factor_softly(e, t, q, v));
   return dvi__rows_project_momentum(e, t, q, p, v);
 }
 
