@@ -29,7 +29,7 @@ dvi_status dvi__solver_factor(dvi__solver *solver, const double *x);
 
 /* Find whether every row at x is 0 to a rounding of what is summed in it and of the unknowns, as
  * the Jacobian in use sees them. With `settled` small corrections have not shrunk any more, and
- * rows may be left with their squares. solver->residual holds the last correction, which is lost. */
+ * rows may be left with their squares. solver->residual holds the last correction, and loses it. */
 dvi_status dvi__solver_at_floor(dvi__solver *solver, const double *x, int settled, int *at_floor);
 
 /* Give the least part of the largest unknown beside which groups of unknowns are measured. Smaller
