@@ -111,14 +111,17 @@ dvi_status dvi_control_guess(dvi_control *control, int points, int dimension, co
  *  @retval (others)           as dvi_path_solve */
 dvi_status dvi_control_solve(dvi_control *control, dvi_control_report *report);
 
-/** Return the number of steps N, and the time of node k, 0 <= k <= N. 0 and NaN where there is
- *  none. */
+/** Return the number of steps N. 0 before a solve. */
 int dvi_control_steps(const dvi_control *control);
+
+/** Return the time of node k, 0 <= k <= N. NaN if k is out of range, or before a solve. */
 double dvi_control_time(const dvi_control *control, int k);
 
-/** Return coordinates and momenta [n] of node k. NULL if k is out of range, or before a solve.
- *  Owned by the problem, valid until its next call. */
+/** Return the coordinates [n] of node k. NULL if k is out of range, or before a solve. Owned by the
+ *  problem, valid until its next call. */
 const double *dvi_control_q(const dvi_control *control, int k);
+
+/** Return the momenta [n] of node k, as dvi_control_q returns the coordinates. */
 const double *dvi_control_p(const dvi_control *control, int k);
 
 /** Give the costates [n] of node k: the derivatives by q and by p of the least cost from there to

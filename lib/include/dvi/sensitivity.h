@@ -89,10 +89,13 @@ dvi_status dvi_sensitivity_step(dvi_sensitivity *sensitivity, double h);
  *  Owned by the run. NULL before the start. */
 const double *dvi_sensitivity_tangent(const dvi_sensitivity *sensitivity);
 
-/** Return the time, the coordinates and the momenta [n] of the run. NaN or NULL before the
- *  start. */
+/** Return the time of the run. NaN before the start. */
 double dvi_sensitivity_time(const dvi_sensitivity *sensitivity);
+
+/** Return the coordinates [n] of the run. Owned by the run. NULL before the start. */
 const double *dvi_sensitivity_q(const dvi_sensitivity *sensitivity);
+
+/** Return the momenta [n] of the run. Owned by the run. NULL before the start. */
 const double *dvi_sensitivity_p(const dvi_sensitivity *sensitivity);
 
 /** Return the method's full specification. NULL for NULL. */

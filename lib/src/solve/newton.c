@@ -17,9 +17,6 @@ static const double keep_below = 0.05;
  * Jacobian, dominates. One correction that doubles is a bad sign, and two end the iteration. */
 static const dvi__criteria roundoff = {.stagnant = 0.5, .noise = 1e4 * DBL_EPSILON, .slowest = 2.0};
 
-/* Part of the unknowns below which corrections that no longer shrink are roundings. */
-static const double rounding_part = 1e-6;
-
 /* Small corrections that do not shrink answer the roundings of some rows. One alone may be that of
  * unknowns without effect, as multipliers of dependent rows, while the error of the others is still
  * the square of their correction. With a second one it is a square again. */
@@ -78,7 +75,7 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
   const dvi__criteria criteria = newton_criteria(s);
   dvi__history history = {0};
   double whole, last_relative = HUGE_VAL;
-  int fresh = 0, growing = 0, converged = 0, stagnant = 0;
+  int fresh = 0, growing = 0, converged = 0;
   report->idle = 0;
   for (report->iterations = 1; report->iterations <= MOST_ITERATIONS; report->iterations++) {
     if (!fresh) DVI_TRY(dvi__solver_factor(s, x));
@@ -95,14 +92,13 @@ dvi_status dvi__newton(dvi__solver *s, double size, int wary, double *x, dvi__so
                  next = fresh ? ratio : ratio * ratio;
     if (progress != DVI__STALLED && !converged && is_unseen(s, next, report->correction, whole, x))
       return DVI_OK;
-    const int no_better = report->correction >= criteria.stagnant * history.before;
-    report->idle = no_better && report->correction <= rounding_part * whole ? report->idle + 1 : 0;
+    const int no_better = report->correction >= criteria.stagnant * history.before,
+              is_idle = no_better && history.before > 0 &&
+                        report->correction <= small_correction * whole;
     int at_floor = 0;
-    stagnant = no_better && history.before > 0 && report->correction <= small_correction * whole
-                   ? stagnant + 1
-                   : 0;
+    report->idle = is_idle ? report->idle + 1 : 0;
     if (progress != DVI__CONVERGED && no_better)
-      DVI_TRY(dvi__solver_at_floor(s, x, stagnant > 1, &at_floor));
+      DVI_TRY(dvi__solver_at_floor(s, x, report->idle > 1, &at_floor));
     if (at_floor) return DVI_OK;
     converged |= progress == DVI__CONVERGED;
     if (converged && small_ones_settled(s, x, &last_relative)) return DVI_OK;

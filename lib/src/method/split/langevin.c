@@ -114,7 +114,7 @@ static dvi_status create_explicit(dvi__stepper *self, langevin *own)
                      "langevin: noise functions are taken by scheme=ovio alone; choose it");
   self->order = 2;
   const size_t n = (size_t)self->system->n, m = (size_t)self->system->row_count;
-  self->memory_count = DVI__BATH_MEMORY + 3 * n + 1 + (m > 0 ? n + DVI__RATTLE_MEMORY * m : 0);
+  self->memory_count = DVI__BATH_MEMORY + 3 * n + 1 + (m > 0 ? n + m : 0);
   return dvi__evaluator_create(self->system, 1, DVI__GRADIENTS, self->counters, &own->evaluator);
 }
 
@@ -317,13 +317,11 @@ static dvi_status explicit_step(const move *m, double h)
 static dvi_status constrained_drift(const move *m, double h, double *v)
 {
   const langevin *own = m->self->own;
-  const size_t count = (size_t)m->self->system->row_count;
-  memset(m->rows.multipliers + count, 0, (DVI__RATTLE_MEMORY - 1) * count * sizeof(double));
-  DVI_TRY(dvi__rattle_begin(own->rattle, m->state, h, m->rows.multipliers));
+  DVI_TRY(dvi__rattle_begin(own->rattle, m->state, h, m->rows.multipliers, NULL));
   find_velocity(m, v);
   drift(m, h, v);
   advance_clocks(m, h);
-  return dvi__rattle_end(own->rattle, m->state, h, m->rows.multipliers);
+  return dvi__rattle_end(own->rattle, m->state, h, m->rows.multipliers, NULL);
 }
 
 /* A(h/2) O(h) A(h/2), or A(h). */

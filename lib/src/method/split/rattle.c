@@ -412,40 +412,38 @@ static dvi_status find_multipliers(dvi__rattle *r, const dvi__state *state, doub
 
 /* The multipliers of a step's start differ from those at its end, and these from those of the next
  * start, by differences that hardly change from step to step (rattle.h). */
-static void guess_start(dvi__rattle *r, double h, double *multipliers)
+static void guess_start(dvi__rattle *r, double h, double *lambda, double *trend)
 {
   const int m = r->system->row_count;
-  double *lambda = multipliers;
-  const double *jump = multipliers + m;
   /* what has no effect at one state may have some at the next one */
-  if (r->dependent) memset(multipliers, 0, DVI__RATTLE_MEMORY * (size_t)m * sizeof *multipliers);
+  if (r->dependent) {
+    memset(lambda, 0, (size_t)m * sizeof *lambda);
+    if (trend != NULL) memset(trend, 0, DVI__RATTLE_TREND * (size_t)m * sizeof *trend);
+  }
   for (int a = 0; a < m; a++) r->mu[a] = lambda[a];
-  for (int a = 0; a < m; a++) lambda[a] += h * jump[a];
+  for (int a = 0; trend != NULL && a < m; a++) lambda[a] += h * trend[a];
 }
 
 /* A row without a multiplier before, as at the start of a run, has no difference. */
-static void note_start(const dvi__rattle *r, double h, double *multipliers)
+static void note_start(const dvi__rattle *r, double h, const double *lambda, double *trend)
 {
-  const int m = r->system->row_count;
-  const double *lambda = multipliers;
-  double *jump = multipliers + m;
-  for (int a = 0; a < m; a++)
-    if (r->mu[a] != 0) jump[a] = (lambda[a] - r->mu[a]) / h;
+  for (int a = 0; trend != NULL && a < r->system->row_count; a++)
+    if (r->mu[a] != 0) trend[a] = (lambda[a] - r->mu[a]) / h;
 }
 
-dvi_status dvi__rattle_begin(dvi__rattle *r, dvi__state *state, double h, double *multipliers)
+dvi_status dvi__rattle_begin(dvi__rattle *r, dvi__state *state, double h, double *lambda,
+                             double *trend)
 {
   const int n = r->system->n, m = r->system->row_count;
-  double *lambda = multipliers;
   r->dependent = state->side > 1;
   DVI_TRY(factor_at(r, state->t, state->q));
-  guess_start(r, h, multipliers);
+  guess_start(r, h, lambda, trend);
   dvi__mass_solve(r->evaluator, 1, state->p, r->change);
   for (int a = 0; a < m; a++) r->w[a] = 0.5 * h * h * lambda[a];
   move_by(r, r->w, r->x);
   for (int i = 0; i < n; i++) r->change[i] = h * r->change[i] - r->x[i];
   DVI_TRY(find_multipliers(r, state, h, lambda));
-  note_start(r, h, multipliers);
+  note_start(r, h, lambda, trend);
   memset(r->x, 0, (size_t)n * sizeof(double));
   dvi__rows_pull(r->system, r->phi_q, lambda, -0.5 * h, r->x);
   dvi__add_compensated_all(n, state->p, state->p_compensation, r->x);
@@ -473,20 +471,19 @@ static dvi_status correct_end(dvi__rattle *r, const dvi__state *state, double *c
   return DVI_OK;
 }
 
-static void guess_end(dvi__rattle *r, double h, const double *multipliers)
+static void guess_end(dvi__rattle *r, double h, const double *lambda, const double *trend)
 {
   const int m = r->system->row_count;
-  const double *lambda = multipliers, *change = multipliers + 2 * m;
-  for (int a = 0; a < m; a++) r->mu[a] = 0.5 * h * (lambda[a] + h * change[a]);
+  for (int a = 0; a < m; a++)
+    r->mu[a] = 0.5 * h * (lambda[a] + (trend != NULL ? h * trend[m + a] : 0));
 }
 
-static void note_end(const dvi__rattle *r, double h, double *multipliers)
+static void note_end(const dvi__rattle *r, double h, double *lambda, double *trend)
 {
   const int m = r->system->row_count;
-  double *lambda = multipliers, *change = multipliers + 2 * m;
   for (int a = 0; a < m; a++) {
     const double at_end = 2 * r->mu[a] / h;
-    change[a] = (at_end - lambda[a]) / h;
+    if (trend != NULL) trend[m + a] = (at_end - lambda[a]) / h;
     lambda[a] = at_end;
   }
 }
@@ -511,11 +508,12 @@ static dvi_status find_end(dvi__rattle *r, dvi__state *state)
   return DVI_OK;
 }
 
-dvi_status dvi__rattle_end(dvi__rattle *r, dvi__state *state, double h, double *multipliers)
+dvi_status dvi__rattle_end(dvi__rattle *r, dvi__state *state, double h, double *lambda,
+                           double *trend)
 {
-  guess_end(r, h, multipliers);
+  guess_end(r, h, lambda, trend);
   DVI_TRY(find_end(r, state));
-  note_end(r, h, multipliers);
+  note_end(r, h, lambda, trend);
   return DVI_OK;
 }
 

@@ -17,21 +17,23 @@
 
 typedef struct dvi__rattle dvi__rattle;
 
-/* Multipliers take three numbers a row in a method's memory: the last one, the difference from the
- * end of a step to the next start, and from a start to its end, both divided by h. */
-enum { DVI__RATTLE_MEMORY = 3 };
+/* Differences take two numbers a row in a method's memory, that from the end of a step to the next
+ * start, and that from a start to its end, both divided by h. */
+enum { DVI__RATTLE_TREND = 2 };
 
 dvi_status dvi__rattle_create(const dvi_system *system, dvi__evaluator *evaluator,
                               dvi_counters *counters, dvi__rattle **rattle);
 void dvi__rattle_destroy(dvi__rattle **rattle);
 
-/* Add - h/2 G^T lambda to the momentum of a state at (t0, q0), after its first kick. multipliers
- * [DVI__RATTLE_MEMORY rows]. DVI_NOT_CONVERGED, DVI_SINGULAR, DVI_NOT_FINITE, and those of
- * callbacks. */
-dvi_status dvi__rattle_begin(dvi__rattle *rattle, dvi__state *state, double h, double *multipliers);
+/* Add - h/2 G^T lambda to the momentum of a state at (t0, q0), after its first kick. lambda [rows]
+ * are the last multipliers, trend [DVI__RATTLE_TREND rows] is NULL if steps do not follow each
+ * other smoothly. DVI_NOT_CONVERGED, DVI_SINGULAR, DVI_NOT_FINITE, and those of callbacks. */
+dvi_status dvi__rattle_begin(dvi__rattle *rattle, dvi__state *state, double h, double *lambda,
+                             double *trend);
 
 /* Subtract G^T mu from the momentum of a state at (t1, q1), after its last kick. */
-dvi_status dvi__rattle_end(dvi__rattle *rattle, dvi__state *state, double h, double *multipliers);
+dvi_status dvi__rattle_end(dvi__rattle *rattle, dvi__state *state, double h, double *lambda,
+                           double *trend);
 
 /* Do the same to a momentum that another move has changed. */
 dvi_status dvi__rattle_project(dvi__rattle *rattle, dvi__state *state);

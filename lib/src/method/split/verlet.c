@@ -61,6 +61,12 @@ static double *verlet_multipliers(const dvi__stepper *self)
   return self->memory + self->system->n + 1;
 }
 
+/* Their differences (rattle.h). */
+static double *verlet_trend(const dvi__stepper *self)
+{
+  return verlet_multipliers(self) + self->system->row_count;
+}
+
 /* ---- create, destroy ---- */
 
 static const char *verlet_obstacle(const dvi_system *system)
@@ -102,7 +108,7 @@ static dvi_status verlet_create(dvi__stepper *self)
   self->order = 2;
   self->symmetric = 1;
   self->memory_count = (size_t)self->system->n + 1 +
-                       DVI__RATTLE_MEMORY * (size_t)self->system->row_count;
+                       (1 + DVI__RATTLE_TREND) * (size_t)self->system->row_count;
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "verlet: no memory");
   own->change = DVI_NEW(double, 2 * (size_t)self->system->n);
   own->supply = DVI_NEW(double, 1 + (size_t)self->system->symmetry_count);
@@ -180,7 +186,7 @@ static dvi_status verlet_begin(dvi__stepper *self, dvi__state *state, double h)
   verlet_kick(self, state, 0.5 * h);
   if (own->friction != NULL) add_friction(self, state, 0.5 * h, F);
   if (own->rattle == NULL) return DVI_OK;
-  return dvi__rattle_begin(own->rattle, state, h, verlet_multipliers(self));
+  return dvi__rattle_begin(own->rattle, state, h, verlet_multipliers(self), verlet_trend(self));
 }
 
 static dvi_status verlet_end(dvi__stepper *self, dvi__state *state, double h)
@@ -189,7 +195,8 @@ static dvi_status verlet_end(dvi__stepper *self, dvi__state *state, double h)
   const double *F;
   DVI_TRY(verlet_gradient(self, state));
   verlet_kick(self, state, 0.5 * h);
-  if (own->rattle != NULL) return dvi__rattle_end(own->rattle, state, h, verlet_multipliers(self));
+  if (own->rattle != NULL)
+    return dvi__rattle_end(own->rattle, state, h, verlet_multipliers(self), verlet_trend(self));
   if (own->friction == NULL) return DVI_OK;
   DVI_TRY(dvi__friction_end(own->friction, state, &F));
   add_friction(self, state, 0.5 * h, F);

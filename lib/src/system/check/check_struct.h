@@ -45,6 +45,10 @@ typedef struct dvi__check {
   dvi__broken_range range;
 } dvi__check;
 
+/* c->n is given. Free also after a failure. */
+dvi_status dvi__check_allocate(dvi__check *c, const dvi_system *system);
+void dvi__check_clear(dvi__check *c);
+
 /* Check gradient_range against the whole gradient, for ranges of one coordinate, of three, of half
  * of the coordinates and one more, and of all. */
 dvi_status dvi__check_ranges(dvi__check *c, const dvi__potential_term *p, const double *whole);
