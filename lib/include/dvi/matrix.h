@@ -1,0 +1,51 @@
+/** Sparse matrices by rows, as views of what their owners store. */
+#ifndef DVI_MATRIX_H
+#define DVI_MATRIX_H
+#include <dvi/status.h>
+#include <stdint.h>
+
+/** A view of a sparse matrix by rows. Row i has the entries start[i] .. start[i+1]-1, or with a
+ *  constant width the entries i*width .. (i+1)*width-1. All arrays belong to the matrix's owner. */
+typedef struct dvi_matrix {
+  int64_t rows, columns;
+  int width;            /**< entries of every row. 0 if `start` counts them */
+  int symmetric;        /**< not 0 if the matrix is symmetric. Both triangles are stored */
+  const int64_t *start; /**< [rows+1]. NULL with a width */
+  const int *column;    /**< [entries]. NULL for a diagonal matrix, whose width is 1 */
+  const int8_t *sign;   /**< [entries] -1 or 1. NULL if the entries are `value` */
+  const double *value;  /**< [entries]. NULL if the entries are `sign` */
+} dvi_matrix;
+
+/** The arrays that dvi_matrix_copy fills. */
+typedef struct dvi_matrix_arrays {
+  int by_columns; /**< not 0 for compressed columns (KLU, CHOLMOD), 0 for rows (SciPy, PETSc) */
+  int wide;       /**< not 0 if start and index are int64_t, 0 if they are int */
+  void *start;    /**< [rows+1], or [columns+1] by columns */
+  void *index;    /**< [entries] columns of a row, or rows of a column, ascending */
+  double *value;  /**< [entries] */
+} dvi_matrix_arrays;
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Return the number of stored entries. 0 for NULL. */
+int64_t dvi_matrix_entries(const dvi_matrix *matrix);
+
+/** Multiply, y = A x with x [columns] and y [rows], or y = A^T x with x [rows] and y [columns] if
+ *  `transposed` is not 0. x and y may not overlap.
+ *
+ *  Sums run in the order of the rows and of their entries, so that equal inputs give equal bits. */
+void dvi_matrix_multiply(const dvi_matrix *matrix, int transposed, const double *x, double *y);
+
+/** Copy a matrix to arrays of the caller, with entries in ascending order, to take it elsewhere.
+ *
+ *  @retval DVI_BAD_ARGUMENT  an array is missing
+ *  @retval DVI_BAD_SIZE      an int cannot count the entries. Ask for wide arrays
+ *  @retval DVI_NO_MEMORY     there is no memory for the transposition */
+dvi_status dvi_matrix_copy(const dvi_matrix *matrix, const dvi_matrix_arrays *arrays);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

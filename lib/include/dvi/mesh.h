@@ -1,0 +1,186 @@
+/** Meshes: cell complexes of dimension 1 to 4 with orientation, incidence, and named parts.
+ *
+ *  A mesh of dimension n has k-cells of every degree k from 0 (vertices) to n. A k-cell of a mesh
+ *  of simplices is an ascending tuple of k + 1 vertices, oriented by that order. A k-cell of a mesh
+ *  of boxes has 2^k corners. Bit a of a corner's number tells whether the corner is at the far end
+ *  of the cell's axis a, and the axes in their order orient the cell. Cells of degree 1 to n - 1
+ *  are numbered by their smallest vertex, then by the others. The incidence d_k has a row for each
+ *  (k+1)-cell and a column for each k-cell, and d_{k+1} d_k = 0 (Hirani 2003, ch. 2-3).
+ *
+ *  A mesh never changes after its creation. Any number of threads may use it. */
+#ifndef DVI_MESH_H
+#define DVI_MESH_H
+#include <dvi/matrix.h>
+#include <stddef.h>
+
+enum {
+  DVI_MESH_DIMENSION_MAX = 4, /**< largest dimension of cells */
+  DVI_MESH_SPACE_MAX = 8      /**< largest number of coordinates of a point */
+};
+
+typedef struct dvi_mesh dvi_mesh;
+
+/** Kinds of cells. */
+typedef enum dvi_cell_kind {
+  DVI_SIMPLICES, /**< points, edges, triangles, tetrahedra, 4-simplices */
+  DVI_BOXES      /**< points, edges, rectangles, boxes, 4-boxes */
+} dvi_cell_kind;
+
+/** A part of a mesh that has a name: some cells of one degree, with all their faces. */
+typedef struct dvi_mesh_part {
+  const char *name; /**< copied. Not empty, and neither "all" nor "boundary" */
+  int degree;       /**< of the cells, 0 to the mesh's dimension */
+  int64_t count;    /**< number of cells */
+  /** [count*(degree+1)], for boxes [count*2^degree]: the vertices of each cell in any order. Copied.
+   *  NULL if `cell` is given. */
+  const int *vertex;
+  const int *cell; /**< [count] the cells' numbers. Only for degree 0 and the mesh's dimension */
+} dvi_mesh_part;
+
+/** What a mesh consists of. Zero means the default. All arrays are copied. */
+typedef struct dvi_mesh_terms {
+  size_t size;               /**< sizeof(dvi_mesh_terms) */
+  dvi_cell_kind kind;        /**< default DVI_SIMPLICES */
+  int dimension;             /**< of the cells, n from 1 to 4 */
+  int space;                 /**< coordinates of a point, from n to 8. Default: n */
+  int64_t points;            /**< number of points. Each belongs to a cell */
+  const double *point;       /**< [points*space], point by point */
+  int64_t cells;             /**< number of cells of degree n */
+  const int *vertex;         /**< [cells*(n+1)], for boxes [cells*2^n] */
+  const dvi_mesh_part *part; /**< [parts] */
+  int parts;
+  /** [space] +1 or -1 for each axis: the metric, for stars (dvi/forms.h). Default: all +1 */
+  const double *metric;
+  /** [space] lengths after which space repeats itself, and 0 for axes that do not. Each edge is
+   *  shorter than half of them along their axis. Default: none repeats itself */
+  const double *period;
+} dvi_mesh_terms;
+
+/** Sizes of a generated mesh. Zero means the generator's default, which docs/meshes.md lists. */
+typedef struct dvi_generator_options {
+  size_t size;       /**< sizeof(dvi_generator_options) */
+  int dimension;     /**< of box, kuhn, kuhn-torus. Default: the number of `cells` that are not 0 */
+  int cells[4];      /**< cells along each axis, or the levels or rings of a curved mesh */
+  double extent[4];  /**< length of each axis, or the radii of a curved mesh */
+  double origin[4];  /**< the lower corner of a box, the centre of a curved mesh */
+  double grading[4]; /**< node i of m along an axis is at (i/m)^grading of its length. Default 1 */
+  int periodic[4];   /**< not 0 for the axes along which a box or a Kuhn mesh repeats itself */
+} dvi_generator_options;
+
+/** Options of dvi_mesh_read. */
+typedef struct dvi_mesh_read_options {
+  size_t size;        /**< sizeof(dvi_mesh_read_options) */
+  const char *format; /**< "msh", "off" or "ply". Default: by the end of the file's name */
+} dvi_mesh_read_options;
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Create a mesh from arrays.
+ *
+ *  Cells of a mesh in R^n are oriented as R^n is. Others are oriented as the first cell of their
+ *  component is given. Simplices may be given in any order.
+ *
+ *  @param[in]  terms  the mesh's points and cells
+ *  @param[out] mesh   the mesh, for dvi_mesh_destroy. NULL after a failure
+ *  @retval DVI_BAD_ARGUMENT  an array is missing, a number is not finite, an index is out of range,
+ *                            a cell is degenerate, given twice or folded over its neighbour, a
+ *                            point belongs to no cell, or a part has a cell that the mesh has not.
+ *                            dvi_last_error() names the place
+ *  @retval DVI_BAD_SIZE      a count is out of range, or an int cannot number the cells
+ *  @retval DVI_NO_MEMORY     there is no memory */
+dvi_status dvi_mesh_create(const dvi_mesh_terms *terms, dvi_mesh **mesh);
+
+/** Create one of the meshes that docs/meshes.md lists, such as "box", "kuhn" or "disk".
+ *
+ *  @param name     the generator's name
+ *  @param options  sizes. NULL for the generator's defaults
+ *  @retval DVI_BAD_OPTION  there is no such generator, or it cannot take an option
+ *  @retval (others)        as dvi_mesh_create */
+dvi_status dvi_mesh_generate(const char *name, const dvi_generator_options *options,
+                             dvi_mesh **mesh);
+
+/** Return the name of generator i, counted from 0, or NULL beyond the last one. */
+const char *dvi_mesh_generator_name(int i);
+
+/** Read a mesh from a file: MSH 2.2 or 4.1 (text or binary), OFF, or PLY.
+ *
+ *  Cells of the highest dimension in the file make the mesh. Physical groups become parts. Points
+ *  without a cell are left out.
+ *
+ *  @param options  NULL for the defaults
+ *  @retval DVI_IO_ERROR  the file could not be read
+ *  @retval DVI_BAD_FILE  the file is cut short, or is not what it claims to be
+ *  @retval (others)      as dvi_mesh_create */
+dvi_status dvi_mesh_read(const char *path, const dvi_mesh_read_options *options, dvi_mesh **mesh);
+
+/** Write a mesh to a file whose format the end of its name chooses: .msh (MSH 4.1, text, with parts
+ *  as physical groups), .off, .ply, or .vtu.
+ *
+ *  @retval DVI_BAD_OPTION   the name's end is none of these
+ *  @retval DVI_UNSUPPORTED  the format cannot hold cells of this kind
+ *  @retval DVI_IO_ERROR     the file could not be written */
+dvi_status dvi_mesh_write(const dvi_mesh *mesh, const char *path);
+
+/** Let one more owner share the mesh. Each owner calls dvi_mesh_destroy. Returns the mesh. */
+dvi_mesh *dvi_mesh_share(const dvi_mesh *mesh);
+
+/** Release the mesh, which disappears with its last owner, and set the pointer to NULL. NULL is
+ *  allowed. */
+void dvi_mesh_destroy(dvi_mesh **mesh);
+
+/** Return the dimension n of the mesh's cells. 0 for NULL. */
+int dvi_mesh_dimension(const dvi_mesh *mesh);
+
+/** Return the number of coordinates of a point. 0 for NULL. */
+int dvi_mesh_space(const dvi_mesh *mesh);
+
+/** Return the kind of the cells. */
+dvi_cell_kind dvi_mesh_kind(const dvi_mesh *mesh);
+
+/** Return the number of k-cells. 0 if k is not from 0 to n. */
+int64_t dvi_mesh_count(const dvi_mesh *mesh, int k);
+
+/** Return the points [vertices*space], point by point. Owned by the mesh. */
+const double *dvi_mesh_points(const dvi_mesh *mesh);
+
+/** Return the vertices of the k-cells [count*width], and their number in a cell, `width`. Owned by
+ *  the mesh. NULL if k is not from 1 to n. */
+const int *dvi_mesh_vertices(const dvi_mesh *mesh, int k, int *width);
+
+/** Give the incidence d_k, whose entries are signs, for k from 0 to n - 1. Its arrays are the
+ *  mesh's.
+ *
+ *  @retval DVI_BAD_ARGUMENT  k is out of range */
+dvi_status dvi_mesh_incidence(const dvi_mesh *mesh, int k, dvi_matrix *incidence);
+
+/** Return the orientations [cells], +1 or -1, that make the n-cells coherent. Owned by the mesh.
+ *  NULL if the mesh is not orientable. */
+const int8_t *dvi_mesh_orientation(const dvi_mesh *mesh);
+
+/** Return the numbers of the k-cells of a part, ascending, and their count. Owned by the mesh.
+ *
+ *  Every mesh has the parts "all" and "boundary". NULL, with a count of -1, if the mesh has no such
+ *  part. A count of 0 if the part's cells have a lower degree than k. */
+const int *dvi_mesh_part_cells(const dvi_mesh *mesh, const char *name, int k, int64_t *count);
+
+/** Return the name of part i, counted from 0 ("all"), 1 ("boundary"), or NULL beyond the last
+ *  one. Owned by the mesh. */
+const char *dvi_mesh_part_name(const dvi_mesh *mesh, int i);
+
+/** Return the degree of part i, or -1. */
+int dvi_mesh_part_degree(const dvi_mesh *mesh, int i);
+
+/** Return the Betti numbers b_0 .. b_n, which count components, tunnels, voids and so on.
+ *
+ *  b_k = N_k - rank d_k - rank d_{k-1} with ranks modulo a prime of 31 bits.
+ *
+ *  @param[out] betti  [n+1]
+ *  @retval DVI_NO_MEMORY  there is no memory for the elimination */
+dvi_status dvi_mesh_betti(const dvi_mesh *mesh, int64_t *betti);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
