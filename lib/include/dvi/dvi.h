@@ -7,9 +7,12 @@
 #include <dvi/control.h>
 #include <dvi/diagnostics.h>
 #include <dvi/ensemble.h>
+#include <dvi/forms.h>
 #include <dvi/group.h>
 #include <dvi/integrator.h>
 #include <dvi/joint.h>
+#include <dvi/matrix.h>
+#include <dvi/mesh.h>
 #include <dvi/method.h>
 #include <dvi/noise.h>
 #include <dvi/number.h>

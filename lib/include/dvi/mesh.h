@@ -31,8 +31,8 @@ typedef struct dvi_mesh_part {
   const char *name; /**< copied. Not empty, and neither "all" nor "boundary" */
   int degree;       /**< of the cells, 0 to the mesh's dimension */
   int64_t count;    /**< number of cells */
-  /** [count*(degree+1)], for boxes [count*2^degree]: the vertices of each cell in any order. Copied.
-   *  NULL if `cell` is given. */
+  /** [count*(degree+1)], for boxes [count*2^degree]: the vertices of each cell in any order.
+   *  Copied. NULL if `cell` is given. */
   const int *vertex;
   const int *cell; /**< [count] the cells' numbers. Only for degree 0 and the mesh's dimension */
 } dvi_mesh_part;

@@ -1,6 +1,6 @@
-/* Cells of each degree are found as the facets of those one degree above. Each facet of each cell is
- * a tuple of vertices. The tuples are sorted by their smallest vertex, by counting, and then among
- * those with this vertex in common, which are few. Equal tuples are one cell. The cost grows
+/* Cells of each degree are found as the facets of those one degree above. Each facet of each cell
+ * is a tuple of vertices. The tuples are sorted by their smallest vertex, by counting, and then
+ * among those with this vertex in common, which are few. Equal tuples are one cell. The cost grows
  * linearly with the number of cells. */
 #include "field/mesh/complex.h"
 
@@ -47,7 +47,7 @@ static void vertices_of(const facets *f, int at, int *vertex)
 
 static int smallest(const facets *f, int at)
 {
-  int vertex[DVI__FACET_CORNERS];
+  int vertex[DVI__FACET_CORNERS] = {0};
   vertices_of(f, at, vertex);
   int least = vertex[0];
   for (int c = 1; c < f->width; c++)
@@ -130,7 +130,7 @@ static dvi_status refuse_twisted(const facets *f, int at, int64_t facet)
 static dvi_status note_facet(facets *f, int at, int64_t facet)
 {
   dvi_mesh *mesh = f->mesh;
-  int vertex[DVI__FACET_CORNERS];
+  int vertex[DVI__FACET_CORNERS] = {0};
   vertices_of(f, at, vertex);
   const int *known = mesh->corner[f->k - 1] + facet * f->width,
             relative = mesh->kind == DVI_SIMPLICES

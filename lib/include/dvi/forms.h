@@ -1,0 +1,76 @@
+/** Discrete exterior calculus: Hodge stars of a mesh, integrals and values of differential forms.
+ *
+ *  A k-form is a cochain, an array [k-cells] of its integrals over the oriented k-cells. The mesh's
+ *  incidence d_k is its derivative, exactly (dvi/mesh.h). The star M_k has all of the metric and of
+ *  the materials: a.M_k b is the scalar product of two k-forms. With the two,
+ *
+ *      delta_{k+1} = M_k^-1 d_k^T M_{k+1},     L_k = delta_{k+1} d_k + d_{k-1} delta_k,
+ *
+ *  are the codifferential and the Laplacian of Laplace and de Rham. On functions L_0 is minus the
+ *  Laplacian (Hirani 2003, ch. 4-6, with the signs of docs/forms.md). */
+#ifndef DVI_FORMS_H
+#define DVI_FORMS_H
+#include <dvi/mesh.h>
+
+typedef struct dvi_star dvi_star;
+
+/** Kinds of stars. */
+typedef enum dvi_star_kind {
+  /** diagonal, M_k = kappa |*s|/|s| with the volume of the circumcentric dual cell, cut off at the
+   *  boundary. Duals have signs: where circumcentres lie outside of their cells, entries may be
+   *  zero or negative. kappa is 1, and -1 for cells that are timelike */
+  DVI_CIRCUMCENTRIC,
+  /** diagonal and positive for functions and for n-forms: each vertex gets its share of the cells
+   *  around it, which lumps the mass of linear finite elements. As whitney for other degrees */
+  DVI_BARYCENTRIC,
+  /** the mass matrices of Whitney's forms: linear finite elements for functions, edge and face
+   *  elements (Nedelec 1980) for other forms. Symmetric, definite, not diagonal */
+  DVI_WHITNEY
+} dvi_star_kind;
+
+/** Options of a star. Zero means the default. */
+typedef struct dvi_star_options {
+  size_t size;        /**< sizeof(dvi_star_options) */
+  dvi_star_kind kind; /**< default DVI_CIRCUMCENTRIC */
+  /** [n+1] for each degree the factor [cells] of M_k in each n-cell, or NULL for 1. Copied. A
+   *  piece of a dual cell in an n-cell counts with its factor */
+  const double *const *factor;
+} dvi_star_options;
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Create the star of a mesh, which the star shares.
+ *
+ *  @param options  NULL for the defaults
+ *  @retval DVI_BAD_ARGUMENT  a facet belongs to more than two cells, a cell has no volume in the
+ *                            mesh's metric, or a factor is not finite
+ *  @retval DVI_NO_MEMORY     there is no memory */
+dvi_status dvi_star_create(const dvi_mesh *mesh, const dvi_star_options *options, dvi_star **star);
+
+/** Let one more owner share the star. Each owner calls dvi_star_destroy. Returns the star. */
+dvi_star *dvi_star_share(const dvi_star *star);
+
+/** Release the star, and set the pointer to NULL. NULL is allowed. */
+void dvi_star_destroy(dvi_star **star);
+
+/** Return the star's mesh, owned by the star. */
+const dvi_mesh *dvi_star_mesh(const dvi_star *star);
+
+/** Give the matrix M_k of the star, [k-cells] in rows and columns. Its arrays are the star's.
+ *
+ *  The matrix of a star that is not diagonal is made by the first call for its degree.
+ *
+ *  @retval DVI_BAD_ARGUMENT  k is not from 0 to n
+ *  @retval DVI_NO_MEMORY     there is no memory */
+dvi_status dvi_star_matrix(const dvi_star *star, int k, dvi_matrix *matrix);
+
+/** Return the volumes |*s| [k-cells] of the circumcentric dual cells, with their signs. Owned by
+ *  the star. NULL for stars of another kind, or if k is out of range. */
+const double *dvi_star_duals(const dvi_star *star, int k);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,37 @@
+/* What a star stores. */
+#ifndef DVI_FIELD_FORMS_STAR_H
+#define DVI_FIELD_FORMS_STAR_H
+#include <dvi/forms.h>
+#include <pthread.h>
+#include <stdatomic.h>
+
+#include "field/mesh/mesh.h"
+
+/* An owned sparse matrix by rows. */
+typedef struct dvi__owned_matrix {
+  int64_t *start;
+  int *column;
+  double *value;
+} dvi__owned_matrix;
+
+struct dvi_star {
+  atomic_int owners;
+  dvi_mesh *mesh;
+  dvi_star_kind kind;
+  double *factor[DVI__DEGREES];   /* [cells] or NULL for 1 */
+  double *diagonal[DVI__DEGREES]; /* [k-cells] M_k, or NULL if it is not diagonal */
+  double *dual[DVI__DEGREES];     /* [k-cells] |*s|, or NULL */
+  pthread_mutex_t making;         /* held while a matrix is made */
+  dvi__owned_matrix matrix[DVI__DEGREES];
+};
+
+/* Make the diagonals and the duals of a circumcentric star. */
+dvi_status dvi__circumcentric_star(dvi_star *star);
+
+/* Refuse a cell without volume in the mesh's metric. */
+dvi_status dvi__refuse_null(const dvi_mesh *mesh, int k, int64_t cell);
+
+/* Make the matrix of degree k of Whitney's forms. */
+dvi_status dvi__whitney_star(dvi_star *star, int k);
+
+#endif
