@@ -8,7 +8,7 @@ END {
   }
   count = split(text, line, "\n")
   for (i = 1; i <= count; i++)
-    if (line[i] ~ /^ (const |unsigned )*[a-z][a-z_]* \**dvi_[a-z_0-9]+\(/) {
+    if (line[i] ~ /^ (const |unsigned )*[a-z][a-z_0-9]* \**dvi_[a-z_0-9]+\(/) {
       name = line[i]
       sub(/\(.*/, "", name)
       sub(/.*[ *]/, "", name)

@@ -125,7 +125,7 @@ function is_seen(target,   whole) {
 
 function check_public(quoted, header) {
   if (quoted || (header !~ /^dvi\// && !(header in standard)))
-    breach("a public header includes only <dvi/...>, <math.h>, <stdarg.h>, <stddef.h> and <stdint.h>")
+    breach("a public header includes only <dvi/...>, <math.h>, <stdarg.h>, <stddef.h>, <stdint.h>")
 }
 
 # The command, the problems and the examples are users of the library.

@@ -37,6 +37,11 @@ typedef struct dvi_star_options {
   const double *const *factor;
 } dvi_star_options;
 
+/** A differential k-form at a point x [space]. Its components are in the order of their axes, those
+ *  of a 2-form in space at dx^dy, dx^dz, dy^dz. So a magnetic field (Bx, By, Bz) has the components
+ *  Bz, -By, Bx. Return 0, or another number for a failure. */
+typedef int dvi_form_function(const double *x, double *value, void *user);
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -69,6 +74,36 @@ dvi_status dvi_star_matrix(const dvi_star *star, int k, dvi_matrix *matrix);
 /** Return the volumes |*s| [k-cells] of the circumcentric dual cells, with their signs. Owned by
  *  the star. NULL for stars of another kind, or if k is out of range. */
 const double *dvi_star_duals(const dvi_star *star, int k);
+
+/** Return the number of components of a k-form in a space: the binomial coefficient. 0 if k is not
+ *  from 0 to `space`, or `space` not from 1 to 8. */
+int dvi_form_components(int space, int k);
+
+/** Integrate a form over the k-cells (de Rham's map), by Gauss's rule with 5 points an axis.
+ *
+ *  The rule is exact for polynomials of degree 9 - k + 1 on simplices, and of degree 9 in each axis
+ *  on boxes. In a space that repeats itself, a cell is placed at its first vertex.
+ *
+ *  @param[out] form  [k-cells]
+ *  @retval DVI_BAD_ARGUMENT     an argument is missing, or k is out of range
+ *  @retval DVI_CALLBACK_FAILED  the function returned a number that is not 0
+ *  @retval DVI_NOT_FINITE       a value is not finite. dvi_last_error() names the place */
+dvi_status dvi_form_integrate(const dvi_mesh *mesh, int k, dvi_form_function *function, void *user,
+                              double *form);
+
+/** Give the value of Whitney's interpolation of a form at a place in an n-cell.
+ *
+ *  Functions are interpolated linearly (on boxes, in each axis), and d of the interpolation is the
+ *  interpolation of d (Whitney 1957, sec. IV.27).
+ *
+ *  @param      form   [k-cells]
+ *  @param      place  [n+1] barycentric coordinates in the order of dvi_mesh_vertices, or [n]
+ *                     coordinates from 0 to 1 along the axes of a box
+ *  @param[out] value  [dvi_form_components(space, k)]
+ *  @retval DVI_BAD_ARGUMENT  an argument is missing, or k or the cell is out of range, or the cell
+ *                            has no volume in the mesh's metric */
+dvi_status dvi_form_evaluate(const dvi_mesh *mesh, int k, const double *form, int64_t cell,
+                             const double *place, double *value);
 
 #ifdef __cplusplus
 }

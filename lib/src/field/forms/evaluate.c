@@ -1,0 +1,112 @@
+/* Whitney's interpolation of a form in a cell (whitney.c has the forms). */
+#include <math.h>
+#include <string.h>
+
+#include "core/status.h"
+#include "field/forms/assemble.h"
+#include "field/forms/component.h"
+#include "field/forms/gram.h"
+#include "field/mesh/complex.h"
+
+/* One n-cell, and a place in it. */
+typedef struct spot {
+  const dvi_mesh *mesh;
+  int k;
+  const double *place;
+  double covector[DVI__SIMPLEX_CORNERS][DVI_MESH_SPACE_MAX]; /* d lambda_i, or d xi of axis i */
+} spot;
+
+/* Add weight times the wedge product of k covectors. */
+static void add_wedge(const spot *s, const double *const *covector, double weight, double *value)
+{
+  int axis[DVI_MESH_DIMENSION_MAX], component = 0;
+  dvi__first_axes(s->k, axis);
+  do value[component++] += weight * dvi__minor(s->k, covector, axis);
+  while (dvi__next_axes(s->mesh->space, s->k, axis));
+}
+
+/* Add k! sum_i (-1)^i lambda_i d lambda without i, for the corners of a face. */
+static void add_simplex_form(const spot *s, const int *corner, double a, double *value)
+{
+  static const double factorial[] = {1, 1, 2, 6, 24};
+  for (int i = 0; i <= s->k; i++) {
+    const double *covector[DVI__SIMPLEX_CORNERS];
+    for (int j = 0, at = 0; j <= s->k; j++)
+      if (j != i) covector[at++] = s->covector[corner[j]];
+    const double weight = a * factorial[s->k] * s->place[corner[i]];
+    add_wedge(s, covector, i % 2 == 0 ? weight : -weight, value);
+  }
+}
+
+/* Faces of a box are told by the bits of their first and of their last corner. */
+static void add_box_form(const spot *s, const int *corner, double a, double *value)
+{
+  const int axes = corner[0] ^ corner[(1 << s->k) - 1];
+  const double *covector[DVI_MESH_DIMENSION_MAX];
+  for (int axis = 0, at = 0; axis < s->mesh->n; axis++)
+    if (axes >> axis & 1)
+      covector[at++] = s->covector[axis];
+    else
+      a *= corner[0] >> axis & 1 ? s->place[axis] : 1 - s->place[axis];
+  add_wedge(s, covector, a, value);
+}
+
+/* Find d lambda_i = sum_j g_ij metric u_j, with g_ij = grad lambda_i . grad lambda_j. */
+static int find_covectors(spot *s, int64_t cell)
+{
+  static const int all[] = {0, 1, 2, 3, 4};
+  const int n = s->mesh->n, is_box = s->mesh->kind == DVI_BOXES;
+  double square[DVI_MESH_DIMENSION_MAX];
+  dvi__placed placed;
+  dvi__simplex simplex = {.kappa = 1};
+  dvi__place_cell(s->mesh, n, cell, &placed);
+  if (is_box)
+    dvi__box_squares(&placed, n, square);
+  else
+    dvi__simplex_of(&placed, n, all, &simplex);
+  for (int i = 0; i <= n - is_box; i++)
+    for (int l = 0; l < s->mesh->space; l++) {
+      double sum = is_box ? placed.x[1 << i][l] / square[i] : 0;
+      for (int j = 1; j <= n && !is_box; j++) sum += simplex.gradient[i][j] * placed.x[j][l];
+      s->covector[i][l] = s->mesh->metric[l] * sum;
+      if (!isfinite(s->covector[i][l])) return 0;
+    }
+  return simplex.kappa != 0;
+}
+
+/* Add the forms of all faces of the cell. */
+static void add_faces(const spot *s, const double *form, int64_t cell, double *value)
+{
+  const dvi_mesh *mesh = s->mesh;
+  const int corners = dvi__corners(mesh->kind, s->k),
+            *vertex_of = mesh->corner[mesh->n] + cell * dvi__corners(mesh->kind, mesh->n);
+  dvi__local_faces faces;
+  dvi__find_local_faces(mesh->kind, mesh->n, s->k, &faces);
+  for (int i = 0; i < faces.count; i++) {
+    int vertex[DVI__CORNERS], sign = 1;
+    for (int c = 0; c < corners; c++) vertex[c] = vertex_of[faces.corner[i][c]];
+    const int64_t face = s->k == mesh->n ? cell : dvi__complex_find(mesh, s->k, vertex);
+    if (s->k > 0)
+      sign = dvi__relative_orientation(mesh->kind, s->k, vertex,
+                                       mesh->corner[s->k] + face * corners);
+    if (mesh->kind == DVI_BOXES)
+      add_box_form(s, faces.corner[i], sign * form[face], value);
+    else
+      add_simplex_form(s, faces.corner[i], sign * form[face], value);
+  }
+}
+
+dvi_status dvi_form_evaluate(const dvi_mesh *mesh, int k, const double *form, int64_t cell,
+                             const double *place, double *value)
+{
+  if (mesh == NULL || form == NULL || place == NULL || value == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "forms: a mesh, a form, a place and an array are needed");
+  if (k < 0 || k > mesh->n || cell < 0 || cell >= mesh->count[mesh->n])
+    return dvi__fail(DVI_BAD_ARGUMENT, "forms: there is no degree %d, or no cell %lld", k,
+                     (long long)cell);
+  spot s = {.mesh = mesh, .k = k, .place = place};
+  if (!find_covectors(&s, cell)) return dvi__refuse_null(mesh, mesh->n, cell);
+  memset(value, 0, (size_t)dvi_form_components(mesh->space, k) * sizeof *value);
+  add_faces(&s, form, cell, value);
+  return DVI_OK;
+}
