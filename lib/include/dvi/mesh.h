@@ -104,6 +104,18 @@ dvi_status dvi_mesh_generate(const char *name, const dvi_generator_options *opti
 /** Return the name of generator i, counted from 0, or NULL beyond the last one. */
 const char *dvi_mesh_generator_name(int i);
 
+/** Triangulate points in two to four dimensions: the simplices whose circumscribed spheres have no
+ *  point inside (Delaunay 1934).
+ *
+ *  Of points on one sphere, as those of a grid, some triangulation is taken.
+ *
+ *  @param point  [points*dimension], point by point. Copied
+ *  @retval DVI_BAD_ARGUMENT  a coordinate is not finite, or all points lie in a plane, or two
+ *                            points are equal
+ *  @retval DVI_BAD_SIZE      the dimension is not 2 to 4, or there are too few points
+ *  @retval (others)          as dvi_mesh_create */
+dvi_status dvi_mesh_delaunay(int dimension, int64_t points, const double *point, dvi_mesh **mesh);
+
 /** Read a mesh from a file: MSH 2.2 or 4.1 (text or binary), OFF, or PLY.
  *
  *  Cells of the highest dimension in the file make the mesh. Physical groups become parts. Points

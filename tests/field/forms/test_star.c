@@ -79,6 +79,28 @@ START_TEST(dual_volumes_fill_a_mesh)
 }
 END_TEST
 
+/* Random points have simplices of every shape. */
+START_TEST(dual_volumes_fill_delaunays_triangulation)
+{
+  enum { POINTS = 200 };
+  for (int n = 2; n <= 4; n++) {
+    double point[4 * POINTS];
+    unsigned long long state = (unsigned)n;
+    dvi_mesh *mesh;
+    for (int i = 0; i < n * POINTS; i++) point[i] = random_number(&state);
+    ck_assert_msg(dvi_mesh_delaunay(n, POINTS, point, &mesh) == DVI_OK, "%s", dvi_last_error());
+    check_sum_of_duals(mesh);
+    dvi_star *star = star_of(mesh, DVI_CIRCUMCENTRIC);
+    int negative = 0;
+    for (int64_t e = 0; e < dvi_mesh_count(mesh, 1); e++)
+      negative += dvi_star_duals(star, 1)[e] < 0;
+    ck_assert_int_gt(negative, 0);
+    dvi_star_destroy(&star);
+    dvi_mesh_destroy(&mesh);
+  }
+}
+END_TEST
+
 /* ---- affine functions ---- */
 
 /* Set r = d0^T M1 d0 u at all vertices. */
@@ -265,6 +287,7 @@ SUITE(star)
 {
   tcase_add_test(tests, dual_volumes_fill_a_simplex);
   tcase_add_test(tests, dual_volumes_fill_a_mesh);
+  tcase_add_test(tests, dual_volumes_fill_delaunays_triangulation);
   tcase_add_test(tests, affine_functions_have_no_laplacian);
   tcase_add_test(tests, constant_forms_have_their_norm);
   tcase_add_test(tests, staggered_triangles_have_their_eigenvalues);
