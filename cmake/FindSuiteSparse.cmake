@@ -1,5 +1,5 @@
-# Finds KLU, LDL and CHOLMOD by their headers and libraries: SuiteSparse has CMake packages only from
-# version 7 on.
+# Finds KLU, LDL and CHOLMOD by their headers and libraries: SuiteSparse has CMake packages only
+# from version 7 on.
 # Gives SuiteSparse::SuiteSparse, and SuiteSparse_FOUND.
 
 find_path(SuiteSparse_INCLUDE_DIR klu.h PATH_SUFFIXES suitesparse)

@@ -7,11 +7,12 @@
  *      delta_{k+1} = M_k^-1 d_k^T M_{k+1},     L_k = delta_{k+1} d_k + d_{k-1} delta_k,
  *
  *  are the codifferential and the Laplacian of Laplace and de Rham. On functions L_0 is minus the
- *  Laplacian (Hirani 2003, ch. 4-6, with the signs of docs/forms.md). */
+ *  Laplacian (Hirani 2003, ch. 4-6, with the signs of docs/fields/forms.md). */
 #ifndef DVI_FORMS_H
 #define DVI_FORMS_H
 #include <dvi/mesh.h>
 
+/** A star. */
 typedef struct dvi_star dvi_star;
 
 /** Kinds of stars. */

@@ -18,6 +18,7 @@ enum {
   DVI_MESH_SPACE_MAX = 8      /**< largest number of coordinates of a point */
 };
 
+/** A mesh. */
 typedef struct dvi_mesh dvi_mesh;
 
 /** Kinds of cells. */
@@ -56,7 +57,7 @@ typedef struct dvi_mesh_terms {
   const double *period;
 } dvi_mesh_terms;
 
-/** Sizes of a generated mesh. Zero means the generator's default, which docs/meshes.md lists. */
+/** Sizes of a generated mesh. Zero means the generator's default (docs/fields/meshes.md). */
 typedef struct dvi_generator_options {
   size_t size;       /**< sizeof(dvi_generator_options) */
   int dimension;     /**< of box, kuhn, kuhn-torus. Default: the number of `cells` that are not 0 */
@@ -66,12 +67,6 @@ typedef struct dvi_generator_options {
   double grading[4]; /**< node i of m along an axis is at (i/m)^grading of its length. Default 1 */
   int periodic[4];   /**< not 0 for the axes along which a box or a Kuhn mesh repeats itself */
 } dvi_generator_options;
-
-/** Options of dvi_mesh_read. */
-typedef struct dvi_mesh_read_options {
-  size_t size;        /**< sizeof(dvi_mesh_read_options) */
-  const char *format; /**< "msh", "off" or "ply". Default: by the end of the file's name */
-} dvi_mesh_read_options;
 
 #ifdef __cplusplus
 extern "C" {
@@ -92,7 +87,7 @@ extern "C" {
  *  @retval DVI_NO_MEMORY     there is no memory */
 dvi_status dvi_mesh_create(const dvi_mesh_terms *terms, dvi_mesh **mesh);
 
-/** Create one of the meshes that docs/meshes.md lists, such as "box", "kuhn" or "disk".
+/** Create one of the meshes that docs/fields/meshes.md lists, such as "box", "kuhn" or "disk".
  *
  *  @param name     the generator's name
  *  @param options  sizes. NULL for the generator's defaults
@@ -115,25 +110,6 @@ const char *dvi_mesh_generator_name(int i);
  *  @retval DVI_BAD_SIZE      the dimension is not 2 to 4, or there are too few points
  *  @retval (others)          as dvi_mesh_create */
 dvi_status dvi_mesh_delaunay(int dimension, int64_t points, const double *point, dvi_mesh **mesh);
-
-/** Read a mesh from a file: MSH 2.2 or 4.1 (text or binary), OFF, or PLY.
- *
- *  Cells of the highest dimension in the file make the mesh. Physical groups become parts. Points
- *  without a cell are left out.
- *
- *  @param options  NULL for the defaults
- *  @retval DVI_IO_ERROR  the file could not be read
- *  @retval DVI_BAD_FILE  the file is cut short, or is not what it claims to be
- *  @retval (others)      as dvi_mesh_create */
-dvi_status dvi_mesh_read(const char *path, const dvi_mesh_read_options *options, dvi_mesh **mesh);
-
-/** Write a mesh to a file whose format the end of its name chooses: .msh (MSH 4.1, text, with parts
- *  as physical groups), .off, .ply, or .vtu.
- *
- *  @retval DVI_BAD_OPTION   the name's end is none of these
- *  @retval DVI_UNSUPPORTED  the format cannot hold cells of this kind
- *  @retval DVI_IO_ERROR     the file could not be written */
-dvi_status dvi_mesh_write(const dvi_mesh *mesh, const char *path);
 
 /** Let one more owner share the mesh. Each owner calls dvi_mesh_destroy. Returns the mesh. */
 dvi_mesh *dvi_mesh_share(const dvi_mesh *mesh);

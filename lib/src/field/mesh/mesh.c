@@ -39,10 +39,10 @@ static dvi__cell_name name_by_vertices(dvi_cell_kind kind, int k, int64_t cell, 
 
 dvi__cell_name dvi__name_cell(const dvi_mesh *mesh, int k, int64_t cell)
 {
+  const int *corner = mesh->corner[k];
   dvi__cell_name name;
-  if (k > 0)
-    return name_by_vertices(mesh->kind, k, cell,
-                            mesh->corner[k] + cell * dvi__corners(mesh->kind, k));
+  if (corner != NULL)
+    return name_by_vertices(mesh->kind, k, cell, corner + cell * dvi__corners(mesh->kind, k));
   (void)snprintf(name.text, sizeof name.text, "vertex %lld", (long long)cell);
   return name;
 }

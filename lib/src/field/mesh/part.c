@@ -195,6 +195,19 @@ dvi_status dvi__parts_create(dvi_mesh *mesh, const dvi_mesh_terms *terms)
   return status;
 }
 
+dvi_status dvi__part_add(dvi_mesh *mesh, const char *name, int degree, char *marked)
+{
+  const size_t parts = (size_t)mesh->parts;
+  dvi__part *more = DVI_NEW(dvi__part, parts + 1);
+  if (more == NULL) return no_memory(name);
+  memcpy(more, mesh->part, parts * sizeof *more);
+  dvi__release(mesh->part);
+  mesh->part = more;
+  mesh->parts++;
+  DVI_TRY(name_part(more + parts, name, degree));
+  return take_closure(mesh, more + parts, marked);
+}
+
 void dvi__parts_clear(dvi_mesh *mesh)
 {
   for (int p = 0; p < mesh->parts; p++) {

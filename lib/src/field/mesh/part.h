@@ -5,6 +5,10 @@
 
 /* Make the parts "all" and "boundary", then those that are declared. */
 dvi_status dvi__parts_create(dvi_mesh *mesh, const dvi_mesh_terms *terms);
+/* Add a part of the marked cells of a degree to a mesh that nobody shares yet. `marked` has room
+ * for the cells of any lower degree, and is overwritten. */
+dvi_status dvi__part_add(dvi_mesh *mesh, const char *name, int degree, char *marked);
+
 void dvi__parts_clear(dvi_mesh *mesh);
 
 #endif

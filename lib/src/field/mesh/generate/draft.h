@@ -1,0 +1,34 @@
+/* The points and cells of a generated mesh, before it is one. */
+#ifndef DVI_FIELD_MESH_GENERATE_DRAFT_H
+#define DVI_FIELD_MESH_GENERATE_DRAFT_H
+#include "field/mesh/mesh.h"
+
+enum { DVI__SIDES = 8 };
+
+typedef struct dvi__draft {
+  dvi_mesh_terms terms;
+  double *point; /* terms.point */
+  int *vertex;   /* terms.vertex */
+  double period[DVI_MESH_SPACE_MAX];
+  unsigned char *side;          /* [points] bit i: the point lies on side i */
+  const char *name[DVI__SIDES]; /* of the parts of the boundary, NULL for none */
+} dvi__draft;
+
+/* Options with all defaults filled in. */
+typedef dvi_generator_options dvi__sizes;
+
+/* Allocate the arrays. `generator` is for messages. DVI_BAD_OPTION if an int cannot number the
+ * points or the corners of the cells. */
+dvi_status dvi__draft_allocate(dvi__draft *draft, const char *generator, double points,
+                               double cells);
+
+/* Give the number of points of a grid along an axis, and the place of one of them. */
+int dvi__nodes_along(const dvi__sizes *sizes, int axis);
+double dvi__node_at(const dvi__sizes *sizes, int axis, int node);
+
+/* The generators. They fill in a draft by sizes that have been checked. */
+typedef dvi_status dvi__generator(const dvi__sizes *sizes, dvi__draft *draft);
+dvi__generator dvi__generate_box, dvi__generate_kuhn, dvi__generate_staggered;
+dvi__generator dvi__generate_icosphere;
+
+#endif

@@ -1,0 +1,216 @@
+/* The table of generators, and what they have in common. */
+#include <limits.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "field/mesh/generate/draft.h"
+#include "field/mesh/part.h"
+
+/* What an option of a generator may be. */
+typedef struct kind {
+  const char *name;
+  dvi__generator *generate;
+  int least, most; /* dimensions, or for curved meshes 0 */
+  int cells[4];    /* defaults, for as many entries as count */
+  int fewest;      /* cells along an axis */
+  int is_periodic; /* along all axes */
+  int takes_grading, takes_periods;
+  int sizes; /* number of entries of `extent` of a mesh without dimensions */
+} kind;
+
+static const kind kinds[] = {
+    {"interval", dvi__generate_box, 1, 1, {8}, 1, 0, 1, 1, 0},
+    {"box", dvi__generate_box, 1, 4, {8, 8, 8, 8}, 1, 0, 1, 1, 0},
+    {"kuhn", dvi__generate_kuhn, 1, 4, {8, 8, 8, 8}, 1, 0, 1, 1, 0},
+    {"kuhn-torus", dvi__generate_kuhn, 1, 4, {8, 8, 8, 8}, 3, 1, 1, 0, 0},
+    {"staggered", dvi__generate_staggered, 2, 2, {8, 8}, 1, 0, 0, 0, 0},
+    {"icosphere", dvi__generate_icosphere, 0, 0, {3}, 0, 0, 0, 0, 1},
+};
+enum { KINDS = sizeof kinds / sizeof *kinds, LEVELS = 12 };
+
+const char *dvi_mesh_generator_name(int i)
+{
+  return i >= 0 && i < KINDS ? kinds[i].name : NULL;
+}
+
+/* ---- options ---- */
+
+static dvi_status refuse(const kind *k, const char *option, double value)
+{
+  return dvi__fail(DVI_BAD_OPTION, "mesh %s: %s cannot be %g", k->name, option, value);
+}
+
+/* The dimension is that of the option, or the number of cells that are given. */
+static dvi_status find_dimension(const kind *k, const dvi_generator_options *given,
+                                 dvi__sizes *sizes)
+{
+  int count = 0;
+  while (count < 4 && given->cells[count] != 0) count++;
+  sizes->dimension = given->dimension != 0 ? given->dimension : count;
+  if (sizes->dimension == 0) sizes->dimension = k->most < 3 ? k->most : 2;
+  if (k->most == 0) sizes->dimension = 1; /* one number of cells */
+  if (given->dimension != 0 && k->most == 0) return refuse(k, "dimension", given->dimension);
+  if (k->most > 0 && (sizes->dimension < k->least || sizes->dimension > k->most))
+    return dvi__fail(DVI_BAD_OPTION, "mesh %s: %d numbers of cells are given, and %d to %d needed",
+                     k->name, sizes->dimension, k->least, k->most);
+  for (int i = sizes->dimension; i < 4; i++)
+    if (given->cells[i] != 0) return refuse(k, "a further number of cells", given->cells[i]);
+  return DVI_OK;
+}
+
+static dvi_status take_cells(const kind *k, const dvi_generator_options *given, dvi__sizes *sizes)
+{
+  for (int i = 0; i < sizes->dimension; i++) {
+    sizes->periodic[i] = k->is_periodic || given->periodic[i];
+    const int fewest = sizes->periodic[i] ? 3 : k->fewest;
+    sizes->cells[i] = given->cells[i] != 0 ? given->cells[i] : k->cells[i];
+    if (given->periodic[i] && !k->takes_periods && !k->is_periodic)
+      return refuse(k, "periodic", given->periodic[i]);
+    if (sizes->cells[i] < fewest)
+      return dvi__fail(DVI_BAD_OPTION, "mesh %s: %d cells along axis %d are fewer than %d", k->name,
+                       sizes->cells[i], i, fewest);
+  }
+  return DVI_OK;
+}
+
+/* Each length and grading is positive, and only those that count are given. */
+static dvi_status take_lengths(const kind *k, const dvi_generator_options *given, dvi__sizes *sizes)
+{
+  const int lengths = k->most > 0 ? sizes->dimension : k->sizes;
+  for (int i = 0; i < 4; i++) {
+    sizes->extent[i] = given->extent[i] != 0 ? given->extent[i] : 1;
+    sizes->grading[i] = given->grading[i] != 0 ? given->grading[i] : 1;
+    sizes->origin[i] = given->origin[i];
+    const int counts = i < lengths, is_graded = sizes->grading[i] != 1;
+    if (!(sizes->extent[i] > 0) || !isfinite(sizes->extent[i]) ||
+        (given->extent[i] != 0 && !counts))
+      return refuse(k, "a size", given->extent[i]);
+    if (!(sizes->grading[i] > 0) || !isfinite(sizes->grading[i]) ||
+        (is_graded && (!counts || !k->takes_grading)))
+      return refuse(k, "a grading", given->grading[i]);
+    if (!isfinite(sizes->origin[i])) return refuse(k, "an origin", given->origin[i]);
+  }
+  return DVI_OK;
+}
+
+static dvi_status take_options(const kind *k, const dvi_generator_options *given, dvi__sizes *sizes)
+{
+  if (given->size != sizeof *given)
+    return dvi__fail(DVI_BAD_ARGUMENT, "mesh %s: set options.size to sizeof(dvi_generator_options)",
+                     k->name);
+  DVI_TRY(find_dimension(k, given, sizes));
+  DVI_TRY(take_cells(k, given, sizes));
+  DVI_TRY(take_lengths(k, given, sizes));
+  if (k->most == 0 && sizes->cells[0] > LEVELS)
+    return dvi__fail(DVI_BAD_OPTION, "mesh %s: %d levels are too many, take %d at most", k->name,
+                     sizes->cells[0], (int)LEVELS);
+  return DVI_OK;
+}
+
+/* ---- drafts ---- */
+
+dvi_status dvi__draft_allocate(dvi__draft *draft, const char *generator, double points,
+                               double cells)
+{
+  dvi_mesh_terms *terms = &draft->terms;
+  const int corners = dvi__corners(terms->kind, terms->dimension),
+            space = terms->space > 0 ? terms->space : terms->dimension;
+  if (points >= INT_MAX || cells * corners >= INT_MAX)
+    return dvi__fail(DVI_BAD_OPTION, "mesh %s: %.3g points and %.3g cells are too many", generator,
+                     points, cells);
+  terms->points = (int64_t)points;
+  terms->cells = (int64_t)cells;
+  terms->point = draft->point = DVI_NEW(double, terms->points *space);
+  terms->vertex = draft->vertex = DVI_NEW(int, terms->cells *corners);
+  draft->side = DVI_NEW(unsigned char, terms->points);
+  if (draft->point == NULL || draft->vertex == NULL || draft->side == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "mesh %s: no memory for %.3g cells", generator, cells);
+  return DVI_OK;
+}
+
+int dvi__nodes_along(const dvi__sizes *sizes, int axis)
+{
+  return sizes->cells[axis] + !sizes->periodic[axis];
+}
+
+double dvi__node_at(const dvi__sizes *sizes, int axis, int node)
+{
+  const double part = (double)node / sizes->cells[axis];
+  return sizes->origin[axis] + sizes->extent[axis] * pow(part, sizes->grading[axis]);
+}
+
+/* ---- the mesh ---- */
+
+/* A facet of the boundary belongs to each side on which all of its vertices lie. */
+static dvi_status add_side(dvi_mesh *mesh, const dvi__draft *draft, int side, char *marked)
+{
+  int64_t count = 0, rim;
+  const int *facet = dvi_mesh_part_cells(mesh, "boundary", mesh->n - 1, &rim),
+            corners = dvi__corners(mesh->kind, mesh->n - 1);
+  memset(marked, 0, (size_t)mesh->count[mesh->n - 1]);
+  for (int64_t i = 0; i < rim; i++) {
+    int on_side = 1;
+    const int *corner = mesh->n > 1 ? mesh->corner[mesh->n - 1] + (int64_t)facet[i] * corners
+                                    : facet + i;
+    for (int c = 0; c < corners; c++) on_side &= draft->side[corner[c]] >> side;
+    marked[facet[i]] = (char)on_side;
+    count += on_side;
+  }
+  if (count == 0) return DVI_OK;
+  return dvi__part_add(mesh, draft->name[side], mesh->n - 1, marked);
+}
+
+static dvi_status add_sides(dvi_mesh *mesh, const dvi__draft *draft)
+{
+  dvi_status status = DVI_OK;
+  int64_t most = 0;
+  for (int k = 0; k < mesh->n; k++) most = mesh->count[k] > most ? mesh->count[k] : most;
+  char *marked = DVI_NEW(char, most);
+  if (marked == NULL) return dvi__fail(DVI_NO_MEMORY, "mesh: no memory for parts");
+  for (int i = 0; i < DVI__SIDES && status == DVI_OK; i++)
+    if (draft->name[i] != NULL) status = add_side(mesh, draft, i, marked);
+  dvi__release(marked);
+  return status;
+}
+
+static dvi_status generate(const kind *k, const dvi__sizes *sizes, dvi_mesh **mesh)
+{
+  dvi__draft draft = {.terms = {.size = sizeof draft.terms}};
+  dvi_status status = k->generate(sizes, &draft);
+  draft.terms.period = draft.period;
+  if (status == DVI_OK) status = dvi_mesh_create(&draft.terms, mesh);
+  if (status == DVI_OK) status = add_sides(*mesh, &draft);
+  if (status != DVI_OK) dvi_mesh_destroy(mesh);
+  dvi__release(draft.point);
+  dvi__release(draft.vertex);
+  dvi__release(draft.side);
+  return status;
+}
+
+static dvi_status refuse_name(const char *name)
+{
+  char list[256] = "";
+  for (int i = 0; i < KINDS; i++) {
+    const size_t at = strlen(list);
+    (void)snprintf(list + at, sizeof list - at, "%s%s", i > 0 ? ", " : "", kinds[i].name);
+  }
+  return dvi__fail(DVI_BAD_OPTION, "mesh: there is no generator \"%s\"; there are %s", name, list);
+}
+
+dvi_status dvi_mesh_generate(const char *name, const dvi_generator_options *options,
+                             dvi_mesh **mesh)
+{
+  const dvi_generator_options defaults = {.size = sizeof defaults};
+  dvi__sizes sizes = {.size = sizeof sizes};
+  int i = 0;
+  if (name == NULL || mesh == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "mesh: a generator's name and a mesh are needed");
+  *mesh = NULL;
+  while (i < KINDS && strcmp(kinds[i].name, name) != 0) i++;
+  if (i == KINDS) return refuse_name(name);
+  DVI_TRY(take_options(kinds + i, options != NULL ? options : &defaults, &sizes));
+  return generate(kinds + i, &sizes, mesh);
+}
