@@ -257,7 +257,167 @@ START_TEST(kuhn_simplices_have_the_stencil_of_cubes)
 }
 END_TEST
 
+/* ---- boxes ---- */
+
+static dvi_mesh *box(int n)
+{
+  dvi_mesh *mesh = NULL;
+  const dvi_generator_options options = {.size = sizeof options,
+                                         .dimension = n,
+                                         .cells = {3, n > 1 ? 2 : 0, n > 2 ? 2 : 0, n > 3},
+                                         .extent = {1, n > 1 ? 0.8 : 0, n > 2 ? 0.6 : 0},
+                                         .grading = {2}};
+  ck_assert_msg(dvi_mesh_generate("box", &options, &mesh) == DVI_OK, "%s", dvi_last_error());
+  return mesh;
+}
+
+/* The entry of a k-cell is the product of h across it over the product of h along it, with half of
+ * the cells on each side of it. */
+START_TEST(boxes_have_the_star_of_yee)
+{
+  for (int n = 1; n <= 4; n++) {
+    dvi_mesh *mesh = box(n);
+    check_sum_of_duals(mesh);
+    dvi_mesh_destroy(&mesh);
+  }
+  dvi_mesh *mesh = box(2);
+  dvi_star *star = star_of(mesh, DVI_CIRCUMCENTRIC);
+  const double *x = dvi_mesh_points(mesh);
+  const dvi_matrix M = matrix_of(star, 1);
+  for (int64_t e = 0; e < M.rows; e++) {
+    const int *v = dvi_mesh_vertices(mesh, 1, NULL) + 2 * e;
+    if (x[2 * v[0]] != 0 || x[2 * v[0] + 1] != 0) continue;
+    const double h = x[2 * v[1]] + x[2 * v[1] + 1], across = h == 0.4 ? 1.0 / 9 : 0.4;
+    ck_assert_double_eq_tol(M.value[e], 0.5 * across / h, 1e-15);
+  }
+  dvi_star_destroy(&star);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
+/* Whitney's stars have the norm of constant k-forms, whose components are 1, 2, .., on simplices
+ * and on boxes. */
+static int constant_form(const double *x, double *value, void *user)
+{
+  (void)x;
+  for (int i = 0; i < *(int *)user; i++) value[i] = i + 1;
+  return 0;
+}
+
+static void check_norm(const dvi_mesh *mesh, double volume)
+{
+  dvi_star *star = star_of(mesh, DVI_WHITNEY);
+  const int n = dvi_mesh_dimension(mesh);
+  for (int k = 0; k <= n; k++) {
+    int components = dvi_form_components(n, k);
+    const dvi_matrix M = matrix_of(star, k);
+    double *a = calloc((size_t)M.rows, sizeof *a), *Ma = calloc((size_t)M.rows, sizeof *Ma),
+           sum = 0, square = 0;
+    ck_assert_int_eq(dvi_form_integrate(mesh, k, constant_form, &components, a), DVI_OK);
+    dvi_matrix_multiply(&M, 0, a, Ma);
+    for (int64_t i = 0; i < M.rows; i++) sum += a[i] * Ma[i];
+    for (int i = 1; i <= components; i++) square += i * i;
+    ck_assert_double_eq_tol(sum, square * volume, 1e-13 * square);
+    free(a);
+    free(Ma);
+  }
+  dvi_star_destroy(&star);
+}
+
+START_TEST(whitneys_stars_have_the_norm_of_constant_forms)
+{
+  static const double volume[] = {1, 1, 0.8, 0.48, 0.48};
+  for (int n = 1; n <= 4; n++) {
+    dvi_mesh *boxes = box(n), *simplices = jittered_mesh(n, n, 2, 0.2, 3);
+    check_norm(boxes, volume[n]);
+    check_norm(simplices, 1);
+    dvi_mesh_destroy(&boxes);
+    dvi_mesh_destroy(&simplices);
+  }
+}
+END_TEST
+
+/* Factors by cell count with the pieces of the dual cells. */
+START_TEST(factors_count_by_cell)
+{
+  static const double point[] = {0, 0, 1, 0, 0, 1, 1, 1}, factors[] = {2, 6};
+  static const int vertex[] = {0, 1, 3, 0, 2, 3};
+  const dvi_mesh_terms terms = {.size = sizeof terms,
+                                .dimension = 2,
+                                .points = 4,
+                                .point = point,
+                                .cells = 2,
+                                .vertex = vertex};
+  for (int kind = DVI_CIRCUMCENTRIC; kind <= DVI_WHITNEY; kind++) {
+    const double *const factor[] = {factors, NULL, factors};
+    const dvi_star_options options = {sizeof options, (dvi_star_kind)kind, factor};
+    dvi_mesh *mesh;
+    dvi_star *star;
+    double sum = 0;
+    ck_assert_int_eq(dvi_mesh_create(&terms, &mesh), DVI_OK);
+    ck_assert_int_eq(dvi_star_create(mesh, &options, &star), DVI_OK);
+    const dvi_matrix M = matrix_of(star, 0), top = matrix_of(star, 2);
+    for (int64_t e = 0; e < dvi_matrix_entries(&M); e++) sum += M.value[e];
+    ck_assert_double_eq_tol(sum, 4, 1e-14); /* the integral of the factor */
+    ck_assert_double_eq_tol(top.value[0], 4, 1e-14);
+    ck_assert_double_eq_tol(top.value[1], 12, 1e-14);
+    dvi_star_destroy(&star);
+    dvi_mesh_destroy(&mesh);
+  }
+}
+END_TEST
+
+START_TEST(bad_stars_are_refused)
+{
+  /* three triangles share an edge, as the pages of a book */
+  static const int page[] = {0, 1, 2, 0, 1, 3, 0, 1, 4};
+  static const double corner[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1};
+  const dvi_mesh_terms terms = {.size = sizeof terms,
+                                .dimension = 2,
+                                .space = 3,
+                                .points = 5,
+                                .point = corner,
+                                .cells = 3,
+                                .vertex = page};
+  dvi_star_options options = {.size = sizeof options, .kind = (dvi_star_kind)7};
+  dvi_mesh *mesh;
+  dvi_star *star;
+  ck_assert_int_eq(dvi_mesh_create(&terms, &mesh), DVI_OK);
+  ck_assert_int_eq(dvi_star_create(mesh, NULL, &star), DVI_BAD_ARGUMENT);
+  check_words("the mesh is no manifold: edge 0 (vertices 0 1) belongs to more than two cells");
+  ck_assert_ptr_null(star);
+  ck_assert_int_eq(dvi_star_create(mesh, &options, &star), DVI_BAD_ARGUMENT);
+  check_words("there is no kind 7");
+  options.size = 1;
+  ck_assert_int_eq(dvi_star_create(mesh, &options, &star), DVI_BAD_ARGUMENT);
+  check_words("sizeof(dvi_star_options)");
+  ck_assert_int_eq(dvi_star_create(NULL, NULL, &star), DVI_BAD_ARGUMENT);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
 /* ---- a metric with signs ---- */
+
+/* An edge along a ray of light has no length. */
+START_TEST(lightlike_edges_are_refused)
+{
+  static const double metric[] = {1, -1}, point[] = {0, 0, 1, 1, 1, 0};
+  static const int vertex[] = {0, 1, 2};
+  const dvi_mesh_terms terms = {.size = sizeof terms,
+                                .dimension = 2,
+                                .points = 3,
+                                .point = point,
+                                .cells = 1,
+                                .vertex = vertex,
+                                .metric = metric};
+  dvi_mesh *mesh;
+  dvi_star *star;
+  ck_assert_int_eq(dvi_mesh_create(&terms, &mesh), DVI_OK);
+  ck_assert_int_eq(dvi_star_create(mesh, NULL, &star), DVI_BAD_ARGUMENT);
+  check_words("edge 0 (vertices 0 1) has no volume in the mesh's metric");
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
 
 /* In 1+1 dimensions the weights of the scalar wave are w_ab = -1/2 sum (u.v)/A with the vectors u
  * and v from the opposite vertex to the edge, in the metric (+,-). */
@@ -292,5 +452,10 @@ SUITE(star)
   tcase_add_test(tests, constant_forms_have_their_norm);
   tcase_add_test(tests, staggered_triangles_have_their_eigenvalues);
   tcase_add_test(tests, kuhn_simplices_have_the_stencil_of_cubes);
+  tcase_add_test(tests, boxes_have_the_star_of_yee);
+  tcase_add_test(tests, whitneys_stars_have_the_norm_of_constant_forms);
+  tcase_add_test(tests, factors_count_by_cell);
+  tcase_add_test(tests, bad_stars_are_refused);
+  tcase_add_test(tests, lightlike_edges_are_refused);
   tcase_add_test(tests, spacetime_has_the_weights_of_waves);
 }

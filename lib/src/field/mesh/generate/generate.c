@@ -29,7 +29,7 @@ static const kind kinds[] = {
     {"staggered", dvi__generate_staggered, 2, 2, {8, 8}, 1, 0, 0, 0, 0},
     {"icosphere", dvi__generate_icosphere, 0, 0, {3}, 0, 0, 0, 0, 1},
 };
-enum { KINDS = sizeof kinds / sizeof *kinds, LEVELS = 12 };
+enum { KINDS = sizeof kinds / sizeof *kinds, LEVELS = 12, MOST_CELLS = 1 << 30 };
 
 const char *dvi_mesh_generator_name(int i)
 {
@@ -69,6 +69,9 @@ static dvi_status take_cells(const kind *k, const dvi_generator_options *given, 
     sizes->cells[i] = given->cells[i] != 0 ? given->cells[i] : k->cells[i];
     if (given->periodic[i] && !k->takes_periods && !k->is_periodic)
       return refuse(k, "periodic", given->periodic[i]);
+    if (sizes->cells[i] > MOST_CELLS)
+      return dvi__fail(DVI_BAD_OPTION, "mesh %s: %d cells along axis %d are too many", k->name,
+                       sizes->cells[i], i);
     if (sizes->cells[i] < fewest)
       return dvi__fail(DVI_BAD_OPTION, "mesh %s: %d cells along axis %d are fewer than %d", k->name,
                        sizes->cells[i], i, fewest);
