@@ -103,7 +103,9 @@ static void transpose_faces(assembly *a)
   const int64_t places = a->cells * a->width;
   for (int64_t at = 0; at < places; at++) a->start[a->face[at] + 1]++;
   for (int64_t row = 0; row < a->rows; row++) a->start[row + 1] += a->start[row];
-  for (int64_t at = 0; at < places; at++) a->cell[a->start[a->face[at]]++] = (int)(at / a->width);
+  for (int64_t cell = 0; cell < a->cells; cell++)
+    for (int i = 0; i < a->width; i++)
+      a->cell[a->start[a->face[cell * a->width + i]]++] = (int)cell;
   for (int64_t row = a->rows; row > 0; row--) a->start[row] = a->start[row - 1];
   a->start[0] = 0;
 }

@@ -14,9 +14,7 @@ static const double null_part = 64 * DBL_EPSILON;
 void dvi__place_cell(const dvi_mesh *mesh, int k, int64_t cell, dvi__placed *placed)
 {
   const int corners = dvi__corners(mesh->kind, k), *corner = mesh->corner[k] + cell * corners;
-  placed->corners = corners;
-  placed->space = mesh->space;
-  placed->metric = mesh->metric;
+  *placed = (dvi__placed){.corners = corners, .space = mesh->space, .metric = mesh->metric};
   for (int c = 0; c < corners; c++) dvi__mesh_difference(mesh, corner[0], corner[c], placed->x[c]);
 }
 

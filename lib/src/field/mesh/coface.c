@@ -62,6 +62,15 @@ static dvi_status note_cells(dvi_mesh *mesh, const chains *c, int64_t facet)
   return DVI_OK;
 }
 
+static dvi_status note_all(dvi_mesh *mesh, const chains *c)
+{
+  const int64_t facets = mesh->count[mesh->n - 1];
+  link_places(mesh, c);
+  for (int64_t i = 0; i < 2 * facets; i++) mesh->coface[i] = -1;
+  for (int64_t f = 0; f < facets; f++) DVI_TRY(note_cells(mesh, c, f));
+  return DVI_OK;
+}
+
 dvi_status dvi__coface_build(dvi_mesh *mesh)
 {
   const int64_t facets = mesh->count[mesh->n - 1];
@@ -71,14 +80,8 @@ dvi_status dvi__coface_build(dvi_mesh *mesh)
   };
   mesh->coface = DVI_NEW(int, 2 * facets);
   mesh->branching = -1;
-  const int complete = c.head != NULL && c.next != NULL && mesh->coface != NULL;
-  dvi_status status = complete ? DVI_OK
-                               : dvi__fail(DVI_NO_MEMORY, "mesh: no memory for neighbours");
-  if (complete) {
-    link_places(mesh, &c);
-    for (int64_t i = 0; i < 2 * facets; i++) mesh->coface[i] = -1;
-  }
-  for (int64_t f = 0; f < facets && status == DVI_OK; f++) status = note_cells(mesh, &c, f);
+  dvi_status status = dvi__fail(DVI_NO_MEMORY, "mesh: no memory for neighbours");
+  if (c.head != NULL && c.next != NULL && mesh->coface != NULL) status = note_all(mesh, &c);
   dvi__release(c.head);
   dvi__release(c.next);
   return status;

@@ -44,7 +44,7 @@ static dvi_status make_room(reduction *r, int64_t more)
   const int64_t room = 2 * (r->length + more);
   entry *pool = DVI_NEW(entry, room);
   if (pool == NULL) return dvi__fail(DVI_NO_MEMORY, "mesh: no memory for Betti numbers");
-  if (r->room > 0) memcpy(pool, r->pool, (size_t)r->room * sizeof *pool);
+  memcpy(pool, r->pool, (size_t)r->room * sizeof *pool);
   dvi__release(r->pool);
   r->pool = pool;
   r->room = room;
@@ -72,8 +72,8 @@ static int enter_boundary(reduction *r, const dvi_mesh *mesh, int k, int64_t cel
   const int slots = dvi__facets(mesh->kind, k);
   entry *column = r->pool + r->length;
   for (int i = 0; i < slots; i++) {
-    const int sign = mesh->sign[k][cell * slots + i];
-    const entry new = {mesh->facet[k][cell * slots + i], sign > 0 ? 1 : (int)prime - 1};
+    const int is_positive = mesh->sign[k][cell * slots + i] > 0;
+    const entry new = {mesh->facet[k][cell * slots + i], is_positive ? 1 : (int)prime - 1};
     int at = i;
     for (; at > 0 && column[at - 1].row < new.row; at--) column[at] = column[at - 1];
     column[at] = new;
@@ -125,10 +125,13 @@ static dvi_status find_ranks(const dvi_mesh *mesh, int64_t *rank)
 {
   int64_t most = 0;
   for (int k = 0; k <= mesh->n; k++) most = mesh->count[k] > most ? mesh->count[k] : most;
-  reduction r = {.first = DVI_NEW(int64_t, most), .count = DVI_NEW(int, most)};
+  reduction r = {.pool = DVI_NEW(entry, most),
+                 .room = most,
+                 .first = DVI_NEW(int64_t, most),
+                 .count = DVI_NEW(int, most)};
   char *cleared = DVI_NEW(char, most);
   dvi_status status = DVI_OK;
-  if (r.first == NULL || r.count == NULL || cleared == NULL)
+  if (r.pool == NULL || r.first == NULL || r.count == NULL || cleared == NULL)
     status = dvi__fail(DVI_NO_MEMORY, "mesh: no memory for Betti numbers");
   for (int k = mesh->n; k > 0 && status == DVI_OK; k--)
     status = find_rank(mesh, k, &r, cleared, rank + k);

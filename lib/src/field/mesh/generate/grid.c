@@ -35,10 +35,11 @@ static void fill_points(const dvi__sizes *sizes, dvi__draft *draft)
 /* Give the vertex at a corner of the box at a place. */
 static int vertex_at(const dvi__sizes *sizes, const place *p, int corner)
 {
-  int vertex = 0;
-  for (int axis = sizes->dimension - 1; axis >= 0; axis--) {
+  int vertex = 0, stride = 1;
+  for (int axis = 0; axis < sizes->dimension; axis++) {
     const int nodes = dvi__nodes_along(sizes, axis), at = p->at[axis] + (corner >> axis & 1);
-    vertex = vertex * nodes + (at == nodes ? 0 : at);
+    vertex += stride * (at == nodes ? 0 : at);
+    stride *= nodes;
   }
   return vertex;
 }

@@ -43,10 +43,10 @@ static int *fill_strip(int across, int strip, int *vertex)
 dvi_status dvi__generate_staggered(const dvi__sizes *sizes, dvi__draft *draft)
 {
   static const char *const side[] = {"left", "right", "bottom", "top"};
-  const int across = sizes->cells[0], up = sizes->cells[1];
+  const int across = sizes->cells[0], up = sizes->cells[1], odd_rows = (up + 1) / 2;
   draft->terms.dimension = 2;
   for (int i = 0; i < 4; i++) draft->name[i] = side[i];
-  DVI_TRY(dvi__draft_allocate(draft, "staggered", (across + 1.0) * (up + 1) + (up + 1) / 2,
+  DVI_TRY(dvi__draft_allocate(draft, "staggered", (across + 1.0) * (up + 1) + odd_rows,
                               (2.0 * across + 1) * up));
   int *vertex = draft->vertex;
   for (int row = 0; row <= up; row++) fill_row(sizes, row, draft);
