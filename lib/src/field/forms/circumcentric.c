@@ -28,6 +28,7 @@ static const double inverse_factorial[] = {1, 1, 1.0 / 2, 1.0 / 6, 1.0 / 24};
 /* The sums while the cells are taken one after the other. */
 typedef struct sums {
   dvi_star *star;
+  int n;
   double *volume[DVI__DEGREES]; /* [k-cells] kappa |s| */
 } sums;
 
@@ -155,7 +156,7 @@ static dvi_status allocate(sums *a)
 {
   const dvi_mesh *mesh = a->star->mesh;
   int complete = 1;
-  for (int k = 0; k <= mesh->n; k++) {
+  for (int k = 0; k <= a->n; k++) {
     a->star->dual[k] = DVI_NEW(double, mesh->count[k]);
     a->star->diagonal[k] = DVI_NEW(double, mesh->count[k]);
     a->volume[k] = DVI_NEW(double, mesh->count[k]);
@@ -176,16 +177,16 @@ static dvi_status add_cells(const sums *a)
 static void divide_by_volumes(const sums *a)
 {
   const dvi_mesh *mesh = a->star->mesh;
-  for (int k = 1; k <= mesh->n; k++)
+  for (int k = 1; k <= a->n; k++)
     for (int64_t s = 0; s < mesh->count[k]; s++) a->star->diagonal[k][s] /= a->volume[k][s];
 }
 
 dvi_status dvi__circumcentric_star(dvi_star *star)
 {
-  sums a = {.star = star};
+  sums a = {.star = star, .n = star->mesh->n};
   dvi_status status = allocate(&a);
   if (status == DVI_OK) status = add_cells(&a);
   if (status == DVI_OK) divide_by_volumes(&a);
-  for (int k = 0; k <= star->mesh->n; k++) dvi__release(a.volume[k]);
+  for (int k = 0; k <= a.n; k++) dvi__release(a.volume[k]);
   return status;
 }
