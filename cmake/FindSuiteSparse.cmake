@@ -1,11 +1,11 @@
-# Finds KLU, LDL and CHOLMOD by their headers and libraries: SuiteSparse has CMake packages only
+# Finds KLU and LDL by their headers and libraries: SuiteSparse has CMake packages only
 # from version 7 on.
 # Gives SuiteSparse::SuiteSparse, and SuiteSparse_FOUND.
 
 find_path(SuiteSparse_INCLUDE_DIR klu.h PATH_SUFFIXES suitesparse)
 set(suitesparse_required SuiteSparse_INCLUDE_DIR)
 set(SuiteSparse_LIBRARIES "")
-foreach(part klu ldl cholmod amd camd colamd ccolamd btf suitesparseconfig)
+foreach(part klu ldl amd colamd btf suitesparseconfig)
   string(TOUPPER ${part} upper)
   find_library(SuiteSparse_${upper}_LIBRARY ${part})
   list(APPEND suitesparse_required SuiteSparse_${upper}_LIBRARY)

@@ -30,7 +30,7 @@ endif()
 install(EXPORT dviTargets NAMESPACE dvi:: DESTINATION "${package_directory}")
 install(EXPORT dviStaticTargets NAMESPACE dvi:: DESTINATION "${package_directory}")
 install(FILES cmake/FindSUNDIALS.cmake cmake/FindSuiteSparse.cmake cmake/FindQhull.cmake
-        DESTINATION "${package_directory}")
+        cmake/FindARPACK.cmake DESTINATION "${package_directory}")
 configure_package_config_file(
   cmake/dviConfig.cmake.in dviConfig.cmake INSTALL_DESTINATION "${package_directory}"
   NO_SET_AND_CHECK_MACRO)
@@ -41,8 +41,8 @@ install(FILES "${PROJECT_BINARY_DIR}/dviConfig.cmake" "${PROJECT_BINARY_DIR}/dvi
 
 # pkg-config names libraries as the linker does.
 set(pc_private "")
-foreach(library ${SUNDIALS_LIBRARIES} ${SuiteSparse_LIBRARIES} ${Qhull_LIBRARY} ${LAPACK_LIBRARIES}
-                ${MPI_C_LIBRARIES} ${CMAKE_THREAD_LIBS_INIT} m)
+foreach(library ${SUNDIALS_LIBRARIES} ${SuiteSparse_LIBRARIES} ${Qhull_LIBRARY} ${ARPACK_LIBRARY}
+                ${LAPACK_LIBRARIES} ${MPI_C_LIBRARIES} ${CMAKE_THREAD_LIBS_INIT} m)
   get_filename_component(name "${library}" NAME_WE)
   string(REGEX REPLACE "^(lib|-l)" "" name "${name}")
   list(APPEND pc_private "-l${name}")

@@ -106,6 +106,76 @@ dvi_status dvi_form_integrate(const dvi_mesh *mesh, int k, dvi_form_function *fu
 dvi_status dvi_form_evaluate(const dvi_mesh *mesh, int k, const double *form, int64_t cell,
                              const double *place, double *value);
 
+/** Solve M_k x = b, by conjugate gradients if M_k is not diagonal.
+ *
+ *  @param[in,out] b  [k-cells] the right side, then x. Unchanged on failure
+ *  @retval DVI_BAD_ARGUMENT  an argument is missing, or k is out of range
+ *  @retval DVI_SINGULAR      an entry of a diagonal matrix is zero, or another one is not positive
+ *                            definite
+ *  @retval DVI_NO_MEMORY     there is no memory */
+dvi_status dvi_star_solve(const dvi_star *star, int k, double *b);
+
+/** Give the codifferential delta_k = M_{k-1}^-1 d_{k-1}^T M_k of k-forms, k from 1 to n.
+ *
+ *  @param[out] codifferential  owned by the caller, for dvi_matrix_destroy
+ *  @retval DVI_UNSUPPORTED  M_{k-1} is not diagonal, so that the matrix would be full.
+ *                           dvi_star_solve does without it
+ *  @retval DVI_SINGULAR     an entry of M_{k-1} is zero */
+dvi_status dvi_form_codifferential_create(const dvi_star *star, int k,
+                                          dvi_matrix **codifferential);
+
+/** Give the symmetric matrix of Laplace and de Rham's operator on k-forms,
+ *
+ *      M_k L_k = d_k^T M_{k+1} d_k + M_k d_{k-1} M_{k-1}^-1 d_{k-1}^T M_k.
+ *
+ *  With M_k it is the pencil of the operator's eigenvalues. Nothing is prescribed at the boundary,
+ *  where forms have natural conditions: no flux for functions.
+ *
+ *  @retval DVI_UNSUPPORTED  M_{k-1} is not diagonal
+ *  @retval DVI_SINGULAR     an entry of M_{k-1} is zero */
+dvi_status dvi_form_laplacian_create(const dvi_star *star, int k, dvi_matrix **laplacian);
+
+/** Boundary conditions of forms. */
+typedef enum dvi_form_boundary {
+  DVI_ABSOLUTE, /**< natural ones: nothing is prescribed on the boundary's cells */
+  DVI_RELATIVE  /**< essential ones: forms vanish on the boundary's cells */
+} dvi_form_boundary;
+
+/** Split a k-form into three parts that are orthogonal in M_k (Hodge's decomposition),
+ *
+ *      form = d a + delta b + h,     d h = 0, delta h = 0.
+ *
+ *  With DVI_RELATIVE all forms vanish on the boundary's cells, and the form's entries there are
+ *  taken as 0. M_k, and M_{k+1} if there is one, are positive definite.
+ *
+ *  @param[out] exact, coexact, harmonic  [k-cells] the parts. Each may be NULL
+ *  @retval DVI_BAD_ARGUMENT   an argument is missing, or k is out of range
+ *  @retval DVI_SINGULAR       a star is not positive definite. The barycentric and Whitney's stars
+ *                             are
+ *  @retval DVI_NOT_CONVERGED  an iteration left too much of its right side
+ *  @retval DVI_NO_MEMORY      there is no memory */
+dvi_status dvi_form_decompose(const dvi_star *star, int k, dvi_form_boundary boundary,
+                              const double *form, double *exact, double *coexact,
+                              double *harmonic);
+
+/** Return the number of independent harmonic k-forms: the Betti number b_k, and with DVI_RELATIVE
+ *  b_{n-k} on an orientable mesh.
+ *
+ *  @param[out] count  the number
+ *  @param[out] basis  [count][k-cells] forms that are orthonormal in M_k. NULL to count only
+ *  @retval (others)   as dvi_form_decompose */
+dvi_status dvi_form_harmonic(const dvi_star *star, int k, dvi_form_boundary boundary,
+                             int64_t *count, double *basis);
+
+/** Solve L_k u = f for a k-form u without a harmonic part, by conjugate gradients.
+ *
+ *  @param      f  [k-cells]. A harmonic part is an error, since no solution exists then
+ *  @param[out] u  [k-cells]
+ *  @retval DVI_BAD_ARGUMENT  f has a harmonic part above 1e-8 of f. dvi_last_error() has its size
+ *  @retval (others)          as dvi_form_decompose */
+dvi_status dvi_form_solve(const dvi_star *star, int k, dvi_form_boundary boundary, const double *f,
+                          double *u);
+
 #ifdef __cplusplus
 }
 #endif

@@ -2,6 +2,7 @@
 #ifndef DVI_MATRIX_H
 #define DVI_MATRIX_H
 #include <dvi/status.h>
+#include <stddef.h>
 #include <stdint.h>
 
 /** A view of a sparse matrix by rows. Row i has the entries start[i] .. start[i+1]-1, or with a
@@ -25,9 +26,21 @@ typedef struct dvi_matrix_arrays {
   double *value;  /**< [entries] */
 } dvi_matrix_arrays;
 
+/** Options of eigenvalue problems. Zero means the default. */
+typedef struct dvi_modes_options {
+  size_t size;   /**< sizeof(dvi_modes_options) */
+  int count;     /**< number of modes, default 6 */
+  double shift;  /**< eigenvalues nearest to it are found. Default: a little below 0 */
+  int dimension; /**< of the mesh behind the matrices. From 3 on large ones are iterated */
+} dvi_modes_options;
+
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/** Release a matrix that a function whose name ends in _create made, and set the pointer to NULL.
+ *  NULL is allowed. Views of what others own are not released. */
+void dvi_matrix_destroy(dvi_matrix **matrix);
 
 /** Return the number of stored entries. 0 for NULL. */
 int64_t dvi_matrix_entries(const dvi_matrix *matrix);
@@ -44,6 +57,21 @@ void dvi_matrix_multiply(const dvi_matrix *matrix, int transposed, const double 
  *  @retval DVI_BAD_SIZE      an int cannot count the entries. Ask for wide arrays
  *  @retval DVI_NO_MEMORY     there is no memory for the transposition */
 dvi_status dvi_matrix_copy(const dvi_matrix *matrix, const dvi_matrix_arrays *arrays);
+
+/** Compute eigenvalues of K x = lambda M x, the nearest to a shift, and their vectors, by Lanczos'
+ *  method on the inverse of K - shift M (ARPACK; Lehoucq, Sorensen and Yang 1998).
+ *
+ *  @param      K, M        symmetric, by rows. M is positive definite, and K is positive
+ *                          semidefinite unless there is a shift above 0
+ *  @param[out] eigenvalue  [count] ascending
+ *  @param[out] vector      [count][rows] with x.M x = 1. May be NULL
+ *  @retval DVI_BAD_ARGUMENT   an argument is missing, or the matrices have different sizes
+ *  @retval DVI_BAD_SIZE       count is not from 1 to rows - 1
+ *  @retval DVI_SINGULAR       K - shift M is singular, or M is not positive definite
+ *  @retval DVI_NOT_CONVERGED  the iteration did not converge
+ *  @retval DVI_NO_MEMORY      there is no memory */
+dvi_status dvi_matrix_modes(const dvi_matrix *K, const dvi_matrix *M,
+                            const dvi_modes_options *options, double *eigenvalue, double *vector);
 
 #ifdef __cplusplus
 }

@@ -5,33 +5,25 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-
-static int64_t first_of(const dvi_matrix *m, int64_t row)
-{
-  return m->width > 0 ? row * m->width : m->start[row];
-}
-
-static double value_of(const dvi_matrix *m, int64_t entry)
-{
-  return m->value != NULL ? m->value[entry] : m->sign[entry];
-}
+#include "field/algebra/csr.h"
 
 int64_t dvi_matrix_entries(const dvi_matrix *matrix)
 {
-  return matrix != NULL ? first_of(matrix, matrix->rows) : 0;
+  return matrix != NULL ? dvi__first_entry(matrix, matrix->rows) : 0;
 }
 
 static void multiply_diagonal(const dvi_matrix *m, const double *x, double *y)
 {
-  for (int64_t i = 0; i < m->rows; i++) y[i] = value_of(m, i) * x[i];
+  for (int64_t i = 0; i < m->rows; i++) y[i] = dvi__entry_value(m, i) * x[i];
 }
 
 static void multiply(const dvi_matrix *m, const double *x, double *y)
 {
   for (int64_t i = 0; i < m->rows; i++) {
-    const int64_t end = first_of(m, i + 1);
+    const int64_t end = dvi__first_entry(m, i + 1);
     double sum = 0;
-    for (int64_t e = first_of(m, i); e < end; e++) sum += value_of(m, e) * x[m->column[e]];
+    for (int64_t e = dvi__first_entry(m, i); e < end; e++)
+      sum += dvi__entry_value(m, e) * x[m->column[e]];
     y[i] = sum;
   }
 }
@@ -40,8 +32,9 @@ static void multiply_transposed(const dvi_matrix *m, const double *x, double *y)
 {
   memset(y, 0, (size_t)m->columns * sizeof *y);
   for (int64_t i = 0; i < m->rows; i++) {
-    const int64_t end = first_of(m, i + 1);
-    for (int64_t e = first_of(m, i); e < end; e++) y[m->column[e]] += value_of(m, e) * x[i];
+    const int64_t end = dvi__first_entry(m, i + 1);
+    for (int64_t e = dvi__first_entry(m, i); e < end; e++)
+      y[m->column[e]] += dvi__entry_value(m, e) * x[i];
   }
 }
 
@@ -70,10 +63,10 @@ static void put(void *array, int wide, int64_t at, int64_t number)
 static void fill_columns(const dvi_matrix *m, const dvi_matrix_arrays *a, int64_t *next)
 {
   for (int64_t i = 0; i < m->rows; i++)
-    for (int64_t e = first_of(m, i); e < first_of(m, i + 1); e++) {
-      const int64_t at = next[m->column != NULL ? m->column[e] : i]++;
+    for (int64_t e = dvi__first_entry(m, i); e < dvi__first_entry(m, i + 1); e++) {
+      const int64_t at = next[dvi__entry_column(m, i, e)]++;
       put(a->index, a->wide, at, i);
-      a->value[at] = value_of(m, e);
+      a->value[at] = dvi__entry_value(m, e);
     }
 }
 
@@ -110,10 +103,10 @@ static void insert(const dvi_matrix_arrays *a, int64_t first, int64_t at, int co
 
 static void copy_by_rows(const dvi_matrix *m, const dvi_matrix_arrays *a)
 {
-  for (int64_t i = 0; i <= m->rows; i++) put(a->start, a->wide, i, first_of(m, i));
+  for (int64_t i = 0; i <= m->rows; i++) put(a->start, a->wide, i, dvi__first_entry(m, i));
   for (int64_t i = 0; i < m->rows; i++)
-    for (int64_t e = first_of(m, i); e < first_of(m, i + 1); e++)
-      insert(a, first_of(m, i), e, m->column != NULL ? m->column[e] : (int)i, value_of(m, e));
+    for (int64_t e = dvi__first_entry(m, i); e < dvi__first_entry(m, i + 1); e++)
+      insert(a, dvi__first_entry(m, i), e, dvi__entry_column(m, i, e), dvi__entry_value(m, e));
 }
 
 dvi_status dvi_matrix_copy(const dvi_matrix *matrix, const dvi_matrix_arrays *arrays)

@@ -143,8 +143,9 @@ static int64_t lay_out_row(assembly *a, int64_t row, int *column)
   return count;
 }
 
-static dvi_status lay_out(assembly *a, dvi__owned_matrix *sum)
+static dvi_status lay_out(assembly *a, dvi__csr *sum)
 {
+  sum->rows = sum->columns = a->rows;
   sum->start = DVI_NEW(int64_t, a->rows + 1);
   if (sum->start == NULL) return dvi__fail(DVI_NO_MEMORY, "forms: no memory for a matrix");
   for (int64_t row = 0; row < a->rows; row++) a->seen[row] = -1;
@@ -160,20 +161,7 @@ static dvi_status lay_out(assembly *a, dvi__owned_matrix *sum)
   return DVI_OK;
 }
 
-static int64_t entry_of(const dvi__owned_matrix *m, int row, int column)
-{
-  int64_t low = m->start[row], high = m->start[row + 1] - 1;
-  while (low < high) {
-    const int64_t middle = low + (high - low) / 2;
-    if (m->column[middle] < column)
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  return low;
-}
-
-static dvi_status add_cells(const assembly *a, dvi__local_matrix *local, dvi__owned_matrix *sum)
+static dvi_status add_cells(const assembly *a, dvi__local_matrix *local, dvi__csr *sum)
 {
   double matrix[DVI__LOCAL_FACES * DVI__LOCAL_FACES];
   for (int64_t cell = 0; cell < a->cells; cell++) {
@@ -182,13 +170,13 @@ static dvi_status add_cells(const assembly *a, dvi__local_matrix *local, dvi__ow
     DVI_TRY(local(a->star, a->k, cell, &a->local, matrix));
     for (int i = 0; i < a->width; i++)
       for (int j = 0; j < a->width; j++)
-        sum->value[entry_of(sum, face[i], face[j])] += sign[i] * sign[j] * matrix[i * a->width + j];
+        sum->value[dvi__csr_find(sum, face[i], face[j])] += sign[i] * sign[j] *
+                                                            matrix[i * a->width + j];
   }
   return DVI_OK;
 }
 
-dvi_status dvi__assemble(const dvi_star *star, int k, dvi__local_matrix *local,
-                         dvi__owned_matrix *sum)
+dvi_status dvi__assemble(const dvi_star *star, int k, dvi__local_matrix *local, dvi__csr *sum)
 {
   const dvi_mesh *mesh = star->mesh;
   assembly a = {.star = star, .k = k, .rows = mesh->count[k], .cells = mesh->count[mesh->n]};
@@ -203,9 +191,6 @@ dvi_status dvi__assemble(const dvi_star *star, int k, dvi__local_matrix *local,
   dvi__release(a.cell);
   dvi__release(a.seen);
   if (status == DVI_OK) return status;
-  dvi__release(sum->start);
-  dvi__release(sum->column);
-  dvi__release(sum->value);
-  *sum = (dvi__owned_matrix){0};
+  dvi__csr_clear(sum);
   return status;
 }

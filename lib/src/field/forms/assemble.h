@@ -21,7 +21,6 @@ typedef dvi_status dvi__local_matrix(const dvi_star *star, int k, int64_t cell,
                                      const dvi__local_faces *faces, double *matrix);
 
 /* Make the sum over all n-cells. On failure nothing is owned. */
-dvi_status dvi__assemble(const dvi_star *star, int k, dvi__local_matrix *local,
-                         dvi__owned_matrix *sum);
+dvi_status dvi__assemble(const dvi_star *star, int k, dvi__local_matrix *local, dvi__csr *sum);
 
 #endif

@@ -123,9 +123,7 @@ void dvi_star_destroy(dvi_star **star)
     dvi__release(s->factor[k]);
     dvi__release(s->diagonal[k]);
     dvi__release(s->dual[k]);
-    dvi__release(s->matrix[k].start);
-    dvi__release(s->matrix[k].column);
-    dvi__release(s->matrix[k].value);
+    dvi__csr_clear(&s->matrix[k]);
   }
   (void)pthread_mutex_destroy(&s->making);
   dvi_mesh_destroy(&s->mesh);
@@ -158,15 +156,10 @@ dvi_status dvi_star_matrix(const dvi_star *star, int k, dvi_matrix *matrix)
   if (star == NULL || matrix == NULL || k < 0 || k > star->mesh->n)
     return dvi__fail(DVI_BAD_ARGUMENT, "star: there is no matrix of degree %d", k);
   const int64_t count = star->mesh->count[k];
-  *matrix = (dvi_matrix){.rows = count, .columns = count, .symmetric = 1};
-  if (star->diagonal[k] != NULL) {
-    matrix->width = 1;
-    matrix->value = star->diagonal[k];
-    return DVI_OK;
-  }
+  *matrix = (dvi_matrix){
+      .rows = count, .columns = count, .symmetric = 1, .width = 1, .value = star->diagonal[k]};
+  if (star->diagonal[k] != NULL) return DVI_OK;
   DVI_TRY(make_once((dvi_star *)star, k));
-  matrix->start = star->matrix[k].start;
-  matrix->column = star->matrix[k].column;
-  matrix->value = star->matrix[k].value;
+  *matrix = dvi__csr_view(&star->matrix[k], 1);
   return DVI_OK;
 }

@@ -5,14 +5,8 @@
 #include <pthread.h>
 #include <stdatomic.h>
 
+#include "field/algebra/csr.h"
 #include "field/mesh/mesh.h"
-
-/* An owned sparse matrix by rows. */
-typedef struct dvi__owned_matrix {
-  int64_t *start;
-  int *column;
-  double *value;
-} dvi__owned_matrix;
 
 struct dvi_star {
   atomic_int owners;
@@ -22,11 +16,14 @@ struct dvi_star {
   double *diagonal[DVI__DEGREES]; /* [k-cells] M_k, or NULL if it is not diagonal */
   double *dual[DVI__DEGREES];     /* [k-cells] |*s|, or NULL */
   pthread_mutex_t making;         /* held while a matrix is made */
-  dvi__owned_matrix matrix[DVI__DEGREES];
+  dvi__csr matrix[DVI__DEGREES];
 };
 
 /* Make the diagonals and the duals of a circumcentric star. */
 dvi_status dvi__circumcentric_star(dvi_star *star);
+
+/* Make d_k^T M_{k+1} d_k. */
+dvi_status dvi__stiffness(const dvi_star *star, int k, dvi__csr *stiffness);
 
 /* Refuse a cell without volume in the mesh's metric. */
 dvi_status dvi__refuse_null(const dvi_mesh *mesh, int k, int64_t cell);

@@ -1,0 +1,140 @@
+/* Hestenes and Stiefel 1952. The sums run in one order, so that equal inputs give equal bits. */
+#include "field/algebra/conjugate.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "field/algebra/csr.h"
+
+/* Iterations without a smaller residual that end the iteration, and the residual that is good
+ * enough then. */
+enum { PATIENCE = 200 };
+static const double acceptable = 1e-6;
+
+typedef struct search {
+  const dvi__products *A;
+  double *r, *z, *p, *Ap; /* [size] */
+  double rz;              /* r.z */
+} search;
+
+static double dot(int64_t n, const double *x, const double *y)
+{
+  double sum[4] = {0, 0, 0, 0};
+  int64_t i = 0;
+  for (; i + 4 <= n; i += 4)
+    for (int j = 0; j < 4; j++) sum[j] += x[i + j] * y[i + j];
+  for (; i < n; i++) sum[0] += x[i] * y[i];
+  return sum[0] + sum[1] + (sum[2] + sum[3]);
+}
+
+static void precondition(const search *s)
+{
+  if (s->A->precondition != NULL)
+    s->A->precondition(s->A->of, s->r, s->z);
+  else
+    memcpy(s->z, s->r, (size_t)s->A->size * sizeof *s->z);
+}
+
+/* Take one step along p. */
+static dvi_status advance(search *s, double *x)
+{
+  const int64_t n = s->A->size;
+  DVI_TRY(s->A->times(s->A->of, s->p, s->Ap));
+  const double curvature = dot(n, s->p, s->Ap);
+  if (!(curvature > 0))
+    return dvi__fail(DVI_SINGULAR,
+                     "conjugate gradients: the matrix is not positive: a direction has p.Ap = %g",
+                     curvature);
+  const double step = s->rz / curvature;
+  for (int64_t i = 0; i < n; i++) {
+    x[i] += step * s->p[i];
+    s->r[i] -= step * s->Ap[i];
+  }
+  precondition(s);
+  const double rz = dot(n, s->r, s->z), ratio = rz / s->rz;
+  for (int64_t i = 0; i < n; i++) s->p[i] = s->z[i] + ratio * s->p[i];
+  s->rz = rz;
+  return DVI_OK;
+}
+
+/* The residual of the recurrence goes below that of x. The iteration ends where many iterations bring
+ * no smaller one. */
+static dvi_status iterate(search *s, double tolerance, double size, double *x,
+                          dvi__iteration_report *report)
+{
+  const int64_t n = s->A->size;
+  int idle = 0;
+  double smallest = size;
+  while (smallest > tolerance * size && idle < PATIENCE && s->rz > 0) {
+    const dvi_status status = advance(s, x);
+    if (status == DVI_SINGULAR && smallest <= acceptable * size) break; /* a semidefinite A's end */
+    DVI_TRY(status);
+    const double residual = sqrt(dot(n, s->r, s->r));
+    report->iterations++;
+    idle = residual < smallest ? 0 : idle + 1;
+    if (residual < smallest) smallest = residual;
+  }
+  report->residual = size > 0 ? smallest / size : 0;
+  return DVI_OK;
+}
+
+static dvi_status solve(search *s, double tolerance, const double *b, double *x,
+                        dvi__iteration_report *report)
+{
+  const int64_t n = s->A->size;
+  const double size = sqrt(dot(n, b, b));
+  memset(x, 0, (size_t)n * sizeof *x);
+  memcpy(s->r, b, (size_t)n * sizeof *b);
+  if (!isfinite(size)) return dvi__fail(DVI_NOT_FINITE, "conjugate gradients: |b| is %g", size);
+  precondition(s);
+  memcpy(s->p, s->z, (size_t)n * sizeof *b);
+  s->rz = dot(n, s->r, s->z);
+  DVI_TRY(iterate(s, tolerance, size, x, report));
+  if (report->residual <= acceptable) return DVI_OK;
+  return dvi__fail(DVI_NOT_CONVERGED,
+                   "conjugate gradients: %g of the right side is left after %d iterations: it may "
+                   "lie outside of the matrix's range",
+                   report->residual, report->iterations);
+}
+
+dvi_status dvi__conjugate_gradients(const dvi__products *A, double tolerance, const double *b,
+                                    double *x, dvi__iteration_report *report)
+{
+  const size_t n = (size_t)A->size;
+  double *work = DVI_NEW(double, 4 * n);
+  search s = {.A = A, .r = work, .z = work + n, .p = work + 2 * n, .Ap = work + 3 * n};
+  dvi__iteration_report unasked = {0};
+  if (work == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "conjugate gradients: no memory for %lld unknowns",
+                     (long long)A->size);
+  if (report == NULL) report = &unasked;
+  *report = unasked;
+  const dvi_status status = solve(&s, tolerance, b, x, report);
+  dvi__release(work);
+  return status;
+}
+
+static double row_sum(const dvi_matrix *A, int64_t i, int below, const double *z, double *diagonal)
+{
+  double sum = 0;
+  for (int64_t e = A->start[i]; e < A->start[i + 1]; e++) {
+    if (A->column[e] == i) *diagonal = A->value[e];
+    if (below ? A->column[e] < i : A->column[e] > i) sum += A->value[e] * z[A->column[e]];
+  }
+  return sum;
+}
+
+void dvi__gauss_seidel(const dvi_matrix *A, const double *r, double *z)
+{
+  double diagonal = 1;
+  for (int64_t i = 0; i < A->rows; i++) {
+    const double sum = row_sum(A, i, 1, z, &diagonal);
+    z[i] = (r[i] - sum) / diagonal;
+  }
+  for (int64_t i = A->rows - 1; i >= 0; i--) {
+    const double sum = row_sum(A, i, 0, z, &diagonal);
+    z[i] -= sum / diagonal;
+  }
+}

@@ -1,0 +1,271 @@
+/* Lanczos' method with implicit restarts (Lehoucq, Sorensen and Yang 1998), near a shift for the
+ * inverse of K - shift M.
+ *
+ * ARPACK keeps its state in static variables, so that one thread at a time may use it. */
+#include "field/algebra/modes.h"
+
+#include <arpack/arpack.h>
+#include <limits.h>
+#include <math.h>
+#include <pthread.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+
+enum { MULTIPLY = 1, INVERT_SHIFTED = -1, MASS = 2, DONE = 99, RESTARTS = 1000 };
+enum { STANDARD = 1, REGULAR_INVERSE = 2, SHIFT_INVERT = 3 };
+
+static pthread_mutex_t arpack = PTHREAD_MUTEX_INITIALIZER;
+
+typedef struct lanczos {
+  const dvi__pencil *pencil;
+  const dvi__definite *inverse; /* of K - shift M, or of M */
+  const char *which;
+  int mode, count, directions;
+  double shift, tolerance;
+  double *residual, *basis, *places, *work, *product;
+  a_int setting[11], place[11];
+} lanczos;
+
+/* ---- products ---- */
+
+/* Set y to (K - shift M)^-1 M x, or to M^-1 K x. ARPACK may have left M x at `known`. */
+static dvi_status apply(const lanczos *s, double *x, const double *known, double *y)
+{
+  if (s->mode == SHIFT_INVERT) {
+    if (known == NULL) dvi_matrix_multiply(s->pencil->M, 0, x, s->product);
+    return dvi__definite_solve(s->inverse, known != NULL ? known : s->product, y, NULL);
+  }
+  dvi_matrix_multiply(s->pencil->K, 0, x, s->product);
+  memcpy(x, s->product, (size_t)s->pencil->K->rows * sizeof *x); /* as ARPACK wants it in mode 2 */
+  return dvi__definite_solve(s->inverse, s->product, y, NULL);
+}
+
+static dvi_status answer(const lanczos *s, int asked)
+{
+  double *x = s->places + s->place[0] - 1, *y = s->places + s->place[1] - 1;
+  if (asked == MASS) {
+    dvi_matrix_multiply(s->pencil->M, 0, x, y);
+    return DVI_OK;
+  }
+  const double *known = asked == MULTIPLY && s->mode == SHIFT_INVERT ? s->places + s->place[2] - 1
+                                                                     : NULL;
+  return apply(s, x, known, y);
+}
+
+/* ---- the iteration ---- */
+
+static dvi_status explain(const lanczos *s, int info)
+{
+  if (info == 1)
+    return dvi__fail(DVI_NOT_CONVERGED,
+                     "modes: %d of %d eigenvalues converged in %d restarts of Lanczos' method",
+                     (int)s->setting[4], s->count, RESTARTS);
+  return dvi__fail(DVI_SOLVER_FAILED, "modes: ARPACK failed with code %d", info);
+}
+
+static dvi_status iterate(lanczos *s, a_int *info)
+{
+  const a_int n = (a_int)s->pencil->K->rows;
+  const a_int length = s->directions * (s->directions + 8);
+  a_int asked = 0;
+  *info = 1; /* the start is given */
+  for (;;) {
+    dsaupd_c(&asked, "G", n, s->which, s->count, s->tolerance, s->residual, s->directions, s->basis,
+             n, s->setting, s->place, s->places, s->work, length, info);
+    if (asked == DONE) break;
+    DVI_TRY(answer(s, (int)asked));
+  }
+  return *info == 0 ? DVI_OK : explain(s, (int)*info);
+}
+
+/* ARPACK fills in `chosen` itself if it wants all vectors. */
+static dvi_status extract(lanczos *s, double *eigenvalue, double *vector, a_int *chosen)
+{
+  const a_int n = (a_int)s->pencil->K->rows;
+  const a_int length = s->directions * (s->directions + 8);
+  a_int info = 0;
+  dseupd_c(vector != NULL, "A", chosen, eigenvalue, vector, n, s->shift, "G", n, s->which, s->count,
+           s->tolerance, s->residual, s->directions, s->basis, n, s->setting, s->place, s->places,
+           s->work, length, &info);
+  return info == 0 ? DVI_OK : explain(s, (int)info);
+}
+
+/* A fixed start with parts in every mode. */
+static void fill_start(int64_t n, double *start)
+{
+  uint64_t state = 20221;
+  for (int64_t i = 0; i < n; i++) {
+    state = state * 6364136223846793005u + 1442695040888963407u;
+    start[i] = (double)(int64_t)(state >> 11) / 9007199254740992.0 - 0.5;
+  }
+}
+
+static dvi_status allocate(lanczos *s)
+{
+  const int64_t n = s->pencil->K->rows, directions = s->directions;
+  s->residual = DVI_NEW(double, n);
+  s->basis = DVI_NEW(double, n *directions);
+  s->places = DVI_NEW(double, 3 * n);
+  s->work = DVI_NEW(double, directions *(directions + 8));
+  s->product = DVI_NEW(double, n);
+  if (!s->residual || !s->basis || !s->places || !s->work || !s->product)
+    return dvi__fail(DVI_NO_MEMORY, "modes: no memory for %d vectors of %lld numbers",
+                     s->directions, (long long)n);
+  fill_start(n, s->residual);
+  s->setting[0] = 1; /* exact shifts */
+  s->setting[2] = RESTARTS;
+  s->setting[6] = s->mode;
+  return DVI_OK;
+}
+
+static dvi_status run(lanczos *s, double *eigenvalue, double *vector)
+{
+  a_int info = 0, *chosen = DVI_NEW(a_int, s->directions);
+  dvi_status status = allocate(s);
+  if (status == DVI_OK && chosen == NULL) status = dvi__fail(DVI_NO_MEMORY, "modes: no memory");
+  (void)pthread_mutex_lock(&arpack);
+  if (status == DVI_OK) status = iterate(s, &info);
+  if (status == DVI_OK) status = extract(s, eigenvalue, vector, chosen);
+  (void)pthread_mutex_unlock(&arpack);
+  dvi__release(chosen);
+  dvi__release(s->residual);
+  dvi__release(s->basis);
+  dvi__release(s->places);
+  dvi__release(s->work);
+  dvi__release(s->product);
+  return status;
+}
+
+/* ---- near a shift ---- */
+
+static dvi_status shift_matrix(const dvi__pencil *pencil, double shift, dvi__csr *shifted)
+{
+  dvi__csr scaled;
+  DVI_TRY(dvi__csr_copy(pencil->M, &scaled));
+  const int64_t entries = scaled.start[scaled.rows];
+  for (int64_t e = 0; e < entries; e++) scaled.value[e] *= -shift;
+  const dvi_matrix minus = dvi__csr_view(&scaled, 1);
+  const dvi_status status = dvi__csr_sum(pencil->K, &minus, shifted);
+  dvi__csr_clear(&scaled);
+  return status;
+}
+
+static dvi_status create_inverse(const dvi__pencil *pencil, double shift, dvi__definite *inverse)
+{
+  dvi__csr shifted;
+  DVI_TRY(shift_matrix(pencil, shift, &shifted));
+  const dvi_matrix view = dvi__csr_view(&shifted, 1);
+  const dvi_status status = shift > 0 ? dvi__regular_create(&view, inverse)
+                                      : dvi__definite_create(&view, pencil->dimension, inverse);
+  dvi__csr_clear(&shifted);
+  return status;
+}
+
+static void swap(int64_t n, double *a, double *b)
+{
+  for (int64_t i = 0; i < n; i++) {
+    const double kept = a[i];
+    a[i] = b[i];
+    b[i] = kept;
+  }
+}
+
+static void sort_modes(int64_t n, int count, double *eigenvalue, double *vector)
+{
+  for (int i = 0; i < count; i++) {
+    int least = i;
+    for (int j = i + 1; j < count; j++)
+      if (eigenvalue[j] < eigenvalue[least]) least = j;
+    if (least == i) continue;
+    swap(1, eigenvalue + i, eigenvalue + least);
+    if (vector != NULL) swap(n, vector + i * n, vector + least * n);
+  }
+}
+
+static int smaller(int64_t a, int64_t b)
+{
+  return (int)(a < b ? a : b);
+}
+
+dvi_status dvi__modes_near(const dvi__pencil *pencil, double shift, int count, double *eigenvalue,
+                           double *vector)
+{
+  const int64_t n = pencil->K->rows;
+  if (count < 1 || count >= n || n > INT_MAX / 64)
+    return dvi__fail(DVI_BAD_SIZE, "modes: %d modes of %lld unknowns: take 1 to %lld", count,
+                     (long long)n, (long long)n - 1);
+  dvi__definite inverse;
+  DVI_TRY(create_inverse(pencil, shift, &inverse));
+  lanczos s = {.pencil = pencil,
+               .inverse = &inverse,
+               .which = "LM",
+               .mode = SHIFT_INVERT,
+               .count = count,
+               .directions = smaller(n, 2 * (int64_t)count + 20),
+               .shift = shift};
+  const dvi_status status = run(&s, eigenvalue, vector);
+  if (status == DVI_OK) sort_modes(n, count, eigenvalue, vector);
+  dvi__definite_clear(&inverse);
+  return status;
+}
+
+/* ---- the largest one ---- */
+
+/* The tolerance is relative, so that the eigenvalue lies below the bound. */
+dvi_status dvi__largest_eigenvalue(const dvi__pencil *pencil, double *bound)
+{
+  const double tolerance = 1e-3;
+  const int64_t n = pencil->K->rows;
+  *bound = 0;
+  if (n < 3 || n > INT_MAX / 64)
+    return dvi__fail(DVI_BAD_SIZE, "modes: %lld unknowns, 3 to %d possible", (long long)n,
+                     INT_MAX / 64);
+  dvi__definite inverse;
+  DVI_TRY(dvi__definite_create(pencil->M, 3, &inverse));
+  lanczos s = {.pencil = pencil,
+               .inverse = &inverse,
+               .which = "LA",
+               .mode = REGULAR_INVERSE,
+               .count = 1,
+               .directions = smaller(n, 20),
+               .tolerance = tolerance};
+  const dvi_status status = run(&s, bound, NULL);
+  *bound *= 1 + tolerance;
+  dvi__definite_clear(&inverse);
+  return status;
+}
+
+/* ---- for users ---- */
+
+/* A shift below zero of the size of the matrices makes a semidefinite K definite. */
+static double default_shift(const dvi_matrix *K, const dvi_matrix *M)
+{
+  double k = 0, m = 0;
+  for (int64_t i = 0; i < K->rows; i++) {
+    for (int64_t e = dvi__first_entry(K, i); e < dvi__first_entry(K, i + 1); e++)
+      if (dvi__entry_column(K, i, e) == i) k += dvi__entry_value(K, e);
+    for (int64_t e = dvi__first_entry(M, i); e < dvi__first_entry(M, i + 1); e++)
+      if (dvi__entry_column(M, i, e) == i) m += dvi__entry_value(M, e);
+  }
+  return -1e-5 * k / m;
+}
+
+dvi_status dvi_matrix_modes(const dvi_matrix *K, const dvi_matrix *M,
+                            const dvi_modes_options *options, double *eigenvalue, double *vector)
+{
+  const dvi_modes_options defaults = {.size = sizeof defaults};
+  if (K == NULL || M == NULL || eigenvalue == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "modes: two matrices and eigenvalues are needed");
+  if (K->rows != M->rows || K->columns != K->rows || M->columns != M->rows)
+    return dvi__fail(DVI_BAD_ARGUMENT, "modes: the matrices have %lld and %lld rows",
+                     (long long)K->rows, (long long)M->rows);
+  if (options == NULL) options = &defaults;
+  if (options->size != sizeof *options)
+    return dvi__fail(DVI_BAD_ARGUMENT, "modes: set options.size to sizeof(dvi_modes_options)");
+  const dvi__pencil pencil = {.K = K, .M = M, .dimension = options->dimension};
+  const double shift = options->shift != 0 ? options->shift : default_shift(K, M);
+  return dvi__modes_near(&pencil, shift, options->count != 0 ? options->count : 6, eigenvalue,
+                         vector);
+}

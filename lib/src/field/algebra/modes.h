@@ -1,0 +1,25 @@
+/* Eigenvalues of sparse symmetric pencils K x = lambda M x by ARPACK. */
+#ifndef DVI_FIELD_ALGEBRA_MODES_H
+#define DVI_FIELD_ALGEBRA_MODES_H
+#include "field/algebra/definite.h"
+
+/* A pencil of a mesh in `dimension` dimensions. M is positive definite. */
+typedef struct dvi__pencil {
+  const dvi_matrix *K, *M;
+  int dimension;
+} dvi__pencil;
+
+/* Compute the `count` eigenvalues nearest to `shift`, ascending, and their vectors [count][rows],
+ * which are orthonormal, x.M x = 1. K - shift M is regular. A negative shift of a semidefinite K,
+ * and 0 of a definite one, make it positive definite, and take less time and memory. `vector` may
+ * be NULL.
+ *
+ * DVI_BAD_SIZE, DVI_SINGULAR, DVI_NOT_CONVERGED, DVI_NO_MEMORY. */
+dvi_status dvi__modes_near(const dvi__pencil *pencil, double shift, int count, double *eigenvalue,
+                           double *vector);
+
+/* Bound the largest eigenvalue from above, to some parts in a thousand. `M` is diagonal, or
+ * another matrix that is solved with by conjugate gradients. */
+dvi_status dvi__largest_eigenvalue(const dvi__pencil *pencil, double *bound);
+
+#endif
