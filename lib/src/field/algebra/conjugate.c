@@ -37,6 +37,11 @@ static void precondition(const search *s)
     memcpy(s->z, s->r, (size_t)s->A->size * sizeof *s->z);
 }
 
+static int is_acceptable(const search *s, double residual, double size)
+{
+  return residual <= fmax(acceptable * size, 100 * s->A->roundoff);
+}
+
 /* Take one step along p. */
 static dvi_status advance(search *s, double *x)
 {
@@ -67,9 +72,9 @@ static dvi_status iterate(search *s, double tolerance, double size, double *x,
   const int64_t n = s->A->size;
   int idle = 0;
   double smallest = size;
-  while (smallest > tolerance * size && idle < PATIENCE && s->rz > 0) {
+  while (smallest > fmax(tolerance * size, s->A->roundoff) && idle < PATIENCE && s->rz > 0) {
     const dvi_status status = advance(s, x);
-    if (status == DVI_SINGULAR && smallest <= acceptable * size) break; /* a semidefinite A's end */
+    if (status == DVI_SINGULAR && is_acceptable(s, smallest, size)) break;
     DVI_TRY(status);
     const double residual = sqrt(dot(n, s->r, s->r));
     report->iterations++;
@@ -92,7 +97,7 @@ static dvi_status solve(search *s, double tolerance, const double *b, double *x,
   memcpy(s->p, s->z, (size_t)n * sizeof *b);
   s->rz = dot(n, s->r, s->z);
   DVI_TRY(iterate(s, tolerance, size, x, report));
-  if (report->residual <= acceptable) return DVI_OK;
+  if (is_acceptable(s, report->residual * size, size)) return DVI_OK;
   return dvi__fail(DVI_NOT_CONVERGED,
                    "conjugate gradients: %g of the right side is left after %d iterations: it may "
                    "lie outside of the matrix's range",

@@ -67,6 +67,13 @@ static dvi_status times_above(void *of, const double *x, double *y)
   return DVI_OK;
 }
 
+static double length(int64_t count, const double *x)
+{
+  double sum = 0;
+  for (int64_t i = 0; i < count; i++) sum += x[i] * x[i];
+  return sqrt(sum);
+}
+
 static dvi_status find_exact(dvi__hodge *h, const double *form, double *exact)
 {
   memset(exact, 0, (size_t)h->count * sizeof *exact);
@@ -77,7 +84,10 @@ static dvi_status find_exact(dvi__hodge *h, const double *form, double *exact)
   dvi__hodge_hold(h, h->k, h->work);
   dvi_matrix_multiply(&h->d_below, 1, h->work, b);
   dvi__hodge_hold(h, h->k - 1, b);
-  const dvi__products products = {.size = h->below, .times = times_below, .of = h};
+  const dvi__products products = {.size = h->below,
+                                  .times = times_below,
+                                  .of = h,
+                                  .roundoff = roundoff * length(h->count, h->work)};
   const dvi_status status = dvi__conjugate_gradients(&products, roundoff, b, a, NULL);
   if (status == DVI_OK) dvi_matrix_multiply(&h->d_below, 0, a, exact);
   dvi__hodge_hold(h, h->k, exact);
@@ -93,7 +103,10 @@ static dvi_status find_coexact(dvi__hodge *h, const double *form, double *coexac
   if (a == NULL) return dvi__fail(DVI_NO_MEMORY, "forms: no memory for a decomposition");
   dvi_matrix_multiply(&h->d, 0, form, b);
   dvi__hodge_hold(h, h->k + 1, b);
-  const dvi__products products = {.size = h->above, .times = times_above, .of = h};
+  const dvi__products products = {.size = h->above,
+                                  .times = times_above,
+                                  .of = h,
+                                  .roundoff = roundoff * length(h->count, form)};
   dvi_status status = dvi__conjugate_gradients(&products, roundoff, b, a, NULL);
   if (status == DVI_OK) dvi_matrix_multiply(&h->d, 1, a, coexact);
   if (status == DVI_OK) status = dvi__hodge_divide(h, h->k, coexact);
