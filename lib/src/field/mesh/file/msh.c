@@ -119,19 +119,39 @@ static dvi_status read_names(msh *m)
   return dvi__raw_sort_groups(m->raw);
 }
 
-/* This section is not Gmsh's, who passes over it. It tells what a mesh of libdvi has besides. */
+/* Lines may be simplices or boxes, which no other number of a file tells. */
+static dvi_status read_kind(msh *m)
+{
+  dvi__word kind;
+  DVI_TRY(dvi__read_word(m->r, "\"simplices\" or \"boxes\"", &kind));
+  const int are_boxes = strcmp(kind.text, "boxes") == 0;
+  if (!are_boxes && strcmp(kind.text, "simplices") != 0)
+    return dvi__refuse(m->r, m->r->mark, "found \"%s\" where simplices or boxes are expected",
+                       kind.text);
+  m->raw->lines = are_boxes ? DVI_BOXES : DVI_SIMPLICES;
+  return DVI_OK;
+}
+
+static dvi_status read_axes(msh *m)
+{
+  int64_t space;
+  DVI_TRY(read_kind(m));
+  DVI_TRY(dvi__read_text_integer(m->r, "the number of coordinates", 1, 3, &space));
+  for (int i = 0; i < space; i++)
+    DVI_TRY(dvi__read_real(m->r, "the metric of an axis", m->raw->metric + i));
+  for (int i = 0; i < space; i++)
+    DVI_TRY(dvi__read_real(m->r, "the period of an axis", m->raw->period + i));
+  m->raw->space = (int)space;
+  return DVI_OK;
+}
+
+/* This section is not Gmsh's, which passes over it. It tells what a mesh of libdvi has besides. */
 static dvi_status read_space(msh *m)
 {
   const int is_binary = m->r->is_binary;
-  int64_t space;
-  dvi_status status = dvi__read_text_integer(m->r, "the number of coordinates", 1, 3, &space);
   m->r->is_binary = 0;
-  for (int i = 0; i < space && status == DVI_OK; i++)
-    status = dvi__read_real(m->r, "the metric of an axis", m->raw->metric + i);
-  for (int i = 0; i < space && status == DVI_OK; i++)
-    status = dvi__read_real(m->r, "the period of an axis", m->raw->period + i);
+  const dvi_status status = read_axes(m);
   m->r->is_binary = is_binary;
-  m->raw->space = (int)space;
   return status;
 }
 

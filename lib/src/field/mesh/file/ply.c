@@ -103,7 +103,7 @@ static dvi_status read_property(dvi__reader *r, head *h)
   if (h->elements == 0) return dvi__refuse(r, r->mark, "a property comes before all elements");
   element *e = h->element + h->elements - 1;
   if (e->properties == MOST_PROPERTIES)
-    return dvi__refuse(r, r->mark, "the element %s has more than %d properties", e->name,
+    return dvi__refuse(r, r->mark, "the element \"%s\" has more than %d properties", e->name,
                        (int)MOST_PROPERTIES);
   property *p = e->property + e->properties;
   const size_t before = r->at;
@@ -120,7 +120,8 @@ static dvi_status read_property(dvi__reader *r, head *h)
   p->role = role_of(e, p);
   for (int i = 0; i < e->properties; i++)
     if (strcmp(e->property[i].name, p->name) == 0)
-      return dvi__refuse(r, r->mark, "the element %s has a second property %s", e->name, p->name);
+      return dvi__refuse(r, r->mark, "the element \"%s\" has a second property \"%s\"", e->name,
+                         p->name);
   e->properties++;
   return DVI_OK;
 }
@@ -135,7 +136,7 @@ static dvi_status read_element(dvi__reader *r, head *h)
   memcpy(e->name, word.text, sizeof e->name);
   for (int i = 0; i < h->elements; i++)
     if (strcmp(h->element[i].name, e->name) == 0)
-      return dvi__refuse(r, r->mark, "there is a second element %s", e->name);
+      return dvi__refuse(r, r->mark, "there is a second element \"%s\"", e->name);
   DVI_TRY(dvi__read_text_integer(r, "the number of elements", 0, INT32_MAX, &e->count));
   h->elements++;
   return DVI_OK;
@@ -194,10 +195,10 @@ static dvi_status check_head(const dvi__reader *r, const head *h)
       width += of->count != NULL ? of->count->width : of->type->width;
     }
     if (width == 0 && h->element[i].count > 0)
-      return dvi__refuse(r, r->mark, "the element %s has no properties", h->element[i].name);
+      return dvi__refuse(r, r->mark, "the element \"%s\" has no properties", h->element[i].name);
     if (width > 0)
-      DVI_TRY(dvi__claim(r, h->element[i].name, h->element[i].count,
-                         2 * (int64_t)h->element[i].properties, width));
+      DVI_TRY(dvi__claim(r, "elements", h->element[i].count, 2 * (int64_t)h->element[i].properties,
+                         width));
   }
   return DVI_OK;
 }

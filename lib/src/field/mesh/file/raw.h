@@ -43,6 +43,7 @@ typedef struct dvi__raw {
   int may_repeat;   /* an element in two groups stands in the file twice */
   int space;        /* 0 if the file does not tell, else with metric and period */
   double metric[3], period[3];
+  dvi_cell_kind lines; /* what lines are */
 } dvi__raw;
 
 static inline dvi__raw_point *dvi__raw_point_at(const dvi__raw *raw, int64_t i)

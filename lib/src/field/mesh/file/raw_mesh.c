@@ -57,7 +57,7 @@ static dvi_status choose_top(build *b)
   if (facts->kind == DVI_BOXES && b->raw->elements[top - 1].count > 0)
     return refuse_mixture(b, (dvi__shape)(top - 1), (dvi__shape)top);
   b->top = (dvi__shape)top;
-  b->terms.kind = facts->kind;
+  b->terms.kind = top == DVI__LINE ? b->raw->lines : facts->kind;
   b->terms.dimension = facts->dimension;
   return DVI_OK;
 }

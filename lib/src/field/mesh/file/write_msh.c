@@ -132,7 +132,8 @@ static void put_names(const msh *m)
 /* Gmsh passes over sections that it does not know. */
 static void put_space(const msh *m)
 {
-  dvi__put(m->sink, "$DviSpace\n%d\n", m->mesh->space);
+  dvi__put(m->sink, "$DviSpace\n%s\n%d", m->mesh->kind == DVI_BOXES ? "boxes" : "simplices",
+           m->mesh->space);
   for (int i = 0; i < m->mesh->space; i++)
     dvi__put_real(m->sink, i ? ' ' : '\n', m->mesh->metric[i]);
   for (int i = 0; i < m->mesh->space; i++)
