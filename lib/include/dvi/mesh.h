@@ -1,4 +1,4 @@
-/** Meshes: cell complexes of dimension 1 to 4 with orientation, incidence, and named parts.
+/** Meshes: cell complexes of dimension 1 to 4 with orientation, incidence, named parts, and files.
  *
  *  A mesh of dimension n has k-cells of every degree k from 0 (vertices) to n. A k-cell of a mesh
  *  of simplices is an ascending tuple of k + 1 vertices, oriented by that order. A k-cell of a mesh
@@ -135,8 +135,9 @@ dvi_status dvi_mesh_delaunay(int dimension, int64_t points, const double *point,
  *
  *  Lines, triangles or tetrahedra make a mesh of simplices, quadrangles or hexahedra one of boxes.
  *  The cells are those of the highest dimension, in the order of their numbers in the file. Points
- *  without such a cell are left out, the others stand in the order of their numbers. Physical groups
- *  become parts with their names, or with the name "group N" (docs/fields/meshes.md, "Files").
+ *  without such a cell are left out, the others stand in the order of their numbers. Physical
+ *  groups become parts with their names, or with the name "group N" (docs/fields/meshes.md,
+ *  "Files").
  *
  *  @param path     the file's name
  *  @param options  NULL for the defaults

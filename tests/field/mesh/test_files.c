@@ -128,7 +128,7 @@ static const struct {
   const char *from, *to, *words;
 } refusals[] = {
     {MSH2_TEXT, "$MeshFormat", "solid", "m:1: found \"solid\" where $MeshFormat (MSH), OFF or ply"},
-    {MSH2_TEXT, "2.2", "4.0", "m:2: the file has version 4.0 of the format, and only 2.2 and 4.1"},
+    {MSH2_TEXT, "2.2", "4.0", "m:2: the file has version \"4.0\" of the format: only 2.2"},
     {MSH2_TEXT, "0 8", "0 4", "m:2: the size of numbers is 4, and must be 8"},
     {MSH2_TEXT, "0 8", "1 8", "m: byte 20: found the bytes of"},
     {MSH2_TEXT, "\"left", "left", "m:6: expected a name in quotes"},
@@ -179,7 +179,7 @@ static const struct {
      "m:8: $Elements comes before $N"},
     {MSH2_TEXT, "$Nodes\n5", "Nodes\n5",
      "m:8: found \"Nodes\" where a section like $Nodes is expect"},
-    {MSH2_TEXT, "$Nodes\n5", "$Knots\n5", "m:8: the section $Knots has no end \"$EndKnots\""},
+    {MSH2_TEXT, "$Nodes\n5", "$Knots\n5", "m:8: the section \"$Knots\" has no end \"$EndKnots\""},
     {MSH2_TEXT, "$Nodes\n5", "$Nodes all\n5", "m:8: found \"all\" behind the name of a section"},
     {MSH4_TEXT, "$Comments", "$PartitionedEntities", "m:4: the mesh is partitioned"},
     {MSH4_TEXT, "1 1 2 0", "1 1 1000000000 0", "m:12: 1000000000 entities are announced"},

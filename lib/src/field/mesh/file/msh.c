@@ -83,7 +83,7 @@ static dvi_status read_format(msh *m)
   m->is_newer = strcmp(version.text, "4.1") == 0;
   if (!m->is_newer && strcmp(version.text, "2.2") != 0)
     return dvi__refuse(r, r->mark,
-                       "the file has version %s of the format, and only 2.2 and 4.1 can be read",
+                       "the file has version \"%s\" of the format: only 2.2 and 4.1 can be read",
                        version.text);
   DVI_TRY(dvi__read_text_integer(r, "0 for text, or 1 for binary", 0, 1, &binary));
   DVI_TRY(dvi__read_text_integer(r, "the size of numbers", 8, 8, &width));
@@ -238,7 +238,7 @@ static dvi_status skip_section(msh *m, const dvi__word *name)
       r->at += length;
       return DVI_OK;
     }
-  return dvi__refuse(r, place, "the section %s has no end \"%s\"", name->text, end);
+  return dvi__refuse(r, place, "the section \"%s\" has no end \"%s\"", name->text, end);
 }
 
 static dvi_status read_next(msh *m)
