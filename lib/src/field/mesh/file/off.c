@@ -48,7 +48,7 @@ static dvi_status read_face(dvi__reader *r, dvi__raw *raw, int64_t face)
 
 dvi_status dvi__read_off(dvi__reader *r, dvi__raw *raw)
 {
-  int64_t points, faces;
+  int64_t points = 0, faces = 0;
   dvi__word word;
   double x[3];
   r->comment = '#';

@@ -71,7 +71,7 @@ dvi_status dvi__mesh_parse(const char *path, const unsigned char *byte, size_t s
                               *given = options != NULL ? options : &defaults;
   dvi__reader reader = {.path = path, .byte = byte, .size = size};
   dvi__raw raw = {.reader = &reader};
-  const format *found = NULL;
+  const format *found = formats;
   *mesh = NULL;
   DVI_TRY(check_options(given));
   DVI_TRY(given->format != NULL ? find_by_name(given->format, &found)

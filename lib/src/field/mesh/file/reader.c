@@ -211,7 +211,7 @@ dvi_status dvi__read_bytes(dvi__reader *r, const char *what, size_t count,
 dvi_status dvi__read_integer(dvi__reader *r, const char *what, int width, int64_t least,
                              int64_t most, int64_t *value)
 {
-  const unsigned char *byte = NULL;
+  const unsigned char *byte = r->byte;
   if (!r->is_binary) return dvi__read_text_integer(r, what, least, most, value);
   *value = 0;
   DVI_TRY(dvi__read_bytes(r, what, (size_t)width, &byte));
@@ -232,7 +232,7 @@ static dvi_status read_text_real(dvi__reader *r, const char *what, double *value
 
 static dvi_status read_binary_real(dvi__reader *r, const char *what, double *value)
 {
-  const unsigned char *byte = NULL;
+  const unsigned char *byte = r->byte;
   DVI_TRY(dvi__read_bytes(r, what, sizeof *value, &byte));
   const uint64_t bits = dvi__little_endian(byte, sizeof bits);
   memcpy(value, &bits, sizeof bits);

@@ -117,14 +117,19 @@ static void describe_all(grid *g)
 
 /* ---- the bytes ---- */
 
+/* Give a point that is drawn, a vertex in its place or a copy. */
+static copy point_at(const grid *g, int64_t i)
+{
+  const int64_t vertices = g->mesh->count[0];
+  if (i < vertices || g->copy.at == NULL) return (copy){.vertex = (int)i};
+  return ((const copy *)g->copy.at)[i - vertices];
+}
+
 static void put_view(const grid *g, const dvi_view *view)
 {
   dvi__put_little_endian(g->sink, (uint64_t)bytes_of_view(g, view), 8);
   for (int64_t i = 0; i < cells_of_view(g, view); i++) {
-    const int64_t copied = i - g->mesh->count[0];
-    const int64_t cell = view->degree == 0 && copied >= 0
-                             ? ((const copy *)g->copy.at)[copied].vertex
-                             : i;
+    const int64_t cell = view->degree == 0 ? point_at(g, i).vertex : i;
     for (int c = 0; c < view->components; c++)
       dvi__put_double(g->sink, view->values[cell * view->components + c]);
   }
@@ -139,14 +144,12 @@ static void put_views(const grid *g, int degree)
 static void put_points(const grid *g)
 {
   const dvi_mesh *mesh = g->mesh;
-  static const copy in_place = {.vertex = 0};
   dvi__put_little_endian(g->sink, (uint64_t)(24 * g->points), 8);
   for (int64_t i = 0; i < g->points; i++) {
-    const int64_t copied = i - mesh->count[0];
-    const copy *of = copied >= 0 ? (const copy *)g->copy.at + copied : &in_place;
-    const double *x = mesh->point + (copied >= 0 ? of->vertex : i) * mesh->space;
+    const copy drawn = point_at(g, i);
+    const double *x = mesh->point + (int64_t)drawn.vertex * mesh->space;
     for (int axis = 0; axis < 3; axis++)
-      dvi__put_double(g->sink, axis < mesh->space ? x[axis] + of->shift[axis] : 0);
+      dvi__put_double(g->sink, axis < mesh->space ? x[axis] + drawn.shift[axis] : 0);
   }
 }
 

@@ -1,6 +1,6 @@
 /* MSH 4.1 as text. Parts become physical groups. In this format each element belongs to one entity
  * of a geometry, and each entity to some groups. So cells of one degree that belong to the same
- * parts make up an entity, a class. Numbers of points and cells begin with 1. */
+ * parts make up an entity. Numbers of points and cells begin with 1. */
 #include <string.h>
 
 #include "core/memory.h"
@@ -10,92 +10,91 @@
 /* The parts "all" and "boundary", which every mesh has, are not written. */
 enum { FIRST_PART = 2, DEGREES = 4 };
 
-/* A class belongs to a part, and to all parts of its parent. Class 0 belongs to none. */
-typedef struct class
-{
-  int part, parent;       /* parent -1 for class 0 */
-  int moved_by, moved_to; /* the last part that took cells from here, and their class */
+/* An entity belongs to a part, and to all parts of its parent. Entity 0 belongs to none. */
+typedef struct entity {
+  int part, parent;       /* parent -1 for entity 0 */
+  int moved_by, moved_to; /* the last part that took cells from here, and their entity */
   int64_t first, count;   /* cells, in `order` */
-} class;
+} entity;
 
-/* The classes of the cells of a degree. */
-typedef struct classes {
+/* The entities of the cells of a degree. */
+typedef struct entities {
   dvi__list list;
   int *of;    /* [cells] */
-  int *order; /* [cells] by class */
-} classes;
+  int *order; /* [cells] by entity */
+} entities;
 
 /* What is written. */
 typedef struct msh {
   const dvi_mesh *mesh;
   dvi__sink *sink;
-  classes degree[DEGREES];
+  entities degree[DEGREES];
 } msh;
 
-static class *class_at(const classes *of, int i)
+static entity *entity_at(const entities *of, int i)
 {
-  return (class *)of->list.at + i;
+  return (entity *)of->list.at + i;
 }
 
-/* ---- classes ---- */
+/* ---- entities ---- */
 
-static dvi_status add_class(classes *to, int part, int parent)
+static dvi_status add_entity(entities *to, int part, int parent)
 {
-  class *added = dvi__list_add(&to->list, sizeof *added);
+  entity *added = dvi__list_add(&to->list, sizeof *added);
   if (added == NULL) return DVI_NO_MEMORY;
-  *added = (class){.part = part, .parent = parent};
+  *added = (entity){.part = part, .parent = parent};
   return DVI_OK;
 }
 
-/* Move the cells of a part from each class into a new one. */
-static dvi_status divide_by_part(const dvi_mesh *mesh, int p, classes *c)
+/* Move the cells of a part from each entity into a new one. */
+static dvi_status divide_by_part(const dvi_mesh *mesh, int p, entities *c)
 {
   const dvi__part *part = mesh->part + p;
   for (int64_t i = 0; i < part->count[part->degree]; i++) {
     int *of = c->of + part->cell[part->degree][i];
-    if (class_at(c, *of)->moved_by != p) {
-      DVI_TRY(add_class(c, p, *of));
-      class_at(c, *of)->moved_by = p;
-      class_at(c, *of)->moved_to = (int)c->list.count - 1;
+    if (entity_at(c, *of)->moved_by != p) {
+      DVI_TRY(add_entity(c, p, *of));
+      entity_at(c, *of)->moved_by = p;
+      entity_at(c, *of)->moved_to = (int)c->list.count - 1;
     }
-    *of = class_at(c, *of)->moved_to;
+    *of = entity_at(c, *of)->moved_to;
   }
   return DVI_OK;
 }
 
-/* Sort the cells by their classes. */
-static void sort_by_class(classes *c, int64_t cells)
+/* Sort the cells by their entities. */
+static void sort_by_entity(entities *c, int64_t cells)
 {
-  for (int64_t i = 0; i < cells; i++) class_at(c, c->of[i])->count++;
+  for (int64_t i = 0; i < cells; i++) entity_at(c, c->of[i])->count++;
   for (int i = 1; i < (int)c->list.count; i++)
-    class_at(c, i)->first = class_at(c, i - 1)->first + class_at(c, i - 1)->count;
-  for (int i = 0; i < (int)c->list.count; i++) class_at(c, i)->count = 0;
+    entity_at(c, i)->first = entity_at(c, i - 1)->first + entity_at(c, i - 1)->count;
+  for (int i = 0; i < (int)c->list.count; i++) entity_at(c, i)->count = 0;
   for (int64_t i = 0; i < cells; i++) {
-    class *of = class_at(c, c->of[i]);
+    entity *of = entity_at(c, c->of[i]);
     c->order[of->first + of->count++] = (int)i;
   }
 }
 
-static dvi_status find_classes(const dvi_mesh *mesh, int k, classes *c)
+static dvi_status find_entities(const dvi_mesh *mesh, int k, entities *c)
 {
   c->of = DVI_NEW(int, mesh->count[k]);
   c->order = DVI_NEW(int, mesh->count[k]);
   if (c->of == NULL || c->order == NULL)
     return dvi__fail(DVI_NO_MEMORY, "mesh file: no memory for parts");
-  DVI_TRY(add_class(c, 0, -1));
+  DVI_TRY(add_entity(c, 0, -1));
   for (int p = FIRST_PART; p < mesh->parts; p++)
     if (mesh->part[p].degree == k) DVI_TRY(divide_by_part(mesh, p, c));
-  sort_by_class(c, mesh->count[k]);
+  sort_by_entity(c, mesh->count[k]);
   return DVI_OK;
 }
 
 /* Cells below degree n that belong to no part are not written. */
 static int is_written(const msh *m, int k, int i)
 {
-  return class_at(m->degree + k, i)->count > 0 && (i > 0 || k == m->mesh->n);
+  return entity_at(m->degree + k, i)->count > 0 && (i > 0 || k == m->mesh->n);
 }
 
-static int classes_written(const msh *m, int k)
+static int entities_written(const msh *m, int k)
 {
   int count = 0;
   for (int i = 0; i < (int)m->degree[k].list.count; i++) count += is_written(m, k, i);
@@ -141,11 +140,11 @@ static void put_space(const msh *m)
   dvi__put(m->sink, "\n$EndDviSpace\n");
 }
 
-/* Put the corners of the box around the vertices of a class. */
+/* Put the corners of the box around the vertices of an entity. */
 static void put_box(const msh *m, int k, int i)
 {
   const dvi_mesh *mesh = m->mesh;
-  const class *of = class_at(m->degree + k, i);
+  const entity *of = entity_at(m->degree + k, i);
   const int corners = dvi__corners(mesh->kind, k);
   double least[3] = {0}, most[3] = {0};
   for (int64_t c = 0; c < of->count * corners; c++) {
@@ -164,18 +163,18 @@ static void put_box(const msh *m, int k, int i)
 static void put_groups(const msh *m, int k, int i)
 {
   int count = 0;
-  for (int c = i; c > 0; c = class_at(m->degree + k, c)->parent) count++;
+  for (int c = i; c > 0; c = entity_at(m->degree + k, c)->parent) count++;
   dvi__put(m->sink, " %d", count);
-  for (int c = i; c > 0; c = class_at(m->degree + k, c)->parent)
-    dvi__put(m->sink, " %d", class_at(m->degree + k, c)->part - FIRST_PART + 1);
+  for (int c = i; c > 0; c = entity_at(m->degree + k, c)->parent)
+    dvi__put(m->sink, " %d", entity_at(m->degree + k, c)->part - FIRST_PART + 1);
 }
 
-/* The entity of a class of vertices stands at one of them. */
+/* An entity of vertices stands at one of them. */
 static void put_entities(const msh *m)
 {
   dvi__put(m->sink, "$Entities\n");
   for (int k = 0; k < DEGREES; k++)
-    dvi__put(m->sink, k > 0 ? " %d" : "%d", k <= m->mesh->n ? classes_written(m, k) : 0);
+    dvi__put(m->sink, k > 0 ? " %d" : "%d", k <= m->mesh->n ? entities_written(m, k) : 0);
   dvi__put(m->sink, "\n");
   for (int k = 0; k <= m->mesh->n; k++)
     for (int i = 0; i < (int)m->degree[k].list.count; i++) {
@@ -188,7 +187,7 @@ static void put_entities(const msh *m)
   dvi__put(m->sink, "$EndEntities\n");
 }
 
-/* All points stand in one block, that of a class of n-cells. */
+/* All points stand in one block, that of an entity of n-cells. */
 static void put_nodes(const msh *m)
 {
   const dvi_mesh *mesh = m->mesh;
@@ -202,13 +201,13 @@ static void put_nodes(const msh *m)
 }
 
 /* n-cells have their own numbers, so that reading keeps them. The others have those behind. */
-static void put_class(const msh *m, int k, int i, int64_t *number)
+static void put_entity(const msh *m, int k, int i, int64_t *number)
 {
   const dvi_mesh *mesh = m->mesh;
   const dvi__shape shape = dvi__shape_of(mesh->kind, k);
   const dvi__shape_facts *facts = dvi__shape_facts_of + shape;
-  const int64_t count = class_at(m->degree + k, i)->count;
-  const int *cell = m->degree[k].order + class_at(m->degree + k, i)->first;
+  const int64_t count = entity_at(m->degree + k, i)->count;
+  const int *cell = m->degree[k].order + entity_at(m->degree + k, i)->first;
   int vertex[DVI__CORNERS];
   dvi__put(m->sink, "%d %d %d %lld\n", k, i + 1, facts->msh, (long long)count);
   for (int64_t c = 0; c < count; c++) {
@@ -224,20 +223,20 @@ static void put_elements(const msh *m)
 {
   const int n = m->mesh->n;
   int64_t blocks = 0, cells = m->mesh->count[n], number = cells;
-  for (int k = 0; k <= n; k++) blocks += classes_written(m, k);
-  for (int k = 0; k < n; k++) cells += m->mesh->count[k] - class_at(m->degree + k, 0)->count;
+  for (int k = 0; k <= n; k++) blocks += entities_written(m, k);
+  for (int k = 0; k < n; k++) cells += m->mesh->count[k] - entity_at(m->degree + k, 0)->count;
   dvi__put(m->sink, "$Elements\n%lld %lld 1 %lld\n", (long long)blocks, (long long)cells,
            (long long)cells);
   for (int k = 0; k <= n; k++)
     for (int i = 0; i < (int)m->degree[k].list.count; i++)
-      if (is_written(m, k, i)) put_class(m, k, i, &number);
+      if (is_written(m, k, i)) put_entity(m, k, i, &number);
   dvi__put(m->sink, "$EndElements\n");
 }
 
 static dvi_status put_all(msh *m)
 {
   DVI_TRY(check_names(m->mesh));
-  for (int k = 0; k <= m->mesh->n; k++) DVI_TRY(find_classes(m->mesh, k, m->degree + k));
+  for (int k = 0; k <= m->mesh->n; k++) DVI_TRY(find_entities(m->mesh, k, m->degree + k));
   dvi__put(m->sink, "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n");
   put_names(m);
   put_space(m);
