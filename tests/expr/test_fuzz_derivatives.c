@@ -298,7 +298,7 @@ static unsigned try_derivatives(const char *text, size_t size)
 
 START_TEST(derivatives_are_those_of_differences)
 {
-  ck_assert_int_gt(fuzz(&(fuzz_target){"derivatives", corpus, tokens, try_derivatives}), 0);
+  ck_assert_int_gt(fuzz(&(fuzz_target){"derivatives", corpus, tokens, try_derivatives, NULL}), 0);
 }
 END_TEST
 #endif

@@ -72,6 +72,7 @@ BEGIN {
   uses["main.c"] = "cli bench"
   # Single headers of other rooms that a room may include.
   also["reference solve/sundials_compat.h"] = 1
+  also["field/mesh/file march/whole_file.h"] = 1
   # libdvi shares these headers with sister libraries (lib/exports.map, DVI_PRIVATE).
   also["text core/memory.h"] = also["expr/compile num/simd/lanes.h"] = 1
   # Standard headers that a public header may need.

@@ -214,7 +214,7 @@ static void fuzz_with(const char *name, unsigned (*try)(const char *, size_t))
   ck_assert_int_eq(glob(DVI_SCENES "/*.yaml", 0, NULL, &found), 0);
   ck_assert_uint_le(found.gl_pathc, SCENES_MAX);
   for (size_t k = 0; k < found.gl_pathc; k++) corpus[k] = read_text(found.gl_pathv[k]);
-  const fuzz_target target = {name, (const char *const *)corpus, tokens, try};
+  const fuzz_target target = {name, (const char *const *)corpus, tokens, try, NULL};
   ck_assert_int_gt(fuzz(&target), 0);
   for (size_t k = 0; k < found.gl_pathc; k++) free(corpus[k]);
   globfree(&found);

@@ -132,7 +132,7 @@ static unsigned try_syntax(const char *text, size_t size)
 
 START_TEST(any_text_makes_an_expression_or_a_sentence)
 {
-  ck_assert_int_gt(fuzz(&(fuzz_target){"syntax", corpus, tokens, try_syntax}), 0);
+  ck_assert_int_gt(fuzz(&(fuzz_target){"syntax", corpus, tokens, try_syntax, NULL}), 0);
 }
 END_TEST
 

@@ -146,7 +146,7 @@ static unsigned try_tree(const char *text, size_t size)
 
 START_TEST(any_text_makes_a_tree_or_a_sentence)
 {
-  ck_assert_int_gt(fuzz(&(fuzz_target){"tree", corpus, tokens, try_tree}), 0);
+  ck_assert_int_gt(fuzz(&(fuzz_target){"tree", corpus, tokens, try_tree, NULL}), 0);
 }
 END_TEST
 

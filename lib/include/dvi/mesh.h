@@ -1,4 +1,4 @@
-/** Meshes: cell complexes of dimension 1 to 4 with orientation, incidence, and named parts.
+/** Meshes: cell complexes of dimension 1 to 4 with orientation, incidence, named parts, and files.
  *
  *  A mesh of dimension n has k-cells of every degree k from 0 (vertices) to n. A k-cell of a mesh
  *  of simplices is an ascending tuple of k + 1 vertices, oriented by that order. A k-cell of a mesh
@@ -68,6 +68,25 @@ typedef struct dvi_generator_options {
   int periodic[4];   /**< not 0 for the axes along which a box or a Kuhn mesh repeats itself */
 } dvi_generator_options;
 
+/** How to read a mesh from a file. Zero means the default. */
+typedef struct dvi_mesh_read_options {
+  size_t size;        /**< sizeof(dvi_mesh_read_options) */
+  const char *format; /**< "msh", "off" or "ply". Default: what the file begins with */
+  /** Coordinates of a point. Those that a file lacks are 0. Default: what a file of
+   *  dvi_mesh_write tells, else as few as hold all points, but not fewer than the dimension */
+  int space;
+  const double *metric; /**< [space] as in dvi_mesh_terms. Default: the file's, or all +1 */
+  const double *period; /**< [space] as in dvi_mesh_terms. Default: the file's, or none */
+} dvi_mesh_read_options;
+
+/** Values on a mesh, to be seen with it. */
+typedef struct dvi_view {
+  const char *name;     /**< not empty, and not that of another view on cells of this degree */
+  const double *values; /**< [cells*components], cell by cell */
+  int components;       /**< numbers for each cell, 1 or more */
+  int degree;           /**< of the cells: 0 for vertices, or the mesh's dimension */
+} dvi_view;
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -110,6 +129,54 @@ const char *dvi_mesh_generator_name(int i);
  *  @retval DVI_BAD_SIZE      the dimension is not 2 to 4, or there are too few points
  *  @retval (others)          as dvi_mesh_create */
 dvi_status dvi_mesh_delaunay(int dimension, int64_t points, const double *point, dvi_mesh **mesh);
+
+/** Read a mesh from a file of the formats MSH 2.2 or 4.1 (Gmsh), OFF or PLY, as text or as
+ *  little-endian binary numbers. OFF is read as text only.
+ *
+ *  Lines, triangles or tetrahedra make a mesh of simplices, quadrangles or hexahedra one of boxes.
+ *  The cells are those of the highest dimension, in the order of their numbers in the file. Points
+ *  without such a cell are left out, the others stand in the order of their numbers. Physical
+ *  groups become parts with their names, or with the name "group N" (docs/fields/meshes.md,
+ *  "Files").
+ *
+ *  @param path     the file's name
+ *  @param options  NULL for the defaults
+ *  @param[out] mesh  the mesh, for dvi_mesh_destroy. NULL after a failure
+ *  @retval DVI_IO_ERROR    the file could not be read
+ *  @retval DVI_BAD_FILE    the file is cut short, or is not what it claims to be. dvi_last_error()
+ *                          names the line, or the byte of a binary file
+ *  @retval DVI_BAD_OPTION  there is no such format, or `space` does not fit
+ *  @retval (others)        as dvi_mesh_create */
+dvi_status dvi_mesh_read(const char *path, const dvi_mesh_read_options *options, dvi_mesh **mesh);
+
+/** Write a mesh to a file whose format the end of its name chooses.
+ *
+ *  `.msh` is MSH 4.1 as text, with the parts as physical groups; dvi_mesh_read reads the same mesh
+ *  from it. `.off` and `.ply` have the points and faces of a surface, as text. `.vtu` is an
+ *  unstructured grid of VTK, with views, for ParaView. All of them have at most three coordinates.
+ *
+ *  An old file is replaced as a whole, or stays if the new one cannot be written.
+ *
+ *  @param views  number of views. Only a .vtu file has them
+ *  @param view   [views]
+ *  @retval DVI_BAD_OPTION    the name's end is none of these
+ *  @retval DVI_BAD_ARGUMENT  a view is not as described
+ *  @retval DVI_UNSUPPORTED   the format cannot hold such a mesh, or views
+ *  @retval DVI_IO_ERROR      the file could not be written
+ *  @retval DVI_NO_MEMORY     there is no memory for the file */
+dvi_status dvi_mesh_write(const dvi_mesh *mesh, const char *path, int views, const dvi_view *view);
+
+/** Write a list of files at their times, a .pvd file, which ParaView opens as one series.
+ *
+ *  @param path   the name of the list
+ *  @param count  number of files
+ *  @param time   [count]
+ *  @param file   [count] names, relative to the folder of the list
+ *  @retval DVI_BAD_OPTION    the name of the list does not end with .pvd
+ *  @retval DVI_BAD_ARGUMENT  a time is not finite, or a name is missing
+ *  @retval (others)          as dvi_mesh_write */
+dvi_status dvi_series_write(const char *path, int64_t count, const double *time,
+                            const char *const *file);
 
 /** Let one more owner share the mesh. Each owner calls dvi_mesh_destroy. Returns the mesh. */
 dvi_mesh *dvi_mesh_share(const dvi_mesh *mesh);

@@ -207,8 +207,9 @@ long fuzz(const fuzz_target *target)
   ck_assert_int_ge(file, 0);
   state = 0;
   for (int k = 0; target->corpus[k] != NULL; k++) {
-    (void)try_text(target, target->corpus[k], strlen(target->corpus[k]));
-    add_to_corpus(target->corpus[k], strlen(target->corpus[k]));
+    const size_t size = target->size != NULL ? target->size[k] : strlen(target->corpus[k]);
+    (void)try_text(target, target->corpus[k], size);
+    add_to_corpus(target->corpus[k], size);
   }
   const long tried = try_for(target, seconds_asked(), file);
   printf("%s: %ld texts tried, %zu kept\n", target->name, tried, corpus.count);

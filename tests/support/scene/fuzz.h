@@ -14,6 +14,7 @@ typedef struct fuzz_target {
   /* Try a text of which exactly `size` bytes can be read, and fail the test if something is wrong.
    * The result is a number of the outcome. A text with a new outcome joins the corpus. */
   unsigned (*try_text)(const char *text, size_t size);
+  const size_t *size; /* of the good texts. NULL if each ends with a zero byte */
 } fuzz_target;
 
 /* Tries texts for DVI_FUZZ_SECONDS (default 2, or 30 under the address sanitizer), and returns

@@ -1,0 +1,88 @@
+#include "field/mesh/file/sink.h"
+
+#include <dvi/number.h>
+#include <stdarg.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "march/whole_file.h"
+
+/* Make room for more bytes. Returns 0 if there is no memory, now or before. */
+static int has_room(dvi__sink *sink, size_t more)
+{
+  if (sink->has_failed) return 0;
+  if (sink->room - sink->count >= more) return 1;
+  size_t room = sink->room > 0 ? sink->room : (size_t)1 << 12;
+  while (room - sink->count < more && room <= SIZE_MAX / 2) room *= 2;
+  unsigned char *at = room - sink->count >= more ? DVI_NEW(unsigned char, room) : NULL;
+  if (at == NULL) {
+    sink->has_failed = 1;
+    return 0;
+  }
+  if (sink->count > 0) memcpy(at, sink->at, sink->count);
+  dvi__release(sink->at);
+  sink->at = at;
+  sink->room = room;
+  return 1;
+}
+
+void dvi__put_bytes(dvi__sink *sink, const void *bytes, size_t count)
+{
+  if (count == 0 || !has_room(sink, count)) return;
+  memcpy(sink->at + sink->count, bytes, count);
+  sink->count += count;
+}
+
+void dvi__put(dvi__sink *sink, const char *format, ...)
+{
+  char text[256];
+  va_list arguments;
+  va_start(arguments, format);
+  (void)dvi_number_vprint(text, sizeof text, format, arguments);
+  va_end(arguments);
+  dvi__put_bytes(sink, text, strlen(text));
+}
+
+void dvi__put_real(dvi__sink *sink, char before, double number)
+{
+  char text[DVI_NUMBER_SIZE + 1] = {before};
+  dvi_number_write(number, text + 1);
+  dvi__put_bytes(sink, text, strlen(text));
+}
+
+void dvi__put_xml(dvi__sink *sink, const char *text)
+{
+  static const char special[] = "&<>\"'";
+  static const char *const escape[] = {"&amp;", "&lt;", "&gt;", "&quot;", "&apos;"};
+  for (; *text != 0; text++) {
+    const char *found = strchr(special, *text);
+    if (found != NULL)
+      dvi__put_bytes(sink, escape[found - special], strlen(escape[found - special]));
+    else
+      dvi__put_bytes(sink, text, 1);
+  }
+}
+
+void dvi__put_little_endian(dvi__sink *sink, uint64_t value, int width)
+{
+  unsigned char byte[8];
+  for (int i = 0; i < width; i++) byte[i] = (unsigned char)(value >> (8 * i) & 255);
+  dvi__put_bytes(sink, byte, (size_t)width);
+}
+
+void dvi__put_double(dvi__sink *sink, double value)
+{
+  uint64_t bits;
+  memcpy(&bits, &value, sizeof bits);
+  dvi__put_little_endian(sink, bits, 8);
+}
+
+dvi_status dvi__sink_finish(dvi__sink *sink, const char *path, dvi_status status)
+{
+  if (status == DVI_OK && sink->has_failed)
+    status = dvi__fail(DVI_NO_MEMORY, "%.300s: no memory for the file", path);
+  if (status == DVI_OK) status = dvi__write_whole(path, sink->at, sink->count);
+  dvi__release(sink->at);
+  *sink = (dvi__sink){.at = NULL};
+  return status;
+}
