@@ -121,8 +121,7 @@ dvi_status dvi_star_solve(const dvi_star *star, int k, double *b);
  *  @retval DVI_UNSUPPORTED  M_{k-1} is not diagonal, so that the matrix would be full.
  *                           dvi_star_solve does without it
  *  @retval DVI_SINGULAR     an entry of M_{k-1} is zero */
-dvi_status dvi_form_codifferential_create(const dvi_star *star, int k,
-                                          dvi_matrix **codifferential);
+dvi_status dvi_form_codifferential_create(const dvi_star *star, int k, dvi_matrix **codifferential);
 
 /** Give the symmetric matrix of Laplace and de Rham's operator on k-forms,
  *
@@ -155,8 +154,7 @@ typedef enum dvi_form_boundary {
  *  @retval DVI_NOT_CONVERGED  an iteration left too much of its right side
  *  @retval DVI_NO_MEMORY      there is no memory */
 dvi_status dvi_form_decompose(const dvi_star *star, int k, dvi_form_boundary boundary,
-                              const double *form, double *exact, double *coexact,
-                              double *harmonic);
+                              const double *form, double *exact, double *coexact, double *harmonic);
 
 /** Return the number of independent harmonic k-forms: the Betti number b_k, and with DVI_RELATIVE
  *  b_{n-k} on an orientable mesh.

@@ -64,7 +64,7 @@ static dvi_status advance(search *s, double *x)
   return DVI_OK;
 }
 
-/* The residual of the recurrence goes below that of x. The iteration ends where many iterations bring
+/* The residual of the recurrence goes below that of x. The search ends where many iterations bring
  * no smaller one. */
 static dvi_status iterate(search *s, double tolerance, double size, double *x,
                           dvi__iteration_report *report)

@@ -1,4 +1,4 @@
-/* Harmonic forms: what is left of random forms when their exact and coexact parts are taken away. */
+/* Harmonic forms are left of random forms when their exact and coexact parts are taken away. */
 #include <math.h>
 #include <string.h>
 
