@@ -53,8 +53,8 @@ explain_by_hand() {
 bootstrap: this system is neither Debian 12 or later nor Ubuntu 24.04 or later: please install what
 is needed yourself: a C11 compiler, make, CMake 3.22 or later, pkg-config, SUNDIALS 6.4 to 7 with
 KLU, SuiteSparse, LAPACK, qhull, ARPACK, libyaml, Check, gnuplot and, for a test, a C++ compiler;
-for lint also clang, clang-tidy, clang-format, cppcheck, Doxygen, valgrind and GSL. On Debian these packages
-are called
+for lint also clang, clang-tidy, clang-format, cppcheck, Doxygen, valgrind and GSL. On Debian these
+packages are called
   $packages
   $lint_packages
 Then:  cmake --preset release && cmake --build --preset release

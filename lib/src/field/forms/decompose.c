@@ -4,7 +4,8 @@
  *     coexact part  M_k^-1 d^T y,    d M_k^-1 d^T y = d form                        (degree k+1)
  *
  * Both matrices are semidefinite, and the right sides lie in their ranges. Entries on the
- * boundary's cells are held at zero for relative conditions (Hirani 2003, ch. 6; Desbrun et al. 2005). */
+ * boundary's cells are held at zero for relative conditions (Hirani 2003, ch. 6; Desbrun et al.
+ * 2005). */
 #include <math.h>
 #include <string.h>
 
