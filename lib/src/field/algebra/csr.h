@@ -57,7 +57,7 @@ static inline int dvi__entry_column(const dvi_matrix *A, int64_t row, int64_t en
 
 static inline double dvi__entry_value(const dvi_matrix *A, int64_t entry)
 {
-  return A->value != NULL ? A->value[entry] : A->sign[entry];
+  return A->sign != NULL ? A->sign[entry] : A->value[entry];
 }
 
 #endif
