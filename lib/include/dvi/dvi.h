@@ -7,6 +7,7 @@
 #include <dvi/control.h>
 #include <dvi/diagnostics.h>
 #include <dvi/ensemble.h>
+#include <dvi/field.h>
 #include <dvi/forms.h>
 #include <dvi/group.h>
 #include <dvi/integrator.h>
