@@ -93,8 +93,8 @@ extern "C" {
 
 /** Create a wave, or a static problem, on a mesh.
  *
- *  @retval DVI_BAD_ARGUMENT     a part is missing, a flux is asked through cells that are not of the
- *                               boundary, every vertex is fixed, or an argument is not as described
+ *  @retval DVI_BAD_ARGUMENT     a part is missing, or has no facet of the boundary for a flux,
+ *                               every vertex is fixed, or an argument is not as described
  *  @retval DVI_SINGULAR         an entry of M_0 is zero or negative. dvi_last_error() names the
  *                               vertex
  *  @retval DVI_CALLBACK_FAILED  a datum or the source failed

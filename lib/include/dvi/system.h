@@ -205,6 +205,10 @@ typedef struct dvi_potential {
   /** not 0 if V = q.Kq/2 + b(t).q + c(t) with a constant K, whose Hessian is evaluated once.
    *  dvi_system_check tests this */
   int quadratic;
+  /** bound of the angular frequencies of a quadratic potential, the square root of the largest
+   *  eigenvalue of M^-1 K. Explicit methods refuse steps beyond what it allows, 2/fastest for
+   *  verlet. 0 if not known (default) */
+  double fastest;
   /** Taylor coefficients of V, V_q and V_qq along the curve t(s) = sum_k t[k] s^k,
    *  q_i(s) = sum_k q[k*n + i] s^k, k from 0 to the degree (at most DVI_TAYLOR_MAX).
    *

@@ -157,7 +157,12 @@ static void advance_block(void *of, int thread, int item)
   dvi__worker *w = &e->workers[thread];
   const dvi__block *block = &e->blocks[item];
   dvi__worker_bind(w, block);
-  for (int k = 0; k < block->count; k++) e->status[block->first + k] = DVI_OK;
+  const dvi_status status = dvi__stepper_check_step(&w->integrator->stepper, e->task.h);
+  for (int k = 0; k < block->count; k++) {
+    e->status[block->first + k] = status;
+    if (status != DVI_OK) dvi__worker_note(w, block->first + k, status);
+  }
+  if (status != DVI_OK) return;
   if (w->integrator->stepper.lanes != NULL && block->count > 1)
     advance_lanes(e, w, block);
   else

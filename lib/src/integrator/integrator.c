@@ -303,6 +303,7 @@ dvi_status dvi_integrator_step(dvi_integrator *I, double h)
     return dvi__fail(DVI_BAD_STATE,
                      "step: the integrator has no state yet; call dvi_integrator_start first");
   DVI_TRY(dvi__check_step(I->monitored != NULL ? 0 : I->now.t, h));
+  DVI_TRY(dvi__stepper_check_step(&I->stepper, h));
   return dvi__hits_divide(I) ? dvi__hits_step(I, h) : dvi__integrator_smooth_step(I, h);
 }
 

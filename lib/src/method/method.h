@@ -111,6 +111,9 @@ typedef struct dvi__stepper {
    * driver sets `exact`, which is not 0 if the next step must have the given length. */
   double taken;
   int exact;
+  /* the largest product of a step and a frequency that is stable, 0 if there is no bound. `create`
+   * sets it, and the driver refuses longer steps for the frequencies that a system declares */
+  double stable;
   int late_hessians; /* the step may ask for Hessians that create has not asked for */
   int follows;       /* the step solves equations and can follow their branch from h = 0 */
   /* set by the driver: follow the branch in at least this many parts (default 0, no following) */
@@ -228,6 +231,9 @@ dvi_status dvi__inner_step(dvi__stepper *self, dvi__stepper *inner, dvi__state *
 dvi_status dvi__stepper_create_inner(dvi__stepper *self, const char *method,
                                      const dvi_system *system, const dvi_shapes *shapes,
                                      dvi__stepper *inner);
+
+/* Refuse a step that is unstable at the frequencies that the system declares. DVI_STEP_TOO_LARGE. */
+dvi_status dvi__stepper_check_step(const dvi__stepper *stepper, double h);
 
 /* Let a stepper serve up to `capacity` members side by side. `lanes` stays NULL if the method
  * cannot do this, or the system is damped. Called once. */

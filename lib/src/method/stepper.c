@@ -178,6 +178,17 @@ dvi_status dvi__stepper_create_inner(dvi__stepper *self, const char *method,
              : dvi__fail(DVI_NO_MEMORY, "%s: no memory for its specification", method);
 }
 
+dvi_status dvi__stepper_check_step(const dvi__stepper *stepper, double h)
+{
+  const double fastest = stepper->stable > 0 ? dvi__system_fastest(stepper->system) : 0;
+  if (fabs(h) * fastest <= stepper->stable) return DVI_OK;
+  return dvi__fail(
+      DVI_STEP_TOO_LARGE,
+      "%s is unstable with h = %.9g: the system's frequencies reach %.9g, and h may be "
+      "%.9g at most; take shorter steps, or an implicit method such as imex or galerkin",
+      stepper->method->name, h, fastest, stepper->stable / fastest);
+}
+
 void dvi__stepper_start(dvi__stepper *stepper, const double *v)
 {
   if (stepper->method->start != NULL) stepper->method->start(stepper, v);

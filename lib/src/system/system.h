@@ -220,6 +220,10 @@ size_t dvi__system_least_entries(const dvi_system *system);
  * threads may call this at one time. Return DVI_BAD_SIZE if an int cannot count the entries. */
 dvi_status dvi__system_prepare_hessian(const dvi_system *system);
 
+/* Return a bound of the frequencies of the quadratic potentials that declare theirs, 0 if none
+ * does. */
+double dvi__system_fastest(const dvi_system *system);
+
 /* Return 1 if all potentials give their gradient, so that no force is differenced. */
 int dvi__system_has_gradients(const dvi_system *system);
 

@@ -213,15 +213,38 @@ dvi_status dvi__modes_near(const dvi__pencil *pencil, double shift, int count, d
 
 /* ---- the largest one ---- */
 
+static double entry_of(const dvi_matrix *A, int64_t row, int column)
+{
+  for (int64_t e = dvi__first_entry(A, row); e < dvi__first_entry(A, row + 1); e++)
+    if (dvi__entry_column(A, row, e) == column) return dvi__entry_value(A, e);
+  return 0;
+}
+
+/* Of one unknown, or of two, the larger root of det(K - lambda M) = a lambda^2 - b lambda + c. */
+static double largest_root(const dvi__pencil *pencil)
+{
+  const dvi_matrix *K = pencil->K, *M = pencil->M;
+  const double k = entry_of(K, 0, 0), m = entry_of(M, 0, 0);
+  if (K->rows == 1) return k / m;
+  const double k1 = entry_of(K, 0, 1), m1 = entry_of(M, 0, 1), k2 = entry_of(K, 1, 1),
+               m2 = entry_of(M, 1, 1), a = m * m2 - m1 * m1, b = k * m2 + k2 * m - 2 * k1 * m1,
+               c = k * k2 - k1 * k1;
+  return (b + sqrt(fmax(b * b - 4 * a * c, 0))) / (2 * a);
+}
+
 /* The tolerance is relative, so that the eigenvalue lies below the bound. */
 dvi_status dvi__largest_eigenvalue(const dvi__pencil *pencil, double *bound)
 {
   const double tolerance = 1e-3;
   const int64_t n = pencil->K->rows;
   *bound = 0;
-  if (n < 3 || n > INT_MAX / 64)
-    return dvi__fail(DVI_BAD_SIZE, "modes: %lld unknowns, 3 to %d possible", (long long)n,
+  if (n < 1 || n > INT_MAX / 64)
+    return dvi__fail(DVI_BAD_SIZE, "modes: %lld unknowns, 1 to %d possible", (long long)n,
                      INT_MAX / 64);
+  if (n < 3) {
+    *bound = largest_root(pencil);
+    return DVI_OK;
+  }
   dvi__definite inverse;
   DVI_TRY(dvi__definite_create(pencil->M, 3, &inverse));
   lanczos s = {.pencil = pencil,

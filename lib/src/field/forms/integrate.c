@@ -1,42 +1,19 @@
-/* The integrals of a form over the cells.
- *
- * A k-cell is the image of the cube [0,1]^k. For a box the map is linear. For a simplex with the
- * edges u_i = p_i - p_0 it is, after Duffy (1982),
- *
- *     x = p_0 + sum_i s_i u_i,   s_i = t_i prod_{j < i} (1 - t_j),
- *
- * with the Jacobian prod_i (1 - t_i)^(k-i) of s, i from 1 to k. The form's components at x are
- * multiplied by the minors of the edges, which are constant. */
-#include <dvi/quadrature.h>
+/* The integrals of a form over the cells, by Gauss's rule. The form's components at a point are
+ * multiplied by the minors of the cell's edges, which are constant. */
 #include <math.h>
 
 #include "core/status.h"
 #include "field/forms/component.h"
+#include "field/forms/rule.h"
 #include "field/mesh/volume.h"
-
-enum { POINTS = 5 };
 
 typedef struct integral {
   const dvi_mesh *mesh;
   int k;
   dvi_form_function *function;
   void *user;
-  double node[POINTS], weight[POINTS];
+  dvi__rule rule;
 } integral;
-
-/* Give the place of a quadrature point along the edges of the cell. Returns its weight. */
-static double place_of(const integral *a, int point, double *s)
-{
-  double weight = 1, left = 1;
-  for (int i = 0; i < a->k; i++, point /= POINTS) {
-    const double t = a->node[point % POINTS];
-    weight *= a->weight[point % POINTS];
-    if (a->mesh->kind == DVI_SIMPLICES) weight *= pow(1 - t, a->k - 1 - i);
-    s[i] = left * t;
-    if (a->mesh->kind == DVI_SIMPLICES) left *= 1 - t;
-  }
-  return weight;
-}
 
 static dvi_status refuse_value(const integral *a, int64_t cell, int failed, double value)
 {
@@ -71,13 +48,12 @@ static dvi_status integrate_cell(const integral *a, int64_t cell, double *sum)
   const double *origin = a->mesh->point + first * space;
   double room[DVI_MESH_DIMENSION_MAX * DVI_MESH_SPACE_MAX], x[DVI_MESH_SPACE_MAX];
   const double *edge[DVI_MESH_DIMENSION_MAX];
-  int points = 1;
   if (a->k > 0) dvi__cell_edges(a->mesh, a->k, cell, room);
-  for (int i = 0; i < a->k; i++, points *= POINTS) edge[i] = room + i * space;
+  for (int i = 0; i < a->k; i++) edge[i] = room + i * space;
   *sum = 0;
-  for (int point = 0; point < points; point++) {
+  for (int point = 0; point < dvi__rule_count(a->k); point++) {
     double s[DVI_MESH_DIMENSION_MAX];
-    const double weight = place_of(a, point, s);
+    const double weight = dvi__rule_point(&a->rule, a->mesh->kind, a->k, point, s);
     for (int l = 0; l < space; l++) {
       x[l] = origin[l];
       for (int i = 0; i < a->k; i++) x[l] += s[i] * edge[i][l];
@@ -95,7 +71,7 @@ dvi_status dvi_form_integrate(const dvi_mesh *mesh, int k, dvi_form_function *fu
   if (k < 0 || k > mesh->n)
     return dvi__fail(DVI_BAD_ARGUMENT, "forms: the degree is %d, and must be 0 to %d", k, mesh->n);
   integral a = {.mesh = mesh, .k = k, .function = function, .user = user};
-  DVI_TRY(dvi_quadrature(DVI_GAUSS, POINTS, a.node, a.weight));
+  DVI_TRY(dvi__rule_make(&a.rule));
   for (int64_t cell = 0; cell < mesh->count[k]; cell++)
     DVI_TRY(integrate_cell(&a, cell, form + cell));
   return DVI_OK;

@@ -41,7 +41,9 @@ static dvi_status respa_create(dvi__stepper *self)
     return dvi__oscillation_create(self, NULL, DVI__MOTION_AUTO, "substeps=k takes any");
   DVI_TRY(dvi__impulse_create(self, sizeof(dvi__impulse), 0));
   ((dvi__impulse *)self->own)->move = respa_substeps;
-  return dvi__impulse_take_inner(self, "verlet:blocking=none");
+  DVI_TRY(dvi__impulse_take_inner(self, "verlet:blocking=none"));
+  self->stable = self->settings.value[SUBSTEPS] * ((dvi__impulse *)self->own)->inner->stable;
+  return DVI_OK;
 }
 
 static void respa_destroy(dvi__stepper *self)

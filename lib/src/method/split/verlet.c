@@ -107,6 +107,7 @@ static dvi_status verlet_create(dvi__stepper *self)
   verlet *own = self->own = DVI_NEW(verlet, 1);
   self->order = 2;
   self->symmetric = 1;
+  self->stable = 2; /* a motion turns by theta in a step, cos(theta) = 1 - (h omega)^2/2 */
   self->memory_count = (size_t)self->system->n + 1 +
                        (1 + DVI__RATTLE_TREND) * (size_t)self->system->row_count;
   if (own == NULL) return dvi__fail(DVI_NO_MEMORY, "verlet: no memory");

@@ -43,6 +43,18 @@ static dvi_status check_range(const dvi_potential *given, const char *name)
                    given->reach);
 }
 
+static dvi_status check_fastest(const dvi_potential *given, const char *name)
+{
+  if (!(given->fastest >= 0) || isinf(given->fastest))
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "system: potential '%s' has %g as its fastest frequency; a finite number from "
+                     "0 on is possible",
+                     name, given->fastest);
+  if (given->fastest == 0 || given->quadratic) return DVI_OK;
+  return dvi__fail(DVI_BAD_ARGUMENT,
+                   "system: potential '%s' has a fastest frequency but is not quadratic", name);
+}
+
 static dvi_status copy_potential(dvi_system *s, const dvi_potential *given,
                                  dvi__potential_term *term)
 {
@@ -54,6 +66,7 @@ static dvi_status copy_potential(dvi_system *s, const dvi_potential *given,
       given->hessian && given->hessian_batch, given->rate && given->rate_batch));
   DVI_TRY(dvi__check_rate(s, name, given->rate || given->rate_batch));
   DVI_TRY(check_range(given, name));
+  DVI_TRY(check_fastest(given, name));
   term->callbacks = *given;
   term->name = copy_text(name);
   if (term->name == NULL) return refuse_memory_of_system();

@@ -1,4 +1,6 @@
 /* Common properties of a system's terms, and the test for systems that may replace one another. */
+#include <math.h>
+
 #include "core/status.h"
 #include "system/evaluate/dynamics.h"
 #include "system/evaluate/jet.h"
@@ -10,6 +12,17 @@ int dvi__system_has_gradients(const dvi_system *system)
   for (int p = 0; p < system->potential_count; p++)
     if (!dvi__potential_has_gradient(&system->potentials[p])) return 0;
   return 1;
+}
+
+/* The largest eigenvalue of a sum is at most the sum of the largest ones. */
+double dvi__system_fastest(const dvi_system *system)
+{
+  double square = 0;
+  for (int p = 0; p < system->potential_count; p++) {
+    const double fastest = system->potentials[p].callbacks.fastest;
+    square += fastest * fastest;
+  }
+  return sqrt(square);
 }
 
 static dvi_status refuse_without_rate(const char *without)

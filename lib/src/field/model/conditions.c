@@ -1,0 +1,131 @@
+/* Which values of a field are fixed, and which components of the mesh have none. */
+#include <math.h>
+#include <stdio.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "field/model/field.h"
+
+dvi_status dvi__field_check_datum(const dvi_field *field, const char *what, int failed,
+                                  double value, int k, int64_t cell)
+{
+  if (failed == 0 && isfinite(value)) return DVI_OK;
+  const dvi__cell_name name = dvi__name_cell(field->mesh, k, cell);
+  if (failed != 0)
+    return dvi__fail(DVI_CALLBACK_FAILED, "field: the %s returned %d at %s", what, failed,
+                     name.text);
+  return dvi__fail(DVI_NOT_FINITE, "field: the %s is %g at %s", what, value, name.text);
+}
+
+/* ---- values ---- */
+
+/* Fix the vertices of a part. Those that are fixed already keep their values. */
+static dvi_status fix_part(dvi_field *field, const dvi_condition *condition, double *value)
+{
+  int64_t count;
+  char what[96];
+  const int *vertex = dvi_mesh_part_cells(field->mesh, condition->part, 0, &count);
+  (void)snprintf(what, sizeof what, "fixed value on part \"%.40s\"", condition->part);
+  for (int64_t i = 0; i < count; i++) {
+    const int v = vertex[i];
+    double datum = 0;
+    if (field->number[v] < 0) continue;
+    const double *x = field->mesh->point + (int64_t)v * field->mesh->space;
+    const int failed = condition->datum != NULL ? condition->datum(x, NULL, &datum, condition->user)
+                                                : 0;
+    DVI_TRY(dvi__field_check_datum(field, what, failed, datum, 0, v));
+    value[v] = datum;
+    field->number[v] = -1;
+  }
+  return DVI_OK;
+}
+
+static dvi_status check_condition(const dvi_field *field, const dvi_condition *condition)
+{
+  int64_t count;
+  if (condition->part == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "field: a condition has no part of the mesh");
+  if (condition->kind != DVI_FREE && condition->kind != DVI_FIXED)
+    return dvi__fail(DVI_BAD_ARGUMENT, "field: the condition on part \"%s\" has no kind %d",
+                     condition->part, (int)condition->kind);
+  (void)dvi_mesh_part_cells(field->mesh, condition->part, 0, &count);
+  if (count >= 0) return DVI_OK;
+  return dvi__fail(DVI_BAD_ARGUMENT,
+                   "field: a condition is set on part \"%s\", which the mesh has "
+                   "not",
+                   condition->part);
+}
+
+/* Number the vertices that are left. */
+static dvi_status number_unknowns(dvi_field *field)
+{
+  int count = 0;
+  for (int64_t v = 0; v < field->vertices; v++)
+    if (field->number[v] >= 0) field->unknown[count++] = (int)v;
+  for (int i = 0; i < count; i++) field->number[field->unknown[i]] = i;
+  field->unknowns = count;
+  if (count > 0) return DVI_OK;
+  return dvi__fail(DVI_BAD_ARGUMENT, "field: all %lld vertices are fixed, and nothing is unknown",
+                   (long long)field->vertices);
+}
+
+dvi_status dvi__field_fix(dvi_field *field, const dvi_wave_terms *terms)
+{
+  field->unknown = DVI_NEW(int, field->vertices);
+  field->number = DVI_NEW(int, field->vertices);
+  field->fixed = DVI_NEW(double, field->vertices);
+  if (field->unknown == NULL || field->number == NULL || field->fixed == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "field: no memory for %lld vertices",
+                     (long long)field->vertices);
+  for (int i = 0; i < terms->conditions; i++) {
+    DVI_TRY(check_condition(field, terms->condition + i));
+    if (terms->condition[i].kind == DVI_FIXED)
+      DVI_TRY(fix_part(field, terms->condition + i, field->fixed));
+  }
+  return number_unknowns(field);
+}
+
+/* ---- components ---- */
+
+/* Return the first vertex of a set, and shorten the ways to it. */
+static int root_of(int *parent, int v)
+{
+  while (parent[v] != v) v = parent[v] = parent[parent[v]];
+  return v;
+}
+
+static void join(int *parent, int a, int b)
+{
+  const int first = root_of(parent, a), second = root_of(parent, b);
+  parent[first > second ? first : second] = first < second ? first : second;
+}
+
+/* Number the sets that have no fixed vertex. `label` [vertices] is -2 for the others. */
+static void number_components(dvi_field *field, int *parent, int *label)
+{
+  for (int64_t v = 0; v < field->vertices; v++) label[v] = -1;
+  for (int64_t v = 0; v < field->vertices; v++)
+    if (field->number[v] < 0) label[root_of(parent, (int)v)] = -2;
+  for (int64_t i = 0; i < field->unknowns; i++) {
+    const int root = root_of(parent, field->unknown[i]);
+    if (label[root] == -1) label[root] = (int)field->components++;
+    field->component[i] = label[root] >= 0 ? label[root] : -1;
+  }
+}
+
+dvi_status dvi__field_find_components(dvi_field *field)
+{
+  const dvi_mesh *mesh = field->mesh;
+  int *parent = DVI_NEW(int, 2 * field->vertices);
+  field->component = DVI_NEW(int, field->unknowns);
+  if (parent == NULL || field->component == NULL) {
+    dvi__release(parent);
+    return dvi__fail(DVI_NO_MEMORY, "field: no memory for components");
+  }
+  for (int v = 0; v < field->vertices; v++) parent[v] = v;
+  for (int64_t e = 0; e < mesh->count[1]; e++)
+    join(parent, mesh->corner[1][2 * e], mesh->corner[1][2 * e + 1]);
+  number_components(field, parent, parent + field->vertices);
+  dvi__release(parent);
+  return DVI_OK;
+}

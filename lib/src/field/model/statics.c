@@ -1,0 +1,200 @@
+/* The static states of a field: K u = b with b = W f + the flux, and with a potential
+ * K u + w V_u(u) = b.
+ *
+ * In a component of the mesh where no value is fixed, K has constants as its kernel. There the sum
+ * of b has to vanish. One unknown of the component is held while the others are solved for, and the
+ * mean of the component, by M_0, is chosen afterwards. */
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "field/algebra/definite.h"
+#include "field/model/field.h"
+#include "field/model/newton.h"
+
+static const double default_imbalance = 1e-8;
+
+/* What is known of each free component. */
+typedef struct statics {
+  const dvi_field *field;
+  const dvi_field_solve_options *options;
+  double *b, *x, *mass; /* [unknowns] the right side, the solution, and the sums of M_0's rows */
+  double *sum, *size, *weight; /* [components] sums of b, |b| and mass */
+  dvi_field_solve_report report;
+} statics;
+
+/* ---- components ---- */
+
+static dvi_status allocate(statics *s)
+{
+  const int64_t n = s->field->unknowns, components = s->field->components;
+  const dvi_matrix M = dvi__csr_view(&s->field->mass, 1);
+  s->b = DVI_NEW(double, 3 * n + 3 * components);
+  if (s->b == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "field: no memory for %lld unknowns", (long long)n);
+  s->x = s->b + n;
+  s->mass = s->x + n;
+  s->sum = s->mass + n;
+  s->size = s->sum + components;
+  s->weight = s->size + components;
+  for (int64_t i = 0; i < n; i++) s->x[i] = 1;
+  dvi_matrix_multiply(&M, 0, s->x, s->mass);
+  memcpy(s->b, s->field->load, (size_t)n * sizeof *s->b);
+  return DVI_OK;
+}
+
+static dvi_status refuse_imbalance(const statics *s, double sum, double imbalance)
+{
+  return dvi__fail(
+      DVI_BAD_ARGUMENT,
+      "field: no value is fixed, and source and flux sum to %.3g, %.2g of their size, "
+      "where no solution exists unless they sum to 0: fix a value, change the data, or "
+      "set `imbalance` above it to have the sum taken away (it is %.2g)",
+      sum, imbalance, s->options->imbalance != 0 ? s->options->imbalance : default_imbalance);
+}
+
+/* Take the sums of b away, in proportion to the mass. */
+static dvi_status balance(statics *s)
+{
+  const dvi_field *f = s->field;
+  const double most = s->options->imbalance != 0 ? s->options->imbalance : default_imbalance;
+  for (int64_t i = 0; i < f->unknowns; i++) {
+    const int c = f->component[i];
+    if (c < 0) continue;
+    s->sum[c] += s->b[i];
+    s->size[c] += fabs(s->b[i]);
+    s->weight[c] += s->mass[i];
+  }
+  for (int64_t c = 0; c < f->components; c++) {
+    const double imbalance = s->size[c] > 0 ? fabs(s->sum[c]) / s->size[c] : 0;
+    s->report.imbalance = fmax(s->report.imbalance, imbalance);
+    if (imbalance > most) return refuse_imbalance(s, s->sum[c], imbalance);
+  }
+  for (int64_t i = 0; i < f->unknowns; i++) {
+    const int c = f->component[i];
+    if (c >= 0) s->b[i] -= s->sum[c] * s->mass[i] / s->weight[c];
+  }
+  return DVI_OK;
+}
+
+static void set_means(statics *s)
+{
+  const dvi_field *f = s->field;
+  for (int64_t c = 0; c < f->components; c++) s->sum[c] = 0;
+  for (int64_t i = 0; i < f->unknowns; i++)
+    if (f->component[i] >= 0) s->sum[f->component[i]] += s->mass[i] * s->x[i];
+  for (int64_t i = 0; i < f->unknowns; i++) {
+    const int c = f->component[i];
+    if (c >= 0) s->x[i] += s->options->mean - s->sum[c] / s->weight[c];
+  }
+}
+
+/* ---- linear problems ---- */
+
+/* Number all unknowns but the first of each free component. Returns how many there are. */
+static int64_t number_unheld(const dvi_field *f, int *number)
+{
+  int count = 0;
+  int64_t held = 0; /* components are numbered in the order of their first unknowns */
+  for (int64_t i = 0; i < f->unknowns; i++) {
+    const int is_first = f->component[i] >= 0 && f->component[i] == held;
+    held += is_first;
+    number[i] = is_first ? -1 : count++;
+  }
+  return count;
+}
+
+static dvi_status solve_unheld(statics *s, const int *number, int64_t count, double *room)
+{
+  const dvi_field *f = s->field;
+  const dvi__selection unheld = {.row = number, .column = number, .rows = count, .columns = count};
+  const dvi_matrix K = dvi__csr_view(&f->stiffness, 1);
+  double *b = room, *x = room + count;
+  dvi__csr part = {0};
+  dvi__definite solver = {0};
+  dvi__iteration_report iteration = {0};
+  DVI_TRY(dvi__csr_select(&K, &unheld, &part));
+  const dvi_matrix view = dvi__csr_view(&part, 1);
+  for (int64_t i = 0; i < f->unknowns; i++)
+    if (number[i] >= 0) b[number[i]] = s->b[i];
+  dvi_status status = dvi__definite_create(&view, f->mesh->n, &solver);
+  dvi__csr_clear(&part);
+  if (status == DVI_OK) status = dvi__definite_solve(&solver, b, x, &iteration);
+  dvi__definite_clear(&solver);
+  for (int64_t i = 0; i < f->unknowns; i++) s->x[i] = number[i] >= 0 ? x[number[i]] : 0;
+  s->report.iterations = iteration.iterations;
+  return status;
+}
+
+static dvi_status solve_linear(statics *s)
+{
+  const int64_t n = s->field->unknowns;
+  int *number = DVI_NEW(int, n);
+  double *room = DVI_NEW(double, 2 * n);
+  DVI_TRY(balance(s));
+  dvi_status status = number != NULL && room != NULL
+                          ? DVI_OK
+                          : dvi__fail(DVI_NO_MEMORY, "field: no memory for a solution");
+  const int64_t count = status == DVI_OK ? number_unheld(s->field, number) : 0;
+  if (status == DVI_OK && count > 0) status = solve_unheld(s, number, count, room);
+  if (status == DVI_OK && count == 0) s->x[0] = 0;
+  if (status == DVI_OK) set_means(s);
+  dvi__release(number);
+  dvi__release(room);
+  return status;
+}
+
+static double length(int64_t n, const double *x)
+{
+  double sum = 0;
+  for (int64_t i = 0; i < n; i++) sum += x[i] * x[i];
+  return sqrt(sum);
+}
+
+/* Set the residual beside b. With a potential it is the one that Newton's method left. */
+static void measure(statics *s)
+{
+  const int64_t n = s->field->unknowns;
+  const dvi_matrix K = dvi__csr_view(&s->field->stiffness, 1);
+  const double size = length(n, s->b);
+  dvi_matrix_multiply(&K, 0, s->x, s->mass);
+  for (int64_t i = 0; i < n; i++) s->mass[i] -= s->b[i];
+  s->report.residual = size > 0 ? length(n, s->mass) / size : length(n, s->mass);
+}
+
+/* ---- both ---- */
+
+static dvi_status solve(statics *s, double *u)
+{
+  const dvi_field *f = s->field;
+  DVI_TRY(allocate(s));
+  s->report.unknowns = f->unknowns;
+  if (f->potential.density != NULL) {
+    for (int64_t i = 0; i < f->unknowns; i++) s->x[i] = u[f->unknown[i]];
+    DVI_TRY(dvi__field_newton(f, s->x, &s->report));
+  } else {
+    DVI_TRY(solve_linear(s));
+    measure(s);
+  }
+  return dvi_field_lift(f, s->x, u);
+}
+
+dvi_status dvi_field_solve(const dvi_field *field, const dvi_field_solve_options *options,
+                           double *u, dvi_field_solve_report *report)
+{
+  const dvi_field_solve_options defaults = {.size = sizeof defaults};
+  statics s = {.field = field, .options = options != NULL ? options : &defaults};
+  if (field == NULL || u == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "field: a field and its values are needed");
+  if (s.options->size != sizeof defaults)
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "field: set options.size to sizeof(dvi_field_solve_options)");
+  if (!isfinite(s.options->mean) || !(s.options->imbalance >= 0))
+    return dvi__fail(DVI_BAD_ARGUMENT, "field: the mean %g or the imbalance %g cannot be",
+                     s.options->mean, s.options->imbalance);
+  const dvi_status status = solve(&s, u);
+  dvi__release(s.b);
+  if (status == DVI_OK && report != NULL) *report = s.report;
+  return status;
+}
