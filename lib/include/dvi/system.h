@@ -205,9 +205,8 @@ typedef struct dvi_potential {
   /** not 0 if V = q.Kq/2 + b(t).q + c(t) with a constant K, whose Hessian is evaluated once.
    *  dvi_system_check tests this */
   int quadratic;
-  /** bound of the angular frequencies of a quadratic potential, the square root of the largest
-   *  eigenvalue of M^-1 K. Explicit methods refuse steps beyond what it allows, 2/fastest for
-   *  verlet. 0 if not known (default) */
+  /** bound of the angular frequencies of a quadratic potential, by which explicit methods refuse
+   *  unstable steps, beyond 2/fastest for verlet. 0 if not known (default) */
   double fastest;
   /** Taylor coefficients of V, V_q and V_qq along the curve t(s) = sum_k t[k] s^k,
    *  q_i(s) = sum_k q[k*n + i] s^k, k from 0 to the degree (at most DVI_TAYLOR_MAX).
@@ -550,10 +549,8 @@ dvi_status dvi_system_invariants(const dvi_system *system, double t, const doubl
 
 /** Findings of the derivative check. */
 typedef struct dvi_derivative_check {
-  /** largest difference of given and differenced gradient, relative to the largest entry */
-  double gradient_error;
-  /** largest difference of given and differenced Hessian on the pattern, relative */
-  double hessian_error;
+  double gradient_error; /**< largest difference of a gradient, relative to the largest entry */
+  double hessian_error;  /**< largest difference of a Hessian on the pattern, relative */
   /** largest differenced entry outside the pattern, relative. If it exceeds roundoff, the pattern
    *  is wrong */
   double outside;
@@ -562,10 +559,8 @@ typedef struct dvi_derivative_check {
   /** the worst finding in words, for example "potential 'gravity': d2V/dq2 (3,1) is not in the
    *  pattern" */
   char where[96];
-  /** first coordinate for which a gradient_range breaks its promise. -1 if there is none */
-  int range_row;
-  /** largest difference of given and differenced rate, relative to the rate */
-  double rate_error;
+  int range_row;       /**< first coordinate for which a gradient_range breaks its promise, or -1 */
+  double rate_error;   /**< largest difference of a rate, relative to the rate */
   int depends_on_time; /**< 1 if declared autonomous, but a callback's results change with t */
   int not_quadratic;   /**< 1 if a Hessian of a potential declared quadratic changes with q or t */
   /** largest difference of a Taylor coefficient and the one-point callbacks, or differences of the

@@ -232,7 +232,8 @@ dvi_status dvi__stepper_create_inner(dvi__stepper *self, const char *method,
                                      const dvi_system *system, const dvi_shapes *shapes,
                                      dvi__stepper *inner);
 
-/* Refuse a step that is unstable at the frequencies that the system declares. DVI_STEP_TOO_LARGE. */
+/* Refuse a step that is unstable at the frequencies that the system declares.
+ * DVI_STEP_TOO_LARGE. */
 dvi_status dvi__stepper_check_step(const dvi__stepper *stepper, double h);
 
 /* Let a stepper serve up to `capacity` members side by side. `lanes` stays NULL if the method
