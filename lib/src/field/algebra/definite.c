@@ -60,13 +60,17 @@ static dvi_status keep(dvi_status status, dvi__definite *solver)
   return status;
 }
 
+int dvi__definite_iterates(int64_t rows, int dimension)
+{
+  return rows > (dimension > 2 ? MOST_IN_SPACE : MOST_IN_PLANE);
+}
+
 dvi_status dvi__definite_create(const dvi_matrix *A, int dimension, dvi__definite *solver)
 {
   *solver = (dvi__definite){.is_diagonal = A->column == NULL};
   DVI_TRY(dvi__csr_copy(A, &solver->matrix));
   dvi_status status = check_diagonal(&solver->matrix);
-  const int is_small = A->rows <= (dimension > 2 ? MOST_IN_SPACE : MOST_IN_PLANE);
-  if (status == DVI_OK && is_small && !solver->is_diagonal)
+  if (status == DVI_OK && !dvi__definite_iterates(A->rows, dimension) && !solver->is_diagonal)
     status = make_factor(solver, DVI__LINEAR_DEFINITE);
   return keep(status, solver);
 }

@@ -13,6 +13,9 @@ typedef struct dvi__definite {
   int is_diagonal;
 } dvi__definite;
 
+/* Tell whether a matrix of so many rows is solved with by iteration. */
+int dvi__definite_iterates(int64_t rows, int dimension);
+
 /* Prepare solutions with a copy of a positive definite matrix, of a mesh in `dimension` dimensions.
  * DVI_SINGULAR if it is not positive definite. On failure nothing is owned. */
 dvi_status dvi__definite_create(const dvi_matrix *A, int dimension, dvi__definite *solver);

@@ -2,8 +2,8 @@
  * K u + w V_u(u) = b.
  *
  * In a component of the mesh where no value is fixed, K has constants as its kernel. There the sum
- * of b has to vanish. One unknown of the component is held while the others are solved for, and the
- * mean of the component, by M_0, is chosen afterwards. */
+ * of b has to vanish. A factor needs one unknown of the component held while the others are solved
+ * for, and an iteration does not. The mean of the component, by M_0, is chosen afterwards. */
 #include <math.h>
 #include <string.h>
 
@@ -54,7 +54,19 @@ static dvi_status refuse_imbalance(const statics *s, double sum, double imbalanc
       sum, imbalance, s->options->imbalance != 0 ? s->options->imbalance : default_imbalance);
 }
 
-/* Take the sums of b away, in proportion to the mass. */
+static void take_sums_away(statics *s)
+{
+  const dvi_field *f = s->field;
+  for (int64_t c = 0; c < f->components; c++) s->sum[c] = 0;
+  for (int64_t i = 0; i < f->unknowns; i++)
+    if (f->component[i] >= 0) s->sum[f->component[i]] += s->b[i];
+  for (int64_t i = 0; i < f->unknowns; i++) {
+    const int c = f->component[i];
+    if (c >= 0) s->b[i] -= s->sum[c] * s->mass[i] / s->weight[c];
+  }
+}
+
+/* Take the sums of b away, in proportion to the mass, twice because of roundings. */
 static dvi_status balance(statics *s)
 {
   const dvi_field *f = s->field;
@@ -71,10 +83,7 @@ static dvi_status balance(statics *s)
     s->report.imbalance = fmax(s->report.imbalance, imbalance);
     if (imbalance > most) return refuse_imbalance(s, s->sum[c], imbalance);
   }
-  for (int64_t i = 0; i < f->unknowns; i++) {
-    const int c = f->component[i];
-    if (c >= 0) s->b[i] -= s->sum[c] * s->mass[i] / s->weight[c];
-  }
+  for (int pass = 0; pass < 2; pass++) take_sums_away(s);
   return DVI_OK;
 }
 
@@ -127,22 +136,66 @@ static dvi_status solve_unheld(statics *s, const int *number, int64_t count, dou
   return status;
 }
 
-static dvi_status solve_linear(statics *s)
+static dvi_status solve_with_factor(statics *s)
 {
   const int64_t n = s->field->unknowns;
   int *number = DVI_NEW(int, n);
   double *room = DVI_NEW(double, 2 * n);
-  DVI_TRY(balance(s));
   dvi_status status = number != NULL && room != NULL
                           ? DVI_OK
                           : dvi__fail(DVI_NO_MEMORY, "field: no memory for a solution");
   const int64_t count = status == DVI_OK ? number_unheld(s->field, number) : 0;
   if (status == DVI_OK && count > 0) status = solve_unheld(s, number, count, room);
   if (status == DVI_OK && count == 0) s->x[0] = 0;
-  if (status == DVI_OK) set_means(s);
   dvi__release(number);
   dvi__release(room);
   return status;
+}
+
+/* ---- linear problems by iteration ---- */
+
+static dvi_status times_stiffness(void *of, const double *x, double *y)
+{
+  const dvi_matrix K = dvi__csr_view(&((statics *)of)->field->stiffness, 1);
+  dvi_matrix_multiply(&K, 0, x, y);
+  return DVI_OK;
+}
+
+/* Directions have no part in the kernel of K, the constants on free components. */
+static void precondition(void *of, const double *r, double *z)
+{
+  statics *s = of;
+  const dvi_field *f = s->field;
+  const dvi_matrix K = dvi__csr_view(&f->stiffness, 1);
+  dvi__gauss_seidel(&K, r, z);
+  for (int64_t c = 0; c < f->components; c++) s->sum[c] = s->size[c] = 0;
+  for (int64_t i = 0; i < f->unknowns; i++) {
+    if (f->component[i] < 0) continue;
+    s->sum[f->component[i]] += z[i];
+    s->size[f->component[i]]++;
+  }
+  for (int64_t i = 0; i < f->unknowns; i++)
+    if (f->component[i] >= 0) z[i] -= s->sum[f->component[i]] / s->size[f->component[i]];
+}
+
+static dvi_status solve_by_iteration(statics *s)
+{
+  const dvi__products products = {
+      .size = s->field->unknowns, .times = times_stiffness, .precondition = precondition, .of = s};
+  dvi__iteration_report iteration;
+  DVI_TRY(dvi__conjugate_gradients(&products, 1e-14, s->b, s->x, &iteration));
+  s->report.iterations = iteration.iterations;
+  return DVI_OK;
+}
+
+static dvi_status solve_linear(statics *s)
+{
+  const dvi_field *f = s->field;
+  DVI_TRY(balance(s));
+  DVI_TRY(dvi__definite_iterates(f->unknowns, f->mesh->n) ? solve_by_iteration(s)
+                                                          : solve_with_factor(s));
+  set_means(s);
+  return DVI_OK;
 }
 
 static double length(int64_t n, const double *x)
