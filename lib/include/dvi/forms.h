@@ -26,7 +26,10 @@ typedef enum dvi_star_kind {
   DVI_BARYCENTRIC,
   /** the mass matrices of Whitney's forms: linear finite elements for functions, edge and face
    *  elements (Nedelec 1980) for other forms. Symmetric, definite, not diagonal */
-  DVI_WHITNEY
+  DVI_WHITNEY,
+  /** of equal boxes that repeat themselves along all axes: full matrices for which the waves of the
+   *  grid have their own wave numbers, without an error. For up to some thousand boxes */
+  DVI_SPECTRAL
 } dvi_star_kind;
 
 /** Options of a star. Zero means the default. */
@@ -51,7 +54,8 @@ extern "C" {
  *
  *  @param options  NULL for the defaults
  *  @retval DVI_BAD_ARGUMENT  a facet belongs to more than two cells, a cell has no volume in the
- *                            mesh's metric, or a factor is not finite
+ *                            mesh's metric, a factor is not finite, or the mesh is not such a grid
+ *                            for the spectral star
  *  @retval DVI_NO_MEMORY     there is no memory */
 dvi_status dvi_star_create(const dvi_mesh *mesh, const dvi_star_options *options, dvi_star **star);
 
@@ -69,6 +73,7 @@ const dvi_mesh *dvi_star_mesh(const dvi_star *star);
  *  The matrix of a star that is not diagonal is made by the first call for its degree.
  *
  *  @retval DVI_BAD_ARGUMENT  k is not from 0 to n
+ *  @retval DVI_BAD_SIZE      a matrix of the spectral star would be too large
  *  @retval DVI_NO_MEMORY     there is no memory */
 dvi_status dvi_star_matrix(const dvi_star *star, int k, dvi_matrix *matrix);
 

@@ -49,7 +49,7 @@ static dvi_status invert_volumes(dvi_star *star)
 
 static dvi_status check_mesh(const dvi_mesh *mesh, dvi_star_kind kind)
 {
-  if (kind != DVI_CIRCUMCENTRIC && kind != DVI_BARYCENTRIC && kind != DVI_WHITNEY)
+  if ((unsigned)kind > DVI_SPECTRAL)
     return dvi__fail(DVI_BAD_ARGUMENT, "star: there is no kind %d", (int)kind);
   if (mesh->branching < 0) return DVI_OK;
   const dvi__cell_name name = dvi__name_cell(mesh, mesh->n - 1, mesh->branching);
@@ -74,10 +74,21 @@ static dvi_status take_factors(dvi_star *star, const double *const *factor)
   return DVI_OK;
 }
 
+static dvi_status make_spectral(const dvi_star *star, const dvi_star_options *options)
+{
+  for (int k = 0; options->factor != NULL && k <= star->mesh->n; k++)
+    if (options->factor[k] != NULL)
+      return dvi__fail(DVI_BAD_ARGUMENT,
+                       "star: the spectral star takes no factors: its waves go through the whole "
+                       "grid");
+  return dvi__spectral_check(star->mesh);
+}
+
 static dvi_status make(dvi_star *star, const dvi_star_options *options)
 {
   DVI_TRY(check_mesh(star->mesh, star->kind));
   DVI_TRY(take_factors(star, options->factor));
+  if (star->kind == DVI_SPECTRAL) return make_spectral(star, options);
   if (star->kind == DVI_CIRCUMCENTRIC) return dvi__circumcentric_star(star);
   if (star->kind == DVI_BARYCENTRIC) DVI_TRY(lump_vertices(star));
   return invert_volumes(star);
@@ -146,7 +157,9 @@ const double *dvi_star_duals(const dvi_star *star, int k)
 static dvi_status make_once(dvi_star *star, int k)
 {
   (void)pthread_mutex_lock(&star->making);
-  const dvi_status status = star->matrix[k].value != NULL ? DVI_OK : dvi__whitney_star(star, k);
+  dvi_status status = DVI_OK;
+  if (star->matrix[k].value == NULL)
+    status = star->kind == DVI_SPECTRAL ? dvi__spectral_star(star, k) : dvi__whitney_star(star, k);
   (void)pthread_mutex_unlock(&star->making);
   return status;
 }

@@ -28,6 +28,10 @@ dvi_status dvi__stiffness(const dvi_star *star, int k, dvi__csr *stiffness);
 /* Refuse a cell without volume in the mesh's metric. */
 dvi_status dvi__refuse_null(const dvi_mesh *mesh, int k, int64_t cell);
 
+/* Refuse a mesh that has no spectral star, and make its matrix of degree k. */
+dvi_status dvi__spectral_check(const dvi_mesh *mesh);
+dvi_status dvi__spectral_star(dvi_star *star, int k);
+
 /* Make the matrix of degree k of Whitney's forms. */
 dvi_status dvi__whitney_star(dvi_star *star, int k);
 
