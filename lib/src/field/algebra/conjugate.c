@@ -109,11 +109,11 @@ dvi_status dvi__conjugate_gradients(const dvi__products *A, double tolerance, co
 {
   const size_t n = (size_t)A->size;
   double *work = DVI_NEW(double, 4 * n);
-  search s = {.A = A, .r = work, .z = work + n, .p = work + 2 * n, .Ap = work + 3 * n};
   dvi__iteration_report unasked = {0};
   if (work == NULL)
     return dvi__fail(DVI_NO_MEMORY, "conjugate gradients: no memory for %lld unknowns",
                      (long long)A->size);
+  search s = {.A = A, .r = work, .z = work + n, .p = work + 2 * n, .Ap = work + 3 * n};
   if (report == NULL) report = &unasked;
   *report = unasked;
   const dvi_status status = solve(&s, tolerance, b, x, report);

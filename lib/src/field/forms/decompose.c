@@ -79,8 +79,9 @@ static dvi_status find_exact(dvi__hodge *h, const double *form, double *exact)
 {
   memset(exact, 0, (size_t)h->count * sizeof *exact);
   if (h->k == 0) return DVI_OK;
-  double *a = DVI_NEW(double, 2 * h->below), *b = a + h->below;
+  double *a = DVI_NEW(double, 2 * h->below);
   if (a == NULL) return dvi__fail(DVI_NO_MEMORY, "forms: no memory for a decomposition");
+  double *b = a + h->below;
   dvi_matrix_multiply(&h->M, 0, form, h->work);
   dvi__hodge_hold(h, h->k, h->work);
   dvi_matrix_multiply(&h->d_below, 1, h->work, b);
@@ -100,8 +101,9 @@ static dvi_status find_coexact(dvi__hodge *h, const double *form, double *coexac
 {
   memset(coexact, 0, (size_t)h->count * sizeof *coexact);
   if (h->k == h->star->mesh->n) return DVI_OK;
-  double *a = DVI_NEW(double, 2 * h->above), *b = a + h->above;
+  double *a = DVI_NEW(double, 2 * h->above);
   if (a == NULL) return dvi__fail(DVI_NO_MEMORY, "forms: no memory for a decomposition");
+  double *b = a + h->above;
   dvi_matrix_multiply(&h->d, 0, form, b);
   dvi__hodge_hold(h, h->k + 1, b);
   const dvi__products products = {.size = h->above,

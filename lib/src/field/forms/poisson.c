@@ -55,8 +55,9 @@ static dvi_status times_laplacian(void *of, const double *x, double *y)
 /* Refuse a right side with a harmonic part. */
 static dvi_status check_range(dvi__hodge *h, const double *f)
 {
-  double *part = DVI_NEW(double, 3 * h->count), *harmonic = part + 2 * h->count;
+  double *part = DVI_NEW(double, 3 * h->count);
   if (part == NULL) return dvi__fail(DVI_NO_MEMORY, "forms: no memory");
+  double *harmonic = part + 2 * h->count;
   dvi_status status = dvi__hodge_split(h, f, part);
   if (status == DVI_OK) {
     const double size = sqrt(fabs(dvi__hodge_product(h, harmonic, harmonic))),
@@ -75,8 +76,9 @@ static dvi_status solve(poisson *p, const double *f, double *u)
 {
   dvi__hodge *h = &p->hodge;
   const dvi__products products = {.size = h->count, .times = times_laplacian, .of = p};
-  double *right = DVI_NEW(double, 4 * h->count), *part = right + h->count;
+  double *right = DVI_NEW(double, 4 * h->count);
   if (right == NULL) return dvi__fail(DVI_NO_MEMORY, "forms: no memory");
+  double *part = right + h->count;
   memcpy(u, f, (size_t)h->count * sizeof *u);
   dvi__hodge_hold(h, h->k, u);
   dvi_matrix_multiply(&h->M, 0, u, right);

@@ -12,7 +12,7 @@ int dvi__field_density(const dvi_field *field, const double *q, int64_t first, i
                        const dvi__density *density)
 {
   const dvi_field_potential *V = &field->potential;
-  double value[BLOCK], slope[BLOCK], curvature[BLOCK];
+  double value[BLOCK] = {0}, slope[BLOCK], curvature[BLOCK];
   if (density->sum != NULL) *density->sum = 0;
   for (int64_t i = first; i < last; i += BLOCK) {
     const int64_t count = last - i < BLOCK ? last - i : BLOCK, at = i - first;

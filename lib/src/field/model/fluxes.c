@@ -239,11 +239,10 @@ static dvi_status add_facet(const facet *f)
 static dvi_status check_facets(const dvi_mesh *mesh, const char *part, const int *number,
                                int64_t count)
 {
-  int64_t outside = 0, inside = 0, cells;
-  for (int64_t i = 0; i < count; i++)
-    *(mesh->coface[2 * (int64_t)number[i] + 1] < 0 ? &outside : &inside) += 1;
+  int64_t outside = 0, cells;
+  for (int64_t i = 0; i < count; i++) outside += mesh->coface[2 * (int64_t)number[i] + 1] < 0;
   (void)dvi_mesh_part_cells(mesh, part, mesh->n, &cells);
-  if (outside > 0 && (inside == 0 || cells > 0)) return DVI_OK;
+  if (outside > 0 && (outside == count || cells > 0)) return DVI_OK;
   return dvi__fail(DVI_BAD_ARGUMENT,
                    "field: a flux is given on part \"%s\", of whose %lld cells of degree %d "
                    "%lld are of the boundary: give it on a part of the boundary",

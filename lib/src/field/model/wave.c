@@ -133,8 +133,9 @@ static dvi_status evaluate_source(const dvi_field *field, const dvi_wave_terms *
 static dvi_status add_source(dvi_field *field, const dvi_wave_terms *terms, const dvi_matrix *W,
                              double *load)
 {
-  double *f = DVI_NEW(double, 2 * field->vertices), *product = f + field->vertices;
+  double *f = DVI_NEW(double, 2 * field->vertices);
   if (f == NULL) return dvi__fail(DVI_NO_MEMORY, "field: no memory for a source");
+  double *product = f + field->vertices;
   for (int64_t v = 0; v < field->vertices; v++) f[v] = 1;
   dvi_matrix_multiply(W, 0, f, product);
   for (int64_t i = 0; i < field->unknowns; i++) field->weight[i] = product[field->unknown[i]];
