@@ -1,7 +1,7 @@
 #!/bin/sh
 # Checks the pages: links lead to files and headings, the bibliography has all cited sources, the
-# programs of the README and of docs/shapes.md are the examples that they name, and the guide's
-# program compiles.
+# programs of the README, of docs/shapes.md and of docs/fields/waves.md are the examples that they
+# name, and the guide's program compiles.
 # Usage: docs.sh TOP C_COMPILER
 set -u
 cd "$1" || exit 1
@@ -33,7 +33,7 @@ links() {
   awk '/^```/ { code = !code } !code' "$1" | grep -o '](\([^)]*\))' | sed 's/^](//; s/)$//'
 }
 
-for page in *.md docs/*.md docs/methods/*.md; do
+for page in *.md docs/*.md docs/*/*.md; do
   [ -e "$page" ] || continue
   folder=$(dirname "$page")
   for link in $(links "$page"); do
@@ -55,9 +55,12 @@ done
 fences c README.md >"$work/readme.c"
 cmp -s "$work/readme.c" apps/examples/pendulum.c ||
   breach "README.md: its program is not apps/examples/pendulum.c"
-fences c docs/shapes.md >"$work/shapes.c"
-cmp -s "$work/shapes.c" apps/examples/shapes.c ||
-  breach "docs/shapes.md: its program is not apps/examples/shapes.c"
+for program in shapes:shapes fields/waves:drum; do
+  page=docs/${program%:*}.md
+  example=apps/examples/${program#*:}.c
+  fences c "$page" >"$work/program.c"
+  cmp -s "$work/program.c" "$example" || breach "$page: its program is not $example"
+done
 fences c docs/guide.md >"$work/guide.c"
 "$compiler" -std=c11 -Wall -Wextra -Wpedantic -Werror -I lib/include -fsyntax-only \
   "$work/guide.c" || breach "docs/guide.md: its program does not compile"
