@@ -29,6 +29,16 @@ double dvi__node_at(const dvi__sizes *sizes, int axis, int node);
 /* The generators. They fill in a draft by sizes that have been checked. */
 typedef dvi_status dvi__generator(const dvi__sizes *sizes, dvi__draft *draft);
 dvi__generator dvi__generate_box, dvi__generate_kuhn, dvi__generate_staggered;
-dvi__generator dvi__generate_icosphere;
+dvi__generator dvi__generate_bcc, dvi__generate_disk, dvi__generate_annulus;
+dvi__generator dvi__generate_icosphere, dvi__generate_torus, dvi__generate_genus;
+dvi__generator dvi__generate_cylinder, dvi__generate_ball;
+
+/* Fill in the triangles between two rows of points around an axis, of which those in odd rows are
+ * turned by half of an edge. Row j has the points j*around and so on. Returns the end. */
+int *dvi__band_fill(int around, int row, int next, int *vertex);
+
+/* The corners of the unit sphere's icosahedron, and its triangles. */
+extern const int dvi__icosahedron[20][3];
+void dvi__icosahedron_points(double *point);
 
 #endif

@@ -9,27 +9,46 @@
 #include "field/mesh/generate/draft.h"
 #include "field/mesh/part.h"
 
-/* What an option of a generator may be. */
+enum { LEVELS = 12, MOST_CELLS = 1 << 30 };
+
+/* What the options of a generator may be. A grid has numbers of cells along its axes, and a shape,
+ * which has no dimensions, its own numbers. */
 typedef struct kind {
   const char *name;
   dvi__generator *generate;
-  int least, most; /* dimensions, or for curved meshes 0 */
-  int cells[4];    /* defaults, for as many entries as count */
-  int fewest;      /* cells along an axis */
+  int least, most; /* dimensions of a grid, or 0 */
+  int numbers;     /* of cells of a shape */
+  int cells[4];    /* defaults */
+  int fewest[4];   /* 0 for 1 */
+  int most_cells;  /* 0 for MOST_CELLS */
   int is_periodic; /* along all axes */
   int takes_grading, takes_periods;
-  int sizes; /* number of entries of `extent` of a mesh without dimensions */
+  int sizes;        /* numbers of `extent` of a shape */
+  double extent[4]; /* defaults, 0 for 1 */
 } kind;
 
+#define GRID .cells = {8, 8, 8, 8}
+
 static const kind kinds[] = {
-    {"interval", dvi__generate_box, 1, 1, {8}, 1, 0, 1, 1, 0},
-    {"box", dvi__generate_box, 1, 4, {8, 8, 8, 8}, 1, 0, 1, 1, 0},
-    {"kuhn", dvi__generate_kuhn, 1, 4, {8, 8, 8, 8}, 1, 0, 1, 1, 0},
-    {"kuhn-torus", dvi__generate_kuhn, 1, 4, {8, 8, 8, 8}, 3, 1, 1, 0, 0},
-    {"staggered", dvi__generate_staggered, 2, 2, {8, 8}, 1, 0, 0, 0, 0},
-    {"icosphere", dvi__generate_icosphere, 0, 0, {3}, 0, 0, 0, 0, 1},
+    {"interval", dvi__generate_box, 1, 1, GRID, .takes_grading = 1, .takes_periods = 1},
+    {"box", dvi__generate_box, 1, 4, GRID, .takes_grading = 1, .takes_periods = 1},
+    {"kuhn", dvi__generate_kuhn, 1, 4, GRID, .takes_grading = 1, .takes_periods = 1},
+    {"kuhn-torus", dvi__generate_kuhn, 1, 4, GRID, .is_periodic = 1, .takes_grading = 1},
+    {"staggered", dvi__generate_staggered, 2, 2, GRID},
+    {"bcc-torus", dvi__generate_bcc, 3, 3, .cells = {4, 4, 4}, .is_periodic = 1},
+    {"disk", dvi__generate_disk, .numbers = 1, .cells = {8}, .sizes = 1},
+    {"annulus", dvi__generate_annulus, .numbers = 2, .cells = {4, 24}, .fewest = {1, 3}, .sizes = 2,
+     .extent = {1, 0.5}},
+    {"icosphere", dvi__generate_icosphere, .numbers = 1, .cells = {3}, .most_cells = LEVELS,
+     .sizes = 1},
+    {"torus", dvi__generate_torus, .numbers = 2, .cells = {24, 12}, .fewest = {3, 4}, .sizes = 2,
+     .extent = {1, 0.5}},
+    {"genus-2", dvi__generate_genus, .numbers = 1, .cells = {2}, .sizes = 1},
+    {"cylinder", dvi__generate_cylinder, .numbers = 2, .cells = {4, 8}, .sizes = 2,
+     .extent = {1, 2}},
+    {"ball", dvi__generate_ball, .numbers = 1, .cells = {4}, .sizes = 1},
 };
-enum { KINDS = sizeof kinds / sizeof *kinds, LEVELS = 12, MOST_CELLS = 1 << 30 };
+enum { KINDS = sizeof kinds / sizeof *kinds };
 
 const char *dvi_mesh_generator_name(int i)
 {
@@ -43,15 +62,16 @@ static dvi_status refuse(const kind *k, const char *option, double value)
   return dvi__fail(DVI_BAD_OPTION, "mesh %s: %s cannot be %g", k->name, option, value);
 }
 
-/* The dimension is that of the option, or the number of cells that are given. */
+/* The dimension is that of the option, or the number of cells that are given. That of a shape counts
+ * its numbers of cells. */
 static dvi_status find_dimension(const kind *k, const dvi_generator_options *given,
                                  dvi__sizes *sizes)
 {
   int count = 0;
   while (count < 4 && given->cells[count] != 0) count++;
   sizes->dimension = given->dimension != 0 ? given->dimension : count;
-  if (sizes->dimension == 0) sizes->dimension = k->most < 3 ? k->most : 2;
-  if (k->most == 0) sizes->dimension = 1; /* one number of cells */
+  if (sizes->dimension == 0) sizes->dimension = k->least > 2 ? k->least : k->most < 3 ? k->most : 2;
+  if (k->most == 0) sizes->dimension = k->numbers;
   if (given->dimension != 0 && k->most == 0) return refuse(k, "dimension", given->dimension);
   if (k->most > 0 && (sizes->dimension < k->least || sizes->dimension > k->most))
     return dvi__fail(DVI_BAD_OPTION, "mesh %s: %d numbers of cells are given, and %d to %d needed",
@@ -65,16 +85,16 @@ static dvi_status take_cells(const kind *k, const dvi_generator_options *given, 
 {
   for (int i = 0; i < sizes->dimension; i++) {
     sizes->periodic[i] = k->is_periodic || given->periodic[i];
-    const int fewest = sizes->periodic[i] ? 3 : k->fewest;
+    const int fewest = sizes->periodic[i] ? 3
+                       : k->fewest[i] > 0 ? k->fewest[i]
+                                          : 1,
+              most = k->most_cells > 0 ? k->most_cells : MOST_CELLS;
     sizes->cells[i] = given->cells[i] != 0 ? given->cells[i] : k->cells[i];
     if (given->periodic[i] && !k->takes_periods && !k->is_periodic)
       return refuse(k, "periodic", given->periodic[i]);
-    if (sizes->cells[i] > MOST_CELLS)
-      return dvi__fail(DVI_BAD_OPTION, "mesh %s: %d cells along axis %d are too many", k->name,
-                       sizes->cells[i], i);
-    if (sizes->cells[i] < fewest)
-      return dvi__fail(DVI_BAD_OPTION, "mesh %s: %d cells along axis %d are fewer than %d", k->name,
-                       sizes->cells[i], i, fewest);
+    if (sizes->cells[i] < fewest || sizes->cells[i] > most)
+      return dvi__fail(DVI_BAD_OPTION, "mesh %s: number %d of cells is %d, and may be %d to %d",
+                       k->name, i, sizes->cells[i], fewest, most);
   }
   return DVI_OK;
 }
@@ -84,7 +104,8 @@ static dvi_status take_lengths(const kind *k, const dvi_generator_options *given
 {
   const int lengths = k->most > 0 ? sizes->dimension : k->sizes;
   for (int i = 0; i < 4; i++) {
-    sizes->extent[i] = given->extent[i] != 0 ? given->extent[i] : 1;
+    const double length = k->extent[i] > 0 ? k->extent[i] : 1;
+    sizes->extent[i] = given->extent[i] != 0 ? given->extent[i] : length;
     sizes->grading[i] = given->grading[i] != 0 ? given->grading[i] : 1;
     sizes->origin[i] = given->origin[i];
     const int counts = i < lengths, is_graded = sizes->grading[i] != 1;
@@ -106,11 +127,7 @@ static dvi_status take_options(const kind *k, const dvi_generator_options *given
                      k->name);
   DVI_TRY(find_dimension(k, given, sizes));
   DVI_TRY(take_cells(k, given, sizes));
-  DVI_TRY(take_lengths(k, given, sizes));
-  if (k->most == 0 && sizes->cells[0] > LEVELS)
-    return dvi__fail(DVI_BAD_OPTION, "mesh %s: %d levels are too many, take %d at most", k->name,
-                     sizes->cells[0], (int)LEVELS);
-  return DVI_OK;
+  return take_lengths(k, given, sizes);
 }
 
 /* ---- drafts ---- */

@@ -6,13 +6,13 @@
 #include "core/status.h"
 #include "field/mesh/generate/draft.h"
 
-static const int icosahedron[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
-                                       {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
-                                       {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
-                                       {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
+const int dvi__icosahedron[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
+                                     {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
+                                     {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
+                                     {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
 
 /* Twelve corners of three golden rectangles. */
-static void fill_corners(double *point)
+void dvi__icosahedron_points(double *point)
 {
   const double golden = 0.5 * (1 + sqrt(5)), size = sqrt(1 + golden * golden);
   for (int v = 0; v < 12; v++) {
@@ -83,8 +83,8 @@ dvi_status dvi__generate_icosphere(const dvi__sizes *sizes, dvi__draft *draft)
   draft->terms.dimension = 2;
   draft->terms.space = 3;
   DVI_TRY(dvi__draft_allocate(draft, "icosphere", triangles / 2 + 2, triangles));
-  fill_corners(draft->point);
-  for (int t = 0; t < 60; t++) draft->vertex[t] = icosahedron[t / 3][t % 3];
+  dvi__icosahedron_points(draft->point);
+  for (int t = 0; t < 60; t++) draft->vertex[t] = dvi__icosahedron[t / 3][t % 3];
   for (int i = 0, count = 20; i < level; i++, count *= 4)
     DVI_TRY(divide_once(count, count / 2 + 2, draft));
   for (int64_t i = 0; i < 3 * draft->terms.points; i++)
