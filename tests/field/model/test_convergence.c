@@ -188,6 +188,31 @@ START_TEST(cube_of_four_dimensions_has_a_known_eigenvalue)
 }
 END_TEST
 
+/* ---- the body-centred torus ---- */
+
+START_TEST(body_centred_torus_has_known_forms)
+{
+  const double exact = 4 * pi * pi,
+               first = lowest(generated("bcc-torus", 3, 3), DVI_CIRCUMCENTRIC, 0);
+  double last = fabs(first - exact);
+  ck_assert_double_eq_tol(first / exact, 0.854897486982, 2e-12);
+  for (int cells = 6; cells <= 12; cells *= 2) {
+    const double error = fabs(lowest(generated("bcc-torus", 3, cells), DVI_CIRCUMCENTRIC, 0) -
+                              exact);
+    ck_assert_msg(fabs(log2(last / error) - 2) < 0.15, "order %g", log2(last / error));
+    last = error;
+  }
+  dvi_mesh *mesh = generated("bcc-torus", 3, 3);
+  dvi_star *star = NULL;
+  int64_t harmonic;
+  ck_assert_int_eq(dvi_star_create(mesh, NULL, &star), DVI_OK);
+  ck_assert_int_eq(dvi_form_harmonic(star, 1, DVI_ABSOLUTE, &harmonic, NULL), DVI_OK);
+  ck_assert_int_eq(harmonic, 3);
+  dvi_star_destroy(&star);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
 /* ---- the sphere ---- */
 
 /* The eigenvalues l (l+1) of a sphere come 2 l + 1 times. The mesh splits those of l = 3 into
@@ -226,5 +251,6 @@ SUITE(convergence)
   tcase_add_test(tests, finite_elements_have_second_order_on_any_tetrahedra);
   tcase_add_test(tests, eigenvalues_have_second_order);
   tcase_add_test(tests, cube_of_four_dimensions_has_a_known_eigenvalue);
+  tcase_add_test(tests, body_centred_torus_has_known_forms);
   tcase_add_test(tests, spheres_have_their_harmonics);
 }
