@@ -56,7 +56,8 @@ BEGIN {
   sees["scene/elaborate"] = "text expr expr/compile expr/function scene/text"
   sees["scene/terms"] = sees["scene/elaborate"] " scene/elaborate"
   sees["scene/sections"] = sees["scene/terms"] " scene/terms"
-  sees["scene"] = sees["scene/sections"] " scene/sections"
+  sees["scene/field"] = sees["scene/sections"] " scene/sections"
+  sees["scene"] = sees["scene/field"] " scene/field"
   sees["scene/emit"] = sees["scene"] " scene"
   # The command includes public headers and those of the problems, too.
   uses["cli"] = ""

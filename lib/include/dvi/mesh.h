@@ -204,6 +204,12 @@ const double *dvi_mesh_points(const dvi_mesh *mesh);
  *  the mesh. NULL if k is not from 1 to n. */
 const int *dvi_mesh_vertices(const dvi_mesh *mesh, int k, int *width);
 
+/** Give the centres [count*space] of the k-cells, the means of their vertices. In a space that
+ *  repeats itself a cell is placed at its first vertex.
+ *
+ *  @retval DVI_BAD_ARGUMENT  an argument is missing, or k is out of range */
+dvi_status dvi_mesh_centres(const dvi_mesh *mesh, int k, double *centre);
+
 /** Give the incidence d_k, whose entries are signs, for k from 0 to n - 1. Its arrays are the
  *  mesh's.
  *

@@ -5,6 +5,7 @@
 #ifndef DVI_SCENE_H
 #define DVI_SCENE_H
 #include <dvi/control.h>
+#include <dvi/field.h>
 #include <dvi/sensitivity.h>
 #include <dvi/system.h>
 #include <stddef.h>
@@ -123,6 +124,13 @@ const dvi_system *dvi_scene_system(const dvi_scene *scene);
 
 /** Return the terms of the system. Owned by the scene. NULL for NULL. */
 const dvi_system_terms *dvi_scene_terms(const dvi_scene *scene);
+
+/** Return the field of a scene with a mesh, whose unknowns are the coordinates u_1, u_2 and so on.
+ *  Owned by the scene. NULL if the scene has no mesh. */
+const dvi_field *dvi_scene_field(const dvi_scene *scene);
+
+/** Give the options of dvi_field_solve that the scene sets. Returns 0 if it has no field. */
+int dvi_scene_solve_options(const dvi_scene *scene, dvi_field_solve_options *options);
 
 /** Return the start at t = 0, q [nq], v [nv], p [nv]. Owned by the scene. NULL for NULL. */
 void dvi_scene_start(const dvi_scene *scene, const double **q, const double **v, const double **p);

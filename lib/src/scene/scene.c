@@ -222,6 +222,7 @@ void dvi_scene_destroy(dvi_scene **scene)
   dvi_scene *own = *scene;
   *scene = NULL;
   dvi_system_destroy(&own->system);
+  dvi__scene_field_clear(own);
   dvi_joints_destroy(&own->joints);
   for (dvi__scene_term *term = own->functions; term != NULL; term = term->next)
     dvi__function_destroy(&term->function);

@@ -43,8 +43,9 @@ bool dvi__scene_complete_start(dvi_scene *scene)
   dvi__span span;
   if (status == DVI_CALLBACK_RETRY && dvi__fault_place(&span, &words))
     return dvi__complain(scene->complaint, status, span, "at the start: %s", words);
-  const dvi__tree *cause = status == DVI_SINGULAR ? dvi__motion_section(scene)
-                                                  : dvi__tree_find(scene->tree, "initial");
+  const dvi__tree *initial = dvi__tree_find(scene->tree, "initial"),
+                  *cause = status == DVI_SINGULAR || initial == NULL ? dvi__motion_section(scene)
+                                                                     : initial;
   return dvi__complain(scene->complaint, status, cause->span, "at the start: %s%s%s",
                        dvi_last_error(), dvi_scene_fault()[0] != '\0' ? "; " : "",
                        dvi_scene_fault());

@@ -264,6 +264,24 @@ const int *dvi_mesh_vertices(const dvi_mesh *mesh, int k, int *width)
   return known ? mesh->corner[k] : NULL;
 }
 
+dvi_status dvi_mesh_centres(const dvi_mesh *mesh, int k, double *centre)
+{
+  double to[DVI_MESH_SPACE_MAX];
+  if (mesh == NULL || centre == NULL || k < 0 || k > mesh->n)
+    return dvi__fail(DVI_BAD_ARGUMENT, "mesh: there are no centres of degree %d", k);
+  const int space = mesh->space, width = k > 0 ? dvi__corners(mesh->kind, k) : 1;
+  for (int64_t cell = 0; cell < mesh->count[k]; cell++) {
+    const int first = k > 0 ? mesh->corner[k][cell * width] : (int)cell;
+    double *x = centre + cell * space;
+    memcpy(x, mesh->point + (int64_t)first * space, (size_t)space * sizeof *x);
+    for (int c = 1; c < width; c++) {
+      dvi__mesh_difference(mesh, first, mesh->corner[k][cell * width + c], to);
+      for (int l = 0; l < space; l++) x[l] += to[l] / width;
+    }
+  }
+  return DVI_OK;
+}
+
 dvi_status dvi_mesh_incidence(const dvi_mesh *mesh, int k, dvi_matrix *incidence)
 {
   if (mesh == NULL || incidence == NULL || k < 0 || k >= mesh->n)

@@ -88,6 +88,7 @@ struct dvi_scene {
   dvi__scene_term *functions;
   /* the term from which a constant mass was read, with A(t,q).q' of a vector potential, or NULL */
   const dvi__scene_term *kinetic;
+  struct dvi__scene_field *field; /* NULL without a mesh (scene/field) */
   dvi_system *system;
   double *q, *v, *p;
   double *final_q, *final_v, *final_p; /* the end of a control problem, or NULL */

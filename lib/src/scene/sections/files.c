@@ -95,8 +95,9 @@ static bool is_plain_file(const char *path)
   return stat(path, &there) == 0 && S_ISREG(there.st_mode);
 }
 
-bool dvi__scene_place_component(dvi_scene *scene, dvi__span span, const char *named_file,
-                                const char **path)
+/* Find a file from the folder of the file in which its name stands. */
+static bool place_beside(dvi_scene *scene, dvi__span span, const char *named_file,
+                         const char **path)
 {
   const char *includes = dvi__source_name(&scene->source, span.first);
   const int folder = folder_size(includes);
@@ -108,13 +109,25 @@ bool dvi__scene_place_component(dvi_scene *scene, dvi__span span, const char *na
   if (!refuse_root(scene, span, named_file)) return false;
   if (leads_up(named_file))
     return dvi__scene_refuse(scene, span,
-                             "the file '%s' is named by way of '..'; components lie in the folder "
+                             "the file '%s' is named by way of '..'; such files lie in the folder "
                              "of the scene or below",
-                             named_file);
-  if (!is_named_as_scene(named_file))
-    return dvi__scene_refuse(scene, span, "'%s' is no scene: its name ends in .yaml or .yml",
                              named_file);
   if (!check_place(scene, span, named_file, placed, "")) return false;
   return is_plain_file(placed) ||
          dvi__scene_refuse(scene, span, "'%s' is no file that can be read", named_file);
+}
+
+bool dvi__scene_place_component(dvi_scene *scene, dvi__span span, const char *named_file,
+                                const char **path)
+{
+  if (named_file[0] == '/' || leads_up(named_file) || is_named_as_scene(named_file))
+    return place_beside(scene, span, named_file, path);
+  return dvi__scene_refuse(scene, span, "'%s' is no scene: its name ends in .yaml or .yml",
+                           named_file);
+}
+
+bool dvi__scene_place_mesh(dvi_scene *scene, dvi__span span, const char *named_file,
+                           const char **path)
+{
+  return place_beside(scene, span, named_file, path);
 }

@@ -15,7 +15,7 @@ const dvi__tree *dvi__motion_section(const dvi_scene *scene)
   const dvi__tree *found = NULL;
   for (int k = 0; k < WAYS && found == NULL; k++)
     found = dvi__tree_find(scene->tree, ways_to_move[k]);
-  return found;
+  return found != NULL ? found : dvi__tree_find(scene->tree, "field");
 }
 
 bool dvi__check_motion_section(dvi_scene *scene)

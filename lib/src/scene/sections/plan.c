@@ -32,7 +32,7 @@ bool dvi__read_until(dvi_scene *scene, const dvi__tree *section)
 {
   static const double steps_max = 9007199254740992.0; /* 2^53 */
   if (!plan_number(scene, section, "until", &scene->plan.t_end)) return false;
-  const double steps = scene->plan.t_end / scene->plan.h;
+  const double steps = scene->plan.h > 0 ? scene->plan.t_end / scene->plan.h : 0;
   return steps <= steps_max ||
          dvi__complain(scene->complaint, DVI_BAD_SIZE, dvi__tree_find(scene->tree, "step")->span,
                        "a run of %.3g steps; at most %.16g (2^53) are possible", steps, steps_max);

@@ -1,5 +1,6 @@
 /* Functions shared by the readers of sections. */
 #include <limits.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "scene/elaborate/shape.h"
@@ -131,7 +132,14 @@ bool dvi__tree_word(dvi_scene *scene, const dvi__tree *tree, const char *what, i
   if (!dvi__want_text(scene, tree, what)) return false;
   for (*which = 0; *which < count; ++*which)
     if (strcmp(tree->text, word[*which]) == 0) return true;
-  return dvi__scene_refuse(scene, tree->span, "%s is %s%s%s%s%s", what, word[0],
-                           count == 3 ? ", " : "", count == 3 ? word[1] : "", " or ",
-                           word[count - 1]);
+  char list[128] = "";
+  for (int k = 0; k < count; k++) {
+    const size_t at = strlen(list);
+    (void)snprintf(list + at, sizeof list - at, "%s%s",
+                   k == 0          ? ""
+                   : k + 1 < count ? ", "
+                                   : " or ",
+                   word[k]);
+  }
+  return dvi__scene_refuse(scene, tree->span, "%s is %s", what, list);
 }

@@ -74,13 +74,54 @@ static bool registry_read_first(dvi_scene *scene)
   return true;
 }
 
+/* Sections of a scene of a field, those first that no other scene has. */
+static const char *const field_sections[] = {
+    "mesh",      "field", "star",       "materials",   "boundary", "source",
+    "potential", "solve", "parameters", "definitions", "title",    "method",
+    "step",      "until", "initial",    "report",      "sweep",    "damping"};
+enum { FIELD_SECTIONS = sizeof field_sections / sizeof *field_sections, OF_FIELD_ALONE = 8 };
+
+static int find_field_section(const char *name, int count)
+{
+  for (int k = 0; k < count; k++)
+    if (strcmp(name, field_sections[k]) == 0) return k;
+  return -1;
+}
+
+/* A mesh needs a field, and the other way round, and a field has no section of mechanics. */
+static bool registry_check_field(dvi_scene *scene)
+{
+  const dvi__tree *tree = scene->tree, *mesh = dvi__tree_find(tree, "mesh");
+  if (mesh != NULL && dvi__tree_find(tree, "field") == NULL)
+    return dvi__scene_refuse(scene, mesh->span,
+                             "beside 'mesh' the section 'field' is missing, as "
+                             "in 'field: wave'");
+  for (int i = 0; i < tree->count; i++) {
+    const dvi__tree *key = tree->key[i];
+    if (mesh == NULL && find_field_section(key->text, OF_FIELD_ALONE) >= 0)
+      return dvi__scene_refuse(scene, key->span, "'%s' is of a field, and the scene has no 'mesh'",
+                               key->text);
+    if (mesh != NULL && find_field_section(key->text, FIELD_SECTIONS) < 0)
+      return dvi__scene_refuse(scene, key->span, "a scene with a mesh has no section '%s'",
+                               key->text);
+  }
+  return true;
+}
+
+/* A static problem on a mesh has neither steps nor a start. */
+static bool is_required(const dvi_scene *scene, const section *s)
+{
+  return s->presence == REQUIRED && dvi__tree_find(scene->tree, "mesh") == NULL;
+}
+
 static bool registry_check_presence(dvi_scene *scene)
 {
+  if (!registry_check_field(scene)) return false;
   for (int k = 0; k < SECTIONS; k++) {
     const dvi__tree *found = dvi__tree_find(scene->tree, sections[k].name);
     if (found != NULL && sections[k].presence == REFUSED)
       return dvi__scene_refuse(scene, found->span, "%s", sections[k].reason);
-    if (found == NULL && sections[k].presence == REQUIRED)
+    if (found == NULL && is_required(scene, &sections[k]))
       return dvi__scene_refuse(scene, DVI__NOWHERE, "the section '%s' is missing, as in '%s'",
                                sections[k].name, sections[k].example);
   }
@@ -91,7 +132,9 @@ bool dvi__scene_read_tree(dvi_scene *scene)
 {
   static const dvi__tree empty = {.kind = DVI__MAPPING};
   if (!dvi__check_section_names(scene, scene->tree) || !registry_read_first(scene) ||
-      !registry_check_presence(scene) || !dvi__check_motion_section(scene))
+      !registry_check_presence(scene))
+    return false;
+  if (dvi__tree_find(scene->tree, "mesh") == NULL && !dvi__check_motion_section(scene))
     return false;
   for (int k = 0; k < SECTIONS; k++) {
     const dvi__tree *found = dvi__tree_find(scene->tree, sections[k].name);

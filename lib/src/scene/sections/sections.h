@@ -44,7 +44,7 @@ bool dvi__tree_number(dvi_scene *scene, const dvi__tree *tree, const char *what,
 bool dvi__tree_whole(dvi_scene *scene, const dvi__tree *tree, const char *what, int least,
                      int *number);
 
-/* Read one of two or three words. */
+/* Read one of some words. */
 bool dvi__tree_word(dvi_scene *scene, const dvi__tree *tree, const char *what, int count,
                     const char *const *word, int *which);
 
@@ -57,8 +57,16 @@ bool dvi__scene_place_file(dvi_scene *scene, dvi__span span, const char **method
 bool dvi__scene_place_component(dvi_scene *scene, dvi__span span, const char *named_file,
                                 const char **path);
 
-/* Return the section that declares the motion, lagrangian, kinetic, one_form, constraints or
- * hamiltonian. NULL if none does. */
+/* Find the file of a mesh in the same way. */
+bool dvi__scene_place_mesh(dvi_scene *scene, dvi__span span, const char *named_file,
+                           const char **path);
+
+/* Read the section initial of a field, and release what a field owns (scene/field). */
+bool dvi__read_field_start(dvi_scene *scene, const dvi__tree *section);
+void dvi__scene_field_clear(dvi_scene *scene);
+
+/* Return the section that declares the motion, lagrangian, kinetic, one_form, constraints,
+ * hamiltonian or field. NULL if none does. */
 const dvi__tree *dvi__motion_section(const dvi_scene *scene);
 
 /* Read the motion and the start once more as functions of the parameters (dependence.c). */

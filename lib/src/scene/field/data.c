@@ -1,0 +1,191 @@
+/* The sections that say what the field is made of: star, materials, boundary, source, potential,
+ * and those of static problems and of the start. */
+#include <stdio.h>
+#include <string.h>
+
+#include "scene/field/scene_field.h"
+#include "scene/sections/sections.h"
+#include "text/heap.h"
+
+bool dvi__read_star(dvi_scene *scene, const dvi__tree *section)
+{
+  static const char *const word[] = {"circumcentric", "barycentric", "whitney", "spectral"};
+  static const dvi_star_kind kind[] = {DVI_CIRCUMCENTRIC, DVI_BARYCENTRIC, DVI_WHITNEY,
+                                       DVI_SPECTRAL};
+  int which;
+  if (!dvi__tree_word(scene, section, "star", 4, word, &which)) return false;
+  scene->field->kind = kind[which];
+  return true;
+}
+
+/* ---- materials ---- */
+
+/* Find the centres of all cells, once. */
+static bool find_centres(dvi_scene *scene)
+{
+  struct dvi__scene_field *field = scene->field;
+  const int n = dvi_mesh_dimension(field->mesh);
+  const size_t numbers = (size_t)dvi_mesh_count(field->mesh, n) * (size_t)field->space;
+  if (field->centre != NULL) return true;
+  field->centre = dvi__arena_take(&scene->arena, numbers, sizeof *field->centre);
+  if (field->centre == NULL) return dvi__scene_no_memory(scene);
+  return dvi_mesh_centres(field->mesh, n, field->centre) == DVI_OK;
+}
+
+/* A material has the value of its expression at the centre of a cell. */
+static bool set_factor(dvi_scene *scene, const dvi__tree *tree, const char *name, const char *part,
+                       double *factor)
+{
+  dvi__place *place;
+  int64_t count;
+  const dvi_mesh *mesh = scene->field->mesh;
+  const int *cell = dvi_mesh_part_cells(mesh, part, dvi_mesh_dimension(mesh), &count);
+  if (!find_centres(scene) || !dvi__place_read(scene, tree, 0, "a material", &place)) return false;
+  for (int64_t i = 0; i < count; i++) {
+    const double *x = scene->field->centre + (ptrdiff_t)cell[i] * scene->field->space;
+    double value;
+    if (dvi__place_value(place, x, NULL, &value) != 0 || !(value > 0) || value > 1e300)
+      return dvi__scene_refuse(scene, tree->span, "%s is not a positive number in cell %d", name,
+                               cell[i]);
+    factor[cell[i]] = value;
+  }
+  return true;
+}
+
+/* Take room for a factor, which is 1 where nothing is said. */
+static bool reserve_factor(dvi_scene *scene, int k)
+{
+  const dvi_mesh *mesh = scene->field->mesh;
+  const int64_t cells = dvi_mesh_count(mesh, dvi_mesh_dimension(mesh));
+  if (scene->field->factor[k] != NULL) return true;
+  double *factor = dvi__arena_take(&scene->arena, (size_t)cells, sizeof *factor);
+  if (factor == NULL) return dvi__scene_no_memory(scene);
+  for (int64_t c = 0; c < cells; c++) factor[c] = 1;
+  scene->field->factor[k] = factor;
+  return true;
+}
+
+static bool read_material(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree)
+{
+  static const char *const known[] = {"rho", "a"};
+  int64_t count;
+  const dvi_mesh *mesh = scene->field->mesh;
+  (void)dvi_mesh_part_cells(mesh, key->text, dvi_mesh_dimension(mesh), &count);
+  if (count <= 0)
+    return dvi__scene_refuse(scene, key->span, "the mesh has no part '%s' of cells", key->text);
+  if (!dvi__want_mapping(scene, tree, "a material") ||
+      !dvi__want_keys(scene, tree, "a material", 2, known))
+    return false;
+  for (int k = 0; k < 2; k++) {
+    const dvi__tree *value = dvi__tree_find(tree, known[k]);
+    if (value != NULL && (!reserve_factor(scene, k) ||
+                          !set_factor(scene, value, known[k], key->text, scene->field->factor[k])))
+      return false;
+  }
+  return true;
+}
+
+/* "all" is read first, so that parts replace it. */
+bool dvi__read_materials(dvi_scene *scene, const dvi__tree *section)
+{
+  if (!dvi__want_mapping(scene, section, "materials")) return false;
+  for (int special = 0; special < 2; special++)
+    for (int i = 0; i < section->count; i++)
+      if ((strcmp(section->key[i]->text, "all") != 0) == special &&
+          !read_material(scene, section->key[i], section->child[i]))
+        return false;
+  return true;
+}
+
+/* ---- the boundary ---- */
+
+static const char *const condition_word[] = {"free", "fixed"};
+
+/* A condition is a word, or a word with its datum. */
+static bool read_condition(dvi_scene *scene, const char *part, dvi__span span,
+                           const dvi__tree *tree)
+{
+  dvi_condition *condition = scene->field->condition + scene->field->conditions++;
+  dvi__place *place;
+  int64_t count;
+  int which;
+  (void)dvi_mesh_part_cells(scene->field->mesh, part, 0, &count);
+  if (count < 0) return dvi__scene_refuse(scene, span, "the mesh has no part '%s'", part);
+  *condition = (dvi_condition){.part = part};
+  if (tree->kind == DVI__SCALAR) {
+    if (!dvi__tree_word(scene, tree, "a condition", 2, condition_word, &which)) return false;
+    condition->kind = which ? DVI_FIXED : DVI_FREE;
+    return true;
+  }
+  if (!dvi__want_mapping(scene, tree, "a condition") ||
+      !dvi__want_keys(scene, tree, "a condition", 2, condition_word))
+    return false;
+  if (tree->count != 1)
+    return dvi__scene_refuse(scene, tree->span,
+                             "a condition is fixed or free, perhaps with its value or its flux, as "
+                             "in '{fixed: x^2}'");
+  condition->kind = strcmp(tree->key[0]->text, "fixed") == 0 ? DVI_FIXED : DVI_FREE;
+  const int is_free = condition->kind == DVI_FREE;
+  if (!dvi__place_read(scene, tree->child[0], is_free ? DVI__OF_NORMAL : 0,
+                       is_free ? "a flux" : "a fixed value", &place))
+    return false;
+  condition->datum = dvi__place_datum;
+  condition->user = place;
+  return true;
+}
+
+bool dvi__read_boundary(dvi_scene *scene, const dvi__tree *section)
+{
+  struct dvi__scene_field *field = scene->field;
+  field->condition = dvi__arena_take(&scene->arena, (size_t)section->count + 1,
+                                     sizeof *field->condition);
+  if (field->condition == NULL) return dvi__scene_no_memory(scene);
+  if (section->kind == DVI__SCALAR)
+    return read_condition(scene, "boundary", section->span, section);
+  if (!dvi__want_mapping(scene, section, "boundary")) return false;
+  for (int i = 0; i < section->count; i++)
+    if (!read_condition(scene, section->key[i]->text, section->key[i]->span, section->child[i]))
+      return false;
+  return true;
+}
+
+/* ---- the rest ---- */
+
+bool dvi__read_source(dvi_scene *scene, const dvi__tree *section)
+{
+  return dvi__place_read(scene, section, 0, "a source", &scene->field->source);
+}
+
+bool dvi__read_potential(dvi_scene *scene, const dvi__tree *section)
+{
+  return dvi__place_potential(scene, section);
+}
+
+bool dvi__read_solve(dvi_scene *scene, const dvi__tree *section)
+{
+  static const char *const known[] = {"mean", "imbalance"};
+  double *const number[] = {&scene->field->solve.mean, &scene->field->solve.imbalance};
+  if (!dvi__want_mapping(scene, section, "solve") ||
+      !dvi__want_keys(scene, section, "solve", 2, known))
+    return false;
+  for (int k = 0; k < 2; k++) {
+    const dvi__tree *value = dvi__tree_find(section, known[k]);
+    if (value != NULL && !dvi__tree_number(scene, value, known[k], number[k])) return false;
+  }
+  return scene->field->solve.imbalance >= 0 ||
+         dvi__scene_refuse(scene, section->span, "imbalance is 0 or more");
+}
+
+bool dvi__read_field_start(dvi_scene *scene, const dvi__tree *section)
+{
+  static const char *const known[] = {"u", "u'"};
+  dvi__place **const place[] = {&scene->field->value, &scene->field->rate};
+  if (!dvi__want_mapping(scene, section, "initial") ||
+      !dvi__want_keys(scene, section, "the start of a field", 2, known))
+    return false;
+  for (int k = 0; k < 2; k++) {
+    const dvi__tree *value = dvi__tree_find(section, known[k]);
+    if (value != NULL && !dvi__place_read(scene, value, 0, "a start", place[k])) return false;
+  }
+  return true;
+}

@@ -1,0 +1,159 @@
+/* The section field, which is read when all others about it are: the field and its system are made,
+ * and the scene's coordinates become the unknowns. */
+#include <math.h>
+#include <string.h>
+
+#include "scene/field/scene_field.h"
+#include "scene/sections/sections.h"
+#include "text/heap.h"
+
+/* Return the section that the last failure is about: the first one of those that are there. */
+static const dvi__tree *section_of(const dvi_scene *scene, const char *name,
+                                   const dvi__tree *otherwise)
+{
+  const dvi__tree *found = dvi__tree_find(scene->tree, name);
+  return found != NULL ? found : otherwise;
+}
+
+/* A sentence of the library names the source, a fixed value, a flux or the potential. */
+static bool complain(dvi_scene *scene, const dvi__tree *section, dvi_status status)
+{
+  const char *sentence = dvi_last_error(), *about = strstr(sentence, "source") != NULL ? "source"
+                                                    : strstr(sentence, " part ") != NULL
+                                                        ? "boundary"
+                                                    : strstr(sentence, "star: ") != NULL ? "star"
+                                                                                         : "mesh";
+  return dvi__complain(scene->complaint, status, section_of(scene, about, section)->span, "%s",
+                       sentence);
+}
+
+/* ---- the start ---- */
+
+/* Evaluate the start at all vertices. */
+static bool evaluate_start(dvi_scene *scene, const dvi__place *place, double *values)
+{
+  const dvi_mesh *mesh = scene->field->mesh;
+  const int64_t vertices = dvi_mesh_count(mesh, 0);
+  const double *point = dvi_mesh_points(mesh);
+  const int space = dvi_mesh_space(mesh);
+  for (int64_t v = 0; v < vertices && place != NULL; v++)
+    if (dvi__place_value(place, point + v * space, NULL, values + v) != 0 || !isfinite(values[v]))
+      return dvi__scene_refuse(scene, dvi__tree_find(scene->tree, "initial")->span,
+                               "the start is not finite at vertex %lld, (%g, %g)", (long long)v,
+                               point[v * space], space > 1 ? point[v * space + 1] : 0.0);
+  return true;
+}
+
+static bool make_start(dvi_scene *scene)
+{
+  const struct dvi__scene_field *field = scene->field;
+  const size_t n = (size_t)scene->n, vertices = (size_t)dvi_mesh_count(field->mesh, 0);
+  scene->q = dvi__arena_take(&scene->arena, 3 * n, sizeof *scene->q);
+  double *u = dvi__heap_take(2 * vertices, sizeof *u), *rate = u != NULL ? u + vertices : NULL;
+  bool good = scene->q != NULL && u != NULL;
+  if (!good) (void)dvi__scene_no_memory(scene);
+  good = good && evaluate_start(scene, field->value, u) && evaluate_start(scene, field->rate, rate);
+  if (good) {
+    scene->v = scene->q + n;
+    scene->p = scene->v + n;
+    (void)dvi_field_project(field->field, u, NULL, scene->q, NULL);
+    (void)dvi_field_project(field->field, rate, NULL, scene->v, NULL);
+  }
+  dvi__heap_free(u);
+  return good;
+}
+
+/* ---- coordinates ---- */
+
+/* The unknowns are a family u_1, u_2 and so on. */
+static bool declare_unknowns(dvi_scene *scene, const dvi__tree *section)
+{
+  dvi__coordinate *u = dvi__arena_take(&scene->arena, 1, sizeof *u);
+  scene->n = scene->nv = scene->velocities = scene->terms.dimension;
+  scene->zeros = dvi__arena_take(&scene->arena, 2 * (size_t)scene->n, sizeof *scene->zeros);
+  if (u == NULL || scene->zeros == NULL) return dvi__scene_no_memory(scene);
+  *u = (dvi__coordinate){.name = "u",
+                         .span = section->span,
+                         .kind = DVI__LINES,
+                         .family = 1,
+                         .size = scene->n,
+                         .columns = 1,
+                         .shape = {0, 1, 1},
+                         .q = {0, 1, 1},
+                         .v = {0, 1, 1}};
+  scene->coordinate = u;
+  scene->coordinate_count = 1;
+  return true;
+}
+
+/* A run shows invariants. */
+static bool choose_columns(dvi_scene *scene)
+{
+  const int count = 1 + scene->terms.symmetry_count;
+  const char **column = dvi__arena_take(&scene->arena, (size_t)count, sizeof *column);
+  if (column == NULL) return dvi__scene_no_memory(scene);
+  column[0] = "energy";
+  for (int i = 1; i < count; i++) column[i] = scene->terms.symmetries[i - 1].name;
+  scene->plan.column = column;
+  scene->plan.column_count = count;
+  return true;
+}
+
+/* ---- the field ---- */
+
+static dvi_status make_field(dvi_scene *scene)
+{
+  struct dvi__scene_field *f = scene->field;
+  const dvi_star_options options = {
+      .size = sizeof options, .kind = f->kind, .factor = (const double *const *)f->factor};
+  dvi_status status = dvi_star_create(f->mesh, &options, &f->star);
+  const dvi_wave_terms terms = {
+      .size = sizeof terms,
+      .star = f->star,
+      .condition = f->condition,
+      .conditions = f->conditions,
+      .source = f->source != NULL ? dvi__place_source : NULL,
+      .source_user = f->source,
+      .potential = f->density.density != NULL ? &f->density : NULL,
+  };
+  if (status == DVI_OK) status = dvi_wave_create(&terms, &f->field);
+  if (status != DVI_OK) return status;
+  const double damping = scene->terms.damping;
+  status = dvi_field_system_terms(f->field, &scene->terms);
+  scene->terms.damping = damping;
+  return status;
+}
+
+bool dvi__read_field(dvi_scene *scene, const dvi__tree *section)
+{
+  static const char *const word[] = {"wave"};
+  int which;
+  if (!dvi__tree_word(scene, section, "field", 1, word, &which)) return false;
+  const dvi_status status = make_field(scene);
+  if (status != DVI_OK) return complain(scene, section, status);
+  scene->form = "separable";
+  scene->mass = scene->terms.mass.diagonal != NULL ? "diagonal" : "sparse";
+  return declare_unknowns(scene, section) && make_start(scene) && choose_columns(scene);
+}
+
+void dvi__scene_field_clear(dvi_scene *scene)
+{
+  if (scene->field == NULL) return;
+  dvi_field_destroy(&scene->field->field);
+  dvi_star_destroy(&scene->field->star);
+  dvi_mesh_destroy(&scene->field->mesh);
+}
+
+/* ---- questions ---- */
+
+const dvi_field *dvi_scene_field(const dvi_scene *scene)
+{
+  return scene != NULL && scene->field != NULL ? scene->field->field : NULL;
+}
+
+int dvi_scene_solve_options(const dvi_scene *scene, dvi_field_solve_options *options)
+{
+  if (dvi_scene_field(scene) == NULL || options == NULL) return 0;
+  *options = scene->field->solve;
+  return 1;
+}

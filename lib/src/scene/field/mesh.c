@@ -1,0 +1,116 @@
+/* The section mesh, and the names that it brings. */
+#include <stdio.h>
+#include <string.h>
+
+#include "scene/field/scene_field.h"
+#include "scene/sections/sections.h"
+
+/* ---- numbers ---- */
+
+/* Read a list of at most four numbers, or a number, which stands for a list of one. Positive whole
+ * ones if `whole` is not NULL. */
+static bool read_list(dvi_scene *scene, const dvi__tree *mesh, const char *name, double *number,
+                      int *whole)
+{
+  const dvi__tree *tree = dvi__tree_find(mesh, name);
+  if (tree == NULL) return true;
+  const int is_list = tree->kind == DVI__SEQUENCE, count = is_list ? tree->count : 1;
+  if (count > 4 || tree->kind == DVI__MAPPING)
+    return dvi__scene_refuse(scene, tree->span, "%s is a list of at most four numbers", name);
+  for (int i = 0; i < count; i++) {
+    const dvi__tree *entry = is_list ? tree->child[i] : tree;
+    if (whole != NULL ? !dvi__tree_whole(scene, entry, name, 0, whole + i)
+                      : !dvi__tree_number(scene, entry, name, number + i))
+      return false;
+  }
+  return true;
+}
+
+static bool report(dvi_scene *scene, const dvi__tree *section, dvi_status status)
+{
+  return status == DVI_OK ||
+         dvi__complain(scene->complaint, status, section->span, "%s", dvi_last_error());
+}
+
+static bool generate(dvi_scene *scene, const dvi__tree *section, const dvi__tree *generator)
+{
+  static const char *const known[] = {"generator", "cells",   "size",
+                                      "origin",    "grading", "periodic"};
+  dvi_generator_options options = {.size = sizeof options};
+  return dvi__want_keys(scene, section, "a generated mesh", 6, known) &&
+         dvi__want_text(scene, generator, "generator") &&
+         read_list(scene, section, "cells", NULL, options.cells) &&
+         read_list(scene, section, "size", options.extent, NULL) &&
+         read_list(scene, section, "origin", options.origin, NULL) &&
+         read_list(scene, section, "grading", options.grading, NULL) &&
+         read_list(scene, section, "periodic", NULL, options.periodic) &&
+         report(scene, section, dvi_mesh_generate(generator->text, &options, &scene->field->mesh));
+}
+
+static bool read_file(dvi_scene *scene, const dvi__tree *section, const dvi__tree *file)
+{
+  static const char *const known[] = {"file", "space"};
+  dvi_mesh_read_options options = {.size = sizeof options};
+  const char *path;
+  const dvi__tree *space = dvi__tree_find(section, "space");
+  return dvi__want_keys(scene, section, "a mesh from a file", 2, known) &&
+         dvi__want_text(scene, file, "file") &&
+         (space == NULL || dvi__tree_whole(scene, space, "space", 1, &options.space)) &&
+         dvi__scene_place_mesh(scene, file->span, file->text, &path) &&
+         report(scene, section, dvi_mesh_read(path, &options, &scene->field->mesh));
+}
+
+/* ---- names ---- */
+
+static bool add_name(dvi_scene *scene, const char *name, dvi__span span, int rank, int size)
+{
+  const int number = scene->coordinate_count++;
+  scene->coordinate[number] = (dvi__coordinate){.name = name,
+                                                .span = span,
+                                                .kind = DVI__LINES,
+                                                .size = 1,
+                                                .columns = 1,
+                                                .shape = {rank, size, 1},
+                                                .q = {scene->n, size, size},
+                                                .v = {scene->n, size, size}};
+  scene->n += size;
+  return dvi__names_add(&scene->names, &scene->arena, scene->complaint, name, span, DVI__COORDINATE,
+                        number);
+}
+
+static bool name_place(dvi_scene *scene, const dvi__tree *section)
+{
+  static const char *const axis[] = {"x", "y", "z", "w"};
+  const int space = scene->field->space;
+  scene->coordinate = dvi__arena_take(&scene->arena, (size_t)space + 2, sizeof *scene->coordinate);
+  scene->zeros = dvi__arena_take(&scene->arena, 2 * (size_t)DVI__PLACE_NUMBERS,
+                                 sizeof *scene->zeros);
+  if (scene->coordinate == NULL || scene->zeros == NULL) return dvi__scene_no_memory(scene);
+  for (int l = 0; l < space; l++)
+    if (!add_name(scene, axis[l], section->span, 0, 1)) return false;
+  if (!add_name(scene, "normal", section->span, 1, space) ||
+      !add_name(scene, "u", section->span, 0, 1))
+    return false;
+  scene->nv = scene->velocities = scene->n;
+  return true;
+}
+
+bool dvi__read_mesh(dvi_scene *scene, const dvi__tree *section)
+{
+  if (!dvi__want_mapping(scene, section, "mesh")) return false;
+  scene->field = dvi__arena_take(&scene->arena, 1, sizeof *scene->field);
+  if (scene->field == NULL) return dvi__scene_no_memory(scene);
+  scene->field->solve.size = sizeof scene->field->solve;
+  const dvi__tree *generator = dvi__tree_find(section, "generator"),
+                  *file = dvi__tree_find(section, "file");
+  if ((generator == NULL) == (file == NULL))
+    return dvi__scene_refuse(scene, section->span,
+                             "a mesh has a generator or a file, as in 'mesh: {generator: disk}'");
+  if (!(generator != NULL ? generate(scene, section, generator) : read_file(scene, section, file)))
+    return false;
+  scene->field->space = dvi_mesh_space(scene->field->mesh);
+  if (scene->field->space > DVI__PLACE_SPACE)
+    return dvi__scene_refuse(scene, section->span, "a scene's mesh has at most %d coordinates",
+                             DVI__PLACE_SPACE);
+  return name_place(scene, section);
+}

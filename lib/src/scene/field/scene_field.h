@@ -1,0 +1,54 @@
+/* A scene of a field on a mesh: what its sections say, and the field that is made of them.
+ *
+ * While the sections are read, the coordinates of the scene are those of one place: its position x,
+ * y and so on, the normal of the boundary there, and the value u of the field. Expressions are
+ * functions of these. Afterwards the scene's coordinates are the unknowns of the field. */
+#ifndef DVI_SCENE_FIELD_SCENE_FIELD_H
+#define DVI_SCENE_FIELD_SCENE_FIELD_H
+#include <dvi/field.h>
+
+#include "scene/elaborate/kernels.h"
+
+enum { DVI__PLACE_SPACE = 4, DVI__PLACE_NUMBERS = 2 * DVI__PLACE_SPACE + 1 };
+
+/* What of a place a function may have beside the position. */
+enum { DVI__OF_NORMAL = 1, DVI__OF_VALUE = 2 };
+
+/* A function of a place. */
+typedef struct dvi__place {
+  dvi__scene_term *term;
+  int space;
+} dvi__place;
+
+struct dvi__scene_field {
+  dvi_mesh *mesh;
+  dvi_star *star;
+  dvi_field *field;
+  int space;
+  dvi_star_kind kind;
+  double *factor[DVI_MESH_DIMENSION_MAX + 1]; /* [cells], NULL for 1 */
+  double *centre;                             /* [cells*space], once needed */
+  dvi_condition *condition;
+  int conditions;
+  dvi__place *source, *value, *rate; /* NULL for 0 */
+  dvi_potential potential;           /* of a place, without a value if there is none */
+  int u_u, entries;                  /* place of V_uu in its pattern, or -1, and the entries */
+  dvi_field_potential density;
+  dvi_field_solve_options solve;
+};
+
+/* Read an expression as a function of a place. `may` has the flags DVI__OF_.. */
+bool dvi__place_read(dvi_scene *scene, const dvi__tree *tree, unsigned may, const char *where,
+                     dvi__place **place);
+
+/* Evaluate the function. `normal` may be NULL. Returns as callbacks do. */
+int dvi__place_value(const dvi__place *place, const double *x, const double *normal, double *value);
+
+/* Callbacks of conditions and of sources. `user` is a place. */
+int dvi__place_datum(const double *x, const double *normal, double *datum, void *user);
+int dvi__place_source(const double *x, double *value, void *user);
+
+/* Read a potential V(x, u). */
+bool dvi__place_potential(dvi_scene *scene, const dvi__tree *tree);
+
+#endif
