@@ -29,6 +29,8 @@ static const subcommand subcommands[] = {
     {"sweep", sweep_command},
     {"resonance", resonance_command},
     {"emit-c", emit_c_command},
+    {"modes", modes_command},
+    {"solve", solve_command},
     {"plot", plot_command},
     {NULL, NULL},
 };
@@ -58,6 +60,9 @@ static const char help[] =
     "  control SCENE.yaml ...  find the controls that lead to an end at the least cost\n"
     "  gradient SCENE.yaml ... differentiate a run by its start and its parameters\n"
     "  fit SCENE.yaml ...      fit parameters and the start of a run to measurements\n"
+    "  mesh FILE|GENERATOR ... audit a mesh: counts, holes, quality, duals, stable steps; repair it\n"
+    "  modes SCENE.yaml ...    the modes of a field on a mesh: eigenvalues, frequencies, shapes\n"
+    "  solve SCENE.yaml ...    the static state of a field on a mesh\n"
     "  order PROBLEM ...       measure the order of methods against an independent judge\n"
     "  bench PROBLEM ...       measure speed against error, also beside SUNDIALS' integrators\n"
     "\n"

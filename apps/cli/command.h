@@ -26,6 +26,9 @@ int init_command(int argc, char **argv);
 int sweep_command(int argc, char **argv);
 int resonance_command(int argc, char **argv);
 int emit_c_command(int argc, char **argv);
+int mesh_command(int argc, char **argv);
+int modes_command(int argc, char **argv);
+int solve_command(int argc, char **argv);
 int plot_command(int argc, char **argv);
 
 /** Print "dvi: <sentence>" to standard error. */

@@ -1,0 +1,131 @@
+/* dvi modes, which computes the modes of a field. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/command.h"
+#include "cli/options.h"
+#include "cli/outputs.h"
+#include "csv/table.h"
+#include "load/field.h"
+
+/* The options. */
+typedef struct modes_request {
+  long count;
+  double near;
+  const char *csv, *vtu;
+  words settings;
+} modes_request;
+
+static int print_modes(const modes_request *r, const problem *scene, const double *eigenvalue,
+                       int64_t unknowns, int64_t zeros)
+{
+  static const table_column columns[] = {
+      {"index", "%.0f"}, {"eigenvalue", "%.12g"}, {"omega", "%.12g"}, {NULL, NULL}};
+  FILE *stream = r->csv != NULL && strcmp(r->csv, "-") == 0 ? stderr : stdout;
+  result_table *rows = table_create(columns);
+  for (long i = 0; i < r->count; i++) {
+    table_number(rows, (double)(i + 1));
+    table_number(rows, eigenvalue[i]);
+    table_number(rows, sqrt(fmax(eigenvalue[i], 0.0)));
+  }
+  bool good = table_good(rows);
+  if (good) {
+    (void)fprintf(stream, "Modes of %s, of %lld unknowns", scene->name, (long long)unknowns);
+    if (!isnan(r->near)) (void)fprintf(stream, ", the nearest to %.12g", r->near);
+    (void)fprintf(stream, "\nleft out: %lld of frequency zero\n", (long long)zeros);
+    table_print(rows, stream, 0, 0, table_rows(rows));
+    good = r->csv == NULL || table_write(rows, r->csv);
+  }
+  table_destroy(&rows);
+  return good ? DONE : FAILED;
+}
+
+static int find_modes(const modes_request *r, const problem *scene, const dvi_field *field)
+{
+  const int64_t vertices = dvi_mesh_count(field_mesh(field), 0);
+  const dvi_modes_options options = {
+      .size = sizeof options, .count = (int)r->count, .shift = isnan(r->near) ? 0.0 : r->near};
+  int64_t zeros = 0, unknowns = 0;
+  double *eigenvalue = calloc((size_t)r->count * (size_t)(1 + vertices), sizeof *eigenvalue);
+  if (eigenvalue == NULL) {
+    complain("out of memory");
+    return FAILED;
+  }
+  double *mode = eigenvalue + r->count;
+  const dvi_status status = dvi_field_modes(field, &options, eigenvalue,
+                                            r->vtu != NULL ? mode : NULL, &zeros);
+  (void)dvi_field_unknowns(field, &unknowns);
+  int code = status == DVI_OK ? print_modes(r, scene, eigenvalue, unknowns, zeros)
+                              : library_error(status);
+  if (code == DONE && r->vtu != NULL)
+    code = field_write(field, r->vtu, "mode", (int)r->count, mode);
+  free(eigenvalue);
+  return code;
+}
+
+static const char *const details[] = {
+    "A mode is a motion in which all points swing with one frequency omega, the square root of an "
+    "eigenvalue of K x = lambda M x with the field's stiffness and mass. A part of the mesh "
+    "without "
+    "a fixed value has a mode of frequency zero, which is counted and left out. A potential takes "
+    "no part.\n",
+    "Columns of --csv: index, eigenvalue, omega, ascending.\n",
+    "Examples:\n"
+    "  dvi modes drum.yaml --count 6\n"
+    "  dvi modes drum.yaml --count 3 --near 100 --csv - --vtu modes.vtu\n",
+    NULL,
+};
+
+static const option command_options[] = {
+    {.name = "count",
+     OPTION_AT(modes_request, count),
+     .value = "K",
+     .help = "how many modes; default: 6"},
+    {.name = "near",
+     OPTION_AT(modes_request, near),
+     .value = "X",
+     .help = "those whose eigenvalues are nearest to X; default: the lowest"},
+    {.name = "csv",
+     OPTION_AT(modes_request, csv),
+     .value = "FILE",
+     .help = "write the modes' eigenvalues as CSV; - for standard output"},
+    {.name = "vtu",
+     OPTION_AT(modes_request, vtu),
+     .value = "FILE.vtu",
+     .help = "write the mesh and the modes' shapes for ParaView"},
+    {.name = "set",
+     OPTION_AT(modes_request, settings),
+     .value = "NAME=VALUE",
+     .help = "set a parameter of the scene; may be repeated"},
+    {.name = NULL},
+};
+
+static const command_line command = {
+    .name = "modes",
+    .synopsis = "SCENE.yaml [OPTIONS]",
+    .operand = "SCENE.yaml",
+    .summary = "Compute the modes of a scene's field: eigenvalues, frequencies, shapes.\n",
+    .options = command_options,
+    .details = details,
+};
+
+int modes_command(int argc, char **argv)
+{
+  modes_request r = {.count = 6, .near = (double)NAN};
+  const char *name;
+  const dvi_field *field;
+  problem *scene;
+  int code;
+  if (!options_parse(&command, argc, argv, &r, &name, &code)) return code;
+  const named_file files[] = {{"csv", r.csv}, {"vtu", r.vtu}};
+  if (r.count > 100000) return usage_error("modes: --count %ld: 100000 at most", r.count);
+  code = outputs_distinct("modes", 2, files);
+  if (code != DONE) return code;
+  code = field_open("modes", name, &r.settings, &scene, &field);
+  if (code != DONE) return code;
+  code = find_modes(&r, scene, field);
+  problem_destroy(&scene);
+  return code;
+}

@@ -1,0 +1,133 @@
+/* dvi solve, which finds the static state of a field. */
+#include <dvi/scene.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/command.h"
+#include "cli/options.h"
+#include "cli/outputs.h"
+#include "csv/table.h"
+#include "load/field.h"
+
+/* The options. */
+typedef struct solve_request {
+  const char *csv, *vtu;
+  words settings;
+} solve_request;
+
+static void print_report(const solve_request *r, const problem *scene, int64_t vertices,
+                         const double *u, const dvi_field_solve_report *report)
+{
+  FILE *stream = r->csv != NULL && strcmp(r->csv, "-") == 0 ? stderr : stdout;
+  double least = INFINITY, most = -INFINITY;
+  for (int64_t v = 0; v < vertices; v++) {
+    least = fmin(least, u[v]);
+    most = fmax(most, u[v]);
+  }
+  (void)fprintf(stream, "Static state of %s\n", scene->name);
+  (void)fprintf(stream, "unknowns   %lld of %lld vertices\n", (long long)report->unknowns,
+                (long long)vertices);
+  if (report->iterations > 0) (void)fprintf(stream, "iterations %d\n", report->iterations);
+  (void)fprintf(stream, "residual   %.2e\n", report->residual);
+  if (report->imbalance > 0.0)
+    (void)fprintf(stream, "imbalance  %.2e, taken away\n", report->imbalance);
+  (void)fprintf(stream, "u          from %.12g to %.12g\n", least, most);
+}
+
+static bool write_values(const char *path, const dvi_mesh *mesh, const double *u)
+{
+  static const char *const axis[] = {"x", "y", "z", "w"};
+  const int space = dvi_mesh_space(mesh);
+  table_column columns[7] = {{"vertex", ""}};
+  for (int l = 0; l < space; l++) columns[1 + l] = (table_column){axis[l], ""};
+  columns[1 + space] = (table_column){"u", ""};
+  result_table *rows = table_create(columns);
+  for (int64_t v = 0; v < dvi_mesh_count(mesh, 0); v++) {
+    table_number(rows, (double)v);
+    for (int l = 0; l < space; l++) table_number(rows, dvi_mesh_points(mesh)[v * space + l]);
+    table_number(rows, u[v]);
+  }
+  const bool good = table_good(rows) && table_write(rows, path);
+  table_destroy(&rows);
+  return good;
+}
+
+/* Newton's method of a field with a potential starts from the scene's start. */
+static int solve_field(const solve_request *r, const problem *scene, const dvi_field *field)
+{
+  const dvi_mesh *mesh = field_mesh(field);
+  const int64_t vertices = dvi_mesh_count(mesh, 0);
+  dvi_field_solve_options options;
+  dvi_field_solve_report report;
+  double *u = calloc((size_t)vertices, sizeof *u);
+  if (u == NULL) {
+    complain("out of memory");
+    return FAILED;
+  }
+  (void)dvi_scene_solve_options(scene->scene, &options);
+  dvi_status status = dvi_field_lift(field, scene->q, u);
+  if (status == DVI_OK) status = dvi_field_solve(field, &options, u, &report);
+  int code = status == DVI_OK ? DONE : library_error(status);
+  if (code == DONE) print_report(r, scene, vertices, u, &report);
+  if (code == DONE && r->csv != NULL && !write_values(r->csv, mesh, u)) code = FAILED;
+  if (code == DONE && r->vtu != NULL) code = field_write(field, r->vtu, "u", 1, u);
+  free(u);
+  return code;
+}
+
+static const char *const details[] = {
+    "The static state balances the stiffness, the potential, the source and the flux through the "
+    "boundary: -div(a grad u) + V_u = f. Without a potential the problem is linear. With one it is "
+    "solved by Newton's method from the scene's start. Where no value is fixed, source and flux "
+    "must sum to zero, and the section solve sets the mean.\n",
+    "Columns of --csv: vertex, its coordinates, u.\n",
+    "Examples:\n"
+    "  dvi solve membrane.yaml\n"
+    "  dvi solve membrane.yaml --csv values.csv --vtu values.vtu\n",
+    NULL,
+};
+
+static const option command_options[] = {
+    {.name = "csv",
+     OPTION_AT(solve_request, csv),
+     .value = "FILE",
+     .help = "write the values at the vertices as CSV; - for standard output"},
+    {.name = "vtu",
+     OPTION_AT(solve_request, vtu),
+     .value = "FILE.vtu",
+     .help = "write the mesh and the values for ParaView"},
+    {.name = "set",
+     OPTION_AT(solve_request, settings),
+     .value = "NAME=VALUE",
+     .help = "set a parameter of the scene; may be repeated"},
+    {.name = NULL},
+};
+
+static const command_line command = {
+    .name = "solve",
+    .synopsis = "SCENE.yaml [OPTIONS]",
+    .operand = "SCENE.yaml",
+    .summary = "Find the static state of a scene's field.\n",
+    .options = command_options,
+    .details = details,
+};
+
+int solve_command(int argc, char **argv)
+{
+  solve_request r = {.csv = NULL};
+  const char *name;
+  const dvi_field *field;
+  problem *scene;
+  int code;
+  if (!options_parse(&command, argc, argv, &r, &name, &code)) return code;
+  const named_file files[] = {{"csv", r.csv}, {"vtu", r.vtu}};
+  code = outputs_distinct("solve", 2, files);
+  if (code != DONE) return code;
+  code = field_open("solve", name, &r.settings, &scene, &field);
+  if (code != DONE) return code;
+  code = solve_field(&r, scene, field);
+  problem_destroy(&scene);
+  return code;
+}

@@ -1,0 +1,21 @@
+/** The field of a scene, and files of values on its mesh. */
+#ifndef FIELD_OF_SCENE_H
+#define FIELD_OF_SCENE_H
+#include <dvi/field.h>
+
+#include "cli/options.h"
+#include "problem.h"
+
+/** Open a scene with a field. Returns DONE, or complains that `command` needs a field and returns
+ * the exit code. */
+int field_open(const char *command, const char *name, const words *settings, problem **scene,
+               const dvi_field **field);
+
+/** Return the mesh of a field. */
+const dvi_mesh *field_mesh(const dvi_field *field);
+
+/** Write values at the vertices [count][vertices] with a mesh to a .vtu file, under a name and, if
+ * there are several, their numbers from 1. Returns DONE, or complains and returns the exit code. */
+int field_write(const dvi_field *field, const char *path, const char *name, int count,
+                const double *values);
+#endif
