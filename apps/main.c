@@ -29,6 +29,7 @@ static const subcommand subcommands[] = {
     {"sweep", sweep_command},
     {"resonance", resonance_command},
     {"emit-c", emit_c_command},
+    {"mesh", mesh_command},
     {"modes", modes_command},
     {"solve", solve_command},
     {"plot", plot_command},

@@ -46,6 +46,7 @@ BEGIN {
   sees["field/mesh/generate"] = "core field/mesh"
   sees["field/mesh/file"] = "core field/mesh"
   sees["field/forms"] = "core num field/algebra field/mesh"
+  sees["field/audit"] = "core num field/algebra field/mesh field/forms"
   sees["field/model"] = "core num solve field/algebra field/mesh field/forms"
   # The library of scenes includes libdvi's public headers, too.
   sees["text"] = ""

@@ -2,6 +2,7 @@
  * dvi/scene.h, which belongs to the library of scenes. */
 #ifndef DVI_DVI_H
 #define DVI_DVI_H
+#include <dvi/audit.h>
 #include <dvi/basis.h>
 #include <dvi/contact.h>
 #include <dvi/control.h>

@@ -1,0 +1,372 @@
+/* Audits and repairs of meshes. */
+#include <dvi/audit.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "support/meshes.h"
+#include "support/suite.h"
+
+static dvi_mesh *generated(const char *name, const dvi_generator_options *sizes)
+{
+  dvi_mesh *mesh = NULL;
+  dvi_generator_options options = *sizes;
+  options.size = sizeof options;
+  ck_assert_msg(dvi_mesh_generate(name, &options, &mesh) == DVI_OK, "%s", dvi_last_error());
+  return mesh;
+}
+
+static dvi_mesh_report audited(const dvi_mesh *mesh)
+{
+  dvi_mesh_report report;
+  ck_assert_msg(dvi_mesh_audit(mesh, NULL, &report) == DVI_OK, "%s", dvi_last_error());
+  return report;
+}
+
+static dvi_mesh *from_arrays(int n, int space, int points, const double *point, int cells,
+                             const int *vertex)
+{
+  dvi_mesh *mesh = NULL;
+  const dvi_mesh_terms terms = {.size = sizeof terms,
+                                .dimension = n,
+                                .space = space,
+                                .points = points,
+                                .point = point,
+                                .cells = cells,
+                                .vertex = vertex};
+  ck_assert_msg(dvi_mesh_create(&terms, &mesh) == DVI_OK, "%s", dvi_last_error());
+  return mesh;
+}
+
+/* ---- topology ---- */
+
+START_TEST(good_meshes_are_manifolds)
+{
+  static const struct {
+    const char *name;
+    int dimension;
+  } meshes[] = {{"interval", 1}, {"box", 3},  {"kuhn", 3},      {"kuhn-torus", 3}, {"kuhn", 4},
+                {"disk", 0},     {"ball", 0}, {"icosphere", 0}, {"genus-2", 0},    {"cylinder", 0}};
+  for (size_t i = 0; i < sizeof meshes / sizeof *meshes; i++) {
+    dvi_generator_options options = {.dimension = meshes[i].dimension};
+    const int count = meshes[i].dimension > 0 ? meshes[i].dimension : 1;
+    for (int a = 0; a < count; a++) options.cells[a] = count == 4 ? 2 : 3;
+    dvi_mesh *mesh = generated(meshes[i].name, &options);
+    const dvi_mesh_report report = audited(mesh);
+    ck_assert_msg(report.is_manifold && report.is_orientable, "%s", meshes[i].name);
+    ck_assert_int_eq(report.pinches, 0);
+    ck_assert(report.quality > 0 && report.quality <= report.mean_quality + 1e-12);
+    ck_assert(report.mean_quality <= 1 + 1e-12);
+    dvi_mesh_destroy(&mesh);
+  }
+}
+END_TEST
+
+/* Two triangles that share a point alone. */
+START_TEST(pinched_vertices_are_found)
+{
+  static const double point[] = {0, 0, 1, 0, 1, 1, -1, 0, -1, -1};
+  static const int vertex[] = {0, 1, 2, 0, 3, 4};
+  dvi_mesh *mesh = from_arrays(2, 2, 5, point, 2, vertex);
+  const dvi_mesh_report report = audited(mesh);
+  ck_assert(!report.is_manifold);
+  ck_assert_int_eq(report.pinches, 1);
+  ck_assert_int_eq(report.pinched, 0);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
+/* Two tetrahedra that share an edge alone: the edge and both of its ends are pinched. */
+START_TEST(pinched_edges_are_counted)
+{
+  static const double point[] = {0, 0, -1, 0, 0, 1, 1, 0, 0, 1, 1, 0, -1, 0, 0, -1, -1, 0};
+  static const int vertex[] = {0, 1, 2, 3, 0, 1, 4, 5};
+  dvi_mesh *mesh = from_arrays(3, 3, 6, point, 2, vertex);
+  const dvi_mesh_report report = audited(mesh);
+  ck_assert(!report.is_manifold);
+  ck_assert_int_eq(report.pinches, 3);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
+START_TEST(strip_of_moebius_has_one_side)
+{
+  enum { AROUND = 7 };
+  double point[6 * AROUND];
+  int vertex[6 * AROUND];
+  for (int i = 0; i < AROUND; i++) {
+    const double angle = 2 * 3.14159265358979323846 * i / AROUND;
+    for (int side = 0; side < 2; side++) {
+      double *x = point + 6 * i + 3 * side;
+      const double r = 2 + (side - 0.5) * cos(0.5 * angle);
+      x[0] = r * cos(angle);
+      x[1] = r * sin(angle);
+      x[2] = (side - 0.5) * sin(0.5 * angle);
+    }
+    const int a = 2 * i, b = 2 * i + 1, last = i + 1 == AROUND, c = last ? 1 : 2 * i + 2,
+              d = last ? 0 : 2 * i + 3;
+    const int two[] = {a, b, c, b, d, c};
+    memcpy(vertex + 6 * i, two, sizeof two);
+  }
+  dvi_mesh *mesh = from_arrays(2, 3, 2 * AROUND, point, 2 * AROUND, vertex);
+  const dvi_mesh_report report = audited(mesh);
+  ck_assert(report.is_manifold && !report.is_orientable);
+  ck_assert_int_eq(report.degree[1].betti, 1);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
+START_TEST(edges_of_three_triangles_are_no_manifold)
+{
+  static const double point[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1};
+  static const int vertex[] = {0, 1, 2, 0, 1, 3, 0, 1, 4};
+  dvi_mesh *mesh = from_arrays(2, 3, 5, point, 3, vertex);
+  const dvi_mesh_report report = audited(mesh);
+  ck_assert(!report.is_manifold);
+  ck_assert_int_eq(report.branching, 0);
+  ck_assert(isnan(report.degree[0].step));
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
+/* ---- duals and steps ---- */
+
+START_TEST(kuhn_simplices_have_duals_that_vanish)
+{
+  dvi_mesh *mesh = generated("kuhn", &(dvi_generator_options){.cells = {2, 2, 2}});
+  const dvi_mesh_report report = audited(mesh);
+  ck_assert_int_eq(report.degree[1].count, 98);
+  ck_assert_int_eq(report.degree[1].zero, 44);
+  ck_assert_int_eq(report.degree[2].count, 120);
+  ck_assert_int_eq(report.degree[2].zero, 48);
+  ck_assert_int_eq(report.degree[1].negative, 0);
+  ck_assert(report.advice & DVI_ADVICE_GLUE);
+  ck_assert(!isnan(report.degree[0].step) && isnan(report.degree[1].step));
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
+/* On squares of edge h the fastest motion has alternating signs: omega = sqrt(8)/h. */
+START_TEST(squares_have_a_known_step)
+{
+  dvi_mesh *mesh = generated("box", &(dvi_generator_options){.cells = {16, 16}});
+  const dvi_mesh_report report = audited(mesh);
+  const double omega = sqrt(8) * 16;
+  ck_assert(report.degree[0].fastest >= omega && report.degree[0].fastest < 1.001 * omega);
+  ck_assert(report.degree[1].fastest >= omega * 0.99 && report.degree[1].fastest < 1.001 * omega);
+  ck_assert_double_eq_tol(report.degree[0].steps, sqrt(2) / 2 * report.degree[0].fastest, 1e-9);
+  ck_assert_double_eq_tol(report.dual_ratio, 0.5, 1e-12);
+  ck_assert_double_eq(report.quality, 1);
+  ck_assert_int_eq((int)report.advice, 0);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
+START_TEST(spacetime_has_no_frequencies)
+{
+  static const double point[] = {0, 0, 1, 0, 0, 0.4, 1, 0.4}, metric[] = {1, -1};
+  static const int vertex[] = {0, 1, 2, 1, 2, 3};
+  dvi_mesh *mesh = NULL;
+  const dvi_mesh_terms terms = {.size = sizeof terms,
+                                .dimension = 2,
+                                .points = 4,
+                                .point = point,
+                                .cells = 2,
+                                .vertex = vertex,
+                                .metric = metric};
+  ck_assert_int_eq(dvi_mesh_create(&terms, &mesh), DVI_OK);
+  const dvi_mesh_report report = audited(mesh);
+  ck_assert(isnan(report.degree[0].fastest));
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
+/* ---- flips ---- */
+
+/* Equilateral triangles, with the diagonal of one pair exchanged. */
+static dvi_mesh *flipped_patch(int cells, const dvi_mesh_part *part, int parts)
+{
+  const int across = cells + 1;
+  double *point = malloc((size_t)(2 * across * across) * sizeof *point);
+  int *vertex = malloc((size_t)(6 * cells * cells) * sizeof *vertex), *v = vertex;
+  for (int j = 0; j <= cells; j++)
+    for (int i = 0; i <= cells; i++) {
+      point[2 * (j * across + i)] = i + 0.5 * j;
+      point[2 * (j * across + i) + 1] = 0.5 * sqrt(3) * j;
+    }
+  for (int j = 0; j < cells; j++)
+    for (int i = 0; i < cells; i++) {
+      const int a = j * across + i, b = a + 1, c = a + across, d = c + 1,
+                is_turned = i == cells / 2 && j == cells / 2;
+      const int usual[] = {a, b, c, b, d, c}, turned[] = {a, b, d, a, d, c};
+      memcpy(v, is_turned ? turned : usual, sizeof usual);
+      v += 6;
+    }
+  dvi_mesh *mesh = NULL;
+  const dvi_mesh_terms terms = {.size = sizeof terms,
+                                .dimension = 2,
+                                .points = (int64_t)across * across,
+                                .point = point,
+                                .cells = 2 * (int64_t)cells * cells,
+                                .vertex = vertex,
+                                .part = part,
+                                .parts = parts};
+  ck_assert_msg(dvi_mesh_create(&terms, &mesh) == DVI_OK, "%s", dvi_last_error());
+  free(point), free(vertex);
+  return mesh;
+}
+
+START_TEST(wrong_diagonal_is_flipped)
+{
+  int64_t flips;
+  dvi_mesh *mesh = flipped_patch(6, NULL, 0), *flipped = NULL;
+  const dvi_mesh_report before = audited(mesh);
+  ck_assert_int_eq(before.degree[1].negative, 1);
+  ck_assert_double_eq_tol(before.degree[1].smallest_star, -0.577350269190, 1e-12);
+  ck_assert(before.advice & DVI_ADVICE_FLIP);
+  ck_assert(isnan(before.degree[0].step));
+  ck_assert_int_eq(dvi_mesh_flip(mesh, &flipped, &flips), DVI_OK);
+  const dvi_mesh_report after = audited(flipped);
+  ck_assert_int_eq(flips, 1);
+  ck_assert_int_eq(after.degree[1].negative, 0);
+  ck_assert_double_eq_tol(after.degree[2].total, before.degree[2].total, 1e-12);
+  dvi_mesh_destroy(&flipped);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
+/* The wrong diagonal, from (3,3) to (4,4), is a part. */
+START_TEST(edges_of_parts_are_not_flipped)
+{
+  static const int edge[] = {3 * 7 + 3, 4 * 7 + 4};
+  const dvi_mesh_part part = {.name = "crack", .degree = 1, .count = 1, .vertex = edge};
+  int64_t flips, count;
+  dvi_mesh *mesh = flipped_patch(6, &part, 1), *flipped = NULL;
+  ck_assert_int_eq(dvi_mesh_flip(mesh, &flipped, &flips), DVI_OK);
+  ck_assert_int_eq(flips, 0);
+  ck_assert_ptr_nonnull(dvi_mesh_part_cells(flipped, "crack", 1, &count));
+  ck_assert_int_eq(count, 1);
+  dvi_mesh_destroy(&flipped);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
+START_TEST(any_triangles_become_delaunays)
+{
+  for (unsigned long long seed = 1; seed <= 5; seed++) {
+    dvi_mesh *mesh = jittered_mesh(2, 2, 10, 0.3, seed), *flipped = NULL;
+    const dvi_mesh_report before = audited(mesh);
+    int64_t flips;
+    ck_assert_msg(dvi_mesh_flip(mesh, &flipped, &flips) == DVI_OK, "%s", dvi_last_error());
+    ck_assert(before.degree[1].negative > 0 && flips > 0);
+    dvi_star *star = NULL;
+    ck_assert_int_eq(dvi_star_create(flipped, NULL, &star), DVI_OK);
+    int64_t rim;
+    const int *on_rim = dvi_mesh_part_cells(flipped, "boundary", 1, &rim);
+    const double *dual = dvi_star_duals(star, 1);
+    for (int64_t e = 0, at = 0; e < dvi_mesh_count(flipped, 1); e++) {
+      if (at < rim && on_rim[at] == e) {
+        at++;
+        continue;
+      }
+      ck_assert_msg(dual[e] > -1e-12, "edge %d: %g", (int)e, dual[e]);
+    }
+    dvi_star_destroy(&star);
+    dvi_mesh_destroy(&flipped);
+    dvi_mesh_destroy(&mesh);
+  }
+}
+END_TEST
+
+START_TEST(surfaces_are_flipped_too)
+{
+  int64_t flips;
+  dvi_mesh *mesh = generated("torus", &(dvi_generator_options){.cells = {30, 6}}), *flipped = NULL;
+  ck_assert_msg(dvi_mesh_flip(mesh, &flipped, &flips) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_int_eq(audited(flipped).degree[1].negative, 0);
+  dvi_mesh_destroy(&flipped);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
+/* ---- glue ---- */
+
+START_TEST(kuhn_simplices_become_boxes)
+{
+  for (int n = 2; n <= 4; n++) {
+    dvi_generator_options options = {.dimension = n};
+    for (int a = 0; a < n; a++) options.cells[a] = 2 + (a == 0);
+    for (int a = 0; a < n; a++) options.extent[a] = 1 + a;
+    dvi_mesh *simplices = generated("kuhn", &options), *boxes = generated("box", &options),
+             *glued = NULL;
+    ck_assert_msg(dvi_mesh_glue(simplices, &glued) == DVI_OK, "%s", dvi_last_error());
+    ck_assert_int_eq(dvi_mesh_kind(glued), DVI_BOXES);
+    const dvi_mesh_report one = audited(glued), other = audited(boxes);
+    for (int k = 0; k <= n; k++) {
+      ck_assert_int_eq(one.degree[k].count, other.degree[k].count);
+      ck_assert_double_eq_tol(one.degree[k].smallest_star, other.degree[k].smallest_star, 1e-12);
+      ck_assert_double_eq_tol(one.degree[k].total, other.degree[k].total, 1e-10);
+    }
+    for (int i = 2; dvi_mesh_part_name(boxes, i) != NULL; i++) {
+      int64_t count, expected;
+      const char *name = dvi_mesh_part_name(boxes, i);
+      (void)dvi_mesh_part_cells(glued, name, n - 1, &count);
+      (void)dvi_mesh_part_cells(boxes, name, n - 1, &expected);
+      ck_assert_int_eq(count, expected);
+    }
+    dvi_mesh_destroy(&glued);
+    dvi_mesh_destroy(&boxes);
+    dvi_mesh_destroy(&simplices);
+  }
+}
+END_TEST
+
+START_TEST(tori_are_glued)
+{
+  dvi_mesh *mesh = generated("kuhn-torus", &(dvi_generator_options){.cells = {3, 4, 5}}),
+           *glued = NULL;
+  int64_t betti[4];
+  ck_assert_msg(dvi_mesh_glue(mesh, &glued) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_int_eq(dvi_mesh_count(glued, 3), 60);
+  ck_assert_int_eq(dvi_mesh_betti(glued, betti), DVI_OK);
+  ck_assert(betti[0] == 1 && betti[1] == 3 && betti[2] == 3 && betti[3] == 1);
+  dvi_mesh_destroy(&glued);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
+START_TEST(repairs_that_are_impossible_are_refused)
+{
+  dvi_mesh *kuhn = generated("kuhn", &(dvi_generator_options){.cells = {2, 2, 2}}),
+           *disk = generated("disk", &(dvi_generator_options){.cells = {3}}), *made = NULL;
+  dvi_mesh_report report;
+  ck_assert_int_eq(dvi_mesh_flip(kuhn, &made, NULL), DVI_UNSUPPORTED);
+  ck_assert_int_eq(dvi_mesh_glue(disk, &made), DVI_UNSUPPORTED);
+  ck_assert_ptr_null(made);
+  ck_assert_int_eq(dvi_mesh_glue(NULL, &made), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_mesh_flip(disk, NULL, NULL), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_mesh_audit(disk, &(dvi_audit_options){.size = 1}, &report),
+                   DVI_BAD_ARGUMENT);
+  dvi_mesh_destroy(&kuhn);
+  dvi_mesh_destroy(&disk);
+}
+END_TEST
+
+SUITE(audit)
+{
+  tcase_add_test(tests, good_meshes_are_manifolds);
+  tcase_add_test(tests, pinched_vertices_are_found);
+  tcase_add_test(tests, pinched_edges_are_counted);
+  tcase_add_test(tests, strip_of_moebius_has_one_side);
+  tcase_add_test(tests, edges_of_three_triangles_are_no_manifold);
+  tcase_add_test(tests, kuhn_simplices_have_duals_that_vanish);
+  tcase_add_test(tests, squares_have_a_known_step);
+  tcase_add_test(tests, spacetime_has_no_frequencies);
+  tcase_add_test(tests, wrong_diagonal_is_flipped);
+  tcase_add_test(tests, edges_of_parts_are_not_flipped);
+  tcase_add_test(tests, any_triangles_become_delaunays);
+  tcase_add_test(tests, surfaces_are_flipped_too);
+  tcase_add_test(tests, kuhn_simplices_become_boxes);
+  tcase_add_test(tests, tori_are_glued);
+  tcase_add_test(tests, repairs_that_are_impossible_are_refused);
+}
