@@ -1,0 +1,184 @@
+#!/bin/sh
+# dvi mesh, dvi modes, dvi solve, and scenes of fields: digits, files, refusals.
+# Usage: test_fields.sh DVI
+. "$(dirname "$0")/check.sh"
+
+# near FILE NAME VALUE: require that the row of a quantity in FILE is VALUE to 12 digits.
+near() {
+  awk -F, -v name="$2" -v value="$3" '
+    $1 == name { found = 1; d = $2 - value; wrong = d*d > 1e-24 * (1 + value*value) }
+    END { exit !found || wrong }' "$1" || { fail "$2 is $3"; grep "^$2," "$1"; }
+}
+
+# ---- dvi mesh ----
+
+expect 0 'an audit' mesh staggered --cells 8,8 --csv -
+near out vertices 85
+near out edges 220
+near out triangles 136
+near out betti_0 1
+near out betti_1 0
+near out orientable 1
+near out manifold 1
+near out zero_duals_1 0
+expect 0 'a surface of genus 2' mesh genus-2 --csv genus.csv
+near genus.csv betti_1 4
+expect 0 'to glue' mesh kuhn --cells 2,2,2 --repair glue --csv - --write glued.msh
+near out boxes 8
+near out zero_duals_1 0
+expect 0 'what was written' mesh glued.msh --csv -
+near out boxes 8
+near out total_volume_3 1
+expect 0 'help' mesh --help
+says out '--repair' 'the options'
+expect 2 'another repair' mesh disk --repair weld
+expect 2 'a word for a number' mesh disk --cells many
+expect 2 'a part of a cell' mesh disk --cells 1.5
+expect 2 'cells of a file' mesh glued.msh --cells 2
+expect 1 'no file' mesh nothing.msh
+expect 2 'to flip boxes' mesh box --repair flip
+printf '$MeshFormat\n4.1 0 8\n' >cut.msh
+expect 1 'a file cut short' mesh cut.msh
+says err 'cut.msh' 'the file is named'
+
+# ---- scenes ----
+
+cat >drum.yaml <<END
+mesh: {generator: staggered, cells: [8, 8]}
+field: wave
+boundary: fixed
+source: 2*pi^2*sin(pi*x)*sin(pi*y)
+initial: {u: sin(pi*x)*sin(pi*y)}
+method: verlet
+step: 0.02
+until: 1
+END
+expect 0 'modes' modes drum.yaml --count 2 --csv -
+near out 1 19.362777564429
+near out 2 46.629256462815
+expect 0 'a free rim' modes drum.yaml --count 2 --near 50 --csv near.csv --vtu modes.vtu
+says near.csv '^index,eigenvalue,omega$' 'the columns'
+says modes.vtu 'mode_2' 'the shapes'
+sed 's/boundary: fixed/boundary: free/' drum.yaml >free.yaml
+expect 0 'a free rim' modes free.yaml --count 2 --csv -
+near out 1 9.743283624691
+near out 2 9.755353316864
+says err '1 of frequency zero' 'zero modes are counted'
+expect 0 'a static problem' solve drum.yaml --csv - --vtu u.vtu
+awk -F, '$2 == 0.5 && $3 == 0.5 { d = $4 - 1.020206; exit !(d*d < 1e-12) }' out ||
+  fail 'the error at the centre'
+says u.vtu 'Name="u"' 'the values'
+expect 1 'data out of balance' solve free.yaml
+says err 'sum to' 'why there is no solution'
+expect 0 'a run' run drum.yaml --final
+says out '^t,energy$' 'invariants are the columns'
+expect 0 'an order study' order drum.yaml
+says out 'verlet: claimed order 2' 'the order'
+expect 0 'a check' check drum.yaml
+expect 1 'a step that is too long' run drum.yaml --h 0.5 --final
+says err 'h may be' 'the bound is named'
+
+cat >mixed.yaml <<END
+parameters: {k: 2}
+mesh: {generator: staggered, cells: [16, 16]}
+field: wave
+materials: {all: {rho: 1 + x, a: k}}
+boundary:
+  left: {fixed: sin(y)}
+  all: {free: "k*dot(normal, [exp(x)*sin(y), exp(x)*cos(y)])"}
+solve: {mean: 0}
+END
+expect 0 'mixed data' solve mixed.yaml --csv -
+awk -F, 'NR > 1 { d = $4 - exp($2)*sin($3); if (d*d > 1e-5) exit 1 }' out ||
+  fail 'the solution exp(x) sin(y)'
+expect 0 'a scene without a start' run mixed.yaml --method verlet --h 0.01 --t-end 0.1 --final
+
+cat >kink.yaml <<END
+parameters: {v: 0.5}
+mesh: {generator: interval, cells: 200, size: 40, origin: -20}
+field: wave
+potential: 1 - cos(u)
+initial:
+  u: 4*atan(exp((x + 5)/sqrt(1 - v^2)))
+  u': -2*v/sqrt(1 - v^2)/cosh((x + 5)/sqrt(1 - v^2))
+method: galerkin:degree=2
+step: 0.1
+until: 10
+END
+expect 0 'a kink' run kink.yaml --final
+awk -F, 'NR == 2 { d = $2 - 9.2376; exit !(d*d < 1e-3) }' out || fail 'the energy of a kink'
+expect 0 'a kink, checked' check kink.yaml
+
+# refuse NAME WORDS: require that the scene on standard input is refused with these words.
+refuse() {
+  cat >wrong.yaml
+  expect 2 "$1" check wrong.yaml
+  says err "$2" "$1"
+}
+refuse 'no field' "section 'field' is missing" <<END
+mesh: {generator: disk}
+END
+refuse 'no mesh' "has no 'mesh'" <<END
+field: wave
+END
+refuse 'mechanics beside a mesh' "no section 'lagrangian'" <<END
+mesh: {generator: disk}
+field: wave
+lagrangian: 1
+END
+refuse 'another field' 'field is wave' <<END
+mesh: {generator: disk}
+field: flux
+END
+refuse 'another star' 'star is circumcentric, barycentric, whitney or spectral' <<END
+mesh: {generator: disk}
+field: wave
+star: galerkin
+END
+refuse 'no such part' "has no part 'left'" <<END
+mesh: {generator: disk}
+field: wave
+boundary: {left: fixed}
+END
+refuse 'u in a source' 'without u' <<END
+mesh: {generator: disk}
+field: wave
+source: u^2
+END
+refuse 'a normal in a value' 'no normal' <<END
+mesh: {generator: disk}
+field: wave
+boundary: {rim: {fixed: "normal[1]"}}
+END
+refuse 'no such name' 'z' <<END
+mesh: {generator: disk}
+field: wave
+source: z
+END
+refuse 'a source that is not finite' 'wrong.yaml:3' <<END
+mesh: {generator: disk}
+field: wave
+source: 1/x
+END
+refuse 'a density that is not positive' 'not a positive number' <<END
+mesh: {generator: disk}
+field: wave
+materials: {all: {rho: x}}
+END
+refuse 'a generator that is none' 'there is no generator "dish"' <<END
+mesh: {generator: dish}
+field: wave
+END
+refuse 'a file outside' "'..'" <<END
+mesh: {file: ../outside.msh}
+field: wave
+END
+refuse 'two meshes' 'a generator or a file' <<END
+mesh: {generator: disk, file: glued.msh}
+field: wave
+END
+expect 0 'a mesh of a file' mesh disk --write disk.msh
+printf 'mesh: {file: disk.msh}\nfield: wave\nboundary: {rim: fixed}\n' >file.yaml
+expect 0 'modes of a file' modes file.yaml --count 1
+expect 2 'modes without a field' modes kepler
+finish
