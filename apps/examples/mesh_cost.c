@@ -148,7 +148,7 @@ int main(int argc, char **argv)
   for (int i = 0; i < COSTS; i++) {
     const fit *f = fits + i;
     const double spread = f->xx - f->x * f->x / f->count;
-    printf(",%.2f", spread > 0 ? (f->xy - f->x * f->y / f->count) / spread : NAN);
+    printf(",%.2f", spread > 0 ? (f->xy - f->x * f->y / f->count) / spread : (double)NAN);
   }
   printf(",\n");
   return 0;

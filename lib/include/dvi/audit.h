@@ -66,8 +66,8 @@ extern "C" {
 dvi_status dvi_mesh_audit(const dvi_mesh *mesh, const dvi_audit_options *options,
                           dvi_mesh_report *report);
 
-/** Flip edges of a mesh of triangles until all inner ones have duals that are not negative (Lawson
- *  1977). Edges of parts, and those between parts, stay.
+/** Flip edges of a mesh of triangles until all inner ones have duals that are not negative
+ *  (Lawson 1977). Edges of parts, and those between parts, stay.
  *
  *  @param[out] flipped  the new mesh, for dvi_mesh_destroy
  *  @param[out] flips    number of flips. May be NULL
@@ -80,8 +80,8 @@ dvi_status dvi_mesh_flip(const dvi_mesh *mesh, dvi_mesh **flipped, int64_t *flip
  *  are. All cells must belong to such boxes.
  *
  *  @param[out] glued  the new mesh of boxes, for dvi_mesh_destroy
- *  @retval DVI_UNSUPPORTED  the cells are no simplices in R^n, they make no boxes, or a part is none
- *                           of boxes and their faces. dvi_last_error() names the place
+ *  @retval DVI_UNSUPPORTED  the cells are no simplices in R^n, they make no boxes, or a part does
+ *                           not consist of boxes and their faces. dvi_last_error() names the place
  *  @retval (others)         as dvi_mesh_audit */
 dvi_status dvi_mesh_glue(const dvi_mesh *mesh, dvi_mesh **glued);
 

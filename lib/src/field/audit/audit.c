@@ -172,8 +172,7 @@ static unsigned advise(const dvi_mesh *mesh, const dvi_mesh_report *report)
   unsigned advice = negative > 0 || zero > 0 ? DVI_ADVICE_STAR : 0;
   if (is_simplicial && n == 2 && report->degree[1].negative > 0) advice |= DVI_ADVICE_FLIP;
   /* each of the n! simplices of a box has n - 1 facets inside of it */
-  if (is_simplicial && n > 1 &&
-      2 * report->degree[n - 1].zero == (n - 1) * report->degree[n].count)
+  if (is_simplicial && n > 1 && 2 * report->degree[n - 1].zero == (n - 1) * report->degree[n].count)
     advice |= DVI_ADVICE_GLUE;
   return advice;
 }

@@ -41,15 +41,15 @@ dvi_status dvi__msh_shape(const dvi__reader *r, int64_t type, dvi__shape *shape)
       return DVI_OK;
     }
   if (type == 6 || type == 7)
-    return dvi__refuse(r, r->mark,
+    return dvi__reject(r, r->mark,
                        "element type %d is a %s: a mesh has simplices, or boxes, and nothing else",
                        (int)type, other[type]);
   if (type >= 8 && type < known)
-    return dvi__refuse(r, r->mark,
+    return dvi__reject(r, r->mark,
                        "element type %d is a %s of higher order: save the mesh with straight "
                        "elements of order 1",
                        (int)type, other[type]);
-  return dvi__refuse(r, r->mark,
+  return dvi__reject(r, r->mark,
                      "element type %lld is not known: there are 15 points, 1 lines, 2 triangles, "
                      "3 quadrangles, 4 tetrahedra and 5 hexahedra",
                      (long long)type);
@@ -66,10 +66,10 @@ static dvi_status check_byte_order(dvi__reader *r)
   const uint64_t one = dvi__little_endian(byte, 4);
   if (one == 1) return DVI_OK;
   if (one == UINT64_C(1) << 24)
-    return dvi__refuse(r, r->mark,
+    return dvi__reject(r, r->mark,
                        "the file is big-endian, and only little-endian binary files can be read: "
                        "save it as text");
-  return dvi__refuse(r, r->mark, "found the bytes of %llu where those of 1 are expected",
+  return dvi__reject(r, r->mark, "found the bytes of %llu where those of 1 are expected",
                      (unsigned long long)one);
 }
 
@@ -82,7 +82,7 @@ static dvi_status read_format(msh *m)
   DVI_TRY(dvi__read_word(r, "the version", &version));
   m->is_newer = strcmp(version.text, "4.1") == 0;
   if (!m->is_newer && strcmp(version.text, "2.2") != 0)
-    return dvi__refuse(r, r->mark,
+    return dvi__reject(r, r->mark,
                        "the file has version \"%s\" of the format: only 2.2 and 4.1 can be read",
                        version.text);
   DVI_TRY(dvi__read_text_integer(r, "0 for text, or 1 for binary", 0, 1, &binary));
@@ -101,11 +101,11 @@ static dvi_status read_name(dvi__reader *r, dvi__raw *raw)
   const size_t place = r->mark;
   DVI_TRY(dvi__read_text_integer(r, "the number of a group", 0, INT32_MAX, &tag));
   if (!dvi__skip_blanks(r) || r->byte[r->at] != '"')
-    return dvi__refuse(r, r->at, "expected a name in quotes");
+    return dvi__reject(r, r->at, "expected a name in quotes");
   const size_t first = ++r->at;
   while (r->at < r->size && r->byte[r->at] != '"' && r->byte[r->at] != '\n') r->at++;
   if (r->at == r->size || r->byte[r->at] != '"')
-    return dvi__refuse(r, first, "a name has no quote at its end");
+    return dvi__reject(r, first, "a name has no quote at its end");
   r->at++;
   return dvi__raw_name_group(raw, dimension, tag, place, r->byte + first, r->at - 1 - first);
 }
@@ -126,7 +126,7 @@ static dvi_status read_kind(msh *m)
   DVI_TRY(dvi__read_word(m->r, "\"simplices\" or \"boxes\"", &kind));
   const int are_boxes = strcmp(kind.text, "boxes") == 0;
   if (!are_boxes && strcmp(kind.text, "simplices") != 0)
-    return dvi__refuse(m->r, m->r->mark, "found \"%s\" where simplices or boxes are expected",
+    return dvi__reject(m->r, m->r->mark, "found \"%s\" where simplices or boxes are expected",
                        kind.text);
   m->raw->lines = are_boxes ? DVI_BOXES : DVI_SIMPLICES;
   return DVI_OK;
@@ -177,7 +177,7 @@ static dvi_status read_elements(msh *m)
 
 static dvi_status refuse_partitions(msh *m)
 {
-  return dvi__refuse(m->r, m->r->mark,
+  return dvi__reject(m->r, m->r->mark,
                      "the mesh is partitioned: save it without partitions to read it");
 }
 
@@ -204,12 +204,12 @@ static dvi_status check_order(const msh *m, int s)
 {
   const section *this_one = sections + s;
   if (m->seen >> s & 1)
-    return dvi__refuse(m->r, m->r->mark, "there is a second section $%s", this_one->name);
+    return dvi__reject(m->r, m->r->mark, "there is a second section $%s", this_one->name);
   if (this_one->after >= 0 && !(m->seen >> this_one->after & 1))
-    return dvi__refuse(m->r, m->r->mark, "$%s comes before $%s", this_one->name,
+    return dvi__reject(m->r, m->r->mark, "$%s comes before $%s", this_one->name,
                        sections[this_one->after].name);
   if (this_one->before >= 0 && m->seen >> this_one->before & 1)
-    return dvi__refuse(m->r, m->r->mark, "$%s comes behind $%s", this_one->name,
+    return dvi__reject(m->r, m->r->mark, "$%s comes behind $%s", this_one->name,
                        sections[this_one->before].name);
   return DVI_OK;
 }
@@ -238,7 +238,7 @@ static dvi_status skip_section(msh *m, const dvi__word *name)
       r->at += length;
       return DVI_OK;
     }
-  return dvi__refuse(r, place, "the section \"%s\" has no end \"%s\"", name->text, end);
+  return dvi__reject(r, place, "the section \"%s\" has no end \"%s\"", name->text, end);
 }
 
 static dvi_status read_next(msh *m)
@@ -247,7 +247,7 @@ static dvi_status read_next(msh *m)
   int s = 0;
   DVI_TRY(dvi__read_word(m->r, "a section", &name));
   if (name.text[0] != '$' || name.length < 2 || name.length >= sizeof name.text)
-    return dvi__refuse(m->r, m->r->mark, "found \"%s\" where a section like $Nodes is expected",
+    return dvi__reject(m->r, m->r->mark, "found \"%s\" where a section like $Nodes is expected",
                        name.text);
   while (s < SECTIONS &&
          (strcmp(sections[s].name, name.text + 1) != 0 || (sections[s].is_newer && !m->is_newer)))
@@ -262,7 +262,7 @@ static dvi_status read_sections(msh *m)
   while (dvi__skip_blanks(m->r)) DVI_TRY(read_next(m));
   for (int i = 0; i < 2; i++)
     if (!(m->seen >> needed[i] & 1))
-      return dvi__refuse(m->r, m->r->size, "the file has no section $%s", sections[needed[i]].name);
+      return dvi__reject(m->r, m->r->size, "the file has no section $%s", sections[needed[i]].name);
   return DVI_OK;
 }
 

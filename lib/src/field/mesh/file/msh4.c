@@ -44,7 +44,7 @@ static dvi_status read_groups(dvi__reader *r, dvi__msh_entities *entities, dvi__
   for (int64_t i = 0; i < entity->count; i++) DVI_TRY(read_physical(r, entities));
   if (entity->count == 0) return DVI_OK;
   if (is_repeated((const int64_t *)entities->physical.at + entity->first, entity->count))
-    return dvi__refuse(r, entity->place, "the entity %lld of dimension %lld is in a group twice",
+    return dvi__reject(r, entity->place, "the entity %lld of dimension %lld is in a group twice",
                        (long long)entity->tag, (long long)entity->dimension);
   return DVI_OK;
 }
@@ -93,7 +93,7 @@ static dvi_status sort_entities(const dvi__reader *r, dvi__msh_entities *entitie
   qsort(entity, (size_t)entities->entity.count, sizeof *entity, compare_entities);
   for (int64_t i = 1; i < entities->entity.count; i++)
     if (compare_keys(entity + i - 1, entity + i) == 0)
-      return dvi__refuse(r, entity[i].place,
+      return dvi__reject(r, entity[i].place,
                          "a second entity of dimension %lld has the number %lld",
                          (long long)entity[i].dimension, (long long)entity[i].tag);
   return DVI_OK;
@@ -132,7 +132,7 @@ static dvi_status find_entity(const dvi__reader *r, const dvi__msh_entities *ent
       high = middle;
   }
   if (!entities->are_given) return DVI_OK;
-  return dvi__refuse(r, r->mark, "$Entities has no entity %lld of dimension %lld", (long long)tag,
+  return dvi__reject(r, r->mark, "$Entities has no entity %lld of dimension %lld", (long long)tag,
                      (long long)dimension);
 }
 
@@ -158,7 +158,7 @@ static dvi_status check_total(const dvi__reader *r, const char *things, const he
                               int64_t total)
 {
   if (total == h->total) return DVI_OK;
-  return dvi__refuse(r, r->at, "%lld %s are announced, and the blocks have %lld",
+  return dvi__reject(r, r->at, "%lld %s are announced, and the blocks have %lld",
                      (long long)h->total, things, (long long)total);
 }
 
@@ -227,7 +227,7 @@ static dvi_status read_element_block(dvi__reader *r, dvi__raw *raw,
   DVI_TRY(dvi__read_integer(r, "the type of elements", SHORT, INT64_MIN, INT64_MAX, &type));
   DVI_TRY(dvi__msh_shape(r, type, &shape));
   if (dvi__shape_facts_of[shape].dimension != dimension)
-    return dvi__refuse(r, r->mark, "an entity of dimension %lld has %s", (long long)dimension,
+    return dvi__reject(r, r->mark, "an entity of dimension %lld has %s", (long long)dimension,
                        dvi__shape_facts_of[shape].names);
   DVI_TRY(read_long(r, "the number of elements in a block", count));
   DVI_TRY(dvi__claim(r, "elements", *count, 4, 16));

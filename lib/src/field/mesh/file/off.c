@@ -20,7 +20,7 @@ static dvi_status read_head(dvi__reader *r, int64_t *points, int64_t *faces)
   const size_t behind = r->at;
   DVI_TRY(dvi__read_word(r, "the number of points", &word));
   if (strcmp(word.text, "BINARY") == 0)
-    return dvi__refuse(r, r->mark, "binary OFF cannot be read: save the file as text");
+    return dvi__reject(r, r->mark, "binary OFF cannot be read: save the file as text");
   r->at = behind;
   DVI_TRY(dvi__read_text_integer(r, "the number of points", 0, INT32_MAX, points));
   DVI_TRY(dvi__claim(r, "points", *points, 6, 6));
@@ -36,7 +36,7 @@ static dvi_status read_face(dvi__reader *r, dvi__raw *raw, int64_t face)
   const size_t place = r->mark;
   const dvi__shape shape = shape_of_face(count);
   if (shape == DVI__SHAPES)
-    return dvi__refuse(r, place,
+    return dvi__reject(r, place,
                        "a face has %lld corners: only triangles and quadrangles can be read",
                        (long long)count);
   for (int64_t c = 0; c < count; c++)
@@ -60,6 +60,6 @@ dvi_status dvi__read_off(dvi__reader *r, dvi__raw *raw)
   for (int64_t i = 0; i < faces; i++) DVI_TRY(read_face(r, raw, i));
   if (!dvi__skip_blanks(r)) return DVI_OK;
   DVI_TRY(dvi__read_word(r, "the end of the file", &word));
-  return dvi__refuse(r, r->mark, "found \"%s\" behind the last face, where the file should end",
+  return dvi__reject(r, r->mark, "found \"%s\" behind the last face, where the file should end",
                      word.text);
 }

@@ -59,12 +59,12 @@ static dvi_status read_format(dvi__reader *r, head *h)
       continue;
     }
     if (strcmp(word.text, "format") != 0)
-      return dvi__refuse(r, r->mark, "found \"%s\" where \"format\" is expected", word.text);
+      return dvi__reject(r, r->mark, "found \"%s\" where \"format\" is expected", word.text);
     DVI_TRY(dvi__read_word(r, "\"ascii\" or \"binary_little_endian\"", &word));
     if (strcmp(word.text, "ascii") == 0) h->is_binary = 0;
     if (strcmp(word.text, "binary_little_endian") == 0) h->is_binary = 1;
     if (h->is_binary < 0)
-      return dvi__refuse(r, r->mark,
+      return dvi__reject(r, r->mark,
                          "the format is \"%s\", and only ascii and binary_little_endian can be "
                          "read: save the file as one of these",
                          word.text);
@@ -82,7 +82,7 @@ static dvi_status read_type(dvi__reader *r, const type **found)
       *found = types + i;
       return DVI_OK;
     }
-  return dvi__refuse(r, r->mark, "found \"%s\" where the type of a property is expected",
+  return dvi__reject(r, r->mark, "found \"%s\" where the type of a property is expected",
                      word.text);
 }
 
@@ -100,10 +100,10 @@ static role role_of(const element *e, const property *p)
 static dvi_status read_property(dvi__reader *r, head *h)
 {
   dvi__word word;
-  if (h->elements == 0) return dvi__refuse(r, r->mark, "a property comes before all elements");
+  if (h->elements == 0) return dvi__reject(r, r->mark, "a property comes before all elements");
   element *e = h->element + h->elements - 1;
   if (e->properties == MOST_PROPERTIES)
-    return dvi__refuse(r, r->mark, "the element \"%s\" has more than %d properties", e->name,
+    return dvi__reject(r, r->mark, "the element \"%s\" has more than %d properties", e->name,
                        (int)MOST_PROPERTIES);
   property *p = e->property + e->properties;
   const size_t before = r->at;
@@ -114,13 +114,13 @@ static dvi_status read_property(dvi__reader *r, head *h)
     r->at = before;
   DVI_TRY(read_type(r, &p->type));
   if (p->count != NULL && p->count->is_real)
-    return dvi__refuse(r, r->mark, "the length of a list is no integer");
+    return dvi__reject(r, r->mark, "the length of a list is no integer");
   DVI_TRY(dvi__read_word(r, "the name of a property", &word));
   memcpy(p->name, word.text, sizeof p->name);
   p->role = role_of(e, p);
   for (int i = 0; i < e->properties; i++)
     if (strcmp(e->property[i].name, p->name) == 0)
-      return dvi__refuse(r, r->mark, "the element \"%s\" has a second property \"%s\"", e->name,
+      return dvi__reject(r, r->mark, "the element \"%s\" has a second property \"%s\"", e->name,
                          p->name);
   e->properties++;
   return DVI_OK;
@@ -130,13 +130,13 @@ static dvi_status read_element(dvi__reader *r, head *h)
 {
   dvi__word word;
   if (h->elements == MOST_ELEMENTS)
-    return dvi__refuse(r, r->mark, "there are more than %d kinds of elements", (int)MOST_ELEMENTS);
+    return dvi__reject(r, r->mark, "there are more than %d kinds of elements", (int)MOST_ELEMENTS);
   element *e = h->element + h->elements;
   DVI_TRY(dvi__read_word(r, "the name of an element", &word));
   memcpy(e->name, word.text, sizeof e->name);
   for (int i = 0; i < h->elements; i++)
     if (strcmp(h->element[i].name, e->name) == 0)
-      return dvi__refuse(r, r->mark, "there is a second element \"%s\"", e->name);
+      return dvi__reject(r, r->mark, "there is a second element \"%s\"", e->name);
   DVI_TRY(dvi__read_text_integer(r, "the number of elements", 0, INT32_MAX, &e->count));
   h->elements++;
   return DVI_OK;
@@ -158,7 +158,7 @@ static dvi_status read_head(dvi__reader *r, head *h)
     else if (strcmp(word.text, "property") == 0)
       DVI_TRY(read_property(r, h));
     else
-      return dvi__refuse(
+      return dvi__reject(
           r, r->mark, "found \"%s\" where element, property or end_header is expected", word.text);
     DVI_TRY(dvi__end_line(r, "what it needs"));
   }
@@ -184,10 +184,10 @@ static dvi_status check_head(const dvi__reader *r, const head *h)
 {
   const element *vertex = find_element(h, "vertex"), *face = find_element(h, "face");
   if (vertex == NULL || !has_role(vertex, X) || !has_role(vertex, Y))
-    return dvi__refuse(r, r->mark, "the head has no element vertex with the properties x and y");
+    return dvi__reject(r, r->mark, "the head has no element vertex with the properties x and y");
   if (face == NULL || !has_role(face, CORNERS))
-    return dvi__refuse(r, r->mark, "the head has no element face with a list vertex_indices");
-  if (face < vertex) return dvi__refuse(r, r->mark, "the element face comes before vertex");
+    return dvi__reject(r, r->mark, "the head has no element face with a list vertex_indices");
+  if (face < vertex) return dvi__reject(r, r->mark, "the element face comes before vertex");
   for (int i = 0; i < h->elements; i++) {
     int64_t width = 0;
     for (int p = 0; p < h->element[i].properties; p++) {
@@ -195,7 +195,7 @@ static dvi_status check_head(const dvi__reader *r, const head *h)
       width += of->count != NULL ? of->count->width : of->type->width;
     }
     if (width == 0 && h->element[i].count > 0)
-      return dvi__refuse(r, r->mark, "the element \"%s\" has no properties", h->element[i].name);
+      return dvi__reject(r, r->mark, "the element \"%s\" has no properties", h->element[i].name);
     if (width > 0)
       DVI_TRY(dvi__claim(r, "elements", h->element[i].count, 2 * (int64_t)h->element[i].properties,
                          width));
@@ -244,7 +244,7 @@ static dvi_status read_number(dvi__reader *r, const char *what, const type *t, d
   DVI_TRY(dvi__read_bytes(r, what, (size_t)t->width, &byte));
   *value = real_of(t, dvi__little_endian(byte, t->width));
   if (isfinite(*value)) return DVI_OK;
-  return dvi__refuse(r, r->mark, "%s is %g, and must be finite", what, *value);
+  return dvi__reject(r, r->mark, "%s is %g, and must be finite", what, *value);
 }
 
 /* Pass over a number, which may be anything. */
@@ -264,10 +264,10 @@ static dvi_status read_corners(dvi__reader *r, dvi__raw *raw, const property *p,
   const size_t place = r->mark;
   int64_t corner[DVI__SHAPE_CORNERS];
   if (length != 3 && length != 4)
-    return dvi__refuse(r, place,
+    return dvi__reject(r, place,
                        "a face has %lld corners: only triangles and quadrangles can be read",
                        (long long)length);
-  if (p->type->is_real) return dvi__refuse(r, place, "the corners of a face are no integers");
+  if (p->type->is_real) return dvi__reject(r, place, "the corners of a face are no integers");
   for (int64_t c = 0; c < length; c++)
     DVI_TRY(read_integer(r, "a corner of a face", p->type, corner + c));
   return dvi__raw_add_element(raw, length == 3 ? DVI__TRIANGLE : DVI__QUADRANGLE, face, place,
@@ -279,7 +279,7 @@ static dvi_status read_list(dvi__reader *r, dvi__raw *raw, const property *p, in
   int64_t length = 0;
   DVI_TRY(read_integer(r, "the length of a list", p->count, &length));
   if (p->role == CORNERS) return read_corners(r, raw, p, length, i);
-  if (length < 0) return dvi__refuse(r, r->mark, "a list has the length %lld", (long long)length);
+  if (length < 0) return dvi__reject(r, r->mark, "a list has the length %lld", (long long)length);
   for (int64_t k = 0; k < length; k++) DVI_TRY(skip_number(r, p->type));
   return DVI_OK;
 }

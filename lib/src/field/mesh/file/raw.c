@@ -45,7 +45,7 @@ dvi_status dvi__raw_sort_points(dvi__raw *raw)
   for (int64_t i = 1; i < count; i++) {
     const dvi__raw_point *point = dvi__raw_point_at(raw, i);
     if (point->tag == point[-1].tag)
-      return dvi__refuse(raw->reader, point->place, "a second point has the tag %lld",
+      return dvi__reject(raw->reader, point->place, "a second point has the tag %lld",
                          (long long)point->tag);
   }
   return DVI_OK;
@@ -84,7 +84,7 @@ dvi_status dvi__raw_add_element(dvi__raw *raw, dvi__shape shape, int64_t tag, si
   for (int c = 0; c < dvi__shape_facts_of[shape].corners; c++) {
     const int64_t point = find_point(raw, corner[c]);
     if (point < 0)
-      return dvi__refuse(raw->reader, place, "a %s has the point %lld, and there is no such point",
+      return dvi__reject(raw->reader, place, "a %s has the point %lld, and there is no such point",
                          dvi__shape_facts_of[shape].name, (long long)corner[c]);
     element->corner[c] = (int)point;
   }
@@ -117,7 +117,7 @@ static dvi_status check_sorted(const dvi__raw *raw, tagged *tags, int64_t count)
   qsort(tags, (size_t)count, sizeof *tags, compare_tags);
   for (int64_t i = 1; i < count; i++)
     if (tags[i].tag == tags[i - 1].tag)
-      return dvi__refuse(raw->reader, tags[i].place, "a second element has the tag %lld",
+      return dvi__reject(raw->reader, tags[i].place, "a second element has the tag %lld",
                          (long long)tags[i].tag);
   return DVI_OK;
 }
@@ -145,14 +145,14 @@ static dvi_status check_name(const dvi__raw *raw, size_t place, const unsigned c
                              size_t length)
 {
   static const char *const taken[] = {"all", "boundary"};
-  if (length == 0) return dvi__refuse(raw->reader, place, "a group has an empty name");
+  if (length == 0) return dvi__reject(raw->reader, place, "a group has an empty name");
   for (size_t i = 0; i < length; i++)
     if (name[i] < ' ')
-      return dvi__refuse(raw->reader, place, "a group's name has the control character %d",
+      return dvi__reject(raw->reader, place, "a group's name has the control character %d",
                          name[i]);
   for (int i = 0; i < 2; i++)
     if (strlen(taken[i]) == length && memcmp(taken[i], name, length) == 0)
-      return dvi__refuse(raw->reader, place,
+      return dvi__reject(raw->reader, place,
                          "a group has the name \"%s\", which every mesh gives to a part of its "
                          "own: rename it",
                          taken[i]);
@@ -187,7 +187,7 @@ dvi_status dvi__raw_sort_groups(dvi__raw *raw)
   for (int64_t i = 1; i < raw->groups.count; i++) {
     const dvi__raw_group *group = dvi__raw_group_at(raw, i);
     if (group->dimension == group[-1].dimension && group->tag == group[-1].tag)
-      return dvi__refuse(raw->reader, group->place,
+      return dvi__reject(raw->reader, group->place,
                          "the group %lld of dimension %lld has a second name",
                          (long long)group->tag, (long long)group->dimension);
   }

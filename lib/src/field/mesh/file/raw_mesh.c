@@ -40,7 +40,7 @@ static dvi_status no_memory(const build *b)
 
 static dvi_status refuse_mixture(const build *b, dvi__shape one, dvi__shape other)
 {
-  return dvi__refuse(b->raw->reader, dvi__raw_element_at(b->raw, other, 0)->place,
+  return dvi__reject(b->raw->reader, dvi__raw_element_at(b->raw, other, 0)->place,
                      "the file has %s and %s: a mesh has cells of one kind only",
                      dvi__shape_facts_of[one].names, dvi__shape_facts_of[other].names);
 }
@@ -51,7 +51,7 @@ static dvi_status choose_top(build *b)
   while (top > DVI__POINT && b->raw->elements[top].count == 0) top--;
   const dvi__shape_facts *facts = dvi__shape_facts_of + top;
   if (top == DVI__POINT)
-    return dvi__refuse(b->raw->reader, b->raw->reader->size,
+    return dvi__reject(b->raw->reader, b->raw->reader->size,
                        "the file has no cells: it needs lines, triangles, quadrangles, tetrahedra "
                        "or hexahedra");
   if (facts->kind == DVI_BOXES && b->raw->elements[top - 1].count > 0)
@@ -124,7 +124,7 @@ static dvi_status check_repeated(const build *b, const int *first, char *is_grou
     is_grouped[dvi__raw_member_at(raw, b->top, i)->element] = 1;
   for (int64_t e = 0; e < raw->elements[b->top].count; e++)
     if (first[e] >= 0 && !(is_grouped[e] && is_grouped[first[e]]))
-      return dvi__refuse(raw->reader, element_of(b, e)->place,
+      return dvi__reject(raw->reader, element_of(b, e)->place,
                          "the %s %lld has the same points as the %s %lld",
                          dvi__shape_facts_of[b->top].name, (long long)element_of(b, e)->tag,
                          dvi__shape_facts_of[b->top].name, (long long)element_of(b, first[e])->tag);
@@ -206,7 +206,7 @@ static dvi_status take_points(build *b)
     if (b->vertex_of[i] < 0) continue;
     for (int axis = space; axis < 3; axis++)
       if (point->x[axis] != 0)
-        return dvi__refuse(b->raw->reader, point->place,
+        return dvi__reject(b->raw->reader, point->place,
                            "the coordinate %c of the point %lld is %g, but %d coordinates are "
                            "wanted",
                            "xyz"[axis], (long long)point -> tag, point -> x[axis], space);
@@ -301,7 +301,7 @@ static dvi_status take_face(const build *b, dvi__shape shape, int64_t e, int *ve
   for (int c = 0; c < dvi__shape_facts_of[shape].corners; c++) {
     const int at = b->vertex_of[element->corner[c]];
     if (at < 0)
-      return dvi__refuse(b->raw->reader, element->place,
+      return dvi__reject(b->raw->reader, element->place,
                          "a %s in a group has the point %lld, which no %s has",
                          dvi__shape_facts_of[shape].name,
                          (long long)dvi__raw_point_at(b->raw, element->corner[c])->tag,
@@ -355,7 +355,7 @@ static dvi_status check_members(const build *b)
     if (begins_group(b, b->top, i))
       for (; j < i; j++) marked[b->member[b->top][j]] = 0;
     if (marked[b->member[b->top][i]])
-      status = dvi__refuse(b->raw->reader, element_of(b, member->element)->place,
+      status = dvi__reject(b->raw->reader, element_of(b, member->element)->place,
                            "a %s is given twice in the group %lld",
                            dvi__shape_facts_of[b->top].name, (long long)member->group);
     marked[b->member[b->top][i]] = 1;
@@ -373,7 +373,7 @@ static dvi_status check_kinds(const build *b)
     if (raw->members[s].count == 0 || (int)dvi__shape_of(b->terms.kind, facts->dimension) == s)
       continue;
     const int64_t e = dvi__raw_member_at(raw, (dvi__shape)s, 0)->element;
-    return dvi__refuse(raw->reader, dvi__raw_element_at(raw, (dvi__shape)s, e)->place,
+    return dvi__reject(raw->reader, dvi__raw_element_at(raw, (dvi__shape)s, e)->place,
                        "a %s is in a group, but the cells of the mesh are %s", facts->name,
                        dvi__shape_facts_of[b->top].names);
   }
@@ -385,7 +385,7 @@ static dvi_status check_groups(const build *b)
   for (int64_t i = 0; i < b->raw->groups.count; i++) {
     const dvi__raw_group *group = dvi__raw_group_at(b->raw, i);
     if (!group->is_used)
-      return dvi__refuse(b->raw->reader, group->place,
+      return dvi__reject(b->raw->reader, group->place,
                          "the group %lld of dimension %lld, \"%.64s\", has no elements",
                          (long long)group->tag, (long long)group->dimension, group->name);
   }

@@ -46,7 +46,7 @@ static dvi_status find_by_content(const dvi__reader *r, const format **found)
   }
   dvi__reader ahead = *r;
   DVI_TRY(dvi__read_word(&ahead, "$MeshFormat (MSH), OFF or ply", &word));
-  return dvi__refuse(&ahead, ahead.mark,
+  return dvi__reject(&ahead, ahead.mark,
                      "found \"%s\" where $MeshFormat (MSH), OFF or ply is expected", word.text);
 }
 

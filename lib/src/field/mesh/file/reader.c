@@ -55,7 +55,7 @@ static long long line_of(const dvi__reader *r, size_t place)
   return line;
 }
 
-dvi_status dvi__refuse(const dvi__reader *r, size_t place, const char *format, ...)
+dvi_status dvi__reject(const dvi__reader *r, size_t place, const char *format, ...)
 {
   char sentence[DVI__SENTENCE_SIZE / 2];
   va_list arguments;
@@ -74,7 +74,7 @@ dvi_status dvi__claim(const dvi__reader *r, const char *things, int64_t count, i
   const int64_t left = (int64_t)(r->size - r->at),
                 most = r->is_binary ? left / binary_bytes : (left + 1) / text_bytes;
   if (count <= most) return DVI_OK;
-  return dvi__refuse(r, r->mark,
+  return dvi__reject(r, r->mark,
                      "%lld %s are announced, but the file has only %lld bytes more: it is cut, or "
                      "the number is wrong",
                      (long long)count, things, (long long)left);
@@ -82,7 +82,7 @@ dvi_status dvi__claim(const dvi__reader *r, const char *things, int64_t count, i
 
 static dvi_status refuse_end(const dvi__reader *r, const char *what)
 {
-  return dvi__refuse(r, r->size, "the file ends where %s is expected", what);
+  return dvi__reject(r, r->size, "the file ends where %s is expected", what);
 }
 
 /* ---- words ---- */
@@ -125,7 +125,7 @@ dvi_status dvi__read_word(dvi__reader *r, const char *what, dvi__word *word)
 
 static dvi_status refuse_word(const dvi__reader *r, const char *what, const dvi__word *word)
 {
-  return dvi__refuse(r, r->mark, "found \"%s\"%s where %s is expected", word->text,
+  return dvi__reject(r, r->mark, "found \"%s\"%s where %s is expected", word->text,
                      word->length >= sizeof word->text ? ".." : "", what);
 }
 
@@ -146,7 +146,7 @@ dvi_status dvi__end_line(dvi__reader *r, const char *behind)
   }
   dvi__word word;
   DVI_TRY(dvi__read_word(r, "the end of the line", &word));
-  return dvi__refuse(r, r->mark, "found \"%s\" behind %s, where the line should end", word.text,
+  return dvi__reject(r, r->mark, "found \"%s\" behind %s, where the line should end", word.text,
                      behind);
 }
 
@@ -175,9 +175,9 @@ static dvi_status check_range(const dvi__reader *r, const char *what, int64_t le
 {
   if (value >= least && value <= most) return DVI_OK;
   if (most == INT64_MAX || (most == INT32_MAX && value < least))
-    return dvi__refuse(r, r->mark, "%s is %lld, and must be at least %lld", what, (long long)value,
+    return dvi__reject(r, r->mark, "%s is %lld, and must be at least %lld", what, (long long)value,
                        (long long)least);
-  return dvi__refuse(r, r->mark, "%s is %lld, and must be %lld to %lld", what, (long long)value,
+  return dvi__reject(r, r->mark, "%s is %lld, and must be %lld to %lld", what, (long long)value,
                      (long long)least, (long long)most);
 }
 
@@ -244,5 +244,5 @@ dvi_status dvi__read_real(dvi__reader *r, const char *what, double *value)
   *value = 0;
   DVI_TRY(r->is_binary ? read_binary_real(r, what, value) : read_text_real(r, what, value));
   if (isfinite(*value)) return DVI_OK;
-  return dvi__refuse(r, r->mark, "%s is %g, and must be finite", what, *value);
+  return dvi__reject(r, r->mark, "%s is %g, and must be finite", what, *value);
 }

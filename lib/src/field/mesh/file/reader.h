@@ -28,7 +28,7 @@ typedef struct dvi__word {
 dvi_status dvi__load(const char *path, unsigned char **byte, size_t *size);
 
 /* Fail with DVI_BAD_FILE, and the place in front of the sentence. */
-dvi_status dvi__refuse(const dvi__reader *r, size_t place, const char *format, ...)
+dvi_status dvi__reject(const dvi__reader *r, size_t place, const char *format, ...)
     DVI_PRINTF(3, 4);
 
 /* Refuse a count if the bytes that are left cannot hold so many things, of which each has at least

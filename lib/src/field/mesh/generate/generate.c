@@ -62,8 +62,8 @@ static dvi_status refuse(const kind *k, const char *option, double value)
   return dvi__fail(DVI_BAD_OPTION, "mesh %s: %s cannot be %g", k->name, option, value);
 }
 
-/* The dimension is that of the option, or the number of cells that are given. That of a shape counts
- * its numbers of cells. */
+/* The dimension is that of the option, or the number of cells that are given. That of a shape
+ * counts its numbers of cells. */
 static dvi_status find_dimension(const kind *k, const dvi_generator_options *given,
                                  dvi__sizes *sizes)
 {
