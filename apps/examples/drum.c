@@ -18,9 +18,11 @@ static dvi_status play(dvi_field *drum, const double *u)
   dvi_status status = dvi_field_system(drum, &system);
   const size_t n = (size_t)dvi_system_nq(system);
   if (!status) status = dvi_field_fastest(drum, &omega);
-  if (!status && !(q = calloc(2 * n, sizeof *q))) status = DVI_NO_MEMORY;
+  q = (double *)calloc(2 * n + 1, sizeof *q);
+  if (!status && q == NULL) status = DVI_NO_MEMORY;
   if (q != NULL) p = q + n;
   if (!status) status = dvi_field_project(drum, u, NULL, q, p);
+  for (size_t i = 0; i < n && !status; i++) q[i] *= 3; /* let go from three times the depth */
   if (!status) status = dvi_integrator_create(system, "verlet", &integrator);
   if (!status) status = dvi_integrator_start(integrator, 0, q, p);
   for (int i = 0; i < 1000 && !status; i++) status = dvi_integrator_step(integrator, 1.5 / omega);
@@ -47,7 +49,8 @@ int main(void)
   if (!status) status = dvi_wave_create(&terms, &drum);
   if (!status) status = dvi_field_modes(drum, &four, eigenvalue, NULL, NULL);
   for (int i = 0; i < 4 && !status; i++) printf("lambda %.9f\n", eigenvalue[i]);
-  if (!status && !(u = calloc((size_t)dvi_mesh_count(mesh, 0), sizeof *u))) status = DVI_NO_MEMORY;
+  u = (double *)calloc((size_t)dvi_mesh_count(mesh, 0) + 1, sizeof *u);
+  if (!status && u == NULL) status = DVI_NO_MEMORY;
   if (!status) status = dvi_field_solve(drum, NULL, u, NULL);
   if (!status) status = play(drum, u);
   if (status) fprintf(stderr, "%s\n", dvi_last_error());

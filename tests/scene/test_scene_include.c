@@ -284,7 +284,7 @@ static const struct {
      "main.yaml:1:14: the file '/etc/passwd' is named from the root; name it from the scene's "
      "folder\n"},
     {"include: {a: ../outside.yaml}\n", DVI_BAD_FILE,
-     "main.yaml:1:14: the file '../outside.yaml' is named by way of '..'; components lie in the "
+     "main.yaml:1:14: the file '../outside.yaml' is named by way of '..'; such files lie in the "
      "folder of the scene or below\n"},
     {"include: {a: parts/../oscillator.yaml}\n", DVI_BAD_FILE, "is named by way of '..'"},
     {"include: {a: link.yaml}\n", DVI_BAD_FILE,
