@@ -134,15 +134,16 @@ static int check_files(const run_request *request, const char *name)
                               {.option = "out", .path = request->out},
                               {.option = "events", .path = request->events},
                               {.option = "plot", .path = request->plot},
+                              {.option = "pvd", .path = request->pvd},
                               {.option = "checkpoint", .path = request->checkpoint}};
   if (is_stream(request->checkpoint))
     return usage_error("run: --checkpoint -: a checkpoint goes to a file, not to standard output");
   if (is_stream(request->events) && is_stream(request->out))
     return usage_error("run: --events -: standard output has the rows; give --out FILE, too");
   int code = outputs_plot("run", "plot", request->plot);
-  if (code == DONE) code = scene_spared("run", name, 4, files + 1);
-  if (code == DONE) code = outputs_distinct("run", 4, files + 1);
-  return code == DONE ? outputs_distinct("run", 4, files) : code;
+  if (code == DONE) code = scene_spared("run", name, 5, files + 1);
+  if (code == DONE) code = outputs_distinct("run", 5, files + 1);
+  return code == DONE ? outputs_distinct("run", 5, files) : code;
 }
 
 /* Check --verify. A verification writes one table, and starts from no other state than the
@@ -153,6 +154,7 @@ static int check_verify(const run_request *request)
                                {.option = "events", .path = request->events},
                                {.option = "checkpoint", .path = request->checkpoint},
                                {.option = "resume", .path = request->resume},
+                               {.option = "pvd", .path = request->pvd},
                                {.option = "plot", .path = request->plot}};
   if (!request->verify) {
     if (request->digits > 0)
@@ -409,6 +411,11 @@ static const option command_options[] = {
      OPTION_AT(run_request, csv),
      .value = "-|FILE",
      .help = "with --verify: its table as CSV"},
+    {.name = "pvd",
+     OPTION_AT(run_request, pvd),
+     .value = "FILE.pvd",
+     .help = "of a field: write it at each row beside, as FILE_000000.vtu and so on, and their "
+             "list for ParaView"},
     {.name = "plot",
      OPTION_AT(run_request, plot),
      .value = "FILE.svg",

@@ -13,6 +13,7 @@
 #include "watch/energy_watch.h"
 #include "csv/events.h"
 #include "cli/file.h"
+#include "watch/frames.h"
 #include "cli/progress.h"
 #include "cli/signals.h"
 #include "plot/trace.h"
@@ -29,6 +30,7 @@ typedef struct recorder {
   long hits[3]; /* hits, holds and releases of contacts */
   alarm_list alarms;
   run_trace trace;
+  frame_list frames;
   progress_line progress;
   double t_start, t;        /* start of the run, and end of the last observed step */
   double shortest, longest; /* steps of methods that choose them, 0 before the first */
@@ -56,7 +58,7 @@ static bool recorder_write_row(recorder *r, dvi_integrator *integrator)
 {
   columns_row(&r->columns, integrator, r->out.stream);
   r->row_written = true;
-  return stream_is_good(&r->out);
+  return stream_is_good(&r->out) && frames_add(&r->frames, integrator);
 }
 
 /* Write an event that was found. */
@@ -249,6 +251,7 @@ static int write_files(recorder *r, dvi_integrator *integrator)
   if (recorder_keeps_files(code) && !file_keep(&r->out)) code = FAILED;
   if (recorder_keeps_files(code) && request->events != NULL && !file_keep(&r->events_out))
     code = FAILED;
+  if (recorder_keeps_files(code) && !frames_keep(&r->frames)) code = FAILED;
   if (recorder_keeps_files(code) && request->plot != NULL && !trace_plot(&r->trace, request->plot))
     code = FAILED;
   file_discard(&r->out);
@@ -262,6 +265,7 @@ int record(const run_request *request, const problem *scene, dvi_integrator *int
   recorder r = {
       .request = request, .scene = scene, .chooses = dvi_integrator_chooses_steps(integrator)};
   int code = columns_choose(&r.columns, scene, integrator, request->columns);
+  if (code == DONE) code = frames_start(&r.frames, scene, request->pvd);
   if (code == DONE) code = alarms_read(&r.alarms, scene, &request->alarms);
   if (code == DONE &&
       !energy_watch_start(&r.watch, scene, integrator, energy_bound(scene, request->method)))
@@ -273,5 +277,6 @@ int record(const run_request *request, const problem *scene, dvi_integrator *int
   events_clear(&r.events);
   energy_watch_clear(&r.watch);
   columns_clear(&r.columns);
+  frames_clear(&r.frames);
   return code;
 }

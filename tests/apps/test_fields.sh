@@ -72,6 +72,11 @@ expect 1 'data out of balance' solve free.yaml
 says err 'sum to' 'why there is no solution'
 expect 0 'a run' run drum.yaml --final
 says out '^t,energy$' 'invariants are the columns'
+expect 0 'a series' run drum.yaml --every 25 --pvd wave.pvd --out rows.csv
+says wave.pvd 'timestep="0.5".*wave_000001.vtu' 'the list of files'
+says wave_000002.vtu 'Name="u"' 'the last file'
+expect 2 'a series of another name' run drum.yaml --pvd wave.vtu
+expect 2 'a series without a field' run kepler --method verlet --pvd wave.pvd
 expect 0 'an order study' order drum.yaml
 says out 'verlet: claimed order 2' 'the order'
 expect 0 'a check' check drum.yaml

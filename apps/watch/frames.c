@@ -1,0 +1,100 @@
+#include "watch/frames.h"
+
+#include <dvi/scene.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/command.h"
+#include "load/field.h"
+
+enum { DIGITS = 12 };
+
+static const char ending[] = ".pvd";
+
+static bool ends_well(const char *path)
+{
+  const size_t length = strlen(path), end = sizeof ending - 1;
+  return length > end && strcmp(path + length - end, ending) == 0;
+}
+
+int frames_start(frame_list *frames, const problem *scene, const char *path)
+{
+  if (path == NULL) return DONE;
+  if (!ends_well(path)) return usage_error("run: --pvd %s: the name ends in .pvd", path);
+  frames->field = dvi_scene_field(scene->scene);
+  if (frames->field == NULL)
+    return usage_error("run: --pvd is for fields on meshes, and %s has none", scene->name);
+  frames->path = path;
+  frames->u = calloc((size_t)dvi_mesh_count(field_mesh(frames->field), 0), sizeof *frames->u);
+  if (frames->u != NULL) return DONE;
+  complain("out of memory");
+  return FAILED;
+}
+
+/* Make room for one more file. */
+static bool frames_grow(frame_list *frames)
+{
+  if (frames->count < frames->room) return true;
+  const int room = 2 * frames->room + 16;
+  double *time = realloc(frames->time, (size_t)room * sizeof *time);
+  if (time != NULL) frames->time = time;
+  char **name = time != NULL ? realloc(frames->name, (size_t)room * sizeof *name) : NULL;
+  if (name != NULL) frames->name = name;
+  if (name == NULL) {
+    complain("out of memory");
+    return false;
+  }
+  frames->room = room;
+  return true;
+}
+
+/* Name the next file, from the folder of the list. */
+static char *next_name(const frame_list *frames)
+{
+  const char *slash = strrchr(frames->path, '/'), *base = slash != NULL ? slash + 1 : frames->path;
+  const size_t stem = strlen(base) - (sizeof ending - 1), size = stem + DIGITS + sizeof "_.vtu";
+  char *name = malloc(size);
+  if (name == NULL)
+    complain("out of memory");
+  else
+    (void)snprintf(name, size, "%.*s_%06d.vtu", (int)stem, base, frames->count);
+  return name;
+}
+
+bool frames_add(frame_list *frames, const dvi_integrator *integrator)
+{
+  if (frames->field == NULL) return true;
+  char *name = frames_grow(frames) ? next_name(frames) : NULL;
+  if (name == NULL) return false;
+  const char *slash = strrchr(frames->path, '/');
+  const int folder = slash != NULL ? (int)(slash - frames->path) + 1 : 0;
+  char *path = malloc((size_t)folder + strlen(name) + 1);
+  frames->time[frames->count] = dvi_integrator_time(integrator);
+  frames->name[frames->count++] = name;
+  if (path == NULL) {
+    complain("out of memory");
+    return false;
+  }
+  (void)sprintf(path, "%.*s%s", folder, frames->path, name);
+  (void)dvi_field_lift(frames->field, dvi_integrator_q(integrator), frames->u);
+  const bool good = field_write(frames->field, path, "u", 1, frames->u) == DONE;
+  free(path);
+  return good;
+}
+
+bool frames_keep(const frame_list *frames)
+{
+  if (frames->field == NULL) return true;
+  const dvi_status status = dvi_series_write(frames->path, frames->count, frames->time,
+                                             (const char *const *)frames->name);
+  return status == DVI_OK || library_error(status) == DONE;
+}
+
+void frames_clear(frame_list *frames)
+{
+  for (int i = 0; i < frames->count; i++) free(frames->name[i]);
+  free(frames->name);
+  free(frames->time);
+  free(frames->u);
+}
