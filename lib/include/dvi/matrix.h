@@ -66,7 +66,7 @@ dvi_status dvi_matrix_copy(const dvi_matrix *matrix, const dvi_matrix_arrays *ar
  *  @param[out] eigenvalue  [count] ascending
  *  @param[out] vector      [count][rows] with x.M x = 1. May be NULL
  *  @retval DVI_BAD_ARGUMENT   an argument is missing, or the matrices have different sizes
- *  @retval DVI_BAD_SIZE       count is not from 1 to rows - 1
+ *  @retval DVI_BAD_SIZE       count is not from 1 to rows, or rows - 1 above 2000 rows
  *  @retval DVI_SINGULAR       K - shift M is singular, or M is not positive definite
  *  @retval DVI_NOT_CONVERGED  the iteration did not converge
  *  @retval DVI_NO_MEMORY      there is no memory */

@@ -210,6 +210,20 @@ const int *dvi_mesh_vertices(const dvi_mesh *mesh, int k, int *width);
  *  @retval DVI_BAD_ARGUMENT  an argument is missing, or k is out of range */
 dvi_status dvi_mesh_centres(const dvi_mesh *mesh, int k, double *centre);
 
+/** Find the n-cells that contain points, in a mesh that fills its space. Of several cells that share
+ *  a point, the one with the lowest number is taken. Where space repeats itself, points may lie in
+ *  any period.
+ *
+ *  @param[in]  point   [points*n], point by point
+ *  @param[out] cell    [points] the cell of each point, or -1 outside
+ *  @param[out] weight  [points*(n+1)], for boxes [points*n]: the place in the cell, as
+ *                      dvi_form_evaluate takes it (dvi/forms.h)
+ *  @retval DVI_UNSUPPORTED   the space has more dimensions than the cells
+ *  @retval DVI_BAD_ARGUMENT  a coordinate is not finite, or an argument is missing
+ *  @retval DVI_NO_MEMORY     there is no memory */
+dvi_status dvi_mesh_locate(const dvi_mesh *mesh, int64_t points, const double *point, int *cell,
+                           double *weight);
+
 /** Give the incidence d_k, whose entries are signs, for k from 0 to n - 1. Its arrays are the
  *  mesh's.
  *

@@ -133,11 +133,14 @@ START_TEST(largest_frequency_is_bounded_closely)
 }
 END_TEST
 
-START_TEST(too_many_modes_are_refused)
+START_TEST(all_modes_are_found_and_no_more)
 {
   double eigenvalue[8];
-  const dvi_modes_options many = {.size = sizeof many, .count = 8};
+  const dvi_modes_options many = {.size = sizeof many, .count = 8},
+                          all = {.size = sizeof all, .count = 7};
   wave string = make_wave(generated("interval", 1, 8, 0), DVI_CIRCUMCENTRIC, 1, NULL);
+  ck_assert_int_eq(dvi_field_modes(string.field, &all, eigenvalue, NULL, NULL), DVI_OK);
+  for (int i = 0; i < 7; i++) ck_assert_double_eq_tol(eigenvalue[i], string_mode(8, i + 1), 1e-11);
   ck_assert_int_eq(dvi_field_modes(string.field, &many, eigenvalue, NULL, NULL), DVI_BAD_SIZE);
   end_wave(&string);
 }
@@ -466,7 +469,7 @@ SUITE(waves)
   tcase_add_test(tests, staggered_triangles_have_known_modes);
   tcase_add_test(tests, modes_near_a_shift_are_found);
   tcase_add_test(tests, largest_frequency_is_bounded_closely);
-  tcase_add_test(tests, too_many_modes_are_refused);
+  tcase_add_test(tests, all_modes_are_found_and_no_more);
   tcase_add_test(tests, methods_have_their_orders_on_triangles);
   tcase_add_test(tests, methods_have_their_orders_on_finite_elements);
   tcase_add_test(tests, unstable_steps_are_refused_by_their_bound);

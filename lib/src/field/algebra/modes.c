@@ -12,6 +12,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "num/eigen.h"
 
 enum { MULTIPLY = 1, INVERT_SHIFTED = -1, MASS = 2, DONE = 99, RESTARTS = 1000 };
 enum { STANDARD = 1, REGULAR_INVERSE = 2, SHIFT_INVERT = 3 };
@@ -189,13 +190,61 @@ static int smaller(int64_t a, int64_t b)
   return (int)(a < b ? a : b);
 }
 
+/* ---- all modes of small pencils ---- */
+
+static void fill_dense(const dvi_matrix *A, double *full)
+{
+  memset(full, 0, (size_t)(A->rows * A->rows) * sizeof *full);
+  for (int64_t i = 0; i < A->rows; i++)
+    for (int64_t e = dvi__first_entry(A, i); e < dvi__first_entry(A, i + 1); e++)
+      full[dvi__entry_column(A, i, e) * A->rows + i] += dvi__entry_value(A, e);
+}
+
+/* Find the first of `count` ascending numbers that are the nearest to the shift. */
+static int64_t first_of_nearest(int64_t n, const double *value, int count, double shift)
+{
+  int64_t first = 0;
+  for (int64_t last = n; last - first > count;)
+    if (fabs(value[first] - shift) > fabs(value[last - 1] - shift))
+      first++;
+    else
+      last--;
+  return first;
+}
+
+static dvi_status modes_of_full(const dvi__pencil *pencil, double shift, int count,
+                                double *eigenvalue, double *vector)
+{
+  const int64_t n = pencil->K->rows, square = n * n;
+  double *room = DVI_NEW(double, 3 * square + n);
+  if (room == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "modes: no memory for full matrices of %lld unknowns",
+                     (long long)n);
+  double *K = room, *M = K + square, *X = M + square, *value = X + square;
+  fill_dense(pencil->K, K);
+  fill_dense(pencil->M, M);
+  const dvi_status status = dvi__eigen_symmetric((int)n, K, M, value, X);
+  const int64_t first = first_of_nearest(n, value, count, shift);
+  memcpy(eigenvalue, value + first, (size_t)count * sizeof *value);
+  if (vector != NULL) memcpy(vector, X + first * n, (size_t)count * (size_t)n * sizeof *vector);
+  dvi__release(room);
+  return status;
+}
+
+/* Few unknowns, or nearly as many modes, leave Lanczos' method no room. */
+static int is_small(int64_t n, int count)
+{
+  return n <= 64 || (n <= 2000 && 2 * (int64_t)count + 20 >= n);
+}
+
 dvi_status dvi__modes_near(const dvi__pencil *pencil, double shift, int count, double *eigenvalue,
                            double *vector)
 {
   const int64_t n = pencil->K->rows;
-  if (count < 1 || count >= n || n > INT_MAX / 64)
+  if (count < 1 || count > n || (count == n && !is_small(n, count)) || n > INT_MAX / 64)
     return dvi__fail(DVI_BAD_SIZE, "modes: %d modes of %lld unknowns: take 1 to %lld", count,
-                     (long long)n, (long long)n - 1);
+                     (long long)n, (long long)n - !is_small(n, (int)n));
+  if (is_small(n, count)) return modes_of_full(pencil, shift, count, eigenvalue, vector);
   dvi__definite inverse;
   DVI_TRY(create_inverse(pencil, shift, &inverse));
   lanczos s = {.pencil = pencil,

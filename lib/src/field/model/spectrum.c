@@ -102,7 +102,7 @@ static dvi_status find(spectrum *s, const dvi_modes_options *options, double *ei
 
 static dvi_status check_count(const spectrum *s, int64_t zeros)
 {
-  const int64_t most = s->field->unknowns - zeros - 1;
+  const int64_t most = s->field->unknowns - zeros;
   if (s->count >= 1 && s->count <= most) return DVI_OK;
   return dvi__fail(DVI_BAD_SIZE,
                    "field: %d modes of %lld unknowns, of which %lld are constants: "
