@@ -113,6 +113,12 @@ END
 expect 0 'a kink' run kink.yaml --final
 awk -F, 'NR == 2 { d = $2 - 9.2376; exit !(d*d < 1e-3) }' out || fail 'the energy of a kink'
 expect 0 'a kink, checked' check kink.yaml
+sed 's/^until:.*/until: 1/' drum.yaml >ear.yaml
+printf 'probes: {ear: {at: [0.5, 0.5]}, rim: {at: [0, 0.3]}}\n' >>ear.yaml
+expect 0 'probes' run ear.yaml --every 50
+awk -F, 'NR == 1 { good = $0 == "t,energy,ear,rim" }
+  NR == 2 { d = $3 - 1; good = good && d*d < 1e-20 && $4 == 0 } END { exit !good }' out ||
+  { fail 'the value at the centre'; cat out; }
 
 # refuse NAME WORDS: require that the scene on standard input is refused with these words.
 refuse() {
@@ -177,6 +183,11 @@ END
 refuse 'a file outside' "'..'" <<END
 mesh: {file: ../outside.msh}
 field: wave
+END
+refuse 'a probe outside' 'outside of the mesh' <<END
+mesh: {generator: disk}
+field: wave
+probes: {ear: {at: [2, 0]}}
 END
 refuse 'two meshes' 'a generator or a file' <<END
 mesh: {generator: disk, file: glued.msh}

@@ -86,14 +86,16 @@ static bool declare_unknowns(dvi_scene *scene, const dvi__tree *section)
   return true;
 }
 
-/* A run shows invariants. */
+/* A run shows energy, momenta and probes. */
 static bool choose_columns(dvi_scene *scene)
 {
-  const int count = 1 + scene->terms.symmetry_count;
+  const int momenta = scene->terms.symmetry_count, count = 1 + momenta + scene->field->probes;
   const char **column = dvi__arena_take(&scene->arena, (size_t)count, sizeof *column);
   if (column == NULL) return dvi__scene_no_memory(scene);
   column[0] = "energy";
-  for (int i = 1; i < count; i++) column[i] = scene->terms.symmetries[i - 1].name;
+  for (int i = 1; i < count; i++)
+    column[i] = i <= momenta ? scene->terms.symmetries[i - 1].name
+                             : scene->terms.invariants[i - 1 - momenta].name;
   scene->plan.column = column;
   scene->plan.column_count = count;
   return true;
@@ -133,7 +135,8 @@ bool dvi__read_field(dvi_scene *scene, const dvi__tree *section)
   if (status != DVI_OK) return complain(scene, section, status);
   scene->form = "separable";
   scene->mass = scene->terms.mass.diagonal != NULL ? "diagonal" : "sparse";
-  return declare_unknowns(scene, section) && make_start(scene) && choose_columns(scene);
+  return declare_unknowns(scene, section) && make_start(scene) && dvi__probes_make(scene) &&
+         choose_columns(scene);
 }
 
 void dvi__scene_field_clear(dvi_scene *scene)

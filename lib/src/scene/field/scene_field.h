@@ -35,7 +35,12 @@ struct dvi__scene_field {
   int u_u, entries;                  /* place of V_uu in its pattern, or -1, and the entries */
   dvi_field_potential density;
   dvi_field_solve_options solve;
+  struct dvi__probe *probe; /* [probes] */
+  int probes;
 };
+
+/* Place the probes, and declare them as what is watched. */
+bool dvi__probes_make(dvi_scene *scene);
 
 /* Read an expression as a function of a place. `may` has the flags DVI__OF_.. */
 bool dvi__place_read(dvi_scene *scene, const dvi__tree *tree, unsigned may, const char *where,

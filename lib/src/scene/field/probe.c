@@ -1,0 +1,125 @@
+/* The section probes: values of the field at points, watched along a run. A probe is a sum of the
+ * values at the vertices of the cell in which it is, by Whitney's interpolation. */
+#include <string.h>
+
+#include "scene/field/scene_field.h"
+#include "text/heap.h"
+#include "scene/sections/sections.h"
+
+enum { VERTICES_MOST = 16 };
+
+/* u = constant + sum of weight * q. */
+struct dvi__probe {
+  const char *name;
+  const dvi__tree *at;
+  double point[DVI__PLACE_SPACE];
+  int count;
+  int unknown[VERTICES_MOST];
+  double weight[VERTICES_MOST], constant;
+};
+
+static int probe_value(double t, const double *q, const double *p, double *value, void *user)
+{
+  const struct dvi__probe *probe = user;
+  (void)t, (void)p;
+  *value = probe->constant;
+  for (int i = 0; i < probe->count; i++) *value += probe->weight[i] * q[probe->unknown[i]];
+  return 0;
+}
+
+/* ---- reading ---- */
+
+static bool read_point(dvi_scene *scene, const dvi__tree *tree, double *point)
+{
+  const int space = scene->field->space, is_list = tree->kind == DVI__SEQUENCE;
+  if ((is_list ? tree->count : 1) != space || tree->kind == DVI__MAPPING)
+    return dvi__scene_refuse(scene, tree->span, "a probe is at a point of %d coordinates", space);
+  for (int l = 0; l < space; l++)
+    if (!dvi__tree_number(scene, is_list ? tree->child[l] : tree, "a coordinate", point + l))
+      return false;
+  return true;
+}
+
+bool dvi__read_probes(dvi_scene *scene, const dvi__tree *section)
+{
+  static const char *const known[] = {"at"};
+  if (!dvi__want_mapping(scene, section, "probes")) return false;
+  struct dvi__probe *probe = dvi__arena_take(&scene->arena, (size_t)section->count + 1,
+                                             sizeof *probe);
+  if (probe == NULL) return dvi__scene_no_memory(scene);
+  for (int i = 0; i < section->count; i++) {
+    const dvi__tree *key = section->key[i], *tree = section->child[i];
+    if (!dvi__want_name(scene, key->text, key->span) ||
+        !dvi__want_mapping(scene, tree, "a probe") ||
+        !dvi__want_keys(scene, tree, "a probe", 1, known))
+      return false;
+    probe[i].name = key->text;
+    probe[i].at = dvi__tree_find(tree, "at");
+    if (probe[i].at == NULL)
+      return dvi__scene_refuse(scene, tree->span, "a probe has a point, as in '{at: [0, 1]}'");
+    if (!read_point(scene, probe[i].at, probe[i].point)) return false;
+  }
+  scene->field->probe = probe;
+  scene->field->probes = section->count;
+  return true;
+}
+
+/* ---- making ---- */
+
+/* Find the weights of a probe's cell one by one, as the values of functions that are 1 at one of
+ * its vertices. Fixed vertices add to the constant. */
+static bool place_probe(dvi_scene *scene, struct dvi__probe *probe, double *u)
+{
+  const struct dvi__scene_field *f = scene->field;
+  const int n = dvi_mesh_dimension(f->mesh);
+  int cell, width;
+  int64_t unknowns;
+  double weight[DVI_MESH_DIMENSION_MAX + 1], value;
+  dvi_status status = dvi_mesh_locate(f->mesh, 1, probe->point, &cell, weight);
+  if (status != DVI_OK)
+    return dvi__complain(scene->complaint, status, probe->at->span, "%s", dvi_last_error());
+  if (cell < 0)
+    return dvi__scene_refuse(scene, probe->at->span, "the probe '%s' is outside of the mesh",
+                             probe->name);
+  const int *vertex = dvi_mesh_vertices(f->mesh, n, &width) + (ptrdiff_t)cell * width,
+            *unknown = dvi_field_unknowns(f->field, &unknowns);
+  (void)dvi_field_lift(f->field, scene->zeros, u);
+  status = dvi_form_evaluate(f->mesh, 0, u, cell, weight, &probe->constant);
+  memset(u, 0, (size_t)dvi_mesh_count(f->mesh, 0) * sizeof *u);
+  for (int c = 0; c < width && status == DVI_OK; c++) {
+    int64_t low = 0, high = unknowns;
+    while (low < high) {
+      const int64_t middle = (low + high) / 2;
+      if (unknown[middle] < vertex[c])
+        low = middle + 1;
+      else
+        high = middle;
+    }
+    if (low == unknowns || unknown[low] != vertex[c]) continue;
+    u[vertex[c]] = 1;
+    status = dvi_form_evaluate(f->mesh, 0, u, cell, weight, &value);
+    u[vertex[c]] = 0;
+    probe->unknown[probe->count] = (int)low;
+    probe->weight[probe->count++] = value;
+  }
+  return status == DVI_OK ||
+         dvi__complain(scene->complaint, status, probe->at->span, "%s", dvi_last_error());
+}
+
+bool dvi__probes_make(dvi_scene *scene)
+{
+  struct dvi__scene_field *f = scene->field;
+  const size_t vertices = (size_t)dvi_mesh_count(f->mesh, 0);
+  double *u = dvi__heap_take(vertices, sizeof *u);
+  dvi_invariant *list = dvi__arena_take(&scene->arena, (size_t)f->probes + 1, sizeof *list);
+  bool good = u != NULL && list != NULL;
+  if (!good) (void)dvi__scene_no_memory(scene);
+  for (int i = 0; i < f->probes && good; i++) {
+    good = place_probe(scene, f->probe + i, u);
+    list[i] = (dvi_invariant){.name = f->probe[i].name, .value = probe_value, .user = f->probe + i};
+  }
+  dvi__heap_free(u);
+  scene->terms.invariants = list;
+  scene->terms.invariant_count = f->probes;
+  return good;
+}
