@@ -210,9 +210,10 @@ const int *dvi_mesh_vertices(const dvi_mesh *mesh, int k, int *width);
  *  @retval DVI_BAD_ARGUMENT  an argument is missing, or k is out of range */
 dvi_status dvi_mesh_centres(const dvi_mesh *mesh, int k, double *centre);
 
-/** Find the n-cells that contain points, in a mesh that fills its space. Of several cells that
- *  share a point, the one with the lowest number is taken. Where space repeats itself, points may lie in
- *  any period.
+/** Find the n-cells that contain points, in a mesh that fills its space.
+ *
+ *  Of several cells that share a point, the one with the lowest number is taken. Where space
+ *  repeats itself, points may lie in any period.
  *
  *  @param[in]  point   [points*n], point by point
  *  @param[out] cell    [points] the cell of each point, or -1 outside
