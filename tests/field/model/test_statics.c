@@ -114,6 +114,37 @@ START_TEST(finite_elements_have_second_order)
 }
 END_TEST
 
+/* In two dimensions the formula of cotangents is that of linear finite elements, cell by cell. */
+START_TEST(stiffness_of_the_plane_is_that_of_finite_elements)
+{
+  for (unsigned long long seed = 1; seed <= 10; seed++) {
+    dvi_mesh *mesh = jittered_mesh(2, 2, 6, 0.25, seed);
+    const int64_t cells = dvi_mesh_count(mesh, 2), vertices = dvi_mesh_count(mesh, 0);
+    double *a = malloc((size_t)cells * sizeof *a), *u = calloc((size_t)(3 * vertices), sizeof *u);
+    unsigned long long state = seed;
+    for (int64_t c = 0; c < cells; c++) a[c] = 0.2 + 3 * random_number(&state);
+    for (int64_t v = 0; v < vertices; v++) u[v] = random_number(&state);
+    const double *const factor[] = {NULL, a, NULL};
+    for (int i = 0; i < 2; i++) {
+      const dvi_star_options options = {.size = sizeof options,
+                                        .kind = i == 0 ? DVI_BARYCENTRIC : DVI_CIRCUMCENTRIC,
+                                        .factor = factor};
+      dvi_star *star = NULL;
+      dvi_matrix *K = NULL;
+      ck_assert_int_eq(dvi_star_create(mesh, &options, &star), DVI_OK);
+      ck_assert_int_eq(dvi_form_laplacian_create(star, 0, &K), DVI_OK);
+      dvi_matrix_multiply(K, 0, u, u + (1 + i) * vertices);
+      dvi_matrix_destroy(&K);
+      dvi_star_destroy(&star);
+    }
+    for (int64_t v = 0; v < vertices; v++)
+      ck_assert_double_eq_tol(u[vertices + v], u[2 * vertices + v], 1e-11);
+    free(a), free(u);
+    dvi_mesh_destroy(&mesh);
+  }
+}
+END_TEST
+
 /* ---- Neumann's problem ---- */
 
 static double wave_of_laplace(const double *x)
@@ -252,6 +283,47 @@ START_TEST(mean_of_the_solution_is_as_asked)
   ck_assert_double_eq_tol(sum, 2.5, 1e-13);
   free(u);
   dvi_star_destroy(&star);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
+static int value_of_three(const double *x, const double *normal, double *value, void *user)
+{
+  (void)x, (void)normal, (void)user;
+  *value = 3;
+  return 0;
+}
+
+/* Two strings, of which the second one has a fixed end. */
+START_TEST(each_component_has_its_own_mean)
+{
+  static const double point[] = {0, 1, 2, 5, 6, 7, 8};
+  static const int vertex[] = {0, 1, 1, 2, 3, 4, 4, 5, 5, 6}, end = 6;
+  const dvi_mesh_part part = {.name = "end", .count = 1, .cell = &end};
+  const dvi_mesh_terms terms = {.size = sizeof terms,
+                                .dimension = 1,
+                                .points = 7,
+                                .point = point,
+                                .cells = 5,
+                                .vertex = vertex,
+                                .part = &part,
+                                .parts = 1};
+  dvi_mesh *mesh = NULL;
+  dvi_field *field = NULL;
+  double eigenvalue;
+  int64_t zeros;
+  ck_assert_int_eq(dvi_mesh_create(&terms, &mesh), DVI_OK);
+  const trial t = {.mesh = mesh,
+                   .conditions = 1,
+                   .condition = {{.part = "end", .kind = DVI_FIXED, .datum = value_of_three}}};
+  const dvi_modes_options one = {.size = sizeof one, .count = 1};
+  ck_assert_int_eq(create(&t, &field), DVI_OK);
+  ck_assert_int_eq(dvi_field_modes(field, &one, &eigenvalue, NULL, &zeros), DVI_OK);
+  ck_assert_int_eq(zeros, 1);
+  double *u = solve(&t, 0.25);
+  for (int v = 0; v < 7; v++) ck_assert_double_eq_tol(u[v], v < 3 ? 0.25 : 3, 1e-14);
+  free(u);
+  dvi_field_destroy(&field);
   dvi_mesh_destroy(&mesh);
 }
 END_TEST
@@ -400,10 +472,12 @@ SUITE(statics)
 {
   tcase_add_test(tests, poisson_problem_has_second_order);
   tcase_add_test(tests, finite_elements_have_second_order);
+  tcase_add_test(tests, stiffness_of_the_plane_is_that_of_finite_elements);
   tcase_add_test(tests, flux_gives_the_solution_up_to_a_constant);
   tcase_add_test(tests, linear_functions_solve_their_problem_exactly);
   tcase_add_test(tests, unbalanced_data_are_refused_or_taken_away);
   tcase_add_test(tests, mean_of_the_solution_is_as_asked);
+  tcase_add_test(tests, each_component_has_its_own_mean);
   tcase_add_test(tests, mixed_data_have_second_order);
   tcase_add_test(tests, kink_has_second_order);
   tcase_add_test(tests, wrong_terms_are_refused);
