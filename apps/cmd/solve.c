@@ -60,7 +60,7 @@ static int solve_field(const solve_request *r, const problem *scene, const dvi_f
   const dvi_mesh *mesh = field_mesh(field);
   const int64_t vertices = dvi_mesh_count(mesh, 0);
   dvi_field_solve_options options;
-  dvi_field_solve_report report;
+  dvi_field_solve_report report = {0};
   double *u = calloc((size_t)vertices, sizeof *u);
   if (u == NULL) {
     complain("out of memory");

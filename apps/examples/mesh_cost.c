@@ -146,7 +146,7 @@ int main(int argc, char **argv)
   fprintf(out, "tetrahedra,vertices");
   for (int i = 0; i < COSTS; i++) fprintf(out, ",%s_seconds", names[i]);
   fprintf(out, ",step_rate_of_triad\n");
-  for (int i = 1; i < argc; i++) measure(atoi(argv[i]), triad, fits, out);
+  for (int i = 1; i < argc; i++) measure((int)strtol(argv[i], NULL, 10), triad, fits, out);
   if (argc < 2) measure(6, triad, fits, out), measure(10, triad, fits, out);
   fprintf(out, "exponent,");
   for (int i = 0; i < COSTS; i++) {

@@ -61,9 +61,9 @@ typedef struct dvi_mesh_terms {
 typedef struct dvi_generator_options {
   size_t size;       /**< sizeof(dvi_generator_options) */
   int dimension;     /**< of box, kuhn, kuhn-torus. Default: the number of `cells` that are not 0 */
-  int cells[4];      /**< cells along each axis, or the levels or rings of a curved mesh */
-  double extent[4];  /**< length of each axis, or the radii of a curved mesh */
-  double origin[4];  /**< the lower corner of a box, the centre of a curved mesh */
+  int cells[4];      /**< cells along each axis, or the rings, layers and so on of a shape */
+  double extent[4];  /**< length of each axis, or the radii and so on of a shape */
+  double origin[4];  /**< the lower corner of a grid, the place of a shape's own origin */
   double grading[4]; /**< node i of m along an axis is at (i/m)^grading of its length. Default 1 */
   int periodic[4];   /**< not 0 for the axes along which a box or a Kuhn mesh repeats itself */
 } dvi_generator_options;

@@ -142,7 +142,7 @@ static const struct {
   const char *words;
 } refusals[] = {
     {"cube", {.cells = {1}}, "no generator \"cube\"; there are interval, box, kuhn"},
-    {"interval", {.cells = {2, 2}}, "2 numbers of cells are given, and 1 to 1 needed"},
+    {"interval", {.cells = {2, 2}}, "a further number of cells"},
     {"box", {.cells = {-1, 2}}, "number 0 of cells is -1, and may be 1 to"},
     {"box", {.cells = {2, 0, 2}}, "a further number of cells"},
     {"box", {.cells = {2, 2}, .periodic = {1}}, "number 0 of cells is 2, and may be 3 to"},
@@ -154,7 +154,7 @@ static const struct {
     {"kuhn", {.cells = {2, 2}, .grading = {-2}}, "a grading cannot be -2"},
     {"kuhn", {.cells = {2, 2}, .origin = {INFINITY}}, "an origin cannot be inf"},
     {"staggered", {.cells = {2, 2}, .grading = {2}}, "a grading cannot be 2"},
-    {"staggered", {.cells = {2, 2, 2}}, "3 numbers of cells are given"},
+    {"staggered", {.cells = {2, 2, 2}}, "a further number of cells"},
     {"staggered", {.cells = {3, 3}, .periodic = {1}}, "periodic cannot be 1"},
     {"icosphere", {.cells = {20}}, "is 20, and may be 1 to 12"},
     {"icosphere", {.dimension = 2}, "dimension cannot be 2"},

@@ -168,17 +168,27 @@ static int weigh(const bins *b, int64_t cell, const double *x, double *weight)
 
 /* ---- points ---- */
 
-static void locate(const bins *b, const double *x, int *cell, double *weight)
+/* Bring a point into the first period of each axis. fmod has no roundings. Returns 0 for a point
+ * outside of the grid. */
+static int reduce(const bins *b, const double *x, double *inner)
 {
+  for (int a = 0; a < b->n; a++) {
+    const double period = b->mesh->period[a], from = x[a] - b->origin[a];
+    const double rest = period > 0 ? fmod(from, period) : from, part = rest / b->width[a];
+    inner[a] = period > 0 ? b->origin[a] + rest : x[a];
+    if (!(fabs(part) <= (double)b->count[a] + 1)) return 0;
+  }
+  return 1;
+}
+
+static void locate(const bins *b, const double *point, int *cell, double *weight)
+{
+  double x[DVI_MESH_DIMENSION_MAX];
   int64_t number = 0;
   *cell = -1;
-  for (int a = b->n - 1; a >= 0; a--) {
-    const double part = (x[a] - b->origin[a]) / b->width[a];
-    if (b->mesh->period[a] == 0 && !(part >= -1 && part <= (double)b->count[a] + 1)) return;
-    const double turns = b->mesh->period[a] > 0 ? floor((x[a] - b->origin[a]) / b->mesh->period[a])
-                                                : 0;
-    number = number * b->count[a] + wrap(b, a, bin_of(b, a, x[a] - turns * b->mesh->period[a]));
-  }
+  if (!reduce(b, point, x)) return;
+  for (int a = b->n - 1; a >= 0; a--)
+    number = number * b->count[a] + wrap(b, a, bin_of(b, a, x[a]));
   for (int64_t i = b->start[number]; i < b->start[number + 1] && *cell < 0; i++)
     if (weigh(b, b->cell[i], x, weight)) *cell = b->cell[i];
 }

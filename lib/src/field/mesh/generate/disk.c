@@ -92,6 +92,11 @@ dvi_status dvi__generate_annulus(const dvi__sizes *sizes, dvi__draft *draft)
   if (!(inner < outer))
     return dvi__fail(DVI_BAD_OPTION, "mesh annulus: the inner radius %g is not below the outer %g",
                      inner, outer);
+  if (!(outer * cos(pi / around) > outer - (outer - inner) / rings))
+    return dvi__fail(DVI_BAD_OPTION,
+                     "mesh annulus: triangles of %d rings with %d cells around fold: take more "
+                     "cells around, or fewer rings",
+                     rings, around);
   draft->terms.dimension = 2;
   draft->name[0] = "outer";
   draft->name[1] = "inner";

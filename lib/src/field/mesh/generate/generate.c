@@ -23,7 +23,7 @@ typedef struct kind {
   int most_cells;  /* 0 for MOST_CELLS */
   int is_periodic; /* along all axes */
   int takes_grading, takes_periods;
-  int sizes;        /* numbers of `extent` of a shape */
+  int sizes, space; /* numbers of `extent` and of coordinates of a shape */
   double extent[4]; /* defaults, 0 for 1 */
 } kind;
 
@@ -36,17 +36,17 @@ static const kind kinds[] = {
     {"kuhn-torus", dvi__generate_kuhn, 1, 4, GRID, .is_periodic = 1, .takes_grading = 1},
     {"staggered", dvi__generate_staggered, 2, 2, GRID},
     {"bcc-torus", dvi__generate_bcc, 3, 3, .cells = {4, 4, 4}, .is_periodic = 1},
-    {"disk", dvi__generate_disk, .numbers = 1, .cells = {8}, .sizes = 1},
+    {"disk", dvi__generate_disk, .numbers = 1, .cells = {8}, .sizes = 1, .space = 2},
     {"annulus", dvi__generate_annulus, .numbers = 2, .cells = {4, 24}, .fewest = {1, 3}, .sizes = 2,
-     .extent = {1, 0.5}},
+     .space = 2, .extent = {1, 0.5}},
     {"icosphere", dvi__generate_icosphere, .numbers = 1, .cells = {3}, .most_cells = LEVELS,
-     .sizes = 1},
+     .sizes = 1, .space = 3},
     {"torus", dvi__generate_torus, .numbers = 2, .cells = {24, 12}, .fewest = {3, 4}, .sizes = 2,
-     .extent = {1, 0.5}},
-    {"genus-2", dvi__generate_genus, .numbers = 1, .cells = {2}, .sizes = 1},
-    {"cylinder", dvi__generate_cylinder, .numbers = 2, .cells = {4, 8}, .sizes = 2,
+     .space = 3, .extent = {1, 0.5}},
+    {"genus-2", dvi__generate_genus, .numbers = 1, .cells = {2}, .sizes = 1, .space = 3},
+    {"cylinder", dvi__generate_cylinder, .numbers = 2, .cells = {4, 8}, .sizes = 2, .space = 3,
      .extent = {1, 2}},
-    {"ball", dvi__generate_ball, .numbers = 1, .cells = {4}, .sizes = 1},
+    {"ball", dvi__generate_ball, .numbers = 1, .cells = {4}, .sizes = 1, .space = 3},
 };
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
@@ -63,21 +63,31 @@ static dvi_status refuse(const kind *k, const char *option, double value)
 }
 
 /* The dimension is that of the option, or the number of cells that are given. That of a shape
- * counts its numbers of cells. */
+ * counts its numbers of cells. Where only one dimension is possible, one number is that of all
+ * axes. */
 static dvi_status find_dimension(const kind *k, const dvi_generator_options *given,
                                  dvi__sizes *sizes)
 {
+  const int is_free = k->least < k->most, usual = k->most < 3 ? k->most : 2;
   int count = 0;
   while (count < 4 && given->cells[count] != 0) count++;
-  sizes->dimension = given->dimension != 0 ? given->dimension : count;
-  if (sizes->dimension == 0) sizes->dimension = k->least > 2 ? k->least : k->most < 3 ? k->most : 2;
-  if (k->most == 0) sizes->dimension = k->numbers;
+  sizes->dimension = k->most == 0            ? k->numbers
+                     : given->dimension != 0 ? given->dimension
+                     : !is_free              ? k->most
+                     : count > 0             ? count
+                                             : usual;
   if (given->dimension != 0 && k->most == 0) return refuse(k, "dimension", given->dimension);
   if (k->most > 0 && (sizes->dimension < k->least || sizes->dimension > k->most))
     return dvi__fail(DVI_BAD_OPTION, "mesh %s: %d numbers of cells are given, and %d to %d needed",
                      k->name, sizes->dimension, k->least, k->most);
-  for (int i = sizes->dimension; i < 4; i++)
+  for (int i = 0; i < sizes->dimension; i++) {
+    const int alike = k->most > 0 && !is_free && count == 1 ? 0 : i;
+    sizes->cells[i] = given->cells[alike] != 0 ? given->cells[alike] : k->cells[i];
+  }
+  for (int i = sizes->dimension; i < 4; i++) {
     if (given->cells[i] != 0) return refuse(k, "a further number of cells", given->cells[i]);
+    if (given->periodic[i] != 0) return refuse(k, "a further periodic", given->periodic[i]);
+  }
   return DVI_OK;
 }
 
@@ -89,7 +99,6 @@ static dvi_status take_cells(const kind *k, const dvi_generator_options *given, 
                        : k->fewest[i] > 0 ? k->fewest[i]
                                           : 1,
               most = k->most_cells > 0 ? k->most_cells : MOST_CELLS;
-    sizes->cells[i] = given->cells[i] != 0 ? given->cells[i] : k->cells[i];
     if (given->periodic[i] && !k->takes_periods && !k->is_periodic)
       return refuse(k, "periodic", given->periodic[i]);
     if (sizes->cells[i] < fewest || sizes->cells[i] > most)
@@ -102,7 +111,8 @@ static dvi_status take_cells(const kind *k, const dvi_generator_options *given, 
 /* Each length and grading is positive, and only those that count are given. */
 static dvi_status take_lengths(const kind *k, const dvi_generator_options *given, dvi__sizes *sizes)
 {
-  const int lengths = k->most > 0 ? sizes->dimension : k->sizes;
+  const int lengths = k->most > 0 ? sizes->dimension : k->sizes,
+            space = k->most > 0 ? sizes->dimension : k->space;
   for (int i = 0; i < 4; i++) {
     const double length = k->extent[i] > 0 ? k->extent[i] : 1;
     sizes->extent[i] = given->extent[i] != 0 ? given->extent[i] : length;
@@ -115,7 +125,8 @@ static dvi_status take_lengths(const kind *k, const dvi_generator_options *given
     if (!(sizes->grading[i] > 0) || !isfinite(sizes->grading[i]) ||
         (is_graded && (!counts || !k->takes_grading)))
       return refuse(k, "a grading", given->grading[i]);
-    if (!isfinite(sizes->origin[i])) return refuse(k, "an origin", given->origin[i]);
+    if (!isfinite(sizes->origin[i]) || (i >= space && sizes->origin[i] != 0))
+      return refuse(k, "an origin", given->origin[i]);
   }
   return DVI_OK;
 }
