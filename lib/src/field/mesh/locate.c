@@ -183,7 +183,7 @@ static int reduce(const bins *b, const double *x, double *inner)
 
 static void locate(const bins *b, const double *point, int *cell, double *weight)
 {
-  double x[DVI_MESH_DIMENSION_MAX];
+  double x[DVI_MESH_DIMENSION_MAX] = {0};
   int64_t number = 0;
   *cell = -1;
   if (!reduce(b, point, x)) return;
