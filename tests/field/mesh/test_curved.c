@@ -153,34 +153,37 @@ END_TEST
 
 /* ---- the theorem of Gauss and Bonnet ---- */
 
-static long double angle_at(const dvi_mesh *mesh, const int *v, int at)
+static double angle_at(const dvi_mesh *mesh, const int *v, int at)
 {
   const int space = dvi_mesh_space(mesh);
   const double *x = dvi_mesh_points(mesh);
-  long double a[3] = {0}, b[3] = {0};
+  double a[3] = {0}, b[3] = {0};
   for (int l = 0; l < space; l++) {
-    a[l] = (long double)x[v[(at + 1) % 3] * space + l] - x[v[at] * space + l];
-    b[l] = (long double)x[v[(at + 2) % 3] * space + l] - x[v[at] * space + l];
+    a[l] = x[v[(at + 1) % 3] * space + l] - x[v[at] * space + l];
+    b[l] = x[v[(at + 2) % 3] * space + l] - x[v[at] * space + l];
   }
-  const long double c[] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
-                           a[0] * b[1] - a[1] * b[0]};
-  return atan2l(sqrtl(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]),
-                a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
+  const double c[] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
+                      a[0] * b[1] - a[1] * b[0]};
+  return atan2(sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]),
+               a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
 }
 
 /* The sum over inner vertices of 2 pi less the angles around them, and over those of the boundary
- * of pi less these, is 2 pi times Euler's number. */
+ * of pi less these, is 2 pi times Euler's number. Summed vertex by vertex the numbers are small. */
 static double total_curvature(const dvi_mesh *mesh)
 {
-  const long double half_turn = acosl(-1);
   int64_t rim;
-  const int *vertex = dvi_mesh_vertices(mesh, 2, NULL);
-  long double total = 2 * half_turn * (long double)dvi_mesh_count(mesh, 0);
-  (void)dvi_mesh_part_cells(mesh, "boundary", 0, &rim);
-  total -= half_turn * (long double)rim;
+  const int64_t vertices = dvi_mesh_count(mesh, 0);
+  const int *vertex = dvi_mesh_vertices(mesh, 2, NULL),
+            *on_rim = dvi_mesh_part_cells(mesh, "boundary", 0, &rim);
+  double *deficit = calloc((size_t)vertices, sizeof *deficit), total = 0;
+  for (int64_t v = 0; v < vertices; v++) deficit[v] = 2 * pi;
+  for (int64_t i = 0; i < rim; i++) deficit[on_rim[i]] = pi;
   for (int64_t c = 0; c < dvi_mesh_count(mesh, 2); c++)
-    for (int i = 0; i < 3; i++) total -= angle_at(mesh, vertex + 3 * c, i);
-  return (double)total;
+    for (int i = 0; i < 3; i++) deficit[vertex[3 * c + i]] -= angle_at(mesh, vertex + 3 * c, i);
+  for (int64_t v = 0; v < vertices; v++) total += deficit[v];
+  free(deficit);
+  return total;
 }
 
 static const struct {
