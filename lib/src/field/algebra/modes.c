@@ -185,6 +185,18 @@ static void sort_modes(int64_t n, int count, double *eigenvalue, double *vector)
   }
 }
 
+/* Let the first entry that is at least half of the largest one be positive, so that equal problems
+ * have equal modes. */
+static void choose_sign(int64_t n, double *x)
+{
+  double most = 0;
+  for (int64_t i = 0; i < n; i++) most = fmax(most, fabs(x[i]));
+  int64_t first = 0;
+  while (first < n - 1 && fabs(x[first]) < 0.5 * most) first++;
+  if (x[first] >= 0) return;
+  for (int64_t i = 0; i < n; i++) x[i] = -x[i];
+}
+
 static int smaller(int64_t a, int64_t b)
 {
   return (int)(a < b ? a : b);
@@ -237,14 +249,10 @@ static int is_small(int64_t n, int count)
   return n <= 64 || (n <= 2000 && 2 * (int64_t)count + 20 >= n);
 }
 
-dvi_status dvi__modes_near(const dvi__pencil *pencil, double shift, int count, double *eigenvalue,
-                           double *vector)
+static dvi_status modes_by_lanczos(const dvi__pencil *pencil, double shift, int count,
+                                   double *eigenvalue, double *vector)
 {
   const int64_t n = pencil->K->rows;
-  if (count < 1 || count > n || (count == n && !is_small(n, count)) || n > INT_MAX / 64)
-    return dvi__fail(DVI_BAD_SIZE, "modes: %d modes of %lld unknowns: take 1 to %lld", count,
-                     (long long)n, (long long)n - !is_small(n, (int)n));
-  if (is_small(n, count)) return modes_of_full(pencil, shift, count, eigenvalue, vector);
   dvi__definite inverse;
   DVI_TRY(create_inverse(pencil, shift, &inverse));
   lanczos s = {.pencil = pencil,
@@ -258,6 +266,19 @@ dvi_status dvi__modes_near(const dvi__pencil *pencil, double shift, int count, d
   if (status == DVI_OK) sort_modes(n, count, eigenvalue, vector);
   dvi__definite_clear(&inverse);
   return status;
+}
+
+dvi_status dvi__modes_near(const dvi__pencil *pencil, double shift, int count, double *eigenvalue,
+                           double *vector)
+{
+  const int64_t n = pencil->K->rows;
+  if (count < 1 || count > n || (count == n && !is_small(n, count)) || n > INT_MAX / 64)
+    return dvi__fail(DVI_BAD_SIZE, "modes: %d modes of %lld unknowns: take 1 to %lld", count,
+                     (long long)n, (long long)n - !is_small(n, (int)n));
+  DVI_TRY(is_small(n, count) ? modes_of_full(pencil, shift, count, eigenvalue, vector)
+                             : modes_by_lanczos(pencil, shift, count, eigenvalue, vector));
+  for (int i = 0; i < count && vector != NULL; i++) choose_sign(n, vector + i * n);
+  return DVI_OK;
 }
 
 /* ---- the largest one ---- */

@@ -1,0 +1,296 @@
+/* A .vtu file is a text that describes arrays, and then the arrays as bytes, each with their number
+ * before it. This reader knows the files that dvi_mesh_write writes, and refuses all others. */
+#include "picture/vtu.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/command.h"
+
+enum { PREFIX = 8, WORD = 24 };
+
+/* A file in memory. */
+typedef struct vtu_file {
+  const char *path;
+  char *text;
+  size_t size;
+  const char *head; /* end of the description */
+  size_t bytes;     /* begin of the arrays */
+} vtu_file;
+
+/* An array's description, and its bytes. */
+typedef struct vtu_array {
+  char name[VTU_NAME], type[WORD];
+  long components;
+  const char *at;
+  size_t size;
+} vtu_array;
+
+static bool refuse(const vtu_file *file, const char *reason)
+{
+  complain("%s: %s; dvi plot draws the .vtu files that dvi has written", file->path, reason);
+  return false;
+}
+
+/* ---- the file ---- */
+
+static bool load(const char *path, vtu_file *file)
+{
+  FILE *stream = fopen(path, "rb");
+  long size = -1;
+  *file = (vtu_file){.path = path};
+  if (stream != NULL && fseek(stream, 0, SEEK_END) == 0) size = ftell(stream);
+  if (size >= 0 && fseek(stream, 0, SEEK_SET) == 0) {
+    file->text = calloc((size_t)size + 1, 1);
+    if (file->text != NULL) file->size = fread(file->text, 1, (size_t)size, stream);
+  }
+  const bool good = file->text != NULL && file->size == (size_t)size && !ferror(stream);
+  if (!good) complain("%s: cannot be read: %s", path, strerror(errno != 0 ? errno : EIO));
+  if (stream != NULL) (void)fclose(stream);
+  return good;
+}
+
+/* Find where the description ends and the arrays begin. */
+static bool split(vtu_file *file)
+{
+  static const char mark[] = "<AppendedData encoding=\"raw\">";
+  if (strstr(file->text, "type=\"UnstructuredGrid\"") == NULL ||
+      strstr(file->text, "header_type=\"UInt64\"") == NULL ||
+      strstr(file->text, "byte_order=\"LittleEndian\"") == NULL)
+    return refuse(file, "it is no unstructured grid with little-endian numbers");
+  file->head = strstr(file->text, mark);
+  const char *begin = file->head != NULL ? strchr(file->head, '_') : NULL;
+  if (begin == NULL) return refuse(file, "it has no raw arrays at its end");
+  file->bytes = (size_t)(begin + 1 - file->text);
+  return true;
+}
+
+/* ---- the description ---- */
+
+/* Copy an attribute of the tag that begins at `tag`. */
+static bool attribute(const char *tag, const char *name, char *word, size_t size)
+{
+  char start[WORD];
+  (void)snprintf(start, sizeof start, " %s=\"", name);
+  const char *end = strchr(tag, '>'), *at = strstr(tag, start);
+  if (end == NULL || at == NULL || at > end) return false;
+  at += strlen(start);
+  const size_t length = strcspn(at, "\"");
+  if (length >= size || at + length > end) return false;
+  memcpy(word, at, length);
+  word[length] = '\0';
+  return true;
+}
+
+static bool attribute_number(const char *tag, const char *name, long *number)
+{
+  char word[WORD], *end = word;
+  if (!attribute(tag, name, word, sizeof word)) return false;
+  errno = 0;
+  *number = strtol(word, &end, 10);
+  return errno == 0 && end != word && *end == '\0' && *number >= 0;
+}
+
+static size_t size_of_prefix(const char *at)
+{
+  size_t size = 0;
+  for (int i = PREFIX - 1; i >= 0; i--) size = size << 8 | (unsigned char)at[i];
+  return size;
+}
+
+/* Find the array that the tag describes. */
+static bool take_array(const vtu_file *file, const char *tag, vtu_array *array)
+{
+  long offset;
+  if (!attribute(tag, "Name", array->name, sizeof array->name) ||
+      !attribute(tag, "type", array->type, sizeof array->type) ||
+      !attribute_number(tag, "NumberOfComponents", &array->components) ||
+      !attribute_number(tag, "offset", &offset) || array->components < 1)
+    return refuse(file, "an array is not described");
+  const size_t room = file->size - file->bytes;
+  if ((size_t)offset > room || room - (size_t)offset < PREFIX)
+    return refuse(file, "it is cut short");
+  array->at = file->text + file->bytes + offset + PREFIX;
+  array->size = size_of_prefix(array->at - PREFIX);
+  return array->size <= room - (size_t)offset - PREFIX || refuse(file, "it is cut short");
+}
+
+/* Copy an array of numbers of 8 bytes, as this machine has them. Frees nothing. */
+static bool copy_numbers(const vtu_file *file, const vtu_array *array, const char *type,
+                         int64_t count, void *numbers)
+{
+  unsigned char *to = numbers;
+  const uint16_t probe = 1;
+  if (strcmp(array->type, type) != 0 || array->size != 8 * (size_t)count)
+    return refuse(file, "an array has another size or type");
+  if (*(const unsigned char *)&probe != 1) return refuse(file, "this machine is big-endian");
+  memcpy(to, array->at, array->size);
+  return true;
+}
+
+/* ---- arrays ---- */
+
+/* The array of a tag within a section, or of a name. */
+static const char *next_array(const vtu_file *file, const char *from, const char *end)
+{
+  const char *tag = strstr(from, "<DataArray");
+  return tag != NULL && tag < end && tag < file->head ? tag : NULL;
+}
+
+/* Find a section, such as PointData. Returns false if the file has none. */
+static bool find_section(const vtu_file *file, const char *name, const char **begin,
+                         const char **end)
+{
+  char word[WORD];
+  (void)snprintf(word, sizeof word, "<%s>", name);
+  *begin = strstr(file->text, word);
+  (void)snprintf(word, sizeof word, "</%s>", name);
+  *end = *begin != NULL ? strstr(*begin, word) : NULL;
+  return *end != NULL && *end < file->head;
+}
+
+static bool find_array(const vtu_file *file, const char *section, const char *name,
+                       vtu_array *array)
+{
+  const char *at, *end;
+  if (!find_section(file, section, &at, &end)) return refuse(file, "a section is missing");
+  while ((at = next_array(file, at, end)) != NULL) {
+    if (!take_array(file, at, array)) return false;
+    if (strcmp(array->name, name) == 0) return true;
+    at++;
+  }
+  return refuse(file, "an array is missing");
+}
+
+/* Take the values of an array, or the lengths of its vectors. */
+static bool take_field(const vtu_file *file, const vtu_array *array, int64_t count,
+                       vtu_field *field)
+{
+  const int64_t numbers = count * array->components;
+  double *all = calloc((size_t)numbers + 1, sizeof *all);
+  (void)memcpy(field->name, array->name, sizeof field->name);
+  field->value = calloc((size_t)count + 1, sizeof *field->value);
+  if (all == NULL || field->value == NULL) {
+    complain("out of memory");
+    free(all);
+    return false;
+  }
+  const bool good = copy_numbers(file, array, "Float64", numbers, all);
+  for (int64_t i = 0; i < count && good; i++) {
+    const double *vector = all + i * array->components;
+    double square = 0;
+    for (long c = 0; c < array->components; c++) square += vector[c] * vector[c];
+    field->value[i] = array->components == 1 ? vector[0] : sqrt(square);
+  }
+  free(all);
+  return good;
+}
+
+static bool take_fields(const vtu_file *file, const char *section, bool is_by_cell, vtu_grid *g)
+{
+  const char *at, *end;
+  vtu_array array;
+  if (!find_section(file, section, &at, &end)) return true;
+  while ((at = next_array(file, at, end)) != NULL && g->fields < VTU_FIELDS) {
+    if (!take_array(file, at, &array)) return false;
+    vtu_field *field = &g->field[g->fields++];
+    field->is_by_cell = is_by_cell;
+    if (!take_field(file, &array, is_by_cell ? g->cells : g->points, field)) return false;
+    at++;
+  }
+  return true;
+}
+
+/* ---- points and cells ---- */
+
+static bool take_counts(const vtu_file *file, vtu_grid *g)
+{
+  const char *piece = strstr(file->text, "<Piece");
+  long points, cells;
+  if (piece == NULL || !attribute_number(piece, "NumberOfPoints", &points) ||
+      !attribute_number(piece, "NumberOfCells", &cells))
+    return refuse(file, "it has no piece with its counts");
+  /* Each point and each cell has eight bytes at least. */
+  if ((size_t)points > file->size / 8 || (size_t)cells > file->size / 8 || points < 1 || cells < 1)
+    return refuse(file, "its counts do not fit its size");
+  g->points = points;
+  g->cells = cells;
+  return true;
+}
+
+/* All cells are of one kind. */
+static bool take_kind(const vtu_file *file, vtu_grid *g)
+{
+  static const int corners[] = {[VTU_LINE] = 2,
+                                [VTU_TRIANGLE] = 3,
+                                [VTU_PIXEL] = 4,
+                                [VTU_TETRAHEDRON] = 4,
+                                [VTU_VOXEL] = 8};
+  vtu_array types;
+  if (!find_array(file, "Cells", "types", &types)) return false;
+  if (types.size != (size_t)g->cells || strcmp(types.type, "UInt8") != 0)
+    return refuse(file, "it has not one type for each cell");
+  const int kind = (unsigned char)types.at[0];
+  for (int64_t c = 0; c < g->cells; c++)
+    if (types.at[c] != types.at[0]) return refuse(file, "its cells are of several kinds");
+  if (kind > VTU_VOXEL || corners[kind] == 0)
+    return refuse(file, "its cells are no lines, triangles, pixels, tetrahedra or voxels");
+  g->kind = (vtu_cell)kind;
+  g->corners = corners[kind];
+  return true;
+}
+
+static bool take_cells(const vtu_file *file, vtu_grid *g)
+{
+  vtu_array points, connectivity;
+  const int64_t corners = g->cells * g->corners;
+  if (!find_array(file, "Points", "Points", &points) ||
+      !find_array(file, "Cells", "connectivity", &connectivity))
+    return false;
+  g->point = calloc((size_t)g->points * 3, sizeof *g->point);
+  g->vertex = calloc((size_t)corners, sizeof *g->vertex);
+  if (g->point == NULL || g->vertex == NULL) {
+    complain("out of memory");
+    return false;
+  }
+  if (!copy_numbers(file, &points, "Float64", 3 * g->points, g->point) ||
+      !copy_numbers(file, &connectivity, "Int64", corners, g->vertex))
+    return false;
+  for (int64_t i = 0; i < 3 * g->points; i++)
+    if (!isfinite(g->point[i])) return refuse(file, "a coordinate is not finite");
+  for (int64_t i = 0; i < corners; i++)
+    if (g->vertex[i] < 0 || g->vertex[i] >= g->points)
+      return refuse(file, "a cell has a point that does not exist");
+  return true;
+}
+
+int vtu_read(const char *path, vtu_grid *g)
+{
+  vtu_file file;
+  memset(g, 0, sizeof *g);
+  const bool good = load(path, &file) && split(&file) && take_counts(&file, g) &&
+                    take_kind(&file, g) && take_cells(&file, g) &&
+                    take_fields(&file, "PointData", false, g) &&
+                    take_fields(&file, "CellData", true, g);
+  free(file.text);
+  if (!good) vtu_clear(g);
+  return good ? DONE : FAILED;
+}
+
+const vtu_field *vtu_find(const vtu_grid *g, const char *name)
+{
+  for (int i = 0; i < g->fields; i++)
+    if (strcmp(g->field[i].name, name) == 0) return &g->field[i];
+  return NULL;
+}
+
+void vtu_clear(vtu_grid *g)
+{
+  for (int i = 0; i < g->fields; i++) free(g->field[i].value);
+  free(g->point);
+  free(g->vertex);
+  memset(g, 0, sizeof *g);
+}

@@ -1,0 +1,43 @@
+/** Grids of cells with values, as dvi writes them to .vtu files. */
+#ifndef VTU_H
+#define VTU_H
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { VTU_FIELDS = 64, VTU_NAME = 64, VTU_CORNERS = 8 };
+
+/** Kinds of cells, by their numbers in VTK. */
+typedef enum vtu_cell {
+  VTU_LINE = 3,
+  VTU_TRIANGLE = 5,
+  VTU_PIXEL = 8, /**< a rectangle, with its corners in the order of bits */
+  VTU_TETRAHEDRON = 10,
+  VTU_VOXEL = 11 /**< a box, with its corners in the order of bits */
+} vtu_cell;
+
+/** Values at the points or in the cells. Those of vectors are their lengths. */
+typedef struct vtu_field {
+  char name[VTU_NAME];
+  bool is_by_cell;
+  double *value; /**< [points] or [cells] */
+} vtu_field;
+
+/** A grid. */
+typedef struct vtu_grid {
+  vtu_cell kind;
+  int corners; /**< of a cell */
+  int64_t points, cells;
+  double *point;   /**< [points*3] */
+  int64_t *vertex; /**< [cells*corners] */
+  int fields;
+  vtu_field field[VTU_FIELDS];
+} vtu_grid;
+
+/** Read a file. Returns DONE, or complains and returns FAILED. */
+int vtu_read(const char *path, vtu_grid *g);
+
+/** Return the field of a name, or NULL. */
+const vtu_field *vtu_find(const vtu_grid *g, const char *name);
+
+void vtu_clear(vtu_grid *g);
+#endif
