@@ -120,6 +120,25 @@ awk -F, 'NR == 1 { good = $0 == "t,energy,ear,rim" }
   NR == 2 { d = $3 - 1; good = good && d*d < 1e-20 && $4 == 0 } END { exit !good }' out ||
   { fail 'the value at the centre'; cat out; }
 
+# The integral of x (1 + x) by the trapezoidal rule in four cells is 4 + 2/3 + 1/12.
+cat >sums.yaml <<END
+mesh: {generator: box, cells: [4, 4], size: [2, 1]}
+field: wave
+initial: {u: 1 + x}
+probes:
+  area: {integral: 1}
+  mean: {integral: u*1/2, over: all}
+  moment: {integral: x*u}
+  ear: {at: [1, 0.5]}
+method: verlet
+step: 0.01
+until: 0.01
+END
+expect 0 'integrals' run sums.yaml --every 1
+awk -F, 'NR == 1 { good = $0 == "t,energy,area,mean,moment,ear" }
+  NR == 2 { good = good && $3 == 2 && $4 == 2 && $5 == 4.75 && $6 == 2 } END { exit !good }' out ||
+  { fail 'integrals over a rectangle'; cat out; }
+
 # refuse NAME WORDS: require that the scene on standard input is refused with these words.
 refuse() {
   cat >wrong.yaml
@@ -188,6 +207,16 @@ refuse 'a probe outside' 'outside of the mesh' <<END
 mesh: {generator: disk}
 field: wave
 probes: {ear: {at: [2, 0]}}
+END
+refuse 'a point and an integral' 'or an integral' <<END
+mesh: {generator: disk}
+field: wave
+probes: {ear: {at: [0, 0], integral: u}}
+END
+refuse 'an integral over a rim' "no part 'rim' of cells" <<END
+mesh: {generator: disk}
+field: wave
+probes: {ear: {integral: u, over: rim}}
 END
 refuse 'two meshes' 'a generator or a file' <<END
 mesh: {generator: disk, file: glued.msh}

@@ -60,6 +60,14 @@ int dvi__place_value(const dvi__place *place, const double *x, const double *nor
   return dvi__term_value(0, q, NULL, value, place->term);
 }
 
+int dvi__place_of_value(const dvi__place *place, const double *x, double u, double *value)
+{
+  double q[DVI__PLACE_NUMBERS] = {0};
+  memcpy(q, x, (size_t)place->space * sizeof *q);
+  q[2 * place->space] = u;
+  return dvi__term_value(0, q, NULL, value, place->term);
+}
+
 int dvi__place_datum(const double *x, const double *normal, double *datum, void *user)
 {
   return dvi__place_value(user, x, normal, datum);

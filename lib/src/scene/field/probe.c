@@ -1,5 +1,6 @@
-/* The section probes: values of the field at points, watched along a run. A probe is a sum of the
- * values at the vertices of the cell in which it is, by Whitney's interpolation. */
+/* The section probes: values of the field at points, and integrals, watched along a run. A probe at
+ * a point is a sum of the values at the vertices of the cell in which it is, by Whitney's
+ * interpolation. */
 #include <string.h>
 
 #include "scene/field/scene_field.h"
@@ -8,10 +9,11 @@
 
 enum { VERTICES_MOST = 16 };
 
-/* u = constant + sum of weight * q. */
+/* u = constant + sum of weight * q, or an integral. */
 struct dvi__probe {
   const char *name;
-  const dvi__tree *at;
+  const dvi__tree *at; /* NULL for an integral */
+  dvi__integral *integral;
   double point[DVI__PLACE_SPACE];
   int count;
   int unknown[VERTICES_MOST];
@@ -40,25 +42,33 @@ static bool read_point(dvi_scene *scene, const dvi__tree *tree, double *point)
   return true;
 }
 
+static bool read_probe(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree,
+                       struct dvi__probe *probe)
+{
+  static const char *const known[] = {"at", "integral", "over"};
+  if (!dvi__want_name(scene, key->text, key->span) || !dvi__want_mapping(scene, tree, "a probe") ||
+      !dvi__want_keys(scene, tree, "a probe", 3, known))
+    return false;
+  const dvi__tree *integral = dvi__tree_find(tree, "integral"),
+                  *over = dvi__tree_find(tree, "over");
+  probe->name = key->text;
+  probe->at = dvi__tree_find(tree, "at");
+  if ((probe->at == NULL) == (integral == NULL) || (over != NULL && integral == NULL))
+    return dvi__scene_refuse(scene, tree->span,
+                             "a probe has a point, as in '{at: [0, 1]}', or an integral, as in "
+                             "'{integral: u^2, over: all}'");
+  if (integral == NULL) return read_point(scene, probe->at, probe->point);
+  return dvi__integral_read(scene, integral, over, &probe->integral);
+}
+
 bool dvi__read_probes(dvi_scene *scene, const dvi__tree *section)
 {
-  static const char *const known[] = {"at"};
   if (!dvi__want_mapping(scene, section, "probes")) return false;
   struct dvi__probe *probe = dvi__arena_take(&scene->arena, (size_t)section->count + 1,
                                              sizeof *probe);
   if (probe == NULL) return dvi__scene_no_memory(scene);
-  for (int i = 0; i < section->count; i++) {
-    const dvi__tree *key = section->key[i], *tree = section->child[i];
-    if (!dvi__want_name(scene, key->text, key->span) ||
-        !dvi__want_mapping(scene, tree, "a probe") ||
-        !dvi__want_keys(scene, tree, "a probe", 1, known))
-      return false;
-    probe[i].name = key->text;
-    probe[i].at = dvi__tree_find(tree, "at");
-    if (probe[i].at == NULL)
-      return dvi__scene_refuse(scene, tree->span, "a probe has a point, as in '{at: [0, 1]}'");
-    if (!read_point(scene, probe[i].at, probe[i].point)) return false;
-  }
+  for (int i = 0; i < section->count; i++)
+    if (!read_probe(scene, section->key[i], section->child[i], probe + i)) return false;
   scene->field->probe = probe;
   scene->field->probes = section->count;
   return true;
@@ -115,8 +125,12 @@ bool dvi__probes_make(dvi_scene *scene)
   bool good = u != NULL && list != NULL;
   if (!good) (void)dvi__scene_no_memory(scene);
   for (int i = 0; i < f->probes && good; i++) {
-    good = place_probe(scene, f->probe + i, u);
-    list[i] = (dvi_invariant){.name = f->probe[i].name, .value = probe_value, .user = f->probe + i};
+    struct dvi__probe *probe = f->probe + i;
+    const bool is_integral = probe->integral != NULL;
+    good = is_integral ? dvi__integral_make(scene, probe->integral) : place_probe(scene, probe, u);
+    list[i] = (dvi_invariant){.name = probe->name,
+                              .value = is_integral ? dvi__integral_value : probe_value,
+                              .user = is_integral ? (void *)probe->integral : probe};
   }
   dvi__heap_free(u);
   scene->terms.invariants = list;

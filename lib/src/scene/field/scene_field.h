@@ -39,6 +39,14 @@ struct dvi__scene_field {
   int probes;
 };
 
+/* Read and make an integral over a part of cells, all if `over` is NULL, and the callback of its
+ * value, whose `user` is the integral. */
+typedef struct dvi__integral dvi__integral;
+bool dvi__integral_read(dvi_scene *scene, const dvi__tree *tree, const dvi__tree *over,
+                        dvi__integral **integral);
+bool dvi__integral_make(dvi_scene *scene, dvi__integral *integral);
+int dvi__integral_value(double t, const double *q, const double *p, double *value, void *user);
+
 /* Place the probes, and declare them as what is watched. */
 bool dvi__probes_make(dvi_scene *scene);
 
@@ -48,6 +56,9 @@ bool dvi__place_read(dvi_scene *scene, const dvi__tree *tree, unsigned may, cons
 
 /* Evaluate the function. `normal` may be NULL. Returns as callbacks do. */
 int dvi__place_value(const dvi__place *place, const double *x, const double *normal, double *value);
+
+/* Evaluate a function of position and value. */
+int dvi__place_of_value(const dvi__place *place, const double *x, double u, double *value);
 
 /* Callbacks of conditions and of sources. `user` is a place. */
 int dvi__place_datum(const double *x, const double *normal, double *datum, void *user);

@@ -1,0 +1,98 @@
+/* An integral of a function of the position and of the field's value,
+ *
+ *     sum over vertices of w_v f(x_v, u_v),
+ *
+ * where w_v is the share of the vertex in the cells of a part. It is exact for functions that are
+ * linear in each cell. */
+#include <string.h>
+
+#include "scene/field/scene_field.h"
+#include "scene/sections/sections.h"
+#include "text/heap.h"
+
+struct dvi__integral {
+  dvi__place *function;
+  const char *part;
+  const dvi__tree *tree;
+  int64_t vertices;
+  const double *point;
+  double *weight, *fixed; /* [vertices] */
+  int *unknown;           /* [vertices] number among the unknowns, or -1 */
+};
+
+int dvi__integral_value(double t, const double *q, const double *p, double *value, void *user)
+{
+  const dvi__integral *a = user;
+  int failed = 0;
+  (void)t, (void)p;
+  *value = 0;
+  for (int64_t v = 0; v < a->vertices && failed == 0; v++) {
+    const double u = a->unknown[v] >= 0 ? q[a->unknown[v]] : a->fixed[v];
+    double f;
+    if (a->weight[v] == 0) continue;
+    failed = dvi__place_of_value(a->function, a->point + v * a->function->space, u, &f);
+    *value += a->weight[v] * f;
+  }
+  return failed;
+}
+
+bool dvi__integral_read(dvi_scene *scene, const dvi__tree *tree, const dvi__tree *over,
+                        dvi__integral **integral)
+{
+  const dvi_mesh *mesh = scene->field->mesh;
+  dvi__integral *a = dvi__arena_take(&scene->arena, 1, sizeof *a);
+  int64_t count;
+  if (a == NULL) return dvi__scene_no_memory(scene);
+  if (over != NULL && !dvi__want_text(scene, over, "a part of the mesh")) return false;
+  a->part = over != NULL ? over->text : "all";
+  a->tree = tree;
+  (void)dvi_mesh_part_cells(mesh, a->part, dvi_mesh_dimension(mesh), &count);
+  if (count <= 0)
+    return dvi__scene_refuse(scene, over->span, "the mesh has no part '%s' of cells", a->part);
+  *integral = a;
+  return dvi__place_read(scene, tree, DVI__OF_VALUE, "an integral", &a->function);
+}
+
+/* The shares are the lumped masses of a material that only the part has. */
+static dvi_status weigh(const dvi_mesh *mesh, dvi__integral *a, double *density)
+{
+  const double *const factor[DVI_MESH_DIMENSION_MAX + 1] = {density};
+  const dvi_star_options options = {
+      .size = sizeof options, .kind = DVI_BARYCENTRIC, .factor = factor};
+  int64_t count;
+  const int *cell = dvi_mesh_part_cells(mesh, a->part, dvi_mesh_dimension(mesh), &count);
+  for (int64_t i = 0; i < count; i++) density[cell[i]] = 1;
+  dvi_star *star = NULL;
+  dvi_matrix M;
+  dvi_status status = dvi_star_create(mesh, &options, &star);
+  if (status == DVI_OK) status = dvi_star_matrix(star, 0, &M);
+  if (status == DVI_OK) memcpy(a->weight, M.value, (size_t)a->vertices * sizeof *a->weight);
+  dvi_star_destroy(&star);
+  return status;
+}
+
+bool dvi__integral_make(dvi_scene *scene, dvi__integral *a)
+{
+  const struct dvi__scene_field *f = scene->field;
+  int64_t unknowns;
+  const int *unknown = dvi_field_unknowns(f->field, &unknowns);
+  a->vertices = dvi_mesh_count(f->mesh, 0);
+  a->point = dvi_mesh_points(f->mesh);
+  a->weight = dvi__arena_take(&scene->arena, 2 * (size_t)a->vertices, sizeof *a->weight);
+  a->unknown = dvi__arena_take(&scene->arena, (size_t)a->vertices, sizeof *a->unknown);
+  double *density = dvi__heap_take(
+      (size_t)dvi_mesh_count(f->mesh, dvi_mesh_dimension(f->mesh)), sizeof *density);
+  const bool complete = a->weight != NULL && a->unknown != NULL && density != NULL;
+  dvi_status status = DVI_OK;
+  if (complete) {
+    a->fixed = a->weight + a->vertices;
+    (void)dvi_field_lift(f->field, scene->zeros, a->fixed);
+    for (int64_t v = 0; v < a->vertices; v++) a->unknown[v] = -1;
+    for (int64_t i = 0; i < unknowns; i++) a->unknown[unknown[i]] = (int)i;
+    status = weigh(f->mesh, a, density);
+  }
+  dvi__heap_free(density);
+  if (!complete) return dvi__scene_no_memory(scene);
+  return status == DVI_OK ||
+         dvi__complain(scene->complaint, status, a->tree->span, "%s", dvi_last_error());
+}
