@@ -159,7 +159,8 @@ static const char *const details[] = {
     "Rows whose cells are no numbers are left out. Lines have as many points as can be seen.\n",
     "A grid in a .vtu file, as run --pvd, solve --vtu, modes --vtu and mesh --write make it, is "
     "drawn as a filled map of a field, or of several, each in a panel. Without a field it is drawn "
-    "as the edges of its cells. Surfaces in space are seen from a side, and of tetrahedra and boxes "
+    "as the edges of its cells. Surfaces in space are seen from a side, and of tetrahedra and "
+    "boxes "
     "the outside. Dual edges between circumcentres are blue, and those that count as negative are "
     "orange.\n",
     "Examples:\n"

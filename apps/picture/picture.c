@@ -10,7 +10,8 @@
 #include "plot/gnuplot.h"
 #include "plot/plot.h"
 
-enum { WIDE = 640, MARGIN_X = 150, MARGIN_Y = 90, LINES_MOST = 60000, PANELS_WIDE = 400 };
+enum { WIDE = 640, PANELS_WIDE = 400, MARGIN_X = 150, MARGIN_Y = 90, LINES_MOST = 60000 };
+enum { PIXELS = 400, PIXELS_OF_SEVERAL = 200, COLOURS = 25 };
 
 /* A picture with its surface and its pixels. */
 typedef struct canvas {
@@ -145,8 +146,10 @@ static void write_colours(FILE *script, const canvas *c, const vtu_field *field)
                 script);
     (void)fprintf(script, "set cbrange [%.9g:%.9g]\n", least, most);
   }
-  (void)fputs(field == NULL ? "unset colorbox\n" : "set colorbox\nset palette maxcolors 32\n",
-              script);
+  if (field == NULL)
+    (void)fputs("unset colorbox\n", script);
+  else
+    (void)fprintf(script, "set colorbox\nset palette maxcolors %d\n", COLOURS);
 }
 
 static void write_axes(FILE *script, const canvas *c)
@@ -156,7 +159,7 @@ static void write_axes(FILE *script, const canvas *c)
   (void)fprintf(script, "set xrange [%.9g:%.9g]\nset yrange [%.9g:%.9g]\n", s->least[0] - edge,
                 s->most[0] + edge, s->least[1] - edge, s->most[1] + edge);
   (void)fputs("set size ratio -1\nunset key\n", script);
-  (void)fputs(c->p->from.is_flat ? "set border lc rgb '#404040'\n" : "unset border\nunset tics\n",
+  (void)fputs(c->p->from.is_flat ? "set border lc rgb '#404040'\n" : "unset border\nunset xtics\nunset ytics\n",
               script);
 }
 
@@ -168,13 +171,13 @@ static const char *next(const char **joint)
   return now;
 }
 
-static bool write_panel(FILE *script, const canvas *bare, const vtu_field *field,
-                        const char *title)
+static bool write_panel(FILE *script, const canvas *bare, const vtu_field *field, const char *title)
 {
   canvas painted = *bare;
   const canvas *c = &painted;
   const raster *r = &painted.pixels;
-  if (!raster_make(&c->s, field, &painted.pixels)) return false;
+  if (!raster_make(&c->s, field, c->p->fields > 1 ? PIXELS_OF_SEVERAL : PIXELS, &painted.pixels))
+    return false;
   const bool filled = field != NULL || !c->p->from.is_flat;
   gnuplot_setting(script, "title", title);
   write_colours(script, c, field);
@@ -184,14 +187,13 @@ static bool write_panel(FILE *script, const canvas *bare, const vtu_field *field
   if (filled)
     (void)fprintf(script,
                   "%s'-' binary array=(%d,%d) origin=(%.9g,%.9g) dx=%.9g dy=%.9g "
-                  "format='%%double' with image",
+                  "format='%%double' notitle with image",
                   next(&joint), r->width, r->height, r->least[0], r->least[1], r->pixel, r->pixel);
   if (c->p->edges)
-    (void)fprintf(script, "%s$edges with lines lw 0.6 lc rgb '#404040'", next(&joint));
-  if (duals > 0)
-    (void)fprintf(script, "%s$duals with lines lw 0.6 lc rgb '#0072B2'", next(&joint));
+    (void)fprintf(script, "%s$edges notitle with lines lw 0.6 lc rgb '#404040'", next(&joint));
+  if (duals > 0) (void)fprintf(script, "%s$duals notitle with lines lw 0.6 lc rgb '#0072B2'", next(&joint));
   if (negative > 0)
-    (void)fprintf(script, "%s$negative with lines lw 1.2 lc rgb '#D55E00'", next(&joint));
+    (void)fprintf(script, "%s$negative notitle with lines lw 1.2 lc rgb '#D55E00'", next(&joint));
   (void)fputs("\n", script);
   if (filled) write_map(script, r);
   raster_clear(&painted.pixels);

@@ -7,10 +7,10 @@
 /** What to draw of a grid. */
 typedef struct picture {
   const char *title;
-  int fields;                      /**< panels. 0 for one with edges alone */
-  const vtu_field *const *field;  /**< [fields] */
-  bool edges;                      /**< draw the edges of the cells */
-  bool duals;                      /**< draw the dual edges of triangles and rectangles */
+  int fields;                    /**< panels. 0 for one with edges alone */
+  const vtu_field *const *field; /**< [fields] */
+  bool edges;                    /**< draw the edges of the cells */
+  bool duals;                    /**< draw the dual edges of triangles and rectangles */
   viewpoint from;
 } picture;
 

@@ -6,28 +6,25 @@
 
 #include "cli/command.h"
 
-/* Pixels along the longer side. */
-enum { PIXELS = 420 };
-
 /* A triangle with the values at its corners. */
 typedef struct triangle {
   const double *corner[3];
   double value[3];
 } triangle;
 
-static bool allocate(const skin *s, raster *r)
+static bool allocate(const skin *s, int pixels, raster *r)
 {
   const double width = s->most[0] - s->least[0], height = s->most[1] - s->least[1];
-  r->pixel = fmax(fmax(width, height), 1e-300) / PIXELS;
+  r->pixel = fmax(fmax(width, height), 1e-300) / pixels;
   r->width = (int)ceil(width / r->pixel) + 1;
   r->height = (int)ceil(height / r->pixel) + 1;
   r->least[0] = s->least[0];
   r->least[1] = s->least[1];
-  const size_t pixels = (size_t)r->width * (size_t)r->height;
-  r->value = malloc(pixels * sizeof *r->value);
-  r->depth = malloc(pixels * sizeof *r->depth);
+  const size_t all = (size_t)r->width * (size_t)r->height;
+  r->value = malloc(all * sizeof *r->value);
+  r->depth = malloc(all * sizeof *r->depth);
   if (r->value == NULL || r->depth == NULL) return false;
-  for (size_t i = 0; i < pixels; i++) {
+  for (size_t i = 0; i < all; i++) {
     r->value[i] = (double)NAN;
     r->depth[i] = -HUGE_VAL;
   }
@@ -106,10 +103,10 @@ static void draw_face(const skin *s, const vtu_field *field, const skin_face *fa
   }
 }
 
-bool raster_make(const skin *s, const vtu_field *field, raster *r)
+bool raster_make(const skin *s, const vtu_field *field, int pixels, raster *r)
 {
   memset(r, 0, sizeof *r);
-  if (!allocate(s, r)) {
+  if (!allocate(s, pixels, r)) {
     complain("out of memory");
     raster_clear(r);
     return false;

@@ -12,9 +12,9 @@ typedef struct raster {
   double *depth;   /**< [height][width] towards the eye */
 } raster;
 
-/** Draw the faces with the values of a field, or without one with the cosines of their slopes.
- * Complains and returns false without memory. */
-bool raster_make(const skin *s, const vtu_field *field, raster *r);
+/** Draw the faces with the values of a field, or without one with the cosines of their slopes, in
+ * `pixels` along the longer side. Complains and returns false without memory. */
+bool raster_make(const skin *s, const vtu_field *field, int pixels, raster *r);
 
 /** Return whether something is clearly nearer to the eye than a turned point. */
 bool raster_hides(const raster *r, const double *point);

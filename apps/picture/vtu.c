@@ -224,11 +224,8 @@ static bool take_counts(const vtu_file *file, vtu_grid *g)
 /* All cells are of one kind. */
 static bool take_kind(const vtu_file *file, vtu_grid *g)
 {
-  static const int corners[] = {[VTU_LINE] = 2,
-                                [VTU_TRIANGLE] = 3,
-                                [VTU_PIXEL] = 4,
-                                [VTU_TETRAHEDRON] = 4,
-                                [VTU_VOXEL] = 8};
+  static const int corners[] = {
+      [VTU_LINE] = 2, [VTU_TRIANGLE] = 3, [VTU_PIXEL] = 4, [VTU_TETRAHEDRON] = 4, [VTU_VOXEL] = 8};
   vtu_array types;
   if (!find_array(file, "Cells", "types", &types)) return false;
   if (types.size != (size_t)g->cells || strcmp(types.type, "UInt8") != 0)

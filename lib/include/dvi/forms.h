@@ -150,7 +150,7 @@ typedef enum dvi_form_boundary {
  *      form = d a + delta b + h,     d h = 0, delta h = 0.
  *
  *  With DVI_RELATIVE all forms vanish on the boundary's cells, and the form's entries there are
- *  taken as 0. M_k, and M_{k+1} if there is one, are positive definite.
+ *  taken as 0. M_k is positive definite.
  *
  *  @param[out] exact, coexact, harmonic  [k-cells] the parts. Each may be NULL
  *  @retval DVI_BAD_ARGUMENT   an argument is missing, or k is out of range
@@ -171,6 +171,8 @@ dvi_status dvi_form_harmonic(const dvi_star *star, int k, dvi_form_boundary boun
                              int64_t *count, double *basis);
 
 /** Solve L_k u = f for a k-form u without a harmonic part, by conjugate gradients.
+ *
+ *  M_{k-1} and M_{k+1}, where there are such, are positive definite, too.
  *
  *  @param      f  [k-cells]. A harmonic part is an error, since no solution exists then
  *  @param[out] u  [k-cells]

@@ -25,14 +25,38 @@ void dvi__hodge_hold(const dvi__hodge *h, int degree, double *form)
   for (int64_t i = 0; i < count; i++) form[cell[i]] = 0;
 }
 
+/* M of a degree among the forms that are held at zero on the boundary. */
+typedef struct held_star {
+  const dvi__hodge *h;
+  int degree;
+  dvi_matrix M;
+} held_star;
+
+static dvi_status times_held(void *of, const double *x, double *y)
+{
+  const held_star *s = of;
+  dvi_matrix_multiply(&s->M, 0, x, y);
+  dvi__hodge_hold(s->h, s->degree, y);
+  return DVI_OK;
+}
+
+/* A full star couples the boundary's cells to the others. */
+static dvi_status divide_among_held(const dvi__hodge *h, int degree, double *form)
+{
+  held_star s = {.h = h, .degree = degree};
+  DVI_TRY(dvi_star_matrix(h->star, degree, &s.M));
+  const dvi__products products = {.size = s.M.rows, .times = times_held, .of = &s};
+  double *right = dvi__duplicate(form, (size_t)s.M.rows, sizeof *form);
+  if (right == NULL) return dvi__fail(DVI_NO_MEMORY, "forms: no memory");
+  const dvi_status status = dvi__conjugate_gradients(&products, roundoff, right, form, NULL);
+  dvi__release(right);
+  return status;
+}
+
 dvi_status dvi__hodge_divide(const dvi__hodge *h, int degree, double *form)
 {
-  if (h->relative && h->star->diagonal[degree] == NULL)
-    return dvi__fail(DVI_UNSUPPORTED,
-                     "forms: M_%d of this star is not diagonal: relative conditions need the "
-                     "circumcentric star",
-                     degree);
   dvi__hodge_hold(h, degree, form);
+  if (h->relative && h->star->diagonal[degree] == NULL) return divide_among_held(h, degree, form);
   return dvi_star_solve(h->star, degree, form);
 }
 
@@ -117,6 +141,21 @@ static dvi_status find_coexact(dvi__hodge *h, const double *form, double *coexac
   return status;
 }
 
+/* Refuse a diagonal star that is not positive before an iteration stumbles over it. */
+static dvi_status check_definite(const dvi_star *star, int k)
+{
+  const double *entry = star->diagonal[k];
+  for (int64_t s = 0; s < star->mesh->count[k] && entry != NULL; s++) {
+    if (entry[s] > 0) continue;
+    const dvi__cell_name name = dvi__name_cell(star->mesh, k, s);
+    return dvi__fail(DVI_SINGULAR,
+                     "forms: M_%d has the entry %g at %s, which is not positive: take the "
+                     "barycentric star or Whitney's, or repair the mesh (dvi mesh --repair)",
+                     k, entry[s], name.text);
+  }
+  return DVI_OK;
+}
+
 dvi_status dvi__hodge_begin(const dvi_star *star, int k, dvi_form_boundary boundary, dvi__hodge *h)
 {
   if (star == NULL || k < 0 || k > star->mesh->n)
@@ -125,6 +164,7 @@ dvi_status dvi__hodge_begin(const dvi_star *star, int k, dvi_form_boundary bound
                      "%d",
                      star != NULL ? star->mesh->n : 0, k);
   const dvi_mesh *mesh = star->mesh;
+  DVI_TRY(check_definite(star, k));
   *h = (dvi__hodge){.star = star, .k = k, .relative = boundary == DVI_RELATIVE};
   h->count = mesh->count[k];
   if (k > 0) h->below = mesh->count[k - 1];

@@ -2,8 +2,9 @@
  *
  *     sum over vertices of w_v f(x_v, u_v),
  *
- * where w_v is the share of the vertex in the cells of a part. It is exact for functions that are
- * linear in each cell. */
+ * where w_v is the share of the vertex in the cells of a part. It is the vertex's dual cell with the
+ * circumcentric star, so that the integral of a free field moves uniformly, and an equal part of
+ * each cell with the other stars. */
 #include <string.h>
 
 #include "scene/field/scene_field.h"
@@ -53,12 +54,15 @@ bool dvi__integral_read(dvi_scene *scene, const dvi__tree *tree, const dvi__tree
   return dvi__place_read(scene, tree, DVI__OF_VALUE, "an integral", &a->function);
 }
 
-/* The shares are the lumped masses of a material that only the part has. */
-static dvi_status weigh(const dvi_mesh *mesh, dvi__integral *a, double *density)
+/* The shares are the masses of a material that only the part has. */
+static dvi_status weigh(const dvi_mesh *mesh, dvi_star_kind kind, dvi__integral *a,
+                        double *density)
 {
   const double *const factor[DVI_MESH_DIMENSION_MAX + 1] = {density};
   const dvi_star_options options = {
-      .size = sizeof options, .kind = DVI_BARYCENTRIC, .factor = factor};
+      .size = sizeof options,
+      .kind = kind == DVI_CIRCUMCENTRIC ? DVI_CIRCUMCENTRIC : DVI_BARYCENTRIC,
+      .factor = factor};
   int64_t count;
   const int *cell = dvi_mesh_part_cells(mesh, a->part, dvi_mesh_dimension(mesh), &count);
   for (int64_t i = 0; i < count; i++) density[cell[i]] = 1;
@@ -80,8 +84,8 @@ bool dvi__integral_make(dvi_scene *scene, dvi__integral *a)
   a->point = dvi_mesh_points(f->mesh);
   a->weight = dvi__arena_take(&scene->arena, 2 * (size_t)a->vertices, sizeof *a->weight);
   a->unknown = dvi__arena_take(&scene->arena, (size_t)a->vertices, sizeof *a->unknown);
-  double *density = dvi__heap_take(
-      (size_t)dvi_mesh_count(f->mesh, dvi_mesh_dimension(f->mesh)), sizeof *density);
+  double *density = dvi__heap_take((size_t)dvi_mesh_count(f->mesh, dvi_mesh_dimension(f->mesh)),
+                                   sizeof *density);
   const bool complete = a->weight != NULL && a->unknown != NULL && density != NULL;
   dvi_status status = DVI_OK;
   if (complete) {
@@ -89,7 +93,7 @@ bool dvi__integral_make(dvi_scene *scene, dvi__integral *a)
     (void)dvi_field_lift(f->field, scene->zeros, a->fixed);
     for (int64_t v = 0; v < a->vertices; v++) a->unknown[v] = -1;
     for (int64_t i = 0; i < unknowns; i++) a->unknown[unknown[i]] = (int)i;
-    status = weigh(f->mesh, a, density);
+    status = weigh(f->mesh, f->kind, a, density);
   }
   dvi__heap_free(density);
   if (!complete) return dvi__scene_no_memory(scene);

@@ -85,6 +85,7 @@ int *dvi__band_fill(int around, int row, int next, int *vertex)
   return vertex;
 }
 
+/* Radii grow by a constant factor, so that the triangles of all rings have one shape. */
 dvi_status dvi__generate_annulus(const dvi__sizes *sizes, dvi__draft *draft)
 {
   const int rings = sizes->cells[0], around = sizes->cells[1];
@@ -92,7 +93,7 @@ dvi_status dvi__generate_annulus(const dvi__sizes *sizes, dvi__draft *draft)
   if (!(inner < outer))
     return dvi__fail(DVI_BAD_OPTION, "mesh annulus: the inner radius %g is not below the outer %g",
                      inner, outer);
-  if (!(outer * cos(pi / around) > outer - (outer - inner) / rings))
+  if (!(cos(pi / around) > pow(inner / outer, 1.0 / rings)))
     return dvi__fail(DVI_BAD_OPTION,
                      "mesh annulus: triangles of %d rings with %d cells around fold: take more "
                      "cells around, or fewer rings",
@@ -103,7 +104,7 @@ dvi_status dvi__generate_annulus(const dvi__sizes *sizes, dvi__draft *draft)
   DVI_TRY(dvi__draft_allocate(draft, "annulus", (rings + 1.0) * around, 2.0 * rings * around));
   int *vertex = draft->vertex;
   for (int j = 0; j <= rings; j++) {
-    const double radius = inner + (outer - inner) * j / rings;
+    const double radius = inner * pow(outer / inner, (double)j / rings);
     for (int m = 0; m < around; m++) {
       const int v = j * around + m;
       const double angle = 2 * pi * (m + 0.5 * (j % 2)) / around;
