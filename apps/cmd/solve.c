@@ -17,9 +17,31 @@ typedef struct solve_request {
   words settings;
 } solve_request;
 
-static void print_report(const solve_request *r, const problem *scene, int64_t vertices,
-                         const double *u, const dvi_field_solve_report *report)
+/* Print the energy and the probes of the state, a system's invariants without a momentum. */
+static dvi_status print_invariants(FILE *stream, const problem *scene, const dvi_field *field,
+                                   const double *u)
 {
+  const dvi_system *system = scene->system;
+  const int count = dvi_system_invariant_count(system);
+  const size_t n = (size_t)dvi_system_nq(system);
+  double *q = calloc(2 * n + (size_t)count + 1, sizeof *q);
+  if (q == NULL) return DVI_NO_MEMORY;
+  double *value = q + 2 * n;
+  dvi_status status = dvi_field_project(field, u, NULL, q, NULL);
+  if (status == DVI_OK) status = dvi_system_invariants(system, 0, q, q + n, value);
+  for (int i = 0; i < count && status == DVI_OK; i++) {
+    const char *name = dvi_system_invariant_name(system, i);
+    if (strncmp(name, "momentum_", strlen("momentum_")) != 0)
+      (void)fprintf(stream, "%-10s %.12g\n", name, value[i]);
+  }
+  free(q);
+  return status;
+}
+
+static int print_report(const solve_request *r, const problem *scene, const dvi_field *field,
+                        const double *u, const dvi_field_solve_report *report)
+{
+  const int64_t vertices = dvi_mesh_count(field_mesh(field), 0);
   FILE *stream = r->csv != NULL && strcmp(r->csv, "-") == 0 ? stderr : stdout;
   double least = INFINITY, most = -INFINITY;
   for (int64_t v = 0; v < vertices; v++) {
@@ -34,6 +56,8 @@ static void print_report(const solve_request *r, const problem *scene, int64_t v
   if (report->imbalance > 0.0)
     (void)fprintf(stream, "imbalance  %.2e, taken away\n", report->imbalance);
   (void)fprintf(stream, "u          from %.12g to %.12g\n", least, most);
+  const dvi_status status = print_invariants(stream, scene, field, u);
+  return status == DVI_OK ? DONE : library_error(status);
 }
 
 static bool write_values(const char *path, const dvi_mesh *mesh, const double *u)
@@ -70,7 +94,7 @@ static int solve_field(const solve_request *r, const problem *scene, const dvi_f
   dvi_status status = dvi_field_lift(field, scene->q, u);
   if (status == DVI_OK) status = dvi_field_solve(field, &options, u, &report);
   int code = status == DVI_OK ? DONE : library_error(status);
-  if (code == DONE) print_report(r, scene, vertices, u, &report);
+  if (code == DONE) code = print_report(r, scene, field, u, &report);
   if (code == DONE && r->csv != NULL && !write_values(r->csv, mesh, u)) code = FAILED;
   if (code == DONE && r->vtu != NULL) code = field_write(field, r->vtu, "u", 1, u);
   free(u);
@@ -81,7 +105,8 @@ static const char *const details[] = {
     "The static state balances the stiffness, the potential, the source and the flux through the "
     "boundary: -div(a grad u) + V_u = f. Without a potential the problem is linear. With one it is "
     "solved by Newton's method from the scene's start. Where no value is fixed, source and flux "
-    "must sum to zero, and the section solve sets the mean.\n",
+    "must sum to zero, and the section solve sets the mean. The energy and the probes of the scene "
+    "are printed.\n",
     "Columns of --csv: vertex, its coordinates, u.\n",
     "Examples:\n"
     "  dvi solve membrane.yaml\n"

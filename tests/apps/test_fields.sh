@@ -83,6 +83,16 @@ expect 0 'a check' check drum.yaml
 expect 1 'a step that is too long' run drum.yaml --h 0.5 --final
 says err 'h may be' 'the bound is named'
 
+cat >plates.yaml <<END
+mesh: {generator: staggered, cells: [8, 8]}
+field: wave
+boundary: {left: {fixed: 1}, right: {fixed: 3}}
+probes: {ear: {at: [0.25, 0.5]}}
+END
+expect 0 'two plates' solve plates.yaml
+says out '^energy     2$' 'the energy, with that of the fixed values'
+says out '^ear        1.5$' 'the probe'
+
 cat >mixed.yaml <<END
 parameters: {k: 2}
 mesh: {generator: staggered, cells: [16, 16]}

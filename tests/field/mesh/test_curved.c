@@ -280,7 +280,7 @@ START_TEST(options_of_shapes_are_checked)
                  {"torus", {.extent = {1, 1.5}}, "radius"},
                  {"annulus", {.extent = {1, 1}}, "not below"},
                  {"annulus", {.cells = {2, 2}}, "number 1 of cells is 2"},
-                 {"annulus", {.cells = {8, 8}}, "fold: take more cells around"},
+                 {"annulus", {.cells = {16, 6}}, "fold: take more cells around"},
                  {"disk", {.origin = {0, 0, 1}}, "origin"},
                  {"disk", {.periodic = {0, 1}}, "periodic"},
                  {"box", {.cells = {2, 2}, .periodic = {0, 0, 1}}, "further periodic"},

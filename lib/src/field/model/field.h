@@ -20,6 +20,7 @@ struct dvi_field {
   int *number;        /* [vertices] of the unknown at a vertex, or -1 */
   double *fixed;      /* [vertices] values, 0 where they are not fixed */
   double *load;       /* [unknowns] W f + b, less what the fixed values take away */
+  double rest;        /* energy of the fixed values alone */
   double *weight;     /* [unknowns] sums of the rows of W */
   double *point;      /* [unknowns*space] */
   int *component;     /* [unknowns] number of the free component, or -1 */

@@ -7,7 +7,7 @@
 #include "core/status.h"
 #include "field/model/field.h"
 
-/* ---- the elastic potential, q.K q/2 - load.q ---- */
+/* ---- the elastic potential, q.K q/2 - load.q + that of the fixed values ---- */
 
 static int elastic_gradient_range(double t, const double *q, int first, int last, double *V_q,
                                   void *user)
@@ -35,7 +35,7 @@ static int elastic_value(double t, const double *q, double *V, void *user)
   const dvi_field *f = user;
   const dvi__csr *K = &f->stiffness;
   (void)t;
-  *V = 0;
+  *V = f->rest;
   for (int64_t i = 0; i < f->unknowns; i++) {
     double sum = 0;
     for (int64_t e = K->start[i]; e < K->start[i + 1]; e++) sum += K->value[e] * q[K->column[e]];

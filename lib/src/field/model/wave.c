@@ -98,7 +98,8 @@ static void drop_roundings(dvi__csr *matrix)
   dvi__csr_drop(matrix, 1e-15 * most);
 }
 
-/* The load gets minus the columns of the fixed values. */
+/* The load gets minus the columns of the fixed values f. Their own energy, f.K f/2 - load.f with the
+ * load before that, is -f.K f/2 - load.f with the load after it. */
 static dvi_status make_stiffness(dvi_field *field, double *load)
 {
   dvi__csr whole = {0};
@@ -110,7 +111,10 @@ static dvi_status make_stiffness(dvi_field *field, double *load)
   if (status == DVI_OK) {
     drop_roundings(&field->stiffness);
     dvi_matrix_multiply(&view, 0, field->fixed, pull);
-    for (int64_t v = 0; v < field->vertices; v++) load[v] -= pull[v];
+    for (int64_t v = 0; v < field->vertices; v++) {
+      load[v] -= pull[v];
+      field->rest -= 0.5 * field->fixed[v] * pull[v];
+    }
   }
   dvi__release(pull);
   dvi__csr_clear(&whole);
@@ -178,6 +182,8 @@ static dvi_status make_equations(dvi_field *field, const dvi_wave_terms *terms)
   if (status == DVI_OK) status = make_mass(field);
   if (status == DVI_OK) status = make_stiffness(field, load);
   if (status == DVI_OK) status = add_loads(field, terms, load);
+  for (int64_t v = 0; v < field->vertices && status == DVI_OK; v++)
+    field->rest -= field->fixed[v] * load[v];
   for (int64_t i = 0; i < field->unknowns && status == DVI_OK; i++) {
     const int64_t v = field->unknown[i];
     field->load[i] = load[v];
