@@ -11,7 +11,7 @@
 #include "plot/plot.h"
 
 enum { WIDE = 640, PANELS_WIDE = 400, MARGIN_X = 150, MARGIN_Y = 90, LINES_MOST = 60000 };
-enum { PIXELS = 400, PIXELS_OF_SEVERAL = 200, COLOURS = 25 };
+enum { PIXELS = 400, PIXELS_OF_SEVERAL = 160, COLOURS = 25 };
 
 /* A picture with its surface and its pixels. */
 typedef struct canvas {
@@ -159,7 +159,8 @@ static void write_axes(FILE *script, const canvas *c)
   (void)fprintf(script, "set xrange [%.9g:%.9g]\nset yrange [%.9g:%.9g]\n", s->least[0] - edge,
                 s->most[0] + edge, s->least[1] - edge, s->most[1] + edge);
   (void)fputs("set size ratio -1\nunset key\n", script);
-  (void)fputs(c->p->from.is_flat ? "set border lc rgb '#404040'\n" : "unset border\nunset xtics\nunset ytics\n",
+  (void)fputs(c->p->from.is_flat ? "set border lc rgb '#404040'\n"
+                                 : "unset border\nunset xtics\nunset ytics\n",
               script);
 }
 
@@ -191,7 +192,8 @@ static bool write_panel(FILE *script, const canvas *bare, const vtu_field *field
                   next(&joint), r->width, r->height, r->least[0], r->least[1], r->pixel, r->pixel);
   if (c->p->edges)
     (void)fprintf(script, "%s$edges notitle with lines lw 0.6 lc rgb '#404040'", next(&joint));
-  if (duals > 0) (void)fprintf(script, "%s$duals notitle with lines lw 0.6 lc rgb '#0072B2'", next(&joint));
+  if (duals > 0)
+    (void)fprintf(script, "%s$duals notitle with lines lw 0.6 lc rgb '#0072B2'", next(&joint));
   if (negative > 0)
     (void)fprintf(script, "%s$negative notitle with lines lw 1.2 lc rgb '#D55E00'", next(&joint));
   (void)fputs("\n", script);

@@ -50,7 +50,8 @@ words_in() { sed -n 's/.*<tspan[^>]*>\(.*\)<\/tspan>.*/\1/p' "$1" >texts; words 
 # pictures PAGE: require that its commands drew the pictures that it shows, with the same words. A
 # picture must be small.
 pictures() {
-  for picture in $(grep -o '](pictures/[a-z-]*\.svg)' "$top/$1" | sed 's/](\(.*\))/\1/'); do
+  for picture in $(grep -o '](\(\.\./\)*pictures/[a-z-]*\.svg)' "$top/$1" |
+    sed 's/.*\(pictures.*\))/\1/'); do
     drawn=$(basename "$picture") kept=$top/docs/$picture
     [ -s "$drawn" ] || { fail "$1: no command draws $drawn"; continue; }
     words_in "$drawn" >drawn.words
@@ -92,7 +93,7 @@ commands=0
 for page in README.md docs/command.md docs/limits.md docs/guide.md docs/theory.md docs/problems.md \
   docs/trust.md docs/adaptive.md docs/oscillations.md docs/shooting-studies.md docs/paths.md \
   docs/scenes.md $machines docs/cookbook.md docs/scene-errors.md \
-  $(cd "$top" && find docs/methods -name '*.md' | sort); do
+  $(cd "$top" && find docs/methods docs/fields -name '*.md' | sort); do
   split "$top/$page"
   n=1
   whole=1

@@ -16,7 +16,7 @@ clean() {
     mkdir -p lib/src/$room
   done
   mkdir -p lib/include/dvi apps/cli apps/problems apps/examples tests/method/element docs/methods
-  mkdir -p cmake .ci
+  mkdir -p docs/fields cmake .ci
   printf '/** One. */\nint dvi_one(int a);\n' >lib/include/dvi/one.h
   printf '#include <dvi/one.h>\n\nint dvi_one(int a)\n{\n  return a;\n}\n' >lib/src/core/one.c
   printf '#include <dvi/one.h>\n' >lib/src/method/element/leap.c
@@ -26,7 +26,6 @@ clean() {
   printf '[leap](leap.md)\n' >docs/methods/README.md
   printf '@book{Euler1744,\n}\n' >docs/references.bib
   printf 'int main(void)\n{\n  return 0;\n}\n' >apps/examples/pendulum.c
-  printf 'int main(void)\n{\n  return 0;\n}\n' >apps/examples/shapes.c
   {
     echo '# One'
     echo '```c'
@@ -34,7 +33,11 @@ clean() {
     echo '```'
     echo 'See [the guide](docs/guide.md#two-words), Euler1744.'
   } >README.md
-  { echo '# Shapes'; echo '```c'; cat apps/examples/shapes.c; echo '```'; } >docs/shapes.md
+  for program in shapes:shapes fields/waves:drum fields/forms:hole; do
+    example=apps/examples/${program#*:}.c
+    cp apps/examples/pendulum.c "$example"
+    { echo '# A page'; echo '```c'; cat "$example"; echo '```'; } >"docs/${program%:*}.md"
+  done
   printf 'int told = refuse("there is no \047%%s\047\\n", "a name"); /* "not this" */\n' \
     >lib/src/scene/one.c
   printf '# Errors\n\n- `there is no \047<name>\047`\n  A slip.\n  - `a name`\n  - `a step`\n' \

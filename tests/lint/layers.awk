@@ -68,10 +68,11 @@ BEGIN {
   uses["sweep"] = "cli csv load"
   uses["boundary"] = "cli csv load"
   uses["varied"] = "cli csv load"
+  uses["picture"] = "cli plot"
   uses["study"] = "cli csv plot"
   uses["mechanics"] = uses["study"] " study load"
   uses["watch"] = uses["bench"] = uses["mechanics"] " mechanics"
-  uses["cmd"] = uses["watch"] " watch bench sweep boundary varied"
+  uses["cmd"] = uses["watch"] " watch bench sweep boundary varied picture"
   uses["main.c"] = "cli bench"
   # Single headers of other rooms that a room may include.
   also["reference solve/sundials_compat.h"] = 1

@@ -43,7 +43,7 @@ typedef struct dvi_mesh_report {
   int64_t worst_cell; /**< an n-cell of the smallest quality */
   double dual_ratio;  /**< smallest |*e|/|e| of the edges with a positive dual */
   double length;      /**< diagonal of the points' bounding box */
-  unsigned advice;    /**< a sum of DVI_ADVICE_.. */
+  unsigned advice;    /**< a sum of values of dvi_mesh_advice */
   dvi_degree_report degree[DVI_MESH_DIMENSION_MAX + 1];
 } dvi_mesh_report;
 

@@ -64,8 +64,8 @@ dvi_status dvi_matrix_copy(const dvi_matrix *matrix, const dvi_matrix_arrays *ar
  *  @param      K, M        symmetric, by rows. M is positive definite, and K is positive
  *                          semidefinite unless there is a shift above 0
  *  @param[out] eigenvalue  [count] ascending
- *  @param[out] vector      [count][rows] with x.M x = 1, and a positive sign of the first entry that is
- *                          at least half of the largest one. May be NULL
+ *  @param[out] vector      [count][rows] with x.M x = 1, and a positive sign of the first entry
+ *                          that is at least half of the largest one. May be NULL
  *  @retval DVI_BAD_ARGUMENT   an argument is missing, or the matrices have different sizes
  *  @retval DVI_BAD_SIZE       count is not from 1 to rows, or rows - 1 above 2000 rows
  *  @retval DVI_SINGULAR       K - shift M is singular, or M is not positive definite

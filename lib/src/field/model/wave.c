@@ -98,8 +98,8 @@ static void drop_roundings(dvi__csr *matrix)
   dvi__csr_drop(matrix, 1e-15 * most);
 }
 
-/* The load gets minus the columns of the fixed values f. Their own energy, f.K f/2 - load.f with the
- * load before that, is -f.K f/2 - load.f with the load after it. */
+/* The load gets minus the columns of the fixed values f. Their own energy, f.K f/2 - load.f with
+ * the load before that, is -f.K f/2 - load.f with the load after it. */
 static dvi_status make_stiffness(dvi_field *field, double *load)
 {
   dvi__csr whole = {0};

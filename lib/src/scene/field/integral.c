@@ -2,9 +2,9 @@
  *
  *     sum over vertices of w_v f(x_v, u_v),
  *
- * where w_v is the share of the vertex in the cells of a part. It is the vertex's dual cell with the
- * circumcentric star, so that the integral of a free field moves uniformly, and an equal part of
- * each cell with the other stars. */
+ * where w_v is the share of the vertex in the cells of a part. It is the vertex's dual cell with
+ * the circumcentric star, so that the integral of a free field moves uniformly, and an equal part
+ * of each cell with the other stars. */
 #include <string.h>
 
 #include "scene/field/scene_field.h"
@@ -55,14 +55,13 @@ bool dvi__integral_read(dvi_scene *scene, const dvi__tree *tree, const dvi__tree
 }
 
 /* The shares are the masses of a material that only the part has. */
-static dvi_status weigh(const dvi_mesh *mesh, dvi_star_kind kind, dvi__integral *a,
-                        double *density)
+static dvi_status weigh(const dvi_mesh *mesh, dvi_star_kind kind, dvi__integral *a, double *density)
 {
   const double *const factor[DVI_MESH_DIMENSION_MAX + 1] = {density};
-  const dvi_star_options options = {
-      .size = sizeof options,
-      .kind = kind == DVI_CIRCUMCENTRIC ? DVI_CIRCUMCENTRIC : DVI_BARYCENTRIC,
-      .factor = factor};
+  const dvi_star_options options = {.size = sizeof options,
+                                    .kind = kind == DVI_CIRCUMCENTRIC ? DVI_CIRCUMCENTRIC
+                                                                      : DVI_BARYCENTRIC,
+                                    .factor = factor};
   int64_t count;
   const int *cell = dvi_mesh_part_cells(mesh, a->part, dvi_mesh_dimension(mesh), &count);
   for (int64_t i = 0; i < count; i++) density[cell[i]] = 1;
