@@ -5,7 +5,7 @@
 
 /** What may help a mesh. A report has the sum of those that apply. */
 typedef enum dvi_mesh_advice {
-  DVI_ADVICE_FLIP = 1, /**< edges of triangles have negative duals: flip them (dvi_mesh_flip) */
+  DVI_ADVICE_FLIP = 1, /**< inner edges of triangles have negative duals: flip them (dvi_mesh_flip) */
   /** as many simplices have one circumcentre as if they were boxes: glue them (dvi_mesh_glue) */
   DVI_ADVICE_GLUE = 2,
   DVI_ADVICE_STAR = 4 /**< dual cells are negative, or vanish: take another star */
@@ -67,7 +67,8 @@ dvi_status dvi_mesh_audit(const dvi_mesh *mesh, const dvi_audit_options *options
                           dvi_mesh_report *report);
 
 /** Flip edges of a mesh of triangles until all inner ones have duals that are not negative
- *  (Lawson 1977). Edges of parts, and those between parts, stay.
+ *  (Lawson 1977). Edges of parts, and those between parts, stay, and so do edges whose other
+ *  diagonal is an edge already, or is too long for a space that repeats itself.
  *
  *  @param[out] flipped  the new mesh, for dvi_mesh_destroy
  *  @param[out] flips    number of flips. May be NULL

@@ -154,6 +154,7 @@ typedef enum dvi_form_boundary {
  *
  *  @param[out] exact, coexact, harmonic  [k-cells] the parts. Each may be NULL
  *  @retval DVI_BAD_ARGUMENT   an argument is missing, or k is out of range
+ *  @retval DVI_NOT_FINITE     the form is not finite, or its square overflows
  *  @retval DVI_SINGULAR       a star is not positive definite. The barycentric and Whitney's stars
  *                             are
  *  @retval DVI_NOT_CONVERGED  an iteration left too much of its right side

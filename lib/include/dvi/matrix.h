@@ -46,7 +46,7 @@ void dvi_matrix_destroy(dvi_matrix **matrix);
 int64_t dvi_matrix_entries(const dvi_matrix *matrix);
 
 /** Multiply, y = A x with x [columns] and y [rows], or y = A^T x with x [rows] and y [columns] if
- *  `transposed` is not 0. x and y may not overlap.
+ *  `transposed` is not 0. x and y may not overlap, and no argument may be NULL.
  *
  *  Sums run in the order of the rows and of their entries, so that equal inputs give equal bits. */
 void dvi_matrix_multiply(const dvi_matrix *matrix, int transposed, const double *x, double *y);

@@ -89,6 +89,18 @@ START_TEST(pinched_edges_are_counted)
 }
 END_TEST
 
+/* Three tetrahedra at one edge: it is pinched once, and so are its ends. */
+START_TEST(an_edge_of_three_parts_counts_once)
+{
+  static const double point[] = {0,  0, -1, 0,  0,   1, 1,    0,  0, 1,   0.5, 0,
+                                 -1, 0, 0,  -1, 0.5, 0, -0.5, -1, 0, 0.5, -1,  0};
+  static const int vertex[] = {0, 1, 2, 3, 0, 1, 4, 5, 0, 1, 6, 7};
+  dvi_mesh *mesh = from_arrays(3, 3, 8, point, 3, vertex);
+  ck_assert_int_eq(audited(mesh).pinches, 5); /* an edge, and each end twice */
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
 START_TEST(strip_of_moebius_has_one_side)
 {
   enum { AROUND = 7 };
@@ -289,6 +301,86 @@ START_TEST(surfaces_are_flipped_too)
 }
 END_TEST
 
+/* A tetrahedron with a flat top: three triangles meet at vertex 3, and the other diagonal of each
+ * two of them is an edge already. */
+START_TEST(edges_whose_other_diagonal_exists_stay)
+{
+  static const double point[] = {0, 0, 0, 1, 0, 0, 0.5, 0.8, 0, 0.5, 0.25, 0.02};
+  static const int vertex[] = {0, 1, 3, 1, 2, 3, 2, 0, 3, 0, 2, 1};
+  int64_t flips;
+  dvi_mesh *mesh = from_arrays(2, 3, 4, point, 4, vertex), *flipped = NULL;
+  ck_assert(audited(mesh).degree[1].negative > 0);
+  ck_assert_msg(dvi_mesh_flip(mesh, &flipped, &flips) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_int_eq(flips, 0);
+  dvi_mesh_destroy(&flipped);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
+/* Surfaces of random points around the centre, as the boundary of their hull is not needed: a
+ * sphere whose vertices are moved and whose edges are flipped at random by the library itself. */
+START_TEST(rough_spheres_are_flipped)
+{
+  for (unsigned long long seed = 1; seed <= 20; seed++) {
+    dvi_mesh *sphere = generated("icosphere", &(dvi_generator_options){.cells = {2}}),
+             *flipped = NULL;
+    const int points = (int)dvi_mesh_count(sphere, 0), cells = (int)dvi_mesh_count(sphere, 2);
+    double *x = malloc((size_t)points * 3 * sizeof *x);
+    unsigned long long state = seed;
+    for (int i = 0; i < points; i++) {
+      const double r = 0.3 + random_number(&state);
+      for (int l = 0; l < 3; l++) x[3 * i + l] = r * dvi_mesh_points(sphere)[3 * i + l];
+    }
+    dvi_mesh *rough = from_arrays(2, 3, points, x, cells, dvi_mesh_vertices(sphere, 2, NULL));
+    const dvi_status status = dvi_mesh_flip(rough, &flipped, NULL);
+    ck_assert_msg(status == DVI_OK || status == DVI_NOT_CONVERGED, "%s", dvi_last_error());
+    if (status == DVI_OK) {
+      const dvi_mesh_report report = audited(flipped);
+      ck_assert(report.is_manifold && report.degree[2].betti == 1 && report.degree[1].betti == 0);
+    }
+    free(x);
+    dvi_mesh_destroy(&flipped);
+    dvi_mesh_destroy(&rough);
+    dvi_mesh_destroy(&sphere);
+  }
+}
+END_TEST
+
+/* A fan over a parabola needs as many passes as points. */
+START_TEST(long_fans_are_flipped_to_the_end)
+{
+  enum { POINTS = 500 };
+  double point[2 * POINTS];
+  int vertex[3 * (POINTS - 2)];
+  for (int i = 0; i < POINTS; i++) {
+    point[2 * i] = (double)i / POINTS;
+    point[2 * i + 1] = point[2 * i] * point[2 * i];
+  }
+  for (int i = 0; i < POINTS - 2; i++) {
+    const int fan[] = {0, i + 1, i + 2};
+    memcpy(vertex + 3 * i, fan, sizeof fan);
+  }
+  dvi_mesh *mesh = from_arrays(2, 2, POINTS, point, POINTS - 2, vertex), *flipped = NULL;
+  ck_assert_msg(dvi_mesh_flip(mesh, &flipped, NULL) == DVI_OK, "%s", dvi_last_error());
+  ck_assert(!(audited(flipped).advice & DVI_ADVICE_FLIP));
+  dvi_mesh_destroy(&flipped);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
+/* The longest edge of an obtuse triangle is a boundary, which no flip can mend. */
+START_TEST(flips_are_advised_where_they_help)
+{
+  static const double point[] = {0, 0, 1, 0, 0.5, 0.1};
+  static const int vertex[] = {0, 1, 2};
+  dvi_mesh *mesh = from_arrays(2, 2, 3, point, 1, vertex);
+  const dvi_mesh_report report = audited(mesh);
+  ck_assert_int_eq(report.degree[1].negative, 1);
+  ck_assert_int_eq(report.advice, DVI_ADVICE_STAR);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
 /* ---- glue ---- */
 
 START_TEST(kuhn_simplices_become_boxes)
@@ -357,6 +449,7 @@ SUITE(audit)
   tcase_add_test(tests, good_meshes_are_manifolds);
   tcase_add_test(tests, pinched_vertices_are_found);
   tcase_add_test(tests, pinched_edges_are_counted);
+  tcase_add_test(tests, an_edge_of_three_parts_counts_once);
   tcase_add_test(tests, strip_of_moebius_has_one_side);
   tcase_add_test(tests, edges_of_three_triangles_are_no_manifold);
   tcase_add_test(tests, kuhn_simplices_have_duals_that_vanish);
@@ -366,6 +459,10 @@ SUITE(audit)
   tcase_add_test(tests, edges_of_parts_are_not_flipped);
   tcase_add_test(tests, any_triangles_become_delaunays);
   tcase_add_test(tests, surfaces_are_flipped_too);
+  tcase_add_test(tests, edges_whose_other_diagonal_exists_stay);
+  tcase_add_test(tests, rough_spheres_are_flipped);
+  tcase_add_test(tests, long_fans_are_flipped_to_the_end);
+  tcase_add_test(tests, flips_are_advised_where_they_help);
   tcase_add_test(tests, kuhn_simplices_become_boxes);
   tcase_add_test(tests, tori_are_glued);
   tcase_add_test(tests, repairs_that_are_impossible_are_refused);

@@ -323,6 +323,8 @@ START_TEST(stars_that_are_not_definite_are_refused)
   ck_assert_int_eq(dvi_form_decompose(star, 1, DVI_ABSOLUTE, b, NULL, NULL, b), DVI_SINGULAR);
   ck_assert_ptr_nonnull(strstr(dvi_last_error(), "edge"));
   ck_assert_ptr_nonnull(strstr(dvi_last_error(), "--repair"));
+  ck_assert_int_eq(dvi_form_decompose(star, 0, (dvi_form_boundary)7, b, NULL, NULL, b),
+                   DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_form_codifferential_create(star, 2, &matrix), DVI_SINGULAR);
   ck_assert_ptr_null(matrix);
   ck_assert_ptr_nonnull(strstr(dvi_last_error(), "edge"));

@@ -93,6 +93,39 @@ START_TEST(points_inside_are_found)
 }
 END_TEST
 
+/* Few cells along an axis span all of it. */
+START_TEST(points_of_coarse_meshes_are_found)
+{
+  static const int shapes[][2] = {{1, 1}, {8, 1}, {1, 5}, {2, 1}, {3, 2}, {40, 1}};
+  for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++)
+    for (int kind = 0; kind < 2; kind++) {
+      const dvi_generator_options options = {.cells = {shapes[i][0], shapes[i][1]}};
+      dvi_mesh *mesh = generated(kind ? "box" : "kuhn", &options);
+      double *x = random_points(2, 0, 1);
+      ck_assert_int_eq(check_places(mesh, x, 0), POINTS);
+      free(x);
+      dvi_mesh_destroy(&mesh);
+    }
+}
+END_TEST
+
+/* A long row of boxes takes memory in proportion to its boxes. */
+START_TEST(long_meshes_are_searched)
+{
+  const int cells = 100000;
+  dvi_mesh *mesh = generated(
+      "box",
+      &(dvi_generator_options){.dimension = 3, .cells = {cells, 1, 1}, .extent = {cells, 1, 1}});
+  const double x[] = {0.5, 0.5, 0.5, 99999.25, 0.1, 0.9, 31415.5, 0.5, 0.2};
+  int cell[3];
+  double weight[9];
+  ck_assert_int_eq(dvi_mesh_locate(mesh, 3, x, cell, weight), DVI_OK);
+  ck_assert(cell[0] == 0 && cell[1] == cells - 1 && cell[2] == 31415);
+  ck_assert(weight[3] == 0.25);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
 START_TEST(points_outside_have_no_cell)
 {
   const double far[] = {3, 0, 0, -1.2, 1e300, 0};
@@ -189,6 +222,8 @@ END_TEST
 SUITE(locate)
 {
   tcase_add_test(tests, points_inside_are_found);
+  tcase_add_test(tests, points_of_coarse_meshes_are_found);
+  tcase_add_test(tests, long_meshes_are_searched);
   tcase_add_test(tests, points_outside_have_no_cell);
   tcase_add_test(tests, points_of_tori_are_found_in_any_period);
   tcase_add_test(tests, far_points_of_a_torus_are_found);

@@ -94,6 +94,33 @@ START_TEST(parts_are_found_by_vertices)
 }
 END_TEST
 
+/* Three triangles at one edge, and a part with any of them. */
+START_TEST(parts_are_found_where_cells_branch)
+{
+  static const double point[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1};
+  static const int vertex[] = {0, 1, 2, 0, 1, 3, 0, 1, 4},
+                   orders[][3] = {{4, 0, 1}, {4, 1, 0}, {0, 1, 4}, {1, 0, 4}, {0, 4, 1}, {1, 4, 0}};
+  for (int i = 0; i < 6; i++) {
+    int64_t count;
+    dvi_mesh *mesh = NULL;
+    const dvi_mesh_part part = {.name = "third", .degree = 2, .count = 1, .vertex = orders[i]};
+    const dvi_mesh_terms terms = {.size = sizeof terms,
+                                  .dimension = 2,
+                                  .space = 3,
+                                  .points = 5,
+                                  .point = point,
+                                  .cells = 3,
+                                  .vertex = vertex,
+                                  .part = &part,
+                                  .parts = 1};
+    ck_assert_msg(dvi_mesh_create(&terms, &mesh) == DVI_OK, "%s", dvi_last_error());
+    ck_assert_int_eq(dvi_mesh_part_cells(mesh, "third", 2, &count)[0], 2);
+    ck_assert_ptr_nonnull(dvi_mesh_part_cells(mesh, "third", 2, NULL));
+    dvi_mesh_destroy(&mesh);
+  }
+}
+END_TEST
+
 /* ---- d d = 0 ---- */
 
 static void check_complex(const dvi_mesh *mesh)
@@ -224,6 +251,9 @@ START_TEST(counts_out_of_range_are_refused)
   terms.space = 1;
   refused(&terms, DVI_BAD_SIZE, "1 coordinates");
   terms = square_terms();
+  terms.space = -3;
+  refused(&terms, DVI_BAD_SIZE, "-3 coordinates");
+  terms = square_terms();
   terms.points = -4;
   refused(&terms, DVI_BAD_SIZE, "-4 are given");
   terms = square_terms();
@@ -236,6 +266,24 @@ START_TEST(counts_out_of_range_are_refused)
   terms.parts = 1;
   refused(&terms, DVI_BAD_ARGUMENT, "1 parts");
   ck_assert_int_eq(dvi_mesh_create(NULL, NULL), DVI_BAD_ARGUMENT);
+}
+END_TEST
+
+/* In the plane two of three triangles at an edge overlap, in whatever order they are given. */
+START_TEST(overlapping_triangles_are_refused)
+{
+  static const double point[] = {0, 0, 1, 0, 0, 1, 0, -1, 1, 1};
+  static const int orders[][9] = {
+      {0, 1, 2, 0, 1, 3, 0, 1, 4}, {0, 1, 2, 0, 1, 4, 0, 1, 3}, {0, 1, 3, 0, 1, 2, 0, 1, 4}};
+  for (int i = 0; i < 3; i++) {
+    const dvi_mesh_terms terms = {.size = sizeof terms,
+                                  .dimension = 2,
+                                  .points = 5,
+                                  .point = point,
+                                  .cells = 3,
+                                  .vertex = orders[i]};
+    refused(&terms, DVI_BAD_ARGUMENT, "more than two cells");
+  }
 }
 END_TEST
 
@@ -377,6 +425,8 @@ SUITE(mesh)
   tcase_add_test(tests, a_square_has_its_cells);
   tcase_add_test(tests, a_square_has_its_boundary);
   tcase_add_test(tests, parts_are_found_by_vertices);
+  tcase_add_test(tests, parts_are_found_where_cells_branch);
+  tcase_add_test(tests, overlapping_triangles_are_refused);
   tcase_add_test(tests, the_boundary_of_a_boundary_is_empty);
   tcase_add_test(tests, boxes_may_be_turned_against_each_other);
   tcase_add_test(tests, the_projective_plane_has_no_orientation);

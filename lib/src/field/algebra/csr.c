@@ -111,13 +111,13 @@ dvi_status dvi__csr_select(const dvi_matrix *A, const dvi__selection *selection,
   return DVI_OK;
 }
 
-void dvi__csr_drop(dvi__csr *matrix, double least)
+void dvi__csr_drop_zeros(dvi__csr *matrix)
 {
   int64_t kept = 0, first = 0;
   for (int64_t i = 0; i < matrix->rows; i++) {
     const int64_t end = matrix->start[i + 1];
     for (int64_t e = first; e < end; e++)
-      if (fabs(matrix->value[e]) >= least || matrix->column[e] == i) {
+      if (matrix->value[e] != 0 || matrix->column[e] == i) {
         matrix->column[kept] = matrix->column[e];
         matrix->value[kept++] = matrix->value[e];
       }

@@ -38,8 +38,8 @@ typedef struct dvi__selection {
 } dvi__selection;
 dvi_status dvi__csr_select(const dvi_matrix *A, const dvi__selection *selection, dvi__csr *part);
 
-/* Leave out the entries that are smaller than `least`, but not those of the diagonal. */
-void dvi__csr_drop(dvi__csr *matrix, double least);
+/* Leave out the entries that are zero, but not those of the diagonal. */
+void dvi__csr_drop_zeros(dvi__csr *matrix);
 
 /* Give the place of an entry, or -1. */
 int64_t dvi__csr_find(const dvi__csr *matrix, int64_t row, int column);

@@ -249,8 +249,8 @@ static int is_small(int64_t n, int count)
   return n <= 64 || (n <= 2000 && 2 * (int64_t)count + 20 >= n);
 }
 
-static dvi_status modes_by_lanczos(const dvi__pencil *pencil, double shift, int count,
-                                   double *eigenvalue, double *vector)
+static dvi_status lanczos_near(const dvi__pencil *pencil, double shift, int count,
+                               double *eigenvalue, double *vector)
 {
   const int64_t n = pencil->K->rows;
   dvi__definite inverse;
@@ -268,10 +268,59 @@ static dvi_status modes_by_lanczos(const dvi__pencil *pencil, double shift, int 
   return status;
 }
 
+/* A shift at an eigenvalue makes K - shift M singular to roundoff, so that its solutions have the
+ * right direction and no more digits, and other eigenvalues would be made of roundings. The shift
+ * is then moved by a thousandth of the distance to the farthest eigenvalue, until the nearest one
+ * is not so near. A few more eigenvalues than asked for tell which ones are the nearest. */
+static dvi_status lanczos_beside(const dvi__pencil *pencil, double shift, int count, double *value,
+                                 double *vector)
+{
+  enum { TRIES = 12 };
+  const double near = 1e-6, part = 1e-3;
+  double from = shift;
+  for (int i = 0; i < TRIES; i++) {
+    double nearest = INFINITY, farthest = 0;
+    const dvi_status status = lanczos_near(pencil, from, count, value, vector);
+    if (status != DVI_OK && status != DVI_SINGULAR) return status;
+    for (int k = 0; k < count && status == DVI_OK; k++) {
+      nearest = fmin(nearest, fabs(value[k] - from));
+      farthest = fmax(farthest, fabs(value[k] - from));
+    }
+    if (status == DVI_OK && nearest > near * farthest) return DVI_OK;
+    if (status != DVI_OK && (shift <= 0 || i + 1 == TRIES)) return status;
+    from += fmax(part * farthest, 1e-9 * fabs(from));
+  }
+  return dvi__fail(DVI_NOT_CONVERGED,
+                   "modes: the shift %g lies within roundoff of many eigenvalues: take another one",
+                   shift);
+}
+
+static dvi_status modes_by_lanczos(const dvi__pencil *pencil, double shift, int count,
+                                   double *eigenvalue, double *vector)
+{
+  enum { MORE = 4 };
+  const int64_t n = pencil->K->rows;
+  const int asked = smaller(n - 1, (int64_t)count + MORE);
+  double *value = DVI_NEW(double, asked + n * asked);
+  if (value == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "modes: no memory for %d vectors of %lld numbers", asked,
+                     (long long)n);
+  const dvi_status status = lanczos_beside(pencil, shift, asked, value, value + asked);
+  const int64_t first = status == DVI_OK ? first_of_nearest(asked, value, count, shift) : 0;
+  if (status == DVI_OK) {
+    memcpy(eigenvalue, value + first, (size_t)count * sizeof *value);
+    if (vector != NULL)
+      memcpy(vector, value + asked + first * n, (size_t)count * (size_t)n * sizeof *vector);
+  }
+  dvi__release(value);
+  return status;
+}
+
 dvi_status dvi__modes_near(const dvi__pencil *pencil, double shift, int count, double *eigenvalue,
                            double *vector)
 {
   const int64_t n = pencil->K->rows;
+  if (!isfinite(shift)) return dvi__fail(DVI_BAD_ARGUMENT, "modes: the shift is %g", shift);
   if (count < 1 || count > n || (count == n && !is_small(n, count)) || n > INT_MAX / 64)
     return dvi__fail(DVI_BAD_SIZE, "modes: %d modes of %lld unknowns: take 1 to %lld", count,
                      (long long)n, (long long)n - !is_small(n, (int)n));
@@ -302,15 +351,41 @@ static double largest_root(const dvi__pencil *pencil)
   return (b + sqrt(fmax(b * b - 4 * a * c, 0))) / (2 * a);
 }
 
-/* The tolerance is relative, so that the eigenvalue lies below the bound. */
+/* The largest sum of the entries' sizes in a row of M^-1 K bounds the eigenvalues, if M is diagonal.
+ * Infinite for other masses. */
+static double bound_by_rows(const dvi__pencil *pencil)
+{
+  const dvi_matrix *K = pencil->K, *M = pencil->M;
+  double most = 0;
+  if (M->column != NULL) return INFINITY;
+  for (int64_t i = 0; i < K->rows; i++) {
+    double sum = 0;
+    for (int64_t e = dvi__first_entry(K, i); e < dvi__first_entry(K, i + 1); e++)
+      sum += fabs(dvi__entry_value(K, e));
+    most = fmax(most, sum / M->value[i]);
+  }
+  return most;
+}
+
+static int is_zero(const dvi_matrix *A)
+{
+  const int64_t entries = dvi_matrix_entries(A);
+  for (int64_t e = 0; e < entries; e++)
+    if (dvi__entry_value(A, e) != 0) return 0;
+  return 1;
+}
+
+/* Lanczos' method may rest at the second largest eigenvalue for a while, so that it is stopped long
+ * after its residual has become smaller than the margin of the bound. */
 dvi_status dvi__largest_eigenvalue(const dvi__pencil *pencil, double *bound)
 {
-  const double tolerance = 1e-3;
+  const double tolerance = 1e-9, margin = 1e-3;
   const int64_t n = pencil->K->rows;
   *bound = 0;
   if (n < 1 || n > INT_MAX / 64)
     return dvi__fail(DVI_BAD_SIZE, "modes: %lld unknowns, 1 to %d possible", (long long)n,
                      INT_MAX / 64);
+  if (is_zero(pencil->K)) return DVI_OK;
   if (n < 3) {
     *bound = largest_root(pencil);
     return DVI_OK;
@@ -325,7 +400,7 @@ dvi_status dvi__largest_eigenvalue(const dvi__pencil *pencil, double *bound)
                .directions = smaller(n, 20),
                .tolerance = tolerance};
   const dvi_status status = run(&s, bound, NULL);
-  *bound *= 1 + tolerance;
+  *bound = fmin(*bound * (1 + margin), bound_by_rows(pencil));
   dvi__definite_clear(&inverse);
   return status;
 }

@@ -124,6 +124,18 @@ static void measure_edges(const dvi_star *star, dvi_mesh_report *report)
                                 star->dual[1][e] / dvi__cell_volume(mesh, 1, e));
 }
 
+/* Tell if an inner edge of triangles has a negative dual, which a flip may mend. */
+static int can_be_flipped(const dvi_star *star)
+{
+  const dvi_mesh *mesh = star->mesh;
+  double most = 0;
+  if (mesh->n != 2 || mesh->kind != DVI_SIMPLICES) return 0;
+  for (int64_t e = 0; e < mesh->count[1]; e++) most = fmax(most, fabs(star->dual[1][e]));
+  for (int64_t e = 0; e < mesh->count[1]; e++)
+    if (mesh->coface[2 * e + 1] >= 0 && star->dual[1][e] < -negligible * most) return 1;
+  return 0;
+}
+
 static int is_of_space(const dvi_mesh *mesh)
 {
   for (int l = 0; l < mesh->space; l++)
@@ -170,7 +182,6 @@ static unsigned advise(const dvi_mesh *mesh, const dvi_mesh_report *report)
     zero += report->degree[k].zero;
   }
   unsigned advice = negative > 0 || zero > 0 ? DVI_ADVICE_STAR : 0;
-  if (is_simplicial && n == 2 && report->degree[1].negative > 0) advice |= DVI_ADVICE_FLIP;
   /* each of the n! simplices of a box has n - 1 facets inside of it */
   if (is_simplicial && n > 1 && 2 * report->degree[n - 1].zero == (n - 1) * report->degree[n].count)
     advice |= DVI_ADVICE_GLUE;
@@ -195,6 +206,7 @@ static dvi_status audit_duals(const dvi_mesh *mesh, int without_steps, dvi_mesh_
   DVI_TRY(dvi_star_create(mesh, NULL, &star));
   for (int k = 0; k <= mesh->n; k++) count_duals(star, k, report->degree + k);
   measure_edges(star, report);
+  if (can_be_flipped(star)) report->advice = DVI_ADVICE_FLIP;
   dvi_status status = DVI_OK;
   for (int k = 0; k < mesh->n && status == DVI_OK && !without_steps; k++)
     status = find_frequency(star, k, report);
@@ -227,6 +239,6 @@ dvi_status dvi_mesh_audit(const dvi_mesh *mesh, const dvi_audit_options *options
   report->is_manifold = mesh->branching < 0 && report->pinches == 0;
   DVI_TRY(find_holes(mesh, options->holes_max > 0 ? options->holes_max : HOLES_MAX, report));
   DVI_TRY(audit_duals(mesh, options->without_steps, report));
-  report->advice = advise(mesh, report);
+  report->advice |= advise(mesh, report);
   return DVI_OK;
 }

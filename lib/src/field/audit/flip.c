@@ -7,9 +7,11 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/forms/star.h"
+#include "field/mesh/complex.h"
 #include "field/mesh/volume.h"
 
-enum { PASSES = 400 };
+/* In a plane flips come to an end, and on a surface they need not. */
+enum { PASSES_ON_SURFACES = 400 };
 
 static const double negligible = 1e-12;
 
@@ -17,6 +19,7 @@ typedef struct flipper {
   const dvi_mesh *mesh;
   char *kept;    /* [edges] edges of parts */
   char *touched; /* [triangles] in this pass */
+  char *joined;  /* [vertices] by a new edge in this pass */
   int *vertex;   /* [3*triangles] of the new mesh, oriented alike */
   int64_t flips;
 } flipper;
@@ -63,6 +66,22 @@ static int find_corner(const int *triangle, int other_than, int or_than)
   return i;
 }
 
+/* Tell if c and d can be joined across the edge of a: no other edge joins them, and where space
+ * repeats itself no shorter way does. */
+static int can_join(const flipper *f, int a, int c, int d)
+{
+  const int ends[] = {c, d};
+  double ca[DVI_MESH_SPACE_MAX], ad[DVI_MESH_SPACE_MAX], cd[DVI_MESH_SPACE_MAX];
+  if (c == d || (f->joined[c] && f->joined[d]) || dvi__complex_find(f->mesh, 1, ends) >= 0)
+    return 0;
+  dvi__mesh_difference(f->mesh, c, a, ca);
+  dvi__mesh_difference(f->mesh, a, d, ad);
+  dvi__mesh_difference(f->mesh, c, d, cd);
+  for (int l = 0; l < f->mesh->space; l++)
+    if (f->mesh->period[l] > 0 && fabs(ca[l] + ad[l] - cd[l]) > 0.25 * f->mesh->period[l]) return 0;
+  return 1;
+}
+
 /* Replace (c, a, b) and (d, b, a) by (c, a, d) and (d, b, c). */
 static void flip(flipper *f, int64_t e)
 {
@@ -71,6 +90,8 @@ static void flip(flipper *f, int64_t e)
   const int at = find_corner(one, edge[0], edge[1]), other = find_corner(two, edge[0], edge[1]),
             c = one[at], d = two[other], a = one[(at + 1) % 3], b = one[(at + 2) % 3];
   const int first[] = {c, a, d}, second[] = {d, b, c};
+  if (!can_join(f, a, c, d)) return;
+  f->joined[c] = f->joined[d] = 1;
   for (int i = 0; i < 3; i++) {
     one[i] = first[i];
     two[i] = second[i];
@@ -140,9 +161,11 @@ static dvi_status pass(const dvi_mesh *mesh, int64_t *flips, dvi_mesh **next)
   flipper f = {.mesh = mesh,
                .kept = DVI_NEW(char, mesh->count[1]),
                .touched = DVI_NEW(char, mesh->count[2]),
+               .joined = DVI_NEW(char, mesh->count[0]),
                .vertex = DVI_NEW(int, 3 * mesh->count[2])};
-  dvi_status status = f.kept && f.touched && f.vertex ? DVI_OK
-                                                      : dvi__fail(DVI_NO_MEMORY, "flip: no memory");
+  dvi_status status = f.kept && f.touched && f.joined && f.vertex
+                          ? DVI_OK
+                          : dvi__fail(DVI_NO_MEMORY, "flip: no memory");
   if (status == DVI_OK) status = dvi_star_create(mesh, NULL, &star);
   if (status == DVI_OK) {
     mark_kept(&f);
@@ -153,6 +176,7 @@ static dvi_status pass(const dvi_mesh *mesh, int64_t *flips, dvi_mesh **next)
   dvi_star_destroy(&star);
   dvi__release(f.kept);
   dvi__release(f.touched);
+  dvi__release(f.joined);
   dvi__release(f.vertex);
   return status;
 }
@@ -169,7 +193,8 @@ dvi_status dvi_mesh_flip(const dvi_mesh *mesh, dvi_mesh **flipped, int64_t *flip
                      "dvi_mesh_delaunay of the points");
   dvi_mesh *current = dvi_mesh_share(mesh);
   dvi_status status = DVI_OK;
-  for (int i = 0; i < PASSES && now > 0 && status == DVI_OK; i++) {
+  const int is_plane = mesh->space == 2;
+  for (int i = 0; (is_plane || i < PASSES_ON_SURFACES) && now > 0 && status == DVI_OK; i++) {
     dvi_mesh *next = NULL;
     now = 0;
     status = pass(current, &now, &next);

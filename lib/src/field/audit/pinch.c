@@ -4,6 +4,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "field/mesh/complex.h"
 
 typedef struct sets {
   const dvi_mesh *mesh;
@@ -81,18 +82,25 @@ static dvi_status count_vertices(sets *s, int64_t *count, int64_t *vertex)
   return DVI_OK;
 }
 
-/* Each edge has one set, unless it is pinched. */
-static int64_t count_edges(sets *s)
+/* Count the edges that have more than one set. */
+static dvi_status count_edges(sets *s, int64_t *count)
 {
-  int64_t found = 0;
-  const int64_t cells = s->mesh->count[s->mesh->n];
-  for (int64_t cell = 0; cell < cells; cell++)
+  const dvi_mesh *mesh = s->mesh;
+  char *seen = DVI_NEW(char, mesh->count[1]);
+  if (seen == NULL) return dvi__fail(DVI_NO_MEMORY, "audit: no memory");
+  for (int64_t cell = 0; cell < mesh->count[mesh->n]; cell++)
     for (int a = 0; a < s->corners; a++)
       for (int b = 0; b < a; b++) {
-        const int i = (int)(cell * s->width) + a * s->corners + b;
-        found += root_of(s->parent, i) == i;
+        const int i = (int)(cell * s->width) + a * s->corners + b,
+                  *corner = mesh->corner[mesh->n] + cell * s->corners,
+                  pair[] = {corner[a], corner[b]};
+        if (root_of(s->parent, i) != i) continue;
+        const int64_t edge = dvi__complex_find(mesh, 1, pair);
+        *count += seen[edge] == 1;
+        if (seen[edge] < 2) seen[edge]++;
       }
-  return found - s->mesh->count[1];
+  dvi__release(seen);
+  return DVI_OK;
 }
 
 dvi_status dvi__find_pinches(const dvi_mesh *mesh, int64_t *count, int64_t *vertex)
@@ -108,7 +116,7 @@ dvi_status dvi__find_pinches(const dvi_mesh *mesh, int64_t *count, int64_t *vert
   if (status != DVI_OK || mesh->n < 3 || mesh->kind != DVI_SIMPLICES) return status;
   s.width = corners * corners;
   status = join_all(&s);
-  if (status == DVI_OK) *count += count_edges(&s);
+  if (status == DVI_OK) status = count_edges(&s, count);
   dvi__release(s.parent);
   return status;
 }

@@ -164,6 +164,8 @@ dvi_status dvi__hodge_begin(const dvi_star *star, int k, dvi_form_boundary bound
                      "%d",
                      star != NULL ? star->mesh->n : 0, k);
   const dvi_mesh *mesh = star->mesh;
+  if (boundary != DVI_ABSOLUTE && boundary != DVI_RELATIVE)
+    return dvi__fail(DVI_BAD_ARGUMENT, "forms: there is no boundary condition %d", (int)boundary);
   DVI_TRY(check_definite(star, k));
   *h = (dvi__hodge){.star = star, .k = k, .relative = boundary == DVI_RELATIVE};
   h->count = mesh->count[k];

@@ -86,28 +86,35 @@ static dvi_status place_cell(grid *g, int64_t cell)
   return DVI_OK;
 }
 
-/* The symbol is even in j, so that the sum is over cosines. */
+/* The symbol is even in j, so that the sum is over cosines, and even in m. The second half is copied
+ * from the first, which makes the matrix symmetric to the bit. */
 static void fill_circulant(int count, double h, int of_cells, double *circulant)
 {
-  for (int m = 0; m < count; m++) {
+  for (int m = 0; 2 * m <= count; m++) {
     double sum = 0;
     for (int j = -((count - 1) / 2); j <= count / 2; j++) {
       const double s = pi * j / count, symbol = h * (j == 0 ? 1 : sin(s) / s);
       const int64_t turns = (int64_t)j * m % count;
       sum += (of_cells ? 1 / symbol : symbol) * cos(2 * pi * (double)turns / count);
     }
-    circulant[m] = sum / count;
+    circulant[m] = circulant[(count - m) % count] = sum / count;
   }
+}
+
+static dvi_status place_cells(grid *g)
+{
+  const int64_t cells = g->mesh->count[g->k];
+  g->at = DVI_NEW(int, cells * g->mesh->n);
+  g->axes = DVI_NEW(unsigned char, cells);
+  if (g->at == NULL || g->axes == NULL) return dvi__fail(DVI_NO_MEMORY, "star: no memory");
+  for (int64_t c = 0; c < cells; c++) DVI_TRY(place_cell(g, c));
+  return DVI_OK;
 }
 
 static dvi_status lay_out(grid *g)
 {
-  const int64_t cells = g->mesh->count[g->k];
   const int n = g->mesh->n;
-  g->at = DVI_NEW(int, cells *n);
-  g->axes = DVI_NEW(unsigned char, cells);
-  if (g->at == NULL || g->axes == NULL) return dvi__fail(DVI_NO_MEMORY, "star: no memory");
-  for (int64_t c = 0; c < cells; c++) DVI_TRY(place_cell(g, c));
+  DVI_TRY(place_cells(g));
   for (int a = 0; a < n; a++)
     for (int of_cells = 0; of_cells < 2; of_cells++) {
       double *circulant = g->circulant[of_cells][a] = DVI_NEW(double, g->count[a]);
@@ -161,8 +168,12 @@ static dvi_status make(grid *g, dvi__csr *matrix)
 
 dvi_status dvi__spectral_check(const dvi_mesh *mesh)
 {
-  grid g = {.mesh = mesh};
-  return measure_boxes(&g);
+  grid g = {.mesh = mesh, .k = mesh->n};
+  dvi_status status = measure_boxes(&g);
+  if (status == DVI_OK) status = place_cells(&g);
+  dvi__release(g.at);
+  dvi__release(g.axes);
+  return status;
 }
 
 dvi_status dvi__spectral_star(dvi_star *star, int k)

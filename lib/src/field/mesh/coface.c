@@ -118,8 +118,18 @@ static dvi_status refuse_folded(const dvi_mesh *mesh, int64_t facet)
       b.text, dvi__degree_name(mesh->kind, mesh->n - 1));
 }
 
+/* Of three cells at a facet two lie on one side of it. */
+static dvi_status refuse_overlap(const dvi_mesh *mesh)
+{
+  const dvi__cell_name facet = dvi__name_cell(mesh, mesh->n - 1, mesh->branching);
+  return dvi__fail(DVI_BAD_ARGUMENT,
+                   "mesh: %s belongs to more than two cells, of which two lie on the same side",
+                   facet.text);
+}
+
 static dvi_status orient_as_space(dvi_mesh *mesh)
 {
+  if (mesh->branching >= 0) return refuse_overlap(mesh);
   for (int64_t c = 0; c < mesh->count[mesh->n]; c++)
     mesh->orientation[c] = (int8_t)dvi__cell_handedness(mesh, c);
   for (int64_t f = 0; f < mesh->count[mesh->n - 1]; f++)

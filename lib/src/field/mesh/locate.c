@@ -1,5 +1,5 @@
 /* The cells that contain given points. Cells are listed in the bins of a regular grid that their
- * bounding boxes meet, about one bin for each cell, so that a point looks at few cells. */
+ * bounding boxes meet, so that a point looks at few cells. */
 #include <math.h>
 #include <string.h>
 
@@ -21,20 +21,60 @@ typedef struct bins {
 
 /* ---- the grid ---- */
 
-static void lay_out_grid(bins *b)
+/* Give the bounding box of a cell, relative to its first corner, whose coordinate is returned. */
+static double bound_cell(const dvi_mesh *mesh, int64_t cell, int axis, double *least, double *most)
+{
+  const int corners = dvi__corners(mesh->kind, mesh->n),
+            *corner = mesh->corner[mesh->n] + cell * corners;
+  double to[DVI_MESH_SPACE_MAX];
+  *least = *most = 0;
+  for (int c = 1; c < corners; c++) {
+    dvi__mesh_difference(mesh, corner[0], corner[c], to);
+    *least = fmin(*least, to[axis]);
+    *most = fmax(*most, to[axis]);
+  }
+  return mesh->point[(int64_t)corner[0] * mesh->n + axis];
+}
+
+/* Find the extent of the mesh along an axis, and return the mean extent of a cell. */
+static double measure_axis(bins *b, int axis, double *extent)
 {
   const dvi_mesh *mesh = b->mesh;
-  const double each = ceil(pow((double)mesh->count[b->n], 1.0 / b->n));
+  double least = INFINITY, most = -INFINITY, sum = 0, low, high;
+  for (int64_t v = 0; v < mesh->count[0]; v++) {
+    least = fmin(least, mesh->point[v * b->n + axis]);
+    most = fmax(most, mesh->point[v * b->n + axis]);
+  }
+  for (int64_t c = 0; c < mesh->count[b->n]; c++) {
+    (void)bound_cell(mesh, c, axis, &low, &high);
+    sum += high - low;
+  }
+  b->origin[axis] = least;
+  *extent = mesh->period[axis] > 0 ? mesh->period[axis] : most - least;
+  return sum / (double)mesh->count[b->n];
+}
+
+/* Bins have the size of a mean cell, or are larger, so that there are no more than cells. */
+static void lay_out_grid(bins *b)
+{
+  const double cells = (double)b->mesh->count[b->n];
+  double extent[DVI_MESH_DIMENSION_MAX], wanted[DVI_MESH_DIMENSION_MAX], all = 1;
+  for (int a = 0; a < b->n; a++) {
+    const double mean = measure_axis(b, a, &extent[a]);
+    wanted[a] = fmin(fmax(extent[a] / mean, 1), cells);
+    all *= wanted[a];
+  }
+  while (all > cells) {
+    all = 1;
+    for (int a = 0; a < b->n; a++) {
+      wanted[a] = fmax(0.8 * wanted[a], 1);
+      all *= wanted[a];
+    }
+  }
   b->all = 1;
   for (int a = 0; a < b->n; a++) {
-    double least = INFINITY, most = -INFINITY;
-    for (int64_t v = 0; v < mesh->count[0]; v++) {
-      least = fmin(least, mesh->point[v * b->n + a]);
-      most = fmax(most, mesh->point[v * b->n + a]);
-    }
-    b->origin[a] = least;
-    b->count[a] = (int64_t)each;
-    b->width[a] = (mesh->period[a] > 0 ? mesh->period[a] : most - least) / each;
+    b->count[a] = (int64_t)wanted[a];
+    b->width[a] = extent[a] / (double)b->count[a];
     b->all *= b->count[a];
   }
 }
@@ -54,22 +94,20 @@ static int64_t wrap(const bins *b, int axis, int64_t bin)
 }
 
 /* Give the first and the last bin of a cell's bounding box along each axis. */
-static void bound_cell(const bins *b, int64_t cell, int64_t *first, int64_t *last)
+static void find_bins(const bins *b, int64_t cell, int64_t *first, int64_t *last)
 {
   const dvi_mesh *mesh = b->mesh;
-  const int corners = dvi__corners(mesh->kind, b->n), *corner = mesh->corner[b->n] + cell * corners;
-  double to[DVI_MESH_SPACE_MAX];
   for (int a = 0; a < b->n; a++) {
-    double least = 0, most = 0;
-    for (int c = 1; c < corners; c++) {
-      dvi__mesh_difference(mesh, corner[0], corner[c], to);
-      least = fmin(least, to[a]);
-      most = fmax(most, to[a]);
-    }
-    const double x = mesh->point[(int64_t)corner[0] * b->n + a], margin = 1e-9 * (most - least);
+    double least, most;
+    const double x = bound_cell(mesh, cell, a, &least, &most), margin = 1e-9 * (most - least);
     first[a] = bin_of(b, a, x + least - margin);
     last[a] = bin_of(b, a, x + most + margin);
-    if (last[a] - first[a] >= b->count[a]) last[a] = first[a] + b->count[a] - 1;
+    if (!(mesh->period[a] > 0)) {
+      first[a] = wrap(b, a, first[a]);
+      last[a] = wrap(b, a, last[a]);
+    } else if (last[a] - first[a] >= b->count[a]) {
+      last[a] = first[a] + b->count[a] - 1;
+    }
   }
 }
 
@@ -78,7 +116,7 @@ static void enter_cell(const bins *b, int64_t cell, int64_t *at, int *list)
 {
   int64_t first[DVI_MESH_DIMENSION_MAX], last[DVI_MESH_DIMENSION_MAX], bin[DVI_MESH_DIMENSION_MAX];
   int axis = 0;
-  bound_cell(b, cell, first, last);
+  find_bins(b, cell, first, last);
   memcpy(bin, first, (size_t)b->n * sizeof *bin);
   while (axis < b->n) {
     int64_t number = 0;

@@ -184,7 +184,7 @@ dvi_status dvi_mesh_create(const dvi_mesh_terms *terms, dvi_mesh **mesh)
   *mesh = NULL;
   if (terms->size != sizeof *terms)
     return dvi__fail(DVI_BAD_ARGUMENT, "mesh: set terms.size to sizeof(dvi_mesh_terms)");
-  const int space = terms->space > 0 ? terms->space : terms->dimension;
+  const int space = terms->space != 0 ? terms->space : terms->dimension;
   DVI_TRY(check_dimensions(terms, space));
   DVI_TRY(check_counts(terms));
   dvi_mesh *made = DVI_NEW(dvi_mesh, 1);
@@ -269,13 +269,14 @@ dvi_status dvi_mesh_centres(const dvi_mesh *mesh, int k, double *centre)
   double to[DVI_MESH_SPACE_MAX];
   if (mesh == NULL || centre == NULL || k < 0 || k > mesh->n)
     return dvi__fail(DVI_BAD_ARGUMENT, "mesh: there are no centres of degree %d", k);
-  const int space = mesh->space, width = k > 0 ? dvi__corners(mesh->kind, k) : 1;
+  const int space = mesh->space, width = k > 0 ? dvi__corners(mesh->kind, k) : 1,
+            *corner = mesh->corner[k];
   for (int64_t cell = 0; cell < mesh->count[k]; cell++) {
-    const int first = k > 0 ? mesh->corner[k][cell * width] : (int)cell;
+    const int first = corner != NULL ? corner[cell * width] : (int)cell;
     double *x = centre + cell * space;
     memcpy(x, mesh->point + (int64_t)first * space, (size_t)space * sizeof *x);
     for (int c = 1; c < width; c++) {
-      dvi__mesh_difference(mesh, first, mesh->corner[k][cell * width + c], to);
+      dvi__mesh_difference(mesh, first, corner[cell * width + c], to);
       for (int l = 0; l < space; l++) x[l] += to[l] / width;
     }
   }

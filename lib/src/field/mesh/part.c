@@ -68,20 +68,27 @@ static dvi_status find_by_number(const dvi_mesh *mesh, const dvi_mesh_part *decl
       declared->name, (long long)*cell, declared->degree, (long long)mesh->count[declared->degree]);
 }
 
-/* The n-cells, which are not sorted, are known by those of one facet. */
+static int has_vertices(const dvi_mesh *mesh, int64_t cell, const int *vertex)
+{
+  const int corners = dvi__corners(mesh->kind, mesh->n);
+  return cell >= 0 && dvi__relative_orientation(mesh->kind, mesh->n, vertex,
+                                                mesh->corner[mesh->n] + cell * corners) != 0;
+}
+
+/* The n-cells, which are not sorted, are known by those of one facet. A facet with more than two
+ * cells does not know all of them. */
 static int64_t find_whole_cell(const dvi_mesh *mesh, const int *vertex)
 {
-  const int n = mesh->n, corners = dvi__corners(mesh->kind, n);
+  const int n = mesh->n;
   int local[DVI__FACET_CORNERS], facet[DVI__FACET_CORNERS];
   dvi__facet_corners(mesh->kind, n, 0, local);
   for (int c = 0; c < dvi__corners(mesh->kind, n - 1); c++) facet[c] = vertex[local[c]];
   const int64_t at = dvi__complex_find(mesh, n - 1, facet);
-  for (int i = 0; at >= 0 && i < 2; i++) {
-    const int cell = mesh->coface[2 * at + i];
-    if (cell >= 0 && dvi__relative_orientation(mesh->kind, n, vertex,
-                                               mesh->corner[n] + (size_t)cell * (size_t)corners))
-      return cell;
-  }
+  for (int i = 0; at >= 0 && i < 2; i++)
+    if (has_vertices(mesh, mesh->coface[2 * at + i], vertex)) return mesh->coface[2 * at + i];
+  const int64_t all = at >= 0 && mesh->branching >= 0 ? mesh->count[n] : 0;
+  for (int64_t cell = 0; cell < all; cell++)
+    if (has_vertices(mesh, cell, vertex)) return cell;
   return -1;
 }
 
@@ -221,6 +228,8 @@ void dvi__parts_clear(dvi_mesh *mesh)
 const int *dvi_mesh_part_cells(const dvi_mesh *mesh, const char *name, int k, int64_t *count)
 {
   int p = 0;
+  int64_t unasked;
+  if (count == NULL) count = &unasked;
   *count = -1;
   if (mesh == NULL || name == NULL || k < 0 || k > mesh->n) return NULL;
   while (p < mesh->parts && strcmp(mesh->part[p].name, name) != 0) p++;

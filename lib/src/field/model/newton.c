@@ -20,6 +20,15 @@ static dvi_status refuse(int failed)
                    "field: the potential returned %d", failed);
 }
 
+/* Refuse a derivative of the potential that is not finite. */
+static dvi_status check(const dvi_field *f, const double *derivative)
+{
+  for (int64_t i = 0; i < f->unknowns; i++)
+    DVI_TRY(dvi__field_check_datum(f, "derivative of the potential", 0, derivative[i], 0,
+                                   f->unknown[i]));
+  return DVI_OK;
+}
+
 static dvi_status residual(void *of, const double *x, double *r)
 {
   const dvi_field *f = ((const statics *)of)->field;
@@ -27,6 +36,7 @@ static dvi_status residual(void *of, const double *x, double *r)
   const dvi__density density = {.first = ((statics *)of)->second};
   const int failed = dvi__field_density(f, x, 0, f->unknowns, &density);
   if (failed != 0) return refuse(failed);
+  DVI_TRY(check(f, density.first));
   dvi_matrix_multiply(&K, 0, x, r);
   for (int64_t i = 0; i < f->unknowns; i++) r[i] += density.first[i] - f->load[i];
   return DVI_OK;
@@ -39,6 +49,7 @@ static dvi_status jacobian(void *of, const double *x, double *values)
   const dvi__density density = {.second = s->second};
   const int failed = dvi__field_density(s->field, x, 0, s->field->unknowns, &density);
   if (failed != 0) return refuse(failed);
+  DVI_TRY(check(s->field, s->second));
   memcpy(values, K->value, (size_t)K->start[K->rows] * sizeof *values);
   for (int64_t i = 0; i < K->rows; i++) values[dvi__csr_find(K, i, (int)i)] += s->second[i];
   return DVI_OK;

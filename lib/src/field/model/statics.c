@@ -198,11 +198,23 @@ static dvi_status solve_linear(statics *s)
   return DVI_OK;
 }
 
+/* Numbers are scaled, so that their squares do not overflow. */
 static double length(int64_t n, const double *x)
 {
-  double sum = 0;
-  for (int64_t i = 0; i < n; i++) sum += x[i] * x[i];
-  return sqrt(sum);
+  double sum = 0, most = 0;
+  for (int64_t i = 0; i < n; i++) most = fmax(most, fabs(x[i]));
+  for (int64_t i = 0; i < n && most > 0; i++) sum += x[i] / most * (x[i] / most);
+  return most * sqrt(sum);
+}
+
+static dvi_status check_finite(const statics *s)
+{
+  for (int64_t i = 0; i < s->field->unknowns; i++)
+    DVI_TRY(dvi__field_check_datum(s->field, "solution", 0, s->x[i], 0, s->field->unknown[i]));
+  return isfinite(s->report.residual)
+             ? DVI_OK
+             : dvi__fail(DVI_NOT_FINITE, "field: the residual of the solution is %g",
+                         s->report.residual);
 }
 
 /* Set the residual beside b. With a potential it is the one that Newton's method left. */
@@ -230,6 +242,7 @@ static dvi_status solve(statics *s, double *u)
     DVI_TRY(solve_linear(s));
     measure(s);
   }
+  DVI_TRY(check_finite(s));
   return dvi_field_lift(f, s->x, u);
 }
 

@@ -89,13 +89,23 @@ static dvi_status make_mass(dvi_field *field)
   return select_unknowns(field, &M, &field->mass);
 }
 
-/* Leave out what roundings made of zeros, as at the edges of Kuhn's simplices without a dual. */
+static double diagonal_of(const dvi__csr *matrix, int64_t i)
+{
+  const int64_t at = dvi__csr_find(matrix, i, (int)i);
+  return at >= 0 ? fabs(matrix->value[at]) : 0;
+}
+
+/* Leave out what roundings made of zeros, as at the edges of Kuhn's simplices without a dual. Beside
+ * the entries of their own row and column they are roundings, however stiff other places are. */
 static void drop_roundings(dvi__csr *matrix)
 {
-  double most = 0;
-  for (int64_t e = 0; e < matrix->start[matrix->rows]; e++)
-    most = fmax(most, fabs(matrix->value[e]));
-  dvi__csr_drop(matrix, 1e-15 * most);
+  for (int64_t i = 0; i < matrix->rows; i++)
+    for (int64_t e = matrix->start[i]; e < matrix->start[i + 1]; e++) {
+      const int j = matrix->column[e];
+      const double least = fmin(diagonal_of(matrix, i), diagonal_of(matrix, j));
+      if (j != i && fabs(matrix->value[e]) < 1e-15 * least) matrix->value[e] = 0;
+    }
+  dvi__csr_drop_zeros(matrix);
 }
 
 /* The load gets minus the columns of the fixed values f. Their own energy, f.K f/2 - load.f with
@@ -187,6 +197,8 @@ static dvi_status make_equations(dvi_field *field, const dvi_wave_terms *terms)
   for (int64_t i = 0; i < field->unknowns && status == DVI_OK; i++) {
     const int64_t v = field->unknown[i];
     field->load[i] = load[v];
+    status = dvi__field_check_datum(field, "sum of source, flux and fixed values", 0, load[v], 0,
+                                    v);
     memcpy(field->point + i * space, field->mesh->point + v * space,
            (size_t)space * sizeof(double));
   }
