@@ -39,11 +39,11 @@ int main(void)
   double *form = NULL, *vector = NULL;
   dvi_status status = dvi_mesh_generate("annulus", NULL, &mesh);
   if (!status) status = dvi_star_create(mesh, NULL, &star);
-  if (!status) status = dvi_form_harmonic(star, 1, DVI_ABSOLUTE, &holes, NULL);
+  if (!status) status = dvi_form_harmonic(star, 1, NULL, &holes, NULL);
   form = (double *)calloc((size_t)(holes * dvi_mesh_count(mesh, 1)) + 1, sizeof *form);
   vector = (double *)calloc(2 * (size_t)dvi_mesh_count(mesh, 2) + 1, sizeof *vector);
   if (!status && (form == NULL || vector == NULL)) status = DVI_NO_MEMORY;
-  if (!status) status = dvi_form_harmonic(star, 1, DVI_ABSOLUTE, &holes, form);
+  if (!status) status = dvi_form_harmonic(star, 1, NULL, &holes, form);
   if (!status) status = interpolate(mesh, form, vector);
   const dvi_view view = {.name = "field", .values = vector, .components = 2, .degree = 2};
   if (!status) status = dvi_mesh_write(mesh, "hole.vtu", 1, &view);

@@ -139,36 +139,31 @@ dvi_status dvi_form_codifferential_create(const dvi_star *star, int k, dvi_matri
  *  @retval DVI_SINGULAR     an entry of M_{k-1} is zero */
 dvi_status dvi_form_laplacian_create(const dvi_star *star, int k, dvi_matrix **laplacian);
 
-/** Boundary conditions of forms. */
-typedef enum dvi_form_boundary {
-  DVI_ABSOLUTE, /**< natural ones: nothing is prescribed on the boundary's cells */
-  DVI_RELATIVE  /**< essential ones: forms vanish on the boundary's cells */
-} dvi_form_boundary;
-
 /** Split a k-form into three parts that are orthogonal in M_k (Hodge's decomposition),
  *
  *      form = d a + delta b + h,     d h = 0, delta h = 0.
  *
- *  With DVI_RELATIVE all forms vanish on the boundary's cells, and the form's entries there are
- *  taken as 0. M_k is positive definite.
+ *  All forms vanish on the cells of the part `held` of the mesh, where the form's entries are taken
+ *  as 0. Elsewhere on the boundary nothing is prescribed, and conditions are natural. With NULL
+ *  nothing is held (absolute conditions), and with "boundary" all of it is (relative conditions).
+ *  M_k is positive definite.
  *
  *  @param[out] exact, coexact, harmonic  [k-cells] the parts. Each may be NULL
- *  @retval DVI_BAD_ARGUMENT   an argument is missing, or k is out of range
+ *  @retval DVI_BAD_ARGUMENT   an argument is missing, k is out of range, or there is no such part
  *  @retval DVI_NOT_FINITE     the form is not finite, or its square overflows
  *  @retval DVI_SINGULAR       a star is not positive definite. The barycentric and Whitney's stars
  *                             are
  *  @retval DVI_NOT_CONVERGED  an iteration left too much of its right side
  *  @retval DVI_NO_MEMORY      there is no memory */
-dvi_status dvi_form_decompose(const dvi_star *star, int k, dvi_form_boundary boundary,
-                              const double *form, double *exact, double *coexact, double *harmonic);
+dvi_status dvi_form_decompose(const dvi_star *star, int k, const char *held, const double *form, double *exact, double *coexact, double *harmonic);
 
-/** Return the number of independent harmonic k-forms: the Betti number b_k, and with DVI_RELATIVE
- *  b_{n-k} on an orientable mesh.
+/** Return the number of independent harmonic k-forms: the Betti number b_k, and on an orientable
+ *  mesh whose whole boundary is held b_{n-k}.
  *
  *  @param[out] count  the number
  *  @param[out] basis  [count][k-cells] forms that are orthonormal in M_k. NULL to count only
  *  @retval (others)   as dvi_form_decompose */
-dvi_status dvi_form_harmonic(const dvi_star *star, int k, dvi_form_boundary boundary,
+dvi_status dvi_form_harmonic(const dvi_star *star, int k, const char *held,
                              int64_t *count, double *basis);
 
 /** Solve L_k u = f for a k-form u without a harmonic part, by conjugate gradients.
@@ -179,7 +174,7 @@ dvi_status dvi_form_harmonic(const dvi_star *star, int k, dvi_form_boundary boun
  *  @param[out] u  [k-cells]
  *  @retval DVI_BAD_ARGUMENT  f has a harmonic part above 1e-8 of f. dvi_last_error() has its size
  *  @retval (others)          as dvi_form_decompose */
-dvi_status dvi_form_solve(const dvi_star *star, int k, dvi_form_boundary boundary, const double *f,
+dvi_status dvi_form_solve(const dvi_star *star, int k, const char *held, const double *f,
                           double *u);
 
 #ifdef __cplusplus

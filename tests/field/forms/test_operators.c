@@ -1,6 +1,7 @@
 /* Codifferentials, Laplacians, Hodge's decomposition, harmonic forms. */
 #include <dvi/forms.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -120,17 +121,17 @@ END_TEST
 
 /* ---- decompositions ---- */
 
-static void check_decomposition(const dvi_star *star, int k, dvi_form_boundary boundary)
+static void check_decomposition(const dvi_star *star, int k, const char *held)
 {
   const dvi_mesh *mesh = dvi_star_mesh(star);
   const int64_t count = dvi_mesh_count(mesh, k);
   double *part[3], *form = random_form(mesh, k, 5);
-  int64_t held = 0;
-  const int *cell = dvi_mesh_part_cells(mesh, "boundary", k, &held);
-  for (int64_t i = 0; i < held && boundary == DVI_RELATIVE; i++) form[cell[i]] = 0;
+  int64_t cells = 0;
+  const int *cell = held != NULL ? dvi_mesh_part_cells(mesh, held, k, &cells) : NULL;
+  for (int64_t i = 0; i < cells; i++) form[cell[i]] = 0;
   for (int i = 0; i < 3; i++) part[i] = malloc((size_t)count * sizeof(double));
-  ck_assert_msg(dvi_form_decompose(star, k, boundary, form, part[0], part[1], part[2]) == DVI_OK,
-                "%s", dvi_last_error());
+  ck_assert_msg(dvi_form_decompose(star, k, held, form, part[0], part[1], part[2]) == DVI_OK, "%s",
+                dvi_last_error());
   const double whole = length(star, k, form);
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < i; j++)
@@ -145,8 +146,8 @@ static void check_all_decompositions(dvi_mesh *mesh, dvi_star_kind kind)
 {
   dvi_star *star = star_of(mesh, kind);
   for (int k = 0; k <= dvi_mesh_dimension(mesh); k++) {
-    check_decomposition(star, k, DVI_ABSOLUTE);
-    if (kind == DVI_CIRCUMCENTRIC) check_decomposition(star, k, DVI_RELATIVE);
+    check_decomposition(star, k, NULL);
+    check_decomposition(star, k, "boundary");
   }
   dvi_star_destroy(&star);
   dvi_mesh_destroy(&mesh);
@@ -169,8 +170,7 @@ START_TEST(torus_has_as_many_harmonic_forms_as_its_betti_numbers)
   dvi_star *star = star_of(mesh, DVI_WHITNEY);
   for (int k = 0; k <= 3; k++) {
     int64_t count = 0;
-    ck_assert_msg(dvi_form_harmonic(star, k, DVI_ABSOLUTE, &count, NULL) == DVI_OK, "%s",
-                  dvi_last_error());
+    ck_assert_msg(dvi_form_harmonic(star, k, NULL, &count, NULL) == DVI_OK, "%s", dvi_last_error());
     ck_assert_int_eq(count, betti[k]);
   }
   dvi_star_destroy(&star);
@@ -220,13 +220,63 @@ START_TEST(hole_has_one_harmonic_field_of_each_kind)
     dvi_star *star = star_of(mesh, kinds[i]);
     for (int k = 0; k <= 2; k++) {
       int64_t count = 0;
-      ck_assert_int_eq(dvi_form_harmonic(star, k, DVI_ABSOLUTE, &count, NULL), DVI_OK);
+      ck_assert_int_eq(dvi_form_harmonic(star, k, NULL, &count, NULL), DVI_OK);
       ck_assert_int_eq(count, absolute[k]);
-      ck_assert_int_eq(dvi_form_harmonic(star, k, DVI_RELATIVE, &count, NULL), DVI_OK);
+      ck_assert_int_eq(dvi_form_harmonic(star, k, "boundary", &count, NULL), DVI_OK);
       ck_assert_int_eq(count, relative[k]);
     }
     dvi_star_destroy(&star);
   }
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
+/* Where one rim of an annulus is held and the other one is free, there is no harmonic form. */
+START_TEST(mixed_conditions_leave_no_harmonic_form)
+{
+  static const dvi_star_kind kinds[] = {DVI_CIRCUMCENTRIC, DVI_WHITNEY};
+  dvi_mesh *mesh = generated("annulus", 0, 0);
+  for (int i = 0; i < 2; i++) {
+    dvi_star *star = star_of(mesh, kinds[i]);
+    for (int k = 0; k <= 2; k++) {
+      int64_t count = -1, held;
+      double *f = random_form(mesh, k, 3), *u = random_form(mesh, k, 1);
+      ck_assert_int_eq(dvi_form_harmonic(star, k, "inner", &count, NULL), DVI_OK);
+      ck_assert_int_eq(count, 0);
+      check_decomposition(star, k, "inner");
+      ck_assert_msg(dvi_form_solve(star, k, "inner", f, u) == DVI_OK, "%s", dvi_last_error());
+      const int *cell = dvi_mesh_part_cells(mesh, "inner", k, &held);
+      for (int64_t j = 0; j < held; j++) ck_assert(u[cell[j]] == 0);
+      free(f), free(u);
+    }
+    dvi_star_destroy(&star);
+  }
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
+/* K u = M_0 f at all vertices that are not held. */
+START_TEST(mixed_problems_of_functions_are_solved)
+{
+  dvi_mesh *mesh = generated("annulus", 0, 0);
+  dvi_star *star = star_of(mesh, DVI_CIRCUMCENTRIC);
+  double *f = random_form(mesh, 0, 3), *u = random_form(mesh, 0, 1), *Ku = random_form(mesh, 0, 1);
+  int64_t held, at = 0;
+  dvi_matrix *K = NULL;
+  dvi_matrix M;
+  const int *vertex = dvi_mesh_part_cells(mesh, "inner", 0, &held);
+  ck_assert_int_eq(dvi_form_solve(star, 0, "inner", f, u), DVI_OK);
+  ck_assert_int_eq(dvi_form_laplacian_create(star, 0, &K), DVI_OK);
+  ck_assert_int_eq(dvi_star_matrix(star, 0, &M), DVI_OK);
+  dvi_matrix_multiply(K, 0, u, Ku);
+  for (int64_t v = 0; v < K->rows; v++) {
+    const bool is_held = at < held && vertex[at] == v;
+    at += is_held;
+    if (!is_held) ck_assert_double_eq_tol(Ku[v], M.value[v] * f[v], 1e-12);
+  }
+  free(f), free(u), free(Ku);
+  dvi_matrix_destroy(&K);
+  dvi_star_destroy(&star);
   dvi_mesh_destroy(&mesh);
 }
 END_TEST
@@ -243,7 +293,7 @@ START_TEST(relative_form_is_closed_and_coclosed)
          *delta = random_form(mesh, 0, 1);
   int64_t count = 0, held;
   dvi_matrix M, d0, d1;
-  ck_assert_int_eq(dvi_form_harmonic(star, 1, DVI_RELATIVE, &count, h), DVI_OK);
+  ck_assert_int_eq(dvi_form_harmonic(star, 1, "boundary", &count, h), DVI_OK);
   ck_assert_int_eq(dvi_star_matrix(star, 1, &M), DVI_OK);
   ck_assert_int_eq(dvi_mesh_incidence(mesh, 0, &d0), DVI_OK);
   ck_assert_int_eq(dvi_mesh_incidence(mesh, 1, &d1), DVI_OK);
@@ -275,9 +325,9 @@ static void check_solution(const dvi_star *star, int k)
   double *f = random_form(mesh, k, 11), *h = random_form(mesh, k, 1), *u = random_form(mesh, k, 1),
          *Lu = random_form(mesh, k, 1);
   dvi_matrix *L = NULL;
-  ck_assert_int_eq(dvi_form_decompose(star, k, DVI_ABSOLUTE, f, NULL, NULL, h), DVI_OK);
+  ck_assert_int_eq(dvi_form_decompose(star, k, NULL, f, NULL, NULL, h), DVI_OK);
   for (int64_t i = 0; i < count; i++) f[i] -= h[i];
-  ck_assert_msg(dvi_form_solve(star, k, DVI_ABSOLUTE, f, u) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_form_solve(star, k, NULL, f, u) == DVI_OK, "%s", dvi_last_error());
   ck_assert_int_eq(dvi_form_laplacian_create(star, k, &L), DVI_OK);
   dvi_matrix_multiply(L, 0, u, Lu);
   ck_assert_int_eq(dvi_star_solve(star, k, Lu), DVI_OK);
@@ -302,9 +352,9 @@ START_TEST(harmonic_right_side_is_refused)
   dvi_star *star = star_of(mesh, DVI_CIRCUMCENTRIC);
   double *f = random_form(mesh, 0, 11), *u = random_form(mesh, 0, 11);
   for (int64_t i = 0; i < dvi_mesh_count(mesh, 0); i++) f[i] = 1;
-  ck_assert_int_eq(dvi_form_solve(star, 0, DVI_ABSOLUTE, f, u), DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_form_solve(star, 0, NULL, f, u), DVI_BAD_ARGUMENT);
   ck_assert_ptr_nonnull(strstr(dvi_last_error(), "harmonic part"));
-  ck_assert_int_eq(dvi_form_solve(star, 0, DVI_RELATIVE, f, u), DVI_OK);
+  ck_assert_int_eq(dvi_form_solve(star, 0, "boundary", f, u), DVI_OK);
   free(f), free(u);
   dvi_star_destroy(&star);
   dvi_mesh_destroy(&mesh);
@@ -320,11 +370,10 @@ START_TEST(stars_that_are_not_definite_are_refused)
   double *b = random_form(mesh, 1, 1);
   const dvi_status solved = dvi_star_solve(star, 1, b);
   ck_assert_int_eq(solved, DVI_SINGULAR);
-  ck_assert_int_eq(dvi_form_decompose(star, 1, DVI_ABSOLUTE, b, NULL, NULL, b), DVI_SINGULAR);
+  ck_assert_int_eq(dvi_form_decompose(star, 1, NULL, b, NULL, NULL, b), DVI_SINGULAR);
   ck_assert_ptr_nonnull(strstr(dvi_last_error(), "edge"));
   ck_assert_ptr_nonnull(strstr(dvi_last_error(), "--repair"));
-  ck_assert_int_eq(dvi_form_decompose(star, 0, (dvi_form_boundary)7, b, NULL, NULL, b),
-                   DVI_BAD_ARGUMENT);
+  ck_assert_int_eq(dvi_form_decompose(star, 0, "rim", b, NULL, NULL, b), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_form_codifferential_create(star, 2, &matrix), DVI_SINGULAR);
   ck_assert_ptr_null(matrix);
   ck_assert_ptr_nonnull(strstr(dvi_last_error(), "edge"));
@@ -346,6 +395,8 @@ SUITE(operators)
   tcase_add_test(tests, parts_of_a_form_are_orthogonal_and_add_up);
   tcase_add_test(tests, torus_has_as_many_harmonic_forms_as_its_betti_numbers);
   tcase_add_test(tests, hole_has_one_harmonic_field_of_each_kind);
+  tcase_add_test(tests, mixed_conditions_leave_no_harmonic_form);
+  tcase_add_test(tests, mixed_problems_of_functions_are_solved);
   tcase_add_test(tests, relative_form_is_closed_and_coclosed);
   tcase_add_test(tests, poisson_problems_are_solved_in_every_degree);
   tcase_add_test(tests, harmonic_right_side_is_refused);

@@ -4,7 +4,7 @@
  *     coexact part  M_k^-1 d^T y,    d M_k^-1 d^T y = d form                        (degree k+1)
  *
  * Both matrices are semidefinite, and the right sides lie in their ranges. Entries on the
- * boundary's cells are held at zero for relative conditions (Hirani 2003, ch. 6; Desbrun et al.
+ * held cells are zero (Hirani 2003, ch. 6; Desbrun et al.
  * 2005). */
 #include <math.h>
 #include <string.h>
@@ -20,12 +20,12 @@ static const double roundoff = 1e-15;
 void dvi__hodge_hold(const dvi__hodge *h, int degree, double *form)
 {
   int64_t count = 0;
-  const int *cell = h->relative ? dvi_mesh_part_cells(h->star->mesh, "boundary", degree, &count)
-                                : NULL;
+  const int *cell = h->held != NULL ? dvi_mesh_part_cells(h->star->mesh, h->held, degree, &count)
+                                    : NULL;
   for (int64_t i = 0; i < count; i++) form[cell[i]] = 0;
 }
 
-/* M of a degree among the forms that are held at zero on the boundary. */
+/* M of a degree among the forms that vanish on the held cells. */
 typedef struct held_star {
   const dvi__hodge *h;
   int degree;
@@ -40,7 +40,7 @@ static dvi_status times_held(void *of, const double *x, double *y)
   return DVI_OK;
 }
 
-/* A full star couples the boundary's cells to the others. */
+/* A full star couples the held cells to the others. */
 static dvi_status divide_among_held(const dvi__hodge *h, int degree, double *form)
 {
   held_star s = {.h = h, .degree = degree};
@@ -56,7 +56,8 @@ static dvi_status divide_among_held(const dvi__hodge *h, int degree, double *for
 dvi_status dvi__hodge_divide(const dvi__hodge *h, int degree, double *form)
 {
   dvi__hodge_hold(h, degree, form);
-  if (h->relative && h->star->diagonal[degree] == NULL) return divide_among_held(h, degree, form);
+  if (h->held != NULL && h->star->diagonal[degree] == NULL)
+    return divide_among_held(h, degree, form);
   return dvi_star_solve(h->star, degree, form);
 }
 
@@ -156,7 +157,15 @@ static dvi_status check_definite(const dvi_star *star, int k)
   return DVI_OK;
 }
 
-dvi_status dvi__hodge_begin(const dvi_star *star, int k, dvi_form_boundary boundary, dvi__hodge *h)
+static dvi_status check_held(const dvi_mesh *mesh, const char *held)
+{
+  int64_t count = 0;
+  if (held != NULL) (void)dvi_mesh_part_cells(mesh, held, 0, &count);
+  if (count >= 0) return DVI_OK;
+  return dvi__fail(DVI_BAD_ARGUMENT, "forms: the mesh has no part \"%s\" to be held", held);
+}
+
+dvi_status dvi__hodge_begin(const dvi_star *star, int k, const char *held, dvi__hodge *h)
 {
   if (star == NULL || k < 0 || k > star->mesh->n)
     return dvi__fail(DVI_BAD_ARGUMENT,
@@ -164,10 +173,9 @@ dvi_status dvi__hodge_begin(const dvi_star *star, int k, dvi_form_boundary bound
                      "%d",
                      star != NULL ? star->mesh->n : 0, k);
   const dvi_mesh *mesh = star->mesh;
-  if (boundary != DVI_ABSOLUTE && boundary != DVI_RELATIVE)
-    return dvi__fail(DVI_BAD_ARGUMENT, "forms: there is no boundary condition %d", (int)boundary);
+  DVI_TRY(check_held(mesh, held));
   DVI_TRY(check_definite(star, k));
-  *h = (dvi__hodge){.star = star, .k = k, .relative = boundary == DVI_RELATIVE};
+  *h = (dvi__hodge){.star = star, .k = k, .held = held};
   h->count = mesh->count[k];
   if (k > 0) h->below = mesh->count[k - 1];
   if (k < mesh->n) h->above = mesh->count[k + 1];
@@ -211,12 +219,12 @@ static void copy_part(const double *part, int64_t count, double *to)
   if (to != NULL) memcpy(to, part, (size_t)count * sizeof *part);
 }
 
-dvi_status dvi_form_decompose(const dvi_star *star, int k, dvi_form_boundary boundary,
-                              const double *form, double *exact, double *coexact, double *harmonic)
+dvi_status dvi_form_decompose(const dvi_star *star, int k, const char *held, const double *form,
+                              double *exact, double *coexact, double *harmonic)
 {
   dvi__hodge h;
   if (form == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "forms: a form is needed");
-  DVI_TRY(dvi__hodge_begin(star, k, boundary, &h));
+  DVI_TRY(dvi__hodge_begin(star, k, held, &h));
   double *part = DVI_NEW(double, 3 * h.count);
   dvi_status status = part != NULL ? dvi__hodge_split(&h, form, part)
                                    : dvi__fail(DVI_NO_MEMORY, "forms: no memory");

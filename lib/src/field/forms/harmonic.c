@@ -70,13 +70,13 @@ static dvi_status find_basis(dvi__hodge *h, int64_t *count, double **basis)
   return status;
 }
 
-dvi_status dvi_form_harmonic(const dvi_star *star, int k, dvi_form_boundary boundary,
-                             int64_t *count, double *basis)
+dvi_status dvi_form_harmonic(const dvi_star *star, int k, const char *held, int64_t *count,
+                             double *basis)
 {
   dvi__hodge h;
   double *found = NULL;
   if (count == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "forms: a place for the count is needed");
-  DVI_TRY(dvi__hodge_begin(star, k, boundary, &h));
+  DVI_TRY(dvi__hodge_begin(star, k, held, &h));
   const dvi_status status = find_basis(&h, count, &found);
   if (status == DVI_OK && basis != NULL)
     memcpy(basis, found, (size_t)(*count * h.count) * sizeof *basis);

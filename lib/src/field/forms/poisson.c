@@ -95,13 +95,12 @@ static int64_t larger(int64_t a, int64_t b)
   return a > b ? a : b;
 }
 
-dvi_status dvi_form_solve(const dvi_star *star, int k, dvi_form_boundary boundary, const double *f,
-                          double *u)
+dvi_status dvi_form_solve(const dvi_star *star, int k, const char *held, const double *f, double *u)
 {
   poisson p = {0};
   if (f == NULL || u == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "forms: the right side and the solution are needed");
-  DVI_TRY(dvi__hodge_begin(star, k, boundary, &p.hodge));
+  DVI_TRY(dvi__hodge_begin(star, k, held, &p.hodge));
   const int64_t size = larger(p.hodge.below, p.hodge.above);
   p.form = DVI_NEW(double, 2 * size + 1);
   p.flux = p.form + size;
