@@ -5,7 +5,7 @@
 
 /** What may help a mesh. A report has the sum of those that apply. */
 typedef enum dvi_mesh_advice {
-  DVI_ADVICE_FLIP = 1, /**< inner edges of triangles have negative duals: flip them (dvi_mesh_flip) */
+  DVI_ADVICE_FLIP = 1, /**< inner edges of triangles have negative duals: dvi_mesh_flip */
   /** as many simplices have one circumcentre as if they were boxes: glue them (dvi_mesh_glue) */
   DVI_ADVICE_GLUE = 2,
   DVI_ADVICE_STAR = 4 /**< dual cells are negative, or vanish: take another star */

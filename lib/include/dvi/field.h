@@ -134,8 +134,8 @@ const double *dvi_field_load(const dvi_field *field);
  *  @retval DVI_BAD_ARGUMENT   no value is fixed, and the right side's sum is not zero, so that no
  *                             solution exists. dvi_last_error() has the sum
  *  @retval DVI_SINGULAR       K is not positive definite
- *  @retval DVI_CALLBACK_FAILED, DVI_CALLBACK_RETRY  the potential returned a negative, or a positive
- *                             number
+ *  @retval DVI_CALLBACK_FAILED, DVI_CALLBACK_RETRY  the potential returned a negative number, or a
+ *                             positive one
  *  @retval DVI_NOT_FINITE     a derivative of the potential, or the solution, is not finite
  *  @retval DVI_NOT_CONVERGED  an iteration stopped above its tolerance
  *  @retval DVI_NO_MEMORY      there is no memory */

@@ -155,7 +155,8 @@ dvi_status dvi_form_laplacian_create(const dvi_star *star, int k, dvi_matrix **l
  *                             are
  *  @retval DVI_NOT_CONVERGED  an iteration left too much of its right side
  *  @retval DVI_NO_MEMORY      there is no memory */
-dvi_status dvi_form_decompose(const dvi_star *star, int k, const char *held, const double *form, double *exact, double *coexact, double *harmonic);
+dvi_status dvi_form_decompose(const dvi_star *star, int k, const char *held, const double *form,
+                              double *exact, double *coexact, double *harmonic);
 
 /** Return the number of independent harmonic k-forms: the Betti number b_k, and on an orientable
  *  mesh whose whole boundary is held b_{n-k}.
@@ -163,8 +164,8 @@ dvi_status dvi_form_decompose(const dvi_star *star, int k, const char *held, con
  *  @param[out] count  the number
  *  @param[out] basis  [count][k-cells] forms that are orthonormal in M_k. NULL to count only
  *  @retval (others)   as dvi_form_decompose */
-dvi_status dvi_form_harmonic(const dvi_star *star, int k, const char *held,
-                             int64_t *count, double *basis);
+dvi_status dvi_form_harmonic(const dvi_star *star, int k, const char *held, int64_t *count,
+                             double *basis);
 
 /** Solve L_k u = f for a k-form u without a harmonic part, by conjugate gradients.
  *

@@ -351,8 +351,8 @@ static double largest_root(const dvi__pencil *pencil)
   return (b + sqrt(fmax(b * b - 4 * a * c, 0))) / (2 * a);
 }
 
-/* The largest sum of the entries' sizes in a row of M^-1 K bounds the eigenvalues, if M is diagonal.
- * Infinite for other masses. */
+/* The largest sum of the entries' sizes in a row of M^-1 K bounds the eigenvalues. Infinite if M is
+ * not diagonal. */
 static double bound_by_rows(const dvi__pencil *pencil)
 {
   const dvi_matrix *K = pencil->K, *M = pencil->M;

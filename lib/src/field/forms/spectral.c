@@ -86,8 +86,8 @@ static dvi_status place_cell(grid *g, int64_t cell)
   return DVI_OK;
 }
 
-/* The symbol is even in j, so that the sum is over cosines, and even in m. The second half is copied
- * from the first, which makes the matrix symmetric to the bit. */
+/* The symbol is even in j, so that the sum is over cosines, and even in m. The second half is a copy
+ * of the first, which makes the matrix symmetric to the bit. */
 static void fill_circulant(int count, double h, int of_cells, double *circulant)
 {
   for (int m = 0; 2 * m <= count; m++) {

@@ -95,8 +95,8 @@ static double diagonal_of(const dvi__csr *matrix, int64_t i)
   return at >= 0 ? fabs(matrix->value[at]) : 0;
 }
 
-/* Leave out what roundings made of zeros, as at the edges of Kuhn's simplices without a dual. Beside
- * the entries of their own row and column they are roundings, however stiff other places are. */
+/* Leave out what roundings made of zeros, as at the edges of Kuhn's simplices without a dual. They
+ * are judged beside their own row and column, because other places may be much stiffer. */
 static void drop_roundings(dvi__csr *matrix)
 {
   for (int64_t i = 0; i < matrix->rows; i++)
