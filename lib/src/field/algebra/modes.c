@@ -14,45 +14,28 @@
 #include "core/status.h"
 #include "num/eigen.h"
 
-enum { MULTIPLY = 1, INVERT_SHIFTED = -1, MASS = 2, DONE = 99, RESTARTS = 1000 };
-enum { STANDARD = 1, REGULAR_INVERSE = 2, SHIFT_INVERT = 3 };
+enum { MULTIPLY = 1, MASS = 2, DONE = 99, RESTARTS = 1000, SHIFT_INVERT = 3 };
 
 static pthread_mutex_t arpack = PTHREAD_MUTEX_INITIALIZER;
 
 typedef struct lanczos {
   const dvi__pencil *pencil;
-  const dvi__definite *inverse; /* of K - shift M, or of M */
-  const char *which;
-  int mode, count, directions;
-  double shift, tolerance;
+  const dvi__definite *inverse; /* of K - shift M */
+  int count, directions;
+  double shift;
   double *residual, *basis, *places, *work, *product;
   a_int setting[11], place[11];
 } lanczos;
 
 /* ---- products ---- */
 
-/* Set y to (K - shift M)^-1 M x, or to M^-1 K x. ARPACK may have left M x at `known`. */
-static dvi_status apply(const lanczos *s, double *x, const double *known, double *y)
-{
-  if (s->mode == SHIFT_INVERT) {
-    if (known == NULL) dvi_matrix_multiply(s->pencil->M, 0, x, s->product);
-    return dvi__definite_solve(s->inverse, known != NULL ? known : s->product, y, NULL);
-  }
-  dvi_matrix_multiply(s->pencil->K, 0, x, s->product);
-  memcpy(x, s->product, (size_t)s->pencil->K->rows * sizeof *x); /* as ARPACK wants it in mode 2 */
-  return dvi__definite_solve(s->inverse, s->product, y, NULL);
-}
-
+/* Set y to M x, or to (K - shift M)^-1 M x, for which ARPACK may have left M x at a third place. */
 static dvi_status answer(const lanczos *s, int asked)
 {
   double *x = s->places + s->place[0] - 1, *y = s->places + s->place[1] - 1;
-  if (asked == MASS) {
-    dvi_matrix_multiply(s->pencil->M, 0, x, y);
-    return DVI_OK;
-  }
-  const double *known = asked == MULTIPLY && s->mode == SHIFT_INVERT ? s->places + s->place[2] - 1
-                                                                     : NULL;
-  return apply(s, x, known, y);
+  const double *Mx = asked == MULTIPLY ? s->places + s->place[2] - 1 : s->product;
+  if (asked != MULTIPLY) dvi_matrix_multiply(s->pencil->M, 0, x, asked == MASS ? y : s->product);
+  return asked == MASS ? DVI_OK : dvi__definite_solve(s->inverse, Mx, y, NULL);
 }
 
 /* ---- the iteration ---- */
@@ -73,8 +56,8 @@ static dvi_status iterate(lanczos *s, a_int *info)
   a_int asked = 0;
   *info = 1; /* the start is given */
   for (;;) {
-    dsaupd_c(&asked, "G", n, s->which, s->count, s->tolerance, s->residual, s->directions, s->basis,
-             n, s->setting, s->place, s->places, s->work, length, info);
+    dsaupd_c(&asked, "G", n, "LM", s->count, 0, s->residual, s->directions, s->basis, n, s->setting,
+             s->place, s->places, s->work, length, info);
     if (asked == DONE) break;
     DVI_TRY(answer(s, (int)asked));
   }
@@ -87,14 +70,13 @@ static dvi_status extract(lanczos *s, double *eigenvalue, double *vector, a_int 
   const a_int n = (a_int)s->pencil->K->rows;
   const a_int length = s->directions * (s->directions + 8);
   a_int info = 0;
-  dseupd_c(vector != NULL, "A", chosen, eigenvalue, vector, n, s->shift, "G", n, s->which, s->count,
-           s->tolerance, s->residual, s->directions, s->basis, n, s->setting, s->place, s->places,
-           s->work, length, &info);
+  dseupd_c(vector != NULL, "A", chosen, eigenvalue, vector, n, s->shift, "G", n, "LM", s->count, 0,
+           s->residual, s->directions, s->basis, n, s->setting, s->place, s->places, s->work,
+           length, &info);
   return info == 0 ? DVI_OK : explain(s, (int)info);
 }
 
-/* A fixed start with parts in every mode. */
-static void fill_start(int64_t n, double *start)
+void dvi__fill_start(int64_t n, double *start)
 {
   uint64_t state = 20221;
   for (int64_t i = 0; i < n; i++) {
@@ -114,10 +96,10 @@ static dvi_status allocate(lanczos *s)
   if (!s->residual || !s->basis || !s->places || !s->work || !s->product)
     return dvi__fail(DVI_NO_MEMORY, "modes: no memory for %d vectors of %lld numbers",
                      s->directions, (long long)n);
-  fill_start(n, s->residual);
+  dvi__fill_start(n, s->residual);
   s->setting[0] = 1; /* exact shifts */
   s->setting[2] = RESTARTS;
-  s->setting[6] = s->mode;
+  s->setting[6] = SHIFT_INVERT;
   return DVI_OK;
 }
 
@@ -257,8 +239,6 @@ static dvi_status lanczos_near(const dvi__pencil *pencil, double shift, int coun
   DVI_TRY(create_inverse(pencil, shift, &inverse));
   lanczos s = {.pencil = pencil,
                .inverse = &inverse,
-               .which = "LM",
-               .mode = SHIFT_INVERT,
                .count = count,
                .directions = smaller(n, 2 * (int64_t)count + 20),
                .shift = shift};
@@ -328,81 +308,6 @@ dvi_status dvi__modes_near(const dvi__pencil *pencil, double shift, int count, d
                              : modes_by_lanczos(pencil, shift, count, eigenvalue, vector));
   for (int i = 0; i < count && vector != NULL; i++) choose_sign(n, vector + i * n);
   return DVI_OK;
-}
-
-/* ---- the largest one ---- */
-
-static double entry_of(const dvi_matrix *A, int64_t row, int column)
-{
-  for (int64_t e = dvi__first_entry(A, row); e < dvi__first_entry(A, row + 1); e++)
-    if (dvi__entry_column(A, row, e) == column) return dvi__entry_value(A, e);
-  return 0;
-}
-
-/* Of one unknown, or of two, the larger root of det(K - lambda M) = a lambda^2 - b lambda + c. */
-static double largest_root(const dvi__pencil *pencil)
-{
-  const dvi_matrix *K = pencil->K, *M = pencil->M;
-  const double k = entry_of(K, 0, 0), m = entry_of(M, 0, 0);
-  if (K->rows == 1) return k / m;
-  const double k1 = entry_of(K, 0, 1), m1 = entry_of(M, 0, 1), k2 = entry_of(K, 1, 1),
-               m2 = entry_of(M, 1, 1), a = m * m2 - m1 * m1, b = k * m2 + k2 * m - 2 * k1 * m1,
-               c = k * k2 - k1 * k1;
-  return (b + sqrt(fmax(b * b - 4 * a * c, 0))) / (2 * a);
-}
-
-/* The largest sum of the entries' sizes in a row of M^-1 K bounds the eigenvalues. Infinite if M is
- * not diagonal. */
-static double bound_by_rows(const dvi__pencil *pencil)
-{
-  const dvi_matrix *K = pencil->K, *M = pencil->M;
-  double most = 0;
-  if (M->column != NULL) return INFINITY;
-  for (int64_t i = 0; i < K->rows; i++) {
-    double sum = 0;
-    for (int64_t e = dvi__first_entry(K, i); e < dvi__first_entry(K, i + 1); e++)
-      sum += fabs(dvi__entry_value(K, e));
-    most = fmax(most, sum / M->value[i]);
-  }
-  return most;
-}
-
-static int is_zero(const dvi_matrix *A)
-{
-  const int64_t entries = dvi_matrix_entries(A);
-  for (int64_t e = 0; e < entries; e++)
-    if (dvi__entry_value(A, e) != 0) return 0;
-  return 1;
-}
-
-/* Lanczos' method may rest at the second largest eigenvalue for a while, so that it is stopped long
- * after its residual has become smaller than the margin of the bound. */
-dvi_status dvi__largest_eigenvalue(const dvi__pencil *pencil, double *bound)
-{
-  const double tolerance = 1e-9, margin = 1e-3;
-  const int64_t n = pencil->K->rows;
-  *bound = 0;
-  if (n < 1 || n > INT_MAX / 64)
-    return dvi__fail(DVI_BAD_SIZE, "modes: %lld unknowns, 1 to %d possible", (long long)n,
-                     INT_MAX / 64);
-  if (is_zero(pencil->K)) return DVI_OK;
-  if (n < 3) {
-    *bound = largest_root(pencil);
-    return DVI_OK;
-  }
-  dvi__definite inverse;
-  DVI_TRY(dvi__definite_create(pencil->M, 3, &inverse));
-  lanczos s = {.pencil = pencil,
-               .inverse = &inverse,
-               .which = "LA",
-               .mode = REGULAR_INVERSE,
-               .count = 1,
-               .directions = smaller(n, 20),
-               .tolerance = tolerance};
-  const dvi_status status = run(&s, bound, NULL);
-  *bound = fmin(*bound * (1 + margin), bound_by_rows(pencil));
-  dvi__definite_clear(&inverse);
-  return status;
 }
 
 /* ---- for users ---- */

@@ -18,8 +18,7 @@ typedef struct dvi__pencil {
 dvi_status dvi__modes_near(const dvi__pencil *pencil, double shift, int count, double *eigenvalue,
                            double *vector);
 
-/* Bound the largest eigenvalue from above, to some parts in a thousand. `M` is diagonal, or
- * another matrix that is solved with by conjugate gradients. */
-dvi_status dvi__largest_eigenvalue(const dvi__pencil *pencil, double *bound);
+/* Fill in a fixed start of iterations, with parts in every mode. */
+void dvi__fill_start(int64_t n, double *start);
 
 #endif

@@ -3,7 +3,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "field/algebra/modes.h"
+#include "field/algebra/largest.h"
 #include "field/audit/pinch.h"
 #include "field/forms/gram.h"
 #include "field/forms/star.h"

@@ -86,7 +86,7 @@ static dvi_status place_cell(grid *g, int64_t cell)
   return DVI_OK;
 }
 
-/* The symbol is even in j, so that the sum is over cosines, and even in m. The second half is a copy
+/* The symbol is even in j, so that the sum is over cosines, and in m. The second half is a copy
  * of the first, which makes the matrix symmetric to the bit. */
 static void fill_circulant(int count, double h, int of_cells, double *circulant)
 {

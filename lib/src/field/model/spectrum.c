@@ -4,7 +4,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "field/algebra/modes.h"
+#include "field/algebra/largest.h"
 #include "field/model/field.h"
 
 /* With free components K is semidefinite. A shift below 0, of the size of the lowest eigenvalues,
