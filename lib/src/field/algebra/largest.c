@@ -2,8 +2,8 @@
  *
  *     M^-1 K q_j = beta_j q_{j-1} + alpha_j q_j + beta_{j+1} q_{j+1},      q_i.M q_j = delta_ij.
  *
- * The largest eigenvalue theta of the tridiagonal matrix lies below that of the pencil, lambda. From
- * a start at random it lies below lambda (1 - epsilon) with a probability of at most
+ * The largest eigenvalue theta of the tridiagonal matrix lies below that of the pencil, lambda, and
+ * from a start at random below lambda (1 - epsilon) with a probability of at most
  *
  *     1.648 sqrt(n) exp(-sqrt(epsilon) (2 m - 1))
  *
