@@ -161,7 +161,7 @@ lint() {
   build lint
   run_tests lint || status=1
   build asan
-  DVI_FUZZ_SECONDS=${DVI_FUZZ_SECONDS:-15} run_tests asan || status=1
+  DVI_FUZZ_SECONDS=${DVI_FUZZ_SECONDS:-30} run_tests asan || status=1
   [ $status -eq 0 ] || refuse "a gate failed, see above"
 }
 

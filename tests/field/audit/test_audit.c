@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "num/eigen.h"
 #include "support/meshes.h"
 #include "support/suite.h"
 
@@ -247,6 +248,60 @@ START_TEST(wrong_diagonal_is_flipped)
 }
 END_TEST
 
+/* Eigenvalues [count], ascending, of B = d S d^T or d^T S d with a diagonal S of any signs, between
+ * the square roots of the diagonal N. B then has the eigenvalues of N against S^-1 that are not
+ * zero. */
+static double *eigenvalues_of(const dvi_matrix *d, int transposed, const double *S, const double *N)
+{
+  const int64_t n = transposed ? d->columns : d->rows, m = transposed ? d->rows : d->columns;
+  double *B = calloc((size_t)(n * n), sizeof *B), *one = calloc((size_t)(n * n), sizeof *one),
+         *X = calloc((size_t)(n * n), sizeof *X), *value = calloc((size_t)n, sizeof *value),
+         *unit = calloc((size_t)n, sizeof *unit), *image = calloc((size_t)m, sizeof *image);
+  for (int64_t i = 0; i < n; i++) {
+    one[i * n + i] = unit[i] = 1;
+    dvi_matrix_multiply(d, !transposed, unit, image);
+    for (int64_t k = 0; k < m; k++) image[k] *= S[k];
+    dvi_matrix_multiply(d, transposed, image, B + i * n);
+    unit[i] = 0;
+  }
+  for (int64_t i = 0; i < n; i++)
+    for (int64_t j = 0; j < n; j++) B[i * n + j] *= sqrt(N[i] * N[j]);
+  ck_assert_int_eq(dvi__eigen_symmetric((int)n, B, one, value, X), DVI_OK);
+  free(B), free(one), free(X), free(unit), free(image);
+  return value;
+}
+
+/* A negative entry of M_1 lets Maxwell's equations grow as exp(2.157 t): the pencil of d^T M_2 d and
+ * M_1 has the eigenvalue -4.655. Functions do not grow, because two others of their edges outweigh
+ * it: d^T M_1 d is semidefinite. */
+START_TEST(negative_dual_is_unstable_for_edges_alone)
+{
+  dvi_mesh *mesh = flipped_patch(6, NULL, 0);
+  dvi_star *star = NULL;
+  dvi_matrix d0, d1, M0, M1, M2;
+  ck_assert_int_eq(dvi_star_create(mesh, NULL, &star), DVI_OK);
+  ck_assert_int_eq(dvi_mesh_incidence(mesh, 0, &d0), DVI_OK);
+  ck_assert_int_eq(dvi_mesh_incidence(mesh, 1, &d1), DVI_OK);
+  ck_assert_int_eq(dvi_star_matrix(star, 0, &M0), DVI_OK);
+  ck_assert_int_eq(dvi_star_matrix(star, 1, &M1), DVI_OK);
+  ck_assert_int_eq(dvi_star_matrix(star, 2, &M2), DVI_OK);
+  int64_t rim, vertices = M0.rows;
+  double *inverse = malloc((size_t)M1.rows * sizeof *inverse),
+         *share = malloc((size_t)vertices * sizeof *share);
+  const int *edge = dvi_mesh_part_cells(mesh, "boundary", 1, &rim);
+  for (int64_t e = 0; e < M1.rows; e++) inverse[e] = 1 / M1.value[e];
+  for (int64_t i = 0; i < rim; i++) inverse[edge[i]] = 0; /* no voltage along the rim */
+  for (int64_t v = 0; v < vertices; v++) share[v] = 1 / M0.value[v];
+  double *maxwell = eigenvalues_of(&d1, 0, inverse, M2.value),
+         *scalar = eigenvalues_of(&d0, 1, M1.value, share);
+  ck_assert_msg(fabs(maxwell[0] + 4.655) < 5e-4, "%.10g", maxwell[0]);
+  ck_assert_msg(scalar[0] > -1e-12 && scalar[1] > 0.01, "%g, %g", scalar[0], scalar[1]);
+  free(inverse), free(share), free(maxwell), free(scalar);
+  dvi_star_destroy(&star);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
 /* The wrong diagonal, from (3,3) to (4,4), is a part. */
 START_TEST(edges_of_parts_are_not_flipped)
 {
@@ -456,6 +511,7 @@ SUITE(audit)
   tcase_add_test(tests, squares_have_a_known_step);
   tcase_add_test(tests, spacetime_has_no_frequencies);
   tcase_add_test(tests, wrong_diagonal_is_flipped);
+  tcase_add_test(tests, negative_dual_is_unstable_for_edges_alone);
   tcase_add_test(tests, edges_of_parts_are_not_flipped);
   tcase_add_test(tests, any_triangles_become_delaunays);
   tcase_add_test(tests, surfaces_are_flipped_too);
