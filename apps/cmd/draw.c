@@ -117,7 +117,8 @@ static int choose_fields(const plot_request *request, const vtu_grid *g, const v
     field[i] = vtu_find(g, name);
     if (field[i] == NULL) {
       if (g->fields == 0) return usage_error("plot: --field %s: the grid has no fields", name);
-      return usage_error("plot: there is no field '%s'%s", name,
+      return usage_error("plot: there is no field '%s' among %d, of which '%s' is the first%s",
+                         name, g->fields, g->field[0].name,
                          suggestion(name, field_name, g, near, sizeof near));
     }
   }
@@ -149,6 +150,8 @@ static int plot_file(const plot_request *request, const char *path)
   if (request->out == NULL) return usage_error("plot: --out FILE.svg is missing");
   const int code = outputs_plot("plot", "out", request->out);
   if (code != DONE) return code;
+  if (length > 4 && strcmp(path + length - 4, ".pvd") == 0)
+    return usage_error("plot: %s lists .vtu files; name one of them", path);
   const bool is_grid = length > 4 && strcmp(path + length - 4, ".vtu") == 0;
   return is_grid ? plot_grid(request, path) : plot_columns(request, path);
 }

@@ -1,14 +1,17 @@
 /* dvi mesh, which audits and repairs meshes. */
+#define _POSIX_C_SOURCE 200809L
 #include <dvi/audit.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "cli/command.h"
 #include "cli/numbers.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
+#include "cli/spelling.h"
 #include "csv/table.h"
 
 enum { NAME_SIZE = 48 };
@@ -70,12 +73,22 @@ static int generate(const mesh_request *r, const char *name, dvi_mesh **mesh)
   return status == DVI_OK ? DONE : library_error(status);
 }
 
+static const char *generator_at(int k, const void *list)
+{
+  (void)list;
+  return dvi_mesh_generator_name(k);
+}
+
 static int open_mesh(const mesh_request *r, const char *name, dvi_mesh **mesh)
 {
   if (is_generator(name)) return generate(r, name, mesh);
   if (r->cells || r->size || r->origin || r->grading || r->periodic)
     return usage_error("mesh: '%s' is no generator, and a file takes no --cells, --size and so on",
                        name);
+  char hint[2 * NAME_SIZE];
+  if (strchr(name, '.') == NULL && access(name, F_OK) != 0)
+    return usage_error("mesh: '%s' is neither a file nor a generator%s", name,
+                       suggestion(name, generator_at, NULL, hint, sizeof hint));
   const dvi_status status = dvi_mesh_read(name, NULL, mesh);
   return status == DVI_OK ? DONE : library_error(status);
 }
@@ -241,7 +254,7 @@ static void print_report(const char *name, const dvi_mesh *mesh, const dvi_mesh_
   (void)fprintf(stream, "quality %.3g at least (cell %lld), %.3g in the mean\n", report->quality,
                 (long long)report->worst_cell, report->mean_quality);
   if (isfinite(report->dual_ratio))
-    (void)fprintf(stream, "dual edges at least %.3g of their edges\n", report->dual_ratio);
+    (void)fprintf(stream, "positive dual edges at least %.3g of their edges\n", report->dual_ratio);
   print_worst(mesh, report, stream);
   print_advice(report, stream);
 }

@@ -14,6 +14,9 @@ int field_open(const char *command, const char *name, const words *settings, pro
 /** Return the mesh of a field. */
 const dvi_mesh *field_mesh(const dvi_field *field);
 
+/** Print the mesh, what is fixed, and which steps are stable. */
+void field_tell(const dvi_field *field);
+
 /** Write values at the vertices [count][vertices] with a mesh to a .vtu file, under a name and, if
  * there are several, their numbers from 1. Returns DONE, or complains and returns the exit code. */
 int field_write(const dvi_field *field, const char *path, const char *name, int count,

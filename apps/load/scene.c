@@ -1,6 +1,8 @@
 /* Problems from scene files. The subcommands treat them as problems of the catalogue. */
 #include "load/scene.h"
 
+#include "load/field.h"
+
 #include <dvi/scene.h>
 #include <errno.h>
 #include <math.h>
@@ -237,6 +239,11 @@ void scene_tell(const problem *scene)
     (void)printf(", quadratic potentials %d", facts.quadratic_potentials);
   if (count_fast_potentials(scene->terms) > 0)
     (void)printf(", fast potentials %d", count_fast_potentials(scene->terms));
+  if (dvi_scene_field(scene->scene) != NULL) {
+    (void)printf("\n");
+    field_tell(dvi_scene_field(scene->scene));
+    return;
+  }
   (void)printf("; %d kernel%s, %ld element%s, %d nodes\n", facts.kernels,
                facts.kernels == 1 ? "" : "s", facts.elements, facts.elements == 1 ? "" : "s",
                facts.nodes);

@@ -41,6 +41,9 @@ printf '$MeshFormat\n4.1 0 8\n' >cut.msh
 expect 1 'a file cut short' mesh cut.msh
 says err 'cut.msh' 'the file is named'
 
+expect 2 'a generator that is none' mesh disc
+says err "neither a file nor a generator (did you mean 'disk'?)" 'the nearest generator'
+
 # ---- scenes ----
 
 cat >drum.yaml <<END
@@ -213,6 +216,18 @@ refuse 'a file outside' "'..'" <<END
 mesh: {file: ../outside.msh}
 field: wave
 END
+for name in t energy u_1 p_u_2; do
+  refuse "a probe named $name" "there is a column '$name' already" <<END
+mesh: {generator: interval}
+field: wave
+probes: {$name: {at: 0.5}}
+END
+done
+refuse 'a probe named as a momentum' "there is a column 'momentum_x' already" <<END
+mesh: {generator: interval, periodic: 1}
+field: wave
+probes: {momentum_x: {at: 0.5}}
+END
 refuse 'a probe outside' 'outside of the mesh' <<END
 mesh: {generator: disk}
 field: wave
@@ -236,4 +251,15 @@ expect 0 'a mesh of a file' mesh disk --write disk.msh
 printf 'mesh: {file: disk.msh}\nfield: wave\nboundary: {rim: fixed}\n' >file.yaml
 expect 0 'modes of a file' modes file.yaml --count 1
 expect 2 'modes without a field' modes kepler
+for command in check run modes solve explain; do
+  expect 2 'a parameter that is none' $command file.yaml --set heavy=1
+  says err "there is no parameter 'heavy'" 'the parameter is named'
+done
+expect 0 'what is there' explain drum.yaml
+says out '^field: 53 unknowns' 'unknowns'
+says out 'verlet is stable below h = 0.1' 'the stable step'
+head -c 300 disk.msh >cut.msh
+printf 'mesh: {file: cut.msh}\nfield: wave\n' >cut.yaml
+expect 1 'a mesh that is cut short' check cut.yaml
+says err 'cut.yaml:1:14: cut.msh' 'scene and mesh are named'
 finish

@@ -93,8 +93,8 @@ extern "C" {
 
 /** Create a mesh from arrays.
  *
- *  Cells of a mesh in R^n are oriented as R^n is. Others are oriented as the first cell of their
- *  component is given. Simplices may be given in any order.
+ *  The signs of dvi_mesh_orientation orient the cells of a mesh in R^n as R^n is, and others as the
+ *  first cell of their component is given. Simplices may be given in any order.
  *
  *  @param[in]  terms  the mesh's points and cells
  *  @param[out] mesh   the mesh, for dvi_mesh_destroy. NULL after a failure

@@ -368,12 +368,12 @@ START_TEST(bad_parts_are_refused)
     const char *words;
   } cases[] = {
       {{NULL, 1, 1, edge, NULL}, "part 0 has no name"},
-      {{"boundary", 1, 1, edge, NULL}, "two parts with the name \"boundary\""},
+      {{"boundary", 1, 1, edge, NULL}, "every mesh has a part \"boundary\""},
       {{"rim", 3, 1, edge, NULL}, "degree 3"},
       {{"rim", 1, 0, edge, NULL}, "needs cells"},
       {{"rim", 1, 1, edge, edge}, "needs cells"},
       {{"rim", 1, 1, NULL, number}, "needs the vertices of its cells"},
-      {{"rim", 1, 1, edge, NULL}, "edge with the vertices 1, 2, .., which the mesh has not"},
+      {{"rim", 1, 1, edge, NULL}, "edge 0 with the vertices 1, 2, which the mesh has not"},
       {{"rim", 1, 1, far, NULL}, "part \"rim\" has vertex 9"},
       {{"core", 2, 1, NULL, number}, "cell 2 of degree 2, beyond the 2"},
   };

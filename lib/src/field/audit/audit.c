@@ -173,6 +173,14 @@ static dvi_status find_frequency(const dvi_star *star, int k, dvi_mesh_report *r
 
 /* ---- the whole ---- */
 
+static int can_be_glued(const dvi_mesh *mesh)
+{
+  dvi_mesh *glued = NULL;
+  const int made = dvi_mesh_glue(mesh, &glued) == DVI_OK;
+  dvi_mesh_destroy(&glued);
+  return made;
+}
+
 static unsigned advise(const dvi_mesh *mesh, const dvi_mesh_report *report)
 {
   const int n = mesh->n, is_simplicial = mesh->kind == DVI_SIMPLICES;
@@ -183,8 +191,8 @@ static unsigned advise(const dvi_mesh *mesh, const dvi_mesh_report *report)
   }
   unsigned advice = negative > 0 || zero > 0 ? DVI_ADVICE_STAR : 0;
   /* each of the n! simplices of a box has n - 1 facets inside of it */
-  if (is_simplicial && n > 1 && 2 * report->degree[n - 1].zero == (n - 1) * report->degree[n].count)
-    advice |= DVI_ADVICE_GLUE;
+  if (is_simplicial && n > 1 && 2 * report->degree[n - 1].zero >= (n - 1) * report->degree[n].count)
+    advice |= can_be_glued(mesh) ? DVI_ADVICE_GLUE : 0;
   return advice;
 }
 

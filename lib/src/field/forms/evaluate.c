@@ -101,9 +101,11 @@ dvi_status dvi_form_evaluate(const dvi_mesh *mesh, int k, const double *form, in
 {
   if (mesh == NULL || form == NULL || place == NULL || value == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "forms: a mesh, a form, a place and an array are needed");
-  if (k < 0 || k > mesh->n || cell < 0 || cell >= mesh->count[mesh->n])
-    return dvi__fail(DVI_BAD_ARGUMENT, "forms: there is no degree %d, or no cell %lld", k,
-                     (long long)cell);
+  if (k < 0 || k > mesh->n)
+    return dvi__fail(DVI_BAD_ARGUMENT, "forms: the degree is %d, and may be 0 to %d", k, mesh->n);
+  if (cell < 0 || cell >= mesh->count[mesh->n])
+    return dvi__fail(DVI_BAD_ARGUMENT, "forms: there is no cell %lld among the %lld of the mesh",
+                     (long long)cell, (long long)mesh->count[mesh->n]);
   spot s = {.mesh = mesh, .k = k, .place = place};
   if (!find_covectors(&s, cell)) return dvi__refuse_null(mesh, mesh->n, cell);
   memset(value, 0, (size_t)dvi_form_components(mesh->space, k) * sizeof *value);

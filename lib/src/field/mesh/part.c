@@ -105,10 +105,11 @@ static dvi_status find_by_vertices(const dvi_mesh *mesh, const dvi_mesh_part *de
   *cell = declared->degree == mesh->n ? find_whole_cell(mesh, vertex)
                                       : dvi__complex_find(mesh, declared->degree, vertex);
   if (*cell >= 0) return DVI_OK;
-  return dvi__fail(DVI_BAD_ARGUMENT,
-                   "mesh: part \"%s\" has %s with the vertices %d, %d, .., which the mesh has not",
-                   declared->name, dvi__degree_name(mesh->kind, declared->degree), vertex[0],
-                   vertex[corners > 1]);
+  return dvi__fail(
+      DVI_BAD_ARGUMENT,
+      "mesh: part \"%s\" has %s %lld with the vertices %d, %d%s, which the mesh has not",
+      declared->name, dvi__degree_name(mesh->kind, declared->degree), (long long)i, vertex[0],
+      vertex[corners > 1], corners > 2 ? ", .." : "");
 }
 
 static dvi_status mark_declared(const dvi_mesh *mesh, const dvi_mesh_part *declared, char *marked)
@@ -130,7 +131,9 @@ static dvi_status check_part(const dvi_mesh *mesh, const dvi_mesh_part *declared
   const int by_number = declared->cell != NULL;
   for (int p = 0; p < DECLARED + i; p++)
     if (strcmp(mesh->part[p].name, declared->name) == 0)
-      return dvi__fail(DVI_BAD_ARGUMENT, "mesh: there are two parts with the name \"%s\"",
+      return dvi__fail(DVI_BAD_ARGUMENT,
+                       p < DECLARED ? "mesh: every mesh has a part \"%s\": take another name"
+                                    : "mesh: there are two parts with the name \"%s\"",
                        declared->name);
   if (declared->degree < 0 || declared->degree > mesh->n)
     return dvi__fail(DVI_BAD_ARGUMENT, "mesh: part \"%s\" has degree %d, which is not 0 to %d",
@@ -140,8 +143,10 @@ static dvi_status check_part(const dvi_mesh *mesh, const dvi_mesh_part *declared
                      "mesh: part \"%s\" needs cells, by their vertices or by their numbers",
                      declared->name);
   if (by_number && declared->degree > 0 && declared->degree < mesh->n)
-    return dvi__fail(DVI_BAD_ARGUMENT, "mesh: part \"%s\" needs the vertices of its cells",
-                     declared->name);
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "mesh: part \"%s\" of degree %d needs the vertices of its cells: only points "
+                     "and whole cells are known by numbers",
+                     declared->name, declared->degree);
   return DVI_OK;
 }
 

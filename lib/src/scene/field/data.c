@@ -65,14 +65,25 @@ static bool reserve_factor(dvi_scene *scene, int k)
   return true;
 }
 
+bool dvi__refuse_part(dvi_scene *scene, dvi__span span, const char *name, const char *of)
+{
+  char list[160] = "";
+  size_t length = 0;
+  const dvi_mesh *mesh = scene->field->mesh;
+  for (int i = 0; dvi_mesh_part_name(mesh, i) != NULL && length < sizeof list; i++)
+    length += (size_t)snprintf(list + length, sizeof list - length, "%s%s", i > 0 ? ", " : "",
+                               dvi_mesh_part_name(mesh, i));
+  return dvi__scene_refuse(scene, span, "the mesh has no part '%s'%s; its parts are %s", name, of,
+                           list);
+}
+
 static bool read_material(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree)
 {
   static const char *const known[] = {"rho", "a"};
   int64_t count;
   const dvi_mesh *mesh = scene->field->mesh;
   (void)dvi_mesh_part_cells(mesh, key->text, dvi_mesh_dimension(mesh), &count);
-  if (count <= 0)
-    return dvi__scene_refuse(scene, key->span, "the mesh has no part '%s' of cells", key->text);
+  if (count <= 0) return dvi__refuse_part(scene, key->span, key->text, " of cells");
   if (!dvi__want_mapping(scene, tree, "a material") ||
       !dvi__want_keys(scene, tree, "a material", 2, known))
     return false;
@@ -110,7 +121,7 @@ static bool read_condition(dvi_scene *scene, const char *part, dvi__span span,
   int64_t count;
   int which;
   (void)dvi_mesh_part_cells(scene->field->mesh, part, 0, &count);
-  if (count < 0) return dvi__scene_refuse(scene, span, "the mesh has no part '%s'", part);
+  if (count < 0) return dvi__refuse_part(scene, span, part, "");
   *condition = (dvi_condition){.part = part};
   if (tree->kind == DVI__SCALAR) {
     if (!dvi__tree_word(scene, tree, "a condition", 2, condition_word, &which)) return false;

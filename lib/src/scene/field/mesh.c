@@ -32,6 +32,12 @@ static bool report(dvi_scene *scene, const dvi__tree *section, dvi_status status
          dvi__complain(scene->complaint, status, section->span, "%s", dvi_last_error());
 }
 
+/* A file that is cut short is one that cannot be read, and no mistake of the scene. */
+static bool report_file(dvi_scene *scene, const dvi__tree *file, dvi_status status)
+{
+  return report(scene, file, status == DVI_BAD_FILE ? DVI_IO_ERROR : status);
+}
+
 static bool generate(dvi_scene *scene, const dvi__tree *section, const dvi__tree *generator)
 {
   static const char *const known[] = {"generator", "cells",   "size",
@@ -57,7 +63,7 @@ static bool read_file(dvi_scene *scene, const dvi__tree *section, const dvi__tre
          dvi__want_text(scene, file, "file") &&
          (space == NULL || dvi__tree_whole(scene, space, "space", 1, &options.space)) &&
          dvi__scene_place_mesh(scene, file->span, file->text, &path) &&
-         report(scene, section, dvi_mesh_read(path, &options, &scene->field->mesh));
+         report_file(scene, file, dvi_mesh_read(path, &options, &scene->field->mesh));
 }
 
 /* ---- names ---- */

@@ -12,6 +12,7 @@ enum { VERTICES_MOST = 16 };
 /* u = constant + sum of weight * q, or an integral. */
 struct dvi__probe {
   const char *name;
+  dvi__span span;      /* of the name */
   const dvi__tree *at; /* NULL for an integral */
   dvi__integral *integral;
   double point[DVI__PLACE_SPACE];
@@ -52,6 +53,7 @@ static bool read_probe(dvi_scene *scene, const dvi__tree *key, const dvi__tree *
   const dvi__tree *integral = dvi__tree_find(tree, "integral"),
                   *over = dvi__tree_find(tree, "over");
   probe->name = key->text;
+  probe->span = key->span;
   probe->at = dvi__tree_find(tree, "at");
   if ((probe->at == NULL) == (integral == NULL) || (over != NULL && integral == NULL))
     return dvi__scene_refuse(scene, tree->span,
@@ -116,6 +118,26 @@ static bool place_probe(dvi_scene *scene, struct dvi__probe *probe, double *u)
          dvi__complain(scene->complaint, status, probe->at->span, "%s", dvi_last_error());
 }
 
+/* Tell if a name is that of an unknown or of its momentum: u_ or p_u_, and a number. */
+static bool is_unknown(const char *name)
+{
+  if (strncmp(name, "p_", 2) == 0) name += 2;
+  return strncmp(name, "u_", 2) == 0 && name[2] != 0 &&
+         strspn(name + 2, "0123456789") == strlen(name + 2);
+}
+
+/* Refuse the name of another column. */
+static bool name_is_new(dvi_scene *scene, const struct dvi__probe *probe)
+{
+  bool there = strcmp(probe->name, "t") == 0 || strcmp(probe->name, "energy") == 0 ||
+               is_unknown(probe->name);
+  for (int i = 0; i < scene->terms.symmetry_count; i++)
+    there = there || strcmp(scene->terms.symmetries[i].name, probe->name) == 0;
+  return !there || dvi__scene_refuse(scene, probe->span,
+                                     "there is a column '%s' already; choose another name",
+                                     probe->name);
+}
+
 bool dvi__probes_make(dvi_scene *scene)
 {
   struct dvi__scene_field *f = scene->field;
@@ -127,7 +149,8 @@ bool dvi__probes_make(dvi_scene *scene)
   for (int i = 0; i < f->probes && good; i++) {
     struct dvi__probe *probe = f->probe + i;
     const bool is_integral = probe->integral != NULL;
-    good = is_integral ? dvi__integral_make(scene, probe->integral) : place_probe(scene, probe, u);
+    good = name_is_new(scene, probe) && (is_integral ? dvi__integral_make(scene, probe->integral)
+                                                     : place_probe(scene, probe, u));
     list[i] = (dvi_invariant){.name = probe->name,
                               .value = is_integral ? dvi__integral_value : probe_value,
                               .user = is_integral ? (void *)probe->integral : probe};

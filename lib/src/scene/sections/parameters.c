@@ -86,7 +86,7 @@ static bool refuse_setting(dvi_scene *scene, const char *text)
   if (name == NULL || known == NULL) return dvi__scene_no_memory(scene);
   for (int i = 0; i < scene->parameter_count; i++) known[i] = scene->parameter[i].name;
   const dvi__tree *coordinates = dvi__tree_find(scene->tree, "coordinates");
-  if (dvi__tree_find(coordinates, name) != NULL)
+  if (coordinates != NULL && dvi__tree_find(coordinates, name) != NULL)
     return dvi__complain(
         scene->complaint, DVI_BAD_OPTION, DVI__NOWHERE,
         "%s: '%s' is a coordinate; a start is set through a parameter that initial names", text,
