@@ -38,7 +38,7 @@ typedef struct dvi_mesh_report {
   int is_orientable;
   /** smallest and mean quality of the n-cells: n times the radius of the inscribed sphere over that
    *  of the circumscribed one, which is 1 for a regular simplex; of boxes the shortest edge over
-   *  the longest */
+   *  the longest. Lengths are those of Euclidean space in any metric */
   double quality, mean_quality;
   int64_t worst_cell; /**< an n-cell of the smallest quality */
   double dual_ratio;  /**< smallest |*e|/|e| of the edges with a positive dual */

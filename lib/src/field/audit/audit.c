@@ -37,7 +37,7 @@ static double length_of(int space, const double *x)
   return sqrt(sum);
 }
 
-/* n r/R with the radii r = n V/(sum of the facets) and R. */
+/* n r/R with the radii r = n V/(sum of the facets) and R, as in Euclidean space in any metric. */
 static double quality_of_simplex(const dvi_mesh *mesh, int64_t cell)
 {
   const int n = mesh->n, all[] = {0, 1, 2, 3, 4};
@@ -45,6 +45,7 @@ static double quality_of_simplex(const dvi_mesh *mesh, int64_t cell)
   dvi__placed placed;
   dvi__simplex s;
   dvi__place_cell(mesh, n, cell, &placed);
+  placed.metric = dvi__euclidean;
   dvi__simplex_of(&placed, n, all, &s);
   for (int j = 0; j <= n; j++) {
     facets += dvi__cell_volume(mesh, n - 1, mesh->facet[n][cell * (n + 1) + j]);
