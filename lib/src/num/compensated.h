@@ -45,6 +45,45 @@ static inline dvi__twofold dvi__twofold_sum(dvi__twofold a, dvi__twofold b)
   return (dvi__twofold){sum.head, sum.tail + (a.tail + b.tail)};
 }
 
+/* Arithmetic of such numbers, whose tails are at most half a rounding of their heads. Relative
+ * errors are some 1e-32, unless the terms of a sum cancel. */
+static inline dvi__twofold dvi__twofold_plus(dvi__twofold a, dvi__twofold b)
+{
+  const dvi__twofold sum = dvi__exact_sum(a.head, b.head), tails = dvi__exact_sum(a.tail, b.tail),
+                     most = dvi__exact_sum(sum.head, sum.tail + tails.head);
+  return dvi__exact_sum(most.head, most.tail + tails.tail);
+}
+
+static inline dvi__twofold dvi__twofold_times(dvi__twofold a, dvi__twofold b)
+{
+  const dvi__twofold product = dvi__exact_product(a.head, b.head);
+  return dvi__exact_sum(product.head, product.tail + (a.head * b.tail + a.tail * b.head));
+}
+
+static inline dvi__twofold dvi__twofold_scaled(dvi__twofold a, double power_of_two)
+{
+  return (dvi__twofold){a.head * power_of_two, a.tail * power_of_two};
+}
+
+/* Give a + b c and a - b c. */
+static inline dvi__twofold dvi__twofold_add_product(dvi__twofold a, dvi__twofold b, dvi__twofold c)
+{
+  return dvi__twofold_plus(a, dvi__twofold_times(b, c));
+}
+
+static inline dvi__twofold dvi__twofold_less_product(dvi__twofold a, dvi__twofold b, dvi__twofold c)
+{
+  return dvi__twofold_add_product(a, dvi__twofold_scaled(b, -1), c);
+}
+
+/* Give 1/a, by Newton's step from the inverse of the head. */
+static inline dvi__twofold dvi__twofold_inverse(dvi__twofold a)
+{
+  const dvi__twofold first = {1 / a.head, 0},
+                     rest = dvi__twofold_less_product((dvi__twofold){1, 0}, a, first);
+  return dvi__twofold_add_product(first, first, rest);
+}
+
 /* Convert sums with their compensations to such numbers, and back to tails of at most half a
  * rounding. */
 static inline void dvi__twofold_get(int count, const double *sum, const double *compensation,

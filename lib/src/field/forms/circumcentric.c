@@ -70,7 +70,7 @@ static dvi_status step_down(const sums *a, faces *f, int mask)
   a->volume[k][number] = s.kappa * s.volume;
   for (int j = 0; j <= k; j++) {
     const int facet = mask & ~(1 << corner[j]);
-    f->weight[facet] += f->weight[mask] * s.centre[j] / sqrt(fabs(s.gradient[j][j]));
+    f->weight[facet] += f->weight[mask] * s.centre[j] / sqrt(fabs(s.square[j]));
     f->number[facet] = mesh->facet[k][number * (k + 1) + j];
   }
   return DVI_OK;

@@ -13,15 +13,17 @@ typedef struct spot {
   const dvi_mesh *mesh;
   int k;
   const double *place;
-  double covector[DVI__SIMPLEX_CORNERS][DVI_MESH_SPACE_MAX]; /* d lambda_i, or d xi of axis i */
+  dvi__twofold covector[DVI__SIMPLEX_CORNERS]
+                       [DVI_MESH_SPACE_MAX]; /* d lambda_i, or d xi of axis i */
 } spot;
 
 /* Add weight times the wedge product of k covectors. */
-static void add_wedge(const spot *s, const double *const *covector, double weight, double *value)
+static void add_wedge(const spot *s, const dvi__twofold *const *covector, double weight,
+                      double *value)
 {
   int axis[DVI_MESH_DIMENSION_MAX], component = 0;
   dvi__first_axes(s->k, axis);
-  do value[component++] += weight * dvi__minor(s->k, covector, axis);
+  do value[component++] += weight * dvi__exact_minor(s->k, covector, axis);
   while (dvi__next_axes(s->mesh->space, s->k, axis));
 }
 
@@ -30,7 +32,7 @@ static void add_simplex_form(const spot *s, const int *corner, double a, double 
 {
   static const double factorial[] = {1, 1, 2, 6, 24};
   for (int i = 0; i <= s->k; i++) {
-    const double *covector[DVI__SIMPLEX_CORNERS];
+    const dvi__twofold *covector[DVI__SIMPLEX_CORNERS];
     for (int j = 0, at = 0; j <= s->k; j++)
       if (j != i) covector[at++] = s->covector[corner[j]];
     const double weight = a * factorial[s->k] * s->place[corner[i]];
@@ -42,7 +44,7 @@ static void add_simplex_form(const spot *s, const int *corner, double a, double 
 static void add_box_form(const spot *s, const int *corner, double a, double *value)
 {
   const int axes = corner[0] ^ corner[(1 << s->k) - 1];
-  const double *covector[DVI_MESH_DIMENSION_MAX];
+  const dvi__twofold *covector[DVI_MESH_DIMENSION_MAX];
   for (int axis = 0, at = 0; axis < s->mesh->n; axis++)
     if (axes >> axis & 1)
       covector[at++] = s->covector[axis];
@@ -51,27 +53,31 @@ static void add_box_form(const spot *s, const int *corner, double a, double *val
   add_wedge(s, covector, a, value);
 }
 
-/* Find d lambda_i = sum_j g_ij metric u_j, with g_ij = grad lambda_i . grad lambda_j. */
+/* The axes of a box are orthogonal. */
+static void find_box_covectors(const dvi__placed *placed, spot *s)
+{
+  double square[DVI_MESH_DIMENSION_MAX];
+  dvi__box_squares(placed, s->mesh->n, square);
+  for (int i = 0; i < s->mesh->n; i++)
+    for (int l = 0; l < s->mesh->space; l++)
+      s->covector[i][l] = (dvi__twofold){s->mesh->metric[l] * (placed->x[1 << i][l] / square[i]),
+                                         0};
+}
+
 static int find_covectors(spot *s, int64_t cell)
 {
-  static const int all[] = {0, 1, 2, 3, 4};
   const int n = s->mesh->n, is_box = s->mesh->kind == DVI_BOXES;
-  double square[DVI_MESH_DIMENSION_MAX];
   dvi__placed placed;
-  dvi__simplex simplex = {.kappa = 1};
+  double volume;
   dvi__place_cell(s->mesh, n, cell, &placed);
   if (is_box)
-    dvi__box_squares(&placed, n, square);
-  else
-    dvi__simplex_of(&placed, n, all, &simplex);
+    find_box_covectors(&placed, s);
+  else if (dvi__covectors_of(&placed, n, s->covector, &volume) == 0)
+    return 0;
   for (int i = 0; i <= n - is_box; i++)
-    for (int l = 0; l < s->mesh->space; l++) {
-      double sum = is_box ? placed.x[1 << i][l] / square[i] : 0;
-      for (int j = 1; j <= n && !is_box; j++) sum += simplex.gradient[i][j] * placed.x[j][l];
-      s->covector[i][l] = s->mesh->metric[l] * sum;
-      if (!isfinite(s->covector[i][l])) return 0;
-    }
-  return simplex.kappa != 0;
+    for (int l = 0; l < s->mesh->space; l++)
+      if (!isfinite(s->covector[i][l].head)) return 0;
+  return 1;
 }
 
 /* Add the forms of all faces of the cell. */

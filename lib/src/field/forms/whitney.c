@@ -6,7 +6,8 @@
  *
  * and M_k has the integrals of W_I . W_J over all cells, with
  *
- *     d lambda_a ^ .. . d lambda_b ^ .. = det (grad lambda_a . grad lambda_b),
+ *     d lambda_a ^ .. . d lambda_b ^ .. = det (grad lambda_a . grad lambda_b)
+ *                                       = sum over sets of axes of the products of components,
  *     int lambda_i lambda_j = V (1 + delta_ij)/((n+1)(n+2)).
  *
  * On a box the form of a face is the product of dx/h along its axes, and of the linear functions
@@ -15,51 +16,98 @@
 
 #include "core/status.h"
 #include "field/forms/assemble.h"
+#include "field/forms/component.h"
 #include "field/forms/gram.h"
-#include "field/mesh/volume.h"
 
-/* Give det grad lambda_a . grad lambda_b for the corners of two faces without one corner each. */
-static double product_without(const dvi__simplex *s, int k, const int *I, int i, const int *J,
-                              int j)
+enum { WEDGES = 10 }; /* of 2 or 3 corners of 5, at most */
+
+/* The wedge products of d lambda at k corners of a simplex. In thin simplices all d lambda are
+ * nearly parallel, and the determinants of their inner products would lose all digits, so that the
+ * components are computed in twice the digits. */
+typedef struct wedges {
+  int n, k, components;
+  double sign[DVI__COMPONENTS]; /* the product of the metric along the axes */
+  double product[WEDGES][WEDGES];
+  int number[1 << DVI__SIMPLEX_CORNERS]; /* by the bits of the corners */
+} wedges;
+
+static void compute_components(const dvi_mesh *mesh, wedges *w, const dvi__twofold *const *covector,
+                               double *component)
 {
-  double matrix[DVI_MESH_DIMENSION_MAX * DVI_MESH_DIMENSION_MAX];
-  for (int a = 0, row = 0; a <= k; a++) {
-    if (a == i) continue;
-    for (int b = 0, column = 0; b <= k; b++)
-      if (b != j) matrix[row * k + column++] = s->gradient[I[a]][J[b]];
-    row++;
-  }
-  return dvi__determinant(k, matrix);
+  int axis[DVI_MESH_DIMENSION_MAX], count = 0;
+  dvi__first_axes(w->k, axis);
+  do {
+    w->sign[count] = 1;
+    for (int i = 0; i < w->k; i++) w->sign[count] *= mesh->metric[axis[i]];
+    component[count++] = dvi__exact_minor(w->k, covector, axis);
+  } while (dvi__next_axes(mesh->space, w->k, axis));
+  w->components = count;
 }
 
-static double product_of_faces(const dvi__simplex *s, int k, const int *I, const int *J)
+static void multiply_wedges(const dvi_mesh *mesh,
+                            dvi__twofold covector[DVI__SIMPLEX_CORNERS][DVI_MESH_SPACE_MAX],
+                            wedges *w)
 {
-  static const double factorial[] = {1, 1, 2, 6, 24};
-  const double each = factorial[k] * factorial[k] * s->volume / ((s->k + 1) * (s->k + 2));
+  double component[WEDGES][DVI__COMPONENTS];
+  int count = 0;
+  for (int mask = 0; mask < 1 << (w->n + 1); mask++) {
+    const dvi__twofold *of[DVI__SIMPLEX_CORNERS];
+    int corners = 0;
+    for (int c = 0; c <= w->n; c++)
+      if (mask >> c & 1) of[corners++] = covector[c];
+    if (corners != w->k) continue;
+    compute_components(mesh, w, of, component[count]);
+    w->number[mask] = count++;
+  }
+  for (int a = 0; a < count; a++)
+    for (int b = 0; b <= a; b++) {
+      double sum = 0;
+      for (int i = 0; i < w->components; i++) sum += w->sign[i] * component[a][i] * component[b][i];
+      w->product[a][b] = w->product[b][a] = sum;
+    }
+}
+
+/* Give the numbers of the wedge products at the corners of a face without one each. */
+static void find_wedges(const wedges *w, const int *I, int *number)
+{
+  int mask = 0;
+  for (int i = 0; i <= w->k; i++) mask |= 1 << I[i];
+  for (int i = 0; i <= w->k; i++) number[i] = w->number[mask & ~(1 << I[i])];
+}
+
+static double product_of_faces(const wedges *w, const int *I, const int *J)
+{
+  int of_I[DVI__SIMPLEX_CORNERS], of_J[DVI__SIMPLEX_CORNERS];
   double sum = 0;
-  for (int i = 0; i <= k; i++)
-    for (int j = 0; j <= k; j++) {
-      const double term = (I[i] == J[j] ? 2 : 1) * product_without(s, k, I, i, J, j);
+  find_wedges(w, I, of_I);
+  find_wedges(w, J, of_J);
+  for (int i = 0; i <= w->k; i++)
+    for (int j = 0; j <= w->k; j++) {
+      const double term = (I[i] == J[j] ? 2 : 1) * w->product[of_I[i]][of_J[j]];
       sum += (i + j) % 2 == 0 ? term : -term;
     }
-  return each * sum;
+  return sum;
 }
 
 static dvi_status simplex_matrix(const dvi_star *star, int k, int64_t cell,
                                  const dvi__local_faces *faces, double *matrix)
 {
-  static const int all[] = {0, 1, 2, 3, 4};
+  static const double factorial[] = {1, 1, 2, 6, 24};
   const int n = star->mesh->n, count = faces->count;
   const double factor = star->factor[k] != NULL ? star->factor[k][cell] : 1;
   dvi__placed placed;
-  dvi__simplex simplex;
+  dvi__twofold covector[DVI__SIMPLEX_CORNERS][DVI_MESH_SPACE_MAX];
+  double volume;
+  wedges w = {.n = n, .k = k};
   dvi__place_cell(star->mesh, n, cell, &placed);
-  dvi__simplex_of(&placed, n, all, &simplex);
-  if (simplex.kappa == 0) return dvi__refuse_null(star->mesh, n, cell);
+  if (dvi__covectors_of(&placed, n, covector, &volume) == 0)
+    return dvi__refuse_null(star->mesh, n, cell);
+  multiply_wedges(star->mesh, covector, &w);
+  const double each = factor * factorial[k] * factorial[k] * volume / ((n + 1) * (n + 2));
   for (int a = 0; a < count; a++)
     for (int b = 0; b <= a; b++)
-      matrix[a * count + b] = matrix[b * count + a] =
-          factor * product_of_faces(&simplex, k, faces->corner[a], faces->corner[b]);
+      matrix[a * count + b] = matrix[b * count + a] = each * product_of_faces(&w, faces->corner[a],
+                                                                              faces->corner[b]);
   return DVI_OK;
 }
 

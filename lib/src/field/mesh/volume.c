@@ -5,9 +5,14 @@
 #include <string.h>
 
 #include "core/status.h"
+#include "field/mesh/placed.h"
 
-/* A volume is zero if it is this part of the product of the edges, as after roundings. */
+/* A volume is zero if this part of an edge is left beside the edges before, as after roundings. */
 static const double flat_part = 64 * DBL_EPSILON;
+
+/* If less is left, volumes are computed in twice the digits, because roundings grow by its
+ * inverse. */
+static const double thin_part = 0.1;
 
 /* Edges of a box are orthogonal if the cosine of their angle is below this, as for corners that
  * were rounded or written with nine digits. */
@@ -21,6 +26,20 @@ void dvi__mesh_difference(const dvi_mesh *mesh, int a, int b, double *difference
     const double period = mesh->period[i];
     difference[i] = to[i] - from[i];
     if (period > 0) difference[i] -= period * nearbyint(difference[i] / period);
+  }
+}
+
+void dvi__mesh_exact_difference(const dvi_mesh *mesh, int a, int b, double *head, double *tail)
+{
+  const double *from = mesh->point + (size_t)a * (size_t)mesh->space,
+               *to = mesh->point + (size_t)b * (size_t)mesh->space;
+  for (int i = 0; i < mesh->space; i++) {
+    const double period = mesh->period[i];
+    dvi__twofold difference = dvi__exact_sum(to[i], -from[i]);
+    const double turns = period > 0 ? nearbyint(difference.head / period) : 0;
+    if (turns != 0) difference = dvi__twofold_plus(difference, dvi__exact_product(-turns, period));
+    head[i] = difference.head;
+    tail[i] = difference.tail;
   }
 }
 
@@ -70,7 +89,7 @@ static double dot(int count, const double *a, const double *b)
 }
 
 /* Make the edges orthogonal (Gram and Schmidt's, twice is enough). Returns the product of their new
- * lengths, and in *part that of the parts of the old ones which are left. */
+ * lengths, and in *part the smallest part of an old one which is left. */
 static double orthogonalise(int k, int space, double *edge, double *part)
 {
   double product = 1;
@@ -86,7 +105,7 @@ static double orthogonalise(int k, int space, double *edge, double *part)
       }
     const double left = sqrt(dot(space, e, e));
     product *= left;
-    *part *= length > 0 ? left / length : 0;
+    *part = fmin(*part, length > 0 ? left / length : 0);
   }
   return product;
 }
@@ -100,10 +119,24 @@ static double volume_and_part(const dvi_mesh *mesh, int k, int64_t cell, double 
   return mesh->kind == DVI_BOXES ? product : product / factorial[k];
 }
 
+static double volume_of_thin_simplex(const dvi_mesh *mesh, int k, int64_t cell)
+{
+  static const int all[] = {0, 1, 2, 3, 4};
+  dvi__placed placed;
+  dvi__gram gram;
+  dvi__place_cell(mesh, k, cell, &placed);
+  placed.metric = dvi__euclidean;
+  (void)dvi__gram_of(&placed, k, all, &gram);
+  return dvi__gram_volume(&gram);
+}
+
 double dvi__cell_volume(const dvi_mesh *mesh, int k, int64_t cell)
 {
   double part;
-  return k == 0 ? 1 : volume_and_part(mesh, k, cell, &part);
+  if (k == 0) return 1;
+  const double volume = volume_and_part(mesh, k, cell, &part);
+  return part > thin_part || mesh->kind == DVI_BOXES ? volume
+                                                     : volume_of_thin_simplex(mesh, k, cell);
 }
 
 /* ---- checks ---- */
@@ -152,8 +185,8 @@ static dvi_status check_periods(const dvi_mesh *mesh)
 static dvi_status check_cell(const dvi_mesh *mesh, int64_t cell)
 {
   double part;
-  (void)volume_and_part(mesh, mesh->n, cell, &part);
-  if (!(part > flat_part)) {
+  const double volume = volume_and_part(mesh, mesh->n, cell, &part);
+  if (isnan(volume) || !(part > flat_part)) {
     const dvi__cell_name name = dvi__name_cell(mesh, mesh->n, cell);
     return dvi__fail(DVI_BAD_ARGUMENT, "mesh: %s is degenerate: its volume vanishes", name.text);
   }

@@ -3,6 +3,10 @@
 #define DVI_FIELD_MESH_VOLUME_H
 #include "field/mesh/mesh.h"
 
+/* Give the difference of two points as head + tail without an error, but for 1e-32 of the period of
+ * a space that repeats itself. */
+void dvi__mesh_exact_difference(const dvi_mesh *mesh, int a, int b, double *head, double *tail);
+
 /* Give the edges [k*space] from the first corner of a k-cell, to all others of a simplex, along the
  * axes of a box. */
 void dvi__cell_edges(const dvi_mesh *mesh, int k, int64_t cell, double *edge);

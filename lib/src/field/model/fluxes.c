@@ -214,7 +214,7 @@ static dvi_status descend(const facet *f, flag *g, int mask)
     for (int j = 0; j <= k; j++) g->centre[k][l] += face.centre[j] * f->placed.x[corner[j]][l];
   }
   for (int j = 0; j <= k; j++) {
-    g->product = product * face.centre[j] / sqrt(face.gradient[j][j]);
+    g->product = product * face.centre[j] / sqrt(face.square[j]);
     DVI_TRY(descend(f, g, mask & ~(1 << corner[j])));
   }
   g->product = product;
