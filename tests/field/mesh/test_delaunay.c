@@ -1,6 +1,7 @@
 /* Delaunay's triangulation: empty spheres, and what is refused. */
 #include <dvi/mesh.h>
 #include <math.h>
+#include <stdlib.h>
 
 #include "field/mesh/volume.h"
 #include "support/meshes.h"
@@ -39,23 +40,174 @@ START_TEST(circles_of_triangles_are_empty)
 }
 END_TEST
 
-/* The points of a grid lie on circles with four of them, and on the lines of the hull. */
-START_TEST(a_grid_is_filled)
+/* ---- balls ---- */
+
+enum { LARGEST = 700 };
+
+/* Count the boundary's facets at each of its ridges: two, if the boundary has no end and nowhere
+ * meets itself along one. */
+static void check_ridges(const dvi_mesh *mesh, int n)
 {
-  for (int n = 2; n <= 4; n++) {
-    const int side = 4;
-    double point[4 * 256], volume = 0;
-    int points = 1;
-    dvi_mesh *mesh;
-    for (int l = 0; l < n; l++) points *= side;
-    for (int i = 0; i < points; i++)
-      for (int l = 0, rest = i; l < n; l++, rest /= side) point[n * i + l] = rest % side / 3.0;
-    ck_assert_msg(dvi_mesh_delaunay(n, points, point, &mesh) == DVI_OK, "%d: %s", n,
-                  dvi_last_error());
-    for (int64_t c = 0; c < dvi_mesh_count(mesh, n); c++) volume += dvi__cell_volume(mesh, n, c);
-    ck_assert_double_eq_tol(volume, 1, 1e-12);
-    dvi_mesh_destroy(&mesh);
+  int64_t facets;
+  const int *facet = dvi_mesh_part_cells(mesh, "boundary", n - 1, &facets);
+  dvi_matrix incidence;
+  char *count = calloc((size_t)dvi_mesh_count(mesh, n - 2), 1);
+  ck_assert_int_eq(dvi_mesh_incidence(mesh, n - 2, &incidence), DVI_OK);
+  for (int64_t i = 0; i < facets; i++)
+    for (int k = 0; k < n; k++) count[incidence.column[(int64_t)facet[i] * n + k]]++;
+  for (int64_t r = 0; r < dvi_mesh_count(mesh, n - 2); r++)
+    ck_assert_msg(count[r] == 0 || count[r] == 2, "%d facets at ridge %d", count[r], (int)r);
+  free(count);
+}
+
+/* The cells around a vertex are a cone over a sphere, or over a ball at the boundary. Euler's
+ * numbers of these are 1 + (-1)^(n-1) and 1. */
+static void check_links(const dvi_mesh *mesh, int n)
+{
+  const int64_t points = dvi_mesh_count(mesh, 0);
+  int64_t outer;
+  int *euler = calloc((size_t)points, sizeof *euler);
+  for (int64_t v = 0; v < points; v++) euler[v] = n % 2 ? -2 : 0;
+  const int *vertex = dvi_mesh_part_cells(mesh, "boundary", 0, &outer);
+  for (int64_t i = 0; i < outer; i++) euler[vertex[i]] = -1;
+  for (int k = 1; k <= n; k++) {
+    const int *corner = dvi_mesh_vertices(mesh, k, NULL);
+    for (int64_t i = 0; i < dvi_mesh_count(mesh, k) * (k + 1); i++)
+      euler[corner[i]] += k % 2 ? 1 : -1;
   }
+  for (int64_t v = 0; v < points; v++) ck_assert_int_eq(euler[v], 0);
+  free(euler);
+}
+
+static void check_ball(const dvi_mesh *mesh)
+{
+  int64_t betti[5];
+  const int n = dvi_mesh_dimension(mesh);
+  ck_assert_int_eq(dvi_mesh_betti(mesh, betti), DVI_OK);
+  for (int k = 0; k <= n; k++) ck_assert_int_eq(betti[k], k == 0);
+  check_ridges(mesh, n);
+  check_links(mesh, n);
+}
+
+static double volume_of(const dvi_mesh *mesh)
+{
+  const int n = dvi_mesh_dimension(mesh);
+  double volume = 0;
+  for (int64_t c = 0; c < dvi_mesh_count(mesh, n); c++) volume += dvi__cell_volume(mesh, n, c);
+  return volume;
+}
+
+static dvi_mesh *triangulated(int n, int points, const double *point)
+{
+  dvi_mesh *mesh;
+  ck_assert_msg(dvi_mesh_delaunay(n, points, point, &mesh) == DVI_OK, "%d points in %d: %s", points,
+                n, dvi_last_error());
+  check_ball(mesh);
+  return mesh;
+}
+
+/* Give the points of a grid, each moved by up to `jitter`. Returns their number. */
+static int grid_points(int n, int side, double spacing, double jitter, unsigned long long *state,
+                       double *point)
+{
+  int points = 1;
+  for (int l = 0; l < n; l++) points *= side;
+  for (int i = 0; i < points; i++)
+    for (int l = 0, rest = i; l < n; l++, rest /= side)
+      point[n * i + l] = rest % side * spacing + jitter * (2 * random_number(state) - 1);
+  return points;
+}
+
+/* Turn points in the planes of each axis and the next one. */
+static void rotate(int n, int points, double angle, double *point)
+{
+  for (int i = 0; i < points; i++)
+    for (int l = 0; l + 1 < n; l++) {
+      double *x = point + n * i + l, a = x[0], b = x[1];
+      x[0] = cos(angle) * a - sin(angle) * b;
+      x[1] = sin(angle) * a + cos(angle) * b;
+    }
+}
+
+/* Points of a grid lie on spheres with 2^n of them, and on the sides of the hull. Each cube has n!
+ * simplices, and each of the 2n (side-1)^(n-1) squares of the boundary (n-1)!. */
+START_TEST(grids_are_divided_as_by_kuhn)
+{
+  static const double spacing[] = {1, 0.1, 1 / 3.0}, offset[] = {0, 1e6, -1e9};
+  static const int factorial[] = {1, 1, 2, 6, 24};
+  double point[4 * LARGEST];
+  unsigned long long state = 1;
+  for (int n = 2; n <= 4; n++)
+    for (int side = 2; side <= (n == 4 ? 4 : 5); side++)
+      for (int i = 0; i < 3; i++) {
+        const int points = grid_points(n, side, i == 0 ? 1 : spacing[i], 0, &state, point);
+        for (int j = 0; j < n * points && i == 0; j++) point[j] += offset[side % 3];
+        dvi_mesh *mesh = triangulated(n, points, point);
+        const double cubes = pow(side - 1, n), squares = 2 * n * pow(side - 1, n - 1);
+        int64_t outer;
+        (void)dvi_mesh_part_cells(mesh, "boundary", n - 1, &outer);
+        ck_assert_int_eq(outer, (int64_t)squares * factorial[n - 1]);
+        ck_assert_int_eq(dvi_mesh_count(mesh, n), (int64_t)cubes * factorial[n]);
+        /* rounding errors of 1e-16 in each of at most 1944 cells */
+        ck_assert_double_eq_tol(volume_of(mesh), cubes * pow(spacing[i], n), 1e-12 * cubes);
+        dvi_mesh_destroy(&mesh);
+      }
+}
+END_TEST
+
+/* After a rotation, spheres and sides hold the points of a grid up to rounding only. At the hull
+ * simplices are lost that are flatter than 2.4e-7 at most, fewer than 10 for each cube. */
+START_TEST(grids_that_are_not_exact_are_balls)
+{
+  double point[4 * LARGEST];
+  unsigned long long state = 5;
+  for (int n = 2; n <= 4; n++)
+    for (int k = 0; k < (n == 4 ? 24 : 48); k++) {
+      const int side = n == 4 ? 3 : 2 + k % 4;
+      const double jitter = k % 12 == 0 ? 0 : pow(10, -17 + k % 12), size = pow(side - 1, n);
+      const int points = grid_points(n, side, 1, jitter, &state, point);
+      if (k % 2) rotate(n, points, 1 + k, point);
+      dvi_mesh *mesh = triangulated(n, points, point);
+      ck_assert_double_eq_tol(volume_of(mesh), size, (4 * n * jitter + 2.4e-6) * size);
+      dvi_mesh_destroy(&mesh);
+    }
+}
+END_TEST
+
+/* A unit square beside one point that is far away: the mesh has the digits that it needs. */
+START_TEST(far_points_belong_to_the_mesh)
+{
+  static const double far[] = {0, 1e6, 1e9};
+  double point[4 * (POINTS + 1)];
+  unsigned long long state = 3;
+  for (int n = 2; n <= 4; n++)
+    for (int i = 0; i < 30; i++) {
+      for (int j = 0; j < n * POINTS; j++) point[j] = random_number(&state);
+      for (int l = 0; l < n; l++) point[i % POINTS * n + l] = 2 + far[i % 3];
+      dvi_mesh *mesh = triangulated(n, POINTS, point);
+      dvi_mesh_destroy(&mesh);
+      for (int j = 0; j < n * POINTS; j++) point[j] = random_number(&state) + far[i % 3];
+      mesh = triangulated(n, POINTS, point);
+      dvi_mesh_destroy(&mesh);
+    }
+}
+END_TEST
+
+START_TEST(clusters_are_triangulated)
+{
+  enum { CLUSTERS = 8, MEMBERS = 6 };
+  double point[4 * CLUSTERS * MEMBERS];
+  unsigned long long state = 11;
+  for (int n = 2; n <= 4; n++)
+    for (int i = 0; i < 20; i++) {
+      for (int c = 0; c < CLUSTERS * n; c++) {
+        const double centre = random_number(&state);
+        for (int m = 0; m < MEMBERS; m++)
+          point[(c / n * MEMBERS + m) * n + c % n] = centre + 1e-6 * random_number(&state);
+      }
+      dvi_mesh *mesh = triangulated(n, CLUSTERS * MEMBERS, point);
+      dvi_mesh_destroy(&mesh);
+    }
 }
 END_TEST
 
@@ -78,7 +230,7 @@ START_TEST(bad_points_are_refused)
   check_words("do they lie in a plane?");
   ck_assert_ptr_null(mesh);
   ck_assert_int_eq(dvi_mesh_delaunay(2, 5, twice, &mesh), DVI_BAD_ARGUMENT);
-  check_words("delaunay: mesh: point");
+  check_words("delaunay: points 1 and 3 are equal");
   ck_assert_int_eq(dvi_mesh_delaunay(2, 3, undefined, &mesh), DVI_BAD_ARGUMENT);
   check_words("coordinate 1 of point 2 is nan");
   ck_assert_int_eq(dvi_mesh_delaunay(5, 9, line, &mesh), DVI_BAD_SIZE);
@@ -90,7 +242,10 @@ END_TEST
 SUITE(delaunay)
 {
   tcase_add_test(tests, circles_of_triangles_are_empty);
-  tcase_add_test(tests, a_grid_is_filled);
+  tcase_add_test(tests, grids_are_divided_as_by_kuhn);
+  tcase_add_test(tests, grids_that_are_not_exact_are_balls);
+  tcase_add_test(tests, far_points_belong_to_the_mesh);
+  tcase_add_test(tests, clusters_are_triangulated);
   tcase_add_test(tests, three_points_are_a_triangle);
   tcase_add_test(tests, bad_points_are_refused);
 }
