@@ -29,8 +29,8 @@ endif()
 # them along. With two export sets only projects that ask for the component `static` must have them.
 install(EXPORT dviTargets NAMESPACE dvi:: DESTINATION "${package_directory}")
 install(EXPORT dviStaticTargets NAMESPACE dvi:: DESTINATION "${package_directory}")
-install(FILES cmake/FindSUNDIALS.cmake cmake/FindSuiteSparse.cmake cmake/FindQhull.cmake
-        cmake/FindARPACK.cmake DESTINATION "${package_directory}")
+install(FILES cmake/FindSUNDIALS.cmake cmake/FindSuiteSparse.cmake cmake/FindARPACK.cmake
+        DESTINATION "${package_directory}")
 configure_package_config_file(
   cmake/dviConfig.cmake.in dviConfig.cmake INSTALL_DESTINATION "${package_directory}"
   NO_SET_AND_CHECK_MACRO)
@@ -41,7 +41,7 @@ install(FILES "${PROJECT_BINARY_DIR}/dviConfig.cmake" "${PROJECT_BINARY_DIR}/dvi
 
 # pkg-config names libraries as the linker does.
 set(pc_private "")
-foreach(library ${SUNDIALS_LIBRARIES} ${SuiteSparse_LIBRARIES} ${Qhull_LIBRARY} ${ARPACK_LIBRARY}
+foreach(library ${SUNDIALS_LIBRARIES} ${SuiteSparse_LIBRARIES} ${ARPACK_LIBRARY}
                 ${LAPACK_LIBRARIES} ${MPI_C_LIBRARIES} ${CMAKE_THREAD_LIBS_INIT} m)
   get_filename_component(name "${library}" NAME_WE)
   string(REGEX REPLACE "^(lib|-l)" "" name "${name}")

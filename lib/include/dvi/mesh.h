@@ -121,17 +121,18 @@ const char *dvi_mesh_generator_name(int i);
 /** Triangulate points in two to four dimensions: the simplices whose circumscribed spheres have no
  *  point inside (Delaunay 1934).
  *
- *  The simplices fill the points' hull, and each point is a vertex. Points on one sphere are divided
- *  as a regular triangulation divides them, cubes of a grid along the axes as by Kuhn. Where
- *  rounding errors move points of a grid, spheres may be empty up to 1e-9 only, and the hull misses
- *  simplices of points that lie in one of its sides up to 1e-12, or up to 2e-7 where this does not
- *  suffice.
+ *  The simplices fill the points' hull, and each point is a vertex. Points on one sphere are
+ *  divided as a regular triangulation divides them, cubes of a grid along the axes as by Kuhn.
+ *  Where points lie on one sphere up to rounding, as those of a rotated grid, spheres may be empty
+ *  up to 1e-9 only, and those of flat simplices at the hull less. The hull then misses simplices
+ *  that are flat up to 1e-12, or up to 2.4e-7 where this does not suffice.
  *
  *  @param point  [points*dimension], point by point. Copied
  *  @retval DVI_BAD_ARGUMENT  a coordinate is not finite, or all points lie in a plane, or two
- *                            points are equal up to 1e-18 of the longest edge of the points' box
+ *                            points are equal up to 2e-18 of the longest edge of the points' box
  *  @retval DVI_BAD_SIZE      the dimension is not 2 to 4, or there are too few points
- *  @retval (others)          as dvi_mesh_create */
+ *  @retval (others)          as dvi_mesh_create, which refuses flat simplices that could not be
+ *                            avoided */
 dvi_status dvi_mesh_delaunay(int dimension, int64_t points, const double *point, dvi_mesh **mesh);
 
 /** Read a mesh from a file of the formats MSH 2.2 or 4.1 (Gmsh), OFF or PLY, as text or as
