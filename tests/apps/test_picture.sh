@@ -67,7 +67,8 @@ expect 0 'a line' mesh interval --write line.vtu
 expect 1 'nothing of a line' plot line.vtu --out x.svg
 
 expect 2 'another field' plot modes.vtu --field mode_4 --out x.svg
-says err "no field 'mode_4' among 3, of which 'mode_1' is the first (did you mean 'mode_1'?)" 'the nearest field'
+says err "no field 'mode_4' among 3, of which 'mode_1' is the first" 'how many there are'
+says err "(did you mean 'mode_1'?)" 'the nearest field'
 expect 2 'no fields' plot mesh.vtu --field u --out x.svg
 says err 'has no fields' 'no fields'
 expect 2 'one angle' plot mesh.vtu --view 30 --out x.svg

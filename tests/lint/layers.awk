@@ -43,6 +43,7 @@ BEGIN {
   sees["reference"] = "core num system"
   sees["field/algebra"] = "core num"
   sees["field/mesh"] = "core num"
+  sees["field/mesh/delaunay"] = "core num field/mesh"
   sees["field/mesh/generate"] = "core field/mesh"
   sees["field/mesh/file"] = "core field/mesh"
   sees["field/forms"] = "core num field/algebra field/mesh"

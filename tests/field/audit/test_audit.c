@@ -271,9 +271,9 @@ static double *eigenvalues_of(const dvi_matrix *d, int transposed, const double 
   return value;
 }
 
-/* A negative entry of M_1 lets Maxwell's equations grow as exp(2.157 t): the pencil of d^T M_2 d and
- * M_1 has the eigenvalue -4.655. Functions do not grow, because two others of their edges outweigh
- * it: d^T M_1 d is semidefinite. */
+/* A negative entry of M_1 lets Maxwell's equations grow as exp(2.157 t): the pencil of d^T M_2 d
+ * and M_1 has the eigenvalue -4.655. Functions do not grow, because other edges of their vertices
+ * outweigh it: d^T M_1 d is semidefinite. */
 START_TEST(negative_dual_is_unstable_for_edges_alone)
 {
   dvi_mesh *mesh = flipped_patch(6, NULL, 0);

@@ -172,7 +172,7 @@ static const struct {
     {MSH2_TEXT, "40 10\n", "40 50\n",
      "m:19: a line in a group has the point 50, which no triangle"},
     {MSH2_TEXT, "40 10\n", "40 30\n",
-     "m: mesh: part \"left wall\" has edge with the vertices 3, 2"},
+     "m: mesh: part \"left wall\" has edge 0 with the vertices 3, 2"},
     {MSH2_TEXT, "$EndElements\n", "$EndElements\n$Nodes\n0\n$EndNodes\n",
      "m:23: there is a second section $Nodes"},
     {MSH2_TEXT, "$Nodes\n5", "$Elements\n0\n$EndElements\n$Nodes\n5",

@@ -65,7 +65,7 @@ static bool reserve_factor(dvi_scene *scene, int k)
   return true;
 }
 
-bool dvi__refuse_part(dvi_scene *scene, dvi__span span, const char *name, const char *of)
+bool dvi__refuse_part(dvi_scene *scene, dvi__span span, const char *name, bool of_cells)
 {
   char list[160] = "";
   size_t length = 0;
@@ -73,8 +73,11 @@ bool dvi__refuse_part(dvi_scene *scene, dvi__span span, const char *name, const 
   for (int i = 0; dvi_mesh_part_name(mesh, i) != NULL && length < sizeof list; i++)
     length += (size_t)snprintf(list + length, sizeof list - length, "%s%s", i > 0 ? ", " : "",
                                dvi_mesh_part_name(mesh, i));
-  return dvi__scene_refuse(scene, span, "the mesh has no part '%s'%s; its parts are %s", name, of,
-                           list);
+  return of_cells
+             ? dvi__scene_refuse(scene, span,
+                                 "the mesh has no part '%s' of cells; its parts are %s", name, list)
+             : dvi__scene_refuse(scene, span, "the mesh has no part '%s'; its parts are %s", name,
+                                 list);
 }
 
 static bool read_material(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree)
@@ -83,7 +86,7 @@ static bool read_material(dvi_scene *scene, const dvi__tree *key, const dvi__tre
   int64_t count;
   const dvi_mesh *mesh = scene->field->mesh;
   (void)dvi_mesh_part_cells(mesh, key->text, dvi_mesh_dimension(mesh), &count);
-  if (count <= 0) return dvi__refuse_part(scene, key->span, key->text, " of cells");
+  if (count <= 0) return dvi__refuse_part(scene, key->span, key->text, true);
   if (!dvi__want_mapping(scene, tree, "a material") ||
       !dvi__want_keys(scene, tree, "a material", 2, known))
     return false;
@@ -121,7 +124,7 @@ static bool read_condition(dvi_scene *scene, const char *part, dvi__span span,
   int64_t count;
   int which;
   (void)dvi_mesh_part_cells(scene->field->mesh, part, 0, &count);
-  if (count < 0) return dvi__refuse_part(scene, span, part, "");
+  if (count < 0) return dvi__refuse_part(scene, span, part, false);
   *condition = (dvi_condition){.part = part};
   if (tree->kind == DVI__SCALAR) {
     if (!dvi__tree_word(scene, tree, "a condition", 2, condition_word, &which)) return false;

@@ -133,9 +133,9 @@ static bool name_is_new(dvi_scene *scene, const struct dvi__probe *probe)
                is_unknown(probe->name);
   for (int i = 0; i < scene->terms.symmetry_count; i++)
     there = there || strcmp(scene->terms.symmetries[i].name, probe->name) == 0;
-  return !there || dvi__scene_refuse(scene, probe->span,
-                                     "there is a column '%s' already; choose another name",
-                                     probe->name);
+  return !there ||
+         dvi__scene_refuse(scene, probe->span,
+                           "there is a column '%s' already; choose another name", probe->name);
 }
 
 bool dvi__probes_make(dvi_scene *scene)

@@ -48,7 +48,7 @@ bool dvi__integral_make(dvi_scene *scene, dvi__integral *integral);
 int dvi__integral_value(double t, const double *q, const double *p, double *value, void *user);
 
 /* Refuse the name of a part that the mesh has not, and list those that it has. */
-bool dvi__refuse_part(dvi_scene *scene, dvi__span span, const char *name, const char *of);
+bool dvi__refuse_part(dvi_scene *scene, dvi__span span, const char *name, bool of_cells);
 
 /* Place the probes, and declare them as what is watched. */
 bool dvi__probes_make(dvi_scene *scene);

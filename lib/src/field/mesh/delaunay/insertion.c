@@ -3,7 +3,7 @@
  * the hull: the sphere of a facet with this vertex is the half-space beyond the facet. Because all
  * signs are exact, and no point lies on a sphere, the simplices are a triangulation after each
  * point. */
-#include "field/mesh/insertion.h"
+#include "field/mesh/delaunay/insertion.h"
 
 #include <limits.h>
 #include <math.h>
@@ -11,7 +11,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "field/mesh/order.h"
+#include "field/mesh/delaunay/order.h"
 
 enum { AXES = DVI_MESH_DIMENSION_MAX, SLOTS = 8 };
 

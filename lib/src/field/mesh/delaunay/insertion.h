@@ -1,7 +1,7 @@
 /* Delaunay's triangulation of points, or the regular one of points with weights. */
-#ifndef DVI_FIELD_MESH_INSERTION_H
-#define DVI_FIELD_MESH_INSERTION_H
-#include "field/mesh/predicate.h"
+#ifndef DVI_FIELD_MESH_DELAUNAY_INSERTION_H
+#define DVI_FIELD_MESH_DELAUNAY_INSERTION_H
+#include "field/mesh/delaunay/predicate.h"
 
 enum {
   DVI__INFINITE = -1, /* the vertex of the simplices outside of the hull */

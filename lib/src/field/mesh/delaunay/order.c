@@ -1,4 +1,4 @@
-#include "field/mesh/order.h"
+#include "field/mesh/delaunay/order.h"
 
 #include <stdlib.h>
 

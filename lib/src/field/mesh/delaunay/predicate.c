@@ -1,7 +1,7 @@
 /* Signs are taken from numbers of double precision where an error bound allows it. Otherwise the
  * determinants are computed as integers of 384 bits. Ties are broken by symbolic perturbation
  * (Edelsbrunner and Muecke 1990, Devillers and Teillaud 2011). */
-#include "field/mesh/predicate.h"
+#include "field/mesh/delaunay/predicate.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,6 +1,6 @@
 /* Exact signs of determinants of points, and what they say about spheres and planes. */
-#ifndef DVI_FIELD_MESH_PREDICATE_H
-#define DVI_FIELD_MESH_PREDICATE_H
+#ifndef DVI_FIELD_MESH_DELAUNAY_PREDICATE_H
+#define DVI_FIELD_MESH_DELAUNAY_PREDICATE_H
 #include <dvi/mesh.h>
 
 /* Points whose coordinates are multiples of 2^-60 between -1 and 1, so that their differences are

@@ -1,4 +1,4 @@
-#include "field/mesh/peel.h"
+#include "field/mesh/delaunay/peel.h"
 
 #include <math.h>
 

@@ -8,8 +8,8 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "field/mesh/insertion.h"
-#include "field/mesh/peel.h"
+#include "field/mesh/delaunay/insertion.h"
+#include "field/mesh/delaunay/peel.h"
 #include "field/mesh/volume.h"
 
 /* An attempt takes weights of at most `weight` times the square of the distance to the next point.

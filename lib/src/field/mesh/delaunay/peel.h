@@ -1,7 +1,7 @@
 /* Simplices of a triangulation that rounding errors made out of points in one plane. */
-#ifndef DVI_FIELD_MESH_PEEL_H
-#define DVI_FIELD_MESH_PEEL_H
-#include "field/mesh/insertion.h"
+#ifndef DVI_FIELD_MESH_DELAUNAY_PEEL_H
+#define DVI_FIELD_MESH_DELAUNAY_PEEL_H
+#include "field/mesh/delaunay/insertion.h"
 
 /* List the flat simplices, whose volume is at most this part of the product of their edges from any
  * corner. The caller releases the list in any case. */
