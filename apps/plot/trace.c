@@ -1,5 +1,6 @@
 #include "plot/trace.h"
 
+#include <dvi/scene.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -66,12 +67,23 @@ static bool shows_balance(const run_columns *c, int invariant)
   return false;
 }
 
+/* The probes of a field, behind its energy and momenta, are signals and no invariants. */
+static bool is_probe(const run_columns *c, const shown_column *column)
+{
+  return c->scene->scene != NULL && dvi_scene_field(c->scene->scene) != NULL &&
+         column->kind == COLUMN_INVARIANT && column->index > c->scene->terms->symmetry_count;
+}
+
 static void choose_curves(run_trace *trace, bool chosen)
 {
   const run_columns *c = trace->columns;
   if (!chosen) choose_motion(trace);
   for (int k = 0; k < c->count; k++) {
     const shown_column *column = &c->column[k];
+    if (is_probe(c, column)) {
+      panel_add_column(&trace->panel[MOTION], k, TRACE_CURVES);
+      continue;
+    }
     if (column->kind == COLUMN_INVARIANT && shows_balance(c, column->index)) continue;
     if (column->kind == COLUMN_INVARIANT || column->kind == COLUMN_BALANCE)
       panel_add_column(&trace->panel[column->index == 0 ? ENERGY : INVARIANTS], k, TRACE_CURVES);

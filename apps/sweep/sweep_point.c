@@ -1,6 +1,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "sweep/sweep_point.h"
 
+#include <dvi/scene.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -41,6 +42,12 @@ static void write_names(FILE *stream, int count, char *const *name)
   }
 }
 
+/* A field has as many coordinates as vertices. Its energy and its probes tell of it. */
+static bool shows_state(const problem *model)
+{
+  return model->scene == NULL || dvi_scene_field(model->scene) == NULL;
+}
+
 void sweep_header(const sweep_task *task, FILE *stream)
 {
   const problem *model = task->model;
@@ -49,8 +56,10 @@ void sweep_header(const sweep_task *task, FILE *stream)
     (void)fputc(',', stream);
   }
   (void)fputs("status,steps,t,", stream);
-  write_names(stream, model->nq, model->coordinate);
-  write_names(stream, model->nv, model->momentum);
+  if (shows_state(model)) {
+    write_names(stream, model->nq, model->coordinate);
+    write_names(stream, model->nv, model->momentum);
+  }
   for (int i = 0; i < dvi_system_invariant_count(model->system); i++) {
     csv_text(stream, dvi_system_invariant_name(model->system, i));
     (void)fputc(',', stream);
@@ -78,8 +87,10 @@ static void sweep_write_row(const sweep_task *task, const grid_point *point, con
   csv_text(stream, end->word);
   (void)fprintf(stream, ",%ld", end->steps);
   write_numbers(stream, 1, &end->t);
-  write_numbers(stream, model->nq, end->q);
-  write_numbers(stream, model->nv, end->p);
+  if (shows_state(model)) {
+    write_numbers(stream, model->nq, end->q);
+    write_numbers(stream, model->nv, end->p);
+  }
   write_numbers(stream, dvi_system_invariant_count(model->system), end->invariant);
   write_numbers(stream, 1, &end->energy_error);
 }

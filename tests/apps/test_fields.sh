@@ -255,6 +255,11 @@ for command in check run modes solve explain; do
   expect 2 'a parameter that is none' $command file.yaml --set heavy=1
   says err "there is no parameter 'heavy'" 'the parameter is named'
 done
+sed 's/^field:/parameters: {k: 1}\nmaterials: {all: {a: k}}\nfield:/' ear.yaml >tuned.yaml
+expect 0 'a sweep' sweep tuned.yaml --set k=1,4 --out sweep.csv
+says sweep.csv '^k,status,steps,t,energy,ear,rim,energy_error$' 'probes are the columns'
+expect 0 'a plot of probes' run ear.yaml --final --plot ear.svg
+says err 'draws over t: ear, rim; change since the start: energy' 'probes are signals'
 expect 0 'what is there' explain drum.yaml
 says out '^field: 53 unknowns' 'unknowns'
 says out 'verlet is stable below h = 0.1' 'the stable step'
