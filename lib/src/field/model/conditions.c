@@ -6,15 +6,29 @@
 #include "core/status.h"
 #include "field/model/field.h"
 
+enum { PLACE_SIZE = 320 };
+
+/* Name a cell, with the coordinates of a vertex. */
+static void name_place(const dvi_field *field, int k, int64_t cell, char place[PLACE_SIZE])
+{
+  const dvi__cell_name name = dvi__name_cell(field->mesh, k, cell);
+  const int space = field->mesh->space;
+  const double *x = field->mesh->point + cell * space;
+  size_t length = (size_t)snprintf(place, PLACE_SIZE, "%s", name.text);
+  for (int l = 0; k == 0 && l < space && length < PLACE_SIZE; l++)
+    length += (size_t)snprintf(place + length, PLACE_SIZE - length, "%s%.6g%s",
+                               l == 0 ? ", (" : ", ", x[l], l + 1 == space ? ")" : "");
+}
+
 dvi_status dvi__field_check_datum(const dvi_field *field, const char *what, int failed,
                                   double value, int k, int64_t cell)
 {
+  char place[PLACE_SIZE];
   if (failed == 0 && isfinite(value)) return DVI_OK;
-  const dvi__cell_name name = dvi__name_cell(field->mesh, k, cell);
+  name_place(field, k, cell, place);
   if (failed != 0)
-    return dvi__fail(DVI_CALLBACK_FAILED, "field: the %s returned %d at %s", what, failed,
-                     name.text);
-  return dvi__fail(DVI_NOT_FINITE, "field: the %s is %g at %s", what, value, name.text);
+    return dvi__fail(DVI_CALLBACK_FAILED, "field: the %s returned %d at %s", what, failed, place);
+  return dvi__fail(DVI_NOT_FINITE, "field: the %s is %g at %s", what, value, place);
 }
 
 /* ---- values ---- */
