@@ -72,7 +72,7 @@ static dvi_status take_unused(dvi__triangulation *t, int *simplex)
     const int64_t room = t->room > 0 ? 2 * t->room : 64;
     if (t->count >= INT_MAX / SLOTS)
       return dvi__fail(DVI_BAD_SIZE, "more than %lld simplices are too many", (long long)t->count);
-    dvi__simplex *more = grown(t->simplex, t->count, room, sizeof *more);
+    dvi__delaunay_simplex *more = grown(t->simplex, t->count, room, sizeof *more);
     if (more == NULL) return no_memory(room);
     t->simplex = more;
     t->room = room;
@@ -114,7 +114,7 @@ static dvi_status locate(const dvi__triangulation *t, int p, int *simplex)
   const int n = t->sites->n;
   int at = t->last, from = -1;
   for (int first = 0, moved = 1; moved && dvi__is_finite(t, at); first++) {
-    const dvi__simplex *s = &t->simplex[at];
+    const dvi__delaunay_simplex *s = &t->simplex[at];
     moved = 0;
     for (int k = 0; k <= n && !moved; k++) {
       const int slot = (first + k) % (n + 1), next = s->neighbour[slot];
@@ -132,7 +132,7 @@ static dvi_status locate(const dvi__triangulation *t, int p, int *simplex)
  * its plane have one sphere there, which is that of the simplex on the facet's other side. */
 static int is_hit(const dvi__triangulation *t, int simplex, int p)
 {
-  const dvi__simplex *s = &t->simplex[simplex];
+  const dvi__delaunay_simplex *s = &t->simplex[simplex];
   int slot = 0;
   while (slot <= t->sites->n && s->vertex[slot] != DVI__INFINITE) slot++;
   if (slot > t->sites->n) return dvi__is_inside(t->sites, s->vertex, p);
@@ -152,7 +152,7 @@ static dvi_status dig(dvi__triangulation *t, int p, int start)
   for (int64_t k = 0; k < t->hole.count; k++)
     for (int slot = 0; slot <= t->sites->n; slot++) {
       const int at = t->hole.at[k], next = t->simplex[at].neighbour[slot];
-      dvi__simplex *s = &t->simplex[next];
+      dvi__delaunay_simplex *s = &t->simplex[next];
       if (s->mark != hit && s->mark != missed) s->mark = is_hit(t, next, p) ? -hit : missed;
       if (s->mark == missed) DVI_TRY(dvi__place_add(&t->border, at * SLOTS + slot));
       if (s->mark == -hit) DVI_TRY(dvi__place_add(&t->hole, next));
@@ -171,7 +171,7 @@ static dvi_status join(dvi__triangulation *t, int p)
     const int inner = t->border.at[k] / SLOTS, slot = t->border.at[k] % SLOTS;
     int made;
     DVI_TRY(take_unused(t, &made));
-    dvi__simplex *s = &t->simplex[made];
+    dvi__delaunay_simplex *s = &t->simplex[made];
     *s = t->simplex[inner];
     s->vertex[slot] = p;
     s->mark = 0;
@@ -188,7 +188,7 @@ static int turn(const dvi__triangulation *t, int inner, int slot, int out)
 {
   int at = inner, hinge = t->simplex[at].vertex[slot], next;
   while ((next = t->simplex[at].neighbour[out]) >= 0) {
-    const dvi__simplex *s = &t->simplex[next];
+    const dvi__delaunay_simplex *s = &t->simplex[next];
     out = dvi__slot_of(s->vertex, hinge);
     hinge = s->vertex[dvi__slot_of(s->neighbour, at)];
     at = next;
@@ -267,7 +267,7 @@ static void surround(dvi__triangulation *t)
 {
   const int n = t->sites->n;
   for (int i = 0; i <= n; i++) {
-    dvi__simplex *s = &t->simplex[i + 1];
+    dvi__delaunay_simplex *s = &t->simplex[i + 1];
     memcpy(s->vertex, t->simplex[0].vertex, sizeof s->vertex);
     t->simplex[0].neighbour[i] = i + 1;
     for (int j = 0; j <= n; j++) s->neighbour[j] = j == i ? 0 : j + 1;

@@ -10,11 +10,11 @@ enum {
 
 /* A simplex of positive volume. The neighbour with a number shares all vertices but the one with
  * this number. */
-typedef struct dvi__simplex {
+typedef struct dvi__delaunay_simplex {
   int vertex[DVI_MESH_DIMENSION_MAX + 1];
   int neighbour[DVI_MESH_DIMENSION_MAX + 1];
   int64_t mark; /* of the last visit */
-} dvi__simplex;
+} dvi__delaunay_simplex;
 
 /* A list of simplices, or of places in them, that grows. */
 typedef struct dvi__places {
@@ -25,7 +25,7 @@ typedef struct dvi__places {
 /* Simplices that fill the hull, and one with the infinite vertex at each facet of the hull. */
 typedef struct dvi__triangulation {
   const dvi__sites *sites;
-  dvi__simplex *simplex;
+  dvi__delaunay_simplex *simplex;
   double peeled; /* n! times the volume of the simplices that were removed at the hull */
   int64_t count, room;
   int unused;         /* the first unused simplex, whose neighbour 0 is the next one, or -1 */

@@ -69,7 +69,7 @@ static dvi_status look_around(dvi__triangulation *t, int simplex, const int *ver
   DVI_TRY(dvi__place_add(&t->hole, simplex));
   for (int64_t k = 0; k < t->hole.count && *is_inner; k++)
     for (int slot = 0; slot <= t->sites->n; slot++) {
-      const dvi__simplex *s = &t->simplex[t->hole.at[k]];
+      const dvi__delaunay_simplex *s = &t->simplex[t->hole.at[k]];
       const int next = s->neighbour[slot];
       int holds = 1; /* whether the facet has the face */
       for (int i = 0; i < count; i++) holds &= s->vertex[slot] != vertex[i];
