@@ -207,31 +207,53 @@ static void print_degrees(const dvi_mesh *mesh, const dvi_mesh_report *report, F
   table_destroy(&rows);
 }
 
+/* Print the number of a k-cell, and where its centre is. */
+static void print_place(const dvi_mesh *mesh, int k, int64_t cell, FILE *stream)
+{
+  const int space = dvi_mesh_space(mesh);
+  double *centre = calloc((size_t)(dvi_mesh_count(mesh, k) * space), sizeof *centre);
+  (void)fprintf(stream, "%lld", (long long)cell);
+  if (centre != NULL && dvi_mesh_centres(mesh, k, centre) == DVI_OK)
+    for (int l = 0; l < space; l++)
+      (void)fprintf(stream, "%s%.4g%s", l > 0 ? ", " : ", at (", centre[cell * space + l],
+                    l + 1 == space ? ")" : "");
+  free(centre);
+}
+
 /* Print where the worst star of a degree is. */
 static void print_worst(const dvi_mesh *mesh, const dvi_mesh_report *report, FILE *stream)
 {
   for (int k = 0; k <= report->dimension; k++) {
     const dvi_degree_report *d = &report->degree[k];
-    const int space = report->space;
-    double *centre = calloc((size_t)(d->count * space), sizeof *centre);
-    if (d->negative > 0 && centre != NULL && dvi_mesh_centres(mesh, k, centre) == DVI_OK) {
-      (void)fprintf(stream, "the worst dual of the %s is that of %lld, at (", plural_of(mesh, k),
-                    (long long)d->worst);
-      for (int l = 0; l < space; l++)
-        (void)fprintf(stream, "%s%.4g", l > 0 ? ", " : "", centre[d->worst * space + l]);
-      (void)fprintf(stream, ")\n");
-    }
-    free(centre);
+    if (d->negative == 0) continue;
+    (void)fprintf(stream, "the worst dual of the %s is that of ", plural_of(mesh, k));
+    print_place(mesh, k, d->worst, stream);
+    (void)fputc('\n', stream);
+  }
+}
+
+/* Print why and where the mesh is no manifold. */
+static void print_fault(const dvi_mesh *mesh, const dvi_mesh_report *report, FILE *stream)
+{
+  if (report->is_manifold) return;
+  (void)fprintf(stream, "no manifold: ");
+  if (report->branching >= 0) {
+    (void)fprintf(stream, "more than two cells, and so no star, at number ");
+    print_place(mesh, report->dimension - 1, report->branching, stream);
+    (void)fprintf(stream, ", of the %s\n", plural_of(mesh, report->dimension - 1));
+  } else if (report->pinched >= 0) {
+    (void)fprintf(stream, "%lld pinched, where cells do not hang together, among them vertex ",
+                  (long long)report->pinches);
+    print_place(mesh, 0, report->pinched, stream);
+    (void)fputc('\n', stream);
+  } else {
+    (void)fprintf(stream, "%lld edges are pinched, where cells do not hang together\n",
+                  (long long)report->pinches);
   }
 }
 
 static void print_advice(const dvi_mesh_report *report, FILE *stream)
 {
-  if (!report->is_manifold)
-    (void)fprintf(stream, "no manifold: %s\n",
-                  report->branching >= 0 ? "a facet belongs to more than two cells, and such a "
-                                           "mesh has no star"
-                                         : "cells around a vertex or an edge do not hang together");
   if (report->advice & DVI_ADVICE_FLIP)
     (void)fprintf(stream, "what helps: --repair flip gives edges duals that are not negative\n");
   if (report->advice & DVI_ADVICE_GLUE)
@@ -256,6 +278,7 @@ static void print_report(const char *name, const dvi_mesh *mesh, const dvi_mesh_
   if (isfinite(report->dual_ratio))
     (void)fprintf(stream, "positive dual edges at least %.3g of their edges\n", report->dual_ratio);
   print_worst(mesh, report, stream);
+  print_fault(mesh, report, stream);
   print_advice(report, stream);
 }
 

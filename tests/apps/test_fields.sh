@@ -41,6 +41,12 @@ printf '$MeshFormat\n4.1 0 8\n' >cut.msh
 expect 1 'a file cut short' mesh cut.msh
 says err 'cut.msh' 'the file is named'
 
+printf 'OFF\n5 2 0\n0 0 0\n1 0 0\n0 1 0\n-1 0 0\n0 -1 0\n3 0 1 2\n3 0 3 4\n' >pinch.off
+expect 0 'a vertex of two fans' mesh pinch.off
+says out '1 pinched, .* vertex 0, at (0, 0)' 'the pinched vertex is named'
+printf 'OFF\n5 3 0\n0 0 0\n1 0 0\n0 1 0\n0 -1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n3 0 1 4\n' >book.off
+expect 0 'an edge of three triangles' mesh book.off
+says out 'more than two cells, .* number 0, at (0.5, 0, 0), of the edges' 'the edge is named'
 expect 2 'a generator that is none' mesh disc
 says err "neither a file nor a generator (did you mean 'disk'?)" 'the nearest generator'
 
