@@ -72,7 +72,7 @@ dvi_status dvi_mesh_audit(const dvi_mesh *mesh, const dvi_audit_options *options
  *
  *  @param[out] flipped  the new mesh, for dvi_mesh_destroy
  *  @param[out] flips    number of flips. May be NULL
- *  @retval DVI_UNSUPPORTED    the cells are no triangles
+ *  @retval DVI_UNSUPPORTED    the cells are no triangles, or an axis is timelike
  *  @retval DVI_NOT_CONVERGED  flips did not come to an end, as may happen on surfaces
  *  @retval (others)           as dvi_mesh_audit */
 dvi_status dvi_mesh_flip(const dvi_mesh *mesh, dvi_mesh **flipped, int64_t *flips);

@@ -1,5 +1,6 @@
 /* Delaunay's triangulation: empty spheres, and what is refused. */
 #include <dvi/mesh.h>
+#include <dvi/forms.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -239,6 +240,39 @@ START_TEST(bad_points_are_refused)
 }
 END_TEST
 
+/* Points in a thin box fill their hull as they do in a cube: flat is what is flat beside others. */
+START_TEST(thin_boxes_are_filled)
+{
+  static const double thin[] = {1e-3, 1e-5, 1e-6, 1e-7};
+  for (int n = 2; n <= 4; n++)
+    for (int i = 0; i < 4; i++) {
+      double point[POINTS * 4], wide[POINTS * 4], volume[2];
+      unsigned long long seed = 1;
+      for (int k = 0; k < POINTS * n; k++) {
+        wide[k] = random_number(&seed);
+        point[k] = wide[k] * (k % n == 0 ? 1 : thin[i]);
+      }
+      for (int k = 0; k < 2; k++) {
+        dvi_mesh *mesh = NULL;
+        ck_assert_msg(dvi_mesh_delaunay(n, POINTS, k ? point : wide, &mesh) == DVI_OK, "%s",
+                      dvi_last_error());
+        volume[k] = 0;
+        dvi_star *star = NULL;
+        const dvi_star_options options = {.size = sizeof options, .kind = DVI_BARYCENTRIC};
+        dvi_matrix M;
+        ck_assert_int_eq(dvi_star_create(mesh, &options, &star), DVI_OK);
+        ck_assert_int_eq(dvi_star_matrix(star, 0, &M), DVI_OK);
+        for (int v = 0; v < POINTS; v++) volume[k] += M.value[v];
+        dvi_star_destroy(&star);
+        dvi_mesh_destroy(&mesh);
+      }
+      const double scale = pow(thin[i], n - 1);
+      ck_assert_msg(fabs(volume[1] / scale / volume[0] - 1) < 1e-6, "n = %d, 1:%g: %g of %g", n,
+                    thin[i], volume[1] / scale, volume[0]);
+    }
+}
+END_TEST
+
 SUITE(delaunay)
 {
   tcase_add_test(tests, circles_of_triangles_are_empty);
@@ -248,4 +282,5 @@ SUITE(delaunay)
   tcase_add_test(tests, clusters_are_triangulated);
   tcase_add_test(tests, three_points_are_a_triangle);
   tcase_add_test(tests, bad_points_are_refused);
+  tcase_add_test(tests, thin_boxes_are_filled);
 }

@@ -58,6 +58,43 @@ START_TEST(shifts_at_an_eigenvalue_find_no_others)
 }
 END_TEST
 
+/* A diagonal pencil has the eigenvalues that stand in it. */
+static void check_diagonal(int n, const double *K, double shift, int count, const double *expected)
+{
+  double one[128], eigenvalue[16], size = 0;
+  for (int i = 0; i < n; i++) {
+    one[i] = 1;
+    size = fmax(size, K[i]);
+  }
+  const dvi_matrix of_K = {.rows = n, .columns = n, .width = 1, .symmetric = 1, .value = K},
+                   of_M = {.rows = n, .columns = n, .width = 1, .symmetric = 1, .value = one};
+  const dvi_modes_options options = {.size = sizeof options, .count = count, .shift = shift};
+  ck_assert_msg(dvi_matrix_modes(&of_K, &of_M, &options, eigenvalue, NULL) == DVI_OK, "%g: %s",
+                shift, dvi_last_error());
+  for (int k = 0; k < count; k++)
+    ck_assert_msg(fabs(eigenvalue[k] - expected[k]) < 1e-9 * size, "shift %g: mode %d: %.12g",
+                  shift, k, eigenvalue[k]);
+}
+
+START_TEST(tiny_shifts_of_singular_matrices_are_taken)
+{
+  static const double shift[] = {1e-300, -1e-300, 1e-14, -1e-14, 1e-8}, lowest[] = {0, 1, 2, 3, 4};
+  double K[100];
+  for (int i = 0; i < 100; i++) K[i] = i;
+  for (int i = 0; i < 5; i++) check_diagonal(100, K, shift[i], 5, lowest);
+}
+END_TEST
+
+/* Of two clusters on both sides of an eigenvalue the nearer one is found. */
+START_TEST(nearer_cluster_is_found)
+{
+  static const double nearest[] = {0, 0, 0, 0, 0, 1};
+  double K[100];
+  for (int i = 0; i < 100; i++) K[i] = i < 10 ? 0 : i == 10 ? 1 : i < 21 ? 2.0005 : 10 + i;
+  check_diagonal(100, K, 1, 6, nearest);
+}
+END_TEST
+
 START_TEST(shifts_that_are_no_numbers_are_refused)
 {
   static const double shift[] = {NAN, INFINITY, -INFINITY};
@@ -96,6 +133,47 @@ START_TEST(fastest_frequency_bounds_all_others)
     dvi_field_destroy(&field);
   }
   ck_assert(worst > 1); /* something was measured */
+}
+END_TEST
+
+/* Strings of springs of all sizes, and two disjoint ones of which the lighter one is the faster. */
+START_TEST(fastest_frequency_has_no_scale)
+{
+  static const double size[] = {1e-200, 1e-165, 1, 1e155, 1e200};
+  for (int i = 0; i < 5; i++) {
+    double a[8], reference = 0, omega;
+    for (int k = 0; k < 2; k++) {
+      for (int c = 0; c < 8; c++) a[c] = (k == 0 ? 1 : size[i]) * (1 + c);
+      dvi_field *field = field_of(box(1, 8, 0), DVI_CIRCUMCENTRIC, NULL, a, NULL, 0);
+      ck_assert_int_eq(dvi_field_fastest(field, &omega), DVI_OK);
+      if (k == 0) reference = omega;
+      dvi_field_destroy(&field);
+    }
+    ck_assert_double_eq_tol(omega / sqrt(size[i]) / reference, 1, 1e-3);
+  }
+}
+END_TEST
+
+START_TEST(light_and_heavy_parts_have_one_bound)
+{
+  enum { CELLS = 40 };
+  for (int i = 0; i < 8; i++) {
+    double a[CELLS], rho[CELLS], eigenvalue[CELLS - 1], omega;
+    const double ratio = 1 + pow(2, -i - 2);
+    for (int c = 0; c < CELLS; c++) {
+      const int heavy = c >= CELLS / 2;
+      rho[c] = heavy ? 1e6 : 1e-6;
+      a[c] = c == CELLS / 2 || c == CELLS / 2 - 1 ? 0 : rho[c] * (heavy ? ratio : 1);
+      if (c == 10 || c == 30) a[c] *= 1.8;
+    }
+    dvi_field *field = field_of(box(1, CELLS, 0), DVI_CIRCUMCENTRIC, rho, a, NULL, 0);
+    const dvi_modes_options all = {.size = sizeof all, .count = CELLS - 1};
+    ck_assert_int_eq(dvi_field_modes(field, &all, eigenvalue, NULL, NULL), DVI_OK);
+    ck_assert_int_eq(dvi_field_fastest(field, &omega), DVI_OK);
+    ck_assert_msg(omega > (1 - 1e-9) * sqrt(eigenvalue[CELLS - 2]), "ratio %g: %.9g below %.9g",
+                  ratio, omega, sqrt(eigenvalue[CELLS - 2]));
+    dvi_field_destroy(&field);
+  }
 }
 END_TEST
 
@@ -244,8 +322,12 @@ END_TEST
 SUITE(hard_fields)
 {
   tcase_add_test(tests, shifts_at_an_eigenvalue_find_no_others);
+  tcase_add_test(tests, tiny_shifts_of_singular_matrices_are_taken);
+  tcase_add_test(tests, nearer_cluster_is_found);
   tcase_add_test(tests, shifts_that_are_no_numbers_are_refused);
   tcase_add_test(tests, fastest_frequency_bounds_all_others);
+  tcase_add_test(tests, fastest_frequency_has_no_scale);
+  tcase_add_test(tests, light_and_heavy_parts_have_one_bound);
   tcase_add_test(tests, a_field_without_stiffness_has_no_frequency);
   tcase_add_test(tests, soft_beside_stiff_is_solved);
   tcase_add_test(tests, numbers_that_overflow_are_refused);

@@ -10,13 +10,15 @@
 
 /* Iterations without a smaller residual that end the iteration, and the residual that is good
  * enough then. */
-enum { PATIENCE = 200 };
+enum { PATIENCE = 200, GROWTH = 1000 };
 static const double acceptable = 1e-6;
 
 typedef struct search {
   const dvi__products *A;
   double *r, *z, *p, *Ap; /* [size] */
+  double *best;           /* [size] x of the smallest residual, once that is acceptable */
   double rz;              /* r.z */
+  double roundoff;        /* of the scaled right side */
 } search;
 
 static double dot(int64_t n, const double *x, const double *y)
@@ -39,7 +41,7 @@ static void precondition(const search *s)
 
 static int is_acceptable(const search *s, double residual, double size)
 {
-  return residual <= fmax(acceptable * size, 100 * s->A->roundoff);
+  return residual <= fmax(acceptable * size, 100 * s->roundoff);
 }
 
 /* Take one step along p. */
@@ -65,14 +67,14 @@ static dvi_status advance(search *s, double *x)
 }
 
 /* The residual of the recurrence goes below that of x. The search ends where many iterations bring
- * no smaller one. */
+ * no smaller one, or where it grows: in a semidefinite matrix directions of roundings lead away. */
 static dvi_status iterate(search *s, double tolerance, double size, double *x,
                           dvi__iteration_report *report)
 {
   const int64_t n = s->A->size;
   int idle = 0;
   double smallest = size;
-  while (smallest > fmax(tolerance * size, s->A->roundoff) && idle < PATIENCE && s->rz > 0) {
+  while (smallest > fmax(tolerance * size, s->roundoff) && idle < PATIENCE && s->rz > 0) {
     const dvi_status status = advance(s, x);
     if (status == DVI_SINGULAR && is_acceptable(s, smallest, size)) break;
     DVI_TRY(status);
@@ -80,23 +82,42 @@ static dvi_status iterate(search *s, double tolerance, double size, double *x,
     report->iterations++;
     idle = residual < smallest ? 0 : idle + 1;
     if (residual < smallest) smallest = residual;
+    if (idle == 0 && is_acceptable(s, residual, size)) memcpy(s->best, x, (size_t)n * sizeof *x);
+    if (is_acceptable(s, smallest, size) && residual > GROWTH * smallest) break;
   }
   report->residual = size > 0 ? smallest / size : 0;
+  if (report->iterations > 0 && is_acceptable(s, smallest, size))
+    memcpy(x, s->best, (size_t)n * sizeof *x);
   return DVI_OK;
+}
+
+/* Give a power of two that brings the largest number of b near 1, so that squares neither overflow
+ * nor vanish. */
+static double scale_of(int64_t n, const double *b)
+{
+  double most = 0;
+  int exponent;
+  for (int64_t i = 0; i < n; i++)
+    if (!(fabs(b[i]) <= most)) most = fabs(b[i]);
+  (void)frexp(most, &exponent);
+  return most > 0 && isfinite(most) ? ldexp(1, exponent < -1000 ? 1000 : -exponent) : 1;
 }
 
 static dvi_status solve(search *s, double tolerance, const double *b, double *x,
                         dvi__iteration_report *report)
 {
   const int64_t n = s->A->size;
-  const double size = sqrt(dot(n, b, b));
+  const double scale = scale_of(n, b);
   memset(x, 0, (size_t)n * sizeof *x);
-  memcpy(s->r, b, (size_t)n * sizeof *b);
+  for (int64_t i = 0; i < n; i++) s->r[i] = scale * b[i];
+  s->roundoff = scale * s->A->roundoff;
+  const double size = sqrt(dot(n, s->r, s->r));
   if (!isfinite(size)) return dvi__fail(DVI_NOT_FINITE, "conjugate gradients: |b| is %g", size);
   precondition(s);
   memcpy(s->p, s->z, (size_t)n * sizeof *b);
   s->rz = dot(n, s->r, s->z);
   DVI_TRY(iterate(s, tolerance, size, x, report));
+  for (int64_t i = 0; i < n; i++) x[i] /= scale;
   if (is_acceptable(s, report->residual * size, size)) return DVI_OK;
   return dvi__fail(DVI_NOT_CONVERGED,
                    "conjugate gradients: %g of the right side is left after %d iterations: it may "
@@ -108,12 +129,17 @@ dvi_status dvi__conjugate_gradients(const dvi__products *A, double tolerance, co
                                     double *x, dvi__iteration_report *report)
 {
   const size_t n = (size_t)A->size;
-  double *work = DVI_NEW(double, 4 * n);
+  double *work = DVI_NEW(double, 5 * n);
   dvi__iteration_report unasked = {0};
   if (work == NULL)
     return dvi__fail(DVI_NO_MEMORY, "conjugate gradients: no memory for %lld unknowns",
                      (long long)A->size);
-  search s = {.A = A, .r = work, .z = work + n, .p = work + 2 * n, .Ap = work + 3 * n};
+  search s = {.A = A,
+              .r = work,
+              .z = work + n,
+              .p = work + 2 * n,
+              .Ap = work + 3 * n,
+              .best = work + 4 * n};
   if (report == NULL) report = &unasked;
   *report = unasked;
   const dvi_status status = solve(&s, tolerance, b, x, report);

@@ -28,6 +28,7 @@ typedef struct lanczos {
   dvi__definite inverse; /* of M */
   int64_t n;
   double *q, *r, *Mq, *Mr, *last, *u; /* [n] q_j, the next one, M times these, M q_{j-1}, K q_j */
+  double scale;                       /* power of two by which K is multiplied */
   int steps;
   double alpha[STEPS_MOST], beta[STEPS_MOST + 1];
 } lanczos;
@@ -40,8 +41,8 @@ static int count_above(const lanczos *s, double x)
   int count = 0;
   double pivot = 1;
   for (int j = 0; j < s->steps; j++) {
-    const double coupling = j > 0 ? s->beta[j] * s->beta[j] : 0;
-    pivot = s->alpha[j] - x - coupling / (pivot != 0 ? pivot : 1e-300);
+    const double coupling = j > 0 ? s->beta[j] * (s->beta[j] / (pivot != 0 ? pivot : 1e-300)) : 0;
+    pivot = s->alpha[j] - x - coupling;
     count += pivot > 0;
   }
   return count;
@@ -132,10 +133,39 @@ static dvi_status advance(lanczos *s)
 {
   const int j = s->steps++;
   dvi_matrix_multiply(s->pencil->K, 0, s->q, s->u);
+  for (int64_t i = 0; i < s->n; i++) s->u[i] *= s->scale;
   s->alpha[j] = dot(s->n, s->q, s->u);
   for (int64_t i = 0; i < s->n; i++)
     s->Mr[i] = s->u[i] - s->alpha[j] * s->Mq[i] - s->beta[j] * s->last[i];
   return take_direction(s, &s->beta[j + 1]);
+}
+
+static double largest_entry(const dvi_matrix *A)
+{
+  double most = 0;
+  const int64_t entries = dvi_matrix_entries(A);
+  for (int64_t e = 0; e < entries; e++) most = fmax(most, fabs(dvi__entry_value(A, e)));
+  return most;
+}
+
+/* Bring the eigenvalues near 1, so that squares neither overflow nor vanish. */
+static double scale_of(const dvi__pencil *pencil)
+{
+  int of_K, of_M;
+  (void)frexp(largest_entry(pencil->K), &of_K);
+  (void)frexp(largest_entry(pencil->M), &of_M);
+  return ldexp(1, of_M - of_K);
+}
+
+/* Let M r be a start whose parts in all eigenvectors are alike, which are orthonormal in M. For a
+ * diagonal M these parts are those of M^(-1/2) M r. */
+static void fill_start(lanczos *s)
+{
+  const dvi_matrix *M = s->pencil->M;
+  dvi__fill_start(s->n, s->Mr);
+  for (int64_t i = 0; i < s->n; i++)
+    for (int64_t e = dvi__first_entry(M, i); e < dvi__first_entry(M, i + 1); e++)
+      if (dvi__entry_column(M, i, e) == i) s->Mr[i] *= sqrt(dvi__entry_value(M, e));
 }
 
 static dvi_status iterate(lanczos *s, double *bound)
@@ -143,7 +173,8 @@ static dvi_status iterate(lanczos *s, double *bound)
   const int most = steps_needed(s->n);
   const double rows = bound_by_rows(s->pencil);
   double theta = 0;
-  dvi__fill_start(s->n, s->Mr);
+  s->scale = scale_of(s->pencil);
+  fill_start(s);
   DVI_TRY(take_direction(s, &s->beta[0]));
   memset(s->last, 0, (size_t)s->n * sizeof *s->last);
   s->beta[0] = 0;
@@ -152,11 +183,11 @@ static dvi_status iterate(lanczos *s, double *bound)
     const double beta = s->beta[s->steps];
     if (s->steps % BETWEEN_TESTS != 0 && s->steps < most && beta > 0) continue;
     theta = largest_ritz_value(s);
-    if (rows <= theta * (1 + margin) || !(beta > settled * theta) ||
+    if (rows * s->scale <= theta * (1 + margin) || !(beta > settled * theta) ||
         beta * last_component(s, theta) <= settled * theta)
       break;
   }
-  *bound = fmin(theta * (1 + margin), rows);
+  *bound = fmin(theta / s->scale * (1 + margin), rows);
   return DVI_OK;
 }
 

@@ -248,27 +248,68 @@ static dvi_status lanczos_near(const dvi__pencil *pencil, double shift, int coun
   return status;
 }
 
+/* A shift below zero of the size of the matrices makes a semidefinite K definite. */
+static double default_shift(const dvi_matrix *K, const dvi_matrix *M)
+{
+  double k = 0, m = 0;
+  for (int64_t i = 0; i < K->rows; i++) {
+    for (int64_t e = dvi__first_entry(K, i); e < dvi__first_entry(K, i + 1); e++)
+      if (dvi__entry_column(K, i, e) == i) k += dvi__entry_value(K, e);
+    for (int64_t e = dvi__first_entry(M, i); e < dvi__first_entry(M, i + 1); e++)
+      if (dvi__entry_column(M, i, e) == i) m += dvi__entry_value(M, e);
+  }
+  return -1e-5 * k / m;
+}
+
+/* Replace eigenvalues by Rayleigh's quotients, whose errors are the squares of those of the vectors.
+ * Returns the largest |K x - lambda M x|, beside the largest entry of K. */
+static double refine(const dvi__pencil *pencil, int count, double *value, const double *vector,
+                     double *room)
+{
+  const int64_t n = pencil->K->rows, entries = dvi_matrix_entries(pencil->K);
+  double worst = 0, size = 0, *Kx = room, *Mx = room + n;
+  for (int64_t e = 0; e < entries; e++) size = fmax(size, fabs(dvi__entry_value(pencil->K, e)));
+  for (int k = 0; k < count; k++) {
+    const double *x = vector + k * n;
+    double most = 0, left = 0, xKx = 0, xMx = 0;
+    dvi_matrix_multiply(pencil->K, 0, x, Kx);
+    dvi_matrix_multiply(pencil->M, 0, x, Mx);
+    for (int64_t i = 0; i < n; i++) {
+      most = fmax(most, fabs(x[i]));
+      left = fmax(left, fabs(Kx[i] - value[k] * Mx[i]));
+      xKx += x[i] * Kx[i];
+      xMx += x[i] * Mx[i];
+    }
+    worst = fmax(worst, left / (most * size));
+    value[k] = xKx / xMx;
+  }
+  return worst;
+}
+
 /* A shift at an eigenvalue makes K - shift M singular to roundoff, so that its solutions have the
  * right direction and no more digits, and other eigenvalues would be made of roundings. The shift
- * is then moved by a thousandth of the distance to the farthest eigenvalue, until the nearest one
+ * is then moved by a small part of the distance to the farthest eigenvalue, until the nearest one
  * is not so near. A few more eigenvalues than asked for tell which ones are the nearest. */
 static dvi_status lanczos_beside(const dvi__pencil *pencil, double shift, int count, double *value,
-                                 double *vector)
+                                 double *vector, double *room)
 {
   enum { TRIES = 12 };
-  const double near = 1e-6, part = 1e-3;
+  const double near = 1e-6, part = 1e-5, allowed = 1e-6,
+               unit = -default_shift(pencil->K, pencil->M);
   double from = shift;
   for (int i = 0; i < TRIES; i++) {
     double nearest = INFINITY, farthest = 0;
-    const dvi_status status = lanczos_near(pencil, from, count, value, vector);
+    dvi_status status = lanczos_near(pencil, from, count, value, vector);
     if (status != DVI_OK && status != DVI_SINGULAR) return status;
+    if (status == DVI_OK && !(refine(pencil, count, value, vector, room) <= allowed))
+      status = DVI_SINGULAR;
     for (int k = 0; k < count && status == DVI_OK; k++) {
       nearest = fmin(nearest, fabs(value[k] - from));
       farthest = fmax(farthest, fabs(value[k] - from));
     }
     if (status == DVI_OK && nearest > near * farthest) return DVI_OK;
-    if (status != DVI_OK && (shift <= 0 || i + 1 == TRIES)) return status;
-    from += fmax(part * farthest, 1e-9 * fabs(from));
+    if (status != DVI_OK && i + 1 == TRIES) return status;
+    from += (shift > 0 ? 1 : -1) * fmax(part * farthest, status == DVI_OK ? 0 : 1e-2 * unit);
   }
   return dvi__fail(DVI_NOT_CONVERGED,
                    "modes: the shift %g lies within roundoff of many eigenvalues: take another one",
@@ -281,11 +322,12 @@ static dvi_status modes_by_lanczos(const dvi__pencil *pencil, double shift, int 
   enum { MORE = 4 };
   const int64_t n = pencil->K->rows;
   const int asked = smaller(n - 1, (int64_t)count + MORE);
-  double *value = DVI_NEW(double, asked + n * asked);
+  double *value = DVI_NEW(double, asked + n * (asked + 2));
   if (value == NULL)
     return dvi__fail(DVI_NO_MEMORY, "modes: no memory for %d vectors of %lld numbers", asked,
                      (long long)n);
-  const dvi_status status = lanczos_beside(pencil, shift, asked, value, value + asked);
+  const dvi_status status = lanczos_beside(pencil, shift, asked, value, value + asked,
+                                           value + asked + n * asked);
   const int64_t first = status == DVI_OK ? first_of_nearest(asked, value, count, shift) : 0;
   if (status == DVI_OK) {
     memcpy(eigenvalue, value + first, (size_t)count * sizeof *value);
@@ -311,19 +353,6 @@ dvi_status dvi__modes_near(const dvi__pencil *pencil, double shift, int count, d
 }
 
 /* ---- for users ---- */
-
-/* A shift below zero of the size of the matrices makes a semidefinite K definite. */
-static double default_shift(const dvi_matrix *K, const dvi_matrix *M)
-{
-  double k = 0, m = 0;
-  for (int64_t i = 0; i < K->rows; i++) {
-    for (int64_t e = dvi__first_entry(K, i); e < dvi__first_entry(K, i + 1); e++)
-      if (dvi__entry_column(K, i, e) == i) k += dvi__entry_value(K, e);
-    for (int64_t e = dvi__first_entry(M, i); e < dvi__first_entry(M, i + 1); e++)
-      if (dvi__entry_column(M, i, e) == i) m += dvi__entry_value(M, e);
-  }
-  return -1e-5 * k / m;
-}
 
 dvi_status dvi_matrix_modes(const dvi_matrix *K, const dvi_matrix *M,
                             const dvi_modes_options *options, double *eigenvalue, double *vector)

@@ -125,23 +125,23 @@ static void measure_edges(const dvi_star *star, dvi_mesh_report *report)
                                 star->dual[1][e] / dvi__cell_volume(mesh, 1, e));
 }
 
-/* Tell if an inner edge of triangles has a negative dual, which a flip may mend. */
-static int can_be_flipped(const dvi_star *star)
-{
-  const dvi_mesh *mesh = star->mesh;
-  double most = 0;
-  if (mesh->n != 2 || mesh->kind != DVI_SIMPLICES) return 0;
-  for (int64_t e = 0; e < mesh->count[1]; e++) most = fmax(most, fabs(star->dual[1][e]));
-  for (int64_t e = 0; e < mesh->count[1]; e++)
-    if (mesh->coface[2 * e + 1] >= 0 && star->dual[1][e] < -negligible * most) return 1;
-  return 0;
-}
-
 static int is_of_space(const dvi_mesh *mesh)
 {
   for (int l = 0; l < mesh->space; l++)
     if (mesh->metric[l] < 0) return 0;
   return 1;
+}
+
+/* Tell if an inner edge of triangles has a negative dual, which a flip may mend. */
+static int can_be_flipped(const dvi_star *star)
+{
+  const dvi_mesh *mesh = star->mesh;
+  double most = 0;
+  if (mesh->n != 2 || mesh->kind != DVI_SIMPLICES || !is_of_space(mesh)) return 0;
+  for (int64_t e = 0; e < mesh->count[1]; e++) most = fmax(most, fabs(star->dual[1][e]));
+  for (int64_t e = 0; e < mesh->count[1]; e++)
+    if (mesh->coface[2 * e + 1] >= 0 && star->dual[1][e] < -negligible * most) return 1;
+  return 0;
 }
 
 /* M_k is positive, and M_{k+1} is not negative. */

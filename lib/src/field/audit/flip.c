@@ -191,6 +191,12 @@ dvi_status dvi_mesh_flip(const dvi_mesh *mesh, dvi_mesh **flipped, int64_t *flip
     return dvi__fail(DVI_UNSUPPORTED,
                      "flip: the cells are no triangles: take the barycentric or Whitney's star, or "
                      "dvi_mesh_delaunay of the points");
+  for (int l = 0; l < mesh->space; l++)
+    if (mesh->metric[l] < 0)
+      return dvi__fail(DVI_UNSUPPORTED,
+                       "flip: axis %d of the mesh's metric is timelike, where a negative dual does "
+                       "not ask for a flip",
+                       l);
   dvi_mesh *current = dvi_mesh_share(mesh);
   dvi_status status = DVI_OK;
   const int is_plane = mesh->space == 2;

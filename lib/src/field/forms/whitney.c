@@ -48,7 +48,7 @@ static void multiply_wedges(const dvi_mesh *mesh,
                             dvi__twofold covector[DVI__SIMPLEX_CORNERS][DVI_MESH_SPACE_MAX],
                             wedges *w)
 {
-  double component[WEDGES][DVI__COMPONENTS];
+  double component[WEDGES][DVI__COMPONENTS] = {{0}};
   int count = 0;
   for (int mask = 0; mask < 1 << (w->n + 1); mask++) {
     const dvi__twofold *of[DVI__SIMPLEX_CORNERS];

@@ -275,7 +275,7 @@ dvi_status dvi_mesh_centres(const dvi_mesh *mesh, int k, double *centre)
     const int first = corner != NULL ? corner[cell * width] : (int)cell;
     double *x = centre + cell * space;
     memcpy(x, mesh->point + (int64_t)first * space, (size_t)space * sizeof *x);
-    for (int c = 1; c < width; c++) {
+    for (int c = 1; c < width && corner != NULL; c++) {
       dvi__mesh_difference(mesh, first, corner[cell * width + c], to);
       for (int l = 0; l < space; l++) x[l] += to[l] / width;
     }

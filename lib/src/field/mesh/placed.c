@@ -139,7 +139,7 @@ FUSED_INLINE void eliminate(int k, square_matrix a, int j)
  * may have zeros on the diagonal. Returns the determinant, and 0 if there is no inverse. */
 FUSED_INLINE double invert(int k, square_matrix a)
 {
-  int pivot[DVI_MESH_DIMENSION_MAX];
+  int pivot[DVI_MESH_DIMENSION_MAX] = {0};
   double determinant = 1;
   for (int j = 0; j < k; j++) {
     pivot[j] = j;

@@ -48,7 +48,8 @@ bool dvi__integral_read(dvi_scene *scene, const dvi__tree *tree, const dvi__tree
   a->part = over != NULL ? over->text : "all";
   a->tree = tree;
   (void)dvi_mesh_part_cells(mesh, a->part, dvi_mesh_dimension(mesh), &count);
-  if (count <= 0) return dvi__refuse_part(scene, over->span, a->part, true);
+  if (count <= 0)
+    return dvi__refuse_part(scene, over != NULL ? over->span : tree->span, a->part, true);
   *integral = a;
   return dvi__place_read(scene, tree, DVI__OF_VALUE, "an integral", &a->function);
 }

@@ -68,7 +68,7 @@ static double find_box(const dvi__sites *s, const double *point, double *middle)
  * those far from it, and scale by a power of two. */
 static void take_points(const dvi__sites *s, const double *point, double *x)
 {
-  double middle[DVI_MESH_DIMENSION_MAX];
+  double middle[DVI_MESH_DIMENSION_MAX] = {0};
   const double size = find_box(s, point, middle);
   for (int64_t i = 0; i < s->points * s->n; i++) {
     const double origin = size * ceil(middle[i % s->n] / size - 0.5);
@@ -165,20 +165,36 @@ static double hull_volume(const dvi__triangulation *t)
   return sum;
 }
 
+/* Give the volume of the box around the points. */
+static double box_volume(const dvi__sites *s)
+{
+  double volume = 1;
+  for (int l = 0; l < s->n; l++) {
+    double least = s->x[l], most = s->x[l];
+    for (int64_t i = 1; i < s->points; i++) {
+      least = fmin(least, s->x[i * s->n + l]);
+      most = fmax(most, s->x[i * s->n + l]);
+    }
+    volume *= most - least;
+  }
+  return volume;
+}
+
 /* Compare the volume of the cells, and of what was removed, with the hull's. The errors of a
- * pyramid are below 1e-13 of the product of its edges, which are smaller than 2. */
+ * pyramid are below 1e-13 of the box. Only roundings may be removed. */
 static dvi_status check_volume(const dvi__triangulation *t, const dvi_mesh *mesh)
 {
   const int n = t->sites->n, *vertex = dvi_mesh_vertices(mesh, n, NULL);
   const int64_t cells = dvi_mesh_count(mesh, n);
-  const double hull = hull_volume(t), error = 1e-13 * (double)cells;
+  const double hull = hull_volume(t), error = 1e-13 * (double)cells * box_volume(t->sites),
+               negligible = 1e-5;
   double filled = t->peeled;
   for (int64_t c = 0; c < cells; c++, vertex += n + 1)
     filled += fabs(pyramid(t->sites, vertex, 0, vertex[0]));
-  if (fabs(filled - hull) <= 1e-9 * hull + error) return DVI_OK;
+  if (fabs(filled - hull) <= 1e-9 * hull + error && t->peeled <= negligible * hull) return DVI_OK;
   return dvi__fail(DVI_BAD_ARGUMENT,
                    "the simplices fill %.12g of their hull: do the points nearly lie in a plane?",
-                   filled / hull);
+                   (filled - t->peeled) / hull);
 }
 
 /* The mesh found its facets by comparing vertices. Compare them with the neighbours that the

@@ -19,8 +19,8 @@ static void follow_hilbert(int n, int bits, uint32_t *x)
   for (uint32_t bit = top; bit > 1; bit >>= 1)
     for (int i = 0; i < n; i++) {
       const uint32_t below = bit - 1, differ = (x[0] ^ x[i]) & below;
-      x[0] ^= x[i] & bit ? below : differ;
-      x[i] ^= x[i] & bit ? 0 : differ;
+      x[0] ^= (x[i] & bit) != 0 ? below : differ;
+      x[i] ^= (x[i] & bit) != 0 ? 0 : differ;
     }
   for (int i = 1; i < n; i++) x[i] ^= x[i - 1];
   for (uint32_t bit = top; bit > 1; bit >>= 1)

@@ -1,41 +1,54 @@
 #include "field/mesh/delaunay/peel.h"
 
 #include <math.h>
+#include <stddef.h>
 
 #include "core/status.h"
 #include "field/mesh/volume.h"
 
 enum { AXES = DVI_MESH_DIMENSION_MAX };
 
-/* Give n! times a simplex's volume, and in *part its ratio to the product of the edges from one
- * corner. */
-static double volume_from(const dvi__sites *s, const int *vertex, int corner, double *part)
+static void edges_from(const dvi__sites *s, const int *vertex, int corner, double *edge)
 {
-  double edge[AXES * AXES], size = 1;
-  for (int i = 0, k = 0; i <= s->n; i++) {
-    double square = 0;
-    if (i == corner) continue;
-    for (int l = 0; l < s->n; l++) {
-      edge[k * s->n + l] = s->x[(int64_t)vertex[i] * s->n + l] -
-                           s->x[(int64_t)vertex[corner] * s->n + l];
-      square += edge[k * s->n + l] * edge[k * s->n + l];
-    }
-    size *= sqrt(square);
-    k++;
+  for (int i = 0, k = 0; i <= s->n; i++)
+    for (int l = 0; l < s->n && i != corner; l++)
+      edge[k++] = s->x[(int64_t)vertex[i] * s->n + l] - s->x[(int64_t)vertex[corner] * s->n + l];
+}
+
+static double dot(int n, const double *a, const double *b)
+{
+  double sum = 0;
+  for (int l = 0; l < n; l++) sum += a[l] * b[l];
+  return sum;
+}
+
+/* Give the smallest part that is left of an edge from a corner without the directions of those
+ * before it. A cell that is thin as its neighbours are, because all points are, is not flat. */
+static double smallest_part(const dvi__sites *s, const int *vertex, int corner)
+{
+  const int n = s->n;
+  double edge[AXES * AXES], least = 1;
+  edges_from(s, vertex, corner, edge);
+  for (int i = 0; i < n; i++) {
+    double *e = edge + (ptrdiff_t)i * n;
+    const double whole = sqrt(dot(n, e, e));
+    for (int pass = 0; pass < 2; pass++) /* twice because of roundings */
+      for (int j = 0; j < i; j++) {
+        const double *d = edge + (ptrdiff_t)j * n, along = dot(n, d, e);
+        for (int l = 0; l < n; l++) e[l] -= along * d[l];
+      }
+    const double left = sqrt(dot(n, e, e));
+    least = fmin(least, left / whole);
+    for (int l = 0; l < n && left > 0; l++) e[l] /= left;
   }
-  const double volume = fabs(dvi__determinant(s->n, edge));
-  *part = volume / size;
-  return volume;
+  return least;
 }
 
 /* A simplex with one far corner looks flat from there, and not from its other corners. */
 static int is_flat(const dvi__sites *s, const int *vertex, double part)
 {
-  for (int corner = 0; corner <= s->n; corner++) {
-    double seen;
-    (void)volume_from(s, vertex, corner, &seen);
-    if (seen > part) return 0;
-  }
+  for (int corner = 0; corner <= s->n; corner++)
+    if (smallest_part(s, vertex, corner) > part) return 0;
   return 1;
 }
 
@@ -143,8 +156,9 @@ static dvi_status can_go(dvi__triangulation *t, int simplex, int also_covered, i
 /* A removed simplex stays as a neighbour, as those with the infinite vertex do. */
 static void remove_simplex(dvi__triangulation *t, int simplex)
 {
-  double part;
-  t->peeled += volume_from(t->sites, t->simplex[simplex].vertex, 0, &part);
+  double edge[AXES * AXES];
+  edges_from(t->sites, t->simplex[simplex].vertex, 0, edge);
+  t->peeled += fabs(dvi__determinant(t->sites->n, edge));
   t->simplex[simplex].vertex[0] = DVI__UNUSED;
 }
 

@@ -30,7 +30,7 @@ static inline double minor_of_four(const double *a, const double *b, const doubl
 /* Give the determinant of all rows but one. */
 static inline double minor_without(int n, double row[ROWS][AXES], int left_out)
 {
-  const double *r[AXES] = {0};
+  const double *r[AXES] = {row[0], row[0], row[0], row[0]};
   for (int i = 0, k = 0; i <= n; i++)
     if (i != left_out) r[k++] = row[i];
   if (n == 2) return minor_of_two(r[0], r[1]);
