@@ -85,10 +85,11 @@ static int open_mesh(const mesh_request *r, const char *name, dvi_mesh **mesh)
   if (r->cells || r->size || r->origin || r->grading || r->periodic)
     return usage_error("mesh: '%s' is no generator, and a file takes no --cells, --size and so on",
                        name);
-  char hint[2 * NAME_SIZE];
-  if (strchr(name, '.') == NULL && access(name, F_OK) != 0)
+  if (strchr(name, '.') == NULL && access(name, F_OK) != 0) {
+    char hint[2 * NAME_SIZE];
     return usage_error("mesh: '%s' is neither a file nor a generator%s", name,
                        suggestion(name, generator_at, NULL, hint, sizeof hint));
+  }
   const dvi_status status = dvi_mesh_read(name, NULL, mesh);
   return status == DVI_OK ? DONE : library_error(status);
 }

@@ -21,8 +21,8 @@ static bool allocate(const skin *s, int pixels, raster *r)
   r->least[0] = s->least[0];
   r->least[1] = s->least[1];
   const size_t all = (size_t)r->width * (size_t)r->height;
-  r->value = malloc(all * sizeof *r->value);
-  r->depth = malloc(all * sizeof *r->depth);
+  r->value = calloc(all, sizeof *r->value);
+  r->depth = calloc(all, sizeof *r->depth);
   if (r->value == NULL || r->depth == NULL) return false;
   for (size_t i = 0; i < all; i++) {
     r->value[i] = (double)NAN;

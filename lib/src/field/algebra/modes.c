@@ -261,7 +261,7 @@ static double default_shift(const dvi_matrix *K, const dvi_matrix *M)
   return -1e-5 * k / m;
 }
 
-/* Replace eigenvalues by Rayleigh's quotients, whose errors are the squares of those of the vectors.
+/* Replace eigenvalues by Rayleigh's quotients, whose errors are squares of those of the vectors.
  * Returns the largest |K x - lambda M x|, beside the largest entry of K. */
 static double refine(const dvi__pencil *pencil, int count, double *value, const double *vector,
                      double *room)

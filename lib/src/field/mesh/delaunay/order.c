@@ -14,7 +14,7 @@ typedef struct place {
 /* Turn and mirror the cubes so that their corners follow each other (Skilling 2004). */
 static void follow_hilbert(int n, int bits, uint32_t *x)
 {
-  const uint32_t top = UINT32_C(1) << (bits - 1);
+  const uint32_t top = UINT32_C(1) << ((unsigned)(bits - 1) % 32);
   uint32_t turn = 0;
   for (uint32_t bit = top; bit > 1; bit >>= 1)
     for (int i = 0; i < n; i++) {

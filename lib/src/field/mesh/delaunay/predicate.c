@@ -182,7 +182,7 @@ static int is_inside_exactly(const dvi__sites *s, const int *vertex, int p)
 {
   const int n = s->n;
   const unsigned all = (1U << (n + 1)) - 1;
-  int64_t row[ROWS][AXES];
+  int64_t row[ROWS][AXES] = {{0}};
   int sign[ROWS];
   wide minor[1 << ROWS], sum = {{0}};
   integer_rows(s, vertex, -1, p, row);
@@ -202,7 +202,7 @@ static int is_inside_exactly(const dvi__sites *s, const int *vertex, int p)
 static int side_exactly(const dvi__sites *s, const int *vertex, int slot, int p)
 {
   const unsigned rows = ((1U << (s->n + 1)) - 1) ^ 1U << slot;
-  int64_t row[ROWS][AXES];
+  int64_t row[ROWS][AXES] = {{0}};
   wide minor[1 << ROWS];
   integer_rows(s, vertex, slot, p, row);
   expand_minors(s->n, row, rows, minor);
@@ -214,7 +214,7 @@ static int side_exactly(const dvi__sites *s, const int *vertex, int slot, int p)
 int dvi__side(const dvi__sites *s, const int *vertex, int slot, int p)
 {
   static const int terms[] = {1, 1, 2, 6, 24};
-  double row[ROWS][AXES];
+  double row[ROWS][AXES] = {{0}};
   const double error = error_of(terms[s->n], rows_towards(s, vertex, slot, p, row)),
                minor = minor_without(s->n, row, slot);
   if (!(fabs(minor) > error)) return side_exactly(s, vertex, slot, p);
@@ -224,7 +224,7 @@ int dvi__side(const dvi__sites *s, const int *vertex, int slot, int p)
 int dvi__is_inside(const dvi__sites *s, const int *vertex, int p)
 {
   static const int terms[] = {1, 2, 6, 24, 120};
-  double row[ROWS][AXES], sum = 0, largest = 0;
+  double row[ROWS][AXES] = {{0}}, sum = 0, largest = 0;
   const double product = rows_towards(s, vertex, -1, p, row);
   for (int i = 0; i <= s->n; i++) {
     double height = 0;
