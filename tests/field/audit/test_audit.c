@@ -189,7 +189,10 @@ START_TEST(spacetime_has_no_frequencies)
                                 .metric = metric};
   ck_assert_int_eq(dvi_mesh_create(&terms, &mesh), DVI_OK);
   const dvi_mesh_report report = audited(mesh);
+  dvi_mesh *flipped = NULL;
   ck_assert(isnan(report.degree[0].fastest));
+  ck_assert(!(report.advice & DVI_ADVICE_FLIP));
+  ck_assert_int_eq(dvi_mesh_flip(mesh, &flipped, NULL), DVI_UNSUPPORTED);
   dvi_mesh_destroy(&mesh);
 }
 END_TEST

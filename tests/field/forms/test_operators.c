@@ -346,6 +346,50 @@ START_TEST(poisson_problems_are_solved_in_every_degree)
 }
 END_TEST
 
+/* With all vertices held, d of functions vanishes, and the matrix has a large kernel into which
+ * roundings lead. The solution is as large as the right side, whatever that is. */
+START_TEST(solutions_scale_with_their_right_sides)
+{
+  static const double scale[] = {1e-250, 1e-150, 1e-3, 1e2, 1e3, 1e150};
+  enum { POINTS = 16 };
+  int all[POINTS];
+  for (int v = 0; v < POINTS; v++) all[v] = v;
+  dvi_mesh *plain = jittered_mesh(2, 2, 3, 0.2, 8), *mesh = NULL;
+  const dvi_mesh_part part = {.name = "pins", .degree = 0, .count = POINTS, .cell = all};
+  const dvi_mesh_terms terms = {.size = sizeof terms,
+                                .dimension = 2,
+                                .points = POINTS,
+                                .point = dvi_mesh_points(plain),
+                                .cells = dvi_mesh_count(plain, 2),
+                                .vertex = dvi_mesh_vertices(plain, 2, NULL),
+                                .part = &part,
+                                .parts = 1};
+  ck_assert_msg(dvi_mesh_create(&terms, &mesh) == DVI_OK, "%s", dvi_last_error());
+  dvi_star *star = star_of(mesh, DVI_BARYCENTRIC);
+  const int64_t edges = dvi_mesh_count(mesh, 1);
+  double *f = random_form(mesh, 1, 5), *h = random_form(mesh, 1, 1), *u = random_form(mesh, 1, 1),
+         *scaled = random_form(mesh, 1, 1), *found = random_form(mesh, 1, 1), most = 0;
+  ck_assert_int_eq(dvi_form_decompose(star, 1, "pins", f, NULL, NULL, h), DVI_OK);
+  for (int64_t i = 0; i < edges; i++) f[i] -= h[i];
+  ck_assert_msg(dvi_form_solve(star, 1, "pins", f, u) == DVI_OK, "%s", dvi_last_error());
+  for (int64_t i = 0; i < edges; i++) most = fmax(most, fabs(u[i]));
+  ck_assert(most > 1e-4);
+  for (size_t k = 0; k < sizeof scale / sizeof *scale; k++) {
+    for (int64_t i = 0; i < edges; i++) scaled[i] = scale[k] * f[i];
+    const dvi_status status = dvi_form_solve(star, 1, "pins", scaled, found);
+    ck_assert_msg(status == DVI_OK || scale[k] > 1e100, "times %g: %s", scale[k], dvi_last_error());
+    if (status != DVI_OK) continue; /* squares overflow, and are refused */
+    for (int64_t i = 0; i < edges; i++)
+      ck_assert_msg(fabs(found[i] / scale[k] - u[i]) < 1e-9 * most, "times %g: %g, not %g",
+                    scale[k], found[i] / scale[k], u[i]);
+  }
+  free(f), free(h), free(u), free(scaled), free(found);
+  dvi_star_destroy(&star);
+  dvi_mesh_destroy(&mesh);
+  dvi_mesh_destroy(&plain);
+}
+END_TEST
+
 START_TEST(harmonic_right_side_is_refused)
 {
   dvi_mesh *mesh = staggered_mesh(4, 4);
@@ -399,6 +443,7 @@ SUITE(operators)
   tcase_add_test(tests, mixed_problems_of_functions_are_solved);
   tcase_add_test(tests, relative_form_is_closed_and_coclosed);
   tcase_add_test(tests, poisson_problems_are_solved_in_every_degree);
+  tcase_add_test(tests, solutions_scale_with_their_right_sides);
   tcase_add_test(tests, harmonic_right_side_is_refused);
   tcase_add_test(tests, stars_that_are_not_definite_are_refused);
 }
