@@ -138,8 +138,10 @@ static int plot_grid(const plot_request *request, const char *path)
   code = choose_fields(request, &g, field, &p.fields);
   if (code == DONE) code = read_view(request, &g, &p.from);
   p.edges = request->edges || p.fields == 0;
-  if (p.title == NULL) p.title = p.fields > 0 ? field[0]->name : path;
-  if (code == DONE) code = picture_draw(request->out, &g, &p);
+  if (code == DONE) {
+    if (p.title == NULL) p.title = p.fields > 0 ? field[0]->name : path;
+    code = picture_draw(request->out, &g, &p);
+  }
   vtu_clear(&g);
   return code;
 }
