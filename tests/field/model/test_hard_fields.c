@@ -50,6 +50,7 @@ START_TEST(shifts_at_an_eigenvalue_find_no_others)
         .size = sizeof options, .count = 8, .shift = 36 * (1 + (i < 13 ? pow(10, -i - 3) : 0))};
     ck_assert_msg(dvi_field_modes(field, &options, eigenvalue, NULL, NULL) == DVI_OK, "%s",
                   dvi_last_error());
+    for (int k = 1; k < 8; k++) ck_assert(eigenvalue[k] >= eigenvalue[k - 1]);
     for (int k = 0; k < 8; k++)
       ck_assert_msg(fabs(eigenvalue[k] - (k < 6 ? 36 : 72)) < 1e-7,
                     "shift 36 + 36e-%d: mode %d: %.12g", i + 3, k, eigenvalue[k]);

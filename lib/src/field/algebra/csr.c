@@ -111,6 +111,14 @@ dvi_status dvi__csr_select(const dvi_matrix *A, const dvi__selection *selection,
   return DVI_OK;
 }
 
+double dvi__largest_entry(const dvi_matrix *matrix)
+{
+  double most = 0;
+  const int64_t entries = dvi_matrix_entries(matrix);
+  for (int64_t e = 0; e < entries; e++) most = fmax(most, fabs(dvi__entry_value(matrix, e)));
+  return most;
+}
+
 void dvi__csr_drop_zeros(dvi__csr *matrix)
 {
   int64_t kept = 0, first = 0;

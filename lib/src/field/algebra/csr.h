@@ -38,6 +38,9 @@ typedef struct dvi__selection {
 } dvi__selection;
 dvi_status dvi__csr_select(const dvi_matrix *A, const dvi__selection *selection, dvi__csr *part);
 
+/* Give the size of the largest entry. */
+double dvi__largest_entry(const dvi_matrix *matrix);
+
 /* Leave out the entries that are zero, but not those of the diagonal. */
 void dvi__csr_drop_zeros(dvi__csr *matrix);
 

@@ -122,7 +122,8 @@ static dvi_status take_direction(lanczos *s, double *length)
   double *const old = s->last;
   s->last = s->Mq;
   s->Mq = old;
-  for (int64_t i = 0; i<s->n && * length> 0; i++) {
+  if (*length == 0) return DVI_OK;
+  for (int64_t i = 0; i < s->n; i++) {
     s->q[i] = s->r[i] / *length;
     s->Mq[i] = s->Mr[i] / *length;
   }
@@ -140,20 +141,12 @@ static dvi_status advance(lanczos *s)
   return take_direction(s, &s->beta[j + 1]);
 }
 
-static double largest_entry(const dvi_matrix *A)
-{
-  double most = 0;
-  const int64_t entries = dvi_matrix_entries(A);
-  for (int64_t e = 0; e < entries; e++) most = fmax(most, fabs(dvi__entry_value(A, e)));
-  return most;
-}
-
 /* Bring the eigenvalues near 1, so that squares neither overflow nor vanish. */
 static double scale_of(const dvi__pencil *pencil)
 {
   int of_K, of_M;
-  (void)frexp(largest_entry(pencil->K), &of_K);
-  (void)frexp(largest_entry(pencil->M), &of_M);
+  (void)frexp(dvi__largest_entry(pencil->K), &of_K);
+  (void)frexp(dvi__largest_entry(pencil->M), &of_M);
   return ldexp(1, of_M - of_K);
 }
 
@@ -206,14 +199,6 @@ static dvi_status run(lanczos *s, double *bound)
   return status;
 }
 
-static int is_zero(const dvi_matrix *A)
-{
-  const int64_t entries = dvi_matrix_entries(A);
-  for (int64_t e = 0; e < entries; e++)
-    if (dvi__entry_value(A, e) != 0) return 0;
-  return 1;
-}
-
 dvi_status dvi__largest_eigenvalue(const dvi__pencil *pencil, double *bound)
 {
   lanczos s = {.pencil = pencil, .n = pencil->K->rows};
@@ -221,5 +206,5 @@ dvi_status dvi__largest_eigenvalue(const dvi__pencil *pencil, double *bound)
   if (s.n < 1 || s.n > INT_MAX / 64)
     return dvi__fail(DVI_BAD_SIZE, "modes: %lld unknowns, 1 to %d possible", (long long)s.n,
                      INT_MAX / 64);
-  return is_zero(pencil->K) ? DVI_OK : run(&s, bound);
+  return dvi__largest_entry(pencil->K) > 0 ? run(&s, bound) : DVI_OK;
 }

@@ -243,7 +243,6 @@ static dvi_status lanczos_near(const dvi__pencil *pencil, double shift, int coun
                .directions = smaller(n, 2 * (int64_t)count + 20),
                .shift = shift};
   const dvi_status status = run(&s, eigenvalue, vector);
-  if (status == DVI_OK) sort_modes(n, count, eigenvalue, vector);
   dvi__definite_clear(&inverse);
   return status;
 }
@@ -261,14 +260,14 @@ static double default_shift(const dvi_matrix *K, const dvi_matrix *M)
   return -1e-5 * k / m;
 }
 
-/* Replace eigenvalues by Rayleigh's quotients, whose errors are squares of those of the vectors.
- * Returns the largest |K x - lambda M x|, beside the largest entry of K. */
-static double refine(const dvi__pencil *pencil, int count, double *value, const double *vector,
+/* Replace eigenvalues by Rayleigh's quotients, whose errors are squares of those of the vectors,
+ * and sort them. Returns the largest |K x - lambda M x|, beside the largest entry of K. */
+static double refine(const dvi__pencil *pencil, int count, double *value, double *vector,
                      double *room)
 {
-  const int64_t n = pencil->K->rows, entries = dvi_matrix_entries(pencil->K);
-  double worst = 0, size = 0, *Kx = room, *Mx = room + n;
-  for (int64_t e = 0; e < entries; e++) size = fmax(size, fabs(dvi__entry_value(pencil->K, e)));
+  const int64_t n = pencil->K->rows;
+  const double size = dvi__largest_entry(pencil->K);
+  double worst = 0, *Kx = room, *Mx = room + n;
   for (int k = 0; k < count; k++) {
     const double *x = vector + k * n;
     double most = 0, left = 0, xKx = 0, xMx = 0;
@@ -283,6 +282,7 @@ static double refine(const dvi__pencil *pencil, int count, double *value, const 
     worst = fmax(worst, left / (most * size));
     value[k] = xKx / xMx;
   }
+  sort_modes(n, count, value, vector);
   return worst;
 }
 
