@@ -13,6 +13,7 @@
 #include <dvi/group.h>
 #include <dvi/integrator.h>
 #include <dvi/joint.h>
+#include <dvi/march.h>
 #include <dvi/matrix.h>
 #include <dvi/mesh.h>
 #include <dvi/method.h>

@@ -1,0 +1,134 @@
+/** A field that advances in time by methods of its own: leapfrog, asynchronous steps, tents.
+ *
+ *  A k-form A on a mesh has the Lagrangian A'.M_k A'/2 - (dA).M_{k+1} (dA)/2 - J.A (dvi/field.h).
+ *  A march holds E = -A' on the k-cells and B = dA on the (k+1)-cells, perhaps at different times.
+ *  It advances by its own steps. What is asked for at a time in between is computed beside the
+ *  state: observations change no bit of the motion, and neither does the way in which it is cut.
+ *
+ *  A march serves one thread at a time. It may use several for its steps, with the same bits. */
+#ifndef DVI_MARCH_H
+#define DVI_MARCH_H
+#include <dvi/field.h>
+
+/** A march. */
+typedef struct dvi_march dvi_march;
+
+/** Options of a march. Zero means the default. */
+typedef struct dvi_march_options {
+  size_t size; /**< sizeof(dvi_march_options) */
+  /** The method, with its options: "leapfrog" (default), "avi", "avi:classes=no", "tents"
+   *  (docs/fields/maxwell.md). "bossavit-kettunen" is another name of leapfrog */
+  const char *method;
+  double step;     /**< the step, above 0. Default: `fraction` of the largest stable one */
+  double fraction; /**< of the largest stable step, or of each local one. Default: 0.5 */
+  /** With a fraction the step is shortened so that a whole number of steps makes this span.
+   *  Default: it is not */
+  double span;
+  int threads; /**< default 1. The bits do not depend on it */
+} dvi_march_options;
+
+/** A start. Zero means the default. */
+typedef struct dvi_march_state {
+  size_t size; /**< sizeof(dvi_march_state) */
+  double t;    /**< the time. Default: 0 */
+  /** [k-cells] the form A. Default: 0, or what the boundary says. For a wave A = u */
+  const double *A;
+  const double *E; /**< [k-cells] E = -A'. Default: 0. For a wave E = -u' */
+  const double *B; /**< [(k+1)-cells] B. Default: dA */
+} dvi_march_state;
+
+/** Forms that a march can show. */
+typedef enum dvi_march_form {
+  DVI_FORM_A, /**< [k-cells] the potential, of waves u. Marches that do not need it have none */
+  DVI_FORM_E, /**< [k-cells] -A', of waves -u' */
+  DVI_FORM_B  /**< [(k+1)-cells] dA, of waves du */
+} dvi_march_form;
+
+/** Facts about a march. */
+typedef struct dvi_march_facts {
+  const char *method; /**< its name */
+  double step;        /**< the step, or the shortest of asynchronous ones */
+  double longest;     /**< the longest step */
+  double bound;       /**< the step must be shorter than this, or each local one than its own */
+  int64_t steps;      /**< steps since the start, or events of asynchronous ones */
+  int64_t updates;    /**< updates of (k+1)-cells since the start, which cost time */
+} dvi_march_facts;
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Create a march of a field.
+ *
+ *  @param options  NULL for the defaults
+ *  @retval DVI_BAD_OPTION    there is no such method, or it has no such option
+ *  @retval DVI_BAD_ARGUMENT  a step is not stable: dvi_last_error() has the bound and its place.
+ *                            Or the field is not finished, or an argument is not as described
+ *  @retval DVI_UNSUPPORTED   the method cannot advance such a field
+ *  @retval DVI_NO_MEMORY     there is no memory */
+dvi_status dvi_march_create(const dvi_field *field, const dvi_march_options *options,
+                            dvi_march **march);
+
+/** Release the march, and set the pointer to NULL. NULL is allowed. */
+void dvi_march_destroy(dvi_march **march);
+
+/** Start, or start again.
+ *
+ *  @retval DVI_BAD_ARGUMENT  an argument is missing, or the march has no such form
+ *  @retval DVI_NOT_FINITE    a number is not finite. dvi_last_error() names its cell */
+dvi_status dvi_march_start(dvi_march *march, const dvi_march_state *state);
+
+/** Let all happen that happens up to the time t. The march's time is t afterwards.
+ *
+ *  @retval DVI_BAD_ARGUMENT     t is not finite, or before the march's time
+ *  @retval DVI_BAD_STATE        the march has not been started
+ *  @retval DVI_CALLBACK_FAILED  a signal failed. The march stands at the last good time
+ *  @retval DVI_NOT_FINITE       a value is not finite. The march stands at the last good time */
+dvi_status dvi_march_advance(dvi_march *march, double t);
+
+/** Return the time. NaN before a start. */
+double dvi_march_time(const dvi_march *march);
+
+/** Return the number of values of a form, 0 if the march has no such form. */
+int64_t dvi_march_size(const dvi_march *march, dvi_march_form form);
+
+/** Give a form at the march's time, as a copy beside the state.
+ *
+ *  @param      count   number of cells, if `cell` is given
+ *  @param      cell    [count] cells of the form's degree. NULL for all
+ *  @param[out] values  [count] or [dvi_march_size]
+ *  @retval DVI_BAD_ARGUMENT  an argument is missing, there is no such form or cell
+ *  @retval DVI_BAD_STATE     the march has not been started */
+dvi_status dvi_march_sample(const dvi_march *march, dvi_march_form form, int64_t count,
+                            const int *cell, double *values);
+
+/** Return the name of what can be observed, i counted from 0, such as "energy", or NULL beyond the
+ *  last one. Owned by the march. */
+const char *dvi_march_observable(const dvi_march *march, int i);
+
+/** Observe the observable i at the march's time.
+ *
+ *  @retval DVI_BAD_ARGUMENT  there is no such observable
+ *  @retval (others)          as dvi_march_sample */
+dvi_status dvi_march_observe(const dvi_march *march, int i, double *value);
+
+/** Collect facts about a march. */
+void dvi_march_facts_of(const dvi_march *march, dvi_march_facts *facts);
+
+/** Write the state to a file. A march that is made in the same way and loads it goes on with the
+ *  same bits.
+ *
+ *  @retval DVI_IO_ERROR   the file could not be written. An old one stays
+ *  @retval DVI_NO_MEMORY  there is no memory for the file */
+dvi_status dvi_march_save(const dvi_march *march, const char *path);
+
+/** Read a state from a file. On failure the march stays as it was.
+ *
+ *  @retval DVI_IO_ERROR  the file could not be read
+ *  @retval DVI_BAD_FILE  it is no saved state, it is damaged, or it is of another march */
+dvi_status dvi_march_load(dvi_march *march, const char *path);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

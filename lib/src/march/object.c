@@ -1,0 +1,163 @@
+/* Marches of any kind (dvi/march.h): the checks that all kinds share, and their files. */
+#include <math.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "march/kind.h"
+#include "march/whole_file.h"
+
+struct dvi_march {
+  const dvi__march_kind *kind;
+  void *self;
+  int started;
+};
+
+dvi_status dvi__march_wrap(const dvi__march_kind *kind, void *self, dvi_march **march)
+{
+  dvi_march *m = DVI_NEW(dvi_march, 1);
+  *march = m;
+  if (m == NULL) {
+    kind->destroy(self);
+    return dvi__fail(DVI_NO_MEMORY, "march: no memory");
+  }
+  *m = (dvi_march){.kind = kind, .self = self};
+  return DVI_OK;
+}
+
+void dvi_march_destroy(dvi_march **march)
+{
+  if (march == NULL || *march == NULL) return;
+  (*march)->kind->destroy((*march)->self);
+  dvi__release(*march);
+  *march = NULL;
+}
+
+static dvi_status check_started(const dvi_march *march)
+{
+  if (march == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "march: a march is needed");
+  if (march->started) return DVI_OK;
+  return dvi__fail(DVI_BAD_STATE, "march: it has not been started; call dvi_march_start first");
+}
+
+/* ---- motion ---- */
+
+static dvi_status check_form(const dvi_march *march, dvi_march_form form, const double *values)
+{
+  static const char *const name[] = {"A", "E", "B"};
+  if (values == NULL) return DVI_OK;
+  const int64_t size = dvi_march_size(march, form);
+  if (size == 0)
+    return dvi__fail(DVI_BAD_ARGUMENT, "march: a start has %s, which %s does not have", name[form],
+                     march->kind->name);
+  for (int64_t i = 0; i < size; i++)
+    if (!isfinite(values[i]))
+      return dvi__fail(DVI_NOT_FINITE, "march: the start has %s = %g in cell %lld", name[form],
+                       values[i], (long long)i);
+  return DVI_OK;
+}
+
+dvi_status dvi_march_start(dvi_march *march, const dvi_march_state *state)
+{
+  if (march == NULL || state == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "march: a march and a start are needed");
+  if (state->size != sizeof *state)
+    return dvi__fail(DVI_BAD_ARGUMENT, "march: set state.size to sizeof(dvi_march_state)");
+  if (!isfinite(state->t))
+    return dvi__fail(DVI_BAD_ARGUMENT, "march: the start is at t = %g", state->t);
+  DVI_TRY(check_form(march, DVI_FORM_A, state->A));
+  DVI_TRY(check_form(march, DVI_FORM_E, state->E));
+  DVI_TRY(check_form(march, DVI_FORM_B, state->B));
+  DVI_TRY(march->kind->start(march->self, state));
+  march->started = 1;
+  return DVI_OK;
+}
+
+dvi_status dvi_march_advance(dvi_march *march, double t)
+{
+  DVI_TRY(check_started(march));
+  const double now = dvi_march_time(march);
+  if (!isfinite(t) || t < now)
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "march: it stands at t = %.17g and cannot advance to t = %.17g", now, t);
+  return march->kind->advance(march->self, t);
+}
+
+double dvi_march_time(const dvi_march *march)
+{
+  return march != NULL && march->started ? march->kind->time(march->self) : (double)NAN;
+}
+
+/* ---- observations ---- */
+
+int64_t dvi_march_size(const dvi_march *march, dvi_march_form form)
+{
+  if (march == NULL || form < DVI_FORM_A || form > DVI_FORM_B) return 0;
+  return march->kind->size(march->self, form);
+}
+
+dvi_status dvi_march_sample(const dvi_march *march, dvi_march_form form, int64_t count,
+                            const int *cell, double *values)
+{
+  DVI_TRY(check_started(march));
+  const int64_t size = dvi_march_size(march, form);
+  if (size == 0 || values == NULL || (cell != NULL && count < 0))
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     size == 0 ? "march: %s does not have such a form"
+                               : "march: %s has no place for the values of a form",
+                     march->kind->name);
+  for (int64_t i = 0; i < count && cell != NULL; i++)
+    if (cell[i] < 0 || cell[i] >= size)
+      return dvi__fail(DVI_BAD_ARGUMENT, "march: cell %d is not from 0 to %lld", cell[i],
+                       (long long)size - 1);
+  return march->kind->sample(march->self, form, cell != NULL ? count : size, cell, values);
+}
+
+const char *dvi_march_observable(const dvi_march *march, int i)
+{
+  if (march == NULL || i < 0 || i >= march->kind->observables(march->self)) return NULL;
+  return march->kind->observable(march->self, i);
+}
+
+dvi_status dvi_march_observe(const dvi_march *march, int i, double *value)
+{
+  DVI_TRY(check_started(march));
+  if (value == NULL || dvi_march_observable(march, i) == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "march: there is no observable %d, or no place for it", i);
+  return march->kind->observe(march->self, i, value);
+}
+
+void dvi_march_facts_of(const dvi_march *march, dvi_march_facts *facts)
+{
+  if (facts == NULL) return;
+  *facts = (dvi_march_facts){.method = ""};
+  if (march == NULL) return;
+  march->kind->facts(march->self, facts);
+  facts->method = march->kind->name;
+}
+
+/* ---- files ---- */
+
+dvi_status dvi_march_save(const dvi_march *march, const char *path)
+{
+  dvi__sections_writer writer;
+  DVI_TRY(check_started(march));
+  if (path == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "march: a file's name is needed");
+  dvi__sections_start(&writer, 1 << 12);
+  march->kind->save(march->self, &writer);
+  DVI_TRY(dvi__sections_finish(&writer));
+  const dvi_status status = dvi__write_whole(path, writer.bytes, writer.size);
+  dvi__release(writer.bytes);
+  return status;
+}
+
+dvi_status dvi_march_load(dvi_march *march, const char *path)
+{
+  dvi__sections sections;
+  if (march == NULL || path == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "march: a march and a file's name are needed");
+  DVI_TRY(dvi__sections_read(path, &sections));
+  const dvi_status status = march->kind->load(march->self, &sections);
+  dvi__sections_clear(&sections);
+  if (status == DVI_OK) march->started = 1;
+  return status;
+}
