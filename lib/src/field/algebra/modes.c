@@ -29,13 +29,20 @@ typedef struct lanczos {
 
 /* ---- products ---- */
 
+static dvi_status project(const dvi__pencil *pencil, double *x)
+{
+  return pencil->project != NULL ? pencil->project(pencil->of, x) : DVI_OK;
+}
+
 /* Set y to M x, or to (K - shift M)^-1 M x, for which ARPACK may have left M x at a third place. */
 static dvi_status answer(const lanczos *s, int asked)
 {
   double *x = s->places + s->place[0] - 1, *y = s->places + s->place[1] - 1;
   const double *Mx = asked == MULTIPLY ? s->places + s->place[2] - 1 : s->product;
   if (asked != MULTIPLY) dvi_matrix_multiply(s->pencil->M, 0, x, asked == MASS ? y : s->product);
-  return asked == MASS ? DVI_OK : dvi__definite_solve(s->inverse, Mx, y, NULL);
+  if (asked == MASS) return DVI_OK;
+  DVI_TRY(dvi__definite_solve(s->inverse, Mx, y, NULL));
+  return project(s->pencil, y);
 }
 
 /* ---- the iteration ---- */
@@ -97,6 +104,7 @@ static dvi_status allocate(lanczos *s)
     return dvi__fail(DVI_NO_MEMORY, "modes: no memory for %d vectors of %lld numbers",
                      s->directions, (long long)n);
   dvi__fill_start(n, s->residual);
+  DVI_TRY(project(s->pencil, s->residual));
   s->setting[0] = 1; /* exact shifts */
   s->setting[2] = RESTARTS;
   s->setting[6] = SHIFT_INVERT;
@@ -194,11 +202,10 @@ static void fill_dense(const dvi_matrix *A, double *full)
       full[dvi__entry_column(A, i, e) * A->rows + i] += dvi__entry_value(A, e);
 }
 
-/* Find the first of `count` ascending numbers that are the nearest to the shift. */
-static int64_t first_of_nearest(int64_t n, const double *value, int count, double shift)
+int dvi__first_of_nearest(int n, const double *value, int count, double shift)
 {
-  int64_t first = 0;
-  for (int64_t last = n; last - first > count;)
+  int first = 0;
+  for (int last = n; last - first > count;)
     if (fabs(value[first] - shift) > fabs(value[last - 1] - shift))
       first++;
     else
@@ -218,9 +225,10 @@ static dvi_status modes_of_full(const dvi__pencil *pencil, double shift, int cou
   fill_dense(pencil->K, K);
   fill_dense(pencil->M, M);
   const dvi_status status = dvi__eigen_symmetric((int)n, K, M, value, X);
-  const int64_t first = first_of_nearest(n, value, count, shift);
+  const int first = dvi__first_of_nearest((int)n, value, count, shift);
   memcpy(eigenvalue, value + first, (size_t)count * sizeof *value);
-  if (vector != NULL) memcpy(vector, X + first * n, (size_t)count * (size_t)n * sizeof *vector);
+  if (vector != NULL)
+    memcpy(vector, X + (int64_t)first * n, (size_t)count * (size_t)n * sizeof *vector);
   dvi__release(room);
   return status;
 }
@@ -328,11 +336,12 @@ static dvi_status modes_by_lanczos(const dvi__pencil *pencil, double shift, int 
                      (long long)n);
   const dvi_status status = lanczos_beside(pencil, shift, asked, value, value + asked,
                                            value + asked + n * asked);
-  const int64_t first = status == DVI_OK ? first_of_nearest(asked, value, count, shift) : 0;
+  const int first = status == DVI_OK ? dvi__first_of_nearest(asked, value, count, shift) : 0;
   if (status == DVI_OK) {
     memcpy(eigenvalue, value + first, (size_t)count * sizeof *value);
     if (vector != NULL)
-      memcpy(vector, value + asked + first * n, (size_t)count * (size_t)n * sizeof *vector);
+      memcpy(vector, value + asked + (int64_t)first * n,
+             (size_t)count * (size_t)n * sizeof *vector);
   }
   dvi__release(value);
   return status;

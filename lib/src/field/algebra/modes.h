@@ -7,6 +7,10 @@
 typedef struct dvi__pencil {
   const dvi_matrix *K, *M;
   int dimension;
+  /* Project x onto an invariant subspace, in which all modes are looked for by Lanczos' method.
+   * NULL for the whole space. */
+  dvi_status (*project)(void *of, double *x);
+  void *of;
 } dvi__pencil;
 
 /* Compute the `count` eigenvalues nearest to `shift`, ascending, and their vectors [count][rows],
@@ -17,6 +21,9 @@ typedef struct dvi__pencil {
  * DVI_BAD_SIZE, DVI_SINGULAR, DVI_NOT_CONVERGED, DVI_NO_MEMORY. */
 dvi_status dvi__modes_near(const dvi__pencil *pencil, double shift, int count, double *eigenvalue,
                            double *vector);
+
+/* Find the first of `count` of n ascending numbers that are the nearest to a shift. */
+int dvi__first_of_nearest(int n, const double *value, int count, double shift);
 
 /* Fill in a fixed start of iterations, with parts in every mode. */
 void dvi__fill_start(int64_t n, double *start);

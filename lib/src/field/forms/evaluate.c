@@ -5,6 +5,7 @@
 #include "core/status.h"
 #include "field/forms/assemble.h"
 #include "field/forms/component.h"
+#include "field/forms/evaluate.h"
 #include "field/forms/gram.h"
 #include "field/mesh/complex.h"
 
@@ -80,26 +81,47 @@ static int find_covectors(spot *s, int64_t cell)
   return 1;
 }
 
-/* Add the forms of all faces of the cell. */
-static void add_faces(const spot *s, const double *form, int64_t cell, double *value)
+/* Give a face of the cell by its corners there, and its sign beside the face of the mesh. */
+static int64_t find_face(const spot *s, int64_t cell, const int *corner, int *sign)
 {
   const dvi_mesh *mesh = s->mesh;
   const int corners = dvi__corners(mesh->kind, s->k),
             *vertex_of = mesh->corner[mesh->n] + cell * dvi__corners(mesh->kind, mesh->n);
+  int vertex[DVI__CORNERS];
+  *sign = 1;
+  for (int c = 0; c < corners; c++) vertex[c] = vertex_of[corner[c]];
+  const int64_t face = s->k == mesh->n ? cell : dvi__complex_find(mesh, s->k, vertex);
+  if (s->k > 0)
+    *sign = dvi__relative_orientation(mesh->kind, s->k, vertex,
+                                      mesh->corner[s->k] + face * corners);
+  return face;
+}
+
+static void add_form(const spot *s, const int *corner, double a, double *value)
+{
+  if (s->mesh->kind == DVI_BOXES)
+    add_box_form(s, corner, a, value);
+  else
+    add_simplex_form(s, corner, a, value);
+}
+
+int dvi__form_weights(const dvi_mesh *mesh, int k, int64_t cell, const double *place,
+                      const double *along, int *face, double *weight)
+{
+  spot s = {.mesh = mesh, .k = k, .place = place};
+  const int components = dvi_form_components(mesh->space, k);
   dvi__local_faces faces;
-  dvi__find_local_faces(mesh->kind, mesh->n, s->k, &faces);
+  dvi__find_local_faces(mesh->kind, mesh->n, k, &faces);
+  if (!find_covectors(&s, cell)) return 0;
   for (int i = 0; i < faces.count; i++) {
-    int vertex[DVI__CORNERS], sign = 1;
-    for (int c = 0; c < corners; c++) vertex[c] = vertex_of[faces.corner[i][c]];
-    const int64_t face = s->k == mesh->n ? cell : dvi__complex_find(mesh, s->k, vertex);
-    if (s->k > 0)
-      sign = dvi__relative_orientation(mesh->kind, s->k, vertex,
-                                       mesh->corner[s->k] + face * corners);
-    if (mesh->kind == DVI_BOXES)
-      add_box_form(s, faces.corner[i], sign * form[face], value);
-    else
-      add_simplex_form(s, faces.corner[i], sign * form[face], value);
+    int sign;
+    double value[DVI__COMPONENTS] = {0};
+    face[i] = (int)find_face(&s, cell, faces.corner[i], &sign);
+    add_form(&s, faces.corner[i], sign, value);
+    weight[i] = 0;
+    for (int c = 0; c < components; c++) weight[i] += along[c] * value[c];
   }
+  return faces.count;
 }
 
 dvi_status dvi_form_evaluate(const dvi_mesh *mesh, int k, const double *form, int64_t cell,
@@ -115,6 +137,12 @@ dvi_status dvi_form_evaluate(const dvi_mesh *mesh, int k, const double *form, in
   spot s = {.mesh = mesh, .k = k, .place = place};
   if (!find_covectors(&s, cell)) return dvi__refuse_null(mesh, mesh->n, cell);
   memset(value, 0, (size_t)dvi_form_components(mesh->space, k) * sizeof *value);
-  add_faces(&s, form, cell, value);
+  dvi__local_faces faces;
+  dvi__find_local_faces(mesh->kind, mesh->n, k, &faces);
+  for (int i = 0; i < faces.count; i++) {
+    int sign;
+    const int64_t face = find_face(&s, cell, faces.corner[i], &sign);
+    add_form(&s, faces.corner[i], sign * form[face], value);
+  }
   return DVI_OK;
 }

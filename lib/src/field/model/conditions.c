@@ -4,6 +4,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "field/mesh/connected.h"
 #include "field/model/field.h"
 
 enum { PLACE_SIZE = 320 };
@@ -70,76 +71,58 @@ static dvi_status check_condition(const dvi_field *field, const dvi_condition *c
                    condition->part);
 }
 
-/* Number the vertices that are left. */
-static dvi_status number_unknowns(dvi_field *field)
+dvi_status dvi__field_number(dvi_field *field)
 {
   int count = 0;
-  for (int64_t v = 0; v < field->vertices; v++)
+  for (int64_t v = 0; v < field->cells; v++)
     if (field->number[v] >= 0) field->unknown[count++] = (int)v;
   for (int i = 0; i < count; i++) field->number[field->unknown[i]] = i;
   field->unknowns = count;
   if (count > 0) return DVI_OK;
-  return dvi__fail(DVI_BAD_ARGUMENT, "field: all %lld vertices are fixed, and nothing is unknown",
-                   (long long)field->vertices);
+  return dvi__fail(DVI_BAD_ARGUMENT, "field: all %lld %s are fixed, and nothing is unknown",
+                   (long long)field->cells, field->degree == 0 ? "vertices" : "edges");
 }
 
 dvi_status dvi__field_fix(dvi_field *field, const dvi_wave_terms *terms)
 {
-  field->unknown = DVI_NEW(int, field->vertices);
-  field->number = DVI_NEW(int, field->vertices);
-  field->fixed = DVI_NEW(double, field->vertices);
+  field->unknown = DVI_NEW(int, field->cells);
+  field->number = DVI_NEW(int, field->cells);
+  field->fixed = DVI_NEW(double, field->cells);
   if (field->unknown == NULL || field->number == NULL || field->fixed == NULL)
-    return dvi__fail(DVI_NO_MEMORY, "field: no memory for %lld vertices",
-                     (long long)field->vertices);
+    return dvi__fail(DVI_NO_MEMORY, "field: no memory for %lld vertices", (long long)field->cells);
   for (int i = 0; i < terms->conditions; i++) {
     DVI_TRY(check_condition(field, terms->condition + i));
     if (terms->condition[i].kind == DVI_FIXED)
       DVI_TRY(fix_part(field, terms->condition + i, field->fixed));
   }
-  return number_unknowns(field);
+  return dvi__field_number(field);
 }
 
 /* ---- components ---- */
 
-/* Return the first vertex of a set, and shorten the ways to it. */
-static int root_of(int *parent, int v)
-{
-  while (parent[v] != v) v = parent[v] = parent[parent[v]];
-  return v;
-}
-
-static void join(int *parent, int a, int b)
-{
-  const int first = root_of(parent, a), second = root_of(parent, b);
-  parent[first > second ? first : second] = first < second ? first : second;
-}
-
 /* Number the sets that have no fixed vertex. `label` [vertices] is -2 for the others. */
-static void number_components(dvi_field *field, int *parent, int *label)
+static void number_components(dvi_field *field, const int *root, int *label)
 {
-  for (int64_t v = 0; v < field->vertices; v++) label[v] = -1;
-  for (int64_t v = 0; v < field->vertices; v++)
-    if (field->number[v] < 0) label[root_of(parent, (int)v)] = -2;
+  for (int64_t v = 0; v < field->cells; v++) label[v] = -1;
+  for (int64_t v = 0; v < field->cells; v++)
+    if (field->number[v] < 0) label[root[v]] = -2;
   for (int64_t i = 0; i < field->unknowns; i++) {
-    const int root = root_of(parent, field->unknown[i]);
-    if (label[root] == -1) label[root] = (int)field->components++;
-    field->component[i] = label[root] >= 0 ? label[root] : -1;
+    int *number = label + root[field->unknown[i]];
+    if (*number == -1) *number = (int)field->components++;
+    field->component[i] = *number >= 0 ? *number : -1;
   }
 }
 
 dvi_status dvi__field_find_components(dvi_field *field)
 {
-  const dvi_mesh *mesh = field->mesh;
-  int *parent = DVI_NEW(int, 2 * field->vertices);
+  int *root = DVI_NEW(int, 2 * field->cells);
   field->component = DVI_NEW(int, field->unknowns);
-  if (parent == NULL || field->component == NULL) {
-    dvi__release(parent);
+  if (root == NULL || field->component == NULL) {
+    dvi__release(root);
     return dvi__fail(DVI_NO_MEMORY, "field: no memory for components");
   }
-  for (int v = 0; v < field->vertices; v++) parent[v] = v;
-  for (int64_t e = 0; e < mesh->count[1]; e++)
-    join(parent, mesh->corner[1][2 * e], mesh->corner[1][2 * e + 1]);
-  number_components(field, parent, parent + field->vertices);
-  dvi__release(parent);
+  dvi__find_components(field->mesh, root);
+  number_components(field, root, root + field->cells);
+  dvi__release(root);
   return DVI_OK;
 }

@@ -1,7 +1,8 @@
-/* A scalar field on a mesh: what is fixed, and the equations of the rest. */
+/* A field on a mesh, a k-form: what is held, and the equations of the rest. */
 #ifndef DVI_FIELD_MODEL_FIELD_H
 #define DVI_FIELD_MODEL_FIELD_H
-#include <dvi/field.h>
+#include <dvi/march.h>
+#include <dvi/maxwell.h>
 
 #include "field/algebra/csr.h"
 #include "field/mesh/mesh.h"
@@ -12,13 +13,47 @@ typedef struct dvi__translation {
   dvi__csr D;
 } dvi__translation;
 
+/* A current that is given, J = profile times signal. */
+typedef struct dvi__current {
+  double *profile; /* [unknowns] */
+  int (*signal)(double t, double *value, void *user);
+  int (*impulse)(double from, double to, double *value, void *user); /* or NULL */
+  void *user;
+} dvi__current;
+
+/* A sum of weights times values of a form. */
+typedef struct dvi__functional {
+  int count;
+  int *cell;
+  double *weight;
+} dvi__functional;
+
+/* What a probe measures: a value, the power through facets, or the energy in a part. */
+typedef enum dvi__probe_kind {
+  DVI__PROBE_VALUE,
+  DVI__PROBE_FLUX,
+  DVI__PROBE_ENERGY
+} dvi__probe_kind;
+
+typedef struct dvi__probe {
+  char *name;
+  dvi__probe_kind kind;
+  int is_B;                    /* of a value */
+  dvi__functional value;       /* of a value */
+  int count;                   /* of products, of a flux and an energy */
+  dvi__functional *E, *B;      /* [count] each: the sum of E times B is the power */
+  dvi__csr electric, magnetic; /* the matrices of an energy */
+} dvi__probe;
+
 struct dvi_field {
   dvi_star *star;
   const dvi_mesh *mesh; /* the star's */
-  int64_t vertices, unknowns;
-  int *unknown;       /* [unknowns] vertices */
-  int *number;        /* [vertices] of the unknown at a vertex, or -1 */
-  double *fixed;      /* [vertices] values, 0 where they are not fixed */
+  int degree;           /* k */
+  int is_wave;          /* the form is what is looked at, not its rate */
+  int64_t cells, unknowns;
+  int *unknown;       /* [unknowns] k-cells */
+  int *number;        /* [cells] of the unknown at a cell, or -1 */
+  double *fixed;      /* [cells] values, 0 where they are not fixed */
   double *load;       /* [unknowns] W f + b, less what the fixed values take away */
   double rest;        /* energy of the fixed values alone */
   double *weight;     /* [unknowns] sums of the rows of W */
@@ -26,7 +61,12 @@ struct dvi_field {
   int *component;     /* [unknowns] number of the free component, or -1 */
   int64_t components; /* without a fixed value */
   dvi__csr mass, stiffness;
-  int mass_is_diagonal;
+  dvi__csr damping; /* S of the current S E. Without rows if there is none */
+  int mass_is_diagonal, damping_is_diagonal;
+  dvi__current *current;
+  int currents;
+  dvi__probe *probe;
+  int probes;
   dvi_field_potential potential; /* without a density if there is none */
   /* The rest is made for systems. */
   double fastest;                /* bound of the frequencies, 0 if not known */
@@ -38,6 +78,37 @@ struct dvi_field {
   dvi__translation translation[DVI_MESH_SPACE_MAX];
   int translations;
 };
+
+/* Take rows and columns of the unknowns. */
+dvi_status dvi__field_select(const dvi_field *field, const dvi_matrix *A, dvi__csr *part);
+
+/* Number the unknowns, the cells whose `number` is not negative. */
+dvi_status dvi__field_number(dvi_field *field);
+
+/* Make mass and stiffness, and take away from the load what the fixed values pull. */
+dvi_status dvi__field_make_matrices(dvi_field *field, double *load);
+
+/* Make the damping of conductors and absorbing walls. */
+dvi_status dvi__maxwell_make_damping(dvi_field *field, const dvi_maxwell_terms *terms);
+
+/* Make the currents and the probes. */
+dvi_status dvi__maxwell_make_currents(dvi_field *field, const dvi_maxwell_terms *terms);
+dvi_status dvi__field_make_probes(dvi_field *field, const dvi_field_probe *probe, int count);
+void dvi__probe_clear(dvi__probe *probe);
+
+/* Give values of a form at cells, or at all if `cell` is NULL, as dvi__march_kind's sample does. */
+typedef dvi_status dvi__field_sampler(const void *of, dvi_march_form form, int64_t count,
+                                      const int *cell, double *values);
+
+/* Evaluate the probe i. */
+dvi_status dvi__field_probe(const dvi_field *field, int i, dvi__field_sampler *sample,
+                            const void *of, double *value);
+
+/* Make the functional of a form of degree k at a point: the product of `along` with its components.
+ * DVI_BAD_ARGUMENT if the point lies outside. */
+dvi_status dvi__functional_at(const dvi_mesh *mesh, int k, const double *at, const double *along,
+                              dvi__functional *functional);
+void dvi__functional_clear(dvi__functional *functional);
 
 /* Find what is fixed: fill in `unknown`, `number`, `fixed`. */
 dvi_status dvi__field_fix(dvi_field *field, const dvi_wave_terms *terms);

@@ -14,6 +14,7 @@
 #include "field/forms/gram.h"
 #include "field/forms/rule.h"
 #include "field/forms/star.h"
+#include "field/mesh/normal.h"
 #include "field/mesh/volume.h"
 #include "field/model/field.h"
 
@@ -32,47 +33,6 @@ typedef struct facet {
 
 /* ---- geometry ---- */
 
-static double dot(int space, const double *a, const double *b)
-{
-  double sum = 0;
-  for (int l = 0; l < space; l++) sum += a[l] * b[l];
-  return sum;
-}
-
-/* Take the part along the edges away from a vector, twice because of roundings. The edges are made
- * orthogonal on the way. */
-static void project_off(int m, int space, double *edge, double *vector)
-{
-  for (int pass = 0; pass < 2; pass++)
-    for (int i = 0; i <= m; i++) {
-      double *of = i < m ? edge + i * space : vector;
-      for (int j = 0; j < i; j++) {
-        const double *e = edge + j * space, factor = dot(space, of, e) / dot(space, e, e);
-        for (int l = 0; l < space; l++) of[l] -= factor * e[l];
-      }
-    }
-}
-
-/* The outer normal points away from the corners of the cell that the facet has not. */
-static void find_normal(facet *f)
-{
-  const dvi_mesh *mesh = f->field->mesh;
-  const int n = mesh->n, corners = dvi__corners(mesh->kind, n), space = mesh->space;
-  const int *cell = mesh->corner[n] + (int64_t)mesh->coface[2 * f->number] * corners;
-  double edge[DVI_MESH_DIMENSION_MAX * DVI_MESH_SPACE_MAX], inward[DVI_MESH_SPACE_MAX];
-  int other = 0, found = 1;
-  while (found) {
-    found = 0;
-    for (int c = 0; c < f->corners; c++) found = found || f->vertex[c] == cell[other];
-    other += found;
-  }
-  dvi__mesh_difference(mesh, f->vertex[0], cell[other], inward);
-  if (f->m > 0) dvi__cell_edges(mesh, f->m, f->number, edge);
-  project_off(f->m, space, edge, inward);
-  const double length = sqrt(dot(space, inward, inward));
-  for (int l = 0; l < space; l++) f->normal[l] = -inward[l] / length;
-}
-
 static void place_facet(facet *f, int64_t number)
 {
   const dvi_mesh *mesh = f->field->mesh;
@@ -85,7 +45,7 @@ static void place_facet(facet *f, int64_t number)
   if (f->m > 0) dvi__place_cell(mesh, f->m, number, &f->placed);
   for (int l = 0; l < mesh->space; l++)
     f->origin[l] = mesh->point[(int64_t)f->vertex[0] * mesh->space + l];
-  find_normal(f);
+  dvi__facet_normal(mesh, number, mesh->coface[2 * number], f->normal);
 }
 
 /* ---- integrals ---- */

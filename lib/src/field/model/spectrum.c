@@ -5,12 +5,12 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/algebra/largest.h"
-#include "field/model/field.h"
+#include "field/model/spectrum.h"
 
 /* With free components K is semidefinite. A shift below 0, of the size of the lowest eigenvalues,
  * makes it definite: an entry of the diagonal of K over that of M is about 4 n/h^2, and a length of
  * the mesh about h N^(1/n). */
-static double shift_below_zero(const dvi_field *f)
+double dvi__shift_below_zero(const dvi_field *f)
 {
   double k = 0, m = 0;
   for (int64_t i = 0; i < f->unknowns; i++) {
@@ -69,33 +69,21 @@ static int drop_zero_modes(spectrum *s, double *sum)
 
 /* ---- modes ---- */
 
-/* Of more modes than asked for leave out those that are farthest from the shift. */
-static int first_of_nearest(const spectrum *s, int kept, double shift)
-{
-  int first = 0;
-  for (int last = kept; last - first > s->count;)
-    if (fabs(s->value[first] - shift) > fabs(s->value[last - 1] - shift))
-      first++;
-    else
-      last--;
-  return first;
-}
-
 static dvi_status find(spectrum *s, const dvi_modes_options *options, double *eigenvalue,
                        double *mode)
 {
   const dvi_field *f = s->field;
-  const double below = f->components > 0 ? shift_below_zero(f) : 0,
+  const double below = f->components > 0 ? dvi__shift_below_zero(f) : 0,
                shift = options->shift != 0 ? options->shift : below;
   weigh_components(s);
   DVI_TRY(dvi__modes_near(&s->pencil, shift, s->asked, s->value, s->vector));
   const int kept = drop_zero_modes(s, s->weight + f->components);
-  const int first = first_of_nearest(s, kept, shift);
+  const int first = dvi__first_of_nearest(kept, s->value, s->count, shift);
   for (int i = 0; i < s->count; i++) {
     const double *x = s->vector + (size_t)(first + i) * (size_t)f->unknowns;
     eigenvalue[i] = s->value[first + i];
-    for (int64_t v = 0; v < f->vertices && mode != NULL; v++)
-      mode[i * f->vertices + v] = f->number[v] >= 0 ? x[f->number[v]] : 0;
+    for (int64_t v = 0; v < f->cells && mode != NULL; v++)
+      mode[i * f->cells + v] = f->number[v] >= 0 ? x[f->number[v]] : 0;
   }
   return DVI_OK;
 }
@@ -120,6 +108,7 @@ dvi_status dvi_field_modes(const dvi_field *field, const dvi_modes_options *opti
     return dvi__fail(DVI_BAD_ARGUMENT, "field: a field and eigenvalues are needed");
   if (options->size != sizeof defaults)
     return dvi__fail(DVI_BAD_ARGUMENT, "field: set options.size to sizeof(dvi_modes_options)");
+  if (field->degree > 0) return dvi__field_modes_of_form(field, options, eigenvalue, mode, zeros);
   DVI_TRY(dvi_field_matrix(field, DVI_FIELD_STIFFNESS, &K));
   DVI_TRY(dvi_field_matrix(field, DVI_FIELD_MASS, &M));
   const int64_t n = field->unknowns, components = field->components;

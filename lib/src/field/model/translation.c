@@ -73,7 +73,7 @@ static int is_symmetry(const dvi_field *f, const dvi__csr *D, double *room)
 
 static int may_have_translations(const dvi_field *f)
 {
-  if (f->potential.density != NULL || f->unknowns < f->vertices || f->mesh->space != f->mesh->n)
+  if (f->potential.density != NULL || f->unknowns < f->cells || f->mesh->space != f->mesh->n)
     return 0;
   for (int64_t i = 0; i < f->unknowns; i++)
     if (f->load[i] != 0) return 0;

@@ -1,0 +1,74 @@
+/* Currents that are given. A density j has the profile W R(j), with de Rham's integrals R and the
+ * star W = M_k without a material. A dipole's profile are the weights by which Whitney's
+ * interpolation gives the field at its place, so that its work is J.E and its moment does not
+ * depend on the mesh. */
+#include <math.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "field/forms/star.h"
+#include "field/model/field.h"
+
+static dvi_status spread_density(const dvi_field *field, const dvi_current *current,
+                                 const dvi_matrix *W, double *profile)
+{
+  double *form = DVI_NEW(double, 2 * field->cells), *product = form + field->cells;
+  if (form == NULL) return dvi__fail(DVI_NO_MEMORY, "maxwell: no memory for a current");
+  const dvi_status status = dvi_form_integrate(field->mesh, field->degree, current->density,
+                                               current->density_user, form);
+  if (status == DVI_OK) {
+    dvi_matrix_multiply(W, 0, form, product);
+    for (int64_t i = 0; i < field->unknowns; i++) profile[i] = product[field->unknown[i]];
+  }
+  dvi__release(form);
+  return status;
+}
+
+static dvi_status place_dipole(const dvi_field *field, const dvi_current *current, double *profile)
+{
+  dvi__functional weights;
+  for (int l = 0; l < DVI_MESH_DIMENSION_MAX; l++)
+    if (!isfinite(current->at[l]) || !isfinite(current->along[l]))
+      return dvi__fail(DVI_BAD_ARGUMENT, "maxwell: a dipole's place or direction is not finite");
+  DVI_TRY(dvi__functional_at(field->mesh, field->degree, current->at, current->along, &weights));
+  for (int i = 0; i < weights.count; i++) {
+    const int number = field->number[weights.cell[i]];
+    if (number >= 0) profile[number] += weights.weight[i];
+  }
+  dvi__functional_clear(&weights);
+  return DVI_OK;
+}
+
+static dvi_status make_current(const dvi_field *field, const dvi_current *from, const dvi_matrix *W,
+                               dvi__current *current)
+{
+  if (from->signal == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "maxwell: a current has no signal");
+  *current = (dvi__current){.profile = DVI_NEW(double, field->unknowns),
+                            .signal = from->signal,
+                            .impulse = from->impulse,
+                            .user = from->user};
+  if (current->profile == NULL) return dvi__fail(DVI_NO_MEMORY, "maxwell: no memory for a current");
+  return from->density != NULL ? spread_density(field, from, W, current->profile)
+                               : place_dipole(field, from, current->profile);
+}
+
+dvi_status dvi__maxwell_make_currents(dvi_field *field, const dvi_maxwell_terms *terms)
+{
+  const dvi_star_options plain = {.size = sizeof plain, .kind = field->star->kind};
+  dvi_star *bare = NULL;
+  dvi_matrix W;
+  if (terms->currents == 0) return DVI_OK;
+  field->current = DVI_NEW(dvi__current, terms->currents);
+  if (field->current == NULL) return dvi__fail(DVI_NO_MEMORY, "maxwell: no memory for currents");
+  dvi_status status = DVI_OK;
+  if (field->star->factor[field->degree] != NULL)
+    status = dvi_star_create(field->mesh, &plain, &bare);
+  if (status == DVI_OK)
+    status = dvi_star_matrix(bare != NULL ? bare : field->star, field->degree, &W);
+  while (status == DVI_OK && field->currents < terms->currents) {
+    const int i = field->currents++;
+    status = make_current(field, terms->current + i, &W, field->current + i);
+  }
+  dvi_star_destroy(&bare);
+  return status;
+}

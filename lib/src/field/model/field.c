@@ -1,0 +1,190 @@
+/* What all fields have: a k-form q with the discrete Lagrangian
+ *
+ *     L = q'.M_k q'/2 - (d_k q).M_{k+1} (d_k q)/2 + load.q
+ *
+ * Rows and columns of the cells that are held are taken away, and what their values pull at their
+ * neighbours is added to the load. */
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "field/forms/star.h"
+#include "field/model/field.h"
+
+void dvi_field_destroy(dvi_field **field)
+{
+  if (field == NULL || *field == NULL) return;
+  dvi_field *f = *field;
+  dvi_star_destroy(&f->star);
+  int *const ints[] = {f->unknown,    f->number,      f->component,
+                       f->mass_start, f->stiff_start, f->diagonal_start};
+  double *const doubles[] = {f->fixed, f->load, f->weight, f->point};
+  for (size_t i = 0; i < sizeof ints / sizeof *ints; i++) dvi__release(ints[i]);
+  for (size_t i = 0; i < sizeof doubles / sizeof *doubles; i++) dvi__release(doubles[i]);
+  for (int i = 0; i < f->translations; i++) dvi__csr_clear(&f->translation[i].D);
+  for (int i = 0; i < f->currents; i++) dvi__release(f->current[i].profile);
+  for (int i = 0; i < f->probes; i++) dvi__probe_clear(f->probe + i);
+  dvi__release(f->current);
+  dvi__release(f->probe);
+  dvi__csr_clear(&f->damping);
+  dvi__csr_clear(&f->mass);
+  dvi__csr_clear(&f->stiffness);
+  dvi__release(f);
+  *field = NULL;
+}
+
+/* ---- matrices ---- */
+
+dvi_status dvi__field_select(const dvi_field *field, const dvi_matrix *A, dvi__csr *part)
+{
+  const dvi__selection unknowns = {.row = field->number,
+                                   .column = field->number,
+                                   .rows = field->unknowns,
+                                   .columns = field->unknowns};
+  return dvi__csr_select(A, &unknowns, part);
+}
+
+/* Give an entry of a diagonal. */
+static double entry_at(const dvi_matrix *M, int64_t i)
+{
+  for (int64_t e = dvi__first_entry(M, i); e < dvi__first_entry(M, i + 1); e++)
+    if (dvi__entry_column(M, i, e) == i) return dvi__entry_value(M, e);
+  return 0;
+}
+
+static dvi_status refuse_entry(const dvi_field *field, int k, int64_t cell, double entry)
+{
+  const dvi__cell_name name = dvi__name_cell(field->mesh, k, cell);
+  return dvi__fail(
+      DVI_SINGULAR, "field: M_%d has the entry %g at %s, which is not positive: %s", k, entry,
+      name.text,
+      field->degree == 0
+          ? "take a barycentric star, other points, or another density"
+          : "take a Whitney star, repair the mesh (dvi mesh tells how), or other points");
+}
+
+static dvi_status make_mass(dvi_field *field)
+{
+  dvi_matrix M;
+  DVI_TRY(dvi_star_matrix(field->star, field->degree, &M));
+  for (int64_t i = 0; i < field->unknowns; i++) {
+    const double entry = entry_at(&M, field->unknown[i]);
+    if (!(entry > 0)) return refuse_entry(field, field->degree, field->unknown[i], entry);
+  }
+  field->mass_is_diagonal = M.column == NULL;
+  return dvi__field_select(field, &M, &field->mass);
+}
+
+static double diagonal_of(const dvi__csr *matrix, int64_t i)
+{
+  const int64_t at = dvi__csr_find(matrix, i, (int)i);
+  return at >= 0 ? fabs(matrix->value[at]) : 0;
+}
+
+/* Leave out what roundings made of zeros, as at the edges of Kuhn's simplices without a dual. They
+ * are judged beside their own row and column, because other places may be much stiffer. */
+static void drop_roundings(dvi__csr *matrix)
+{
+  for (int64_t i = 0; i < matrix->rows; i++)
+    for (int64_t e = matrix->start[i]; e < matrix->start[i + 1]; e++) {
+      const int j = matrix->column[e];
+      const double least = fmin(diagonal_of(matrix, i), diagonal_of(matrix, j));
+      if (j != i && fabs(matrix->value[e]) < 1e-15 * least) matrix->value[e] = 0;
+    }
+  dvi__csr_drop_zeros(matrix);
+}
+
+/* The load gets minus the columns of the fixed values f. Their own energy, f.K f/2 - load.f with
+ * the load before that, is -f.K f/2 - load.f with the load after it. */
+static dvi_status make_stiffness(dvi_field *field, double *load)
+{
+  dvi__csr whole = {0};
+  DVI_TRY(dvi__stiffness(field->star, field->degree, &whole));
+  const dvi_matrix view = dvi__csr_view(&whole, 1);
+  double *pull = DVI_NEW(double, field->cells);
+  dvi_status status = pull != NULL ? dvi__field_select(field, &view, &field->stiffness)
+                                   : dvi__fail(DVI_NO_MEMORY, "field: no memory for a load");
+  if (status == DVI_OK) {
+    drop_roundings(&field->stiffness);
+    dvi_matrix_multiply(&view, 0, field->fixed, pull);
+    for (int64_t v = 0; v < field->cells; v++) {
+      load[v] -= pull[v];
+      field->rest -= 0.5 * field->fixed[v] * pull[v];
+    }
+  }
+  dvi__release(pull);
+  dvi__csr_clear(&whole);
+  return status;
+}
+
+dvi_status dvi__field_make_matrices(dvi_field *field, double *load)
+{
+  DVI_TRY(make_mass(field));
+  return make_stiffness(field, load);
+}
+
+/* ---- questions ---- */
+
+const dvi_star *dvi_field_star(const dvi_field *field)
+{
+  return field != NULL ? field->star : NULL;
+}
+
+const int *dvi_field_unknowns(const dvi_field *field, int64_t *unknowns)
+{
+  if (unknowns != NULL) *unknowns = field != NULL ? field->unknowns : 0;
+  return field != NULL ? field->unknown : NULL;
+}
+
+const double *dvi_field_load(const dvi_field *field)
+{
+  return field != NULL ? field->load : NULL;
+}
+
+dvi_status dvi_field_matrix(const dvi_field *field, dvi_field_operator name, dvi_matrix *matrix)
+{
+  if (field == NULL || matrix == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "field: a field and a matrix are needed");
+  if (name != DVI_FIELD_MASS && name != DVI_FIELD_STIFFNESS)
+    return dvi__fail(DVI_BAD_ARGUMENT, "field: there is no operator %d", (int)name);
+  *matrix = dvi__csr_view(name == DVI_FIELD_MASS ? &field->mass : &field->stiffness, 1);
+  if (name == DVI_FIELD_MASS && field->mass_is_diagonal)
+    *matrix = (dvi_matrix){.rows = field->unknowns,
+                           .columns = field->unknowns,
+                           .width = 1,
+                           .symmetric = 1,
+                           .value = field->mass.value};
+  return DVI_OK;
+}
+
+dvi_status dvi_field_lift(const dvi_field *field, const double *q, double *u)
+{
+  if (field == NULL || q == NULL || u == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "field: a field, unknowns and values are needed");
+  memcpy(u, field->fixed, (size_t)field->cells * sizeof *u);
+  for (int64_t i = 0; i < field->unknowns; i++) u[field->unknown[i]] = q[i];
+  return DVI_OK;
+}
+
+/* p = M u' with the rates of the unknowns. */
+static dvi_status weigh(const dvi_field *field, const double *rate, double *p)
+{
+  const dvi_matrix M = dvi__csr_view(&field->mass, 1);
+  double *v = DVI_NEW(double, field->unknowns);
+  if (v == NULL) return dvi__fail(DVI_NO_MEMORY, "field: no memory for rates");
+  for (int64_t i = 0; i < field->unknowns && rate != NULL; i++) v[i] = rate[field->unknown[i]];
+  dvi_matrix_multiply(&M, 0, v, p);
+  dvi__release(v);
+  return DVI_OK;
+}
+
+dvi_status dvi_field_project(const dvi_field *field, const double *u, const double *rate, double *q,
+                             double *p)
+{
+  if (field == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "field: a field is needed");
+  if (p != NULL) DVI_TRY(weigh(field, rate, p));
+  for (int64_t i = 0; i < field->unknowns && q != NULL; i++)
+    q[i] = u != NULL ? u[field->unknown[i]] : 0;
+  return DVI_OK;
+}

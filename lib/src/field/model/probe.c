@@ -1,0 +1,315 @@
+/* Probes: values at a place, the power through facets, and the energy in a part.
+ *
+ * The power through a facet with the unit normal n is the integral of E.(i_n H), which is that of
+ * Poynting's vector, n.(E x H), in three dimensions, and -A' dA/dn of a 0-form. It is taken at the
+ * facet's centre, so that it has an error of second order. */
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "field/forms/component.h"
+#include "field/forms/evaluate.h"
+#include "field/forms/star.h"
+#include "field/mesh/normal.h"
+#include "field/mesh/volume.h"
+#include "field/model/field.h"
+
+/* ---- functionals ---- */
+
+void dvi__functional_clear(dvi__functional *functional)
+{
+  dvi__release(functional->cell);
+  dvi__release(functional->weight);
+  *functional = (dvi__functional){0};
+}
+
+static dvi_status make_functional(const dvi_mesh *mesh, int k, int64_t cell, const double *place,
+                                  const double *along, dvi__functional *functional)
+{
+  *functional = (dvi__functional){.cell = DVI_NEW(int, DVI__LOCAL_FACES),
+                                  .weight = DVI_NEW(double, DVI__LOCAL_FACES)};
+  if (functional->cell == NULL || functional->weight == NULL) {
+    dvi__functional_clear(functional);
+    return dvi__fail(DVI_NO_MEMORY, "field: no memory for a probe");
+  }
+  functional->count = dvi__form_weights(mesh, k, cell, place, along, functional->cell,
+                                        functional->weight);
+  return DVI_OK;
+}
+
+dvi_status dvi__functional_at(const dvi_mesh *mesh, int k, const double *at, const double *along,
+                              dvi__functional *functional)
+{
+  int cell;
+  double place[DVI__CORNERS];
+  DVI_TRY(dvi_mesh_locate(mesh, 1, at, &cell, place));
+  if (cell < 0)
+    return dvi__fail(DVI_BAD_ARGUMENT, "field: the point (%g, %g, %g) lies outside of the mesh",
+                     at[0], mesh->n > 1 ? at[1] : 0.0, mesh->n > 2 ? at[2] : 0.0);
+  return make_functional(mesh, k, cell, place, along, functional);
+}
+
+void dvi__probe_clear(dvi__probe *probe)
+{
+  dvi__release(probe->name);
+  dvi__functional_clear(&probe->value);
+  for (int i = 0; i < probe->count; i++) {
+    dvi__functional_clear(probe->E + i);
+    dvi__functional_clear(probe->B + i);
+  }
+  dvi__release(probe->E);
+  dvi__release(probe->B);
+  dvi__csr_clear(&probe->electric);
+  dvi__csr_clear(&probe->magnetic);
+}
+
+/* ---- the power through a facet ---- */
+
+/* Tell the number of a set of axes among the components of a form, and the sign by which the axis
+ * `first` in front of the others is sorted in. */
+static int component_with(int space, int k, int first, const int *axis, int *sign)
+{
+  int sorted[DVI_MESH_SPACE_MAX], other[DVI_MESH_SPACE_MAX], at = 0, number = 0;
+  while (at < k && axis[at] < first) at++;
+  for (int i = 0; i <= k; i++) sorted[i] = i < at ? axis[i] : i == at ? first : axis[i - 1];
+  *sign = at % 2 == 0 ? 1 : -1;
+  dvi__first_axes(k + 1, other);
+  while (memcmp(sorted, other, (size_t)(k + 1) * sizeof *other) != 0) {
+    number++;
+    dvi__next_axes(space, k + 1, other);
+  }
+  return number;
+}
+
+/* Give the weights of the components of B in the component `axis` of i_n B. */
+static void contract(int space, int k, const double *normal, const int *axis, double *along)
+{
+  memset(along, 0, DVI__COMPONENTS * sizeof *along);
+  for (int l = 0; l < space; l++) {
+    int sign, is_there = 0;
+    for (int i = 0; i < k; i++) is_there = is_there || axis[i] == l;
+    if (is_there) continue;
+    const int component = component_with(space, k, l, axis, &sign);
+    along[component] += sign * normal[l];
+  }
+}
+
+/* Add the products of all components at a facet, seen from one of its cells. */
+static dvi_status add_facet(const dvi_field *field, int64_t facet, int64_t cell, dvi__probe *probe)
+{
+  const dvi_mesh *mesh = field->mesh;
+  const double *nu = field->star->factor[field->degree + 1];
+  const int k = field->degree;
+  const double area = mesh->n > 1 ? dvi__cell_volume(mesh, mesh->n - 1, facet) : 1,
+               weight = area * (nu != NULL ? nu[cell] : 1);
+  double normal[DVI_MESH_SPACE_MAX], place[DVI__CORNERS], of_B[DVI__COMPONENTS];
+  int axis[DVI_MESH_DIMENSION_MAX], component = 0;
+  dvi__facet_normal(mesh, facet, cell, normal);
+  dvi__facet_place(mesh, facet, cell, place);
+  dvi__first_axes(k, axis);
+  do {
+    double of_E[DVI__COMPONENTS] = {0};
+    of_E[component++] = weight;
+    contract(mesh->space, k, normal, axis, of_B);
+    const int i = probe->count++;
+    DVI_TRY(make_functional(mesh, k, cell, place, of_E, probe->E + i));
+    DVI_TRY(make_functional(mesh, k + 1, cell, place, of_B, probe->B + i));
+  } while (dvi__next_axes(mesh->space, k, axis));
+  return DVI_OK;
+}
+
+/* Mark the n-cells of a part. */
+static char *mark_cells(const dvi_mesh *mesh, const char *part)
+{
+  int64_t count;
+  const int *cell = dvi_mesh_part_cells(mesh, part, mesh->n, &count);
+  char *inside = DVI_NEW(char, mesh->count[mesh->n]);
+  for (int64_t i = 0; i < count && inside != NULL; i++) inside[cell[i]] = 1;
+  return inside;
+}
+
+/* Give the cell out of which the power through a facet flows, or -1: the only one, or of two the
+ * one in the part. */
+static int64_t cell_behind(const dvi_mesh *mesh, const char *inside, int64_t facet)
+{
+  const int first = mesh->coface[2 * facet], second = mesh->coface[2 * facet + 1];
+  if (second < 0) return first;
+  if (inside[first] == inside[second]) return -1;
+  return inside[first] ? first : second;
+}
+
+static dvi_status refuse_part(const char *name, const char *part, const char *why)
+{
+  return dvi__fail(DVI_BAD_ARGUMENT, "field: the probe \"%s\" is on part \"%s\", %s", name,
+                   part != NULL ? part : "", why);
+}
+
+static dvi_status make_flux(const dvi_field *field, const char *part, dvi__probe *probe)
+{
+  const dvi_mesh *mesh = field->mesh;
+  const int components = dvi_form_components(mesh->space, field->degree);
+  int64_t count, found = 0;
+  const int *facet = dvi_mesh_part_cells(mesh, part, mesh->n - 1, &count);
+  char *inside = mark_cells(mesh, part);
+  probe->E = DVI_NEW(dvi__functional, count * components);
+  probe->B = DVI_NEW(dvi__functional, count * components);
+  dvi_status status = inside && probe->E && probe->B
+                          ? DVI_OK
+                          : dvi__fail(DVI_NO_MEMORY, "field: no memory for a probe");
+  const int has_cells = dvi_mesh_part_degree(mesh, 0) >= 0 && status == DVI_OK &&
+                        memchr(inside, 1, (size_t)mesh->count[mesh->n]) != NULL;
+  for (int64_t i = 0; i < count && status == DVI_OK; i++) {
+    const int64_t cell = cell_behind(mesh, inside, facet[i]);
+    if (cell < 0 || (has_cells && !inside[cell])) continue;
+    found++;
+    status = add_facet(field, facet[i], cell, probe);
+  }
+  dvi__release(inside);
+  if (status != DVI_OK || found > 0) return status;
+  return refuse_part(probe->name, part,
+                     "which has neither facets of the boundary nor cells with others around them");
+}
+
+/* ---- the energy in a part ---- */
+
+/* Copy the matrix of a degree whose factors are those of the field in a part, and 0 elsewhere. */
+static dvi_status copy_part(const dvi_field *field, int k, const char *inside, dvi__csr *copy)
+{
+  const int64_t cells = field->mesh->count[field->mesh->n];
+  const double *whole = field->star->factor[k], *factor[DVI__DEGREES] = {NULL};
+  double *part = DVI_NEW(double, cells);
+  dvi_star *star = NULL;
+  dvi_matrix M;
+  if (part == NULL) return dvi__fail(DVI_NO_MEMORY, "field: no memory for a probe");
+  for (int64_t c = 0; c < cells; c++) part[c] = !inside[c] ? 0 : whole != NULL ? whole[c] : 1;
+  factor[k] = part;
+  const dvi_star_options options = {
+      .size = sizeof options, .kind = field->star->kind, .factor = factor};
+  dvi_status status = dvi_star_create(field->mesh, &options, &star);
+  if (status == DVI_OK) status = dvi_star_matrix(star, k, &M);
+  if (status == DVI_OK) status = dvi__csr_copy(&M, copy);
+  dvi_star_destroy(&star);
+  dvi__release(part);
+  return status;
+}
+
+static dvi_status make_energy(const dvi_field *field, const char *part, dvi__probe *probe)
+{
+  char *inside = mark_cells(field->mesh, part);
+  if (inside == NULL) return dvi__fail(DVI_NO_MEMORY, "field: no memory for a probe");
+  dvi_status status = memchr(inside, 1, (size_t)field->mesh->count[field->mesh->n]) != NULL
+                          ? DVI_OK
+                          : refuse_part(probe->name, part, "which has no cells");
+  if (status == DVI_OK) status = copy_part(field, field->degree, inside, &probe->electric);
+  if (status == DVI_OK) status = copy_part(field, field->degree + 1, inside, &probe->magnetic);
+  dvi__release(inside);
+  return status;
+}
+
+/* ---- create ---- */
+
+static dvi_status check(const dvi_field *field, const dvi_field_probe *from)
+{
+  int64_t count;
+  if (from->name == NULL || from->of == NULL || *from->name == '\0')
+    return dvi__fail(DVI_BAD_ARGUMENT, "field: a probe has no name, or nothing to look at");
+  for (int i = 0; i < field->probes; i++)
+    if (field->probe[i].name != NULL && strcmp(field->probe[i].name, from->name) == 0)
+      return dvi__fail(DVI_BAD_ARGUMENT, "field: two probes have the name \"%s\"", from->name);
+  if (strcmp(from->of, "E") == 0 || strcmp(from->of, "B") == 0) return DVI_OK;
+  if (strcmp(from->of, "flux") != 0 && strcmp(from->of, "energy") != 0)
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "field: the probe \"%s\" is of \"%s\"; E, B, flux and energy are possible",
+                     from->name, from->of);
+  (void)dvi_mesh_part_cells(field->mesh, from->part != NULL ? from->part : "", 0, &count);
+  return count >= 0 ? DVI_OK : refuse_part(from->name, from->part, "which the mesh has not");
+}
+
+static dvi_status make_value(const dvi_field *field, const dvi_field_probe *from, dvi__probe *probe)
+{
+  double along[DVI__COMPONENTS] = {0};
+  const int most = (int)(sizeof from->along / sizeof *from->along);
+  for (int l = 0; l < most; l++) along[l] = from->along[l];
+  probe->is_B = *from->of == 'B';
+  return dvi__functional_at(field->mesh, field->degree + probe->is_B, from->at, along,
+                            &probe->value);
+}
+
+dvi_status dvi__field_make_probes(dvi_field *field, const dvi_field_probe *probe, int count)
+{
+  if (count == 0) return DVI_OK;
+  field->probe = DVI_NEW(dvi__probe, count);
+  if (field->probe == NULL) return dvi__fail(DVI_NO_MEMORY, "field: no memory for probes");
+  for (int i = 0; i < count; i++) {
+    DVI_TRY(check(field, probe + i));
+    dvi__probe *made = field->probe + field->probes++;
+    made->name = dvi__duplicate(probe[i].name, strlen(probe[i].name) + 1, 1);
+    if (made->name == NULL) return dvi__fail(DVI_NO_MEMORY, "field: no memory for probes");
+    made->kind = *probe[i].of == 'f'   ? DVI__PROBE_FLUX
+                 : *probe[i].of == 'e' ? DVI__PROBE_ENERGY
+                                       : DVI__PROBE_VALUE;
+    DVI_TRY(made->kind == DVI__PROBE_FLUX     ? make_flux(field, probe[i].part, made)
+            : made->kind == DVI__PROBE_ENERGY ? make_energy(field, probe[i].part, made)
+                                              : make_value(field, probe + i, made));
+  }
+  return DVI_OK;
+}
+
+/* ---- observe ---- */
+
+/* Where the values of forms come from. */
+typedef struct source {
+  dvi__field_sampler *sample;
+  const void *of;
+} source;
+
+static dvi_status sum(const source *s, dvi_march_form form, const dvi__functional *functional,
+                      double *value)
+{
+  double values[DVI__LOCAL_FACES];
+  DVI_TRY(s->sample(s->of, form, functional->count, functional->cell, values));
+  *value = 0;
+  for (int i = 0; i < functional->count; i++) *value += functional->weight[i] * values[i];
+  return DVI_OK;
+}
+
+static dvi_status power(const source *s, const dvi__probe *probe, double *value)
+{
+  *value = 0;
+  for (int i = 0; i < probe->count; i++) {
+    double E, B;
+    DVI_TRY(sum(s, DVI_FORM_E, probe->E + i, &E));
+    DVI_TRY(sum(s, DVI_FORM_B, probe->B + i, &B));
+    *value += E * B;
+  }
+  return DVI_OK;
+}
+
+static dvi_status add_energy(const source *s, dvi_march_form form, const dvi__csr *matrix,
+                             double *energy)
+{
+  const dvi_matrix M = dvi__csr_view(matrix, 1);
+  double *values = DVI_NEW(double, 2 * M.rows), *product = values + M.rows;
+  if (values == NULL) return dvi__fail(DVI_NO_MEMORY, "field: no memory for a probe's energy");
+  const dvi_status status = s->sample(s->of, form, M.rows, NULL, values);
+  if (status == DVI_OK) {
+    dvi_matrix_multiply(&M, 0, values, product);
+    for (int64_t i = 0; i < M.rows; i++) *energy += 0.5 * values[i] * product[i];
+  }
+  dvi__release(values);
+  return status;
+}
+
+dvi_status dvi__field_probe(const dvi_field *field, int i, dvi__field_sampler *sample,
+                            const void *of, double *value)
+{
+  const dvi__probe *probe = field->probe + i;
+  const source s = {.sample = sample, .of = of};
+  if (probe->kind == DVI__PROBE_VALUE)
+    return sum(&s, probe->is_B ? DVI_FORM_B : DVI_FORM_E, &probe->value, value);
+  if (probe->kind == DVI__PROBE_FLUX) return power(&s, probe, value);
+  *value = 0;
+  DVI_TRY(add_energy(&s, DVI_FORM_E, &probe->electric, value));
+  return add_energy(&s, DVI_FORM_B, &probe->magnetic, value);
+}

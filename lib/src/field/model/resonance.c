@@ -1,0 +1,275 @@
+/* Modes of forms of degree 1, K x = lambda M x, without those of frequency zero.
+ *
+ * K = d^T M_2 d vanishes on the gradients d phi of functions that are zero where the form is held.
+ * Nothing separates their eigenvalue 0, of a multiplicity like the number of vertices, from the
+ * lowest ones that are wanted. The matrix of Laplace and de Rham's operator does,
+ *
+ *     L = K + M d W^-1 d^T M ,
+ *
+ * with any diagonal W. On forms without charge, d^T M x = 0, it equals K. So Lanczos' method for L
+ * sees only modes of K if all vectors are projected onto these forms, which takes the solution of
+ * one Poisson equation. What is left with eigenvalue zero are harmonic forms: a few, by topology. */
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "field/algebra/definite.h"
+#include "field/forms/star.h"
+#include "field/mesh/connected.h"
+#include "field/model/spectrum.h"
+
+/* All modes are found at once up to this size. */
+enum { MOST_FULL = 500 };
+/* Part of the largest eigenvalue, or of the size of the lowest ones, that counts as zero. */
+static const double zero_of_largest = 1e-11, zero_of_lowest = 1e-6;
+
+typedef struct resonance {
+  const dvi_field *field;
+  dvi_matrix K, M;
+  int64_t gradients;     /* columns of d */
+  dvi__csr d, Md, L;     /* [unknowns, gradients], and the operator */
+  dvi__definite poisson; /* of d^T M d */
+  double *charge, *phi;  /* [gradients] each */
+  double *value, *vector;
+  int64_t zeros;
+} resonance;
+
+static void clear(resonance *r)
+{
+  dvi__csr_clear(&r->d);
+  dvi__csr_clear(&r->Md);
+  dvi__csr_clear(&r->L);
+  dvi__definite_clear(&r->poisson);
+  dvi__release(r->charge);
+  dvi__release(r->value);
+}
+
+/* ---- gradients ---- */
+
+/* Number the vertices whose functions have independent gradients that vanish where the form is
+ * held: those that are on no held edge, but one of each component that has none. */
+static int64_t number_vertices(const dvi_field *f, int *number, int *root, char *is_held)
+{
+  const dvi_mesh *mesh = f->mesh;
+  int64_t count = 0;
+  dvi__find_components(mesh, root);
+  for (int64_t e = 0; e < mesh->count[1]; e++)
+    for (int c = 0; c < 2 && f->number[e] < 0; c++) number[mesh->corner[1][2 * e + c]] = -1;
+  for (int64_t v = 0; v < mesh->count[0]; v++)
+    if (number[v] < 0) is_held[root[v]] = 1;
+  for (int64_t v = 0; v < mesh->count[0]; v++)
+    if (number[v] == 0) number[v] = root[v] == v && !is_held[v] ? -1 : (int)count++;
+  return count;
+}
+
+static dvi_status make_gradients(resonance *r)
+{
+  const dvi_field *f = r->field;
+  const int64_t vertices = f->mesh->count[0];
+  dvi_matrix d;
+  int *number = DVI_NEW(int, 2 * vertices);
+  char *is_held = DVI_NEW(char, vertices);
+  dvi_status status = number != NULL && is_held != NULL
+                          ? dvi_mesh_incidence(f->mesh, 0, &d)
+                          : dvi__fail(DVI_NO_MEMORY, "modes: no memory for gradients");
+  if (status == DVI_OK) {
+    r->gradients = number_vertices(f, number, number + vertices, is_held);
+    const dvi__selection part = {
+        .row = f->number, .column = number, .rows = f->unknowns, .columns = r->gradients};
+    status = dvi__csr_select(&d, &part, &r->d);
+  }
+  dvi__release(number);
+  dvi__release(is_held);
+  return status;
+}
+
+/* Make M d and the matrix d^T M d of Poisson's equation. */
+static dvi_status prepare_projection(resonance *r)
+{
+  const dvi_matrix d = dvi__csr_view(&r->d, 0);
+  dvi__csr transpose = {0}, matrix = {0};
+  r->charge = DVI_NEW(double, 2 * r->gradients);
+  if (r->charge == NULL) return dvi__fail(DVI_NO_MEMORY, "modes: no memory for gradients");
+  r->phi = r->charge + r->gradients;
+  dvi_status status = dvi__csr_product(&r->M, &d, &r->Md);
+  const dvi_matrix right = dvi__csr_view(&r->Md, 0);
+  if (status == DVI_OK) status = dvi__csr_transpose(&d, &transpose);
+  const dvi_matrix left = dvi__csr_view(&transpose, 0);
+  if (status == DVI_OK) status = dvi__csr_product(&left, &right, &matrix);
+  const dvi_matrix square = dvi__csr_view(&matrix, 1);
+  if (status == DVI_OK) status = dvi__definite_create(&square, r->field->mesh->n, &r->poisson);
+  dvi__csr_clear(&transpose);
+  dvi__csr_clear(&matrix);
+  return status;
+}
+
+/* Take the gradient part away, x - d phi with d^T M d phi = d^T M x. */
+static dvi_status project(void *of, double *x)
+{
+  resonance *r = of;
+  const dvi_matrix Md = dvi__csr_view(&r->Md, 0);
+  dvi_matrix_multiply(&Md, 1, x, r->charge);
+  DVI_TRY(dvi__definite_solve(&r->poisson, r->charge, r->phi, NULL));
+  for (int64_t i = 0; i < r->d.rows; i++)
+    for (int64_t e = r->d.start[i]; e < r->d.start[i + 1]; e++)
+      x[i] -= r->d.value[e] * r->phi[r->d.column[e]];
+  return DVI_OK;
+}
+
+/* ---- the operator ---- */
+
+/* Set W [gradients] to the diagonal of the lumped mass, by which the eigenvalues of the gradients
+ * become those of waves of functions. The columns of d are ascending vertices. */
+static dvi_status lump(const resonance *r, double *W)
+{
+  const dvi_mesh *mesh = r->field->mesh;
+  const double *factor[DVI__DEGREES] = {r->field->star->factor[1]};
+  const dvi_star_options options = {
+      .size = sizeof options, .kind = DVI_BARYCENTRIC, .factor = factor};
+  dvi_star *star = NULL;
+  dvi_matrix M;
+  dvi_status status = dvi_star_create(mesh, &options, &star);
+  if (status == DVI_OK) status = dvi_star_matrix(star, 0, &M);
+  for (int64_t i = 0; i < r->d.rows && status == DVI_OK; i++) {
+    const int *corner = mesh->corner[1] + 2 * (int64_t)r->field->unknown[i];
+    for (int64_t e = r->d.start[i]; e < r->d.start[i + 1]; e++)
+      W[r->d.column[e]] = M.value[corner[r->d.value[e] > 0]];
+  }
+  dvi_star_destroy(&star);
+  return status;
+}
+
+/* Make M d W^-1 d^T M. */
+static dvi_status make_lower_part(const resonance *r, const double *W, dvi__csr *part)
+{
+  dvi__csr scaled = {0}, transpose = {0};
+  const dvi_matrix Md = dvi__csr_view(&r->Md, 0);
+  dvi_status status = dvi__csr_copy(&Md, &scaled);
+  for (int64_t e = 0; status == DVI_OK && e < scaled.start[scaled.rows]; e++)
+    scaled.value[e] /= W[scaled.column[e]];
+  if (status == DVI_OK) status = dvi__csr_transpose(&Md, &transpose);
+  const dvi_matrix left = dvi__csr_view(&scaled, 0), right = dvi__csr_view(&transpose, 0);
+  if (status == DVI_OK) status = dvi__csr_product(&left, &right, part);
+  dvi__csr_clear(&scaled);
+  dvi__csr_clear(&transpose);
+  return status;
+}
+
+static dvi_status make_operator(resonance *r)
+{
+  dvi__csr part = {0};
+  if (r->gradients == 0) return dvi__csr_copy(&r->K, &r->L);
+  double *W = DVI_NEW(double, r->gradients);
+  dvi_status status = W != NULL ? lump(r, W) : dvi__fail(DVI_NO_MEMORY, "modes: no memory");
+  if (status == DVI_OK) status = make_lower_part(r, W, &part);
+  const dvi_matrix lower = dvi__csr_view(&part, 1);
+  if (status == DVI_OK) status = dvi__csr_sum(&r->K, &lower, &r->L);
+  dvi__csr_clear(&part);
+  dvi__release(W);
+  return status;
+}
+
+/* ---- modes ---- */
+
+/* Move the modes that are not zero to the front. Returns their number. */
+static int drop_zeros(resonance *r, int found, double zero)
+{
+  const size_t n = (size_t)r->field->unknowns;
+  int kept = 0;
+  for (int i = 0; i < found; i++) {
+    if (fabs(r->value[i]) <= zero) continue;
+    r->value[kept] = r->value[i];
+    if (kept != i)
+      memcpy(r->vector + (size_t)kept * n, r->vector + (size_t)i * n, n * sizeof(double));
+    kept++;
+  }
+  r->zeros += found - kept;
+  return kept;
+}
+
+static dvi_status reserve(resonance *r, int64_t count)
+{
+  const int64_t n = r->field->unknowns;
+  dvi__release(r->value);
+  r->value = DVI_NEW(double, count + count * n);
+  if (r->value == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "modes: no memory for %lld vectors of %lld numbers",
+                     (long long)count, (long long)n);
+  r->vector = r->value + count;
+  return DVI_OK;
+}
+
+/* Find all modes of a small field. */
+static dvi_status find_all(resonance *r, int *found)
+{
+  const int n = (int)r->field->unknowns;
+  const dvi__pencil pencil = {.K = &r->K, .M = &r->M, .dimension = r->field->mesh->n};
+  DVI_TRY(reserve(r, n));
+  DVI_TRY(dvi__modes_near(&pencil, 0, n, r->value, r->vector));
+  *found = drop_zeros(r, n, zero_of_largest * fabs(r->value[n - 1]));
+  return DVI_OK;
+}
+
+/* Find the nearest ones to a shift, and more of them until enough are not zero. */
+static dvi_status find_nearest(resonance *r, double shift, int count, int *found)
+{
+  const dvi_field *f = r->field;
+  const double below = dvi__shift_below_zero(f), from = shift != 0 ? shift : below;
+  DVI_TRY(make_gradients(r));
+  if (r->gradients > 0) DVI_TRY(prepare_projection(r));
+  DVI_TRY(make_operator(r));
+  const dvi_matrix L = dvi__csr_view(&r->L, 1);
+  const dvi__pencil pencil = {.K = &L,
+                              .M = &r->M,
+                              .dimension = f->mesh->n,
+                              .project = r->gradients > 0 ? project : NULL,
+                              .of = r};
+  for (int asked = count + 3; *found < count; asked += count + 8) {
+    if (asked + r->gradients >= f->unknowns)
+      return dvi__fail(DVI_BAD_SIZE,
+                       "field: %d modes of %lld unknowns, of which %lld are static: "
+                       "take fewer",
+                       count, (long long)f->unknowns, (long long)r->gradients);
+    DVI_TRY(reserve(r, asked));
+    DVI_TRY(dvi__modes_near(&pencil, from, asked, r->value, r->vector));
+    r->zeros = r->gradients;
+    *found = drop_zeros(r, asked, zero_of_lowest * fabs(below));
+  }
+  return DVI_OK;
+}
+
+static dvi_status find(resonance *r, double shift, int count, double *eigenvalue, double *mode)
+{
+  const dvi_field *f = r->field;
+  int found = 0;
+  DVI_TRY(f->unknowns <= MOST_FULL ? find_all(r, &found) : find_nearest(r, shift, count, &found));
+  if (count < 1 || count > found)
+    return dvi__fail(DVI_BAD_SIZE,
+                     "field: %d modes of %lld unknowns, of which %lld are static: "
+                     "take 1 to %d",
+                     count, (long long)f->unknowns, (long long)r->zeros, found);
+  const int first = dvi__first_of_nearest(found, r->value, count, fmax(shift, 0));
+  for (int i = 0; i < count; i++) {
+    const double *x = r->vector + (int64_t)(first + i) * f->unknowns;
+    eigenvalue[i] = r->value[first + i];
+    for (int64_t c = 0; c < f->cells && mode != NULL; c++)
+      mode[i * f->cells + c] = f->number[c] >= 0 ? x[f->number[c]] : 0;
+  }
+  return DVI_OK;
+}
+
+dvi_status dvi__field_modes_of_form(const dvi_field *field, const dvi_modes_options *options,
+                                    double *eigenvalue, double *mode, int64_t *zeros)
+{
+  resonance r = {.field = field};
+  const int count = options->count != 0 ? options->count : 6;
+  if (!isfinite(options->shift))
+    return dvi__fail(DVI_BAD_ARGUMENT, "modes: the shift is %g", options->shift);
+  DVI_TRY(dvi_field_matrix(field, DVI_FIELD_STIFFNESS, &r.K));
+  DVI_TRY(dvi_field_matrix(field, DVI_FIELD_MASS, &r.M));
+  const dvi_status status = find(&r, options->shift, count, eigenvalue, mode);
+  if (status == DVI_OK && zeros != NULL) *zeros = r.zeros;
+  clear(&r);
+  return status;
+}
