@@ -49,6 +49,10 @@ BEGIN {
   sees["field/forms"] = "core num field/algebra field/mesh"
   sees["field/audit"] = "core num field/algebra field/mesh field/forms"
   sees["field/model"] = "core num solve field/algebra field/mesh field/forms"
+  sees["field/step"] = "core num march field/algebra field/mesh field/model"
+  sees["field/avi"] = sees["field/step"] " field/forms field/step"
+  sees["field/tents"] = sees["field/avi"]
+  sees["field/method"] = "core march field/model field/step field/avi field/tents"
   # The library of scenes includes libdvi's public headers, too.
   sees["text"] = ""
   sees["expr"] = "text"

@@ -15,6 +15,7 @@
 #include <dvi/joint.h>
 #include <dvi/march.h>
 #include <dvi/matrix.h>
+#include <dvi/maxwell.h>
 #include <dvi/mesh.h>
 #include <dvi/method.h>
 #include <dvi/noise.h>

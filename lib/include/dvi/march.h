@@ -74,8 +74,9 @@ void dvi_march_destroy(dvi_march **march);
 
 /** Start, or start again.
  *
- *  @retval DVI_BAD_ARGUMENT  an argument is missing, or the march has no such form
- *  @retval DVI_NOT_FINITE    a number is not finite. dvi_last_error() names its cell */
+ *  @retval DVI_BAD_ARGUMENT     an argument is missing
+ *  @retval DVI_NOT_FINITE       a number is not finite. dvi_last_error() names its cell
+ *  @retval DVI_CALLBACK_FAILED  a signal failed. The march stays as it was */
 dvi_status dvi_march_start(dvi_march *march, const dvi_march_state *state);
 
 /** Let all happen that happens up to the time t. The march's time is t afterwards.

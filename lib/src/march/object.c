@@ -1,10 +1,13 @@
 /* Marches of any kind (dvi/march.h): the checks that all kinds share, and their files. */
 #include <math.h>
+#include <stdio.h>
 
 #include "core/memory.h"
 #include "core/status.h"
 #include "march/kind.h"
 #include "march/whole_file.h"
+
+enum { PATH_NAME = 512 };
 
 struct dvi_march {
   const dvi__march_kind *kind;
@@ -45,10 +48,7 @@ static dvi_status check_form(const dvi_march *march, dvi_march_form form, const 
 {
   static const char *const name[] = {"A", "E", "B"};
   if (values == NULL) return DVI_OK;
-  const int64_t size = dvi_march_size(march, form);
-  if (size == 0)
-    return dvi__fail(DVI_BAD_ARGUMENT, "march: a start has %s, which %s does not have", name[form],
-                     march->kind->name);
+  const int64_t size = dvi_march_size(march, form == DVI_FORM_A ? DVI_FORM_E : form);
   for (int64_t i = 0; i < size; i++)
     if (!isfinite(values[i]))
       return dvi__fail(DVI_NOT_FINITE, "march: the start has %s = %g in cell %lld", name[form],
@@ -152,9 +152,11 @@ dvi_status dvi_march_save(const dvi_march *march, const char *path)
 
 dvi_status dvi_march_load(dvi_march *march, const char *path)
 {
-  dvi__sections sections;
+  char name[PATH_NAME];
+  dvi__sections sections = {.name = name};
   if (march == NULL || path == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "march: a march and a file's name are needed");
+  (void)snprintf(name, sizeof name, "checkpoint %s", path);
   DVI_TRY(dvi__sections_read(path, &sections));
   const dvi_status status = march->kind->load(march->self, &sections);
   dvi__sections_clear(&sections);

@@ -129,7 +129,8 @@ dvi_status dvi__conjugate_gradients(const dvi__products *A, double tolerance, co
                                     double *x, dvi__iteration_report *report)
 {
   const size_t n = (size_t)A->size;
-  double *work = DVI_NEW(double, 5 * n);
+  double *own = A->work == NULL ? DVI_NEW(double, 5 * n) : NULL;
+  double *work = A->work != NULL ? A->work : own;
   dvi__iteration_report unasked = {0};
   if (work == NULL)
     return dvi__fail(DVI_NO_MEMORY, "conjugate gradients: no memory for %lld unknowns",
@@ -143,7 +144,7 @@ dvi_status dvi__conjugate_gradients(const dvi__products *A, double tolerance, co
   if (report == NULL) report = &unasked;
   *report = unasked;
   const dvi_status status = solve(&s, tolerance, b, x, report);
-  dvi__release(work);
+  dvi__release(own);
   return status;
 }
 

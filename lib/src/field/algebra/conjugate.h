@@ -12,6 +12,7 @@ typedef struct dvi__products {
   /* Set z to P^-1 r with a positive definite P near A. NULL for the identity. */
   void (*precondition)(void *of, const double *r, double *z);
   void *of;
+  double *work;    /* [5*size] numbers to work with. NULL to have them allocated */
   double roundoff; /* size of the right side's roundoff: a residual that is no larger counts as 0 */
 } dvi__products;
 

@@ -72,3 +72,19 @@ dvi_status dvi__maxwell_make_currents(dvi_field *field, const dvi_maxwell_terms 
   dvi_star_destroy(&bare);
   return status;
 }
+
+dvi_status dvi__current_impulse(const dvi_field *field, int current, double from, double to,
+                                double *impulse)
+{
+  const dvi__current *c = field->current + current;
+  const double middle = from + (to - from) / 2;
+  const int failed = c->impulse != NULL ? c->impulse(from, to, impulse, c->user)
+                                        : c->signal(middle, impulse, c->user);
+  if (failed != 0)
+    return dvi__fail(DVI_CALLBACK_FAILED, "maxwell: the signal of current %d returned %d at t = %g",
+                     current, failed, middle);
+  if (c->impulse == NULL) *impulse *= to - from;
+  if (isfinite(*impulse)) return DVI_OK;
+  return dvi__fail(DVI_NOT_FINITE, "maxwell: the signal of current %d is %g at t = %g", current,
+                   *impulse, middle);
+}

@@ -91,6 +91,10 @@ dvi_status dvi__field_make_matrices(dvi_field *field, double *load);
 /* Make the damping of conductors and absorbing walls. */
 dvi_status dvi__maxwell_make_damping(dvi_field *field, const dvi_maxwell_terms *terms);
 
+/* Give the integral of a current's signal, which is refused if it is not finite. */
+dvi_status dvi__current_impulse(const dvi_field *field, int current, double from, double to,
+                                double *impulse);
+
 /* Make the currents and the probes. */
 dvi_status dvi__maxwell_make_currents(dvi_field *field, const dvi_maxwell_terms *terms);
 dvi_status dvi__field_make_probes(dvi_field *field, const dvi_field_probe *probe, int count);

@@ -115,6 +115,7 @@ static dvi_status make(dvi_field *field, const dvi_wave_terms *terms)
   field->star = dvi_star_share(terms->star);
   field->mesh = field->star->mesh;
   field->cells = field->mesh->count[0];
+  field->is_wave = 1;
   if (terms->potential != NULL) field->potential = *terms->potential;
   DVI_TRY(dvi__field_fix(field, terms));
   DVI_TRY(make_equations(field, terms));

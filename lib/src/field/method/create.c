@@ -1,0 +1,88 @@
+/* Marches by the names of their methods. */
+#include <math.h>
+#include <string.h>
+
+#include "core/status.h"
+#include "field/step/bound.h"
+#include "field/step/leapfrog.h"
+
+/* A method, and whether its name fits a mesh. */
+typedef struct method {
+  const char *name;
+  int needs_boxes;
+  dvi_status (*create)(const dvi_field *field, const dvi__march_plan *plan, dvi_march **march);
+} method;
+
+static const method methods[] = {
+    {"leapfrog", 0, dvi__leapfrog_create},
+    {"bossavit-kettunen", 0, dvi__leapfrog_create},
+    {"yee", 1, dvi__leapfrog_create},
+};
+
+/* ---- checks ---- */
+
+static dvi_status check_options(const dvi_field *field, const dvi_march_options *options)
+{
+  if (options->size != sizeof *options)
+    return dvi__fail(DVI_BAD_ARGUMENT, "march: set options.size to sizeof(dvi_march_options)");
+  if (!isfinite(options->step) || options->step < 0)
+    return dvi__fail(DVI_BAD_ARGUMENT, "march: the step is %g; a finite one above 0 is needed",
+                     options->step);
+  if (!(options->fraction >= 0 && options->fraction < 1))
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "march: the fraction of the largest stable step is %g; above 0 and below 1 "
+                     "are possible",
+                     options->fraction);
+  if (!isfinite(options->span) || options->span < 0)
+    return dvi__fail(DVI_BAD_ARGUMENT, "march: the span is %g; 0 or more are possible",
+                     options->span);
+  if (options->threads < 0 || options->threads > DVI__MARCH_THREADS)
+    return dvi__fail(DVI_BAD_ARGUMENT, "march: %d threads; 1 to %d are possible", options->threads,
+                     DVI__MARCH_THREADS);
+  if (field->potential.density != NULL)
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "march: the field has a potential, which marches do not take; verlet and the "
+                     "other methods of dvi_field_system do");
+  return DVI_OK;
+}
+
+/* Find a method by its name, and set *rest to what follows a colon. */
+static dvi_status find(const char *text, const method **found, const char **rest)
+{
+  const size_t length = strcspn(text, ":");
+  *rest = text[length] == ':' ? text + length + 1 : "";
+  for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
+    *found = methods + i;
+    if (strlen(methods[i].name) == length && strncmp(methods[i].name, text, length) == 0)
+      return DVI_OK;
+  }
+  return dvi__fail(DVI_BAD_OPTION,
+                   "march: there is no method \"%.*s\"; leapfrog (also called yee and "
+                   "bossavit-kettunen) is one",
+                   (int)length, text);
+}
+
+/* ---- create ---- */
+
+dvi_status dvi_march_create(const dvi_field *field, const dvi_march_options *options,
+                            dvi_march **march)
+{
+  const dvi_march_options defaults = {.size = sizeof defaults};
+  const method *found;
+  if (field == NULL || march == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "march: a field and a place for the march are needed");
+  *march = NULL;
+  if (options == NULL) options = &defaults;
+  DVI_TRY(check_options(field, options));
+  dvi__march_plan plan = {.step = options->step,
+                          .fraction = options->fraction > 0 ? options->fraction : 0.5,
+                          .span = options->span,
+                          .threads = options->threads > 0 ? options->threads : 1};
+  DVI_TRY(find(options->method != NULL ? options->method : "leapfrog", &found, &plan.options));
+  if (found->needs_boxes && dvi_mesh_kind(field->mesh) != DVI_BOXES)
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "march: %s is for meshes of boxes; on simplices the same method is called "
+                     "bossavit-kettunen",
+                     found->name);
+  return found->create(field, &plan, march);
+}

@@ -1,0 +1,73 @@
+#include "field/step/bound.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "core/status.h"
+
+/* The eigenvalue of a (k+1)-cell alone, whose k-cells belong in equal parts to all (k+1)-cells
+ * around them, is M_2 sum_e n_e / M_1(e). Find the cell of the largest one. */
+static int64_t find_stiffest(const dvi_field *field)
+{
+  const dvi_matrix M1 = dvi__csr_view(&field->mass, 1);
+  dvi_matrix d, M2;
+  int64_t worst = 0;
+  double most = -1;
+  if (dvi_mesh_incidence(field->mesh, field->degree, &d) != DVI_OK) return 0;
+  if (dvi_star_matrix(field->star, field->degree + 1, &M2) != DVI_OK) return 0;
+  for (int64_t f = 0; f < d.rows; f++) {
+    double sum = 0, stiffness = 0;
+    for (int64_t i = f * d.width; i < (f + 1) * d.width; i++) {
+      const int unknown = field->number[d.column[i]];
+      if (unknown >= 0) sum += 1 / M1.value[dvi__csr_find(&field->mass, unknown, unknown)];
+    }
+    for (int64_t e = dvi__first_entry(&M2, f); e < dvi__first_entry(&M2, f + 1); e++)
+      if (dvi__entry_column(&M2, f, e) == f) stiffness = dvi__entry_value(&M2, e);
+    if (!(stiffness * sum > most)) continue;
+    most = stiffness * sum;
+    worst = f;
+  }
+  return worst;
+}
+
+static dvi_status refuse_step(const dvi_field *field, double step, double bound)
+{
+  const int degree = field->degree + 1;
+  const int64_t cell = find_stiffest(field);
+  const dvi__cell_name name = dvi__name_cell(field->mesh, degree, cell);
+  const int vertex = field->mesh->corner[degree][cell * dvi__corners(field->mesh->kind, degree)];
+  const double *x = field->mesh->point + (int64_t)vertex * field->mesh->space;
+  return dvi__fail(DVI_BAD_ARGUMENT,
+                   "march: the step %g is not below the bound %.9g, which comes from %s near (%g, "
+                   "%g, %g): take a shorter step, avi, or a mesh without such cells",
+                   step, bound, name.text, x[0], field->mesh->space > 1 ? x[1] : 0.0,
+                   field->mesh->space > 2 ? x[2] : 0.0);
+}
+
+double dvi__fit_step(double step, double span)
+{
+  if (!(span > 0)) return step;
+  return span / ceil(span / step * (1 - 1e-12));
+}
+
+dvi_status dvi__choose_step(const dvi_field *field, const dvi__march_plan *plan, double *step,
+                            double *bound)
+{
+  double omega;
+  DVI_TRY(dvi_field_fastest(field, &omega));
+  *bound = omega > 0 ? 2 / omega : (double)INFINITY;
+  *step = plan->step;
+  if (plan->step == 0 && !(omega > 0))
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "march: nothing oscillates, so that no step is a part of the largest stable "
+                     "one: give a step");
+  if (plan->step == 0) *step = dvi__fit_step(plan->fraction * *bound, plan->span);
+  return *step < *bound ? DVI_OK : refuse_step(field, *step, *bound);
+}
+
+dvi_status dvi__refuse_options(const char *name, const dvi__march_plan *plan)
+{
+  if (*plan->options == '\0') return DVI_OK;
+  return dvi__fail(DVI_BAD_OPTION, "march: %s has no options, and \"%s\" is one", name,
+                   plan->options);
+}

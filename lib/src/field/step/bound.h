@@ -1,0 +1,29 @@
+/* How steps are chosen, and where they are bounded. */
+#ifndef DVI_FIELD_STEP_BOUND_H
+#define DVI_FIELD_STEP_BOUND_H
+#include "field/model/field.h"
+#include "march/kind.h"
+
+enum { DVI__MARCH_THREADS = 256 };
+
+/* What a march is asked for. */
+typedef struct dvi__march_plan {
+  double step;     /* 0 to take the fraction */
+  double fraction; /* of stable steps */
+  double span;     /* which steps divide, or 0 */
+  int threads;
+  const char *options; /* of the method, "key=value,...", or "" */
+} dvi__march_plan;
+
+/* Choose the step of all cells, and give the bound below which steps are stable. A step beyond it
+ * is refused with the bound and the place of the stiffest (k+1)-cell. */
+dvi_status dvi__choose_step(const dvi_field *field, const dvi__march_plan *plan, double *step,
+                            double *bound);
+
+/* Shorten a step so that a whole number of steps makes a span, unless the span is 0. */
+double dvi__fit_step(double step, double span);
+
+/* Refuse options of a method that has none. */
+dvi_status dvi__refuse_options(const char *name, const dvi__march_plan *plan);
+
+#endif

@@ -1,0 +1,570 @@
+/* Leapfrog on a mesh: Yee's scheme on boxes, Bossavit and Kettunen's on other meshes.
+ *
+ * A is linear in time between the times t_n = t_0 + n dt. With the rectangle rule for E and the
+ * values at t_n for B the discrete action of a step is
+ *
+ *     dt/2 E.M_k E - dt/2 B^n.M_{k+1} B^n - dt J^n.A^n,    E = -(A^{n+1} - A^n)/dt,  B = dA ,
+ *
+ * whose stationarity conditions solve themselves:
+ *
+ *     B^{n+1} = B^n - dt d E^{n+1/2},
+ *     M_k (E^{n+1/2} - E^{n-1/2}) = dt (d^T M_{k+1} B^n - J^n - S (E^{n+1/2} + E^{n-1/2})/2) .
+ *
+ * Without S and J, E.M_k E/2 + B^n.M_{k+1} B^{n+1}/2 is conserved. Order 2, multisymplectic.
+ * Source: Yee 1966; Bossavit and Kettunen 1999; Stern 2009, secs. 3.3 and 3.4. */
+#include "field/step/leapfrog.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "core/hash.h"
+#include "core/memory.h"
+#include "core/status.h"
+#include "field/algebra/conjugate.h"
+#include "field/step/observables.h"
+#include "field/step/sweep.h"
+
+/* What identifies a march in a file, and where it stands. */
+typedef struct place {
+  int64_t cells, faces, n;
+  uint64_t hash; /* of the coefficients */
+  double dt, t0, t;
+} place;
+
+/* What stars that are not diagonal need: the matrix M + dt/2 S, and room. */
+typedef struct solver {
+  dvi_matrix d, M2;
+  dvi__csr left;
+  dvi__products products;
+  double *room;      /* of all that follows */
+  double *H, *curl;  /* [faces], [cells] */
+  double *right, *x; /* [unknowns] */
+  double *kept;      /* [numbers] the state before a step */
+} solver;
+
+typedef struct leapfrog {
+  const dvi_field *field;
+  dvi__sweep sweep;
+  place at;
+  double bound;
+  int64_t numbers;
+  double *state;       /* [numbers] all that follows in this block, and the charge's numbers */
+  double *E, *B, *A;   /* E^{n+1/2}, B^n, A^n; A is NULL unless the field is a wave */
+  double *J;           /* [currents] means of the signals around t_n */
+  double *impulse;     /* [currents] integrals of the signals over the next step */
+  double *keep, *gain; /* [cells] coefficients of diagonal stars; keep is NULL for 1 */
+  double *inverse;     /* [unknowns] 1/(M + dt/2 S) of diagonal stars */
+  double *source;      /* [unknowns] of a wave, or NULL */
+  double *spare;       /* [cells + faces] */
+  double *change;      /* [cells] of stars that are not diagonal, E' at t_n once it is needed */
+  int64_t changed;     /* that n, or -1 */
+  dvi__charge charge;
+  solver solver;
+} leapfrog;
+
+/* ---- right sides ---- */
+
+/* Give what currents and a wave's source add at the unknown i. */
+static double push(const leapfrog *l, int64_t i)
+{
+  double sum = l->source != NULL ? l->source[i] : 0;
+  for (int c = 0; c < l->field->currents; c++) sum -= l->field->current[c].profile[i] * l->J[c];
+  return sum;
+}
+
+/* Give a row of S E. */
+static double damp(const leapfrog *l, int64_t i)
+{
+  const dvi__csr *S = &l->field->damping;
+  double sum = 0;
+  if (S->rows == 0) return 0;
+  for (int64_t e = S->start[i]; e < S->start[i + 1]; e++)
+    sum += S->value[e] * l->E[l->field->unknown[S->column[e]]];
+  return sum;
+}
+
+/* Give the unknown i of d^T M_{k+1} B - J - S E, with a diagonal star. */
+static double force(const leapfrog *l, int64_t i)
+{
+  return dvi__sweep_curl(&l->sweep, l->field->unknown[i], l->B) + push(l, i) - damp(l, i);
+}
+
+/* Set right [unknowns] to it with another star. */
+static void find_right(const leapfrog *l, double factor)
+{
+  const dvi_field *f = l->field;
+  const solver *s = &l->solver;
+  dvi_matrix_multiply(&s->M2, 0, l->B, s->H);
+  dvi_matrix_multiply(&s->d, 1, s->H, s->curl);
+  for (int64_t i = 0; i < f->unknowns; i++)
+    s->right[i] = factor * (s->curl[f->unknown[i]] + push(l, i) - damp(l, i));
+}
+
+/* ---- stars that are not diagonal ---- */
+
+static dvi_status times(void *of, const double *x, double *y)
+{
+  const dvi_matrix A = dvi__csr_view(of, 1);
+  dvi_matrix_multiply(&A, 0, x, y);
+  return DVI_OK;
+}
+
+static void precondition(void *of, const double *r, double *z)
+{
+  const dvi_matrix A = dvi__csr_view(of, 1);
+  dvi__gauss_seidel(&A, r, z);
+}
+
+/* Set x to (M + dt/2 S)^-1 right. */
+static dvi_status solve(const leapfrog *l)
+{
+  return dvi__conjugate_gradients(&l->solver.products, 1e-15, l->solver.right, l->solver.x, NULL);
+}
+
+/* ---- a step ---- */
+
+/* Integrate the signals over a step around t_{n+1}. */
+static dvi_status find_impulses(leapfrog *l)
+{
+  const double dt = l->at.dt, t = l->at.t0 + (double)(l->at.n + 1) * dt;
+  for (int c = 0; c < l->field->currents; c++)
+    DVI_TRY(dvi__current_impulse(l->field, c, t - dt / 2, t + dt / 2, l->impulse + c));
+  return DVI_OK;
+}
+
+static void drift(leapfrog *l)
+{
+  const double dt = l->at.dt;
+  dvi__sweep_B(&l->sweep, dt, l->E, l->B);
+  for (int64_t c = 0; c < l->field->cells && l->A != NULL; c++) l->A[c] -= dt * l->E[c];
+  for (int c = 0; c < l->field->currents; c++) {
+    l->J[c] = l->impulse[c] / dt;
+    l->charge.delivered[c] += l->impulse[c];
+  }
+}
+
+/* Add half of dt S E to the charge that damping has moved. */
+static void count_moved(leapfrog *l)
+{
+  const dvi_field *f = l->field;
+  for (int64_t i = 0; i < f->damping.rows && f->degree > 0; i++)
+    l->charge.moved[i] += l->at.dt / 2 * damp(l, i);
+}
+
+static void kick(leapfrog *l)
+{
+  const dvi_field *f = l->field;
+  dvi__sweep_E(&l->sweep, l->keep, l->gain, l->B, l->E);
+  for (int64_t i = 0; i < f->unknowns && (l->source != NULL || f->currents > 0); i++)
+    l->E[f->unknown[i]] += l->gain[f->unknown[i]] * push(l, i);
+}
+
+static dvi_status kick_by_solution(leapfrog *l)
+{
+  const dvi_field *f = l->field;
+  find_right(l, l->at.dt);
+  DVI_TRY(solve(l));
+  for (int64_t i = 0; i < f->unknowns; i++) l->E[f->unknown[i]] += l->solver.x[i];
+  return DVI_OK;
+}
+
+/* A solution that fails leaves the state as it was. */
+static dvi_status step(leapfrog *l)
+{
+  dvi_status status = DVI_OK;
+  DVI_TRY(find_impulses(l));
+  if (l->gain == NULL) memcpy(l->solver.kept, l->state, (size_t)l->numbers * sizeof *l->state);
+  drift(l);
+  count_moved(l);
+  if (l->gain != NULL)
+    kick(l);
+  else
+    status = kick_by_solution(l);
+  count_moved(l);
+  l->at.n += status == DVI_OK;
+  if (status != DVI_OK) memcpy(l->state, l->solver.kept, (size_t)l->numbers * sizeof *l->state);
+  return status;
+}
+
+static double time_of(const leapfrog *l, int64_t n)
+{
+  return l->at.t0 + (double)n * l->at.dt;
+}
+
+static dvi_status advance(void *self, double t)
+{
+  leapfrog *l = self;
+  const double rounding = 8 * DBL_EPSILON * fmax(fabs(t), fabs(l->at.t0));
+  while (time_of(l, l->at.n + 1) <= t + rounding) {
+    const dvi_status status = step(l);
+    if (status == DVI_OK) continue;
+    l->at.t = fmax(l->at.t, time_of(l, l->at.n));
+    return status;
+  }
+  l->at.t = t;
+  return DVI_OK;
+}
+
+/* ---- a start ---- */
+
+/* Take what is given, and B = dA otherwise. */
+static void take(leapfrog *l, const dvi_march_state *state)
+{
+  const dvi_field *f = l->field;
+  double *A = l->A != NULL ? l->A : l->spare;
+  memset(l->state, 0, (size_t)l->numbers * sizeof *l->state);
+  memcpy(A, f->fixed, (size_t)f->cells * sizeof *A);
+  for (int64_t i = 0; i < f->unknowns; i++) {
+    const int c = f->unknown[i];
+    if (state->A != NULL) A[c] = state->A[c];
+    if (state->E != NULL) l->E[c] = state->E[c];
+  }
+  for (int64_t b = 0; b < l->sweep.faces; b++)
+    l->B[b] = state->B != NULL ? state->B[b] : dvi__sweep_d(&l->sweep, b, A);
+  for (int c = 0; c < f->currents; c++) l->J[c] = l->impulse[c] / l->at.dt;
+}
+
+/* Set E^{1/2} = E^0 + dt/2 M^-1 (d^T M_{k+1} B^0 - J^0 - S E^{1/2}). */
+static dvi_status half_kick(leapfrog *l)
+{
+  const dvi_field *f = l->field;
+  const double half = l->at.dt / 2;
+  if (l->gain == NULL) {
+    find_right(l, half);
+    DVI_TRY(solve(l));
+  } else {
+    for (int64_t i = 0; i < f->unknowns; i++) l->spare[i] = half * force(l, i) * l->inverse[i];
+  }
+  for (int64_t i = 0; i < f->unknowns; i++)
+    l->E[f->unknown[i]] += l->gain == NULL ? l->solver.x[i] : l->spare[i];
+  return DVI_OK;
+}
+
+static dvi_status start(void *self, const dvi_march_state *state)
+{
+  leapfrog *l = self;
+  const place before = l->at;
+  l->at.t0 = state->t;
+  l->at.n = -1;
+  dvi_status status = find_impulses(l);
+  l->at.n = 0;
+  l->at.t = state->t;
+  if (status == DVI_OK) {
+    if (l->gain == NULL) memcpy(l->solver.kept, l->state, (size_t)l->numbers * sizeof(double));
+    take(l, state);
+    status = half_kick(l);
+    if (status != DVI_OK) memcpy(l->state, l->solver.kept, (size_t)l->numbers * sizeof(double));
+  }
+  if (status != DVI_OK) l->at = before;
+  if (status == DVI_OK) dvi__charge_start(&l->charge, l->E);
+  l->changed = -1;
+  return status;
+}
+
+/* ---- what can be seen ---- */
+
+static double time(const void *self)
+{
+  return ((const leapfrog *)self)->at.t;
+}
+
+static int64_t size(const void *self, dvi_march_form form)
+{
+  const leapfrog *l = self;
+  if (form == DVI_FORM_A && l->A == NULL) return 0;
+  return form == DVI_FORM_B ? l->sweep.faces : l->sweep.cells;
+}
+
+/* Find E' at t_n of a star that is not diagonal. */
+static dvi_status find_change(leapfrog *l)
+{
+  if (l->gain != NULL || l->changed == l->at.n) return DVI_OK;
+  find_right(l, 1);
+  DVI_TRY(solve(l));
+  for (int64_t i = 0; i < l->field->unknowns; i++) l->change[l->field->unknown[i]] = l->solver.x[i];
+  l->changed = l->at.n;
+  return DVI_OK;
+}
+
+/* Give E at a time after t_n: E^{n+1/2} and its rate at t_n. At t_n it is the mean of E^{n-1/2} and
+ * E^{n+1/2}, which the start was, too. */
+static double E_after(const leapfrog *l, double after, int64_t cell)
+{
+  const int i = l->field->number[cell];
+  if (i < 0) return 0;
+  const double rate = l->gain != NULL ? force(l, i) / l->field->mass.value[i] : l->change[cell];
+  return l->E[cell] + (after - l->at.dt / 2) * rate;
+}
+
+static dvi_status sample(const void *self, dvi_march_form form, int64_t count, const int *cell,
+                         double *values)
+{
+  const leapfrog *l = self;
+  const double after = l->at.t - time_of(l, l->at.n);
+  if (form == DVI_FORM_E) DVI_TRY(find_change((leapfrog *)self));
+  for (int64_t i = 0; i < count; i++) {
+    const int64_t c = cell != NULL ? cell[i] : i;
+    values[i] = form == DVI_FORM_A   ? l->A[c] - after * l->E[c]
+                : form == DVI_FORM_E ? E_after(l, after, c)
+                                     : l->B[c] - after * dvi__sweep_d(&l->sweep, c, l->E);
+  }
+  return DVI_OK;
+}
+
+/* E.M_k E/2 + B^n.M_{k+1} B^{n+1}/2 - source.(A^n + A^{n+1})/2 */
+static dvi_status energy(const void *self, double *value)
+{
+  const leapfrog *l = self;
+  const dvi_field *f = l->field;
+  double *next = l->spare, *product = l->spare + l->sweep.faces;
+  dvi_matrix M;
+  DVI_TRY(dvi_star_matrix(f->star, f->degree + 1, &M));
+  for (int64_t b = 0; b < l->sweep.faces; b++)
+    next[b] = l->B[b] - l->at.dt * dvi__sweep_d(&l->sweep, b, l->E);
+  dvi_matrix_multiply(&M, 0, next, product);
+  *value = 0;
+  for (int64_t b = 0; b < l->sweep.faces; b++) *value += 0.5 * l->B[b] * product[b];
+  for (int64_t i = 0; i < f->unknowns; i++) {
+    double sum = 0;
+    for (int64_t e = f->mass.start[i]; e < f->mass.start[i + 1]; e++)
+      sum += f->mass.value[e] * l->E[f->unknown[f->mass.column[e]]];
+    *value += 0.5 * sum * l->E[f->unknown[i]];
+    if (l->source != NULL)
+      *value -= l->source[i] * (l->A[f->unknown[i]] - l->at.dt / 2 * l->E[f->unknown[i]]);
+  }
+  return DVI_OK;
+}
+
+static dvi_status charge_error(const void *self, double *error)
+{
+  const leapfrog *l = self;
+  *error = dvi__charge_error(&l->charge, l->E);
+  return DVI_OK;
+}
+
+static int observables(const void *self)
+{
+  return dvi__field_observables(((const leapfrog *)self)->field);
+}
+
+static const char *observable(const void *self, int i)
+{
+  return dvi__field_observable(((const leapfrog *)self)->field, i);
+}
+
+static dvi_status observe(const void *self, int i, double *value)
+{
+  const dvi__observed march = {
+      .sample = sample, .energy = energy, .charge_error = charge_error, .of = self};
+  return dvi__field_observe(((const leapfrog *)self)->field, &march, i, value);
+}
+
+static void facts(const void *self, dvi_march_facts *facts)
+{
+  const leapfrog *l = self;
+  *facts = (dvi_march_facts){.step = l->at.dt,
+                             .longest = l->at.dt,
+                             .bound = l->bound,
+                             .steps = l->at.n,
+                             .updates = l->at.n * l->sweep.faces};
+}
+
+/* ---- files ---- */
+
+static void save(const void *self, dvi__sections_writer *writer)
+{
+  const leapfrog *l = self;
+  dvi__section_open(writer, "leapfrog", 1);
+  dvi__section_put(writer, &l->at, sizeof l->at);
+  dvi__section_open(writer, "forms", 1);
+  dvi__section_put(writer, l->state, (size_t)l->numbers * sizeof *l->state);
+}
+
+static dvi_status load(void *self, const dvi__sections *sections)
+{
+  leapfrog *l = self;
+  dvi__section of_place, of_state;
+  place at;
+  DVI_TRY(dvi__section_find(sections, "leapfrog", 1, sizeof at, &of_place));
+  memcpy(&at, of_place.content, sizeof at);
+  if (at.hash != l->at.hash || at.dt != l->at.dt)
+    return dvi__fail(DVI_BAD_FILE,
+                     "march: %s is of another field, or of another step: it has dt = %.17g, and "
+                     "this march %.17g",
+                     sections->name, at.dt, l->at.dt);
+  DVI_TRY(dvi__section_find(sections, "forms", 1, (size_t)l->numbers * sizeof(double), &of_state));
+  l->at = at;
+  memcpy(l->state, of_state.content, of_state.size);
+  l->changed = -1;
+  return DVI_OK;
+}
+
+/* ---- create ---- */
+
+static void destroy(void *self)
+{
+  leapfrog *l = self;
+  if (l == NULL) return;
+  double *const arrays[] = {l->state,  l->impulse, l->keep,        l->gain,  l->inverse,
+                            l->source, l->spare,   l->solver.room, l->change};
+  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) dvi__release(arrays[i]);
+  dvi__charge_clear(&l->charge);
+  dvi__csr_clear(&l->solver.left);
+  dvi__sweep_clear(&l->sweep);
+  dvi__release(l);
+}
+
+/* Lay the state out in one block. */
+static dvi_status make_state(leapfrog *l)
+{
+  const dvi_field *f = l->field;
+  const int64_t cells = f->cells, faces = l->sweep.faces, A = f->is_wave ? cells : 0;
+  l->numbers = cells + faces + A + f->currents + dvi__charge_numbers(f);
+  l->state = DVI_NEW(double, l->numbers);
+  l->impulse = DVI_NEW(double, f->currents);
+  l->spare = DVI_NEW(double, 2 * faces + cells);
+  if (!l->state || !l->impulse || !l->spare)
+    return dvi__fail(DVI_NO_MEMORY, "march: no memory for a state of %lld numbers",
+                     (long long)l->numbers);
+  l->E = l->state;
+  l->B = l->E + cells;
+  l->A = f->is_wave ? l->B + faces : NULL;
+  l->J = l->B + faces + A;
+  return dvi__charge_create(f, l->J + f->currents, &l->charge);
+}
+
+/* keep = (1 - s)/(1 + s), gain = dt/(M (1 + s)) and inverse = 1/(M (1 + s)) with s = dt S/(2 M). */
+static dvi_status make_coefficients(leapfrog *l)
+{
+  const dvi_field *f = l->field;
+  l->gain = DVI_NEW(double, f->cells);
+  l->inverse = DVI_NEW(double, f->unknowns);
+  if (f->damping.rows > 0) l->keep = DVI_NEW(double, f->cells);
+  if (!l->gain || !l->inverse || (f->damping.rows > 0 && !l->keep))
+    return dvi__fail(DVI_NO_MEMORY, "march: no memory for coefficients");
+  for (int64_t i = 0; i < f->unknowns; i++) {
+    const int64_t at = f->damping.rows > 0 ? dvi__csr_find(&f->damping, i, (int)i) : -1;
+    const double M = f->mass.value[i], S = at >= 0 ? f->damping.value[at] : 0,
+                 s = l->at.dt * S / (2 * M);
+    l->inverse[i] = 1 / (M * (1 + s));
+    l->gain[f->unknown[i]] = l->at.dt * l->inverse[i];
+    if (l->keep != NULL) l->keep[f->unknown[i]] = (1 - s) / (1 + s);
+  }
+  return DVI_OK;
+}
+
+/* Make M + dt/2 S and the room of its solutions. */
+static dvi_status make_solver(leapfrog *l)
+{
+  const dvi_field *f = l->field;
+  solver *s = &l->solver;
+  const int64_t n = f->unknowns, faces = l->sweep.faces;
+  const dvi_matrix M = dvi__csr_view(&f->mass, 1);
+  dvi__csr half = {0};
+  DVI_TRY(dvi_mesh_incidence(f->mesh, f->degree, &s->d));
+  DVI_TRY(dvi_star_matrix(f->star, f->degree + 1, &s->M2));
+  s->room = DVI_NEW(double, faces + f->cells + 7 * n + l->numbers);
+  l->change = DVI_NEW(double, f->cells);
+  if (!s->room || !l->change) return dvi__fail(DVI_NO_MEMORY, "march: no memory for a solver");
+  s->H = s->room;
+  s->curl = s->H + faces;
+  s->right = s->curl + f->cells;
+  s->x = s->right + n;
+  s->kept = s->x + n;
+  s->products = (dvi__products){.size = n,
+                                .times = times,
+                                .precondition = precondition,
+                                .of = &s->left,
+                                .work = s->kept + l->numbers};
+  if (f->damping.rows == 0) return dvi__csr_copy(&M, &s->left);
+  const dvi_matrix S = dvi__csr_view(&f->damping, 1);
+  DVI_TRY(dvi__csr_copy(&S, &half));
+  for (int64_t e = 0; e < half.start[n]; e++) half.value[e] *= l->at.dt / 2;
+  const dvi_matrix view = dvi__csr_view(&half, 1);
+  const dvi_status status = dvi__csr_sum(&M, &view, &s->left);
+  dvi__csr_clear(&half);
+  return status;
+}
+
+/* The source of a wave is its load without what fixed values pull, because B knows of these. */
+static dvi_status make_source(leapfrog *l)
+{
+  const dvi_field *f = l->field;
+  dvi_matrix d, M2;
+  int is_zero = 1;
+  if (!f->is_wave) return DVI_OK;
+  double *B = l->spare, *H = B + l->sweep.faces, *pull = l->state; /* not in use yet */
+  l->source = DVI_NEW(double, f->unknowns);
+  if (l->source == NULL) return dvi__fail(DVI_NO_MEMORY, "march: no memory for a source");
+  DVI_TRY(dvi_mesh_incidence(f->mesh, f->degree, &d));
+  DVI_TRY(dvi_star_matrix(f->star, f->degree + 1, &M2));
+  dvi_matrix_multiply(&d, 0, f->fixed, B);
+  dvi_matrix_multiply(&M2, 0, B, H);
+  dvi_matrix_multiply(&d, 1, H, pull);
+  for (int64_t i = 0; i < f->unknowns; i++) {
+    l->source[i] = f->load[i] + pull[f->unknown[i]];
+    is_zero = is_zero &&
+              fabs(l->source[i]) <= 1e-14 * (fabs(f->load[i]) + fabs(pull[f->unknown[i]]));
+  }
+  if (!is_zero) return DVI_OK;
+  dvi__release(l->source);
+  l->source = NULL;
+  return DVI_OK;
+}
+
+/* Sum up what distinguishes the march from others of as many cells. */
+static uint64_t hash_of(const leapfrog *l)
+{
+  const dvi_field *f = l->field;
+  const int64_t counts[] = {f->degree, f->cells, l->sweep.faces, f->unknowns, f->currents};
+  uint64_t hash = dvi__hash(DVI__HASH_START, sizeof counts, counts);
+  hash = dvi__hash(hash, (size_t)f->unknowns * sizeof(int), f->unknown);
+  hash = dvi__hash(hash, (size_t)f->mass.start[f->unknowns] * sizeof(double), f->mass.value);
+  return dvi__hash(hash, (size_t)f->stiffness.start[f->unknowns] * sizeof(double),
+                   f->stiffness.value);
+}
+
+static dvi_status make(leapfrog *l, int threads)
+{
+  const dvi_field *f = l->field;
+  DVI_TRY(dvi__sweep_create(f, threads, &l->sweep));
+  DVI_TRY(make_state(l));
+  DVI_TRY(make_source(l));
+  l->at.hash = hash_of(l);
+  return f->mass_is_diagonal && l->sweep.M2 != NULL ? make_coefficients(l) : make_solver(l);
+}
+
+static const dvi__march_kind kind = {
+    .name = "leapfrog",
+    .destroy = destroy,
+    .start = start,
+    .advance = advance,
+    .time = time,
+    .size = size,
+    .sample = sample,
+    .observables = observables,
+    .observable = observable,
+    .observe = observe,
+    .facts = facts,
+    .save = save,
+    .load = load,
+};
+
+dvi_status dvi__leapfrog_create(const dvi_field *field, const dvi__march_plan *plan,
+                                dvi_march **march)
+{
+  double dt, bound;
+  DVI_TRY(dvi__refuse_options(kind.name, plan));
+  DVI_TRY(dvi__choose_step(field, plan, &dt, &bound));
+  leapfrog *l = DVI_NEW(leapfrog, 1);
+  if (l == NULL) return dvi__fail(DVI_NO_MEMORY, "march: no memory");
+  l->field = field;
+  l->at.dt = dt;
+  l->bound = bound;
+  l->changed = -1;
+  const dvi_status status = make(l, plan->threads);
+  if (status == DVI_OK) return dvi__march_wrap(&kind, l, march);
+  destroy(l);
+  return status;
+}

@@ -1,0 +1,135 @@
+#include "field/step/observables.h"
+
+#include <math.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+
+/* ---- charge ---- */
+
+void dvi__charge_clear(dvi__charge *charge)
+{
+  dvi__release(charge->is_free);
+  dvi__release(charge->work);
+  *charge = (dvi__charge){.field = NULL};
+}
+
+static void find_free(dvi__charge *charge)
+{
+  const dvi_matrix *d = &charge->d;
+  for (int64_t v = 0; v < d->columns; v++) charge->is_free[v] = 1;
+  for (int64_t e = 0; e < d->rows; e++)
+    for (int64_t i = dvi__first_entry(d, e);
+         i < dvi__first_entry(d, e + 1) && charge->field->number[e] < 0; i++)
+      charge->is_free[d->column[i]] = 0;
+}
+
+static int64_t count_below(const dvi_field *field)
+{
+  return field->degree > 0 ? field->mesh->count[field->degree - 1] : 0;
+}
+
+static int64_t count_moved(const dvi_field *field)
+{
+  return field->degree > 0 && field->damping.rows > 0 ? field->unknowns : 0;
+}
+
+int64_t dvi__charge_numbers(const dvi_field *field)
+{
+  return field->currents + count_moved(field) + count_below(field);
+}
+
+dvi_status dvi__charge_create(const dvi_field *field, double *numbers, dvi__charge *charge)
+{
+  const int64_t below = count_below(field);
+  *charge = (dvi__charge){.field = field,
+                          .delivered = numbers,
+                          .moved = numbers + field->currents,
+                          .start = numbers + field->currents + count_moved(field)};
+  if (below == 0) return DVI_OK;
+  DVI_TRY(dvi_mesh_incidence(field->mesh, field->degree - 1, &charge->d));
+  charge->is_free = DVI_NEW(char, below);
+  charge->work = DVI_NEW(double, field->cells + 2 * below);
+  if (!charge->is_free || !charge->work) {
+    dvi__charge_clear(charge);
+    return dvi__fail(DVI_NO_MEMORY, "march: no memory for the charge of %lld cells",
+                     (long long)below);
+  }
+  find_free(charge);
+  return DVI_OK;
+}
+
+/* Set form [k-cells] to M E, plus what currents and damping have moved. */
+static void displacement(const dvi__charge *charge, const double *E, double *form)
+{
+  const dvi_field *f = charge->field;
+  const dvi__csr *M = &f->mass;
+  for (int64_t c = 0; c < f->cells; c++) form[c] = 0;
+  for (int64_t i = 0; i < f->unknowns; i++) {
+    double sum = f->damping.rows > 0 ? charge->moved[i] : 0;
+    for (int64_t e = M->start[i]; e < M->start[i + 1]; e++)
+      sum += M->value[e] * E[f->unknown[M->column[e]]];
+    for (int c = 0; c < f->currents; c++) sum += f->current[c].profile[i] * charge->delivered[c];
+    form[f->unknown[i]] = sum;
+  }
+}
+
+void dvi__charge_start(dvi__charge *charge, const double *E)
+{
+  const dvi_field *f = charge->field;
+  for (int c = 0; c < f->currents; c++) charge->delivered[c] = 0;
+  if (f->degree == 0) return;
+  for (int64_t i = 0; i < f->unknowns && f->damping.rows > 0; i++) charge->moved[i] = 0;
+  displacement(charge, E, charge->work);
+  dvi_matrix_multiply(&charge->d, 1, charge->work, charge->start);
+}
+
+double dvi__charge_error(const dvi__charge *charge, const double *E)
+{
+  const dvi_matrix *d = &charge->d;
+  double *form = charge->work, *sum = form + d->rows, *size = sum + d->columns, worst = 0,
+         largest = 0;
+  displacement(charge, E, form);
+  for (int64_t v = 0; v < d->columns; v++) {
+    sum[v] = -charge->start[v];
+    size[v] = fabs(charge->start[v]);
+  }
+  for (int64_t e = 0; e < d->rows; e++)
+    for (int64_t i = dvi__first_entry(d, e); i < dvi__first_entry(d, e + 1); i++) {
+      sum[d->column[i]] += d->sign[i] * form[e];
+      size[d->column[i]] += fabs(form[e]);
+    }
+  for (int64_t v = 0; v < d->columns; v++) {
+    if (!charge->is_free[v]) continue;
+    worst = fmax(worst, fabs(sum[v]));
+    largest = fmax(largest, size[v]);
+  }
+  return largest > 0 ? worst / largest : 0;
+}
+
+/* ---- all ---- */
+
+static int has_charge(const dvi_field *field)
+{
+  return field->degree > 0;
+}
+
+int dvi__field_observables(const dvi_field *field)
+{
+  return 1 + has_charge(field) + field->probes;
+}
+
+const char *dvi__field_observable(const dvi_field *field, int i)
+{
+  if (i == 0) return "energy";
+  if (i == 1 && has_charge(field)) return "charge_error";
+  return field->probe[i - 1 - has_charge(field)].name;
+}
+
+dvi_status dvi__field_observe(const dvi_field *field, const dvi__observed *march, int i,
+                              double *value)
+{
+  if (i == 0) return march->energy(march->of, value);
+  if (i == 1 && has_charge(field)) return march->charge_error(march->of, value);
+  return dvi__field_probe(field, i - 1 - has_charge(field), march->sample, march->of, value);
+}

@@ -1,0 +1,308 @@
+/* Leapfrog on meshes: dispersion, conserved quantities, losses, sources, and saved states. */
+#include <dvi/march.h>
+#include <dvi/maxwell.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "support/meshes.h"
+#include "support/suite.h"
+
+static const double pi = 3.14159265358979323846;
+static const dvi_wall pec = {.part = "boundary", .kind = DVI_PEC};
+
+/* A field with a march. */
+typedef struct scene {
+  dvi_field *field;
+  dvi_march *march;
+  int64_t edges, faces;
+  double *E, *B;
+} scene;
+
+static void fill_random(int64_t count, double *values, unsigned long long seed)
+{
+  for (int64_t i = 0; i < count; i++) values[i] = random_number(&seed) - 0.5;
+}
+
+/* Make a march on a mesh, which is released, and start it from random numbers without magnetic
+ * charge, B = dA. */
+static scene make_scene(dvi_mesh *mesh, dvi_star_kind kind, dvi_maxwell_terms terms,
+                        dvi_march_options how)
+{
+  scene s = {.field = NULL};
+  const dvi_star_options options = {.size = sizeof options, .kind = kind};
+  dvi_star *star = NULL;
+  ck_assert_msg(dvi_star_create(mesh, &options, &star) == DVI_OK, "%s", dvi_last_error());
+  terms.size = sizeof terms;
+  terms.star = star;
+  how.size = sizeof how;
+  ck_assert_msg(dvi_maxwell_create(&terms, &s.field) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(dvi_march_create(s.field, &how, &s.march) == DVI_OK, "%s", dvi_last_error());
+  s.edges = dvi_march_size(s.march, DVI_FORM_E);
+  s.faces = dvi_march_size(s.march, DVI_FORM_B);
+  s.E = calloc((size_t)(2 * s.edges), sizeof(double));
+  s.B = calloc((size_t)s.faces, sizeof(double));
+  fill_random(2 * s.edges, s.E, 5);
+  const dvi_march_state state = {.size = sizeof state, .E = s.E, .A = s.E + s.edges};
+  ck_assert_msg(dvi_march_start(s.march, &state) == DVI_OK, "%s", dvi_last_error());
+  dvi_mesh_destroy(&mesh);
+  dvi_star_destroy(&star);
+  return s;
+}
+
+static void end_scene(scene *s)
+{
+  dvi_march_destroy(&s->march);
+  dvi_field_destroy(&s->field);
+  free(s->E);
+  free(s->B);
+}
+
+static void advance(scene *s, double t)
+{
+  ck_assert_msg(dvi_march_advance(s->march, t) == DVI_OK, "%s", dvi_last_error());
+}
+
+static double observe(const scene *s, const char *name)
+{
+  double value = NAN;
+  for (int i = 0; dvi_march_observable(s->march, i) != NULL; i++)
+    if (strcmp(dvi_march_observable(s->march, i), name) == 0)
+      ck_assert_msg(dvi_march_observe(s->march, i, &value) == DVI_OK, "%s", dvi_last_error());
+  return value;
+}
+
+static double step_of(const scene *s)
+{
+  dvi_march_facts facts;
+  dvi_march_facts_of(s->march, &facts);
+  return facts.step;
+}
+
+static void sample(const scene *s)
+{
+  ck_assert(dvi_march_sample(s->march, DVI_FORM_E, 0, NULL, s->E) == DVI_OK);
+  ck_assert(dvi_march_sample(s->march, DVI_FORM_B, 0, NULL, s->B) == DVI_OK);
+}
+
+static dvi_mesh *generate(const char *name, dvi_generator_options options)
+{
+  dvi_mesh *mesh = NULL;
+  options.size = sizeof options;
+  ck_assert_msg(dvi_mesh_generate(name, &options, &mesh) == DVI_OK, "%s", dvi_last_error());
+  return mesh;
+}
+
+static dvi_mesh *box(void)
+{
+  return generate("box", (dvi_generator_options){.cells = {5, 4, 3}, .extent = {1, 0.8, 0.6}});
+}
+
+/* ---- conservation ---- */
+
+/* A sum of roundings after 1e5 steps is expected at 1e-16 times the root of their number. */
+static void check_energy(dvi_mesh *mesh, dvi_star_kind kind, int walls, long steps)
+{
+  scene s = make_scene(mesh, kind, (dvi_maxwell_terms){.wall = &pec, .walls = walls},
+                       (dvi_march_options){.fraction = 0.99});
+  const double dt = step_of(&s), start = observe(&s, "energy");
+  double worst = 0;
+  for (long i = 1; i <= 100; i++) {
+    advance(&s, dt * (double)(steps / 100 * i));
+    worst = fmax(worst, fabs(observe(&s, "energy") / start - 1));
+  }
+  ck_assert_msg(worst < 1e-13, "energy changes by %g", worst);
+  ck_assert(observe(&s, "charge_error") < 1e-13);
+  end_scene(&s);
+}
+
+START_TEST(energy_and_charge_are_conserved_to_roundoff)
+{
+  check_energy(box(), DVI_CIRCUMCENTRIC, 1, repeats(100000));
+  check_energy(staggered_mesh(6, 6), DVI_CIRCUMCENTRIC, 0, repeats(100000));
+  check_energy(generate("bcc-torus", (dvi_generator_options){.cells = {3, 3, 3}}),
+               DVI_CIRCUMCENTRIC, 0, repeats(20000));
+  check_energy(staggered_mesh(4, 4), DVI_WHITNEY, 1, repeats(5000));
+}
+END_TEST
+
+/* ---- motion ---- */
+
+/* Start a mode of the box, whose frequency w obeys sin^2(w dt/2)/dt^2 = sum sin^2(k h/2)/h^2. The
+ * digits are those of an independent code with dt = 0.9 of the bound. */
+START_TEST(time_and_space_disperse_as_known)
+{
+  static const double known[3] = {4.973909883247, 5.973299740175, 6.414511709401};
+  double omega[3], *mode;
+  scene s = make_scene(box(), DVI_CIRCUMCENTRIC, (dvi_maxwell_terms){.wall = &pec, .walls = 1},
+                       (dvi_march_options){.fraction = 0.5});
+  const dvi_modes_options three = {.size = sizeof three, .count = 3};
+  double sum = 0;
+  for (int a = 0; a < 3; a++) sum += 25;
+  const double dt = 0.9 / sqrt(sum); /* all edges are 0.2 long */
+  mode = calloc((size_t)(3 * s.edges), sizeof(double));
+  ck_assert(dvi_field_modes(s.field, &three, omega, mode, NULL) == DVI_OK);
+  dvi_march_destroy(&s.march);
+  const dvi_march_options how = {.size = sizeof how, .step = dt};
+  ck_assert_msg(dvi_march_create(s.field, &how, &s.march) == DVI_OK, "%s", dvi_last_error());
+  for (int i = 0; i < 3; i++) {
+    const double w = 2 / dt * asin(dt * sqrt(omega[i]) / 2);
+    const dvi_march_state state = {.size = sizeof state, .E = mode + i * s.edges};
+    ck_assert_double_eq_tol(w, known[i], 1e-11);
+    ck_assert(dvi_march_start(s.march, &state) == DVI_OK);
+    advance(&s, 150 * dt);
+    sample(&s);
+    for (int64_t e = 0; e < s.edges; e++)
+      ck_assert_double_eq_tol(s.E[e], cos(150 * w * dt) * mode[i * s.edges + e], 1e-11);
+  }
+  free(mode);
+  end_scene(&s);
+}
+END_TEST
+
+/* The discrete frequency of the first mode between two electric walls with a conductor, from the
+ * roots of the difference equation. */
+START_TEST(a_conductor_damps_as_the_difference_equation_says)
+{
+  enum { N = 20 };
+  double sigma[N], *mode = calloc(N + 1, sizeof *mode);
+  const double dt = 0.8 / N;
+  for (int i = 0; i < N; i++) sigma[i] = 0.7;
+  for (int i = 0; i <= N; i++) mode[i] = sin(pi * i / N);
+  scene s = make_scene(generate("box", (dvi_generator_options){.cells = {N}}), DVI_CIRCUMCENTRIC,
+                       (dvi_maxwell_terms){.wall = &pec, .walls = 1, .conductivity = sigma},
+                       (dvi_march_options){.step = dt});
+  const dvi_march_state state = {.size = sizeof state, .E = mode};
+  double value[3];
+  ck_assert(dvi_march_start(s.march, &state) == DVI_OK);
+  for (int i = 0; i < 3; i++) {
+    sample(&s);
+    value[i] = s.E[N / 2];
+    advance(&s, (i + 1) * dt);
+  }
+  /* E^{n+1} + E^{n-1} exp(2 a) = 2 E^n exp(a) cos(b) for roots exp(a +- i b) */
+  const double rate = -0.350022869356, frequency = 3.120964341326, a = rate * dt;
+  ck_assert_double_eq_tol(
+      value[2], 2 * value[1] * exp(a) * cos(frequency * dt) - value[0] * exp(2 * a), 1e-13);
+  free(mode);
+  end_scene(&s);
+}
+END_TEST
+
+/* A wave that leaves at a right angle is reflected by the difference scheme's own admittance alone,
+ * which is an error of second order. */
+START_TEST(absorbing_walls_absorb)
+{
+  double left[2];
+  for (int level = 0; level < 2; level++) {
+    const int n = 40 << level;
+    static const dvi_wall open = {.part = "boundary", .kind = DVI_ABSORBING};
+    scene s = make_scene(generate("box", (dvi_generator_options){.cells = {n}}), DVI_CIRCUMCENTRIC,
+                         (dvi_maxwell_terms){.wall = &open, .walls = 1},
+                         (dvi_march_options){.fraction = 0.9});
+    double *E = calloc((size_t)s.edges, sizeof *E);
+    for (int64_t i = 0; i < s.edges; i++) E[i] = exp(-pow(((double)i / n - 0.5) / 0.08, 2));
+    const dvi_march_state state = {.size = sizeof state, .E = E};
+    ck_assert(dvi_march_start(s.march, &state) == DVI_OK);
+    const double before = observe(&s, "energy");
+    advance(&s, 1.2);
+    left[level] = observe(&s, "energy") / before;
+    free(E);
+    end_scene(&s);
+  }
+  ck_assert_msg(left[0] < 1e-3 && left[1] < left[0] / 8, "%g and %g are left", left[0], left[1]);
+}
+END_TEST
+
+/* ---- sources ---- */
+
+static int pulse(double t, double *value, void *user)
+{
+  unsigned long long seed = (unsigned long long)(1e6 * t) + *(const unsigned long long *)user;
+  *value = random_number(&seed) - 0.5;
+  return 0;
+}
+
+static int swirl(const double *x, double *value, void *user)
+{
+  (void)user;
+  for (int l = 0; l < 3; l++) value[l] = sin(3 * x[(l + 1) % 3]);
+  return 0;
+}
+
+/* Charge is moved by random currents, by conductors and walls, and its sum stays exact. */
+START_TEST(random_currents_keep_the_law_of_charge)
+{
+  static unsigned long long seed[2] = {3, 4};
+  static const dvi_wall open = {.part = "boundary", .kind = DVI_ABSORBING};
+  double sigma[5 * 4 * 3];
+  for (int i = 0; i < 60; i++) sigma[i] = 0.1 * (i % 3);
+  const dvi_current current[2] = {
+      {.density = swirl, .signal = pulse, .user = seed},
+      {.at = {0.3, 0.4, 0.2}, .along = {1, -2, 0.5}, .signal = pulse, .user = seed + 1}};
+  scene s = make_scene(
+      box(), DVI_CIRCUMCENTRIC,
+      (dvi_maxwell_terms){
+          .wall = &open, .walls = 1, .conductivity = sigma, .current = current, .currents = 2},
+      (dvi_march_options){.fraction = 0.9});
+  advance(&s, step_of(&s) * (double)repeats(100000));
+  ck_assert_double_lt(observe(&s, "charge_error"), 1e-12);
+  end_scene(&s);
+}
+END_TEST
+
+/* ---- the same bits ---- */
+
+static void compare(const scene *a, const scene *b)
+{
+  sample(a);
+  sample(b);
+  ck_assert_mem_eq(a->E, b->E, (size_t)a->edges * sizeof(double));
+  ck_assert_mem_eq(a->B, b->B, (size_t)a->faces * sizeof(double));
+  ck_assert_double_eq(observe(a, "energy"), observe(b, "energy"));
+  ck_assert_double_eq(observe(a, "charge_error"), observe(b, "charge_error"));
+}
+
+START_TEST(cuts_threads_and_saved_states_keep_the_bits)
+{
+  static unsigned long long seed = 3;
+  static const dvi_wall open = {.part = "boundary", .kind = DVI_ABSORBING};
+  const dvi_current current = {.density = swirl, .signal = pulse, .user = &seed};
+  const dvi_maxwell_terms terms = {.wall = &open, .walls = 1, .current = &current, .currents = 1};
+  const char *path = "leapfrog.state";
+  for (int kind = 0; kind < 2; kind++) {
+    const dvi_star_kind star = kind ? DVI_WHITNEY : DVI_CIRCUMCENTRIC;
+    scene whole = make_scene(box(), star, terms, (dvi_march_options){.fraction = 0.5}),
+          cut = make_scene(box(), star, terms, (dvi_march_options){.fraction = 0.5, .threads = 3}),
+          resumed = make_scene(box(), star, terms, (dvi_march_options){.fraction = 0.5});
+    advance(&whole, 2.5);
+    for (int i = 1; i <= 50; i++) {
+      advance(&cut, 0.05 * i);
+      (void)observe(&cut, "energy");
+      sample(&cut);
+      if (i == 20) ck_assert_msg(dvi_march_save(cut.march, path) == DVI_OK, "%s", dvi_last_error());
+    }
+    compare(&whole, &cut);
+    ck_assert_msg(dvi_march_load(resumed.march, path) == DVI_OK, "%s", dvi_last_error());
+    ck_assert_double_eq(dvi_march_time(resumed.march), 1);
+    advance(&resumed, 2.5);
+    compare(&whole, &resumed);
+    end_scene(&whole);
+    end_scene(&cut);
+    end_scene(&resumed);
+  }
+  (void)unlink(path);
+}
+END_TEST
+
+SUITE(leapfrog)
+{
+  tcase_add_test(tests, energy_and_charge_are_conserved_to_roundoff);
+  tcase_add_test(tests, time_and_space_disperse_as_known);
+  tcase_add_test(tests, a_conductor_damps_as_the_difference_equation_says);
+  tcase_add_test(tests, absorbing_walls_absorb);
+  tcase_add_test(tests, random_currents_keep_the_law_of_charge);
+  tcase_add_test(tests, cuts_threads_and_saved_states_keep_the_bits);
+}
