@@ -17,8 +17,8 @@ void dvi_field_destroy(dvi_field **field)
   if (field == NULL || *field == NULL) return;
   dvi_field *f = *field;
   dvi_star_destroy(&f->star);
-  int *const ints[] = {f->unknown,    f->number,      f->component,
-                       f->mass_start, f->stiff_start, f->diagonal_start};
+  int *const ints[] = {f->unknown,     f->number,         f->component, f->mass_start,
+                       f->stiff_start, f->diagonal_start, f->no_start,  f->damping_start};
   double *const doubles[] = {f->fixed, f->load, f->weight, f->point};
   for (size_t i = 0; i < sizeof ints / sizeof *ints; i++) dvi__release(ints[i]);
   for (size_t i = 0; i < sizeof doubles / sizeof *doubles; i++) dvi__release(doubles[i]);

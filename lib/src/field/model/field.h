@@ -13,6 +13,8 @@ typedef struct dvi__translation {
   dvi__csr D;
 } dvi__translation;
 
+enum { DVI__CURRENTS = 64 };
+
 /* A current that is given, J = profile times signal. */
 typedef struct dvi__current {
   double *profile; /* [unknowns] */
@@ -72,7 +74,9 @@ struct dvi_field {
   double fastest;                /* bound of the frequencies, 0 if not known */
   int *mass_start, *stiff_start; /* [unknowns+1] */
   int *diagonal_start;           /* [unknowns+1] 0, 1, 2 ..., also the rows */
-  int reach;                     /* largest distance of neighbours in the order of unknowns */
+  int *no_start, *damping_start; /* [unknowns+1] of an empty pattern, and of the damping's */
+  dvi_force loss;
+  int reach; /* largest distance of neighbours in the order of unknowns */
   dvi_potential potentials[2];
   dvi_symmetry symmetry[DVI_MESH_SPACE_MAX];
   dvi__translation translation[DVI_MESH_SPACE_MAX];

@@ -26,6 +26,9 @@ static dvi_status check_arrays(const dvi_maxwell_terms *terms)
     if (list[i].count < 0 || (list[i].count > 0 && list[i].array == NULL))
       return dvi__fail(DVI_BAD_ARGUMENT, "maxwell: %d %s are announced, and none is given",
                        list[i].count, list[i].what);
+  if (terms->currents > DVI__CURRENTS)
+    return dvi__fail(DVI_BAD_SIZE, "maxwell: %d currents; at most %d are possible", terms->currents,
+                     DVI__CURRENTS);
   return DVI_OK;
 }
 

@@ -7,7 +7,24 @@
 #include "core/status.h"
 #include "field/model/field.h"
 
-/* ---- the elastic potential, q.K q/2 - load.q + that of the fixed values ---- */
+/* ---- the elastic potential, q.K q/2 - load.q + J(t).q + that of the fixed values ---- */
+
+/* Evaluate the signals of the currents. Returns as callbacks do. */
+static int find_signals(const dvi_field *f, double t, double *signal)
+{
+  for (int c = 0; c < f->currents; c++) {
+    const int failed = f->current[c].signal(t, signal + c, f->current[c].user);
+    if (failed != 0) return failed;
+  }
+  return 0;
+}
+
+static double load_of(const dvi_field *f, const double *signal, int64_t i)
+{
+  double load = f->load[i];
+  for (int c = 0; c < f->currents; c++) load -= signal[c] * f->current[c].profile[i];
+  return load;
+}
 
 static int elastic_gradient_range(double t, const double *q, int first, int last, double *V_q,
                                   void *user)
@@ -16,13 +33,14 @@ static int elastic_gradient_range(double t, const double *q, int first, int last
   const int64_t *start = f->stiffness.start;
   const int *column = f->stiffness.column;
   const double *value = f->stiffness.value;
-  (void)t;
-  for (int i = first; i < last; i++) {
+  double signal[DVI__CURRENTS];
+  const int failed = find_signals(f, t, signal);
+  for (int i = first; i < last && failed == 0; i++) {
     double sum = 0;
     for (int64_t e = start[i]; e < start[i + 1]; e++) sum += value[e] * q[column[e]];
-    V_q[i - first] = sum - f->load[i];
+    V_q[i - first] = sum - load_of(f, signal, i);
   }
-  return 0;
+  return failed;
 }
 
 static int elastic_gradient(double t, const double *q, double *V_q, void *user)
@@ -34,14 +52,15 @@ static int elastic_value(double t, const double *q, double *V, void *user)
 {
   const dvi_field *f = user;
   const dvi__csr *K = &f->stiffness;
-  (void)t;
+  double signal[DVI__CURRENTS];
+  const int failed = find_signals(f, t, signal);
   *V = f->rest;
-  for (int64_t i = 0; i < f->unknowns; i++) {
+  for (int64_t i = 0; i < f->unknowns && failed == 0; i++) {
     double sum = 0;
     for (int64_t e = K->start[i]; e < K->start[i + 1]; e++) sum += K->value[e] * q[K->column[e]];
-    *V += q[i] * (0.5 * sum - f->load[i]);
+    *V += q[i] * (0.5 * sum - load_of(f, signal, i));
   }
-  return 0;
+  return failed;
 }
 
 /* The pattern's columns are the rows of the symmetric matrix. */
@@ -82,6 +101,29 @@ static int density_hessian(double t, const double *q, double *V_qq, void *user)
   return dvi__field_density(f, q, 0, f->unknowns, &(dvi__density){.second = V_qq});
 }
 
+/* ---- the force -S v of conductors and absorbing walls ---- */
+
+static int loss_value(double t, const double *q, const double *v, double *F, void *user)
+{
+  const dvi__csr *S = &((const dvi_field *)user)->damping;
+  (void)t, (void)q;
+  for (int64_t i = 0; i < S->rows; i++) {
+    F[i] = 0;
+    for (int64_t e = S->start[i]; e < S->start[i + 1]; e++) F[i] -= S->value[e] * v[S->column[e]];
+  }
+  return 0;
+}
+
+/* The pattern's columns are the rows of the symmetric matrix. */
+static int loss_jacobian(double t, const double *q, const double *v, double *F_q, double *F_v,
+                         void *user)
+{
+  const dvi__csr *S = &((const dvi_field *)user)->damping;
+  (void)t, (void)q, (void)v, (void)F_q;
+  for (int64_t e = 0; F_v != NULL && e < S->start[S->rows]; e++) F_v[e] = -S->value[e];
+  return 0;
+}
+
 /* ---- patterns ---- */
 
 static int *copy_start(const dvi__csr *matrix)
@@ -108,9 +150,13 @@ static dvi_status lay_out(dvi_field *f)
   f->stiff_start = copy_start(&f->stiffness);
   f->mass_start = copy_start(&f->mass);
   f->diagonal_start = DVI_NEW(int, f->unknowns + 1);
-  if (!f->stiff_start || !f->mass_start || !f->diagonal_start)
+  f->no_start = DVI_NEW(int, f->unknowns + 1);
+  f->damping_start = DVI_NEW(int, f->unknowns + 1);
+  if (!f->stiff_start || !f->mass_start || !f->diagonal_start || !f->no_start || !f->damping_start)
     return dvi__fail(DVI_NO_MEMORY, "field: no memory for patterns");
   for (int i = 0; i <= f->unknowns; i++) f->diagonal_start[i] = i;
+  for (int i = 0; i <= f->damping.rows && f->damping.rows > 0; i++)
+    f->damping_start[i] = (int)f->damping.start[i];
   find_reach(f);
   return DVI_OK;
 }
@@ -119,7 +165,7 @@ static dvi_status lay_out(dvi_field *f)
 
 static dvi_potential elastic_term(dvi_field *f)
 {
-  return (dvi_potential){.name = "elastic",
+  return (dvi_potential){.name = f->is_wave ? "elastic" : "magnetic",
                          .value = elastic_value,
                          .gradient = elastic_gradient,
                          .gradient_range = elastic_gradient_range,
@@ -141,6 +187,16 @@ static dvi_potential density_term(dvi_field *f)
                          .hessian = density_hessian,
                          .qq = {.start = f->diagonal_start, .row = f->diagonal_start},
                          .user = f};
+}
+
+static dvi_force loss_term(dvi_field *f)
+{
+  return (dvi_force){.name = "losses",
+                     .value = loss_value,
+                     .jacobian = loss_jacobian,
+                     .by_q = {.start = f->no_start, .row = f->no_start},
+                     .by_v = {.start = f->damping_start, .row = f->damping.column},
+                     .user = f};
 }
 
 static dvi_mass mass_term(const dvi_field *f)
@@ -171,9 +227,10 @@ dvi_status dvi_field_system_terms(dvi_field *field, dvi_system_terms *terms)
   const int is_new = field->stiff_start == NULL;
   DVI_TRY(lay_out(field));
   if (field->fastest == 0) DVI_TRY(dvi_field_fastest(field, &field->fastest));
-  if (is_new) DVI_TRY(dvi__field_find_translations(field));
+  if (is_new && field->is_wave) DVI_TRY(dvi__field_find_translations(field));
   field->potentials[0] = elastic_term(field);
   field->potentials[1] = density_term(field);
+  field->loss = loss_term(field);
   declare_symmetries(field);
   *terms = (dvi_system_terms){.dimension = (int)field->unknowns,
                               .mass = mass_term(field),
@@ -181,7 +238,9 @@ dvi_status dvi_field_system_terms(dvi_field *field, dvi_system_terms *terms)
                               .potential_count = field->potential.density != NULL ? 2 : 1,
                               .symmetries = field->translations > 0 ? field->symmetry : NULL,
                               .symmetry_count = field->translations,
-                              .autonomous = 1};
+                              .forces = field->damping.rows > 0 ? &field->loss : NULL,
+                              .force_count = field->damping.rows > 0,
+                              .autonomous = field->currents == 0};
   return DVI_OK;
 }
 
