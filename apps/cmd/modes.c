@@ -44,11 +44,11 @@ static int print_modes(const modes_request *r, const problem *scene, const doubl
 
 static int find_modes(const modes_request *r, const problem *scene, const dvi_field *field)
 {
-  const int64_t vertices = dvi_mesh_count(field_mesh(field), 0);
+  const int64_t cells = dvi_mesh_count(field_mesh(field), dvi_field_degree(field));
   const dvi_modes_options options = {
       .size = sizeof options, .count = (int)r->count, .shift = isnan(r->near) ? 0.0 : r->near};
   int64_t zeros = 0, unknowns = 0;
-  double *eigenvalue = calloc((size_t)r->count * (size_t)(1 + vertices), sizeof *eigenvalue);
+  double *eigenvalue = calloc((size_t)r->count * (size_t)(1 + cells), sizeof *eigenvalue);
   if (eigenvalue == NULL) {
     complain("out of memory");
     return FAILED;

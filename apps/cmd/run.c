@@ -1,5 +1,6 @@
 /* dvi run, which computes one trajectory with its invariants, as CSV. */
 #include <dvi/number.h>
+#include <dvi/scene.h>
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -11,6 +12,7 @@
 #include "load/open.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
+#include "watch/field_run.h"
 #include "watch/recorder.h"
 #include "watch/run_request.h"
 #include "load/scene.h"
@@ -209,13 +211,33 @@ static int run_check_settings(const run_request *request, const problem *scene)
       "run: --set %s places the start, which --resume replaces; leave out one of them", setting);
 }
 
+static int run_march(run_request *request, const problem *scene)
+{
+  const int code = run_check_settings(request, scene);
+  if (request->method == NULL) request->method = scene->method;
+  return code == DONE ? field_run(request, scene) : code;
+}
+
 /* Run the problem of a command line that has been checked. */
 static int run_problem(run_request *request, const char *name)
 {
   problem *scene;
   signals_end(true, ended_before);
-  int code = open_problem(name, &request->settings, &scene);
+  int code = open_any(name, &request->settings, &scene);
   if (code != DONE) return code;
+  if (scene->scene != NULL && dvi_scene_marches(scene->scene, request->method)) {
+    code = run_march(request, scene);
+    problem_destroy(&scene);
+    return code;
+  }
+  if (scene->system == NULL) {
+    problem_destroy(&scene);
+    return open_problem(name, &request->settings, &scene);
+  }
+  if (request->threads > 0) {
+    problem_destroy(&scene);
+    return usage_error("run: --threads is for marches of fields, such as yee and leapfrog");
+  }
   scene_warn("run", scene);
   if (request->verify) code = refuse_noise("run: --verify", scene);
   if (code == DONE) code = open_wish("run", scene, &request->method);
@@ -395,6 +417,10 @@ static const option command_options[] = {
      OPTION_AT(run_request, checkpoint_every),
      .value = "K",
      .help = "and after every K steps"},
+    {.name = "threads",
+     OPTION_AT(run_request, threads),
+     .value = "N",
+     .help = "of a march of a field (yee, leapfrog, avi); the bits are the same; default: 1"},
     {.name = "resume",
      OPTION_AT(run_request, resume),
      .value = "FILE",

@@ -60,24 +60,63 @@ void field_tell(const dvi_field *field)
                  omega, 2.0 / omega);
 }
 
+int field_view_make(const dvi_field *field, const char *name, const double *form, field_view *view)
+{
+  const dvi_mesh *mesh = field_mesh(field);
+  const int n = dvi_mesh_dimension(mesh), k = dvi_field_degree(field),
+            components = dvi_form_components(dvi_mesh_space(mesh), k);
+  *view = (field_view){.view = {.name = name, .values = form, .components = 1}};
+  if (k == 0) return DONE;
+  view->values = calloc((size_t)(dvi_mesh_count(mesh, n) * components), sizeof *view->values);
+  if (view->values == NULL) {
+    complain("out of memory");
+    return FAILED;
+  }
+  view->view.values = view->values;
+  view->view.components = components;
+  view->view.degree = n;
+  const dvi_status status = dvi_form_at_centres(mesh, k, form, view->values);
+  return status == DVI_OK ? DONE : library_error(status);
+}
+
+void field_view_clear(field_view *view)
+{
+  free(view->values);
+  view->values = NULL;
+}
+
+/* Write views that have been made. */
+static int write_views(const dvi_field *field, const char *path, int count, const field_view *made)
+{
+  dvi_view *view = calloc((size_t)count, sizeof *view);
+  if (view == NULL) {
+    complain("out of memory");
+    return FAILED;
+  }
+  for (int i = 0; i < count; i++) view[i] = made[i].view;
+  const dvi_status status = dvi_mesh_write(field_mesh(field), path, count, view);
+  free(view);
+  return status == DVI_OK ? DONE : library_error(status);
+}
+
 int field_write(const dvi_field *field, const char *path, const char *name, int count,
                 const double *values)
 {
-  const int64_t vertices = dvi_mesh_count(field_mesh(field), 0);
-  dvi_view *view = calloc((size_t)count, sizeof *view);
+  const int64_t cells = dvi_mesh_count(field_mesh(field), dvi_field_degree(field));
+  field_view *view = calloc((size_t)count, sizeof *view);
   char(*names)[NAME_SIZE] = calloc((size_t)count, sizeof *names);
-  const bool complete = view != NULL && names != NULL;
-  dvi_status status = DVI_OK;
-  for (int i = 0; i < count && complete; i++) {
+  int code = view != NULL && names != NULL ? DONE : FAILED;
+  if (code != DONE) complain("out of memory");
+  for (int i = 0; i < count && code == DONE; i++) {
     if (count > 1)
       (void)snprintf(names[i], NAME_SIZE, "%s_%d", name, i + 1);
     else
       (void)snprintf(names[i], NAME_SIZE, "%s", name);
-    view[i] = (dvi_view){.name = names[i], .values = values + i * vertices, .components = 1};
+    code = field_view_make(field, names[i], values + i * cells, view + i);
   }
-  if (complete) status = dvi_mesh_write(field_mesh(field), path, count, view);
+  if (code == DONE) code = write_views(field, path, count, view);
+  for (int i = 0; i < count && view != NULL; i++) field_view_clear(view + i);
   free(view);
   free(names);
-  if (!complete) complain("out of memory");
-  return !complete ? FAILED : status == DVI_OK ? DONE : library_error(status);
+  return code;
 }

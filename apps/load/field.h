@@ -17,8 +17,20 @@ const dvi_mesh *field_mesh(const dvi_field *field);
 /** Print the mesh, what is fixed, and which steps are stable. */
 void field_tell(const dvi_field *field);
 
-/** Write values at the vertices [count][vertices] with a mesh to a .vtu file, under a name and, if
- * there are several, their numbers from 1. Returns DONE, or complains and returns the exit code. */
+/** A form to be seen: values at the vertices, or of forms of degree 1 in the cells. */
+typedef struct field_view {
+  dvi_view view;
+  double *values; /**< owned, or NULL */
+} field_view;
+
+/** Make a view of a form of the field's degree, whose name and values stay the caller's. Returns
+ * DONE, or complains and returns the exit code. Call field_view_clear afterwards in any case. */
+int field_view_make(const dvi_field *field, const char *name, const double *form, field_view *view);
+void field_view_clear(field_view *view);
+
+/** Write forms [count][cells] of the field's degree with a mesh to a .vtu file, under a name and,
+ * if there are several, their numbers from 1. Returns DONE, or complains and returns the exit
+ * code. */
 int field_write(const dvi_field *field, const char *path, const char *name, int count,
                 const double *values);
 #endif

@@ -102,7 +102,28 @@ static int refuse_problem_name(const char *name)
       scene_beside(name, hint) ? hint : suggestion(name, problem_name_at, NULL, hint, sizeof hint));
 }
 
+/* A grid without a mesh has no mechanical system. */
+static int refuse_grid(const char *name, problem **scene)
+{
+  const char *reason = dvi_scene_grid_only((*scene)->scene);
+  const bool is_large = strcmp(reason, "size") == 0;
+  problem_destroy(scene);
+  if (is_large)
+    return usage_error("'%s' is a large grid, which only the method yee advances, in dvi run: take "
+                       "fewer cells, or 'method: leapfrog'",
+                       name);
+  return usage_error("'%s' has '%s', which only the method yee knows, in dvi run", name,
+                     strcmp(reason, "wave") == 0 ? "a plane wave" : reason);
+}
+
 int open_problem(const char *name, const words *settings, problem **scene)
+{
+  const int code = open_any(name, settings, scene);
+  if (code == DONE && (*scene)->system == NULL) return refuse_grid(name, scene);
+  return code;
+}
+
+int open_any(const char *name, const words *settings, problem **scene)
 {
   char message[MESSAGE_SIZE] = "";
   char hint[HINT_SIZE];

@@ -10,6 +10,9 @@
  * known name) and returns the exit code. */
 int open_problem(const char *name, const words *settings, problem **scene);
 
+/** Do the same, but allow a grid that has no system, and is for marches alone. */
+int open_any(const char *name, const words *settings, problem **scene);
+
 /** Do the same for a scene whose text was loaded before, or for the catalogue if there is no
  * text. */
 int open_text(const char *name, const scene_text *text, const words *settings, problem **scene);

@@ -92,7 +92,7 @@ static bool describe_scene(dvi_scene *scene, problem *made)
   if (made->terms->factors != NULL && (made->velocity = problem_names(made, made->nv)) == NULL)
     return false;
   copy_labels(scene, made);
-  copy_start(scene, made);
+  if (made->system != NULL) copy_start(scene, made);
   made->bodies = dvi_scene_bodies(scene);
   made->summary = plan->title != NULL ? plan->title : "a scene";
   made->method = plan->method;

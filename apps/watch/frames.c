@@ -1,12 +1,10 @@
 #include "watch/frames.h"
 
-#include <dvi/scene.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/command.h"
-#include "load/field.h"
 
 enum { DIGITS = 12 };
 
@@ -18,18 +16,20 @@ static bool ends_well(const char *path)
   return length > end && strcmp(path + length - end, ending) == 0;
 }
 
-int frames_start(frame_list *frames, const problem *scene, const char *path)
+int frames_start(frame_list *frames, const char *scene, const dvi_mesh *mesh, const char *path)
 {
   if (path == NULL) return DONE;
   if (!ends_well(path)) return usage_error("run: --pvd %s: the name ends in .pvd", path);
-  frames->field = dvi_scene_field(scene->scene);
-  if (frames->field == NULL)
-    return usage_error("run: --pvd is for fields on meshes, and %s has none", scene->name);
+  if (mesh == NULL)
+    return usage_error("run: --pvd is for fields on meshes, and %s has none", scene);
+  frames->mesh = mesh;
   frames->path = path;
-  frames->u = calloc((size_t)dvi_mesh_count(field_mesh(frames->field), 0), sizeof *frames->u);
-  if (frames->u != NULL) return DONE;
-  complain("out of memory");
-  return FAILED;
+  return DONE;
+}
+
+bool frames_are_wanted(const frame_list *frames)
+{
+  return frames->path != NULL;
 }
 
 /* Make room for one more file. */
@@ -62,30 +62,28 @@ static char *next_name(const frame_list *frames)
   return name;
 }
 
-bool frames_add(frame_list *frames, const dvi_integrator *integrator)
+bool frames_add(frame_list *frames, double t, int views, const dvi_view *view)
 {
-  if (frames->field == NULL) return true;
   char *name = frames_grow(frames) ? next_name(frames) : NULL;
   if (name == NULL) return false;
   const char *slash = strrchr(frames->path, '/');
   const int folder = slash != NULL ? (int)(slash - frames->path) + 1 : 0;
   char *path = malloc((size_t)folder + strlen(name) + 1);
-  frames->time[frames->count] = dvi_integrator_time(integrator);
+  frames->time[frames->count] = t;
   frames->name[frames->count++] = name;
   if (path == NULL) {
     complain("out of memory");
     return false;
   }
   (void)sprintf(path, "%.*s%s", folder, frames->path, name);
-  (void)dvi_field_lift(frames->field, dvi_integrator_q(integrator), frames->u);
-  const bool good = field_write(frames->field, path, "u", 1, frames->u) == DONE;
+  const dvi_status status = dvi_mesh_write(frames->mesh, path, views, view);
   free(path);
-  return good;
+  return status == DVI_OK || library_error(status) == DONE;
 }
 
 bool frames_keep(const frame_list *frames)
 {
-  if (frames->field == NULL) return true;
+  if (frames->path == NULL) return true;
   const dvi_status status = dvi_series_write(frames->path, frames->count, frames->time,
                                              (const char *const *)frames->name);
   return status == DVI_OK || library_error(status) == DONE;
@@ -96,5 +94,4 @@ void frames_clear(frame_list *frames)
   for (int i = 0; i < frames->count; i++) free(frames->name[i]);
   free(frames->name);
   free(frames->time);
-  free(frames->u);
 }

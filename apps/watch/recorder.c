@@ -1,5 +1,6 @@
 #include "watch/recorder.h"
 
+#include <dvi/scene.h>
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -13,6 +14,7 @@
 #include "watch/energy_watch.h"
 #include "csv/events.h"
 #include "cli/file.h"
+#include "load/field.h"
 #include "watch/frames.h"
 #include "cli/progress.h"
 #include "cli/signals.h"
@@ -31,6 +33,8 @@ typedef struct recorder {
   alarm_list alarms;
   run_trace trace;
   frame_list frames;
+  const dvi_field *field; /* of which frames are written */
+  double *form;           /* [cells] its values */
   progress_line progress;
   double t_start, t;        /* start of the run, and end of the last observed step */
   double shortest, longest; /* steps of methods that choose them, 0 before the first */
@@ -54,11 +58,25 @@ static bool stream_is_good(const whole_file *file)
   return false;
 }
 
+/* Write the field of a state, in its cells if it is Maxwell's. */
+static bool recorder_write_frame(recorder *r, const dvi_integrator *integrator)
+{
+  const double t = dvi_integrator_time(integrator);
+  if (!frames_are_wanted(&r->frames)) return true;
+  field_view view;
+  (void)dvi_field_lift(r->field, dvi_integrator_q(integrator), r->form);
+  const bool good = field_view_make(r->field, dvi_field_degree(r->field) == 0 ? "u" : "A", r->form,
+                                    &view) == DONE &&
+                    frames_add(&r->frames, t, 1, &view.view);
+  field_view_clear(&view);
+  return good;
+}
+
 static bool recorder_write_row(recorder *r, dvi_integrator *integrator)
 {
   columns_row(&r->columns, integrator, r->out.stream);
   r->row_written = true;
-  return stream_is_good(&r->out) && frames_add(&r->frames, integrator);
+  return stream_is_good(&r->out) && recorder_write_frame(r, integrator);
 }
 
 /* Write an event that was found. */
@@ -260,12 +278,24 @@ static int write_files(recorder *r, dvi_integrator *integrator)
   return code;
 }
 
+static int recorder_start_frames(recorder *r)
+{
+  r->field = r->scene->scene != NULL ? dvi_scene_field(r->scene->scene) : NULL;
+  const dvi_mesh *mesh = r->field != NULL ? field_mesh(r->field) : NULL;
+  const int code = frames_start(&r->frames, r->scene->name, mesh, r->request->pvd);
+  if (code != DONE) return code;
+  r->form = calloc((size_t)dvi_mesh_count(mesh, dvi_field_degree(r->field)), sizeof *r->form);
+  if (r->form != NULL) return DONE;
+  complain("out of memory");
+  return FAILED;
+}
+
 int record(const run_request *request, const problem *scene, dvi_integrator *integrator)
 {
   recorder r = {
       .request = request, .scene = scene, .chooses = dvi_integrator_chooses_steps(integrator)};
   int code = columns_choose(&r.columns, scene, integrator, request->columns);
-  if (code == DONE) code = frames_start(&r.frames, scene, request->pvd);
+  if (code == DONE && request->pvd != NULL) code = recorder_start_frames(&r);
   if (code == DONE) code = alarms_read(&r.alarms, scene, &request->alarms);
   if (code == DONE &&
       !energy_watch_start(&r.watch, scene, integrator, energy_bound(scene, request->method)))
@@ -278,5 +308,6 @@ int record(const run_request *request, const problem *scene, dvi_integrator *int
   energy_watch_clear(&r.watch);
   columns_clear(&r.columns);
   frames_clear(&r.frames);
+  free(r.form);
   return code;
 }

@@ -11,6 +11,7 @@ typedef struct run_request {
   double h, t_end, tolerance; /**< the tolerance is NaN, or refused */
   pacing how;
   long every, checkpoint_every; /**< 0 if not given */
+  long threads;                 /**< of a field's march, 0 if not given */
   bool project, final;
   bool verify;
   long digits;     /**< number of digits that --verify must find, 0 if not given */

@@ -107,6 +107,10 @@ dvi_status dvi_wave_create(const dvi_wave_terms *terms, dvi_field **field);
  *  released before. */
 void dvi_field_destroy(dvi_field **field);
 
+/** Return the degree k of a field's form: 0 for a wave, and 1 for most of Maxwell's fields
+ *  (dvi/maxwell.h). What is [vertices] here is [k-cells] then. */
+int dvi_field_degree(const dvi_field *field);
+
 /** Return the star of a field, owned by the field. */
 const dvi_star *dvi_field_star(const dvi_field *field);
 

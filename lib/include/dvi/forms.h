@@ -111,6 +111,13 @@ dvi_status dvi_form_integrate(const dvi_mesh *mesh, int k, dvi_form_function *fu
 dvi_status dvi_form_evaluate(const dvi_mesh *mesh, int k, const double *form, int64_t cell,
                              const double *place, double *value);
 
+/** Give the values of Whitney's interpolation of a form at the centres of all n-cells.
+ *
+ *  @param      form   [k-cells]
+ *  @param[out] value  [cells*dvi_form_components(space, k)], cell by cell
+ *  @retval (others)   as dvi_form_evaluate */
+dvi_status dvi_form_at_centres(const dvi_mesh *mesh, int k, const double *form, double *value);
+
 /** Solve M_k x = b, by conjugate gradients if M_k is not diagonal.
  *
  *  @param[in,out] b  [k-cells] the right side, then x. Unchanged on failure

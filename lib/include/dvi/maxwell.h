@@ -89,6 +89,26 @@ extern "C" {
  *  @retval DVI_NO_MEMORY        there is no memory */
 dvi_status dvi_maxwell_create(const dvi_maxwell_terms *terms, dvi_field **field);
 
+/** Return the name of probe i of a field, counted from 0, or NULL beyond the last one. Owned by the
+ *  field. */
+const char *dvi_field_probe_name(const dvi_field *field, int i);
+
+/** Evaluate probe i for a state of the field's mechanical system, q = A and p = -M_k E [unknowns].
+ *
+ *  @retval DVI_BAD_ARGUMENT  an argument is missing, or there is no such probe
+ *  @retval (others)          as dvi_star_solve, if M_k is not diagonal */
+dvi_status dvi_field_probe_at(const dvi_field *field, int i, const double *q, const double *p,
+                              double *value);
+
+/** Find a potential A [k-cells] with dA = B, which vanishes where the form is held.
+ *
+ *  @param      B  [(k+1)-cells]
+ *  @param[out] A  [k-cells] of all of them the one that has no charge
+ *  @retval DVI_BAD_ARGUMENT  no A has such a B: it has a divergence, passes through an electric
+ *                            wall, or winds around a hole of the mesh
+ *  @retval DVI_NO_MEMORY     there is no memory */
+dvi_status dvi_field_vector_potential(const dvi_field *field, const double *B, double *A);
+
 #ifdef __cplusplus
 }
 #endif

@@ -6,6 +6,7 @@
 #define DVI_SCENE_H
 #include <dvi/control.h>
 #include <dvi/field.h>
+#include <dvi/march.h>
 #include <dvi/sensitivity.h>
 #include <dvi/system.h>
 #include <stddef.h>
@@ -29,6 +30,7 @@ typedef struct dvi_scene_parameter {
 typedef struct dvi_scene_plan {
   const char *title, *method;
   double h, t_end;
+  double fraction; /**< step of a field, as a fraction of the largest stable one */
   long every;
   int column_count;
   const char *const *column; /**< names for tables */
@@ -131,6 +133,40 @@ const dvi_field *dvi_scene_field(const dvi_scene *scene);
 
 /** Give the options of dvi_field_solve that the scene sets. Returns 0 if it has no field. */
 int dvi_scene_solve_options(const dvi_scene *scene, dvi_field_solve_options *options);
+
+/** Tell if a method is one of marches (dvi/march.h), for a scene of a field.
+ *
+ *  @param method  its specification. NULL for the scene's own
+ *  @return 1 if it is, 0 if it is not, or for a scene without a field */
+int dvi_scene_marches(const dvi_scene *scene, const char *method);
+
+/** Create a march of the scene's field, and start it at the scene's start.
+ *
+ *  The method yee on a generated mesh of boxes works without the mesh (dvi/yee.h).
+ *
+ *  @param      options  what they leave open is that of the scene. NULL for all of it
+ *  @param[out] march    owned by the caller, for dvi_march_destroy before the scene's end
+ *  @retval DVI_BAD_OPTION    the method is not one of marches
+ *  @retval DVI_UNSUPPORTED   the scene has no mesh, and the method is not yee
+ *  @retval (others)          as dvi_march_create, dvi_yee_create and dvi_march_start */
+dvi_status dvi_scene_march_create(const dvi_scene *scene, const dvi_march_options *options,
+                                  dvi_march **march);
+
+/** Give E or B of a march of the scene's field as vectors of space in the cells of its mesh.
+ *
+ *  @param[out] vector  [cells*3], cell by cell. Components that the field does not have are 0
+ *  @retval DVI_UNSUPPORTED  the scene has no such march
+ *  @retval (others)         as dvi_march_sample and dvi_form_at_centres */
+dvi_status dvi_scene_vectors(const dvi_scene *scene, const dvi_march *march, dvi_march_form form,
+                             double *vector);
+
+/** Return the mesh of a scene of a field, owned by the scene. That of a grid for yee, which does
+ *  without, is made by the first call. NULL without a field, or without memory. */
+const dvi_mesh *dvi_scene_mesh(dvi_scene *scene);
+
+/** Tell why a scene of a field has a grid for yee, and neither mesh nor system: what only a grid
+ *  has ("cpml", "bloch", "wave"), or "size". NULL if it has a mesh or no field. */
+const char *dvi_scene_grid_only(const dvi_scene *scene);
 
 /** Return the start at t = 0, q [nq], v [nv], p [nv]. Owned by the scene. NULL for NULL. */
 void dvi_scene_start(const dvi_scene *scene, const double **q, const double **v, const double **p);

@@ -29,7 +29,7 @@ static int term_has_time(const dvi__scene_term *term)
 /* Find if any function has the time. An autonomous system has no rates. */
 static void find_time(dvi_scene *scene)
 {
-  int timed = 0;
+  int timed = scene->field != NULL && !scene->terms.autonomous;
   for (const dvi__scene_term *term = scene->functions; term != NULL; term = term->next)
     timed = timed || (term->role != DVI__ROLE_AUXILIARY && term_has_time(term));
   scene->terms.autonomous = !timed;
@@ -107,8 +107,9 @@ static void find_bodies(dvi_scene *scene)
 static bool read_scene(dvi_scene *scene)
 {
   if (!dvi__tree_read(&scene->source, &scene->arena, scene->complaint, &scene->tree)) return false;
-  if (!dvi__scene_read_tree(scene) || !scene_make_system(scene) ||
-      !dvi__scene_complete_start(scene))
+  if (!dvi__scene_read_tree(scene)) return false;
+  if (dvi_scene_grid_only(scene) == NULL &&
+      (!scene_make_system(scene) || !dvi__scene_complete_start(scene)))
     return false;
   find_bodies(scene);
   return show_parameters(scene) && list_unused(scene);

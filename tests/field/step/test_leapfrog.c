@@ -114,7 +114,7 @@ static void check_energy(dvi_mesh *mesh, dvi_star_kind kind, int walls, long ste
     worst = fmax(worst, fabs(observe(&s, "energy") / start - 1));
   }
   ck_assert_msg(worst < 1e-13, "energy changes by %g", worst);
-  ck_assert(observe(&s, "charge_error") < 1e-13);
+  ck_assert(observe(&s, "gauss") < 1e-13);
   end_scene(&s);
 }
 
@@ -248,7 +248,7 @@ START_TEST(random_currents_keep_the_law_of_charge)
           .wall = &open, .walls = 1, .conductivity = sigma, .current = current, .currents = 2},
       (dvi_march_options){.fraction = 0.9});
   advance(&s, step_of(&s) * (double)repeats(100000));
-  ck_assert_double_lt(observe(&s, "charge_error"), 1e-12);
+  ck_assert_double_lt(observe(&s, "gauss"), 1e-12);
   end_scene(&s);
 }
 END_TEST
@@ -262,7 +262,7 @@ static void compare(const scene *a, const scene *b)
   ck_assert_mem_eq(a->E, b->E, (size_t)a->edges * sizeof(double));
   ck_assert_mem_eq(a->B, b->B, (size_t)a->faces * sizeof(double));
   ck_assert_double_eq(observe(a, "energy"), observe(b, "energy"));
-  ck_assert_double_eq(observe(a, "charge_error"), observe(b, "charge_error"));
+  ck_assert_double_eq(observe(a, "gauss"), observe(b, "gauss"));
 }
 
 START_TEST(cuts_threads_and_saved_states_keep_the_bits)

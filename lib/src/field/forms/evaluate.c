@@ -146,3 +146,16 @@ dvi_status dvi_form_evaluate(const dvi_mesh *mesh, int k, const double *form, in
   }
   return DVI_OK;
 }
+
+dvi_status dvi_form_at_centres(const dvi_mesh *mesh, int k, const double *form, double *value)
+{
+  double place[DVI__SIMPLEX_CORNERS];
+  if (mesh == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "forms: a mesh, a form and an array are needed");
+  const int components = dvi_form_components(mesh->space, k);
+  for (int i = 0; i <= mesh->n; i++) place[i] = mesh->kind == DVI_BOXES ? 0.5 : 1.0 / (mesh->n + 1);
+  for (int64_t c = 0; c < mesh->count[mesh->n]; c++)
+    DVI_TRY(
+        dvi_form_evaluate(mesh, k, form, c, place, value != NULL ? value + c * components : NULL));
+  return DVI_OK;
+}

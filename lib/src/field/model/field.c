@@ -126,6 +126,11 @@ dvi_status dvi__field_make_matrices(dvi_field *field, double *load)
 
 /* ---- questions ---- */
 
+int dvi_field_degree(const dvi_field *field)
+{
+  return field != NULL ? field->degree : 0;
+}
+
 const dvi_star *dvi_field_star(const dvi_field *field)
 {
   return field != NULL ? field->star : NULL;

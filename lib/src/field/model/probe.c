@@ -8,6 +8,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "field/algebra/definite.h"
 #include "field/forms/component.h"
 #include "field/forms/evaluate.h"
 #include "field/forms/star.h"
@@ -312,4 +313,77 @@ dvi_status dvi__field_probe(const dvi_field *field, int i, dvi__field_sampler *s
   *value = 0;
   DVI_TRY(add_energy(&s, DVI_FORM_E, &probe->electric, value));
   return add_energy(&s, DVI_FORM_B, &probe->magnetic, value);
+}
+
+/* ---- states of a mechanical system ---- */
+
+/* A state, and E [unknowns] of it. */
+typedef struct motion {
+  const dvi_field *field;
+  const double *q, *E;
+} motion;
+
+static double potential_at(const motion *m, int64_t cell)
+{
+  const int number = m->field->number[cell];
+  return number >= 0 ? m->q[number] : m->field->fixed[cell];
+}
+
+static double derivative_at(const motion *m, int64_t face)
+{
+  const dvi_mesh *mesh = m->field->mesh;
+  const int k = m->field->degree + 1, facets = dvi__facets(mesh->kind, k);
+  double sum = 0;
+  for (int64_t i = face * facets; i < (face + 1) * facets; i++)
+    sum += mesh->sign[k][i] * potential_at(m, mesh->facet[k][i]);
+  return sum;
+}
+
+static dvi_status sample_motion(const void *of, dvi_march_form form, int64_t count, const int *cell,
+                                double *values)
+{
+  const motion *m = of;
+  for (int64_t i = 0; i < count; i++) {
+    const int64_t c = cell != NULL ? cell[i] : i;
+    if (form == DVI_FORM_B)
+      values[i] = derivative_at(m, c);
+    else
+      values[i] = m->field->number[c] >= 0 ? m->E[m->field->number[c]] : 0;
+  }
+  return DVI_OK;
+}
+
+/* Set E to -M^-1 p. */
+static dvi_status divide_momenta(const dvi_field *field, const double *p, double *E)
+{
+  const dvi_matrix M = dvi__csr_view(&field->mass, 1);
+  const int64_t n = field->unknowns;
+  dvi__definite solver;
+  if (!field->mass_is_diagonal) {
+    DVI_TRY(dvi__definite_create(&M, field->mesh->n, &solver));
+    const dvi_status status = dvi__definite_solve(&solver, p, E, NULL);
+    dvi__definite_clear(&solver);
+    DVI_TRY(status);
+  }
+  for (int64_t i = 0; i < n; i++) E[i] = field->mass_is_diagonal ? -p[i] / M.value[i] : -E[i];
+  return DVI_OK;
+}
+
+const char *dvi_field_probe_name(const dvi_field *field, int i)
+{
+  return field != NULL && i >= 0 && i < field->probes ? field->probe[i].name : NULL;
+}
+
+dvi_status dvi_field_probe_at(const dvi_field *field, int i, const double *q, const double *p,
+                              double *value)
+{
+  if (dvi_field_probe_name(field, i) == NULL || q == NULL || p == NULL || value == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "field: there is no probe %d, or no state or value", i);
+  double *E = DVI_NEW(double, field->unknowns);
+  if (E == NULL) return dvi__fail(DVI_NO_MEMORY, "field: no memory for a probe");
+  const motion m = {.field = field, .q = q, .E = E};
+  dvi_status status = divide_momenta(field, p, E);
+  if (status == DVI_OK) status = dvi__field_probe(field, i, sample_motion, &m, value);
+  dvi__release(E);
+  return status;
 }

@@ -122,7 +122,7 @@ int dvi__field_observables(const dvi_field *field)
 const char *dvi__field_observable(const dvi_field *field, int i)
 {
   if (i == 0) return "energy";
-  if (i == 1 && has_charge(field)) return "charge_error";
+  if (i == 1 && has_charge(field)) return "gauss";
   return field->probe[i - 1 - has_charge(field)].name;
 }
 

@@ -29,7 +29,7 @@ void dvi__charge_start(dvi__charge *charge, const double *E);
 /* Give the largest error of the charge of E, beside the largest sum of the sizes of its terms. */
 double dvi__charge_error(const dvi__charge *charge, const double *E);
 
-/* The observables: "energy", "charge_error" of forms of degree 1 or more, and the probes. */
+/* The observables: "energy", "gauss" of forms of degree 1 or more, and the probes. */
 int dvi__field_observables(const dvi_field *field);
 const char *dvi__field_observable(const dvi_field *field, int i);
 

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "scene/field/scene_field.h"
+#include "scene/field/maxwell.h"
 #include "scene/sections/sections.h"
 #include "text/heap.h"
 
@@ -102,6 +102,7 @@ static bool read_material(dvi_scene *scene, const dvi__tree *key, const dvi__tre
 /* "all" is read first, so that parts replace it. */
 bool dvi__read_materials(dvi_scene *scene, const dvi__tree *section)
 {
+  if (scene->field->maxwell != NULL) return dvi__maxwell_read_materials(scene, section);
   if (!dvi__want_mapping(scene, section, "materials")) return false;
   for (int special = 0; special < 2; special++)
     for (int i = 0; i < section->count; i++)
@@ -151,6 +152,7 @@ static bool read_condition(dvi_scene *scene, const char *part, dvi__span span,
 bool dvi__read_boundary(dvi_scene *scene, const dvi__tree *section)
 {
   struct dvi__scene_field *field = scene->field;
+  if (field->maxwell != NULL) return dvi__maxwell_read_walls(scene, section);
   field->condition = dvi__arena_take(&scene->arena, (size_t)section->count + 1,
                                      sizeof *field->condition);
   if (field->condition == NULL) return dvi__scene_no_memory(scene);
@@ -165,19 +167,27 @@ bool dvi__read_boundary(dvi_scene *scene, const dvi__tree *section)
 
 /* ---- the rest ---- */
 
+static bool of_wave(dvi_scene *scene, const dvi__tree *section, const char *name)
+{
+  return scene->field->maxwell == NULL ||
+         dvi__scene_refuse(scene, section->span, "'%s' is of 'field: wave'", name);
+}
+
 bool dvi__read_source(dvi_scene *scene, const dvi__tree *section)
 {
+  if (!of_wave(scene, section, "source")) return false;
   return dvi__place_read(scene, section, 0, "a source", &scene->field->source);
 }
 
 bool dvi__read_potential(dvi_scene *scene, const dvi__tree *section)
 {
-  return dvi__place_potential(scene, section);
+  return of_wave(scene, section, "potential") && dvi__place_potential(scene, section);
 }
 
 bool dvi__read_solve(dvi_scene *scene, const dvi__tree *section)
 {
   static const char *const known[] = {"mean", "imbalance"};
+  if (!of_wave(scene, section, "solve")) return false;
   double *const number[] = {&scene->field->solve.mean, &scene->field->solve.imbalance};
   if (!dvi__want_mapping(scene, section, "solve") ||
       !dvi__want_keys(scene, section, "solve", 2, known))
@@ -192,6 +202,7 @@ bool dvi__read_solve(dvi_scene *scene, const dvi__tree *section)
 
 bool dvi__read_field_start(dvi_scene *scene, const dvi__tree *section)
 {
+  if (scene->field->maxwell != NULL) return dvi__maxwell_read_start(scene, section);
   static const char *const known[] = {"u", "u'"};
   dvi__place **const place[] = {&scene->field->value, &scene->field->rate};
   if (!dvi__want_mapping(scene, section, "initial") ||

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "scene/field/scene_field.h"
+#include "scene/field/maxwell.h"
 #include "scene/sections/sections.h"
 #include "text/heap.h"
 
@@ -65,14 +65,13 @@ static bool make_start(dvi_scene *scene)
 
 /* ---- coordinates ---- */
 
-/* The unknowns are a family u_1, u_2 and so on. */
-static bool declare_unknowns(dvi_scene *scene, const dvi__tree *section)
+bool dvi__declare_unknowns(dvi_scene *scene, const dvi__tree *section, const char *name)
 {
   dvi__coordinate *u = dvi__arena_take(&scene->arena, 1, sizeof *u);
   scene->n = scene->nv = scene->velocities = scene->terms.dimension;
   scene->zeros = dvi__arena_take(&scene->arena, 2 * (size_t)scene->n, sizeof *scene->zeros);
   if (u == NULL || scene->zeros == NULL) return dvi__scene_no_memory(scene);
-  *u = (dvi__coordinate){.name = "u",
+  *u = (dvi__coordinate){.name = name,
                          .span = section->span,
                          .kind = DVI__LINES,
                          .family = 1,
@@ -87,9 +86,10 @@ static bool declare_unknowns(dvi_scene *scene, const dvi__tree *section)
 }
 
 /* A run shows energy, momenta and probes. */
-static bool choose_columns(dvi_scene *scene)
+bool dvi__choose_field_columns(dvi_scene *scene)
 {
-  const int momenta = scene->terms.symmetry_count, count = 1 + momenta + scene->field->probes;
+  const int momenta = scene->terms.symmetry_count,
+            count = 1 + momenta + scene->terms.invariant_count;
   const char **column = dvi__arena_take(&scene->arena, (size_t)count, sizeof *column);
   if (column == NULL) return dvi__scene_no_memory(scene);
   column[0] = "energy";
@@ -126,17 +126,41 @@ static dvi_status make_field(dvi_scene *scene)
   return status;
 }
 
-bool dvi__read_field(dvi_scene *scene, const dvi__tree *section)
+static bool make_wave(dvi_scene *scene, const dvi__tree *section)
 {
-  static const char *const word[] = {"wave"};
-  int which;
-  if (!dvi__tree_word(scene, section, "field", 1, word, &which)) return false;
   const dvi_status status = make_field(scene);
   if (status != DVI_OK) return complain(scene, section, status);
   scene->form = "separable";
   scene->mass = scene->terms.mass.diagonal != NULL ? "diagonal" : "sparse";
-  return declare_unknowns(scene, section) && make_start(scene) && dvi__probes_make(scene) &&
-         choose_columns(scene);
+  return dvi__declare_unknowns(scene, section, "u") && make_start(scene) &&
+         dvi__probes_make(scene) && dvi__choose_field_columns(scene);
+}
+
+/* A step that is a fraction of the largest stable one of verlet divides the span. */
+static bool choose_step(dvi_scene *scene, const dvi__tree *section)
+{
+  double omega;
+  dvi_scene_plan *plan = &scene->plan;
+  if (!(plan->fraction > 0) || scene->field->field == NULL) return true;
+  const dvi_status status = dvi_field_fastest(scene->field->field, &omega);
+  if (status != DVI_OK) return complain(scene, section, status);
+  if (!(omega > 0))
+    return dvi__scene_refuse(scene, dvi__tree_find(scene->tree, "step")->span,
+                             "nothing oscillates here, so that a step is no fraction of a stable "
+                             "one: give a number");
+  plan->h = plan->fraction * 2 / omega;
+  if (plan->t_end > 0) plan->h = plan->t_end / ceil(plan->t_end / plan->h * (1 - 1e-12));
+  return true;
+}
+
+bool dvi__read_field(dvi_scene *scene, const dvi__tree *section)
+{
+  static const char *const word[] = {"wave", "maxwell"};
+  int which;
+  if (!dvi__tree_word(scene, section, "field", 2, word, &which)) return false;
+  if (which == 1 && scene->field->mesh == NULL) return dvi__grid_make(scene, section);
+  return (which == 0 ? make_wave : dvi__maxwell_make)(scene, section) &&
+         choose_step(scene, section);
 }
 
 void dvi__scene_field_clear(dvi_scene *scene)
@@ -145,6 +169,7 @@ void dvi__scene_field_clear(dvi_scene *scene)
   dvi_field_destroy(&scene->field->field);
   dvi_star_destroy(&scene->field->star);
   dvi_mesh_destroy(&scene->field->mesh);
+  dvi_mesh_destroy(&scene->field->drawn);
 }
 
 /* ---- questions ---- */

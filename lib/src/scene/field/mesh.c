@@ -2,7 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "scene/field/scene_field.h"
+#include "scene/field/maxwell.h"
 #include "scene/sections/sections.h"
 
 /* ---- numbers ---- */
@@ -42,15 +42,19 @@ static bool generate(dvi_scene *scene, const dvi__tree *section, const dvi__tree
 {
   static const char *const known[] = {"generator", "cells",   "size",
                                       "origin",    "grading", "periodic"};
-  dvi_generator_options options = {.size = sizeof options};
-  return dvi__want_keys(scene, section, "a generated mesh", 6, known) &&
-         dvi__want_text(scene, generator, "generator") &&
-         read_list(scene, section, "cells", NULL, options.cells) &&
-         read_list(scene, section, "size", options.extent, NULL) &&
-         read_list(scene, section, "origin", options.origin, NULL) &&
-         read_list(scene, section, "grading", options.grading, NULL) &&
-         read_list(scene, section, "periodic", NULL, options.periodic) &&
-         report(scene, section, dvi_mesh_generate(generator->text, &options, &scene->field->mesh));
+  dvi_generator_options *options = &scene->field->grid;
+  *options = (dvi_generator_options){.size = sizeof *options};
+  if (!dvi__want_keys(scene, section, "a generated mesh", 6, known) ||
+      !dvi__want_text(scene, generator, "generator") ||
+      !read_list(scene, section, "cells", NULL, options->cells) ||
+      !read_list(scene, section, "size", options->extent, NULL) ||
+      !read_list(scene, section, "origin", options->origin, NULL) ||
+      !read_list(scene, section, "grading", options->grading, NULL) ||
+      !read_list(scene, section, "periodic", NULL, options->periodic))
+    return false;
+  scene->field->is_grid = strcmp(generator->text, "box") == 0;
+  if (dvi__is_grid_alone(scene)) return true;
+  return report(scene, section, dvi_mesh_generate(generator->text, options, &scene->field->mesh));
 }
 
 static bool read_file(dvi_scene *scene, const dvi__tree *section, const dvi__tree *file)
@@ -94,6 +98,8 @@ static bool name_place(dvi_scene *scene, const dvi__tree *section)
   if (scene->coordinate == NULL || scene->zeros == NULL) return dvi__scene_no_memory(scene);
   for (int l = 0; l < space; l++)
     if (!add_name(scene, axis[l], section->span, 0, 1)) return false;
+  scene->nv = scene->velocities = scene->n;
+  if (scene->field->maxwell != NULL) return true;
   if (!add_name(scene, "normal", section->span, 1, space) ||
       !add_name(scene, "u", section->span, 0, 1))
     return false;
@@ -112,9 +118,13 @@ bool dvi__read_mesh(dvi_scene *scene, const dvi__tree *section)
   if ((generator == NULL) == (file == NULL))
     return dvi__scene_refuse(scene, section->span,
                              "a mesh has a generator or a file, as in 'mesh: {generator: disk}'");
+  if (!dvi__maxwell_begin(scene)) return false;
   if (!(generator != NULL ? generate(scene, section, generator) : read_file(scene, section, file)))
     return false;
-  scene->field->space = dvi_mesh_space(scene->field->mesh);
+  if (scene->field->mesh != NULL) {
+    scene->field->space = dvi_mesh_space(scene->field->mesh);
+    scene->field->dimension = dvi_mesh_dimension(scene->field->mesh);
+  }
   if (scene->field->space > DVI__PLACE_SPACE)
     return dvi__scene_refuse(scene, section->span, "a scene's mesh has at most %d coordinates",
                              DVI__PLACE_SPACE);

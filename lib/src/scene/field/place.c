@@ -78,6 +78,48 @@ int dvi__place_source(const double *x, double *value, void *user)
   return dvi__place_value(user, x, NULL, value);
 }
 
+/* ---- vectors ---- */
+
+bool dvi__vector_read(dvi_scene *scene, const dvi__tree *tree, int count, const char *where,
+                      dvi__vector **vector)
+{
+  const bool is_list = tree->kind == DVI__SEQUENCE;
+  *vector = dvi__arena_take(&scene->arena, 1, sizeof **vector);
+  if (*vector == NULL) return dvi__scene_no_memory(scene);
+  (*vector)->count = count;
+  if ((is_list ? tree->count : 1) != count || tree->kind == DVI__MAPPING)
+    return dvi__scene_refuse(scene, tree->span, "%s has %d component%s here, as in '%s'", where,
+                             count, count == 1 ? "" : "s",
+                             count == 1   ? "sin(x)"
+                             : count == 2 ? "[sin(y), 0]"
+                                          : "[sin(y), 0, 0]");
+  for (int i = 0; i < count; i++)
+    if (!dvi__place_read(scene, is_list ? tree->child[i] : tree, 0, where, (*vector)->place + i))
+      return false;
+  return true;
+}
+
+int dvi__vector_value(const dvi__vector *vector, const double *x, double *value)
+{
+  int failed = 0;
+  for (int i = 0; i < vector->count && failed == 0; i++)
+    failed = dvi__place_value(vector->place[i], x, NULL, value + i);
+  return failed;
+}
+
+bool dvi__point_read(dvi_scene *scene, const dvi__tree *tree, int count, const char *what,
+                     double *point)
+{
+  const bool is_list = tree->kind == DVI__SEQUENCE;
+  if ((is_list ? tree->count : 1) != count || tree->kind == DVI__MAPPING)
+    return dvi__scene_refuse(scene, tree->span, "%s has %d coordinate%s here", what, count,
+                             count == 1 ? "" : "s");
+  for (int l = 0; l < count; l++)
+    if (!dvi__tree_number(scene, is_list ? tree->child[l] : tree, "a coordinate", point + l))
+      return false;
+  return true;
+}
+
 /* ---- a potential ---- */
 
 /* The points of a block, component by component. */

@@ -3,7 +3,7 @@
  * interpolation. */
 #include <string.h>
 
-#include "scene/field/scene_field.h"
+#include "scene/field/maxwell.h"
 #include "text/heap.h"
 #include "scene/sections/sections.h"
 
@@ -32,17 +32,6 @@ static int probe_value(double t, const double *q, const double *p, double *value
 
 /* ---- reading ---- */
 
-static bool read_point(dvi_scene *scene, const dvi__tree *tree, double *point)
-{
-  const int space = scene->field->space, is_list = tree->kind == DVI__SEQUENCE;
-  if ((is_list ? tree->count : 1) != space || tree->kind == DVI__MAPPING)
-    return dvi__scene_refuse(scene, tree->span, "a probe is at a point of %d coordinates", space);
-  for (int l = 0; l < space; l++)
-    if (!dvi__tree_number(scene, is_list ? tree->child[l] : tree, "a coordinate", point + l))
-      return false;
-  return true;
-}
-
 static bool read_probe(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree,
                        struct dvi__probe *probe)
 {
@@ -59,12 +48,14 @@ static bool read_probe(dvi_scene *scene, const dvi__tree *key, const dvi__tree *
     return dvi__scene_refuse(scene, tree->span,
                              "a probe has a point, as in '{at: [0, 1]}', or an integral, as in "
                              "'{integral: u^2, over: all}'");
-  if (integral == NULL) return read_point(scene, probe->at, probe->point);
+  if (integral == NULL)
+    return dvi__point_read(scene, probe->at, scene->field->space, "a point", probe->point);
   return dvi__integral_read(scene, integral, over, &probe->integral);
 }
 
 bool dvi__read_probes(dvi_scene *scene, const dvi__tree *section)
 {
+  if (scene->field->maxwell != NULL) return dvi__maxwell_read_probes(scene, section);
   if (!dvi__want_mapping(scene, section, "probes")) return false;
   struct dvi__probe *probe = dvi__arena_take(&scene->arena, (size_t)section->count + 1,
                                              sizeof *probe);

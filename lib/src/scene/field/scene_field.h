@@ -21,7 +21,12 @@ typedef struct dvi__place {
 } dvi__place;
 
 struct dvi__scene_field {
-  dvi_mesh *mesh;
+  struct dvi__scene_maxwell *maxwell; /* NULL for waves */
+  dvi_generator_options grid;         /* of boxes */
+  bool is_grid;                       /* the mesh is one of boxes that were generated */
+  dvi_mesh *drawn;                    /* that of a grid, once it is asked for */
+  dvi_mesh *mesh;                     /* NULL for a grid that yee alone advances */
+  int dimension;
   dvi_star *star;
   dvi_field *field;
   int space;
@@ -47,8 +52,29 @@ bool dvi__integral_read(dvi_scene *scene, const dvi__tree *tree, const dvi__tree
 bool dvi__integral_make(dvi_scene *scene, dvi__integral *integral);
 int dvi__integral_value(double t, const double *q, const double *p, double *value, void *user);
 
+/* Take an expression or, with `count` above 1, a list of so many as a function of place. */
+typedef struct dvi__vector {
+  int count;
+  dvi__place *place[3];
+} dvi__vector;
+bool dvi__vector_read(dvi_scene *scene, const dvi__tree *tree, int count, const char *where,
+                      dvi__vector **vector);
+
+/* Evaluate all of them at x. Returns as callbacks do. */
+int dvi__vector_value(const dvi__vector *vector, const double *x, double *value);
+
+/* Read a point, or a direction, of `count` numbers. */
+bool dvi__point_read(dvi_scene *scene, const dvi__tree *tree, int count, const char *what,
+                     double *point);
+
 /* Refuse the name of a part that the mesh has not, and list those that it has. */
 bool dvi__refuse_part(dvi_scene *scene, dvi__span span, const char *name, bool of_cells);
+
+/* Let the unknowns be a family NAME_1, NAME_2 and so on. */
+bool dvi__declare_unknowns(dvi_scene *scene, const dvi__tree *section, const char *name);
+
+/* Let a run show energy, momenta and probes. */
+bool dvi__choose_field_columns(dvi_scene *scene);
 
 /* Place the probes, and declare them as what is watched. */
 bool dvi__probes_make(dvi_scene *scene);

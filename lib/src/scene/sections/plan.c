@@ -22,8 +22,26 @@ static bool plan_number(dvi_scene *scene, const dvi__tree *section, const char *
                                           name, *number);
 }
 
+/* Read a step of a field as a fraction of the largest stable one. */
+static bool read_fraction(dvi_scene *scene, const dvi__tree *section)
+{
+  static const char *const known[] = {"fraction"};
+  if (!dvi__want_keys(scene, section, "a step", 1, known)) return false;
+  if (section->count != 1)
+    return dvi__scene_refuse(scene, section->span,
+                             "a step is a number, or '{fraction: 0.5}' of the largest stable one");
+  if (!plan_number(scene, section->child[0], "fraction", &scene->plan.fraction)) return false;
+  return scene->plan.fraction < 1 ||
+         dvi__scene_refuse(scene, section->span,
+                           "a fraction of the largest stable step is below "
+                           "1, and is %.17g",
+                           scene->plan.fraction);
+}
+
 bool dvi__read_step(dvi_scene *scene, const dvi__tree *section)
 {
+  if (section->kind == DVI__MAPPING && dvi__tree_find(scene->tree, "mesh") != NULL)
+    return read_fraction(scene, section);
   return plan_number(scene, section, "step", &scene->plan.h);
 }
 

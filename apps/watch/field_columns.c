@@ -1,0 +1,177 @@
+#include "watch/field_columns.h"
+
+#include <dvi/scene.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/command.h"
+#include "cli/spelling.h"
+#include "load/field.h"
+
+enum { HINT_SIZE = 128 };
+
+/* ---- what there is ---- */
+
+static bool is_wave(const field_columns *c)
+{
+  return c->scene->system != NULL && dvi_march_size(c->march, DVI_FORM_A) > 0;
+}
+
+static bool list_all(field_columns *c)
+{
+  int observables = 0;
+  const int invariants = is_wave(c) ? c->scene->terms->invariant_count : 0;
+  while (dvi_march_observable(c->march, observables) != NULL) observables++;
+  c->all = calloc((size_t)(observables + invariants) + 1, sizeof *c->all);
+  if (c->all == NULL) return false;
+  for (int i = 0; i < observables; i++)
+    c->all[c->there++] = (field_column){dvi_march_observable(c->march, i), i, -1};
+  for (int i = 0; i < invariants; i++)
+    c->all[c->there++] = (field_column){c->scene->terms->invariants[i].name, -1, i};
+  return true;
+}
+
+static const char *name_at(int k, const void *list)
+{
+  const field_columns *c = list;
+  return k < c->there ? c->all[k].name : NULL;
+}
+
+/* ---- what is shown ---- */
+
+static int add_column(field_columns *c, const char *name, size_t length)
+{
+  char word[HINT_SIZE], hint[HINT_SIZE];
+  for (int i = 0; i < c->there; i++)
+    if (strlen(c->all[i].name) == length && strncmp(c->all[i].name, name, length) == 0) {
+      c->column[c->count++] = c->all[i];
+      return DONE;
+    }
+  (void)snprintf(word, sizeof word, "%.*s", (int)(length < HINT_SIZE ? length : HINT_SIZE - 1),
+                 name);
+  return usage_error("run: --columns: this march has no column '%s'%s", word,
+                     suggestion(word, name_at, c, hint, sizeof hint));
+}
+
+static int choose_asked(field_columns *c, const char *asked)
+{
+  int code = DONE;
+  while (code == DONE && asked != NULL) {
+    const size_t length = strcspn(asked, ",");
+    if (c->count >= c->there) return usage_error("run: --columns names a column twice");
+    code = add_column(c, asked, length);
+    asked = asked[length] == ',' ? asked + length + 1 : NULL;
+  }
+  return code;
+}
+
+/* The laws of charge take a look at the whole field, and are shown when they are asked for. */
+static void choose_usual(field_columns *c)
+{
+  static const char *const on_demand[] = {"gauss", "charge", "divergence"};
+  for (int i = 0; i < c->there; i++) {
+    bool shown = true;
+    for (size_t k = 0; k < sizeof on_demand / sizeof *on_demand; k++)
+      shown = shown && strcmp(c->all[i].name, on_demand[k]) != 0;
+    if (shown) c->column[c->count++] = c->all[i];
+  }
+}
+
+/* The scene's columns that a march has. A system may have more of them. */
+static void choose_of_scene(field_columns *c)
+{
+  for (int k = 0; k < c->scene->column_count; k++)
+    for (int i = 0; i < c->there; i++)
+      if (strcmp(c->all[i].name, c->scene->column[k]) == 0 && c->count < c->there)
+        c->column[c->count++] = c->all[i];
+}
+
+int field_columns_choose(field_columns *columns, const problem *scene, const dvi_march *march,
+                         const char *asked)
+{
+  *columns = (field_columns){.scene = scene, .march = march};
+  bool good = list_all(columns);
+  if (good) columns->column = calloc((size_t)columns->there + 1, sizeof *columns->column);
+  if (good) columns->number = calloc((size_t)columns->there + 1, sizeof *columns->number);
+  if (good && is_wave(columns))
+    columns->form = calloc((size_t)(2 * dvi_march_size(march, DVI_FORM_A) + 2 * scene->nq),
+                           sizeof *columns->form);
+  if (!good || !columns->column || !columns->number || (is_wave(columns) && !columns->form)) {
+    complain("out of memory");
+    return FAILED;
+  }
+  if (asked != NULL) return choose_asked(columns, asked);
+  if (scene->column_count > 0)
+    choose_of_scene(columns);
+  else
+    choose_usual(columns);
+  return DONE;
+}
+
+void field_columns_clear(field_columns *columns)
+{
+  free(columns->all);
+  free(columns->column);
+  free(columns->number);
+  free(columns->form);
+}
+
+/* ---- rows ---- */
+
+void field_columns_header(const field_columns *columns, FILE *stream)
+{
+  (void)fputc('t', stream);
+  for (int i = 0; i < columns->count; i++) (void)fprintf(stream, ",%s", columns->column[i].name);
+  (void)fputc('\n', stream);
+}
+
+/* Set q = u and p = -M E of a wave. */
+static dvi_status find_state(field_columns *c, double **q, double **p)
+{
+  const int64_t cells = dvi_march_size(c->march, DVI_FORM_A);
+  const dvi_field *field = dvi_scene_field(c->scene->scene);
+  double *u = c->form, *E = u + cells;
+  *q = E + cells;
+  *p = *q + c->scene->nq;
+  dvi_status status = dvi_march_sample(c->march, DVI_FORM_A, 0, NULL, u);
+  if (status == DVI_OK) status = dvi_march_sample(c->march, DVI_FORM_E, 0, NULL, E);
+  for (int64_t i = 0; i < cells; i++) E[i] = -E[i];
+  return status == DVI_OK ? dvi_field_project(field, u, E, *q, *p) : status;
+}
+
+static bool measure(field_columns *c, int i, const double *q, const double *p)
+{
+  const field_column *column = c->column + i;
+  const double t = dvi_march_time(c->march);
+  dvi_status status = DVI_OK;
+  if (column->observable >= 0)
+    status = dvi_march_observe(c->march, column->observable, c->number + i);
+  if (status != DVI_OK) return library_error(status) == DONE;
+  const dvi_invariant *invariant = c->scene->terms->invariants + column->invariant;
+  const bool failed = column->invariant >= 0 &&
+                      invariant->value(t, q, p, c->number + i, invariant->user) != 0;
+  if (!failed && isfinite(c->number[i])) return true;
+  complain("run: column '%s' is not a finite number at t = %.17g", column->name, t);
+  return false;
+}
+
+bool field_columns_measure(field_columns *columns)
+{
+  double *q = NULL, *p = NULL;
+  bool needs_state = false;
+  for (int i = 0; i < columns->count; i++)
+    needs_state = needs_state || columns->column[i].invariant >= 0;
+  const dvi_status status = needs_state ? find_state(columns, &q, &p) : DVI_OK;
+  if (status != DVI_OK) return library_error(status) == DONE;
+  for (int i = 0; i < columns->count; i++)
+    if (!measure(columns, i, q, p)) return false;
+  return true;
+}
+
+void field_columns_row(const field_columns *columns, FILE *stream)
+{
+  (void)fprintf(stream, "%.17g", dvi_march_time(columns->march));
+  for (int i = 0; i < columns->count; i++) (void)fprintf(stream, ",%.17g", columns->number[i]);
+  (void)fputc('\n', stream);
+}

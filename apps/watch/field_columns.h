@@ -1,0 +1,40 @@
+/** The columns of a field's run. */
+#ifndef FIELD_COLUMNS_H
+#define FIELD_COLUMNS_H
+#include <dvi/march.h>
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "problem.h"
+
+/** A number that a row shows: an observable of the march, or an invariant of a wave's system. */
+typedef struct field_column {
+  const char *name;
+  int observable; /**< its index, or -1 */
+  int invariant;  /**< index among the system's, or -1 */
+} field_column;
+
+typedef struct field_columns {
+  const problem *scene;
+  const dvi_march *march;
+  int there, count;
+  field_column *all, *column; /**< [there], and the shown ones [count] */
+  double *number;             /**< [count] as measured */
+  double *form;               /**< room for the forms of a wave, NULL without invariants */
+} field_columns;
+
+/** Choose the columns "A,B,.." if `asked` is not NULL, else those that the scene wants, else energy
+ * and probes. Returns DONE, or complains and returns the exit code. Call field_columns_clear
+ * afterwards in any case. */
+int field_columns_choose(field_columns *columns, const problem *scene, const dvi_march *march,
+                         const char *asked);
+void field_columns_clear(field_columns *columns);
+
+void field_columns_header(const field_columns *columns, FILE *stream);
+
+/** Evaluate the columns. Complains and returns false if one of them fails or is not finite. */
+bool field_columns_measure(field_columns *columns);
+
+/** Write the row, as measured. */
+void field_columns_row(const field_columns *columns, FILE *stream);
+#endif

@@ -1,0 +1,253 @@
+#include "watch/field_run.h"
+
+#include <dvi/scene.h>
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/command.h"
+#include "cli/file.h"
+#include "cli/progress.h"
+#include "cli/signals.h"
+#include "load/field.h"
+#include "watch/field_columns.h"
+#include "watch/field_trace.h"
+#include "watch/frames.h"
+
+/* Steps after which a signal and the progress are looked at. */
+enum { STEPS_AT_ONCE = 64 };
+
+static const char ended_again[] =
+    "dvi: run: a second Ctrl-C ended the run at once; FILEs not yet complete stay as they were\n";
+
+/* A run. A unit of time is a step, of asynchronous methods the longest one. */
+typedef struct journey {
+  const run_request *request;
+  const problem *scene;
+  dvi_march *march;
+  field_columns columns;
+  field_trace trace;
+  frame_list frames;
+  double *vector; /* [cells*3] room of the frames */
+  whole_file out;
+  progress_line progress;
+  double unit, t_start;
+  long unit_count; /* units from t = 0 */
+  bool row_written;
+  const volatile sig_atomic_t *caught;
+} journey;
+
+/* ---- checks ---- */
+
+static int refuse_options(const run_request *r)
+{
+  const struct {
+    bool given;
+    const char *name;
+  } list[] = {{r->momenta != NULL, "momenta"},
+              {r->events != NULL, "events"},
+              {r->project, "project"},
+              {r->verify, "verify"},
+              {r->alarms.count > 0, "alarm"},
+              {r->how.transform != NULL, "time-transform"},
+              {r->how.control != NULL, "step-control"}};
+  for (size_t i = 0; i < sizeof list / sizeof *list; i++)
+    if (list[i].given)
+      return usage_error("run: --%s is for mechanical methods such as verlet; %s is a march of a "
+                         "field",
+                         list[i].name, r->method);
+  if (!isnan(r->h) && !(r->h > 0))
+    return usage_error("run: --h %g: a march of a field goes forward", r->h);
+  if (!isnan(r->t_end) && !(r->t_end >= 0))
+    return usage_error("run: --t-end %g: a march of a field goes forward", r->t_end);
+  return DONE;
+}
+
+/* ---- a march ---- */
+
+/* A sentence of the scenes' library has no text of its own for some failures. */
+static int refuse_march(dvi_status status, const run_request *request, const problem *scene)
+{
+  const char *only = dvi_scene_grid_only(scene->scene);
+  if (status == DVI_UNSUPPORTED && only != NULL)
+    return usage_error("run: '%s' is a grid without a mesh, which only yee advances, not %s",
+                       scene->name, request->method);
+  return library_error(status);
+}
+
+static int make_march(journey *j)
+{
+  const run_request *r = j->request;
+  const dvi_march_options options = {.size = sizeof options,
+                                     .method = r->method,
+                                     .step = isnan(r->h) ? 0 : r->h,
+                                     .span = r->t_end,
+                                     .threads = (int)r->threads};
+  dvi_march_facts facts;
+  const dvi_status status = dvi_scene_march_create(j->scene->scene, &options, &j->march);
+  if (status != DVI_OK) return refuse_march(status, r, j->scene);
+  if (r->resume != NULL) {
+    const dvi_status loaded = dvi_march_load(j->march, r->resume);
+    if (loaded != DVI_OK) return library_error(loaded);
+    if (dvi_march_time(j->march) > r->t_end)
+      return usage_error("run: '%s' stands at t = %.17g, past --t-end %g", r->resume,
+                         dvi_march_time(j->march), r->t_end);
+  }
+  dvi_march_facts_of(j->march, &facts);
+  j->unit = facts.longest;
+  j->t_start = dvi_march_time(j->march);
+  j->unit_count = (long)floor(j->t_start / j->unit + 1e-6);
+  return DONE;
+}
+
+/* ---- rows ---- */
+
+/* Write the fields at the time of a row: u of a wave at the vertices, E and B in the cells. */
+static bool write_frame(journey *j)
+{
+  const double t = dvi_march_time(j->march);
+  const int64_t vertices = dvi_march_size(j->march, DVI_FORM_A);
+  if (!frames_are_wanted(&j->frames)) return true;
+  const int n = dvi_mesh_dimension(j->frames.mesh);
+  const size_t cells = (size_t)dvi_mesh_count(j->frames.mesh, n);
+  dvi_view view[2] = {{"E", j->vector, 3, n}, {"B", j->vector + 3 * cells, 3, n}};
+  dvi_status status;
+  if (vertices > 0) {
+    view[0] = (dvi_view){"u", j->vector, 1, 0};
+    status = dvi_march_sample(j->march, DVI_FORM_A, 0, NULL, j->vector);
+  } else {
+    status = dvi_scene_vectors(j->scene->scene, j->march, DVI_FORM_E, j->vector);
+    if (status == DVI_OK)
+      status = dvi_scene_vectors(j->scene->scene, j->march, DVI_FORM_B, j->vector + 3 * cells);
+  }
+  if (status != DVI_OK) return library_error(status) == DONE;
+  return frames_add(&j->frames, t, vertices > 0 ? 1 : 2, view);
+}
+
+static bool write_row(journey *j)
+{
+  field_columns_row(&j->columns, j->out.stream);
+  j->row_written = true;
+  if (!ferror(j->out.stream)) return write_frame(j);
+  if (j->out.path != NULL) complain("cannot write '%s': %s", j->out.path, strerror(errno));
+  return false;
+}
+
+static bool look(journey *j, bool row)
+{
+  j->row_written = false;
+  if (!row && j->trace.t == NULL) return true;
+  if (!field_columns_measure(&j->columns)) return false;
+  field_trace_add(&j->trace);
+  return !row || write_row(j);
+}
+
+/* ---- the way ---- */
+
+/* Return the number of units at which something is due next. */
+static long next_stop(const journey *j)
+{
+  const run_request *r = j->request;
+  const long every = r->every, saved = r->checkpoint_every;
+  long next = j->unit_count + STEPS_AT_ONCE;
+  if (!r->final || j->trace.t != NULL)
+    next = next < (j->unit_count / every + 1) * every ? next : (j->unit_count / every + 1) * every;
+  if (saved > 0 && next > (j->unit_count / saved + 1) * saved)
+    next = (j->unit_count / saved + 1) * saved;
+  return next;
+}
+
+static dvi_status save(const journey *j)
+{
+  return j->request->checkpoint != NULL ? dvi_march_save(j->march, j->request->checkpoint) : DVI_OK;
+}
+
+static bool advance(journey *j, bool *ended)
+{
+  const run_request *r = j->request;
+  const long next = next_stop(j);
+  double t = (double)next * j->unit;
+  *ended = t >= r->t_end - 1e-9 * j->unit;
+  if (*ended) t = r->t_end;
+  dvi_status status = dvi_march_advance(j->march, t);
+  if (status != DVI_OK) return library_error(status) == DONE;
+  j->unit_count = next;
+  const bool due = !*ended && next % r->every == 0;
+  if (!look(j, due && !r->final)) return false;
+  if (r->checkpoint_every > 0 && !*ended && next % r->checkpoint_every == 0) status = save(j);
+  progress_show(&j->progress, (t - j->t_start) / (r->t_end - j->t_start), "dvi run");
+  return status == DVI_OK || library_error(status) == DONE;
+}
+
+static int travel(journey *j)
+{
+  const run_request *r = j->request;
+  bool ended = dvi_march_time(j->march) >= r->t_end, good = true;
+  field_columns_header(&j->columns, j->out.stream);
+  progress_start(&j->progress, r->final || j->out.path != NULL);
+  good = look(j, !r->final);
+  while (good && !ended && *j->caught == 0) good = advance(j, &ended);
+  progress_end(&j->progress);
+  if (good && !j->row_written) good = field_columns_measure(&j->columns) && write_row(j);
+  const dvi_status saved = save(j);
+  if (saved != DVI_OK) good = library_error(saved) == DONE;
+  if (!good) return FAILED;
+  if (*j->caught == 0) return DONE;
+  complain("run: signal %d ended the run at t = %.17g of %g; the output is complete up to there",
+           (int)*j->caught, dvi_march_time(j->march), r->t_end);
+  if (r->checkpoint != NULL) complain("run: continue with --resume %s", r->checkpoint);
+  return 128 + (int)*j->caught;
+}
+
+/* ---- files ---- */
+
+static bool keeps_files(int code)
+{
+  return code == DONE || code > CHECK_FAILED;
+}
+
+static int start_frames(journey *j)
+{
+  const dvi_mesh *mesh = dvi_scene_mesh(j->scene->scene);
+  const int code = frames_start(&j->frames, j->scene->name, mesh, j->request->pvd);
+  if (code != DONE) return code;
+  const int n = dvi_mesh_dimension(mesh);
+  const size_t cells = (size_t)dvi_mesh_count(mesh, n), vertices = (size_t)dvi_mesh_count(mesh, 0);
+  j->vector = calloc(6 * cells + vertices, sizeof *j->vector);
+  if (j->vector != NULL) return DONE;
+  complain("out of memory");
+  return FAILED;
+}
+
+static int write_files(journey *j)
+{
+  const run_request *r = j->request;
+  int code = FAILED;
+  if (r->plot != NULL && !field_trace_start(&j->trace, &j->columns)) return FAILED;
+  if (file_open(&j->out, r->out)) code = travel(j);
+  if (keeps_files(code) && !file_keep(&j->out)) code = FAILED;
+  if (keeps_files(code) && !frames_keep(&j->frames)) code = FAILED;
+  if (keeps_files(code) && r->plot != NULL && !field_trace_plot(&j->trace, r->plot)) code = FAILED;
+  file_discard(&j->out);
+  return code;
+}
+
+int field_run(run_request *request, const problem *scene)
+{
+  journey j = {.request = request, .scene = scene};
+  if (isnan(request->t_end)) request->t_end = scene->t_end;
+  if (request->every == 0) request->every = scene->every > 0 ? scene->every : 1;
+  int code = refuse_options(request);
+  if (code == DONE) code = make_march(&j);
+  if (code == DONE) code = field_columns_choose(&j.columns, scene, j.march, request->columns);
+  if (code == DONE && request->pvd != NULL) code = start_frames(&j);
+  j.caught = signals_note(ended_again);
+  if (code == DONE) code = write_files(&j);
+  field_trace_clear(&j.trace);
+  field_columns_clear(&j.columns);
+  frames_clear(&j.frames);
+  free(j.vector);
+  dvi_march_destroy(&j.march);
+  return code;
+}

@@ -1,0 +1,315 @@
+/* An electromagnetic field on a grid of boxes, which yee advances without a mesh. */
+#include <dvi/yee.h>
+#include <math.h>
+#include <string.h>
+
+#include "scene/field/maxwell.h"
+#include "scene/sections/sections.h"
+#include "text/heap.h"
+
+/* What the terms of yee point to, while a march is made. */
+typedef struct draft {
+  const dvi_scene *scene;
+  const struct dvi__scene_field *field;
+  const struct dvi__scene_maxwell *maxwell;
+  dvi_yee_terms terms;
+  dvi_yee_current *current;
+  dvi_yee_dipole *dipole;
+  dvi_yee_wave *wave;
+  dvi_yee_probe *probe;
+  dvi_yee_flux *flux;
+  double *node[3], *E, *B, *A;
+} draft;
+
+/* ---- axes ---- */
+
+static dvi_status set_nodes(draft *d, int axis)
+{
+  const dvi_generator_options *grid = &d->field->grid;
+  const int cells = grid->cells[axis];
+  const double extent = grid->extent[axis] > 0 ? grid->extent[axis] : 1,
+               grading = grid->grading[axis];
+  dvi_yee_axis *to = d->terms.axis + axis;
+  to->cells = cells;
+  to->lower = grid->origin[axis];
+  to->upper = grid->origin[axis] + extent;
+  if (grading == 0 || grading == 1) return DVI_OK;
+  double *node = d->node[axis] = dvi__heap_take((size_t)cells + 1, sizeof *node);
+  if (node == NULL) return DVI_NO_MEMORY;
+  for (int i = 0; i <= cells; i++) node[i] = to->lower + extent * pow((double)i / cells, grading);
+  to->node = node;
+  return DVI_OK;
+}
+
+static void set_end(const dvi__scene_wall *wall, dvi_yee_axis *axis, int end)
+{
+  static const dvi_yee_boundary kind[] = {[DVI__WALL_PMC] = DVI_YEE_PMC,
+                                          [DVI__WALL_PEC] = DVI_YEE_PEC,
+                                          [DVI__WALL_ABSORBING] = DVI_YEE_ABSORBING,
+                                          [DVI__WALL_PERIODIC] = DVI_YEE_PERIODIC,
+                                          [DVI__WALL_CPML] = DVI_YEE_CPML,
+                                          [DVI__WALL_BLOCH] = DVI_YEE_BLOCH};
+  axis->end[end].kind = kind[wall->word];
+  if (wall->word == DVI__WALL_CPML) axis->end[end].layers = (int)wall->number;
+  if (wall->word == DVI__WALL_BLOCH) axis->phase = wall->number;
+}
+
+/* The whole boundary comes first, and walls on sides replace it. Where nothing is said, the wall is
+ * a magnetic one, as on a mesh, or the grid repeats itself. */
+static void set_walls(draft *d)
+{
+  static const char *const side[] = {"left", "right", "bottom", "top", "back", "front"};
+  const struct dvi__scene_maxwell *m = d->maxwell;
+  for (int a = 0; a < d->field->dimension; a++)
+    for (int end = 0; end < 2; end++) {
+      dvi_yee_axis *axis = d->terms.axis + a;
+      axis->end[end].kind = DVI_YEE_PMC;
+      for (int pass = 0; pass < 2; pass++)
+        for (int i = 0; i < m->walls; i++)
+          if (strcmp(m->wall[i].part, pass == 0 ? "boundary" : side[2 * a + end]) == 0)
+            set_end(m->wall + i, axis, end);
+      if (d->field->grid.periodic[a]) axis->end[end].kind = DVI_YEE_PERIODIC;
+    }
+}
+
+/* ---- components ---- */
+
+/* Give the axis of space of component i of E or B. A lone component lies across the grid. */
+static int axis_of(const draft *d, bool is_B, int i)
+{
+  const int count = is_B ? d->maxwell->B : d->maxwell->E;
+  if (count > 1) return i;
+  return d->field->dimension == 1 && !is_B ? 1 : 2;
+}
+
+static void spread(const draft *d, bool is_B, const double *component, double *vector)
+{
+  const int count = is_B ? d->maxwell->B : d->maxwell->E;
+  for (int i = 0; i < count; i++) vector[axis_of(d, is_B, i)] = component[i];
+}
+
+/* ---- media, sources, probes ---- */
+
+static void set_media(draft *d)
+{
+  for (int i = 0; i < d->maxwell->materials; i++) {
+    const dvi__scene_material *material = d->maxwell->material + i;
+    const struct {
+      dvi__place *place;
+      dvi_yee_medium *medium;
+    } list[] = {{material->eps, &d->terms.eps},
+                {material->mu, &d->terms.mu},
+                {material->sigma, &d->terms.sigma}};
+    for (int k = 0; k < 3; k++)
+      if (list[k].place != NULL)
+        *list[k].medium = (dvi_yee_medium){.at = dvi__place_source, .user = list[k].place};
+  }
+}
+
+static int density_of(const double *x, double *value, void *user)
+{
+  return dvi__vector_value(user, x, value);
+}
+
+static void add_dipole(draft *d, const dvi__scene_source *source, int component)
+{
+  dvi_yee_dipole *dipole = d->dipole + d->terms.dipoles++;
+  dvi__signal *signal = source->signal[component];
+  *dipole = (dvi_yee_dipole){.signal = signal->is_moment ? dvi__signal_factor : dvi__signal_value,
+                             .is_moment = signal->is_moment,
+                             .user = signal};
+  memcpy(dipole->at, source->point, sizeof dipole->at);
+  dipole->along[axis_of(d, false, component)] = 1;
+}
+
+static void add_wave(draft *d, const dvi__scene_source *source)
+{
+  dvi_yee_wave *wave = d->wave + d->terms.waves++;
+  *wave = (dvi_yee_wave){.signal = dvi__signal_value, .user = source->signal[0]};
+  memcpy(wave->lower, source->lower, sizeof wave->lower);
+  memcpy(wave->upper, source->upper, sizeof wave->upper);
+  memcpy(wave->direction, source->direction, sizeof wave->direction);
+  memcpy(wave->polarization, source->polarization, sizeof wave->polarization);
+}
+
+static void set_sources(draft *d)
+{
+  for (int i = 0; i < d->maxwell->sources; i++) {
+    const dvi__scene_source *source = d->maxwell->source + i;
+    if (source->wave != NULL) add_wave(d, source);
+    if (source->density != NULL)
+      d->current[d->terms.currents++] = (dvi_yee_current){.density = density_of,
+                                                          .density_user = source->density,
+                                                          .signal = dvi__signal_value,
+                                                          .signal_user = source->signal[0]};
+    for (int axis = 0; axis < d->maxwell->E && source->at != NULL; axis++)
+      add_dipole(d, source, axis);
+  }
+  d->terms.current = d->current;
+  d->terms.dipole = d->dipole;
+  d->terms.wave = d->wave;
+}
+
+static void set_probes(draft *d)
+{
+  for (int i = 0; i < d->maxwell->probes; i++) {
+    const dvi__scene_probe *from = d->maxwell->probe + i;
+    if (from->has_box) {
+      dvi_yee_flux *flux = d->flux + d->terms.fluxes++;
+      *flux = (dvi_yee_flux){.name = from->name};
+      memcpy(flux->lower, from->lower, sizeof flux->lower);
+      memcpy(flux->upper, from->upper, sizeof flux->upper);
+    } else {
+      const bool is_B = *from->of == 'B';
+      dvi_yee_probe *probe = d->probe + d->terms.probes++;
+      *probe = (dvi_yee_probe){.name = from->name, .form = is_B ? DVI_FORM_B : DVI_FORM_E};
+      memcpy(probe->at, from->at, sizeof probe->at);
+      spread(d, is_B, from->along, probe->along);
+    }
+  }
+  d->terms.probe = d->probe;
+  d->terms.flux = d->flux;
+}
+
+/* ---- a march ---- */
+
+static void clear(draft *d)
+{
+  void *const memory[] = {d->current, d->dipole, d->wave,    d->probe,   d->flux,
+                          d->E,       d->B,      d->node[0], d->node[1], d->node[2]};
+  for (size_t i = 0; i < sizeof memory / sizeof *memory; i++) dvi__heap_free(memory[i]);
+}
+
+static dvi_status set_terms(draft *d, const dvi_march_options *options)
+{
+  const size_t sources = (size_t)d->maxwell->sources + 1, probes = (size_t)d->maxwell->probes + 1;
+  d->terms = (dvi_yee_terms){.size = sizeof d->terms,
+                             .axes = d->field->dimension,
+                             .degree = d->maxwell->is_scalar ? 0 : 1,
+                             .step = options->step,
+                             .fraction = options->fraction,
+                             .span = options->span,
+                             .threads = options->threads};
+  d->current = dvi__heap_take(sources, sizeof *d->current);
+  d->dipole = dvi__heap_take(3 * sources, sizeof *d->dipole);
+  d->wave = dvi__heap_take(sources, sizeof *d->wave);
+  d->probe = dvi__heap_take(probes, sizeof *d->probe);
+  d->flux = dvi__heap_take(probes, sizeof *d->flux);
+  if (!d->current || !d->dipole || !d->wave || !d->probe || !d->flux) return DVI_NO_MEMORY;
+  for (int a = 0; a < d->field->dimension; a++)
+    if (set_nodes(d, a) != DVI_OK) return DVI_NO_MEMORY;
+  set_walls(d);
+  set_media(d);
+  set_sources(d);
+  set_probes(d);
+  return DVI_OK;
+}
+
+static dvi_status integrate(draft *d, dvi_march_form form, dvi__vector *vector, double **values)
+{
+  if (vector == NULL) return DVI_OK;
+  *values = dvi__heap_take((size_t)dvi_yee_size(&d->terms, form), sizeof **values);
+  if (*values == NULL) return DVI_NO_MEMORY;
+  return dvi_yee_integrate(&d->terms, form, density_of, vector, *values);
+}
+
+dvi_status dvi__grid_march(const dvi_scene *scene, const dvi_march_options *options,
+                           dvi_march **march)
+{
+  draft d = {.scene = scene, .field = scene->field, .maxwell = scene->field->maxwell};
+  dvi_status status = set_terms(&d, options);
+  if (status == DVI_OK) status = dvi_yee_create(&d.terms, march);
+  if (status == DVI_OK) status = integrate(&d, DVI_FORM_E, d.maxwell->of_E, &d.E);
+  if (status == DVI_OK) status = integrate(&d, DVI_FORM_B, d.maxwell->of_B, &d.B);
+  const dvi_march_state state = {.size = sizeof state, .E = d.E, .B = d.B};
+  if (status == DVI_OK) status = dvi_march_start(*march, &state);
+  if (status != DVI_OK) dvi_march_destroy(march);
+  clear(&d);
+  return status;
+}
+
+/* ---- vectors in the boxes ---- */
+
+/* Sum up the values of a component around a box, each divided by its cell. A component has places
+ * at both ends of the box along the axes across its cell, of which a grid that repeats itself has
+ * one less. */
+static double mean_in_box(const draft *d, dvi_march_form form, int component, const double *values,
+                          const int *box, const double *length)
+{
+  double sum = 0;
+  int count = 0;
+  const int axes = d->field->dimension;
+  for (int corner = 0; corner < 1 << axes; corner++) {
+    int index[3], is_place = 1;
+    double size = 1;
+    for (int a = 0; a < axes; a++) {
+      const bool along = (a == component) == (form == DVI_FORM_E);
+      const int far = corner >> a & 1;
+      is_place = is_place && !(along && far);
+      index[a] = box[a] + far;
+      if (d->terms.axis[a].end[0].kind == DVI_YEE_PERIODIC ||
+          d->terms.axis[a].end[0].kind == DVI_YEE_BLOCH)
+        index[a] %= d->terms.axis[a].cells;
+      if (along) size *= length[a];
+    }
+    const int64_t place = is_place ? dvi_yee_place(&d->terms, form, component, index) : -1;
+    if (place < 0) continue;
+    sum += values[place] / size;
+    count++;
+  }
+  return count > 0 ? sum / count : 0;
+}
+
+static double length_of(const draft *d, int axis, int box)
+{
+  const dvi_yee_axis *a = d->terms.axis + axis;
+  if (a->node != NULL) return a->node[box + 1] - a->node[box];
+  return (a->upper - a->lower) / a->cells;
+}
+
+static void fill_vectors(const draft *d, dvi_march_form form, const double *values, double *vector)
+{
+  int box[3] = {0}, cells[3] = {1, 1, 1};
+  for (int a = 0; a < d->field->dimension; a++) cells[a] = d->terms.axis[a].cells;
+  for (box[2] = 0; box[2] < cells[2]; box[2]++)
+    for (box[1] = 0; box[1] < cells[1]; box[1]++)
+      for (box[0] = 0; box[0] < cells[0]; box[0]++, vector += 3) {
+        double length[3];
+        for (int a = 0; a < d->field->dimension; a++) length[a] = length_of(d, a, box[a]);
+        for (int component = 0; component < 3; component++)
+          vector[component] = mean_in_box(d, form, component, values, box, length);
+      }
+}
+
+dvi_status dvi__grid_vectors(const dvi_scene *scene, const dvi_march *march, dvi_march_form form,
+                             double *vector)
+{
+  draft d = {.scene = scene, .field = scene->field, .maxwell = scene->field->maxwell};
+  const dvi_march_options none = {.size = sizeof none};
+  double *values = dvi__heap_take((size_t)dvi_march_size(march, form), sizeof *values);
+  dvi_status status = values != NULL ? set_terms(&d, &none) : DVI_NO_MEMORY;
+  if (status == DVI_OK) status = dvi_march_sample(march, form, 0, NULL, values);
+  if (status == DVI_OK) fill_vectors(&d, form, values, vector);
+  dvi__heap_free(values);
+  clear(&d);
+  return status;
+}
+
+/* ---- the section ---- */
+
+/* A grid has parts neither for a flux nor for an energy, and no start by a potential. */
+bool dvi__grid_make(dvi_scene *scene, const dvi__tree *section)
+{
+  const struct dvi__scene_maxwell *m = scene->field->maxwell;
+  for (int i = 0; i < m->probes; i++)
+    if (!m->probe[i].has_box && *m->probe[i].of != 'E' && *m->probe[i].of != 'B')
+      return dvi__scene_refuse(scene, m->probe[i].span,
+                               "a grid has no parts; write 'flux: {from: [..], to: [..]}', or "
+                               "advance the mesh of the boxes by 'method: leapfrog'");
+  if (m->of_A != NULL)
+    return dvi__scene_refuse(scene, dvi__tree_find(scene->tree, "initial")->span,
+                             "a grid starts from E and B, not from A");
+  scene->form = "separable";
+  (void)section;
+  return true;
+}

@@ -1,0 +1,313 @@
+/* An electromagnetic field on the scene's mesh. */
+#include "scene/field/maxwell.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "scene/sections/sections.h"
+#include "text/heap.h"
+
+/* What a library's structure points to, while the field is made. */
+typedef struct draft {
+  dvi_wall *wall;
+  dvi_current *current;
+  dvi_field_probe *probe;
+  double *eps, *nu, *sigma; /* [cells] or NULL */
+  double *centre;           /* [cells*space] */
+  dvi_maxwell_terms terms;
+} draft;
+
+static void *take(dvi_scene *scene, size_t count, size_t size)
+{
+  void *memory = dvi__arena_take(&scene->arena, count > 0 ? count : 1, size);
+  if (memory == NULL) (void)dvi__scene_no_memory(scene);
+  return memory;
+}
+
+/* ---- materials ---- */
+
+/* Set the cells of a part, with the place at their centres. */
+static bool set_cells(dvi_scene *scene, const draft *d, const dvi__scene_material *material,
+                      const dvi__place *place, const char *name, double least, double *values)
+{
+  int64_t count;
+  const dvi_mesh *mesh = scene->field->mesh;
+  const int *cell = dvi_mesh_part_cells(mesh, material->part, dvi_mesh_dimension(mesh), &count);
+  for (int64_t i = 0; i < count; i++) {
+    double value;
+    const double *x = d->centre + (ptrdiff_t)cell[i] * scene->field->space;
+    if (dvi__place_value(place, x, NULL, &value) != 0 || !(value >= least) || value > 1e300)
+      return dvi__scene_refuse(scene, material->span, "%s is not a %s number in cell %d", name,
+                               least > 0 ? "positive" : "nonnegative", cell[i]);
+    values[cell[i]] = value;
+  }
+  return true;
+}
+
+static bool set_quantity(dvi_scene *scene, const draft *d, const dvi__scene_material *material,
+                         int which, double **values)
+{
+  static const char *const name[] = {"eps", "mu", "sigma"};
+  const dvi__place *const place[] = {material->eps, material->mu, material->sigma};
+  const dvi_mesh *mesh = scene->field->mesh;
+  const int64_t cells = dvi_mesh_count(mesh, dvi_mesh_dimension(mesh));
+  if (place[which] == NULL) return true;
+  if (*values == NULL) {
+    *values = take(scene, (size_t)cells, sizeof **values);
+    for (int64_t c = 0; c < cells && *values != NULL; c++) (*values)[c] = which < 2;
+  }
+  return *values != NULL &&
+         set_cells(scene, d, material, place[which], name[which], which < 2 ? 1e-300 : 0, *values);
+}
+
+/* The star takes 1/mu. */
+static bool set_materials(dvi_scene *scene, draft *d)
+{
+  const struct dvi__scene_maxwell *m = scene->field->maxwell;
+  const dvi_mesh *mesh = scene->field->mesh;
+  const int n = dvi_mesh_dimension(mesh);
+  const int64_t cells = dvi_mesh_count(mesh, n);
+  if (m->materials == 0) return true;
+  d->centre = take(scene, (size_t)(cells * scene->field->space), sizeof *d->centre);
+  if (d->centre == NULL) return false;
+  (void)dvi_mesh_centres(mesh, n, d->centre);
+  for (int i = 0; i < m->materials; i++)
+    for (int which = 0; which < 3; which++) {
+      double **const values[] = {&d->eps, &d->nu, &d->sigma};
+      if (!set_quantity(scene, d, m->material + i, which, values[which])) return false;
+    }
+  for (int64_t c = 0; c < cells && d->nu != NULL; c++) d->nu[c] = 1 / d->nu[c];
+  return true;
+}
+
+/* ---- walls ---- */
+
+static bool set_walls(dvi_scene *scene, draft *d)
+{
+  static const dvi_wall_kind kind[] = {
+      [DVI__WALL_PMC] = DVI_PMC, [DVI__WALL_PEC] = DVI_PEC, [DVI__WALL_ABSORBING] = DVI_ABSORBING};
+  const struct dvi__scene_maxwell *m = scene->field->maxwell;
+  d->wall = take(scene, (size_t)m->walls, sizeof *d->wall);
+  for (int i = 0; i < m->walls && d->wall != NULL; i++)
+    d->wall[i] = (dvi_wall){.part = m->wall[i].part, .kind = kind[m->wall[i].word]};
+  return d->wall != NULL;
+}
+
+/* ---- sources ---- */
+
+static int density_of(const double *x, double *value, void *user)
+{
+  return dvi__vector_value(user, x, value);
+}
+
+static bool set_currents(dvi_scene *scene, draft *d)
+{
+  const struct dvi__scene_maxwell *m = scene->field->maxwell;
+  int count = 0;
+  d->current = take(scene, 3 * (size_t)m->sources, sizeof *d->current);
+  for (int i = 0; i < m->sources && d->current != NULL; i++)
+    for (int axis = 0; axis < 3; axis++) {
+      const dvi__scene_source *source = m->source + i;
+      dvi_current *current = d->current + count;
+      if (source->signal[axis] == NULL) continue;
+      *current = (dvi_current){.signal = dvi__signal_value,
+                               .impulse = dvi__signal_impulse,
+                               .user = source->signal[axis]};
+      if (source->density != NULL) {
+        current->density = density_of;
+        current->density_user = source->density;
+      } else {
+        memcpy(current->at, source->point, sizeof source->point);
+        current->along[axis] = 1;
+      }
+      count++;
+    }
+  d->terms.current = d->current;
+  d->terms.currents = count;
+  return d->current != NULL;
+}
+
+/* ---- probes ---- */
+
+/* Refuse the name of another column. */
+static bool name_is_new(dvi_scene *scene, int i)
+{
+  static const char *const taken[] = {"t", "energy", "gauss"};
+  const struct dvi__scene_maxwell *m = scene->field->maxwell;
+  const char *name = m->probe[i].name;
+  bool there = strncmp(name, "A_", 2) == 0 || strncmp(name, "p_A_", 4) == 0;
+  for (size_t k = 0; k < sizeof taken / sizeof *taken; k++)
+    there = there || strcmp(taken[k], name) == 0;
+  for (int k = 0; k < i; k++) there = there || strcmp(m->probe[k].name, name) == 0;
+  return !there || dvi__scene_refuse(scene, m->probe[i].span,
+                                     "there is a column '%s' already; choose another name", name);
+}
+
+static bool set_probes(dvi_scene *scene, draft *d)
+{
+  const struct dvi__scene_maxwell *m = scene->field->maxwell;
+  d->probe = take(scene, (size_t)m->probes, sizeof *d->probe);
+  for (int i = 0; i < m->probes && d->probe != NULL; i++) {
+    const dvi__scene_probe *from = m->probe + i;
+    dvi_field_probe *probe = d->probe + i;
+    if (!name_is_new(scene, i)) return false;
+    if (from->has_box)
+      return dvi__scene_refuse(scene, from->span,
+                               "a flux through a box is for 'method: yee' on boxes; on a mesh it "
+                               "goes through a part");
+    *probe = (dvi_field_probe){.name = from->name, .of = from->of, .part = from->part};
+    memcpy(probe->at, from->at, sizeof from->at);
+    dvi__maxwell_form(scene->field, *from->of == 'B', from->along, probe->along);
+  }
+  return d->probe != NULL;
+}
+
+/* ---- the start ---- */
+
+/* The components of a form, of a vector in space. */
+typedef struct form_of_vector {
+  const struct dvi__scene_field *field;
+  const dvi__vector *vector;
+  bool is_B;
+} form_of_vector;
+
+static int form_at(const double *x, double *value, void *user)
+{
+  const form_of_vector *f = user;
+  double vector[3] = {0};
+  const int failed = dvi__vector_value(f->vector, x, vector);
+  if (failed == 0) dvi__maxwell_form(f->field, f->is_B, vector, value);
+  return failed;
+}
+
+static bool integrate(dvi_scene *scene, const dvi__vector *vector, bool is_B, double **form)
+{
+  form_of_vector f = {.field = scene->field, .vector = vector, .is_B = is_B};
+  const dvi_mesh *mesh = scene->field->mesh;
+  const int k = (scene->field->maxwell->is_scalar ? 0 : 1) + is_B;
+  if (vector == NULL) return true;
+  *form = take(scene, (size_t)dvi_mesh_count(mesh, k), sizeof **form);
+  if (*form == NULL) return false;
+  const dvi_status status = dvi_form_integrate(mesh, k, form_at, &f, *form);
+  return status == DVI_OK ||
+         dvi__complain(scene->complaint, status, dvi__tree_find(scene->tree, "initial")->span, "%s",
+                       dvi_last_error());
+}
+
+/* The start of the mechanical system: q = A, and the velocity -E. */
+static bool make_start(dvi_scene *scene)
+{
+  struct dvi__scene_field *f = scene->field;
+  struct dvi__scene_maxwell *m = f->maxwell;
+  const size_t n = (size_t)scene->n;
+  if (!integrate(scene, m->of_E, false, &m->start_E) ||
+      !integrate(scene, m->of_A, false, &m->start_A) ||
+      !integrate(scene, m->of_B, true, &m->start_B))
+    return false;
+  scene->q = take(scene, 3 * n, sizeof *scene->q);
+  if (scene->q == NULL) return false;
+  if (m->start_B != NULL) {
+    const int64_t cells = dvi_mesh_count(f->mesh, m->is_scalar ? 0 : 1);
+    m->start_A = take(scene, (size_t)cells, sizeof *m->start_A);
+    const dvi_status status = m->start_A != NULL
+                                  ? dvi_field_vector_potential(f->field, m->start_B, m->start_A)
+                                  : DVI_NO_MEMORY;
+    if (status != DVI_OK)
+      return dvi__complain(scene->complaint, status, dvi__tree_find(scene->tree, "initial")->span,
+                           "%s", dvi_last_error());
+  }
+  scene->v = scene->q + n;
+  scene->p = scene->v + n;
+  (void)dvi_field_project(f->field, m->start_A, NULL, scene->q, NULL);
+  (void)dvi_field_project(f->field, m->start_E, NULL, scene->v, NULL);
+  for (size_t i = 0; i < n; i++) scene->v[i] = -scene->v[i];
+  return true;
+}
+
+/* ---- columns ---- */
+
+/* A probe as what is watched. */
+typedef struct watched {
+  const dvi_field *field;
+  int number;
+} watched;
+
+static int watch(double t, const double *q, const double *p, double *value, void *user)
+{
+  const watched *w = user;
+  (void)t;
+  return dvi_field_probe_at(w->field, w->number, q, p, value) == DVI_OK ? 0 : -1;
+}
+
+static bool watch_probes(dvi_scene *scene)
+{
+  const int count = scene->field->maxwell->probes;
+  dvi_invariant *list = take(scene, (size_t)count, sizeof *list);
+  watched *w = take(scene, (size_t)count, sizeof *w);
+  for (int i = 0; i < count && list != NULL && w != NULL; i++) {
+    w[i] = (watched){scene->field->field, i};
+    list[i] = (dvi_invariant){
+        .name = scene->field->maxwell->probe[i].name, .value = watch, .user = w + i};
+  }
+  scene->terms.invariants = list;
+  scene->terms.invariant_count = count;
+  return list != NULL && w != NULL;
+}
+
+/* ---- the field ---- */
+
+static dvi_status make_field(dvi_scene *scene, draft *d)
+{
+  struct dvi__scene_field *f = scene->field;
+  const int k = f->maxwell->is_scalar ? 0 : 1;
+  const double *factor[DVI_MESH_DIMENSION_MAX + 1] = {NULL};
+  factor[k] = d->eps;
+  factor[k + 1] = d->nu;
+  const dvi_star_options options = {.size = sizeof options, .kind = f->kind, .factor = factor};
+  dvi_status status = dvi_star_create(f->mesh, &options, &f->star);
+  d->terms.size = sizeof d->terms;
+  d->terms.star = f->star;
+  d->terms.scalar = f->maxwell->is_scalar;
+  d->terms.wall = d->wall;
+  d->terms.walls = f->maxwell->walls;
+  d->terms.conductivity = d->sigma;
+  d->terms.probe = d->probe;
+  d->terms.probes = f->maxwell->probes;
+  if (status == DVI_OK) status = dvi_maxwell_create(&d->terms, &f->field);
+  if (status == DVI_OK) {
+    const double damping = scene->terms.damping;
+    status = dvi_field_system_terms(f->field, &scene->terms);
+    scene->terms.damping = damping;
+  }
+  return status;
+}
+
+/* A sentence of the library names a wall, a dipole, a probe, or the star. */
+static const dvi__tree *to_blame(const dvi_scene *scene, const dvi__tree *section)
+{
+  static const struct {
+    const char *word, *section;
+  } blame[] = {{"wall", "boundary"}, {"dipole", "sources"}, {"signal", "sources"},
+               {"probe", "probes"},  {"point", "probes"},   {"star", "star"}};
+  for (size_t i = 0; i < sizeof blame / sizeof *blame; i++) {
+    const dvi__tree *found = dvi__tree_find(scene->tree, blame[i].section);
+    if (found != NULL && strstr(dvi_last_error(), blame[i].word) != NULL) return found;
+  }
+  return section;
+}
+
+bool dvi__maxwell_make(dvi_scene *scene, const dvi__tree *section)
+{
+  draft d = {.terms = {.size = sizeof d.terms}};
+  if (!set_materials(scene, &d) || !set_walls(scene, &d) || !set_currents(scene, &d) ||
+      !set_probes(scene, &d))
+    return false;
+  const dvi_status status = make_field(scene, &d);
+  if (status != DVI_OK)
+    return dvi__complain(scene->complaint, status, to_blame(scene, section)->span, "%s",
+                         dvi_last_error());
+  scene->form = "separable";
+  scene->mass = scene->terms.mass.diagonal != NULL ? "diagonal" : "sparse";
+  return dvi__declare_unknowns(scene, section, "A") && make_start(scene) && watch_probes(scene) &&
+         dvi__choose_field_columns(scene);
+}
