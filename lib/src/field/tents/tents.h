@@ -1,0 +1,46 @@
+/* A field that advances over an unstructured mesh of spacetime, which grows tent by tent. */
+#ifndef DVI_FIELD_TENTS_TENTS_H
+#define DVI_FIELD_TENTS_TENTS_H
+#include <dvi/march.h>
+
+/* What tents are pitched over. Zero means the default. */
+typedef struct dvi__tents_terms {
+  /* circumcentric, on simplices of space. factor[k] is eps, factor[k+1] is 1/mu */
+  const dvi_star *star;
+  int k;              /* degree of A, from 0 to n - 1 */
+  const int8_t *held; /* [k-cells] 1 where A keeps its start, or NULL. Copied */
+  double slope;       /* of the front, beside that of light, below 1. Default: 0.5 */
+  double least;  /* tents rise at random by this part of what is allowed, or more. Default: 1 */
+  uint64_t seed; /* of the random rises */
+} dvi__tents_terms;
+
+typedef struct dvi__tents dvi__tents;
+
+/* Prepare, with A = 0 at t = 0. DVI_BAD_ARGUMENT, DVI_UNSUPPORTED, DVI_SINGULAR if an entry of M_k
+ * is not positive, DVI_NO_MEMORY. */
+dvi_status dvi__tents_create(const dvi__tents_terms *terms, dvi__tents **tents);
+void dvi__tents_destroy(dvi__tents **tents);
+
+/* Start from values that are finite (dvi_march_start). */
+void dvi__tents_start(dvi__tents *tents, const dvi_march_state *state);
+
+/* Pitch all tents whose tops are not above t. DVI_SINGULAR, with the place, if the row of a cell
+ * does not determine its value. DVI_NOT_FINITE. On failure nothing changes. */
+dvi_status dvi__tents_advance(dvi__tents *tents, double t);
+
+/* Pitch one tent, and tell its vertex and the new time there. Statuses as above. */
+dvi_status dvi__tents_pitch(dvi__tents *tents, int *vertex, double *top);
+
+/* Give a form at the time of the last call of dvi__tents_advance. Statuses as there. */
+dvi_status dvi__tents_sample(const dvi__tents *tents, dvi_march_form form, int64_t count,
+                             const int *cell, double *values);
+
+/* Give the energy E.M_k E/2 + B.M_{k+1} B/2 then, and the largest change of a charge since the
+ * start, d_{k-1}^T M_k E on cells of degree k - 1 at which nothing is held, 0 if k = 0. */
+dvi_status dvi__tents_energy(const dvi__tents *tents, double *energy);
+double dvi__tents_gauss(const dvi__tents *tents);
+
+/* Create a march of tents. */
+dvi_status dvi__tents_march(const dvi__tents_terms *terms, dvi_march **march);
+
+#endif
