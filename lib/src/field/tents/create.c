@@ -6,7 +6,7 @@
 #include "field/mesh/volume.h"
 #include "field/tents/front.h"
 
-static const double default_slope = 0.5, slope_most = 0.999;
+static const double default_fraction = 0.5, fraction_most = 0.999;
 
 /* ---- checks ---- */
 
@@ -49,11 +49,10 @@ static dvi_status check_terms(const dvi__tents_terms *terms)
     return dvi__fail(DVI_UNSUPPORTED,
                      "tents: the star is not circumcentric: no other one has a row with a single "
                      "unknown");
-  if (!(terms->slope >= 0 && terms->slope <= slope_most))
+  if (!(terms->fraction >= 0 && terms->fraction <= fraction_most))
     return dvi__fail(DVI_BAD_ARGUMENT,
-                     "tents: the front has the slope %g: above 0 and at most %g is possible, "
-                     "beside that of light",
-                     terms->slope, slope_most);
+                     "tents: the fraction is %g: above 0 and at most %g is possible",
+                     terms->fraction, fraction_most);
   if (!(terms->least >= 0 && terms->least <= 1))
     return dvi__fail(DVI_BAD_ARGUMENT, "tents: the least rise is %g, which is not from 0 to 1",
                      terms->least);
@@ -136,18 +135,70 @@ static void find_light(dvi__tents *w)
   }
 }
 
-static void find_reach(dvi__tents *w)
+/* The largest frequency of a (k+1)-cell with its k-cells alone, whose masses are shared equally by
+ * all (k+1)-cells at them, has the square M_{k+1} sum n_s/M_s. No frequency of the mesh is above
+ * all of these. */
+static double local_square(const dvi__tents *w, int64_t cell, const int *sharers)
+{
+  const int k = w->k;
+  double sum = 0;
+  for (int j = 0; j < k + 2; j++) {
+    const int s = w->mesh->facet[k + 1][cell * (k + 2) + j];
+    if (!w->held[s]) sum += sharers[s] / w->star->diagonal[k][s];
+  }
+  return w->star->diagonal[k + 1][cell] * sum;
+}
+
+/* Give the shortest of the stable steps of (k+1)-cells at each vertex. */
+static void find_steps(const dvi__tents *w, int *sharers, double *step)
+{
+  const dvi_mesh *mesh = w->mesh;
+  const int k = w->k;
+  for (int64_t v = 0; v < mesh->count[0]; v++) step[v] = INFINITY;
+  for (int64_t i = 0; i < mesh->count[k + 1] * (k + 2); i++) sharers[mesh->facet[k + 1][i]]++;
+  for (int64_t cell = 0; cell < mesh->count[k + 1]; cell++) {
+    const double square = local_square(w, cell, sharers),
+                 stable = square > 0 ? 2 / sqrt(square) : (double)INFINITY;
+    for (int c = 0; c < k + 2; c++) {
+      const int v = mesh->corner[k + 1][cell * (k + 2) + c];
+      step[v] = fmin(step[v], stable);
+    }
+  }
+}
+
+static void limit_by_light(dvi__tents *w)
 {
   const dvi_mesh *mesh = w->mesh;
   const dvi__sets edges = sets_of(mesh->n + 1, 2);
   for (int64_t e = 0; e < mesh->count[1]; e++) w->reach[e] = INFINITY;
   for (int64_t cell = 0; cell < mesh->count[mesh->n]; cell++) {
-    const double slope = w->slope / (dvi__steepest(mesh, cell) * w->speed[cell]);
+    const double slope = w->fraction / (dvi__steepest(mesh, cell) * w->speed[cell]);
     for (int i = 0; i < edges.count; i++) {
       const int64_t edge = dvi__face_of(w, cell, edges.set[i]);
       w->reach[edge] = fmin(w->reach[edge], slope * dvi__cell_volume(mesh, 1, edge));
     }
   }
+}
+
+static dvi_status find_reach(dvi__tents *w)
+{
+  const dvi_mesh *mesh = w->mesh;
+  int *sharers = DVI_NEW(int, mesh->count[w->k]);
+  double *step = DVI_NEW(double, mesh->count[0]);
+  const dvi_status status = sharers && step
+                                ? DVI_OK
+                                : dvi__fail(DVI_NO_MEMORY, "tents: no memory for local steps");
+  if (status == DVI_OK) {
+    limit_by_light(w);
+    find_steps(w, sharers, step);
+    for (int64_t e = 0; e < mesh->count[1]; e++) {
+      const int *end = mesh->corner[1] + 2 * e;
+      w->reach[e] = fmin(w->reach[e], w->fraction * fmin(step[end[0]], step[end[1]]));
+    }
+  }
+  dvi__release(sharers);
+  dvi__release(step);
+  return status;
 }
 
 /* ---- memory ---- */
@@ -244,7 +295,7 @@ static dvi_status make(dvi__tents *w, const dvi__tents_terms *terms)
   w->metric[mesh->space] = -1;
   number_faces(w);
   find_light(w);
-  find_reach(w);
+  DVI_TRY(find_reach(w));
   dvi__tents_start(w, &(dvi_march_state){.size = sizeof(dvi_march_state)});
   return DVI_OK;
 }
@@ -258,7 +309,7 @@ dvi_status dvi__tents_create(const dvi__tents_terms *terms, dvi__tents **tents)
   w->star = dvi_star_share(terms->star);
   w->mesh = w->star->mesh;
   w->k = terms->k;
-  w->slope = terms->slope > 0 ? terms->slope : default_slope;
+  w->fraction = terms->fraction > 0 ? terms->fraction : default_fraction;
   w->least = terms->least > 0 ? terms->least : 1;
   w->seed = terms->seed;
   const dvi_status status = make(w, terms);

@@ -33,7 +33,7 @@ struct dvi__tents {
   const dvi_mesh *mesh; /* the star's */
   int k;
   int8_t *held; /* [k-cells] */
-  double slope, least;
+  double fraction, least;
   uint64_t seed;
   double metric[DVI_MESH_SPACE_MAX]; /* of spacetime */
   double *speed, *weight;            /* [n-cells] sqrt(eps mu)^-1 and sqrt(eps/mu) */

@@ -261,7 +261,7 @@ static dvi_status check_finite(const tent *t)
       return dvi__fail(DVI_NOT_FINITE,
                        "tents: the value of %s is not finite at t = %.6g: the fraction %.3g may be "
                        "too large",
-                       name.text, t->top, w->slope);
+                       name.text, t->top, w->fraction);
     }
   }
   return DVI_OK;

@@ -9,7 +9,9 @@ typedef struct dvi__tents_terms {
   const dvi_star *star;
   int k;              /* degree of A, from 0 to n - 1 */
   const int8_t *held; /* [k-cells] 1 where A keeps its start, or NULL. Copied */
-  double slope;       /* of the front, beside that of light, below 1. Default: 0.5 */
+  /* of light's slope and of local stable steps, by which ends of an edge may be apart. Default:
+   * 0.5 */
+  double fraction;
   double least;  /* tents rise at random by this part of what is allowed, or more. Default: 1 */
   uint64_t seed; /* of the random rises */
 } dvi__tents_terms;
