@@ -40,24 +40,27 @@ static dvi_status check_material(const dvi_star *star, int k)
   return DVI_OK;
 }
 
-/* The negation refuses what is no number, too. */
-static dvi_status check_terms(const dvi__tents_terms *terms)
+/* The negations refuse what is no number, too. */
+static dvi_status check_options(const dvi__tents_options *options)
 {
-  const dvi_star *star = terms->star;
-  if (star == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "tents: a star is needed");
-  if (star->kind != DVI_CIRCUMCENTRIC)
-    return dvi__fail(DVI_UNSUPPORTED,
-                     "tents: the star is not circumcentric: no other one has a row with a single "
-                     "unknown");
-  if (!(terms->fraction >= 0 && terms->fraction <= fraction_most))
+  if (!(options->fraction >= 0 && options->fraction <= fraction_most))
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "tents: the fraction is %g: above 0 and at most %g is possible",
-                     terms->fraction, fraction_most);
-  if (!(terms->least >= 0 && terms->least <= 1))
+                     options->fraction, fraction_most);
+  if (!(options->least >= 0 && options->least <= 1))
     return dvi__fail(DVI_BAD_ARGUMENT, "tents: the least rise is %g, which is not from 0 to 1",
-                     terms->least);
-  DVI_TRY(check_mesh(star->mesh, terms->k));
-  return check_material(star, terms->k);
+                     options->least);
+  return DVI_OK;
+}
+
+static dvi_status check_star(const dvi_star *star, int k)
+{
+  if (star->kind != DVI_CIRCUMCENTRIC)
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "tents: the star is not circumcentric: no other one has rows with a single "
+                     "unknown");
+  DVI_TRY(check_mesh(star->mesh, k));
+  return check_material(star, k);
 }
 
 static dvi_status check_mass(const dvi__tents *w)
@@ -241,7 +244,7 @@ static int allocate_tables(dvi__tents *w)
   w->reach = DVI_NEW(double, mesh->count[1]);
   w->face = DVI_NEW(int, cells << (mesh->n + 1));
   w->base = DVI_NEW(double, mesh->count[w->k + 1]);
-  if (w->k > 0) w->charge = DVI_NEW(double, 2 * mesh->count[w->k - 1]);
+  if (w->k > 0) w->charge = DVI_NEW(double, 3 * mesh->count[w->k - 1]);
   return w->held && w->speed && w->weight && w->reach && w->face && w->base &&
          (w->charge || w->k == 0);
 }
@@ -280,7 +283,7 @@ void dvi__tents_destroy(dvi__tents **tents)
 
 /* ---- create ---- */
 
-static dvi_status make(dvi__tents *w, const dvi__tents_terms *terms)
+static dvi_status make(dvi__tents *w, const int8_t *held)
 {
   const dvi_mesh *mesh = w->mesh;
   DVI_TRY(find_around(mesh, mesh->n, &w->cells));
@@ -289,7 +292,7 @@ static dvi_status make(dvi__tents *w, const dvi__tents_terms *terms)
   if (!allocate_tables(w) || !allocate_work(w))
     return dvi__fail(DVI_NO_MEMORY, "tents: no memory for %lld cells",
                      (long long)mesh->count[mesh->n]);
-  if (terms->held != NULL) memcpy(w->held, terms->held, (size_t)mesh->count[w->k]);
+  if (held != NULL) memcpy(w->held, held, (size_t)mesh->count[w->k]);
   DVI_TRY(check_mass(w));
   for (int l = 0; l < mesh->space; l++) w->metric[l] = 1;
   w->metric[mesh->space] = -1;
@@ -300,19 +303,23 @@ static dvi_status make(dvi__tents *w, const dvi__tents_terms *terms)
   return DVI_OK;
 }
 
-dvi_status dvi__tents_create(const dvi__tents_terms *terms, dvi__tents **tents)
+dvi_status dvi__tents_create(const dvi_star *star, int k, const int8_t *held,
+                             const dvi__tents_options *options, dvi__tents **tents)
 {
+  const dvi__tents_options defaults = {0};
   *tents = NULL;
-  DVI_TRY(check_terms(terms));
+  if (options == NULL) options = &defaults;
+  DVI_TRY(check_options(options));
+  DVI_TRY(check_star(star, k));
   dvi__tents *w = DVI_NEW(dvi__tents, 1);
   if (w == NULL) return dvi__fail(DVI_NO_MEMORY, "tents: no memory");
-  w->star = dvi_star_share(terms->star);
-  w->mesh = w->star->mesh;
-  w->k = terms->k;
-  w->fraction = terms->fraction > 0 ? terms->fraction : default_fraction;
-  w->least = terms->least > 0 ? terms->least : 1;
-  w->seed = terms->seed;
-  const dvi_status status = make(w, terms);
+  w->star = dvi_star_share(star);
+  w->mesh = star->mesh;
+  w->k = k;
+  w->fraction = options->fraction > 0 ? options->fraction : default_fraction;
+  w->least = options->least > 0 ? options->least : 1;
+  w->seed = options->seed;
+  const dvi_status status = make(w, held);
   *tents = w;
   if (status != DVI_OK) dvi__tents_destroy(tents);
   return status;

@@ -43,7 +43,7 @@ struct dvi__tents {
   dvi__around cells, edges, values;  /* n-cells, edges, k-cells */
   double t;                          /* the time asked for */
   double *base;                      /* [(k+1)-cells] B - dA, which does not depend on the time */
-  double *charge;                    /* [2][(k-1)-cells] at the start, and now. NULL for k = 0 */
+  double *charge;                    /* [3][(k-1)-cells] at the start, and room. NULL for k = 0 */
   dvi__front front;
   dvi__front *level; /* the front at the time `t`, if `level_time` says so */
   double *level_time;

@@ -16,16 +16,20 @@ static double derivative(const dvi_mesh *mesh, int degree, const double *form, i
   return sum;
 }
 
-/* Set d_{k-1}^T row, to NaN where something is held, whose row is not zero. */
-static void find_charge(const dvi__tents *w, const double *row, double *charge)
+/* Set charge = d_{k-1}^T row, and size to the sums of the sizes of its terms. Both are NaN where
+ * something is held, whose row is not zero. */
+static void find_charge(const dvi__tents *w, double *charge, double *size)
 {
   const dvi_mesh *mesh = w->mesh;
   const int k = w->k;
   memset(charge, 0, (size_t)mesh->count[k - 1] * sizeof *charge);
+  memset(size, 0, (size_t)mesh->count[k - 1] * sizeof *size);
   for (int64_t i = 0; i < mesh->count[k]; i++)
     for (int j = 0; j <= k; j++) {
       const int64_t at = i * (k + 1) + j;
-      charge[mesh->facet[k][at]] += w->held[i] ? (double)NAN : mesh->sign[k][at] * row[i];
+      const double term = w->held[i] ? (double)NAN : mesh->sign[k][at] * w->front.row[i];
+      charge[mesh->facet[k][at]] += term;
+      size[mesh->facet[k][at]] += fabs(term);
     }
 }
 
@@ -45,7 +49,7 @@ void dvi__tents_start(dvi__tents *w, const dvi_march_state *state)
   }
   for (int64_t i = 0; i < mesh->count[w->k + 1]; i++)
     w->base[i] = state->B != NULL ? state->B[i] - derivative(mesh, w->k, front->A, i) : 0;
-  if (w->charge != NULL) find_charge(w, front->row, w->charge);
+  if (w->k > 0) find_charge(w, w->charge, w->charge + mesh->count[w->k - 1]);
   front->tents = 0;
   dvi__front_order(w, front);
   w->t = state->t;
@@ -87,14 +91,17 @@ dvi_status dvi__tents_energy(const dvi__tents *w, double *energy)
   return DVI_OK;
 }
 
-double dvi__tents_gauss(const dvi__tents *w)
+double dvi__tents_charge_error(const dvi__tents *w)
 {
-  double most = 0;
-  if (w->charge == NULL) return 0;
+  double worst = 0, largest = 0;
+  if (w->k == 0) return 0;
   const int64_t count = w->mesh->count[w->k - 1];
-  double *now = w->charge + count;
-  find_charge(w, w->front.row, now);
-  for (int64_t i = 0; i < count; i++)
-    if (!isnan(now[i])) most = fmax(most, fabs(now[i] - w->charge[i]));
-  return most;
+  double *now = w->charge + count, *size = now + count;
+  find_charge(w, now, size);
+  for (int64_t i = 0; i < count; i++) {
+    if (isnan(now[i])) continue;
+    worst = fmax(worst, fabs(now[i] - w->charge[i]));
+    largest = fmax(largest, fabs(w->charge[i]) + size[i]);
+  }
+  return largest > 0 ? worst / largest : 0;
 }
