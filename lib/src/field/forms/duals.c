@@ -26,8 +26,10 @@ void dvi__number_faces(const dvi_mesh *mesh, int64_t cell, int64_t number[DVI__C
   for (int set = whole; set > 0; set--) {
     int corner[DVI__SIMPLEX_CORNERS];
     const int k = dvi__corners_of_set(set, corner) - 1;
-    for (int j = 0; j <= k && k > 0; j++)
+    for (int j = 0; j <= k && k > 1; j++)
       number[set & ~(1 << corner[j])] = mesh->facet[k][number[set] * (k + 1) + j];
+    for (int j = 0; j < 2 && k == 1; j++)
+      number[1 << corner[j]] = mesh->corner[1][number[set] * 2 + j];
   }
 }
 

@@ -1,5 +1,7 @@
 /* The order of tents. The lowest vertex is the next one to rise, of equal ones that with the lowest
- * number, and the front alone tells how far. So the tents of a way do not depend on how it is cut.
+ * number, and the front alone tells how far: as far above each end of its edges as that edge
+ * reaches, its own end among them. So the tents of a way do not depend on how it is cut, and on a
+ * regular mesh a level front rises in layers, whose prisms have the star of leapfrog.
  *
  * At a time t the front is below t. To see the field then, a copy of the front is raised until it
  * is level, by tents that end at t. It holds A(t), and M_k E(t) in its rows. */
@@ -63,7 +65,7 @@ static double top_of(const dvi__tents *tents, const dvi__front *front, int verte
   double top = INFINITY;
   for (int64_t i = tents->edges.start[vertex]; i < tents->edges.start[vertex + 1]; i++) {
     const int edge = tents->edges.cell[i], *end = mesh->corner[1] + (ptrdiff_t)edge * 2;
-    top = fmin(top, front->time[end[0] == vertex ? end[1] : end[0]] + tents->reach[edge]);
+    top = fmin(top, tents->reach[edge] + fmin(front->time[end[0]], front->time[end[1]]));
   }
   if (tents->least == 1) return top;
   const double part = tents->least + (1 - tents->least) * random_part(tents, front, vertex),

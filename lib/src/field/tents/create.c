@@ -10,13 +10,15 @@ static const double default_fraction = 0.5, fraction_most = 0.999;
 
 /* ---- checks ---- */
 
+/* Boxes of one dimension are simplices. */
 static dvi_status check_mesh(const dvi_mesh *mesh, int k)
 {
-  if (mesh->kind != DVI_SIMPLICES || mesh->n > 3 || mesh->space >= DVI_MESH_SPACE_MAX)
+  const int has_boxes = mesh->kind == DVI_BOXES && mesh->n > 1;
+  if (has_boxes || mesh->n > 3 || mesh->space >= DVI_MESH_SPACE_MAX)
     return dvi__fail(DVI_UNSUPPORTED,
                      "tents: the mesh has %s of dimension %d in %d coordinates: simplices of "
                      "dimension 1 to 3 in at most 7 are possible",
-                     mesh->kind == DVI_BOXES ? "boxes" : "simplices", mesh->n, mesh->space);
+                     has_boxes ? "boxes" : "simplices", mesh->n, mesh->space);
   for (int l = 0; l < mesh->space; l++)
     if (mesh->metric[l] < 0)
       return dvi__fail(DVI_UNSUPPORTED,

@@ -102,7 +102,7 @@ static dvi_status observe(const void *self, int i, double *value)
   return DVI_OK;
 }
 
-/* Tents are up to twice as high as the ends of their edges may be apart. */
+/* A tent is at most as high as the ends of its edges may be apart. */
 static void facts(const void *self, dvi_march_facts *facts)
 {
   const dvi__tents *w = ((const march *)self)->tents;
