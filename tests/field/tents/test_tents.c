@@ -663,8 +663,7 @@ START_TEST(what_has_no_tents_is_refused)
 }
 END_TEST
 
-/* On some edge the dual cell in spacetime turns over, though that in space has the right sign. The
- * state stays what it was, to the last bit. */
+/* The state stays what it was, to the last bit. */
 START_TEST(a_failed_advance_changes_nothing)
 {
   pitched p = pitch_over(ring_mesh(16, 0.2, 2), 0, NULL, NULL,
@@ -685,6 +684,22 @@ START_TEST(a_failed_advance_changes_nothing)
   sample(&p);
   ck_assert_mem_eq(A, p.A, (size_t)p.size * sizeof *A);
   free(A);
+  strike(&p);
+}
+END_TEST
+
+/* Nearly right angles give the longest sides short duals, which turn over above a front that is not
+ * level. */
+START_TEST(dual_cells_that_turn_over_are_refused)
+{
+  dvi_generator_options options = {.size = sizeof options, .cells = {6, 6}, .extent = {1, 0.505}};
+  dvi_mesh *mesh = NULL;
+  ck_assert_int_eq(dvi_mesh_generate("staggered", &options, &mesh), DVI_OK);
+  pitched p = pitch_over(mesh, 1, NULL, NULL, (dvi__tents_options){.fraction = 0.9, .least = 0.1});
+  ck_assert_int_eq(dvi__tents_advance(p.tents, 1), DVI_SINGULAR);
+  check_words("tents: over edge");
+  check_words("which should be below 0: take a mesh with acute angles, or a smaller fraction");
+  ck_assert_double_eq(p.tents->t, 0);
   strike(&p);
 }
 END_TEST
@@ -749,6 +764,7 @@ SUITE(tents)
   tcase_add_test(tests, the_steepest_front_of_a_triangle_is_known);
   tcase_add_test(tests, what_has_no_tents_is_refused);
   tcase_add_test(tests, a_failed_advance_changes_nothing);
+  tcase_add_test(tests, dual_cells_that_turn_over_are_refused);
   tcase_add_test(tests, tents_that_cannot_rise_are_refused);
   tcase_add_test(tests, memory_is_asked_for_at_creation_only);
 }
