@@ -6,12 +6,11 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "field/tents/tents.h"
 #include "support/files.h"
 #include "support/meshes.h"
 #include "support/suite.h"
 
-static const dvi__tents_options random_tents = {.least = 0.3, .seed = 11};
+static const char random_tents[] = "tents:least=0.3,seed=11";
 static const dvi_wall pec = {.part = "boundary", .kind = DVI_PEC};
 
 static dvi_star *star_over(dvi_mesh *mesh)
@@ -37,10 +36,16 @@ static dvi_field *make_cavity(int across)
   return field;
 }
 
-static dvi_march *make_march(const dvi_field *field, const dvi__tents_options *options)
+static dvi_status create(const dvi_field *field, const char *method, dvi_march **march)
+{
+  const dvi_march_options options = {.size = sizeof options, .method = method};
+  return dvi_march_create(field, &options, march);
+}
+
+static dvi_march *make_march(const dvi_field *field, const char *method)
 {
   dvi_march *march = NULL;
-  ck_assert_msg(dvi__tents_march(field, options, &march) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(create(field, method, &march) == DVI_OK, "%s", dvi_last_error());
   return march;
 }
 
@@ -91,7 +96,7 @@ static void check_equal(bytes a, bytes b)
 START_TEST(cuts_and_observations_change_no_bit)
 {
   dvi_field *field = make_cavity(6);
-  dvi_march *whole = make_march(field, &random_tents), *cut = make_march(field, &random_tents);
+  dvi_march *whole = make_march(field, random_tents), *cut = make_march(field, random_tents);
   start_at_random(whole, 0.1);
   start_at_random(cut, 0.1);
   advance(whole, 1.3);
@@ -111,7 +116,7 @@ END_TEST
 START_TEST(a_loaded_march_goes_on_with_the_same_bits)
 {
   dvi_field *field = make_cavity(6);
-  dvi_march *first = make_march(field, &random_tents), *second = make_march(field, &random_tents);
+  dvi_march *first = make_march(field, random_tents), *second = make_march(field, random_tents);
   start_at_random(first, 0);
   advance(first, 0.7);
   ck_assert_int_eq(dvi_march_save(first, path_in_folder("saved")), DVI_OK);
@@ -132,8 +137,8 @@ END_TEST
 START_TEST(a_state_of_another_march_is_refused)
 {
   dvi_field *field = make_cavity(6), *wide = make_cavity(7);
-  dvi_march *first = make_march(field, &random_tents),
-            *others[] = {make_march(field, NULL), make_march(wide, &random_tents)};
+  dvi_march *first = make_march(field, random_tents),
+            *others[] = {make_march(field, "tents"), make_march(wide, random_tents)};
   start_at_random(first, 0);
   advance(first, 0.5);
   ck_assert_int_eq(dvi_march_save(first, path_in_folder("saved")), DVI_OK);
@@ -158,7 +163,7 @@ END_TEST
 START_TEST(a_cavity_shows_its_energy_charge_and_probes)
 {
   dvi_field *field = make_cavity(6);
-  dvi_march *march = make_march(field, NULL);
+  dvi_march *march = make_march(field, "tents");
   dvi_march_facts facts;
   int64_t count;
   const dvi_star *star = dvi_field_star(field);
@@ -213,7 +218,7 @@ static dvi_field *make_wave(dvi_mesh *mesh, const dvi_wave_terms *more)
 START_TEST(held_values_stay_and_pull)
 {
   dvi_field *field = make_wave(staggered_mesh(4, 4), &(dvi_wave_terms){0});
-  dvi_march *march = make_march(field, &random_tents);
+  dvi_march *march = make_march(field, random_tents);
   const int64_t count = dvi_march_size(march, DVI_FORM_A);
   const double *x = dvi_mesh_points(dvi_star_mesh(dvi_field_star(field)));
   double *u = calloc((size_t)count, sizeof *u), *v = calloc((size_t)count, sizeof *v);
@@ -256,22 +261,10 @@ static int push(const double *x, double *f, void *user)
   return 0;
 }
 
-static int quartic(int64_t count, const double *x, const double *u, double *V, double *V_u,
-                   double *V_uu, void *user)
-{
-  (void)x, (void)user;
-  for (int64_t i = 0; i < count; i++) {
-    if (V != NULL) V[i] = pow(u[i], 4) / 4;
-    if (V_u != NULL) V_u[i] = pow(u[i], 3);
-    if (V_uu != NULL) V_uu[i] = 3 * pow(u[i], 2);
-  }
-  return 0;
-}
-
 static void check_refusal(dvi_field *field, const char *words)
 {
   dvi_march *march = NULL;
-  ck_assert_int_eq(dvi__tents_march(field, NULL, &march), DVI_UNSUPPORTED);
+  ck_assert_int_eq(create(field, "tents", &march), DVI_UNSUPPORTED);
   ck_assert_ptr_null(march);
   check_words(words);
   check_words("take leapfrog or avi");
@@ -289,19 +282,36 @@ static dvi_field *make_maxwell(dvi_maxwell_terms terms)
   return field;
 }
 
-START_TEST(sources_losses_and_potentials_are_refused)
+START_TEST(sources_and_losses_are_refused)
 {
   static const dvi_current dipole = {.at = {0.5, 0.5}, .along = {1, 0}, .signal = one};
   static const dvi_wall open = {.part = "boundary", .kind = DVI_ABSORBING};
-  static const dvi_field_potential potential = {.density = quartic};
   check_refusal(make_maxwell((dvi_maxwell_terms){.current = &dipole, .currents = 1}),
                 "the field has currents");
   check_refusal(make_maxwell((dvi_maxwell_terms){.wall = &open, .walls = 1}),
                 "conductors or absorbing walls");
-  check_refusal(make_wave(staggered_mesh(4, 4), &(dvi_wave_terms){.potential = &potential}),
-                "a potential");
   check_refusal(make_wave(staggered_mesh(4, 4), &(dvi_wave_terms){.source = push}),
                 "a source or a flux");
+}
+END_TEST
+
+START_TEST(options_that_tents_have_not_are_refused)
+{
+  static const char *const bad[] = {"tents:rise=1",      "tents:least=0",      "tents:least=1.5",
+                                    "tents:least=0.5x",  "tents:seed=0.5",     "tents:seed=-1",
+                                    "tents:least=0.5;",  "tents:seed",         "tents:seed=1e20",
+                                    "tents:seed=1,rise", "tents:least=,seed=1"};
+  dvi_field *field = make_cavity(3);
+  dvi_march *march = NULL;
+  for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+    ck_assert_msg(create(field, bad[i], &march) == DVI_BAD_OPTION, "%s", bad[i]);
+    check_words("is no option: \"least=\" a part above 0 and at most 1, and \"seed=\"");
+  }
+  const dvi_march_options options = {.size = sizeof options, .method = "tents", .step = 0.01};
+  ck_assert_int_eq(dvi_march_create(field, &options, &march), DVI_BAD_ARGUMENT);
+  check_words("they have no common step, as 0.01 would be: give a fraction");
+  ck_assert_ptr_null(march);
+  dvi_field_destroy(&field);
 }
 END_TEST
 
@@ -314,7 +324,7 @@ START_TEST(a_creation_without_memory_leaves_nothing)
   int failures = 0;
   for (; status == DVI_NO_MEMORY; failures += status == DVI_NO_MEMORY) {
     dvi__fail_allocations_after(failures);
-    status = dvi__tents_march(field, NULL, &march);
+    status = create(field, "tents", &march);
     dvi__fail_allocations_after(-1);
   }
   ck_assert_int_eq(status, DVI_OK);
@@ -332,6 +342,7 @@ SUITE(tents_march)
   tcase_add_test(tests, a_state_of_another_march_is_refused);
   tcase_add_test(tests, a_cavity_shows_its_energy_charge_and_probes);
   tcase_add_test(tests, held_values_stay_and_pull);
-  tcase_add_test(tests, sources_losses_and_potentials_are_refused);
+  tcase_add_test(tests, sources_and_losses_are_refused);
+  tcase_add_test(tests, options_that_tents_have_not_are_refused);
   tcase_add_test(tests, a_creation_without_memory_leaves_nothing);
 }

@@ -5,8 +5,9 @@
 #include "core/hash.h"
 #include "core/memory.h"
 #include "core/status.h"
-#include "field/model/field.h"
+#include "field/step/observables.h"
 #include "field/tents/front.h"
+#include "field/tents/options.h"
 #include "march/kind.h"
 
 static const char section_name[] = "tents";
@@ -76,30 +77,32 @@ static dvi_status sample(const void *self, dvi_march_form form, int64_t count, c
   return dvi__tents_sample(((const march *)self)->tents, form, count, cell, values);
 }
 
-/* The energy comes first, then the error of the charge, then the probes. */
 static int observables(const void *self)
 {
-  const dvi_field *f = ((const march *)self)->field;
-  return 1 + (f->degree > 0) + f->probes;
+  return dvi__field_observables(((const march *)self)->field);
 }
 
 static const char *observable(const void *self, int i)
 {
-  const dvi_field *f = ((const march *)self)->field;
-  if (i == 0) return "energy";
-  if (i == 1 && f->degree > 0) return "charge_error";
-  return f->probe[i - 1 - (f->degree > 0)].name;
+  return dvi__field_observable(((const march *)self)->field, i);
+}
+
+static dvi_status energy(const void *self, double *value)
+{
+  return dvi__tents_energy(((const march *)self)->tents, value);
+}
+
+static dvi_status charge_error(const void *self, double *value)
+{
+  *value = dvi__tents_charge_error(((const march *)self)->tents);
+  return DVI_OK;
 }
 
 static dvi_status observe(const void *self, int i, double *value)
 {
-  const march *m = self;
-  const dvi_field *f = m->field;
-  if (i == 0) return dvi__tents_energy(m->tents, value);
-  if (i > 1 || f->degree == 0)
-    return dvi__field_probe(f, i - 1 - (f->degree > 0), sample, self, value);
-  *value = dvi__tents_charge_error(m->tents);
-  return DVI_OK;
+  const dvi__observed observed = {
+      .sample = sample, .energy = energy, .charge_error = charge_error, .of = self};
+  return dvi__field_observe(((const march *)self)->field, &observed, i, value);
 }
 
 /* A tent is at most as high as the ends of its edges may be apart. */
@@ -230,10 +233,9 @@ static dvi_status refuse_sources(const dvi_field *f, dvi__csr *K)
 static dvi_status check_field(const dvi_field *f)
 {
   dvi__csr K = {0};
-  const char *what = f->currents > 0                ? "currents"
-                     : f->damping.rows > 0          ? "conductors or absorbing walls"
-                     : f->potential.density != NULL ? "a potential"
-                                                    : NULL;
+  const char *what = f->currents > 0       ? "currents"
+                     : f->damping.rows > 0 ? "conductors or absorbing walls"
+                                           : NULL;
   if (what != NULL)
     return dvi__fail(DVI_UNSUPPORTED, "tents: the field has %s: take leapfrog or avi", what);
   if (f->degree >= f->mesh->n) return DVI_OK;
@@ -258,14 +260,19 @@ static dvi_status make(march *m, const dvi_field *f, const dvi__tents_options *o
   return status;
 }
 
-dvi_status dvi__tents_march(const dvi_field *field, const dvi__tents_options *options,
-                            dvi_march **result)
+dvi_status dvi__tents_march(const dvi_field *field, const dvi__march_plan *plan, dvi_march **result)
 {
+  dvi__tents_options options = {.fraction = plan->fraction};
   *result = NULL;
+  if (plan->step > 0)
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "tents: they have no common step, as %g would be: give a fraction",
+                     plan->step);
+  DVI_TRY(dvi__tents_read_options(plan->options, &options));
   DVI_TRY(check_field(field));
   march *m = DVI_NEW(march, 1);
   if (m == NULL) return dvi__fail(DVI_NO_MEMORY, "tents: no memory");
-  const dvi_status status = make(m, field, options);
+  const dvi_status status = make(m, field, &options);
   if (status == DVI_OK) return dvi__march_wrap(&kind, m, result);
   destroy(m);
   return status;

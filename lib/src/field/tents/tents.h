@@ -1,7 +1,7 @@
 /* A field that advances over an unstructured mesh of spacetime, which grows tent by tent. */
 #ifndef DVI_FIELD_TENTS_TENTS_H
 #define DVI_FIELD_TENTS_TENTS_H
-#include <dvi/march.h>
+#include "field/step/bound.h"
 
 /* How tents are pitched. Zero means the default. */
 typedef struct dvi__tents_options {
@@ -43,9 +43,9 @@ dvi_status dvi__tents_energy(const dvi__tents *tents, double *energy);
  * which nothing is held, beside the largest sum of the sizes of its terms. 0 for k = 0. */
 double dvi__tents_charge_error(const dvi__tents *tents);
 
-/* Create a march of tents. DVI_UNSUPPORTED for fields with sources, losses or potentials, and
- * as dvi__tents_create. The field outlives the march. */
-dvi_status dvi__tents_march(const dvi_field *field, const dvi__tents_options *options,
-                            dvi_march **march);
+/* Create a march of tents, whose options are "least=0.5,seed=3" or a part of them. DVI_BAD_OPTION,
+ * DVI_UNSUPPORTED for fields with sources or losses, and as dvi__tents_create. The field outlives
+ * the march. */
+dvi_status dvi__tents_march(const dvi_field *field, const dvi__march_plan *plan, dvi_march **march);
 
 #endif
