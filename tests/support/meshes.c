@@ -1,6 +1,7 @@
 #include "support/meshes.h"
 
 #include <check.h>
+#include <math.h>
 #include <stdlib.h>
 
 double random_number(unsigned long long *state)
@@ -112,4 +113,40 @@ dvi_mesh *staggered_mesh(int across, int up)
   const int points = first[up + 1];
   free(first);
   return made_of((dvi_mesh_terms){.dimension = 2, .points = points, .cells = cells}, point, vertex);
+}
+
+dvi_mesh *ring_mesh(int points, double jitter, unsigned long long seed)
+{
+  static const double period = 1;
+  double *point = calloc((size_t)points, sizeof *point);
+  int *vertex = calloc((size_t)points * 2, sizeof *vertex);
+  for (int i = 0; i < points; i++) {
+    point[i] = (i + jitter * (2 * random_number(&seed) - 1)) / points;
+    vertex[2 * i] = i;
+    vertex[2 * i + 1] = (i + 1) % points;
+  }
+  return made_of(
+      (dvi_mesh_terms){.dimension = 1, .points = points, .cells = points, .period = &period}, point,
+      vertex);
+}
+
+/* Odd rows are shifted to the right by half of a side. */
+dvi_mesh *equilateral_torus(int across, int up)
+{
+  const int points = across * up;
+  const double height = sqrt(0.75) / across, period[] = {1, up * height};
+  double *point = calloc((size_t)points * 2, sizeof *point);
+  int *vertex = calloc((size_t)points * 6, sizeof *vertex), count = 0;
+  for (int j = 0; j < up; j++)
+    for (int i = 0; i < across; i++) {
+      const int odd = j % 2, row = j * across, above = (j + 1) % up * across,
+                left = above + (i + odd + across - 1) % across, right = above + (i + odd) % across,
+                triangles[] = {row + i, row + (i + 1) % across, right, row + i, right, left};
+      point[2 * (row + i)] = (i + 0.5 * odd) / across;
+      point[2 * (row + i) + 1] = j * height;
+      for (int c = 0; c < 6; c++) vertex[count++] = triangles[c];
+    }
+  return made_of(
+      (dvi_mesh_terms){.dimension = 2, .points = points, .cells = count / 3, .period = period},
+      point, vertex);
 }

@@ -17,4 +17,11 @@ dvi_mesh *random_simplex(int n, int space, const double *metric, unsigned long l
  * half of an edge. */
 dvi_mesh *staggered_mesh(int across, int up);
 
+/* A circle of length 1 with this many points, moved at random by up to `jitter` edges. */
+dvi_mesh *ring_mesh(int points, double jitter, unsigned long long seed);
+
+/* Equilateral triangles with sides of 1/across, in a rectangle of length 1 that repeats itself.
+ * The number of rows, `up`, is even. */
+dvi_mesh *equilateral_torus(int across, int up);
+
 #endif

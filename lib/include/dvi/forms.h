@@ -185,6 +185,32 @@ dvi_status dvi_form_harmonic(const dvi_star *star, int k, const char *held, int6
 dvi_status dvi_form_solve(const dvi_star *star, int k, const char *held, const double *f,
                           double *u);
 
+/** Check the multisymplectic form formula: for two k-forms a and b, and a set K of n-cells, give
+ *
+ *      sum over the k-cells s on the boundary of K of  a_s (R b)_s - b_s (R a)_s,
+ *      R = d_k^T M_{k+1} d_k with what the cells of K alone contribute to the star.
+ *
+ *  The sum is a rounding error if a and b solve R a = 0 and R b = 0 on all k-cells inside of K, as
+ *  waves do in a mesh of spacetime, whose metric has a sign, and harmonic functions and static
+ *  fields in one of space, where it is the law of reciprocity. On the way from one part of the
+ *  boundary to the others the two-form of the field's phase space is thus conserved (Marsden,
+ *  Patrick and Shkoller 1998; Stern 2009, sec. 3.5.1).
+ *
+ *  @param      k      degree, from 0 to n - 1
+ *  @param      cells  number of cells of K
+ *  @param      cell   [cells] numbers of n-cells, each once
+ *  @param      a, b   [k-cells]
+ *  @param[out] sum    the sum
+ *  @param[out] size   the sum of the sizes of all products, beside which it is to be seen. May be
+ *                     NULL
+ *  @retval DVI_BAD_ARGUMENT  an argument is missing, k or a cell is out of range, or a cell is given
+ *                            twice
+ *  @retval DVI_UNSUPPORTED   the star is spectral, and not a sum over cells
+ *  @retval DVI_NOT_FINITE    a form is not finite, or a product overflows
+ *  @retval DVI_NO_MEMORY     there is no memory */
+dvi_status dvi_form_multisymplectic(const dvi_star *star, int k, int64_t cells, const int *cell,
+                                    const double *a, const double *b, double *sum, double *size);
+
 #ifdef __cplusplus
 }
 #endif

@@ -18,12 +18,8 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "field/forms/gram.h"
+#include "field/forms/duals.h"
 #include "field/forms/star.h"
-
-enum { MASKS = 1 << DVI__SIMPLEX_CORNERS };
-
-static const double inverse_factorial[] = {1, 1, 1.0 / 2, 1.0 / 6, 1.0 / 24};
 
 /* The sums while the cells are taken one after the other. */
 typedef struct sums {
@@ -42,55 +38,21 @@ static void add_piece(const sums *a, int k, int64_t face, int64_t cell, double p
 
 /* ---- simplices ---- */
 
-/* The faces of one simplex, by the set of their corners. */
-typedef struct faces {
-  dvi__placed placed;
-  int64_t number[MASKS];
-  double weight[MASKS]; /* sum over the flags to this face */
-} faces;
-
-static int corners_of(int mask, int *corner)
-{
-  int count = 0;
-  for (int c = 0; c < DVI__SIMPLEX_CORNERS; c++)
-    if (mask >> c & 1) corner[count++] = c;
-  return count;
-}
-
-/* Step from a face to its facets. */
-static dvi_status step_down(const sums *a, faces *f, int mask)
-{
-  int corner[DVI__SIMPLEX_CORNERS];
-  dvi__simplex s;
-  const dvi_mesh *mesh = a->star->mesh;
-  const int k = corners_of(mask, corner) - 1;
-  const int64_t number = f->number[mask];
-  dvi__simplex_of(&f->placed, k, corner, &s);
-  if (s.kappa == 0) return dvi__refuse_null(mesh, k, number);
-  a->volume[k][number] = s.kappa * s.volume;
-  for (int j = 0; j <= k; j++) {
-    const int facet = mask & ~(1 << corner[j]);
-    f->weight[facet] += f->weight[mask] * s.centre[j] / sqrt(fabs(s.square[j]));
-    f->number[facet] = mesh->facet[k][number * (k + 1) + j];
-  }
-  return DVI_OK;
-}
-
-/* Larger sets of corners have larger masks than their subsets, so that all flags to a face are
- * summed before it is left. */
 static dvi_status add_simplex(const sums *a, int64_t cell)
 {
-  faces f;
+  dvi__placed placed;
+  dvi__duals duals;
+  int64_t number[DVI__CORNER_SETS];
+  int corner[DVI__SIMPLEX_CORNERS];
   const dvi_mesh *mesh = a->star->mesh;
-  const int whole = (1 << (mesh->n + 1)) - 1;
-  dvi__place_cell(mesh, mesh->n, cell, &f.placed);
-  for (int mask = 1; mask <= whole; mask++) f.weight[mask] = mask == whole;
-  f.number[whole] = cell;
-  for (int mask = whole; mask > 0; mask--) {
-    int corner[DVI__SIMPLEX_CORNERS];
-    const int k = corners_of(mask, corner) - 1;
-    add_piece(a, k, f.number[mask], cell, f.weight[mask] * inverse_factorial[mesh->n - k]);
-    if (k > 0) DVI_TRY(step_down(a, &f, mask));
+  dvi__place_cell(mesh, mesh->n, cell, &placed);
+  dvi__number_faces(mesh, cell, number);
+  const int null = dvi__duals_of(&placed, mesh->n, 0, &duals);
+  if (null != 0) return dvi__refuse_null(mesh, dvi__corners_of_set(null, corner) - 1, number[null]);
+  for (int set = (1 << (mesh->n + 1)) - 1; set > 0; set--) {
+    const int k = dvi__corners_of_set(set, corner) - 1;
+    add_piece(a, k, number[set], cell, duals.piece[set]);
+    a->volume[k][number[set]] = duals.volume[set];
   }
   return DVI_OK;
 }
@@ -143,7 +105,7 @@ static dvi_status add_box(const sums *a, int64_t cell)
     level *below = levels + (n - k + 1) % 2;
     below->count = 0;
     for (int i = 0; i < here->count; i++) {
-      add_piece(a, k, here->number[i], cell, here->weight[i] * inverse_factorial[n - k]);
+      add_piece(a, k, here->number[i], cell, here->weight[i] * dvi__inverse_factorial[n - k]);
       if (k > 0) DVI_TRY(step_down_box(a, k, here->number[i], here->weight[i], below));
     }
   }

@@ -5,6 +5,7 @@
 #include "core/status.h"
 #include "field/step/bound.h"
 #include "field/step/leapfrog.h"
+#include "field/tents/tents.h"
 
 /* A method, and whether its name fits a mesh. */
 typedef struct method {
@@ -17,6 +18,7 @@ static const method methods[] = {
     {"leapfrog", 0, dvi__leapfrog_create},
     {"bossavit-kettunen", 0, dvi__leapfrog_create},
     {"yee", 1, dvi__leapfrog_create},
+    {"tents", 0, dvi__tents_march},
 };
 
 /* ---- checks ---- */
@@ -58,7 +60,7 @@ static dvi_status find(const char *text, const method **found, const char **rest
   }
   return dvi__fail(DVI_BAD_OPTION,
                    "march: there is no method \"%.*s\"; leapfrog (also called yee and "
-                   "bossavit-kettunen) is one",
+                   "bossavit-kettunen) and tents are methods",
                    (int)length, text);
 }
 

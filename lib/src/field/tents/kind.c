@@ -1,0 +1,279 @@
+/* The kind of march that advances by tents, and its place in files. */
+#include <math.h>
+#include <string.h>
+
+#include "core/hash.h"
+#include "core/memory.h"
+#include "core/status.h"
+#include "field/step/observables.h"
+#include "field/tents/front.h"
+#include "field/tents/options.h"
+#include "march/kind.h"
+
+static const char section_name[] = "tents";
+enum { SECTION_VERSION = 1 };
+
+/* Loads below this part of their terms are roundings. */
+static const double load_part = 1e-12;
+
+typedef struct march {
+  const dvi_field *field;
+  dvi__tents *tents;
+  double *A; /* [k-cells] of a start */
+} march;
+
+/* What a section begins with: what identifies the march, and where it stands. */
+typedef struct place {
+  int64_t vertices, values;
+  uint64_t hash;
+  int64_t tents;
+  double t;
+} place;
+
+/* ---- motion ---- */
+
+static void destroy(void *self)
+{
+  march *m = self;
+  dvi__tents_destroy(&m->tents);
+  dvi__release(m->A);
+  dvi__release(m);
+}
+
+static dvi_status start(void *self, const dvi_march_state *state)
+{
+  march *m = self;
+  const dvi_field *f = m->field;
+  dvi_march_state whole = *state;
+  for (int64_t c = 0; c < f->cells; c++) m->A[c] = f->fixed[c];
+  for (int64_t i = 0; i < f->unknowns && state->A != NULL; i++)
+    m->A[f->unknown[i]] = state->A[f->unknown[i]];
+  whole.A = m->A;
+  dvi__tents_start(m->tents, &whole);
+  return DVI_OK;
+}
+
+static dvi_status advance(void *self, double t)
+{
+  return dvi__tents_advance(((march *)self)->tents, t);
+}
+
+static double time_of(const void *self)
+{
+  return ((const march *)self)->tents->t;
+}
+
+/* ---- observations ---- */
+
+static int64_t size_of(const void *self, dvi_march_form form)
+{
+  const dvi__tents *w = ((const march *)self)->tents;
+  return w->mesh->count[form == DVI_FORM_B ? w->k + 1 : w->k];
+}
+
+static dvi_status sample(const void *self, dvi_march_form form, int64_t count, const int *cell,
+                         double *values)
+{
+  return dvi__tents_sample(((const march *)self)->tents, form, count, cell, values);
+}
+
+static int observables(const void *self)
+{
+  return dvi__field_observables(((const march *)self)->field);
+}
+
+static const char *observable(const void *self, int i)
+{
+  return dvi__field_observable(((const march *)self)->field, i);
+}
+
+static dvi_status energy(const void *self, double *value)
+{
+  return dvi__tents_energy(((const march *)self)->tents, value);
+}
+
+static dvi_status charge_error(const void *self, double *value)
+{
+  *value = dvi__tents_charge_error(((const march *)self)->tents);
+  return DVI_OK;
+}
+
+static dvi_status observe(const void *self, int i, double *value)
+{
+  const dvi__observed observed = {
+      .sample = sample, .energy = energy, .charge_error = charge_error, .of = self};
+  return dvi__field_observe(((const march *)self)->field, &observed, i, value);
+}
+
+/* A tent is at most as high as the ends of its edges may be apart. */
+static void facts(const void *self, dvi_march_facts *facts)
+{
+  const dvi__tents *w = ((const march *)self)->tents;
+  const dvi_mesh *mesh = w->mesh;
+  facts->step = (double)INFINITY;
+  for (int64_t e = 0; e < mesh->count[1]; e++) {
+    facts->step = fmin(facts->step, w->reach[e]);
+    facts->longest = fmax(facts->longest, w->reach[e]);
+  }
+  facts->bound = facts->step / w->fraction;
+  facts->steps = w->front.tents;
+  for (int64_t i = 0; i < mesh->count[w->k + 1] * (w->k + 2); i++)
+    facts->updates += w->front.rises[mesh->corner[w->k + 1][i]];
+}
+
+/* ---- files ---- */
+
+/* The arrays of a state, and the bytes of each. */
+typedef struct arrays {
+  int count;
+  void *at[6];
+  size_t bytes[6];
+} arrays;
+
+static arrays arrays_of(const dvi__tents *w)
+{
+  const dvi_mesh *mesh = w->mesh;
+  const size_t number = sizeof(double), vertices = (size_t)mesh->count[0] * number,
+               values = (size_t)mesh->count[w->k] * number;
+  return (arrays){
+      .count = w->k > 0 ? 6 : 5,
+      .at = {w->front.time, w->front.rises, w->front.A, w->front.row, w->base, w->charge},
+      .bytes = {vertices, vertices, values, values, (size_t)mesh->count[w->k + 1] * number,
+                w->k > 0 ? (size_t)mesh->count[w->k - 1] * number : 0}};
+}
+
+static place place_of(const dvi__tents *w)
+{
+  const dvi_mesh *mesh = w->mesh;
+  const double part[] = {w->fraction, w->least};
+  const size_t cells = (size_t)mesh->count[mesh->n];
+  uint64_t hash = dvi__hash(DVI__HASH_START, sizeof part, part);
+  hash = dvi__hash(hash, sizeof w->seed, &w->seed);
+  hash = dvi__hash(hash, (size_t)mesh->count[w->k], w->held);
+  hash = dvi__hash(hash, (size_t)mesh->count[1] * sizeof *w->reach, w->reach);
+  hash = dvi__hash(hash, cells * sizeof *w->speed, w->speed);
+  hash = dvi__hash(hash, cells * sizeof *w->weight, w->weight);
+  return (place){.vertices = mesh->count[0],
+                 .values = mesh->count[w->k],
+                 .hash = hash,
+                 .tents = w->front.tents,
+                 .t = w->t};
+}
+
+static void save(const void *self, dvi__sections_writer *writer)
+{
+  const dvi__tents *w = ((const march *)self)->tents;
+  const place here = place_of(w);
+  const arrays all = arrays_of(w);
+  dvi__section_open(writer, section_name, SECTION_VERSION);
+  dvi__section_put(writer, &here, sizeof here);
+  for (int i = 0; i < all.count; i++) dvi__section_put(writer, all.at[i], all.bytes[i]);
+}
+
+static dvi_status load(void *self, const dvi__sections *sections)
+{
+  dvi__tents *w = ((march *)self)->tents;
+  const place here = place_of(w);
+  const arrays all = arrays_of(w);
+  dvi__section section;
+  place there = here;
+  size_t size = sizeof there;
+  for (int i = 0; i < all.count; i++) size += all.bytes[i];
+  DVI_TRY(dvi__section_find(sections, section_name, SECTION_VERSION, DVI__ANY_SIZE, &section));
+  if (section.size >= sizeof there) memcpy(&there, section.content, sizeof there);
+  if (section.size != size || there.vertices != here.vertices || there.values != here.values ||
+      there.hash != here.hash)
+    return dvi__fail(DVI_BAD_FILE,
+                     "%s: of tents on another mesh, or of other materials, walls or options",
+                     sections->name);
+  const unsigned char *from = section.content + sizeof there;
+  for (int i = 0; i < all.count; from += all.bytes[i++]) memcpy(all.at[i], from, all.bytes[i]);
+  w->front.tents = there.tents;
+  w->t = there.t;
+  *w->level_time = (double)NAN;
+  dvi__front_order(w, &w->front);
+  return DVI_OK;
+}
+
+static const dvi__march_kind kind = {.name = section_name,
+                                     .destroy = destroy,
+                                     .start = start,
+                                     .advance = advance,
+                                     .time = time_of,
+                                     .size = size_of,
+                                     .sample = sample,
+                                     .observables = observables,
+                                     .observable = observable,
+                                     .observe = observe,
+                                     .facts = facts,
+                                     .save = save,
+                                     .load = load};
+
+/* ---- create ---- */
+
+/* The load of a field has what the fixed values pull, which tents know, and sources. */
+static dvi_status refuse_sources(const dvi_field *f, dvi__csr *K)
+{
+  for (int64_t i = 0; i < f->unknowns && f->load != NULL; i++) {
+    const int64_t row = f->unknown[i];
+    double source = f->load[i], size = fabs(f->load[i]);
+    for (int64_t e = K->start[row]; e < K->start[row + 1]; e++) {
+      source += K->value[e] * f->fixed[K->column[e]];
+      size += fabs(K->value[e] * f->fixed[K->column[e]]);
+    }
+    if (fabs(source) <= load_part * size) continue;
+    const dvi__cell_name name = dvi__name_cell(f->mesh, f->degree, row);
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "tents: the field has a source or a flux, %.3g at %s: take leapfrog or avi",
+                     source, name.text);
+  }
+  return DVI_OK;
+}
+
+static dvi_status check_field(const dvi_field *f)
+{
+  dvi__csr K = {0};
+  const char *what = f->currents > 0       ? "currents"
+                     : f->damping.rows > 0 ? "conductors or absorbing walls"
+                                           : NULL;
+  if (what != NULL)
+    return dvi__fail(DVI_UNSUPPORTED, "tents: the field has %s: take leapfrog or avi", what);
+  if (f->degree >= f->mesh->n) return DVI_OK;
+  DVI_TRY(dvi__stiffness(f->star, f->degree, &K));
+  const dvi_status status = refuse_sources(f, &K);
+  dvi__csr_clear(&K);
+  return status;
+}
+
+static dvi_status make(march *m, const dvi_field *f, const dvi__tents_options *options)
+{
+  int8_t *held = DVI_NEW(int8_t, f->cells);
+  m->field = f;
+  m->A = DVI_NEW(double, f->cells);
+  dvi_status status = held != NULL && m->A != NULL
+                          ? DVI_OK
+                          : dvi__fail(DVI_NO_MEMORY, "tents: no memory for %lld cells",
+                                      (long long)f->cells);
+  for (int64_t c = 0; c < f->cells && status == DVI_OK; c++) held[c] = f->number[c] < 0;
+  if (status == DVI_OK) status = dvi__tents_create(f->star, f->degree, held, options, &m->tents);
+  dvi__release(held);
+  return status;
+}
+
+dvi_status dvi__tents_march(const dvi_field *field, const dvi__march_plan *plan, dvi_march **result)
+{
+  dvi__tents_options options = {.fraction = plan->fraction};
+  *result = NULL;
+  if (plan->step > 0)
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "tents: they have no common step, as %g would be: give a fraction",
+                     plan->step);
+  DVI_TRY(dvi__tents_read_options(plan->options, &options));
+  DVI_TRY(check_field(field));
+  march *m = DVI_NEW(march, 1);
+  if (m == NULL) return dvi__fail(DVI_NO_MEMORY, "tents: no memory");
+  const dvi_status status = make(m, field, &options);
+  if (status == DVI_OK) return dvi__march_wrap(&kind, m, result);
+  destroy(m);
+  return status;
+}

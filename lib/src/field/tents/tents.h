@@ -1,0 +1,51 @@
+/* A field that advances over an unstructured mesh of spacetime, which grows tent by tent. */
+#ifndef DVI_FIELD_TENTS_TENTS_H
+#define DVI_FIELD_TENTS_TENTS_H
+#include "field/step/bound.h"
+
+/* How tents are pitched. Zero means the default. */
+typedef struct dvi__tents_options {
+  /* of light's slope and of local stable steps, by which ends of an edge may be apart. Default:
+   * 0.5 */
+  double fraction;
+  double least;  /* tents rise at random by this part of what is allowed, or more. Default: 1 */
+  uint64_t seed; /* of the random rises */
+} dvi__tents_options;
+
+typedef struct dvi__tents dvi__tents;
+
+/* Prepare for k-forms, with A = 0 at t = 0. factor[k] of the star, which is circumcentric and on
+ * simplices of space, is eps, and factor[k+1] is 1/mu. `held` [k-cells] is 1 where A keeps its
+ * start, and NULL for nowhere. DVI_BAD_ARGUMENT, DVI_UNSUPPORTED, DVI_SINGULAR if an entry of M_k
+ * is not positive, DVI_NO_MEMORY. */
+dvi_status dvi__tents_create(const dvi_star *star, int k, const int8_t *held,
+                             const dvi__tents_options *options, dvi__tents **tents);
+void dvi__tents_destroy(dvi__tents **tents);
+
+/* Start from values that are finite (dvi_march_start). */
+void dvi__tents_start(dvi__tents *tents, const dvi_march_state *state);
+
+/* Pitch all tents whose tops are not above t. DVI_SINGULAR, with the place, if the row of a cell
+ * does not determine its value. DVI_NOT_FINITE. On failure nothing changes. */
+dvi_status dvi__tents_advance(dvi__tents *tents, double t);
+
+/* Pitch one tent, and tell its vertex and the new time there. Statuses as above. */
+dvi_status dvi__tents_pitch(dvi__tents *tents, int *vertex, double *top);
+
+/* Give a form at the time of the last call of dvi__tents_advance. Statuses as there. */
+dvi_status dvi__tents_sample(const dvi__tents *tents, dvi_march_form form, int64_t count,
+                             const int *cell, double *values);
+
+/* Give the energy E.M_k E/2 + B.M_{k+1} B/2 then. */
+dvi_status dvi__tents_energy(const dvi__tents *tents, double *energy);
+
+/* Give the largest change of a charge since the start, d_{k-1}^T M_k E on cells of degree k - 1 at
+ * which nothing is held, beside the largest sum of the sizes of its terms. 0 for k = 0. */
+double dvi__tents_charge_error(const dvi__tents *tents);
+
+/* Create a march of tents, whose options are "least=0.5,seed=3" or a part of them. DVI_BAD_OPTION,
+ * DVI_UNSUPPORTED for fields with sources or losses, and as dvi__tents_create. The field outlives
+ * the march. */
+dvi_status dvi__tents_march(const dvi_field *field, const dvi__march_plan *plan, dvi_march **march);
+
+#endif

@@ -1,0 +1,348 @@
+/* Marches of fields by tents: cuts, files, observables, and fields that they cannot advance. */
+#include <dvi/march.h>
+#include <dvi/maxwell.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "support/files.h"
+#include "support/meshes.h"
+#include "support/suite.h"
+
+static const char random_tents[] = "tents:least=0.3,seed=11";
+static const dvi_wall pec = {.part = "boundary", .kind = DVI_PEC};
+
+static dvi_star *star_over(dvi_mesh *mesh)
+{
+  dvi_star *star = NULL;
+  ck_assert_msg(dvi_star_create(mesh, NULL, &star) == DVI_OK, "%s", dvi_last_error());
+  dvi_mesh_destroy(&mesh);
+  return star;
+}
+
+/* A cavity of conductors, with two probes. */
+static dvi_field *make_cavity(int across)
+{
+  static const dvi_field_probe probes[] = {
+      {.name = "ear", .of = "E", .at = {0.4, 0.6}, .along = {1, 0.5}},
+      {.name = "part", .of = "energy", .part = "all"}};
+  dvi_field *field = NULL;
+  dvi_star *star = star_over(staggered_mesh(across, 5));
+  const dvi_maxwell_terms terms = {
+      .size = sizeof terms, .star = star, .wall = &pec, .walls = 1, .probe = probes, .probes = 2};
+  ck_assert_msg(dvi_maxwell_create(&terms, &field) == DVI_OK, "%s", dvi_last_error());
+  dvi_star_destroy(&star);
+  return field;
+}
+
+static dvi_status create(const dvi_field *field, const char *method, dvi_march **march)
+{
+  const dvi_march_options options = {.size = sizeof options, .method = method};
+  return dvi_march_create(field, &options, march);
+}
+
+static dvi_march *make_march(const dvi_field *field, const char *method)
+{
+  dvi_march *march = NULL;
+  ck_assert_msg(create(field, method, &march) == DVI_OK, "%s", dvi_last_error());
+  return march;
+}
+
+static void start_at_random(dvi_march *march, double t)
+{
+  const int64_t size = dvi_march_size(march, DVI_FORM_E);
+  double *E = calloc((size_t)size, sizeof *E);
+  unsigned long long seed = 5;
+  for (int64_t i = 0; i < size; i++) E[i] = random_number(&seed) - 0.5;
+  const dvi_march_state state = {.size = sizeof state, .t = t, .E = E};
+  ck_assert_msg(dvi_march_start(march, &state) == DVI_OK, "%s", dvi_last_error());
+  free(E);
+}
+
+static void advance(dvi_march *march, double t)
+{
+  ck_assert_msg(dvi_march_advance(march, t) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_double_eq(dvi_march_time(march), t);
+}
+
+static double observe(const dvi_march *march, const char *name)
+{
+  double value = NAN;
+  for (int i = 0; dvi_march_observable(march, i) != NULL; i++)
+    if (strcmp(dvi_march_observable(march, i), name) == 0)
+      ck_assert_msg(dvi_march_observe(march, i, &value) == DVI_OK, "%s", dvi_last_error());
+  return value;
+}
+
+/* All that a march holds, as the bytes of a file. */
+static bytes state_of(const dvi_march *march)
+{
+  const char *path = path_in_folder("state");
+  ck_assert_msg(dvi_march_save(march, path) == DVI_OK, "%s", dvi_last_error());
+  return read_bytes(path);
+}
+
+static void check_equal(bytes a, bytes b)
+{
+  ck_assert_uint_eq(a.count, b.count);
+  ck_assert_mem_eq(a.at, b.at, a.count);
+  free(a.at);
+  free(b.at);
+}
+
+/* ---- cuts and files ---- */
+
+START_TEST(cuts_and_observations_change_no_bit)
+{
+  dvi_field *field = make_cavity(6);
+  dvi_march *whole = make_march(field, random_tents), *cut = make_march(field, random_tents);
+  start_at_random(whole, 0.1);
+  start_at_random(cut, 0.1);
+  advance(whole, 1.3);
+  for (int i = 1; i <= 37; i++) {
+    advance(cut, i < 37 ? 0.1 + 1.2 * i / 37 : 1.3);
+    ck_assert(observe(cut, "energy") > 0);
+    ck_assert(isfinite(observe(cut, "ear")));
+  }
+  check_equal(state_of(whole), state_of(cut));
+  ck_assert_double_eq(observe(whole, "ear"), observe(cut, "ear"));
+  dvi_march_destroy(&whole);
+  dvi_march_destroy(&cut);
+  dvi_field_destroy(&field);
+}
+END_TEST
+
+START_TEST(a_loaded_march_goes_on_with_the_same_bits)
+{
+  dvi_field *field = make_cavity(6);
+  dvi_march *first = make_march(field, random_tents), *second = make_march(field, random_tents);
+  start_at_random(first, 0);
+  advance(first, 0.7);
+  ck_assert_int_eq(dvi_march_save(first, path_in_folder("saved")), DVI_OK);
+  ck_assert_msg(dvi_march_load(second, path_in_folder("saved")) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_double_eq(dvi_march_time(second), 0.7);
+  ck_assert_double_eq(observe(second, "energy"), observe(first, "energy"));
+  advance(first, 2);
+  advance(second, 2);
+  ck_assert_double_eq(observe(second, "charge_error"), observe(first, "charge_error"));
+  check_equal(state_of(first), state_of(second));
+  dvi_march_destroy(&first);
+  dvi_march_destroy(&second);
+  dvi_field_destroy(&field);
+}
+END_TEST
+
+/* Other seeds and other meshes are other marches. */
+START_TEST(a_state_of_another_march_is_refused)
+{
+  dvi_field *field = make_cavity(6), *wide = make_cavity(7);
+  dvi_march *first = make_march(field, random_tents),
+            *others[] = {make_march(field, "tents"), make_march(wide, random_tents)};
+  start_at_random(first, 0);
+  advance(first, 0.5);
+  ck_assert_int_eq(dvi_march_save(first, path_in_folder("saved")), DVI_OK);
+  for (int i = 0; i < 2; i++) {
+    start_at_random(others[i], 0.2);
+    advance(others[i], 0.4);
+    bytes before = state_of(others[i]);
+    ck_assert_int_eq(dvi_march_load(others[i], path_in_folder("saved")), DVI_BAD_FILE);
+    check_words("tents on another mesh, or of other materials, walls or options");
+    check_equal(before, state_of(others[i]));
+    dvi_march_destroy(&others[i]);
+  }
+  dvi_march_destroy(&first);
+  dvi_field_destroy(&field);
+  dvi_field_destroy(&wide);
+}
+END_TEST
+
+/* ---- observables ---- */
+
+/* The energy in all cells is that of the field. The charge stays, and the walls hold E = 0. */
+START_TEST(a_cavity_shows_its_energy_charge_and_probes)
+{
+  dvi_field *field = make_cavity(6);
+  dvi_march *march = make_march(field, "tents");
+  dvi_march_facts facts;
+  int64_t count;
+  const dvi_star *star = dvi_field_star(field);
+  const int *wall = dvi_mesh_part_cells(dvi_star_mesh(star), "boundary", 1, &count);
+  double *E = calloc((size_t)count, sizeof *E);
+  start_at_random(march, 0);
+  const double before = observe(march, "energy");
+  advance(march, 3);
+  ck_assert_double_eq_tol(observe(march, "energy") / before, 1, 0.1);
+  ck_assert_double_eq_tol(observe(march, "part"), observe(march, "energy"), 1e-13 * before);
+  ck_assert_double_le(observe(march, "charge_error"), 1e-13);
+  ck_assert_double_gt(fabs(observe(march, "ear")), 1e-6);
+  ck_assert_int_eq(dvi_march_sample(march, DVI_FORM_E, count, wall, E), DVI_OK);
+  for (int64_t i = 0; i < count; i++) ck_assert_double_eq(E[i], 0);
+  dvi_march_facts_of(march, &facts);
+  ck_assert_str_eq(facts.method, "tents");
+  ck_assert_double_eq(facts.step, 0.5 * facts.bound);
+  ck_assert_double_le(facts.step, facts.longest);
+  ck_assert_int_ge(facts.steps,
+                   (int64_t)(3 / facts.longest) * dvi_mesh_count(dvi_star_mesh(star), 0));
+  ck_assert_int_gt(facts.updates, 3 * facts.steps);
+  free(E);
+  dvi_march_destroy(&march);
+  dvi_field_destroy(&field);
+}
+END_TEST
+
+/* A wave is held at 1 on the left, and at 3 on the right: 1 + 2 x stays at rest, if its other values
+ * are those of a start. A start without values has the held ones. */
+static int tilt(const double *x, const double *normal, double *datum, void *user)
+{
+  (void)normal, (void)user;
+  *datum = 1 + 2 * x[0];
+  return 0;
+}
+
+static dvi_field *make_wave(dvi_mesh *mesh, const dvi_wave_terms *more)
+{
+  static const dvi_condition held = {.part = "boundary", .kind = DVI_FIXED, .datum = tilt};
+  dvi_field *field = NULL;
+  dvi_star *star = star_over(mesh);
+  dvi_wave_terms terms = *more;
+  terms.size = sizeof terms;
+  terms.star = star;
+  terms.condition = terms.condition != NULL ? terms.condition : &held;
+  terms.conditions = 1;
+  ck_assert_msg(dvi_wave_create(&terms, &field) == DVI_OK, "%s", dvi_last_error());
+  dvi_star_destroy(&star);
+  return field;
+}
+
+START_TEST(held_values_stay_and_pull)
+{
+  dvi_field *field = make_wave(staggered_mesh(4, 4), &(dvi_wave_terms){0});
+  dvi_march *march = make_march(field, random_tents);
+  const int64_t count = dvi_march_size(march, DVI_FORM_A);
+  const double *x = dvi_mesh_points(dvi_star_mesh(dvi_field_star(field)));
+  double *u = calloc((size_t)count, sizeof *u), *v = calloc((size_t)count, sizeof *v);
+  for (int64_t i = 0; i < count; i++) u[i] = 1 + 2 * x[2 * i];
+  dvi_march_state state = {.size = sizeof state, .A = u};
+  ck_assert_int_eq(dvi_march_start(march, &state), DVI_OK);
+  advance(march, 2);
+  ck_assert_int_eq(dvi_march_sample(march, DVI_FORM_A, count, NULL, v), DVI_OK);
+  for (int64_t i = 0; i < count; i++) ck_assert_double_eq_tol(v[i], u[i], 1e-13);
+  state.A = NULL;
+  ck_assert_int_eq(dvi_march_start(march, &state), DVI_OK);
+  ck_assert_int_eq(dvi_march_sample(march, DVI_FORM_A, count, NULL, v), DVI_OK);
+  int64_t free_ones;
+  const int *unknown = dvi_field_unknowns(field, &free_ones);
+  for (int64_t i = 0; i < free_ones; i++) {
+    ck_assert_double_eq(v[unknown[i]], 0);
+    v[unknown[i]] = u[unknown[i]];
+  }
+  ck_assert_mem_eq(u, v, (size_t)count * sizeof *u);
+  free(u);
+  free(v);
+  dvi_march_destroy(&march);
+  dvi_field_destroy(&field);
+}
+END_TEST
+
+/* ---- refusals ---- */
+
+static int one(double t, double *value, void *user)
+{
+  (void)t, (void)user;
+  *value = 1;
+  return 0;
+}
+
+static int push(const double *x, double *f, void *user)
+{
+  (void)x, (void)user;
+  *f = 1;
+  return 0;
+}
+
+static void check_refusal(dvi_field *field, const char *words)
+{
+  dvi_march *march = NULL;
+  ck_assert_int_eq(create(field, "tents", &march), DVI_UNSUPPORTED);
+  ck_assert_ptr_null(march);
+  check_words(words);
+  check_words("take leapfrog or avi");
+  dvi_field_destroy(&field);
+}
+
+static dvi_field *make_maxwell(dvi_maxwell_terms terms)
+{
+  dvi_field *field = NULL;
+  dvi_star *star = star_over(staggered_mesh(4, 4));
+  terms.size = sizeof terms;
+  terms.star = star;
+  ck_assert_msg(dvi_maxwell_create(&terms, &field) == DVI_OK, "%s", dvi_last_error());
+  dvi_star_destroy(&star);
+  return field;
+}
+
+START_TEST(sources_and_losses_are_refused)
+{
+  static const dvi_current dipole = {.at = {0.5, 0.5}, .along = {1, 0}, .signal = one};
+  static const dvi_wall open = {.part = "boundary", .kind = DVI_ABSORBING};
+  check_refusal(make_maxwell((dvi_maxwell_terms){.current = &dipole, .currents = 1}),
+                "the field has currents");
+  check_refusal(make_maxwell((dvi_maxwell_terms){.wall = &open, .walls = 1}),
+                "conductors or absorbing walls");
+  check_refusal(make_wave(staggered_mesh(4, 4), &(dvi_wave_terms){.source = push}),
+                "a source or a flux");
+}
+END_TEST
+
+START_TEST(options_that_tents_have_not_are_refused)
+{
+  static const char *const bad[] = {"tents:rise=1",      "tents:least=0",      "tents:least=1.5",
+                                    "tents:least=0.5x",  "tents:seed=0.5",     "tents:seed=-1",
+                                    "tents:least=0.5;",  "tents:seed",         "tents:seed=1e20",
+                                    "tents:seed=1,rise", "tents:least=,seed=1"};
+  dvi_field *field = make_cavity(3);
+  dvi_march *march = NULL;
+  for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+    ck_assert_msg(create(field, bad[i], &march) == DVI_BAD_OPTION, "%s", bad[i]);
+    check_words("is no option: \"least=\" a part above 0 and at most 1, and \"seed=\"");
+  }
+  const dvi_march_options options = {.size = sizeof options, .method = "tents", .step = 0.01};
+  ck_assert_int_eq(dvi_march_create(field, &options, &march), DVI_BAD_ARGUMENT);
+  check_words("they have no common step, as 0.01 would be: give a fraction");
+  ck_assert_ptr_null(march);
+  dvi_field_destroy(&field);
+}
+END_TEST
+
+/* Every allocation of a creation may fail. */
+START_TEST(a_creation_without_memory_leaves_nothing)
+{
+  dvi_field *field = make_cavity(3);
+  dvi_march *march = NULL;
+  dvi_status status = DVI_NO_MEMORY;
+  int failures = 0;
+  for (; status == DVI_NO_MEMORY; failures += status == DVI_NO_MEMORY) {
+    dvi__fail_allocations_after(failures);
+    status = create(field, "tents", &march);
+    dvi__fail_allocations_after(-1);
+  }
+  ck_assert_int_eq(status, DVI_OK);
+  ck_assert_int_gt(failures, 30);
+  dvi_march_destroy(&march);
+  dvi_field_destroy(&field);
+}
+END_TEST
+
+SUITE(tents_march)
+{
+  tcase_add_checked_fixture(tests, make_folder, remove_folder);
+  tcase_add_test(tests, cuts_and_observations_change_no_bit);
+  tcase_add_test(tests, a_loaded_march_goes_on_with_the_same_bits);
+  tcase_add_test(tests, a_state_of_another_march_is_refused);
+  tcase_add_test(tests, a_cavity_shows_its_energy_charge_and_probes);
+  tcase_add_test(tests, held_values_stay_and_pull);
+  tcase_add_test(tests, sources_and_losses_are_refused);
+  tcase_add_test(tests, options_that_tents_have_not_are_refused);
+  tcase_add_test(tests, a_creation_without_memory_leaves_nothing);
+}
