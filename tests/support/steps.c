@@ -1,6 +1,7 @@
 #include "support/steps.h"
 
 #include <dvi/forms.h>
+#include <math.h>
 #include <stdlib.h>
 
 #include "support/meshes.h"
@@ -52,6 +53,22 @@ dvi_mesh *grid_mesh(const char *name, int dimension, int cells, double grading)
   for (int i = 0; i < dimension; i++) options.grading[i] = grading;
   ck_assert_msg(dvi_mesh_generate(name, &options, &mesh) == DVI_OK, "%s", dvi_last_error());
   return mesh;
+}
+
+void step_of_boxes(const dvi_mesh *mesh, double fraction, int is_free, double *step)
+{
+  int width;
+  const int *vertex = dvi_mesh_vertices(mesh, 2, &width);
+  const double *point = dvi_mesh_points(mesh);
+  const int64_t count = dvi_mesh_count(mesh, 2);
+  double shortest = INFINITY;
+  for (int64_t f = 0; f < count; f++) {
+    const double *near = point + 2 * vertex[f * width], *far = point + 2 * vertex[f * width + 3];
+    step[f] = fraction / hypot(1 / (far[0] - near[0]), 1 / (far[1] - near[1]));
+    shortest = fmin(shortest, step[f]);
+  }
+  for (int64_t f = 0; f < count && !is_free; f++)
+    step[f] = shortest * exp2(floor(log2(step[f] / shortest) + 1e-12));
 }
 
 void start_at_random(const stepped *s, dvi__avi *avi, unsigned long long seed)

@@ -20,6 +20,10 @@ void end_stepped(stepped *s);
 /* A generated mesh with the same number of cells along each axis. */
 dvi_mesh *grid_mesh(const char *name, int dimension, int cells, double grading);
 
+/* Give the rectangles of a mesh steps of fraction/sqrt(1/hx^2 + 1/hy^2), or the largest powers of 2 of
+ * the shortest of them that are not longer. */
+void step_of_boxes(const dvi_mesh *mesh, double fraction, int is_free, double *step);
+
 /* Start with random E, and A = 0. */
 void start_at_random(const stepped *s, dvi__avi *avi, unsigned long long seed);
 

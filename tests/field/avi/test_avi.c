@@ -214,10 +214,13 @@ static void check_leapfrog(int i, int steps)
   for (int64_t f = 0; f < l.s.faces; f++) step[f] = h;
   unsigned long long seed = 5;
   for (int64_t e = 0; e < l.s.edges; e++)
-    if (!l.s.is_fixed[e]) E[e] = random_number(&seed) - 0.5;
+    if (!l.s.is_fixed[e]) {
+      A[e] = random_number(&seed) - 0.5;
+      E[e] = random_number(&seed) - 0.5;
+    }
   l.s.terms.step = step;
   avi = avi_of(&l.s.terms);
-  ck_assert_int_eq(dvi__avi_start(avi, 0, NULL, E, NULL), DVI_OK);
+  ck_assert_int_eq(dvi__avi_start(avi, 0, A, E, NULL), DVI_OK);
   leapfrog(&l, h, steps, A, E);
   advance_to(avi, steps * h);
   take(avi, DVI_FORM_A, sample);
