@@ -39,10 +39,11 @@ extern "C" {
  *  If these do not give a period below a thousand of the longest steps, a field that begins at
  *  random is followed for a long time. `resolution` says what such a search can have missed.
  *
- *  @param[in]  options  those of the march. NULL for the defaults
+ *  @param[in]  options  those of the march, with the method avi. NULL for its defaults
  *  @param[in]  span     time for which fields are followed at least, 0 for a default
  *  @param[out] report   unchanged on failure
- *  @retval (others)     as dvi_march_create */
+ *  @retval DVI_UNSUPPORTED  the method has equal steps, which are stable below their bound
+ *  @retval (others)         as dvi_march_create */
 dvi_status dvi_field_stability(const dvi_field *field, const dvi_march_options *options,
                                double span, dvi_stability *report);
 

@@ -139,13 +139,13 @@ END_TEST
 
 /* ---- charge ---- */
 
-static int noise(double from, double to, double *impulse, void *user)
+static dvi_status noise(double from, double to, double *impulse, void *user)
 {
   unsigned long long seed = (unsigned long long)(1e9 * (from + to));
   (void)user;
   (void)random_number(&seed);
   *impulse = (to - from) * (2 * random_number(&seed) - 1);
-  return 0;
+  return DVI_OK;
 }
 
 /* 3e5 events of free steps with random currents gave 4e-14, and 1e6 give the same. */

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/status.h"
 #include "support/meshes.h"
 #include "support/steps.h"
 #include "support/suite.h"
@@ -18,35 +19,29 @@ static double *numbers(int64_t count)
 /* ---- currents ---- */
 
 /* The exact integral of cos(3 t). */
-static int cosine(double from, double to, double *impulse, void *user)
+static dvi_status cosine(double from, double to, double *impulse, void *user)
 {
   (void)user;
   *impulse = (sin(3 * to) - sin(3 * from)) / 3;
-  return 0;
+  return DVI_OK;
 }
 
 /* Numbers without any order, between -1 and 1. */
-static int noise(double from, double to, double *impulse, void *user)
+static dvi_status noise(double from, double to, double *impulse, void *user)
 {
   unsigned long long seed = (unsigned long long)(1e9 * (from + to));
   (void)user;
   (void)random_number(&seed);
   *impulse = (to - from) * (2 * random_number(&seed) - 1);
-  return 0;
+  return DVI_OK;
 }
 
 /* Fails from the time *user on. */
-static int breaks_off(double from, double to, double *impulse, void *user)
+static dvi_status breaks_off(double from, double to, double *impulse, void *user)
 {
   *impulse = to - from;
-  return to > *(const double *)user;
-}
-
-static int is_nan(double from, double to, double *impulse, void *user)
-{
-  (void)user;
-  *impulse = to > 1 ? (double)NAN : from;
-  return 0;
+  if (to <= *(const double *)user) return DVI_OK;
+  return dvi__fail(DVI_CALLBACK_FAILED, "current 0 failed");
 }
 
 /* ---- a mesh with currents and dampings at every third edge ---- */
@@ -489,11 +484,7 @@ static void check_break(int is_queued)
   start_at_random(&l.s, other, 1);
   advance_to(other, 1);
   check_same(&l.s, avi, other);
-  l.current[0].impulse = is_nan;
-  dvi__avi *bad = avi_of(&l.s.terms);
-  start_at_random(&l.s, bad, 1);
-  ck_assert_int_eq(dvi__avi_advance(bad, 2), DVI_NOT_FINITE);
-  dvi__avi_destroy(&avi), dvi__avi_destroy(&other), dvi__avi_destroy(&bad);
+  dvi__avi_destroy(&avi), dvi__avi_destroy(&other);
   end_loaded(&l);
 }
 
@@ -525,10 +516,10 @@ START_TEST(what_cannot_be_stepped_is_refused)
   memset(all, 1, (size_t)l.s.edges);
   while (l.s.is_fixed[inner]) inner++;
   terms.fraction = 1;
-  check_refusal(&terms, DVI_BAD_ARGUMENT, "are not stable; at cell");
+  check_refusal(&terms, DVI_BAD_ARGUMENT, "are not stable; the least bound");
   terms.fraction = 0;
   terms.shortest = 1;
-  check_refusal(&terms, DVI_BAD_ARGUMENT, "take a shorter one");
+  check_refusal(&terms, DVI_BAD_ARGUMENT, "take a shorter step");
   terms.shortest = 0;
   terms.step = step;
   check_refusal(&terms, DVI_BAD_ARGUMENT, "has a step of 0");
@@ -540,16 +531,16 @@ START_TEST(what_cannot_be_stepped_is_refused)
   M2[3] = -1;
   check_refusal(&terms, DVI_SINGULAR, "no step is stable");
   M2[3] = INFINITY;
-  check_refusal(&terms, DVI_NOT_FINITE, "at cell 3");
+  check_refusal(&terms, DVI_NOT_FINITE, "at face 3");
   memset(M2, 0, (size_t)l.s.faces * sizeof *M2);
   check_refusal(&terms, DVI_UNSUPPORTED, "nothing moves it");
   terms.M2 = l.s.terms.M2;
   terms.M1 = M1;
   M1[inner] = 0;
-  check_refusal(&terms, DVI_SINGULAR, "not positive");
+  check_refusal(&terms, DVI_SINGULAR, "needs finite ones above 0");
   terms.M1 = l.s.terms.M1;
   l.damping[inner] = -1;
-  check_refusal(&terms, DVI_BAD_ARGUMENT, "damping of -1");
+  check_refusal(&terms, DVI_BAD_ARGUMENT, "the damping is -1");
   l.damping[inner] = 0;
   l.profile[0][inner] = NAN;
   check_refusal(&terms, DVI_NOT_FINITE, "current 0");

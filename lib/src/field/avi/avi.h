@@ -27,18 +27,21 @@
 #define DVI_FIELD_AVI_AVI_H
 #include <dvi/march.h>
 
+#include "field/mesh/mesh.h"
 #include "march/sections.h"
 
-/* A current profile [edges] times a signal, which is given by its integral over an interval. Return
- * 0, or another number for a failure. */
+/* A current profile [edges] times a signal, which is given by its integral over an interval. It is
+ * finite, or the call fails with a sentence. */
 typedef struct dvi__avi_current {
   const double *profile;
-  int (*impulse)(double from, double to, double *impulse, void *user);
+  dvi_status (*impulse)(double from, double to, double *impulse, void *user);
   void *user;
 } dvi__avi_current;
 
 /* What asynchronous steps consist of. All arrays but the users of currents are copied. */
 typedef struct dvi__avi_terms {
+  const dvi_mesh *mesh; /* whose cells sentences name, or NULL */
+  int degree;           /* of the edges in the mesh */
   int64_t edges, faces;
   int width;              /* edges of a face */
   const int *facet;       /* [faces*width] the rows of d_k */
@@ -64,6 +67,9 @@ typedef struct dvi__avi_terms {
 } dvi__avi_terms;
 
 typedef struct dvi__avi dvi__avi;
+
+/* Name an edge for `up` = 0, or a face for 1. */
+dvi__cell_name dvi__avi_name(const dvi__avi_terms *terms, int up, int64_t cell);
 
 /* Create the steps. DVI_BAD_ARGUMENT if a step is not stable or an array is not as described,
  * DVI_SINGULAR for entries of M1 or M2 that are not positive, DVI_NO_MEMORY. */

@@ -1,6 +1,7 @@
 /* Making asynchronous steps, and their start. */
 #include <limits.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "core/memory.h"
@@ -13,6 +14,7 @@ static void destroy_view(dvi__avi_view *view)
   dvi__release(view->made);
   dvi__release(view->A);
   dvi__release(view->D);
+  dvi__release(view->worked);
   dvi__release(view->half);
   dvi__release(view->node_sum);
   dvi__release(view);
@@ -37,23 +39,29 @@ void dvi__avi_destroy(dvi__avi **avi)
 
 /* ---- checks ---- */
 
-static dvi_status check_edges(const dvi__avi_terms *terms)
+dvi__cell_name dvi__avi_name(const dvi__avi_terms *terms, int up, int64_t cell)
 {
-  for (int64_t e = 0; e < terms->edges; e++) {
-    if (terms->is_fixed != NULL && terms->is_fixed[e]) continue;
-    if (!(terms->M1[e] > 0) || isinf(terms->M1[e]))
-      return dvi__fail(DVI_SINGULAR,
-                       "avi: the star has the entry %g at cell %lld, which is not positive; repair "
-                       "the mesh",
-                       terms->M1[e], (long long)e);
-    if (terms->damping != NULL && (!(terms->damping[e] >= 0) || isinf(terms->damping[e])))
-      return dvi__fail(DVI_BAD_ARGUMENT, "avi: cell %lld has a damping of %g; take none below 0",
-                       (long long)e, terms->damping[e]);
-    for (int i = 0; i < terms->currents; i++)
-      if (!isfinite(terms->current[i].profile[e]))
-        return dvi__fail(DVI_NOT_FINITE, "avi: current %d is %g at cell %lld", i,
-                         terms->current[i].profile[e], (long long)e);
-  }
+  dvi__cell_name name;
+  if (terms->mesh != NULL) return dvi__name_cell(terms->mesh, terms->degree + up, cell);
+  (void)snprintf(name.text, sizeof name.text, "%s %lld", up ? "face" : "edge", (long long)cell);
+  return name;
+}
+
+static dvi_status check_edge(const dvi__avi_terms *terms, int64_t e)
+{
+  const dvi__cell_name name = dvi__avi_name(terms, 0, e);
+  if (!(terms->M1[e] > 0) || isinf(terms->M1[e]))
+    return dvi__fail(DVI_SINGULAR,
+                     "avi: the star has the entry %g at %s, and needs finite ones above 0; repair "
+                     "the mesh",
+                     terms->M1[e], name.text);
+  if (terms->damping != NULL && (!(terms->damping[e] >= 0) || isinf(terms->damping[e])))
+    return dvi__fail(DVI_BAD_ARGUMENT, "avi: the damping is %g at %s; take none below 0",
+                     terms->damping[e], name.text);
+  for (int i = 0; i < terms->currents; i++)
+    if (!isfinite(terms->current[i].profile[e]))
+      return dvi__fail(DVI_NOT_FINITE, "avi: current %d is %g at %s", i,
+                       terms->current[i].profile[e], name.text);
   return DVI_OK;
 }
 
@@ -64,10 +72,11 @@ static dvi_status check(const dvi__avi_terms *terms)
                      (long long)terms->edges, (long long)terms->faces);
   for (int64_t f = 0; f < terms->faces; f++)
     if (!isfinite(terms->M2[f]))
-      return dvi__fail(DVI_NOT_FINITE,
-                       "avi: the star has the entry %g at cell %lld of the higher degree",
-                       terms->M2[f], (long long)f);
-  return check_edges(terms);
+      return dvi__fail(DVI_NOT_FINITE, "avi: the star has the entry %g at %s", terms->M2[f],
+                       dvi__avi_name(terms, 1, f).text);
+  for (int64_t e = 0; e < terms->edges; e++)
+    if (terms->is_fixed == NULL || !terms->is_fixed[e]) DVI_TRY(check_edge(terms, e));
+  return DVI_OK;
 }
 
 /* ---- memory ---- */
@@ -121,9 +130,11 @@ static dvi_status allocate_view(dvi__avi *s)
   view->made = DVI_NEW(unsigned, s->edges);
   view->A = DVI_NEW(double, s->edges);
   view->D = DVI_NEW(double, s->edges);
+  view->worked = DVI_NEW(double, s->extra_count);
   view->half = DVI_NEW(double, 2 * s->currents);
   view->node_sum = DVI_NEW(double, 2 * s->nodes);
-  const int is_made = view->made && view->A && view->D && view->half && view->node_sum;
+  const int is_made = view->made && view->A && view->D && view->worked && view->half &&
+                      view->node_sum;
   return is_made ? DVI_OK : no_memory(s);
 }
 
@@ -142,8 +153,8 @@ static dvi_status make(const dvi__avi_terms *terms, const dvi__avi_plan *plan, d
   DVI_TRY(allocate_numbers(s));
   DVI_TRY(allocate_queue(s));
   DVI_TRY(allocate_currents(terms, s));
-  DVI_TRY(allocate_view(s));
   DVI_TRY(dvi__avi_lay_out(terms, plan, s));
+  DVI_TRY(allocate_view(s));
   return s->threads > 1 ? dvi__team_create(s->threads, &s->team) : DVI_OK;
 }
 

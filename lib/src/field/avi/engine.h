@@ -35,6 +35,7 @@ typedef struct dvi__avi_view {
   unsigned stamp;   /* of the values that are valid */
   unsigned *made;   /* [edges] the stamps of the values */
   double *A, *D;    /* [edges] at t, D without what the faces owe it */
+  double *worked;   /* [extras] works of currents since the last events */
   double *half;     /* [2*currents] */
   double *node_sum; /* [2*nodes] */
 } dvi__avi_view;

@@ -3,8 +3,9 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdio.h>
+#include <stdarg.h>
 #include <string.h>
+#include <dvi/number.h>
 
 #include "core/memory.h"
 #include "core/status.h"
@@ -146,21 +147,27 @@ static double default_span(const dvi__avi *avi)
   return fmin(fmax(events_wanted / rate, 256 * avi->longest), 16384 * avi->longest);
 }
 
+static void say(dvi_stability *report, const char *format, ...) DVI_PRINTF(2, 3);
+static void say(dvi_stability *report, const char *format, ...)
+{
+  va_list arguments;
+  va_start(arguments, format);
+  (void)dvi_number_vprint(report->schedule, DVI_SCHEDULE_SIZE, format, arguments);
+  va_end(arguments);
+}
+
 static void describe(const dvi__avi *avi, dvi_stability *report)
 {
-  char *text = report->schedule;
-  if (avi->longest == avi->shortest)
-    (void)snprintf(text, DVI_SCHEDULE_SIZE, "equal steps of %.6g", avi->shortest);
+  const double from = avi->shortest, to = avi->longest;
+  if (from == to)
+    say(report, "equal steps of %.6g", from);
   else if (!avi->is_queued)
-    (void)snprintf(text, DVI_SCHEDULE_SIZE, "%d classes of steps, powers of 2 from %.6g to %.6g",
-                   avi->classes, avi->shortest, avi->longest);
+    say(report, "%d classes of steps, powers of 2 from %.6g to %.6g", avi->classes, from, to);
   else if (report->period > 0)
-    (void)snprintf(text, DVI_SCHEDULE_SIZE,
-                   "free steps from %.6g to %.6g with the common period %.6g", avi->shortest,
-                   avi->longest, report->period);
+    say(report, "free steps from %.6g to %.6g with the common period %.6g", from, to,
+        report->period);
   else
-    (void)snprintf(text, DVI_SCHEDULE_SIZE, "free steps from %.6g to %.6g without a common period",
-                   avi->shortest, avi->longest);
+    say(report, "free steps from %.6g to %.6g without a common period", from, to);
 }
 
 static dvi_status find_growth(dvi__avi *avi, double span, dvi_stability *report)

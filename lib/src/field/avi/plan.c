@@ -64,18 +64,18 @@ static dvi_status find_events(const dvi__avi_terms *terms, dvi__avi_plan *plan)
     if (!has_events(terms, plan, f)) continue;
     if (!(terms->M2[f] > 0))
       return dvi__fail(DVI_SINGULAR,
-                       "avi: the star has the entry %g at cell %lld of the higher degree, and no "
-                       "step is stable; repair the mesh",
-                       terms->M2[f], (long long)f);
+                       "avi: the star has the entry %g at %s, so that no step is stable; repair "
+                       "the mesh",
+                       terms->M2[f], dvi__avi_name(terms, 1, f).text);
     plan->bound[f] = 0;
     for (int c = 0; c < terms->width; c++) plan->sharing[terms->facet[f * terms->width + c]]++;
   }
   for (int64_t e = 0; e < terms->edges; e++)
     if (is_free(terms, (int)e) && plan->sharing[e] == 0)
       return dvi__fail(DVI_UNSUPPORTED,
-                       "avi: cell %lld belongs to no cell of the next degree with an entry of the "
-                       "star above zero, so that nothing moves it",
-                       (long long)e);
+                       "avi: %s belongs to no cell of the next degree with an entry of the star "
+                       "above zero, so that nothing moves it; use leapfrog",
+                       dvi__avi_name(terms, 0, e).text);
   return DVI_OK;
 }
 
@@ -98,8 +98,8 @@ static dvi_status find_bounds(const dvi__avi_terms *terms, dvi__avi_plan *plan)
     if (isinf(plan->bound[f])) continue;
     plan->bound[f] = 2 / sqrt(frequency_squared(terms, plan, f));
     if (!(plan->bound[f] > 0) || isinf(plan->bound[f]))
-      return dvi__fail(DVI_NOT_FINITE, "avi: the longest stable step of cell %lld is %g",
-                       (long long)f, plan->bound[f]);
+      return dvi__fail(DVI_NOT_FINITE, "avi: the longest stable step of %s is %g",
+                       dvi__avi_name(terms, 1, f).text, plan->bound[f]);
     if (plan->bound[f] < plan->tightest) plan->tightest_face = f;
     plan->tightest = fmin(plan->tightest, plan->bound[f]);
   }
@@ -115,10 +115,11 @@ static dvi_status find_fraction(const dvi__avi_terms *terms, const dvi__avi_plan
   *fraction = terms->fraction > 0 ? terms->fraction : 0.5;
   if (terms->shortest > 0) *fraction = terms->shortest / plan->tightest;
   if (*fraction < 1) return DVI_OK;
-  return dvi__fail(DVI_BAD_ARGUMENT,
-                   "avi: steps of %g times the longest stable ones are not stable; at cell %lld "
-                   "this one is %.9g, take a shorter one",
-                   *fraction, (long long)plan->tightest_face, plan->tightest);
+  return dvi__fail(
+      DVI_BAD_ARGUMENT,
+      "avi: steps of %g times their bounds are not stable; the least bound is %.9g, of "
+      "%s, take a shorter step",
+      *fraction, plan->tightest, dvi__avi_name(terms, 1, plan->tightest_face).text);
 }
 
 /* Shorten a step so that a whole number of it makes the span. */
@@ -151,8 +152,8 @@ static dvi_status take_steps(const dvi__avi_terms *terms, dvi__avi_plan *plan)
   for (int64_t f = 0; f < terms->faces; f++) {
     if (isinf(plan->bound[f])) continue;
     if (!(terms->step[f] > 0) || isinf(terms->step[f]))
-      return dvi__fail(DVI_BAD_ARGUMENT, "avi: cell %lld has a step of %g", (long long)f,
-                       terms->step[f]);
+      return dvi__fail(DVI_BAD_ARGUMENT, "avi: %s has a step of %g",
+                       dvi__avi_name(terms, 1, f).text, terms->step[f]);
     plan->step[f] = terms->step[f];
   }
   return DVI_OK;

@@ -59,6 +59,7 @@ static dvi_status make_edge(const dvi__avi *avi, int64_t e)
       const dvi__avi_passage passage = dvi__avi_passage_of(avi, e, span, view->half);
       view->A[e] = passage.A;
       view->D[e] = passage.D;
+      view->worked[avi->extra[e]] = passage.worked;
     } else {
       view->A[e] -= avi->D[e] * avi->inverse[e] * span;
     }
@@ -134,7 +135,8 @@ dvi_status dvi__avi_energy(const dvi__avi *avi, double *energy, double *growth)
     DVI_TRY(see_B(avi, f, &B));
     sum += B * B * avi->M2[f];
   }
-  for (int64_t i = 0; i < avi->extra_count; i++) reference += avi->extras[i].worked;
+  for (int64_t i = 0; i < avi->extra_count; i++)
+    reference += avi->extras[i].worked + avi->view->worked[i];
   *energy = 0.5 * sum;
   if (growth != NULL) *growth = reference > 0 ? *energy / reference : 1;
   return DVI_OK;
