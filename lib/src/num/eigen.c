@@ -63,6 +63,41 @@ dvi_status dvi__eigen(int n, const double *T, double *real_part, double *imagina
   return status;
 }
 
+/* A pair's vector x + iy has its parts in two columns. */
+static void take_last_components(int n, const double *X, const double *imaginary_part, double *last)
+{
+  for (int j = 0; j < n; j++) {
+    const double *x = X + (size_t)j * (size_t)n;
+    last[j] = fabs(x[n - 1]);
+    if (imaginary_part[j] == 0 || j + 1 == n) continue;
+    last[j] = last[j + 1] = hypot(x[n - 1], x[2 * n - 1]);
+    j++;
+  }
+}
+
+dvi_status dvi__eigenvalues(int n, double *T, int lead, double *real_part, double *imaginary_part,
+                            double *last)
+{
+  const int one = 1, length = 40 * n;
+  int info = 0;
+  double *work = DVI_NEW(double, length);
+  double *X = last != NULL ? DVI_NEW(double, (size_t)n *(size_t)n) : NULL;
+  dvi_status status = DVI_OK;
+  if (work == NULL || (last != NULL && X == NULL)) {
+    status = dvi__fail(DVI_NO_MEMORY, "eigenvalues: no memory for a matrix of %d columns", n);
+  } else {
+    dgeev_("N", last != NULL ? "V" : "N", &n, T, &lead, real_part, imaginary_part, NULL, &one, X,
+           X != NULL ? &n : &one, work, &length, &info, 1, 1);
+    if (info != 0)
+      status = dvi__fail(DVI_SINGULAR, "eigenvalues: those of %d columns do not converge", n);
+    else if (last != NULL)
+      take_last_components(n, X, imaginary_part, last);
+  }
+  dvi__release(work);
+  dvi__release(X);
+  return status;
+}
+
 dvi_status dvi__eigen_symmetric(int n, const double *K, const double *M, double *lambda, double *X)
 {
   const size_t entries = (size_t)n * (size_t)n;

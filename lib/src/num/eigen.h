@@ -11,6 +11,12 @@
 dvi_status dvi__eigen(int n, const double *T, double *real_part, double *imaginary_part, double *X,
                       double *inverse);
 
+/* Give the eigenvalues of a full matrix T, column j at T + j*lead, which is overwritten. `last` [n],
+ * unless NULL, gets the sizes of the last components of the eigenvectors, which have the length 1.
+ * DVI_SINGULAR if the iteration did not converge, DVI_NO_MEMORY. */
+dvi_status dvi__eigenvalues(int n, double *T, int lead, double *real_part, double *imaginary_part,
+                            double *last);
+
 /* Solve K X = M X diag(lambda) with X^T M X = 1 for symmetric K and positive definite M, both [n*n]
  * by columns. lambda [n] is ascending. DVI_SINGULAR if M, the mass, is not positive definite,
  * DVI_NO_MEMORY. */

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "core/status.h"
+#include "field/avi/march.h"
 #include "field/step/bound.h"
 #include "field/step/leapfrog.h"
 #include "field/tents/tents.h"
@@ -18,6 +19,7 @@ static const method methods[] = {
     {"leapfrog", 0, dvi__leapfrog_create},
     {"bossavit-kettunen", 0, dvi__leapfrog_create},
     {"yee", 1, dvi__leapfrog_create},
+    {"avi", 0, dvi__avi_march_create},
     {"tents", 0, dvi__tents_march},
 };
 
@@ -59,32 +61,60 @@ static dvi_status find(const char *text, const method **found, const char **rest
       return DVI_OK;
   }
   return dvi__fail(DVI_BAD_OPTION,
-                   "march: there is no method \"%.*s\"; leapfrog (also called yee and "
-                   "bossavit-kettunen) and tents are methods",
+                   "march: there is no method \"%.*s\"; there are leapfrog (also called yee and "
+                   "bossavit-kettunen), avi and tents",
                    (int)length, text);
 }
 
 /* ---- create ---- */
+
+/* Find the method that is asked for, and the plan of its steps. */
+static dvi_status prepare(const dvi_field *field, const dvi_march_options *options,
+                          const char *usual, const method **found, dvi__march_plan *plan)
+{
+  DVI_TRY(check_options(field, options));
+  *plan = (dvi__march_plan){.step = options->step,
+                            .fraction = options->fraction > 0 ? options->fraction : 0.5,
+                            .span = options->span,
+                            .threads = options->threads > 0 ? options->threads : 1};
+  DVI_TRY(find(options->method != NULL ? options->method : usual, found, &plan->options));
+  if ((*found)->needs_boxes && dvi_mesh_kind(field->mesh) != DVI_BOXES)
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "march: %s is for meshes of boxes; on simplices the same method is called "
+                     "bossavit-kettunen",
+                     (*found)->name);
+  return DVI_OK;
+}
 
 dvi_status dvi_march_create(const dvi_field *field, const dvi_march_options *options,
                             dvi_march **march)
 {
   const dvi_march_options defaults = {.size = sizeof defaults};
   const method *found;
+  dvi__march_plan plan;
   if (field == NULL || march == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "march: a field and a place for the march are needed");
   *march = NULL;
-  if (options == NULL) options = &defaults;
-  DVI_TRY(check_options(field, options));
-  dvi__march_plan plan = {.step = options->step,
-                          .fraction = options->fraction > 0 ? options->fraction : 0.5,
-                          .span = options->span,
-                          .threads = options->threads > 0 ? options->threads : 1};
-  DVI_TRY(find(options->method != NULL ? options->method : "leapfrog", &found, &plan.options));
-  if (found->needs_boxes && dvi_mesh_kind(field->mesh) != DVI_BOXES)
-    return dvi__fail(DVI_UNSUPPORTED,
-                     "march: %s is for meshes of boxes; on simplices the same method is called "
-                     "bossavit-kettunen",
-                     found->name);
+  DVI_TRY(prepare(field, options != NULL ? options : &defaults, "leapfrog", &found, &plan));
   return found->create(field, &plan, march);
+}
+
+dvi_status dvi_field_stability(const dvi_field *field, const dvi_march_options *options,
+                               double span, dvi_stability *report)
+{
+  const dvi_march_options defaults = {.size = sizeof defaults};
+  const method *found;
+  dvi__march_plan plan;
+  if (field == NULL || report == NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT, "stability: a field and a place for the report are needed");
+  if (!(span >= 0) || isinf(span))
+    return dvi__fail(DVI_BAD_ARGUMENT, "stability: the span is %g; 0 or more are possible", span);
+  DVI_TRY(prepare(field, options != NULL ? options : &defaults, "avi", &found, &plan));
+  if (found->create == dvi__avi_march_create)
+    return dvi__avi_march_stability(field, &plan, span, report);
+  return dvi__fail(
+      DVI_UNSUPPORTED,
+      "stability: %s is stable with every step below its bound, which dvi_march_create "
+      "checks; ask for avi",
+      found->name);
 }

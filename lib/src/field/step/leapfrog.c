@@ -23,6 +23,7 @@
 #include "core/status.h"
 #include "field/algebra/conjugate.h"
 #include "field/step/observables.h"
+#include "field/step/source.h"
 #include "field/step/sweep.h"
 
 /* What identifies a march in a file, and where it stands. */
@@ -65,10 +66,10 @@ typedef struct leapfrog {
 
 /* ---- right sides ---- */
 
-/* Give what currents and a wave's source add at the unknown i. */
+/* Give what currents and a wave's source add at the unknown i. Both push A, and E = -A'. */
 static double push(const leapfrog *l, int64_t i)
 {
-  double sum = l->source != NULL ? l->source[i] : 0;
+  double sum = l->source != NULL ? -l->source[i] : 0;
   for (int c = 0; c < l->field->currents; c++) sum -= l->field->current[c].profile[i] * l->J[c];
   return sum;
 }
@@ -487,32 +488,6 @@ static dvi_status make_solver(leapfrog *l)
   return status;
 }
 
-/* The source of a wave is its load without what fixed values pull, because B knows of these. */
-static dvi_status make_source(leapfrog *l)
-{
-  const dvi_field *f = l->field;
-  dvi_matrix d, M2;
-  int is_zero = 1;
-  if (!f->is_wave) return DVI_OK;
-  double *B = l->spare, *H = B + l->sweep.faces, *pull = l->state; /* not in use yet */
-  l->source = DVI_NEW(double, f->unknowns);
-  if (l->source == NULL) return dvi__fail(DVI_NO_MEMORY, "march: no memory for a source");
-  DVI_TRY(dvi_mesh_incidence(f->mesh, f->degree, &d));
-  DVI_TRY(dvi_star_matrix(f->star, f->degree + 1, &M2));
-  dvi_matrix_multiply(&d, 0, f->fixed, B);
-  dvi_matrix_multiply(&M2, 0, B, H);
-  dvi_matrix_multiply(&d, 1, H, pull);
-  for (int64_t i = 0; i < f->unknowns; i++) {
-    l->source[i] = f->load[i] + pull[f->unknown[i]];
-    is_zero = is_zero &&
-              fabs(l->source[i]) <= 1e-14 * (fabs(f->load[i]) + fabs(pull[f->unknown[i]]));
-  }
-  if (!is_zero) return DVI_OK;
-  dvi__release(l->source);
-  l->source = NULL;
-  return DVI_OK;
-}
-
 /* Sum up what distinguishes the march from others of as many cells. */
 static uint64_t hash_of(const leapfrog *l)
 {
@@ -530,7 +505,7 @@ static dvi_status make(leapfrog *l, int threads)
   const dvi_field *f = l->field;
   DVI_TRY(dvi__sweep_create(f, threads, &l->sweep));
   DVI_TRY(make_state(l));
-  DVI_TRY(make_source(l));
+  DVI_TRY(dvi__wave_source(f, &l->source));
   l->at.hash = hash_of(l);
   return f->mass_is_diagonal && l->sweep.M2 != NULL ? make_coefficients(l) : make_solver(l);
 }

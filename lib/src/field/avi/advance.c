@@ -1,0 +1,70 @@
+/* The run of the events, and the alarm. Steps of their own are never stable, only slow to show it.
+ * So the energy is looked at once in 64 of the longest steps, at times that do not depend on how
+ * the way is cut. */
+#include <float.h>
+#include <math.h>
+
+#include "core/status.h"
+#include "field/avi/engine.h"
+
+enum { STEPS_BETWEEN_CHECKS = 64 };
+
+static const double hopeless = 1e100, roundings = 4 * DBL_EPSILON;
+
+dvi_status dvi__avi_signals(const dvi__avi *avi, double from, double to, double *half)
+{
+  const double middle = from + 0.5 * (to - from);
+  for (int i = 0; i < avi->currents; i++) {
+    const dvi__avi_current *current = avi->current + i;
+    DVI_TRY(current->impulse(from, middle, half + 2 * i, current->user));
+    DVI_TRY(current->impulse(middle, to, half + 2 * i + 1, current->user));
+  }
+  return DVI_OK;
+}
+
+static dvi_status run(dvi__avi *avi, double t)
+{
+  const double limit = t + roundings * fmax(fabs(t), fabs(avi->t0));
+  DVI_TRY((avi->is_queued ? dvi__avi_run_queue : dvi__avi_run_slots)(avi, limit));
+  avi->t = t;
+  return DVI_OK;
+}
+
+static double time_of_check(const dvi__avi *avi)
+{
+  return avi->t0 + (double)(avi->checks + 1) * (STEPS_BETWEEN_CHECKS * avi->longest);
+}
+
+static dvi_status compare_energy(dvi__avi *avi)
+{
+  double energy, growth;
+  DVI_TRY(dvi__avi_energy(avi, &energy, &growth));
+  if (!isfinite(energy) || growth > hopeless)
+    return dvi__fail(DVI_NOT_FINITE,
+                     "avi: the energy has grown to %g at t = %g, and the run cannot go on; take "
+                     "shorter steps",
+                     energy, avi->t);
+  avi->checks++;
+  if (!(growth > avi->allowed)) return DVI_OK;
+  const double allowed = avi->allowed;
+  avi->allowed = 2 * fmax(growth, allowed);
+  return dvi__fail(DVI_STEP_TOO_LARGE,
+                   "avi: at t = %g the energy is %.3g times that of the start and its currents, "
+                   "above %g: the steps are in resonance; take shorter ones, and powers of 2 of "
+                   "the shortest",
+                   avi->t, growth, allowed);
+}
+
+dvi_status dvi__avi_advance(dvi__avi *avi, double t)
+{
+  while (time_of_check(avi) <= t) {
+    DVI_TRY(run(avi, time_of_check(avi)));
+    DVI_TRY(compare_energy(avi));
+  }
+  return run(avi, t);
+}
+
+double dvi__avi_time(const dvi__avi *avi)
+{
+  return avi->t;
+}

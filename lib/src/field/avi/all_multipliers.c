@@ -1,0 +1,185 @@
+/* The whole monodromy matrix of a small field.
+ *
+ * Static fields make it defective: with dE = 0 the potential grows, A = -E t. But kicks are
+ * combinations of d^T, so that fields A and E in the space that the modes x_j of K x = omega^2 M1 x
+ * with omega > 0 span stay there. In the coordinates omega_j x_j.M1 A and x_j.D, whose squares are
+ * twice the energy, the matrix is close to an orthogonal one. Its squares, of which some are taken,
+ * keep multipliers on the unit circle there, and spread the others. */
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "field/avi/monodromy.h"
+#include "num/eigen.h"
+
+enum { SQUARES_LEAST = 6, SQUARES_MOST = 40 };
+
+static const double static_below = 1e-11, grown = 1e6, threshold = 1e-6;
+
+typedef struct modal {
+  dvi__avi *avi;
+  int n, r;                   /* free edges, and modes that are not static */
+  double *K, *M, *lambda, *X; /* [n*n] by columns, lambda [n] */
+  double *T, *product;        /* [2r*2r] by columns */
+} modal;
+
+static void clear(modal *m)
+{
+  dvi__release(m->K);
+  dvi__release(m->M);
+  dvi__release(m->lambda);
+  dvi__release(m->X);
+  dvi__release(m->T);
+  dvi__release(m->product);
+}
+
+static dvi_status no_memory(const modal *m)
+{
+  return dvi__fail(DVI_NO_MEMORY, "stability: no memory for %d modes", m->n);
+}
+
+/* ---- modes ---- */
+
+static void fill_in(const modal *m)
+{
+  const dvi__avi *avi = m->avi;
+  const size_t n = (size_t)m->n;
+  for (size_t e = 0; e < n; e++) m->M[e * n + e] = avi->M1[e];
+  for (int64_t f = 0; f < avi->active_faces; f++)
+    for (int a = 0; a < avi->width; a++)
+      for (int b = 0; b < avi->width; b++) {
+        const int i = avi->facet[f * avi->width + a], j = avi->facet[f * avi->width + b];
+        const size_t row = (size_t)dvi__avi_number(i), column = (size_t)dvi__avi_number(j);
+        if (row < n && column < n)
+          m->K[column * n + row] += (i < 0) == (j < 0) ? avi->M2[f] : -avi->M2[f];
+      }
+}
+
+/* The modes that are not static come last, and are brought to the front. */
+static dvi_status find_modes(modal *m)
+{
+  const size_t n = (size_t)m->n;
+  m->K = DVI_NEW(double, n *n);
+  m->M = DVI_NEW(double, n *n);
+  m->X = DVI_NEW(double, n *n);
+  m->lambda = DVI_NEW(double, n);
+  if (!m->K || !m->M || !m->X || !m->lambda) return no_memory(m);
+  fill_in(m);
+  DVI_TRY(dvi__eigen_symmetric(m->n, m->K, m->M, m->lambda, m->X));
+  int statics = 0;
+  while (statics < m->n && !(m->lambda[statics] > static_below * m->lambda[m->n - 1])) statics++;
+  m->r = m->n - statics;
+  memmove(m->lambda, m->lambda + statics, (size_t)m->r * sizeof(double));
+  memmove(m->X, m->X + n * (size_t)statics, n * (size_t)m->r * sizeof(double));
+  return DVI_OK;
+}
+
+/* ---- the matrix ---- */
+
+static void begin_column(const modal *m, int j)
+{
+  dvi__avi *avi = m->avi;
+  const double *x = m->X + (size_t)(j % m->r) * (size_t)m->n, omega = sqrt(m->lambda[j % m->r]);
+  memset(avi->A, 0, (size_t)avi->edges * sizeof(double));
+  memset(avi->D, 0, (size_t)avi->edges * sizeof(double));
+  for (int e = 0; e < m->n && j < m->r; e++) avi->A[e] = x[e] / omega;
+  for (int e = 0; e < m->n && j >= m->r; e++) avi->D[e] = avi->M1[e] * x[e];
+}
+
+static void end_column(const modal *m, int j)
+{
+  const dvi__avi *avi = m->avi;
+  double *column = m->T + (size_t)j * 2 * (size_t)m->r;
+  for (int i = 0; i < m->r; i++) {
+    const double *x = m->X + (size_t)i * (size_t)m->n;
+    double a = 0, d = 0;
+    for (int e = 0; e < m->n; e++) {
+      a += x[e] * avi->M1[e] * avi->A[e];
+      d += x[e] * avi->D[e];
+    }
+    column[i] = sqrt(m->lambda[i]) * a;
+    column[m->r + i] = d;
+  }
+}
+
+static dvi_status make_matrix(modal *m, double period)
+{
+  const size_t size = 2 * (size_t)m->r;
+  m->T = DVI_NEW(double, size *size);
+  m->product = DVI_NEW(double, size *size);
+  if (m->T == NULL || m->product == NULL) return no_memory(m);
+  for (int j = 0; j < 2 * m->r; j++) {
+    begin_column(m, j);
+    DVI_TRY(dvi__avi_carry(m->avi, period));
+    end_column(m, j);
+  }
+  return DVI_OK;
+}
+
+static double norm_of(const modal *m)
+{
+  double sum = 0;
+  for (size_t i = 0; i < 4 * (size_t)m->r * (size_t)m->r; i++) sum += m->T[i] * m->T[i];
+  return sqrt(sum);
+}
+
+static void square(modal *m)
+{
+  const size_t size = 2 * (size_t)m->r;
+  memset(m->product, 0, size * size * sizeof(double));
+  for (size_t j = 0; j < size; j++)
+    for (size_t k = 0; k < size; k++) {
+      const double factor = m->T[j * size + k], *column = m->T + k * size;
+      double *sum = m->product + j * size;
+      for (size_t i = 0; i < size; i++) sum[i] += factor * column[i];
+    }
+  double *const old = m->T;
+  m->T = m->product;
+  m->product = old;
+}
+
+/* Take squares until the time is that of the slowest mode, unless something grows before. */
+static void take_squares(modal *m, double *span)
+{
+  const double slowest = 6.2831853071795865 / sqrt(m->lambda[0]), start = norm_of(m);
+  for (int i = 0; i < SQUARES_MOST; i++) {
+    if (norm_of(m) > grown * start || (i >= SQUARES_LEAST && *span >= slowest)) return;
+    square(m);
+    *span *= 2;
+  }
+}
+
+static dvi_status find_largest(const modal *m, double *largest)
+{
+  const int size = 2 * m->r;
+  double *real = DVI_NEW(double, 2 * size), *imaginary = real != NULL ? real + size : NULL;
+  if (real == NULL) return no_memory(m);
+  const dvi_status status = dvi__eigenvalues(size, m->T, size, real, imaginary, NULL);
+  *largest = 0;
+  for (int i = 0; i < size && status == DVI_OK; i++)
+    *largest = fmax(*largest, hypot(real[i], imaginary[i]));
+  dvi__release(real);
+  return status;
+}
+
+dvi_status dvi__avi_all_multipliers(dvi__avi *avi, double period, dvi_stability *report)
+{
+  modal m = {.avi = avi, .n = (int)avi->free_edges};
+  double largest = 0;
+  report->span = period;
+  memset(avi->bias, 0, (size_t)avi->faces * sizeof *avi->bias);
+  dvi_status status = find_modes(&m);
+  if (status == DVI_OK) status = make_matrix(&m, period);
+  if (status == DVI_OK) {
+    take_squares(&m, &report->span);
+    status = find_largest(&m, &largest);
+  }
+  if (status == DVI_OK) {
+    report->growth = exp(fmax(log(largest), 0) / report->span);
+    report->followed = 2 * (int64_t)m.r;
+    report->resolution = threshold * sqrt(m.lambda[0]) / 6.2831853071795865;
+  }
+  clear(&m);
+  return status;
+}

@@ -1,0 +1,94 @@
+/* Events from a queue, a binary heap of the faces by their next time. Times are products
+ * t_0 + m h_f, never running sums. Of faces with one time that with the lowest number is first. */
+#include <math.h>
+
+#include "core/status.h"
+#include "field/avi/engine.h"
+
+static int is_before(const dvi__avi *avi, int a, int b)
+{
+  if (avi->next[a] != avi->next[b]) return avi->next[a] < avi->next[b];
+  return a < b;
+}
+
+/* Let the face at a place of the heap sink to where it belongs. */
+static void sink(dvi__avi *avi, int64_t place)
+{
+  const int face = avi->heap[place];
+  for (;;) {
+    int64_t child = 2 * place + 1;
+    if (child >= avi->active_faces) break;
+    if (child + 1 < avi->active_faces && is_before(avi, avi->heap[child + 1], avi->heap[child]))
+      child++;
+    if (is_before(avi, face, avi->heap[child])) break;
+    avi->heap[place] = avi->heap[child];
+    place = child;
+  }
+  avi->heap[place] = face;
+}
+
+static double time_of_next(const dvi__avi *avi, int64_t f)
+{
+  return avi->t0 + (double)(avi->count[f] + 1) * avi->step[f];
+}
+
+void dvi__avi_order_events(dvi__avi *avi)
+{
+  for (int64_t f = 0; f < avi->active_faces; f++) {
+    avi->heap[f] = (int)f;
+    avi->next[f] = time_of_next(avi, f);
+  }
+  for (int64_t i = avi->active_faces / 2; i-- > 0;) sink(avi, i);
+}
+
+/* The signals may fail, and are integrated before anything is changed. */
+static dvi_status find_signals(const dvi__avi *avi, int f, double t)
+{
+  for (int c = 0; c < avi->width && avi->currents > 0; c++) {
+    const int e = dvi__avi_number(avi->facet[(int64_t)f * avi->width + c]);
+    if (avi->clock[e] < t && avi->extra[e] >= 0)
+      DVI_TRY(dvi__avi_signals(avi, avi->clock[e], t, avi->half + 2 * (int64_t)avi->currents * c));
+  }
+  return DVI_OK;
+}
+
+static void pass_edges(dvi__avi *avi, int f, double t)
+{
+  for (int c = 0; c < avi->width; c++) {
+    const int e = dvi__avi_number(avi->facet[(int64_t)f * avi->width + c]);
+    const double span = t - avi->clock[e];
+    if (!(span > 0)) continue;
+    if (avi->extra != NULL && avi->extra[e] >= 0)
+      dvi__avi_pass_extra(avi, e, span,
+                          avi->half != NULL ? avi->half + 2 * (int64_t)avi->currents * c : NULL);
+    else
+      dvi__avi_pass(avi, e, span);
+    avi->clock[e] = t;
+  }
+}
+
+static void act(dvi__avi *avi, int f)
+{
+  const double impulse = avi->kick[f] * dvi__avi_field(avi, f, avi->A);
+  for (int c = 0; c < avi->width; c++) {
+    const int code = avi->facet[(int64_t)f * avi->width + c], e = dvi__avi_number(code);
+    if (e < avi->free_edges) avi->D[e] += code < 0 ? -impulse : impulse;
+  }
+}
+
+dvi_status dvi__avi_run_queue(dvi__avi *avi, double limit)
+{
+  for (;;) {
+    const int f = avi->heap[0];
+    const double t = avi->next[f];
+    if (!(t <= limit)) return DVI_OK;
+    DVI_TRY(find_signals(avi, f, t));
+    pass_edges(avi, f, t);
+    act(avi, f);
+    avi->count[f]++;
+    avi->next[f] = time_of_next(avi, f);
+    sink(avi, 0);
+    avi->events++;
+    avi->t = fmax(avi->t, t);
+  }
+}

@@ -1,0 +1,567 @@
+/* Asynchronous steps on arrays: their bounds, orders, bits, and refusals. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "support/meshes.h"
+#include "support/steps.h"
+#include "support/suite.h"
+
+static const double pi = 3.14159265358979323846;
+
+static double *numbers(int64_t count)
+{
+  return calloc((size_t)count + 1, sizeof(double));
+}
+
+/* ---- currents ---- */
+
+/* The exact integral of cos(3 t). */
+static dvi_status cosine(double from, double to, double *impulse, void *user)
+{
+  (void)user;
+  *impulse = (sin(3 * to) - sin(3 * from)) / 3;
+  return DVI_OK;
+}
+
+/* Numbers without any order, between -1 and 1. */
+static dvi_status noise(double from, double to, double *impulse, void *user)
+{
+  unsigned long long seed = (unsigned long long)(1e9 * (from + to));
+  (void)user;
+  (void)random_number(&seed);
+  *impulse = (to - from) * (2 * random_number(&seed) - 1);
+  return DVI_OK;
+}
+
+/* Fails from the time *user on. */
+static dvi_status breaks_off(double from, double to, double *impulse, void *user)
+{
+  *impulse = to - from;
+  if (to <= *(const double *)user) return DVI_OK;
+  return dvi__fail(DVI_CALLBACK_FAILED, "current 0 failed");
+}
+
+/* ---- a mesh with currents and dampings at every third edge ---- */
+
+typedef struct loaded {
+  stepped s;
+  double *damping, *profile[2];
+  dvi__avi_current current[2];
+} loaded;
+
+static void load(loaded *l, int currents, double damping)
+{
+  unsigned long long seed = 11;
+  l->damping = numbers(l->s.edges);
+  for (int i = 0; i < 2; i++) l->profile[i] = numbers(l->s.edges);
+  for (int64_t e = 0; e < l->s.edges; e += 3) {
+    l->damping[e] = damping * l->s.terms.M1[e] * random_number(&seed);
+    for (int i = 0; i < 2; i++) l->profile[i][e] = l->s.terms.M1[e] * (random_number(&seed) - 0.5);
+  }
+  for (int i = 0; i < 2; i++)
+    l->current[i] = (dvi__avi_current){l->profile[i], i == 0 ? cosine : noise, NULL};
+  l->s.terms.current = l->current;
+  l->s.terms.currents = currents;
+  l->s.terms.damping = l->damping;
+}
+
+static void end_loaded(loaded *l)
+{
+  end_stepped(&l->s);
+  free(l->damping);
+  for (int i = 0; i < 2; i++) free(l->profile[i]);
+}
+
+/* Meshes with several classes: triangles and tetrahedra, waves and Maxwell's equations. */
+enum { MESHES = 5 };
+
+static stepped mesh_of_case(int i)
+{
+  switch (i) {
+  case 0: return stepped_mesh(grid_mesh("box", 2, 6, 2), 1, 1);
+  case 1: return stepped_mesh(staggered_mesh(6, 5), 1, 1);
+  case 2: return stepped_mesh(grid_mesh("interval", 1, 12, 2), 0, 1);
+  case 3: return stepped_mesh(grid_mesh("box", 3, 4, 1.7), 1, 0);
+  default: return stepped_mesh(grid_mesh("kuhn", 2, 6, 1.5), 0, 0);
+  }
+}
+
+static void take(const dvi__avi *avi, dvi_march_form form, double *values)
+{
+  ck_assert_msg(dvi__avi_sample(avi, form, 0, NULL, values) == DVI_OK, "%s", dvi_last_error());
+}
+
+/* Values of all forms, [2*edges + faces]. */
+static double *forms_of(const stepped *s, const dvi__avi *avi)
+{
+  double *values = numbers(2 * s->edges + s->faces);
+  take(avi, DVI_FORM_A, values);
+  take(avi, DVI_FORM_E, values + s->edges);
+  take(avi, DVI_FORM_B, values + 2 * s->edges);
+  return values;
+}
+
+static void check_same(const stepped *s, const dvi__avi *a, const dvi__avi *b)
+{
+  double *of_a = forms_of(s, a), *of_b = forms_of(s, b);
+  for (int64_t i = 0; i < 2 * s->edges + s->faces; i++)
+    ck_assert_msg(of_a[i] == of_b[i], "value %lld: %.17g and %.17g", (long long)i, of_a[i],
+                  of_b[i]);
+  free(of_a), free(of_b);
+}
+
+/* ---- bounds ---- */
+
+static double fastest_face(dvi_mesh *mesh, int is_fixed)
+{
+  stepped s = stepped_mesh(mesh, 1, is_fixed);
+  dvi_march_facts facts;
+  dvi__avi *avi = avi_of(&s.terms);
+  dvi__avi_facts(avi, &facts);
+  dvi__avi_destroy(&avi);
+  end_stepped(&s);
+  return 2 / facts.bound;
+}
+
+/* Squares of the width h have 2 sqrt(2)/h, cubes 4/h, of which only sqrt(12)/h is needed. The
+ * staggered triangles have 48. */
+START_TEST(bounds_of_faces_are_those_of_theory)
+{
+  ck_assert_double_eq_tol(fastest_face(grid_mesh("box", 2, 5, 1), 1), sqrt(8) * 5, 1e-12);
+  ck_assert_double_eq_tol(fastest_face(grid_mesh("box", 3, 4, 1), 1), 4 * 4, 1e-12);
+  ck_assert_double_eq_tol(fastest_face(staggered_mesh(8, 8), 1), 48.0, 0.05);
+}
+END_TEST
+
+static void check_steps(const stepped *s, int is_free)
+{
+  dvi_march_facts facts;
+  dvi__avi_terms terms = s->terms;
+  terms.is_free = is_free;
+  terms.span = 1.7;
+  dvi__avi *avi = avi_of(&terms);
+  dvi__avi_facts(avi, &facts);
+  const double count = 1.7 / facts.step, ratio = facts.longest / facts.step;
+  ck_assert_double_eq_tol(count, rint(count), 1e-9 * count);
+  ck_assert(facts.step <= 0.5 * facts.bound * (1 + 1e-12));
+  ck_assert(ratio > 1.5 && (is_free || ratio == exp2(rint(log2(ratio)))));
+  dvi__avi_destroy(&avi);
+}
+
+START_TEST(steps_are_powers_of_two_of_one_that_divides_the_span)
+{
+  stepped s = mesh_of_case(0);
+  check_steps(&s, 0);
+  check_steps(&s, 1);
+  end_stepped(&s);
+}
+END_TEST
+
+/* ---- equal steps ---- */
+
+/* Leapfrog by the matrices of the mesh, in place, E half a step behind. */
+static void leapfrog(const loaded *l, double h, int steps, double *A, double *E)
+{
+  const dvi__avi_terms *t = &l->s.terms;
+  double *kick = numbers(t->edges);
+  for (int n = 0; n < steps; n++) {
+    memset(kick, 0, (size_t)t->edges * sizeof *kick);
+    for (int64_t f = 0; f < t->faces; f++) {
+      double B = 0;
+      for (int c = 0; c < t->width; c++)
+        B += t->sign[f * t->width + c] * A[t->facet[f * t->width + c]];
+      for (int c = 0; c < t->width; c++)
+        kick[t->facet[f * t->width + c]] += t->sign[f * t->width + c] * t->M2[f] * B;
+    }
+    for (int64_t e = 0; e < t->edges; e++) {
+      const double s = 0.5 * h * t->damping[e] / t->M1[e], length = n == 0 ? 0.5 * h : h,
+                   from = n == 0 ? 0 : (n - 0.5) * h;
+      double push = length * kick[e];
+      for (int i = 0; i < t->currents; i++) {
+        double impulse;
+        (void)t->current[i].impulse(from, (n + 0.5) * h, &impulse, NULL);
+        push -= t->current[i].profile[e] * impulse;
+      }
+      if (t->is_fixed[e]) continue;
+      E[e] = ((n == 0 ? 1 : 1 - s) * E[e] + push / t->M1[e]) / (1 + s);
+      A[e] -= h * E[e];
+    }
+  }
+  free(kick);
+}
+
+/* The noise is not used, because it is not the sum of its halves. The state of leapfrog after its
+ * drift is that of the edges before their next event, and the sample of A is the same. */
+static void check_leapfrog(int i, int steps)
+{
+  loaded l = {.s = mesh_of_case(i)};
+  dvi_march_facts facts;
+  load(&l, 1, 1);
+  dvi__avi *avi = avi_of(&l.s.terms);
+  dvi__avi_facts(avi, &facts);
+  dvi__avi_destroy(&avi);
+  const double h = 0.9 * facts.bound;
+  double *step = numbers(l.s.faces), *A = numbers(l.s.edges), *E = numbers(l.s.edges),
+         *sample = numbers(l.s.edges), size = 0;
+  for (int64_t f = 0; f < l.s.faces; f++) step[f] = h;
+  unsigned long long seed = 5;
+  for (int64_t e = 0; e < l.s.edges; e++)
+    if (!l.s.is_fixed[e]) {
+      A[e] = random_number(&seed) - 0.5;
+      E[e] = random_number(&seed) - 0.5;
+    }
+  l.s.terms.step = step;
+  avi = avi_of(&l.s.terms);
+  ck_assert_int_eq(dvi__avi_start(avi, 0, A, E, NULL), DVI_OK);
+  leapfrog(&l, h, steps, A, E);
+  advance_to(avi, steps * h);
+  take(avi, DVI_FORM_A, sample);
+  for (int64_t e = 0; e < l.s.edges; e++) size = fmax(size, fabs(A[e]));
+  for (int64_t e = 0; e < l.s.edges; e++)
+    ck_assert_msg(fabs(A[e] - sample[e]) < 1e-13 * size * steps / 200, "mesh %d: %g of %g", i,
+                  A[e] - sample[e], size);
+  dvi__avi_destroy(&avi);
+  free(step), free(A), free(E), free(sample);
+  end_loaded(&l);
+}
+
+/* Roundings of 200 steps are some 1e-14 of the values. */
+START_TEST(equal_steps_are_leapfrog)
+{
+  for (int i = 0; i < MESHES; i++) check_leapfrog(i, 200);
+}
+END_TEST
+
+/* ---- bits ---- */
+
+static dvi__avi *ran(const dvi__avi_terms *terms, const stepped *s, double t)
+{
+  dvi__avi *avi = avi_of(terms);
+  start_at_random(s, avi, 7);
+  advance_to(avi, t);
+  return avi;
+}
+
+START_TEST(classes_have_the_bits_of_the_queue)
+{
+  for (int i = 0; i < MESHES; i++) {
+    loaded l = {.s = mesh_of_case(i)};
+    load(&l, 2, 1);
+    dvi__avi_terms queued = l.s.terms;
+    queued.is_queued = 1;
+    dvi__avi *a = ran(&l.s.terms, &l.s, 2.345), *b = ran(&queued, &l.s, 2.345);
+    check_same(&l.s, a, b);
+    ck_assert(energy_of(a) == energy_of(b));
+    dvi__avi_destroy(&a), dvi__avi_destroy(&b);
+    end_loaded(&l);
+  }
+}
+END_TEST
+
+/* Cuts at times of events, between them, and a rounding beside them. */
+START_TEST(cuts_and_observations_change_no_bit)
+{
+  for (int i = 0; i < 2 * MESHES; i++) {
+    loaded l = {.s = mesh_of_case(i / 2)};
+    load(&l, 2, 1);
+    l.s.terms.is_free = i % 2;
+    dvi_march_facts facts;
+    dvi__avi *whole = ran(&l.s.terms, &l.s, 1.5), *cut = avi_of(&l.s.terms);
+    dvi__avi_facts(whole, &facts);
+    start_at_random(&l.s, cut, 7);
+    for (int n = 1; n * facts.step < 1.5; n++) {
+      advance_to(cut, n * facts.step);
+      advance_to(cut, n * facts.step * (1 + 4e-16));
+      free(forms_of(&l.s, cut));
+      advance_to(cut, fmin((n + 0.3) * facts.step, 1.5));
+      (void)energy_of(cut);
+    }
+    advance_to(cut, 1.5);
+    check_same(&l.s, whole, cut);
+    dvi__avi_destroy(&whole), dvi__avi_destroy(&cut);
+    end_loaded(&l);
+  }
+}
+END_TEST
+
+START_TEST(threads_change_no_bit)
+{
+  const int cells = is_short_run() ? 50 : 80;
+  loaded l = {.s = stepped_mesh(grid_mesh("box", 2, cells, 1.5), 1, 1)};
+  load(&l, 1, 1);
+  dvi__avi_terms several = l.s.terms;
+  several.threads = 3;
+  dvi__avi *a = ran(&l.s.terms, &l.s, 0.05), *b = ran(&several, &l.s, 0.05);
+  check_same(&l.s, a, b);
+  dvi__avi_destroy(&a), dvi__avi_destroy(&b);
+  end_loaded(&l);
+}
+END_TEST
+
+START_TEST(a_loaded_state_goes_on_with_the_same_bits)
+{
+  for (int i = 0; i < 2 * MESHES; i++) {
+    loaded l = {.s = mesh_of_case(i / 2)};
+    load(&l, 2, 1);
+    l.s.terms.is_free = i % 2;
+    dvi__sections_writer writer;
+    dvi__sections sections;
+    dvi__avi *whole = ran(&l.s.terms, &l.s, 0.7), *restored = ran(&l.s.terms, &l.s, 0.2);
+    dvi__sections_start(&writer, 100);
+    dvi__avi_save(whole, &writer);
+    ck_assert_int_eq(dvi__sections_finish(&writer), DVI_OK);
+    ck_assert_int_eq(dvi__sections_check(&sections, "state", writer.bytes, writer.size), DVI_OK);
+    ck_assert_msg(dvi__avi_load(restored, &sections) == DVI_OK, "%s", dvi_last_error());
+    ck_assert(dvi__avi_time(restored) == 0.7);
+    advance_to(whole, 1.9);
+    advance_to(restored, 1.9);
+    check_same(&l.s, whole, restored);
+    ck_assert(dvi__avi_gauss(whole) == dvi__avi_gauss(restored));
+    dvi__avi_terms other = l.s.terms;
+    other.fraction = 0.4;
+    dvi__avi *stranger = ran(&other, &l.s, 0.2);
+    ck_assert_int_eq(dvi__avi_load(stranger, &sections), DVI_BAD_FILE);
+    check_words("other stars, steps or currents");
+    ck_assert(dvi__avi_time(stranger) == 0.2);
+    dvi__sections_clear(&sections);
+    dvi__release(writer.bytes);
+    dvi__avi_destroy(&whole), dvi__avi_destroy(&restored), dvi__avi_destroy(&stranger);
+    end_loaded(&l);
+  }
+}
+END_TEST
+
+/* ---- orders ---- */
+
+/* A string of 12 unequal cells under currents and dampings, whose exact motion is taken from steps
+ * 64 times shorter. */
+static void run_string(int is_free, double fraction, double *values)
+{
+  loaded l = {.s = mesh_of_case(2)};
+  load(&l, 1, 0.7);
+  l.s.terms.fraction = fraction;
+  l.s.terms.is_free = is_free;
+  double *A = numbers(l.s.edges);
+  const double *x = dvi_mesh_points(l.s.mesh);
+  dvi__avi *avi = avi_of(&l.s.terms);
+  for (int64_t e = 0; e < l.s.edges; e++) A[e] = sin(pi * x[e]);
+  ck_assert_int_eq(dvi__avi_start(avi, 0.5, A, NULL, NULL), DVI_OK);
+  advance_to(avi, 1.7);
+  take(avi, DVI_FORM_A, values);
+  take(avi, DVI_FORM_E, values + l.s.edges);
+  take(avi, DVI_FORM_B, values + 2 * l.s.edges);
+  dvi__avi_destroy(&avi);
+  free(A);
+  end_loaded(&l);
+}
+
+enum { STRING_VALUES = 13 + 13 + 12 };
+
+static double string_error(int is_free, double fraction, const double *exact)
+{
+  double values[STRING_VALUES], worst = 0;
+  run_string(is_free, fraction, values);
+  for (int i = 0; i < STRING_VALUES; i++) worst = fmax(worst, fabs(values[i] - exact[i]));
+  return worst;
+}
+
+START_TEST(samples_at_any_time_are_of_order_two)
+{
+  for (int is_free = 0; is_free < 2; is_free++) {
+    double exact[STRING_VALUES];
+    run_string(0, 0.4 / 256, exact);
+    const double coarse = string_error(is_free, 0.4, exact),
+                 fine = string_error(is_free, 0.4 / 16, exact), order = log2(coarse / fine) / 4;
+    ck_assert_msg(order > 1.75 && order < 2.3, "order %g (%g, %g)", order, coarse, fine);
+  }
+}
+END_TEST
+
+/* ---- charges ---- */
+
+/* The sums of a node's terms are rounded some 1e4 times, at random. */
+START_TEST(charges_follow_random_currents)
+{
+  for (int i = 0; i < 2; i++) {
+    loaded l = {.s = mesh_of_case(i == 0 ? 0 : 3)};
+    load(&l, 2, i);
+    l.s.terms.is_free = 1;
+    l.s.terms.fraction = 0.3;
+    l.s.terms.band = 1e9;
+    dvi_march_facts facts;
+    dvi__avi *avi = avi_of(&l.s.terms);
+    start_at_random(&l.s, avi, 3);
+    for (int n = 1; n <= repeats(50); n++) {
+      advance_to(avi, n);
+      ck_assert_double_lt(dvi__avi_gauss(avi), 1e-13);
+    }
+    dvi__avi_facts(avi, &facts);
+    ck_assert_int_gt(facts.steps, repeats(50) * 200);
+    dvi__avi_destroy(&avi);
+    end_loaded(&l);
+  }
+}
+END_TEST
+
+/* ---- starts ---- */
+
+START_TEST(a_start_is_what_it_says)
+{
+  stepped s = mesh_of_case(1);
+  dvi__avi *avi = avi_of(&s.terms);
+  double *A = numbers(s.edges), *E = numbers(s.edges), *B = numbers(s.faces),
+         *seen = numbers(s.edges);
+  unsigned long long seed = 2;
+  for (int64_t e = 0; e < s.edges; e++) A[e] = random_number(&seed);
+  for (int64_t e = 0; e < s.edges; e++) E[e] = s.is_fixed[e] ? 0 : random_number(&seed);
+  for (int64_t f = 0; f < s.faces; f++) B[f] = random_number(&seed);
+  ck_assert_int_eq(dvi__avi_start(avi, 3, A, E, B), DVI_OK);
+  ck_assert(dvi__avi_time(avi) == 3);
+  take(avi, DVI_FORM_A, seen);
+  for (int64_t e = 0; e < s.edges; e++) ck_assert(seen[e] == A[e]);
+  take(avi, DVI_FORM_E, seen);
+  for (int64_t e = 0; e < s.edges; e++) ck_assert_double_eq_tol(seen[e], E[e], 1e-14);
+  take(avi, DVI_FORM_B, seen);
+  for (int64_t f = 0; f < s.faces; f++) ck_assert_double_eq_tol(seen[f], B[f], 1e-14);
+  const int some[] = {4, 0, 4};
+  ck_assert_int_eq(dvi__avi_sample(avi, DVI_FORM_A, 3, some, seen), DVI_OK);
+  ck_assert(seen[0] == A[4] && seen[1] == A[0] && seen[2] == A[4]);
+  E[s.edges / 2] = 1e200;
+  for (int64_t e = 0; e < s.edges; e++) E[e] = 1e200;
+  ck_assert_int_eq(dvi__avi_start(avi, 4, A, E, B), DVI_NOT_FINITE);
+  ck_assert(dvi__avi_time(avi) == 3);
+  free(A), free(E), free(B), free(seen);
+  dvi__avi_destroy(&avi);
+  end_stepped(&s);
+}
+END_TEST
+
+/* ---- alarms and refusals ---- */
+
+/* Steps of 0.97 of the bound of their cells with ratios of their own grow in a short time. */
+START_TEST(a_run_that_grows_says_so_and_goes_on)
+{
+  stepped s = mesh_of_case(0);
+  s.terms.is_free = 1;
+  s.terms.fraction = 0.97;
+  dvi__avi *avi = avi_of(&s.terms);
+  start_at_random(&s, avi, 1);
+  const double start = energy_of(avi);
+  dvi_status status = DVI_OK;
+  for (int n = 1; n < 1000 && status == DVI_OK; n++) status = dvi__avi_advance(avi, n);
+  ck_assert_int_eq(status, DVI_STEP_TOO_LARGE);
+  check_words("times that of the start");
+  const double first = energy_of(avi) / start, t = dvi__avi_time(avi);
+  ck_assert(first > 2 && t < 1000);
+  while (status == DVI_OK || status == DVI_STEP_TOO_LARGE) status = dvi__avi_advance(avi, t + 1e6);
+  ck_assert_int_eq(status, DVI_NOT_FINITE);
+  ck_assert(isfinite(energy_of(avi)));
+  dvi__avi_destroy(&avi);
+  end_stepped(&s);
+}
+END_TEST
+
+static void check_break(int is_queued)
+{
+  double end = 0.5;
+  loaded l = {.s = mesh_of_case(0)};
+  load(&l, 1, 0);
+  l.current[0].impulse = breaks_off;
+  l.current[0].user = &end;
+  l.s.terms.is_queued = is_queued;
+  dvi__avi *avi = avi_of(&l.s.terms);
+  start_at_random(&l.s, avi, 1);
+  ck_assert_int_eq(dvi__avi_advance(avi, 1), DVI_CALLBACK_FAILED);
+  check_words("current 0 failed");
+  const double t = dvi__avi_time(avi);
+  ck_assert(t > 0.4 && t <= 0.5);
+  end = 10; /* mended, it goes on as if nothing had happened */
+  advance_to(avi, 1);
+  dvi__avi *other = ran(&l.s.terms, &l.s, 0);
+  start_at_random(&l.s, other, 1);
+  advance_to(other, 1);
+  check_same(&l.s, avi, other);
+  dvi__avi_destroy(&avi), dvi__avi_destroy(&other);
+  end_loaded(&l);
+}
+
+START_TEST(a_signal_that_fails_leaves_the_last_good_time)
+{
+  check_break(0);
+  check_break(1);
+}
+END_TEST
+
+static void check_refusal(const dvi__avi_terms *terms, dvi_status status, const char *words)
+{
+  dvi__avi *avi = NULL;
+  ck_assert_int_eq(dvi__avi_create(terms, &avi), status);
+  ck_assert_ptr_null(avi);
+  check_words(words);
+}
+
+START_TEST(what_cannot_be_stepped_is_refused)
+{
+  loaded l = {.s = mesh_of_case(0)};
+  load(&l, 1, 1);
+  dvi__avi_terms terms = l.s.terms;
+  double *M1 = numbers(l.s.edges), *M2 = numbers(l.s.faces), *step = numbers(l.s.faces);
+  int8_t *all = calloc((size_t)l.s.edges, 1);
+  int64_t inner = 0;
+  memcpy(M1, terms.M1, (size_t)l.s.edges * sizeof *M1);
+  memcpy(M2, terms.M2, (size_t)l.s.faces * sizeof *M2);
+  memset(all, 1, (size_t)l.s.edges);
+  while (l.s.is_fixed[inner]) inner++;
+  terms.fraction = 1;
+  check_refusal(&terms, DVI_BAD_ARGUMENT, "are not stable; the least bound");
+  terms.fraction = 0;
+  terms.shortest = 1;
+  check_refusal(&terms, DVI_BAD_ARGUMENT, "take a shorter step");
+  terms.shortest = 0;
+  terms.step = step;
+  check_refusal(&terms, DVI_BAD_ARGUMENT, "has a step of 0");
+  terms.step = NULL;
+  terms.is_fixed = all;
+  check_refusal(&terms, DVI_BAD_ARGUMENT, "nothing moves");
+  terms.is_fixed = l.s.is_fixed;
+  terms.M2 = M2;
+  M2[3] = -1;
+  check_refusal(&terms, DVI_SINGULAR, "no step is stable");
+  M2[3] = INFINITY;
+  check_refusal(&terms, DVI_NOT_FINITE, "at face 3");
+  memset(M2, 0, (size_t)l.s.faces * sizeof *M2);
+  check_refusal(&terms, DVI_UNSUPPORTED, "nothing moves it");
+  terms.M2 = l.s.terms.M2;
+  terms.M1 = M1;
+  M1[inner] = 0;
+  check_refusal(&terms, DVI_SINGULAR, "needs finite ones above 0");
+  terms.M1 = l.s.terms.M1;
+  l.damping[inner] = -1;
+  check_refusal(&terms, DVI_BAD_ARGUMENT, "the damping is -1");
+  l.damping[inner] = 0;
+  l.profile[0][inner] = NAN;
+  check_refusal(&terms, DVI_NOT_FINITE, "current 0");
+  free(M1), free(M2), free(step), free(all);
+  end_loaded(&l);
+}
+END_TEST
+
+SUITE(avi)
+{
+  tcase_add_test(tests, bounds_of_faces_are_those_of_theory);
+  tcase_add_test(tests, steps_are_powers_of_two_of_one_that_divides_the_span);
+  tcase_add_test(tests, equal_steps_are_leapfrog);
+  tcase_add_test(tests, classes_have_the_bits_of_the_queue);
+  tcase_add_test(tests, cuts_and_observations_change_no_bit);
+  tcase_add_test(tests, threads_change_no_bit);
+  tcase_add_test(tests, a_loaded_state_goes_on_with_the_same_bits);
+  tcase_add_test(tests, samples_at_any_time_are_of_order_two);
+  tcase_add_test(tests, charges_follow_random_currents);
+  tcase_add_test(tests, a_start_is_what_it_says);
+  tcase_add_test(tests, a_run_that_grows_says_so_and_goes_on);
+  tcase_add_test(tests, a_signal_that_fails_leaves_the_last_good_time);
+  tcase_add_test(tests, what_cannot_be_stepped_is_refused);
+}

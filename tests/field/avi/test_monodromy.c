@@ -1,0 +1,195 @@
+/* labels: unit slow */
+/* The growth of fields under a schedule, before a run shows it. */
+#include "field/avi/monodromy.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "support/meshes.h"
+#include "support/steps.h"
+#include "support/suite.h"
+
+static dvi_stability stability_of(const stepped *s)
+{
+  dvi_stability report;
+  ck_assert_msg(dvi__avi_stability(&s->terms, 0, &report) == DVI_OK, "%s", dvi_last_error());
+  return report;
+}
+
+/* ---- a string of four long cells and four short ones ---- */
+
+static dvi_mesh *long_and_short(void)
+{
+  static const double x[] = {0, 1, 2, 3, 4, 4.25, 4.5, 4.75, 5};
+  static const int vertex[] = {0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7, 8};
+  dvi_mesh *mesh = NULL;
+  const dvi_mesh_terms terms = {
+      .size = sizeof terms, .dimension = 1, .points = 9, .point = x, .cells = 8, .vertex = vertex};
+  ck_assert_int_eq(dvi_mesh_create(&terms, &mesh), DVI_OK);
+  return mesh;
+}
+
+typedef struct ratio_case {
+  double fraction, ratio, growth; /* the step of a short cell is fraction/4 */
+  double period;                  /* in steps of the short cells */
+} ratio_case;
+
+/* Digits of an independent program, which multiplied the matrices of all events. */
+START_TEST(two_steps_on_a_string_have_known_growths)
+{
+  static const ratio_case cases[] = {{0.8, 4, 1.01037903, 4}, {0.8, 3.75, 1.05123076, 15},
+                                     {0.8, 2, 1, 2},          {0.8, 3, 1, 3},
+                                     {0.8, 3.5, 1, 7},        {0.95, 3.5, 1.04151551, 7},
+                                     {0.95, 4, 1, 4},         {0.5, 3.5, 1.00129581, 7}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    const ratio_case *c = cases + i;
+    stepped s = stepped_mesh(long_and_short(), 0, 1);
+    double step[8];
+    for (int f = 0; f < 8; f++) step[f] = c->fraction / 4 * (f < 4 ? c->ratio : 1);
+    s.terms.step = step;
+    const dvi_stability report = stability_of(&s);
+    ck_assert_double_eq_tol(report.growth, c->growth, 6e-9); /* the digits that are known */
+    ck_assert_double_eq_tol(report.period, c->period * c->fraction / 4, 1e-12);
+    ck_assert_int_eq(report.is_stable, c->growth == 1);
+    ck_assert_int_eq(report.followed, 14);
+    ck_assert_double_lt(report.resolution, 1e-6);
+    end_stepped(&s);
+  }
+}
+END_TEST
+
+/* ---- a graded square ---- */
+
+/* Steps of the classes of cells by themselves, fraction/sqrt(1/hx^2 + 1/hy^2). */
+static void step_by_cells(stepped *s, double fraction, int is_free, double *step)
+{
+  step_of_boxes(s->mesh, fraction, is_free, step);
+  s->terms.step = step;
+}
+
+START_TEST(a_graded_square_is_unstable_from_095_on)
+{
+  static const double fraction[] = {0.5, 0.8, 0.9, 0.95};
+  for (int i = 0; i < 4; i++) {
+    stepped s = stepped_mesh(grid_mesh("box", 2, 10, 2), 1, 1);
+    double step[100];
+    step_by_cells(&s, fraction[i], 0, step);
+    const dvi_stability report = stability_of(&s);
+    ck_assert_double_eq_tol(report.growth, i == 3 ? 1.00481751 : 1, 6e-9);
+    ck_assert_int_eq(report.is_stable, i < 3);
+    ck_assert_int_eq(report.followed, 198);
+    end_stepped(&s);
+  }
+}
+END_TEST
+
+/* Arnoldi's method sees it within a tenth, and nothing where nothing is. */
+START_TEST(arnoldis_method_finds_the_same_growth)
+{
+  for (int i = 0; i < 2; i++) {
+    stepped s = stepped_mesh(grid_mesh("box", 2, 10, 2), 1, 1);
+    double step[100];
+    step_by_cells(&s, i == 0 ? 0.95 : 0.9, 0, step);
+    dvi__avi *avi = avi_of(&s.terms);
+    dvi_march_facts facts;
+    dvi_stability report = {0};
+    dvi__avi_facts(avi, &facts);
+    ck_assert_int_eq(dvi__avi_largest_multipliers(avi, facts.longest, repeats(2000), &report),
+                     DVI_OK);
+    if (i == 0 && !is_short_run())
+      ck_assert_double_eq_tol(report.growth, 1.00481751, 5e-4);
+    else if (i > 0)
+      ck_assert_double_lt(report.growth - 1, report.resolution);
+    ck_assert_double_lt(report.resolution, repeats(10) == 1 ? 0.02 : 0.002);
+    dvi__avi_destroy(&avi);
+    end_stepped(&s);
+  }
+}
+END_TEST
+
+/* ---- other meshes: the run shows what was foretold ---- */
+
+/* The rate at which the logarithm of the amplitude grows in the second half of a run. */
+static double rate_of_run(const stepped *s, double span)
+{
+  dvi__avi_terms terms = s->terms;
+  terms.band = 1e99;
+  dvi__avi *avi = avi_of(&terms);
+  start_at_random(s, avi, 5);
+  advance_to(avi, span);
+  const double half = energy_of(avi);
+  advance_to(avi, 2 * span);
+  const double rate = 0.5 * log(energy_of(avi) / half) / span;
+  dvi__avi_destroy(&avi);
+  return rate;
+}
+
+typedef struct mesh_case {
+  const char *name;
+  int dimension, cells, k;
+  double grading, fraction, growth, span; /* growth 1 for none */
+} mesh_case;
+
+/* A third of the longest bound is stable, and with it the default. What grows does so by a factor
+ * of e^10 and more in the second half of the span, so that the fastest field is alone. */
+START_TEST(runs_grow_as_foretold)
+{
+  static const mesh_case cases[] = {
+      {"box", 3, 3, 0, 2, 0.99, 1.19765, 100},     {"box", 3, 3, 0, 2, 0.5, 1, 100},
+      {"disk", 0, 3, 0, 0, 0.8, 1.02224, 600},     {"disk", 0, 3, 0, 0, 0.5, 1, 100},
+      {"cylinder", 0, 2, 0, 0, 0.95, 1.57661, 60}, {"annulus", 0, 3, 1, 0, 0.5, 1, 100}};
+  for (size_t i = 0; i < (is_short_run() ? 2 : sizeof cases / sizeof *cases); i++) {
+    const mesh_case *c = cases + i;
+    stepped s = stepped_mesh(grid_mesh(c->name, c->dimension, c->cells, c->grading), c->k, 1);
+    s.terms.fraction = c->fraction;
+    const dvi_stability report = stability_of(&s);
+    const double rate = rate_of_run(&s, c->span);
+    ck_assert_double_eq_tol(report.growth, c->growth, c->growth > 1 ? 1e-5 : 1e-9);
+    ck_assert_int_eq(report.is_stable, c->growth == 1);
+    if (c->growth > 1)
+      ck_assert_double_eq_tol(rate, log(report.growth), 0.02 * rate);
+    else
+      ck_assert_double_lt(fabs(rate), 1e-3); /* some percent in the span */
+    end_stepped(&s);
+  }
+}
+END_TEST
+
+/* ---- free steps ---- */
+
+START_TEST(free_steps_are_followed_for_a_long_time)
+{
+  stepped s = stepped_mesh(grid_mesh("box", 2, 10, 2), 1, 1);
+  double step[100];
+  step_by_cells(&s, 0.8, 1, step);
+  const dvi_stability report = stability_of(&s);
+  ck_assert(report.period == 0 && report.is_stable == 0);
+  ck_assert_double_gt(report.growth, 1.005); /* the energy grows 800 times in t = 400 */
+  ck_assert_ptr_nonnull(strstr(report.schedule, "without a common period"));
+  ck_assert_double_lt(report.resolution, 0.002);
+  end_stepped(&s);
+}
+END_TEST
+
+START_TEST(schedules_are_told_in_words)
+{
+  stepped s = stepped_mesh(grid_mesh("interval", 1, 8, 2), 0, 1);
+  double step[8];
+  ck_assert_ptr_nonnull(strstr(stability_of(&s).schedule, "classes of steps, powers of 2 from"));
+  for (int f = 0; f < 8; f++) step[f] = 1e-3;
+  s.terms.step = step;
+  ck_assert_str_eq(stability_of(&s).schedule, "equal steps of 0.001");
+  end_stepped(&s);
+}
+END_TEST
+
+SUITE(monodromy)
+{
+  tcase_add_test(tests, two_steps_on_a_string_have_known_growths);
+  tcase_add_test(tests, a_graded_square_is_unstable_from_095_on);
+  tcase_add_test(tests, arnoldis_method_finds_the_same_growth);
+  tcase_add_test(tests, runs_grow_as_foretold);
+  tcase_add_test(tests, free_steps_are_followed_for_a_long_time);
+  tcase_add_test(tests, schedules_are_told_in_words);
+}
