@@ -26,6 +26,7 @@
 #include <dvi/run.h>
 #include <dvi/sensitivity.h>
 #include <dvi/shapes.h>
+#include <dvi/spectrum.h>
 #include <dvi/status.h>
 #include <dvi/system.h>
 #include <dvi/taylor.h>
