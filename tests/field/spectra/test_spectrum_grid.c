@@ -105,7 +105,8 @@ START_TEST(a_band_holds_the_lowest_frequencies_of_a_box)
 }
 END_TEST
 
-/* A conducting line of 20 cells, whose first mode goes as exp(-0.35 t) . A start in that mode has one line. */
+/* A conducting line of 20 cells, whose first mode goes as exp(-0.35 t). A start in
+ * that mode has one line. */
 START_TEST(the_decay_of_a_conducting_line_is_found)
 {
   enum { FEW = 100 };

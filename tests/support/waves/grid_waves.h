@@ -1,5 +1,5 @@
-/* What Yee's grid does exactly: dispersion, loss, and the reflection of Mur's boundary. The speed of
- * light is 1. */
+/* What Yee's grid does exactly: dispersion, loss, and the reflection of Mur's boundary. The speed
+ * of light is 1. */
 #ifndef SUPPORT_WAVES_GRID_WAVES_H
 #define SUPPORT_WAVES_GRID_WAVES_H
 

@@ -121,8 +121,8 @@ static int drop_instants(int count, double complex *z)
   return kept;
 }
 
-/* Estimate the largest singular value of noise from the smallest ones, of which a fifth at least are
- * noise. Those of a R x C matrix of independent numbers lie between sqrt(R) -+ sqrt(C) (Marchenko
+/* Estimate the largest singular value of noise from the smallest ones, of which a fifth at least
+ * are noise. Those of a R x C matrix of independent numbers lie between sqrt(R) -+ sqrt(C) (Marchenko
  * and Pastur 1967), and a fifth of them below sqrt(R) - 0.685 sqrt(C). Hankel matrices of noise,
  * whose entries repeat, have some that are larger. */
 static double largest_of_noise(const pencil *p, int probes)
@@ -139,7 +139,8 @@ static int rank_above(const pencil *p, double floor)
   return rank;
 }
 
-static dvi_status solve_pencil(pencil *p, int probes, double floor, int *count, double complex *z)
+static dvi_status solve_pencil(pencil *p, int probes, double floor, int *count,
+                               double complex *z)
 {
   DVI_TRY(dvi__complex_svd(p->columns, p->square, p->singular, p->right));
   *count = rank_above(p, fmax(floor, largest_of_noise(p, probes)));
