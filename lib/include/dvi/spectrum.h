@@ -53,10 +53,11 @@ extern "C" {
 /** Find the spectral lines of a band in one or several series of equally spaced samples.
  *
  *  Lines are told apart if their distance is not much below 2 pi/T, or far below it without noise.
- *  There must be fewer than samples/5 of them, because the rest tells the noise. More than 1023
- *  samples are filtered and decimated to about 512 for each part of the band, so that the cost
- *  grows with the number of samples and with the band's width. The filter takes in a twelfth of the
- *  series. Lines that decay within so short a time are lost.
+ *  There must be fewer than samples/5 of them in one series, or samples/4 in two, because the rest
+ *  tells the noise. Of samples that are denser than the fastest line needs, only as many count as
+ *  it needs. More than 1023 samples are filtered and decimated to about 512 for each part of the
+ *  band, so that the cost grows with the number of samples and with the band's width. The filter
+ *  takes in a twelfth of the series. Lines that decay within so short a time are lost.
  *
  *  Series of one call share a unit, because noise has one size in all of them.
  *

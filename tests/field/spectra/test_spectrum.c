@@ -180,6 +180,28 @@ START_TEST(probes_share_their_lines)
 }
 END_TEST
 
+/* 60 samples have room for 30 exponentials, of which a fifth tell the noise: 12 lines. Two series
+ * have room for 40, and tell 16. */
+START_TEST(two_probes_tell_more_lines_than_one)
+{
+  enum { FEW = 60, LINES = 15 };
+  damped line[LINES];
+  double y[2 * FEW];
+  found f;
+  for (int p = 0; p < 2; p++) {
+    for (int k = 0; k < LINES; k++)
+      line[k] = (damped){pi * (k + 0.5) / LINES, 0, 1 + 0.5 * sin(k + p), cos(3 * k + 5 * p)};
+    damped_sum(LINES, line, 1, FEW, y + p * FEW);
+  }
+  find(FEW, 1, y, 1, NULL, &f);
+  ck_assert_int_lt(f.count, LINES);
+  find(FEW, 2, y, 1, NULL, &f);
+  ck_assert_int_eq(f.count, LINES);
+  for (int k = 0; k < LINES; k++)
+    ck_assert_double_eq_tol(f.line[k].frequency, line[k].frequency, 1e-12);
+}
+END_TEST
+
 START_TEST(the_strongest_lines_are_given_in_ascending_order)
 {
   double y[SAMPLES];
@@ -320,6 +342,7 @@ SUITE(spectrum)
   tcase_add_test(tests, real_exponentials_have_the_frequency_zero_or_the_highest);
   tcase_add_test(tests, a_growing_line_has_a_negative_decay_and_quality);
   tcase_add_test(tests, probes_share_their_lines);
+  tcase_add_test(tests, two_probes_tell_more_lines_than_one);
   tcase_add_test(tests, the_strongest_lines_are_given_in_ascending_order);
   tcase_add_test(tests, a_band_has_its_own_lines_alone);
   tcase_add_test(tests, a_band_without_lines_has_none);

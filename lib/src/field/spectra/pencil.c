@@ -21,16 +21,25 @@
 #include "core/status.h"
 #include "num/complex_matrix.h"
 
-enum { BLOCK = 64 };
+enum { BLOCK = 64, COLUMNS = 512 };
 
-int dvi__poles_most(int length)
+static int64_t smaller(int64_t a, int64_t b)
 {
-  return length / 2;
+  return a < b ? a : b;
+}
+
+/* Columns are one more than poles. All Hankel matrices together are about square, as long as the
+ * columns are not too many. */
+int dvi__poles_most(int length, int probes)
+{
+  const int64_t square = (int64_t)length * probes / (probes + 1), half = length / 2,
+                limit = half > COLUMNS ? half : COLUMNS;
+  return (int)smaller(square, smaller(limit, 3 * (int64_t)length / 4));
 }
 
 double dvi__hankel_size(int length, int probes)
 {
-  const int columns = length / 2 + 1, rows = length - length / 2;
+  const int most = dvi__poles_most(length, probes), columns = most + 1, rows = length - most;
   return sqrt((double)rows * columns * probes);
 }
 
@@ -45,9 +54,10 @@ typedef struct pencil {
   double *singular;       /* [C] */
 } pencil;
 
-static dvi_status pencil_create(int length, pencil *p)
+static dvi_status pencil_create(int length, int probes, pencil *p)
 {
-  const size_t columns = (size_t)(length / 2 + 1), rows = (size_t)length - columns + 1;
+  const size_t columns = (size_t)dvi__poles_most(length, probes) + 1,
+               rows = (size_t)length - columns + 1;
   *p = (pencil){.rows = (int)rows, .columns = (int)columns};
   p->stack = DVI_NEW(double complex, (columns + rows) * columns);
   p->square = DVI_NEW(double complex, columns *columns);
@@ -127,7 +137,7 @@ static int drop_instants(int count, double complex *z)
  * whose entries repeat, have some that are larger. */
 static double largest_of_noise(const pencil *p, int probes)
 {
-  const double hankel = 1.6, ratio = sqrt(probes);
+  const double hankel = 1.6, ratio = sqrt((double)p->rows * probes / p->columns);
   const int most = p->columns - 1, fifth = most - 1 - most / 5;
   return hankel * (ratio + 1) / (ratio - 0.685) * p->singular[fifth];
 }
@@ -158,7 +168,7 @@ dvi_status dvi__find_poles(const dvi__exponentials *series, double floor, int *c
                            double complex *z)
 {
   pencil p;
-  dvi_status status = pencil_create(series->length, &p);
+  dvi_status status = pencil_create(series->length, series->probes, &p);
   if (status == DVI_OK) {
     triangulate(&p, series);
     status = solve_pencil(&p, series->probes, floor, count, z);

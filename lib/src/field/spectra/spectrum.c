@@ -105,7 +105,7 @@ static dvi_status spectrum_create(spectrum *s)
   const double parts = ceil((s->highest - s->lowest) / (pi / (double)stride) * (1 - 1e-12));
   s->parts = stride > 1 ? (int)fmax(parts, 1) : 1;
   s->part = (dvi__exponentials){.length = (int)length, .probes = s->probes};
-  const size_t most = (size_t)dvi__poles_most((int)length), P = (size_t)s->probes;
+  const size_t most = (size_t)dvi__poles_most((int)length, s->probes), P = (size_t)s->probes;
   s->capacity = (int)most * s->parts;
   s->part.y = DVI_NEW(double complex, P *(size_t)length);
   s->z = DVI_NEW(double complex, most);
@@ -274,7 +274,7 @@ static void give_report(const spectrum *s, int lines, dvi_spectrum_report *repor
                                   .parts = s->parts,
                                   .samples = s->part.length,
                                   .exponentials = s->exponentials,
-                                  .room = dvi__poles_most(s->part.length)};
+                                  .room = dvi__poles_most(s->part.length, s->probes)};
 }
 
 static dvi_status give_lines(const spectrum *s, double interval, int most, int *count,
