@@ -32,6 +32,7 @@ static const subcommand subcommands[] = {
     {"mesh", mesh_command},
     {"modes", modes_command},
     {"solve", solve_command},
+    {"spectrum", spectrum_command},
     {"plot", plot_command},
     {NULL, NULL},
 };
@@ -55,6 +56,8 @@ static const char help[] =
     "grow\n"
     "  plot FILE.csv ...       draw columns of a CSV file against each other: orbits, phase "
     "portraits\n"
+    "  spectrum FILE.csv ...   find frequencies, decay rates and amplitudes in columns of a CSV "
+    "file\n"
     "  emit-c SCENE.yaml ...   write a C file that declares a scene's system by callbacks\n"
     "  path PROBLEM ...        find a path between given ends, or a periodic one, all its steps at "
     "once\n"

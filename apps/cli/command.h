@@ -29,6 +29,7 @@ int emit_c_command(int argc, char **argv);
 int mesh_command(int argc, char **argv);
 int modes_command(int argc, char **argv);
 int solve_command(int argc, char **argv);
+int spectrum_command(int argc, char **argv);
 int plot_command(int argc, char **argv);
 
 /** Print "dvi: <sentence>" to standard error. */

@@ -2,20 +2,21 @@
 #ifndef CURVES_H
 #define CURVES_H
 #include "cli/options.h"
-#include "csv/rows.h"
+#include "csv/series.h"
 
 /** One column against another. */
 typedef struct curve_points {
   int panel; /**< index of the pair of axes, from 0 */
-  char x_name[FIELD_SIZE], y_name[FIELD_SIZE];
   int x_column, y_column;
-  double *x, *y; /**< [count] NaN where a cell is no number */
+  const char *x_name, *y_name;
+  const double *x, *y; /**< [count] NaN where a cell is no number */
 } curve_points;
 
 /** The curves to be drawn, and their points. */
 typedef struct curve_list {
-  int panels, curves, count, capacity;
+  int panels, curves, count;
   curve_points curve[WORDS_MAX];
+  series_table table;
 } curve_list;
 
 /** Read the words of --axes, each "X:Y[,X:Y...]" for one panel. A single Y means t:Y. Returns DONE,

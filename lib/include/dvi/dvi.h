@@ -26,6 +26,8 @@
 #include <dvi/run.h>
 #include <dvi/sensitivity.h>
 #include <dvi/shapes.h>
+#include <dvi/spectrum.h>
+#include <dvi/stability.h>
 #include <dvi/stability.h>
 #include <dvi/status.h>
 #include <dvi/system.h>
