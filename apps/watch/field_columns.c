@@ -18,6 +18,13 @@ static bool is_wave(const field_columns *c)
   return c->scene->system != NULL && dvi_march_size(c->march, DVI_FORM_A) > 0;
 }
 
+static bool is_observable(const field_columns *c, const char *name)
+{
+  for (int i = 0; i < c->there; i++)
+    if (strcmp(c->all[i].name, name) == 0) return true;
+  return false;
+}
+
 static bool list_all(field_columns *c)
 {
   int observables = 0;
@@ -27,8 +34,10 @@ static bool list_all(field_columns *c)
   if (c->all == NULL) return false;
   for (int i = 0; i < observables; i++)
     c->all[c->there++] = (field_column){dvi_march_observable(c->march, i), i, -1};
-  for (int i = 0; i < invariants; i++)
-    c->all[c->there++] = (field_column){c->scene->terms->invariants[i].name, -1, i};
+  for (int i = 0; i < invariants; i++) {
+    const char *name = c->scene->terms->invariants[i].name;
+    if (!is_observable(c, name)) c->all[c->there++] = (field_column){name, -1, i};
+  }
   return true;
 }
 

@@ -108,7 +108,7 @@ static void set_media(draft *d)
 
 static int density_of(const double *x, double *value, void *user)
 {
-  return dvi__vector_value(user, x, value);
+  return dvi__place_vector_value(user, x, value);
 }
 
 static void add_dipole(draft *d, const dvi__scene_source *source, int component)
@@ -205,7 +205,8 @@ static dvi_status set_terms(draft *d, const dvi_march_options *options)
   return DVI_OK;
 }
 
-static dvi_status integrate(draft *d, dvi_march_form form, dvi__vector *vector, double **values)
+static dvi_status integrate(draft *d, dvi_march_form form, dvi__place_vector *vector,
+                            double **values)
 {
   if (vector == NULL) return DVI_OK;
   *values = dvi__heap_take((size_t)dvi_yee_size(&d->terms, form), sizeof **values);

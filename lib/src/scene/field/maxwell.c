@@ -97,7 +97,7 @@ static bool set_walls(dvi_scene *scene, draft *d)
 
 static int density_of(const double *x, double *value, void *user)
 {
-  return dvi__vector_value(user, x, value);
+  return dvi__place_vector_value(user, x, value);
 }
 
 static bool set_currents(dvi_scene *scene, draft *d)
@@ -167,7 +167,7 @@ static bool set_probes(dvi_scene *scene, draft *d)
 /* The components of a form, of a vector in space. */
 typedef struct form_of_vector {
   const struct dvi__scene_field *field;
-  const dvi__vector *vector;
+  const dvi__place_vector *vector;
   bool is_B;
 } form_of_vector;
 
@@ -175,12 +175,12 @@ static int form_at(const double *x, double *value, void *user)
 {
   const form_of_vector *f = user;
   double vector[3] = {0};
-  const int failed = dvi__vector_value(f->vector, x, vector);
+  const int failed = dvi__place_vector_value(f->vector, x, vector);
   if (failed == 0) dvi__maxwell_form(f->field, f->is_B, vector, value);
   return failed;
 }
 
-static bool integrate(dvi_scene *scene, const dvi__vector *vector, bool is_B, double **form)
+static bool integrate(dvi_scene *scene, const dvi__place_vector *vector, bool is_B, double **form)
 {
   form_of_vector f = {.field = scene->field, .vector = vector, .is_B = is_B};
   const dvi_mesh *mesh = scene->field->mesh;

@@ -43,7 +43,7 @@ typedef struct dvi__scene_source {
   const dvi__tree *at, *wave;
   double point[3];
   dvi__signal *signal[3]; /* one of a density and of a wave */
-  dvi__vector *density;
+  dvi__place_vector *density;
   double lower[3], upper[3], direction[3], polarization[3];
 } dvi__scene_source;
 
@@ -66,8 +66,8 @@ struct dvi__scene_maxwell {
   dvi__scene_source *source;
   dvi__scene_probe *probe;
   int materials, walls, sources, probes;
-  dvi__vector *of_E, *of_B, *of_A;     /* the start, NULL for 0 */
-  double *start_E, *start_B, *start_A; /* [cells] of the mesh, or NULL */
+  dvi__place_vector *of_E, *of_B, *of_A; /* the start, NULL for 0 */
+  double *start_E, *start_B, *start_A;   /* [cells] of the mesh, or NULL */
 };
 
 /* Note whether the field is Maxwell's, before the mesh is read. */

@@ -271,8 +271,8 @@ static bool read_density(dvi_scene *scene, const dvi__tree *tree, const dvi__tre
 {
   static const char *const known[] = {"density", "signal"};
   return dvi__want_keys(scene, tree, "a current", 2, known) &&
-         dvi__vector_read(scene, density, scene->field->maxwell->E, "a density",
-                          &source->density) &&
+         dvi__place_vector_read(scene, density, scene->field->maxwell->E, "a density",
+                                &source->density) &&
          read_signal(scene, tree, source);
 }
 
@@ -432,14 +432,14 @@ bool dvi__maxwell_read_start(dvi_scene *scene, const dvi__tree *section)
   static const char *const known[] = {"E", "B", "A"};
   struct dvi__scene_maxwell *m = scene->field->maxwell;
   count_components(scene->field);
-  dvi__vector **const vector[] = {&m->of_E, &m->of_B, &m->of_A};
+  dvi__place_vector **const vector[] = {&m->of_E, &m->of_B, &m->of_A};
   const int components[] = {m->E, m->B, m->E};
   if (!dvi__want_mapping(scene, section, "initial") ||
       !dvi__want_keys(scene, section, "the start of a field", 3, known))
     return false;
   for (int k = 0; k < 3; k++) {
     const dvi__tree *value = dvi__tree_find(section, known[k]);
-    if (value != NULL && !dvi__vector_read(scene, value, components[k], known[k], vector[k]))
+    if (value != NULL && !dvi__place_vector_read(scene, value, components[k], known[k], vector[k]))
       return false;
   }
   return m->of_A == NULL || m->of_B == NULL ||

@@ -80,8 +80,8 @@ int dvi__place_source(const double *x, double *value, void *user)
 
 /* ---- vectors ---- */
 
-bool dvi__vector_read(dvi_scene *scene, const dvi__tree *tree, int count, const char *where,
-                      dvi__vector **vector)
+bool dvi__place_vector_read(dvi_scene *scene, const dvi__tree *tree, int count, const char *where,
+                            dvi__place_vector **vector)
 {
   const bool is_list = tree->kind == DVI__SEQUENCE;
   *vector = dvi__arena_take(&scene->arena, 1, sizeof **vector);
@@ -99,7 +99,7 @@ bool dvi__vector_read(dvi_scene *scene, const dvi__tree *tree, int count, const 
   return true;
 }
 
-int dvi__vector_value(const dvi__vector *vector, const double *x, double *value)
+int dvi__place_vector_value(const dvi__place_vector *vector, const double *x, double *value)
 {
   int failed = 0;
   for (int i = 0; i < vector->count && failed == 0; i++)

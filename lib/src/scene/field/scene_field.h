@@ -53,15 +53,15 @@ bool dvi__integral_make(dvi_scene *scene, dvi__integral *integral);
 int dvi__integral_value(double t, const double *q, const double *p, double *value, void *user);
 
 /* Take an expression or, with `count` above 1, a list of so many as a function of place. */
-typedef struct dvi__vector {
+typedef struct dvi__place_vector {
   int count;
   dvi__place *place[3];
-} dvi__vector;
-bool dvi__vector_read(dvi_scene *scene, const dvi__tree *tree, int count, const char *where,
-                      dvi__vector **vector);
+} dvi__place_vector;
+bool dvi__place_vector_read(dvi_scene *scene, const dvi__tree *tree, int count, const char *where,
+                            dvi__place_vector **vector);
 
 /* Evaluate all of them at x. Returns as callbacks do. */
-int dvi__vector_value(const dvi__vector *vector, const double *x, double *value);
+int dvi__place_vector_value(const dvi__place_vector *vector, const double *x, double *value);
 
 /* Read a point, or a direction, of `count` numbers. */
 bool dvi__point_read(dvi_scene *scene, const dvi__tree *tree, int count, const char *what,
