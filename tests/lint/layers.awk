@@ -48,6 +48,7 @@ BEGIN {
   sees["field/mesh/file"] = "core field/mesh"
   sees["field/forms"] = "core num field/algebra field/mesh"
   sees["field/audit"] = "core num field/algebra field/mesh field/forms"
+  sees["field/yee"] = "core num num/simd march"
   sees["field/model"] = "core num solve field/algebra field/mesh field/forms"
   # The library of scenes includes libdvi's public headers, too.
   sees["text"] = ""

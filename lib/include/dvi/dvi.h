@@ -30,4 +30,5 @@
 #include <dvi/taylor.h>
 #include <dvi/transform.h>
 #include <dvi/version.h>
+#include <dvi/yee.h>
 #endif
