@@ -34,4 +34,5 @@
 #include <dvi/taylor.h>
 #include <dvi/transform.h>
 #include <dvi/version.h>
+#include <dvi/yee.h>
 #endif

@@ -1,0 +1,129 @@
+/* First-order absorbing ends (Mur 1981, eq. 15). On such an end
+ *     E0+ = E1 + b (E1+ - E0),   b = (v dt - h)/(v dt + h),
+ * with E1 one box of length h inside, and the speed v on the end. The rows on ends of x come first,
+ * then those of y, then those of z, which take E1 from rows that are done. */
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "field/yee/yee.h"
+
+static int is_absorbing(const dvi__yee *y, int axis, int end)
+{
+  return y->axis[axis].end[end].kind == DVI_YEE_ABSORBING;
+}
+
+int dvi__yee_absorbs(const dvi__yee *y)
+{
+  return y->absorbed != NULL;
+}
+
+double dvi__yee_courant(const dvi__yee *y, int c, int axis, int end, const int *place)
+{
+  const dvi__yee_axis *a = &y->axis[axis];
+  const double h = end == 0 ? a->length[0] : a->length[a->cells - 1];
+  if (y->ce == NULL) return y->dt / h;
+  const size_t at = dvi__yee_at_edges(y, c, place[1], place[2]) + (size_t)place[0];
+  const double s = y->loss != NULL ? y->loss[at] : 0;
+  return sqrt(y->ce[at] * (1 + s)) * y->dt / h;
+}
+
+/* ---- what is kept ---- */
+
+/* A row across an end, or of one value at an end of x, is kept for each component and end. */
+static size_t kept_at(const dvi__yee *y, int axis, int end, int copy, int c, int j, int k)
+{
+  const size_t row = dvi__yee_row(y, j, k), left = row % y->rows[0], below = row / y->rows[0],
+               rows = y->rows[0] * y->rows[1],
+               across = axis == 0   ? row
+                        : axis == 1 ? rows + below * y->width
+                                    : rows + (y->rows[1] + left) * y->width,
+               all = rows + (y->rows[0] + y->rows[1]) * y->width;
+  return (((size_t)copy * 3 + (size_t)c) * 2 + (size_t)end) * all + across;
+}
+
+dvi_status dvi__yee_make_absorbed(dvi__yee *y)
+{
+  int count = 0;
+  for (int l = 0; l < y->axes; l++) count += is_absorbing(y, l, 0) + is_absorbing(y, l, 1);
+  if (count == 0) return DVI_OK;
+  const size_t all = y->rows[0] * y->rows[1] + (y->rows[0] + y->rows[1]) * y->width;
+  y->absorbed = DVI_NEW(double, (size_t)y->copies * 6 * all);
+  return y->absorbed != NULL ? DVI_OK
+                             : dvi__fail(DVI_NO_MEMORY, "yee: no memory for absorbing ends");
+}
+
+/* ---- rows ---- */
+
+typedef void row_work(dvi__yee *y, int axis, int end, int copy, int c, int j, int k);
+
+/* Tell if rows at node i are neither on an end of an axis nor behind it. */
+static int is_within(const dvi__yee *y, int c, int axis, int i)
+{
+  return dvi__yee_is_free(y, c, axis, i) || (y->axis[axis].wraps && i == y->axis[axis].cells);
+}
+
+/* Work on the rows of a component that are on an end of an axis. */
+static void for_rows_of(dvi__yee *y, int axis, int end, int c, row_work *work)
+{
+  const int last[2] = {y->axis[1].is_trivial ? 0 : y->axis[1].cells,
+                       y->axis[2].is_trivial ? 0 : y->axis[2].cells};
+  const int at = end == 0 ? 0 : y->axis[axis].cells;
+  for (int k = axis == 2 ? at : 0; k <= (axis == 2 ? at : last[1]); k++)
+    for (int j = axis == 1 ? at : 0; j <= (axis == 1 ? at : last[0]); j++) {
+      if (axis < 2 && !is_within(y, c, 2, k)) continue;
+      if (axis < 1 && !is_within(y, c, 1, j)) continue;
+      for (int copy = 0; copy < y->copies; copy++) work(y, axis, end, copy, c, j, k);
+    }
+}
+
+static void for_rows(dvi__yee *y, row_work *work)
+{
+  for (int axis = 0; axis < y->axes; axis++)
+    for (int end = 0; end < 2; end++)
+      for (int c = 0; c < 3 && is_absorbing(y, axis, end); c++)
+        if (c != axis && y->slot[c] >= 0) for_rows_of(y, axis, end, c, work);
+}
+
+/* Give the first value on an end, the step to the one inside of it, and the number of values. */
+static double *row_on_end(dvi__yee *y, int axis, int end, int copy, int c, int j, int k,
+                          ptrdiff_t *inwards, size_t *count)
+{
+  double *E = y->state[copy] + dvi__yee_at(y, c, j, k);
+  *inwards = end == 0 ? y->next[axis] : -y->next[axis];
+  *count = axis == 0 ? 1 : (size_t)y->axis[0].cells + 1;
+  return axis == 0 && end == 1 ? E + y->axis[0].cells : E;
+}
+
+static void keep_row(dvi__yee *y, int axis, int end, int copy, int c, int j, int k)
+{
+  ptrdiff_t inwards;
+  size_t count;
+  const double *E = row_on_end(y, axis, end, copy, c, j, k, &inwards, &count);
+  memcpy(y->absorbed + kept_at(y, axis, end, copy, c, j, k), E + inwards, count * sizeof *E);
+}
+
+static void absorb_row(dvi__yee *y, int axis, int end, int copy, int c, int j, int k)
+{
+  ptrdiff_t inwards;
+  size_t count;
+  double *E = row_on_end(y, axis, end, copy, c, j, k, &inwards, &count);
+  const double *kept = y->absorbed + kept_at(y, axis, end, copy, c, j, k);
+  for (size_t i = 0; i < count; i++) {
+    const int place[3] = {axis == 0 && end == 1 ? y->axis[0].cells : (int)i, j, k};
+    const double courant = dvi__yee_courant(y, c, axis, end, place),
+                 b = (courant - 1) / (courant + 1);
+    E[i] = kept[i] + b * (E[(ptrdiff_t)i + inwards] - E[i]);
+  }
+}
+
+void dvi__yee_keep_absorbed(dvi__yee *y)
+{
+  for_rows(y, keep_row);
+}
+
+void dvi__yee_absorb(dvi__yee *y)
+{
+  for_rows(y, absorb_row);
+}

@@ -1,0 +1,144 @@
+/* The largest stable step, 2/sqrt(lambda) with the largest eigenvalue lambda of M_1^-1 d_1^T M_2 d_1.
+ *
+ * Without materials the operator is a sum over the axes, and lambda the sum of the largest
+ * eigenvalues of -D' D along each, which bisection finds by Sylvester's law of inertia. With
+ * materials Lanczos's iteration finds it. The place is that of the largest local bound, that of one
+ * face with its edges. */
+#include <math.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "field/yee/yee.h"
+
+/* ---- one axis ---- */
+
+/* The symmetric matrix of the free nodes of an axis, with an entry in its corner if the axis repeats
+ * itself. */
+typedef struct line {
+  const dvi__yee_axis *a;
+  int first, count;
+} line;
+
+static double diagonal(const line *l, int i)
+{
+  const dvi__yee_axis *a = l->a;
+  const int node = l->first + i, n = a->cells;
+  const double after = node < n ? 1 / a->length[node] : 0,
+               before = node > 0   ? 1 / a->length[node - 1]
+                        : a->wraps ? 1 / a->length[n - 1]
+                                   : 0;
+  return (after + before) / a->dual[node];
+}
+
+/* Give minus the entry between the nodes i and i+1, or around the end. */
+static double coupling(const line *l, int i)
+{
+  const dvi__yee_axis *a = l->a;
+  const int node = l->first + i, next = l->first + (i + 1) % l->count;
+  return 1 / (a->length[node] * sqrt(a->dual[node] * a->dual[next]));
+}
+
+/* Count the eigenvalues below x. */
+static int count_below(const line *l, double x)
+{
+  const dvi__yee_axis *a = l->a;
+  const int n = l->count;
+  double pivot = diagonal(l, 0) - x, last = diagonal(l, n - 1) - x, re = 0, im = 0;
+  int below = 0;
+  if (a->wraps) re = -coupling(l, n - 1) * a->cosine, im = -coupling(l, n - 1) * a->sine;
+  for (int i = 0; i < n - 1; i++) {
+    if (pivot == 0) pivot = -1e-300;
+    below += pivot < 0;
+    const double off = -coupling(l, i), with_last = i == n - 2 ? off : 0;
+    last -= ((re + with_last) * (re + with_last) + im * im) / pivot;
+    re *= -off / pivot;
+    im *= -off / pivot;
+    pivot = i == n - 2 ? last : diagonal(l, i + 1) - x - off * off / pivot;
+  }
+  return below + ((n > 1 ? last : pivot) < 0);
+}
+
+static double largest_of_axis(const dvi__yee_axis *a)
+{
+  const line l = {a, a->free[0], a->free[1] - a->free[0]};
+  double low = 0, high = 0;
+  if (a->is_trivial || l.count < 1) return 0;
+  if (l.count == 1 && a->wraps) return 2 * (1 - a->cosine) / (a->length[0] * a->dual[0]);
+  for (int i = 0; i < l.count; i++) high = fmax(high, 2 * diagonal(&l, i));
+  for (int i = 0; i < 200 && high - low > 1e-15 * high; i++) {
+    const double middle = 0.5 * (low + high);
+    if (count_below(&l, middle) == l.count)
+      high = middle;
+    else
+      low = middle;
+  }
+  return high;
+}
+
+/* ---- place ---- */
+
+static double length_around(const dvi__yee *y, int component, int l, int i)
+{
+  return dvi__yee_reaches(component, l) ? y->axis[l].length[i] : y->axis[l].dual[i];
+}
+
+/* The place where boxes are the shortest and waves the fastest: the largest sum over the axes of
+ * 1/(eps mu h^2) at a face. */
+static double local_largest(const dvi__yee *y, int c, const int *place)
+{
+  double sum = 0, speed = 1;
+  for (int l = 0; l < y->axes; l++) {
+    const double h = length_around(y, DVI__YEE_B + c, l, place[l]);
+    sum += 1 / (h * h);
+  }
+  if (y->mi != NULL) speed *= y->mi[dvi__yee_at_faces(y, c, place[1], place[2]) + (size_t)place[0]];
+  if (y->ce != NULL) {
+    double most = 0;
+    for (int e = 0; e < 3; e++)
+      if (e != c && y->slot[e] >= 0)
+        most = fmax(most, y->ce[dvi__yee_at_edges(y, e, place[1], place[2]) + (size_t)place[0]]);
+    speed *= most;
+  }
+  return sum * speed;
+}
+
+void dvi__yee_tightest(const dvi__yee *y, double *x)
+{
+  double most = -1;
+  for (int c = 0; c < 3; c++) {
+    int place[3];
+    if (y->slot[DVI__YEE_B + c] < 0) continue;
+    for (place[2] = 0; place[2] < dvi__yee_places(y, DVI__YEE_B + c, 2); place[2]++)
+      for (place[1] = 0; place[1] < dvi__yee_places(y, DVI__YEE_B + c, 1); place[1]++)
+        for (place[0] = 0; place[0] < dvi__yee_places(y, DVI__YEE_B + c, 0); place[0]++) {
+          const double here = local_largest(y, c, place);
+          if (!(here > most)) continue;
+          most = here;
+          for (int l = 0; l < 3; l++) {
+            const dvi__yee_axis *a = &y->axis[l];
+            x[l] = a->node[place[l]];
+            if (dvi__yee_reaches(DVI__YEE_B + c, l)) x[l] += 0.5 * a->length[place[l]];
+          }
+        }
+  }
+}
+
+/* ---- bound ---- */
+
+static double fastest(size_t count, const double *array)
+{
+  double most = 0;
+  for (size_t i = 0; i < count && array != NULL; i++) most = fmax(most, array[i]);
+  return array != NULL ? most : 1;
+}
+
+dvi_status dvi__yee_find_bound(const dvi__yee *y, double *bound)
+{
+  const size_t rows = y->rows[0] * y->rows[1] * y->width;
+  double lambda = 0;
+  for (int l = 0; l < 3; l++) lambda += largest_of_axis(&y->axis[l]);
+  lambda *= fastest(rows * (size_t)y->edges_slots, y->ce) *
+            fastest(rows * (size_t)(y->components - y->edges_slots), y->mi);
+  *bound = lambda > 0 ? 2 / sqrt(lambda) : (double)INFINITY;
+  return DVI_OK;
+}

@@ -1,0 +1,195 @@
+/* Saved states of grids. The section "yee" identifies the grid and has its times, "yee-fields" the
+ * fields, "yee-layers" the sums of absorbing layers, "yee-sources" the impulses of the sources, and
+ * "yee-charges" the charges of the start. */
+#include <math.h>
+#include <string.h>
+
+#include "core/hash.h"
+#include "core/memory.h"
+#include "core/status.h"
+#include "field/yee/yee.h"
+
+enum { VERSION = 1 };
+
+typedef struct identity {
+  uint64_t grid; /* hash of the axes and of what acts on the fields */
+  double dt, t0, t;
+  int64_t step, has_charge;
+} identity;
+
+static uint64_t hash_numbers(uint64_t hash, size_t count, const double *x)
+{
+  return x != NULL ? dvi__hash(hash, count * sizeof *x, x) : hash;
+}
+
+static uint64_t hash_acts(uint64_t hash, const dvi__yee_acts *acts)
+{
+  for (int64_t i = 0; i < acts->count; i++) {
+    hash = dvi__hash(hash, sizeof acts->act[i].place, &acts->act[i].place);
+    hash = dvi__hash(hash, sizeof acts->act[i].from, &acts->act[i].from);
+    hash = dvi__hash(hash, sizeof acts->act[i].w, acts->act[i].w);
+  }
+  return hash;
+}
+
+static uint64_t hash_grid(const dvi__yee *y)
+{
+  const size_t places = y->rows[0] * y->rows[1] * y->width;
+  const int plain[] = {y->axes, y->degree, y->sources, y->beams};
+  uint64_t hash = dvi__hash(DVI__HASH_START, sizeof plain, plain);
+  for (int l = 0; l < 3; l++) {
+    const dvi__yee_axis *a = &y->axis[l];
+    const int kinds[] = {a->cells, (int)a->end[0].kind, (int)a->end[1].kind};
+    const double phase[] = {a->cosine, a->sine};
+    hash = dvi__hash(hash, sizeof kinds, kinds);
+    hash = hash_numbers(hash, 2, phase);
+    hash = hash_numbers(hash, (size_t)a->cells + 1, a->node);
+    for (int e = 0; e < 2; e++) {
+      const double numbers[] = {a->end[e].reflection, a->end[e].alpha, a->end[e].kappa,
+                                a->layers[e].count};
+      hash = hash_numbers(hash, 4, numbers);
+    }
+  }
+  hash = hash_numbers(hash, places * (size_t)y->edges_slots, y->ce);
+  hash = hash_numbers(hash, places * (size_t)y->edges_slots, y->ca);
+  hash = hash_numbers(hash, places * (size_t)(y->components - y->edges_slots), y->mi);
+  return hash_acts(hash_acts(hash, &y->on_edges), &y->on_faces);
+}
+
+/* ---- arrays of the state ---- */
+
+/* An array that belongs to the state. */
+typedef struct part {
+  const char *section;
+  double *x;
+  size_t count;
+} part;
+
+enum { MOST_PARTS = 16 };
+
+/* List the arrays. Those of one section follow each other. */
+static int list_parts(const dvi__yee *y, part *parts)
+{
+  const size_t places = y->rows[0] * y->rows[1] * y->width;
+  int count = 0;
+  for (int copy = 0; copy < y->copies; copy++)
+    parts[count++] = (part){"yee-fields", y->state[copy], y->size};
+  if (y->worn != NULL)
+    parts[count++] = (part){"yee-worn", y->worn, places * (size_t)y->edges_slots};
+  for (int l = 0; l < 3; l++)
+    for (int e = 0; e < 2; e++) {
+      const dvi__yee_layers *layers = &y->axis[l].layers[e];
+      if (layers->count > 0)
+        parts[count++] = (part){"yee-layers", layers->psi, (size_t)y->copies * layers->psi_count};
+    }
+  return count;
+}
+
+static size_t count_charges(const dvi__yee *y)
+{
+  return (size_t)y->axis[0].nodes * (size_t)y->axis[1].nodes * (size_t)y->axis[2].nodes;
+}
+
+/* ---- save ---- */
+
+void dvi__yee_save(const void *self, dvi__sections_writer *writer)
+{
+  const dvi__yee *y = self;
+  const identity id = {hash_grid(y), y->dt, y->t0, y->t, y->step, y->charge != NULL};
+  part parts[MOST_PARTS];
+  const int count = list_parts(y, parts);
+  dvi__section_open(writer, "yee", VERSION);
+  dvi__section_put(writer, &id, sizeof id);
+  for (int i = 0; i < count; i++) {
+    if (i == 0 || strcmp(parts[i].section, parts[i - 1].section) != 0)
+      dvi__section_open(writer, parts[i].section, VERSION);
+    dvi__section_put(writer, parts[i].x, parts[i].count * sizeof(double));
+  }
+  dvi__section_open(writer, "yee-sources", VERSION);
+  for (int i = 0; i < y->sources; i++) {
+    const double sums[2] = {y->source[i].impulse, y->source[i].compensation};
+    dvi__section_put(writer, sums, sizeof sums);
+  }
+  if (y->charge == NULL) return;
+  dvi__section_open(writer, "yee-charges", VERSION);
+  dvi__section_put(writer, y->charge, count_charges(y) * sizeof(double));
+}
+
+/* ---- load ---- */
+
+static dvi_status find_identity(const dvi__yee *y, const dvi__sections *sections, identity *id)
+{
+  dvi__section found;
+  DVI_TRY(dvi__section_find(sections, "yee", VERSION, sizeof *id, &found));
+  memcpy(id, found.content, sizeof *id);
+  if (id->grid == hash_grid(y) && id->dt == y->dt) return DVI_OK;
+  return dvi__fail(DVI_BAD_FILE,
+                   "%s: it was saved by another grid, or with another step than %.17g; make the "
+                   "march from the same terms",
+                   sections->name, y->dt);
+}
+
+/* Find the sections of all arrays. DVI_BAD_FILE if one is missing or has another size. */
+static dvi_status find_parts(const dvi__sections *sections, int count, const part *parts,
+                             const unsigned char **content)
+{
+  for (int i = 0; i < count;) {
+    size_t size = 0;
+    dvi__section found;
+    int next = i;
+    for (; next < count && strcmp(parts[next].section, parts[i].section) == 0; next++)
+      size += parts[next].count * sizeof(double);
+    DVI_TRY(dvi__section_find(sections, parts[i].section, VERSION, size, &found));
+    for (const unsigned char *at = found.content; i < next; i++) {
+      content[i] = at;
+      at += parts[i].count * sizeof(double);
+    }
+  }
+  return DVI_OK;
+}
+
+static dvi_status find_charges(dvi__yee *y, const dvi__sections *sections, const identity *id,
+                               dvi__section *charges)
+{
+  const size_t count = count_charges(y);
+  if (!id->has_charge) return DVI_OK;
+  DVI_TRY(dvi__section_find(sections, "yee-charges", VERSION, count * sizeof(double), charges));
+  if (y->charge == NULL) y->charge = DVI_NEW(double, count);
+  return y->charge != NULL ? DVI_OK
+                           : dvi__fail(DVI_NO_MEMORY, "yee: no memory for %zu charges", count);
+}
+
+static void take_sources(dvi__yee *y, const dvi__section *sources)
+{
+  for (int i = 0; i < y->sources; i++) {
+    double sums[2];
+    memcpy(sums, sources->content + (size_t)i * sizeof sums, sizeof sums);
+    y->source[i].impulse = sums[0];
+    y->source[i].compensation = sums[1];
+  }
+}
+
+dvi_status dvi__yee_load(void *self, const dvi__sections *sections)
+{
+  dvi__yee *y = self;
+  identity id;
+  dvi__section sources, charges = {0};
+  part parts[MOST_PARTS];
+  const unsigned char *content[MOST_PARTS];
+  const int count = list_parts(y, parts);
+  DVI_TRY(find_identity(y, sections, &id));
+  DVI_TRY(find_parts(sections, count, parts, content));
+  DVI_TRY(dvi__section_find(sections, "yee-sources", VERSION,
+                            (size_t)y->sources * 2 * sizeof(double), &sources));
+  DVI_TRY(find_charges(y, sections, &id, &charges));
+  for (int i = 0; i < count; i++) memcpy(parts[i].x, content[i], parts[i].count * sizeof(double));
+  take_sources(y, &sources);
+  if (charges.content != NULL)
+    memcpy(y->charge, charges.content, charges.size);
+  else if (y->charge != NULL)
+    memset(y->charge, 0, count_charges(y) * sizeof(double));
+  y->t0 = id.t0;
+  y->t = id.t;
+  y->step = id.step;
+  return DVI_OK;
+}

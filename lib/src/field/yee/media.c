@@ -1,0 +1,211 @@
+/* The stars of a grid: M_1 of eps on edges, M_2 of 1/mu on faces, and losses. */
+#include <math.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "field/yee/average.h"
+#include "field/yee/yee.h"
+
+/* ---- vacuum ---- */
+
+/* Give the star of a component without a material: dual volume over volume. */
+static double vacuum_star(const dvi__yee *y, int component, const int *place)
+{
+  double star = 1;
+  for (int l = 0; l < 3; l++) {
+    const dvi__yee_axis *a = &y->axis[l];
+    const int i = place[l];
+    star *= dvi__yee_reaches(component, l) ? 1 / a->length[i] : a->dual[i];
+  }
+  return star;
+}
+
+double dvi__yee_star(const dvi__yee *y, int component, const int *place)
+{
+  const double star = vacuum_star(y, component, place);
+  const int c = component % 3;
+  if (component >= DVI__YEE_B)
+    return y->mi == NULL
+               ? star
+               : star * y->mi[dvi__yee_at_faces(y, c, place[1], place[2]) + (size_t)place[0]];
+  if (y->ce == NULL) return star;
+  const size_t at = dvi__yee_at_edges(y, c, place[1], place[2]) + (size_t)place[0];
+  return star / (y->ce[at] * (y->loss != NULL ? 1 + y->loss[at] : 1));
+}
+
+/* ---- pieces of boxes ---- */
+
+static int is_given(const dvi_yee_medium *medium)
+{
+  return medium->cell != NULL || medium->at != NULL;
+}
+
+static double value_of_cell(const dvi__yee *y, const dvi_yee_medium *medium, const int *cell)
+{
+  const size_t n = (size_t)y->axis[0].cells, m = (size_t)y->axis[1].cells;
+  return medium->cell != NULL
+             ? medium->cell[((size_t)cell[2] * m + (size_t)cell[1]) * n + (size_t)cell[0]]
+             : 1;
+}
+
+/* What is summed over the pieces of boxes around an edge or face. */
+typedef enum quantity { PERMITTIVITY, LOSS, PERMEABILITY } quantity;
+
+static dvi_status add_piece(const dvi_yee_terms *terms, const dvi__yee *y, quantity what, int c,
+                            const dvi__average_box *box, const int *cell, double *sum)
+{
+  const dvi__average eps = {terms->eps.at, terms->eps.user, "eps"},
+                     mu = {terms->mu.at, terms->mu.user, "mu"},
+                     sigma = {terms->sigma.at, terms->sigma.user, "sigma"};
+  double along = 1, across = 1;
+  for (int l = 0; l < y->axes; l++) *(l == c ? &along : &across) *= box->upper[l] - box->lower[l];
+  if (what == PERMEABILITY && mu.function != NULL) return dvi__average_face(&mu, box, c, sum);
+  if (what == PERMITTIVITY && eps.function != NULL) return dvi__average_edge(&eps, box, c, sum);
+  if (what == LOSS && sigma.function != NULL) return dvi__average_loss(&eps, &sigma, box, c, sum);
+  *sum += what == PERMEABILITY
+              ? along / (across * value_of_cell(y, &terms->mu, cell))
+              : across / along * value_of_cell(y, what == LOSS ? &terms->sigma : &terms->eps, cell);
+  return DVI_OK;
+}
+
+/* Sum the star of a component at a place over its pieces. */
+static dvi_status sum_pieces(const dvi_yee_terms *terms, const dvi__yee *y, quantity what,
+                             int component, const int *place, double *sum)
+{
+  int cell[3][2], count[3], at[3];
+  double lower[3][2], upper[3][2];
+  *sum = 0;
+  for (int l = 0; l < 3; l++) {
+    const dvi__yee_axis *a = &y->axis[l];
+    if (!dvi__yee_reaches(component, l)) {
+      count[l] = dvi__yee_pieces(a, place[l], cell[l], lower[l], upper[l]);
+      continue;
+    }
+    count[l] = 1;
+    cell[l][0] = place[l];
+    lower[l][0] = a->node[place[l]];
+    upper[l][0] = a->node[place[l] + 1];
+  }
+  for (int n = 0; n < count[0] * count[1] * count[2]; n++) {
+    dvi__average_box box = {.space = y->axes};
+    for (int l = 0, rest = n; l < 3; rest /= count[l++]) {
+      const int piece = rest % count[l];
+      at[l] = cell[l][piece];
+      box.lower[l] = lower[l][piece];
+      box.upper[l] = upper[l][piece];
+    }
+    DVI_TRY(add_piece(terms, y, what, component % 3, &box, at, sum));
+  }
+  return DVI_OK;
+}
+
+/* ---- arrays ---- */
+
+/* Give the place in the arrays of materials for a place of the grid. */
+static size_t array_place(const dvi__yee *y, int component, const int *place)
+{
+  const int c = component % 3;
+  const size_t row = component < DVI__YEE_B ? dvi__yee_at_edges(y, c, place[1], place[2])
+                                            : dvi__yee_at_faces(y, c, place[1], place[2]);
+  return row + (size_t)place[0];
+}
+
+static double *new_array(const dvi__yee *y, quantity what)
+{
+  const int slots = what == PERMEABILITY ? y->components - y->edges_slots : y->edges_slots;
+  const size_t count = y->rows[0] * y->rows[1] * (size_t)slots * y->width;
+  return DVI_NEW(double, count);
+}
+
+/* Fill an array with the sums over pieces beside those of vacuum, or for eps with the inverse. */
+static dvi_status fill(const dvi_yee_terms *terms, const dvi__yee *y, quantity what, double *array)
+{
+  const int first = what == PERMEABILITY ? DVI__YEE_B : DVI__YEE_E;
+  for (int component = first; component < first + 3; component++) {
+    int place[3];
+    if (y->slot[component] < 0) continue;
+    for (place[2] = 0; place[2] < dvi__yee_places(y, component, 2); place[2]++)
+      for (place[1] = 0; place[1] < dvi__yee_places(y, component, 1); place[1]++)
+        for (place[0] = 0; place[0] < dvi__yee_places(y, component, 0); place[0]++) {
+          double sum;
+          DVI_TRY(sum_pieces(terms, y, what, component, place, &sum));
+          const double vacuum = vacuum_star(y, component, place);
+          array[array_place(y, component, place)] =
+              what == PERMITTIVITY ? vacuum / sum : sum / vacuum;
+        }
+  }
+  return DVI_OK;
+}
+
+/* Set 1/mu before the first boxes of axes that repeat themselves. */
+static void wrap_faces(const dvi__yee *y, double *array)
+{
+  const size_t block = (size_t)(y->components - y->edges_slots) * y->width,
+               n = (size_t)y->axis[0].cells;
+  for (size_t row = 0; row < y->rows[0] * y->rows[1] && y->axis[0].wraps; row++)
+    for (size_t start = row * block; start < (row + 1) * block; start += y->width)
+      array[start + DVI__YEE_LEFT - 1] = array[start + DVI__YEE_LEFT + n - 1];
+  for (int k = -1; k < y->axis[2].cells && y->axis[1].wraps; k++) {
+    if (k < 0 && y->axis[2].is_trivial) continue;
+    double *to = array + dvi__yee_row(y, -1, k) * block;
+    const double *from = array + dvi__yee_row(y, y->axis[1].cells - 1, k) * block;
+    for (size_t i = 0; i < block; i++) to[i] = from[i];
+  }
+  const size_t plane = y->rows[0] * block;
+  for (size_t i = 0; i < plane && y->axis[2].wraps; i++)
+    array[i] = array[(size_t)y->axis[2].cells * plane + i];
+}
+
+static dvi_status check_cells(const dvi__yee *y, const dvi_yee_medium *medium, const char *name,
+                              int may_vanish)
+{
+  const int64_t n = y->axis[0].cells, m = y->axis[1].cells, count = n * m * y->axis[2].cells;
+  if (medium->cell != NULL && medium->at != NULL)
+    return dvi__fail(DVI_BAD_ARGUMENT,
+                     "yee: %s is given by boxes and by a function; give one of them", name);
+  for (int64_t i = 0; i < count && medium->cell != NULL; i++) {
+    const double value = medium->cell[i];
+    if (isfinite(value) && (value > 0 || (may_vanish && value == 0))) continue;
+    return dvi__fail(isfinite(value) ? DVI_BAD_ARGUMENT : DVI_NOT_FINITE,
+                     "yee: %s = %g in the box (%d, %d, %d), which must be finite and %s", name,
+                     value, (int)(i % n), (int)(i / n % m), (int)(i / n / m),
+                     may_vanish ? "not negative" : "positive");
+  }
+  return DVI_OK;
+}
+
+dvi_status dvi__yee_make_media(const dvi_yee_terms *terms, dvi__yee *y)
+{
+  DVI_TRY(check_cells(y, &terms->eps, "eps", 0));
+  DVI_TRY(check_cells(y, &terms->mu, "mu", 0));
+  DVI_TRY(check_cells(y, &terms->sigma, "sigma", 1));
+  if (is_given(&terms->eps) || is_given(&terms->sigma)) y->ce = new_array(y, PERMITTIVITY);
+  if (is_given(&terms->mu)) y->mi = new_array(y, PERMEABILITY);
+  if ((y->ce == NULL && (is_given(&terms->eps) || is_given(&terms->sigma))) ||
+      (y->mi == NULL && is_given(&terms->mu)))
+    return dvi__fail(DVI_NO_MEMORY, "yee: no memory for materials");
+  if (y->ce != NULL) DVI_TRY(fill(terms, y, PERMITTIVITY, y->ce));
+  if (!is_given(&terms->mu)) return DVI_OK;
+  DVI_TRY(fill(terms, y, PERMEABILITY, y->mi));
+  wrap_faces(y, y->mi);
+  return DVI_OK;
+}
+
+dvi_status dvi__yee_make_losses(const dvi_yee_terms *terms, dvi__yee *y)
+{
+  const size_t count = y->rows[0] * y->rows[1] * (size_t)y->edges_slots * y->width;
+  if (!is_given(&terms->sigma)) return DVI_OK;
+  y->loss = new_array(y, LOSS);
+  y->ca = new_array(y, LOSS);
+  y->worn = new_array(y, LOSS);
+  if (y->loss == NULL || y->ca == NULL || y->worn == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "yee: no memory for losses");
+  DVI_TRY(fill(terms, y, LOSS, y->loss));
+  for (size_t i = 0; i < count; i++) {
+    const double s = 0.5 * y->dt * y->loss[i] * y->ce[i];
+    y->loss[i] = s;
+    y->ca[i] = (1 - s) / (1 + s);
+    y->ce[i] /= 1 + s;
+  }
+  return DVI_OK;
+}

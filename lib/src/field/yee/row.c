@@ -1,0 +1,311 @@
+/* The updates of one row of boxes. Every value gets the same operations in the same order, however
+ * rows are divided into tiles and threads. */
+#include <string.h>
+
+#include "field/yee/yee.h"
+
+/* The differences of a row: p along the axis after the component's, q along the one after that. */
+typedef struct differences {
+  const double *p1, *p0, *q1, *q0;
+} differences;
+
+/* ---- absorbing layers ---- */
+
+/* Give the layers in which a box, or a node, of an axis is, or -1. */
+static int layers_with(const dvi__yee_axis *a, int i)
+{
+  for (int e = 0; e < 2; e++)
+    if (i >= a->layers[e].first && i < a->layers[e].first + a->layers[e].count) return e;
+  return -1;
+}
+
+/* Change the difference along an axis by its layers, in a row across the axis. */
+static void stretch_across(const dvi__yee_worker *w, int copy, int axis, int which, int j, int k,
+                           dvi__yee_layers_row *row)
+{
+  const dvi__yee *y = w->yee;
+  const dvi__yee_axis *a = &y->axis[axis];
+  const int i = axis == 1 ? j : k, e = layers_with(a, i), form = which < 2;
+  if (e < 0) return;
+  const dvi__yee_layers *l = &a->layers[e];
+  const int layer = i - l->first, at = i - l->start;
+  row->psi = l->psi + dvi__yee_psi_at(y, axis, e, copy, which, layer, j, k);
+  row->b = l->b[form][at];
+  row->a = l->a[form][at];
+  row->r = l->r[form][at];
+  row->up = l->up[form][at];
+  row->down = l->down[form][at];
+  y->lanes->layers(row);
+}
+
+/* Change the difference along x at both ends of a row. */
+static void stretch_along(const dvi__yee_worker *w, int copy, int which, int j, int k,
+                          const dvi__yee_layers_row *whole)
+{
+  const dvi__yee *y = w->yee;
+  const int form = which < 2;
+  for (int e = 0; e < 2; e++) {
+    const dvi__yee_layers *l = &y->axis[0].layers[e];
+    if (l->count == 0) continue;
+    dvi__yee_layers_row row = *whole;
+    row.count = (size_t)l->width;
+    row.psi = l->psi + dvi__yee_psi_at(y, 0, e, copy, which, 0, j, k);
+    row.f += l->start;
+    row.p1 += l->start;
+    row.p0 += l->start;
+    if (row.ce != NULL) row.ce += l->start;
+    row.b_at = l->b[form];
+    row.a_at = l->a[form];
+    row.r_at = l->r[form];
+    row.up_at = l->up[form];
+    row.down_at = l->down[form];
+    y->lanes->layers(&row);
+  }
+}
+
+/* Change both differences of a component. */
+static void stretch(const dvi__yee_worker *w, int copy, int component, int j, int k,
+                    const differences *d, double *f, const double *ce)
+{
+  const int c = component % 3, is_face = component >= DVI__YEE_B;
+  for (int side = 0; side < 2; side++) {
+    const int axis = (c + 1 + side) % 3, which = (is_face ? 0 : 2) + (side == 0);
+    if (w->yee->axis[axis].layers[0].count + w->yee->axis[axis].layers[1].count == 0) continue;
+    dvi__yee_layers_row row = {.count = w->yee->count,
+                               .f = f,
+                               .p1 = side == 0 ? d->p1 : d->q1,
+                               .p0 = side == 0 ? d->p0 : d->q0,
+                               .sign = (side == 0) == is_face ? -1 : 1,
+                               .ce = ce};
+    if (axis == 0)
+      stretch_along(w, copy, which, j, k, &row);
+    else
+      stretch_across(w, copy, axis, which, j, k, &row);
+  }
+}
+
+/* ---- acts, ends and copies ---- */
+
+static void act(const dvi__yee_worker *w, const dvi__yee_acts *acts, int j, int k)
+{
+  if (acts->count == 0) return;
+  const dvi__yee *y = w->yee;
+  const size_t row = dvi__yee_row(y, j, k);
+  double *f = y->state[0] + row * (size_t)y->components * y->width;
+  for (int64_t n = acts->row[row]; n < acts->row[row + 1]; n++) {
+    const dvi__yee_act *a = &acts->act[n];
+    f[a->place] += a->w[0] * w->drive[a->from] + a->w[1] * w->drive[a->from + 1];
+  }
+}
+
+/* Multiply `count` numbers at `from` by the phase, or with a negative sign by its inverse, to
+ * `to`. */
+static void copy_with_phase(const dvi__yee *y, const dvi__yee_axis *a, double sign, size_t from,
+                            size_t to, size_t count)
+{
+  if (y->copies == 1) {
+    memcpy(y->state[0] + to, y->state[0] + from, count * sizeof(double));
+    return;
+  }
+  const double sine = sign * a->sine;
+  for (size_t i = 0; i < count; i++) {
+    const double re = y->state[0][from + i], im = y->state[1][from + i];
+    y->state[0][to + i] = a->cosine * re - sine * im;
+    y->state[1][to + i] = a->cosine * im + sine * re;
+  }
+}
+
+/* Copy the rows of E or B at (j, k) to those at (to_j, to_k). */
+static void copy_rows(const dvi__yee *y, int component, const dvi__yee_axis *a, int j, int k,
+                      int to_j, int to_k)
+{
+  const int is_face = component >= DVI__YEE_B;
+  const size_t skipped = is_face ? (size_t)y->edges_slots * y->width : 0,
+               slots = (size_t)(is_face ? y->components - y->edges_slots : y->edges_slots),
+               block = (size_t)y->components * y->width;
+  copy_with_phase(y, a, is_face ? -1 : 1, dvi__yee_row(y, j, k) * block + skipped,
+                  dvi__yee_row(y, to_j, to_k) * block + skipped, slots * y->width);
+}
+
+/* Copy what another end of an axis needs: E at node 0 to behind the last node, and B of the last
+ * box to before the first one. */
+static void copy_around(const dvi__yee *y, int component, int j, int k)
+{
+  const dvi__yee_axis *across = &y->axis[1], *up = &y->axis[2];
+  const int is_face = component >= DVI__YEE_B;
+  const int from_j = is_face ? across->cells - 1 : 0, from_k = is_face ? up->cells - 1 : 0,
+            to_j = is_face ? -1 : across->cells, to_k = is_face ? -1 : up->cells;
+  if (across->wraps && j == from_j) copy_rows(y, component, across, j, k, to_j, k);
+  if (up->wraps && k == from_k) copy_rows(y, component, up, j, k, j, to_k);
+}
+
+/* ---- faces ---- */
+
+static void update_face(const dvi__yee_worker *w, int copy, int c, int j, int k)
+{
+  const dvi__yee *y = w->yee;
+  const int a = (c + 1) % 3, b = (c + 2) % 3;
+  double *state = y->state[copy], *f = state + dvi__yee_at(y, DVI__YEE_B + c, j, k);
+  const double *p = y->slot[b] >= 0 ? state + dvi__yee_at(y, b, j, k) : f,
+               *q = y->slot[a] >= 0 ? state + dvi__yee_at(y, a, j, k) : f;
+  const differences d = {y->slot[b] >= 0 ? p + y->next[a] : p, p,
+                         y->slot[a] >= 0 ? q + y->next[b] : q, q};
+  const dvi__yee_faces_row row = {y->count, f, d.p1, d.p0, d.q1, d.q0, y->dt};
+  y->lanes->faces(&row);
+  stretch(w, copy, DVI__YEE_B + c, j, k, &d, f, NULL);
+}
+
+/* The components that reach along x have no place at the last node, and one before the first box if
+ * the axis repeats itself. */
+static void end_faces(const dvi__yee *y, int c, int j, int k)
+{
+  const dvi__yee_axis *x = &y->axis[0];
+  const size_t at = dvi__yee_at(y, DVI__YEE_B + c, j, k), n = (size_t)x->cells;
+  for (int copy = 0; copy < y->copies && c != 0; copy++) y->state[copy][at + n] = 0;
+  if (c != 0 && x->wraps) copy_with_phase(y, x, -1, at + n - 1, at - 1, 1);
+}
+
+static int has_face(const dvi__yee *y, int c, int j, int k)
+{
+  const int component = DVI__YEE_B + c;
+  return y->slot[component] >= 0 && j < dvi__yee_places(y, component, 1) &&
+         k < dvi__yee_places(y, component, 2);
+}
+
+void dvi__yee_update_faces(const dvi__yee_worker *w, int j, int k)
+{
+  const dvi__yee *y = w->yee;
+  for (int copy = 0; copy < y->copies; copy++)
+    for (int c = 0; c < 3; c++)
+      if (has_face(y, c, j, k)) update_face(w, copy, c, j, k);
+  act(w, &y->on_faces, j, k);
+  for (int c = 0; c < 3; c++)
+    if (has_face(y, c, j, k)) end_faces(y, c, j, k);
+  copy_around(y, DVI__YEE_B, j, k);
+}
+
+/* ---- edges ---- */
+
+/* Give the rows of H for a difference of B_b along an axis, in the scratch rows from `first` on if
+ * mu is not 1. */
+static void take_field(const dvi__yee_worker *w, int copy, int b, int axis, int j, int k, int first,
+                       const double **one, const double **before)
+{
+  const dvi__yee *y = w->yee;
+  const size_t at = dvi__yee_at(y, DVI__YEE_B + b, j, k);
+  const double *B = y->state[copy] + at;
+  const ptrdiff_t back = y->next[axis];
+  *one = B;
+  *before = B - back;
+  if (y->mi == NULL) return;
+  const size_t all = y->width;
+  double *h1 = w->scratch + (size_t)first * all, *h0 = axis == 0 ? h1 : h1 + all;
+  const double *mi = y->mi + dvi__yee_at_faces(y, b, j, k) - DVI__YEE_LEFT;
+  const ptrdiff_t shrink = back / y->components * (y->components - y->edges_slots);
+  y->lanes->product(all, mi, B - DVI__YEE_LEFT, h1);
+  if (axis != 0) y->lanes->product(all, mi - shrink, B - back - DVI__YEE_LEFT, h0);
+  *one = h1 + DVI__YEE_LEFT;
+  *before = h0 + DVI__YEE_LEFT - (axis == 0);
+}
+
+static differences take_fields(const dvi__yee_worker *w, int copy, int c, int j, int k,
+                               const double *none)
+{
+  const dvi__yee *y = w->yee;
+  const int a = (c + 1) % 3, b = (c + 2) % 3;
+  differences d = {none, none, none, none};
+  if (y->slot[DVI__YEE_B + b] >= 0) take_field(w, copy, b, a, j, k, 0, &d.p1, &d.p0);
+  if (y->slot[DVI__YEE_B + a] >= 0) take_field(w, copy, a, b, j, k, 2, &d.q1, &d.q0);
+  return d;
+}
+
+/* Set the factors of the differences of a row of E_c. */
+static void set_metric(const dvi__yee *y, int c, int j, int k, dvi__yee_edges_row *row)
+{
+  const int at[3] = {y->axis[0].free[0], j, k}, a = (c + 1) % 3, b = (c + 2) % 3;
+  const dvi__yee_axis *p = &y->axis[a], *q = &y->axis[b], *x = &y->axis[0];
+  row->p_up = p->up[at[a]];
+  row->p_down = p->down[at[a]];
+  row->q_up = q->up[at[b]];
+  row->q_down = q->down[at[b]];
+  row->up = x->up;
+  row->down = x->down;
+  row->metric = row->p_up == row->p_down && row->q_up == row->q_down ? DVI__YEE_EQUAL
+                                                                     : DVI__YEE_ACROSS;
+  if (c != 0 && !x->is_uniform) row->metric = a == 0 ? DVI__YEE_P_ALONG : DVI__YEE_Q_ALONG;
+}
+
+/* Give the scratch row that keeps E_c of before the update. */
+static double *row_before(const dvi__yee_worker *w, int c)
+{
+  return w->scratch + (size_t)(DVI__YEE_SCRATCH - 3 + c) * w->yee->width;
+}
+
+/* Add s (E+ + E-) to what has been conducted. */
+static void wear(const dvi__yee_worker *w, int c, int j, int k)
+{
+  const dvi__yee *y = w->yee;
+  const size_t at = dvi__yee_at_edges(y, c, j, k);
+  const double *s = y->loss + at, *before = row_before(w, c),
+               *e = y->state[0] + dvi__yee_at(y, c, j, k);
+  double *worn = y->worn + at;
+  for (int i = 0; i <= y->axis[0].cells; i++) worn[i] += s[i] * (before[i] + e[i]);
+}
+
+static void update_edge(const dvi__yee_worker *w, int copy, int c, int j, int k)
+{
+  const dvi__yee *y = w->yee;
+  const size_t beside = dvi__yee_at_edges(y, c, j, k);
+  double *e = y->state[copy] + dvi__yee_at(y, c, j, k);
+  const differences d = take_fields(w, copy, c, j, k, e);
+  dvi__yee_edges_row row = {.count = y->count,
+                            .e = e,
+                            .p1 = d.p1,
+                            .p0 = d.p0,
+                            .q1 = d.q1,
+                            .q0 = d.q0,
+                            .ce = y->ce != NULL ? y->ce + beside : NULL,
+                            .ca = y->ca != NULL ? y->ca + beside : NULL};
+  set_metric(y, c, j, k, &row);
+  y->lanes->edges(&row);
+  stretch(w, copy, c, j, k, &d, e, row.ce);
+}
+
+/* Update the row of E_c of all copies, but keep what stands at ends of x without an unknown. */
+static void update_edge_row(const dvi__yee_worker *w, int c, int j, int k)
+{
+  const dvi__yee *y = w->yee;
+  const dvi__yee_axis *x = &y->axis[0];
+  const int n = x->cells, keeps_lower = c != 0 && x->free[0] > 0,
+            keeps_upper = c != 0 && !x->wraps && x->free[1] <= n;
+  for (int copy = 0; copy < y->copies; copy++) {
+    double *e = y->state[copy] + dvi__yee_at(y, c, j, k);
+    const double lower = e[0], upper = e[n];
+    if (y->worn != NULL && copy == 0) memcpy(row_before(w, c), e, y->count * sizeof *e);
+    update_edge(w, copy, c, j, k);
+    if (keeps_lower) e[0] = lower;
+    if (keeps_upper) e[n] = upper;
+  }
+}
+
+static int has_edge(const dvi__yee *y, int c, int j, int k)
+{
+  return y->slot[c] >= 0 && dvi__yee_is_free(y, c, 1, j) && dvi__yee_is_free(y, c, 2, k);
+}
+
+void dvi__yee_update_edges(const dvi__yee_worker *w, int j, int k)
+{
+  const dvi__yee *y = w->yee;
+  const dvi__yee_axis *x = &y->axis[0];
+  for (int c = 0; c < 3; c++)
+    if (has_edge(y, c, j, k)) update_edge_row(w, c, j, k);
+  act(w, &y->on_edges, j, k);
+  for (int c = 0; c < 3 && y->worn != NULL; c++)
+    if (has_edge(y, c, j, k)) wear(w, c, j, k);
+  for (int c = 1; c < 3 && x->wraps; c++) {
+    if (!has_edge(y, c, j, k)) continue;
+    const size_t at = dvi__yee_at(y, c, j, k);
+    copy_with_phase(y, x, 1, at, at + (size_t)x->cells, 1);
+  }
+  copy_around(y, DVI__YEE_E, j, k);
+}

@@ -1,0 +1,234 @@
+/* Both forms at one time, between steps.
+ *
+ * After n steps the state has B^n and E^{n+1/2}. At the time t of the next step, t = t_n + part dt,
+ *     B(t) = B^n - part dt d E^{n+1/2},
+ *     E(t) = E^{n+1/2} + (part - 1/2) dt M_1^-1 (d^T M_2 B(t) - J(t) - sigma E(t)),
+ * which is continuous in t, has at t_n the mean of E^{n-1/2} and E^{n+1/2}, and errors of order 2. */
+#include <math.h>
+
+#include "core/status.h"
+#include "field/yee/yee.h"
+
+typedef dvi__yee_value value;
+
+static value plus(value a, double factor, value b)
+{
+  return (value){a.re + factor * b.re, a.im + factor * b.im};
+}
+
+/* ---- places ---- */
+
+/* Move a place into the grid along axes that repeat themselves. Give the phase that the value there
+ * is multiplied by. Return 0 if the place is outside. */
+static int move_inside(const dvi__yee *y, int component, int *place, value *phase)
+{
+  *phase = (value){1, 0};
+  for (int l = 0; l < 3; l++) {
+    const dvi__yee_axis *a = &y->axis[l];
+    const int places = dvi__yee_places(y, component, l);
+    if (place[l] >= 0 && place[l] < places) continue;
+    if (!a->wraps) return 0;
+    const double sine = place[l] < 0 ? -a->sine : a->sine;
+    place[l] += place[l] < 0 ? a->cells : -a->cells;
+    *phase = (value){phase->re * a->cosine - phase->im * sine,
+                     phase->im * a->cosine + phase->re * sine};
+  }
+  return 1;
+}
+
+static value times(value a, value b)
+{
+  return (value){a.re * b.re - a.im * b.im, a.im * b.re + a.re * b.im};
+}
+
+static value stored_inside(const dvi__yee *y, int component, const int *place)
+{
+  const size_t at = dvi__yee_at(y, component, place[1], place[2]) + (size_t)place[0];
+  return (value){y->state[0][at], y->copies > 1 ? y->state[1][at] : 0};
+}
+
+value dvi__yee_stored(const dvi__yee *y, int component, const int *place)
+{
+  int inside[3] = {place[0], place[1], place[2]};
+  value phase;
+  if (y->slot[component] < 0 || !move_inside(y, component, inside, &phase)) return (value){0, 0};
+  return times(phase, stored_inside(y, component, inside));
+}
+
+/* ---- absorbing layers ---- */
+
+/* Add what the layers of an axis add to a difference D: r D and psi, whose step is done in part. */
+static value stretched(const dvi__yee *y, int component, int which, int axis, const int *place,
+                       value D, double part)
+{
+  const int i = place[axis], form = component >= DVI__YEE_B;
+  for (int e = 0; e < 2; e++) {
+    const dvi__yee_layers *l = &y->axis[axis].layers[e];
+    if (i < l->first || i >= l->first + l->count) continue;
+    const int layer = i - l->first, at = i - l->start;
+    value psi = {0, 0};
+    for (int copy = 0; copy < y->copies; copy++) {
+      const size_t first = dvi__yee_psi_at(y, axis, e, copy, which, layer, place[1], place[2]);
+      *(copy == 0 ? &psi.re : &psi.im) = l->psi[first + (size_t)(axis == 0 ? at : place[0])];
+    }
+    D = plus(D, l->r[form][at], D);
+    const value old = plus(D, 1 + part * (l->b[form][at] - 1), psi);
+    D = plus(old, part * l->a[form][at] / (1 + l->r[form][at]), D);
+  }
+  return D;
+}
+
+/* ---- B ---- */
+
+static value forward(const dvi__yee *y, int c, int axis, const int *place)
+{
+  int next[3] = {place[0], place[1], place[2]};
+  next[axis]++;
+  return plus(dvi__yee_stored(y, c, next), -1, dvi__yee_stored(y, c, place));
+}
+
+/* Give what the next step adds to B. */
+static value change_of_face(const dvi__yee_moment *m, int c, const int *place)
+{
+  const dvi__yee *y = m->yee;
+  value sum = {0, 0};
+  for (int side = 0; side < 2; side++) {
+    const int axis = (c + 1 + side) % 3, other = (c + 2 - side) % 3;
+    if (y->axis[axis].is_trivial || y->slot[other] < 0) continue;
+    value D = forward(y, other, axis, place);
+    D = (value){y->dt * D.re, y->dt * D.im};
+    D = stretched(y, DVI__YEE_B + c, side == 0, axis, place, D, 1);
+    sum = plus(sum, side == 0 ? -1 : 1, D);
+  }
+  sum.re += dvi__yee_acted(y, &y->on_faces, DVI__YEE_B + c, place, m->on_faces);
+  return sum;
+}
+
+value dvi__yee_B_at(const dvi__yee_moment *m, int c, const int *place)
+{
+  const dvi__yee *y = m->yee;
+  int inside[3] = {place[0], place[1], place[2]};
+  value phase;
+  if (y->slot[DVI__YEE_B + c] < 0 || !move_inside(y, DVI__YEE_B + c, inside, &phase))
+    return (value){0, 0};
+  value B = stored_inside(y, DVI__YEE_B + c, inside);
+  if (m->part != 0) B = plus(B, m->part, change_of_face(m, c, inside));
+  return times(phase, B);
+}
+
+/* ---- E ---- */
+
+/* Give M_2 B beside that of vacuum. */
+static value field_at(const dvi__yee_moment *m, int c, const int *place)
+{
+  const dvi__yee *y = m->yee;
+  int inside[3] = {place[0], place[1], place[2]};
+  value unused;
+  const value B = dvi__yee_B_at(m, c, place);
+  if (y->mi == NULL || !move_inside(y, DVI__YEE_B + c, inside, &unused)) return B;
+  const double mi = y->mi[dvi__yee_at_faces(y, c, inside[1], inside[2]) + (size_t)inside[0]];
+  return (value){mi * B.re, mi * B.im};
+}
+
+/* Give what the curl of H adds to E in vacuum in a whole step. */
+static value change_of_edge(const dvi__yee_moment *m, int c, const int *place)
+{
+  const dvi__yee *y = m->yee;
+  value sum = {0, 0};
+  for (int side = 0; side < 2; side++) {
+    const int axis = (c + 1 + side) % 3, other = (c + 2 - side) % 3;
+    const dvi__yee_axis *a = &y->axis[axis];
+    if (a->is_trivial || y->slot[DVI__YEE_B + other] < 0) continue;
+    int before[3] = {place[0], place[1], place[2]};
+    before[axis]--;
+    const value one = field_at(m, other, place);
+    value D = {a->up[place[axis]] * one.re, a->up[place[axis]] * one.im};
+    D = plus(D, -a->down[place[axis]], field_at(m, other, before));
+    D = stretched(y, c, 2 + (side == 0), axis, place, D, m->part);
+    sum = plus(sum, side == 0 ? 1 : -1, D);
+  }
+  return sum;
+}
+
+/* Give the last axis with an absorbing end on which an edge lies, and that end, or -1. */
+static int absorbing_axis(const dvi__yee *y, int c, const int *place, int *end)
+{
+  for (int l = 2; l >= 0; l--)
+    for (int e = 0; e < 2; e++)
+      if (l != c && y->axis[l].end[e].kind == DVI_YEE_ABSORBING &&
+          place[l] == (e == 0 ? 0 : y->axis[l].cells)) {
+        *end = e;
+        return l;
+      }
+  return -1;
+}
+
+/* On an absorbing end E' + E1' = 2 v/h (E1 - E), where E1 is one box inside. */
+static value absorbed_E_at(const dvi__yee_moment *m, int c, int axis, int end, const int *place)
+{
+  const dvi__yee *y = m->yee;
+  const double rate = 2 * (m->part - 0.5) * dvi__yee_courant(y, c, axis, end, place);
+  int inner[3] = {place[0], place[1], place[2]};
+  inner[axis] += end == 0 ? 1 : -1;
+  const value E = dvi__yee_stored(y, c, place), E1 = dvi__yee_stored(y, c, inner),
+              E1_now = dvi__yee_E_at(m, c, inner);
+  const value relaxed = plus(E, rate, plus(E1, -1, E));
+  return plus(relaxed, -1, plus(E1_now, -1, E1));
+}
+
+value dvi__yee_E_at(const dvi__yee_moment *m, int c, const int *place)
+{
+  const dvi__yee *y = m->yee;
+  const double part = m->part - 0.5;
+  int end, is_free = 1;
+  for (int l = 0; l < 3; l++) is_free = is_free && dvi__yee_is_free(y, c, l, place[l]);
+  if (!is_free) {
+    const int axis = absorbing_axis(y, c, place, &end);
+    return axis >= 0 ? absorbed_E_at(m, c, axis, end, place) : (value){0, 0};
+  }
+  const size_t at = dvi__yee_at_edges(y, c, place[1], place[2]) + (size_t)place[0];
+  const double s = y->loss != NULL ? y->loss[at] : 0,
+               eps = y->ce != NULL ? 1 / (y->ce[at] * (1 + s)) : 1, divisor = 1 + 2 * part * s;
+  value E = plus(stored_inside(y, c, place), part / eps, change_of_edge(m, c, place));
+  E.re += (1 + s) * dvi__yee_acted(y, &y->on_edges, c, place, m->on_edges);
+  return (value){E.re / divisor, E.im / divisor};
+}
+
+void dvi__yee_start_edge(const dvi__yee_moment *m, int c, const int *place)
+{
+  const dvi__yee *y = m->yee;
+  for (int l = 0; l < 3; l++)
+    if (!dvi__yee_is_free(y, c, l, place[l])) return;
+  const size_t at = dvi__yee_at_edges(y, c, place[1], place[2]) + (size_t)place[0],
+               here = dvi__yee_at(y, c, place[1], place[2]) + (size_t)place[0];
+  const double s = y->loss != NULL ? y->loss[at] : 0,
+               eps = y->ce != NULL ? 1 / (y->ce[at] * (1 + s)) : 1,
+               impulse = (1 + s) * dvi__yee_acted(y, &y->on_edges, c, place, m->on_edges);
+  const value change = change_of_edge(m, c, place);
+  if (y->worn != NULL) y->worn[at] = s * y->state[0][here];
+  y->state[0][here] = (1 - s) * y->state[0][here] + 0.5 / eps * change.re + impulse;
+  if (y->copies > 1) y->state[1][here] = (1 - s) * y->state[1][here] + 0.5 / eps * change.im;
+}
+
+/* ---- samples ---- */
+
+dvi_status dvi__yee_sample(const void *self, dvi_march_form form, int64_t count, const int *cell,
+                           double *values)
+{
+  const dvi__yee *y = self;
+  const int64_t size = dvi__yee_form_size(y, form);
+  dvi__yee_moment m;
+  DVI_TRY(dvi__yee_set_moment(y, &m));
+  for (int64_t i = 0; i < count; i++) {
+    const int64_t number = cell != NULL ? cell[i] : i;
+    int component, place[3];
+    dvi__yee_place_of(y, form, number % size, &component, place);
+    const value v = component < DVI__YEE_B ? dvi__yee_E_at(&m, component, place)
+                                           : dvi__yee_B_at(&m, component - DVI__YEE_B, place);
+    values[i] = number < size ? v.re : v.im;
+    if (!isfinite(values[i]))
+      return dvi__fail(DVI_NOT_FINITE, "yee: the value %lld of a form has grown to %g at t = %g",
+                       (long long)number, values[i], y->t);
+  }
+  return DVI_OK;
+}
