@@ -31,6 +31,7 @@ static const subcommand subcommands[] = {
     {"emit-c", emit_c_command},
     {"mesh", mesh_command},
     {"modes", modes_command},
+    {"stability", stability_command},
     {"solve", solve_command},
     {"spectrum", spectrum_command},
     {"plot", plot_command},
@@ -67,6 +68,7 @@ static const char help[] =
     "  mesh FILE|GENERATOR ... audit a mesh: counts, holes, quality, dual cells, stable steps; "
     "repair it\n"
     "  modes SCENE.yaml ...    the modes of a field on a mesh: eigenvalues, frequencies, shapes\n"
+    "  stability SCENE.yaml    how fast a field grows under asynchronous steps, before a run\n"
     "  solve SCENE.yaml ...    the static state of a field on a mesh\n"
     "  order PROBLEM ...       measure the order of methods against an independent judge\n"
     "  bench PROBLEM ...       measure speed against error, also beside SUNDIALS' integrators\n"

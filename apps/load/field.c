@@ -26,20 +26,20 @@ const dvi_mesh *field_mesh(const dvi_field *field)
   return dvi_star_mesh(dvi_field_star(field));
 }
 
-/* Count the entries of M_1 below zero, beyond which waves may grow. */
+/* Count the entries of M_{k+1} below zero, beyond which waves may grow. */
 static int64_t count_negative(const dvi_field *field)
 {
   dvi_matrix M;
   int64_t count = 0;
-  if (dvi_star_matrix(dvi_field_star(field), 1, &M) != DVI_OK || M.column != NULL) return 0;
-  for (int64_t e = 0; e < M.rows; e++) count += M.value[e] < 0.0;
+  if (dvi_star_matrix(dvi_field_star(field), dvi_field_degree(field) + 1, &M) != DVI_OK) return 0;
+  for (int64_t e = 0; e < M.rows && M.column == NULL; e++) count += M.value[e] < 0.0;
   return count;
 }
 
 void field_tell(const dvi_field *field)
 {
   const dvi_mesh *mesh = field_mesh(field);
-  const int n = dvi_mesh_dimension(mesh);
+  const int n = dvi_mesh_dimension(mesh), k = dvi_field_degree(field);
   int64_t unknowns;
   double omega = 0.0;
   (void)dvi_field_unknowns(field, &unknowns);
@@ -48,15 +48,17 @@ void field_tell(const dvi_field *field)
                (long long)dvi_mesh_count(mesh, n));
   for (int i = 0; dvi_mesh_part_name(mesh, i) != NULL; i++)
     (void)printf("%s %s", i > 0 ? "," : "", dvi_mesh_part_name(mesh, i));
-  (void)printf("\nfield: %lld unknowns, %lld values fixed\n", (long long)unknowns,
-               (long long)(dvi_mesh_count(mesh, 0) - unknowns));
+  (void)printf("\nfield: %lld unknowns %s, %lld fixed\n", (long long)unknowns,
+               k == 0 ? "at vertices" : "on edges",
+               (long long)(dvi_mesh_count(mesh, k) - unknowns));
   const int64_t negative = count_negative(field);
   if (negative > 0)
-    (void)printf("star: %lld entries of M_1 are negative, so that waves may grow: dvi mesh tells "
+    (void)printf("star: %lld entries of M_%d are negative, so that waves may grow: dvi mesh tells "
                  "what helps\n",
-                 (long long)negative);
+                 (long long)negative, k + 1);
   if (dvi_field_fastest(field, &omega) == DVI_OK && omega > 0.0)
-    (void)printf("largest frequency without a potential: %.6g; verlet is stable below h = %.6g\n",
+    (void)printf("largest frequency without a potential: %.6g; verlet and leapfrog are stable "
+                 "below h = %.6g\n",
                  omega, 2.0 / omega);
 }
 
