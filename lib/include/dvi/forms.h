@@ -203,8 +203,8 @@ dvi_status dvi_form_solve(const dvi_star *star, int k, const char *held, const d
  *  @param[out] sum    the sum
  *  @param[out] size   the sum of the sizes of all products, beside which it is to be seen. May be
  *                     NULL
- *  @retval DVI_BAD_ARGUMENT  an argument is missing, k or a cell is out of range, or a cell is given
- *                            twice
+ *  @retval DVI_BAD_ARGUMENT  an argument is missing, k or a cell is out of range, or a cell is
+ *                            given twice
  *  @retval DVI_UNSUPPORTED   the star is spectral, and not a sum over cells
  *  @retval DVI_NOT_FINITE    a form is not finite, or a product overflows
  *  @retval DVI_NO_MEMORY     there is no memory */

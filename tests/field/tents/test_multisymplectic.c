@@ -7,9 +7,9 @@
 
 #include "core/memory.h"
 #include "field/mesh/complex.h"
-#include "field/tents/front.h"
 #include "support/meshes.h"
 #include "support/suite.h"
+#include "support/field/tents.h"
 
 /* Two solutions on a mesh of spacetime. */
 typedef struct solutions {
@@ -23,11 +23,6 @@ static void clear(solutions *s)
   dvi_star_destroy(&s->star);
   free(s->form[0]);
   free(s->form[1]);
-}
-
-static void fill_at_random(int64_t count, unsigned long long seed, double *form)
-{
-  for (int64_t i = 0; i < count; i++) form[i] = 2 * random_number(&seed) - 1;
 }
 
 static void make_star(solutions *s, dvi_mesh_terms terms)
@@ -111,7 +106,7 @@ static void take_values(const record *r, solutions *s)
 }
 
 /* Pitch so many tents with random starts over a mesh of space, which is destroyed. */
-static solutions pitched(dvi_mesh *space, int k, int tents)
+static solutions tents_on(dvi_mesh *space, int k, int tents)
 {
   const int n = dvi_mesh_dimension(space);
   const int64_t vertices = dvi_mesh_count(space, 0), cells = dvi_mesh_count(space, k);
@@ -130,8 +125,8 @@ static solutions pitched(dvi_mesh *space, int k, int tents)
   for (unsigned i = 0; i < 2; i++) {
     const dvi__tents_options options = {.fraction = 0.8, .least = 0.3, .seed = 2};
     ck_assert_int_eq(dvi__tents_create(star, k, NULL, &options, &r.tents[i]), DVI_OK);
-    fill_at_random(cells, 2 * i + 1, A);
-    fill_at_random(cells, 2 * i + 2, E);
+    fill_at_random(cells, 1, 2 * i + 1, A);
+    fill_at_random(cells, 1, 2 * i + 2, E);
     dvi__tents_start(r.tents[i], &(dvi_march_state){.A = A, .E = E});
   }
   for (int v = 0; v < vertices; v++) add_point(&r, v);
@@ -168,9 +163,9 @@ static dvi_mesh *bcc_torus(void)
 
 static solutions tents_of(int n, int k)
 {
-  return n == 1   ? pitched(ring_mesh(12, 0.2, 3), k, 160)
-         : n == 2 ? pitched(equilateral_torus(4, 4), k, 110)
-                  : pitched(bcc_torus(), k, is_short_run() ? 60 : 150);
+  return n == 1   ? tents_on(ring_mesh(12, 0.2, 3), k, 160)
+         : n == 2 ? tents_on(equilateral_torus(4, 4), k, 110)
+                  : tents_on(bcc_torus(), k, is_short_run() ? 60 : 150);
 }
 
 /* ---- spacetime of boxes ---- */
@@ -246,7 +241,7 @@ static solutions boxes_of(int n, int k)
                                  .period = period});
   const dvi_mesh *mesh = dvi_star_mesh(s.star);
   for (unsigned i = 0; i < 2; i++) {
-    fill_at_random(dvi_mesh_count(mesh, k), i + 1, s.form[i]);
+    fill_at_random(dvi_mesh_count(mesh, k), 1, i + 1, s.form[i]);
     for (int64_t e = 0; e < dvi_mesh_count(mesh, 1) && k == 1; e++)
       if (mesh->corner[1][2 * e] / vertices != mesh->corner[1][2 * e + 1] / vertices)
         s.form[i][e] = 0;
@@ -257,7 +252,7 @@ static solutions boxes_of(int n, int k)
 
 /* ---- the formula ---- */
 
-/* Choose the cells around a random one, for odd seeds without some of them. Returns their number. */
+/* Choose the cells around a random one, for odd seeds without some of them. Returns their count. */
 static int64_t choose_cells(const dvi_mesh *mesh, unsigned seed, int *cell)
 {
   const int n = dvi_mesh_dimension(mesh), space = dvi_mesh_space(mesh);
@@ -309,7 +304,7 @@ static void check_formula(solutions s)
   const int64_t count = dvi_mesh_count(dvi_star_mesh(s.star), s.k);
   double *other = calloc((size_t)count, sizeof *other);
   ck_assert_double_le(worst_of(&s, s.form[0], s.form[1]), 1e-14);
-  fill_at_random(count, 77, other);
+  fill_at_random(count, 1, 77, other);
   ck_assert_double_ge(worst_of(&s, s.form[0], other), 1e-2);
   free(other);
   clear(&s);
@@ -419,7 +414,7 @@ START_TEST(potentials_in_a_medium_are_reciprocal)
   dvi_mesh *mesh = staggered_mesh(7, 7);
   const int64_t cells = dvi_mesh_count(mesh, 2), count = dvi_mesh_count(mesh, 0);
   double *stiffness = calloc((size_t)cells, sizeof *stiffness);
-  fill_at_random(cells, 5, stiffness);
+  fill_at_random(cells, 1, 5, stiffness);
   for (int64_t c = 0; c < cells; c++) stiffness[c] += 1.5;
   const double *factor[] = {NULL, stiffness, NULL};
   const dvi_star_options options = {.size = sizeof options, .factor = factor};

@@ -191,8 +191,8 @@ START_TEST(a_cavity_shows_its_energy_charge_and_probes)
 }
 END_TEST
 
-/* A wave is held at 1 on the left, and at 3 on the right: 1 + 2 x stays at rest, if its other values
- * are those of a start. A start without values has the held ones. */
+/* A wave is held at 1 on the left, and at 3 on the right: 1 + 2 x stays at rest, if its other
+ * values are those of a start. A start without values has the held ones. */
 static int tilt(const double *x, const double *normal, double *datum, void *user)
 {
   (void)normal, (void)user;

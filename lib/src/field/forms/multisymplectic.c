@@ -68,8 +68,8 @@ static void clear(formula *f)
 
 /* ---- the boundary of K ---- */
 
-/* A facet is on the boundary if it belongs to an odd number of K's cells, as no mesh with a star has
- * more than two cells at a facet. */
+/* A facet is on the boundary if it belongs to one of K's cells, and to no second one: a mesh with a
+ * star has no third one. */
 static dvi_status find_facets(const formula *f, int64_t cells, const int *cell)
 {
   const dvi_mesh *mesh = f->star->mesh;
