@@ -223,7 +223,8 @@ static solutions boxes_of(int n, int k)
   for (int v = 0; v < vertices * (UP + 1); v++) {
     point[dimension * v] = (double)(v % ACROSS) / ACROSS;
     if (n == 2) point[dimension * v + 1] = (double)(v / ACROSS % ACROSS) / ACROSS;
-    point[dimension * v + n] = 0.1 * (v / vertices);
+    const int slice = v / vertices;
+    point[dimension * v + n] = 0.1 * slice;
   }
   for (int cell = 0; cell < vertices * UP; cell++) {
     const int x = cell % ACROSS, y = n == 1 ? 0 : cell / ACROSS % ACROSS, t = cell / vertices;

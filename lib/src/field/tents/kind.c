@@ -145,9 +145,9 @@ static arrays arrays_of(const dvi__tents *w)
 static place place_of(const dvi__tents *w)
 {
   const dvi_mesh *mesh = w->mesh;
-  const double part[] = {w->fraction, w->least};
   const size_t cells = (size_t)mesh->count[mesh->n];
-  uint64_t hash = dvi__hash(DVI__HASH_START, sizeof part, part);
+  uint64_t hash = dvi__hash(DVI__HASH_START, sizeof w->fraction, &w->fraction);
+  hash = dvi__hash(hash, sizeof w->least, &w->least);
   hash = dvi__hash(hash, sizeof w->seed, &w->seed);
   hash = dvi__hash(hash, (size_t)mesh->count[w->k], w->held);
   hash = dvi__hash(hash, (size_t)mesh->count[1] * sizeof *w->reach, w->reach);
