@@ -124,7 +124,9 @@ static solutions tents_on(dvi_mesh *space, int k, int tents)
   double *E = calloc((size_t)cells, sizeof *E), *A = calloc((size_t)cells, sizeof *A);
   for (unsigned i = 0; i < 2; i++) {
     const dvi__tents_options options = {.fraction = 0.8, .least = 0.3, .seed = 2};
-    ck_assert_int_eq(dvi__tents_create(star, k, NULL, &options, &r.tents[i]), DVI_OK);
+    ck_assert_int_eq(
+        dvi__tents_create(&(dvi__tents_terms){.star = star, .k = k}, &options, &r.tents[i]),
+        DVI_OK);
     fill_at_random(cells, 1, 2 * i + 1, A);
     fill_at_random(cells, 1, 2 * i + 2, E);
     dvi__tents_start(r.tents[i], &(dvi_march_state){.A = A, .E = E});

@@ -255,7 +255,8 @@ static void check_refusal(dvi_mesh *mesh, dvi_star_kind kind, int k, dvi__tents_
   dvi__tents *tents = NULL;
   const dvi_star_options of_star = {.size = sizeof of_star, .kind = kind};
   ck_assert_msg(dvi_star_create(mesh, &of_star, &star) == DVI_OK, "%s", dvi_last_error());
-  ck_assert_int_eq(dvi__tents_create(star, k, NULL, &options, &tents), status);
+  ck_assert_int_eq(dvi__tents_create(&(dvi__tents_terms){.star = star, .k = k}, &options, &tents),
+                   status);
   ck_assert_ptr_null(tents);
   check_words(words);
   dvi_star_destroy(&star);
@@ -352,7 +353,7 @@ START_TEST(memory_is_asked_for_at_creation_only)
   int failures = 0;
   for (; status == DVI_NO_MEMORY; failures += status == DVI_NO_MEMORY) {
     dvi__fail_allocations_after(failures);
-    status = dvi__tents_create(star, 1, NULL, NULL, &tents);
+    status = dvi__tents_create(&(dvi__tents_terms){.star = star, .k = 1}, NULL, &tents);
     dvi__fail_allocations_after(-1);
   }
   ck_assert_int_eq(status, DVI_OK);

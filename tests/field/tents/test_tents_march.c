@@ -72,6 +72,7 @@ static double observe(const dvi_march *march, const char *name)
   for (int i = 0; dvi_march_observable(march, i) != NULL; i++)
     if (strcmp(dvi_march_observable(march, i), name) == 0)
       ck_assert_msg(dvi_march_observe(march, i, &value) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_msg(isfinite(value), "%s", name);
   return value;
 }
 
@@ -103,7 +104,7 @@ START_TEST(cuts_and_observations_change_no_bit)
   for (int i = 1; i <= 37; i++) {
     advance(cut, i < 37 ? 0.1 + 1.2 * i / 37 : 1.3);
     ck_assert(observe(cut, "energy") > 0);
-    ck_assert(isfinite(observe(cut, "ear")));
+    (void)observe(cut, "ear");
   }
   check_equal(state_of(whole), state_of(cut));
   ck_assert_double_eq(observe(whole, "ear"), observe(cut, "ear"));
@@ -125,7 +126,7 @@ START_TEST(a_loaded_march_goes_on_with_the_same_bits)
   ck_assert_double_eq(observe(second, "energy"), observe(first, "energy"));
   advance(first, 2);
   advance(second, 2);
-  ck_assert_double_eq(observe(second, "charge_error"), observe(first, "charge_error"));
+  ck_assert_double_eq(observe(second, "gauss"), observe(first, "charge_error"));
   check_equal(state_of(first), state_of(second));
   dvi_march_destroy(&first);
   dvi_march_destroy(&second);
@@ -174,7 +175,7 @@ START_TEST(a_cavity_shows_its_energy_charge_and_probes)
   advance(march, 3);
   ck_assert_double_eq_tol(observe(march, "energy") / before, 1, 0.1);
   ck_assert_double_eq_tol(observe(march, "part"), observe(march, "energy"), 1e-13 * before);
-  ck_assert_double_le(observe(march, "charge_error"), 1e-13);
+  ck_assert_double_le(observe(march, "gauss"), 1e-13);
   ck_assert_double_gt(fabs(observe(march, "ear")), 1e-6);
   ck_assert_int_eq(dvi_march_sample(march, DVI_FORM_E, count, wall, E), DVI_OK);
   for (int64_t i = 0; i < count; i++) ck_assert_double_eq(E[i], 0);
@@ -245,19 +246,53 @@ START_TEST(held_values_stay_and_pull)
 }
 END_TEST
 
+/* ---- sources ---- */
+
+static int push(const double *x, double *f, void *user)
+{
+  (void)x, (void)user;
+  *f = 1;
+  return 0;
+}
+
+/* A free sheet falls: its momentum grows by the force exactly, and each vertex by t^2/2 up to
+ * what tents of different times add, with the square of their heights. */
+START_TEST(a_source_pushes)
+{
+  static const dvi_condition open = {.part = "boundary", .kind = DVI_FREE};
+  dvi_field *field = make_wave(staggered_mesh(6, 6),
+                               &(dvi_wave_terms){.condition = &open, .source = push});
+  dvi_march *march = make_march(field, random_tents);
+  const int64_t count = dvi_march_size(march, DVI_FORM_A);
+  double *u = calloc((size_t)count, sizeof *u), *E = calloc((size_t)count, sizeof *E), momentum = 0;
+  const double *mass = NULL;
+  dvi_matrix M;
+  const dvi_march_state state = {.size = sizeof state};
+  ck_assert_int_eq(dvi_star_matrix(dvi_field_star(field), 0, &M), DVI_OK);
+  mass = M.value;
+  ck_assert_int_eq(dvi_march_start(march, &state), DVI_OK);
+  advance(march, 2);
+  ck_assert_int_eq(dvi_march_sample(march, DVI_FORM_A, count, NULL, u), DVI_OK);
+  ck_assert_int_eq(dvi_march_sample(march, DVI_FORM_E, count, NULL, E), DVI_OK);
+  for (int64_t v = 0; v < count; v++) {
+    momentum -= mass[v] * E[v];
+    ck_assert_double_eq_tol(u[v], 2, 0.005);
+  }
+  ck_assert_double_eq_tol(momentum, 2, 1e-12);
+  ck_assert_double_eq_tol(observe(march, "energy"), 0, 0.005);
+  free(u);
+  free(E);
+  dvi_march_destroy(&march);
+  dvi_field_destroy(&field);
+}
+END_TEST
+
 /* ---- refusals ---- */
 
 static int one(double t, double *value, void *user)
 {
   (void)t, (void)user;
   *value = 1;
-  return 0;
-}
-
-static int push(const double *x, double *f, void *user)
-{
-  (void)x, (void)user;
-  *f = 1;
   return 0;
 }
 
@@ -282,7 +317,7 @@ static dvi_field *make_maxwell(dvi_maxwell_terms terms)
   return field;
 }
 
-START_TEST(sources_and_losses_are_refused)
+START_TEST(currents_and_losses_are_refused)
 {
   static const dvi_current dipole = {.at = {0.5, 0.5}, .along = {1, 0}, .signal = one};
   static const dvi_wall open = {.part = "boundary", .kind = DVI_ABSORBING};
@@ -290,8 +325,6 @@ START_TEST(sources_and_losses_are_refused)
                 "the field has currents");
   check_refusal(make_maxwell((dvi_maxwell_terms){.wall = &open, .walls = 1}),
                 "conductors or absorbing walls");
-  check_refusal(make_wave(staggered_mesh(4, 4), &(dvi_wave_terms){.source = push}),
-                "a source or a flux");
 }
 END_TEST
 
@@ -342,7 +375,8 @@ SUITE(tents_march)
   tcase_add_test(tests, a_state_of_another_march_is_refused);
   tcase_add_test(tests, a_cavity_shows_its_energy_charge_and_probes);
   tcase_add_test(tests, held_values_stay_and_pull);
-  tcase_add_test(tests, sources_and_losses_are_refused);
+  tcase_add_test(tests, a_source_pushes);
+  tcase_add_test(tests, currents_and_losses_are_refused);
   tcase_add_test(tests, options_that_tents_have_not_are_refused);
   tcase_add_test(tests, a_creation_without_memory_leaves_nothing);
 }

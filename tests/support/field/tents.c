@@ -15,8 +15,9 @@ pitched tents_over(dvi_mesh *mesh, int k, const double *const *factor, const int
   const dvi_star_options star = {.size = sizeof star, .factor = factor};
   ck_assert_msg(dvi_star_create(mesh, &star, &p.star) == DVI_OK, "%s", dvi_last_error());
   dvi_mesh_destroy(&mesh);
-  ck_assert_msg(dvi__tents_create(p.star, k, held, &options, &p.tents) == DVI_OK, "%s",
-                dvi_last_error());
+  ck_assert_msg(dvi__tents_create(&(dvi__tents_terms){.star = p.star, .k = k, .held = held},
+                                  &options, &p.tents) == DVI_OK,
+                "%s", dvi_last_error());
   p.A = calloc((size_t)p.size, sizeof *p.A);
   p.E = calloc((size_t)p.size, sizeof *p.E);
   p.B = calloc((size_t)p.above, sizeof *p.B);

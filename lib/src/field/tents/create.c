@@ -270,11 +270,11 @@ void dvi__tents_destroy(dvi__tents **tents)
   if (tents == NULL || *tents == NULL) return;
   dvi__tents *w = *tents;
   *tents = NULL;
-  void *const owned[] = {w->held,         w->speed,       w->weight,      w->reach,
-                         w->face,         w->base,        w->rise,        w->row,
-                         w->dual,         w->size,        w->charge,      w->star_of,
-                         w->cells.start,  w->cells.cell,  w->edges.start, w->edges.cell,
-                         w->values.start, w->values.cell, w->level_time};
+  void *const owned[] = {w->held,       w->force,        w->speed,       w->weight,
+                         w->reach,      w->face,         w->base,        w->rise,
+                         w->row,        w->dual,         w->size,        w->charge,
+                         w->star_of,    w->cells.start,  w->cells.cell,  w->edges.start,
+                         w->edges.cell, w->values.start, w->values.cell, w->level_time};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) dvi__release(owned[i]);
   release_front(&w->front);
   if (w->level != NULL) release_front(w->level);
@@ -285,16 +285,18 @@ void dvi__tents_destroy(dvi__tents **tents)
 
 /* ---- create ---- */
 
-static dvi_status make(dvi__tents *w, const int8_t *held)
+static dvi_status make(dvi__tents *w, const dvi__tents_terms *terms)
 {
   const dvi_mesh *mesh = w->mesh;
   DVI_TRY(find_around(mesh, mesh->n, &w->cells));
   DVI_TRY(find_around(mesh, 1, &w->edges));
   DVI_TRY(find_around(mesh, w->k, &w->values));
-  if (!allocate_tables(w) || !allocate_work(w))
+  if (terms->force != NULL)
+    w->force = dvi__duplicate(terms->force, (size_t)mesh->count[w->k], sizeof *w->force);
+  if (!allocate_tables(w) || !allocate_work(w) || (terms->force != NULL && w->force == NULL))
     return dvi__fail(DVI_NO_MEMORY, "tents: no memory for %lld cells",
                      (long long)mesh->count[mesh->n]);
-  if (held != NULL) memcpy(w->held, held, (size_t)mesh->count[w->k]);
+  if (terms->held != NULL) memcpy(w->held, terms->held, (size_t)mesh->count[w->k]);
   DVI_TRY(check_mass(w));
   for (int l = 0; l < mesh->space; l++) w->metric[l] = 1;
   w->metric[mesh->space] = -1;
@@ -305,23 +307,23 @@ static dvi_status make(dvi__tents *w, const int8_t *held)
   return DVI_OK;
 }
 
-dvi_status dvi__tents_create(const dvi_star *star, int k, const int8_t *held,
-                             const dvi__tents_options *options, dvi__tents **tents)
+dvi_status dvi__tents_create(const dvi__tents_terms *terms, const dvi__tents_options *options,
+                             dvi__tents **tents)
 {
   const dvi__tents_options defaults = {0};
   *tents = NULL;
   if (options == NULL) options = &defaults;
   DVI_TRY(check_options(options));
-  DVI_TRY(check_star(star, k));
+  DVI_TRY(check_star(terms->star, terms->k));
   dvi__tents *w = DVI_NEW(dvi__tents, 1);
   if (w == NULL) return dvi__fail(DVI_NO_MEMORY, "tents: no memory");
-  w->star = dvi_star_share(star);
-  w->mesh = star->mesh;
-  w->k = k;
+  w->star = dvi_star_share(terms->star);
+  w->mesh = w->star->mesh;
+  w->k = terms->k;
   w->fraction = options->fraction > 0 ? options->fraction : default_fraction;
   w->least = options->least > 0 ? options->least : 1;
   w->seed = options->seed;
-  const dvi_status status = make(w, held);
+  const dvi_status status = make(w, terms);
   *tents = w;
   if (status != DVI_OK) dvi__tents_destroy(tents);
   return status;

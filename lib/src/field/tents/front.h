@@ -32,7 +32,8 @@ struct dvi__tents {
   dvi_star *star;
   const dvi_mesh *mesh; /* the star's */
   int k;
-  int8_t *held; /* [k-cells] */
+  int8_t *held;  /* [k-cells] */
+  double *force; /* [k-cells], or NULL for 0 */
   double fraction, least;
   uint64_t seed;
   double metric[DVI_MESH_SPACE_MAX]; /* of spacetime */

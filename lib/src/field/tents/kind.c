@@ -6,15 +6,13 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/step/observables.h"
+#include "field/step/source.h"
 #include "field/tents/front.h"
 #include "field/tents/options.h"
 #include "march/kind.h"
 
 static const char section_name[] = "tents";
 enum { SECTION_VERSION = 1 };
-
-/* Loads below this part of their terms are roundings. */
-static const double load_part = 1e-12;
 
 typedef struct march {
   const dvi_field *field;
@@ -153,6 +151,8 @@ static place place_of(const dvi__tents *w)
   hash = dvi__hash(hash, (size_t)mesh->count[1] * sizeof *w->reach, w->reach);
   hash = dvi__hash(hash, cells * sizeof *w->speed, w->speed);
   hash = dvi__hash(hash, cells * sizeof *w->weight, w->weight);
+  if (w->force != NULL)
+    hash = dvi__hash(hash, (size_t)mesh->count[w->k] * sizeof *w->force, w->force);
   return (place){.vertices = mesh->count[0],
                  .values = mesh->count[w->k],
                  .hash = hash,
@@ -211,51 +211,33 @@ static const dvi__march_kind kind = {.name = section_name,
 
 /* ---- create ---- */
 
-/* The load of a field has what the fixed values pull, which tents know, and sources. */
-static dvi_status refuse_sources(const dvi_field *f, dvi__csr *K)
-{
-  for (int64_t i = 0; i < f->unknowns && f->load != NULL; i++) {
-    const int64_t row = f->unknown[i];
-    double source = f->load[i], size = fabs(f->load[i]);
-    for (int64_t e = K->start[row]; e < K->start[row + 1]; e++) {
-      source += K->value[e] * f->fixed[K->column[e]];
-      size += fabs(K->value[e] * f->fixed[K->column[e]]);
-    }
-    if (fabs(source) <= load_part * size) continue;
-    const dvi__cell_name name = dvi__name_cell(f->mesh, f->degree, row);
-    return dvi__fail(DVI_UNSUPPORTED,
-                     "tents: the field has a source or a flux, %.3g at %s: take leapfrog or avi",
-                     source, name.text);
-  }
-  return DVI_OK;
-}
-
 static dvi_status check_field(const dvi_field *f)
 {
-  dvi__csr K = {0};
   const char *what = f->currents > 0       ? "currents"
                      : f->damping.rows > 0 ? "conductors or absorbing walls"
                                            : NULL;
-  if (what != NULL)
-    return dvi__fail(DVI_UNSUPPORTED, "tents: the field has %s: take leapfrog or avi", what);
-  if (f->degree >= f->mesh->n) return DVI_OK;
-  DVI_TRY(dvi__stiffness(f->star, f->degree, &K));
-  const dvi_status status = refuse_sources(f, &K);
-  dvi__csr_clear(&K);
-  return status;
+  if (what == NULL) return DVI_OK;
+  return dvi__fail(DVI_UNSUPPORTED, "tents: the field has %s: take leapfrog or avi", what);
 }
 
 static dvi_status make(march *m, const dvi_field *f, const dvi__tents_options *options)
 {
+  double *source = NULL, *force = NULL;
   int8_t *held = DVI_NEW(int8_t, f->cells);
   m->field = f;
   m->A = DVI_NEW(double, f->cells);
-  dvi_status status = held != NULL && m->A != NULL
-                          ? DVI_OK
-                          : dvi__fail(DVI_NO_MEMORY, "tents: no memory for %lld cells",
-                                      (long long)f->cells);
-  for (int64_t c = 0; c < f->cells && status == DVI_OK; c++) held[c] = f->number[c] < 0;
-  if (status == DVI_OK) status = dvi__tents_create(f->star, f->degree, held, options, &m->tents);
+  dvi_status status = dvi__wave_source(f, &source);
+  if (status == DVI_OK && source != NULL) force = DVI_NEW(double, f->cells);
+  if (status == DVI_OK && (!held || !m->A || (source && !force)))
+    status = dvi__fail(DVI_NO_MEMORY, "tents: no memory for %lld cells", (long long)f->cells);
+  if (status == DVI_OK) {
+    for (int64_t c = 0; c < f->cells; c++) held[c] = f->number[c] < 0;
+    for (int64_t i = 0; i < f->unknowns && force != NULL; i++) force[f->unknown[i]] = source[i];
+    const dvi__tents_terms terms = {.star = f->star, .k = f->degree, .held = held, .force = force};
+    status = dvi__tents_create(&terms, options, &m->tents);
+  }
+  dvi__release(source);
+  dvi__release(force);
   dvi__release(held);
   return status;
 }

@@ -82,6 +82,7 @@ dvi_status dvi__tents_energy(const dvi__tents *w, double *energy)
   for (int64_t i = 0; i < w->mesh->count[w->k]; i++) {
     const double E = value_of(w, DVI_FORM_E, i);
     sum += 0.5 * w->star->diagonal[w->k][i] * E * E;
+    if (w->force != NULL) sum -= w->force[i] * value_of(w, DVI_FORM_A, i);
   }
   for (int64_t i = 0; i < w->mesh->count[w->k + 1]; i++) {
     const double B = value_of(w, DVI_FORM_B, i);

@@ -225,6 +225,13 @@ static dvi_status refuse_dual(const tent *t, int64_t cell)
                    name.text, t->front->time[t->vertex], t->top, t->of->dual[cell]);
 }
 
+/* A force pushes in equal parts at the ends of its pole. A row grows against it, as M_k E does. */
+static double half_impulse(const tent *t, int cell)
+{
+  const double *force = t->of->force;
+  return force != NULL ? -0.5 * force[cell] * (t->top - t->front->time[t->vertex]) : 0;
+}
+
 static dvi_status solve_rows(const tent *t)
 {
   const dvi__tents *w = t->of;
@@ -232,9 +239,9 @@ static dvi_status solve_rows(const tent *t)
     const int cell = w->values.cell[i];
     if (!w->held[cell]) {
       if (!(w->dual[cell] < -cancelled * w->size[cell])) return refuse_dual(t, cell);
-      w->rise[cell] = w->row[cell] / w->dual[cell];
+      w->rise[cell] = (w->row[cell] + half_impulse(t, cell)) / w->dual[cell];
     }
-    w->row[cell] = 0;
+    w->row[cell] = half_impulse(t, cell);
   }
   return DVI_OK;
 }

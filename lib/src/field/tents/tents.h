@@ -12,14 +12,21 @@ typedef struct dvi__tents_options {
   uint64_t seed; /* of the random rises */
 } dvi__tents_options;
 
+/* What tents are pitched over, and which form. All arrays are copied. */
+typedef struct dvi__tents_terms {
+  /* circumcentric, on simplices of space. factor[k] is eps, and factor[k+1] is 1/mu */
+  const dvi_star *star;
+  int k;               /* degree, from 0 to n - 1 */
+  const int8_t *held;  /* [k-cells] 1 where A keeps its start, or NULL */
+  const double *force; /* [k-cells] constant, on waves: the action has force.A. NULL for 0 */
+} dvi__tents_terms;
+
 typedef struct dvi__tents dvi__tents;
 
-/* Prepare for k-forms, with A = 0 at t = 0. factor[k] of the star, which is circumcentric and on
- * simplices of space, is eps, and factor[k+1] is 1/mu. `held` [k-cells] is 1 where A keeps its
- * start, and NULL for nowhere. DVI_BAD_ARGUMENT, DVI_UNSUPPORTED, DVI_SINGULAR if an entry of M_k
+/* Prepare, with A = 0 at t = 0. DVI_BAD_ARGUMENT, DVI_UNSUPPORTED, DVI_SINGULAR if an entry of M_k
  * is not positive, DVI_NO_MEMORY. */
-dvi_status dvi__tents_create(const dvi_star *star, int k, const int8_t *held,
-                             const dvi__tents_options *options, dvi__tents **tents);
+dvi_status dvi__tents_create(const dvi__tents_terms *terms, const dvi__tents_options *options,
+                             dvi__tents **tents);
 void dvi__tents_destroy(dvi__tents **tents);
 
 /* Start from values that are finite (dvi_march_start). */
@@ -36,7 +43,7 @@ dvi_status dvi__tents_pitch(dvi__tents *tents, int *vertex, double *top);
 dvi_status dvi__tents_sample(const dvi__tents *tents, dvi_march_form form, int64_t count,
                              const int *cell, double *values);
 
-/* Give the energy E.M_k E/2 + B.M_{k+1} B/2 then. */
+/* Give the energy E.M_k E/2 + B.M_{k+1} B/2 - force.A then. */
 dvi_status dvi__tents_energy(const dvi__tents *tents, double *energy);
 
 /* Give the largest change of a charge since the start, d_{k-1}^T M_k E on cells of degree k - 1 at
@@ -44,7 +51,7 @@ dvi_status dvi__tents_energy(const dvi__tents *tents, double *energy);
 double dvi__tents_charge_error(const dvi__tents *tents);
 
 /* Create a march of tents, whose options are "least=0.5,seed=3" or a part of them. DVI_BAD_OPTION,
- * DVI_UNSUPPORTED for fields with sources or losses, and as dvi__tents_create. The field outlives
+ * DVI_UNSUPPORTED for fields with currents or losses, and as dvi__tents_create. The field outlives
  * the march. */
 dvi_status dvi__tents_march(const dvi_field *field, const dvi__march_plan *plan, dvi_march **march);
 
