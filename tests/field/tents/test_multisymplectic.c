@@ -313,15 +313,21 @@ static void check_formula(solutions s)
   clear(&s);
 }
 
+/* The few sets of a short run may have no inner vertex of a mesh of four dimensions. */
+static int dimensions(void)
+{
+  return is_short_run() ? 2 : 3;
+}
+
 START_TEST(waves_on_tents_are_multisymplectic)
 {
-  for (int n = 1; n <= 3; n++) check_formula(tents_of(n, 0));
+  for (int n = 1; n <= dimensions(); n++) check_formula(tents_of(n, 0));
 }
 END_TEST
 
 START_TEST(light_on_tents_is_multisymplectic)
 {
-  for (int n = 2; n <= 3; n++) check_formula(tents_of(n, 1));
+  for (int n = 2; n <= dimensions(); n++) check_formula(tents_of(n, 1));
 }
 END_TEST
 
