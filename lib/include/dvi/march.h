@@ -1,6 +1,6 @@
 /** A field that advances in time by methods of its own: leapfrog, asynchronous steps, tents.
  *
- *  A k-form A on a mesh has the Lagrangian A'.M_k A'/2 - (dA).M_{k+1} (dA)/2 - J.A (dvi/field.h).
+ *  A k-form A on a mesh has the Lagrangian A'.M_k A'/2 - (dA).M_{k+1} (dA)/2 + J.A (dvi/field.h).
  *  A march holds E = -A' on the k-cells and B = dA on the (k+1)-cells, perhaps at different times.
  *  It advances by its own steps. What is asked for at a time in between is computed beside the
  *  state: observations change no bit of the motion, and neither does the way in which it is cut.

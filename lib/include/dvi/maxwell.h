@@ -4,7 +4,7 @@
  *  two dimensions (E in the plane, B across it) and in three, or a 0-form in one dimension and in
  *  two with E across the plane. The Lagrangian is
  *
- *      L = A'.M_k A'/2 - (d A).M_{k+1} (d A)/2 - J.A
+ *      L = A'.M_k A'/2 - (d A).M_{k+1} (d A)/2 + J.A
  *
  *  with the permittivity in M_k and the inverse permeability in M_{k+1}. E = -A' and B = dA, so that
  *  B' = -dE and (M_k E)' = d^T M_{k+1} B - J are Maxwell's equations, which keep the charge

@@ -84,19 +84,23 @@ dvi_status dvi__regular_create(const dvi_matrix *A, dvi__definite *solver)
 
 static dvi_status times(void *of, const double *x, double *y)
 {
-  dvi_matrix_multiply(of, 0, x, y);
+  const dvi_matrix A = dvi__csr_view(&((const dvi__definite *)of)->matrix, 1);
+  dvi_matrix_multiply(&A, 0, x, y);
   return DVI_OK;
 }
 
 static void precondition(void *of, const double *r, double *z)
 {
-  dvi__gauss_seidel(of, r, z);
+  const dvi__definite *solver = of;
+  const dvi_matrix A = dvi__csr_view(&solver->matrix, 1);
+  dvi__gauss_seidel(&A, r, z);
+  if (solver->correct != NULL) solver->correct(solver->of, solver->weight, r, z);
 }
 
 dvi_status dvi__definite_solve(const dvi__definite *solver, const double *b, double *x,
                                dvi__iteration_report *report)
 {
-  dvi_matrix A = dvi__csr_view(&solver->matrix, 1);
+  const dvi_matrix A = dvi__csr_view(&solver->matrix, 1);
   if (report != NULL) *report = (dvi__iteration_report){0};
   if (solver->is_diagonal) {
     for (int64_t i = 0; i < A.rows; i++) x[i] = b[i] / A.value[i];
@@ -104,8 +108,9 @@ dvi_status dvi__definite_solve(const dvi__definite *solver, const double *b, dou
   }
   if (solver->factor == NULL) {
     const dvi__products products = {
-        .size = A.rows, .times = times, .precondition = precondition, .of = &A};
-    return dvi__conjugate_gradients(&products, roundoff, b, x, report);
+        .size = A.rows, .times = times, .precondition = precondition, .of = (void *)solver};
+    return dvi__conjugate_gradients(&products, solver->tolerance > 0 ? solver->tolerance : roundoff,
+                                    b, x, report);
   }
   memcpy(x, b, (size_t)A.rows * sizeof *x);
   return dvi__linear_solve(solver->factor, x);

@@ -11,6 +11,11 @@ typedef struct dvi__definite {
   dvi__pattern pattern;
   dvi__linear *factor; /* NULL for conjugate gradients and for diagonal matrices */
   int is_diagonal;
+  double tolerance; /* of conjugate gradients, 0 for roundoff. Set after the creation */
+  /* What else preconditions conjugate gradients, or NULL. Set after the creation. */
+  void (*correct)(void *of, double weight, const double *residual, double *z);
+  void *of;
+  double weight; /* first argument behind `of` */
 } dvi__definite;
 
 /* Tell whether a matrix of so many rows is solved with by iteration. */

@@ -16,6 +16,9 @@
 
 enum { MULTIPLY = 1, MASS = 2, DONE = 99, RESTARTS = 1000, SHIFT_INVERT = 3 };
 
+/* Where solutions are iterated, vectors are as good as these, and eigenvalues as their squares. */
+static const double tolerance_of_solutions = 1e-11, tolerance_of_vectors = 1e-9;
+
 static pthread_mutex_t arpack = PTHREAD_MUTEX_INITIALIZER;
 
 typedef struct lanczos {
@@ -56,6 +59,11 @@ static dvi_status explain(const lanczos *s, int info)
   return dvi__fail(DVI_SOLVER_FAILED, "modes: ARPACK failed with code %d", info);
 }
 
+static double tolerance_of(const lanczos *s)
+{
+  return s->inverse->factor == NULL && !s->inverse->is_diagonal ? tolerance_of_vectors : 0;
+}
+
 static dvi_status iterate(lanczos *s, a_int *info)
 {
   const a_int n = (a_int)s->pencil->K->rows;
@@ -63,8 +71,8 @@ static dvi_status iterate(lanczos *s, a_int *info)
   a_int asked = 0;
   *info = 1; /* the start is given */
   for (;;) {
-    dsaupd_c(&asked, "G", n, "LM", s->count, 0, s->residual, s->directions, s->basis, n, s->setting,
-             s->place, s->places, s->work, length, info);
+    dsaupd_c(&asked, "G", n, "LM", s->count, tolerance_of(s), s->residual, s->directions, s->basis,
+             n, s->setting, s->place, s->places, s->work, length, info);
     if (asked == DONE) break;
     DVI_TRY(answer(s, (int)asked));
   }
@@ -77,9 +85,9 @@ static dvi_status extract(lanczos *s, double *eigenvalue, double *vector, a_int 
   const a_int n = (a_int)s->pencil->K->rows;
   const a_int length = s->directions * (s->directions + 8);
   a_int info = 0;
-  dseupd_c(vector != NULL, "A", chosen, eigenvalue, vector, n, s->shift, "G", n, "LM", s->count, 0,
-           s->residual, s->directions, s->basis, n, s->setting, s->place, s->places, s->work,
-           length, &info);
+  dseupd_c(vector != NULL, "A", chosen, eigenvalue, vector, n, s->shift, "G", n, "LM", s->count,
+           tolerance_of(s), s->residual, s->directions, s->basis, n, s->setting, s->place,
+           s->places, s->work, length, &info);
   return info == 0 ? DVI_OK : explain(s, (int)info);
 }
 
@@ -245,6 +253,10 @@ static dvi_status lanczos_near(const dvi__pencil *pencil, double shift, int coun
   const int64_t n = pencil->K->rows;
   dvi__definite inverse;
   DVI_TRY(create_inverse(pencil, shift, &inverse));
+  inverse.tolerance = tolerance_of_solutions;
+  inverse.correct = pencil->add_kernel;
+  inverse.of = pencil->of;
+  inverse.weight = -shift;
   lanczos s = {.pencil = pencil,
                .inverse = &inverse,
                .count = count,

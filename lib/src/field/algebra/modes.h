@@ -10,6 +10,9 @@ typedef struct dvi__pencil {
   /* Project x onto an invariant subspace, in which all modes are looked for by Lanczos' method.
    * NULL for the whole space. */
   dvi_status (*project)(void *of, double *x);
+  /* Add to z the part of a preconditioner of K + s M for the residual that lies in the kernel of K.
+   * NULL if there is none. */
+  void (*add_kernel)(void *of, double s, const double *residual, double *z);
   void *of;
 } dvi__pencil;
 

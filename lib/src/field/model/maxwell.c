@@ -1,6 +1,6 @@
 /* An electromagnetic field, with the discrete Lagrangian of its potential A, a k-form,
  *
- *     L = A'.M_k A'/2 - (d A).M_{k+1} (d A)/2 - J.A
+ *     L = A'.M_k A'/2 - (d A).M_{k+1} (d A)/2 + J.A
  *
  * with the permittivity in M_k and the inverse permeability in M_{k+1}. Perfect electric conductors
  * hold A on their cells. Source: Stern 2009, secs. 3.2 and 3.3. */

@@ -2,13 +2,13 @@
  *
  * K = d^T M_2 d vanishes on the gradients d phi of functions that are zero where the form is held.
  * Nothing separates their eigenvalue 0, of a multiplicity like the number of vertices, from the
- * lowest ones that are wanted. The matrix of Laplace and de Rham's operator does,
+ * lowest ones that are wanted. But it is known what they are: Lanczos' method for the inverse of
+ * K + s M stays among the forms without charge, d^T M x = 0, if all vectors are projected onto them,
+ * which takes the solution of one Poisson equation. What is left with eigenvalue zero are harmonic
+ * forms: a few, by topology.
  *
- *     L = K + M d W^-1 d^T M ,
- *
- * with any diagonal W. On forms without charge, d^T M x = 0, it equals K. So Lanczos' method for L
- * sees only modes of K if all vectors are projected onto these forms, which takes the solution of
- * one Poisson equation. What is left with eigenvalue zero are harmonic forms: a few, by topology. */
+ * Conjugate gradients for K + s M are slow on gradients, whose eigenvalue s is far below the others
+ * on the scale of the mesh. Their preconditioner treats gradients apart (Hiptmair 1998). */
 #include <math.h>
 #include <string.h>
 
@@ -28,7 +28,7 @@ typedef struct resonance {
   const dvi_field *field;
   dvi_matrix K, M;
   int64_t gradients;     /* columns of d */
-  dvi__csr d, Md, L;     /* [unknowns, gradients], and the operator */
+  dvi__csr d, Md;        /* [unknowns, gradients] */
   dvi__definite poisson; /* of d^T M d */
   double *charge, *phi;  /* [gradients] each */
   double *value, *vector;
@@ -39,7 +39,6 @@ static void clear(resonance *r)
 {
   dvi__csr_clear(&r->d);
   dvi__csr_clear(&r->Md);
-  dvi__csr_clear(&r->L);
   dvi__definite_clear(&r->poisson);
   dvi__release(r->charge);
   dvi__release(r->value);
@@ -117,57 +116,16 @@ static dvi_status project(void *of, double *x)
   return DVI_OK;
 }
 
-/* ---- the operator ---- */
-
-/* Set W [gradients] to the diagonal of the lumped mass, by which the eigenvalues of the gradients
- * become those of waves of functions. The columns of d are ascending vertices. */
-static dvi_status lump(const resonance *r, double *W)
+/* Add the part of a preconditioner of K + s M that is made of gradients, d (s d^T M d)^-1 d^T r. */
+static void add_gradients(void *of, double s, const double *residual, double *z)
 {
-  const dvi_mesh *mesh = r->field->mesh;
-  const double *factor[DVI__DEGREES] = {r->field->star->factor[1]};
-  const dvi_star_options options = {
-      .size = sizeof options, .kind = DVI_BARYCENTRIC, .factor = factor};
-  dvi_star *star = NULL;
-  dvi_matrix M;
-  dvi_status status = dvi_star_create(mesh, &options, &star);
-  if (status == DVI_OK) status = dvi_star_matrix(star, 0, &M);
-  for (int64_t i = 0; i < r->d.rows && status == DVI_OK; i++) {
-    const int *corner = mesh->corner[1] + 2 * (int64_t)r->field->unknown[i];
-    for (int64_t e = r->d.start[i]; e < r->d.start[i + 1]; e++)
-      W[r->d.column[e]] = M.value[corner[r->d.value[e] > 0]];
-  }
-  dvi_star_destroy(&star);
-  return status;
-}
-
-/* Make M d W^-1 d^T M. */
-static dvi_status make_lower_part(const resonance *r, const double *W, dvi__csr *part)
-{
-  dvi__csr scaled = {0}, transpose = {0};
-  const dvi_matrix Md = dvi__csr_view(&r->Md, 0);
-  dvi_status status = dvi__csr_copy(&Md, &scaled);
-  for (int64_t e = 0; status == DVI_OK && e < scaled.start[scaled.rows]; e++)
-    scaled.value[e] /= W[scaled.column[e]];
-  if (status == DVI_OK) status = dvi__csr_transpose(&Md, &transpose);
-  const dvi_matrix left = dvi__csr_view(&scaled, 0), right = dvi__csr_view(&transpose, 0);
-  if (status == DVI_OK) status = dvi__csr_product(&left, &right, part);
-  dvi__csr_clear(&scaled);
-  dvi__csr_clear(&transpose);
-  return status;
-}
-
-static dvi_status make_operator(resonance *r)
-{
-  dvi__csr part = {0};
-  if (r->gradients == 0) return dvi__csr_copy(&r->K, &r->L);
-  double *W = DVI_NEW(double, r->gradients);
-  dvi_status status = W != NULL ? lump(r, W) : dvi__fail(DVI_NO_MEMORY, "modes: no memory");
-  if (status == DVI_OK) status = make_lower_part(r, W, &part);
-  const dvi_matrix lower = dvi__csr_view(&part, 1);
-  if (status == DVI_OK) status = dvi__csr_sum(&r->K, &lower, &r->L);
-  dvi__csr_clear(&part);
-  dvi__release(W);
-  return status;
+  const resonance *r = of;
+  const dvi_matrix d = dvi__csr_view(&r->d, 0), G = dvi__csr_view(&r->poisson.matrix, 1);
+  dvi_matrix_multiply(&d, 1, residual, r->charge);
+  dvi__gauss_seidel(&G, r->charge, r->phi);
+  for (int64_t i = 0; i < d.rows; i++)
+    for (int64_t e = d.start[i]; e < d.start[i + 1]; e++)
+      z[i] += d.value[e] * r->phi[d.column[e]] / s;
 }
 
 /* ---- modes ---- */
@@ -218,12 +176,11 @@ static dvi_status find_nearest(resonance *r, double shift, int count, int *found
   const double below = dvi__shift_below_zero(f), from = shift != 0 ? shift : below;
   DVI_TRY(make_gradients(r));
   if (r->gradients > 0) DVI_TRY(prepare_projection(r));
-  DVI_TRY(make_operator(r));
-  const dvi_matrix L = dvi__csr_view(&r->L, 1);
-  const dvi__pencil pencil = {.K = &L,
+  const dvi__pencil pencil = {.K = &r->K,
                               .M = &r->M,
                               .dimension = f->mesh->n,
                               .project = r->gradients > 0 ? project : NULL,
+                              .add_kernel = r->gradients > 0 ? add_gradients : NULL,
                               .of = r};
   for (int asked = count + 3; *found < count; asked += count + 8) {
     if (asked + r->gradients >= f->unknowns)

@@ -7,7 +7,7 @@
 #include "core/status.h"
 #include "field/model/field.h"
 
-/* ---- the elastic potential, q.K q/2 - load.q + J(t).q + that of the fixed values ---- */
+/* ---- the elastic potential, q.K q/2 - load.q - J(t).q + that of the fixed values ---- */
 
 /* Evaluate the signals of the currents. Returns as callbacks do. */
 static int find_signals(const dvi_field *f, double t, double *signal)
@@ -22,7 +22,7 @@ static int find_signals(const dvi_field *f, double t, double *signal)
 static double load_of(const dvi_field *f, const double *signal, int64_t i)
 {
   double load = f->load[i];
-  for (int c = 0; c < f->currents; c++) load -= signal[c] * f->current[c].profile[i];
+  for (int c = 0; c < f->currents; c++) load += signal[c] * f->current[c].profile[i];
   return load;
 }
 
