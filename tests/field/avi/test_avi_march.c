@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "support/meshes.h"
-#include "support/steps.h"
+#include "support/field/steps.h"
 #include "support/suite.h"
 
 static const double pi = 3.14159265358979323846;

@@ -86,7 +86,7 @@ struct dvi__avi {
   dvi__avi_view *view;
 };
 
-/* Integrate the signals over both halves of an interval. Its ends are those of the edge's events. */
+/* Integrate the signals over both halves of an interval between events of an edge. */
 dvi_status dvi__avi_signals(const dvi__avi *avi, double from, double to, double *half);
 
 /* Begin again at a time, without events so far. */

@@ -1,7 +1,7 @@
 /* Cells are stored in the order in which they act: the faces and edges that are due in a slot of
  * the classes are the first ones, so that a slot is three loops over beginnings of arrays. An edge
- * gathers the pushes of its faces in the order of their numbers, which is that of the events. Within
- * a class the cells keep the mesh's order, and with it what that has of locality. */
+ * gathers the pushes of its faces in the order of their numbers, which is that of the events. In a
+ * class the cells keep the mesh's order, and with it what that has of locality. */
 #include "field/avi/layout.h"
 
 #include <math.h>
