@@ -53,6 +53,14 @@ START_TEST(of_a_pair_the_one_above_the_real_axis_stands_first)
 }
 END_TEST
 
+START_TEST(eigenvalues_of_a_matrix_that_is_not_finite_are_refused)
+{
+  double T[4] = {1, 2, NAN, 3}, a[2], b[2];
+  ck_assert_int_eq(dvi__eigenvalues(2, T, 2, a, b, NULL), DVI_NOT_FINITE);
+  check_words("not finite");
+}
+END_TEST
+
 /* The same numbers from two ways, of a part of a larger array. */
 START_TEST(eigenvalues_and_last_components_are_those_of_the_eigen_structure)
 {
@@ -126,6 +134,7 @@ SUITE(eigen)
   tcase_add_loop_test(tests, a_matrix_is_made_again_from_its_eigen_structure, 0, MOST);
   tcase_add_loop_test(tests, eigenvalues_and_last_components_are_those_of_the_eigen_structure, 0,
                       MOST);
+  tcase_add_test(tests, eigenvalues_of_a_matrix_that_is_not_finite_are_refused);
   tcase_add_test(tests, of_a_pair_the_one_above_the_real_axis_stands_first);
   tcase_add_test(tests, lacking_memory_is_a_status);
   tcase_add_test(tests, two_symmetric_matrices_are_made_diagonal_together);

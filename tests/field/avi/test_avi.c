@@ -268,6 +268,11 @@ START_TEST(a_run_that_grows_says_so_and_goes_on)
   start_at_random(&s, other, 1);
   ck_assert_int_eq(dvi__avi_advance(other, 1000), DVI_STEP_TOO_LARGE);
   ck_assert(dvi__avi_time(other) == t);
+  dvi_march_facts facts;
+  dvi__avi_facts(other, &facts);
+  start_at_random(&s, other, 1);
+  advance_to(other, t - 64 * facts.longest); /* the comparison before did not see it */
+  ck_assert_double_le(energy_of(other) / start, 2);
   start_at_random(&s, other, 1);
   reload_steps(avi, other);
   ck_assert(dvi__avi_advance(other, t + 0.1) == DVI_OK && dvi__avi_time(other) == t + 0.1);

@@ -168,7 +168,6 @@ dvi_status dvi__avi_all_multipliers(dvi__avi *avi, double period, dvi_stability 
   modal m = {.avi = avi, .n = (int)avi->free_edges};
   double largest = 0;
   report->span = period;
-  memset(avi->bias, 0, (size_t)avi->faces * sizeof *avi->bias);
   dvi_status status = find_modes(&m);
   if (status == DVI_OK) status = make_matrix(&m, period);
   if (status == DVI_OK) {

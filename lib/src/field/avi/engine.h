@@ -31,7 +31,6 @@ typedef struct dvi__avi_push {
 /* What an observation computed of edges, beside the state. */
 typedef struct dvi__avi_view {
   double t;
-  int64_t events;
   unsigned stamp;   /* of the values that are valid */
   unsigned *made;   /* [edges] the stamps of the values */
   double *A, *D;    /* [edges] at t, D without what the faces owe it */

@@ -87,7 +87,6 @@ void dvi__avi_scatter(dvi__avi *avi, double *h)
 {
   double *const parts[] = {avi->A, avi->D};
   double energy = 0;
-  memset(avi->bias, 0, (size_t)avi->faces * sizeof *avi->bias);
   for (int k = 0; k < 2; k++) {
     memset(parts[k], 0, (size_t)avi->edges * sizeof(double));
     for (int64_t f = 0; f < avi->active_faces; f++)
