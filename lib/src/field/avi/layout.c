@@ -41,7 +41,7 @@ static dvi_status number_faces(const dvi__avi_plan *plan, dvi__avi *avi)
     const int f = order[i].face;
     avi->face_name[i] = f;
     avi->face_number[f] = (int)i;
-    avi->face_class[i] = plan->face_class[f];
+    avi->face_class[i] = (int8_t)plan->face_class[f];
     if (isinf(order[i].step)) continue;
     avi->step[i] = order[i].step;
     avi->active_faces = i + 1;
