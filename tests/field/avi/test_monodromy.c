@@ -173,6 +173,28 @@ START_TEST(free_steps_are_followed_for_a_long_time)
 }
 END_TEST
 
+/* This string grows by a factor of 16 in each unit of time, so that its energy is 1e720 times as
+ * large after 300. */
+START_TEST(growth_beyond_all_numbers_is_refused)
+{
+  stepped s = stepped_mesh(grid_mesh("interval", 1, 16, 2), 0, 1);
+  dvi_stability report = {.growth = -1};
+  s.terms.is_free = 1;
+  s.terms.fraction = 0.95;
+  ck_assert_double_gt(stability_of(&s).growth, 15);
+  ck_assert_int_eq(dvi__avi_stability(&s.terms, 64 * 300, &report), DVI_NOT_FINITE);
+  check_words("take a shorter span");
+  ck_assert(report.growth == -1);
+  dvi__avi *avi = avi_of(&s.terms);
+  ck_assert_int_eq(dvi__avi_largest_multipliers(avi, 300, 80 * 300, &report), DVI_NOT_FINITE);
+  check_words("take a shorter span");
+  ck_assert_int_eq(dvi__avi_all_multipliers(avi, 300, &report), DVI_NOT_FINITE);
+  check_words("take a shorter span");
+  dvi__avi_destroy(&avi);
+  end_stepped(&s);
+}
+END_TEST
+
 START_TEST(schedules_are_told_in_words)
 {
   stepped s = stepped_mesh(grid_mesh("interval", 1, 8, 2), 0, 1);
@@ -213,6 +235,7 @@ SUITE(monodromy)
   tcase_add_test(tests, arnoldis_method_finds_the_same_growth);
   tcase_add_test(tests, runs_grow_as_foretold);
   tcase_add_test(tests, free_steps_are_followed_for_a_long_time);
+  tcase_add_test(tests, growth_beyond_all_numbers_is_refused);
   tcase_add_test(tests, schedules_are_told_in_words);
   tcase_add_test(tests, lacking_memory_is_a_status);
 }
