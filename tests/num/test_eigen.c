@@ -1,6 +1,7 @@
 /* labels: unit */
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 #include "core/memory.h"
 #include "num/eigen.h"
@@ -52,6 +53,41 @@ START_TEST(of_a_pair_the_one_above_the_real_axis_stands_first)
 }
 END_TEST
 
+START_TEST(eigenvalues_of_a_matrix_that_is_not_finite_are_refused)
+{
+  double T[4] = {1, 2, NAN, 3}, a[2], b[2];
+  ck_assert_int_eq(dvi__eigenvalues(2, T, 2, a, b, NULL), DVI_NOT_FINITE);
+  check_words("not finite");
+}
+END_TEST
+
+/* The same numbers from two ways, of a part of a larger array. */
+START_TEST(eigenvalues_and_last_components_are_those_of_the_eigen_structure)
+{
+  const int n = 1 + _i, lead = n + 2;
+  double T[MOST * (MOST + 2)], copy[MOST * (MOST + 2)], a[MOST], b[MOST], last[MOST];
+  double whole[MOST * MOST], wanted_a[MOST], wanted_b[MOST], X[MOST * MOST], inverse[MOST * MOST];
+  for (int k = 0; k < n * n; k++)
+    T[k / n * lead + k % n] = whole[k] = sin(1 + 3.7 * k) + (k % (n + 1) == 0 ? 0.3 * k : 0);
+  memcpy(copy, T, sizeof T);
+  ck_assert_int_eq(dvi__eigen(n, whole, wanted_a, wanted_b, X, inverse), DVI_OK);
+  ck_assert_int_eq(dvi__eigenvalues(n, T, lead, a, b, last), DVI_OK);
+  for (int j = 0; j < n; j++) {
+    const int is_pair = b[j] != 0, x = b[j] < 0 ? j - 1 : j;
+    double square = 0, end = 0;
+    for (int c = x; c <= x + is_pair; c++) {
+      for (int i = 0; i < n; i++) square += X[c * n + i] * X[c * n + i];
+      end = hypot(end, X[c * n + n - 1]);
+    }
+    ck_assert_double_eq_tol(a[j], wanted_a[j], 1e-13);
+    ck_assert_double_eq_tol(b[j], wanted_b[j], 1e-13);
+    ck_assert_double_eq_tol(last[j], end / sqrt(square), 1e-13);
+  }
+  ck_assert_int_eq(dvi__eigenvalues(n, copy, lead, a, b, NULL), DVI_OK);
+  for (int j = 0; j < n; j++) ck_assert_double_eq_tol(a[j], wanted_a[j], 1e-12);
+}
+END_TEST
+
 START_TEST(lacking_memory_is_a_status)
 {
   const double one[1] = {2};
@@ -96,6 +132,9 @@ END_TEST
 SUITE(eigen)
 {
   tcase_add_loop_test(tests, a_matrix_is_made_again_from_its_eigen_structure, 0, MOST);
+  tcase_add_loop_test(tests, eigenvalues_and_last_components_are_those_of_the_eigen_structure, 0,
+                      MOST);
+  tcase_add_test(tests, eigenvalues_of_a_matrix_that_is_not_finite_are_refused);
   tcase_add_test(tests, of_a_pair_the_one_above_the_real_axis_stands_first);
   tcase_add_test(tests, lacking_memory_is_a_status);
   tcase_add_test(tests, two_symmetric_matrices_are_made_diagonal_together);

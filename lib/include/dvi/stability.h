@@ -18,7 +18,7 @@ typedef struct dvi_stability {
    *  if none grows */
   double growth;
   double resolution; /**< growths below 1 + resolution are not told from none */
-  double period;     /**< the common period of all steps, 0 if they have none below `span` */
+  double period;     /**< the common period of all steps, 0 if there is none or too long a one */
   double span;       /**< the time for which fields were followed */
   /** Fields that were followed: twice the modes of a small field that are not static, all of them.
    *  A few of a large field, those that grow fastest from a start at random */

@@ -63,6 +63,14 @@ dvi_status dvi__eigen(int n, const double *T, double *real_part, double *imagina
   return status;
 }
 
+static int is_finite(int n, const double *T, int lead)
+{
+  for (int j = 0; j < n; j++)
+    for (int i = 0; i < n; i++)
+      if (!isfinite(T[(size_t)j * (size_t)lead + (size_t)i])) return 0;
+  return 1;
+}
+
 /* A pair's vector x + iy has its parts in two columns. */
 static void take_last_components(int n, const double *X, const double *imaginary_part, double *last)
 {
@@ -80,6 +88,8 @@ dvi_status dvi__eigenvalues(int n, double *T, int lead, double *real_part, doubl
 {
   const int one = 1, length = 40 * n;
   int info = 0;
+  if (!is_finite(n, T, lead))
+    return dvi__fail(DVI_NOT_FINITE, "eigenvalues: a matrix of %d columns is not finite", n);
   double *work = DVI_NEW(double, length);
   double *X = last != NULL ? DVI_NEW(double, (size_t)n *(size_t)n) : NULL;
   dvi_status status = DVI_OK;

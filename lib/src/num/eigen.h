@@ -11,9 +11,10 @@
 dvi_status dvi__eigen(int n, const double *T, double *real_part, double *imaginary_part, double *X,
                       double *inverse);
 
-/* Give the eigenvalues of a full matrix T, column j at T + j*lead, which is overwritten. `last` [n],
- * unless NULL, gets the sizes of the last components of the eigenvectors, which have the length 1.
- * DVI_SINGULAR if the iteration did not converge, DVI_NO_MEMORY. */
+/* Give the eigenvalues of a full matrix T, column j at T + j*lead, which is overwritten. Unless it
+ * is NULL, `last` [n] gets the sizes of the last components of the eigenvectors of length 1.
+ * DVI_NOT_FINITE, at which LAPACK would end the program, DVI_SINGULAR if the iteration did not
+ * converge, DVI_NO_MEMORY. */
 dvi_status dvi__eigenvalues(int n, double *T, int lead, double *real_part, double *imaginary_part,
                             double *last);
 

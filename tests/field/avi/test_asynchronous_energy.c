@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "support/meshes.h"
-#include "support/steps.h"
+#include "support/field/steps.h"
 #include "support/suite.h"
 
 /* The largest and the last energy of a run beside the first, at every `interval`. */
@@ -139,15 +139,6 @@ END_TEST
 
 /* ---- charge ---- */
 
-static dvi_status noise(double from, double to, double *impulse, void *user)
-{
-  unsigned long long seed = (unsigned long long)(1e9 * (from + to));
-  (void)user;
-  (void)random_number(&seed);
-  *impulse = (to - from) * (2 * random_number(&seed) - 1);
-  return DVI_OK;
-}
-
 /* 3e5 events of free steps with random currents gave 4e-14, and 1e6 give the same. */
 START_TEST(charge_follows_random_currents_for_a_million_events)
 {
@@ -155,7 +146,7 @@ START_TEST(charge_follows_random_currents_for_a_million_events)
   double step[100], *profile = calloc((size_t)s.edges, sizeof *profile);
   unsigned long long seed = 9;
   for (int64_t e = 0; e < s.edges; e++) profile[e] = random_number(&seed) - 0.5;
-  const dvi__avi_current current = {profile, noise, NULL};
+  const dvi__avi_current current = {profile, noise_signal, NULL};
   dvi_march_facts facts;
   step_of_boxes(s.mesh, 0.25, 1, step);
   s.terms.step = step;

@@ -6,8 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/memory.h"
 #include "support/meshes.h"
-#include "support/steps.h"
+#include "support/field/steps.h"
 #include "support/suite.h"
 
 static dvi_stability stability_of(const stepped *s)
@@ -131,8 +132,8 @@ typedef struct mesh_case {
   double grading, fraction, growth, span; /* growth 1 for none */
 } mesh_case;
 
-/* A third of the longest bound is stable, and with it the default. What grows does so by a factor
- * of e^10 and more in the second half of the span, so that the fastest field is alone. */
+/* Half of the bounds, the default, is stable here. What grows does so by a factor of e^13 and more
+ * in half of the time, so that the fastest field is alone then. */
 START_TEST(runs_grow_as_foretold)
 {
   static const mesh_case cases[] = {
@@ -172,6 +173,28 @@ START_TEST(free_steps_are_followed_for_a_long_time)
 }
 END_TEST
 
+/* This string grows by a factor of 16 in each unit of time, so that its energy is 1e720 times as
+ * large after 300. */
+START_TEST(growth_beyond_all_numbers_is_refused)
+{
+  stepped s = stepped_mesh(grid_mesh("interval", 1, 16, 2), 0, 1);
+  dvi_stability report = {.growth = -1};
+  s.terms.is_free = 1;
+  s.terms.fraction = 0.95;
+  ck_assert_double_gt(stability_of(&s).growth, 15);
+  ck_assert_int_eq(dvi__avi_stability(&s.terms, 64 * 300, &report), DVI_NOT_FINITE);
+  check_words("take a shorter span");
+  ck_assert(report.growth == -1);
+  dvi__avi *avi = avi_of(&s.terms);
+  ck_assert_int_eq(dvi__avi_largest_multipliers(avi, 300, 80 * 300, &report), DVI_NOT_FINITE);
+  check_words("take a shorter span");
+  ck_assert_int_eq(dvi__avi_all_multipliers(avi, 300, &report), DVI_NOT_FINITE);
+  check_words("take a shorter span");
+  dvi__avi_destroy(&avi);
+  end_stepped(&s);
+}
+END_TEST
+
 START_TEST(schedules_are_told_in_words)
 {
   stepped s = stepped_mesh(grid_mesh("interval", 1, 8, 2), 0, 1);
@@ -184,6 +207,27 @@ START_TEST(schedules_are_told_in_words)
 }
 END_TEST
 
+START_TEST(lacking_memory_is_a_status)
+{
+  for (int way = 0; way < 2; way++) {
+    stepped s = stepped_mesh(grid_mesh("box", 2, 4, 2), 1, 1);
+    dvi_stability report = {.growth = -1};
+    dvi_status status = DVI_NO_MEMORY;
+    dvi__avi *avi = avi_of(&s.terms);
+    for (long successes = 0; status != DVI_OK; successes++) {
+      dvi__fail_allocations_after(successes);
+      status = way == 0 ? dvi__avi_stability(&s.terms, 0, &report)
+                        : dvi__avi_largest_multipliers(avi, 1, 80, &report);
+      dvi__fail_allocations_after(-1);
+      ck_assert(status == DVI_OK || status == DVI_NO_MEMORY);
+      ck_assert(status == DVI_OK || way == 1 || report.growth == -1);
+    }
+    dvi__avi_destroy(&avi);
+    end_stepped(&s);
+  }
+}
+END_TEST
+
 SUITE(monodromy)
 {
   tcase_add_test(tests, two_steps_on_a_string_have_known_growths);
@@ -191,5 +235,7 @@ SUITE(monodromy)
   tcase_add_test(tests, arnoldis_method_finds_the_same_growth);
   tcase_add_test(tests, runs_grow_as_foretold);
   tcase_add_test(tests, free_steps_are_followed_for_a_long_time);
+  tcase_add_test(tests, growth_beyond_all_numbers_is_refused);
   tcase_add_test(tests, schedules_are_told_in_words);
+  tcase_add_test(tests, lacking_memory_is_a_status);
 }

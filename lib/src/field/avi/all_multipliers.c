@@ -103,6 +103,13 @@ static void end_column(const modal *m, int j)
   }
 }
 
+static double norm_of(const modal *m)
+{
+  double sum = 0;
+  for (size_t i = 0; i < 4 * (size_t)m->r * (size_t)m->r; i++) sum += m->T[i] * m->T[i];
+  return sqrt(sum);
+}
+
 static dvi_status make_matrix(modal *m, double period)
 {
   const size_t size = 2 * (size_t)m->r;
@@ -114,14 +121,7 @@ static dvi_status make_matrix(modal *m, double period)
     DVI_TRY(dvi__avi_carry(m->avi, period));
     end_column(m, j);
   }
-  return DVI_OK;
-}
-
-static double norm_of(const modal *m)
-{
-  double sum = 0;
-  for (size_t i = 0; i < 4 * (size_t)m->r * (size_t)m->r; i++) sum += m->T[i] * m->T[i];
-  return sqrt(sum);
+  return dvi__avi_check_size(norm_of(m), period);
 }
 
 static void square(modal *m)
@@ -168,7 +168,6 @@ dvi_status dvi__avi_all_multipliers(dvi__avi *avi, double period, dvi_stability 
   modal m = {.avi = avi, .n = (int)avi->free_edges};
   double largest = 0;
   report->span = period;
-  memset(avi->bias, 0, (size_t)avi->faces * sizeof *avi->bias);
   dvi_status status = find_modes(&m);
   if (status == DVI_OK) status = make_matrix(&m, period);
   if (status == DVI_OK) {

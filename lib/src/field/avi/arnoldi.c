@@ -52,7 +52,8 @@ static double weigh(const arnoldi *s, const double *q)
     }
   }
   for (int64_t e = 0; e < s->n; e++) s->image[s->n + e] = avi->inverse[e] * q[s->n + e];
-  return sqrt(fmax(dot(2 * s->n, q, s->image), 0));
+  const double square = dot(2 * s->n, q, s->image);
+  return square < 0 ? 0 : sqrt(square); /* of roundings, and NaN stays */
 }
 
 static dvi_status carry(const arnoldi *s, const double *from, double time, double *to)
@@ -92,7 +93,9 @@ static dvi_status iterate(arnoldi *s, double time, int *directions)
   for (int j = 0; j < DIRECTIONS; j++) {
     *directions = j + 1;
     DVI_TRY(carry(s, direction(s, j), time, direction(s, j + 1)));
-    const double before = weigh(s, direction(s, j + 1)), length = orthogonalise(s, j);
+    const double before = weigh(s, direction(s, j + 1));
+    const double length = orthogonalise(s, j);
+    DVI_TRY(dvi__avi_check_size(before + length, time));
     s->h[j][j + 1] = length;
     if (!(length > 1e-12 * before)) {
       s->h[j][j + 1] = 0;
@@ -111,7 +114,9 @@ static dvi_status begin(arnoldi *s, double time)
   memcpy(first + s->n, s->avi->D, (size_t)s->n * sizeof(double));
   for (int i = 0; i < PERIODS_BEFORE; i++) {
     DVI_TRY(carry(s, first, time, first));
-    scale(s, first, 1 / weigh(s, first));
+    const double length = weigh(s, first);
+    DVI_TRY(dvi__avi_check_size(length, time));
+    scale(s, first, 1 / length);
   }
   return DVI_OK;
 }

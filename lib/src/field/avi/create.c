@@ -141,10 +141,11 @@ static dvi_status allocate_view(dvi__avi *s)
 static dvi_status allocate_currents(const dvi__avi_terms *terms, dvi__avi *s)
 {
   const int intervals = s->classes > s->width ? s->classes : s->width;
-  if (s->currents == 0) return DVI_OK;
-  s->current = dvi__duplicate(terms->current, (size_t)s->currents, sizeof *s->current);
   s->half = DVI_NEW(double, 2 * (int64_t)s->currents * intervals);
-  return s->current && s->half ? DVI_OK : no_memory(s);
+  s->current = DVI_NEW(dvi__avi_current, s->currents);
+  if (s->half == NULL || s->current == NULL) return no_memory(s);
+  for (int i = 0; i < s->currents; i++) s->current[i] = terms->current[i];
+  return DVI_OK;
 }
 
 static dvi_status make(const dvi__avi_terms *terms, const dvi__avi_plan *plan, dvi__avi *s)

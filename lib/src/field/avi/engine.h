@@ -31,7 +31,6 @@ typedef struct dvi__avi_push {
 /* What an observation computed of edges, beside the state. */
 typedef struct dvi__avi_view {
   double t;
-  int64_t events;
   unsigned stamp;   /* of the values that are valid */
   unsigned *made;   /* [edges] the stamps of the values */
   double *A, *D;    /* [edges] at t, D without what the faces owe it */
@@ -86,7 +85,7 @@ struct dvi__avi {
   dvi__avi_view *view;
 };
 
-/* Integrate the signals over both halves of an interval. Its ends are those of the edge's events. */
+/* Integrate the signals over both halves of an interval between events of an edge. */
 dvi_status dvi__avi_signals(const dvi__avi *avi, double from, double to, double *half);
 
 /* Begin again at a time, without events so far. */

@@ -1,7 +1,7 @@
 /* Cells are stored in the order in which they act: the faces and edges that are due in a slot of
  * the classes are the first ones, so that a slot is three loops over beginnings of arrays. An edge
- * gathers the pushes of its faces in the order of their numbers, which is that of the events. Within
- * a class the cells keep the mesh's order, and with it what that has of locality. */
+ * gathers the pushes of its faces in the order of their numbers, which is that of the events. In a
+ * class the cells keep the mesh's order, and with it what that has of locality. */
 #include "field/avi/layout.h"
 
 #include <math.h>
@@ -41,7 +41,7 @@ static dvi_status number_faces(const dvi__avi_plan *plan, dvi__avi *avi)
     const int f = order[i].face;
     avi->face_name[i] = f;
     avi->face_number[f] = (int)i;
-    avi->face_class[i] = plan->face_class[f];
+    avi->face_class[i] = (int8_t)plan->face_class[f];
     if (isinf(order[i].step)) continue;
     avi->step[i] = order[i].step;
     avi->active_faces = i + 1;

@@ -23,6 +23,15 @@ dvi_status dvi__avi_carry(dvi__avi *avi, double t)
   return (avi->is_queued ? dvi__avi_run_queue : dvi__avi_run_slots)(avi, limit);
 }
 
+dvi_status dvi__avi_check_size(double size, double time)
+{
+  if (isfinite(size)) return DVI_OK;
+  return dvi__fail(DVI_NOT_FINITE,
+                   "stability: a field grows beyond all numbers within %g, so that its growth is "
+                   "not told; take a shorter span, or shorter steps",
+                   time);
+}
+
 /* ---- the common period ---- */
 
 static int64_t greatest_divisor(int64_t a, int64_t b)
@@ -87,7 +96,6 @@ void dvi__avi_scatter(dvi__avi *avi, double *h)
 {
   double *const parts[] = {avi->A, avi->D};
   double energy = 0;
-  memset(avi->bias, 0, (size_t)avi->faces * sizeof *avi->bias);
   for (int k = 0; k < 2; k++) {
     memset(parts[k], 0, (size_t)avi->edges * sizeof(double));
     for (int64_t f = 0; f < avi->active_faces; f++)
@@ -127,6 +135,7 @@ dvi_status dvi__avi_follow(dvi__avi *avi, double span, dvi_stability *report)
     avi->t = span * (last + 1) / SEGMENTS;
     DVI_TRY(dvi__avi_run_queue(avi, avi->t));
     DVI_TRY(dvi__avi_energy(avi, &energy, NULL));
+    DVI_TRY(dvi__avi_check_size(energy, span / SEGMENTS));
     size[++last] = 0.5 * log(energy);
   }
   const int half = last / 2;

@@ -24,6 +24,9 @@ dvi_status dvi__avi_largest_multipliers(dvi__avi *avi, double period, double spa
 /* Without a period. */
 dvi_status dvi__avi_follow(dvi__avi *avi, double span, dvi_stability *report);
 
+/* Refuse a size that has grown beyond all numbers within some time. */
+dvi_status dvi__avi_check_size(double size, double time);
+
 /* Set A and D to a random field without a static part, of energy 1. */
 void dvi__avi_scatter(dvi__avi *avi, double *impulse);
 

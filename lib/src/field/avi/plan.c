@@ -135,7 +135,7 @@ static void choose_classes(const dvi__avi_terms *terms, double fraction, dvi__av
     if (isinf(plan->bound[f])) continue;
     const double ratio = fraction * plan->bound[f] / plan->shortest * (1 + rounding);
     const int j = ilogb(fmin(fmax(ratio, 1), ldexp(1, DVI__AVI_CLASSES - 1)));
-    plan->face_class[f] = (int8_t)j;
+    plan->face_class[f] = j;
     plan->step[f] = ldexp(plan->shortest, j);
     if (j >= plan->classes) plan->classes = j + 1;
   }
@@ -183,12 +183,13 @@ dvi_status dvi__avi_plan_make(const dvi__avi_terms *terms, dvi__avi_plan *plan)
                           .strongest = DVI_NEW(double, terms->edges),
                           .bound = DVI_NEW(double, terms->faces),
                           .step = DVI_NEW(double, terms->faces),
-                          .face_class = DVI_NEW(int8_t, terms->faces)};
-  dvi_status status = DVI_OK;
-  if (!plan->sharing || !plan->strongest || !plan->bound || !plan->step || !plan->face_class)
-    status = dvi__fail(DVI_NO_MEMORY, "avi: no memory for the steps of %lld cells",
-                       (long long)terms->faces);
-  if (status == DVI_OK) status = find_events(terms, plan);
+                          .face_class = DVI_NEW(int, terms->faces)};
+  if (!plan->sharing || !plan->strongest || !plan->bound || !plan->step || !plan->face_class) {
+    dvi__avi_plan_clear(plan);
+    return dvi__fail(DVI_NO_MEMORY, "avi: no memory for the steps of %lld cells",
+                     (long long)terms->faces);
+  }
+  dvi_status status = find_events(terms, plan);
   if (status == DVI_OK) status = find_bounds(terms, plan);
   if (status == DVI_OK) status = choose(terms, plan);
   if (status != DVI_OK) dvi__avi_plan_clear(plan);

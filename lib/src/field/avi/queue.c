@@ -59,8 +59,7 @@ static void pass_edges(dvi__avi *avi, int f, double t)
     const double span = t - avi->clock[e];
     if (!(span > 0)) continue;
     if (avi->extra != NULL && avi->extra[e] >= 0)
-      dvi__avi_pass_extra(avi, e, span,
-                          avi->half != NULL ? avi->half + 2 * (int64_t)avi->currents * c : NULL);
+      dvi__avi_pass_extra(avi, e, span, avi->half + 2 * (int64_t)avi->currents * c);
     else
       dvi__avi_pass(avi, e, span);
     avi->clock[e] = t;

@@ -36,7 +36,7 @@ static void pass_edges(void *user, int member)
     const dvi__avi_class *class = avi->class + c;
     const range plain = portion(now, member, class->first, class->extra),
                 extra = portion(now, member, class->extra, class->end);
-    const double *half = avi->half != NULL ? avi->half + 2 * (int64_t)avi->currents * c : NULL;
+    const double *half = avi->half + 2 * (int64_t)avi->currents * c;
     for (int64_t e = plain.from; e < plain.to; e++) dvi__avi_pass(avi, e, now->span[c]);
     for (int64_t e = extra.from; e < extra.to; e++) dvi__avi_pass_extra(avi, e, now->span[c], half);
   }

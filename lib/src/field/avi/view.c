@@ -32,18 +32,16 @@ static double time_of_face(const dvi__avi *avi, int64_t f)
 
 /* ---- single cells ---- */
 
-/* Forget the values of another time. */
-static dvi__avi_view *begin(const dvi__avi *avi)
+/* Forget the values of another time. Between two looks at one time nothing happens. */
+static void begin(const dvi__avi *avi)
 {
   dvi__avi_view *view = avi->view;
-  if (view->stamp != 0 && view->t == avi->t && view->events == avi->events) return view;
+  if (view->stamp != 0 && view->t == avi->t) return;
   if (++view->stamp == 0) {
     memset(view->made, 0, (size_t)avi->edges * sizeof *view->made);
     view->stamp = 1;
   }
   view->t = avi->t;
-  view->events = avi->events;
-  return view;
 }
 
 static dvi_status make_edge(const dvi__avi *avi, int64_t e)
@@ -115,7 +113,7 @@ dvi_status dvi__avi_sample(const dvi__avi *avi, dvi_march_form form, int64_t cou
       form == DVI_FORM_A ? see_A : (form == DVI_FORM_E ? see_E : see_B);
   const int *number = form == DVI_FORM_B ? avi->face_number : avi->edge_number;
   const int64_t all = form == DVI_FORM_B ? avi->faces : avi->edges;
-  (void)begin(avi);
+  begin(avi);
   for (int64_t i = 0; i < (cell != NULL ? count : all); i++)
     DVI_TRY(see(avi, number[cell != NULL ? cell[i] : i], values + i));
   return DVI_OK;
@@ -124,7 +122,7 @@ dvi_status dvi__avi_sample(const dvi__avi *avi, dvi_march_form form, int64_t cou
 dvi_status dvi__avi_energy(const dvi__avi *avi, double *energy, double *growth)
 {
   double sum = 0, reference = avi->start_energy;
-  (void)begin(avi);
+  begin(avi);
   for (int64_t e = 0; e < avi->free_edges; e++) {
     double D;
     DVI_TRY(see_D(avi, e, &D));

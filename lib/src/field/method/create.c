@@ -16,10 +16,8 @@ typedef struct method {
 } method;
 
 static const method methods[] = {
-    {"leapfrog", 0, dvi__leapfrog_create},
-    {"bossavit-kettunen", 0, dvi__leapfrog_create},
-    {"yee", 1, dvi__leapfrog_create},
-    {"avi", 0, dvi__avi_march_create},
+    {"leapfrog", 0, dvi__leapfrog_create}, {"bossavit-kettunen", 0, dvi__leapfrog_create},
+    {"yee", 1, dvi__leapfrog_create},      {"avi", 0, dvi__avi_march_create},
     {"tents", 0, dvi__tents_march},
 };
 

@@ -3,7 +3,7 @@
 #define DVI_FIELD_STEP_SOURCE_H
 #include "field/model/field.h"
 
-/* Give W f + b [unknowns], which the caller releases, or NULL if it is zero and for other fields. */
+/* Give W f + b [unknowns], which the caller releases. NULL if it is zero, and for other fields. */
 dvi_status dvi__wave_source(const dvi_field *field, double **source);
 
 #endif

@@ -1,9 +1,10 @@
-#include "support/steps.h"
+#include "support/field/steps.h"
 
 #include <dvi/forms.h>
 #include <math.h>
 #include <stdlib.h>
 
+#include "core/memory.h"
 #include "support/meshes.h"
 #include "support/suite.h"
 
@@ -96,4 +97,108 @@ double energy_of(const dvi__avi *avi)
 void advance_to(dvi__avi *avi, double t)
 {
   ck_assert_msg(dvi__avi_advance(avi, t) == DVI_OK, "%s", dvi_last_error());
+}
+
+double *zeros(int64_t count)
+{
+  return calloc((size_t)count + 1, sizeof(double));
+}
+
+/* ---- loads ---- */
+
+/* The exact integral of cos(3 t). */
+static dvi_status cosine(double from, double to, double *impulse, void *user)
+{
+  (void)user;
+  *impulse = (sin(3 * to) - sin(3 * from)) / 3;
+  return DVI_OK;
+}
+
+dvi_status noise_signal(double from, double to, double *impulse, void *user)
+{
+  unsigned long long seed = (unsigned long long)(1e9 * (from + to));
+  (void)user;
+  (void)random_number(&seed);
+  *impulse = (to - from) * (2 * random_number(&seed) - 1);
+  return DVI_OK;
+}
+
+void load_steps(loaded *l, int currents, double damping)
+{
+  unsigned long long seed = 11;
+  l->damping = zeros(l->s.edges);
+  for (int i = 0; i < 2; i++) l->profile[i] = zeros(l->s.edges);
+  for (int64_t e = 0; e < l->s.edges; e += 3) {
+    l->damping[e] = damping * l->s.terms.M1[e] * random_number(&seed);
+    for (int i = 0; i < 2; i++) l->profile[i][e] = l->s.terms.M1[e] * (random_number(&seed) - 0.5);
+  }
+  for (int i = 0; i < 2; i++)
+    l->current[i] = (dvi__avi_current){l->profile[i], i == 0 ? cosine : noise_signal, NULL};
+  l->s.terms.current = l->current;
+  l->s.terms.currents = currents;
+  l->s.terms.damping = l->damping;
+}
+
+void end_loaded(loaded *l)
+{
+  end_stepped(&l->s);
+  free(l->damping);
+  for (int i = 0; i < 2; i++) free(l->profile[i]);
+}
+
+stepped mesh_of_case(int i)
+{
+  switch (i) {
+  case 0: return stepped_mesh(grid_mesh("box", 2, 6, 2), 1, 1);
+  case 1: return stepped_mesh(staggered_mesh(6, 5), 1, 1);
+  case 2: return stepped_mesh(grid_mesh("interval", 1, 12, 2), 0, 1);
+  case 3: return stepped_mesh(grid_mesh("box", 3, 4, 1.7), 1, 0);
+  default: return stepped_mesh(grid_mesh("kuhn", 2, 6, 1.5), 0, 0);
+  }
+}
+
+/* ---- values ---- */
+
+void take_form(const dvi__avi *avi, dvi_march_form form, double *values)
+{
+  ck_assert_msg(dvi__avi_sample(avi, form, 0, NULL, values) == DVI_OK, "%s", dvi_last_error());
+}
+
+double *forms_of(const stepped *s, const dvi__avi *avi)
+{
+  double *values = zeros(2 * s->edges + s->faces);
+  take_form(avi, DVI_FORM_A, values);
+  take_form(avi, DVI_FORM_E, values + s->edges);
+  take_form(avi, DVI_FORM_B, values + 2 * s->edges);
+  return values;
+}
+
+void check_same(const stepped *s, const dvi__avi *a, const dvi__avi *b)
+{
+  double *of_a = forms_of(s, a), *of_b = forms_of(s, b);
+  for (int64_t i = 0; i < 2 * s->edges + s->faces; i++)
+    ck_assert_msg(of_a[i] == of_b[i], "value %lld: %.17g and %.17g", (long long)i, of_a[i],
+                  of_b[i]);
+  free(of_a), free(of_b);
+}
+
+dvi__avi *ran_steps(const dvi__avi_terms *terms, const stepped *s, double t)
+{
+  dvi__avi *avi = avi_of(terms);
+  start_at_random(s, avi, 7);
+  advance_to(avi, t);
+  return avi;
+}
+
+void reload_steps(const dvi__avi *from, dvi__avi *to)
+{
+  dvi__sections_writer writer;
+  dvi__sections sections = {0};
+  dvi__sections_start(&writer, 100);
+  dvi__avi_save(from, &writer);
+  ck_assert_int_eq(dvi__sections_finish(&writer), DVI_OK);
+  ck_assert_int_eq(dvi__sections_check(&sections, "state", writer.bytes, writer.size), DVI_OK);
+  ck_assert_msg(dvi__avi_load(to, &sections) == DVI_OK, "%s", dvi_last_error());
+  dvi__sections_clear(&sections);
+  dvi__release(writer.bytes);
 }
