@@ -130,8 +130,8 @@ static dvi_status fill(const dvi_yee_terms *terms, const dvi__yee *y, quantity w
           double sum;
           DVI_TRY(sum_pieces(terms, y, what, component, place, &sum));
           const double vacuum = vacuum_star(y, component, place);
-          array[array_place(y, component, place)] =
-              what == PERMITTIVITY ? vacuum / sum : sum / vacuum;
+          array[array_place(y, component, place)] = what == PERMITTIVITY ? vacuum / sum
+                                                                         : sum / vacuum;
         }
   }
   return DVI_OK;
