@@ -38,7 +38,8 @@ double observe_boxes(const dvi_march *march, const char *name)
 {
   double value = NAN;
   int i = 0;
-  while (dvi_march_observable(march, i) != NULL && strcmp(dvi_march_observable(march, i), name) != 0)
+  while (dvi_march_observable(march, i) != NULL &&
+         strcmp(dvi_march_observable(march, i), name) != 0)
     i++;
   ck_assert_msg(dvi_march_observe(march, i, &value) == DVI_OK, "%s: %s", name, dvi_last_error());
   return value;
@@ -102,9 +103,9 @@ static void judge_face(box_judge *judge, const dvi_yee_terms *terms, int c, cons
   const int64_t face = dvi_yee_place(terms, DVI_FORM_B, c, place);
   const int a = (c + 1) % 3, b = (c + 2) % 3;
   if (face < 0) return;
-  const int64_t edge[4] = {edge_after(terms, b, place, a), dvi_yee_place(terms, DVI_FORM_E, b, place),
-                           edge_after(terms, a, place, b),
-                           dvi_yee_place(terms, DVI_FORM_E, a, place)};
+  const int64_t edge[4] = {
+      edge_after(terms, b, place, a), dvi_yee_place(terms, DVI_FORM_E, b, place),
+      edge_after(terms, a, place, b), dvi_yee_place(terms, DVI_FORM_E, a, place)};
   judge->M2[face] = 1;
   for (int l = 0; l < 3; l++)
     judge->M2[face] *= l == c ? dual_length(terms, l, place[l]) : 1 / length(terms, l, place[l]);

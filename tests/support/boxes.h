@@ -25,11 +25,11 @@ double *random_values(int64_t count, unsigned long long seed);
 /* The judge. One node of an axis that repeats itself is one, and edges on conductors stay 0. */
 typedef struct box_judge {
   int64_t edges, faces;
-  int *boundary;     /* [faces*4] edges of a face, -1 for none */
-  double *sign;      /* [faces*4] */
-  double *M1, *M2;   /* [edges], [faces] */
-  int *is_free;      /* [edges] */
-  double *E, *B;     /* E half a step after B */
+  int *boundary;   /* [faces*4] edges of a face, -1 for none */
+  double *sign;    /* [faces*4] */
+  double *M1, *M2; /* [edges], [faces] */
+  int *is_free;    /* [edges] */
+  double *E, *B;   /* E half a step after B */
 } box_judge;
 
 box_judge make_judge(const dvi_yee_terms *terms);

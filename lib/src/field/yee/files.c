@@ -1,5 +1,5 @@
 /* Saved states of grids. The section "yee" identifies the grid and has its times, "yee-fields" the
- * fields, "yee-layers" the sums of absorbing layers, "yee-sources" the impulses of the sources, and
+ * fields, "yee-worn" what was conducted, "yee-waves" the lines of waves, "yee-layers" the sums of absorbing layers, "yee-sources" the impulses of the sources, and
  * "yee-charges" the charges of the start. */
 #include <math.h>
 #include <string.h>
@@ -65,24 +65,31 @@ typedef struct part {
   size_t count;
 } part;
 
-enum { MOST_PARTS = 16 };
+/* Count the arrays. */
+static int count_parts(const dvi__yee *y)
+{
+  int count = y->copies + (y->worn != NULL) + y->beams;
+  for (int l = 0; l < 3; l++)
+    count += (y->axis[l].layers[0].count > 0) + (y->axis[l].layers[1].count > 0);
+  return count;
+}
 
-/* List the arrays. Those of one section follow each other. */
-static int list_parts(const dvi__yee *y, part *parts)
+/* Give the array with a number. Those of one section follow each other. */
+static part part_of(const dvi__yee *y, int number)
 {
   const size_t places = y->rows[0] * y->rows[1] * y->width;
-  int count = 0;
-  for (int copy = 0; copy < y->copies; copy++)
-    parts[count++] = (part){"yee-fields", y->state[copy], y->size};
-  if (y->worn != NULL)
-    parts[count++] = (part){"yee-worn", y->worn, places * (size_t)y->edges_slots};
-  for (int l = 0; l < 3; l++)
-    for (int e = 0; e < 2; e++) {
-      const dvi__yee_layers *layers = &y->axis[l].layers[e];
-      if (layers->count > 0)
-        parts[count++] = (part){"yee-layers", layers->psi, (size_t)y->copies * layers->psi_count};
-    }
-  return count;
+  part wave = {.section = "yee-waves"};
+  if (number < y->copies) return (part){"yee-fields", y->state[number], y->size};
+  number -= y->copies;
+  if (y->worn != NULL && number-- == 0)
+    return (part){"yee-worn", y->worn, places * (size_t)y->edges_slots};
+  for (int l = 0; l < 6; l++) {
+    const dvi__yee_layers *layers = &y->axis[l / 2].layers[l % 2];
+    if (layers->count > 0 && number-- == 0)
+      return (part){"yee-layers", layers->psi, (size_t)y->copies * layers->psi_count};
+  }
+  wave.x = dvi__yee_line_of(y, number, &wave.count);
+  return wave;
 }
 
 static size_t count_charges(const dvi__yee *y)
@@ -96,14 +103,14 @@ void dvi__yee_save(const void *self, dvi__sections_writer *writer)
 {
   const dvi__yee *y = self;
   const identity id = {hash_grid(y), y->dt, y->t0, y->t, y->step, y->charge != NULL};
-  part parts[MOST_PARTS];
-  const int count = list_parts(y, parts);
+  const char *section = "";
   dvi__section_open(writer, "yee", VERSION);
   dvi__section_put(writer, &id, sizeof id);
-  for (int i = 0; i < count; i++) {
-    if (i == 0 || strcmp(parts[i].section, parts[i - 1].section) != 0)
-      dvi__section_open(writer, parts[i].section, VERSION);
-    dvi__section_put(writer, parts[i].x, parts[i].count * sizeof(double));
+  for (int i = 0; i < count_parts(y); i++) {
+    const part next = part_of(y, i);
+    if (strcmp(next.section, section) != 0) dvi__section_open(writer, next.section, VERSION);
+    dvi__section_put(writer, next.x, next.count * sizeof(double));
+    section = next.section;
   }
   dvi__section_open(writer, "yee-sources", VERSION);
   for (int i = 0; i < y->sources; i++) {
@@ -129,20 +136,23 @@ static dvi_status find_identity(const dvi__yee *y, const dvi__sections *sections
                    sections->name, y->dt);
 }
 
-/* Find the sections of all arrays. DVI_BAD_FILE if one is missing or has another size. */
-static dvi_status find_parts(const dvi__sections *sections, int count, const part *parts,
-                             const unsigned char **content)
+/* Go through the sections of all arrays. DVI_BAD_FILE if one is missing or has another size. With
+ * `takes`, copy them to the state. */
+static dvi_status go_through_parts(const dvi__yee *y, const dvi__sections *sections, int takes)
 {
+  const int count = count_parts(y);
   for (int i = 0; i < count;) {
+    const char *section = part_of(y, i).section;
     size_t size = 0;
     dvi__section found;
     int next = i;
-    for (; next < count && strcmp(parts[next].section, parts[i].section) == 0; next++)
-      size += parts[next].count * sizeof(double);
-    DVI_TRY(dvi__section_find(sections, parts[i].section, VERSION, size, &found));
+    for (; next < count && strcmp(part_of(y, next).section, section) == 0; next++)
+      size += part_of(y, next).count * sizeof(double);
+    DVI_TRY(dvi__section_find(sections, section, VERSION, size, &found));
     for (const unsigned char *at = found.content; i < next; i++) {
-      content[i] = at;
-      at += parts[i].count * sizeof(double);
+      const part own = part_of(y, i);
+      if (takes) memcpy(own.x, at, own.count * sizeof(double));
+      at += own.count * sizeof(double);
     }
   }
   return DVI_OK;
@@ -174,15 +184,12 @@ dvi_status dvi__yee_load(void *self, const dvi__sections *sections)
   dvi__yee *y = self;
   identity id;
   dvi__section sources, charges = {0};
-  part parts[MOST_PARTS];
-  const unsigned char *content[MOST_PARTS];
-  const int count = list_parts(y, parts);
   DVI_TRY(find_identity(y, sections, &id));
-  DVI_TRY(find_parts(sections, count, parts, content));
+  DVI_TRY(go_through_parts(y, sections, 0));
   DVI_TRY(dvi__section_find(sections, "yee-sources", VERSION,
                             (size_t)y->sources * 2 * sizeof(double), &sources));
   DVI_TRY(find_charges(y, sections, &id, &charges));
-  for (int i = 0; i < count; i++) memcpy(parts[i].x, content[i], parts[i].count * sizeof(double));
+  DVI_TRY(go_through_parts(y, sections, 1));
   take_sources(y, &sources);
   if (charges.content != NULL)
     memcpy(y->charge, charges.content, charges.size);

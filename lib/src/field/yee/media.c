@@ -130,8 +130,8 @@ static dvi_status fill(const dvi_yee_terms *terms, const dvi__yee *y, quantity w
           double sum;
           DVI_TRY(sum_pieces(terms, y, what, component, place, &sum));
           const double vacuum = vacuum_star(y, component, place);
-          array[array_place(y, component, place)] =
-              what == PERMITTIVITY ? vacuum / sum : sum / vacuum;
+          array[array_place(y, component, place)] = what == PERMITTIVITY ? vacuum / sum
+                                                                         : sum / vacuum;
         }
   }
   return DVI_OK;
@@ -145,13 +145,10 @@ static void wrap_faces(const dvi__yee *y, double *array)
   for (size_t row = 0; row < y->rows[0] * y->rows[1] && y->axis[0].wraps; row++)
     for (size_t start = row * block; start < (row + 1) * block; start += y->width)
       array[start + DVI__YEE_LEFT - 1] = array[start + DVI__YEE_LEFT + n - 1];
-  for (int k = -1; k < y->axis[2].cells && y->axis[1].wraps; k++) {
-    if (k < 0 && y->axis[2].is_trivial) continue;
-    double *to = array + dvi__yee_row(y, -1, k) * block;
-    const double *from = array + dvi__yee_row(y, y->axis[1].cells - 1, k) * block;
-    for (size_t i = 0; i < block; i++) to[i] = from[i];
-  }
   const size_t plane = y->rows[0] * block;
+  for (size_t start = 0; start < y->rows[1] * plane && y->axis[1].wraps; start += plane)
+    for (size_t i = 0; i < block; i++)
+      array[start + i] = array[start + (size_t)y->axis[1].cells * block + i];
   for (size_t i = 0; i < plane && y->axis[2].wraps; i++)
     array[i] = array[(size_t)y->axis[2].cells * plane + i];
 }

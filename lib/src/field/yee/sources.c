@@ -58,6 +58,7 @@ dvi_status dvi__yee_prepare(dvi__yee *y, int steps, int *ready)
     double *drive = y->drive + (size_t)*ready * (size_t)y->drives;
     for (int i = 0; i < y->sources; i++)
       DVI_TRY(impulse_of(&y->source[i], t, half, half, &drive[i]));
+    DVI_TRY(dvi__yee_prepare_waves(y, y->step + *ready + 1, drive));
   }
   return DVI_OK;
 }
@@ -83,6 +84,7 @@ dvi_status dvi__yee_set_moment(const dvi__yee *y, dvi__yee_moment *m)
     row[i] = 0;
     row[y->drives + i] = impulse;
   }
+  dvi__yee_sample_waves(m, row, row + y->drives);
   return DVI_OK;
 }
 
@@ -252,7 +254,9 @@ dvi_status dvi__yee_make_sources(const dvi_yee_terms *terms, dvi__yee *y)
     DVI_TRY(add_dipole(y, dipole, y->sources++, i));
   }
   y->drives = y->sources + 1;
+  DVI_TRY(dvi__yee_make_waves(terms, y));
   DVI_TRY(dvi__yee_sort_acts(y, &y->on_edges));
+  DVI_TRY(dvi__yee_sort_acts(y, &y->on_faces));
   y->drive = DVI_NEW(double, (size_t)(y->together + 2) * (size_t)y->drives);
   return y->drive != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "yee: no memory for sources");
 }

@@ -211,9 +211,14 @@ double dvi__yee_star(const dvi__yee *yee, int component, const int *place);
 /* ---- bound.c ---- */
 
 /* Give the largest stable step, infinite if nothing moves. */
-dvi_status dvi__yee_find_bound(const dvi__yee *yee, double *bound);
+dvi_status dvi__yee_find_bound(dvi__yee *yee, double *bound);
 /* Give the place x [3] where boxes and materials demand the smallest step. */
 void dvi__yee_tightest(const dvi__yee *yee, double *x);
+
+/* ---- lanczos.c ---- */
+
+/* Find the largest eigenvalue of a grid without losses whose factors are those of a step of 1. */
+dvi_status dvi__yee_lanczos(const dvi__yee *yee, double *largest);
 
 /* ---- layers.c ---- */
 
@@ -254,6 +259,12 @@ void dvi__yee_absorb(dvi__yee *yee);
 /* Give v dt/h for E_c on an absorbing end, with the speed v there. */
 double dvi__yee_courant(const dvi__yee *yee, int c, int axis, int end, const int *place);
 
+/* ---- start.c ---- */
+
+dvi_status dvi__yee_start(void *yee, const dvi_march_state *state);
+/* Copy values at ends of axes that repeat themselves to where the first step looks for them. */
+void dvi__yee_wrap_values(dvi__yee *yee);
+
 /* ---- sources.c ---- */
 
 dvi_status dvi__yee_make_sources(const dvi_yee_terms *terms, dvi__yee *yee);
@@ -270,11 +281,6 @@ dvi_status dvi__yee_check_inside(const dvi__yee *yee, const double *x, const cha
  * bits of `which`, from 0 to 7, choose the far one along each axis. */
 void dvi__yee_whitney(const dvi__yee *yee, int component, const double *x, int which, int *place,
                       double *weight);
-
-/* ---- wave.c ---- */
-
-/* Tell if a node is on the surface of a wave's box, or if a box touches it from outside. */
-int dvi__yee_is_on_wave(const dvi__yee *yee, const int *place, int is_box);
 
 /* ---- acts.c ---- */
 
@@ -314,6 +320,20 @@ void dvi__yee_start_edge(const dvi__yee_moment *moment, int c, const int *place)
 dvi_status dvi__yee_set_moment(const dvi__yee *yee, dvi__yee_moment *moment);
 dvi_status dvi__yee_sample(const void *yee, dvi_march_form form, int64_t count, const int *cell,
                            double *values);
+
+/* ---- wave.c ---- */
+
+dvi_status dvi__yee_make_waves(const dvi_yee_terms *terms, dvi__yee *yee);
+void dvi__yee_clear_waves(dvi__yee *yee);
+dvi_status dvi__yee_start_waves(dvi__yee *yee, double t0);
+/* Move the waves to the step, and give their drives. */
+dvi_status dvi__yee_prepare_waves(dvi__yee *yee, int64_t step, double *drive);
+/* Give the drives of a moment. */
+void dvi__yee_sample_waves(const dvi__yee_moment *moment, double *on_faces, double *on_edges);
+/* Give a wave's part of the state. */
+double *dvi__yee_line_of(const dvi__yee *yee, int wave, size_t *count);
+/* Tell if a node is on the surface of a wave's box, or if a box touches it from outside. */
+int dvi__yee_is_on_wave(const dvi__yee *yee, const int *place, int is_box);
 
 /* ---- observe.c ---- */
 

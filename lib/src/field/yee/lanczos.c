@@ -1,0 +1,192 @@
+/* The largest eigenvalue of M_1^-1 d_1^T M_2 d_1 by Lanczos's iteration (Parlett 1998, ch. 13), in
+ * the scalar product of M_1. The rows of the march itself apply the operator. */
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "field/yee/yee.h"
+#include "num/philox.h"
+
+enum { MOST_STEPS = 200, VECTORS = 3 };
+
+/* An eigenvalue is found if its residual is below this part of it. */
+static const double tolerance = 2e-3;
+
+/* The iteration: vectors w, v, and the one before it, as states, and the matrix T. */
+typedef struct lanczos {
+  dvi__yee grid; /* a march without losses, layers and sources, with a step of 1 */
+  double *vector[VECTORS][2];
+  double alpha[MOST_STEPS], beta[MOST_STEPS];
+  int count;
+} lanczos;
+
+/* ---- the matrix T ---- */
+
+/* Tell if x is above all eigenvalues of T. */
+static int is_above(const lanczos *l, double x)
+{
+  double pivot = l->alpha[0] - x;
+  for (int i = 1; i < l->count && pivot < 0; i++)
+    pivot = l->alpha[i] - x - l->beta[i - 1] * l->beta[i - 1] / pivot;
+  return pivot < 0;
+}
+
+static double largest_of_T(const lanczos *l)
+{
+  double low = 0, high = 0;
+  for (int i = 0; i < l->count; i++)
+    high = fmax(high, l->alpha[i] + l->beta[i] + (i > 0 ? l->beta[i - 1] : 0));
+  while (!is_above(l, high)) high = 2 * high + 1e-300;
+  for (int i = 0; i < 100 && high - low > 1e-14 * high; i++) {
+    const double middle = 0.5 * (low + high);
+    *(is_above(l, middle) ? &high : &low) = middle;
+  }
+  return high;
+}
+
+/* Give the last entry of the eigenvector, by inverse iteration from above. */
+static double last_entry(const lanczos *l, double theta)
+{
+  double x[MOST_STEPS], pivot[MOST_STEPS], norm = 0;
+  const int n = l->count;
+  for (int i = 0; i < n; i++) {
+    const double off = i > 0 ? l->beta[i - 1] : 0;
+    pivot[i] = l->alpha[i] - theta * (1 + 1e-13) - (i > 0 ? off * off / pivot[i - 1] : 0);
+    x[i] = 1;
+  }
+  for (int round = 0; round < 3; round++) {
+    norm = 0;
+    for (int i = 1; i < n; i++) x[i] -= l->beta[i - 1] / pivot[i - 1] * x[i - 1];
+    x[n - 1] /= pivot[n - 1];
+    for (int i = n - 2; i >= 0; i--) x[i] = (x[i] - l->beta[i] * x[i + 1]) / pivot[i];
+    for (int i = 0; i < n; i++) norm += x[i] * x[i];
+    for (int i = 0; i < n; i++) x[i] /= sqrt(norm);
+  }
+  return fabs(x[n - 1]);
+}
+
+/* ---- vectors ---- */
+
+/* Visit all rows of E. With `sum`, add x.M_1 z to it. Else x <- a x + b z. */
+static void visit(const lanczos *l, double **x, double **z, double a, double b, double *sum)
+{
+  const dvi__yee *y = &l->grid;
+  int place[3];
+  for (int copy = 0; copy < y->copies; copy++)
+    for (int c = 0; c < 3; c++) {
+      if (y->slot[c] < 0) continue;
+      for (place[2] = 0; place[2] < dvi__yee_places(y, c, 2); place[2]++)
+        for (place[1] = 0; place[1] < dvi__yee_places(y, c, 1); place[1]++) {
+          const size_t at = dvi__yee_at(y, c, place[1], place[2]);
+          for (place[0] = 0; place[0] < dvi__yee_places(y, c, 0); place[0]++) {
+            double *xi = x[copy] + at + place[0];
+            const double zi = z[copy][at + (size_t)place[0]];
+            if (sum != NULL)
+              *sum += dvi__yee_star(y, c, place) * *xi * zi;
+            else
+              *xi = a * *xi + b * zi;
+          }
+        }
+    }
+}
+
+static double product(const lanczos *l, double **x, double **z)
+{
+  double sum = 0;
+  visit(l, x, z, 0, 0, &sum);
+  return sum;
+}
+
+static void for_all_rows(const dvi__yee *y, const dvi__yee_worker *worker,
+                         void (*update)(const dvi__yee_worker *worker, int j, int k))
+{
+  for (int k = 0; k < y->axis[2].nodes; k++)
+    for (int j = 0; j < y->axis[1].nodes; j++) update(worker, j, k);
+}
+
+/* Replace w by A v. Rows need E behind the last node, where v has copies, too. */
+static void apply(lanczos *l, double **v, double **w)
+{
+  dvi__yee *y = &l->grid;
+  const dvi__yee_worker worker = {y, y->scratch, NULL};
+  for (int copy = 0; copy < y->copies; copy++) {
+    memset(w[copy], 0, y->size * sizeof(double));
+    y->state[copy] = w[copy];
+  }
+  visit(l, w, v, 0, 1, NULL);
+  dvi__yee_wrap_values(y);
+  for_all_rows(y, &worker, dvi__yee_update_faces);
+  visit(l, y->state, y->state, 0, 0, NULL);
+  for_all_rows(y, &worker, dvi__yee_update_edges);
+  visit(l, y->state, y->state, -1, 0, NULL);
+}
+
+static void start_vector(lanczos *l, double **v)
+{
+  const dvi__yee *y = &l->grid;
+  const int64_t size = dvi__yee_form_size(y, DVI_FORM_E);
+  for (int64_t i = 0; i < size; i++) {
+    int c, place[3], is_free = 1;
+    uint32_t bits[4] = {(uint32_t)i, (uint32_t)(i >> 32), 0, 0};
+    dvi__yee_place_of(y, DVI_FORM_E, i, &c, place);
+    for (int axis = 0; axis < 3; axis++)
+      is_free = is_free && dvi__yee_is_free(y, c, axis, place[axis]);
+    dvi__philox(bits, 1);
+    const size_t at = dvi__yee_at(y, c, place[1], place[2]) + (size_t)place[0];
+    for (int copy = 0; copy < y->copies && is_free; copy++)
+      v[copy][at] = bits[copy] / 4294967296.0 - 0.5;
+  }
+  const double norm = sqrt(product(l, v, v));
+  visit(l, v, v, 1 / norm, 0, NULL);
+}
+
+/* ---- iteration ---- */
+
+static double iterate(lanczos *l)
+{
+  double **before = l->vector[0], **v = l->vector[1], **w = l->vector[2], theta = 0;
+  start_vector(l, v);
+  while (l->count < MOST_STEPS) {
+    const int n = l->count++;
+    apply(l, v, w);
+    l->alpha[n] = product(l, w, v);
+    visit(l, w, v, 1, -l->alpha[n], NULL);
+    if (n > 0) visit(l, w, before, 1, -l->beta[n - 1], NULL);
+    l->beta[n] = sqrt(product(l, w, w));
+    theta = largest_of_T(l);
+    const double residual = l->beta[n] * last_entry(l, theta);
+    if (l->count == MOST_STEPS || residual <= tolerance * theta) return theta + residual;
+    visit(l, w, w, 1 / l->beta[n], 0, NULL);
+    double **free_one = before;
+    before = v, v = w, w = free_one;
+  }
+  return theta;
+}
+
+dvi_status dvi__yee_lanczos(const dvi__yee *y, double *largest)
+{
+  dvi_status status = DVI_OK;
+  lanczos *l = DVI_NEW(lanczos, 1);
+  double *scratch = DVI_NEW(double, DVI__YEE_SCRATCH * y->width);
+  if (l == NULL || scratch == NULL) status = DVI_NO_MEMORY;
+  for (int i = 0; i < VECTORS && l != NULL; i++)
+    for (int copy = 0; copy < y->copies; copy++) {
+      l->vector[i][copy] = DVI_NEW(double, y->size + DVI__YEE_LEFT);
+      if (l->vector[i][copy] == NULL) status = DVI_NO_MEMORY;
+    }
+  if (status == DVI_OK) {
+    l->grid = *y;
+    l->grid.scratch = scratch;
+    l->grid.dt = 1;
+    l->grid.lanes = dvi__yee_lanes_in_use();
+    for (int axis = 0; axis < 3; axis++)
+      for (int e = 0; e < 2; e++) l->grid.axis[axis].layers[e].count = 0;
+    *largest = iterate(l);
+  }
+  for (int i = 0; i < VECTORS && l != NULL; i++)
+    for (int copy = 0; copy < 2; copy++) dvi__release(l->vector[i][copy]);
+  dvi__release(l);
+  dvi__release(scratch);
+  return status == DVI_OK ? DVI_OK : dvi__fail(status, "yee: no memory for Lanczos's vectors");
+}

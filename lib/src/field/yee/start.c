@@ -1,0 +1,117 @@
+/* Starts: values of forms to rows, and the half step from E^0 to E^{1/2}. */
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "field/yee/yee.h"
+
+static void set_values(dvi__yee *y, dvi_march_form form, const double *values)
+{
+  const int64_t size = dvi__yee_form_size(y, form);
+  for (int64_t i = 0; i < size * y->copies && values != NULL; i++) {
+    int component, place[3];
+    dvi__yee_place_of(y, form, i % size, &component, place);
+    const size_t at = dvi__yee_at(y, component, place[1], place[2]) + (size_t)place[0];
+    y->state[i / size][at] = values[i];
+  }
+}
+
+void dvi__yee_wrap_values(dvi__yee *y)
+{
+  for (int component = 0; component < 6; component++) {
+    const int is_face = component >= DVI__YEE_B;
+    int first[3], last[3], place[3];
+    if (y->slot[component] < 0) continue;
+    for (int l = 0; l < 3; l++) {
+      const int places = dvi__yee_places(y, component, l);
+      first[l] = is_face && y->axis[l].wraps ? -1 : 0;
+      last[l] = !is_face && y->axis[l].wraps ? places : places - 1;
+    }
+    for (place[2] = first[2]; place[2] <= last[2]; place[2]++)
+      for (place[1] = first[1]; place[1] <= last[1]; place[1]++)
+        for (place[0] = first[0]; place[0] <= last[0]; place[0]++) {
+          int is_outside = 0;
+          for (int l = 0; l < 3; l++)
+            is_outside |= place[l] < 0 || place[l] >= dvi__yee_places(y, component, l);
+          if (!is_outside) continue;
+          const dvi__yee_value value = dvi__yee_stored(y, component, place);
+          const size_t at = dvi__yee_at(y, component, place[1], place[2]);
+          y->state[0][(ptrdiff_t)at + place[0]] = value.re;
+          if (y->copies > 1) y->state[1][(ptrdiff_t)at + place[0]] = value.im;
+        }
+  }
+}
+
+/* Give no field to edges on conductors. */
+static void clear_conductors(dvi__yee *y)
+{
+  const int64_t size = dvi__yee_form_size(y, DVI_FORM_E);
+  for (int64_t i = 0; i < size; i++) {
+    int component, place[3], is_kept = 1;
+    dvi__yee_place_of(y, DVI_FORM_E, i, &component, place);
+    for (int l = 0; l < 3; l++) {
+      const dvi__yee_axis *a = &y->axis[l];
+      const int end = place[l] == 0 ? 0 : 1;
+      if (!dvi__yee_is_free(y, component, l, place[l]) && a->end[end].kind != DVI_YEE_ABSORBING)
+        is_kept = 0;
+    }
+    const size_t at = dvi__yee_at(y, component, place[1], place[2]) + (size_t)place[0];
+    for (int copy = 0; copy < y->copies && !is_kept; copy++) y->state[copy][at] = 0;
+  }
+}
+
+/* Move E from t_0 to half a step later: (1 - s) E + dt/2 M_1^-1 (d_1^T M_2 B - J). */
+static void take_half_step(dvi__yee *y)
+{
+  const int64_t size = dvi__yee_form_size(y, DVI_FORM_E);
+  const dvi__yee_moment m = {.yee = y, .part = 0, .on_faces = y->drive, .on_edges = y->drive};
+  for (int64_t i = 0; i < size; i++) {
+    int component, place[3];
+    dvi__yee_place_of(y, DVI_FORM_E, i, &component, place);
+    dvi__yee_start_edge(&m, component, place);
+  }
+}
+
+static void clear(dvi__yee *y)
+{
+  const size_t beside = y->rows[0] * y->rows[1] * (size_t)y->edges_slots * y->width;
+  for (int copy = 0; copy < y->copies; copy++) memset(y->state[copy], 0, y->size * sizeof(double));
+  for (int l = 0; l < 3; l++)
+    for (int e = 0; e < 2; e++) {
+      dvi__yee_layers *layers = &y->axis[l].layers[e];
+      if (layers->count > 0)
+        memset(layers->psi, 0, (size_t)y->copies * layers->psi_count * sizeof(double));
+    }
+  if (y->worn != NULL) memset(y->worn, 0, beside * sizeof(double));
+}
+
+/* Make room for the charges of a start with a field. Without one there are none. */
+static dvi_status make_charge(dvi__yee *y, int has_field)
+{
+  const size_t count = (size_t)y->axis[0].nodes * (size_t)y->axis[1].nodes *
+                       (size_t)y->axis[2].nodes;
+  if (!has_field || y->degree == 0 || y->charge != NULL) return DVI_OK;
+  y->charge = DVI_NEW(double, count);
+  return y->charge != NULL ? DVI_OK
+                           : dvi__fail(DVI_NO_MEMORY, "yee: no memory for %zu charges", count);
+}
+
+/* Memory and signals are asked for before anything changes. */
+dvi_status dvi__yee_start(void *self, const dvi_march_state *state)
+{
+  dvi__yee *y = self;
+  DVI_TRY(make_charge(y, state->E != NULL));
+  DVI_TRY(dvi__yee_start_sources(y, state->t));
+  DVI_TRY(dvi__yee_start_waves(y, state->t));
+  y->t0 = y->t = state->t;
+  y->step = 0;
+  clear(y);
+  set_values(y, DVI_FORM_E, state->E);
+  set_values(y, DVI_FORM_B, state->B);
+  clear_conductors(y);
+  dvi__yee_wrap_values(y);
+  if (y->charge != NULL) dvi__yee_keep_charge(y);
+  take_half_step(y);
+  dvi__yee_wrap_values(y);
+  return DVI_OK;
+}
