@@ -132,9 +132,9 @@ static int drop_instants(int count, double complex *z)
 }
 
 /* Estimate the largest singular value of noise from the smallest ones, of which a fifth at least
- * are noise. Those of a R x C matrix of independent numbers lie between sqrt(R) -+ sqrt(C) (Marchenko
- * and Pastur 1967), and a fifth of them below sqrt(R) - 0.685 sqrt(C). Hankel matrices of noise,
- * whose entries repeat, have some that are larger. */
+ * are noise. Those of a R x C matrix of independent numbers lie between sqrt(R) -+ sqrt(C)
+ * (Marchenko and Pastur 1967), and a fifth of them below sqrt(R) - 0.685 sqrt(C). Hankel matrices
+ * of noise, whose entries repeat, have some that are larger. */
 static double largest_of_noise(const pencil *p, int probes)
 {
   const double hankel = 1.6, ratio = sqrt((double)p->rows * probes / p->columns);
