@@ -96,6 +96,29 @@ START_TEST(the_slope_of_the_order_zero_is_the_order_one)
 }
 END_TEST
 
+/* Hankel's expansion H_n(x) = sqrt(2/(pi x)) exp(i chi) sum_k t_k, chi = x - n pi/2 - pi/4, t_k =
+ * t_{k-1} i (4 n^2 - (2k-1)^2)/(8 k x), whose least term is exp(-2x) (9.2.7). */
+START_TEST(large_arguments_have_an_expansion)
+{
+  const quad x = _i == 0 ? 60 : 120, pi = quad_acos(-1);
+  quad_complex J[2];
+  quad Y[2];
+  bessel_j(1, qc(x, 0), J);
+  bessel_y(1, x, Y);
+  for (int n = 0; n < 2; n++) {
+    const quad chi = x - n * pi / 2 - pi / 4;
+    quad_complex term = qc(1, 0), sum = term;
+    for (int k = 1; k < 60; k++) {
+      term = qc_multiply(term, qc(0, (4 * n * n - (2 * k - 1) * (2 * k - 1)) / (8 * k * x)));
+      sum = qc_add(sum, term);
+    }
+    const quad_complex H = qc_scale(quad_sqrt(2 / (pi * x)), qc_multiply(qc_exp(qc(0, chi)), sum));
+    check_quad(J[n].re, H.re, 1e-31);
+    check_quad(Y[n], H.im, 1e-31);
+  }
+}
+END_TEST
+
 /* Abramowitz and Stegun, table 9.5. */
 static quad order_of(quad x, int order)
 {
@@ -126,5 +149,6 @@ SUITE(bessel)
   tcase_add_loop_test(tests, wronskians_hold, 0, ARGUMENTS);
   tcase_add_loop_test(tests, spherical_wronskians_hold, 0, ARGUMENTS);
   tcase_add_loop_test(tests, the_slope_of_the_order_zero_is_the_order_one, 0, ARGUMENTS);
+  tcase_add_loop_test(tests, large_arguments_have_an_expansion, 0, 2);
   tcase_add_test(tests, roots_are_those_of_the_tables);
 }

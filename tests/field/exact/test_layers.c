@@ -21,6 +21,26 @@ START_TEST(two_layers_have_the_roots_of_their_equation)
 }
 END_TEST
 
+/* E and H = E'/(i w mu) are continuous: with the admittance n/mu of each layer,
+ * sin_1 cos_2/Y_1 + cos_1 sin_2/Y_2 = 0 between conductors, and cos_1 cos_2 - (Y_2/Y_1) sin_1 sin_2
+ * = 0 before a magnetic wall. */
+START_TEST(magnetic_layers_have_the_roots_of_their_equation)
+{
+  const layer two[] = {{0.3, 2, 3, 0}, {0.9, 1.5, 1, 0}};
+  const double n = sqrt(6), m = sqrt(1.5), Y = n / 3, Z = m;
+  double w[4];
+  for (int end = 0; end < 2; end++) {
+    layers_frequencies(2, two, end == 0 ? LAYER_CONDUCTOR : LAYER_MAGNETIC_WALL, 4, w);
+    for (int i = 0; i < 4; i++) {
+      const double a = n * w[i] * 0.3, b = m * w[i] * 0.9;
+      const double defect = end == 0 ? sin(a) * cos(b) / Y + cos(a) * sin(b) / Z
+                                     : cos(a) * cos(b) - Z / Y * sin(a) * sin(b);
+      ck_assert_double_eq_tol(defect, 0, 1e-14);
+    }
+  }
+}
+END_TEST
+
 /* Cutting a layer in two changes nothing. Both ways to a root agree. */
 START_TEST(layers_may_be_cut)
 {
@@ -82,6 +102,7 @@ END_TEST
 SUITE(layers)
 {
   tcase_add_test(tests, two_layers_have_the_roots_of_their_equation);
+  tcase_add_test(tests, magnetic_layers_have_the_roots_of_their_equation);
   tcase_add_test(tests, layers_may_be_cut);
   tcase_add_test(tests, one_layer_has_half_waves_or_quarter_waves);
   tcase_add_test(tests, a_conducting_layer_loses_half_of_sigma_over_eps);
