@@ -149,8 +149,7 @@ static int rank_above(const pencil *p, double floor)
   return rank;
 }
 
-static dvi_status solve_pencil(pencil *p, int probes, double floor, int *count,
-                               double complex *z)
+static dvi_status solve_pencil(pencil *p, int probes, double floor, int *count, double complex *z)
 {
   DVI_TRY(dvi__complex_svd(p->columns, p->square, p->singular, p->right));
   *count = rank_above(p, fmax(floor, largest_of_noise(p, probes)));
