@@ -19,7 +19,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "num/complex_matrix.h"
+#include "field/spectra/complex_matrix.h"
 
 enum { BLOCK = 64, COLUMNS = 512 };
 

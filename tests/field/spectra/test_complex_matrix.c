@@ -2,7 +2,7 @@
 #include <math.h>
 
 #include "core/memory.h"
-#include "num/complex_matrix.h"
+#include "field/spectra/complex_matrix.h"
 #include "support/suite.h"
 
 enum { N = 7, ROWS = 11, BLOCK = 64 };
