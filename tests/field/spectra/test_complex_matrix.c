@@ -3,13 +3,14 @@
 
 #include "core/memory.h"
 #include "field/spectra/complex_matrix.h"
+#include "field/spectra/complex_number.h"
 #include "support/suite.h"
 
 enum { N = 7, ROWS = 11, BLOCK = 64 };
 
 static void fill(int count, double complex *A)
 {
-  for (int k = 0; k < count; k++) A[k] = CMPLX(sin(1 + 3.7 * k), cos(2 + 1.3 * k * k));
+  for (int k = 0; k < count; k++) A[k] = dvi__complex(sin(1 + 3.7 * k), cos(2 + 1.3 * k * k));
 }
 
 static void check_zero(double complex z)
@@ -23,7 +24,7 @@ START_TEST(reflections_solve_least_squares)
   double complex A[ROWS * N], R[ROWS * N], b[ROWS], x[ROWS], factor[N], work[BLOCK * N];
   fill(ROWS * N, A);
   fill(ROWS * N, R);
-  for (int i = 0; i < ROWS; i++) x[i] = b[i] = CMPLX(i, 1);
+  for (int i = 0; i < ROWS; i++) x[i] = b[i] = dvi__complex(i, 1);
   dvi__complex_qr(ROWS, N, R, factor, work);
   dvi__complex_reflect(ROWS, N, R, factor, 1, x, work);
   ck_assert(dvi__complex_back(ROWS, N, R, ROWS, 1, x));
@@ -69,8 +70,8 @@ END_TEST
 /* The companion matrix of (z - 1)(z - i)(z + 2i) = z^3 + (i - 1) z^2 + (2 - i) z - 2. */
 START_TEST(a_companion_matrix_has_the_roots_of_its_polynomial)
 {
-  const double complex expected[] = {1, CMPLX(0, 1), CMPLX(0, -2)};
-  double complex A[9] = {CMPLX(1, -1), 1, 0, CMPLX(-2, 1), 0, 1, 2, 0, 0}, z[3];
+  const double complex expected[] = {1, dvi__complex(0, 1), dvi__complex(0, -2)};
+  double complex A[9] = {dvi__complex(1, -1), 1, 0, dvi__complex(-2, 1), 0, 1, 2, 0, 0}, z[3];
   ck_assert_int_eq(dvi__complex_eigenvalues(3, A, z), DVI_OK);
   for (int k = 0; k < 3; k++) {
     double nearest = 9;
