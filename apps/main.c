@@ -15,27 +15,13 @@ typedef struct subcommand {
 } subcommand;
 
 static const subcommand subcommands[] = {
-    {"list", list_command},
-    {"explain", explain_command},
-    {"run", run_command},
-    {"order", order_command},
-    {"bench", bench_command},
-    {"path", path_command},
-    {"control", control_command},
-    {"gradient", gradient_command},
-    {"fit", fit_command},
-    {"check", check_command},
-    {"init", init_command},
-    {"sweep", sweep_command},
-    {"resonance", resonance_command},
-    {"emit-c", emit_c_command},
-    {"mesh", mesh_command},
-    {"modes", modes_command},
-    {"stability", stability_command},
-    {"solve", solve_command},
-    {"spectrum", spectrum_command},
-    {"plot", plot_command},
-    {NULL, NULL},
+    {"list", list_command},           {"explain", explain_command},     {"run", run_command},
+    {"order", order_command},         {"bench", bench_command},         {"path", path_command},
+    {"control", control_command},     {"gradient", gradient_command},   {"fit", fit_command},
+    {"check", check_command},         {"init", init_command},           {"sweep", sweep_command},
+    {"resonance", resonance_command}, {"emit-c", emit_c_command},       {"mesh", mesh_command},
+    {"modes", modes_command},         {"stability", stability_command}, {"solve", solve_command},
+    {"spectrum", spectrum_command},   {"plot", plot_command},           {NULL, NULL},
 };
 
 static const char help[] =

@@ -89,11 +89,13 @@ static int find_columns(const char *command, row_file *file, series_table *table
   if (!rows_next(file))
     return rows_complete(file) ? usage_error("%s: '%s' is empty", command, file->path) : FAILED;
   if (table->columns == 0 && !want_titles(file->line, table)) return FAILED;
-  for (const char *text = file->line; text != NULL; field++) {
+  const char *text = file->line;
+  do {
     rows_field(&text, title);
     for (int k = 0; k < table->columns; k++)
       if (strcmp(title, table->column[k].name) == 0) table->column[k].field = field;
-  }
+    field++;
+  } while (text != NULL);
   for (int k = 0; k < table->columns; k++)
     if (table->column[k].field < 0)
       return refuse_missing_column(command, file, field, table->column[k].name);

@@ -54,7 +54,7 @@ BEGIN {
   sees["field/avi"] = sees["field/step"] " field/forms field/step"
   sees["field/tents"] = sees["field/avi"]
   sees["field/method"] = "core march field/model field/step field/avi field/tents"
-  sees["field/spectra"] = "core num"
+  sees["field/spectra"] = "core"
   # The library of scenes includes libdvi's public headers, too.
   sees["text"] = ""
   sees["expr"] = "text"

@@ -6,7 +6,7 @@
  *
  *  whose omega and gamma all probes share. A Fourier transform of duration T resolves frequencies
  *  to 2 pi/T. The matrix pencil of Hua and Sarkar finds them, without noise, to roundoff, and with
- *  noise as precisely as the noise allows (docs/spectra.md). */
+ *  noise as precisely as the noise allows (docs/fields/spectra.md). */
 #ifndef DVI_SPECTRUM_H
 #define DVI_SPECTRUM_H
 #include <dvi/status.h>

@@ -37,20 +37,22 @@ static void check_line(const found *f, int k, const damped *line, double toleran
   ck_assert_double_eq_tol(f->phase[k], line->phase, 1e3 * tolerance);
 }
 
-/* The borders of 9 parts are at multiples of pi/9, where lines stand, and others beside them. */
+/* The borders of the parts are at multiples of pi/parts, where lines stand, and others beside
+ * them. */
 START_TEST(lines_at_the_borders_of_parts_are_found_once)
 {
-  enum { SAMPLES = 5000, PARTS = 9, LINES = 3 * PARTS - 3 };
-  damped line[LINES];
+  enum { PARTS = 9 };
+  const int parts = is_short_run() ? 3 : PARTS, lines = 3 * parts - 3;
+  damped line[3 * PARTS];
   found f;
-  for (int k = 0; k < LINES; k++) {
+  for (int k = 0; k < lines; k++) {
     const double beside[] = {-0.002, 0, 0.003};
-    line[k] = (damped){pi * (1 + k / 3) / PARTS + beside[k % 3], 1e-5 * k, 1 + 0.1 * k, 0.1 * k};
+    line[k] = (damped){pi * (1 + k / 3) / parts + beside[k % 3], 1e-5 * k, 1 + 0.1 * k, 0.1 * k};
   }
-  find(LINES, line, SAMPLES, NULL, &f);
-  ck_assert_int_eq(f.report.parts, PARTS);
-  ck_assert_int_eq(f.count, LINES);
-  for (int k = 0; k < LINES; k++) check_line(&f, k, &line[k], 1e-13);
+  find(lines, line, 550 * parts, NULL, &f);
+  ck_assert_int_eq(f.report.parts, parts);
+  ck_assert_int_eq(f.count, lines);
+  for (int k = 0; k < lines; k++) check_line(&f, k, &line[k], 1e-13);
 }
 END_TEST
 
@@ -99,14 +101,13 @@ START_TEST(a_strong_line_outside_the_band_leaves_a_weak_one_inside_alone)
 }
 END_TEST
 
-/* 200 lines of 200 Q-values. */
 START_TEST(many_lines_of_a_long_series_are_all_found)
 {
   enum { LINES = 200 };
   damped line[LINES];
   found f;
-  const int64_t samples = is_short_run() ? 2500 : 8000;
-  const int lines = is_short_run() ? 60 : LINES;
+  const int64_t samples = is_short_run() ? 1600 : 8000;
+  const int lines = is_short_run() ? 40 : LINES;
   for (int k = 0; k < lines; k++)
     line[k] = (damped){pi * (k + 0.5 + 0.3 * sin(7 * k)) / lines, 1e-4 * (1 + sin(3 * k)),
                        2 + cos(5 * k), sin(k)};
@@ -118,7 +119,7 @@ END_TEST
 
 START_TEST(the_noise_of_a_long_series_is_told_from_its_lines)
 {
-  enum { SAMPLES = 4000 };
+  enum { SAMPLES = 1600 };
   const damped line[] = {{0.5, 1e-4, 1, 0}, {1.5, 0, 0.2, 1}, {1.51, 1e-3, 0.5, 2}};
   double y[SAMPLES];
   found f;
@@ -130,7 +131,7 @@ START_TEST(the_noise_of_a_long_series_is_told_from_its_lines)
   ck_assert_int_eq(f.count, 3);
   for (int k = 0; k < 3; k++) {
     ck_assert_double_lt(fabs(f.line[k].frequency - line[k].frequency), 4 * f.line[k].error);
-    ck_assert_double_lt(f.line[k].error, 1e-5);
+    ck_assert_double_lt(f.line[k].error, 1e-4);
   }
 }
 END_TEST

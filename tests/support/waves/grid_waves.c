@@ -54,18 +54,29 @@ void grid_lossy_mode(double w, double dt, double sigma, double *frequency, doubl
   *decay = (double)(-exponent.re / dt);
 }
 
-/* f(q) = z - q - b(qz - 1) is what a wave q^j z^n leaves of the condition at j = 0. */
+/* The solution of q - 2 + 1/q = (h/dt)^2 (z - 2 + 1/z) in the upper half plane. */
+static quad_complex wave_factor(quad_complex z, quad h, quad dt)
+{
+  const quad_complex back = qc_divide(qc(1, 0), z),
+                     half = qc_scale(h * h / (2 * dt * dt), qc(z.re + back.re - 2, z.im + back.im)),
+                     middle = qc(1 + half.re, half.im),
+                     root = qc_sqrt(qc_subtract(qc_multiply(middle, middle), qc(1, 0)));
+  const quad_complex q = qc_add(middle, root);
+  return q.im >= 0 ? q : qc_subtract(middle, root);
+}
+
+/* f(q) = z - q - b(qz - 1) is what a wave leaves of the condition. */
 static quad_complex mur_defect(quad_complex q, quad_complex z, quad b)
 {
   const quad_complex product = qc_multiply(q, z);
   return qc_subtract(qc_subtract(z, q), qc_scale(b, qc(product.re - 1, product.im)));
 }
 
-double grid_mur_reflection(double w, double h, double dt)
+double grid_mur_reflection(double w, double decay, double h, double dt, double *growth)
 {
-  const quad b = ((quad)dt - h) / ((quad)dt + h),
-             kh = 2 * arc_sine(quad_sin((quad)w * dt / 2) * h / dt);
-  const quad_complex z = qc_exp(qc(0, (quad)w * dt)), q = qc_exp(qc(0, kh)),
-                     back = qc_exp(qc(0, -kh));
+  const quad b = ((quad)dt - h) / ((quad)dt + h);
+  const quad_complex z = qc_exp(qc(-(quad)decay * dt, (quad)w * dt)), q = wave_factor(z, h, dt),
+                     back = qc_divide(qc(1, 0), q);
+  *growth = (double)qc_size(q);
   return (double)(qc_size(mur_defect(q, z, b)) / qc_size(mur_defect(back, z, b)));
 }

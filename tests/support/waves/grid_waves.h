@@ -15,7 +15,8 @@ double grid_box_frequency(int axes, const double *side, const int *cells, double
  * goes as exp(-decay t) cos(frequency t + ..). */
 void grid_lossy_mode(double w, double dt, double sigma, double *frequency, double *decay);
 
-/* |R| of Mur's boundary E0+ = E1 + b(E1+ - E0), b = (dt-h)/(dt+h), for waves along the axis. */
-double grid_mur_reflection(double w, double h, double dt);
+/* A wave q^j z^n along an axis, z = exp((i w - decay) dt). Returns |R| of Mur's boundary
+ * E0+ = E1 + b(E1+ - E0), b = (dt-h)/(dt+h), at j = 0, and sets *growth to |q|, 1 without decay. */
+double grid_mur_reflection(double w, double decay, double h, double dt, double *growth);
 
 #endif

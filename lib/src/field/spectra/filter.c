@@ -14,6 +14,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "field/spectra/complex_number.h"
 
 static const double pi = 3.14159265358979323846;
 
@@ -82,7 +83,7 @@ void dvi__filter_apply(const dvi__filter *filter, double middle, double scale, i
       re += even[k] * from[k];
       im += odd[k] * from[k];
     }
-    y[m] = CMPLX(re, im) * cexp(CMPLX(0, -middle * (double)(m * filter->stride)));
+    y[m] = dvi__complex(re, im) * cexp(dvi__complex(0, -middle * (double)(m * filter->stride)));
   }
 }
 

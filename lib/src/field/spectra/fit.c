@@ -17,7 +17,8 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "num/complex_matrix.h"
+#include "field/spectra/complex_matrix.h"
+#include "field/spectra/complex_number.h"
 
 enum { BLOCK = 64, STEPS = 3 };
 
@@ -112,7 +113,7 @@ static double complex product(const fit *f, int64_t a, int64_t b)
     re += creal(x[m]) * creal(y[m]) + cimag(x[m]) * cimag(y[m]);
     im += creal(x[m]) * cimag(y[m]) - cimag(x[m]) * creal(y[m]);
   }
-  return CMPLX(re, im);
+  return dvi__complex(re, im);
 }
 
 /* Set c to the coefficients of the columns, and `left`. */

@@ -19,7 +19,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "num/complex_matrix.h"
+#include "field/spectra/complex_matrix.h"
 
 enum { BLOCK = 64, COLUMNS = 512 };
 
@@ -132,9 +132,9 @@ static int drop_instants(int count, double complex *z)
 }
 
 /* Estimate the largest singular value of noise from the smallest ones, of which a fifth at least
- * are noise. Those of a R x C matrix of independent numbers lie between sqrt(R) -+ sqrt(C) (Marchenko
- * and Pastur 1967), and a fifth of them below sqrt(R) - 0.685 sqrt(C). Hankel matrices of noise,
- * whose entries repeat, have some that are larger. */
+ * are noise. Those of a R x C matrix of independent numbers lie between sqrt(R) -+ sqrt(C)
+ * (Marchenko and Pastur 1967), and a fifth of them below sqrt(R) - 0.685 sqrt(C). Hankel matrices
+ * of noise, whose entries repeat, have some that are larger. */
 static double largest_of_noise(const pencil *p, int probes)
 {
   const double hankel = 1.6, ratio = sqrt((double)p->rows * probes / p->columns);
@@ -149,8 +149,7 @@ static int rank_above(const pencil *p, double floor)
   return rank;
 }
 
-static dvi_status solve_pencil(pencil *p, int probes, double floor, int *count,
-                               double complex *z)
+static dvi_status solve_pencil(pencil *p, int probes, double floor, int *count, double complex *z)
 {
   DVI_TRY(dvi__complex_svd(p->columns, p->square, p->singular, p->right));
   *count = rank_above(p, fmax(floor, largest_of_noise(p, probes)));

@@ -13,8 +13,9 @@ typedef struct dvi__exponentials {
 /* The most poles that series can tell apart, about P/(P+1) of their length for P of them. */
 int dvi__poles_most(int length, int probes);
 
-/* Find the poles z [dvi__poles_most(length, probes)], as many as there are singular values above `floor` of
- * the Hankel matrices of all probes. DVI_SOLVER_FAILED, DVI_NO_MEMORY. */
+/* Find the poles z [dvi__poles_most(length, probes)], as many as there are singular values above
+ * `floor`, and above those of noise, of the Hankel matrices of all probes. DVI_SOLVER_FAILED,
+ * DVI_NO_MEMORY. */
 dvi_status dvi__find_poles(const dvi__exponentials *series, double floor, int *count,
                            double complex *z);
 

@@ -11,6 +11,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "field/spectra/complex_number.h"
 #include "field/spectra/filter.h"
 #include "field/spectra/fit.h"
 #include "field/spectra/pencil.h"
@@ -141,7 +142,7 @@ static void undo_filter(spectrum *s, double middle)
   for (int k = 0; k < s->poles; k++) {
     const double complex from_middle = clog(s->z[k]) / stride;
     const double complex gain = dvi__filter_gain(&s->filter, from_middle);
-    s->z[k] = from_middle + CMPLX(0, middle);
+    s->z[k] = from_middle + dvi__complex(0, middle);
     s->error[k] /= stride;
     for (int p = 0; p < s->probes; p++) s->c[k * s->probes + p] /= gain;
   }

@@ -1,4 +1,4 @@
-#include "num/complex_matrix.h"
+#include "field/spectra/complex_matrix.h"
 
 #include <stddef.h>
 

@@ -1,6 +1,6 @@
 /* Full complex matrices, column by column, by LAPACK. */
-#ifndef DVI_NUM_COMPLEX_MATRIX_H
-#define DVI_NUM_COMPLEX_MATRIX_H
+#ifndef DVI_FIELD_SPECTRA_COMPLEX_MATRIX_H
+#define DVI_FIELD_SPECTRA_COMPLEX_MATRIX_H
 #include <complex.h>
 #include <dvi/status.h>
 
