@@ -230,9 +230,14 @@ static int run_problem(run_request *request, const char *name)
     problem_destroy(&scene);
     return code;
   }
-  if (scene->system == NULL) {
+  if (dvi_scene_grid_only(scene->scene) != NULL) {
     problem_destroy(&scene);
-    return open_problem(name, &request->settings, &scene);
+    return open_problem(name, &request->settings, &scene); /* which refuses it */
+  }
+  code = scene_complete(scene);
+  if (code != DONE) {
+    problem_destroy(&scene);
+    return code;
   }
   if (request->threads > 0) {
     problem_destroy(&scene);

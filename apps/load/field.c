@@ -12,8 +12,12 @@ enum { NAME_SIZE = 32 };
 int field_open(const char *command, const char *name, const words *settings, problem **scene,
                const dvi_field **field)
 {
-  const int code = open_problem(name, settings, scene);
+  const int code = open_any(name, settings, scene);
   if (code != DONE) return code;
+  if (dvi_scene_grid_only((*scene)->scene) != NULL) {
+    problem_destroy(scene);
+    return open_problem(name, settings, scene); /* which refuses it */
+  }
   *field = dvi_scene_field((*scene)->scene);
   if (*field != NULL) return DONE;
   problem_destroy(scene);

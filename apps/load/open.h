@@ -10,7 +10,8 @@
  * known name) and returns the exit code. */
 int open_problem(const char *name, const words *settings, problem **scene);
 
-/** Do the same, but allow a grid that has no system, and is for marches alone. */
+/** Do the same without the system of a scene, which scene_complete makes. A grid without a mesh has
+ * none. */
 int open_any(const char *name, const words *settings, problem **scene);
 
 /** Do the same for a scene whose text was loaded before, or for the catalogue if there is no

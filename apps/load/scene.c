@@ -85,14 +85,6 @@ static bool describe_scene(dvi_scene *scene, problem *made)
   made->scene = scene;
   made->close = destroy_scene;
   made->terms = dvi_scene_terms(scene);
-  /* nothing here changes the system */
-  made->system = (dvi_system *)dvi_scene_system(scene);
-  if (problem_room_of(made, dvi_system_nq(made->system), dvi_system_nv(made->system), 1) != DVI_OK)
-    return false;
-  if (made->terms->factors != NULL && (made->velocity = problem_names(made, made->nv)) == NULL)
-    return false;
-  copy_labels(scene, made);
-  if (made->system != NULL) copy_start(scene, made);
   made->bodies = dvi_scene_bodies(scene);
   made->summary = plan->title != NULL ? plan->title : "a scene";
   made->method = plan->method;
@@ -104,6 +96,26 @@ static bool describe_scene(dvi_scene *scene, problem *made)
   made->order_h = plan->h;
   made->order_t_end = STUDY_STEPS * plan->h < plan->t_end ? STUDY_STEPS * plan->h : plan->t_end;
   return copy_parameters(scene, made);
+}
+
+int scene_complete(problem *made)
+{
+  dvi_scene *scene = made->scene;
+  if (scene == NULL || made->system != NULL) return DONE;
+  /* nothing here changes the system */
+  made->system = (dvi_system *)dvi_scene_system(scene);
+  if (made->system == NULL) return library_error(DVI_BAD_ARGUMENT);
+  bool good = problem_room_of(made, dvi_system_nq(made->system), dvi_system_nv(made->system), 1) ==
+              DVI_OK;
+  if (good && made->terms->factors != NULL)
+    good = (made->velocity = problem_names(made, made->nv)) != NULL;
+  if (good) {
+    copy_labels(scene, made);
+    copy_start(scene, made);
+    return DONE;
+  }
+  complain("out of memory");
+  return FAILED;
 }
 
 /* Return the name of a scene, such as cart for "scenes/cart.yaml". */
@@ -141,6 +153,14 @@ static int scene_exit_code(const char *path, dvi_status status, const char *mess
   return *scene != NULL ? DONE : FAILED;
 }
 
+/* Make the system of a scene that has been read. */
+static int with_system(int code, problem **scene)
+{
+  if (code == DONE) code = scene_complete(*scene);
+  if (code != DONE) problem_destroy(scene);
+  return code;
+}
+
 /* Recognise a folder, which can be opened but not read. */
 static bool is_folder(const char *path)
 {
@@ -171,7 +191,7 @@ int scene_parse(const char *path, const scene_text *text, const words *settings,
   dvi_scene *read = NULL;
   const dvi_status status = dvi_scene_parse(path, text->text, text->length, settings->count,
                                             settings->word, &read, message, sizeof message);
-  return scene_exit_code(path, status, message, read, scene);
+  return with_system(scene_exit_code(path, status, message, read, scene), scene);
 }
 
 /* Read one character more than a scene may have, so that dvi_scene_parse can refuse it. */

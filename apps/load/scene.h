@@ -34,4 +34,7 @@ void scene_warn(const char *command, const problem *scene);
 /** Print what was found in a problem's scene and what has been derived from it by now. Prints
  * nothing for a problem of the catalogue. */
 void scene_tell(const problem *scene);
+/** Make the system of a scene, and the names and the start of its coordinates, unless they are
+ * there. Returns DONE, or complains and returns the exit code. */
+int scene_complete(problem *made);
 #endif

@@ -121,7 +121,9 @@ dvi_status dvi_scene_parse(const char *name, const char *text, size_t length, in
  *  allowed. */
 void dvi_scene_destroy(dvi_scene **scene);
 
-/** Return the system. Owned by the scene. NULL for NULL. */
+/** Return the system. Owned by the scene. That of a field is made by the first call. NULL for NULL,
+ *  for a grid that only yee advances, and if a field's system cannot be made: dvi_last_error()
+ *  tells why. */
 const dvi_system *dvi_scene_system(const dvi_scene *scene);
 
 /** Return the terms of the system. Owned by the scene. NULL for NULL. */

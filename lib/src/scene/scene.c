@@ -108,8 +108,7 @@ static bool read_scene(dvi_scene *scene)
 {
   if (!dvi__tree_read(&scene->source, &scene->arena, scene->complaint, &scene->tree)) return false;
   if (!dvi__scene_read_tree(scene)) return false;
-  if (dvi_scene_grid_only(scene) == NULL &&
-      (!scene_make_system(scene) || !dvi__scene_complete_start(scene)))
+  if (scene->field == NULL && (!scene_make_system(scene) || !dvi__scene_complete_start(scene)))
     return false;
   find_bodies(scene);
   return show_parameters(scene) && list_unused(scene);
@@ -235,9 +234,24 @@ void dvi_scene_destroy(dvi_scene **scene)
 
 /* ---- questions ---- */
 
+/* Not every use of a field needs its mechanical system, whose mass may have to be factored. */
+static void make_system_of_field(dvi_scene *scene)
+{
+  dvi__complaint unheard = {.source = &scene->source};
+  dvi__ledger *const other = dvi__heap_charge(&scene->ledger);
+  (void)pthread_mutex_lock(&scene->labels_mutex);
+  scene->complaint = &unheard;
+  if (scene->system == NULL) (void)scene_make_system(scene);
+  scene->complaint = NULL;
+  (void)pthread_mutex_unlock(&scene->labels_mutex);
+  (void)dvi__heap_charge(other);
+}
+
 const dvi_system *dvi_scene_system(const dvi_scene *scene)
 {
-  return scene == NULL ? NULL : scene->system;
+  if (scene == NULL) return NULL;
+  if (scene->field != NULL && scene->q != NULL) make_system_of_field((dvi_scene *)scene);
+  return scene->system;
 }
 
 const dvi_system_terms *dvi_scene_terms(const dvi_scene *scene)

@@ -1,6 +1,6 @@
 /* Currents and dipoles.
  *
- * The term -J.A of the Lagrangian pairs a current with A on the edges. A dipole p at x has
+ * The term J.A of the Lagrangian pairs a current with A on the edges. A dipole p at x has
  * J_e = p'.w_e(x) with Whitney's form w_e, and a current with a density the integral of the density
  * over the edge's dual face. A step takes the impulse dt J(t), of a moment its difference over the
  * step. */

@@ -58,6 +58,7 @@ static bool make_start(dvi_scene *scene)
     scene->p = scene->v + n;
     (void)dvi_field_project(field->field, u, NULL, scene->q, NULL);
     (void)dvi_field_project(field->field, rate, NULL, scene->v, NULL);
+    (void)dvi_field_project(field->field, NULL, rate, NULL, scene->p);
   }
   dvi__heap_free(u);
   return good;

@@ -220,7 +220,11 @@ static bool make_start(dvi_scene *scene)
   scene->p = scene->v + n;
   (void)dvi_field_project(f->field, m->start_A, NULL, scene->q, NULL);
   (void)dvi_field_project(f->field, m->start_E, NULL, scene->v, NULL);
-  for (size_t i = 0; i < n; i++) scene->v[i] = -scene->v[i];
+  (void)dvi_field_project(f->field, NULL, m->start_E, NULL, scene->p);
+  for (size_t i = 0; i < n; i++) {
+    scene->v[i] = -scene->v[i];
+    scene->p[i] = -scene->p[i];
+  }
   return true;
 }
 
