@@ -75,13 +75,20 @@ static int first_uneven(const double *t, int rows)
   return -1;
 }
 
+static int first_row_from(const double *t, int rows, double from)
+{
+  int i = 0;
+  while (i < rows && !(t[i] >= from)) i++;
+  return i;
+}
+
 /* Find the rows from the asked time on. A run may end between two rows of equal intervals, and its
  * last row is then left out. */
 static int choose_rows(spectrum_study *s)
 {
   const double *t = s->table.column[s->time].value;
   const double from = s->request->from;
-  while (s->first < s->table.rows && !isnan(from) && !(t[s->first] >= from)) s->first++;
+  s->first = isnan(from) ? 0 : first_row_from(t, s->table.rows, from);
   s->samples = s->table.rows - s->first;
   t += s->first;
   if (s->samples < 3)

@@ -270,6 +270,35 @@ START_TEST(six_samples_tell_one_line)
 }
 END_TEST
 
+/* An impulse is no exponential, wherever it is. */
+START_TEST(an_impulse_is_no_line)
+{
+  const int places[] = {0, 1, SAMPLES / 2, SAMPLES - 1};
+  double y[SAMPLES] = {0};
+  found f = {.count = 9};
+  y[places[_i]] = 1;
+  find(SAMPLES, 1, y, 1, NULL, &f);
+  ck_assert_int_eq(f.count, 0);
+}
+END_TEST
+
+/* t is no sum of exponentials, but the limit of one. */
+START_TEST(a_ramp_has_finite_numbers)
+{
+  double y[SAMPLES];
+  found f;
+  for (int i = 0; i < SAMPLES; i++) y[i] = i * (i - 7.0);
+  find(SAMPLES, 1, y, 1, NULL, &f);
+  ck_assert_int_ge(f.count, 1);
+  ck_assert_double_lt(f.report.residual, 1e-6);
+  for (int k = 0; k < f.count; k++) {
+    ck_assert_double_lt(f.line[k].frequency, 0.1);
+    ck_assert(isfinite(f.line[k].decay) && isfinite(f.line[k].error));
+    ck_assert(isfinite(f.line[k].quality) && isfinite(f.amplitude[k]) && isfinite(f.phase[k]));
+  }
+}
+END_TEST
+
 /* ---- refusals ---- */
 
 static void check_refused(dvi_status expected, const char *words, int64_t samples, const double *y,
@@ -348,6 +377,8 @@ SUITE(spectrum)
   tcase_add_test(tests, a_band_without_lines_has_none);
   tcase_add_test(tests, lines_below_the_tolerance_are_left_out);
   tcase_add_test(tests, six_samples_tell_one_line);
+  tcase_add_loop_test(tests, an_impulse_is_no_line, 0, 4);
+  tcase_add_test(tests, a_ramp_has_finite_numbers);
   tcase_add_test(tests, what_has_no_spectrum_is_refused_with_a_sentence);
   tcase_add_test(tests, lacking_memory_is_a_status);
 }

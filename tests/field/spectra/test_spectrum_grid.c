@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "support/boxes.h"
 #include "support/suite.h"
 #include "support/waves/grid_waves.h"
 
@@ -53,16 +54,18 @@ static int compare_numbers(const void *a, const void *b)
   return (x > y) - (x < y);
 }
 
-/* Set the frequencies of the box, ascending. Some modes share one, as (4,0,0) and (3,0,1) do. */
-static int list_frequencies(double dt, double *frequency)
+/* Set the frequencies of the box, ascending, of modes with at least so many numbers of half waves
+ * that are not zero. Some share one, as (4,0,0) and (3,0,1) do. */
+static int list_frequencies(double dt, int least, double *frequency)
 {
-  int count = 0;
+  int modes = 0, count = 0;
   for (int v = 0; v < CELLS; v++) {
     const int half_waves[3] = {v % 5, v / 5 % 4, v / 20};
-    frequency[v] = grid_box_frequency(3, side, cells, dt, half_waves);
+    if ((half_waves[0] != 0) + (half_waves[1] != 0) + (half_waves[2] != 0) >= least)
+      frequency[modes++] = grid_box_frequency(3, side, cells, dt, half_waves);
   }
-  qsort(frequency, CELLS, sizeof *frequency, compare_numbers);
-  for (int v = 0; v < CELLS; v++)
+  qsort(frequency, (size_t)modes, sizeof *frequency, compare_numbers);
+  for (int v = 0; v < modes; v++)
     if (count == 0 || frequency[v] - frequency[count - 1] > 1e-9) frequency[count++] = frequency[v];
   return count;
 }
@@ -74,7 +77,7 @@ START_TEST(all_frequencies_of_a_box_are_found_from_600_samples)
   double y[SAMPLES], expected[CELLS];
   dvi_spectral_line line[MOST];
   int count = 0;
-  const int lines = list_frequencies(dt, expected);
+  const int lines = list_frequencies(dt, 0, expected);
   ck_assert_int_eq(lines, 45);
   run_box(dt, y);
   ck_assert_msg(dvi_spectrum(SAMPLES, 1, y, dt, NULL, MOST, &count, line, NULL, NULL, NULL) ==
@@ -84,6 +87,50 @@ START_TEST(all_frequencies_of_a_box_are_found_from_600_samples)
   for (int k = 0; k < lines; k++) {
     ck_assert_double_eq_tol(line[k].frequency, expected[k], 5e-13);
     ck_assert_double_eq_tol(line[k].decay, 0, 5e-13);
+  }
+}
+END_TEST
+
+/* Probes of all components see all modes of the box, and a field that stands, that of the charges of
+ * the start. */
+static void run_yee(double dt, double *y)
+{
+  const dvi_yee_probe probe[] = {
+      {.name = "x", .form = DVI_FORM_E, .at = {0.13, 0.07, 0.11}, .along = {1, 0, 0}},
+      {.name = "y", .form = DVI_FORM_E, .at = {0.13, 0.07, 0.11}, .along = {0, 1, 0}},
+      {.name = "z", .form = DVI_FORM_E, .at = {0.13, 0.07, 0.11}, .along = {0, 0, 1}}};
+  dvi_yee_terms terms = {
+      .size = sizeof terms, .axes = 3, .degree = 1, .step = dt, .probe = probe, .probes = 3};
+  for (int i = 0; i < 3; i++) terms.axis[i] = (dvi_yee_axis){.cells = cells[i], .upper = side[i]};
+  dvi_march *march = box_march(&terms);
+  double *E = random_values(dvi_march_size(march, DVI_FORM_E), 7);
+  start_boxes(march, E, NULL);
+  for (int n = 0; n < SAMPLES; n++) {
+    advance_boxes(march, n * dt);
+    y[n] = observe_boxes(march, "x");
+    y[SAMPLES + n] = observe_boxes(march, "y");
+    y[2 * SAMPLES + n] = observe_boxes(march, "z");
+  }
+  dvi_march_destroy(&march);
+  free(E);
+}
+
+START_TEST(all_frequencies_of_yee_are_found_from_600_samples)
+{
+  const double dt = 0.9 * bound();
+  double y[3 * SAMPLES], expected[CELLS];
+  dvi_spectral_line line[MOST];
+  int count = 0;
+  const int lines = list_frequencies(dt, 2, expected);
+  run_yee(dt, y);
+  ck_assert_msg(dvi_spectrum(SAMPLES, 3, y, dt, NULL, MOST, &count, line, NULL, NULL, NULL) ==
+                    DVI_OK,
+                "%s", dvi_last_error());
+  ck_assert_int_eq(count, lines + 1);
+  ck_assert_double_eq(line[0].frequency, 0);
+  for (int k = 0; k < lines; k++) {
+    ck_assert_double_eq_tol(line[k + 1].frequency, expected[k], 5e-13);
+    ck_assert_double_eq_tol(line[k + 1].decay, 0, 5e-13);
   }
 }
 END_TEST
@@ -135,6 +182,7 @@ END_TEST
 SUITE(spectrum_grid)
 {
   tcase_add_test(tests, all_frequencies_of_a_box_are_found_from_600_samples);
+  tcase_add_test(tests, all_frequencies_of_yee_are_found_from_600_samples);
   tcase_add_test(tests, a_band_holds_the_lowest_frequencies_of_a_box);
   tcase_add_test(tests, the_decay_of_a_conducting_line_is_found);
 }
