@@ -6,6 +6,7 @@
 
 #include "bench/peer.h"
 #include "cli/command.h"
+#include "mechanics/field_motion.h"
 #include "mechanics/march.h"
 #include "study/clock.h"
 
@@ -44,13 +45,40 @@ static dvi_status method_job(const whole_job *job, double steps, double *prepara
   return status;
 }
 
+/* A march of a field that is run for the clock is not asked for its end. */
+static dvi_status march_job(const whole_job *job, double steps, double *preparation,
+                            study_level *level)
+{
+  const problem *scene = job->motion.scene;
+  field_motion_end end;
+  double *q = NULL;
+  if (level != NULL && (q = calloc((size_t)scene->nq, sizeof *q)) == NULL) return DVI_NO_MEMORY;
+  const dvi_status status = field_motion(scene, job->method, steps, job->motion.t_end, false, q,
+                                         &end);
+  *preparation += end.seconds;
+  if (status == DVI_OK && level != NULL) {
+    level->counted[EVALUATIONS] = end.updates;
+    level->parts = end.steps;
+    level->error = judge_error(job->motion.judge, scene, q);
+  }
+  free(q);
+  return status;
+}
+
+static dvi_status job_of(const whole_job *job, double steps, double *preparation,
+                         study_level *level)
+{
+  return (field_marches(job->motion.scene, job->method) ? march_job : method_job)(
+      job, steps, preparation, level);
+}
+
 static dvi_status method_run(void *user, double steps, study_level *level)
 {
   const whole_job *job = user;
   double preparation = 0.0;
   level->length = job->span / steps;
   const double began = cpu_now();
-  const dvi_status status = method_job(job, steps, &preparation, level);
+  const dvi_status status = job_of(job, steps, &preparation, level);
   level->seconds = cpu_now() - began;
   return status;
 }
@@ -63,7 +91,7 @@ static dvi_status method_watch(void *user, double steps, study_level *level)
 
 static dvi_status method_repeat(void *user, double steps, double *preparation)
 {
-  return method_job(user, steps, preparation, NULL);
+  return job_of(user, steps, preparation, NULL);
 }
 
 static const char *method_reason(void *user)

@@ -12,6 +12,7 @@
 #include "bench/machine.h"
 #include "bench/members.h"
 #include "load/open.h"
+#include "mechanics/field_motion.h"
 #include "cli/progress.h"
 #include "bench/scale.h"
 #include "bench/whole_job.h"
@@ -173,6 +174,10 @@ static int bench_add_entry(bench *b, const char *method, const pacing *how,
   const bool asked = b->request->methods.count > 0, several = b->request->transforms.count > 1;
   if (b->entries == WORDS_MAX)
     return usage_error("bench: more than %d methods and time transforms", (int)WORDS_MAX);
+  if (field_marches(b->scene, method)) {
+    bench_keep_entry(b, method, how);
+    return DONE;
+  }
   const dvi_status status = create_paced(b->scene, method, how, monitor, &integrator);
   dvi_integrator_destroy(&integrator);
   if (status == DVI_OK) bench_keep_entry(b, method, how);

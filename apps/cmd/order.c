@@ -17,6 +17,7 @@
 #include "load/scene.h"
 #include "mechanics/judge.h"
 #include "mechanics/motion_study.h"
+#include "mechanics/field_motion.h"
 #include "mechanics/single_steps.h"
 #include "csv/table.h"
 #include "study/window.h"
@@ -115,7 +116,8 @@ static int study_single_steps(order_study *ask, const char *method, order_result
 {
   const order_request *request = ask->request;
   const bool few = request->levels > 0 && request->levels < WINDOW_LEVELS;
-  if (order_holds(result) || few || request->how.transform != NULL || request->how.control != NULL)
+  if (order_holds(result) || few || field_marches(ask->scene, method) ||
+      request->how.transform != NULL || request->how.control != NULL)
     return DONE;
   const words *settings = &request->settings;
   const double t_end = result->extent;
@@ -222,6 +224,7 @@ static int order_check_methods(const order_request *request, const problem *scen
   int code = DONE;
   for (int i = 0; i < request->methods.count && code == DONE; i++) {
     dvi_integrator *integrator = NULL;
+    if (field_marches(scene, request->methods.word[i])) continue;
     code = open_paced(scene, request->methods.word[i], &request->how, &integrator);
     dvi_integrator_destroy(&integrator);
   }

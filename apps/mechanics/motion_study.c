@@ -8,6 +8,7 @@
 
 #include "csv/balance.h"
 #include "cli/command.h"
+#include "mechanics/field_motion.h"
 #include "mechanics/march.h"
 #include "study/norms.h"
 
@@ -170,6 +171,45 @@ static dvi_status motion_roundoff(void *user, double steps, double *moved)
   return status;
 }
 
+/* ---- marches of fields ---- */
+
+static dvi_status field_level(const motion_study *s, double steps, bool with_energy,
+                              study_level *level)
+{
+  field_motion_end end;
+  double *q = calloc((size_t)s->motion.scene->nq, sizeof *q);
+  if (q == NULL) return DVI_NO_MEMORY;
+  const dvi_status status = field_motion(s->motion.scene, s->march, steps, s->motion.t_end,
+                                         with_energy, q, &end);
+  if (status == DVI_OK && with_energy) level->further[0] = end.energy_error;
+  if (status == DVI_OK && !with_energy) {
+    level->error = judge_error(s->motion.judge, s->motion.scene, q);
+    level->counted[RESIDUALS] = end.updates;
+  }
+  free(q);
+  return status > 0 || status == DVI_OK ? status : DVI_NOT_FINITE;
+}
+
+static dvi_status field_run_level(void *user, double steps, study_level *level)
+{
+  const motion_study *s = user;
+  level->parts = steps;
+  level->length = s->subject.span / steps;
+  return field_level(s, steps, false, level);
+}
+
+static dvi_status field_watch_level(void *user, double steps, study_level *level)
+{
+  return field_level(user, steps, true, level);
+}
+
+static dvi_status field_repeat(void *user, double steps, double *preparation)
+{
+  const motion_study *s = user;
+  (void)preparation;
+  return field_motion(s->motion.scene, s->march, steps, s->motion.t_end, false, NULL, NULL);
+}
+
 static const char *motion_reason(void *user)
 {
   (void)user;
@@ -193,12 +233,39 @@ static double solution_size(const judged_motion *motion)
   return size > 0.0 ? size : 1.0;
 }
 
+/* All marches of fields have order 2. */
+static int init_march(motion_study *study, const char *method, const char *name)
+{
+  const problem *scene = study->motion.scene;
+  const double t_end = study->motion.t_end;
+  if (!(t_end > 0))
+    return usage_error("%s: a march of a field goes forward, not to t = %g", name, t_end);
+  study->march = method;
+  study->subject = (study_subject){.name = name,
+                                   .problem = scene->name,
+                                   .words = motion_words(scene),
+                                   .extent = t_end,
+                                   .order = 2,
+                                   .span = t_end,
+                                   .first_parts = t_end / scene->order_h,
+                                   .size = solution_size(&study->motion),
+                                   .judge = study->motion.judge->words,
+                                   .judge_error = study->motion.judge->error,
+                                   .run = field_run_level,
+                                   .watch = field_watch_level,
+                                   .repeat = field_repeat,
+                                   .reason = motion_reason,
+                                   .user = study};
+  return DONE;
+}
+
 int motion_study_init(motion_study *study, const judged_motion *motion, const char *method,
                       const pacing *how, const char *name)
 {
   const problem *scene = motion->scene;
   const double t_end = motion->t_end;
   *study = (motion_study){.motion = *motion};
+  if (field_marches(scene, method)) return init_march(study, method, name);
   int code = open_paced(scene, method, how, &study->integrator);
   if (code != DONE) return code;
   double span;

@@ -19,7 +19,8 @@ typedef struct judged_motion {
 typedef struct motion_study {
   study_subject subject; /**< errors are those of q at t_end, in the maximum norm */
   judged_motion motion;
-  dvi_integrator *integrator; /**< owned */
+  dvi_integrator *integrator; /**< owned, NULL for a march of a field */
+  const char *march;          /**< its specification, or NULL */
   progress_line *progress;    /**< progress of a run, or NULL */
 } motion_study;
 

@@ -25,7 +25,8 @@ typedef struct dvi_march_options {
   /** With a fraction the step is shortened so that a whole number of steps makes this span.
    *  Default: it is not */
   double span;
-  int threads; /**< default 1. The bits do not depend on it */
+  int threads;   /**< default 1. The bits do not depend on it */
+  int potential; /**< not 0 to keep A, too, where the method does not need it */
 } dvi_march_options;
 
 /** A start. Zero means the default. */

@@ -74,7 +74,8 @@ static dvi_status prepare(const dvi_field *field, const dvi_march_options *optio
   *plan = (dvi__march_plan){.step = options->step,
                             .fraction = options->fraction > 0 ? options->fraction : 0.5,
                             .span = options->span,
-                            .threads = options->threads > 0 ? options->threads : 1};
+                            .threads = options->threads > 0 ? options->threads : 1,
+                            .potential = options->potential};
   DVI_TRY(find(options->method != NULL ? options->method : usual, found, &plan->options));
   if ((*found)->needs_boxes && dvi_mesh_kind(field->mesh) != DVI_BOXES)
     return dvi__fail(DVI_UNSUPPORTED,

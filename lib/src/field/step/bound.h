@@ -12,6 +12,7 @@ typedef struct dvi__march_plan {
   double fraction; /* of stable steps */
   double span;     /* which steps divide, or 0 */
   int threads;
+  int potential;       /* A is kept, too */
   const char *options; /* of the method, "key=value,...", or "" */
 } dvi__march_plan;
 

@@ -49,9 +49,10 @@ typedef struct leapfrog {
   dvi__sweep sweep;
   place at;
   double bound;
+  int keeps_A; /* the field is a wave, or A is wanted */
   int64_t numbers;
   double *state;       /* [numbers] all that follows in this block, and the charge's numbers */
-  double *E, *B, *A;   /* E^{n+1/2}, B^n, A^n; A is NULL unless the field is a wave */
+  double *E, *B, *A;   /* E^{n+1/2}, B^n, A^n; A is NULL unless it is kept */
   double *J;           /* [currents] means of the signals around t_n */
   double *impulse;     /* [currents] integrals of the signals over the next step */
   double *keep, *gain; /* [cells] coefficients of diagonal stars; keep is NULL for 1 */
@@ -420,7 +421,7 @@ static void destroy(void *self)
 static dvi_status make_state(leapfrog *l)
 {
   const dvi_field *f = l->field;
-  const int64_t cells = f->cells, faces = l->sweep.faces, A = f->is_wave ? cells : 0;
+  const int64_t cells = f->cells, faces = l->sweep.faces, A = l->keeps_A ? cells : 0;
   l->numbers = cells + faces + A + f->currents + dvi__charge_numbers(f);
   l->state = DVI_NEW(double, l->numbers);
   l->impulse = DVI_NEW(double, f->currents);
@@ -430,7 +431,7 @@ static dvi_status make_state(leapfrog *l)
                      (long long)l->numbers);
   l->E = l->state;
   l->B = l->E + cells;
-  l->A = f->is_wave ? l->B + faces : NULL;
+  l->A = l->keeps_A ? l->B + faces : NULL;
   l->J = l->B + faces + A;
   return dvi__charge_create(f, l->J + f->currents, &l->charge);
 }
@@ -537,6 +538,7 @@ dvi_status dvi__leapfrog_create(const dvi_field *field, const dvi__march_plan *p
   l->field = field;
   l->at.dt = dt;
   l->bound = bound;
+  l->keeps_A = field->is_wave || plan->potential;
   l->changed = -1;
   const dvi_status status = make(l, plan->threads);
   if (status == DVI_OK) return dvi__march_wrap(&kind, l, march);

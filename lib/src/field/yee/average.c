@@ -37,8 +37,8 @@ static double panel(integral *of, integrand *f, int axis, double a, double b, do
   const double length = b - a, middle = 0.5 * (a + b), inner = 0.5 * length / sqrt(5),
                ends = value_at(of, f, axis, a + inside * length) +
                       value_at(of, f, axis, b - inside * length),
-               others =
-                   value_at(of, f, axis, middle - inner) + value_at(of, f, axis, middle + inner),
+               others = value_at(of, f, axis, middle - inner) +
+                        value_at(of, f, axis, middle + inner),
                lobatto = length * (ends + 5 * others) / 12,
                simpson = length * (ends + 4 * value_at(of, f, axis, middle)) / 6;
   *apart = fabs(lobatto - simpson);

@@ -1,0 +1,69 @@
+#include "mechanics/field_motion.h"
+
+#include <dvi/scene.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "study/clock.h"
+
+bool field_marches(const problem *scene, const char *method)
+{
+  return scene->scene != NULL && dvi_scene_marches(scene->scene, method);
+}
+
+/* Look at the energy, the first observable. */
+static dvi_status look(const dvi_march *march, double *first, double *error)
+{
+  double energy;
+  const dvi_status status = dvi_march_observe(march, 0, &energy);
+  if (status == DVI_OK && isnan(*first)) *first = energy;
+  if (status == DVI_OK) *error = fmax(*error, fabs(energy - *first));
+  return status;
+}
+
+static dvi_status watch(dvi_march *march, double steps, double t_end, field_motion_end *end)
+{
+  double first = (double)NAN;
+  end->energy_error = 0;
+  dvi_status status = look(march, &first, &end->energy_error);
+  for (double i = 1; i <= steps && status == DVI_OK; i++) {
+    status = dvi_march_advance(march, i == steps ? t_end : i * t_end / steps);
+    if (status == DVI_OK) status = look(march, &first, &end->energy_error);
+  }
+  return status;
+}
+
+/* Set q to A of the unknowns. */
+static dvi_status take_end(const problem *scene, const dvi_march *march, double *q)
+{
+  const int64_t cells = dvi_march_size(march, DVI_FORM_A);
+  double *A = calloc((size_t)cells + 1, sizeof *A);
+  if (A == NULL) return DVI_NO_MEMORY;
+  dvi_status status = dvi_march_sample(march, DVI_FORM_A, 0, NULL, A);
+  if (status == DVI_OK) status = dvi_field_project(dvi_scene_field(scene->scene), A, NULL, q, NULL);
+  free(A);
+  return status;
+}
+
+dvi_status field_motion(const problem *scene, const char *method, double steps, double t_end,
+                        bool watched, double *q, field_motion_end *end)
+{
+  const dvi_march_options options = {
+      .size = sizeof options, .method = method, .step = t_end / steps, .potential = q != NULL};
+  field_motion_end unasked;
+  dvi_march_facts facts;
+  dvi_march *march = NULL;
+  if (end == NULL) end = &unasked;
+  *end = (field_motion_end){.energy_error = (double)NAN};
+  const double began = cpu_now();
+  dvi_status status = dvi_scene_march_create(scene->scene, &options, &march);
+  end->seconds = cpu_now() - began;
+  if (status == DVI_OK)
+    status = watched ? watch(march, steps, t_end, end) : dvi_march_advance(march, t_end);
+  if (status == DVI_OK && q != NULL) status = take_end(scene, march, q);
+  dvi_march_facts_of(march, &facts);
+  end->steps = (double)facts.steps;
+  end->updates = (double)facts.updates;
+  dvi_march_destroy(&march);
+  return status;
+}
