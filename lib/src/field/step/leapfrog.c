@@ -52,7 +52,7 @@ typedef struct leapfrog {
   int keeps_A; /* the field is a wave, or A is wanted */
   int64_t numbers;
   double *state;       /* [numbers] all that follows in this block, and the charge's numbers */
-  double *E, *B, *A;   /* E^{n+1/2}, B^n, A^n; A is NULL unless it is kept */
+  double *E, *H, *A;   /* E^{n+1/2}, B^n as field/step/sweep.h has it, A^n if it is kept */
   double *J;           /* [currents] means of the signals around t_n */
   double *impulse;     /* [currents] integrals of the signals over the next step */
   double *keep, *gain; /* [cells] coefficients of diagonal stars; keep is NULL for 1 */
@@ -89,7 +89,7 @@ static double damp(const leapfrog *l, int64_t i)
 /* Give the unknown i of d^T M_{k+1} B - J - S E, with a diagonal star. */
 static double force(const leapfrog *l, int64_t i)
 {
-  return dvi__sweep_curl(&l->sweep, l->field->unknown[i], l->B) + push(l, i) - damp(l, i);
+  return dvi__sweep_curl(&l->sweep, l->field->unknown[i], l->H) + push(l, i) - damp(l, i);
 }
 
 /* Set right [unknowns] to it with another star. */
@@ -97,8 +97,9 @@ static void find_right(const leapfrog *l, double factor)
 {
   const dvi_field *f = l->field;
   const solver *s = &l->solver;
-  dvi_matrix_multiply(&s->M2, 0, l->B, s->H);
-  dvi_matrix_multiply(&s->d, 1, s->H, s->curl);
+  const double *H = l->sweep.is_diagonal ? l->H : s->H; /* n-forms are diagonal, and above 0 */
+  if (!l->sweep.is_diagonal) dvi_matrix_multiply(&s->M2, 0, l->H, s->H);
+  dvi_matrix_multiply(&s->d, 1, H, s->curl);
   for (int64_t i = 0; i < f->unknowns; i++)
     s->right[i] = factor * (s->curl[f->unknown[i]] + push(l, i) - damp(l, i));
 }
@@ -138,7 +139,7 @@ static dvi_status find_impulses(leapfrog *l)
 static void drift(leapfrog *l)
 {
   const double dt = l->at.dt;
-  dvi__sweep_B(&l->sweep, dt, l->E, l->B);
+  dvi__sweep_H(&l->sweep, dt, l->E, l->H);
   for (int64_t c = 0; c < l->field->cells && l->A != NULL; c++) l->A[c] -= dt * l->E[c];
   for (int c = 0; c < l->field->currents; c++) {
     l->J[c] = l->impulse[c] / dt;
@@ -157,7 +158,7 @@ static void count_moved(leapfrog *l)
 static void kick(leapfrog *l)
 {
   const dvi_field *f = l->field;
-  dvi__sweep_E(&l->sweep, l->keep, l->gain, l->B, l->E);
+  dvi__sweep_E(&l->sweep, l->keep, l->gain, l->H, l->E);
   for (int64_t i = 0; i < f->unknowns && (l->source != NULL || f->currents > 0); i++)
     l->E[f->unknown[i]] += l->gain[f->unknown[i]] * push(l, i);
 }
@@ -223,7 +224,7 @@ static void take(leapfrog *l, const dvi_march_state *state)
     if (state->E != NULL) l->E[c] = state->E[c];
   }
   for (int64_t b = 0; b < l->sweep.faces; b++)
-    l->B[b] = state->B != NULL ? state->B[b] : dvi__sweep_d(&l->sweep, b, A);
+    l->H[b] = l->sweep.weight[b] * (state->B != NULL ? state->B[b] : dvi__sweep_d(&l->sweep, b, A));
   for (int c = 0; c < f->currents; c++) l->J[c] = l->impulse[c] / l->at.dt;
 }
 
@@ -299,6 +300,11 @@ static double E_after(const leapfrog *l, double after, int64_t cell)
   return l->E[cell] + (after - l->at.dt / 2) * rate;
 }
 
+static double B_after(const leapfrog *l, double after, int64_t face)
+{
+  return l->H[face] / l->sweep.weight[face] - after * dvi__sweep_d(&l->sweep, face, l->E);
+}
+
 static dvi_status sample(const void *self, dvi_march_form form, int64_t count, const int *cell,
                          double *values)
 {
@@ -309,7 +315,7 @@ static dvi_status sample(const void *self, dvi_march_form form, int64_t count, c
     const int64_t c = cell != NULL ? cell[i] : i;
     values[i] = form == DVI_FORM_A   ? l->A[c] - after * l->E[c]
                 : form == DVI_FORM_E ? E_after(l, after, c)
-                                     : l->B[c] - after * dvi__sweep_d(&l->sweep, c, l->E);
+                                     : B_after(l, after, c);
   }
   return DVI_OK;
 }
@@ -322,11 +328,10 @@ static dvi_status energy(const void *self, double *value)
   double *next = l->spare, *product = l->spare + l->sweep.faces;
   dvi_matrix M;
   DVI_TRY(dvi_star_matrix(f->star, f->degree + 1, &M));
-  for (int64_t b = 0; b < l->sweep.faces; b++)
-    next[b] = l->B[b] - l->at.dt * dvi__sweep_d(&l->sweep, b, l->E);
+  for (int64_t b = 0; b < l->sweep.faces; b++) next[b] = B_after(l, l->at.dt, b);
   dvi_matrix_multiply(&M, 0, next, product);
   *value = 0;
-  for (int64_t b = 0; b < l->sweep.faces; b++) *value += 0.5 * l->B[b] * product[b];
+  for (int64_t b = 0; b < l->sweep.faces; b++) *value += 0.5 * B_after(l, 0, b) * product[b];
   for (int64_t i = 0; i < f->unknowns; i++) {
     double sum = 0;
     for (int64_t e = f->mass.start[i]; e < f->mass.start[i + 1]; e++)
@@ -430,9 +435,9 @@ static dvi_status make_state(leapfrog *l)
     return dvi__fail(DVI_NO_MEMORY, "march: no memory for a state of %lld numbers",
                      (long long)l->numbers);
   l->E = l->state;
-  l->B = l->E + cells;
-  l->A = l->keeps_A ? l->B + faces : NULL;
-  l->J = l->B + faces + A;
+  l->H = l->E + cells;
+  l->A = l->keeps_A ? l->H + faces : NULL;
+  l->J = l->H + faces + A;
   return dvi__charge_create(f, l->J + f->currents, &l->charge);
 }
 
@@ -508,7 +513,7 @@ static dvi_status make(leapfrog *l, int threads)
   DVI_TRY(make_state(l));
   DVI_TRY(dvi__wave_source(f, &l->source));
   l->at.hash = hash_of(l);
-  return f->mass_is_diagonal && l->sweep.M2 != NULL ? make_coefficients(l) : make_solver(l);
+  return f->mass_is_diagonal && l->sweep.is_diagonal ? make_coefficients(l) : make_solver(l);
 }
 
 static const dvi__march_kind kind = {
