@@ -56,6 +56,15 @@ typedef struct dvi_march_facts {
   int64_t updates;    /**< updates of (k+1)-cells since the start, which cost time */
 } dvi_march_facts;
 
+enum { DVI_LAWS_MAX = 8 };
+
+/** A law of a field, as measured. */
+typedef struct dvi_law {
+  const char *name;
+  double error; /**< beside the size of what the law is about */
+  int is_exact; /**< not 0 if only roundings are left of the error */
+} dvi_law;
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -132,6 +141,21 @@ dvi_status dvi_march_save(const dvi_march *march, const char *path);
  *  @retval DVI_IO_ERROR  the file could not be read
  *  @retval DVI_BAD_FILE  it is no saved state, it is damaged, or it is of another march */
 dvi_status dvi_march_load(dvi_march *march, const char *path);
+
+/** Measure the laws of a field on a march that begins at random.
+ *
+ *  The laws are "energy", "gauss" (the charge), "divergence" (of B), "reciprocity" (the answer to an
+ *  impulse at one place, seen at another one, is that of the exchanged places), "gauge" (of a
+ *  gradient in A, E and B know nothing) and "multisymplectic" (the form formula on a part of space
+ *  and the time between, Marsden, Patrick and Shkoller 1998). Those that a field or a method cannot
+ *  have are left out.
+ *
+ *  @param      steps  for which the field is followed, at least 2. Of asynchronous steps the longest
+ *  @param[out] law    [DVI_LAWS_MAX]
+ *  @param[out] count  number of laws
+ *  @retval (others)   as dvi_march_create and dvi_march_advance */
+dvi_status dvi_field_laws(const dvi_field *field, const dvi_march_options *options, int steps,
+                          dvi_law *law, int *count);
 
 #ifdef __cplusplus
 }
