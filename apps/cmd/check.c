@@ -7,8 +7,9 @@
 #include <stdlib.h>
 
 #include "cli/command.h"
-#include "load/open.h"
 #include "cli/options.h"
+#include "load/open.h"
+#include "load/open_march.h"
 #include "load/scene.h"
 
 /* Number of points beside the start, and their distance from it. */
@@ -129,6 +130,40 @@ static int check_one_step(const problem *scene, const char *method)
   return code;
 }
 
+/* Let a march of a field happen for its longest step. */
+static int check_march(const problem *scene, const char *method)
+{
+  const dvi_march_options options = {.size = sizeof options, .method = method};
+  dvi_march_facts facts;
+  dvi_march *march = NULL;
+  int code = open_march(scene, &options, &march);
+  if (code != DONE) return code;
+  dvi_march_facts_of(march, &facts);
+  const dvi_status status = dvi_march_advance(march, facts.longest);
+  code = status == DVI_OK ? DONE : library_error(status);
+  if (code == DONE)
+    (void)printf("method: %s takes its first step, h = %g\n", method, facts.longest);
+  dvi_march_destroy(&march);
+  return code;
+}
+
+static int check_method(const problem *scene, const char *method)
+{
+  if (method == NULL) return DONE;
+  return scene->system == NULL || dvi_scene_marches(scene->scene, method)
+             ? check_march(scene, method)
+             : check_one_step(scene, method);
+}
+
+/* Check the mechanical system, which a grid without a mesh has not. */
+static int check_system(problem *scene)
+{
+  if (dvi_scene_grid_only(scene->scene) != NULL) return DONE;
+  int code = scene_complete(scene);
+  if (code == DONE) code = check_all_derivatives(scene);
+  return code == DONE ? check_invariants(scene) : code;
+}
+
 /* Warn of declarations without use, which may be names that were changed elsewhere. */
 static void warn_unused(const problem *scene)
 {
@@ -183,14 +218,14 @@ int check_command(int argc, char **argv)
   problem *scene;
   int code;
   if (!options_parse(&command, argc, argv, &r, &name, &code)) return code;
-  code = open_problem(name, &r.settings, &scene);
+  code = open_any(name, &r.settings, &scene);
   if (code != DONE) return code;
   if (r.method == NULL) r.method = scene->method;
+  if (r.method == NULL && dvi_scene_grid_only(scene->scene) != NULL) r.method = "yee";
   (void)printf("%s: %s\n", scene->name, scene->summary);
-  code = check_all_derivatives(scene);
-  if (code == DONE) code = check_invariants(scene);
-  if (code == DONE && r.method != NULL) code = check_one_step(scene, r.method);
-  if (code == DONE) scene_tell(scene);
+  code = check_system(scene);
+  if (code == DONE) code = check_method(scene, r.method);
+  if (code == DONE && scene->system != NULL) scene_tell(scene);
   warn_unused(scene);
   problem_destroy(&scene);
   return code;

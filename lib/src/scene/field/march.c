@@ -64,7 +64,7 @@ dvi_status dvi_scene_march_create(const dvi_scene *scene, const dvi_march_option
   if (!dvi_scene_marches(scene, options != NULL ? options->method : NULL)) return DVI_BAD_OPTION;
   const dvi_march_options all = complete(scene, options);
   const struct dvi__scene_field *f = scene->field;
-  if (f->maxwell != NULL && f->is_grid && strncmp(all.method, "yee", 3) == 0 && !all.potential)
+  if (f->maxwell != NULL && f->is_grid && strcmp(all.method, "yee") == 0 && !all.potential)
     return dvi__grid_march(scene, &all, march);
   if (f->field == NULL) return DVI_UNSUPPORTED;
   dvi_status status = dvi_march_create(f->field, &all, march);
