@@ -258,7 +258,7 @@ static int refuse_method(const problem *scene, const char *method)
   const bool has_field = dvi_scene_field(scene->scene) != NULL;
   if (scene->scene != NULL && dvi_scene_marches(scene->scene, method))
     return usage_error(
-        "%s is a march of a field, for dvi run, check, order and bench; a mechanical "
+        "%s is a march of a field, for dvi run, check, explain, order and bench; a mechanical "
         "method such as verlet is wanted here",
         method);
   hint_at_method(method, has_field ? march_name_at : method_name_at, hint);

@@ -57,7 +57,11 @@ static const char *section_of(const char *sentence, const dvi_march_options *opt
 static int refuse(dvi_status status, const problem *scene, const dvi_march_options *options)
 {
   char message[MESSAGE_SIZE] = "";
-  const char *sentence = dvi_last_error(), *section = section_of(sentence, options);
+  const bool is_damped = scene->terms->damping > 0;
+  const char *sentence = is_damped ? "marches of fields have no damping; a conductor has 'sigma', "
+                                     "and mechanical methods such as verlet take the friction"
+                                   : dvi_last_error();
+  const char *section = is_damped ? "damping" : section_of(sentence, options);
   if (status == DVI_NO_MEMORY || status == DVI_IO_ERROR || section == NULL)
     return library_error(status);
   dvi_scene_tell(scene->scene, section, sentence, message, sizeof message);
