@@ -7,10 +7,11 @@
 #include <stdlib.h>
 
 #include "cli/command.h"
-#include "load/open.h"
-#include "mechanics/field_motion.h"
 #include "cli/options.h"
+#include "load/open.h"
+#include "load/open_march.h"
 #include "load/scene.h"
+#include "mechanics/field_motion.h"
 
 /* Number of points beside the start, and their distance from it. */
 enum { POINTS = 4 };
@@ -158,6 +159,32 @@ static int check_laws(const problem *scene, const char *method)
   return code;
 }
 
+/* Let a march of a field happen for its longest step. */
+static int check_march(const problem *scene, const char *method)
+{
+  const dvi_march_options options = {.size = sizeof options, .method = method};
+  dvi_march_facts facts;
+  dvi_march *march = NULL;
+  int code = open_march(scene, &options, &march);
+  if (code != DONE) return code;
+  dvi_march_facts_of(march, &facts);
+  const dvi_status status = dvi_march_advance(march, facts.longest);
+  code = status == DVI_OK ? DONE : library_error(status);
+  if (code == DONE)
+    (void)printf("method: %s takes its first step, h = %g\n", method, facts.longest);
+  dvi_march_destroy(&march);
+  return code == DONE && dvi_scene_field(scene->scene) != NULL ? check_laws(scene, method) : code;
+}
+
+/* Check the mechanical system, and take a step of the method. */
+static int check_system(problem *scene, const char *method)
+{
+  int code = scene_complete(scene);
+  if (code == DONE) code = check_all_derivatives(scene);
+  if (code == DONE) code = check_invariants(scene);
+  return code == DONE && method != NULL ? check_one_step(scene, method) : code;
+}
+
 /* Warn of declarations without use, which may be names that were changed elsewhere. */
 static void warn_unused(const problem *scene)
 {
@@ -211,13 +238,6 @@ static const command_line command = {
     .details = details,
 };
 
-static int check_problem(const char *method, const problem *scene)
-{
-  int code = check_all_derivatives(scene);
-  if (code == DONE) code = check_invariants(scene);
-  return code == DONE && method != NULL ? check_one_step(scene, method) : code;
-}
-
 int check_command(int argc, char **argv)
 {
   check_request r = {.method = NULL};
@@ -228,15 +248,12 @@ int check_command(int argc, char **argv)
   code = open_any(name, &r.settings, &scene);
   if (code != DONE) return code;
   if (r.method == NULL) r.method = scene->method;
-  const bool is_march = field_marches(scene, r.method);
-  if (!is_march || dvi_scene_grid_only(scene->scene) != NULL) {
-    problem_destroy(&scene);
-    code = open_problem(name, &r.settings, &scene);
-    if (code != DONE) return code;
-  }
+  const bool is_grid = dvi_scene_grid_only(scene->scene) != NULL;
+  if (r.method == NULL && is_grid) r.method = "yee";
   (void)printf("%s: %s\n", scene->name, scene->summary);
-  code = is_march ? check_laws(scene, r.method) : check_problem(r.method, scene);
-  if (code == DONE) scene_tell(scene);
+  code = is_grid || field_marches(scene, r.method) ? check_march(scene, r.method)
+                                                   : check_system(scene, r.method);
+  if (code == DONE && !is_grid) scene_tell(scene);
   warn_unused(scene);
   problem_destroy(&scene);
   return code;

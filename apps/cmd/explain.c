@@ -1,4 +1,5 @@
 /* dvi explain, which shows the choices of a method for a problem before any step is taken. */
+#include <dvi/scene.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,6 +8,7 @@
 #include "cli/command.h"
 #include "csv/events.h"
 #include "load/open.h"
+#include "load/open_march.h"
 #include "cli/options.h"
 #include "load/scene.h"
 
@@ -103,9 +105,34 @@ static void explain_fast_motion(const problem *scene, const char *method, double
   if (least < (1 - 1e-6) * most) explain_turn(method, h, least);
 }
 
+/* Say which steps a march of a field takes. */
+static int explain_march(const problem *scene, const char *method, double h)
+{
+  const dvi_march_options options = {
+      .size = sizeof options, .method = method, .step = isnan(h) ? 0 : h};
+  dvi_march_facts facts;
+  dvi_march *march = NULL;
+  const int code = open_march(scene, &options, &march);
+  if (code != DONE) return code;
+  dvi_march_facts_of(march, &facts);
+  (void)printf("march: %s with ", facts.method);
+  if (facts.longest > facts.step)
+    (void)printf("steps from %g to %g, each below its own bound\n", facts.step, facts.longest);
+  else
+    (void)printf("steps of %g, below the bound %g\n", facts.step, facts.bound);
+  scene_tell(scene);
+  dvi_march_destroy(&march);
+  return DONE;
+}
+
 static int explain_all(const problem *scene, const char *method, const pacing *how, double h)
 {
   dvi_integrator *integrator = NULL;
+  if (scene->scene != NULL && dvi_scene_marches(scene->scene, method))
+    return how->transform == NULL && how->control == NULL
+               ? explain_march(scene, method, h)
+               : usage_error("explain: %s is a march of a field, whose steps follow no monitor",
+                             method);
   int code = open_paced(scene, method, how, &integrator);
   if (code != DONE) return code;
   const dvi_status status = dvi_integrator_start(integrator, 0.0, scene->q, scene->p);

@@ -1,6 +1,6 @@
 /* dvi stability, which tells how fast a field grows under a schedule of steps, before a run. */
 #include <dvi/scene.h>
-#include <dvi/stability.h>
+#include <dvi/march.h>
 #include <math.h>
 #include <string.h>
 

@@ -29,6 +29,14 @@ static const char *method_name_at(int k, const void *list)
   return dvi_method_name(k);
 }
 
+/* Marches come first, of a scene with a field. */
+static const char *march_name_at(int k, const void *list)
+{
+  static const char *const name[] = {"leapfrog", "yee", "bossavit-kettunen", "avi", "tents"};
+  const int marches = (int)(sizeof name / sizeof *name);
+  return k < marches ? name[k] : method_name_at(k - marches, list);
+}
+
 /* List the keys of the method whose index is *list. A composition hands keys on to its base, so the
  * keys of all methods follow. */
 static const char *key_name_at(int k, const void *list)
@@ -206,14 +214,14 @@ static bool hint_at_colon(const char *method, char *hint)
   return true;
 }
 
-static void hint_at_method(const char *method, char *hint)
+static void hint_at_method(const char *method, word_at known, char *hint)
 {
   char word[WORD_SIZE];
   if (hint_at_colon(method, hint)) return;
   const char *rest = take_word(method, ":", word);
   const int index = method_index(word);
   hint[0] = '\0';
-  if (index < 0) (void)suggestion(word, method_name_at, NULL, hint, HINT_SIZE);
+  if (index < 0) (void)suggestion(word, known, NULL, hint, HINT_SIZE);
   while (index >= 0 && rest != NULL && hint[0] == '\0') {
     char pair[WORD_SIZE];
     rest = take_word(rest, ",", pair);
@@ -247,9 +255,17 @@ static int open_one_monitor(const problem *scene, const char *asked, const char 
 static int refuse_method(const problem *scene, const char *method)
 {
   char hint[HINT_SIZE], sentence[MESSAGE_SIZE], message[2 * MESSAGE_SIZE];
-  hint_at_method(method, hint);
+  const bool has_field = dvi_scene_field(scene->scene) != NULL;
+  if (scene->scene != NULL && dvi_scene_marches(scene->scene, method))
+    return usage_error(
+        "%s is a march of a field, for dvi run, check, explain, order and bench; a mechanical "
+        "method such as verlet is wanted here",
+        method);
+  hint_at_method(method, has_field ? march_name_at : method_name_at, hint);
   const bool said = strstr(dvi_last_error(), "did you mean") != NULL;
-  (void)snprintf(sentence, sizeof sentence, "%s: %s%s", method, dvi_last_error(), said ? "" : hint);
+  (void)snprintf(sentence, sizeof sentence, "%s: %s%s%s", method, dvi_last_error(),
+                 has_field ? "; fields have leapfrog, yee, bossavit-kettunen, avi and tents" : "",
+                 said ? "" : hint);
   if (scene->scene == NULL || method != scene->method) return usage_error("--method %s", sentence);
   dvi_scene_tell(scene->scene, "method", sentence, message, sizeof message);
   return usage_error("%s", message);

@@ -10,7 +10,7 @@
 #include "cli/file.h"
 #include "cli/progress.h"
 #include "cli/signals.h"
-#include "load/field.h"
+#include "load/open_march.h"
 #include "watch/field_columns.h"
 #include "watch/field_trace.h"
 #include "watch/frames.h"
@@ -66,16 +66,6 @@ static int refuse_options(const run_request *r)
 
 /* ---- a march ---- */
 
-/* A sentence of the scenes' library has no text of its own for some failures. */
-static int refuse_march(dvi_status status, const run_request *request, const problem *scene)
-{
-  const char *only = dvi_scene_grid_only(scene->scene);
-  if (status == DVI_UNSUPPORTED && only != NULL)
-    return usage_error("run: '%s' is a grid without a mesh, which only yee advances, not %s",
-                       scene->name, request->method);
-  return library_error(status);
-}
-
 static int make_march(journey *j)
 {
   const run_request *r = j->request;
@@ -85,8 +75,8 @@ static int make_march(journey *j)
                                      .span = r->t_end,
                                      .threads = (int)r->threads};
   dvi_march_facts facts;
-  const dvi_status status = dvi_scene_march_create(j->scene->scene, &options, &j->march);
-  if (status != DVI_OK) return refuse_march(status, r, j->scene);
+  const int code = open_march(j->scene, &options, &j->march);
+  if (code != DONE) return code;
   if (r->resume != NULL) {
     const dvi_status loaded = dvi_march_load(j->march, r->resume);
     if (loaded != DVI_OK) return library_error(loaded);

@@ -1,6 +1,7 @@
 #!/bin/sh
 # The rooms of the library and of the command include each other in no circle, no folder has more
-# than 30 files at one level, and docs/CONTRIBUTING.md shows the rooms as they are.
+# than 30 files at one level, and docs/CONTRIBUTING.md shows the rooms as they are. The public headers
+# are flat on purpose, one for each object of the library, and may be 36.
 # Usage: rooms.sh [--update] [TOP]
 # With --update it draws the rooms anew in docs/CONTRIBUTING.md.
 set -u
@@ -8,7 +9,7 @@ lint=$(cd "$(dirname "$0")" && pwd)
 update=no
 if [ "${1:-}" = --update ]; then update=yes; shift; fi
 cd "${1:-$lint/../..}" || exit 1
-page=docs/CONTRIBUTING.md most=30 rc=0
+page=docs/CONTRIBUTING.md rc=0
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 
@@ -23,6 +24,8 @@ done >"$work/drawing" || exit 1
 
 for folder in $(find lib apps tests cmake docs -type d ! -path docs/pictures); do
   count=$(find "$folder" -maxdepth 1 -type f | wc -l)
+  most=30
+  if [ "$folder" = lib/include/dvi ]; then most=36; fi
   if [ "$count" -gt $most ]; then
     echo "$folder has $count files at one level, $most at most: move some into a folder below it"
     rc=1

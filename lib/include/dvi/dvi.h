@@ -27,7 +27,6 @@
 #include <dvi/sensitivity.h>
 #include <dvi/shapes.h>
 #include <dvi/spectrum.h>
-#include <dvi/stability.h>
 #include <dvi/status.h>
 #include <dvi/system.h>
 #include <dvi/taylor.h>

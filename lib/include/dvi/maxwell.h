@@ -6,8 +6,8 @@
  *
  *      L = A'.M_k A'/2 - (d A).M_{k+1} (d A)/2 + J.A
  *
- *  with the permittivity in M_k and the inverse permeability in M_{k+1}. E = -A' and B = dA, so that
- *  B' = -dE and (M_k E)' = d^T M_{k+1} B - J are Maxwell's equations, which keep the charge
+ *  with the permittivity in M_k and the inverse permeability in M_{k+1}. E = -A' and B = dA, so
+ *  that B' = -dE and (M_k E)' = d^T M_{k+1} B - J are Maxwell's equations, which keep the charge
  *  d^T M_k E. Absorbing walls and conductors add the current S E with a positive matrix S (Stern
  *  2009, sec. 3; Bossavit and Kettunen 1999). */
 #ifndef DVI_MAXWELL_H

@@ -1,7 +1,6 @@
 /* Asynchronous steps of fields, through the march. */
 #include <dvi/march.h>
 #include <dvi/maxwell.h>
-#include <dvi/stability.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -154,7 +154,8 @@ static double mode_frequency(const dvi_yee_terms *terms, dvi_form_function *mode
 }
 
 /* Layers of a cavity: eps = 4 and 1, joined at `at`. Modes in x with k_y = `across`, after
- * H = cos(a x) on the left and C cos(b (1 - x)) on the right, a^2 = 4 w^2 - k^2, b^2 = w^2 - k^2. */
+ * H = cos(a x) on the left and C cos(b (1 - x)) on the right, a^2 = 4 w^2 - k^2 and
+ * b^2 = w^2 - k^2. */
 typedef struct layers {
   double at, across, omega;
 } layers;
@@ -225,8 +226,8 @@ START_TEST(layers_on_one_axis_have_order_two)
 }
 END_TEST
 
-/* Surfaces between nodes keep the order. Errors depend on the part of a box at which the surface is,
- * so both grids have it at the same part. */
+/* Surfaces between nodes keep the order. Errors depend on the part of a box at which the surface
+ * is, so both grids have it at the same part. */
 START_TEST(surfaces_off_the_grid_have_order_two)
 {
   static const struct {

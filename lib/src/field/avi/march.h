@@ -1,7 +1,7 @@
 /* The kind of march with steps of their own for all cells. */
 #ifndef DVI_FIELD_AVI_MARCH_H
 #define DVI_FIELD_AVI_MARCH_H
-#include <dvi/stability.h>
+#include <dvi/march.h>
 
 #include "field/step/bound.h"
 

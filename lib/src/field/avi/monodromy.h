@@ -1,7 +1,7 @@
 /* The growth of fields under a schedule. */
 #ifndef DVI_FIELD_AVI_MONODROMY_H
 #define DVI_FIELD_AVI_MONODROMY_H
-#include <dvi/stability.h>
+#include <dvi/march.h>
 
 #include "field/avi/engine.h"
 

@@ -111,9 +111,8 @@ dvi_status dvi_field_stability(const dvi_field *field, const dvi_march_options *
   DVI_TRY(prepare(field, options != NULL ? options : &defaults, "avi", &found, &plan));
   if (found->create == dvi__avi_march_create)
     return dvi__avi_march_stability(field, &plan, span, report);
-  return dvi__fail(
-      DVI_UNSUPPORTED,
-      "stability: %s is stable with every step below its bound, which dvi_march_create "
-      "checks; ask for avi",
-      found->name);
+  return dvi__fail(DVI_UNSUPPORTED,
+                   "stability: %s has equal steps, which are stable below their bound; ask for avi",
+
+                   found->name);
 }

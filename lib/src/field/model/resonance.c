@@ -3,8 +3,8 @@
  * K = d^T M_2 d vanishes on the gradients d phi of functions that are zero where the form is held.
  * Nothing separates their eigenvalue 0, of a multiplicity like the number of vertices, from the
  * lowest ones that are wanted. But it is known what they are: Lanczos' method for the inverse of
- * K + s M stays among the forms without charge, d^T M x = 0, if all vectors are projected onto them,
- * which takes the solution of one Poisson equation. What is left with eigenvalue zero are harmonic
+ * K + s M stays among the forms without charge, d^T M x = 0, if all vectors are projected onto
+ * them, which takes the solution of one Poisson equation. What is left with eigenvalue zero are harmonic
  * forms: a few, by topology.
  *
  * Conjugate gradients for K + s M are slow on gradients, whose eigenvalue s is far below the others

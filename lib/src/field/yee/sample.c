@@ -3,7 +3,8 @@
  * After n steps the state has B^n and E^{n+1/2}. At the time t of the next step, t = t_n + part dt,
  *     B(t) = B^n - part dt d E^{n+1/2},
  *     E(t) = E^{n+1/2} + (part - 1/2) dt M_1^-1 (d^T M_2 B(t) - J(t) - sigma E(t)),
- * which is continuous in t, has at t_n the mean of E^{n-1/2} and E^{n+1/2}, and errors of order 2. */
+ * which is continuous in t, has at t_n the mean of E^{n-1/2} and E^{n+1/2}, and errors of order
+ * 2. */
 #include <math.h>
 
 #include "core/status.h"

@@ -94,15 +94,10 @@ static void set_media(draft *d)
 {
   for (int i = 0; i < d->maxwell->materials; i++) {
     const dvi__scene_material *material = d->maxwell->material + i;
-    const struct {
-      dvi__place *place;
-      dvi_yee_medium *medium;
-    } list[] = {{material->eps, &d->terms.eps},
-                {material->mu, &d->terms.mu},
-                {material->sigma, &d->terms.sigma}};
-    for (int k = 0; k < 3; k++)
-      if (list[k].place != NULL)
-        *list[k].medium = (dvi_yee_medium){.at = dvi__place_source, .user = list[k].place};
+    dvi_yee_medium *const medium[] = {&d->terms.eps, &d->terms.mu, &d->terms.sigma};
+    for (int k = 0; k < DVI__QUANTITIES; k++)
+      if (material->place[k] != NULL)
+        *medium[k] = (dvi_yee_medium){.at = dvi__place_source, .user = material->place[k]};
   }
 }
 

@@ -56,16 +56,27 @@ static dvi_march_options complete(const dvi_scene *scene, const dvi_march_option
   return all;
 }
 
+/* Tell if a grid without its mesh has all that the scene and the options want. A start by A, what
+ * happens on parts, and A itself are those of a mesh, on which yee is the same method. */
+static bool suits_grid(const struct dvi__scene_field *f, const dvi_march_options *options)
+{
+  const struct dvi__scene_maxwell *m = f->maxwell;
+  if (m == NULL || !f->is_grid || strcmp(options->method, "yee") != 0) return false;
+  bool is_by_part = false;
+  for (int i = 0; i < m->probes; i++) is_by_part = is_by_part || m->probe[i].part != NULL;
+  return f->field == NULL || !(is_by_part || m->of_A != NULL || options->potential);
+}
+
 dvi_status dvi_scene_march_create(const dvi_scene *scene, const dvi_march_options *options,
                                   dvi_march **march)
 {
   if (scene == NULL || march == NULL) return DVI_BAD_ARGUMENT;
   *march = NULL;
   if (!dvi_scene_marches(scene, options != NULL ? options->method : NULL)) return DVI_BAD_OPTION;
+  if (scene->terms.damping > 0) return DVI_UNSUPPORTED;
   const dvi_march_options all = complete(scene, options);
   const struct dvi__scene_field *f = scene->field;
-  if (f->maxwell != NULL && f->is_grid && strncmp(all.method, "yee", 3) == 0 && !all.potential)
-    return dvi__grid_march(scene, &all, march);
+  if (suits_grid(f, &all)) return dvi__grid_march(scene, &all, march);
   if (f->field == NULL) return DVI_UNSUPPORTED;
   dvi_status status = dvi_march_create(f->field, &all, march);
   if (status == DVI_OK) status = start(scene, *march);

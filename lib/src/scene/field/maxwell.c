@@ -26,19 +26,33 @@ static void *take(dvi_scene *scene, size_t count, size_t size)
 
 /* ---- materials ---- */
 
+static bool refuse_value(dvi_scene *scene, const dvi__scene_material *material, int which,
+                         double value, int cell)
+{
+  static const char *const name[] = {"eps", "mu", "sigma"};
+  return which == DVI__SIGMA
+             ? dvi__scene_refuse(scene, material->span[which],
+                                 "sigma is %g in cell %d, where a number of at least 0 is wanted",
+                                 value, cell)
+             : dvi__scene_refuse(scene, material->span[which],
+                                 "%s is %g in cell %d, where a number above 0 is wanted",
+                                 name[which], value, cell);
+}
+
 /* Set the cells of a part, with the place at their centres. */
 static bool set_cells(dvi_scene *scene, const draft *d, const dvi__scene_material *material,
-                      const dvi__place *place, const char *name, double least, double *values)
+                      int which, double *values)
 {
+  const double least = which == DVI__SIGMA ? 0 : 1e-300;
   int64_t count;
   const dvi_mesh *mesh = scene->field->mesh;
   const int *cell = dvi_mesh_part_cells(mesh, material->part, dvi_mesh_dimension(mesh), &count);
   for (int64_t i = 0; i < count; i++) {
-    double value;
+    double value = (double)NAN;
     const double *x = d->centre + (ptrdiff_t)cell[i] * scene->field->space;
-    if (dvi__place_value(place, x, NULL, &value) != 0 || !(value >= least) || value > 1e300)
-      return dvi__scene_refuse(scene, material->span, "%s is not a %s number in cell %d", name,
-                               least > 0 ? "positive" : "nonnegative", cell[i]);
+    if (dvi__place_value(material->place[which], x, NULL, &value) != 0 || !(value >= least) ||
+        value > 1e300)
+      return refuse_value(scene, material, which, value, cell[i]);
     values[cell[i]] = value;
   }
   return true;
@@ -47,17 +61,14 @@ static bool set_cells(dvi_scene *scene, const draft *d, const dvi__scene_materia
 static bool set_quantity(dvi_scene *scene, const draft *d, const dvi__scene_material *material,
                          int which, double **values)
 {
-  static const char *const name[] = {"eps", "mu", "sigma"};
-  const dvi__place *const place[] = {material->eps, material->mu, material->sigma};
   const dvi_mesh *mesh = scene->field->mesh;
   const int64_t cells = dvi_mesh_count(mesh, dvi_mesh_dimension(mesh));
-  if (place[which] == NULL) return true;
+  if (material->place[which] == NULL) return true;
   if (*values == NULL) {
     *values = take(scene, (size_t)cells, sizeof **values);
-    for (int64_t c = 0; c < cells && *values != NULL; c++) (*values)[c] = which < 2;
+    for (int64_t c = 0; c < cells && *values != NULL; c++) (*values)[c] = which != DVI__SIGMA;
   }
-  return *values != NULL &&
-         set_cells(scene, d, material, place[which], name[which], which < 2 ? 1e-300 : 0, *values);
+  return *values != NULL && set_cells(scene, d, material, which, *values);
 }
 
 /* The star takes 1/mu. */
@@ -72,7 +83,7 @@ static bool set_materials(dvi_scene *scene, draft *d)
   if (d->centre == NULL) return false;
   (void)dvi_mesh_centres(mesh, n, d->centre);
   for (int i = 0; i < m->materials; i++)
-    for (int which = 0; which < 3; which++) {
+    for (int which = 0; which < DVI__QUANTITIES; which++) {
       double **const values[] = {&d->eps, &d->nu, &d->sigma};
       if (!set_quantity(scene, d, m->material + i, which, values[which])) return false;
     }
@@ -88,12 +99,28 @@ static bool set_walls(dvi_scene *scene, draft *d)
       [DVI__WALL_PMC] = DVI_PMC, [DVI__WALL_PEC] = DVI_PEC, [DVI__WALL_ABSORBING] = DVI_ABSORBING};
   const struct dvi__scene_maxwell *m = scene->field->maxwell;
   d->wall = take(scene, (size_t)m->walls, sizeof *d->wall);
-  for (int i = 0; i < m->walls && d->wall != NULL; i++)
+  for (int i = 0; i < m->walls && d->wall != NULL; i++) {
+    if (m->wall[i].word > DVI__WALL_ABSORBING)
+      return dvi__scene_refuse(scene, m->wall[i].span,
+                               "layers and phases are for 'method: yee' on boxes; a wall of this "
+                               "mesh is pec, pmc or absorbing");
     d->wall[i] = (dvi_wall){.part = m->wall[i].part, .kind = kind[m->wall[i].word]};
+  }
   return d->wall != NULL;
 }
 
 /* ---- sources ---- */
+
+/* Refuse a point that lies in no cell. */
+static bool is_inside(dvi_scene *scene, const double *point, dvi__span span, const char *what)
+{
+  int cell = 0;
+  double weight[DVI_MESH_DIMENSION_MAX + 1];
+  const dvi_status status = dvi_mesh_locate(scene->field->mesh, 1, point, &cell, weight);
+  if (status != DVI_OK)
+    return dvi__complain(scene->complaint, status, span, "%s", dvi_last_error());
+  return cell >= 0 || dvi__scene_refuse(scene, span, "%s is outside of the mesh", what);
+}
 
 static int density_of(const double *x, double *value, void *user)
 {
@@ -105,9 +132,15 @@ static bool set_currents(dvi_scene *scene, draft *d)
   const struct dvi__scene_maxwell *m = scene->field->maxwell;
   int count = 0;
   d->current = take(scene, 3 * (size_t)m->sources, sizeof *d->current);
-  for (int i = 0; i < m->sources && d->current != NULL; i++)
+  for (int i = 0; i < m->sources && d->current != NULL; i++) {
+    const dvi__scene_source *source = m->source + i;
+    if (source->wave != NULL)
+      return dvi__scene_refuse(scene, source->span,
+                               "plane waves are for 'method: yee' on boxes, which this mesh is "
+                               "not");
+    if (source->at != NULL && !is_inside(scene, source->point, source->at->span, "the dipole"))
+      return false;
     for (int axis = 0; axis < 3; axis++) {
-      const dvi__scene_source *source = m->source + i;
       dvi_current *current = d->current + count;
       if (source->signal[axis] == NULL) continue;
       *current = (dvi_current){.signal = dvi__signal_value,
@@ -122,6 +155,7 @@ static bool set_currents(dvi_scene *scene, draft *d)
       }
       count++;
     }
+  }
   d->terms.current = d->current;
   d->terms.currents = count;
   return d->current != NULL;
@@ -132,10 +166,10 @@ static bool set_currents(dvi_scene *scene, draft *d)
 /* Refuse the name of another column. */
 static bool name_is_new(dvi_scene *scene, int i)
 {
-  static const char *const taken[] = {"t", "energy", "gauss"};
+  static const char *const taken[] = {"t", "energy", "gauss", "charge", "divergence", "growth"};
   const struct dvi__scene_maxwell *m = scene->field->maxwell;
   const char *name = m->probe[i].name;
-  bool there = strncmp(name, "A_", 2) == 0 || strncmp(name, "p_A_", 4) == 0;
+  bool there = dvi__is_unknown(name, 'A');
   for (size_t k = 0; k < sizeof taken / sizeof *taken; k++)
     there = there || strcmp(taken[k], name) == 0;
   for (int k = 0; k < i; k++) there = there || strcmp(m->probe[k].name, name) == 0;
@@ -155,6 +189,8 @@ static bool set_probes(dvi_scene *scene, draft *d)
       return dvi__scene_refuse(scene, from->span,
                                "a flux through a box is for 'method: yee' on boxes; on a mesh it "
                                "goes through a part");
+    const bool has_point = *from->of == 'E' || *from->of == 'B';
+    if (has_point && !is_inside(scene, from->at, from->place, "the probe")) return false;
     *probe = (dvi_field_probe){.name = from->name, .of = from->of, .part = from->part};
     memcpy(probe->at, from->at, sizeof from->at);
     dvi__maxwell_form(scene->field, *from->of == 'B', from->along, probe->along);
@@ -164,20 +200,24 @@ static bool set_probes(dvi_scene *scene, draft *d)
 
 /* ---- the start ---- */
 
-/* The components of a form, of a vector in space. */
+/* The components of a form, of a vector in space, and where they failed. */
 typedef struct form_of_vector {
   const struct dvi__scene_field *field;
   const dvi__place_vector *vector;
-  bool is_B;
+  bool is_B, has_failed;
+  double at[3];
 } form_of_vector;
 
 static int form_at(const double *x, double *value, void *user)
 {
-  const form_of_vector *f = user;
+  form_of_vector *f = user;
   double vector[3] = {0};
-  const int failed = dvi__place_vector_value(f->vector, x, vector);
-  if (failed == 0) dvi__maxwell_form(f->field, f->is_B, vector, value);
-  return failed;
+  f->has_failed = dvi__place_vector_value(f->vector, x, vector) != 0;
+  if (f->has_failed)
+    memcpy(f->at, x, (size_t)f->field->space * sizeof *x);
+  else
+    dvi__maxwell_form(f->field, f->is_B, vector, value);
+  return f->has_failed;
 }
 
 static bool integrate(dvi_scene *scene, const dvi__place_vector *vector, bool is_B, double **form)
@@ -189,6 +229,9 @@ static bool integrate(dvi_scene *scene, const dvi__place_vector *vector, bool is
   *form = take(scene, (size_t)dvi_mesh_count(mesh, k), sizeof **form);
   if (*form == NULL) return false;
   const dvi_status status = dvi_form_integrate(mesh, k, form_at, &f, *form);
+  if (f.has_failed)
+    return dvi__scene_refuse(scene, dvi__tree_find(scene->tree, "initial")->span,
+                             "the start is not finite at (%g, %g, %g)", f.at[0], f.at[1], f.at[2]);
   return status == DVI_OK ||
          dvi__complain(scene->complaint, status, dvi__tree_find(scene->tree, "initial")->span, "%s",
                        dvi_last_error());
@@ -291,8 +334,9 @@ static const dvi__tree *to_blame(const dvi_scene *scene, const dvi__tree *sectio
 {
   static const struct {
     const char *word, *section;
-  } blame[] = {{"wall", "boundary"}, {"dipole", "sources"}, {"signal", "sources"},
-               {"probe", "probes"},  {"point", "probes"},   {"star", "star"}};
+  } blame[] = {{"repair the mesh", "mesh"}, {"wall", "boundary"},  {"fixed", "boundary"},
+               {"dipole", "sources"},       {"signal", "sources"}, {"probe", "probes"},
+               {"point", "probes"},         {"star", "star"}};
   for (size_t i = 0; i < sizeof blame / sizeof *blame; i++) {
     const dvi__tree *found = dvi__tree_find(scene->tree, blame[i].section);
     if (found != NULL && strstr(dvi_last_error(), blame[i].word) != NULL) return found;

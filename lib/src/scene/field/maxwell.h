@@ -30,11 +30,14 @@ typedef struct dvi__scene_wall {
   double number; /* layers, or the phase */
 } dvi__scene_wall;
 
+/* Permittivity, permeability and conductivity. */
+enum { DVI__EPS, DVI__MU, DVI__SIGMA, DVI__QUANTITIES };
+
 /* Materials of a part of cells. NULL for what is not said. */
 typedef struct dvi__scene_material {
   const char *part;
-  dvi__span span;
-  dvi__place *eps, *mu, *sigma;
+  dvi__place *place[DVI__QUANTITIES];
+  dvi__span span[DVI__QUANTITIES];
 } dvi__scene_material;
 
 /* A dipole, with a signal for each axis, a density of a current, or a plane wave. */
@@ -49,7 +52,7 @@ typedef struct dvi__scene_source {
 
 /* A probe of the scene, one of each component of a vector. */
 typedef struct dvi__scene_probe {
-  dvi__span span;
+  dvi__span span, place; /* of the name, and of the point */
   const char *name, *of, *part;
   double at[3], along[3]; /* along the axes of space */
   double lower[3], upper[3];

@@ -108,19 +108,20 @@ void dvi__maxwell_form(const struct dvi__scene_field *field, bool is_B, const do
 
 /* ---- materials ---- */
 
-static bool read_material(dvi_scene *scene, const char *part, dvi__span span, const dvi__tree *tree)
+static bool read_material(dvi_scene *scene, const char *part, const dvi__tree *tree)
 {
   static const char *const known[] = {"eps", "mu", "sigma"};
   struct dvi__scene_maxwell *m = scene->field->maxwell;
   dvi__scene_material *material = m->material + m->materials++;
-  dvi__place **const place[] = {&material->eps, &material->mu, &material->sigma};
-  *material = (dvi__scene_material){.part = part, .span = span};
+  *material = (dvi__scene_material){.part = part};
   if (!dvi__want_mapping(scene, tree, "a material") ||
       !dvi__want_keys(scene, tree, "a material", 3, known))
     return false;
-  for (int i = 0; i < 3; i++) {
+  for (int i = 0; i < DVI__QUANTITIES; i++) {
     const dvi__tree *value = dvi__tree_find(tree, known[i]);
-    if (value != NULL && !dvi__place_read(scene, value, 0, "a material", place[i])) return false;
+    if (value == NULL) continue;
+    material->span[i] = value->span;
+    if (!dvi__place_read(scene, value, 0, "a material", material->place + i)) return false;
   }
   return true;
 }
@@ -143,13 +144,13 @@ bool dvi__maxwell_read_materials(dvi_scene *scene, const dvi__tree *section)
   m->material = dvi__arena_take(&scene->arena, (size_t)section->count + 1, sizeof *m->material);
   if (m->material == NULL) return dvi__scene_no_memory(scene);
   if (section->count > 0 && section->child[0]->kind != DVI__MAPPING)
-    return read_material(scene, "all", section->span, section);
+    return read_material(scene, "all", section);
   for (int special = 0; special < 2; special++)
     for (int i = 0; i < section->count; i++) {
       const dvi__tree *key = section->key[i];
       if ((strcmp(key->text, "all") != 0) != special) continue;
       if (!part_is_there(scene, key->text, key->span) ||
-          !read_material(scene, key->text, key->span, section->child[i]))
+          !read_material(scene, key->text, section->child[i]))
         return false;
     }
   return true;
@@ -276,6 +277,15 @@ static bool read_density(dvi_scene *scene, const dvi__tree *tree, const dvi__tre
          read_signal(scene, tree, source);
 }
 
+/* E is along its only component, or in a plane to the left of the direction, else along z. */
+static void choose_polarization(const struct dvi__scene_field *f, dvi__scene_source *source)
+{
+  const bool is_in_plane = f->maxwell->E == 2;
+  source->polarization[0] = is_in_plane ? -source->direction[1] : 0;
+  source->polarization[1] = is_in_plane ? source->direction[0] : f->dimension == 1;
+  source->polarization[2] = !is_in_plane && f->dimension > 1;
+}
+
 /* Read '{wave: [1, 0], polarization: [0, 1], from: [..], to: [..], signal: ..}'. */
 static bool read_wave(dvi_scene *scene, const dvi__tree *tree, dvi__scene_source *source)
 {
@@ -288,9 +298,10 @@ static bool read_wave(dvi_scene *scene, const dvi__tree *tree, dvi__scene_source
     return dvi__scene_refuse(scene, tree->span,
                              "a plane wave fills a box, as in '{wave: [1, 0], from: [1, 1], to: "
                              "[3, 3], signal: sin(t)}'");
-  source->polarization[2] = 1;
-  return dvi__point_read(scene, source->wave, axes, "a wave's direction", source->direction) &&
-         dvi__point_read(scene, from, axes, "the corner 'from'", source->lower) &&
+  if (!dvi__point_read(scene, source->wave, axes, "a wave's direction", source->direction))
+    return false;
+  choose_polarization(scene->field, source);
+  return dvi__point_read(scene, from, axes, "the corner 'from'", source->lower) &&
          dvi__point_read(scene, to, axes, "the corner 'to'", source->upper) &&
          (along == NULL ||
           dvi__point_read(scene, along, 3, "a polarization", source->polarization)) &&
@@ -352,6 +363,7 @@ static bool read_value(dvi_scene *scene, const dvi__tree *tree, const dvi__tree 
     return false;
   const int components = is_B ? m->B : m->E;
   probe.of = word[is_B];
+  probe.place = at->span;
   if (along != NULL) {
     m->probe[m->probes++] = probe;
     return dvi__point_read(scene, along, components, "a direction", m->probe[m->probes - 1].along);

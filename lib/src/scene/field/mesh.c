@@ -128,5 +128,10 @@ bool dvi__read_mesh(dvi_scene *scene, const dvi__tree *section)
   if (scene->field->space > DVI__PLACE_SPACE)
     return dvi__scene_refuse(scene, section->span, "a scene's mesh has at most %d coordinates",
                              DVI__PLACE_SPACE);
+  if (scene->field->maxwell != NULL && scene->field->space > 3)
+    return dvi__scene_refuse(scene, section->span,
+                             "an electromagnetic field has a mesh in at most 3 coordinates, and "
+                             "this one has %d",
+                             scene->field->space);
   return name_place(scene, section);
 }

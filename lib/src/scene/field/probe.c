@@ -109,11 +109,10 @@ static bool place_probe(dvi_scene *scene, struct dvi__probe *probe, double *u)
          dvi__complain(scene->complaint, status, probe->at->span, "%s", dvi_last_error());
 }
 
-/* Tell if a name is that of an unknown or of its momentum: u_ or p_u_, and a number. */
-static bool is_unknown(const char *name)
+bool dvi__is_unknown(const char *name, char letter)
 {
   if (strncmp(name, "p_", 2) == 0) name += 2;
-  return strncmp(name, "u_", 2) == 0 && name[2] != 0 &&
+  return name[0] == letter && name[1] == '_' && name[2] != 0 &&
          strspn(name + 2, "0123456789") == strlen(name + 2);
 }
 
@@ -121,7 +120,7 @@ static bool is_unknown(const char *name)
 static bool name_is_new(dvi_scene *scene, const struct dvi__probe *probe)
 {
   bool there = strcmp(probe->name, "t") == 0 || strcmp(probe->name, "energy") == 0 ||
-               is_unknown(probe->name);
+               dvi__is_unknown(probe->name, 'u');
   for (int i = 0; i < scene->terms.symmetry_count; i++)
     there = there || strcmp(scene->terms.symmetries[i].name, probe->name) == 0;
   return !there ||

@@ -73,6 +73,9 @@ bool dvi__refuse_part(dvi_scene *scene, dvi__span span, const char *name, bool o
 /* Let the unknowns be a family NAME_1, NAME_2 and so on. */
 bool dvi__declare_unknowns(dvi_scene *scene, const dvi__tree *section, const char *name);
 
+/* Tell if a name is that of an unknown or of its momentum: u_ or p_u_, and a number. */
+bool dvi__is_unknown(const char *name, char letter);
+
 /* Let a run show energy, momenta and probes. */
 bool dvi__choose_field_columns(dvi_scene *scene);
 

@@ -1,0 +1,95 @@
+#include "load/open_march.h"
+
+#include <dvi/scene.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/command.h"
+
+enum { MESSAGE_SIZE = 2048 };
+
+/* Return the section of the scene that a sentence of the library is about, or NULL. A step and a
+ * method that the options have are not the scene's. */
+static const char *section_of(const char *sentence, const dvi_march_options *options)
+{
+  static const struct {
+    const char *word, *section;
+  } list[] = {{"eps =", "materials"},
+              {"mu =", "materials"},
+              {"sigma =", "materials"},
+              {"function of eps", "materials"},
+              {"function of mu", "materials"},
+              {"function of sigma", "materials"},
+              {"dipole", "sources"},
+              {"wave", "sources"},
+              {"signal", "sources"},
+              {"current", "sources"},
+              {"a source", "sources"},
+              {"probe", "probes"},
+              {"flux ", "probes"},
+              {"layers", "boundary"},
+              {"phase", "boundary"},
+              {"repeats", "boundary"},
+              {"conductors", "boundary"},
+              {"ascend", "mesh"},
+              {"the start", "initial"},
+              {"the step ", "step"},
+              {"common step", "step"},
+              {"fraction", "step"},
+              {" option", "method"},
+              {" is for ", "method"},
+              {"simplices of", "method"},
+              {"the star", "star"}};
+  for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
+    if (strstr(sentence, list[i].word) == NULL) continue;
+    const bool is_step = strcmp(list[i].section, "step") == 0,
+               is_method = strcmp(list[i].section, "method") == 0;
+    if ((is_step && (options->step > 0 || options->fraction > 0)) ||
+        (is_method && options->method != NULL))
+      return NULL;
+    return list[i].section;
+  }
+  return NULL;
+}
+
+/* What the scene asks for is a mistake of the scene's text. */
+static int refuse(dvi_status status, const problem *scene, const dvi_march_options *options)
+{
+  char message[MESSAGE_SIZE] = "";
+  const bool is_damped = scene->terms->damping > 0;
+  const char *sentence = is_damped ? "marches of fields have no damping; a conductor has 'sigma', "
+                                     "and mechanical methods such as verlet take the friction"
+                                   : dvi_last_error();
+  const char *section = is_damped ? "damping" : section_of(sentence, options);
+  if (status == DVI_NO_MEMORY || status == DVI_IO_ERROR || section == NULL)
+    return library_error(status);
+  dvi_scene_tell(scene->scene, section, sentence, message, sizeof message);
+  return usage_error("%s", message);
+}
+
+/* A grid without a mesh has what no other method knows, or is too large for a mesh. */
+static int refuse_grid(const problem *scene, const char *method)
+{
+  char sentence[MESSAGE_SIZE], message[MESSAGE_SIZE] = "";
+  const char *only = dvi_scene_grid_only(scene->scene);
+  const bool is_large = strcmp(only, "size") == 0, is_yee = strncmp(method, "yee:", 4) == 0;
+  (void)snprintf(sentence, sizeof sentence, "%s is for meshes, and %s%s only yee takes", method,
+                 is_large ? "so large a grid" : only, is_large ? "" : " is what");
+  if (is_yee) (void)snprintf(sentence, sizeof sentence, "yee has no options");
+  dvi_scene_tell(scene->scene, "method", sentence, message, sizeof message);
+  return usage_error("%s", message);
+}
+
+int open_march(const problem *scene, const dvi_march_options *options, dvi_march **march)
+{
+  const char *method = options->method != NULL ? options->method : scene->method;
+  dvi_march_options asked = *options;
+  if (method != NULL && scene->method != NULL && strcmp(method, scene->method) == 0)
+    asked.method = NULL;
+  const dvi_status status = dvi_scene_march_create(scene->scene, &asked, march);
+  if (status == DVI_OK) return DONE;
+  if (dvi_scene_grid_only(scene->scene) != NULL && strcmp(method, "yee") != 0)
+    return refuse_grid(scene, method);
+  return refuse(status, scene, &asked);
+}

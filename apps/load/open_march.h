@@ -1,0 +1,12 @@
+/** Marches of a scene's field. */
+#ifndef OPEN_MARCH_H
+#define OPEN_MARCH_H
+#include <dvi/march.h>
+
+#include "problem.h"
+
+/** Create a march of the scene's field, and start it. The options' method and step are NULL and 0
+ * for the scene's own. Returns DONE, or complains, with the place in the scene where it is known,
+ * and returns the exit code. */
+int open_march(const problem *scene, const dvi_march_options *options, dvi_march **march);
+#endif

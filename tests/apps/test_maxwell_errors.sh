@@ -1,0 +1,310 @@
+#!/bin/sh
+# What scenes of electromagnetic fields may not say, and what their runs do not take: a sentence
+# each, with its place.
+# Usage: test_maxwell_errors.sh DVI
+. "$(dirname "$0")/check.sh"
+
+solid='mesh: {generator: box, cells: [5, 4, 3], size: [1, 0.8, 0.6]}
+field: maxwell
+until: 1'
+flat='mesh: {generator: staggered, cells: [4, 4]}
+field: maxwell
+until: 1'
+grid='mesh: {generator: box, cells: [8, 8]}
+field: maxwell
+until: 1
+method: yee'
+
+# refuse NAME PLACE WORDS SCENE: require that the scene is refused at this line and column, with
+# these words.
+refuse() {
+  printf '%s\n' "$4" >wrong.yaml
+  expect 2 "$1" check wrong.yaml
+  says err "^dvi: wrong.yaml:$2: .*$3" "$1"
+}
+
+# ---- materials ----
+
+refuse 'a negative permittivity' 4:18 'eps is -1 in cell 0, where a number above 0' "$solid
+materials: {eps: -1}"
+refuse 'no permeability' 4:17 'mu is 0 in cell 0' "$solid
+materials: {mu: 0}"
+refuse 'a negative conductivity' 4:26 'sigma is -0.4 in cell 0, where a number of at least 0' "$solid
+materials: {all: {sigma: x - 0.5}}"
+refuse 'a permittivity that is no number' 4:18 'eps is inf in cell 0' "$solid
+materials: {eps: 1/(x - x)}"
+refuse 'a material of waves' 4:13 "no 'rho'" "$solid
+materials: {rho: 1}"
+refuse 'a part that is none' 4:13 "no part 'core' of cells; its parts are all, boundary, left" "$solid
+materials: {core: {eps: 2}}"
+refuse 'a material of a wall' 4:13 "no part 'left' of cells" "$solid
+materials: {left: {eps: 2}}"
+refuse 'a part of a grid' 5:13 "a grid has no part 'core' of cells" "$grid
+materials: {core: {eps: 2}}
+boundary: {cpml: 2}"
+refuse 'a negative permittivity on a grid' 5:12 'eps = -0.4375 at (0.0625, ' "$grid
+materials: {eps: x - 0.5}
+boundary: {cpml: 2}"
+refuse 'a negative conductivity on a grid' 5:12 'sigma = -0.4375 at (0.0625, ' "$grid
+materials: {sigma: x - 0.5}
+boundary: {cpml: 2}"
+
+# ---- walls ----
+
+refuse 'a wall that is none' 4:12 "no part 'lid'; its parts are" "$solid
+boundary: {lid: pec}"
+refuse 'a wall of a grid that is none' 5:29 "a grid has no wall 'front'; it has boundary, left" "$grid
+boundary: {left: {cpml: 2}, front: pec}"
+refuse 'another wall' 4:11 'a wall is pmc, pec, absorbing or periodic' "$solid
+boundary: glass"
+refuse 'a wall of waves' 4:19 'a wall is pmc' "$solid
+boundary: {right: fixed}"
+refuse 'no layers' 5:18 'cpml is a whole number from 1' "$grid
+boundary: {cpml: 0}"
+refuse 'layers thicker than the box' 5:11 '8 boxes, and its absorbing layers take 10' "$grid
+boundary: {cpml: 5}"
+refuse 'two walls in one' 5:18 'a wall is pec, pmc, periodic, absorbing, {cpml' "$grid
+boundary: {left: {cpml: 3, bloch: 1}}"
+refuse 'layers on simplices' 4:11 'layers and phases are for .method: yee. on boxes' "$flat
+boundary: {cpml: 2}"
+refuse 'layers by leapfrog' 4:9 'leapfrog is for meshes, and cpml is what only yee takes' "$solid
+method: leapfrog
+boundary: {cpml: 1}"
+refuse 'a phase at one end' 5:11 'repeats itself at one end only' "$grid
+boundary: {left: {bloch: 1}, right: pec}"
+refuse 'walls that repeat a mesh' 4:11 'a mesh repeats itself by its own axes' "$flat
+boundary: periodic"
+refuse 'walls that repeat boxes' 5:11 'a mesh repeats itself by its own axes' "$grid
+boundary: periodic"
+refuse 'all of it a conductor' 4:11 'all 286 edges are fixed, and nothing is unknown' "$solid
+boundary: {all: pec}"
+refuse 'a conductor around one box' 5:11 'nothing is unknown' "mesh: {generator: box, cells: [1, 1]}
+field: maxwell
+polarization: tm
+method: yee
+boundary: pec"
+
+# ---- the mesh ----
+
+printf 'OFF\n4 2 0\n0 0 0\n1 0 0\n0.5 0.2 0\n0.5 -0.2 0\n3 0 1 2\n3 1 0 3\n' >thin.off
+thin='mesh: {file: thin.off, space: 2}
+field: maxwell'
+refuse 'a negative dual cell' 1:7 'M_1 has the entry -1.05 at edge 0 .*dvi mesh tells how' "$thin"
+refuse 'a negative dual edge' 1:7 'waves would grow' "$thin
+polarization: tm"
+refuse 'no dual cell' 1:7 'M_1 has the entry 0 ' 'mesh: {generator: kuhn, cells: [2, 2, 2]}
+field: maxwell'
+printf '%s\n' "$thin" 'star: whitney' 'method: leapfrog' 'until: 1' >whitney.yaml
+expect 0 'a Whitney star helps' check whitney.yaml
+refuse 'four dimensions' 1:7 'in at most 3 coordinates, and this one has 4' \
+  'mesh: {generator: box, cells: [2, 2, 2, 2]}
+field: maxwell
+probes: {ear: {at: [0.1, 0.1, 0.1, 0.1]}}'
+refuse 'a polarization in space' 4:15 'in two dimensions, and the mesh has 3' "$solid
+polarization: te"
+refuse 'another polarization' 4:15 'a polarization is te or tm' "$flat
+polarization: left"
+
+# ---- sources ----
+
+refuse 'a dipole outside' 4:19 'the dipole is outside of the mesh' "$solid
+sources: {a: {at: [2, 0, 0], moment: [0, 0, t]}}"
+refuse 'a dipole outside of a grid' 5:10 'dipole 0 is at x = 3, outside of the grid from 0 to 1' "$grid
+sources: {a: {at: [3, 0], moment: [0, t]}}
+boundary: {cpml: 2}"
+refuse 'two coordinates' 4:19 "a dipole's place has 3 coordinates here" "$solid
+sources: {a: {at: [0.5, 0.3], moment: [0, 0, t]}}"
+refuse 'one component' 4:39 'a dipole has 2 components here' "$flat
+sources: {a: {at: [0.5, 0.3], moment: t}}"
+refuse 'a current and a moment' 4:14 'a dipole has a current or a moment' "$flat
+sources: {a: {at: [0.5, 0.3], moment: [t, 0], current: [t, 0]}}"
+refuse 'a density of one component' 4:24 'a density has 2 components here' "$flat
+sources: {a: {density: 1, signal: t}}"
+refuse 'a density in time' 4:25 'the time cannot stand in a density' "$flat
+sources: {a: {density: [t, 0], signal: t}}"
+refuse 'a signal in space' 4:40 'coordinates cannot stand in a function of time' "$flat
+sources: {a: {density: [1, 0], signal: x*t}}"
+refuse 'no signal' 4:14 'the source has no signal' "$flat
+sources: {a: {density: [1, 0]}}"
+refuse 'neither place nor density' 4:14 'a source is a dipole' "$flat
+sources: {a: {signal: t}}"
+refuse 'place and density' 4:14 'a source is a dipole' "$flat
+sources: {a: {at: [0.5, 0.5], density: [1, 0], signal: t}}"
+refuse 'no names' 4:10 'sources is a mapping' "$flat
+sources: 3"
+refuse 'a plane wave on simplices' 4:11 'plane waves are for .method: yee. on boxes' "$flat
+sources: {a: {wave: [1, 0], from: [0.1, 0.1], to: [0.5, 0.5], signal: sin(t)}}"
+refuse 'a plane wave without a box' 5:14 'a plane wave fills a box' "$grid
+sources: {a: {wave: [1, 0], signal: sin(t)}}"
+refuse 'a plane wave outside' 5:10 'outside of the grid from 0 to 1' "$grid
+sources: {a: {wave: [1, 0], from: [0.3, 0.3], to: [0.6, 1.6], signal: sin(t)}}"
+refuse 'a plane wave along E' 5:10 'has E along its direction' "$grid
+sources: {a: {wave: [1, 0], from: [0.3, 0.3], to: [0.6, 0.6], polarization: [1, 0, 0],
+  signal: sin(t)}}"
+refuse 'a plane wave to nowhere' 5:10 'needs a direction' "$grid
+sources: {a: {wave: [0, 0], from: [0.3, 0.3], to: [0.6, 0.6], signal: sin(t)}}"
+
+# ---- probes ----
+
+refuse 'a probe outside' 4:18 'the probe is outside of the mesh' "$solid
+probes: {a: {at: [2, 0, 0]}}"
+refuse 'a probe outside of a grid' 5:9 'probe 0 is at x = 3, outside' "$grid
+probes: {a: {at: [3, 0]}}
+boundary: {cpml: 2}"
+refuse 'a probe of two coordinates' 4:18 'a probe has 3 coordinates here' "$solid
+probes: {a: {at: [0.2, 0.1]}}"
+refuse 'a direction of two coordinates' 4:42 'a direction has 3 coordinates here' "$solid
+probes: {a: {at: [0.2, 0.1, 0.1], along: [1, 0]}}"
+refuse 'a probe of H' 4:39 'what a probe is of is E or B' "$solid
+probes: {a: {at: [0.2, 0.1, 0.1], of: H}}"
+refuse 'a probe of nothing' 4:13 'a probe is at a point' "$solid
+probes: {a: {of: E}}"
+refuse 'a flux through no part' 4:9 'part "lid", which the mesh has not' "$solid
+probes: {a: {flux: lid}}"
+refuse 'the energy of a wall' 4:9 'part "left", which has no cells' "$solid
+probes: {a: {energy: left}}"
+refuse 'a flux through a part of a grid' 5:10 'a grid has no parts' "$grid
+probes: {a: {flux: left}}
+boundary: {cpml: 2}"
+refuse 'two columns of one name' 4:36 "a column 'a_x' already" "$solid
+probes: {a: {at: [0.2, 0.1, 0.1]}, a_x: {at: [0.2, 0.1, 0.1], along: [1, 0, 0]}}"
+for name in t energy gauss charge divergence growth A_1 p_A_2; do
+  refuse "a probe named $name" 4:10 "a column '$name' already" "$solid
+probes: {$name: {at: [0.2, 0.1, 0.1], along: [1, 0, 0]}}"
+done
+printf '%s\n' "$solid" 'probes: {A_loop: {at: [0.2, 0.1, 0.1], along: [1, 0, 0]}}' >loop.yaml
+expect 0 'a probe named A_loop' check loop.yaml
+refuse 'points of a surface' 4:18 'located among cells that fill their space' \
+  'mesh: {generator: icosphere}
+field: maxwell
+until: 1
+probes: {a: {at: [1, 0, 0]}}'
+
+# ---- the start ----
+
+refuse 'A and B' 4:10 'B is that of A; give one of them' "$solid
+initial: {A: [0, 0, 0], B: [0, 0, 0]}"
+refuse 'a B with a divergence' 4:10 'it has a divergence, passes through an electric wall' "$solid
+initial: {B: [x, 0, 0]}"
+refuse 'an E of one component' 4:14 'E has 3 components here' "$solid
+initial: {E: 1}"
+refuse 'the start of a wave' 4:11 "the start of a field has no 'u'" "$solid
+initial: {u: 1}"
+refuse 'a start that is not finite' 4:10 'the start is not finite at (0.00' "$solid
+initial: {E: [1/(x - x), 0, 0]}"
+refuse 'a grid from A' 5:10 'a grid starts from E and B, not from A' "$grid
+initial: {A: [x, 0]}
+boundary: {cpml: 2}"
+
+# ---- waves and Maxwell's fields ----
+
+for line in 'source: x' 'potential: u^2' 'solve: {mean: 0}'; do
+  section=${line%%:*}
+  refuse "$section" 4:$((${#section} + 3)) "'$section' is of 'field: wave'" "$solid
+$line"
+done
+refuse 'sources of a wave' 3:10 "'sources' is of 'field: maxwell'" 'mesh: {generator: disk}
+field: wave
+sources: {a: {at: [0, 0], moment: 1}}'
+refuse 'a polarized wave' 3:15 "'polarization' is of 'field: maxwell'" 'mesh: {generator: disk}
+field: wave
+polarization: te'
+refuse 'friction of a march' 5:10 "marches of fields have no damping" "$flat
+method: leapfrog
+damping: 0.1"
+
+# ---- steps and methods ----
+
+for fraction in 1 1.5; do
+  refuse "a fraction of $fraction" 5:7 "below 1, and is $fraction" "$solid
+method: leapfrog
+step: {fraction: $fraction}"
+done
+refuse 'a fraction of 0' 5:18 'fraction must be positive, and is 0' "$solid
+method: leapfrog
+step: {fraction: 0}"
+refuse 'a step of another kind' 5:8 "a step has no 'part'" "$solid
+method: leapfrog
+step: {part: 0.5}"
+refuse 'a step beyond the bound' 5:7 'the step 0.5 is not below the bound 0.1154.*near (0.8' "$solid
+method: leapfrog
+step: 0.5"
+refuse 'a step of yee beyond the bound' 5:7 'the step 0.5 is not below the bound 0.1154.* at (0, ' "$solid
+method: yee
+step: 0.5"
+refuse 'tents of one step' 5:7 'they have no common step' "$flat
+method: tents
+step: 0.01"
+refuse 'tents over boxes' 4:9 'the mesh has boxes' "$solid
+method: tents"
+refuse 'tents of a Whitney star' 5:7 'the star is not circumcentric' "$flat
+method: tents
+star: whitney"
+refuse 'own steps of a Whitney star' 5:7 'the star is not diagonal' "$flat
+method: avi
+star: whitney"
+refuse 'yee on simplices' 4:9 'on simplices the same method is called bossavit-kettunen' "$flat
+method: yee"
+for method in leapfrog:x=1 avi:classes=perhaps tents:seed=-1; do
+  refuse "$method" 4:9 'option' "$flat
+method: $method"
+done
+refuse 'an option of yee' 4:9 'has no options' "$solid
+method: yee:x=1"
+refuse 'an option of a grid' 3:9 'yee has no options' 'mesh: {generator: box, cells: [8, 8]}
+field: maxwell
+method: yee:x=1
+boundary: {cpml: 2}'
+refuse 'a method that is none' 4:9 "unknown method 'leapfrg'.*(did you mean 'leapfrog'?)" "$flat
+method: leapfrg"
+printf '%s\n' "$flat" 'method: leapfrog' 'step: 0.01' \
+  'sources: {a: {density: [1, 0], signal: 1/t}}' >pole.yaml
+expect 1 'a signal that is not finite' check pole.yaml
+says err 'pole.yaml:6:40: 1/t is not finite, at t = 0' 'a signal that is not finite'
+
+# ---- options ----
+
+printf '%s\n' "$solid" 'method: leapfrog' 'step: 0.05' >run.yaml
+# no OPTION... WORDS: require that a run does not take the option.
+no() {
+  words=$1
+  shift
+  for method in leapfrog yee; do
+    expect 2 "$* of $method" run run.yaml --method $method "$@"
+    says err "$words" "$* of $method"
+  done
+}
+for option in verify project; do no 'is a march of a field' --$option; done
+no 'is a march of a field' --momenta 1,2
+no 'is a march of a field' --time-transform arclength
+no 'is a march of a field' --step-control arclength
+no 'is a march of a field' --events hits.csv
+no 'is a march of a field' --alarm energy:1
+no 'goes forward' --h 0
+no 'goes forward' --h -0.1
+no 'goes forward' --t-end -1
+no 'finite number' --h nan
+no 'whole number' --threads 0
+no 'ends in .pvd' --pvd fields.vtu
+no 'needs --checkpoint' --checkpoint-every 3
+no "no column 'ear'" --columns ear
+for method in leapfrog yee; do
+  expect 1 "a step of $method beyond the bound" run run.yaml --method $method --h 3
+  says err 'the step 3 is not below the bound 0.1154.* \(near\|at\) (0' 'the bound and a place'
+done
+expect 2 'threads of a mechanical method' run run.yaml --method verlet --threads 2
+says err 'for marches of fields' 'threads of a mechanical method'
+expect 2 'a march of no field' run kepler --method leapfrog
+expect 2 'monitors of a march' explain run.yaml --time-transform arclength
+says err 'follow no monitor' 'monitors of a march'
+printf '%s\n' "$grid" 'boundary: {cpml: 2}' >grid.yaml
+for command in modes stability solve explain 'order --method verlet'; do
+  # shellcheck disable=SC2086 # the words of a command
+  set -- $command
+  subcommand=$1
+  shift
+  expect 2 "$subcommand of a grid" "$subcommand" grid.yaml "$@"
+  says err 'which only the method yee knows' "$subcommand of a grid"
+done
+expect 2 'a grid by verlet' run grid.yaml --method verlet --h 0.01
+finish
