@@ -25,8 +25,8 @@ static int pulse(double t, double *value, void *user)
 static int swirl(const double *x, double *value, void *user)
 {
   (void)user;
-  value[0] = sin(3 * x[1]);
-  value[1] = cos(2 * x[0]);
+  value[0] = x[1] * x[1];
+  value[1] = 1 - x[0];
   value[2] = x[0] * x[1];
   return 0;
 }
@@ -170,13 +170,13 @@ START_TEST(threads_and_steps_together_change_no_bit)
   terms.together = 1;
   const state plain = run(&terms, until);
   ck_assert(isfinite(plain.values[plain.count - 2]));
-  for (int threads = 1; threads <= 4; threads++)
-    for (int together = 0; together <= 16; together = 2 * together + (together < 2)) {
-      if (is_short_run() && (threads + together) % 3 != 0) continue;
-      terms.threads = threads;
-      terms.together = together;
-      check_same(plain, run(&terms, until), "threads and steps together", 100 * threads + together);
-    }
+  for (int i = 0; i < 8; i++) {
+    if (is_short_run() && i % 3 != 0) continue;
+    terms.threads = 1 + i % 3;
+    terms.together = i < 2 ? 0 : i < 5 ? 2 * i - 1 : i == 5 ? 1 : 16;
+    check_same(plain, run(&terms, until), "threads and steps together",
+               100 * terms.threads + terms.together);
+  }
   free(plain.values);
 }
 END_TEST

@@ -33,21 +33,33 @@ typedef struct dvi__yee_edges_row {
   const double *ca, *ce;
 } dvi__yee_edges_row;
 
-/* Absorbing layers: psi <- b psi + a D and F += sign ce (psi + r D) with D = up p1 - down p0. The
- * factors are numbers across rows, and arrays along x, where `up_at` is not NULL. */
+/* A row across absorbing layers: psi <- b psi + a D and F += sign ce (psi + r D) with
+ * D = up p1 - down p0. */
 typedef struct dvi__yee_layers_row {
   size_t count;
   double *f, *psi;
-  const double *p1, *p0;
+  const double *p1, *p0, *ce;
   double sign, b, a, r, up, down;
-  const double *b_at, *a_at, *r_at, *up_at, *down_at;
-  const double *ce;
 } dvi__yee_layers_row;
+
+/* The same for one end of a row along x, whose factors are arrays, and for up to two components, the
+ * second with psi behind that of the first. A component without F is left out. */
+typedef struct dvi__yee_layers_end {
+  size_t count;
+  double *psi;
+  const double *b, *a, *r, *up, *down;
+  struct {
+    double *f;
+    const double *p1, *p0, *ce;
+    double sign;
+  } of[2];
+} dvi__yee_layers_end;
 
 typedef struct dvi__yee_lanes {
   void (*faces)(const dvi__yee_faces_row *row);
   void (*edges)(const dvi__yee_edges_row *row);
   void (*layers)(const dvi__yee_layers_row *row);
+  void (*layers_end)(const dvi__yee_layers_end *end);
   /* h = mi b */
   void (*product)(size_t count, const double *mi, const double *b, double *h);
 } dvi__yee_lanes;

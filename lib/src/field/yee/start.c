@@ -61,8 +61,9 @@ static void clear_conductors(dvi__yee *y)
 }
 
 /* Move E from t_0 to half a step later: (1 - s) E + dt/2 M_1^-1 (d_1^T M_2 B - J). */
-static void take_half_step(dvi__yee *y)
+static void take_half_step(dvi__yee *y, int has_B)
 {
+  if (!has_B && y->loss == NULL && y->on_edges.count == 0) return;
   const int64_t size = dvi__yee_form_size(y, DVI_FORM_E);
   const dvi__yee_moment m = {.yee = y, .part = 0, .on_faces = y->drive, .on_edges = y->drive};
   for (int64_t i = 0; i < size; i++) {
@@ -111,7 +112,7 @@ dvi_status dvi__yee_start(void *self, const dvi_march_state *state)
   clear_conductors(y);
   dvi__yee_wrap_values(y);
   if (y->charge != NULL) dvi__yee_keep_charge(y);
-  take_half_step(y);
+  take_half_step(y, state->B != NULL);
   dvi__yee_wrap_values(y);
   return DVI_OK;
 }

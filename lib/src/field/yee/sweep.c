@@ -10,7 +10,7 @@
 #include "core/status.h"
 #include "field/yee/yee.h"
 
-enum { CACHE = 1 << 20, DEFAULT_TOGETHER = 4, LEAST_TILE = 8 };
+enum { CACHE = 3 << 18, DEFAULT_TOGETHER = 6, LEAST_TILE = 8 };
 
 typedef struct sweep {
   const dvi__yee *yee;
