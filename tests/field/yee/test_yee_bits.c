@@ -8,7 +8,7 @@
 
 #include "core/memory.h"
 #include "num/simd/lanes.h"
-#include "support/boxes.h"
+#include "support/waves/boxes.h"
 #include "support/files.h"
 #include "support/suite.h"
 
@@ -73,8 +73,8 @@ static const dvi_yee_probe probe = {"ear", DVI_FORM_E, .at = {4, 5, 6}, .along =
 
 enum { KINDS = 10 };
 
-/* Grids of 12^axes boxes: walls, layers, all that repeats itself, absorbing ends, materials, losses,
- * sources, waves, unequal boxes; and on fewer axes. */
+/* Grids of 12^axes boxes: walls, layers, all that repeats itself, absorbing ends, materials,
+ * losses, sources, waves, unequal boxes; and on fewer axes. */
 static dvi_yee_terms grid(int kind)
 {
   static const dvi_yee_end layers = {.kind = DVI_YEE_CPML, .layers = 3, .alpha = 0.1, .kappa = 3};
@@ -108,10 +108,9 @@ static dvi_yee_terms grid(int kind)
   if (kind == 0 || kind == 6) terms.axis[0].node = terms.axis[1].node = graded;
   if (kind == 0 || kind == 5 || kind == 7) terms.eps.at = ball, terms.mu.at = plate;
   if (kind == 1) terms.wave = &wave, terms.waves = 1;
-  if (kind == 2 || kind == 4) terms.sigma.at = loss;
-  if (kind == 9) terms.wave = NULL, terms.eps.at = plate;
+  if (kind == 2) terms.sigma.at = loss;
+  if (kind == 9) terms.eps.at = plate;
   if (kind == 4) terms.wave = &straight, terms.waves = 1;
-  if (kind == 4) terms.sigma.at = NULL;
   return terms;
 }
 

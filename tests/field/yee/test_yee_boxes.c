@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "support/boxes.h"
+#include "support/waves/boxes.h"
 #include "support/suite.h"
 
 static const double pi = 3.14159265358979323846;

@@ -29,8 +29,9 @@ static double value_at(integral *of, integrand *f, int axis, double x)
   return f(of);
 }
 
-/* Lobatto's rule with four points. *apart is how far Simpson's rule is from it. Each place of a jump
- * tells them apart. Points at the ends are a little inside, because surfaces are often there. */
+/* Lobatto's rule with four points. *apart is how far Simpson's rule is from it. Each place of a
+ * jump tells them apart. Points at the ends are a little inside, because surfaces are often
+ * there. */
 static double panel(integral *of, integrand *f, int axis, double a, double b, double *apart)
 {
   static const double inside = 1e-9;

@@ -1,9 +1,10 @@
-/* The largest stable step, 2/sqrt(lambda) with the largest eigenvalue lambda of M_1^-1 d_1^T M_2 d_1.
+/* The largest stable step, 2/sqrt(lambda) with the largest eigenvalue lambda of
+ * M_1^-1 d_1^T M_2 d_1.
  *
  * Without materials the operator is a sum over the axes, and lambda the sum of the largest
- * eigenvalues of -D' D along each, which bisection finds by Sylvester's law of inertia. With
- * materials Lanczos's iteration finds it, within 0.2 percent from above. The place is that of the largest local bound, that of one
- * face with its edges. */
+ * eigenvalues of minus the second difference along each, which bisection finds by Sylvester's law
+ * of inertia. With materials Lanczos's iteration finds it, within 0.2 percent from above. The place
+ * is where boxes are the shortest and waves the fastest. */
 #include <math.h>
 
 #include "core/memory.h"
@@ -12,8 +13,8 @@
 
 /* ---- one axis ---- */
 
-/* The symmetric matrix of the free nodes of an axis, with an entry in its corner if the axis repeats
- * itself. */
+/* The symmetric matrix of the free nodes of an axis, with an entry in its corner if the axis
+ * repeats itself. */
 typedef struct line {
   const dvi__yee_axis *a;
   int first, count;

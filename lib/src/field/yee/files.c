@@ -1,6 +1,7 @@
 /* Saved states of grids. The section "yee" identifies the grid and has its times, "yee-fields" the
- * fields, "yee-worn" what was conducted, "yee-waves" the lines of waves, "yee-layers" the sums of absorbing layers, "yee-sources" the impulses of the sources, and
- * "yee-charges" the charges of the start. */
+ * fields, "yee-worn" what was conducted, "yee-layers" the sums of absorbing layers, "yee-waves" the
+ * lines of waves, "yee-sources" the impulses of the sources, and "yee-charges" the charges of the
+ * start. */
 #include <math.h>
 #include <string.h>
 

@@ -36,6 +36,7 @@ INLINE void NAME(faces)(const dvi__yee_faces_row *whole)
   const dvi__yee_faces_row l = *whole;
   for (size_t i = 0; i < l.count; i += WIDTH) {
     NAME(vector) b, p, q;
+    __builtin_prefetch((const void *)(l.soon + i * sizeof(double)));
     NAME(load)(l.b + i, &b);
     NAME(difference)(l.p1, l.p0, i, &p);
     NAME(difference)(l.q1, l.q0, i, &q);
@@ -50,6 +51,7 @@ INLINE void NAME(edges)(const dvi__yee_edges_row *whole, const dvi__yee_metric m
   const dvi__yee_edges_row l = *whole;
   for (size_t i = 0; i < l.count; i += WIDTH) {
     NAME(vector) e, p, q, factor;
+    __builtin_prefetch((const void *)(l.soon + i * sizeof(double)));
     NAME(load)(l.e + i, &e);
     if (metric == DVI__YEE_EQUAL) {
       NAME(difference)(l.p1, l.p0, i, &p);
@@ -98,6 +100,7 @@ INLINE void NAME(layers)(const dvi__yee_layers_row *whole)
   const dvi__yee_layers_row l = *whole;
   for (size_t i = 0; i < l.count; i += WIDTH) {
     NAME(vector) d, psi;
+    __builtin_prefetch((const void *)((uintptr_t)(l.psi + i) + l.soon));
     NAME(weighted)(l.p1, l.p0, l.up, l.down, i, &d);
     NAME(load)(l.psi + i, &psi);
     psi = l.b * psi + l.a * d;
@@ -118,6 +121,7 @@ INLINE void NAME(layers_end)(const dvi__yee_layers_end *l)
     for (int c = 0; c < 2; c++) {
       NAME(vector) d, psi;
       double *own = l->psi + (size_t)c * count + i;
+      __builtin_prefetch((const void *)((uintptr_t)own + 4 * count * sizeof(double)));
       if (l->of[c].f == NULL) continue;
       NAME(weighted_at)(l->of[c].p1, l->of[c].p0, l->up, l->down, i, &d);
       NAME(load)(own, &psi);

@@ -9,6 +9,14 @@ typedef struct differences {
   const double *p1, *p0, *q1, *q0;
 } differences;
 
+/* Give the address of a row that is that far from another one. The next rows of the sweep need E
+ * of the next plane, and B of this one. Nothing is read there, so the end of the state does not
+ * matter. */
+static uintptr_t needed_soon(const double *row, ptrdiff_t away)
+{
+  return (uintptr_t)row + (uintptr_t)(away * (ptrdiff_t)sizeof *row);
+}
+
 /* ---- absorbing layers ---- */
 
 /* Give the layers in which a box, or a node, of an axis is, or -1. */
@@ -29,6 +37,7 @@ static void stretch_across(const dvi__yee_worker *w, int copy, int axis, int whi
   const dvi__yee_layers *l = &a->layers[e];
   const int layer = i - l->first, at = i - l->start;
   row->psi = l->psi + dvi__yee_psi_at(y, axis, e, copy, which, layer, j, k);
+  row->soon = (uintptr_t)(4 * y->width * (size_t)(axis == 1 ? 1 : l->count) * sizeof(double));
   row->b = l->b[form][at];
   row->a = l->a[form][at];
   row->r = l->r[form][at];
@@ -154,7 +163,11 @@ static void update_face(const dvi__yee_worker *w, int copy, int c, int j, int k)
                *q = y->slot[a] >= 0 ? state + dvi__yee_at(y, a, j, k) : f;
   const differences d = {y->slot[b] >= 0 ? p + y->next[a] : p, p,
                          y->slot[a] >= 0 ? q + y->next[b] : q, q};
-  const dvi__yee_faces_row row = {y->count, f, d.p1, d.p0, d.q1, d.q0, y->dt};
+  const dvi__yee_faces_row row = {
+      y->count, f,
+      d.p1,     d.p0,
+      d.q1,     d.q0,
+      y->dt,    needed_soon(f, y->next[1] + y->next[2] - y->edges_slots * (ptrdiff_t)y->width)};
   y->lanes->faces(&row);
   stretch(w, copy, DVI__YEE_B + c, j, k, &d, f, NULL);
 }
@@ -278,14 +291,16 @@ static void update_edge(const dvi__yee_worker *w, int copy, int c, int j, int k)
   const size_t beside = dvi__yee_at_edges(y, c, j, k);
   double *e = y->state[copy] + dvi__yee_at(y, c, j, k);
   const differences d = take_fields(w, copy, c, j, k, e);
-  dvi__yee_edges_row row = {.count = y->count,
-                            .e = e,
-                            .p1 = d.p1,
-                            .p0 = d.p0,
-                            .q1 = d.q1,
-                            .q0 = d.q0,
-                            .ce = y->ce != NULL ? y->ce + beside : NULL,
-                            .ca = y->ca != NULL ? y->ca + beside : NULL};
+  dvi__yee_edges_row row = {
+      .count = y->count,
+      .e = e,
+      .p1 = d.p1,
+      .p0 = d.p0,
+      .q1 = d.q1,
+      .q0 = d.q0,
+      .ce = y->ce != NULL ? y->ce + beside : NULL,
+      .ca = y->ca != NULL ? y->ca + beside : NULL,
+      .soon = needed_soon(e, y->next[1] + y->edges_slots * (ptrdiff_t)y->width)};
   set_metric(y, c, j, k, &row);
   y->lanes->edges(&row);
   stretch(w, copy, c, j, k, &d, e, row.ce);

@@ -44,11 +44,15 @@ dvi_status dvi__yee_start_sources(dvi__yee *y, double t0)
 {
   for (int i = 0; i < y->sources; i++)
     DVI_TRY(impulse_of(&y->source[i], t0, 0, 0.5 * y->dt, &y->drive[i]));
+  return DVI_OK;
+}
+
+void dvi__yee_restart_impulses(dvi__yee *y)
+{
   for (int i = 0; i < y->sources; i++) {
     y->source[i].impulse = y->drive[i];
     y->source[i].compensation = 0;
   }
-  return DVI_OK;
 }
 
 dvi_status dvi__yee_prepare(dvi__yee *y, int steps, int *ready)

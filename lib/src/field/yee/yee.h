@@ -268,8 +268,10 @@ void dvi__yee_wrap_values(dvi__yee *yee);
 /* ---- sources.c ---- */
 
 dvi_status dvi__yee_make_sources(const dvi_yee_terms *terms, dvi__yee *yee);
-/* Start signals at t0. Give the drives of the first half step in the first row of drives. */
+/* Give the drives of the first half step from t0, in the first row of drives. */
 dvi_status dvi__yee_start_sources(dvi__yee *yee, double t0);
+/* Let the sums of impulses begin with those of the first half step. */
+void dvi__yee_restart_impulses(dvi__yee *yee);
 /* Prepare the drives of the next steps. *ready of them have signals that did not fail. */
 dvi_status dvi__yee_prepare(dvi__yee *yee, int steps, int *ready);
 /* Add the impulses of steps that have been taken. */
@@ -314,8 +316,8 @@ typedef struct dvi__yee_moment {
 dvi__yee_value dvi__yee_stored(const dvi__yee *yee, int component, const int *place);
 dvi__yee_value dvi__yee_B_at(const dvi__yee_moment *moment, int c, const int *place);
 dvi__yee_value dvi__yee_E_at(const dvi__yee_moment *moment, int c, const int *place);
-/* Move E_c at a place from the start to half a step later. */
-void dvi__yee_start_edge(const dvi__yee_moment *moment, int c, const int *place);
+/* Move E_c at a place from the start to half a step later, with the curl of H if there is B. */
+void dvi__yee_start_edge(const dvi__yee_moment *moment, int c, const int *place, int has_B);
 /* Prepare a march's time, and its drives. */
 dvi_status dvi__yee_set_moment(const dvi__yee *yee, dvi__yee_moment *moment);
 dvi_status dvi__yee_sample(const void *yee, dvi_march_form form, int64_t count, const int *cell,
