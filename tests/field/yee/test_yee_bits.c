@@ -367,7 +367,8 @@ END_TEST
 /* Whichever allocation fails, all memory is released, which the sanitizers see. */
 START_TEST(failed_allocations_are_reported)
 {
-  dvi_yee_terms terms = grid(_i);
+  static const int kinds[] = {1, 3, 4, 6, 7};
+  dvi_yee_terms terms = grid(kinds[_i]);
   dvi_march *march = NULL;
   terms.threads = 2;
   for (long successes = 0; march == NULL; successes++) {
@@ -396,5 +397,5 @@ SUITE(yee_bits)
   tcase_add_test(tests, bad_axes_are_refused);
   tcase_add_test(tests, bad_steps_and_media_are_refused);
   tcase_add_test(tests, bad_sources_and_probes_are_refused);
-  tcase_add_loop_test(tests, failed_allocations_are_reported, 0, KINDS);
+  tcase_add_loop_test(tests, failed_allocations_are_reported, 0, 5);
 }

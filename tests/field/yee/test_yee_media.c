@@ -40,7 +40,7 @@ static int negative_eps(const double *x, double *value, void *user)
 
 static const dvi__average_box box = {3, {0.1, 0.2, 0.3}, {0.5, 0.5, 0.5}}; /* .4 x .3 x .2 */
 
-/* Surfaces are found to 1e-4 of a box, which is the tolerance times a ratio of four. */
+/* Surfaces are found to 1e-4 of a box or better. */
 START_TEST(layers_have_the_averages_of_their_normals)
 {
   plane across = {{1, 0, 0}, 0.2}, beside = {{0, 1, 0}, 0.41};
