@@ -124,9 +124,8 @@ enum { DVI__YEE_SCRATCH = 7, DVI__YEE_MOST_TOGETHER = 16 };
 /* Give the number of the rows at (j, k), which may be -1 on axes that the grid has. */
 static inline size_t dvi__yee_row(const dvi__yee *y, int j, int k)
 {
-  const size_t below = (size_t)(k + !y->axis[2].is_trivial),
-               left = (size_t)(j + !y->axis[1].is_trivial);
-  return below * y->rows[0] + left;
+  const int below = k + !y->axis[2].is_trivial, left = j + !y->axis[1].is_trivial;
+  return (size_t)below * y->rows[0] + (size_t)left;
 }
 
 /* Give the place 0 of a component's row. `component` is DVI__YEE_E + c or DVI__YEE_B + c. */
@@ -196,9 +195,8 @@ int64_t dvi__yee_form_size(const dvi__yee *yee, dvi_march_form form);
 void dvi__yee_place_of(const dvi__yee *yee, dvi_march_form form, int64_t number, int *component,
                        int *place);
 /* Integrate a component of a function over a box, along the axes for which `reaches` is not 0. */
-dvi_status dvi__yee_integrate_box(const dvi__yee *yee, const double *lower, const double *upper,
-                                  const int *reaches, dvi_form_function *function, void *user,
-                                  int which, double *sum);
+dvi_status dvi__yee_integrate_box(const double *lower, const double *upper, const int *reaches,
+                                  dvi_form_function *function, void *user, int which, double *sum);
 
 /* ---- media.c ---- */
 
