@@ -158,7 +158,7 @@ extern "C" {
  *  - "charge", the sum of -d_0^T M_1 E over the nodes at which charge is conserved, at t_n + dt/2,
  *  - "gauss", the largest change of the charge of a node that the currents do not explain, beside
  *    the largest of its terms,
- *  - "divergence", the largest change of the flux of B out of a box since the start, likewise,
+ *  - "divergence", the largest flux of B out of a box, likewise,
  *  - the probes and then the fluxes, at the march's time.
  *
  *  Nodes and boxes in absorbing layers, on absorbing ends, and on the surface of a wave's box are

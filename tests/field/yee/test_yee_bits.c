@@ -8,7 +8,7 @@
 
 #include "core/memory.h"
 #include "num/simd/lanes.h"
-#include "support/boxes.h"
+#include "support/waves/boxes.h"
 #include "support/files.h"
 #include "support/suite.h"
 
@@ -25,8 +25,8 @@ static int pulse(double t, double *value, void *user)
 static int swirl(const double *x, double *value, void *user)
 {
   (void)user;
-  value[0] = sin(3 * x[1]);
-  value[1] = cos(2 * x[0]);
+  value[0] = x[1] * x[1];
+  value[1] = 1 - x[0];
   value[2] = x[0] * x[1];
   return 0;
 }
@@ -73,8 +73,8 @@ static const dvi_yee_probe probe = {"ear", DVI_FORM_E, .at = {4, 5, 6}, .along =
 
 enum { KINDS = 10 };
 
-/* Grids of 12^axes boxes: walls, layers, all that repeats itself, absorbing ends, materials, losses,
- * sources, waves, unequal boxes; and on fewer axes. */
+/* Grids of 12^axes boxes: walls, layers, all that repeats itself, absorbing ends, materials,
+ * losses, sources, waves, unequal boxes; and on fewer axes. */
 static dvi_yee_terms grid(int kind)
 {
   static const dvi_yee_end layers = {.kind = DVI_YEE_CPML, .layers = 3, .alpha = 0.1, .kappa = 3};
@@ -108,10 +108,9 @@ static dvi_yee_terms grid(int kind)
   if (kind == 0 || kind == 6) terms.axis[0].node = terms.axis[1].node = graded;
   if (kind == 0 || kind == 5 || kind == 7) terms.eps.at = ball, terms.mu.at = plate;
   if (kind == 1) terms.wave = &wave, terms.waves = 1;
-  if (kind == 2 || kind == 4) terms.sigma.at = loss;
-  if (kind == 9) terms.wave = NULL, terms.eps.at = plate;
+  if (kind == 2) terms.sigma.at = loss;
+  if (kind == 9) terms.eps.at = plate;
   if (kind == 4) terms.wave = &straight, terms.waves = 1;
-  if (kind == 4) terms.sigma.at = NULL;
   return terms;
 }
 
@@ -170,13 +169,13 @@ START_TEST(threads_and_steps_together_change_no_bit)
   terms.together = 1;
   const state plain = run(&terms, until);
   ck_assert(isfinite(plain.values[plain.count - 2]));
-  for (int threads = 1; threads <= 4; threads++)
-    for (int together = 0; together <= 16; together = 2 * together + (together < 2)) {
-      if (is_short_run() && (threads + together) % 3 != 0) continue;
-      terms.threads = threads;
-      terms.together = together;
-      check_same(plain, run(&terms, until), "threads and steps together", 100 * threads + together);
-    }
+  for (int i = 0; i < 8; i++) {
+    if (is_short_run() && i % 3 != 0) continue;
+    terms.threads = 1 + i % 3;
+    terms.together = i < 2 ? 0 : i < 5 ? 2 * i - 1 : i == 5 ? 1 : 16;
+    check_same(plain, run(&terms, until), "threads and steps together",
+               100 * terms.threads + terms.together);
+  }
   free(plain.values);
 }
 END_TEST
@@ -368,7 +367,8 @@ END_TEST
 /* Whichever allocation fails, all memory is released, which the sanitizers see. */
 START_TEST(failed_allocations_are_reported)
 {
-  dvi_yee_terms terms = grid(_i);
+  static const int kinds[] = {1, 3, 4, 6, 7};
+  dvi_yee_terms terms = grid(kinds[_i]);
   dvi_march *march = NULL;
   terms.threads = 2;
   for (long successes = 0; march == NULL; successes++) {
@@ -397,5 +397,5 @@ SUITE(yee_bits)
   tcase_add_test(tests, bad_axes_are_refused);
   tcase_add_test(tests, bad_steps_and_media_are_refused);
   tcase_add_test(tests, bad_sources_and_probes_are_refused);
-  tcase_add_loop_test(tests, failed_allocations_are_reported, 0, KINDS);
+  tcase_add_loop_test(tests, failed_allocations_are_reported, 0, 5);
 }

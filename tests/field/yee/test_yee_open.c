@@ -3,10 +3,9 @@
 #include <dvi/yee.h>
 #include <complex.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
-#include "support/boxes.h"
+#include "support/waves/boxes.h"
 #include "support/suite.h"
 
 /* ---- absorbing layers ---- */
@@ -231,7 +230,6 @@ START_TEST(waves_along_axes_do_not_leak)
   for (int l = 0; l < 3; l++) terms.axis[l] = (dvi_yee_axis){.cells = 16, .upper = 2};
   const double outside = leak(&terms, 5, &inside);
   ck_assert_double_gt(inside, 0.75); /* 0.8 of the largest component, at some sampled time */
-  printf("axis %d leak %g\n", _i, outside);
   /* roundings of 1e-16 for values of 1 */
   ck_assert_msg(outside < 1e-15, "direction %d: %g", _i, outside);
 }

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "support/boxes.h"
+#include "support/waves/boxes.h"
 #include "support/suite.h"
 
 /* ---- signals ---- */

@@ -4,12 +4,11 @@
 
 #include "core/status.h"
 
-/* An integral is right to this part of its value. A surface then is in its place to this part of a
- * box, which bisections find. */
-static const double tolerance = 1e-4;
+/* Integrals of materials are right to the first part of their values, and integrals over these to
+ * the second. A surface then is in its place to this part of a box. */
+static const double fine = 1e-4, coarse = 1e-3;
 
-enum { DEEPEST = 16 };
-
+enum { DEEPEST = 14, POINTS = 5 };
 /* An integral over some axes, the first one outermost. */
 typedef struct integral {
   const dvi__average *eps, *sigma; /* eps may be mu. sigma may be NULL */
@@ -29,40 +28,68 @@ static double value_at(integral *of, integrand *f, int axis, double x)
   return f(of);
 }
 
-/* Lobatto's rule with four points. *apart is how far Simpson's rule is from it. Each place of a jump
- * tells them apart. Points at the ends are a little inside, because surfaces are often there. */
-static double panel(integral *of, integrand *f, int axis, double a, double b, double *apart)
+/* Points of Lobatto's rule with four points, and the middle, which Simpson's rule has. Points at the
+ * ends are a little inside, because surfaces are often there. */
+static void place_points(double a, double b, double *x)
 {
-  static const double inside = 1e-9;
-  const double length = b - a, middle = 0.5 * (a + b), inner = 0.5 * length / sqrt(5),
-               ends = value_at(of, f, axis, a + inside * length) +
-                      value_at(of, f, axis, b - inside * length),
-               others = value_at(of, f, axis, middle - inner) +
-                        value_at(of, f, axis, middle + inner),
-               lobatto = length * (ends + 5 * others) / 12,
-               simpson = length * (ends + 4 * value_at(of, f, axis, middle)) / 6;
-  *apart = fabs(lobatto - simpson);
-  return lobatto;
+  const double length = b - a, middle = 0.5 * (a + b), inner = 0.5 * length / sqrt(5);
+  x[0] = a + 1e-9 * length;
+  x[1] = middle - inner;
+  x[2] = middle;
+  x[3] = middle + inner;
+  x[4] = b - 1e-9 * length;
 }
 
-/* Halve where the rules differ. Of a panel with a jump one half goes on. */
-static double refine(integral *of, integrand *f, int axis, double a, double b, double allowed,
-                     int depth)
+/* Tell if f has one value at the first points and another one at the rest. Give the number of the
+ * first ones. */
+static int has_two_values(const double *f, int *before)
 {
-  const double middle = 0.5 * (a + b);
-  double apart;
-  const double sum = panel(of, f, axis, a, b, &apart);
-  if (allowed == 0) allowed = tolerance * fabs(sum);
-  if (depth == DEEPEST || apart <= allowed || of->status != DVI_OK) return sum;
-  return refine(of, f, axis, a, middle, allowed, depth + 1) +
-         refine(of, f, axis, middle, b, allowed, depth + 1);
+  *before = 1;
+  while (*before < POINTS && f[*before] == f[0]) (*before)++;
+  for (int i = *before; i < POINTS; i++)
+    if (f[i] != f[POINTS - 1]) return 0;
+  return *before < POINTS;
+}
+
+/* Integrate a function with one jump, which lies between two points. */
+static double integrate_jump(integral *of, integrand *f, int axis, double a, double b,
+                             const double *x, const double *values, int before)
+{
+  double low = x[before - 1], high = x[before];
+  for (int i = 0; i < DEEPEST; i++) {
+    const double middle = 0.5 * (low + high);
+    if (value_at(of, f, axis, middle) == values[0])
+      low = middle;
+    else
+      high = middle;
+  }
+  const double at = 0.5 * (low + high);
+  return values[0] * (at - a) + values[POINTS - 1] * (b - at);
+}
+
+/* Halve where Lobatto's and Simpson's rule differ, as they do for a jump anywhere. */
+static double refine(integral *of, integrand *f, int axis, double a, double b, double tolerance,
+                     double allowed, int depth)
+{
+  double x[POINTS], v[POINTS];
+  int before;
+  place_points(a, b, x);
+  for (int i = 0; i < POINTS; i++) v[i] = value_at(of, f, axis, x[i]);
+  const double lobatto = (b - a) * (v[0] + v[4] + 5 * (v[1] + v[3])) / 12,
+               simpson = (b - a) * (v[0] + v[4] + 4 * v[2]) / 6, middle = 0.5 * (a + b);
+  if (depth == 0) allowed = tolerance * fabs(lobatto);
+  if (depth == DEEPEST || fabs(lobatto - simpson) <= allowed || of->status != DVI_OK)
+    return lobatto;
+  if (has_two_values(v, &before)) return integrate_jump(of, f, axis, a, b, x, v, before);
+  return refine(of, f, axis, a, middle, tolerance, allowed, depth + 1) +
+         refine(of, f, axis, middle, b, tolerance, allowed, depth + 1);
 }
 
 /* Integrate along an axis, if the space has it. */
-static double along(integral *of, integrand *f, int axis)
+static double along(integral *of, integrand *f, int axis, double tolerance)
 {
   if (axis >= of->box->space) return f(of);
-  return refine(of, f, axis, of->box->lower[axis], of->box->upper[axis], 0, 0);
+  return refine(of, f, axis, of->box->lower[axis], of->box->upper[axis], tolerance, 0, 0);
 }
 
 /* ---- material ---- */
@@ -106,28 +133,28 @@ static double loss_density(integral *of)
 
 static double edge_star(integral *of)
 {
-  return 1 / along(of, impermittivity, of->axis);
+  return 1 / along(of, impermittivity, of->axis, fine);
 }
 
 static double edge_loss(integral *of)
 {
-  const double resistance = along(of, impermittivity, of->axis);
-  return along(of, loss_density, of->axis) / (resistance * resistance);
+  const double resistance = along(of, impermittivity, of->axis, fine);
+  return along(of, loss_density, of->axis, fine) / (resistance * resistance);
 }
 
 static double face_row(integral *of)
 {
-  return along(of, permeability, (of->axis + 2) % 3);
+  return along(of, permeability, (of->axis + 2) % 3, fine);
 }
 
 static double face_star(integral *of)
 {
-  return 1 / along(of, face_row, (of->axis + 1) % 3);
+  return 1 / along(of, face_row, (of->axis + 1) % 3, coarse);
 }
 
 static double edge_row(integral *of)
 {
-  return along(of, of->sigma != NULL ? edge_loss : edge_star, (of->axis + 2) % 3);
+  return along(of, of->sigma != NULL ? edge_loss : edge_star, (of->axis + 2) % 3, coarse);
 }
 
 /* ---- boxes ---- */
@@ -161,8 +188,9 @@ dvi_status dvi__average_edge(const dvi__average *eps, const dvi__average_box *bo
   integral of = {.eps = eps, .box = box, .axis = axis, .status = DVI_OK};
   double value, length, area;
   measure(box, axis, &length, &area);
-  *star += is_uniform(&of, eps, least_positive, &value) ? value * area / length
-                                                        : along(&of, edge_row, (axis + 1) % 3);
+  *star += is_uniform(&of, eps, least_positive, &value)
+               ? value * area / length
+               : along(&of, edge_row, (axis + 1) % 3, coarse);
   return of.status;
 }
 
@@ -173,7 +201,7 @@ dvi_status dvi__average_face(const dvi__average *mu, const dvi__average_box *box
   double value, length, area;
   measure(box, axis, &length, &area);
   *star += is_uniform(&of, mu, least_positive, &value) ? length / (value * area)
-                                                       : along(&of, face_star, axis);
+                                                       : along(&of, face_star, axis, coarse);
   return of.status;
 }
 
@@ -185,6 +213,6 @@ dvi_status dvi__average_loss(const dvi__average *eps, const dvi__average *sigma,
   measure(box, axis, &length, &area);
   const int is_plain = is_uniform(&of, sigma, 0, &value) &&
                        (value == 0 || is_uniform(&of, eps, least_positive, &unused));
-  *star += is_plain ? value * area / length : along(&of, edge_row, (axis + 1) % 3);
+  *star += is_plain ? value * area / length : along(&of, edge_row, (axis + 1) % 3, coarse);
   return of.status;
 }

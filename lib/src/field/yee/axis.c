@@ -179,8 +179,8 @@ static void set_layers(dvi__yee_axis *a, int e, double dt)
   for (int i = 0; i < l->count; i++) {
     const int cell = l->first + i, at = cell - l->start;
     const double middle = 0.5 * (a->node[cell] + a->node[cell + 1]);
-    l->up[0][at] = a->up[cell];
-    l->down[0][at] = a->down[cell];
+    l->up[0][at] = cell > 0 ? a->up[cell] : 0; /* node 0 is on a conductor */
+    l->down[0][at] = cell > 0 ? a->down[cell] : 0;
     l->up[1][at] = l->down[1][at] = dt;
     set_factors(l, 0, at, &a->end[e], fabs(a->node[cell] - a->node[inner]) / depth, depth, dt);
     set_factors(l, 1, at, &a->end[e], fabs(middle - a->node[inner]) / depth, depth, dt);

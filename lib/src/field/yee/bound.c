@@ -2,9 +2,9 @@
  * M_1^-1 d_1^T M_2 d_1.
  *
  * Without materials the operator is a sum over the axes, and lambda the sum of the largest
- * eigenvalues of -D' D along each, which bisection finds by Sylvester's law of inertia. With
- * materials Lanczos's iteration finds it, within 0.2 percent from above. The place is that of the
- * largest local bound, that of one face with its edges. */
+ * eigenvalues of minus the second difference along each, which bisection finds by Sylvester's law
+ * of inertia. With materials Lanczos's iteration finds it, within 0.2 percent from above. The place
+ * is where boxes are the shortest and waves the fastest. */
 #include <math.h>
 
 #include "core/memory.h"
@@ -88,7 +88,7 @@ static double length_around(const dvi__yee *y, int component, int l, int i)
 static double local_largest(const dvi__yee *y, int c, const int *place)
 {
   double sum = 0, speed = 1;
-  for (int l = 0; l < y->axes; l++) {
+  for (int l = 0; l < 3 && !y->axis[l].is_trivial; l++) {
     const double h = length_around(y, DVI__YEE_B + c, l, place[l]);
     sum += 1 / (h * h);
   }
@@ -107,7 +107,7 @@ void dvi__yee_tightest(const dvi__yee *y, double *x)
 {
   double most = -1;
   for (int c = 0; c < 3; c++) {
-    int place[3];
+    int place[3] = {0, 0, 0};
     if (y->slot[DVI__YEE_B + c] < 0) continue;
     for (place[2] = 0; place[2] < dvi__yee_places(y, DVI__YEE_B + c, 2); place[2]++)
       for (place[1] = 0; place[1] < dvi__yee_places(y, DVI__YEE_B + c, 1); place[1]++)

@@ -1,6 +1,6 @@
 /* Saved states of grids. The section "yee" identifies the grid and has its times, "yee-fields" the
- * fields, "yee-worn" what was conducted, "yee-waves" the lines of waves, "yee-layers" the sums of
- * absorbing layers, "yee-sources" the impulses of the sources, and "yee-charges" the charges of the
+ * fields, "yee-worn" what was conducted, "yee-layers" the sums of absorbing layers, "yee-waves" the
+ * lines of waves, "yee-sources" the impulses of the sources, and "yee-charges" the charges of the
  * start. */
 #include <math.h>
 #include <string.h>
@@ -18,6 +18,11 @@ typedef struct identity {
   int64_t step, has_charge;
 } identity;
 
+static uint64_t hash_integer(uint64_t hash, int64_t number)
+{
+  return dvi__hash(hash, sizeof number, &number);
+}
+
 static uint64_t hash_numbers(uint64_t hash, size_t count, const double *x)
 {
   return x != NULL ? dvi__hash(hash, count * sizeof *x, x) : hash;
@@ -26,9 +31,8 @@ static uint64_t hash_numbers(uint64_t hash, size_t count, const double *x)
 static uint64_t hash_acts(uint64_t hash, const dvi__yee_acts *acts)
 {
   for (int64_t i = 0; i < acts->count; i++) {
-    hash = dvi__hash(hash, sizeof acts->act[i].place, &acts->act[i].place);
-    hash = dvi__hash(hash, sizeof acts->act[i].from, &acts->act[i].from);
-    hash = dvi__hash(hash, sizeof acts->act[i].w, acts->act[i].w);
+    hash = hash_integer(hash_integer(hash, acts->act[i].place), acts->act[i].from);
+    hash = hash_numbers(hash, 2, acts->act[i].w);
   }
   return hash;
 }
@@ -36,19 +40,18 @@ static uint64_t hash_acts(uint64_t hash, const dvi__yee_acts *acts)
 static uint64_t hash_grid(const dvi__yee *y)
 {
   const size_t places = y->rows[0] * y->rows[1] * y->width;
-  const int plain[] = {y->axes, y->degree, y->sources, y->beams};
-  uint64_t hash = dvi__hash(DVI__HASH_START, sizeof plain, plain);
+  uint64_t hash = hash_integer(hash_integer(DVI__HASH_START, y->axes), y->degree);
+  hash = hash_integer(hash_integer(hash, y->sources), y->beams);
   for (int l = 0; l < 3; l++) {
     const dvi__yee_axis *a = &y->axis[l];
-    const int kinds[] = {a->cells, (int)a->end[0].kind, (int)a->end[1].kind};
     const double phase[] = {a->cosine, a->sine};
-    hash = dvi__hash(hash, sizeof kinds, kinds);
+    hash = hash_integer(hash, a->cells);
     hash = hash_numbers(hash, 2, phase);
     hash = hash_numbers(hash, (size_t)a->cells + 1, a->node);
     for (int e = 0; e < 2; e++) {
       const double numbers[] = {a->end[e].reflection, a->end[e].alpha, a->end[e].kappa,
                                 a->layers[e].count};
-      hash = hash_numbers(hash, 4, numbers);
+      hash = hash_numbers(hash_integer(hash, (int64_t)a->end[e].kind), 4, numbers);
     }
   }
   hash = hash_numbers(hash, places * (size_t)y->edges_slots, y->ce);

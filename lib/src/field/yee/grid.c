@@ -179,16 +179,15 @@ static const double gauss_weight[POINTS] = {0.23692688505618909, 0.4786286704993
                                             0.56888888888888889, 0.47862867049936647,
                                             0.23692688505618909};
 
-dvi_status dvi__yee_integrate_box(const dvi__yee *y, const double *lower, const double *upper,
-                                  const int *reaches, dvi_form_function *function, void *user,
-                                  int which, double *sum)
+dvi_status dvi__yee_integrate_box(const double *lower, const double *upper, const int *reaches,
+                                  dvi_form_function *function, void *user, int which, double *sum)
 {
   int points = 1;
   *sum = 0;
-  for (int l = 0; l < y->axes; l++) points *= reaches[l] ? POINTS : 1;
+  for (int l = 0; l < 3; l++) points *= reaches[l] ? POINTS : 1;
   for (int p = 0; p < points; p++) {
     double x[3] = {0}, value[3] = {0}, weight = 1;
-    for (int l = 0, rest = p; l < y->axes; l++) {
+    for (int l = 0, rest = p; l < 3; l++) {
       x[l] = lower[l];
       if (!reaches[l]) continue;
       const double half = 0.5 * (upper[l] - lower[l]);
@@ -220,7 +219,7 @@ static dvi_status integrate_cell(const dvi__yee *y, int component, const int *pl
   }
   for (int c = component < DVI__YEE_B ? DVI__YEE_E : DVI__YEE_B; c < component; c++)
     which += y->slot[c] >= 0;
-  return dvi__yee_integrate_box(y, lower, upper, reaches, function, user, which, value);
+  return dvi__yee_integrate_box(lower, upper, reaches, function, user, which, value);
 }
 
 dvi_status dvi_yee_integrate(const dvi_yee_terms *terms, dvi_march_form form,
@@ -233,7 +232,7 @@ dvi_status dvi_yee_integrate(const dvi_yee_terms *terms, dvi_march_form form,
   dvi_status status = make_bare_grid(terms, &y);
   const int64_t size = status == DVI_OK ? dvi__yee_form_size(&y, form) : 0;
   for (int64_t i = 0; i < size && status == DVI_OK; i++) {
-    int component, place[3];
+    int component, place[3] = {0, 0, 0};
     dvi__yee_place_of(&y, form, i, &component, place);
     status = integrate_cell(&y, component, place, function, user, values + i);
   }

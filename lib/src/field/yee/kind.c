@@ -1,10 +1,10 @@
 /* Yee's grid as a march (dvi/march.h).
  *
- * L = E.M_1 E/2 - B.M_2 B/2 + J.A with E = -A', B = d_1 A, discretised by differences in time of A:
+ * L = E.M_1 E/2 - B.M_2 B/2 + J.A with E = -A' and B = d_1 A, discretised by differences of A:
  *     Ld = dt ( E^{n+1/2}.M_1 E^{n+1/2}/2 - B^n.M_2 B^n/2 + J^n.A^n ),
  *     E^{n+1/2} = (A^n - A^{n+1})/dt.
- * Its stationarity gives the step of dvi/yee.h. Source: Yee 1966; Stern 2009, secs. 3.2, 3.3, with
- * a half step at the start. */
+ * Its stationarity gives the step of dvi/yee.h. Source: Yee 1966; Stern 2009, secs. 3.2 and 3.3,
+ * with a half step at the start. */
 #include <math.h>
 
 #include "core/memory.h"

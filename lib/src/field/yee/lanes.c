@@ -36,10 +36,11 @@ typedef enum dvi__yee_matter { DVI__YEE_VACUUM, DVI__YEE_MATTER, DVI__YEE_LOSSY 
   }                                                                                               \
   target static void layers_##suffix(const dvi__yee_layers_row *row)                              \
   {                                                                                               \
-    if (row->up_at != NULL)                                                                       \
-      row->ce != NULL ? layers##width(row, 1, 1) : layers##width(row, 1, 0);                      \
-    else                                                                                          \
-      row->ce != NULL ? layers##width(row, 0, 1) : layers##width(row, 0, 0);                      \
+    layers##width(row);                                                                           \
+  }                                                                                               \
+  target static void layers_end_##suffix(const dvi__yee_layers_end *end)                          \
+  {                                                                                               \
+    layers_end##width(end);                                                                       \
   }                                                                                               \
   target static void product_##suffix(size_t count, const double *mi, const double *b, double *h) \
   {                                                                                               \
@@ -54,10 +55,10 @@ LEVEL(avx512, __attribute__((target("fma,avx512f,avx512dq,avx512vl"))), 8)
 
 /* Levels in the order of num/simd/lanes.c. */
 static const dvi__yee_lanes levels[] = {
-    {faces_baseline, edges_baseline, layers_baseline, product_baseline},
+    {faces_baseline, edges_baseline, layers_baseline, layers_end_baseline, product_baseline},
 #ifdef __x86_64__
-    {faces_avx2, edges_avx2, layers_avx2, product_avx2},
-    {faces_avx512, edges_avx512, layers_avx512, product_avx512},
+    {faces_avx2, edges_avx2, layers_avx2, layers_end_avx2, product_avx2},
+    {faces_avx512, edges_avx512, layers_avx512, layers_end_avx512, product_avx512},
 #endif
 };
 

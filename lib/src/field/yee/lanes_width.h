@@ -36,6 +36,7 @@ INLINE void NAME(faces)(const dvi__yee_faces_row *whole)
   const dvi__yee_faces_row l = *whole;
   for (size_t i = 0; i < l.count; i += WIDTH) {
     NAME(vector) b, p, q;
+    __builtin_prefetch((const void *)(l.soon + i * sizeof(double)));
     NAME(load)(l.b + i, &b);
     NAME(difference)(l.p1, l.p0, i, &p);
     NAME(difference)(l.q1, l.q0, i, &q);
@@ -50,6 +51,7 @@ INLINE void NAME(edges)(const dvi__yee_edges_row *whole, const dvi__yee_metric m
   const dvi__yee_edges_row l = *whole;
   for (size_t i = 0; i < l.count; i += WIDTH) {
     NAME(vector) e, p, q, factor;
+    __builtin_prefetch((const void *)(l.soon + i * sizeof(double)));
     NAME(load)(l.e + i, &e);
     if (metric == DVI__YEE_EQUAL) {
       NAME(difference)(l.p1, l.p0, i, &p);
@@ -79,29 +81,55 @@ INLINE void NAME(edges)(const dvi__yee_edges_row *whole, const dvi__yee_metric m
   }
 }
 
-INLINE void NAME(layers)(const dvi__yee_layers_row *whole, const int along, const int has_matter)
+/* Add sign ce d to f. ce may be NULL. */
+INLINE void NAME(add_signed)(double sign, const double *ce, size_t i, const NAME(vector) * d,
+                             double *f)
+{
+  NAME(vector) sum, term = sign * *d, factor;
+  if (ce != NULL) {
+    NAME(load)(ce + i, &factor);
+    term *= factor;
+  }
+  NAME(load)(f + i, &sum);
+  sum += term;
+  NAME(store)(f + i, &sum, WIDTH);
+}
+
+INLINE void NAME(layers)(const dvi__yee_layers_row *whole)
 {
   const dvi__yee_layers_row l = *whole;
   for (size_t i = 0; i < l.count; i += WIDTH) {
-    NAME(vector) d, psi, f, b, a, r;
-    if (along) {
-      NAME(weighted_at)(l.p1, l.p0, l.up_at, l.down_at, i, &d);
-      NAME(load)(l.b_at + i, &b);
-      NAME(load)(l.a_at + i, &a);
-      NAME(load)(l.r_at + i, &r);
-    } else
-      NAME(weighted)(l.p1, l.p0, l.up, l.down, i, &d);
+    NAME(vector) d, psi;
+    __builtin_prefetch((const void *)((uintptr_t)(l.psi + i) + l.soon));
+    NAME(weighted)(l.p1, l.p0, l.up, l.down, i, &d);
     NAME(load)(l.psi + i, &psi);
-    psi = along ? b * psi + a * d : l.b * psi + l.a * d;
+    psi = l.b * psi + l.a * d;
     NAME(store)(l.psi + i, &psi, WIDTH);
-    d = l.sign * (psi + (along ? r * d : l.r * d));
-    if (has_matter) {
-      NAME(load)(l.ce + i, &a);
-      d *= a;
+    d = psi + l.r * d;
+    NAME(add_signed)(l.sign, l.ce, i, &d, l.f);
+  }
+}
+
+INLINE void NAME(layers_end)(const dvi__yee_layers_end *l)
+{
+  const size_t count = l->count;
+  for (size_t i = 0; i < count; i += WIDTH) {
+    NAME(vector) a, b, r;
+    NAME(load)(l->b + i, &b);
+    NAME(load)(l->a + i, &a);
+    NAME(load)(l->r + i, &r);
+    for (int c = 0; c < 2; c++) {
+      NAME(vector) d, psi;
+      double *own = l->psi + (size_t)c * count + i;
+      __builtin_prefetch((const void *)((uintptr_t)own + 4 * count * sizeof(double)));
+      if (l->of[c].f == NULL) continue;
+      NAME(weighted_at)(l->of[c].p1, l->of[c].p0, l->up, l->down, i, &d);
+      NAME(load)(own, &psi);
+      psi = b * psi + a * d;
+      NAME(store)(own, &psi, WIDTH);
+      d = psi + r * d;
+      NAME(add_signed)(l->of[c].sign, l->of[c].ce, i, &d, l->of[c].f);
     }
-    NAME(load)(l.f + i, &f);
-    f += d;
-    NAME(store)(l.f + i, &f, WIDTH);
   }
 }
 

@@ -84,7 +84,7 @@ static double outflow(const dvi__yee *y, const int *node, int all, double *size)
 {
   double sum = 0;
   *size = 0;
-  for (int c = 0; c < y->axes; c++) {
+  for (int c = 0; c < 3; c++) {
     int before[3] = {node[0], node[1], node[2]};
     before[c] += node[c] > 0 ? -1 : y->axis[c].cells - 1;
     if (y->slot[c] < 0) continue;
@@ -104,7 +104,7 @@ typedef struct charges {
 static charges visit_nodes(const dvi__yee *y, int all, double *keep, const double *kept)
 {
   charges found = {0, 0, 0};
-  int node[3];
+  int node[3] = {0, 0, 0};
   size_t at = 0;
   for (node[2] = 0; node[2] < y->axis[2].nodes && y->degree == 1; node[2]++)
     for (node[1] = 0; node[1] < y->axis[1].nodes; node[1]++)
@@ -137,14 +137,15 @@ static double gauss_of(const dvi__yee *y)
 static double divergence_of(const dvi__yee *y)
 {
   double largest = 0, most = 0;
-  int box[3];
+  int box[3] = {0, 0, 0};
   for (box[2] = 0; box[2] < y->axis[2].cells; box[2]++)
     for (box[1] = 0; box[1] < y->axis[1].cells; box[1]++)
       for (box[0] = 0; box[0] < y->axis[0].cells; box[0]++) {
         double sum = 0, size = 0;
         if (!counts(y, box, 1)) continue;
-        for (int c = 0; c < y->axes; c++) {
+        for (int c = 0; c < 3; c++) {
           int next[3] = {box[0], box[1], box[2]};
+          if (y->slot[DVI__YEE_B + c] < 0 || y->axis[c].is_trivial) continue;
           next[c]++;
           const double out = dvi__yee_stored(y, DVI__YEE_B + c, next).re,
                        in = dvi__yee_stored(y, DVI__YEE_B + c, box).re;
@@ -154,7 +155,7 @@ static double divergence_of(const dvi__yee *y)
         largest = fmax(largest, fabs(sum));
         most = fmax(most, size);
       }
-  return most > 0 && y->slot[DVI__YEE_B] >= 0 ? largest / most : 0;
+  return most > 0 ? largest / most : 0;
 }
 
 /* ---- probes ---- */
@@ -166,7 +167,7 @@ static double probe_value(const dvi__yee_moment *m, const dvi_yee_probe *probe)
   double sum = 0;
   for (int c = 0; c < 3; c++)
     for (int which = 0; which < 8 && y->slot[first + c] >= 0 && probe->along[c] != 0; which++) {
-      int place[3];
+      int place[3] = {0, 0, 0};
       double weight;
       dvi__yee_whitney(y, first + c, probe->at, which, place, &weight);
       if (weight == 0) continue;
@@ -208,7 +209,7 @@ static double flux_through(const dvi__yee_moment *m, int axis, int at, const int
   for (int side = 0; side < 2; side++) {
     const int e = (axis + 1 + side) % 3, h = (axis + 2 - side) % 3;
     const double sign = side == 0 ? 1 : -1;
-    int place[3];
+    int place[3] = {0, 0, 0};
     if (y->slot[e] < 0 || y->slot[DVI__YEE_B + h] < 0) continue;
     place[axis] = at;
     for (place[e] = lower[e]; place[e] < upper[e]; place[e]++)
@@ -236,7 +237,7 @@ static double flux_value(const dvi__yee_moment *m, const dvi_yee_flux *flux)
     if (l < y->axes && flux->lower[l] == flux->upper[l]) flat = l;
   }
   if (flat >= 0) return flux_through(m, flat, lower[flat], lower, upper);
-  for (int l = 0; l < y->axes; l++)
+  for (int l = 0; l < 3 && !y->axis[l].is_trivial; l++)
     sum += flux_through(m, l, upper[l], lower, upper) - flux_through(m, l, lower[l], lower, upper);
   return sum;
 }
@@ -260,7 +261,7 @@ const char *dvi__yee_observable(const void *self, int i)
 dvi_status dvi__yee_observe(const void *self, int i, double *value_out)
 {
   const dvi__yee *y = self;
-  dvi__yee_moment m;
+  dvi__yee_moment m = {.yee = y};
   double found = 0;
   if (i >= FIXED) DVI_TRY(dvi__yee_set_moment(y, &m));
   switch (i) {

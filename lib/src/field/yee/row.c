@@ -9,6 +9,14 @@ typedef struct differences {
   const double *p1, *p0, *q1, *q0;
 } differences;
 
+/* Give the address of a row that is that far from another one. The next rows of the sweep need E
+ * of the next plane, and B of this one. Nothing is read there, so the end of the state does not
+ * matter. */
+static uintptr_t needed_soon(const double *row, ptrdiff_t away)
+{
+  return (uintptr_t)row + (uintptr_t)(away * (ptrdiff_t)sizeof *row);
+}
+
 /* ---- absorbing layers ---- */
 
 /* Give the layers in which a box, or a node, of an axis is, or -1. */
@@ -26,10 +34,10 @@ static void stretch_across(const dvi__yee_worker *w, int copy, int axis, int whi
   const dvi__yee *y = w->yee;
   const dvi__yee_axis *a = &y->axis[axis];
   const int i = axis == 1 ? j : k, e = layers_with(a, i), form = which < 2;
-  if (e < 0) return;
   const dvi__yee_layers *l = &a->layers[e];
   const int layer = i - l->first, at = i - l->start;
   row->psi = l->psi + dvi__yee_psi_at(y, axis, e, copy, which, layer, j, k);
+  row->soon = (uintptr_t)(4 * y->width * (size_t)(axis == 1 ? 1 : l->count) * sizeof(double));
   row->b = l->b[form][at];
   row->a = l->a[form][at];
   row->r = l->r[form][at];
@@ -38,50 +46,55 @@ static void stretch_across(const dvi__yee_worker *w, int copy, int axis, int whi
   y->lanes->layers(row);
 }
 
-/* Change the difference along x at both ends of a row. */
-static void stretch_along(const dvi__yee_worker *w, int copy, int which, int j, int k,
-                          const dvi__yee_layers_row *whole)
-{
-  const dvi__yee *y = w->yee;
-  const int form = which < 2;
-  for (int e = 0; e < 2; e++) {
-    const dvi__yee_layers *l = &y->axis[0].layers[e];
-    if (l->count == 0) continue;
-    dvi__yee_layers_row row = *whole;
-    row.count = (size_t)l->width;
-    row.psi = l->psi + dvi__yee_psi_at(y, 0, e, copy, which, 0, j, k);
-    row.f += l->start;
-    row.p1 += l->start;
-    row.p0 += l->start;
-    if (row.ce != NULL) row.ce += l->start;
-    row.b_at = l->b[form];
-    row.a_at = l->a[form];
-    row.r_at = l->r[form];
-    row.up_at = l->up[form];
-    row.down_at = l->down[form];
-    y->lanes->layers(&row);
-  }
-}
-
-/* Change both differences of a component. */
+/* Change the differences of a component across rows, along y and z. */
 static void stretch(const dvi__yee_worker *w, int copy, int component, int j, int k,
                     const differences *d, double *f, const double *ce)
 {
   const int c = component % 3, is_face = component >= DVI__YEE_B;
   for (int side = 0; side < 2; side++) {
     const int axis = (c + 1 + side) % 3, which = (is_face ? 0 : 2) + (side == 0);
-    if (w->yee->axis[axis].layers[0].count + w->yee->axis[axis].layers[1].count == 0) continue;
+    if (axis == 0 || layers_with(&w->yee->axis[axis], axis == 1 ? j : k) < 0) continue;
     dvi__yee_layers_row row = {.count = w->yee->count,
                                .f = f,
                                .p1 = side == 0 ? d->p1 : d->q1,
                                .p0 = side == 0 ? d->p0 : d->q0,
                                .sign = (side == 0) == is_face ? -1 : 1,
                                .ce = ce};
-    if (axis == 0)
-      stretch_along(w, copy, which, j, k, &row);
-    else
-      stretch_across(w, copy, axis, which, j, k, &row);
+    stretch_across(w, copy, axis, which, j, k, &row);
   }
+}
+
+/* Change the differences along x of the second and third component, at both ends of their rows. The
+ * arguments begin at the places 0 of the rows. */
+static void stretch_ends(const dvi__yee *y, int copy, int is_face, int j, int k,
+                         const dvi__yee_layers_end *whole)
+{
+  const int form = is_face;
+  for (int e = 0; e < 2; e++) {
+    const dvi__yee_layers *l = &y->axis[0].layers[e];
+    if (l->count == 0) continue;
+    dvi__yee_layers_end end = *whole;
+    end.count = (size_t)l->width;
+    end.psi = l->psi + dvi__yee_psi_at(y, 0, e, copy, is_face ? 0 : 2, 0, j, k);
+    end.b = l->b[form];
+    end.a = l->a[form];
+    end.r = l->r[form];
+    end.up = l->up[form];
+    end.down = l->down[form];
+    for (int c = 0; c < 2; c++) {
+      if (end.of[c].f == NULL) continue;
+      end.of[c].f += l->start;
+      end.of[c].p1 += l->start;
+      end.of[c].p0 += l->start;
+      if (end.of[c].ce != NULL) end.of[c].ce += l->start;
+    }
+    y->lanes->layers_end(&end);
+  }
+}
+
+static int has_layers_along(const dvi__yee *y)
+{
+  return y->axis[0].layers[0].count + y->axis[0].layers[1].count > 0;
 }
 
 /* ---- acts, ends and copies ---- */
@@ -150,7 +163,11 @@ static void update_face(const dvi__yee_worker *w, int copy, int c, int j, int k)
                *q = y->slot[a] >= 0 ? state + dvi__yee_at(y, a, j, k) : f;
   const differences d = {y->slot[b] >= 0 ? p + y->next[a] : p, p,
                          y->slot[a] >= 0 ? q + y->next[b] : q, q};
-  const dvi__yee_faces_row row = {y->count, f, d.p1, d.p0, d.q1, d.q0, y->dt};
+  const dvi__yee_faces_row row = {
+      y->count, f,
+      d.p1,     d.p0,
+      d.q1,     d.q0,
+      y->dt,    needed_soon(f, y->next[1] + y->next[2] - y->edges_slots * (ptrdiff_t)y->width)};
   y->lanes->faces(&row);
   stretch(w, copy, DVI__YEE_B + c, j, k, &d, f, NULL);
 }
@@ -172,12 +189,28 @@ static int has_face(const dvi__yee *y, int c, int j, int k)
          k < dvi__yee_places(y, component, 2);
 }
 
+/* B_y has the difference of E_z along x, and B_z that of E_y. */
+static void stretch_faces_along(const dvi__yee *y, int copy, int j, int k)
+{
+  dvi__yee_layers_end end = {.count = 0};
+  for (int c = 1; c < 3; c++) {
+    if (!has_face(y, c, j, k)) continue;
+    end.of[c - 1].f = y->state[copy] + dvi__yee_at(y, DVI__YEE_B + c, j, k);
+    end.of[c - 1].p0 = y->state[copy] + dvi__yee_at(y, 3 - c, j, k);
+    end.of[c - 1].p1 = end.of[c - 1].p0 + 1;
+    end.of[c - 1].sign = c == 1 ? 1 : -1;
+  }
+  stretch_ends(y, copy, 1, j, k, &end);
+}
+
 void dvi__yee_update_faces(const dvi__yee_worker *w, int j, int k)
 {
   const dvi__yee *y = w->yee;
-  for (int copy = 0; copy < y->copies; copy++)
+  for (int copy = 0; copy < y->copies; copy++) {
     for (int c = 0; c < 3; c++)
       if (has_face(y, c, j, k)) update_face(w, copy, c, j, k);
+    if (has_layers_along(y)) stretch_faces_along(y, copy, j, k);
+  }
   act(w, &y->on_faces, j, k);
   for (int c = 0; c < 3; c++)
     if (has_face(y, c, j, k)) end_faces(y, c, j, k);
@@ -258,14 +291,16 @@ static void update_edge(const dvi__yee_worker *w, int copy, int c, int j, int k)
   const size_t beside = dvi__yee_at_edges(y, c, j, k);
   double *e = y->state[copy] + dvi__yee_at(y, c, j, k);
   const differences d = take_fields(w, copy, c, j, k, e);
-  dvi__yee_edges_row row = {.count = y->count,
-                            .e = e,
-                            .p1 = d.p1,
-                            .p0 = d.p0,
-                            .q1 = d.q1,
-                            .q0 = d.q0,
-                            .ce = y->ce != NULL ? y->ce + beside : NULL,
-                            .ca = y->ca != NULL ? y->ca + beside : NULL};
+  dvi__yee_edges_row row = {
+      .count = y->count,
+      .e = e,
+      .p1 = d.p1,
+      .p0 = d.p0,
+      .q1 = d.q1,
+      .q0 = d.q0,
+      .ce = y->ce != NULL ? y->ce + beside : NULL,
+      .ca = y->ca != NULL ? y->ca + beside : NULL,
+      .soon = needed_soon(e, y->next[1] + y->edges_slots * (ptrdiff_t)y->width)};
   set_metric(y, c, j, k, &row);
   y->lanes->edges(&row);
   stretch(w, copy, c, j, k, &d, e, row.ce);
@@ -293,12 +328,30 @@ static int has_edge(const dvi__yee *y, int c, int j, int k)
   return y->slot[c] >= 0 && dvi__yee_is_free(y, c, 1, j) && dvi__yee_is_free(y, c, 2, k);
 }
 
+/* E_y has the difference of H_z along x, and E_z that of H_y. */
+static void stretch_edges_along(const dvi__yee_worker *w, int copy, int j, int k)
+{
+  const dvi__yee *y = w->yee;
+  dvi__yee_layers_end end = {.count = 0};
+  for (int c = 1; c < 3; c++) {
+    if (!has_edge(y, c, j, k)) continue;
+    const size_t beside = dvi__yee_at_edges(y, c, j, k);
+    end.of[c - 1].f = y->state[copy] + dvi__yee_at(y, c, j, k);
+    take_field(w, copy, 3 - c, 0, j, k, c - 1, &end.of[c - 1].p1, &end.of[c - 1].p0);
+    end.of[c - 1].ce = y->ce != NULL ? y->ce + beside : NULL;
+    end.of[c - 1].sign = c == 1 ? -1 : 1;
+  }
+  stretch_ends(y, copy, 0, j, k, &end);
+}
+
 void dvi__yee_update_edges(const dvi__yee_worker *w, int j, int k)
 {
   const dvi__yee *y = w->yee;
   const dvi__yee_axis *x = &y->axis[0];
   for (int c = 0; c < 3; c++)
     if (has_edge(y, c, j, k)) update_edge_row(w, c, j, k);
+  for (int copy = 0; copy < y->copies && has_layers_along(y); copy++)
+    stretch_edges_along(w, copy, j, k);
   act(w, &y->on_edges, j, k);
   for (int c = 0; c < 3 && y->worn != NULL; c++)
     if (has_edge(y, c, j, k)) wear(w, c, j, k);

@@ -2,9 +2,9 @@
  *
  * After n steps the state has B^n and E^{n+1/2}. At the time t of the next step, t = t_n + part dt,
  *     B(t) = B^n - part dt d E^{n+1/2},
- *     E(t) = E^{n+1/2} + (part - 1/2) dt M_1^-1 (d^T M_2 B(t) - J(t) - sigma E(t)),
- * which is continuous in t, has at t_n the mean of E^{n-1/2} and E^{n+1/2}, and errors of order
- * 2. */
+ *     E(t) = E^{n+1/2} + (part - 1/2) dt M_1^-1 (d^T M_2 B(t) - J(t) - sigma E(t)).
+ * This is continuous in t. At t_n it is the mean of E^{n-1/2} and E^{n+1/2}. Errors have the
+ * order 2. */
 #include <math.h>
 
 #include "core/status.h"
@@ -195,7 +195,7 @@ value dvi__yee_E_at(const dvi__yee_moment *m, int c, const int *place)
   return (value){E.re / divisor, E.im / divisor};
 }
 
-void dvi__yee_start_edge(const dvi__yee_moment *m, int c, const int *place)
+void dvi__yee_start_edge(const dvi__yee_moment *m, int c, const int *place, int has_B)
 {
   const dvi__yee *y = m->yee;
   for (int l = 0; l < 3; l++)
@@ -205,7 +205,7 @@ void dvi__yee_start_edge(const dvi__yee_moment *m, int c, const int *place)
   const double s = y->loss != NULL ? y->loss[at] : 0,
                eps = y->ce != NULL ? 1 / (y->ce[at] * (1 + s)) : 1,
                impulse = (1 + s) * dvi__yee_acted(y, &y->on_edges, c, place, m->on_edges);
-  const value change = change_of_edge(m, c, place);
+  const value change = has_B ? change_of_edge(m, c, place) : (value){0, 0};
   if (y->worn != NULL) y->worn[at] = s * y->state[0][here];
   y->state[0][here] = (1 - s) * y->state[0][here] + 0.5 / eps * change.re + impulse;
   if (y->copies > 1) y->state[1][here] = (1 - s) * y->state[1][here] + 0.5 / eps * change.im;

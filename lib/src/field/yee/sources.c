@@ -44,11 +44,15 @@ dvi_status dvi__yee_start_sources(dvi__yee *y, double t0)
 {
   for (int i = 0; i < y->sources; i++)
     DVI_TRY(impulse_of(&y->source[i], t0, 0, 0.5 * y->dt, &y->drive[i]));
+  return DVI_OK;
+}
+
+void dvi__yee_restart_impulses(dvi__yee *y)
+{
   for (int i = 0; i < y->sources; i++) {
     y->source[i].impulse = y->drive[i];
     y->source[i].compensation = 0;
   }
-  return DVI_OK;
 }
 
 dvi_status dvi__yee_prepare(dvi__yee *y, int steps, int *ready)
@@ -174,7 +178,7 @@ static dvi_status profile_of(const dvi__yee *y, const dvi_yee_current *current, 
   *profile = 0;
   for (int l = 0; l < 3; l++) {
     const dvi__yee_axis *a = &y->axis[l];
-    reaches[l] = l != c;
+    reaches[l] = l != c && !a->is_trivial;
     count[l] = 1;
     if (l == c)
       lower[l][0] = upper[l][0] = a->node[place[l]] + 0.5 * a->length[place[l]];
@@ -190,7 +194,7 @@ static dvi_status profile_of(const dvi__yee *y, const dvi_yee_current *current, 
       over_end |= y->axis[l].end[0].kind == DVI_YEE_BLOCH && l != c && place[l] == 0 &&
                   rest % count[l] == 0;
     }
-    DVI_TRY(dvi__yee_integrate_box(y, low, high, reaches, current->density, current->density_user,
+    DVI_TRY(dvi__yee_integrate_box(low, high, reaches, current->density, current->density_user,
                                    which, &part));
     if (over_end && part != 0)
       return dvi__fail(DVI_UNSUPPORTED,

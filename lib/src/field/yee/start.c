@@ -18,6 +18,7 @@ static void set_values(dvi__yee *y, dvi_march_form form, const double *values)
 
 void dvi__yee_wrap_values(dvi__yee *y)
 {
+  if (!y->axis[0].wraps && !y->axis[1].wraps && !y->axis[2].wraps) return;
   for (int component = 0; component < 6; component++) {
     const int is_face = component >= DVI__YEE_B;
     int first[3], last[3], place[3];
@@ -61,14 +62,15 @@ static void clear_conductors(dvi__yee *y)
 }
 
 /* Move E from t_0 to half a step later: (1 - s) E + dt/2 M_1^-1 (d_1^T M_2 B - J). */
-static void take_half_step(dvi__yee *y)
+static void take_half_step(dvi__yee *y, int has_B)
 {
+  if (!has_B && y->loss == NULL && y->on_edges.count == 0) return;
   const int64_t size = dvi__yee_form_size(y, DVI_FORM_E);
   const dvi__yee_moment m = {.yee = y, .part = 0, .on_faces = y->drive, .on_edges = y->drive};
   for (int64_t i = 0; i < size; i++) {
     int component, place[3];
     dvi__yee_place_of(y, DVI_FORM_E, i, &component, place);
-    dvi__yee_start_edge(&m, component, place);
+    dvi__yee_start_edge(&m, component, place, has_B);
   }
 }
 
@@ -103,15 +105,16 @@ dvi_status dvi__yee_start(void *self, const dvi_march_state *state)
   DVI_TRY(make_charge(y, state->E != NULL));
   DVI_TRY(dvi__yee_start_sources(y, state->t));
   DVI_TRY(dvi__yee_start_waves(y, state->t));
+  dvi__yee_restart_impulses(y);
   y->t0 = y->t = state->t;
   y->step = 0;
   clear(y);
   set_values(y, DVI_FORM_E, state->E);
   set_values(y, DVI_FORM_B, state->B);
-  clear_conductors(y);
+  if (state->E != NULL) clear_conductors(y);
   dvi__yee_wrap_values(y);
   if (y->charge != NULL) dvi__yee_keep_charge(y);
-  take_half_step(y);
+  take_half_step(y, state->B != NULL);
   dvi__yee_wrap_values(y);
   return DVI_OK;
 }

@@ -1,16 +1,16 @@
 /* Steps of the whole grid.
  *
- * Rows of B and E at (j, k) are updated one after the other, since E needs only B at smaller j and k,
- * and B needs only E at larger ones that are not yet updated. So one step goes through memory once.
- * Several steps go through it once together: step s follows s planes behind the first one, and in
- * a tile of rows it also lies s rows lower, so that all that it reads is in the tile or in the one
- * before (Wolf and Lam 1991, skewing of loops). Threads take the tiles in turn, each behind the
- * tile before by one plane at least. */
+ * Rows of B and E at (j, k) are updated one after the other, since E needs only B at smaller j and
+ * k, and B needs only E at larger ones that are not yet updated. So one step goes through memory
+ * once. Several steps go through it once together: step s follows s planes behind the first one,
+ * and in a tile of rows it also lies s rows lower, so that all that it reads is in the tile or in
+ * the one before (Wolf and Lam 1991, skewing of loops). Threads take the tiles in turn, each behind
+ * the tile before by one plane at least. */
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/yee/yee.h"
 
-enum { CACHE = 1 << 20, DEFAULT_TOGETHER = 4, LEAST_TILE = 8 };
+enum { CACHE = 3 << 18, DEFAULT_TOGETHER = 6, LEAST_TILE = 8 };
 
 typedef struct sweep {
   const dvi__yee *yee;

@@ -183,12 +183,12 @@ static dvi_status signal_at(const dvi__yee_beam *beam, double t, double *value)
 
 dvi_status dvi__yee_start_waves(dvi__yee *y, double t0)
 {
-  double value;
-  for (int i = 0; i < y->beams; i++) DVI_TRY(signal_at(&y->beam[i], t0 + 0.5 * y->dt, &value));
+  for (int i = 0; i < y->beams; i++)
+    DVI_TRY(signal_at(&y->beam[i], t0 + 0.5 * y->dt, &y->beam[i].next));
   for (int i = 0; i < y->beams; i++) {
     dvi__yee_beam *beam = &y->beam[i];
     for (int q = 0; q < 2 * beam->count + 1; q++) beam->line[q] = y->drive[beam->from + q] = 0;
-    DVI_TRY(signal_at(beam, t0 + 0.5 * y->dt, &beam->line[0]));
+    beam->line[0] = beam->next;
   }
   return DVI_OK;
 }

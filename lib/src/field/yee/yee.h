@@ -124,9 +124,8 @@ enum { DVI__YEE_SCRATCH = 7, DVI__YEE_MOST_TOGETHER = 16 };
 /* Give the number of the rows at (j, k), which may be -1 on axes that the grid has. */
 static inline size_t dvi__yee_row(const dvi__yee *y, int j, int k)
 {
-  const size_t below = (size_t)(k + !y->axis[2].is_trivial),
-               left = (size_t)(j + !y->axis[1].is_trivial);
-  return below * y->rows[0] + left;
+  const int below = k + !y->axis[2].is_trivial, left = j + !y->axis[1].is_trivial;
+  return (size_t)below * y->rows[0] + (size_t)left;
 }
 
 /* Give the place 0 of a component's row. `component` is DVI__YEE_E + c or DVI__YEE_B + c. */
@@ -196,9 +195,8 @@ int64_t dvi__yee_form_size(const dvi__yee *yee, dvi_march_form form);
 void dvi__yee_place_of(const dvi__yee *yee, dvi_march_form form, int64_t number, int *component,
                        int *place);
 /* Integrate a component of a function over a box, along the axes for which `reaches` is not 0. */
-dvi_status dvi__yee_integrate_box(const dvi__yee *yee, const double *lower, const double *upper,
-                                  const int *reaches, dvi_form_function *function, void *user,
-                                  int which, double *sum);
+dvi_status dvi__yee_integrate_box(const double *lower, const double *upper, const int *reaches,
+                                  dvi_form_function *function, void *user, int which, double *sum);
 
 /* ---- media.c ---- */
 
@@ -268,8 +266,10 @@ void dvi__yee_wrap_values(dvi__yee *yee);
 /* ---- sources.c ---- */
 
 dvi_status dvi__yee_make_sources(const dvi_yee_terms *terms, dvi__yee *yee);
-/* Start signals at t0. Give the drives of the first half step in the first row of drives. */
+/* Give the drives of the first half step from t0, in the first row of drives. */
 dvi_status dvi__yee_start_sources(dvi__yee *yee, double t0);
+/* Let the sums of impulses begin with those of the first half step. */
+void dvi__yee_restart_impulses(dvi__yee *yee);
 /* Prepare the drives of the next steps. *ready of them have signals that did not fail. */
 dvi_status dvi__yee_prepare(dvi__yee *yee, int steps, int *ready);
 /* Add the impulses of steps that have been taken. */
@@ -314,8 +314,8 @@ typedef struct dvi__yee_moment {
 dvi__yee_value dvi__yee_stored(const dvi__yee *yee, int component, const int *place);
 dvi__yee_value dvi__yee_B_at(const dvi__yee_moment *moment, int c, const int *place);
 dvi__yee_value dvi__yee_E_at(const dvi__yee_moment *moment, int c, const int *place);
-/* Move E_c at a place from the start to half a step later. */
-void dvi__yee_start_edge(const dvi__yee_moment *moment, int c, const int *place);
+/* Move E_c at a place from the start to half a step later, with the curl of H if there is B. */
+void dvi__yee_start_edge(const dvi__yee_moment *moment, int c, const int *place, int has_B);
 /* Prepare a march's time, and its drives. */
 dvi_status dvi__yee_set_moment(const dvi__yee *yee, dvi__yee_moment *moment);
 dvi_status dvi__yee_sample(const void *yee, dvi_march_form form, int64_t count, const int *cell,

@@ -1,4 +1,4 @@
-#include "support/boxes.h"
+#include "support/waves/boxes.h"
 
 #include <math.h>
 #include <stdlib.h>
