@@ -201,7 +201,8 @@ static const option command_options[] = {
     {.name = "field",
      OPTION_AT(plot_request, fields),
      .value = "NAME",
-     .help = "a field of a grid; may be repeated; default: the first one"},
+     .help = "a field of a grid, or a component of vectors, as E_z; may be repeated; default: the "
+             "first one"},
     {.name = "edges",
      OPTION_AT(plot_request, edges),
      .help = "draw the edges of a grid's cells over the fields"},

@@ -10,6 +10,7 @@
 #include "cli/outputs.h"
 #include "csv/table.h"
 #include "load/field.h"
+#include "load/scene.h"
 
 /* The options. */
 typedef struct solve_request {
@@ -152,7 +153,8 @@ int solve_command(int argc, char **argv)
   if (code != DONE) return code;
   code = field_open("solve", name, &r.settings, &scene, &field);
   if (code != DONE) return code;
-  code = solve_field(&r, scene, field);
+  code = scene_complete(scene);
+  if (code == DONE) code = solve_field(&r, scene, field);
   problem_destroy(&scene);
   return code;
 }

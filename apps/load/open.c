@@ -114,14 +114,16 @@ static int refuse_problem_name(const char *name)
 static int refuse_grid(const char *name, problem **scene)
 {
   const char *reason = dvi_scene_grid_only((*scene)->scene);
-  const bool is_large = strcmp(reason, "size") == 0;
+  const bool is_large = strcmp(reason, "size") == 0, is_flux = strcmp(reason, "flux") == 0;
   problem_destroy(scene);
   if (is_large)
     return usage_error("'%s' is a large grid, which only the method yee advances, in dvi run: take "
                        "fewer cells, or 'method: leapfrog'",
                        name);
   return usage_error("'%s' has '%s', which only the method yee knows, in dvi run", name,
-                     strcmp(reason, "wave") == 0 ? "a plane wave" : reason);
+                     is_flux                       ? "a flux through a box"
+                     : strcmp(reason, "wave") == 0 ? "a plane wave"
+                                                   : reason);
 }
 
 int open_problem(const char *name, const words *settings, problem **scene)

@@ -144,7 +144,7 @@ static void write_colours(FILE *script, const canvas *c, const vtu_field *field)
     (void)fputs("set palette defined (0 '#440154', 1 '#3b528b', 2 '#21918c', 3 '#5ec962', "
                 "4 '#fde725')\n",
                 script);
-    (void)fprintf(script, "set cbrange [%.9g:%.9g]\n", least, most);
+    (void)fprintf(script, "set cbrange [%.9g:%.9g]\nset format cb '%%g'\n", least, most);
   }
   if (field == NULL)
     (void)fputs("unset colorbox\n", script);

@@ -165,13 +165,24 @@ static bool find_array(const vtu_file *file, const char *section, const char *na
   return refuse(file, "an array is missing");
 }
 
-/* Take the values of an array, or the lengths of its vectors. */
-static bool take_field(const vtu_file *file, const vtu_array *array, int64_t count,
+/* Name a field after its array, and a component by its axis. */
+static void name_field(const vtu_array *array, int component, vtu_field *field)
+{
+  const size_t length = strlen(array->name);
+  (void)memcpy(field->name, array->name, sizeof field->name);
+  if (component < 0 || length + 3 > sizeof field->name) return;
+  field->name[length] = '_';
+  field->name[length + 1] = "xyz"[component];
+  field->name[length + 2] = '\0';
+}
+
+/* Take the values of an array, of vectors one component, or with -1 the lengths. */
+static bool take_field(const vtu_file *file, const vtu_array *array, int64_t count, int component,
                        vtu_field *field)
 {
   const int64_t numbers = count * array->components;
   double *all = calloc((size_t)numbers + 1, sizeof *all);
-  (void)memcpy(field->name, array->name, sizeof field->name);
+  name_field(array, component, field);
   field->value = calloc((size_t)count + 1, sizeof *field->value);
   if (all == NULL || field->value == NULL) {
     complain("out of memory");
@@ -183,12 +194,15 @@ static bool take_field(const vtu_file *file, const vtu_array *array, int64_t cou
     const double *vector = all + i * array->components;
     double square = 0;
     for (long c = 0; c < array->components; c++) square += vector[c] * vector[c];
-    field->value[i] = array->components == 1 ? vector[0] : sqrt(square);
+    field->value[i] = component >= 0           ? vector[component]
+                      : array->components == 1 ? vector[0]
+                                               : sqrt(square);
   }
   free(all);
   return good;
 }
 
+/* Take an array as a field, and of vectors their components as fields, too. */
 static bool take_fields(const vtu_file *file, const char *section, bool is_by_cell, vtu_grid *g)
 {
   const char *at, *end;
@@ -196,9 +210,13 @@ static bool take_fields(const vtu_file *file, const char *section, bool is_by_ce
   if (!find_section(file, section, &at, &end)) return true;
   while ((at = next_array(file, at, end)) != NULL && g->fields < VTU_FIELDS) {
     if (!take_array(file, at, &array)) return false;
-    vtu_field *field = &g->field[g->fields++];
-    field->is_by_cell = is_by_cell;
-    if (!take_field(file, &array, is_by_cell ? g->cells : g->points, field)) return false;
+    const int axes = array.components == 1 || array.components > 3 ? 0 : (int)array.components;
+    for (int component = -1; component < axes && g->fields < VTU_FIELDS; component++) {
+      vtu_field *field = &g->field[g->fields++];
+      field->is_by_cell = is_by_cell;
+      if (!take_field(file, &array, is_by_cell ? g->cells : g->points, component, field))
+        return false;
+    }
     at++;
   }
   return true;

@@ -4,7 +4,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { VTU_FIELDS = 64, VTU_NAME = 64, VTU_CORNERS = 8 };
+enum { VTU_FIELDS = 256, VTU_NAME = 64, VTU_CORNERS = 8 };
 
 /** Kinds of cells, by their numbers in VTK. */
 typedef enum vtu_cell {
@@ -15,7 +15,8 @@ typedef enum vtu_cell {
   VTU_VOXEL = 11 /**< a box, with its corners in the order of bits */
 } vtu_cell;
 
-/** Values at the points or in the cells. Those of vectors are their lengths. */
+/** Values at the points or in the cells. Those of vectors are their lengths, and their components
+ * are fields of their own: E, E_x, E_y. */
 typedef struct vtu_field {
   char name[VTU_NAME];
   bool is_by_cell;

@@ -93,26 +93,23 @@ static int make_march(journey *j)
 
 /* ---- rows ---- */
 
-/* Write the fields at the time of a row: u of a wave at the vertices, E and B in the cells. */
+/* Write the fields at the time of a row: E and B in the cells, or u of a wave at the vertices. */
 static bool write_frame(journey *j)
 {
-  const double t = dvi_march_time(j->march);
-  const int64_t vertices = dvi_march_size(j->march, DVI_FORM_A);
+  const dvi_scene *scene = j->scene->scene;
   if (!frames_are_wanted(&j->frames)) return true;
   const int n = dvi_mesh_dimension(j->frames.mesh);
-  const size_t cells = (size_t)dvi_mesh_count(j->frames.mesh, n);
-  dvi_view view[2] = {{"E", j->vector, 3, n}, {"B", j->vector + 3 * cells, 3, n}};
-  dvi_status status;
-  if (vertices > 0) {
-    view[0] = (dvi_view){"u", j->vector, 1, 0};
+  double *E = j->vector, *B = E + 3 * (size_t)dvi_mesh_count(j->frames.mesh, n);
+  const dvi_view vectors[] = {{"E", E, 3, n}, {"B", B, 3, n}}, value = {"u", j->vector, 1, 0};
+  dvi_status status = dvi_scene_vectors(scene, j->march, DVI_FORM_E, E);
+  const bool is_wave = status == DVI_UNSUPPORTED;
+  if (is_wave)
     status = dvi_march_sample(j->march, DVI_FORM_A, 0, NULL, j->vector);
-  } else {
-    status = dvi_scene_vectors(j->scene->scene, j->march, DVI_FORM_E, j->vector);
-    if (status == DVI_OK)
-      status = dvi_scene_vectors(j->scene->scene, j->march, DVI_FORM_B, j->vector + 3 * cells);
-  }
+  else if (status == DVI_OK)
+    status = dvi_scene_vectors(scene, j->march, DVI_FORM_B, B);
   if (status != DVI_OK) return library_error(status) == DONE;
-  return frames_add(&j->frames, t, vertices > 0 ? 1 : 2, view);
+  return frames_add(&j->frames, dvi_march_time(j->march), is_wave ? 1 : 2,
+                    is_wave ? &value : vectors);
 }
 
 static bool write_row(journey *j)
@@ -170,6 +167,16 @@ static bool advance(journey *j, bool *ended)
   return status == DVI_OK || library_error(status) == DONE;
 }
 
+/* Tell how many steps of different lengths there were, and which. */
+static void tell_events(const journey *j)
+{
+  dvi_march_facts facts;
+  dvi_march_facts_of(j->march, &facts);
+  if (facts.longest > facts.step)
+    complain("run: %lld events, with steps from %.3g to %.3g", (long long)facts.steps, facts.step,
+             facts.longest);
+}
+
 static int travel(journey *j)
 {
   const run_request *r = j->request;
@@ -183,6 +190,7 @@ static int travel(journey *j)
   const dvi_status saved = save(j);
   if (saved != DVI_OK) good = library_error(saved) == DONE;
   if (!good) return FAILED;
+  tell_events(j);
   if (*j->caught == 0) return DONE;
   complain("run: signal %d ended the run at t = %.17g of %g; the output is complete up to there",
            (int)*j->caught, dvi_march_time(j->march), r->t_end);

@@ -55,6 +55,17 @@ done
 expect 0 'boxes' mesh box --cells 2,3,2 --write shape.vtu
 draw 'boxes' shape.vtu
 
+cat >cavity.yaml <<END
+mesh: {generator: staggered}
+field: maxwell
+boundary: pec
+END
+expect 0 'vectors' modes cavity.yaml --count 1 --vtu cavity.vtu
+draw 'a component' cavity.vtu --field mode_x --field mode_y
+says picture.svg '>mode_y<' 'a component has a name'
+expect 2 'no component' plot cavity.vtu --field mode_w --out x.svg
+says err "among 3, of which 'mode' is the first" 'the components'
+
 cat >string.yaml <<END
 mesh: {generator: interval, cells: 16}
 field: wave

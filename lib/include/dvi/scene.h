@@ -168,7 +168,7 @@ dvi_status dvi_scene_vectors(const dvi_scene *scene, const dvi_march *march, dvi
 const dvi_mesh *dvi_scene_mesh(dvi_scene *scene);
 
 /** Tell why a scene of a field has a grid for yee, and neither mesh nor system: what only a grid
- *  has ("cpml", "bloch", "wave"), or "size". NULL if it has a mesh or no field. */
+ *  has ("cpml", "bloch", "wave", "flux"), or "size". NULL if it has a mesh or no field. */
 const char *dvi_scene_grid_only(const dvi_scene *scene);
 
 /** Return the start at t = 0, q [nq], v [nv], p [nv]. Owned by the scene. NULL for NULL. */

@@ -226,30 +226,45 @@ dvi_status dvi__grid_march(const dvi_scene *scene, const dvi_march_options *opti
 
 /* ---- vectors in the boxes ---- */
 
-/* Sum up the values of a component around a box, each divided by its cell. A component has places
- * at both ends of the box along the axes across its cell, of which a grid that repeats itself has
- * one less. */
-static double mean_in_box(const draft *d, dvi_march_form form, int component, const double *values,
+/* Where a component's values are: that of a place is at `first` plus its index times `next`. */
+typedef struct layout {
+  int64_t first, next[3]; /* first is -1 if there is no such component */
+} layout;
+
+static layout layout_of(const draft *d, dvi_march_form form, int component)
+{
+  int index[3] = {0};
+  layout found = {.first = dvi_yee_place(&d->terms, form, component, index)};
+  for (int a = 0; a < d->field->dimension; a++) {
+    index[a] = 1;
+    const int64_t place = dvi_yee_place(&d->terms, form, component, index);
+    if (place >= 0) found.next[a] = place - found.first;
+    index[a] = 0;
+  }
+  return found;
+}
+
+/* Give the mean of a component's values around a box, each divided by its cell. A component has
+ * places at both ends of the box along the axes across its cell, of which a grid that repeats
+ * itself has one less. */
+static double mean_in_box(const draft *d, const layout *of, unsigned along, const double *values,
                           const int *box, const double *length)
 {
   double sum = 0;
   int count = 0;
   const int axes = d->field->dimension;
-  for (int corner = 0; corner < 1 << axes; corner++) {
-    int index[3], is_place = 1;
+  for (unsigned corner = 0; corner < 1u << axes && of->first >= 0; corner++) {
+    int64_t place = of->first;
     double size = 1;
+    if ((corner & along) != 0) continue;
     for (int a = 0; a < axes; a++) {
-      const bool along = (a == component) == (form == DVI_FORM_E);
-      const int far = corner >> a & 1;
-      is_place = is_place && !(along && far);
-      index[a] = box[a] + far;
+      int index = box[a] + (int)(corner >> a & 1);
       if (d->terms.axis[a].end[0].kind == DVI_YEE_PERIODIC ||
           d->terms.axis[a].end[0].kind == DVI_YEE_BLOCH)
-        index[a] %= d->terms.axis[a].cells;
-      if (along) size *= length[a];
+        index %= d->terms.axis[a].cells;
+      if ((along >> a & 1) != 0) size *= length[a];
+      place += index * of->next[a];
     }
-    const int64_t place = is_place ? dvi_yee_place(&d->terms, form, component, index) : -1;
-    if (place < 0) continue;
     sum += values[place] / size;
     count++;
   }
@@ -266,14 +281,18 @@ static double length_of(const draft *d, int axis, int box)
 static void fill_vectors(const draft *d, dvi_march_form form, const double *values, double *vector)
 {
   int box[3] = {0}, cells[3] = {1, 1, 1};
+  layout of[3];
   for (int a = 0; a < d->field->dimension; a++) cells[a] = d->terms.axis[a].cells;
+  for (int component = 0; component < 3; component++) of[component] = layout_of(d, form, component);
   for (box[2] = 0; box[2] < cells[2]; box[2]++)
     for (box[1] = 0; box[1] < cells[1]; box[1]++)
       for (box[0] = 0; box[0] < cells[0]; box[0]++, vector += 3) {
         double length[3];
         for (int a = 0; a < d->field->dimension; a++) length[a] = length_of(d, a, box[a]);
-        for (int component = 0; component < 3; component++)
-          vector[component] = mean_in_box(d, form, component, values, box, length);
+        for (int component = 0; component < 3; component++) {
+          const unsigned axis = 1u << component, along = form == DVI_FORM_E ? axis : 7u ^ axis;
+          vector[component] = mean_in_box(d, of + component, along, values, box, length);
+        }
       }
 }
 

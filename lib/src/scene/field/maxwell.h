@@ -63,7 +63,6 @@ struct dvi__scene_maxwell {
   bool is_scalar;        /* E is one number */
   int E, B;              /* their numbers of components */
   const char *grid_only; /* what of the scene a mesh cannot have, or NULL */
-  dvi__span grid_span;
   dvi__scene_material *material;
   dvi__scene_wall *wall;
   dvi__scene_source *source;

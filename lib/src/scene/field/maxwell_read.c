@@ -32,29 +32,34 @@ static bool mentions(const dvi__tree *section, const char *key)
   return false;
 }
 
-/* Find what a mesh cannot have. */
-static void find_grid_only(dvi_scene *scene)
-{
-  struct dvi__scene_maxwell *m = scene->field->maxwell;
-  const dvi__tree *boundary = dvi__tree_find(scene->tree, "boundary"),
-                  *sources = dvi__tree_find(scene->tree, "sources");
-  const char *const word[] = {"cpml", "bloch"};
-  for (int i = 0; i < 2; i++)
-    if (mentions(boundary, word[i])) {
-      m->grid_only = word[i];
-      m->grid_span = boundary->span;
-    }
-  if (mentions(sources, "wave")) {
-    m->grid_only = "wave";
-    m->grid_span = sources->span;
-  }
-}
-
 static bool is_yee(const dvi_scene *scene)
 {
   const char *method = scene->plan.method;
   return method != NULL && strncmp(method, "yee", 3) == 0 &&
          (method[3] == '\0' || method[3] == ':');
+}
+
+/* Tell if a probe is the flux through a box. */
+static bool has_box_flux(const dvi__tree *probes)
+{
+  for (int i = 0; probes != NULL && probes->kind == DVI__MAPPING && i < probes->count; i++) {
+    const dvi__tree *probe = probes->child[i],
+                    *flux = probe->kind == DVI__MAPPING ? dvi__tree_find(probe, "flux") : NULL;
+    if (flux != NULL && flux->kind == DVI__MAPPING) return true;
+  }
+  return false;
+}
+
+/* Find what a mesh cannot have. */
+static const char *find_grid_only(const dvi_scene *scene)
+{
+  const dvi__tree *boundary = dvi__tree_find(scene->tree, "boundary"),
+                  *sources = dvi__tree_find(scene->tree, "sources"),
+                  *probes = dvi__tree_find(scene->tree, "probes");
+  if (mentions(sources, "wave")) return "wave";
+  if (mentions(boundary, "bloch")) return "bloch";
+  if (mentions(boundary, "cpml")) return "cpml";
+  return is_yee(scene) && has_box_flux(probes) ? "flux" : NULL;
 }
 
 bool dvi__is_grid_alone(dvi_scene *scene)
@@ -63,7 +68,7 @@ bool dvi__is_grid_alone(dvi_scene *scene)
   double cells = 1;
   int dimension = 0;
   if (f->maxwell == NULL || !f->is_grid) return false;
-  find_grid_only(scene);
+  f->maxwell->grid_only = find_grid_only(scene);
   while (dimension < 4 && f->grid.cells[dimension] > 0) cells *= f->grid.cells[dimension++];
   if (dimension < 1 || dimension > 3) return false; /* the mesh has its own sentence for that */
   f->space = f->dimension = dimension;
