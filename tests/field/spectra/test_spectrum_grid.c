@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "support/field/boxes.h"
+#include "support/waves/boxes.h"
 #include "support/suite.h"
 #include "support/waves/grid_waves.h"
 

@@ -85,7 +85,8 @@ START_TEST(losses_leave_reciprocity)
                             "leapfrog", law);
   ck_assert_int_eq(count, 4);
   ck_assert_str_eq(law[2].name, "reciprocity");
-  for (int i = 0; i < count; i++) ck_assert_double_lt(law[i].error, 1e-13);
+  for (int i = 0; i < count; i++)
+    ck_assert_msg(law[i].error < 1e-13, "%s: %g", law[i].name, law[i].error);
 }
 END_TEST
 
