@@ -173,7 +173,9 @@ static dvi_status look_at_reciprocity(laws *s)
     DVI_TRY(answer_of(s, s->f[i], s->E[i]));
     (void)work_of(s, s->f[1 - i], s->E[i], &size); /* roundings are those of the start */
     DVI_TRY(begin(s, i, s->E[i], NULL));
-    DVI_TRY(run(s, i));
+    /* in the middle of a step E is what the march has */
+    DVI_TRY(dvi_march_advance(s->march[i], (s->steps + 0.5) * s->unit));
+    DVI_TRY(sample(s, i));
   }
   const double there = work_of(s, s->f[1], s->E[0], &size),
                back = work_of(s, s->f[0], s->E[1], &size);

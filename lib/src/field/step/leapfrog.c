@@ -290,8 +290,8 @@ static dvi_status find_change(leapfrog *l)
   return DVI_OK;
 }
 
-/* Give E at a time after t_n: E^{n+1/2} and its rate at t_n. At t_n it is the mean of E^{n-1/2} and
- * E^{n+1/2}, which the start was, too. */
+/* Give E at a time after t_n: E^{n+1/2} and its rate at t_n. At t_0 this is the start, and without
+ * losses it is at t_n the mean of E^{n-1/2} and E^{n+1/2}. */
 static double E_after(const leapfrog *l, double after, int64_t cell)
 {
   const int i = l->field->number[cell];
