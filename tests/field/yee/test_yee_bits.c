@@ -49,7 +49,7 @@ static int plate(const double *x, double *value, void *user)
 static int loss(const double *x, double *value, void *user)
 {
   (void)user;
-  *value = x[0] > 5 && x[0] < 7 && x[1] > 5 && x[1] < 7 ? 0.1 : 0;
+  *value = x[0] > 8 && x[0] < 10.5 && x[1] > 5 && x[1] < 7 ? 0.1 : 0;
   return 0;
 }
 
@@ -183,7 +183,8 @@ START_TEST(threads_and_steps_together_change_no_bit)
 END_TEST
 
 /* Between steps a sample ends where the next step begins, in layers, on absorbing ends, on the
- * surface of a wave, and with losses. */
+ * surface of a wave, and with losses (but for a moment there, whose impulses of both halves of a
+ * step differ). */
 START_TEST(samples_are_continuous_at_whole_steps)
 {
   dvi_yee_terms terms = grid(_i);
@@ -195,9 +196,9 @@ START_TEST(samples_are_continuous_at_whole_steps)
   const state before = state_of(march);
   advance_boxes(march, 9 * facts.step);
   const state at = state_of(march);
-  /* all but energy and gauss, which are those of the last step; slopes are some ten */
+  /* all but energy and gauss, which are those of the last step. Currents are up to 144 */
   for (int64_t i = 0; i < at.count - 2; i++)
-    ck_assert_double_eq_tol(before.values[i], at.values[i], 1e-7);
+    ck_assert_double_eq_tol(before.values[i], at.values[i], 1e-6);
   free(before.values), free(at.values);
   dvi_march_destroy(&march);
 }
