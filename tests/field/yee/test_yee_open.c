@@ -73,6 +73,56 @@ START_TEST(layers_absorb_a_pulse)
 }
 END_TEST
 
+/* Factors at a depth, from their formulas (Roden and Gedney 2000). */
+typedef struct factors {
+  double b, a, kappa;
+} factors;
+
+static factors factors_at(const dvi_yee_end *end, double rho, double dt)
+{
+  const double cube = rho * rho * rho, s = -2 * log(end->reflection) / end->layers * cube,
+               kappa = 1 + (end->kappa - 1) * cube, alpha = end->alpha * (1 - rho);
+  const factors f = {exp(-(s / kappa + alpha) * dt), 0, kappa};
+  return rho > 0 ? (factors){f.b, s / (s * kappa + kappa * kappa * alpha) * (f.b - 1), kappa} : f;
+}
+
+/* All factors at once, on one axis, against loops of their own. Roundings of 200 steps. */
+START_TEST(layers_are_those_of_their_formulas)
+{
+  enum { N = 30, L = 8, STEPS = 200 };
+  const dvi_yee_end end = {
+      .kind = DVI_YEE_CPML, .layers = L, .reflection = 1e-5, .alpha = 0.02, .kappa = 3};
+  const double dt = 0.5;
+  const dvi_yee_terms terms = {
+      .size = sizeof terms,
+      .axes = 1,
+      .axis = {{.cells = N, .upper = N, .end = {{.kind = DVI_YEE_PMC}, end}}},
+      .step = dt};
+  double *E = random_values(N + 1, 3), *B = random_values(N, 4), psi_E[N] = {0}, psi_B[N] = {0};
+  dvi_march *march = box_march(&terms);
+  start_boxes(march, E, B);
+  advance_boxes(march, STEPS * dt);
+  E[N] = 0;
+  for (int step = 0; step <= STEPS; step++) {
+    for (int i = 0; i < N && step > 0; i++) {
+      const factors f = factors_at(&end, fmax(0, (i + 0.5 - N + L) / L), dt);
+      psi_B[i] = f.b * psi_B[i] + f.a * (E[i + 1] - E[i]);
+      B[i] -= dt * ((E[i + 1] - E[i]) / f.kappa + psi_B[i]);
+    }
+    for (int i = 0; i < N; i++) {
+      const factors f = factors_at(&end, fmax(0, (double)(i - N + L) / L), dt);
+      const double D = i > 0 ? B[i] - B[i - 1] : 2 * B[0]; /* half a dual box */
+      if (step > 0) psi_E[i] = f.b * psi_E[i] + f.a * D;
+      E[i] -= (step > 0 ? dt : 0.5 * dt) * (D / f.kappa + psi_E[i]);
+    }
+  }
+  double *found = sample_boxes(march, DVI_FORM_B);
+  for (int i = 0; i < N; i++) ck_assert_double_eq_tol(found[i], B[i], 1e-13);
+  free(E), free(B), free(found);
+  dvi_march_destroy(&march);
+}
+END_TEST
+
 /* Layers at the ends of one axis at a time let a packet out, through each of the six ends. */
 START_TEST(layers_absorb_at_all_ends)
 {
@@ -262,6 +312,7 @@ END_TEST
 SUITE(yee_open)
 {
   tcase_add_loop_test(tests, layers_absorb_a_pulse, 0, 4);
+  tcase_add_test(tests, layers_are_those_of_their_formulas);
   tcase_add_loop_test(tests, layers_absorb_at_all_ends, 0, 6);
   tcase_add_loop_test(tests, absorbing_ends_reflect_as_the_grid_says, 0, 3);
   tcase_add_test(tests, absorbing_ends_let_waves_out);

@@ -28,8 +28,8 @@ static double value_at(integral *of, integrand *f, int axis, double x)
   return f(of);
 }
 
-/* Points of Lobatto's rule with four points, and the middle, which Simpson's rule has. Points at the
- * ends are a little inside, because surfaces are often there. */
+/* Points of Lobatto's rule with four points, and the middle, which Simpson's rule has. Points at
+ * the ends are a little inside, because surfaces are often there. */
 static void place_points(double a, double b, double *x)
 {
   const double length = b - a, middle = 0.5 * (a + b), inner = 0.5 * length / sqrt(5);

@@ -94,9 +94,7 @@ static dvi_status make(const dvi_yee_terms *terms, dvi__yee *y)
 /* Give the number of whole steps until t, with a few roundings of the times to spare. */
 static int64_t steps_until(const dvi__yee *y, double t)
 {
-  const double steps = (t - y->t0) / y->dt,
-               spare = 4 * 2.3e-16 * (fabs(t) + fabs(y->t0)) / y->dt + 1e-12;
-  return (int64_t)floor(steps + spare);
+  return (int64_t)floor((t - y->t0) / y->dt + dvi__yee_spare(y, t));
 }
 
 static dvi_status advance(void *self, double t)

@@ -80,7 +80,7 @@ dvi_status dvi__yee_set_moment(const dvi__yee *y, dvi__yee_moment *m)
   const double since = y->t - (y->t0 + (double)y->step * y->dt);
   double *row = y->drive + (size_t)y->together * (size_t)y->drives;
   *m = (dvi__yee_moment){.yee = y, .on_faces = row, .on_edges = row + y->drives};
-  m->part = fmin(fmax(since / y->dt, 0), 1);
+  m->part = since / y->dt > dvi__yee_spare(y, y->t) ? fmin(since / y->dt, 1) : 0;
   for (int i = 0; i < y->sources; i++) {
     double impulse;
     const double from_half = (m->part - 0.5) * y->dt;

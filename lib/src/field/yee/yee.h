@@ -14,6 +14,7 @@
 #ifndef DVI_FIELD_YEE_YEE_H
 #define DVI_FIELD_YEE_YEE_H
 #include <dvi/yee.h>
+#include <math.h>
 #include <stdatomic.h>
 
 #include "field/yee/lanes.h"
@@ -169,6 +170,12 @@ static inline int dvi__yee_is_free(const dvi__yee *y, int c, int axis, int i)
 {
   const dvi__yee_axis *a = &y->axis[axis];
   return c == axis ? i >= 0 && i < a->cells : i >= a->free[0] && i < a->free[1];
+}
+
+/* Give the part of a step that is within a few roundings of the times. */
+static inline double dvi__yee_spare(const dvi__yee *y, double t)
+{
+  return 4 * 2.3e-16 * (fabs(t) + fabs(y->t0)) / y->dt + 1e-12;
 }
 
 /* ---- axis.c ---- */
