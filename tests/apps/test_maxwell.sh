@@ -111,8 +111,8 @@ expect 0 'on a line' run line.yaml --final
 columns out t,energy,ear,eye 'on a line'
 
 # What only the mesh of the boxes has is the mesh's for yee, too: a start by A, and probes of parts.
-sed 's/^initial:.*/initial: {A: [sin(pi*y), 0, 0]}/; s/^probes:.*/probes: {out: {flux: left}, all: {energy: all}}/' \
-  box.yaml >parts.yaml
+sed 's/^initial:.*/initial: {A: [sin(pi*y), 0, 0]}/
+  s/^probes:.*/probes: {out: {flux: left}, all: {energy: all}}/' box.yaml >parts.yaml
 expect 0 'parts, by leapfrog' run parts.yaml --final --out leapfrog.csv
 expect 0 'parts, by yee' run parts.yaml --method yee --final --out yee.csv
 same leapfrog.csv yee.csv 'parts'
