@@ -229,7 +229,7 @@ step: {part: 0.5}"
 refuse 'a step beyond the bound' 5:7 'the step 0.5 is not below the bound 0.1154.*near (0.8' "$solid
 method: leapfrog
 step: 0.5"
-refuse 'a step of yee beyond the bound' 5:7 'the step 0.5 is not below the bound 0.1154.* at (0' "$solid
+refuse "yee beyond its bound" 5:7 'the step 0.5 is not below the bound 0.1154.* at (0' "$solid
 method: yee
 step: 0.5"
 refuse 'tents of one step' 5:7 'they have no common step' "$flat
