@@ -268,7 +268,7 @@ expect 0 'a plot of probes' run ear.yaml --final --plot ear.svg
 says err 'draws over t: ear, rim; change since the start: energy' 'probes are signals'
 expect 0 'what is there' explain drum.yaml
 says out '^field: 53 unknowns' 'unknowns'
-says out 'verlet is stable below h = 0.1' 'the stable step'
+says out 'verlet and leapfrog are stable below h = 0.1' 'the stable step'
 head -c 300 disk.msh >cut.msh
 printf 'mesh: {file: cut.msh}\nfield: wave\n' >cut.yaml
 expect 1 'a mesh that is cut short' check cut.yaml

@@ -111,8 +111,8 @@ expect 0 'on a line' run line.yaml --final
 columns out t,energy,ear,eye 'on a line'
 
 # What only the mesh of the boxes has is the mesh's for yee, too: a start by A, and probes of parts.
-sed 's/^initial:.*/initial: {A: [sin(pi*y), 0, 0]}/; s/^probes:.*/probes: {out: {flux: left}, all: {energy: all}}/' \
-  box.yaml >parts.yaml
+sed 's/^initial:.*/initial: {A: [sin(pi*y), 0, 0]}/
+  s/^probes:.*/probes: {out: {flux: left}, all: {energy: all}}/' box.yaml >parts.yaml
 expect 0 'parts, by leapfrog' run parts.yaml --final --out leapfrog.csv
 expect 0 'parts, by yee' run parts.yaml --method yee --final --out yee.csv
 same leapfrog.csv yee.csv 'parts'
@@ -217,8 +217,8 @@ resumed() {
 for method in leapfrog yee; do resumed box.yaml $method 1; done
 sed 's/^step:.*/step: 0.05/' open.yaml >steady.yaml
 resumed steady.yaml yee 1
-# Other steps than 0.05 do not lead to 1 but for roundings, so that where the way is cut there is one
-# more row. A fraction of the stable step divides the span, and has to be of the same one.
+# Other steps than 0.05 do not lead to 1 but for roundings, so that where the way is cut there is
+# one more row. A fraction of the stable step divides the span, and has to be of the same one.
 for pair in cavity.yaml:tents box.yaml:avi box.yaml:avi:classes=no; do
   scene=${pair%%:*} method=${pair#*:}
   expect 0 "$method: whole" run "$scene" --method "$method" --out whole.csv --every 3
@@ -260,7 +260,8 @@ for signal in INT:130 TERM:143; do
     no_trace "$what"
     reached=$(tail -n 1 cut.csv | cut -d, -f1)
     end=$(echo "$reached" | awk '{ printf "%.17g", 50 * (int($1 / 50) + 4) }')
-    expect 0 "$what: whole" run box.yaml --method $method --t-end "$end" --every 1000 --out whole.csv
+    expect 0 "$what: whole" run box.yaml --method $method --t-end "$end" --every 1000 \
+      --out whole.csv
     expect 0 "$what: the rest" run box.yaml --method $method --t-end "$end" --every 1000 \
       --resume cut.state --out rest.csv
     { cat cut.csv; sed 1,2d rest.csv; } | awk -F, -v at="$reached" '$1 != at' >both.csv
@@ -283,7 +284,8 @@ digits out 1 omega 3.132012610332
 digits out 2 omega 3.138417260339
 digits out 3 omega 4.428354888445
 says modes.vtu 'mode_3' 'the shapes'
-printf 'mesh: {generator: box, cells: [5, 4, 3], size: [1, 0.8, 0.6]}\nfield: maxwell\n' >hollow.yaml
+printf '%s\n' 'mesh: {generator: box, cells: [5, 4, 3], size: [1, 0.8, 0.6]}' 'field: maxwell' \
+  >hollow.yaml
 sed '$a boundary: pec' hollow.yaml >pec.yaml
 expect 0 'modes of a box' modes pec.yaml --count 3 --csv -
 says err 'left out: 24 of frequency zero' 'static fields of a conductor'

@@ -1,7 +1,7 @@
 #!/bin/sh
 # The rooms of the library and of the command include each other in no circle, no folder has more
-# than 30 files at one level, and docs/CONTRIBUTING.md shows the rooms as they are. The public headers
-# are flat on purpose, one for each object of the library, and may be 36.
+# than 30 files at one level, and docs/CONTRIBUTING.md shows the rooms as they are. The public
+# headers are flat on purpose, one for each object of the library, and may be 36.
 # Usage: rooms.sh [--update] [TOP]
 # With --update it draws the rooms anew in docs/CONTRIBUTING.md.
 set -u

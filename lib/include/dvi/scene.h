@@ -144,8 +144,8 @@ int dvi_scene_marches(const dvi_scene *scene, const char *method);
 
 /** Create a march of the scene's field, and start it at the scene's start.
  *
- *  The method yee on a generated mesh of boxes works without the mesh (dvi/yee.h), unless A is to be
- *  kept, or the scene starts from A or has probes of parts of the mesh.
+ *  The method yee on a generated mesh of boxes works without the mesh (dvi/yee.h), unless A is to
+ *  be kept, or the scene starts from A or has probes of parts of the mesh.
  *
  *  @param      options  what they leave open is that of the scene. NULL for all of it
  *  @param[out] march    owned by the caller, for dvi_march_destroy before the scene's end

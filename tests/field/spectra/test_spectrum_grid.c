@@ -91,8 +91,8 @@ START_TEST(all_frequencies_of_a_box_are_found_from_600_samples)
 }
 END_TEST
 
-/* Probes of all components see all modes of the box, and a field that stands, that of the charges of
- * the start. */
+/* Probes of all components see all modes of the box, and a field that stands, that of the charges
+ * of the start. */
 static void run_yee(double dt, double *y)
 {
   const dvi_yee_probe probe[] = {

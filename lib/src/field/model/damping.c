@@ -58,7 +58,7 @@ static dvi_status mark_wall(rim *r, const dvi_wall *wall)
                    wall->part);
 }
 
-static double admittance_of(const dvi_field *field, int64_t cell)
+double dvi__admittance(const dvi_field *field, int64_t cell)
 {
   const double *eps = field->star->factor[field->degree],
                *nu = field->star->factor[field->degree + 1];
@@ -107,7 +107,7 @@ static void take_facets(rim *r)
     for (int c = 0; c < corners; c++)
       r->vertex[r->facets * corners + c] =
           r->number[mesh->n > 1 ? mesh->corner[mesh->n - 1][f * corners + c] : f];
-    r->admittance[r->facets++] = admittance_of(r->field, mesh->coface[2 * f]);
+    r->admittance[r->facets++] = dvi__admittance(r->field, mesh->coface[2 * f]);
   }
 }
 

@@ -37,13 +37,19 @@ typedef enum dvi__probe_kind {
   DVI__PROBE_ENERGY
 } dvi__probe_kind;
 
+/* A value of E times one of B, or of E again. */
+typedef struct dvi__product {
+  dvi__functional factor[2];
+  int is_square;
+} dvi__product;
+
 typedef struct dvi__probe {
   char *name;
   dvi__probe_kind kind;
   int is_B;                    /* of a value */
   dvi__functional value;       /* of a value */
-  int count;                   /* of products, of a flux and an energy */
-  dvi__functional *E, *B;      /* [count] each: the sum of E times B is the power */
+  int count;                   /* of products, whose sum is the power of a flux */
+  dvi__product *product;       /* [count] */
   dvi__csr electric, magnetic; /* the matrices of an energy */
 } dvi__probe;
 
@@ -101,8 +107,21 @@ dvi_status dvi__current_impulse(const dvi_field *field, int current, double from
 
 /* Make the currents and the probes. */
 dvi_status dvi__maxwell_make_currents(dvi_field *field, const dvi_maxwell_terms *terms);
-dvi_status dvi__field_make_probes(dvi_field *field, const dvi_field_probe *probe, int count);
+dvi_status dvi__maxwell_make_probes(dvi_field *field, const dvi_maxwell_terms *terms);
 void dvi__probe_clear(dvi__probe *probe);
+
+/* Make the products of the power through a part, out of its cells or out of the mesh. */
+dvi_status dvi__probe_make_flux(const dvi_field *field, const dvi_maxwell_terms *terms,
+                                const char *part, dvi__probe *probe);
+
+/* Refuse a part for a reason, such as "which has no cells". */
+dvi_status dvi__probe_refuse(const char *name, const char *part, const char *why);
+
+/* Mark the n-cells [n-cells] of a part with 1, for dvi__release. NULL without memory. */
+char *dvi__mark_cells(const dvi_mesh *mesh, const char *part);
+
+/* Return the admittance sqrt(eps/mu) of an n-cell. */
+double dvi__admittance(const dvi_field *field, int64_t cell);
 
 /* Give values of a form at cells, or at all if `cell` is NULL, as dvi__march_kind's sample does. */
 typedef dvi_status dvi__field_sampler(const void *of, dvi_march_form form, int64_t count,
@@ -112,10 +131,12 @@ typedef dvi_status dvi__field_sampler(const void *of, dvi_march_form form, int64
 dvi_status dvi__field_probe(const dvi_field *field, int i, dvi__field_sampler *sample,
                             const void *of, double *value);
 
-/* Make the functional of a form of degree k at a point: the product of `along` with its components.
- * DVI_BAD_ARGUMENT if the point lies outside. */
+/* Make the functional of a form of degree k at a point, or at a place in an n-cell: the product of
+ * `along` with its components. DVI_BAD_ARGUMENT if the point lies outside. */
 dvi_status dvi__functional_at(const dvi_mesh *mesh, int k, const double *at, const double *along,
                               dvi__functional *functional);
+dvi_status dvi__functional_make(const dvi_mesh *mesh, int k, int64_t cell, const double *place,
+                                const double *along, dvi__functional *functional);
 void dvi__functional_clear(dvi__functional *functional);
 
 /* Find what is fixed: fill in `unknown`, `number`, `fixed`. */

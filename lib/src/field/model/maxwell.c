@@ -124,7 +124,7 @@ static dvi_status make(dvi_field *field, const dvi_maxwell_terms *terms)
   if (field->degree == 0) DVI_TRY(dvi__field_find_components(field));
   DVI_TRY(dvi__maxwell_make_damping(field, terms));
   DVI_TRY(dvi__maxwell_make_currents(field, terms));
-  return dvi__field_make_probes(field, terms->probe, terms->probes);
+  return dvi__maxwell_make_probes(field, terms);
 }
 
 dvi_status dvi_maxwell_create(const dvi_maxwell_terms *terms, dvi_field **field)

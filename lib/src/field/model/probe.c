@@ -1,8 +1,4 @@
-/* Probes: values at a place, the power through facets, and the energy in a part.
- *
- * The power through a facet with the unit normal n is the integral of E.(i_n H), which is that of
- * Poynting's vector, n.(E x H), in three dimensions, and -A' dA/dn of a 0-form. It is taken at the
- * facet's centre, so that it has an error of second order. */
+/* Probes: values at a place, the power through facets (power.c), and the energy in a part. */
 #include <math.h>
 #include <string.h>
 
@@ -12,8 +8,6 @@
 #include "field/forms/component.h"
 #include "field/forms/evaluate.h"
 #include "field/forms/star.h"
-#include "field/mesh/normal.h"
-#include "field/mesh/volume.h"
 #include "field/model/field.h"
 
 /* ---- functionals ---- */
@@ -25,8 +19,8 @@ void dvi__functional_clear(dvi__functional *functional)
   *functional = (dvi__functional){0};
 }
 
-static dvi_status make_functional(const dvi_mesh *mesh, int k, int64_t cell, const double *place,
-                                  const double *along, dvi__functional *functional)
+dvi_status dvi__functional_make(const dvi_mesh *mesh, int k, int64_t cell, const double *place,
+                                const double *along, dvi__functional *functional)
 {
   *functional = (dvi__functional){.cell = DVI_NEW(int, DVI__LOCAL_FACES),
                                   .weight = DVI_NEW(double, DVI__LOCAL_FACES)};
@@ -48,80 +42,23 @@ dvi_status dvi__functional_at(const dvi_mesh *mesh, int k, const double *at, con
   if (cell < 0)
     return dvi__fail(DVI_BAD_ARGUMENT, "field: the point (%g, %g, %g) lies outside of the mesh",
                      at[0], mesh->n > 1 ? at[1] : 0.0, mesh->n > 2 ? at[2] : 0.0);
-  return make_functional(mesh, k, cell, place, along, functional);
+  return dvi__functional_make(mesh, k, cell, place, along, functional);
 }
 
 void dvi__probe_clear(dvi__probe *probe)
 {
   dvi__release(probe->name);
   dvi__functional_clear(&probe->value);
-  for (int i = 0; i < probe->count; i++) {
-    dvi__functional_clear(probe->E + i);
-    dvi__functional_clear(probe->B + i);
-  }
-  dvi__release(probe->E);
-  dvi__release(probe->B);
+  for (int i = 0; i < probe->count; i++)
+    for (int k = 0; k < 2; k++) dvi__functional_clear(probe->product[i].factor + k);
+  dvi__release(probe->product);
   dvi__csr_clear(&probe->electric);
   dvi__csr_clear(&probe->magnetic);
 }
 
-/* ---- the power through a facet ---- */
+/* ---- parts ---- */
 
-/* Tell the number of a set of axes among the components of a form, and the sign by which the axis
- * `first` in front of the others is sorted in. */
-static int component_with(int space, int k, int first, const int *axis, int *sign)
-{
-  int sorted[DVI_MESH_SPACE_MAX], other[DVI_MESH_SPACE_MAX], at = 0, number = 0;
-  while (at < k && axis[at] < first) at++;
-  for (int i = 0; i <= k; i++) sorted[i] = i < at ? axis[i] : i == at ? first : axis[i - 1];
-  *sign = at % 2 == 0 ? 1 : -1;
-  dvi__first_axes(k + 1, other);
-  while (memcmp(sorted, other, (size_t)(k + 1) * sizeof *other) != 0) {
-    number++;
-    dvi__next_axes(space, k + 1, other);
-  }
-  return number;
-}
-
-/* Give the weights of the components of B in the component `axis` of i_n B. */
-static void contract(int space, int k, const double *normal, const int *axis, double *along)
-{
-  memset(along, 0, DVI__COMPONENTS * sizeof *along);
-  for (int l = 0; l < space; l++) {
-    int sign, is_there = 0;
-    for (int i = 0; i < k; i++) is_there = is_there || axis[i] == l;
-    if (is_there) continue;
-    const int component = component_with(space, k, l, axis, &sign);
-    along[component] += sign * normal[l];
-  }
-}
-
-/* Add the products of all components at a facet, seen from one of its cells. */
-static dvi_status add_facet(const dvi_field *field, int64_t facet, int64_t cell, dvi__probe *probe)
-{
-  const dvi_mesh *mesh = field->mesh;
-  const double *nu = field->star->factor[field->degree + 1];
-  const int k = field->degree;
-  const double area = mesh->n > 1 ? dvi__cell_volume(mesh, mesh->n - 1, facet) : 1,
-               weight = area * (nu != NULL ? nu[cell] : 1);
-  double normal[DVI_MESH_SPACE_MAX], place[DVI__CORNERS], of_B[DVI__COMPONENTS];
-  int axis[DVI_MESH_DIMENSION_MAX], component = 0;
-  dvi__facet_normal(mesh, facet, cell, normal);
-  dvi__facet_place(mesh, facet, cell, place);
-  dvi__first_axes(k, axis);
-  do {
-    double of_E[DVI__COMPONENTS] = {0};
-    of_E[component++] = weight;
-    contract(mesh->space, k, normal, axis, of_B);
-    const int i = probe->count++;
-    DVI_TRY(make_functional(mesh, k, cell, place, of_E, probe->E + i));
-    DVI_TRY(make_functional(mesh, k + 1, cell, place, of_B, probe->B + i));
-  } while (dvi__next_axes(mesh->space, k, axis));
-  return DVI_OK;
-}
-
-/* Mark the n-cells of a part. */
-static char *mark_cells(const dvi_mesh *mesh, const char *part)
+char *dvi__mark_cells(const dvi_mesh *mesh, const char *part)
 {
   int64_t count;
   const int *cell = dvi_mesh_part_cells(mesh, part, mesh->n, &count);
@@ -130,46 +67,10 @@ static char *mark_cells(const dvi_mesh *mesh, const char *part)
   return inside;
 }
 
-/* Give the cell out of which the power through a facet flows, or -1: the only one, or of two the
- * one in the part. */
-static int64_t cell_behind(const dvi_mesh *mesh, const char *inside, int64_t facet)
-{
-  const int first = mesh->coface[2 * facet], second = mesh->coface[2 * facet + 1];
-  if (second < 0) return first;
-  if (inside[first] == inside[second]) return -1;
-  return inside[first] ? first : second;
-}
-
-static dvi_status refuse_part(const char *name, const char *part, const char *why)
+dvi_status dvi__probe_refuse(const char *name, const char *part, const char *why)
 {
   return dvi__fail(DVI_BAD_ARGUMENT, "field: the probe \"%s\" is on part \"%s\", %s", name,
                    part != NULL ? part : "", why);
-}
-
-static dvi_status make_flux(const dvi_field *field, const char *part, dvi__probe *probe)
-{
-  const dvi_mesh *mesh = field->mesh;
-  const int components = dvi_form_components(mesh->space, field->degree);
-  int64_t count, found = 0;
-  const int *facet = dvi_mesh_part_cells(mesh, part, mesh->n - 1, &count);
-  char *inside = mark_cells(mesh, part);
-  probe->E = DVI_NEW(dvi__functional, count * components);
-  probe->B = DVI_NEW(dvi__functional, count * components);
-  dvi_status status = inside && probe->E && probe->B
-                          ? DVI_OK
-                          : dvi__fail(DVI_NO_MEMORY, "field: no memory for a probe");
-  const int has_cells = dvi_mesh_part_degree(mesh, 0) >= 0 && status == DVI_OK &&
-                        memchr(inside, 1, (size_t)mesh->count[mesh->n]) != NULL;
-  for (int64_t i = 0; i < count && status == DVI_OK; i++) {
-    const int64_t cell = cell_behind(mesh, inside, facet[i]);
-    if (cell < 0 || (has_cells && !inside[cell])) continue;
-    found++;
-    status = add_facet(field, facet[i], cell, probe);
-  }
-  dvi__release(inside);
-  if (status != DVI_OK || found > 0) return status;
-  return refuse_part(probe->name, part,
-                     "which has neither facets of the boundary nor cells with others around them");
 }
 
 /* ---- the energy in a part ---- */
@@ -197,11 +98,11 @@ static dvi_status copy_part(const dvi_field *field, int k, const char *inside, d
 
 static dvi_status make_energy(const dvi_field *field, const char *part, dvi__probe *probe)
 {
-  char *inside = mark_cells(field->mesh, part);
+  char *inside = dvi__mark_cells(field->mesh, part);
   if (inside == NULL) return dvi__fail(DVI_NO_MEMORY, "field: no memory for a probe");
   dvi_status status = memchr(inside, 1, (size_t)field->mesh->count[field->mesh->n]) != NULL
                           ? DVI_OK
-                          : refuse_part(probe->name, part, "which has no cells");
+                          : dvi__probe_refuse(probe->name, part, "which has no cells");
   if (status == DVI_OK) status = copy_part(field, field->degree, inside, &probe->electric);
   if (status == DVI_OK) status = copy_part(field, field->degree + 1, inside, &probe->magnetic);
   dvi__release(inside);
@@ -224,7 +125,7 @@ static dvi_status check(const dvi_field *field, const dvi_field_probe *from)
                      "field: the probe \"%s\" is of \"%s\"; E, B, flux and energy are possible",
                      from->name, from->of);
   (void)dvi_mesh_part_cells(field->mesh, from->part != NULL ? from->part : "", 0, &count);
-  return count >= 0 ? DVI_OK : refuse_part(from->name, from->part, "which the mesh has not");
+  return count >= 0 ? DVI_OK : dvi__probe_refuse(from->name, from->part, "which the mesh has not");
 }
 
 static dvi_status make_value(const dvi_field *field, const dvi_field_probe *from, dvi__probe *probe)
@@ -237,8 +138,10 @@ static dvi_status make_value(const dvi_field *field, const dvi_field_probe *from
                             &probe->value);
 }
 
-dvi_status dvi__field_make_probes(dvi_field *field, const dvi_field_probe *probe, int count)
+dvi_status dvi__maxwell_make_probes(dvi_field *field, const dvi_maxwell_terms *terms)
 {
+  const dvi_field_probe *probe = terms->probe;
+  const int count = terms->probes;
   if (count == 0) return DVI_OK;
   field->probe = DVI_NEW(dvi__probe, count);
   if (field->probe == NULL) return dvi__fail(DVI_NO_MEMORY, "field: no memory for probes");
@@ -250,7 +153,7 @@ dvi_status dvi__field_make_probes(dvi_field *field, const dvi_field_probe *probe
     made->kind = *probe[i].of == 'f'   ? DVI__PROBE_FLUX
                  : *probe[i].of == 'e' ? DVI__PROBE_ENERGY
                                        : DVI__PROBE_VALUE;
-    DVI_TRY(made->kind == DVI__PROBE_FLUX     ? make_flux(field, probe[i].part, made)
+    DVI_TRY(made->kind == DVI__PROBE_FLUX ? dvi__probe_make_flux(field, terms, probe[i].part, made)
             : made->kind == DVI__PROBE_ENERGY ? make_energy(field, probe[i].part, made)
                                               : make_value(field, probe + i, made));
   }
@@ -279,10 +182,11 @@ static dvi_status power(const source *s, const dvi__probe *probe, double *value)
 {
   *value = 0;
   for (int i = 0; i < probe->count; i++) {
-    double E, B;
-    DVI_TRY(sum(s, DVI_FORM_E, probe->E + i, &E));
-    DVI_TRY(sum(s, DVI_FORM_B, probe->B + i, &B));
-    *value += E * B;
+    const dvi__product *product = probe->product + i;
+    double E, other;
+    DVI_TRY(sum(s, DVI_FORM_E, product->factor, &E));
+    DVI_TRY(sum(s, product->is_square ? DVI_FORM_E : DVI_FORM_B, product->factor + 1, &other));
+    *value += E * other;
   }
   return DVI_OK;
 }

@@ -4,8 +4,8 @@
  * Nothing separates their eigenvalue 0, of a multiplicity like the number of vertices, from the
  * lowest ones that are wanted. But it is known what they are: Lanczos' method for the inverse of
  * K + s M stays among the forms without charge, d^T M x = 0, if all vectors are projected onto
- * them, which takes the solution of one Poisson equation. What is left with eigenvalue zero are harmonic
- * forms: a few, by topology.
+ * them, which takes the solution of one Poisson equation. What is left with eigenvalue zero are
+ * harmonic forms: a few, by topology.
  *
  * Conjugate gradients for K + s M are slow on gradients, whose eigenvalue s is far below the others
  * on the scale of the mesh. Their preconditioner treats gradients apart (Hiptmair 1998). */

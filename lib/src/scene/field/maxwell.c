@@ -334,9 +334,9 @@ static const dvi__tree *to_blame(const dvi_scene *scene, const dvi__tree *sectio
 {
   static const struct {
     const char *word, *section;
-  } blame[] = {{"repair the mesh", "mesh"}, {"wall", "boundary"},  {"fixed", "boundary"},
-               {"dipole", "sources"},       {"signal", "sources"}, {"probe", "probes"},
-               {"point", "probes"},         {"star", "star"}};
+  } blame[] = {{"repair", "mesh"},    {"wall", "boundary"},  {"fixed", "boundary"},
+               {"dipole", "sources"}, {"signal", "sources"}, {"probe", "probes"},
+               {"point", "probes"},   {"star", "star"}};
   for (size_t i = 0; i < sizeof blame / sizeof *blame; i++) {
     const dvi__tree *found = dvi__tree_find(scene->tree, blame[i].section);
     if (found != NULL && strstr(dvi_last_error(), blame[i].word) != NULL) return found;
