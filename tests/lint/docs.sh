@@ -1,6 +1,6 @@
 #!/bin/sh
 # Checks the pages: links lead to files and headings, the bibliography has all cited sources, the
-# programs of the README, of docs/shapes.md and of docs/fields/waves.md are the examples that they
+# programs of the README, of docs/shapes.md and of pages in docs/fields are the examples that they
 # name, and the guide's program compiles.
 # Usage: docs.sh TOP C_COMPILER
 set -u
@@ -55,7 +55,7 @@ done
 fences c README.md >"$work/readme.c"
 cmp -s "$work/readme.c" apps/examples/pendulum.c ||
   breach "README.md: its program is not apps/examples/pendulum.c"
-for program in shapes:shapes fields/waves:drum fields/forms:hole; do
+for program in shapes:shapes fields/waves:drum fields/forms:hole fields/maxwell:cavity; do
   page=docs/${program%:*}.md
   example=apps/examples/${program#*:}.c
   fences c "$page" >"$work/program.c"

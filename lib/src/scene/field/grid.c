@@ -58,7 +58,6 @@ static void set_end(const dvi__scene_wall *wall, dvi_yee_axis *axis, int end)
  * a magnetic one, as on a mesh, or the grid repeats itself. */
 static void set_walls(draft *d)
 {
-  static const char *const side[] = {"left", "right", "bottom", "top", "back", "front"};
   const struct dvi__scene_maxwell *m = d->maxwell;
   for (int a = 0; a < d->field->dimension; a++)
     for (int end = 0; end < 2; end++) {
@@ -66,7 +65,7 @@ static void set_walls(draft *d)
       axis->end[end].kind = DVI_YEE_PMC;
       for (int pass = 0; pass < 2; pass++)
         for (int i = 0; i < m->walls; i++)
-          if (strcmp(m->wall[i].part, pass == 0 ? "boundary" : side[2 * a + end]) == 0)
+          if (strcmp(m->wall[i].part, pass == 0 ? "boundary" : dvi__grid_side[2 * a + end]) == 0)
             set_end(m->wall + i, axis, end);
       if (d->field->grid.periodic[a]) axis->end[end].kind = DVI_YEE_PERIODIC;
     }

@@ -93,20 +93,70 @@ static bool set_materials(dvi_scene *scene, draft *d)
 
 /* ---- walls ---- */
 
-static bool set_walls(dvi_scene *scene, draft *d)
+static void add_wall(draft *d, const char *part, dvi__wall_word word)
 {
   static const dvi_wall_kind kind[] = {
       [DVI__WALL_PMC] = DVI_PMC, [DVI__WALL_PEC] = DVI_PEC, [DVI__WALL_ABSORBING] = DVI_ABSORBING};
+  d->wall[d->terms.walls++] = (dvi_wall){.part = part, .kind = kind[word]};
+}
+
+static bool is_whole(const dvi__scene_wall *wall)
+{
+  return strcmp(wall->part, "boundary") == 0;
+}
+
+/* Of walls on one facet the library takes the strongest. A side of a grid has the wall that is
+ * given for it all the same, as with yee, so that the wall of the whole boundary is that of the
+ * other sides. */
+static void add_other_sides(const dvi_scene *scene, draft *d, const dvi__scene_wall *whole)
+{
   const struct dvi__scene_maxwell *m = scene->field->maxwell;
-  d->wall = take(scene, (size_t)m->walls, sizeof *d->wall);
-  for (int i = 0; i < m->walls && d->wall != NULL; i++) {
-    if (m->wall[i].word > DVI__WALL_ABSORBING)
+  for (int side = 0; side < 2 * scene->field->dimension; side++) {
+    const char *name = dvi__grid_side[side];
+    int64_t count = -1;
+    bool is_given = false;
+    for (int i = 0; i < m->walls; i++) is_given = is_given || strcmp(m->wall[i].part, name) == 0;
+    (void)dvi_mesh_part_cells(scene->field->mesh, name, 0, &count);
+    if (!is_given && count > 0) add_wall(d, name, whole->word);
+  }
+}
+
+/* On other meshes a part cannot be taken out of the boundary. */
+static bool is_strongest(dvi_scene *scene, const dvi__scene_wall *whole)
+{
+  static const int strength[] = {
+      [DVI__WALL_PMC] = 0, [DVI__WALL_ABSORBING] = 1, [DVI__WALL_PEC] = 2};
+  const struct dvi__scene_maxwell *m = scene->field->maxwell;
+  for (int i = 0; i < m->walls; i++)
+    if (m->wall[i].word <= DVI__WALL_ABSORBING && strength[m->wall[i].word] < strength[whole->word])
       return dvi__scene_refuse(scene, m->wall[i].span,
+                               "the wall of the whole boundary is stronger than that of '%s'; give "
+                               "each part of the boundary its own wall",
+                               m->wall[i].part);
+  return true;
+}
+
+static bool set_walls(dvi_scene *scene, draft *d)
+{
+  const struct dvi__scene_maxwell *m = scene->field->maxwell;
+  d->wall = take(scene, (size_t)m->walls + 6, sizeof *d->wall);
+  if (d->wall == NULL) return false;
+  for (int i = 0; i < m->walls; i++) {
+    const dvi__scene_wall *wall = m->wall + i;
+    if (wall->word > DVI__WALL_ABSORBING)
+      return dvi__scene_refuse(scene, wall->span,
                                "layers and phases are for 'method: yee' on boxes; a wall of this "
                                "mesh is pec, pmc or absorbing");
-    d->wall[i] = (dvi_wall){.part = m->wall[i].part, .kind = kind[m->wall[i].word]};
+    if (!is_whole(wall) || m->walls == 1)
+      add_wall(d, wall->part, wall->word);
+    else if (scene->field->is_grid)
+      add_other_sides(scene, d, wall);
+    else if (is_strongest(scene, wall))
+      add_wall(d, wall->part, wall->word);
+    else
+      return false;
   }
-  return d->wall != NULL;
+  return true;
 }
 
 /* ---- sources ---- */
@@ -316,7 +366,6 @@ static dvi_status make_field(dvi_scene *scene, draft *d)
   d->terms.star = f->star;
   d->terms.scalar = f->maxwell->is_scalar;
   d->terms.wall = d->wall;
-  d->terms.walls = f->maxwell->walls;
   d->terms.conductivity = d->sigma;
   d->terms.probe = d->probe;
   d->terms.probes = f->maxwell->probes;

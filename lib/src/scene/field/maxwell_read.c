@@ -163,7 +163,7 @@ bool dvi__maxwell_read_materials(dvi_scene *scene, const dvi__tree *section)
 
 /* ---- walls ---- */
 
-static const char *const side[] = {"left", "right", "bottom", "top", "back", "front"};
+const char *const dvi__grid_side[] = {"left", "right", "bottom", "top", "back", "front"};
 
 static bool wall_is_there(dvi_scene *scene, const char *part, dvi__span span)
 {
@@ -174,7 +174,7 @@ static bool wall_is_there(dvi_scene *scene, const char *part, dvi__span span)
     return count >= 0 || dvi__refuse_part(scene, span, part, false);
   }
   for (int i = 0; i < 2 * scene->field->dimension; i++)
-    if (strcmp(part, side[i]) == 0) return true;
+    if (strcmp(part, dvi__grid_side[i]) == 0) return true;
   return strcmp(part, "boundary") == 0 ||
          dvi__scene_refuse(scene, span,
                            "a grid has no wall '%s'; it has boundary, left, right, bottom, top, "
