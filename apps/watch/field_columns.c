@@ -13,9 +13,17 @@ enum { HINT_SIZE = 128 };
 
 /* ---- what there is ---- */
 
+/* Tell if the columns have what a wave's system watches, beside what a march observes. */
 static bool is_wave(const field_columns *c)
 {
-  return c->scene->system != NULL && dvi_march_size(c->march, DVI_FORM_A) > 0;
+  return dvi_scene_field(c->scene->scene) != NULL && dvi_march_size(c->march, DVI_FORM_A) > 0;
+}
+
+static int64_t count_unknowns(const field_columns *c)
+{
+  int64_t unknowns;
+  (void)dvi_field_unknowns(dvi_scene_field(c->scene->scene), &unknowns);
+  return unknowns;
 }
 
 static bool is_observable(const field_columns *c, const char *name)
@@ -104,8 +112,9 @@ int field_columns_choose(field_columns *columns, const problem *scene, const dvi
   if (good) columns->column = calloc((size_t)columns->there + 1, sizeof *columns->column);
   if (good) columns->number = calloc((size_t)columns->there + 1, sizeof *columns->number);
   if (good && is_wave(columns))
-    columns->form = calloc((size_t)(2 * dvi_march_size(march, DVI_FORM_A) + 2 * scene->nq),
-                           sizeof *columns->form);
+    columns->form = calloc(
+        (size_t)(2 * dvi_march_size(march, DVI_FORM_A) + 2 * count_unknowns(columns)),
+        sizeof *columns->form);
   if (!good || !columns->column || !columns->number || (is_wave(columns) && !columns->form)) {
     complain("out of memory");
     return FAILED;
@@ -142,7 +151,7 @@ static dvi_status find_state(field_columns *c, double **q, double **p)
   const dvi_field *field = dvi_scene_field(c->scene->scene);
   double *u = c->form, *E = u + cells;
   *q = E + cells;
-  *p = *q + c->scene->nq;
+  *p = *q + count_unknowns(c);
   dvi_status status = dvi_march_sample(c->march, DVI_FORM_A, 0, NULL, u);
   if (status == DVI_OK) status = dvi_march_sample(c->march, DVI_FORM_E, 0, NULL, E);
   for (int64_t i = 0; i < cells; i++) E[i] = -E[i];
