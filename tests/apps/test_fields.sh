@@ -117,6 +117,9 @@ awk -F, 'NR > 1 { d = $4 - exp($2)*sin($3); if (d*d > 1e-5) exit 1 }' out ||
   fail 'the solution exp(x) sin(y)'
 expect 0 'a scene without a start' run mixed.yaml --method verlet --h 0.01 --t-end 0.1 --final
 
+expect 0 'probes of a march' run plates.yaml --method leapfrog --h 0.01 --t-end 0.1 --final
+says out '^t,energy,ear$' 'probes of a march'
+
 cat >kink.yaml <<END
 parameters: {v: 0.5}
 mesh: {generator: interval, cells: 200, size: 40, origin: -20}

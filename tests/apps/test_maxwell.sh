@@ -97,6 +97,38 @@ END
 agree plane.yaml 'in a plane'
 sed 's/^field: maxwell/&\npolarization: tm/; s/moment: .*}}/moment: sin(t)^3}}/' plane.yaml >tm.yaml
 agree tm.yaml 'across a plane'
+
+# A side has its own wall, and the whole boundary is that of the other sides.
+sed 's/^boundary:.*/boundary: {boundary: pec, top: pmc, left: pmc}/' box.yaml >sides.yaml
+agree sides.yaml 'walls of sides'
+cat >rim.yaml <<END
+mesh: {generator: disk, cells: 4}
+field: maxwell
+boundary: {boundary: pec, rim: pmc}
+END
+expect 2 'a wall that a stronger one hides' modes rim.yaml
+says err "is stronger than that of 'rim'" 'a wall that a stronger one hides'
+
+# The flux through a box needs no layers.
+sed 's/^method:.*/method: yee/; s/^probes:.*/probes: {out: {flux: {from: [0.2, 0.2, 0.2], to: [0.8, 0.6, 0.4]}}}/' \
+  box.yaml >flux.yaml
+expect 0 'a flux through a box' run flux.yaml --final
+columns out t,energy,out 'a flux through a box'
+
+# The frames of asynchronous steps and of tents have E and B, and a run tells its events.
+cat >frames.yaml <<END
+mesh: {generator: annulus, cells: [2, 12]}
+field: maxwell
+boundary: {outer: pec}
+initial: {E: [y, x]}
+until: 0.2
+END
+for method in avi tents; do
+  expect 0 "frames of $method" run frames.yaml --method $method --final --pvd frames.pvd
+  says err ' events, with steps from ' "events of $method"
+  grep -a -q 'Name="B"' frames_000000.vtu || fail "$method: frames have no B"
+done
+
 cat >line.yaml <<END
 mesh: {generator: interval, cells: 20, size: 4}
 field: maxwell
