@@ -147,14 +147,12 @@ static bool set_walls(dvi_scene *scene, draft *d)
       return dvi__scene_refuse(scene, wall->span,
                                "layers and phases are for 'method: yee' on boxes; a wall of this "
                                "mesh is pec, pmc or absorbing");
-    if (!is_whole(wall) || m->walls == 1)
-      add_wall(d, wall->part, wall->word);
-    else if (scene->field->is_grid)
+    if (is_whole(wall) && m->walls > 1 && scene->field->is_grid) {
       add_other_sides(scene, d, wall);
-    else if (is_strongest(scene, wall))
-      add_wall(d, wall->part, wall->word);
-    else
-      return false;
+      continue;
+    }
+    if (is_whole(wall) && !is_strongest(scene, wall)) return false;
+    add_wall(d, wall->part, wall->word);
   }
   return true;
 }
