@@ -62,7 +62,8 @@ static int refuse(dvi_status status, const problem *scene, const dvi_march_optio
                                      "and mechanical methods such as verlet take the friction"
                                    : dvi_last_error();
   const char *section = is_damped ? "damping" : section_of(sentence, options);
-  if (status == DVI_NO_MEMORY || status == DVI_IO_ERROR || section == NULL)
+  /* of a callback that failed the scene knows the place better */
+  if (status == DVI_NO_MEMORY || status == DVI_CALLBACK_FAILED || section == NULL)
     return library_error(status);
   dvi_scene_tell(scene->scene, section, sentence, message, sizeof message);
   return usage_error("%s", message);

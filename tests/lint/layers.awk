@@ -53,7 +53,7 @@ BEGIN {
   sees["field/step"] = "core num march field/algebra field/mesh field/model"
   sees["field/avi"] = sees["field/step"] " field/forms field/step"
   sees["field/tents"] = sees["field/avi"]
-  sees["field/method"] = "core march field/algebra field/mesh field/forms field/model field/step field/avi field/tents"
+  sees["field/method"] = sees["field/avi"] " field/avi field/tents"
   sees["field/spectra"] = "core"
   # The library of scenes includes libdvi's public headers, too.
   sees["text"] = ""

@@ -167,13 +167,14 @@ dvi_status dvi_march_load(dvi_march *march, const char *path);
 
 /** Measure the laws of a field on a march that begins at random.
  *
- *  The laws are "energy", "gauss" (the charge), "divergence" (of B), "reciprocity" (the answer to an
- *  impulse at one place, seen at another one, is that of the exchanged places), "gauge" (of a
+ *  The laws are "energy", "gauss" (the charge), "divergence" (of B), "reciprocity" (the answer to
+ *  an impulse at one place, seen at another one, is that of the exchanged places), "gauge" (of a
  *  gradient in A, E and B know nothing) and "multisymplectic" (the form formula on a part of space
  *  and the time between, Marsden, Patrick and Shkoller 1998). Those that a field or a method cannot
  *  have are left out.
  *
- *  @param      steps  for which the field is followed, at least 2. Of asynchronous steps the longest
+ *  @param      steps  for which the field is followed, at least 2. Of asynchronous steps the
+ *                     longest
  *  @param[out] law    [DVI_LAWS_MAX]
  *  @param[out] count  number of laws
  *  @retval (others)   as dvi_march_create and dvi_march_advance */

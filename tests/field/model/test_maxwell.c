@@ -110,9 +110,30 @@ START_TEST(a_body_centred_torus_has_known_frequencies)
 }
 END_TEST
 
+/* 53 of 188 are static. */
+START_TEST(more_modes_than_there_are_are_refused)
+{
+  dvi_field *field = make_field(staggered(8), DVI_CIRCUMCENTRIC, 1);
+  double lambda[136] = {7};
+  dvi_modes_options options = {.size = sizeof options, .count = 136};
+  ck_assert_int_eq(dvi_field_modes(field, &options, lambda, NULL, NULL), DVI_BAD_SIZE);
+  check_words("136 modes of 188 unknowns, of which 53 are static: take 1 to 135");
+  options.count = 2;
+  options.shift = (double)NAN;
+  ck_assert_int_eq(dvi_field_modes(field, &options, lambda, NULL, NULL), DVI_BAD_ARGUMENT);
+  ck_assert_double_eq(lambda[0], 7);
+  options.shift = 0;
+  options.count = 135;
+  ck_assert_int_eq(dvi_field_modes(field, &options, lambda, NULL, NULL), DVI_OK);
+  ck_assert_double_lt(sqrt(lambda[134]), 44.07810353);
+  dvi_field_destroy(&field);
+}
+END_TEST
+
 SUITE(maxwell)
 {
   tcase_add_test(tests, a_square_cavity_of_triangles_has_known_frequencies);
   tcase_add_test(tests, a_box_has_the_frequencies_and_the_static_fields_of_its_grid);
+  tcase_add_test(tests, more_modes_than_there_are_are_refused);
   tcase_add_test(tests, a_body_centred_torus_has_known_frequencies);
 }

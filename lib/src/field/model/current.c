@@ -12,8 +12,9 @@
 static dvi_status spread_density(const dvi_field *field, const dvi_current *current,
                                  const dvi_matrix *W, double *profile)
 {
-  double *form = DVI_NEW(double, 2 * field->cells), *product = form + field->cells;
+  double *form = DVI_NEW(double, 2 * field->cells);
   if (form == NULL) return dvi__fail(DVI_NO_MEMORY, "maxwell: no memory for a current");
+  double *product = form + field->cells;
   const dvi_status status = dvi_form_integrate(field->mesh, field->degree, current->density,
                                                current->density_user, form);
   if (status == DVI_OK) {

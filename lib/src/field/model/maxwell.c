@@ -82,6 +82,17 @@ static dvi_status check_permeability(const dvi_field *field)
 
 /* ---- create ---- */
 
+/* Hold the cells of an electric wall. One that has vertices alone would be lost without a word. */
+static dvi_status hold_wall(dvi_field *field, const dvi_wall *wall)
+{
+  int64_t count, vertices;
+  const int *cell = dvi_mesh_part_cells(field->mesh, wall->part, field->degree, &count);
+  (void)dvi_mesh_part_cells(field->mesh, wall->part, 0, &vertices);
+  for (int64_t c = 0; c < count; c++) field->number[cell[c]] = -1;
+  if (count > 0 || vertices == 0) return DVI_OK;
+  return dvi__fail(DVI_BAD_ARGUMENT, "maxwell: the wall on part \"%s\" has no edge", wall->part);
+}
+
 static dvi_status hold_conductors(dvi_field *field, const dvi_maxwell_terms *terms)
 {
   field->unknown = DVI_NEW(int, field->cells);
@@ -90,11 +101,8 @@ static dvi_status hold_conductors(dvi_field *field, const dvi_maxwell_terms *ter
   if (field->unknown == NULL || field->number == NULL || field->fixed == NULL)
     return dvi__fail(DVI_NO_MEMORY, "maxwell: no memory for %lld cells", (long long)field->cells);
   for (int i = 0; i < terms->walls; i++) {
-    int64_t count;
     DVI_TRY(check_wall(field, terms->wall + i));
-    if (terms->wall[i].kind != DVI_PEC) continue;
-    const int *cell = dvi_mesh_part_cells(field->mesh, terms->wall[i].part, field->degree, &count);
-    for (int64_t c = 0; c < count; c++) field->number[cell[c]] = -1;
+    if (terms->wall[i].kind == DVI_PEC) DVI_TRY(hold_wall(field, terms->wall + i));
   }
   return dvi__field_number(field);
 }

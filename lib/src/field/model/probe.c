@@ -195,8 +195,9 @@ static dvi_status add_energy(const source *s, dvi_march_form form, const dvi__cs
                              double *energy)
 {
   const dvi_matrix M = dvi__csr_view(matrix, 1);
-  double *values = DVI_NEW(double, 2 * M.rows), *product = values + M.rows;
+  double *values = DVI_NEW(double, 2 * M.rows);
   if (values == NULL) return dvi__fail(DVI_NO_MEMORY, "field: no memory for a probe's energy");
+  double *product = values + M.rows;
   const dvi_status status = s->sample(s->of, form, M.rows, NULL, values);
   if (status == DVI_OK) {
     dvi_matrix_multiply(&M, 0, values, product);

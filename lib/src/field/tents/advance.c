@@ -23,7 +23,8 @@ static const double overshoot = 1e-6;
 
 static int is_lower(const dvi__front *front, int a, int b)
 {
-  return front->time[a] < front->time[b] || (front->time[a] == front->time[b] && a < b);
+  const double first = front->time[a], second = front->time[b];
+  return first < second || (first == second && a < b);
 }
 
 /* Let the vertex at a place of the heap sink below those that are lower. */

@@ -64,7 +64,7 @@ static int has_both(const simplex *s, int set)
 static int64_t under(const tent *t, const simplex *s, int set)
 {
   const int before = set & (lower(s) - 1), after = (set & ~(2 * upper(s) - 1)) >> 1,
-            at_pole = set & (lower(s) | upper(s)) ? lower(s) : 0;
+            at_pole = (set & (lower(s) | upper(s))) != 0 ? lower(s) : 0;
   return dvi__face_of(t->of, s->cell, before | at_pole | after);
 }
 
@@ -135,7 +135,7 @@ static double flux(const tent *t, const simplex *s, int set)
   for (int corner = 1; corner <= set; corner *= 2) {
     if (!(set & corner)) continue;
     const int64_t cell = under(t, s, set & ~corner);
-    const double risen = set & ~corner & upper(s) ? w->rise[cell] : 0;
+    const double risen = (set & ~corner & upper(s)) != 0 ? w->rise[cell] : 0;
     sum += sign_without(set, corner) * (t->front->A[cell] + risen);
   }
   return sum;

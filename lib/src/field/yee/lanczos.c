@@ -48,7 +48,7 @@ static double largest_of_T(const lanczos *l)
 /* Give the last entry of the eigenvector, by inverse iteration from above. */
 static double last_entry(const lanczos *l, double theta)
 {
-  double x[MOST_STEPS], pivot[MOST_STEPS], norm = 0;
+  double x[MOST_STEPS], pivot[MOST_STEPS];
   const int n = l->count;
   for (int i = 0; i < n; i++) {
     const double off = i > 0 ? l->beta[i - 1] : 0;
@@ -56,7 +56,7 @@ static double last_entry(const lanczos *l, double theta)
     x[i] = 1;
   }
   for (int round = 0; round < 3; round++) {
-    norm = 0;
+    double norm = 0;
     for (int i = 1; i < n; i++) x[i] -= l->beta[i - 1] / pivot[i - 1] * x[i - 1];
     x[n - 1] /= pivot[n - 1];
     for (int i = n - 2; i >= 0; i--) x[i] = (x[i] - l->beta[i] * x[i + 1]) / pivot[i];

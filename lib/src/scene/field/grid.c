@@ -232,13 +232,11 @@ typedef struct layout {
 
 static layout layout_of(const draft *d, dvi_march_form form, int component)
 {
-  int index[3] = {0};
-  layout found = {.first = dvi_yee_place(&d->terms, form, component, index)};
+  static const int corner[3] = {0}, next[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  layout found = {.first = dvi_yee_place(&d->terms, form, component, corner)};
   for (int a = 0; a < d->field->dimension; a++) {
-    index[a] = 1;
-    const int64_t place = dvi_yee_place(&d->terms, form, component, index);
+    const int64_t place = dvi_yee_place(&d->terms, form, component, next[a]);
     if (place >= 0) found.next[a] = place - found.first;
-    index[a] = 0;
   }
   return found;
 }
