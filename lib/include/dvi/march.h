@@ -120,7 +120,8 @@ dvi_status dvi_march_start(dvi_march *march, const dvi_march_state *state);
  *  @retval DVI_STEP_TOO_LARGE   the energy has grown beyond its band (avi). The march stands at the
  *                               time when that was seen, and can go on: the band is wider then
  *  @retval DVI_CALLBACK_FAILED  a signal failed. The march stands at the last good time
- *  @retval DVI_NOT_FINITE       a value is not finite. The march stands at the last good time */
+ *  @retval DVI_NOT_FINITE       a signal is not finite, or values are seen not to be. The march
+ *                               stands at the last good time */
 dvi_status dvi_march_advance(dvi_march *march, double t);
 
 /** Return the time. NaN before a start. */
@@ -135,7 +136,8 @@ int64_t dvi_march_size(const dvi_march *march, dvi_march_form form);
  *  @param      cell    [count] cells of the form's degree. NULL for all
  *  @param[out] values  [count] or [dvi_march_size]
  *  @retval DVI_BAD_ARGUMENT  an argument is missing, there is no such form or cell
- *  @retval DVI_BAD_STATE     the march has not been started */
+ *  @retval DVI_BAD_STATE     the march has not been started
+ *  @retval DVI_NOT_FINITE    a value has overflowed. dvi_last_error() names its cell */
 dvi_status dvi_march_sample(const dvi_march *march, dvi_march_form form, int64_t count,
                             const int *cell, double *values);
 

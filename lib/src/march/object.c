@@ -44,14 +44,15 @@ static dvi_status check_started(const dvi_march *march)
 
 /* ---- motion ---- */
 
+static const char *const form_name[] = {"A", "E", "B"};
+
 static dvi_status check_form(const dvi_march *march, dvi_march_form form, const double *values)
 {
-  static const char *const name[] = {"A", "E", "B"};
   if (values == NULL) return DVI_OK;
   const int64_t size = dvi_march_size(march, form == DVI_FORM_A ? DVI_FORM_E : form);
   for (int64_t i = 0; i < size; i++)
     if (!isfinite(values[i]))
-      return dvi__fail(DVI_NOT_FINITE, "march: the start has %s = %g in cell %lld", name[form],
+      return dvi__fail(DVI_NOT_FINITE, "march: the start has %s = %g in cell %lld", form_name[form],
                        values[i], (long long)i);
   return DVI_OK;
 }
@@ -109,7 +110,13 @@ dvi_status dvi_march_sample(const dvi_march *march, dvi_march_form form, int64_t
     if (cell[i] < 0 || cell[i] >= size)
       return dvi__fail(DVI_BAD_ARGUMENT, "march: cell %d is not from 0 to %lld", cell[i],
                        (long long)size - 1);
-  return march->kind->sample(march->self, form, cell != NULL ? count : size, cell, values);
+  if (cell == NULL) count = size;
+  DVI_TRY(march->kind->sample(march->self, form, count, cell, values));
+  for (int64_t i = 0; i < count; i++)
+    if (!isfinite(values[i]))
+      return dvi__fail(DVI_NOT_FINITE, "march: %s is %g in cell %lld at t = %g", form_name[form],
+                       values[i], (long long)(cell != NULL ? cell[i] : i), dvi_march_time(march));
+  return DVI_OK;
 }
 
 const char *dvi_march_observable(const dvi_march *march, int i)
@@ -123,7 +130,13 @@ dvi_status dvi_march_observe(const dvi_march *march, int i, double *value)
   DVI_TRY(check_started(march));
   if (value == NULL || dvi_march_observable(march, i) == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "march: there is no observable %d, or no place for it", i);
-  return march->kind->observe(march->self, i, value);
+  double found;
+  DVI_TRY(march->kind->observe(march->self, i, &found));
+  if (!isfinite(found))
+    return dvi__fail(DVI_NOT_FINITE, "march: %s is %g at t = %g", dvi_march_observable(march, i),
+                     found, dvi_march_time(march));
+  *value = found;
+  return DVI_OK;
 }
 
 void dvi_march_facts_of(const dvi_march *march, dvi_march_facts *facts)

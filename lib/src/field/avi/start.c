@@ -63,7 +63,7 @@ static dvi_status check_energy(const dvi__avi *avi, const double *A, const doubl
   double sum = 0;
   for (int64_t e = 0; e < avi->free_edges && E != NULL; e++) {
     const double value = E[avi->edge_name[e]];
-    sum += value * value * avi->M1[e];
+    sum += value * (value * avi->M1[e]); /* a square may overflow, or vanish */
   }
   for (int64_t f = 0; f < avi->faces; f++) {
     double value = B != NULL ? B[avi->face_name[f]] : 0;
@@ -72,7 +72,7 @@ static dvi_status check_energy(const dvi__avi *avi, const double *A, const doubl
       const double a = A[avi->edge_name[dvi__avi_number(code)]];
       value += code < 0 ? -a : a;
     }
-    sum += value * value * avi->M2[f];
+    sum += value * (value * avi->M2[f]);
   }
   *energy = 0.5 * sum;
   if (isfinite(*energy)) return DVI_OK;

@@ -126,12 +126,12 @@ dvi_status dvi__avi_energy(const dvi__avi *avi, double *energy, double *growth)
   for (int64_t e = 0; e < avi->free_edges; e++) {
     double D;
     DVI_TRY(see_D(avi, e, &D));
-    sum += D * D * avi->inverse[e];
+    sum += D * (D * avi->inverse[e]); /* a square may overflow, or vanish */
   }
   for (int64_t f = 0; f < avi->faces; f++) {
     double B;
     DVI_TRY(see_B(avi, f, &B));
-    sum += B * B * avi->M2[f];
+    sum += B * (B * avi->M2[f]);
   }
   for (int64_t i = 0; i < avi->extra_count; i++)
     reference += avi->extras[i].worked + avi->view->worked[i];

@@ -14,6 +14,8 @@
 #include "field/mesh/complex.h"
 #include "field/model/field.h"
 
+static const double roundoff = 1e-14; /* of an entry, beside the largest one */
+
 /* ---- the boundary as a mesh of its own ---- */
 
 /* The facets of absorbing walls. */
@@ -249,7 +251,30 @@ static dvi_status make_conductors(dvi_field *field, const double *sigma, dvi__cs
 
 /* ---- both ---- */
 
-dvi_status dvi__maxwell_make_damping(dvi_field *field, const dvi_maxwell_terms *terms)
+/* The pieces of circumcentric dual cells in conductors and walls have signs, even where the whole
+ * dual cells are positive. Entries that are roundings of zero count as zero. */
+static dvi_status check_damping(dvi_field *field)
+{
+  dvi__csr *S = &field->damping;
+  double most = 0;
+  if (S->rows == 0 || !field->damping_is_diagonal) return DVI_OK;
+  for (int64_t e = 0; e < S->start[S->rows]; e++) most = fmax(most, S->value[e]);
+  for (int64_t e = 0; e < S->start[S->rows]; e++) {
+    if (S->value[e] >= 0) continue;
+    if (S->value[e] < -roundoff * most) {
+      const dvi__cell_name name = dvi__name_cell(field->mesh, field->degree,
+                                                 field->unknown[S->column[e]]);
+      return dvi__fail(DVI_SINGULAR,
+                       "maxwell: the losses have the entry %g at %s, so that fields would grow: "
+                       "take a Whitney star, repair the mesh (dvi mesh tells how), or other points",
+                       S->value[e], name.text);
+    }
+    S->value[e] = 0;
+  }
+  return DVI_OK;
+}
+
+static dvi_status make_damping(dvi_field *field, const dvi_maxwell_terms *terms)
 {
   dvi__csr walls = {0}, conductors = {0};
   field->damping_is_diagonal = field->mass_is_diagonal;
@@ -266,4 +291,10 @@ dvi_status dvi__maxwell_make_damping(dvi_field *field, const dvi_maxwell_terms *
   dvi__csr_clear(&walls);
   dvi__csr_clear(&conductors);
   return status;
+}
+
+dvi_status dvi__maxwell_make_damping(dvi_field *field, const dvi_maxwell_terms *terms)
+{
+  DVI_TRY(make_damping(field, terms));
+  return check_damping(field);
 }

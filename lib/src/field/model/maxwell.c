@@ -64,6 +64,23 @@ static dvi_status check_wall(const dvi_field *field, const dvi_wall *wall)
                    wall->part);
 }
 
+/* Matrices that are not diagonal are sums over cells, positive if the factors are. */
+static dvi_status check_factors(const dvi_field *field, int k)
+{
+  const double *factor = field->star->factor[k];
+  dvi_matrix M;
+  DVI_TRY(dvi_star_matrix(field->star, k, &M));
+  for (int64_t c = 0; c < field->mesh->count[field->mesh->n]; c++) {
+    if (M.column == NULL || factor == NULL || factor[c] >= 0) continue;
+    const dvi__cell_name name = dvi__name_cell(field->mesh, field->mesh->n, c);
+    return dvi__fail(DVI_SINGULAR,
+                     "maxwell: the factor of M_%d is %g in %s, so that waves would grow; 0 or more "
+                     "is possible",
+                     k, factor[c], name.text);
+  }
+  return DVI_OK;
+}
+
 /* A negative M_{k+1} makes waves grow. */
 static dvi_status check_permeability(const dvi_field *field)
 {
@@ -127,6 +144,7 @@ static dvi_status make(dvi_field *field, const dvi_maxwell_terms *terms)
   field->degree = terms->scalar || field->mesh->n == 1 ? 0 : 1;
   field->cells = field->mesh->count[field->degree];
   DVI_TRY(hold_conductors(field, terms));
+  for (int k = field->degree; k <= field->degree + 1; k++) DVI_TRY(check_factors(field, k));
   DVI_TRY(check_permeability(field));
   DVI_TRY(make_matrices(field));
   if (field->degree == 0) DVI_TRY(dvi__field_find_components(field));

@@ -33,11 +33,11 @@ typedef struct place {
   double dt, t0, t;
 } place;
 
-/* What stars that are not diagonal need: the matrix M + dt/2 S, and room. */
+/* What stars that are not diagonal need: the matrix M + dt/2 S of a step, M, and room. */
 typedef struct solver {
   dvi_matrix d, M2;
   dvi__csr left;
-  dvi__products products;
+  dvi__products of_step, of_mass;
   double *room;      /* of all that follows */
   double *H, *curl;  /* [faces], [cells] */
   double *right, *x; /* [unknowns] */
@@ -119,10 +119,10 @@ static void precondition(void *of, const double *r, double *z)
   dvi__gauss_seidel(&A, r, z);
 }
 
-/* Set x to (M + dt/2 S)^-1 right. */
-static dvi_status solve(const leapfrog *l)
+/* Set x to A^-1 right, with the matrix A = M + dt/2 S of a step, or A = M. */
+static dvi_status solve(const leapfrog *l, const dvi__products *A)
 {
-  return dvi__conjugate_gradients(&l->solver.products, 1e-15, l->solver.right, l->solver.x, NULL);
+  return dvi__conjugate_gradients(A, 1e-15, l->solver.right, l->solver.x, NULL);
 }
 
 /* ---- a step ---- */
@@ -167,7 +167,7 @@ static dvi_status kick_by_solution(leapfrog *l)
 {
   const dvi_field *f = l->field;
   find_right(l, l->at.dt);
-  DVI_TRY(solve(l));
+  DVI_TRY(solve(l, &l->solver.of_step));
   for (int64_t i = 0; i < f->unknowns; i++) l->E[f->unknown[i]] += l->solver.x[i];
   return DVI_OK;
 }
@@ -235,7 +235,7 @@ static dvi_status half_kick(leapfrog *l)
   const double half = l->at.dt / 2;
   if (l->gain == NULL) {
     find_right(l, half);
-    DVI_TRY(solve(l));
+    DVI_TRY(solve(l, &l->solver.of_step));
   } else {
     for (int64_t i = 0; i < f->unknowns; i++) l->spare[i] = half * force(l, i) * l->inverse[i];
   }
@@ -279,12 +279,12 @@ static int64_t size(const void *self, dvi_march_form form)
   return form == DVI_FORM_B ? l->sweep.faces : l->sweep.cells;
 }
 
-/* Find E' at t_n of a star that is not diagonal. */
+/* Find E' at t_n of a star that is not diagonal, M E' = d^T M_{k+1} B^n - J^n - S E^{n+1/2}. */
 static dvi_status find_change(leapfrog *l)
 {
   if (l->gain != NULL || l->changed == l->at.n) return DVI_OK;
   find_right(l, 1);
-  DVI_TRY(solve(l));
+  DVI_TRY(solve(l, &l->solver.of_mass));
   for (int64_t i = 0; i < l->field->unknowns; i++) l->change[l->field->unknown[i]] = l->solver.x[i];
   l->changed = l->at.n;
   return DVI_OK;
@@ -479,11 +479,13 @@ static dvi_status make_solver(leapfrog *l)
   s->right = s->curl + f->cells;
   s->x = s->right + n;
   s->kept = s->x + n;
-  s->products = (dvi__products){.size = n,
-                                .times = times,
-                                .precondition = precondition,
-                                .of = &s->left,
-                                .work = s->kept + l->numbers};
+  s->of_step = (dvi__products){.size = n,
+                               .times = times,
+                               .precondition = precondition,
+                               .of = &s->left,
+                               .work = s->kept + l->numbers};
+  s->of_mass = s->of_step;
+  s->of_mass.of = (dvi__csr *)&f->mass;
   if (f->damping.rows == 0) return dvi__csr_copy(&M, &s->left);
   const dvi_matrix S = dvi__csr_view(&f->damping, 1);
   DVI_TRY(dvi__csr_copy(&S, &half));
