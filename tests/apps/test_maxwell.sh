@@ -110,8 +110,8 @@ expect 2 'a wall that a stronger one hides' modes rim.yaml
 says err "is stronger than that of 'rim'" 'a wall that a stronger one hides'
 
 # The flux through a box needs no layers.
-sed 's/^method:.*/method: yee/
-  s/^probes:.*/probes: {out: {flux: {from: [0.2, 0.2, 0.2], to: [0.8, 0.6, 0.4]}}}/' box.yaml >flux.yaml
+through='{flux: {from: [0.2, 0.2, 0.2], to: [0.8, 0.6, 0.4]}}'
+sed "s/^method:.*/method: yee/; s/^probes:.*/probes: {out: $through}/" box.yaml >flux.yaml
 expect 0 'a flux through a box' run flux.yaml --final
 columns out t,energy,out 'a flux through a box'
 

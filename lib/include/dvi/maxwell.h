@@ -82,8 +82,8 @@ extern "C" {
  *  @retval DVI_BAD_ARGUMENT     a part is missing, every cell is held, a conductivity is negative,
  *                               a dipole or a probe lies outside of the mesh, or an argument is not
  *                               as described
- *  @retval DVI_SINGULAR         an entry of M_k is not positive, or one of M_{k+1} or of a diagonal S
- *                               is negative, or a factor of a star that is not diagonal.
+ *  @retval DVI_SINGULAR         an entry of M_k is not positive, one of M_{k+1} or of a diagonal S
+ *                               is negative, or a factor of a star that is not diagonal is.
  *                               dvi_last_error() names the place and what helps
  *  @retval DVI_CALLBACK_FAILED  a density failed
  *  @retval DVI_NOT_FINITE       a density is not finite. dvi_last_error() names the place
