@@ -72,10 +72,10 @@ method: leapfrog
 boundary: {cpml: 1}"
 refuse 'a phase at one end' 5:11 'repeats itself at one end only' "$grid
 boundary: {left: {bloch: 1}, right: pec}"
-refuse 'walls that repeat a mesh' 4:11 'a mesh repeats itself by its own axes' "$flat
+refuse 'walls that repeat a mesh' 4:11 'this mesh repeats itself by its own axes' "$flat
 boundary: periodic"
-refuse 'walls that repeat boxes' 5:11 'a mesh repeats itself by its own axes' "$grid
-boundary: periodic"
+refuse 'an axis that repeats itself at one end' 5:11 'let left and right be periodic' "$grid
+boundary: {left: periodic}"
 refuse 'all of it a conductor' 4:11 'all 286 edges are fixed, and nothing is unknown' "$solid
 boundary: {all: pec}"
 refuse 'a conductor around one box' 5:11 'nothing is unknown' "mesh: {generator: box, cells: [1, 1]}

@@ -82,6 +82,9 @@ bool dvi__is_grid_alone(dvi_scene *scene);
 /* The names of the sides of a grid of boxes: lower and upper end of each axis. */
 extern const char *const dvi__grid_side[6];
 
+/* Let the axes of a grid repeat themselves where the boundary says so, before the mesh is made. */
+bool dvi__maxwell_read_periodic(dvi_scene *scene);
+
 /* The readers of sections. */
 bool dvi__maxwell_read_materials(dvi_scene *scene, const dvi__tree *section);
 bool dvi__maxwell_read_walls(dvi_scene *scene, const dvi__tree *section);

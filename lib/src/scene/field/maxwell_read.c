@@ -165,6 +165,49 @@ bool dvi__maxwell_read_materials(dvi_scene *scene, const dvi__tree *section)
 
 const char *const dvi__grid_side[] = {"left", "right", "bottom", "top", "back", "front"};
 
+/* Return the axis of a side of a grid, or -1. */
+static int axis_of_side(const char *part)
+{
+  for (int i = 0; i < 6; i++)
+    if (strcmp(part, dvi__grid_side[i]) == 0) return i / 2;
+  return -1;
+}
+
+static bool is_periodic(const dvi__tree *tree)
+{
+  return tree != NULL && tree->kind == DVI__SCALAR && strcmp(tree->text, "periodic") == 0;
+}
+
+/* An axis repeats itself at both of its ends. */
+static bool read_periodic_sides(dvi_scene *scene, const dvi__tree *boundary)
+{
+  int ends[3] = {0};
+  for (int i = 0; i < boundary->count; i++) {
+    const int axis = axis_of_side(boundary->key[i]->text);
+    if (axis >= 0 && is_periodic(boundary->child[i])) ends[axis]++;
+  }
+  for (int a = 0; a < 3; a++) {
+    if (ends[a] == 1)
+      return dvi__scene_refuse(scene, boundary->span,
+                               "an axis repeats itself at both of its ends: let %s and %s be "
+                               "periodic",
+                               dvi__grid_side[2 * a], dvi__grid_side[2 * a + 1]);
+    if (ends[a] == 2) scene->field->grid.periodic[a] = 1;
+  }
+  return true;
+}
+
+bool dvi__maxwell_read_periodic(dvi_scene *scene)
+{
+  const dvi__tree *boundary = dvi__tree_find(scene->tree, "boundary");
+  if (scene->field->maxwell == NULL || !scene->field->is_grid || boundary == NULL) return true;
+  const bool all = is_periodic(boundary) || (boundary->kind == DVI__MAPPING &&
+                                             is_periodic(dvi__tree_find(boundary, "boundary")));
+  for (int a = 0; a < 3 && all; a++)
+    scene->field->grid.periodic[a] = scene->field->grid.cells[a] > 0;
+  return all || boundary->kind != DVI__MAPPING || read_periodic_sides(scene, boundary);
+}
+
 static bool wall_is_there(dvi_scene *scene, const char *part, dvi__span span)
 {
   const dvi_mesh *mesh = scene->field->mesh;
@@ -210,14 +253,18 @@ static bool read_wall(dvi_scene *scene, const char *part, dvi__span span, const 
   dvi__scene_wall *wall = m->wall + m->walls++;
   int which;
   *wall = (dvi__scene_wall){.part = part, .span = span};
+  if (is_periodic(tree) && scene->field->is_grid) {
+    m->walls--; /* the axes of the grid repeat themselves, and have no wall */
+    return true;
+  }
   if (!wall_is_there(scene, part, span)) return false;
   if (tree->kind == DVI__MAPPING) return read_number_wall(scene, tree, wall);
   if (!dvi__tree_word(scene, tree, "a wall", 4, word, &which)) return false;
   wall->word = (dvi__wall_word)which;
-  return wall->word != DVI__WALL_PERIODIC || scene->field->mesh == NULL ||
+  return wall->word != DVI__WALL_PERIODIC ||
          dvi__scene_refuse(scene, tree->span,
-                           "a mesh repeats itself by its own axes, as in 'mesh: {generator: box, "
-                           "periodic: [1, 0]}'");
+                           "this mesh repeats itself by its own axes, as in 'mesh: {generator: "
+                           "kuhn-torus}'; a box does so by its boundary, too");
 }
 
 /* A mapping by part has values that are words or mappings; '{cpml: 10}' alone is of the whole

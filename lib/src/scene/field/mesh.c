@@ -53,6 +53,7 @@ static bool generate(dvi_scene *scene, const dvi__tree *section, const dvi__tree
       !read_list(scene, section, "periodic", NULL, options->periodic))
     return false;
   scene->field->is_grid = strcmp(generator->text, "box") == 0;
+  if (!dvi__maxwell_read_periodic(scene)) return false;
   if (dvi__is_grid_alone(scene)) return true;
   return report(scene, section, dvi_mesh_generate(generator->text, options, &scene->field->mesh));
 }
