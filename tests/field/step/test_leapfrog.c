@@ -7,6 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "core/memory.h"
 #include "support/meshes.h"
 #include "support/suite.h"
 
@@ -297,8 +298,24 @@ START_TEST(cuts_threads_and_saved_states_keep_the_bits)
 }
 END_TEST
 
+START_TEST(steps_allocate_nothing)
+{
+  for (int kind = 0; kind < 2; kind++) {
+    scene s = make_scene(box(), kind ? DVI_WHITNEY : DVI_CIRCUMCENTRIC,
+                         (dvi_maxwell_terms){.wall = &pec, .walls = 1},
+                         (dvi_march_options){.fraction = 0.5});
+    const long before = dvi__allocation_count();
+    advance(&s, 20 * step_of(&s));
+    sample(&s);
+    ck_assert_int_eq(dvi__allocation_count(), before);
+    end_scene(&s);
+  }
+}
+END_TEST
+
 SUITE(leapfrog)
 {
+  tcase_add_test(tests, steps_allocate_nothing);
   tcase_add_test(tests, energy_and_charge_are_conserved_to_roundoff);
   tcase_add_test(tests, time_and_space_disperse_as_known);
   tcase_add_test(tests, a_conductor_damps_as_the_difference_equation_says);
