@@ -1,10 +1,10 @@
 /* labels: unit */
 /* Open grids: absorbing ends and layers, plane waves. */
 #include <dvi/yee.h>
-#include <complex.h>
 #include <math.h>
 #include <stdlib.h>
 
+#include "field/spectra/complex_number.h"
 #include "support/waves/boxes.h"
 #include "support/suite.h"
 
@@ -183,7 +183,7 @@ static double _Complex transform(double upper, dvi_yee_boundary kind, double h, 
   start_boxes(march, NULL, NULL);
   for (int n = 0; n * dt < 10; n++) {
     advance_boxes(march, n * dt);
-    sum += cexp(CMPLX(0, omega * n * dt)) * observe_boxes(march, "probe");
+    sum += cexp(dvi__complex(0, omega * n * dt)) * observe_boxes(march, "probe");
   }
   dvi_march_destroy(&march);
   return sum;
@@ -194,7 +194,7 @@ START_TEST(absorbing_ends_reflect_as_the_grid_says)
 {
   const double h = 0.05, dt = _i == 2 ? h : 0.025, omega = _i == 0 ? 5 : 11;
   const double b = (dt - h) / (dt + h), k = 2 / h * asin(h / dt * sin(omega * dt / 2));
-  const double _Complex z = cexp(CMPLX(0, omega * dt)), q = cexp(CMPLX(0, k * h));
+  const double _Complex z = cexp(dvi__complex(0, omega * dt)), q = cexp(dvi__complex(0, k * h));
   const double expected = cabs((z - q - b * (q * z - 1)) / (z - 1 / q - b * (z / q - 1)));
   const double _Complex incident = transform(20, DVI_YEE_PEC, h, dt, omega),
                         all = transform(1, DVI_YEE_ABSORBING, h, dt, omega);
