@@ -162,14 +162,15 @@ static bool measure(field_columns *c, int i, const double *q, const double *p)
 {
   const field_column *column = c->column + i;
   const double t = dvi_march_time(c->march);
-  dvi_status status = DVI_OK;
-  if (column->observable >= 0)
-    status = dvi_march_observe(c->march, column->observable, c->number + i);
-  if (status != DVI_OK) return library_error(status) == DONE;
-  const dvi_invariant *invariant = c->scene->terms->invariants + column->invariant;
-  const bool failed = column->invariant >= 0 &&
-                      invariant->value(t, q, p, c->number + i, invariant->user) != 0;
-  if (!failed && isfinite(c->number[i])) return true;
+  int failed = 0;
+  if (column->observable >= 0) {
+    const dvi_status status = dvi_march_observe(c->march, column->observable, c->number + i);
+    if (status != DVI_OK) return library_error(status) == DONE;
+  } else {
+    const dvi_invariant *invariant = c->scene->terms->invariants + column->invariant;
+    failed = invariant->value(t, q, p, c->number + i, invariant->user);
+  }
+  if (failed == 0 && isfinite(c->number[i])) return true;
   complain("run: column '%s' is not a finite number at t = %.17g", column->name, t);
   return false;
 }
