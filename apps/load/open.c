@@ -129,8 +129,9 @@ static int refuse_grid(const char *name, problem **scene)
 int open_problem(const char *name, const words *settings, problem **scene)
 {
   int code = open_any(name, settings, scene);
-  if (code == DONE && dvi_scene_grid_only((*scene)->scene) != NULL) return refuse_grid(name, scene);
-  if (code == DONE) code = scene_complete(*scene);
+  if (code != DONE || *scene == NULL) return code;
+  if (dvi_scene_grid_only((*scene)->scene) != NULL) return refuse_grid(name, scene);
+  code = scene_complete(*scene);
   if (code != DONE) problem_destroy(scene);
   return code;
 }

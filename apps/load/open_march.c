@@ -90,7 +90,7 @@ int open_march(const problem *scene, const dvi_march_options *options, dvi_march
     asked.method = NULL;
   const dvi_status status = dvi_scene_march_create(scene->scene, &asked, march);
   if (status == DVI_OK) return DONE;
-  if (dvi_scene_grid_only(scene->scene) != NULL && strcmp(method, "yee") != 0)
+  if (method != NULL && dvi_scene_grid_only(scene->scene) != NULL && strcmp(method, "yee") != 0)
     return refuse_grid(scene, method);
   return refuse(status, scene, &asked);
 }

@@ -9,7 +9,7 @@
 #include "cli/spelling.h"
 #include "load/field.h"
 
-enum { HINT_SIZE = 128 };
+enum { HINT_SIZE = 128, LIST_SIZE = 256 };
 
 /* ---- what there is ---- */
 
@@ -26,9 +26,10 @@ static int64_t count_unknowns(const field_columns *c)
   return unknowns;
 }
 
-static bool is_observable(const field_columns *c, const char *name)
+/* Tell if one of the first columns has this name. */
+static bool is_among(const field_columns *c, int first, const char *name)
 {
-  for (int i = 0; i < c->there; i++)
+  for (int i = 0; i < first; i++)
     if (strcmp(c->all[i].name, name) == 0) return true;
   return false;
 }
@@ -44,7 +45,7 @@ static bool list_all(field_columns *c)
     c->all[c->there++] = (field_column){dvi_march_observable(c->march, i), i, -1};
   for (int i = 0; i < invariants; i++) {
     const char *name = c->scene->terms->invariants[i].name;
-    if (!is_observable(c, name)) c->all[c->there++] = (field_column){name, -1, i};
+    if (!is_among(c, observables, name)) c->all[c->there++] = (field_column){name, -1, i};
   }
   return true;
 }
@@ -55,20 +56,40 @@ static const char *name_at(int k, const void *list)
   return k < c->there ? c->all[k].name : NULL;
 }
 
+/* Return the place of a name of this length, or -1. */
+static int find(const field_columns *c, const char *name, size_t length)
+{
+  const char *known;
+  for (int i = 0; (known = name_at(i, c)) != NULL; i++)
+    if (strlen(known) == length && strncmp(known, name, length) == 0) return i;
+  return -1;
+}
+
 /* ---- what is shown ---- */
+
+/* Write the names that there are, as many as find room. */
+static void list_names(const field_columns *c, char *list)
+{
+  size_t length = 0;
+  const char *name;
+  list[0] = '\0';
+  for (int i = 0; (name = name_at(i, c)) != NULL && length < LIST_SIZE; i++)
+    length += (size_t)snprintf(list + length, LIST_SIZE - length, "%s%s", i > 0 ? ", " : "", name);
+}
 
 static int add_column(field_columns *c, const char *name, size_t length)
 {
-  char word[HINT_SIZE], hint[HINT_SIZE];
-  for (int i = 0; i < c->there; i++)
-    if (strlen(c->all[i].name) == length && strncmp(c->all[i].name, name, length) == 0) {
-      c->column[c->count++] = c->all[i];
-      return DONE;
-    }
+  char word[HINT_SIZE], hint[HINT_SIZE], list[LIST_SIZE];
+  const int place = find(c, name, length);
+  if (place >= 0) {
+    c->column[c->count++] = c->all[place];
+    return DONE;
+  }
   (void)snprintf(word, sizeof word, "%.*s", (int)(length < HINT_SIZE ? length : HINT_SIZE - 1),
                  name);
-  return usage_error("run: --columns: this march has no column '%s'%s", word,
-                     suggestion(word, name_at, c, hint, sizeof hint));
+  list_names(c, list);
+  return usage_error("run: --columns: this march has no column '%s'%s; it has %s", word,
+                     suggestion(word, name_at, c, hint, sizeof hint), list);
 }
 
 static int choose_asked(field_columns *c, const char *asked)
@@ -84,24 +105,29 @@ static int choose_asked(field_columns *c, const char *asked)
 }
 
 /* The laws of charge take a look at the whole field, and are shown when they are asked for. */
-static void choose_usual(field_columns *c)
+static bool is_usual(const char *name)
 {
   static const char *const on_demand[] = {"gauss", "charge", "divergence"};
-  for (int i = 0; i < c->there; i++) {
-    bool shown = true;
-    for (size_t k = 0; k < sizeof on_demand / sizeof *on_demand; k++)
-      shown = shown && strcmp(c->all[i].name, on_demand[k]) != 0;
-    if (shown) c->column[c->count++] = c->all[i];
-  }
+  for (size_t k = 0; k < sizeof on_demand / sizeof *on_demand; k++)
+    if (strcmp(name, on_demand[k]) == 0) return false;
+  return true;
+}
+
+static void choose_usual(field_columns *c)
+{
+  const char *name;
+  for (int i = 0; (name = name_at(i, c)) != NULL; i++)
+    if (is_usual(name)) c->column[c->count++] = c->all[i];
 }
 
 /* The scene's columns that a march has. A system may have more of them. */
 static void choose_of_scene(field_columns *c)
 {
-  for (int k = 0; k < c->scene->column_count; k++)
-    for (int i = 0; i < c->there; i++)
-      if (strcmp(c->all[i].name, c->scene->column[k]) == 0 && c->count < c->there)
-        c->column[c->count++] = c->all[i];
+  for (int k = 0; k < c->scene->column_count && c->count < c->there; k++) {
+    const char *name = c->scene->column[k];
+    const int place = find(c, name, strlen(name));
+    if (place >= 0) c->column[c->count++] = c->all[place];
+  }
 }
 
 int field_columns_choose(field_columns *columns, const problem *scene, const dvi_march *march,

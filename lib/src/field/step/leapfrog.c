@@ -500,8 +500,11 @@ static dvi_status make_solver(leapfrog *l)
 static uint64_t hash_of(const leapfrog *l)
 {
   const dvi_field *f = l->field;
-  const int64_t counts[] = {f->degree, f->cells, l->sweep.faces, f->unknowns, f->currents};
-  uint64_t hash = dvi__hash(DVI__HASH_START, sizeof counts, counts);
+  uint64_t hash = dvi__hash(DVI__HASH_START, sizeof f->degree, &f->degree);
+  hash = dvi__hash(hash, sizeof f->cells, &f->cells);
+  hash = dvi__hash(hash, sizeof l->sweep.faces, &l->sweep.faces);
+  hash = dvi__hash(hash, sizeof f->unknowns, &f->unknowns);
+  hash = dvi__hash(hash, sizeof f->currents, &f->currents);
   hash = dvi__hash(hash, (size_t)f->unknowns * sizeof(int), f->unknown);
   hash = dvi__hash(hash, (size_t)f->mass.start[f->unknowns] * sizeof(double), f->mass.value);
   return dvi__hash(hash, (size_t)f->stiffness.start[f->unknowns] * sizeof(double),
