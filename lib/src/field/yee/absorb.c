@@ -23,8 +23,11 @@ double dvi__yee_courant(const dvi__yee *y, int c, int axis, int end, const int *
 {
   const dvi__yee_axis *a = &y->axis[axis];
   const double h = end == 0 ? a->length[0] : a->length[a->cells - 1];
+  int first[3]; /* materials have no copies behind the end of an axis that repeats itself */
   if (y->ce == NULL) return y->dt / h;
-  const size_t at = dvi__yee_at_edges(y, c, place[1], place[2]) + (size_t)place[0];
+  for (int l = 0; l < 3; l++)
+    first[l] = y->axis[l].wraps && place[l] == y->axis[l].cells ? 0 : place[l];
+  const size_t at = dvi__yee_at_edges(y, c, first[1], first[2]) + (size_t)first[0];
   const double s = y->loss != NULL ? y->loss[at] : 0;
   return sqrt(y->ce[at] * (1 + s)) * y->dt / h;
 }
