@@ -66,6 +66,18 @@ static int refuse_options(const run_request *r)
 
 /* ---- a march ---- */
 
+/* A step that is a fraction divides the span, and another end has another step. */
+static int refuse_state(dvi_status status, const journey *j)
+{
+  const int code = library_error(status);
+  if (status == DVI_BAD_FILE && isnan(j->request->h) &&
+      dvi_scene_plan_of(j->scene->scene)->fraction > 0)
+    complain(
+        "run: a step by a fraction is fitted to --t-end: give the checkpoint's step by --h, or "
+        "its end");
+  return code;
+}
+
 static int make_march(journey *j)
 {
   const run_request *r = j->request;
@@ -79,7 +91,7 @@ static int make_march(journey *j)
   if (code != DONE) return code;
   if (r->resume != NULL) {
     const dvi_status loaded = dvi_march_load(j->march, r->resume);
-    if (loaded != DVI_OK) return library_error(loaded);
+    if (loaded != DVI_OK) return refuse_state(loaded, j);
     if (dvi_march_time(j->march) > r->t_end)
       return usage_error("run: '%s' stands at t = %.17g, past --t-end %g", r->resume,
                          dvi_march_time(j->march), r->t_end);
