@@ -84,7 +84,8 @@ static double time_march(dvi_march *march, double portion, int portions)
 
 static void leapfrog(int cells, int threads, double triad, FILE *out)
 {
-  enum { STEPS = 5, PORTIONS = 6 };
+  const int portions = 6;
+  const double steps = 5; /* in a portion */
   const dvi_generator_options options = {.size = sizeof options, .cells = {cells, cells, cells}};
   dvi_field *field = make_field("bcc-torus", &options);
   const dvi_march_options how = {.size = sizeof how, .fraction = 0.9, .threads = threads};
@@ -92,7 +93,7 @@ static void leapfrog(int cells, int threads, double triad, FILE *out)
   dvi_march_facts facts;
   dvi_march_facts_of(march, &facts);
   const double tetrahedra = 12 * pow(cells, 3),
-               step = time_march(march, STEPS * facts.step, PORTIONS) / STEPS;
+               step = time_march(march, steps * facts.step, portions) / steps;
   fprintf(out, "leapfrog,%.0f,%d,%.3e,%.2f,%.2f\n", tetrahedra, threads, step,
           1e-6 * tetrahedra / step, 150 * tetrahedra / step / triad);
   dvi_march_destroy(&march);

@@ -71,7 +71,7 @@ static double steps_rate(const job *j, int cells, int threads, double least)
       .size = sizeof terms, .axes = 3, .degree = 1, .threads = threads, .together = j->together};
   for (int l = 0; l < 3; l++) terms.axis[l] = (dvi_yee_axis){.cells = cells, .end = {end, end}};
   if (j->has_medium) terms.eps.at = glass;
-  enum { STEPS = 16 };
+  const int steps = 16; /* at once */
   const dvi_march_state start = {.size = sizeof start};
   dvi_march *march = NULL;
   dvi_march_facts facts;
@@ -82,9 +82,9 @@ static double steps_rate(const job *j, int cells, int threads, double least)
   const double begin = seconds();
   for (int64_t n = 0; n == 0 || seconds() - begin < least;) {
     const double from = seconds();
-    n += STEPS;
+    n += steps;
     need(dvi_march_advance(march, (double)n * facts.step));
-    best = fmax(best, STEPS / (seconds() - from));
+    best = fmax(best, steps / (seconds() - from));
   }
   dvi_march_destroy(&march);
   return best;
