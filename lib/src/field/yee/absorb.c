@@ -19,17 +19,28 @@ int dvi__yee_absorbs(const dvi__yee *y)
   return y->absorbed != NULL;
 }
 
+/* Materials have no copies behind the end of an axis that repeats itself. */
+static void move_inside(const dvi__yee *y, const int *place, int *inside)
+{
+  for (int l = 0; l < 3; l++)
+    inside[l] = y->axis[l].wraps && place[l] == y->axis[l].cells ? 0 : place[l];
+}
+
+/* The speed is that of eps on the edge, and of mu on the face between it and the edge inside. */
 double dvi__yee_courant(const dvi__yee *y, int c, int axis, int end, const int *place)
 {
   const dvi__yee_axis *a = &y->axis[axis];
-  const double h = end == 0 ? a->length[0] : a->length[a->cells - 1];
-  int first[3]; /* materials have no copies behind the end of an axis that repeats itself */
-  if (y->ce == NULL) return y->dt / h;
-  for (int l = 0; l < 3; l++)
-    first[l] = y->axis[l].wraps && place[l] == y->axis[l].cells ? 0 : place[l];
-  const size_t at = dvi__yee_at_edges(y, c, first[1], first[2]) + (size_t)first[0];
-  const double s = y->loss != NULL ? y->loss[at] : 0;
-  return sqrt(y->ce[at] * (1 + s)) * y->dt / h;
+  double square = 1;
+  int at[3];
+  move_inside(y, place, at);
+  if (y->ce != NULL) {
+    const size_t edge = dvi__yee_at_edges(y, c, at[1], at[2]) + (size_t)at[0];
+    square *= y->ce[edge] * (y->loss != NULL ? 1 + y->loss[edge] : 1);
+  }
+  at[axis] = end == 0 ? 0 : a->cells - 1;
+  if (y->mi != NULL)
+    square *= y->mi[dvi__yee_at_faces(y, 3 - axis - c, at[1], at[2]) + (size_t)at[0]];
+  return sqrt(square) * y->dt / a->length[at[axis]];
 }
 
 /* ---- what is kept ---- */
