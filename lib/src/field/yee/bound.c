@@ -174,7 +174,7 @@ static dvi_status find_largest(dvi__yee *y, double *lambda)
   *lambda = 0;
   for (int l = 0; l < 3; l++) *lambda += largest_of_axis(&y->axis[l]);
   *lambda *= fastest(rows * (size_t)y->edges_slots, y->ce) *
-            fastest(rows * (size_t)(y->components - y->edges_slots), y->mi);
+             fastest(rows * (size_t)(y->components - y->edges_slots), y->mi);
   if (y->ce != NULL || y->mi != NULL) {
     for (int l = 0; l < 3; l++) dvi__yee_set_step(&y->axis[l], 1);
     DVI_TRY(dvi__yee_lanczos(y, &found));
