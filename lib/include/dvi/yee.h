@@ -27,7 +27,7 @@ typedef enum dvi_yee_boundary {
   DVI_YEE_PMC,       /**< a perfect magnetic conductor: natural, no tangential H */
   DVI_YEE_PERIODIC,  /**< the axis repeats itself. At both of its ends */
   DVI_YEE_BLOCH,     /**< it repeats itself but for a phase. At both of its ends */
-  DVI_YEE_ABSORBING, /**< absorbs waves that come along the axis (Mur 1981, first order) */
+  DVI_YEE_ABSORBING, /**< absorbs waves that come along the axis (first order, as Mur 1981) */
   DVI_YEE_CPML       /**< absorbs waves in layers before a conductor (Roden and Gedney 2000) */
 } dvi_yee_boundary;
 

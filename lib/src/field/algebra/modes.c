@@ -322,7 +322,10 @@ static dvi_status lanczos_beside(const dvi__pencil *pencil, double shift, int co
     dvi_status status = lanczos_near(pencil, from, count, value, vector);
     if (status != DVI_OK && status != DVI_SINGULAR) return status;
     if (status == DVI_OK && !(refine(pencil, count, value, vector, room) <= allowed))
-      status = DVI_SINGULAR;
+      status = dvi__fail(DVI_SINGULAR,
+                         "modes: roundings of matrices with entries of very different sizes leave "
+                         "no modes near the shift %g: take another one",
+                         shift);
     for (int k = 0; k < count && status == DVI_OK; k++) {
       nearest = fmin(nearest, fabs(value[k] - from));
       farthest = fmax(farthest, fabs(value[k] - from));

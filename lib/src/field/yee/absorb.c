@@ -1,9 +1,16 @@
-/* First-order absorbing ends (Mur 1981, eq. 15). On such an end
- *     E0+ = E1 + b (E1+ - E0),   b = (v dt - h)/(v dt + h),
- * with E1 one box of length h inside, and the speed v on the end. The rows on ends of x come first,
- * then those of y, then those of z, which take E1 from rows that are done. */
+/* First-order absorbing ends. A wave that leaves along the axis has E' = -+v B' for the E along the
+ * end and the B across it, with the speed v, and so takes power out of the grid whatever comes.
+ * B' is the curl of E. At the middle of the last box, of length h, and of a step this is
+ *
+ *     E0+ = E1 + b (E1+ - E0) -+ v dt/(v dt + h) (T+ + T),   b = (v dt - h)/(v dt + h),
+ *
+ * with E1 one box inside, and the difference T along E of the edges through the box, which point
+ * along the axis. Without T this is Mur's condition (Mur 1981, eq. 15), which does the same to waves
+ * of empty space, but gives power to those that vanish before the end. They grow then if a
+ * material inside holds them. In boxes beside another absorbing end T is left out, for it would need
+ * an edge there, which needs E0 itself. The rows on ends of x come first, then those of y, then those of z,
+ * which take E1 and T from rows that are done. */
 #include <math.h>
-#include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
@@ -19,23 +26,43 @@ int dvi__yee_absorbs(const dvi__yee *y)
   return y->absorbed != NULL;
 }
 
+/* Materials have no copies behind the end of an axis that repeats itself. */
+static void move_inside(const dvi__yee *y, const int *place, int *inside)
+{
+  for (int l = 0; l < 3; l++)
+    inside[l] = y->axis[l].wraps && place[l] == y->axis[l].cells ? 0 : place[l];
+}
+
+/* The speed is that of eps on the edge, and of mu on the face between it and the edge inside. */
 double dvi__yee_courant(const dvi__yee *y, int c, int axis, int end, const int *place)
 {
   const dvi__yee_axis *a = &y->axis[axis];
-  const double h = end == 0 ? a->length[0] : a->length[a->cells - 1];
-  int first[3]; /* materials have no copies behind the end of an axis that repeats itself */
-  if (y->ce == NULL) return y->dt / h;
-  for (int l = 0; l < 3; l++)
-    first[l] = y->axis[l].wraps && place[l] == y->axis[l].cells ? 0 : place[l];
-  const size_t at = dvi__yee_at_edges(y, c, first[1], first[2]) + (size_t)first[0];
-  const double s = y->loss != NULL ? y->loss[at] : 0;
-  return sqrt(y->ce[at] * (1 + s)) * y->dt / h;
+  double square = 1;
+  int at[3];
+  move_inside(y, place, at);
+  if (y->ce != NULL) {
+    const size_t edge = dvi__yee_at_edges(y, c, at[1], at[2]) + (size_t)at[0];
+    square *= y->ce[edge] * (y->loss != NULL ? 1 + y->loss[edge] : 1);
+  }
+  at[axis] = end == 0 ? 0 : a->cells - 1;
+  if (y->mi != NULL)
+    square *= y->mi[dvi__yee_at_faces(y, 3 - axis - c, at[1], at[2]) + (size_t)at[0]];
+  return sqrt(square) * y->dt / a->length[at[axis]];
+}
+
+int dvi__yee_has_difference(const dvi__yee *y, int c, int axis, const int *place)
+{
+  const dvi__yee_axis *along = &y->axis[c];
+  return y->slot[axis] >= 0 && !along->is_trivial && !(is_absorbing(y, c, 0) && place[c] == 0) &&
+         !(is_absorbing(y, c, 1) && place[c] == along->cells - 1);
 }
 
 /* ---- what is kept ---- */
 
+enum { INSIDE, DIFFERENCE, KEPT }; /* E1 and T */
+
 /* A row across an end, or of one value at an end of x, is kept for each component and end. */
-static size_t kept_at(const dvi__yee *y, int axis, int end, int copy, int c, int j, int k)
+static size_t kept_at(const dvi__yee *y, int what, int axis, int end, int copy, int c, int j, int k)
 {
   const size_t row = dvi__yee_row(y, j, k), left = row % y->rows[0], below = row / y->rows[0],
                rows = y->rows[0] * y->rows[1],
@@ -43,7 +70,7 @@ static size_t kept_at(const dvi__yee *y, int axis, int end, int copy, int c, int
                         : axis == 1 ? rows + below * y->width
                                     : rows + (y->rows[1] + left) * y->width,
                all = rows + (y->rows[0] + y->rows[1]) * y->width;
-  return (((size_t)copy * 3 + (size_t)c) * 2 + (size_t)end) * all + across;
+  return ((((size_t)copy * KEPT + (size_t)what) * 3 + (size_t)c) * 2 + (size_t)end) * all + across;
 }
 
 dvi_status dvi__yee_make_absorbed(dvi__yee *y)
@@ -52,7 +79,7 @@ dvi_status dvi__yee_make_absorbed(dvi__yee *y)
   for (int l = 0; l < y->axes; l++) count += is_absorbing(y, l, 0) + is_absorbing(y, l, 1);
   if (count == 0) return DVI_OK;
   const size_t all = y->rows[0] * y->rows[1] + (y->rows[0] + y->rows[1]) * y->width;
-  y->absorbed = DVI_NEW(double, (size_t)y->copies * 6 * all);
+  y->absorbed = DVI_NEW(double, (size_t)y->copies *KEPT * 6 * all);
   return y->absorbed != NULL ? DVI_OK
                              : dvi__fail(DVI_NO_MEMORY, "yee: no memory for absorbing ends");
 }
@@ -64,7 +91,8 @@ typedef void row_work(dvi__yee *y, int axis, int end, int copy, int c, int j, in
 /* Tell if rows at node i are neither on an end of an axis nor behind it. */
 static int is_within(const dvi__yee *y, int c, int axis, int i)
 {
-  return dvi__yee_is_free(y, c, axis, i) || (y->axis[axis].wraps && i == y->axis[axis].cells);
+  const int is_copy = c != axis && y->axis[axis].wraps && i == y->axis[axis].cells;
+  return is_copy || dvi__yee_is_free(y, c, axis, i);
 }
 
 /* Work on the rows of a component that are on an end of an axis. */
@@ -89,35 +117,64 @@ static void for_rows(dvi__yee *y, row_work *work)
         if (c != axis && y->slot[c] >= 0) for_rows_of(y, axis, end, c, work);
 }
 
-/* Give the first value on an end, the step to the one inside of it, and the number of values. */
-static double *row_on_end(dvi__yee *y, int axis, int end, int copy, int c, int j, int k,
-                          ptrdiff_t *inwards, size_t *count)
+/* A row on an end, from its first value on. */
+typedef struct end_row {
+  int c, axis, place[3];
+  size_t count;
+  double *E;
+  ptrdiff_t inwards;     /* the step to the value inside */
+  const double *through; /* the edge through the box, if there is such a component */
+  ptrdiff_t next;        /* the step to the edge whose difference with it is T */
+} end_row;
+
+static end_row row_on_end(dvi__yee *y, int axis, int end, int copy, int c, int j, int k)
 {
-  double *E = y->state[copy] + dvi__yee_at(y, c, j, k);
-  *inwards = end == 0 ? y->next[axis] : -y->next[axis];
-  *count = axis == 0 ? 1 : (size_t)y->axis[0].cells + 1;
-  return axis == 0 && end == 1 ? E + y->axis[0].cells : E;
+  const int cells = y->axis[axis].cells, box = end == 0 ? 0 : cells - 1;
+  end_row row = {.c = c,
+                 .axis = axis,
+                 .place = {axis == 0 && end == 1 ? cells : 0, j, k},
+                 .count = axis == 0 ? 1 : (size_t)y->axis[0].cells + (c != 0),
+                 .inwards = end == 0 ? y->next[axis] : -y->next[axis],
+                 .next = y->next[c]};
+  row.E = y->state[copy] + dvi__yee_at(y, c, j, k) + row.place[0];
+  if (y->slot[axis] >= 0)
+    row.through = y->state[copy] + (axis == 0 ? box : 0) +
+                  dvi__yee_at(y, axis, axis == 1 ? box : j, axis == 2 ? box : k);
+  return row;
+}
+
+/* Give T at the value i of a row. */
+static double difference_at(const dvi__yee *y, const end_row *row, size_t i)
+{
+  const int place[3] = {row->place[0] + (int)i, row->place[1], row->place[2]};
+  return dvi__yee_has_difference(y, row->c, row->axis, place)
+             ? row->through[(ptrdiff_t)i + row->next] - row->through[i]
+             : 0;
 }
 
 static void keep_row(dvi__yee *y, int axis, int end, int copy, int c, int j, int k)
 {
-  ptrdiff_t inwards;
-  size_t count;
-  const double *E = row_on_end(y, axis, end, copy, c, j, k, &inwards, &count);
-  memcpy(y->absorbed + kept_at(y, axis, end, copy, c, j, k), E + inwards, count * sizeof *E);
+  const end_row row = row_on_end(y, axis, end, copy, c, j, k);
+  double *inside = y->absorbed + kept_at(y, INSIDE, axis, end, copy, c, j, k),
+         *difference = y->absorbed + kept_at(y, DIFFERENCE, axis, end, copy, c, j, k);
+  for (size_t i = 0; i < row.count; i++) {
+    inside[i] = row.E[(ptrdiff_t)i + row.inwards];
+    difference[i] = difference_at(y, &row, i);
+  }
 }
 
 static void absorb_row(dvi__yee *y, int axis, int end, int copy, int c, int j, int k)
 {
-  ptrdiff_t inwards;
-  size_t count;
-  double *E = row_on_end(y, axis, end, copy, c, j, k, &inwards, &count);
-  const double *kept = y->absorbed + kept_at(y, axis, end, copy, c, j, k);
-  for (size_t i = 0; i < count; i++) {
-    const int place[3] = {axis == 0 && end == 1 ? y->axis[0].cells : (int)i, j, k};
+  const end_row row = row_on_end(y, axis, end, copy, c, j, k);
+  const double *inside = y->absorbed + kept_at(y, INSIDE, axis, end, copy, c, j, k),
+               *difference = y->absorbed + kept_at(y, DIFFERENCE, axis, end, copy, c, j, k);
+  for (size_t i = 0; i < row.count; i++) {
+    const int place[3] = {row.place[0] + (int)i, j, k};
     const double courant = dvi__yee_courant(y, c, axis, end, place),
-                 b = (courant - 1) / (courant + 1);
-    E[i] = kept[i] + b * (E[(ptrdiff_t)i + inwards] - E[i]);
+                 b = (courant - 1) / (courant + 1), part = courant / (courant + 1),
+                 T = difference[i] + difference_at(y, &row, i);
+    row.E[i] = inside[i] + b * (row.E[(ptrdiff_t)i + row.inwards] - row.E[i]) +
+               (end == 0 ? -part : part) * T;
   }
 }
 

@@ -150,6 +150,9 @@ static void copy_around(const dvi__yee *y, int component, int j, int k)
             to_j = is_face ? -1 : across->cells, to_k = is_face ? -1 : up->cells;
   if (across->wraps && j == from_j) copy_rows(y, component, across, j, k, to_j, k);
   if (up->wraps && k == from_k) copy_rows(y, component, up, j, k, j, to_k);
+  /* absorbing ends of x look at E behind both ends */
+  if (across->wraps && up->wraps && j == from_j && k == from_k)
+    copy_rows(y, component, up, to_j, k, to_j, to_k);
 }
 
 /* ---- faces ---- */

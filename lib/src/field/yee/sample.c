@@ -164,7 +164,17 @@ static int absorbing_axis(const dvi__yee *y, int c, const int *place, int *end)
   return -1;
 }
 
-/* On an absorbing end E' + E1' = 2 v/h (E1 - E), where E1 is one box inside. */
+/* Give the difference T along E_c of the edges through the box at an absorbing end (absorb.c). */
+static value difference_through(const dvi__yee *y, int c, int axis, int end, const int *place)
+{
+  int edge[3] = {place[0], place[1], place[2]}, next[3];
+  if (!dvi__yee_has_difference(y, c, axis, place)) return (value){0, 0};
+  edge[axis] -= end;
+  for (int l = 0; l < 3; l++) next[l] = edge[l] + (l == c);
+  return plus(dvi__yee_stored(y, axis, next), -1, dvi__yee_stored(y, axis, edge));
+}
+
+/* On an absorbing end E' + E1' = 2 v/h (E1 - E -+ T), where E1 is one box inside. */
 static value absorbed_E_at(const dvi__yee_moment *m, int c, int axis, int end, const int *place)
 {
   const dvi__yee *y = m->yee;
@@ -172,9 +182,10 @@ static value absorbed_E_at(const dvi__yee_moment *m, int c, int axis, int end, c
   int inner[3] = {place[0], place[1], place[2]};
   inner[axis] += end == 0 ? 1 : -1;
   const value E = dvi__yee_stored(y, c, place), E1 = dvi__yee_stored(y, c, inner),
-              E1_now = dvi__yee_E_at(m, c, inner);
-  const value relaxed = plus(E, rate, plus(E1, -1, E));
-  return plus(relaxed, -1, plus(E1_now, -1, E1));
+              E1_now = dvi__yee_E_at(m, c, inner),
+              step = plus(plus(E1, -1, E), end == 0 ? -1 : 1,
+                          difference_through(y, c, axis, end, place));
+  return plus(plus(E, rate, step), -1, plus(E1_now, -1, E1));
 }
 
 value dvi__yee_E_at(const dvi__yee_moment *m, int c, const int *place)

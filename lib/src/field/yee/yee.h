@@ -263,6 +263,8 @@ void dvi__yee_keep_absorbed(dvi__yee *yee);
 void dvi__yee_absorb(dvi__yee *yee);
 /* Give v dt/h for E_c on an absorbing end, with the speed v there. */
 double dvi__yee_courant(const dvi__yee *yee, int c, int axis, int end, const int *place);
+/* Tell if the condition at an absorbing end of the axis has the difference T for E_c at a place. */
+int dvi__yee_has_difference(const dvi__yee *yee, int c, int axis, const int *place);
 
 /* ---- start.c ---- */
 
