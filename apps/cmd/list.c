@@ -44,7 +44,10 @@ static void list_methods(void)
 {
   for (int i = 0; i < dvi_method_count(); i++) list_method(i);
   (void)printf("\nA method is named as name[:key=value,...], for example "
-               "galerkin:degree=4,quadrature=lobatto,nodes=5\n");
+               "galerkin:degree=4,quadrature=lobatto,nodes=5\n"
+               "Scenes of fields on meshes have marches, too: leapfrog (also called "
+               "bossavit-kettunen, and yee on boxes), avi, avi:classes=no and tents "
+               "(docs/fields/maxwell.md)\n");
 }
 
 static result_table *methods_table(void)

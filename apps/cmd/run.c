@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "cli/command.h"
 #include "csv/events.h"
@@ -184,6 +185,10 @@ static int run_check_request(const run_request *request, const char *name)
   if (check_verify(request) != DONE) return USAGE;
   if (request->checkpoint_every > 0 && request->checkpoint == NULL)
     return usage_error("run: --checkpoint-every needs --checkpoint FILE");
+  if (request->resume != NULL && request->pvd != NULL && access(request->pvd, F_OK) == 0)
+    return usage_error("run: --pvd %s is there, and a resumed run would replace its frames; give "
+                       "another name",
+                       request->pvd);
   if (request->resume != NULL && (request->momenta != NULL || request->project))
     return usage_error("run: --momenta and --project are for the start, which --resume replaces");
   if (request->every > 0 && request->final)

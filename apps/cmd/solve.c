@@ -83,7 +83,7 @@ static bool write_values(const char *path, const dvi_mesh *mesh, const double *u
 static int solve_field(const solve_request *r, const problem *scene, const dvi_field *field)
 {
   const dvi_mesh *mesh = field_mesh(field);
-  const int64_t vertices = dvi_mesh_count(mesh, 0);
+  const int64_t vertices = dvi_mesh_count(mesh, dvi_field_degree(field));
   dvi_field_solve_options options;
   dvi_field_solve_report report = {0};
   double *u = calloc((size_t)vertices, sizeof *u);

@@ -220,6 +220,10 @@ static void print_heading(const spectrum_study *s, FILE *stream)
   (void)fprintf(stream, "%d line%s leave%s %.1e of the series%s\n", s->report.lines,
                 s->report.lines == 1 ? "" : "s", s->report.lines == 1 ? "s" : "",
                 s->report.residual, s->report.lines > s->lines ? "; the strongest are shown" : "");
+  if (0.8 * s->report.room < s->report.exponentials)
+    (void)fprintf(stream,
+                  "the series is short for so many lines, whose errors may be larger than told; "
+                  "take more samples, or more columns\n");
 }
 
 static int print_lines(const spectrum_study *s)

@@ -51,7 +51,7 @@ static int match(amplitude *b, amplitude *c)
 {
   const double x = k * radius;
   const int orders = (int)(x + 20);
-  double J[ORDERS + 1], Y[ORDERS + 1], M[ORDERS + 1];
+  double J[ORDERS + 1] = {0}, Y[ORDERS + 1] = {0}, M[ORDERS + 1] = {0};
   bessel_j(x, J);
   bessel_y(x, J, Y);
   bessel_j(m * x, M);
@@ -72,7 +72,7 @@ static double field(int orders, const amplitude *b, const amplitude *c, double x
 {
   static const amplitude power[] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}}; /* i^n */
   const double r = hypot(x, y), phi = atan2(y, x);
-  double J[ORDERS + 1], Y[ORDERS + 1], re = 0, im = 0;
+  double J[ORDERS + 1], Y[ORDERS + 1] = {0}, re = 0, im = 0;
   bessel_j(r < radius ? m * k * r : k * r, J);
   if (r >= radius) bessel_y(k * r, J, Y);
   for (int n = 0; n < orders; n++) {

@@ -70,7 +70,7 @@ static int refuse_options(const run_request *r)
 static int refuse_state(dvi_status status, const journey *j)
 {
   const int code = library_error(status);
-  if (status == DVI_BAD_FILE && isnan(j->request->h) &&
+  if (status == DVI_BAD_FILE && strstr(dvi_last_error(), "step") != NULL && isnan(j->request->h) &&
       dvi_scene_plan_of(j->scene->scene)->fraction > 0)
     complain(
         "run: a step by a fraction is fitted to --t-end: give the checkpoint's step by --h, or "
@@ -246,6 +246,8 @@ static int write_files(journey *j)
 int field_run(run_request *request, const problem *scene)
 {
   journey j = {.request = request, .scene = scene};
+  if (isnan(request->t_end) && !(scene->t_end > 0))
+    return usage_error("run: %s has no section until, so that --t-end is needed", scene->name);
   if (isnan(request->t_end)) request->t_end = scene->t_end;
   if (request->every == 0) request->every = scene->every > 0 ? scene->every : 1;
   int code = refuse_options(request);

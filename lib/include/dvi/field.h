@@ -135,6 +135,7 @@ const double *dvi_field_load(const dvi_field *field);
  *  @param[in,out] u        [vertices] the start, which counts with a potential alone, and then the
  *                          solution with its fixed values. Unchanged on failure
  *  @param[out]    report   may be NULL
+ *  @retval DVI_UNSUPPORTED    the field is Maxwell's
  *  @retval DVI_BAD_ARGUMENT   no value is fixed, and the right side's sum is not zero, so that no
  *                             solution exists. dvi_last_error() has the sum
  *  @retval DVI_SINGULAR       K is not positive definite

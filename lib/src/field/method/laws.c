@@ -98,7 +98,7 @@ static dvi_status observe(laws *s, const char *name, double *value)
 /* Asynchronous steps conserve no energy exactly. */
 static dvi_status look_at_energy(laws *s)
 {
-  double first, now, worst = 0;
+  double first = 0, now = 0, worst = 0;
   DVI_TRY(begin(s, 0, s->E[0], s->A[0]));
   DVI_TRY(sample(s, 0));
   s->of_B = largest(s->faces, s->B[0]);
@@ -302,8 +302,12 @@ static dvi_status make_region(laws *s, region *r)
   r->inside = DVI_NEW(char, mesh->count[mesh->n]);
   r->is_boundary = DVI_NEW(char, s->cells);
   r->room = DVI_NEW(double, 9 * s->cells + 2 * s->faces);
-  if (!r->inside || !r->is_boundary || !r->room) return dvi__fail(DVI_NO_MEMORY, "laws: no memory");
-  for (int i = 0; i < 6; i++) r->A[i / 3][i % 3] = r->room + i * s->cells;
+  if (!r->inside || !r->is_boundary || !r->room) {
+    (void)dvi__fail(DVI_NO_MEMORY, "laws: no memory");
+    return DVI_NO_MEMORY;
+  }
+  for (int i = 0; i < 2; i++)
+    for (int at = 0; at < 3; at++) r->A[i][at] = r->room + (3 * i + at) * s->cells;
   for (int i = 0; i < 2; i++) r->row[i] = r->room + (6 + i) * s->cells;
   r->curl = r->room + 8 * s->cells;
   r->flux = r->curl + s->cells;
@@ -416,6 +420,18 @@ static void clear(laws *s)
   dvi__release(s->E[0]);
 }
 
+/* Give one of the marches its room, and fill it at random. */
+static void share_room(laws *s, int i, double *room)
+{
+  s->E[i] = room;
+  s->A[i] = s->E[i] + s->cells;
+  s->B[i] = s->A[i] + s->cells;
+  s->f[i] = s->B[i] + s->faces;
+  fill(s->cells, 31 + (uint64_t)i, s->E[i]);
+  fill(s->cells, 41 + (uint64_t)i, s->A[i]);
+  fill(s->field->unknowns, 51 + (uint64_t)i, s->f[i]);
+}
+
 static dvi_status make(laws *s)
 {
   dvi_march_facts facts;
@@ -427,16 +443,12 @@ static dvi_status make(laws *s)
   s->faces = dvi_march_size(s->march[0], DVI_FORM_B);
   const int64_t numbers = 2 * s->cells + s->faces + s->field->unknowns;
   s->E[0] = DVI_NEW(double, 2 * numbers);
-  if (s->E[0] == NULL) return dvi__fail(DVI_NO_MEMORY, "laws: no memory");
-  for (int i = 0; i < 2; i++) {
-    s->E[i] = s->E[0] + i * numbers;
-    s->A[i] = s->E[i] + s->cells;
-    s->B[i] = s->A[i] + s->cells;
-    s->f[i] = s->B[i] + s->faces;
-    fill(s->cells, 31 + (uint64_t)i, s->E[i]);
-    fill(s->cells, 41 + (uint64_t)i, s->A[i]);
-    fill(s->field->unknowns, 51 + (uint64_t)i, s->f[i]);
+  if (s->E[0] == NULL) {
+    (void)dvi__fail(DVI_NO_MEMORY, "laws: no memory");
+    return DVI_NO_MEMORY;
   }
+  share_room(s, 0, s->E[0]);
+  share_room(s, 1, s->E[0] + numbers);
   return DVI_OK;
 }
 

@@ -253,6 +253,10 @@ dvi_status dvi_field_solve(const dvi_field *field, const dvi_field_solve_options
   statics s = {.field = field, .options = options != NULL ? options : &defaults};
   if (field == NULL || u == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "field: a field and its values are needed");
+  if (!field->is_wave)
+    return dvi__fail(DVI_UNSUPPORTED,
+                     "field: static states are those of waves, 'field: wave', and this field is "
+                     "Maxwell's");
   if (s.options->size != sizeof defaults)
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "field: set options.size to sizeof(dvi_field_solve_options)");

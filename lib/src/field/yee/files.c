@@ -135,9 +135,9 @@ static dvi_status find_identity(const dvi__yee *y, const dvi__sections *sections
   memcpy(id, found.content, sizeof *id);
   if (id->grid == hash_grid(y) && id->dt == y->dt) return DVI_OK;
   return dvi__fail(DVI_BAD_FILE,
-                   "%s: it was saved by another grid, or with another step than %.17g; make the "
-                   "march from the same terms",
-                   sections->name, y->dt);
+                   "%s: it was saved by another grid, or with another step: it has dt = %.17g, and "
+                   "this march %.17g; make the march from the same terms",
+                   sections->name, id->dt, y->dt);
 }
 
 /* Go through the sections of all arrays. DVI_BAD_FILE if one is missing or has another size. With

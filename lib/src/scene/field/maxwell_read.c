@@ -14,9 +14,12 @@ static const double cells_with_mesh = 300000;
 
 bool dvi__maxwell_begin(dvi_scene *scene)
 {
+  static const char *const word[] = {"wave", "maxwell"};
   const dvi__tree *field = dvi__tree_find(scene->tree, "field");
-  if (field == NULL || field->kind != DVI__SCALAR || strcmp(field->text, "maxwell") != 0)
-    return true;
+  int which;
+  if (field == NULL) return true;
+  if (!dvi__tree_word(scene, field, "field", 2, word, &which)) return false;
+  if (which == 0) return true;
   scene->field->maxwell = dvi__arena_take(&scene->arena, 1, sizeof *scene->field->maxwell);
   return scene->field->maxwell != NULL || dvi__scene_no_memory(scene);
 }
