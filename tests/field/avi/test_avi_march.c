@@ -370,8 +370,59 @@ START_TEST(growth_is_a_status_and_an_observable)
 }
 END_TEST
 
+/* A dipole whose edges are all held does nothing. */
+START_TEST(currents_on_conductors_push_nothing)
+{
+  dvi_current still = dipole;
+  const dvi_maxwell_terms terms = {.wall = &pec, .walls = 1, .current = &still, .currents = 1};
+  still.along[0] = still.along[1] = 0;
+  dvi_field *field = maxwell(grid_mesh("box", 2, 4, 2), DVI_CIRCUMCENTRIC, terms);
+  dvi_march *march = march_of(field,
+                              (dvi_march_options){.method = _i == 0 ? "avi" : "avi:classes=no"});
+  at_rest(march);
+  ck_assert_msg(dvi_march_advance(march, 2) == DVI_OK, "%s", dvi_last_error());
+  ck_assert_double_eq(observe(march, "energy"), 0);
+  dvi_march_destroy(&march);
+  dvi_field_destroy(&field);
+}
+END_TEST
+
+/* Squares of D = M_1 E vanish or overflow where E.M_1 E does not. The energy is that of eps = 1
+ * times eps, because a step of E is the same in another unit of time. */
+START_TEST(energies_of_extreme_materials_are_right)
+{
+  double eps[16], energy[2];
+  const double *factor[3] = {NULL, eps};
+  for (int i = 0; i < 2; i++) {
+    for (int c = 0; c < 16; c++) eps[c] = i == 0 ? 1 : _i == 0 ? 0x1p-1000 : 0x1p+1000;
+    dvi_mesh *mesh = grid_mesh("box", 2, 4, 2);
+    const dvi_star_options options = {.size = sizeof options, .factor = factor};
+    dvi_star *star = NULL;
+    dvi_field *field = NULL;
+    ck_assert(dvi_star_create(mesh, &options, &star) == DVI_OK);
+    const dvi_maxwell_terms terms = {.size = sizeof terms, .star = star};
+    ck_assert(dvi_maxwell_create(&terms, &field) == DVI_OK);
+    dvi_march *march = march_of(field, (dvi_march_options){.method = "avi"});
+    double *E = zeros(dvi_march_size(march, DVI_FORM_E));
+    E[3] = 1;
+    const dvi_march_state state = {.size = sizeof state, .E = E};
+    ck_assert_msg(dvi_march_start(march, &state) == DVI_OK, "%s", dvi_last_error());
+    energy[i] = observe(march, "energy");
+    free(E);
+    dvi_march_destroy(&march);
+    dvi_field_destroy(&field);
+    dvi_star_destroy(&star);
+    dvi_mesh_destroy(&mesh);
+  }
+  ck_assert_double_gt(energy[0], 0);
+  ck_assert_double_eq(energy[1], energy[0] * eps[0]);
+}
+END_TEST
+
 SUITE(avi_march)
 {
+  tcase_add_loop_test(tests, currents_on_conductors_push_nothing, 0, 2);
+  tcase_add_loop_test(tests, energies_of_extreme_materials_are_right, 0, 2);
   tcase_add_test(tests, equal_boxes_move_as_by_leapfrog);
   tcase_add_test(tests, a_dipole_is_heard_as_by_leapfrog);
   tcase_add_test(tests, a_loaded_sheet_at_rest_stays_there);

@@ -5,11 +5,11 @@
  *     E0+ = E1 + b (E1+ - E0) -+ v dt/(v dt + h) (T+ + T),   b = (v dt - h)/(v dt + h),
  *
  * with E1 one box inside, and the difference T along E of the edges through the box, which point
- * along the axis. Without T this is Mur's condition (Mur 1981, eq. 15), which does the same to waves
- * of empty space, but gives power to those that vanish before the end. They grow then if a
- * material inside holds them. In boxes beside another absorbing end T is left out, for it would need
- * an edge there, which needs E0 itself. The rows on ends of x come first, then those of y, then those of z,
- * which take E1 and T from rows that are done. */
+ * along the axis. Without T this is Mur's condition (Mur 1981, eq. 15), which does the same to
+ * waves of empty space, but gives power to those that vanish before the end. They grow then if a
+ * material inside holds them. In boxes beside another absorbing end T is left out, for it would
+ * need an edge there, which needs E0 itself. The rows on ends of x come first, then those of y,
+ * then those of z, which take E1 and T from rows that are done. */
 #include <math.h>
 
 #include "core/memory.h"
