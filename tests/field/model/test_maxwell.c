@@ -133,8 +133,8 @@ END_TEST
 
 /* ---- materials ---- */
 
-/* Make a field on a mesh with a factor of degree 1, and a conductivity, and asynchronous steps of it
- * if they are wanted. */
+/* Make a field on a mesh with a factor of degree 1, and a conductivity, and asynchronous steps of
+ * it if they are wanted. */
 static dvi_status try_field(dvi_mesh *mesh, dvi_star_kind kind, dvi_maxwell_terms terms,
                             const double *factor, int has_steps)
 {
