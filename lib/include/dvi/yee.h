@@ -35,7 +35,8 @@ typedef enum dvi_yee_boundary {
  *
  *  At the depth rho, from 0 at the inner end of the layers to 1 at the outer one, they have the
  *  conductivity s = rho^3 s_max with s_max = -2 ln(reflection)/depth, kappa grows from 1 as
- *  rho^3, and alpha falls as 1 - rho. */
+ *  rho^3, and alpha falls as 1 - rho. In layers, materials should not change along the axis: fields
+ *  may grow then. */
 typedef struct dvi_yee_end {
   dvi_yee_boundary kind;
   int layers;        /**< boxes that absorb. Default: 10 */

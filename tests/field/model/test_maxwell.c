@@ -185,6 +185,23 @@ START_TEST(conductors_with_negative_duals_are_refused)
 }
 END_TEST
 
+/* Right angles leave duals that are roundings of zero, of either sign. */
+START_TEST(conductors_with_right_angles_are_taken)
+{
+  const dvi_generator_options triangles = {.size = sizeof triangles, .cells = {5, 7}};
+  dvi_mesh *mesh = generate("staggered", &triangles);
+  const int64_t cells = dvi_mesh_count(mesh, 2);
+  double *sigma = calloc((size_t)cells, sizeof *sigma);
+  for (int64_t c = 0; c < cells; c++) {
+    sigma[c] = 1;
+    ck_assert_msg(try_conductor(mesh, DVI_CIRCUMCENTRIC, sigma) == DVI_OK, "%s", dvi_last_error());
+    sigma[c] = 0;
+  }
+  free(sigma);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
 /* The permittivity of E as a 1-form, and the permeability of E as a 0-form. */
 START_TEST(negative_materials_are_refused)
 {
@@ -206,6 +223,7 @@ END_TEST
 SUITE(maxwell)
 {
   tcase_add_test(tests, conductors_with_negative_duals_are_refused);
+  tcase_add_test(tests, conductors_with_right_angles_are_taken);
   tcase_add_loop_test(tests, negative_materials_are_refused, 0, 2);
   tcase_add_test(tests, a_square_cavity_of_triangles_has_known_frequencies);
   tcase_add_test(tests, a_box_has_the_frequencies_and_the_static_fields_of_its_grid);

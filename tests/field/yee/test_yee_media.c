@@ -387,8 +387,32 @@ START_TEST(energy_stays_in_media)
 }
 END_TEST
 
+/* A single box that repeats itself has no differences, with any material, and no bound of steps. */
+START_TEST(a_box_without_differences_has_no_bound)
+{
+  static const double eps = 2;
+  const int axes = _i + 1;
+  dvi_yee_terms terms = {
+      .size = sizeof terms, .axes = axes, .degree = axes == 3, .eps = {.cell = &eps}};
+  dvi_march *march = NULL;
+  dvi_march_facts facts;
+  for (int l = 0; l < axes; l++) {
+    terms.axis[l].cells = 1;
+    terms.axis[l].end[0].kind = terms.axis[l].end[1].kind = DVI_YEE_PERIODIC;
+  }
+  ck_assert_int_eq(dvi_yee_create(&terms, &march), DVI_BAD_ARGUMENT);
+  check_words("nothing moves");
+  terms.step = 0.5;
+  march = box_march(&terms);
+  dvi_march_facts_of(march, &facts);
+  ck_assert(isinf(facts.bound));
+  dvi_march_destroy(&march);
+}
+END_TEST
+
 SUITE(yee_media)
 {
+  tcase_add_loop_test(tests, a_box_without_differences_has_no_bound, 0, 3);
   tcase_add_test(tests, layers_have_the_averages_of_their_normals);
   tcase_add_test(tests, averages_of_smooth_and_slanted_media);
   tcase_add_test(tests, losses_have_the_field_of_the_permittivity);

@@ -8,8 +8,9 @@
  * along the axis. Without T this is Mur's condition (Mur 1981, eq. 15), which does the same to
  * waves of empty space, but gives power to those that vanish before the end. They grow then if a
  * material inside holds them. In boxes beside another absorbing end T is left out, for it would
- * need an edge there, which needs E0 itself. The rows on ends of x come first, then those of y,
- * then those of z, which take E1 and T from rows that are done. */
+ * need an edge there, which needs E0 itself, and in absorbing layers, which stretch it. The rows on
+ * ends of x come first, then those of y, then those of z, which take E1 and T from rows that are
+ * done. */
 #include <math.h>
 
 #include "core/memory.h"
@@ -53,8 +54,9 @@ double dvi__yee_courant(const dvi__yee *y, int c, int axis, int end, const int *
 int dvi__yee_has_difference(const dvi__yee *y, int c, int axis, const int *place)
 {
   const dvi__yee_axis *along = &y->axis[c];
-  return y->slot[axis] >= 0 && !along->is_trivial && !(is_absorbing(y, c, 0) && place[c] == 0) &&
-         !(is_absorbing(y, c, 1) && place[c] == along->cells - 1);
+  const int first = along->layers[0].count + is_absorbing(y, c, 0),
+            last = along->cells - along->layers[1].count - is_absorbing(y, c, 1);
+  return y->slot[axis] >= 0 && !along->is_trivial && place[c] >= first && place[c] < last;
 }
 
 /* ---- what is kept ---- */

@@ -37,7 +37,7 @@ static double largest_of_T(const lanczos *l)
   double low = 0, high = 0;
   for (int i = 0; i < l->count; i++)
     high = fmax(high, l->alpha[i] + l->beta[i] + (i > 0 ? l->beta[i - 1] : 0));
-  while (!is_above(l, high)) high = 2 * high + 1e-300;
+  while (isfinite(high) && !is_above(l, high)) high = 2 * high + 1e-300;
   for (int i = 0; i < 100 && high - low > 1e-14 * high; i++) {
     const double middle = 0.5 * (low + high);
     *(is_above(l, middle) ? &high : &low) = middle;
@@ -155,6 +155,7 @@ static double iterate(lanczos *l)
     if (n > 0) visit(l, w, before, 1, -l->beta[n - 1], NULL);
     l->beta[n] = sqrt(product(l, w, w));
     theta = largest_of_T(l);
+    if (!(l->beta[n] > 0)) return theta; /* nothing else comes, as where nothing moves */
     const double residual = l->beta[n] * last_entry(l, theta);
     if (l->count == MOST_STEPS || residual <= tolerance * theta) return theta + residual;
     visit(l, w, w, 1 / l->beta[n], 0, NULL);
