@@ -48,7 +48,7 @@ BEGIN {
   sees["field/mesh/file"] = "core field/mesh"
   sees["field/forms"] = "core num field/algebra field/mesh"
   sees["field/audit"] = "core num field/algebra field/mesh field/forms"
-  sees["field/yee"] = "core num num/simd march"
+  sees["field/yee"] = "core num num/simd march field/algebra"
   sees["field/model"] = "core num solve field/algebra field/mesh field/forms"
   sees["field/step"] = "core num march field/algebra field/mesh field/model"
   sees["field/avi"] = sees["field/step"] " field/forms field/step"

@@ -1,15 +1,6 @@
 /* The largest eigenvalue by Lanczos' method in the scalar product of M,
  *
- *     M^-1 K q_j = beta_j q_{j-1} + alpha_j q_j + beta_{j+1} q_{j+1},      q_i.M q_j = delta_ij.
- *
- * The largest eigenvalue theta of the tridiagonal matrix lies below that of the pencil, lambda, and
- * from a start at random below lambda (1 - epsilon) with a probability of at most
- *
- *     1.648 sqrt(n) exp(-sqrt(epsilon) (2 m - 1))
- *
- * after m steps, whatever the spectrum is (Kuczynski and Wozniakowski 1992, sec. 4). A small
- * residual would not do: it tells of some eigenvalue, which may be the second one. A very small one
- * does, because the start has a part in every eigenvector. */
+ *     M^-1 K q_j = beta_j q_{j-1} + alpha_j q_j + beta_{j+1} q_{j+1},      q_i.M q_j = delta_ij. */
 #include "field/algebra/largest.h"
 
 #include <limits.h>
@@ -18,10 +9,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-
-enum { STEPS_MOST = 450, BETWEEN_TESTS = 16 };
-
-static const double margin = 1e-3, improbable = 1e-8, settled = 1e-9;
+#include "field/algebra/ritz.h"
 
 typedef struct lanczos {
   const dvi__pencil *pencil;
@@ -29,59 +17,10 @@ typedef struct lanczos {
   int64_t n;
   double *q, *r, *Mq, *Mr, *last, *u; /* [n] q_j, the next one, M times these, M q_{j-1}, K q_j */
   double scale;                       /* power of two by which K is multiplied */
-  int steps;
-  double alpha[STEPS_MOST], beta[STEPS_MOST + 1];
+  dvi__ritz T;
 } lanczos;
 
-/* ---- the tridiagonal matrix ---- */
-
-/* Count its eigenvalues above x by the signs of the pivots (Sturm). */
-static int count_above(const lanczos *s, double x)
-{
-  int count = 0;
-  double pivot = 1;
-  for (int j = 0; j < s->steps; j++) {
-    const double coupling = j > 0 ? s->beta[j] * (s->beta[j] / (pivot != 0 ? pivot : 1e-300)) : 0;
-    pivot = s->alpha[j] - x - coupling;
-    count += pivot > 0;
-  }
-  return count;
-}
-
-static double largest_ritz_value(const lanczos *s)
-{
-  double low = s->alpha[0], high = 0;
-  for (int j = 0; j < s->steps; j++) {
-    const double reach = s->beta[j] + (j + 1 < s->steps ? s->beta[j + 1] : 0);
-    low = fmax(low, s->alpha[j]);
-    high = fmax(high, s->alpha[j] + reach);
-  }
-  for (int i = 0; i < 60 && high - low > 1e-15 * high; i++) {
-    const double middle = 0.5 * (low + high);
-    if (count_above(s, middle) > 0)
-      low = middle;
-    else
-      high = middle;
-  }
-  return high;
-}
-
-/* The part of the last direction in the eigenvector of theta, by the recurrence from there on, in
- * which the vector grows. */
-static double last_component(const lanczos *s, double theta)
-{
-  double next = 0, here = 1, sum = 1;
-  for (int j = s->steps - 1; j > 0; j--) {
-    const double before = ((theta - s->alpha[j]) * here - s->beta[j + 1] * next) / s->beta[j];
-    next = here;
-    here = before;
-    sum += here * here;
-    if (sum > 1e200) return 0;
-  }
-  return 1 / sqrt(sum);
-}
-
-/* ---- bounds ---- */
+/* ---- a bound ---- */
 
 /* The largest sum of the entries' sizes in a row of M^-1 K bounds the eigenvalues. Infinite if M is
  * not diagonal. */
@@ -97,12 +36,6 @@ static double bound_by_rows(const dvi__pencil *pencil)
     most = fmax(most, sum / M->value[i]);
   }
   return most;
-}
-
-static int steps_needed(int64_t n)
-{
-  const double steps = 0.5 * (1 + log(1.648 * sqrt((double)n) / improbable) / sqrt(margin));
-  return steps < STEPS_MOST ? (int)ceil(steps) : STEPS_MOST;
 }
 
 /* ---- the iteration ---- */
@@ -132,13 +65,13 @@ static dvi_status take_direction(lanczos *s, double *length)
 
 static dvi_status advance(lanczos *s)
 {
-  const int j = s->steps++;
+  const int j = s->T.steps++;
   dvi_matrix_multiply(s->pencil->K, 0, s->q, s->u);
   for (int64_t i = 0; i < s->n; i++) s->u[i] *= s->scale;
-  s->alpha[j] = dot(s->n, s->q, s->u);
+  s->T.alpha[j] = dot(s->n, s->q, s->u);
   for (int64_t i = 0; i < s->n; i++)
-    s->Mr[i] = s->u[i] - s->alpha[j] * s->Mq[i] - s->beta[j] * s->last[i];
-  return take_direction(s, &s->beta[j + 1]);
+    s->Mr[i] = s->u[i] - s->T.alpha[j] * s->Mq[i] - s->T.beta[j] * s->last[i];
+  return take_direction(s, &s->T.beta[j + 1]);
 }
 
 /* Bring the eigenvalues near 1, so that squares neither overflow nor vanish. */
@@ -163,24 +96,14 @@ static void fill_start(lanczos *s)
 
 static dvi_status iterate(lanczos *s, double *bound)
 {
-  const int most = steps_needed(s->n);
   const double rows = bound_by_rows(s->pencil);
-  double theta = 0;
+  double length;
   s->scale = scale_of(s->pencil);
   fill_start(s);
-  DVI_TRY(take_direction(s, &s->beta[0]));
+  DVI_TRY(take_direction(s, &length));
   memset(s->last, 0, (size_t)s->n * sizeof *s->last);
-  s->beta[0] = 0;
-  while (s->steps < most) {
-    DVI_TRY(advance(s));
-    const double beta = s->beta[s->steps];
-    if (s->steps % BETWEEN_TESTS != 0 && s->steps < most && beta > 0) continue;
-    theta = largest_ritz_value(s);
-    if (rows * s->scale <= theta * (1 + margin) || !(beta > settled * theta) ||
-        beta * last_component(s, theta) <= settled * theta)
-      break;
-  }
-  *bound = fmin(theta / s->scale * (1 + margin), rows);
+  while (!dvi__ritz_suffices(&s->T, s->n, rows * s->scale, bound)) DVI_TRY(advance(s));
+  *bound /= s->scale;
   return DVI_OK;
 }
 

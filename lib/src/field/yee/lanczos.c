@@ -1,70 +1,22 @@
-/* The largest eigenvalue of M_1^-1 d_1^T M_2 d_1 by Lanczos's iteration (Parlett 1998, ch. 13), in
- * the scalar product of M_1. The rows of the march itself apply the operator. */
+/* The largest eigenvalue of M_1^-1 d_1^T M_2 d_1 by Lanczos' method (field/algebra/ritz.h) in the
+ * scalar product of M_1. The rows of the march itself apply the operator. */
 #include <math.h>
 #include <string.h>
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "field/algebra/ritz.h"
 #include "field/yee/yee.h"
 #include "num/philox.h"
 
-enum { MOST_STEPS = 200, VECTORS = 3 };
-
-/* An eigenvalue is found if its residual is below this part of it. */
-static const double tolerance = 2e-3;
+enum { VECTORS = 3 };
 
 /* The iteration: vectors w, v, and the one before it, as states, and the matrix T. */
 typedef struct lanczos {
   dvi__yee grid; /* a march without losses, layers and sources, with a step of 1 */
   double *vector[VECTORS][2];
-  double alpha[MOST_STEPS], beta[MOST_STEPS];
-  int count;
+  dvi__ritz T;
 } lanczos;
-
-/* ---- the matrix T ---- */
-
-/* Tell if x is above all eigenvalues of T. */
-static int is_above(const lanczos *l, double x)
-{
-  double pivot = l->alpha[0] - x;
-  for (int i = 1; i < l->count && pivot < 0; i++)
-    pivot = l->alpha[i] - x - l->beta[i - 1] * l->beta[i - 1] / pivot;
-  return pivot < 0;
-}
-
-static double largest_of_T(const lanczos *l)
-{
-  double low = 0, high = 0;
-  for (int i = 0; i < l->count; i++)
-    high = fmax(high, l->alpha[i] + l->beta[i] + (i > 0 ? l->beta[i - 1] : 0));
-  while (isfinite(high) && !is_above(l, high)) high = 2 * high + 1e-300;
-  for (int i = 0; i < 100 && high - low > 1e-14 * high; i++) {
-    const double middle = 0.5 * (low + high);
-    *(is_above(l, middle) ? &high : &low) = middle;
-  }
-  return high;
-}
-
-/* Give the last entry of the eigenvector, by inverse iteration from above. */
-static double last_entry(const lanczos *l, double theta)
-{
-  double x[MOST_STEPS], pivot[MOST_STEPS];
-  const int n = l->count;
-  for (int i = 0; i < n; i++) {
-    const double off = i > 0 ? l->beta[i - 1] : 0;
-    pivot[i] = l->alpha[i] - theta * (1 + 1e-13) - (i > 0 ? off * off / pivot[i - 1] : 0);
-    x[i] = 1;
-  }
-  for (int round = 0; round < 3; round++) {
-    double norm = 0;
-    for (int i = 1; i < n; i++) x[i] -= l->beta[i - 1] / pivot[i - 1] * x[i - 1];
-    x[n - 1] /= pivot[n - 1];
-    for (int i = n - 2; i >= 0; i--) x[i] = (x[i] - l->beta[i] * x[i + 1]) / pivot[i];
-    for (int i = 0; i < n; i++) norm += x[i] * x[i];
-    for (int i = 0; i < n; i++) x[i] /= sqrt(norm);
-  }
-  return fabs(x[n - 1]);
-}
 
 /* ---- vectors ---- */
 
@@ -122,6 +74,7 @@ static void apply(lanczos *l, double **v, double **w)
   visit(l, y->state, y->state, -1, 0, NULL);
 }
 
+/* Parts in all eigenvectors, which are orthonormal in M_1, are alike at random. */
 static void start_vector(lanczos *l, double **v)
 {
   const dvi__yee *y = &l->grid;
@@ -135,37 +88,36 @@ static void start_vector(lanczos *l, double **v)
     dvi__philox(bits, 1);
     const size_t at = dvi__yee_at(y, c, place[1], place[2]) + (size_t)place[0];
     for (int copy = 0; copy < y->copies && is_free; copy++)
-      v[copy][at] = bits[copy] / 4294967296.0 - 0.5;
+      v[copy][at] = (bits[copy] / 4294967296.0 - 0.5) / sqrt(dvi__yee_star(y, c, place));
   }
   const double norm = sqrt(product(l, v, v));
-  visit(l, v, v, 1 / norm, 0, NULL);
+  visit(l, v, v, norm > 0 ? 1 / norm : 0, 0, NULL);
 }
 
 /* ---- iteration ---- */
 
-static double iterate(lanczos *l)
+static double iterate(lanczos *l, double other)
 {
-  double **before = l->vector[0], **v = l->vector[1], **w = l->vector[2], theta = 0;
+  const int64_t unknowns = l->grid.copies * dvi__yee_form_size(&l->grid, DVI_FORM_E);
+  double **before = l->vector[0], **v = l->vector[1], **w = l->vector[2], bound = 0;
   start_vector(l, v);
-  while (l->count < MOST_STEPS) {
-    const int n = l->count++;
+  while (!dvi__ritz_suffices(&l->T, unknowns, other, &bound)) {
+    const int j = l->T.steps++;
+    if (j > 0) {
+      double **free_one = before;
+      before = v, v = w, w = free_one;
+      visit(l, v, v, 1 / l->T.beta[j], 0, NULL);
+    }
     apply(l, v, w);
-    l->alpha[n] = product(l, w, v);
-    visit(l, w, v, 1, -l->alpha[n], NULL);
-    if (n > 0) visit(l, w, before, 1, -l->beta[n - 1], NULL);
-    l->beta[n] = sqrt(product(l, w, w));
-    theta = largest_of_T(l);
-    if (!(l->beta[n] > 0)) return theta; /* nothing else comes, as where nothing moves */
-    const double residual = l->beta[n] * last_entry(l, theta);
-    if (l->count == MOST_STEPS || residual <= tolerance * theta) return theta + residual;
-    visit(l, w, w, 1 / l->beta[n], 0, NULL);
-    double **free_one = before;
-    before = v, v = w, w = free_one;
+    l->T.alpha[j] = product(l, w, v);
+    visit(l, w, v, 1, -l->T.alpha[j], NULL);
+    if (j > 0) visit(l, w, before, 1, -l->T.beta[j], NULL);
+    l->T.beta[j + 1] = sqrt(product(l, w, w));
   }
-  return theta;
+  return bound;
 }
 
-dvi_status dvi__yee_lanczos(const dvi__yee *y, double *largest)
+dvi_status dvi__yee_lanczos(const dvi__yee *y, double other, double *bound)
 {
   dvi_status status = DVI_OK;
   lanczos *l = DVI_NEW(lanczos, 1);
@@ -183,7 +135,7 @@ dvi_status dvi__yee_lanczos(const dvi__yee *y, double *largest)
     l->grid.lanes = dvi__yee_lanes_in_use();
     for (int axis = 0; axis < 3; axis++)
       for (int e = 0; e < 2; e++) l->grid.axis[axis].layers[e].count = 0;
-    *largest = iterate(l);
+    *bound = iterate(l, other);
   }
   for (int i = 0; i < VECTORS && l != NULL; i++)
     for (int copy = 0; copy < 2; copy++) dvi__release(l->vector[i][copy]);

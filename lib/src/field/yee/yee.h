@@ -222,8 +222,9 @@ void dvi__yee_tightest(const dvi__yee *yee, double *x);
 
 /* ---- lanczos.c ---- */
 
-/* Find the largest eigenvalue of a grid without losses whose factors are those of a step of 1. */
-dvi_status dvi__yee_lanczos(const dvi__yee *yee, double *largest);
+/* Bound the largest eigenvalue of a grid without losses, whose factors are those of a step of 1, by
+ * at most a thousandth of it, given another bound. */
+dvi_status dvi__yee_lanczos(const dvi__yee *yee, double other, double *bound);
 
 /* ---- layers.c ---- */
 
