@@ -170,3 +170,22 @@ void dvi__gauss_seidel(const dvi_matrix *A, const double *r, double *z)
     z[i] -= sum / diagonal;
   }
 }
+
+static dvi_status times(void *of, const double *x, double *y)
+{
+  dvi_matrix_multiply(of, 0, x, y);
+  return DVI_OK;
+}
+
+static void precondition_by_gauss_seidel(void *of, const double *r, double *z)
+{
+  dvi__gauss_seidel(of, r, z);
+}
+
+dvi__products dvi__products_of(const dvi_matrix *A)
+{
+  return (dvi__products){.size = A->rows,
+                         .times = times,
+                         .precondition = precondition_by_gauss_seidel,
+                         .of = (void *)A};
+}

@@ -34,4 +34,7 @@ dvi_status dvi__conjugate_gradients(const dvi__products *A, double tolerance, co
  * matrix with columns in ascending order and a positive diagonal. */
 void dvi__gauss_seidel(const dvi_matrix *A, const double *r, double *z);
 
+/* Give the products with such a matrix, which stays the caller's, preconditioned by it. */
+dvi__products dvi__products_of(const dvi_matrix *A);
+
 #endif

@@ -229,3 +229,23 @@ dvi_status dvi__csr_product(const dvi_matrix *A, const dvi_matrix *B, dvi__csr *
 {
   return combine(product_row, A, B, product);
 }
+
+dvi_status dvi__csr_transposed_product(const dvi_matrix *A, const dvi_matrix *B, dvi__csr *product)
+{
+  dvi__csr transpose = {0};
+  DVI_TRY(dvi__csr_transpose(A, &transpose));
+  const dvi_matrix view = dvi__csr_view(&transpose, 0);
+  const dvi_status status = dvi__csr_product(&view, B, product);
+  dvi__csr_clear(&transpose);
+  return status;
+}
+
+dvi_status dvi__csr_square(const dvi_matrix *A, const dvi_matrix *M, dvi__csr *square)
+{
+  dvi__csr product = {0};
+  DVI_TRY(dvi__csr_product(M, A, &product));
+  const dvi_matrix view = dvi__csr_view(&product, 0);
+  const dvi_status status = dvi__csr_transposed_product(A, &view, square);
+  dvi__csr_clear(&product);
+  return status;
+}

@@ -30,6 +30,10 @@ dvi_status dvi__csr_transpose(const dvi_matrix *A, dvi__csr *transpose);
 dvi_status dvi__csr_sum(const dvi_matrix *A, const dvi_matrix *B, dvi__csr *sum);
 dvi_status dvi__csr_product(const dvi_matrix *A, const dvi_matrix *B, dvi__csr *product);
 
+/* Make A^T B and A^T M A. */
+dvi_status dvi__csr_transposed_product(const dvi_matrix *A, const dvi_matrix *B, dvi__csr *product);
+dvi_status dvi__csr_square(const dvi_matrix *A, const dvi_matrix *M, dvi__csr *square);
+
 /* Make the matrix of some rows and columns. `row` and `column` have their new numbers, or -1 for
  * those that are left out, and `rows` and `columns` are the new counts. New numbers ascend. */
 typedef struct dvi__selection {

@@ -9,6 +9,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "field/algebra/random.h"
 #include "field/algebra/ritz.h"
 
 typedef struct lanczos {
@@ -88,7 +89,7 @@ static double scale_of(const dvi__pencil *pencil)
 static void fill_start(lanczos *s)
 {
   const dvi_matrix *M = s->pencil->M;
-  dvi__fill_start(s->n, s->Mr);
+  (void)dvi__fill_random(s->n, 20221, s->Mr);
   for (int64_t i = 0; i < s->n; i++)
     for (int64_t e = dvi__first_entry(M, i); e < dvi__first_entry(M, i + 1); e++)
       if (dvi__entry_column(M, i, e) == i) s->Mr[i] *= sqrt(dvi__entry_value(M, e));

@@ -12,6 +12,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "field/algebra/random.h"
 #include "num/eigen.h"
 
 enum { MULTIPLY = 1, MASS = 2, DONE = 99, RESTARTS = 1000, SHIFT_INVERT = 3 };
@@ -91,15 +92,6 @@ static dvi_status extract(lanczos *s, double *eigenvalue, double *vector, a_int 
   return info == 0 ? DVI_OK : explain(s, (int)info);
 }
 
-void dvi__fill_start(int64_t n, double *start)
-{
-  uint64_t state = 20221;
-  for (int64_t i = 0; i < n; i++) {
-    state = state * 6364136223846793005u + 1442695040888963407u;
-    start[i] = (double)(int64_t)(state >> 11) / 9007199254740992.0 - 0.5;
-  }
-}
-
 static dvi_status allocate(lanczos *s)
 {
   const int64_t n = s->pencil->K->rows, directions = s->directions;
@@ -111,7 +103,7 @@ static dvi_status allocate(lanczos *s)
   if (!s->residual || !s->basis || !s->places || !s->work || !s->product)
     return dvi__fail(DVI_NO_MEMORY, "modes: no memory for %d vectors of %lld numbers",
                      s->directions, (long long)n);
-  dvi__fill_start(n, s->residual);
+  (void)dvi__fill_random(n, 20221, s->residual);
   DVI_TRY(project(s->pencil, s->residual));
   s->setting[0] = 1; /* exact shifts */
   s->setting[2] = RESTARTS;

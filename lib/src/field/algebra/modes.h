@@ -28,7 +28,4 @@ dvi_status dvi__modes_near(const dvi__pencil *pencil, double shift, int count, d
 /* Find the first of `count` of n ascending numbers that are the nearest to a shift. */
 int dvi__first_of_nearest(int n, const double *value, int count, double shift);
 
-/* Fill in a fixed start of iterations, with parts in every mode. */
-void dvi__fill_start(int64_t n, double *start);
-
 #endif

@@ -4,18 +4,11 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "field/algebra/random.h"
 #include "field/forms/hodge.h"
 
 /* Least part of a random form that is harmonic, if there is another harmonic form. */
 static const double least_part = 1e-9;
-
-static void fill_randomly(int64_t count, uint64_t *state, double *form)
-{
-  for (int64_t i = 0; i < count; i++) {
-    *state = *state * 6364136223846793005u + 1442695040888963407u;
-    form[i] = (double)(int64_t)(*state >> 11) / 9007199254740992.0 - 0.5;
-  }
-}
 
 /* Subtract the parts along the orthonormal forms of the basis, and return the length left. */
 static double orthogonalise(dvi__hodge *h, const double *basis, int64_t size, double *form)
@@ -32,7 +25,7 @@ static dvi_status find_next(dvi__hodge *h, const double *basis, int64_t size, do
                             uint64_t *state, double *next, int *found)
 {
   const double *harmonic = part + 2 * h->count;
-  fill_randomly(h->count, state, next);
+  *state = dvi__fill_random(h->count, *state, next);
   dvi__hodge_hold(h, h->k, next);
   const double whole = sqrt(dvi__hodge_product(h, next, next));
   *found = 1;

@@ -34,17 +34,6 @@ static dvi_status divide(const dvi_star *star, int k, double *b)
   return DVI_OK;
 }
 
-static dvi_status times(void *of, const double *x, double *y)
-{
-  dvi_matrix_multiply(of, 0, x, y);
-  return DVI_OK;
-}
-
-static void precondition(void *of, const double *r, double *z)
-{
-  dvi__gauss_seidel(of, r, z);
-}
-
 dvi_status dvi_star_solve(const dvi_star *star, int k, double *b)
 {
   dvi_matrix M;
@@ -53,8 +42,7 @@ dvi_status dvi_star_solve(const dvi_star *star, int k, double *b)
   DVI_TRY(dvi_star_matrix(star, k, &M));
   double *x = DVI_NEW(double, M.rows);
   if (x == NULL) return dvi__fail(DVI_NO_MEMORY, "star: no memory for a solution");
-  const dvi__products products = {
-      .size = M.rows, .times = times, .precondition = precondition, .of = &M};
+  const dvi__products products = dvi__products_of(&M);
   const dvi_status status = dvi__conjugate_gradients(&products, 1e-16, b, x, NULL);
   for (int64_t i = 0; i < M.rows && status == DVI_OK; i++) b[i] = x[i];
   dvi__release(x);
@@ -67,7 +55,6 @@ dvi_status dvi_star_solve(const dvi_star *star, int k, double *b)
 static dvi_status make_codifferential(const dvi_star *star, int k, dvi__csr *result)
 {
   dvi_matrix d, M;
-  dvi__csr transpose = {0};
   const double *diagonal = star->diagonal[k - 1];
   if (diagonal == NULL)
     return dvi__fail(DVI_UNSUPPORTED,
@@ -78,11 +65,7 @@ static dvi_status make_codifferential(const dvi_star *star, int k, dvi__csr *res
     if (diagonal[i] == 0) return refuse_zero(star, k - 1, i);
   DVI_TRY(dvi_mesh_incidence(star->mesh, k - 1, &d));
   DVI_TRY(dvi_star_matrix(star, k, &M));
-  DVI_TRY(dvi__csr_transpose(&d, &transpose));
-  const dvi_matrix view = dvi__csr_view(&transpose, 0);
-  const dvi_status status = dvi__csr_product(&view, &M, result);
-  dvi__csr_clear(&transpose);
-  if (status != DVI_OK) return status;
+  DVI_TRY(dvi__csr_transposed_product(&d, &M, result));
   for (int64_t i = 0; i < result->rows; i++)
     for (int64_t e = result->start[i]; e < result->start[i + 1]; e++)
       result->value[e] /= diagonal[i];
@@ -98,26 +81,12 @@ dvi_status dvi_form_codifferential_create(const dvi_star *star, int k, dvi_matri
   return dvi__csr_give(&matrix, 0, codifferential);
 }
 
-/* Make A^T M A with the matrix A of signs. */
-static dvi_status make_square(const dvi_matrix *A, const dvi_matrix *M, dvi__csr *square)
-{
-  dvi__csr transpose = {0}, product = {0};
-  dvi_status status = dvi__csr_transpose(A, &transpose);
-  const dvi_matrix left = dvi__csr_view(&transpose, 0);
-  if (status == DVI_OK) status = dvi__csr_product(M, A, &product);
-  const dvi_matrix right = dvi__csr_view(&product, 0);
-  if (status == DVI_OK) status = dvi__csr_product(&left, &right, square);
-  dvi__csr_clear(&transpose);
-  dvi__csr_clear(&product);
-  return status;
-}
-
 dvi_status dvi__stiffness(const dvi_star *star, int k, dvi__csr *stiffness)
 {
   dvi_matrix d, M;
   DVI_TRY(dvi_mesh_incidence(star->mesh, k, &d));
   DVI_TRY(dvi_star_matrix(star, k + 1, &M));
-  return make_square(&d, &M, stiffness);
+  return dvi__csr_square(&d, &M, stiffness);
 }
 
 /* Make M_k d_{k-1} M_{k-1}^-1 d_{k-1}^T M_k. */

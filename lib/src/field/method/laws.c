@@ -19,6 +19,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/algebra/definite.h"
+#include "field/algebra/random.h"
 #include "field/forms/star.h"
 #include "field/model/field.h"
 
@@ -43,14 +44,6 @@ static void add(laws *s, const char *name, double error, int is_exact)
 }
 
 /* ---- starts ---- */
-
-static void fill(int64_t count, uint64_t state, double *values)
-{
-  for (int64_t i = 0; i < count; i++) {
-    state = state * 6364136223846793005u + 1442695040888963407u;
-    values[i] = (double)(int64_t)(state >> 11) / 9007199254740992.0 - 0.5;
-  }
-}
 
 static dvi_status begin(laws *s, int which, const double *E, const double *A)
 {
@@ -192,7 +185,7 @@ static dvi_status add_gradient(const laws *s, double *A)
   DVI_TRY(dvi_mesh_incidence(s->field->mesh, 0, &d));
   double *chi = DVI_NEW(double, d.columns);
   if (chi == NULL) return dvi__fail(DVI_NO_MEMORY, "laws: no memory");
-  fill(d.columns, 77, chi);
+  (void)dvi__fill_random(d.columns, 77, chi);
   for (int64_t e = 0; e < d.rows; e++)
     for (int64_t i = dvi__first_entry(&d, e);
          i < dvi__first_entry(&d, e + 1) && s->field->number[e] < 0; i++)
@@ -208,11 +201,11 @@ static dvi_status look_at_gauge(laws *s)
 {
   double of_E = 0, of_B = 0; /* sizes at the start, because losses take the fields away */
   if (s->field->degree != 1) return DVI_OK;
-  fill(s->cells, 5, s->A[0]);
+  (void)dvi__fill_random(s->cells, 5, s->A[0]);
   memcpy(s->A[1], s->A[0], (size_t)s->cells * sizeof(double));
   DVI_TRY(add_gradient(s, s->A[1]));
   for (int i = 0; i < 2; i++) {
-    fill(s->cells, 9, s->E[i]);
+    (void)dvi__fill_random(s->cells, 9, s->E[i]);
     DVI_TRY(begin(s, i, s->E[i], s->A[i]));
     DVI_TRY(sample(s, i));
     of_E = fmax(of_E, largest(s->cells, s->E[i]));
@@ -312,8 +305,9 @@ static dvi_status make_region(laws *s, region *r)
   r->curl = r->room + 8 * s->cells;
   r->flux = r->curl + s->cells;
   for (int64_t c = 0; c < mesh->count[mesh->n]; c++) {
-    state = state * 6364136223846793005u + 1442695040888963407u;
-    r->inside[c] = (char)(state >> 63);
+    double choice;
+    state = dvi__fill_random(1, state, &choice);
+    r->inside[c] = choice > 0;
   }
   DVI_TRY(dvi_mesh_incidence(mesh, s->field->degree, &r->d));
   DVI_TRY(restrict_star(r, 1, s->field->degree, &r->M1));
@@ -384,8 +378,8 @@ static dvi_status follow(region *r)
 {
   laws *s = r->laws;
   for (int i = 0; i < 2; i++) {
-    fill(s->cells, 11 + (uint64_t)i, s->A[i]);
-    fill(s->cells, 21 + (uint64_t)i, s->E[i]);
+    (void)dvi__fill_random(s->cells, 11 + (uint64_t)i, s->A[i]);
+    (void)dvi__fill_random(s->cells, 21 + (uint64_t)i, s->E[i]);
     DVI_TRY(begin(s, i, s->E[i], s->A[i]));
     DVI_TRY(dvi_march_sample(s->march[i], DVI_FORM_A, 0, NULL, r->A[i][2]));
   }
@@ -427,9 +421,9 @@ static void share_room(laws *s, int i, double *room)
   s->A[i] = s->E[i] + s->cells;
   s->B[i] = s->A[i] + s->cells;
   s->f[i] = s->B[i] + s->faces;
-  fill(s->cells, 31 + (uint64_t)i, s->E[i]);
-  fill(s->cells, 41 + (uint64_t)i, s->A[i]);
-  fill(s->field->unknowns, 51 + (uint64_t)i, s->f[i]);
+  (void)dvi__fill_random(s->cells, 31 + (uint64_t)i, s->E[i]);
+  (void)dvi__fill_random(s->cells, 41 + (uint64_t)i, s->A[i]);
+  (void)dvi__fill_random(s->field->unknowns, 51 + (uint64_t)i, s->f[i]);
 }
 
 static dvi_status make(laws *s)

@@ -182,18 +182,12 @@ static dvi_status star_of_rim(const rim *r, dvi_matrix *S)
 static dvi_status make_wall_matrix(const rim *r, dvi__csr *damping)
 {
   dvi_matrix S;
-  dvi__csr restriction = {0}, transpose = {0}, product = {0};
+  dvi__csr restriction = {0};
   DVI_TRY(star_of_rim(r, &S));
   DVI_TRY(make_restriction(r, S.rows, &restriction));
   const dvi_matrix P = dvi__csr_view(&restriction, 0);
-  dvi_status status = dvi__csr_transpose(&P, &transpose);
-  const dvi_matrix left = dvi__csr_view(&transpose, 0);
-  if (status == DVI_OK) status = dvi__csr_product(&S, &P, &product);
-  const dvi_matrix right = dvi__csr_view(&product, 0);
-  if (status == DVI_OK) status = dvi__csr_product(&left, &right, damping);
+  const dvi_status status = dvi__csr_square(&P, &S, damping);
   dvi__csr_clear(&restriction);
-  dvi__csr_clear(&transpose);
-  dvi__csr_clear(&product);
   return status;
 }
 

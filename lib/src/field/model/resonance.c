@@ -87,18 +87,15 @@ static dvi_status make_gradients(resonance *r)
 static dvi_status prepare_projection(resonance *r)
 {
   const dvi_matrix d = dvi__csr_view(&r->d, 0);
-  dvi__csr transpose = {0}, matrix = {0};
+  dvi__csr matrix = {0};
   r->charge = DVI_NEW(double, 2 * r->gradients);
   if (r->charge == NULL) return dvi__fail(DVI_NO_MEMORY, "modes: no memory for gradients");
   r->phi = r->charge + r->gradients;
   dvi_status status = dvi__csr_product(&r->M, &d, &r->Md);
   const dvi_matrix right = dvi__csr_view(&r->Md, 0);
-  if (status == DVI_OK) status = dvi__csr_transpose(&d, &transpose);
-  const dvi_matrix left = dvi__csr_view(&transpose, 0);
-  if (status == DVI_OK) status = dvi__csr_product(&left, &right, &matrix);
+  if (status == DVI_OK) status = dvi__csr_transposed_product(&d, &right, &matrix);
   const dvi_matrix square = dvi__csr_view(&matrix, 1);
   if (status == DVI_OK) status = dvi__definite_create(&square, r->field->mesh->n, &r->poisson);
-  dvi__csr_clear(&transpose);
   dvi__csr_clear(&matrix);
   return status;
 }

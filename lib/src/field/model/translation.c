@@ -10,6 +10,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "field/algebra/random.h"
 #include "field/model/field.h"
 
 /* Part of its terms that the commutator may leave. */
@@ -59,11 +60,7 @@ static int is_symmetry(const dvi_field *f, const dvi__csr *D, double *room)
   const int64_t n = f->unknowns;
   const dvi_matrix K = dvi__csr_view(&f->stiffness, 1), M = dvi__csr_view(&f->mass, 1),
                    translation = dvi__csr_view(D, 0);
-  uint64_t state = 7;
-  for (int64_t i = 0; i < n; i++) {
-    state = state * 6364136223846793005u + 1442695040888963407u;
-    room[i] = (double)(int64_t)(state >> 11) / 9007199254740992.0 - 0.5;
-  }
+  (void)dvi__fill_random(n, 7, room);
   return largest(D->start[n], D->value) > 0 &&
          keeps(&K, &translation, room, room + n, room + 2 * n, room + 3 * n) &&
          keeps(&M, &translation, room, room + n, room + 2 * n, room + 3 * n);
