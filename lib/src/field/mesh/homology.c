@@ -9,6 +9,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "field/mesh/homology.h"
 #include "field/mesh/mesh.h"
 
 static const int64_t prime = 2147483629; /* 2^31 - 19 */
@@ -25,6 +26,7 @@ typedef struct reduction {
   int64_t length, room;
   int64_t *first; /* [rows+1] the column whose pivot is a row, in the pool, or -1 */
   int *count;     /* [rows] its number of entries */
+  char *cleared;  /* [columns] those that reduce to zero, by the degree above */
 } reduction;
 
 static int64_t inverse(int64_t a)
@@ -66,19 +68,22 @@ static int subtract(const entry *a, int of_a, const entry *b, int of_b, int64_t 
   return count;
 }
 
-/* Enter the boundary of a cell behind the last column. Returns its number of entries. */
-static int enter_boundary(reduction *r, const dvi_mesh *mesh, int k, int64_t cell)
+/* Enter the boundary of a cell, without held ones, behind the last column. Returns its number of
+ * entries. */
+static int enter_boundary(reduction *r, const dvi_mesh *mesh, int k, int64_t cell, const char *held)
 {
   const int slots = dvi__facets(mesh->kind, k);
   entry *column = r->pool + r->length;
+  int count = 0;
   for (int i = 0; i < slots; i++) {
     const int is_positive = mesh->sign[k][cell * slots + i] > 0;
     const entry new = {mesh->facet[k][cell * slots + i], is_positive ? 1 : (int)prime - 1};
-    int at = i;
+    if (held != NULL && held[new.row]) continue;
+    int at = count++;
     for (; at > 0 && column[at - 1].row < new.row; at--) column[at] = column[at - 1];
     column[at] = new;
   }
-  return slots;
+  return count;
 }
 
 /* Reduce the column behind the last one, and keep it if it has a new pivot. */
@@ -102,44 +107,46 @@ static dvi_status reduce(reduction *r, int count)
   return DVI_OK;
 }
 
-/* Find the rank of the boundary operator of degree k, and replace the pivots `cleared` of degree
- * k + 1 by those of degree k. */
-static dvi_status find_rank(const dvi_mesh *mesh, int k, reduction *r, char *cleared, int64_t *rank)
+static dvi_status create(const dvi_mesh *mesh, reduction *r)
+{
+  int64_t most = 0;
+  for (int k = 0; k <= mesh->n; k++) most = mesh->count[k] > most ? mesh->count[k] : most;
+  *r = (reduction){.pool = DVI_NEW(entry, most),
+                   .room = most,
+                   .first = DVI_NEW(int64_t, most),
+                   .count = DVI_NEW(int, most),
+                   .cleared = DVI_NEW(char, most)};
+  if (r->pool == NULL || r->first == NULL || r->count == NULL || r->cleared == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "mesh: no memory for ranks");
+  return DVI_OK;
+}
+
+static void clear(reduction *r)
+{
+  dvi__release(r->pool);
+  dvi__release(r->first);
+  dvi__release(r->count);
+  dvi__release(r->cleared);
+}
+
+/* Find the rank of the boundary operator of degree k onto the cells that are not held, and replace
+ * the pivots of degree k + 1 by those of degree k. */
+static dvi_status find_rank(reduction *r, const dvi_mesh *mesh, int k, const char *held,
+                            int64_t *rank)
 {
   for (int64_t row = 0; row < mesh->count[k - 1]; row++) r->first[row] = -1;
   r->length = 0;
   *rank = 0;
   for (int64_t cell = 0; cell < mesh->count[k]; cell++) {
-    if (cleared[cell]) continue;
+    if (r->cleared[cell]) continue;
     DVI_TRY(make_room(r, dvi__facets(mesh->kind, k)));
-    DVI_TRY(reduce(r, enter_boundary(r, mesh, k, cell)));
+    DVI_TRY(reduce(r, enter_boundary(r, mesh, k, cell, held)));
   }
   for (int64_t row = 0; row < mesh->count[k - 1]; row++) {
-    cleared[row] = r->first[row] >= 0;
-    *rank += cleared[row];
+    r->cleared[row] = r->first[row] >= 0;
+    *rank += r->cleared[row];
   }
   return DVI_OK;
-}
-
-static dvi_status find_ranks(const dvi_mesh *mesh, int64_t *rank)
-{
-  int64_t most = 0;
-  for (int k = 0; k <= mesh->n; k++) most = mesh->count[k] > most ? mesh->count[k] : most;
-  reduction r = {.pool = DVI_NEW(entry, most),
-                 .room = most,
-                 .first = DVI_NEW(int64_t, most),
-                 .count = DVI_NEW(int, most)};
-  char *cleared = DVI_NEW(char, most);
-  dvi_status status = DVI_OK;
-  if (r.pool == NULL || r.first == NULL || r.count == NULL || cleared == NULL)
-    status = dvi__fail(DVI_NO_MEMORY, "mesh: no memory for Betti numbers");
-  for (int k = mesh->n; k > 0 && status == DVI_OK; k--)
-    status = find_rank(mesh, k, &r, cleared, rank + k);
-  dvi__release(r.pool);
-  dvi__release(r.first);
-  dvi__release(r.count);
-  dvi__release(cleared);
-  return status;
 }
 
 dvi_status dvi_mesh_betti(const dvi_mesh *mesh, int64_t *betti)
@@ -147,7 +154,38 @@ dvi_status dvi_mesh_betti(const dvi_mesh *mesh, int64_t *betti)
   int64_t rank[DVI__DEGREES + 1] = {0}; /* of the boundary of k-cells */
   if (mesh == NULL || betti == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "mesh: a mesh and an array are needed");
-  DVI_TRY(find_ranks(mesh, rank));
+  reduction r;
+  dvi_status status = create(mesh, &r);
+  for (int k = mesh->n; k > 0 && status == DVI_OK; k--)
+    status = find_rank(&r, mesh, k, NULL, rank + k);
+  clear(&r);
+  DVI_TRY(status);
   for (int k = 0; k <= mesh->n; k++) betti[k] = mesh->count[k] - rank[k] - rank[k + 1];
   return DVI_OK;
+}
+
+/* Mark the k-cells whose facets are all held. */
+static void hold_surrounded(const dvi_mesh *mesh, int k, const char *held, char *surrounded)
+{
+  const int slots = dvi__facets(mesh->kind, k);
+  for (int64_t cell = 0; cell < mesh->count[k]; cell++) {
+    surrounded[cell] = 1;
+    for (int i = 0; i < slots; i++)
+      if (!held[mesh->facet[k][cell * slots + i]]) surrounded[cell] = 0;
+  }
+}
+
+dvi_status dvi__incidence_rank(const dvi_mesh *mesh, int k, const char *held, int64_t *rank)
+{
+  reduction r;
+  char *surrounded = DVI_NEW(char, mesh->count[k + 1]);
+  dvi_status status = create(mesh, &r);
+  if (status == DVI_OK && surrounded == NULL)
+    status = dvi__fail(DVI_NO_MEMORY, "mesh: no memory for ranks");
+  if (status == DVI_OK) hold_surrounded(mesh, k + 1, held, surrounded);
+  if (status == DVI_OK && k + 2 <= mesh->n) status = find_rank(&r, mesh, k + 2, surrounded, rank);
+  if (status == DVI_OK) status = find_rank(&r, mesh, k + 1, held, rank);
+  clear(&r);
+  dvi__release(surrounded);
+  return status;
 }

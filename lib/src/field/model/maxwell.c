@@ -86,15 +86,16 @@ static dvi_status check_permeability(const dvi_field *field)
 {
   dvi_matrix M;
   DVI_TRY(dvi_star_matrix(field->star, field->degree + 1, &M));
-  for (int64_t f = 0; f < M.rows && M.column == NULL; f++) {
-    if (M.value[f] >= 0) continue;
-    const dvi__cell_name name = dvi__name_cell(field->mesh, field->degree + 1, f);
-    return dvi__fail(DVI_SINGULAR,
-                     "maxwell: M_%d has the entry %g at %s, so that waves would grow: take a "
-                     "Whitney star, repair the mesh (dvi mesh tells how), or other points",
-                     field->degree + 1, M.value[f], name.text);
-  }
-  return DVI_OK;
+  if (M.column != NULL) return DVI_OK;
+  int64_t worst = 0;
+  for (int64_t f = 1; f < M.rows; f++)
+    if (M.value[f] < M.value[worst]) worst = f;
+  if (M.value[worst] >= 0) return DVI_OK;
+  const dvi__cell_name name = dvi__name_cell(field->mesh, field->degree + 1, worst);
+  return dvi__fail(DVI_SINGULAR,
+                   "maxwell: M_%d has the entry %g at %s, so that waves would grow: take a "
+                   "Whitney star, repair the mesh (dvi mesh tells how), or other points",
+                   field->degree + 1, M.value[worst], name.text);
 }
 
 /* ---- create ---- */

@@ -17,12 +17,14 @@
 #include "field/algebra/definite.h"
 #include "field/forms/star.h"
 #include "field/mesh/connected.h"
+#include "field/mesh/homology.h"
 #include "field/model/spectrum.h"
 
 /* All modes are found at once up to this size. */
 enum { MOST_FULL = 500 };
-/* Part of the largest eigenvalue, or of the size of the lowest ones, that counts as zero. */
-static const double zero_of_largest = 1e-11, zero_of_lowest = 1e-6;
+/* Part of the size of the lowest eigenvalues that can be zero, and part of the largest one that
+ * roundings of full matrices leave. */
+static const double zero_of_lowest = 1e-6, rounding = 1e-15;
 
 typedef struct resonance {
   const dvi_field *field;
@@ -32,7 +34,7 @@ typedef struct resonance {
   dvi__definite poisson; /* of d^T M d */
   double *charge, *phi;  /* [gradients] each */
   double *value, *vector;
-  int64_t zeros;
+  int64_t zeros; /* dimension of the kernel of K */
 } resonance;
 
 static void clear(resonance *r)
@@ -127,19 +129,35 @@ static void add_gradients(void *of, double s, const double *residual, double *z)
 
 /* ---- modes ---- */
 
-/* Move the modes that are not zero to the front. Returns their number. */
-static int drop_zeros(resonance *r, int found, double zero)
+/* The kernel of K is that of d_1 on the forms that are free: its dimension is exact. */
+static dvi_status count_zeros(resonance *r)
+{
+  const dvi_field *f = r->field;
+  int64_t rank;
+  char *held = DVI_NEW(char, f->cells);
+  if (held == NULL) return dvi__fail(DVI_NO_MEMORY, "modes: no memory for ranks");
+  for (int64_t e = 0; e < f->cells; e++) held[e] = f->number[e] < 0;
+  const dvi_status status = dvi__incidence_rank(f->mesh, 1, held, &rank);
+  dvi__release(held);
+  if (status == DVI_OK) r->zeros = f->unknowns - rank;
+  return status;
+}
+
+/* Move the modes that are not zero, of ascending values, to the front: at most `zeros` of values up
+ * to `most` are. Returns their number. */
+static int drop_zeros(resonance *r, int found, int64_t zeros, double most)
 {
   const size_t n = (size_t)r->field->unknowns;
+  const int count = zeros < found ? (int)zeros : found,
+            first = dvi__first_of_nearest(found, r->value, count, 0);
   int kept = 0;
   for (int i = 0; i < found; i++) {
-    if (fabs(r->value[i]) <= zero) continue;
+    if (i >= first && i < first + count && fabs(r->value[i]) <= most) continue;
     r->value[kept] = r->value[i];
     if (kept != i)
       memcpy(r->vector + (size_t)kept * n, r->vector + (size_t)i * n, n * sizeof(double));
     kept++;
   }
-  r->zeros += found - kept;
   return kept;
 }
 
@@ -162,7 +180,15 @@ static dvi_status find_all(resonance *r, int *found)
   const dvi__pencil pencil = {.K = &r->K, .M = &r->M, .dimension = r->field->mesh->n};
   DVI_TRY(reserve(r, n));
   DVI_TRY(dvi__modes_near(&pencil, 0, n, r->value, r->vector));
-  *found = drop_zeros(r, n, zero_of_largest * fabs(r->value[n - 1]));
+  const double largest = r->value[n - 1];
+  *found = drop_zeros(r, n, r->zeros, INFINITY);
+  for (int i = 0; i < *found; i++)
+    if (fabs(r->value[i]) < rounding * largest)
+      return dvi__fail(DVI_SINGULAR,
+                       "modes: roundings of full matrices hide the eigenvalue %g, because others "
+                       "reach %g: refine the mesh to more than %d unknowns, or bring the materials "
+                       "nearer to each other",
+                       r->value[i], largest, MOST_FULL);
   return DVI_OK;
 }
 
@@ -187,8 +213,7 @@ static dvi_status find_nearest(resonance *r, double shift, int count, int *found
                        count, (long long)f->unknowns, (long long)r->gradients);
     DVI_TRY(reserve(r, asked));
     DVI_TRY(dvi__modes_near(&pencil, from, asked, r->value, r->vector));
-    r->zeros = r->gradients;
-    *found = drop_zeros(r, asked, zero_of_lowest * fabs(below));
+    *found = drop_zeros(r, asked, r->zeros - r->gradients, zero_of_lowest * fabs(below));
   }
   return DVI_OK;
 }
@@ -197,6 +222,7 @@ static dvi_status find(resonance *r, double shift, int count, double *eigenvalue
 {
   const dvi_field *f = r->field;
   int found = 0;
+  DVI_TRY(count_zeros(r));
   DVI_TRY(f->unknowns <= MOST_FULL ? find_all(r, &found) : find_nearest(r, shift, count, &found));
   if (count < 1 || count > found)
     return dvi__fail(DVI_BAD_SIZE,
