@@ -304,6 +304,33 @@ static void compare(const scene *a, const scene *b)
   ck_assert_double_eq(observe(a, "gauss"), observe(b, "gauss"));
 }
 
+/* What differs are the places of a dipole, and the conductivities. */
+START_TEST(states_of_other_sources_and_losses_are_refused)
+{
+  static unsigned long long seed = 3;
+  const char *path = "foreign.state";
+  double sigma[2][60];
+  for (int c = 0; c < 60; c++) sigma[1][c] = 2 * (sigma[0][c] = 0.1);
+  const dvi_current dipole[] = {
+      {.at = {0.3, 0.3, 0.3}, .along = {0, 0, 1}, .signal = pulse, .user = &seed},
+      {.at = {0.3, 0.5, 0.3}, .along = {0, 0, 1}, .signal = pulse, .user = &seed}};
+  scene saved, other;
+  for (int i = 0; i < 3; i++) {
+    const dvi_maxwell_terms one = {.current = dipole, .currents = 1, .conductivity = sigma[0]},
+                            two = {.current = dipole + (i == 0),
+                                   .currents = 1,
+                                   .conductivity = sigma[i == 1]};
+    saved = make_scene(box(), DVI_CIRCUMCENTRIC, one, (dvi_march_options){.fraction = 0.5});
+    other = make_scene(box(), DVI_CIRCUMCENTRIC, two, (dvi_march_options){.fraction = 0.5});
+    ck_assert_int_eq(dvi_march_save(saved.march, path), DVI_OK);
+    ck_assert_int_eq(dvi_march_load(other.march, path), i < 2 ? DVI_BAD_FILE : DVI_OK);
+    end_scene(&saved);
+    end_scene(&other);
+  }
+  (void)unlink(path);
+}
+END_TEST
+
 START_TEST(cuts_threads_and_saved_states_keep_the_bits)
 {
   static unsigned long long seed = 3;
@@ -362,4 +389,5 @@ SUITE(leapfrog)
   tcase_add_loop_test(tests, values_that_overflow_are_refused, 0, 2);
   tcase_add_test(tests, random_currents_keep_the_law_of_charge);
   tcase_add_test(tests, cuts_threads_and_saved_states_keep_the_bits);
+  tcase_add_test(tests, states_of_other_sources_and_losses_are_refused);
 }

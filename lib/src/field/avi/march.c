@@ -105,8 +105,10 @@ static void fill_currents(const dvi_field *field, arrays *a)
   for (int c = 0; c < a->terms.currents; c++) {
     double *profile = a->profile + c * field->cells;
     const int is_source = c == field->currents;
-    for (int64_t i = 0; i < field->unknowns; i++)
-      profile[field->unknown[i]] = is_source ? a->source[i] : field->current[c].profile[i];
+    for (int64_t i = 0; i < field->unknowns && is_source; i++)
+      profile[field->unknown[i]] = a->source[i];
+    for (int64_t k = 0; !is_source && k < field->current[c].count; k++)
+      profile[field->unknown[field->current[c].unknown[k]]] = field->current[c].weight[k];
     a->signal[c] = (signal){field, c};
     a->current[c] = (dvi__avi_current){profile, is_source ? impulse_of_source : impulse_of_current,
                                        a->signal + c};
@@ -130,8 +132,7 @@ static dvi_status find_incidence(const dvi_field *field, dvi__avi_terms *terms)
   DVI_TRY(dvi_mesh_incidence(field->mesh, field->degree, &d));
   DVI_TRY(dvi_star_matrix(field->star, field->degree + 1, &M2));
   if (field->degree > 0) DVI_TRY(dvi_mesh_incidence(field->mesh, field->degree - 1, &below));
-  if (!field->mass_is_diagonal || M2.column != NULL ||
-      (field->damping.rows > 0 && !field->damping_is_diagonal))
+  if (!field->mass_is_diagonal || M2.column != NULL)
     return dvi__fail(DVI_UNSUPPORTED,
                      "avi: the star is not diagonal, so that cells have no steps of their own; "
                      "take a circumcentric star, or leapfrog");

@@ -40,17 +40,35 @@ static dvi_status place_dipole(const dvi_field *field, const dvi_current *curren
   return DVI_OK;
 }
 
+/* Keep the entries that are not zero. */
+static dvi_status keep_entries(int64_t unknowns, const double *profile, dvi__current *current)
+{
+  for (int64_t i = 0; i < unknowns; i++) current->count += profile[i] != 0;
+  current->unknown = DVI_NEW(int, current->count);
+  current->weight = DVI_NEW(double, current->count);
+  if (current->unknown == NULL || current->weight == NULL)
+    return dvi__fail(DVI_NO_MEMORY, "maxwell: no memory for a current");
+  int64_t kept = 0;
+  for (int64_t i = 0; i < unknowns; i++) {
+    if (profile[i] == 0) continue;
+    current->unknown[kept] = (int)i;
+    current->weight[kept++] = profile[i];
+  }
+  return DVI_OK;
+}
+
 static dvi_status make_current(const dvi_field *field, const dvi_current *from, const dvi_matrix *W,
                                dvi__current *current)
 {
   if (from->signal == NULL) return dvi__fail(DVI_BAD_ARGUMENT, "maxwell: a current has no signal");
-  *current = (dvi__current){.profile = DVI_NEW(double, field->unknowns),
-                            .signal = from->signal,
-                            .impulse = from->impulse,
-                            .user = from->user};
-  if (current->profile == NULL) return dvi__fail(DVI_NO_MEMORY, "maxwell: no memory for a current");
-  return from->density != NULL ? spread_density(field, from, W, current->profile)
-                               : place_dipole(field, from, current->profile);
+  *current = (dvi__current){.signal = from->signal, .impulse = from->impulse, .user = from->user};
+  double *profile = DVI_NEW(double, field->unknowns);
+  if (profile == NULL) return dvi__fail(DVI_NO_MEMORY, "maxwell: no memory for a current");
+  dvi_status status = from->density != NULL ? spread_density(field, from, W, profile)
+                                            : place_dipole(field, from, profile);
+  if (status == DVI_OK) status = keep_entries(field->unknowns, profile, current);
+  dvi__release(profile);
+  return status;
 }
 
 dvi_status dvi__maxwell_make_currents(dvi_field *field, const dvi_maxwell_terms *terms)
@@ -72,6 +90,28 @@ dvi_status dvi__maxwell_make_currents(dvi_field *field, const dvi_maxwell_terms 
   }
   dvi_star_destroy(&bare);
   return status;
+}
+
+int64_t dvi__current_entry(const dvi__current *current, int64_t i)
+{
+  int64_t first = 0, last = current->count;
+  while (first < last) {
+    const int64_t middle = first + (last - first) / 2;
+    if (current->unknown[middle] < i)
+      first = middle + 1;
+    else
+      last = middle;
+  }
+  return first;
+}
+
+void dvi__add_currents(const dvi_field *field, double scale, const double *factor, double *b)
+{
+  for (int c = 0; c < field->currents; c++) {
+    const dvi__current *current = field->current + c;
+    for (int64_t k = 0; k < current->count; k++)
+      b[current->unknown[k]] += scale * factor[c] * current->weight[k];
+  }
 }
 
 dvi_status dvi__current_impulse(const dvi_field *field, int current, double from, double to,

@@ -194,15 +194,14 @@ static dvi_status make_wall_matrix(const rim *r, dvi__csr *damping)
 static dvi_status make_walls(dvi_field *field, const dvi_maxwell_terms *terms, dvi__csr *damping)
 {
   rim r = {.field = field};
-  dvi_status status = allocate(&r);
   int count = 0;
+  for (int i = 0; i < terms->walls; i++) count += terms->wall[i].kind == DVI_ABSORBING;
+  if (count == 0) return DVI_OK;
+  dvi_status status = allocate(&r);
   for (int i = 0; i < terms->walls && status == DVI_OK; i++)
-    if (terms->wall[i].kind == DVI_ABSORBING) {
-      status = mark_wall(&r, terms->wall + i);
-      count++;
-    }
-  if (status == DVI_OK && count > 0) status = make_rim(&r);
-  if (status == DVI_OK && count > 0) status = make_wall_matrix(&r, damping);
+    if (terms->wall[i].kind == DVI_ABSORBING) status = mark_wall(&r, terms->wall + i);
+  if (status == DVI_OK) status = make_rim(&r);
+  if (status == DVI_OK) status = make_wall_matrix(&r, damping);
   clear_rim(&r);
   return status;
 }
@@ -251,7 +250,7 @@ static dvi_status check_damping(dvi_field *field)
 {
   dvi__csr *S = &field->damping;
   double most = 0;
-  if (S->rows == 0 || !field->damping_is_diagonal) return DVI_OK;
+  if (S->rows == 0 || !field->mass_is_diagonal) return DVI_OK;
   for (int64_t e = 0; e < S->start[S->rows]; e++) most = fmax(most, S->value[e]);
   for (int64_t e = 0; e < S->start[S->rows]; e++) {
     if (S->value[e] >= 0) continue;
@@ -271,7 +270,6 @@ static dvi_status check_damping(dvi_field *field)
 static dvi_status make_damping(dvi_field *field, const dvi_maxwell_terms *terms)
 {
   dvi__csr walls = {0}, conductors = {0};
-  field->damping_is_diagonal = field->mass_is_diagonal;
   dvi_status status = make_walls(field, terms, &walls);
   if (status == DVI_OK && terms->conductivity != NULL)
     status = make_conductors(field, terms->conductivity, &conductors);

@@ -23,7 +23,10 @@ void dvi_field_destroy(dvi_field **field)
   for (size_t i = 0; i < sizeof ints / sizeof *ints; i++) dvi__release(ints[i]);
   for (size_t i = 0; i < sizeof doubles / sizeof *doubles; i++) dvi__release(doubles[i]);
   for (int i = 0; i < f->translations; i++) dvi__csr_clear(&f->translation[i].D);
-  for (int i = 0; i < f->currents; i++) dvi__release(f->current[i].profile);
+  for (int i = 0; i < f->currents; i++) {
+    dvi__release(f->current[i].unknown);
+    dvi__release(f->current[i].weight);
+  }
   for (int i = 0; i < f->probes; i++) dvi__probe_clear(f->probe + i);
   dvi__release(f->current);
   dvi__release(f->probe);
@@ -125,6 +128,14 @@ dvi_status dvi__field_make_matrices(dvi_field *field, double *load)
 }
 
 /* ---- questions ---- */
+
+double dvi__field_row(const dvi_field *field, const dvi__csr *A, int64_t i, const double *form)
+{
+  double sum = 0;
+  for (int64_t e = A->start[i]; e < A->start[i + 1]; e++)
+    sum += A->value[e] * form[field->unknown[A->column[e]]];
+  return sum;
+}
 
 int dvi_field_degree(const dvi_field *field)
 {

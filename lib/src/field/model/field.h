@@ -15,9 +15,11 @@ typedef struct dvi__translation {
 
 enum { DVI__CURRENTS = 64 };
 
-/* A current that is given, J = profile times signal. */
+/* A current that is given, J = profile times signal. The profile is zero but for some entries. */
 typedef struct dvi__current {
-  double *profile; /* [unknowns] */
+  int64_t count;  /* of entries */
+  int *unknown;   /* [count] ascending */
+  double *weight; /* [count] */
   int (*signal)(double t, double *value, void *user);
   int (*impulse)(double from, double to, double *value, void *user); /* or NULL */
   void *user;
@@ -69,8 +71,8 @@ struct dvi_field {
   int *component;     /* [unknowns] number of the free component, or -1 */
   int64_t components; /* without a fixed value */
   dvi__csr mass, stiffness;
-  dvi__csr damping; /* S of the current S E. Without rows if there is none */
-  int mass_is_diagonal, damping_is_diagonal;
+  dvi__csr damping;     /* S of the current S E. Without rows if there is none */
+  int mass_is_diagonal; /* the damping is then diagonal, too */
   dvi__current *current;
   int currents;
   dvi__probe *probe;
@@ -92,6 +94,9 @@ struct dvi_field {
 /* Take rows and columns of the unknowns. */
 dvi_status dvi__field_select(const dvi_field *field, const dvi_matrix *A, dvi__csr *part);
 
+/* Give row i of a matrix of the unknowns times a form [cells]. */
+double dvi__field_row(const dvi_field *field, const dvi__csr *A, int64_t i, const double *form);
+
 /* Number the unknowns, the cells whose `number` is not negative. */
 dvi_status dvi__field_number(dvi_field *field);
 
@@ -104,6 +109,13 @@ dvi_status dvi__maxwell_make_damping(dvi_field *field, const dvi_maxwell_terms *
 /* Give the integral of a current's signal, which is refused if it is not finite. */
 dvi_status dvi__current_impulse(const dvi_field *field, int current, double from, double to,
                                 double *impulse);
+
+/* Return the first entry of a current at the unknown i or behind it. */
+int64_t dvi__current_entry(const dvi__current *current, int64_t i);
+
+/* Add scale times the sum of the currents' profiles, each times its factor [currents], to
+ * b [unknowns]. */
+void dvi__add_currents(const dvi_field *field, double scale, const double *factor, double *b);
 
 /* Make the currents and the probes. */
 dvi_status dvi__maxwell_make_currents(dvi_field *field, const dvi_maxwell_terms *terms);

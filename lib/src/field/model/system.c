@@ -19,11 +19,15 @@ static int find_signals(const dvi_field *f, double t, double *signal)
   return 0;
 }
 
-static double load_of(const dvi_field *f, const double *signal, int64_t i)
+/* Subtract J of the unknowns `first` to `last`-1 from V_q. */
+static void subtract_currents(const dvi_field *f, const double *signal, int first, int last,
+                              double *V_q)
 {
-  double load = f->load[i];
-  for (int c = 0; c < f->currents; c++) load += signal[c] * f->current[c].profile[i];
-  return load;
+  for (int c = 0; c < f->currents; c++) {
+    const dvi__current *J = f->current + c;
+    for (int64_t k = dvi__current_entry(J, first); k < J->count && J->unknown[k] < last; k++)
+      V_q[J->unknown[k] - first] -= signal[c] * J->weight[k];
+  }
 }
 
 static int elastic_gradient_range(double t, const double *q, int first, int last, double *V_q,
@@ -38,8 +42,9 @@ static int elastic_gradient_range(double t, const double *q, int first, int last
   for (int i = first; i < last && failed == 0; i++) {
     double sum = 0;
     for (int64_t e = start[i]; e < start[i + 1]; e++) sum += value[e] * q[column[e]];
-    V_q[i - first] = sum - load_of(f, signal, i);
+    V_q[i - first] = sum - f->load[i];
   }
+  if (failed == 0) subtract_currents(f, signal, first, last, V_q);
   return failed;
 }
 
@@ -58,8 +63,11 @@ static int elastic_value(double t, const double *q, double *V, void *user)
   for (int64_t i = 0; i < f->unknowns && failed == 0; i++) {
     double sum = 0;
     for (int64_t e = K->start[i]; e < K->start[i + 1]; e++) sum += K->value[e] * q[K->column[e]];
-    *V += q[i] * (0.5 * sum - load_of(f, signal, i));
+    *V += q[i] * (0.5 * sum - f->load[i]);
   }
+  for (int c = 0; c < f->currents && failed == 0; c++)
+    for (int64_t k = 0; k < f->current[c].count; k++)
+      *V -= q[f->current[c].unknown[k]] * signal[c] * f->current[c].weight[k];
   return failed;
 }
 

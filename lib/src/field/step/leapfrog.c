@@ -35,8 +35,8 @@ typedef struct place {
 
 /* What stars that are not diagonal need: the matrix M + dt/2 S of a step, M, and room. */
 typedef struct solver {
-  dvi_matrix d, M2;
-  dvi__csr left;
+  dvi_matrix d, M2, matrix, mass;
+  dvi__csr left; /* what `matrix` shows */
   dvi__products of_step, of_mass;
   double *room;      /* of all that follows */
   double *H, *curl;  /* [faces], [cells] */
@@ -49,7 +49,7 @@ typedef struct leapfrog {
   dvi__sweep sweep;
   place at;
   double bound;
-  int keeps_A; /* the field is a wave, or A is wanted */
+  int keeps_A; /* the field is a wave, A is wanted, or damping moves charge */
   int64_t numbers;
   double *state;       /* [numbers] all that follows in this block, and the charge's numbers */
   double *E, *H, *A;   /* E^{n+1/2}, B^n as field/step/sweep.h has it, A^n if it is kept */
@@ -71,19 +71,19 @@ typedef struct leapfrog {
 static double push(const leapfrog *l, int64_t i)
 {
   double sum = l->source != NULL ? -l->source[i] : 0;
-  for (int c = 0; c < l->field->currents; c++) sum -= l->field->current[c].profile[i] * l->J[c];
+  for (int c = 0; c < l->field->currents; c++) {
+    const dvi__current *J = l->field->current + c;
+    const int64_t k = dvi__current_entry(J, i);
+    if (k < J->count && J->unknown[k] == i) sum -= J->weight[k] * l->J[c];
+  }
   return sum;
 }
 
 /* Give a row of S E. */
 static double damp(const leapfrog *l, int64_t i)
 {
-  const dvi__csr *S = &l->field->damping;
-  double sum = 0;
-  if (S->rows == 0) return 0;
-  for (int64_t e = S->start[i]; e < S->start[i + 1]; e++)
-    sum += S->value[e] * l->E[l->field->unknown[S->column[e]]];
-  return sum;
+  const dvi_field *f = l->field;
+  return f->damping.rows > 0 ? dvi__field_row(f, &f->damping, i, l->E) : 0;
 }
 
 /* Give the unknown i of d^T M_{k+1} B - J - S E, with a diagonal star. */
@@ -100,24 +100,14 @@ static void find_right(const leapfrog *l, double factor)
   const double *H = l->sweep.is_diagonal ? l->H : s->H; /* n-forms are diagonal, and above 0 */
   if (!l->sweep.is_diagonal) dvi_matrix_multiply(&s->M2, 0, l->H, s->H);
   dvi_matrix_multiply(&s->d, 1, H, s->curl);
-  for (int64_t i = 0; i < f->unknowns; i++)
-    s->right[i] = factor * (s->curl[f->unknown[i]] + push(l, i) - damp(l, i));
+  for (int64_t i = 0; i < f->unknowns; i++) {
+    const double source = l->source != NULL ? l->source[i] : 0;
+    s->right[i] = factor * (s->curl[f->unknown[i]] - source - damp(l, i));
+  }
+  dvi__add_currents(f, -factor, l->J, s->right);
 }
 
 /* ---- stars that are not diagonal ---- */
-
-static dvi_status times(void *of, const double *x, double *y)
-{
-  const dvi_matrix A = dvi__csr_view(of, 1);
-  dvi_matrix_multiply(&A, 0, x, y);
-  return DVI_OK;
-}
-
-static void precondition(void *of, const double *r, double *z)
-{
-  const dvi_matrix A = dvi__csr_view(of, 1);
-  dvi__gauss_seidel(&A, r, z);
-}
 
 /* Set x to A^-1 right, with the matrix A = M + dt/2 S of a step, or A = M. */
 static dvi_status solve(const leapfrog *l, const dvi__products *A)
@@ -147,20 +137,19 @@ static void drift(leapfrog *l)
   }
 }
 
-/* Add half of dt S E to the charge that damping has moved. */
-static void count_moved(leapfrog *l)
-{
-  const dvi_field *f = l->field;
-  for (int64_t i = 0; i < f->damping.rows && f->degree > 0; i++)
-    l->charge.moved[i] += l->at.dt / 2 * damp(l, i);
-}
-
 static void kick(leapfrog *l)
 {
   const dvi_field *f = l->field;
   dvi__sweep_E(&l->sweep, l->keep, l->gain, l->H, l->E);
-  for (int64_t i = 0; i < f->unknowns && (l->source != NULL || f->currents > 0); i++)
-    l->E[f->unknown[i]] += l->gain[f->unknown[i]] * push(l, i);
+  for (int64_t i = 0; i < f->unknowns && l->source != NULL; i++)
+    l->E[f->unknown[i]] -= l->gain[f->unknown[i]] * l->source[i];
+  for (int c = 0; c < f->currents; c++) {
+    const dvi__current *J = f->current + c;
+    for (int64_t k = 0; k < J->count; k++) {
+      const int cell = f->unknown[J->unknown[k]];
+      l->E[cell] -= l->gain[cell] * (J->weight[k] * l->J[c]);
+    }
+  }
 }
 
 static dvi_status kick_by_solution(leapfrog *l)
@@ -179,12 +168,10 @@ static dvi_status step(leapfrog *l)
   DVI_TRY(find_impulses(l));
   if (l->gain == NULL) memcpy(l->solver.kept, l->state, (size_t)l->numbers * sizeof *l->state);
   drift(l);
-  count_moved(l);
   if (l->gain != NULL)
     kick(l);
   else
     status = kick_by_solution(l);
-  count_moved(l);
   l->at.n += status == DVI_OK;
   if (status != DVI_OK) memcpy(l->state, l->solver.kept, (size_t)l->numbers * sizeof *l->state);
   return status;
@@ -244,6 +231,21 @@ static dvi_status half_kick(leapfrog *l)
   return DVI_OK;
 }
 
+/* Whether damping moves charge. */
+static int moves_charge(const dvi_field *field)
+{
+  return field->degree > 0 && field->damping.rows > 0;
+}
+
+/* Give the integral of E up to t_{n+1/2}, or NULL without damping: S times its change is the charge
+ * that moved, as the trapezoids (E^{n-1/2} + E^{n+1/2}) dt/2 of the steps add up to it. */
+static const double *integral_of_E(const leapfrog *l)
+{
+  if (!moves_charge(l->field)) return NULL;
+  for (int64_t c = 0; c < l->field->cells; c++) l->spare[c] = l->at.dt / 2 * l->E[c] - l->A[c];
+  return l->spare;
+}
+
 static dvi_status start(void *self, const dvi_march_state *state)
 {
   leapfrog *l = self;
@@ -260,7 +262,7 @@ static dvi_status start(void *self, const dvi_march_state *state)
     if (status != DVI_OK) memcpy(l->state, l->solver.kept, (size_t)l->numbers * sizeof(double));
   }
   if (status != DVI_OK) l->at = before;
-  if (status == DVI_OK) dvi__charge_start(&l->charge, l->E);
+  if (status == DVI_OK) dvi__charge_start(&l->charge, l->E, integral_of_E(l));
   l->changed = -1;
   return status;
 }
@@ -333,10 +335,7 @@ static dvi_status energy(const void *self, double *value)
   *value = 0;
   for (int64_t b = 0; b < l->sweep.faces; b++) *value += 0.5 * B_after(l, 0, b) * product[b];
   for (int64_t i = 0; i < f->unknowns; i++) {
-    double sum = 0;
-    for (int64_t e = f->mass.start[i]; e < f->mass.start[i + 1]; e++)
-      sum += f->mass.value[e] * l->E[f->unknown[f->mass.column[e]]];
-    *value += 0.5 * sum * l->E[f->unknown[i]];
+    *value += 0.5 * dvi__field_row(f, &f->mass, i, l->E) * l->E[f->unknown[i]];
     if (l->source != NULL)
       *value -= l->source[i] * (l->A[f->unknown[i]] - l->at.dt / 2 * l->E[f->unknown[i]]);
   }
@@ -346,7 +345,7 @@ static dvi_status energy(const void *self, double *value)
 static dvi_status charge_error(const void *self, double *error)
 {
   const leapfrog *l = self;
-  *error = dvi__charge_error(&l->charge, l->E);
+  *error = dvi__charge_error(&l->charge, l->E, integral_of_E(l));
   return DVI_OK;
 }
 
@@ -461,14 +460,26 @@ static dvi_status make_coefficients(leapfrog *l)
   return DVI_OK;
 }
 
-/* Make M + dt/2 S and the room of its solutions. */
+/* Make M + dt/2 S. */
+static dvi_status make_left(const dvi_field *f, double dt, dvi__csr *left)
+{
+  const dvi_matrix M = dvi__csr_view(&f->mass, 1), S = dvi__csr_view(&f->damping, 1);
+  dvi__csr half = {0};
+  if (f->damping.rows == 0) return dvi__csr_copy(&M, left);
+  DVI_TRY(dvi__csr_copy(&S, &half));
+  for (int64_t e = 0; e < half.start[half.rows]; e++) half.value[e] *= dt / 2;
+  const dvi_matrix view = dvi__csr_view(&half, 1);
+  const dvi_status status = dvi__csr_sum(&M, &view, left);
+  dvi__csr_clear(&half);
+  return status;
+}
+
+/* Make the matrices of a step and the room of its solutions. */
 static dvi_status make_solver(leapfrog *l)
 {
   const dvi_field *f = l->field;
   solver *s = &l->solver;
   const int64_t n = f->unknowns, faces = l->sweep.faces;
-  const dvi_matrix M = dvi__csr_view(&f->mass, 1);
-  dvi__csr half = {0};
   DVI_TRY(dvi_mesh_incidence(f->mesh, f->degree, &s->d));
   DVI_TRY(dvi_star_matrix(f->star, f->degree + 1, &s->M2));
   s->room = DVI_NEW(double, faces + f->cells + 7 * n + l->numbers);
@@ -479,21 +490,27 @@ static dvi_status make_solver(leapfrog *l)
   s->right = s->curl + f->cells;
   s->x = s->right + n;
   s->kept = s->x + n;
-  s->of_step = (dvi__products){.size = n,
-                               .times = times,
-                               .precondition = precondition,
-                               .of = &s->left,
-                               .work = s->kept + l->numbers};
-  s->of_mass = s->of_step;
-  s->of_mass.of = (dvi__csr *)&f->mass;
-  if (f->damping.rows == 0) return dvi__csr_copy(&M, &s->left);
-  const dvi_matrix S = dvi__csr_view(&f->damping, 1);
-  DVI_TRY(dvi__csr_copy(&S, &half));
-  for (int64_t e = 0; e < half.start[n]; e++) half.value[e] *= l->at.dt / 2;
-  const dvi_matrix view = dvi__csr_view(&half, 1);
-  const dvi_status status = dvi__csr_sum(&M, &view, &s->left);
-  dvi__csr_clear(&half);
-  return status;
+  DVI_TRY(make_left(f, l->at.dt, &s->left));
+  s->matrix = dvi__csr_view(&s->left, 1);
+  s->mass = dvi__csr_view(&f->mass, 1);
+  s->of_step = dvi__products_of(&s->matrix);
+  s->of_mass = dvi__products_of(&s->mass);
+  s->of_step.work = s->of_mass.work = s->kept + l->numbers;
+  return DVI_OK;
+}
+
+/* Sum up the coefficients of what moves charge. */
+static uint64_t hash_currents(const dvi_field *f, uint64_t hash)
+{
+  if (f->damping.rows > 0)
+    hash = dvi__hash(hash, (size_t)f->damping.start[f->unknowns] * sizeof(double),
+                     f->damping.value);
+  for (int c = 0; c < f->currents; c++) {
+    const dvi__current *J = f->current + c;
+    hash = dvi__hash(hash, (size_t)J->count * sizeof *J->unknown, J->unknown);
+    hash = dvi__hash(hash, (size_t)J->count * sizeof *J->weight, J->weight);
+  }
+  return hash;
 }
 
 /* Sum up what distinguishes the march from others of as many cells. */
@@ -506,6 +523,7 @@ static uint64_t hash_of(const leapfrog *l)
   hash = dvi__hash(hash, sizeof f->unknowns, &f->unknowns);
   hash = dvi__hash(hash, sizeof f->currents, &f->currents);
   hash = dvi__hash(hash, (size_t)f->unknowns * sizeof(int), f->unknown);
+  hash = hash_currents(f, hash);
   hash = dvi__hash(hash, (size_t)f->mass.start[f->unknowns] * sizeof(double), f->mass.value);
   return dvi__hash(hash, (size_t)f->stiffness.start[f->unknowns] * sizeof(double),
                    f->stiffness.value);
@@ -548,7 +566,7 @@ dvi_status dvi__leapfrog_create(const dvi_field *field, const dvi__march_plan *p
   l->field = field;
   l->at.dt = dt;
   l->bound = bound;
-  l->keeps_A = field->is_wave || plan->potential;
+  l->keeps_A = field->is_wave || plan->potential || moves_charge(field);
   l->changed = -1;
   const dvi_status status = make(l, plan->threads);
   if (status == DVI_OK) return dvi__march_wrap(&kind, l, march);

@@ -29,27 +29,19 @@ static int64_t count_below(const dvi_field *field)
   return field->degree > 0 ? field->mesh->count[field->degree - 1] : 0;
 }
 
-static int64_t count_moved(const dvi_field *field)
-{
-  return field->degree > 0 && field->damping.rows > 0 ? field->unknowns : 0;
-}
-
 int64_t dvi__charge_numbers(const dvi_field *field)
 {
-  return field->currents + count_moved(field) + count_below(field);
+  return field->currents + count_below(field);
 }
 
 dvi_status dvi__charge_create(const dvi_field *field, double *numbers, dvi__charge *charge)
 {
   const int64_t below = count_below(field);
-  *charge = (dvi__charge){.field = field,
-                          .delivered = numbers,
-                          .moved = numbers + field->currents,
-                          .start = numbers + field->currents + count_moved(field)};
+  *charge = (dvi__charge){.field = field, .delivered = numbers, .start = numbers + field->currents};
   if (below == 0) return DVI_OK;
   DVI_TRY(dvi_mesh_incidence(field->mesh, field->degree - 1, &charge->d));
   charge->is_free = DVI_NEW(char, below);
-  charge->work = DVI_NEW(double, field->cells + 2 * below);
+  charge->work = DVI_NEW(double, field->cells + field->unknowns + 2 * below);
   if (!charge->is_free || !charge->work) {
     dvi__charge_clear(charge);
     return dvi__fail(DVI_NO_MEMORY, "march: no memory for the charge of %lld cells",
@@ -60,36 +52,34 @@ dvi_status dvi__charge_create(const dvi_field *field, double *numbers, dvi__char
 }
 
 /* Set form [k-cells] to M E, plus what currents and damping have moved. */
-static void displacement(const dvi__charge *charge, const double *E, double *form)
+static void displacement(const dvi__charge *charge, const double *E, const double *integral,
+                         double *form)
 {
   const dvi_field *f = charge->field;
-  const dvi__csr *M = &f->mass;
-  for (int64_t c = 0; c < f->cells; c++) form[c] = 0;
+  double *sum = form + f->cells;
   for (int64_t i = 0; i < f->unknowns; i++) {
-    double sum = f->damping.rows > 0 ? charge->moved[i] : 0;
-    for (int64_t e = M->start[i]; e < M->start[i + 1]; e++)
-      sum += M->value[e] * E[f->unknown[M->column[e]]];
-    for (int c = 0; c < f->currents; c++) sum += f->current[c].profile[i] * charge->delivered[c];
-    form[f->unknown[i]] = sum;
+    sum[i] = dvi__field_row(f, &f->mass, i, E);
+    if (integral != NULL) sum[i] += dvi__field_row(f, &f->damping, i, integral);
   }
+  dvi__add_currents(f, 1, charge->delivered, sum);
+  for (int64_t c = 0; c < f->cells; c++) form[c] = f->number[c] >= 0 ? sum[f->number[c]] : 0;
 }
 
-void dvi__charge_start(dvi__charge *charge, const double *E)
+void dvi__charge_start(dvi__charge *charge, const double *E, const double *integral)
 {
   const dvi_field *f = charge->field;
   for (int c = 0; c < f->currents; c++) charge->delivered[c] = 0;
   if (f->degree == 0) return;
-  for (int64_t i = 0; i < f->unknowns && f->damping.rows > 0; i++) charge->moved[i] = 0;
-  displacement(charge, E, charge->work);
+  displacement(charge, E, integral, charge->work);
   dvi_matrix_multiply(&charge->d, 1, charge->work, charge->start);
 }
 
-double dvi__charge_error(const dvi__charge *charge, const double *E)
+double dvi__charge_error(const dvi__charge *charge, const double *E, const double *integral)
 {
   const dvi_matrix *d = &charge->d;
-  double *form = charge->work, *sum = form + d->rows, *size = sum + d->columns, worst = 0,
-         largest = 0;
-  displacement(charge, E, form);
+  double *form = charge->work, *sum = form + d->rows + charge->field->unknowns,
+         *size = sum + d->columns, worst = 0, largest = 0;
+  displacement(charge, E, integral, form);
   for (int64_t v = 0; v < d->columns; v++) {
     sum[v] = -charge->start[v];
     size[v] = fabs(charge->start[v]);

@@ -9,25 +9,25 @@ typedef struct dvi__charge {
   const dvi_field *field;
   dvi_matrix d;      /* d_{k-1} */
   char *is_free;     /* [(k-1)-cells] */
-  double *work;      /* [k-cells + 2*(k-1)-cells] */
+  double *work;      /* [k-cells + unknowns + 2*(k-1)-cells] */
   double *delivered; /* [currents] integrals of the signals since the start */
-  double *moved;     /* [unknowns] what conductors and walls have let through, if there are any */
   double *start;     /* [(k-1)-cells] the charge at the start */
 } dvi__charge;
 
-/* Return how many numbers `delivered`, `moved` and `start` are together. Forms of degree 0 have no
- * charge, and only the first ones. */
+/* Return how many numbers `delivered` and `start` are together. Forms of degree 0 have no charge,
+ * and only the first ones. */
 int64_t dvi__charge_numbers(const dvi_field *field);
 
 /* Prepare, with these numbers, which stay the caller's. On failure nothing is owned. */
 dvi_status dvi__charge_create(const dvi_field *field, double *numbers, dvi__charge *charge);
 void dvi__charge_clear(dvi__charge *charge);
 
-/* Take the charge of E [k-cells] as that of the start. */
-void dvi__charge_start(dvi__charge *charge, const double *E);
+/* Take the charge of E [k-cells] as that of the start. Conductors and walls let pass what S times
+ * the integral of E [k-cells] changes by. It is NULL without damping. */
+void dvi__charge_start(dvi__charge *charge, const double *E, const double *integral);
 
 /* Give the largest error of the charge of E, beside the largest sum of the sizes of its terms. */
-double dvi__charge_error(const dvi__charge *charge, const double *E);
+double dvi__charge_error(const dvi__charge *charge, const double *E, const double *integral);
 
 /* The observables: "energy", "gauss" of forms of degree 1 or more, and the probes. */
 int dvi__field_observables(const dvi_field *field);
