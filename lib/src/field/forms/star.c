@@ -176,3 +176,34 @@ dvi_status dvi_star_matrix(const dvi_star *star, int k, dvi_matrix *matrix)
   *matrix = dvi__csr_view(&star->matrix[k], 1);
   return DVI_OK;
 }
+
+/* ---- other factors ---- */
+
+dvi_status dvi__star_with_factor(const dvi_star *star, int k, const double *factor,
+                                 dvi__csr *matrix)
+{
+  const double *factors[DVI__DEGREES] = {NULL};
+  dvi_star *made = NULL;
+  dvi_matrix M;
+  factors[k] = factor;
+  const dvi_star_options options = {.size = sizeof options, .kind = star->kind, .factor = factors};
+  dvi_status status = dvi_star_create(star->mesh, &options, &made);
+  if (status == DVI_OK) status = dvi_star_matrix(made, k, &M);
+  if (status == DVI_OK) status = dvi__csr_copy(&M, matrix);
+  dvi_star_destroy(&made);
+  return status;
+}
+
+dvi_status dvi__star_of_part(const dvi_star *star, int k, const char *mark, int which,
+                             dvi__csr *matrix)
+{
+  const int64_t cells = star->mesh->count[star->mesh->n];
+  const double *whole = star->factor[k];
+  double *factor = DVI_NEW(double, cells);
+  if (factor == NULL) return dvi__fail(DVI_NO_MEMORY, "star: no memory for a part");
+  for (int64_t c = 0; c < cells; c++)
+    factor[c] = mark[c] != which ? 0 : whole != NULL ? whole[c] : 1;
+  const dvi_status status = dvi__star_with_factor(star, k, factor, matrix);
+  dvi__release(factor);
+  return status;
+}

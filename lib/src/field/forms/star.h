@@ -22,6 +22,14 @@ struct dvi_star {
 /* Make the diagonals and the duals of a circumcentric star. */
 dvi_status dvi__circumcentric_star(dvi_star *star);
 
+/* Make M_k of the same kind of star with another factor [cells], or NULL for 1. */
+dvi_status dvi__star_with_factor(const dvi_star *star, int k, const double *factor,
+                                 dvi__csr *matrix);
+
+/* Make M_k with the star's factor in the cells whose mark [cells] is `which`, and 0 elsewhere. */
+dvi_status dvi__star_of_part(const dvi_star *star, int k, const char *mark, int which,
+                             dvi__csr *matrix);
+
 /* Make d_k^T M_{k+1} d_k. */
 dvi_status dvi__stiffness(const dvi_star *star, int k, dvi__csr *stiffness);
 

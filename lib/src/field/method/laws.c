@@ -231,29 +231,6 @@ typedef struct region {
   double *room, sum, size;
 } region;
 
-/* Copy the matrix of a degree whose factors are those of the star in cells of one kind, and 0 in
- * the others. */
-static dvi_status restrict_star(const region *r, int inside, int k, dvi__csr *copy)
-{
-  const dvi_star *star = r->laws->field->star;
-  const int64_t count = star->mesh->count[star->mesh->n];
-  const double *factor[DVI__DEGREES] = {NULL};
-  double *part = DVI_NEW(double, count);
-  dvi_star *made = NULL;
-  dvi_matrix M;
-  if (part == NULL) return dvi__fail(DVI_NO_MEMORY, "laws: no memory");
-  for (int64_t c = 0; c < count; c++)
-    part[c] = r->inside[c] != inside ? 0 : star->factor[k] != NULL ? star->factor[k][c] : 1;
-  factor[k] = part;
-  const dvi_star_options options = {.size = sizeof options, .kind = star->kind, .factor = factor};
-  dvi_status status = dvi_star_create(star->mesh, &options, &made);
-  if (status == DVI_OK) status = dvi_star_matrix(made, k, &M);
-  if (status == DVI_OK) status = dvi__csr_copy(&M, copy);
-  dvi_star_destroy(&made);
-  dvi__release(part);
-  return status;
-}
-
 static int has_entries(const dvi__csr *matrix, int64_t row)
 {
   for (int64_t e = matrix->start[row]; e < matrix->start[row + 1]; e++)
@@ -264,10 +241,11 @@ static int has_entries(const dvi__csr *matrix, int64_t row)
 /* Mark the k-cells to whose rows cells outside contribute. */
 static dvi_status mark_boundary(region *r)
 {
+  const dvi_star *star = r->laws->field->star;
   const int k = r->laws->field->degree;
   dvi__csr M1 = {0}, M2 = {0};
-  dvi_status status = restrict_star(r, 0, k, &M1);
-  if (status == DVI_OK) status = restrict_star(r, 0, k + 1, &M2);
+  dvi_status status = dvi__star_of_part(star, k, r->inside, 0, &M1);
+  if (status == DVI_OK) status = dvi__star_of_part(star, k + 1, r->inside, 0, &M2);
   for (int64_t s = 0; s < M1.rows && status == DVI_OK; s++)
     r->is_boundary[s] = has_entries(&M1, s) != 0;
   for (int64_t f = 0; f < M2.rows && status == DVI_OK; f++)
@@ -310,8 +288,8 @@ static dvi_status make_region(laws *s, region *r)
     r->inside[c] = choice > 0;
   }
   DVI_TRY(dvi_mesh_incidence(mesh, s->field->degree, &r->d));
-  DVI_TRY(restrict_star(r, 1, s->field->degree, &r->M1));
-  DVI_TRY(restrict_star(r, 1, s->field->degree + 1, &r->M2));
+  DVI_TRY(dvi__star_of_part(s->field->star, s->field->degree, r->inside, 1, &r->M1));
+  DVI_TRY(dvi__star_of_part(s->field->star, s->field->degree + 1, r->inside, 1, &r->M2));
   return mark_boundary(r);
 }
 

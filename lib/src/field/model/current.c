@@ -71,24 +71,27 @@ static dvi_status make_current(const dvi_field *field, const dvi_current *from, 
   return status;
 }
 
+static int has_density(const dvi_maxwell_terms *terms)
+{
+  for (int i = 0; i < terms->currents; i++)
+    if (terms->current[i].density != NULL) return 1;
+  return 0;
+}
+
 dvi_status dvi__maxwell_make_currents(dvi_field *field, const dvi_maxwell_terms *terms)
 {
-  const dvi_star_options plain = {.size = sizeof plain, .kind = field->star->kind};
-  dvi_star *bare = NULL;
-  dvi_matrix W;
+  dvi__csr bare = {0};
   if (terms->currents == 0) return DVI_OK;
   field->current = DVI_NEW(dvi__current, terms->currents);
   if (field->current == NULL) return dvi__fail(DVI_NO_MEMORY, "maxwell: no memory for currents");
+  if (has_density(terms)) DVI_TRY(dvi__star_with_factor(field->star, field->degree, NULL, &bare));
+  const dvi_matrix W = dvi__csr_view(&bare, 1);
   dvi_status status = DVI_OK;
-  if (field->star->factor[field->degree] != NULL)
-    status = dvi_star_create(field->mesh, &plain, &bare);
-  if (status == DVI_OK)
-    status = dvi_star_matrix(bare != NULL ? bare : field->star, field->degree, &W);
   while (status == DVI_OK && field->currents < terms->currents) {
     const int i = field->currents++;
     status = make_current(field, terms->current + i, &W, field->current + i);
   }
-  dvi_star_destroy(&bare);
+  dvi__csr_clear(&bare);
   return status;
 }
 

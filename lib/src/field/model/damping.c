@@ -226,19 +226,14 @@ static dvi_status check_conductivity(const dvi_field *field, const double *sigma
 
 static dvi_status make_conductors(dvi_field *field, const double *sigma, dvi__csr *damping)
 {
-  const double *factor[DVI__DEGREES] = {NULL};
-  dvi_star *star = NULL;
-  dvi_matrix S;
+  dvi__csr S = {0};
   int is_zero;
   DVI_TRY(check_conductivity(field, sigma, &is_zero));
   if (is_zero) return DVI_OK;
-  factor[field->degree] = sigma;
-  const dvi_star_options options = {
-      .size = sizeof options, .kind = field->star->kind, .factor = factor};
-  dvi_status status = dvi_star_create(field->mesh, &options, &star);
-  if (status == DVI_OK) status = dvi_star_matrix(star, field->degree, &S);
-  if (status == DVI_OK) status = dvi__field_select(field, &S, damping);
-  dvi_star_destroy(&star);
+  DVI_TRY(dvi__star_with_factor(field->star, field->degree, sigma, &S));
+  const dvi_matrix view = dvi__csr_view(&S, 1);
+  const dvi_status status = dvi__field_select(field, &view, damping);
+  dvi__csr_clear(&S);
   return status;
 }
 

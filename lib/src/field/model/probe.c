@@ -4,7 +4,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "field/algebra/definite.h"
+#include "field/algebra/conjugate.h"
 #include "field/forms/component.h"
 #include "field/forms/evaluate.h"
 #include "field/forms/star.h"
@@ -75,27 +75,6 @@ dvi_status dvi__probe_refuse(const char *name, const char *part, const char *why
 
 /* ---- the energy in a part ---- */
 
-/* Copy the matrix of a degree whose factors are those of the field in a part, and 0 elsewhere. */
-static dvi_status copy_part(const dvi_field *field, int k, const char *inside, dvi__csr *copy)
-{
-  const int64_t cells = field->mesh->count[field->mesh->n];
-  const double *whole = field->star->factor[k], *factor[DVI__DEGREES] = {NULL};
-  double *part = DVI_NEW(double, cells);
-  dvi_star *star = NULL;
-  dvi_matrix M;
-  if (part == NULL) return dvi__fail(DVI_NO_MEMORY, "field: no memory for a probe");
-  for (int64_t c = 0; c < cells; c++) part[c] = !inside[c] ? 0 : whole != NULL ? whole[c] : 1;
-  factor[k] = part;
-  const dvi_star_options options = {
-      .size = sizeof options, .kind = field->star->kind, .factor = factor};
-  dvi_status status = dvi_star_create(field->mesh, &options, &star);
-  if (status == DVI_OK) status = dvi_star_matrix(star, k, &M);
-  if (status == DVI_OK) status = dvi__csr_copy(&M, copy);
-  dvi_star_destroy(&star);
-  dvi__release(part);
-  return status;
-}
-
 static dvi_status make_energy(const dvi_field *field, const char *part, dvi__probe *probe)
 {
   char *inside = dvi__mark_cells(field->mesh, part);
@@ -103,8 +82,10 @@ static dvi_status make_energy(const dvi_field *field, const char *part, dvi__pro
   dvi_status status = memchr(inside, 1, (size_t)field->mesh->count[field->mesh->n]) != NULL
                           ? DVI_OK
                           : dvi__probe_refuse(probe->name, part, "which has no cells");
-  if (status == DVI_OK) status = copy_part(field, field->degree, inside, &probe->electric);
-  if (status == DVI_OK) status = copy_part(field, field->degree + 1, inside, &probe->magnetic);
+  if (status == DVI_OK)
+    status = dvi__star_of_part(field->star, field->degree, inside, 1, &probe->electric);
+  if (status == DVI_OK)
+    status = dvi__star_of_part(field->star, field->degree + 1, inside, 1, &probe->magnetic);
   dvi__release(inside);
   return status;
 }
@@ -225,13 +206,21 @@ dvi_status dvi__field_probe(const dvi_field *field, int i, dvi__field_sampler *s
 /* A state, and E [unknowns] of it. */
 typedef struct motion {
   const dvi_field *field;
-  const double *q, *E;
+  const double *q, *p;
+  double *E; /* -M^-1 p, where M is not diagonal */
 } motion;
 
 static double potential_at(const motion *m, int64_t cell)
 {
   const int number = m->field->number[cell];
   return number >= 0 ? m->q[number] : m->field->fixed[cell];
+}
+
+static double rate_at(const motion *m, int64_t cell)
+{
+  const int i = m->field->number[cell];
+  if (i < 0) return 0;
+  return m->E != NULL ? m->E[i] : -m->p[i] / m->field->mass.value[i];
 }
 
 static double derivative_at(const motion *m, int64_t face)
@@ -250,27 +239,21 @@ static dvi_status sample_motion(const void *of, dvi_march_form form, int64_t cou
   const motion *m = of;
   for (int64_t i = 0; i < count; i++) {
     const int64_t c = cell != NULL ? cell[i] : i;
-    if (form == DVI_FORM_B)
-      values[i] = derivative_at(m, c);
-    else
-      values[i] = m->field->number[c] >= 0 ? m->E[m->field->number[c]] : 0;
+    values[i] = form == DVI_FORM_B ? derivative_at(m, c) : rate_at(m, c);
   }
   return DVI_OK;
 }
 
-/* Set E to -M^-1 p. */
-static dvi_status divide_momenta(const dvi_field *field, const double *p, double *E)
+static dvi_status divide_momenta(motion *m)
 {
-  const dvi_matrix M = dvi__csr_view(&field->mass, 1);
-  const int64_t n = field->unknowns;
-  dvi__definite solver;
-  if (!field->mass_is_diagonal) {
-    DVI_TRY(dvi__definite_create(&M, field->mesh->n, &solver));
-    const dvi_status status = dvi__definite_solve(&solver, p, E, NULL);
-    dvi__definite_clear(&solver);
-    DVI_TRY(status);
-  }
-  for (int64_t i = 0; i < n; i++) E[i] = field->mass_is_diagonal ? -p[i] / M.value[i] : -E[i];
+  const dvi_field *f = m->field;
+  const dvi_matrix M = dvi__csr_view(&f->mass, 1);
+  const dvi__products products = dvi__products_of(&M);
+  if (f->mass_is_diagonal) return DVI_OK;
+  m->E = DVI_NEW(double, f->unknowns);
+  if (m->E == NULL) return dvi__fail(DVI_NO_MEMORY, "field: no memory for a probe");
+  DVI_TRY(dvi__conjugate_gradients(&products, 1e-16, m->p, m->E, NULL));
+  for (int64_t i = 0; i < f->unknowns; i++) m->E[i] = -m->E[i];
   return DVI_OK;
 }
 
@@ -284,11 +267,9 @@ dvi_status dvi_field_probe_at(const dvi_field *field, int i, const double *q, co
 {
   if (dvi_field_probe_name(field, i) == NULL || q == NULL || p == NULL || value == NULL)
     return dvi__fail(DVI_BAD_ARGUMENT, "field: there is no probe %d, or no state or value", i);
-  double *E = DVI_NEW(double, field->unknowns);
-  if (E == NULL) return dvi__fail(DVI_NO_MEMORY, "field: no memory for a probe");
-  const motion m = {.field = field, .q = q, .E = E};
-  dvi_status status = divide_momenta(field, p, E);
+  motion m = {.field = field, .q = q, .p = p};
+  dvi_status status = divide_momenta(&m);
   if (status == DVI_OK) status = dvi__field_probe(field, i, sample_motion, &m, value);
-  dvi__release(E);
+  dvi__release(m.E);
   return status;
 }

@@ -230,12 +230,8 @@ static dvi_status find(resonance *r, double shift, int count, double *eigenvalue
                      "take 1 to %d",
                      count, (long long)f->unknowns, (long long)r->zeros, found);
   const int first = dvi__first_of_nearest(found, r->value, count, fmax(shift, 0));
-  for (int i = 0; i < count; i++) {
-    const double *x = r->vector + (int64_t)(first + i) * f->unknowns;
-    eigenvalue[i] = r->value[first + i];
-    for (int64_t c = 0; c < f->cells && mode != NULL; c++)
-      mode[i * f->cells + c] = f->number[c] >= 0 ? x[f->number[c]] : 0;
-  }
+  memcpy(eigenvalue, r->value + first, (size_t)count * sizeof *eigenvalue);
+  dvi__spread_modes(f, count, r->vector + (int64_t)first * f->unknowns, mode);
   return DVI_OK;
 }
 

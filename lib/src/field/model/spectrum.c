@@ -20,6 +20,15 @@ double dvi__shift_below_zero(const dvi_field *f)
   return -0.1 * k / m * pow((double)f->unknowns, -2.0 / f->mesh->n);
 }
 
+void dvi__spread_modes(const dvi_field *field, int count, const double *vector, double *mode)
+{
+  const int64_t cells = field->cells;
+  for (int i = 0; i < count && mode != NULL; i++)
+    for (int64_t c = 0; c < cells; c++)
+      mode[i * cells + c] = field->number[c] >= 0 ? vector[i * field->unknowns + field->number[c]]
+                                                  : 0;
+}
+
 typedef struct spectrum {
   const dvi_field *field;
   dvi__pencil pencil;
@@ -79,12 +88,8 @@ static dvi_status find(spectrum *s, const dvi_modes_options *options, double *ei
   DVI_TRY(dvi__modes_near(&s->pencil, shift, s->asked, s->value, s->vector));
   const int kept = drop_zero_modes(s, s->weight + f->components);
   const int first = dvi__first_of_nearest(kept, s->value, s->count, shift);
-  for (int i = 0; i < s->count; i++) {
-    const double *x = s->vector + (size_t)(first + i) * (size_t)f->unknowns;
-    eigenvalue[i] = s->value[first + i];
-    for (int64_t v = 0; v < f->cells && mode != NULL; v++)
-      mode[i * f->cells + v] = f->number[v] >= 0 ? x[f->number[v]] : 0;
-  }
+  memcpy(eigenvalue, s->value + first, (size_t)s->count * sizeof *eigenvalue);
+  dvi__spread_modes(f, s->count, s->vector + (int64_t)first * f->unknowns, mode);
   return DVI_OK;
 }
 
