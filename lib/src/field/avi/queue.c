@@ -47,7 +47,8 @@ static dvi_status find_signals(const dvi__avi *avi, int f, double t)
   for (int c = 0; c < avi->width && avi->extra != NULL; c++) {
     const int e = dvi__avi_number(avi->facet[(int64_t)f * avi->width + c]);
     if (avi->clock[e] < t && avi->extra[e] >= 0)
-      DVI_TRY(dvi__avi_signals(avi, avi->clock[e], t, avi->half + 2 * (int64_t)avi->currents * c));
+      DVI_TRY(dvi__avi_signals_at(avi, e, avi->clock[e], t,
+                                  avi->half + 2 * (int64_t)avi->currents * c));
   }
   return DVI_OK;
 }

@@ -53,7 +53,7 @@ static dvi_status make_edge(const dvi__avi *avi, int64_t e)
   if (e < avi->free_edges) {
     const double last = time_of_edge(avi, e), span = avi->t - last;
     if (avi->extra != NULL && avi->extra[e] >= 0) {
-      DVI_TRY(dvi__avi_signals(avi, last, avi->t, view->half));
+      DVI_TRY(dvi__avi_signals_at(avi, e, last, avi->t, view->half));
       const dvi__avi_passage passage = dvi__avi_passage_of(avi, e, span, view->half);
       view->A[e] = passage.A;
       view->D[e] = passage.D;
