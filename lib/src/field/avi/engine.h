@@ -31,13 +31,16 @@ typedef struct dvi__avi_push {
 
 /* What an observation computed of edges, beside the state. */
 typedef struct dvi__avi_view {
-  double t;
+  double t;         /* NaN if nothing is valid */
   unsigned stamp;   /* of the values that are valid */
-  unsigned *made;   /* [edges] the stamps of the values */
+  unsigned *made;   /* [edges+faces] the stamps of the values */
   double *A, *D;    /* [edges] at t, D without what the faces owe it */
+  double *B;        /* [faces] */
   double *worked;   /* [extras] works of currents since the last events */
   double *half;     /* [2*currents] */
   double *node_sum; /* [2*nodes] */
+  unsigned summed;  /* the stamp of the sums: */
+  double energy, growth;
 } dvi__avi_view;
 
 /* Edges and faces have numbers of their own: edges by their class, faces by their step, fixed edges
