@@ -316,6 +316,44 @@ START_TEST(a_signal_that_fails_leaves_the_last_good_time)
 }
 END_TEST
 
+/* Fails once, at the first interval that ends behind *user. */
+static dvi_status fails_once(double from, double to, double *impulse, void *user)
+{
+  double *end = user;
+  *impulse = to - from;
+  if (to <= *end) return DVI_OK;
+  *end = INFINITY;
+  return dvi__fail(DVI_CALLBACK_FAILED, "current 0 failed");
+}
+
+/* Of the events of one time, some have happened when the signal fails, and others follow. */
+START_TEST(a_look_amid_events_of_one_time_is_not_the_last_one)
+{
+  loaded l = {.s = mesh_of_case(0)};
+  double end = 0.5, *profile = zeros(l.s.edges);
+  int64_t e = l.s.edges - 1;
+  while (l.s.is_fixed[e]) e--;
+  profile[e] = 1;
+  const dvi__avi_current current = {profile, fails_once, &end};
+  l.s.terms.current = &current;
+  l.s.terms.currents = 1;
+  l.s.terms.is_queued = 1;
+  dvi__avi *avi = avi_of(&l.s.terms);
+  start_at_random(&l.s, avi, 7);
+  ck_assert_int_eq(dvi__avi_advance(avi, 1), DVI_CALLBACK_FAILED);
+  const double t = dvi__avi_time(avi);
+  ck_assert_double_gt(t, 0.5);
+  (void)energy_of(avi);
+  advance_to(avi, t);
+  dvi__avi *other = ran_steps(&l.s.terms, &l.s, t);
+  check_same(&l.s, avi, other);
+  ck_assert(energy_of(avi) == energy_of(other));
+  dvi__avi_destroy(&avi), dvi__avi_destroy(&other);
+  free(profile);
+  end_loaded(&l);
+}
+END_TEST
+
 static void check_refusal(const dvi__avi_terms *terms, dvi_status status, const char *words)
 {
   dvi__avi *avi = NULL;
@@ -465,6 +503,7 @@ SUITE(avi)
   tcase_add_test(tests, a_start_is_what_it_says);
   tcase_add_test(tests, a_run_that_grows_says_so_and_goes_on);
   tcase_add_test(tests, a_signal_that_fails_leaves_the_last_good_time);
+  tcase_add_test(tests, a_look_amid_events_of_one_time_is_not_the_last_one);
   tcase_add_test(tests, currents_are_integrated_where_they_flow);
   tcase_add_test(tests, what_cannot_be_stepped_is_refused);
   tcase_add_test(tests, lacking_memory_is_a_status);

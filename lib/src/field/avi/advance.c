@@ -36,6 +36,7 @@ dvi_status dvi__avi_signals_at(const dvi__avi *avi, int64_t e, double from, doub
 static dvi_status run(dvi__avi *avi, double t)
 {
   const double limit = t + roundings * fmax(fabs(t), fabs(avi->t0));
+  avi->view->t = (double)NAN; /* events of the present time may be left after a failure */
   DVI_TRY((avi->is_queued ? dvi__avi_run_queue : dvi__avi_run_slots)(avi, limit));
   avi->t = t;
   return DVI_OK;

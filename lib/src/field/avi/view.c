@@ -32,7 +32,8 @@ static double time_of_face(const dvi__avi *avi, int64_t f)
 
 /* ---- single cells ---- */
 
-/* Forget the values of another time. Between two looks at one time nothing happens. */
+/* Forget the values of another time. Between two looks at one time nothing happens without a run,
+ * which sets view->t to NaN. */
 static void begin(const dvi__avi *avi)
 {
   dvi__avi_view *view = avi->view;
