@@ -65,12 +65,6 @@ static dvi_status refuse_step(const dvi_field *field, double step, double bound)
                    field->mesh->space > 2 ? x[2] : 0.0);
 }
 
-double dvi__fit_step(double step, double span)
-{
-  if (!(span > 0)) return step;
-  return span / ceil(span / step * (1 - 1e-12));
-}
-
 dvi_status dvi__choose_step(const dvi_field *field, const dvi__march_plan *plan, double *step,
                             double *bound)
 {
