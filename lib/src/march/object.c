@@ -27,6 +27,11 @@ dvi_status dvi__march_wrap(const dvi__march_kind *kind, void *self, dvi_march **
   return DVI_OK;
 }
 
+double dvi__fit_step(double step, double span)
+{
+  return span > 0 ? span / ceil(span / step * (1 - 1e-12)) : step;
+}
+
 void dvi_march_destroy(dvi_march **march)
 {
   if (march == NULL || *march == NULL) return;

@@ -316,6 +316,44 @@ START_TEST(a_signal_that_fails_leaves_the_last_good_time)
 }
 END_TEST
 
+/* Fails once, at the first interval that ends behind *user. */
+static dvi_status fails_once(double from, double to, double *impulse, void *user)
+{
+  double *end = user;
+  *impulse = to - from;
+  if (to <= *end) return DVI_OK;
+  *end = INFINITY;
+  return dvi__fail(DVI_CALLBACK_FAILED, "current 0 failed");
+}
+
+/* Of the events of one time, some have happened when the signal fails, and others follow. */
+START_TEST(a_look_amid_events_of_one_time_is_not_the_last_one)
+{
+  loaded l = {.s = mesh_of_case(0)};
+  double end = 0.5, *profile = zeros(l.s.edges);
+  int64_t e = l.s.edges - 1;
+  while (l.s.is_fixed[e]) e--;
+  profile[e] = 1;
+  const dvi__avi_current current = {profile, fails_once, &end};
+  l.s.terms.current = &current;
+  l.s.terms.currents = 1;
+  l.s.terms.is_queued = 1;
+  dvi__avi *avi = avi_of(&l.s.terms);
+  start_at_random(&l.s, avi, 7);
+  ck_assert_int_eq(dvi__avi_advance(avi, 1), DVI_CALLBACK_FAILED);
+  const double t = dvi__avi_time(avi);
+  ck_assert_double_gt(t, 0.5);
+  (void)energy_of(avi);
+  advance_to(avi, t);
+  dvi__avi *other = ran_steps(&l.s.terms, &l.s, t);
+  check_same(&l.s, avi, other);
+  ck_assert(energy_of(avi) == energy_of(other));
+  dvi__avi_destroy(&avi), dvi__avi_destroy(&other);
+  free(profile);
+  end_loaded(&l);
+}
+END_TEST
+
 static void check_refusal(const dvi__avi_terms *terms, dvi_status status, const char *words)
 {
   dvi__avi *avi = NULL;
@@ -323,6 +361,48 @@ static void check_refusal(const dvi__avi_terms *terms, dvi_status status, const 
   ck_assert_ptr_null(avi);
   check_words(words);
 }
+
+static dvi_status counted(double from, double to, double *impulse, void *user)
+{
+  ++*(long *)user;
+  *impulse = to - from;
+  return DVI_OK;
+}
+
+/* Count the integrals of a current at one edge, in a run with a look at the energy. */
+static long count_integrals(dvi__avi_terms terms, const stepped *s, double *profile)
+{
+  long count = 0;
+  const dvi__avi_current current = {profile, counted, &count};
+  terms.current = &current;
+  terms.currents = 1;
+  dvi__avi *avi = ran_steps(&terms, s, 0.5);
+  (void)energy_of(avi);
+  dvi__avi_destroy(&avi);
+  return count;
+}
+
+START_TEST(currents_are_integrated_where_they_flow)
+{
+  loaded l = {.s = mesh_of_case(0)};
+  load_steps(&l, 0, 1);
+  double *profile = zeros(l.s.edges);
+  int64_t e = 0;
+  while (l.s.is_fixed[e]) e++;
+  profile[e] = 1;
+  for (int is_free = 0; is_free < 2; is_free++) {
+    dvi__avi_terms terms = l.s.terms;
+    terms.is_free = is_free;
+    const long damped = count_integrals(terms, &l.s, profile);
+    terms.damping = NULL;
+    const long alone = count_integrals(terms, &l.s, profile);
+    ck_assert_int_gt(alone, 0);
+    ck_assert_int_eq(damped, alone);
+  }
+  free(profile);
+  end_loaded(&l);
+}
+END_TEST
 
 START_TEST(what_cannot_be_stepped_is_refused)
 {
@@ -423,6 +503,8 @@ SUITE(avi)
   tcase_add_test(tests, a_start_is_what_it_says);
   tcase_add_test(tests, a_run_that_grows_says_so_and_goes_on);
   tcase_add_test(tests, a_signal_that_fails_leaves_the_last_good_time);
+  tcase_add_test(tests, a_look_amid_events_of_one_time_is_not_the_last_one);
+  tcase_add_test(tests, currents_are_integrated_where_they_flow);
   tcase_add_test(tests, what_cannot_be_stepped_is_refused);
   tcase_add_test(tests, lacking_memory_is_a_status);
   tcase_add_test(tests, steps_allocate_nothing);

@@ -1,4 +1,5 @@
 /* Leapfrog on meshes: dispersion, conserved quantities, losses, sources, and saved states. */
+#include <dvi/field.h>
 #include <dvi/march.h>
 #include <dvi/maxwell.h>
 #include <math.h>
@@ -253,6 +254,42 @@ START_TEST(lossy_fields_start_with_what_is_given)
 }
 END_TEST
 
+/* All segments have the length 1, but one, which is between free ends and shorter. Alone, with the
+ * parts of its ends that are its own, each has the square of frequency 4 / length^2. */
+START_TEST(the_stiffest_cell_is_named)
+{
+  enum { POINTS = 9, SHORT = 5 };
+  double x[POINTS] = {0};
+  int vertex[2 * (POINTS - 1)];
+  for (int i = 0; i < POINTS - 1; i++) {
+    x[i + 1] = x[i] + (i == SHORT ? 0.9 : 1);
+    vertex[2 * i] = i;
+    vertex[2 * i + 1] = i + 1;
+  }
+  const dvi_mesh_terms of = {.size = sizeof of,
+                             .dimension = 1,
+                             .points = POINTS,
+                             .point = x,
+                             .cells = POINTS - 1,
+                             .vertex = vertex};
+  const dvi_star_options options = {.size = sizeof options, .kind = DVI_CIRCUMCENTRIC};
+  dvi_mesh *mesh = NULL;
+  dvi_star *star = NULL;
+  dvi_field *field = NULL;
+  dvi_march *march = NULL;
+  ck_assert_int_eq(dvi_mesh_create(&of, &mesh), DVI_OK);
+  ck_assert_int_eq(dvi_star_create(mesh, &options, &star), DVI_OK);
+  const dvi_wave_terms terms = {.size = sizeof terms, .star = star};
+  ck_assert_int_eq(dvi_wave_create(&terms, &field), DVI_OK);
+  const dvi_march_options how = {.size = sizeof how, .step = 2};
+  ck_assert_int_eq(dvi_march_create(field, &how, &march), DVI_BAD_ARGUMENT);
+  check_words("(vertices 5 6) near (5, 0, 0)");
+  dvi_field_destroy(&field);
+  dvi_star_destroy(&star);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
 /* The energy of fields of 1e200 overflows, and so do fields of 1e308. */
 START_TEST(values_that_overflow_are_refused)
 {
@@ -386,6 +423,7 @@ SUITE(leapfrog)
   tcase_add_test(tests, a_conductor_damps_as_the_difference_equation_says);
   tcase_add_test(tests, absorbing_walls_absorb);
   tcase_add_loop_test(tests, lossy_fields_start_with_what_is_given, 0, 2);
+  tcase_add_test(tests, the_stiffest_cell_is_named);
   tcase_add_loop_test(tests, values_that_overflow_are_refused, 0, 2);
   tcase_add_test(tests, random_currents_keep_the_law_of_charge);
   tcase_add_test(tests, cuts_threads_and_saved_states_keep_the_bits);

@@ -11,20 +11,32 @@ enum { STEPS_BETWEEN_CHECKS = 64 };
 
 static const double hopeless = 1e100, roundings = 4 * DBL_EPSILON;
 
-dvi_status dvi__avi_signals(const dvi__avi *avi, double from, double to, double *half)
+static dvi_status integrate(const dvi__avi *avi, int i, double from, double to, double *half)
 {
   const double middle = from + 0.5 * (to - from);
-  for (int i = 0; i < avi->currents; i++) {
-    const dvi__avi_current *current = avi->current + i;
-    DVI_TRY(current->impulse(from, middle, half + 2 * i, current->user));
-    DVI_TRY(current->impulse(middle, to, half + 2 * i + 1, current->user));
-  }
+  const dvi__avi_current *current = avi->current + i;
+  DVI_TRY(current->impulse(from, middle, half + 2 * i, current->user));
+  return current->impulse(middle, to, half + 2 * i + 1, current->user);
+}
+
+dvi_status dvi__avi_signals(const dvi__avi *avi, double from, double to, double *half)
+{
+  for (int i = 0; i < avi->currents; i++) DVI_TRY(integrate(avi, i, from, to, half));
+  return DVI_OK;
+}
+
+dvi_status dvi__avi_signals_at(const dvi__avi *avi, int64_t e, double from, double to, double *half)
+{
+  const dvi__avi_extra *extra = avi->extras + avi->extra[e];
+  for (int i = extra->push; i < extra->push + extra->pushes; i++)
+    DVI_TRY(integrate(avi, avi->push[i].current, from, to, half));
   return DVI_OK;
 }
 
 static dvi_status run(dvi__avi *avi, double t)
 {
   const double limit = t + roundings * fmax(fabs(t), fabs(avi->t0));
+  avi->view->t = (double)NAN; /* events of the present time may be left after a failure */
   DVI_TRY((avi->is_queued ? dvi__avi_run_queue : dvi__avi_run_slots)(avi, limit));
   avi->t = t;
   return DVI_OK;

@@ -72,10 +72,11 @@ static void scale(const arnoldi *s, double *q, double factor)
   for (int64_t i = 0; i < 2 * s->n; i++) q[i] *= factor;
 }
 
-/* Take away from the direction j + 1 what it has of the others, twice for the roundings. */
+/* Take away from the direction j + 1, which is weighed, what it has of the others, twice for the
+ * roundings. */
 static double orthogonalise(arnoldi *s, int j)
 {
-  double *next = direction(s, j + 1), length = weigh(s, next);
+  double *next = direction(s, j + 1), length = 0;
   for (int pass = 0; pass < 2; pass++) {
     for (int i = 0; i <= j; i++) {
       const double *q = direction(s, i), part = dot(2 * s->n, q, s->image);

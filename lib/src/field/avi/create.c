@@ -14,6 +14,7 @@ static void destroy_view(dvi__avi_view *view)
   dvi__release(view->made);
   dvi__release(view->A);
   dvi__release(view->D);
+  dvi__release(view->B);
   dvi__release(view->worked);
   dvi__release(view->half);
   dvi__release(view->node_sum);
@@ -127,13 +128,14 @@ static dvi_status allocate_view(dvi__avi *s)
 {
   dvi__avi_view *view = s->view = DVI_NEW(dvi__avi_view, 1);
   if (view == NULL) return no_memory(s);
-  view->made = DVI_NEW(unsigned, s->edges);
+  view->made = DVI_NEW(unsigned, s->edges + s->faces);
   view->A = DVI_NEW(double, s->edges);
   view->D = DVI_NEW(double, s->edges);
+  view->B = DVI_NEW(double, s->faces);
   view->worked = DVI_NEW(double, s->extra_count);
   view->half = DVI_NEW(double, 2 * s->currents);
   view->node_sum = DVI_NEW(double, 2 * s->nodes);
-  const int is_made = view->made && view->A && view->D && view->worked && view->half &&
+  const int is_made = view->made && view->A && view->D && view->B && view->worked && view->half &&
                       view->node_sum;
   return is_made ? DVI_OK : no_memory(s);
 }

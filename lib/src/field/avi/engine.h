@@ -12,6 +12,7 @@ enum { DVI__AVI_CLASSES = 31 };
  * those with a damping or a current. The faces of this class end at `faces`. */
 typedef struct dvi__avi_class {
   int64_t first, extra, end, faces;
+  int64_t pushes; /* of currents at its edges */
 } dvi__avi_class;
 
 /* An edge with a damping or a current. */
@@ -30,13 +31,16 @@ typedef struct dvi__avi_push {
 
 /* What an observation computed of edges, beside the state. */
 typedef struct dvi__avi_view {
-  double t;
+  double t;         /* NaN if nothing is valid */
   unsigned stamp;   /* of the values that are valid */
-  unsigned *made;   /* [edges] the stamps of the values */
+  unsigned *made;   /* [edges+faces] the stamps of the values */
   double *A, *D;    /* [edges] at t, D without what the faces owe it */
+  double *B;        /* [faces] */
   double *worked;   /* [extras] works of currents since the last events */
   double *half;     /* [2*currents] */
   double *node_sum; /* [2*nodes] */
+  unsigned summed;  /* the stamp of the sums: */
+  double energy, growth;
 } dvi__avi_view;
 
 /* Edges and faces have numbers of their own: edges by their class, faces by their step, fixed edges
@@ -85,8 +89,11 @@ struct dvi__avi {
   dvi__avi_view *view;
 };
 
-/* Integrate the signals over both halves of an interval between events of an edge. */
+/* Integrate the signals over both halves of an interval between events, all of them, or those of an
+ * edge with a damping or a current. `half` [2*currents] keeps its place for the others. */
 dvi_status dvi__avi_signals(const dvi__avi *avi, double from, double to, double *half);
+dvi_status dvi__avi_signals_at(const dvi__avi *avi, int64_t e, double from, double to,
+                               double *half);
 
 /* Begin again at a time, without events so far. */
 void dvi__avi_rewind(dvi__avi *avi, double t);

@@ -175,6 +175,7 @@ static void lay_out_pushes(const dvi__avi_terms *terms, dvi__avi *avi)
       if (terms->current[i].profile[name] != 0)
         avi->push[count++] = (dvi__avi_push){i, terms->current[i].profile[name]};
     extra->pushes = count - extra->push;
+    avi->class[avi->edge_class[e]].pushes += extra->pushes;
   }
 }
 

@@ -15,6 +15,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "field/avi/engine.h"
+#include "march/kind.h"
 
 static const double negligible = 1e-14, rounding = 1e-12;
 
@@ -122,15 +123,9 @@ static dvi_status find_fraction(const dvi__avi_terms *terms, const dvi__avi_plan
       *fraction, plan->tightest, dvi__avi_name(terms, 1, plan->tightest_face).text);
 }
 
-/* Shorten a step so that a whole number of it makes the span. */
-static double fitted(double step, double span)
-{
-  return span > 0 ? span / ceil(span / step * (1 - rounding)) : step;
-}
-
 static void choose_classes(const dvi__avi_terms *terms, double fraction, dvi__avi_plan *plan)
 {
-  plan->shortest = fitted(fraction * plan->tightest, terms->span);
+  plan->shortest = dvi__fit_step(fraction * plan->tightest, terms->span);
   for (int64_t f = 0; f < terms->faces; f++) {
     if (isinf(plan->bound[f])) continue;
     const double ratio = fraction * plan->bound[f] / plan->shortest * (1 + rounding);
@@ -144,7 +139,8 @@ static void choose_classes(const dvi__avi_terms *terms, double fraction, dvi__av
 static void choose_free(const dvi__avi_terms *terms, double fraction, dvi__avi_plan *plan)
 {
   for (int64_t f = 0; f < terms->faces; f++)
-    if (isfinite(plan->bound[f])) plan->step[f] = fitted(fraction * plan->bound[f], terms->span);
+    if (isfinite(plan->bound[f]))
+      plan->step[f] = dvi__fit_step(fraction * plan->bound[f], terms->span);
 }
 
 static dvi_status take_steps(const dvi__avi_terms *terms, dvi__avi_plan *plan)

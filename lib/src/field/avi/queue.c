@@ -1,31 +1,10 @@
-/* Events from a queue, a binary heap of the faces by their next time. Times are products
- * t_0 + m h_f, never running sums. Of faces with one time that with the lowest number is first. */
+/* Events from a queue, a heap of the faces by their next time. Times are products t_0 + m h_f,
+ * never running sums. Of faces with one time that with the lowest number is first. */
 #include <math.h>
 
 #include "core/status.h"
 #include "field/avi/engine.h"
-
-static int is_before(const dvi__avi *avi, int a, int b)
-{
-  if (avi->next[a] != avi->next[b]) return avi->next[a] < avi->next[b];
-  return a < b;
-}
-
-/* Let the face at a place of the heap sink to where it belongs. */
-static void sink(dvi__avi *avi, int64_t place)
-{
-  const int face = avi->heap[place];
-  for (;;) {
-    int64_t child = 2 * place + 1;
-    if (child >= avi->active_faces) break;
-    if (child + 1 < avi->active_faces && is_before(avi, avi->heap[child + 1], avi->heap[child]))
-      child++;
-    if (is_before(avi, face, avi->heap[child])) break;
-    avi->heap[place] = avi->heap[child];
-    place = child;
-  }
-  avi->heap[place] = face;
-}
+#include "field/step/heap.h"
 
 static double time_of_next(const dvi__avi *avi, int64_t f)
 {
@@ -34,11 +13,8 @@ static double time_of_next(const dvi__avi *avi, int64_t f)
 
 void dvi__avi_order_events(dvi__avi *avi)
 {
-  for (int64_t f = 0; f < avi->active_faces; f++) {
-    avi->heap[f] = (int)f;
-    avi->next[f] = time_of_next(avi, f);
-  }
-  for (int64_t i = avi->active_faces / 2; i-- > 0;) sink(avi, i);
+  for (int64_t f = 0; f < avi->active_faces; f++) avi->next[f] = time_of_next(avi, f);
+  dvi__heap_order(avi->next, avi->active_faces, avi->heap);
 }
 
 /* The signals may fail, and are integrated before anything is changed. */
@@ -47,7 +23,8 @@ static dvi_status find_signals(const dvi__avi *avi, int f, double t)
   for (int c = 0; c < avi->width && avi->extra != NULL; c++) {
     const int e = dvi__avi_number(avi->facet[(int64_t)f * avi->width + c]);
     if (avi->clock[e] < t && avi->extra[e] >= 0)
-      DVI_TRY(dvi__avi_signals(avi, avi->clock[e], t, avi->half + 2 * (int64_t)avi->currents * c));
+      DVI_TRY(dvi__avi_signals_at(avi, e, avi->clock[e], t,
+                                  avi->half + 2 * (int64_t)avi->currents * c));
   }
   return DVI_OK;
 }
@@ -86,7 +63,7 @@ dvi_status dvi__avi_run_queue(dvi__avi *avi, double limit)
     act(avi, f);
     avi->count[f]++;
     avi->next[f] = time_of_next(avi, f);
-    sink(avi, 0);
+    dvi__heap_sink(avi->next, avi->active_faces, avi->heap, 0);
     avi->events++;
     avi->t = fmax(avi->t, t);
   }

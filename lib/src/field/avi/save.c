@@ -112,8 +112,7 @@ static void take_clock(dvi__avi *avi, const saved_clock *saved)
   avi->slot = saved->slot;
   avi->events = saved->events;
   avi->checks = saved->checks;
-  avi->view->stamp = 0;
-  memset(avi->view->made, 0, (size_t)avi->edges * sizeof *avi->view->made);
+  avi->view->t = (double)NAN;
 }
 
 dvi_status dvi__avi_load(dvi__avi *avi, const dvi__sections *sections)

@@ -82,7 +82,7 @@ static dvi_status find_spans(const dvi__avi *avi, int64_t n, slot *now)
   for (int c = 0; c <= now->due; c++) {
     const double last = dvi__avi_slot_time(avi, n - (INT64_C(1) << c));
     now->span[c] = t - last;
-    if (avi->currents > 0)
+    if (avi->class[c].pushes > 0)
       DVI_TRY(dvi__avi_signals(avi, last, t, avi->half + 2 * (int64_t)avi->currents * c));
   }
   return DVI_OK;

@@ -1,9 +1,7 @@
 /* The start. The kicks of t_0 are half as large as the later ones, so that the run begins with the
  * values of E, not with those half a step before. */
 #include <math.h>
-#include <string.h>
 
-#include "core/memory.h"
 #include "core/status.h"
 #include "field/avi/engine.h"
 
@@ -11,8 +9,7 @@ void dvi__avi_rewind(dvi__avi *avi, double t)
 {
   avi->t0 = avi->t = t;
   avi->slot = avi->events = avi->checks = 0;
-  avi->view->stamp = 0;
-  memset(avi->view->made, 0, (size_t)avi->edges * sizeof *avi->view->made);
+  avi->view->t = (double)NAN;
   for (int64_t i = 0; i < avi->extra_count; i++) {
     dvi__avi_extra *extra = avi->extras + i;
     extra->delivered = extra->excess = extra->worked = 0;

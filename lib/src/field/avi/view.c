@@ -32,13 +32,15 @@ static double time_of_face(const dvi__avi *avi, int64_t f)
 
 /* ---- single cells ---- */
 
-/* Forget the values of another time. Between two looks at one time nothing happens. */
+/* Forget the values of another time. Between two looks at one time nothing happens without a run,
+ * which sets view->t to NaN. */
 static void begin(const dvi__avi *avi)
 {
   dvi__avi_view *view = avi->view;
-  if (view->stamp != 0 && view->t == avi->t) return;
+  if (view->t == avi->t) return;
   if (++view->stamp == 0) {
-    memset(view->made, 0, (size_t)avi->edges * sizeof *view->made);
+    memset(view->made, 0, (size_t)(avi->edges + avi->faces) * sizeof *view->made);
+    view->summed = 0;
     view->stamp = 1;
   }
   view->t = avi->t;
@@ -53,7 +55,7 @@ static dvi_status make_edge(const dvi__avi *avi, int64_t e)
   if (e < avi->free_edges) {
     const double last = time_of_edge(avi, e), span = avi->t - last;
     if (avi->extra != NULL && avi->extra[e] >= 0) {
-      DVI_TRY(dvi__avi_signals(avi, last, avi->t, view->half));
+      DVI_TRY(dvi__avi_signals_at(avi, e, last, avi->t, view->half));
       const dvi__avi_passage passage = dvi__avi_passage_of(avi, e, span, view->half);
       view->A[e] = passage.A;
       view->D[e] = passage.D;
@@ -68,9 +70,15 @@ static dvi_status make_edge(const dvi__avi *avi, int64_t e)
 
 static dvi_status see_B(const dvi__avi *avi, int64_t f, double *B)
 {
-  for (int c = 0; c < avi->width; c++)
-    DVI_TRY(make_edge(avi, dvi__avi_number(avi->facet[f * avi->width + c])));
-  *B = dvi__avi_field(avi, f, avi->view->A);
+  dvi__avi_view *view = avi->view;
+  unsigned *made = view->made + avi->edges + f;
+  if (*made != view->stamp) {
+    for (int c = 0; c < avi->width; c++)
+      DVI_TRY(make_edge(avi, dvi__avi_number(avi->facet[f * avi->width + c])));
+    view->B[f] = dvi__avi_field(avi, f, view->A);
+    *made = view->stamp;
+  }
+  *B = view->B[f];
   return DVI_OK;
 }
 
@@ -119,10 +127,10 @@ dvi_status dvi__avi_sample(const dvi__avi *avi, dvi_march_form form, int64_t cou
   return DVI_OK;
 }
 
-dvi_status dvi__avi_energy(const dvi__avi *avi, double *energy, double *growth)
+static dvi_status sum_energy(const dvi__avi *avi)
 {
+  dvi__avi_view *view = avi->view;
   double sum = 0, reference = avi->start_energy;
-  begin(avi);
   for (int64_t e = 0; e < avi->free_edges; e++) {
     double D;
     DVI_TRY(see_D(avi, e, &D));
@@ -134,9 +142,20 @@ dvi_status dvi__avi_energy(const dvi__avi *avi, double *energy, double *growth)
     sum += B * (B * avi->M2[f]);
   }
   for (int64_t i = 0; i < avi->extra_count; i++)
-    reference += avi->extras[i].worked + avi->view->worked[i];
-  *energy = 0.5 * sum;
-  if (growth != NULL) *growth = reference > 0 ? *energy / reference : 1;
+    reference += avi->extras[i].worked + view->worked[i];
+  view->energy = 0.5 * sum;
+  view->growth = reference > 0 ? view->energy / reference : 1;
+  view->summed = view->stamp;
+  return DVI_OK;
+}
+
+dvi_status dvi__avi_energy(const dvi__avi *avi, double *energy, double *growth)
+{
+  const dvi__avi_view *view = avi->view;
+  begin(avi);
+  if (view->summed != view->stamp) DVI_TRY(sum_energy(avi));
+  *energy = view->energy;
+  if (growth != NULL) *growth = view->growth;
   return DVI_OK;
 }
 

@@ -3,37 +3,58 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "core/memory.h"
 #include "core/status.h"
 
-/* The eigenvalue of a (k+1)-cell alone, whose k-cells belong in equal parts to all (k+1)-cells
- * around them, is M_2 sum_e n_e / M_1(e). Find the cell of the largest one. */
-static int64_t find_stiffest(const dvi_field *field)
-{
-  const dvi_matrix M1 = dvi__csr_view(&field->mass, 1);
+/* What the eigenvalues of (k+1)-cells alone consist of. */
+typedef struct local_terms {
+  const dvi_field *field;
   dvi_matrix d, M2;
-  int64_t worst = 0;
-  double most = -1;
-  if (dvi_mesh_incidence(field->mesh, field->degree, &d) != DVI_OK) return 0;
-  if (dvi_star_matrix(field->star, field->degree + 1, &M2) != DVI_OK) return 0;
-  for (int64_t f = 0; f < d.rows; f++) {
-    double sum = 0, stiffness = 0;
-    for (int64_t i = f * d.width; i < (f + 1) * d.width; i++) {
-      const int unknown = field->number[d.column[i]];
-      if (unknown >= 0) sum += 1 / M1.value[dvi__csr_find(&field->mass, unknown, unknown)];
-    }
-    for (int64_t e = dvi__first_entry(&M2, f); e < dvi__first_entry(&M2, f + 1); e++)
-      if (dvi__entry_column(&M2, f, e) == f) stiffness = dvi__entry_value(&M2, e);
-    if (!(stiffness * sum > most)) continue;
-    most = stiffness * sum;
-    worst = f;
+  int *sharing; /* [k-cells] n_e, the (k+1)-cells around each of them */
+} local_terms;
+
+/* The eigenvalue of a (k+1)-cell alone, whose k-cells belong in equal parts to all (k+1)-cells
+ * around them: M_2 sum_e n_e / M_1(e). */
+static double local_square(const local_terms *terms, int64_t f)
+{
+  const dvi__csr *M1 = &terms->field->mass;
+  const dvi_matrix *d = &terms->d, *M2 = &terms->M2;
+  double sum = 0, stiffness = 0;
+  for (int64_t i = f * d->width; i < (f + 1) * d->width; i++) {
+    const int unknown = terms->field->number[d->column[i]];
+    if (unknown >= 0)
+      sum += terms->sharing[d->column[i]] / M1->value[dvi__csr_find(M1, unknown, unknown)];
   }
-  return worst;
+  for (int64_t e = dvi__first_entry(M2, f); e < dvi__first_entry(M2, f + 1); e++)
+    if (dvi__entry_column(M2, f, e) == f) stiffness = dvi__entry_value(M2, e);
+  return stiffness * sum;
+}
+
+static dvi_status find_stiffest(const dvi_field *field, int64_t *stiffest)
+{
+  local_terms terms = {.field = field};
+  double most = -1;
+  *stiffest = 0;
+  DVI_TRY(dvi_mesh_incidence(field->mesh, field->degree, &terms.d));
+  DVI_TRY(dvi_star_matrix(field->star, field->degree + 1, &terms.M2));
+  terms.sharing = DVI_NEW(int, terms.d.columns);
+  if (terms.sharing == NULL) return dvi__fail(DVI_NO_MEMORY, "march: no memory for a sentence");
+  for (int64_t i = 0; i < terms.d.rows * terms.d.width; i++) terms.sharing[terms.d.column[i]]++;
+  for (int64_t f = 0; f < terms.d.rows; f++) {
+    const double square = local_square(&terms, f);
+    if (!(square > most)) continue;
+    most = square;
+    *stiffest = f;
+  }
+  dvi__release(terms.sharing);
+  return DVI_OK;
 }
 
 static dvi_status refuse_step(const dvi_field *field, double step, double bound)
 {
   const int degree = field->degree + 1;
-  const int64_t cell = find_stiffest(field);
+  int64_t cell;
+  DVI_TRY(find_stiffest(field, &cell));
   const dvi__cell_name name = dvi__name_cell(field->mesh, degree, cell);
   const int vertex = field->mesh->corner[degree][cell * dvi__corners(field->mesh->kind, degree)];
   const double *x = field->mesh->point + (int64_t)vertex * field->mesh->space;
@@ -42,12 +63,6 @@ static dvi_status refuse_step(const dvi_field *field, double step, double bound)
                    "%g, %g): take a shorter step, avi, or a mesh without such cells",
                    step, bound, name.text, x[0], field->mesh->space > 1 ? x[1] : 0.0,
                    field->mesh->space > 2 ? x[2] : 0.0);
-}
-
-double dvi__fit_step(double step, double span)
-{
-  if (!(span > 0)) return step;
-  return span / ceil(span / step * (1 - 1e-12));
 }
 
 dvi_status dvi__choose_step(const dvi_field *field, const dvi__march_plan *plan, double *step,

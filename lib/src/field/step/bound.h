@@ -21,9 +21,6 @@ typedef struct dvi__march_plan {
 dvi_status dvi__choose_step(const dvi_field *field, const dvi__march_plan *plan, double *step,
                             double *bound);
 
-/* Shorten a step so that a whole number of steps makes a span, unless the span is 0. */
-double dvi__fit_step(double step, double span);
-
 /* Refuse options of a method that has none. */
 dvi_status dvi__refuse_options(const char *name, const dvi__march_plan *plan);
 

@@ -8,8 +8,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/memory.h"
 #include "core/status.h"
+#include "field/step/heap.h"
 #include "field/tents/front.h"
 #include "num/philox.h"
 
@@ -21,31 +21,15 @@ static const double overshoot = 1e-6;
 
 /* ---- order ---- */
 
-static int is_lower(const dvi__front *front, int a, int b)
+/* Put the lowest vertex, whose time has grown, in its place. */
+static void sink_first(const dvi__tents *tents, dvi__front *front)
 {
-  const double first = front->time[a], second = front->time[b];
-  return first < second || (first == second && a < b);
-}
-
-/* Let the vertex at a place of the heap sink below those that are lower. */
-static void sink(const dvi__tents *tents, dvi__front *front, int64_t place)
-{
-  const int64_t count = tents->mesh->count[0];
-  int *heap = front->heap;
-  const int vertex = heap[place];
-  for (int64_t child; (child = 2 * place + 1) < count; place = child) {
-    if (child + 1 < count && is_lower(front, heap[child + 1], heap[child])) child++;
-    if (!is_lower(front, heap[child], vertex)) break;
-    heap[place] = heap[child];
-  }
-  heap[place] = vertex;
+  dvi__heap_sink(front->time, tents->mesh->count[0], front->heap, 0);
 }
 
 void dvi__front_order(const dvi__tents *tents, dvi__front *front)
 {
-  const int64_t count = tents->mesh->count[0];
-  for (int64_t v = 0; v < count; v++) front->heap[v] = (int)v;
-  for (int64_t place = count / 2 - 1; place >= 0; place--) sink(tents, front, place);
+  dvi__heap_order(front->time, tents->mesh->count[0], front->heap);
 }
 
 /* ---- tops ---- */
@@ -100,7 +84,7 @@ static dvi_status pitch_first(const dvi__tents *tents, dvi__front *front, double
                      name.text, front->time[vertex]);
   }
   DVI_TRY(dvi__tent_pitch(tents, front, vertex, top));
-  sink(tents, front, 0);
+  sink_first(tents, front);
   return DVI_OK;
 }
 
@@ -146,7 +130,7 @@ static dvi_status raise_to_level(const dvi__tents *tents)
       continue;
     }
     front->time[vertex] = t;
-    sink(tents, front, 0);
+    sink_first(tents, front);
   }
   return DVI_OK;
 }

@@ -17,7 +17,6 @@ enum { SECTION_VERSION = 1 };
 typedef struct march {
   const dvi_field *field;
   dvi__tents *tents;
-  double *A; /* [k-cells] of a start */
 } march;
 
 /* What a section begins with: what identifies the march, and where it stands. */
@@ -34,20 +33,21 @@ static void destroy(void *self)
 {
   march *m = self;
   dvi__tents_destroy(&m->tents);
-  dvi__release(m->A);
   dvi__release(m);
 }
 
 static dvi_status start(void *self, const dvi_march_state *state)
 {
-  march *m = self;
+  const march *m = self;
   const dvi_field *f = m->field;
-  dvi_march_state whole = *state;
-  for (int64_t c = 0; c < f->cells; c++) m->A[c] = f->fixed[c];
+  double *A = dvi__duplicate(f->fixed, (size_t)f->cells, sizeof *A);
+  if (A == NULL) return dvi__fail(DVI_NO_MEMORY, "tents: no memory for a start");
   for (int64_t i = 0; i < f->unknowns && state->A != NULL; i++)
-    m->A[f->unknown[i]] = state->A[f->unknown[i]];
-  whole.A = m->A;
+    A[f->unknown[i]] = state->A[f->unknown[i]];
+  dvi_march_state whole = *state;
+  whole.A = A;
   dvi__tents_start(m->tents, &whole);
+  dvi__release(A);
   return DVI_OK;
 }
 
@@ -225,10 +225,9 @@ static dvi_status make(march *m, const dvi_field *f, const dvi__tents_options *o
   double *source = NULL, *force = NULL;
   int8_t *held = DVI_NEW(int8_t, f->cells);
   m->field = f;
-  m->A = DVI_NEW(double, f->cells);
   dvi_status status = dvi__wave_source(f, &source);
   if (status == DVI_OK && source != NULL) force = DVI_NEW(double, f->cells);
-  if (status == DVI_OK && (!held || !m->A || (source && !force)))
+  if (status == DVI_OK && (!held || (source && !force)))
     status = dvi__fail(DVI_NO_MEMORY, "tents: no memory for %lld cells", (long long)f->cells);
   if (status == DVI_OK) {
     for (int64_t c = 0; c < f->cells; c++) held[c] = f->number[c] < 0;

@@ -60,8 +60,7 @@ static dvi_status choose_step(const dvi_yee_terms *terms, dvi__yee *y)
     return dvi__fail(DVI_BAD_ARGUMENT, "yee: nothing moves that bounds the step; set a step");
   y->dt = terms->step > 0 ? terms->step : fraction * y->bound;
   if (!(y->dt < y->bound)) return refuse_step(y, y->dt);
-  if (terms->step == 0 && terms->span > 0)
-    y->dt = terms->span / ceil(terms->span / y->dt * (1 - 1e-14));
+  if (terms->step == 0) y->dt = dvi__fit_step(y->dt, terms->span);
   for (int l = 0; l < 3; l++) dvi__yee_set_step(&y->axis[l], y->dt);
   return DVI_OK;
 }
