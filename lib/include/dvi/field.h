@@ -160,7 +160,8 @@ dvi_status dvi_field_modes(const dvi_field *field, const dvi_modes_options *opti
                            double *eigenvalue, double *mode, int64_t *zeros);
 
 /** Bound the largest angular frequency from above, within 0.1 percent: the square root of the
- *  largest eigenvalue of M^-1 K. Verlet's method is stable with steps below 2/omega.
+ *  largest eigenvalue of M^-1 K. Verlet's method is stable with steps below 2/omega. The field
+ *  keeps it.
  *
  *  @retval (others)  as dvi_matrix_modes */
 dvi_status dvi_field_fastest(const dvi_field *field, double *omega);

@@ -78,8 +78,8 @@ struct dvi_field {
   dvi__probe *probe;
   int probes;
   dvi_field_potential potential; /* without a density if there is none */
+  _Atomic double fastest;        /* bound of the frequencies, 0 until it is asked for */
   /* The rest is made for systems. */
-  double fastest;                /* bound of the frequencies, 0 if not known */
   int *mass_start, *stiff_start; /* [unknowns+1] */
   int *diagonal_start;           /* [unknowns+1] 0, 1, 2 ..., also the rows */
   int *no_start, *damping_start; /* [unknowns+1] of an empty pattern, and of the damping's */

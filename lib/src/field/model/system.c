@@ -234,7 +234,8 @@ dvi_status dvi_field_system_terms(dvi_field *field, dvi_system_terms *terms)
     return dvi__fail(DVI_BAD_ARGUMENT, "field: a field and a place for terms are needed");
   const int is_new = field->stiff_start == NULL;
   DVI_TRY(lay_out(field));
-  if (field->fastest == 0) DVI_TRY(dvi_field_fastest(field, &field->fastest));
+  double fastest;
+  DVI_TRY(dvi_field_fastest(field, &fastest));
   if (is_new && field->is_wave) DVI_TRY(dvi__field_find_translations(field));
   field->potentials[0] = elastic_term(field);
   field->potentials[1] = density_term(field);

@@ -8,7 +8,7 @@
 #include "scene/sections/sections.h"
 
 /* Cells up to which a grid for yee has a mesh, too, so that other methods and commands take it. */
-static const double cells_with_mesh = 300000;
+static const double cells_with_mesh = 50000;
 
 /* ---- what kind of field ---- */
 
