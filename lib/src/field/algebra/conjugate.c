@@ -148,26 +148,20 @@ dvi_status dvi__conjugate_gradients(const dvi__products *A, double tolerance, co
   return status;
 }
 
-static double row_sum(const dvi_matrix *A, int64_t i, int below, const double *z, double *diagonal)
-{
-  double sum = 0;
-  for (int64_t e = A->start[i]; e < A->start[i + 1]; e++) {
-    if (A->column[e] == i) *diagonal = A->value[e];
-    if (below ? A->column[e] < i : A->column[e] > i) sum += A->value[e] * z[A->column[e]];
-  }
-  return sum;
-}
-
+/* Each pass reads a row up to the diagonal, the first from the left and the second from the right. */
 void dvi__gauss_seidel(const dvi_matrix *A, const double *r, double *z)
 {
-  double diagonal = 1;
   for (int64_t i = 0; i < A->rows; i++) {
-    const double sum = row_sum(A, i, 1, z, &diagonal);
-    z[i] = (r[i] - sum) / diagonal;
+    int64_t e = A->start[i];
+    double left = r[i];
+    for (; A->column[e] < i; e++) left -= A->value[e] * z[A->column[e]];
+    z[i] = left / A->value[e];
   }
   for (int64_t i = A->rows - 1; i >= 0; i--) {
-    const double sum = row_sum(A, i, 0, z, &diagonal);
-    z[i] -= sum / diagonal;
+    int64_t e = A->start[i + 1] - 1;
+    double sum = 0;
+    for (; A->column[e] > i; e--) sum += A->value[e] * z[A->column[e]];
+    z[i] -= sum / A->value[e];
   }
 }
 
