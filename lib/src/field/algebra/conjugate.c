@@ -148,7 +148,8 @@ dvi_status dvi__conjugate_gradients(const dvi__products *A, double tolerance, co
   return status;
 }
 
-/* Each pass reads a row up to the diagonal, the first from the left and the second from the right. */
+/* Each pass reads a row up to the diagonal, the first from the left and the second from the
+ * right. */
 void dvi__gauss_seidel(const dvi_matrix *A, const double *r, double *z)
 {
   for (int64_t i = 0; i < A->rows; i++) {
