@@ -18,7 +18,7 @@
 enum { MULTIPLY = 1, MASS = 2, DONE = 99, RESTARTS = 1000, SHIFT_INVERT = 3 };
 
 /* Where solutions are iterated, vectors are as good as these, and eigenvalues as their squares. */
-static const double tolerance_of_solutions = 1e-11, tolerance_of_vectors = 1e-9;
+static const double tolerance_of_solutions = 1e-10, tolerance_of_vectors = 1e-8;
 
 static pthread_mutex_t arpack = PTHREAD_MUTEX_INITIALIZER;
 
@@ -252,7 +252,7 @@ static dvi_status lanczos_near(const dvi__pencil *pencil, double shift, int coun
   lanczos s = {.pencil = pencil,
                .inverse = &inverse,
                .count = count,
-               .directions = smaller(n, 2 * (int64_t)count + 20),
+               .directions = smaller(n, count < 8 ? 20 : 2 * (int64_t)count + 4),
                .shift = shift};
   const dvi_status status = run(&s, eigenvalue, vector);
   dvi__definite_clear(&inverse);

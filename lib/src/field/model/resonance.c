@@ -192,7 +192,7 @@ static dvi_status find_all(resonance *r, int *found)
   return DVI_OK;
 }
 
-/* Find the nearest ones to a shift, and more of them until enough are not zero. */
+/* Find the nearest ones to a shift, with as many more as there are harmonic forms. */
 static dvi_status find_nearest(resonance *r, double shift, int count, int *found)
 {
   const dvi_field *f = r->field;
@@ -205,16 +205,16 @@ static dvi_status find_nearest(resonance *r, double shift, int count, int *found
                               .project = r->gradients > 0 ? project : NULL,
                               .add_kernel = r->gradients > 0 ? add_gradients : NULL,
                               .of = r};
-  for (int asked = count + 3; *found < count; asked += count + 8) {
-    if (asked + r->gradients >= f->unknowns)
-      return dvi__fail(DVI_BAD_SIZE,
-                       "field: %d modes of %lld unknowns, of which %lld are static: "
-                       "take fewer",
-                       count, (long long)f->unknowns, (long long)r->gradients);
-    DVI_TRY(reserve(r, asked));
-    DVI_TRY(dvi__modes_near(&pencil, from, asked, r->value, r->vector));
-    *found = drop_zeros(r, asked, r->zeros - r->gradients, zero_of_lowest * fabs(below));
-  }
+  const int64_t harmonic = r->zeros - r->gradients, asked = count + harmonic;
+  if (count < 1 || asked + r->gradients >= f->unknowns)
+    return dvi__fail(DVI_BAD_SIZE,
+                     "field: %d modes of %lld unknowns, of which %lld are static: "
+                     "take 1 to %lld",
+                     count, (long long)f->unknowns, (long long)r->zeros,
+                     (long long)(f->unknowns - r->zeros - 1));
+  DVI_TRY(reserve(r, asked));
+  DVI_TRY(dvi__modes_near(&pencil, from, (int)asked, r->value, r->vector));
+  *found = drop_zeros(r, (int)asked, harmonic, zero_of_lowest * fabs(below));
   return DVI_OK;
 }
 
