@@ -1,6 +1,7 @@
 /* The section field, which is read when all others about it are: the field and its system are made,
  * and the scene's coordinates become the unknowns. */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "scene/field/maxwell.h"
@@ -86,6 +87,37 @@ bool dvi__declare_unknowns(dvi_scene *scene, const dvi__tree *section, const cha
   return true;
 }
 
+/* What marches observe beside the probes. Waves have the first ones. */
+const char *const dvi__observable[] = {"energy", "growth", "gauss", "charge", "divergence", NULL};
+enum { OF_WAVES = 2 };
+
+int dvi__list_field_columns(const dvi_scene *scene, const char **known)
+{
+  const struct dvi__scene_maxwell *m = scene->field->maxwell;
+  const int probes = m != NULL ? m->probes : scene->terms.invariant_count;
+  int count = 0;
+  for (; m != NULL ? dvi__observable[count] != NULL : count < OF_WAVES; count++)
+    if (known != NULL) known[count] = dvi__observable[count];
+  for (int i = 0; i < scene->terms.symmetry_count; i++, count++)
+    if (known != NULL) known[count] = scene->terms.symmetries[i].name;
+  for (int i = 0; i < probes; i++, count++)
+    if (known != NULL)
+      known[count] = m != NULL ? m->probe[i].name : scene->terms.invariants[i].name;
+  return count;
+}
+
+bool dvi__is_mechanical_column(const dvi_scene *scene, const char *name)
+{
+  static const char *const column[] = {"t", "energy_balance", "h", "jump"};
+  for (size_t k = 0; k < sizeof column / sizeof *column; k++)
+    if (strcmp(column[k], name) == 0) return true;
+  if (scene->field->mesh == NULL ||
+      !dvi__is_unknown(name, scene->field->maxwell != NULL ? 'A' : 'u'))
+    return false;
+  const long number = strtol(strrchr(name, '_') + 1, NULL, 10);
+  return number >= 1 && number <= scene->nv;
+}
+
 /* A run shows energy, momenta and probes. */
 bool dvi__choose_field_columns(dvi_scene *scene)
 {
@@ -159,7 +191,7 @@ bool dvi__read_field(dvi_scene *scene, const dvi__tree *section)
   static const char *const word[] = {"wave", "maxwell"};
   int which;
   if (!dvi__tree_word(scene, section, "field", 2, word, &which)) return false;
-  if (which == 1 && scene->field->mesh == NULL) return dvi__grid_make(scene, section);
+  if (which == 1 && scene->field->mesh == NULL) return dvi__grid_make(scene);
   return (which == 0 ? make_wave : dvi__maxwell_make)(scene, section) &&
          choose_step(scene, section);
 }
