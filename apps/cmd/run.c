@@ -235,10 +235,7 @@ static int run_problem(run_request *request, const char *name)
     problem_destroy(&scene);
     return code;
   }
-  if (dvi_scene_grid_only(scene->scene) != NULL) {
-    problem_destroy(&scene);
-    return open_problem(name, &request->settings, &scene); /* which refuses it */
-  }
+  if (dvi_scene_grid_only(scene->scene) != NULL) return refuse_grid(&scene);
   code = scene_complete(scene);
   if (code != DONE) {
     problem_destroy(&scene);
@@ -287,6 +284,10 @@ static const char *const details[] = {
     "of a constraint, lambda_NAME,\n"
     "is shown if --columns or the scene names it; that of a joint has a number for each row, "
     "lambda_NAME_1.\n",
+    "Fields, of waves and Maxwell's ('field: maxwell'), are advanced by the marches leapfrog, yee, "
+    "avi and tents, too, whose columns are\n"
+    "energy and the probes. gauss, charge, divergence and growth are shown if --columns names "
+    "them. --pvd writes E and B in the cells, or u.\n",
     "What no column shows is not evaluated for the rows. The energy of a system that does not "
     "depend on time is looked at all the\n"
     "same, in the first 32 steps, in every 61st later on, and at the end; an error above 1 % of "
@@ -357,7 +358,8 @@ static const char *const details[] = {
     "  dvi run fpu --method midpoint --h 0.01 --t-end 200 --resume fpu.state --out part2.csv\n"
     "  dvi run cart.yaml --final --plot cart.svg\n"
     "  dvi run kepler --method galerkin:degree=4 --h 0.1 --t-end 10 --verify --digits 6\n"
-    "  dvi run cart.yaml | dvi plot - --axes x:theta --out path.svg\n",
+    "  dvi run cart.yaml | dvi plot - --axes x:theta --out path.svg\n"
+    "  dvi run cavity.yaml --method leapfrog --columns energy,gauss --pvd cavity.pvd --every 50\n",
     NULL,
 };
 
