@@ -334,7 +334,12 @@ no 'finite number' --h nan
 no 'whole number' --threads 0
 no 'ends in .pvd' --pvd fields.vtu
 no 'needs --checkpoint' --checkpoint-every 3
-no "no column 'ear'" --columns ear
+no "no column 'ear'; it has energy" --columns ear
+no "column 'energy' is asked for twice" --columns energy,energy
+for method in leapfrog yee verlet; do
+  expect 0 "the column t of $method" run run.yaml --method $method --h 0.05 --columns t,energy
+  says out '^t,energy$' "the column t of $method"
+done
 refuse 'a column that is none' 5:20 "no column 'loudness'; it has energy, .* and ear" "$flat
 probes: {ear: {of: B, at: [0.5, 0.3]}}
 report: {columns: [loudness]}"
