@@ -230,7 +230,7 @@ static int run_problem(run_request *request, const char *name)
   signals_end(true, ended_before);
   int code = open_any(name, &request->settings, &scene);
   if (code != DONE) return code;
-  if (scene->scene != NULL && dvi_scene_marches(scene->scene, request->method)) {
+  if (dvi_scene_marches(scene->scene, request->method)) {
     code = run_march(request, scene);
     problem_destroy(&scene);
     return code;

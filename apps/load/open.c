@@ -265,7 +265,7 @@ static int refuse_method(const problem *scene, const char *method)
 {
   char hint[HINT_SIZE], sentence[MESSAGE_SIZE], message[2 * MESSAGE_SIZE];
   const bool has_field = dvi_scene_field(scene->scene) != NULL;
-  if (scene->scene != NULL && dvi_scene_marches(scene->scene, method))
+  if (dvi_scene_marches(scene->scene, method))
     return usage_error(
         "%s is a march of a field, for dvi run, check, explain, order and bench; a mechanical "
         "method such as verlet is wanted here",

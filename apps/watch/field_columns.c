@@ -68,8 +68,9 @@ static bool is_usual(const char *name)
 
 static void choose_usual(field_columns *c)
 {
-  for (int i = 0; i < c->there; i++)
-    if (is_usual(c->all[i].name)) c->column[c->count++] = c->all[i];
+  const char *name;
+  for (int i = 0; (name = name_at(i, c)) != NULL; i++)
+    if (is_usual(name)) c->column[c->count++] = c->all[i];
 }
 
 /* Momenta of a wave are those of mechanical methods, which the scene wants without being told. */
