@@ -278,21 +278,6 @@ static dvi_status make_field(dvi_scene *scene, draft *d)
   return status;
 }
 
-/* A sentence of the library names a wall, a dipole, a probe, or the star. */
-static const dvi__tree *to_blame(const dvi_scene *scene, const dvi__tree *section)
-{
-  static const struct {
-    const char *word, *section;
-  } blame[] = {{"repair", "mesh"},    {"wall", "boundary"},  {"fixed", "boundary"},
-               {"dipole", "sources"}, {"signal", "sources"}, {"probe", "probes"},
-               {"point", "probes"},   {"star", "star"}};
-  for (size_t i = 0; i < sizeof blame / sizeof *blame; i++) {
-    const dvi__tree *found = dvi__tree_find(scene->tree, blame[i].section);
-    if (found != NULL && strstr(dvi_last_error(), blame[i].word) != NULL) return found;
-  }
-  return section;
-}
-
 bool dvi__maxwell_make(dvi_scene *scene, const dvi__tree *section)
 {
   draft d = {.terms = {.size = sizeof d.terms}};
@@ -300,9 +285,7 @@ bool dvi__maxwell_make(dvi_scene *scene, const dvi__tree *section)
       !set_probes(scene, &d))
     return false;
   const dvi_status status = make_field(scene, &d);
-  if (status != DVI_OK)
-    return dvi__complain(scene->complaint, status, to_blame(scene, section)->span, "%s",
-                         dvi_last_error());
+  if (status != DVI_OK) return dvi__complain_of_field(scene, section, status);
   scene->form = "separable";
   scene->mass = scene->terms.mass.diagonal != NULL ? "diagonal" : "sparse";
   return dvi__declare_unknowns(scene, section, "A") && make_start(scene) && watch_probes(scene) &&

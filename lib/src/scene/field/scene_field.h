@@ -79,6 +79,10 @@ typedef struct dvi__quantity {
 bool dvi__quantity_set(dvi_scene *scene, const dvi__quantity *of, const char *part, dvi__span span,
                        const dvi__place *place, double **values);
 
+/* Complain with the library's last sentence, which names a source, a wall, a probe and so on, about
+ * the section that it is of, or else `otherwise`. Returns false. */
+bool dvi__complain_of_field(dvi_scene *scene, const dvi__tree *otherwise, dvi_status status);
+
 /* Refuse the name of a part that the mesh has not, and list those that it has. */
 bool dvi__refuse_part(dvi_scene *scene, dvi__span span, const char *name, bool of_cells);
 
