@@ -104,6 +104,10 @@ static int complete_request(run_request *request, const problem *scene, double t
 {
   if (request->every == 0) request->every = scene->every > 0 ? scene->every : 1;
   if (isnan(request->t_end)) request->t_end = scene->t_end;
+  if (isnan(request->h) && !(scene->h > 0)) /* only scenes of fields may lack it */
+    return usage_error("run: %s by %s needs a step, by --h or in the scene, as in 'step: "
+                       "{fraction: 0.5}' of the largest stable one of verlet",
+                       scene->name, request->method);
   const double way = time_to_end(t, request->t_end);
   if (is_past(request, t, way))
     return usage_error("run: '%s' stands at t = %.17g, past --t-end %g; --h %g would lead back",
@@ -216,9 +220,17 @@ static int run_check_settings(const run_request *request, const problem *scene)
       "run: --set %s places the start, which --resume replaces; leave out one of them", setting);
 }
 
+/* Only scenes of fields may lack an end. */
+static int run_check_end(const run_request *request, const problem *scene)
+{
+  if (!isnan(request->t_end) || scene->t_end > 0) return DONE;
+  return usage_error("run: %s has no section until, so that --t-end is needed", scene->name);
+}
+
 static int run_march(run_request *request, const problem *scene)
 {
-  const int code = run_check_settings(request, scene);
+  int code = run_check_settings(request, scene);
+  if (code == DONE) code = run_check_end(request, scene);
   if (request->method == NULL) request->method = scene->method;
   return code == DONE ? field_run(request, scene) : code;
 }
@@ -251,6 +263,7 @@ static int run_problem(run_request *request, const char *name)
   if (code == DONE) code = place_momenta(request, scene);
   if (code == DONE) code = check_events(request, scene);
   if (code == DONE) code = run_check_settings(request, scene);
+  if (code == DONE) code = run_check_end(request, scene);
   if (code == DONE) code = run_integrator(request, scene);
   problem_destroy(&scene);
   return code;

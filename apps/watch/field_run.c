@@ -233,8 +233,6 @@ static int write_files(journey *j)
 int field_run(run_request *request, const problem *scene)
 {
   journey j = {.request = request, .scene = scene};
-  if (isnan(request->t_end) && !(scene->t_end > 0))
-    return usage_error("run: %s has no section until, so that --t-end is needed", scene->name);
   if (isnan(request->t_end)) request->t_end = scene->t_end;
   if (request->every == 0) request->every = scene->every > 0 ? scene->every : 1;
   int code = refuse_options(request);

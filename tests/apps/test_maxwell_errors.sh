@@ -297,6 +297,14 @@ refuse 'an option of a grid' 3:9 'yee has no options' 'mesh: {generator: box, ce
 field: maxwell
 method: yee:x=1
 boundary: {cpml: 2}'
+for method in leapfrog verlet; do
+  printf '%s\n' "$flat" "method: $method" 'step: 0.01' | sed '/^until/d' >bare.yaml
+  expect 2 "no end of $method" run bare.yaml
+  says err 'has no section until, so that --t-end is needed' "no end of $method"
+done
+printf '%s\n' "$flat" 'method: verlet' >bare.yaml
+expect 2 'no step' run bare.yaml
+says err "bare by verlet needs a step, by --h or in the scene, as in 'step: {fraction" 'no step'
 printf '%s\n' "$flat" 'step: 0.01' >bare.yaml
 expect 2 'no method' run bare.yaml
 says err 'is missing, for example --method leapfrog' 'no method'
