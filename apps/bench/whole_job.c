@@ -1,5 +1,6 @@
 #include "bench/whole_job.h"
 
+#include <dvi/scene.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -68,7 +69,7 @@ static dvi_status march_job(const whole_job *job, double steps, double *preparat
 static dvi_status job_of(const whole_job *job, double steps, double *preparation,
                          study_level *level)
 {
-  return (field_marches(job->motion.scene, job->method) ? march_job : method_job)(
+  return (dvi_scene_marches(job->motion.scene->scene, job->method) ? march_job : method_job)(
       job, steps, preparation, level);
 }
 

@@ -1,5 +1,6 @@
 /* dvi bench, which measures speed against error, all in one run, or the cost of a step against
  * size. */
+#include <dvi/scene.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,7 +13,6 @@
 #include "bench/machine.h"
 #include "bench/members.h"
 #include "load/open.h"
-#include "mechanics/field_motion.h"
 #include "cli/progress.h"
 #include "bench/scale.h"
 #include "bench/whole_job.h"
@@ -174,7 +174,7 @@ static int bench_add_entry(bench *b, const char *method, const pacing *how,
   const bool asked = b->request->methods.count > 0, several = b->request->transforms.count > 1;
   if (b->entries == WORDS_MAX)
     return usage_error("bench: more than %d methods and time transforms", (int)WORDS_MAX);
-  if (field_marches(b->scene, method)) {
+  if (dvi_scene_marches(b->scene->scene, method)) {
     bench_keep_entry(b, method, how);
     return DONE;
   }

@@ -11,7 +11,6 @@
 #include "load/open.h"
 #include "load/open_march.h"
 #include "load/scene.h"
-#include "mechanics/field_motion.h"
 
 /* Number of points beside the start, and their distance from it. */
 enum { POINTS = 4 };
@@ -251,8 +250,8 @@ int check_command(int argc, char **argv)
   const bool is_grid = dvi_scene_grid_only(scene->scene) != NULL;
   if (r.method == NULL && is_grid) r.method = "yee";
   (void)printf("%s: %s\n", scene->name, scene->summary);
-  code = is_grid || field_marches(scene, r.method) ? check_march(scene, r.method)
-                                                   : check_system(scene, r.method);
+  code = is_grid || dvi_scene_marches(scene->scene, r.method) ? check_march(scene, r.method)
+                                                              : check_system(scene, r.method);
   if (code == DONE && !is_grid) scene_tell(scene);
   warn_unused(scene);
   problem_destroy(&scene);

@@ -63,7 +63,7 @@ static int emit_c(const emit_request *request, const char *path)
   problem *scene;
   int code = open_problem(path, &request->settings, &scene);
   if (code != DONE) return code;
-  if (scene->scene != NULL && dvi_scene_field(scene->scene) != NULL)
+  if (dvi_scene_field(scene->scene) != NULL)
     code = usage_error("emit-c: %s is a field on a mesh, which C files do not have; "
                        "dvi/field.h makes one in a program",
                        scene->name);

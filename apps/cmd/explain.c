@@ -128,7 +128,7 @@ static int explain_march(const problem *scene, const char *method, double h)
 static int explain_all(const problem *scene, const char *method, const pacing *how, double h)
 {
   dvi_integrator *integrator = NULL;
-  if (scene->scene != NULL && dvi_scene_marches(scene->scene, method))
+  if (dvi_scene_marches(scene->scene, method))
     return how->transform == NULL && how->control == NULL
                ? explain_march(scene, method, h)
                : usage_error("explain: %s is a march of a field, whose steps follow no monitor",

@@ -71,10 +71,15 @@ static const char *const details[] = {
     "without "
     "a fixed value has a mode of frequency zero, which is counted and left out. A potential takes "
     "no part.\n",
+    "The modes of an electromagnetic field ('field: maxwell') are those without charge, and their "
+    "shapes are E. The static fields are counted and left out, absorbing walls count as pmc, and "
+    "sigma as 0. Damped modes, and those of a grid that only yee advances, are found by dvi "
+    "spectrum in the columns of a run.\n",
     "Columns of --csv: index, eigenvalue, omega, ascending.\n",
     "Examples:\n"
     "  dvi modes drum.yaml --count 6\n"
-    "  dvi modes drum.yaml --count 3 --near 100 --csv - --vtu modes.vtu\n",
+    "  dvi modes drum.yaml --count 3 --near 100 --csv - --vtu modes.vtu\n"
+    "  dvi modes cavity.yaml --vtu modes.vtu\n",
     NULL,
 };
 

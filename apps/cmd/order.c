@@ -1,4 +1,5 @@
 /* dvi order, which measures whether a method has the order that it claims. */
+#include <dvi/scene.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,7 +18,6 @@
 #include "load/scene.h"
 #include "mechanics/judge.h"
 #include "mechanics/motion_study.h"
-#include "mechanics/field_motion.h"
 #include "mechanics/single_steps.h"
 #include "csv/table.h"
 #include "study/window.h"
@@ -116,7 +116,7 @@ static int study_single_steps(order_study *ask, const char *method, order_result
 {
   const order_request *request = ask->request;
   const bool few = request->levels > 0 && request->levels < WINDOW_LEVELS;
-  if (order_holds(result) || few || field_marches(ask->scene, method) ||
+  if (order_holds(result) || few || dvi_scene_marches(ask->scene->scene, method) ||
       request->how.transform != NULL || request->how.control != NULL)
     return DONE;
   const words *settings = &request->settings;
@@ -224,7 +224,7 @@ static int order_check_methods(const order_request *request, const problem *scen
   int code = DONE;
   for (int i = 0; i < request->methods.count && code == DONE; i++) {
     dvi_integrator *integrator = NULL;
-    if (field_marches(scene, request->methods.word[i])) continue;
+    if (dvi_scene_marches(scene->scene, request->methods.word[i])) continue;
     code = open_paced(scene, request->methods.word[i], &request->how, &integrator);
     dvi_integrator_destroy(&integrator);
   }

@@ -104,6 +104,10 @@ static int complete_request(run_request *request, const problem *scene, double t
 {
   if (request->every == 0) request->every = scene->every > 0 ? scene->every : 1;
   if (isnan(request->t_end)) request->t_end = scene->t_end;
+  if (isnan(request->h) && !(scene->h > 0)) /* only scenes of fields may lack it */
+    return usage_error("run: %s by %s needs a step, by --h or in the scene, as in 'step: "
+                       "{fraction: 0.5}' of the largest stable one of verlet",
+                       scene->name, request->method);
   const double way = time_to_end(t, request->t_end);
   if (is_past(request, t, way))
     return usage_error("run: '%s' stands at t = %.17g, past --t-end %g; --h %g would lead back",
@@ -216,9 +220,17 @@ static int run_check_settings(const run_request *request, const problem *scene)
       "run: --set %s places the start, which --resume replaces; leave out one of them", setting);
 }
 
+/* Only scenes of fields may lack an end. */
+static int run_check_end(const run_request *request, const problem *scene)
+{
+  if (!isnan(request->t_end) || scene->t_end > 0) return DONE;
+  return usage_error("run: %s has no section until, so that --t-end is needed", scene->name);
+}
+
 static int run_march(run_request *request, const problem *scene)
 {
-  const int code = run_check_settings(request, scene);
+  int code = run_check_settings(request, scene);
+  if (code == DONE) code = run_check_end(request, scene);
   if (request->method == NULL) request->method = scene->method;
   return code == DONE ? field_run(request, scene) : code;
 }
@@ -230,15 +242,12 @@ static int run_problem(run_request *request, const char *name)
   signals_end(true, ended_before);
   int code = open_any(name, &request->settings, &scene);
   if (code != DONE) return code;
-  if (scene->scene != NULL && dvi_scene_marches(scene->scene, request->method)) {
+  if (dvi_scene_marches(scene->scene, request->method)) {
     code = run_march(request, scene);
     problem_destroy(&scene);
     return code;
   }
-  if (dvi_scene_grid_only(scene->scene) != NULL) {
-    problem_destroy(&scene);
-    return open_problem(name, &request->settings, &scene); /* which refuses it */
-  }
+  if (dvi_scene_grid_only(scene->scene) != NULL) return refuse_grid(&scene);
   code = scene_complete(scene);
   if (code != DONE) {
     problem_destroy(&scene);
@@ -254,6 +263,7 @@ static int run_problem(run_request *request, const char *name)
   if (code == DONE) code = place_momenta(request, scene);
   if (code == DONE) code = check_events(request, scene);
   if (code == DONE) code = run_check_settings(request, scene);
+  if (code == DONE) code = run_check_end(request, scene);
   if (code == DONE) code = run_integrator(request, scene);
   problem_destroy(&scene);
   return code;
@@ -287,6 +297,10 @@ static const char *const details[] = {
     "of a constraint, lambda_NAME,\n"
     "is shown if --columns or the scene names it; that of a joint has a number for each row, "
     "lambda_NAME_1.\n",
+    "Fields, of waves and Maxwell's ('field: maxwell'), are advanced by the marches leapfrog, yee, "
+    "avi and tents, too, whose columns are\n"
+    "energy and the probes. gauss, charge, divergence and growth are shown if --columns names "
+    "them. --pvd writes E and B in the cells, or u.\n",
     "What no column shows is not evaluated for the rows. The energy of a system that does not "
     "depend on time is looked at all the\n"
     "same, in the first 32 steps, in every 61st later on, and at the end; an error above 1 % of "
@@ -357,7 +371,8 @@ static const char *const details[] = {
     "  dvi run fpu --method midpoint --h 0.01 --t-end 200 --resume fpu.state --out part2.csv\n"
     "  dvi run cart.yaml --final --plot cart.svg\n"
     "  dvi run kepler --method galerkin:degree=4 --h 0.1 --t-end 10 --verify --digits 6\n"
-    "  dvi run cart.yaml | dvi plot - --axes x:theta --out path.svg\n",
+    "  dvi run cart.yaml | dvi plot - --axes x:theta --out path.svg\n"
+    "  dvi run cavity.yaml --method leapfrog --columns energy,gauss --pvd cavity.pvd --every 50\n",
     NULL,
 };
 

@@ -108,6 +108,9 @@ static const char *const details[] = {
     "solved by Newton's method from the scene's start. Where no value is fixed, source and flux "
     "must sum to zero, and the section solve sets the mean. The energy and the probes of the scene "
     "are printed.\n",
+    "This is of waves ('field: wave'). A static electric field is minus the gradient of such a u, "
+    "with a = eps, and the charges as the source. What is static of 'field: maxwell' is what a run "
+    "with losses tends to.\n",
     "Columns of --csv: vertex, its coordinates, u.\n",
     "Examples:\n"
     "  dvi solve membrane.yaml\n"

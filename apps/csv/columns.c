@@ -1,4 +1,3 @@
-#define _POSIX_C_SOURCE 200809L
 #include "csv/columns.h"
 
 #include <math.h>
@@ -6,12 +5,10 @@
 #include <string.h>
 
 #include "cli/command.h"
-#include "cli/spelling.h"
 #include "csv/balance.h"
+#include "csv/choice.h"
 #include "csv/table.h"
 #include "csv/velocity.h"
-
-enum { HINT_SIZE = 512, NAMED_MOST = 12 };
 
 /* ---- columns of a run ---- */
 
@@ -75,66 +72,28 @@ static int refuse_same_column(const run_columns *c, const char *method)
 static void columns_show(run_columns *c, int k)
 {
   c->column[c->count++] = c->all[k];
-  c->shown[k] = true;
   c->shows[c->all[k].kind] = true;
 }
 
-/* List the names of all columns, for the search for the nearest name. */
+/* List the names of all columns. */
 static const char *column_name_at(int k, const void *list)
 {
   const run_columns *c = list;
   return k < c->there ? c->all[k].name : NULL;
 }
 
-/* Write a hint at the nearest name, or else the first of all names. */
-static const char *hint_at_column(const run_columns *c, const char *name, char hint[HINT_SIZE])
+/* Show the columns "A,B,..", or those that the problem wants. */
+static int columns_show_named(run_columns *c, const char *method, const char *asked)
 {
-  if (suggestion(name, column_name_at, c, hint, HINT_SIZE)[0] != '\0') return hint;
-  size_t length = 0;
-  for (int k = 0; k < c->there && k < NAMED_MOST && length < HINT_SIZE; k++)
-    length += (size_t)snprintf(hint + length, HINT_SIZE - length, "%s%s",
-                               k > 0 ? ", " : "; it has ", c->all[k].name);
-  if (c->there > NAMED_MOST && length < HINT_SIZE)
-    (void)snprintf(hint + length, HINT_SIZE - length, " and %d others", c->there - NAMED_MOST);
-  return hint;
-}
-
-/* Show the column of a name. The column t opens every row anyway. */
-static int columns_show_name(run_columns *c, const char *method, const char *name)
-{
-  const char *there;
-  int k = 0;
-  if (strcmp(name, "t") == 0) return DONE;
-  while ((there = column_name_at(k, c)) != NULL && strcmp(there, name) != 0) k++;
-  if (there == NULL) {
-    char hint[HINT_SIZE];
-    return usage_error("run: %s by %s has no column '%s'%s", c->scene->name, method, name,
-                       hint_at_column(c, name, hint));
-  }
-  if (c->shown[k]) return usage_error("run: column '%s' is asked for twice", name);
-  columns_show(c, k);
-  return DONE;
-}
-
-static int columns_show_asked(run_columns *c, const char *method, const char *asked)
-{
-  int code = DONE;
-  char *names = strdup(asked);
-  if (names == NULL) return library_error(DVI_NO_MEMORY);
-  for (char *name = names, *next; name != NULL && code == DONE; name = next) {
-    next = strchr(name, ',');
-    if (next != NULL) *next++ = '\0';
-    code = columns_show_name(c, method, name);
-  }
-  free(names);
-  return code;
-}
-
-static int columns_show_wanted(run_columns *c, const char *method)
-{
-  int code = DONE;
-  for (int i = 0; i < c->scene->column_count && code == DONE; i++)
-    code = columns_show_name(c, method, c->scene->column[i]);
+  column_choice choice = {.scene = c->scene->name,
+                          .method = method,
+                          .name_at = column_name_at,
+                          .list = c,
+                          .place = c->place};
+  int code = asked != NULL ? choice_add_all(&choice, asked) : DONE;
+  for (int i = 0; i < c->scene->column_count && asked == NULL && code == DONE; i++)
+    code = choice_add(&choice, c->scene->column[i]);
+  for (int i = 0; i < choice.count; i++) columns_show(c, c->place[i]);
   return code;
 }
 
@@ -147,7 +106,7 @@ static bool columns_allocate(run_columns *c)
                most = nq + 2 * nv + 2 * invariants + rows + contacts + COLUMN_KINDS;
   c->all = calloc(most, sizeof *c->all);
   c->column = calloc(most, sizeof *c->column);
-  c->shown = calloc(most, sizeof *c->shown);
+  c->place = calloc(most, sizeof *c->place);
   c->invariant = calloc(invariants, sizeof *c->invariant);
   c->balance = calloc(invariants, sizeof *c->balance);
   c->balance_name = calloc(invariants, sizeof *c->balance_name);
@@ -158,7 +117,7 @@ static bool columns_allocate(run_columns *c)
   c->force = calloc(contacts + 1, sizeof *c->force);
   c->force_name = calloc(contacts + 1, sizeof *c->force_name);
   return c->force != NULL && c->force_name != NULL && c->reaction != NULL &&
-         c->reaction_name != NULL && c->all != NULL && c->column != NULL && c->shown != NULL &&
+         c->reaction_name != NULL && c->all != NULL && c->column != NULL && c->place != NULL &&
          c->invariant != NULL && c->balance != NULL && c->balance_name != NULL &&
          c->velocity != NULL && c->room != NULL;
 }
@@ -171,8 +130,8 @@ int columns_choose(run_columns *c, const problem *scene, const dvi_integrator *i
   columns_list(c, integrator);
   const int code = refuse_same_column(c, dvi_integrator_method(integrator));
   if (code != DONE) return code;
-  if (asked != NULL) return columns_show_asked(c, dvi_integrator_method(integrator), asked);
-  if (scene->column != NULL) return columns_show_wanted(c, dvi_integrator_method(integrator));
+  if (asked != NULL || scene->column != NULL)
+    return columns_show_named(c, dvi_integrator_method(integrator), asked);
   for (int k = 0; k < c->there; k++)
     if (c->all[k].kind != COLUMN_REACTION && c->all[k].kind != COLUMN_FORCE) columns_show(c, k);
   return DONE;
@@ -182,7 +141,7 @@ void columns_clear(run_columns *c)
 {
   free(c->all);
   free(c->column);
-  free(c->shown);
+  free(c->place);
   free(c->invariant);
   free(c->balance);
   free(c->balance_name);

@@ -39,7 +39,7 @@ typedef struct run_columns {
   const problem *scene;
   int there, count; /**< number of columns of the run, and number of shown ones after t */
   shown_column *all, *column;
-  bool *shown;       /**< [there] */
+  int *place;        /**< [count] places of the shown ones that were asked for */
   double *invariant; /**< [invariants] the shown invariants, set by columns_measure */
   double *balance;   /**< [invariants] the shown defects of balances, set likewise */
   char (*balance_name)[BALANCE_NAME_SIZE]; /**< [invariants] */

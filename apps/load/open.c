@@ -110,27 +110,33 @@ static int refuse_problem_name(const char *name)
       scene_beside(name, hint) ? hint : suggestion(name, problem_name_at, NULL, hint, sizeof hint));
 }
 
-/* A grid without a mesh has no mechanical system. */
-static int refuse_grid(const char *name, problem **scene)
+const char *grid_sentence(const problem *scene)
 {
-  const char *reason = dvi_scene_grid_only((*scene)->scene);
-  const bool is_large = strcmp(reason, "size") == 0, is_flux = strcmp(reason, "flux") == 0;
+  const char *reason = dvi_scene_grid_only(scene->scene);
+  return strcmp(reason, "size") == 0
+             ? "so large a grid only 'method: yee' advances, in dvi run; for others take fewer "
+               "cells, or write 'method: leapfrog' in the scene, which makes a mesh"
+         : strcmp(reason, "flux") == 0
+             ? "a flux through a box only 'method: yee' knows, in dvi run; for others leave it out"
+         : strcmp(reason, "wave") == 0
+             ? "a plane wave only 'method: yee' knows, in dvi run; for others take a current"
+         : strcmp(reason, "cpml") == 0
+             ? "cpml only 'method: yee' knows, in dvi run; for others take 'absorbing'"
+             : "bloch only 'method: yee' knows, in dvi run; for others take 'periodic'";
+}
+
+int refuse_grid(problem **scene)
+{
+  const int code = usage_error("%s: %s", (*scene)->name, grid_sentence(*scene));
   problem_destroy(scene);
-  if (is_large)
-    return usage_error("'%s' is a large grid, which only the method yee advances, in dvi run: take "
-                       "fewer cells, or 'method: leapfrog'",
-                       name);
-  return usage_error("'%s' has '%s', which only the method yee knows, in dvi run", name,
-                     is_flux                       ? "a flux through a box"
-                     : strcmp(reason, "wave") == 0 ? "a plane wave"
-                                                   : reason);
+  return code;
 }
 
 int open_problem(const char *name, const words *settings, problem **scene)
 {
   int code = open_any(name, settings, scene);
   if (code != DONE || *scene == NULL) return code;
-  if (dvi_scene_grid_only((*scene)->scene) != NULL) return refuse_grid(name, scene);
+  if (dvi_scene_grid_only((*scene)->scene) != NULL) return refuse_grid(scene);
   code = scene_complete(*scene);
   if (code != DONE) problem_destroy(scene);
   return code;
@@ -177,9 +183,9 @@ int open_wish(const char *command, const problem *scene, const char **method)
 {
   if (*method == NULL) *method = scene->method;
   if (*method != NULL) return DONE;
-  return usage_error(
-      "%s: --method is missing, for example --method galerkin:degree=4; see dvi list methods",
-      command);
+  return usage_error("%s: --method is missing, for example --method %s; see dvi list methods",
+                     command,
+                     dvi_scene_field(scene->scene) != NULL ? "leapfrog" : "galerkin:degree=4");
 }
 
 int refuse_noise(const char *command, const problem *scene)
@@ -259,15 +265,19 @@ static int refuse_method(const problem *scene, const char *method)
 {
   char hint[HINT_SIZE], sentence[MESSAGE_SIZE], message[2 * MESSAGE_SIZE];
   const bool has_field = dvi_scene_field(scene->scene) != NULL;
-  if (scene->scene != NULL && dvi_scene_marches(scene->scene, method))
+  if (dvi_scene_marches(scene->scene, method))
     return usage_error(
         "%s is a march of a field, for dvi run, check, explain, order and bench; a mechanical "
         "method such as verlet is wanted here",
         method);
   hint_at_method(method, has_field ? march_name_at : method_name_at, hint);
-  const bool said = strstr(dvi_last_error(), "did you mean") != NULL;
-  (void)snprintf(sentence, sizeof sentence, "%s: %s%s%s", method, dvi_last_error(),
-                 has_field ? "; fields have leapfrog, yee, bossavit-kettunen, avi and tents" : "",
+  const char *error = dvi_last_error(), *list = strstr(error, "; there are galerkin");
+  const bool said = strstr(error, "did you mean") != NULL, names = has_field && list != NULL;
+  (void)snprintf(sentence, sizeof sentence, "%s: %.*s%s%s", method,
+                 names ? (int)(list - error) : (int)strlen(error), error,
+                 names ? "; fields have leapfrog, yee on boxes, bossavit-kettunen, avi and tents, "
+                         "and take mechanical methods, see dvi list methods"
+                       : "",
                  said ? "" : hint);
   if (scene->scene == NULL || method != scene->method) return usage_error("--method %s", sentence);
   dvi_scene_tell(scene->scene, "method", sentence, message, sizeof message);

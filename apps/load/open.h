@@ -14,6 +14,12 @@ int open_problem(const char *name, const words *settings, problem **scene);
  * none. */
 int open_any(const char *name, const words *settings, problem **scene);
 
+/** Tell what of a scene's grid without a mesh only yee takes, and what helps. */
+const char *grid_sentence(const problem *scene);
+
+/** Refuse such a scene, and destroy it. Returns the exit code. */
+int refuse_grid(problem **scene);
+
 /** Do the same for a scene whose text was loaded before, or for the catalogue if there is no
  * text. */
 int open_text(const char *name, const scene_text *text, const words *settings, problem **scene);

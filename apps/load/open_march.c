@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli/command.h"
+#include "load/open.h"
 
 enum { MESSAGE_SIZE = 2048 };
 
@@ -70,14 +71,12 @@ static int refuse(dvi_status status, const problem *scene, const dvi_march_optio
 }
 
 /* A grid without a mesh has what no other method knows, or is too large for a mesh. */
-static int refuse_grid(const problem *scene, const char *method)
+static int refuse_method(const problem *scene, const char *method, bool is_own)
 {
   char sentence[MESSAGE_SIZE], message[MESSAGE_SIZE] = "";
-  const char *only = dvi_scene_grid_only(scene->scene);
-  const bool is_large = strcmp(only, "size") == 0, is_yee = strncmp(method, "yee:", 4) == 0;
-  (void)snprintf(sentence, sizeof sentence, "%s is for meshes, and %s%s only yee takes", method,
-                 is_large ? "so large a grid" : only, is_large ? "" : " is what");
-  if (is_yee) (void)snprintf(sentence, sizeof sentence, "yee has no options");
+  (void)snprintf(sentence, sizeof sentence, "%s: %s", method,
+                 strncmp(method, "yee:", 4) == 0 ? "yee has no options" : grid_sentence(scene));
+  if (!is_own) return usage_error("--method %s", sentence);
   dvi_scene_tell(scene->scene, "method", sentence, message, sizeof message);
   return usage_error("%s", message);
 }
@@ -91,6 +90,6 @@ int open_march(const problem *scene, const dvi_march_options *options, dvi_march
   const dvi_status status = dvi_scene_march_create(scene->scene, &asked, march);
   if (status == DVI_OK) return DONE;
   if (method != NULL && dvi_scene_grid_only(scene->scene) != NULL && strcmp(method, "yee") != 0)
-    return refuse_grid(scene, method);
+    return refuse_method(scene, method, asked.method == NULL);
   return refuse(status, scene, &asked);
 }

@@ -6,11 +6,6 @@
 
 #include "study/clock.h"
 
-bool field_marches(const problem *scene, const char *method)
-{
-  return scene->scene != NULL && dvi_scene_marches(scene->scene, method);
-}
-
 /* Look at the energy, the first observable. */
 static dvi_status look(const dvi_march *march, double *first, double *error)
 {

@@ -5,9 +5,6 @@
 
 #include "problem.h"
 
-/** Return whether a method is a march of the scene's field. */
-bool field_marches(const problem *scene, const char *method);
-
 /** The result of a march. */
 typedef struct field_motion_end {
   double steps, updates; /**< as dvi_march_facts counts them */

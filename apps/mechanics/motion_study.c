@@ -1,5 +1,6 @@
 #include "mechanics/motion_study.h"
 
+#include <dvi/scene.h>
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -265,7 +266,7 @@ int motion_study_init(motion_study *study, const judged_motion *motion, const ch
   const problem *scene = motion->scene;
   const double t_end = motion->t_end;
   *study = (motion_study){.motion = *motion};
-  if (field_marches(scene, method)) return init_march(study, method, name);
+  if (dvi_scene_marches(scene->scene, method)) return init_march(study, method, name);
   int code = open_paced(scene, method, how, &study->integrator);
   if (code != DONE) return code;
   double span;

@@ -1,5 +1,6 @@
 #include "watch/energy_watch.h"
 
+#include <dvi/scene.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -143,6 +144,11 @@ static bool has_affine_rows(const dvi_system_terms *terms)
   return false;
 }
 
+static bool is_damped_field(const problem *scene)
+{
+  return dvi_scene_field(scene->scene) != NULL && has_balances(scene);
+}
+
 bool energy_watch_start(energy_watch *w, const problem *scene, dvi_integrator *integrator,
                         double bound)
 {
@@ -153,9 +159,9 @@ bool energy_watch_start(energy_watch *w, const problem *scene, dvi_integrator *i
                       .passed = (double)NAN,
                       .blind = true};
   /* what noise exchanges with the bath is no measure of the errors of steps, which add up at
-   * random */
+   * random, and a field that leaves or is damped has soon no energy to measure them by */
   if (!dvi_system_autonomous(scene->system) || has_affine_rows(scene->terms) ||
-      scene->terms->noise != NULL)
+      scene->terms->noise != NULL || is_damped_field(scene))
     return true;
   w->room = calloc(2 * (nq + nv), sizeof *w->room);
   if (w->room == NULL) return library_error(DVI_NO_MEMORY) == DONE;

@@ -6,10 +6,9 @@
 #include <string.h>
 
 #include "cli/command.h"
-#include "cli/spelling.h"
+#include "csv/choice.h"
+#include "csv/table.h"
 #include "load/field.h"
-
-enum { HINT_SIZE = 128, LIST_SIZE = 256 };
 
 /* ---- what there is ---- */
 
@@ -56,53 +55,7 @@ static const char *name_at(int k, const void *list)
   return k < c->there ? c->all[k].name : NULL;
 }
 
-/* Return the place of a name of this length, or -1. */
-static int find(const field_columns *c, const char *name, size_t length)
-{
-  const char *known;
-  for (int i = 0; (known = name_at(i, c)) != NULL; i++)
-    if (strlen(known) == length && strncmp(known, name, length) == 0) return i;
-  return -1;
-}
-
 /* ---- what is shown ---- */
-
-/* Write the names that there are, as many as find room. */
-static void list_names(const field_columns *c, char *list)
-{
-  size_t length = 0;
-  const char *name;
-  list[0] = '\0';
-  for (int i = 0; (name = name_at(i, c)) != NULL && length < LIST_SIZE; i++)
-    length += (size_t)snprintf(list + length, LIST_SIZE - length, "%s%s", i > 0 ? ", " : "", name);
-}
-
-static int add_column(field_columns *c, const char *name, size_t length)
-{
-  char word[HINT_SIZE], hint[HINT_SIZE], list[LIST_SIZE];
-  const int place = find(c, name, length);
-  if (place >= 0) {
-    c->column[c->count++] = c->all[place];
-    return DONE;
-  }
-  (void)snprintf(word, sizeof word, "%.*s", (int)(length < HINT_SIZE ? length : HINT_SIZE - 1),
-                 name);
-  list_names(c, list);
-  return usage_error("run: --columns: this march has no column '%s'%s; it has %s", word,
-                     suggestion(word, name_at, c, hint, sizeof hint), list);
-}
-
-static int choose_asked(field_columns *c, const char *asked)
-{
-  int code = DONE;
-  while (code == DONE && asked != NULL) {
-    const size_t length = strcspn(asked, ",");
-    if (c->count >= c->there) return usage_error("run: --columns names a column twice");
-    code = add_column(c, asked, length);
-    asked = asked[length] == ',' ? asked + length + 1 : NULL;
-  }
-  return code;
-}
 
 /* The laws of charge take a look at the whole field, and are shown when they are asked for. */
 static bool is_usual(const char *name)
@@ -120,14 +73,30 @@ static void choose_usual(field_columns *c)
     if (is_usual(name)) c->column[c->count++] = c->all[i];
 }
 
-/* The scene's columns that a march has. A system may have more of them. */
-static void choose_of_scene(field_columns *c)
+/* Momenta of a wave are those of mechanical methods, which the scene wants without being told. */
+static bool is_momentum(const problem *scene, const char *name)
 {
-  for (int k = 0; k < c->scene->column_count && c->count < c->there; k++) {
-    const char *name = c->scene->column[k];
-    const int place = find(c, name, strlen(name));
-    if (place >= 0) c->column[c->count++] = c->all[place];
-  }
+  for (int i = 0; i < scene->terms->symmetry_count; i++)
+    if (strcmp(scene->terms->symmetries[i].name, name) == 0) return true;
+  return false;
+}
+
+/* Choose the columns "A,B,..", or those of the scene. */
+static int choose_named(field_columns *c, const char *asked)
+{
+  dvi_march_facts facts;
+  dvi_march_facts_of(c->march, &facts);
+  column_choice choice = {.scene = c->scene->name,
+                          .method = facts.method,
+                          .name_at = name_at,
+                          .list = c,
+                          .place = c->place};
+  int code = asked != NULL ? choice_add_all(&choice, asked) : DONE;
+  for (int i = 0; i < c->scene->column_count && asked == NULL && code == DONE; i++)
+    if (!is_momentum(c->scene, c->scene->column[i]))
+      code = choice_add(&choice, c->scene->column[i]);
+  for (int i = 0; i < choice.count; i++) c->column[c->count++] = c->all[c->place[i]];
+  return code;
 }
 
 int field_columns_choose(field_columns *columns, const problem *scene, const dvi_march *march,
@@ -136,20 +105,19 @@ int field_columns_choose(field_columns *columns, const problem *scene, const dvi
   *columns = (field_columns){.scene = scene, .march = march};
   bool good = list_all(columns);
   if (good) columns->column = calloc((size_t)columns->there + 1, sizeof *columns->column);
+  if (good) columns->place = calloc((size_t)columns->there + 1, sizeof *columns->place);
   if (good) columns->number = calloc((size_t)columns->there + 1, sizeof *columns->number);
   if (good && is_wave(columns))
     columns->form = calloc(
         (size_t)(2 * dvi_march_size(march, DVI_FORM_A) + 2 * count_unknowns(columns)),
         sizeof *columns->form);
-  if (!good || !columns->column || !columns->number || (is_wave(columns) && !columns->form)) {
+  if (!good || !columns->column || !columns->place || !columns->number ||
+      (is_wave(columns) && !columns->form)) {
     complain("out of memory");
     return FAILED;
   }
-  if (asked != NULL) return choose_asked(columns, asked);
-  if (scene->column_count > 0)
-    choose_of_scene(columns);
-  else
-    choose_usual(columns);
+  if (asked != NULL || scene->column != NULL) return choose_named(columns, asked);
+  choose_usual(columns);
   return DONE;
 }
 
@@ -157,6 +125,7 @@ void field_columns_clear(field_columns *columns)
 {
   free(columns->all);
   free(columns->column);
+  free(columns->place);
   free(columns->number);
   free(columns->form);
 }
@@ -166,7 +135,10 @@ void field_columns_clear(field_columns *columns)
 void field_columns_header(const field_columns *columns, FILE *stream)
 {
   (void)fputc('t', stream);
-  for (int i = 0; i < columns->count; i++) (void)fprintf(stream, ",%s", columns->column[i].name);
+  for (int i = 0; i < columns->count; i++) {
+    (void)fputc(',', stream);
+    csv_text(stream, columns->column[i].name);
+  }
   (void)fputc('\n', stream);
 }
 

@@ -19,6 +19,7 @@ typedef struct field_columns {
   const dvi_march *march;
   int there, count;
   field_column *all, *column; /**< [there], and the shown ones [count] */
+  int *place;                 /**< [count] places of the shown ones that were asked for */
   double *number;             /**< [count] as measured */
   double *form;               /**< room for the forms of a wave, NULL without invariants */
 } field_columns;

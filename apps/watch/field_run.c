@@ -1,7 +1,6 @@
 #include "watch/field_run.h"
 
 #include <dvi/scene.h>
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,12 +13,10 @@
 #include "watch/field_columns.h"
 #include "watch/field_trace.h"
 #include "watch/frames.h"
+#include "watch/run_end.h"
 
 /* Steps after which a signal and the progress are looked at. */
 enum { STEPS_AT_ONCE = 64 };
-
-static const char ended_again[] =
-    "dvi: run: a second Ctrl-C ended the run at once; FILEs not yet complete stay as they were\n";
 
 /* A run. A unit of time is a step, of asynchronous methods the longest one. */
 typedef struct journey {
@@ -128,9 +125,7 @@ static bool write_row(journey *j)
 {
   field_columns_row(&j->columns, j->out.stream);
   j->row_written = true;
-  if (!ferror(j->out.stream)) return write_frame(j);
-  if (j->out.path != NULL) complain("cannot write '%s': %s", j->out.path, strerror(errno));
-  return false;
+  return run_file_is_good(&j->out) && write_frame(j);
 }
 
 static bool look(journey *j, bool row)
@@ -203,19 +198,10 @@ static int travel(journey *j)
   if (saved != DVI_OK) good = library_error(saved) == DONE;
   if (!good) return FAILED;
   tell_events(j);
-  if (*j->caught == 0) return DONE;
-  complain("run: signal %d ended the run at t = %.17g of %g; the output is complete up to there",
-           (int)*j->caught, dvi_march_time(j->march), r->t_end);
-  if (r->checkpoint != NULL) complain("run: continue with --resume %s", r->checkpoint);
-  return 128 + (int)*j->caught;
+  return *j->caught == 0 ? DONE : run_interrupted(r, (int)*j->caught, dvi_march_time(j->march));
 }
 
 /* ---- files ---- */
-
-static bool keeps_files(int code)
-{
-  return code == DONE || code > CHECK_FAILED;
-}
 
 static int start_frames(journey *j)
 {
@@ -236,9 +222,10 @@ static int write_files(journey *j)
   int code = FAILED;
   if (r->plot != NULL && !field_trace_start(&j->trace, &j->columns)) return FAILED;
   if (file_open(&j->out, r->out)) code = travel(j);
-  if (keeps_files(code) && !file_keep(&j->out)) code = FAILED;
-  if (keeps_files(code) && !frames_keep(&j->frames)) code = FAILED;
-  if (keeps_files(code) && r->plot != NULL && !field_trace_plot(&j->trace, r->plot)) code = FAILED;
+  if (run_keeps_files(code) && !file_keep(&j->out)) code = FAILED;
+  if (run_keeps_files(code) && !frames_keep(&j->frames)) code = FAILED;
+  if (run_keeps_files(code) && r->plot != NULL && !field_trace_plot(&j->trace, r->plot))
+    code = FAILED;
   file_discard(&j->out);
   return code;
 }
@@ -246,15 +233,13 @@ static int write_files(journey *j)
 int field_run(run_request *request, const problem *scene)
 {
   journey j = {.request = request, .scene = scene};
-  if (isnan(request->t_end) && !(scene->t_end > 0))
-    return usage_error("run: %s has no section until, so that --t-end is needed", scene->name);
   if (isnan(request->t_end)) request->t_end = scene->t_end;
   if (request->every == 0) request->every = scene->every > 0 ? scene->every : 1;
   int code = refuse_options(request);
   if (code == DONE) code = make_march(&j);
   if (code == DONE) code = field_columns_choose(&j.columns, scene, j.march, request->columns);
   if (code == DONE && request->pvd != NULL) code = start_frames(&j);
-  j.caught = signals_note(ended_again);
+  j.caught = signals_note(run_ended_again);
   if (code == DONE) code = write_files(&j);
   field_trace_clear(&j.trace);
   field_columns_clear(&j.columns);

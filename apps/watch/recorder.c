@@ -1,7 +1,6 @@
 #include "watch/recorder.h"
 
 #include <dvi/scene.h>
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,6 +15,7 @@
 #include "cli/file.h"
 #include "load/field.h"
 #include "watch/frames.h"
+#include "watch/run_end.h"
 #include "cli/progress.h"
 #include "cli/signals.h"
 #include "plot/trace.h"
@@ -47,17 +47,6 @@ typedef struct recorder {
   const volatile sig_atomic_t *caught; /* signal that ends the run after its step, or 0 */
 } recorder;
 
-static const char ended_again[] =
-    "dvi: run: a second Ctrl-C ended the run at once; FILEs not yet complete stay as they were\n";
-
-/* Check a file. main complains about standard output. */
-static bool stream_is_good(const whole_file *file)
-{
-  if (!ferror(file->stream)) return true;
-  if (file->path != NULL) complain("cannot write '%s': %s", file->path, strerror(errno));
-  return false;
-}
-
 /* Write the field of a state, in its cells if it is Maxwell's. */
 static bool recorder_write_frame(recorder *r, const dvi_integrator *integrator)
 {
@@ -76,7 +65,7 @@ static bool recorder_write_row(recorder *r, dvi_integrator *integrator)
 {
   columns_row(&r->columns, integrator, r->out.stream);
   r->row_written = true;
-  return stream_is_good(&r->out) && recorder_write_frame(r, integrator);
+  return run_file_is_good(&r->out) && recorder_write_frame(r, integrator);
 }
 
 /* Write an event that was found. */
@@ -85,7 +74,7 @@ static int recorder_write_event(int index, double t, const double *q, const doub
   recorder *r = user;
   if (r->events_out.stream == NULL) return 0;
   events_row(r->scene, r->events.event[index].name, t, q, v, r->events_out.stream);
-  r->stop_silently = !stream_is_good(&r->events_out);
+  r->stop_silently = !run_file_is_good(&r->events_out);
   return r->stop_silently ? -1 : 0;
 }
 
@@ -107,7 +96,7 @@ static bool recorder_write_hits(recorder *r, dvi_integrator *integrator)
     if (good) events_row(r->scene, name, hit.t, q, v, r->events_out.stream);
   }
   free(q);
-  return good && stream_is_good(&r->events_out);
+  return good && run_file_is_good(&r->events_out);
 }
 
 static void tell_hits(const recorder *r)
@@ -184,14 +173,6 @@ static long step_number(const dvi_integrator *integrator, double t, double h)
   return steps > 0.0 && steps < 1e15 && fabs(steps - round(steps)) < 1e-6 ? lround(steps) : 0;
 }
 
-static void report_interrupted(const recorder *r)
-{
-  complain("run: signal %d ended the run at t = %.17g of %g; the output is complete up to there",
-           (int)*r->caught, r->t, r->request->t_end);
-  if (r->request->checkpoint != NULL)
-    complain("run: continue with --resume %s", r->request->checkpoint);
-}
-
 /* Report the steps of methods that choose them, and the jumps of the energy. */
 static void report_steps(const recorder *r, const dvi_integrator *integrator)
 {
@@ -244,14 +225,8 @@ static int recorder_advance(recorder *r, dvi_integrator *integrator)
   if (r->stop_silently) return FAILED;
   const bool complete = (status != DVI_OK && request->final) || write_last_row(r, integrator);
   if (status != DVI_OK) return code;
-  if (*r->caught != 0) report_interrupted(r);
-  return !complete ? FAILED : *r->caught != 0 ? 128 + (int)*r->caught : DONE;
-}
-
-/* Return whether the output is kept. Only a failure that cut it short discards it. */
-static bool recorder_keeps_files(int code)
-{
-  return code == DONE || code > CHECK_FAILED;
+  const int ended = *r->caught != 0 ? run_interrupted(request, (int)*r->caught, r->t) : DONE;
+  return complete ? ended : FAILED;
 }
 
 static int write_files(recorder *r, dvi_integrator *integrator)
@@ -266,11 +241,10 @@ static int write_files(recorder *r, dvi_integrator *integrator)
   if (file_open(&r->out, request->out) &&
       (request->events == NULL || file_open(&r->events_out, request->events)))
     code = recorder_advance(r, integrator);
-  if (recorder_keeps_files(code) && !file_keep(&r->out)) code = FAILED;
-  if (recorder_keeps_files(code) && request->events != NULL && !file_keep(&r->events_out))
-    code = FAILED;
-  if (recorder_keeps_files(code) && !frames_keep(&r->frames)) code = FAILED;
-  if (recorder_keeps_files(code) && request->plot != NULL && !trace_plot(&r->trace, request->plot))
+  if (run_keeps_files(code) && !file_keep(&r->out)) code = FAILED;
+  if (run_keeps_files(code) && request->events != NULL && !file_keep(&r->events_out)) code = FAILED;
+  if (run_keeps_files(code) && !frames_keep(&r->frames)) code = FAILED;
+  if (run_keeps_files(code) && request->plot != NULL && !trace_plot(&r->trace, request->plot))
     code = FAILED;
   file_discard(&r->out);
   file_discard(&r->events_out);
@@ -280,7 +254,7 @@ static int write_files(recorder *r, dvi_integrator *integrator)
 
 static int recorder_start_frames(recorder *r)
 {
-  r->field = r->scene->scene != NULL ? dvi_scene_field(r->scene->scene) : NULL;
+  r->field = dvi_scene_field(r->scene->scene);
   const dvi_mesh *mesh = r->field != NULL ? field_mesh(r->field) : NULL;
   const int code = frames_start(&r->frames, r->scene->name, mesh, r->request->pvd);
   if (code != DONE) return code;
@@ -300,7 +274,7 @@ int record(const run_request *request, const problem *scene, dvi_integrator *int
   if (code == DONE &&
       !energy_watch_start(&r.watch, scene, integrator, energy_bound(scene, request->method)))
     code = FAILED;
-  r.caught = signals_note(ended_again);
+  r.caught = signals_note(run_ended_again);
   if (code == DONE)
     code = events_list(&r.events, scene, recorder_write_event, &r) ? write_files(&r, integrator)
                                                                    : FAILED;

@@ -212,7 +212,7 @@ mesh: {generator: disk}
 field: wave
 source: 1/x
 END
-refuse 'a density that is not positive' 'not a positive number' <<END
+refuse 'a density that is not positive' 'rho is -0.0625 in cell 2, where a number above 0' <<END
 mesh: {generator: disk}
 field: wave
 materials: {all: {rho: x}}

@@ -33,9 +33,9 @@ refuse 'a negative conductivity' 4:26 'sigma is -0.4 in cell 0, where a number o
 materials: {all: {sigma: x - 0.5}}"
 refuse 'a permittivity that is no number' 4:18 'eps is inf in cell 0' "$solid
 materials: {eps: 1/(x - x)}"
-refuse 'a material of waves' 4:13 "no 'rho'" "$solid
+refuse 'a material of waves' 4:13 "no 'rho'; it has eps, mu and sigma" "$solid
 materials: {rho: 1}"
-refuse 'a part that is none' 4:13 "no part 'core' of cells; its parts are all, boundary" "$solid
+refuse 'a part that is none' 4:13 "no part 'core' of cells; it has all$" "$solid
 materials: {core: {eps: 2}}"
 refuse 'a material of a wall' 4:13 "no part 'left' of cells" "$solid
 materials: {left: {eps: 2}}"
@@ -51,23 +51,35 @@ boundary: {cpml: 2}"
 
 # ---- walls ----
 
-refuse 'a wall that is none' 4:12 "no part 'lid'; its parts are" "$solid
+refuse 'a wall that is none' 4:12 "no part 'lid'; it has all, boundary, left" "$solid
 boundary: {lid: pec}"
-refuse 'a wall of a grid that is none' 5:29 "a grid has no wall 'front'; it has boundary" "$grid
+refuse 'a wall of a grid that is none' 5:29 \
+  "no wall 'front'; it has boundary, left, right, bottom and top$" "$grid
 boundary: {left: {cpml: 2}, front: pec}"
-refuse 'another wall' 4:11 'a wall is pmc, pec, absorbing or periodic' "$solid
+words='a wall is pec, pmc, absorbing, periodic, {cpml: layers} or {bloch: phase}'
+refuse 'another wall' 4:11 "$words" "$solid
 boundary: glass"
-refuse 'a wall of waves' 4:19 'a wall is pmc' "$solid
+refuse 'layers without their number' 4:11 "$words" "$solid
+boundary: cpml"
+refuse 'a wall of waves' 4:19 "$words" "$solid
 boundary: {right: fixed}"
+refuse 'a slip of cpml' 4:17 "$words" "$solid
+boundary: {cpm: 3}"
+refuse 'another wall of a side' 5:19 "a wall has no 'depth'; it has cpml and bloch" "$grid
+boundary: {left: {depth: 3}}"
+refuse 'a wall that repeats nothing' 4:12 "a grid has no wall 'lid'" "$solid
+boundary: {lid: periodic}"
+refuse 'layers beside sides' 5:11 "as in '{boundary: {cpml: 10}, left: pec}'" "$grid
+boundary: {cpml: 2, left: pec}"
 refuse 'no layers' 5:18 'cpml is a whole number from 1' "$grid
 boundary: {cpml: 0}"
 refuse 'layers thicker than the box' 5:11 '8 boxes, and its absorbing layers take 10' "$grid
 boundary: {cpml: 5}"
-refuse 'two walls in one' 5:18 'a wall is pec, pmc, periodic, absorbing, {cpml' "$grid
+refuse 'two walls in one' 5:18 'stand alone' "$grid
 boundary: {left: {cpml: 3, bloch: 1}}"
 refuse 'layers on simplices' 4:11 'layers and phases are for .method: yee. on boxes' "$flat
 boundary: {cpml: 2}"
-refuse 'layers by leapfrog' 4:9 'leapfrog is for meshes, and cpml is what only yee takes' "$solid
+refuse 'layers by leapfrog' 4:9 "cpml only 'method: yee' knows, .* take 'absorbing'" "$solid
 method: leapfrog
 boundary: {cpml: 1}"
 refuse 'a phase at one end' 5:11 'repeats itself at one end only' "$grid
@@ -104,6 +116,12 @@ refuse 'a polarization in space' 4:15 'in two dimensions, and the mesh has 3' "$
 polarization: te"
 refuse 'another polarization' 4:15 'a polarization is te or tm' "$flat
 polarization: left"
+
+for key in size origin grading; do
+  refuse "a $key of one axis" 1:$((41 + ${#key})) "$key has a number for each axis .* 2 axes" \
+    "mesh: {generator: box, cells: [8, 8], $key: 2}
+field: maxwell"
+done
 
 # ---- sources ----
 
@@ -149,7 +167,7 @@ sources: {a: {wave: [0, 0], from: [0.3, 0.3], to: [0.6, 0.6], signal: sin(t)}}"
 refuse 'a probe outside' 4:18 'the probe is outside of the mesh' "$solid
 probes: {a: {at: [2, 0, 0]}}"
 refuse 'a probe outside of a grid' 5:9 'probe 0 is at x = 3, outside' "$grid
-probes: {a: {at: [3, 0]}}
+probes: {a: {at: [3, 0.5]}}
 boundary: {cpml: 2}"
 refuse 'a probe of two coordinates' 4:18 'a probe has 3 coordinates here' "$solid
 probes: {a: {at: [0.2, 0.1]}}"
@@ -163,15 +181,33 @@ refuse 'a flux through no part' 4:9 'part "lid", which the mesh has not' "$solid
 probes: {a: {flux: lid}}"
 refuse 'the energy of a wall' 4:9 'part "left", which has no cells' "$solid
 probes: {a: {energy: left}}"
-refuse 'a flux through a part of a grid' 5:10 'a grid has no parts' "$grid
+refuse 'a flux through a part of a grid' 5:10 "with 'cpml' there is a grid; write 'flux: {" "$grid
 probes: {a: {flux: left}}
 boundary: {cpml: 2}"
+refuse 'a part of a large grid' 5:10 "or 'method: leapfrog', which makes a mesh" \
+  'mesh: {generator: box, cells: [600, 600]}
+field: maxwell
+until: 1
+method: yee
+probes: {a: {flux: left}}'
+refuse 'a probe in a layer' 5:10 "'a_x' lies in .*layers, .* y goes from 0.25 to 0.75" "$grid
+probes: {a: {at: [0.5, 0.2]}}
+boundary: {cpml: 2}"
+refuse 'a flux through a layer' 5:10 "'a' lies in absorbing layers, .* x goes from 0 to 0.75" "$grid
+probes: {a: {flux: {from: [0.1, 0.3], to: [0.8, 0.5]}}}
+boundary: {boundary: {cpml: 2}, left: pec}"
+printf '%s\n' "$grid" 'probes: {a: {flux: {from: [0, 0.25], to: [0.75, 0.75]}}}' \
+  'boundary: {boundary: {cpml: 2}, left: pec}' >between.yaml
+expect 0 'a flux between the layers' check between.yaml
 refuse 'two columns of one name' 4:36 "a column 'a_x' already" "$solid
 probes: {a: {at: [0.2, 0.1, 0.1]}, a_x: {at: [0.2, 0.1, 0.1], along: [1, 0, 0]}}"
 for name in t energy gauss charge divergence growth A_1 p_A_2; do
   refuse "a probe named $name" 4:10 "a column '$name' already" "$solid
 probes: {$name: {at: [0.2, 0.1, 0.1], along: [1, 0, 0]}}"
 done
+refuse 'a probe of a grid named energy' 5:10 "a column 'energy' already" "$grid
+probes: {energy: {at: [0.5, 0.5], along: [1, 0]}}
+boundary: {cpml: 2}"
 printf '%s\n' "$solid" 'probes: {A_loop: {at: [0.2, 0.1, 0.1], along: [1, 0, 0]}}' >loop.yaml
 expect 0 'a probe named A_loop' check loop.yaml
 refuse 'points of a surface' 4:18 'located among cells that fill their space' \
@@ -188,7 +224,7 @@ refuse 'a B with a divergence' 4:10 'it has a divergence, passes through an elec
 initial: {B: [x, 0, 0]}"
 refuse 'an E of one component' 4:14 'E has 3 components here' "$solid
 initial: {E: 1}"
-refuse 'the start of a wave' 4:11 "the start of a field has no 'u'" "$solid
+refuse 'the start of a wave' 4:11 "the start of a field has no 'u'; it has E, B and A" "$solid
 initial: {u: 1}"
 refuse 'a start that is not finite' 4:10 'the start is not finite at (0.00' "$solid
 initial: {E: [1/(x - x), 0, 0]}"
@@ -223,9 +259,15 @@ done
 refuse 'a fraction of 0' 5:18 'fraction must be positive, and is 0' "$solid
 method: leapfrog
 step: {fraction: 0}"
-refuse 'a step of another kind' 5:8 "a step has no 'part'" "$solid
+refuse 'a step of another kind' 5:8 "a step has no 'part'; it has fraction" "$solid
 method: leapfrog
 step: {part: 0.5}"
+refuse 'a step by a word' 5:7 "'auto' is no parameter; a step is a number, or" "$solid
+method: leapfrog
+step: auto"
+refuse 'a list of steps' 5:7 "a step is a number, or '{fraction: 0.5}'" "$solid
+method: leapfrog
+step: [0.1, 0.2]"
 refuse 'a step beyond the bound' 5:7 'the step 0.5 is not below the bound 0.1154.*near (0.8' "$solid
 method: leapfrog
 step: 0.5"
@@ -255,6 +297,19 @@ refuse 'an option of a grid' 3:9 'yee has no options' 'mesh: {generator: box, ce
 field: maxwell
 method: yee:x=1
 boundary: {cpml: 2}'
+for method in leapfrog verlet; do
+  printf '%s\n' "$flat" "method: $method" 'step: 0.01' | sed '/^until/d' >bare.yaml
+  expect 2 "no end of $method" run bare.yaml
+  says err 'has no section until, so that --t-end is needed' "no end of $method"
+done
+printf '%s\n' "$flat" 'method: verlet' >bare.yaml
+expect 2 'no step' run bare.yaml
+says err "bare by verlet needs a step, by --h or in the scene, as in 'step: {fraction" 'no step'
+printf '%s\n' "$flat" 'step: 0.01' >bare.yaml
+expect 2 'no method' run bare.yaml
+says err 'is missing, for example --method leapfrog' 'no method'
+expect 2 'a method that is none' run bare.yaml --method fdtd
+says err "unknown method 'fdtd'; fields have leapfrog, yee" 'a method that is none'
 refuse 'a method that is none' 4:9 "unknown method 'leapfrg'.*(did you mean 'leapfrog'?)" "$flat
 method: leapfrg"
 printf '%s\n' "$flat" 'method: leapfrog' 'step: 0.01' \
@@ -287,7 +342,17 @@ no 'finite number' --h nan
 no 'whole number' --threads 0
 no 'ends in .pvd' --pvd fields.vtu
 no 'needs --checkpoint' --checkpoint-every 3
-no "no column 'ear'" --columns ear
+no "no column 'ear'; it has energy" --columns ear
+no "column 'energy' is asked for twice" --columns energy,energy
+for method in leapfrog yee verlet; do
+  expect 0 "the column t of $method" run run.yaml --method $method --h 0.05 --columns t,energy
+  says out '^t,energy$' "the column t of $method"
+done
+refuse 'a column that is none' 5:20 "no column 'loudness'; it has energy, .* and ear" "$flat
+probes: {ear: {of: B, at: [0.5, 0.3]}}
+report: {columns: [loudness]}"
+refuse 'a column of no unknown' 4:20 "no column 'A_999'" "$flat
+report: {columns: [A_999]}"
 for method in leapfrog yee; do
   expect 1 "a step of $method beyond the bound" run run.yaml --method $method --h 3
   says err 'the step 3 is not below the bound 0.1154.* \(near\|at\) (0' 'the bound and a place'
@@ -304,7 +369,7 @@ for command in modes stability solve explain 'order --method verlet'; do
   subcommand=$1
   shift
   expect 2 "$subcommand of a grid" "$subcommand" grid.yaml "$@"
-  says err 'which only the method yee knows' "$subcommand of a grid"
+  says err "cpml only 'method: yee' knows" "$subcommand of a grid"
 done
 expect 2 'a grid by verlet' run grid.yaml --method verlet --h 0.01
 finish

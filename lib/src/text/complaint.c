@@ -10,9 +10,10 @@
 #include <string.h>
 
 enum {
-  SHOWN = 114,    /* most characters of a line */
-  BEFORE = 70,    /* most characters before the caret, where the line is cut */
-  WORD_MAX = 63,  /* most letters of words that are compared */
+  SHOWN = 114,   /* most characters of a line */
+  BEFORE = 70,   /* most characters before the caret, where the line is cut */
+  WORD_MAX = 63, /* most letters of words that are compared */
+  LISTED_MOST = 12,
   SENTENCE = 1024 /* in bytes */
 };
 
@@ -270,5 +271,30 @@ const char *dvi__nearest(const char *word, int count, const char *const *candida
     nearest = candidate[k];
   }
   if (nearest != NULL) (void)snprintf(hint, size, "; did you mean %s?", nearest);
+  return hint;
+}
+
+const char *dvi__list_words(int count, const char *const *word, const char *last, char *list,
+                            size_t size)
+{
+  size_t length = 0;
+  list[0] = '\0';
+  for (int k = 0; k < count && length < size; k++)
+    length += (size_t)snprintf(list + length, size - length, "%s%s",
+                               k == 0          ? ""
+                               : k + 1 < count ? ", "
+                                               : last,
+                               word[k]);
+  return list;
+}
+
+const char *dvi__nearest_or_all(const char *word, int count, const char *const *candidate,
+                                char *hint, size_t size)
+{
+  static const char has[] = "; it has ";
+  if (dvi__nearest(word, count, candidate, hint, size)[0] != '\0' || count > LISTED_MOST)
+    return hint;
+  (void)snprintf(hint, size, "%s", has);
+  (void)dvi__list_words(count, candidate, " and ", hint + sizeof has - 1, size - (sizeof has - 1));
   return hint;
 }

@@ -78,4 +78,13 @@ void dvi__source_place(const dvi__source *source, size_t offset, int *line, int 
 const char *dvi__nearest(const char *word, int count, const char *const *candidate, char *hint,
                          size_t size);
 
+/* Write the words [count] to `list` [size], with commas between them and `last`, such as " or ",
+ * before the last one. What finds no room is cut. Returns `list`. */
+const char *dvi__list_words(int count, const char *const *word, const char *last, char *list,
+                            size_t size);
+
+/* As dvi__nearest, but "; it has A, B and C" if none is near and they are no more than a dozen. */
+const char *dvi__nearest_or_all(const char *word, int count, const char *const *candidate,
+                                char *hint, size_t size);
+
 #endif

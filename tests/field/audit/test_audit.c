@@ -5,17 +5,9 @@
 #include <string.h>
 
 #include "num/eigen.h"
+#include "support/field/generated.h"
 #include "support/meshes.h"
 #include "support/suite.h"
-
-static dvi_mesh *generated(const char *name, const dvi_generator_options *sizes)
-{
-  dvi_mesh *mesh = NULL;
-  dvi_generator_options options = *sizes;
-  options.size = sizeof options;
-  ck_assert_msg(dvi_mesh_generate(name, &options, &mesh) == DVI_OK, "%s", dvi_last_error());
-  return mesh;
-}
 
 static dvi_mesh_report audited(const dvi_mesh *mesh)
 {
@@ -52,7 +44,7 @@ START_TEST(good_meshes_are_manifolds)
     dvi_generator_options options = {.dimension = meshes[i].dimension};
     const int count = meshes[i].dimension > 0 ? meshes[i].dimension : 1;
     for (int a = 0; a < count; a++) options.cells[a] = count == 4 ? 2 : 3;
-    dvi_mesh *mesh = generated(meshes[i].name, &options);
+    dvi_mesh *mesh = generated(meshes[i].name, options);
     const dvi_mesh_report report = audited(mesh);
     ck_assert_msg(report.is_manifold && report.is_orientable, "%s", meshes[i].name);
     ck_assert_int_eq(report.pinches, 0);
@@ -146,7 +138,7 @@ END_TEST
 
 START_TEST(kuhn_simplices_have_duals_that_vanish)
 {
-  dvi_mesh *mesh = generated("kuhn", &(dvi_generator_options){.cells = {2, 2, 2}});
+  dvi_mesh *mesh = generated("kuhn", (dvi_generator_options){.cells = {2, 2, 2}});
   const dvi_mesh_report report = audited(mesh);
   ck_assert_int_eq(report.degree[1].count, 98);
   ck_assert_int_eq(report.degree[1].zero, 44);
@@ -162,7 +154,7 @@ END_TEST
 /* On squares of edge h the fastest motion has alternating signs: omega = sqrt(8)/h. */
 START_TEST(squares_have_a_known_step)
 {
-  dvi_mesh *mesh = generated("box", &(dvi_generator_options){.cells = {16, 16}});
+  dvi_mesh *mesh = generated("box", (dvi_generator_options){.cells = {16, 16}});
   const dvi_mesh_report report = audited(mesh);
   const double omega = sqrt(8) * 16;
   ck_assert(report.degree[0].fastest >= omega && report.degree[0].fastest < 1.001 * omega);
@@ -351,7 +343,7 @@ END_TEST
 START_TEST(surfaces_are_flipped_too)
 {
   int64_t flips;
-  dvi_mesh *mesh = generated("torus", &(dvi_generator_options){.cells = {30, 6}}), *flipped = NULL;
+  dvi_mesh *mesh = generated("torus", (dvi_generator_options){.cells = {30, 6}}), *flipped = NULL;
   ck_assert_msg(dvi_mesh_flip(mesh, &flipped, &flips) == DVI_OK, "%s", dvi_last_error());
   ck_assert_int_eq(audited(flipped).degree[1].negative, 0);
   dvi_mesh_destroy(&flipped);
@@ -380,7 +372,7 @@ END_TEST
 START_TEST(rough_spheres_are_flipped)
 {
   for (unsigned long long seed = 1; seed <= 20; seed++) {
-    dvi_mesh *sphere = generated("icosphere", &(dvi_generator_options){.cells = {2}}),
+    dvi_mesh *sphere = generated("icosphere", (dvi_generator_options){.cells = {2}}),
              *flipped = NULL;
     const int points = (int)dvi_mesh_count(sphere, 0), cells = (int)dvi_mesh_count(sphere, 2);
     double *x = malloc((size_t)points * 3 * sizeof *x);
@@ -447,7 +439,7 @@ START_TEST(kuhn_simplices_become_boxes)
     dvi_generator_options options = {.dimension = n};
     for (int a = 0; a < n; a++) options.cells[a] = 2 + (a == 0);
     for (int a = 0; a < n; a++) options.extent[a] = 1 + a;
-    dvi_mesh *simplices = generated("kuhn", &options), *boxes = generated("box", &options),
+    dvi_mesh *simplices = generated("kuhn", options), *boxes = generated("box", options),
              *glued = NULL;
     ck_assert_msg(dvi_mesh_glue(simplices, &glued) == DVI_OK, "%s", dvi_last_error());
     ck_assert_int_eq(dvi_mesh_kind(glued), DVI_BOXES);
@@ -473,7 +465,7 @@ END_TEST
 
 START_TEST(tori_are_glued)
 {
-  dvi_mesh *mesh = generated("kuhn-torus", &(dvi_generator_options){.cells = {3, 4, 5}}),
+  dvi_mesh *mesh = generated("kuhn-torus", (dvi_generator_options){.cells = {3, 4, 5}}),
            *glued = NULL;
   int64_t betti[4];
   ck_assert_msg(dvi_mesh_glue(mesh, &glued) == DVI_OK, "%s", dvi_last_error());
@@ -487,8 +479,8 @@ END_TEST
 
 START_TEST(repairs_that_are_impossible_are_refused)
 {
-  dvi_mesh *kuhn = generated("kuhn", &(dvi_generator_options){.cells = {2, 2, 2}}),
-           *disk = generated("disk", &(dvi_generator_options){.cells = {3}}), *made = NULL;
+  dvi_mesh *kuhn = generated("kuhn", (dvi_generator_options){.cells = {2, 2, 2}}),
+           *disk = generated("disk", (dvi_generator_options){.cells = {3}}), *made = NULL;
   dvi_mesh_report report;
   ck_assert_int_eq(dvi_mesh_flip(kuhn, &made, NULL), DVI_UNSUPPORTED);
   ck_assert_int_eq(dvi_mesh_glue(disk, &made), DVI_UNSUPPORTED);

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "support/field/marches.h"
 #include "support/meshes.h"
 #include "support/field/steps.h"
 #include "support/suite.h"
@@ -78,31 +79,10 @@ static void at_rest(dvi_march *march)
   ck_assert_msg(dvi_march_start(march, &state) == DVI_OK, "%s", dvi_last_error());
 }
 
-static void advance(dvi_march *march, double t)
-{
-  ck_assert_msg(dvi_march_advance(march, t) == DVI_OK, "%s", dvi_last_error());
-}
-
-static double observe(const dvi_march *march, const char *name)
-{
-  double value = NAN;
-  for (int i = 0; dvi_march_observable(march, i) != NULL; i++)
-    if (strcmp(dvi_march_observable(march, i), name) == 0)
-      ck_assert_msg(dvi_march_observe(march, i, &value) == DVI_OK, "%s", dvi_last_error());
-  return value;
-}
-
-static double *sampled(const dvi_march *march, dvi_march_form form)
-{
-  double *values = calloc((size_t)dvi_march_size(march, form), sizeof *values);
-  ck_assert_int_eq(dvi_march_sample(march, form, 0, NULL, values), DVI_OK);
-  return values;
-}
-
 /* The largest difference of two marches beside the largest value. */
 static double distance(const dvi_march *a, const dvi_march *b, dvi_march_form form)
 {
-  double *of_a = sampled(a, form), *of_b = sampled(b, form), worst = 0, largest = 0;
+  double *of_a = sample_march(a, form), *of_b = sample_march(b, form), worst = 0, largest = 0;
   for (int64_t i = 0; i < dvi_march_size(a, form); i++) {
     worst = fmax(worst, fabs(of_a[i] - of_b[i]));
     largest = fmax(largest, fabs(of_a[i]));
@@ -131,8 +111,8 @@ START_TEST(equal_boxes_move_as_by_leapfrog)
     ck_assert_str_eq(facts.method, "avi");
     start(avi);
     start(leapfrog);
-    advance(avi, 200 * 0.03);
-    advance(leapfrog, 200 * 0.03);
+    advance_march(avi, 200 * 0.03);
+    advance_march(leapfrog, 200 * 0.03);
     ck_assert_double_lt(distance(avi, leapfrog, DVI_FORM_E), 1e-13);
     ck_assert_double_lt(distance(avi, leapfrog, DVI_FORM_B), 1e-13);
     dvi_march_destroy(&avi), dvi_march_destroy(&leapfrog);
@@ -159,14 +139,15 @@ START_TEST(a_dipole_is_heard_as_by_leapfrog)
   at_rest(judge);
   for (int i = 0; i < 3; i++) at_rest(avi[i]);
   for (int n = 1; n <= 60; n++) {
-    advance(judge, n * 0.05);
-    const double exact = observe(judge, "ear");
+    advance_march(judge, n * 0.05);
+    const double exact = observe_march(judge, "ear");
     largest = fmax(largest, fabs(exact));
     for (int i = 0; i < 3; i++) {
-      advance(avi[i], n * 0.05);
-      worst[i] = fmax(worst[i], fabs(observe(avi[i], "ear") - exact));
-      ck_assert_double_lt(observe(avi[i], "gauss"), 1e-13);
-      ck_assert_double_lt(observe(avi[i], "growth"), 1.2); /* work in quadratures of a pulse */
+      advance_march(avi[i], n * 0.05);
+      worst[i] = fmax(worst[i], fabs(observe_march(avi[i], "ear") - exact));
+      ck_assert_double_lt(observe_march(avi[i], "gauss"), 1e-13);
+      ck_assert_double_lt(observe_march(avi[i], "growth"),
+                          1.2); /* work in quadratures of a pulse */
     }
   }
   ck_assert_msg(largest > 0.01 && worst[0] < 0.04 * largest && worst[1] < 0.02 * largest &&
@@ -234,8 +215,8 @@ static double unrest(const sheet *s, const char *method, double fraction)
   const dvi_march_state state = {.size = sizeof state, .A = s->u};
   ck_assert_int_eq(dvi_march_start(march, &state), DVI_OK);
   for (int n = 1; n <= 40; n++) {
-    advance(march, 0.137 * n);
-    double *moved = sampled(march, DVI_FORM_A);
+    advance_march(march, 0.137 * n);
+    double *moved = sample_march(march, DVI_FORM_A);
     for (int64_t v = 0; v < s->vertices; v++) worst = fmax(worst, fabs(moved[v] - s->u[v]));
     free(moved);
   }
@@ -261,13 +242,13 @@ START_TEST(a_loaded_sheet_keeps_its_energy)
   dvi_march *march = march_of(s.field, (dvi_march_options){.method = "avi", .fraction = 0.2});
   dvi_march_state state = {.size = sizeof state, .A = s.u};
   ck_assert_int_eq(dvi_march_start(march, &state), DVI_OK);
-  const double rest = observe(march, "energy");
+  const double rest = observe_march(march, "energy");
   at_rest(march);
-  const double begin = observe(march, "energy");
+  const double begin = observe_march(march, "energy");
   ck_assert_double_gt(begin - rest, 0.01);
   for (int n = 1; n < 100; n++) {
-    advance(march, 0.37 * n);
-    ck_assert_double_eq_tol(observe(march, "energy"), begin, 0.04 * (begin - rest));
+    advance_march(march, 0.37 * n);
+    ck_assert_double_eq_tol(observe_march(march, "energy"), begin, 0.04 * (begin - rest));
   }
   dvi_march_destroy(&march);
   end_sheet(&s);
@@ -286,11 +267,11 @@ START_TEST(a_saved_march_goes_on_with_the_same_bits)
     const dvi_march_options options = {.method = methods[i], .fraction = 0.3};
     dvi_march *whole = march_of(field, options), *other = march_of(field, options);
     start(whole);
-    advance(whole, 0.77);
+    advance_march(whole, 0.77);
     ck_assert_msg(dvi_march_save(whole, path) == DVI_OK, "%s", dvi_last_error());
     ck_assert_msg(dvi_march_load(other, path) == DVI_OK, "%s", dvi_last_error());
-    advance(whole, 1.9);
-    advance(other, 1.9);
+    advance_march(whole, 1.9);
+    advance_march(other, 1.9);
     ck_assert(distance(whole, other, DVI_FORM_E) == 0);
     ck_assert(distance(whole, other, DVI_FORM_B) == 0);
     dvi_march *leapfrog = march_of(field, (dvi_march_options){.fraction = 0.3});
@@ -363,7 +344,7 @@ START_TEST(growth_is_a_status_and_an_observable)
   start(march);
   ck_assert_int_eq(dvi_march_advance(march, 1e4), DVI_STEP_TOO_LARGE);
   check_words("resonance");
-  ck_assert_double_gt(observe(march, "growth"), 1.5);
+  ck_assert_double_gt(observe_march(march, "growth"), 1.5);
   ck_assert_double_lt(dvi_march_time(march), 1e4);
   dvi_march_destroy(&march);
   dvi_field_destroy(&field);
@@ -381,7 +362,7 @@ START_TEST(currents_on_conductors_push_nothing)
                               (dvi_march_options){.method = _i == 0 ? "avi" : "avi:classes=no"});
   at_rest(march);
   ck_assert_msg(dvi_march_advance(march, 2) == DVI_OK, "%s", dvi_last_error());
-  ck_assert_double_eq(observe(march, "energy"), 0);
+  ck_assert_double_eq(observe_march(march, "energy"), 0);
   dvi_march_destroy(&march);
   dvi_field_destroy(&field);
 }
@@ -407,7 +388,7 @@ START_TEST(energies_of_extreme_materials_are_right)
     E[3] = 1;
     const dvi_march_state state = {.size = sizeof state, .E = E};
     ck_assert_msg(dvi_march_start(march, &state) == DVI_OK, "%s", dvi_last_error());
-    energy[i] = observe(march, "energy");
+    energy[i] = observe_march(march, "energy");
     free(E);
     dvi_march_destroy(&march);
     dvi_field_destroy(&field);

@@ -4,21 +4,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "support/field/generated.h"
 #include "support/meshes.h"
 #include "support/suite.h"
 
 enum { POINTS = 300 };
 
 static double period; /* of the mesh along all axes, 0 for none */
-
-static dvi_mesh *generated(const char *name, const dvi_generator_options *sizes)
-{
-  dvi_mesh *mesh = NULL;
-  dvi_generator_options options = *sizes;
-  options.size = sizeof options;
-  ck_assert_msg(dvi_mesh_generate(name, &options, &mesh) == DVI_OK, "%s", dvi_last_error());
-  return mesh;
-}
 
 /* Points at random in the unit cube, moved and stretched. */
 static double *random_points(int n, double origin, double length)
@@ -82,7 +74,7 @@ START_TEST(points_inside_are_found)
       options.cells[a] = 3;
       options.grading[a] = 2;
     }
-    dvi_mesh *boxes = generated("box", &options);
+    dvi_mesh *boxes = generated("box", options);
     double *x = random_points(n, 0, 1);
     ck_assert_int_eq(check_places(simplices, x, 0), POINTS);
     ck_assert_int_eq(check_places(boxes, x, 0), POINTS);
@@ -100,7 +92,7 @@ START_TEST(points_of_coarse_meshes_are_found)
   for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++)
     for (int kind = 0; kind < 2; kind++) {
       const dvi_generator_options options = {.cells = {shapes[i][0], shapes[i][1]}};
-      dvi_mesh *mesh = generated(kind ? "box" : "kuhn", &options);
+      dvi_mesh *mesh = generated(kind ? "box" : "kuhn", options);
       double *x = random_points(2, 0, 1);
       ck_assert_int_eq(check_places(mesh, x, 0), POINTS);
       free(x);
@@ -115,7 +107,7 @@ START_TEST(long_meshes_are_searched)
   const int cells = 100000;
   dvi_mesh *mesh = generated(
       "box",
-      &(dvi_generator_options){.dimension = 3, .cells = {cells, 1, 1}, .extent = {cells, 1, 1}});
+      (dvi_generator_options){.dimension = 3, .cells = {cells, 1, 1}, .extent = {cells, 1, 1}});
   const double x[] = {0.5, 0.5, 0.5, 99999.25, 0.1, 0.9, 31415.5, 0.5, 0.2};
   int cell[3];
   double weight[9];
@@ -131,7 +123,7 @@ START_TEST(points_outside_have_no_cell)
   const double far[] = {3, 0, 0, -1.2, 1e300, 0};
   int cell[3];
   double weight[9];
-  dvi_mesh *disk = generated("disk", &(dvi_generator_options){.cells = {6}});
+  dvi_mesh *disk = generated("disk", (dvi_generator_options){.cells = {6}});
   ck_assert_int_eq(dvi_mesh_locate(disk, 3, far, cell, weight), DVI_OK);
   for (int i = 0; i < 3; i++) ck_assert_int_eq(cell[i], -1);
   double *x = random_points(2, -1, 2);
@@ -146,9 +138,9 @@ END_TEST
 
 START_TEST(points_of_tori_are_found_in_any_period)
 {
-  dvi_mesh *tori[] = {generated("kuhn-torus", &(dvi_generator_options){.cells = {3, 4, 5}}),
-                      generated("bcc-torus", &(dvi_generator_options){.cells = {3, 3, 3}}),
-                      generated("box", &(dvi_generator_options){
+  dvi_mesh *tori[] = {generated("kuhn-torus", (dvi_generator_options){.cells = {3, 4, 5}}),
+                      generated("bcc-torus", (dvi_generator_options){.cells = {3, 3, 3}}),
+                      generated("box", (dvi_generator_options){
                                            .cells = {5, 3}, .periodic = {1, 1}, .origin = {2, 3}})};
   for (size_t i = 0; i < sizeof tori / sizeof *tori; i++) {
     double *x = random_points(dvi_mesh_dimension(tori[i]), -2.5, 6);
@@ -164,7 +156,7 @@ START_TEST(far_points_of_a_torus_are_found)
   const double far[] = {1.5e161, 0.2, -3e300, 1e18};
   int cell[2];
   double weight[6];
-  dvi_mesh *torus = generated("kuhn-torus", &(dvi_generator_options){.cells = {5, 4}});
+  dvi_mesh *torus = generated("kuhn-torus", (dvi_generator_options){.cells = {5, 4}});
   ck_assert_int_eq(dvi_mesh_locate(torus, 2, far, cell, weight), DVI_OK);
   ck_assert(cell[0] >= 0 && cell[1] >= 0);
   dvi_mesh_destroy(&torus);
@@ -173,7 +165,7 @@ END_TEST
 
 START_TEST(balls_and_delaunay_meshes_are_searched)
 {
-  dvi_mesh *ball = generated("ball", &(dvi_generator_options){.cells = {4}}), *delaunay = NULL;
+  dvi_mesh *ball = generated("ball", (dvi_generator_options){.cells = {4}}), *delaunay = NULL;
   double *x = random_points(3, -1, 2), *inner = random_points(3, 0.4, 0.2);
   ck_assert(check_places(ball, x, 0) > POINTS / 3);
   ck_assert_int_eq(dvi_mesh_delaunay(3, POINTS, x, &delaunay), DVI_OK);
@@ -209,8 +201,8 @@ START_TEST(wrong_points_are_refused)
   const double wrong[] = {0.5, NAN};
   int cell;
   double weight[4];
-  dvi_mesh *disk = generated("disk", &(dvi_generator_options){.cells = {2}}),
-           *sphere = generated("icosphere", &(dvi_generator_options){.cells = {1}});
+  dvi_mesh *disk = generated("disk", (dvi_generator_options){.cells = {2}}),
+           *sphere = generated("icosphere", (dvi_generator_options){.cells = {1}});
   ck_assert_int_eq(dvi_mesh_locate(disk, 1, wrong, &cell, weight), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_mesh_locate(disk, -1, wrong, &cell, weight), DVI_BAD_ARGUMENT);
   ck_assert_int_eq(dvi_mesh_locate(sphere, 1, weight, &cell, weight), DVI_UNSUPPORTED);

@@ -10,16 +10,9 @@
 #include "core/memory.h"
 #include "field/mesh/volume.h"
 #include "support/comma.h"
+#include "support/field/generated.h"
 #include "support/files.h"
 #include "support/suite.h"
-
-static dvi_mesh *generated(const char *name, dvi_generator_options options)
-{
-  dvi_mesh *mesh = NULL;
-  options.size = sizeof options;
-  ck_assert_msg(dvi_mesh_generate(name, &options, &mesh) == DVI_OK, "%s", dvi_last_error());
-  return mesh;
-}
 
 static double volume_of(const dvi_mesh *mesh)
 {

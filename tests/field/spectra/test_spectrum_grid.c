@@ -106,10 +106,10 @@ static void run_yee(double dt, double *y)
   double *E = random_values(dvi_march_size(march, DVI_FORM_E), 7);
   start_boxes(march, E, NULL);
   for (int n = 0; n < SAMPLES; n++) {
-    advance_boxes(march, n * dt);
-    y[n] = observe_boxes(march, "x");
-    y[SAMPLES + n] = observe_boxes(march, "y");
-    y[2 * SAMPLES + n] = observe_boxes(march, "z");
+    advance_march(march, n * dt);
+    y[n] = observe_march(march, "x");
+    y[SAMPLES + n] = observe_march(march, "y");
+    y[2 * SAMPLES + n] = observe_march(march, "z");
   }
   dvi_march_destroy(&march);
   free(E);

@@ -9,6 +9,8 @@
 #include <unistd.h>
 
 #include "core/memory.h"
+#include "support/field/generated.h"
+#include "support/field/marches.h"
 #include "support/meshes.h"
 #include "support/suite.h"
 
@@ -62,44 +64,15 @@ static void end_scene(scene *s)
   free(s->B);
 }
 
-static void advance(scene *s, double t)
-{
-  ck_assert_msg(dvi_march_advance(s->march, t) == DVI_OK, "%s", dvi_last_error());
-}
-
-static double observe(const scene *s, const char *name)
-{
-  double value = NAN;
-  for (int i = 0; dvi_march_observable(s->march, i) != NULL; i++)
-    if (strcmp(dvi_march_observable(s->march, i), name) == 0)
-      ck_assert_msg(dvi_march_observe(s->march, i, &value) == DVI_OK, "%s", dvi_last_error());
-  return value;
-}
-
-static double step_of(const scene *s)
-{
-  dvi_march_facts facts;
-  dvi_march_facts_of(s->march, &facts);
-  return facts.step;
-}
-
 static void sample(const scene *s)
 {
   ck_assert(dvi_march_sample(s->march, DVI_FORM_E, 0, NULL, s->E) == DVI_OK);
   ck_assert(dvi_march_sample(s->march, DVI_FORM_B, 0, NULL, s->B) == DVI_OK);
 }
 
-static dvi_mesh *generate(const char *name, dvi_generator_options options)
-{
-  dvi_mesh *mesh = NULL;
-  options.size = sizeof options;
-  ck_assert_msg(dvi_mesh_generate(name, &options, &mesh) == DVI_OK, "%s", dvi_last_error());
-  return mesh;
-}
-
 static dvi_mesh *box(void)
 {
-  return generate("box", (dvi_generator_options){.cells = {5, 4, 3}, .extent = {1, 0.8, 0.6}});
+  return generated("box", (dvi_generator_options){.cells = {5, 4, 3}, .extent = {1, 0.8, 0.6}});
 }
 
 /* ---- conservation ---- */
@@ -109,14 +82,14 @@ static void check_energy(dvi_mesh *mesh, dvi_star_kind kind, int walls, long ste
 {
   scene s = make_scene(mesh, kind, (dvi_maxwell_terms){.wall = &pec, .walls = walls},
                        (dvi_march_options){.fraction = 0.99});
-  const double dt = step_of(&s), start = observe(&s, "energy");
+  const double dt = step_of_march(s.march), start = observe_march(s.march, "energy");
   double worst = 0;
   for (long i = 1; i <= 100; i++) {
-    advance(&s, dt * (double)(steps / 100 * i));
-    worst = fmax(worst, fabs(observe(&s, "energy") / start - 1));
+    advance_march(s.march, dt * (double)(steps / 100 * i));
+    worst = fmax(worst, fabs(observe_march(s.march, "energy") / start - 1));
   }
   ck_assert_msg(worst < 1e-13, "energy changes by %g", worst);
-  ck_assert(observe(&s, "gauss") < 1e-13);
+  ck_assert(observe_march(s.march, "gauss") < 1e-13);
   end_scene(&s);
 }
 
@@ -124,7 +97,7 @@ START_TEST(energy_and_charge_are_conserved_to_roundoff)
 {
   check_energy(box(), DVI_CIRCUMCENTRIC, 1, repeats(100000));
   check_energy(staggered_mesh(6, 6), DVI_CIRCUMCENTRIC, 0, repeats(100000));
-  check_energy(generate("bcc-torus", (dvi_generator_options){.cells = {3, 3, 3}}),
+  check_energy(generated("bcc-torus", (dvi_generator_options){.cells = {3, 3, 3}}),
                DVI_CIRCUMCENTRIC, 0, repeats(20000));
   check_energy(staggered_mesh(4, 4), DVI_WHITNEY, 1, repeats(5000));
 }
@@ -154,7 +127,7 @@ START_TEST(time_and_space_disperse_as_known)
     const dvi_march_state state = {.size = sizeof state, .E = mode + i * s.edges};
     ck_assert_double_eq_tol(w, known[i], 1e-11);
     ck_assert(dvi_march_start(s.march, &state) == DVI_OK);
-    advance(&s, 150 * dt);
+    advance_march(s.march, 150 * dt);
     sample(&s);
     for (int64_t e = 0; e < s.edges; e++)
       ck_assert_double_eq_tol(s.E[e], cos(150 * w * dt) * mode[i * s.edges + e], 1e-11);
@@ -173,7 +146,7 @@ START_TEST(a_conductor_damps_as_the_difference_equation_says)
   const double dt = 0.8 / N;
   for (int i = 0; i < N; i++) sigma[i] = 0.7;
   for (int i = 0; i <= N; i++) mode[i] = sin(pi * i / N);
-  scene s = make_scene(generate("box", (dvi_generator_options){.cells = {N}}), DVI_CIRCUMCENTRIC,
+  scene s = make_scene(generated("box", (dvi_generator_options){.cells = {N}}), DVI_CIRCUMCENTRIC,
                        (dvi_maxwell_terms){.wall = &pec, .walls = 1, .conductivity = sigma},
                        (dvi_march_options){.step = dt});
   const dvi_march_state state = {.size = sizeof state, .E = mode};
@@ -182,7 +155,7 @@ START_TEST(a_conductor_damps_as_the_difference_equation_says)
   for (int i = 0; i < 3; i++) {
     sample(&s);
     value[i] = s.E[N / 2];
-    advance(&s, (i + 1) * dt);
+    advance_march(s.march, (i + 1) * dt);
   }
   /* E^{n+1} + E^{n-1} exp(2 a) = 2 E^n exp(a) cos(b) for roots exp(a +- i b) */
   const double rate = -0.350022869356, frequency = 3.120964341326, a = rate * dt;
@@ -201,16 +174,16 @@ START_TEST(absorbing_walls_absorb)
   for (int level = 0; level < 2; level++) {
     const int n = 40 << level;
     static const dvi_wall open = {.part = "boundary", .kind = DVI_ABSORBING};
-    scene s = make_scene(generate("box", (dvi_generator_options){.cells = {n}}), DVI_CIRCUMCENTRIC,
+    scene s = make_scene(generated("box", (dvi_generator_options){.cells = {n}}), DVI_CIRCUMCENTRIC,
                          (dvi_maxwell_terms){.wall = &open, .walls = 1},
                          (dvi_march_options){.fraction = 0.9});
     double *E = calloc((size_t)s.edges, sizeof *E);
     for (int64_t i = 0; i < s.edges; i++) E[i] = exp(-pow(((double)i / n - 0.5) / 0.08, 2));
     const dvi_march_state state = {.size = sizeof state, .E = E};
     ck_assert(dvi_march_start(s.march, &state) == DVI_OK);
-    const double before = observe(&s, "energy");
-    advance(&s, 1.2);
-    left[level] = observe(&s, "energy") / before;
+    const double before = observe_march(s.march, "energy");
+    advance_march(s.march, 1.2);
+    left[level] = observe_march(s.march, "energy") / before;
     free(E);
     end_scene(&s);
   }
@@ -242,7 +215,7 @@ START_TEST(lossy_fields_start_with_what_is_given)
   static const dvi_wall open = {.part = "boundary", .kind = DVI_ABSORBING};
   double sigma[8], given[16 + 9];
   for (int c = 0; c < 8; c++) sigma[c] = c;
-  scene s = make_scene(generate("kuhn", (dvi_generator_options){.cells = {2, 2}}),
+  scene s = make_scene(generated("kuhn", (dvi_generator_options){.cells = {2, 2}}),
                        _i == 0 ? DVI_WHITNEY : DVI_BARYCENTRIC,
                        (dvi_maxwell_terms){.wall = &open, .walls = 1, .conductivity = sigma},
                        (dvi_march_options){.fraction = 0.9});
@@ -298,7 +271,7 @@ START_TEST(values_that_overflow_are_refused)
   for (int64_t e = 0; e < s.edges; e++) s.E[e] = (e % 2 ? 1 : -1) * (_i == 0 ? 1e200 : 1.5e308);
   const dvi_march_state state = {.size = sizeof state, .E = s.E};
   ck_assert(dvi_march_start(s.march, &state) == DVI_OK);
-  advance(&s, 10);
+  advance_march(s.march, 10);
   ck_assert_str_eq(dvi_march_observable(s.march, 0), "energy");
   ck_assert_int_eq(dvi_march_observe(s.march, 0, &value), DVI_NOT_FINITE);
   check_words("energy");
@@ -323,8 +296,8 @@ START_TEST(random_currents_keep_the_law_of_charge)
       (dvi_maxwell_terms){
           .wall = &open, .walls = 1, .conductivity = sigma, .current = current, .currents = 2},
       (dvi_march_options){.fraction = 0.9});
-  advance(&s, step_of(&s) * (double)repeats(100000));
-  ck_assert_double_lt(observe(&s, "gauss"), 1e-12);
+  advance_march(s.march, step_of_march(s.march) * (double)repeats(100000));
+  ck_assert_double_lt(observe_march(s.march, "gauss"), 1e-12);
   end_scene(&s);
 }
 END_TEST
@@ -337,8 +310,8 @@ static void compare(const scene *a, const scene *b)
   sample(b);
   ck_assert_mem_eq(a->E, b->E, (size_t)a->edges * sizeof(double));
   ck_assert_mem_eq(a->B, b->B, (size_t)a->faces * sizeof(double));
-  ck_assert_double_eq(observe(a, "energy"), observe(b, "energy"));
-  ck_assert_double_eq(observe(a, "gauss"), observe(b, "gauss"));
+  ck_assert_double_eq(observe_march(a->march, "energy"), observe_march(b->march, "energy"));
+  ck_assert_double_eq(observe_march(a->march, "gauss"), observe_march(b->march, "gauss"));
 }
 
 /* What differs are the places of a dipole, and the conductivities. */
@@ -380,17 +353,17 @@ START_TEST(cuts_threads_and_saved_states_keep_the_bits)
     scene whole = make_scene(box(), star, terms, (dvi_march_options){.fraction = 0.5}),
           cut = make_scene(box(), star, terms, (dvi_march_options){.fraction = 0.5, .threads = 3}),
           resumed = make_scene(box(), star, terms, (dvi_march_options){.fraction = 0.5});
-    advance(&whole, 2.5);
+    advance_march(whole.march, 2.5);
     for (int i = 1; i <= 50; i++) {
-      advance(&cut, 0.05 * i);
-      (void)observe(&cut, "energy");
+      advance_march(cut.march, 0.05 * i);
+      (void)observe_march(cut.march, "energy");
       sample(&cut);
       if (i == 20) ck_assert_msg(dvi_march_save(cut.march, path) == DVI_OK, "%s", dvi_last_error());
     }
     compare(&whole, &cut);
     ck_assert_msg(dvi_march_load(resumed.march, path) == DVI_OK, "%s", dvi_last_error());
     ck_assert_double_eq(dvi_march_time(resumed.march), 1);
-    advance(&resumed, 2.5);
+    advance_march(resumed.march, 2.5);
     compare(&whole, &resumed);
     end_scene(&whole);
     end_scene(&cut);
@@ -407,7 +380,7 @@ START_TEST(steps_allocate_nothing)
                          (dvi_maxwell_terms){.wall = &pec, .walls = 1},
                          (dvi_march_options){.fraction = 0.5});
     const long before = dvi__allocation_count();
-    advance(&s, 20 * step_of(&s));
+    advance_march(s.march, 20 * step_of_march(s.march));
     sample(&s);
     ck_assert_int_eq(dvi__allocation_count(), before);
     end_scene(&s);

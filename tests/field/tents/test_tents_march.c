@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "support/field/marches.h"
 #include "support/files.h"
 #include "support/meshes.h"
 #include "support/suite.h"
@@ -62,18 +63,8 @@ static void start_at_random(dvi_march *march, double t)
 
 static void advance(dvi_march *march, double t)
 {
-  ck_assert_msg(dvi_march_advance(march, t) == DVI_OK, "%s", dvi_last_error());
+  advance_march(march, t);
   ck_assert_double_eq(dvi_march_time(march), t);
-}
-
-static double observe(const dvi_march *march, const char *name)
-{
-  double value = NAN;
-  for (int i = 0; dvi_march_observable(march, i) != NULL; i++)
-    if (strcmp(dvi_march_observable(march, i), name) == 0)
-      ck_assert_msg(dvi_march_observe(march, i, &value) == DVI_OK, "%s", dvi_last_error());
-  ck_assert_msg(isfinite(value), "%s", name);
-  return value;
 }
 
 /* All that a march holds, as the bytes of a file. */
@@ -103,11 +94,11 @@ START_TEST(cuts_and_observations_change_no_bit)
   advance(whole, 1.3);
   for (int i = 1; i <= 37; i++) {
     advance(cut, i < 37 ? 0.1 + 1.2 * i / 37 : 1.3);
-    ck_assert(observe(cut, "energy") > 0);
-    (void)observe(cut, "ear");
+    ck_assert(observe_march(cut, "energy") > 0);
+    (void)observe_march(cut, "ear");
   }
   check_equal(state_of(whole), state_of(cut));
-  ck_assert_double_eq(observe(whole, "ear"), observe(cut, "ear"));
+  ck_assert_double_eq(observe_march(whole, "ear"), observe_march(cut, "ear"));
   dvi_march_destroy(&whole);
   dvi_march_destroy(&cut);
   dvi_field_destroy(&field);
@@ -123,10 +114,10 @@ START_TEST(a_loaded_march_goes_on_with_the_same_bits)
   ck_assert_int_eq(dvi_march_save(first, path_in_folder("saved")), DVI_OK);
   ck_assert_msg(dvi_march_load(second, path_in_folder("saved")) == DVI_OK, "%s", dvi_last_error());
   ck_assert_double_eq(dvi_march_time(second), 0.7);
-  ck_assert_double_eq(observe(second, "energy"), observe(first, "energy"));
+  ck_assert_double_eq(observe_march(second, "energy"), observe_march(first, "energy"));
   advance(first, 2);
   advance(second, 2);
-  ck_assert_double_eq(observe(second, "gauss"), observe(first, "gauss"));
+  ck_assert_double_eq(observe_march(second, "gauss"), observe_march(first, "gauss"));
   check_equal(state_of(first), state_of(second));
   dvi_march_destroy(&first);
   dvi_march_destroy(&second);
@@ -171,12 +162,13 @@ START_TEST(a_cavity_shows_its_energy_charge_and_probes)
   const int *wall = dvi_mesh_part_cells(dvi_star_mesh(star), "boundary", 1, &count);
   double *E = calloc((size_t)count, sizeof *E);
   start_at_random(march, 0);
-  const double before = observe(march, "energy");
+  const double before = observe_march(march, "energy");
   advance(march, 3);
-  ck_assert_double_eq_tol(observe(march, "energy") / before, 1, 0.1);
-  ck_assert_double_eq_tol(observe(march, "part"), observe(march, "energy"), 1e-13 * before);
-  ck_assert_double_le(observe(march, "gauss"), 1e-13);
-  ck_assert_double_gt(fabs(observe(march, "ear")), 1e-6);
+  ck_assert_double_eq_tol(observe_march(march, "energy") / before, 1, 0.1);
+  ck_assert_double_eq_tol(observe_march(march, "part"), observe_march(march, "energy"),
+                          1e-13 * before);
+  ck_assert_double_le(observe_march(march, "gauss"), 1e-13);
+  ck_assert_double_gt(fabs(observe_march(march, "ear")), 1e-6);
   ck_assert_int_eq(dvi_march_sample(march, DVI_FORM_E, count, wall, E), DVI_OK);
   for (int64_t i = 0; i < count; i++) ck_assert_double_eq(E[i], 0);
   dvi_march_facts_of(march, &facts);
@@ -279,7 +271,7 @@ START_TEST(a_source_pushes)
     ck_assert_double_eq_tol(u[v], 2, 0.005);
   }
   ck_assert_double_eq_tol(momentum, 2, 1e-12);
-  ck_assert_double_eq_tol(observe(march, "energy"), 0, 0.005);
+  ck_assert_double_eq_tol(observe_march(march, "energy"), 0, 0.005);
   free(u);
   free(E);
   dvi_march_destroy(&march);

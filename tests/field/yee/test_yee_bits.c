@@ -128,9 +128,9 @@ static state state_of(const dvi_march *march)
   state s = {edges + faces + 3, random_values(edges + faces + 3, 1)};
   ck_assert_int_eq(dvi_march_sample(march, DVI_FORM_E, 0, NULL, s.values), DVI_OK);
   ck_assert_int_eq(dvi_march_sample(march, DVI_FORM_B, 0, NULL, s.values + edges), DVI_OK);
-  s.values[edges + faces] = observe_boxes(march, "ear");
-  s.values[edges + faces + 1] = observe_boxes(march, "energy");
-  s.values[edges + faces + 2] = observe_boxes(march, "gauss");
+  s.values[edges + faces] = observe_march(march, "ear");
+  s.values[edges + faces + 1] = observe_march(march, "energy");
+  s.values[edges + faces + 2] = observe_march(march, "gauss");
   return s;
 }
 
@@ -155,7 +155,7 @@ static state run(const dvi_yee_terms *terms, double until)
 {
   dvi_march *march = box_march(terms);
   begin(march, terms);
-  advance_boxes(march, until);
+  advance_march(march, until);
   const state s = state_of(march);
   dvi_march_destroy(&march);
   return s;
@@ -192,9 +192,9 @@ START_TEST(samples_are_continuous_at_whole_steps)
   dvi_march_facts facts;
   dvi_march_facts_of(march, &facts);
   begin(march, &terms);
-  advance_boxes(march, (9 - 1e-9) * facts.step);
+  advance_march(march, (9 - 1e-9) * facts.step);
   const state before = state_of(march);
-  advance_boxes(march, 9 * facts.step);
+  advance_march(march, 9 * facts.step);
   const state at = state_of(march);
   /* all but energy and gauss, which are those of the last step. Currents are up to 144 */
   for (int64_t i = 0; i < at.count - 2; i++)
@@ -226,9 +226,9 @@ START_TEST(cuts_of_the_way_change_no_bit)
   dvi_march *march = box_march(&terms);
   begin(march, &terms);
   for (int i = 1; i <= 50; i++) {
-    advance_boxes(march, i == 50 ? until : until * i / 50);
-    (void)observe_boxes(march, "ear");
-    free(sample_boxes(march, DVI_FORM_E));
+    advance_march(march, i == 50 ? until : until * i / 50);
+    (void)observe_march(march, "ear");
+    free(sample_march(march, DVI_FORM_E));
   }
   check_same(plain, state_of(march), "cut", 50);
   free(plain.values);
@@ -243,15 +243,15 @@ START_TEST(restarts_change_no_bit)
   const char *path = path_in_folder("yee.state");
   dvi_march *first = box_march(&terms), *second = box_march(&terms);
   begin(first, &terms);
-  advance_boxes(first, 4.321);
+  advance_march(first, 4.321);
   ck_assert_int_eq(dvi_march_save(first, path), DVI_OK);
   ck_assert_msg(dvi_march_load(second, path) == DVI_OK, "%s", dvi_last_error());
   ck_assert(dvi_march_time(second) == 4.321);
-  advance_boxes(second, until);
+  advance_march(second, until);
   check_same(plain, state_of(second), "restart", 0);
   /* a start forgets all of it */
   begin(second, &terms);
-  advance_boxes(second, until);
+  advance_march(second, until);
   check_same(plain, state_of(second), "second start", 0);
   free(plain.values);
   dvi_march_destroy(&first);
@@ -265,7 +265,7 @@ START_TEST(files_of_other_grids_are_refused)
   dvi_yee_terms terms = grid(5);
   dvi_march *march = box_march(&terms), *other;
   begin(march, &terms);
-  advance_boxes(march, 1);
+  advance_march(march, 1);
   ck_assert_int_eq(dvi_march_save(march, path), DVI_OK);
   const state before = state_of(march);
   for (int what = 0; what < 4; what++) {
@@ -404,7 +404,7 @@ START_TEST(failed_allocations_are_reported)
   }
   begin(march, &terms);
   const long before = dvi__allocation_count();
-  advance_boxes(march, 5);
+  advance_march(march, 5);
   ck_assert_int_eq(dvi__allocation_count(), before);
   dvi_march_destroy(&march);
 }

@@ -41,8 +41,8 @@ static double distance_from_mode(const dvi_yee_terms *terms, dvi_form_function *
   for (int64_t i = 0; i < edges; i++) size = fmax(size, fabs(E[i]));
   for (int n = 0; n <= steps; n++) {
     const double t = n * terms->step;
-    advance_boxes(march, t);
-    double *now = sample_boxes(march, DVI_FORM_E);
+    advance_march(march, t);
+    double *now = sample_march(march, DVI_FORM_E);
     for (int64_t i = 0; i < edges; i++) most = fmax(most, fabs(now[i] - cos(omega * t) * E[i]));
     free(now);
   }
@@ -160,8 +160,8 @@ START_TEST(waves_with_a_phase_have_the_frequency_of_the_grid)
         dvi_yee_integrate(&terms, DVI_FORM_E, bloch_field, &b, E + b.is_imaginary * edges), DVI_OK);
   start_boxes(march, E, NULL);
   for (int n = 0; n <= 300; n++) {
-    advance_boxes(march, n * dt);
-    double *now = sample_boxes(march, DVI_FORM_E);
+    advance_march(march, n * dt);
+    double *now = sample_march(march, DVI_FORM_E);
     for (int64_t i = 0; i < 2 * edges; i++)
       most = fmax(most, fabs(now[i] - cos(omega * n * dt) * E[i]));
     free(now);
@@ -212,16 +212,16 @@ START_TEST(grids_move_as_matrices_say)
   start_boxes(march, E, B);
   start_judge(&judge, E, B, dt);
   for (int n = 0; n < steps; n++) step_judge(&judge, dt);
-  advance_boxes(march, steps * dt);
-  double *B_now = sample_boxes(march, DVI_FORM_B);
+  advance_march(march, steps * dt);
+  double *B_now = sample_march(march, DVI_FORM_B);
   for (int64_t f = 0; f < judge.faces; f++) most = fmax(most, fabs(B_now[f] - judge.B[f]));
   /* E^{n-1/2} is E^n - (E^{n+1/2} - E^n) */
-  double *E_now = sample_boxes(march, DVI_FORM_E), *E_after = judge.E;
+  double *E_now = sample_march(march, DVI_FORM_E), *E_after = judge.E;
   double *E_before = random_values(judge.edges, 1);
   memcpy(E_before, E_after, (size_t)judge.edges * sizeof *E_before);
   step_judge(&judge, dt);
-  advance_boxes(march, (steps + 1) * dt);
-  double *E_later = sample_boxes(march, DVI_FORM_E);
+  advance_march(march, (steps + 1) * dt);
+  double *E_later = sample_march(march, DVI_FORM_E);
   for (int64_t e = 0; e < judge.edges; e++)
     most = fmax(most, fabs(E_later[e] - 0.5 * (E_before[e] + judge.E[e])));
   /* roundings of 60 steps with values around 1 */
@@ -263,11 +263,11 @@ START_TEST(energy_stays_near_the_bound)
   double *E = random_values(dvi_march_size(march, DVI_FORM_E), 3),
          *B = random_values(dvi_march_size(march, DVI_FORM_B), 4), most = 0;
   start_boxes(march, E, B);
-  const double start = observe_boxes(march, "energy");
+  const double start = observe_march(march, "energy");
   const int parts = 100, steps = repeats(1000);
   for (int n = 1; n <= parts; n++) {
-    advance_boxes(march, facts.step * n * steps);
-    most = fmax(most, fabs(observe_boxes(march, "energy") / start - 1));
+    advance_march(march, facts.step * n * steps);
+    most = fmax(most, fabs(observe_march(march, "energy") / start - 1));
   }
   /* 1e5 roundings add up like a random walk, to some 1e-14 here */
   ck_assert_msg(most < 1e-13, "grid %d: %g", numbers[_i], most);
@@ -283,11 +283,11 @@ START_TEST(divergence_and_charge_stay)
   dvi_march *march = box_march(&terms);
   double *E = random_values(dvi_march_size(march, DVI_FORM_E), 3);
   start_boxes(march, E, NULL);
-  const double charge = observe_boxes(march, "charge");
-  advance_boxes(march, 50);
-  ck_assert_double_le(observe_boxes(march, "divergence"), 1e-13);
-  ck_assert_double_le(observe_boxes(march, "gauss"), 1e-13);
-  ck_assert_double_eq_tol(observe_boxes(march, "charge"), charge, 1e-11);
+  const double charge = observe_march(march, "charge");
+  advance_march(march, 50);
+  ck_assert_double_le(observe_march(march, "divergence"), 1e-13);
+  ck_assert_double_le(observe_march(march, "gauss"), 1e-13);
+  ck_assert_double_eq_tol(observe_march(march, "charge"), charge, 1e-11);
   free(E);
   dvi_march_destroy(&march);
 }
@@ -307,8 +307,8 @@ static double error_between_steps(int cells, double part)
   ck_assert_int_eq(dvi_yee_integrate(&terms, DVI_FORM_E, sine_of_both, &one, E), DVI_OK);
   start_boxes(march, E, NULL);
   for (double t = part * dt; t < 1.3; t += dt) {
-    advance_boxes(march, t);
-    double *now = sample_boxes(march, DVI_FORM_E), *B = sample_boxes(march, DVI_FORM_B);
+    advance_march(march, t);
+    double *now = sample_march(march, DVI_FORM_E), *B = sample_march(march, DVI_FORM_B);
     for (int i = 0; i <= cells; i++) most = fmax(most, fabs(now[i] - cos(pi * t) * E[i]));
     for (int i = 0; i < cells; i++)
       most = fmax(most, fabs(B[i] + sin(pi * t) * cos(pi * (i + 0.5) * h) * h) / h);
@@ -337,10 +337,10 @@ START_TEST(samples_are_continuous_at_whole_steps)
   start_boxes(march, E, NULL);
   for (int form = DVI_FORM_E; form <= DVI_FORM_B; form++) {
     const double t = (10 + 2 * form) * facts.step;
-    advance_boxes(march, t - 1e-9 * facts.step);
-    double *before = sample_boxes(march, (dvi_march_form)form);
-    advance_boxes(march, t);
-    double *at = sample_boxes(march, (dvi_march_form)form);
+    advance_march(march, t - 1e-9 * facts.step);
+    double *before = sample_march(march, (dvi_march_form)form);
+    advance_march(march, t);
+    double *at = sample_march(march, (dvi_march_form)form);
     for (int64_t i = 0; i < dvi_march_size(march, (dvi_march_form)form); i++)
       ck_assert_double_eq_tol(before[i], at[i], 1e-7); /* slopes of some ten */
     free(before), free(at);

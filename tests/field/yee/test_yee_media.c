@@ -142,8 +142,8 @@ static double mode_frequency(const dvi_yee_terms *terms, dvi_form_function *mode
   ck_assert_int_eq(dvi_yee_integrate(terms, DVI_FORM_B, mode, user, B), DVI_OK);
   start_boxes(march, NULL, B);
   for (int n = 0; n < COUNT; n++) {
-    advance_boxes(march, n * T);
-    double *now = sample_boxes(march, DVI_FORM_B);
+    advance_march(march, n * T);
+    double *now = sample_march(march, DVI_FORM_B);
     p[n] = 0;
     for (int64_t i = 0; i < faces; i++) p[n] += B[i] * now[i];
     free(now);
@@ -314,8 +314,8 @@ START_TEST(losses_damp_as_the_grid_says)
   ck_assert_int_eq(dvi_yee_integrate(&terms, DVI_FORM_E, sine, NULL, E), DVI_OK);
   start_boxes(march, E, NULL);
   for (int n = 0; n < 100; n++) {
-    advance_boxes(march, n * dt);
-    double *now = sample_boxes(march, DVI_FORM_E);
+    advance_march(march, n * dt);
+    double *now = sample_march(march, DVI_FORM_E);
     last[0] = last[1], last[1] = last[2], last[2] = now[10];
     free(now);
     if (n == 0) ck_assert_double_eq_tol(last[2], 1, 1e-15);
@@ -343,10 +343,10 @@ START_TEST(losses_keep_the_charge)
   dvi_march *march = box_march(&terms);
   double *E = random_values(dvi_march_size(march, DVI_FORM_E), 3);
   start_boxes(march, E, NULL);
-  const double energy = observe_boxes(march, "energy");
-  advance_boxes(march, 3);
-  ck_assert_double_le(observe_boxes(march, "gauss"), 1e-14);
-  ck_assert_double_lt(observe_boxes(march, "energy"), 0.5 * energy);
+  const double energy = observe_march(march, "energy");
+  advance_march(march, 3);
+  ck_assert_double_le(observe_march(march, "gauss"), 1e-14);
+  ck_assert_double_lt(observe_march(march, "energy"), 0.5 * energy);
   free(sigma), free(eps), free(E);
   dvi_march_destroy(&march);
 }
@@ -375,9 +375,9 @@ START_TEST(energy_stays_in_media)
   dvi_march_facts facts;
   dvi_march_facts_of(march, &facts);
   start_boxes(march, E, B);
-  const double start = observe_boxes(march, "energy");
-  advance_boxes(march, facts.step * repeats(20000));
-  ck_assert_double_eq_tol(observe_boxes(march, "energy") / start, 1, 1e-13);
+  const double start = observe_march(march, "energy");
+  advance_march(march, facts.step * repeats(20000));
+  ck_assert_double_eq_tol(observe_march(march, "energy") / start, 1, 1e-13);
   dvi_march_destroy(&march);
   terms.step = 1.02 * facts.bound;
   ck_assert_int_eq(dvi_yee_create(&terms, &march), DVI_BAD_ARGUMENT);

@@ -40,8 +40,8 @@ static void run_pulse(int degree, int cells, dvi_yee_end end, int steps, double 
   dvi_march *march = box_march(&terms);
   start_boxes(march, NULL, NULL);
   for (int n = 0; n < steps; n++) {
-    advance_boxes(march, 0.5 * (n + 1));
-    seen[n] = observe_boxes(march, "corner");
+    advance_march(march, 0.5 * (n + 1));
+    seen[n] = observe_march(march, "corner");
   }
   dvi_march_destroy(&march);
 }
@@ -102,7 +102,7 @@ START_TEST(layers_are_those_of_their_formulas)
   double *E = random_values(N + 1, 3), *B = random_values(N, 4), psi_E[N] = {0}, psi_B[N] = {0};
   dvi_march *march = box_march(&terms);
   start_boxes(march, E, B);
-  advance_boxes(march, STEPS * dt);
+  advance_march(march, STEPS * dt);
   E[N] = 0;
   for (int step = 0; step <= STEPS; step++) {
     for (int i = 0; i < N && step > 0; i++) {
@@ -117,7 +117,7 @@ START_TEST(layers_are_those_of_their_formulas)
       E[i] -= (step > 0 ? dt : 0.5 * dt) * (D / f.kappa + psi_E[i]);
     }
   }
-  double *found = sample_boxes(march, DVI_FORM_B);
+  double *found = sample_march(march, DVI_FORM_B);
   for (int i = 0; i < N; i++) ck_assert_double_eq_tol(found[i], B[i], 1e-13);
   free(E), free(B), free(found);
   dvi_march_destroy(&march);
@@ -143,11 +143,11 @@ START_TEST(layers_absorb_at_all_ends)
   terms.axis[axis].end[!end] = (dvi_yee_end){.kind = DVI_YEE_CPML, .layers = 8};
   dvi_march *march = box_march(&terms);
   start_boxes(march, NULL, NULL);
-  advance_boxes(march, 35);
-  const double full = observe_boxes(march, "energy");
-  advance_boxes(march, 1000);
+  advance_march(march, 35);
+  const double full = observe_march(march, "energy");
+  advance_march(march, 1000);
   /* what is left is static or leaves slowly along the periodic axes */
-  ck_assert_double_lt(observe_boxes(march, "energy"), 1e-3 * full);
+  ck_assert_double_lt(observe_march(march, "energy"), 1e-3 * full);
   dvi_march_destroy(&march);
 }
 END_TEST
@@ -182,8 +182,8 @@ static double _Complex transform(double upper, dvi_yee_boundary kind, double h, 
   dvi_march *march = box_march(&terms);
   start_boxes(march, NULL, NULL);
   for (int n = 0; n * dt < 10; n++) {
-    advance_boxes(march, n * dt);
-    sum += cexp(dvi__complex(0, omega * n * dt)) * observe_boxes(march, "probe");
+    advance_march(march, n * dt);
+    sum += cexp(dvi__complex(0, omega * n * dt)) * observe_march(march, "probe");
   }
   dvi_march_destroy(&march);
   return sum;
@@ -217,10 +217,10 @@ START_TEST(absorbing_ends_let_waves_out)
   }
   dvi_march *march = box_march(&terms);
   start_boxes(march, NULL, NULL);
-  advance_boxes(march, 30);
-  const double full = observe_boxes(march, "energy");
-  advance_boxes(march, 120);
-  ck_assert_double_lt(observe_boxes(march, "energy"), 1e-2 * full);
+  advance_march(march, 30);
+  const double full = observe_march(march, "energy");
+  advance_march(march, 120);
+  ck_assert_double_lt(observe_march(march, "energy"), 1e-2 * full);
   dvi_march_destroy(&march);
 }
 END_TEST
@@ -235,13 +235,13 @@ static double growth_of(const dvi_yee_terms *terms, int steps)
   dvi_march_facts facts;
   dvi_march_facts_of(march, &facts);
   start_boxes(march, E, NULL);
-  advance_boxes(march, facts.step);
-  double *B = sample_boxes(march, DVI_FORM_B);
+  advance_march(march, facts.step);
+  double *B = sample_march(march, DVI_FORM_B);
   start_boxes(march, NULL, B);
   free(B);
   for (int n = 1; n <= 40; n++) {
-    advance_boxes(march, facts.step * steps * n / 40);
-    B = sample_boxes(march, DVI_FORM_B);
+    advance_march(march, facts.step * steps * n / 40);
+    B = sample_march(march, DVI_FORM_B);
     for (int64_t i = 0; i < faces; i++) most[n > 20] = fmax(most[n > 20], fabs(B[i]));
     free(B);
   }
@@ -301,8 +301,8 @@ START_TEST(absorbing_ends_see_materials_of_axes_that_repeat_themselves)
   ck_assert_int_eq(dvi_yee_size(&terms, DVI_FORM_E), 25);
   dvi_march *march = box_march(&terms);
   start_boxes(march, E, NULL);
-  advance_boxes(march, 4);
-  double *B = sample_boxes(march, DVI_FORM_B);
+  advance_march(march, 4);
+  double *B = sample_march(march, DVI_FORM_B);
   for (int i = 0; i < 20; i++) ck_assert_double_eq(B[i], B[i / 5 * 5]);
   for (int i = 20; i < 45; i++) ck_assert_double_eq(B[i], 0);
   free(B);
@@ -322,11 +322,11 @@ START_TEST(absorbing_ends_know_the_speed_of_mu)
   for (int i = 0; i < 41; i++) E[i] = exp(-0.05 * (i - 20) * (i - 20));
   dvi_march *march = box_march(&terms);
   start_boxes(march, E, NULL);
-  const double full = observe_boxes(march, "energy");
-  advance_boxes(march, 100); /* longer than the way of 40 at the speed 1/2 */
+  const double full = observe_march(march, "energy");
+  advance_march(march, 100); /* longer than the way of 40 at the speed 1/2 */
   /* amplitudes of 1e-2 come back of waves of about 14 boxes, and energies of squares of that. With
    * the speed 1 the amplitude would be 1/3 */
-  ck_assert_double_lt(observe_boxes(march, "energy"), 1e-3 * full);
+  ck_assert_double_lt(observe_march(march, "energy"), 1e-3 * full);
   dvi_march_destroy(&march);
 }
 END_TEST
@@ -350,8 +350,8 @@ static double leak(const dvi_yee_terms *terms, double until, double *inside)
   *inside = 0;
   start_boxes(march, NULL, NULL);
   for (double t = 0; t < until; t += 0.25) {
-    advance_boxes(march, t);
-    double *E = sample_boxes(march, DVI_FORM_E);
+    advance_march(march, t);
+    double *E = sample_march(march, DVI_FORM_E);
     int place[3];
     for (int c = 0; c < 3; c++)
       for (place[2] = 0; place[2] <= terms->axis[2].cells; place[2]++)

@@ -93,9 +93,9 @@ START_TEST(a_uniform_current_moves_all_of_E)
   terms.step = 0.1;
   dvi_march *march = box_march(&terms);
   start_boxes(march, NULL, NULL);
-  advance_boxes(march, 5);
+  advance_march(march, 5);
   for (int n = 0; n <= 50; n++) sum += 0.1 * cos(0.1 * n) * (n == 0 || n == 50 ? 0.5 : 1);
-  double *E = sample_boxes(march, DVI_FORM_E);
+  double *E = sample_march(march, DVI_FORM_E);
   for (int c = 0; c < 3; c++) {
     const int place[3] = {1, 2, 0};
     const int64_t edge = dvi_yee_place(&terms, DVI_FORM_E, c, place);
@@ -117,7 +117,7 @@ START_TEST(a_dipole_acts_by_whitney_weights)
   terms.step = 0.05;
   dvi_march *march = box_march(&terms);
   start_boxes(march, NULL, NULL);
-  advance_boxes(march, 0.075); /* the time of E^{3/2} */
+  advance_march(march, 0.075); /* the time of E^{3/2} */
   for (int64_t i = 0; i < dvi_yee_size(&terms, DVI_FORM_E); i++) none[i] = 0;
   box_judge judge = make_judge(&terms);
   double *B = random_values(judge.faces, 1);
@@ -134,7 +134,7 @@ START_TEST(a_dipole_acts_by_whitney_weights)
       judge.E[edge] -= impulse * weight / judge.M1[edge];
     }
   }
-  double *E = sample_boxes(march, DVI_FORM_E);
+  double *E = sample_march(march, DVI_FORM_E);
   for (int64_t e = 0; e < judge.edges; e++) ck_assert_double_eq_tol(E[e], judge.E[e], 1e-14);
   free(E), free(none), free(B);
   free_judge(&judge);
@@ -161,8 +161,8 @@ static double seen(const double *from, const double *along, const double *at, co
   terms.step = 0.05;
   dvi_march *march = box_march(&terms);
   start_boxes(march, NULL, NULL);
-  advance_boxes(march, 4);
-  const double value = observe_boxes(march, "p");
+  advance_march(march, 4);
+  const double value = observe_march(march, "p");
   dvi_march_destroy(&march);
   return value;
 }
@@ -192,9 +192,9 @@ START_TEST(probes_see_uniform_fields)
   ck_assert_int_eq(dvi_yee_integrate(&terms, DVI_FORM_E, uniform, field, E), DVI_OK);
   ck_assert_int_eq(dvi_yee_integrate(&terms, DVI_FORM_B, uniform, field, B), DVI_OK);
   start_boxes(march, E, B);
-  advance_boxes(march, 0.333);
-  ck_assert_double_eq_tol(observe_boxes(march, "B"), 1 - 2 + 1, 1e-13);
-  ck_assert_double_eq_tol(observe_boxes(march, "E"), -6 + 0.5, 1e-13);
+  advance_march(march, 0.333);
+  ck_assert_double_eq_tol(observe_march(march, "B"), 1 - 2 + 1, 1e-13);
+  ck_assert_double_eq_tol(observe_march(march, "E"), -6 + 0.5, 1e-13);
   free(E), free(B);
   dvi_march_destroy(&march);
 }
@@ -214,13 +214,13 @@ START_TEST(a_moment_leaves_its_charges)
   terms.dipoles = 1;
   dvi_march *march = box_march(&terms);
   start_boxes(march, NULL, NULL);
-  advance_boxes(march, 40);
-  ck_assert_double_eq_tol(observe_boxes(march, "charge"), 0, 1e-12);
-  ck_assert_double_le(observe_boxes(march, "gauss"), 1e-13);
+  advance_march(march, 40);
+  ck_assert_double_eq_tol(observe_march(march, "charge"), 0, 1e-12);
+  ck_assert_double_le(observe_march(march, "gauss"), 1e-13);
   /* D through the plane x = 1/2: the moment's own edge and the static field, together 0 in a cavity
    * of which nothing but the dipole breaks the symmetry. The four nodes at its right end hold 7/4
    * each. */
-  double *E = sample_boxes(march, DVI_FORM_E), node = 0;
+  double *E = sample_march(march, DVI_FORM_E), node = 0;
   const double h = 1. / 7;
   for (int c = 0; c < 3; c++) {
     int place[3] = {4, 3, 3};
@@ -255,9 +255,9 @@ START_TEST(charges_are_those_of_the_currents)
   dvi_march_facts_of(march, &facts);
   start_boxes(march, E, NULL);
   const double step = facts.step;
-  advance_boxes(march, step * repeats(100000));
-  ck_assert_double_le(observe_boxes(march, "gauss"), 1e-12);
-  ck_assert_double_le(observe_boxes(march, "divergence"), 1e-12);
+  advance_march(march, step * repeats(100000));
+  ck_assert_double_le(observe_march(march, "gauss"), 1e-12);
+  ck_assert_double_le(observe_march(march, "divergence"), 1e-12);
   free(E);
   dvi_march_destroy(&march);
 }
@@ -290,10 +290,10 @@ START_TEST(the_power_of_a_dipole_flows_through_boxes)
   start_boxes(march, NULL, NULL);
   for (int n = 0; n < 300; n++) {
     double g;
-    advance_boxes(march, 0.5 * n);
+    advance_march(march, 0.5 * n);
     (void)doublet(0.5 * n, &g, NULL);
-    power += g * observe_boxes(march, "power");
-    for (int i = 0; i < FLUXES; i++) sum[i] += observe_boxes(march, flux[i].name);
+    power += g * observe_march(march, "power");
+    for (int i = 0; i < FLUXES; i++) sum[i] += observe_march(march, flux[i].name);
   }
   ck_assert_double_gt(power, 0.01);
   ck_assert_double_eq_tol(sum[0], power, 1e-6 * power);
@@ -319,8 +319,8 @@ START_TEST(a_failing_signal_leaves_the_last_good_time)
   ck_assert_int_eq(dvi_march_advance(march, 2), DVI_CALLBACK_FAILED);
   check_words("yee: a signal returned 3 at t = 1.04");
   ck_assert_double_eq_tol(dvi_march_time(march), 0.96, 1e-15);
-  advance_boxes(short_one, 0.96);
-  double *E = sample_boxes(march, DVI_FORM_E), *other = sample_boxes(short_one, DVI_FORM_E);
+  advance_march(short_one, 0.96);
+  double *E = sample_march(march, DVI_FORM_E), *other = sample_march(short_one, DVI_FORM_E);
   for (int64_t i = 0; i < dvi_march_size(march, DVI_FORM_E); i++) ck_assert(E[i] == other[i]);
   free(E), free(other);
   dvi_march_destroy(&march);

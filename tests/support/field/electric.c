@@ -2,15 +2,6 @@
 
 #include <check.h>
 #include <stdlib.h>
-#include <string.h>
-
-dvi_mesh *generated(const char *name, dvi_generator_options options)
-{
-  dvi_mesh *mesh = NULL;
-  options.size = sizeof options;
-  ck_assert_msg(dvi_mesh_generate(name, &options, &mesh) == DVI_OK, "%s", dvi_last_error());
-  return mesh;
-}
 
 dvi_mesh *with_core(dvi_mesh *mesh, int (*is_inside)(const double *centre))
 {
@@ -75,29 +66,4 @@ double *form_of(const dvi_field *field, int k, dvi_form_function *function)
   ck_assert_msg(dvi_form_integrate(mesh, k, function, NULL, form) == DVI_OK, "%s",
                 dvi_last_error());
   return form;
-}
-
-void advance_march(dvi_march *march, double t)
-{
-  ck_assert_msg(dvi_march_advance(march, t) == DVI_OK, "%s", dvi_last_error());
-}
-
-double observe_march(const dvi_march *march, const char *name)
-{
-  const char *found;
-  for (int i = 0; (found = dvi_march_observable(march, i)) != NULL; i++) {
-    double value;
-    if (strcmp(found, name) != 0) continue;
-    ck_assert_msg(dvi_march_observe(march, i, &value) == DVI_OK, "%s", dvi_last_error());
-    return value;
-  }
-  ck_abort_msg("there is no observable %s", name);
-  return 0;
-}
-
-double step_of_march(const dvi_march *march)
-{
-  dvi_march_facts facts;
-  dvi_march_facts_of(march, &facts);
-  return facts.step;
 }

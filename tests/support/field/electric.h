@@ -4,8 +4,8 @@
 #include <dvi/march.h>
 #include <dvi/maxwell.h>
 
-/* Generate a mesh. */
-dvi_mesh *generated(const char *name, dvi_generator_options options);
+#include "support/field/generated.h"
+#include "support/field/marches.h"
 
 /* Make the same mesh with a part "core", the cells whose centres are inside. Releases the first
  * one. */
@@ -20,8 +20,4 @@ dvi_march *march_of(const dvi_field *field, dvi_march_options how, const double 
 
 /* Integrate a function of place over the k-cells of a field's mesh, for free(). */
 double *form_of(const dvi_field *field, int k, dvi_form_function *function);
-
-void advance_march(dvi_march *march, double t);
-double observe_march(const dvi_march *march, const char *name);
-double step_of_march(const dvi_march *march);
 #endif

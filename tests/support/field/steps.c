@@ -10,7 +10,7 @@
 
 stepped stepped_mesh(dvi_mesh *mesh, int k, int is_fixed)
 {
-  stepped s = {.mesh = mesh, .k = k};
+  stepped s = {.mesh = mesh};
   dvi_matrix d, below = {0}, M1, M2;
   int64_t count;
   ck_assert_msg(dvi_star_create(mesh, NULL, &s.star) == DVI_OK, "%s", dvi_last_error());
@@ -44,16 +44,6 @@ void end_stepped(stepped *s)
   free(s->is_fixed);
   dvi_star_destroy(&s->star);
   dvi_mesh_destroy(&s->mesh);
-}
-
-dvi_mesh *grid_mesh(const char *name, int dimension, int cells, double grading)
-{
-  dvi_mesh *mesh = NULL;
-  dvi_generator_options options = {.size = sizeof options, .dimension = dimension};
-  for (int i = 0; i < dimension; i++) options.cells[i] = cells;
-  for (int i = 0; i < dimension; i++) options.grading[i] = grading;
-  ck_assert_msg(dvi_mesh_generate(name, &options, &mesh) == DVI_OK, "%s", dvi_last_error());
-  return mesh;
 }
 
 void step_of_boxes(const dvi_mesh *mesh, double fraction, int is_free, double *step)

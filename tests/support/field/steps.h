@@ -2,12 +2,12 @@
 #ifndef TESTS_SUPPORT_FIELD_STEPS_H
 #define TESTS_SUPPORT_FIELD_STEPS_H
 #include "field/avi/avi.h"
+#include "support/field/generated.h"
 
 /* A mesh with its star, and the terms of a k-form on it. */
 typedef struct stepped {
   dvi_mesh *mesh;
   dvi_star *star;
-  int k;
   int64_t edges, faces, nodes;
   int8_t *is_fixed; /* [edges], the boundary if it is fixed */
   dvi__avi_terms terms;
@@ -16,9 +16,6 @@ typedef struct stepped {
 /* Take a mesh, which the result owns then. */
 stepped stepped_mesh(dvi_mesh *mesh, int k, int is_fixed);
 void end_stepped(stepped *s);
-
-/* A generated mesh with the same number of cells along each axis. */
-dvi_mesh *grid_mesh(const char *name, int dimension, int cells, double grading);
 
 /* Give the rectangles of a mesh steps of fraction/sqrt(1/hx^2 + 1/hy^2), or else the largest powers
  * of 2 of the shortest of them that are not longer. */

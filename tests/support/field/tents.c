@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "support/field/generated.h"
 #include "support/meshes.h"
 
 static const double pi = 3.14159265358979323846;
@@ -98,10 +99,7 @@ dvi_mesh *mesh_at(const tent_place *at)
 {
   if (at->generator == NULL)
     return at->n == 1 ? ring_mesh(at->across, 0.3, 5) : equilateral_torus(at->across, at->up);
-  dvi_generator_options options = {.size = sizeof options, .cells = {at->across, at->up}};
+  dvi_generator_options options = {.cells = {at->across, at->up}};
   if (at->n == 3) options.cells[2] = at->up;
-  dvi_mesh *mesh = NULL;
-  ck_assert_msg(dvi_mesh_generate(at->generator, &options, &mesh) == DVI_OK, "%s",
-                dvi_last_error());
-  return mesh;
+  return generated(at->generator, options);
 }

@@ -90,32 +90,31 @@ quad_complex bessel_slope(const quad_complex *f, int n)
 /* ---- roots ---- */
 
 /* Halve the interval to nine digits, which the secant method then doubles nearly each time. */
-static quad root_between(quad (*f)(quad x, int order), int order, quad low, quad high)
+static quad root_between(root_function *f, const void *user, quad low, quad high)
 {
-  const int positive = f(low, order) > 0;
+  const int positive = f(low, user) > 0;
   for (int i = 0; i < 30; i++) {
     const quad middle = (low + high) / 2;
-    if ((f(middle, order) > 0) == positive)
+    if ((f(middle, user) > 0) == positive)
       low = middle;
     else
       high = middle;
   }
-  quad x = low, y = high, f_x = f(x, order), f_y = f(y, order);
+  quad x = low, y = high, f_x = f(x, user), f_y = f(y, user);
   for (int i = 0; i < 6 && f_x != f_y; i++) {
     const quad next = y - f_y * (y - x) / (f_y - f_x);
     x = y;
     f_x = f_y;
     y = next;
-    f_y = f(y, order);
+    f_y = f(y, user);
   }
   return y;
 }
 
-void find_roots(quad (*f)(quad x, int order), int order, quad from, quad apart, int most,
-                quad *root)
+void find_roots(root_function *f, const void *user, quad from, quad apart, int most, quad *root)
 {
   int found = 0;
   for (quad x = from; found < most; x += apart)
-    if ((f(x, order) > 0) != (f(x + apart, order) > 0))
-      root[found++] = root_between(f, order, x, x + apart);
+    if ((f(x, user) > 0) != (f(x + apart, user) > 0))
+      root[found++] = root_between(f, user, x, x + apart);
 }

@@ -22,9 +22,10 @@ void spherical_y(int most, quad x, quad *y);
 /* The derivative of order n of functions f_0, f_1 .. with f_n' = (f_{n-1} - f_{n+1}) / 2. */
 quad_complex bessel_slope(const quad_complex *f, int n);
 
+typedef quad root_function(quad x, const void *user);
+
 /* Set root [most] to the first zeros of f above `from`, which are more than `apart` from each
  * other. */
-void find_roots(quad (*f)(quad x, int order), int order, quad from, quad apart, int most,
-                quad *root);
+void find_roots(root_function *f, const void *user, quad from, quad apart, int most, quad *root);
 
 #endif

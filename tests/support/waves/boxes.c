@@ -22,29 +22,6 @@ void start_boxes(dvi_march *march, const double *E, const double *B)
   ck_assert_msg(dvi_march_start(march, &state) == DVI_OK, "%s", dvi_last_error());
 }
 
-void advance_boxes(dvi_march *march, double t)
-{
-  ck_assert_msg(dvi_march_advance(march, t) == DVI_OK, "%s", dvi_last_error());
-}
-
-double *sample_boxes(const dvi_march *march, dvi_march_form form)
-{
-  double *values = calloc((size_t)dvi_march_size(march, form) + 1, sizeof *values);
-  ck_assert_msg(dvi_march_sample(march, form, 0, NULL, values) == DVI_OK, "%s", dvi_last_error());
-  return values;
-}
-
-double observe_boxes(const dvi_march *march, const char *name)
-{
-  double value = NAN;
-  int i = 0;
-  while (dvi_march_observable(march, i) != NULL &&
-         strcmp(dvi_march_observable(march, i), name) != 0)
-    i++;
-  ck_assert_msg(dvi_march_observe(march, i, &value) == DVI_OK, "%s: %s", name, dvi_last_error());
-  return value;
-}
-
 double *random_values(int64_t count, unsigned long long seed)
 {
   double *values = calloc((size_t)count + 1, sizeof *values);

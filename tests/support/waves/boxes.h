@@ -4,20 +4,13 @@
 #define TESTS_SUPPORT_BOXES_H
 #include <dvi/yee.h>
 
+#include "support/field/marches.h"
+
 /* Create a march, or report why there is none. */
 dvi_march *box_march(const dvi_yee_terms *terms);
 
 /* Start with E and B, each NULL for 0. */
 void start_boxes(dvi_march *march, const double *E, const double *B);
-
-/* Advance, and report a failure. */
-void advance_boxes(dvi_march *march, double t);
-
-/* Give all values of a form, for free(). */
-double *sample_boxes(const dvi_march *march, dvi_march_form form);
-
-/* Observe by name. */
-double observe_boxes(const dvi_march *march, const char *name);
 
 /* Give `count` random numbers from -1 to 1, for free(). */
 double *random_values(int64_t count, unsigned long long seed);

@@ -50,39 +50,43 @@ void cavity_box(const double side[3], int count, double *frequency)
 
 /* ---- round ones ---- */
 
-static quad value_of_j(quad x, int order)
+static quad value_of_j(quad x, const void *user)
 {
+  const int order = *(const int *)user;
   quad_complex J[ORDERS + 1];
   bessel_j(order, qc(x, 0), J);
   return J[order].re;
 }
 
-static quad slope_of_j(quad x, int order)
+static quad slope_of_j(quad x, const void *user)
 {
+  const int order = *(const int *)user;
   quad_complex J[ORDERS + 2];
   bessel_j(order + 1, qc(x, 0), J);
   return bessel_slope(J, order).re;
 }
 
-static quad value_of_spherical(quad x, int order)
+static quad value_of_spherical(quad x, const void *user)
 {
+  const int order = *(const int *)user;
   quad_complex j[ORDERS + 1];
   spherical_j(order, qc(x, 0), j);
   return j[order].re;
 }
 
 /* (x j_n)' = x j_{n-1} - n j_n. */
-static quad slope_of_riccati(quad x, int order)
+static quad slope_of_riccati(quad x, const void *user)
 {
+  const int order = *(const int *)user;
   quad_complex j[ORDERS + 1];
   spherical_j(order, qc(x, 0), j);
   return x * j[order - 1].re - order * j[order].re;
 }
 
 /* Zeros of one function are more than 2 apart. x = 0 is none of those that count. */
-static void roots_of(quad (*f)(quad x, int order), int order, quad *root)
+static void roots_of(root_function *f, int order, quad *root)
 {
-  find_roots(f, order, 0.25, 0.5, ROOTS, root);
+  find_roots(f, &order, 0.25, 0.5, ROOTS, root);
 }
 
 /* Add the modes whose cross-section has the frequencies `root`/radius. */

@@ -8,7 +8,9 @@
  * Wolf 1999, sec. 1.6). The defect of that condition is an analytic function of w. */
 #include "support/waves/layers.h"
 
-#include "support/waves/quad_complex.h"
+#include <stdlib.h>
+
+#include "support/waves/bessel.h"
 
 static quad_complex defect(int count, const layer *layers, layer_end end, quad_complex w)
 {
@@ -55,28 +57,26 @@ int layers_mode(int count, const layer *layers, layer_end end, double guess, dou
   return settled;
 }
 
+typedef struct cavity {
+  int count;
+  const layer *layers;
+  layer_end end;
+} cavity;
+
 /* The defect is real, or imaginary, for real w. */
-static quad defect_without_loss(int count, const layer *layers, layer_end end, quad w)
+static quad defect_without_loss(quad w, const void *user)
 {
-  const quad_complex f = defect(count, layers, end, qc(w, 0));
-  return end == LAYER_CONDUCTOR ? f.im : f.re;
+  const cavity *c = user;
+  const quad_complex f = defect(c->count, c->layers, c->end, qc(w, 0));
+  return c->end == LAYER_CONDUCTOR ? f.im : f.re;
 }
 
 void layers_frequencies(int count, const layer *layers, layer_end end, int most, double *frequency)
 {
+  const cavity c = {count, layers, end};
   const quad step = 0.01;
-  int found = 0;
-  for (quad w = step / 2; found < most; w += step) {
-    quad low = w, high = w + step;
-    const int positive = defect_without_loss(count, layers, end, low) > 0;
-    if ((defect_without_loss(count, layers, end, high) > 0) == positive) continue;
-    for (int i = 0; i < 110; i++) {
-      const quad middle = (low + high) / 2;
-      if ((defect_without_loss(count, layers, end, middle) > 0) == positive)
-        low = middle;
-      else
-        high = middle;
-    }
-    frequency[found++] = (double)((low + high) / 2);
-  }
+  quad *root = calloc((size_t)most, sizeof *root);
+  find_roots(defect_without_loss, &c, step / 2, step, most, root);
+  for (int i = 0; i < most; i++) frequency[i] = (double)root[i];
+  free(root);
 }

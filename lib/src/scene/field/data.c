@@ -1,11 +1,13 @@
 /* The sections that say what the field is made of: star, materials, boundary, source, potential,
  * and those of static problems and of the start. */
-#include <stdio.h>
+#include <math.h>
 #include <string.h>
 
 #include "scene/field/maxwell.h"
 #include "scene/sections/sections.h"
 #include "text/heap.h"
+
+enum { PARTS_MOST = 16 };
 
 bool dvi__read_star(dvi_scene *scene, const dvi__tree *section)
 {
@@ -32,57 +34,59 @@ static bool find_centres(dvi_scene *scene)
   return dvi_mesh_centres(field->mesh, n, field->centre) == DVI_OK;
 }
 
-/* A material has the value of its expression at the centre of a cell. */
-static bool set_factor(dvi_scene *scene, const dvi__tree *tree, const char *name, const char *part,
-                       double *factor)
-{
-  dvi__place *place;
-  int64_t count;
-  const dvi_mesh *mesh = scene->field->mesh;
-  const int *cell = dvi_mesh_part_cells(mesh, part, dvi_mesh_dimension(mesh), &count);
-  if (!find_centres(scene) || !dvi__place_read(scene, tree, 0, "a material", &place)) return false;
-  for (int64_t i = 0; i < count; i++) {
-    const double *x = scene->field->centre + (ptrdiff_t)cell[i] * scene->field->space;
-    double value;
-    if (dvi__place_value(place, x, NULL, &value) != 0 || !(value > 0) || value > 1e300)
-      return dvi__scene_refuse(scene, tree->span, "%s is not a positive number in cell %d", name,
-                               cell[i]);
-    factor[cell[i]] = value;
-  }
-  return true;
-}
-
-/* Take room for a factor, which is 1 where nothing is said. */
-static bool reserve_factor(dvi_scene *scene, int k)
+/* Take room for values of the cells, unless there is some. Returns it, or complains. */
+static double *reserve(dvi_scene *scene, double value, double **values)
 {
   const dvi_mesh *mesh = scene->field->mesh;
   const int64_t cells = dvi_mesh_count(mesh, dvi_mesh_dimension(mesh));
-  if (scene->field->factor[k] != NULL) return true;
-  double *factor = dvi__arena_take(&scene->arena, (size_t)cells, sizeof *factor);
-  if (factor == NULL) return dvi__scene_no_memory(scene);
-  for (int64_t c = 0; c < cells; c++) factor[c] = 1;
-  scene->field->factor[k] = factor;
+  if (*values != NULL) return *values;
+  double *made = *values = dvi__arena_take(&scene->arena, (size_t)cells, sizeof *made);
+  for (int64_t c = 0; c < cells && made != NULL; c++) made[c] = value;
+  if (made == NULL) (void)dvi__scene_no_memory(scene);
+  return made;
+}
+
+bool dvi__quantity_set(dvi_scene *scene, const dvi__quantity *of, const char *part, dvi__span span,
+                       const dvi__place *place, double **values)
+{
+  const struct dvi__scene_field *field = scene->field;
+  int64_t count;
+  const int *cell = dvi_mesh_part_cells(field->mesh, part, field->dimension, &count);
+  double *const all = reserve(scene, of->usual, values);
+  if (all == NULL || !find_centres(scene)) return false;
+  for (int64_t i = 0; i < count; i++) {
+    double *value = all + cell[i];
+    const double *x = field->centre + (ptrdiff_t)cell[i] * field->space;
+    *value = (double)NAN;
+    if (dvi__place_value(place, x, NULL, value) != 0 || !(*value >= 0) || *value > 1e300 ||
+        (*value < 1e-300 && !of->may_vanish))
+      return dvi__scene_refuse(scene, span, "%s is %g in cell %d, where a number %s is wanted",
+                               of->name, *value, cell[i],
+                               of->may_vanish ? "of at least 0" : "above 0");
+  }
   return true;
 }
 
 bool dvi__refuse_part(dvi_scene *scene, dvi__span span, const char *name, bool of_cells)
 {
-  char list[160] = "";
-  size_t length = 0;
+  char list[160];
+  const char *part[PARTS_MOST], *next;
+  int64_t count;
+  int parts = 0;
   const dvi_mesh *mesh = scene->field->mesh;
-  for (int i = 0; dvi_mesh_part_name(mesh, i) != NULL && length < sizeof list; i++)
-    length += (size_t)snprintf(list + length, sizeof list - length, "%s%s", i > 0 ? ", " : "",
-                               dvi_mesh_part_name(mesh, i));
-  return of_cells
-             ? dvi__scene_refuse(scene, span,
-                                 "the mesh has no part '%s' of cells; its parts are %s", name, list)
-             : dvi__scene_refuse(scene, span, "the mesh has no part '%s'; its parts are %s", name,
-                                 list);
+  for (int i = 0; parts < PARTS_MOST && (next = dvi_mesh_part_name(mesh, i)) != NULL; i++) {
+    (void)dvi_mesh_part_cells(mesh, next, of_cells ? dvi_mesh_dimension(mesh) : 0, &count);
+    if (count > 0) part[parts++] = next;
+  }
+  return dvi__scene_refuse(scene, span, "the mesh has no part '%s'%s; it has %s", name,
+                           of_cells ? " of cells" : "",
+                           dvi__list_words(parts, part, " and ", list, sizeof list));
 }
 
 static bool read_material(dvi_scene *scene, const dvi__tree *key, const dvi__tree *tree)
 {
   static const char *const known[] = {"rho", "a"};
+  dvi__place *place;
   int64_t count;
   const dvi_mesh *mesh = scene->field->mesh;
   (void)dvi_mesh_part_cells(mesh, key->text, dvi_mesh_dimension(mesh), &count);
@@ -92,8 +96,10 @@ static bool read_material(dvi_scene *scene, const dvi__tree *key, const dvi__tre
     return false;
   for (int k = 0; k < 2; k++) {
     const dvi__tree *value = dvi__tree_find(tree, known[k]);
-    if (value != NULL && (!reserve_factor(scene, k) ||
-                          !set_factor(scene, value, known[k], key->text, scene->field->factor[k])))
+    const dvi__quantity quantity = {known[k], false, 1};
+    if (value != NULL && (!dvi__place_read(scene, value, 0, "a material", &place) ||
+                          !dvi__quantity_set(scene, &quantity, key->text, value->span, place,
+                                             &scene->field->factor[k])))
       return false;
   }
   return true;

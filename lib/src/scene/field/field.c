@@ -1,29 +1,27 @@
 /* The section field, which is read when all others about it are: the field and its system are made,
  * and the scene's coordinates become the unknowns. */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "scene/field/maxwell.h"
 #include "scene/sections/sections.h"
 #include "text/heap.h"
 
-/* Return the section that the last failure is about: the first one of those that are there. */
-static const dvi__tree *section_of(const dvi_scene *scene, const char *name,
-                                   const dvi__tree *otherwise)
+bool dvi__complain_of_field(dvi_scene *scene, const dvi__tree *otherwise, dvi_status status)
 {
-  const dvi__tree *found = dvi__tree_find(scene->tree, name);
-  return found != NULL ? found : otherwise;
-}
-
-/* A sentence of the library names the source, a fixed value, a flux or the potential. */
-static bool complain(dvi_scene *scene, const dvi__tree *section, dvi_status status)
-{
-  const char *sentence = dvi_last_error(), *about = strstr(sentence, "source") != NULL ? "source"
-                                                    : strstr(sentence, " part ") != NULL
-                                                        ? "boundary"
-                                                    : strstr(sentence, "star: ") != NULL ? "star"
-                                                                                         : "mesh";
-  return dvi__complain(scene->complaint, status, section_of(scene, about, section)->span, "%s",
+  static const struct {
+    const char *word, *section;
+  } blame[] = {{"repair", "mesh"},    {"source", "source"},   {"wall", "boundary"},
+               {"fixed", "boundary"}, {"dipole", "sources"},  {"signal", "sources"},
+               {"probe", "probes"},   {" part ", "boundary"}, {"point", "probes"},
+               {"star", "star"}};
+  const char *sentence = dvi_last_error();
+  const dvi__tree *found = NULL;
+  for (size_t i = 0; i < sizeof blame / sizeof *blame && found == NULL; i++)
+    if (strstr(sentence, blame[i].word) != NULL)
+      found = dvi__tree_find(scene->tree, blame[i].section);
+  return dvi__complain(scene->complaint, status, (found != NULL ? found : otherwise)->span, "%s",
                        sentence);
 }
 
@@ -86,6 +84,37 @@ bool dvi__declare_unknowns(dvi_scene *scene, const dvi__tree *section, const cha
   return true;
 }
 
+/* What marches observe beside the probes. Waves have the first ones. */
+const char *const dvi__observable[] = {"energy", "growth", "gauss", "charge", "divergence", NULL};
+enum { OF_WAVES = 2 };
+
+int dvi__list_field_columns(const dvi_scene *scene, const char **known)
+{
+  const struct dvi__scene_maxwell *m = scene->field->maxwell;
+  const int probes = m != NULL ? m->probes : scene->terms.invariant_count;
+  int count = 0;
+  for (; m != NULL ? dvi__observable[count] != NULL : count < OF_WAVES; count++)
+    if (known != NULL) known[count] = dvi__observable[count];
+  for (int i = 0; i < scene->terms.symmetry_count; i++, count++)
+    if (known != NULL) known[count] = scene->terms.symmetries[i].name;
+  for (int i = 0; i < probes; i++, count++)
+    if (known != NULL)
+      known[count] = m != NULL ? m->probe[i].name : scene->terms.invariants[i].name;
+  return count;
+}
+
+bool dvi__is_mechanical_column(const dvi_scene *scene, const char *name)
+{
+  static const char *const column[] = {"t", "energy_balance", "h", "jump"};
+  for (size_t k = 0; k < sizeof column / sizeof *column; k++)
+    if (strcmp(column[k], name) == 0) return true;
+  if (scene->field->mesh == NULL ||
+      !dvi__is_unknown(name, scene->field->maxwell != NULL ? 'A' : 'u'))
+    return false;
+  const long number = strtol(strrchr(name, '_') + 1, NULL, 10);
+  return number >= 1 && number <= scene->nv;
+}
+
 /* A run shows energy, momenta and probes. */
 bool dvi__choose_field_columns(dvi_scene *scene)
 {
@@ -130,7 +159,8 @@ static dvi_status make_field(dvi_scene *scene)
 static bool make_wave(dvi_scene *scene, const dvi__tree *section)
 {
   const dvi_status status = make_field(scene);
-  if (status != DVI_OK) return complain(scene, section, status);
+  if (status != DVI_OK)
+    return dvi__complain_of_field(scene, dvi__tree_find(scene->tree, "mesh"), status);
   scene->form = "separable";
   scene->mass = scene->terms.mass.diagonal != NULL ? "diagonal" : "sparse";
   return dvi__declare_unknowns(scene, section, "u") && make_start(scene) &&
@@ -138,13 +168,14 @@ static bool make_wave(dvi_scene *scene, const dvi__tree *section)
 }
 
 /* A step that is a fraction of the largest stable one of verlet divides the span. */
-static bool choose_step(dvi_scene *scene, const dvi__tree *section)
+static bool choose_step(dvi_scene *scene)
 {
   double omega;
   dvi_scene_plan *plan = &scene->plan;
   if (!(plan->fraction > 0) || scene->field->field == NULL) return true;
   const dvi_status status = dvi_field_fastest(scene->field->field, &omega);
-  if (status != DVI_OK) return complain(scene, section, status);
+  if (status != DVI_OK)
+    return dvi__complain_of_field(scene, dvi__tree_find(scene->tree, "mesh"), status);
   if (!(omega > 0))
     return dvi__scene_refuse(scene, dvi__tree_find(scene->tree, "step")->span,
                              "nothing oscillates here, so that a step is no fraction of a stable "
@@ -159,9 +190,8 @@ bool dvi__read_field(dvi_scene *scene, const dvi__tree *section)
   static const char *const word[] = {"wave", "maxwell"};
   int which;
   if (!dvi__tree_word(scene, section, "field", 2, word, &which)) return false;
-  if (which == 1 && scene->field->mesh == NULL) return dvi__grid_make(scene, section);
-  return (which == 0 ? make_wave : dvi__maxwell_make)(scene, section) &&
-         choose_step(scene, section);
+  if (which == 1 && scene->field->mesh == NULL) return dvi__grid_make(scene);
+  return (which == 0 ? make_wave : dvi__maxwell_make)(scene, section) && choose_step(scene);
 }
 
 void dvi__scene_field_clear(dvi_scene *scene)

@@ -9,7 +9,6 @@
 
 /* What the terms of yee point to, while a march is made. */
 typedef struct draft {
-  const dvi_scene *scene;
   const struct dvi__scene_field *field;
   const struct dvi__scene_maxwell *maxwell;
   dvi_yee_terms terms;
@@ -18,25 +17,31 @@ typedef struct draft {
   dvi_yee_wave *wave;
   dvi_yee_probe *probe;
   dvi_yee_flux *flux;
-  double *node[3], *E, *B, *A;
+  double *node[3], *E, *B;
 } draft;
 
 /* ---- axes ---- */
+
+static double node_at(const dvi_generator_options *grid, int axis, int i)
+{
+  const double extent = grid->extent[axis] > 0 ? grid->extent[axis] : 1,
+               grading = grid->grading[axis] > 0 ? grid->grading[axis] : 1;
+  return grid->origin[axis] + extent * pow((double)i / grid->cells[axis], grading);
+}
 
 static dvi_status set_nodes(draft *d, int axis)
 {
   const dvi_generator_options *grid = &d->field->grid;
   const int cells = grid->cells[axis];
-  const double extent = grid->extent[axis] > 0 ? grid->extent[axis] : 1,
-               grading = grid->grading[axis];
+  const double grading = grid->grading[axis];
   dvi_yee_axis *to = d->terms.axis + axis;
   to->cells = cells;
-  to->lower = grid->origin[axis];
-  to->upper = grid->origin[axis] + extent;
+  to->lower = node_at(grid, axis, 0);
+  to->upper = node_at(grid, axis, cells);
   if (grading == 0 || grading == 1) return DVI_OK;
   double *node = d->node[axis] = dvi__heap_take((size_t)cells + 1, sizeof *node);
   if (node == NULL) return DVI_NO_MEMORY;
-  for (int i = 0; i <= cells; i++) node[i] = to->lower + extent * pow((double)i / cells, grading);
+  for (int i = 0; i <= cells; i++) node[i] = node_at(grid, axis, i);
   to->node = node;
   return DVI_OK;
 }
@@ -54,8 +59,7 @@ static void set_end(const dvi__scene_wall *wall, dvi_yee_axis *axis, int end)
   if (wall->word == DVI__WALL_BLOCH) axis->phase = wall->number;
 }
 
-/* The whole boundary comes first, and walls on sides replace it. Where nothing is said, the wall is
- * a magnetic one, as on a mesh, or the grid repeats itself. */
+/* Where nothing is said, the wall is a magnetic one, as on a mesh, or the grid repeats itself. */
 static void set_walls(draft *d)
 {
   const struct dvi__scene_maxwell *m = d->maxwell;
@@ -63,10 +67,10 @@ static void set_walls(draft *d)
     for (int end = 0; end < 2; end++) {
       dvi_yee_axis *axis = d->terms.axis + a;
       axis->end[end].kind = DVI_YEE_PMC;
-      for (int pass = 0; pass < 2; pass++)
-        for (int i = 0; i < m->walls; i++)
-          if (strcmp(m->wall[i].part, pass == 0 ? "boundary" : dvi__grid_side[2 * a + end]) == 0)
-            set_end(m->wall + i, axis, end);
+      for (int i = 0; i < m->walls; i++)
+        if (strcmp(m->wall[i].part, "boundary") == 0 ||
+            strcmp(m->wall[i].part, dvi__grid_side[2 * a + end]) == 0)
+          set_end(m->wall + i, axis, end);
       if (d->field->grid.periodic[a]) axis->end[end].kind = DVI_YEE_PERIODIC;
     }
 }
@@ -100,11 +104,6 @@ static void set_media(draft *d)
   }
 }
 
-static int density_of(const double *x, double *value, void *user)
-{
-  return dvi__place_vector_value(user, x, value);
-}
-
 static void add_dipole(draft *d, const dvi__scene_source *source, int component)
 {
   dvi_yee_dipole *dipole = d->dipole + d->terms.dipoles++;
@@ -132,7 +131,7 @@ static void set_sources(draft *d)
     const dvi__scene_source *source = d->maxwell->source + i;
     if (source->wave != NULL) add_wave(d, source);
     if (source->density != NULL)
-      d->current[d->terms.currents++] = (dvi_yee_current){.density = density_of,
+      d->current[d->terms.currents++] = (dvi_yee_current){.density = dvi__place_vector_value,
                                                           .density_user = source->density,
                                                           .signal = dvi__signal_value,
                                                           .signal_user = source->signal[0]};
@@ -205,13 +204,13 @@ static dvi_status integrate(draft *d, dvi_march_form form, dvi__place_vector *ve
   if (vector == NULL) return DVI_OK;
   *values = dvi__heap_take((size_t)dvi_yee_size(&d->terms, form), sizeof **values);
   if (*values == NULL) return DVI_NO_MEMORY;
-  return dvi_yee_integrate(&d->terms, form, density_of, vector, *values);
+  return dvi_yee_integrate(&d->terms, form, dvi__place_vector_value, vector, *values);
 }
 
 dvi_status dvi__grid_march(const dvi_scene *scene, const dvi_march_options *options,
                            dvi_march **march)
 {
-  draft d = {.scene = scene, .field = scene->field, .maxwell = scene->field->maxwell};
+  draft d = {.field = scene->field, .maxwell = scene->field->maxwell};
   dvi_status status = set_terms(&d, options);
   if (status == DVI_OK) status = dvi_yee_create(&d.terms, march);
   if (status == DVI_OK) status = integrate(&d, DVI_FORM_E, d.maxwell->of_E, &d.E);
@@ -296,7 +295,7 @@ static void fill_vectors(const draft *d, dvi_march_form form, const double *valu
 dvi_status dvi__grid_vectors(const dvi_scene *scene, const dvi_march *march, dvi_march_form form,
                              double *vector)
 {
-  draft d = {.scene = scene, .field = scene->field, .maxwell = scene->field->maxwell};
+  draft d = {.field = scene->field, .maxwell = scene->field->maxwell};
   const dvi_march_options none = {.size = sizeof none};
   double *values = dvi__heap_take((size_t)dvi_march_size(march, form), sizeof *values);
   dvi_status status = values != NULL ? set_terms(&d, &none) : DVI_NO_MEMORY;
@@ -309,19 +308,61 @@ dvi_status dvi__grid_vectors(const dvi_scene *scene, const dvi_march *march, dvi
 
 /* ---- the section ---- */
 
-/* A grid has parts neither for a flux nor for an energy, and no start by a potential. */
-bool dvi__grid_make(dvi_scene *scene, const dvi__tree *section)
+/* Return how many layers absorb at an end of an axis. */
+static int layers_at(const struct dvi__scene_maxwell *m, int side)
+{
+  int layers = 0;
+  for (int i = 0; i < m->walls; i++)
+    if (m->wall[i].word == DVI__WALL_CPML && (strcmp(m->wall[i].part, "boundary") == 0 ||
+                                              strcmp(m->wall[i].part, dvi__grid_side[side]) == 0))
+      layers = (int)m->wall[i].number;
+  return layers;
+}
+
+/* Refuse a probe in absorbing layers, where the field is none of Maxwell's any more. Yee refuses
+ * what is outside of the grid. */
+static bool is_clear_of_layers(dvi_scene *scene, const dvi__scene_probe *probe)
+{
+  const struct dvi__scene_field *f = scene->field;
+  for (int a = 0; a < f->dimension; a++) {
+    const int cells = f->grid.cells[a], first = layers_at(f->maxwell, 2 * a),
+              last = cells - layers_at(f->maxwell, 2 * a + 1);
+    if (first >= last) return true; /* yee refuses such layers, too */
+    const double lower = node_at(&f->grid, a, first), upper = node_at(&f->grid, a, last),
+                 rounding = 1e-9 * (upper - lower),
+                 from = probe->has_box ? probe->lower[a] : probe->at[a],
+                 to = probe->has_box ? probe->upper[a] : probe->at[a];
+    const bool is_inside = from >= node_at(&f->grid, a, 0) && to <= node_at(&f->grid, a, cells);
+    if (is_inside && (from < lower - rounding || to > upper + rounding))
+      return dvi__scene_refuse(scene, probe->span,
+                               "'%s' lies in absorbing layers, without which %c goes from %g to %g",
+                               probe->name, "xyz"[a], lower, upper);
+  }
+  return true;
+}
+
+/* A grid has parts neither for a flux nor for an energy. */
+static bool check_probe(dvi_scene *scene, const dvi__scene_probe *probe)
+{
+  const char *only = scene->field->maxwell->grid_only;
+  if (probe->part == NULL) return is_clear_of_layers(scene, probe);
+  return only != NULL ? dvi__scene_refuse(scene, probe->span,
+                                          "a grid has no parts, and with '%s' there is a grid; "
+                                          "write 'flux: {from: [..], to: [..]}'",
+                                          only)
+                      : dvi__scene_refuse(scene, probe->span,
+                                          "so large a grid has no parts; write 'flux: {from: [..], "
+                                          "to: [..]}', or 'method: leapfrog', which makes a mesh");
+}
+
+bool dvi__grid_make(dvi_scene *scene)
 {
   const struct dvi__scene_maxwell *m = scene->field->maxwell;
   for (int i = 0; i < m->probes; i++)
-    if (!m->probe[i].has_box && *m->probe[i].of != 'E' && *m->probe[i].of != 'B')
-      return dvi__scene_refuse(scene, m->probe[i].span,
-                               "a grid has no parts; write 'flux: {from: [..], to: [..]}', or "
-                               "advance the mesh of the boxes by 'method: leapfrog'");
+    if (!check_probe(scene, m->probe + i)) return false;
   if (m->of_A != NULL)
     return dvi__scene_refuse(scene, dvi__tree_find(scene->tree, "initial")->span,
                              "a grid starts from E and B, not from A");
   scene->form = "separable";
-  (void)section;
   return true;
 }

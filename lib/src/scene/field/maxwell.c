@@ -13,7 +13,6 @@ typedef struct draft {
   dvi_current *current;
   dvi_field_probe *probe;
   double *eps, *nu, *sigma; /* [cells] or NULL */
-  double *centre;           /* [cells*space] */
   dvi_maxwell_terms terms;
 } draft;
 
@@ -26,102 +25,27 @@ static void *take(dvi_scene *scene, size_t count, size_t size)
 
 /* ---- materials ---- */
 
-static bool refuse_value(dvi_scene *scene, const dvi__scene_material *material, int which,
-                         double value, int cell)
-{
-  static const char *const name[] = {"eps", "mu", "sigma"};
-  return which == DVI__SIGMA
-             ? dvi__scene_refuse(scene, material->span[which],
-                                 "sigma is %g in cell %d, where a number of at least 0 is wanted",
-                                 value, cell)
-             : dvi__scene_refuse(scene, material->span[which],
-                                 "%s is %g in cell %d, where a number above 0 is wanted",
-                                 name[which], value, cell);
-}
-
-/* Set the cells of a part, with the place at their centres. */
-static bool set_cells(dvi_scene *scene, const draft *d, const dvi__scene_material *material,
-                      int which, double *values)
-{
-  const double least = which == DVI__SIGMA ? 0 : 1e-300;
-  int64_t count;
-  const dvi_mesh *mesh = scene->field->mesh;
-  const int *cell = dvi_mesh_part_cells(mesh, material->part, dvi_mesh_dimension(mesh), &count);
-  for (int64_t i = 0; i < count; i++) {
-    double value = (double)NAN;
-    const double *x = d->centre + (ptrdiff_t)cell[i] * scene->field->space;
-    if (dvi__place_value(material->place[which], x, NULL, &value) != 0 || !(value >= least) ||
-        value > 1e300)
-      return refuse_value(scene, material, which, value, cell[i]);
-    values[cell[i]] = value;
-  }
-  return true;
-}
-
-static bool set_quantity(dvi_scene *scene, const draft *d, const dvi__scene_material *material,
-                         int which, double **values)
-{
-  const dvi_mesh *mesh = scene->field->mesh;
-  const int64_t cells = dvi_mesh_count(mesh, dvi_mesh_dimension(mesh));
-  if (material->place[which] == NULL) return true;
-  if (*values == NULL) {
-    *values = take(scene, (size_t)cells, sizeof **values);
-    for (int64_t c = 0; c < cells && *values != NULL; c++) (*values)[c] = which != DVI__SIGMA;
-  }
-  return *values != NULL && set_cells(scene, d, material, which, *values);
-}
-
 /* The star takes 1/mu. */
 static bool set_materials(dvi_scene *scene, draft *d)
 {
+  static const dvi__quantity quantity[] = {{"eps", false, 1}, {"mu", false, 1}, {"sigma", true, 0}};
   const struct dvi__scene_maxwell *m = scene->field->maxwell;
   const dvi_mesh *mesh = scene->field->mesh;
-  const int n = dvi_mesh_dimension(mesh);
-  const int64_t cells = dvi_mesh_count(mesh, n);
-  if (m->materials == 0) return true;
-  d->centre = take(scene, (size_t)(cells * scene->field->space), sizeof *d->centre);
-  if (d->centre == NULL) return false;
-  (void)dvi_mesh_centres(mesh, n, d->centre);
+  const int64_t cells = dvi_mesh_count(mesh, dvi_mesh_dimension(mesh));
+  double **const values[] = {&d->eps, &d->nu, &d->sigma};
   for (int i = 0; i < m->materials; i++)
-    for (int which = 0; which < DVI__QUANTITIES; which++) {
-      double **const values[] = {&d->eps, &d->nu, &d->sigma};
-      if (!set_quantity(scene, d, m->material + i, which, values[which])) return false;
-    }
+    for (int k = 0; k < DVI__QUANTITIES; k++)
+      if (m->material[i].place[k] != NULL &&
+          !dvi__quantity_set(scene, quantity + k, m->material[i].part, m->material[i].span[k],
+                             m->material[i].place[k], values[k]))
+        return false;
   for (int64_t c = 0; c < cells && d->nu != NULL; c++) d->nu[c] = 1 / d->nu[c];
   return true;
 }
 
 /* ---- walls ---- */
 
-static void add_wall(draft *d, const char *part, dvi__wall_word word)
-{
-  static const dvi_wall_kind kind[] = {
-      [DVI__WALL_PMC] = DVI_PMC, [DVI__WALL_PEC] = DVI_PEC, [DVI__WALL_ABSORBING] = DVI_ABSORBING};
-  d->wall[d->terms.walls++] = (dvi_wall){.part = part, .kind = kind[word]};
-}
-
-static bool is_whole(const dvi__scene_wall *wall)
-{
-  return strcmp(wall->part, "boundary") == 0;
-}
-
-/* Of walls on one facet the library takes the strongest. A side of a grid has the wall that is
- * given for it all the same, as with yee, so that the wall of the whole boundary is that of the
- * other sides. */
-static void add_other_sides(const dvi_scene *scene, draft *d, const dvi__scene_wall *whole)
-{
-  const struct dvi__scene_maxwell *m = scene->field->maxwell;
-  for (int side = 0; side < 2 * scene->field->dimension; side++) {
-    const char *name = dvi__grid_side[side];
-    int64_t count = -1;
-    bool is_given = false;
-    for (int i = 0; i < m->walls; i++) is_given = is_given || strcmp(m->wall[i].part, name) == 0;
-    (void)dvi_mesh_part_cells(scene->field->mesh, name, 0, &count);
-    if (!is_given && count > 0) add_wall(d, name, whole->word);
-  }
-}
-
-/* On other meshes a part cannot be taken out of the boundary. */
+/* On a mesh that is no grid a part cannot be taken out of the boundary. */
 static bool is_strongest(dvi_scene *scene, const dvi__scene_wall *whole)
 {
   static const int strength[] = {
@@ -138,8 +62,10 @@ static bool is_strongest(dvi_scene *scene, const dvi__scene_wall *whole)
 
 static bool set_walls(dvi_scene *scene, draft *d)
 {
+  static const dvi_wall_kind kind[] = {
+      [DVI__WALL_PMC] = DVI_PMC, [DVI__WALL_PEC] = DVI_PEC, [DVI__WALL_ABSORBING] = DVI_ABSORBING};
   const struct dvi__scene_maxwell *m = scene->field->maxwell;
-  d->wall = take(scene, (size_t)m->walls + 6, sizeof *d->wall);
+  d->wall = take(scene, (size_t)m->walls, sizeof *d->wall);
   if (d->wall == NULL) return false;
   for (int i = 0; i < m->walls; i++) {
     const dvi__scene_wall *wall = m->wall + i;
@@ -147,12 +73,8 @@ static bool set_walls(dvi_scene *scene, draft *d)
       return dvi__scene_refuse(scene, wall->span,
                                "layers and phases are for 'method: yee' on boxes; a wall of this "
                                "mesh is pec, pmc or absorbing");
-    if (is_whole(wall) && m->walls > 1 && scene->field->is_grid) {
-      add_other_sides(scene, d, wall);
-      continue;
-    }
-    if (is_whole(wall) && !is_strongest(scene, wall)) return false;
-    add_wall(d, wall->part, wall->word);
+    if (strcmp(wall->part, "boundary") == 0 && !is_strongest(scene, wall)) return false;
+    d->wall[d->terms.walls++] = (dvi_wall){.part = wall->part, .kind = kind[wall->word]};
   }
   return true;
 }
@@ -168,11 +90,6 @@ static bool is_inside(dvi_scene *scene, const double *point, dvi__span span, con
   if (status != DVI_OK)
     return dvi__complain(scene->complaint, status, span, "%s", dvi_last_error());
   return cell >= 0 || dvi__scene_refuse(scene, span, "%s is outside of the mesh", what);
-}
-
-static int density_of(const double *x, double *value, void *user)
-{
-  return dvi__place_vector_value(user, x, value);
 }
 
 static bool set_currents(dvi_scene *scene, draft *d)
@@ -195,7 +112,7 @@ static bool set_currents(dvi_scene *scene, draft *d)
                                .impulse = dvi__signal_impulse,
                                .user = source->signal[axis]};
       if (source->density != NULL) {
-        current->density = density_of;
+        current->density = dvi__place_vector_value;
         current->density_user = source->density;
       } else {
         memcpy(current->at, source->point, sizeof source->point);
@@ -211,20 +128,6 @@ static bool set_currents(dvi_scene *scene, draft *d)
 
 /* ---- probes ---- */
 
-/* Refuse the name of another column. */
-static bool name_is_new(dvi_scene *scene, int i)
-{
-  static const char *const taken[] = {"t", "energy", "gauss", "charge", "divergence", "growth"};
-  const struct dvi__scene_maxwell *m = scene->field->maxwell;
-  const char *name = m->probe[i].name;
-  bool there = dvi__is_unknown(name, 'A');
-  for (size_t k = 0; k < sizeof taken / sizeof *taken; k++)
-    there = there || strcmp(taken[k], name) == 0;
-  for (int k = 0; k < i; k++) there = there || strcmp(m->probe[k].name, name) == 0;
-  return !there || dvi__scene_refuse(scene, m->probe[i].span,
-                                     "there is a column '%s' already; choose another name", name);
-}
-
 static bool set_probes(dvi_scene *scene, draft *d)
 {
   const struct dvi__scene_maxwell *m = scene->field->maxwell;
@@ -232,7 +135,6 @@ static bool set_probes(dvi_scene *scene, draft *d)
   for (int i = 0; i < m->probes && d->probe != NULL; i++) {
     const dvi__scene_probe *from = m->probe + i;
     dvi_field_probe *probe = d->probe + i;
-    if (!name_is_new(scene, i)) return false;
     if (from->has_box)
       return dvi__scene_refuse(scene, from->span,
                                "a flux through a box is for 'method: yee' on boxes; on a mesh it "
@@ -251,7 +153,7 @@ static bool set_probes(dvi_scene *scene, draft *d)
 /* The components of a form, of a vector in space, and where they failed. */
 typedef struct form_of_vector {
   const struct dvi__scene_field *field;
-  const dvi__place_vector *vector;
+  dvi__place_vector *vector;
   bool is_B, has_failed;
   double at[3];
 } form_of_vector;
@@ -260,7 +162,7 @@ static int form_at(const double *x, double *value, void *user)
 {
   form_of_vector *f = user;
   double vector[3] = {0};
-  f->has_failed = dvi__place_vector_value(f->vector, x, vector) != 0;
+  f->has_failed = dvi__place_vector_value(x, vector, f->vector) != 0;
   if (f->has_failed)
     memcpy(f->at, x, (size_t)f->field->space * sizeof *x);
   else
@@ -268,7 +170,7 @@ static int form_at(const double *x, double *value, void *user)
   return f->has_failed;
 }
 
-static bool integrate(dvi_scene *scene, const dvi__place_vector *vector, bool is_B, double **form)
+static bool integrate(dvi_scene *scene, dvi__place_vector *vector, bool is_B, double **form)
 {
   form_of_vector f = {.field = scene->field, .vector = vector, .is_B = is_B};
   const dvi_mesh *mesh = scene->field->mesh;
@@ -376,21 +278,6 @@ static dvi_status make_field(dvi_scene *scene, draft *d)
   return status;
 }
 
-/* A sentence of the library names a wall, a dipole, a probe, or the star. */
-static const dvi__tree *to_blame(const dvi_scene *scene, const dvi__tree *section)
-{
-  static const struct {
-    const char *word, *section;
-  } blame[] = {{"repair", "mesh"},    {"wall", "boundary"},  {"fixed", "boundary"},
-               {"dipole", "sources"}, {"signal", "sources"}, {"probe", "probes"},
-               {"point", "probes"},   {"star", "star"}};
-  for (size_t i = 0; i < sizeof blame / sizeof *blame; i++) {
-    const dvi__tree *found = dvi__tree_find(scene->tree, blame[i].section);
-    if (found != NULL && strstr(dvi_last_error(), blame[i].word) != NULL) return found;
-  }
-  return section;
-}
-
 bool dvi__maxwell_make(dvi_scene *scene, const dvi__tree *section)
 {
   draft d = {.terms = {.size = sizeof d.terms}};
@@ -398,9 +285,7 @@ bool dvi__maxwell_make(dvi_scene *scene, const dvi__tree *section)
       !set_probes(scene, &d))
     return false;
   const dvi_status status = make_field(scene, &d);
-  if (status != DVI_OK)
-    return dvi__complain(scene->complaint, status, to_blame(scene, section)->span, "%s",
-                         dvi_last_error());
+  if (status != DVI_OK) return dvi__complain_of_field(scene, section, status);
   scene->form = "separable";
   scene->mass = scene->terms.mass.diagonal != NULL ? "diagonal" : "sparse";
   return dvi__declare_unknowns(scene, section, "A") && make_start(scene) && watch_probes(scene) &&

@@ -103,7 +103,7 @@ int dvi__signal_impulse(double from, double to, double *value, void *user);
 bool dvi__maxwell_make(dvi_scene *scene, const dvi__tree *section);
 
 /* Check what only a grid has, and make a march of it. */
-bool dvi__grid_make(dvi_scene *scene, const dvi__tree *section);
+bool dvi__grid_make(dvi_scene *scene);
 dvi_status dvi__grid_march(const dvi_scene *scene, const dvi_march_options *options,
                            dvi_march **march);
 

@@ -211,21 +211,30 @@ bool dvi__maxwell_read_periodic(dvi_scene *scene)
   return all || boundary->kind != DVI__MAPPING || read_periodic_sides(scene, boundary);
 }
 
-static bool wall_is_there(dvi_scene *scene, const char *part, dvi__span span)
+static bool side_is_there(dvi_scene *scene, const char *part, dvi__span span)
 {
-  const dvi_mesh *mesh = scene->field->mesh;
-  int64_t count = -1;
-  if (mesh != NULL) {
-    (void)dvi_mesh_part_cells(mesh, part, 0, &count);
-    return count >= 0 || dvi__refuse_part(scene, span, part, false);
-  }
-  for (int i = 0; i < 2 * scene->field->dimension; i++)
+  char list[64];
+  const int sides = 2 * scene->field->dimension;
+  for (int i = 0; i < sides; i++)
     if (strcmp(part, dvi__grid_side[i]) == 0) return true;
   return strcmp(part, "boundary") == 0 ||
-         dvi__scene_refuse(scene, span,
-                           "a grid has no wall '%s'; it has boundary, left, right, bottom, top, "
-                           "back and front, as far as it has such axes",
-                           part);
+         dvi__scene_refuse(scene, span, "a grid has no wall '%s'; it has boundary, %s", part,
+                           dvi__list_words(sides, dvi__grid_side, " and ", list, sizeof list));
+}
+
+static bool wall_is_there(dvi_scene *scene, const char *part, dvi__span span)
+{
+  int64_t count = -1;
+  if (scene->field->mesh == NULL) return side_is_there(scene, part, span);
+  (void)dvi_mesh_part_cells(scene->field->mesh, part, 0, &count);
+  return count >= 0 || dvi__refuse_part(scene, span, part, false);
+}
+
+static bool refuse_wall(dvi_scene *scene, dvi__span span)
+{
+  return dvi__scene_refuse(scene, span,
+                           "a wall is pec, pmc, absorbing, periodic, {cpml: layers} or {bloch: "
+                           "phase}");
 }
 
 /* Read '{cpml: 10}' or '{bloch: 0.5}'. */
@@ -233,12 +242,11 @@ static bool read_number_wall(dvi_scene *scene, const dvi__tree *tree, dvi__scene
 {
   static const char *const known[] = {"cpml", "bloch"};
   int layers;
-  if (!dvi__want_mapping(scene, tree, "a wall") || !dvi__want_keys(scene, tree, "a wall", 2, known))
-    return false;
   if (tree->count != 1)
     return dvi__scene_refuse(scene, tree->span,
-                             "a wall is pec, pmc, periodic, absorbing, {cpml: cells} or {bloch: "
-                             "phase}");
+                             "'cpml' and 'bloch' stand alone; beside sides the wall of the others "
+                             "is 'boundary', as in '{boundary: {cpml: 10}, left: pec}'");
+  if (!dvi__want_keys(scene, tree, "a wall", 2, known)) return false;
   if (strcmp(tree->key[0]->text, "bloch") == 0) {
     wall->word = DVI__WALL_BLOCH;
     return dvi__tree_number(scene, tree->child[0], "bloch", &wall->number);
@@ -249,25 +257,69 @@ static bool read_number_wall(dvi_scene *scene, const dvi__tree *tree, dvi__scene
   return true;
 }
 
+static bool read_word_wall(dvi_scene *scene, const dvi__tree *tree, dvi__scene_wall *wall)
+{
+  static const char *const word[] = {"pmc", "pec", "absorbing"};
+  enum { WORDS = sizeof word / sizeof *word };
+  int which = 0;
+  if (is_periodic(tree))
+    return dvi__scene_refuse(scene, tree->span,
+                             "this mesh repeats itself by its own axes, as in 'mesh: {generator: "
+                             "kuhn-torus}'; a box does so by its boundary, too");
+  while (which < WORDS && (tree->kind != DVI__SCALAR || strcmp(tree->text, word[which]) != 0))
+    which++;
+  wall->word = (dvi__wall_word)which;
+  return which < WORDS || refuse_wall(scene, tree->span);
+}
+
 static bool read_wall(dvi_scene *scene, const char *part, dvi__span span, const dvi__tree *tree)
 {
-  static const char *const word[] = {"pmc", "pec", "absorbing", "periodic"};
   struct dvi__scene_maxwell *m = scene->field->maxwell;
   dvi__scene_wall *wall = m->wall + m->walls++;
-  int which;
   *wall = (dvi__scene_wall){.part = part, .span = span};
   if (is_periodic(tree) && scene->field->is_grid) {
     m->walls--; /* the axes of the grid repeat themselves, and have no wall */
-    return true;
+    return side_is_there(scene, part, span);
   }
-  if (!wall_is_there(scene, part, span)) return false;
-  if (tree->kind == DVI__MAPPING) return read_number_wall(scene, tree, wall);
-  if (!dvi__tree_word(scene, tree, "a wall", 4, word, &which)) return false;
-  wall->word = (dvi__wall_word)which;
-  return wall->word != DVI__WALL_PERIODIC ||
-         dvi__scene_refuse(scene, tree->span,
-                           "this mesh repeats itself by its own axes, as in 'mesh: {generator: "
-                           "kuhn-torus}'; a box does so by its boundary, too");
+  return (tree->kind == DVI__MAPPING ? read_number_wall : read_word_wall)(scene, tree, wall) &&
+         wall_is_there(scene, part, span);
+}
+
+/* The sides that have no wall of their own have that of the whole boundary. */
+static void add_other_sides(dvi_scene *scene, int walls, const dvi__scene_wall *wall,
+                            const dvi__scene_wall *whole)
+{
+  struct dvi__scene_maxwell *m = scene->field->maxwell;
+  const dvi_mesh *mesh = scene->field->mesh;
+  for (int side = 0; side < 2 * scene->field->dimension; side++) {
+    int64_t count = 1;
+    bool is_given = false;
+    for (int i = 0; i < walls; i++)
+      is_given = is_given || strcmp(wall[i].part, dvi__grid_side[side]) == 0;
+    if (mesh != NULL) (void)dvi_mesh_part_cells(mesh, dvi__grid_side[side], 0, &count);
+    if (is_given || count <= 0) continue;
+    m->wall[m->walls] = *whole;
+    m->wall[m->walls++].part = dvi__grid_side[side];
+  }
+}
+
+/* Walls on sides of a grid replace that of the whole boundary. On a mesh the library takes the
+ * strongest of those that a facet has. */
+static bool replace_whole(dvi_scene *scene)
+{
+  struct dvi__scene_maxwell *m = scene->field->maxwell;
+  const dvi__scene_wall *wall = m->wall;
+  const int walls = m->walls;
+  if (!scene->field->is_grid || walls < 2) return true;
+  m->wall = dvi__arena_take(&scene->arena, (size_t)walls + 6, sizeof *m->wall);
+  if (m->wall == NULL) return dvi__scene_no_memory(scene);
+  m->walls = 0;
+  for (int i = 0; i < walls; i++)
+    if (strcmp(wall[i].part, "boundary") == 0)
+      add_other_sides(scene, walls, wall, wall + i);
+    else
+      m->wall[m->walls++] = wall[i];
+  return true;
 }
 
 /* A mapping by part has values that are words or mappings; '{cpml: 10}' alone is of the whole
@@ -284,7 +336,7 @@ bool dvi__maxwell_read_walls(dvi_scene *scene, const dvi__tree *section)
   for (int i = 0; i < section->count; i++)
     if (!read_wall(scene, section->key[i]->text, section->key[i]->span, section->child[i]))
       return false;
-  return true;
+  return replace_whole(scene);
 }
 
 /* ---- sources ---- */
@@ -480,6 +532,19 @@ static bool read_probe(dvi_scene *scene, const dvi__tree *key, const dvi__tree *
   return read_part(scene, tree, flux != NULL ? flux : energy, probe);
 }
 
+/* Refuse the name of another column. */
+static bool name_is_new(dvi_scene *scene, int i)
+{
+  const struct dvi__scene_maxwell *m = scene->field->maxwell;
+  const char *name = m->probe[i].name;
+  bool there = strcmp(name, "t") == 0 || dvi__is_unknown(name, 'A');
+  for (int k = 0; dvi__observable[k] != NULL; k++)
+    there = there || strcmp(dvi__observable[k], name) == 0;
+  for (int k = 0; k < i; k++) there = there || strcmp(m->probe[k].name, name) == 0;
+  return !there || dvi__scene_refuse(scene, m->probe[i].span,
+                                     "there is a column '%s' already; choose another name", name);
+}
+
 bool dvi__maxwell_read_probes(dvi_scene *scene, const dvi__tree *section)
 {
   struct dvi__scene_maxwell *m = scene->field->maxwell;
@@ -489,6 +554,8 @@ bool dvi__maxwell_read_probes(dvi_scene *scene, const dvi__tree *section)
   if (m->probe == NULL) return dvi__scene_no_memory(scene);
   for (int i = 0; i < section->count; i++)
     if (!read_probe(scene, section->key[i], section->child[i])) return false;
+  for (int i = 0; i < m->probes; i++)
+    if (!name_is_new(scene, i)) return false;
   return true;
 }
 

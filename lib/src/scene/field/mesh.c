@@ -38,6 +38,29 @@ static bool report_file(dvi_scene *scene, const dvi__tree *file, dvi_status stat
   return report(scene, file, status == DVI_BAD_FILE ? DVI_IO_ERROR : status);
 }
 
+/* Refuse lists of some of the axes, whose other ones would be as long as 1, say. One number of
+ * cells may stand for all axes. Shapes have lengths of other kinds. */
+static bool has_all_axes(dvi_scene *scene, const dvi__tree *section, const char *generator)
+{
+  static const char *const grid[] = {"box", "kuhn", "kuhn-torus", "staggered", "bcc-torus"},
+                           *const list[] = {"size", "origin", "grading", "periodic"};
+  const struct dvi__scene_field *f = scene->field;
+  const int axes = f->mesh != NULL ? dvi_mesh_dimension(f->mesh) : f->dimension;
+  bool is_grid = false;
+  for (size_t k = 0; k < sizeof grid / sizeof *grid; k++)
+    is_grid = is_grid || strcmp(grid[k], generator) == 0;
+  for (size_t k = 0; k < sizeof list / sizeof *list && is_grid; k++) {
+    const dvi__tree *tree = dvi__tree_find(section, list[k]);
+    const int count = tree == NULL ? axes : tree->kind == DVI__SEQUENCE ? tree->count : 1;
+    if (count < axes)
+      return dvi__scene_refuse(scene, tree->span,
+                               "%s has a number for each axis of a mesh, and this one has %d axes, "
+                               "as in '%s'",
+                               list[k], axes, axes == 2 ? "[1, 1]" : "[1, 1, 1]");
+  }
+  return true;
+}
+
 static bool generate(dvi_scene *scene, const dvi__tree *section, const dvi__tree *generator)
 {
   static const char *const known[] = {"generator", "cells",   "size",
@@ -54,8 +77,10 @@ static bool generate(dvi_scene *scene, const dvi__tree *section, const dvi__tree
     return false;
   scene->field->is_grid = strcmp(generator->text, "box") == 0;
   if (!dvi__maxwell_read_periodic(scene)) return false;
-  if (dvi__is_grid_alone(scene)) return true;
-  return report(scene, section, dvi_mesh_generate(generator->text, options, &scene->field->mesh));
+  return (dvi__is_grid_alone(scene) ||
+          report(scene, section,
+                 dvi_mesh_generate(generator->text, options, &scene->field->mesh))) &&
+         has_all_axes(scene, section, generator->text);
 }
 
 static bool read_file(dvi_scene *scene, const dvi__tree *section, const dvi__tree *file)

@@ -99,8 +99,9 @@ bool dvi__place_vector_read(dvi_scene *scene, const dvi__tree *tree, int count, 
   return true;
 }
 
-int dvi__place_vector_value(const dvi__place_vector *vector, const double *x, double *value)
+int dvi__place_vector_value(const double *x, double *value, void *user)
 {
+  const dvi__place_vector *vector = user;
   int failed = 0;
   for (int i = 0; i < vector->count && failed == 0; i++)
     failed = dvi__place_value(vector->place[i], x, NULL, value + i);

@@ -60,12 +60,28 @@ typedef struct dvi__place_vector {
 bool dvi__place_vector_read(dvi_scene *scene, const dvi__tree *tree, int count, const char *where,
                             dvi__place_vector **vector);
 
-/* Evaluate all of them at x. Returns as callbacks do. */
-int dvi__place_vector_value(const dvi__place_vector *vector, const double *x, double *value);
+/* A callback that evaluates all of them. `user` is the vector. */
+int dvi__place_vector_value(const double *x, double *value, void *user);
 
 /* Read a point, or a direction, of `count` numbers. */
 bool dvi__point_read(dvi_scene *scene, const dvi__tree *tree, int count, const char *what,
                      double *point);
+
+/* A number that each cell has: its name, and its value where nothing is said. */
+typedef struct dvi__quantity {
+  const char *name;
+  bool may_vanish; /* 0 is possible, and otherwise a number above it is needed */
+  double usual;
+} dvi__quantity;
+
+/* Give the cells of a part the function's values at their centres. Takes room for the values
+ * [cells] if there is none yet. `span` is blamed. */
+bool dvi__quantity_set(dvi_scene *scene, const dvi__quantity *of, const char *part, dvi__span span,
+                       const dvi__place *place, double **values);
+
+/* Complain with the library's last sentence, which names a source, a wall, a probe and so on, about
+ * the section that it is of, or else `otherwise`. Returns false. */
+bool dvi__complain_of_field(dvi_scene *scene, const dvi__tree *otherwise, dvi_status status);
 
 /* Refuse the name of a part that the mesh has not, and list those that it has. */
 bool dvi__refuse_part(dvi_scene *scene, dvi__span span, const char *name, bool of_cells);
@@ -75,6 +91,9 @@ bool dvi__declare_unknowns(dvi_scene *scene, const dvi__tree *section, const cha
 
 /* Tell if a name is that of an unknown or of its momentum: u_ or p_u_, and a number. */
 bool dvi__is_unknown(const char *name, char letter);
+
+/* What marches observe beside the probes. The last one is NULL. */
+extern const char *const dvi__observable[];
 
 /* Let a run show energy, momenta and probes. */
 bool dvi__choose_field_columns(dvi_scene *scene);

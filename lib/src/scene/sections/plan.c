@@ -1,4 +1,5 @@
 /* The sections title, method, step and until, the plan of the scene's run. */
+#include "scene/elaborate/words.h"
 #include "scene/sections/sections.h"
 
 bool dvi__read_title(dvi_scene *scene, const dvi__tree *section)
@@ -22,14 +23,28 @@ static bool plan_number(dvi_scene *scene, const dvi__tree *section, const char *
                                           name, *number);
 }
 
+static bool refuse_step(dvi_scene *scene, const dvi__tree *section)
+{
+  static const char is[] = "a step is a number, or '{fraction: 0.5}' of the largest stable one";
+  return section->kind == DVI__SCALAR
+             ? dvi__scene_refuse(scene, section->span, "'%s' is no parameter; %s", section->text,
+                                 is)
+             : dvi__scene_refuse(scene, section->span, "%s", is);
+}
+
+/* Tell if a text is a name that means nothing. */
+static bool is_unknown_name(const dvi_scene *scene, const char *text)
+{
+  return dvi__is_identifier(text) && !dvi__is_word(text) &&
+         dvi__names_find(&scene->names, text) == NULL;
+}
+
 /* Read a step of a field as a fraction of the largest stable one. */
 static bool read_fraction(dvi_scene *scene, const dvi__tree *section)
 {
   static const char *const known[] = {"fraction"};
   if (!dvi__want_keys(scene, section, "a step", 1, known)) return false;
-  if (section->count != 1)
-    return dvi__scene_refuse(scene, section->span,
-                             "a step is a number, or '{fraction: 0.5}' of the largest stable one");
+  if (section->count != 1) return refuse_step(scene, section);
   if (!plan_number(scene, section->child[0], "fraction", &scene->plan.fraction)) return false;
   return scene->plan.fraction < 1 ||
          dvi__scene_refuse(scene, section->span,
@@ -40,8 +55,11 @@ static bool read_fraction(dvi_scene *scene, const dvi__tree *section)
 
 bool dvi__read_step(dvi_scene *scene, const dvi__tree *section)
 {
-  if (section->kind == DVI__MAPPING && dvi__tree_find(scene->tree, "mesh") != NULL)
-    return read_fraction(scene, section);
+  if (dvi__tree_find(scene->tree, "mesh") != NULL) {
+    if (section->kind == DVI__MAPPING) return read_fraction(scene, section);
+    if (section->kind == DVI__SEQUENCE || is_unknown_name(scene, section->text))
+      return refuse_step(scene, section);
+  }
   return plan_number(scene, section, "step", &scene->plan.h);
 }
 

@@ -27,14 +27,14 @@ bool dvi__want_name(dvi_scene *scene, const char *text, dvi__span span)
 bool dvi__want_keys(dvi_scene *scene, const dvi__tree *mapping, const char *what, int count,
                     const char *const *known)
 {
-  char hint[96];
+  char hint[256];
   for (int i = 0; i < mapping->count; i++) {
     int k = 0;
     while (k < count && strcmp(known[k], mapping->key[i]->text) != 0) k++;
     if (k == count)
       return dvi__scene_refuse(
           scene, mapping->key[i]->span, "%s has no '%s'%s", what, mapping->key[i]->text,
-          dvi__nearest(mapping->key[i]->text, count, known, hint, sizeof hint));
+          dvi__nearest_or_all(mapping->key[i]->text, count, known, hint, sizeof hint));
   }
   return true;
 }
@@ -132,14 +132,7 @@ bool dvi__tree_word(dvi_scene *scene, const dvi__tree *tree, const char *what, i
   if (!dvi__want_text(scene, tree, what)) return false;
   for (*which = 0; *which < count; ++*which)
     if (strcmp(tree->text, word[*which]) == 0) return true;
-  char list[128] = "";
-  for (int k = 0; k < count; k++) {
-    const size_t at = strlen(list);
-    (void)snprintf(list + at, sizeof list - at, "%s%s",
-                   k == 0          ? ""
-                   : k + 1 < count ? ", "
-                                   : " or ",
-                   word[k]);
-  }
+  char list[128];
+  (void)dvi__list_words(count, word, " or ", list, sizeof list);
   return dvi__scene_refuse(scene, tree->span, "%s is %s", what, list);
 }

@@ -79,22 +79,25 @@ static bool is_force(const dvi_scene *scene, const char *text)
 
 static bool all_columns(dvi_scene *scene, const dvi__tree *columns)
 {
-  char hint[96];
-  if (dvi_scene_coordinate(scene, 0) == NULL || dvi_scene_velocity(scene, 0) == NULL ||
-      dvi_scene_momentum(scene, 0) == NULL)
+  char hint[256];
+  const bool is_field = scene->field != NULL;
+  if (!is_field && (dvi_scene_coordinate(scene, 0) == NULL ||
+                    dvi_scene_velocity(scene, 0) == NULL || dvi_scene_momentum(scene, 0) == NULL))
     return dvi__scene_no_memory(scene);
-  const int count = list_columns(scene, NULL);
+  int (*const list)(const dvi_scene *, const char **) = is_field ? dvi__list_field_columns
+                                                                 : list_columns;
+  const int count = list(scene, NULL);
   const char **known = dvi__arena_take(&scene->arena, (size_t)count, sizeof *known);
   if (known == NULL) return dvi__scene_no_memory(scene);
-  (void)list_columns(scene, known);
+  (void)list(scene, known);
   for (int i = 0; i < columns->count; i++) {
     const char *name = columns->child[i]->text;
     int k = 0;
     while (k < count && strcmp(known[k], name) != 0) k++;
     if (k == count && !is_balance(scene, name) && !is_multiplier(scene, name) &&
-        !is_force(scene, name))
+        !is_force(scene, name) && !(is_field && dvi__is_mechanical_column(scene, name)))
       return dvi__scene_refuse(scene, columns->child[i]->span, "there is no column '%s'%s", name,
-                               dvi__nearest(name, count, known, hint, sizeof hint));
+                               dvi__nearest_or_all(name, count, known, hint, sizeof hint));
     for (k = 0; k < i; k++)
       if (strcmp(columns->child[k]->text, name) == 0)
         return dvi__scene_refuse(scene, columns->child[i]->span, "column '%s' stands here twice",

@@ -65,6 +65,12 @@ bool dvi__scene_place_mesh(dvi_scene *scene, dvi__span span, const char *named_f
 bool dvi__read_field_start(dvi_scene *scene, const dvi__tree *section);
 void dvi__scene_field_clear(dvi_scene *scene);
 
+/* List the columns of a field's run, but for those of mechanical methods, if `known` is not NULL.
+ * Returns how many they are. */
+int dvi__list_field_columns(const dvi_scene *scene, const char **known);
+/* Tell if a mechanical method may show the column of a field's system. */
+bool dvi__is_mechanical_column(const dvi_scene *scene, const char *name);
+
 /* Return the section that declares the motion, lagrangian, kinetic, one_form, constraints,
  * hamiltonian or field. NULL if none does. */
 const dvi__tree *dvi__motion_section(const dvi_scene *scene);
