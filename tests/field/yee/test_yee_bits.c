@@ -285,6 +285,30 @@ START_TEST(files_of_other_grids_are_refused)
 }
 END_TEST
 
+/* Between equal boxes a dipole that moves by whole boxes keeps its weights, and its places within
+ * rows unless it moves along them. */
+START_TEST(files_of_other_places_of_dipoles_are_refused)
+{
+  const char *path = path_in_folder("yee.state");
+  dvi_yee_dipole moved = dipoles[0];
+  dvi_yee_terms terms = {.size = sizeof terms, .axes = 3, .degree = 1, .dipole = &moved};
+  for (int l = 0; l < 3; l++) terms.axis[l] = (dvi_yee_axis){.cells = 12, .upper = 12};
+  terms.dipoles = 1;
+  dvi_march *march = box_march(&terms), *other;
+  begin(march, &terms);
+  ck_assert_int_eq(dvi_march_save(march, path), DVI_OK);
+  for (int axis = 0; axis < 3; axis++) {
+    moved = dipoles[0];
+    moved.at[axis] -= 2;
+    other = box_march(&terms);
+    ck_assert_int_eq(dvi_march_load(other, path), DVI_BAD_FILE);
+    check_words("it was saved by another grid");
+    dvi_march_destroy(&other);
+  }
+  dvi_march_destroy(&march);
+}
+END_TEST
+
 /* ---- refusals ---- */
 
 static void refuse(const dvi_yee_terms *terms, dvi_status status, const char *words)
@@ -419,6 +443,7 @@ SUITE(yee_bits)
   tcase_add_loop_test(tests, cuts_of_the_way_change_no_bit, 0, KINDS);
   tcase_add_loop_test(tests, restarts_change_no_bit, 0, KINDS);
   tcase_add_test(tests, files_of_other_grids_are_refused);
+  tcase_add_test(tests, files_of_other_places_of_dipoles_are_refused);
   tcase_add_test(tests, bad_axes_are_refused);
   tcase_add_test(tests, bad_steps_and_media_are_refused);
   tcase_add_test(tests, bad_sources_and_probes_are_refused);
