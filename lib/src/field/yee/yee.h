@@ -118,7 +118,7 @@ typedef struct dvi__yee {
   const dvi__yee_lanes *lanes;
 } dvi__yee;
 
-enum { DVI__YEE_SCRATCH = 7, DVI__YEE_MOST_TOGETHER = 16 };
+enum { DVI__YEE_SCRATCH = 10, DVI__YEE_MOST_TOGETHER = 16 };
 
 /* ---- places ---- */
 
