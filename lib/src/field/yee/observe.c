@@ -16,17 +16,17 @@ enum { ENERGY, CHARGE, GAUSS, DIVERGENCE, FIXED };
 static double energy_of_row(const dvi__yee *y, int component, int j, int k)
 {
   const int c = component % 3, a = (c + 1) % 3, b = (c + 2) % 3, is_face = component >= DVI__YEE_B,
-            places = dvi__yee_places(y, component, 0);
-  double sum = 0;
+            places = dvi__yee_places(y, component, 0), first[3] = {0, j, k};
+  double sum = 0, *star = y->scratch;
+  dvi__yee_stars(y, component, first, places, star);
   for (int copy = 0; copy < y->copies; copy++) {
     const double *f = y->state[copy] + dvi__yee_at(y, component, j, k);
     const double *p = is_face && y->slot[b] >= 0 ? y->state[copy] + dvi__yee_at(y, b, j, k) : f;
     const double *q = is_face && y->slot[a] >= 0 ? y->state[copy] + dvi__yee_at(y, a, j, k) : f;
     const ptrdiff_t up = p != f ? y->next[a] : 0, right = q != f ? y->next[b] : 0;
     for (int i = 0; i < places; i++) {
-      const int place[3] = {i, j, k};
       const double curl = is_face ? (p[i + up] - p[i]) - (q[i + right] - q[i]) : 0;
-      sum += 0.5 * dvi__yee_star(y, component, place) * f[i] * (f[i] - y->dt * curl);
+      sum += 0.5 * star[i] * f[i] * (f[i] - y->dt * curl);
     }
   }
   return sum;

@@ -212,6 +212,8 @@ dvi_status dvi__yee_make_media(const dvi_yee_terms *terms, dvi__yee *yee);
 dvi_status dvi__yee_make_losses(const dvi_yee_terms *terms, dvi__yee *yee);
 /* Give the entry of a star: M_1 of E_c, without the losses in ce, or M_2 of B_c. */
 double dvi__yee_star(const dvi__yee *yee, int component, const int *place);
+/* Give `count` of them along x, from a place on. */
+void dvi__yee_stars(const dvi__yee *yee, int component, const int *place, int count, double *star);
 
 /* ---- bound.c ---- */
 
