@@ -28,6 +28,7 @@ static void destroy(void *self)
   dvi__release(y->probe);
   dvi__release(y->flux);
   dvi__release(y->names);
+  dvi__release(y->loses);
   dvi__release(y->progress);
   dvi__team_destroy(&y->team);
   dvi__release(y);

@@ -204,12 +204,14 @@ dvi_status dvi__yee_make_losses(const dvi_yee_terms *terms, dvi__yee *y)
   y->loss = new_array(y, LOSS);
   y->ca = new_array(y, LOSS);
   y->worn = new_array(y, LOSS);
-  if (y->loss == NULL || y->ca == NULL || y->worn == NULL)
+  y->loses = DVI_NEW(char, count / y->width);
+  if (y->loss == NULL || y->ca == NULL || y->worn == NULL || y->loses == NULL)
     return dvi__fail(DVI_NO_MEMORY, "yee: no memory for losses");
   DVI_TRY(fill(terms, y, LOSS, y->loss));
   for (size_t i = 0; i < count; i++) {
     const double s = 0.5 * y->dt * y->loss[i] * y->ce[i];
     y->loss[i] = s;
+    if (s > 0) y->loses[i / y->width] = 1;
     y->ca[i] = (1 - s) / (1 + s);
     y->ce[i] /= 1 + s;
   }

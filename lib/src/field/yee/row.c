@@ -318,7 +318,7 @@ static void update_edge(const dvi__yee_worker *w, int copy, int c, int j, int k,
       .q1 = d.q1,
       .q0 = d.q0,
       .ce = y->ce != NULL ? y->ce + beside : NULL,
-      .ca = y->ca != NULL ? y->ca + beside : NULL,
+      .ca = dvi__yee_loses(y, c, j, k) ? y->ca + beside : NULL,
       .soon = needed_soon(e, y->next[1] + y->edges_slots * (ptrdiff_t)y->width)};
   set_metric(y, c, j, k, &row);
   y->lanes->edges(&row);
@@ -335,7 +335,7 @@ static void update_edge_row(const dvi__yee_worker *w, int copy, int c, int j, in
             keeps_upper = c != 0 && !x->wraps && x->free[1] <= n;
   double *e = y->state[copy] + dvi__yee_at(y, c, j, k);
   const double lower = e[0], upper = e[n];
-  if (y->worn != NULL && copy == 0) memcpy(row_before(w, c), e, y->count * sizeof *e);
+  if (copy == 0 && dvi__yee_loses(y, c, j, k)) memcpy(row_before(w, c), e, y->count * sizeof *e);
   update_edge(w, copy, c, j, k, f);
   if (keeps_lower) e[0] = lower;
   if (keeps_upper) e[n] = upper;
@@ -374,8 +374,8 @@ void dvi__yee_update_edges(const dvi__yee_worker *w, int j, int k)
     if (has_layers_along(y)) stretch_edges_along(y, copy, j, k, &f);
   }
   act(w, &y->on_edges, j, k);
-  for (int c = 0; c < 3 && y->worn != NULL; c++)
-    if (has_edge(y, c, j, k)) wear(w, c, j, k);
+  for (int c = 0; c < 3; c++)
+    if (has_edge(y, c, j, k) && dvi__yee_loses(y, c, j, k)) wear(w, c, j, k);
   for (int c = 1; c < 3 && x->wraps; c++) {
     if (!has_edge(y, c, j, k)) continue;
     const size_t at = dvi__yee_at(y, c, j, k);

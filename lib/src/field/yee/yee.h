@@ -93,6 +93,7 @@ typedef struct dvi__yee {
   double *ca;   /* (1-s)/(1+s). NULL without losses */
   double *loss; /* s. NULL without losses */
   double *worn; /* sum of s (E+ + E-), the conducted part of D. NULL without losses */
+  char *loses;  /* [rows][edges_slots] if a row has any loss. NULL without losses */
   double *mi;   /* 1/mu, [rows][components - edges_slots][width] beside B */
   double dt, bound, t0, t;
   int64_t step; /* steps since the start: B at t0 + step dt, E half a step later */
@@ -150,6 +151,12 @@ static inline size_t dvi__yee_at_faces(const dvi__yee *y, int c, int j, int k)
           (size_t)(y->slot[DVI__YEE_B + c] - y->edges_slots)) *
              y->width +
          DVI__YEE_LEFT;
+}
+
+/* Tell if a place of the row of E_c has losses. */
+static inline int dvi__yee_loses(const dvi__yee *y, int c, int j, int k)
+{
+  return y->loses != NULL && y->loses[dvi__yee_at_edges(y, c, j, k) / y->width];
 }
 
 /* Tell if E_c or B_c reaches along the axis, so that it has a place for each box, not node. */
