@@ -38,17 +38,11 @@ static void move_inside(const dvi__yee *y, const int *place, int *inside)
 double dvi__yee_courant(const dvi__yee *y, int c, int axis, int end, const int *place)
 {
   const dvi__yee_axis *a = &y->axis[axis];
-  double square = 1;
   int at[3];
   move_inside(y, place, at);
-  if (y->ce != NULL) {
-    const size_t edge = dvi__yee_at_edges(y, c, at[1], at[2]) + (size_t)at[0];
-    square *= y->ce[edge] * (y->loss != NULL ? 1 + y->loss[edge] : 1);
-  }
+  const double over_eps = dvi__yee_over_eps(y, c, at);
   at[axis] = end == 0 ? 0 : a->cells - 1;
-  if (y->mi != NULL)
-    square *= y->mi[dvi__yee_at_faces(y, 3 - axis - c, at[1], at[2]) + (size_t)at[0]];
-  return sqrt(square) * y->dt / a->length[at[axis]];
+  return sqrt(over_eps * dvi__yee_over_mu(y, 3 - axis - c, at)) * y->dt / a->length[at[axis]];
 }
 
 int dvi__yee_has_difference(const dvi__yee *y, int c, int axis, const int *place)

@@ -101,14 +101,13 @@ static void start_vector(lanczos *l, double **v)
   const dvi__yee *y = &l->grid;
   const int64_t size = dvi__yee_form_size(y, DVI_FORM_E);
   for (int64_t i = 0; i < size; i++) {
-    int c, place[3], is_free = 1;
+    int c, place[3];
     uint32_t bits[4] = {(uint32_t)i, (uint32_t)(i >> 32), 0, 0};
     dvi__yee_place_of(y, DVI_FORM_E, i, &c, place);
-    for (int axis = 0; axis < 3; axis++)
-      is_free = is_free && dvi__yee_is_free(y, c, axis, place[axis]);
+    const int is_unknown = dvi__yee_is_unknown(y, c, place);
     dvi__philox(bits, 1);
     const size_t at = dvi__yee_at(y, c, place[1], place[2]) + (size_t)place[0];
-    for (int copy = 0; copy < y->copies && is_free; copy++)
+    for (int copy = 0; copy < y->copies && is_unknown; copy++)
       v[copy][at] = (bits[copy] / 4294967296.0 - 0.5) / sqrt(dvi__yee_star(y, c, place));
   }
   const double norm = sqrt(product(l, v, v));

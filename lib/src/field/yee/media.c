@@ -8,15 +8,6 @@
 
 /* ---- stars ---- */
 
-/* Give the place in the arrays of materials for a place of the grid. */
-static size_t array_place(const dvi__yee *y, int component, const int *place)
-{
-  const int c = component % 3;
-  const size_t row = component < DVI__YEE_B ? dvi__yee_at_edges(y, c, place[1], place[2])
-                                            : dvi__yee_at_faces(y, c, place[1], place[2]);
-  return row + (size_t)place[0];
-}
-
 /* Give the factor of the star without a material along an axis: the dual length, or 1/length. */
 static double factor_of(const dvi__yee *y, int component, int axis, int i)
 {
@@ -36,7 +27,7 @@ void dvi__yee_stars(const dvi__yee *y, int component, const int *place, int coun
 {
   const double across = factor_of(y, component, 1, place[1]),
                up = factor_of(y, component, 2, place[2]);
-  const size_t at = array_place(y, component, place);
+  const size_t at = dvi__yee_beside(y, component, place);
   const int is_face = component >= DVI__YEE_B;
   for (int i = 0; i < count; i++) star[i] = factor_of(y, component, 0, place[0] + i) * across * up;
   for (int i = 0; i < count && is_face && y->mi != NULL; i++) star[i] *= y->mi[at + (size_t)i];
@@ -139,8 +130,8 @@ static dvi_status fill(const dvi_yee_terms *terms, const dvi__yee *y, quantity w
           double sum;
           DVI_TRY(sum_pieces(terms, y, what, component, place, &sum));
           const double vacuum = vacuum_star(y, component, place);
-          array[array_place(y, component, place)] = what == PERMITTIVITY ? vacuum / sum
-                                                                         : sum / vacuum;
+          array[dvi__yee_beside(y, component, place)] = what == PERMITTIVITY ? vacuum / sum
+                                                                             : sum / vacuum;
         }
   }
   return DVI_OK;

@@ -69,13 +69,10 @@ static int counts(const dvi__yee *y, const int *place, int is_box)
 /* Give D of an edge with what has been conducted, and with `all` what currents brought there. */
 static double displacement(const dvi__yee *y, int c, const int *place, int all)
 {
-  const size_t at = dvi__yee_at_edges(y, c, place[1], place[2]) + (size_t)place[0];
   double E = dvi__yee_stored(y, c, place).re;
-  if (all && y->worn != NULL) E += y->worn[at];
-  if (all && y->sources > 0) {
-    const double s = y->loss != NULL ? y->loss[at] : 0;
-    E -= (1 + s) * dvi__yee_acted(y, &y->on_edges, c, place, y->impulses);
-  }
+  if (all && y->worn != NULL) E += y->worn[dvi__yee_beside(y, c, place)];
+  if (all && y->sources > 0)
+    E -= (1 + dvi__yee_loss(y, c, place)) * dvi__yee_acted(y, &y->on_edges, c, place, y->impulses);
   return dvi__yee_star(y, c, place) * E;
 }
 

@@ -97,11 +97,8 @@ dvi_status dvi__yee_set_moment(const dvi__yee *y, dvi__yee_moment *m)
 /* Let a source act on an edge with the profile J_e. */
 static dvi_status drive_edge(dvi__yee *y, int number, int c, const int *place, double profile)
 {
-  for (int l = 0; l < 3; l++)
-    if (!dvi__yee_is_free(y, c, l, place[l])) return DVI_OK;
-  const size_t at = dvi__yee_at_edges(y, c, place[1], place[2]) + (size_t)place[0];
-  const double s = y->loss != NULL ? y->loss[at] : 0;
-  if (profile == 0) return DVI_OK;
+  if (profile == 0 || !dvi__yee_is_unknown(y, c, place)) return DVI_OK;
+  const double s = dvi__yee_loss(y, c, place);
   return dvi__yee_add_act(y, &y->on_edges, c, place, number,
                           -profile / (dvi__yee_star(y, c, place) * (1 + s)), 0);
 }

@@ -179,6 +179,45 @@ static inline int dvi__yee_is_free(const dvi__yee *y, int c, int axis, int i)
   return c == axis ? i >= 0 && i < a->cells : i >= a->free[0] && i < a->free[1];
 }
 
+/* Tell if E_c has an unknown at a place. */
+static inline int dvi__yee_is_unknown(const dvi__yee *y, int c, const int *place)
+{
+  return dvi__yee_is_free(y, c, 0, place[0]) && dvi__yee_is_free(y, c, 1, place[1]) &&
+         dvi__yee_is_free(y, c, 2, place[2]);
+}
+
+/* ---- materials at a place ---- */
+
+/* Give where the arrays of materials have a component's place. */
+static inline size_t dvi__yee_beside(const dvi__yee *y, int component, const int *place)
+{
+  const size_t row = component < DVI__YEE_B
+                         ? dvi__yee_at_edges(y, component, place[1], place[2])
+                         : dvi__yee_at_faces(y, component - DVI__YEE_B, place[1], place[2]);
+  return row + (size_t)place[0];
+}
+
+/* Give s of E_c. */
+static inline double dvi__yee_loss(const dvi__yee *y, int c, const int *place)
+{
+  return y->loss != NULL ? y->loss[dvi__yee_beside(y, c, place)] : 0;
+}
+
+/* Give 1/eps of E_c. */
+static inline double dvi__yee_over_eps(const dvi__yee *y, int c, const int *place)
+{
+  if (y->ce == NULL) return 1;
+  return y->ce[dvi__yee_beside(y, c, place)] * (1 + dvi__yee_loss(y, c, place));
+}
+
+/* Give 1/mu of B_c. */
+static inline double dvi__yee_over_mu(const dvi__yee *y, int c, const int *place)
+{
+  return y->mi != NULL ? y->mi[dvi__yee_beside(y, DVI__YEE_B + c, place)] : 1;
+}
+
+/* ---- time ---- */
+
 /* Give the part of a step that is within a few roundings of the times. */
 static inline double dvi__yee_spare(const dvi__yee *y, double t)
 {
