@@ -128,6 +128,18 @@ static void copy_with_phase(const dvi__yee *y, const dvi__yee_axis *a, double si
   }
 }
 
+/* Copy what the other end of x needs of a row: E at node 0, or B of the last box. */
+static void copy_along(const dvi__yee *y, int component, int j, int k)
+{
+  const dvi__yee_axis *x = &y->axis[0];
+  const size_t at = dvi__yee_at(y, component, j, k), n = (size_t)x->cells;
+  if (!x->wraps || component % 3 == 0) return;
+  if (component < DVI__YEE_B)
+    copy_with_phase(y, x, 1, at, at + n, 1);
+  else
+    copy_with_phase(y, x, -1, at + n - 1, at - 1, 1);
+}
+
 /* Copy the rows of E or B at (j, k) to those at (to_j, to_k). */
 static void copy_rows(const dvi__yee *y, int component, const dvi__yee_axis *a, int j, int k,
                       int to_j, int to_k)
@@ -155,6 +167,14 @@ static void copy_around(const dvi__yee *y, int component, int j, int k)
     copy_rows(y, component, up, to_j, k, to_j, to_k);
 }
 
+void dvi__yee_wrap_rows(const dvi__yee *y, int j, int k)
+{
+  for (int component = 0; component < 6; component++)
+    if (y->slot[component] >= 0) copy_along(y, component, j, k);
+  copy_around(y, DVI__YEE_E, j, k);
+  copy_around(y, DVI__YEE_B, j, k);
+}
+
 /* ---- faces ---- */
 
 static void update_face(const dvi__yee_worker *w, int copy, int c, int j, int k)
@@ -175,14 +195,12 @@ static void update_face(const dvi__yee_worker *w, int copy, int c, int j, int k)
   stretch(w, copy, DVI__YEE_B + c, j, k, &d, f, NULL);
 }
 
-/* The components that reach along x have no place at the last node, and one before the first box if
- * the axis repeats itself. */
+/* The components that reach along x have no place at the last node. */
 static void end_faces(const dvi__yee *y, int c, int j, int k)
 {
-  const dvi__yee_axis *x = &y->axis[0];
-  const size_t at = dvi__yee_at(y, DVI__YEE_B + c, j, k), n = (size_t)x->cells;
-  for (int copy = 0; copy < y->copies && c != 0; copy++) y->state[copy][at + n] = 0;
-  if (c != 0 && x->wraps) copy_with_phase(y, x, -1, at + n - 1, at - 1, 1);
+  const size_t last = dvi__yee_at(y, DVI__YEE_B + c, j, k) + (size_t)y->axis[0].cells;
+  for (int copy = 0; copy < y->copies && c != 0; copy++) y->state[copy][last] = 0;
+  copy_along(y, DVI__YEE_B + c, j, k);
 }
 
 static int has_face(const dvi__yee *y, int c, int j, int k)
@@ -365,7 +383,6 @@ static void stretch_edges_along(const dvi__yee *y, int copy, int j, int k, const
 void dvi__yee_update_edges(const dvi__yee_worker *w, int j, int k)
 {
   const dvi__yee *y = w->yee;
-  const dvi__yee_axis *x = &y->axis[0];
   for (int copy = 0; copy < y->copies; copy++) {
     fields f = {.here = {NULL}};
     take_fields(w, copy, j, k, &f);
@@ -376,10 +393,7 @@ void dvi__yee_update_edges(const dvi__yee_worker *w, int j, int k)
   act(w, &y->on_edges, j, k);
   for (int c = 0; c < 3; c++)
     if (has_edge(y, c, j, k) && dvi__yee_loses(y, c, j, k)) wear(w, c, j, k);
-  for (int c = 1; c < 3 && x->wraps; c++) {
-    if (!has_edge(y, c, j, k)) continue;
-    const size_t at = dvi__yee_at(y, c, j, k);
-    copy_with_phase(y, x, 1, at, at + (size_t)x->cells, 1);
-  }
+  for (int c = 1; c < 3; c++)
+    if (has_edge(y, c, j, k)) copy_along(y, c, j, k);
   copy_around(y, DVI__YEE_E, j, k);
 }

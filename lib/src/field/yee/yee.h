@@ -295,6 +295,8 @@ typedef struct dvi__yee_worker {
 
 void dvi__yee_update_faces(const dvi__yee_worker *worker, int j, int k);
 void dvi__yee_update_edges(const dvi__yee_worker *worker, int j, int k);
+/* Copy what other ends of axes that repeat themselves need from the rows at (j, k). */
+void dvi__yee_wrap_rows(const dvi__yee *yee, int j, int k);
 
 /* ---- sweep.c ---- */
 
