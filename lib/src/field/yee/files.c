@@ -204,5 +204,6 @@ dvi_status dvi__yee_load(void *self, const dvi__sections *sections)
   y->t0 = id.t0;
   y->t = id.t;
   y->step = id.step;
+  y->moment->is_now = 0;
   return DVI_OK;
 }

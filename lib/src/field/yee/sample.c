@@ -222,14 +222,14 @@ dvi_status dvi__yee_sample(const void *self, dvi_march_form form, int64_t count,
 {
   const dvi__yee *y = self;
   const int64_t size = dvi__yee_form_size(y, form);
-  dvi__yee_moment m;
-  DVI_TRY(dvi__yee_set_moment(y, &m));
+  DVI_TRY(dvi__yee_set_moment(y));
   for (int64_t i = 0; i < count; i++) {
     const int64_t number = cell != NULL ? cell[i] : i;
     int component, place[3];
     dvi__yee_place_of(y, form, number % size, &component, place);
-    const value v = component < DVI__YEE_B ? dvi__yee_E_at(&m, component, place)
-                                           : dvi__yee_B_at(&m, component - DVI__YEE_B, place);
+    const value v = component < DVI__YEE_B
+                        ? dvi__yee_E_at(y->moment, component, place)
+                        : dvi__yee_B_at(y->moment, component - DVI__YEE_B, place);
     values[i] = number < size ? v.re : v.im;
   }
   return DVI_OK;

@@ -87,6 +87,7 @@ dvi_status dvi__yee_start(void *self, const dvi_march_state *state)
   dvi__yee_restart_impulses(y);
   y->t0 = y->t = state->t;
   y->step = 0;
+  y->moment->is_now = 0;
   clear(y);
   set_values(y, DVI_FORM_E, state->E);
   set_values(y, DVI_FORM_B, state->B);

@@ -75,6 +75,9 @@ typedef struct dvi__yee_source {
 /* A plane wave on a grid of its own. See wave.c. */
 typedef struct dvi__yee_beam dvi__yee_beam;
 
+/* A time between the last step and the next one. See sample.c. */
+typedef struct dvi__yee_moment dvi__yee_moment;
+
 typedef struct dvi__yee {
   int axes, degree;
   dvi__yee_axis axis[3];
@@ -103,8 +106,9 @@ typedef struct dvi__yee {
   dvi__yee_beam *beam; /* [beams] */
   int beams;
   dvi__yee_acts on_edges, on_faces;
-  int drives;     /* numbers that act on a step */
-  double *drive;  /* [together + 2][drives], the last two for samples */
+  int drives;    /* numbers that act on a step */
+  double *drive; /* [together + 2][drives], the last two for samples */
+  dvi__yee_moment *moment;
   double *charge; /* [nodes] outflow of D at the start, NULL before one with a field */
   dvi_yee_probe *probe;
   dvi_yee_flux *flux;
@@ -361,13 +365,13 @@ typedef struct dvi__yee_value {
   double re, im;
 } dvi__yee_value;
 
-/* A time between the last step and the next one. */
-typedef struct dvi__yee_moment {
+struct dvi__yee_moment {
+  int is_now; /* nothing has moved since it was set */
   const dvi__yee *yee;
   double part;            /* from 0 to 1, the part of the next step */
   const double *on_faces; /* drives of B's next step */
   const double *on_edges; /* drives of E from the last half step to this time */
-} dvi__yee_moment;
+};
 
 /* Give what E_c and B_c are at a place, which may be beyond the end of an axis that repeats
  * itself, and 0 outside. */
@@ -376,8 +380,8 @@ dvi__yee_value dvi__yee_B_at(const dvi__yee_moment *moment, int c, const int *pl
 dvi__yee_value dvi__yee_E_at(const dvi__yee_moment *moment, int c, const int *place);
 /* Move E_c at a place from the start to half a step later, with the curl of H if there is B. */
 void dvi__yee_start_edge(const dvi__yee_moment *moment, int c, const int *place, int has_B);
-/* Prepare a march's time, and its drives. */
-dvi_status dvi__yee_set_moment(const dvi__yee *yee, dvi__yee_moment *moment);
+/* Set the moment to the march's time, and prepare its drives. */
+dvi_status dvi__yee_set_moment(const dvi__yee *yee);
 dvi_status dvi__yee_sample(const void *yee, dvi_march_form form, int64_t count, const int *cell,
                            double *values);
 
