@@ -259,6 +259,28 @@ START_TEST(restarts_change_no_bit)
 }
 END_TEST
 
+/* Samples at a time that came by a step, a file or a start have the drives of that one. */
+START_TEST(samples_forget_what_was_before_a_file_or_a_start)
+{
+  dvi_yee_terms terms = grid(_i);
+  const char *path = path_in_folder("yee.state");
+  dvi_march *first = box_march(&terms), *second = box_march(&terms);
+  begin(first, &terms), begin(second, &terms);
+  const state at_start = state_of(first);
+  advance_boxes(first, 4.321);
+  ck_assert_int_eq(dvi_march_save(first, path), DVI_OK);
+  const state later = state_of(first);
+  free(state_of(second).values);
+  ck_assert_int_eq(dvi_march_load(second, path), DVI_OK);
+  check_same(later, state_of(second), "a file", 0);
+  begin(second, &terms);
+  check_same(at_start, state_of(second), "a start", 0);
+  free(at_start.values), free(later.values);
+  dvi_march_destroy(&first);
+  dvi_march_destroy(&second);
+}
+END_TEST
+
 START_TEST(files_of_other_grids_are_refused)
 {
   const char *path = path_in_folder("yee.state");
@@ -281,6 +303,30 @@ START_TEST(files_of_other_grids_are_refused)
   }
   check_same(before, state_of(march), "a march", 0);
   free(before.values);
+  dvi_march_destroy(&march);
+}
+END_TEST
+
+/* Between equal boxes a dipole that moves by whole boxes keeps its weights, and its places within
+ * rows unless it moves along them. */
+START_TEST(files_of_other_places_of_dipoles_are_refused)
+{
+  const char *path = path_in_folder("yee.state");
+  dvi_yee_dipole moved = dipoles[0];
+  dvi_yee_terms terms = {.size = sizeof terms, .axes = 3, .degree = 1, .dipole = &moved};
+  for (int l = 0; l < 3; l++) terms.axis[l] = (dvi_yee_axis){.cells = 12, .upper = 12};
+  terms.dipoles = 1;
+  dvi_march *march = box_march(&terms), *other;
+  begin(march, &terms);
+  ck_assert_int_eq(dvi_march_save(march, path), DVI_OK);
+  for (int axis = 0; axis < 3; axis++) {
+    moved = dipoles[0];
+    moved.at[axis] -= 2;
+    other = box_march(&terms);
+    ck_assert_int_eq(dvi_march_load(other, path), DVI_BAD_FILE);
+    check_words("it was saved by another grid");
+    dvi_march_destroy(&other);
+  }
   dvi_march_destroy(&march);
 }
 END_TEST
@@ -418,7 +464,9 @@ SUITE(yee_bits)
   tcase_add_loop_test(tests, instruction_sets_change_no_bit, 0, KINDS);
   tcase_add_loop_test(tests, cuts_of_the_way_change_no_bit, 0, KINDS);
   tcase_add_loop_test(tests, restarts_change_no_bit, 0, KINDS);
+  tcase_add_loop_test(tests, samples_forget_what_was_before_a_file_or_a_start, 0, KINDS);
   tcase_add_test(tests, files_of_other_grids_are_refused);
+  tcase_add_test(tests, files_of_other_places_of_dipoles_are_refused);
   tcase_add_test(tests, bad_axes_are_refused);
   tcase_add_test(tests, bad_steps_and_media_are_refused);
   tcase_add_test(tests, bad_sources_and_probes_are_refused);

@@ -38,17 +38,11 @@ static void move_inside(const dvi__yee *y, const int *place, int *inside)
 double dvi__yee_courant(const dvi__yee *y, int c, int axis, int end, const int *place)
 {
   const dvi__yee_axis *a = &y->axis[axis];
-  double square = 1;
   int at[3];
   move_inside(y, place, at);
-  if (y->ce != NULL) {
-    const size_t edge = dvi__yee_at_edges(y, c, at[1], at[2]) + (size_t)at[0];
-    square *= y->ce[edge] * (y->loss != NULL ? 1 + y->loss[edge] : 1);
-  }
+  const double over_eps = dvi__yee_over_eps(y, c, at);
   at[axis] = end == 0 ? 0 : a->cells - 1;
-  if (y->mi != NULL)
-    square *= y->mi[dvi__yee_at_faces(y, 3 - axis - c, at[1], at[2]) + (size_t)at[0]];
-  return sqrt(square) * y->dt / a->length[at[axis]];
+  return sqrt(over_eps * dvi__yee_over_mu(y, 3 - axis - c, at)) * y->dt / a->length[at[axis]];
 }
 
 int dvi__yee_has_difference(const dvi__yee *y, int c, int axis, const int *place)
@@ -61,7 +55,8 @@ int dvi__yee_has_difference(const dvi__yee *y, int c, int axis, const int *place
 
 /* ---- what is kept ---- */
 
-enum { INSIDE, DIFFERENCE, KEPT }; /* E1 and T */
+/* E1, T, b, and -+v dt/(v dt + h). The first two change, the others are made once. */
+enum { INSIDE, DIFFERENCE, FACTOR, PART, KEPT };
 
 /* A row across an end, or of one value at an end of x, is kept for each component and end. */
 static size_t kept_at(const dvi__yee *y, int what, int axis, int end, int copy, int c, int j, int k)
@@ -73,17 +68,6 @@ static size_t kept_at(const dvi__yee *y, int what, int axis, int end, int copy, 
                                     : rows + (y->rows[1] + left) * y->width,
                all = rows + (y->rows[0] + y->rows[1]) * y->width;
   return ((((size_t)copy * KEPT + (size_t)what) * 3 + (size_t)c) * 2 + (size_t)end) * all + across;
-}
-
-dvi_status dvi__yee_make_absorbed(dvi__yee *y)
-{
-  int count = 0;
-  for (int l = 0; l < y->axes; l++) count += is_absorbing(y, l, 0) + is_absorbing(y, l, 1);
-  if (count == 0) return DVI_OK;
-  const size_t all = y->rows[0] * y->rows[1] + (y->rows[0] + y->rows[1]) * y->width;
-  y->absorbed = DVI_NEW(double, (size_t)y->copies *KEPT * 6 * all);
-  return y->absorbed != NULL ? DVI_OK
-                             : dvi__fail(DVI_NO_MEMORY, "yee: no memory for absorbing ends");
 }
 
 /* ---- rows ---- */
@@ -165,19 +149,41 @@ static void keep_row(dvi__yee *y, int axis, int end, int copy, int c, int j, int
   }
 }
 
+static void set_factors(dvi__yee *y, int axis, int end, int copy, int c, int j, int k)
+{
+  const end_row row = row_on_end(y, axis, end, copy, c, j, k);
+  double *factor = y->absorbed + kept_at(y, FACTOR, axis, end, copy, c, j, k),
+         *part = y->absorbed + kept_at(y, PART, axis, end, copy, c, j, k);
+  for (size_t i = 0; i < row.count; i++) {
+    const int place[3] = {row.place[0] + (int)i, j, k};
+    const double courant = dvi__yee_courant(y, c, axis, end, place);
+    factor[i] = (courant - 1) / (courant + 1);
+    part[i] = (end == 0 ? -courant : courant) / (courant + 1);
+  }
+}
+
 static void absorb_row(dvi__yee *y, int axis, int end, int copy, int c, int j, int k)
 {
   const end_row row = row_on_end(y, axis, end, copy, c, j, k);
   const double *inside = y->absorbed + kept_at(y, INSIDE, axis, end, copy, c, j, k),
-               *difference = y->absorbed + kept_at(y, DIFFERENCE, axis, end, copy, c, j, k);
-  for (size_t i = 0; i < row.count; i++) {
-    const int place[3] = {row.place[0] + (int)i, j, k};
-    const double courant = dvi__yee_courant(y, c, axis, end, place),
-                 b = (courant - 1) / (courant + 1), part = courant / (courant + 1),
-                 T = difference[i] + difference_at(y, &row, i);
-    row.E[i] = inside[i] + b * (row.E[(ptrdiff_t)i + row.inwards] - row.E[i]) +
-               (end == 0 ? -part : part) * T;
-  }
+               *difference = y->absorbed + kept_at(y, DIFFERENCE, axis, end, copy, c, j, k),
+               *factor = y->absorbed + kept_at(y, FACTOR, axis, end, copy, c, j, k),
+               *part = y->absorbed + kept_at(y, PART, axis, end, copy, c, j, k);
+  for (size_t i = 0; i < row.count; i++)
+    row.E[i] = inside[i] + factor[i] * (row.E[(ptrdiff_t)i + row.inwards] - row.E[i]) +
+               part[i] * (difference[i] + difference_at(y, &row, i));
+}
+
+dvi_status dvi__yee_make_absorbed(dvi__yee *y)
+{
+  int count = 0;
+  for (int l = 0; l < y->axes; l++) count += is_absorbing(y, l, 0) + is_absorbing(y, l, 1);
+  if (count == 0) return DVI_OK;
+  const size_t all = y->rows[0] * y->rows[1] + (y->rows[0] + y->rows[1]) * y->width;
+  y->absorbed = DVI_NEW(double, (size_t)y->copies *KEPT * 6 * all);
+  if (y->absorbed == NULL) return dvi__fail(DVI_NO_MEMORY, "yee: no memory for absorbing ends");
+  for_rows(y, set_factors);
+  return DVI_OK;
 }
 
 void dvi__yee_keep_absorbed(dvi__yee *y)

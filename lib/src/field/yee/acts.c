@@ -88,6 +88,19 @@ void dvi__yee_clear_acts(dvi__yee_acts *acts)
   dvi__release(acts->act);
 }
 
+/* Give the first of the acts first to last-1, which are sorted, at a place or behind it. */
+static int64_t lower_bound(const dvi__yee_acts *acts, int64_t first, int64_t last, int32_t place)
+{
+  while (first < last) {
+    const int64_t middle = first + (last - first) / 2;
+    if (acts->act[middle].place < place)
+      first = middle + 1;
+    else
+      last = middle;
+  }
+  return first;
+}
+
 double dvi__yee_acted(const dvi__yee *y, const dvi__yee_acts *acts, int component, const int *place,
                       const double *drive)
 {
@@ -95,9 +108,10 @@ double dvi__yee_acted(const dvi__yee *y, const dvi__yee_acts *acts, int componen
   if (acts->count == 0) return 0;
   const size_t row = dvi__yee_row(y, place[1], place[2]);
   const int32_t at = place_in_rows(y, component, place[0]);
-  for (int64_t n = acts->row[row]; n < acts->row[row + 1]; n++)
-    if (acts->act[n].place == at)
-      sum += acts->act[n].w[0] * drive[acts->act[n].from] +
-             acts->act[n].w[1] * drive[acts->act[n].from + 1];
+  const int64_t last = acts->row[row + 1];
+  for (int64_t n = lower_bound(acts, acts->row[row], last, at);
+       n < last && acts->act[n].place == at; n++)
+    sum += acts->act[n].w[0] * drive[acts->act[n].from] +
+           acts->act[n].w[1] * drive[acts->act[n].from + 1];
   return sum;
 }

@@ -92,20 +92,14 @@ static double length_around(const dvi__yee *y, int component, int l, int i)
  * 1/(eps mu h^2) at a face. */
 static double local_largest(const dvi__yee *y, int c, const int *place)
 {
-  double sum = 0, speed = 1;
+  double sum = 0, over_eps = 0;
   for (int l = 0; l < 3 && !y->axis[l].is_trivial; l++) {
     const double h = length_around(y, DVI__YEE_B + c, l, place[l]);
     sum += 1 / (h * h);
   }
-  if (y->mi != NULL) speed *= y->mi[dvi__yee_at_faces(y, c, place[1], place[2]) + (size_t)place[0]];
-  if (y->ce != NULL) {
-    double most = 0;
-    for (int e = 0; e < 3; e++)
-      if (e != c && y->slot[e] >= 0)
-        most = fmax(most, y->ce[dvi__yee_at_edges(y, e, place[1], place[2]) + (size_t)place[0]]);
-    speed *= most;
-  }
-  return sum * speed;
+  for (int e = 0; e < 3; e++)
+    if (e != c && y->slot[e] >= 0) over_eps = fmax(over_eps, dvi__yee_over_eps(y, e, place));
+  return sum * dvi__yee_over_mu(y, c, place) * over_eps;
 }
 
 void dvi__yee_tightest(const dvi__yee *y, double *x)

@@ -28,8 +28,10 @@ static uint64_t hash_numbers(uint64_t hash, size_t count, const double *x)
   return x != NULL ? dvi__hash(hash, count * sizeof *x, x) : hash;
 }
 
-static uint64_t hash_acts(uint64_t hash, const dvi__yee_acts *acts)
+static uint64_t hash_acts(uint64_t hash, const dvi__yee *y, const dvi__yee_acts *acts)
 {
+  if (acts->count == 0) return hash;
+  hash = dvi__hash(hash, (y->rows[0] * y->rows[1] + 1) * sizeof *acts->row, acts->row);
   for (int64_t i = 0; i < acts->count; i++) {
     hash = hash_integer(hash_integer(hash, acts->act[i].place), acts->act[i].from);
     hash = hash_numbers(hash, 2, acts->act[i].w);
@@ -57,7 +59,7 @@ static uint64_t hash_grid(const dvi__yee *y)
   hash = hash_numbers(hash, places * (size_t)y->edges_slots, y->ce);
   hash = hash_numbers(hash, places * (size_t)y->edges_slots, y->ca);
   hash = hash_numbers(hash, places * (size_t)(y->components - y->edges_slots), y->mi);
-  return hash_acts(hash_acts(hash, &y->on_edges), &y->on_faces);
+  return hash_acts(hash_acts(hash, y, &y->on_edges), y, &y->on_faces);
 }
 
 /* ---- arrays of the state ---- */
@@ -202,5 +204,6 @@ dvi_status dvi__yee_load(void *self, const dvi__sections *sections)
   y->t0 = id.t0;
   y->t = id.t;
   y->step = id.step;
+  y->moment->is_now = 0;
   return DVI_OK;
 }

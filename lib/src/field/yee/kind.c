@@ -28,6 +28,8 @@ static void destroy(void *self)
   dvi__release(y->probe);
   dvi__release(y->flux);
   dvi__release(y->names);
+  dvi__release(y->loses);
+  dvi__release(y->moment);
   dvi__release(y->progress);
   dvi__team_destroy(&y->team);
   dvi__release(y);
@@ -102,6 +104,7 @@ static dvi_status advance(void *self, double t)
   const double steps = (t - y->t0) / y->dt;
   if (!(steps < 9e15))
     return dvi__fail(DVI_BAD_ARGUMENT, "yee: %g steps until t = %g cannot be counted", steps, t);
+  y->moment->is_now = 0;
   for (const int64_t last = steps_until(y, t); y->step < last;) {
     const int64_t left = last - y->step;
     int ready;

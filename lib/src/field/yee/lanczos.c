@@ -20,34 +20,55 @@ typedef struct lanczos {
 
 /* ---- vectors ---- */
 
-/* Visit all rows of E. With `sum`, add x.M_1 z to it. Else x <- a x + b z. */
-static void visit(const lanczos *l, double **x, double **z, double a, double b, double *sum)
+typedef void row_work(const lanczos *l, int c, const int *first, double *x, const double *z,
+                      double *number);
+
+/* Work on all rows of E of x and z, from their places `first` on. */
+static void for_rows_of(const lanczos *l, double **x, double **z, row_work *work, double *numbers)
 {
   const dvi__yee *y = &l->grid;
-  int place[3];
+  int first[3] = {0, 0, 0};
   for (int copy = 0; copy < y->copies; copy++)
     for (int c = 0; c < 3; c++) {
       if (y->slot[c] < 0) continue;
-      for (place[2] = 0; place[2] < dvi__yee_places(y, c, 2); place[2]++)
-        for (place[1] = 0; place[1] < dvi__yee_places(y, c, 1); place[1]++) {
-          const size_t at = dvi__yee_at(y, c, place[1], place[2]);
-          for (place[0] = 0; place[0] < dvi__yee_places(y, c, 0); place[0]++) {
-            double *xi = x[copy] + at + place[0];
-            const double zi = z[copy][at + (size_t)place[0]];
-            if (sum != NULL)
-              *sum += dvi__yee_star(y, c, place) * *xi * zi;
-            else
-              *xi = a * *xi + b * zi;
-          }
+      for (first[2] = 0; first[2] < dvi__yee_places(y, c, 2); first[2]++)
+        for (first[1] = 0; first[1] < dvi__yee_places(y, c, 1); first[1]++) {
+          const size_t at = dvi__yee_at(y, c, first[1], first[2]);
+          work(l, c, first, x[copy] + at, z[copy] + at, numbers);
         }
     }
+}
+
+static void add_product(const lanczos *l, int c, const int *first, double *x, const double *z,
+                        double *sum)
+{
+  const int places = dvi__yee_places(&l->grid, c, 0);
+  double *star = l->grid.scratch;
+  dvi__yee_stars(&l->grid, c, first, places, star);
+  for (int i = 0; i < places; i++) *sum += star[i] * x[i] * z[i];
 }
 
 static double product(const lanczos *l, double **x, double **z)
 {
   double sum = 0;
-  visit(l, x, z, 0, 0, &sum);
+  for_rows_of(l, x, z, add_product, &sum);
   return sum;
+}
+
+static void combine_row(const lanczos *l, int c, const int *first, double *x, const double *z,
+                        double *factors)
+{
+  const int places = dvi__yee_places(&l->grid, c, 0);
+  const double a = factors[0], b = factors[1];
+  (void)first;
+  for (int i = 0; i < places; i++) x[i] = a * x[i] + b * z[i];
+}
+
+/* x <- a x + b z */
+static void combine(const lanczos *l, double a, double **x, double b, double **z)
+{
+  double factors[2] = {a, b};
+  for_rows_of(l, x, z, combine_row, factors);
 }
 
 static void for_all_rows(const dvi__yee *y, const dvi__yee_worker *worker,
@@ -66,12 +87,12 @@ static void apply(lanczos *l, double **v, double **w)
     memset(w[copy], 0, y->size * sizeof(double));
     y->state[copy] = w[copy];
   }
-  visit(l, w, v, 0, 1, NULL);
+  combine(l, 0, w, 1, v);
   dvi__yee_wrap_values(y);
   for_all_rows(y, &worker, dvi__yee_update_faces);
-  visit(l, y->state, y->state, 0, 0, NULL);
+  combine(l, 0, y->state, 0, y->state);
   for_all_rows(y, &worker, dvi__yee_update_edges);
-  visit(l, y->state, y->state, -1, 0, NULL);
+  combine(l, -1, y->state, 0, y->state);
 }
 
 /* Parts in all eigenvectors, which are orthonormal in M_1, are alike at random. */
@@ -80,18 +101,17 @@ static void start_vector(lanczos *l, double **v)
   const dvi__yee *y = &l->grid;
   const int64_t size = dvi__yee_form_size(y, DVI_FORM_E);
   for (int64_t i = 0; i < size; i++) {
-    int c, place[3], is_free = 1;
+    int c, place[3];
     uint32_t bits[4] = {(uint32_t)i, (uint32_t)(i >> 32), 0, 0};
     dvi__yee_place_of(y, DVI_FORM_E, i, &c, place);
-    for (int axis = 0; axis < 3; axis++)
-      is_free = is_free && dvi__yee_is_free(y, c, axis, place[axis]);
+    const int is_unknown = dvi__yee_is_unknown(y, c, place);
     dvi__philox(bits, 1);
     const size_t at = dvi__yee_at(y, c, place[1], place[2]) + (size_t)place[0];
-    for (int copy = 0; copy < y->copies && is_free; copy++)
+    for (int copy = 0; copy < y->copies && is_unknown; copy++)
       v[copy][at] = (bits[copy] / 4294967296.0 - 0.5) / sqrt(dvi__yee_star(y, c, place));
   }
   const double norm = sqrt(product(l, v, v));
-  visit(l, v, v, norm > 0 ? 1 / norm : 0, 0, NULL);
+  combine(l, norm > 0 ? 1 / norm : 0, v, 0, v);
 }
 
 /* ---- iteration ---- */
@@ -106,12 +126,12 @@ static double iterate(lanczos *l, double other)
     if (j > 0) {
       double **free_one = before;
       before = v, v = w, w = free_one;
-      visit(l, v, v, 1 / l->T.beta[j], 0, NULL);
+      combine(l, 1 / l->T.beta[j], v, 0, v);
     }
     apply(l, v, w);
     l->T.alpha[j] = product(l, w, v);
-    visit(l, w, v, 1, -l->T.alpha[j], NULL);
-    if (j > 0) visit(l, w, before, 1, -l->T.beta[j], NULL);
+    combine(l, 1, w, -l->T.alpha[j], v);
+    if (j > 0) combine(l, 1, w, -l->T.beta[j], before);
     l->T.beta[j + 1] = sqrt(product(l, w, w));
   }
   return bound;

@@ -6,31 +6,40 @@
 #include "field/yee/average.h"
 #include "field/yee/yee.h"
 
-/* ---- vacuum ---- */
+/* ---- stars ---- */
+
+/* Give the factor of the star without a material along an axis: the dual length, or 1/length. */
+static double factor_of(const dvi__yee *y, int component, int axis, int i)
+{
+  const dvi__yee_axis *a = &y->axis[axis];
+  return dvi__yee_reaches(component, axis) ? 1 / a->length[i] : a->dual[i];
+}
 
 /* Give the star of a component without a material: dual volume over volume. */
 static double vacuum_star(const dvi__yee *y, int component, const int *place)
 {
   double star = 1;
-  for (int l = 0; l < 3; l++) {
-    const dvi__yee_axis *a = &y->axis[l];
-    const int i = place[l];
-    star *= dvi__yee_reaches(component, l) ? 1 / a->length[i] : a->dual[i];
-  }
+  for (int l = 0; l < 3; l++) star *= factor_of(y, component, l, place[l]);
   return star;
+}
+
+void dvi__yee_stars(const dvi__yee *y, int component, const int *place, int count, double *star)
+{
+  const double across = factor_of(y, component, 1, place[1]),
+               up = factor_of(y, component, 2, place[2]);
+  const size_t at = dvi__yee_beside(y, component, place);
+  const int is_face = component >= DVI__YEE_B;
+  for (int i = 0; i < count; i++) star[i] = factor_of(y, component, 0, place[0] + i) * across * up;
+  for (int i = 0; i < count && is_face && y->mi != NULL; i++) star[i] *= y->mi[at + (size_t)i];
+  for (int i = 0; i < count && !is_face && y->ce != NULL; i++)
+    star[i] /= y->ce[at + (size_t)i] * (y->loss != NULL ? 1 + y->loss[at + (size_t)i] : 1);
 }
 
 double dvi__yee_star(const dvi__yee *y, int component, const int *place)
 {
-  const double star = vacuum_star(y, component, place);
-  const int c = component % 3;
-  if (component >= DVI__YEE_B)
-    return y->mi == NULL
-               ? star
-               : star * y->mi[dvi__yee_at_faces(y, c, place[1], place[2]) + (size_t)place[0]];
-  if (y->ce == NULL) return star;
-  const size_t at = dvi__yee_at_edges(y, c, place[1], place[2]) + (size_t)place[0];
-  return star / (y->ce[at] * (y->loss != NULL ? 1 + y->loss[at] : 1));
+  double star;
+  dvi__yee_stars(y, component, place, 1, &star);
+  return star;
 }
 
 /* ---- pieces of boxes ---- */
@@ -101,15 +110,6 @@ static dvi_status sum_pieces(const dvi_yee_terms *terms, const dvi__yee *y, quan
 
 /* ---- arrays ---- */
 
-/* Give the place in the arrays of materials for a place of the grid. */
-static size_t array_place(const dvi__yee *y, int component, const int *place)
-{
-  const int c = component % 3;
-  const size_t row = component < DVI__YEE_B ? dvi__yee_at_edges(y, c, place[1], place[2])
-                                            : dvi__yee_at_faces(y, c, place[1], place[2]);
-  return row + (size_t)place[0];
-}
-
 static double *new_array(const dvi__yee *y, quantity what)
 {
   const int slots = what == PERMEABILITY ? y->components - y->edges_slots : y->edges_slots;
@@ -130,8 +130,8 @@ static dvi_status fill(const dvi_yee_terms *terms, const dvi__yee *y, quantity w
           double sum;
           DVI_TRY(sum_pieces(terms, y, what, component, place, &sum));
           const double vacuum = vacuum_star(y, component, place);
-          array[array_place(y, component, place)] = what == PERMITTIVITY ? vacuum / sum
-                                                                         : sum / vacuum;
+          array[dvi__yee_beside(y, component, place)] = what == PERMITTIVITY ? vacuum / sum
+                                                                             : sum / vacuum;
         }
   }
   return DVI_OK;
@@ -195,12 +195,14 @@ dvi_status dvi__yee_make_losses(const dvi_yee_terms *terms, dvi__yee *y)
   y->loss = new_array(y, LOSS);
   y->ca = new_array(y, LOSS);
   y->worn = new_array(y, LOSS);
-  if (y->loss == NULL || y->ca == NULL || y->worn == NULL)
+  y->loses = DVI_NEW(char, count / y->width);
+  if (y->loss == NULL || y->ca == NULL || y->worn == NULL || y->loses == NULL)
     return dvi__fail(DVI_NO_MEMORY, "yee: no memory for losses");
   DVI_TRY(fill(terms, y, LOSS, y->loss));
   for (size_t i = 0; i < count; i++) {
     const double s = 0.5 * y->dt * y->loss[i] * y->ce[i];
     y->loss[i] = s;
+    if (s > 0) y->loses[i / y->width] = 1;
     y->ca[i] = (1 - s) / (1 + s);
     y->ce[i] /= 1 + s;
   }

@@ -128,6 +128,18 @@ static void copy_with_phase(const dvi__yee *y, const dvi__yee_axis *a, double si
   }
 }
 
+/* Copy what the other end of x needs of a row: E at node 0, or B of the last box. */
+static void copy_along(const dvi__yee *y, int component, int j, int k)
+{
+  const dvi__yee_axis *x = &y->axis[0];
+  const size_t at = dvi__yee_at(y, component, j, k), n = (size_t)x->cells;
+  if (!x->wraps || component % 3 == 0) return;
+  if (component < DVI__YEE_B)
+    copy_with_phase(y, x, 1, at, at + n, 1);
+  else
+    copy_with_phase(y, x, -1, at + n - 1, at - 1, 1);
+}
+
 /* Copy the rows of E or B at (j, k) to those at (to_j, to_k). */
 static void copy_rows(const dvi__yee *y, int component, const dvi__yee_axis *a, int j, int k,
                       int to_j, int to_k)
@@ -155,6 +167,14 @@ static void copy_around(const dvi__yee *y, int component, int j, int k)
     copy_rows(y, component, up, to_j, k, to_j, to_k);
 }
 
+void dvi__yee_wrap_rows(const dvi__yee *y, int j, int k)
+{
+  for (int component = 0; component < 6; component++)
+    if (y->slot[component] >= 0) copy_along(y, component, j, k);
+  copy_around(y, DVI__YEE_E, j, k);
+  copy_around(y, DVI__YEE_B, j, k);
+}
+
 /* ---- faces ---- */
 
 static void update_face(const dvi__yee_worker *w, int copy, int c, int j, int k)
@@ -175,14 +195,12 @@ static void update_face(const dvi__yee_worker *w, int copy, int c, int j, int k)
   stretch(w, copy, DVI__YEE_B + c, j, k, &d, f, NULL);
 }
 
-/* The components that reach along x have no place at the last node, and one before the first box if
- * the axis repeats itself. */
+/* The components that reach along x have no place at the last node. */
 static void end_faces(const dvi__yee *y, int c, int j, int k)
 {
-  const dvi__yee_axis *x = &y->axis[0];
-  const size_t at = dvi__yee_at(y, DVI__YEE_B + c, j, k), n = (size_t)x->cells;
-  for (int copy = 0; copy < y->copies && c != 0; copy++) y->state[copy][at + n] = 0;
-  if (c != 0 && x->wraps) copy_with_phase(y, x, -1, at + n - 1, at - 1, 1);
+  const size_t last = dvi__yee_at(y, DVI__YEE_B + c, j, k) + (size_t)y->axis[0].cells;
+  for (int copy = 0; copy < y->copies && c != 0; copy++) y->state[copy][last] = 0;
+  copy_along(y, DVI__YEE_B + c, j, k);
 }
 
 static int has_face(const dvi__yee *y, int c, int j, int k)
@@ -222,36 +240,52 @@ void dvi__yee_update_faces(const dvi__yee_worker *w, int j, int k)
 
 /* ---- edges ---- */
 
-/* Give the rows of H for a difference of B_b along an axis, in the scratch rows from `first` on if
- * mu is not 1. */
-static void take_field(const dvi__yee_worker *w, int copy, int b, int axis, int j, int k, int first,
-                       const double **one, const double **before)
+/* The rows of H that the edges at (j, k) need: H_b there, and one place before along an axis. */
+typedef struct fields {
+  const double *here[3], *before[3][3]; /* [b], [b][axis] */
+} fields;
+
+/* Give the row of H from that of B at `at` and of 1/mu at `beside`, in the scratch row *next if mu
+ * is not 1. */
+static const double *take_field(const dvi__yee_worker *w, int copy, size_t at, size_t beside,
+                                double **next)
 {
   const dvi__yee *y = w->yee;
-  const size_t at = dvi__yee_at(y, DVI__YEE_B + b, j, k);
   const double *B = y->state[copy] + at;
-  const ptrdiff_t back = y->next[axis];
-  *one = B;
-  *before = B - back;
-  if (y->mi == NULL) return;
-  const size_t all = y->width;
-  double *h1 = w->scratch + (size_t)first * all, *h0 = axis == 0 ? h1 : h1 + all;
-  const double *mi = y->mi + dvi__yee_at_faces(y, b, j, k) - DVI__YEE_LEFT;
-  const ptrdiff_t shrink = back / y->components * (y->components - y->edges_slots);
-  y->lanes->product(all, mi, B - DVI__YEE_LEFT, h1);
-  if (axis != 0) y->lanes->product(all, mi - shrink, B - back - DVI__YEE_LEFT, h0);
-  *one = h1 + DVI__YEE_LEFT;
-  *before = h0 + DVI__YEE_LEFT - (axis == 0);
+  double *H = *next;
+  if (y->mi == NULL) return B;
+  *next += y->width;
+  y->lanes->product(y->width, y->mi + beside - DVI__YEE_LEFT, B - DVI__YEE_LEFT, H);
+  return H + DVI__YEE_LEFT;
 }
 
-static differences take_fields(const dvi__yee_worker *w, int copy, int c, int j, int k,
-                               const double *none)
+/* Each row is multiplied once, for all differences that have it. */
+static void take_fields(const dvi__yee_worker *w, int copy, int j, int k, fields *f)
 {
   const dvi__yee *y = w->yee;
+  double *next = w->scratch;
+  for (int b = 0; b < 3; b++) {
+    if (y->slot[DVI__YEE_B + b] < 0) continue;
+    const size_t at = dvi__yee_at(y, DVI__YEE_B + b, j, k), beside = dvi__yee_at_faces(y, b, j, k);
+    f->here[b] = take_field(w, copy, at, beside, &next);
+    f->before[b][0] = f->here[b] - 1;
+    for (int axis = 1; axis < 3; axis++) {
+      const size_t back = (size_t)y->next[axis], blocks = back / (size_t)y->components,
+                   shrunk = blocks * (size_t)(y->components - y->edges_slots);
+      f->before[b][axis] = axis == b || back == 0
+                               ? f->here[b]
+                               : take_field(w, copy, at - back, beside - shrunk, &next);
+    }
+  }
+}
+
+/* Give the differences of E_c, whose factors are 0 where there is no such H. */
+static differences differences_of(const dvi__yee *y, int c, const fields *f, const double *none)
+{
   const int a = (c + 1) % 3, b = (c + 2) % 3;
   differences d = {none, none, none, none};
-  if (y->slot[DVI__YEE_B + b] >= 0) take_field(w, copy, b, a, j, k, 0, &d.p1, &d.p0);
-  if (y->slot[DVI__YEE_B + a] >= 0) take_field(w, copy, a, b, j, k, 2, &d.q1, &d.q0);
+  if (y->slot[DVI__YEE_B + b] >= 0) d.p1 = f->here[b], d.p0 = f->before[b][a];
+  if (y->slot[DVI__YEE_B + a] >= 0) d.q1 = f->here[a], d.q0 = f->before[a][b];
   return d;
 }
 
@@ -288,12 +322,12 @@ static void wear(const dvi__yee_worker *w, int c, int j, int k)
   for (int i = 0; i <= y->axis[0].cells; i++) worn[i] += s[i] * (before[i] + e[i]);
 }
 
-static void update_edge(const dvi__yee_worker *w, int copy, int c, int j, int k)
+static void update_edge(const dvi__yee_worker *w, int copy, int c, int j, int k, const fields *f)
 {
   const dvi__yee *y = w->yee;
   const size_t beside = dvi__yee_at_edges(y, c, j, k);
   double *e = y->state[copy] + dvi__yee_at(y, c, j, k);
-  const differences d = take_fields(w, copy, c, j, k, e);
+  const differences d = differences_of(y, c, f, e);
   dvi__yee_edges_row row = {
       .count = y->count,
       .e = e,
@@ -302,28 +336,27 @@ static void update_edge(const dvi__yee_worker *w, int copy, int c, int j, int k)
       .q1 = d.q1,
       .q0 = d.q0,
       .ce = y->ce != NULL ? y->ce + beside : NULL,
-      .ca = y->ca != NULL ? y->ca + beside : NULL,
+      .ca = dvi__yee_loses(y, c, j, k) ? y->ca + beside : NULL,
       .soon = needed_soon(e, y->next[1] + y->edges_slots * (ptrdiff_t)y->width)};
   set_metric(y, c, j, k, &row);
   y->lanes->edges(&row);
   stretch(w, copy, c, j, k, &d, e, row.ce);
 }
 
-/* Update the row of E_c of all copies, but keep what stands at ends of x without an unknown. */
-static void update_edge_row(const dvi__yee_worker *w, int c, int j, int k)
+/* Update the row of E_c, but keep what stands at ends of x without an unknown. */
+static void update_edge_row(const dvi__yee_worker *w, int copy, int c, int j, int k,
+                            const fields *f)
 {
   const dvi__yee *y = w->yee;
   const dvi__yee_axis *x = &y->axis[0];
   const int n = x->cells, keeps_lower = c != 0 && x->free[0] > 0,
             keeps_upper = c != 0 && !x->wraps && x->free[1] <= n;
-  for (int copy = 0; copy < y->copies; copy++) {
-    double *e = y->state[copy] + dvi__yee_at(y, c, j, k);
-    const double lower = e[0], upper = e[n];
-    if (y->worn != NULL && copy == 0) memcpy(row_before(w, c), e, y->count * sizeof *e);
-    update_edge(w, copy, c, j, k);
-    if (keeps_lower) e[0] = lower;
-    if (keeps_upper) e[n] = upper;
-  }
+  double *e = y->state[copy] + dvi__yee_at(y, c, j, k);
+  const double lower = e[0], upper = e[n];
+  if (copy == 0 && dvi__yee_loses(y, c, j, k)) memcpy(row_before(w, c), e, y->count * sizeof *e);
+  update_edge(w, copy, c, j, k, f);
+  if (keeps_lower) e[0] = lower;
+  if (keeps_upper) e[n] = upper;
 }
 
 static int has_edge(const dvi__yee *y, int c, int j, int k)
@@ -332,15 +365,15 @@ static int has_edge(const dvi__yee *y, int c, int j, int k)
 }
 
 /* E_y has the difference of H_z along x, and E_z that of H_y. */
-static void stretch_edges_along(const dvi__yee_worker *w, int copy, int j, int k)
+static void stretch_edges_along(const dvi__yee *y, int copy, int j, int k, const fields *f)
 {
-  const dvi__yee *y = w->yee;
   dvi__yee_layers_end end = {.count = 0};
   for (int c = 1; c < 3; c++) {
     if (!has_edge(y, c, j, k)) continue;
     const size_t beside = dvi__yee_at_edges(y, c, j, k);
     end.of[c - 1].f = y->state[copy] + dvi__yee_at(y, c, j, k);
-    take_field(w, copy, 3 - c, 0, j, k, c - 1, &end.of[c - 1].p1, &end.of[c - 1].p0);
+    end.of[c - 1].p1 = f->here[3 - c];
+    end.of[c - 1].p0 = f->before[3 - c][0];
     end.of[c - 1].ce = y->ce != NULL ? y->ce + beside : NULL;
     end.of[c - 1].sign = c == 1 ? -1 : 1;
   }
@@ -350,18 +383,17 @@ static void stretch_edges_along(const dvi__yee_worker *w, int copy, int j, int k
 void dvi__yee_update_edges(const dvi__yee_worker *w, int j, int k)
 {
   const dvi__yee *y = w->yee;
-  const dvi__yee_axis *x = &y->axis[0];
-  for (int c = 0; c < 3; c++)
-    if (has_edge(y, c, j, k)) update_edge_row(w, c, j, k);
-  for (int copy = 0; copy < y->copies && has_layers_along(y); copy++)
-    stretch_edges_along(w, copy, j, k);
-  act(w, &y->on_edges, j, k);
-  for (int c = 0; c < 3 && y->worn != NULL; c++)
-    if (has_edge(y, c, j, k)) wear(w, c, j, k);
-  for (int c = 1; c < 3 && x->wraps; c++) {
-    if (!has_edge(y, c, j, k)) continue;
-    const size_t at = dvi__yee_at(y, c, j, k);
-    copy_with_phase(y, x, 1, at, at + (size_t)x->cells, 1);
+  for (int copy = 0; copy < y->copies; copy++) {
+    fields f = {.here = {NULL}};
+    take_fields(w, copy, j, k, &f);
+    for (int c = 0; c < 3; c++)
+      if (has_edge(y, c, j, k)) update_edge_row(w, copy, c, j, k, &f);
+    if (has_layers_along(y)) stretch_edges_along(y, copy, j, k, &f);
   }
+  act(w, &y->on_edges, j, k);
+  for (int c = 0; c < 3; c++)
+    if (has_edge(y, c, j, k) && dvi__yee_loses(y, c, j, k)) wear(w, c, j, k);
+  for (int c = 1; c < 3; c++)
+    if (has_edge(y, c, j, k)) copy_along(y, c, j, k);
   copy_around(y, DVI__YEE_E, j, k);
 }

@@ -75,8 +75,10 @@ void dvi__yee_take_impulses(dvi__yee *y, int steps)
                            y->drive[(size_t)step * (size_t)y->drives + (size_t)i]);
 }
 
-dvi_status dvi__yee_set_moment(const dvi__yee *y, dvi__yee_moment *m)
+dvi_status dvi__yee_set_moment(const dvi__yee *y)
 {
+  dvi__yee_moment *m = y->moment;
+  if (m->is_now) return DVI_OK;
   const double since = y->t - (y->t0 + (double)y->step * y->dt);
   double *row = y->drive + (size_t)y->together * (size_t)y->drives;
   *m = (dvi__yee_moment){.yee = y, .on_faces = row, .on_edges = row + y->drives};
@@ -89,6 +91,7 @@ dvi_status dvi__yee_set_moment(const dvi__yee *y, dvi__yee_moment *m)
     row[y->drives + i] = impulse;
   }
   dvi__yee_sample_waves(m, row, row + y->drives);
+  m->is_now = 1;
   return DVI_OK;
 }
 
@@ -97,11 +100,8 @@ dvi_status dvi__yee_set_moment(const dvi__yee *y, dvi__yee_moment *m)
 /* Let a source act on an edge with the profile J_e. */
 static dvi_status drive_edge(dvi__yee *y, int number, int c, const int *place, double profile)
 {
-  for (int l = 0; l < 3; l++)
-    if (!dvi__yee_is_free(y, c, l, place[l])) return DVI_OK;
-  const size_t at = dvi__yee_at_edges(y, c, place[1], place[2]) + (size_t)place[0];
-  const double s = y->loss != NULL ? y->loss[at] : 0;
-  if (profile == 0) return DVI_OK;
+  if (profile == 0 || !dvi__yee_is_unknown(y, c, place)) return DVI_OK;
+  const double s = dvi__yee_loss(y, c, place);
   return dvi__yee_add_act(y, &y->on_edges, c, place, number,
                           -profile / (dvi__yee_star(y, c, place) * (1 + s)), 0);
 }
@@ -262,5 +262,8 @@ dvi_status dvi__yee_make_sources(const dvi_yee_terms *terms, dvi__yee *y)
   DVI_TRY(dvi__yee_sort_acts(y, &y->on_edges));
   DVI_TRY(dvi__yee_sort_acts(y, &y->on_faces));
   y->drive = DVI_NEW(double, (size_t)(y->together + 2) * (size_t)y->drives);
-  return y->drive != NULL ? DVI_OK : dvi__fail(DVI_NO_MEMORY, "yee: no memory for sources");
+  y->moment = DVI_NEW(dvi__yee_moment, 1);
+  return y->drive != NULL && y->moment != NULL
+             ? DVI_OK
+             : dvi__fail(DVI_NO_MEMORY, "yee: no memory for sources");
 }

@@ -18,29 +18,8 @@ static void set_values(dvi__yee *y, dvi_march_form form, const double *values)
 
 void dvi__yee_wrap_values(dvi__yee *y)
 {
-  if (!y->axis[0].wraps && !y->axis[1].wraps && !y->axis[2].wraps) return;
-  for (int component = 0; component < 6; component++) {
-    const int is_face = component >= DVI__YEE_B;
-    int first[3], last[3], place[3];
-    if (y->slot[component] < 0) continue;
-    for (int l = 0; l < 3; l++) {
-      const int places = dvi__yee_places(y, component, l);
-      first[l] = is_face && y->axis[l].wraps ? -1 : 0;
-      last[l] = !is_face && y->axis[l].wraps ? places : places - 1;
-    }
-    for (place[2] = first[2]; place[2] <= last[2]; place[2]++)
-      for (place[1] = first[1]; place[1] <= last[1]; place[1]++)
-        for (place[0] = first[0]; place[0] <= last[0]; place[0]++) {
-          int is_outside = 0;
-          for (int l = 0; l < 3; l++)
-            is_outside |= place[l] < 0 || place[l] >= dvi__yee_places(y, component, l);
-          if (!is_outside) continue;
-          const dvi__yee_value value = dvi__yee_stored(y, component, place);
-          const size_t at = dvi__yee_at(y, component, place[1], place[2]);
-          y->state[0][(ptrdiff_t)at + place[0]] = value.re;
-          if (y->copies > 1) y->state[1][(ptrdiff_t)at + place[0]] = value.im;
-        }
-  }
+  for (int k = 0; k < y->axis[2].nodes; k++)
+    for (int j = 0; j < y->axis[1].nodes; j++) dvi__yee_wrap_rows(y, j, k);
 }
 
 /* Give no field to edges on conductors. */
@@ -108,6 +87,7 @@ dvi_status dvi__yee_start(void *self, const dvi_march_state *state)
   dvi__yee_restart_impulses(y);
   y->t0 = y->t = state->t;
   y->step = 0;
+  y->moment->is_now = 0;
   clear(y);
   set_values(y, DVI_FORM_E, state->E);
   set_values(y, DVI_FORM_B, state->B);

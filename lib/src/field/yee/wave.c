@@ -269,13 +269,9 @@ static dvi_status add_incident(dvi__yee *y, const dvi__yee_beam *beam, int compo
 
 static dvi_status check_vacuum(const dvi__yee *y, int c, const int *edge, int b, const int *face)
 {
-  const double eps = y->ce != NULL
-                         ? y->ce[dvi__yee_at_edges(y, c, edge[1], edge[2]) + (size_t)edge[0]]
-                         : 1,
-               mu = y->mi != NULL
-                        ? y->mi[dvi__yee_at_faces(y, b, face[1], face[2]) + (size_t)face[0]]
-                        : 1;
-  if (fabs(eps - 1) < 1e-12 && fabs(mu - 1) < 1e-12) return DVI_OK;
+  if (fabs(dvi__yee_over_eps(y, c, edge) - 1) < 1e-12 && dvi__yee_loss(y, c, edge) < 1e-12 &&
+      fabs(dvi__yee_over_mu(y, b, face) - 1) < 1e-12)
+    return DVI_OK;
   return dvi__fail(
       DVI_BAD_ARGUMENT,
       "yee: a wave's box has a material at (%g, %g, %g) of its surface, which must be in "
@@ -291,8 +287,7 @@ static dvi_status add_pair(dvi__yee *y, const dvi__yee_beam *beam, int axis, int
   int face[3] = {edge[0], edge[1], edge[2]};
   if (end == 0) face[axis]--;
   if (y->slot[c] < 0 || y->slot[DVI__YEE_B + b] < 0) return DVI_OK;
-  for (int l = 0; l < 3; l++)
-    if (!dvi__yee_is_free(y, c, l, edge[l])) return DVI_OK;
+  if (!dvi__yee_is_unknown(y, c, edge)) return DVI_OK;
   DVI_TRY(check_vacuum(y, c, edge, b, face));
   const dvi__yee_axis *a = &y->axis[axis];
   const double sign = (end == 0) == is_next ? -1 : 1,

@@ -75,6 +75,9 @@ typedef struct dvi__yee_source {
 /* A plane wave on a grid of its own. See wave.c. */
 typedef struct dvi__yee_beam dvi__yee_beam;
 
+/* A time between the last step and the next one. See sample.c. */
+typedef struct dvi__yee_moment dvi__yee_moment;
+
 typedef struct dvi__yee {
   int axes, degree;
   dvi__yee_axis axis[3];
@@ -93,6 +96,7 @@ typedef struct dvi__yee {
   double *ca;   /* (1-s)/(1+s). NULL without losses */
   double *loss; /* s. NULL without losses */
   double *worn; /* sum of s (E+ + E-), the conducted part of D. NULL without losses */
+  char *loses;  /* [rows][edges_slots] if a row has any loss. NULL without losses */
   double *mi;   /* 1/mu, [rows][components - edges_slots][width] beside B */
   double dt, bound, t0, t;
   int64_t step; /* steps since the start: B at t0 + step dt, E half a step later */
@@ -102,8 +106,9 @@ typedef struct dvi__yee {
   dvi__yee_beam *beam; /* [beams] */
   int beams;
   dvi__yee_acts on_edges, on_faces;
-  int drives;     /* numbers that act on a step */
-  double *drive;  /* [together + 2][drives], the last two for samples */
+  int drives;    /* numbers that act on a step */
+  double *drive; /* [together + 2][drives], the last two for samples */
+  dvi__yee_moment *moment;
   double *charge; /* [nodes] outflow of D at the start, NULL before one with a field */
   dvi_yee_probe *probe;
   dvi_yee_flux *flux;
@@ -118,7 +123,7 @@ typedef struct dvi__yee {
   const dvi__yee_lanes *lanes;
 } dvi__yee;
 
-enum { DVI__YEE_SCRATCH = 7, DVI__YEE_MOST_TOGETHER = 16 };
+enum { DVI__YEE_SCRATCH = 10, DVI__YEE_MOST_TOGETHER = 16 };
 
 /* ---- places ---- */
 
@@ -152,6 +157,12 @@ static inline size_t dvi__yee_at_faces(const dvi__yee *y, int c, int j, int k)
          DVI__YEE_LEFT;
 }
 
+/* Tell if a place of the row of E_c has losses. */
+static inline int dvi__yee_loses(const dvi__yee *y, int c, int j, int k)
+{
+  return y->loses != NULL && y->loses[dvi__yee_at_edges(y, c, j, k) / y->width];
+}
+
 /* Tell if E_c or B_c reaches along the axis, so that it has a place for each box, not node. */
 static inline int dvi__yee_reaches(int component, int axis)
 {
@@ -171,6 +182,45 @@ static inline int dvi__yee_is_free(const dvi__yee *y, int c, int axis, int i)
   const dvi__yee_axis *a = &y->axis[axis];
   return c == axis ? i >= 0 && i < a->cells : i >= a->free[0] && i < a->free[1];
 }
+
+/* Tell if E_c has an unknown at a place. */
+static inline int dvi__yee_is_unknown(const dvi__yee *y, int c, const int *place)
+{
+  return dvi__yee_is_free(y, c, 0, place[0]) && dvi__yee_is_free(y, c, 1, place[1]) &&
+         dvi__yee_is_free(y, c, 2, place[2]);
+}
+
+/* ---- materials at a place ---- */
+
+/* Give where the arrays of materials have a component's place. */
+static inline size_t dvi__yee_beside(const dvi__yee *y, int component, const int *place)
+{
+  const size_t row = component < DVI__YEE_B
+                         ? dvi__yee_at_edges(y, component, place[1], place[2])
+                         : dvi__yee_at_faces(y, component - DVI__YEE_B, place[1], place[2]);
+  return row + (size_t)place[0];
+}
+
+/* Give s of E_c. */
+static inline double dvi__yee_loss(const dvi__yee *y, int c, const int *place)
+{
+  return y->loss != NULL ? y->loss[dvi__yee_beside(y, c, place)] : 0;
+}
+
+/* Give 1/eps of E_c. */
+static inline double dvi__yee_over_eps(const dvi__yee *y, int c, const int *place)
+{
+  if (y->ce == NULL) return 1;
+  return y->ce[dvi__yee_beside(y, c, place)] * (1 + dvi__yee_loss(y, c, place));
+}
+
+/* Give 1/mu of B_c. */
+static inline double dvi__yee_over_mu(const dvi__yee *y, int c, const int *place)
+{
+  return y->mi != NULL ? y->mi[dvi__yee_beside(y, DVI__YEE_B + c, place)] : 1;
+}
+
+/* ---- time ---- */
 
 /* Give the part of a step that is within a few roundings of the times. */
 static inline double dvi__yee_spare(const dvi__yee *y, double t)
@@ -212,6 +262,8 @@ dvi_status dvi__yee_make_media(const dvi_yee_terms *terms, dvi__yee *yee);
 dvi_status dvi__yee_make_losses(const dvi_yee_terms *terms, dvi__yee *yee);
 /* Give the entry of a star: M_1 of E_c, without the losses in ce, or M_2 of B_c. */
 double dvi__yee_star(const dvi__yee *yee, int component, const int *place);
+/* Give `count` of them along x, from a place on. */
+void dvi__yee_stars(const dvi__yee *yee, int component, const int *place, int count, double *star);
 
 /* ---- bound.c ---- */
 
@@ -247,6 +299,8 @@ typedef struct dvi__yee_worker {
 
 void dvi__yee_update_faces(const dvi__yee_worker *worker, int j, int k);
 void dvi__yee_update_edges(const dvi__yee_worker *worker, int j, int k);
+/* Copy what other ends of axes that repeat themselves need from the rows at (j, k). */
+void dvi__yee_wrap_rows(const dvi__yee *yee, int j, int k);
 
 /* ---- sweep.c ---- */
 
@@ -311,13 +365,13 @@ typedef struct dvi__yee_value {
   double re, im;
 } dvi__yee_value;
 
-/* A time between the last step and the next one. */
-typedef struct dvi__yee_moment {
+struct dvi__yee_moment {
+  int is_now; /* nothing has moved since it was set */
   const dvi__yee *yee;
   double part;            /* from 0 to 1, the part of the next step */
   const double *on_faces; /* drives of B's next step */
   const double *on_edges; /* drives of E from the last half step to this time */
-} dvi__yee_moment;
+};
 
 /* Give what E_c and B_c are at a place, which may be beyond the end of an axis that repeats
  * itself, and 0 outside. */
@@ -326,8 +380,8 @@ dvi__yee_value dvi__yee_B_at(const dvi__yee_moment *moment, int c, const int *pl
 dvi__yee_value dvi__yee_E_at(const dvi__yee_moment *moment, int c, const int *place);
 /* Move E_c at a place from the start to half a step later, with the curl of H if there is B. */
 void dvi__yee_start_edge(const dvi__yee_moment *moment, int c, const int *place, int has_B);
-/* Prepare a march's time, and its drives. */
-dvi_status dvi__yee_set_moment(const dvi__yee *yee, dvi__yee_moment *moment);
+/* Set the moment to the march's time, and prepare its drives. */
+dvi_status dvi__yee_set_moment(const dvi__yee *yee);
 dvi_status dvi__yee_sample(const void *yee, dvi_march_form form, int64_t count, const int *cell,
                            double *values);
 
