@@ -32,9 +32,9 @@ static const char *method_name_at(int k, const void *list)
 /* Marches come first, of a scene with a field. */
 static const char *march_name_at(int k, const void *list)
 {
-  static const char *const name[] = {"leapfrog", "yee", "bossavit-kettunen", "avi", "tents"};
-  const int marches = (int)(sizeof name / sizeof *name);
-  return k < marches ? name[k] : method_name_at(k - marches, list);
+  int marches = 0;
+  while (dvi_march_method_name(marches) != NULL) marches++;
+  return k < marches ? dvi_march_method_name(k) : method_name_at(k - marches, list);
 }
 
 /* List the keys of the method whose index is *list. A composition hands keys on to its base, so the

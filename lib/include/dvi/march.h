@@ -92,6 +92,9 @@ typedef struct dvi_stability {
 extern "C" {
 #endif
 
+/** Return the name of method i of marches, counted from 0, or NULL beyond the last one. */
+const char *dvi_march_method_name(int i);
+
 /** Create a march of a field.
  *
  *  @param options  NULL for the defaults

@@ -267,7 +267,7 @@ START_TEST(samples_forget_what_was_before_a_file_or_a_start)
   dvi_march *first = box_march(&terms), *second = box_march(&terms);
   begin(first, &terms), begin(second, &terms);
   const state at_start = state_of(first);
-  advance_boxes(first, 4.321);
+  advance_march(first, 4.321);
   ck_assert_int_eq(dvi_march_save(first, path), DVI_OK);
   const state later = state_of(first);
   free(state_of(second).values);

@@ -21,6 +21,13 @@ static const method methods[] = {
     {"tents", 0, dvi__tents_march},
 };
 
+enum { METHODS = sizeof methods / sizeof *methods };
+
+const char *dvi_march_method_name(int i)
+{
+  return i >= 0 && i < METHODS ? methods[i].name : NULL;
+}
+
 /* ---- checks ---- */
 
 static dvi_status check_options(const dvi_field *field, const dvi_march_options *options)
@@ -53,7 +60,7 @@ static dvi_status find(const char *text, const method **found, const char **rest
 {
   const size_t length = strcspn(text, ":");
   *rest = text[length] == ':' ? text + length + 1 : "";
-  for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
+  for (int i = 0; i < METHODS; i++) {
     *found = methods + i;
     if (strlen(methods[i].name) == length && strncmp(methods[i].name, text, length) == 0)
       return DVI_OK;

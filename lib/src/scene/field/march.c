@@ -5,16 +5,15 @@
 #include "scene/field/maxwell.h"
 #include "text/heap.h"
 
-static const char *const march_names[] = {"leapfrog", "yee", "bossavit-kettunen", "avi", "tents"};
-
 int dvi_scene_marches(const dvi_scene *scene, const char *method)
 {
   if (scene == NULL || scene->field == NULL) return 0;
   if (method == NULL) method = scene->plan.method;
   if (method == NULL) return 0;
   const size_t length = strcspn(method, ":");
-  for (size_t i = 0; i < sizeof march_names / sizeof *march_names; i++)
-    if (strlen(march_names[i]) == length && strncmp(march_names[i], method, length) == 0) return 1;
+  const char *name;
+  for (int i = 0; (name = dvi_march_method_name(i)) != NULL; i++)
+    if (strlen(name) == length && strncmp(name, method, length) == 0) return 1;
   return 0;
 }
 
