@@ -106,8 +106,42 @@ START_TEST(media_of_very_different_permittivities_keep_their_modes)
 }
 END_TEST
 
+/* The left half has a permeability of 1e-9, so that waves are fast there. The lowest mode is that of
+ * the right half, and 342 functions are zero on the electric walls. */
+START_TEST(fast_waves_in_a_part_leave_slow_modes_elsewhere)
+{
+  static const dvi_wall pec[] = {{.part = "right", .kind = DVI_PEC},
+                                 {.part = "bottom", .kind = DVI_PEC}};
+  const dvi_generator_options cells = {.size = sizeof cells, .cells = {18, 19}};
+  double inverse[342], slow = 0, fast = 0;
+  const double *factor[] = {NULL, NULL, inverse};
+  const dvi_star_options options = {.size = sizeof options, .factor = factor};
+  int64_t zeros;
+  dvi_mesh *mesh = NULL;
+  ck_assert_int_eq(dvi_mesh_generate("box", &cells, &mesh), DVI_OK);
+  for (int i = 0; i < 2; i++) {
+    dvi_star *star = NULL;
+    dvi_field *field = NULL;
+    for (int c = 0; c < 342; c++) inverse[c] = c % 18 < 9 ? (i == 0 ? 1e6 : 1e9) : 1;
+    ck_assert_int_eq(dvi_star_create(mesh, &options, &star), DVI_OK);
+    const dvi_maxwell_terms terms = {.size = sizeof terms, .star = star, .wall = pec, .walls = 2};
+    const dvi_modes_options one = {.size = sizeof one, .count = 1};
+    ck_assert_int_eq(dvi_maxwell_create(&terms, &field), DVI_OK);
+    ck_assert_msg(dvi_field_modes(field, &one, i == 0 ? &slow : &fast, NULL, &zeros) == DVI_OK,
+                  "%s", dvi_last_error());
+    ck_assert_int_eq(zeros, 342);
+    dvi_field_destroy(&field);
+    dvi_star_destroy(&star);
+  }
+  ck_assert_double_lt(fabs(slow / 5.8243 - 1), 1e-3);
+  ck_assert_double_lt(fabs(fast / slow - 1), 1e-5);
+  dvi_mesh_destroy(&mesh);
+}
+END_TEST
+
 SUITE(resonances)
 {
+  tcase_add_test(tests, fast_waves_in_a_part_leave_slow_modes_elsewhere);
   tcase_add_test(tests, media_of_very_different_permittivities_keep_their_modes);
   tcase_add_test(tests, a_box_has_its_frequency);
   tcase_add_test(tests, a_ball_has_its_frequency);

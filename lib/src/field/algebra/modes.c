@@ -298,52 +298,72 @@ static double refine(const dvi__pencil *pencil, int count, double *value, double
   return worst;
 }
 
+static dvi_status refuse_roundings(double shift)
+{
+  return dvi__fail(DVI_SINGULAR,
+                   "modes: roundings of matrices with entries of very different sizes leave no "
+                   "modes near the shift %g: take another one",
+                   shift);
+}
+
 /* A shift at an eigenvalue makes K - shift M singular to roundoff, so that its solutions have the
  * right direction and no more digits, and other eigenvalues would be made of roundings. The shift
  * is then moved by a small part of the distance to the farthest eigenvalue, until the nearest one
- * is not so near. A few more eigenvalues than asked for tell which ones are the nearest. */
-static dvi_status lanczos_beside(const dvi__pencil *pencil, double shift, int count, double *value,
-                                 double *vector, double *room)
+ * is not so near. *from is where it is in the end. */
+static dvi_status lanczos_beside(const dvi__pencil *pencil, double shift, int count, double *from,
+                                 double *value, double *vector, double *room)
 {
   enum { TRIES = 12 };
   const double near = 1e-6, part = 1e-5, allowed = 1e-6,
                unit = -default_shift(pencil->K, pencil->M);
-  double from = shift;
+  *from = shift;
   for (int i = 0; i < TRIES; i++) {
     double nearest = INFINITY, farthest = 0;
-    dvi_status status = lanczos_near(pencil, from, count, value, vector);
+    dvi_status status = lanczos_near(pencil, *from, count, value, vector);
     if (status != DVI_OK && status != DVI_SINGULAR) return status;
     if (status == DVI_OK && !(refine(pencil, count, value, vector, room) <= allowed))
-      status = dvi__fail(DVI_SINGULAR,
-                         "modes: roundings of matrices with entries of very different sizes leave "
-                         "no modes near the shift %g: take another one",
-                         shift);
+      status = refuse_roundings(shift);
     for (int k = 0; k < count && status == DVI_OK; k++) {
-      nearest = fmin(nearest, fabs(value[k] - from));
-      farthest = fmax(farthest, fabs(value[k] - from));
+      nearest = fmin(nearest, fabs(value[k] - *from));
+      farthest = fmax(farthest, fabs(value[k] - *from));
     }
     if (status == DVI_OK && nearest > near * farthest) return DVI_OK;
     if (status != DVI_OK && i + 1 == TRIES) return status;
-    from += (shift > 0 ? 1 : -1) * fmax(part * farthest, status == DVI_OK ? 0 : 1e-2 * unit);
+    *from += (shift > 0 ? 1 : -1) * fmax(part * farthest, status == DVI_OK ? 0 : 1e-2 * unit);
   }
   return dvi__fail(DVI_NOT_CONVERGED,
                    "modes: the shift %g lies within roundoff of many eigenvalues: take another one",
                    shift);
 }
 
+/* All eigenvalues that are as near to `from` as those found are known. Tell if these are all that
+ * are as near to the shift as the chosen ones, but for a small move from it. */
+static int are_nearest(int found, const double *value, int count, const double *chosen,
+                       double shift, double from)
+{
+  const double small = 0.01, move = fabs(from - shift);
+  double known = 0, needed = 0;
+  for (int i = 0; i < found; i++) known = fmax(known, fabs(value[i] - from));
+  for (int i = 0; i < count; i++) needed = fmax(needed, fabs(chosen[i] - shift));
+  return move <= small * needed || needed + move <= known;
+}
+
+/* A few more eigenvalues than asked for tell which ones are the nearest. */
 static dvi_status modes_by_lanczos(const dvi__pencil *pencil, double shift, int count,
                                    double *eigenvalue, double *vector)
 {
   enum { MORE = 4 };
   const int64_t n = pencil->K->rows;
   const int asked = smaller(n - 1, (int64_t)count + MORE);
-  double *value = DVI_NEW(double, asked + n * (asked + 2));
+  double *value = DVI_NEW(double, asked + n * (asked + 2)), from;
   if (value == NULL)
     return dvi__fail(DVI_NO_MEMORY, "modes: no memory for %d vectors of %lld numbers", asked,
                      (long long)n);
-  const dvi_status status = lanczos_beside(pencil, shift, asked, value, value + asked,
-                                           value + asked + n * asked);
+  dvi_status status = lanczos_beside(pencil, shift, asked, &from, value, value + asked,
+                                     value + asked + n * asked);
   const int first = status == DVI_OK ? dvi__first_of_nearest(asked, value, count, shift) : 0;
+  if (status == DVI_OK && !are_nearest(asked, value, count, value + first, shift, from))
+    status = refuse_roundings(shift);
   if (status == DVI_OK) {
     memcpy(eigenvalue, value + first, (size_t)count * sizeof *value);
     if (vector != NULL)

@@ -22,8 +22,8 @@
 
 /* All modes are found at once up to this size. */
 enum { MOST_FULL = 500 };
-/* Part of the size of the lowest eigenvalues that can be zero, and part of the largest one that
- * roundings of full matrices leave. */
+/* Part of the size of the lowest eigenvalues that can be zero beside a shift, near which harmonic
+ * forms need not lie, and part of the largest one that roundings of full matrices leave. */
 static const double zero_of_lowest = 1e-6, rounding = 1e-15;
 
 typedef struct resonance {
@@ -214,7 +214,8 @@ static dvi_status find_nearest(resonance *r, double shift, int count, int *found
                      (long long)(f->unknowns - r->zeros - 1));
   DVI_TRY(reserve(r, asked));
   DVI_TRY(dvi__modes_near(&pencil, from, (int)asked, r->value, r->vector));
-  *found = drop_zeros(r, (int)asked, harmonic, zero_of_lowest * fabs(below));
+  *found = drop_zeros(r, (int)asked, harmonic,
+                      shift != 0 ? zero_of_lowest * fabs(below) : (double)INFINITY);
   return DVI_OK;
 }
 
