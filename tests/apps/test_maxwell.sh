@@ -197,6 +197,7 @@ until: 6
 END
 expect 0 'an open grid, checked' check open.yaml
 says out 'yee takes its first step' 'an open grid, checked'
+says out 'laws of yee over 100 steps' 'the charges of a grid, checked'
 expect 0 'an open grid' run open.yaml --every 1
 columns out t,energy,inside,outside,out 'an open grid'
 # Where E goes to the left of the ray, B is along z with its sign. Nothing leaks along an axis but

@@ -106,8 +106,8 @@ START_TEST(media_of_very_different_permittivities_keep_their_modes)
 }
 END_TEST
 
-/* The left half has a permeability of 1e-9, so that waves are fast there. The lowest mode is that of
- * the right half, and 342 functions are zero on the electric walls. */
+/* The left half has a permeability of 1e-9, so that waves are fast there. The lowest mode is that
+ * of the right half, and 342 functions are zero on the electric walls. */
 START_TEST(fast_waves_in_a_part_leave_slow_modes_elsewhere)
 {
   static const dvi_wall pec[] = {{.part = "right", .kind = DVI_PEC},
