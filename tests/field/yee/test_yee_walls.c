@@ -1,6 +1,6 @@
 /* labels: unit */
-/* Absorbing ends: the same fields as leapfrog has on the mesh of the boxes, whose walls are made
- * otherwise, and energy that only falls. */
+/* Absorbing ends and conductors: the same fields as leapfrog has on the mesh of the boxes, whose
+ * walls are made otherwise, and energy that only falls. */
 #include <dvi/yee.h>
 #include <math.h>
 #include <stdlib.h>
@@ -330,6 +330,33 @@ START_TEST(a_constant_field_leaves)
 }
 END_TEST
 
+/* ---- strong losses ---- */
+
+/* Without B a field decays as r^n, r = (1 - s)/(1 + s), whatever s is, and a start is seen as it
+ * was given. */
+START_TEST(strong_losses_have_samples)
+{
+  static const double strength[] = {0.5, 1, 4, 1000};
+  enum { N = 4 };
+  const double s = strength[_i], dt = 0.5, r = (1 - s) / (1 + s), E[N] = {1, 1, 1, 1};
+  double sigma[N];
+  for (int i = 0; i < N; i++) sigma[i] = 2 * s / dt;
+  const dvi_yee_axis axis = {
+      .cells = N, .upper = N, .end = {{.kind = DVI_YEE_PERIODIC}, {.kind = DVI_YEE_PERIODIC}}};
+  const dvi_yee_terms terms = {
+      .size = sizeof terms, .axes = 1, .axis = {axis}, .sigma = {.cell = sigma}, .step = dt};
+  dvi_march *march = box_march(&terms);
+  start_boxes(march, E, NULL);
+  for (int n = 0; n <= 3; n++) {
+    advance_march(march, n * dt);
+    double *now = sample_march(march, DVI_FORM_E);
+    for (int i = 0; i < N; i++) ck_assert_double_eq_tol(now[i], pow(r, n), 1e-13);
+    free(now);
+  }
+  dvi_march_destroy(&march);
+}
+END_TEST
+
 /* ---- charge ---- */
 
 /* What conductors carry is accounted for, beside absorbing ends and with a phase, too. */
@@ -399,6 +426,7 @@ SUITE(yee_walls)
   tcase_add_loop_test(tests, absorbing_ends_are_walls_of_a_mesh, 0, HALLS);
   tcase_add_loop_test(tests, energy_only_falls_near_the_bound, 0, HALLS);
   tcase_add_test(tests, a_constant_field_leaves);
+  tcase_add_loop_test(tests, strong_losses_have_samples, 0, 4);
   tcase_add_test(tests, conductors_keep_account_of_charge);
   tcase_add_test(tests, waves_enter_along_absorbing_ends);
 }
