@@ -6,8 +6,10 @@
  *      B^{n+1} = B^n - dt d_1 E^{n+1/2},   M_1 (E^{n+1/2} - E^{n-1/2}) = dt (d_1^T M_2 B^n - J^n),
  *
  *  which is the leapfrog of dvi/march.h on a mesh of boxes, without the memory of a mesh (Yee 1966;
- *  Bossavit and Kettunen 1999). It starts with E^{1/2} = E^0 + dt/2 M_1^-1 (d_1^T M_2 B^0 - J^0).
- *  Units have c = 1 where eps = mu = 1.
+ *  Bossavit and Kettunen 1999). Conductors and absorbing ends add the current S E, with the mean of
+ *  E^{n-1/2} and E^{n+1/2}. It starts with
+ *  E^{1/2} = E^0 + dt/2 M_1^-1 (d_1^T M_2 B^0 - J^0 - S E^{1/2}). Units have c = 1 where
+ *  eps = mu = 1.
  *
  *  The components are all six in space, on two axes (Ex, Ey, Bz) or (Ez, Bx, By), and on one axis
  *  (Ey, Bz). Values of a march's forms are integrals over cells: E times the length of its edge (of
@@ -27,7 +29,8 @@ typedef enum dvi_yee_boundary {
   DVI_YEE_PMC,       /**< a perfect magnetic conductor: natural, no tangential H */
   DVI_YEE_PERIODIC,  /**< the axis repeats itself. At both of its ends */
   DVI_YEE_BLOCH,     /**< it repeats itself but for a phase. At both of its ends */
-  DVI_YEE_ABSORBING, /**< absorbs waves that come along the axis (first order, as Mur 1981) */
+  DVI_YEE_ABSORBING, /**< absorbs waves that come along the axis (Mur 1981, first order), by the
+                          same current as walls of a mesh. Energy only falls */
   DVI_YEE_CPML       /**< absorbs waves in layers before a conductor (Roden and Gedney 2000) */
 } dvi_yee_boundary;
 
@@ -140,8 +143,7 @@ typedef struct dvi_yee_terms {
   double span;
   int threads; /**< default 1. The bits do not depend on it */
   /** Steps that are taken together while their fields are in a cache. Axes y and z that repeat
-   *  themselves, and DVI_YEE_ABSORBING, allow only 1. The bits do not depend on it. Default: as
-   *  many as pay */
+   *  themselves allow only 1. The bits do not depend on it. Default: as many as pay */
   int together;
 } dvi_yee_terms;
 

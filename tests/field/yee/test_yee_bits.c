@@ -71,7 +71,7 @@ static const dvi_yee_wave straight = {.lower = {3.5, 3.5, 3.5},
                                       .signal = pulse};
 static const dvi_yee_probe probe = {"ear", DVI_FORM_E, .at = {4, 5, 6}, .along = {1, 1, 1}};
 
-enum { KINDS = 11 };
+enum { KINDS = 12 };
 
 /* Grids of 12^axes boxes: walls, layers, all that repeats itself, absorbing ends, materials,
  * losses, sources, waves, unequal boxes; and on fewer axes. */
@@ -89,12 +89,13 @@ static dvi_yee_terms grid(int kind)
       {DVI_YEE_CPML, DVI_YEE_PEC, DVI_YEE_PEC},
       {DVI_YEE_PEC, DVI_YEE_PERIODIC, DVI_YEE_PEC},
       {DVI_YEE_CPML, DVI_YEE_PEC, DVI_YEE_PEC},
-      {DVI_YEE_ABSORBING, DVI_YEE_ABSORBING, DVI_YEE_ABSORBING}};
+      {DVI_YEE_ABSORBING, DVI_YEE_ABSORBING, DVI_YEE_ABSORBING},
+      {DVI_YEE_CPML, DVI_YEE_ABSORBING, DVI_YEE_BLOCH}};
   dvi_yee_terms terms = {.size = sizeof terms,
-                         .axes = kind < 6 || kind == 10 ? 3
+                         .axes = kind < 6 || kind >= 10 ? 3
                                  : kind < 9             ? 2
                                                         : 1,
-                         .degree = kind <= 6 || kind == 8 || kind == 10,
+                         .degree = kind <= 6 || kind == 8 || kind >= 10,
                          .probe = &probe,
                          .probes = 1};
   for (int l = 0; l < 3; l++) {
@@ -104,13 +105,13 @@ static dvi_yee_terms grid(int kind)
       terms.axis[l].end[e].kind = ends[kind][l];
     }
   }
-  if (kind != 3) terms.current = &current, terms.currents = 1;
-  if (kind != 3) terms.dipole = dipoles, terms.dipoles = 2;
+  if (kind != 3 && kind != 11) terms.current = &current, terms.currents = 1;
+  if (kind != 3 && kind != 11) terms.dipole = dipoles, terms.dipoles = 2;
   if (kind == 0 || kind == 6) terms.axis[0].node = terms.axis[1].node = graded;
   if (kind == 0 || kind == 5 || kind == 7) terms.eps.at = ball, terms.mu.at = plate;
   if (kind == 1) terms.wave = &wave, terms.waves = 1;
-  if (kind == 2 || kind == 10) terms.sigma.at = loss;
-  if (kind == 10) terms.eps.at = ball;
+  if (kind == 2 || kind >= 10) terms.sigma.at = loss;
+  if (kind >= 10) terms.eps.at = ball;
   if (kind == 9) terms.eps.at = plate;
   if (kind == 4) terms.wave = &straight, terms.waves = 1;
   return terms;

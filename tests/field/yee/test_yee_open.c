@@ -189,13 +189,13 @@ static double _Complex transform(double upper, dvi_yee_boundary kind, double h, 
   return sum;
 }
 
-/* |R| = |f(q)/f(1/q)|, f(q) = z - q - b (q z - 1), with z and q of a wave of the grid. */
+/* A wave of the grid has H beside E at the end that is not the admittance of the wall:
+ * R = (cos(w dt/2) - cos(k h/2))/(cos(w dt/2) + cos(k h/2)). */
 START_TEST(absorbing_ends_reflect_as_the_grid_says)
 {
   const double h = 0.05, dt = _i == 2 ? h : 0.025, omega = _i == 0 ? 5 : 11;
-  const double b = (dt - h) / (dt + h), k = 2 / h * asin(h / dt * sin(omega * dt / 2));
-  const double _Complex z = cexp(dvi__complex(0, omega * dt)), q = cexp(dvi__complex(0, k * h));
-  const double expected = cabs((z - q - b * (q * z - 1)) / (z - 1 / q - b * (z / q - 1)));
+  const double of_time = cos(omega * dt / 2), of_space = cos(asin(h / dt * sin(omega * dt / 2))),
+               expected = (of_time - of_space) / (of_time + of_space);
   const double _Complex incident = transform(20, DVI_YEE_PEC, h, dt, omega),
                         all = transform(1, DVI_YEE_ABSORBING, h, dt, omega);
   const double found = cabs((all - incident) / incident);
@@ -253,7 +253,7 @@ static double growth_of(const dvi_yee_terms *terms, int steps)
 /* Of two boxes before a conductor, edges inside alone would allow steps of 1.41 boxes. */
 START_TEST(steps_below_the_bound_are_stable_with_absorbing_ends)
 {
-  static const double graded[] = {0, 0.727, 0.881}; /* grows from 0.942 of the bound on */
+  static const double graded[] = {0, 0.727, 0.881}; /* Mur's form grows from 0.942 of it on */
   dvi_yee_terms terms = {.size = sizeof terms,
                          .axes = 1,
                          .axis = {{.cells = 2, .upper = 2, .end = {{.kind = DVI_YEE_ABSORBING}}}},
@@ -264,7 +264,7 @@ START_TEST(steps_below_the_bound_are_stable_with_absorbing_ends)
 END_TEST
 
 /* A dielectric holds modes that vanish before the ends of a guide, if these are below its cutoff.
- * Mur's condition lets them grow, by 7e2 to 9e6 in these steps. */
+ * Mur's form of the condition lets them grow, by 7e2 to 9e6 in these steps at 0.9 of the bound. */
 START_TEST(a_dielectric_in_a_guide_with_absorbing_ends_does_not_make_fields_grow)
 {
   double eps[12 * 16];
@@ -273,7 +273,7 @@ START_TEST(a_dielectric_in_a_guide_with_absorbing_ends_does_not_make_fields_grow
                          .degree = 1,
                          .axis = {{.cells = 12, .upper = 12}, {.cells = 16, .upper = 16}},
                          .eps = {.cell = eps},
-                         .fraction = 0.9};
+                         .fraction = 0.99};
   for (int i = 0; i < 12 * 16; i++)
     eps[i] = i % 12 >= 4 && i % 12 < 8 && i / 12 >= 5 && i / 12 < 11 ? 4 : 1;
   for (int e = 0; e < 2; e++) {

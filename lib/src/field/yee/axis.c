@@ -191,7 +191,7 @@ static void set_layers(dvi__yee_axis *a, int e, double dt)
 
 static int is_closed(dvi_yee_boundary kind)
 {
-  return kind == DVI_YEE_PEC || kind == DVI_YEE_ABSORBING || kind == DVI_YEE_CPML;
+  return kind == DVI_YEE_PEC || kind == DVI_YEE_CPML;
 }
 
 dvi_status dvi__yee_make_axis(const dvi_yee_axis *terms, int number, dvi__yee_axis *a)

@@ -4,12 +4,7 @@
  * Without materials the operator is a sum over the axes, and lambda the sum of the largest
  * eigenvalues of minus the second difference along each, which bisection finds by Sylvester's law
  * of inertia. With materials Lanczos' method finds it, within a thousandth from above. The place is
- * where boxes are the shortest and waves the fastest.
- *
- * On absorbing ends edges count as unknowns of a natural end: with those inside alone, some steps
- * that are longer than the last box would pass for stable. This is enough where all boxes are equal
- * and empty. Elsewhere small boxes have frequencies that larger ones at the end do not carry, and
- * which Mur's condition makes grow close to the bound, from 0.942 of it on. */
+ * where boxes are the shortest and waves the fastest. Losses do not change it. */
 #include <math.h>
 
 #include "core/memory.h"
@@ -132,35 +127,6 @@ static double fastest(size_t count, const double *array)
   return array != NULL ? most : 1;
 }
 
-/* Let edges on absorbing ends be unknowns, or not. */
-static void open_ends(dvi__yee *y, int is_open)
-{
-  for (int l = 0; l < y->axes; l++) {
-    dvi__yee_axis *a = &y->axis[l];
-    if (a->end[0].kind == DVI_YEE_ABSORBING) a->free[0] = !is_open;
-    if (a->end[1].kind == DVI_YEE_ABSORBING) a->free[1] = a->nodes - !is_open;
-  }
-}
-
-static int has_equal_boxes(const dvi__yee_axis *a)
-{
-  for (int i = 1; i < a->cells; i++)
-    if (fabs(a->length[i] - a->length[0]) > 1e-9 * a->length[0]) return 0;
-  return 1;
-}
-
-/* The part of the bound below which absorbing ends do not let fields grow. */
-static double part_for_absorbing_ends(const dvi__yee *y)
-{
-  int is_even = y->ce == NULL && y->mi == NULL, absorbs = 0;
-  for (int l = 0; l < y->axes; l++) {
-    const dvi__yee_axis *a = &y->axis[l];
-    is_even = is_even && has_equal_boxes(a);
-    absorbs |= a->end[0].kind == DVI_YEE_ABSORBING || a->end[1].kind == DVI_YEE_ABSORBING;
-  }
-  return absorbs && !is_even ? 0.93 : 1;
-}
-
 static dvi_status find_largest(dvi__yee *y, double *lambda)
 {
   const size_t rows = y->rows[0] * y->rows[1] * y->width;
@@ -178,10 +144,7 @@ static dvi_status find_largest(dvi__yee *y, double *lambda)
 dvi_status dvi__yee_find_bound(dvi__yee *y, double *bound)
 {
   double lambda;
-  open_ends(y, 1);
-  const dvi_status status = find_largest(y, &lambda);
-  open_ends(y, 0);
-  DVI_TRY(status);
-  *bound = lambda > 0 ? part_for_absorbing_ends(y) * 2 / sqrt(lambda) : (double)INFINITY;
+  DVI_TRY(find_largest(y, &lambda));
+  *bound = lambda > 0 ? 2 / sqrt(lambda) : (double)INFINITY;
   return DVI_OK;
 }

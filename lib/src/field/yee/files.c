@@ -10,7 +10,7 @@
 #include "core/status.h"
 #include "field/yee/yee.h"
 
-enum { VERSION = 1 };
+enum { VERSION = 2 };
 
 typedef struct identity {
   uint64_t grid; /* hash of the axes and of what acts on the fields */
@@ -39,6 +39,14 @@ static uint64_t hash_acts(uint64_t hash, const dvi__yee *y, const dvi__yee_acts 
   return hash;
 }
 
+static uint64_t hash_walls(uint64_t hash, const dvi__yee *y)
+{
+  const size_t rows = y->rows[0] * y->rows[1] * (size_t)y->edges_slots;
+  for (int64_t i = 0; y->wall != NULL && i < y->wall_first[rows]; i++)
+    hash = hash_numbers(hash, 1, &y->wall[i].part);
+  return hash;
+}
+
 static uint64_t hash_grid(const dvi__yee *y)
 {
   const size_t places = y->rows[0] * y->rows[1] * y->width;
@@ -59,6 +67,7 @@ static uint64_t hash_grid(const dvi__yee *y)
   hash = hash_numbers(hash, places * (size_t)y->edges_slots, y->ce);
   hash = hash_numbers(hash, places * (size_t)y->edges_slots, y->ca);
   hash = hash_numbers(hash, places * (size_t)(y->components - y->edges_slots), y->mi);
+  hash = hash_walls(hash, y);
   return hash_acts(hash_acts(hash, y, &y->on_edges), y, &y->on_faces);
 }
 

@@ -16,9 +16,8 @@
 static void destroy(void *self)
 {
   dvi__yee *y = self;
-  double *const arrays[] = {y->state[0], y->state[1], y->ce,       y->ca,
-                            y->loss,     y->worn,     y->mi,       y->drive,
-                            y->charge,   y->scratch,  y->absorbed, y->impulses};
+  double *const arrays[] = {y->state[0], y->state[1], y->ce,     y->ca,      y->loss,    y->worn,
+                            y->mi,       y->drive,    y->charge, y->scratch, y->impulses};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) dvi__release(arrays[i]);
   for (int l = 0; l < 3; l++) dvi__yee_clear_axis(&y->axis[l]);
   dvi__yee_clear_acts(&y->on_edges);
@@ -29,6 +28,8 @@ static void destroy(void *self)
   dvi__release(y->flux);
   dvi__release(y->names);
   dvi__release(y->loses);
+  dvi__release(y->wall_first);
+  dvi__release(y->wall);
   dvi__release(y->moment);
   dvi__release(y->progress);
   dvi__team_destroy(&y->team);
@@ -78,13 +79,13 @@ static dvi_status make(const dvi_yee_terms *terms, dvi__yee *y)
   DVI_TRY(dvi__yee_make_media(terms, y));
   DVI_TRY(choose_step(terms, y));
   DVI_TRY(dvi__yee_make_losses(terms, y));
+  DVI_TRY(dvi__yee_make_walls(terms, y));
   for (int copy = 0; copy < y->copies; copy++) {
     y->state[copy] = DVI_NEW(double, y->size + DVI__YEE_LEFT);
     if (y->state[copy] == NULL)
       return dvi__fail(DVI_NO_MEMORY, "yee: no memory for %zu field values", y->size);
   }
   DVI_TRY(dvi__yee_make_layers(y));
-  DVI_TRY(dvi__yee_make_absorbed(y));
   DVI_TRY(dvi__yee_make_sweeps(y, terms));
   DVI_TRY(dvi__yee_make_sources(terms, y));
   return dvi__yee_make_observables(terms, y);

@@ -58,7 +58,7 @@ static double value_of_cell(const dvi__yee *y, const dvi_yee_medium *medium, con
 }
 
 /* What is summed over the pieces of boxes around an edge or face. */
-typedef enum quantity { PERMITTIVITY, LOSS, PERMEABILITY } quantity;
+typedef enum quantity { PERMITTIVITY, LOSS, PERMEABILITY, ADMITTANCE } quantity;
 
 static dvi_status add_piece(const dvi_yee_terms *terms, const dvi__yee *y, quantity what, int c,
                             const dvi__average_box *box, const int *cell, double *sum)
@@ -74,6 +74,19 @@ static dvi_status add_piece(const dvi_yee_terms *terms, const dvi__yee *y, quant
   *sum += what == PERMEABILITY
               ? along / (across * value_of_cell(y, &terms->mu, cell))
               : across / along * value_of_cell(y, what == LOSS ? &terms->sigma : &terms->eps, cell);
+  return DVI_OK;
+}
+
+/* The admittance is that of the means of eps and mu in the piece. */
+static dvi_status add_admittance(const dvi_yee_terms *terms, const dvi__yee *y, int c,
+                                 const dvi__average_box *box, const int *cell, double *sum)
+{
+  double eps = 0, over_mu = 0, ratio = 1;
+  DVI_TRY(add_piece(terms, y, PERMITTIVITY, c, box, cell, &eps));
+  DVI_TRY(add_piece(terms, y, PERMEABILITY, c, box, cell, &over_mu));
+  for (int l = 0; l < y->axes; l++)
+    ratio *= l == c ? 1 / (box->upper[l] - box->lower[l]) : box->upper[l] - box->lower[l];
+  *sum += ratio * sqrt(eps * over_mu);
   return DVI_OK;
 }
 
@@ -103,8 +116,17 @@ static dvi_status sum_pieces(const dvi_yee_terms *terms, const dvi__yee *y, quan
       box.lower[l] = lower[l][piece];
       box.upper[l] = upper[l][piece];
     }
-    DVI_TRY(add_piece(terms, y, what, component % 3, &box, at, sum));
+    DVI_TRY(what == ADMITTANCE ? add_admittance(terms, y, component, &box, at, sum)
+                               : add_piece(terms, y, what, component % 3, &box, at, sum));
   }
+  return DVI_OK;
+}
+
+dvi_status dvi__yee_admittance(const dvi_yee_terms *terms, const dvi__yee *y, int c,
+                               const int *place, double *mean)
+{
+  DVI_TRY(sum_pieces(terms, y, ADMITTANCE, c, place, mean));
+  *mean /= vacuum_star(y, c, place);
   return DVI_OK;
 }
 

@@ -52,7 +52,7 @@ static int is_left_out(const dvi__yee *y, int axis, int i, int is_box)
   const dvi__yee_axis *a = &y->axis[axis];
   const dvi__yee_layers *l = a->layers;
   if (a->is_trivial) return 0;
-  if (!is_box && (i < a->free[0] || i >= a->free[1])) return 1;
+  if (!is_box && (i < a->free[0] || i >= a->free[1] || dvi__yee_absorbs_at(a, i))) return 1;
   if (!is_box && a->end[0].kind == DVI_YEE_BLOCH && i == 0) return 1;
   if (is_box && a->end[0].kind == DVI_YEE_BLOCH && i == a->cells - 1) return 1;
   return (l[0].count > 0 && i < l[0].count) ||

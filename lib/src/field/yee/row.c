@@ -162,9 +162,6 @@ static void copy_around(const dvi__yee *y, int component, int j, int k)
             to_j = is_face ? -1 : across->cells, to_k = is_face ? -1 : up->cells;
   if (across->wraps && j == from_j) copy_rows(y, component, across, j, k, to_j, k);
   if (up->wraps && k == from_k) copy_rows(y, component, up, j, k, j, to_k);
-  /* absorbing ends of x look at E behind both ends */
-  if (across->wraps && up->wraps && j == from_j && k == from_k)
-    copy_rows(y, component, up, to_j, k, to_j, to_k);
 }
 
 void dvi__yee_wrap_rows(const dvi__yee *y, int j, int k)
@@ -305,7 +302,7 @@ static void set_metric(const dvi__yee *y, int c, int j, int k, dvi__yee_edges_ro
   if (c != 0 && !x->is_uniform) row->metric = a == 0 ? DVI__YEE_P_ALONG : DVI__YEE_Q_ALONG;
 }
 
-/* Give the scratch row that keeps E_c of before the update. */
+/* Give the scratch row that keeps E_c of before the update, where it loses. */
 static double *row_before(const dvi__yee_worker *w, int c)
 {
   return w->scratch + (size_t)(DVI__YEE_SCRATCH - 3 + c) * w->yee->width;
@@ -353,7 +350,10 @@ static void update_edge_row(const dvi__yee_worker *w, int copy, int c, int j, in
             keeps_upper = c != 0 && !x->wraps && x->free[1] <= n;
   double *e = y->state[copy] + dvi__yee_at(y, c, j, k);
   const double lower = e[0], upper = e[n];
-  if (copy == 0 && dvi__yee_loses(y, c, j, k)) memcpy(row_before(w, c), e, y->count * sizeof *e);
+  if (dvi__yee_loses(y, c, j, k))
+    memcpy(row_before(w, c), e, y->count * sizeof *e);
+  else if (y->wall != NULL)
+    dvi__yee_keep_before(y, c, j, k, e, row_before(w, c));
   update_edge(w, copy, c, j, k, f);
   if (keeps_lower) e[0] = lower;
   if (keeps_upper) e[n] = upper;
@@ -383,12 +383,15 @@ static void stretch_edges_along(const dvi__yee *y, int copy, int j, int k, const
 void dvi__yee_update_edges(const dvi__yee_worker *w, int j, int k)
 {
   const dvi__yee *y = w->yee;
-  for (int copy = 0; copy < y->copies; copy++) {
+  for (int copy = y->copies - 1; copy >= 0; copy--) { /* the real one last, for its rows before */
     fields f = {.here = {NULL}};
     take_fields(w, copy, j, k, &f);
     for (int c = 0; c < 3; c++)
       if (has_edge(y, c, j, k)) update_edge_row(w, copy, c, j, k, &f);
     if (has_layers_along(y)) stretch_edges_along(y, copy, j, k, &f);
+    for (int c = 0; c < 3 && y->wall != NULL; c++)
+      if (has_edge(y, c, j, k))
+        dvi__yee_absorb(y, c, j, k, row_before(w, c), y->state[copy] + dvi__yee_at(y, c, j, k));
   }
   act(w, &y->on_edges, j, k);
   for (int c = 0; c < 3; c++)

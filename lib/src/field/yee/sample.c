@@ -2,9 +2,9 @@
  *
  * After n steps the state has B^n and E^{n+1/2}. At the time t of the next step, t = t_n + part dt,
  *     B(t) = B^n - part dt d E^{n+1/2},
- *     E(t) = E^{n+1/2} + (part - 1/2) dt M_1^-1 (d^T M_2 B(t) - J(t) - sigma E(t)).
- * This is continuous in t. At t_n it is the mean of E^{n-1/2} and E^{n+1/2}. Errors have the
- * order 2. */
+ *     E(t) = E^{n+1/2} + (part - 1/2) dt M_1^-1 (d^T M_2 B(t) - J(t) - S E^{n+1/2}),
+ * with S of conductors and absorbing ends. This is continuous in t. At t_0 it is the start, and
+ * without losses it is at t_n the mean of E^{n-1/2} and E^{n+1/2}. Errors have the order 2. */
 #include "core/status.h"
 #include "field/yee/yee.h"
 
@@ -149,57 +149,17 @@ static value change_of_edge(const dvi__yee_moment *m, int c, const int *place)
   return sum;
 }
 
-/* Give the last axis with an absorbing end on which an edge lies, and that end, or -1. */
-static int absorbing_axis(const dvi__yee *y, int c, const int *place, int *end)
-{
-  for (int l = 2; l >= 0; l--)
-    for (int e = 0; e < 2; e++)
-      if (l != c && y->axis[l].end[e].kind == DVI_YEE_ABSORBING &&
-          place[l] == (e == 0 ? 0 : y->axis[l].cells)) {
-        *end = e;
-        return l;
-      }
-  return -1;
-}
-
-/* Give the difference T along E_c of the edges through the box at an absorbing end (absorb.c). */
-static value difference_through(const dvi__yee *y, int c, int axis, int end, const int *place)
-{
-  int edge[3] = {place[0], place[1], place[2]}, next[3];
-  if (!dvi__yee_has_difference(y, c, axis, place)) return (value){0, 0};
-  edge[axis] -= end;
-  for (int l = 0; l < 3; l++) next[l] = edge[l] + (l == c);
-  return plus(dvi__yee_stored(y, axis, next), -1, dvi__yee_stored(y, axis, edge));
-}
-
-/* On an absorbing end E' + E1' = 2 v/h (E1 - E -+ T), where E1 is one box inside. */
-static value absorbed_E_at(const dvi__yee_moment *m, int c, int axis, int end, const int *place)
-{
-  const dvi__yee *y = m->yee;
-  const double rate = 2 * (m->part - 0.5) * dvi__yee_courant(y, c, axis, end, place);
-  int inner[3] = {place[0], place[1], place[2]};
-  inner[axis] += end == 0 ? 1 : -1;
-  const value E = dvi__yee_stored(y, c, place), E1 = dvi__yee_stored(y, c, inner),
-              E1_now = dvi__yee_E_at(m, c, inner),
-              step = plus(plus(E1, -1, E), end == 0 ? -1 : 1,
-                          difference_through(y, c, axis, end, place));
-  return plus(plus(E, rate, step), -1, plus(E1_now, -1, E1));
-}
-
 value dvi__yee_E_at(const dvi__yee_moment *m, int c, const int *place)
 {
   const dvi__yee *y = m->yee;
   const double part = m->part - 0.5;
-  int end;
-  if (!dvi__yee_is_unknown(y, c, place)) {
-    const int axis = absorbing_axis(y, c, place, &end);
-    return axis >= 0 ? absorbed_E_at(m, c, axis, end, place) : (value){0, 0};
-  }
-  const double s = dvi__yee_loss(y, c, place), eps = 1 / dvi__yee_over_eps(y, c, place),
-               divisor = 1 + 2 * part * s;
-  value E = plus(stored_inside(y, c, place), part / eps, change_of_edge(m, c, place));
+  if (!dvi__yee_is_unknown(y, c, place)) return (value){0, 0};
+  const double s = dvi__yee_loss(y, c, place), eps = 1 / dvi__yee_over_eps(y, c, place);
+  const value stored = stored_inside(y, c, place);
+  value E = plus(stored, part / eps, change_of_edge(m, c, place));
+  E = plus(E, -2 * part * s, stored);
   E.re += (1 + s) * dvi__yee_acted(y, &y->on_edges, c, place, m->on_edges);
-  return (value){E.re / divisor, E.im / divisor};
+  return E;
 }
 
 void dvi__yee_start_edge(const dvi__yee_moment *m, int c, const int *place, int has_B)
@@ -207,12 +167,13 @@ void dvi__yee_start_edge(const dvi__yee_moment *m, int c, const int *place, int 
   const dvi__yee *y = m->yee;
   if (!dvi__yee_is_unknown(y, c, place)) return;
   const size_t here = dvi__yee_at(y, c, place[1], place[2]) + (size_t)place[0];
-  const double s = dvi__yee_loss(y, c, place), eps = 1 / dvi__yee_over_eps(y, c, place),
-               impulse = (1 + s) * dvi__yee_acted(y, &y->on_edges, c, place, m->on_edges);
+  const double s = dvi__yee_loss(y, c, place), eps = 1 / dvi__yee_over_eps(y, c, place);
   const value change = has_B ? change_of_edge(m, c, place) : (value){0, 0};
-  if (y->worn != NULL) y->worn[dvi__yee_beside(y, c, place)] = s * y->state[0][here];
-  y->state[0][here] = (1 - s) * y->state[0][here] + 0.5 / eps * change.re + impulse;
-  if (y->copies > 1) y->state[1][here] = (1 - s) * y->state[1][here] + 0.5 / eps * change.im;
+  y->state[0][here] = (y->state[0][here] + 0.5 / eps * change.re) / (1 + s) +
+                      dvi__yee_acted(y, &y->on_edges, c, place, m->on_edges);
+  if (y->copies > 1) y->state[1][here] = (y->state[1][here] + 0.5 / eps * change.im) / (1 + s);
+  if (y->worn != NULL)
+    y->worn[dvi__yee_beside(y, c, place)] = dvi__yee_conduction(y, c, place) * y->state[0][here];
 }
 
 /* ---- samples ---- */

@@ -27,23 +27,18 @@ static void clear_conductors(dvi__yee *y)
 {
   const int64_t size = dvi__yee_form_size(y, DVI_FORM_E);
   for (int64_t i = 0; i < size; i++) {
-    int component, place[3], is_kept = 1;
+    int component, place[3];
     dvi__yee_place_of(y, DVI_FORM_E, i, &component, place);
-    for (int l = 0; l < 3; l++) {
-      const dvi__yee_axis *a = &y->axis[l];
-      const int end = place[l] == 0 ? 0 : 1;
-      if (!dvi__yee_is_free(y, component, l, place[l]) && a->end[end].kind != DVI_YEE_ABSORBING)
-        is_kept = 0;
-    }
+    const int is_kept = dvi__yee_is_unknown(y, component, place);
     const size_t at = dvi__yee_at(y, component, place[1], place[2]) + (size_t)place[0];
     for (int copy = 0; copy < y->copies && !is_kept; copy++) y->state[copy][at] = 0;
   }
 }
 
-/* Move E from t_0 to half a step later: (1 - s) E + dt/2 M_1^-1 (d_1^T M_2 B - J). */
+/* Move E from t_0 to half a step later: (1 + s) E+ = E + dt/2 M_1^-1 (d_1^T M_2 B - J). */
 static void take_half_step(dvi__yee *y, int has_B)
 {
-  if (!has_B && y->loss == NULL && y->on_edges.count == 0) return;
+  if (!has_B && y->loss == NULL && y->wall == NULL && y->on_edges.count == 0) return;
   const int64_t size = dvi__yee_form_size(y, DVI_FORM_E);
   const dvi__yee_moment m = {.yee = y, .part = 0, .on_faces = y->drive, .on_edges = y->drive};
   for (int64_t i = 0; i < size; i++) {

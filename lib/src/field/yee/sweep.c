@@ -98,17 +98,15 @@ void dvi__yee_sweep(dvi__yee *y, int steps)
   sweep s = {y, steps, tiles_of(y, steps)};
   y->lanes = dvi__yee_lanes_in_use();
   for (int tile = 0; tile < s.tiles; tile++) atomic_store(&y->progress[tile], 0);
-  if (dvi__yee_absorbs(y)) dvi__yee_keep_absorbed(y);
   if (y->axis[2].wraps) run(y, take_faces_of_last_plane, &s);
   run(y, take_tiles, &s);
-  if (dvi__yee_absorbs(y)) dvi__yee_absorb(y);
 }
 
 /* ---- tiles ---- */
 
 static int may_go_together(const dvi__yee *y)
 {
-  return !y->axis[1].wraps && !y->axis[2].wraps && !dvi__yee_absorbs(y);
+  return !y->axis[1].wraps && !y->axis[2].wraps;
 }
 
 /* Choose how many steps go together, and tiles whose planes of all steps stay in a cache. */

@@ -269,7 +269,7 @@ static dvi_status add_incident(dvi__yee *y, const dvi__yee_beam *beam, int compo
 
 static dvi_status check_vacuum(const dvi__yee *y, int c, const int *edge, int b, const int *face)
 {
-  if (fabs(dvi__yee_over_eps(y, c, edge) - 1) < 1e-12 && dvi__yee_loss(y, c, edge) < 1e-12 &&
+  if (fabs(dvi__yee_over_eps(y, c, edge) - 1) < 1e-12 && dvi__yee_conduction(y, c, edge) < 1e-12 &&
       fabs(dvi__yee_over_mu(y, b, face) - 1) < 1e-12)
     return DVI_OK;
   return dvi__fail(
@@ -291,7 +291,8 @@ static dvi_status add_pair(dvi__yee *y, const dvi__yee_beam *beam, int axis, int
   DVI_TRY(check_vacuum(y, c, edge, b, face));
   const dvi__yee_axis *a = &y->axis[axis];
   const double sign = (end == 0) == is_next ? -1 : 1,
-               factor = end == 0 ? a->down[edge[axis]] : a->up[edge[axis]];
+               change = end == 0 ? a->down[edge[axis]] : a->up[edge[axis]],
+               factor = change / (1 + dvi__yee_loss(y, c, edge));
   DVI_TRY(add_incident(y, beam, DVI__YEE_B + b, face, c, edge, sign * y->dt));
   return add_incident(y, beam, c, edge, DVI__YEE_B + b, face, sign * factor);
 }

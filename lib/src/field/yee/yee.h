@@ -64,6 +64,13 @@ typedef struct dvi__yee_acts {
   dvi__yee_act *act;
 } dvi__yee_acts;
 
+/* An edge on absorbing ends, at a place of its row. See absorb.c. */
+typedef struct dvi__yee_wall {
+  int32_t place;
+  double s;    /* dt S/(2 M_1) */
+  double part; /* s/(1 + s + that of conductors) */
+} dvi__yee_wall;
+
 /* The signal of a current or dipole. Its impulse over a step is kept, summed up, for the charge. */
 typedef struct dvi__yee_source {
   dvi_yee_signal *signal;
@@ -92,12 +99,14 @@ typedef struct dvi__yee {
   ptrdiff_t next[3]; /* from a place to the next one along an axis, 0 if trivial */
   double *state[2];  /* [size] */
   /* Materials, NULL for those of vacuum: [rows][edges_slots][width] beside E */
-  double *ce;   /* 1/(eps (1+s)) with s = sigma dt/(2 eps) */
-  double *ca;   /* (1-s)/(1+s). NULL without losses */
-  double *loss; /* s. NULL without losses */
-  double *worn; /* sum of s (E+ + E-), the conducted part of D. NULL without losses */
-  char *loses;  /* [rows][edges_slots] if a row has any loss. NULL without losses */
-  double *mi;   /* 1/mu, [rows][components - edges_slots][width] beside B */
+  double *ce;          /* 1/(eps (1+s)) with s = sigma dt/(2 eps) */
+  double *ca;          /* (1-s)/(1+s). NULL without losses */
+  double *loss;        /* s. NULL without losses */
+  double *worn;        /* sum of s (E+ + E-), the conducted part of D. NULL without losses */
+  char *loses;         /* [rows][edges_slots] if a row has any loss. NULL without losses */
+  double *mi;          /* 1/mu, [rows][components - edges_slots][width] beside B */
+  int64_t *wall_first; /* [rows of edges + 1] first ones of the rows. NULL without them */
+  dvi__yee_wall *wall;
   double dt, bound, t0, t;
   int64_t step; /* steps since the start: B at t0 + step dt, E half a step later */
   int64_t unknowns, faces;
@@ -118,7 +127,6 @@ typedef struct dvi__yee {
   int threads, together, tile;
   dvi__team *team;      /* NULL for one thread */
   double *scratch;      /* [threads][DVI__YEE_SCRATCH][width] */
-  double *absorbed;     /* see absorb.c */
   atomic_int *progress; /* [tiles], see sweep.c */
   const dvi__yee_lanes *lanes;
 } dvi__yee;
@@ -183,6 +191,13 @@ static inline int dvi__yee_is_free(const dvi__yee *y, int c, int axis, int i)
   return c == axis ? i >= 0 && i < a->cells : i >= a->free[0] && i < a->free[1];
 }
 
+/* Tell if a node of an axis is on an absorbing end. */
+static inline int dvi__yee_absorbs_at(const dvi__yee_axis *a, int node)
+{
+  return (node == 0 && a->end[0].kind == DVI_YEE_ABSORBING) ||
+         (node == a->cells && a->end[1].kind == DVI_YEE_ABSORBING);
+}
+
 /* Tell if E_c has an unknown at a place. */
 static inline int dvi__yee_is_unknown(const dvi__yee *y, int c, const int *place)
 {
@@ -201,17 +216,26 @@ static inline size_t dvi__yee_beside(const dvi__yee *y, int component, const int
   return row + (size_t)place[0];
 }
 
-/* Give s of E_c. */
-static inline double dvi__yee_loss(const dvi__yee *y, int c, const int *place)
+/* Give s of E_c in conductors. */
+static inline double dvi__yee_conduction(const dvi__yee *y, int c, const int *place)
 {
   return y->loss != NULL ? y->loss[dvi__yee_beside(y, c, place)] : 0;
+}
+
+/* Give s of E_c on absorbing ends, 0 elsewhere. See absorb.c. */
+double dvi__yee_wall_loss(const dvi__yee *yee, int c, const int *place);
+
+/* Give s of E_c, of conductors and absorbing ends. */
+static inline double dvi__yee_loss(const dvi__yee *y, int c, const int *place)
+{
+  return dvi__yee_conduction(y, c, place) + dvi__yee_wall_loss(y, c, place);
 }
 
 /* Give 1/eps of E_c. */
 static inline double dvi__yee_over_eps(const dvi__yee *y, int c, const int *place)
 {
   if (y->ce == NULL) return 1;
-  return y->ce[dvi__yee_beside(y, c, place)] * (1 + dvi__yee_loss(y, c, place));
+  return y->ce[dvi__yee_beside(y, c, place)] * (1 + dvi__yee_conduction(y, c, place));
 }
 
 /* Give 1/mu of B_c. */
@@ -260,6 +284,9 @@ dvi_status dvi__yee_integrate_box(const double *lower, const double *upper, cons
 /* Make the arrays of materials, but for losses, which need a step. */
 dvi_status dvi__yee_make_media(const dvi_yee_terms *terms, dvi__yee *yee);
 dvi_status dvi__yee_make_losses(const dvi_yee_terms *terms, dvi__yee *yee);
+/* Give the mean of sqrt(eps/mu) over the pieces of boxes around an edge. */
+dvi_status dvi__yee_admittance(const dvi_yee_terms *terms, const dvi__yee *yee, int c,
+                               const int *place, double *mean);
 /* Give the entry of a star: M_1 of E_c, without the losses in ce, or M_2 of B_c. */
 double dvi__yee_star(const dvi__yee *yee, int component, const int *place);
 /* Give `count` of them along x, from a place on. */
@@ -311,15 +338,12 @@ void dvi__yee_sweep(dvi__yee *yee, int steps);
 
 /* ---- absorb.c ---- */
 
-int dvi__yee_absorbs(const dvi__yee *yee);
-dvi_status dvi__yee_make_absorbed(dvi__yee *yee);
-/* Keep E beside absorbing ends before a step, and set E on them after it. */
-void dvi__yee_keep_absorbed(dvi__yee *yee);
-void dvi__yee_absorb(dvi__yee *yee);
-/* Give v dt/h for E_c on an absorbing end, with the speed v there. */
-double dvi__yee_courant(const dvi__yee *yee, int c, int axis, int end, const int *place);
-/* Tell if the condition at an absorbing end of the axis has the difference T for E_c at a place. */
-int dvi__yee_has_difference(const dvi__yee *yee, int c, int axis, const int *place);
+/* Make the list of edges on absorbing ends, after materials and losses. */
+dvi_status dvi__yee_make_walls(const dvi_yee_terms *terms, dvi__yee *yee);
+/* Keep what a row of E_c is on absorbing ends before a step, and absorb there after it. */
+void dvi__yee_keep_before(const dvi__yee *yee, int c, int j, int k, const double *e,
+                          double *before);
+void dvi__yee_absorb(const dvi__yee *yee, int c, int j, int k, const double *before, double *e);
 
 /* ---- start.c ---- */
 
