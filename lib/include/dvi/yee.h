@@ -7,6 +7,7 @@
  *
  *  which is the leapfrog of dvi/march.h on a mesh of boxes, without the memory of a mesh (Yee 1966;
  *  Bossavit and Kettunen 1999). It starts with E^{1/2} = E^0 + dt/2 M_1^-1 (d_1^T M_2 B^0 - J^0).
+ *  Conductors add -S (E^{n+1/2} + E^{n-1/2})/2 to -J^n, and -S E^{1/2} to -J^0.
  *  Units have c = 1 where eps = mu = 1.
  *
  *  The components are all six in space, on two axes (Ex, Ey, Bz) or (Ez, Bx, By), and on one axis

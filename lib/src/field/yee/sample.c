@@ -2,9 +2,10 @@
  *
  * After n steps the state has B^n and E^{n+1/2}. At the time t of the next step, t = t_n + part dt,
  *     B(t) = B^n - part dt d E^{n+1/2},
- *     E(t) = E^{n+1/2} + (part - 1/2) dt M_1^-1 (d^T M_2 B(t) - J(t) - sigma E(t)).
- * This is continuous in t. At t_n it is the mean of E^{n-1/2} and E^{n+1/2}. Errors have the
- * order 2. */
+ *     E(t) = E^{n+1/2} + (part - 1/2) dt M_1^-1 (d^T M_2 B(t) - J(t) - S E^{n+1/2}).
+ * This is continuous in t, also with losses, for the step has S (E^{n-1/2} + E^{n+1/2})/2. At t_0
+ * it is the start, and without losses it is at t_n the mean of E^{n-1/2} and E^{n+1/2}. Errors
+ * have the order 2. */
 #include "core/status.h"
 #include "field/yee/yee.h"
 
@@ -196,10 +197,11 @@ static value E_inside(const dvi__yee_moment *m, int c, const int *place)
     return axis >= 0 ? absorbed_E_at(m, c, axis, end, place) : (value){0, 0};
   }
   const double s = dvi__yee_loss(y, c, place), eps = 1 / dvi__yee_over_eps(y, c, place),
-               divisor = 1 + 2 * part * s;
-  value E = plus(stored_inside(y, c, place), part / eps, change_of_edge(m, c, place));
-  E.re += (1 + s) * dvi__yee_acted(y, &y->on_edges, c, place, m->on_edges);
-  return (value){E.re / divisor, E.im / divisor};
+               kept = 1 - 2 * part * s;
+  const value E = stored_inside(y, c, place);
+  value sum = plus((value){kept * E.re, kept * E.im}, part / eps, change_of_edge(m, c, place));
+  sum.re += (1 + s) * dvi__yee_acted(y, &y->on_edges, c, place, m->on_edges);
+  return sum;
 }
 
 value dvi__yee_E_at(const dvi__yee_moment *m, int c, const int *place)
@@ -215,12 +217,12 @@ void dvi__yee_start_edge(const dvi__yee_moment *m, int c, const int *place, int 
   const dvi__yee *y = m->yee;
   if (!dvi__yee_is_unknown(y, c, place)) return;
   const size_t here = dvi__yee_at(y, c, place[1], place[2]) + (size_t)place[0];
-  const double s = dvi__yee_loss(y, c, place), eps = 1 / dvi__yee_over_eps(y, c, place),
-               impulse = (1 + s) * dvi__yee_acted(y, &y->on_edges, c, place, m->on_edges);
-  const value change = has_B ? change_of_edge(m, c, place) : (value){0, 0};
+  const double s = dvi__yee_loss(y, c, place), eps = 1 / dvi__yee_over_eps(y, c, place);
+  value E = stored_inside(y, c, place);
+  if (has_B) E = plus(E, 0.5 / eps, change_of_edge(m, c, place));
+  y->state[0][here] = E.re / (1 + s) + dvi__yee_acted(y, &y->on_edges, c, place, m->on_edges);
+  if (y->copies > 1) y->state[1][here] = E.im / (1 + s);
   if (y->worn != NULL) y->worn[dvi__yee_beside(y, c, place)] = s * y->state[0][here];
-  y->state[0][here] = (1 - s) * y->state[0][here] + 0.5 / eps * change.re + impulse;
-  if (y->copies > 1) y->state[1][here] = (1 - s) * y->state[1][here] + 0.5 / eps * change.im;
 }
 
 /* ---- samples ---- */

@@ -40,7 +40,8 @@ static void clear_conductors(dvi__yee *y)
   }
 }
 
-/* Move E from t_0 to half a step later: (1 - s) E + dt/2 M_1^-1 (d_1^T M_2 B - J). */
+/* Move E from t_0 to half a step later: E^{1/2} = E^0 + dt/2 M_1^-1 (d_1^T M_2 B - J - S E^{1/2}).
+ * As in a step, no conductor makes it grow. */
 static void take_half_step(dvi__yee *y, int has_B)
 {
   if (!has_B && y->loss == NULL && y->on_edges.count == 0) return;
