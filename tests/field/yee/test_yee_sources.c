@@ -356,6 +356,33 @@ START_TEST(fluxes_are_those_of_the_other_end)
 }
 END_TEST
 
+/* Nothing flows through magnetic conductors, beside which H is not 0. */
+START_TEST(no_power_flows_through_magnetic_conductors)
+{
+  const dvi_yee_flux flux[] = {{"left", {0, 0.25}, {0, 1}}, {"right", {1, 0}, {1, 1}},
+                               {"top", {0.2, 1}, {1, 1}},   {"all", {0, 0}, {1, 1}},
+                               {"part", {0, 0}, {1, 0.5}},  {"inside", {0, 0.5}, {1, 0.5}}};
+  enum { FLUXES = sizeof flux / sizeof *flux };
+  double value[FLUXES];
+  dvi_yee_terms terms = {
+      .size = sizeof terms, .axes = 2, .degree = _i, .flux = flux, .fluxes = FLUXES, .step = 0.1};
+  for (int l = 0; l < 2; l++)
+    terms.axis[l] = (dvi_yee_axis){.cells = 5 - l,
+                                   .end = {{.kind = DVI_YEE_PMC}, {.kind = DVI_YEE_PMC}}};
+  dvi_march *march = box_march(&terms);
+  double *E = random_values(dvi_march_size(march, DVI_FORM_E), 1),
+         *B = random_values(dvi_march_size(march, DVI_FORM_B), 2);
+  start_boxes(march, E, B);
+  advance_march(march, 0.23);
+  for (int i = 0; i < FLUXES; i++) value[i] = observe_march(march, flux[i].name);
+  for (int i = 0; i < 4; i++) ck_assert_double_eq(value[i], 0);
+  ck_assert_double_gt(fabs(value[5]), 0.01);
+  ck_assert_double_eq(value[4], value[5]);
+  free(E), free(B);
+  dvi_march_destroy(&march);
+}
+END_TEST
+
 /* ---- failures ---- */
 
 START_TEST(a_failing_signal_leaves_the_last_good_time)
@@ -391,5 +418,6 @@ SUITE(yee_sources)
   tcase_add_loop_test(tests, charges_are_those_of_the_currents, 0, 2);
   tcase_add_test(tests, the_power_of_a_dipole_flows_through_boxes);
   tcase_add_loop_test(tests, fluxes_are_those_of_the_other_end, 0, 2);
+  tcase_add_loop_test(tests, no_power_flows_through_magnetic_conductors, 0, 2);
   tcase_add_loop_test(tests, a_failing_signal_leaves_the_last_good_time, 0, 5);
 }
