@@ -196,7 +196,7 @@ static double H_on_plane(const dvi__yee_moment *m, int c, int axis, const int *p
     if (!y->axis[axis].wraps && (at[axis] < 0 || at[axis] >= y->axis[axis].cells)) continue;
     for (int l = 0; l < 3; l++) {
       const int places = dvi__yee_places(y, DVI__YEE_B + c, l);
-      inside[l] = (at[l] + places) % places;
+      inside[l] = at[l] + (at[l] < 0 ? places : at[l] >= places ? -places : 0);
     }
     sides++;
     const double dual = y->axis[c].dual[inside[c]];
