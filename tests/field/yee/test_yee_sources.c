@@ -200,6 +200,36 @@ START_TEST(probes_see_uniform_fields)
 }
 END_TEST
 
+/* Between the last node and the end of an axis that repeats itself, E is interpolated with that of
+ * node 0 times the phase, whose real part a probe sees. */
+START_TEST(probes_see_over_the_end_of_an_axis)
+{
+  const double phase = _i == 0 ? 0 : 0.7, part = 0.75;
+  const dvi_yee_boundary kind = _i == 0 ? DVI_YEE_PERIODIC : DVI_YEE_BLOCH;
+  const dvi_yee_probe probe[] = {{"x", DVI_FORM_E, .at = {0.3, (2 + part) / 3}, .along = {1}},
+                                 {"y", DVI_FORM_E, .at = {(3 + part) / 4, 0.5}, .along = {0, 1}}};
+  dvi_yee_terms terms = {.size = sizeof terms, .axes = 2, .degree = 1, .probe = probe, .probes = 2};
+  for (int l = 0; l < 2; l++)
+    terms.axis[l] = (dvi_yee_axis){
+        .cells = 4 - l, .end = {{.kind = kind}, {.kind = kind}}, .phase = phase};
+  dvi_march *march = box_march(&terms);
+  const int64_t edges = dvi_yee_size(&terms, DVI_FORM_E);
+  double *E = random_values(2 * edges, 1);
+  start_boxes(march, E, NULL);
+  for (int c = 0; c < 2; c++) {
+    const int last[2] = {c == 0 ? 1 : 3, c == 0 ? 2 : 1}, first[2] = {c == 0 ? 1 : 0, c};
+    const int64_t one = dvi_yee_place(&terms, DVI_FORM_E, c, last),
+                  other = dvi_yee_place(&terms, DVI_FORM_E, c, first);
+    const double turned = _i == 0 ? E[other]
+                                  : cos(phase) * E[other] - sin(phase) * E[edges + other];
+    ck_assert_double_eq_tol(observe_march(march, probe[c].name),
+                            (4 - c) * ((1 - part) * E[one] + part * turned), 1e-14);
+  }
+  free(E);
+  dvi_march_destroy(&march);
+}
+END_TEST
+
 /* ---- charge ---- */
 
 /* A moment that comes to 1 leaves two charges 1/h apart, and their field's energy is static. The
@@ -304,6 +334,55 @@ START_TEST(the_power_of_a_dipole_flows_through_boxes)
 }
 END_TEST
 
+/* At both ends of an axis that repeats itself stands the same plane. */
+START_TEST(fluxes_are_those_of_the_other_end)
+{
+  const dvi_yee_flux flux[] = {{"lower", {0, 0.25}, {0, 1}}, {"upper", {1, 0.25}, {1, 1}}};
+  dvi_yee_terms terms = {
+      .size = sizeof terms, .axes = 2, .degree = _i, .flux = flux, .fluxes = 2, .step = 0.1};
+  for (int l = 0; l < 2; l++)
+    terms.axis[l] = (dvi_yee_axis){.cells = 5 - l,
+                                   .end = {{.kind = DVI_YEE_PERIODIC}, {.kind = DVI_YEE_PERIODIC}}};
+  dvi_march *march = box_march(&terms);
+  double *E = random_values(dvi_march_size(march, DVI_FORM_E), 1),
+         *B = random_values(dvi_march_size(march, DVI_FORM_B), 2);
+  start_boxes(march, E, B);
+  advance_march(march, 0.23);
+  const double lower = observe_march(march, "lower");
+  ck_assert_double_gt(fabs(lower), 0.01);
+  ck_assert_double_eq_tol(observe_march(march, "upper"), lower, 1e-13 * fabs(lower));
+  free(E), free(B);
+  dvi_march_destroy(&march);
+}
+END_TEST
+
+/* Nothing flows through magnetic conductors, beside which H is not 0. */
+START_TEST(no_power_flows_through_magnetic_conductors)
+{
+  const dvi_yee_flux flux[] = {{"left", {0, 0.25}, {0, 1}}, {"right", {1, 0}, {1, 1}},
+                               {"top", {0.2, 1}, {1, 1}},   {"all", {0, 0}, {1, 1}},
+                               {"part", {0, 0}, {1, 0.5}},  {"inside", {0, 0.5}, {1, 0.5}}};
+  enum { FLUXES = sizeof flux / sizeof *flux };
+  double value[FLUXES];
+  dvi_yee_terms terms = {
+      .size = sizeof terms, .axes = 2, .degree = _i, .flux = flux, .fluxes = FLUXES, .step = 0.1};
+  for (int l = 0; l < 2; l++)
+    terms.axis[l] = (dvi_yee_axis){.cells = 5 - l,
+                                   .end = {{.kind = DVI_YEE_PMC}, {.kind = DVI_YEE_PMC}}};
+  dvi_march *march = box_march(&terms);
+  double *E = random_values(dvi_march_size(march, DVI_FORM_E), 1),
+         *B = random_values(dvi_march_size(march, DVI_FORM_B), 2);
+  start_boxes(march, E, B);
+  advance_march(march, 0.23);
+  for (int i = 0; i < FLUXES; i++) value[i] = observe_march(march, flux[i].name);
+  for (int i = 0; i < 4; i++) ck_assert_double_eq(value[i], 0);
+  ck_assert_double_gt(fabs(value[5]), 0.01);
+  ck_assert_double_eq(value[4], value[5]);
+  free(E), free(B);
+  dvi_march_destroy(&march);
+}
+END_TEST
+
 /* ---- failures ---- */
 
 START_TEST(a_failing_signal_leaves_the_last_good_time)
@@ -334,8 +413,11 @@ SUITE(yee_sources)
   tcase_add_test(tests, a_dipole_acts_by_whitney_weights);
   tcase_add_test(tests, dipoles_and_probes_are_reciprocal);
   tcase_add_test(tests, probes_see_uniform_fields);
+  tcase_add_loop_test(tests, probes_see_over_the_end_of_an_axis, 0, 2);
   tcase_add_test(tests, a_moment_leaves_its_charges);
   tcase_add_loop_test(tests, charges_are_those_of_the_currents, 0, 2);
   tcase_add_test(tests, the_power_of_a_dipole_flows_through_boxes);
+  tcase_add_loop_test(tests, fluxes_are_those_of_the_other_end, 0, 2);
+  tcase_add_loop_test(tests, no_power_flows_through_magnetic_conductors, 0, 2);
   tcase_add_loop_test(tests, a_failing_signal_leaves_the_last_good_time, 0, 5);
 }

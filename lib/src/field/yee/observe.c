@@ -176,18 +176,27 @@ static double probe_value(const dvi__yee_moment *m, const dvi_yee_probe *probe)
 
 /* ---- fluxes ---- */
 
-/* Give M_2 B for a unit of length, the mean H along c of both sides of a plane of nodes. */
+/* Tell if nodes i of an axis are its end at a magnetic conductor. */
+static int is_magnetic(const dvi__yee_axis *a, int i)
+{
+  return (i == 0 && a->end[0].kind == DVI_YEE_PMC) ||
+         (i == a->cells && a->end[1].kind == DVI_YEE_PMC);
+}
+
+/* Give M_2 B for a unit of length, the mean H along c of both sides of a plane of nodes. It is 0 on
+ * a magnetic conductor. */
 static double H_on_plane(const dvi__yee_moment *m, int c, int axis, const int *place)
 {
   const dvi__yee *y = m->yee;
   double sum = 0, sides = 0;
+  if (is_magnetic(&y->axis[axis], place[axis])) return 0;
   for (int side = 0; side < 2; side++) {
     int at[3] = {place[0], place[1], place[2]}, inside[3];
     at[axis] -= side;
     if (!y->axis[axis].wraps && (at[axis] < 0 || at[axis] >= y->axis[axis].cells)) continue;
     for (int l = 0; l < 3; l++) {
       const int places = dvi__yee_places(y, DVI__YEE_B + c, l);
-      inside[l] = (at[l] + places) % places;
+      inside[l] = at[l] + (at[l] < 0 ? places : at[l] >= places ? -places : 0);
     }
     sides++;
     const double dual = y->axis[c].dual[inside[c]];

@@ -149,7 +149,7 @@ static value change_of_edge(const dvi__yee_moment *m, int c, const int *place)
   return sum;
 }
 
-value dvi__yee_E_at(const dvi__yee_moment *m, int c, const int *place)
+static value E_inside(const dvi__yee_moment *m, int c, const int *place)
 {
   const dvi__yee *y = m->yee;
   const double part = m->part - 0.5;
@@ -160,6 +160,14 @@ value dvi__yee_E_at(const dvi__yee_moment *m, int c, const int *place)
   E = plus(E, -2 * part * s, stored);
   E.re += (1 + s) * dvi__yee_acted(y, &y->on_edges, c, place, m->on_edges);
   return E;
+}
+
+value dvi__yee_E_at(const dvi__yee_moment *m, int c, const int *place)
+{
+  int inside[3] = {place[0], place[1], place[2]};
+  value phase;
+  if (!move_inside(m->yee, c, inside, &phase)) return (value){0, 0};
+  return times(phase, E_inside(m, c, inside));
 }
 
 void dvi__yee_start_edge(const dvi__yee_moment *m, int c, const int *place, int has_B)

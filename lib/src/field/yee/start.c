@@ -35,7 +35,8 @@ static void clear_conductors(dvi__yee *y)
   }
 }
 
-/* Move E from t_0 to half a step later: (1 + s) E+ = E + dt/2 M_1^-1 (d_1^T M_2 B - J). */
+/* Move E from t_0 to half a step later: (1 + s) E+ = E + dt/2 M_1^-1 (d_1^T M_2 B - J). As in a
+ * step, no conductor makes it grow. */
 static void take_half_step(dvi__yee *y, int has_B)
 {
   if (!has_B && y->loss == NULL && y->wall == NULL && y->on_edges.count == 0) return;
