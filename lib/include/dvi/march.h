@@ -175,9 +175,10 @@ dvi_status dvi_march_load(dvi_march *march, const char *path);
  *
  *  The laws are "energy", "gauss" (the charge), "divergence" (of B), "reciprocity" (the answer to
  *  an impulse at one place, seen at another one, is that of the exchanged places), "gauge" (of a
- *  gradient in A, E and B know nothing) and "multisymplectic" (the form formula on a part of space
- *  and the time between, Marsden, Patrick and Shkoller 1998). Those that a field or a method cannot
- *  have are left out.
+ *  gradient in A, E and B know nothing, in the norm of the energy and beside that of the terms of
+ *  dA, which cancel) and "multisymplectic" (the form formula on a part of space and the time
+ *  between, Marsden, Patrick and Shkoller 1998). Those that a field or a method cannot have are
+ *  left out.
  *
  *  @param      steps  for which the field is followed, at least 2. Of asynchronous steps the
  *                     longest
