@@ -21,9 +21,15 @@
 
 #include "field/avi/engine.h"
 
+/* phi1 of z with change = exp(-z) - 1. */
+static double phi1_from(double change, double z)
+{
+  return z != 0 ? -change / z : 1;
+}
+
 static double phi1(double z)
 {
-  return z != 0 ? -expm1(-z) / z : 1;
+  return phi1_from(expm1(-z), z);
 }
 
 /* 1/2 - z/6 + z^2/24 and so on for small z, where the difference cancels. */
@@ -45,7 +51,7 @@ dvi__avi_passage dvi__avi_passage_of(const dvi__avi *avi, int64_t e, double span
                                      const double *half)
 {
   const dvi__avi_extra *extra = avi->extras + avi->extra[e];
-  const double z = rate(avi, e) * span, first = phi1(z);
+  const double z = rate(avi, e) * span, change = expm1(-z), first = phi1_from(change, z);
   double before = 0, after = 0, second = 0, uneven = 0;
   for (int i = extra->push; i < extra->push + extra->pushes; i++) {
     before += avi->push[i].profile * half[2 * avi->push[i].current];
@@ -57,7 +63,7 @@ dvi__avi_passage dvi__avi_passage_of(const dvi__avi *avi, int64_t e, double span
                mean = first * D - (second + uneven) * before - (second - uneven) * after,
                E = mean * avi->inverse[e], work = (before + after) * E;
   return (dvi__avi_passage){.A = avi->A[e] - E * span,
-                            .D = exp(-z) * D - (first - z * uneven) * before -
+                            .D = (1 + change) * D - (first - z * uneven) * before -
                                  (first + z * uneven) * after,
                             .delivered = before + after + z * mean,
                             .worked = work < 0 ? -work : work};
