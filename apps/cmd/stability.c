@@ -68,8 +68,8 @@ static const char *const details[] = {
     "followed through a common period of all\n"
     "steps, with all of its modes; of a large field, and of steps without a common period, the "
     "fields that grow fastest are searched,\n"
-    "and the resolution says which growth the search can have missed. Sources and losses are left "
-    "out. The exit code is 0 for growth, too.\n",
+    "and the resolution says which growth the search can have missed. Losses are counted, and "
+    "sources left out. The exit code is 0 for growth, too.\n",
     "Columns of --csv: method, schedule, period, growth, rate, resolution, result.\n",
     "Examples:\n"
     "  dvi stability gap.yaml --method avi --method avi:classes=no\n"

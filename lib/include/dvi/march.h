@@ -82,8 +82,9 @@ typedef struct dvi_stability {
   double resolution; /**< growths below 1 + resolution are not told from none */
   double period;     /**< the common period of all steps, 0 if there is none or too long a one */
   double span;       /**< the time for which fields were followed */
-  /** Fields that were followed: twice the modes of a small field that are not static, all of them.
-   *  A few of a large field, those that grow fastest from a start at random */
+  /** Fields that were followed: twice the modes of a small field that are not static, all of them,
+   *  and with losses those with a static E, too. A few of a large field, those that grow fastest
+   *  from a start at random */
   int64_t followed;
   char schedule[DVI_SCHEDULE_SIZE]; /**< the steps in words */
 } dvi_stability;
@@ -174,9 +175,10 @@ dvi_status dvi_march_load(dvi_march *march, const char *path);
  *
  *  The laws are "energy", "gauss" (the charge), "divergence" (of B), "reciprocity" (the answer to
  *  an impulse at one place, seen at another one, is that of the exchanged places), "gauge" (of a
- *  gradient in A, E and B know nothing) and "multisymplectic" (the form formula on a part of space
- *  and the time between, Marsden, Patrick and Shkoller 1998). Those that a field or a method cannot
- *  have are left out.
+ *  gradient in A, E and B know nothing, in the norm of the energy and beside that of the terms of
+ *  dA, which cancel) and "multisymplectic" (the form formula on a part of space and the time
+ *  between, Marsden, Patrick and Shkoller 1998). Those that a field or a method cannot have are
+ *  left out.
  *
  *  @param      steps  for which the field is followed, at least 2. Of asynchronous steps the
  *                     longest
@@ -188,10 +190,12 @@ dvi_status dvi_field_laws(const dvi_field *field, const dvi_march_options *optio
 
 /** Find how fast the fastest growing field grows under the steps that a march would make.
  *
- *  Currents and dampings are left out. Up to 500 unknowns every mode is followed through a common
- *  period, in coordinates without the static fields, for which the matrix is close to orthogonal.
- *  Of more unknowns, Arnoldi's method finds the largest eigenvalues (Saad 2011, ch. 6). Free steps
- *  may have no common period: their ratios are looked at as fractions with denominators up to 64.
+ *  Losses are counted, those of conductors and of absorbing walls. They hold growth down, and may
+ *  also make a field grow that does not without them. Currents are left out. Up to 500 unknowns
+ *  every mode is followed through a common period, in coordinates without static potentials, for
+ *  which the matrix is close to orthogonal if nothing is lost. Of more unknowns, Arnoldi's method
+ *  finds the largest eigenvalues (Saad 2011, ch. 6). Free steps may have no common period: their
+ *  ratios are looked at as fractions with denominators up to 64.
  *  If these do not give a period below a thousand of the longest steps, a field that begins at
  *  random is followed for a long time. `resolution` says what such a search can have missed.
  *

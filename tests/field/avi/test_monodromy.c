@@ -157,6 +157,87 @@ START_TEST(runs_grow_as_foretold)
 }
 END_TEST
 
+/* ---- losses ---- */
+
+/* A graded box with magnetic walls, and the currents of absorbing walls at two sides, 1/length. */
+typedef struct open_box {
+  stepped s;
+  double damping[100];
+} open_box;
+
+static void make_open_box(open_box *b)
+{
+  const dvi_generator_options options = {
+      .size = sizeof options, .dimension = 2, .cells = {6, 7}, .grading = {1.223, 2.745}};
+  dvi_mesh *mesh = NULL;
+  ck_assert_int_eq(dvi_mesh_generate("box", &options, &mesh), DVI_OK);
+  *b = (open_box){.s = stepped_mesh(mesh, 1, 0)};
+  int width;
+  const int *vertex = dvi_mesh_vertices(mesh, 1, &width);
+  const double *point = dvi_mesh_points(mesh);
+  for (int side = 0; side < 2; side++) {
+    int64_t count;
+    const int *edge = dvi_mesh_part_cells(mesh, side == 0 ? "left" : "right", 1, &count);
+    for (int64_t i = 0; i < count; i++) {
+      const double *from = point + 2 * vertex[2 * edge[i]],
+                   *to = point + 2 * vertex[2 * edge[i] + 1];
+      b->damping[edge[i]] = 1 / hypot(to[0] - from[0], to[1] - from[1]);
+    }
+  }
+  b->s.terms.fraction = 0.7;
+}
+
+/* The losses make steps unstable that are stable without. Digits of an independent program, which
+ * multiplied the matrices of all events. With shorter steps, a static field stays for ever. */
+START_TEST(losses_can_make_a_field_grow)
+{
+  open_box b;
+  make_open_box(&b);
+  ck_assert(stability_of(&b.s).is_stable);
+  b.s.terms.damping = b.damping;
+  const dvi_stability report = stability_of(&b.s);
+  ck_assert(!report.is_stable);
+  ck_assert_double_eq_tol(report.growth, 1.011508820, 6e-9);
+  ck_assert_int_eq(report.followed, 42 + 97); /* modes of A, and all of D */
+  dvi__avi *avi = avi_of(&b.s.terms);
+  dvi_stability searched = {0};
+  ck_assert_int_eq(dvi__avi_largest_multipliers(avi, report.period, 2000, &searched), DVI_OK);
+  ck_assert_double_eq_tol(searched.growth, report.growth, 1e-8);
+  dvi__avi_destroy(&avi);
+  const double rate = rate_of_run(&b.s, 1000);
+  ck_assert_double_eq_tol(rate, log(report.growth), 0.005 * rate);
+  b.s.terms.fraction = 0.5;
+  ck_assert(stability_of(&b.s).is_stable);
+  ck_assert_double_lt(fabs(rate_of_run(&b.s, 1000)), 1e-6);
+  end_stepped(&b.s);
+}
+END_TEST
+
+/* Nothing is left of the field that is followed. */
+START_TEST(losses_can_take_all_fields_away)
+{
+  for (int is_free = 0; is_free < 2; is_free++) {
+    stepped s = stepped_mesh(grid_mesh("box", 2, 4, 2), 1, 1);
+    double *damping = zeros(s.edges);
+    for (int64_t e = 0; e < s.edges; e++) damping[e] = 5 * s.terms.M1[e];
+    s.terms.damping = damping;
+    s.terms.is_free = is_free;
+    const dvi_stability report = stability_of(&s);
+    ck_assert(report.is_stable && report.growth == 1);
+    dvi__avi *avi = avi_of(&s.terms);
+    dvi_stability searched = {0};
+    for (int far = 0; far < 2 && !is_free; far++) {
+      ck_assert_int_eq(dvi__avi_largest_multipliers(avi, report.period, far ? 5e4 : 500, &searched),
+                       DVI_OK);
+      ck_assert(searched.growth == 1);
+    }
+    dvi__avi_destroy(&avi);
+    free(damping);
+    end_stepped(&s);
+  }
+}
+END_TEST
+
 /* ---- free steps ---- */
 
 START_TEST(free_steps_are_followed_for_a_long_time)
@@ -234,6 +315,8 @@ SUITE(monodromy)
   tcase_add_test(tests, a_graded_square_is_unstable_from_095_on);
   tcase_add_test(tests, arnoldis_method_finds_the_same_growth);
   tcase_add_test(tests, runs_grow_as_foretold);
+  tcase_add_test(tests, losses_can_make_a_field_grow);
+  tcase_add_test(tests, losses_can_take_all_fields_away);
   tcase_add_test(tests, free_steps_are_followed_for_a_long_time);
   tcase_add_test(tests, growth_beyond_all_numbers_is_refused);
   tcase_add_test(tests, schedules_are_told_in_words);

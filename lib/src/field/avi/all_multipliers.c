@@ -1,10 +1,11 @@
 /* The whole monodromy matrix of a small field.
  *
- * Static fields make it defective: with dE = 0 the potential grows, A = -E t. But kicks are
- * combinations of d^T, so that fields A and E in the space that the modes x_j of K x = omega^2 M1 x
- * with omega > 0 span stay there. In the coordinates omega_j x_j.M1 A and x_j.D, whose squares are
- * twice the energy, the matrix is close to an orthogonal one. Its squares, of which some are taken,
- * keep multipliers on the unit circle there, and spread the others. */
+ * Static fields make it defective: with dE = 0 the potential grows, A = -E t. But what A has of
+ * them acts on nothing, and without dampings kicks, combinations of d^T, give D nothing of them. So
+ * the coordinates are omega_j x_j.M1 A and x_j.D for the modes x_j of K x = omega^2 M1 x with
+ * omega > 0, and with dampings x_j.D for those with omega = 0, too. Their squares are twice the
+ * energy, and without dampings the matrix is close to an orthogonal one. Its squares, of which some
+ * are taken, keep multipliers on the unit circle there, and spread the others. */
 #include <math.h>
 #include <string.h>
 
@@ -19,9 +20,10 @@ static const double static_below = 1e-11, grown = 1e6, threshold = 1e-6;
 
 typedef struct modal {
   dvi__avi *avi;
-  int n, r;                   /* free edges, and modes that are not static */
+  int n, r, statics;          /* free edges, modes that are not static, and others */
+  int size;                   /* coordinates */
   double *K, *M, *lambda, *X; /* [n*n] by columns, lambda [n] */
-  double *T, *product;        /* [2r*2r] by columns */
+  double *T, *product;        /* [size*size] by columns */
 } modal;
 
 static void clear(modal *m)
@@ -56,7 +58,7 @@ static void fill_in(const modal *m)
       }
 }
 
-/* The modes that are not static come last, and are brought to the front. */
+/* The static modes come first. */
 static dvi_status find_modes(modal *m)
 {
   const size_t n = (size_t)m->n;
@@ -67,12 +69,17 @@ static dvi_status find_modes(modal *m)
   if (!m->K || !m->M || !m->X || !m->lambda) return no_memory(m);
   fill_in(m);
   DVI_TRY(dvi__eigen_symmetric(m->n, m->K, m->M, m->lambda, m->X));
-  int statics = 0;
-  while (statics < m->n && !(m->lambda[statics] > static_below * m->lambda[m->n - 1])) statics++;
-  m->r = m->n - statics;
-  memmove(m->lambda, m->lambda + statics, (size_t)m->r * sizeof(double));
-  memmove(m->X, m->X + n * (size_t)statics, n * (size_t)m->r * sizeof(double));
+  while (m->statics < m->n && !(m->lambda[m->statics] > static_below * m->lambda[m->n - 1]))
+    m->statics++;
+  m->r = m->n - m->statics;
+  m->size = m->r + (m->avi->extra_count > 0 ? m->n : m->r);
   return DVI_OK;
+}
+
+/* Give the number of the i-th mode, static ones last. */
+static int mode(const modal *m, int i)
+{
+  return (m->statics + i) % m->n;
 }
 
 /* ---- the matrix ---- */
@@ -80,7 +87,8 @@ static dvi_status find_modes(modal *m)
 static void begin_column(const modal *m, int j)
 {
   dvi__avi *avi = m->avi;
-  const double *x = m->X + (size_t)(j % m->r) * (size_t)m->n, omega = sqrt(m->lambda[j % m->r]);
+  const int i = mode(m, j < m->r ? j : j - m->r);
+  const double *x = m->X + (size_t)i * (size_t)m->n, omega = sqrt(m->lambda[i]);
   memset(avi->A, 0, (size_t)avi->edges * sizeof(double));
   memset(avi->D, 0, (size_t)avi->edges * sizeof(double));
   for (int e = 0; e < m->n && j < m->r; e++) avi->A[e] = x[e] / omega;
@@ -90,15 +98,15 @@ static void begin_column(const modal *m, int j)
 static void end_column(const modal *m, int j)
 {
   const dvi__avi *avi = m->avi;
-  double *column = m->T + (size_t)j * 2 * (size_t)m->r;
-  for (int i = 0; i < m->r; i++) {
-    const double *x = m->X + (size_t)i * (size_t)m->n;
+  double *column = m->T + (size_t)j * (size_t)m->size;
+  for (int i = 0; i < m->size - m->r; i++) {
+    const double *x = m->X + (size_t)mode(m, i) * (size_t)m->n;
     double a = 0, d = 0;
     for (int e = 0; e < m->n; e++) {
       a += x[e] * avi->M1[e] * avi->A[e];
       d += x[e] * avi->D[e];
     }
-    column[i] = sqrt(m->lambda[i]) * a;
+    if (i < m->r) column[i] = sqrt(m->lambda[mode(m, i)]) * a;
     column[m->r + i] = d;
   }
 }
@@ -106,17 +114,17 @@ static void end_column(const modal *m, int j)
 static double norm_of(const modal *m)
 {
   double sum = 0;
-  for (size_t i = 0; i < 4 * (size_t)m->r * (size_t)m->r; i++) sum += m->T[i] * m->T[i];
+  for (size_t i = 0; i < (size_t)m->size * (size_t)m->size; i++) sum += m->T[i] * m->T[i];
   return sqrt(sum);
 }
 
 static dvi_status make_matrix(modal *m, double period)
 {
-  const size_t size = 2 * (size_t)m->r;
+  const size_t size = (size_t)m->size;
   m->T = DVI_NEW(double, size *size);
   m->product = DVI_NEW(double, size *size);
   if (m->T == NULL || m->product == NULL) return no_memory(m);
-  for (int j = 0; j < 2 * m->r; j++) {
+  for (int j = 0; j < m->size; j++) {
     begin_column(m, j);
     DVI_TRY(dvi__avi_carry(m->avi, period));
     end_column(m, j);
@@ -126,7 +134,7 @@ static dvi_status make_matrix(modal *m, double period)
 
 static void square(modal *m)
 {
-  const size_t size = 2 * (size_t)m->r;
+  const size_t size = (size_t)m->size;
   memset(m->product, 0, size * size * sizeof(double));
   for (size_t j = 0; j < size; j++)
     for (size_t k = 0; k < size; k++) {
@@ -142,7 +150,7 @@ static void square(modal *m)
 /* Take squares until the time is that of the slowest mode, unless something grows before. */
 static void take_squares(modal *m, double *span)
 {
-  const double slowest = 6.2831853071795865 / sqrt(m->lambda[0]), start = norm_of(m);
+  const double slowest = 6.2831853071795865 / sqrt(m->lambda[m->statics]), start = norm_of(m);
   for (int i = 0; i < SQUARES_MOST; i++) {
     if (norm_of(m) > grown * start || (i >= SQUARES_LEAST && *span >= slowest)) return;
     square(m);
@@ -152,7 +160,7 @@ static void take_squares(modal *m, double *span)
 
 static dvi_status find_largest(const modal *m, double *largest)
 {
-  const int size = 2 * m->r;
+  const int size = m->size;
   double *real = DVI_NEW(double, 2 * size), *imaginary = real != NULL ? real + size : NULL;
   if (real == NULL) return no_memory(m);
   const dvi_status status = dvi__eigenvalues(size, m->T, size, real, imaginary, NULL);
@@ -176,8 +184,8 @@ dvi_status dvi__avi_all_multipliers(dvi__avi *avi, double period, dvi_stability 
   }
   if (status == DVI_OK) {
     report->growth = exp(fmax(log(largest), 0) / report->span);
-    report->followed = 2 * (int64_t)m.r;
-    report->resolution = threshold * sqrt(m.lambda[0]) / 6.2831853071795865;
+    report->followed = m.size;
+    report->resolution = threshold * sqrt(m.lambda[m.statics]) / 6.2831853071795865;
   }
   clear(&m);
   return status;

@@ -1,10 +1,12 @@
 /* Arnoldi's method for the monodromy matrix P of some periods, in the scalar product of the energy,
  *
- *     <x, y> = A_x.K A_y + D_x.M1^-1 D_y,     P q_j = sum over i <= j+1 of h_ij q_i,
+ *     <x, y> = B_x.M2 B_y + D_x.M1^-1 D_y,     P q_j = sum over i <= j+1 of h_ij q_i,
  *
- * for which P is close to an orthogonal matrix. An eigenvalue theta of h with the vector y belongs
- * to an eigenvalue of P up to h_{m+1,m} |y_m| (Saad 2011, prop. 6.8). The start has been carried
- * through some periods, in which the fastest growing fields come forth. */
+ * for which P is close to an orthogonal matrix without dampings. An eigenvalue theta of h with the
+ * vector y belongs to an eigenvalue of P up to h_{m+1,m} |y_m| (Saad 2011, prop. 6.8). The start
+ * has been carried through some periods, in which the fastest growing fields come forth. B stands
+ * for A, whose static part has no energy, and would be all that is left where dampings take the
+ * energy away. */
 #include <math.h>
 #include <string.h>
 
@@ -20,15 +22,15 @@ static const double settled = 0.1;
 
 typedef struct arnoldi {
   dvi__avi *avi;
-  int64_t n;
-  double *q;                            /* [DIRECTIONS+1][2n] A and D of the directions */
-  double *image;                        /* [2n] K A and M1^-1 D of the new one */
+  int64_t faces, n;                     /* with events, and all numbers */
+  double *q;                            /* [DIRECTIONS+1][n] B and D of the directions */
+  double *image;                        /* [n] M2 B and M1^-1 D of the new one */
   double h[DIRECTIONS][DIRECTIONS + 1]; /* by columns */
 } arnoldi;
 
 static double *direction(const arnoldi *s, int j)
 {
-  return s->q + (int64_t)j * 2 * s->n;
+  return s->q + j * s->n;
 }
 
 static double dot(int64_t n, const double *x, const double *y)
@@ -38,38 +40,32 @@ static double dot(int64_t n, const double *x, const double *y)
   return sum;
 }
 
-/* Make K A and M1^-1 D of a direction. Returns its length. */
+/* Make M2 B and M1^-1 D of a direction. Returns its length. */
 static double weigh(const arnoldi *s, const double *q)
 {
-  dvi__avi *avi = s->avi;
-  memset(s->image, 0, (size_t)s->n * sizeof(double));
-  memcpy(avi->A, q, (size_t)s->n * sizeof(double));
-  for (int64_t f = 0; f < avi->active_faces; f++) {
-    const double H = avi->M2[f] * dvi__avi_field(avi, f, avi->A);
-    for (int c = 0; c < avi->width; c++) {
-      const int code = avi->facet[f * avi->width + c], e = dvi__avi_number(code);
-      if (e < s->n) s->image[e] += code < 0 ? -H : H;
-    }
-  }
-  for (int64_t e = 0; e < s->n; e++) s->image[s->n + e] = avi->inverse[e] * q[s->n + e];
-  const double square = dot(2 * s->n, q, s->image);
-  return square < 0 ? 0 : sqrt(square); /* of roundings, and NaN stays */
+  const dvi__avi *avi = s->avi;
+  for (int64_t f = 0; f < s->faces; f++) s->image[f] = avi->M2[f] * q[f];
+  for (int64_t e = 0; e < avi->free_edges; e++)
+    s->image[s->faces + e] = avi->inverse[e] * q[s->faces + e];
+  return sqrt(dot(s->n, q, s->image));
 }
 
+/* B = bias + dA, from A = 0 on. */
 static dvi_status carry(const arnoldi *s, const double *from, double time, double *to)
 {
   dvi__avi *avi = s->avi;
-  memcpy(avi->A, from, (size_t)s->n * sizeof(double));
-  memcpy(avi->D, from + s->n, (size_t)s->n * sizeof(double));
+  memset(avi->A, 0, (size_t)avi->edges * sizeof(double));
+  memcpy(avi->bias, from, (size_t)s->faces * sizeof(double));
+  memcpy(avi->D, from + s->faces, (size_t)avi->free_edges * sizeof(double));
   DVI_TRY(dvi__avi_carry(avi, time));
-  memcpy(to, avi->A, (size_t)s->n * sizeof(double));
-  memcpy(to + s->n, avi->D, (size_t)s->n * sizeof(double));
+  for (int64_t f = 0; f < s->faces; f++) to[f] = dvi__avi_field(avi, f, avi->A);
+  memcpy(to + s->faces, avi->D, (size_t)avi->free_edges * sizeof(double));
   return DVI_OK;
 }
 
 static void scale(const arnoldi *s, double *q, double factor)
 {
-  for (int64_t i = 0; i < 2 * s->n; i++) q[i] *= factor;
+  for (int64_t i = 0; i < s->n; i++) q[i] *= factor;
 }
 
 /* Take away from the direction j + 1, which is weighed, what it has of the others, twice for the
@@ -79,9 +75,9 @@ static double orthogonalise(arnoldi *s, int j)
   double *next = direction(s, j + 1), length = 0;
   for (int pass = 0; pass < 2; pass++) {
     for (int i = 0; i <= j; i++) {
-      const double *q = direction(s, i), part = dot(2 * s->n, q, s->image);
+      const double *q = direction(s, i), part = dot(s->n, q, s->image);
       s->h[j][i] += part;
-      for (int64_t k = 0; k < 2 * s->n; k++) next[k] -= part * q[k];
+      for (int64_t k = 0; k < s->n; k++) next[k] -= part * q[k];
     }
     length = weigh(s, next);
   }
@@ -111,12 +107,13 @@ static dvi_status begin(arnoldi *s, double time)
 {
   double *first = direction(s, 0);
   dvi__avi_scatter(s->avi, s->avi->impulse);
-  memcpy(first, s->avi->A, (size_t)s->n * sizeof(double));
-  memcpy(first + s->n, s->avi->D, (size_t)s->n * sizeof(double));
+  for (int64_t f = 0; f < s->faces; f++) first[f] = dvi__avi_field(s->avi, f, s->avi->A);
+  memcpy(first + s->faces, s->avi->D, (size_t)s->avi->free_edges * sizeof(double));
   for (int i = 0; i < PERIODS_BEFORE; i++) {
     DVI_TRY(carry(s, first, time, first));
     const double length = weigh(s, first);
     DVI_TRY(dvi__avi_check_size(length, time));
+    if (length == 0) return DVI_OK; /* dampings left nothing, which stays so */
     scale(s, first, 1 / length);
   }
   return DVI_OK;
@@ -147,7 +144,7 @@ static dvi_status search(arnoldi *s, double period, double span, dvi_stability *
   report->growth = exp(log(largest) / time);
   report->span = time * (PERIODS_BEFORE + directions);
   report->followed = directions;
-  report->resolution = 0.5 * log(2.0 * (double)s->n) / report->span;
+  report->resolution = 0.5 * log(2.0 * (double)s->avi->free_edges) / report->span;
   return DVI_OK;
 }
 
@@ -157,13 +154,15 @@ dvi_status dvi__avi_largest_multipliers(dvi__avi *avi, double period, double spa
   arnoldi *s = DVI_NEW(arnoldi, 1);
   if (s == NULL) return dvi__fail(DVI_NO_MEMORY, "stability: no memory");
   s->avi = avi;
-  s->n = avi->free_edges;
-  s->q = DVI_NEW(double, (DIRECTIONS + 1) * 2 * s->n);
-  s->image = DVI_NEW(double, 2 * s->n);
+  s->faces = avi->active_faces;
+  s->n = s->faces + avi->free_edges;
+  s->q = DVI_NEW(double, (DIRECTIONS + 1) * s->n);
+  s->image = DVI_NEW(double, s->n);
   const dvi_status status = s->q != NULL && s->image != NULL
                                 ? search(s, period, span, report)
                                 : dvi__fail(DVI_NO_MEMORY, "stability: no memory for %d fields",
                                             DIRECTIONS);
+  memset(avi->bias, 0, (size_t)avi->faces * sizeof(double));
   dvi__release(s->q);
   dvi__release(s->image);
   dvi__release(s);

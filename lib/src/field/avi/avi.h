@@ -15,14 +15,13 @@
  * order of their faces, which are numbered by their steps, the shortest ones first.
  *
  * A current J pushes by its integral over each interval of an edge, one half at its begin and the
- * other at its end, and a damping C as a current C E does:
+ * other at its end. With a damping C a passage is the exact one of D' = -J - C E for a J that is
+ * constant in the interval, so that no C is too large and none makes D swing (passage.c):
  *
- *     D_e -= int of J over the first half,  D_e /= 1 + s,  A_e -= E_e (t - t_e),  D_e *= 1 - s,
- *     D_e -= int of J over the second half,      s = C_e (t - t_e)/(2 M1_e).
+ *     A_e -= phi1(z) E_e (t - t_e),  D_e *= exp(-z),     z = C_e (t - t_e)/M1_e.
  *
- * With equal steps of all faces this is leapfrog. Source: Stern 2009, sec. 3.3.4, with the weights
- * and clocks that it leaves out; Lew, Marsden, Ortiz and West 2003; Kane, Marsden, Ortiz and West
- * 2000 (damping). */
+ * With equal steps of all faces and without dampings this is leapfrog. Source: Stern 2009,
+ * sec. 3.3.4, with the weights and clocks that it leaves out; Lew, Marsden, Ortiz and West 2003. */
 #ifndef DVI_FIELD_AVI_AVI_H
 #define DVI_FIELD_AVI_AVI_H
 #include <dvi/march.h>

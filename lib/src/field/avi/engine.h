@@ -132,23 +132,12 @@ typedef struct dvi__avi_passage {
 } dvi__avi_passage;
 
 /* Give what an edge with a damping or a current is after a passage of length `span`. */
-static inline dvi__avi_passage dvi__avi_passage_of(const dvi__avi *avi, int64_t e, double span,
-                                                   const double *half)
-{
-  const dvi__avi_extra *extra = avi->extras + avi->extra[e];
-  double before = 0, after = 0;
-  for (int i = extra->push; i < extra->push + extra->pushes; i++) {
-    before += avi->push[i].profile * half[2 * avi->push[i].current];
-    after += avi->push[i].profile * half[2 * avi->push[i].current + 1];
-  }
-  const double s = 0.5 * extra->damping * avi->inverse[e] * span,
-               D = (avi->D[e] - before) / (1 + s), E = D * avi->inverse[e],
-               work = (before + after) * E;
-  return (dvi__avi_passage){.A = avi->A[e] - E * span,
-                            .D = D * (1 - s) - after,
-                            .delivered = before + after + 2 * s * D,
-                            .worked = work < 0 ? -work : work};
-}
+dvi__avi_passage dvi__avi_passage_of(const dvi__avi *avi, int64_t e, double span,
+                                     const double *half);
+
+/* Give the time for which a face still owes its force to an edge, below 0 if it has paid more, at
+ * a time `since` after the face's last event. */
+double dvi__avi_owed_time(const dvi__avi *avi, int64_t e, int64_t f, double since);
 
 static inline void dvi__avi_pass_extra(dvi__avi *avi, int64_t e, double span, const double *half)
 {

@@ -121,6 +121,10 @@ void dvi__avi_scatter(dvi__avi *avi, double *h)
 
 enum { SEGMENTS = 64 };
 
+/* Logarithms of the amplitude beyond which nothing new is seen: what has fallen so far consists of
+ * roundings, and no part of it grew. */
+static const double faint = -20, large = 80;
+
 /* The growth is that of the second half of the way, on which the fastest field has come forth. */
 dvi_status dvi__avi_follow(dvi__avi *avi, double span, dvi_stability *report)
 {
@@ -131,7 +135,7 @@ dvi_status dvi__avi_follow(dvi__avi *avi, double span, dvi_stability *report)
   avi->start_energy = 1;
   DVI_TRY(dvi__avi_energy(avi, &energy, NULL));
   size[0] = 0.5 * log(energy);
-  while (last < SEGMENTS && size[last] < 80) {
+  while (last < SEGMENTS && size[last] < large && size[last] > faint) {
     avi->t = span * (last + 1) / SEGMENTS;
     DVI_TRY(dvi__avi_run_queue(avi, avi->t));
     DVI_TRY(dvi__avi_energy(avi, &energy, NULL));
@@ -194,7 +198,6 @@ dvi_status dvi__avi_stability(const dvi__avi_terms *terms, double span, dvi_stab
   dvi__avi *avi;
   dvi_stability found = {0};
   dvi__avi_terms bare = *terms;
-  bare.damping = NULL;
   bare.current = NULL;
   bare.currents = 0;
   DVI_TRY(dvi__avi_create(&bare, &avi));

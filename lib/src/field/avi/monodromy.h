@@ -5,8 +5,7 @@
 
 #include "field/avi/engine.h"
 
-/* Find the growth under steps, as dvi_field_stability does. Currents and dampings of the terms take
- * no part. */
+/* Find the growth under steps, as dvi_field_stability does. Currents of the terms take no part. */
 dvi_status dvi__avi_stability(const dvi__avi_terms *terms, double span, dvi_stability *report);
 
 /* Run from (A, D) right after the events of the time 0 to the time `t`, at which all faces act or

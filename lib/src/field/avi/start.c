@@ -42,13 +42,20 @@ static void sum_charges(dvi__avi *avi)
   }
 }
 
-static void kick_by_half(dvi__avi *avi)
+/* Kick by what the faces owe at the start, the half of a kick where no damping is. What a damping
+ * adds to the half counts as charge that has yet to flow in. */
+static void kick_first(dvi__avi *avi)
 {
   for (int64_t f = 0; f < avi->active_faces; f++) {
-    const double half = 0.5 * avi->kick[f] * dvi__avi_field(avi, f, avi->A);
+    const double kick = avi->kick[f] * dvi__avi_field(avi, f, avi->A);
     for (int c = 0; c < avi->width; c++) {
       const int code = avi->facet[f * avi->width + c], e = dvi__avi_number(code);
-      if (e < avi->free_edges) avi->D[e] += code < 0 ? -half : half;
+      if (e >= avi->free_edges) continue;
+      const double signed_kick = code < 0 ? -kick : kick,
+                   part = -dvi__avi_owed_time(avi, e, f, 0) / avi->step[f];
+      avi->D[e] += signed_kick * part;
+      if (avi->extra != NULL && avi->extra[e] >= 0)
+        avi->extras[avi->extra[e]].delivered -= signed_kick * (part - 0.5);
     }
   }
 }
@@ -84,7 +91,7 @@ dvi_status dvi__avi_start(dvi__avi *avi, double t, const double *A, const double
   take_values(avi, A, E, B);
   dvi__avi_rewind(avi, t);
   sum_charges(avi);
-  kick_by_half(avi);
+  kick_first(avi);
   avi->start_energy = energy;
   avi->allowed = avi->band;
   return DVI_OK;

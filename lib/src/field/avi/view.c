@@ -5,7 +5,8 @@
  *
  *     A_e(t) = A_e - E_e (t - t_e),    D_e(t) = D_e + sum over f of sign H_f(t) (t - t_f - h_f/2),
  *
- * which is of order 2 at any t, and with equal steps E halfway between two of its values. */
+ * which is of order 2 at any t, and with equal steps E halfway between two of its values. With a
+ * damping both are those of passage.c. */
 #include <math.h>
 #include <string.h>
 
@@ -99,7 +100,8 @@ static dvi_status see_D(const dvi__avi *avi, int64_t e, double *D)
     const int code = avi->coface[i], f = dvi__avi_number(code);
     double B;
     DVI_TRY(see_B(avi, f, &B));
-    const double owed = avi->M2[f] * B * (avi->t - time_of_face(avi, f) - 0.5 * avi->step[f]);
+    const double owed = avi->M2[f] * B *
+                        dvi__avi_owed_time(avi, e, f, avi->t - time_of_face(avi, f));
     *D += code < 0 ? -owed : owed;
   }
   return DVI_OK;
