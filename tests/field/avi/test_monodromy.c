@@ -93,10 +93,11 @@ START_TEST(arnoldis_method_finds_the_same_growth)
     double step[100];
     step_by_cells(&s, i == 0 ? 0.95 : 0.9, 0, step);
     dvi__avi *avi = avi_of(&s.terms);
+    const dvi__flow flow = dvi__avi_flow(avi);
     dvi_march_facts facts;
     dvi_stability report = {0};
     dvi__avi_facts(avi, &facts);
-    ck_assert_int_eq(dvi__avi_largest_multipliers(avi, facts.longest, repeats(2000), &report),
+    ck_assert_int_eq(dvi__largest_multipliers(&flow, facts.longest, repeats(2000), &report),
                      DVI_OK);
     if (i == 0 && !is_short_run())
       ck_assert_double_eq_tol(report.growth, 1.00481751, 5e-4);
@@ -186,9 +187,10 @@ START_TEST(growth_beyond_all_numbers_is_refused)
   check_words("take a shorter span");
   ck_assert(report.growth == -1);
   dvi__avi *avi = avi_of(&s.terms);
-  ck_assert_int_eq(dvi__avi_largest_multipliers(avi, 300, 80 * 300, &report), DVI_NOT_FINITE);
+  const dvi__flow flow = dvi__avi_flow(avi);
+  ck_assert_int_eq(dvi__largest_multipliers(&flow, 300, 80 * 300, &report), DVI_NOT_FINITE);
   check_words("take a shorter span");
-  ck_assert_int_eq(dvi__avi_all_multipliers(avi, 300, &report), DVI_NOT_FINITE);
+  ck_assert_int_eq(dvi__all_multipliers(&flow, 300, &report), DVI_NOT_FINITE);
   check_words("take a shorter span");
   dvi__avi_destroy(&avi);
   end_stepped(&s);
@@ -214,10 +216,11 @@ START_TEST(lacking_memory_is_a_status)
     dvi_stability report = {.growth = -1};
     dvi_status status = DVI_NO_MEMORY;
     dvi__avi *avi = avi_of(&s.terms);
+    const dvi__flow flow = dvi__avi_flow(avi);
     for (long successes = 0; status != DVI_OK; successes++) {
       dvi__fail_allocations_after(successes);
       status = way == 0 ? dvi__avi_stability(&s.terms, 0, &report)
-                        : dvi__avi_largest_multipliers(avi, 1, 80, &report);
+                        : dvi__largest_multipliers(&flow, 1, 80, &report);
       dvi__fail_allocations_after(-1);
       ck_assert(status == DVI_OK || status == DVI_NO_MEMORY);
       ck_assert(status == DVI_OK || way == 1 || report.growth == -1);

@@ -10,7 +10,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "field/avi/monodromy.h"
+#include "field/step/growth.h"
 #include "num/eigen.h"
 
 enum { DIRECTIONS = 40, PERIODS_BEFORE = 40 };
@@ -19,7 +19,7 @@ enum { DIRECTIONS = 40, PERIODS_BEFORE = 40 };
 static const double settled = 0.1;
 
 typedef struct arnoldi {
-  dvi__avi *avi;
+  const dvi__flow *flow;
   int64_t n;
   double *q;                            /* [DIRECTIONS+1][2n] A and D of the directions */
   double *image;                        /* [2n] K A and M1^-1 D of the new one */
@@ -41,29 +41,29 @@ static double dot(int64_t n, const double *x, const double *y)
 /* Make K A and M1^-1 D of a direction. Returns its length. */
 static double weigh(const arnoldi *s, const double *q)
 {
-  dvi__avi *avi = s->avi;
+  const dvi__flow *flow = s->flow;
   memset(s->image, 0, (size_t)s->n * sizeof(double));
-  memcpy(avi->A, q, (size_t)s->n * sizeof(double));
-  for (int64_t f = 0; f < avi->active_faces; f++) {
-    const double H = avi->M2[f] * dvi__avi_field(avi, f, avi->A);
-    for (int c = 0; c < avi->width; c++) {
-      const int code = avi->facet[f * avi->width + c], e = dvi__avi_number(code);
+  memcpy(flow->A, q, (size_t)s->n * sizeof(double));
+  for (int64_t f = 0; f < flow->faces; f++) {
+    const double H = flow->M2[f] * dvi__flow_field(flow, f);
+    for (int c = 0; c < flow->width; c++) {
+      const int code = flow->facet[f * flow->width + c], e = dvi__flow_number(code);
       if (e < s->n) s->image[e] += code < 0 ? -H : H;
     }
   }
-  for (int64_t e = 0; e < s->n; e++) s->image[s->n + e] = avi->inverse[e] * q[s->n + e];
+  for (int64_t e = 0; e < s->n; e++) s->image[s->n + e] = flow->inverse[e] * q[s->n + e];
   const double square = dot(2 * s->n, q, s->image);
   return square < 0 ? 0 : sqrt(square); /* of roundings, and NaN stays */
 }
 
 static dvi_status carry(const arnoldi *s, const double *from, double time, double *to)
 {
-  dvi__avi *avi = s->avi;
-  memcpy(avi->A, from, (size_t)s->n * sizeof(double));
-  memcpy(avi->D, from + s->n, (size_t)s->n * sizeof(double));
-  DVI_TRY(dvi__avi_carry(avi, time));
-  memcpy(to, avi->A, (size_t)s->n * sizeof(double));
-  memcpy(to + s->n, avi->D, (size_t)s->n * sizeof(double));
+  const dvi__flow *flow = s->flow;
+  memcpy(flow->A, from, (size_t)s->n * sizeof(double));
+  memcpy(flow->D, from + s->n, (size_t)s->n * sizeof(double));
+  DVI_TRY(flow->carry(flow->of, time));
+  memcpy(to, flow->A, (size_t)s->n * sizeof(double));
+  memcpy(to + s->n, flow->D, (size_t)s->n * sizeof(double));
   return DVI_OK;
 }
 
@@ -96,7 +96,7 @@ static dvi_status iterate(arnoldi *s, double time, int *directions)
     DVI_TRY(carry(s, direction(s, j), time, direction(s, j + 1)));
     const double before = weigh(s, direction(s, j + 1));
     const double length = orthogonalise(s, j);
-    DVI_TRY(dvi__avi_check_size(before + length, time));
+    DVI_TRY(dvi__check_size(before + length, time));
     s->h[j][j + 1] = length;
     if (!(length > 1e-12 * before)) {
       s->h[j][j + 1] = 0;
@@ -110,13 +110,13 @@ static dvi_status iterate(arnoldi *s, double time, int *directions)
 static dvi_status begin(arnoldi *s, double time)
 {
   double *first = direction(s, 0);
-  dvi__avi_scatter(s->avi, s->avi->impulse);
-  memcpy(first, s->avi->A, (size_t)s->n * sizeof(double));
-  memcpy(first + s->n, s->avi->D, (size_t)s->n * sizeof(double));
+  dvi__scatter(s->flow);
+  memcpy(first, s->flow->A, (size_t)s->n * sizeof(double));
+  memcpy(first + s->n, s->flow->D, (size_t)s->n * sizeof(double));
   for (int i = 0; i < PERIODS_BEFORE; i++) {
     DVI_TRY(carry(s, first, time, first));
     const double length = weigh(s, first);
-    DVI_TRY(dvi__avi_check_size(length, time));
+    DVI_TRY(dvi__check_size(length, time));
     scale(s, first, 1 / length);
   }
   return DVI_OK;
@@ -151,13 +151,13 @@ static dvi_status search(arnoldi *s, double period, double span, dvi_stability *
   return DVI_OK;
 }
 
-dvi_status dvi__avi_largest_multipliers(dvi__avi *avi, double period, double span,
-                                        dvi_stability *report)
+dvi_status dvi__largest_multipliers(const dvi__flow *flow, double period, double span,
+                                    dvi_stability *report)
 {
   arnoldi *s = DVI_NEW(arnoldi, 1);
   if (s == NULL) return dvi__fail(DVI_NO_MEMORY, "stability: no memory");
-  s->avi = avi;
-  s->n = avi->free_edges;
+  s->flow = flow;
+  s->n = flow->n;
   s->q = DVI_NEW(double, (DIRECTIONS + 1) * 2 * s->n);
   s->image = DVI_NEW(double, 2 * s->n);
   const dvi_status status = s->q != NULL && s->image != NULL

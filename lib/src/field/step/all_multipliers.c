@@ -10,7 +10,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "field/avi/monodromy.h"
+#include "field/step/growth.h"
 #include "num/eigen.h"
 
 enum { SQUARES_LEAST = 6, SQUARES_MOST = 40 };
@@ -18,7 +18,7 @@ enum { SQUARES_LEAST = 6, SQUARES_MOST = 40 };
 static const double static_below = 1e-11, grown = 1e6, threshold = 1e-6;
 
 typedef struct modal {
-  dvi__avi *avi;
+  const dvi__flow *flow;
   int n, r;                   /* free edges, and modes that are not static */
   double *K, *M, *lambda, *X; /* [n*n] by columns, lambda [n] */
   double *T, *product;        /* [2r*2r] by columns */
@@ -43,16 +43,16 @@ static dvi_status no_memory(const modal *m)
 
 static void fill_in(const modal *m)
 {
-  const dvi__avi *avi = m->avi;
+  const dvi__flow *flow = m->flow;
   const size_t n = (size_t)m->n;
-  for (size_t e = 0; e < n; e++) m->M[e * n + e] = avi->M1[e];
-  for (int64_t f = 0; f < avi->active_faces; f++)
-    for (int a = 0; a < avi->width; a++)
-      for (int b = 0; b < avi->width; b++) {
-        const int i = avi->facet[f * avi->width + a], j = avi->facet[f * avi->width + b];
-        const size_t row = (size_t)dvi__avi_number(i), column = (size_t)dvi__avi_number(j);
+  for (size_t e = 0; e < n; e++) m->M[e * n + e] = flow->M1[e];
+  for (int64_t f = 0; f < flow->faces; f++)
+    for (int a = 0; a < flow->width; a++)
+      for (int b = 0; b < flow->width; b++) {
+        const int i = flow->facet[f * flow->width + a], j = flow->facet[f * flow->width + b];
+        const size_t row = (size_t)dvi__flow_number(i), column = (size_t)dvi__flow_number(j);
         if (row < n && column < n)
-          m->K[column * n + row] += (i < 0) == (j < 0) ? avi->M2[f] : -avi->M2[f];
+          m->K[column * n + row] += (i < 0) == (j < 0) ? flow->M2[f] : -flow->M2[f];
       }
 }
 
@@ -79,24 +79,24 @@ static dvi_status find_modes(modal *m)
 
 static void begin_column(const modal *m, int j)
 {
-  dvi__avi *avi = m->avi;
+  const dvi__flow *flow = m->flow;
   const double *x = m->X + (size_t)(j % m->r) * (size_t)m->n, omega = sqrt(m->lambda[j % m->r]);
-  memset(avi->A, 0, (size_t)avi->edges * sizeof(double));
-  memset(avi->D, 0, (size_t)avi->edges * sizeof(double));
-  for (int e = 0; e < m->n && j < m->r; e++) avi->A[e] = x[e] / omega;
-  for (int e = 0; e < m->n && j >= m->r; e++) avi->D[e] = avi->M1[e] * x[e];
+  memset(flow->A, 0, (size_t)m->n * sizeof(double));
+  memset(flow->D, 0, (size_t)m->n * sizeof(double));
+  for (int e = 0; e < m->n && j < m->r; e++) flow->A[e] = x[e] / omega;
+  for (int e = 0; e < m->n && j >= m->r; e++) flow->D[e] = flow->M1[e] * x[e];
 }
 
 static void end_column(const modal *m, int j)
 {
-  const dvi__avi *avi = m->avi;
+  const dvi__flow *flow = m->flow;
   double *column = m->T + (size_t)j * 2 * (size_t)m->r;
   for (int i = 0; i < m->r; i++) {
     const double *x = m->X + (size_t)i * (size_t)m->n;
     double a = 0, d = 0;
     for (int e = 0; e < m->n; e++) {
-      a += x[e] * avi->M1[e] * avi->A[e];
-      d += x[e] * avi->D[e];
+      a += x[e] * flow->M1[e] * flow->A[e];
+      d += x[e] * flow->D[e];
     }
     column[i] = sqrt(m->lambda[i]) * a;
     column[m->r + i] = d;
@@ -118,10 +118,10 @@ static dvi_status make_matrix(modal *m, double period)
   if (m->T == NULL || m->product == NULL) return no_memory(m);
   for (int j = 0; j < 2 * m->r; j++) {
     begin_column(m, j);
-    DVI_TRY(dvi__avi_carry(m->avi, period));
+    DVI_TRY(m->flow->carry(m->flow->of, period));
     end_column(m, j);
   }
-  return dvi__avi_check_size(norm_of(m), period);
+  return dvi__check_size(norm_of(m), period);
 }
 
 static void square(modal *m)
@@ -163,9 +163,9 @@ static dvi_status find_largest(const modal *m, double *largest)
   return status;
 }
 
-dvi_status dvi__avi_all_multipliers(dvi__avi *avi, double period, dvi_stability *report)
+dvi_status dvi__all_multipliers(const dvi__flow *flow, double period, dvi_stability *report)
 {
-  modal m = {.avi = avi, .n = (int)avi->free_edges};
+  modal m = {.flow = flow, .n = (int)flow->n};
   double largest = 0;
   report->span = period;
   dvi_status status = find_modes(&m);
