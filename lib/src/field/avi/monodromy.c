@@ -1,36 +1,15 @@
-/* The choice of how to find the growth, and the common period of a schedule. */
+/* The growth of a field under asynchronous steps. */
 #include "field/avi/monodromy.h"
 
 #include <float.h>
 #include <math.h>
-#include <stdarg.h>
-#include <string.h>
-#include <dvi/number.h>
 
-#include "core/memory.h"
 #include "core/status.h"
-#include "num/philox.h"
 
-enum { DENOMINATOR_MOST = 64, PERIOD_MOST = 1000, ALL_MODES_MOST = 500 };
+enum { DENOMINATOR_MOST = 64, PERIOD_MOST = 1000 };
 
 /* Events that a search may cost, unless the user asks for a span. */
 static const double events_wanted = 5e7;
-
-dvi_status dvi__avi_carry(dvi__avi *avi, double t)
-{
-  const double limit = t * (1 + 4 * DBL_EPSILON);
-  dvi__avi_rewind(avi, 0);
-  return (avi->is_queued ? dvi__avi_run_queue : dvi__avi_run_slots)(avi, limit);
-}
-
-dvi_status dvi__avi_check_size(double size, double time)
-{
-  if (isfinite(size)) return DVI_OK;
-  return dvi__fail(DVI_NOT_FINITE,
-                   "stability: a field grows beyond all numbers within %g, so that its growth is "
-                   "not told; take a shorter span, or shorter steps",
-                   time);
-}
 
 /* ---- the common period ---- */
 
@@ -73,124 +52,77 @@ static double common_period(const dvi__avi *avi)
   return 0;
 }
 
-/* ---- fields to begin with ---- */
+/* ---- passages ---- */
 
-static double random_between(uint64_t number)
+/* Run from (A, D) right after the events of the time 0 to the time `t`, at which all faces act or
+ * will act next. */
+static dvi_status carry(void *of, double t)
 {
-  uint32_t x[4] = {(uint32_t)number, (uint32_t)(number >> 32), 0, 0};
-  dvi__philox(x, 1);
-  return ldexp((double)x[0], -31) - 1;
-}
-
-/* Add d^T h to a vector of the edges. */
-static void add_transposed(const dvi__avi *avi, const double *h, double *x)
-{
-  for (int64_t i = 0; i < avi->active_faces * avi->width; i++) {
-    const int code = avi->facet[i], e = dvi__avi_number(code);
-    if (e < avi->free_edges) x[e] += code < 0 ? -h[i / avi->width] : h[i / avi->width];
-  }
-}
-
-/* D = d^T h and A = M1^-1 d^T h with random h are M1-orthogonal to all fields of zero curl. */
-void dvi__avi_scatter(dvi__avi *avi, double *h)
-{
-  double *const parts[] = {avi->A, avi->D};
-  double energy = 0;
-  for (int k = 0; k < 2; k++) {
-    memset(parts[k], 0, (size_t)avi->edges * sizeof(double));
-    for (int64_t f = 0; f < avi->active_faces; f++)
-      h[f] = sqrt(avi->M2[f]) * random_between((uint64_t)(2 * f + k));
-    add_transposed(avi, h, parts[k]);
-  }
-  const double per_A = 0.5 * avi->bound;
-  for (int64_t e = 0; e < avi->free_edges; e++) {
-    energy += avi->D[e] * avi->D[e] * avi->inverse[e];
-    avi->A[e] *= avi->inverse[e] * per_A;
-  }
-  for (int64_t f = 0; f < avi->active_faces; f++) {
-    const double B = dvi__avi_field(avi, f, avi->A);
-    energy += B * B * avi->M2[f];
-  }
-  for (int64_t e = 0; e < avi->free_edges; e++) {
-    avi->A[e] /= sqrt(energy);
-    avi->D[e] /= sqrt(energy);
-  }
-}
-
-/* ---- without a period ---- */
-
-enum { SEGMENTS = 64 };
-
-/* Logarithms of the amplitude beyond which nothing new is seen: what has fallen so far consists of
- * roundings, and no part of it grew. */
-static const double faint = -20, large = 80;
-
-/* The growth is that of the second half of the way, on which the fastest field has come forth. */
-dvi_status dvi__avi_follow(dvi__avi *avi, double span, dvi_stability *report)
-{
-  double size[SEGMENTS + 1], energy;
-  int last = 0;
-  dvi__avi_scatter(avi, avi->impulse);
+  dvi__avi *avi = of;
+  const double limit = t * (1 + 4 * DBL_EPSILON);
   dvi__avi_rewind(avi, 0);
-  avi->start_energy = 1;
-  DVI_TRY(dvi__avi_energy(avi, &energy, NULL));
-  size[0] = 0.5 * log(energy);
-  while (last < SEGMENTS && size[last] < large && size[last] > faint) {
-    avi->t = span * (last + 1) / SEGMENTS;
-    DVI_TRY(dvi__avi_run_queue(avi, avi->t));
-    DVI_TRY(dvi__avi_energy(avi, &energy, NULL));
-    DVI_TRY(dvi__avi_check_size(energy, span / SEGMENTS));
-    size[++last] = 0.5 * log(energy);
+  return (avi->is_queued ? dvi__avi_run_queue : dvi__avi_run_slots)(avi, limit);
+}
+
+static dvi_status energy_at(void *of, double t, double *energy)
+{
+  dvi__avi *avi = of;
+  if (t > 0) {
+    avi->t = t;
+    DVI_TRY(dvi__avi_run_queue(avi, t));
+  } else {
+    dvi__avi_rewind(avi, 0);
+    avi->start_energy = 1;
   }
-  const int half = last / 2;
-  const double time = span / SEGMENTS;
-  report->growth = exp(fmax(size[last] - size[half], 0) / (time * (last - half)));
-  report->span = time * last;
-  report->followed = 1;
-  report->resolution = 0.5 * log(2.0 * (double)avi->free_edges) / report->span;
-  return DVI_OK;
+  return dvi__avi_energy(avi, energy, NULL);
+}
+
+dvi__flow dvi__avi_flow(dvi__avi *avi)
+{
+  return (dvi__flow){.n = avi->free_edges,
+                     .faces = avi->active_faces,
+                     .width = avi->width,
+                     .facet = avi->facet,
+                     .M1 = avi->M1,
+                     .inverse = avi->inverse,
+                     .M2 = avi->M2,
+                     .bound = avi->bound,
+                     .is_damped = avi->extra_count > 0,
+                     .A = avi->A,
+                     .D = avi->D,
+                     .base = avi->bias,
+                     .work = avi->impulse,
+                     .carry = carry,
+                     .energy = energy_at,
+                     .of = avi};
 }
 
 /* ---- the report ---- */
-
-static double default_span(const dvi__avi *avi)
-{
-  double rate = 0;
-  for (int64_t f = 0; f < avi->active_faces; f++) rate += 1 / avi->step[f];
-  return fmin(fmax(events_wanted / rate, 256 * avi->longest), 16384 * avi->longest);
-}
-
-static void say(dvi_stability *report, const char *format, ...) DVI_PRINTF(2, 3);
-static void say(dvi_stability *report, const char *format, ...)
-{
-  va_list arguments;
-  va_start(arguments, format);
-  (void)dvi_number_vprint(report->schedule, DVI_SCHEDULE_SIZE, format, arguments);
-  va_end(arguments);
-}
 
 static void describe(const dvi__avi *avi, dvi_stability *report)
 {
   const double from = avi->shortest, to = avi->longest;
   if (from == to)
-    say(report, "equal steps of %.6g", from);
+    dvi__say_schedule(report, "equal steps of %.6g", from);
   else if (!avi->is_queued)
-    say(report, "%d classes of steps, powers of 2 from %.6g to %.6g", avi->classes, from, to);
+    dvi__say_schedule(report, "%d classes of steps, powers of 2 from %.6g to %.6g", avi->classes,
+                      from, to);
   else if (report->period > 0)
-    say(report, "free steps from %.6g to %.6g with the common period %.6g", from, to,
-        report->period);
+    dvi__say_schedule(report, "free steps from %.6g to %.6g with the common period %.6g", from, to,
+                      report->period);
   else
-    say(report, "free steps from %.6g to %.6g without a common period", from, to);
+    dvi__say_schedule(report, "free steps from %.6g to %.6g without a common period", from, to);
 }
 
 static dvi_status find_growth(dvi__avi *avi, double span, dvi_stability *report)
 {
+  const dvi__flow flow = dvi__avi_flow(avi);
+  const dvi__schedule schedule = {.count = avi->active_faces,
+                                  .step = avi->step,
+                                  .longest = avi->longest,
+                                  .events = events_wanted};
   report->period = common_period(avi);
-  if (report->period > 0 && avi->free_edges <= ALL_MODES_MOST)
-    return dvi__avi_all_multipliers(avi, report->period, report);
-  if (!(span > 0)) span = default_span(avi);
-  if (report->period > 0) return dvi__avi_largest_multipliers(avi, report->period, span, report);
-  return dvi__avi_follow(avi, span, report);
+  return dvi__find_growth(&flow, &schedule, span, report);
 }
 
 dvi_status dvi__avi_stability(const dvi__avi_terms *terms, double span, dvi_stability *report)
