@@ -173,24 +173,22 @@ static void go_to(integral *of, int axis, int part)
   of->x[axis] = box->lower[axis] + at * (box->upper[axis] - box->lower[axis]);
 }
 
-/* Tell if the material is here as at the first place, where *value is NAN before. */
-static int is_same(integral *of, const dvi__average *medium, double least, double *value)
+static double value_at_middle(integral *of, const dvi__average *medium, double least)
 {
-  const double here = material_at(of, medium, least);
-  if (isnan(*value)) *value = here;
-  return here == *value;
+  for (int l = 0; l < of->box->space; l++) go_to(of, l, PARTS / 2);
+  return material_at(of, medium, least);
 }
 
-/* Tell it for all places at `count` parts along each axis. */
+/* Tell if the material has this value at all places at `count` parts along each axis. */
 static int is_same_on_grid(integral *of, const dvi__average *medium, double least, int count,
-                           const int *part, double *value)
+                           const int *part, double value)
 {
   int places = 1;
   for (int l = 0; l < of->box->space; l++) places *= count;
   for (int n = 0; n < places; n++) {
     for (int l = 0, rest = n; l < of->box->space; l++, rest /= count)
       go_to(of, l, part[rest % count]);
-    if (!is_same(of, medium, least, value)) return 0;
+    if (material_at(of, medium, least) != value) return 0;
   }
   return 1;
 }
@@ -198,11 +196,11 @@ static int is_same_on_grid(integral *of, const dvi__average *medium, double leas
 /* Tell it for places at which each axis has another part, so that a few are at every part of every
  * axis. A film across an axis is at one of them if it is thicker than a part. */
 static int is_same_inside(integral *of, const dvi__average *medium, double least, int next,
-                          double *value)
+                          double value)
 {
   for (int i = 1; i < PARTS; i += next) {
     for (int l = 0; l < of->box->space; l++) go_to(of, l, i * (2 * l + 1) % PARTS);
-    if (!is_same(of, medium, least, value)) return 0;
+    if (material_at(of, medium, least) != value) return 0;
   }
   return 1;
 }
@@ -211,9 +209,10 @@ static int is_same_inside(integral *of, const dvi__average *medium, double least
 static int is_uniform(integral *of, const dvi__average *medium, double least, double *value)
 {
   static const int ends[] = {0, PARTS};
-  *value = of->box->value != NULL ? *of->box->value : (double)NAN;
-  return of->box->value != NULL || (is_same_on_grid(of, medium, least, 2, ends, value) &&
-                                    is_same_inside(of, medium, least, 1, value));
+  const double *known = of->box->value;
+  *value = known != NULL ? *known : value_at_middle(of, medium, least);
+  return known != NULL || (is_same_on_grid(of, medium, least, 2, ends, *value) &&
+                           is_same_inside(of, medium, least, 1, *value));
 }
 
 /* Tell it for a whole box at all corners and middles of its halves. */
@@ -222,10 +221,10 @@ static int is_uniform_by_halves(integral *of, const dvi__average *medium, double
 {
   static const int ends[] = {0, PARTS / 2, PARTS},
                    middles[] = {PARTS / 4, PARTS / 2, 3 * PARTS / 4};
-  *value = (double)NAN;
-  return is_same_on_grid(of, medium, least, 3, ends, value) &&
-         is_same_on_grid(of, medium, least, 3, middles, value) &&
-         is_same_inside(of, medium, least, 2, value);
+  *value = value_at_middle(of, medium, least);
+  return is_same_on_grid(of, medium, least, 3, ends, *value) &&
+         is_same_on_grid(of, medium, least, 3, middles, *value) &&
+         is_same_inside(of, medium, least, 2, *value);
 }
 
 /* Tell if the line through the middle along an axis has more than one surface: equal values side by
@@ -234,6 +233,7 @@ static int has_films(integral *of, const dvi__average *medium, double least, int
 {
   int changes = 0;
   double last = 0;
+  if (medium->function == NULL) return 0;
   for (int l = 0; l < of->box->space; l++) go_to(of, l, PARTS / 2);
   for (int i = 0; i <= PARTS; i++) {
     go_to(of, axis, i);
