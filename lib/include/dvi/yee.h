@@ -68,7 +68,11 @@ typedef int dvi_yee_signal(double t, double *value, void *user);
  *      M_2(f) = int over *f of dl [ int over f of mu dA ]^-1,
  *
  *  and sigma by the losses of the field that M_1 supposes, int over *e of int over e of
- *  sigma/eps^2 dl / [ int over e of dl/eps ]^2. */
+ *  sigma/eps^2 dl / [ int over e of dl/eps ]^2.
+ *
+ *  Functions are looked at in the eighths of each box along each axis. A film through a box, across
+ *  an axis, is seen if it is thicker than an eighth of the box. A thinner one is seen only if one
+ *  of the places is in it, and counts as if it were not there otherwise. */
 typedef struct dvi_yee_medium {
   const double *cell;    /**< [cells], x fastest. Needed only until the march is made */
   dvi_form_function *at; /**< gives one number */

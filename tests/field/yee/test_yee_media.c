@@ -38,7 +38,7 @@ static int negative_eps(const double *x, double *value, void *user)
   return 0;
 }
 
-static const dvi__average_box box = {3, {0.1, 0.2, 0.3}, {0.5, 0.5, 0.5}}; /* .4 x .3 x .2 */
+static const dvi__average_box box = {3, {0.1, 0.2, 0.3}, {0.5, 0.5, 0.5}, NULL}; /* .4 x .3 x .2 */
 
 /* Surfaces are found to 1e-4 of a box or better. */
 START_TEST(layers_have_the_averages_of_their_normals)
@@ -87,6 +87,108 @@ START_TEST(losses_have_the_field_of_the_permittivity)
   star = 0;
   ck_assert_int_eq(dvi__average_loss(&vacuum, &sigma, &box, 0, &star), DVI_OK);
   ck_assert_double_eq_tol(star, 4 * 0.06 / 0.4, 1e-14);
+}
+END_TEST
+
+/* A film across an axis, on the surface between two materials. */
+typedef struct film {
+  int axis;
+  double at, thick, below, inside, above;
+} film;
+
+static int film_value(const double *x, double *value, void *user)
+{
+  const film *f = user;
+  const double depth = x[f->axis] - f->at;
+  *value = depth < 0 ? f->below : depth < f->thick ? f->inside : f->above;
+  return 0;
+}
+
+static double side(int axis)
+{
+  return box.upper[axis] - box.lower[axis];
+}
+
+/* Set star[0] to that of an edge along an axis, star[1] to that of a face, and star[2] to that of
+ * the losses with eps = 1. */
+static void find_stars(film *f, int axis, double star[3])
+{
+  const dvi__average medium = {film_value, f, "eps"}, vacuum = {NULL, NULL, "eps"};
+  star[0] = star[1] = star[2] = 0;
+  ck_assert_int_eq(dvi__average_edge(&medium, &box, axis, &star[0]), DVI_OK);
+  ck_assert_int_eq(dvi__average_face(&medium, &box, axis, &star[1]), DVI_OK);
+  ck_assert_int_eq(dvi__average_loss(&vacuum, &medium, &box, axis, &star[2]), DVI_OK);
+}
+
+/* Films are found wherever they are in a box, if they are thicker than an eighth of it. */
+START_TEST(films_of_an_eighth_of_a_box_are_seen)
+{
+  static const double above[] = {1, 2};
+  for (int i = 0; i < 60; i++) {
+    const int axis = i % 3;
+    const double length = side(axis), part = 0.126, first = 0.01 + 0.014 * i;
+    film f = {axis, box.lower[axis] + first * length, part * length, 1, 100, above[_i]};
+    const double rest = (1 - first - part), parallel = first + part * 100 + rest * f.above,
+                 series = first + part / 100 + rest / f.above;
+    for (int along = 0; along < 3; along++) {
+      double star[3], area = 1;
+      for (int l = 0; l < 3; l++) area *= l == along ? 1 : side(l);
+      const double vacuum = area / side(along);
+      find_stars(&f, along, star);
+      ck_assert_double_eq_tol(star[0] / vacuum, along == axis ? 1 / series : parallel,
+                              1e-3 * (along == axis ? 1 / series : parallel));
+      ck_assert_double_eq_tol(star[1] * vacuum, along == axis ? series : 1 / parallel,
+                              1e-3 * (along == axis ? series : 1 / parallel));
+      ck_assert_double_eq_tol(star[2] / vacuum, parallel, 1e-3 * parallel);
+    }
+  }
+}
+END_TEST
+
+/* Give the sum of eps E^2 over the unit square, with the mean 1 of E along an axis in each box. */
+static double energy_of_film(const film *f, int cells, int along)
+{
+  const double h = 1. / cells;
+  double sum = 0;
+  for (int i = 0; i < cells; i++) {
+    const double low = fmax(f->at, i * h), high = fmin(f->at + f->thick, (i + 1) * h),
+                 part = fmax(high - low, 0) / h;
+    sum += along == f->axis ? h / (1 - part + part / f->inside) : h * (1 - part + part * f->inside);
+  }
+  return sum;
+}
+
+static int unit_along(const double *x, double *value, void *user)
+{
+  (void)x;
+  value[0] = *(int *)user == 0;
+  value[1] = *(int *)user == 1;
+  return 0;
+}
+
+/* The same on a grid, whose boxes are looked at as a whole, and in pieces where there is a film. */
+START_TEST(films_on_a_grid_have_their_energy)
+{
+  enum { CELLS = 5 };
+  for (int i = 0; i < 40; i++) {
+    film f = {.axis = i % 2, .at = 0.1 + 0.0093 * i, .below = 1, .inside = 100, .above = 1};
+    f.thick = 0.126 / CELLS;
+    dvi_yee_terms terms = {
+        .size = sizeof terms, .axes = 2, .degree = 1, .eps = {.at = film_value, .user = &f}};
+    for (int l = 0; l < 2; l++)
+      terms.axis[l] = (dvi_yee_axis){.cells = CELLS,
+                                     .end = {{.kind = DVI_YEE_PMC}, {.kind = DVI_YEE_PMC}}};
+    dvi_march *march = box_march(&terms);
+    double *E = random_values(dvi_yee_size(&terms, DVI_FORM_E), 1);
+    for (int along = 0; along < 2; along++) {
+      const double expected = energy_of_film(&f, CELLS, along);
+      ck_assert_int_eq(dvi_yee_integrate(&terms, DVI_FORM_E, unit_along, &along, E), DVI_OK);
+      start_boxes(march, E, NULL);
+      ck_assert_double_eq_tol(2 * observe_march(march, "energy"), expected, 1e-3 * expected);
+    }
+    free(E);
+    dvi_march_destroy(&march);
+  }
 }
 END_TEST
 
@@ -416,6 +518,8 @@ SUITE(yee_media)
   tcase_add_test(tests, layers_have_the_averages_of_their_normals);
   tcase_add_test(tests, averages_of_smooth_and_slanted_media);
   tcase_add_test(tests, losses_have_the_field_of_the_permittivity);
+  tcase_add_loop_test(tests, films_of_an_eighth_of_a_box_are_seen, 0, 2);
+  tcase_add_test(tests, films_on_a_grid_have_their_energy);
   tcase_add_test(tests, bad_media_are_named);
   tcase_add_loop_test(tests, layers_on_one_axis_have_order_two, 0, 2);
   tcase_add_loop_test(tests, surfaces_off_the_grid_have_order_two, 0, 8);

@@ -8,13 +8,16 @@
  * the second. A surface then is in its place to this part of a box. */
 static const double fine = 1e-4, coarse = 1e-3;
 
-enum { DEEPEST = 14, POINTS = 5 };
+/* Films between two surfaces are sought in 2^HALVINGS parts of a box along each axis. */
+enum { DEEPEST = 14, POINTS = 5, HALVINGS = 3, PARTS = 1 << HALVINGS };
+
 /* An integral over some axes, the first one outermost. */
 typedef struct integral {
   const dvi__average *eps, *sigma; /* eps may be mu. sigma may be NULL */
   const dvi__average_box *box;
-  int axis;    /* that of the edge or face */
-  double x[3]; /* the place */
+  int axis;     /* that of the edge or face */
+  double x[3];  /* the place */
+  int least[3]; /* halvings along an axis that are done, whatever the values are */
   dvi_status status;
 } integral;
 
@@ -78,9 +81,11 @@ static double refine(integral *of, integrand *f, int axis, double a, double b, d
   const double lobatto = (b - a) * (v[0] + v[4] + 5 * (v[1] + v[3])) / 12,
                simpson = (b - a) * (v[0] + v[4] + 4 * v[2]) / 6, middle = 0.5 * (a + b);
   if (depth == 0) allowed = tolerance * fabs(lobatto);
-  if (depth == DEEPEST || fabs(lobatto - simpson) <= allowed || of->status != DVI_OK)
-    return lobatto;
-  if (has_two_values(v, &before)) return integrate_jump(of, f, axis, a, b, x, v, before);
+  if (depth == DEEPEST || of->status != DVI_OK) return lobatto;
+  if (depth >= of->least[axis]) {
+    if (fabs(lobatto - simpson) <= allowed) return lobatto;
+    if (has_two_values(v, &before)) return integrate_jump(of, f, axis, a, b, x, v, before);
+  }
   return refine(of, f, axis, a, middle, tolerance, allowed, depth + 1) +
          refine(of, f, axis, middle, b, tolerance, allowed, depth + 1);
 }
@@ -159,19 +164,109 @@ static double edge_row(integral *of)
 
 /* ---- boxes ---- */
 
-/* Tell if the material has one value at the middle and near the corners, and give it. */
-static int is_uniform(integral *of, const dvi__average *medium, double least, double *value)
+/* Go to a part of the box along an axis, from 0 to PARTS. Surfaces are often at its ends, and
+ * points there are a little inside. */
+static void go_to(integral *of, int axis, int part)
 {
   const dvi__average_box *box = of->box;
-  const double part[2] = {1e-6, 1 - 1e-6};
-  for (int l = 0; l < box->space; l++) of->x[l] = 0.5 * (box->lower[l] + box->upper[l]);
-  *value = material_at(of, medium, least);
-  for (int corner = 0; corner < 1 << box->space; corner++) {
-    for (int l = 0; l < box->space; l++)
-      of->x[l] = box->lower[l] + part[corner >> l & 1] * (box->upper[l] - box->lower[l]);
-    if (material_at(of, medium, least) != *value) return 0;
+  const double at = part == 0 ? 1e-6 : part == PARTS ? 1 - 1e-6 : (double)part / PARTS;
+  of->x[axis] = box->lower[axis] + at * (box->upper[axis] - box->lower[axis]);
+}
+
+static double value_at_middle(integral *of, const dvi__average *medium, double least)
+{
+  for (int l = 0; l < of->box->space; l++) go_to(of, l, PARTS / 2);
+  return material_at(of, medium, least);
+}
+
+/* Tell if the material has this value at all places at `count` parts along each axis. */
+static int is_same_on_grid(integral *of, const dvi__average *medium, double least, int count,
+                           const int *part, double value)
+{
+  int places = 1;
+  for (int l = 0; l < of->box->space; l++) places *= count;
+  for (int n = 0; n < places; n++) {
+    for (int l = 0, rest = n; l < of->box->space; l++, rest /= count)
+      go_to(of, l, part[rest % count]);
+    if (material_at(of, medium, least) != value) return 0;
   }
   return 1;
+}
+
+/* Tell it for places at which each axis has another part, so that a few are at every part of every
+ * axis. A film across an axis is at one of them if it is thicker than a part. */
+static int is_same_inside(integral *of, const dvi__average *medium, double least, int next,
+                          double value)
+{
+  for (int i = 1; i < PARTS; i += next) {
+    for (int l = 0; l < of->box->space; l++) go_to(of, l, i * (2 * l + 1) % PARTS);
+    if (material_at(of, medium, least) != value) return 0;
+  }
+  return 1;
+}
+
+/* Tell if the material has one value in the box, and give it. */
+static int is_uniform(integral *of, const dvi__average *medium, double least, double *value)
+{
+  static const int ends[] = {0, PARTS};
+  const double *known = of->box->value;
+  *value = known != NULL ? *known : value_at_middle(of, medium, least);
+  return known != NULL || (is_same_on_grid(of, medium, least, 2, ends, *value) &&
+                           is_same_inside(of, medium, least, 1, *value));
+}
+
+/* Tell it for a whole box at all corners and middles of its halves. */
+static int is_uniform_by_halves(integral *of, const dvi__average *medium, double least,
+                                double *value)
+{
+  static const int ends[] = {0, PARTS / 2, PARTS},
+                   middles[] = {PARTS / 4, PARTS / 2, 3 * PARTS / 4};
+  *value = value_at_middle(of, medium, least);
+  return is_same_on_grid(of, medium, least, 3, ends, *value) &&
+         is_same_on_grid(of, medium, least, 3, middles, *value) &&
+         is_same_inside(of, medium, least, 2, *value);
+}
+
+/* Tell if the line through the middle along an axis has more than one surface: equal values side by
+ * side, and two changes. First values that all differ are those of a smooth material. */
+static int has_films(integral *of, const dvi__average *medium, double least, int axis)
+{
+  int changes = 0;
+  double last = 0;
+  if (medium->function == NULL) return 0;
+  for (int l = 0; l < of->box->space; l++) go_to(of, l, PARTS / 2);
+  for (int i = 0; i <= PARTS; i++) {
+    go_to(of, axis, i);
+    const double value = material_at(of, medium, least);
+    changes += i > 0 && value != last;
+    last = value;
+    if (i == 3 && changes == 3) return 0;
+  }
+  return changes > 1;
+}
+
+/* Integrate over the box, in parts along axes that have films, which rules with few points miss. */
+static double integrate(integral *of, integrand *f, int axis)
+{
+  for (int l = 0; l < of->box->space; l++)
+    if (has_films(of, of->eps, least_positive, l) ||
+        (of->sigma != NULL && has_films(of, of->sigma, 0, l)))
+      of->least[l] = HALVINGS;
+  return along(of, f, axis, coarse);
+}
+
+dvi_status dvi__average_value(const dvi__average *medium, const dvi__average *sigma,
+                              const dvi__average_box *box, double *value)
+{
+  integral of = {.box = box, .status = DVI_OK};
+  double eps;
+  const int is_plain = sigma == NULL
+                           ? is_uniform_by_halves(&of, medium, least_positive, value)
+                           : is_uniform_by_halves(&of, sigma, 0, value) &&
+                                 (*value == 0 ||
+                                  is_uniform_by_halves(&of, medium, least_positive, &eps));
+  if (!is_plain) *value = (double)NAN;
+  return of.status;
 }
 
 /* Give the length along the axis, and the area across it. */
@@ -188,9 +283,8 @@ dvi_status dvi__average_edge(const dvi__average *eps, const dvi__average_box *bo
   integral of = {.eps = eps, .box = box, .axis = axis, .status = DVI_OK};
   double value, length, area;
   measure(box, axis, &length, &area);
-  *star += is_uniform(&of, eps, least_positive, &value)
-               ? value * area / length
-               : along(&of, edge_row, (axis + 1) % 3, coarse);
+  *star += is_uniform(&of, eps, least_positive, &value) ? value * area / length
+                                                        : integrate(&of, edge_row, (axis + 1) % 3);
   return of.status;
 }
 
@@ -201,7 +295,7 @@ dvi_status dvi__average_face(const dvi__average *mu, const dvi__average_box *box
   double value, length, area;
   measure(box, axis, &length, &area);
   *star += is_uniform(&of, mu, least_positive, &value) ? length / (value * area)
-                                                       : along(&of, face_star, axis, coarse);
+                                                       : integrate(&of, face_star, axis);
   return of.status;
 }
 
@@ -213,6 +307,6 @@ dvi_status dvi__average_loss(const dvi__average *eps, const dvi__average *sigma,
   measure(box, axis, &length, &area);
   const int is_plain = is_uniform(&of, sigma, 0, &value) &&
                        (value == 0 || is_uniform(&of, eps, least_positive, &unused));
-  *star += is_plain ? value * area / length : along(&of, edge_row, (axis + 1) % 3, coarse);
+  *star += is_plain ? value * area / length : integrate(&of, edge_row, (axis + 1) % 3);
   return of.status;
 }

@@ -49,51 +49,76 @@ static int is_given(const dvi_yee_medium *medium)
   return medium->cell != NULL || medium->at != NULL;
 }
 
-static double value_of_cell(const dvi__yee *y, const dvi_yee_medium *medium, const int *cell)
+static size_t number_of(const dvi__yee *y, const int *cell)
 {
   const size_t n = (size_t)y->axis[0].cells, m = (size_t)y->axis[1].cells;
-  return medium->cell != NULL
-             ? medium->cell[((size_t)cell[2] * m + (size_t)cell[1]) * n + (size_t)cell[0]]
-             : 1;
+  return ((size_t)cell[2] * m + (size_t)cell[1]) * n + (size_t)cell[0];
 }
 
 /* What is summed over the pieces of boxes around an edge or face. */
 typedef enum quantity { PERMITTIVITY, LOSS, PERMEABILITY, ADMITTANCE } quantity;
 
-static dvi_status add_piece(const dvi_yee_terms *terms, const dvi__yee *y, quantity what, int c,
-                            const dvi__average_box *box, const int *cell, double *sum)
+typedef struct stars {
+  const dvi_yee_terms *terms;
+  const dvi__yee *y;
+  quantity what;
+  const dvi_yee_medium *medium; /* of the quantity */
+  dvi__average function, sigma; /* its function or for losses that of eps, and that of sigma */
+  double *value;                /* [boxes] of the function, NAN where it changes. NULL: unknown */
+} stars;
+
+static stars stars_of(const dvi_yee_terms *terms, const dvi__yee *y, quantity what)
 {
   const dvi__average eps = {terms->eps.at, terms->eps.user, "eps"},
                      mu = {terms->mu.at, terms->mu.user, "mu"},
                      sigma = {terms->sigma.at, terms->sigma.user, "sigma"};
+  return (stars){.terms = terms,
+                 .y = y,
+                 .what = what,
+                 .medium = what == LOSS           ? &terms->sigma
+                           : what == PERMEABILITY ? &terms->mu
+                                                  : &terms->eps,
+                 .function = what == PERMEABILITY ? mu : eps,
+                 .sigma = sigma};
+}
+
+static dvi_status add_piece(const stars *s, int c, dvi__average_box *box, const int *cell,
+                            double *sum)
+{
+  const dvi__yee *y = s->y;
   double along = 1, across = 1;
+  if (s->medium->at != NULL) {
+    const double *value = s->value != NULL ? s->value + number_of(y, cell) : NULL;
+    box->value = value != NULL && !isnan(*value) ? value : NULL;
+    if (s->what == LOSS) return dvi__average_loss(&s->function, &s->sigma, box, c, sum);
+    return s->what == PERMEABILITY ? dvi__average_face(&s->function, box, c, sum)
+                                   : dvi__average_edge(&s->function, box, c, sum);
+  }
   for (int l = 0; l < y->axes; l++) *(l == c ? &along : &across) *= box->upper[l] - box->lower[l];
-  if (what == PERMEABILITY && mu.function != NULL) return dvi__average_face(&mu, box, c, sum);
-  if (what == PERMITTIVITY && eps.function != NULL) return dvi__average_edge(&eps, box, c, sum);
-  if (what == LOSS && sigma.function != NULL) return dvi__average_loss(&eps, &sigma, box, c, sum);
-  *sum += what == PERMEABILITY
-              ? along / (across * value_of_cell(y, &terms->mu, cell))
-              : across / along * value_of_cell(y, what == LOSS ? &terms->sigma : &terms->eps, cell);
+  const double value = s->medium->cell != NULL ? s->medium->cell[number_of(y, cell)] : 1;
+  *sum += s->what == PERMEABILITY ? along / (across * value) : across / along * value;
   return DVI_OK;
 }
 
 /* The admittance is that of the means of eps and mu in the piece. */
-static dvi_status add_admittance(const dvi_yee_terms *terms, const dvi__yee *y, int c,
-                                 const dvi__average_box *box, const int *cell, double *sum)
+static dvi_status add_admittance(const stars *s, int c, dvi__average_box *box, const int *cell,
+                                 double *sum)
 {
+  const stars of_eps = stars_of(s->terms, s->y, PERMITTIVITY),
+              of_mu = stars_of(s->terms, s->y, PERMEABILITY);
   double eps = 0, over_mu = 0, ratio = 1;
-  DVI_TRY(add_piece(terms, y, PERMITTIVITY, c, box, cell, &eps));
-  DVI_TRY(add_piece(terms, y, PERMEABILITY, c, box, cell, &over_mu));
-  for (int l = 0; l < y->axes; l++)
+  DVI_TRY(add_piece(&of_eps, c, box, cell, &eps));
+  DVI_TRY(add_piece(&of_mu, c, box, cell, &over_mu));
+  for (int l = 0; l < s->y->axes; l++)
     ratio *= l == c ? 1 / (box->upper[l] - box->lower[l]) : box->upper[l] - box->lower[l];
   *sum += ratio * sqrt(eps * over_mu);
   return DVI_OK;
 }
 
 /* Sum the star of a component at a place over its pieces. */
-static dvi_status sum_pieces(const dvi_yee_terms *terms, const dvi__yee *y, quantity what,
-                             int component, const int *place, double *sum)
+static dvi_status sum_pieces(const stars *s, int component, const int *place, double *sum)
 {
+  const dvi__yee *y = s->y;
   int cell[3][2], count[3], at[3];
   double lower[3][2], upper[3][2];
   *sum = 0;
@@ -116,8 +141,8 @@ static dvi_status sum_pieces(const dvi_yee_terms *terms, const dvi__yee *y, quan
       box.lower[l] = lower[l][piece];
       box.upper[l] = upper[l][piece];
     }
-    DVI_TRY(what == ADMITTANCE ? add_admittance(terms, y, component, &box, at, sum)
-                               : add_piece(terms, y, what, component % 3, &box, at, sum));
+    DVI_TRY(s->what == ADMITTANCE ? add_admittance(s, component, &box, at, sum)
+                                  : add_piece(s, component % 3, &box, at, sum));
   }
   return DVI_OK;
 }
@@ -125,7 +150,8 @@ static dvi_status sum_pieces(const dvi_yee_terms *terms, const dvi__yee *y, quan
 dvi_status dvi__yee_admittance(const dvi_yee_terms *terms, const dvi__yee *y, int c,
                                const int *place, double *mean)
 {
-  DVI_TRY(sum_pieces(terms, y, ADMITTANCE, c, place, mean));
+  const stars s = stars_of(terms, y, ADMITTANCE);
+  DVI_TRY(sum_pieces(&s, c, place, mean));
   *mean /= vacuum_star(y, c, place);
   return DVI_OK;
 }
@@ -139,10 +165,37 @@ static double *new_array(const dvi__yee *y, quantity what)
   return DVI_NEW(double, count);
 }
 
-/* Fill an array with the sums over pieces beside those of vacuum, or for eps with the inverse. */
-static dvi_status fill(const dvi_yee_terms *terms, const dvi__yee *y, quantity what, double *array)
+/* Find the boxes in which a function has one value. Where each box is one piece, that is left to
+ * the piece. */
+static dvi_status find_values(stars *s)
 {
-  const int first = what == PERMEABILITY ? DVI__YEE_B : DVI__YEE_E;
+  const dvi__yee *y = s->y;
+  const size_t count = (size_t)y->axis[0].cells * (size_t)y->axis[1].cells *
+                       (size_t)y->axis[2].cells;
+  if (s->medium->at == NULL || (s->what == PERMEABILITY && y->components - y->edges_slots == 1))
+    return DVI_OK;
+  s->value = DVI_NEW(double, count);
+  if (s->value == NULL) return dvi__fail(DVI_NO_MEMORY, "yee: no memory for materials");
+  int cell[3] = {0};
+  for (cell[2] = 0; cell[2] < y->axis[2].cells; cell[2]++)
+    for (cell[1] = 0; cell[1] < y->axis[1].cells; cell[1]++)
+      for (cell[0] = 0; cell[0] < y->axis[0].cells; cell[0]++) {
+        dvi__average_box box = {.space = y->axes};
+        for (int l = 0; l < y->axes; l++) {
+          box.lower[l] = y->axis[l].node[cell[l]];
+          box.upper[l] = y->axis[l].node[cell[l] + 1];
+        }
+        DVI_TRY(dvi__average_value(&s->function, s->what == LOSS ? &s->sigma : NULL, &box,
+                                   s->value + number_of(y, cell)));
+      }
+  return DVI_OK;
+}
+
+/* Fill an array with the sums over pieces beside those of vacuum, or for eps with the inverse. */
+static dvi_status fill_places(const stars *s, double *array)
+{
+  const dvi__yee *y = s->y;
+  const int first = s->what == PERMEABILITY ? DVI__YEE_B : DVI__YEE_E;
   for (int component = first; component < first + 3; component++) {
     int place[3];
     if (y->slot[component] < 0) continue;
@@ -150,13 +203,22 @@ static dvi_status fill(const dvi_yee_terms *terms, const dvi__yee *y, quantity w
       for (place[1] = 0; place[1] < dvi__yee_places(y, component, 1); place[1]++)
         for (place[0] = 0; place[0] < dvi__yee_places(y, component, 0); place[0]++) {
           double sum;
-          DVI_TRY(sum_pieces(terms, y, what, component, place, &sum));
+          DVI_TRY(sum_pieces(s, component, place, &sum));
           const double vacuum = vacuum_star(y, component, place);
-          array[dvi__yee_beside(y, component, place)] = what == PERMITTIVITY ? vacuum / sum
-                                                                             : sum / vacuum;
+          array[dvi__yee_beside(y, component, place)] = s->what == PERMITTIVITY ? vacuum / sum
+                                                                                : sum / vacuum;
         }
   }
   return DVI_OK;
+}
+
+static dvi_status fill(const dvi_yee_terms *terms, const dvi__yee *y, quantity what, double *array)
+{
+  stars s = stars_of(terms, y, what);
+  dvi_status status = find_values(&s);
+  if (status == DVI_OK) status = fill_places(&s, array);
+  dvi__release(s.value);
+  return status;
 }
 
 /* Set 1/mu before the first boxes of axes that repeat themselves. */
