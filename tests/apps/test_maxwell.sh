@@ -183,6 +183,20 @@ END
 expect 0 'a damped field' run leaves.yaml --final --columns energy
 [ -s err ] && { fail 'a damped field: a warning'; cat err; }
 
+# A start has no imaginary part, whatever the phase.
+cat >phase.yaml <<END
+mesh: {generator: box, cells: [4, 3]}
+field: maxwell
+boundary: {left: {bloch: 0}, right: {bloch: 0}, bottom: periodic, top: periodic}
+initial: {E: ["1", "1"]}
+probes: {a: {of: E, at: [0.9, 0.9]}}
+method: yee
+step: {fraction: 0.5}
+until: 0.1
+END
+expect 0 'a phase' run phase.yaml --final
+says out '^0.1[0-9]*,1[.0-9]*,1[.0-9]*,1[.0-9]*$' 'a phase keeps a constant field'
+
 # Only yee has layers, plane waves and phases, which need no mesh.
 cat >open.yaml <<END
 mesh: {generator: box, cells: [40, 40], size: [4, 4]}

@@ -223,11 +223,16 @@ static dvi_status half_kick(leapfrog *l)
   if (l->gain == NULL) {
     find_right(l, half);
     DVI_TRY(solve(l, &l->solver.of_step));
-  } else {
-    for (int64_t i = 0; i < f->unknowns; i++) l->spare[i] = half * force(l, i) * l->inverse[i];
   }
-  for (int64_t i = 0; i < f->unknowns; i++)
-    l->E[f->unknown[i]] += l->gain == NULL ? l->solver.x[i] : l->spare[i];
+  for (int64_t i = 0; i < f->unknowns; i++) {
+    double *E = l->E + f->unknown[i];
+    if (l->gain == NULL) {
+      *E += l->solver.x[i];
+      continue;
+    }
+    if (l->keep != NULL) *E *= f->mass.value[i] * l->inverse[i];
+    *E += half * (dvi__sweep_curl(&l->sweep, f->unknown[i], l->H) + push(l, i)) * l->inverse[i];
+  }
   return DVI_OK;
 }
 

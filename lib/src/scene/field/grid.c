@@ -198,11 +198,13 @@ static dvi_status set_terms(draft *d, const dvi_march_options *options)
   return DVI_OK;
 }
 
-static dvi_status integrate(draft *d, dvi_march_form form, dvi__place_vector *vector,
-                            double **values)
+/* With a phase a march has two numbers for each cell. The imaginary ones, the second half, start at
+ * 0. */
+static dvi_status integrate(draft *d, const dvi_march *march, dvi_march_form form,
+                            dvi__place_vector *vector, double **values)
 {
   if (vector == NULL) return DVI_OK;
-  *values = dvi__heap_take((size_t)dvi_yee_size(&d->terms, form), sizeof **values);
+  *values = dvi__heap_take((size_t)dvi_march_size(march, form), sizeof **values);
   if (*values == NULL) return DVI_NO_MEMORY;
   return dvi_yee_integrate(&d->terms, form, dvi__place_vector_value, vector, *values);
 }
@@ -213,8 +215,8 @@ dvi_status dvi__grid_march(const dvi_scene *scene, const dvi_march_options *opti
   draft d = {.field = scene->field, .maxwell = scene->field->maxwell};
   dvi_status status = set_terms(&d, options);
   if (status == DVI_OK) status = dvi_yee_create(&d.terms, march);
-  if (status == DVI_OK) status = integrate(&d, DVI_FORM_E, d.maxwell->of_E, &d.E);
-  if (status == DVI_OK) status = integrate(&d, DVI_FORM_B, d.maxwell->of_B, &d.B);
+  if (status == DVI_OK) status = integrate(&d, *march, DVI_FORM_E, d.maxwell->of_E, &d.E);
+  if (status == DVI_OK) status = integrate(&d, *march, DVI_FORM_B, d.maxwell->of_B, &d.B);
   const dvi_march_state state = {.size = sizeof state, .E = d.E, .B = d.B};
   if (status == DVI_OK) status = dvi_march_start(*march, &state);
   if (status != DVI_OK) dvi_march_destroy(march);
