@@ -121,8 +121,9 @@ dvi_status dvi_march_start(dvi_march *march, const dvi_march_state *state);
  *
  *  @retval DVI_BAD_ARGUMENT     t is not finite, or before the march's time
  *  @retval DVI_BAD_STATE        the march has not been started
- *  @retval DVI_STEP_TOO_LARGE   the energy has grown beyond its band (avi). The march stands at the
- *                               time when that was seen, and can go on: the band is wider then
+ *  @retval DVI_STEP_TOO_LARGE   the energy has grown beyond its band (avi, tents). The march stands
+ *                               at the time when that was seen, and can go on: the band is wider
+ *                               then
  *  @retval DVI_CALLBACK_FAILED  a signal failed. The march stands at the last good time
  *  @retval DVI_NOT_FINITE       a signal is not finite, or values are seen not to be. The march
  *                               stands at the last good time */

@@ -6,10 +6,11 @@
 
 #include "core/status.h"
 #include "field/avi/engine.h"
+#include "field/step/alarm.h"
 
 enum { STEPS_BETWEEN_CHECKS = 64 };
 
-static const double hopeless = 1e100, roundings = 4 * DBL_EPSILON;
+static const double roundings = 4 * DBL_EPSILON;
 
 static dvi_status integrate(const dvi__avi *avi, int i, double from, double to, double *half)
 {
@@ -49,22 +50,16 @@ static double time_of_check(const dvi__avi *avi)
 
 static dvi_status compare_energy(dvi__avi *avi)
 {
+  static const dvi__alarm_words words = {
+      .method = "avi",
+      .reference = "the start and its currents",
+      .remedy = "the steps are in resonance; take shorter ones, and powers of 2 of the shortest",
+      .last = "shorter steps"};
   double energy, growth;
   DVI_TRY(dvi__avi_energy(avi, &energy, &growth));
-  if (!isfinite(energy) || growth > hopeless)
-    return dvi__fail(DVI_NOT_FINITE,
-                     "avi: the energy has grown to %g at t = %g, and the run cannot go on; take "
-                     "shorter steps",
-                     energy, avi->t);
-  avi->checks++;
-  if (!(growth > avi->allowed)) return DVI_OK;
-  const double allowed = avi->allowed;
-  avi->allowed = 2 * fmax(growth, allowed);
-  return dvi__fail(DVI_STEP_TOO_LARGE,
-                   "avi: at t = %g the energy is %.3g times that of the start and its currents, "
-                   "above %g: the steps are in resonance; take shorter ones, and powers of 2 of "
-                   "the shortest",
-                   avi->t, growth, allowed);
+  const dvi_status status = dvi__judge_growth(&words, avi->t, energy, growth, &avi->allowed);
+  if (status != DVI_NOT_FINITE) avi->checks++;
+  return status;
 }
 
 dvi_status dvi__avi_advance(dvi__avi *avi, double t)

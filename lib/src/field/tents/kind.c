@@ -5,6 +5,7 @@
 #include "core/hash.h"
 #include "core/memory.h"
 #include "core/status.h"
+#include "field/step/alarm.h"
 #include "field/step/observables.h"
 #include "field/step/source.h"
 #include "field/tents/front.h"
@@ -12,11 +13,22 @@
 #include "march/kind.h"
 
 static const char section_name[] = "tents";
-enum { SECTION_VERSION = 1 };
+static const double usual_band = 2;
+enum { SECTION_VERSION = 2, RISES_BETWEEN_CHECKS = 64 };
+
+/* What the alarm knows of a run. */
+typedef struct watch {
+  double t0, start, force; /* the time and the energies of the start */
+  double supply;           /* the largest that the force was seen to give or take */
+  double allowed;          /* the band, doubled after each alarm */
+  int64_t checks;
+} watch;
 
 typedef struct march {
   const dvi_field *field;
   dvi__tents *tents;
+  double band;
+  watch watch;
 } march;
 
 /* What a section begins with: what identifies the march, and where it stands. */
@@ -25,9 +37,26 @@ typedef struct place {
   uint64_t hash;
   int64_t tents;
   double t;
+  watch watch;
 } place;
 
 /* ---- motion ---- */
+
+/* A tent is at most as high as the ends of its edges may be apart. */
+static void facts(const void *self, dvi_march_facts *facts)
+{
+  const dvi__tents *w = ((const march *)self)->tents;
+  const dvi_mesh *mesh = w->mesh;
+  facts->step = (double)INFINITY;
+  for (int64_t e = 0; e < mesh->count[1]; e++) {
+    facts->step = fmin(facts->step, w->reach[e]);
+    facts->longest = fmax(facts->longest, w->reach[e]);
+  }
+  facts->bound = facts->step / w->fraction;
+  facts->steps = w->front.tents;
+  for (int64_t i = 0; i < mesh->count[w->k + 1] * (w->k + 2); i++)
+    facts->updates += w->front.rises[mesh->corner[w->k + 1][i]];
+}
 
 static void destroy(void *self)
 {
@@ -36,9 +65,47 @@ static void destroy(void *self)
   dvi__release(m);
 }
 
+/* Tents are never known to be stable, and slow to show that they are not. So the energy is looked
+ * at once in 64 of the highest tents, at times that do not depend on how the way is cut. The energy
+ * of a force is apart, so that a start at rest has a measure, too. */
+static dvi_status split_energy(const march *m, double *field, double *force)
+{
+  DVI_TRY(dvi__tents_energy(m->tents, field));
+  *force = dvi__tents_force_energy(m->tents);
+  *field -= *force;
+  return DVI_OK;
+}
+
+static dvi_status begin_watch(march *m)
+{
+  watch first = {.t0 = m->tents->t, .allowed = m->band};
+  DVI_TRY(split_energy(m, &first.start, &first.force));
+  m->watch = first;
+  if (isfinite(first.start)) return DVI_OK;
+  return dvi__fail(DVI_NOT_FINITE, "tents: the energy of the start is not finite");
+}
+
+static dvi_status compare_energy(march *m)
+{
+  static const dvi__alarm_words words = {
+      .method = "tents",
+      .reference = "the start",
+      .remedy = "the tents are in resonance; take a smaller fraction, or leapfrog",
+      .last = "a smaller fraction"};
+  watch *seen = &m->watch;
+  double field, force;
+  DVI_TRY(split_energy(m, &field, &force));
+  seen->supply = fmax(seen->supply, fabs(force - seen->force));
+  const double reference = seen->start + seen->supply,
+               growth = reference > 0 ? field / reference : 1;
+  const dvi_status status = dvi__judge_growth(&words, m->tents->t, field, growth, &seen->allowed);
+  if (status != DVI_NOT_FINITE) seen->checks++;
+  return status;
+}
+
 static dvi_status start(void *self, const dvi_march_state *state)
 {
-  const march *m = self;
+  march *m = self;
   const dvi_field *f = m->field;
   double *A = dvi__duplicate(f->fixed, (size_t)f->cells, sizeof *A);
   if (A == NULL) return dvi__fail(DVI_NO_MEMORY, "tents: no memory for a start");
@@ -48,12 +115,21 @@ static dvi_status start(void *self, const dvi_march_state *state)
   whole.A = A;
   dvi__tents_start(m->tents, &whole);
   dvi__release(A);
-  return DVI_OK;
+  return begin_watch(m);
 }
 
 static dvi_status advance(void *self, double t)
 {
-  return dvi__tents_advance(((march *)self)->tents, t);
+  march *m = self;
+  dvi_march_facts known = {0};
+  facts(m, &known);
+  for (;;) {
+    const double check = m->watch.t0 +
+                         (double)(m->watch.checks + 1) * (RISES_BETWEEN_CHECKS * known.longest);
+    if (!(check <= t)) return dvi__tents_advance(m->tents, t);
+    DVI_TRY(dvi__tents_advance(m->tents, check));
+    DVI_TRY(compare_energy(m));
+  }
 }
 
 static double time_of(const void *self)
@@ -103,22 +179,6 @@ static dvi_status observe(const void *self, int i, double *value)
   return dvi__field_observe(((const march *)self)->field, &observed, i, value);
 }
 
-/* A tent is at most as high as the ends of its edges may be apart. */
-static void facts(const void *self, dvi_march_facts *facts)
-{
-  const dvi__tents *w = ((const march *)self)->tents;
-  const dvi_mesh *mesh = w->mesh;
-  facts->step = (double)INFINITY;
-  for (int64_t e = 0; e < mesh->count[1]; e++) {
-    facts->step = fmin(facts->step, w->reach[e]);
-    facts->longest = fmax(facts->longest, w->reach[e]);
-  }
-  facts->bound = facts->step / w->fraction;
-  facts->steps = w->front.tents;
-  for (int64_t i = 0; i < mesh->count[w->k + 1] * (w->k + 2); i++)
-    facts->updates += w->front.rises[mesh->corner[w->k + 1][i]];
-}
-
 /* ---- files ---- */
 
 /* The arrays of a state, and the bytes of each. */
@@ -140,8 +200,9 @@ static arrays arrays_of(const dvi__tents *w)
                 w->k > 0 ? (size_t)mesh->count[w->k - 1] * number : 0}};
 }
 
-static place place_of(const dvi__tents *w)
+static place place_of(const march *m)
 {
+  const dvi__tents *w = m->tents;
   const dvi_mesh *mesh = w->mesh;
   const size_t cells = (size_t)mesh->count[mesh->n];
   uint64_t hash = dvi__hash(DVI__HASH_START, sizeof w->fraction, &w->fraction);
@@ -157,13 +218,15 @@ static place place_of(const dvi__tents *w)
                  .values = mesh->count[w->k],
                  .hash = hash,
                  .tents = w->front.tents,
-                 .t = w->t};
+                 .t = w->t,
+                 .watch = m->watch};
 }
 
 static void save(const void *self, dvi__sections_writer *writer)
 {
-  const dvi__tents *w = ((const march *)self)->tents;
-  const place here = place_of(w);
+  const march *m = self;
+  const dvi__tents *w = m->tents;
+  const place here = place_of(m);
   const arrays all = arrays_of(w);
   dvi__section_open(writer, section_name, SECTION_VERSION);
   dvi__section_put(writer, &here, sizeof here);
@@ -172,8 +235,9 @@ static void save(const void *self, dvi__sections_writer *writer)
 
 static dvi_status load(void *self, const dvi__sections *sections)
 {
-  dvi__tents *w = ((march *)self)->tents;
-  const place here = place_of(w);
+  march *m = self;
+  dvi__tents *w = m->tents;
+  const place here = place_of(m);
   const arrays all = arrays_of(w);
   dvi__section section;
   place there = here;
@@ -190,6 +254,7 @@ static dvi_status load(void *self, const dvi__sections *sections)
   for (int i = 0; i < all.count; from += all.bytes[i++]) memcpy(all.at[i], from, all.bytes[i]);
   w->front.tents = there.tents;
   w->t = there.t;
+  m->watch = there.watch;
   *w->level_time = (double)NAN;
   dvi__front_order(w, &w->front);
   return DVI_OK;
@@ -225,6 +290,7 @@ static dvi_status make(march *m, const dvi_field *f, const dvi__tents_options *o
   double *source = NULL, *force = NULL;
   int8_t *held = DVI_NEW(int8_t, f->cells);
   m->field = f;
+  m->band = options->band > 0 ? options->band : usual_band;
   dvi_status status = dvi__wave_source(f, &source);
   if (status == DVI_OK && source != NULL) force = DVI_NEW(double, f->cells);
   if (status == DVI_OK && (!held || (source && !force)))

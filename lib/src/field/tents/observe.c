@@ -92,6 +92,14 @@ dvi_status dvi__tents_energy(const dvi__tents *w, double *energy)
   return DVI_OK;
 }
 
+double dvi__tents_force_energy(const dvi__tents *w)
+{
+  double sum = 0;
+  for (int64_t i = 0; i < w->mesh->count[w->k] && w->force != NULL; i++)
+    sum -= w->force[i] * w->level->A[i];
+  return sum;
+}
+
 double dvi__tents_charge_error(const dvi__tents *w)
 {
   double worst = 0, largest = 0;

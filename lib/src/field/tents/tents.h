@@ -10,6 +10,7 @@ typedef struct dvi__tents_options {
   double fraction;
   double least;  /* tents rise at random by this part of what is allowed, or more. Default: 1 */
   uint64_t seed; /* of the random rises */
+  double band;   /* by which the energy of a march may grow until it stops. Default: 2 */
 } dvi__tents_options;
 
 /* What tents are pitched over, and which form. All arrays are copied. */
@@ -46,13 +47,17 @@ dvi_status dvi__tents_sample(const dvi__tents *tents, dvi_march_form form, int64
 /* Give the energy E.M_k E/2 + B.M_{k+1} B/2 - force.A then. */
 dvi_status dvi__tents_energy(const dvi__tents *tents, double *energy);
 
+/* Return -force.A of the last call of dvi__tents_energy. */
+double dvi__tents_force_energy(const dvi__tents *tents);
+
 /* Give the largest change of a charge since the start, d_{k-1}^T M_k E on cells of degree k - 1 at
  * which nothing is held, beside the largest sum of the sizes of its terms. 0 for k = 0. */
 double dvi__tents_charge_error(const dvi__tents *tents);
 
-/* Create a march of tents, whose options are "least=0.5,seed=3" or a part of them. DVI_BAD_OPTION,
- * DVI_UNSUPPORTED for fields with currents or losses, and as dvi__tents_create. The field outlives
- * the march. */
+/* Create a march of tents, whose options are "least=0.5,seed=3,band=2" or a part of them.
+ * DVI_BAD_OPTION, DVI_UNSUPPORTED for fields with currents or losses, and as dvi__tents_create. The
+ * field outlives the march. Its energy is judged by dvi__judge_growth once in 64 of the highest
+ * tents. */
 dvi_status dvi__tents_march(const dvi_field *field, const dvi__march_plan *plan, dvi_march **march);
 
 #endif
