@@ -93,10 +93,11 @@ START_TEST(arnoldis_method_finds_the_same_growth)
     double step[100];
     step_by_cells(&s, i == 0 ? 0.95 : 0.9, 0, step);
     dvi__avi *avi = avi_of(&s.terms);
+    const dvi__flow flow = dvi__avi_flow(avi);
     dvi_march_facts facts;
     dvi_stability report = {0};
     dvi__avi_facts(avi, &facts);
-    ck_assert_int_eq(dvi__avi_largest_multipliers(avi, facts.longest, repeats(2000), &report),
+    ck_assert_int_eq(dvi__largest_multipliers(&flow, facts.longest, repeats(2000), &report),
                      DVI_OK);
     if (i == 0 && !is_short_run())
       ck_assert_double_eq_tol(report.growth, 1.00481751, 5e-4);
@@ -200,8 +201,9 @@ START_TEST(losses_can_make_a_field_grow)
   ck_assert_double_eq_tol(report.growth, 1.011508820, 6e-9);
   ck_assert_int_eq(report.followed, 42 + 97); /* modes of A, and all of D */
   dvi__avi *avi = avi_of(&b.s.terms);
+  const dvi__flow flow = dvi__avi_flow(avi);
   dvi_stability searched = {0};
-  ck_assert_int_eq(dvi__avi_largest_multipliers(avi, report.period, 2000, &searched), DVI_OK);
+  ck_assert_int_eq(dvi__largest_multipliers(&flow, report.period, 2000, &searched), DVI_OK);
   ck_assert_double_eq_tol(searched.growth, report.growth, 1e-8);
   dvi__avi_destroy(&avi);
   const double rate = rate_of_run(&b.s, 1000);
@@ -225,9 +227,10 @@ START_TEST(losses_can_take_all_fields_away)
     const dvi_stability report = stability_of(&s);
     ck_assert(report.is_stable && report.growth == 1);
     dvi__avi *avi = avi_of(&s.terms);
+    const dvi__flow flow = dvi__avi_flow(avi);
     dvi_stability searched = {0};
     for (int far = 0; far < 2 && !is_free; far++) {
-      ck_assert_int_eq(dvi__avi_largest_multipliers(avi, report.period, far ? 5e4 : 500, &searched),
+      ck_assert_int_eq(dvi__largest_multipliers(&flow, report.period, far ? 5e4 : 500, &searched),
                        DVI_OK);
       ck_assert(searched.growth == 1);
     }
@@ -267,9 +270,10 @@ START_TEST(growth_beyond_all_numbers_is_refused)
   check_words("take a shorter span");
   ck_assert(report.growth == -1);
   dvi__avi *avi = avi_of(&s.terms);
-  ck_assert_int_eq(dvi__avi_largest_multipliers(avi, 300, 80 * 300, &report), DVI_NOT_FINITE);
+  const dvi__flow flow = dvi__avi_flow(avi);
+  ck_assert_int_eq(dvi__largest_multipliers(&flow, 300, 80 * 300, &report), DVI_NOT_FINITE);
   check_words("take a shorter span");
-  ck_assert_int_eq(dvi__avi_all_multipliers(avi, 300, &report), DVI_NOT_FINITE);
+  ck_assert_int_eq(dvi__all_multipliers(&flow, 300, &report), DVI_NOT_FINITE);
   check_words("take a shorter span");
   dvi__avi_destroy(&avi);
   end_stepped(&s);
@@ -295,10 +299,11 @@ START_TEST(lacking_memory_is_a_status)
     dvi_stability report = {.growth = -1};
     dvi_status status = DVI_NO_MEMORY;
     dvi__avi *avi = avi_of(&s.terms);
+    const dvi__flow flow = dvi__avi_flow(avi);
     for (long successes = 0; status != DVI_OK; successes++) {
       dvi__fail_allocations_after(successes);
       status = way == 0 ? dvi__avi_stability(&s.terms, 0, &report)
-                        : dvi__avi_largest_multipliers(avi, 1, 80, &report);
+                        : dvi__largest_multipliers(&flow, 1, 80, &report);
       dvi__fail_allocations_after(-1);
       ck_assert(status == DVI_OK || status == DVI_NO_MEMORY);
       ck_assert(status == DVI_OK || way == 1 || report.growth == -1);

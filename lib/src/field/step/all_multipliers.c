@@ -11,7 +11,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "field/avi/monodromy.h"
+#include "field/step/growth.h"
 #include "num/eigen.h"
 
 enum { SQUARES_LEAST = 6, SQUARES_MOST = 40 };
@@ -19,7 +19,7 @@ enum { SQUARES_LEAST = 6, SQUARES_MOST = 40 };
 static const double static_below = 1e-11, grown = 1e6, threshold = 1e-6;
 
 typedef struct modal {
-  dvi__avi *avi;
+  const dvi__flow *flow;
   int n, r, statics;          /* free edges, modes that are not static, and others */
   int size;                   /* coordinates */
   double *K, *M, *lambda, *X; /* [n*n] by columns, lambda [n] */
@@ -45,16 +45,16 @@ static dvi_status no_memory(const modal *m)
 
 static void fill_in(const modal *m)
 {
-  const dvi__avi *avi = m->avi;
+  const dvi__flow *flow = m->flow;
   const size_t n = (size_t)m->n;
-  for (size_t e = 0; e < n; e++) m->M[e * n + e] = avi->M1[e];
-  for (int64_t f = 0; f < avi->active_faces; f++)
-    for (int a = 0; a < avi->width; a++)
-      for (int b = 0; b < avi->width; b++) {
-        const int i = avi->facet[f * avi->width + a], j = avi->facet[f * avi->width + b];
-        const size_t row = (size_t)dvi__avi_number(i), column = (size_t)dvi__avi_number(j);
+  for (size_t e = 0; e < n; e++) m->M[e * n + e] = flow->M1[e];
+  for (int64_t f = 0; f < flow->faces; f++)
+    for (int a = 0; a < flow->width; a++)
+      for (int b = 0; b < flow->width; b++) {
+        const int i = flow->facet[f * flow->width + a], j = flow->facet[f * flow->width + b];
+        const size_t row = (size_t)dvi__flow_number(i), column = (size_t)dvi__flow_number(j);
         if (row < n && column < n)
-          m->K[column * n + row] += (i < 0) == (j < 0) ? avi->M2[f] : -avi->M2[f];
+          m->K[column * n + row] += (i < 0) == (j < 0) ? flow->M2[f] : -flow->M2[f];
       }
 }
 
@@ -72,7 +72,7 @@ static dvi_status find_modes(modal *m)
   while (m->statics < m->n && !(m->lambda[m->statics] > static_below * m->lambda[m->n - 1]))
     m->statics++;
   m->r = m->n - m->statics;
-  m->size = m->r + (m->avi->extra_count > 0 ? m->n : m->r);
+  m->size = m->r + (m->flow->has_losses ? m->n : m->r);
   return DVI_OK;
 }
 
@@ -86,25 +86,25 @@ static int mode(const modal *m, int i)
 
 static void begin_column(const modal *m, int j)
 {
-  dvi__avi *avi = m->avi;
+  const dvi__flow *flow = m->flow;
   const int i = mode(m, j < m->r ? j : j - m->r);
   const double *x = m->X + (size_t)i * (size_t)m->n, omega = sqrt(m->lambda[i]);
-  memset(avi->A, 0, (size_t)avi->edges * sizeof(double));
-  memset(avi->D, 0, (size_t)avi->edges * sizeof(double));
-  for (int e = 0; e < m->n && j < m->r; e++) avi->A[e] = x[e] / omega;
-  for (int e = 0; e < m->n && j >= m->r; e++) avi->D[e] = avi->M1[e] * x[e];
+  memset(flow->A, 0, (size_t)m->n * sizeof(double));
+  memset(flow->D, 0, (size_t)m->n * sizeof(double));
+  for (int e = 0; e < m->n && j < m->r; e++) flow->A[e] = x[e] / omega;
+  for (int e = 0; e < m->n && j >= m->r; e++) flow->D[e] = flow->M1[e] * x[e];
 }
 
 static void end_column(const modal *m, int j)
 {
-  const dvi__avi *avi = m->avi;
+  const dvi__flow *flow = m->flow;
   double *column = m->T + (size_t)j * (size_t)m->size;
   for (int i = 0; i < m->size - m->r; i++) {
     const double *x = m->X + (size_t)mode(m, i) * (size_t)m->n;
     double a = 0, d = 0;
     for (int e = 0; e < m->n; e++) {
-      a += x[e] * avi->M1[e] * avi->A[e];
-      d += x[e] * avi->D[e];
+      a += x[e] * flow->M1[e] * flow->A[e];
+      d += x[e] * flow->D[e];
     }
     if (i < m->r) column[i] = sqrt(m->lambda[mode(m, i)]) * a;
     column[m->r + i] = d;
@@ -126,10 +126,10 @@ static dvi_status make_matrix(modal *m, double period)
   if (m->T == NULL || m->product == NULL) return no_memory(m);
   for (int j = 0; j < m->size; j++) {
     begin_column(m, j);
-    DVI_TRY(dvi__avi_carry(m->avi, period));
+    DVI_TRY(m->flow->carry(m->flow->of, period));
     end_column(m, j);
   }
-  return dvi__avi_check_size(norm_of(m), period);
+  return dvi__check_size(norm_of(m), period);
 }
 
 static void square(modal *m)
@@ -171,9 +171,9 @@ static dvi_status find_largest(const modal *m, double *largest)
   return status;
 }
 
-dvi_status dvi__avi_all_multipliers(dvi__avi *avi, double period, dvi_stability *report)
+dvi_status dvi__all_multipliers(const dvi__flow *flow, double period, dvi_stability *report)
 {
-  modal m = {.avi = avi, .n = (int)avi->free_edges};
+  modal m = {.flow = flow, .n = (int)flow->n};
   double largest = 0;
   report->span = period;
   dvi_status status = find_modes(&m);

@@ -12,7 +12,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "field/avi/monodromy.h"
+#include "field/step/growth.h"
 #include "num/eigen.h"
 
 enum { DIRECTIONS = 40, PERIODS_BEFORE = 40 };
@@ -21,7 +21,7 @@ enum { DIRECTIONS = 40, PERIODS_BEFORE = 40 };
 static const double settled = 0.1;
 
 typedef struct arnoldi {
-  dvi__avi *avi;
+  const dvi__flow *flow;
   int64_t faces, n;                     /* with events, and all numbers */
   double *q;                            /* [DIRECTIONS+1][n] B and D of the directions */
   double *image;                        /* [n] M2 B and M1^-1 D of the new one */
@@ -43,23 +43,22 @@ static double dot(int64_t n, const double *x, const double *y)
 /* Make M2 B and M1^-1 D of a direction. Returns its length. */
 static double weigh(const arnoldi *s, const double *q)
 {
-  const dvi__avi *avi = s->avi;
-  for (int64_t f = 0; f < s->faces; f++) s->image[f] = avi->M2[f] * q[f];
-  for (int64_t e = 0; e < avi->free_edges; e++)
-    s->image[s->faces + e] = avi->inverse[e] * q[s->faces + e];
+  const dvi__flow *flow = s->flow;
+  for (int64_t f = 0; f < s->faces; f++) s->image[f] = flow->M2[f] * q[f];
+  for (int64_t e = 0; e < flow->n; e++) s->image[s->faces + e] = flow->inverse[e] * q[s->faces + e];
   return sqrt(dot(s->n, q, s->image));
 }
 
 /* B = bias + dA, from A = 0 on. */
 static dvi_status carry(const arnoldi *s, const double *from, double time, double *to)
 {
-  dvi__avi *avi = s->avi;
-  memset(avi->A, 0, (size_t)avi->edges * sizeof(double));
-  memcpy(avi->bias, from, (size_t)s->faces * sizeof(double));
-  memcpy(avi->D, from + s->faces, (size_t)avi->free_edges * sizeof(double));
-  DVI_TRY(dvi__avi_carry(avi, time));
-  for (int64_t f = 0; f < s->faces; f++) to[f] = dvi__avi_field(avi, f, avi->A);
-  memcpy(to + s->faces, avi->D, (size_t)avi->free_edges * sizeof(double));
+  const dvi__flow *flow = s->flow;
+  memset(flow->A, 0, (size_t)flow->n * sizeof(double));
+  memcpy(flow->bias, from, (size_t)s->faces * sizeof(double));
+  memcpy(flow->D, from + s->faces, (size_t)flow->n * sizeof(double));
+  DVI_TRY(flow->carry(flow->of, time));
+  for (int64_t f = 0; f < s->faces; f++) to[f] = dvi__flow_field(flow, f);
+  memcpy(to + s->faces, flow->D, (size_t)flow->n * sizeof(double));
   return DVI_OK;
 }
 
@@ -92,7 +91,7 @@ static dvi_status iterate(arnoldi *s, double time, int *directions)
     DVI_TRY(carry(s, direction(s, j), time, direction(s, j + 1)));
     const double before = weigh(s, direction(s, j + 1));
     const double length = orthogonalise(s, j);
-    DVI_TRY(dvi__avi_check_size(before + length, time));
+    DVI_TRY(dvi__check_size(before + length, time));
     s->h[j][j + 1] = length;
     if (!(length > 1e-12 * before)) {
       s->h[j][j + 1] = 0;
@@ -106,13 +105,13 @@ static dvi_status iterate(arnoldi *s, double time, int *directions)
 static dvi_status begin(arnoldi *s, double time)
 {
   double *first = direction(s, 0);
-  dvi__avi_scatter(s->avi, s->avi->impulse);
-  for (int64_t f = 0; f < s->faces; f++) first[f] = dvi__avi_field(s->avi, f, s->avi->A);
-  memcpy(first + s->faces, s->avi->D, (size_t)s->avi->free_edges * sizeof(double));
+  dvi__scatter(s->flow);
+  for (int64_t f = 0; f < s->faces; f++) first[f] = dvi__flow_field(s->flow, f);
+  memcpy(first + s->faces, s->flow->D, (size_t)s->flow->n * sizeof(double));
   for (int i = 0; i < PERIODS_BEFORE; i++) {
     DVI_TRY(carry(s, first, time, first));
     const double length = weigh(s, first);
-    DVI_TRY(dvi__avi_check_size(length, time));
+    DVI_TRY(dvi__check_size(length, time));
     if (length == 0) return DVI_OK; /* dampings left nothing, which stays so */
     scale(s, first, 1 / length);
   }
@@ -144,25 +143,25 @@ static dvi_status search(arnoldi *s, double period, double span, dvi_stability *
   report->growth = exp(log(largest) / time);
   report->span = time * (PERIODS_BEFORE + directions);
   report->followed = directions;
-  report->resolution = 0.5 * log(2.0 * (double)s->avi->free_edges) / report->span;
+  report->resolution = 0.5 * log(2.0 * (double)s->flow->n) / report->span;
   return DVI_OK;
 }
 
-dvi_status dvi__avi_largest_multipliers(dvi__avi *avi, double period, double span,
-                                        dvi_stability *report)
+dvi_status dvi__largest_multipliers(const dvi__flow *flow, double period, double span,
+                                    dvi_stability *report)
 {
   arnoldi *s = DVI_NEW(arnoldi, 1);
   if (s == NULL) return dvi__fail(DVI_NO_MEMORY, "stability: no memory");
-  s->avi = avi;
-  s->faces = avi->active_faces;
-  s->n = s->faces + avi->free_edges;
+  s->flow = flow;
+  s->faces = flow->faces;
+  s->n = s->faces + flow->n;
   s->q = DVI_NEW(double, (DIRECTIONS + 1) * s->n);
   s->image = DVI_NEW(double, s->n);
   const dvi_status status = s->q != NULL && s->image != NULL
                                 ? search(s, period, span, report)
                                 : dvi__fail(DVI_NO_MEMORY, "stability: no memory for %d fields",
                                             DIRECTIONS);
-  memset(avi->bias, 0, (size_t)avi->faces * sizeof(double));
+  memset(flow->bias, 0, (size_t)flow->faces * sizeof(double));
   dvi__release(s->q);
   dvi__release(s->image);
   dvi__release(s);
