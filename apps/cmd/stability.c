@@ -1,4 +1,4 @@
-/* dvi stability, which tells how fast a field grows under a schedule of steps, before a run. */
+/* dvi stability, which tells how fast a field grows under steps or tents, before a run. */
 #include <dvi/scene.h>
 #include <dvi/march.h>
 #include <math.h>
@@ -44,8 +44,7 @@ static int examine_all(const stability_request *r, const problem *scene, const d
   static const table_column columns[] = {
       {"method", NULL}, {"schedule", NULL},     {"period", "%.9g"}, {"growth", "%.9f"},
       {"rate", "%.3e"}, {"resolution", "%.1e"}, {"result", NULL},   {NULL, NULL}};
-  const char *own = scene->method != NULL && strncmp(scene->method, "avi", 3) == 0 ? scene->method
-                                                                                   : "avi";
+  const char *own = scene->method != NULL ? scene->method : "avi";
   FILE *stream = r->csv != NULL && strcmp(r->csv, "-") == 0 ? stderr : stdout;
   result_table *rows = table_create(columns);
   int code = DONE;
@@ -62,17 +61,19 @@ static int examine_all(const stability_request *r, const problem *scene, const d
 }
 
 static const char *const details[] = {
-    "Asynchronous steps can be in resonance with a field, which then grows exponentially, however "
-    "slowly. The growth is the factor of the\n"
-    "fastest field's amplitude in a unit of time, and the rate its logarithm. A small field is "
-    "followed through a common period of all\n"
-    "steps, with all of its modes; of a large field, and of steps without a common period, the "
-    "fields that grow fastest are searched,\n"
-    "and the resolution says which growth the search can have missed. Losses are counted, and "
-    "sources left out. The exit code is 0 for growth, too.\n",
+    "Asynchronous steps and tents can be in resonance with a field, which then grows "
+    "exponentially, however slowly. The growth is the factor\n"
+    "of the fastest field's amplitude in a unit of time, and the rate its logarithm. A small field "
+    "is followed through a common period of\n"
+    "all steps, with all of its modes; of a large field, and of steps without a common period, as "
+    "most tents are, the fields that grow\n"
+    "fastest are searched, and the resolution says which growth the search can have missed. Losses "
+    "are counted, and sources left out.\n"
+    "The exit code is 0 for growth, too.\n",
     "Columns of --csv: method, schedule, period, growth, rate, resolution, result.\n",
     "Examples:\n"
     "  dvi stability gap.yaml --method avi --method avi:classes=no\n"
+    "  dvi stability coax.yaml --method tents --method tents:least=0.5,seed=3\n"
     "  dvi stability gap.yaml --method avi --fraction 0.95 --csv -\n",
     NULL,
 };
@@ -81,7 +82,7 @@ static const option command_options[] = {
     {.name = "method",
      OPTION_AT(stability_request, methods),
      .value = "SPEC",
-     .help = "avi or avi:classes=no; may be repeated; default: the scene's"},
+     .help = "avi, avi:classes=no or tents; may be repeated; default: the scene's, or avi"},
     {.name = "fraction",
      OPTION_AT(stability_request, fraction),
      .value = "F",
@@ -103,9 +104,10 @@ static const option command_options[] = {
 
 static const command_line command = {
     .name = "stability",
-    .synopsis = "SCENE.yaml [--method avi] [OPTIONS]",
+    .synopsis = "SCENE.yaml [--method SPEC] [OPTIONS]",
     .operand = "SCENE.yaml",
-    .summary = "Find how fast a field grows under asynchronous steps, before a run shows it.\n",
+    .summary =
+        "Find how fast a field grows under asynchronous steps or tents, before a run shows it.\n",
     .options = command_options,
     .details = details,
 };

@@ -355,6 +355,26 @@ expect 0 'free ratios' stability cavity.yaml --csv - --method avi:classes=no --f
 says out '^avi:classes=no,.*,grows$' 'free ratios are not'
 expect 2 'equal steps' stability cavity.yaml --method leapfrog
 says err 'equal steps' 'equal steps'
+
+# The scene's own method is examined, and a run of the same tents ends with the alarm.
+cat >tents.yaml <<END
+mesh: {generator: interval, cells: [12]}
+field: maxwell
+boundary: pec
+initial: {E: ["x*(1 - x)*sin(7*x)"]}
+method: tents:least=0.5,seed=3
+until: 3000
+END
+expect 0 'stability of the own method' stability tents.yaml --csv -
+says out '^"tents:least=0.5,seed=3",random tents from .*,grows$' 'random tents'
+expect 0 'stability of another method' stability tents.yaml --csv - --method tents --method avi
+says out '^tents,equal tents of .*,stable$' 'equal tents'
+says out '^avi,equal steps of .*,stable$' 'equal steps'
+expect 1 'a run that grows' run tents.yaml --final
+says err 'tents: at t = .* the energy is .* times that of the start, above 2' 'the alarm'
+sed 's/^method:.*/method: leapfrog/' tents.yaml >leapfrog.yaml
+expect 2 'a scene with equal steps' stability leapfrog.yaml
+says err 'ask for avi or tents' 'a scene with equal steps'
 expect 1 'a fraction of 1' stability cavity.yaml --fraction 1
 says err 'above 0 and below 1' 'a fraction of 1'
 expect 2 'no field' stability kepler

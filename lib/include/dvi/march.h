@@ -198,9 +198,10 @@ dvi_status dvi_field_laws(const dvi_field *field, const dvi_march_options *optio
  *  finds the largest eigenvalues (Saad 2011, ch. 6). Free steps may have no common period: their
  *  ratios are looked at as fractions with denominators up to 64.
  *  If these do not give a period below a thousand of the longest steps, a field that begins at
- *  random is followed for a long time. `resolution` says what such a search can have missed.
+ *  random is followed for a long time. `resolution` says what such a search can have missed. So it
+ *  is with tents, unless all vertices have equal steps.
  *
- *  @param[in]  options  those of the march, with the method avi. NULL for its defaults
+ *  @param[in]  options  those of the march, with the method avi or tents. NULL for those of avi
  *  @param[in]  span     time for which fields are followed at least, 0 for a default
  *  @param[out] report   unchanged on failure
  *  @retval DVI_UNSUPPORTED  the method has equal steps, which are stable below their bound

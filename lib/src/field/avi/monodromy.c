@@ -2,13 +2,55 @@
 #include "field/avi/monodromy.h"
 
 #include <float.h>
-#include <stdarg.h>
-#include <dvi/number.h>
+#include <math.h>
 
 #include "core/status.h"
 
+enum { DENOMINATOR_MOST = 64, PERIOD_MOST = 1000 };
+
 /* Events that a search may cost, unless the user asks for a span. */
 static const double events_wanted = 5e7;
+
+/* ---- the common period ---- */
+
+static int64_t greatest_divisor(int64_t a, int64_t b)
+{
+  while (b != 0) {
+    const int64_t rest = a % b;
+    a = b;
+    b = rest;
+  }
+  return a;
+}
+
+/* The common multiple of the steps in units of shortest/q, or 0 if one is no multiple of the unit,
+ * or if it is too long. */
+static int64_t common_multiple(const dvi__avi *avi, int q)
+{
+  const double most = PERIOD_MOST * avi->longest / avi->shortest * q;
+  int64_t multiple = 1, last = 0;
+  for (int64_t f = 0; f < avi->active_faces; f++) {
+    const double units = avi->step[f] / avi->shortest * q;
+    if (fabs(units - rint(units)) > 1e-10 * units) return 0;
+    const int64_t p = (int64_t)rint(units);
+    if (p == last) continue;
+    last = p;
+    multiple = multiple / greatest_divisor(multiple, p) * p;
+    if ((double)multiple > most) return 0;
+  }
+  return multiple;
+}
+
+static double common_period(const dvi__avi *avi)
+{
+  if (!avi->is_queued) return avi->longest;
+  if (avi->longest > 1e6 * avi->shortest) return 0;
+  for (int q = 1; q <= DENOMINATOR_MOST; q++) {
+    const int64_t multiple = common_multiple(avi, q);
+    if (multiple > 0) return (double)multiple * avi->shortest / q;
+  }
+  return 0;
+}
 
 /* ---- passages ---- */
 
@@ -57,27 +99,19 @@ dvi__flow dvi__avi_flow(dvi__avi *avi)
 
 /* ---- the report ---- */
 
-static void say(dvi_stability *report, const char *format, ...) DVI_PRINTF(2, 3);
-static void say(dvi_stability *report, const char *format, ...)
-{
-  va_list arguments;
-  va_start(arguments, format);
-  (void)dvi_number_vprint(report->schedule, DVI_SCHEDULE_SIZE, format, arguments);
-  va_end(arguments);
-}
-
 static void describe(const dvi__avi *avi, dvi_stability *report)
 {
   const double from = avi->shortest, to = avi->longest;
   if (from == to)
-    say(report, "equal steps of %.6g", from);
+    dvi__say_schedule(report, "equal steps of %.6g", from);
   else if (!avi->is_queued)
-    say(report, "%d classes of steps, powers of 2 from %.6g to %.6g", avi->classes, from, to);
+    dvi__say_schedule(report, "%d classes of steps, powers of 2 from %.6g to %.6g", avi->classes,
+                      from, to);
   else if (report->period > 0)
-    say(report, "free steps from %.6g to %.6g with the common period %.6g", from, to,
-        report->period);
+    dvi__say_schedule(report, "free steps from %.6g to %.6g with the common period %.6g", from, to,
+                      report->period);
   else
-    say(report, "free steps from %.6g to %.6g without a common period", from, to);
+    dvi__say_schedule(report, "free steps from %.6g to %.6g without a common period", from, to);
 }
 
 static dvi_status find_growth(dvi__avi *avi, double span, dvi_stability *report)
@@ -85,10 +119,9 @@ static dvi_status find_growth(dvi__avi *avi, double span, dvi_stability *report)
   const dvi__flow flow = dvi__avi_flow(avi);
   const dvi__schedule schedule = {.count = avi->active_faces,
                                   .step = avi->step,
-                                  .shortest = avi->shortest,
                                   .longest = avi->longest,
                                   .events = events_wanted};
-  report->period = avi->is_queued ? dvi__common_period(&schedule) : avi->longest;
+  report->period = common_period(avi);
   return dvi__find_growth(&flow, &schedule, span, report);
 }
 

@@ -13,12 +13,17 @@ typedef struct method {
   const char *name;
   int needs_boxes;
   dvi_status (*create)(const dvi_field *field, const dvi__march_plan *plan, dvi_march **march);
+  /* NULL if its steps are equal and have a bound */
+  dvi_status (*stability)(const dvi_field *field, const dvi__march_plan *plan, double span,
+                          dvi_stability *report);
 } method;
 
 static const method methods[] = {
-    {"leapfrog", 0, dvi__leapfrog_create}, {"bossavit-kettunen", 0, dvi__leapfrog_create},
-    {"yee", 1, dvi__leapfrog_create},      {"avi", 0, dvi__avi_march_create},
-    {"tents", 0, dvi__tents_march},
+    {"leapfrog", 0, dvi__leapfrog_create, NULL},
+    {"bossavit-kettunen", 0, dvi__leapfrog_create, NULL},
+    {"yee", 1, dvi__leapfrog_create, NULL},
+    {"avi", 0, dvi__avi_march_create, dvi__avi_march_stability},
+    {"tents", 0, dvi__tents_march, dvi__tents_march_stability},
 };
 
 enum { METHODS = sizeof methods / sizeof *methods };
@@ -116,10 +121,9 @@ dvi_status dvi_field_stability(const dvi_field *field, const dvi_march_options *
   if (!(span >= 0) || isinf(span))
     return dvi__fail(DVI_BAD_ARGUMENT, "stability: the span is %g; 0 or more are possible", span);
   DVI_TRY(prepare(field, options != NULL ? options : &defaults, "avi", &found, &plan));
-  if (found->create == dvi__avi_march_create)
-    return dvi__avi_march_stability(field, &plan, span, report);
+  if (found->stability != NULL) return found->stability(field, &plan, span, report);
   return dvi__fail(DVI_UNSUPPORTED,
-                   "stability: %s has equal steps, which are stable below their bound; ask for avi",
-
+                   "stability: %s has equal steps, which are stable below their bound; ask for avi "
+                   "or tents",
                    found->name);
 }

@@ -1,13 +1,15 @@
-/* The choice of how to find the growth, and the common period of steps. */
+/* The choice of how to find the growth. */
 #include "field/step/growth.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <string.h>
+#include <dvi/number.h>
 
 #include "core/status.h"
 #include "num/philox.h"
 
-enum { DENOMINATOR_MOST = 64, PERIOD_MOST = 1000, ALL_MODES_MOST = 500, SEGMENTS = 64 };
+enum { ALL_MODES_MOST = 500, SEGMENTS = 64 };
 
 dvi_status dvi__check_size(double size, double time)
 {
@@ -16,46 +18,6 @@ dvi_status dvi__check_size(double size, double time)
                    "stability: a field grows beyond all numbers within %g, so that its growth is "
                    "not told; take a shorter span, or shorter steps",
                    time);
-}
-
-/* ---- the common period ---- */
-
-static int64_t greatest_divisor(int64_t a, int64_t b)
-{
-  while (b != 0) {
-    const int64_t rest = a % b;
-    a = b;
-    b = rest;
-  }
-  return a;
-}
-
-/* The common multiple of the steps in units of shortest/q, or 0 if one is no multiple of the unit,
- * or if it is too long. */
-static int64_t common_multiple(const dvi__schedule *s, int q)
-{
-  const double most = PERIOD_MOST * s->longest / s->shortest * q;
-  int64_t multiple = 1, last = 0;
-  for (int64_t i = 0; i < s->count; i++) {
-    const double units = s->step[i] / s->shortest * q;
-    if (fabs(units - rint(units)) > 1e-10 * units) return 0;
-    const int64_t p = (int64_t)rint(units);
-    if (p == last) continue;
-    last = p;
-    multiple = multiple / greatest_divisor(multiple, p) * p;
-    if ((double)multiple > most) return 0;
-  }
-  return multiple;
-}
-
-double dvi__common_period(const dvi__schedule *s)
-{
-  if (s->longest > 1e6 * s->shortest) return 0;
-  for (int q = 1; q <= DENOMINATOR_MOST; q++) {
-    const int64_t multiple = common_multiple(s, q);
-    if (multiple > 0) return (double)multiple * s->shortest / q;
-  }
-  return 0;
 }
 
 /* ---- fields to begin with ---- */
@@ -128,6 +90,16 @@ static dvi_status follow(const dvi__flow *flow, double span, dvi_stability *repo
   report->followed = 1;
   report->resolution = 0.5 * log(2.0 * (double)flow->n) / report->span;
   return DVI_OK;
+}
+
+/* ---- the report ---- */
+
+void dvi__say_schedule(dvi_stability *report, const char *format, ...)
+{
+  va_list arguments;
+  va_start(arguments, format);
+  (void)dvi_number_vprint(report->schedule, DVI_SCHEDULE_SIZE, format, arguments);
+  va_end(arguments);
 }
 
 /* ---- the choice ---- */

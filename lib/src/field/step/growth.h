@@ -3,6 +3,8 @@
 #define DVI_FIELD_STEP_GROWTH_H
 #include <dvi/march.h>
 
+#include "core/status.h"
+
 /* A field with a diagonal star, and the steps that carry it. Its free k-cells have the numbers from
  * 0 to n - 1. A code is the number of a cell, or its complement if the sign is negative. */
 typedef struct dvi__flow {
@@ -27,12 +29,9 @@ typedef struct dvi__flow {
 typedef struct dvi__schedule {
   int64_t count;
   const double *step; /* [count] */
-  double shortest, longest;
+  double longest;
   double events; /* that a search may cost, unless the user asks for a span */
 } dvi__schedule;
-
-/* Return the common period of all steps, or 0 if there is none, or too long a one. */
-double dvi__common_period(const dvi__schedule *schedule);
 
 /* Find the growth as dvi_field_stability does. `period` of the report is that of the steps, or 0.
  * The schedule's words are left to the march. */
@@ -46,6 +45,9 @@ dvi_status dvi__all_multipliers(const dvi__flow *flow, double period, dvi_stabil
 /* The same by Arnoldi's method. */
 dvi_status dvi__largest_multipliers(const dvi__flow *flow, double period, double span,
                                     dvi_stability *report);
+
+/* Write the steps in words. */
+void dvi__say_schedule(dvi_stability *report, const char *format, ...) DVI_PRINTF(2, 3);
 
 /* Refuse a size that has grown beyond all numbers within some time. */
 dvi_status dvi__check_size(double size, double time);

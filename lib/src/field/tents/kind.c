@@ -307,20 +307,36 @@ static dvi_status make(march *m, const dvi_field *f, const dvi__tents_options *o
   return status;
 }
 
-dvi_status dvi__tents_march(const dvi_field *field, const dvi__march_plan *plan, dvi_march **result)
+/* Make the tents of a plan. What is made is the caller's on failure, too. */
+static dvi_status prepare(const dvi_field *field, const dvi__march_plan *plan, march *m)
 {
   dvi__tents_options options = {.fraction = plan->fraction};
-  *result = NULL;
   if (plan->step > 0)
     return dvi__fail(DVI_BAD_ARGUMENT,
                      "tents: they have no common step, as %g would be: give a fraction",
                      plan->step);
   DVI_TRY(dvi__tents_read_options(plan->options, &options));
   DVI_TRY(check_field(field));
+  return make(m, field, &options);
+}
+
+dvi_status dvi__tents_march(const dvi_field *field, const dvi__march_plan *plan, dvi_march **result)
+{
   march *m = DVI_NEW(march, 1);
+  *result = NULL;
   if (m == NULL) return dvi__fail(DVI_NO_MEMORY, "tents: no memory");
-  const dvi_status status = make(m, field, &options);
+  const dvi_status status = prepare(field, plan, m);
   if (status == DVI_OK) return dvi__march_wrap(&kind, m, result);
   destroy(m);
+  return status;
+}
+
+dvi_status dvi__tents_march_stability(const dvi_field *field, const dvi__march_plan *plan,
+                                      double span, dvi_stability *report)
+{
+  march m = {.field = field};
+  dvi_status status = prepare(field, plan, &m);
+  if (status == DVI_OK) status = dvi__tents_stability(m.tents, span, report);
+  dvi__tents_destroy(&m.tents);
   return status;
 }

@@ -1,6 +1,8 @@
 /* A field that advances over an unstructured mesh of spacetime, which grows tent by tent. */
 #ifndef DVI_FIELD_TENTS_TENTS_H
 #define DVI_FIELD_TENTS_TENTS_H
+#include <dvi/march.h>
+
 #include "field/step/bound.h"
 
 /* How tents are pitched. Zero means the default. */
@@ -54,10 +56,18 @@ double dvi__tents_force_energy(const dvi__tents *tents);
  * which nothing is held, beside the largest sum of the sizes of its terms. 0 for k = 0. */
 double dvi__tents_charge_error(const dvi__tents *tents);
 
+/* Find the growth of fields, as dvi_field_stability does, under tents. Their state and force are
+ * lost. */
+dvi_status dvi__tents_stability(dvi__tents *tents, double span, dvi_stability *report);
+
 /* Create a march of tents, whose options are "least=0.5,seed=3,band=2" or a part of them.
  * DVI_BAD_OPTION, DVI_UNSUPPORTED for fields with currents or losses, and as dvi__tents_create. The
  * field outlives the march. Its energy is judged by dvi__judge_growth once in 64 of the highest
  * tents. */
 dvi_status dvi__tents_march(const dvi_field *field, const dvi__march_plan *plan, dvi_march **march);
+
+/* Find the growth under the tents of such a march, for dvi_field_stability. */
+dvi_status dvi__tents_march_stability(const dvi_field *field, const dvi__march_plan *plan,
+                                      double span, dvi_stability *report);
 
 #endif
