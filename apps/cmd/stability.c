@@ -67,9 +67,9 @@ static const char *const details[] = {
     "is followed through a common period of\n"
     "all steps, with all of its modes; of a large field, and of steps without a common period, as "
     "most tents are, the fields that grow\n"
-    "fastest are searched, and the resolution says which growth the search can have missed. "
-    "Losses are counted, and sources left out. The\n"
-    "exit code is 0 for growth, too.\n",
+    "fastest are searched, and the resolution says which growth the search can have missed. Losses "
+    "are counted, and sources left out.\n"
+    "The exit code is 0 for growth, too.\n",
     "Columns of --csv: method, schedule, period, growth, rate, resolution, result.\n",
     "Examples:\n"
     "  dvi stability gap.yaml --method avi --method avi:classes=no\n"

@@ -201,8 +201,8 @@ START_TEST(losses_can_make_a_field_grow)
   ck_assert_double_eq_tol(report.growth, 1.011508820, 6e-9);
   ck_assert_int_eq(report.followed, 42 + 97); /* modes of A, and all of D */
   dvi__avi *avi = avi_of(&b.s.terms);
-  dvi_stability searched = {0};
   const dvi__flow flow = dvi__avi_flow(avi);
+  dvi_stability searched = {0};
   ck_assert_int_eq(dvi__largest_multipliers(&flow, report.period, 2000, &searched), DVI_OK);
   ck_assert_double_eq_tol(searched.growth, report.growth, 1e-8);
   dvi__avi_destroy(&avi);

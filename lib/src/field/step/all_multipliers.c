@@ -72,7 +72,7 @@ static dvi_status find_modes(modal *m)
   while (m->statics < m->n && !(m->lambda[m->statics] > static_below * m->lambda[m->n - 1]))
     m->statics++;
   m->r = m->n - m->statics;
-  m->size = m->r + (m->flow->is_damped ? m->n : m->r);
+  m->size = m->r + (m->flow->has_losses ? m->n : m->r);
   return DVI_OK;
 }
 
@@ -89,8 +89,8 @@ static void begin_column(const modal *m, int j)
   const dvi__flow *flow = m->flow;
   const int i = mode(m, j < m->r ? j : j - m->r);
   const double *x = m->X + (size_t)i * (size_t)m->n, omega = sqrt(m->lambda[i]);
-  memset(flow->A, 0, (size_t)flow->n * sizeof(double));
-  memset(flow->D, 0, (size_t)flow->n * sizeof(double));
+  memset(flow->A, 0, (size_t)m->n * sizeof(double));
+  memset(flow->D, 0, (size_t)m->n * sizeof(double));
   for (int e = 0; e < m->n && j < m->r; e++) flow->A[e] = x[e] / omega;
   for (int e = 0; e < m->n && j >= m->r; e++) flow->D[e] = flow->M1[e] * x[e];
 }

@@ -22,7 +22,7 @@ static const double settled = 0.1;
 
 typedef struct arnoldi {
   const dvi__flow *flow;
-  int64_t faces, n;                     /* (k+1)-cells, and all numbers */
+  int64_t faces, n;                     /* with events, and all numbers */
   double *q;                            /* [DIRECTIONS+1][n] B and D of the directions */
   double *image;                        /* [n] M2 B and M1^-1 D of the new one */
   double h[DIRECTIONS][DIRECTIONS + 1]; /* by columns */
@@ -49,12 +49,12 @@ static double weigh(const arnoldi *s, const double *q)
   return sqrt(dot(s->n, q, s->image));
 }
 
-/* B = base + dA, from A = 0 on. */
+/* B = bias + dA, from A = 0 on. */
 static dvi_status carry(const arnoldi *s, const double *from, double time, double *to)
 {
   const dvi__flow *flow = s->flow;
   memset(flow->A, 0, (size_t)flow->n * sizeof(double));
-  memcpy(flow->base, from, (size_t)s->faces * sizeof(double));
+  memcpy(flow->bias, from, (size_t)s->faces * sizeof(double));
   memcpy(flow->D, from + s->faces, (size_t)flow->n * sizeof(double));
   DVI_TRY(flow->carry(flow->of, time));
   for (int64_t f = 0; f < s->faces; f++) to[f] = dvi__flow_field(flow, f);
@@ -161,7 +161,7 @@ dvi_status dvi__largest_multipliers(const dvi__flow *flow, double period, double
                                 ? search(s, period, span, report)
                                 : dvi__fail(DVI_NO_MEMORY, "stability: no memory for %d fields",
                                             DIRECTIONS);
-  memset(flow->base, 0, (size_t)flow->faces * sizeof(double));
+  memset(flow->bias, 0, (size_t)flow->faces * sizeof(double));
   dvi__release(s->q);
   dvi__release(s->image);
   dvi__release(s);

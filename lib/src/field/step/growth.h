@@ -14,10 +14,10 @@ typedef struct dvi__flow {
   const double *M1, *inverse; /* [n] M_k and its inverse */
   const double *M2;           /* [faces] */
   double bound;               /* a stable step, which tells how large A is beside D = M_k E */
-  int is_damped;
-  double *A, *D; /* [n] the state */
-  double *base;  /* [faces] B - dA, also of the state, 0 but for a search */
-  double *work;  /* [faces] room */
+  double *A, *D;              /* [n] the state */
+  double *bias;               /* [faces] B - dA, which stays. 0 at first */
+  int has_losses;             /* some of which take energy away */
+  double *work;               /* [faces] room */
   /* Carry the state from the time 0 to t, at which all steps meet again. */
   dvi_status (*carry)(void *of, double t);
   /* Give the energy at t of the state at 0. Calls begin with t = 0, and times ascend. */
@@ -61,11 +61,11 @@ static inline int dvi__flow_number(int code)
   return code < 0 ? ~code : code;
 }
 
-/* Give B = base + dA on a (k+1)-cell. */
+/* Give B on a (k+1)-cell. */
 static inline double dvi__flow_field(const dvi__flow *flow, int64_t face)
 {
   const int *code = flow->facet + face * flow->width;
-  double sum = flow->base[face];
+  double sum = flow->bias[face];
   for (int c = 0; c < flow->width; c++) {
     const int i = dvi__flow_number(code[c]);
     if (i < flow->n) sum += code[c] < 0 ? -flow->A[i] : flow->A[i];

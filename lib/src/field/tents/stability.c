@@ -26,7 +26,7 @@ typedef struct slabs {
   double shortest;
   int *cell, *number; /* [n] free k-cells, and [k-cells] their numbers */
   int *facet;
-  double *M1, *inverse, *M2, *A, *D, *base, *work, *step;
+  double *M1, *inverse, *M2, *A, *D, *bias, *work, *step;
 } slabs;
 
 /* ---- passages ---- */
@@ -39,7 +39,7 @@ static void begin(slabs *s)
     w->front.A[s->cell[i]] = s->A[i];
     w->front.row[s->cell[i]] = s->D[i];
   }
-  memcpy(w->base, s->base, (size_t)s->flow.faces * sizeof *s->base);
+  memcpy(w->base, s->bias, (size_t)s->flow.faces * sizeof *w->base);
 }
 
 static dvi_status carry(void *of, double t)
@@ -70,7 +70,7 @@ static dvi_status energy_at(void *of, double t, double *energy)
 static void clear(slabs *s)
 {
   void *const owned[] = {s->cell, s->number, s->facet, s->M1,   s->inverse, s->M2,
-                         s->A,    s->D,      s->base,  s->work, s->step};
+                         s->A,    s->D,      s->bias,  s->work, s->step};
   for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) dvi__release(owned[i]);
 }
 
@@ -86,10 +86,10 @@ static dvi_status allocate(slabs *s)
   s->M2 = dvi__duplicate(w->star->diagonal[w->k + 1], (size_t)faces, sizeof *s->M2);
   s->A = DVI_NEW(double, cells);
   s->D = DVI_NEW(double, cells);
-  s->base = DVI_NEW(double, faces);
+  s->bias = DVI_NEW(double, faces);
   s->work = DVI_NEW(double, faces);
   s->step = DVI_NEW(double, w->mesh->count[0]);
-  if (s->cell && s->number && s->facet && s->M1 && s->inverse && s->M2 && s->A && s->D && s->base &&
+  if (s->cell && s->number && s->facet && s->M1 && s->inverse && s->M2 && s->A && s->D && s->bias &&
       s->work && s->step)
     return DVI_OK;
   return dvi__fail(DVI_NO_MEMORY, "stability: no memory for %lld cells", (long long)cells);
@@ -155,7 +155,7 @@ static dvi_status prepare(slabs *s)
                         .bound = s->shortest,
                         .A = s->A,
                         .D = s->D,
-                        .base = s->base,
+                        .bias = s->bias,
                         .work = s->work,
                         .carry = carry,
                         .energy = energy_at,
