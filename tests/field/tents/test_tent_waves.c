@@ -8,6 +8,8 @@
 #include "support/suite.h"
 #include "support/field/tents.h"
 
+static const double pi = 3.14159265358979323846;
+
 /* ---- waves ---- */
 
 /* Returns the largest error of a sine that has gone once around a circle of random edges. */
@@ -90,6 +92,54 @@ START_TEST(light_converges_on_tetrahedra)
   }
   ck_assert_double_le(error[0], 0.4);
   ck_assert_double_ge(log(error[0] / error[1]) / log(5.0 / 3), 1.5);
+}
+END_TEST
+
+/* ---- order ---- */
+
+typedef struct cavity_errors {
+  double place, mode; /* of E: in the mean square over vertices, and of the amplitude */
+} cavity_errors;
+
+/* The errors of E = sin(pi x) cos(pi t) at t = 1.3. */
+static cavity_errors errors_of_cavity(int cells, double least, uint64_t seed)
+{
+  int8_t held[161] = {1};
+  held[cells] = 1;
+  pitched p = tents_over(mesh_at(&(tent_place){"interval", 1, cells, 0}), 0, NULL, held,
+                         (dvi__tents_options){.least = least, .seed = seed});
+  for (int i = 1; i < cells; i++) p.E[i] = sin(pi * i / cells);
+  start_tents(&p);
+  advance_tents(&p, 1.3);
+  sample_tents(&p);
+  cavity_errors sum = {0};
+  for (int i = 0; i <= cells; i++) {
+    const double shape = sin(pi * i / cells), error = p.E[i] - shape * cos(pi * 1.3);
+    sum.place += error * error / cells;
+    sum.mode += 2 * error * shape / cells;
+  }
+  strike_tents(&p);
+  return (cavity_errors){sqrt(sum.place), fabs(sum.mode)};
+}
+
+/* Equal tents are of second order everywhere. The shifts of momentum between neighbours by random
+ * ones leave an order of 1/2 at a place, and second order in the amplitude of a mode. */
+START_TEST(random_tents_lose_order_at_places_but_not_in_modes)
+{
+  const cavity_errors coarse = errors_of_cavity(40, 1, 0), fine = errors_of_cavity(160, 1, 0);
+  cavity_errors rough = {0}, smooth = {0};
+  ck_assert_double_eq_tol(log2(coarse.place / fine.place) / 2, 2, 0.02);
+  ck_assert_double_eq_tol(log2(coarse.mode / fine.mode) / 2, 2, 0.02);
+  for (int seed = 1; seed <= 12; seed++) {
+    const cavity_errors a = errors_of_cavity(40, 0.5, (uint64_t)seed),
+                        b = errors_of_cavity(160, 0.5, (uint64_t)seed);
+    rough.place += a.place * a.place;
+    rough.mode += a.mode * a.mode;
+    smooth.place += b.place * b.place;
+    smooth.mode += b.mode * b.mode;
+  }
+  ck_assert_double_eq_tol(log2(rough.place / smooth.place) / 4, 0.45, 0.15);
+  ck_assert_double_eq_tol(log2(rough.mode / smooth.mode) / 4, 2, 0.05);
 }
 END_TEST
 
@@ -273,6 +323,7 @@ SUITE(tent_waves)
   tcase_add_test(tests, a_travelling_sine_converges);
   tcase_add_test(tests, light_converges_on_triangles);
   tcase_add_test(tests, light_converges_on_tetrahedra);
+  tcase_add_test(tests, random_tents_lose_order_at_places_but_not_in_modes);
   tcase_add_test(tests, a_medium_has_its_speed_of_light);
   tcase_add_test(tests, a_pulse_is_reflected_at_an_interface);
   tcase_add_test(tests, charges_stay_in_random_media);
