@@ -19,6 +19,7 @@ enum { SECTION_VERSION = 2, RISES_BETWEEN_CHECKS = 64 };
 /* What the alarm knows of a run. */
 typedef struct watch {
   double t0, start, force; /* the time and the energies of the start */
+  double interval;         /* between two looks at the energy */
   double supply;           /* the largest that the force was seen to give or take */
   double allowed;          /* the band, doubled after each alarm */
   int64_t checks;
@@ -78,7 +79,10 @@ static dvi_status split_energy(const march *m, double *field, double *force)
 
 static dvi_status begin_watch(march *m)
 {
-  watch first = {.t0 = m->tents->t, .allowed = m->band};
+  dvi_march_facts known = {0};
+  facts(m, &known);
+  watch first = {
+      .t0 = m->tents->t, .interval = RISES_BETWEEN_CHECKS * known.longest, .allowed = m->band};
   DVI_TRY(split_energy(m, &first.start, &first.force));
   m->watch = first;
   if (isfinite(first.start)) return DVI_OK;
@@ -121,11 +125,8 @@ static dvi_status start(void *self, const dvi_march_state *state)
 static dvi_status advance(void *self, double t)
 {
   march *m = self;
-  dvi_march_facts known = {0};
-  facts(m, &known);
   for (;;) {
-    const double check = m->watch.t0 +
-                         (double)(m->watch.checks + 1) * (RISES_BETWEEN_CHECKS * known.longest);
+    const double check = m->watch.t0 + (double)(m->watch.checks + 1) * m->watch.interval;
     if (!(check <= t)) return dvi__tents_advance(m->tents, t);
     DVI_TRY(dvi__tents_advance(m->tents, check));
     DVI_TRY(compare_energy(m));
