@@ -69,7 +69,8 @@ static double steps_rate(const job *j, int cells, int threads, double least)
   const dvi_yee_end end = {.kind = j->layers > 0 ? DVI_YEE_CPML : DVI_YEE_PEC, .layers = j->layers};
   dvi_yee_terms terms = {
       .size = sizeof terms, .axes = 3, .degree = 1, .threads = threads, .together = j->together};
-  for (int l = 0; l < 3; l++) terms.axis[l] = (dvi_yee_axis){.cells = cells, .end = {end, end}};
+  const dvi_yee_axis axis = {.cells = cells, .end = {end, end}};
+  for (int l = 0; l < 3; l++) terms.axis[l] = axis;
   if (j->has_medium) terms.eps.at = glass;
   const int steps = 16; /* at once */
   const dvi_march_state start = {.size = sizeof start};
