@@ -75,6 +75,15 @@ static int refuse_state(dvi_status status, const journey *j)
   return code;
 }
 
+/* A mesh has the materials of the middles of its cells, and a grid their averages. */
+static void tell_if_on_mesh(const problem *scene, const char *method, const char *found)
+{
+  if (method == NULL) method = scene->method;
+  if (method != NULL && strcmp(method, "yee") == 0 && strcmp(found, "yee") != 0)
+    complain("run: yee is leapfrog on the mesh of the boxes here, with the materials at their "
+             "middles: a start by A and probes of parts need the mesh");
+}
+
 static int make_march(journey *j)
 {
   const run_request *r = j->request;
@@ -94,6 +103,7 @@ static int make_march(journey *j)
                          dvi_march_time(j->march), r->t_end);
   }
   dvi_march_facts_of(j->march, &facts);
+  tell_if_on_mesh(j->scene, r->method, facts.method);
   j->unit = facts.longest;
   j->t_start = dvi_march_time(j->march);
   j->unit_count = (long)floor(j->t_start / j->unit + 1e-6);
