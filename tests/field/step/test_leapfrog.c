@@ -314,6 +314,40 @@ static void compare(const scene *a, const scene *b)
   ck_assert_double_eq(observe_march(a->march, "gauss"), observe_march(b->march, "gauss"));
 }
 
+/* A current that ended at t = 0, by its values and by its integral. */
+static int signal_of_the_past(double t, double *value, void *user)
+{
+  (void)user;
+  *value = t < 0 ? 100 : 0;
+  return 0;
+}
+
+static int impulse_of_the_past(double from, double to, double *value, void *user)
+{
+  (void)user;
+  *value = 100 * (fmin(to, 0) - fmin(from, 0));
+  return 0;
+}
+
+START_TEST(nothing_acts_that_came_before_the_start)
+{
+  for (int kind = 0; kind < 4; kind++) {
+    const dvi_current dipole = {.at = {0.3, 0.3, 0.3},
+                                .along = {0, 0, 1},
+                                .signal = signal_of_the_past,
+                                .impulse = kind % 2 ? impulse_of_the_past : NULL};
+    scene s = make_scene(box(), kind < 2 ? DVI_CIRCUMCENTRIC : DVI_WHITNEY,
+                         (dvi_maxwell_terms){.current = &dipole, .currents = 1},
+                         (dvi_march_options){.fraction = 0.5});
+    const dvi_march_state rest = {.size = sizeof rest};
+    ck_assert_int_eq(dvi_march_start(s.march, &rest), DVI_OK);
+    advance_march(s.march, 1);
+    ck_assert_double_eq(observe_march(s.march, "energy"), 0);
+    end_scene(&s);
+  }
+}
+END_TEST
+
 /* What differs are the places of a dipole, and the conductivities. */
 START_TEST(states_of_other_sources_and_losses_are_refused)
 {
@@ -400,5 +434,6 @@ SUITE(leapfrog)
   tcase_add_loop_test(tests, values_that_overflow_are_refused, 0, 2);
   tcase_add_test(tests, random_currents_keep_the_law_of_charge);
   tcase_add_test(tests, cuts_threads_and_saved_states_keep_the_bits);
+  tcase_add_test(tests, nothing_acts_that_came_before_the_start);
   tcase_add_test(tests, states_of_other_sources_and_losses_are_refused);
 }

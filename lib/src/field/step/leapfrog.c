@@ -53,7 +53,7 @@ typedef struct leapfrog {
   int64_t numbers;
   double *state;       /* [numbers] all that follows in this block, and the charge's numbers */
   double *E, *H, *A;   /* E^{n+1/2}, B^n as field/step/sweep.h has it, A^n if it is kept */
-  double *J;           /* [currents] means of the signals around t_n */
+  double *J;           /* [currents] means of the signals around t_n, or after t_0 */
   double *impulse;     /* [currents] integrals of the signals over the next step */
   double *keep, *gain; /* [cells] coefficients of diagonal stars; keep is NULL for 1 */
   double *inverse;     /* [unknowns] 1/(M + dt/2 S) of diagonal stars */
@@ -117,12 +117,17 @@ static dvi_status solve(const leapfrog *l, const dvi__products *A)
 
 /* ---- a step ---- */
 
+static double time_of(const leapfrog *l, int64_t n)
+{
+  return l->at.t0 + (double)n * l->at.dt;
+}
+
 /* Integrate the signals over a step around t_{n+1}. */
 static dvi_status find_impulses(leapfrog *l)
 {
-  const double dt = l->at.dt, t = l->at.t0 + (double)(l->at.n + 1) * dt;
+  const double half = l->at.dt / 2, t = time_of(l, l->at.n + 1);
   for (int c = 0; c < l->field->currents; c++)
-    DVI_TRY(dvi__current_impulse(l->field, c, t - dt / 2, t + dt / 2, l->impulse + c));
+    DVI_TRY(dvi__current_impulse(l->field, c, t - half, t + half, l->impulse + c));
   return DVI_OK;
 }
 
@@ -177,11 +182,6 @@ static dvi_status step(leapfrog *l)
   return status;
 }
 
-static double time_of(const leapfrog *l, int64_t n)
-{
-  return l->at.t0 + (double)n * l->at.dt;
-}
-
 static dvi_status advance(void *self, double t)
 {
   leapfrog *l = self;
@@ -198,6 +198,19 @@ static dvi_status advance(void *self, double t)
 
 /* ---- a start ---- */
 
+/* Give J^0 in place of impulses: the mean over the half step, so that nothing acts that came before
+ * the start, or the signal at t_0 if it has no integral. */
+static dvi_status find_first_currents(leapfrog *l)
+{
+  const double half = l->at.dt / 2, t = l->at.t0;
+  for (int c = 0; c < l->field->currents; c++) {
+    const double from = l->field->current[c].impulse != NULL ? t : t - half;
+    DVI_TRY(dvi__current_impulse(l->field, c, from, t + half, l->impulse + c));
+    l->impulse[c] /= t + half - from;
+  }
+  return DVI_OK;
+}
+
 /* Take what is given, and B = dA otherwise. */
 static void take(leapfrog *l, const dvi_march_state *state)
 {
@@ -212,7 +225,7 @@ static void take(leapfrog *l, const dvi_march_state *state)
   }
   for (int64_t b = 0; b < l->sweep.faces; b++)
     l->H[b] = l->sweep.weight[b] * (state->B != NULL ? state->B[b] : dvi__sweep_d(&l->sweep, b, A));
-  for (int c = 0; c < f->currents; c++) l->J[c] = l->impulse[c] / l->at.dt;
+  for (int c = 0; c < f->currents; c++) l->J[c] = l->impulse[c];
 }
 
 /* Set E^{1/2} = E^0 + dt/2 M^-1 (d^T M_{k+1} B^0 - J^0 - S E^{1/2}). */
@@ -255,11 +268,9 @@ static dvi_status start(void *self, const dvi_march_state *state)
 {
   leapfrog *l = self;
   const place before = l->at;
-  l->at.t0 = state->t;
-  l->at.n = -1;
-  dvi_status status = find_impulses(l);
+  l->at.t0 = l->at.t = state->t;
   l->at.n = 0;
-  l->at.t = state->t;
+  dvi_status status = find_first_currents(l);
   if (status == DVI_OK) {
     if (l->gain == NULL) memcpy(l->solver.kept, l->state, (size_t)l->numbers * sizeof(double));
     take(l, state);
