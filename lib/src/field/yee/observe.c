@@ -66,14 +66,18 @@ static int counts(const dvi__yee *y, const int *place, int is_box)
   return !dvi__yee_is_on_wave(y, place, is_box);
 }
 
-/* Give D of an edge with what has been conducted, and with `all` what currents brought there. */
-static double displacement(const dvi__yee *y, int c, const int *place, int all)
+/* Give D of an edge, and with `all` what has been conducted and what currents brought there. The
+ * sizes of the terms are added to *size. */
+static double displacement(const dvi__yee *y, int c, const int *place, int all, double *size)
 {
-  double E = dvi__yee_stored(y, c, place).re;
-  if (all && y->worn != NULL) E += y->worn[dvi__yee_beside(y, c, place)];
+  const double E = dvi__yee_stored(y, c, place).re, star = dvi__yee_star(y, c, place);
+  double worn = 0, driven = 0;
+  if (all && y->worn != NULL) worn = y->worn[dvi__yee_beside(y, c, place)];
   if (all && y->sources > 0)
-    E -= (1 + dvi__yee_loss(y, c, place)) * dvi__yee_acted(y, &y->on_edges, c, place, y->impulses);
-  return dvi__yee_star(y, c, place) * E;
+    driven = (1 + dvi__yee_loss(y, c, place)) *
+             dvi__yee_acted(y, &y->on_edges, c, place, y->impulses);
+  *size += star * (fabs(E) + fabs(worn) + fabs(driven));
+  return star * (E + worn - driven);
 }
 
 /* Give the outflow of D at a node, and the sum of the sizes of its terms. */
@@ -85,10 +89,9 @@ static double outflow(const dvi__yee *y, const int *node, int all, double *size)
     int before[3] = {node[0], node[1], node[2]};
     before[c] += node[c] > 0 ? -1 : y->axis[c].cells - 1;
     if (y->slot[c] < 0) continue;
-    const double in = node[c] > 0 || y->axis[c].wraps ? displacement(y, c, before, all) : 0,
-                 out = node[c] < y->axis[c].cells ? displacement(y, c, node, all) : 0;
+    const double in = node[c] > 0 || y->axis[c].wraps ? displacement(y, c, before, all, size) : 0,
+                 out = node[c] < y->axis[c].cells ? displacement(y, c, node, all, size) : 0;
     sum += out - in;
-    *size += fabs(out) + fabs(in);
   }
   return sum;
 }
