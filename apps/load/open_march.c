@@ -58,11 +58,16 @@ static const char *section_of(const char *sentence, const dvi_march_options *opt
 static int refuse(dvi_status status, const problem *scene, const dvi_march_options *options)
 {
   char message[MESSAGE_SIZE] = "";
-  const bool is_damped = scene->terms->damping > 0;
-  const char *sentence = is_damped ? "marches of fields have no damping; a conductor has 'sigma', "
-                                     "and mechanical methods such as verlet take the friction"
-                                   : dvi_last_error();
-  const char *section = is_damped ? "damping" : section_of(sentence, options);
+  const char *sentence = dvi_last_error(), *section = section_of(sentence, options);
+  const bool is_yee = options->method != NULL && strcmp(options->method, "yee") == 0;
+  if (scene->terms->damping > 0) {
+    section = "damping";
+    sentence = "marches of fields have no damping; a conductor has 'sigma', and mechanical methods "
+               "such as verlet take the friction";
+  } else if (status == DVI_UNSUPPORTED && is_yee && dvi_scene_field(scene->scene) != NULL) {
+    section = "star";
+    sentence = "yee has no star: leave it out, or take leapfrog";
+  }
   /* of a callback that failed the scene knows the place better */
   if (status == DVI_NO_MEMORY || status == DVI_CALLBACK_FAILED || section == NULL)
     return library_error(status);

@@ -291,6 +291,16 @@ for method in leapfrog:x=1 avi:classes=perhaps tents:seed=-1; do
   refuse "$method" 4:9 'option' "$flat
 method: $method"
 done
+for star in whitney barycentric; do
+  refuse "a $star star of yee" 5:7 'yee has no star: leave it out, or take leapfrog' "$grid
+star: $star"
+  sed 's/yee/leapfrog/' wrong.yaml >star.yaml
+  expect 2 "a $star star by yee" run star.yaml --method yee --h 0.01
+  says err 'star.yaml:5:7: .*yee has no star' "a $star star by yee"
+done
+refuse 'a star of a grid' 6:7 'yee has no star' "$grid
+boundary: {cpml: 2}
+star: whitney"
 refuse 'an option of yee' 4:9 'has no options' "$solid
 method: yee:x=1"
 refuse 'an option of a grid' 3:9 'yee has no options' 'mesh: {generator: box, cells: [8, 8]}
