@@ -123,6 +123,31 @@ for key in size origin grading; do
 field: maxwell"
 done
 
+for line in 'size: [5, -0.25]' 'size: [5, 0]' 'grading: [3, 0]' 'size: 0'; do
+  for generator in box kuhn; do
+    refuse "$line of a $generator" '1:[0-9]*' "${line%%:*} is a finite number above 0, and cannot" \
+      "mesh: {generator: $generator, cells: [8, 8], $line}
+field: maxwell"
+  done
+done
+refuse 'no cells along an axis' 1:32 'cells is a whole number from 1 to' \
+  'mesh: {generator: box, cells: [0, 8]}
+field: maxwell'
+refuse 'no numbers of cells' 1:31 'cells is a list of one to four numbers' \
+  'mesh: {generator: box, cells: []}
+field: maxwell'
+for words in '--cells 0,4' '--cells 4,-1' '--size 0,1' '--grading 0,1' '--size 1,-2'; do
+  # shellcheck disable=SC2086 # an option and its value
+  expect 2 "$words" mesh box $words
+  says err "^dvi: mesh: $words: .* is not above 0$" "$words"
+done
+printf '%s\n' "$flat" 'method: avi' >avi.yaml
+for words in '--fraction 0' '--fraction 1.5' '--fraction -1' '--span 0' '--span -1'; do
+  # shellcheck disable=SC2086 # an option and its value
+  expect 2 "$words" stability avi.yaml $words
+  says err "^dvi: stability: $words: " "$words"
+done
+
 # ---- sources ----
 
 refuse 'a dipole outside' 4:19 'the dipole is outside of the mesh' "$solid
