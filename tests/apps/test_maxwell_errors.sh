@@ -84,6 +84,13 @@ method: leapfrog
 boundary: {cpml: 1}"
 refuse 'a phase at one end' 5:11 'repeats itself at one end only' "$grid
 boundary: {left: {bloch: 1}, right: pec}"
+refuse 'two phases of an axis' 5:30 "the same phase, and 'left' has 1, and 'right' 0.5" "$grid
+boundary: {left: {bloch: 1}, right: {bloch: 0.5}}"
+refuse 'another phase than that of all' 5:34 "the same phase" "$grid
+boundary: {boundary: {bloch: 1}, right: {bloch: 0.5}}"
+printf '%s\n' "$grid" 'boundary: {boundary: {bloch: 1}, left: {bloch: 0.5}, right: {bloch: 0.5}}' \
+  >phases.yaml
+expect 0 'a phase of each axis' check phases.yaml
 refuse 'walls that repeat a mesh' 4:11 'this mesh repeats itself by its own axes' "$flat
 boundary: periodic"
 refuse 'an axis that repeats itself at one end' 5:11 'let left and right be periodic' "$grid
