@@ -79,8 +79,9 @@ static int refuse(dvi_status status, const problem *scene, const dvi_march_optio
 static int refuse_method(const problem *scene, const char *method, bool is_own)
 {
   char sentence[MESSAGE_SIZE], message[MESSAGE_SIZE] = "";
-  (void)snprintf(sentence, sizeof sentence, "%s: %s", method,
-                 strncmp(method, "yee:", 4) == 0 ? "yee has no options" : grid_sentence(scene));
+  char reason[MESSAGE_SIZE / 2] = "yee has no options";
+  if (strncmp(method, "yee:", 4) != 0) grid_sentence(scene, true, reason, sizeof reason);
+  (void)snprintf(sentence, sizeof sentence, "%s: %s", method, reason);
   if (!is_own) return usage_error("--method %s", sentence);
   dvi_scene_tell(scene->scene, "method", sentence, message, sizeof message);
   return usage_error("%s", message);
@@ -97,4 +98,18 @@ int open_march(const problem *scene, const dvi_march_options *options, dvi_march
   if (method != NULL && dvi_scene_grid_only(scene->scene) != NULL && strcmp(method, "yee") != 0)
     return refuse_method(scene, method, asked.method == NULL);
   return refuse(status, scene, &asked);
+}
+
+int check_studied_march(const char *command, const problem *scene, const char *method)
+{
+  const dvi_march_options options = {
+      .size = sizeof options, .method = method, .fraction = 0.5, .potential = 1};
+  dvi_march *march = NULL;
+  if (strncmp(method, "tents", 5) == 0 && (method[5] == '\0' || method[5] == ':'))
+    return usage_error("%s: tents have no common step, so that order and bench do not take them; "
+                       "take leapfrog or avi",
+                       command);
+  const int code = open_march(scene, &options, &march);
+  dvi_march_destroy(&march);
+  return code;
 }

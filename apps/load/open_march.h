@@ -9,4 +9,8 @@
  * for the scene's own. Returns DONE, or complains, with the place in the scene where it is known,
  * and returns the exit code. */
 int open_march(const problem *scene, const dvi_march_options *options, dvi_march **march);
+
+/** Check that a march has steps of which a study can take any number. Returns DONE, or complains
+ * and returns the exit code. */
+int check_studied_march(const char *command, const problem *scene, const char *method);
 #endif

@@ -79,7 +79,7 @@ refuse 'two walls in one' 5:18 'stand alone' "$grid
 boundary: {left: {cpml: 3, bloch: 1}}"
 refuse 'layers on simplices' 4:11 'layers and phases are for .method: yee. on boxes' "$flat
 boundary: {cpml: 2}"
-refuse 'layers by leapfrog' 4:9 "cpml only 'method: yee' knows, .* take 'absorbing'" "$solid
+refuse 'layers by leapfrog' 4:9 "cpml only 'method: yee' takes, .* take 'absorbing'" "$solid
 method: leapfrog
 boundary: {cpml: 1}"
 refuse 'a phase at one end' 5:11 'repeats itself at one end only' "$grid
@@ -405,13 +405,22 @@ expect 2 'a march of no field' run kepler --method leapfrog
 expect 2 'monitors of a march' explain run.yaml --time-transform arclength
 says err 'follow no monitor' 'monitors of a march'
 printf '%s\n' "$grid" 'boundary: {cpml: 2}' >grid.yaml
-for command in modes stability solve explain 'order --method verlet'; do
+for command in modes stability solve explain order bench 'order --method verlet'; do
   # shellcheck disable=SC2086 # the words of a command
   set -- $command
   subcommand=$1
   shift
   expect 2 "$subcommand of a grid" "$subcommand" grid.yaml "$@"
-  says err "cpml only 'method: yee' knows" "$subcommand of a grid"
+  says err "needs a mesh, and with cpml there is none: take 'absorbing'$" "$subcommand of a grid"
 done
 expect 2 'a grid by verlet' run grid.yaml --method verlet --h 0.01
+says err "cpml only 'method: yee' takes" 'a grid by verlet'
+printf '%s\n' "$flat" 'step: 0.01' 'initial: {E: [y, 0]}' >square.yaml
+for command in order bench; do
+  expect 2 "$command of tents" $command square.yaml --method tents:least=0.5
+  says err "^dvi: $command: tents have no common step" "$command of tents"
+done
+printf '%s\n' 'parameters: {n: 4}' "$flat" 'step: 0.01' | sed 's/4, 4/n, n/' >scaled.yaml
+expect 2 'a scale of marches' bench scaled.yaml --method leapfrog --scale n=4,6
+says err 'order, and bench without --scale; a mechanical method' 'a scale of marches'
 finish
