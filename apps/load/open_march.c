@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli/command.h"
+#include "load/field.h"
 #include "load/open.h"
 
 enum { MESSAGE_SIZE = 2048 };
@@ -54,17 +55,24 @@ static const char *section_of(const char *sentence, const dvi_march_options *opt
   return NULL;
 }
 
+static bool is_yee_on_mesh(const problem *scene, const char *method)
+{
+  const dvi_field *field = dvi_scene_field(scene->scene);
+  return method != NULL && strcmp(method, "yee") == 0 && field != NULL &&
+         dvi_mesh_kind(field_mesh(field)) == DVI_BOXES;
+}
+
 /* What the scene asks for is a mistake of the scene's text. */
 static int refuse(dvi_status status, const problem *scene, const dvi_march_options *options)
 {
   char message[MESSAGE_SIZE] = "";
   const char *sentence = dvi_last_error(), *section = section_of(sentence, options);
-  const bool is_yee = options->method != NULL && strcmp(options->method, "yee") == 0;
+  const char *method = options->method != NULL ? options->method : scene->method;
   if (scene->terms->damping > 0) {
     section = "damping";
     sentence = "marches of fields have no damping; a conductor has 'sigma', and mechanical methods "
                "such as verlet take the friction";
-  } else if (status == DVI_UNSUPPORTED && is_yee && dvi_scene_field(scene->scene) != NULL) {
+  } else if (status == DVI_UNSUPPORTED && is_yee_on_mesh(scene, method)) {
     section = "star";
     sentence = "yee has no star: leave it out, or take leapfrog";
   }

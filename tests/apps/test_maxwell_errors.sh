@@ -159,7 +159,7 @@ done
 
 refuse 'a dipole outside' 4:19 'the dipole is outside of the mesh' "$solid
 sources: {a: {at: [2, 0, 0], moment: [0, 0, t]}}"
-refuse 'a dipole outside of a grid' 5:10 'dipole 0 is at x = 3, outside of the grid' "$grid
+refuse 'a dipole outside of a grid' 5:11 'the dipole is at x = 3, outside of the grid' "$grid
 sources: {a: {at: [3, 0], moment: [0, t]}}
 boundary: {cpml: 2}"
 refuse 'two coordinates' 4:19 "a dipole's place has 3 coordinates here" "$solid
@@ -186,7 +186,7 @@ refuse 'a plane wave on simplices' 4:11 'plane waves are for .method: yee. on bo
 sources: {a: {wave: [1, 0], from: [0.1, 0.1], to: [0.5, 0.5], signal: sin(t)}}"
 refuse 'a plane wave without a box' 5:14 'a plane wave fills a box' "$grid
 sources: {a: {wave: [1, 0], signal: sin(t)}}"
-refuse 'a plane wave outside' 5:10 'outside of the grid from 0 to 1' "$grid
+refuse 'a plane wave outside' 5:11 'a corner of the wave is at y = 1.6, outside of the grid' "$grid
 sources: {a: {wave: [1, 0], from: [0.3, 0.3], to: [0.6, 1.6], signal: sin(t)}}"
 refuse 'a plane wave along E' 5:10 'has E along its direction' "$grid
 sources: {a: {wave: [1, 0], from: [0.3, 0.3], to: [0.6, 0.6], polarization: [1, 0, 0],
@@ -198,7 +198,7 @@ sources: {a: {wave: [0, 0], from: [0.3, 0.3], to: [0.6, 0.6], signal: sin(t)}}"
 
 refuse 'a probe outside' 4:18 'the probe is outside of the mesh' "$solid
 probes: {a: {at: [2, 0, 0]}}"
-refuse 'a probe outside of a grid' 5:9 'probe 0 is at x = 3, outside' "$grid
+refuse 'a probe outside of a grid' 5:10 'the probe is at x = 3, outside' "$grid
 probes: {a: {at: [3, 0.5]}}
 boundary: {cpml: 2}"
 refuse 'a probe of two coordinates' 4:18 'a probe has 3 coordinates here' "$solid
@@ -224,6 +224,12 @@ method: yee
 probes: {a: {flux: left}}'
 refuse 'a probe in a layer' 5:10 "'a_x' lies in .*layers, .* y goes from 0.25 to 0.75" "$grid
 probes: {a: {at: [0.5, 0.2]}}
+boundary: {cpml: 2}"
+refuse 'a flux whose bounds descend' 5:33 'the flux goes from x = 0.6 to 0.3' "$grid
+probes: {ear: {at: [0.5, 0.5]}, a: {flux: {from: [0.6, 0.3], to: [0.3, 0.3]}}}
+boundary: {cpml: 2}"
+refuse 'a flux outside of a grid' 5:10 "a corner of the flux is at x = 1.5, outside" "$grid
+probes: {a: {flux: {from: [0.6, 0.3], to: [1.5, 0.3]}}}
 boundary: {cpml: 2}"
 refuse 'a flux through a layer' 5:10 "'a' lies in absorbing layers, .* x goes from 0 to 0.75" "$grid
 probes: {a: {flux: {from: [0.1, 0.3], to: [0.8, 0.5]}}}
@@ -326,6 +332,7 @@ done
 for star in whitney barycentric; do
   refuse "a $star star of yee" 5:7 'yee has no star: leave it out, or take leapfrog' "$grid
 star: $star"
+  expect 0 "leapfrog in place of yee with a $star star" run wrong.yaml --method leapfrog --h 0.01
   sed 's/yee/leapfrog/' wrong.yaml >star.yaml
   expect 2 "a $star star by yee" run star.yaml --method yee --h 0.01
   says err 'star.yaml:5:7: .*yee has no star' "a $star star by yee"

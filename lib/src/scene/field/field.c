@@ -190,7 +190,6 @@ bool dvi__read_field(dvi_scene *scene, const dvi__tree *section)
   static const char *const word[] = {"wave", "maxwell"};
   int which;
   if (!dvi__tree_word(scene, section, "field", 2, word, &which)) return false;
-  if (!dvi__star_suits_method(scene)) return false;
   if (which == 1 && scene->field->mesh == NULL) return dvi__grid_make(scene);
   return (which == 0 ? make_wave : dvi__maxwell_make)(scene, section) && choose_step(scene);
 }

@@ -79,9 +79,6 @@ bool dvi__maxwell_begin(dvi_scene *scene);
  * and dimension then. */
 bool dvi__is_grid_alone(dvi_scene *scene);
 
-/* Refuse a star that the scene's method would not use. */
-bool dvi__star_suits_method(dvi_scene *scene);
-
 /* The names of the sides of a grid of boxes: lower and upper end of each axis. */
 extern const char *const dvi__grid_side[6];
 

@@ -42,15 +42,6 @@ static bool is_yee(const dvi_scene *scene)
          (method[3] == '\0' || method[3] == ':');
 }
 
-/* The grid of yee has a star of its own. */
-bool dvi__star_suits_method(dvi_scene *scene)
-{
-  const struct dvi__scene_field *f = scene->field;
-  if (f->kind == DVI_CIRCUMCENTRIC || (f->mesh != NULL && !is_yee(scene))) return true;
-  return dvi__scene_refuse(scene, dvi__tree_find(scene->tree, "star")->span,
-                           "yee has no star: leave it out, or take leapfrog");
-}
-
 /* Tell if a probe is the flux through a box. */
 static bool has_box_flux(const dvi__tree *probes)
 {
