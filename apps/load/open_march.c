@@ -108,12 +108,17 @@ int open_march(const problem *scene, const dvi_march_options *options, dvi_march
   return refuse(status, scene, &asked);
 }
 
+bool march_has_step(const char *method)
+{
+  return strncmp(method, "tents", 5) != 0 || (method[5] != '\0' && method[5] != ':');
+}
+
 int check_studied_march(const char *command, const problem *scene, const char *method)
 {
   const dvi_march_options options = {
       .size = sizeof options, .method = method, .fraction = 0.5, .potential = 1};
   dvi_march *march = NULL;
-  if (strncmp(method, "tents", 5) == 0 && (method[5] == '\0' || method[5] == ':'))
+  if (!march_has_step(method))
     return usage_error("%s: tents have no common step, so that order and bench do not take them; "
                        "take leapfrog or avi",
                        command);
