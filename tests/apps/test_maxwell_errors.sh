@@ -260,6 +260,10 @@ refuse 'A and B' 4:10 'B is that of A; give one of them' "$solid
 initial: {A: [0, 0, 0], B: [0, 0, 0]}"
 refuse 'a B with a divergence' 4:10 'it has a divergence, passes through an electric wall' "$solid
 initial: {B: [x, 0, 0]}"
+refuse 'a flux through a closed plane' 4:10 'the whole flux of B through a region that .* be 0$' \
+  "$flat
+initial: {B: [1]}
+boundary: pec"
 refuse 'an E of one component' 4:14 'E has 3 components here' "$solid
 initial: {E: 1}"
 refuse 'the start of a wave' 4:11 "the start of a field has no 'u'; it has E, B and A" "$solid
