@@ -13,6 +13,7 @@
 #include "bench/machine.h"
 #include "bench/members.h"
 #include "load/open.h"
+#include "load/open_march.h"
 #include "cli/progress.h"
 #include "bench/scale.h"
 #include "bench/whole_job.h"
@@ -175,8 +176,9 @@ static int bench_add_entry(bench *b, const char *method, const pacing *how,
   if (b->entries == WORDS_MAX)
     return usage_error("bench: more than %d methods and time transforms", (int)WORDS_MAX);
   if (dvi_scene_marches(b->scene->scene, method)) {
-    bench_keep_entry(b, method, how);
-    return DONE;
+    const int code = check_studied_march("bench", b->scene, method);
+    if (code == DONE) bench_keep_entry(b, method, how);
+    return code;
   }
   const dvi_status status = create_paced(b->scene, method, how, monitor, &integrator);
   dvi_integrator_destroy(&integrator);

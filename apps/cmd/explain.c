@@ -31,7 +31,16 @@ static void explain_parameter(const problem_parameter *parameter, const words *s
   (void)printf("  parameter    %s=%s   %s (default)\n", parameter->name, spelling, parameter->help);
 }
 
-static void explain_problem(const problem *scene, const words *settings)
+/* A step that is searched for, and tents, are not asked for by --h. */
+static void explain_run(const problem *scene, const char *method)
+{
+  (void)printf("\n  first run    ");
+  if (scene->h > 0 && (!dvi_scene_marches(scene->scene, method) || march_has_step(method)))
+    (void)printf("--h %g ", scene->h);
+  (void)printf("--t-end %g\n", scene->t_end);
+}
+
+static void explain_problem(const problem *scene, const char *method, const words *settings)
 {
   (void)printf("problem %s: %s\n", scene->name, scene->summary);
   for (const problem_parameter *k = scene->parameter; k->name != NULL; k++)
@@ -58,7 +67,7 @@ static void explain_problem(const problem *scene, const words *settings)
     (void)printf("%s%s", i > 0 ? ", " : "", dvi_system_invariant_name(scene->system, i));
   if (events_count(scene) > 0) (void)printf("\n  events       ");
   events_print(scene);
-  (void)printf("\n  first run    --h %g --t-end %g\n", scene->h, scene->t_end);
+  explain_run(scene, method);
   (void)printf(
       "  judged by    %s\n",
       scene->terms->noise != NULL ? "no other path; averages over long runs can be compared"
@@ -115,7 +124,7 @@ static int explain_march(const problem *scene, const char *method, double h)
   const int code = open_march(scene, &options, &march);
   if (code != DONE) return code;
   dvi_march_facts_of(march, &facts);
-  (void)printf("march: %s with ", facts.method);
+  (void)printf("march: %s with ", method);
   if (facts.longest > facts.step)
     (void)printf("steps from %g to %g, each below its own bound\n", facts.step, facts.longest);
   else
@@ -216,7 +225,7 @@ int explain_command(int argc, char **argv)
   code = open_problem(name, &r.settings, &scene);
   if (code != DONE) return code;
   code = open_wish("explain", scene, &r.method);
-  if (code == DONE) explain_problem(scene, &r.settings);
+  if (code == DONE) explain_problem(scene, r.method, &r.settings);
   if (code == DONE) code = explain_all(scene, r.method, &r.how, r.h);
   problem_destroy(&scene);
   return code;

@@ -30,8 +30,8 @@ static bool is_generator(const char *name)
   return false;
 }
 
-/* Read up to four numbers with commas between them. Returns DONE, or complains. */
-static int read_list(const char *key, const char *text, double list[4])
+/* Read up to four numbers above `least` with commas between them. Returns DONE, or complains. */
+static int read_list(const char *key, const char *text, double least, double list[4])
 {
   char copy[256];
   if (text == NULL) return DONE;
@@ -43,15 +43,17 @@ static int read_list(const char *key, const char *text, double list[4])
     if (count == 4 || strlen(text) >= sizeof copy || !parse_number(item, &list[count++]))
       return usage_error("mesh: --%s %s: one to four numbers are wanted, with commas between them",
                          key, text);
+    if (!(list[count - 1] > least))
+      return usage_error("mesh: --%s %s: %g is not above %g", key, text, list[count - 1], least);
   }
   return DONE;
 }
 
-/* Read whole numbers. */
-static int read_whole_list(const char *key, const char *text, int whole[4])
+/* Read whole numbers from `least` on. */
+static int read_whole_list(const char *key, const char *text, int least, int whole[4])
 {
   double list[4] = {0, 0, 0, 0};
-  const int code = read_list(key, text, list);
+  const int code = read_list(key, text, least - 1, list);
   for (int i = 0; i < 4 && code == DONE; i++) {
     if (list[i] != floor(list[i]) || fabs(list[i]) > 1e9)
       return usage_error("mesh: --%s %s: %g is no whole number", key, text, list[i]);
@@ -63,11 +65,11 @@ static int read_whole_list(const char *key, const char *text, int whole[4])
 static int generate(const mesh_request *r, const char *name, dvi_mesh **mesh)
 {
   dvi_generator_options options = {.size = sizeof options};
-  int code = read_whole_list("cells", r->cells, options.cells);
-  if (code == DONE) code = read_whole_list("periodic", r->periodic, options.periodic);
-  if (code == DONE) code = read_list("size", r->size, options.extent);
-  if (code == DONE) code = read_list("origin", r->origin, options.origin);
-  if (code == DONE) code = read_list("grading", r->grading, options.grading);
+  int code = read_whole_list("cells", r->cells, 1, options.cells);
+  if (code == DONE) code = read_whole_list("periodic", r->periodic, 0, options.periodic);
+  if (code == DONE) code = read_list("size", r->size, 0, options.extent);
+  if (code == DONE) code = read_list("origin", r->origin, -INFINITY, options.origin);
+  if (code == DONE) code = read_list("grading", r->grading, 0, options.grading);
   if (code != DONE) return code;
   const dvi_status status = dvi_mesh_generate(name, &options, mesh);
   return status == DVI_OK ? DONE : library_error(status);

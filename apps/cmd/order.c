@@ -11,6 +11,7 @@
 #include "cli/file.h"
 #include "study/levels.h"
 #include "load/open.h"
+#include "load/open_march.h"
 #include "cli/options.h"
 #include "study/order_report.h"
 #include "cli/outputs.h"
@@ -223,9 +224,11 @@ static int order_check_methods(const order_request *request, const problem *scen
 {
   int code = DONE;
   for (int i = 0; i < request->methods.count && code == DONE; i++) {
+    const char *method = request->methods.word[i];
     dvi_integrator *integrator = NULL;
-    if (dvi_scene_marches(scene->scene, request->methods.word[i])) continue;
-    code = open_paced(scene, request->methods.word[i], &request->how, &integrator);
+    code = dvi_scene_marches(scene->scene, method)
+               ? check_studied_march("order", scene, method)
+               : open_paced(scene, method, &request->how, &integrator);
     dvi_integrator_destroy(&integrator);
   }
   return code;

@@ -247,7 +247,7 @@ static int run_problem(run_request *request, const char *name)
     problem_destroy(&scene);
     return code;
   }
-  if (dvi_scene_grid_only(scene->scene) != NULL) return refuse_grid(&scene);
+  if (dvi_scene_grid_only(scene->scene) != NULL) return refuse_grid(&scene, true);
   code = scene_complete(scene);
   if (code != DONE) {
     problem_destroy(&scene);

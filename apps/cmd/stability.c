@@ -120,6 +120,10 @@ int stability_command(int argc, char **argv)
   problem *scene;
   int code;
   if (!options_parse(&command, argc, argv, &r, &name, &code)) return code;
+  if (!isnan(r.fraction) && !(r.fraction > 0 && r.fraction < 1))
+    return usage_error("stability: --fraction %g: above 0 and below 1 are possible", r.fraction);
+  if (!isnan(r.span) && !(r.span > 0))
+    return usage_error("stability: --span %g: a time above 0 is wanted", r.span);
   code = field_open("stability", name, &r.settings, &scene, &field);
   if (code != DONE) return code;
   code = examine_all(&r, scene, field);

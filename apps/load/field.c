@@ -14,7 +14,7 @@ int field_open(const char *command, const char *name, const words *settings, pro
 {
   const int code = open_any(name, settings, scene);
   if (code != DONE) return code;
-  if (dvi_scene_grid_only((*scene)->scene) != NULL) return refuse_grid(scene);
+  if (dvi_scene_grid_only((*scene)->scene) != NULL) return refuse_grid(scene, false);
   *field = dvi_scene_field((*scene)->scene);
   if (*field != NULL) return DONE;
   problem_destroy(scene);

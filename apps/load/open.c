@@ -110,24 +110,32 @@ static int refuse_problem_name(const char *name)
       scene_beside(name, hint) ? hint : suggestion(name, problem_name_at, NULL, hint, sizeof hint));
 }
 
-const char *grid_sentence(const problem *scene)
+void grid_sentence(const problem *scene, bool in_run, char *text, size_t size)
 {
+  static const struct {
+    const char *reason, *what, *remedy;
+  } list[] = {{"size", "so large a grid",
+               "take fewer cells, or write 'method: leapfrog' in the scene, which makes a mesh"},
+              {"flux", "a flux through a box", "leave it out"},
+              {"wave", "a plane wave", "take a current"},
+              {"cpml", "cpml", "take 'absorbing'"},
+              {"bloch", "bloch", "take 'periodic'"}};
   const char *reason = dvi_scene_grid_only(scene->scene);
-  return strcmp(reason, "size") == 0
-             ? "so large a grid only 'method: yee' advances, in dvi run; for others take fewer "
-               "cells, or write 'method: leapfrog' in the scene, which makes a mesh"
-         : strcmp(reason, "flux") == 0
-             ? "a flux through a box only 'method: yee' knows, in dvi run; for others leave it out"
-         : strcmp(reason, "wave") == 0
-             ? "a plane wave only 'method: yee' knows, in dvi run; for others take a current"
-         : strcmp(reason, "cpml") == 0
-             ? "cpml only 'method: yee' knows, in dvi run; for others take 'absorbing'"
-             : "bloch only 'method: yee' knows, in dvi run; for others take 'periodic'";
+  size_t i = 0;
+  while (strcmp(list[i].reason, reason) != 0) i++;
+  if (in_run)
+    (void)snprintf(text, size, "%s only 'method: yee' takes, in dvi run; for others %s",
+                   list[i].what, list[i].remedy);
+  else
+    (void)snprintf(text, size, "this command needs a mesh, and with %s there is none: %s",
+                   list[i].what, list[i].remedy);
 }
 
-int refuse_grid(problem **scene)
+int refuse_grid(problem **scene, bool in_run)
 {
-  const int code = usage_error("%s: %s", (*scene)->name, grid_sentence(*scene));
+  char sentence[MESSAGE_SIZE];
+  grid_sentence(*scene, in_run, sentence, sizeof sentence);
+  const int code = usage_error("%s: %s", (*scene)->name, sentence);
   problem_destroy(scene);
   return code;
 }
@@ -136,7 +144,7 @@ int open_problem(const char *name, const words *settings, problem **scene)
 {
   int code = open_any(name, settings, scene);
   if (code != DONE || *scene == NULL) return code;
-  if (dvi_scene_grid_only((*scene)->scene) != NULL) return refuse_grid(scene);
+  if (dvi_scene_grid_only((*scene)->scene) != NULL) return refuse_grid(scene, false);
   code = scene_complete(*scene);
   if (code != DONE) problem_destroy(scene);
   return code;
@@ -267,8 +275,8 @@ static int refuse_method(const problem *scene, const char *method)
   const bool has_field = dvi_scene_field(scene->scene) != NULL;
   if (dvi_scene_marches(scene->scene, method))
     return usage_error(
-        "%s is a march of a field, for dvi run, check, explain, order and bench; a mechanical "
-        "method such as verlet is wanted here",
+        "%s is a march of a field, for dvi run, check, explain, order, and bench without --scale; "
+        "a mechanical method such as verlet is wanted here",
         method);
   hint_at_method(method, has_field ? march_name_at : method_name_at, hint);
   const char *error = dvi_last_error(), *list = strstr(error, "; there are galerkin");

@@ -14,11 +14,12 @@ int open_problem(const char *name, const words *settings, problem **scene);
  * none. */
 int open_any(const char *name, const words *settings, problem **scene);
 
-/** Tell what of a scene's grid without a mesh only yee takes, and what helps. */
-const char *grid_sentence(const problem *scene);
+/** Tell what of a scene's grid without a mesh only yee takes, and what helps: for another method in
+ * dvi run, or in a command that takes no grid. */
+void grid_sentence(const problem *scene, bool in_run, char *text, size_t size);
 
 /** Refuse such a scene, and destroy it. Returns the exit code. */
-int refuse_grid(problem **scene);
+int refuse_grid(problem **scene, bool in_run);
 
 /** Do the same for a scene whose text was loaded before, or for the catalogue if there is no
  * text. */

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli/command.h"
+#include "load/field.h"
 #include "load/open.h"
 
 enum { MESSAGE_SIZE = 2048 };
@@ -54,15 +55,27 @@ static const char *section_of(const char *sentence, const dvi_march_options *opt
   return NULL;
 }
 
+static bool is_yee_on_mesh(const problem *scene, const char *method)
+{
+  const dvi_field *field = dvi_scene_field(scene->scene);
+  return method != NULL && strcmp(method, "yee") == 0 && field != NULL &&
+         dvi_mesh_kind(field_mesh(field)) == DVI_BOXES;
+}
+
 /* What the scene asks for is a mistake of the scene's text. */
 static int refuse(dvi_status status, const problem *scene, const dvi_march_options *options)
 {
   char message[MESSAGE_SIZE] = "";
-  const bool is_damped = scene->terms->damping > 0;
-  const char *sentence = is_damped ? "marches of fields have no damping; a conductor has 'sigma', "
-                                     "and mechanical methods such as verlet take the friction"
-                                   : dvi_last_error();
-  const char *section = is_damped ? "damping" : section_of(sentence, options);
+  const char *sentence = dvi_last_error(), *section = section_of(sentence, options);
+  const char *method = options->method != NULL ? options->method : scene->method;
+  if (scene->terms->damping > 0) {
+    section = "damping";
+    sentence = "marches of fields have no damping; a conductor has 'sigma', and mechanical methods "
+               "such as verlet take the friction";
+  } else if (status == DVI_UNSUPPORTED && is_yee_on_mesh(scene, method)) {
+    section = "star";
+    sentence = "yee has no star: leave it out, or take leapfrog";
+  }
   /* of a callback that failed the scene knows the place better */
   if (status == DVI_NO_MEMORY || status == DVI_CALLBACK_FAILED || section == NULL)
     return library_error(status);
@@ -74,8 +87,9 @@ static int refuse(dvi_status status, const problem *scene, const dvi_march_optio
 static int refuse_method(const problem *scene, const char *method, bool is_own)
 {
   char sentence[MESSAGE_SIZE], message[MESSAGE_SIZE] = "";
-  (void)snprintf(sentence, sizeof sentence, "%s: %s", method,
-                 strncmp(method, "yee:", 4) == 0 ? "yee has no options" : grid_sentence(scene));
+  char reason[MESSAGE_SIZE / 2] = "yee has no options";
+  if (strncmp(method, "yee:", 4) != 0) grid_sentence(scene, true, reason, sizeof reason);
+  (void)snprintf(sentence, sizeof sentence, "%s: %s", method, reason);
   if (!is_own) return usage_error("--method %s", sentence);
   dvi_scene_tell(scene->scene, "method", sentence, message, sizeof message);
   return usage_error("%s", message);
@@ -92,4 +106,23 @@ int open_march(const problem *scene, const dvi_march_options *options, dvi_march
   if (method != NULL && dvi_scene_grid_only(scene->scene) != NULL && strcmp(method, "yee") != 0)
     return refuse_method(scene, method, asked.method == NULL);
   return refuse(status, scene, &asked);
+}
+
+bool march_has_step(const char *method)
+{
+  return strncmp(method, "tents", 5) != 0 || (method[5] != '\0' && method[5] != ':');
+}
+
+int check_studied_march(const char *command, const problem *scene, const char *method)
+{
+  const dvi_march_options options = {
+      .size = sizeof options, .method = method, .fraction = 0.5, .potential = 1};
+  dvi_march *march = NULL;
+  if (!march_has_step(method))
+    return usage_error("%s: tents have no common step, so that order and bench do not take them; "
+                       "take leapfrog or avi",
+                       command);
+  const int code = open_march(scene, &options, &march);
+  dvi_march_destroy(&march);
+  return code;
 }

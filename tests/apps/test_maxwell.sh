@@ -389,7 +389,7 @@ says err 'tents: at t = .* the energy is .* times that of the start, above 2' 't
 sed 's/^method:.*/method: leapfrog/' tents.yaml >leapfrog.yaml
 expect 2 'a scene with equal steps' stability leapfrog.yaml
 says err 'ask for avi or tents' 'a scene with equal steps'
-expect 1 'a fraction of 1' stability cavity.yaml --fraction 1
+expect 2 'a fraction of 1' stability cavity.yaml --fraction 1
 says err 'above 0 and below 1' 'a fraction of 1'
 expect 2 'no field' stability kepler
 
@@ -411,4 +411,17 @@ for method in leapfrog yee; do
   [ "$(wc -l <out)" -eq 2 ] || fail "$method: one line"
   digits out 1 omega 3.124621943649068
 done
+# ---- what explain says ----
+
+printf '%s\n' 'mesh: {generator: box, cells: [8, 8]}' 'field: maxwell' 'until: 1' 'method: yee' \
+  'probes: {rim: {flux: left}}' >told.yaml
+expect 0 'an explanation' explain told.yaml
+says out '^march: yee with steps of ' 'the name of the method'
+says out '^  first run    --t-end 1$' 'a first run without a step'
+printf '%s\n' 'mesh: {generator: staggered, cells: [4, 4]}' 'field: maxwell' 'until: 1' \
+  'method: tents' 'step: {fraction: 0.5}' >told.yaml
+expect 0 'an explanation of tents' explain told.yaml
+says out '^  first run    --t-end 1$' 'a first run of tents'
+expect 0 'an explanation of a mechanical method' explain told.yaml --method verlet
+says out '^  first run    --h 0.0' 'a first run of a mechanical method'
 finish

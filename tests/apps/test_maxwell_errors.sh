@@ -79,11 +79,18 @@ refuse 'two walls in one' 5:18 'stand alone' "$grid
 boundary: {left: {cpml: 3, bloch: 1}}"
 refuse 'layers on simplices' 4:11 'layers and phases are for .method: yee. on boxes' "$flat
 boundary: {cpml: 2}"
-refuse 'layers by leapfrog' 4:9 "cpml only 'method: yee' knows, .* take 'absorbing'" "$solid
+refuse 'layers by leapfrog' 4:9 "cpml only 'method: yee' takes, .* take 'absorbing'" "$solid
 method: leapfrog
 boundary: {cpml: 1}"
 refuse 'a phase at one end' 5:11 'repeats itself at one end only' "$grid
 boundary: {left: {bloch: 1}, right: pec}"
+refuse 'two phases of an axis' 5:30 "the same phase, and 'left' has 1, and 'right' 0.5" "$grid
+boundary: {left: {bloch: 1}, right: {bloch: 0.5}}"
+refuse 'another phase than that of all' 5:34 "the same phase" "$grid
+boundary: {boundary: {bloch: 1}, right: {bloch: 0.5}}"
+printf '%s\n' "$grid" 'boundary: {boundary: {bloch: 1}, left: {bloch: 0.5}, right: {bloch: 0.5}}' \
+  >phases.yaml
+expect 0 'a phase of each axis' check phases.yaml
 refuse 'walls that repeat a mesh' 4:11 'this mesh repeats itself by its own axes' "$flat
 boundary: periodic"
 refuse 'an axis that repeats itself at one end' 5:11 'let left and right be periodic' "$grid
@@ -123,11 +130,36 @@ for key in size origin grading; do
 field: maxwell"
 done
 
+for line in 'size: [5, -0.25]' 'size: [5, 0]' 'grading: [3, 0]' 'size: 0'; do
+  for generator in box kuhn; do
+    refuse "$line of a $generator" '1:[0-9]*' "${line%%:*} is a finite number above 0, and cannot" \
+      "mesh: {generator: $generator, cells: [8, 8], $line}
+field: maxwell"
+  done
+done
+refuse 'no cells along an axis' 1:32 'cells is a whole number from 1 to' \
+  'mesh: {generator: box, cells: [0, 8]}
+field: maxwell'
+refuse 'no numbers of cells' 1:31 'cells is a list of one to four numbers' \
+  'mesh: {generator: box, cells: []}
+field: maxwell'
+for words in '--cells 0,4' '--cells 4,-1' '--size 0,1' '--grading 0,1' '--size 1,-2'; do
+  # shellcheck disable=SC2086 # an option and its value
+  expect 2 "$words" mesh box $words
+  says err "^dvi: mesh: $words: .* is not above 0$" "$words"
+done
+printf '%s\n' "$flat" 'method: avi' >avi.yaml
+for words in '--fraction 0' '--fraction 1.5' '--fraction -1' '--span 0' '--span -1'; do
+  # shellcheck disable=SC2086 # an option and its value
+  expect 2 "$words" stability avi.yaml $words
+  says err "^dvi: stability: $words: " "$words"
+done
+
 # ---- sources ----
 
 refuse 'a dipole outside' 4:19 'the dipole is outside of the mesh' "$solid
 sources: {a: {at: [2, 0, 0], moment: [0, 0, t]}}"
-refuse 'a dipole outside of a grid' 5:10 'dipole 0 is at x = 3, outside of the grid' "$grid
+refuse 'a dipole outside of a grid' 5:11 'the dipole is at x = 3, outside of the grid' "$grid
 sources: {a: {at: [3, 0], moment: [0, t]}}
 boundary: {cpml: 2}"
 refuse 'two coordinates' 4:19 "a dipole's place has 3 coordinates here" "$solid
@@ -154,7 +186,7 @@ refuse 'a plane wave on simplices' 4:11 'plane waves are for .method: yee. on bo
 sources: {a: {wave: [1, 0], from: [0.1, 0.1], to: [0.5, 0.5], signal: sin(t)}}"
 refuse 'a plane wave without a box' 5:14 'a plane wave fills a box' "$grid
 sources: {a: {wave: [1, 0], signal: sin(t)}}"
-refuse 'a plane wave outside' 5:10 'outside of the grid from 0 to 1' "$grid
+refuse 'a plane wave outside' 5:11 'a corner of the wave is at y = 1.6, outside of the grid' "$grid
 sources: {a: {wave: [1, 0], from: [0.3, 0.3], to: [0.6, 1.6], signal: sin(t)}}"
 refuse 'a plane wave along E' 5:10 'has E along its direction' "$grid
 sources: {a: {wave: [1, 0], from: [0.3, 0.3], to: [0.6, 0.6], polarization: [1, 0, 0],
@@ -166,7 +198,7 @@ sources: {a: {wave: [0, 0], from: [0.3, 0.3], to: [0.6, 0.6], signal: sin(t)}}"
 
 refuse 'a probe outside' 4:18 'the probe is outside of the mesh' "$solid
 probes: {a: {at: [2, 0, 0]}}"
-refuse 'a probe outside of a grid' 5:9 'probe 0 is at x = 3, outside' "$grid
+refuse 'a probe outside of a grid' 5:10 'the probe is at x = 3, outside' "$grid
 probes: {a: {at: [3, 0.5]}}
 boundary: {cpml: 2}"
 refuse 'a probe of two coordinates' 4:18 'a probe has 3 coordinates here' "$solid
@@ -192,6 +224,12 @@ method: yee
 probes: {a: {flux: left}}'
 refuse 'a probe in a layer' 5:10 "'a_x' lies in .*layers, .* y goes from 0.25 to 0.75" "$grid
 probes: {a: {at: [0.5, 0.2]}}
+boundary: {cpml: 2}"
+refuse 'a flux whose bounds descend' 5:33 'the flux goes from x = 0.6 to 0.3' "$grid
+probes: {ear: {at: [0.5, 0.5]}, a: {flux: {from: [0.6, 0.3], to: [0.3, 0.3]}}}
+boundary: {cpml: 2}"
+refuse 'a flux outside of a grid' 5:10 "a corner of the flux is at x = 1.5, outside" "$grid
+probes: {a: {flux: {from: [0.6, 0.3], to: [1.5, 0.3]}}}
 boundary: {cpml: 2}"
 refuse 'a flux through a layer' 5:10 "'a' lies in absorbing layers, .* x goes from 0 to 0.75" "$grid
 probes: {a: {flux: {from: [0.1, 0.3], to: [0.8, 0.5]}}}
@@ -222,6 +260,10 @@ refuse 'A and B' 4:10 'B is that of A; give one of them' "$solid
 initial: {A: [0, 0, 0], B: [0, 0, 0]}"
 refuse 'a B with a divergence' 4:10 'it has a divergence, passes through an electric wall' "$solid
 initial: {B: [x, 0, 0]}"
+refuse 'a flux through a closed plane' 4:10 'the whole flux of B through a region that .* be 0$' \
+  "$flat
+initial: {B: [1]}
+boundary: pec"
 refuse 'an E of one component' 4:14 'E has 3 components here' "$solid
 initial: {E: 1}"
 refuse 'the start of a wave' 4:11 "the start of a field has no 'u'; it has E, B and A" "$solid
@@ -291,6 +333,17 @@ for method in leapfrog:x=1 avi:classes=perhaps tents:seed=-1; do
   refuse "$method" 4:9 'option' "$flat
 method: $method"
 done
+for star in whitney barycentric; do
+  refuse "a $star star of yee" 5:7 'yee has no star: leave it out, or take leapfrog' "$grid
+star: $star"
+  expect 0 "leapfrog in place of yee with a $star star" run wrong.yaml --method leapfrog --h 0.01
+  sed 's/yee/leapfrog/' wrong.yaml >star.yaml
+  expect 2 "a $star star by yee" run star.yaml --method yee --h 0.01
+  says err 'star.yaml:5:7: .*yee has no star' "a $star star by yee"
+done
+refuse 'a star of a grid' 6:7 'yee has no star' "$grid
+boundary: {cpml: 2}
+star: whitney"
 refuse 'an option of yee' 4:9 'has no options' "$solid
 method: yee:x=1"
 refuse 'an option of a grid' 3:9 'yee has no options' 'mesh: {generator: box, cells: [8, 8]}
@@ -363,13 +416,22 @@ expect 2 'a march of no field' run kepler --method leapfrog
 expect 2 'monitors of a march' explain run.yaml --time-transform arclength
 says err 'follow no monitor' 'monitors of a march'
 printf '%s\n' "$grid" 'boundary: {cpml: 2}' >grid.yaml
-for command in modes stability solve explain 'order --method verlet'; do
+for command in modes stability solve explain order bench 'order --method verlet'; do
   # shellcheck disable=SC2086 # the words of a command
   set -- $command
   subcommand=$1
   shift
   expect 2 "$subcommand of a grid" "$subcommand" grid.yaml "$@"
-  says err "cpml only 'method: yee' knows" "$subcommand of a grid"
+  says err "needs a mesh, and with cpml there is none: take 'absorbing'$" "$subcommand of a grid"
 done
 expect 2 'a grid by verlet' run grid.yaml --method verlet --h 0.01
+says err "cpml only 'method: yee' takes" 'a grid by verlet'
+printf '%s\n' "$flat" 'step: 0.01' 'initial: {E: [y, 0]}' >square.yaml
+for command in order bench; do
+  expect 2 "$command of tents" $command square.yaml --method tents:least=0.5
+  says err "^dvi: $command: tents have no common step" "$command of tents"
+done
+printf '%s\n' 'parameters: {n: 4}' "$flat" 'step: 0.01' | sed 's/4, 4/n, n/' >scaled.yaml
+expect 2 'a scale of marches' bench scaled.yaml --method leapfrog --scale n=4,6
+says err 'order, and bench without --scale; a mechanical method' 'a scale of marches'
 finish

@@ -150,7 +150,8 @@ int dvi_scene_marches(const dvi_scene *scene, const char *method);
  *  @param      options  what they leave open is that of the scene. NULL for all of it
  *  @param[out] march    owned by the caller, for dvi_march_destroy before the scene's end
  *  @retval DVI_BAD_OPTION    the method is not one of marches
- *  @retval DVI_UNSUPPORTED   the scene has no mesh, and the method is not yee, or it has a damping
+ *  @retval DVI_UNSUPPORTED   the scene has no mesh, and the method is not yee; it has a damping; or
+ *                            the method is yee, and the star is not circumcentric
  *  @retval (others)          as dvi_march_create, dvi_yee_create and dvi_march_start */
 dvi_status dvi_scene_march_create(const dvi_scene *scene, const dvi_march_options *options,
                                   dvi_march **march);

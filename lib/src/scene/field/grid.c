@@ -321,8 +321,40 @@ static int layers_at(const struct dvi__scene_maxwell *m, int side)
   return layers;
 }
 
-/* Refuse a probe in absorbing layers, where the field is none of Maxwell's any more. Yee refuses
- * what is outside of the grid. */
+static bool is_on_grid(dvi_scene *scene, dvi__span span, const char *what, const double *x)
+{
+  const dvi_generator_options *grid = &scene->field->grid;
+  for (int a = 0; a < scene->field->dimension; a++) {
+    const double lower = node_at(grid, a, 0), upper = node_at(grid, a, grid->cells[a]);
+    if (!(x[a] >= lower && x[a] <= upper))
+      return dvi__scene_refuse(scene, span, "%s is at %c = %g, outside of the grid from %g to %g",
+                               what, "xyz"[a], x[a], lower, upper);
+  }
+  return true;
+}
+
+static bool check_source(dvi_scene *scene, const dvi__scene_source *source)
+{
+  if (source->at != NULL) return is_on_grid(scene, source->span, "the dipole", source->point);
+  return source->wave == NULL ||
+         (is_on_grid(scene, source->span, "a corner of the wave", source->lower) &&
+          is_on_grid(scene, source->span, "a corner of the wave", source->upper));
+}
+
+/* A rectangle has one coordinate twice. */
+static bool check_place(dvi_scene *scene, const dvi__scene_probe *probe)
+{
+  if (!probe->has_box) return is_on_grid(scene, probe->span, "the probe", probe->at);
+  for (int a = 0; a < scene->field->dimension; a++)
+    if (probe->lower[a] > probe->upper[a])
+      return dvi__scene_refuse(scene, probe->span,
+                               "the flux goes from %c = %g to %g, which is not upwards", "xyz"[a],
+                               probe -> lower[a], probe -> upper[a]);
+  return is_on_grid(scene, probe->span, "a corner of the flux", probe->lower) &&
+         is_on_grid(scene, probe->span, "a corner of the flux", probe->upper);
+}
+
+/* Refuse a probe in absorbing layers, where the field is none of Maxwell's any more. */
 static bool is_clear_of_layers(dvi_scene *scene, const dvi__scene_probe *probe)
 {
   const struct dvi__scene_field *f = scene->field;
@@ -334,8 +366,7 @@ static bool is_clear_of_layers(dvi_scene *scene, const dvi__scene_probe *probe)
                  rounding = 1e-9 * (upper - lower),
                  from = probe->has_box ? probe->lower[a] : probe->at[a],
                  to = probe->has_box ? probe->upper[a] : probe->at[a];
-    const bool is_inside = from >= node_at(&f->grid, a, 0) && to <= node_at(&f->grid, a, cells);
-    if (is_inside && (from < lower - rounding || to > upper + rounding))
+    if (from < lower - rounding || to > upper + rounding)
       return dvi__scene_refuse(scene, probe->span,
                                "'%s' lies in absorbing layers, without which %c goes from %g to %g",
                                probe->name, "xyz"[a], lower, upper);
@@ -347,7 +378,7 @@ static bool is_clear_of_layers(dvi_scene *scene, const dvi__scene_probe *probe)
 static bool check_probe(dvi_scene *scene, const dvi__scene_probe *probe)
 {
   const char *only = scene->field->maxwell->grid_only;
-  if (probe->part == NULL) return is_clear_of_layers(scene, probe);
+  if (probe->part == NULL) return check_place(scene, probe) && is_clear_of_layers(scene, probe);
   return only != NULL ? dvi__scene_refuse(scene, probe->span,
                                           "a grid has no parts, and with '%s' there is a grid; "
                                           "write 'flux: {from: [..], to: [..]}'",
@@ -360,6 +391,11 @@ static bool check_probe(dvi_scene *scene, const dvi__scene_probe *probe)
 bool dvi__grid_make(dvi_scene *scene)
 {
   const struct dvi__scene_maxwell *m = scene->field->maxwell;
+  if (scene->field->kind != DVI_CIRCUMCENTRIC)
+    return dvi__scene_refuse(scene, dvi__tree_find(scene->tree, "star")->span,
+                             "yee has no star: leave it out, or take leapfrog");
+  for (int i = 0; i < m->sources; i++)
+    if (!check_source(scene, m->source + i)) return false;
   for (int i = 0; i < m->probes; i++)
     if (!check_probe(scene, m->probe + i)) return false;
   if (m->of_A != NULL)

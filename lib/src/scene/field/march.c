@@ -75,6 +75,9 @@ dvi_status dvi_scene_march_create(const dvi_scene *scene, const dvi_march_option
   if (scene->terms.damping > 0) return DVI_UNSUPPORTED;
   const dvi_march_options all = complete(scene, options);
   const struct dvi__scene_field *f = scene->field;
+  if (f->kind != DVI_CIRCUMCENTRIC && strcmp(all.method, "yee") == 0 &&
+      dvi_mesh_kind(f->mesh) == DVI_BOXES)
+    return DVI_UNSUPPORTED;
   if (suits_grid(f, &all)) return dvi__grid_march(scene, &all, march);
   if (f->field == NULL) return DVI_UNSUPPORTED;
   dvi_status status = dvi_march_create(f->field, &all, march);

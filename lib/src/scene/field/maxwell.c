@@ -187,6 +187,18 @@ static bool integrate(dvi_scene *scene, dvi__place_vector *vector, bool is_B, do
                        dvi_last_error());
 }
 
+/* The circulation of A around a plane is the flux of B through it, and 0 along an electric wall. */
+static bool refuse_B(dvi_scene *scene, dvi_status status)
+{
+  const struct dvi__scene_field *f = scene->field;
+  const bool is_flux = status == DVI_BAD_ARGUMENT && f->dimension == 2 && !f->maxwell->is_scalar;
+  return dvi__complain(scene->complaint, status, dvi__tree_find(scene->tree, "initial")->span,
+                       is_flux ? "%s; the whole flux of B through a region that electric walls "
+                                 "enclose, or that is periodic, must be 0"
+                               : "%s",
+                       dvi_last_error());
+}
+
 /* The start of the mechanical system: q = A, and the velocity -E. */
 static bool make_start(dvi_scene *scene)
 {
@@ -205,9 +217,7 @@ static bool make_start(dvi_scene *scene)
     const dvi_status status = m->start_A != NULL
                                   ? dvi_field_vector_potential(f->field, m->start_B, m->start_A)
                                   : DVI_NO_MEMORY;
-    if (status != DVI_OK)
-      return dvi__complain(scene->complaint, status, dvi__tree_find(scene->tree, "initial")->span,
-                           "%s", dvi_last_error());
+    if (status != DVI_OK) return refuse_B(scene, status);
   }
   scene->v = scene->q + n;
   scene->p = scene->v + n;

@@ -322,6 +322,23 @@ static bool replace_whole(dvi_scene *scene)
   return true;
 }
 
+/* A field has one phase over a period, which both ends of an axis tell. */
+static bool phases_agree(dvi_scene *scene)
+{
+  const struct dvi__scene_maxwell *m = scene->field->maxwell;
+  for (int i = 0; i < m->walls; i++)
+    for (int k = 0; k < i; k++) {
+      const dvi__scene_wall *a = m->wall + k, *b = m->wall + i;
+      if (a->word == DVI__WALL_BLOCH && b->word == DVI__WALL_BLOCH && a->number != b->number &&
+          axis_of_side(a->part) == axis_of_side(b->part))
+        return dvi__scene_refuse(scene, b->span,
+                                 "both ends of an axis have the same phase, and '%s' has %g, and "
+                                 "'%s' %g",
+                                 a->part, a->number, b->part, b->number);
+    }
+  return true;
+}
+
 /* A mapping by part has values that are words or mappings; '{cpml: 10}' alone is of the whole
  * boundary. */
 bool dvi__maxwell_read_walls(dvi_scene *scene, const dvi__tree *section)
@@ -336,7 +353,7 @@ bool dvi__maxwell_read_walls(dvi_scene *scene, const dvi__tree *section)
   for (int i = 0; i < section->count; i++)
     if (!read_wall(scene, section->key[i]->text, section->key[i]->span, section->child[i]))
       return false;
-  return replace_whole(scene);
+  return replace_whole(scene) && phases_agree(scene);
 }
 
 /* ---- sources ---- */

@@ -1,4 +1,5 @@
 /* The section mesh, and the names that it brings. */
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -7,21 +8,32 @@
 
 /* ---- numbers ---- */
 
-/* Read a list of at most four numbers, or a number, which stands for a list of one. Positive whole
- * ones if `whole` is not NULL. */
-static bool read_list(dvi_scene *scene, const dvi__tree *mesh, const char *name, double *number,
-                      int *whole)
+/* What the library takes for its default must not come from a scene that says 0. */
+static bool read_positive(dvi_scene *scene, const dvi__tree *entry, const char *name,
+                          double *number)
+{
+  if (!dvi__tree_number(scene, entry, name, number)) return false;
+  return (*number > 0 && isfinite(*number)) ||
+         dvi__scene_refuse(scene, entry->span, "%s is a finite number above 0, and cannot be %g",
+                           name, *number);
+}
+
+/* Read a list of one to four numbers, or a number, which stands for a list of one. Whole ones from
+ * `least` on if `whole` is not NULL, otherwise positive ones if `least` is. */
+static bool read_list(dvi_scene *scene, const dvi__tree *mesh, const char *name, int least,
+                      double *number, int *whole)
 {
   const dvi__tree *tree = dvi__tree_find(mesh, name);
   if (tree == NULL) return true;
   const int is_list = tree->kind == DVI__SEQUENCE, count = is_list ? tree->count : 1;
-  if (count > 4 || tree->kind == DVI__MAPPING)
-    return dvi__scene_refuse(scene, tree->span, "%s is a list of at most four numbers", name);
+  if (count < 1 || count > 4 || tree->kind == DVI__MAPPING)
+    return dvi__scene_refuse(scene, tree->span, "%s is a list of one to four numbers", name);
   for (int i = 0; i < count; i++) {
     const dvi__tree *entry = is_list ? tree->child[i] : tree;
-    if (whole != NULL ? !dvi__tree_whole(scene, entry, name, 0, whole + i)
-                      : !dvi__tree_number(scene, entry, name, number + i))
-      return false;
+    const bool good = whole != NULL ? dvi__tree_whole(scene, entry, name, least, whole + i)
+                      : least > 0   ? read_positive(scene, entry, name, number + i)
+                                    : dvi__tree_number(scene, entry, name, number + i);
+    if (!good) return false;
   }
   return true;
 }
@@ -69,11 +81,11 @@ static bool generate(dvi_scene *scene, const dvi__tree *section, const dvi__tree
   *options = (dvi_generator_options){.size = sizeof *options};
   if (!dvi__want_keys(scene, section, "a generated mesh", 6, known) ||
       !dvi__want_text(scene, generator, "generator") ||
-      !read_list(scene, section, "cells", NULL, options->cells) ||
-      !read_list(scene, section, "size", options->extent, NULL) ||
-      !read_list(scene, section, "origin", options->origin, NULL) ||
-      !read_list(scene, section, "grading", options->grading, NULL) ||
-      !read_list(scene, section, "periodic", NULL, options->periodic))
+      !read_list(scene, section, "cells", 1, NULL, options->cells) ||
+      !read_list(scene, section, "size", 1, options->extent, NULL) ||
+      !read_list(scene, section, "origin", 0, options->origin, NULL) ||
+      !read_list(scene, section, "grading", 1, options->grading, NULL) ||
+      !read_list(scene, section, "periodic", 0, NULL, options->periodic))
     return false;
   scene->field->is_grid = strcmp(generator->text, "box") == 0;
   if (!dvi__maxwell_read_periodic(scene)) return false;
