@@ -366,9 +366,9 @@ says err "unknown method 'fdtd'; fields have leapfrog, yee" 'a method that is no
 refuse 'a method that is none' 4:9 "unknown method 'leapfrg'.*(did you mean 'leapfrog'?)" "$flat
 method: leapfrg"
 printf '%s\n' "$flat" 'method: leapfrog' 'step: 0.01' \
-  'sources: {a: {density: [1, 0], signal: 1/t}}' >pole.yaml
+  'sources: {a: {density: [1, 0], signal: log(t - 1)}}' >pole.yaml
 expect 1 'a signal that is not finite' check pole.yaml
-says err 'pole.yaml:6:40: 1/t is not finite, at t = 0' 'a signal that is not finite'
+says err 'pole.yaml:6:40: log(t - 1), .* is not finite, at t = ' 'a signal that is not finite'
 
 # ---- options ----
 
